@@ -1,0 +1,76 @@
+#define _GNU_SOURCE
+#include "formats/jsonl.h"
+
+#include "base/file.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+int jsonl_open(struct jsonl *j, const char *path, struct err *e)
+{
+	*j = (struct jsonl){.path = file_name(path)};
+	j->in = file_open(path, e);
+	return j->in ? 0 : -1;
+}
+
+void jsonl_close(struct jsonl *j)
+{
+	file_close(j->in);
+	free(j->line);
+	*j = (struct jsonl){0};
+}
+
+int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
+{
+	char reason[512];
+	va_list ap;
+
+	va_start(ap, format);
+	vsnprintf(reason, sizeof reason, format, ap);
+	va_end(ap);
+	return err_set(e, ERR_FORMAT, "%s:%ld: %s", j->path, j->line_number, reason);
+}
+
+int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
+{
+	for (;;) {
+		errno = 0;
+		ssize_t len = getline(&j->line, &j->capacity, j->in);
+		if (len < 0) {
+			if (ferror(j->in) || errno == ENOMEM)
+				return err_errno(e, "%s", j->path);
+			return 0;
+		}
+		j->line_number++;
+		if ((size_t)len != strlen(j->line))
+			return jsonl_err(j, e, "a NUL byte at column %zu", strlen(j->line) + 1);
+		if (strspn(j->line, " \t\r\n") == (size_t)len)
+			continue;
+		const char *stop = NULL;
+		*object = cJSON_ParseWithOpts(j->line, &stop, 1);
+		if (!*object)
+			return jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);
+		if (cJSON_IsObject(*object))
+			return 1;
+		cJSON_Delete(*object);
+		return jsonl_err(j, e, "not a JSON object");
+	}
+}
+
+int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, int need, const char **value,
+	struct err *e)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+
+	if (!item || cJSON_IsNull(item)) {
+		if (need)
+			return jsonl_err(j, e, "key '%s' is missing", key);
+		return 0;
+	}
+	if (!cJSON_IsString(item))
+		return jsonl_err(j, e, "key '%s' is not a string", key);
+	*value = item->valuestring;
+	return 1;
+}

@@ -1,0 +1,34 @@
+/* JSON Lines: one object a line, read as a stream. */
+#ifndef FORMATS_JSONL_H
+#define FORMATS_JSONL_H
+
+#include "base/err.h"
+
+#include <cjson/cJSON.h>
+#include <stdio.h>
+
+struct jsonl {
+	FILE *in;
+	const char *path; /* as messages name it */
+	char *line;
+	size_t capacity;
+	long line_number; /* of the line last returned, from 1 */
+};
+
+/* "-" is stdin. `path` must outlive the reader. */
+int jsonl_open(struct jsonl *j, const char *path, struct err *e);
+
+/* The next line's object: 1 and *object (the caller's, cJSON_Delete), 0 at the end, -1 with *e
+ * ("path:LINE: reason"). Empty lines are skipped. */
+int jsonl_next(struct jsonl *j, cJSON **object, struct err *e);
+void jsonl_close(struct jsonl *j);
+
+/* Sets ERR_FORMAT with "path:LINE: reason". Always returns -1. */
+int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* A string member. Returns 1 and *value (owned by the object), 0 where it is absent or null, -1 with *e where it is not a
+ * string or, if `need`, absent. */
+int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, int need, const char **value,
+	struct err *e);
+
+#endif

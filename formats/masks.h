@@ -1,0 +1,36 @@
+/* Mask records (JSON Lines): candidates, pseudo masks, predictions and truth alike. formats/masks.md. */
+#ifndef FORMATS_MASKS_H
+#define FORMATS_MASKS_H
+
+#include "base/err.h"
+#include "formats/jsonl.h"
+#include "mask/rle.h"
+
+#include <stdio.h>
+
+struct mask_record {
+	char *view;   /* never NULL in a record that was read */
+	char *ref;    /* NULL where the mask is of an object rather than a sentence */
+	char *object; /* may be NULL where ref is given */
+	double score; /* NaN where absent */
+	struct rle mask;
+};
+
+struct mask_set {
+	size_t n, capacity;
+	struct mask_record *records;
+};
+
+/* The next record of a stream: 1, 0 at the end, -1 with *e ("path:LINE: key '...': ..."). A "path" member names a PNG
+ * relative to the JSONL file's folder (nonzero is foreground). */
+int masks_next(struct jsonl *j, struct mask_record *r, struct err *e);
+void mask_record_free(struct mask_record *r);
+
+/* All records of a file; "-" is stdin. */
+int masks_read(struct mask_set *set, const char *path, struct err *e);
+void masks_free(struct mask_set *set);
+
+/* One line. Keys in the order view, ref, object, score, segmentation; absent ones left out. */
+int masks_put(FILE *out, const struct mask_record *r, struct err *e);
+
+#endif

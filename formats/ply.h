@@ -1,0 +1,22 @@
+/* 3DGS .ply scenes. formats/ply.md. */
+#ifndef FORMATS_PLY_H
+#define FORMATS_PLY_H
+
+#include "base/err.h"
+#include "splat/splats.h"
+
+/* What was left out on reading, and why. */
+struct ply_report {
+	size_t read;		  /* vertices in the file */
+	size_t not_finite, zero_quat; /* left out */
+	size_t *dropped;	  /* (not_finite + zero_quat) vertex indices, rising; owned by the caller */
+};
+
+/* Reads a binary little-endian 3DGS .ply: activations applied (scales exp, opacity sigmoid), means minus `offset`,
+ * which is chosen here by the rule in ply.md (0 for scenes near the origin) and returned. */
+int ply_read(struct splats *s, double offset[3], struct ply_report *report, const char *path, struct err *e);
+
+/* Writes the usual 3DGS layout (x y z nx ny nz f_dc f_rest opacity scale rot), with activations undone. */
+int ply_write(const struct splats *s, const double offset[3], const char *path, struct err *e);
+
+#endif

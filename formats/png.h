@@ -1,0 +1,19 @@
+/* PNG images through libpng, JPEG through libjpeg (read only). Errors name the file. */
+#ifndef FORMATS_PNG_H
+#define FORMATS_PNG_H
+
+#include "base/err.h"
+
+#include <stdint.h>
+
+/* A PNG as a mask: pixels (height,width) get 1 where any colour channel is nonzero (alpha ignored). free() it. */
+int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e);
+
+/* A PNG or JPEG (by content) as RGB, (height,width,3). free() it. */
+int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, struct err *e);
+
+/* All appear whole. channels 1 or 3, row-major. The 16-bit one is grey, native-endian values in memory. */
+int png_write(const char *path, const uint8_t *pixels, int height, int width, int channels, struct err *e);
+int png_write16(const char *path, const uint16_t *grey, int height, int width, struct err *e);
+
+#endif

@@ -1,0 +1,276 @@
+#include "formats/scene.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/safetensors.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int check_values(const struct splats *s, const char *path, struct err *e)
+{
+	for (size_t i = 0; i < s->n; i++) {
+		const float *m = s->means + 3 * i, *c = s->scales + 3 * i, *q = s->quats + 4 * i;
+		float length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+		if (!isfinite(m[0]) || !isfinite(m[1]) || !isfinite(m[2]))
+			return err_set(e, ERR_FORMAT, "%s: tensor 'means': Gaussian %zu is not finite", path, i);
+		if (!(c[0] >= 0 && c[1] >= 0 && c[2] >= 0) || !isfinite(c[0] + c[1] + c[2]))
+			return err_set(e, ERR_FORMAT, "%s: tensor 'scales': Gaussian %zu is negative or not finite", path, i);
+		if (!(length > 0) || !isfinite(length))
+			return err_set(e, ERR_FORMAT, "%s: tensor 'quats': Gaussian %zu is zero or not finite", path, i);
+		if (!(s->opacities[i] >= 0 && s->opacities[i] <= 1))
+			return err_set(e, ERR_FORMAT, "%s: tensor 'opacities': Gaussian %zu is not in [0,1]", path, i);
+	}
+	for (size_t i = 0; i < s->n * (size_t)s->sh_coefficients * 3; i++)
+		if (!isfinite(s->sh[i]))
+			return err_set(e, ERR_FORMAT, "%s: tensor 'sh': value %zu is not finite", path, i);
+	return 0;
+}
+
+static int read_splats(struct scene *s, const char *path, struct err *e)
+{
+	struct safetensors st;
+	const struct st_tensor *t[5];
+	int bad = -1;
+
+	if (safetensors_open(&st, path, e))
+		return -1;
+	if (safetensors_need_format(&st, "refer.splats", 1, e) ||
+		!(t[0] = safetensors_need(&st, "means", ST_F32, 2, (int64_t[]){-1, 3}, e)))
+		goto done;
+	int64_t n = t[0]->shape[0];
+	if (!(t[1] = safetensors_need(&st, "scales", ST_F32, 2, (int64_t[]){n, 3}, e)) ||
+		!(t[2] = safetensors_need(&st, "quats", ST_F32, 2, (int64_t[]){n, 4}, e)) ||
+		!(t[3] = safetensors_need(&st, "opacities", ST_F32, 1, (int64_t[]){n}, e)) ||
+		!(t[4] = safetensors_need(&st, "sh", ST_F32, 3, (int64_t[]){n, -1, 3}, e)))
+		goto done;
+	int64_t k = t[4]->shape[1];
+	if (k != 1 && k != 4 && k != 9 && k != 16) {
+		err_set(e, ERR_FORMAT, "%s: tensor 'sh': %lld coefficients, expected 1, 4, 9 or 16", path, (long long)k);
+		goto done;
+	}
+	const char *offset = safetensors_meta(&st, "offset");
+	if (offset && sscanf(offset, "[%lf,%lf,%lf]", &s->offset[0], &s->offset[1], &s->offset[2]) != 3) {
+		err_set(e, ERR_FORMAT, "%s: metadata 'offset' is not three numbers", path);
+		goto done;
+	}
+	if (splats_alloc(&s->splats, (size_t)n, (int)k, e))
+		goto done;
+	float *to[5] = {s->splats.means, s->splats.scales, s->splats.quats, s->splats.opacities, s->splats.sh};
+	for (int i = 0; i < 5; i++)
+		memcpy(to[i], t[i]->data, t[i]->bytes);
+	bad = check_values(&s->splats, path, e);
+done:
+	safetensors_close(&st);
+	return bad;
+}
+
+/* A number, or an ERR_FORMAT that names the view and key. */
+static int view_number(const cJSON *view, const char *key, const char *path, int index, double *out, struct err *e)
+{
+	const cJSON *v = cJSON_GetObjectItemCaseSensitive(view, key);
+
+	if (!cJSON_IsNumber(v) || !isfinite(v->valuedouble))
+		return err_set(e, ERR_FORMAT, "%s: view %d: key '%s' is not a number", path, index, key);
+	*out = v->valuedouble;
+	return 0;
+}
+
+static int read_pose(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
+{
+	const cJSON *rows = cJSON_GetObjectItemCaseSensitive(view, "world_to_camera"), *row = NULL;
+	int r = 0;
+
+	if (cJSON_GetArraySize(rows) != 4)
+		return err_set(e, ERR_FORMAT, "%s: view %d: key 'world_to_camera' is not 4x4", path, index);
+	cJSON_ArrayForEach(row, rows)
+	{
+		if (cJSON_GetArraySize(row) != 4)
+			return err_set(e, ERR_FORMAT, "%s: view %d: key 'world_to_camera' is not 4x4", path, index);
+		for (int k = 0; k < 4; k++) {
+			const cJSON *v = cJSON_GetArrayItem(row, k);
+			if (!cJSON_IsNumber(v) || !isfinite(v->valuedouble))
+				return err_set(e, ERR_FORMAT, "%s: view %d: world_to_camera[%d][%d] is not a number", path, index,
+					r, k);
+			c->world_to_camera[r][k] = v->valuedouble;
+		}
+		r++;
+	}
+	for (int a = 0; a < 3; a++)
+		for (int b = 0; b < 3; b++) {
+			const double *x = c->world_to_camera[a], *y = c->world_to_camera[b];
+			double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+			if (fabs(dot - (a == b)) > 1e-4)
+				return err_set(e, ERR_FORMAT, "%s: view %d: world_to_camera is not a rotation", path, index);
+		}
+	return 0;
+}
+
+static int read_view(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
+{
+	const cJSON *name = cJSON_GetObjectItemCaseSensitive(view, "name");
+	const cJSON *split = cJSON_GetObjectItemCaseSensitive(view, "split");
+	const cJSON *image = cJSON_GetObjectItemCaseSensitive(view, "image");
+	double width = 0, height = 0;
+
+	if (!cJSON_IsString(name) || !name->valuestring[0] || strchr(name->valuestring, '/'))
+		return err_set(e, ERR_FORMAT, "%s: view %d: key 'name' is not a name without slashes", path, index);
+	c->name = mem_strdup(name->valuestring, e);
+	if (!c->name)
+		return -1;
+	if (view_number(view, "width", path, index, &width, e) || view_number(view, "height", path, index, &height, e) ||
+		view_number(view, "fx", path, index, &c->fx, e) || view_number(view, "fy", path, index, &c->fy, e) ||
+		view_number(view, "cx", path, index, &c->cx, e) || view_number(view, "cy", path, index, &c->cy, e) ||
+		read_pose(c, view, path, index, e))
+		return -1;
+	if (!(width >= 1 && width <= 65536 && width == floor(width) && height >= 1 && height <= 65536 &&
+		    height == floor(height)))
+		return err_set(e, ERR_FORMAT, "%s: view %d: size %gx%g is not whole numbers in 1 to 65536", path, index, width,
+			height);
+	if (!(c->fx > 0 && c->fy > 0))
+		return err_set(e, ERR_FORMAT, "%s: view %d: focal length is not positive", path, index);
+	c->width = (int)width;
+	c->height = (int)height;
+	if (!cJSON_IsString(split) || (strcmp(split->valuestring, "train") && strcmp(split->valuestring, "test")))
+		return err_set(e, ERR_FORMAT, "%s: view %d: key 'split' is not \"train\" or \"test\"", path, index);
+	c->split = !strcmp(split->valuestring, "test") ? SPLIT_TEST : SPLIT_TRAIN;
+	if (cJSON_IsString(image)) {
+		c->image = mem_strdup(image->valuestring, e);
+		return c->image ? 0 : -1;
+	}
+	if (image && !cJSON_IsNull(image))
+		return err_set(e, ERR_FORMAT, "%s: view %d: key 'image' is not a string", path, index);
+	return 0;
+}
+
+static int read_views(struct cameras *c, const cJSON *list, const char *path, struct err *e)
+{
+	const cJSON *view;
+
+	if (!cJSON_IsArray(list))
+		return err_set(e, ERR_FORMAT, "%s: not a list of views", path);
+	c->views = mem_zalloc((size_t)cJSON_GetArraySize(list), sizeof *c->views, path, e);
+	if (!c->views)
+		return -1;
+	cJSON_ArrayForEach(view, list)
+	{
+		struct camera *one = &c->views[c->n++];
+		if (read_view(one, view, path, (int)c->n - 1, e))
+			return -1;
+		if (cameras_find(c, one->name) != one)
+			return err_set(e, ERR_FORMAT, "%s: view name '%s' appears twice", path, one->name);
+	}
+	return 0;
+}
+
+static int read_cameras_file(struct cameras *c, const char *path, struct err *e)
+{
+	char *text;
+	size_t len;
+	const char *stop = NULL;
+
+	*c = (struct cameras){0};
+	if (file_read(path, &text, &len, e))
+		return -1;
+	cJSON *list = cJSON_ParseWithLengthOpts(text, len + 1, &stop, 1);
+	int bad = list ? read_views(c, list, path, e)
+		       : err_set(e, ERR_FORMAT, "%s: not JSON at offset %td", path, stop ? stop - text : 0);
+	cJSON_Delete(list);
+	free(text);
+	if (bad)
+		cameras_free(c);
+	return bad;
+}
+
+int scene_read_cameras(struct cameras *c, const char *dir, struct err *e)
+{
+	char *path = file_join(dir, "cameras.json", "", e);
+	int bad = path ? read_cameras_file(c, path, e) : -1;
+
+	free(path);
+	return bad;
+}
+
+int scene_read(struct scene *s, const char *dir, struct err *e)
+{
+	char *path = file_join(dir, "splats.safetensors", "", e);
+
+	*s = (struct scene){0};
+	int bad = path ? read_splats(s, path, e) : -1;
+	free(path);
+	if (bad || scene_read_cameras(&s->cameras, dir, e)) {
+		scene_free(s);
+		return -1;
+	}
+	return 0;
+}
+
+void scene_free(struct scene *s)
+{
+	splats_free(&s->splats);
+	cameras_free(&s->cameras);
+}
+
+static void put_view(FILE *out, const struct camera *c)
+{
+	cJSON *name = cJSON_CreateString(c->name), *image = c->image ? cJSON_CreateString(c->image) : cJSON_CreateNull();
+	char *name_text = cJSON_PrintUnformatted(name), *image_text = cJSON_PrintUnformatted(image);
+
+	fprintf(out,
+		"{\"name\":%s,\"width\":%d,\"height\":%d,\"fx\":%.17g,\"fy\":%.17g,\"cx\":%.17g,\"cy\":%.17g,\n"
+		"  \"world_to_camera\":[",
+		name_text, c->width, c->height, c->fx, c->fy, c->cx, c->cy);
+	for (int r = 0; r < 4; r++) {
+		const double *row = c->world_to_camera[r];
+		fprintf(out, "%s[%.17g,%.17g,%.17g,%.17g]", r ? "," : "", row[0], row[1], row[2], row[3]);
+	}
+	fprintf(out, "],\n  \"split\":\"%s\",\"image\":%s}", c->split == SPLIT_TEST ? "test" : "train", image_text);
+	cJSON_Delete(name);
+	cJSON_Delete(image);
+	free(name_text);
+	free(image_text);
+}
+
+static int write_cameras(const struct cameras *c, const char *path, struct err *e)
+{
+	struct file_out out;
+
+	if (file_out_open(&out, path, e))
+		return -1;
+	fputs("[", out.stream);
+	for (size_t i = 0; i < c->n; i++) {
+		fputs(i ? ",\n " : "\n ", out.stream);
+		put_view(out.stream, &c->views[i]);
+	}
+	fputs("\n]\n", out.stream);
+	return file_out_commit(&out, e);
+}
+
+int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e)
+{
+	const struct splats *p = &s->splats;
+	int64_t n = (int64_t)p->n;
+	char offset[128];
+	struct st_tensor tensors[] = {
+		{.name = "means", .dtype = ST_F32, .dims = 2, .shape = {n, 3}, .data = p->means},
+		{.name = "scales", .dtype = ST_F32, .dims = 2, .shape = {n, 3}, .data = p->scales},
+		{.name = "quats", .dtype = ST_F32, .dims = 2, .shape = {n, 4}, .data = p->quats},
+		{.name = "opacities", .dtype = ST_F32, .dims = 1, .shape = {n}, .data = p->opacities},
+		{.name = "sh", .dtype = ST_F32, .dims = 3, .shape = {n, p->sh_coefficients, 3}, .data = p->sh},
+	};
+	struct st_meta meta[] = {{"format", "refer.splats"}, {"version", "1"}, {"tool", "gs-import"},
+		{"options", options}, {"seed", "0"}, {"offset", offset}};
+
+	snprintf(offset, sizeof offset, "[%.17g,%.17g,%.17g]", s->offset[0], s->offset[1], s->offset[2]);
+	if (file_make_dir(dir, e))
+		return -1;
+	char *splats = file_join(dir, "splats.safetensors", "", e), *cameras = file_join(dir, "cameras.json", "", e);
+	int bad = !splats || !cameras || safetensors_write(splats, tensors, 5, meta, 6, e) ||
+		  write_cameras(&s->cameras, cameras, e);
+	free(splats);
+	free(cameras);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,25 @@
+/* A scene folder: splats.safetensors (refer.splats) and cameras.json. formats/scene.md has the tables. */
+#ifndef FORMATS_SCENE_H
+#define FORMATS_SCENE_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+#include "splat/splats.h"
+
+struct scene {
+	struct splats splats;
+	struct cameras cameras;
+	double offset[3]; /* world = means + offset: what the import subtracted */
+};
+
+/* Reads and checks both files. Messages name the file and the tensor or key. */
+int scene_read(struct scene *s, const char *dir, struct err *e);
+void scene_free(struct scene *s);
+
+/* Only the cameras, from DIR/cameras.json. */
+int scene_read_cameras(struct cameras *c, const char *dir, struct err *e);
+
+/* Makes dir and writes both files, each appearing whole. `options` goes into the metadata (a tool's own choice). */
+int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e);
+
+#endif

@@ -1,0 +1,28 @@
+/* Sentences (JSON Lines). formats/sentences.md. */
+#ifndef FORMATS_SENTENCES_H
+#define FORMATS_SENTENCES_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+
+#include <stddef.h>
+
+struct sentence {
+	char *ref;		 /* unique in the file */
+	char *object;		 /* what the sentences of one target share */
+	char *text;		 /* UTF-8 */
+	enum camera_split split; /* "train" (default) or "test" */
+	size_t view_count;	 /* 0: every view */
+	char **views;
+};
+
+struct sentences {
+	size_t n;
+	struct sentence *items;
+};
+
+/* "-" is stdin. Errors: "path:LINE: reason" (duplicate ref, missing key, bad split, bad UTF-8). */
+int sentences_read(struct sentences *s, const char *path, struct err *e);
+void sentences_free(struct sentences *s);
+
+#endif

@@ -1,0 +1,28 @@
+/* text.safetensors (refer.text): a sentence's word vectors from the language encoder. formats/text.md. */
+#ifndef FORMATS_TEXT_H
+#define FORMATS_TEXT_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct text {
+	size_t n;	   /* R sentences */
+	int width;	   /* D_text */
+	int64_t *offsets;  /* (n+1): sentence r has words offsets[r] to offsets[r+1] */
+	float *words;	   /* (offsets[n], width), [CLS] and [SEP] left out */
+	float *sentences;  /* (n, width), mean of the words; zero for a sentence without words */
+	char **refs, **objects, **texts;
+	enum camera_split *splits;
+};
+
+int text_read(struct text *t, const char *path, struct err *e);
+int text_write(const struct text *t, const char *path, const char *options, struct err *e);
+void text_free(struct text *t);
+
+/* Index of a ref, or -1. */
+long text_find(const struct text *t, const char *ref);
+
+#endif

@@ -1,0 +1,259 @@
+#include "base/file.h"
+
+#include "base/mem.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static int is_standard(const char *path)
+{
+	return !strcmp(path, "-");
+}
+
+const char *file_name(const char *path)
+{
+	return is_standard(path) ? "stdin" : path;
+}
+
+FILE *file_open(const char *path, struct err *e)
+{
+	if (is_standard(path))
+		return stdin;
+	FILE *in = fopen(path, "rb");
+	if (!in) {
+		err_errno(e, "%s", path);
+		return NULL;
+	}
+	if (file_is_dir(path)) {
+		fclose(in);
+		errno = EISDIR;
+		err_errno(e, "%s", path);
+		return NULL;
+	}
+	return in;
+}
+
+void file_close(FILE *in)
+{
+	if (in && in != stdin)
+		fclose(in);
+}
+
+int file_read(const char *path, char **data, size_t *len, struct err *e)
+{
+	FILE *in = file_open(path, e);
+	void *block = NULL;
+	size_t capacity = 0, used = 0;
+
+	if (!in)
+		return -1;
+	for (;;) {
+		if (mem_grow(&block, &capacity, used + 65536 + 1, 1, file_name(path), e))
+			goto fail;
+		size_t got = fread((char *)block + used, 1, capacity - used - 1, in);
+		used += got;
+		if (!got)
+			break;
+	}
+	if (ferror(in)) {
+		err_errno(e, "%s", file_name(path));
+		goto fail;
+	}
+	file_close(in);
+	((char *)block)[used] = 0;
+	*data = block;
+	*len = used;
+	return 0;
+fail:
+	file_close(in);
+	free(block);
+	return -1;
+}
+
+int file_map(const char *path, struct file_map *map, struct err *e)
+{
+	struct stat st;
+	int fd;
+
+	*map = (struct file_map){0};
+	if (is_standard(path) || (!stat(path, &st) && !S_ISREG(st.st_mode)) || (!stat(path, &st) && !st.st_size)) {
+		char *data;
+		if (file_read(path, &data, &map->len, e))
+			return -1;
+		map->data = (unsigned char *)data;
+		return 0;
+	}
+	fd = open(path, O_RDONLY);
+	if (fd < 0)
+		return err_errno(e, "%s", path);
+	if (fstat(fd, &st)) {
+		err_errno(e, "%s", path);
+		close(fd);
+		return -1;
+	}
+	void *mapped = mmap(NULL, (size_t)st.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
+	if (mapped == MAP_FAILED) {
+		err_errno(e, "%s", path);
+		close(fd);
+		return -1;
+	}
+	close(fd);
+	map->data = mapped;
+	map->len = (size_t)st.st_size;
+	map->is_mapped = 1;
+	return 0;
+}
+
+void file_unmap(struct file_map *map)
+{
+	if (map->is_mapped)
+		munmap((void *)(size_t)map->data, map->len);
+	else
+		free((void *)(size_t)map->data);
+	*map = (struct file_map){0};
+}
+
+int file_out_open(struct file_out *out, const char *path, struct err *e)
+{
+	*out = (struct file_out){0};
+	out->path = mem_strdup(path, e);
+	if (!out->path)
+		return -1;
+	if (is_standard(path)) {
+		out->stream = stdout;
+		return 0;
+	}
+	size_t bytes = strlen(path) + 16;
+	out->temporary = mem_alloc(bytes, 1, path, e);
+	if (!out->temporary)
+		goto fail;
+	snprintf(out->temporary, bytes, "%s.tmp.XXXXXX", path);
+	int fd = mkstemp(out->temporary);
+	if (fd < 0) {
+		err_errno(e, "%s", path);
+		free(out->temporary);
+		out->temporary = NULL;
+		goto fail;
+	}
+	mode_t mask = umask(0);
+	umask(mask);
+	fchmod(fd, 0666 & ~mask);
+	out->stream = fdopen(fd, "wb");
+	if (!out->stream) {
+		err_errno(e, "%s", path);
+		close(fd);
+		goto fail;
+	}
+	return 0;
+fail:
+	file_out_abort(out);
+	return -1;
+}
+
+int file_out_commit(struct file_out *out, struct err *e)
+{
+	int bad = 0;
+
+	if (!out->temporary) {
+		if (fflush(out->stream) || ferror(out->stream))
+			bad = err_errno(e, "stdout");
+	} else {
+		errno = 0;
+		if (fflush(out->stream) || ferror(out->stream) || fsync(fileno(out->stream)))
+			bad = err_errno(e, "%s", out->path);
+		if (fclose(out->stream) && !bad)
+			bad = err_errno(e, "%s", out->path);
+		if (!bad && rename(out->temporary, out->path))
+			bad = err_errno(e, "%s", out->path);
+		if (bad)
+			unlink(out->temporary);
+	}
+	free(out->path);
+	free(out->temporary);
+	*out = (struct file_out){0};
+	return bad;
+}
+
+void file_out_abort(struct file_out *out)
+{
+	if (out->temporary) {
+		if (out->stream)
+			fclose(out->stream);
+		unlink(out->temporary);
+	}
+	free(out->path);
+	free(out->temporary);
+	*out = (struct file_out){0};
+}
+
+int file_make_dir(const char *path, struct err *e)
+{
+	char *copy = mem_strdup(path, e);
+
+	if (!copy)
+		return -1;
+	for (char *p = copy + 1; *copy; p++) {
+		char c = *p;
+		if (c != '/' && c)
+			continue;
+		*p = 0;
+		if (mkdir(copy, 0777) && (errno != EEXIST || !file_is_dir(copy))) {
+			err_errno(e, "%s", copy);
+			free(copy);
+			return -1;
+		}
+		*p = c;
+		if (!c)
+			break;
+	}
+	free(copy);
+	return 0;
+}
+
+int file_exists(const char *path)
+{
+	struct stat st;
+
+	return !stat(path, &st);
+}
+
+int file_is_dir(const char *path)
+{
+	struct stat st;
+
+	return !stat(path, &st) && S_ISDIR(st.st_mode);
+}
+
+char *file_join(const char *dir, const char *name, const char *suffix, struct err *e)
+{
+	size_t bytes = strlen(dir) + strlen(name) + strlen(suffix) + 2;
+	char *path = mem_alloc(bytes, 1, "path", e);
+
+	if (!path)
+		return NULL;
+	if (name[0] == '/')
+		snprintf(path, bytes, "%s%s", name, suffix);
+	else
+		snprintf(path, bytes, "%s/%s%s", dir, name, suffix);
+	return path;
+}
+
+char *file_dir(const char *path, struct err *e)
+{
+	char *copy = mem_strdup(path, e);
+
+	if (!copy)
+		return NULL;
+	char *slash = strrchr(copy, '/');
+	if (!slash) {
+		free(copy);
+		return mem_strdup(".", e);
+	}
+	slash[slash == copy] = 0;
+	return copy;
+}

@@ -1,0 +1,53 @@
+/* Files: whole reads, and outputs that appear under their name only when whole. "-" is stdin or stdout. */
+#ifndef BASE_FILE_H
+#define BASE_FILE_H
+
+#include "base/err.h"
+
+#include <stdio.h>
+#include <stddef.h>
+
+/* Reads a whole file or pipe. *data gets len bytes and a NUL after them; free() it. Returns 0, or -1 with *e. */
+int file_read(const char *path, char **data, size_t *len, struct err *e);
+
+/* A read-only map of a regular file (or a read copy of a pipe). Release with file_unmap. */
+struct file_map {
+	const unsigned char *data;
+	size_t len;
+	int is_mapped; /* else data was read */
+};
+int file_map(const char *path, struct file_map *map, struct err *e);
+void file_unmap(struct file_map *map);
+
+/* An input stream for path; "-" gives stdin. NULL with *e set. Close with file_close. */
+FILE *file_open(const char *path, struct err *e);
+void file_close(FILE *in);
+
+/* The name that messages use for a path: "stdin" for "-". */
+const char *file_name(const char *path);
+
+/* An output. Data go to a temporary file in the same folder; file_out_commit syncs it and renames it over
+ * `path`; file_out_abort removes it. "-" writes to stdout directly. */
+struct file_out {
+	FILE *stream;
+	char *path;
+	char *temporary; /* NULL for stdout */
+};
+int file_out_open(struct file_out *out, const char *path, struct err *e);
+int file_out_commit(struct file_out *out, struct err *e); /* closes in any case */
+void file_out_abort(struct file_out *out);		  /* harmless after commit, and on a zeroed struct */
+
+/* Makes a directory and its parents. An existing directory is fine. */
+int file_make_dir(const char *path, struct err *e);
+
+/* 1 when path exists (as a directory, with file_is_dir). */
+int file_exists(const char *path);
+int file_is_dir(const char *path);
+
+/* dir + "/" + name (+ suffix); name itself where it is absolute. NULL with *e set when memory is out. */
+char *file_join(const char *dir, const char *name, const char *suffix, struct err *e);
+
+/* The folder part of path, "." where there is none. */
+char *file_dir(const char *path, struct err *e);
+
+#endif

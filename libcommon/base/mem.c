@@ -1,0 +1,69 @@
+#include "base/mem.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+int mem_size(size_t a, size_t b, size_t *out)
+{
+	if (b && a > (SIZE_MAX - 64) / b)
+		return -1;
+	*out = a * b;
+	return 0;
+}
+
+void *mem_alloc(size_t n, size_t size, const char *what, struct err *e)
+{
+	size_t bytes;
+	void *block = NULL;
+
+	if (mem_size(n, size, &bytes) || bytes > PTRDIFF_MAX) {
+		err_set(e, ERR_SYSTEM, "%s: %zu items of %zu bytes do not fit in memory", what, n, size);
+		return NULL;
+	}
+	if (posix_memalign(&block, 64, bytes ? bytes : 1)) {
+		err_set(e, ERR_SYSTEM, "%s: out of memory for %zu bytes", what, bytes);
+		return NULL;
+	}
+	return block;
+}
+
+void *mem_zalloc(size_t n, size_t size, const char *what, struct err *e)
+{
+	void *block = mem_alloc(n, size, what, e);
+
+	if (block)
+		memset(block, 0, n * size);
+	return block;
+}
+
+int mem_grow(void **block, size_t *capacity, size_t need, size_t size, const char *what, struct err *e)
+{
+	if (need <= *capacity)
+		return 0;
+	size_t grown = *capacity ? *capacity : 16;
+	while (grown < need) {
+		if (grown > SIZE_MAX / 2)
+			return err_set(e, ERR_SYSTEM, "%s: %zu items do not fit in memory", what, need);
+		grown *= 2;
+	}
+	void *moved = mem_alloc(grown, size, what, e);
+	if (!moved)
+		return -1;
+	if (*capacity)
+		memcpy(moved, *block, *capacity * size);
+	free(*block);
+	*block = moved;
+	*capacity = grown;
+	return 0;
+}
+
+char *mem_strdup(const char *text, struct err *e)
+{
+	size_t bytes = strlen(text) + 1;
+	char *copy = mem_alloc(bytes, 1, "string", e);
+
+	if (copy)
+		memcpy(copy, text, bytes);
+	return copy;
+}

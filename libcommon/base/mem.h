@@ -1,0 +1,24 @@
+/* Checked allocation. Every block is 64-byte aligned and released with free(). */
+#ifndef BASE_MEM_H
+#define BASE_MEM_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+/* *out = a*b; returns 0, or -1 where the product does not fit (then *out is untouched). */
+int mem_size(size_t a, size_t b, size_t *out);
+
+/* n items of `size` bytes, not initialised / zeroed. NULL with *e set (ERR_SYSTEM, names `what`) when the
+ * product overflows or memory is out. n = 0 gives a valid block. */
+void *mem_alloc(size_t n, size_t size, const char *what, struct err *e);
+void *mem_zalloc(size_t n, size_t size, const char *what, struct err *e);
+
+/* Grows *block (of *capacity items) to hold at least `need` items, doubling. Returns 0, or -1 with *e set and
+ * the block as it was. */
+int mem_grow(void **block, size_t *capacity, size_t need, size_t size, const char *what, struct err *e);
+
+/* A copy of a string, NULL with *e set when memory is out. */
+char *mem_strdup(const char *text, struct err *e);
+
+#endif

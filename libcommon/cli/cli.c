@@ -1,0 +1,338 @@
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <math.h>
+#include <omp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#ifndef VERSION
+#define VERSION "unknown"
+#endif
+
+enum { COMMON_COUNT = 8 };
+
+/* The shared options that this tool honours, as rows of the same kind as its own. */
+static int common_rows(struct cli *c, struct cli_option rows[COMMON_COUNT])
+{
+	unsigned common = c->tool->common;
+	const char *output_arg = c->tool->output_arg ? c->tool->output_arg : "FILE";
+	int n = 0;
+
+	if (common & CLI_OUTPUT)
+		rows[n++] = (struct cli_option){"output", 'o', CLI_STRING, &c->output, output_arg,
+			c->tool->needs_output ? "where to write (required)" : "where to write; - is stdout (default)", 0, 0};
+	if (common & CLI_JSON)
+		rows[n++] = (struct cli_option){"json", 0, CLI_FLAG, &c->json, NULL, "print JSON instead of text", 0, 0};
+	if (common & CLI_SEED)
+		rows[n++] = (struct cli_option){
+			"seed", 0, CLI_INT, &c->seed, "N", "seed of the random numbers (default 1)", 0, 4294967295.0};
+	if (common & CLI_THREADS)
+		rows[n++] = (struct cli_option){"threads", 0, CLI_INT, &c->threads, "N",
+			"number of threads; 0 (default) uses every processor; results do not depend on it", 0, 1024};
+	if (common & CLI_VERBOSE)
+		rows[n++] = (struct cli_option){
+			"verbose", 'v', CLI_FLAG, &c->verbose, NULL, "say more, and time and memory at the end", 0, 0};
+	if (common & CLI_QUIET)
+		rows[n++] = (struct cli_option){
+			"quiet", 'q', CLI_FLAG, &c->quiet, NULL, "no progress and no warnings", 0, 0};
+	return n;
+}
+
+static void print_row(const struct cli_option *o)
+{
+	char left[96];
+	int used = 0;
+
+	if (o->letter)
+		used += snprintf(left, sizeof left, "  -%c, --%s", o->letter, o->name);
+	else
+		used += snprintf(left, sizeof left, "      --%s", o->name);
+	if (o->arg)
+		snprintf(left + used, sizeof left - (size_t)used, " %s", o->arg);
+	if (strlen(left) < 30)
+		printf("%-30s  %s\n", left, o->help);
+	else
+		printf("%s\n%-30s  %s\n", left, "", o->help);
+}
+
+static void print_help(struct cli *c)
+{
+	struct cli_option rows[COMMON_COUNT];
+	int n = common_rows(c, rows);
+
+	printf("Usage: %s [OPTION]... %s\n%s\n\n", c->tool->name, c->tool->operands, c->tool->summary);
+	for (const struct cli_option *o = c->tool->options; o && o->name; o++)
+		print_row(o);
+	for (int i = 0; i < n; i++)
+		print_row(&rows[i]);
+	print_row(&(struct cli_option){"help", 'h', CLI_FLAG, NULL, NULL, "print this help", 0, 0});
+	print_row(&(struct cli_option){"version", 'V', CLI_FLAG, NULL, NULL, "print the version", 0, 0});
+}
+
+_Noreturn void cli_usage(const struct cli *c, const char *format, ...)
+{
+	va_list ap;
+
+	fprintf(stderr, "%s: ", c->tool->name);
+	va_start(ap, format);
+	vfprintf(stderr, format, ap);
+	va_end(ap);
+	fprintf(stderr, "\nTry '%s --help'.\n", c->tool->name);
+	exit(ERR_USAGE);
+}
+
+static int in_range(const struct cli_option *o, double x)
+{
+	return (o->min == 0 && o->max == 0) || (x >= o->min && x <= o->max);
+}
+
+static void set_choice(const struct cli *c, const struct cli_option *o, const char *text)
+{
+	const char *p = o->arg;
+
+	for (int i = 0; *p; i++) {
+		size_t len = strcspn(p, "|");
+		if (strlen(text) == len && !strncmp(p, text, len)) {
+			*(int *)o->value = i;
+			return;
+		}
+		p += len + (p[len] == '|');
+	}
+	cli_usage(c, "--%s: '%s' is not one of %s", o->name, text, o->arg);
+}
+
+static void set_size(const struct cli *c, const struct cli_option *o, const char *text)
+{
+	char *end;
+	long w = strtol(text, &end, 10), h = 0;
+
+	if (end != text && *end == 'x' && end[1] >= '0' && end[1] <= '9')
+		h = strtol(end + 1, &end, 10);
+	else
+		end = (char *)(size_t)"?";
+	if (*end || text[0] < '0' || text[0] > '9' || !in_range(o, (double)w) || !in_range(o, (double)h))
+		cli_usage(c, "--%s: '%s' is not WIDTHxHEIGHT with both in %g to %g", o->name, text, o->min, o->max);
+	((int *)o->value)[0] = (int)w;
+	((int *)o->value)[1] = (int)h;
+}
+
+static void set_value(const struct cli *c, const struct cli_option *o, const char *text)
+{
+	char *end;
+
+	errno = 0;
+	switch (o->type) {
+	case CLI_STRING:
+		*(const char **)o->value = text;
+		return;
+	case CLI_INT: {
+		long long x = strtoll(text, &end, 10);
+		if (!*text || *text == ' ' || *end || errno || !in_range(o, (double)x))
+			cli_usage(c, "--%s: '%s' is not a whole number from %.0f to %.0f", o->name, text, o->min, o->max);
+		*(long long *)o->value = x;
+		return;
+	}
+	case CLI_REAL: {
+		double x = strtod(text, &end);
+		if (!*text || *text == ' ' || *end || !isfinite(x) || !in_range(o, x))
+			cli_usage(c, "--%s: '%s' is not a number from %g to %g", o->name, text, o->min, o->max);
+		*(double *)o->value = x;
+		return;
+	}
+	case CLI_CHOICE:
+		set_choice(c, o, text);
+		return;
+	case CLI_SIZE:
+		set_size(c, o, text);
+		return;
+	case CLI_FLAG:
+		*(int *)o->value += 1;
+		return;
+	}
+}
+
+static const struct cli_option *find_row(
+	const struct cli_tool *tool, const struct cli_option *common, int n, const char *name, size_t len, char letter)
+{
+	for (const struct cli_option *o = tool->options; o && o->name; o++)
+		if (letter ? o->letter == letter : (strlen(o->name) == len && !strncmp(o->name, name, len)))
+			return o;
+	for (int i = 0; i < n; i++)
+		if (letter ? common[i].letter == letter
+			   : (strlen(common[i].name) == len && !strncmp(common[i].name, name, len)))
+			return &common[i];
+	return NULL;
+}
+
+static void check_help(struct cli *c, int is_help, int is_version)
+{
+	if (is_help)
+		print_help(c);
+	else if (is_version)
+		printf("%s (refersplat) %s\n", c->tool->name, VERSION);
+	else
+		return;
+	exit(fflush(stdout) ? ERR_SYSTEM : 0);
+}
+
+static void parse_long(struct cli *c, const struct cli_option *rows, int n, char **argv, int argc, int *i)
+{
+	const char *name = argv[*i] + 2, *equals = strchr(name, '=');
+	size_t len = equals ? (size_t)(equals - name) : strlen(name);
+
+	check_help(c, !strcmp(name, "help"), !strcmp(name, "version"));
+	const struct cli_option *o = find_row(c->tool, rows, n, name, len, 0);
+	if (!o)
+		cli_usage(c, "unknown option '--%.*s'", (int)len, name);
+	if (o->type == CLI_FLAG) {
+		if (equals)
+			cli_usage(c, "--%s takes no argument", o->name);
+		set_value(c, o, "");
+	} else if (equals) {
+		set_value(c, o, equals + 1);
+	} else {
+		if (++*i >= argc)
+			cli_usage(c, "--%s needs an argument", o->name);
+		set_value(c, o, argv[*i]);
+	}
+}
+
+static void parse_short(struct cli *c, const struct cli_option *rows, int n, char **argv, int argc, int *i)
+{
+	for (const char *p = argv[*i] + 1; *p; p++) {
+		check_help(c, *p == 'h', *p == 'V');
+		const struct cli_option *o = find_row(c->tool, rows, n, "", 0, *p);
+		if (!o)
+			cli_usage(c, "unknown option '-%c'", *p);
+		if (o->type == CLI_FLAG) {
+			set_value(c, o, "");
+			continue;
+		}
+		if (p[1]) {
+			set_value(c, o, p + 1);
+		} else {
+			if (++*i >= argc)
+				cli_usage(c, "-%c needs an argument", *p);
+			set_value(c, o, argv[*i]);
+		}
+		return;
+	}
+}
+
+void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv)
+{
+	struct cli_option rows[COMMON_COUNT];
+	int only_operands = 0, n;
+
+	*c = (struct cli){.tool = tool, .seed = 1, .output = tool->needs_output ? NULL : "-", .start = cli_seconds()};
+	c->operands = (const char **)(argv + 1);
+	n = common_rows(c, rows);
+	for (int i = 1; i < argc; i++) {
+		if (only_operands || argv[i][0] != '-' || !argv[i][1])
+			c->operands[c->operand_count++] = argv[i];
+		else if (!strcmp(argv[i], "--"))
+			only_operands = 1;
+		else if (argv[i][1] == '-')
+			parse_long(c, rows, n, argv, argc, &i);
+		else
+			parse_short(c, rows, n, argv, argc, &i);
+	}
+	if (tool->needs_output && !c->output)
+		cli_usage(c, "-o %s is required", tool->output_arg ? tool->output_arg : "FILE");
+	if (c->operand_count < tool->min_operands)
+		cli_usage(c, "missing operand: %s", tool->operands);
+	if (tool->max_operands >= 0 && c->operand_count > tool->max_operands)
+		cli_usage(c, "unexpected operand '%s'", c->operands[tool->max_operands]);
+	if (c->threads)
+		omp_set_num_threads((int)c->threads);
+	else
+		c->threads = omp_get_max_threads();
+}
+
+int cli_fail(const struct cli *c, const struct err *e)
+{
+	fprintf(stderr, "%s: %s\n", c->tool->name, e->message);
+	return e->code ? (int)e->code : ERR_SYSTEM;
+}
+
+void cli_note(const struct cli *c, int level, const char *format, ...)
+{
+	va_list ap;
+
+	if (c->verbose < level)
+		return;
+	fprintf(stderr, "%s: ", c->tool->name);
+	va_start(ap, format);
+	vfprintf(stderr, format, ap);
+	va_end(ap);
+	fputc('\n', stderr);
+}
+
+void cli_warn(const struct cli *c, const char *format, ...)
+{
+	va_list ap;
+
+	if (c->quiet)
+		return;
+	fprintf(stderr, "%s: warning: ", c->tool->name);
+	va_start(ap, format);
+	vfprintf(stderr, format, ap);
+	va_end(ap);
+	fputc('\n', stderr);
+}
+
+void cli_refuse_terminal(const struct cli *c)
+{
+	if (!strcmp(c->output, "-") && isatty(STDOUT_FILENO))
+		cli_usage(c, "binary data are not written to a terminal; use -o FILE");
+}
+
+int cli_done(const struct cli *c)
+{
+	struct rusage usage;
+
+	if (c->verbose && !getrusage(RUSAGE_SELF, &usage))
+		cli_note(c, 1, "%.2f s, peak memory %.1f MiB", cli_seconds() - c->start, (double)usage.ru_maxrss / 1024);
+	return 0;
+}
+
+double cli_seconds(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void cli_progress_start(struct cli_progress *p, const struct cli *c, const char *what, double total)
+{
+	double now = cli_seconds();
+
+	*p = (struct cli_progress){.c = c, .what = what, .total = total, .start = now, .last = now};
+}
+
+void cli_progress_step(struct cli_progress *p, double done, const char *note)
+{
+	double now = cli_seconds();
+
+	if (p->c->quiet || now - p->start < 1 || now - p->last < 0.2 || !isatty(STDERR_FILENO))
+		return;
+	p->last = now;
+	double rate = done / (now - p->start);
+	double left = rate > 0 ? (p->total - done) / rate : 0;
+	fprintf(stderr, "\r%s: %.0f/%.0f %s, %.3g/s, %d:%02d left%s%s\033[K", p->c->tool->name, done, p->total, p->what,
+		rate, (int)left / 60, (int)left % 60, note ? ", " : "", note ? note : "");
+	p->is_shown = 1;
+}
+
+void cli_progress_end(struct cli_progress *p)
+{
+	if (p->is_shown)
+		fprintf(stderr, "\r\033[K");
+	p->is_shown = 0;
+}

@@ -1,0 +1,41 @@
+/* Pinhole cameras. World and camera frames are COLMAP's: camera x right, y down, z forward. */
+#ifndef GEOM_CAMERA_H
+#define GEOM_CAMERA_H
+
+#include <stddef.h>
+
+enum camera_split { SPLIT_TRAIN, SPLIT_TEST };
+
+struct camera {
+	char *name;   /* unique in a scene; owned */
+	char *image;  /* path of the photograph as the scene's cameras.json has it, or NULL; owned */
+	int width, height;
+	double fx, fy, cx, cy;	       /* pixels; the centre of pixel (column i, row j) is (i+0.5, j+0.5) */
+	double world_to_camera[4][4];  /* row-major, rigid: x_camera = R x_world + t */
+	enum camera_split split;
+};
+
+struct cameras {
+	size_t n;
+	struct camera *views;
+};
+
+void cameras_free(struct cameras *c);
+
+/* The view of that name, or NULL. */
+const struct camera *cameras_find(const struct cameras *c, const char *name);
+
+/* The same camera at another image size; intrinsics scale alike (an off-centre principal point is honoured).
+ * name and image still belong to `from`. */
+struct camera camera_resize(const struct camera *from, int width, int height);
+
+/* Size at scale s: round(W s) x round(H s), at least 1x1. */
+void camera_scaled_size(const struct camera *c, double s, int *width, int *height);
+
+/* x_camera = R x_world + t. */
+void camera_transform(const struct camera *c, const double world[3], double out[3]);
+
+/* The camera's centre in the world, -R^T t. */
+void camera_centre(const struct camera *c, double out[3]);
+
+#endif

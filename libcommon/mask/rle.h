@@ -1,0 +1,37 @@
+/* Binary masks as COCO run lengths: columns first (Fortran order), runs alternate 0,1,0,... beginning with 0. */
+#ifndef MASK_RLE_H
+#define MASK_RLE_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct rle {
+	int height, width;
+	size_t n;
+	uint32_t *runs; /* n lengths that sum to height*width; owned */
+};
+
+void rle_free(struct rle *r);
+
+/* mask (height,width) row-major, nonzero is foreground. */
+int rle_encode(struct rle *r, const uint8_t *mask, int height, int width, struct err *e);
+/* mask (height,width) row-major gets 0 or 1. */
+void rle_decode(const struct rle *r, uint8_t *mask);
+
+/* COCO's compressed string (byte-compatible with pycocotools). Parsing reports the offset of a bad character
+ * or a sum of runs other than height*width, as ERR_FORMAT without a file name. */
+int rle_from_string(struct rle *r, const char *text, int height, int width, struct err *e);
+char *rle_to_string(const struct rle *r, struct err *e);
+
+size_t rle_area(const struct rle *r);
+/* |a and b|; both must have the same size. */
+size_t rle_intersection(const struct rle *a, const struct rle *b);
+/* Intersection over union; two empty masks give 1. */
+double rle_iou(const struct rle *a, const struct rle *b);
+
+/* Another size: each new pixel's share of foreground by area, cut at one half (> 0.5 is foreground, exactly 0.5 too). */
+int rle_resize(struct rle *to, const struct rle *from, int height, int width, struct err *e);
+
+#endif

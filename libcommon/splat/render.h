@@ -1,0 +1,40 @@
+/* The rasteriser: EWA splatting as in 3DGS (Kerbl et al. 2023, section 4; design section 5).
+ *
+ * A view is projected and sorted once (render_prepare); any number of passes then use it. All passes blend the same
+ * weights w_i = a_i T_i, T_i = prod_{k<i} (1-a_k), with a_i = min(0.99, o exp(-q/2)), skipped below 1/255, front to
+ * back until T < 1e-4. Results do not depend on tile size or number of threads. */
+#ifndef SPLAT_RENDER_H
+#define SPLAT_RENDER_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+#include "splat/splats.h"
+
+#include <stdint.h>
+
+struct render_view; /* projected, culled, tiled and depth-sorted Gaussians of one view */
+
+/* NULL with *e set. The splats must outlive the view for render_colors only. */
+struct render_view *render_prepare(const struct splats *s, const struct camera *c, struct err *e);
+void render_free(struct render_view *v);
+
+/* Blend weights, CSR over the P = width*height pixels of the camera. Arrays are allocated here, the caller frees them. */
+struct render_weights {
+	int64_t *indptr;      /* (P+1) */
+	int32_t *index;	      /* (nnz) front to back */
+	float *weight;	      /* (nnz) */
+	float *transmittance; /* (P) what is left: sum of weights + transmittance = 1 */
+};
+int render_weights(const struct render_view *v, struct render_weights *w, struct err *e);
+void render_weights_free(struct render_weights *w);
+
+/* Blends `channels` values per Gaussian: out (channels,P) = sum_i w_i values[c][i], values (channels,N) planar, no
+ * background. `transmittance` (P) may be NULL. */
+int render_values(const struct render_view *v, const float *values, int channels, float *out, float *transmittance,
+	struct err *e);
+
+/* Colours from spherical harmonics over a background: rgb (P,3) in [0,1] clamped. */
+int render_colors(const struct render_view *v, const struct splats *s, const struct camera *c,
+	const float background[3], float *rgb, struct err *e);
+
+#endif

@@ -1,0 +1,23 @@
+/* A trained scene of 3D Gaussians, activations already applied (3DGS, Kerbl et al. 2023). */
+#ifndef SPLAT_SPLATS_H
+#define SPLAT_SPLATS_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+struct splats {
+	size_t n;
+	int sh_coefficients; /* K = (degree+1)^2: 1, 4, 9 or 16 */
+	float *means;	     /* (n,3) world units, recentred on import */
+	float *scales;	     /* (n,3) standard deviations, >= 0 */
+	float *quats;	     /* (n,4) w,x,y,z; of any length but 0 */
+	float *opacities;    /* (n) in [0,1] */
+	float *sh;	     /* (n,K,3) spherical harmonics, colour channel last */
+};
+
+/* Allocates every array (not initialised). Returns 0, or -1 with *e set and *s zeroed. */
+int splats_alloc(struct splats *s, size_t n, int sh_coefficients, struct err *e);
+void splats_free(struct splats *s);
+
+#endif

@@ -1,0 +1,50 @@
+#include "unit.h"
+
+#include "base/mem.h"
+#include "base/rng.h"
+#include "formats/safetensors.h"
+
+/* The first outputs of the PCG32 reference program pcg32-demo, seeded with 42 and 54. */
+static void rng_known_answers(void)
+{
+	static const uint32_t expected[6] = {0xa15c02b7, 0x7b47f409, 0xba1d3330, 0x83d2f293, 0xbfa4784b, 0xcbed606e};
+	struct rng r;
+
+	rng_seed(&r, 42, 54);
+	for (int i = 0; i < 6; i++) {
+		uint32_t x = rng_u32(&r);
+		CHECK(x == expected[i], "output %d is %08x", i, x);
+	}
+}
+
+static void half_round_trip(void)
+{
+	int wrong = 0;
+
+	for (uint32_t h = 0; h < 65536; h++) {
+		float f = st_half_to_float((uint16_t)h);
+		if (!isnan(f) && st_float_to_half(f) != h)
+			wrong++;
+	}
+	CHECK(wrong == 0, "%d halves change on the way through float", wrong);
+	CHECK(st_float_to_half(1.00048828125f) == 0x3c00, "a tie rounds to even");
+	CHECK(st_float_to_half(65520) == 0x7c00, "65520 rounds to infinity");
+	CHECK(st_float_to_bfloat(1.00390625f) == 0x3f80, "a bfloat tie rounds to even");
+}
+
+static void sizes_overflow(void)
+{
+	struct err e = {0};
+	size_t out = 7;
+
+	CHECK(mem_size((size_t)1 << 40, (size_t)1 << 40, &out) < 0 && out == 7, "product of 2^80 is refused");
+	CHECK(!mem_alloc((size_t)1 << 62, 16, "x", &e) && e.code == ERR_SYSTEM, "2^66 bytes are refused");
+}
+
+int main(void)
+{
+	rng_known_answers();
+	half_round_trip();
+	sizes_overflow();
+	return unit_end();
+}
