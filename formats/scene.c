@@ -34,7 +34,7 @@ static int check_values(const struct splats *s, const char *path, struct err *e)
 	return 0;
 }
 
-static int read_splats(struct scene *s, const char *path, struct err *e)
+int scene_read_splats(struct scene *s, const char *path, struct err *e)
 {
 	struct safetensors st;
 	const struct st_tensor *t[5];
@@ -181,7 +181,7 @@ static int read_views(struct cameras *c, const cJSON *list, const char *path, st
 	return 0;
 }
 
-static int read_cameras_file(struct cameras *c, const char *path, struct err *e)
+int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 {
 	char *text;
 	size_t len;
@@ -203,7 +203,7 @@ static int read_cameras_file(struct cameras *c, const char *path, struct err *e)
 int scene_read_cameras(struct cameras *c, const char *dir, struct err *e)
 {
 	char *path = file_join(dir, "cameras.json", "", e);
-	int bad = path ? read_cameras_file(c, path, e) : -1;
+	int bad = path ? scene_read_cameras_file(c, path, e) : -1;
 
 	free(path);
 	return bad;
@@ -214,7 +214,7 @@ int scene_read(struct scene *s, const char *dir, struct err *e)
 	char *path = file_join(dir, "splats.safetensors", "", e);
 
 	*s = (struct scene){0};
-	int bad = path ? read_splats(s, path, e) : -1;
+	int bad = path ? scene_read_splats(s, path, e) : -1;
 	free(path);
 	if (bad || scene_read_cameras(&s->cameras, dir, e)) {
 		scene_free(s);
