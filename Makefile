@@ -7,7 +7,7 @@ CC ?= cc
 CFLAGS ?= -O3 -g
 WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith
 override CPPFLAGS += -D_POSIX_C_SOURCE=200809L -DVERSION='"$(VERSION)"' -Ilibcommon -I.
-override CFLAGS += -std=c11 -fopenmp -ffp-contract=off $(WARNINGS) $(WERROR)
+override CFLAGS += -std=c11 -fopenmp -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
 LDLIBS := -lcjson -lpng -ljpeg -lz -lm
 
 TOOLS := $(patsubst cmd/%.c,%,$(wildcard cmd/*.c))

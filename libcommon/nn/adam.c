@@ -2,35 +2,48 @@
 
 #include <math.h>
 
-/* Without this GCC must set errno for the root of a negative number, and that keeps the loop from being
- * vectorised. */
-#ifdef __OPTIMIZE__
-#pragma GCC optimize("no-math-errno")
-#endif
-
 enum { BLOCK = 16384 };
+
+/* The scalars of one step, rounded once. */
+struct factors {
+	float decay1, fresh1, decay2, fresh2, size, scale2, eps;
+};
+
+/* The clones give the machine's vector width; every operation is correctly rounded, so they give the same
+ * bytes. (A sanitized program starts too late for the clones' resolver.) */
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+static void
+adam_block(float *restrict parameters, const float *restrict gradient, float *restrict m, float *restrict v,
+	size_t n, struct factors f)
+{
+	for (size_t i = 0; i < n; i++) {
+		const float g = gradient[i];
+		const float mi = f.decay1 * m[i] + f.fresh1 * g;
+		const float vi = f.decay2 * v[i] + f.fresh2 * g * g;
+		m[i] = mi;
+		v[i] = vi;
+		parameters[i] -= f.size * mi / (sqrtf(vi) * f.scale2 + f.eps);
+	}
+}
 
 void adam_step(float *parameters, const float *gradient, float *m, float *v, size_t n, double rate,
 	double beta1, double beta2, double eps, long step)
 {
-	const float decay1 = (float)beta1, fresh1 = (float)(1 - beta1);
-	const float decay2 = (float)beta2, fresh2 = (float)(1 - beta2);
-	const float size = (float)(rate / (1 - pow(beta1, (double)step)));
-	const float scale2 = (float)(1 / sqrt(1 - pow(beta2, (double)step)));
-	const float small = (float)eps;
-	const size_t blocks = (n + BLOCK - 1) / BLOCK;
+	const struct factors f = {
+		.decay1 = (float)beta1,
+		.fresh1 = (float)(1 - beta1),
+		.decay2 = (float)beta2,
+		.fresh2 = (float)(1 - beta2),
+		.size = (float)(rate / (1 - pow(beta1, (double)step))),
+		.scale2 = (float)(1 / sqrt(1 - pow(beta2, (double)step))),
+		.eps = (float)eps,
+	};
 
 #pragma omp parallel for schedule(static)
-	for (size_t b = 0; b < blocks; b++) {
-		const size_t end = b + 1 < blocks ? (b + 1) * BLOCK : n;
-#pragma omp simd
-		for (size_t i = b * BLOCK; i < end; i++) {
-			const float g = gradient[i];
-			const float mi = decay1 * m[i] + fresh1 * g;
-			const float vi = decay2 * v[i] + fresh2 * g * g;
-			m[i] = mi;
-			v[i] = vi;
-			parameters[i] -= size * mi / (sqrtf(vi) * scale2 + small);
-		}
+	for (size_t begin = 0; begin < n; begin += BLOCK) {
+		const size_t count = n - begin < BLOCK ? n - begin : BLOCK;
+		adam_block(parameters + begin, gradient + begin, m + begin, v + begin, count, f);
 	}
 }
