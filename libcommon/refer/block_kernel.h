@@ -14,45 +14,48 @@
 
 enum {
 	L = BLOCK_LANES,
-	V = BLOCK_LANES / 16, /* vectors in a panel's channel */
-#ifdef __AVX512F__
-	TILE = 4, /* vectors held in registers for each row of a product */
-#else
-	TILE = 1,
-#endif
+	TILE = VEC_LANES == 16 ? 4 : 2, /* vectors held in registers for each row of a product */
 	MAX_ROWS = 4,
 };
 
-VEC_INLINE vec16 vec_sqrt(vec16 x)
+VEC_INLINE vecn vec_sqrt(vecn x)
 {
-	for (int i = 0; i < 16; i++)
+	for (int i = 0; i < VEC_LANES; i++)
 		x[i] = sqrtf(x[i]);
 	return x;
 }
 
-/* x in the first `count` lanes, `fill` in the others. */
-VEC_INLINE vec16 vec_first(vec16 x, int count, float fill)
+/* mask ? a : b, lane by lane; mask is 0 or -1. */
+VEC_INLINE vecn vec_select(vecni mask, vecn a, vecn b)
 {
-	const vec16i lane = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+	return (vecn)((mask & (vecni)a) | (~mask & (vecni)b));
+}
 
-	return vec_select(lane < vec_splati(count), x, vec_splat(fill));
+/* x in the first `count` lanes, `fill` in the others. */
+VEC_INLINE vecn vec_first(vecn x, int count, float fill)
+{
+	static const int32_t numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+	vecni lane;
+
+	memcpy(&lane, numbers, sizeof lane);
+	return vec_select(lane < ((vecni){0} + count), x, vec_splat(fill));
 }
 
 /* `rows` rows of out = [base +] W in, over TILE vectors. base: 0 nothing, 1 what out holds, 2 bias. */
 VEC_INLINE void product_tile(const int rows, float *out, const float *w, int stride, int columns, const float *in,
 	const float *bias, const int base, const int relu)
 {
-	vec16 sum[MAX_ROWS][TILE];
+	vecn sum[MAX_ROWS][TILE];
 
 	for (int r = 0; r < rows; r++)
 		for (int v = 0; v < TILE; v++)
-			sum[r][v] = base == 1 ? vec_load(out + r * L + 16 * v) : vec_splat(base == 2 ? bias[r] : 0);
+			sum[r][v] = base == 1 ? vec_load(out + r * L + VEC_LANES * v) : vec_splat(base == 2 ? bias[r] : 0);
 	for (int c = 0; c < columns; c++) {
-		vec16 x[TILE];
+		vecn x[TILE];
 		for (int v = 0; v < TILE; v++)
-			x[v] = vec_load(in + c * L + 16 * v);
+			x[v] = vec_load(in + c * L + VEC_LANES * v);
 		for (int r = 0; r < rows; r++) {
-			vec16 scale = vec_splat(w[r * stride + c]);
+			vecn scale = vec_splat(w[r * stride + c]);
 			for (int v = 0; v < TILE; v++)
 				sum[r][v] = vec_fma(scale, x[v], sum[r][v]);
 		}
@@ -61,7 +64,7 @@ VEC_INLINE void product_tile(const int rows, float *out, const float *w, int str
 		for (int v = 0; v < TILE; v++) {
 			if (relu)
 				sum[r][v] = vec_max(sum[r][v], vec_splat(0));
-			vec_store(out + r * L + 16 * v, sum[r][v]);
+			vec_store(out + r * L + VEC_LANES * v, sum[r][v]);
 		}
 }
 
@@ -69,7 +72,7 @@ VEC_INLINE void product_tile(const int rows, float *out, const float *w, int str
 VEC_INLINE void product(float *out, const float *w, int rows, int columns, int stride, const float *in, const float *bias,
 	const int base, const int relu)
 {
-	for (int v = 0; v < L; v += 16 * TILE) {
+	for (int v = 0; v < L; v += TILE * VEC_LANES) {
 		int r = 0;
 		for (; r + 4 <= rows; r += 4)
 			product_tile(4, out + r * L + v, w + r * stride, stride, columns, in + v, bias + r, base, relu);
@@ -99,12 +102,12 @@ static void product_relu(float *out, const float *w, int rows, int columns, cons
 	product(out, w, rows, columns, columns, in, bias, 2, 1);
 }
 
-VEC_INLINE float sum16(vec16 v)
+VEC_INLINE float sum_lanes(vecn v)
 {
-	float s[16];
+	float s[VEC_LANES];
 
 	vec_store(s, v);
-	for (int half = 8; half; half /= 2)
+	for (int half = VEC_LANES / 2; half; half /= 2)
 		for (int i = 0; i < half; i++)
 			s[i] += s[i + half];
 	return s[0];
@@ -114,25 +117,25 @@ VEC_INLINE float sum16(vec16 v)
 VEC_INLINE void outer_tile(const int rows, const int columns, float *out, int stride, const float *a, int a_panel,
 	const float *b, int b_panel, int panels)
 {
-	vec16 sum[MAX_ROWS][4];
+	vecn sum[MAX_ROWS][4];
 
 	for (int r = 0; r < rows; r++)
 		for (int c = 0; c < columns; c++)
 			sum[r][c] = vec_splat(0);
 	for (int p = 0; p < panels; p++, a += a_panel, b += b_panel)
-		for (int v = 0; v < L; v += 16) {
-			vec16 y[4];
+		for (int v = 0; v < L; v += VEC_LANES) {
+			vecn y[4];
 			for (int c = 0; c < columns; c++)
 				y[c] = vec_load(b + c * L + v);
 			for (int r = 0; r < rows; r++) {
-				vec16 x = vec_load(a + r * L + v);
+				vecn x = vec_load(a + r * L + v);
 				for (int c = 0; c < columns; c++)
 					sum[r][c] = vec_fma(x, y[c], sum[r][c]);
 			}
 		}
 	for (int r = 0; r < rows; r++)
 		for (int c = 0; c < columns; c++)
-			out[r * stride + c] += sum16(sum[r][c]);
+			out[r * stride + c] += sum_lanes(sum[r][c]);
 }
 
 VEC_INLINE void outer_rows(const int rows, float *out, int columns, int stride, const float *a, int a_panel, const float *b,
@@ -164,18 +167,18 @@ static void sum_channels(float *out, int rows, const float *a, int channels, int
 {
 	for (int r = 0; r < rows; r++) {
 		const float *row = a + r * L;
-		vec16 sum = vec_splat(0);
+		vecn sum = vec_splat(0);
 		for (int p = 0; p < panels; p++, row += channels * L)
-			for (int v = 0; v < L; v += 16)
+			for (int v = 0; v < L; v += VEC_LANES)
 				sum += vec_load(row + v);
-		out[r] += sum16(sum);
+		out[r] += sum_lanes(sum);
 	}
 }
 
 /* Zeroes the gradient where the layer's output was not positive. */
 static void relu_back(float *d, const float *value, int channels)
 {
-	for (int i = 0; i < channels * L; i += 16)
+	for (int i = 0; i < channels * L; i += VEC_LANES)
 		vec_store(d + i, vec_select(vec_load(value + i) > vec_splat(0), vec_load(d + i), vec_splat(0)));
 }
 
@@ -201,11 +204,11 @@ static int panel_lanes(const struct block_model *b, size_t panel)
 static void scale_positions(const struct block_model *b, float *r, float *scratch)
 {
 	product_set(scratch, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r);
-	for (int v = 0; v < L; v += 16) {
-		vec16 squared = vec_splat(0);
+	for (int v = 0; v < L; v += VEC_LANES) {
+		vecn squared = vec_splat(0);
 		for (int c = 0; c < BLOCK_G; c++)
 			squared += vec_load(scratch + c * L + v) * vec_load(r + c * L + v);
-		vec16 nu = vec_splat(1) / vec_sqrt(vec_max(squared, vec_splat(1e-24f)));
+		vecn nu = vec_splat(1) / vec_sqrt(vec_max(squared, vec_splat(1e-24f)));
 		for (int c = 0; c < BLOCK_G; c++)
 			vec_store(r + c * L + v, vec_load(r + c * L + v) * nu);
 	}
@@ -218,17 +221,17 @@ static void add_word_positions(const struct block_model *b, const float *logits,
 	const int n = b->words;
 
 	for (int j = 0; j < n; j++) {
-		vec16 top = vec_splat(-INFINITY);
+		vecn top = vec_splat(-INFINITY);
 		for (int p = 0; p < BLOCK_PANELS; p++) {
 			int lanes = panel_lanes(b, panel + (size_t)p);
 			const float *l = panel_of(logits, n, (size_t)p) + j * L;
-			for (int v = 0; v < L; v += 16)
+			for (int v = 0; v < L; v += VEC_LANES)
 				top = vec_max(top, vec_first(vec_load(l + v), lanes - v, -INFINITY));
 		}
 		float largest = sums->l_max[j];
-		float lanes_top[16];
+		float lanes_top[VEC_LANES];
 		vec_store(lanes_top, top);
-		for (int i = 0; i < 16; i++)
+		for (int i = 0; i < VEC_LANES; i++)
 			largest = fmaxf(largest, lanes_top[i]);
 		if (largest > sums->l_max[j]) {
 			float shrink = expf(sums->l_max[j] - largest);
@@ -241,7 +244,7 @@ static void add_word_positions(const struct block_model *b, const float *logits,
 			int lanes = panel_lanes(b, panel + (size_t)p);
 			const float *l = panel_of(logits, n, (size_t)p) + j * L;
 			float *to = panel_at(e, n, (size_t)p) + j * L;
-			for (int v = 0; v < L; v += 16)
+			for (int v = 0; v < L; v += VEC_LANES)
 				vec_store(to + v, vec_first(vec_exp(vec_load(l + v) - vec_splat(largest)), lanes - v, 0));
 		}
 	}
@@ -258,7 +261,7 @@ static void hidden(const struct block_model *b, const struct block_arrays *a, si
 		float *g = panel_at(a->g, BLOCK_G, panel);
 		product_relu(scratch, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel), b->feature0_bias);
 		product_relu(g, b->feature1, REFER_H, REFER_XH, scratch, b->feature1_bias);
-		for (int v = 0; v < L; v += 16)
+		for (int v = 0; v < L; v += VEC_LANES)
 			vec_store(g + REFER_H * L + v, vec_splat(1));
 		if (b->has_words)
 			product_set(panel_at(a->beta, b->words, panel), b->y, b->words, BLOCK_G, BLOCK_G, g);
@@ -267,7 +270,7 @@ static void hidden(const struct block_model *b, const struct block_arrays *a, si
 		float *r = panel_at(a->r, BLOCK_G, panel);
 		product_relu(scratch, b->position0, REFER_PH, 3, panel_of(a->position, 3, panel), b->position0_bias);
 		product_relu(r, b->position1, REFER_H, REFER_PH, scratch, b->position1_bias);
-		for (int v = 0; v < L; v += 16)
+		for (int v = 0; v < L; v += VEC_LANES)
 			vec_store(r + REFER_H * L + v, vec_splat(1));
 		if (b->is_projected)
 			scale_positions(b, r, scratch);
@@ -279,16 +282,16 @@ static void hidden(const struct block_model *b, const struct block_arrays *a, si
 /* alpha in place of scores for the words [from,to) of one panel. */
 static void softmax_words(float *s, int from, int to)
 {
-	for (int v = 0; v < L; v += 16) {
-		vec16 top = vec_load(s + from * L + v), sum = vec_splat(0);
+	for (int v = 0; v < L; v += VEC_LANES) {
+		vecn top = vec_load(s + from * L + v), sum = vec_splat(0);
 		for (int j = from + 1; j < to; j++)
 			top = vec_max(top, vec_load(s + j * L + v));
 		for (int j = from; j < to; j++) {
-			vec16 e = vec_exp(vec_load(s + j * L + v) - top);
+			vecn e = vec_exp(vec_load(s + j * L + v) - top);
 			sum += e;
 			vec_store(s + j * L + v, e);
 		}
-		vec16 scale = vec_splat(1) / sum;
+		vecn scale = vec_splat(1) / sum;
 		for (int j = from; j < to; j++)
 			vec_store(s + j * L + v, vec_load(s + j * L + v) * scale);
 	}
@@ -340,11 +343,11 @@ static void normalised_response(
 	make_z(b, a, panel, s, z);
 	product_set(gz, b->gram + (size_t)s * (size_t)size * (size_t)size, channels, channels, size, z);
 	product_set(m, b->k + (size_t)s * (size_t)size, 1, channels, size, z);
-	for (int v = 0; v < L; v += 16) {
-		vec16 squared = vec_splat(b->eps);
+	for (int v = 0; v < L; v += VEC_LANES) {
+		vecn squared = vec_splat(b->eps);
 		for (int c = 0; c < channels; c++)
 			squared += vec_load(gz + c * L + v) * vec_load(z + c * L + v);
-		vec16 scale = vec_splat(1) / vec_sqrt(vec_max(squared, vec_splat(b->floor)));
+		vecn scale = vec_splat(1) / vec_sqrt(vec_max(squared, vec_splat(b->floor)));
 		vec_store(sigma + v, scale);
 		vec_store(m + v, vec_load(m + v) * scale + vec_splat(b->m0[s]));
 	}
@@ -410,8 +413,8 @@ static void plain_dalpha(const struct block_model *b, const struct block_arrays 
 	const float *dmean = b->dmean + (size_t)s * (size_t)b->z_size + z_fixed(b);
 	const int words = b->first[s + 1] - b->first[s];
 
-	for (int v = 0; v < L; v += 16) {
-		vec16 x = vec_load(dm + v), y = vec_load(top + v);
+	for (int v = 0; v < L; v += VEC_LANES) {
+		vecn x = vec_load(dm + v), y = vec_load(top + v);
 		for (int j = 0; j < words; j++)
 			vec_store(dz + j * L + v, x * vec_splat(k[j]) + y * vec_splat(dmean[j]));
 	}
@@ -433,33 +436,33 @@ static void normalised_back(const struct block_model *b, const struct block_arra
 
 	make_z(b, a, panel, s, z);
 	product_set(gz, b->gram + (size_t)s * (size_t)size * (size_t)size, channels, channels, size, z);
-	for (int v = 0; v < L; v += 16) {
-		vec16 kz = vec_splat(0), tz = vec_splat(0), squared = vec_splat(b->eps);
+	for (int v = 0; v < L; v += VEC_LANES) {
+		vecn kz = vec_splat(0), tz = vec_splat(0), squared = vec_splat(b->eps);
 		for (int c = 0; c < channels; c++) {
-			vec16 x = vec_load(z + c * L + v);
+			vecn x = vec_load(z + c * L + v);
 			kz += vec_splat(k[c]) * x;
 			tz += vec_splat(dmean[c]) * x;
 			squared += vec_load(gz + c * L + v) * x;
 		}
-		vec16 u = vec_load(sigma + v), d = vec_load(dm + v), t = averages_scaled ? vec_load(top + v) : vec_splat(0);
-		vec16 du = d * kz + t * tz;
-		vec16 inside = vec_select(squared > vec_splat(b->floor), vec_splat(1), vec_splat(0));
-		vec16 ds = vec_splat(-0.5f) * du * u * u * u * inside;
-		vec16 mean_scale = averages_scaled ? vec_load(top + v) * u : vec_load(top + v);
+		vecn u = vec_load(sigma + v), d = vec_load(dm + v), t = averages_scaled ? vec_load(top + v) : vec_splat(0);
+		vecn du = d * kz + t * tz;
+		vecn inside = vec_select(squared > vec_splat(b->floor), vec_splat(1), vec_splat(0));
+		vecn ds = vec_splat(-0.5f) * du * u * u * u * inside;
+		vecn mean_scale = averages_scaled ? vec_load(top + v) * u : vec_load(top + v);
 		vec_store(dnumerator + v, d * u);
 		vec_store(dsquared + v, ds);
 		for (int c = 0; c < channels; c++) {
-			vec16 g = vec_splat(k[c]) * d * u + vec_splat(dmean[c]) * mean_scale;
+			vecn g = vec_splat(k[c]) * d * u + vec_splat(dmean[c]) * mean_scale;
 			vec_store(dz + c * L + v, g + vec_splat(2) * ds * vec_load(gz + c * L + v));
 			vec_store(weighted + c * L + v, ds * vec_load(z + c * L + v));
 		}
 	}
 	float *dg = panel_at(a->dg, BLOCK_G, panel);
-	for (int i = 0; i < BLOCK_G * L; i += 16)
+	for (int i = 0; i < BLOCK_G * L; i += VEC_LANES)
 		vec_store(dg + i, (s ? vec_load(dg + i) : vec_splat(0)) + vec_load(dz + i));
 	if (b->is_add) {
 		float *dr = panel_at(a->dr, BLOCK_G, panel);
-		for (int i = 0; i < BLOCK_G * L; i += 16)
+		for (int i = 0; i < BLOCK_G * L; i += VEC_LANES)
 			vec_store(dr + i, (s ? vec_load(dr + i) : vec_splat(0)) + vec_load(dz + BLOCK_G * L + i));
 	}
 	outer(sums->dk + (size_t)s * (size_t)size, 1, channels, size, dnumerator, 1, z, size, 1);
@@ -472,8 +475,8 @@ static void normalised_back(const struct block_model *b, const struct block_arra
 /* Through the softmax over words: ds = alpha (dalpha - alpha.dalpha), in place of alpha. */
 static void softmax_back(float *alpha, const float *dalpha, int words)
 {
-	for (int v = 0; v < L; v += 16) {
-		vec16 dot = vec_splat(0);
+	for (int v = 0; v < L; v += VEC_LANES) {
+		vecn dot = vec_splat(0);
 		for (int j = 0; j < words; j++)
 			dot += vec_load(alpha + j * L + v) * vec_load(dalpha + j * L + v);
 		for (int j = 0; j < words; j++)
@@ -524,10 +527,10 @@ static void plain_dz(const struct block_model *b, const struct block_arrays *a, 
 		const float *top = panel_of(a->top, b->sentences, panel) + s * L;
 		const float *k = b->k + (size_t)s * (size_t)b->z_size + at;
 		const float *dmean = b->dmean + (size_t)s * (size_t)b->z_size + at;
-		for (int v = 0; v < L; v += 16) {
-			vec16 x = vec_load(dm + v), y = vec_load(top + v);
+		for (int v = 0; v < L; v += VEC_LANES) {
+			vecn x = vec_load(dm + v), y = vec_load(top + v);
 			for (int c = 0; c < BLOCK_G; c++) {
-				vec16 old = s ? vec_load(d + c * L + v) : vec_splat(0);
+				vecn old = s ? vec_load(d + c * L + v) : vec_splat(0);
 				vec_store(d + c * L + v, old + x * vec_splat(k[c]) + y * vec_splat(dmean[c]));
 			}
 		}
@@ -543,8 +546,8 @@ static void word_positions_back(const struct block_model *b, size_t panel, float
 
 	product_set(along, b->dc, n, BLOCK_G, BLOCK_G, r);
 	for (int j = 0; j < n; j++)
-		for (int v = 0; v < L; v += 16) {
-			vec16 e = vec_exp(vec_load(logits + j * L + v) - vec_splat(b->l_max[j])) * vec_splat(b->l_scale[j]);
+		for (int v = 0; v < L; v += VEC_LANES) {
+			vecn e = vec_exp(vec_load(logits + j * L + v) - vec_splat(b->l_max[j])) * vec_splat(b->l_scale[j]);
 			e = vec_first(e, lanes - v, 0);
 			vec_store(beta + j * L + v, e);
 			vec_store(logits + j * L + v, e * (vec_load(along + j * L + v) - vec_splat(b->dc_dot[j])));
@@ -559,8 +562,8 @@ static void scale_positions_back(const struct block_model *b, const float *r, fl
 	float *pr = scratch, *weighted = scratch + BLOCK_G * L;
 
 	product_set(pr, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r);
-	for (int v = 0; v < L; v += 16) {
-		vec16 nu = vec_load(r + REFER_H * L + v), dot = vec_splat(0);
+	for (int v = 0; v < L; v += VEC_LANES) {
+		vecn nu = vec_load(r + REFER_H * L + v), dot = vec_splat(0);
 		for (int c = 0; c < BLOCK_G; c++)
 			dot += vec_load(dr + c * L + v) * vec_load(r + c * L + v);
 		/* dnu = dot/nu; d|p|^2 = -nu^3 dnu / 2 */
