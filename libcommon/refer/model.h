@@ -56,6 +56,7 @@ enum refer_interaction {
 	REFER_INTERACTIONS
 };
 enum refer_similarity { REFER_DOT, REFER_COSINE };
+enum refer_contrast { REFER_CONTRAST_NONE, REFER_CONTRAST_DOT, REFER_CONTRAST_COSINE };
 
 #define REFER_INTERACTION_CHOICES "none|attention|attention+fp|add|pcmi|pcmi-proj"
 #define REFER_SIMILARITY_CHOICES "dot|cosine"
