@@ -559,11 +559,9 @@ static void word_back(struct fold *f, int j, const double *duh, const double *du
 		f->query_position.dbias[i] += scale * duh[H] * key[i];
 		dkey[i] += scale * duh[H] * (f->query.bias[i] + f->query_position.bias[i]);
 	}
-	for (int i = 0; i < D; i++) {
-		f->key.dbias[i] += dkey[i];
-		f->key_position.dbias[i] += dkey[i];
+	/* The biases of the keys shift all scores of a Gaussian alike: the softmax does not see them, their gradient is 0. */
+	for (int i = 0; i < D; i++)
 		f->value.dbias[i] += dv[i];
-	}
 	outer(&f->key, dkey, w, 1);
 	outer(&f->key_position, dkey, f->c + j * D, 1);
 	outer(&f->value, dv, w, 1);

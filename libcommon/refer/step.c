@@ -419,7 +419,7 @@ struct step_losses step_run(struct step *s, const float *parameters, const float
 {
 	const int has_contrast = s->setup.contrast != REFER_CONTRAST_NONE;
 	struct step_losses losses = {0};
-	size_t sentences[BLOCK_WORDS];
+	size_t sentences[BLOCK_WORDS] = {0};
 
 	memset(gradient, 0, sizeof *gradient * s->setup.layout->count);
 	for (int i = 0; i < count; i++)
