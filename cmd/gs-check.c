@@ -64,8 +64,13 @@ static int print_json(const char *name, const struct check *c, const char *reaso
 			cJSON_AddNumberToObject(object, "width", c->width);
 			cJSON_AddNumberToObject(object, "height", c->height);
 		}
-		for (int i = 0; i < c->n; i++)
-			cJSON_AddNumberToObject(object, c->facts[i].name, (double)c->facts[i].value);
+		for (int i = 0; i < c->n; i++) {
+			char key[64];
+			snprintf(key, sizeof key, "%s", c->facts[i].name);
+			for (char *p = key; *p; p++)
+				*p = *p == ' ' ? '_' : *p;
+			cJSON_AddNumberToObject(object, key, (double)c->facts[i].value);
+		}
 		if (c->listing.n)
 			cJSON_AddItemToObject(object, "list", listing_json(&c->listing));
 	} else {

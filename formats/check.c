@@ -3,6 +3,8 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/jsonl.h"
+#include "formats/masks.h"
+#include "formats/png.h"
 #include "formats/scene.h"
 #include "formats/sentences.h"
 #include "formats/text.h"
@@ -43,7 +45,7 @@ static void names_free(struct names *names)
 
 static void add_splats(struct check *c, const struct splats *s)
 {
-	add_fact(c, "Gaussians", (long long)s->n);
+	add_fact(c, "gaussians", (long long)s->n);
 	add_fact(c, "spherical harmonics", s->sh_coefficients);
 }
 
@@ -170,6 +172,46 @@ static int check_sentences(struct check *c, const char *path, struct err *e)
 	return bad;
 }
 
+static int check_masks(struct check *c, const char *path, struct err *e)
+{
+	struct mask_set set;
+	struct names views = {0}, objects = {0};
+	size_t same = 0;
+	int bad = 0;
+
+	if (masks_read(&set, path, e))
+		return -1;
+	for (size_t i = 0; i < set.n && !bad; i++) {
+		const struct mask_record *r = &set.records[i];
+		same += r->mask.width == set.records[0].mask.width &&
+			r->mask.height == set.records[0].mask.height;
+		bad = names_add(&views, r->view, e) || (r->object && names_add(&objects, r->object, e));
+	}
+	c->kind = "masks";
+	if (set.n && same == set.n) {
+		c->width = set.records[0].mask.width;
+		c->height = set.records[0].mask.height;
+	}
+	add_fact(c, "masks", (long long)set.n);
+	add_fact(c, "views", (long long)views.n);
+	add_fact(c, "objects", (long long)objects.n);
+	names_free(&views);
+	names_free(&objects);
+	masks_free(&set);
+	return bad ? -1 : 0;
+}
+
+static int check_image(struct check *c, const char *path, struct err *e)
+{
+	uint8_t *rgb;
+
+	if (image_read_rgb(path, &rgb, &c->height, &c->width, e))
+		return -1;
+	free(rgb);
+	c->kind = "image";
+	return 0;
+}
+
 /* JSON Lines: what the first record is says what the rest should be. */
 static int check_records(struct check *c, const char *path, struct err *e)
 {
@@ -181,7 +223,8 @@ static int check_records(struct check *c, const char *path, struct err *e)
 		return -1;
 	got = jsonl_next(&j, &first, e);
 	int is_sentence = cJSON_HasObjectItem(first, "text");
-	if (got == 1 && !is_sentence)
+	int is_mask = cJSON_HasObjectItem(first, "segmentation") || cJSON_HasObjectItem(first, "path");
+	if (got == 1 && !is_sentence && !is_mask)
 		got = jsonl_err(
 			&j, e, "neither a sentence (key 'text') nor a mask (key 'segmentation' or 'path')");
 	cJSON_Delete(first);
@@ -190,7 +233,7 @@ static int check_records(struct check *c, const char *path, struct err *e)
 		return got ? -1 : err_set(e, ERR_FORMAT, "%s: no records", file_name(path));
 	if (start_again(path, e))
 		return -1;
-	return check_sentences(c, path, e);
+	return is_sentence ? check_sentences(c, path, e) : check_masks(c, path, e);
 }
 
 /* A JSON list of cameras: a scene's. */
@@ -214,6 +257,11 @@ static int is_safetensors(const unsigned char *head, size_t len)
 	return len >= 8 && !head[5] && !head[6] && !head[7] && (len == 8 || head[8] == '{');
 }
 
+static int is_image(const unsigned char *head, size_t len)
+{
+	return len >= 3 && (!memcmp(head, "\x89PN", 3) || !memcmp(head, "\xff\xd8\xff", 3));
+}
+
 static int check_stream(struct check *c, const char *path, struct err *e)
 {
 	unsigned char head[4096];
@@ -230,6 +278,8 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 		return err_set(e, ERR_FORMAT, "%s: empty", file_name(path));
 	if (is_safetensors(head, len))
 		return check_safetensors(c, path, e);
+	if (is_image(head, len))
+		return check_image(c, path, e);
 	if (is_json(head, len, '['))
 		return check_list(c, path, e);
 	if (is_json(head, len, '{'))
