@@ -21,8 +21,8 @@ struct mask_set {
 	struct mask_record *records;
 };
 
-/* The next record of a stream: 1, 0 at the end, -1 with *e ("path:LINE: key '...': ..."). A "path" member names a PNG
- * relative to the JSONL file's folder (nonzero is foreground). */
+/* The next record of a stream: 1, 0 at the end, -1 with *e ("path:LINE: key '...': ..."). A "path" member
+ * names a PNG relative to the JSONL file's folder (nonzero is foreground). */
 int masks_next(struct jsonl *j, struct mask_record *r, struct err *e);
 void mask_record_free(struct mask_record *r);
 
