@@ -257,6 +257,37 @@ static void contrast_is_live(void)
 	reference_sample_free(&s);
 }
 
+/* Losses that PyTorch float64 gives for the default problem of seed 1 (tests/peers/model_torch.py). */
+static void known_answers(void)
+{
+	static const double expected[REFER_INTERACTIONS][2][2] = {
+		[REFER_NONE] = {{4.89252153154621, 4.90297984638212}, {1.47889273762324, 1.48935105245915}},
+		[REFER_ATTENTION] = {{46.7298669835472, 46.6816257428792},
+			{1.57861616938952, 1.57280651525714}},
+		[REFER_ATTENTION_FP] = {{76.6355882113937, 76.471272644194},
+			{1.83742459575044, 1.68868143380091}},
+		[REFER_ADD] = {{4.01859512412862, 4.00986079651458}, {1.49225340050808, 1.48351907289405}},
+		[REFER_PCMI] = {{76.5829157442819, 76.4180424008107}, {1.8157325748702, 1.68564441024751}},
+		[REFER_PCMI_PROJ] = {{6.05326831523635, 6.06174089479996}},
+	};
+
+	for (int i = 0; i < REFER_INTERACTIONS; i++)
+		for (int k = 0; k < 4 && expected[i][k / 2][k % 2] > 0; k++) {
+			const double loss = expected[i][k / 2][k % 2];
+			const struct reference_options o = reference_defaults(1, (enum refer_interaction)i,
+				(enum refer_similarity)(k / 2), (enum refer_contrast)(1 + k % 2));
+			struct reference_sample s;
+			struct refer_result r;
+			struct err e = {0};
+			reference_sample_init(&s, &o);
+			CHECK(!reference_forward(&s.problem, &r, &e), "%s", e.message);
+			CHECK(fabs(r.loss / loss - 1) < 1e-9, "%s, case %d: %.15g, not %.15g",
+				refer_interaction_name(o.interaction), k, r.loss, loss);
+			reference_free(&r);
+			reference_sample_free(&s);
+		}
+}
+
 /* The start of training: every f_i is the same. */
 static void from_zero(void)
 {
@@ -459,6 +490,7 @@ int main(int argc, char **argv)
 		return dump(argv + 2);
 	all_gradients();
 	contrast_is_live();
+	known_answers();
 	from_zero();
 	huge_logits();
 	one_word();
