@@ -11,7 +11,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 
 # A change of any of these rebuilds everything (see $(BUILD)/flags).
 COMPILE = $(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L -DVERSION='"$(VERSION)"' -Ilibcommon -I. \
-	$(CFLAGS) -std=c11 -fopenmp -ffp-contract=off $(WARNINGS) $(WERROR)
+	$(CFLAGS) -std=c11 -fopenmp -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
 LINK = $(CC) $(CFLAGS) -fopenmp $(LDFLAGS)
 
 TOOLS := $(patsubst cmd/%.c,%,$(wildcard cmd/*.c))
