@@ -21,13 +21,15 @@ struct mask_set {
 	struct mask_record *records;
 };
 
-/* The next record of a stream: 1, 0 at the end, -1 with *e ("path:LINE: key '...': ..."). A "path" member names a PNG
- * relative to the JSONL file's folder (nonzero is foreground). */
+/* The next record of a stream: 1, 0 at the end, -1 with *e ("path:LINE: key '...': ..."). A "path" member
+ * names a PNG relative to the JSONL file's folder (nonzero is foreground). */
 int masks_next(struct jsonl *j, struct mask_record *r, struct err *e);
 void mask_record_free(struct mask_record *r);
 
 /* All records of a file; "-" is stdin. */
 int masks_read(struct mask_set *set, const char *path, struct err *e);
+/* As masks_read; *lines (n) gets the line of each record. free() it. */
+int masks_read_lines(struct mask_set *set, long **lines, const char *path, struct err *e);
 void masks_free(struct mask_set *set);
 
 /* One line. Keys in the order view, ref, object, score, segmentation; absent ones left out. */

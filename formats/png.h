@@ -6,7 +6,8 @@
 
 #include <stdint.h>
 
-/* A PNG as a mask: pixels (height,width) get 1 where any colour channel is nonzero (alpha ignored). free() it. */
+/* A PNG as a mask: pixels (height,width) get 1 where any colour channel is nonzero (alpha ignored). free()
+ * it. */
 int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e);
 
 /* A PNG or JPEG (by content) as RGB, (height,width,3). free() it. */

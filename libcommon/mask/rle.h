@@ -1,4 +1,6 @@
-/* Binary masks as COCO run lengths: columns first (Fortran order), runs alternate 0,1,0,... beginning with 0. */
+/* Binary masks as COCO run lengths: columns first (Fortran order), runs alternate 0,1,0,... beginning with 0.
+ * Positions are p = column * height + row. A mask has at most 2^32 - 1 pixels, so that a run fits its type.
+ */
 #ifndef MASK_RLE_H
 #define MASK_RLE_H
 
@@ -6,6 +8,8 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+enum { RLE_MAX_SIDE = 65536 };
 
 struct rle {
 	int height, width;
@@ -15,14 +19,21 @@ struct rle {
 
 void rle_free(struct rle *r);
 
+/* Sides in 1 to RLE_MAX_SIDE and at most 2^32 - 1 pixels: 0, else -1 with ERR_FORMAT and no file name. */
+int rle_check_size(int64_t height, int64_t width, struct err *e);
+
 /* mask (height,width) row-major, nonzero is foreground. */
 int rle_encode(struct rle *r, const uint8_t *mask, int height, int width, struct err *e);
 /* mask (height,width) row-major gets 0 or 1. */
 void rle_decode(const struct rle *r, uint8_t *mask);
 
+/* A copy of n given lengths (COCO's uncompressed list). Errors as rle_from_string. */
+int rle_from_runs(struct rle *r, const uint32_t *runs, size_t n, int height, int width, struct err *e);
+
 /* COCO's compressed string (byte-compatible with pycocotools). Parsing reports the offset of a bad character
  * or a sum of runs other than height*width, as ERR_FORMAT without a file name. */
 int rle_from_string(struct rle *r, const char *text, int height, int width, struct err *e);
+/* free() the result; NULL with *e. */
 char *rle_to_string(const struct rle *r, struct err *e);
 
 size_t rle_area(const struct rle *r);
@@ -31,7 +42,8 @@ size_t rle_intersection(const struct rle *a, const struct rle *b);
 /* Intersection over union; two empty masks give 1. */
 double rle_iou(const struct rle *a, const struct rle *b);
 
-/* Another size: each new pixel's share of foreground by area, cut at one half (> 0.5 is foreground, exactly 0.5 too). */
+/* Another size: each new pixel's share of foreground by area, cut at one half (> 0.5 is foreground, exactly
+ * 0.5 too). The shares are exact: whole numbers of 1/(H*W) of a new pixel. */
 int rle_resize(struct rle *to, const struct rle *from, int height, int width, struct err *e);
 
 #endif

@@ -1,0 +1,83 @@
+#include "formats/jpeg.h"
+
+#include "base/mem.h"
+
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jpeglib.h>
+#include <jerror.h>
+
+/* libjpeg's error manager, the place to jump to, and what was allocated by then. */
+struct jpeg_job {
+	struct jpeg_error_mgr manager; /* first: libjpeg hands back a pointer to it */
+	jmp_buf jump;
+	const char *name;
+	struct err *e;
+	struct jpeg_decompress_struct jpeg;
+	uint8_t *rgb;
+};
+
+static _Noreturn void on_error(j_common_ptr jpeg)
+{
+	struct jpeg_job *job = (struct jpeg_job *)jpeg->err;
+	char text[JMSG_LENGTH_MAX];
+
+	job->manager.format_message(jpeg, text);
+	enum err_code code = job->manager.msg_code == JERR_OUT_OF_MEMORY ? ERR_SYSTEM : ERR_FORMAT;
+	err_set(job->e, code, "%s: JPEG: %s", job->name, text);
+	longjmp(job->jump, 1);
+}
+
+/* libjpeg pads a truncated photo with grey and carries on. For us half a photo is an error. Other warnings
+ * (extraneous bytes, odd markers) are common in the files of real cameras. */
+static void on_message(j_common_ptr jpeg, int level)
+{
+	if (level < 0 && jpeg->err->msg_code == JWRN_JPEG_EOF)
+		on_error(jpeg);
+}
+
+static int decode(struct jpeg_job *job, FILE *in)
+{
+	struct jpeg_decompress_struct *jpeg = &job->jpeg;
+
+	if (setjmp(job->jump))
+		return -1;
+	jpeg_create_decompress(jpeg);
+	jpeg_stdio_src(jpeg, in);
+	jpeg_read_header(jpeg, TRUE);
+	if (jpeg->jpeg_color_space == JCS_CMYK || jpeg->jpeg_color_space == JCS_YCCK)
+		return err_set(job->e, ERR_FORMAT, "%s: JPEG: CMYK colours are not supported", job->name);
+	jpeg->out_color_space = JCS_RGB;
+	jpeg->dct_method = JDCT_ISLOW;
+	jpeg_start_decompress(jpeg);
+	size_t stride = (size_t)jpeg->output_width * 3;
+	job->rgb = mem_alloc(jpeg->output_height, stride, job->name, job->e);
+	if (!job->rgb)
+		return -1;
+	while (jpeg->output_scanline < jpeg->output_height) {
+		JSAMPROW row = job->rgb + jpeg->output_scanline * stride;
+		jpeg_read_scanlines(jpeg, &row, 1);
+	}
+	jpeg_finish_decompress(jpeg);
+	return 0;
+}
+
+int jpeg_read_rgb(const char *name, FILE *in, uint8_t **rgb, int *height, int *width, struct err *e)
+{
+	struct jpeg_job job = {.name = name, .e = e};
+
+	job.jpeg.err = jpeg_std_error(&job.manager);
+	job.manager.error_exit = on_error;
+	job.manager.emit_message = on_message;
+	int bad = decode(&job, in);
+	*height = (int)job.jpeg.output_height;
+	*width = (int)job.jpeg.output_width;
+	jpeg_destroy_decompress(&job.jpeg);
+	if (bad)
+		free(job.rgb);
+	else
+		*rgb = job.rgb;
+	return bad;
+}

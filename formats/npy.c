@@ -1,0 +1,230 @@
+#include "formats/npy.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char MAGIC[6] = "\x93NUMPY";
+enum {
+	FIXED_BYTES = 10, /* magic, version, u16 length of the header */
+	ALIGNMENT = 64,	  /* of the data, and so of everything before them */
+	HEADER_ROOM = 310,
+};
+
+void npy_free(struct npy *a)
+{
+	free(a->values);
+	*a = (struct npy){0};
+}
+
+/* A walk through the header's Python dict. `at` is an offset in the file. */
+struct walk {
+	const char *path, *data;
+	size_t at, end;
+	struct err *e;
+};
+
+static int walk_err(const struct walk *w, const char *reason)
+{
+	return err_set(w->e, ERR_FORMAT, "%s: header, offset %zu: %s", w->path, w->at, reason);
+}
+
+static void skip_blank(struct walk *w)
+{
+	while (w->at < w->end && (w->data[w->at] == ' ' || w->data[w->at] == '\n'))
+		w->at++;
+}
+
+/* 1 and past it when the next thing is this character. */
+static int take(struct walk *w, char c)
+{
+	skip_blank(w);
+	if (w->at >= w->end || w->data[w->at] != c)
+		return 0;
+	w->at++;
+	return 1;
+}
+
+/* A quoted string without escapes; NULL where there is none. */
+static const char *take_string(struct walk *w, size_t *len)
+{
+	char quote = take(w, '\'') ? '\'' : take(w, '"') ? '"' : 0;
+	size_t begin = w->at;
+
+	if (!quote)
+		return NULL;
+	const char *close = memchr(w->data + begin, quote, w->end - begin);
+	if (!close)
+		return NULL;
+	*len = (size_t)(close - (w->data + begin));
+	w->at = begin + *len + 1;
+	return w->data + begin;
+}
+
+static int is_text(const char *text, size_t len, const char *expected)
+{
+	return text && len == strlen(expected) && !memcmp(text, expected, len);
+}
+
+static int take_word(struct walk *w, const char *word)
+{
+	size_t len = strlen(word);
+
+	skip_blank(w);
+	if (w->end - w->at < len || memcmp(w->data + w->at, word, len))
+		return 0;
+	w->at += len;
+	return 1;
+}
+
+static int take_shape(struct walk *w, struct npy *a)
+{
+	a->dims = 0;
+	a->count = 1;
+	if (!take(w, '('))
+		return walk_err(w, "'shape' is not a tuple");
+	while (!take(w, ')')) {
+		size_t side = 0, digits = 0;
+		skip_blank(w);
+		if (a->dims == NPY_MAX_DIMS)
+			return walk_err(w, "'shape' has more than 8 dimensions");
+		for (; w->at < w->end && isdigit((unsigned char)w->data[w->at]); w->at++, digits++) {
+			if (mem_size(side, 10, &side))
+				return walk_err(w, "'shape' is too large");
+			side += (size_t)(w->data[w->at] - '0');
+		}
+		if (!digits)
+			return walk_err(w, "'shape' is not a tuple of whole numbers");
+		if (mem_size(a->count, side, &a->count))
+			return walk_err(w, "'shape' is too large");
+		a->shape[a->dims++] = side;
+		if (!take(w, ',') && (w->at >= w->end || w->data[w->at] != ')'))
+			return walk_err(w, "'shape' is not a tuple of whole numbers");
+	}
+	return 0;
+}
+
+static int read_header(struct walk *w, struct npy *a)
+{
+	enum { HAVE_TYPE = 1, HAVE_ORDER = 2, HAVE_SHAPE = 4, HAVE_ALL = 7 };
+	int have = 0;
+
+	if (!take(w, '{'))
+		return walk_err(w, "not a dict");
+	while (!take(w, '}')) {
+		size_t len = 0, type_len = 0;
+		const char *key = take_string(w, &len);
+		if (!key || !take(w, ':'))
+			return walk_err(w, "not a key and a colon");
+		if (is_text(key, len, "descr")) {
+			const char *type = take_string(w, &type_len);
+			if (!is_text(type, type_len, "<f4"))
+				return walk_err(w, "'descr' is not '<f4' (float32, little-endian)");
+			have |= HAVE_TYPE;
+		} else if (is_text(key, len, "fortran_order")) {
+			if (!take_word(w, "False"))
+				return walk_err(w, "'fortran_order' is not False");
+			have |= HAVE_ORDER;
+		} else if (is_text(key, len, "shape")) {
+			if (take_shape(w, a))
+				return -1;
+			have |= HAVE_SHAPE;
+		} else {
+			return walk_err(w, "a key other than 'descr', 'fortran_order' and 'shape'");
+		}
+		skip_blank(w);
+		if (!take(w, ',') && (w->at >= w->end || w->data[w->at] != '}'))
+			return walk_err(w, "not a comma or a closing brace");
+	}
+	skip_blank(w);
+	if (w->at != w->end)
+		return walk_err(w, "something follows the dict");
+	if (have != HAVE_ALL)
+		return walk_err(w, "'descr', 'fortran_order' or 'shape' is missing");
+	return 0;
+}
+
+static int read_bytes(struct npy *a, const char *data, size_t len, const char *path, struct err *e)
+{
+	const unsigned char *u = (const unsigned char *)data;
+	size_t begin = FIXED_BYTES, bytes;
+
+	if (len < FIXED_BYTES || memcmp(data, MAGIC, sizeof MAGIC))
+		return err_set(e, ERR_FORMAT, "%s: not a .npy file: it does not begin with \\x93NUMPY", path);
+	if ((u[6] != 1 && u[6] != 2) || u[7])
+		return err_set(
+			e, ERR_FORMAT, "%s: offset 6: version %d.%d, expected 1.0 or 2.0", path, u[6], u[7]);
+	size_t header = u[8] | (size_t)u[9] << 8;
+	if (u[6] == 2) {
+		begin = FIXED_BYTES + 2;
+		if (len < begin)
+			return err_set(
+				e, ERR_FORMAT, "%s: offset %zu: the file ends inside the header", path, len);
+		header |= (size_t)u[10] << 16 | (size_t)u[11] << 24;
+	}
+	if (len - begin < header)
+		return err_set(e, ERR_FORMAT, "%s: offset %zu: the file ends inside the header", path, len);
+	struct walk w = {path, data, begin, begin + header, e};
+	if (read_header(&w, a))
+		return -1;
+	size_t have = len - begin - header;
+	if (mem_size(a->count, sizeof *a->values, &bytes) || bytes != have)
+		return err_set(e, ERR_FORMAT,
+			"%s: offset %zu: %zu bytes of data, the shape has %zu values of 4", path,
+			begin + header, have, a->count);
+	a->values = mem_alloc(a->count, sizeof *a->values, path, e);
+	if (!a->values)
+		return -1;
+	memcpy(a->values, data + begin + header, bytes);
+	return 0;
+}
+
+int npy_read(struct npy *a, const char *path, struct err *e)
+{
+	struct file_map map;
+
+	*a = (struct npy){0};
+	if (file_map(path, &map, e))
+		return -1;
+	int bad = read_bytes(a, (const char *)map.data, map.len, file_name(path), e);
+	file_unmap(&map);
+	return bad;
+}
+
+int npy_write(const char *path, const float *values, const size_t *shape, int dims, struct err *e)
+{
+	char header[FIXED_BYTES + HEADER_ROOM];
+	struct file_out out;
+	size_t count = 1;
+	int used = FIXED_BYTES;
+
+	used += snprintf(header + used, HEADER_ROOM, "{'descr': '<f4', 'fortran_order': False, 'shape': (");
+	for (int i = 0; i < dims; i++) {
+		if (mem_size(count, shape[i], &count))
+			return err_set(e, ERR_SYSTEM, "%s: the array does not fit in memory", path);
+		used += snprintf(header + used, 32, i ? ", %zu" : "%zu", shape[i]);
+	}
+	/* Python writes a tuple of one with a comma */
+	used += snprintf(header + used, 32, dims == 1 ? ",), }" : "), }");
+	while ((used + 1) % ALIGNMENT)
+		header[used++] = ' ';
+	header[used++] = '\n';
+	memcpy(header, MAGIC, sizeof MAGIC);
+	header[6] = 1;
+	header[7] = 0;
+	header[8] = (char)((used - FIXED_BYTES) & 255);
+	header[9] = (char)((used - FIXED_BYTES) >> 8);
+	if (file_out_open(&out, path, e))
+		return -1;
+	fwrite(header, 1, (size_t)used, out.stream);
+	if (fwrite(values, sizeof *values, count, out.stream) != count) {
+		err_errno(e, "%s", path);
+		file_out_abort(&out);
+		return -1;
+	}
+	return file_out_commit(&out, e);
+}
