@@ -16,13 +16,17 @@ static int check_values(const struct splats *s, const char *path, struct err *e)
 		const float *m = s->means + 3 * i, *c = s->scales + 3 * i, *q = s->quats + 4 * i;
 		float length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
 		if (!isfinite(m[0]) || !isfinite(m[1]) || !isfinite(m[2]))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'means': Gaussian %zu is not finite", path, i);
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor 'means': Gaussian %zu is not finite", path, i);
 		if (!(c[0] >= 0 && c[1] >= 0 && c[2] >= 0) || !isfinite(c[0] + c[1] + c[2]))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'scales': Gaussian %zu is negative or not finite", path, i);
+			return err_set(e, ERR_FORMAT,
+				"%s: tensor 'scales': Gaussian %zu is negative or not finite", path, i);
 		if (!(length > 0) || !isfinite(length))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'quats': Gaussian %zu is zero or not finite", path, i);
+			return err_set(e, ERR_FORMAT,
+				"%s: tensor 'quats': Gaussian %zu is zero or not finite", path, i);
 		if (!(s->opacities[i] >= 0 && s->opacities[i] <= 1))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'opacities': Gaussian %zu is not in [0,1]", path, i);
+			return err_set(e, ERR_FORMAT, "%s: tensor 'opacities': Gaussian %zu is not in [0,1]",
+				path, i);
 	}
 	for (size_t i = 0; i < s->n * (size_t)s->sh_coefficients * 3; i++)
 		if (!isfinite(s->sh[i]))
@@ -30,7 +34,7 @@ static int check_values(const struct splats *s, const char *path, struct err *e)
 	return 0;
 }
 
-static int read_splats(struct scene *s, const char *path, struct err *e)
+int scene_read_splats(struct scene *s, const char *path, struct err *e)
 {
 	struct safetensors st;
 	const struct st_tensor *t[5];
@@ -49,7 +53,8 @@ static int read_splats(struct scene *s, const char *path, struct err *e)
 		goto done;
 	int64_t k = t[4]->shape[1];
 	if (k != 1 && k != 4 && k != 9 && k != 16) {
-		err_set(e, ERR_FORMAT, "%s: tensor 'sh': %lld coefficients, expected 1, 4, 9 or 16", path, (long long)k);
+		err_set(e, ERR_FORMAT, "%s: tensor 'sh': %lld coefficients, expected 1, 4, 9 or 16", path,
+			(long long)k);
 		goto done;
 	}
 	const char *offset = safetensors_meta(&st, "offset");
@@ -59,7 +64,8 @@ static int read_splats(struct scene *s, const char *path, struct err *e)
 	}
 	if (splats_alloc(&s->splats, (size_t)n, (int)k, e))
 		goto done;
-	float *to[5] = {s->splats.means, s->splats.scales, s->splats.quats, s->splats.opacities, s->splats.sh};
+	float *to[5] = {
+		s->splats.means, s->splats.scales, s->splats.quats, s->splats.opacities, s->splats.sh};
 	for (int i = 0; i < 5; i++)
 		memcpy(to[i], t[i]->data, t[i]->bytes);
 	bad = check_values(&s->splats, path, e);
@@ -69,7 +75,8 @@ done:
 }
 
 /* A number, or an ERR_FORMAT that names the view and key. */
-static int view_number(const cJSON *view, const char *key, const char *path, int index, double *out, struct err *e)
+static int view_number(
+	const cJSON *view, const char *key, const char *path, int index, double *out, struct err *e)
 {
 	const cJSON *v = cJSON_GetObjectItemCaseSensitive(view, key);
 
@@ -89,11 +96,13 @@ static int read_pose(struct camera *c, const cJSON *view, const char *path, int 
 	cJSON_ArrayForEach(row, rows)
 	{
 		if (cJSON_GetArraySize(row) != 4)
-			return err_set(e, ERR_FORMAT, "%s: view %d: key 'world_to_camera' is not 4x4", path, index);
+			return err_set(
+				e, ERR_FORMAT, "%s: view %d: key 'world_to_camera' is not 4x4", path, index);
 		for (int k = 0; k < 4; k++) {
 			const cJSON *v = cJSON_GetArrayItem(row, k);
 			if (!cJSON_IsNumber(v) || !isfinite(v->valuedouble))
-				return err_set(e, ERR_FORMAT, "%s: view %d: world_to_camera[%d][%d] is not a number", path, index,
+				return err_set(e, ERR_FORMAT,
+					"%s: view %d: world_to_camera[%d][%d] is not a number", path, index,
 					r, k);
 			c->world_to_camera[r][k] = v->valuedouble;
 		}
@@ -104,7 +113,8 @@ static int read_pose(struct camera *c, const cJSON *view, const char *path, int 
 			const double *x = c->world_to_camera[a], *y = c->world_to_camera[b];
 			double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 			if (fabs(dot - (a == b)) > 1e-4)
-				return err_set(e, ERR_FORMAT, "%s: view %d: world_to_camera is not a rotation", path, index);
+				return err_set(e, ERR_FORMAT,
+					"%s: view %d: world_to_camera is not a rotation", path, index);
 		}
 	return 0;
 }
@@ -117,25 +127,30 @@ static int read_view(struct camera *c, const cJSON *view, const char *path, int 
 	double width = 0, height = 0;
 
 	if (!cJSON_IsString(name) || !name->valuestring[0] || strchr(name->valuestring, '/'))
-		return err_set(e, ERR_FORMAT, "%s: view %d: key 'name' is not a name without slashes", path, index);
+		return err_set(
+			e, ERR_FORMAT, "%s: view %d: key 'name' is not a name without slashes", path, index);
 	c->name = mem_strdup(name->valuestring, e);
 	if (!c->name)
 		return -1;
-	if (view_number(view, "width", path, index, &width, e) || view_number(view, "height", path, index, &height, e) ||
-		view_number(view, "fx", path, index, &c->fx, e) || view_number(view, "fy", path, index, &c->fy, e) ||
-		view_number(view, "cx", path, index, &c->cx, e) || view_number(view, "cy", path, index, &c->cy, e) ||
-		read_pose(c, view, path, index, e))
+	if (view_number(view, "width", path, index, &width, e) ||
+		view_number(view, "height", path, index, &height, e) ||
+		view_number(view, "fx", path, index, &c->fx, e) ||
+		view_number(view, "fy", path, index, &c->fy, e) ||
+		view_number(view, "cx", path, index, &c->cx, e) ||
+		view_number(view, "cy", path, index, &c->cy, e) || read_pose(c, view, path, index, e))
 		return -1;
 	if (!(width >= 1 && width <= 65536 && width == floor(width) && height >= 1 && height <= 65536 &&
 		    height == floor(height)))
-		return err_set(e, ERR_FORMAT, "%s: view %d: size %gx%g is not whole numbers in 1 to 65536", path, index, width,
-			height);
+		return err_set(e, ERR_FORMAT, "%s: view %d: size %gx%g is not whole numbers in 1 to 65536",
+			path, index, width, height);
 	if (!(c->fx > 0 && c->fy > 0))
 		return err_set(e, ERR_FORMAT, "%s: view %d: focal length is not positive", path, index);
 	c->width = (int)width;
 	c->height = (int)height;
-	if (!cJSON_IsString(split) || (strcmp(split->valuestring, "train") && strcmp(split->valuestring, "test")))
-		return err_set(e, ERR_FORMAT, "%s: view %d: key 'split' is not \"train\" or \"test\"", path, index);
+	if (!cJSON_IsString(split) ||
+		(strcmp(split->valuestring, "train") && strcmp(split->valuestring, "test")))
+		return err_set(
+			e, ERR_FORMAT, "%s: view %d: key 'split' is not \"train\" or \"test\"", path, index);
 	c->split = !strcmp(split->valuestring, "test") ? SPLIT_TEST : SPLIT_TRAIN;
 	if (cJSON_IsString(image)) {
 		c->image = mem_strdup(image->valuestring, e);
@@ -166,7 +181,7 @@ static int read_views(struct cameras *c, const cJSON *list, const char *path, st
 	return 0;
 }
 
-static int read_cameras_file(struct cameras *c, const char *path, struct err *e)
+int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 {
 	char *text;
 	size_t len;
@@ -188,7 +203,7 @@ static int read_cameras_file(struct cameras *c, const char *path, struct err *e)
 int scene_read_cameras(struct cameras *c, const char *dir, struct err *e)
 {
 	char *path = file_join(dir, "cameras.json", "", e);
-	int bad = path ? read_cameras_file(c, path, e) : -1;
+	int bad = path ? scene_read_cameras_file(c, path, e) : -1;
 
 	free(path);
 	return bad;
@@ -199,7 +214,7 @@ int scene_read(struct scene *s, const char *dir, struct err *e)
 	char *path = file_join(dir, "splats.safetensors", "", e);
 
 	*s = (struct scene){0};
-	int bad = path ? read_splats(s, path, e) : -1;
+	int bad = path ? scene_read_splats(s, path, e) : -1;
 	free(path);
 	if (bad || scene_read_cameras(&s->cameras, dir, e)) {
 		scene_free(s);
@@ -216,7 +231,8 @@ void scene_free(struct scene *s)
 
 static void put_view(FILE *out, const struct camera *c)
 {
-	cJSON *name = cJSON_CreateString(c->name), *image = c->image ? cJSON_CreateString(c->image) : cJSON_CreateNull();
+	cJSON *name = cJSON_CreateString(c->name),
+	      *image = c->image ? cJSON_CreateString(c->image) : cJSON_CreateNull();
 	char *name_text = cJSON_PrintUnformatted(name), *image_text = cJSON_PrintUnformatted(image);
 
 	fprintf(out,
@@ -227,7 +243,8 @@ static void put_view(FILE *out, const struct camera *c)
 		const double *row = c->world_to_camera[r];
 		fprintf(out, "%s[%.17g,%.17g,%.17g,%.17g]", r ? "," : "", row[0], row[1], row[2], row[3]);
 	}
-	fprintf(out, "],\n  \"split\":\"%s\",\"image\":%s}", c->split == SPLIT_TEST ? "test" : "train", image_text);
+	fprintf(out, "],\n  \"split\":\"%s\",\"image\":%s}", c->split == SPLIT_TEST ? "test" : "train",
+		image_text);
 	cJSON_Delete(name);
 	cJSON_Delete(image);
 	free(name_text);
@@ -259,7 +276,11 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 		{.name = "scales", .dtype = ST_F32, .dims = 2, .shape = {n, 3}, .data = p->scales},
 		{.name = "quats", .dtype = ST_F32, .dims = 2, .shape = {n, 4}, .data = p->quats},
 		{.name = "opacities", .dtype = ST_F32, .dims = 1, .shape = {n}, .data = p->opacities},
-		{.name = "sh", .dtype = ST_F32, .dims = 3, .shape = {n, p->sh_coefficients, 3}, .data = p->sh},
+		{.name = "sh",
+			.dtype = ST_F32,
+			.dims = 3,
+			.shape = {n, p->sh_coefficients, 3},
+			.data = p->sh},
 	};
 	struct st_meta meta[] = {{"format", "refer.splats"}, {"version", "1"}, {"tool", "gs-import"},
 		{"options", options}, {"seed", "0"}, {"offset", offset}};
@@ -267,7 +288,8 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 	snprintf(offset, sizeof offset, "[%.17g,%.17g,%.17g]", s->offset[0], s->offset[1], s->offset[2]);
 	if (file_make_dir(dir, e))
 		return -1;
-	char *splats = file_join(dir, "splats.safetensors", "", e), *cameras = file_join(dir, "cameras.json", "", e);
+	char *splats = file_join(dir, "splats.safetensors", "", e),
+	     *cameras = file_join(dir, "cameras.json", "", e);
 	int bad = !splats || !cameras || safetensors_write(splats, tensors, 5, meta, 6, e) ||
 		  write_cameras(&s->cameras, cameras, e);
 	free(splats);

@@ -81,7 +81,8 @@ int file_map(const char *path, struct file_map *map, struct err *e)
 	int fd;
 
 	*map = (struct file_map){0};
-	if (is_standard(path) || (!stat(path, &st) && !S_ISREG(st.st_mode)) || (!stat(path, &st) && !st.st_size)) {
+	if (is_standard(path) || (!stat(path, &st) && !S_ISREG(st.st_mode)) ||
+		(!stat(path, &st) && !st.st_size)) {
 		char *data;
 		if (file_read(path, &data, &map->len, e))
 			return -1;

@@ -7,7 +7,8 @@
 #include <stdio.h>
 #include <stddef.h>
 
-/* Reads a whole file or pipe. *data gets len bytes and a NUL after them; free() it. Returns 0, or -1 with *e. */
+/* Reads a whole file or pipe. *data gets len bytes and a NUL after them; free() it. Returns 0, or -1 with *e.
+ */
 int file_read(const char *path, char **data, size_t *len, struct err *e);
 
 /* A read-only map of a regular file (or a read copy of a pipe). Release with file_unmap. */
