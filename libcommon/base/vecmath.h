@@ -2,15 +2,15 @@
  *
  * vecn has VEC_LANES lanes: 16 with AVX-512, 8 with AVX2 and FMA, else 4. Arithmetic, comparisons and
  * indexing are the compiler's own (GCC vector extensions); a comparison gives a vecni of 0 and -1. A kernel
- *is written once, in a file that is included by one .c file for each instruction set, which selects it BEFORE
- *it includes this header:
+ * is written once, in a file that is included by one .c file for each instruction set, which selects it
+ * before it includes this header:
  *
  *	#pragma GCC target("avx512f,avx512dq,avx512bw,avx512vl,avx2,fma")
  *	#pragma GCC target("avx2,fma")
  *
- * or nothing; cpu_level() (base/cpu.h) chooses among them at run time. All functions are inlined, so no
- *vector crosses a call. Results are the same on every machine of one level; levels differ in the last bits,
- *as plain has no fma. */
+ * or nothing; cpu_level() (base/cpu.h) chooses among them at run time. All functions are inlined, so that no
+ * vector crosses a call. Results are the same on every machine of one level; levels differ in the last bits,
+ * as plain has no fma. */
 #ifndef BASE_VECMATH_H
 #define BASE_VECMATH_H
 
@@ -153,10 +153,11 @@ VEC_INLINE vecn vec_exp(vecn x)
 	return p * (vecn)((half + 127) << 23) * (vecn)((whole - half + 127) << 23);
 }
 
-/* 2^x for |x| <= 126: within 2.2 ulp, and cheaper than vec_exp: no range is checked. */
+/* 2^x for |x| <= 126: within 2.2 ulp, and cheaper than vec_exp, as no range is checked: some float beyond it. */
 VEC_INLINE vecn vec_exp2(vecn x)
 {
-	vecn n = vec_round(x), r = x - n;
+	/* the sum holds round(x) in its low bits, from where it goes to the exponent */
+	vecn shifted = x + 12582912.0f, r = x - (shifted - 12582912.0f);
 	/* minimax in relative error on |r| <= 1/2: 9.2e-8 */
 	vecn p = vec_splat(1.3264727e-3f);
 	p = vec_fma(p, r, vec_splat(9.6715130e-3f));
@@ -164,7 +165,7 @@ VEC_INLINE vecn vec_exp2(vecn x)
 	p = vec_fma(p, r, vec_splat(2.4022242e-1f));
 	p = vec_fma(p, r, vec_splat(6.9314700e-1f));
 	p = vec_fma(p, r, vec_splat(1.0f));
-	return (vecn)((vecni)p + (__builtin_convertvector(n, vecni) << 23));
+	return (vecn)((vecni)p + ((vecni)shifted << 23));
 }
 
 #endif
