@@ -2,11 +2,14 @@
 """Writes libcommon/nn/unicode_tables.c from Python's unicodedata.
 
     python3 tests/peers/unicode_tables.py > libcommon/nn/unicode_tables.c
+    python3 tests/peers/unicode_tables.py --checksum     the crc32 that tests/unit/test_wordpiece.c expects
 
 The tables hold what BERT's uncased normalisation needs of Unicode (nn/unicode.h says what each is). Hangul
 syllables are left out of the mapping, since they decompose by arithmetic.
 """
+import sys
 import unicodedata
+import zlib
 
 POINTS = [c for c in range(0x110000) if not 0xD800 <= c <= 0xDFFF]
 
@@ -94,4 +97,19 @@ def main():
     table("unicode_list", "unicode_lists", lists)
 
 
-main()
+def checksum():
+    """Over one line for every character: its classes and what it folds to, straight from unicodedata."""
+    crc = 0
+    for c in POINTS:
+        kind = category(c)
+        is_space = kind == "Zs" or 9 <= c <= 13 or c in (0x85, 0x2028, 0x2029)
+        is_punctuation = kind[0] == "P" or chr(c) in "$+<=>^`|~"
+        folded = " ".join(f"{x:x}" for x in normalised(c))
+        crc = zlib.crc32(f"{c:x} {is_dropped(c):d}{is_space:d}{is_punctuation:d} {folded}\n".encode(), crc)
+    print(f"{crc:08x}")
+
+
+if sys.argv[1:] == ["--checksum"]:
+    checksum()
+else:
+    main()
