@@ -277,9 +277,7 @@ static int check_records(struct check *c, const char *path, struct err *e)
 			&j, e, "neither a sentence (key 'text') nor a mask (key 'segmentation' or 'path')");
 	cJSON_Delete(first);
 	jsonl_close(&j);
-	if (got <= 0)
-		return got ? -1 : err_set(e, ERR_FORMAT, "%s: no records", file_name(path));
-	if (start_again(path, e))
+	if (got < 0 || start_again(path, e))
 		return -1;
 	return is_sentence ? check_sentences(c, path, e) : check_masks(c, path, e);
 }
