@@ -6,9 +6,13 @@ BUILD ?= build
 CC ?= cc
 CFLAGS ?= -O3 -g
 WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith
-override CPPFLAGS += -D_POSIX_C_SOURCE=200809L -DVERSION='"$(VERSION)"' -Ilibcommon -I.
-override CFLAGS += -std=c11 -fopenmp -ffp-contract=off $(WARNINGS) $(WERROR)
 LDLIBS := -lcjson -lpng -ljpeg -lz -lm
+JOBS ?= $(shell nproc 2>/dev/null || echo 1)
+
+# A change of any of these rebuilds everything (see $(BUILD)/flags).
+COMPILE = $(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L -DVERSION='"$(VERSION)"' -Ilibcommon -I. \
+	$(CFLAGS) -std=c11 -fopenmp -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
+LINK = $(CC) $(CFLAGS) -fopenmp $(LDFLAGS)
 
 TOOLS := $(patsubst cmd/%.c,%,$(wildcard cmd/*.c))
 SOURCES := $(wildcard libcommon/*/*.c formats/*.c)
@@ -18,15 +22,34 @@ BINARIES := $(TOOLS:%=$(BUILD)/bin/%)
 UNITS := $(patsubst tests/unit/%.c,$(BUILD)/unit/%,$(wildcard tests/unit/test_*.c))
 UNIT_HELPERS := $(filter-out tests/unit/test_%,$(wildcard tests/unit/*.c))
 UNIT_OBJECTS := $(UNIT_HELPERS:%.c=$(BUILD)/obj/%.o)
+FUZZERS := $(patsubst tests/fuzz/%.c,$(BUILD)/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
+C_FILES = $(wildcard cmd/*.c libcommon/*/*.[ch] formats/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch])
+MAN_PAGES := $(wildcard man/*.[17])
 
-.PHONY: all tools units clean help
-all: tools
+# What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
+NEED_BUILD := png.h=libpng-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev $(CC)=gcc ar=binutils
+NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd
+NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
+
+SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all
+
+# gcc has omp.h where clang's own OpenMP is not installed.
+CLANG_FLAGS = -idirafter $$(gcc -print-file-name=include)
+TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. -std=c11 -fopenmp $(CLANG_FLAGS)
+
+# -jN for a sub-make, unless this make already shares out jobs.
+PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
+
+.PHONY: all tools units fuzzers objects packages deps demo test test-real check sanitize lint install uninstall clean help FORCE
+all: tools ## build the tools into build/bin
 tools: $(BINARIES)
 units: $(UNITS)
+fuzzers: $(FUZZERS)
+objects: $(OBJECTS) $(TOOLS:%=$(BUILD)/obj/cmd/%.o)
 
-$(BUILD)/obj/%.o: %.c
+$(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	$(COMPILE) -MMD -MP -c -o $@ $<
 
 $(LIBRARY): $(OBJECTS)
 	@rm -f $@
@@ -34,18 +57,106 @@ $(LIBRARY): $(OBJECTS)
 
 $(BUILD)/bin/%: $(BUILD)/obj/cmd/%.o $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(LINK) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/unit/%: $(BUILD)/obj/tests/unit/%.o $(UNIT_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(LINK) -o $@ $^ $(LDLIBS)
+
+$(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(BUILD)/obj/tests/fuzz/driver.o $(LIBRARY)
+	@mkdir -p $(@D)
+	$(LINK) -o $@ $^ $(LDLIBS)
+
+# Changes only when the commands do, and then everything is older than it.
+$(BUILD)/flags: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' '$(subst ','\'',$(COMPILE) / $(LINK))' | cmp -s - $@ || \
+		printf '%s\n' '$(subst ','\'',$(COMPILE) / $(LINK))' >$@
+
+# One line in place of a wall of errors where a library's header is not there.
+$(BUILD)/headers:
+	@mkdir -p $(@D)
+	@for header in png.h jpeglib.h cjson/cJSON.h zlib.h; do \
+		printf '#include <stdio.h>\n#include <%s>\n' $$header | $(COMPILE) -E -x c - >/dev/null 2>&1 || \
+			{ echo "$$header is not installed: run 'make deps'" >&2; exit 1; }; \
+	done
+	@touch $@
 
 .SECONDARY:
 
+# $(call need,LIST): installs the packages of LIST whose probe fails; says which, where it cannot.
+define need
+@missing=; \
+for item in $(1); do \
+	probe=$${item%=*}; \
+	case $$probe in \
+	*.h) printf '#include <stdio.h>\n#include <%s>\n' $$probe | $(CC) $(CPPFLAGS) -E -x c - >/dev/null 2>&1;; \
+	*) command -v $$probe >/dev/null 2>&1;; \
+	esac || missing="$$missing $${item#*=}"; \
+done; \
+[ -n "$$missing" ] || exit 0; \
+as=; [ "$$(id -u)" = 0 ] || as=sudo; \
+if command -v apt-get >/dev/null 2>&1 && { [ -z "$$as" ] || command -v sudo >/dev/null 2>&1; }; then \
+	echo "installing$$missing"; \
+	$$as apt-get update -qq && DEBIAN_FRONTEND=noninteractive $$as apt-get install -y -qq --no-install-recommends $$missing \
+		>/dev/null && exit 0; \
+fi; \
+echo "cannot install packages here; please install (Debian names):$$missing" >&2; exit 1
+endef
+
+packages:
+	$(call need,$(NEED_BUILD) $(NEED_TEST))
+
+deps: packages ## install what is missing (apt-get, as root or with sudo)
+
+demo: ## set up, build, and run the whole method on a small synthetic scene
+	$(MAKE) deps
+	$(MAKE) $(PARALLEL) all
+	$(MAKE) -f pipelines/demo.mk
+
+test: packages ## set up, build, run every test; FILTER=text picks test files by name
+	@$(MAKE) --no-print-directory check
+
+check: # the tests without installing anything
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units
+	@tests/run.sh $(BUILD) $(JOBS) "$(FILTER)"
+
+test-real: ## the whole method on real scenes: make test-real DATA=DIR
+	@[ -n "$(DATA)" ] || { echo "usage: make test-real DATA=DIR" >&2; exit 2; }
+	$(MAKE) $(PARALLEL) all
+	$(MAKE) -f pipelines/real.mk DATA="$(DATA)"
+
+sanitize: packages ## every test again with address and undefined-behaviour sanitizers, in build-asan
+	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" \
+		tools units fuzzers
+	@tests/run.sh build-asan $(JOBS) "$(FILTER)"
+
+lint: ## formatting, clang-tidy, man pages, and builds without a warning by gcc and clang
+	$(call need,$(NEED_BUILD) $(NEED_LINT))
+	clang-format --dry-run -Werror $(C_FILES)
+	$(if $(MAN_PAGES),mandoc -T lint -W warning $(MAN_PAGES))
+	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers
+	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-lint/clang CC=clang WERROR=-Werror \
+		CFLAGS="-O1 $(CLANG_FLAGS)" objects
+	@printf '%s\n' $(filter %.c,$(C_FILES)) | xargs -P $(JOBS) -n 4 sh -c 'clang-tidy --quiet "$$@" -- $(TIDY_FLAGS)' tidy
+
+install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
+	install -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(PREFIX)/share/man/man1" "$(DESTDIR)$(PREFIX)/share/man/man7" \
+		"$(DESTDIR)$(PREFIX)/share/refersplat/pipelines"
+	install -m 755 $(BINARIES) "$(DESTDIR)$(PREFIX)/bin"
+	for page in $(MAN_PAGES); do install -m 644 $$page "$(DESTDIR)$(PREFIX)/share/man/man$${page##*.}" || exit; done
+	for file in $(wildcard pipelines/*); do \
+		install -m 644 $$file "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines" || exit; done
+
+uninstall: ## remove what install put there
+	rm -f $(TOOLS:%="$(DESTDIR)$(PREFIX)/bin/%")
+	for page in $(notdir $(MAN_PAGES)); do rm -f "$(DESTDIR)$(PREFIX)/share/man/man$${page##*.}/$$page"; done
+	rm -rf "$(DESTDIR)$(PREFIX)/share/refersplat"
+
 clean: ## remove what was built; the cached encoder and demo data stay
-	rm -rf $(BUILD)
+	rm -rf $(BUILD) build-asan build-lint
 
 help: ## list the targets
-	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST)
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
 
 -include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)

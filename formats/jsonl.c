@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 #include "formats/jsonl.h"
 
 #include "base/file.h"

@@ -24,10 +24,11 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e);
 void jsonl_close(struct jsonl *j);
 
 /* Sets ERR_FORMAT with "path:LINE: reason". Always returns -1. */
-int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...) __attribute__((format(printf, 3, 4)));
+int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));
 
-/* A string member. Returns 1 and *value (owned by the object), 0 where it is absent or null, -1 with *e where it is not a
- * string or, if `need`, absent. */
+/* A string member. Returns 1 and *value (owned by the object), 0 where it is absent or null, -1 with *e where
+ * it is not a string or, if `need`, absent. */
 int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, int need, const char **value,
 	struct err *e);
 

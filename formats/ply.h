@@ -7,16 +7,19 @@
 
 /* What was left out on reading, and why. */
 struct ply_report {
-	size_t read;		  /* vertices in the file */
+	size_t read;		      /* vertices in the file */
 	size_t not_finite, zero_quat; /* left out */
-	size_t *dropped;	  /* (not_finite + zero_quat) vertex indices, rising; owned by the caller */
+	size_t *dropped; /* (not_finite + zero_quat) vertex indices, rising; owned by the caller */
 };
 
-/* Reads a binary little-endian 3DGS .ply: activations applied (scales exp, opacity sigmoid), means minus `offset`,
- * which is chosen here by the rule in ply.md (0 for scenes near the origin) and returned. */
+/* Reads a 3DGS .ply ("-" is stdin; binary of either byte order, or ascii): activations applied (scales exp,
+ * opacity sigmoid), means minus `offset`, which is chosen here by the rule in ply.md (0 for scenes near the
+ * origin) and returned. Quaternions keep their length unless it is extreme (ply.md). `report` may be NULL.
+ * Returns 0, or -1 with *e set, *s zeroed and report->dropped NULL. */
 int ply_read(struct splats *s, double offset[3], struct ply_report *report, const char *path, struct err *e);
 
-/* Writes the usual 3DGS layout (x y z nx ny nz f_dc f_rest opacity scale rot), with activations undone. */
+/* Writes the usual 3DGS layout (x y z nx ny nz f_dc f_rest opacity scale rot), binary little-endian, with
+ * activations undone. x y z are float, or double where offset is not 0. "-" is stdout. */
 int ply_write(const struct splats *s, const double offset[3], const char *path, struct err *e);
 
 #endif

@@ -11,7 +11,9 @@
 static const struct {
 	const char *name;
 	size_t size;
-} dtypes[ST_DTYPES] = {{"U8", 1}, {"I8", 1}, {"I32", 4}, {"I64", 8}, {"F16", 2}, {"BF16", 2}, {"F32", 4}, {"F64", 8}};
+} dtypes[ST_DTYPES] = {{"U8", 1}, {"I8", 1}, {"I32", 4}, {"I64", 8}, {"F16", 2}, {"BF16", 2}, {"F32", 4},
+	{"F64", 8}, {"BOOL", 1}, {"I16", 2}, {"U16", 2}, {"U32", 4}, {"U64", 8}, {"F8_E4M3", 1},
+	{"F8_E5M2", 1}};
 
 size_t st_dtype_size(enum st_dtype t)
 {
@@ -48,14 +50,16 @@ static int read_entry(struct st_tensor *t, const cJSON *item, const char *path, 
 	int known;
 
 	*t = (struct st_tensor){.name = item->string};
-	if (!cJSON_IsString(dtype) || !cJSON_IsArray(shape) || cJSON_GetArraySize(range) != 2)
-		return err_set(e, ERR_FORMAT, "%s: tensor '%s': needs dtype, shape and data_offsets", path, t->name);
+	if (!cJSON_IsString(dtype) || !cJSON_IsArray(shape) || !cJSON_IsArray(range) ||
+		cJSON_GetArraySize(range) != 2)
+		return err_set(
+			e, ERR_FORMAT, "%s: tensor '%s': needs dtype, shape and data_offsets", path, t->name);
 	for (known = 0; known < ST_DTYPES; known++)
 		if (!strcmp(dtypes[known].name, dtype->valuestring))
 			break;
 	if (known == ST_DTYPES)
-		return err_set(
-			e, ERR_FORMAT, "%s: tensor '%s': dtype '%s' is not supported", path, t->name, dtype->valuestring);
+		return err_set(e, ERR_FORMAT, "%s: tensor '%s': dtype '%s' is not supported", path, t->name,
+			dtype->valuestring);
 	t->dtype = (enum st_dtype)known;
 	for (const cJSON *d = shape->child; d; d = d->next) {
 		double v = cJSON_IsNumber(d) ? d->valuedouble : -1;
@@ -66,17 +70,19 @@ static int read_entry(struct st_tensor *t, const cJSON *item, const char *path, 
 			return err_set(e, ERR_FORMAT, "%s: tensor '%s': shape overflows", path, t->name);
 	}
 	double begin = range->child->valuedouble, end = range->child->next->valuedouble;
-	if (!cJSON_IsNumber(range->child) || !cJSON_IsNumber(range->child->next) || !(begin >= 0) || !(end >= begin) ||
-		begin != floor(begin) || end != floor(end))
+	if (!cJSON_IsNumber(range->child) || !cJSON_IsNumber(range->child->next) || !(begin >= 0) ||
+		!(end >= begin) || begin != floor(begin) || end != floor(end))
 		return err_set(e, ERR_FORMAT, "%s: tensor '%s': bad data_offsets", path, t->name);
 	if (end > (double)data_len)
-		return err_set(e, ERR_FORMAT, "%s: tensor '%s': ends at data offset %.0f but the file has %zu data bytes",
-			path, t->name, end, data_len);
+		return err_set(e, ERR_FORMAT,
+			"%s: tensor '%s': ends at data offset %.0f but the file has %zu data bytes", path,
+			t->name, end, data_len);
 	t->data = data + (size_t)begin;
 	t->bytes = (size_t)end - (size_t)begin;
 	if (mem_size(count, dtypes[known].size, &bytes) || bytes != t->bytes)
-		return err_set(e, ERR_FORMAT, "%s: tensor '%s': %zu bytes of data do not fit its shape and type", path,
-			t->name, t->bytes);
+		return err_set(e, ERR_FORMAT,
+			"%s: tensor '%s': %zu bytes of data do not fit its shape and type", path, t->name,
+			t->bytes);
 	return 0;
 }
 
@@ -86,7 +92,8 @@ static int read_meta(struct safetensors *st, const cJSON *meta, struct err *e)
 
 	for (const cJSON *m = meta->child; m; m = m->next, n++)
 		if (!cJSON_IsString(m))
-			return err_set(e, ERR_FORMAT, "%s: __metadata__ '%s' is not a string", st->path, m->string);
+			return err_set(
+				e, ERR_FORMAT, "%s: __metadata__ '%s' is not a string", st->path, m->string);
 	st->meta = mem_zalloc(n, sizeof *st->meta, st->path, e);
 	if (!st->meta)
 		return -1;
@@ -111,7 +118,8 @@ static int by_offset(const void *a, const void *b)
 	return (x->bytes > y->bytes) - (x->bytes < y->bytes);
 }
 
-static int check_layout(const struct safetensors *st, const unsigned char *data, size_t data_len, struct err *e)
+static int check_layout(
+	const struct safetensors *st, const unsigned char *data, size_t data_len, struct err *e)
 {
 	size_t at = 0;
 
@@ -119,8 +127,9 @@ static int check_layout(const struct safetensors *st, const unsigned char *data,
 		const struct st_tensor *t = &st->tensors[i];
 		size_t begin = (size_t)((const unsigned char *)t->data - data);
 		if (begin != at)
-			return err_set(e, ERR_FORMAT, "%s: tensor '%s': begins at data offset %zu, expected %zu", st->path,
-				t->name, begin, at);
+			return err_set(e, ERR_FORMAT,
+				"%s: tensor '%s': begins at data offset %zu, expected %zu", st->path, t->name,
+				begin, at);
 		at += t->bytes;
 	}
 	if (at != data_len)
@@ -139,8 +148,8 @@ static int check_crcs(const struct safetensors *st, struct err *e)
 			continue;
 		snprintf(actual, sizeof actual, "%08x", checksum(t->data, t->bytes));
 		if (strcmp(expected, actual))
-			return err_set(e, ERR_FORMAT, "%s: tensor '%s': crc32 is %s, the header says %s", st->path, t->name,
-				actual, expected);
+			return err_set(e, ERR_FORMAT, "%s: tensor '%s': crc32 is %s, the header says %s",
+				st->path, t->name, actual, expected);
 	}
 	return 0;
 }
@@ -165,7 +174,8 @@ static int read_header(struct safetensors *st, const cJSON *root, size_t header_
 		}
 		struct st_tensor *t = &st->tensors[st->n];
 		if (safetensors_find(st, item->string))
-			return err_set(e, ERR_FORMAT, "%s: tensor '%s' appears twice", st->path, item->string);
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor '%s' appears twice", st->path, item->string);
 		if (read_entry(t, item, st->path, data, data_len, e))
 			return -1;
 		t->name = mem_strdup(item->string, e);
@@ -187,13 +197,15 @@ int safetensors_open(struct safetensors *st, const char *path, struct err *e)
 	if (!st->path || file_map(path, &st->map, e))
 		goto fail;
 	if (st->map.len < 8) {
-		err_set(e, ERR_FORMAT, "%s: %zu bytes, too short for a safetensors file", st->path, st->map.len);
+		err_set(e, ERR_FORMAT, "%s: %zu bytes, too short for a safetensors file", st->path,
+			st->map.len);
 		goto fail;
 	}
 	for (int i = 7; i >= 0; i--)
 		header_len = header_len << 8 | st->map.data[i];
 	if (header_len > st->map.len - 8 || header_len > 100000000) {
-		err_set(e, ERR_FORMAT, "%s: header of %llu bytes does not fit a file of %zu: not safetensors, or cut short",
+		err_set(e, ERR_FORMAT,
+			"%s: header of %llu bytes does not fit a file of %zu: not safetensors, or cut short",
 			st->path, (unsigned long long)header_len, st->map.len);
 		goto fail;
 	}
@@ -204,6 +216,12 @@ int safetensors_open(struct safetensors *st, const char *path, struct err *e)
 			stop ? stop - (const char *)st->map.data : 8);
 		goto fail;
 	}
+	for (const char *end = (const char *)st->map.data + 8 + header_len; stop < end; stop++)
+		if (*stop != ' ') {
+			err_set(e, ERR_FORMAT, "%s: header has something after its JSON at offset %td",
+				st->path, stop - (const char *)st->map.data);
+			goto fail;
+		}
 	if (read_header(st, root, (size_t)header_len, e))
 		goto fail;
 	cJSON_Delete(root);
@@ -253,7 +271,8 @@ static void shape_text(char *text, size_t size, int dims, const int64_t *shape)
 		if (shape[i] < 0)
 			used += (size_t)snprintf(text + used, size - used, "%s*", i ? "," : "");
 		else
-			used += (size_t)snprintf(text + used, size - used, "%s%lld", i ? "," : "", (long long)shape[i]);
+			used += (size_t)snprintf(
+				text + used, size - used, "%s%lld", i ? "," : "", (long long)shape[i]);
 	if (used < size)
 		snprintf(text + used, size - used, "]");
 }
@@ -276,8 +295,8 @@ const struct st_tensor *safetensors_need(const struct safetensors *st, const cha
 		return t;
 	shape_text(want, sizeof want, dims, shape);
 	shape_text(have, sizeof have, t->dims, t->shape);
-	err_set(e, ERR_FORMAT, "%s: tensor '%s': is %s%s, expected %s%s", st->path, name, dtypes[t->dtype].name, have,
-		dtypes[dtype].name, want);
+	err_set(e, ERR_FORMAT, "%s: tensor '%s': is %s%s, expected %s%s", st->path, name,
+		dtypes[t->dtype].name, have, dtypes[dtype].name, want);
 	return NULL;
 }
 
@@ -287,13 +306,23 @@ int safetensors_need_format(const struct safetensors *st, const char *format, in
 	char *end;
 
 	if (!have || strcmp(have, format))
-		return err_set(e, ERR_FORMAT, "%s: format is '%s', expected '%s'", st->path, have ? have : "", format);
+		return err_set(e, ERR_FORMAT, "%s: format is '%s', expected '%s'", st->path, have ? have : "",
+			format);
 	long v = text ? strtol(text, &end, 10) : 0;
 	if (v < 1 || *end)
-		return err_set(e, ERR_FORMAT, "%s: version is '%s', not a number from 1", st->path, text ? text : "");
+		return err_set(e, ERR_FORMAT, "%s: version is '%s', not a number from 1", st->path,
+			text ? text : "");
 	if (v > version)
-		return err_set(
-			e, ERR_FORMAT, "%s: %s version %ld is newer than this program reads (%d)", st->path, format, v, version);
+		return err_set(e, ERR_FORMAT, "%s: %s version %ld is newer than this program reads (%d)",
+			st->path, format, v, version);
+	for (size_t i = 0; i < st->n; i++) {
+		const struct st_tensor *t = &st->tensors[i];
+		size_t at = (size_t)((const unsigned char *)t->data - st->map.data);
+		if (t->bytes && at % dtypes[t->dtype].size)
+			return err_set(e, ERR_FORMAT,
+				"%s: tensor '%s': at offset %zu, not aligned to its type", st->path, t->name,
+				at);
+	}
 	return 0;
 }
 
@@ -359,8 +388,9 @@ int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, st
 	const unsigned char *p = t->data;
 	size_t size = dtypes[t->dtype].size;
 
-	if (t->bytes != count * size)
-		return err_set(e, ERR_FORMAT, "tensor '%s': has %zu items, expected %zu", t->name, t->bytes / size, count);
+	if (t->bytes / size != count)
+		return err_set(e, ERR_FORMAT, "tensor '%s': has %zu items, expected %zu", t->name,
+			t->bytes / size, count);
 	for (size_t i = 0; i < count; i++, p += size) {
 		uint16_t half;
 		double wide;
@@ -381,8 +411,8 @@ int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, st
 			out[i] = st_bfloat_to_float(half);
 			break;
 		default:
-			return err_set(
-				e, ERR_FORMAT, "tensor '%s': is %s, expected a float type", t->name, dtypes[t->dtype].name);
+			return err_set(e, ERR_FORMAT, "tensor '%s': is %s, expected a float type", t->name,
+				dtypes[t->dtype].name);
 		}
 	}
 	return 0;
@@ -398,8 +428,8 @@ static size_t tensor_bytes(const struct st_tensor *t)
 }
 
 /* The header with the tensors in the order `order`; NULL when memory is out. */
-static char *make_header(const struct st_tensor *tensors, const size_t *order, size_t n, const struct st_meta *meta,
-	size_t meta_count)
+static char *make_header(const struct st_tensor *tensors, const size_t *order, size_t n,
+	const struct st_meta *meta, size_t meta_count)
 {
 	cJSON *root = cJSON_CreateObject(), *m = cJSON_AddObjectToObject(root, "__metadata__");
 	size_t at = 0;

@@ -9,7 +9,24 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum st_dtype { ST_U8, ST_I8, ST_I32, ST_I64, ST_F16, ST_BF16, ST_F32, ST_F64, ST_DTYPES };
+enum st_dtype {
+	ST_U8,
+	ST_I8,
+	ST_I32,
+	ST_I64,
+	ST_F16,
+	ST_BF16,
+	ST_F32,
+	ST_F64,
+	ST_BOOL, /* this one and those after it: only in foreign files */
+	ST_I16,
+	ST_U16,
+	ST_U32,
+	ST_U64,
+	ST_F8_E4M3,
+	ST_F8_E5M2,
+	ST_DTYPES
+};
 
 enum { ST_MAX_DIMS = 8 };
 
@@ -34,8 +51,8 @@ struct safetensors {
 	struct file_map map;
 };
 
-/* Opens and checks a whole file: header, ranges, no overlap or hole, crc32 where it is given. The tensors point
- * into the file's map until safetensors_close. Messages name the path and the tensor or offset. */
+/* Opens and checks a whole file: header, ranges, no overlap or hole, crc32 where it is given. The tensors
+ * point into the file's map until safetensors_close. Messages name the path and the tensor or offset. */
 int safetensors_open(struct safetensors *st, const char *path, struct err *e);
 void safetensors_close(struct safetensors *st);
 
@@ -48,16 +65,17 @@ const char *safetensors_meta(const struct safetensors *st, const char *key);
 const struct st_tensor *safetensors_need(const struct safetensors *st, const char *name, enum st_dtype dtype,
 	int dims, const int64_t *shape, struct err *e);
 
-/* The file's own `format` must be this (e.g. "refer.weights") and its `version` not above `version`. */
+/* The file's own `format` must be this (e.g. "refer.weights") and its `version` not above `version`; every
+ * tensor must be aligned to its type, so that it may be used in place. */
 int safetensors_need_format(const struct safetensors *st, const char *format, int version, struct err *e);
 
-/* In files of ours every tensor is aligned to its type and may be used in place. This copies any F32, F16, BF16 or F64
- * tensor to float, at whatever alignment. `out` holds `count` items, the shape's product. */
+/* In files of ours every tensor is aligned to its type and may be used in place. This copies any F32, F16,
+ * BF16 or F64 tensor to float, at whatever alignment. `out` holds `count` items, the shape's product. */
 int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, struct err *e);
 
 /* Writes path whole ("-" is stdout). Adds crc32.<tensor> for each tensor; `meta` should hold format, version,
- * tool, options and seed. Data begin on a 64-byte boundary; tensors are laid out widest type first, so that each is
- * aligned to its own type. */
+ * tool, options and seed. Data begin on a 64-byte boundary; tensors are laid out widest type first, so that
+ * each is aligned to its own type. */
 int safetensors_write(const char *path, const struct st_tensor *tensors, size_t n, const struct st_meta *meta,
 	size_t meta_count, struct err *e);
 

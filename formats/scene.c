@@ -14,15 +14,19 @@ static int check_values(const struct splats *s, const char *path, struct err *e)
 {
 	for (size_t i = 0; i < s->n; i++) {
 		const float *m = s->means + 3 * i, *c = s->scales + 3 * i, *q = s->quats + 4 * i;
-		float length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+		double length = fabs(q[0]) + fabs(q[1]) + fabs(q[2]) + fabs(q[3]);
 		if (!isfinite(m[0]) || !isfinite(m[1]) || !isfinite(m[2]))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'means': Gaussian %zu is not finite", path, i);
-		if (!(c[0] >= 0 && c[1] >= 0 && c[2] >= 0) || !isfinite(c[0] + c[1] + c[2]))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'scales': Gaussian %zu is negative or not finite", path, i);
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor 'means': Gaussian %zu is not finite", path, i);
+		if (!(c[0] >= 0 && c[1] >= 0 && c[2] >= 0) || !isfinite((double)c[0] + c[1] + c[2]))
+			return err_set(e, ERR_FORMAT,
+				"%s: tensor 'scales': Gaussian %zu is negative or not finite", path, i);
 		if (!(length > 0) || !isfinite(length))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'quats': Gaussian %zu is zero or not finite", path, i);
+			return err_set(e, ERR_FORMAT,
+				"%s: tensor 'quats': Gaussian %zu is zero or not finite", path, i);
 		if (!(s->opacities[i] >= 0 && s->opacities[i] <= 1))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'opacities': Gaussian %zu is not in [0,1]", path, i);
+			return err_set(e, ERR_FORMAT, "%s: tensor 'opacities': Gaussian %zu is not in [0,1]",
+				path, i);
 	}
 	for (size_t i = 0; i < s->n * (size_t)s->sh_coefficients * 3; i++)
 		if (!isfinite(s->sh[i]))
@@ -30,7 +34,7 @@ static int check_values(const struct splats *s, const char *path, struct err *e)
 	return 0;
 }
 
-static int read_splats(struct scene *s, const char *path, struct err *e)
+int scene_read_splats(struct scene *s, const char *path, struct err *e)
 {
 	struct safetensors st;
 	const struct st_tensor *t[5];
@@ -49,17 +53,21 @@ static int read_splats(struct scene *s, const char *path, struct err *e)
 		goto done;
 	int64_t k = t[4]->shape[1];
 	if (k != 1 && k != 4 && k != 9 && k != 16) {
-		err_set(e, ERR_FORMAT, "%s: tensor 'sh': %lld coefficients, expected 1, 4, 9 or 16", path, (long long)k);
+		err_set(e, ERR_FORMAT, "%s: tensor 'sh': %lld coefficients, expected 1, 4, 9 or 16", path,
+			(long long)k);
 		goto done;
 	}
 	const char *offset = safetensors_meta(&st, "offset");
-	if (offset && sscanf(offset, "[%lf,%lf,%lf]", &s->offset[0], &s->offset[1], &s->offset[2]) != 3) {
+	if (offset &&
+		(sscanf(offset, "[%lf,%lf,%lf]", &s->offset[0], &s->offset[1], &s->offset[2]) != 3 ||
+			!isfinite(s->offset[0]) || !isfinite(s->offset[1]) || !isfinite(s->offset[2]))) {
 		err_set(e, ERR_FORMAT, "%s: metadata 'offset' is not three numbers", path);
 		goto done;
 	}
 	if (splats_alloc(&s->splats, (size_t)n, (int)k, e))
 		goto done;
-	float *to[5] = {s->splats.means, s->splats.scales, s->splats.quats, s->splats.opacities, s->splats.sh};
+	float *to[5] = {
+		s->splats.means, s->splats.scales, s->splats.quats, s->splats.opacities, s->splats.sh};
 	for (int i = 0; i < 5; i++)
 		memcpy(to[i], t[i]->data, t[i]->bytes);
 	bad = check_values(&s->splats, path, e);
@@ -69,13 +77,38 @@ done:
 }
 
 /* A number, or an ERR_FORMAT that names the view and key. */
-static int view_number(const cJSON *view, const char *key, const char *path, int index, double *out, struct err *e)
+static int view_number(
+	const cJSON *view, const char *key, const char *path, int index, double *out, struct err *e)
 {
 	const cJSON *v = cJSON_GetObjectItemCaseSensitive(view, key);
 
 	if (!cJSON_IsNumber(v) || !isfinite(v->valuedouble))
 		return err_set(e, ERR_FORMAT, "%s: view %d: key '%s' is not a number", path, index, key);
 	*out = v->valuedouble;
+	return 0;
+}
+
+/* A rotation and a translation, nothing else. */
+static int check_rigid(const struct camera *c, const char *path, int index, struct err *e)
+{
+	const double(*m)[4] = (const double(*)[4])c->world_to_camera;
+
+	if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] != 1)
+		return err_set(
+			e, ERR_FORMAT, "%s: view %d: world_to_camera's last row is not 0 0 0 1", path, index);
+	for (int a = 0; a < 3; a++)
+		for (int b = 0; b < 3; b++) {
+			const double *x = m[a], *y = m[b];
+			double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+			if (fabs(dot - (a == b)) > 1e-4)
+				return err_set(e, ERR_FORMAT,
+					"%s: view %d: world_to_camera is not a rotation", path, index);
+		}
+	double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+		     m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+		     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+	if (det < 0)
+		return err_set(e, ERR_FORMAT, "%s: view %d: world_to_camera is a reflection", path, index);
 	return 0;
 }
 
@@ -89,24 +122,19 @@ static int read_pose(struct camera *c, const cJSON *view, const char *path, int 
 	cJSON_ArrayForEach(row, rows)
 	{
 		if (cJSON_GetArraySize(row) != 4)
-			return err_set(e, ERR_FORMAT, "%s: view %d: key 'world_to_camera' is not 4x4", path, index);
+			return err_set(
+				e, ERR_FORMAT, "%s: view %d: key 'world_to_camera' is not 4x4", path, index);
 		for (int k = 0; k < 4; k++) {
 			const cJSON *v = cJSON_GetArrayItem(row, k);
 			if (!cJSON_IsNumber(v) || !isfinite(v->valuedouble))
-				return err_set(e, ERR_FORMAT, "%s: view %d: world_to_camera[%d][%d] is not a number", path, index,
+				return err_set(e, ERR_FORMAT,
+					"%s: view %d: world_to_camera[%d][%d] is not a number", path, index,
 					r, k);
 			c->world_to_camera[r][k] = v->valuedouble;
 		}
 		r++;
 	}
-	for (int a = 0; a < 3; a++)
-		for (int b = 0; b < 3; b++) {
-			const double *x = c->world_to_camera[a], *y = c->world_to_camera[b];
-			double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-			if (fabs(dot - (a == b)) > 1e-4)
-				return err_set(e, ERR_FORMAT, "%s: view %d: world_to_camera is not a rotation", path, index);
-		}
-	return 0;
+	return check_rigid(c, path, index, e);
 }
 
 static int read_view(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
@@ -117,25 +145,30 @@ static int read_view(struct camera *c, const cJSON *view, const char *path, int 
 	double width = 0, height = 0;
 
 	if (!cJSON_IsString(name) || !name->valuestring[0] || strchr(name->valuestring, '/'))
-		return err_set(e, ERR_FORMAT, "%s: view %d: key 'name' is not a name without slashes", path, index);
+		return err_set(
+			e, ERR_FORMAT, "%s: view %d: key 'name' is not a name without slashes", path, index);
 	c->name = mem_strdup(name->valuestring, e);
 	if (!c->name)
 		return -1;
-	if (view_number(view, "width", path, index, &width, e) || view_number(view, "height", path, index, &height, e) ||
-		view_number(view, "fx", path, index, &c->fx, e) || view_number(view, "fy", path, index, &c->fy, e) ||
-		view_number(view, "cx", path, index, &c->cx, e) || view_number(view, "cy", path, index, &c->cy, e) ||
-		read_pose(c, view, path, index, e))
+	if (view_number(view, "width", path, index, &width, e) ||
+		view_number(view, "height", path, index, &height, e) ||
+		view_number(view, "fx", path, index, &c->fx, e) ||
+		view_number(view, "fy", path, index, &c->fy, e) ||
+		view_number(view, "cx", path, index, &c->cx, e) ||
+		view_number(view, "cy", path, index, &c->cy, e) || read_pose(c, view, path, index, e))
 		return -1;
 	if (!(width >= 1 && width <= 65536 && width == floor(width) && height >= 1 && height <= 65536 &&
 		    height == floor(height)))
-		return err_set(e, ERR_FORMAT, "%s: view %d: size %gx%g is not whole numbers in 1 to 65536", path, index, width,
-			height);
+		return err_set(e, ERR_FORMAT, "%s: view %d: size %gx%g is not whole numbers in 1 to 65536",
+			path, index, width, height);
 	if (!(c->fx > 0 && c->fy > 0))
 		return err_set(e, ERR_FORMAT, "%s: view %d: focal length is not positive", path, index);
 	c->width = (int)width;
 	c->height = (int)height;
-	if (!cJSON_IsString(split) || (strcmp(split->valuestring, "train") && strcmp(split->valuestring, "test")))
-		return err_set(e, ERR_FORMAT, "%s: view %d: key 'split' is not \"train\" or \"test\"", path, index);
+	if (!cJSON_IsString(split) ||
+		(strcmp(split->valuestring, "train") && strcmp(split->valuestring, "test")))
+		return err_set(
+			e, ERR_FORMAT, "%s: view %d: key 'split' is not \"train\" or \"test\"", path, index);
 	c->split = !strcmp(split->valuestring, "test") ? SPLIT_TEST : SPLIT_TRAIN;
 	if (cJSON_IsString(image)) {
 		c->image = mem_strdup(image->valuestring, e);
@@ -166,7 +199,7 @@ static int read_views(struct cameras *c, const cJSON *list, const char *path, st
 	return 0;
 }
 
-static int read_cameras_file(struct cameras *c, const char *path, struct err *e)
+int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 {
 	char *text;
 	size_t len;
@@ -175,9 +208,10 @@ static int read_cameras_file(struct cameras *c, const char *path, struct err *e)
 	*c = (struct cameras){0};
 	if (file_read(path, &text, &len, e))
 		return -1;
-	cJSON *list = cJSON_ParseWithLengthOpts(text, len + 1, &stop, 1);
+	cJSON *list = strlen(text) == len ? cJSON_ParseWithOpts(text, &stop, 1) : NULL;
 	int bad = list ? read_views(c, list, path, e)
-		       : err_set(e, ERR_FORMAT, "%s: not JSON at offset %td", path, stop ? stop - text : 0);
+		       : err_set(e, ERR_FORMAT, "%s: not JSON at offset %zu", path,
+				 stop ? (size_t)(stop - text) : strlen(text));
 	cJSON_Delete(list);
 	free(text);
 	if (bad)
@@ -188,7 +222,7 @@ static int read_cameras_file(struct cameras *c, const char *path, struct err *e)
 int scene_read_cameras(struct cameras *c, const char *dir, struct err *e)
 {
 	char *path = file_join(dir, "cameras.json", "", e);
-	int bad = path ? read_cameras_file(c, path, e) : -1;
+	int bad = path ? scene_read_cameras_file(c, path, e) : -1;
 
 	free(path);
 	return bad;
@@ -199,7 +233,7 @@ int scene_read(struct scene *s, const char *dir, struct err *e)
 	char *path = file_join(dir, "splats.safetensors", "", e);
 
 	*s = (struct scene){0};
-	int bad = path ? read_splats(s, path, e) : -1;
+	int bad = path ? scene_read_splats(s, path, e) : -1;
 	free(path);
 	if (bad || scene_read_cameras(&s->cameras, dir, e)) {
 		scene_free(s);
@@ -214,24 +248,35 @@ void scene_free(struct scene *s)
 	cameras_free(&s->cameras);
 }
 
-static void put_view(FILE *out, const struct camera *c)
+/* A JSON string, null for NULL. Returns -1 when memory is out. */
+static int put_string(FILE *out, const char *text)
 {
-	cJSON *name = cJSON_CreateString(c->name), *image = c->image ? cJSON_CreateString(c->image) : cJSON_CreateNull();
-	char *name_text = cJSON_PrintUnformatted(name), *image_text = cJSON_PrintUnformatted(image);
+	cJSON *item = text ? cJSON_CreateString(text) : cJSON_CreateNull();
+	char *json = cJSON_PrintUnformatted(item);
+	int bad = !json || fputs(json, out) < 0;
 
+	cJSON_Delete(item);
+	free(json);
+	return -bad;
+}
+
+static int put_view(FILE *out, const struct camera *c)
+{
+	fputs("{\"name\":", out);
+	if (put_string(out, c->name))
+		return -1;
 	fprintf(out,
-		"{\"name\":%s,\"width\":%d,\"height\":%d,\"fx\":%.17g,\"fy\":%.17g,\"cx\":%.17g,\"cy\":%.17g,\n"
+		",\"width\":%d,\"height\":%d,\"fx\":%.17g,\"fy\":%.17g,\"cx\":%.17g,\"cy\":%.17g,\n"
 		"  \"world_to_camera\":[",
-		name_text, c->width, c->height, c->fx, c->fy, c->cx, c->cy);
+		c->width, c->height, c->fx, c->fy, c->cx, c->cy);
 	for (int r = 0; r < 4; r++) {
 		const double *row = c->world_to_camera[r];
 		fprintf(out, "%s[%.17g,%.17g,%.17g,%.17g]", r ? "," : "", row[0], row[1], row[2], row[3]);
 	}
-	fprintf(out, "],\n  \"split\":\"%s\",\"image\":%s}", c->split == SPLIT_TEST ? "test" : "train", image_text);
-	cJSON_Delete(name);
-	cJSON_Delete(image);
-	free(name_text);
-	free(image_text);
+	fprintf(out, "],\n  \"split\":\"%s\",\"image\":", c->split == SPLIT_TEST ? "test" : "train");
+	int bad = put_string(out, c->image);
+	fputs("}", out);
+	return bad;
 }
 
 static int write_cameras(const struct cameras *c, const char *path, struct err *e)
@@ -243,7 +288,10 @@ static int write_cameras(const struct cameras *c, const char *path, struct err *
 	fputs("[", out.stream);
 	for (size_t i = 0; i < c->n; i++) {
 		fputs(i ? ",\n " : "\n ", out.stream);
-		put_view(out.stream, &c->views[i]);
+		if (put_view(out.stream, &c->views[i])) {
+			file_out_abort(&out);
+			return err_set(e, ERR_SYSTEM, "%s: out of memory", path);
+		}
 	}
 	fputs("\n]\n", out.stream);
 	return file_out_commit(&out, e);
@@ -259,7 +307,11 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 		{.name = "scales", .dtype = ST_F32, .dims = 2, .shape = {n, 3}, .data = p->scales},
 		{.name = "quats", .dtype = ST_F32, .dims = 2, .shape = {n, 4}, .data = p->quats},
 		{.name = "opacities", .dtype = ST_F32, .dims = 1, .shape = {n}, .data = p->opacities},
-		{.name = "sh", .dtype = ST_F32, .dims = 3, .shape = {n, p->sh_coefficients, 3}, .data = p->sh},
+		{.name = "sh",
+			.dtype = ST_F32,
+			.dims = 3,
+			.shape = {n, p->sh_coefficients, 3},
+			.data = p->sh},
 	};
 	struct st_meta meta[] = {{"format", "refer.splats"}, {"version", "1"}, {"tool", "gs-import"},
 		{"options", options}, {"seed", "0"}, {"offset", offset}};
@@ -267,7 +319,8 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 	snprintf(offset, sizeof offset, "[%.17g,%.17g,%.17g]", s->offset[0], s->offset[1], s->offset[2]);
 	if (file_make_dir(dir, e))
 		return -1;
-	char *splats = file_join(dir, "splats.safetensors", "", e), *cameras = file_join(dir, "cameras.json", "", e);
+	char *splats = file_join(dir, "splats.safetensors", "", e),
+	     *cameras = file_join(dir, "cameras.json", "", e);
 	int bad = !splats || !cameras || safetensors_write(splats, tensors, 5, meta, 6, e) ||
 		  write_cameras(&s->cameras, cameras, e);
 	free(splats);

@@ -19,7 +19,12 @@ void scene_free(struct scene *s);
 /* Only the cameras, from DIR/cameras.json. */
 int scene_read_cameras(struct cameras *c, const char *dir, struct err *e);
 
-/* Makes dir and writes both files, each appearing whole. `options` goes into the metadata (a tool's own choice). */
+/* The same from one file. scene_read_splats sets splats and offset of a zeroed *s. */
+int scene_read_splats(struct scene *s, const char *path, struct err *e);
+int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e);
+
+/* Makes dir and writes both files, each appearing whole. `options` goes into the metadata (a tool's own
+ * choice). */
 int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e);
 
 #endif

@@ -7,7 +7,8 @@
 #include <stdio.h>
 #include <stddef.h>
 
-/* Reads a whole file or pipe. *data gets len bytes and a NUL after them; free() it. Returns 0, or -1 with *e. */
+/* Reads a whole file or pipe. *data gets len bytes and a NUL after them; free() it. Returns 0, or -1 with *e.
+ */
 int file_read(const char *path, char **data, size_t *len, struct err *e);
 
 /* A read-only map of a regular file (or a read copy of a pipe). Release with file_unmap. */
@@ -27,11 +28,11 @@ void file_close(FILE *in);
 const char *file_name(const char *path);
 
 /* An output. Data go to a temporary file in the same folder; file_out_commit syncs it and renames it over
- * `path`; file_out_abort removes it. "-" writes to stdout directly. */
+ * `path`; file_out_abort removes it. "-", devices and pipes are written to directly. */
 struct file_out {
 	FILE *stream;
 	char *path;
-	char *temporary; /* NULL for stdout */
+	char *temporary; /* NULL where the output is written to directly */
 };
 int file_out_open(struct file_out *out, const char *path, struct err *e);
 int file_out_commit(struct file_out *out, struct err *e); /* closes in any case */

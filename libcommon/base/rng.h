@@ -11,10 +11,10 @@ struct rng {
 /* Streams with different `stream` are independent. seed 42, stream 54 is the reference's demonstration. */
 void rng_seed(struct rng *r, uint64_t seed, uint64_t stream);
 uint32_t rng_u32(struct rng *r);
-uint32_t rng_below(struct rng *r, uint32_t n);			 /* uniform in [0,n), without bias; n > 0 */
-double rng_uniform(struct rng *r);				 /* [0,1), 53 bits */
-double rng_range(struct rng *r, double low, double high);	 /* [low,high) */
-double rng_normal(struct rng *r);				 /* mean 0, variance 1; Box-Muller, two draws a call */
-void rng_shuffle(struct rng *r, uint32_t *items, uint32_t n);	 /* Fisher-Yates */
+uint32_t rng_below(struct rng *r, uint32_t n);		  /* uniform in [0,n), without bias; n > 0 */
+double rng_uniform(struct rng *r);			  /* [0,1), 53 bits */
+double rng_range(struct rng *r, double low, double high); /* [low,high) */
+double rng_normal(struct rng *r); /* mean 0, variance 1; Box-Muller, two draws a call */
+void rng_shuffle(struct rng *r, uint32_t *items, uint32_t n); /* Fisher-Yates */
 
 #endif

@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdarg.h>
@@ -25,18 +26,22 @@ static int common_rows(struct cli *c, struct cli_option rows[COMMON_COUNT])
 
 	if (common & CLI_OUTPUT)
 		rows[n++] = (struct cli_option){"output", 'o', CLI_STRING, &c->output, output_arg,
-			c->tool->needs_output ? "where to write (required)" : "where to write; - is stdout (default)", 0, 0};
+			c->tool->needs_output ? "where to write (required)"
+					      : "where to write; - is stdout (default)",
+			0, 0};
 	if (common & CLI_JSON)
-		rows[n++] = (struct cli_option){"json", 0, CLI_FLAG, &c->json, NULL, "print JSON instead of text", 0, 0};
-	if (common & CLI_SEED)
 		rows[n++] = (struct cli_option){
-			"seed", 0, CLI_INT, &c->seed, "N", "seed of the random numbers (default 1)", 0, 4294967295.0};
+			"json", 0, CLI_FLAG, &c->json, NULL, "print JSON instead of text", 0, 0};
+	if (common & CLI_SEED)
+		rows[n++] = (struct cli_option){"seed", 0, CLI_INT, &c->seed, "N",
+			"seed of the random numbers (default 1)", 0, 4294967295.0};
 	if (common & CLI_THREADS)
 		rows[n++] = (struct cli_option){"threads", 0, CLI_INT, &c->threads, "N",
-			"number of threads; 0 (default) uses every processor; results do not depend on it", 0, 1024};
+			"number of threads; 0 (default) uses every processor; results do not depend on it", 0,
+			1024};
 	if (common & CLI_VERBOSE)
-		rows[n++] = (struct cli_option){
-			"verbose", 'v', CLI_FLAG, &c->verbose, NULL, "say more, and time and memory at the end", 0, 0};
+		rows[n++] = (struct cli_option){"verbose", 'v', CLI_FLAG, &c->verbose, NULL,
+			"say more, and time and memory at the end", 0, 0};
 	if (common & CLI_QUIET)
 		rows[n++] = (struct cli_option){
 			"quiet", 'q', CLI_FLAG, &c->quiet, NULL, "no progress and no warnings", 0, 0};
@@ -108,17 +113,37 @@ static void set_choice(const struct cli *c, const struct cli_option *o, const ch
 
 static void set_size(const struct cli *c, const struct cli_option *o, const char *text)
 {
-	char *end;
-	long w = strtol(text, &end, 10), h = 0;
+	const char *at = text;
 
-	if (end != text && *end == 'x' && end[1] >= '0' && end[1] <= '9')
-		h = strtol(end + 1, &end, 10);
-	else
-		end = (char *)(size_t)"?";
-	if (*end || text[0] < '0' || text[0] > '9' || !in_range(o, (double)w) || !in_range(o, (double)h))
-		cli_usage(c, "--%s: '%s' is not WIDTHxHEIGHT with both in %g to %g", o->name, text, o->min, o->max);
-	((int *)o->value)[0] = (int)w;
-	((int *)o->value)[1] = (int)h;
+	for (int i = 0; i < 2; i++) {
+		char *end;
+		long side = strtol(at, &end, 10);
+		if (*at < '0' || *at > '9' || *end != (i ? 0 : 'x') || side > INT_MAX ||
+			!in_range(o, (double)side))
+			cli_usage(c, "--%s: '%s' is not WIDTHxHEIGHT with both from %.0f to %.0f", o->name,
+				text, o->min, o->max);
+		((int *)o->value)[i] = (int)side;
+		at = end + 1;
+	}
+}
+
+/* Digits and `others` after an optional sign: no blanks, hexadecimal, nan or inf, all of which strtod takes.
+ */
+static int is_number(const char *text, const char *others)
+{
+	text += *text == '-' || *text == '+';
+	for (const char *p = text; *p; p++)
+		if ((*p < '0' || *p > '9') && !strchr(others, *p))
+			return 0;
+	return *text != 0;
+}
+
+static _Noreturn void refuse_number(
+	const struct cli *c, const struct cli_option *o, const char *kind, const char *text)
+{
+	if (o->min == 0 && o->max == 0)
+		cli_usage(c, "--%s: '%s' is not %s", o->name, text, kind);
+	cli_usage(c, "--%s: '%s' is not %s from %.10g to %.10g", o->name, text, kind, o->min, o->max);
 }
 
 static void set_value(const struct cli *c, const struct cli_option *o, const char *text)
@@ -132,15 +157,15 @@ static void set_value(const struct cli *c, const struct cli_option *o, const cha
 		return;
 	case CLI_INT: {
 		long long x = strtoll(text, &end, 10);
-		if (!*text || *text == ' ' || *end || errno || !in_range(o, (double)x))
-			cli_usage(c, "--%s: '%s' is not a whole number from %.0f to %.0f", o->name, text, o->min, o->max);
+		if (!is_number(text, "") || *end || errno || !in_range(o, (double)x))
+			refuse_number(c, o, "a whole number", text);
 		*(long long *)o->value = x;
 		return;
 	}
 	case CLI_REAL: {
 		double x = strtod(text, &end);
-		if (!*text || *text == ' ' || *end || !isfinite(x) || !in_range(o, x))
-			cli_usage(c, "--%s: '%s' is not a number from %g to %g", o->name, text, o->min, o->max);
+		if (!is_number(text, ".eE+-") || *end || !isfinite(x) || !in_range(o, x))
+			refuse_number(c, o, "a number", text);
 		*(double *)o->value = x;
 		return;
 	}
@@ -156,8 +181,8 @@ static void set_value(const struct cli *c, const struct cli_option *o, const cha
 	}
 }
 
-static const struct cli_option *find_row(
-	const struct cli_tool *tool, const struct cli_option *common, int n, const char *name, size_t len, char letter)
+static const struct cli_option *find_row(const struct cli_tool *tool, const struct cli_option *common, int n,
+	const char *name, size_t len, char letter)
 {
 	for (const struct cli_option *o = tool->options; o && o->name; o++)
 		if (letter ? o->letter == letter : (strlen(o->name) == len && !strncmp(o->name, name, len)))
@@ -177,7 +202,10 @@ static void check_help(struct cli *c, int is_help, int is_version)
 		printf("%s (refersplat) %s\n", c->tool->name, VERSION);
 	else
 		return;
-	exit(fflush(stdout) ? ERR_SYSTEM : 0);
+	if (!fflush(stdout) && !ferror(stdout))
+		exit(0);
+	fprintf(stderr, "%s: stdout: %s\n", c->tool->name, strerror(errno));
+	exit(ERR_SYSTEM);
 }
 
 static void parse_long(struct cli *c, const struct cli_option *rows, int n, char **argv, int argc, int *i)
@@ -229,7 +257,8 @@ void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv
 	struct cli_option rows[COMMON_COUNT];
 	int only_operands = 0, n;
 
-	*c = (struct cli){.tool = tool, .seed = 1, .output = tool->needs_output ? NULL : "-", .start = cli_seconds()};
+	*c = (struct cli){
+		.tool = tool, .seed = 1, .output = tool->needs_output ? NULL : "-", .start = cli_seconds()};
 	c->operands = (const char **)(argv + 1);
 	n = common_rows(c, rows);
 	for (int i = 1; i < argc; i++) {
@@ -297,7 +326,8 @@ int cli_done(const struct cli *c)
 	struct rusage usage;
 
 	if (c->verbose && !getrusage(RUSAGE_SELF, &usage))
-		cli_note(c, 1, "%.2f s, peak memory %.1f MiB", cli_seconds() - c->start, (double)usage.ru_maxrss / 1024);
+		cli_note(c, 1, "%.2f s, peak memory %.1f MiB", cli_seconds() - c->start,
+			(double)usage.ru_maxrss / 1024);
 	return 0;
 }
 
@@ -325,8 +355,8 @@ void cli_progress_step(struct cli_progress *p, double done, const char *note)
 	p->last = now;
 	double rate = done / (now - p->start);
 	double left = rate > 0 ? (p->total - done) / rate : 0;
-	fprintf(stderr, "\r%s: %.0f/%.0f %s, %.3g/s, %d:%02d left%s%s\033[K", p->c->tool->name, done, p->total, p->what,
-		rate, (int)left / 60, (int)left % 60, note ? ", " : "", note ? note : "");
+	fprintf(stderr, "\r%s: %.0f/%.0f %s, %.3g/s, %d:%02d left%s%s\033[K", p->c->tool->name, done,
+		p->total, p->what, rate, (int)left / 60, (int)left % 60, note ? ", " : "", note ? note : "");
 	p->is_shown = 1;
 }
 

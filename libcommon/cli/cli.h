@@ -1,5 +1,6 @@
-/* Command lines: one option table a tool, from which parsing, range checks and --help are made. cmd/ only: unlike
- * the rest of the library these functions print, and cli_parse exits on --help, -V and usage errors. */
+/* Command lines: one option table a tool, from which parsing, range checks and --help are made. cmd/ only:
+ * unlike the rest of the library these functions print, and cli_parse exits on --help, -V and usage errors.
+ */
 #ifndef CLI_CLI_H
 #define CLI_CLI_H
 
@@ -8,7 +9,7 @@
 #include <stdio.h>
 
 enum cli_type {
-	CLI_FLAG,   /* int *, set to 1 */
+	CLI_FLAG,   /* int *, counts how often it was given */
 	CLI_STRING, /* const char ** */
 	CLI_INT,    /* long long *, whole decimal string within [min,max] */
 	CLI_REAL,   /* double *, whole string, finite, within [min,max] */
@@ -57,8 +58,8 @@ struct cli {
 	double start; /* monotonic seconds at cli_parse */
 };
 
-/* Parses argv (options and operands in any order, "--" ends options). Prints and exits 0 for -h and -V, 2 for a
- * mistake. */
+/* Parses argv (options and operands in any order, "--" ends options). Prints and exits 0 for -h and -V, 2 for
+ * a mistake. */
 void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv);
 
 /* Prints "tool: message" and "Try 'tool --help'.", and exits 2: for rules that a table cannot state. */
@@ -79,7 +80,8 @@ void cli_refuse_terminal(const struct cli *c);
 /* With -v the closing line of wall time and peak memory. Returns 0, for `return cli_done(&c)`. */
 int cli_done(const struct cli *c);
 
-/* Progress on stderr: only on a terminal, not with -q, not in the first second, and at most five times a second. */
+/* Progress on stderr: only on a terminal, not with -q, not in the first second, and at most five times a
+ * second. */
 struct cli_progress {
 	const struct cli *c;
 	const char *what; /* "views", "iterations" */

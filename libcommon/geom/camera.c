@@ -58,3 +58,44 @@ void camera_centre(const struct camera *c, double out[3])
 			out[k] -= c->world_to_camera[r][k] * c->world_to_camera[r][3];
 	}
 }
+
+int camera_is_rigid(const struct camera *c)
+{
+	const double(*m)[4] = c->world_to_camera;
+	double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) +
+			     m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
+			     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+
+	for (int a = 0; a < 3; a++) {
+		const double *x = m[a];
+		if (!isfinite(x[3]))
+			return 0;
+		for (int b = 0; b < 3; b++) {
+			double dot = x[0] * m[b][0] + x[1] * m[b][1] + x[2] * m[b][2];
+			if (!(fabs(dot - (a == b)) <= 1e-4))
+				return 0;
+		}
+	}
+	return determinant > 0 && m[3][0] == 0 && m[3][1] == 0 && m[3][2] == 0 && m[3][3] == 1;
+}
+
+void camera_set_centre(struct camera *c, double rotation[3][3], const double centre[3])
+{
+	memset(c->world_to_camera, 0, sizeof c->world_to_camera);
+	for (int r = 0; r < 3; r++)
+		for (int k = 0; k < 3; k++) {
+			c->world_to_camera[r][k] = rotation[r][k];
+			c->world_to_camera[r][3] -= rotation[r][k] * centre[k];
+		}
+	c->world_to_camera[3][3] = 1;
+}
+
+void cameras_shift(struct cameras *c, const double offset[3])
+{
+	for (size_t i = 0; i < c->n; i++) {
+		double moved[3];
+		camera_transform(&c->views[i], offset, moved);
+		for (int r = 0; r < 3; r++)
+			c->views[i].world_to_camera[r][3] = moved[r];
+	}
+}

@@ -7,11 +7,11 @@
 enum camera_split { SPLIT_TRAIN, SPLIT_TEST };
 
 struct camera {
-	char *name;   /* unique in a scene; owned */
-	char *image;  /* path of the photograph as the scene's cameras.json has it, or NULL; owned */
+	char *name;  /* unique in a scene; owned */
+	char *image; /* path of the photograph as the scene's cameras.json has it, or NULL; owned */
 	int width, height;
-	double fx, fy, cx, cy;	       /* pixels; the centre of pixel (column i, row j) is (i+0.5, j+0.5) */
-	double world_to_camera[4][4];  /* row-major, rigid: x_camera = R x_world + t */
+	double fx, fy, cx, cy;	      /* pixels; the centre of pixel (column i, row j) is (i+0.5, j+0.5) */
+	double world_to_camera[4][4]; /* row-major, rigid: x_camera = R x_world + t */
 	enum camera_split split;
 };
 
@@ -37,5 +37,15 @@ void camera_transform(const struct camera *c, const double world[3], double out[
 
 /* The camera's centre in the world, -R^T t. */
 void camera_centre(const struct camera *c, double out[3]);
+
+/* 1 where world_to_camera is a rotation and a translation: rows orthonormal to 1e-4, determinant positive,
+ * last row 0 0 0 1, everything finite. */
+int camera_is_rigid(const struct camera *c);
+
+/* Sets world_to_camera from a rotation (3,3) world to camera, and the camera's centre in the world. */
+void camera_set_centre(struct camera *c, double rotation[3][3], const double centre[3]);
+
+/* Moves the world's origin to `offset`, as recentred splats need it: x_world becomes x_world - offset. */
+void cameras_shift(struct cameras *c, const double offset[3]);
 
 #endif

@@ -45,7 +45,7 @@ enum {
 	REFER_T2 = 256,
 };
 
-/* In the order of --interaction's and --similarity's choices. */
+/* In the order of the choices of --interaction, --similarity and --contrast. */
 enum refer_interaction {
 	REFER_NONE,
 	REFER_ATTENTION,
@@ -56,9 +56,11 @@ enum refer_interaction {
 	REFER_INTERACTIONS
 };
 enum refer_similarity { REFER_DOT, REFER_COSINE };
+enum refer_contrast { REFER_CONTRAST_NONE, REFER_CONTRAST_DOT, REFER_CONTRAST_COSINE };
 
 #define REFER_INTERACTION_CHOICES "none|attention|attention+fp|add|pcmi|pcmi-proj"
 #define REFER_SIMILARITY_CHOICES "dot|cosine"
+#define REFER_CONTRAST_CHOICES "none|dot|cosine"
 
 /* The name of an interaction / similarity, and back (-1: unknown). */
 const char *refer_interaction_name(enum refer_interaction i);

@@ -7,7 +7,8 @@
 /* The first outputs of the PCG32 reference program pcg32-demo, seeded with 42 and 54. */
 static void rng_known_answers(void)
 {
-	static const uint32_t expected[6] = {0xa15c02b7, 0x7b47f409, 0xba1d3330, 0x83d2f293, 0xbfa4784b, 0xcbed606e};
+	static const uint32_t expected[6] = {
+		0xa15c02b7, 0x7b47f409, 0xba1d3330, 0x83d2f293, 0xbfa4784b, 0xcbed606e};
 	struct rng r;
 
 	rng_seed(&r, 42, 54);

@@ -1,0 +1,339 @@
+#include "formats/check.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/jsonl.h"
+#include "formats/masks.h"
+#include "formats/png.h"
+#include "formats/scene.h"
+#include "formats/sentences.h"
+#include "formats/text.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void add_fact(struct check *c, const char *name, long long value)
+{
+	c->facts[c->n++] = (struct check_fact){name, value};
+}
+
+/* Different names, to be counted. */
+struct names {
+	size_t n, capacity;
+	const char **list; /* not owned */
+};
+
+static int names_add(struct names *names, const char *name, struct err *e)
+{
+	for (size_t i = names->n; i-- > 0;)
+		if (!strcmp(names->list[i], name))
+			return 0;
+	void *block = names->list;
+	if (mem_grow(&block, &names->capacity, names->n + 1, sizeof *names->list, "names", e))
+		return -1;
+	names->list = block;
+	names->list[names->n++] = name;
+	return 0;
+}
+
+static void names_free(struct names *names)
+{
+	free(names->list);
+}
+
+static void add_splats(struct check *c, const struct splats *s)
+{
+	add_fact(c, "gaussians", (long long)s->n);
+	add_fact(c, "spherical harmonics", s->sh_coefficients);
+}
+
+/* The views and, where they have one size, that. */
+static void add_views(struct check *c, const struct cameras *views)
+{
+	size_t test = 0, same = 0;
+
+	for (size_t i = 0; i < views->n; i++) {
+		test += views->views[i].split == SPLIT_TEST;
+		same += views->views[i].width == views->views[0].width &&
+			views->views[i].height == views->views[0].height;
+	}
+	if (views->n && same == views->n) {
+		c->width = views->views[0].width;
+		c->height = views->views[0].height;
+	}
+	add_fact(c, "training views", (long long)(views->n - test));
+	add_fact(c, "test views", (long long)test);
+}
+
+static int check_scene(struct check *c, const char *path, struct err *e)
+{
+	struct scene s;
+
+	if (scene_read(&s, path, e))
+		return -1;
+	c->kind = "scene";
+	add_splats(c, &s.splats);
+	add_views(c, &s.cameras);
+	scene_free(&s);
+	return 0;
+}
+
+static int check_splats(struct check *c, const char *path, struct err *e)
+{
+	struct scene s = {0};
+
+	if (scene_read_splats(&s, path, e))
+		return -1;
+	add_splats(c, &s.splats);
+	scene_free(&s);
+	return 0;
+}
+
+static int check_scene_cameras(struct check *c, const char *path, struct err *e)
+{
+	struct cameras views;
+
+	if (scene_read_cameras_file(&views, path, e))
+		return -1;
+	c->kind = "scene cameras";
+	add_views(c, &views);
+	cameras_free(&views);
+	return 0;
+}
+
+static int check_text(struct check *c, const char *path, struct err *e)
+{
+	struct text t;
+
+	if (text_read(&t, path, e))
+		return -1;
+	add_fact(c, "sentences", (long long)t.n);
+	add_fact(c, "words", (long long)t.offsets[t.n]);
+	add_fact(c, "columns", t.width);
+	text_free(&t);
+	return 0;
+}
+
+/* Reading starts again at the beginning; only stdin keeps its place between readers. */
+static int start_again(const char *path, struct err *e)
+{
+	if (strcmp(path, "-"))
+		return 0;
+	clearerr(stdin);
+	return fseek(stdin, 0, SEEK_SET) ? err_errno(e, "stdin") : 0;
+}
+
+/* Ours by their own readers, all others as a list of tensors. */
+static int check_safetensors(struct check *c, const char *path, struct err *e)
+{
+	static const struct {
+		const char *format;
+		int (*check)(struct check *c, const char *path, struct err *e);
+	} ours[] = {
+		{"refer.splats", check_splats},
+		{"refer.text", check_text},
+	};
+
+	if (safetensors_open(&c->listing, path, e))
+		return -1;
+	const char *format = safetensors_meta(&c->listing, "format");
+	for (size_t i = 0; format && i < sizeof ours / sizeof *ours; i++)
+		if (!strcmp(format, ours[i].format)) {
+			safetensors_close(&c->listing);
+			c->kind = ours[i].format;
+			return start_again(path, e) || ours[i].check(c, path, e) ? -1 : 0;
+		}
+	c->kind = "safetensors";
+	add_fact(c, "tensors", (long long)c->listing.n);
+	return 0;
+}
+
+static int check_sentences(struct check *c, const char *path, struct err *e)
+{
+	struct sentences s;
+	struct names objects = {0};
+	size_t test = 0;
+	int bad = 0;
+
+	if (sentences_read(&s, path, e))
+		return -1;
+	for (size_t i = 0; i < s.n && !bad; i++) {
+		test += s.items[i].split == SPLIT_TEST;
+		bad = names_add(&objects, s.items[i].object, e);
+	}
+	c->kind = "sentences";
+	add_fact(c, "training sentences", (long long)(s.n - test));
+	add_fact(c, "test sentences", (long long)test);
+	add_fact(c, "objects", (long long)objects.n);
+	names_free(&objects);
+	sentences_free(&s);
+	return bad;
+}
+
+static int check_masks(struct check *c, const char *path, struct err *e)
+{
+	struct mask_set set;
+	struct names views = {0}, objects = {0};
+	size_t same = 0;
+	int bad = 0;
+
+	if (masks_read(&set, path, e))
+		return -1;
+	for (size_t i = 0; i < set.n && !bad; i++) {
+		const struct mask_record *r = &set.records[i];
+		same += r->mask.width == set.records[0].mask.width &&
+			r->mask.height == set.records[0].mask.height;
+		bad = names_add(&views, r->view, e) || (r->object && names_add(&objects, r->object, e));
+	}
+	c->kind = "masks";
+	if (set.n && same == set.n) {
+		c->width = set.records[0].mask.width;
+		c->height = set.records[0].mask.height;
+	}
+	add_fact(c, "masks", (long long)set.n);
+	add_fact(c, "views", (long long)views.n);
+	add_fact(c, "objects", (long long)objects.n);
+	names_free(&views);
+	names_free(&objects);
+	masks_free(&set);
+	return bad ? -1 : 0;
+}
+
+static int check_image(struct check *c, const char *path, struct err *e)
+{
+	uint8_t *rgb;
+
+	if (image_read_rgb(path, &rgb, &c->height, &c->width, e))
+		return -1;
+	free(rgb);
+	c->kind = "image";
+	return 0;
+}
+
+/* JSON Lines: what the first record is says what the rest should be. */
+static int check_records(struct check *c, const char *path, struct err *e)
+{
+	struct jsonl j;
+	cJSON *first = NULL;
+	int got;
+
+	if (jsonl_open(&j, path, e))
+		return -1;
+	got = jsonl_next(&j, &first, e);
+	int is_sentence = cJSON_HasObjectItem(first, "text");
+	int is_mask = cJSON_HasObjectItem(first, "segmentation") || cJSON_HasObjectItem(first, "path");
+	if (got == 1 && !is_sentence && !is_mask)
+		got = jsonl_err(
+			&j, e, "neither a sentence (key 'text') nor a mask (key 'segmentation' or 'path')");
+	cJSON_Delete(first);
+	jsonl_close(&j);
+	if (got <= 0)
+		return got ? -1 : err_set(e, ERR_FORMAT, "%s: no records", file_name(path));
+	if (start_again(path, e))
+		return -1;
+	return is_sentence ? check_sentences(c, path, e) : check_masks(c, path, e);
+}
+
+/* A JSON list of cameras: a scene's. */
+static int check_list(struct check *c, const char *path, struct err *e)
+{
+	return check_scene_cameras(c, path, e);
+}
+
+static int is_json(const unsigned char *head, size_t len, int first)
+{
+	size_t i = 0;
+
+	while (i < len && strchr(" \t\r\n", head[i]) && head[i])
+		i++;
+	return i < len && head[i] == first;
+}
+
+/* An eight-byte length below 2^40 and, where there is more, a JSON object: no text has zero bytes there. */
+static int is_safetensors(const unsigned char *head, size_t len)
+{
+	return len >= 8 && !head[5] && !head[6] && !head[7] && (len == 8 || head[8] == '{');
+}
+
+static int is_image(const unsigned char *head, size_t len)
+{
+	return len >= 3 && (!memcmp(head, "\x89PN", 3) || !memcmp(head, "\xff\xd8\xff", 3));
+}
+
+static int check_stream(struct check *c, const char *path, struct err *e)
+{
+	unsigned char head[4096];
+	FILE *in = file_open(path, e);
+
+	if (!in)
+		return -1;
+	size_t len = fread(head, 1, sizeof head, in);
+	int bad = ferror(in) ? err_errno(e, "%s", file_name(path)) : 0;
+	file_close(in);
+	if (bad || start_again(path, e))
+		return -1;
+	if (!len)
+		return err_set(e, ERR_FORMAT, "%s: empty", file_name(path));
+	if (is_safetensors(head, len))
+		return check_safetensors(c, path, e);
+	if (is_image(head, len))
+		return check_image(c, path, e);
+	if (is_json(head, len, '['))
+		return check_list(c, path, e);
+	if (is_json(head, len, '{'))
+		return check_records(c, path, e);
+	return err_set(e, ERR_FORMAT, "%s: not a kind of file that the suite reads", file_name(path));
+}
+
+static int check_folder(struct check *c, const char *path, struct err *e)
+{
+	static const char *const parts[] = {"splats.safetensors", "cameras.json"};
+
+	for (int i = 0; i < 2; i++) {
+		char *part = file_join(path, parts[i], "", e);
+		if (!part)
+			return -1;
+		int found = file_exists(part);
+		free(part);
+		if (!found)
+			return err_set(e, ERR_FORMAT, "%s: not a scene folder: no %s", path, parts[i]);
+	}
+	return check_scene(c, path, e);
+}
+
+int check_file(struct check *c, const char *path, struct err *e)
+{
+	*c = (struct check){0};
+	if (!(file_is_dir(path) ? check_folder(c, path, e) : check_stream(c, path, e)))
+		return 0;
+	check_free(c);
+	return -1;
+}
+
+void check_free(struct check *c)
+{
+	safetensors_close(&c->listing);
+	*c = (struct check){0};
+}
+
+int check_spool(struct err *e)
+{
+	char block[65536];
+	size_t len;
+
+	if (lseek(STDIN_FILENO, 0, SEEK_CUR) >= 0)
+		return 0;
+	FILE *spool = tmpfile();
+	if (!spool)
+		return err_errno(e, "stdin: temporary file");
+	while ((len = fread(block, 1, sizeof block, stdin)))
+		fwrite(block, 1, len, spool);
+	int bad = ferror(stdin) || fflush(spool) || ferror(spool) || dup2(fileno(spool), STDIN_FILENO) < 0 ||
+		  fseek(stdin, 0, SEEK_SET);
+	if (bad)
+		err_errno(e, "stdin: temporary file");
+	fclose(spool);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,20 @@
+/* COLMAP sparse models: cameras and images, binary or text. The points are not read. formats/colmap.md. */
+#ifndef FORMATS_COLMAP_H
+#define FORMATS_COLMAP_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+
+/* 1 where dir holds cameras.bin and images.bin, or cameras.txt and images.txt. */
+int colmap_is_model(const char *dir);
+
+/* Reads the model in dir (binary where both are there). Views are checked, named and sorted by views_finish;
+ * `image` is the model's image name, all are SPLIT_TRAIN. Models with lens distortion are refused unless it
+ * is 0. Returns 0, or -1 with *e and *c zeroed. */
+int colmap_read(struct cameras *c, const char *dir, struct err *e);
+
+/* Makes dir and writes cameras.txt (PINHOLE; views with the same intrinsics share a camera), images.txt
+ * (named by the file name of `image`, or `name` where that is NULL) and an empty points3D.txt. */
+int colmap_write_text(const struct cameras *c, const char *dir, struct err *e);
+
+#endif

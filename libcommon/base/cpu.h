@@ -1,0 +1,14 @@
+/* Which of the instruction sets that the vector kernels are built for this machine has. */
+#ifndef BASE_CPU_H
+#define BASE_CPU_H
+
+enum cpu_level {
+	CPU_PLAIN,  /* whatever the compiler assumes: SSE2 on x86-64 */
+	CPU_AVX2,   /* AVX2, FMA, BMI and POPCNT */
+	CPU_AVX512, /* AVX-512 F, DQ, BW and VL as well */
+	CPU_LEVELS
+};
+
+enum cpu_level cpu_level(void);
+
+#endif

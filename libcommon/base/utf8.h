@@ -1,0 +1,18 @@
+/* UTF-8 as Unicode defines it: no overlong forms, no surrogates, nothing above U+10FFFF. */
+#ifndef BASE_UTF8_H
+#define BASE_UTF8_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Decodes the character at *at (before `len`) and steps over it. A malformed byte gives U+FFFD and is stepped
+ * over alone, so that decoding never fails and always ends. */
+uint32_t utf8_next(const char *text, size_t len, size_t *at);
+
+/* Appends one character (at most 4 bytes) to out; returns how many. */
+size_t utf8_put(char *out, uint32_t c);
+
+/* The offset of the first malformed byte, or len where all is well. */
+size_t utf8_check(const char *text, size_t len);
+
+#endif

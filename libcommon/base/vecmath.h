@@ -1,0 +1,171 @@
+/* Vectors of floats for hot kernels: fused multiply-add, exp, exp2, masks, on the target's widest registers.
+ *
+ * vecn has VEC_LANES lanes: 16 with AVX-512, 8 with AVX2 and FMA, else 4. Arithmetic, comparisons and
+ * indexing are the compiler's own (GCC vector extensions); a comparison gives a vecni of 0 and -1. A kernel
+ * is written once, in a file that is included by one .c file for each instruction set, which selects it
+ * before it includes this header:
+ *
+ *	#pragma GCC target("avx512f,avx512dq,avx512bw,avx512vl,avx2,fma")
+ *	#pragma GCC target("avx2,fma")
+ *
+ * or nothing; cpu_level() (base/cpu.h) chooses among them at run time. All functions are inlined, so that no
+ * vector crosses a call. Results are the same on every machine of one level; levels differ in the last bits,
+ * as plain has no fma. */
+#ifndef BASE_VECMATH_H
+#define BASE_VECMATH_H
+
+#include <stdint.h>
+#include <string.h>
+#if defined __x86_64__
+#include <immintrin.h>
+#endif
+
+#if defined __GNUC__ && !defined __clang__
+#pragma GCC diagnostic ignored "-Wpsabi" /* about vectors in calls: there are none, everything is inlined */
+#endif
+
+#define VEC_INLINE static inline __attribute__((always_inline, unused))
+
+#if defined __AVX512F__ && defined __AVX512DQ__
+#define VEC_LANES 16
+#elif defined __AVX2__ && defined __FMA__
+#define VEC_LANES 8
+#else
+#define VEC_LANES 4
+#endif
+
+typedef float vecn __attribute__((vector_size(4 * VEC_LANES)));
+typedef int32_t vecni __attribute__((vector_size(4 * VEC_LANES)));
+
+VEC_INLINE vecn vec_splat(float x)
+{
+	return x - (vecn){0};
+}
+
+/* VEC_LANES floats at any alignment. */
+VEC_INLINE vecn vec_load(const float *p)
+{
+	vecn x;
+
+	memcpy(&x, p, sizeof x);
+	return x;
+}
+
+VEC_INLINE void vec_store(float *p, vecn x)
+{
+	memcpy(p, &x, sizeof x);
+}
+
+/* a b + c, rounded once where the target can. */
+VEC_INLINE vecn vec_fma(vecn a, vecn b, vecn c)
+{
+#if VEC_LANES == 16
+	return (vecn)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+#elif VEC_LANES == 8
+	return (vecn)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+#else
+	return a * b + c;
+#endif
+}
+
+/* c - a b, rounded once where the target can. */
+VEC_INLINE vecn vec_fnma(vecn a, vecn b, vecn c)
+{
+#if VEC_LANES == 16
+	return (vecn)_mm512_fnmadd_ps((__m512)a, (__m512)b, (__m512)c);
+#elif VEC_LANES == 8
+	return (vecn)_mm256_fnmadd_ps((__m256)a, (__m256)b, (__m256)c);
+#else
+	return c - a * b;
+#endif
+}
+
+/* The second where either is NaN, as the instructions have it. */
+VEC_INLINE vecn vec_min(vecn a, vecn b)
+{
+#if VEC_LANES == 16
+	return (vecn)_mm512_min_ps((__m512)a, (__m512)b);
+#elif VEC_LANES == 8
+	return (vecn)_mm256_min_ps((__m256)a, (__m256)b);
+#elif defined __x86_64__
+	return (vecn)_mm_min_ps((__m128)a, (__m128)b);
+#else
+	vecni less = a < b;
+	return (vecn)((less & (vecni)a) | (~less & (vecni)b));
+#endif
+}
+
+VEC_INLINE vecn vec_max(vecn a, vecn b)
+{
+#if VEC_LANES == 16
+	return (vecn)_mm512_max_ps((__m512)a, (__m512)b);
+#elif VEC_LANES == 8
+	return (vecn)_mm256_max_ps((__m256)a, (__m256)b);
+#elif defined __x86_64__
+	return (vecn)_mm_max_ps((__m128)a, (__m128)b);
+#else
+	vecni more = a > b;
+	return (vecn)((more & (vecni)a) | (~more & (vecni)b));
+#endif
+}
+
+/* Bit l is lane l of a mask of 0 and -1. */
+VEC_INLINE uint32_t vec_bits(vecni mask)
+{
+#if VEC_LANES == 16
+	return _mm512_movepi32_mask((__m512i)mask);
+#elif VEC_LANES == 8
+	return (uint32_t)_mm256_movemask_ps((__m256)mask);
+#elif defined __x86_64__
+	return (uint32_t)_mm_movemask_ps((__m128)mask);
+#else
+	uint32_t bits = 0;
+	for (int l = 0; l < VEC_LANES; l++)
+		bits |= (uint32_t)(mask[l] & 1) << l;
+	return bits;
+#endif
+}
+
+/* Nearest whole number, ties to even, for |x| < 2^22. */
+VEC_INLINE vecn vec_round(vecn x)
+{
+	return (x + 12582912.0f) - 12582912.0f;
+}
+
+/* e^x: within 1.1 ulp; 0 below -104 (denormals in between), infinity above 88.73, NaN for NaN. */
+VEC_INLINE vecn vec_exp(vecn x)
+{
+	x = vec_min(vec_splat(89.0f), vec_max(vec_splat(-104.5f), x));
+	vecn n = vec_round(x * 1.44269504f);
+	/* ln 2 in two parts, the first short enough that n times it is exact even without fma */
+	vecn r = vec_fma(n, vec_splat(-0.693359375f), x);
+	r = vec_fma(n, vec_splat(2.12194440e-4f), r);
+	/* e^r = 1 + r + r^2 p(r) on |r| <= ln(2)/2 */
+	vecn p = vec_splat(1.9875691500e-4f);
+	p = vec_fma(p, r, vec_splat(1.3981999507e-3f));
+	p = vec_fma(p, r, vec_splat(8.3334519073e-3f));
+	p = vec_fma(p, r, vec_splat(4.1665795894e-2f));
+	p = vec_fma(p, r, vec_splat(1.6666665459e-1f));
+	p = vec_fma(p, r, vec_splat(5.0000001201e-1f));
+	p = vec_fma(p, r * r, r) + 1.0f;
+	/* times 2^n in two steps, each a normal power of two */
+	vecni whole = __builtin_convertvector(n, vecni), half = whole >> 1;
+	return p * (vecn)((half + 127) << 23) * (vecn)((whole - half + 127) << 23);
+}
+
+/* 2^x for |x| <= 126: within 2.2 ulp, and cheaper than vec_exp, as no range is checked: some float beyond it. */
+VEC_INLINE vecn vec_exp2(vecn x)
+{
+	/* the sum holds round(x) in its low bits, from where it goes to the exponent */
+	vecn shifted = x + 12582912.0f, r = x - (shifted - 12582912.0f);
+	/* minimax in relative error on |r| <= 1/2: 9.2e-8 */
+	vecn p = vec_splat(1.3264727e-3f);
+	p = vec_fma(p, r, vec_splat(9.6715130e-3f));
+	p = vec_fma(p, r, vec_splat(5.5507336e-2f));
+	p = vec_fma(p, r, vec_splat(2.4022242e-1f));
+	p = vec_fma(p, r, vec_splat(6.9314700e-1f));
+	p = vec_fma(p, r, vec_splat(1.0f));
+	return (vecn)((vecni)p + ((vecni)shifted << 23));
+}
+
+#endif

@@ -1,0 +1,143 @@
+#include "geom/views.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* How much of the image's path a name keeps. */
+enum level { FILE_STEM, PATH_STEM, WHOLE_PATH };
+
+struct entry {
+	struct camera view;
+	enum level level;
+	int is_shared; /* another view has this name */
+};
+
+const char *view_fault(const struct camera *c)
+{
+	if (c->width < 1 || c->width > VIEW_SIZE_MAX || c->height < 1 || c->height > VIEW_SIZE_MAX)
+		return "its size is not within 1 to 65536";
+	if (!(c->fx > 0 && c->fy > 0) || !isfinite(c->fx) || !isfinite(c->fy))
+		return "its focal length is not positive";
+	if (!isfinite(c->cx) || !isfinite(c->cy))
+		return "its principal point is not finite";
+	if (!camera_is_rigid(c))
+		return "its pose is not a rotation and a translation";
+	return NULL;
+}
+
+int view_set_size(struct camera *c, double width, double height)
+{
+	if (!(width >= 1 && width <= VIEW_SIZE_MAX && height >= 1 && height <= VIEW_SIZE_MAX) ||
+		width != floor(width) || height != floor(height))
+		return -1;
+	c->width = (int)width;
+	c->height = (int)height;
+	return 0;
+}
+
+const char *view_base(const char *image)
+{
+	const char *slash = strrchr(image, '/');
+
+	return slash ? slash + 1 : image;
+}
+
+size_t view_stem(const char *image)
+{
+	static const char *const known[] = {
+		".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff", ".webp", ".exr"};
+	const char *dot = strrchr(view_base(image), '.');
+
+	for (size_t i = 0; dot && i < sizeof known / sizeof *known; i++)
+		if (!strcasecmp(dot, known[i]))
+			return (size_t)(dot - image);
+	return strlen(image);
+}
+
+static int set_name(struct camera *c, enum level level, struct err *e)
+{
+	const char *from = level == FILE_STEM ? view_base(c->image) : c->image;
+	size_t len = level == WHOLE_PATH ? strlen(c->image) : view_stem(c->image);
+	const char *end = c->image + len;
+
+	while (from < end && (*from == '/' || !strncmp(from, "./", 2)))
+		from++;
+	len = (size_t)(end - from);
+	free(c->name);
+	c->name = mem_alloc(len + 1, 1, "view name", e);
+	if (!c->name)
+		return -1;
+	for (size_t i = 0; i < len; i++)
+		c->name[i] = from[i] == '/' ? '_' : from[i];
+	c->name[len] = 0;
+	return 0;
+}
+
+static int by_name(const void *a, const void *b)
+{
+	const struct entry *x = a, *y = b;
+	int order = strcmp(x->view.name, y->view.name);
+
+	return order ? order : strcmp(x->view.image, y->view.image);
+}
+
+/* Sorts, and lengthens each shared name by one level: 1 where any was, 0 where all are unique, -1 with *e. */
+static int lengthen_shared(struct entry *entries, size_t n, const char *path, struct err *e)
+{
+	int was_shared = 0;
+
+	qsort(entries, n, sizeof *entries, by_name);
+	for (size_t i = 0; i + 1 < n; i++)
+		if (!strcmp(entries[i].view.name, entries[i + 1].view.name)) {
+			if (entries[i].level == WHOLE_PATH && entries[i + 1].level == WHOLE_PATH)
+				return err_set(e, ERR_FORMAT, "%s: two views have the name '%s'", path,
+					entries[i].view.name);
+			entries[i].is_shared = entries[i + 1].is_shared = was_shared = 1;
+		}
+	for (size_t i = 0; i < n; i++) {
+		struct entry *one = &entries[i];
+		if (one->is_shared && one->level < WHOLE_PATH && set_name(&one->view, ++one->level, e))
+			return -1;
+		one->is_shared = 0;
+	}
+	return was_shared;
+}
+
+static int name_entries(struct entry *entries, size_t n, const char *path, struct err *e)
+{
+	int state = 1;
+
+	for (size_t i = 0; i < n; i++) {
+		const char *fault = view_fault(&entries[i].view);
+		if (fault)
+			return err_set(
+				e, ERR_FORMAT, "%s: view '%s': %s", path, entries[i].view.image, fault);
+		if (set_name(&entries[i].view, FILE_STEM, e))
+			return -1;
+		if (!*entries[i].view.name)
+			return err_set(e, ERR_FORMAT, "%s: image '%s' gives no view name", path,
+				entries[i].view.image);
+	}
+	while (state > 0)
+		state = lengthen_shared(entries, n, path, e);
+	return state;
+}
+
+int views_finish(struct cameras *c, const char *path, struct err *e)
+{
+	struct entry *entries = mem_zalloc(c->n, sizeof *entries, "views", e);
+
+	if (!entries)
+		return -1;
+	for (size_t i = 0; i < c->n; i++)
+		entries[i].view = c->views[i];
+	int bad = name_entries(entries, c->n, path, e);
+	for (size_t i = 0; i < c->n; i++)
+		c->views[i] = entries[i].view;
+	free(entries);
+	return bad;
+}

@@ -1,0 +1,158 @@
+#include "nn/linear.h"
+
+#include "nn/linear_tile.h"
+
+#include <omp.h>
+
+enum {
+	ROWS = 384, /* of a that share one packing of b, unless that leaves too few parts for the threads */
+	ROWS_LEAST = 48,
+	PARTS_A_THREAD = 4,
+	SMALL = 1 << 17 /* below this many terms a parallel loop costs more than it saves */
+};
+
+static const float zeros[LINEAR_TILE_COLUMNS];
+
+/* `terms` rows of b from `first` on, columns column to column+count, as (terms,width) with zeros past count.
+ */
+static void pack(float *out, struct linear_matrix b, size_t first, size_t terms, size_t column, size_t count,
+	size_t width)
+{
+	const float *from = b.data + first * b.row + column * b.column;
+
+	if (b.column == 1) {
+		for (size_t t = 0; t < terms; t++)
+			for (size_t j = 0; j < count; j++)
+				out[t * width + j] = from[t * b.row + j];
+	} else {
+		for (size_t j = 0; j < count; j++)
+			for (size_t t = 0; t < terms; t++)
+				out[t * width + j] = from[t * b.row + j * b.column];
+	}
+	for (size_t t = 0; t < terms && count < width; t++)
+		for (size_t j = count; j < width; j++)
+			out[t * width + j] = 0;
+}
+
+/* A tile at the edge, of rows x columns within c: made whole in buffers, of which the part inside is copied.
+ */
+static void run_edge(const struct linear_tile *tile, float *c, size_t stride, const float *start,
+	size_t start_stride, const float *a, size_t row, size_t column, const float *b, size_t terms,
+	size_t rows, size_t columns)
+{
+	_Alignas(64) float whole[LINEAR_TILE_ROWS * LINEAR_TILE_COLUMNS];
+	_Alignas(64) float padded[LINEAR_TILE_ROWS * LINEAR_BLOCK];
+
+	for (size_t i = 0; i < tile->rows; i++)
+		for (size_t j = 0; j < tile->columns; j++)
+			whole[i * tile->columns + j] =
+				i < rows && j < columns ? start[i * start_stride + j] : 0;
+	if (rows < tile->rows) {
+		for (size_t i = 0; i < tile->rows; i++)
+			for (size_t t = 0; t < terms; t++)
+				padded[t * tile->rows + i] = i < rows ? a[i * row + t * column] : 0;
+		a = padded;
+		row = 1;
+		column = tile->rows;
+	}
+	tile->run(whole, tile->columns, whole, tile->columns, a, row, column, b, terms);
+	for (size_t i = 0; i < rows; i++)
+		for (size_t j = 0; j < columns; j++)
+			c[i * stride + j] = whole[i * tile->columns + j];
+}
+
+static size_t least(size_t a, size_t b)
+{
+	return a < b ? a : b;
+}
+
+/* The part of c at (row,column) with `rows` rows, at most one tile wide. */
+static void run_part(const struct linear_tile *tile, struct linear_matrix a, struct linear_matrix b, size_t k,
+	float *c, size_t stride, const float *start, size_t start_stride, size_t row, size_t rows,
+	size_t column, size_t columns)
+{
+	_Alignas(64) float panel[LINEAR_TILE_COLUMNS * LINEAR_BLOCK];
+
+	for (size_t first = 0; first == 0 || first < k; first += LINEAR_BLOCK) {
+		size_t terms = least(k - first, LINEAR_BLOCK);
+		pack(panel, b, first, terms, column, columns, tile->columns);
+		for (size_t i = row; i < row + rows; i += tile->rows) {
+			size_t height = least(row + rows - i, tile->rows);
+			const float *left = a.data + i * a.row + first * a.column;
+			const float *from = start ? start + i * start_stride + column : zeros;
+			float *to = c + i * stride + column;
+			size_t from_stride = start_stride;
+			if (first) {
+				from = to;
+				from_stride = stride;
+			}
+			if (height == tile->rows && columns == tile->columns)
+				tile->run(to, stride, from, from_stride, left, a.row, a.column, panel, terms);
+			else
+				run_edge(tile, to, stride, from, from_stride, left, a.row, a.column, panel,
+					terms, height, columns);
+		}
+	}
+}
+
+void linear_product_with(const struct linear_tile *tile, float *c, size_t stride, const float *start,
+	size_t start_stride, struct linear_matrix a, struct linear_matrix b, size_t m, size_t n, size_t k)
+{
+	size_t panels = (n + tile->columns - 1) / tile->columns, rows = ROWS;
+	size_t wanted = PARTS_A_THREAD * (size_t)omp_get_max_threads();
+
+	if (!start)
+		start_stride = 0;
+	while (rows > ROWS_LEAST && panels * ((m + rows - 1) / rows) < wanted)
+		rows /= 2;
+#pragma omp parallel for collapse(2) schedule(dynamic) if ((double)m * (double)n * (double)k > SMALL)
+	for (size_t i = 0; i < m; i += rows)
+		for (size_t j = 0; j < n; j += tile->columns)
+			run_part(tile, a, b, k, c, stride, start, start_stride, i, least(rows, m - i), j,
+				least(tile->columns, n - j));
+}
+
+void linear_product(float *c, size_t stride, const float *start, size_t start_stride, struct linear_matrix a,
+	struct linear_matrix b, size_t m, size_t n, size_t k)
+{
+	linear_product_with(linear_tile_best(n), c, stride, start, start_stride, a, b, m, n, k);
+}
+
+void linear_forward(float *out, const float *in, const float *weight, const float *bias, size_t rows,
+	size_t in_width, size_t out_width)
+{
+	struct linear_matrix a = {in, in_width, 1}, b = {weight, 1, in_width};
+
+	linear_product(out, out_width, bias, 0, a, b, rows, out_width, in_width);
+}
+
+/* Sums of the columns, rows in order, in blocks as in a product. */
+static void add_columns(float *sum, const float *x, size_t rows, size_t width)
+{
+#pragma omp parallel for schedule(static) if (rows * width > SMALL)
+	for (size_t j = 0; j < width; j += LINEAR_TILE_COLUMNS) {
+		size_t columns = least(width - j, LINEAR_TILE_COLUMNS);
+		for (size_t first = 0; first < rows; first += LINEAR_BLOCK) {
+			float block[LINEAR_TILE_COLUMNS] = {0};
+			for (size_t i = first; i < rows && i < first + LINEAR_BLOCK; i++)
+				for (size_t l = 0; l < columns; l++)
+					block[l] += x[i * width + j + l];
+			for (size_t l = 0; l < columns; l++)
+				sum[j + l] += block[l];
+		}
+	}
+}
+
+void linear_backward(float *din, float *dweight, float *dbias, const float *dout, const float *in,
+	const float *weight, size_t rows, size_t in_width, size_t out_width)
+{
+	struct linear_matrix by_row = {dout, out_width, 1}, by_column = {dout, 1, out_width};
+	struct linear_matrix x = {in, in_width, 1}, w = {weight, in_width, 1};
+
+	if (din)
+		linear_product(din, in_width, NULL, 0, by_row, w, rows, in_width, out_width);
+	if (dweight)
+		linear_product(dweight, in_width, dweight, in_width, by_column, x, out_width, in_width, rows);
+	if (dbias)
+		add_columns(dbias, dout, rows, out_width);
+}

@@ -1,0 +1,2 @@
+#define BLOCK_ISA plain
+#include "refer/block_kernel.h"

@@ -1,0 +1,86 @@
+#include "splat/view_weights.h"
+
+#include <string.h>
+#if defined __x86_64__
+#include <immintrin.h>
+#endif
+
+enum { LANES = 16 }; /* partial sums of a pixel: lane k takes every 16th weight */
+
+static void blend_plain(const struct view_weights *w, const float *m, float *image, size_t from, size_t to)
+{
+	for (size_t p = from; p < to; p++) {
+		float sums[LANES] = {0};
+		int64_t begin = w->indptr[p], end = w->indptr[p + 1];
+		for (int64_t k = begin; k < end; k++)
+			sums[(k - begin) % LANES] += w->weight[k] * m[w->index[k]];
+		for (int half = LANES / 2; half; half /= 2)
+			for (int i = 0; i < half; i++)
+				sums[i] += sums[i + half];
+		image[p] = sums[0];
+	}
+}
+
+#if defined __x86_64__
+__attribute__((target("avx512f"))) static void blend_avx512(
+	const struct view_weights *w, const float *m, float *image, size_t from, size_t to)
+{
+	for (size_t p = from; p < to; p++) {
+		__m512 sum = _mm512_setzero_ps();
+		for (int64_t k = w->indptr[p], end = w->indptr[p + 1]; k < end; k += LANES) {
+			int64_t left = end - k;
+			__mmask16 mask = left >= LANES ? 0xffff : (__mmask16)((1u << left) - 1);
+			__m512i index = _mm512_maskz_loadu_epi32(mask, w->index + k);
+			__m512 value = _mm512_mask_i32gather_ps(_mm512_setzero_ps(), mask, index, m, 4);
+			sum = _mm512_fmadd_ps(_mm512_maskz_loadu_ps(mask, w->weight + k), value, sum);
+		}
+		float sums[LANES];
+		_mm512_storeu_ps(sums, sum);
+		for (int half = LANES / 2; half; half /= 2)
+			for (int i = 0; i < half; i++)
+				sums[i] += sums[i + half];
+		image[p] = sums[0];
+	}
+}
+#endif
+
+void view_blend(const struct view_weights *w, const float *m, float *image)
+{
+	const size_t part = 1024;
+	const size_t parts = (w->pixels + part - 1) / part;
+#if defined __x86_64__
+	const int is_wide = __builtin_cpu_supports("avx512f");
+#endif
+
+#pragma omp parallel for schedule(dynamic)
+	for (size_t i = 0; i < parts; i++) {
+		size_t from = i * part, to = from + part < w->pixels ? from + part : w->pixels;
+#if defined __x86_64__
+		if (is_wide) {
+			blend_avx512(w, m, image, from, to);
+			continue;
+		}
+#endif
+		blend_plain(w, m, image, from, to);
+	}
+}
+
+void view_blend_back(const struct view_weights *w, const float *dimage, float *dm, float *scratch)
+{
+#pragma omp parallel for schedule(dynamic)
+	for (size_t slab = 0; slab < VIEW_SLABS; slab++) {
+		float *sum = scratch + slab * w->gaussians;
+		size_t from = w->pixels * slab / VIEW_SLABS, to = w->pixels * (slab + 1) / VIEW_SLABS;
+		memset(sum, 0, sizeof *sum * w->gaussians);
+		for (size_t p = from; p < to; p++)
+			for (int64_t k = w->indptr[p]; k < w->indptr[p + 1]; k++)
+				sum[w->index[k]] += w->weight[k] * dimage[p];
+	}
+#pragma omp parallel for schedule(static)
+	for (size_t i = 0; i < w->gaussians; i++) {
+		float sum = 0;
+		for (size_t slab = 0; slab < VIEW_SLABS; slab++)
+			sum += scratch[slab * w->gaussians + i];
+		dm[i] = sum;
+	}
+}

@@ -1,0 +1,261 @@
+/* The folded float32 step against the plain float64 reference: losses, responses and every gradient. */
+#include "unit.h"
+
+#include "reference_problem.h"
+
+#include "base/mem.h"
+#include "refer/step.h"
+
+#include <omp.h>
+
+/* A sample's arrays in the types that the step takes. */
+struct floats {
+	float *parameters, *x, *panels, *position, *words, *weight, *gradient, *dpanels, *dx;
+	int64_t *offsets;
+};
+
+static float *to_floats(const double *from, size_t count)
+{
+	struct err e;
+	float *to = mem_alloc(count, sizeof *to, "test", &e);
+
+	for (size_t i = 0; i < count; i++)
+		to[i] = (float)from[i];
+	return to;
+}
+
+static void floats_init(struct floats *f, const struct reference_sample *s)
+{
+	const struct refer_problem *p = &s->problem;
+	struct err e;
+
+	f->parameters = to_floats(p->parameters, s->layout.count);
+	f->x = to_floats(p->x, p->n * REFER_X);
+	f->position = to_floats(p->position, p->n * 3);
+	f->words = to_floats(p->words, p->offsets[p->sentences] * (size_t)s->layout.text_width);
+	f->weight = to_floats(p->weight, (size_t)p->indptr[p->pixels]);
+	f->panels = mem_alloc(step_padded(p->n) * REFER_X, sizeof(float), "test", &e);
+	f->dpanels = mem_alloc(step_padded(p->n) * REFER_X, sizeof(float), "test", &e);
+	f->dx = mem_alloc(p->n * REFER_X, sizeof(float), "test", &e);
+	f->gradient = mem_alloc(s->layout.count, sizeof(float), "test", &e);
+	f->offsets = mem_alloc(p->sentences + 1, sizeof *f->offsets, "test", &e);
+	for (size_t r = 0; r <= p->sentences; r++)
+		f->offsets[r] = (int64_t)p->offsets[r];
+	step_pack(f->x, p->n, f->panels);
+}
+
+static void floats_free(struct floats *f)
+{
+	float *all[] = {f->parameters, f->x, f->panels, f->position, f->words, f->weight, f->gradient, f->dpanels, f->dx};
+
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+		free(all[i]);
+	free(f->offsets);
+}
+
+/* |a - b| / |b| over an array. */
+static double distance(const float *a, const double *b, size_t count)
+{
+	double difference = 0, size = 0;
+
+	for (size_t i = 0; i < count; i++) {
+		difference += ((double)a[i] - b[i]) * ((double)a[i] - b[i]);
+		size += b[i] * b[i];
+	}
+	return size > 0 ? sqrt(difference / size) : sqrt(difference);
+}
+
+static struct step *make_step(const struct reference_sample *s, const struct floats *f, int batch, const char *kernels)
+{
+	const struct refer_problem *p = &s->problem;
+	struct err e = {0};
+	struct step_setup setup = {.layout = &s->layout,
+		.similarity = p->similarity,
+		.contrast = p->contrast,
+		.temperature = p->temperature,
+		.lambda = p->lambda,
+		.gaussians = p->n,
+		.scene_gaussians = p->n,
+		.position = f->position,
+		.sentences = p->sentences,
+		.offsets = f->offsets,
+		.words = f->words,
+		.objects = p->objects,
+		.pixels = p->pixels,
+		.batch = batch,
+		.kernels = block_select(kernels)};
+	struct step *step = step_new(&setup, &e);
+
+	CHECK(step, "%s", e.message);
+	return step;
+}
+
+static struct view_weights view_of(const struct refer_problem *p, const struct floats *f)
+{
+	return (struct view_weights){p->pixels, p->n, p->indptr, p->index, f->weight};
+}
+
+static size_t top_count(const struct refer_problem *p)
+{
+	size_t k = (size_t)(p->tau * (double)p->n);
+
+	return k ? k : 1;
+}
+
+/* One sample against the reference; returns the worst relative gradient error over the arrays. */
+static double compare(const struct reference_options *o, const char *kernels, const char *name)
+{
+	struct reference_sample s;
+	struct refer_result result;
+	struct floats f;
+	struct err e;
+
+	reference_sample_init(&s, o);
+	floats_init(&f, &s);
+	const struct refer_problem *p = &s.problem;
+	double *dx = mem_alloc(p->n * REFER_X, sizeof *dx, "test", &e);
+	double *dparameters = mem_alloc(s.layout.count, sizeof *dparameters, "test", &e), worst = 0;
+	struct step *step = make_step(&s, &f, 1, kernels);
+	CHECK(!reference_forward(p, &result, &e) && !reference_backward(p, &result, dx, dparameters, &e), "%s", name);
+	struct view_weights view = view_of(p, &f);
+	struct step_target target = {p->target, p->mask};
+	struct step_losses losses =
+		step_run(step, f.parameters, f.panels, &view, &target, 1, top_count(p), f.gradient, f.dpanels);
+	float *m = mem_alloc(p->n, sizeof *m, "test", &e);
+	step_respond(step, f.parameters, f.panels, p->target, m);
+	double off = distance(m, result.m, p->n);
+	CHECK(off < 1e-5, "%s: responses differ by %.3g", name, off);
+	CHECK(fabs(losses.bce - result.bce) < 1e-5 * fabs(result.bce), "%s: bce %.9g, reference %.9g", name, losses.bce, result.bce);
+	CHECK(fabs(losses.contrast - result.contrast) <= 1e-4 * fabs(result.contrast), "%s: contrast %.9g, reference %.9g", name,
+		losses.contrast, result.contrast);
+	step_unpack(f.dpanels, p->n, f.dx);
+	worst = distance(f.dx, dx, p->n * REFER_X);
+	CHECK(worst < 2e-4, "%s: dx differs by %.3g", name, worst);
+	for (int t = 0; t < REFER_TENSORS; t++) {
+		size_t count = (size_t)s.layout.tensors[t].rows * (size_t)s.layout.tensors[t].columns;
+		size_t at = s.layout.tensors[t].offset;
+		double own = distance(f.gradient + at, dparameters + at, count);
+		if (t == KEY_BIAS || t == KEY_POSITION_BIAS) { /* 0 but for rounding; ours is exactly 0 */
+			for (size_t k = 0; k < count; k++)
+				CHECK(f.gradient[at + k] == 0 && fabs(dparameters[at + k]) < 1e-12, "%s: %s is not 0", name,
+					s.layout.tensors[t].name);
+			continue;
+		}
+		CHECK(own < 2e-4, "%s: gradient of %s differs by %.3g", name, s.layout.tensors[t].name, own);
+		worst = own > worst ? own : worst;
+	}
+	free(m);
+	free(dx);
+	free(dparameters);
+	step_free(step);
+	reference_free(&result);
+	floats_free(&f);
+	reference_sample_free(&s);
+	return worst;
+}
+
+static void against_reference(const char *kernels)
+{
+	for (int i = 0; i < REFER_INTERACTIONS; i++)
+		for (int sim = 0; sim < (i == REFER_PCMI_PROJ ? 1 : 2); sim++) {
+			double worst = 0;
+			for (int c = 0; c < 3; c++) {
+				char name[128];
+				struct reference_options o =
+					reference_defaults(7 + (uint64_t)c, (enum refer_interaction)i, (enum refer_similarity)sim, (enum refer_contrast)c);
+				snprintf(name, sizeof name, "%s, %s, %s, contrast %d", kernels, refer_interaction_name((enum refer_interaction)i),
+					refer_similarity_name((enum refer_similarity)sim), c);
+				o.n = 1500; /* several blocks, the last not full */
+				double own = compare(&o, kernels, name);
+				worst = own > worst ? own : worst;
+			}
+			printf("%s, %s, %s: worst relative gradient error %.2g\n", kernels, refer_interaction_name((enum refer_interaction)i),
+				refer_similarity_name((enum refer_similarity)sim), worst);
+		}
+}
+
+/* Several sentences in one step: the mean of their single steps. */
+static void batch_is_the_mean(enum refer_interaction interaction, enum refer_similarity similarity)
+{
+	struct reference_options o = reference_defaults(3, interaction, similarity, REFER_CONTRAST_COSINE);
+	struct reference_sample s;
+	struct floats f;
+	struct err e;
+
+	o.n = 1100;
+	reference_sample_init(&s, &o);
+	floats_init(&f, &s);
+	const struct refer_problem *p = &s.problem;
+	const size_t count = s.layout.count, features = step_padded(p->n) * REFER_X;
+	double *sum = mem_zalloc(count + features, sizeof *sum, "test", &e);
+	struct view_weights view = view_of(p, &f);
+	struct step_target targets[3] = {{0, p->mask}, {3, p->mask}, {1, p->mask}};
+	struct step *one = make_step(&s, &f, 1, NULL), *three = make_step(&s, &f, 3, NULL);
+	double loss = 0;
+	for (int i = 0; i < 3; i++) {
+		loss += step_run(one, f.parameters, f.panels, &view, &targets[i], 1, 50, f.gradient, f.dpanels).total / 3;
+		for (size_t k = 0; k < count; k++)
+			sum[k] += (double)f.gradient[k] / 3;
+		for (size_t k = 0; k < features; k++)
+			sum[count + k] += (double)f.dpanels[k] / 3;
+	}
+	double together = step_run(three, f.parameters, f.panels, &view, targets, 3, 50, f.gradient, f.dpanels).total;
+	CHECK(fabs(together - loss) < 1e-6 * loss, "%d: loss %.9g, mean of three %.9g", interaction, together, loss);
+	CHECK(distance(f.gradient, sum, count) < 1e-4, "%d: gradients differ by %.3g", interaction, distance(f.gradient, sum, count));
+	CHECK(distance(f.dpanels, sum + count, features) < 1e-4, "%d: dx differs by %.3g", interaction,
+		distance(f.dpanels, sum + count, features));
+	step_free(one);
+	step_free(three);
+	free(sum);
+	floats_free(&f);
+	reference_sample_free(&s);
+}
+
+/* The same bytes for any number of threads. */
+static void threads_agree(enum refer_interaction interaction)
+{
+	struct reference_options o = reference_defaults(5, interaction, REFER_DOT, REFER_CONTRAST_COSINE);
+	struct reference_sample s;
+	struct floats f;
+	struct err e;
+
+	o.n = 6000;
+	o.pixels = 3000;
+	reference_sample_init(&s, &o);
+	floats_init(&f, &s);
+	const struct refer_problem *p = &s.problem;
+	const size_t count = s.layout.count, features = step_padded(p->n) * REFER_X;
+	float *kept = mem_alloc(count + features, sizeof *kept, "test", &e);
+	struct view_weights view = view_of(p, &f);
+	struct step_target target = {p->target, p->mask};
+	for (int threads = 1; threads <= 3; threads++) {
+		omp_set_num_threads(threads);
+		struct step *step = make_step(&s, &f, 1, NULL);
+		step_run(step, f.parameters, f.panels, &view, &target, 1, 60, f.gradient, f.dpanels);
+		step_free(step);
+		if (threads > 1)
+			CHECK(!memcmp(kept, f.gradient, sizeof *kept * count) && !memcmp(kept + count, f.dpanels, sizeof *kept * features),
+				"%d: %d threads give other bytes than one", interaction, threads);
+		memcpy(kept, f.gradient, sizeof *kept * count);
+		memcpy(kept + count, f.dpanels, sizeof *kept * features);
+	}
+	free(kept);
+	floats_free(&f);
+	reference_sample_free(&s);
+}
+
+int main(void)
+{
+	for (int i = 0; i < REFER_INTERACTIONS; i++) {
+		batch_is_the_mean((enum refer_interaction)i, REFER_DOT);
+		if (i != REFER_PCMI_PROJ)
+			batch_is_the_mean((enum refer_interaction)i, REFER_COSINE);
+		threads_agree((enum refer_interaction)i);
+	}
+	against_reference("plain");
+	if (block_select("avx2"))
+		against_reference("avx2");
+	if (block_select("avx512"))
+		against_reference("avx512");
+	return unit_end();
+}

@@ -1,0 +1,119 @@
+#include "unit.h"
+
+#include "base/utf8.h"
+#include "formats/text.h"
+
+#include <unistd.h>
+
+static char path[] = "/tmp/test_text.XXXXXX";
+
+static void utf8_known_cases(void)
+{
+	static const struct {
+		const char *bytes;
+		size_t first_bad;
+	} cases[] = {{"plain", 5}, {"\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80", 9}, {"a\xc0\x80", 1},
+		{"\xe0\x80\xaf", 0}, {"\xed\xa0\x80", 0}, {"\xf4\x90\x80\x80", 0}, {"ab\xe2\x82", 2},
+		{"\x80", 0}, {"\xf8\x88\x80\x80\x80", 0}};
+	size_t at = 0;
+
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		size_t bad = utf8_check(cases[i].bytes, strlen(cases[i].bytes));
+		CHECK(bad == cases[i].first_bad, "case %zu: first bad byte %zu", i, bad);
+	}
+	CHECK(utf8_next("\xe2\x82", 2, &at) == 0xfffd && at == 1,
+		"a cut character is U+FFFD, one byte, at %zu", at);
+}
+
+static void utf8_round_trip(void)
+{
+	size_t wrong = 0;
+	char bytes[4];
+
+	for (uint32_t c = 0; c <= 0x10ffff; c++) {
+		size_t at = 0, n = utf8_put(bytes, c);
+		if ((c < 0xd800 || c > 0xdfff) && (utf8_next(bytes, n, &at) != c || at != n))
+			wrong++;
+	}
+	CHECK(wrong == 0, "%zu characters change on the way through UTF-8", wrong);
+}
+
+/* Three sentences of 2, 0 and 1 words of width 3. */
+static void text_round_trip(void)
+{
+	int64_t offsets[] = {0, 2, 2, 3};
+	float words[] = {1, 2, 3, 3, 4, 5, -1, 0.5f, 0.25f}, means[] = {2, 3, 4, 0, 0, 0, -1, 0.5f, 0.25f};
+	char *refs[] = {"r1", "r2", "r3"}, *objects[] = {"cup", "cup", "\xe7\x93\xb6"};
+	char *texts[] = {"a \"red\" cup\n", "", "bottle"};
+	enum camera_split splits[] = {SPLIT_TRAIN, SPLIT_TEST, SPLIT_TRAIN};
+	struct text in = {3, 3, offsets, words, means, refs, objects, texts, splits}, out;
+	struct err e = {0};
+
+	CHECK(!text_write(&in, path, "--model x", &e), "%s", e.message);
+	if (!CHECK(!text_read(&out, path, &e), "%s", e.message))
+		return;
+	CHECK(out.n == 3 && out.width == 3, "n %zu width %d", out.n, out.width);
+	CHECK(!memcmp(out.offsets, offsets, sizeof offsets), "offsets differ");
+	CHECK(!memcmp(out.words, words, sizeof words), "words differ");
+	CHECK(!memcmp(out.sentences, means, sizeof means), "sentences differ");
+	CHECK(!memcmp(out.splits, splits, sizeof splits), "splits differ");
+	for (int i = 0; i < 3; i++)
+		CHECK(!strcmp(out.refs[i], refs[i]) && !strcmp(out.objects[i], objects[i]) &&
+				!strcmp(out.texts[i], texts[i]),
+			"names of sentence %d differ", i);
+	CHECK(text_find(&out, "r3") == 2 && text_find(&out, "r4") == -1, "text_find");
+	text_free(&out);
+}
+
+/* Writes a text that breaks one rule; the reader's message must end with `expected`. */
+static void expect(const struct text *t, const char *expected)
+{
+	struct text out;
+	struct err e = {0};
+
+	CHECK(!text_write(t, path, "", &e), "%s", e.message);
+	if (!CHECK(text_read(&out, path, &e), "'%s' was accepted", expected)) {
+		text_free(&out);
+		return;
+	}
+	size_t have = strlen(e.message), want = strlen(expected);
+	CHECK(e.code == ERR_FORMAT && have > want && !strcmp(e.message + have - want, expected), "%s",
+		e.message);
+}
+
+static void text_broken_rules(void)
+{
+	int64_t falling[] = {0, 2, 1}, late[] = {1, 1, 1};
+	float words[] = {1, 2}, infinite[] = {1, INFINITY}, means[] = {1, 2};
+	char *refs[] = {"r1", "r2"}, *same[] = {"r1", "r1"}, *bad[] = {"r1", "\xff"};
+	enum camera_split splits[] = {SPLIT_TRAIN, SPLIT_TRAIN};
+	struct text t = {2, 1, (int64_t[]){0, 1, 2}, infinite, means, refs, refs, refs, splits};
+
+	expect(&t, ": tensor 'words': item 1 is not finite");
+	t.words = words;
+	t.refs = same;
+	expect(&t, ": metadata 'refs': 'r1' appears twice");
+	t.refs = refs;
+	t.texts = bad;
+	expect(&t, ": metadata 'texts': entry 1 is not a UTF-8 string");
+	t.texts = refs;
+	t.offsets = late;
+	expect(&t, ": tensor 'offsets': begins with 1, expected 0");
+	t.offsets = falling;
+	expect(&t, ": tensor 'offsets': falls from 2 to 1 at entry 2");
+}
+
+int main(void)
+{
+	int fd = mkstemp(path);
+
+	if (fd < 0)
+		return 1;
+	close(fd);
+	utf8_known_cases();
+	utf8_round_trip();
+	text_round_trip();
+	text_broken_rules();
+	unlink(path);
+	return unit_end();
+}
