@@ -1,5 +1,7 @@
-bats_require_minimum_version 1.5.0
+#!/usr/bin/env bats
 # pseudomask-select: which candidate stands for an object in a view.
+
+bats_require_minimum_version 1.5.0
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
