@@ -3,6 +3,7 @@
 #include "formats/check.h"
 
 #include <cjson/cJSON.h>
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +27,10 @@ static void print_text(const char *name, const struct check *c)
 	printf("\n");
 	for (size_t i = 0; i < c->listing.n; i++) {
 		const struct st_tensor *t = &c->listing.tensors[i];
-		printf("\t%s %s[", t->name, st_dtype_name(t->dtype));
+		putchar('\t');
+		for (const char *p = t->name; *p; p++)
+			putchar(iscntrl((unsigned char)*p) ? '?' : *p);
+		printf(" %s[", st_dtype_name(t->dtype));
 		for (int d = 0; d < t->dims; d++)
 			printf("%s%lld", d ? "," : "", (long long)t->shape[d]);
 		printf("]\n");
@@ -96,14 +100,12 @@ static int check_one(const struct cli *cli, const char *path, struct err *e)
 	if ((name != path && check_spool(e)) || check_file(&c, path, e)) {
 		if (e->code != ERR_FORMAT)
 			return cli_fail(cli, e);
-		/* The message begins with the path or, in a scene folder, with that of the file at fault. */
-		int is_named = !strncmp(e->message, name, len) && e->message[len] == ':' &&
-			       e->message[len + 1] == ' ';
-		const char *reason = is_named ? e->message + len + 2 : e->message;
+		/* The message begins with the path, or with that of the scene folder's file at fault. */
+		int is_named = !strncmp(e->message, name, len) && strchr(":/", e->message[len]);
 		if (cli->json)
-			bad = print_json(name, NULL, reason);
+			bad = print_json(name, NULL, e->message);
 		else
-			printf("%s: %s\n", name, reason);
+			printf("%s%s%s\n", is_named ? "" : name, is_named ? "" : ": ", e->message);
 		return bad ? ERR_SYSTEM : ERR_CHECK;
 	}
 	if (cli->json)

@@ -164,29 +164,46 @@ int masks_next(struct jsonl *j, struct mask_record *r, struct err *e)
 	return -1;
 }
 
-int masks_read(struct mask_set *set, const char *path, struct err *e)
+int masks_read_lines(struct mask_set *set, long **lines, const char *path, struct err *e)
 {
 	struct jsonl j;
 	struct mask_record r;
+	void *records = NULL, *numbers = NULL;
+	size_t capacity = 0;
 	int got;
 
 	*set = (struct mask_set){0};
+	*lines = NULL;
 	if (jsonl_open(&j, path, e))
 		return -1;
 	while ((got = masks_next(&j, &r, e)) > 0) {
-		void *records = set->records;
-		if (mem_grow(&records, &set->capacity, set->n + 1, sizeof r, j.path, e)) {
+		if (mem_grow(&records, &set->capacity, set->n + 1, sizeof r, j.path, e) ||
+			mem_grow(&numbers, &capacity, set->n + 1, sizeof **lines, j.path, e)) {
 			mask_record_free(&r);
 			got = -1;
 			break;
 		}
-		set->records = records;
-		set->records[set->n++] = r;
+		((struct mask_record *)records)[set->n] = r;
+		((long *)numbers)[set->n++] = j.line_number;
 	}
 	jsonl_close(&j);
-	if (got < 0)
+	set->records = records;
+	if (got < 0) {
 		masks_free(set);
-	return got;
+		free(numbers);
+		return -1;
+	}
+	*lines = numbers;
+	return 0;
+}
+
+int masks_read(struct mask_set *set, const char *path, struct err *e)
+{
+	long *lines;
+	int bad = masks_read_lines(set, &lines, path, e);
+
+	free(lines);
+	return bad;
 }
 
 void masks_free(struct mask_set *set)

@@ -28,6 +28,8 @@ void mask_record_free(struct mask_record *r);
 
 /* All records of a file; "-" is stdin. */
 int masks_read(struct mask_set *set, const char *path, struct err *e);
+/* As masks_read; *lines (n) gets the line of each record. free() it. */
+int masks_read_lines(struct mask_set *set, long **lines, const char *path, struct err *e);
 void masks_free(struct mask_set *set);
 
 /* One line. Keys in the order view, ref, object, score, segmentation; absent ones left out. */

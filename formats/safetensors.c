@@ -11,8 +11,9 @@
 static const struct {
 	const char *name;
 	size_t size;
-} dtypes[ST_DTYPES] = {
-	{"U8", 1}, {"I8", 1}, {"I32", 4}, {"I64", 8}, {"F16", 2}, {"BF16", 2}, {"F32", 4}, {"F64", 8}};
+} dtypes[ST_DTYPES] = {{"U8", 1}, {"I8", 1}, {"I32", 4}, {"I64", 8}, {"F16", 2}, {"BF16", 2}, {"F32", 4},
+	{"F64", 8}, {"BOOL", 1}, {"I16", 2}, {"U16", 2}, {"U32", 4}, {"U64", 8}, {"F8_E4M3", 1},
+	{"F8_E5M2", 1}};
 
 size_t st_dtype_size(enum st_dtype t)
 {
@@ -49,7 +50,8 @@ static int read_entry(struct st_tensor *t, const cJSON *item, const char *path, 
 	int known;
 
 	*t = (struct st_tensor){.name = item->string};
-	if (!cJSON_IsString(dtype) || !cJSON_IsArray(shape) || cJSON_GetArraySize(range) != 2)
+	if (!cJSON_IsString(dtype) || !cJSON_IsArray(shape) || !cJSON_IsArray(range) ||
+		cJSON_GetArraySize(range) != 2)
 		return err_set(
 			e, ERR_FORMAT, "%s: tensor '%s': needs dtype, shape and data_offsets", path, t->name);
 	for (known = 0; known < ST_DTYPES; known++)
@@ -214,6 +216,12 @@ int safetensors_open(struct safetensors *st, const char *path, struct err *e)
 			stop ? stop - (const char *)st->map.data : 8);
 		goto fail;
 	}
+	for (const char *end = (const char *)st->map.data + 8 + header_len; stop < end; stop++)
+		if (*stop != ' ') {
+			err_set(e, ERR_FORMAT, "%s: header has something after its JSON at offset %td",
+				st->path, stop - (const char *)st->map.data);
+			goto fail;
+		}
 	if (read_header(st, root, (size_t)header_len, e))
 		goto fail;
 	cJSON_Delete(root);
@@ -307,6 +315,14 @@ int safetensors_need_format(const struct safetensors *st, const char *format, in
 	if (v > version)
 		return err_set(e, ERR_FORMAT, "%s: %s version %ld is newer than this program reads (%d)",
 			st->path, format, v, version);
+	for (size_t i = 0; i < st->n; i++) {
+		const struct st_tensor *t = &st->tensors[i];
+		size_t at = (size_t)((const unsigned char *)t->data - st->map.data);
+		if (t->bytes && at % dtypes[t->dtype].size)
+			return err_set(e, ERR_FORMAT,
+				"%s: tensor '%s': at offset %zu, not aligned to its type", st->path, t->name,
+				at);
+	}
 	return 0;
 }
 
@@ -372,7 +388,7 @@ int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, st
 	const unsigned char *p = t->data;
 	size_t size = dtypes[t->dtype].size;
 
-	if (t->bytes != count * size)
+	if (t->bytes / size != count)
 		return err_set(e, ERR_FORMAT, "tensor '%s': has %zu items, expected %zu", t->name,
 			t->bytes / size, count);
 	for (size_t i = 0; i < count; i++, p += size) {

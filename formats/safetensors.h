@@ -9,7 +9,24 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum st_dtype { ST_U8, ST_I8, ST_I32, ST_I64, ST_F16, ST_BF16, ST_F32, ST_F64, ST_DTYPES };
+enum st_dtype {
+	ST_U8,
+	ST_I8,
+	ST_I32,
+	ST_I64,
+	ST_F16,
+	ST_BF16,
+	ST_F32,
+	ST_F64,
+	ST_BOOL, /* this one and those after it: only in foreign files */
+	ST_I16,
+	ST_U16,
+	ST_U32,
+	ST_U64,
+	ST_F8_E4M3,
+	ST_F8_E5M2,
+	ST_DTYPES
+};
 
 enum { ST_MAX_DIMS = 8 };
 
@@ -48,7 +65,8 @@ const char *safetensors_meta(const struct safetensors *st, const char *key);
 const struct st_tensor *safetensors_need(const struct safetensors *st, const char *name, enum st_dtype dtype,
 	int dims, const int64_t *shape, struct err *e);
 
-/* The file's own `format` must be this (e.g. "refer.weights") and its `version` not above `version`. */
+/* The file's own `format` must be this (e.g. "refer.weights") and its `version` not above `version`; every
+ * tensor must be aligned to its type, so that it may be used in place. */
 int safetensors_need_format(const struct safetensors *st, const char *format, int version, struct err *e);
 
 /* In files of ours every tensor is aligned to its type and may be used in place. This copies any F32, F16,

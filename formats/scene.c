@@ -14,11 +14,11 @@ static int check_values(const struct splats *s, const char *path, struct err *e)
 {
 	for (size_t i = 0; i < s->n; i++) {
 		const float *m = s->means + 3 * i, *c = s->scales + 3 * i, *q = s->quats + 4 * i;
-		float length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+		double length = fabs(q[0]) + fabs(q[1]) + fabs(q[2]) + fabs(q[3]);
 		if (!isfinite(m[0]) || !isfinite(m[1]) || !isfinite(m[2]))
 			return err_set(
 				e, ERR_FORMAT, "%s: tensor 'means': Gaussian %zu is not finite", path, i);
-		if (!(c[0] >= 0 && c[1] >= 0 && c[2] >= 0) || !isfinite(c[0] + c[1] + c[2]))
+		if (!(c[0] >= 0 && c[1] >= 0 && c[2] >= 0) || !isfinite((double)c[0] + c[1] + c[2]))
 			return err_set(e, ERR_FORMAT,
 				"%s: tensor 'scales': Gaussian %zu is negative or not finite", path, i);
 		if (!(length > 0) || !isfinite(length))
@@ -58,7 +58,9 @@ int scene_read_splats(struct scene *s, const char *path, struct err *e)
 		goto done;
 	}
 	const char *offset = safetensors_meta(&st, "offset");
-	if (offset && sscanf(offset, "[%lf,%lf,%lf]", &s->offset[0], &s->offset[1], &s->offset[2]) != 3) {
+	if (offset &&
+		(sscanf(offset, "[%lf,%lf,%lf]", &s->offset[0], &s->offset[1], &s->offset[2]) != 3 ||
+			!isfinite(s->offset[0]) || !isfinite(s->offset[1]) || !isfinite(s->offset[2]))) {
 		err_set(e, ERR_FORMAT, "%s: metadata 'offset' is not three numbers", path);
 		goto done;
 	}
@@ -86,6 +88,30 @@ static int view_number(
 	return 0;
 }
 
+/* A rotation and a translation, nothing else. */
+static int check_rigid(const struct camera *c, const char *path, int index, struct err *e)
+{
+	const double(*m)[4] = (const double(*)[4])c->world_to_camera;
+
+	if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] != 1)
+		return err_set(
+			e, ERR_FORMAT, "%s: view %d: world_to_camera's last row is not 0 0 0 1", path, index);
+	for (int a = 0; a < 3; a++)
+		for (int b = 0; b < 3; b++) {
+			const double *x = m[a], *y = m[b];
+			double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+			if (fabs(dot - (a == b)) > 1e-4)
+				return err_set(e, ERR_FORMAT,
+					"%s: view %d: world_to_camera is not a rotation", path, index);
+		}
+	double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+		     m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+		     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+	if (det < 0)
+		return err_set(e, ERR_FORMAT, "%s: view %d: world_to_camera is a reflection", path, index);
+	return 0;
+}
+
 static int read_pose(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
 {
 	const cJSON *rows = cJSON_GetObjectItemCaseSensitive(view, "world_to_camera"), *row = NULL;
@@ -108,15 +134,7 @@ static int read_pose(struct camera *c, const cJSON *view, const char *path, int 
 		}
 		r++;
 	}
-	for (int a = 0; a < 3; a++)
-		for (int b = 0; b < 3; b++) {
-			const double *x = c->world_to_camera[a], *y = c->world_to_camera[b];
-			double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-			if (fabs(dot - (a == b)) > 1e-4)
-				return err_set(e, ERR_FORMAT,
-					"%s: view %d: world_to_camera is not a rotation", path, index);
-		}
-	return 0;
+	return check_rigid(c, path, index, e);
 }
 
 static int read_view(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
@@ -190,9 +208,10 @@ int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 	*c = (struct cameras){0};
 	if (file_read(path, &text, &len, e))
 		return -1;
-	cJSON *list = cJSON_ParseWithLengthOpts(text, len + 1, &stop, 1);
+	cJSON *list = strlen(text) == len ? cJSON_ParseWithOpts(text, &stop, 1) : NULL;
 	int bad = list ? read_views(c, list, path, e)
-		       : err_set(e, ERR_FORMAT, "%s: not JSON at offset %td", path, stop ? stop - text : 0);
+		       : err_set(e, ERR_FORMAT, "%s: not JSON at offset %zu", path,
+				 stop ? (size_t)(stop - text) : strlen(text));
 	cJSON_Delete(list);
 	free(text);
 	if (bad)
@@ -229,26 +248,35 @@ void scene_free(struct scene *s)
 	cameras_free(&s->cameras);
 }
 
-static void put_view(FILE *out, const struct camera *c)
+/* A JSON string, null for NULL. Returns -1 when memory is out. */
+static int put_string(FILE *out, const char *text)
 {
-	cJSON *name = cJSON_CreateString(c->name),
-	      *image = c->image ? cJSON_CreateString(c->image) : cJSON_CreateNull();
-	char *name_text = cJSON_PrintUnformatted(name), *image_text = cJSON_PrintUnformatted(image);
+	cJSON *item = text ? cJSON_CreateString(text) : cJSON_CreateNull();
+	char *json = cJSON_PrintUnformatted(item);
+	int bad = !json || fputs(json, out) < 0;
 
+	cJSON_Delete(item);
+	free(json);
+	return -bad;
+}
+
+static int put_view(FILE *out, const struct camera *c)
+{
+	fputs("{\"name\":", out);
+	if (put_string(out, c->name))
+		return -1;
 	fprintf(out,
-		"{\"name\":%s,\"width\":%d,\"height\":%d,\"fx\":%.17g,\"fy\":%.17g,\"cx\":%.17g,\"cy\":%.17g,\n"
+		",\"width\":%d,\"height\":%d,\"fx\":%.17g,\"fy\":%.17g,\"cx\":%.17g,\"cy\":%.17g,\n"
 		"  \"world_to_camera\":[",
-		name_text, c->width, c->height, c->fx, c->fy, c->cx, c->cy);
+		c->width, c->height, c->fx, c->fy, c->cx, c->cy);
 	for (int r = 0; r < 4; r++) {
 		const double *row = c->world_to_camera[r];
 		fprintf(out, "%s[%.17g,%.17g,%.17g,%.17g]", r ? "," : "", row[0], row[1], row[2], row[3]);
 	}
-	fprintf(out, "],\n  \"split\":\"%s\",\"image\":%s}", c->split == SPLIT_TEST ? "test" : "train",
-		image_text);
-	cJSON_Delete(name);
-	cJSON_Delete(image);
-	free(name_text);
-	free(image_text);
+	fprintf(out, "],\n  \"split\":\"%s\",\"image\":", c->split == SPLIT_TEST ? "test" : "train");
+	int bad = put_string(out, c->image);
+	fputs("}", out);
+	return bad;
 }
 
 static int write_cameras(const struct cameras *c, const char *path, struct err *e)
@@ -260,7 +288,10 @@ static int write_cameras(const struct cameras *c, const char *path, struct err *
 	fputs("[", out.stream);
 	for (size_t i = 0; i < c->n; i++) {
 		fputs(i ? ",\n " : "\n ", out.stream);
-		put_view(out.stream, &c->views[i]);
+		if (put_view(out.stream, &c->views[i])) {
+			file_out_abort(&out);
+			return err_set(e, ERR_SYSTEM, "%s: out of memory", path);
+		}
 	}
 	fputs("\n]\n", out.stream);
 	return file_out_commit(&out, e);

@@ -64,10 +64,21 @@ static int read_views(struct sentence *s, const struct jsonl *j, const cJSON *ob
 	return 0;
 }
 
+/* A NUL that JSON writes as \u0000 would silently end the string there. */
+static int has_nul_escape(const char *line)
+{
+	for (const char *p = strchr(line, '\\'); p; p = strchr(p + 2, '\\'))
+		if (!strncmp(p, "\\u0000", 6))
+			return 1;
+	return 0;
+}
+
 static int read_one(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
 {
 	const char *ref, *target, *text, *split = "train";
 
+	if (has_nul_escape(j->line))
+		return jsonl_err(j, e, "a NUL character (\\u0000) in a string");
 	if (jsonl_string(j, object, "ref", 1, &ref, e) < 0 ||
 		jsonl_string(j, object, "object", 1, &target, e) < 0 ||
 		jsonl_string(j, object, "text", 1, &text, e) < 0 ||

@@ -3,7 +3,8 @@
 enum cpu_level cpu_level(void)
 {
 #if defined __x86_64__
-	if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+	if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") ||
+		!__builtin_cpu_supports("bmi") || !__builtin_cpu_supports("popcnt"))
 		return CPU_PLAIN;
 	if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
 		__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))

@@ -4,8 +4,8 @@
 
 enum cpu_level {
 	CPU_PLAIN,  /* whatever the compiler assumes: SSE2 on x86-64 */
-	CPU_AVX2,   /* AVX2 and FMA */
-	CPU_AVX512, /* AVX-512 F, DQ, BW and VL, with AVX2 and FMA */
+	CPU_AVX2,   /* AVX2, FMA, BMI and POPCNT */
+	CPU_AVX512, /* AVX-512 F, DQ, BW and VL as well */
 	CPU_LEVELS
 };
 

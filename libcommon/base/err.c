@@ -5,6 +5,14 @@
 #include <stdio.h>
 #include <string.h>
 
+/* A message is one line, whatever names and keys it quotes. */
+static void make_plain(struct err *e)
+{
+	for (char *p = e->message; *p; p++)
+		if ((unsigned char)*p < 0x20 || *p == 0x7f)
+			*p = '?';
+}
+
 int err_set(struct err *e, enum err_code code, const char *format, ...)
 {
 	va_list ap;
@@ -13,6 +21,7 @@ int err_set(struct err *e, enum err_code code, const char *format, ...)
 	va_start(ap, format);
 	vsnprintf(e->message, sizeof e->message, format, ap);
 	va_end(ap);
+	make_plain(e);
 	return -1;
 }
 
@@ -27,6 +36,7 @@ int err_errno(struct err *e, const char *format, ...)
 	va_end(ap);
 	size_t used = strlen(e->message);
 	snprintf(e->message + used, sizeof e->message - used, ": %s", strerror(saved));
+	make_plain(e);
 	return -1;
 }
 
@@ -36,5 +46,6 @@ int err_prefix(struct err *e, const char *prefix)
 
 	memcpy(old, e->message, sizeof old);
 	snprintf(e->message, sizeof e->message, "%s: %.900s", prefix, old);
+	make_plain(e);
 	return -1;
 }

@@ -16,8 +16,8 @@ struct err {
 	char message[1024]; /* complete but for the tool's name: "file: reason, with offset, line or key" */
 };
 
-/* Sets code and message; an earlier message is replaced. Always returns -1, so `return err_set(...)` fails.
- */
+/* Sets code and message; an earlier message is replaced. Control characters become '?', so that a message is
+ * one line whatever names it quotes. Always returns -1, so `return err_set(...)` fails. */
 int err_set(struct err *e, enum err_code code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* As err_set with ERR_SYSTEM; appends ": " and the text of errno. */

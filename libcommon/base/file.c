@@ -129,6 +129,16 @@ int file_out_open(struct file_out *out, const char *path, struct err *e)
 		out->stream = stdout;
 		return 0;
 	}
+	struct stat st;
+	if (!stat(path, &st) && !S_ISREG(st.st_mode)) {
+		/* A device or pipe is written to, not replaced by a file; a folder fails here, before any
+		 * work. */
+		out->stream = fopen(path, "wb");
+		if (out->stream)
+			return 0;
+		err_errno(e, "%s", path);
+		goto fail;
+	}
 	size_t bytes = strlen(path) + 16;
 	out->temporary = mem_alloc(bytes, 1, path, e);
 	if (!out->temporary)
@@ -158,19 +168,20 @@ fail:
 
 int file_out_commit(struct file_out *out, struct err *e)
 {
+	const char *name = is_standard(out->path) ? "stdout" : out->path;
 	int bad = 0;
 
-	if (!out->temporary) {
-		if (fflush(out->stream) || ferror(out->stream))
-			bad = err_errno(e, "stdout");
-	} else {
-		errno = 0;
-		if (fflush(out->stream) || ferror(out->stream) || fsync(fileno(out->stream)))
-			bad = err_errno(e, "%s", out->path);
-		if (fclose(out->stream) && !bad)
-			bad = err_errno(e, "%s", out->path);
+	errno = 0;
+	if (fflush(out->stream) || ferror(out->stream) || (out->temporary && fsync(fileno(out->stream)))) {
+		if (!errno) /* an earlier write failed, and why is forgotten */
+			errno = EIO;
+		bad = err_errno(e, "%s", name);
+	}
+	if (out->stream != stdout && fclose(out->stream) && !bad)
+		bad = err_errno(e, "%s", name);
+	if (out->temporary) {
 		if (!bad && rename(out->temporary, out->path))
-			bad = err_errno(e, "%s", out->path);
+			bad = err_errno(e, "%s", name);
 		if (bad)
 			unlink(out->temporary);
 	}
@@ -182,11 +193,10 @@ int file_out_commit(struct file_out *out, struct err *e)
 
 void file_out_abort(struct file_out *out)
 {
-	if (out->temporary) {
-		if (out->stream)
-			fclose(out->stream);
+	if (out->stream && out->stream != stdout)
+		fclose(out->stream);
+	if (out->temporary)
 		unlink(out->temporary);
-	}
 	free(out->path);
 	free(out->temporary);
 	*out = (struct file_out){0};
@@ -198,12 +208,17 @@ int file_make_dir(const char *path, struct err *e)
 
 	if (!copy)
 		return -1;
-	for (char *p = copy + 1; *copy; p++) {
+	if (!*copy) {
+		free(copy);
+		return err_set(e, ERR_SYSTEM, "the name of a folder is empty");
+	}
+	for (char *p = copy + 1;; p++) {
 		char c = *p;
 		if (c != '/' && c)
 			continue;
 		*p = 0;
 		if (mkdir(copy, 0777) && (errno != EEXIST || !file_is_dir(copy))) {
+			errno = errno == EEXIST ? ENOTDIR : errno;
 			err_errno(e, "%s", copy);
 			free(copy);
 			return -1;

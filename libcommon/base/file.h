@@ -28,11 +28,11 @@ void file_close(FILE *in);
 const char *file_name(const char *path);
 
 /* An output. Data go to a temporary file in the same folder; file_out_commit syncs it and renames it over
- * `path`; file_out_abort removes it. "-" writes to stdout directly. */
+ * `path`; file_out_abort removes it. "-", devices and pipes are written to directly. */
 struct file_out {
 	FILE *stream;
 	char *path;
-	char *temporary; /* NULL for stdout */
+	char *temporary; /* NULL where the output is written to directly */
 };
 int file_out_open(struct file_out *out, const char *path, struct err *e);
 int file_out_commit(struct file_out *out, struct err *e); /* closes in any case */

@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdarg.h>
@@ -14,7 +15,7 @@
 #define VERSION "unknown"
 #endif
 
-enum { COMMON_COUNT = 8 };
+enum { COMMON_COUNT = 8, HELP_COLUMN = 32 };
 
 /* The shared options that this tool honours, as rows of the same kind as its own. */
 static int common_rows(struct cli *c, struct cli_option rows[COMMON_COUNT])
@@ -47,21 +48,31 @@ static int common_rows(struct cli *c, struct cli_option rows[COMMON_COUNT])
 	return n;
 }
 
+/* Words after a margin of HELP_COLUMN columns, broken before column 100. */
+static void print_wrapped(const char *text, int column)
+{
+	while (*text) {
+		int len = (int)strcspn(text, " ");
+		if (column + 1 + len > 100 && column > HELP_COLUMN)
+			column = printf("\n%*s", HELP_COLUMN, "") - 1;
+		column += printf("%s%.*s", column > HELP_COLUMN ? " " : "", len, text);
+		text += len + (text[len] == ' ');
+	}
+	printf("\n");
+}
+
 static void print_row(const struct cli_option *o)
 {
-	char left[96];
-	int used = 0;
+	int used = o->letter ? printf("  -%c, --%s", o->letter, o->name) : printf("      --%s", o->name);
 
-	if (o->letter)
-		used += snprintf(left, sizeof left, "  -%c, --%s", o->letter, o->name);
-	else
-		used += snprintf(left, sizeof left, "      --%s", o->name);
 	if (o->arg)
-		snprintf(left + used, sizeof left - (size_t)used, " %s", o->arg);
-	if (strlen(left) < 30)
-		printf("%-30s  %s\n", left, o->help);
-	else
-		printf("%s\n%-30s  %s\n", left, "", o->help);
+		used += printf(" %s", o->arg);
+	if (used + 2 > HELP_COLUMN) {
+		printf("\n");
+		used = 0;
+	}
+	printf("%*s", HELP_COLUMN - used, "");
+	print_wrapped(o->help, HELP_COLUMN);
 }
 
 static void print_help(struct cli *c)
@@ -112,18 +123,37 @@ static void set_choice(const struct cli *c, const struct cli_option *o, const ch
 
 static void set_size(const struct cli *c, const struct cli_option *o, const char *text)
 {
-	char *end;
-	long w = strtol(text, &end, 10), h = 0;
+	const char *at = text;
 
-	if (end != text && *end == 'x' && end[1] >= '0' && end[1] <= '9')
-		h = strtol(end + 1, &end, 10);
-	else
-		end = (char *)(size_t) "?";
-	if (*end || text[0] < '0' || text[0] > '9' || !in_range(o, (double)w) || !in_range(o, (double)h))
-		cli_usage(c, "--%s: '%s' is not WIDTHxHEIGHT with both in %g to %g", o->name, text, o->min,
-			o->max);
-	((int *)o->value)[0] = (int)w;
-	((int *)o->value)[1] = (int)h;
+	for (int i = 0; i < 2; i++) {
+		char *end;
+		long side = strtol(at, &end, 10);
+		if (*at < '0' || *at > '9' || *end != (i ? 0 : 'x') || side > INT_MAX ||
+			!in_range(o, (double)side))
+			cli_usage(c, "--%s: '%s' is not WIDTHxHEIGHT with both from %.0f to %.0f", o->name,
+				text, o->min, o->max);
+		((int *)o->value)[i] = (int)side;
+		at = end + 1;
+	}
+}
+
+/* Digits and `others` after an optional sign: no blanks, hexadecimal, nan or inf, all of which strtod takes.
+ */
+static int is_number(const char *text, const char *others)
+{
+	text += *text == '-' || *text == '+';
+	for (const char *p = text; *p; p++)
+		if ((*p < '0' || *p > '9') && !strchr(others, *p))
+			return 0;
+	return *text != 0;
+}
+
+static _Noreturn void refuse_number(
+	const struct cli *c, const struct cli_option *o, const char *kind, const char *text)
+{
+	if (o->min == 0 && o->max == 0)
+		cli_usage(c, "--%s: '%s' is not %s", o->name, text, kind);
+	cli_usage(c, "--%s: '%s' is not %s from %.10g to %.10g", o->name, text, kind, o->min, o->max);
 }
 
 static void set_value(const struct cli *c, const struct cli_option *o, const char *text)
@@ -137,17 +167,15 @@ static void set_value(const struct cli *c, const struct cli_option *o, const cha
 		return;
 	case CLI_INT: {
 		long long x = strtoll(text, &end, 10);
-		if (!*text || *text == ' ' || *end || errno || !in_range(o, (double)x))
-			cli_usage(c, "--%s: '%s' is not a whole number from %.0f to %.0f", o->name, text,
-				o->min, o->max);
+		if (!is_number(text, "") || *end || errno || !in_range(o, (double)x))
+			refuse_number(c, o, "a whole number", text);
 		*(long long *)o->value = x;
 		return;
 	}
 	case CLI_REAL: {
 		double x = strtod(text, &end);
-		if (!*text || *text == ' ' || *end || !isfinite(x) || !in_range(o, x))
-			cli_usage(
-				c, "--%s: '%s' is not a number from %g to %g", o->name, text, o->min, o->max);
+		if (!is_number(text, ".eE+-") || *end || !isfinite(x) || !in_range(o, x))
+			refuse_number(c, o, "a number", text);
 		*(double *)o->value = x;
 		return;
 	}
@@ -184,7 +212,10 @@ static void check_help(struct cli *c, int is_help, int is_version)
 		printf("%s (refersplat) %s\n", c->tool->name, VERSION);
 	else
 		return;
-	exit(fflush(stdout) ? ERR_SYSTEM : 0);
+	if (!fflush(stdout) && !ferror(stdout))
+		exit(0);
+	fprintf(stderr, "%s: stdout: %s\n", c->tool->name, strerror(errno));
+	exit(ERR_SYSTEM);
 }
 
 static void parse_long(struct cli *c, const struct cli_option *rows, int n, char **argv, int argc, int *i)

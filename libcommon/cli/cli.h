@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 enum cli_type {
-	CLI_FLAG,   /* int *, set to 1 */
+	CLI_FLAG,   /* int *, counts how often it was given */
 	CLI_STRING, /* const char ** */
 	CLI_INT,    /* long long *, whole decimal string within [min,max] */
 	CLI_REAL,   /* double *, whole string, finite, within [min,max] */

@@ -10,8 +10,8 @@ struct factors {
 };
 
 /* The clones give the machine's vector width; every operation is correctly rounded, so they give the same
- * bytes. (A sanitized program starts too late for the clones' resolver.) */
-#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+ * bytes. */
+#if defined(__x86_64__) && defined(__GLIBC__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
 static void

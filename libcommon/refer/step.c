@@ -31,7 +31,9 @@ struct step {
 	float *slab;   /* all per-Gaussian arrays but x and dx */
 	float *position;
 	float *image, *dimage;	 /* (P) */
-	float *response, *dresponse, *view_scratch; /* (padded), (padded), (VIEW_SLABS,N) */
+	float *response, *dresponse;		 /* (padded) one sentence's channel */
+	float *scene_response, *scene_dresponse; /* (scene_gaussians) */
+	float *view_scratch;			 /* (VIEW_SLABS,scene_gaussians) */
 	float *vectors, *dvectors; /* (n,128) */
 	double *fg, *dfg, *score;  /* (S,128), (S,128), (R) */
 	struct block_sums sums[CHUNKS];
@@ -183,12 +185,15 @@ static int alloc_arrays(struct step *s, struct err *e)
 		return err_set(e, ERR_SYSTEM, "%zu Gaussians do not fit in memory", u->gaussians);
 	s->slab = mem_zalloc(floats, sizeof(float), "features", e);
 	s->position = mem_alloc(s->padded, 3 * sizeof(float), "positions", e);
-	s->response = mem_zalloc(s->padded, (2 + VIEW_SLABS) * sizeof(float), "responses", e);
+	const size_t scene = u->scene_gaussians > s->padded ? u->scene_gaussians : s->padded;
+	s->response = mem_zalloc(scene, (4 + VIEW_SLABS) * sizeof(float), "responses", e);
 	s->image = mem_zalloc(u->pixels, 2 * sizeof(float), "images", e);
 	if (!s->slab || !s->position || !s->response || !s->image)
 		return -1;
-	s->dresponse = s->response + s->padded;
-	s->view_scratch = s->dresponse + s->padded;
+	s->dresponse = s->response + scene;
+	s->scene_response = s->dresponse + scene;
+	s->scene_dresponse = s->scene_response + scene;
+	s->view_scratch = s->scene_dresponse + scene;
 	s->dimage = s->image + u->pixels;
 	float *at = s->slab;
 	for (int k = 0; k < 10; k++) {
@@ -330,6 +335,20 @@ static void channel_put(float *panels, size_t padded, int channels, int c, const
 		memcpy(panels + panel_index(i, channels, c), in + i, sizeof(float) * L);
 }
 
+/* From the Gaussians with features to those of the scene; the others stay 0. */
+static void to_scene(const struct step *s, const float *m, float *scene)
+{
+	for (size_t i = 0; i < s->setup.gaussians; i++)
+		scene[s->setup.ids ? (size_t)s->setup.ids[i] : i] = m[i];
+}
+
+static void from_scene(const struct step *s, const float *scene, float *m)
+{
+	for (size_t i = 0; i < s->setup.gaussians; i++)
+		m[i] = scene[s->setup.ids ? (size_t)s->setup.ids[i] : i];
+	memset(m + s->setup.gaussians, 0, sizeof *m * (s->padded - s->setup.gaussians));
+}
+
 /* Images, their loss, and dm. */
 static double image_losses(struct step *s, const struct view_weights *view, const struct step_target *targets, int count)
 {
@@ -337,9 +356,11 @@ static double image_losses(struct step *s, const struct view_weights *view, cons
 
 	for (int i = 0; i < count; i++) {
 		channel_get(s->arrays.m, s->padded, count, i, s->response);
-		view_blend(view, s->response, s->image);
+		to_scene(s, s->response, s->scene_response);
+		view_blend(view, s->scene_response, s->image);
 		bce += loss_bce(s->image, targets[i].mask, view->pixels, 1 / (float)count, s->dimage) / count;
-		view_blend_back(view, s->dimage, s->dresponse, s->view_scratch);
+		view_blend_back(view, s->dimage, s->scene_dresponse, s->view_scratch);
+		from_scene(s, s->scene_dresponse, s->dresponse);
 		channel_put(s->arrays.dm, s->padded, count, i, s->dresponse);
 	}
 	return bce;
@@ -453,5 +474,6 @@ void step_respond(struct step *s, const float *parameters, const float *x, size_
 	words_hidden(&s->words, parameters, sentence, sentence + 1);
 	forward(s, parameters, x, &sentence, 1);
 	channel_get(s->arrays.m, s->padded, 1, 0, s->response);
-	memcpy(m, s->response, sizeof *m * s->setup.gaussians);
+	memset(m, 0, sizeof *m * s->setup.scene_gaussians);
+	to_scene(s, s->response, m);
 }

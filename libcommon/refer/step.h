@@ -17,7 +17,9 @@ struct step_setup {
 	enum refer_similarity similarity;
 	enum refer_contrast contrast;
 	double temperature, lambda;
-	size_t gaussians;      /* N */
+	size_t gaussians;      /* N, those that have features */
+	const int32_t *ids;    /* (N) their indices in the scene; NULL: 0 to N-1 */
+	size_t scene_gaussians; /* of the scene, the range of a view's weights */
 	const float *position; /* (N,3) means scaled to [-1,1] */
 	size_t sentences;      /* R */
 	const int64_t *offsets; /* (R+1) into words */
@@ -54,7 +56,7 @@ struct step_losses {
 struct step_losses step_run(struct step *s, const float *parameters, const float *x, const struct view_weights *view,
 	const struct step_target *targets, int count, size_t top_count, float *gradient, float *dx);
 
-/* Responses m (N) of one sentence. */
+/* Responses m (scene_gaussians) of one sentence; 0 for Gaussians without features. */
 void step_respond(struct step *s, const float *parameters, const float *x, size_t sentence, float *m);
 
 #endif

@@ -1,8 +1,8 @@
 /* The rasteriser: EWA splatting as in 3DGS (Kerbl et al. 2023, section 4; design section 5).
  *
- * A view is projected and sorted once (render_prepare); any number of passes then use it. All passes blend the same
- * weights w_i = a_i T_i, T_i = prod_{k<i} (1-a_k), with a_i = min(0.99, o exp(-q/2)), skipped below 1/255, front to
- * back until T < 1e-4. Results do not depend on tile size or number of threads. */
+ * A view is projected and sorted once (render_prepare); any number of passes then use it. All passes blend
+ * the same weights w_i = a_i T_i, T_i = prod_{k<i} (1-a_k), with a_i = min(0.99, o exp(-q/2)), skipped below
+ * 1/255, front to back until T < 1e-4. Results do not depend on tile size or number of threads. */
 #ifndef SPLAT_RENDER_H
 #define SPLAT_RENDER_H
 
@@ -18,7 +18,8 @@ struct render_view; /* projected, culled, tiled and depth-sorted Gaussians of on
 struct render_view *render_prepare(const struct splats *s, const struct camera *c, struct err *e);
 void render_free(struct render_view *v);
 
-/* Blend weights, CSR over the P = width*height pixels of the camera. Arrays are allocated here, the caller frees them. */
+/* Blend weights, CSR over the P = width*height pixels of the camera. Arrays are allocated here, the caller
+ * frees them. */
 struct render_weights {
 	int64_t *indptr;      /* (P+1) */
 	int32_t *index;	      /* (nnz) front to back */
@@ -28,10 +29,10 @@ struct render_weights {
 int render_weights(const struct render_view *v, struct render_weights *w, struct err *e);
 void render_weights_free(struct render_weights *w);
 
-/* Blends `channels` values per Gaussian: out (channels,P) = sum_i w_i values[c][i], values (channels,N) planar, no
- * background. `transmittance` (P) may be NULL. */
-int render_values(const struct render_view *v, const float *values, int channels, float *out, float *transmittance,
-	struct err *e);
+/* Blends `channels` values per Gaussian: out (channels,P) = sum_i w_i values[c][i], values (channels,N)
+ * planar, no background. `transmittance` (P) may be NULL. */
+int render_values(const struct render_view *v, const float *values, int channels, float *out,
+	float *transmittance, struct err *e);
 
 /* Colours from spherical harmonics over a background: rgb (P,3) in [0,1] clamped. */
 int render_colors(const struct render_view *v, const struct splats *s, const struct camera *c,

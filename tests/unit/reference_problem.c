@@ -25,7 +25,7 @@ struct reference_options reference_defaults(uint64_t seed, enum refer_interactio
 	return (struct reference_options){
 		.n = 40,
 		.text_width = 24,
-		.sentences = 5,
+		.sentences = 5, /* of the objects 0 1 0 1 0; the middle one is the target */
 		.min_words = 3,
 		.max_words = 7,
 		.pixels = 30,
@@ -33,7 +33,7 @@ struct reference_options reference_defaults(uint64_t seed, enum refer_interactio
 		.interaction = interaction,
 		.similarity = similarity,
 		.contrast = contrast,
-		.temperature = 0.1,
+		.temperature = contrast == REFER_CONTRAST_DOT ? 10 : 0.2,
 		.lambda = 0.5,
 		.tau = 0.1,
 		.gain = 2,

@@ -21,7 +21,8 @@ struct reference_options {
 	uint64_t seed;
 };
 
-/* N 40, D_text 24, 5 sentences of 3 to 7 words of two objects, 30 pixels of about 6 weights, tau 0.1. */
+/* N 40, D_text 24, 5 sentences of 3 to 7 words of two objects, 30 pixels of about 6 weights, tau 0.1;
+ * temperatures at which neither contrast is saturated. */
 struct reference_options reference_defaults(uint64_t seed, enum refer_interaction interaction,
 	enum refer_similarity similarity, enum refer_contrast contrast);
 
@@ -41,5 +42,9 @@ struct reference_sample {
 void reference_sample_init(struct reference_sample *s, const struct reference_options *o);
 void reference_sample_copy(struct reference_sample *s, const struct reference_sample *from);
 void reference_sample_free(struct reference_sample *s);
+
+/* The problem and the reference's answer to it as one JSON object on stdout: for tests/peers/model_torch.py.
+ */
+void reference_dump(const struct reference_sample *s);
 
 #endif

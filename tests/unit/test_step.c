@@ -75,6 +75,7 @@ static struct step *make_step(const struct reference_sample *s, const struct flo
 		.temperature = p->temperature,
 		.lambda = p->lambda,
 		.gaussians = p->n,
+		.scene_gaussians = p->n,
 		.position = f->position,
 		.sentences = p->sentences,
 		.offsets = f->offsets,

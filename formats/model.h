@@ -1,0 +1,25 @@
+/* model.safetensors (refer.model): a trained referring model. formats/model.md. */
+#ifndef FORMATS_MODEL_H
+#define FORMATS_MODEL_H
+
+#include "base/err.h"
+#include "refer/model.h"
+
+#include <stdint.h>
+
+struct model {
+	struct refer_layout layout;
+	enum refer_similarity similarity;
+	size_t scene_gaussians; /* N of the scene that it belongs to */
+	size_t n;		/* M Gaussians with features */
+	int32_t *ids;		/* (M) rising indices in the scene */
+	float *features;	/* (M,16) */
+	float *parameters;	/* (layout.count) */
+	double low[3], high[3]; /* what the scene's means are scaled to [-1,1] by */
+};
+
+int model_read(struct model *m, const char *path, struct err *e);
+int model_write(const struct model *m, const char *path, const char *options, long long seed, struct err *e);
+void model_free(struct model *m);
+
+#endif

@@ -1,0 +1,12 @@
+/* The vocabulary of an uncased BERT: tokenizer.json or vocab.txt. formats/vocab.md. */
+#ifndef FORMATS_VOCAB_H
+#define FORMATS_VOCAB_H
+
+#include "base/err.h"
+#include "nn/wordpiece.h"
+
+/* Reads DIR/tokenizer.json or, where there is none, DIR/vocab.txt (with tokenizer_config.json, if it is
+ * there). Tokenizers that wordpiece_encode does not do are refused. Release with vocab_free. */
+int vocab_read(struct vocab *v, const char *dir, struct err *e);
+
+#endif

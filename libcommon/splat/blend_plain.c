@@ -1,0 +1,2 @@
+#define BLEND_TABLE blend_plain
+#include "splat/blend_kernel.h"

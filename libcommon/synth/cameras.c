@@ -1,0 +1,109 @@
+#include "synth/cameras.h"
+
+#include "base/mem.h"
+#include "base/rng.h"
+#include "synth/scene.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define PI 3.14159265358979323846
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+	out[0] = a[1] * b[2] - a[2] * b[1];
+	out[1] = a[2] * b[0] - a[0] * b[2];
+	out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void normalise(double a[3])
+{
+	double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+
+	for (int k = 0; k < 3; k++)
+		a[k] /= length;
+}
+
+/* A camera at `centre` that sees `target` in its middle, turned by `roll` about its axis. */
+static void look_at(struct camera *c, const double centre[3], const double target[3], double roll)
+{
+	double forward[3], right[3], down[3], up[3] = {0, 0, 1}, cosine = cos(roll), sine = sin(roll);
+
+	for (int k = 0; k < 3; k++)
+		forward[k] = target[k] - centre[k];
+	normalise(forward);
+	cross(forward, up, right);
+	normalise(right);
+	cross(forward, right, down);
+	for (int k = 0; k < 3; k++) {
+		c->world_to_camera[0][k] = cosine * right[k] + sine * down[k];
+		c->world_to_camera[1][k] = cosine * down[k] - sine * right[k];
+		c->world_to_camera[2][k] = forward[k];
+		c->world_to_camera[3][k] = 0;
+	}
+	for (int r = 0; r < 3; r++) {
+		const double *row = c->world_to_camera[r];
+		c->world_to_camera[r][3] = -(row[0] * centre[0] + row[1] * centre[1] + row[2] * centre[2]);
+	}
+	c->world_to_camera[3][3] = 1;
+}
+
+int synth_cameras_make(struct cameras *c, int n, int width, int height, const struct synth_table *table,
+	uint64_t seed, struct err *e)
+{
+	double reach = fmax(table->half_width, 1.3 * table->half_depth);
+	struct rng r;
+
+	*c = (struct cameras){0};
+	c->views = mem_zalloc((size_t)n, sizeof *c->views, "cameras", e);
+	if (!c->views)
+		return -1;
+	rng_seed(&r, seed, SYNTH_STREAM_CAMERAS);
+	for (int i = 0; i < n; i++) {
+		struct camera *v = &c->views[c->n++];
+		char name[16];
+		snprintf(name, sizeof name, "view_%03d", i);
+		v->name = mem_strdup(name, e);
+		if (!v->name) {
+			cameras_free(c);
+			return -1;
+		}
+		v->width = width;
+		v->height = height;
+		v->fx = v->fy = 0.95 * fmax(width, height * 4 / 3.0);
+		v->cx = width / 2.0;
+		v->cy = height / 2.0;
+		v->split =
+			i % SYNTH_TEST_EVERY == SYNTH_TEST_EVERY - 1 || (n < SYNTH_TEST_EVERY && i == n - 1)
+				? SPLIT_TEST
+				: SPLIT_TRAIN;
+		/* Out along the arc and back again. */
+		double walked = 2 * (i + 0.5) / n, side = walked < 1 ? walked : 2 - walked;
+		double azimuth = (-70 + 140 * side + rng_range(&r, -6, 6)) * PI / 180;
+		double elevation = ((walked < 1 ? 26 : 44) + rng_range(&r, -6, 6)) * PI / 180;
+		double distance = reach * rng_range(&r, 2.35, 2.85);
+		double centre[3] = {distance * cos(elevation) * sin(azimuth),
+			-distance * cos(elevation) * cos(azimuth), distance * sin(elevation)};
+		double target[3] = {0.12 * reach * rng_normal(&r), 0.12 * reach * rng_normal(&r), 0.1};
+		look_at(v, centre, target, 0.03 * rng_normal(&r));
+	}
+	return 0;
+}
+
+void synth_cameras_reference(const struct cameras *c, double right[2], double away[2])
+{
+	double sum[2] = {0}, centre[3];
+
+	for (size_t i = 0; i < c->n; i++) {
+		if (c->views[i].split != SPLIT_TRAIN)
+			continue;
+		camera_centre(&c->views[i], centre);
+		sum[0] += centre[0];
+		sum[1] += centre[1];
+	}
+	double length = hypot(sum[0], sum[1]);
+	away[0] = -sum[0] / length;
+	away[1] = -sum[1] / length;
+	right[0] = away[1];
+	right[1] = -away[0];
+}

@@ -1,0 +1,18 @@
+/* The cameras of a synthetic scene: someone walks round the front of the table twice, once low and once high.
+ */
+#ifndef SYNTH_CAMERAS_H
+#define SYNTH_CAMERAS_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+#include "synth/objects.h"
+
+/* n views of one size, all looking at the table; split set. Returns 0, or -1 with *e set and *c zeroed. */
+int synth_cameras_make(struct cameras *c, int n, int width, int height, const struct synth_table *table,
+	uint64_t seed, struct err *e);
+
+/* The reference viewpoint of spatial words: the mean of the training cameras' centres, looking at the table's
+ * middle. right and away are its unit directions in the plane of the table. */
+void synth_cameras_reference(const struct cameras *c, double right[2], double away[2]);
+
+#endif

@@ -1,0 +1,92 @@
+/* The things on the table: what each is, and where it stands. World units are about a decimetre and a half; z
+ * is up and the table's top is z = 0, its middle the origin. */
+#ifndef SYNTH_OBJECTS_H
+#define SYNTH_OBJECTS_H
+
+#include "base/err.h"
+#include "synth/noise.h"
+#include "synth/surface.h"
+
+#include <stdint.h>
+
+enum {
+	SYNTH_MIN_OBJECTS = 2,
+	SYNTH_MAX_OBJECTS = 24,
+	SYNTH_NAME = 32,
+};
+
+/* Streams of random numbers, one for each purpose, so that (say) more Gaussians leave the sentences as they
+ * were. */
+enum synth_stream {
+	SYNTH_STREAM_OBJECTS = 1,
+	SYNTH_STREAM_CAMERAS,
+	SYNTH_STREAM_GAUSSIANS,
+	SYNTH_STREAM_TEXTURE,
+	SYNTH_STREAM_SENTENCES,
+	SYNTH_STREAM_FAULTS,
+	SYNTH_STREAM_VIEWS = 1024, /* candidates: one stream a view */
+};
+
+enum synth_shape {
+	SYNTH_BALL,
+	SYNTH_BOX,
+	SYNTH_CYLINDER,
+	SYNTH_CONE,
+	SYNTH_MUG,
+	SYNTH_BOWL,
+	SYNTH_PLATE,
+	SYNTH_BOOK,
+	SYNTH_BOTTLE,
+	SYNTH_SHAPES
+};
+enum synth_colour {
+	SYNTH_RED,
+	SYNTH_GREEN,
+	SYNTH_BLUE,
+	SYNTH_YELLOW,
+	SYNTH_WHITE,
+	SYNTH_BLACK,
+	SYNTH_ORANGE,
+	SYNTH_PURPLE,
+	SYNTH_BROWN,
+	SYNTH_PINK,
+	SYNTH_GREY,
+	SYNTH_TEAL,
+	SYNTH_COLOURS
+};
+enum synth_size { SYNTH_SMALL, SYNTH_MEDIUM, SYNTH_BIG, SYNTH_SIZES };
+enum synth_finish { SYNTH_PLAIN, SYNTH_SHINY, SYNTH_STRIPED, SYNTH_SPECKLED, SYNTH_FINISHES };
+
+struct synth_object {
+	enum synth_shape shape;
+	enum synth_colour colour;
+	enum synth_size size;
+	enum synth_finish finish;
+	double x, y;   /* where it stands */
+	double yaw;    /* turn about the vertical, radians */
+	double scale;  /* of the shape's own measures */
+	double radius; /* nothing of it is farther than this from its vertical */
+	double height;
+	char name[SYNTH_NAME]; /* unique: "red mug", "red mug 2" */
+	char ref[SYNTH_NAME];  /* the same for names of sentences: "red-mug", "red-mug-2" */
+};
+
+struct synth_table {
+	double half_width, half_depth; /* along x and y */
+};
+
+/* Chooses n objects (SYNTH_MIN_OBJECTS to SYNTH_MAX_OBJECTS) and puts them on a table of fitting size; none
+ * touches another. Of five objects or more some pairs are alike in shape, colour, size and finish. */
+void synth_objects_make(struct synth_object *objects, int n, struct synth_table *table, uint64_t seed);
+
+/* The surface of an object of scale 1 that stands on the origin, its underside left out. */
+void synth_object_surface(struct synth_surface *s, enum synth_shape shape);
+
+/* The colour (sRGB in [0,1]) before any light at a point of that surface. */
+void synth_object_colour(const struct synth_object *o, enum synth_tint tint, const double point[3],
+	const struct synth_noise *texture, double rgb[3]);
+
+const char *synth_shape_name(enum synth_shape s);
+const char *synth_colour_name(enum synth_colour c);
+
+#endif
