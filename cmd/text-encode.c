@@ -225,8 +225,7 @@ int main(int argc, char **argv)
 	const char *model = NULL;
 	const struct cli_option options[] = {
 		{"model", 0, CLI_STRING, &model, "DIR",
-			"folder of a BERT encoder: config.json, tokenizer.json or vocab.txt, *.safetensors (required)",
-			0, 0},
+			"the encoder's folder: config.json, a tokenizer and *.safetensors (required)", 0, 0},
 		{0}};
 	const struct cli_tool tool = {.name = "text-encode",
 		.operands = "[SENTENCES]",
