@@ -93,6 +93,8 @@ tensor_at() {
 	words=$(jq .vocab_size good.json)
 	jq '.vocab_size += 1' good.json >m/config.json
 	refuses 3 "m/model.safetensors: tensor 'embeddings.word_embeddings.weight': is F16[$words,24], expected F16[$((words + 1)),24]"
+	jq '.vocab_size = 10000000 | .hidden_size = 65536 | .num_attention_heads = 1' good.json >m/config.json
+	refuses 3 "m/model.safetensors: tensor 'embeddings.word_embeddings.weight': is F16[$words,24], expected F16[10000000,65536]"
 	jq '.num_hidden_layers = 3' good.json >m/config.json
 	refuses 3 "m/model.safetensors: tensor 'encoder.layer.2.attention.self.query.weight' is missing"
 	jq '.intermediate_size = 41' good.json >m/config.json
