@@ -35,8 +35,7 @@ enum { MODELS = sizeof models / sizeof *models };
 
 struct lens {
 	uint32_t id;
-	int width, height;
-	double fx, fy, cx, cy;
+	struct camera lens; /* size and intrinsics only */
 };
 
 struct lenses {
@@ -72,16 +71,13 @@ static int set_lens(struct lens *l, const struct model *m, double width, double 
 		return err_set(e, ERR_FORMAT,
 			"%s: camera %lu: model %s has lens distortion; undistort the images first (colmap image_undistorter)",
 			path, (unsigned long)l->id, m->name);
-	if (!(width >= 1 && width <= VIEW_SIZE_MAX && height >= 1 && height <= VIEW_SIZE_MAX) ||
-		width != floor(width) || height != floor(height))
-		return err_set(e, ERR_FORMAT, "%s: camera %lu: size %gx%g is not within 1 to 65536", path,
-			(unsigned long)l->id, width, height);
-	l->width = (int)width;
-	l->height = (int)height;
-	l->fx = params[0];
-	l->fy = params[m->focals - 1];
-	l->cx = params[m->focals];
-	l->cy = params[m->focals + 1];
+	if (view_set_size(&l->lens, width, height))
+		return err_set(e, ERR_FORMAT, "%s: camera %lu: size %gx%g is not whole numbers in 1 to 65536",
+			path, (unsigned long)l->id, width, height);
+	l->lens.fx = params[0];
+	l->lens.fy = params[m->focals - 1];
+	l->lens.cx = params[m->focals];
+	l->lens.cy = params[m->focals + 1];
 	return 0;
 }
 
@@ -119,7 +115,7 @@ static int add_view(struct cameras *c, size_t *capacity, const struct lenses *al
 	uint32_t lens, const char *image, const char *path, struct err *e)
 {
 	void *block = c->views;
-	struct camera v = {0};
+	struct camera v;
 	double length = sqrt(pose[0] * pose[0] + pose[1] * pose[1] + pose[2] * pose[2] + pose[3] * pose[3]);
 	struct lens key = {.id = lens};
 	const struct lens *l = all->n ? bsearch(&key, all->items, all->n, sizeof key, by_id) : NULL;
@@ -137,13 +133,8 @@ static int add_view(struct cameras *c, size_t *capacity, const struct lenses *al
 		{2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), pose[6]},
 		{0, 0, 0, 1},
 	};
+	v = l->lens;
 	memcpy(v.world_to_camera, m, sizeof m);
-	v.width = l->width;
-	v.height = l->height;
-	v.fx = l->fx;
-	v.fy = l->fy;
-	v.cx = l->cx;
-	v.cy = l->cy;
 	v.image = mem_strdup(image, e);
 	if (!v.image)
 		return -1;

@@ -38,8 +38,8 @@ void camera_transform(const struct camera *c, const double world[3], double out[
 /* The camera's centre in the world, -R^T t. */
 void camera_centre(const struct camera *c, double out[3]);
 
-/* 1 where world_to_camera is a rotation and a translation: rows orthonormal to 1e-4, determinant positive, last row
- * 0 0 0 1, everything finite. */
+/* 1 where world_to_camera is a rotation and a translation: rows orthonormal to 1e-4, determinant positive,
+ * last row 0 0 0 1, everything finite. */
 int camera_is_rigid(const struct camera *c);
 
 /* Sets world_to_camera from a rotation (3,3) world to camera, and the camera's centre in the world. */

@@ -29,6 +29,16 @@ const char *view_fault(const struct camera *c)
 	return NULL;
 }
 
+int view_set_size(struct camera *c, double width, double height)
+{
+	if (!(width >= 1 && width <= VIEW_SIZE_MAX && height >= 1 && height <= VIEW_SIZE_MAX) ||
+		width != floor(width) || height != floor(height))
+		return -1;
+	c->width = (int)width;
+	c->height = (int)height;
+	return 0;
+}
+
 const char *view_base(const char *image)
 {
 	const char *slash = strrchr(image, '/');

@@ -10,12 +10,16 @@ enum { VIEW_SIZE_MAX = 65536 };
 /* Why a camera cannot be a view ("its size is not within 1 to 65536", ...), or NULL. */
 const char *view_fault(const struct camera *c);
 
-/* Takes cameras whose `image` is the photograph's path as the foreign file has it and whose `name` is NULL. Checks each
- * (view_fault), names it and sorts by name (byte order).
+/* Sets the size where both are whole numbers from 1 to VIEW_SIZE_MAX; else -1. */
+int view_set_size(struct camera *c, double width, double height);
+
+/* Takes cameras whose `image` is the photograph's path as the foreign file has it and whose `name` is NULL.
+ * Checks each (view_fault), names it and sorts by name (byte order).
  *
- * A view's name is its image's file name without folder and without an image extension (.jpg .jpeg .png .bmp .tif
- * .tiff .webp .exr, any case). Views that would share a name keep their folders, '/' written '_'; those that still
- * share one keep the extension too. What then is still the same is an error. `path` is for messages. */
+ * A view's name is its image's file name without folder and without an image extension (.jpg .jpeg .png .bmp
+ * .tif .tiff .webp .exr, any case). Views that would share a name keep their folders, '/' written '_'; those
+ * that still share one keep the extension too. What then is still the same is an error. `path` is for
+ * messages. */
 int views_finish(struct cameras *c, const char *path, struct err *e);
 
 /* Length of an image path without its extension, where it has one of the above; else its whole length. */

@@ -149,7 +149,7 @@ void synth_object_colour(const struct synth_object *o, enum synth_tint tint, con
 			mix(rgb, second, 0.75);
 	} else if (o->finish == SYNTH_SPECKLED) {
 		double at =
-			synth_noise_at(texture, 11 * point[0] + 5 * point[2], 11 * point[1] + 8 * point[2]);
+			synth_noise_at(texture, 13 * point[0] + 9 * point[2], 13 * point[1] - 9 * point[2]);
 		if (at > 0.33)
 			mix(rgb, second, 0.7);
 	}
@@ -198,7 +198,12 @@ static void choose_kinds(struct synth_object *objects, int n, struct rng *r)
 			is_new &= same_shape <= i / 4;
 		} while (!is_new);
 		o->size = (enum synth_size)rng_below(r, SYNTH_SIZES);
-		o->finish = (enum synth_finish)rng_below(r, SYNTH_FINISHES);
+		/* Seven in ten are of one colour all over. */
+		uint32_t lot = rng_below(r, 20);
+		o->finish = lot < 8    ? SYNTH_PLAIN
+			    : lot < 14 ? SYNTH_SHINY
+			    : lot < 17 ? SYNTH_STRIPED
+				       : SYNTH_SPECKLED;
 	}
 }
 

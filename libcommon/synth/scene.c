@@ -154,7 +154,7 @@ static double shadow(const struct synth_scene *s, double x, double y)
 /* The slab's boards run along x; its legs are square. */
 static void put_table(struct work *w, size_t n)
 {
-	static const double wood[3] = {0.70, 0.52, 0.34}, thickness = 0.12, leg = 0.16, depth = 2.2;
+	static const double wood[3] = {0.70, 0.52, 0.34}, thickness = 0.16, leg = 0.16, depth = 2.2;
 	const struct synth_table *t = &w->s->table;
 	struct synth_surface surface = {0};
 
@@ -175,7 +175,7 @@ static void put_table(struct work *w, size_t n)
 		double board = floor((p[1] + t->half_depth) / 0.55);
 		double grain = synth_noise_at(&w->texture, 0.6 * p[0] + 17 * board, 9 * p[1]);
 		double tone = 1 + 0.13 * grain + 0.05 * synth_noise_at(&w->texture, 7.3 * board, 0.5);
-		tone *= tint == SYNTH_OWN ? shadow(w->s, p[0], p[1]) : 0.75;
+		tone *= tint == SYNTH_OWN ? shadow(w->s, p[0], p[1]) : 0.8;
 		for (int k = 0; k < 3; k++)
 			rgb[k] = wood[k] * tone;
 		put_on_surface(w, -1, p, normal, spacing, rgb, 0.02);

@@ -73,7 +73,7 @@ half='{"dtype":"F16","shape":[2],"data_offsets":[0,4]}'
 
 @test "headers that are not JSON objects" {
 	refuses 'header is not JSON at offset 10' '{"a}'
-	refuses 'header is not JSON at offset 14' '{"a":1'
+	refuses 'header is not JSON at offset 13' '{"a":1'
 	refuses 'header has something after its JSON at offset 10' '{}x'
 	refuses 'header has something after its JSON at offset 11' '{} {}'
 }

@@ -1,0 +1,106 @@
+#include "formats/camerafile.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/path.h"
+#include "formats/cameras3dgs.h"
+#include "formats/colmap.h"
+#include "formats/json.h"
+#include "formats/transforms.h"
+#include "geom/views.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+char *camerafile_find(const char *dir, struct err *e)
+{
+	static const char *const places[] = {"cameras.json", "sparse/0", "sparse", "transforms.json"};
+
+	if (colmap_is_model(dir))
+		return mem_strdup(dir, e);
+	for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+		char *path = file_join(dir, places[i], "", e);
+		if (!path)
+			return NULL;
+		if (strstr(places[i], ".json") ? file_exists(path) : colmap_is_model(path))
+			return path;
+		free(path);
+	}
+	err_set(e, ERR_FORMAT,
+		"%s: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json",
+		dir);
+	return NULL;
+}
+
+int camerafile_read(struct cameras *c, const char *path, struct err *e)
+{
+	const char *name = file_name(path);
+	cJSON *root = NULL;
+	int bad = -1;
+
+	*c = (struct cameras){0};
+	if (file_is_dir(path)) {
+		bad = colmap_read(c, path, e);
+	} else {
+		root = json_read(path, e);
+		if (cJSON_IsArray(root))
+			bad = cameras3dgs_parse(c, root, name, e);
+		else if (cJSON_IsObject(root))
+			bad = transforms_parse(c, root, name, e);
+		else if (root)
+			bad = err_set(
+				e, ERR_FORMAT, "%s: neither a 3DGS cameras.json nor a transforms.json", name);
+		cJSON_Delete(root);
+	}
+	if (!bad && !c->n)
+		bad = err_set(e, ERR_FORMAT, "%s: no views", name);
+	if (bad)
+		cameras_free(c);
+	return bad;
+}
+
+/* The path of a file that exists, or NULL. *e is set only when memory is out. */
+static char *try_file(const char *dir, const char *name, const char *suffix, struct err *e)
+{
+	char *path = file_join(dir, name, suffix, e);
+
+	if (path && file_exists(path) && !file_is_dir(path))
+		return path;
+	free(path);
+	return NULL;
+}
+
+static char *find_image(const char *dir, const char *image, struct err *e)
+{
+	static const char *const suffixes[] = {"", ".jpg", ".JPG", ".jpeg", ".JPEG", ".png", ".PNG"};
+	size_t tries = image[view_stem(image)] ? 1 : sizeof suffixes / sizeof *suffixes;
+	char *path = NULL;
+
+	for (size_t i = 0; !path && i < tries; i++) {
+		path = try_file(dir, image, suffixes[i], e);
+		if (!path)
+			path = try_file(dir, view_base(image), suffixes[i], e);
+	}
+	return path;
+}
+
+int camerafile_images(
+	struct cameras *c, const char *images, const char *scene, size_t *missing, struct err *e)
+{
+	*missing = 0;
+	for (size_t i = 0; i < c->n; i++) {
+		struct camera *v = &c->views[i];
+		char *path = images ? find_image(images, v->image, e) : NULL;
+		free(v->image);
+		v->image = NULL;
+		if (path) {
+			v->image = path_relative(scene, path, e);
+			free(path);
+			if (!v->image)
+				return -1;
+		} else {
+			(*missing)++;
+		}
+	}
+	return 0;
+}

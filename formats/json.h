@@ -1,0 +1,27 @@
+/* Whole JSON files, and members of their objects with messages that say where. formats/json.md. */
+#ifndef FORMATS_JSON_H
+#define FORMATS_JSON_H
+
+#include "base/err.h"
+
+#include <cjson/cJSON.h>
+
+/* The value in a file ("-" is stdin): cJSON_Delete it. NULL with *e set ("path: not JSON at offset N"). */
+cJSON *json_read(const char *path, struct err *e);
+
+/* A number member, finite. Returns 1 and *value, 0 where it is absent or null (an error if `need`), -1 with
+ * *e
+ * ("WHERE: key 'k' ..."). */
+int json_number(
+	const cJSON *object, const char *key, int need, double *value, const char *where, struct err *e);
+
+/* A string member: as json_number. *value belongs to the object. */
+int json_string(
+	const cJSON *object, const char *key, int need, const char **value, const char *where, struct err *e);
+
+/* A member that is an array of `rows` arrays of `columns` finite numbers, or of `rows` numbers where columns
+ * is 0. Returns 0, or -1 with *e. */
+int json_matrix(const cJSON *object, const char *key, int rows, int columns, double *values,
+	const char *where, struct err *e);
+
+#endif

@@ -1,0 +1,191 @@
+#include "formats/training.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/masks.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+/* The training sentences of the text, packed. */
+static int pack_sentences(struct training *t, struct err *e)
+{
+	const struct text *text = &t->text;
+	const size_t width = (size_t)text->width;
+
+	t->offsets = mem_zalloc(text->n + 1, sizeof *t->offsets, "sentences", e);
+	t->words = mem_alloc((size_t)text->offsets[text->n], width * sizeof(float), "words", e);
+	t->objects = mem_alloc(text->n, sizeof *t->objects, "sentences", e);
+	t->refs = mem_alloc(text->n, sizeof *t->refs, "sentences", e);
+	t->object_names = mem_alloc(text->n, sizeof *t->object_names, "sentences", e);
+	if (!t->offsets || !t->words || !t->objects || !t->refs || !t->object_names)
+		return -1;
+	for (size_t r = 0; r < text->n; r++) {
+		const int64_t from = text->offsets[r], count = text->offsets[r + 1] - from;
+		if (text->splits[r] != SPLIT_TRAIN)
+			continue;
+		if (!count) {
+			t->left_out++;
+			continue;
+		}
+		const size_t k = t->sentences++;
+		t->refs[k] = text->refs[r];
+		t->object_names[k] = text->objects[r];
+		t->objects[k] = (int)k;
+		for (size_t other = 0; other < k; other++)
+			if (!strcmp(t->object_names[other], t->object_names[k])) {
+				t->objects[k] = t->objects[other];
+				break;
+			}
+		memcpy(t->words + (size_t)t->offsets[k] * width, text->words + (size_t)from * width,
+			sizeof(float) * (size_t)count * width);
+		t->offsets[k + 1] = t->offsets[k] + count;
+	}
+	return 0;
+}
+
+/* Opens a view's weights and makes it the next training view. */
+static int add_view(struct training *t, const char *weights, const char *name, struct err *e)
+{
+	struct weights *w = &t->weights[t->view_count];
+
+	if (weights_open(w, weights, name, e))
+		return -1;
+	t->view_count++;
+	if (w->gaussians != (int64_t)t->scene.splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, this one has %zu", w->file.path,
+			(long long)w->gaussians, t->scene.splats.n);
+	const size_t pixels = (size_t)w->width * (size_t)w->height;
+	t->views[t->view_count - 1].weights =
+		(struct view_weights){pixels, t->scene.splats.n, w->indptr, w->index, w->weight};
+	t->pixels = pixels > t->pixels ? pixels : t->pixels;
+	return 0;
+}
+
+/* One record: its view's weights are opened when it is the first of the view; at[] is a scene view's training view or -1. */
+static int add_mask(struct training *t, const struct jsonl *j, const struct mask_record *r, const char *weights, long *at,
+	struct err *e)
+{
+	const struct camera *c = cameras_find(&t->scene.cameras, r->view);
+	struct err reason;
+
+	if (!c)
+		return jsonl_err(j, e, "key 'view': the scene has no view '%s'", r->view);
+	if (c->split == SPLIT_TEST) {
+		t->test_masks++;
+		return 0;
+	}
+	long *view = &at[c - t->scene.cameras.views];
+	if (*view < 0) {
+		*view = (long)t->view_count;
+		if (add_view(t, weights, c->name, e))
+			return -1;
+	}
+	const struct weights *w = &t->weights[*view];
+	if (supervision_add(&t->masks, (size_t)*view, w->width, w->height, r->ref, r->object, &r->mask, &reason))
+		return reason.code == ERR_FORMAT ? jsonl_err(j, e, "%s", reason.message)
+						 : err_set(e, reason.code, "%s", reason.message);
+	return 0;
+}
+
+static int read_masks(struct training *t, const char *weights, const char *path, struct err *e)
+{
+	const size_t count = t->scene.cameras.n;
+	long *at = mem_alloc(count, sizeof *at, "views", e);
+	struct jsonl j = {0};
+	struct mask_record r;
+	int more = -1;
+
+	t->weights = mem_zalloc(count, sizeof *t->weights, "views", e);
+	t->views = mem_zalloc(count, sizeof *t->views, "views", e);
+	if (at && t->weights && t->views && !jsonl_open(&j, path, e)) {
+		for (size_t v = 0; v < count; v++)
+			at[v] = -1;
+		while ((more = masks_next(&j, &r, e)) == 1) {
+			int bad = add_mask(t, &j, &r, weights, at, e);
+			mask_record_free(&r);
+			if (bad) {
+				more = -1;
+				break;
+			}
+		}
+		jsonl_close(&j);
+	}
+	free(at);
+	return more;
+}
+
+static uint32_t add_checksum(uint32_t sum, const void *data, size_t bytes)
+{
+	return (uint32_t)crc32_z(sum, data, bytes);
+}
+
+static void make_checksum(struct training *t)
+{
+	uint32_t sum = 0;
+
+	sum = add_checksum(sum, t->scene.splats.means, sizeof(float) * 3 * t->scene.splats.n);
+	sum = add_checksum(sum, t->words, sizeof(float) * (size_t)t->offsets[t->sentences] * (size_t)t->text.width);
+	sum = add_checksum(sum, t->offsets, sizeof *t->offsets * (t->sentences + 1));
+	sum = add_checksum(sum, t->objects, sizeof *t->objects * t->sentences);
+	for (size_t v = 0; v < t->view_count; v++) {
+		const struct train_view *view = &t->views[v];
+		const size_t pixels = view->weights.pixels, nnz = (size_t)view->weights.indptr[pixels];
+		sum = add_checksum(sum, view->weights.indptr, sizeof(int64_t) * (pixels + 1));
+		sum = add_checksum(sum, view->weights.index, sizeof(int32_t) * nnz);
+		sum = add_checksum(sum, view->weights.weight, sizeof(float) * nnz);
+		sum = add_checksum(sum, view->sentences, sizeof(int) * (size_t)view->count);
+		for (int i = 0; i < view->count; i++)
+			sum = add_checksum(sum, view->masks[i], pixels);
+	}
+	t->checksum = sum;
+}
+
+static int read_all(
+	struct training *t, const char *scene, const char *weights, const char *text, const char *masks, struct err *e)
+{
+	if (scene_read(&t->scene, scene, e) || text_read(&t->text, text, e) || pack_sentences(t, e))
+		return -1;
+	if (!t->sentences)
+		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(text));
+	if (read_masks(t, weights, masks, e) ||
+		supervision_link(&t->masks, t->refs, t->object_names, t->sentences, t->views, t->view_count, e))
+		return -1;
+	for (size_t v = 0; v < t->view_count; v++)
+		t->pairs += (size_t)t->views[v].count;
+	if (!t->pairs)
+		return err_set(e, ERR_FORMAT, "%s: no mask of a training view is of a training sentence of %s", file_name(masks),
+			file_name(text));
+	make_checksum(t);
+	return 0;
+}
+
+int training_read(struct training *t, const char *scene, const char *weights, const char *text, const char *masks,
+	struct err *e)
+{
+	*t = (struct training){0};
+	int bad = read_all(t, scene, weights, text, masks, e);
+	if (bad)
+		training_free(t);
+	return bad;
+}
+
+void training_free(struct training *t)
+{
+	if (t->views)
+		supervision_unlink(t->views, t->view_count);
+	for (size_t v = 0; v < t->view_count; v++)
+		weights_close(&t->weights[v]);
+	supervision_free(&t->masks);
+	scene_free(&t->scene);
+	text_free(&t->text);
+	free(t->offsets);
+	free(t->words);
+	free(t->objects);
+	free(t->refs);
+	free(t->object_names);
+	free(t->weights);
+	free(t->views);
+	*t = (struct training){0};
+}

@@ -1,0 +1,209 @@
+#include "formats/transforms.h"
+
+#include "base/mem.h"
+#include "formats/json.h"
+#include "geom/views.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The file_path lists of one split, sorted. */
+struct names {
+	size_t n, capacity;
+	const char **items;
+};
+
+/* A frame's own value, else the file's. */
+static int either_number(const cJSON *frame, const cJSON *root, const char *key, double *value,
+	const char *where, struct err *e)
+{
+	int got = json_number(frame, key, 0, value, where, e);
+
+	return got ? got : json_number(root, key, 0, value, where, e);
+}
+
+/* The model must be a perspective without distortion. */
+static int check_lens(const cJSON *frame, const cJSON *root, const char *where, struct err *e)
+{
+	static const char *const perspective[] = {"OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL",
+		"RADIAL", "FULL_OPENCV", "PERSPECTIVE"};
+	static const char *const coefficients[] = {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"};
+	const char *model = NULL;
+	double value;
+	size_t i;
+
+	if (json_string(frame, "camera_model", 0, &model, where, e) < 0 ||
+		(!model && json_string(root, "camera_model", 0, &model, where, e) < 0))
+		return -1;
+	for (i = 0; model && i < sizeof perspective / sizeof *perspective; i++)
+		if (!strcmp(model, perspective[i]))
+			break;
+	if (model && i == sizeof perspective / sizeof *perspective)
+		return err_set(e, ERR_FORMAT, "%s: key 'camera_model': '%.40s' is not a perspective camera",
+			where, model);
+	if (cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(root, "is_fisheye")))
+		return err_set(e, ERR_FORMAT, "%s: key 'is_fisheye': not a perspective camera", where);
+	for (i = 0; i < sizeof coefficients / sizeof *coefficients; i++) {
+		value = 0;
+		if (either_number(frame, root, coefficients[i], &value, where, e) < 0)
+			return -1;
+		if (value != 0)
+			return err_set(e, ERR_FORMAT,
+				"%s: key '%s': lens distortion %g; undistort the images first (colmap image_undistorter)",
+				where, coefficients[i], value);
+	}
+	return 0;
+}
+
+/* A focal length in pixels, or from the field of view in radians over `extent` pixels: 1, 0 where neither is
+ * there. */
+static int read_focal(const cJSON *frame, const cJSON *root, const char *focal, const char *angle,
+	double extent, double *out, const char *where, struct err *e)
+{
+	double radians;
+	int got = either_number(frame, root, focal, out, where, e);
+
+	if (got)
+		return got;
+	got = either_number(frame, root, angle, &radians, where, e);
+	if (got > 0) {
+		if (!(radians > 0 && radians < 3.14159))
+			return err_set(e, ERR_FORMAT, "%s: key '%s': %g is not an angle in (0, pi)", where,
+				angle, radians);
+		*out = extent / 2 / tan(radians / 2);
+	}
+	return got;
+}
+
+static int read_intrinsics(
+	struct camera *c, const cJSON *frame, const cJSON *root, const char *where, struct err *e)
+{
+	double width = 0, height = 0;
+	int got;
+
+	if (check_lens(frame, root, where, e) || either_number(frame, root, "w", &width, where, e) < 0 ||
+		either_number(frame, root, "h", &height, where, e) < 0)
+		return -1;
+	if (width == 0 || height == 0)
+		return err_set(e, ERR_FORMAT, "%s: key '%s' is missing", where, width == 0 ? "w" : "h");
+	if (view_set_size(c, width, height))
+		return err_set(e, ERR_FORMAT, "%s: size %gx%g is not whole numbers in 1 to 65536", where,
+			width, height);
+	got = read_focal(frame, root, "fl_x", "camera_angle_x", width, &c->fx, where, e);
+	if (got <= 0)
+		return got ? -1 : err_set(e, ERR_FORMAT, "%s: neither 'fl_x' nor 'camera_angle_x'", where);
+	c->fy = c->fx;
+	c->cx = width / 2;
+	c->cy = height / 2;
+	if (read_focal(frame, root, "fl_y", "camera_angle_y", height, &c->fy, where, e) < 0 ||
+		either_number(frame, root, "cx", &c->cx, where, e) < 0 ||
+		either_number(frame, root, "cy", &c->cy, where, e) < 0)
+		return -1;
+	return 0;
+}
+
+static int read_frame(
+	struct camera *c, const cJSON *frame, const cJSON *root, const char *where, struct err *e)
+{
+	const cJSON *matrix = cJSON_GetObjectItemCaseSensitive(frame, "transform_matrix");
+	int rows = cJSON_GetArraySize(matrix) == 3 ? 3 : 4; /* the last row is optional */
+	double m[4][4] = {[3] = {0, 0, 0, 1}}, rotation[3][3];
+	const char *image = NULL;
+
+	if (json_string(frame, "file_path", 1, &image, where, e) < 0 ||
+		read_intrinsics(c, frame, root, where, e) ||
+		json_matrix(frame, "transform_matrix", rows, 4, m[0], where, e))
+		return -1;
+	if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] != 1)
+		return err_set(
+			e, ERR_FORMAT, "%s: key 'transform_matrix': the last row is not 0 0 0 1", where);
+	/* Camera to world, y up and z backward: the second and third axis change sign. */
+	for (int r = 0; r < 3; r++)
+		for (int k = 0; k < 3; k++)
+			rotation[r][k] = r ? -m[k][r] : m[k][r];
+	camera_set_centre(c, rotation, (double[]){m[0][3], m[1][3], m[2][3]});
+	c->image = mem_strdup(image, e);
+	return c->image ? 0 : -1;
+}
+
+static int by_text(const void *a, const void *b)
+{
+	return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Adds a list of file paths: 1 where it is there. */
+static int add_names(struct names *names, const cJSON *root, const char *key, const char *path, struct err *e)
+{
+	const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, key), *item;
+
+	if (!list || cJSON_IsNull(list))
+		return 0;
+	if (!cJSON_IsArray(list))
+		return err_set(e, ERR_FORMAT, "%s: key '%s' is not a list", path, key);
+	cJSON_ArrayForEach(item, list)
+	{
+		void *block = (void *)names->items;
+		if (!cJSON_IsString(item))
+			return err_set(e, ERR_FORMAT, "%s: key '%s' is not a list of strings", path, key);
+		if (mem_grow(&block, &names->capacity, names->n + 1, sizeof *names->items, path, e))
+			return -1;
+		names->items = block;
+		names->items[names->n++] = item->valuestring;
+	}
+	if (names->n)
+		qsort((void *)names->items, names->n, sizeof *names->items, by_text);
+	return 1;
+}
+
+static int is_named(const struct names *names, const char *image)
+{
+	return names->n &&
+	       bsearch(&image, (const void *)names->items, names->n, sizeof *names->items, by_text);
+}
+
+/* Test views are those listed as such, and where there is a list of training views also those that it lacks.
+ */
+static int read_splits(struct cameras *c, const cJSON *root, const char *path, struct err *e)
+{
+	struct names train = {0}, test = {0};
+	int has_train = add_names(&train, root, "train_filenames", path, e), bad = has_train < 0;
+
+	bad = bad || add_names(&test, root, "test_filenames", path, e) < 0 ||
+	      add_names(&test, root, "val_filenames", path, e) < 0;
+	for (size_t i = 0; !bad && i < c->n; i++) {
+		struct camera *v = &c->views[i];
+		if (is_named(&test, v->image) || (has_train && !is_named(&train, v->image)))
+			v->split = SPLIT_TEST;
+	}
+	free((void *)train.items);
+	free((void *)test.items);
+	return -bad;
+}
+
+int transforms_parse(struct cameras *c, const cJSON *root, const char *path, struct err *e)
+{
+	const cJSON *frames = cJSON_GetObjectItemCaseSensitive(root, "frames"), *frame;
+	char where[512];
+	int bad = 0;
+
+	*c = (struct cameras){0};
+	if (!cJSON_IsArray(frames))
+		return err_set(e, ERR_FORMAT, "%s: key 'frames' is not a list", path);
+	c->views = mem_zalloc((size_t)cJSON_GetArraySize(frames), sizeof *c->views, path, e);
+	if (!c->views)
+		return -1;
+	cJSON_ArrayForEach(frame, frames)
+	{
+		snprintf(where, sizeof where, "%s: frame %zu", path, c->n);
+		bad = read_frame(&c->views[c->n++], frame, root, where, e);
+		if (bad)
+			break;
+	}
+	if (!bad)
+		bad = read_splits(c, root, path, e) || views_finish(c, path, e) ? -1 : 0;
+	if (bad)
+		cameras_free(c);
+	return bad;
+}
