@@ -205,17 +205,15 @@ static int load_layer(struct source *s, const struct bert *b, int i)
 	char at[64];
 
 	snprintf(at, sizeof at, "encoder.layer.%d.", i);
-	return load_linear(s, at, "attention.self.query", &l->query, width, width) ||
-			       load_linear(s, at, "attention.self.key", &l->key, width, width) ||
-			       load_linear(s, at, "attention.self.value", &l->value, width, width) ||
-			       load_linear(
-				       s, at, "attention.output.dense", &l->attention_out, width, width) ||
-			       load_norm(s, at, "attention.output.LayerNorm", &l->attention_norm, width) ||
-			       load_linear(s, at, "intermediate.dense", &l->inner, width, b->inner) ||
-			       load_linear(s, at, "output.dense", &l->outer, b->inner, width) ||
-			       load_norm(s, at, "output.LayerNorm", &l->norm, width)
-		       ? -1
-		       : 0;
+	int bad = load_linear(s, at, "attention.self.query", &l->query, width, width) ||
+		  load_linear(s, at, "attention.self.key", &l->key, width, width) ||
+		  load_linear(s, at, "attention.self.value", &l->value, width, width) ||
+		  load_linear(s, at, "attention.output.dense", &l->attention_out, width, width) ||
+		  load_norm(s, at, "attention.output.LayerNorm", &l->attention_norm, width) ||
+		  load_linear(s, at, "intermediate.dense", &l->inner, width, b->inner) ||
+		  load_linear(s, at, "output.dense", &l->outer, b->inner, width) ||
+		  load_norm(s, at, "output.LayerNorm", &l->norm, width);
+	return bad ? -1 : 0;
 }
 
 static void find_names(struct source *s)
