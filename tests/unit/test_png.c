@@ -232,7 +232,6 @@ static void test_jpeg(void)
 	CHECK(abs(rgb[3 * 64 * 20] - 80) < 6 && abs(rgb[3 * 64 * 20 + 1] - 100) < 6, "colour: %d",
 		rgb[3 * 64 * 20]);
 	free(rgb);
-	 * end */
 	for (size_t cut = 1; cut < len; cut++) {
 		put(bytes, cut);
 		e = (struct err){0};
