@@ -25,20 +25,12 @@ VEC_INLINE vecn vec_sqrt(vecn x)
 	return x;
 }
 
-/* mask ? a : b, lane by lane; mask is 0 or -1. */
-VEC_INLINE vecn vec_select(vecni mask, vecn a, vecn b)
-{
-	return (vecn)((mask & (vecni)a) | (~mask & (vecni)b));
-}
-
 /* x in the first `count` lanes, `fill` in the others. */
 VEC_INLINE vecn vec_first(vecn x, int count, float fill)
 {
-	static const int32_t numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-	vecni lane;
+	static const float lanes[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-	memcpy(&lane, numbers, sizeof lane);
-	return vec_select(lane < ((vecni){0} + count), x, vec_splat(fill));
+	return vec_select(vec_lt(vec_load(lanes), vec_splat((float)count)), x, vec_splat(fill));
 }
 
 /* `rows` rows of out = [base +] W in, over TILE vectors. base: 0 nothing, 1 what out holds, 2 bias. */
@@ -179,7 +171,7 @@ static void sum_channels(float *out, int rows, const float *a, int channels, int
 static void relu_back(float *d, const float *value, int channels)
 {
 	for (int i = 0; i < channels * L; i += VEC_LANES)
-		vec_store(d + i, vec_select(vec_load(value + i) > vec_splat(0), vec_load(d + i), vec_splat(0)));
+		vec_store(d + i, vec_keep(vec_lt(vec_splat(0), vec_load(value + i)), vec_load(d + i)));
 }
 
 static const float *panel_of(const float *array, int channels, size_t panel)
@@ -446,7 +438,7 @@ static void normalised_back(const struct block_model *b, const struct block_arra
 		}
 		vecn u = vec_load(sigma + v), d = vec_load(dm + v), t = averages_scaled ? vec_load(top + v) : vec_splat(0);
 		vecn du = d * kz + t * tz;
-		vecn inside = vec_select(squared > vec_splat(b->floor), vec_splat(1), vec_splat(0));
+		vecn inside = vec_keep(vec_lt(vec_splat(b->floor), squared), vec_splat(1));
 		vecn ds = vec_splat(-0.5f) * du * u * u * u * inside;
 		vecn mean_scale = averages_scaled ? vec_load(top + v) * u : vec_load(top + v);
 		vec_store(dnumerator + v, d * u);

@@ -1,0 +1,30 @@
+/* A trained model's answers: responses of Gaussians, and the mask of an image of them. */
+#ifndef REFER_RESPOND_H
+#define REFER_RESPOND_H
+
+#include "base/err.h"
+#include "refer/model.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct respond_model {
+	const struct refer_layout *layout;
+	enum refer_similarity similarity;
+	size_t scene_gaussians, n; /* N of the scene, M with features */
+	const int32_t *ids;	   /* (M) */
+	const float *features;	   /* (M,16) */
+	const float *parameters;
+	const float *means;	  /* (N,3) of the scene */
+	const double *low, *high; /* (3) what means are scaled by */
+};
+
+/* out (count,N): responses to the sentences `which` (count), whose words are words[offsets[r]..]. A sentence without words
+ * has no answer: all zero. */
+int respond_all(const struct respond_model *m, const int64_t *offsets, const float *words, const size_t *which, size_t count,
+	float *out, struct err *e);
+
+/* mask = image > 0; returns how sure it is: the mean of sigmoid(M) over the mask, 0 for an empty one. */
+double respond_mask(const float *image, size_t pixels, uint8_t *mask);
+
+#endif
