@@ -87,7 +87,7 @@ int json_matrix(const cJSON *object, const char *key, int rows, int columns, dou
 			return err_set(e, ERR_FORMAT, "%s: key '%s' is not %d numbers", where, key, rows);
 		return 0;
 	}
-	for (r = 0; !bad && r < rows; r++, row = row->next)
+	for (r = 0; !bad && r < rows; r++, row = row ? row->next : NULL)
 		bad = !row || get_numbers(row, columns, values + r * columns);
 	if (bad || row)
 		return err_set(e, ERR_FORMAT, "%s: key '%s' is not %dx%d numbers", where, key, rows, columns);

@@ -74,6 +74,8 @@ int scene_read_splats(struct scene *s, const char *path, struct err *e)
 	bad = check_values(&s->splats, path, e);
 done:
 	safetensors_close(&st);
+	if (bad)
+		splats_free(&s->splats);
 	return bad;
 }
 
