@@ -121,9 +121,13 @@ static int read_header(struct walk *w, struct npy *a)
 		if (!key || !take(w, ':'))
 			return walk_err(w, "not a key and a colon");
 		if (is_text(key, len, "descr")) {
+			skip_blank(w);
+			size_t begin = w->at;
 			const char *type = take_string(w, &type_len);
-			if (!is_text(type, type_len, "<f4"))
+			if (!is_text(type, type_len, "<f4")) {
+				w->at = begin;
 				return walk_err(w, "'descr' is not '<f4' (float32, little-endian)");
+			}
 			have |= HAVE_TYPE;
 		} else if (is_text(key, len, "fortran_order")) {
 			if (!take_word(w, "False"))

@@ -1,0 +1,278 @@
+/* PNG and JPEG: what we write comes back, other people's kinds are read, broken ones are refused. */
+#include "base/rng.h"
+#include "formats/png.h"
+#include "unit.h"
+
+#include <png.h>
+#include <jpeglib.h>
+#include <unistd.h>
+
+static char path[] = "/tmp/test_png.XXXXXX";
+
+static size_t slurp(char *bytes, size_t room)
+{
+	FILE *in = fopen(path, "rb");
+	size_t len = fread(bytes, 1, room, in);
+
+	fclose(in);
+	return len;
+}
+
+static void put(const char *bytes, size_t len)
+{
+	FILE *out = fopen(path, "wb");
+
+	fwrite(bytes, 1, len, out);
+	fclose(out);
+}
+
+/* A 3x2 PNG of any kind. rows: 2 rows of raw samples. */
+static void put_png(int depth, int colour, int interlace, const uint8_t *rows, size_t row_bytes)
+{
+	static const png_color palette[4] = {{0, 0, 0}, {0, 0, 1}, {9, 0, 0}, {0, 0, 0}};
+	png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+	png_infop info = png_create_info_struct(png);
+	png_bytep both[2] = {(png_bytep)(size_t)rows, (png_bytep)(size_t)(rows + row_bytes)};
+	FILE *out = fopen(path, "wb");
+
+	png_init_io(png, out);
+	png_set_IHDR(png, info, 3, 2, depth, colour, interlace, PNG_COMPRESSION_TYPE_DEFAULT,
+		PNG_FILTER_TYPE_DEFAULT);
+	if (colour == PNG_COLOR_TYPE_PALETTE) {
+		png_set_PLTE(png, info, palette, 4);
+		png_set_tRNS(png, info, (png_byte[]){0, 128, 255, 7}, 4, NULL);
+	}
+	png_write_info(png, info);
+	png_write_image(png, both);
+	png_write_end(png, info);
+	png_destroy_write_struct(&png, &info);
+	fclose(out);
+}
+
+static void expect_mask(const char *what, const char *expected)
+{
+	uint8_t *m;
+	int h = 0, w = 0;
+	char got[7] = "";
+	struct err e = {0};
+
+	if (!CHECK(!png_read_mask(path, &m, &h, &w, &e), "%s: %s", what, e.message))
+		return;
+	for (int i = 0; i < 6 && h == 2 && w == 3; i++)
+		got[i] = (char)('0' + m[i]);
+	CHECK(!strcmp(got, expected), "%s: %s, expected %s", what, got, expected);
+	free(m);
+}
+
+static void expect_rgb(const char *what, const uint8_t expected[18])
+{
+	uint8_t *rgb;
+	int h, w;
+	struct err e = {0};
+
+	if (!CHECK(!image_read_rgb(path, &rgb, &h, &w, &e), "%s: %s", what, e.message))
+		return;
+	CHECK(h == 2 && w == 3 && !memcmp(rgb, expected, 18), "%s", what);
+	free(rgb);
+}
+
+static void test_kinds(void)
+{
+	const uint8_t bits[2] = {0xa0, 0x40}, index[2] = {0x18, 0xc4}, grey[6] = {0, 1, 255, 0, 0, 7};
+	const uint8_t grey_alpha[12] = {0, 255, 1, 0, 0, 9, 0, 0, 2, 255, 0, 255};
+	const uint8_t rgba[24] = {
+		0, 0, 0, 255, 0, 0, 1, 0, 5, 0, 0, 9, 0, 0, 0, 0, 0, 7, 0, 255, 0, 0, 0, 255};
+	const uint8_t deep[12] = {0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 255, 255};
+	const uint8_t deep_rgb[36] = {[5] = 1, [12] = 3};
+
+	put_png(1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, bits, 1);
+	expect_mask("1 bit", "101010");
+	expect_rgb("1 bit", (uint8_t[18]){255, 255, 255, 0, 0, 0, 255, 255, 255, 0, 0, 0, 255, 255, 255});
+	put_png(2, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_NONE, index, 1);
+	expect_mask("palette with transparency: by colour", "011001");
+	expect_rgb("palette", (uint8_t[18]){0, 0, 0, 0, 0, 1, 9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1});
+	put_png(8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, grey, 3);
+	expect_mask("grey", "011001");
+	put_png(8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_ADAM7, grey, 3);
+	expect_mask("interlaced", "011001");
+	expect_rgb("interlaced", (uint8_t[18]){0, 0, 0, 1, 1, 1, 255, 255, 255, 0, 0, 0, 0, 0, 0, 7, 7, 7});
+	put_png(8, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_INTERLACE_NONE, grey_alpha, 6);
+	expect_mask("alpha does not count", "010010");
+	put_png(8, PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, rgba, 12);
+	expect_mask("any colour", "011010");
+	expect_rgb("any colour", (uint8_t[18]){0, 0, 0, 0, 0, 1, 5, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0, 0});
+	put_png(16, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, deep, 6);
+	expect_mask("16 bit: 1 of 65535 is foreground", "011001");
+	expect_rgb("16 bit", (uint8_t[18]){0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0, 255, 255, 255});
+	put_png(16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, deep_rgb, 18);
+	expect_mask("16 bit colour", "101000");
+}
+
+static void test_write(void)
+{
+	const uint8_t grey[6] = {0, 255, 0, 3, 0, 0},
+		      colour[18] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 0, 0, 0, 255, 254, 253, 9, 8, 7};
+	const uint16_t deep[6] = {0, 1, 256, 0x1234, 65535, 0};
+	uint8_t back[12];
+	struct err e = {0};
+
+	CHECK(!png_write(path, grey, 2, 3, 1, &e), "%s", e.message);
+	expect_mask("grey", "010100");
+	CHECK(!png_write(path, colour, 2, 3, 3, &e), "%s", e.message);
+	expect_rgb("colour", colour);
+	CHECK(!png_write16(path, deep, 2, 3, &e), "%s", e.message);
+	FILE *in = fopen(path, "rb");
+	png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+	png_infop info = png_create_info_struct(png);
+	png_init_io(png, in);
+	png_read_info(png, info);
+	CHECK(png_get_bit_depth(png, info) == 16 && png_get_color_type(png, info) == PNG_COLOR_TYPE_GRAY,
+		"16 bit grey");
+	png_read_image(png, (png_bytep[2]){back, back + 6});
+	png_destroy_read_struct(&png, &info, NULL);
+	fclose(in);
+	for (int i = 0; i < 6; i++)
+		CHECK(back[2 * i] * 256 + back[2 * i + 1] == deep[i], "value %d", i);
+	CHECK(png_write("/nowhere/at/all.png", grey, 2, 3, 1, &e) && e.code == ERR_SYSTEM &&
+			!strcmp(e.message, "/nowhere/at/all.png: No such file or directory"),
+		"%s", e.message);
+}
+
+/* A PNG cut anywhere is refused; one with changed bytes is refused or read. The sanitisers watch. */
+static void test_broken_png(void)
+{
+	uint8_t pixels[20 * 30], *m;
+	char bytes[4096];
+	struct rng rng;
+	struct err e = {0};
+	int h, w, refused = 0;
+
+	rng_seed(&rng, 2, 1);
+	for (size_t i = 0; i < sizeof pixels; i++)
+		pixels[i] = (uint8_t)rng_below(&rng, 5);
+	png_write(path, pixels, 20, 30, 1, &e);
+	size_t len = slurp(bytes, sizeof bytes);
+	for (size_t cut = 0; cut < len; cut++) {
+		put(bytes, cut);
+		e = (struct err){0};
+		CHECK(png_read_mask(path, &m, &h, &w, &e) && e.code == ERR_FORMAT &&
+				strstr(e.message, ": PNG: the file ends too early"),
+			"cut at %zu: %s", cut, e.message);
+	}
+	for (int round = 0; round < 3000; round++) {
+		char changed[sizeof bytes];
+		memcpy(changed, bytes, len);
+		changed[rng_below(&rng, (uint32_t)len)] ^= (char)(1 + rng_below(&rng, 255));
+		put(changed, len);
+		if (png_read_mask(path, &m, &h, &w, &e)) {
+			refused++;
+			if (e.code != ERR_FORMAT || !strstr(e.message, ": PNG: "))
+				CHECK(0, "%s", e.message);
+		} else {
+			free(m);
+		}
+	}
+	CHECK(refused > 2000, "%d refused", refused);
+	/* a size that a PNG may state and we do not read */
+	const char huge[] =
+		"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\x7f\xff\xff\xff\x7f\xff\xff\xff\x08\0\0\0\0\x7a\x62\x21\xbe";
+	put(huge, sizeof huge - 1);
+	CHECK(image_read_rgb(path, &m, &h, &w, &e) && e.code == ERR_FORMAT, "%s", e.message);
+}
+
+static size_t put_jpeg(J_COLOR_SPACE space, int components)
+{
+	struct jpeg_compress_struct jpeg;
+	struct jpeg_error_mgr manager;
+	FILE *out = fopen(path, "wb");
+	uint8_t row[64 * 4];
+
+	jpeg.err = jpeg_std_error(&manager);
+	jpeg_create_compress(&jpeg);
+	jpeg_stdio_dest(&jpeg, out);
+	jpeg.image_width = 64;
+	jpeg.image_height = 48;
+	jpeg.input_components = components;
+	jpeg.in_color_space = space;
+	jpeg_set_defaults(&jpeg);
+	jpeg_set_quality(&jpeg, 95, TRUE);
+	jpeg_start_compress(&jpeg, TRUE);
+	for (int y = 0; y < 48; y++) {
+		for (int i = 0; i < 64 * components; i++)
+			row[i] = (uint8_t)(i % components == 0 ? 4 * y : 100);
+		jpeg_write_scanlines(&jpeg, (JSAMPROW[1]){row}, 1);
+	}
+	jpeg_finish_compress(&jpeg);
+	jpeg_destroy_compress(&jpeg);
+	long len = ftell(out);
+	fclose(out);
+	return (size_t)len;
+}
+
+static void test_jpeg(void)
+{
+	uint8_t *rgb;
+	int h, w, refused = 0;
+	char bytes[8192];
+	struct rng rng;
+	struct err e = {0};
+
+	put_jpeg(JCS_GRAYSCALE, 1);
+	CHECK(!image_read_rgb(path, &rgb, &h, &w, &e) && h == 48 && w == 64, "%s", e.message);
+	CHECK(abs(rgb[3 * 64 * 20] - 80) < 4 && rgb[3 * 64 * 20] == rgb[3 * 64 * 20 + 2], "grey: %d",
+		rgb[3 * 64 * 20]);
+	free(rgb);
+	put_jpeg(JCS_CMYK, 4);
+	CHECK(image_read_rgb(path, &rgb, &h, &w, &e) &&
+			strstr(e.message, ": JPEG: CMYK colours are not supported"),
+		"%s", e.message);
+	put_jpeg(JCS_RGB, 3);
+	size_t len = slurp(bytes, sizeof bytes);
+	CHECK(!image_read_rgb(path, &rgb, &h, &w, &e) && h == 48 && w == 64, "%s", e.message);
+	CHECK(abs(rgb[3 * 64 * 20] - 80) < 6 && abs(rgb[3 * 64 * 20 + 1] - 100) < 6, "colour: %d",
+		rgb[3 * 64 * 20]);
+	free(rgb);
+	for (size_t cut = 1; cut < len; cut++) {
+		put(bytes, cut);
+		e = (struct err){0};
+		CHECK(image_read_rgb(path, &rgb, &h, &w, &e) && e.code == ERR_FORMAT &&
+				strstr(e.message, ": JPEG: "),
+			"cut at %zu: %s", cut, e.message);
+	}
+	rng_seed(&rng, 9, 1);
+	for (int round = 0; round < 2000; round++) {
+		char changed[sizeof bytes];
+		memcpy(changed, bytes, len);
+		changed[2 + rng_below(&rng, (uint32_t)len - 2)] ^= (char)(1 + rng_below(&rng, 255));
+		put(changed, len);
+		if (image_read_rgb(path, &rgb, &h, &w, &e))
+			refused++;
+		else
+			free(rgb);
+	}
+	CHECK(refused > 50, "%d refused", refused);
+	put("GIF89a", 6);
+	CHECK(image_read_rgb(path, &rgb, &h, &w, &e) &&
+			strstr(e.message, ": neither PNG nor JPEG: begins with byte 0x47"),
+		"%s", e.message);
+	CHECK(png_read_mask(path, &rgb, &h, &w, &e) && e.code == ERR_FORMAT && strstr(e.message, ": PNG: "),
+		"%s", e.message);
+	put("", 0);
+	CHECK(image_read_rgb(path, &rgb, &h, &w, &e) && strstr(e.message, ": an empty file, not an image"),
+		"%s", e.message);
+}
+
+int main(void)
+{
+	int fd = mkstemp(path);
+
+	if (fd < 0)
+		return 1;
+	close(fd);
+	test_kinds();
+	test_write();
+	test_broken_png();
+	test_jpeg();
+	unlink(path);
+	return unit_end();
+}

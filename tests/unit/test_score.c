@@ -1,0 +1,163 @@
+#include "mask_help.h"
+#include "mask/score.h"
+#include "unit.h"
+
+/* A row of 8 pixels, from a string of 0 and 1. */
+static struct rle row(const char *text)
+{
+	uint8_t pixels[8];
+
+	for (int i = 0; i < 8; i++)
+		pixels[i] = text[i] == '1';
+	return mask_rle(pixels, 1, 8);
+}
+
+static void measure(struct score_pairs *p)
+{
+	struct err e;
+
+	for (size_t i = 0; i < p->n; i++)
+		if (score_measure(&p->items[i], &e))
+			abort();
+}
+
+/* Truth of objects, predictions of sentences: every kind of pair at once. */
+static void test_by_hand(void)
+{
+	struct rle four = row("11110000"), two = row("11000000"), other = row("00001100"),
+		   none = row("00000000");
+	const struct score_mask truth[] = {
+		{"v1", NULL, "cup", &four},
+		{"v1", NULL, "plate", &none},
+		{"v1", "spoon-1", "spoon", &two},
+		{"v2", NULL, "cup", &four},
+	};
+	const struct score_mask predictions[] = {
+		{"v1", "cup-1", "cup", &four},	   /* 4/4 */
+		{"v1", "cup-2", "cup", &two},	   /* 2/4 */
+		{"v1", "plate-1", "plate", &four}, /* empty truth */
+		{"v1", "spoon-1", NULL, &other},   /* 0/4 */
+		{"v1", "fork-1", "fork", &four},   /* no such truth */
+		{"v9", "cup-1", "cup", &four},	   /* no such view */
+	};
+	struct score_pairs p;
+	struct score s;
+	struct err e = {0};
+
+	CHECK(!score_match(&p, truth, 4, predictions, 6, &e), "%s", e.message);
+	CHECK(p.n == 5 && p.unmatched == 1 && p.unlabelled == 1, "%zu %zu %zu", p.n, p.unmatched,
+		p.unlabelled);
+	measure(&p);
+	score_sum(&s, p.items, p.n);
+	CHECK(s.pairs == 4 && s.empty_truth == 1 && s.missing == 1, "%zu %zu %zu", s.pairs, s.empty_truth,
+		s.missing);
+	CHECK(s.miou == 1.5 / 4, "%g", s.miou);
+	CHECK(s.oiou == (4.0 + 2 + 0 + 0) / (4 + 4 + 4 + 4), "%g", s.oiou);
+	CHECK(s.precision[0] == 0.5 && s.precision[1] == 0.5 && s.precision[2] == 0.25, "%g %g %g",
+		s.precision[0], s.precision[1], s.precision[2]);
+	score_sort(p.items, p.n);
+	CHECK(!strcmp(p.items[0].object, "cup") && !strcmp(p.items[2].object, "cup") &&
+			!strcmp(p.items[3].object, "plate") && !strcmp(p.items[4].object, "spoon"),
+		"sorted by object");
+	CHECK(p.items[0].iou == 1 && p.items[1].iou == 0.5 && !p.items[2].prediction,
+		"in the order of matching");
+	score_sum(&s, p.items, 3);
+	CHECK(s.pairs == 3 && s.miou == 0.5, "cup: %zu, %g", s.pairs, s.miou);
+	score_sum(&s, p.items + 3, 1);
+	CHECK(s.pairs == 0 && s.miou == 0 && s.empty_truth == 1, "plate");
+	score_pairs_free(&p);
+	rle_free(&four);
+	rle_free(&two);
+	rle_free(&other);
+	rle_free(&none);
+}
+
+/* Truth of sentences: a ref finds its own; without one, or with another, the object decides. */
+static void test_refs(void)
+{
+	struct rle a = row("11110000"), b = row("00001111"), c = row("11111111");
+	const struct score_mask truth[] = {
+		{"v", "r1", "cup", &a},
+		{"v", "r2", "cup", &b},
+		{"v", NULL, "cup", &c},
+	};
+	const struct score_mask by_ref[] = {
+		{"v", "r2", "cup", &b}, {"v", "r7", "cup", &c}, {"v", NULL, "cup", &a}};
+	struct score_pairs p;
+	struct err e = {0};
+
+	CHECK(!score_match(&p, truth, 3, by_ref, 3, &e) && p.n == 4, "%zu", p.n);
+	measure(&p);
+	CHECK(p.items[0].truth == &b && p.items[0].iou == 1, "r2 has a truth of its own");
+	CHECK(p.items[1].truth == &c && p.items[1].iou == 1, "r7 has not: the object's, the one without ref");
+	CHECK(p.items[2].truth == &a && p.items[2].iou == 1, "without ref: r1, which no ref named");
+	CHECK(p.items[3].truth == &c && p.items[3].iou == 0.5, "without ref: and the object's");
+	score_pairs_free(&p);
+
+	/* no truth without ref: the first of the object; the rest are missing */
+	CHECK(!score_match(&p, truth, 2, by_ref + 1, 1, &e) && p.n == 2, "%zu", p.n);
+	CHECK(p.items[0].truth == &a && p.items[0].prediction == &c && p.items[1].truth == &b &&
+			!p.items[1].prediction,
+		"r7 meets r1's, r2 is missing");
+	score_pairs_free(&p);
+
+	/* nothing at all on either side */
+	CHECK(!score_match(&p, truth, 3, NULL, 0, &e) && p.n == 3 && !p.items[0].prediction,
+		"no predictions");
+	score_pairs_free(&p);
+	CHECK(!score_match(&p, NULL, 0, by_ref, 3, &e) && p.n == 0 && p.unlabelled == 3, "no truth");
+	score_pairs_free(&p);
+	rle_free(&a);
+	rle_free(&b);
+	rle_free(&c);
+}
+
+static void test_duplicates(void)
+{
+	struct rle a = row("11110000");
+	struct score_mask m[] = {
+		{"v", "r1", "cup", &a},
+		{"v", "r2", "cup", &a},
+		{"w", "r1", "cup", &a},
+		{"v", NULL, "cup", &a},
+		{"v", NULL, "pan", &a},
+		{"v", "r2", NULL, &a},
+	};
+	size_t earlier = 9, later = 9;
+	struct err e;
+
+	CHECK(!score_duplicate(m, 5, &earlier, &later, &e), "%zu %zu", earlier, later);
+	CHECK(score_duplicate(m, 6, &earlier, &later, &e) == 1 && earlier == 1 && later == 5, "%zu %zu",
+		earlier, later);
+	m[4].object = "cup";
+	CHECK(score_duplicate(m, 6, &earlier, &later, &e) == 1 && earlier == 3 && later == 4, "%zu %zu",
+		earlier, later);
+	rle_free(&a);
+}
+
+/* A prediction of half the size is doubled; one pixel of four is not enough when it is halved. */
+static void test_sizes(void)
+{
+	const uint8_t big[16] = {1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0}, small[4] = {1, 0, 0, 0};
+	struct rle truth = mask_rle(big, 4, 4), prediction = mask_rle(small, 2, 2);
+	struct score_pair p = {.object = "o", .truth = &truth, .prediction = &prediction};
+	struct err e;
+
+	CHECK(!score_measure(&p, &e) && p.intersection == 4 && p.either == 5 && p.iou == 0.8, "%zu %zu",
+		p.intersection, p.either);
+	p.truth = &prediction;
+	p.prediction = &truth;
+	CHECK(!score_measure(&p, &e) && p.intersection == 1 && p.either == 1, "%zu %zu", p.intersection,
+		p.either);
+	rle_free(&truth);
+	rle_free(&prediction);
+}
+
+int main(void)
+{
+	test_by_hand();
+	test_refs();
+	test_duplicates();
+	test_sizes();
+	return unit_end();
+}
