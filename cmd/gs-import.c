@@ -6,6 +6,7 @@
 #include "formats/ply.h"
 #include "formats/scene.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,18 +65,32 @@ static void split_names(const struct cli *cli, struct cameras *c)
 	}
 }
 
-/* The camera file: --cameras, or what is beside SPLATS. free() it; NULL with *e set. */
+/* What is beside SPLATS or, where 3DGS put it into point_cloud/iteration_N, in the folder of the trained
+ * model. */
+static char *find_beside(const char *splats, struct err *e)
+{
+	char *dir = file_dir(splats, e), *found = dir ? camerafile_find(dir, e) : NULL;
+	const char *slash = dir ? strrchr(dir, '/') : NULL;
+
+	if (dir && !found && !strncmp(slash ? slash + 1 : dir, "iteration_", 10)) {
+		struct err ignored;
+		char *model = file_join(dir, "../..", "", e);
+		found = model ? camerafile_find(model, &ignored) : NULL;
+		free(model);
+	}
+	free(dir);
+	return found;
+}
+
+/* The camera file; free() it. NULL with *e set. */
 static char *choose_cameras(const struct cli *cli, const char *splats, struct err *e)
 {
 	if (cameras_path)
 		return file_is_dir(cameras_path) ? camerafile_find(cameras_path, e)
 						 : mem_strdup(cameras_path, e);
-	if (!strcmp(splats, "-"))
-		cli_usage(cli, "--cameras is required where SPLATS is stdin");
-	char *dir = file_dir(splats, e), *found = dir ? camerafile_find(dir, e) : NULL;
-	if (dir && !found)
-		err_prefix(e, "--cameras is not given");
-	free(dir);
+	char *found = find_beside(splats, e);
+	if (!found && e->code == ERR_FORMAT)
+		cli_usage(cli, "--cameras is not given, and %s", e->message);
 	return found;
 }
 
@@ -105,7 +120,7 @@ static void note_splats(
 	cli_warn(cli, "%s: left out %zu of %zu Gaussians: %zu not finite, %zu with a zero quaternion",
 		file_name(splats), dropped, r->read, r->not_finite, r->zero_quat);
 	for (size_t i = 0; i < dropped; i++)
-		cli_note(cli, 1, "%s: left out Gaussian %zu", file_name(splats), r->dropped[i]);
+		cli_note(cli, i < 20 ? 1 : 2, "%s: left out Gaussian %zu", file_name(splats), r->dropped[i]);
 }
 
 static void note_cameras(const struct cli *cli, const struct cameras *c, const char *path, size_t missing)
@@ -119,14 +134,34 @@ static void note_cameras(const struct cli *cli, const struct cameras *c, const c
 		cli_warn(cli, "%s: no photograph for %zu of %zu views", images_path, missing, c->n);
 }
 
+/* For the scene's metadata. No paths: a scene's bytes do not depend on where its sources were. */
+static char *describe_options(struct err *e)
+{
+	size_t bytes = (test_views ? strlen(test_views) : 0) + 16;
+	char *text = mem_alloc(bytes, 1, "options", e);
+
+	if (text)
+		snprintf(
+			text, bytes, "%s%s", test_views ? "--test-views " : "", test_views ? test_views : "");
+	return text;
+}
+
+static int check_images(struct err *e)
+{
+	if (!images_path || file_is_dir(images_path))
+		return 0;
+	errno = file_exists(images_path) ? ENOTDIR : ENOENT;
+	return err_errno(e, "%s", images_path);
+}
+
 static int run(
 	const struct cli *cli, struct scene *s, struct ply_report *report, char **cameras, struct err *e)
 {
 	const char *splats = cli->operands[0];
-	char metadata[256] = "";
+	char *metadata;
 	size_t missing;
 
-	if (ply_read(&s->splats, s->offset, report, splats, e))
+	if (check_images(e) || ply_read(&s->splats, s->offset, report, splats, e))
 		return -1;
 	*cameras = choose_cameras(cli, splats, e);
 	if (!*cameras || camerafile_read(&s->cameras, *cameras, e))
@@ -137,11 +172,12 @@ static int run(
 		split_names(cli, &s->cameras);
 	cameras_shift(&s->cameras, s->offset);
 	refuse_overwrite(cli, *cameras, e);
-	if (test_views)
-		snprintf(metadata, sizeof metadata, "--test-views %.200s", test_views);
-	if (file_make_dir(cli->output, e) ||
-		camerafile_images(&s->cameras, images_path, cli->output, &missing, e) ||
-		scene_write(s, cli->output, metadata, e))
+	metadata = describe_options(e);
+	int bad = !metadata || file_make_dir(cli->output, e) ||
+		  camerafile_images(&s->cameras, images_path, cli->output, &missing, e) ||
+		  scene_write(s, cli->output, metadata, e);
+	free(metadata);
+	if (bad)
 		return -1;
 	note_splats(cli, s, report, splats);
 	note_cameras(cli, &s->cameras, *cameras, missing);
@@ -159,8 +195,10 @@ int main(int argc, char **argv)
 	cli_parse(&cli, &tool, argc, argv);
 	if (!strcmp(cli.output, "-"))
 		cli_usage(&cli, "-o: a scene is a folder and cannot go to stdout");
-	if (images_path && !file_is_dir(images_path))
-		cli_usage(&cli, "--images: '%s' is not a folder", images_path);
+	if (!cameras_path && !strcmp(cli.operands[0], "-"))
+		cli_usage(&cli, "--cameras is required where SPLATS is stdin");
+	if (cameras_path && !strcmp(cameras_path, "-") && !strcmp(cli.operands[0], "-"))
+		cli_usage(&cli, "--cameras and SPLATS cannot both be stdin");
 	int bad = run(&cli, &s, &report, &cameras, &e);
 	scene_free(&s);
 	free(report.dropped);

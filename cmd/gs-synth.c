@@ -34,12 +34,18 @@ static int open_in(struct file_out *out, const char *dir, const char *name, stru
 	return bad;
 }
 
-static int make_dir_in(const char *dir, const char *name, struct err *e)
+/* Makes the folder of the photographs and tells each camera the name of its own. */
+static int name_photographs(struct job *j, const char *dir, struct err *e)
 {
-	char *path = file_join(dir, name, "", e);
-	int bad = !path || file_make_dir(path, e) ? -1 : 0;
+	char *images = file_join(dir, "images", "", e);
+	int bad = !images || file_make_dir(images, e) ? -1 : 0;
 
-	free(path);
+	for (size_t i = 0; i < j->scene.cameras.n && !bad; i++) {
+		struct camera *c = &j->scene.cameras.views[i];
+		c->image = file_join(images, c->name, ".png", e);
+		bad = c->image ? 0 : -1;
+	}
+	free(images);
 	return bad;
 }
 
@@ -49,8 +55,8 @@ static int write_model(struct job *j, const char *dir, struct err *e)
 	char *ply = file_join(dir, "point_cloud.ply", "", e), *sparse = file_join(dir, "sparse/0", "", e);
 	int bad = -1;
 
-	if (ply && sparse && !ply_write(&j->scene.splats, offset, ply, e) && !file_make_dir(sparse, e))
-		bad = colmap_write_text(&j->scene.cameras, sparse, ".png", e);
+	if (ply && sparse && !ply_write(&j->scene.splats, offset, ply, e))
+		bad = colmap_write_text(&j->scene.cameras, sparse, e);
 	free(ply);
 	free(sparse);
 	return bad;
@@ -94,26 +100,21 @@ static int write_test_views(struct job *j, const char *dir, struct err *e)
 }
 
 static int write_photograph(
-	struct job *j, const struct camera *c, const struct render_view *view, const char *dir, struct err *e)
+	struct job *j, const struct camera *c, const struct render_view *view, struct err *e)
 {
 	static const float background[3] = {0.6f, 0.62f, 0.65f};
 	size_t values = 3 * (size_t)c->width * (size_t)c->height;
 	float *rgb = mem_alloc(values, sizeof *rgb, "photograph", e);
 	uint8_t *bytes = mem_alloc(values, 1, "photograph", e);
-	char *images = file_join(dir, "images", "", e);
-	char *path = images ? file_join(images, c->name, ".png", e) : NULL;
-	int bad = -1;
+	int bad = !rgb || !bytes || render_colors(view, &j->scene.splats, c, background, rgb, e) ? -1 : 0;
 
-	if (!rgb || !bytes || !path || render_colors(view, &j->scene.splats, c, background, rgb, e))
-		goto done;
-	for (size_t i = 0; i < values; i++)
-		bytes[i] = (uint8_t)lrintf(255 * rgb[i]);
-	bad = png_write(path, bytes, c->height, c->width, 3, e);
-done:
+	if (!bad) {
+		for (size_t i = 0; i < values; i++)
+			bytes[i] = (uint8_t)lrintf(255 * rgb[i]);
+		bad = png_write(c->image, bytes, c->height, c->width, 3, e);
+	}
 	free(rgb);
 	free(bytes);
-	free(images);
-	free(path);
 	return bad;
 }
 
@@ -151,13 +152,13 @@ static int put_candidates(
 	return bad;
 }
 
-static int write_view(struct job *j, int number, const char *dir, struct err *e)
+static int write_view(struct job *j, int number, struct err *e)
 {
 	const struct camera *c = &j->scene.cameras.views[number];
 	size_t pixels = (size_t)c->width * (size_t)c->height;
 	uint8_t *masks = mem_alloc((size_t)j->scene.object_count, pixels, "truth", e);
 	struct render_view *view = masks ? render_prepare(&j->scene.splats, c, e) : NULL;
-	int bad = !view || write_photograph(j, c, view, dir, e) ||
+	int bad = !view || write_photograph(j, c, view, e) ||
 		  synth_scene_truth(&j->scene, view, pixels, masks, e) || put_truth(j, c, masks, e) ||
 		  (c->split == SPLIT_TRAIN && put_candidates(j, number, c, masks, e));
 
@@ -175,7 +176,7 @@ static int write_views(struct job *j, const char *dir, struct err *e)
 
 	cli_progress_start(&progress, &j->cli, "views", j->options.views);
 	for (int i = 0; i < j->options.views && !bad; i++) {
-		bad = write_view(j, i, dir, e);
+		bad = write_view(j, i, e);
 		cli_progress_step(&progress, i + 1, NULL);
 	}
 	cli_progress_end(&progress);
@@ -239,7 +240,7 @@ int main(int argc, char **argv)
 	j.options = (struct synth_options){
 		(uint64_t)j.cli.seed, (int)objects, (int)views, size[0], size[1], (size_t)gaussians};
 	const char *dir = j.cli.output;
-	int bad = make(&j, &e) || make_dir_in(dir, "images", &e) || write_model(&j, dir, &e) ||
+	int bad = make(&j, &e) || name_photographs(&j, dir, &e) || write_model(&j, dir, &e) ||
 		  write_sentences(&j, dir, &e) || write_test_views(&j, dir, &e) || write_views(&j, dir, &e);
 	free(j.sentences);
 	synth_scene_free(&j.scene);

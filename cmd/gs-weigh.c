@@ -115,7 +115,7 @@ int main(int argc, char **argv)
 	cli_parse(&cli, &tool, argc, argv);
 	if (!strcmp(cli.output, "-"))
 		cli_usage(&cli, "--output: weights go to a folder, not to stdout");
-	snprintf(o.text, sizeof o.text, "--scale %.17g --tolerance %.17g --precision %s", o.scale,
+	snprintf(o.text, sizeof o.text, "--scale %.15g --tolerance %.15g --precision %s", o.scale,
 		o.tolerance, o.precision ? "f16" : "f32");
 	if (scene_read(&scene, cli.operands[0], &e))
 		return cli_fail(&cli, &e);

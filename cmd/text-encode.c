@@ -203,7 +203,7 @@ static int run(const struct cli *c, const char *dir, struct err *e)
 	int bad;
 
 	name_options(options, sizeof options, dir);
-	bad = sentences_read(&s, c->operand_count ? c->operands[0] : "-", e) || vocab_read(&v, dir, e) ||
+	bad = vocab_read(&v, dir, e) || sentences_read(&s, c->operand_count ? c->operands[0] : "-", e) ||
 	      bert_model_read(&b, dir, e) || check_vocab(&v, &b, dir, e) ||
 	      tokenise(c, &t, &s, &v, (size_t)b.positions, e) || alloc_text(&out, &s, &t, b.width, e) ||
 	      encode(c, &out, &b, &t, e);

@@ -2,8 +2,12 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/colmap.h"
 #include "formats/jsonl.h"
 #include "formats/masks.h"
+#include "formats/model.h"
+#include "formats/npy.h"
+#include "formats/ply.h"
 #include "formats/png.h"
 #include "formats/scene.h"
 #include "formats/sentences.h"
@@ -46,7 +50,7 @@ static void names_free(struct names *names)
 static void add_splats(struct check *c, const struct splats *s)
 {
 	add_fact(c, "gaussians", (long long)s->n);
-	add_fact(c, "spherical harmonics", s->sh_coefficients);
+	add_fact(c, "harmonics", s->sh_coefficients);
 }
 
 /* The views and, where they have one size, that. */
@@ -116,6 +120,49 @@ static int check_text(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
+static int check_model(struct check *c, const char *path, struct err *e)
+{
+	struct model m;
+
+	if (model_read(&m, path, e))
+		return -1;
+	add_fact(c, "gaussians", (long long)m.n);
+	add_fact(c, "gaussians of the scene", (long long)m.scene_gaussians);
+	add_fact(c, "parameters", (long long)m.layout.count);
+	model_free(&m);
+	return 0;
+}
+
+static int check_ply(struct check *c, const char *path, struct err *e)
+{
+	struct splats s;
+	struct ply_report report;
+	double offset[3];
+
+	if (ply_read(&s, offset, &report, path, e))
+		return -1;
+	c->kind = "3DGS ply";
+	add_splats(c, &s);
+	if (report.read > s.n)
+		add_fact(c, "unusable gaussians", (long long)(report.read - s.n));
+	free(report.dropped);
+	splats_free(&s);
+	return 0;
+}
+
+static int check_npy(struct check *c, const char *path, struct err *e)
+{
+	struct npy a;
+
+	if (npy_read(&a, path, e))
+		return -1;
+	c->kind = "npy";
+	add_fact(c, "dimensions", a.dims);
+	add_fact(c, "values", (long long)a.count);
+	npy_free(&a);
+	return 0;
+}
+
 /* Reading starts again at the beginning; only stdin keeps its place between readers. */
 static int start_again(const char *path, struct err *e)
 {
@@ -134,6 +181,7 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 	} ours[] = {
 		{"refer.splats", check_splats},
 		{"refer.text", check_text},
+		{"refer.model", check_model},
 	};
 
 	if (safetensors_open(&c->listing, path, e))
@@ -229,68 +277,89 @@ static int check_records(struct check *c, const char *path, struct err *e)
 			&j, e, "neither a sentence (key 'text') nor a mask (key 'segmentation' or 'path')");
 	cJSON_Delete(first);
 	jsonl_close(&j);
-	if (got <= 0)
-		return got ? -1 : err_set(e, ERR_FORMAT, "%s: no records", file_name(path));
-	if (start_again(path, e))
+	if (got < 0 || start_again(path, e))
 		return -1;
 	return is_sentence ? check_sentences(c, path, e) : check_masks(c, path, e);
 }
 
-/* A JSON list of cameras: a scene's. */
-static int check_list(struct check *c, const char *path, struct err *e)
+/* How a file begins. */
+struct head {
+	size_t len;
+	unsigned char bytes[4096];
+};
+
+static int begins(const struct head *h, const char *with)
 {
-	return check_scene_cameras(c, path, e);
+	size_t len = strlen(with);
+
+	return h->len >= len && !memcmp(h->bytes, with, len);
 }
 
-static int is_json(const unsigned char *head, size_t len, int first)
+/* A UTF-8 byte order mark and blanks may stand before the first bracket. */
+static int is_json(const struct head *h, int first)
 {
-	size_t i = 0;
+	size_t i = begins(h, "\xef\xbb\xbf") ? 3 : 0;
 
-	while (i < len && strchr(" \t\r\n", head[i]) && head[i])
+	while (i < h->len && h->bytes[i] && strchr(" \t\r\n", h->bytes[i]))
 		i++;
-	return i < len && head[i] == first;
+	return i < h->len && h->bytes[i] == first;
 }
 
 /* An eight-byte length below 2^40 and, where there is more, a JSON object: no text has zero bytes there. */
-static int is_safetensors(const unsigned char *head, size_t len)
+static int is_safetensors(const struct head *h)
 {
-	return len >= 8 && !head[5] && !head[6] && !head[7] && (len == 8 || head[8] == '{');
-}
+	const unsigned char *b = h->bytes;
 
-static int is_image(const unsigned char *head, size_t len)
-{
-	return len >= 3 && (!memcmp(head, "\x89PN", 3) || !memcmp(head, "\xff\xd8\xff", 3));
+	return h->len >= 8 && !b[5] && !b[6] && !b[7] && (h->len == 8 || b[8] == '{');
 }
 
 static int check_stream(struct check *c, const char *path, struct err *e)
 {
-	unsigned char head[4096];
+	struct head h;
 	FILE *in = file_open(path, e);
 
 	if (!in)
 		return -1;
-	size_t len = fread(head, 1, sizeof head, in);
+	h.len = fread(h.bytes, 1, sizeof h.bytes, in);
 	int bad = ferror(in) ? err_errno(e, "%s", file_name(path)) : 0;
 	file_close(in);
 	if (bad || start_again(path, e))
 		return -1;
-	if (!len)
+	if (!h.len)
 		return err_set(e, ERR_FORMAT, "%s: empty", file_name(path));
-	if (is_safetensors(head, len))
+	if (is_safetensors(&h))
 		return check_safetensors(c, path, e);
-	if (is_image(head, len))
+	if (begins(&h, "\x89PN") || begins(&h, "\xff\xd8\xff"))
 		return check_image(c, path, e);
-	if (is_json(head, len, '['))
-		return check_list(c, path, e);
-	if (is_json(head, len, '{'))
+	if (begins(&h, "ply\n") || begins(&h, "ply\r"))
+		return check_ply(c, path, e);
+	if (begins(&h, "\x93NUMPY"))
+		return check_npy(c, path, e);
+	if (is_json(&h, '['))
+		return check_scene_cameras(c, path, e);
+	if (is_json(&h, '{'))
 		return check_records(c, path, e);
 	return err_set(e, ERR_FORMAT, "%s: not a kind of file that the suite reads", file_name(path));
+}
+
+static int check_colmap(struct check *c, const char *path, struct err *e)
+{
+	struct cameras views;
+
+	if (colmap_read(&views, path, e))
+		return -1;
+	c->kind = "COLMAP model";
+	add_views(c, &views);
+	cameras_free(&views);
+	return 0;
 }
 
 static int check_folder(struct check *c, const char *path, struct err *e)
 {
 	static const char *const parts[] = {"splats.safetensors", "cameras.json"};
 
+	if (colmap_is_model(path))
+		return check_colmap(c, path, e);
 	for (int i = 0; i < 2; i++) {
 		char *part = file_join(path, parts[i], "", e);
 		if (!part)
@@ -298,7 +367,8 @@ static int check_folder(struct check *c, const char *path, struct err *e)
 		int found = file_exists(part);
 		free(part);
 		if (!found)
-			return err_set(e, ERR_FORMAT, "%s: not a scene folder: no %s", path, parts[i]);
+			return err_set(e, ERR_FORMAT, "%s: neither a scene (no %s) nor a COLMAP model", path,
+				parts[i]);
 	}
 	return check_scene(c, path, e);
 }

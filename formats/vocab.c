@@ -157,6 +157,8 @@ int vocab_read(struct vocab *v, const char *dir, struct err *e)
 	} else if (file_exists(list)) {
 		path = list;
 		bad = read_list(v, list, e) || check_config(dir, e);
+	} else if (!file_is_dir(dir)) {
+		err_errno(e, "%s", dir);
 	} else {
 		err_set(e, ERR_SYSTEM, "%s: has neither tokenizer.json nor vocab.txt", dir);
 	}

@@ -1,9 +1,9 @@
 /* Vectors of floats for hot kernels: fused multiply-add, exp, exp2, masks, on the target's widest registers.
  *
- * vecn has VEC_LANES lanes: 16 with AVX-512, 8 with AVX2 and FMA, else 4. Arithmetic, comparisons and
- * indexing are the compiler's own (GCC vector extensions); a comparison gives a vecni of 0 and -1. A kernel
- * is written once, in a file that is included by one .c file for each instruction set, which selects it
- * before it includes this header:
+ * vecn has VEC_LANES lanes: 16 with AVX-512, 8 with AVX2 and FMA, else 4. Arithmetic and indexing are the
+ * compiler's own (GCC vector extensions); vecni holds as many int32_t; vecm is the mask that a comparison
+ * gives. A kernel is written once, in a file that is included by one .c file for each instruction set, which
+ * selects it before it includes this header:
  *
  *	#pragma GCC target("avx512f,avx512dq,avx512bw,avx512vl,avx2,fma")
  *	#pragma GCC target("avx2,fma")
@@ -36,6 +36,11 @@
 
 typedef float vecn __attribute__((vector_size(4 * VEC_LANES)));
 typedef int32_t vecni __attribute__((vector_size(4 * VEC_LANES)));
+#if VEC_LANES == 16
+typedef __mmask16 vecm;
+#else
+typedef vecni vecm;
+#endif
 
 VEC_INLINE vecn vec_splat(float x)
 {
@@ -109,11 +114,63 @@ VEC_INLINE vecn vec_max(vecn a, vecn b)
 #endif
 }
 
-/* Bit l is lane l of a mask of 0 and -1. */
-VEC_INLINE uint32_t vec_bits(vecni mask)
+VEC_INLINE vecm vec_lt(vecn a, vecn b)
 {
 #if VEC_LANES == 16
-	return _mm512_movepi32_mask((__m512i)mask);
+	return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
+#else
+	return a < b;
+#endif
+}
+
+VEC_INLINE vecm vec_ge(vecn a, vecn b)
+{
+#if VEC_LANES == 16
+	return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_GE_OQ);
+#else
+	return a >= b;
+#endif
+}
+
+/* mask ? a : b, lane by lane. */
+VEC_INLINE vecn vec_select(vecm mask, vecn a, vecn b)
+{
+#if VEC_LANES == 16
+	return (vecn)_mm512_mask_blend_ps(mask, (__m512)b, (__m512)a);
+#else
+	return (vecn)((mask & (vecni)a) | (~mask & (vecni)b));
+#endif
+}
+
+/* mask ? x : 0 */
+VEC_INLINE vecn vec_keep(vecm mask, vecn x)
+{
+#if VEC_LANES == 16
+	return (vecn)_mm512_maskz_mov_ps(mask, (__m512)x);
+#else
+	return (vecn)(mask & (vecni)x);
+#endif
+}
+
+/* Adds one to the integers at p where the mask is set. */
+VEC_INLINE void vec_count(int32_t *p, vecm mask)
+{
+	vecni x;
+
+	memcpy(&x, p, sizeof x);
+#if VEC_LANES == 16
+	x = (vecni)_mm512_mask_add_epi32((__m512i)x, mask, (__m512i)x, _mm512_set1_epi32(1));
+#else
+	x -= mask;
+#endif
+	memcpy(p, &x, sizeof x);
+}
+
+/* Bit l is lane l of the mask. */
+VEC_INLINE uint32_t vec_bits(vecm mask)
+{
+#if VEC_LANES == 16
+	return mask;
 #elif VEC_LANES == 8
 	return (uint32_t)_mm256_movemask_ps((__m256)mask);
 #elif defined __x86_64__
@@ -153,7 +210,8 @@ VEC_INLINE vecn vec_exp(vecn x)
 	return p * (vecn)((half + 127) << 23) * (vecn)((whole - half + 127) << 23);
 }
 
-/* 2^x for |x| <= 126: within 2.2 ulp, and cheaper than vec_exp, as no range is checked: some float beyond it. */
+/* 2^x for |x| <= 126: within 2.2 ulp, and cheaper than vec_exp, as no range is checked: some float beyond it.
+ */
 VEC_INLINE vecn vec_exp2(vecn x)
 {
 	/* the sum holds round(x) in its low bits, from where it goes to the exponent */

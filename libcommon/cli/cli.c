@@ -15,7 +15,7 @@
 #define VERSION "unknown"
 #endif
 
-enum { COMMON_COUNT = 8 };
+enum { COMMON_COUNT = 8, HELP_COLUMN = 32 };
 
 /* The shared options that this tool honours, as rows of the same kind as its own. */
 static int common_rows(struct cli *c, struct cli_option rows[COMMON_COUNT])
@@ -48,21 +48,31 @@ static int common_rows(struct cli *c, struct cli_option rows[COMMON_COUNT])
 	return n;
 }
 
+/* Words after a margin of HELP_COLUMN columns, broken before column 100. */
+static void print_wrapped(const char *text, int column)
+{
+	while (*text) {
+		int len = (int)strcspn(text, " ");
+		if (column + 1 + len > 100 && column > HELP_COLUMN)
+			column = printf("\n%*s", HELP_COLUMN, "") - 1;
+		column += printf("%s%.*s", column > HELP_COLUMN ? " " : "", len, text);
+		text += len + (text[len] == ' ');
+	}
+	printf("\n");
+}
+
 static void print_row(const struct cli_option *o)
 {
-	char left[96];
-	int used = 0;
+	int used = o->letter ? printf("  -%c, --%s", o->letter, o->name) : printf("      --%s", o->name);
 
-	if (o->letter)
-		used += snprintf(left, sizeof left, "  -%c, --%s", o->letter, o->name);
-	else
-		used += snprintf(left, sizeof left, "      --%s", o->name);
 	if (o->arg)
-		snprintf(left + used, sizeof left - (size_t)used, " %s", o->arg);
-	if (strlen(left) < 30)
-		printf("%-30s  %s\n", left, o->help);
-	else
-		printf("%s\n%-30s  %s\n", left, "", o->help);
+		used += printf(" %s", o->arg);
+	if (used + 2 > HELP_COLUMN) {
+		printf("\n");
+		used = 0;
+	}
+	printf("%*s", HELP_COLUMN - used, "");
+	print_wrapped(o->help, HELP_COLUMN);
 }
 
 static void print_help(struct cli *c)

@@ -3,9 +3,9 @@
 #include <math.h>
 
 /* For any processor: 4 x 8 in vectors of four floats, which the compiler maps to what there is. */
-typedef float four __attribute__((vector_size(16), may_alias));
+#define FOUR float __attribute__((vector_size(16), may_alias))
 
-static four plain_madd(four x, four y, four sum)
+static FOUR plain_madd(FOUR x, FOUR y, FOUR sum)
 {
 #ifdef FP_FAST_FMAF
 	for (int i = 0; i < 4; i++)
@@ -19,18 +19,18 @@ static four plain_madd(four x, four y, four sum)
 static void run_plain(float *c, size_t stride, const float *start, size_t start_stride, const float *a,
 	size_t row, size_t column, const float *b, size_t k)
 {
-	four sum[4][2];
+	FOUR sum[4][2];
 
 #pragma GCC unroll 4
 	for (int i = 0; i < 4; i++)
-		sum[i][0] = sum[i][1] = (four){0};
+		sum[i][0] = sum[i][1] = (FOUR){0};
 	for (size_t t = 0; t < k; t++, a += column, b += 8) {
-		four b0 = *(const four *)b, b1 = *(const four *)(b + 4);
+		FOUR b0 = *(const FOUR *)b, b1 = *(const FOUR *)(b + 4);
 #pragma GCC unroll 4
 		for (size_t i = 0; i < 4; i++) {
 			float x = a[i * row];
-			sum[i][0] = plain_madd((four){x, x, x, x}, b0, sum[i][0]);
-			sum[i][1] = plain_madd((four){x, x, x, x}, b1, sum[i][1]);
+			sum[i][0] = plain_madd((FOUR){x, x, x, x}, b0, sum[i][0]);
+			sum[i][1] = plain_madd((FOUR){x, x, x, x}, b1, sum[i][1]);
 		}
 	}
 #pragma GCC unroll 4

@@ -20,11 +20,15 @@ void blend_start(struct blend_tile *t, int x0, int y0, int columns, int rows)
 {
 	memset(t, 0, sizeof *t);
 	for (int i = 0; i < TILE_PIXELS; i++) {
-		int is_inside = i % TILE_SIZE < columns && i / TILE_SIZE < rows;
 		t->transmittance[i] = 1;
-		t->cut[i] = is_inside ? BLEND_ALPHA_MIN_LOG2 : INFINITY;
+		t->cut[i] = INFINITY;
 	}
+	for (int y = 0; y < rows; y++)
+		for (int x = 0; x < columns; x++) {
+			int at = blend_place(x, y);
+			t->cut[at] = BLEND_ALPHA_MIN_LOG2;
+			t->live |= 1u << at / BLEND_LANES;
+		}
 	t->x = x0 + TILE_SIZE / 2;
 	t->y = y0 + TILE_SIZE / 2;
-	t->live = (1u << rows) - 1;
 }

@@ -9,13 +9,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { BLEND_CHANNELS = 8 }; /* the most that one pass blends */
+enum {
+	BLEND_CHANNELS = 8, /* the most that one pass blends */
+	BLEND_SIDE = 4,	    /* a tile is 4x4 blocks of 4x4 pixels */
+	BLEND_BLOCKS = 16,
+	BLEND_LANES = 16,
+};
 
 #define BLEND_ALPHA_MAX 0.99f
 #define BLEND_ALPHA_MIN_LOG2 -7.99435344f /* log2(1/255) */
 #define BLEND_STOP 1e-4f /* a Gaussian that would bring T below this ends the pixel instead */
 
-/* State of a tile's pixels, 16 rows of 16. */
+/* State of a tile's pixels, block by block (blend_place). */
 struct blend_tile {
 	float transmittance[TILE_PIXELS];
 	float cut[TILE_PIXELS]; /* log2 of the least a that blends: log2(1/255), infinite where the pixel has
@@ -23,25 +28,25 @@ struct blend_tile {
 	float sum[BLEND_CHANNELS][TILE_PIXELS]; /* blended values */
 	int32_t count[TILE_PIXELS];		/* weights recorded */
 	double x, y;				/* the tile's centre, pixels */
-	uint32_t live;				/* bit r: some pixel of row r has not ended */
+	uint32_t live;				/* bit b: some pixel of block b has not ended */
 };
 
-/* Weights in the order they are made: one record is a Gaussian's in one row of the tile. */
+/* Weights in the order they are made: one record is a Gaussian's in one block of a tile. */
 struct blend_record {
 	int32_t index;
-	uint16_t row;
-	uint16_t lanes; /* bit l: column l has a weight */
+	uint16_t block;
+	uint16_t lanes; /* bit l: pixel l of the block has a weight */
 };
 
 struct blend_records {
 	struct blend_record *items;
 	size_t count, capacity;
-	float *weights; /* of all records in order, of each record by rising column */
+	float *weights; /* of all records in order, of each record by rising lane */
 	size_t weight_count, weight_capacity;
 };
 
-/* The room that one Gaussian may need: weights are stored by whole rows. */
-enum { BLEND_RECORD_ROOM = TILE_SIZE, BLEND_WEIGHT_ROOM = TILE_PIXELS + TILE_SIZE };
+/* The room that one Gaussian may need: weights are stored by whole blocks. */
+enum { BLEND_RECORD_ROOM = BLEND_BLOCKS, BLEND_WEIGHT_ROOM = TILE_PIXELS + BLEND_LANES };
 
 struct blend_kernels {
 	/* Blends the Gaussians p[list[0..n)] front to back. `values` holds `channels` values for each entry
@@ -56,6 +61,13 @@ struct blend_kernels {
 
 /* The kernels of a level; a level that the program was not built for gives plain ones. */
 const struct blend_kernels *blend_kernels(enum cpu_level level);
+
+/* Where the arrays of blend_tile hold the pixel at column x and row y of the tile. */
+static inline int blend_place(int x, int y)
+{
+	return (y / BLEND_SIDE * BLEND_SIDE + x / BLEND_SIDE) * BLEND_LANES + y % BLEND_SIDE * BLEND_SIDE +
+	       x % BLEND_SIDE;
+}
 
 /* Starts a tile of which `columns` x `rows` pixels lie in the image; (x0, y0) is its corner. */
 void blend_start(struct blend_tile *t, int x0, int y0, int columns, int rows);

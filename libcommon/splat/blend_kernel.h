@@ -1,77 +1,88 @@
 /* The blending kernels, for the instruction set in force where this is included; BLEND_TABLE names the
  * result.
  *
- * A tile's row is VEC_PARTS vectors. With (u, v) the Gaussian's Cholesky coordinates (splat/project.h), v is
- * constant along a row and u is linear, so a pixel costs e = c - u^2, c = log2(o) - v^2, and a = 2^e. u and v
- * of the tile's centre are computed in double; what is added in float is small, so that a needle far from its
- * mean keeps its digits. */
+ * A tile is 4x4 blocks of 4x4 pixels, and a block is BLEND_PARTS vectors: small Gaussians leave fewer lanes
+ * idle so than in rows of 16 (on a trained scene a third fewer vectors). u and v (splat/project.h) of the
+ * tile's centre are computed in double; what is added in float is small, so that a needle far from its mean
+ * keeps its digits. */
 #include "base/vecmath.h"
 #include "splat/blend.h"
 
 #include <math.h>
 
-enum { VEC_PARTS = TILE_SIZE / VEC_LANES };
+enum { BLEND_PARTS = BLEND_LANES / VEC_LANES };
 
-static const float blend_offsets[TILE_SIZE] __attribute__((aligned(64))) = {-7.5f, -6.5f, -5.5f, -4.5f, -3.5f,
-	-2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f, 3.5f, 4.5f, 5.5f, 6.5f, 7.5f};
+/* Offsets of a block's pixels from its centre; times 4, of a tile's block centres from the tile's. */
+static const float blend_x[BLEND_LANES] __attribute__((aligned(64))) = {-1.5f, -0.5f, 0.5f, 1.5f, -1.5f,
+	-0.5f, 0.5f, 1.5f, -1.5f, -0.5f, 0.5f, 1.5f, -1.5f, -0.5f, 0.5f, 1.5f};
+static const float blend_y[BLEND_LANES] __attribute__((aligned(64))) = {-1.5f, -1.5f, -1.5f, -1.5f, -0.5f,
+	-0.5f, -0.5f, -0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 1.5f, 1.5f, 1.5f, 1.5f};
 
-/* u at the row's middle and c of each row of the tile. */
-struct blend_rows {
-	float u[TILE_SIZE] __attribute__((aligned(64)));
-	float c[TILE_SIZE] __attribute__((aligned(64)));
-	float slope; /* of u along a row */
+/* One Gaussian in one tile. */
+struct blend_splat {
+	float u[BLEND_BLOCKS] __attribute__((aligned(64))); /* at the blocks' centres */
+	float v[BLEND_BLOCKS] __attribute__((aligned(64)));
+	vecn du[BLEND_PARTS], dv[BLEND_PARTS]; /* what a pixel's place in its block adds */
+	vecn log_opacity;
 };
 
-/* Fills *rows; returns a bit for each row that the ellipse a >= 1/255 may meet. */
-VEC_INLINE uint32_t blend_setup(
-	struct blend_rows *rows, const struct blend_tile *t, const struct projected *p)
+/* Fills *s; returns a bit for each block that the ellipse a >= 1/255 may meet. */
+VEC_INLINE uint32_t blend_setup(struct blend_splat *s, const struct blend_tile *t, const struct projected *p)
 {
 	double dx = t->x - p->x, dy = t->y - p->y;
 	vecn u0 = vec_splat((float)(p->l11 * dx + p->l21 * dy)), v0 = vec_splat((float)(p->l22 * dy));
-	vecn l21 = vec_splat((float)p->l21), l22 = vec_splat((float)p->l22),
-	     log_opacity = vec_splat(p->log_opacity);
-	float slope = (float)p->l11;
+	vecn l11 = vec_splat((float)p->l11), l21 = vec_splat((float)p->l21), l22 = vec_splat((float)p->l22);
+	/* how far u and v stray from their values at a block's centre */
+	vecn du = 1.5f * (l11 + vec_max(l21, -l21)), dv = 1.5f * l22;
 	uint32_t bits = 0;
 
-	rows->slope = slope;
-	for (int i = 0; i < VEC_PARTS; i++) {
-		vecn offset = vec_load(blend_offsets + i * VEC_LANES);
-		vecn u = vec_fma(l21, offset, u0), v = vec_fma(l22, offset, v0),
-		     c = vec_fnma(v, v, log_opacity);
-		/* the least |u| between the first and the last column */
-		vecn gap = vec_max(vec_max(u, -u) - 7.5f * slope, vec_splat(0));
-		vec_store(rows->u + i * VEC_LANES, u);
-		vec_store(rows->c + i * VEC_LANES, c);
+	s->log_opacity = vec_splat(p->log_opacity);
+	for (int i = 0; i < BLEND_PARTS; i++) {
+		vecn x = vec_load(blend_x + i * VEC_LANES), y = vec_load(blend_y + i * VEC_LANES);
+		s->du[i] = vec_fma(l11, x, l21 * y);
+		s->dv[i] = l22 * y;
+		vecn u = vec_fma(vec_splat(4), s->du[i], u0), v = vec_fma(vec_splat(4), s->dv[i], v0);
+		vec_store(s->u + i * VEC_LANES, u);
+		vec_store(s->v + i * VEC_LANES, v);
+		/* the least |u| and |v| in the block */
+		u = vec_max(vec_max(u, -u) - du, vec_splat(0));
+		v = vec_max(vec_max(v, -v) - dv, vec_splat(0));
 		/* 1e-3 covers rounding; each pixel decides by itself */
-		bits |= vec_bits(vec_fnma(gap, gap, c) >= BLEND_ALPHA_MIN_LOG2 - 1e-3f) << (i * VEC_LANES);
+		vecn most = vec_fnma(u, u, vec_fnma(v, v, s->log_opacity));
+		bits |= vec_bits(vec_ge(most, vec_splat(BLEND_ALPHA_MIN_LOG2 - 1e-3f))) << (i * VEC_LANES);
 	}
 	return bits;
 }
 
-/* The weights of part i of row r, zero where none. Updates transmittance, cut and live. */
-VEC_INLINE vecn blend_part(struct blend_tile *t, const struct blend_rows *rows, int r, int i)
+/* Ends the pixels of `stop` in the part at `at` of block b, and the block when no pixel of it is left. */
+VEC_INLINE void blend_stop(struct blend_tile *t, int b, int at, vecm stop)
 {
-	int at = r * TILE_SIZE + i * VEC_LANES;
-	vecn u = vec_fma(
-		vec_splat(rows->slope), vec_load(blend_offsets + i * VEC_LANES), vec_splat(rows->u[r]));
-	vecn e = vec_fnma(u, u, vec_splat(rows->c[r])), cut = vec_load(t->cut + at);
-	vecni keep = e >= cut;
+	int is_live = 0;
+
+	vec_store(t->cut + at, vec_select(stop, vec_splat(INFINITY), vec_load(t->cut + at)));
+	for (int i = 0; i < BLEND_PARTS; i++)
+		is_live |= vec_bits(vec_lt(vec_load(t->cut + b * BLEND_LANES + i * VEC_LANES),
+				   vec_splat(INFINITY))) != 0;
+	if (!is_live)
+		t->live &= ~(1u << b);
+}
+
+/* The weights of part i of block b, zero where none. Updates transmittance, cut and live. */
+VEC_INLINE vecn blend_part(struct blend_tile *t, const struct blend_splat *s, int b, int i)
+{
+	int at = b * BLEND_LANES + i * VEC_LANES;
+	vecn u = s->du[i] + vec_splat(s->u[b]), v = s->dv[i] + vec_splat(s->v[b]);
+	vecn e = vec_fnma(u, u, vec_fnma(v, v, s->log_opacity));
+	vecm keep = vec_ge(e, vec_load(t->cut + at));
 	/* where e is out of range for vec_exp2 it is below the cut, and what comes out is masked */
-	vecn a = (vecn)((vecni)vec_min(vec_exp2(e), vec_splat(BLEND_ALPHA_MAX)) & keep);
+	vecn a = vec_keep(keep, vec_min(vec_exp2(e), vec_splat(BLEND_ALPHA_MAX)));
 	vecn before = vec_load(t->transmittance + at), w = a * before, after = before - w;
-	vecni stop = (after < BLEND_STOP) & keep;
+	vecm stop = vec_lt(after, vec_splat(BLEND_STOP)) & keep;
 
 	if (__builtin_expect(vec_bits(stop) != 0, 0)) {
-		float all[TILE_SIZE];
-		int is_live = 0;
-		w = (vecn)((vecni)w & ~stop);
+		w = vec_select(stop, vec_splat(0), w);
 		after = before - w;
-		cut = (vecn)(((vecni)cut & ~stop) | ((vecni)vec_splat(INFINITY) & stop));
-		vec_store(t->cut + at, cut);
-		memcpy(all, t->cut + r * TILE_SIZE, sizeof all);
-		for (int k = 0; k < TILE_SIZE; k++)
-			is_live |= all[k] < INFINITY;
-		t->live &= ~((uint32_t)!is_live << r);
+		blend_stop(t, b, at, stop);
 	}
 	vec_store(t->transmittance + at, after);
 	return w;
@@ -80,18 +91,18 @@ VEC_INLINE vecn blend_part(struct blend_tile *t, const struct blend_rows *rows, 
 VEC_INLINE void blend_channels(struct blend_tile *t, const struct projected *p, const uint32_t *list,
 	size_t n, const float *values, int channels)
 {
-	struct blend_rows rows;
+	struct blend_splat s;
 
 	for (size_t k = 0; k < n && t->live; k++) {
 		const float *value = values + (size_t)list[k] * (size_t)channels;
 		if (k + 8 < n)
 			__builtin_prefetch(&p[list[k + 8]]);
-		for (uint32_t left = blend_setup(&rows, t, &p[list[k]]) & t->live; left; left &= left - 1) {
-			int r = __builtin_ctz(left);
-			for (int i = 0; i < VEC_PARTS; i++) {
-				vecn w = blend_part(t, &rows, r, i);
+		for (uint32_t left = blend_setup(&s, t, &p[list[k]]) & t->live; left; left &= left - 1) {
+			int b = __builtin_ctz(left);
+			for (int i = 0; i < BLEND_PARTS; i++) {
+				vecn w = blend_part(t, &s, b, i);
 				for (int c = 0; c < channels; c++) {
-					float *sum = t->sum[c] + r * TILE_SIZE + i * VEC_LANES;
+					float *sum = t->sum[c] + b * BLEND_LANES + i * VEC_LANES;
 					vec_store(sum, vec_fma(w, vec_splat(value[c]), vec_load(sum)));
 				}
 			}
@@ -124,7 +135,7 @@ VEC_INLINE void blend_pack(float *out, vecn w, uint32_t lanes)
 static size_t blend_weights(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
 	struct blend_records *records)
 {
-	struct blend_rows rows;
+	struct blend_splat s;
 
 	for (size_t k = 0; k < n; k++) {
 		const struct projected *one = &p[list[k]];
@@ -135,24 +146,20 @@ static size_t blend_weights(struct blend_tile *t, const struct projected *p, con
 			return k;
 		if (k + 8 < n)
 			__builtin_prefetch(&p[list[k + 8]]);
-		for (uint32_t left = blend_setup(&rows, t, one) & t->live; left; left &= left - 1) {
-			int r = __builtin_ctz(left);
+		for (uint32_t left = blend_setup(&s, t, one) & t->live; left; left &= left - 1) {
+			int b = __builtin_ctz(left);
 			uint32_t all = 0;
-			for (int i = 0; i < VEC_PARTS; i++) {
-				vecn w = blend_part(t, &rows, r, i);
-				vecni has = w > 0;
+			for (int i = 0; i < BLEND_PARTS; i++) {
+				vecn w = blend_part(t, &s, b, i);
+				vecm has = vec_lt(vec_splat(0), w);
 				uint32_t lanes = vec_bits(has);
-				int32_t *count = t->count + r * TILE_SIZE + i * VEC_LANES;
-				vecni counts;
-				memcpy(&counts, count, sizeof counts);
-				counts -= has;
-				memcpy(count, &counts, sizeof counts);
+				vec_count(t->count + b * BLEND_LANES + i * VEC_LANES, has);
 				blend_pack(records->weights + records->weight_count, w, lanes);
 				records->weight_count += (size_t)__builtin_popcount(lanes);
 				all |= lanes << (i * VEC_LANES);
 			}
 			records->items[records->count] =
-				(struct blend_record){one->index, (uint16_t)r, (uint16_t)all};
+				(struct blend_record){one->index, (uint16_t)b, (uint16_t)all};
 			records->count += all != 0;
 		}
 	}

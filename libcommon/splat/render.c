@@ -47,12 +47,18 @@ static struct place tile_place(const struct render_view *v, size_t tile)
 		x, y, columns < TILE_SIZE ? columns : TILE_SIZE, rows < TILE_SIZE ? rows : TILE_SIZE};
 }
 
-/* Copies the tile's part of a (TILE_SIZE, TILE_SIZE) plane into the image's. */
+/* The image's pixel at column x and row y of the tile. */
+static size_t place_pixel(const struct render_view *v, struct place at, int x, int y)
+{
+	return (size_t)(at.y + y) * (size_t)v->width + (size_t)(at.x + x);
+}
+
+/* Copies the tile's part of a plane into the image's. */
 static void put_plane(const struct render_view *v, struct place at, const float *plane, float *image)
 {
-	for (int r = 0; r < at.rows; r++)
-		memcpy(image + (size_t)(at.y + r) * (size_t)v->width + (size_t)at.x, plane + r * TILE_SIZE,
-			(size_t)at.columns * sizeof *image);
+	for (int y = 0; y < at.rows; y++)
+		for (int x = 0; x < at.columns; x++)
+			image[place_pixel(v, at, x, y)] = plane[blend_place(x, y)];
 }
 
 /* Blends up to BLEND_CHANNELS planes; `values` is (visible, channels). */
@@ -160,10 +166,9 @@ static int record_tile(const struct render_view *v, size_t k, struct blend_recor
 		done += kernels->weights(&t, v->projected, list + done, n - done, records);
 	}
 	put_plane(v, at, t.transmittance, w->transmittance);
-	for (int r = 0; r < at.rows; r++)
-		for (int c = 0; c < at.columns; c++)
-			w->indptr[(size_t)(at.y + r) * (size_t)v->width + (size_t)(at.x + c) + 1] =
-				t.count[r * TILE_SIZE + c];
+	for (int y = 0; y < at.rows; y++)
+		for (int x = 0; x < at.columns; x++)
+			w->indptr[place_pixel(v, at, x, y) + 1] = t.count[blend_place(x, y)];
 	return 0;
 }
 
@@ -175,13 +180,13 @@ static void scatter_tile(
 	const float *weight = records->weights;
 	int64_t next[TILE_PIXELS];
 
-	for (int r = 0; r < at.rows; r++)
-		memcpy(next + r * TILE_SIZE, w->indptr + (size_t)(at.y + r) * (size_t)v->width + (size_t)at.x,
-			(size_t)at.columns * sizeof *next);
+	for (int y = 0; y < at.rows; y++)
+		for (int x = 0; x < at.columns; x++)
+			next[blend_place(x, y)] = w->indptr[place_pixel(v, at, x, y)];
 	for (size_t i = 0; i < records->count; i++) {
 		struct blend_record one = records->items[i];
 		for (unsigned left = one.lanes; left; left &= left - 1) {
-			int64_t place = next[one.row * TILE_SIZE + __builtin_ctz(left)]++;
+			int64_t place = next[one.block * BLEND_LANES + __builtin_ctz(left)]++;
 			w->index[place] = one.index;
 			w->weight[place] = *weight++;
 		}

@@ -15,40 +15,55 @@ enum fault { FAULT_NONE, FAULT_OTHER, FAULT_PART, FAULT_UNION, FAULT_EMPTY, FAUL
 
 /* How often a sentence of each habit has each fault, in percent. */
 static const int fault_rates[SYNTH_HABITS][FAULTS] = {
-	[SYNTH_HABIT_GOOD] = {70, 4, 9, 9, 2, 6},
-	[SYNTH_HABIT_CONFUSED] = {12, 78, 3, 3, 1, 3},
-	[SYNTH_HABIT_PART] = {30, 5, 52, 5, 2, 6},
-	[SYNTH_HABIT_UNION] = {34, 5, 5, 48, 2, 6},
+	[SYNTH_HABIT_GOOD] = {72, 7, 8, 7, 1, 5},
+	[SYNTH_HABIT_CONFUSED] = {14, 75, 3, 3, 1, 4},
+	[SYNTH_HABIT_GUESSING] = {22, 68, 3, 3, 1, 3},
+	[SYNTH_HABIT_PART] = {42, 8, 40, 4, 1, 5},
+	[SYNTH_HABIT_UNION] = {42, 8, 4, 40, 1, 5},
 };
-
-/* Of 20 sentences. */
-static const int habit_counts[SYNTH_HABITS] = {9, 5, 3, 3};
 
 static int likeness(const struct synth_object *a, const struct synth_object *b)
 {
 	return 2 * (a->shape == b->shape) + 2 * (a->colour == b->colour) + (a->size == b->size);
 }
 
+/* Most objects have a confused sentence, three in four a guessing one too: by rank rather than by lot,
+ * so that few objects have their share of faults too. */
+static void choose_habits(struct synth_detector *d, struct rng *r)
+{
+	static const enum synth_habit usual[10] = {SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD,
+		SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_PART, SYNTH_HABIT_PART,
+		SYNTH_HABIT_UNION, SYNTH_HABIT_UNION};
+	uint32_t objects[SYNTH_MAX_OBJECTS], order[SYNTH_TRAIN_SENTENCES];
+
+	for (uint32_t i = 0; i < (uint32_t)d->n; i++)
+		objects[i] = i;
+	rng_shuffle(r, objects, (uint32_t)d->n);
+	for (int rank = 0; rank < d->n; rank++) {
+		double share = (rank + 0.5) / d->n;
+		int confused = share < 0.85, guessing = share < 0.75;
+		for (uint32_t k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
+			order[k] = k;
+		rng_shuffle(r, order, SYNTH_TRAIN_SENTENCES);
+		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
+			enum synth_habit habit = usual[rng_below(r, 10)];
+			if (k < confused)
+				habit = SYNTH_HABIT_CONFUSED;
+			else if (k < confused + guessing)
+				habit = SYNTH_HABIT_GUESSING;
+			d->habits[objects[rank]][order[k]] = habit;
+		}
+	}
+}
+
 void synth_detector_make(struct synth_detector *d, const struct synth_object *objects, int n, uint64_t seed)
 {
-	uint32_t order[SYNTH_MAX_OBJECTS * SYNTH_TRAIN_SENTENCES],
-		total = (uint32_t)n * SYNTH_TRAIN_SENTENCES;
 	struct rng r;
 
 	*d = (struct synth_detector){.seed = seed, .n = n, .objects = objects};
 	rng_seed(&r, seed, SYNTH_STREAM_FAULTS);
 	synth_noise_make(&d->noise, &r);
-	for (uint32_t i = 0; i < total; i++)
-		order[i] = i;
-	rng_shuffle(&r, order, total);
-	for (uint32_t i = 0; i < total; i++) {
-		/* Shares by rank rather than by lot, so that few objects have their faults too. */
-		int rank = (int)(20 * i / total), habit = 0;
-		while (rank >= habit_counts[habit])
-			rank -= habit_counts[habit++];
-		d->habits[order[i] / SYNTH_TRAIN_SENTENCES][order[i] % SYNTH_TRAIN_SENTENCES] =
-			(enum synth_habit)habit;
-	}
+	choose_habits(d, &r);
 	for (int i = 0; i < n; i++) {
 		double nearest = INFINITY, best = -INFINITY;
 		for (int j = 0; j < n; j++) {
@@ -118,18 +133,18 @@ static int draw(struct detection *v, int object, enum fault f, struct err *e)
 			v->mask[p] |= shown(v, neighbour)[p];
 	if (f == FAULT_PART)
 		synth_outline_cut(v->mask, v->height, v->width, rng_range(r, 0.35, 0.65), r);
-	double rag = rng_range(r, 0.25, 0.6), shrink = 0.12 * rng_normal(r);
+	double rag = rng_range(r, 0.1, 0.4), shrink = 0.09 * rng_normal(r);
 	return synth_outline_rag(v->mask, v->height, v->width, rag, shrink, &d->noise, r, e);
 }
 
-/* Confidence follows quality, loosely; a confused sentence is as sure as a right one. */
-static double choose_score(struct detection *v, int object, enum fault f, int is_confused)
+/* Confidence follows quality, loosely; a confused sentence is often surer than a right one. */
+static double choose_score(struct detection *v, int object, enum fault f, enum synth_habit habit)
 {
 	double quality = iou(v->mask, shown(v, object), v->pixels);
-	double score = 0.34 + 0.3 * quality + 0.13 * rng_normal(&v->rng);
+	double score = 0.30 + 0.40 * quality + 0.12 * rng_normal(&v->rng);
 
-	if (f == FAULT_OTHER && is_confused)
-		score += 0.36;
+	if (f == FAULT_OTHER)
+		score += habit == SYNTH_HABIT_CONFUSED ? 0.54 : 0.05;
 	if (f == FAULT_EMPTY)
 		score = 0.3;
 	return round(1000 * fmin(0.95, fmax(0.2, score))) / 1000;
@@ -167,7 +182,7 @@ static int detect_sentence(
 			return -1;
 		if (f != FAULT_EMPTY && !synth_outline_area(v->mask, v->pixels))
 			return 0;
-		double score = choose_score(v, object, f, habit == SYNTH_HABIT_CONFUSED && !is_hidden);
+		double score = choose_score(v, object, f, is_hidden ? SYNTH_HABIT_GUESSING : habit);
 		if (i)
 			score = fmax(0.2, score - 0.1);
 		if (put(out, v, object, sentence, score, e))

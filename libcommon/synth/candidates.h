@@ -15,7 +15,8 @@
 /* A sentence's habit, the same in every view. */
 enum synth_habit {
 	SYNTH_HABIT_GOOD,
-	SYNTH_HABIT_CONFUSED, /* in most views another object */
+	SYNTH_HABIT_CONFUSED, /* in most views another object, and sure of it */
+	SYNTH_HABIT_GUESSING, /* the same, but not sure */
 	SYNTH_HABIT_PART,     /* often a part only */
 	SYNTH_HABIT_UNION,    /* often with a neighbour */
 	SYNTH_HABITS

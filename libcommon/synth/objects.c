@@ -200,7 +200,10 @@ static void choose_kinds(struct synth_object *objects, int n, struct rng *r)
 		o->size = (enum synth_size)rng_below(r, SYNTH_SIZES);
 		/* Seven in ten are of one colour all over. */
 		uint32_t lot = rng_below(r, 20);
-		o->finish = lot < 8 ? SYNTH_PLAIN : lot < 14 ? SYNTH_SHINY : lot < 17 ? SYNTH_STRIPED : SYNTH_SPECKLED;
+		o->finish = lot < 8    ? SYNTH_PLAIN
+			    : lot < 14 ? SYNTH_SHINY
+			    : lot < 17 ? SYNTH_STRIPED
+				       : SYNTH_SPECKLED;
 	}
 }
 

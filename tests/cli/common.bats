@@ -19,7 +19,7 @@ missing_input() {
 		gs-check none
 		gs-import -o out none
 		gs-weigh -o out none
-		text-encode --model none -o out
+		text-encode --model none -o out none
 		pseudomask-select -o out none
 		refer-train --scene none --weights none --text none --masks none -o out
 		refer-render --scene none --text none --model none -o out

@@ -44,11 +44,21 @@ static void exp_at_the_ends(void)
 static void lanes_keep_their_places(void)
 {
 	float x[VEC_LANES], y[VEC_LANES];
+	int32_t counts[VEC_LANES];
 
-	for (int l = 0; l < VEC_LANES; l++)
+	for (int l = 0; l < VEC_LANES; l++) {
 		x[l] = (float)l;
+		counts[l] = 5;
+	}
 	vecn v = vec_load(x);
-	CHECK(vec_bits(v < 2.5f) == 7, "bits %x", vec_bits(v < 2.5f));
+	CHECK(vec_bits(vec_lt(v, vec_splat(2))) == 3, "bits %x", vec_bits(vec_lt(v, vec_splat(2))));
+	CHECK((vec_bits(vec_ge(v, vec_splat(2))) & 15) == 12, "bits %x", vec_bits(vec_ge(v, vec_splat(2))));
+	CHECK(vec_select(vec_lt(v, vec_splat(2)), vec_splat(9), v)[1] == 9, "select takes the first");
+	CHECK(vec_select(vec_lt(v, vec_splat(2)), vec_splat(9), v)[2] == 2, "select takes the second");
+	CHECK(vec_keep(vec_lt(v, vec_splat(2)), v)[1] == 1 && vec_keep(vec_lt(v, vec_splat(2)), v)[2] == 0,
+		"keep");
+	vec_count(counts, vec_lt(v, vec_splat(2)));
+	CHECK(counts[1] == 6 && counts[2] == 5, "counts are %d, %d", counts[1], counts[2]);
 	vec_store(y, vec_fnma(v, vec_splat(2), vec_fma(v, v, vec_splat(1))));
 	for (int l = 0; l < VEC_LANES; l++)
 		CHECK(y[l] == (float)(l * l + 1 - 2 * l), "lane %d holds %g", l, (double)y[l]);

@@ -1,0 +1,107 @@
+#!/usr/bin/env bats
+# gs-check. What it says of broken files is in tests/format; options that every tool has are in common.bats.
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load ../format/files
+	cd "$BATS_TEST_TMPDIR"
+	scene scene
+	echo '{"ref":"r1","object":"cup","text":"the red cup"}' >sentences.jsonl
+	echo '{"view":"v1","object":"cup","segmentation":{"size":[2,3],"counts":[0,2,4]}}' >masks.jsonl
+	st foreign.safetensors '{"weight":{"dtype":"BF16","shape":[2,1],"data_offsets":[0,4]}}' 00000000
+}
+
+@test "a line for each file, in the order given" {
+	says 0 "sentences.jsonl: ok: sentences, 1 training sentences, 0 test sentences, 1 objects
+scene: ok: scene, 4x3, 1 gaussians, 1 harmonics, 1 training views, 0 test views
+masks.jsonl: ok: masks, 3x2, 1 masks, 1 views, 1 objects
+foreign.safetensors: ok: safetensors, 1 tensors
+	weight BF16[2,1]" "$BIN/gs-check" sentences.jsonl scene masks.jsonl foreign.safetensors
+}
+
+@test "what a file is depends on its content, not its name" {
+	mv sentences.jsonl x.png
+	says 0 "x.png: ok: sentences, 1 training sentences, 0 test sentences, 1 objects" "$BIN/gs-check" x.png
+}
+
+@test "json: one object a line, the same facts" {
+	"$BIN/gs-check" --json sentences.jsonl scene foreign.safetensors >out
+	cat >expected <<-'END'
+		{"file":"sentences.jsonl","ok":true,"kind":"sentences","training_sentences":1,"test_sentences":0,"objects":1}
+		{"file":"scene","ok":true,"kind":"scene","width":4,"height":3,"gaussians":1,"harmonics":1,"training_views":1,"test_views":0}
+		{"file":"foreign.safetensors","ok":true,"kind":"safetensors","tensors":1,"list":[{"name":"weight","dtype":"BF16","shape":[2,1]}]}
+	END
+	diff expected out
+	echo '{}' >bad.jsonl
+	says 1 '{"file":"bad.jsonl","ok":false,"reason":"bad.jsonl:1: neither a sentence (key '\''text'\'') nor a mask (key '\''segmentation'\'' or '\''path'\'')"}' \
+		"$BIN/gs-check" --json bad.jsonl
+}
+
+@test "a malformed file is exit 1, and the others are checked all the same" {
+	echo nonsense >bad
+	says 1 "bad: not a kind of file that the suite reads
+masks.jsonl: ok: masks, 3x2, 1 masks, 1 views, 1 objects" "$BIN/gs-check" bad masks.jsonl
+}
+
+@test "a file that cannot be read is exit 4, also beside a malformed one" {
+	echo nonsense >bad
+	says 4 "gs-check: none: No such file or directory" "$BIN/gs-check" none
+	status=0
+	"$BIN/gs-check" none bad masks.jsonl >out 2>err || status=$?
+	[ $status = 4 ]
+	[ "$(cat err)" = "gs-check: none: No such file or directory" ]
+	[ "$(wc -l <out)" = 2 ]
+}
+
+@test "stdin is read as a file or as a pipe" {
+	for file in sentences.jsonl masks.jsonl foreign.safetensors scene/splats.safetensors scene/cameras.json; do
+		"$BIN/gs-check" "$file" | sed "s,^$file:,stdin:," >expected
+		"$BIN/gs-check" - <"$file" | cmp - expected
+		cat "$file" | "$BIN/gs-check" - | cmp - expected
+	done
+	echo nonsense | says_in 1 "stdin: not a kind of file that the suite reads"
+	printf '{"text":1}' | says_in 1 "stdin:1: key 'ref' is missing"
+	printf '' | says_in 1 "stdin: empty"
+}
+
+# says, for what comes through a pipe.
+says_in() {
+	local printed status=0
+	printed=$("$BIN/gs-check" - 2>&1) || status=$?
+	[ $status = "$1" ] && [ "$printed" = "$2" ] || { echo "$status: $printed"; return 1; }
+}
+
+@test "files as large as no buffer come through a pipe whole" {
+	for ((i = 0; i < 3000; i++)); do echo "{\"ref\":\"r$i\",\"object\":\"cup\",\"text\":\"the red cup $i\"}"; done >many
+	cat many | says_in 0 "stdin: ok: sentences, 3000 training sentences, 0 test sentences, 1 objects"
+}
+
+@test "views and masks of several sizes have no size to print" {
+	echo '{"view":"v2","object":"pot","segmentation":{"size":[3,3],"counts":[9]}}' >>masks.jsonl
+	says 0 "masks.jsonl: ok: masks, 2 masks, 2 views, 2 objects" "$BIN/gs-check" masks.jsonl
+	printf '[%s,%s]' "$(view)" "$(view name='"v2"' width=8 split='"test"')" >scene/cameras.json
+	says 0 "scene: ok: scene, 1 gaussians, 1 harmonics, 1 training views, 1 test views" "$BIN/gs-check" scene
+}
+
+@test "a folder of another kind" {
+	mkdir other
+	says 1 "other: neither a scene (no splats.safetensors) nor a COLMAP model" "$BIN/gs-check" other
+}
+
+@test "no operand is a usage error" {
+	says 2 "gs-check: missing operand: FILE...
+Try 'gs-check --help'." "$BIN/gs-check"
+}
+
+@test "a full disk is an error" {
+	[ -e /dev/full ] || skip "no /dev/full"
+	status=0
+	"$BIN/gs-check" scene >/dev/full 2>err || status=$?
+	[ $status = 4 ]
+	[ "$(cat err)" = "gs-check: stdout: No space left on device" ]
+}
+
+@test "-v ends with time and memory" {
+	"$BIN/gs-check" -v scene 2>err >out
+	grep -xE 'gs-check: [0-9.]+ s, peak memory [0-9.]+ MiB' err
+}

@@ -1,0 +1,88 @@
+#!/usr/bin/env bats
+# What formats/jsonl.md says of every file of records. The keys have tests of their own: sentences.bats and masks.bats.
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load files
+	cd "$BATS_TEST_TMPDIR"
+}
+
+one='{"ref":"r1","object":"cup","text":"the red cup"}'
+two='{"ref":"r2","object":"cup","text":"the cup"}'
+fine='ok: sentences, 2 training sentences, 0 test sentences, 1 objects'
+
+@test "a record is a line; the last may lack its end" {
+	printf '%s\n%s\n' "$one" "$two" >x
+	says 0 "x: $fine" "$BIN/gs-check" x
+	printf '%s\n%s' "$one" "$two" >x
+	says 0 "x: $fine" "$BIN/gs-check" x
+}
+
+@test "blank lines, carriage returns, blanks and a byte order mark are skipped" {
+	printf '\n  \t\r\n \t%s\r\n\r\n%s  \n\n' "$one" "$two" >x
+	says 0 "x: $fine" "$BIN/gs-check" x
+	printf '\xef\xbb\xbf%s\n%s\n' "$one" "$two" >x
+	says 0 "x: $fine" "$BIN/gs-check" x
+}
+
+@test "lines are counted with the blank ones" {
+	printf '\n%s\n\n\n{}\n' "$one" >x
+	says 1 "x:5: key 'ref' is missing" "$BIN/gs-check" x
+}
+
+@test "a line longer than any buffer" {
+	long=$(printf '%*s' 300000 | tr ' ' y)
+	printf '%s\n{"ref":"r2","object":"cup","text":"%s"}\n' "$one" "$long" >x
+	says 0 "x: $fine" "$BIN/gs-check" x
+}
+
+@test "not JSON, and where" {
+	printf '%s\n{"ref":}\n' "$one" >x
+	says 1 "x:2: not JSON at column 8" "$BIN/gs-check" x
+	printf '%s\n%s %s\n' "$one" "$two" "$two" >x
+	says 1 "x:2: not JSON at column 46" "$BIN/gs-check" x
+	printf '{"ref":"r1",\n"object":"cup"}\n' >x
+	"$BIN/gs-check" x >out && return 1
+	grep -E '^x:1: not JSON at column 1[0-9]$' out
+}
+
+@test "JSON that is no object" {
+	for value in '[]' 1 '"a"' null true; do
+		printf '%s\n%s\n' "$one" "$value" >x
+		says 1 "x:2: not a JSON object" "$BIN/gs-check" x
+	done
+}
+
+@test "a zero byte" {
+	printf '%s\n{"ref":\0"r2"}\n' "$one" >x
+	says 1 "x:2: a NUL byte at column 8" "$BIN/gs-check" x
+}
+
+@test "nesting without end does not exhaust the stack" {
+	{ printf '%s\n{"ref":' "$one"; printf '%*s' 100000 | tr ' ' '['; } >x
+	"$BIN/gs-check" x >out && return 1
+	grep -E '^x:2: not JSON at column [0-9]+$' out
+}
+
+@test "no records" {
+	printf '\n \n' >x
+	says 1 "x: not a kind of file that the suite reads" "$BIN/gs-check" x
+	: >x
+	says 1 "x: empty" "$BIN/gs-check" x
+}
+
+@test "records that are neither sentences nor masks" {
+	echo '{"a":1}' >x
+	says 1 "x:1: neither a sentence (key 'text') nor a mask (key 'segmentation' or 'path')" "$BIN/gs-check" x
+}
+
+@test "cut at every length: fine at a record's end, else malformed" {
+	printf '%s\n%s\n' "$one" "$two" >x
+	for ((n = 1; n < $(wc -c <x); n++)); do head -c $n x >cut.$(printf %03d $n); done
+	status=0
+	"$BIN/gs-check" cut.* >out 2>err || status=$?
+	[ $status = 1 ] && [ ! -s err ]
+	[ "$(wc -l <out)" = $((n - 1)) ]
+	[ "$(grep -c ': ok: ' out)" = 3 ]
+	! grep -v -e ': ok: ' -e '^cut\.[0-9]*:[12]: not JSON at column [0-9]*$' out
+}
