@@ -5,6 +5,7 @@
 set -eu
 dir=$1
 mkdir -p "$dir"
+golden=$(cd "$(dirname "$0")/../golden" && pwd)
 BIN=$(cd "$2" && pwd)
 cd "$dir"
 PATH=$BIN:$PATH
@@ -15,3 +16,4 @@ printf '%s\n' '{"ref":"r1","object":"cup","text":"the red cup","split":"train"}'
 printf '{"view":"v%d","object":"cup","score":0.9,"segmentation":{"size":[2,3],"counts":[0,2,4]}}\n' 1 2 >candidates.jsonl
 cp candidates.jsonl truth.jsonl
 cp candidates.jsonl pred.jsonl
+cp -r "$golden/bert" encoder
