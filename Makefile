@@ -47,7 +47,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint install uninstall clean help FORCE
+.PHONY: all tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
 units: $(UNITS)
@@ -161,12 +161,25 @@ sanitize: packages ## every test again with address and undefined-behaviour sani
 
 lint: ## formatting, clang-tidy, man pages, and builds without a warning by gcc and clang
 	$(call need,$(NEED_BUILD) $(NEED_LINT))
-	clang-format --dry-run -Werror $(C_FILES)
-	$(if $(MAN_PAGES),mandoc -T lint -W warning $(MAN_PAGES))
-	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers
-	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-lint/clang CC=clang WERROR=-Werror \
-		CFLAGS="-O1 $(CLANG_FLAGS)" objects
+	@$(MAKE) --no-print-directory $(PARALLEL) -k lint-format lint-man lint-gcc lint-clang lint-tidy
+
+lint-format:
+	@clang-format --dry-run -Werror $(C_FILES)
+
+lint-man:
+	@$(if $(MAN_PAGES),mandoc -T lint -W warning $(MAN_PAGES))
+
+lint-gcc:
+	@$(MAKE) --no-print-directory -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers
+
+lint-clang:
+	@$(MAKE) --no-print-directory -s BUILD=build-lint/clang CC=clang CFLAGS="-O1 $(CLANG_FLAGS)" WERROR=-Werror objects
+
+lint-tidy:
 	@printf '%s\n' $(filter %.c,$(C_FILES)) | xargs -P $(JOBS) -n 4 sh -c 'clang-tidy --quiet "$$@" -- $(TIDY_FLAGS)' tidy
+
+format: ## bring every C file into the house's form
+	clang-format -i $(C_FILES)
 
 install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 	install -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(PREFIX)/share/man/man1" "$(DESTDIR)$(PREFIX)/share/man/man7" \

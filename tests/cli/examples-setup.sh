@@ -14,4 +14,6 @@ printf '%s\n' '{"ref":"r1","object":"cup","text":"the red cup","split":"train"}'
 	'{"ref":"r2","object":"cup","text":"the cup on the left","split":"test"}' >sentences.jsonl
 # A 3x2 mask with its first column set.
 printf '{"view":"v%d","object":"cup","score":0.9,"segmentation":{"size":[2,3],"counts":[0,2,4]}}\n' 1 2 >candidates.jsonl
+cp candidates.jsonl truth.jsonl
+cp candidates.jsonl pred.jsonl
 cp -r "$golden/bert" encoder

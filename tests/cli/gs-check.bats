@@ -19,6 +19,20 @@ foreign.safetensors: ok: safetensors, 1 tensors
 	weight BF16[2,1]" "$BIN/gs-check" sentences.jsonl scene masks.jsonl foreign.safetensors
 }
 
+@test "cameras of other programs" {
+	echo '[{"id":0,"img_name":"a","width":4,"height":3,"position":[0,0,0],"rotation":[[1,0,0],[0,1,0],[0,0,1]],"fx":5,"fy":5}]' >c.json
+	says 0 "c.json: ok: 3DGS cameras, 4x3, 1 training views, 0 test views" "$BIN/gs-check" c.json
+	frames='"frames":[{"file_path":"a.png","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]'
+	printf '{"fl_x":5,"fl_y":5,"cx":2,"cy":1.5,"w":4,"h":3,%s}\n' "$frames" >one-line.json
+	says 0 "one-line.json: ok: nerfstudio cameras, 4x3, 1 training views, 0 test views" "$BIN/gs-check" one-line.json
+	tr , '\n' <one-line.json | sed 's/^/ /; 2,$s/^/,/' >lines.json
+	cat lines.json | says_in 0 "stdin: ok: nerfstudio cameras, 4x3, 1 training views, 0 test views"
+	mkdir model
+	echo '1 PINHOLE 4 3 5 5 2 1.5' >model/cameras.txt
+	printf '1 1 0 0 0 0 0 0 1 a.png\n\n' >model/images.txt
+	says 0 "model: ok: COLMAP model, 4x3, 1 training views, 0 test views" "$BIN/gs-check" model
+}
+
 @test "what a file is depends on its content, not its name" {
 	mv sentences.jsonl x.png
 	says 0 "x.png: ok: sentences, 1 training sentences, 0 test sentences, 1 objects" "$BIN/gs-check" x.png

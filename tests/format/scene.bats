@@ -93,7 +93,7 @@ bad_list() {
 	bad_list "not a list of views" "{}"
 	bad_list "view name 'v1' appears twice" "[$(view),$(view)]"
 	{ printf '[]'; printf '\0x'; } >scene/cameras.json
-	says 1 "scene/cameras.json: not JSON at offset 2" "$BIN/gs-check" scene
+	says 1 "scene/cameras.json: not JSON: a NUL byte at offset 2" "$BIN/gs-check" scene
 }
 
 @test "each key of a view missing or of a wrong type" {
