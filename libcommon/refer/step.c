@@ -61,7 +61,21 @@ struct step {
 	float *scratch; /* (threads, scratch_size) */
 	size_t scratch_size;
 	int threads;
+	void (*ended)(void *data, enum step_phase phase);
+	void *ended_data;
 };
+
+void step_watch(struct step *s, void (*ended)(void *data, enum step_phase phase), void *data)
+{
+	s->ended = ended;
+	s->ended_data = data;
+}
+
+static void phase_ended(const struct step *s, enum step_phase phase)
+{
+	if (s->ended)
+		s->ended(s->ended_data, phase);
+}
 
 size_t step_padded(size_t gaussians)
 {
@@ -141,35 +155,35 @@ static void add_chunks(struct step *s, enum part from, enum part to)
 			s->total[i] += (double)s->chunks[(size_t)c * s->chunk_size + i];
 }
 
-enum phase { HIDDEN, RESPOND, GATHER, SCORES_BACK, HIDDEN_BACK };
-
 /* Runs a phase over all blocks, each chunk's in order. */
-static void run_phase(struct step *s, enum phase phase)
+static void run_phase(struct step *s, enum step_phase phase)
 {
 	const struct block_kernels *k = s->setup.kernels;
 
+	phase_ended(s, STEP_FOLD);
 #pragma omp parallel for schedule(dynamic) num_threads(s->threads)
 	for (int c = 0; c < CHUNKS; c++) {
 		float *scratch = s->scratch + (size_t)omp_get_thread_num() * s->scratch_size;
 		for (size_t b = s->blocks * (size_t)c / CHUNKS; b < s->blocks * (size_t)(c + 1) / CHUNKS; b++)
 			switch (phase) {
-			case HIDDEN:
+			case STEP_HIDDEN:
 				k->hidden(&s->model, &s->arrays, b, &s->sums[c], scratch);
 				break;
-			case RESPOND:
+			case STEP_RESPOND:
 				k->respond(&s->model, &s->arrays, b, scratch);
 				break;
-			case GATHER:
+			case STEP_GATHER:
 				k->gather(&s->model, &s->arrays, b, &s->sums[c], scratch);
 				break;
-			case SCORES_BACK:
+			case STEP_SCORES_BACK:
 				k->scores_back(&s->model, &s->arrays, b, &s->sums[c], scratch);
 				break;
-			case HIDDEN_BACK:
+			default:
 				k->hidden_back(&s->model, &s->arrays, b, &s->sums[c], scratch);
 				break;
 			}
 	}
+	phase_ended(s, phase);
 }
 
 static int check_sentences(const struct step_setup *u, int *longest, struct err *e)
@@ -340,11 +354,11 @@ static void forward(
 	for (int c = 0; c < CHUNKS; c++)
 		for (int j = 0; j < b->words; j++)
 			s->sums[c].l_max[j] = -INFINITY;
-	run_phase(s, HIDDEN);
+	run_phase(s, STEP_HIDDEN);
 	if (b->has_words)
 		join_word_positions(s);
 	fold_scores(s->fold, s->total + s->at[C_SUM], s->total + s->at[L_MAX], s->total + s->at[L_SUM], b);
-	run_phase(s, RESPOND);
+	run_phase(s, STEP_RESPOND);
 }
 
 /* One sentence's channel of a panel array, to or from (padded) floats. */
@@ -403,8 +417,9 @@ static double contrast_losses(struct step *s, const struct step_target *targets,
 		contrast_top_set(s->response, s->setup.gaussians, top_count, s->dresponse);
 		channel_put(s->arrays.top, s->padded, count, i, s->dresponse);
 	}
+	phase_ended(s, STEP_TOP);
 	clear_parts(s, MEAN, MEAN);
-	run_phase(s, GATHER);
+	run_phase(s, STEP_GATHER);
 	add_chunks(s, MEAN, MEAN);
 	fold_top(s->fold, s->total + s->at[MEAN], s->fg);
 	memset(s->words.de, 0, sizeof(float) * s->setup.sentences * REFER_D);
@@ -433,14 +448,14 @@ static void backward(struct step *s, const float *parameters, const struct step_
 	const int has_contrast = s->setup.contrast != REFER_CONTRAST_NONE;
 
 	clear_parts(s, DUH, DM0);
-	run_phase(s, SCORES_BACK);
+	run_phase(s, STEP_SCORES_BACK);
 	add_chunks(s, DUH, DM0);
 	fold_scores_back(s->fold, s->total + s->at[DUH], s->total + s->at[DUQ], s->total + s->at[DK],
 		s->total + s->at[DGRAM], s->total + s->at[DM0], &s->model);
 	s->arrays.dx = dx;
 	clear_parts(s, DY, DY);
 	clear_parts(s, DP_GRAM, DPOSITION1_BIAS);
-	run_phase(s, HIDDEN_BACK);
+	run_phase(s, STEP_HIDDEN_BACK);
 	add_chunks(s, DY, DY);
 	add_chunks(s, DP_GRAM, DPOSITION1_BIAS);
 	for (int i = 0; i < 4; i++) {
@@ -448,6 +463,7 @@ static void backward(struct step *s, const float *parameters, const struct step_
 		add_tensor(s, DPOSITION0 + (enum part)i, POSITION_0_WEIGHT + (enum refer_tensor)i, gradient);
 	}
 	fold_end(s->fold, s->total + s->at[DY], s->total + s->at[DP_GRAM], gradient, s->dvectors);
+	phase_ended(s, STEP_FOLD);
 	size_t from = 0, to = s->setup.sentences;
 	if (!has_contrast)
 		for (int i = 0; i < count; i++) { /* the span of the targets' sentences */
@@ -459,6 +475,7 @@ static void backward(struct step *s, const float *parameters, const struct step_
 		words_back_vectors(&s->words, parameters, gradient, targets[i].sentence,
 			s->dvectors + s->first[i] * REFER_D);
 	words_back_end(&s->words, parameters, gradient, from, to);
+	phase_ended(s, STEP_WORDS);
 }
 
 struct step_losses step_run(struct step *s, const float *parameters, const float *x,
@@ -483,8 +500,10 @@ struct step_losses step_run(struct step *s, const float *parameters, const float
 		}
 		words_hidden(&s->words, parameters, from, to);
 	}
+	phase_ended(s, STEP_WORDS);
 	forward(s, parameters, x, sentences, count);
 	losses.bce = image_losses(s, view, targets, count);
+	phase_ended(s, STEP_IMAGES);
 	if (has_contrast) {
 		losses.contrast = contrast_losses(s, targets, count, top_count);
 	} else {

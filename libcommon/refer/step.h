@@ -37,6 +37,24 @@ struct step;
 struct step *step_new(const struct step_setup *setup, struct err *e);
 void step_free(struct step *s);
 
+/* What step_run's time goes to. */
+enum step_phase {
+	STEP_WORDS, /* MLP_t and its gradients */
+	STEP_FOLD,  /* folding, the contrast, sums of the chunks */
+	STEP_HIDDEN,
+	STEP_RESPOND,
+	STEP_IMAGES, /* images, their loss and dm */
+	STEP_TOP,    /* choosing the top sets */
+	STEP_GATHER,
+	STEP_SCORES_BACK,
+	STEP_HIDDEN_BACK,
+	STEP_PHASES
+};
+
+/* Has `ended` called at the end of every phase, for measurements: the time since the last call is that
+ * phase's. */
+void step_watch(struct step *s, void (*ended)(void *data, enum step_phase phase), void *data);
+
 /* Referring features are kept in panels (refer/block.h): N padded to step_padded(N), 16 channels. */
 size_t step_padded(size_t gaussians);
 void step_pack(const float *x, size_t gaussians, float *panels);   /* (N,16) row-major to panels */
