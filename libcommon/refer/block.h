@@ -54,6 +54,7 @@ struct block_model {
 	const float *p_gram;				       /* (65,65) [B b]^T [B b] */
 	const float *k;	   /* (S,z_size): z order; the alphas of a sentence follow its g (and r) */
 	const float *gram; /* (S,z_size,z_size) G, rows of z_size */
+	const float *half; /* the lower triangle of gram with all but the diagonal doubled; 0 above */
 	const float *m0;   /* (S) */
 	float eps, floor;  /* z^T G z + eps, at least floor */
 
@@ -83,7 +84,7 @@ struct block_sums {
 	float *l_max, *l_sum, *c_sum;	   /* (n), (n), (n,65): online softmax over Gaussians */
 	float *duh, *duq, *dy;		   /* (n,65) */
 	float *dk;			   /* (S,z_size) */
-	float *dgram;			   /* (S,z_size,z_size) */
+	float *dgram;			   /* (S,z_size,z_size) of the lower triangle; anything above */
 	float *dm0;			   /* (S) */
 	float *mean;			   /* (S,z_size) sum of top * z (or top * z / sigma) */
 	float *dp_gram;			   /* (65,65) */
@@ -103,11 +104,10 @@ struct block_kernels {
 	void (*hidden)(const struct block_model *, const struct block_arrays *, size_t block,
 		struct block_sums *, float *scratch);
 	/* Scores, alpha, responses. */
-	void (*respond)(
-		const struct block_model *, const struct block_arrays *, size_t block, float *scratch);
+	void (*respond)(const struct block_model *, const struct block_arrays *, size_t block);
 	/* Sum of z over the top set. */
-	void (*gather)(const struct block_model *, const struct block_arrays *, size_t block,
-		struct block_sums *, float *scratch);
+	void (*gather)(
+		const struct block_model *, const struct block_arrays *, size_t block, struct block_sums *);
 	/* Backward through responses and scores: ds in place of alpha; duh, duq, dk, dgram, dm0. */
 	void (*scores_back)(const struct block_model *, const struct block_arrays *, size_t block,
 		struct block_sums *, float *scratch);

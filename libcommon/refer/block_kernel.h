@@ -140,54 +140,103 @@ static int z_channels(const struct block_model *b, int s)
 	return z_fixed(b) + (b->has_attention ? b->first[s + 1] - b->first[s] : 0);
 }
 
-/* z of one sentence and panel, copied together. */
-static void make_z(const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *z)
+/* A part of z, where it lies: `count` of the `channels` of a panel, which are z's from `start` on. */
+struct stretch {
+	const float *at;
+	int channels, start, count;
+};
+
+enum { STRETCHES = 3 };
+
+/* z of one sentence and panel. Returns how many stretches it has. */
+static int stretches(const struct block_model *b, const struct block_arrays *a, size_t panel, int s,
+	struct stretch z[STRETCHES])
 {
-	memcpy(z, panel_of(a->g, BLOCK_G, panel), sizeof(float) * BLOCK_G * L);
+	int count = 0;
+
+	z[count++] = (struct stretch){panel_of(a->g, BLOCK_G, panel), BLOCK_G, 0, BLOCK_G};
 	if (b->is_add)
-		memcpy(z + BLOCK_G * L, panel_of(a->r, BLOCK_G, panel), sizeof(float) * BLOCK_G * L);
+		z[count++] = (struct stretch){panel_of(a->r, BLOCK_G, panel), BLOCK_G, BLOCK_G, BLOCK_G};
 	if (b->has_attention)
-		memcpy(z + z_fixed(b) * L, panel_of(a->alpha, b->words, panel) + b->first[s] * L,
-			sizeof(float) * (size_t)(b->first[s + 1] - b->first[s]) * L);
+		z[count++] = (struct stretch){panel_of(a->alpha, b->words, panel) + b->first[s] * L, b->words,
+			z_fixed(b), b->first[s + 1] - b->first[s]};
+	return count;
 }
 
-/* m = k.z without a copy of z. */
+/* m = k.z */
 static void plain_response(
 	const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *m)
 {
 	const float *k = b->k + (size_t)s * (size_t)b->z_size;
+	struct stretch z[STRETCHES];
+	const int count = stretches(b, a, panel, s, z);
 
-	product_set(m, k, 1, BLOCK_G, BLOCK_G, panel_of(a->g, BLOCK_G, panel));
-	if (b->is_add)
-		product_add(m, k + BLOCK_G, 1, BLOCK_G, BLOCK_G, panel_of(a->r, BLOCK_G, panel));
-	if (b->has_attention) {
-		int words = b->first[s + 1] - b->first[s];
-		product_add(m, k + z_fixed(b), 1, words, words,
-			panel_of(a->alpha, b->words, panel) + b->first[s] * L);
-	}
+	product_set(m, k, 1, z[0].count, z[0].count, z[0].at);
+	for (int i = 1; i < count; i++)
+		product_add(m, k + z[i].start, 1, z[i].count, z[i].count, z[i].at);
 }
 
-static void normalised_response(const struct block_model *b, const struct block_arrays *a, size_t panel,
-	int s, float *m, float *scratch)
+/* Adds the share of `rows` rows of the triangle H, from row r of z's stretch `own` on, to z^T H z and to k.z.
+ */
+VEC_INLINE void quadratic_tile(const int rows, const float *half, const float *k, int size,
+	const struct stretch *z, int own, int r, int v, vecn squared[TILE], vecn along[TILE])
 {
-	const int size = b->z_size, channels = z_channels(b, s);
-	float *z = scratch, *gz = scratch + size * L;
-	float *sigma = panel_at(a->sigma, b->sentences, panel) + s * L;
+	const float *row = half + (size_t)(z[own].start + r) * (size_t)size;
+	vecn sum[ROWS][TILE];
 
-	make_z(b, a, panel, s, z);
-	product_set(gz, b->gram + (size_t)s * (size_t)size * (size_t)size, channels, channels, size, z);
-	product_set(m, b->k + (size_t)s * (size_t)size, 1, channels, size, z);
-	for (int v = 0; v < L; v += VEC_LANES) {
-		vecn squared = vec_splat(b->eps);
-		for (int c = 0; c < channels; c++)
-			squared += vec_load(gz + c * L + v) * vec_load(z + c * L + v);
-		vecn scale = vec_splat(1) / vec_sqrt(vec_max(squared, vec_splat(b->floor)));
-		vec_store(sigma + v, scale);
-		vec_store(m + v, vec_load(m + v) * scale + vec_splat(b->m0[s]));
+#pragma GCC unroll 6
+	for (int i = 0; i < rows; i++)
+#pragma GCC unroll 4
+		for (int w = 0; w < TILE; w++)
+			sum[i][w] = vec_splat(0);
+	for (int p = 0; p <= own; p++)
+		tile_add(rows, sum, row + z[p].start, size, p < own ? z[p].count : r + rows, z[p].at + v);
+#pragma GCC unroll 6
+	for (int i = 0; i < rows; i++) {
+		const vecn scale = vec_splat(k[z[own].start + r + i]);
+#pragma GCC unroll 4
+		for (int w = 0; w < TILE; w++) {
+			vecn x = vec_load(z[own].at + (r + i) * L + v + VEC_LANES * w);
+			squared[w] = vec_fma(sum[i][w], x, squared[w]);
+			along[w] = vec_fma(scale, x, along[w]);
+		}
 	}
 }
 
-static void respond(const struct block_model *b, const struct block_arrays *a, size_t block, float *scratch)
+static void normalised_response(
+	const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *m)
+{
+	const int size = b->z_size;
+	const float *half = b->half + (size_t)s * (size_t)size * (size_t)size,
+		    *k = b->k + (size_t)s * (size_t)size;
+	float *sigma = panel_at(a->sigma, b->sentences, panel) + s * L;
+	struct stretch z[STRETCHES];
+	const int count = stretches(b, a, panel, s, z);
+
+	for (int v = 0; v < L; v += TILE * VEC_LANES) {
+		vecn squared[TILE], along[TILE];
+		for (int w = 0; w < TILE; w++) {
+			squared[w] = vec_splat(b->eps);
+			along[w] = vec_splat(0);
+		}
+		for (int own = 0; own < count; own++) {
+			int r = 0;
+			for (; r + ROWS <= z[own].count; r += ROWS)
+				quadratic_tile(ROWS, half, k, size, z, own, r, v, squared, along);
+			for (; r + 2 <= z[own].count; r += 2)
+				quadratic_tile(2, half, k, size, z, own, r, v, squared, along);
+			for (; r < z[own].count; r++)
+				quadratic_tile(1, half, k, size, z, own, r, v, squared, along);
+		}
+		for (int w = 0; w < TILE; w++) {
+			vecn scale = vec_splat(1) / vec_sqrt(vec_max(squared[w], vec_splat(b->floor)));
+			vec_store(sigma + v + VEC_LANES * w, scale);
+			vec_store(m + v + VEC_LANES * w, along[w] * scale + vec_splat(b->m0[s]));
+		}
+	}
+}
+
+static void respond(const struct block_model *b, const struct block_arrays *a, size_t block)
 {
 	for (size_t panel = block * BLOCK_PANELS; panel < (block + 1) * BLOCK_PANELS; panel++) {
 		float *m = panel_at(a->m, b->sentences, panel);
@@ -203,7 +252,7 @@ static void respond(const struct block_model *b, const struct block_arrays *a, s
 				softmax_words(
 					panel_at(a->alpha, b->words, panel), b->first[s], b->first[s + 1]);
 			if (b->is_normalised)
-				normalised_response(b, a, panel, s, m + s * L, scratch);
+				normalised_response(b, a, panel, s, m + s * L);
 			else
 				plain_response(b, a, panel, s, m + s * L);
 		}
@@ -218,31 +267,32 @@ static int is_zero(const float *p)
 	return 1;
 }
 
-static void gather(const struct block_model *b, const struct block_arrays *a, size_t block,
-	struct block_sums *sums, float *scratch)
+static void gather(
+	const struct block_model *b, const struct block_arrays *a, size_t block, struct block_sums *sums)
 {
-	float *weight = scratch, *z = scratch + L;
-
 	for (size_t panel = block * BLOCK_PANELS; panel < (block + 1) * BLOCK_PANELS; panel++)
 		for (int s = 0; s < b->sentences; s++) {
 			const float *top = panel_of(a->top, b->sentences, panel) + s * L;
+			float weight[L], *mean = sums->mean + (size_t)s * (size_t)b->z_size;
+			struct stretch z[STRETCHES];
 			if (is_zero(top))
 				continue;
-			memcpy(weight, top, sizeof(float) * L);
+			memcpy(weight, top, sizeof weight);
 			if (b->is_projected) {
 				const float *sigma = panel_of(a->sigma, b->sentences, panel) + s * L;
 				for (int i = 0; i < L; i++)
 					weight[i] *= sigma[i];
 			}
-			make_z(b, a, panel, s, z);
-			outer(sums->mean + (size_t)s * (size_t)b->z_size, 1, z_channels(b, s), b->z_size,
-				weight, 1, z, b->z_size, 1);
+			const int count = stretches(b, a, panel, s, z);
+			for (int i = 0; i < count; i++)
+				outer(mean + z[i].start, 1, z[i].count, b->z_size, weight, 1, z[i].at,
+					z[i].channels, 1);
 		}
 }
 
-/* dz = dm k + top dmean for the alphas of a sentence where m = k.z, in `dz`. */
+/* dz = dm k + top dmean for the alphas of a sentence where m = k.z, in `dalpha`. */
 static void plain_dalpha(
-	const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *dz)
+	const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *dalpha)
 {
 	const float *dm = panel_of(a->dm, b->sentences, panel) + s * L;
 	const float *top = panel_of(a->top, b->sentences, panel) + s * L;
@@ -253,65 +303,111 @@ static void plain_dalpha(
 	for (int v = 0; v < L; v += VEC_LANES) {
 		vecn x = vec_load(dm + v), y = vec_load(top + v);
 		for (int j = 0; j < words; j++)
-			vec_store(dz + j * L + v, x * vec_splat(k[j]) + y * vec_splat(dmean[j]));
+			vec_store(dalpha + j * L + v, x * vec_splat(k[j]) + y * vec_splat(dmean[j]));
 	}
 }
 
-/* The same for a normalised response: all of dz, with dg (and dr) kept for hidden_back, and the sums of k, G
- * and m0. m = (k.z) u + m0 with u = (z^T G z + eps)^(-1/2), and the top set averages t = z u. */
-static void normalised_back(const struct block_model *b, const struct block_arrays *a, size_t panel, int s,
-	struct block_sums *sums, float *scratch)
+/* out = x k + y t + w Gz for `count` channels, added to what it holds unless `is_first`; weighted = d z. */
+static void normalised_channels(const struct stretch *z, const float *k, const float *t, const float *gz,
+	const float *x, const float *y, const float *d, int is_first, float *out, float *weighted)
 {
-	const int size = b->z_size, channels = z_channels(b, s), fixed = z_fixed(b);
+	for (int c = 0; c < z->count; c++) {
+		const vecn scale = vec_splat(k[c]), mean = vec_splat(t[c]);
+#pragma GCC unroll 4
+		for (int v = 0; v < L; v += VEC_LANES) {
+			vecn ds = vec_load(d + v), sum = is_first ? vec_splat(0) : vec_load(out + c * L + v);
+			sum = vec_fma(scale, vec_load(x + v), sum);
+			sum = vec_fma(mean, vec_load(y + v), sum);
+			vec_store(out + c * L + v, vec_fma(ds + ds, vec_load(gz + c * L + v), sum));
+			vec_store(weighted + c * L + v, ds * vec_load(z->at + c * L + v));
+		}
+	}
+}
+
+/* out = k.z */
+static void along_z(const float *k, const struct stretch *z, int count, float *out)
+{
+	vecn sum[L / VEC_LANES];
+
+	for (int v = 0; v < L / VEC_LANES; v++)
+		sum[v] = vec_splat(0);
+	for (int i = 0; i < count; i++)
+		for (int c = 0; c < z[i].count; c++)
+			for (int v = 0; v < L / VEC_LANES; v++)
+				sum[v] = vec_fma(vec_splat(k[z[i].start + c]),
+					vec_load(z[i].at + c * L + VEC_LANES * v), sum[v]);
+	for (int v = 0; v < L / VEC_LANES; v++)
+		vec_store(out + VEC_LANES * v, sum[v]);
+}
+
+/* One panel of a normalised response: dz, of which dg (and dr) are kept for hidden_back, with `weighted` = ds
+ * z and `numerator` = dL/d(k.z) for the sums. m = (k.z) u + m0 with u = (z^T G z + eps)^(-1/2); LayerNorm's
+ * top set averages z u, cosine's z itself. */
+static void normalised_panel(const struct block_model *b, const struct block_arrays *a, size_t panel, int s,
+	float *dalpha, float *weighted, float *numerator, float *gz)
+{
+	const int size = b->z_size, channels = z_channels(b, s), averages_scaled = b->is_projected;
 	const float *dm = panel_of(a->dm, b->sentences, panel) + s * L;
 	const float *top = panel_of(a->top, b->sentences, panel) + s * L;
 	const float *sigma = panel_of(a->sigma, b->sentences, panel) + s * L;
 	const float *k = b->k + (size_t)s * (size_t)size, *dmean = b->dmean + (size_t)s * (size_t)size;
-	float *z = scratch, *gz = z + size * L, *dz = gz + size * L, *dnumerator = dz + size * L,
-	      *dsquared = dnumerator + L;
-	float *weighted = dsquared + L;
-	const int averages_scaled =
-		b->is_projected; /* LayerNorm: the top set averages z u; cosine: z itself */
+	const float *gram = b->gram + (size_t)s * (size_t)size * (size_t)size;
+	const vecn largest =
+		vec_splat(1) / vec_sqrt(vec_splat(b->floor)); /* u at the floor, where it is constant */
+	float kz[L], tz[L] = {0}, mean[L], d[L];
+	struct stretch z[STRETCHES];
+	const int count = stretches(b, a, panel, s, z);
 
-	make_z(b, a, panel, s, z);
-	product_set(gz, b->gram + (size_t)s * (size_t)size * (size_t)size, channels, channels, size, z);
+	product_set(gz, gram, channels, z[0].count, size, z[0].at);
+	for (int i = 1; i < count; i++)
+		product_add(gz, gram + z[i].start, channels, z[i].count, size, z[i].at);
+	along_z(k, z, count, kz);
+	if (averages_scaled)
+		along_z(dmean, z, count, tz);
 	for (int v = 0; v < L; v += VEC_LANES) {
-		vecn kz = vec_splat(0), tz = vec_splat(0), squared = vec_splat(b->eps);
-		for (int c = 0; c < channels; c++) {
-			vecn x = vec_load(z + c * L + v);
-			kz += vec_splat(k[c]) * x;
-			tz += vec_splat(dmean[c]) * x;
-			squared += vec_load(gz + c * L + v) * x;
-		}
-		vecn u = vec_load(sigma + v), d = vec_load(dm + v),
-		     t = averages_scaled ? vec_load(top + v) : vec_splat(0);
-		vecn du = d * kz + t * tz;
-		vecn inside = vec_keep(vec_lt(vec_splat(b->floor), squared), vec_splat(1));
-		vecn ds = vec_splat(-0.5f) * du * u * u * u * inside;
-		vecn mean_scale = averages_scaled ? vec_load(top + v) * u : vec_load(top + v);
-		vec_store(dnumerator + v, d * u);
-		vec_store(dsquared + v, ds);
-		for (int c = 0; c < channels; c++) {
-			vecn g = vec_splat(k[c]) * d * u + vec_splat(dmean[c]) * mean_scale;
-			vec_store(dz + c * L + v, g + vec_splat(2) * ds * vec_load(gz + c * L + v));
-			vec_store(weighted + c * L + v, ds * vec_load(z + c * L + v));
-		}
+		vecn u = vec_load(sigma + v), t = vec_load(top + v), from = vec_load(dm + v);
+		vecn du = from * vec_load(kz + v) + t * vec_load(tz + v);
+		du = vec_keep(vec_lt(u, largest), du);
+		vec_store(d + v, vec_splat(-0.5f) * du * u * u * u);
+		vec_store(mean + v, averages_scaled ? t * u : t);
+		vec_store(numerator + v, from * u);
 	}
-	float *dg = panel_at(a->dg, BLOCK_G, panel);
-	for (int i = 0; i < BLOCK_G * L; i += VEC_LANES)
-		vec_store(dg + i, (s ? vec_load(dg + i) : vec_splat(0)) + vec_load(dz + i));
-	if (b->is_add) {
-		float *dr = panel_at(a->dr, BLOCK_G, panel);
-		for (int i = 0; i < BLOCK_G * L; i += VEC_LANES)
-			vec_store(dr + i,
-				(s ? vec_load(dr + i) : vec_splat(0)) + vec_load(dz + BLOCK_G * L + i));
+	for (int i = 0; i < count; i++) {
+		const int at = z[i].start, is_alpha = b->has_attention && i == count - 1;
+		float *out = is_alpha ? dalpha : panel_at(i ? a->dr : a->dg, BLOCK_G, panel);
+		normalised_channels(z + i, k + at, dmean + at, gz + at * L, numerator, mean, d,
+			is_alpha || !s, out, weighted + at * L);
 	}
-	outer(sums->dk + (size_t)s * (size_t)size, 1, channels, size, dnumerator, 1, z, size, 1);
-	outer(sums->dgram + (size_t)s * (size_t)size * (size_t)size, channels, channels, size, weighted, size,
-		z, size, 1);
-	sum_channels(sums->dm0 + s, 1, dm, b->sentences, 1);
-	if (fixed < channels)
-		memmove(scratch, dz + fixed * L, sizeof(float) * (size_t)(channels - fixed) * L);
+}
+
+/* A block of normalised responses, with the sums of k, G and m0. */
+static void normalised_back(const struct block_model *b, const struct block_arrays *a, size_t first, int s,
+	struct block_sums *sums, float *dalpha, float *scratch)
+{
+	const int size = b->z_size, words = z_channels(b, s) - z_fixed(b);
+	float *dk = sums->dk + (size_t)s * (size_t)size;
+	float *dgram = sums->dgram + (size_t)s * (size_t)size * (size_t)size;
+	float *weighted = scratch, *numerator = weighted + BLOCK_PANELS * size * L,
+	      *gz = numerator + BLOCK_SIZE;
+	struct stretch z[STRETCHES];
+	const int count = stretches(b, a, first, s, z);
+
+	for (int p = 0; p < BLOCK_PANELS; p++)
+		normalised_panel(b, a, first + (size_t)p, s, panel_at(dalpha, words, (size_t)p),
+			panel_at(weighted, size, (size_t)p), numerator + p * L, gz);
+	for (int i = 0; i < count; i++) {
+		float *rows = dgram + (size_t)z[i].start * (size_t)size;
+		const float *left = weighted + z[i].start * L;
+		for (int j = 0; j < i; j++)
+			outer(rows + z[j].start, z[i].count, z[j].count, size, left, size, z[j].at,
+				z[j].channels, BLOCK_PANELS);
+		outer_lower(rows + z[i].start, z[i].count, size, left, size, z[i].at, z[i].channels,
+			BLOCK_PANELS);
+		outer(dk + z[i].start, 1, z[i].count, size, numerator, 1, z[i].at, z[i].channels,
+			BLOCK_PANELS);
+	}
+	sum_channels(
+		sums->dm0 + s, 1, panel_of(a->dm, b->sentences, first) + s * L, b->sentences, BLOCK_PANELS);
 }
 
 /* Through the softmax over words: ds = alpha (dalpha - alpha.dalpha), in place of alpha. */
@@ -331,32 +427,28 @@ static void scores_back(const struct block_model *b, const struct block_arrays *
 	struct block_sums *sums, float *scratch)
 {
 	const size_t first = block * BLOCK_PANELS;
-	const int n = b->words, fixed = z_fixed(b);
+	const int n = b->words;
 
-	if (!b->is_normalised)
-		for (int s = 0; s < b->sentences; s++) {
-			const float *dm = panel_of(a->dm, b->sentences, first) + s * L;
-			float *dk = sums->dk + (size_t)s * (size_t)b->z_size;
-			outer(dk, 1, BLOCK_G, b->z_size, dm, b->sentences, panel_of(a->g, BLOCK_G, first),
-				BLOCK_G, BLOCK_PANELS);
-			if (b->is_add)
-				outer(dk + BLOCK_G, 1, BLOCK_G, b->z_size, dm, b->sentences,
-					panel_of(a->r, BLOCK_G, first), BLOCK_G, BLOCK_PANELS);
-			if (b->has_attention)
-				outer(dk + fixed, 1, b->first[s + 1] - b->first[s], b->z_size, dm,
-					b->sentences, panel_of(a->alpha, n, first) + b->first[s] * L, n,
-					BLOCK_PANELS);
+	for (int s = 0; s < b->sentences; s++) {
+		const int words = z_channels(b, s) - z_fixed(b);
+		float *dalpha = scratch, *rest = dalpha + BLOCK_SIZE * words;
+		if (b->is_normalised) {
+			normalised_back(b, a, first, s, sums, dalpha, rest);
+		} else {
+			struct stretch z[STRETCHES];
+			const int count = stretches(b, a, first, s, z);
+			for (int i = 0; i < count; i++)
+				outer(sums->dk + (size_t)s * (size_t)b->z_size + z[i].start, 1, z[i].count,
+					b->z_size, panel_of(a->dm, b->sentences, first) + s * L, b->sentences,
+					z[i].at, z[i].channels, BLOCK_PANELS);
 		}
-	for (size_t panel = first; panel < first + BLOCK_PANELS; panel++)
-		for (int s = 0; s < b->sentences; s++) {
-			if (b->is_normalised)
-				normalised_back(b, a, panel, s, sums, scratch);
-			else if (b->has_attention)
-				plain_dalpha(b, a, panel, s, scratch);
-			if (b->has_attention)
-				softmax_back(panel_at(a->alpha, n, panel) + b->first[s] * L, scratch,
-					b->first[s + 1] - b->first[s]);
+		for (size_t p = 0; p < BLOCK_PANELS && b->has_attention; p++) {
+			if (!b->is_normalised)
+				plain_dalpha(b, a, first + p, s, panel_at(dalpha, words, p));
+			softmax_back(panel_at(a->alpha, n, first + p) + b->first[s] * L,
+				panel_at(dalpha, words, p), words);
 		}
+	}
 	if (!b->has_attention)
 		return;
 	const float *ds = panel_of(a->alpha, n, first);
@@ -439,12 +531,12 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 	for (int p = 0; p < BLOCK_PANELS; p++) {
 		size_t panel = first + (size_t)p;
 		float *d = panel_at(dg, BLOCK_G, (size_t)p), *e = panel_at(dr, BLOCK_G, (size_t)p);
-		if (b->is_normalised)
-			memcpy(d, panel_of(a->dg, BLOCK_G, panel), sizeof(float) * BLOCK_G * L);
-		else
+		const float *from = b->is_normalised ? panel_of(a->dg, BLOCK_G, panel) : d;
+		if (!b->is_normalised)
 			plain_dz(b, a, panel, 0, d);
-		if (b->has_attention)
-			product_add(d, b->uh_t, BLOCK_G, n, n, panel_of(a->alpha, n, panel));
+		/* without attention a product with no columns: a copy */
+		product_from(
+			d, from, b->uh_t, BLOCK_G, n, n, b->has_attention ? panel_of(a->alpha, n, panel) : d);
 		if (b->uses_position) {
 			if (!b->is_add)
 				memset(e, 0, sizeof(float) * BLOCK_G * L);

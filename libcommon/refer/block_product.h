@@ -27,9 +27,15 @@ VEC_INLINE int part_start(int n, int i, int parts)
 
 VEC_INLINE vecn vec_sqrt(vecn x)
 {
+#if VEC_LANES == 16
+	return (vecn)_mm512_sqrt_ps((__m512)x);
+#elif VEC_LANES == 8
+	return (vecn)_mm256_sqrt_ps((__m256)x);
+#else
 	for (int i = 0; i < VEC_LANES; i++)
 		x[i] = sqrtf(x[i]);
 	return x;
+#endif
 }
 
 /* x in the first `count` lanes, `fill` in the others. */

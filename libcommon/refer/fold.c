@@ -54,7 +54,7 @@ struct fold *fold_new(const struct refer_layout *l, enum refer_similarity simila
 	f->word_scale = is_projected(f) ? 1 : f->score_scale;
 	size_t n = (size_t)words, s = (size_t)sentences, z = (size_t)f->z_max;
 	size_t doubles = n * D * 9 + n * G + s * D * 3 + 2 * s * z * D + s * z;
-	f->out_size = 8 * n * G + 4 * n + 2 * (size_t)G * G + s * (z * z + 2 * z + 1) + 32 * 1024;
+	f->out_size = 8 * n * G + 4 * n + 2 * (size_t)G * G + s * (2 * z * z + 2 * z + 1) + 32 * 1024;
 	f->first = mem_zalloc(s + 1, sizeof *f->first, "folded model", e);
 	f->w = mem_zalloc(doubles, sizeof(double), "folded model", e);
 	f->out = mem_zalloc(f->out_size, sizeof(float), "folded model", e);
@@ -254,7 +254,7 @@ static void fold_columns(struct fold *f, int s)
 	}
 }
 
-static void fold_response(struct fold *f, int s, float *k, float *gram, float *m0)
+static void fold_response(struct fold *f, int s, float *k, float *gram, float *half, float *m0)
 {
 	const double *cz = f->cz + (size_t)s * (size_t)f->z_max * D;
 	const double over = is_projected(f) ? 1.0 / D : 1;
@@ -267,9 +267,13 @@ static void fold_response(struct fold *f, int s, float *k, float *gram, float *m
 	if (!gram)
 		return;
 	for (int r = 0; r < channels; r++)
-		for (int c = 0; c <= r; c++)
-			gram[r * size + c] = gram[c * size + r] =
-				(float)(over * dot(cz + r * D, cz + c * D, D));
+		for (int c = 0; c <= r; c++) {
+			const float element = (float)(over * dot(cz + r * D, cz + c * D, D));
+			gram[r * size + c] = gram[c * size + r] = element;
+			half[r * size + c] = c < r ? 2 * element : element;
+			if (c < r)
+				half[c * size + r] = 0;
+		}
 	*m0 = is_projected(f) ? (float)dot(f->s + s * D, f->beta, D) : 0;
 }
 
@@ -305,16 +309,20 @@ void fold_scores(
 	b->uh_t = transposed(f, uh, n, G);
 	b->uq_t = transposed(f, uq, n, G);
 	float *k = take(f, (size_t)f->sentences * (size_t)size), *m0 = take(f, (size_t)f->sentences),
-	      *gram = NULL;
-	if (b->is_normalised)
+	      *gram = NULL, *half = NULL;
+	if (b->is_normalised) {
 		gram = take(f, (size_t)f->sentences * (size_t)size * (size_t)size);
+		half = take(f, (size_t)f->sentences * (size_t)size * (size_t)size);
+	}
 	for (int s = 0; s < f->sentences; s++) {
 		fold_columns(f, s);
-		fold_response(f, s, k + s * size, gram ? gram + s * size * size : NULL, m0 + s);
+		fold_response(f, s, k + s * size, gram ? gram + s * size * size : NULL,
+			half ? half + s * size * size : NULL, m0 + s);
 	}
 	b->k = k;
 	b->m0 = m0;
 	b->gram = gram;
+	b->half = half;
 }
 
 void fold_top(struct fold *f, const double *mean, double *fg)

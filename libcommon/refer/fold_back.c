@@ -55,10 +55,10 @@ static void response_back(struct fold *f, int s, const double *dk, const double 
 		axpy(dcz + c * D, dk[c], vector, D);
 		axpy(dvector, dk[c], cz + c * D, D);
 	}
-	if (dgram)
+	if (dgram) /* G is symmetric, and so is its gradient: the lower triangle stands for both */
 		for (int r = 0; r < channels; r++)
 			for (int c = 0; c < channels; c++)
-				axpy(dcz + r * D, over * (dgram[r * size + c] + dgram[c * size + r]),
+				axpy(dcz + r * D, 2 * over * dgram[r > c ? r * size + c : c * size + r],
 					cz + c * D, D);
 	for (int i = 0; i < D; i++) {
 		if (!is_projected(f)) {

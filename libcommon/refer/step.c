@@ -170,10 +170,10 @@ static void run_phase(struct step *s, enum step_phase phase)
 				k->hidden(&s->model, &s->arrays, b, &s->sums[c], scratch);
 				break;
 			case STEP_RESPOND:
-				k->respond(&s->model, &s->arrays, b, scratch);
+				k->respond(&s->model, &s->arrays, b);
 				break;
 			case STEP_GATHER:
-				k->gather(&s->model, &s->arrays, b, &s->sums[c], scratch);
+				k->gather(&s->model, &s->arrays, b, &s->sums[c]);
 				break;
 			case STEP_SCORES_BACK:
 				k->scores_back(&s->model, &s->arrays, b, &s->sums[c], scratch);
