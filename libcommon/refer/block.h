@@ -81,13 +81,13 @@ struct block_arrays {
 
 /* Sums over the Gaussians of a chunk of blocks; float32 within, added up in double by the caller. */
 struct block_sums {
-	float *l_max, *l_sum, *c_sum;	   /* (n), (n), (n,65): online softmax over Gaussians */
-	float *duh, *duq, *dy;		   /* (n,65) */
-	float *dk;			   /* (S,z_size) */
-	float *dgram;			   /* (S,z_size,z_size) of the lower triangle; anything above */
-	float *dm0;			   /* (S) */
-	float *mean;			   /* (S,z_size) sum of top * z (or top * z / sigma) */
-	float *dp_gram;			   /* (65,65) */
+	float *l_max, *l_sum, *c_sum; /* (n), (n), (n,65): online softmax over Gaussians */
+	float *duh, *duq, *dy;	      /* (n,65) */
+	float *dk;		      /* (S,z_size), where responses are not normalised */
+	float *dgram;	/* (S,z_size+1,z_size): lower triangle, anything above it; dk below it */
+	float *dm0;	/* (S) */
+	float *mean;	/* (S,z_size) sum of top * z (or top * z / sigma) */
+	float *dp_gram; /* (65,65) */
 	float *dfeature0, *dfeature0_bias; /* as in block_model */
 	float *dfeature1, *dfeature1_bias;
 	float *dposition0, *dposition0_bias;

@@ -380,30 +380,30 @@ static void normalised_panel(const struct block_model *b, const struct block_arr
 	}
 }
 
-/* A block of normalised responses, with the sums of k, G and m0. */
+/* A block of normalised responses, with the sums of G, k (as the row below G) and m0. */
 static void normalised_back(const struct block_model *b, const struct block_arrays *a, size_t first, int s,
 	struct block_sums *sums, float *dalpha, float *scratch)
 {
-	const int size = b->z_size, words = z_channels(b, s) - z_fixed(b);
-	float *dk = sums->dk + (size_t)s * (size_t)size;
-	float *dgram = sums->dgram + (size_t)s * (size_t)size * (size_t)size;
-	float *weighted = scratch, *numerator = weighted + BLOCK_PANELS * size * L,
-	      *gz = numerator + BLOCK_SIZE;
+	const int size = b->z_size, channels = z_channels(b, s), words = channels - z_fixed(b),
+		  rows = size + 1;
+	float *dgram = sums->dgram + (size_t)s * (size_t)rows * (size_t)size;
+	float *weighted = scratch, *gz = weighted + BLOCK_PANELS * rows * L;
 	struct stretch z[STRETCHES];
 	const int count = stretches(b, a, first, s, z);
 
-	for (int p = 0; p < BLOCK_PANELS; p++)
-		normalised_panel(b, a, first + (size_t)p, s, panel_at(dalpha, words, (size_t)p),
-			panel_at(weighted, size, (size_t)p), numerator + p * L, gz);
+	for (int p = 0; p < BLOCK_PANELS; p++) {
+		float *own = panel_at(weighted, rows, (size_t)p);
+		normalised_panel(b, a, first + (size_t)p, s, panel_at(dalpha, words, (size_t)p), own,
+			own + channels * L, gz);
+	}
 	for (int i = 0; i < count; i++) {
-		float *rows = dgram + (size_t)z[i].start * (size_t)size;
+		const int height = z[i].count + (i == count - 1);
+		float *out = dgram + (size_t)z[i].start * (size_t)size;
 		const float *left = weighted + z[i].start * L;
 		for (int j = 0; j < i; j++)
-			outer(rows + z[j].start, z[i].count, z[j].count, size, left, size, z[j].at,
-				z[j].channels, BLOCK_PANELS);
-		outer_lower(rows + z[i].start, z[i].count, size, left, size, z[i].at, z[i].channels,
-			BLOCK_PANELS);
-		outer(dk + z[i].start, 1, z[i].count, size, numerator, 1, z[i].at, z[i].channels,
+			outer(out + z[j].start, height, z[j].count, size, left, rows, z[j].at, z[j].channels,
+				BLOCK_PANELS);
+		outer_lower(out + z[i].start, height, z[i].count, size, left, rows, z[i].at, z[i].channels,
 			BLOCK_PANELS);
 	}
 	sum_channels(

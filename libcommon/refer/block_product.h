@@ -13,10 +13,8 @@ enum {
 	   product. */
 	ROWS = VEC_LANES == 4 ? 4 : 6,
 	TILE = VEC_LANES == 16 ? 4 : 2,
-	OUTER_ROWS = 4,
-	OUTER_COLUMNS = VEC_LANES == 16	 ? 5
-			: VEC_LANES == 8 ? 3
-					 : 2,
+	OUTER_ROWS = VEC_LANES == 16 ? 8 : 4,
+	OUTER_COLUMNS = VEC_LANES == 4 ? 2 : 3,
 };
 
 /* Where part i of `parts` nearly equal ones of n begins. */
@@ -176,6 +174,15 @@ VEC_INLINE void sum_lanes_4(float out[4], vecn a, vecn b, vecn c, vecn d)
 #endif
 }
 
+/* A value that is kept in a register: the compiler would load it again for each of its uses. */
+VEC_INLINE vecn in_register(vecn x)
+{
+#if VEC_LANES == 16
+	__asm__("" : "+v"(x));
+#endif
+	return x;
+}
+
 /* Sums of products over the lanes of every panel: out[r][c] += sum a_r b_c. */
 VEC_INLINE void outer_tile(const int rows, const int columns, float *out, int stride, const float *a,
 	int a_panel, const float *b, int b_panel, int panels)
@@ -184,29 +191,30 @@ VEC_INLINE void outer_tile(const int rows, const int columns, float *out, int st
 	vecn sum[MOST + 3];
 	float total[MOST + 3];
 
-#pragma GCC unroll 23
+#pragma GCC unroll 27
 	for (int i = 0; i < MOST + 3; i++)
 		sum[i] = vec_splat(0);
 	for (int p = 0; p < panels; p++, a += a_panel, b += b_panel)
-		for (int v = 0; v < L; v += VEC_LANES) {
-			vecn x[OUTER_ROWS];
-#pragma GCC unroll 4
-			for (int r = 0; r < rows; r++)
-				x[r] = vec_load(a + r * L + v);
-#pragma GCC unroll 5
-			for (int c = 0; c < columns; c++) {
-				vecn y = vec_load(b + c * L + v);
-#pragma GCC unroll 4
-				for (int r = 0; r < rows; r++)
-					sum[r * columns + c] = vec_fma(x[r], y, sum[r * columns + c]);
+#pragma GCC unroll 1
+		for (int v = 0; v < L; v += VEC_LANES) { /* unrolled, the sums would move between registers */
+			vecn y[OUTER_COLUMNS];
+#pragma GCC unroll 3
+			for (int c = 0; c < columns; c++)
+				y[c] = in_register(vec_load(b + c * L + v));
+#pragma GCC unroll 8
+			for (int r = 0; r < rows; r++) {
+				vecn x = in_register(vec_load(a + r * L + v));
+#pragma GCC unroll 3
+				for (int c = 0; c < columns; c++)
+					sum[r * columns + c] = vec_fma(x, y[c], sum[r * columns + c]);
 			}
 		}
-#pragma GCC unroll 5
-	for (int i = 0; i < rows * columns; i += 4)
+#pragma GCC unroll 8
+	for (int i = 0; i < (rows * columns + 3) / 4 * 4; i += 4)
 		sum_lanes_4(total + i, sum[i], sum[i + 1], sum[i + 2], sum[i + 3]);
-#pragma GCC unroll 4
+#pragma GCC unroll 8
 	for (int r = 0; r < rows; r++)
-#pragma GCC unroll 5
+#pragma GCC unroll 3
 		for (int c = 0; c < columns; c++)
 			out[r * stride + c] += total[r * columns + c];
 }
@@ -231,14 +239,6 @@ VEC_INLINE void outer_rows(const int rows, float *out, int columns, int stride, 
 			outer_tile(rows, 3, out + c, stride, a, a_panel, from, b_panel, panels);
 			break;
 #endif
-#if VEC_LANES == 16
-		case 4:
-			outer_tile(rows, 4, out + c, stride, a, a_panel, from, b_panel, panels);
-			break;
-		case 5:
-			outer_tile(rows, 5, out + c, stride, a, a_panel, from, b_panel, panels);
-			break;
-#endif
 		}
 	}
 }
@@ -251,7 +251,7 @@ VEC_INLINE void outer_any(float *out, int rows, int columns, int stride, const f
 
 	for (int i = 0; i < parts; i++) {
 		const int r = part_start(rows, i, parts), end = part_start(rows, i + 1, parts);
-		const int width = is_lower ? end : columns;
+		const int width = is_lower && end < columns ? end : columns;
 		float *to = out + (size_t)r * (size_t)stride;
 		const float *from = a + (size_t)r * L;
 		switch (end - r) {
@@ -267,6 +267,20 @@ VEC_INLINE void outer_any(float *out, int rows, int columns, int stride, const f
 		case 4:
 			outer_rows(4, to, width, stride, from, a_panel, b, b_panel, panels);
 			break;
+#if VEC_LANES == 16
+		case 5:
+			outer_rows(5, to, width, stride, from, a_panel, b, b_panel, panels);
+			break;
+		case 6:
+			outer_rows(6, to, width, stride, from, a_panel, b, b_panel, panels);
+			break;
+		case 7:
+			outer_rows(7, to, width, stride, from, a_panel, b, b_panel, panels);
+			break;
+		case 8:
+			outer_rows(8, to, width, stride, from, a_panel, b, b_panel, panels);
+			break;
+#endif
 		}
 	}
 }
@@ -279,12 +293,11 @@ static void outer(float *out, int rows, int columns, int stride, const float *a,
 	outer_any(out, rows, columns, stride, a, a_channels, b, b_channels, panels, 0);
 }
 
-/* The same for a square of which only the lower triangle is wanted: above the diagonal it may hold anything.
- */
-static void outer_lower(float *out, int size, int stride, const float *a, int a_channels, const float *b,
-	int b_channels, int panels)
+/* The same where only the lower triangle is wanted, with the rows below it: above the diagonal anything. */
+static void outer_lower(float *out, int rows, int columns, int stride, const float *a, int a_channels,
+	const float *b, int b_channels, int panels)
 {
-	outer_any(out, size, size, stride, a, a_channels, b, b_channels, panels, 1);
+	outer_any(out, rows, columns, stride, a, a_channels, b, b_channels, panels, 1);
 }
 
 VEC_INLINE vecn channel_sum(const float *row, int panel, int panels)

@@ -137,9 +137,13 @@ void fold_scores_back(struct fold *f, const double *duh, const double *duq, cons
 	const int n = b->words, size = b->z_size;
 	float *dcs = take(f, (size_t)n * G), *dots = take(f, (size_t)n);
 
-	for (int s = 0; s < f->sentences; s++)
-		response_back(
-			f, s, dk + s * size, b->is_normalised ? dgram + s * size * size : NULL, dm0 + s);
+	for (int s = 0; s < f->sentences; s++) {
+		const double *own = dgram + s * (size + 1) * size;
+		if (b->is_normalised)
+			response_back(f, s, own + z_channels(f, s) * size, own, dm0 + s);
+		else
+			response_back(f, s, dk + s * size, NULL, dm0 + s);
+	}
 	for (int j = 0; j < n; j++) {
 		double dc[D], dcbar[G] = {0};
 		word_back(f, j, duh + j * G, duq + j * G, dc);

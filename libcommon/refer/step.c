@@ -111,7 +111,7 @@ void step_unpack(const float *panels, size_t gaussians, float *x)
 static void lay_out(size_t at[PARTS + 1], size_t n, size_t sentences, size_t z, int is_normalised)
 {
 	const size_t length[PARTS] = {n, n, n * G, n * G, n * G, n * G, sentences * z,
-		is_normalised ? sentences * z * z : 0, sentences, sentences * z, (size_t)G * G,
+		is_normalised ? sentences * (z + 1) * z : 0, sentences, sentences * z, (size_t)G * G,
 		REFER_XH * REFER_X, REFER_XH, REFER_H * REFER_XH, REFER_H, REFER_PH * 3, REFER_PH,
 		REFER_H * REFER_PH, REFER_H};
 
