@@ -20,6 +20,12 @@ static float *panel_at(float *array, int channels, size_t panel)
 	return array + panel * (size_t)channels * L;
 }
 
+/* The panel of BLOCK_G channels to fetch ahead; NULL where there is none. */
+static const float *panel_ahead(const struct block_model *b, const float *array, size_t panel)
+{
+	return array && panel * L < b->gaussians ? panel_of(array, BLOCK_G, panel) : NULL;
+}
+
 /* Lanes of a panel that hold Gaussians. */
 static int panel_lanes(const struct block_model *b, size_t panel)
 {
@@ -31,7 +37,7 @@ static int panel_lanes(const struct block_model *b, size_t panel)
 /* r_i = nu_i [q_i; 1] in place of [q_i; 1], nu = 1/|p|, |p|^2 = [q;1]^T P [q;1]. */
 static void scale_positions(const struct block_model *b, float *r, float *scratch)
 {
-	product_set(scratch, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r);
+	product_set(scratch, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r, NULL);
 	for (int v = 0; v < L; v += VEC_LANES) {
 		vecn squared = vec_splat(0);
 		for (int c = 0; c < BLOCK_G; c++)
@@ -89,18 +95,21 @@ static void hidden(const struct block_model *b, const struct block_arrays *a, si
 	for (size_t panel = first; panel < first + BLOCK_PANELS; panel++) {
 		float *g = panel_at(a->g, BLOCK_G, panel);
 		product_relu(scratch, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel),
-			b->feature0_bias);
-		product_relu(g, b->feature1, REFER_H, REFER_XH, scratch, b->feature1_bias);
+			b->feature0_bias, NULL);
+		product_relu(g, b->feature1, REFER_H, REFER_XH, scratch, b->feature1_bias,
+			panel_ahead(b, a->g, panel + 1));
 		for (int v = 0; v < L; v += VEC_LANES)
 			vec_store(g + REFER_H * L + v, vec_splat(1));
 		if (b->has_words)
-			product_set(panel_at(a->beta, b->words, panel), b->y, b->words, BLOCK_G, BLOCK_G, g);
+			product_set(panel_at(a->beta, b->words, panel), b->y, b->words, BLOCK_G, BLOCK_G, g,
+				NULL);
 		if (!b->uses_position)
 			continue;
 		float *r = panel_at(a->r, BLOCK_G, panel);
 		product_relu(scratch, b->position0, REFER_PH, 3, panel_of(a->position, 3, panel),
-			b->position0_bias);
-		product_relu(r, b->position1, REFER_H, REFER_PH, scratch, b->position1_bias);
+			b->position0_bias, NULL);
+		product_relu(r, b->position1, REFER_H, REFER_PH, scratch, b->position1_bias,
+			panel_ahead(b, a->r, panel + 1));
 		for (int v = 0; v < L; v += VEC_LANES)
 			vec_store(r + REFER_H * L + v, vec_splat(1));
 		if (b->is_projected)
@@ -171,9 +180,9 @@ static void plain_response(
 	struct stretch z[STRETCHES];
 	const int count = stretches(b, a, panel, s, z);
 
-	product_set(m, k, 1, z[0].count, z[0].count, z[0].at);
+	product_set(m, k, 1, z[0].count, z[0].count, z[0].at, NULL);
 	for (int i = 1; i < count; i++)
-		product_add(m, k + z[i].start, 1, z[i].count, z[i].count, z[i].at);
+		product_add(m, k + z[i].start, 1, z[i].count, z[i].count, z[i].at, NULL);
 }
 
 /* Adds the share of `rows` rows of the triangle H, from row r of z's stretch `own` on, to z^T H z and to k.z.
@@ -221,8 +230,15 @@ static void normalised_response(
 		}
 		for (int own = 0; own < count; own++) {
 			int r = 0;
-			for (; r + ROWS <= z[own].count; r += ROWS)
+			for (; r + ROWS <= z[own].count; r += ROWS) {
+				if (own == 0 && v == 0) {
+					fetch_part(panel_ahead(b, a->g, panel + 1), r / ROWS,
+						z[own].count / ROWS);
+					fetch_part(panel_ahead(b, a->r, panel + 1), r / ROWS,
+						z[own].count / ROWS);
+				}
 				quadratic_tile(ROWS, half, k, size, z, own, r, v, squared, along);
+			}
 			for (; r + 2 <= z[own].count; r += 2)
 				quadratic_tile(2, half, k, size, z, own, r, v, squared, along);
 			for (; r < z[own].count; r++)
@@ -242,10 +258,11 @@ static void respond(const struct block_model *b, const struct block_arrays *a, s
 		float *m = panel_at(a->m, b->sentences, panel);
 		if (b->has_attention) {
 			float *s = panel_at(a->alpha, b->words, panel);
-			product_set(s, b->uh, b->words, BLOCK_G, BLOCK_G, panel_of(a->g, BLOCK_G, panel));
+			product_set(
+				s, b->uh, b->words, BLOCK_G, BLOCK_G, panel_of(a->g, BLOCK_G, panel), NULL);
 			if (b->has_positions)
-				product_add(
-					s, b->uq, b->words, BLOCK_G, BLOCK_G, panel_of(a->r, BLOCK_G, panel));
+				product_add(s, b->uq, b->words, BLOCK_G, BLOCK_G,
+					panel_of(a->r, BLOCK_G, panel), NULL);
 		}
 		for (int s = 0; s < b->sentences; s++) {
 			if (b->has_attention)
@@ -358,9 +375,10 @@ static void normalised_panel(const struct block_model *b, const struct block_arr
 	struct stretch z[STRETCHES];
 	const int count = stretches(b, a, panel, s, z);
 
-	product_set(gz, gram, channels, z[0].count, size, z[0].at);
+	product_set(gz, gram, channels, z[0].count, size, z[0].at, panel_ahead(b, a->dg, panel));
 	for (int i = 1; i < count; i++)
-		product_add(gz, gram + z[i].start, channels, z[i].count, size, z[i].at);
+		product_add(gz, gram + z[i].start, channels, z[i].count, size, z[i].at,
+			panel_ahead(b, a->g, panel + 1));
 	along_z(k, z, count, kz);
 	if (averages_scaled)
 		along_z(dmean, z, count, tz);
@@ -484,7 +502,7 @@ static void word_positions_back(
 	const int n = b->words, lanes = panel_lanes(b, panel);
 	float *beta = scratch, *along = scratch + n * L;
 
-	product_set(along, b->dc, n, BLOCK_G, BLOCK_G, r);
+	product_set(along, b->dc, n, BLOCK_G, BLOCK_G, r, NULL);
 	for (int j = 0; j < n; j++)
 		for (int v = 0; v < L; v += VEC_LANES) {
 			vecn e = vec_exp(vec_load(logits + j * L + v) - vec_splat(b->l_max[j])) *
@@ -494,7 +512,7 @@ static void word_positions_back(
 			vec_store(logits + j * L + v,
 				e * (vec_load(along + j * L + v) - vec_splat(b->dc_dot[j])));
 		}
-	product_add(dr, b->dc_t, BLOCK_G, n, n, beta);
+	product_add(dr, b->dc_t, BLOCK_G, n, n, beta, NULL);
 }
 
 /* From r = nu [q;1] to q: d in place of dr's first 64 channels; and the gradient of P. */
@@ -503,7 +521,7 @@ static void scale_positions_back(
 {
 	float *pr = scratch, *weighted = scratch + BLOCK_G * L;
 
-	product_set(pr, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r);
+	product_set(pr, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r, NULL);
 	for (int v = 0; v < L; v += VEC_LANES) {
 		vecn nu = vec_load(r + REFER_H * L + v), dot = vec_splat(0);
 		for (int c = 0; c < BLOCK_G; c++)
@@ -535,8 +553,9 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 		if (!b->is_normalised)
 			plain_dz(b, a, panel, 0, d);
 		/* without attention a product with no columns: a copy */
-		product_from(
-			d, from, b->uh_t, BLOCK_G, n, n, b->has_attention ? panel_of(a->alpha, n, panel) : d);
+		product_from(d, from, b->uh_t, BLOCK_G, n, n,
+			b->has_attention ? panel_of(a->alpha, n, panel) : d,
+			panel_ahead(b, a->dg, panel + 1));
 		if (b->uses_position) {
 			if (!b->is_add)
 				memset(e, 0, sizeof(float) * BLOCK_G * L);
@@ -545,21 +564,23 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 			else
 				plain_dz(b, a, panel, BLOCK_G, e);
 			if (b->has_positions)
-				product_add(e, b->uq_t, BLOCK_G, n, n, panel_of(a->alpha, n, panel));
+				product_add(e, b->uq_t, BLOCK_G, n, n, panel_of(a->alpha, n, panel),
+					panel_ahead(b, a->g, panel + 1));
 		}
 		if (b->has_words) {
 			float *logits = panel_at(a->beta, n, panel);
 			word_positions_back(b, panel, logits, panel_of(a->r, BLOCK_G, panel), e, rest);
-			product_add(d, b->y_t, BLOCK_G, n, n, logits);
+			product_add(d, b->y_t, BLOCK_G, n, n, logits, panel_ahead(b, a->r, panel + 1));
 		}
 		relu_back(d, panel_of(a->g, BLOCK_G, panel), REFER_H);
 		float *h0 = panel_at(hidden0, REFER_XH, (size_t)p),
 		      *d0 = panel_at(dhidden0, REFER_XH, (size_t)p);
-		product_relu(
-			h0, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel), b->feature0_bias);
-		product_set(d0, b->feature1_t, REFER_XH, REFER_H, REFER_H, d);
+		product_relu(h0, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel),
+			b->feature0_bias, NULL);
+		product_set(d0, b->feature1_t, REFER_XH, REFER_H, REFER_H, d, NULL);
 		relu_back(d0, h0, REFER_XH);
-		product_set(panel_at(a->dx, REFER_X, panel), b->feature0_t, REFER_X, REFER_XH, REFER_XH, d0);
+		product_set(panel_at(a->dx, REFER_X, panel), b->feature0_t, REFER_X, REFER_XH, REFER_XH, d0,
+			NULL);
 	}
 	if (b->has_words)
 		outer(sums->dy, n, BLOCK_G, BLOCK_G, panel_of(a->beta, n, first), n,
@@ -580,9 +601,9 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 		relu_back(e, r, REFER_H);
 		float *h0 = panel_at(hidden0, REFER_PH, (size_t)p),
 		      *d0 = panel_at(dhidden0, REFER_PH, (size_t)p);
-		product_relu(
-			h0, b->position0, REFER_PH, 3, panel_of(a->position, 3, panel), b->position0_bias);
-		product_set(d0, b->position1_t, REFER_PH, REFER_H, REFER_H, e);
+		product_relu(h0, b->position0, REFER_PH, 3, panel_of(a->position, 3, panel),
+			b->position0_bias, NULL);
+		product_set(d0, b->position1_t, REFER_PH, REFER_H, REFER_H, e, NULL);
 		relu_back(d0, h0, REFER_PH);
 	}
 	outer(sums->dposition1, REFER_H, REFER_PH, REFER_PH, dr, BLOCK_G, hidden0, REFER_PH, BLOCK_PANELS);
