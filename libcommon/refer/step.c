@@ -388,6 +388,33 @@ static void from_scene(const struct step *s, const float *scene, float *m)
 	memset(m + s->setup.gaussians, 0, sizeof *m * (s->padded - s->setup.gaussians));
 }
 
+/* The image of one response, its loss and, in scene_dresponse, the response's gradient times `share`.
+ * Blending back follows part by part, while the part's weights are in cache. */
+static double image_loss(struct step *s, const struct view_weights *view, const uint8_t *mask, double share)
+{
+	const size_t pixels = view->pixels, part = 2048;
+	double sums[VIEW_SLABS] = {0}, sum = 0;
+
+#pragma omp parallel for schedule(dynamic) num_threads(s->threads)
+	for (size_t slab = 0; slab < VIEW_SLABS; slab++) {
+		float *dm = s->view_scratch + slab * view->gaussians;
+		const size_t begin = pixels * slab / VIEW_SLABS, end = pixels * (slab + 1) / VIEW_SLABS;
+		memset(dm, 0, sizeof *dm * view->gaussians);
+		for (size_t from = begin; from < end; from += part) {
+			const size_t to = end - from > part ? from + part : end;
+			const double of_all = (double)(to - from) / (double)pixels;
+			view_blend(view, s->scene_response, from, to, s->image);
+			sums[slab] += of_all * loss_bce(s->image + from, mask + from, to - from,
+						       (float)(share * of_all), s->dimage + from);
+			view_blend_back(view, s->dimage, from, to, dm);
+		}
+	}
+	view_join(s->view_scratch, view->gaussians, s->scene_dresponse);
+	for (size_t slab = 0; slab < VIEW_SLABS; slab++)
+		sum += sums[slab];
+	return sum;
+}
+
 /* Images, their loss, and dm. */
 static double image_losses(
 	struct step *s, const struct view_weights *view, const struct step_target *targets, int count)
@@ -397,9 +424,7 @@ static double image_losses(
 	for (int i = 0; i < count; i++) {
 		channel_get(s->arrays.m, s->padded, count, i, s->response);
 		to_scene(s, s->response, s->scene_response);
-		view_blend(view, s->scene_response, s->image);
-		bce += loss_bce(s->image, targets[i].mask, view->pixels, 1 / (float)count, s->dimage) / count;
-		view_blend_back(view, s->dimage, s->scene_dresponse, s->view_scratch);
+		bce += image_loss(s, view, targets[i].mask, 1 / (double)count) / count;
 		from_scene(s, s->scene_dresponse, s->dresponse);
 		channel_put(s->arrays.dm, s->padded, count, i, s->dresponse);
 	}

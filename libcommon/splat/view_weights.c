@@ -5,6 +5,8 @@
 #include <immintrin.h>
 #endif
 
+enum { AHEAD = 512 }; /* weights to fetch before their use: the processor's own prefetching falls behind */
+
 enum { LANES = 16 }; /* partial sums of a pixel: lane k takes every 16th weight */
 
 static void blend_plain(const struct view_weights *w, const float *m, float *image, size_t from, size_t to)
@@ -29,6 +31,8 @@ __attribute__((target("avx512f"))) static void blend_avx512(
 		__m512 sum = _mm512_setzero_ps();
 		for (int64_t k = w->indptr[p], end = w->indptr[p + 1]; k < end; k += LANES) {
 			int64_t left = end - k;
+			_mm_prefetch((const char *)(w->index + k + AHEAD), _MM_HINT_T0);
+			_mm_prefetch((const char *)(w->weight + k + AHEAD), _MM_HINT_T0);
 			__mmask16 mask = left >= LANES ? 0xffff : (__mmask16)((1u << left) - 1);
 			__m512i index = _mm512_maskz_loadu_epi32(mask, w->index + k);
 			__m512 value = _mm512_mask_i32gather_ps(_mm512_setzero_ps(), mask, index, m, 4);
@@ -44,43 +48,31 @@ __attribute__((target("avx512f"))) static void blend_avx512(
 }
 #endif
 
-void view_blend(const struct view_weights *w, const float *m, float *image)
+void view_blend(const struct view_weights *w, const float *m, size_t from, size_t to, float *image)
 {
-	const size_t part = 1024;
-	const size_t parts = (w->pixels + part - 1) / part;
 #if defined __x86_64__
-	const int is_wide = __builtin_cpu_supports("avx512f");
-#endif
-
-#pragma omp parallel for schedule(dynamic)
-	for (size_t i = 0; i < parts; i++) {
-		size_t from = i * part, to = from + part < w->pixels ? from + part : w->pixels;
-#if defined __x86_64__
-		if (is_wide) {
-			blend_avx512(w, m, image, from, to);
-			continue;
-		}
-#endif
-		blend_plain(w, m, image, from, to);
+	if (__builtin_cpu_supports("avx512f")) {
+		blend_avx512(w, m, image, from, to);
+		return;
 	}
+#endif
+	blend_plain(w, m, image, from, to);
 }
 
-void view_blend_back(const struct view_weights *w, const float *dimage, float *dm, float *scratch)
+void view_blend_back(const struct view_weights *w, const float *dimage, size_t from, size_t to, float *dm)
 {
-#pragma omp parallel for schedule(dynamic)
-	for (size_t slab = 0; slab < VIEW_SLABS; slab++) {
-		float *sum = scratch + slab * w->gaussians;
-		size_t from = w->pixels * slab / VIEW_SLABS, to = w->pixels * (slab + 1) / VIEW_SLABS;
-		memset(sum, 0, sizeof *sum * w->gaussians);
-		for (size_t p = from; p < to; p++)
-			for (int64_t k = w->indptr[p]; k < w->indptr[p + 1]; k++)
-				sum[w->index[k]] += w->weight[k] * dimage[p];
-	}
+	for (size_t p = from; p < to; p++)
+		for (int64_t k = w->indptr[p]; k < w->indptr[p + 1]; k++)
+			dm[w->index[k]] += w->weight[k] * dimage[p];
+}
+
+void view_join(const float *slabs, size_t gaussians, float *dm)
+{
 #pragma omp parallel for schedule(static)
-	for (size_t i = 0; i < w->gaussians; i++) {
+	for (size_t i = 0; i < gaussians; i++) {
 		float sum = 0;
 		for (size_t slab = 0; slab < VIEW_SLABS; slab++)
-			sum += scratch[slab * w->gaussians + i];
+			sum += slabs[slab * gaussians + i];
 		dm[i] = sum;
 	}
 }

@@ -14,12 +14,15 @@ struct view_weights {
 	const float *weight;   /* (nnz) */
 };
 
-/* image (P) = W m (N). */
-void view_blend(const struct view_weights *w, const float *m, float *image);
+/* image[from,to) of W m (N), by one thread. */
+void view_blend(const struct view_weights *w, const float *m, size_t from, size_t to, float *image);
 
-/* dm (N) = W^T dimage (P). scratch holds VIEW_SLABS * N floats: the pixels are cut into so many slabs, summed
- * apart and added in order, whatever the number of threads. */
+/* dm (N) += W^T dimage over the pixels [from,to), by one thread. */
+void view_blend_back(const struct view_weights *w, const float *dimage, size_t from, size_t to, float *dm);
+
+/* For a backward pass by many threads: the pixels are cut into VIEW_SLABS parts, each with a dm of its own in
+ * slabs (VIEW_SLABS,N), and these are added in order, whatever the number of threads. */
 enum { VIEW_SLABS = 8 };
-void view_blend_back(const struct view_weights *w, const float *dimage, float *dm, float *scratch);
+void view_join(const float *slabs, size_t gaussians, float *dm);
 
 #endif
