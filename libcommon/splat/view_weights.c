@@ -61,9 +61,14 @@ void view_blend(const struct view_weights *w, const float *m, size_t from, size_
 
 void view_blend_back(const struct view_weights *w, const float *dimage, size_t from, size_t to, float *dm)
 {
-	for (size_t p = from; p < to; p++)
-		for (int64_t k = w->indptr[p]; k < w->indptr[p + 1]; k++)
-			dm[w->index[k]] += w->weight[k] * dimage[p];
+	const int32_t *index = w->index;
+	const float *weight = w->weight;
+
+	for (size_t p = from; p < to; p++) {
+		const float d = dimage[p];
+		for (int64_t k = w->indptr[p], end = w->indptr[p + 1]; k < end; k++)
+			dm[index[k]] += weight[k] * d;
+	}
 }
 
 void view_join(const float *slabs, size_t gaussians, float *dm)
