@@ -37,7 +37,7 @@ static int panel_lanes(const struct block_model *b, size_t panel)
 /* r_i = nu_i [q_i; 1] in place of [q_i; 1], nu = 1/|p|, |p|^2 = [q;1]^T P [q;1]. */
 static void scale_positions(const struct block_model *b, float *r, float *scratch)
 {
-	product_set(scratch, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r, NULL);
+	product_set(scratch, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r);
 	for (int v = 0; v < L; v += VEC_LANES) {
 		vecn squared = vec_splat(0);
 		for (int c = 0; c < BLOCK_G; c++)
@@ -101,8 +101,7 @@ static void hidden(const struct block_model *b, const struct block_arrays *a, si
 		for (int v = 0; v < L; v += VEC_LANES)
 			vec_store(g + REFER_H * L + v, vec_splat(1));
 		if (b->has_words)
-			product_set(panel_at(a->beta, b->words, panel), b->y, b->words, BLOCK_G, BLOCK_G, g,
-				NULL);
+			product_set(panel_at(a->beta, b->words, panel), b->y, b->words, BLOCK_G, BLOCK_G, g);
 		if (!b->uses_position)
 			continue;
 		float *r = panel_at(a->r, BLOCK_G, panel);
@@ -178,11 +177,12 @@ static void plain_response(
 {
 	const float *k = b->k + (size_t)s * (size_t)b->z_size;
 	struct stretch z[STRETCHES];
+	struct term terms[STRETCHES];
 	const int count = stretches(b, a, panel, s, z);
 
-	product_set(m, k, 1, z[0].count, z[0].count, z[0].at, NULL);
-	for (int i = 1; i < count; i++)
-		product_add(m, k + z[i].start, 1, z[i].count, z[i].count, z[i].at, NULL);
+	for (int i = 0; i < count; i++)
+		terms[i] = (struct term){k + z[i].start, z[i].count, z[i].count, z[i].at};
+	product_sum(m, NULL, 1, terms, count, no_panels);
 }
 
 /* Adds the share of `rows` rows of the triangle H, from row r of z's stretch `own` on, to z^T H z and to k.z.
@@ -258,11 +258,11 @@ static void respond(const struct block_model *b, const struct block_arrays *a, s
 		float *m = panel_at(a->m, b->sentences, panel);
 		if (b->has_attention) {
 			float *s = panel_at(a->alpha, b->words, panel);
-			product_set(
-				s, b->uh, b->words, BLOCK_G, BLOCK_G, panel_of(a->g, BLOCK_G, panel), NULL);
-			if (b->has_positions)
-				product_add(s, b->uq, b->words, BLOCK_G, BLOCK_G,
-					panel_of(a->r, BLOCK_G, panel), NULL);
+			const struct term terms[2] = {
+				{b->uh, BLOCK_G, BLOCK_G, panel_of(a->g, BLOCK_G, panel)},
+				{b->uq, BLOCK_G, BLOCK_G,
+					b->has_positions ? panel_of(a->r, BLOCK_G, panel) : NULL}};
+			product_sum(s, NULL, b->words, terms, b->has_positions ? 2 : 1, no_panels);
 		}
 		for (int s = 0; s < b->sentences; s++) {
 			if (b->has_attention)
@@ -373,12 +373,13 @@ static void normalised_panel(const struct block_model *b, const struct block_arr
 		vec_splat(1) / vec_sqrt(vec_splat(b->floor)); /* u at the floor, where it is constant */
 	float kz[L], tz[L] = {0}, mean[L], d[L];
 	struct stretch z[STRETCHES];
+	struct term terms[STRETCHES];
 	const int count = stretches(b, a, panel, s, z);
 
-	product_set(gz, gram, channels, z[0].count, size, z[0].at, panel_ahead(b, a->dg, panel));
-	for (int i = 1; i < count; i++)
-		product_add(gz, gram + z[i].start, channels, z[i].count, size, z[i].at,
-			panel_ahead(b, a->g, panel + 1));
+	for (int i = 0; i < count; i++)
+		terms[i] = (struct term){gram + z[i].start, size, z[i].count, z[i].at};
+	product_sum(gz, NULL, channels, terms, count,
+		(const float *const[2]){panel_ahead(b, a->dg, panel), panel_ahead(b, a->g, panel + 1)});
 	along_z(k, z, count, kz);
 	if (averages_scaled)
 		along_z(dmean, z, count, tz);
@@ -495,14 +496,13 @@ static void plain_dz(
 	}
 }
 
-/* beta_ji (r_i.dc_j - cbar_j.dc_j) in place of the logits, and dr += sum_j beta_ji dc_j. */
+/* beta_ji (r_i.dc_j - cbar_j.dc_j) in place of the logits; beta (n channels). */
 static void word_positions_back(
-	const struct block_model *b, size_t panel, float *logits, const float *r, float *dr, float *scratch)
+	const struct block_model *b, size_t panel, float *logits, const float *r, float *beta, float *along)
 {
 	const int n = b->words, lanes = panel_lanes(b, panel);
-	float *beta = scratch, *along = scratch + n * L;
 
-	product_set(along, b->dc, n, BLOCK_G, BLOCK_G, r, NULL);
+	product_set(along, b->dc, n, BLOCK_G, BLOCK_G, r);
 	for (int j = 0; j < n; j++)
 		for (int v = 0; v < L; v += VEC_LANES) {
 			vecn e = vec_exp(vec_load(logits + j * L + v) - vec_splat(b->l_max[j])) *
@@ -512,7 +512,6 @@ static void word_positions_back(
 			vec_store(logits + j * L + v,
 				e * (vec_load(along + j * L + v) - vec_splat(b->dc_dot[j])));
 		}
-	product_add(dr, b->dc_t, BLOCK_G, n, n, beta, NULL);
 }
 
 /* From r = nu [q;1] to q: d in place of dr's first 64 channels; and the gradient of P. */
@@ -521,7 +520,7 @@ static void scale_positions_back(
 {
 	float *pr = scratch, *weighted = scratch + BLOCK_G * L;
 
-	product_set(pr, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r, NULL);
+	product_set(pr, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r);
 	for (int v = 0; v < L; v += VEC_LANES) {
 		vecn nu = vec_load(r + REFER_H * L + v), dot = vec_splat(0);
 		for (int c = 0; c < BLOCK_G; c++)
@@ -549,38 +548,41 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 	for (int p = 0; p < BLOCK_PANELS; p++) {
 		size_t panel = first + (size_t)p;
 		float *d = panel_at(dg, BLOCK_G, (size_t)p), *e = panel_at(dr, BLOCK_G, (size_t)p);
-		const float *from = b->is_normalised ? panel_of(a->dg, BLOCK_G, panel) : d;
+		const float *alpha = b->has_attention ? panel_of(a->alpha, n, panel) : NULL;
+		struct term to_g[2], to_r[2];
+		int g_terms = 0, r_terms = 0;
+		if (b->has_attention)
+			to_g[g_terms++] = (struct term){b->uh_t, n, n, alpha};
+		if (b->has_positions)
+			to_r[r_terms++] = (struct term){b->uq_t, n, n, alpha};
+		if (b->has_words) {
+			float *logits = panel_at(a->beta, n, panel), *beta = rest, *along = rest + n * L;
+			word_positions_back(b, panel, logits, panel_of(a->r, BLOCK_G, panel), beta, along);
+			to_g[g_terms++] = (struct term){b->y_t, n, n, logits};
+			to_r[r_terms++] = (struct term){b->dc_t, n, n, beta};
+		}
 		if (!b->is_normalised)
 			plain_dz(b, a, panel, 0, d);
-		/* without attention a product with no columns: a copy */
-		product_from(d, from, b->uh_t, BLOCK_G, n, n,
-			b->has_attention ? panel_of(a->alpha, n, panel) : d,
-			panel_ahead(b, a->dg, panel + 1));
+		product_sum(d, b->is_normalised ? panel_of(a->dg, BLOCK_G, panel) : d, BLOCK_G, to_g, g_terms,
+			(const float *const[2]){
+				panel_ahead(b, a->dg, panel + 1), panel_ahead(b, a->g, panel + 1)});
 		if (b->uses_position) {
-			if (!b->is_add)
-				memset(e, 0, sizeof(float) * BLOCK_G * L);
-			else if (b->is_normalised)
-				memcpy(e, panel_of(a->dr, BLOCK_G, panel), sizeof(float) * BLOCK_G * L);
-			else
+			const float *from = !b->is_add	       ? NULL
+					    : b->is_normalised ? panel_of(a->dr, BLOCK_G, panel)
+							       : e;
+			if (from == e)
 				plain_dz(b, a, panel, BLOCK_G, e);
-			if (b->has_positions)
-				product_add(e, b->uq_t, BLOCK_G, n, n, panel_of(a->alpha, n, panel),
-					panel_ahead(b, a->g, panel + 1));
-		}
-		if (b->has_words) {
-			float *logits = panel_at(a->beta, n, panel);
-			word_positions_back(b, panel, logits, panel_of(a->r, BLOCK_G, panel), e, rest);
-			product_add(d, b->y_t, BLOCK_G, n, n, logits, panel_ahead(b, a->r, panel + 1));
+			product_sum(e, from, BLOCK_G, to_r, r_terms,
+				(const float *const[2]){panel_ahead(b, a->r, panel + 1)});
 		}
 		relu_back(d, panel_of(a->g, BLOCK_G, panel), REFER_H);
 		float *h0 = panel_at(hidden0, REFER_XH, (size_t)p),
 		      *d0 = panel_at(dhidden0, REFER_XH, (size_t)p);
 		product_relu(h0, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel),
 			b->feature0_bias, NULL);
-		product_set(d0, b->feature1_t, REFER_XH, REFER_H, REFER_H, d, NULL);
+		product_set(d0, b->feature1_t, REFER_XH, REFER_H, REFER_H, d);
 		relu_back(d0, h0, REFER_XH);
-		product_set(panel_at(a->dx, REFER_X, panel), b->feature0_t, REFER_X, REFER_XH, REFER_XH, d0,
-			NULL);
+		product_set(panel_at(a->dx, REFER_X, panel), b->feature0_t, REFER_X, REFER_XH, REFER_XH, d0);
 	}
 	if (b->has_words)
 		outer(sums->dy, n, BLOCK_G, BLOCK_G, panel_of(a->beta, n, first), n,
@@ -603,7 +605,7 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 		      *d0 = panel_at(dhidden0, REFER_PH, (size_t)p);
 		product_relu(h0, b->position0, REFER_PH, 3, panel_of(a->position, 3, panel),
 			b->position0_bias, NULL);
-		product_set(d0, b->position1_t, REFER_PH, REFER_H, REFER_H, e, NULL);
+		product_set(d0, b->position1_t, REFER_PH, REFER_H, REFER_H, e);
 		relu_back(d0, h0, REFER_PH);
 	}
 	outer(sums->dposition1, REFER_H, REFER_PH, REFER_PH, dr, BLOCK_G, hidden0, REFER_PH, BLOCK_PANELS);

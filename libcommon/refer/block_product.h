@@ -63,27 +63,37 @@ VEC_INLINE void tile_add(
 	}
 }
 
+/* A term of a product: w in, with w's rows `stride` apart, and in (columns,L) of one panel. */
+struct term {
+	const float *w;
+	int stride, columns;
+	const float *in;
+};
+
 enum base { FROM_ZERO, FROM_PANEL, FROM_BIAS };
 
-/* `rows` rows of out = base + W in, over TILE vectors: the base is 0, a panel or a bias. */
-VEC_INLINE void product_tile(const int rows, float *out, const float *w, int stride, int columns,
-	const float *in, const float *from, const enum base base, const int relu)
+/* `rows` rows, from row r on, of out = base + the terms, over TILE vectors from v on: the base is 0, a panel
+ * or a bias. */
+VEC_INLINE void product_tile(const int rows, float *out, int r, int v, const struct term *terms, int count,
+	const float *from, const enum base base, const int relu)
 {
 	vecn sum[ROWS][TILE];
 
 #pragma GCC unroll 6
-	for (int r = 0; r < rows; r++)
+	for (int i = 0; i < rows; i++)
 #pragma GCC unroll 4
-		for (int v = 0; v < TILE; v++)
-			sum[r][v] = base == FROM_PANEL ? vec_load(from + r * L + VEC_LANES * v)
-						       : vec_splat(base == FROM_BIAS ? from[r] : 0);
-	tile_add(rows, sum, w, stride, columns, in);
+		for (int w = 0; w < TILE; w++)
+			sum[i][w] = base == FROM_PANEL ? vec_load(from + (r + i) * L + v + VEC_LANES * w)
+						       : vec_splat(base == FROM_BIAS ? from[r + i] : 0);
+	for (int t = 0; t < count; t++)
+		tile_add(rows, sum, terms[t].w + r * terms[t].stride, terms[t].stride, terms[t].columns,
+			terms[t].in + v);
 #pragma GCC unroll 6
-	for (int r = 0; r < rows; r++)
+	for (int i = 0; i < rows; i++)
 #pragma GCC unroll 4
-		for (int v = 0; v < TILE; v++)
-			vec_store(out + r * L + VEC_LANES * v,
-				relu ? vec_max(sum[r][v], vec_splat(0)) : sum[r][v]);
+		for (int w = 0; w < TILE; w++)
+			vec_store(out + (r + i) * L + v + VEC_LANES * w,
+				relu ? vec_max(sum[i][w], vec_splat(0)) : sum[i][w]);
 }
 
 /* Part i of `parts` of fetching a panel of BLOCK_G channels into the second cache, ahead of its use. NULL:
@@ -97,71 +107,69 @@ VEC_INLINE void fetch_part(const float *panel, int i, int parts)
 			__builtin_prefetch(panel + line * LINE, 0, 2);
 }
 
-/* out (rows,L) = base + w (rows,columns; rows `stride` apart) in (columns,L), for one panel; meanwhile
- * fetches the panel `ahead`. */
-VEC_INLINE void product(float *out, const float *w, int rows, int columns, int stride, const float *in,
-	const float *from, const enum base base, const int relu, const float *ahead)
+/* out (rows,L) = base + the terms, for one panel; meanwhile fetches the panels `ahead`. */
+VEC_INLINE void product(float *out, int rows, const struct term *terms, int count, const float *from,
+	const enum base base, const int relu, const float *const ahead[2])
 {
 	const int parts = (rows + ROWS - 1) / ROWS;
 
 	for (int v = 0; v < L; v += TILE * VEC_LANES)
 		for (int i = 0; i < parts; i++) {
-			const int r = part_start(rows, i, parts), height = part_start(rows, i + 1, parts) - r;
-			float *to = out + r * L + v;
-			const float *scale = w + r * stride;
-			const float *start = base == FROM_PANEL	 ? from + r * L + v
-					     : base == FROM_BIAS ? from + r
-								 : from;
-			if (v == 0)
-				fetch_part(ahead, i, parts);
-			switch (height) {
+			const int r = part_start(rows, i, parts);
+			if (v == 0) {
+				fetch_part(ahead[0], i, parts);
+				fetch_part(ahead[1], i, parts);
+			}
+			switch (part_start(rows, i + 1, parts) - r) {
 			case 1:
-				product_tile(1, to, scale, stride, columns, in + v, start, base, relu);
+				product_tile(1, out, r, v, terms, count, from, base, relu);
 				break;
 			case 2:
-				product_tile(2, to, scale, stride, columns, in + v, start, base, relu);
+				product_tile(2, out, r, v, terms, count, from, base, relu);
 				break;
 			case 3:
-				product_tile(3, to, scale, stride, columns, in + v, start, base, relu);
+				product_tile(3, out, r, v, terms, count, from, base, relu);
 				break;
 			case 4:
-				product_tile(4, to, scale, stride, columns, in + v, start, base, relu);
+				product_tile(4, out, r, v, terms, count, from, base, relu);
 				break;
 #if VEC_LANES > 4
 			case 5:
-				product_tile(5, to, scale, stride, columns, in + v, start, base, relu);
+				product_tile(5, out, r, v, terms, count, from, base, relu);
 				break;
 			case 6:
-				product_tile(6, to, scale, stride, columns, in + v, start, base, relu);
+				product_tile(6, out, r, v, terms, count, from, base, relu);
 				break;
 #endif
 			}
 		}
 }
 
-static void product_set(
-	float *out, const float *w, int rows, int columns, int stride, const float *in, const float *ahead)
+static const float *const no_panels[2];
+
+/* out = from + the terms; `from` NULL: 0. */
+static void product_sum(float *out, const float *from, int rows, const struct term *terms, int count,
+	const float *const ahead[2])
 {
-	product(out, w, rows, columns, stride, in, NULL, FROM_ZERO, 0, ahead);
+	if (from)
+		product(out, rows, terms, count, from, FROM_PANEL, 0, ahead);
+	else
+		product(out, rows, terms, count, NULL, FROM_ZERO, 0, ahead);
 }
 
-/* out = from + w in */
-static void product_from(float *out, const float *from, const float *w, int rows, int columns, int stride,
-	const float *in, const float *ahead)
+static void product_set(float *out, const float *w, int rows, int columns, int stride, const float *in)
 {
-	product(out, w, rows, columns, stride, in, from, FROM_PANEL, 0, ahead);
-}
+	const struct term term = {w, stride, columns, in};
 
-static void product_add(
-	float *out, const float *w, int rows, int columns, int stride, const float *in, const float *ahead)
-{
-	product_from(out, out, w, rows, columns, stride, in, ahead);
+	product_sum(out, NULL, rows, &term, 1, no_panels);
 }
 
 static void product_relu(float *out, const float *w, int rows, int columns, const float *in,
 	const float *bias, const float *ahead)
 {
-	product(out, w, rows, columns, columns, in, bias, FROM_BIAS, 1, ahead);
+	const struct term term = {w, columns, columns, in};
+
+	product(out, rows, &term, 1, bias, FROM_BIAS, 1, (const float *const[2]){ahead});
 }
 
 /* The sums over the lanes of four vectors. */
