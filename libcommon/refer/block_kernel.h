@@ -379,7 +379,8 @@ static void normalised_panel(const struct block_model *b, const struct block_arr
 	for (int i = 0; i < count; i++)
 		terms[i] = (struct term){gram + z[i].start, size, z[i].count, z[i].at};
 	product_sum(gz, NULL, channels, terms, count,
-		(const float *const[2]){panel_ahead(b, a->dg, panel), panel_ahead(b, a->g, panel + 1)});
+		(const float *const[AHEAD]){panel_ahead(b, a->dg, panel), panel_ahead(b, a->g, panel + 1),
+			b->has_positions ? panel_ahead(b, a->r, panel) : NULL});
 	along_z(k, z, count, kz);
 	if (averages_scaled)
 		along_z(dmean, z, count, tz);
@@ -564,7 +565,7 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 		if (!b->is_normalised)
 			plain_dz(b, a, panel, 0, d);
 		product_sum(d, b->is_normalised ? panel_of(a->dg, BLOCK_G, panel) : d, BLOCK_G, to_g, g_terms,
-			(const float *const[2]){
+			(const float *const[AHEAD]){
 				panel_ahead(b, a->dg, panel + 1), panel_ahead(b, a->g, panel + 1)});
 		if (b->uses_position) {
 			const float *from = !b->is_add	       ? NULL
@@ -573,7 +574,7 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 			if (from == e)
 				plain_dz(b, a, panel, BLOCK_G, e);
 			product_sum(e, from, BLOCK_G, to_r, r_terms,
-				(const float *const[2]){panel_ahead(b, a->r, panel + 1)});
+				(const float *const[AHEAD]){panel_ahead(b, a->r, panel + 1)});
 		}
 		relu_back(d, panel_of(a->g, BLOCK_G, panel), REFER_H);
 		float *h0 = panel_at(hidden0, REFER_XH, (size_t)p),

@@ -15,6 +15,7 @@ enum {
 	TILE = VEC_LANES == 16 ? 4 : 2,
 	OUTER_ROWS = VEC_LANES == 16 ? 8 : 4,
 	OUTER_COLUMNS = VEC_LANES == 4 ? 2 : 3,
+	AHEAD = 3, /* panels that a product fetches meanwhile */
 };
 
 /* Where part i of `parts` nearly equal ones of n begins. */
@@ -109,17 +110,15 @@ VEC_INLINE void fetch_part(const float *panel, int i, int parts)
 
 /* out (rows,L) = base + the terms, for one panel; meanwhile fetches the panels `ahead`. */
 VEC_INLINE void product(float *out, int rows, const struct term *terms, int count, const float *from,
-	const enum base base, const int relu, const float *const ahead[2])
+	const enum base base, const int relu, const float *const ahead[AHEAD])
 {
 	const int parts = (rows + ROWS - 1) / ROWS;
 
 	for (int v = 0; v < L; v += TILE * VEC_LANES)
 		for (int i = 0; i < parts; i++) {
 			const int r = part_start(rows, i, parts);
-			if (v == 0) {
-				fetch_part(ahead[0], i, parts);
-				fetch_part(ahead[1], i, parts);
-			}
+			for (int k = 0; v == 0 && k < AHEAD; k++)
+				fetch_part(ahead[k], i, parts);
 			switch (part_start(rows, i + 1, parts) - r) {
 			case 1:
 				product_tile(1, out, r, v, terms, count, from, base, relu);
@@ -145,11 +144,11 @@ VEC_INLINE void product(float *out, int rows, const struct term *terms, int coun
 		}
 }
 
-static const float *const no_panels[2];
+static const float *const no_panels[AHEAD];
 
 /* out = from + the terms; `from` NULL: 0. */
 static void product_sum(float *out, const float *from, int rows, const struct term *terms, int count,
-	const float *const ahead[2])
+	const float *const ahead[AHEAD])
 {
 	if (from)
 		product(out, rows, terms, count, from, FROM_PANEL, 0, ahead);
@@ -169,7 +168,7 @@ static void product_relu(float *out, const float *w, int rows, int columns, cons
 {
 	const struct term term = {w, columns, columns, in};
 
-	product(out, rows, &term, 1, bias, FROM_BIAS, 1, (const float *const[2]){ahead});
+	product(out, rows, &term, 1, bias, FROM_BIAS, 1, (const float *const[AHEAD]){ahead});
 }
 
 /* The sums over the lanes of four vectors. */

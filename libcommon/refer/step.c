@@ -147,12 +147,16 @@ static void clear_parts(struct step *s, enum part from, enum part to)
 /* total = the chunks' parts, added in order. */
 static void add_chunks(struct step *s, enum part from, enum part to)
 {
-	const size_t begin = s->at[from], end = s->at[to + 1];
+	const size_t begin = s->at[from], end = s->at[to + 1], part = 1024;
 
-	memset(s->total + begin, 0, sizeof(double) * (end - begin));
-	for (int c = 0; c < CHUNKS; c++)
-		for (size_t i = begin; i < end; i++)
-			s->total[i] += (double)s->chunks[(size_t)c * s->chunk_size + i];
+#pragma omp parallel for schedule(static) num_threads(s->threads)
+	for (size_t first = begin; first < end; first += part) {
+		const size_t last = end - first > part ? first + part : end;
+		memset(s->total + first, 0, sizeof(double) * (last - first));
+		for (int c = 0; c < CHUNKS; c++)
+			for (size_t i = first; i < last; i++)
+				s->total[i] += (double)s->chunks[(size_t)c * s->chunk_size + i];
+	}
 }
 
 /* Runs a phase over all blocks, each chunk's in order. */
