@@ -99,6 +99,7 @@ $(SCENE)/stage2/predictions.%.jsonl: $(model2)
 	$(call run,$(SCENE)/log/render2.$*,refer-render --scene $(SCENE)/scene --text $(text) --model $< --sentences $* -o $@)
 
 $(SCENE)/stage%/overlays/complete: $(SCENE)/stage%/model.safetensors
+	@mkdir -p $(dir $@)
 	$(call run,$(SCENE)/log/overlay$*,refer-render --scene $(SCENE)/scene --text $(text) --model $< --sentences test \
 		--overlay $(SCENE)/stage$*/overlays -o $(SCENE)/stage$*/overlays/masks.jsonl)
 	@touch $@
