@@ -220,7 +220,7 @@ static void make_splats(struct splats *s, size_t n, int k)
 
 static void round_trip(int k, const double offset[3])
 {
-	struct splats a, b;
+	struct splats a, b = {0};
 	struct err e = {0};
 	double back[3] = {0}, worst_mean = 0, worst_scale = 0, worst_opacity = 0;
 	size_t n = 200;
