@@ -4,6 +4,7 @@
 
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -261,6 +262,22 @@ const char *safetensors_meta(const struct safetensors *st, const char *key)
 		if (!strcmp(st->meta[i].key, key))
 			return st->meta[i].value;
 	return NULL;
+}
+
+int safetensors_meta_int(const struct safetensors *st, const char *key, long long low, long long high,
+	long long *value, struct err *e)
+{
+	const char *text = safetensors_meta(st, key);
+	char *end = NULL;
+
+	errno = 0;
+	*value = text ? strtoll(text, &end, 10) : 0;
+	if (!text || (*text != '-' && (*text < '0' || *text > '9')) || end == text || *end || errno ||
+		*value < low || *value > high)
+		return err_set(e, ERR_FORMAT,
+			"%s: metadata '%s' is '%s', not a whole number from %lld to %lld", st->path, key,
+			text ? text : "", low, high);
+	return 0;
 }
 
 static void shape_text(char *text, size_t size, int dims, const int64_t *shape)

@@ -62,11 +62,12 @@ enum refer_contrast { REFER_CONTRAST_NONE, REFER_CONTRAST_DOT, REFER_CONTRAST_CO
 #define REFER_SIMILARITY_CHOICES "dot|cosine"
 #define REFER_CONTRAST_CHOICES "none|dot|cosine"
 
-/* The name of an interaction / similarity, and back (-1: unknown). */
+/* The name of an interaction / similarity / contrast, and back (-1: unknown). */
 const char *refer_interaction_name(enum refer_interaction i);
 int refer_interaction_parse(const char *name);
 const char *refer_similarity_name(enum refer_similarity s);
 int refer_similarity_parse(const char *name);
+const char *refer_contrast_name(enum refer_contrast c);
 
 /* One learned array of the slab. */
 enum refer_tensor {

@@ -43,7 +43,7 @@ int respond_all(const struct respond_model *m, const int64_t *offsets, const flo
 		const int64_t own[2] = {0, offsets[which[i] + 1] - offsets[which[i]]};
 		float *m_out = out + i * m->scene_gaussians;
 		memset(m_out, 0, sizeof *m_out * m->scene_gaussians);
-		if (!own[1])
+		if (!own[1] || !m->n)
 			continue;
 		struct step *s = make_step(m, position, own, words + (size_t)offsets[which[i]] * width, 1, e);
 		if (s)

@@ -18,10 +18,11 @@ static int by_weight(const void *a, const void *b)
 	return x[0] != y[0] ? (x[0] > y[0]) - (x[0] < y[0]) : (x[1] > y[1]) - (x[1] < y[1]);
 }
 
-int train_active_set(const struct train_view *views, size_t view_count, size_t scene_gaussians, double tolerance,
-	int32_t *ids, size_t *n, struct err *e)
+int train_active_set(const struct train_view *views, size_t view_count, size_t scene_gaussians,
+	double tolerance, int32_t *ids, size_t *n, struct err *e)
 {
-	double(*total)[2] = mem_zalloc(scene_gaussians, sizeof *total, "active set", e), all = 0, left_out = 0;
+	double(*total)[2] = mem_zalloc(scene_gaussians, sizeof *total, "active set", e), all = 0,
+	left_out = 0;
 	unsigned char *dropped = mem_zalloc(scene_gaussians, 1, "active set", e);
 
 	if (!total || !dropped) {
@@ -59,7 +60,8 @@ static int by_value(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-int train_bounds(const float *means, const int32_t *ids, size_t n, double low[3], double high[3], struct err *e)
+int train_bounds(
+	const float *means, const int32_t *ids, size_t n, double low[3], double high[3], struct err *e)
 {
 	float *axis = mem_alloc(n, sizeof *axis, "bounds", e);
 
@@ -80,8 +82,8 @@ int train_bounds(const float *means, const int32_t *ids, size_t n, double low[3]
 	return 0;
 }
 
-void train_positions(const float *means, const int32_t *ids, size_t n, const double low[3], const double high[3],
-	float *position)
+void train_positions(const float *means, const int32_t *ids, size_t n, const double low[3],
+	const double high[3], float *position)
 {
 	for (size_t i = 0; i < n; i++)
 		for (int k = 0; k < 3; k++) {
@@ -91,12 +93,13 @@ void train_positions(const float *means, const int32_t *ids, size_t n, const dou
 		}
 }
 
-int train_order_init(struct train_order *o, const struct train_view *views, size_t view_count, int batch, uint64_t seed,
-	struct err *e)
+int train_order_init(struct train_order *o, const struct train_view *views, size_t view_count, int batch,
+	uint64_t seed, struct err *e)
 {
 	size_t sentences = 0, groups = 0;
 
-	*o = (struct train_order){.views = views, .view_count = view_count, .batch = batch, .seed = seed, .epoch = -1};
+	*o = (struct train_order){
+		.views = views, .view_count = view_count, .batch = batch, .seed = seed, .epoch = -1};
 	for (size_t v = 0; v < view_count; v++) {
 		sentences += (size_t)views[v].count;
 		groups += ((size_t)views[v].count + (size_t)batch - 1) / (size_t)batch;
@@ -162,7 +165,8 @@ size_t train_order_at(struct train_order *o, long iteration, uint32_t *picks, in
 	return view;
 }
 
-int train_state_init(struct train_state *t, const struct refer_layout *l, size_t gaussians, uint64_t seed, struct err *e)
+int train_state_init(
+	struct train_state *t, const struct refer_layout *l, size_t gaussians, uint64_t seed, struct err *e)
 {
 	struct rng r;
 
@@ -190,8 +194,8 @@ float *train_state_x(const struct train_state *t)
 	return t->values + t->parameters;
 }
 
-struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o, const struct train_rates *rates,
-	size_t gaussians)
+struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o,
+	const struct train_rates *rates, size_t gaussians)
 {
 	uint32_t picks[BLOCK_WORDS];
 	struct step_target targets[BLOCK_WORDS];
@@ -203,7 +207,11 @@ struct step_losses train_step(struct train_state *t, struct step *s, struct trai
 	struct step_losses losses = step_run(s, t->values, train_state_x(t), &view->weights, targets, count,
 		contrast_top_count(t->iteration, gaussians), t->gradient, t->gradient + t->parameters);
 	t->iteration++;
-	adam_step(t->values, t->gradient, t->m, t->v, t->parameters, rates->mlps, 0.9, 0.999, 1e-15, t->iteration);
+	t->sum.bce += losses.bce;
+	t->sum.contrast += losses.contrast;
+	t->sum.total += losses.total;
+	adam_step(t->values, t->gradient, t->m, t->v, t->parameters, rates->mlps, 0.9, 0.999, 1e-15,
+		t->iteration);
 	adam_step(train_state_x(t), t->gradient + t->parameters, t->m + t->parameters, t->v + t->parameters,
 		t->count - t->parameters, rates->features, 0.9, 0.999, 1e-15, t->iteration);
 	return losses;

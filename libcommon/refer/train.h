@@ -12,25 +12,26 @@
 struct train_view {
 	struct view_weights weights;
 	int count;
-	int *sentences;		/* (count) indices of sentences */
-	const uint8_t **masks;	/* (count) of weights.pixels each, 0 or 1 */
+	int *sentences;	       /* (count) indices of sentences */
+	const uint8_t **masks; /* (count) of weights.pixels each, 0 or 1 */
 };
 
 /* Gaussians that can learn: those that carry all but `tolerance` of the views' weight; at 0, those with any.
  * ids (scene_gaussians) gets *n rising indices. */
-int train_active_set(const struct train_view *views, size_t view_count, size_t scene_gaussians, double tolerance,
-	int32_t *ids, size_t *n, struct err *e);
+int train_active_set(const struct train_view *views, size_t view_count, size_t scene_gaussians,
+	double tolerance, int32_t *ids, size_t *n, struct err *e);
 
-/* Robust bounds of the means (N,3) of the Gaussians ids (n): the 1st and 99th percentile of each axis, widened where they
- * meet. */
-int train_bounds(const float *means, const int32_t *ids, size_t n, double low[3], double high[3], struct err *e);
+/* Robust bounds of the means (N,3) of the Gaussians ids (n): the 1st and 99th percentile of each axis,
+ * widened where they meet. */
+int train_bounds(
+	const float *means, const int32_t *ids, size_t n, double low[3], double high[3], struct err *e);
 
 /* position (n,3): means scaled from the bounds to [-1,1], and cut there. */
-void train_positions(const float *means, const int32_t *ids, size_t n, const double low[3], const double high[3],
-	float *position);
+void train_positions(const float *means, const int32_t *ids, size_t n, const double low[3],
+	const double high[3], float *position);
 
-/* The order of training: epochs, each a shuffle of every view's sentences into groups of at most `batch` and of those
- * groups. It depends on seed, epoch and view alone, so that any iteration can be found again. */
+/* The order of training: epochs, each a shuffle of every view's sentences into groups of at most `batch` and
+ * of those groups. It depends on seed, epoch and view alone, so that any iteration can be found again. */
 struct train_order {
 	const struct train_view *views;
 	size_t view_count;
@@ -44,23 +45,25 @@ struct train_order {
 	uint32_t *start;	/* (view_count+1) into shuffled */
 };
 
-int train_order_init(struct train_order *o, const struct train_view *views, size_t view_count, int batch, uint64_t seed,
-	struct err *e);
+int train_order_init(struct train_order *o, const struct train_view *views, size_t view_count, int batch,
+	uint64_t seed, struct err *e);
 void train_order_free(struct train_order *o);
 
-/* The view of an iteration (counted from 0), and which of its sentences: picks (batch) gets *count positions in the view's
- * list. */
+/* The view of an iteration (counted from 0), and which of its sentences: picks (batch) gets *count positions
+ * in the view's list. */
 size_t train_order_at(struct train_order *o, long iteration, uint32_t *picks, int *count);
 
-/* Parameters and referring features in one slab with gradient and both Adam moments alike; a checkpoint is these and the
- * iteration. */
+/* Parameters and referring features in one slab with gradient and both Adam moments alike; a checkpoint is
+ * the slab, the iteration and the sum. */
 struct train_state {
-	size_t parameters, count; /* floats of the parameters (padded) and of the slab */
+	size_t parameters, count;	  /* floats of the parameters (padded) and of the slab */
 	float *values, *gradient, *m, *v; /* (count): parameters, then x in panels */
 	long iteration;			  /* steps done */
+	struct step_losses sum;		  /* of the steps since the caller last set it to zero */
 };
 
-int train_state_init(struct train_state *t, const struct refer_layout *l, size_t gaussians, uint64_t seed, struct err *e);
+int train_state_init(
+	struct train_state *t, const struct refer_layout *l, size_t gaussians, uint64_t seed, struct err *e);
 void train_state_free(struct train_state *t);
 float *train_state_x(const struct train_state *t);
 
@@ -68,8 +71,8 @@ struct train_rates {
 	double features, mlps; /* Adam's */
 };
 
-/* One step: gradient, Adam, iteration + 1. */
-struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o, const struct train_rates *rates,
-	size_t gaussians);
+/* One step: gradient, Adam, iteration + 1, losses added to sum. */
+struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o,
+	const struct train_rates *rates, size_t gaussians);
 
 #endif
