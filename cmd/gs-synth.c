@@ -38,8 +38,10 @@ static int open_in(struct file_out *out, const char *dir, const char *name, stru
 static int name_photographs(struct job *j, const char *dir, struct err *e)
 {
 	char *images = file_join(dir, "images", "", e);
-	int bad = !images || file_make_dir(images, e) ? -1 : 0;
+	int bad = images ? 0 : -1;
 
+	if (!bad && file_make_dir(images, e))
+		bad = err_prefix(e, images);
 	for (size_t i = 0; i < j->scene.cameras.n && !bad; i++) {
 		struct camera *c = &j->scene.cameras.views[i];
 		c->image = file_join(images, c->name, ".png", e);

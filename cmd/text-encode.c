@@ -75,7 +75,7 @@ static int check_vocab(const struct vocab *v, const struct bert *b, const char *
 static int alloc_text(
 	struct text *out, const struct sentences *s, const struct tokens *t, int width, struct err *e)
 {
-	size_t n = s->n, floats;
+	size_t n = s->n;
 
 	*out = (struct text){.n = n, .width = width};
 	out->offsets = mem_alloc(n + 1, sizeof *out->offsets, "offsets", e);
@@ -93,10 +93,7 @@ static int alloc_text(
 		out->texts[i] = s->items[i].text;
 		out->splits[i] = s->items[i].split;
 	}
-	if (mem_size((size_t)out->offsets[n], (size_t)width, &floats))
-		return err_set(e, ERR_SYSTEM, "words: %lld of %d do not fit in memory",
-			(long long)out->offsets[n], width);
-	out->words = mem_alloc(floats, sizeof *out->words, "words", e);
+	out->words = mem_alloc((size_t)out->offsets[n], sizeof *out->words * (size_t)width, "words", e);
 	out->sentences = mem_zalloc(n, sizeof *out->sentences * (size_t)width, "sentence vectors", e);
 	return out->words && out->sentences ? 0 : -1;
 }
@@ -225,8 +222,7 @@ int main(int argc, char **argv)
 	const char *model = NULL;
 	const struct cli_option options[] = {
 		{"model", 0, CLI_STRING, &model, "DIR",
-			"folder of a BERT encoder: config.json, tokenizer.json or vocab.txt, *.safetensors (required)",
-			0, 0},
+			"the encoder's folder: config.json, a tokenizer and *.safetensors (required)", 0, 0},
 		{0}};
 	const struct cli_tool tool = {.name = "text-encode",
 		.operands = "[SENTENCES]",

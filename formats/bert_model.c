@@ -2,9 +2,9 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/json.h"
 #include "formats/safetensors.h"
 
-#include <cjson/cJSON.h>
 #include <dirent.h>
 #include <errno.h>
 #include <math.h>
@@ -87,21 +87,11 @@ static int read_keys(struct bert *b, const cJSON *config, const char *path, stru
 
 static int read_config(struct bert *b, const char *dir, struct err *e)
 {
-	char *path = file_join(dir, "config.json", "", e), *text;
-	const char *stop = NULL;
-	size_t len;
+	char *path = file_join(dir, "config.json", "", e);
+	cJSON *config = path ? json_read(path, e) : NULL;
+	int bad = config ? read_keys(b, config, path, e) : -1;
 
-	if (!path)
-		return -1;
-	if (file_read(path, &text, &len, e)) {
-		free(path);
-		return -1;
-	}
-	cJSON *config = cJSON_ParseWithLengthOpts(text, len + 1, &stop, 1);
-	int bad = config ? read_keys(b, config, path, e)
-			 : err_set(e, ERR_FORMAT, "%s: not JSON at offset %td", path, stop ? stop - text : 0);
 	cJSON_Delete(config);
-	free(text);
 	free(path);
 	return bad;
 }
@@ -151,25 +141,31 @@ struct source {
 	struct err *e;
 };
 
-/* rows 0: a vector of `columns`. */
-static int load(struct source *s, const char *name, const char *part, float *out, int rows, int columns)
+/* The tensor `name`.`part`, a vector of `columns` where rows is 0; NULL with *e set when it is not so. */
+static const struct st_tensor *need(
+	struct source *s, const char *name, const char *part, int rows, int columns)
 {
 	char full[256];
 	int64_t shape[2] = {rows, columns};
-	const int64_t *want = rows ? shape : shape + 1;
-	size_t count = (size_t)columns * (rows ? (size_t)rows : 1);
 
 	snprintf(full, sizeof full, "%s%s.%s", s->prefix, name, part);
 	const struct st_tensor *t = safetensors_find(&s->st, full);
-	enum st_dtype dtype =
-		t && (t->dtype == ST_F16 || t->dtype == ST_BF16 || t->dtype == ST_F64) ? t->dtype : ST_F32;
-	t = safetensors_need(&s->st, full, dtype, rows ? 2 : 1, want, s->e);
+	int is_other = t && (t->dtype == ST_F16 || t->dtype == ST_BF16 || t->dtype == ST_F64);
+	return safetensors_need(
+		&s->st, full, is_other ? t->dtype : ST_F32, rows ? 2 : 1, rows ? shape : shape + 1, s->e);
+}
+
+static int load(struct source *s, const char *name, const char *part, float *out, int rows, int columns)
+{
+	const struct st_tensor *t = need(s, name, part, rows, columns);
+	size_t count = (size_t)columns * (rows ? (size_t)rows : 1);
+
 	if (!t || safetensors_to_float(t, out, count, s->e))
 		return -1;
 	for (size_t i = 0; i < count; i++)
 		if (!isfinite(out[i]))
 			return err_set(s->e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite",
-				s->st.path, full, i);
+				s->st.path, t->name, i);
 	return 0;
 }
 
@@ -199,28 +195,34 @@ static int load_layer(struct source *s, const struct bert *b, int i)
 	char at[64];
 
 	snprintf(at, sizeof at, "encoder.layer.%d.", i);
-	return load_linear(s, at, "attention.self.query", &l->query, width, width) ||
-			       load_linear(s, at, "attention.self.key", &l->key, width, width) ||
-			       load_linear(s, at, "attention.self.value", &l->value, width, width) ||
-			       load_linear(
-				       s, at, "attention.output.dense", &l->attention_out, width, width) ||
-			       load_norm(s, at, "attention.output.LayerNorm", &l->attention_norm, width) ||
-			       load_linear(s, at, "intermediate.dense", &l->inner, width, b->inner) ||
-			       load_linear(s, at, "output.dense", &l->outer, b->inner, width) ||
-			       load_norm(s, at, "output.LayerNorm", &l->norm, width)
-		       ? -1
-		       : 0;
+	int bad = load_linear(s, at, "attention.self.query", &l->query, width, width) ||
+		  load_linear(s, at, "attention.self.key", &l->key, width, width) ||
+		  load_linear(s, at, "attention.self.value", &l->value, width, width) ||
+		  load_linear(s, at, "attention.output.dense", &l->attention_out, width, width) ||
+		  load_norm(s, at, "attention.output.LayerNorm", &l->attention_norm, width) ||
+		  load_linear(s, at, "intermediate.dense", &l->inner, width, b->inner) ||
+		  load_linear(s, at, "output.dense", &l->outer, b->inner, width) ||
+		  load_norm(s, at, "output.LayerNorm", &l->norm, width);
+	return bad ? -1 : 0;
 }
 
-static int load_all(struct source *s, const struct bert *b)
+static void find_names(struct source *s)
 {
 	if (safetensors_find(&s->st, "bert.embeddings.word_embeddings.weight"))
 		s->prefix = "bert.";
-	if (safetensors_find(&s->st,
-		    s->prefix[0] ? "bert.embeddings.LayerNorm.gamma" : "embeddings.LayerNorm.gamma")) {
+	if (safetensors_find(
+		    &s->st, *s->prefix ? "bert.embeddings.LayerNorm.gamma" : "embeddings.LayerNorm.gamma")) {
 		s->scale = "gamma";
 		s->shift = "beta";
 	}
+}
+
+static int load_all(struct source *s, struct bert *b)
+{
+	/* Before memory is taken for sizes that the file may not have. */
+	find_names(s);
+	if (!need(s, "embeddings.word_embeddings", "weight", b->words, b->width) || bert_alloc(b, s->e))
+		return -1;
 	if (load(s, "embeddings.word_embeddings", "weight", b->word, b->words, b->width) ||
 		load(s, "embeddings.position_embeddings", "weight", b->position, b->positions, b->width) ||
 		load(s, "embeddings.token_type_embeddings", "weight", b->type, b->types, b->width) ||
@@ -242,7 +244,7 @@ int bert_model_read(struct bert *b, const char *dir, struct err *e)
 		return -1;
 	char *path = find_weights(dir, e);
 	if (path && !safetensors_open(&s.st, path, e)) {
-		bad = bert_alloc(b, e) || load_all(&s, b);
+		bad = load_all(&s, b);
 		safetensors_close(&s.st);
 	}
 	free(path);

@@ -2,7 +2,9 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/camerafile.h"
 #include "formats/colmap.h"
+#include "formats/json.h"
 #include "formats/jsonl.h"
 #include "formats/masks.h"
 #include "formats/model.h"
@@ -12,7 +14,9 @@
 #include "formats/scene.h"
 #include "formats/sentences.h"
 #include "formats/text.h"
+#include "formats/weights.h"
 
+#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,6 +111,20 @@ static int check_scene_cameras(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
+static int check_weights(struct check *c, const char *path, struct err *e)
+{
+	struct weights w;
+
+	if (weights_open_file(&w, path, e))
+		return -1;
+	c->width = w.width;
+	c->height = w.height;
+	add_fact(c, "weights", (long long)w.indptr[(int64_t)w.width * w.height]);
+	add_fact(c, "gaussians of the scene", (long long)w.gaussians);
+	weights_close(&w);
+	return 0;
+}
+
 static int check_text(struct check *c, const char *path, struct err *e)
 {
 	struct text t;
@@ -181,6 +199,7 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 	} ours[] = {
 		{"refer.splats", check_splats},
 		{"refer.text", check_text},
+		{"refer.weights", check_weights},
 		{"refer.model", check_model},
 	};
 
@@ -260,26 +279,62 @@ static int check_image(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
-/* JSON Lines: what the first record is says what the rest should be. */
-static int check_records(struct check *c, const char *path, struct err *e)
+static int check_cameras(struct check *c, const char *path, const char *kind, struct err *e)
+{
+	struct cameras views;
+
+	if (camerafile_read(&views, path, e))
+		return -1;
+	c->kind = kind;
+	add_views(c, &views);
+	cameras_free(&views);
+	return 0;
+}
+
+/* Where the first line is a whole record, it says what all are; else the file may be one object of many
+ * lines. */
+static int check_objects(struct check *c, const char *path, struct err *e)
 {
 	struct jsonl j;
-	cJSON *first = NULL;
-	int got;
+	struct err ignored;
+	cJSON *first = NULL, *whole = NULL;
 
 	if (jsonl_open(&j, path, e))
 		return -1;
-	got = jsonl_next(&j, &first, e);
-	int is_sentence = cJSON_HasObjectItem(first, "text");
+	int got = jsonl_next(&j, &first, e);
+	int is_sentence = cJSON_HasObjectItem(first, "text"),
+	    is_frames = cJSON_HasObjectItem(first, "frames");
 	int is_mask = cJSON_HasObjectItem(first, "segmentation") || cJSON_HasObjectItem(first, "path");
-	if (got == 1 && !is_sentence && !is_mask)
+	if (got == 1 && !is_sentence && !is_mask && !is_frames)
 		got = jsonl_err(
 			&j, e, "neither a sentence (key 'text') nor a mask (key 'segmentation' or 'path')");
+	else if (got < 0 && e->code == ERR_FORMAT && !start_again(path, &ignored))
+		whole = json_read(path, &ignored);
+	is_frames |= cJSON_HasObjectItem(whole, "frames");
+	cJSON_Delete(whole);
 	cJSON_Delete(first);
 	jsonl_close(&j);
-	if (got < 0 || start_again(path, e))
+	if ((got < 0 && !is_frames) || start_again(path, e))
 		return -1;
+	if (is_frames)
+		return check_cameras(c, path, "nerfstudio cameras", e);
 	return is_sentence ? check_sentences(c, path, e) : check_masks(c, path, e);
+}
+
+/* A list is of cameras: a scene's, which alone have a key world_to_camera, or those that 3DGS writes. */
+static int check_list(struct check *c, const char *path, struct err *e)
+{
+	cJSON *list = json_read(path, e);
+	int is_empty = list && !list->child;
+	int is_scene = list && cJSON_HasObjectItem(list->child, "world_to_camera");
+
+	if (!list)
+		return -1;
+	cJSON_Delete(list);
+	if (start_again(path, e))
+		return -1;
+	return is_scene || is_empty ? check_scene_cameras(c, path, e)
+				    : check_cameras(c, path, "3DGS cameras", e);
 }
 
 /* How a file begins. */
@@ -336,41 +391,70 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 	if (begins(&h, "\x93NUMPY"))
 		return check_npy(c, path, e);
 	if (is_json(&h, '['))
-		return check_scene_cameras(c, path, e);
+		return check_list(c, path, e);
 	if (is_json(&h, '{'))
-		return check_records(c, path, e);
+		return check_objects(c, path, e);
 	return err_set(e, ERR_FORMAT, "%s: not a kind of file that the suite reads", file_name(path));
 }
 
-static int check_colmap(struct check *c, const char *path, struct err *e)
+/* Adds the views of a folder of gs-weigh, in the order of their names; *views says how many there are. */
+static int add_weights(
+	struct check *c, const char *path, struct dirent **names, int n, long long *views, struct err *e)
 {
-	struct cameras views;
+	long long total = 0;
 
-	if (colmap_read(&views, path, e))
-		return -1;
-	c->kind = "COLMAP model";
-	add_views(c, &views);
-	cameras_free(&views);
+	*views = 0;
+	for (int i = 0; i < n; i++) {
+		const char *dot = strrchr(names[i]->d_name, '.');
+		if (!dot || strcmp(dot, ".safetensors"))
+			continue;
+		char *file = file_join(path, names[i]->d_name, "", e);
+		struct weights w;
+		int bad = file ? weights_open_file(&w, file, e) : -1;
+		free(file);
+		if (bad)
+			return -1;
+		total += (long long)w.indptr[(int64_t)w.width * w.height];
+		weights_close(&w);
+		++*views;
+	}
+	c->kind = "weights";
+	add_fact(c, "views", *views);
+	add_fact(c, "weights", total);
 	return 0;
 }
 
+/* Each kind of folder is known by what lies in it. */
 static int check_folder(struct check *c, const char *path, struct err *e)
 {
 	static const char *const parts[] = {"splats.safetensors", "cameras.json"};
+	struct dirent **names = NULL;
+	long long views = 0;
+	int found = 0;
 
-	if (colmap_is_model(path))
-		return check_colmap(c, path, e);
 	for (int i = 0; i < 2; i++) {
 		char *part = file_join(path, parts[i], "", e);
 		if (!part)
 			return -1;
-		int found = file_exists(part);
+		found |= file_exists(part) << i;
 		free(part);
-		if (!found)
-			return err_set(e, ERR_FORMAT, "%s: neither a scene (no %s) nor a COLMAP model", path,
-				parts[i]);
 	}
-	return check_scene(c, path, e);
+	if (found == 3)
+		return check_scene(c, path, e);
+	if (found & 1)
+		return err_set(e, ERR_FORMAT, "%s: a scene without %s", path, parts[1]);
+	if (colmap_is_model(path))
+		return check_cameras(c, path, "COLMAP model", e);
+	int n = scandir(path, &names, NULL, alphasort);
+	if (n < 0)
+		return err_errno(e, "%s", path);
+	int bad = add_weights(c, path, names, n, &views, e);
+	for (int i = 0; i < n; i++)
+		free(names[i]);
+	free(names);
+	if (!bad && !views)
+		return err_set(e, ERR_FORMAT, "%s: not a scene, COLMAP model or folder of weights", path);
+	return bad;
 }
 
 int check_file(struct check *c, const char *path, struct err *e)

@@ -1,4 +1,5 @@
-/* JPEG images through libjpeg, read only. formats/png.h has the function that tells PNG from JPEG. */
+/* JPEG images through libjpeg, read only: formats/jpeg.md. formats/png.h has the function that tells PNG from
+ * JPEG. */
 #ifndef FORMATS_JPEG_H
 #define FORMATS_JPEG_H
 

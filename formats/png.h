@@ -1,4 +1,5 @@
-/* PNG images through libpng, JPEG through libjpeg (read only). Errors name the file. */
+/* PNG images through libpng (formats/png.md), JPEG through libjpeg (read only, formats/jpeg.md). Errors name
+ * the file. */
 #ifndef FORMATS_PNG_H
 #define FORMATS_PNG_H
 

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/json.h"
 #include "formats/safetensors.h"
 
 #include <cjson/cJSON.h>
@@ -73,6 +74,8 @@ int scene_read_splats(struct scene *s, const char *path, struct err *e)
 	bad = check_values(&s->splats, path, e);
 done:
 	safetensors_close(&st);
+	if (bad)
+		splats_free(&s->splats);
 	return bad;
 }
 
@@ -201,19 +204,11 @@ static int read_views(struct cameras *c, const cJSON *list, const char *path, st
 
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 {
-	char *text;
-	size_t len;
-	const char *stop = NULL;
+	cJSON *list = json_read(path, e);
 
 	*c = (struct cameras){0};
-	if (file_read(path, &text, &len, e))
-		return -1;
-	cJSON *list = strlen(text) == len ? cJSON_ParseWithOpts(text, &stop, 1) : NULL;
-	int bad = list ? read_views(c, list, path, e)
-		       : err_set(e, ERR_FORMAT, "%s: not JSON at offset %zu", path,
-				 stop ? (size_t)(stop - text) : strlen(text));
+	int bad = list ? read_views(c, list, file_name(path), e) : -1;
 	cJSON_Delete(list);
-	free(text);
 	if (bad)
 		cameras_free(c);
 	return bad;

@@ -111,8 +111,9 @@ static int check_unique(struct ref_place *places, size_t n, const char *path, st
 {
 	const struct ref_place *found = NULL;
 
-	if (n)
-		qsort(places, n, sizeof *places, by_ref);
+	if (!places)
+		return 0;
+	qsort(places, n, sizeof *places, by_ref);
 	for (size_t i = 1; i < n; i++)
 		if (!strcmp(places[i - 1].ref, places[i].ref) && (!found || places[i].line < found->line))
 			found = &places[i];

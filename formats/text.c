@@ -41,7 +41,7 @@ static char **read_strings(const struct safetensors *st, const char *key, size_t
 	char **strings = NULL;
 	size_t used = 0;
 
-	if (!cJSON_IsArray(list)) {
+	if (!list || !cJSON_IsArray(list)) {
 		err_set(e, ERR_FORMAT, "%s: metadata '%s' is not a JSON list", st->path, key);
 		goto fail;
 	}

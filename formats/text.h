@@ -9,11 +9,11 @@
 #include <stdint.h>
 
 struct text {
-	size_t n;	   /* R sentences */
-	int width;	   /* D_text */
-	int64_t *offsets;  /* (n+1): sentence r has words offsets[r] to offsets[r+1] */
-	float *words;	   /* (offsets[n], width), [CLS] and [SEP] left out */
-	float *sentences;  /* (n, width), mean of the words; zero for a sentence without words */
+	size_t n;	  /* R sentences */
+	int width;	  /* D_text */
+	int64_t *offsets; /* (n+1): sentence r has words offsets[r] to offsets[r+1] */
+	float *words;	  /* (offsets[n], width), [CLS] and [SEP] left out */
+	float *sentences; /* (n, width), mean of the words; zero for a sentence without words */
 	char **refs, **objects, **texts;
 	enum camera_split *splits;
 };

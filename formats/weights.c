@@ -25,19 +25,6 @@ static int read_number(const struct safetensors *st, const char *key, long long 
 	return 0;
 }
 
-/* The tensor, which must also stand where its type may be read in place. */
-static const struct st_tensor *need_aligned(
-	const struct safetensors *st, const char *name, enum st_dtype dtype, int64_t count, struct err *e)
-{
-	const struct st_tensor *t = safetensors_need(st, name, dtype, 1, &count, e);
-
-	if (t && (uintptr_t)t->data % st_dtype_size(dtype)) {
-		err_set(e, ERR_FORMAT, "%s: tensor '%s': is not aligned to its type", st->path, name);
-		return NULL;
-	}
-	return t;
-}
-
 static int check_indptr(const struct weights *w, int64_t pixels, int64_t nnz, struct err *e)
 {
 	const char *path = w->file.path;
@@ -83,7 +70,7 @@ static int read_weight(struct weights *w, int64_t nnz, struct err *e)
 	const struct st_tensor *t = safetensors_find(&w->file, "weight");
 
 	if (!t || t->dtype != ST_F16) {
-		t = need_aligned(&w->file, "weight", ST_F32, nnz, e);
+		t = safetensors_need(&w->file, "weight", ST_F32, 1, &nnz, e);
 		w->weight = t ? t->data : NULL;
 		return t ? 0 : -1;
 	}
@@ -108,10 +95,10 @@ static int read_all(struct weights *w, struct err *e)
 	w->width = (int)width;
 	w->height = (int)height;
 	w->gaussians = gaussians;
-	int64_t pixels = width * height;
-	if (!(indptr = need_aligned(st, "indptr", ST_I64, pixels + 1, e)) ||
-		!(index = need_aligned(st, "index", ST_I32, -1, e)) ||
-		!(dropped = need_aligned(st, "dropped", ST_F32, pixels, e)) ||
+	int64_t pixels = width * height, any = -1, ends = pixels + 1;
+	if (!(indptr = safetensors_need(st, "indptr", ST_I64, 1, &ends, e)) ||
+		!(index = safetensors_need(st, "index", ST_I32, 1, &any, e)) ||
+		!(dropped = safetensors_need(st, "dropped", ST_F32, 1, &pixels, e)) ||
 		read_weight(w, index->shape[0], e))
 		return -1;
 	w->indptr = indptr->data;
@@ -121,16 +108,23 @@ static int read_all(struct weights *w, struct err *e)
 													  : 0;
 }
 
+int weights_open_file(struct weights *w, const char *path, struct err *e)
+{
+	*w = (struct weights){0};
+	if (!safetensors_open(&w->file, path, e) && !read_all(w, e))
+		return 0;
+	weights_close(w);
+	return -1;
+}
+
 int weights_open(struct weights *w, const char *dir, const char *view, struct err *e)
 {
 	char *path = file_join(dir, view, ".safetensors", e);
 
 	*w = (struct weights){0};
-	int bad = !path || safetensors_open(&w->file, path, e) || read_all(w, e);
+	int bad = path ? weights_open_file(w, path, e) : -1;
 	free(path);
-	if (bad)
-		weights_close(w);
-	return bad ? -1 : 0;
+	return bad;
 }
 
 void weights_close(struct weights *w)

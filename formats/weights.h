@@ -20,6 +20,8 @@ struct weights {
 
 /* Maps and checks DIR/VIEW.safetensors: indptr rises from 0 to nnz, ids in [0,gaussians), weights finite in [0,1]. */
 int weights_open(struct weights *w, const char *dir, const char *view, struct err *e);
+/* The same by its path; "-" is stdin. */
+int weights_open_file(struct weights *w, const char *path, struct err *e);
 void weights_close(struct weights *w);
 
 /* Writes DIR/VIEW.safetensors; is_half stores the weights as f16. */

@@ -1,8 +1,15 @@
+#define _DEFAULT_SOURCE /* madvise */
+
 #include "base/mem.h"
 
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+
+/* Blocks of at least LARGE are asked for in huge pages: a view's weights take a hundred megabytes, and faulting
+ * them in by 4 KiB costs as much as rendering them. */
+enum { ALIGNMENT = 64, HUGE_PAGE = 2 << 20, LARGE = 8 << 20 };
 
 int mem_size(size_t a, size_t b, size_t *out)
 {
@@ -21,10 +28,14 @@ void *mem_alloc(size_t n, size_t size, const char *what, struct err *e)
 		err_set(e, ERR_SYSTEM, "%s: %zu items of %zu bytes do not fit in memory", what, n, size);
 		return NULL;
 	}
-	if (posix_memalign(&block, 64, bytes ? bytes : 1)) {
+	if (posix_memalign(&block, bytes >= LARGE ? HUGE_PAGE : ALIGNMENT, bytes ? bytes : 1)) {
 		err_set(e, ERR_SYSTEM, "%s: out of memory for %zu bytes", what, bytes);
 		return NULL;
 	}
+#ifdef MADV_HUGEPAGE
+	if (bytes >= LARGE)
+		madvise(block, bytes, MADV_HUGEPAGE); /* advice only: nothing depends on the answer */
+#endif
 	return block;
 }
 

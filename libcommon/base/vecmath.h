@@ -133,7 +133,7 @@ VEC_INLINE vecm vec_ge(vecn a, vecn b)
 }
 
 /* mask ? a : b, lane by lane. */
-VEC_INLINE vecn vec_select(vecm mask, vecn a, vecn b)
+VEC_INLINE vecn vec_choose(vecm mask, vecn a, vecn b)
 {
 #if VEC_LANES == 16
 	return (vecn)_mm512_mask_blend_ps(mask, (__m512)b, (__m512)a);

@@ -37,8 +37,7 @@ static int common_rows(struct cli *c, struct cli_option rows[COMMON_COUNT])
 			"seed of the random numbers (default 1)", 0, 4294967295.0};
 	if (common & CLI_THREADS)
 		rows[n++] = (struct cli_option){"threads", 0, CLI_INT, &c->threads, "N",
-			"number of threads; 0 (default) uses every processor; results do not depend on it", 0,
-			1024};
+			"threads to use; 0 (default): every processor; results do not depend on it", 0, 1024};
 	if (common & CLI_VERBOSE)
 		rows[n++] = (struct cli_option){"verbose", 'v', CLI_FLAG, &c->verbose, NULL,
 			"say more, and time and memory at the end", 0, 0};

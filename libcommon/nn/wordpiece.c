@@ -118,7 +118,7 @@ static size_t longest_piece(
 
 	memcpy(lent, piece - 2, 2);
 	if (prefix)
-		memcpy(piece - 2, "##", 2);
+		piece[-2] = piece[-1] = '#';
 	for (size_t last = w->characters; len; len -= w->sizes[--last]) {
 		*id = vocab_find(v, piece - prefix, len + prefix);
 		if (*id >= 0 || last == character + 1)

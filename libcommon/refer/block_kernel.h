@@ -30,7 +30,7 @@ VEC_INLINE vecn vec_first(vecn x, int count, float fill)
 {
 	static const float lanes[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-	return vec_select(vec_lt(vec_load(lanes), vec_splat((float)count)), x, vec_splat(fill));
+	return vec_choose(vec_lt(vec_load(lanes), vec_splat((float)count)), x, vec_splat(fill));
 }
 
 /* `rows` rows of out = [base +] W in, over TILE vectors. base: 0 nothing, 1 what out holds, 2 bias. */

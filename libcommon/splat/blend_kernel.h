@@ -6,7 +6,7 @@
  * tile's centre are computed in double; what is added in float is small, so that a needle far from its mean
  * keeps its digits. */
 #include "base/vecmath.h"
-#include "splat/blend.h"
+#include "splat/kernels.h"
 
 #include <math.h>
 
@@ -59,7 +59,7 @@ VEC_INLINE void blend_stop(struct blend_tile *t, int b, int at, vecm stop)
 {
 	int is_live = 0;
 
-	vec_store(t->cut + at, vec_select(stop, vec_splat(INFINITY), vec_load(t->cut + at)));
+	vec_store(t->cut + at, vec_choose(stop, vec_splat(INFINITY), vec_load(t->cut + at)));
 	for (int i = 0; i < BLEND_PARTS; i++)
 		is_live |= vec_bits(vec_lt(vec_load(t->cut + b * BLEND_LANES + i * VEC_LANES),
 				   vec_splat(INFINITY))) != 0;
@@ -80,7 +80,7 @@ VEC_INLINE vecn blend_part(struct blend_tile *t, const struct blend_splat *s, in
 	vecm stop = vec_lt(after, vec_splat(BLEND_STOP)) & keep;
 
 	if (__builtin_expect(vec_bits(stop) != 0, 0)) {
-		w = vec_select(stop, vec_splat(0), w);
+		w = vec_choose(stop, vec_splat(0), w);
 		after = before - w;
 		blend_stop(t, b, at, stop);
 	}
@@ -165,5 +165,3 @@ static size_t blend_weights(struct blend_tile *t, const struct projected *p, con
 	}
 	return n;
 }
-
-const struct blend_kernels BLEND_TABLE = {blend_values, blend_weights};

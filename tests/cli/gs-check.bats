@@ -19,6 +19,20 @@ foreign.safetensors: ok: safetensors, 1 tensors
 	weight BF16[2,1]" "$BIN/gs-check" sentences.jsonl scene masks.jsonl foreign.safetensors
 }
 
+@test "cameras of other programs" {
+	echo '[{"id":0,"img_name":"a","width":4,"height":3,"position":[0,0,0],"rotation":[[1,0,0],[0,1,0],[0,0,1]],"fx":5,"fy":5}]' >c.json
+	says 0 "c.json: ok: 3DGS cameras, 4x3, 1 training views, 0 test views" "$BIN/gs-check" c.json
+	frames='"frames":[{"file_path":"a.png","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]'
+	printf '{"fl_x":5,"fl_y":5,"cx":2,"cy":1.5,"w":4,"h":3,%s}\n' "$frames" >one-line.json
+	says 0 "one-line.json: ok: nerfstudio cameras, 4x3, 1 training views, 0 test views" "$BIN/gs-check" one-line.json
+	tr , '\n' <one-line.json | sed 's/^/ /; 2,$s/^/,/' >lines.json
+	cat lines.json | says_in 0 "stdin: ok: nerfstudio cameras, 4x3, 1 training views, 0 test views"
+	mkdir model
+	echo '1 PINHOLE 4 3 5 5 2 1.5' >model/cameras.txt
+	printf '1 1 0 0 0 0 0 0 1 a.png\n\n' >model/images.txt
+	says 0 "model: ok: COLMAP model, 4x3, 1 training views, 0 test views" "$BIN/gs-check" model
+}
+
 @test "what a file is depends on its content, not its name" {
 	mv sentences.jsonl x.png
 	says 0 "x.png: ok: sentences, 1 training sentences, 0 test sentences, 1 objects" "$BIN/gs-check" x.png
@@ -85,7 +99,21 @@ says_in() {
 
 @test "a folder of another kind" {
 	mkdir other
-	says 1 "other: neither a scene (no splats.safetensors) nor a COLMAP model" "$BIN/gs-check" other
+	says 1 "other: not a scene, COLMAP model or folder of weights" "$BIN/gs-check" other
+}
+
+@test "a folder of weights, and one view of it" {
+	tensors='"indptr":{"dtype":"I64","shape":[3],"data_offsets":[0,24]},"index":{"dtype":"I32","shape":[2],"data_offsets":[24,32]},"dropped":{"dtype":"F32","shape":[2],"data_offsets":[32,40]},"weight":{"dtype":"F32","shape":[2],"data_offsets":[40,48]}'
+	header="{\"__metadata__\":{\"format\":\"refer.weights\",\"version\":\"1\",\"width\":\"2\",\"height\":\"1\",\"gaussians\":\"3\"},$tensors}"
+	while (((8 + ${#header}) % 8)); do header+=' '; done
+	mkdir weights
+	for id in 00 02 03; do
+		st weights/v$id.safetensors "$header" 000000000000000001000000000000000200000000000000${id}00000001000000$f0$f0$fhalf$f1
+	done
+	says 0 "weights/v02.safetensors: ok: refer.weights, 2x1, 2 weights, 3 gaussians of the scene" "$BIN/gs-check" weights/v02.safetensors
+	says 1 "weights/v03.safetensors: tensor 'index': entry 0 is 3, not in 0 to 2" "$BIN/gs-check" weights
+	rm weights/v03.safetensors
+	says 0 "weights: ok: weights, 2 views, 4 weights" "$BIN/gs-check" weights
 }
 
 @test "no operand is a usage error" {

@@ -53,8 +53,8 @@ static void lanes_keep_their_places(void)
 	vecn v = vec_load(x);
 	CHECK(vec_bits(vec_lt(v, vec_splat(2))) == 3, "bits %x", vec_bits(vec_lt(v, vec_splat(2))));
 	CHECK((vec_bits(vec_ge(v, vec_splat(2))) & 15) == 12, "bits %x", vec_bits(vec_ge(v, vec_splat(2))));
-	CHECK(vec_select(vec_lt(v, vec_splat(2)), vec_splat(9), v)[1] == 9, "select takes the first");
-	CHECK(vec_select(vec_lt(v, vec_splat(2)), vec_splat(9), v)[2] == 2, "select takes the second");
+	CHECK(vec_choose(vec_lt(v, vec_splat(2)), vec_splat(9), v)[1] == 9, "select takes the first");
+	CHECK(vec_choose(vec_lt(v, vec_splat(2)), vec_splat(9), v)[2] == 2, "select takes the second");
 	CHECK(vec_keep(vec_lt(v, vec_splat(2)), v)[1] == 1 && vec_keep(vec_lt(v, vec_splat(2)), v)[2] == 0,
 		"keep");
 	vec_count(counts, vec_lt(v, vec_splat(2)));

@@ -70,10 +70,9 @@ static void known_sentences(void)
 		struct wordpieces out = {0};
 		char got[256] = "";
 		CHECK(!wordpiece_encode(&v, cases[i].text, &out, &e), "%s", e.message);
-		for (size_t k = 0; k < out.n; k++) {
-			strcat(got, k ? " " : "");
-			strcat(got, tokens[out.ids[k]]);
-		}
+		for (size_t k = 0, used = 0; k < out.n; k++)
+			used += (size_t)snprintf(
+				got + used, sizeof got - used, "%s%s", k ? " " : "", tokens[out.ids[k]]);
 		CHECK(!strcmp(got, cases[i].expected), "'%s' gave '%s'", cases[i].text, got);
 		free(out.ids);
 	}
@@ -91,7 +90,7 @@ static void longest_word(void)
 		struct wordpieces out = {0};
 		char text[512];
 		memset(text, 'a', (size_t)n);
-		strcpy(text + n, "\xcc\x81\xcc\x81 cup");
+		snprintf(text + n, sizeof text - (size_t)n, "\xcc\x81\xcc\x81 cup");
 		CHECK(!wordpiece_encode(&v, text, &out, &e), "%s", e.message);
 		size_t want = n <= 100 ? (size_t)n + 1 : 2;
 		CHECK(out.n == want, "%d characters gave %zu pieces", n, out.n);

@@ -1,0 +1,136 @@
+#!/usr/bin/env bats
+# text-encode on the tiny encoder of tests/golden/bert, whose expected vectors tests/peers/bert.py made in float64.
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	GOLDEN=$BATS_TEST_DIRNAME/../golden
+	load ../format/files
+	cd "$BATS_TEST_TMPDIR"
+	cp -r "$GOLDEN/bert" model
+	mv model/sentences.jsonl .
+}
+
+encode() {
+	"$BIN/text-encode" -q --model model "$@"
+}
+
+# header FILE: the JSON of a safetensors file.
+header() {
+	head -c $((8 + $(od -An -tu8 -N8 "$1"))) "$1" | tail -c +9
+}
+
+# tensor FILE NAME TYPE WIDTH: the numbers of a tensor, one a line; TYPE and WIDTH (bytes) as od has them.
+tensor() {
+	local begin end
+	read -r begin end < <(header "$1" | jq -r ".\"$2\".data_offsets | \"\(.[0]) \(.[1])\"")
+	od -An -v -t "$3" -w"$4" -j $((8 + $(od -An -tu8 -N8 "$1") + begin)) -N $((end - begin)) "$1"
+}
+
+@test "words and offsets agree with float64" {
+	encode -o text sentences.jsonl
+	cmp <(tensor text offsets d8 8) <(tensor "$GOLDEN/bert-expected.safetensors" offsets d8 8)
+	paste <(tensor text words f4 4) <(tensor "$GOLDEN/bert-expected.safetensors" words f4 4) |
+		awk '{ d = $1 - $2; if (d < 0) d = -d; if (d > worst) worst = d }
+			END { print NR, worst; exit !(NR > 10000 && worst < 1e-5) }'
+}
+
+@test "a sentence's vector is the mean of its words, and zero where it has none" {
+	printf '%s\n' '{"ref":"a","object":"x","text":"red cup"}' '{"ref":"b","object":"x","text":" "}' | encode -o text
+	[ "$(header text | jq -c '[.words.shape, .sentences.shape]')" = '[[2,24],[2,24]]' ]
+	paste <(tensor text words f4 4 | head -n 24) <(tensor text words f4 4 | tail -n 24) <(tensor text sentences f4 4 | head -n 24) |
+		awk '{ d = ($1 + $2) / 2 - $3; if (d < -1e-6 || d > 1e-6) exit 1 }'
+	[ "$(tensor text sentences f4 4 | tail -n 24 | sort -u | tr -d ' ')" = 0 ]
+}
+
+@test "names, splits and texts come along" {
+	encode -o text sentences.jsonl
+	for key in ref object text split; do
+		cmp <(header text | jq -r ".__metadata__.${key}s | fromjson[] | tojson") <(jq ".$key | tojson | fromjson | tojson" -r sentences.jsonl)
+	done
+	[ "$(header text | jq -r '.__metadata__ | "\(.format) \(.version) \(.tool) \(.options) \(.seed)"')" = \
+		'refer.text 1 text-encode --model model 0' ]
+	"$BIN/gs-check" text
+}
+
+@test "stdin, - and a file give the same bytes; so do 1 and 2 threads, and stdout" {
+	encode -o a sentences.jsonl
+	encode -o b <sentences.jsonl
+	encode - >c <sentences.jsonl
+	encode --threads 1 -o d sentences.jsonl
+	encode --threads 2 -o e sentences.jsonl
+	encode --model ./model/ -o f sentences.jsonl
+	for other in b c d e f; do cmp a $other; done
+}
+
+@test "what a sentence gives does not depend on the others" {
+	for i in 1 2 3; do sed "s/\"ref\": \"/&$i/" sentences.jsonl; done >thrice
+	encode -o one sentences.jsonl
+	encode -o three thrice
+	[ "$(header three | jq .words.shape[0])" -gt 2048 ] # more than two passes
+	for i in 1 2 3; do tensor one words x4 4; done | cmp - <(tensor three words x4 4)
+}
+
+@test "vocab.txt does as well as tokenizer.json" {
+	encode -o a sentences.jsonl
+	rm model/tokenizer.json
+	encode -o b sentences.jsonl
+	cmp a b
+}
+
+@test "weights under another name" {
+	encode -o a sentences.jsonl
+	mv model/model.safetensors model/weights.fp16.safetensors
+	encode -o b sentences.jsonl
+	cmp a b
+}
+
+@test "a sentence that is too long is cut, with a warning that -q silences" {
+	printf '{"ref":"long","object":"x","text":"%s"}\n' "$(printf 'cup %.0s' {1..63})" >long
+	says 0 "text-encode: warning: ref 'long': 63 word pieces, cut to the 62 that the encoder takes" \
+		"$BIN/text-encode" --model model -o text long
+	[ "$(header text | jq .words.shape[0])" = 62 ]
+	says 0 '' "$BIN/text-encode" -q --model model -o text long
+	sed -i 's/cup cup/cup/' long
+	says 0 '' "$BIN/text-encode" --model model -o text long
+	[ "$(header text | jq .words.shape[0])" = 62 ]
+}
+
+@test "-v tells sentences, words, time and memory" {
+	"$BIN/text-encode" -qv --model model -o text sentences.jsonl 2>err
+	grep -x 'text-encode: 38 sentences, 843 words of width 24' err
+	grep -xE 'text-encode: [0-9.]+ s, peak memory [0-9.]+ MiB' err
+}
+
+@test "--model is required" {
+	says 2 "text-encode: --model DIR is required
+Try 'text-encode --help'." "$BIN/text-encode" sentences.jsonl
+}
+
+@test "a second operand is refused" {
+	says 2 "text-encode: unexpected operand 'b'
+Try 'text-encode --help'." "$BIN/text-encode" --model model a b
+}
+
+@test "missing and empty sentences, and none that can be written: exact messages, no file left" {
+	mkdir empty && cd empty
+	says 4 'text-encode: none: No such file or directory' "$BIN/text-encode" --model ../model -o text none
+	says 3 'text-encode: /dev/null: holds no sentences' "$BIN/text-encode" --model ../model -o text /dev/null
+	says 4 'text-encode: no/text: No such file or directory' "$BIN/text-encode" -q --model ../model -o no/text ../sentences.jsonl
+	says 4 'text-encode: ..: Is a directory' "$BIN/text-encode" --model ../model -o text ..
+	[ -z "$(ls -A)" ]
+}
+
+@test "an old output stays when a new one fails" {
+	echo old >text
+	! encode -o text /dev/null
+	[ "$(cat text)" = old ]
+}
+
+@test "sentences cut short anywhere give an error or fewer sentences, never a crash" {
+	head -n 2 sentences.jsonl >two
+	for ((n = 0; n < $(wc -c <two); n++)); do
+		status=0
+		head -c $n two | encode -o text 2>/dev/null || status=$?
+		[ $status = 3 ] || { [ $status = 0 ] && [ $n -ge "$(head -n 1 two | wc -c)" ] || [ $n = $(($(head -n 1 two | wc -c) - 1)) ]; }
+	done
+}

@@ -1,0 +1,424 @@
+/* The synthetic scene: surfaces, objects, cameras, what the sentences mean, truth and the faulty detector. */
+#include "unit.h"
+
+#include "base/mem.h"
+#include "synth/cameras.h"
+#include "synth/candidates.h"
+#include "synth/outline.h"
+#include "synth/scene.h"
+#include "synth/sentences.h"
+
+enum { SEEDS = 12, H = 90, W = 120 };
+
+static const int counts[] = {2, 3, 5, 8, 24};
+
+/* A ball's heights are uniform (Archimedes), and its normals point away from its middle. */
+static void ball_is_covered_evenly(void)
+{
+	enum { N = 40000, BANDS = 8 };
+	struct synth_surface s;
+	int bands[BANDS] = {0}, inwards = 0;
+	double point[3], normal[3], r = 0.38, worst = 0;
+
+	synth_object_surface(&s, SYNTH_BALL);
+	CHECK(fabs(s.area - 4 * 3.14159265358979 * r * r) < 0.01 * s.area, "area %g", s.area);
+	for (int i = 0; i < N; i++) {
+		synth_surface_at(&s, (i + 0.5) / N, fmod(0.618033988749 * i, 1), point, normal);
+		double dz = point[2] - r,
+		       outwards = point[0] * normal[0] + point[1] * normal[1] + dz * normal[2];
+		inwards += outwards < 0.9 * r;
+		bands[(int)fmin(BANDS - 1, point[2] / (2 * r) * BANDS)]++;
+	}
+	for (int i = 0; i < BANDS; i++)
+		worst = fmax(worst, fabs(bands[i] * (double)BANDS / N - 1));
+	CHECK(worst < 0.03, "a band of height is off by %g", worst);
+	CHECK(inwards == 0, "%d normals do not point outwards", inwards);
+}
+
+/* Every shape keeps within the radius and height that placing relies on, and stands on the table. */
+static void shapes_keep_their_measures(void)
+{
+	for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+		struct synth_object objects[8];
+		struct synth_table table;
+		synth_objects_make(objects, 8, &table, seed);
+		for (int k = 0; k < 8; k++) {
+			const struct synth_object *o = &objects[k];
+			struct synth_surface s;
+			double point[3], normal[3], far = 0, high = 0, low = 1, bad_normal = 0;
+			synth_object_surface(&s, o->shape);
+			for (int i = 0; i < 4000; i++) {
+				synth_surface_at(
+					&s, (i + 0.5) / 4000, fmod(0.618033988749 * i, 1), point, normal);
+				far = fmax(far, o->scale * hypot(point[0], point[1]));
+				high = fmax(high, o->scale * point[2]);
+				low = fmin(low, point[2]);
+				double length = hypot(hypot(normal[0], normal[1]), normal[2]);
+				bad_normal = fmax(bad_normal, fabs(length - 1));
+			}
+			CHECK(far < o->radius + 1e-6 && far > 0.9 * o->radius, "%s: %g of %g wide", o->name,
+				far, o->radius);
+			CHECK(high < o->height + 1e-6 && high > 0.95 * o->height, "%s: %g of %g high",
+				o->name, high, o->height);
+			CHECK(low >= 0 && low < 0.05, "%s: lowest point at %g", o->name, low);
+			CHECK(bad_normal < 1e-9, "%s: a normal's length is off by %g", o->name, bad_normal);
+		}
+	}
+}
+
+static void objects_stand_apart(void)
+{
+	for (uint64_t seed = 1; seed <= SEEDS; seed++)
+		for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+			struct synth_object o[SYNTH_MAX_OBJECTS];
+			struct synth_table t;
+			int n = counts[c], touching = 0, off = 0, same_name = 0, twins = 0;
+			synth_objects_make(o, n, &t, seed);
+			for (int i = 0; i < n; i++) {
+				off += fabs(o[i].x) + o[i].radius > t.half_width ||
+				       fabs(o[i].y) + o[i].radius > t.half_depth;
+				for (int j = 0; j < i; j++) {
+					touching += hypot(o[i].x - o[j].x, o[i].y - o[j].y) <
+						    o[i].radius + o[j].radius;
+					same_name +=
+						!strcmp(o[i].name, o[j].name) || !strcmp(o[i].ref, o[j].ref);
+					twins += o[i].shape == o[j].shape && o[i].colour == o[j].colour &&
+						 o[i].size == o[j].size && o[i].finish == o[j].finish;
+				}
+			}
+			CHECK(!touching && !off && !same_name,
+				"seed %d, %d objects: %d touch, %d off the table, %d names twice", (int)seed,
+				n, touching, off, same_name);
+			CHECK(n < 5 ? !twins : twins == n / 4, "seed %d, %d objects: %d twins", (int)seed, n,
+				twins);
+		}
+}
+
+static void cameras_see_the_table(void)
+{
+	struct synth_object o[8];
+	struct synth_table t;
+	struct cameras c;
+	struct err e = {0};
+	double right[2], away[2], worst = 0;
+	int seen = 0, tests = 0;
+
+	synth_objects_make(o, 8, &t, 3);
+	if (!CHECK(!synth_cameras_make(&c, 25, W, H, &t, 3, &e), "%s", e.message))
+		return;
+	for (size_t i = 0; i < c.n; i++) {
+		const struct camera *v = &c.views[i];
+		tests += v->split == SPLIT_TEST;
+		CHECK((v->split == SPLIT_TEST) == (i % 5 == 4), "split of view %zu", i);
+		for (int a = 0; a < 3; a++)
+			for (int b = 0; b < 3; b++) {
+				double dot = -(a == b);
+				for (int k = 0; k < 3; k++)
+					dot += v->world_to_camera[a][k] * v->world_to_camera[b][k];
+				worst = fmax(worst, fabs(dot));
+			}
+		/* y points down: a thing higher up has the smaller y. */
+		double low[3], high[3];
+		camera_transform(v, (double[3]){0, 0, 0}, low);
+		camera_transform(v, (double[3]){0, 0, 1}, high);
+		CHECK(high[1] < low[1] && low[2] > 0.2, "view %zu is upside down or looks away", i);
+		for (int k = 0; k < 8; k++) {
+			double p[3];
+			camera_transform(v, (double[3]){o[k].x, o[k].y, o[k].height / 2}, p);
+			double x = v->fx * p[0] / p[2] + v->cx, y = v->fy * p[1] / p[2] + v->cy;
+			seen += p[2] > 0.2 && x >= 0 && x < W && y >= 0 && y < H;
+		}
+	}
+	CHECK(worst < 1e-12, "rotations are off by %g", worst);
+	CHECK(tests == 5, "%d test views", tests);
+	CHECK(seen > 25 * 8 * 9 / 10, "%d of 200 object middles are in the picture", seen);
+	synth_cameras_reference(&c, right, away);
+	CHECK(fabs(hypot(right[0], right[1]) - 1) < 1e-12 &&
+			fabs(right[0] * away[0] + right[1] * away[1]) < 1e-12,
+		"the reference directions are a frame");
+	CHECK(right[0] > 0.9 && away[1] > 0.9, "the arc's middle is in front of the table");
+	cameras_free(&c);
+}
+
+/* Five things in a cross, seen from -y. */
+static void relations_are_judged(void)
+{
+	struct synth_object o[5] = {{.x = 0}, {.x = -1}, {.x = 1}, {.y = -1}, {.y = 1}};
+	enum { MIDDLE, LEFT, RIGHT, FRONT, BACK };
+	struct synth_table t = {2, 2};
+	struct synth_layout l;
+	struct synth_meaning any = synth_meaning_any();
+	static const struct {
+		enum synth_relation relation;
+		int a, b, of, verdict;
+	} cases[] = {
+		{SYNTH_LEFT_OF, MIDDLE, -1, LEFT, 1},
+		{SYNTH_LEFT_OF, MIDDLE, -1, RIGHT, -1},
+		{SYNTH_LEFT_OF, MIDDLE, -1, BACK, -1},
+		{SYNTH_LEFT_OF, BACK, -1, LEFT, 0},
+		{SYNTH_RIGHT_OF, MIDDLE, -1, RIGHT, 1},
+		{SYNTH_RIGHT_OF, LEFT, -1, LEFT, -1},
+		{SYNTH_IN_FRONT_OF, MIDDLE, -1, FRONT, 1},
+		{SYNTH_IN_FRONT_OF, MIDDLE, -1, BACK, -1},
+		{SYNTH_BEHIND, MIDDLE, -1, BACK, 1},
+		{SYNTH_BEHIND, MIDDLE, -1, FRONT, -1},
+		{SYNTH_NEXT_TO, MIDDLE, -1, LEFT, -1},
+		{SYNTH_BETWEEN, LEFT, RIGHT, MIDDLE, 1},
+		{SYNTH_BETWEEN, LEFT, RIGHT, BACK, -1},
+		{SYNTH_BETWEEN, LEFT, RIGHT, LEFT, -1},
+		{SYNTH_NEAREST_TO, LEFT, -1, MIDDLE, 1},
+		{SYNTH_NEAREST_TO, LEFT, -1, RIGHT, -1},
+		{SYNTH_FARTHEST_FROM, LEFT, -1, RIGHT, 1},
+		{SYNTH_FARTHEST_FROM, MIDDLE, -1, RIGHT, 0},
+		{SYNTH_LEFT_SIDE, -1, -1, LEFT, 1},
+		{SYNTH_LEFT_SIDE, -1, -1, MIDDLE, -1},
+		{SYNTH_RIGHT_SIDE, -1, -1, RIGHT, 1},
+		{SYNTH_FRONT_SIDE, -1, -1, FRONT, 1},
+		{SYNTH_BACK_SIDE, -1, -1, FRONT, -1},
+		{SYNTH_MIDDLE, -1, -1, MIDDLE, 1},
+		{SYNTH_MIDDLE, -1, -1, LEFT, 0},
+		{SYNTH_LEFTMOST, -1, -1, LEFT, 1},
+		{SYNTH_RIGHTMOST, -1, -1, RIGHT, 1},
+		{SYNTH_RIGHTMOST, -1, -1, MIDDLE, -1},
+	};
+
+	synth_layout_make(&l, o, 5, &t, (double[2]){1, 0}, (double[2]){0, 1});
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		struct synth_clause c = {cases[i].relation, cases[i].a, cases[i].b};
+		int verdict = synth_clause_judge(&l, &c, cases[i].of, &any);
+		CHECK(verdict == cases[i].verdict, "case %zu: %d", i, verdict);
+	}
+	/* From the other side of the table left is right. */
+	synth_layout_make(&l, o, 5, &t, (double[2]){-1, 0}, (double[2]){0, -1});
+	struct synth_clause c = {SYNTH_LEFT_OF, MIDDLE, -1};
+	CHECK(synth_clause_judge(&l, &c, RIGHT, &any) == 1, "left depends on the viewpoint");
+}
+
+static int shares_words(const char *text, const struct synth_sentence *with, const struct synth_object *o)
+{
+	/* The pair "colour noun" in its plainest form; synonyms are covered by the generator's own rule. */
+	char pair[64];
+
+	snprintf(pair, sizeof pair, "%s %s", synth_colour_name(o->colour), synth_shape_name(o->shape));
+	return strstr(text, pair) && strstr(with->text, pair);
+}
+
+static void sentences_of(uint64_t seed, int n)
+{
+	struct synth_object o[SYNTH_MAX_OBJECTS];
+	static struct synth_sentence s[SYNTH_MAX_OBJECTS * SYNTH_SENTENCES];
+	struct synth_table t;
+	struct synth_layout l;
+	struct cameras c;
+	struct err e = {0};
+	double right[2], away[2];
+	int unclear = 0, false_side = 0, same = 0, length = 0, shared = 0, total = n * SYNTH_SENTENCES;
+
+	synth_objects_make(o, n, &t, seed);
+	if (synth_cameras_make(&c, 25, W, H, &t, seed, &e))
+		return;
+	synth_cameras_reference(&c, right, away);
+	cameras_free(&c);
+	synth_layout_make(&l, o, n, &t, right, away);
+	if (!CHECK(!synth_sentences_make(s, &l, seed, &e), "%s", e.message))
+		return;
+	for (int i = 0; i < total; i++) {
+		int fitting = 0, words = 1;
+		for (int k = 0; k < n; k++)
+			fitting += synth_sentence_judge(&s[i], &l, k) >= 0;
+		unclear += fitting != 1 || synth_sentence_judge(&s[i], &l, s[i].object) != 1;
+		for (const char *p = s[i].text; *p; p++)
+			words += *p == ' ';
+		length += words < 8 || words > 18 || strchr(s[i].text, '%') != NULL;
+		for (int k = 0; k < i; k++) {
+			same += !strcmp(s[i].ref, s[k].ref) ||
+				(s[i].object == s[k].object && !strcmp(s[i].text, s[k].text));
+			if (s[i].split == SPLIT_TEST && s[k].object == s[i].object)
+				shared += shares_words(s[i].text, &s[k], &o[s[i].object]);
+		}
+		for (int k = 0; k < s[i].clause_count; k++) {
+			const struct synth_clause *q = &s[i].clauses[k];
+			if (q->relation == SYNTH_LEFT_OF)
+				false_side += l.u[s[i].object] >= l.u[q->a] || !strstr(s[i].text, "left");
+			if (q->relation == SYNTH_BEHIND)
+				false_side += l.v[s[i].object] <= l.v[q->a];
+		}
+		CHECK((s[i].split == SPLIT_TEST) == (i % SYNTH_SENTENCES == SYNTH_TRAIN_SENTENCES),
+			"split of %s", s[i].ref);
+	}
+	CHECK(!unclear && !false_side && !same && !length && !shared,
+		"seed %d, %d objects: %d unclear, %d on the wrong side, %d twice, %d too short or long, %d not new",
+		(int)seed, n, unclear, false_side, same, length, shared);
+}
+
+/* The disc of radius r about column x, row y. */
+static void draw_disc(uint8_t *mask, double x, double y, double r)
+{
+	for (int i = 0; i < H; i++)
+		for (int j = 0; j < W; j++)
+			mask[i * W + j] = hypot(j - x, i - y) < r;
+}
+
+static void outlines_change_as_asked(void)
+{
+	static uint8_t disc[H * W], mask[H * W];
+	static struct synth_noise noise;
+	struct rng r;
+	struct err e = {0};
+
+	rng_seed(&r, 5, 5);
+	synth_noise_make(&noise, &r);
+	draw_disc(disc, 60, 45, 25);
+	double area = (double)synth_outline_area(disc, H * W);
+	for (int i = 0; i < 20; i++) {
+		double share = 0.3 + 0.02 * i;
+		memcpy(mask, disc, sizeof disc);
+		synth_outline_cut(mask, H, W, share, &r);
+		double kept = (double)synth_outline_area(mask, H * W) / area;
+		CHECK(fabs(kept - share) < 0.05, "%g kept of the disc, asked for %g", kept, share);
+		memcpy(mask, disc, sizeof disc);
+		synth_outline_rag(mask, H, W, 0.4, 0, &noise, &r, &e);
+		size_t both = 0, either = 0;
+		for (int p = 0; p < H * W; p++) {
+			both += mask[p] && disc[p];
+			either += mask[p] || disc[p];
+		}
+		double iou = (double)both / (double)either;
+		CHECK(iou > 0.85 && iou < 0.999, "a ragged disc has IoU %g", iou);
+	}
+	memcpy(mask, disc, sizeof disc);
+	synth_outline_rag(mask, H, W, 0, 0.3, &noise, &r, &e);
+	CHECK((double)synth_outline_area(mask, H * W) < area, "a higher cut shrinks the disc");
+	memset(mask, 0, sizeof mask);
+	synth_outline_cut(mask, H, W, 0.5, &r);
+	CHECK(!synth_outline_rag(mask, H, W, 0.4, 0, &noise, &r, &e) && !synth_outline_area(mask, H * W),
+		"an empty mask stays empty");
+}
+
+static void detector_depends_on_the_view_alone(void)
+{
+	enum { N = 5 };
+	static uint8_t truth[N * H * W];
+	static struct synth_detector d;
+	struct synth_object o[N];
+	struct synth_table t;
+	struct err e = {0};
+	int confused = 0, out_of_range = 0, hidden = 0;
+
+	synth_objects_make(o, N, &t, 9);
+	synth_detector_make(&d, o, N, 9);
+	for (int i = 0; i + 1 < N; i++) /* the last one is hidden */
+		draw_disc(truth + (size_t)i * H * W, 15 + 28 * i, 45, 12);
+	for (int i = 0; i < N; i++) {
+		CHECK(d.confusers[i] != i && d.neighbours[i] != i, "object %d is mistaken for another", i);
+		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
+			confused += d.habits[i][k] == SYNTH_HABIT_CONFUSED;
+	}
+	CHECK(confused > 0 && confused < N * SYNTH_TRAIN_SENTENCES / 2, "%d confused sentences", confused);
+	for (int view = 0; view < 6; view++) {
+		struct synth_candidates a = {0}, b = {0};
+		CHECK(!synth_detect(&a, &d, view, truth, H, W, &e), "%s", e.message);
+		synth_detect(&b, &d, view + 1, truth, H, W, &e);
+		size_t other_view = b.n;
+		synth_detect(&b, &d, view, truth, H, W, &e);
+		int same = b.n - other_view == a.n;
+		for (size_t i = 0; i < a.n && same; i++) {
+			const struct synth_candidate *x = &a.items[i], *y = &b.items[other_view + i];
+			same = x->score == y->score && x->object == y->object && x->sentence == y->sentence &&
+			       rle_iou(&x->mask, &y->mask) == 1;
+			out_of_range += !(x->score >= 0.2 && x->score <= 0.95);
+			hidden += x->object == N - 1;
+		}
+		CHECK(same, "view %d: the same candidates after another view", view);
+		synth_candidates_free(&a);
+		synth_candidates_free(&b);
+	}
+	CHECK(!out_of_range, "%d scores out of range", out_of_range);
+	CHECK(hidden < 6 * 4, "a hidden object is mostly not found, %d times", hidden);
+}
+
+/* The masks against the blend weights themselves; returns the pixels that differ where the share is not a
+ * tie. */
+static int differing(const struct synth_scene *s, const struct render_view *view, const uint8_t *masks)
+{
+	struct render_weights w;
+	struct err e = {0};
+	int wrong = 0;
+
+	if (render_weights(view, &w, &e))
+		return -1;
+	for (int p = 0; p < H * W; p++) {
+		double share[2] = {0};
+		for (int64_t i = w.indptr[p]; i < w.indptr[p + 1]; i++)
+			if (s->owner[w.index[i]] >= 0)
+				share[s->owner[w.index[i]]] += w.weight[i];
+		for (int k = 0; k < 2; k++)
+			wrong += fabs(share[k] - 0.5) > 1e-5 && masks[k * H * W + p] != (share[k] > 0.5);
+	}
+	render_weights_free(&w);
+	return wrong;
+}
+
+/* Where nothing hides it, an object's mask lies where its middle projects. */
+static void truth_is_where_the_objects_are(void)
+{
+	struct synth_options o = {
+		.seed = 2, .objects = 2, .views = 4, .width = W, .height = H, .gaussians = 6000};
+	struct synth_scene s;
+	struct err e = {0};
+	uint8_t *masks = mem_alloc(2, H * W, "masks", &e);
+
+	if (!masks || !CHECK(!synth_scene_make(&s, &o, &e), "%s", e.message))
+		return;
+	int owned[3] = {0};
+	for (size_t i = 0; i < s.splats.n; i++)
+		owned[s.owner[i] + 1]++;
+	CHECK(owned[1] > 1000 && owned[2] > 1000 && owned[0] > 1000, "%d %d %d Gaussians", owned[0], owned[1],
+		owned[2]);
+	for (size_t v = 0; v < s.cameras.n; v++) {
+		const struct camera *c = &s.cameras.views[v];
+		struct render_view *view = render_prepare(&s.splats, c, &e);
+		if (!CHECK(view && !synth_scene_truth(&s, view, H * W, masks, &e), "%s", e.message))
+			break;
+		size_t both = 0;
+		for (int k = 0; k < 2; k++) {
+			const struct synth_object *q = &s.objects[k];
+			double p[3], x = 0, y = 0, area = 0;
+			camera_transform(c, (double[3]){q->x, q->y, q->height / 2}, p);
+			for (int i = 0; i < H * W; i++)
+				if (masks[k * H * W + i]) {
+					x += i % W;
+					y += i / W;
+					area++;
+				}
+			double dx = x / area + 0.5 - c->fx * p[0] / p[2] - c->cx,
+			       dy = y / area + 0.5 - c->fy * p[1] / p[2] - c->cy;
+			CHECK(area > 40 && hypot(dx, dy) < 0.5 * sqrt(area),
+				"view %zu, %s: %g pixels, %g away", v, q->name, area, hypot(dx, dy));
+		}
+		for (int i = 0; i < H * W; i++)
+			both += masks[i] && masks[H * W + i];
+		int wrong = differing(&s, view, masks);
+		CHECK(wrong == 0, "view %zu: %d pixels are not what their blend weights say", v, wrong);
+		CHECK(!both, "%zu pixels belong to two objects", both);
+		render_free(view);
+	}
+	free(masks);
+	synth_scene_free(&s);
+}
+
+int main(void)
+{
+	ball_is_covered_evenly();
+	shapes_keep_their_measures();
+	objects_stand_apart();
+	cameras_see_the_table();
+	relations_are_judged();
+	for (uint64_t seed = 1; seed <= SEEDS; seed++)
+		for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
+			sentences_of(seed, counts[c]);
+	outlines_change_as_asked();
+	detector_depends_on_the_view_alone();
+	truth_is_where_the_objects_are();
+	return unit_end();
+}
