@@ -2,9 +2,9 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/json.h"
 #include "formats/safetensors.h"
 
-#include <cjson/cJSON.h>
 #include <dirent.h>
 #include <errno.h>
 #include <math.h>
@@ -87,21 +87,11 @@ static int read_keys(struct bert *b, const cJSON *config, const char *path, stru
 
 static int read_config(struct bert *b, const char *dir, struct err *e)
 {
-	char *path = file_join(dir, "config.json", "", e), *text;
-	const char *stop = NULL;
-	size_t len;
+	char *path = file_join(dir, "config.json", "", e);
+	cJSON *config = path ? json_read(path, e) : NULL;
+	int bad = config ? read_keys(b, config, path, e) : -1;
 
-	if (!path)
-		return -1;
-	if (file_read(path, &text, &len, e)) {
-		free(path);
-		return -1;
-	}
-	cJSON *config = cJSON_ParseWithLengthOpts(text, len + 1, &stop, 1);
-	int bad = config ? read_keys(b, config, path, e)
-			 : err_set(e, ERR_FORMAT, "%s: not JSON at offset %td", path, stop ? stop - text : 0);
 	cJSON_Delete(config);
-	free(text);
 	free(path);
 	return bad;
 }

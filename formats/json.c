@@ -78,7 +78,7 @@ int json_matrix(const cJSON *object, const char *key, int rows, int columns, dou
 	const char *where, struct err *e)
 {
 	const cJSON *item = member(object, key), *row = cJSON_IsArray(item) ? item->child : NULL;
-	int bad = 0, r;
+	int bad = 0;
 
 	if (!item)
 		return err_missing(key, 1, where, e);
@@ -87,8 +87,10 @@ int json_matrix(const cJSON *object, const char *key, int rows, int columns, dou
 			return err_set(e, ERR_FORMAT, "%s: key '%s' is not %d numbers", where, key, rows);
 		return 0;
 	}
-	for (r = 0; !bad && r < rows; r++, row = row ? row->next : NULL)
+	for (int r = 0; !bad && r < rows; r++) {
 		bad = !row || get_numbers(row, columns, values + r * columns);
+		row = bad ? row : row->next;
+	}
 	if (bad || row)
 		return err_set(e, ERR_FORMAT, "%s: key '%s' is not %dx%d numbers", where, key, rows, columns);
 	return 0;

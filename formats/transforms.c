@@ -119,10 +119,10 @@ static int read_frame(
 	if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] != 1)
 		return err_set(
 			e, ERR_FORMAT, "%s: key 'transform_matrix': the last row is not 0 0 0 1", where);
-	/* Camera to world, y up and z backward: the second and third axis change sign. */
+	/* Camera to world, y up and z backward: the second and third axis change sign (0 does not). */
 	for (int r = 0; r < 3; r++)
 		for (int k = 0; k < 3; k++)
-			rotation[r][k] = r ? -m[k][r] : m[k][r];
+			rotation[r][k] = r ? 0 - m[k][r] : m[k][r];
 	camera_set_centre(c, rotation, (double[]){m[0][3], m[1][3], m[2][3]});
 	c->image = mem_strdup(image, e);
 	return c->image ? 0 : -1;

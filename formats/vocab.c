@@ -3,26 +3,11 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/utf8.h"
+#include "formats/json.h"
 
-#include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static cJSON *read_json(const char *path, struct err *e)
-{
-	const char *stop = NULL;
-	char *text;
-	size_t len;
-
-	if (file_read(path, &text, &len, e))
-		return NULL;
-	cJSON *root = cJSON_ParseWithLengthOpts(text, len + 1, &stop, 1);
-	if (!root)
-		err_set(e, ERR_FORMAT, "%s: not JSON at offset %td", path, stop ? stop - text : 0);
-	free(text);
-	return root;
-}
 
 /* A member that, if it is there at all, must be this boolean. */
 static int need_flag(
@@ -84,7 +69,7 @@ static int add_token(struct vocab *v, const char *token, double id, const char *
 
 static int read_tokenizer(struct vocab *v, const char *path, struct err *e)
 {
-	cJSON *root = read_json(path, e);
+	cJSON *root = json_read(path, e);
 	int bad = root ? check_kind(root, path, e) : -1;
 
 	if (!bad) {
@@ -133,7 +118,7 @@ static int check_config(const char *dir, struct err *e)
 	int bad = path ? 0 : -1;
 
 	if (path && file_exists(path)) {
-		cJSON *root = read_json(path, e);
+		cJSON *root = json_read(path, e);
 		bad = !root || need_flag(root, "do_lower_case", 1, path, "tokenizer", e) ||
 		      need_flag(root, "strip_accents", 1, path, "tokenizer", e) ||
 		      need_flag(root, "tokenize_chinese_chars", 1, path, "tokenizer", e);

@@ -90,9 +90,9 @@ no_longer_than() {
 
 @test "every format's header names its page, and every page that is named exists" {
 	for header in formats/*.h; do
-		[ "$header" = formats/check.h ] || grep -qE 'formats/[a-z_-]+\.md' "$header" || { echo "names no page: $header"; false; }
+		[ "$header" = formats/check.h ] || grep -qE 'formats/[a-z0-9_-]+\.md' "$header" || { echo "names no page: $header"; false; }
 	done
-	grep -ohE 'formats/[a-z_-]+\.md' formats/*.h man/* | sort -u | all_exist
+	grep -ohE 'formats/[a-z0-9_-]+\.md' formats/*.h man/* | sort -u | all_exist
 }
 
 @test "every tool has a manual page and tests" {

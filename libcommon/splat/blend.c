@@ -3,19 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-const struct blend_kernels *blend_kernels(enum cpu_level level)
-{
-#if defined __x86_64__
-	if (level == CPU_AVX512)
-		return &blend_avx512;
-	if (level == CPU_AVX2)
-		return &blend_avx2;
-#else
-	(void)level;
-#endif
-	return &blend_plain;
-}
-
 void blend_start(struct blend_tile *t, int x0, int y0, int columns, int rows)
 {
 	memset(t, 0, sizeof *t);

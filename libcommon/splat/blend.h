@@ -1,8 +1,7 @@
-/* Blending of one tile: the innermost loop, built once for each instruction set (blend_kernel.h). */
+/* The state of a tile while it is blended; the loops over it are in blend_kernel.h. */
 #ifndef SPLAT_BLEND_H
 #define SPLAT_BLEND_H
 
-#include "base/cpu.h"
 #include "splat/project.h"
 #include "splat/tile.h"
 
@@ -48,20 +47,6 @@ struct blend_records {
 /* The room that one Gaussian may need: weights are stored by whole blocks. */
 enum { BLEND_RECORD_ROOM = BLEND_BLOCKS, BLEND_WEIGHT_ROOM = TILE_PIXELS + BLEND_LANES };
 
-struct blend_kernels {
-	/* Blends the Gaussians p[list[0..n)] front to back. `values` holds `channels` values for each entry
-	 * of p. */
-	void (*values)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
-		const float *values, int channels);
-	/* As far as the records have room. Returns how many of the n are done; n also when every pixel has
-	 * ended. */
-	size_t (*weights)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
-		struct blend_records *records);
-};
-
-/* The kernels of a level; a level that the program was not built for gives plain ones. */
-const struct blend_kernels *blend_kernels(enum cpu_level level);
-
 /* Where the arrays of blend_tile hold the pixel at column x and row y of the tile. */
 static inline int blend_place(int x, int y)
 {
@@ -71,7 +56,5 @@ static inline int blend_place(int x, int y)
 
 /* Starts a tile of which `columns` x `rows` pixels lie in the image; (x0, y0) is its corner. */
 void blend_start(struct blend_tile *t, int x0, int y0, int columns, int rows);
-
-extern const struct blend_kernels blend_plain, blend_avx2, blend_avx512;
 
 #endif

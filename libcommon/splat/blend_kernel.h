@@ -6,7 +6,7 @@
  * tile's centre are computed in double; what is added in float is small, so that a needle far from its mean
  * keeps its digits. */
 #include "base/vecmath.h"
-#include "splat/blend.h"
+#include "splat/kernels.h"
 
 #include <math.h>
 
@@ -165,5 +165,3 @@ static size_t blend_weights(struct blend_tile *t, const struct projected *p, con
 	}
 	return n;
 }
-
-const struct blend_kernels BLEND_TABLE = {blend_values, blend_weights};

@@ -1,6 +1,7 @@
 #include "splat/project.h"
 
 #include "base/mem.h"
+#include "splat/kernels.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,20 +15,16 @@ enum {
 };
 
 #define NEAR_PLANE 0.2
-#define LOW_PASS 0.3 /* px^2 */
 
-/* What a camera contributes to every Gaussian. */
-struct lens {
-	const struct camera *camera;
-	double normal[3][3];	/* row k: the cross product of the rotation's other two rows */
-	double low[2], high[2]; /* limits of x/z and y/z in the Jacobian */
-};
-
-static void lens_make(struct lens *lens, const struct camera *c)
+static void lens_make(struct project_lens *lens, const struct camera *c)
 {
 	double half_x = 0.5 * c->width / c->fx, half_y = 0.5 * c->height / c->fy;
 
-	lens->camera = c;
+	memcpy(lens->world_to_camera, c->world_to_camera, sizeof lens->world_to_camera);
+	lens->fx = c->fx;
+	lens->fy = c->fy;
+	lens->cx = c->cx;
+	lens->cy = c->cy;
 	for (int k = 0; k < 3; k++) {
 		const double *a = c->world_to_camera[(k + 1) % 3], *b = c->world_to_camera[(k + 2) % 3];
 		for (int i = 0; i < 3; i++)
@@ -42,118 +39,76 @@ static void lens_make(struct lens *lens, const struct camera *c)
 	lens->high[1] = (c->height - c->cy) / c->fy + 0.3 * half_y;
 }
 
-static double clamp(double x, double low, double high)
-{
-	return x < low ? low : x > high ? high : x;
-}
-
-static double dot(const double a[3], const double b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Row k is the Gaussian's axis k in the world: the columns of its rotation, for a quaternion of any length.
- */
-static void quat_axes(const float q[4], double axis[3][3])
-{
-	double w = q[0], x = q[1], y = q[2], z = q[3], two = 2 / (w * w + x * x + y * y + z * z);
-
-	axis[0][0] = 1 - two * (y * y + z * z);
-	axis[0][1] = two * (x * y + w * z);
-	axis[0][2] = two * (x * z - w * y);
-	axis[1][0] = two * (x * y - w * z);
-	axis[1][1] = 1 - two * (x * x + z * z);
-	axis[1][2] = two * (y * z + w * x);
-	axis[2][0] = two * (x * z + w * y);
-	axis[2][1] = two * (y * z - w * x);
-	axis[2][2] = 1 - two * (x * x + y * y);
-}
-
 /* 1 where [x - half, x + half] holds a pixel centre of 0.5 ... size - 0.5. */
 static int holds_centre(double x, double half, int size)
 {
-	double first = ceil(fmax(x - half, 0.5) - 0.5), last = floor(fmin(x + half, size - 0.5) - 0.5);
+	double low = x - half - 0.5, high = x + half - 0.5;
 
-	return first <= last;
+	if (!(high >= 0 && low <= size - 1))
+		return 0;
+	low = low > 0 ? low : 0;
+	high = high < size - 1 ? high : size - 1;
+	int first = (int)low;
+	return first + (first < low) <= (int)high;
 }
 
-/* The 2D covariance J W Sigma W^T J^T + 0.3 I and its determinant. With M = J W R S (2x3) the determinant is
- * a sum of squares, det(M M^T) = sum of the squared 2x2 minors of M (Cauchy-Binet), plus 0.3 trace + 0.09; a
- * minor is s_j s_k times the third axis dot the cross product of the rows of J W. Nothing cancels, so needles
- * keep their width. */
-static double covariance(const struct lens *lens, const double camera[3], const float scale[3],
-	const float quat[4], double *xx, double *xy, double *yy)
-{
-	const struct camera *c = lens->camera;
-	double tx = clamp(camera[0] / camera[2], lens->low[0], lens->high[0]), fx = c->fx / camera[2];
-	double ty = clamp(camera[1] / camera[2], lens->low[1], lens->high[1]), fy = c->fy / camera[2];
-	double rows[2][3], normal[3], axis[3][3], trace, det = 0;
-
-	for (int i = 0; i < 3; i++) {
-		rows[0][i] = fx * (c->world_to_camera[0][i] - tx * c->world_to_camera[2][i]);
-		rows[1][i] = fy * (c->world_to_camera[1][i] - ty * c->world_to_camera[2][i]);
-		normal[i] =
-			fx * fy * (lens->normal[2][i] + tx * lens->normal[0][i] + ty * lens->normal[1][i]);
-	}
-	quat_axes(quat, axis);
-	*xx = *xy = *yy = 0;
-	for (int k = 0; k < 3; k++) {
-		double mx = scale[k] * dot(rows[0], axis[k]), my = scale[k] * dot(rows[1], axis[k]);
-		double minor = (double)scale[(k + 1) % 3] * scale[(k + 2) % 3] * dot(normal, axis[k]);
-		*xx += mx * mx;
-		*xy += mx * my;
-		*yy += my * my;
-		det += minor * minor;
-	}
-	trace = *xx + *yy;
-	*xx += LOW_PASS;
-	*yy += LOW_PASS;
-	return det + LOW_PASS * trace + LOW_PASS * LOW_PASS;
-}
-
-double projected_width(const struct projected *p)
-{
-	return p->radius * sqrt(p->l21 * p->l21 + p->l22 * p->l22) / (p->l11 * p->l22);
-}
-
-double projected_height(const struct projected *p)
-{
-	return p->radius / p->l22;
-}
-
-/* 1 and *p where Gaussian i may touch a pixel. */
-static int project_one(const struct lens *lens, const struct splats *s, size_t i, struct projected *p)
+/* 1 and *p where lane l of the batch, Gaussian i, may touch a pixel. */
+static int make_projected(const struct camera *c, const struct project_batch *b, int l, double opacity,
+	size_t i, struct projected *p)
 {
 	static const double half_log2e = 0.72134752044448170368;
-	const struct camera *c = lens->camera;
-	const float *mean = s->means + 3 * i;
-	double opacity = s->opacities[i], world[3] = {mean[0], mean[1], mean[2]}, camera[3], xx, xy, yy;
+	double xx = b->xx[l], xy = b->xy[l], yy = b->yy[l], det = b->det[l];
 
-	if (!(255 * opacity >= 1))
+	if (!(b->z[l] > NEAR_PLANE) || !isfinite(b->x[l]) || !isfinite(b->y[l]) || !isfinite(det))
 		return 0;
-	camera_transform(c, world, camera);
-	if (!(camera[2] > NEAR_PLANE))
-		return 0;
-	double det = covariance(lens, camera, s->scales + 3 * i, s->quats + 4 * i, &xx, &xy, &yy);
 	double log_opacity = log2(opacity);
 	/* 2^(log2 o - radius^2) = 1/255, with room for the float kernels' rounding: each pixel decides by
 	 * itself */
-	double radius = sqrt(log_opacity + 7.9943534368588579 + 1e-4);
+	double reach = log_opacity + 7.9943534368588579 + 1e-4, per_variance = reach / half_log2e;
 	*p = (struct projected){
-		.x = c->fx * (camera[0] / camera[2]) + c->cx,
-		.y = c->fy * (camera[1] / camera[2]) + c->cy,
+		.x = b->x[l],
+		.y = b->y[l],
 		.l11 = sqrt(half_log2e * (yy / det)),
 		.l22 = sqrt(half_log2e / yy),
-		.radius = radius,
-		.depth = camera[2],
+		.radius = sqrt(reach),
+		.half_width = (float)((1 + 1e-6) * sqrt(per_variance * xx)),
+		.half_height = (float)((1 + 1e-6) * sqrt(per_variance * yy)),
 		.log_opacity = (float)log_opacity,
 		.index = (int32_t)i,
 	};
 	p->l21 = -p->l11 * (xy / yy);
-	if (!isfinite(p->x) || !isfinite(p->y) || !isfinite(det) || !isfinite(p->l21))
-		return 0;
-	return holds_centre(p->x, projected_width(p), c->width) &&
-	       holds_centre(p->y, projected_height(p), c->height);
+	return holds_centre(p->x, p->half_width, c->width) && holds_centre(p->y, p->half_height, c->height);
+}
+
+/* Projects Gaussians begin to end - 1; returns how many are visible, which stand in *p and *depth from the
+ * first on. */
+static size_t project_block(const struct kernels *kernels, const struct project_lens *lens,
+	const struct splats *s, const struct camera *c, size_t begin, size_t end, struct projected *p,
+	double *depth)
+{
+	struct project_batch b = {0};
+	size_t found = 0, number[PROJECT_LANES];
+
+	for (size_t i = begin; i < end;) {
+		int lanes = 0;
+		/* a lane for each that is not too faint; lanes left over compute what is not looked at */
+		for (; i < end && lanes < PROJECT_LANES; i++) {
+			if (!(255 * (double)s->opacities[i] >= 1))
+				continue;
+			for (size_t k = 0; k < 3; k++) {
+				b.mean[k][lanes] = s->means[3 * i + k];
+				b.scale[k][lanes] = s->scales[3 * i + k];
+			}
+			for (size_t k = 0; k < 4; k++)
+				b.quat[k][lanes] = s->quats[4 * i + k];
+			number[lanes++] = i;
+		}
+		kernels->project(lens, &b);
+		for (int l = 0; l < lanes; l++)
+			if (make_projected(c, &b, l, s->opacities[number[l]], number[l], &p[found]))
+				depth[found++] = b.z[l];
+	}
+	return found;
 }
 
 struct item {
@@ -184,19 +139,19 @@ static int by_depth(const void *a, const void *b)
 }
 
 /* The keys hold the leading bits of the depths only: puts runs of equal keys in order by the whole depth. */
-static int settle_runs(struct item *items, size_t n, const struct projected *p, struct err *e)
+static int settle_runs(struct item *items, size_t n, const double *depth, struct err *e)
 {
 	for (size_t i = 0, end; i < n; i = end) {
 		int is_sorted = 1;
 		for (end = i + 1; end < n && items[end].key == items[i].key; end++)
-			is_sorted &= p[items[end - 1].place].depth <= p[items[end].place].depth;
+			is_sorted &= depth[items[end - 1].place] <= depth[items[end].place];
 		if (is_sorted)
 			continue;
 		struct exact *run = mem_alloc(end - i, sizeof *run, "depth order", e);
 		if (!run)
 			return -1;
 		for (size_t k = i; k < end; k++)
-			run[k - i] = (struct exact){p[items[k].place].depth, items[k].place};
+			run[k - i] = (struct exact){depth[items[k].place], items[k].place};
 		qsort(run, end - i, sizeof *run, by_depth);
 		for (size_t k = i; k < end; k++)
 			items[k].place = run[k - i].place;
@@ -227,70 +182,89 @@ static struct item *radix_sort(struct item *items, struct item *spare, size_t n)
 	return items;
 }
 
-/* *out gets the n entries of p, which stand by index, front to back. */
-static int sort_by_depth(const struct projected *p, size_t n, struct projected **out, struct err *e)
-{
-	struct item *items = mem_alloc(n, 2 * sizeof *items, "depth order", e);
-	struct projected *sorted = mem_alloc(n, sizeof *sorted, "projected Gaussians", e);
-	uint64_t low = UINT64_MAX, high = 0;
-	int shift = 0, bad = -1;
+/* What the blocks found: block b's entries stand at b * BLOCK. */
+struct visible {
+	size_t blocks, n;
+	size_t *found; /* (blocks) */
+	struct projected *projected;
+	double *depth;
+};
 
-	if (!items || !sorted)
-		goto done;
-	for (size_t i = 0; i < n; i++) {
-		uint64_t bits = depth_bits(p[i].depth);
-		low = bits < low ? bits : low;
-		high = bits > high ? bits : high;
-	}
-	while (n && (high - low) >> shift >> KEY_BITS)
+/* Keys of all depths: their distance from the least one, less the bits that do not fit. Returns 1 where any
+ * were lost. */
+static int make_keys(const struct visible *v, struct item *items)
+{
+	uint64_t low = UINT64_MAX, high = 0;
+	size_t n = 0;
+	int shift = 0;
+
+	for (size_t b = 0; b < v->blocks; b++)
+		for (size_t i = b * BLOCK; i < b * BLOCK + v->found[b]; i++) {
+			uint64_t bits = depth_bits(v->depth[i]);
+			low = bits < low ? bits : low;
+			high = bits > high ? bits : high;
+		}
+	while (v->n && (high - low) >> shift >> KEY_BITS)
 		shift++;
-	for (size_t i = 0; i < n; i++)
-		items[i] = (struct item){(uint32_t)((depth_bits(p[i].depth) - low) >> shift), (uint32_t)i};
-	struct item *order = radix_sort(items, items + n, n);
-	if (shift && settle_runs(order, n, p, e))
-		goto done;
-#pragma omp parallel for schedule(static)
-	for (size_t i = 0; i < n; i++)
-		sorted[i] = p[order[i].place];
-	*out = sorted;
-	sorted = NULL;
-	bad = 0;
-done:
-	free(items);
-	free(sorted);
-	return bad;
+	for (size_t b = 0; b < v->blocks; b++)
+		for (size_t i = b * BLOCK; i < b * BLOCK + v->found[b]; i++)
+			items[n++] = (struct item){
+				(uint32_t)((depth_bits(v->depth[i]) - low) >> shift), (uint32_t)i};
+	return shift > 0;
 }
 
-int project_splats(
-	const struct splats *s, const struct camera *c, struct projected **out, size_t *count, struct err *e)
+/* *out gets the visible ones front to back. */
+static int sort_by_depth(const struct visible *v, struct projected **out, struct err *e)
 {
-	size_t blocks = s->n / BLOCK + (s->n % BLOCK != 0), n = 0;
-	struct lens lens;
+	struct item *items = mem_alloc(v->n, 2 * sizeof *items, "depth order", e);
+	struct projected *sorted = mem_alloc(v->n, sizeof *sorted, "projected Gaussians", e);
+	int bad = !items || !sorted;
+
+	if (!bad) {
+		int is_coarse = make_keys(v, items);
+		struct item *order = radix_sort(items, items + v->n, v->n);
+		bad = is_coarse && settle_runs(order, v->n, v->depth, e);
+#pragma omp parallel for schedule(static)
+		for (size_t i = 0; i < v->n; i++)
+			sorted[i] = v->projected[order[i].place];
+	}
+	free(items);
+	if (bad)
+		free(sorted);
+	else
+		*out = sorted;
+	return bad ? -1 : 0;
+}
+
+int project_splats(const struct splats *s, const struct camera *c, enum cpu_level level,
+	struct projected **out, size_t *count, struct err *e)
+{
+	const struct kernels *kernels = kernels_of(level);
+	struct visible v = {.blocks = s->n / BLOCK + (s->n % BLOCK != 0)};
+	struct project_lens lens;
+	int bad = -1;
 
 	if (s->n > INT32_MAX)
 		return err_set(e, ERR_FORMAT, "%zu Gaussians are more than the %d that can be indexed", s->n,
 			INT32_MAX);
-	struct projected *all = mem_alloc(s->n, sizeof *all, "projected Gaussians", e);
-	size_t *found = mem_zalloc(blocks, sizeof *found, "projected Gaussians", e);
-	if (!all || !found) {
-		free(all);
-		free(found);
-		return -1;
-	}
-	lens_make(&lens, c);
+	v.projected = mem_alloc(s->n, sizeof *v.projected, "projected Gaussians", e);
+	v.depth = mem_alloc(s->n, sizeof *v.depth, "projected Gaussians", e);
+	v.found = mem_alloc(v.blocks, sizeof *v.found, "projected Gaussians", e);
+	if (v.projected && v.depth && v.found) {
+		lens_make(&lens, c);
 #pragma omp parallel for schedule(dynamic)
-	for (size_t b = 0; b < blocks; b++) {
-		size_t end = (b + 1) * BLOCK < s->n ? (b + 1) * BLOCK : s->n;
-		for (size_t i = b * BLOCK; i < end; i++)
-			found[b] += (size_t)project_one(&lens, s, i, &all[b * BLOCK + found[b]]);
+		for (size_t b = 0; b < v.blocks; b++) {
+			size_t begin = b * BLOCK, end = begin + BLOCK < s->n ? begin + BLOCK : s->n;
+			v.found[b] = project_block(
+				kernels, &lens, s, c, begin, end, v.projected + begin, v.depth + begin);
+		}
+		for (size_t b = 0; b < v.blocks; b++)
+			v.n += v.found[b];
+		*count = v.n;
+		bad = sort_by_depth(&v, out, e);
 	}
-	for (size_t b = 0; b < blocks; b++) {
-		memmove(all + n, all + b * BLOCK, found[b] * sizeof *all);
-		n += found[b];
-	}
-	*count = n;
-	int bad = sort_by_depth(all, n, out, e);
-	free(all);
-	free(found);
+	free(v.projected);
+	free(v.depth);
+	free(v.found);
 	return bad;
 }

@@ -3,6 +3,7 @@
 #ifndef SPLAT_PROJECT_H
 #define SPLAT_PROJECT_H
 
+#include "base/cpu.h"
 #include "base/err.h"
 #include "geom/camera.h"
 #include "splat/splats.h"
@@ -17,19 +18,34 @@ struct projected {
 	double x, y;	      /* mean, pixels */
 	double l11, l21, l22; /* 1/pixels */
 	double radius;	   /* u^2 + v^2 <= radius^2 where a >= 1/255 (and, for rounding, a little beyond) */
-	double depth;	   /* camera z */
+	float half_width;  /* pixels: where u^2 + v^2 <= radius^2, |dx| <= half_width */
+	float half_height; /* and |dy| <= half_height */
 	float log_opacity; /* log2 o */
 	int32_t index;	   /* of the Gaussian in its scene */
 };
 
-/* The ellipse u^2 + v^2 <= radius^2 lies within x +- projected_width, y +- projected_height. */
-double projected_width(const struct projected *p);
-double projected_height(const struct projected *p);
-
 /* The visible Gaussians front to back (by camera z, ties by index). Left out are those with z <= 0.2 or o <
  * 1/255, those whose ellipse holds no pixel centre, and those whose covariance exceeds double (a standard
  * deviation above 1e75 px). The caller frees *out. Returns 0, or -1 with *e set. */
-int project_splats(
-	const struct splats *s, const struct camera *c, struct projected **out, size_t *count, struct err *e);
+int project_splats(const struct splats *s, const struct camera *c, enum cpu_level level,
+	struct projected **out, size_t *count, struct err *e);
+
+/* For the kernels: what a camera contributes to every Gaussian. */
+struct project_lens {
+	double world_to_camera[3][4];
+	double fx, fy, cx, cy;
+	double normal[3][3];	/* row k: the cross product of the rotation's other two rows */
+	double low[2], high[2]; /* limits of x/z and y/z in the Jacobian */
+};
+
+enum { PROJECT_LANES = 8 };
+
+/* Gaussians side by side, so that the compiler can take them at once. */
+struct project_batch {
+	double mean[3][PROJECT_LANES], scale[3][PROJECT_LANES], quat[4][PROJECT_LANES];
+	double x[PROJECT_LANES], y[PROJECT_LANES], z[PROJECT_LANES];	/* mean in pixels, and camera z */
+	double xx[PROJECT_LANES], xy[PROJECT_LANES], yy[PROJECT_LANES]; /* covariance, pixels^2 */
+	double det[PROJECT_LANES];					/* and its determinant */
+};
 
 #endif

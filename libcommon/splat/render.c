@@ -1,7 +1,7 @@
 #include "splat/render.h"
 
 #include "base/mem.h"
-#include "splat/blend.h"
+#include "splat/kernels.h"
 #include "splat/sh.h"
 #include "splat/view.h"
 
@@ -16,7 +16,7 @@ struct render_view *render_prepare(const struct splats *s, const struct camera *
 		return NULL;
 	*v = (struct render_view){
 		.width = c->width, .height = c->height, .gaussians = s->n, .level = cpu_level()};
-	if (!project_splats(s, c, &v->projected, &v->visible, e) &&
+	if (!project_splats(s, c, v->level, &v->projected, &v->visible, e) &&
 		!tile_build(&v->tiles, v->projected, v->visible, v->width, v->height, e))
 		return v;
 	render_free(v);
@@ -65,7 +65,7 @@ static void put_plane(const struct render_view *v, struct place at, const float 
 static void blend_planes(
 	const struct render_view *v, const float *values, int channels, float *out, float *transmittance)
 {
-	const struct blend_kernels *kernels = blend_kernels(v->level);
+	const struct kernels *kernels = kernels_of(v->level);
 	size_t tiles = (size_t)v->tiles.columns * (size_t)v->tiles.rows,
 	       pixels = (size_t)v->width * (size_t)v->height;
 
@@ -153,7 +153,7 @@ static int grow_records(struct blend_records *r, struct err *e)
 static int record_tile(const struct render_view *v, size_t k, struct blend_records *records,
 	struct render_weights *w, struct err *e)
 {
-	const struct blend_kernels *kernels = blend_kernels(v->level);
+	const struct kernels *kernels = kernels_of(v->level);
 	struct place at = tile_place(v, k);
 	const uint32_t *list = v->tiles.entries + v->tiles.start[k];
 	size_t n = v->tiles.start[k + 1] - v->tiles.start[k], done = 0;

@@ -25,16 +25,21 @@ struct share {
 /* The tile of the first pixel centre at or after x, and of the last at or before it; within [0, size). */
 static int first_tile(double x, int size)
 {
-	double pixel = ceil(x - 0.5);
+	double pixel = x - 0.5;
 
-	return pixel <= 0 ? 0 : pixel >= size ? (size - 1) / TILE_SIZE + 1 : (int)pixel / TILE_SIZE;
+	if (!(pixel > 0))
+		return 0;
+	if (pixel > size - 1)
+		return (size - 1) / TILE_SIZE + 1;
+	int whole = (int)pixel;
+	return (whole + (whole < pixel)) / TILE_SIZE;
 }
 
 static int last_tile(double x, int size)
 {
-	double pixel = floor(x - 0.5);
+	double pixel = x - 0.5;
 
-	return pixel < 0 ? -1 : pixel >= size ? (size - 1) / TILE_SIZE : (int)pixel / TILE_SIZE;
+	return !(pixel >= 0) ? -1 : pixel >= size ? (size - 1) / TILE_SIZE : (int)pixel / TILE_SIZE;
 }
 
 static double clamp(double x, double low, double high)
@@ -52,9 +57,9 @@ struct ellipse {
 static void ellipse_make(struct ellipse *l, const struct projected *p)
 {
 	l->slope = -p->l21 / p->l11;
-	l->half_height = projected_height(p);
+	l->half_height = p->radius / p->l22;
 	l->width = p->radius / p->l11;
-	l->peak = l->slope * l->half_height * (l->half_height / projected_width(p));
+	l->peak = -p->l21 * l->half_height / sqrt(p->l21 * p->l21 + p->l22 * p->l22);
 }
 
 static double ellipse_half(const struct ellipse *l, double y)
@@ -67,9 +72,9 @@ static double ellipse_half(const struct ellipse *l, double y)
 static int add_spans(
 	struct share *share, const struct projected *p, uint32_t entry, int width, int height, int columns)
 {
-	double half_width = projected_width(p), half_height = projected_height(p);
-	int top = first_tile(p->y - half_height, height), bottom = last_tile(p->y + half_height, height);
-	int left = first_tile(p->x - half_width, width), right = last_tile(p->x + half_width, width);
+	int top = first_tile(p->y - p->half_height, height),
+	    bottom = last_tile(p->y + p->half_height, height);
+	int left = first_tile(p->x - p->half_width, width), right = last_tile(p->x + p->half_width, width);
 	struct ellipse l;
 
 	if (top > bottom || left > right)

@@ -1,5 +1,5 @@
-/* Blending with fixed weights: geometry is frozen, so the image of a view is a sparse product M = W m (design section 4).
- * W is CSR over pixels, as gs-weigh writes it. */
+/* Blending with fixed weights: geometry is frozen, so the image of a view is a sparse product M = W m (design
+ * section 4). W is CSR over pixels, as gs-weigh writes it. */
 #ifndef SPLAT_VIEW_WEIGHTS_H
 #define SPLAT_VIEW_WEIGHTS_H
 
@@ -17,8 +17,8 @@ struct view_weights {
 /* image (P) = W m (N). */
 void view_blend(const struct view_weights *w, const float *m, float *image);
 
-/* dm (N) = W^T dimage (P). scratch holds VIEW_SLABS * N floats: the pixels are cut into so many slabs, summed apart and added
- * in order, whatever the number of threads. */
+/* dm (N) = W^T dimage (P). scratch holds VIEW_SLABS * N floats: the pixels are cut into so many slabs, summed
+ * apart and added in order, whatever the number of threads. */
 enum { VIEW_SLABS = 8 };
 void view_blend_back(const struct view_weights *w, const float *dimage, float *dm, float *scratch);
 

@@ -61,7 +61,7 @@ int synth_cameras_make(struct cameras *c, int n, int width, int height, const st
 	rng_seed(&r, seed, SYNTH_STREAM_CAMERAS);
 	for (int i = 0; i < n; i++) {
 		struct camera *v = &c->views[c->n++];
-		char name[16];
+		char name[32];
 		snprintf(name, sizeof name, "view_%03d", i);
 		v->name = mem_strdup(name, e);
 		if (!v->name) {

@@ -20,7 +20,7 @@ enum {
 struct synth_sentence {
 	int object;
 	enum camera_split split;
-	char ref[SYNTH_NAME + 4]; /* "red-mug-1" */
+	char ref[SYNTH_NAME + 12]; /* "red-mug-1" */
 	char text[256];
 	/* What the text says, for checking it. */
 	struct synth_meaning meaning;

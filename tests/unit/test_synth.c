@@ -337,6 +337,28 @@ static void detector_depends_on_the_view_alone(void)
 	CHECK(hidden < 6 * 4, "a hidden object is mostly not found, %d times", hidden);
 }
 
+/* The masks against the blend weights themselves; returns the pixels that differ where the share is not a
+ * tie. */
+static int differing(const struct synth_scene *s, const struct render_view *view, const uint8_t *masks)
+{
+	struct render_weights w;
+	struct err e = {0};
+	int wrong = 0;
+
+	if (render_weights(view, &w, &e))
+		return -1;
+	for (int p = 0; p < H * W; p++) {
+		double share[2] = {0};
+		for (int64_t i = w.indptr[p]; i < w.indptr[p + 1]; i++)
+			if (s->owner[w.index[i]] >= 0)
+				share[s->owner[w.index[i]]] += w.weight[i];
+		for (int k = 0; k < 2; k++)
+			wrong += fabs(share[k] - 0.5) > 1e-5 && masks[k * H * W + p] != (share[k] > 0.5);
+	}
+	render_weights_free(&w);
+	return wrong;
+}
+
 /* Where nothing hides it, an object's mask lies where its middle projects. */
 static void truth_is_where_the_objects_are(void)
 {
@@ -376,6 +398,8 @@ static void truth_is_where_the_objects_are(void)
 		}
 		for (int i = 0; i < H * W; i++)
 			both += masks[i] && masks[H * W + i];
+		int wrong = differing(&s, view, masks);
+		CHECK(wrong == 0, "view %zu: %d pixels are not what their blend weights say", v, wrong);
 		CHECK(!both, "%zu pixels belong to two objects", both);
 		render_free(view);
 	}

@@ -1,2 +1,0 @@
-#define BLEND_TABLE blend_plain
-#include "splat/blend_kernel.h"

@@ -1,0 +1,30 @@
+/* The innermost loops, built once for each instruction set. */
+#ifndef SPLAT_KERNELS_H
+#define SPLAT_KERNELS_H
+
+#include "base/cpu.h"
+#include "splat/blend.h"
+#include "splat/project.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct kernels {
+	/* Projects PROJECT_LANES Gaussians; the same on every instruction set, to the bit. */
+	void (*project)(const struct project_lens *lens, struct project_batch *b);
+	/* Blends the Gaussians p[list[0..n)] front to back. `values` holds `channels` values for each entry
+	 * of p. */
+	void (*values)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
+		const float *values, int channels);
+	/* As far as the records have room. Returns how many of the n are done; n also when every pixel has
+	 * ended. */
+	size_t (*weights)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
+		struct blend_records *records);
+};
+
+/* The kernels of a level; a level that the program was not built for gives plain ones. */
+const struct kernels *kernels_of(enum cpu_level level);
+
+extern const struct kernels kernels_plain, kernels_avx2, kernels_avx512;
+
+#endif

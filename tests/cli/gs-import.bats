@@ -1,0 +1,217 @@
+#!/usr/bin/env bats
+# gs-import. What the formats refuse is in tests/format; options that every tool has are in common.bats.
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load ../format/files
+	load ../format/foreign
+	cd "$BATS_TEST_TMPDIR"
+	splats_ply s.ply
+	colmap model
+}
+
+# views COMMAND...: runs it, and prints names and splits of the views of scene.
+views() {
+	rm -rf scene
+	"$@" && imported name split | tr -d '\n'
+}
+
+@test "what a Gaussian's numbers become" {
+	"$BIN/gs-import" --cameras model -o scene s.ply
+	[ "$(ls scene | tr '\n' ' ')" = "cameras.json splats.safetensors " ]
+	# Of the second Gaussian of two: mean, scales exp(-2 -3 -4), opacity sigmoid(2), then the colours.
+	"$BIN/gs-check" scene/splats.safetensors | grep -q ': 2 gaussians\|, 2 gaussians'
+	data() { tail -c 112 scene/splats.safetensors | od -An -v -tf4 -w4 | tr -s ' \n' ' '; }
+	read -ra value < <(data; echo)
+	[ "${value[*]:0:6}" = "0 0 2 1 0 3" ]
+	[ "${value[*]:9:3}" = "0.13533528 0.049787067 0.01831564" ]
+	[ "${value[*]:16:4}" = "0.5 0.5 0.5 0.5" ]
+	[ "${value[*]:20:2}" = "0.5 0.8807971" ]
+	[ "${value[*]:22:6}" = "1 0.5 0 0 0.5 1" ]
+}
+
+@test "stdin equals the file" {
+	"$BIN/gs-import" --cameras model -o scene s.ply
+	"$BIN/gs-import" --cameras model -o piped - <s.ply
+	cat s.ply | "$BIN/gs-import" --cameras model -o pipe -
+	diff -r scene piped
+	diff -r scene pipe
+	printf '[%s]' "$(camera3dgs)" >c.json
+	"$BIN/gs-import" --cameras c.json -o one s.ply
+	"$BIN/gs-import" --cameras - -o two s.ply <c.json
+	diff -r one two
+}
+
+@test "the same bytes again, into the same folder or another" {
+	"$BIN/gs-import" --cameras model --test-views b -o scene s.ply
+	cp -r scene first
+	"$BIN/gs-import" --cameras model --test-views b -o scene s.ply
+	"$BIN/gs-import" --cameras ./model/ --test-views b -o new/deep/scene ./s.ply
+	diff -r first scene
+	diff -r first new/deep/scene
+}
+
+@test "an output from stdin without cameras, two from stdin, an output to stdout" {
+	says 2 "gs-import: --cameras is required where SPLATS is stdin
+Try 'gs-import --help'." "$BIN/gs-import" -o scene -
+	says 2 "gs-import: --cameras and SPLATS cannot both be stdin
+Try 'gs-import --help'." "$BIN/gs-import" --cameras - -o scene -
+	says 2 "gs-import: -o: a scene is a folder and cannot go to stdout
+Try 'gs-import --help'." "$BIN/gs-import" --cameras model -o - s.ply
+	says 2 "gs-import: -o SCENE is required
+Try 'gs-import --help'." "$BIN/gs-import" --cameras model s.ply
+}
+
+@test "cameras that are missing" {
+	says 4 "gs-import: none: No such file or directory" "$BIN/gs-import" --cameras none -o scene s.ply
+	mkdir empty
+	says 3 "gs-import: empty: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json" \
+		"$BIN/gs-import" --cameras empty -o scene s.ply
+	says 2 "gs-import: --cameras is not given, and .: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json
+Try 'gs-import --help'." "$BIN/gs-import" -o scene s.ply
+	rm model/images.txt
+	says 3 "gs-import: model: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json" \
+		"$BIN/gs-import" --cameras model -o scene s.ply
+	[ ! -e scene ]
+}
+
+@test "where cameras are looked for, first to last" {
+	mkdir -p x/sparse
+	cp s.ply x
+	transforms "frames=[$(frame 'file_path="transforms"')]" >x/transforms.json
+	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["transforms","train"]' ]
+	colmap x/sparse
+	sed -i 's/a.jpg/sparse.jpg/' x/sparse/images.txt
+	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["b","train"]["c","train"]["sparse","train"]' ]
+	colmap x/sparse/0
+	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["a","train"]["b","train"]["c","train"]' ]
+	printf '[%s]' "$(camera3dgs 'img_name="json"')" >x/cameras.json
+	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["json","train"]' ]
+	[ "$(views "$BIN/gs-import" --cameras x -o scene s.ply)" = '["json","train"]' ]
+	colmap x
+	sed -i 's/a.jpg/here.jpg/' x/images.txt
+	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["b","train"]["c","train"]["here","train"]' ]
+	[ "$(views "$BIN/gs-import" --cameras x/sparse -o scene x/s.ply)" = '["b","train"]["c","train"]["sparse","train"]' ]
+}
+
+@test "the folders of a 3DGS model" {
+	mkdir -p out/point_cloud/iteration_30000 out/point_cloud/other
+	printf '[%s]' "$(camera3dgs)" >out/cameras.json
+	cp s.ply out/point_cloud/iteration_30000
+	cp s.ply out/point_cloud/other
+	[ "$(views "$BIN/gs-import" -o scene out/point_cloud/iteration_30000/s.ply)" = '["b","train"]' ]
+	cd out/point_cloud/other
+	! "$BIN/gs-import" -o scene s.ply 2>err
+	grep -q 'no cameras here' err
+}
+
+@test "test views by name, by number" {
+	[ "$(views "$BIN/gs-import" --cameras model -o scene s.ply)" = '["a","train"]["b","train"]["c","train"]' ]
+	[ "$(views "$BIN/gs-import" --cameras model --test-views c,a -o scene s.ply)" = '["a","test"]["b","train"]["c","test"]' ]
+	[ "$(views "$BIN/gs-import" --cameras model --test-views every:2 -o scene s.ply)" = '["a","test"]["b","train"]["c","test"]' ]
+	[ "$(views "$BIN/gs-import" --cameras model --test-views every:8 -o scene s.ply)" = '["a","test"]["b","train"]["c","train"]' ]
+	[ "$(views "$BIN/gs-import" --cameras model --test-views every:1 -o scene s.ply)" = '["a","test"]["b","test"]["c","test"]' ]
+}
+
+@test "test views that are not there" {
+	for name in x '' a.jpg A ab; do
+		says 2 "gs-import: --test-views: no view '$name'
+Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "$name" -o scene s.ply
+	done
+	says 2 "gs-import: --test-views: no view ''
+Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views a, -o scene s.ply
+	for n in '' 0 -1 2x 1.5 ' 2' 99999999999999999999; do
+		says 2 "gs-import: --test-views: 'every:$n' is not every:N with N from 1 to 1000000000
+Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n" -o scene s.ply
+	done
+	[ ! -e scene ]
+}
+
+@test "photographs are named relative to the scene" {
+	mkdir -p photos/deep out
+	: >photos/a.jpg
+	: >photos/deep/b.jpg
+	sed -i 's, b.jpg, deep/b.jpg,' model/images.txt
+	"$BIN/gs-import" --cameras model --images photos -o scene s.ply 2>err
+	[ "$(cat err)" = "gs-import: warning: photos: no photograph for 1 of 3 views" ]
+	[ "$(imported image | tr -d '\n')" = '["../photos/a.jpg"]["../photos/deep/b.jpg"][null]' ]
+	"$BIN/gs-import" -q --cameras model --images "$PWD/photos/deep" -o out/scene s.ply 2>err
+	[ ! -s err ]
+	[ "$(jq -c 'map(.image)' out/scene/cameras.json)" = '[null,"../../photos/deep/b.jpg",null]' ]
+	# Each is where its path says, seen from the scene.
+	cd scene && [ -e ../photos/a.jpg ]
+}
+
+@test "photographs whose names come without an extension" {
+	mkdir photos
+	: >photos/b.JPG
+	printf '[%s]' "$(camera3dgs)" >c.json
+	"$BIN/gs-import" --cameras c.json --images photos -o scene s.ply
+	[ "$(imported image)" = '["../photos/b.JPG"]' ]
+	says 4 "gs-import: none: No such file or directory" "$BIN/gs-import" --cameras c.json --images none -o scene s.ply
+	says 4 "gs-import: s.ply: Not a directory" "$BIN/gs-import" --cameras c.json --images s.ply -o scene s.ply
+}
+
+@test "without --images no photograph is named" {
+	: >a.jpg
+	"$BIN/gs-import" --cameras model -o scene s.ply
+	[ "$(imported image | tr -d '\n')" = '[null][null][null]' ]
+}
+
+@test "Gaussians that are left out are counted, and named with -v" {
+	splats_ply s.ply '0 0 2 1 0.5 0 0 -3 -3 -3 1 0 0 0' '0 0 nan 1 0.5 0 0 -3 -3 -3 1 0 0 0' \
+		'0 0 2 1 0.5 0 0 -3 -3 -3 0 0 0 0' '0 0 2 1 0.5 0 0 -3 90 -3 1 0 0 0'
+	says 0 "gs-import: warning: s.ply: left out 3 of 4 Gaussians: 2 not finite, 1 with a zero quaternion" \
+		"$BIN/gs-import" --cameras model -o scene s.ply
+	says 0 "" "$BIN/gs-import" -q --cameras model -o scene s.ply
+	"$BIN/gs-import" -v --cameras model --test-views a -o scene s.ply 2>err
+	grep -v 's, peak memory' err >rest
+	diff - rest <<-'END'
+		gs-import: s.ply: 1 Gaussians, spherical harmonics of degree 0, offset 0 0 0
+		gs-import: warning: s.ply: left out 3 of 4 Gaussians: 2 not finite, 1 with a zero quaternion
+		gs-import: s.ply: left out Gaussian 1
+		gs-import: s.ply: left out Gaussian 2
+		gs-import: s.ply: left out Gaussian 3
+		gs-import: model: 3 views, 1 of them for testing
+	END
+	[ "$(wc -l <err)" = 7 ]
+}
+
+@test "no Gaussians at all" {
+	ply_header 0 >s.ply
+	"$BIN/gs-import" --cameras model -o scene s.ply
+	"$BIN/gs-check" scene | grep -q ' 0 gaussians'
+}
+
+@test "a scene far from the origin: the offset is kept and the cameras move with it" {
+	splats_ply s.ply '1000 -2000 52 1 0.5 0 0 -3 -3 -3 1 0 0 0' '1001 -2000 50 1 0.5 0 0 -3 -3 -3 1 0 0 0'
+	"$BIN/gs-import" --cameras model -o scene s.ply
+	grep -a -q '"offset":"\[1001,-2000,52\]"' scene/splats.safetensors
+	# View a has -x + 1, -y, z + 2.
+	[ "$(jq -c '.[0].world_to_camera|map(.[3])' scene/cameras.json)" = "[-1000,2000,54,1]" ]
+}
+
+@test "the camera file is not overwritten by the scene's" {
+	printf '[%s]' "$(camera3dgs)" >cameras.json
+	cp cameras.json before
+	says 2 "gs-import: -o: ./cameras.json is the camera file that is read
+Try 'gs-import --help'." "$BIN/gs-import" -o . s.ply
+	says 2 "gs-import: -o: ../$(basename "$PWD")/cameras.json is the camera file that is read
+Try 'gs-import --help'." "$BIN/gs-import" -o "../$(basename "$PWD")" s.ply
+	cmp before cameras.json
+	[ ! -e splats.safetensors ]
+}
+
+@test "a failure leaves nothing behind" {
+	head -c 300 s.ply >cut.ply
+	mkdir clean
+	for args in "cut.ply --cameras model" "s.ply --cameras cut.ply" "s.ply --cameras model --test-views x"; do
+		! "$BIN/gs-import" $args -o clean/scene 2>err
+		[ -z "$(ls -A clean)" ]
+	done
+	: >clean/file
+	says 4 "gs-import: clean/file: Not a directory" "$BIN/gs-import" --cameras model -o clean/file/scene s.ply
+	mkdir -p scene/cameras.json
+	! "$BIN/gs-import" --cameras model -o scene s.ply 2>err
+	! ls scene | grep tmp
+}

@@ -1,0 +1,129 @@
+#!/usr/bin/env bats
+# Each rule of formats/transforms.md broken once.
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load files
+	load foreign
+	cd "$BATS_TEST_TMPDIR"
+	splats_ply s.ply
+}
+
+import() {
+	"$BIN/gs-import" --cameras transforms.json -o scene s.ply
+}
+
+# refused REASON KEY=VALUE...: a file with those changes, named frame 0.
+refused() {
+	local reason=$1
+	shift
+	transforms "$@" >transforms.json
+	says 3 "gs-import: transforms.json: frame 0: $reason" import && [ ! -e scene ]
+}
+
+# bad_frame REASON KEY=VALUE...: a frame with those changes.
+bad_frame() {
+	local reason=$1
+	shift
+	refused "$reason" "frames=[$(frame "$@")]"
+}
+
+# lens KEY...: what the one view of the imported file has.
+lens() {
+	rm -rf scene
+	import && imported "$@"
+}
+
+@test "OpenGL axes become COLMAP's" {
+	# Rows of camera to world: x_world = -z_camera, y_world = x_camera, z_world = -y_camera (OpenGL's).
+	transforms "frames=[$(frame 'transform_matrix=[[0,0,-1,4],[1,0,0,5],[0,-1,0,6],[0,0,0,1]]')]" >transforms.json
+	import
+	imported name width height fx fy cx cy split >out
+	echo '["b",40,30,50,51,19,14,"train"]' | diff - out
+	# x_camera = y_world; y down = z_world; z forward = x_world; and the centre goes to 0.
+	[ "$(jq -c .[0].world_to_camera scene/cameras.json)" = "[[0,1,0,-5],[0,0,1,-6],[1,0,0,-4],[0,0,0,1]]" ]
+}
+
+@test "the fourth row may be absent" {
+	transforms "frames=[$(frame 'transform_matrix=[[1,0,0,1],[0,1,0,2],[0,0,1,3]]')]" >transforms.json
+	import
+	[ "$(jq -c .[0].world_to_camera scene/cameras.json)" = "[[1,0,0,-1],[0,-1,0,2],[0,0,-1,3],[0,0,0,1]]" ]
+}
+
+@test "intrinsics: defaults, angles, and a frame's own" {
+	transforms cx= cy= fl_y= >transforms.json
+	[ "$(lens fx fy cx cy)" = "[50,50,20,15]" ]
+	transforms fl_x= fl_y= camera_angle_x=1.5707963267948966 >transforms.json
+	[ "$(lens fx fy | sed 's/\.00*[0-9]\{1,2\}\b//g')" = "[20,20]" ]
+	transforms fl_x= fl_y= camera_angle_x=1.5707963267948966 camera_angle_y=1.5707963267948966 >transforms.json
+	[ "$(lens fx fy | sed 's/\.00*[0-9]\{1,2\}\b//g')" = "[20,15]" ]
+	transforms "frames=[$(frame w=80 h=60 fl_x=7 fl_y=8 cx=9 cy=10)]" >transforms.json
+	[ "$(lens width height fx fy cx cy)" = "[80,60,7,8,9,10]" ]
+	transforms w= h= fl_x= fl_y= cx= cy= "frames=[$(frame w=80 h=60 fl_x=7)]" >transforms.json
+	[ "$(lens width height fx fy cx cy)" = "[80,60,7,7,40,30]" ]
+}
+
+@test "splits" {
+	frames="frames=[$(frame), $(frame 'file_path="./x/a.png"'), $(frame 'file_path="c"')]"
+	transforms "$frames" 'test_filenames=["c"]' >transforms.json
+	[ "$(lens name split | tr -d '\n')" = '["a","train"]["b","train"]["c","test"]' ]
+	transforms "$frames" 'val_filenames=["images/b.png","other"]' 'test_filenames=["c"]' >transforms.json
+	[ "$(lens name split | tr -d '\n')" = '["a","train"]["b","test"]["c","test"]' ]
+	transforms "$frames" 'train_filenames=["./x/a.png"]' >transforms.json
+	[ "$(lens name split | tr -d '\n')" = '["a","train"]["b","test"]["c","test"]' ]
+	rm -r scene
+	"$BIN/gs-import" --cameras transforms.json --test-views a -o scene s.ply
+	[ "$(imported name split | tr -d '\n')" = '["a","test"]["b","train"]["c","train"]' ]
+	rm -r scene
+	transforms 'train_filenames=5' >transforms.json
+	says 3 "gs-import: transforms.json: key 'train_filenames' is not a list" import
+	transforms 'test_filenames=[5]' >transforms.json
+	says 3 "gs-import: transforms.json: key 'test_filenames' is not a list of strings" import
+}
+
+@test "keys that are missing or of another type" {
+	refused "key 'w' is missing" w=
+	refused "key 'h' is missing" h=
+	refused "neither 'fl_x' nor 'camera_angle_x'" fl_x=
+	for key in w h fl_x fl_y cx cy k1 p2; do
+		refused "key '$key' is not a number" $key='"5"'
+		bad_frame "key '$key' is not a number" $key=1e999
+	done
+	bad_frame "key 'file_path' is missing" file_path=
+	bad_frame "key 'file_path' is not a string" file_path=7
+	bad_frame "key 'transform_matrix' is missing" transform_matrix=
+	bad_frame "key 'transform_matrix' is not 4x4 numbers" transform_matrix='[[1,0,0,0],[0,1,0,0]]'
+	bad_frame "key 'transform_matrix' is not 3x4 numbers" transform_matrix='[[1,0,0,0],[0,1,0,0],[0,0,1]]'
+	bad_frame "key 'transform_matrix' is not 4x4 numbers" transform_matrix=5
+	refused "key 'file_path' is missing" frames=[1]
+	for frames in '' 5 '{}'; do
+		transforms "frames=$frames" >transforms.json
+		says 3 "gs-import: transforms.json: key 'frames' is not a list" import
+	done
+	transforms frames=[] >transforms.json
+	says 3 "gs-import: transforms.json: no views" import
+}
+
+@test "values out of range" {
+	refused "size 40.5x30 is not whole numbers in 1 to 65536" w=40.5
+	refused "key 'camera_angle_x': 3.2 is not an angle in (0, pi)" fl_x= camera_angle_x=3.2
+	refused "key 'camera_angle_y': 0 is not an angle in (0, pi)" fl_y= camera_angle_y=0
+	bad_frame "key 'transform_matrix': the last row is not 0 0 0 1" \
+		transform_matrix='[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]'
+	transforms "frames=[$(frame 'transform_matrix=[[1,0,0,0],[0,1,0,0],[0,0,2,0],[0,0,0,1]]')]" >transforms.json
+	says 3 "gs-import: transforms.json: view 'images/b.png': its pose is not a rotation and a translation" import
+	transforms fl_x=-5 >transforms.json
+	says 3 "gs-import: transforms.json: view 'images/b.png': its focal length is not positive" import
+}
+
+@test "lenses that are not pinholes" {
+	for key in k1 k2 k3 k4 k5 k6 p1 p2; do
+		refused "key '$key': lens distortion -0.5; undistort the images first (colmap image_undistorter)" $key=-0.5
+	done
+	bad_frame "key 'k1': lens distortion 0.25; undistort the images first (colmap image_undistorter)" k1=0.25
+	refused "key 'camera_model': 'OPENCV_FISHEYE' is not a perspective camera" 'camera_model="OPENCV_FISHEYE"'
+	bad_frame "key 'camera_model': 'EQUIRECTANGULAR' is not a perspective camera" 'camera_model="EQUIRECTANGULAR"'
+	refused "key 'is_fisheye': not a perspective camera" is_fisheye=true
+	transforms 'camera_model="OPENCV"' is_fisheye=false k1=0 k2=0 p1=0 p2=0.0 >transforms.json
+	import
+}
