@@ -201,11 +201,14 @@ int ply_read(struct splats *s, double offset[3], struct ply_report *report, cons
 	if (plyfile_open(&f, path, e))
 		return -1;
 	const struct plyfile_element *vertex = plyfile_find(&f, "vertex");
-	if (!vertex)
-		bad = err_set(e, ERR_FORMAT, "%s: no element 'vertex'", f.path);
-	for (size_t i = 0; !bad && i < f.n; i++)
-		bad = &f.elements[i] == vertex ? read_vertices(s, offset, &local, &f, vertex, e)
-					       : plyfile_skip(&f, &f.elements[i], e);
+	if (!vertex) {
+		err_set(e, ERR_FORMAT, "%s: no element 'vertex'", f.path);
+		bad = -1;
+	}
+	for (size_t i = 0; !bad && i < f.n; i++) {
+		const struct plyfile_element *el = &f.elements[i];
+		bad = el == vertex ? read_vertices(s, offset, &local, &f, el, e) : plyfile_skip(&f, el, e);
+	}
 	if (!bad)
 		bad = plyfile_end(&f, e);
 	plyfile_close(&f);
@@ -294,7 +297,7 @@ int ply_write(const struct splats *s, const double offset[3], const char *path, 
 		p = put_float(p, logit(s->opacities[i]));
 		/* The logarithm of 0 is not finite; the smallest float's stands for it. */
 		for (int k = 0; k < 3; k++)
-			p = put_float(p, log(fmax(s->scales[3 * i + (size_t)k], FLT_TRUE_MIN)));
+			p = put_float(p, log(fmax((double)s->scales[3 * i + (size_t)k], FLT_TRUE_MIN)));
 		for (int k = 0; k < 4; k++)
 			p = put_float(p, s->quats[4 * i + (size_t)k]);
 		fwrite(row, 1, (size_t)(p - row), out.stream);
