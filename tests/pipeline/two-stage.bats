@@ -70,3 +70,14 @@ two_stage() {
 	grep -q "pseudomask-select: .*bad.jsonl:1: " <<<"$output"
 	[ ! -e "$BATS_TEST_TMPDIR/bad/stage1/masks.jsonl" ]
 }
+
+@test "the table's figures are those of the score files" {
+	for stage in 1 2; do
+		score=$(jq '100 * .miou' "$WORK/stage$stage/predictions.train.score.json")
+		row=$(grep "^stage $stage, test views, training sentences" "$BATS_FILE_TMPDIR/first.log" | awk '{ print $6 }')
+		awk -v a="$score" -v b="$row" 'BEGIN { exit !(a - b < 0.051 && b - a < 0.051) }'
+	done
+	score=$(jq '100 * .miou' "$WORK/stage1/masks.score.json")
+	row=$(grep "^selected masks" "$BATS_FILE_TMPDIR/first.log" | awk '{ print $5 }')
+	[ "$(printf %.1f "$score")" = "$row" ]
+}
