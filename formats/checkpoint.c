@@ -81,10 +81,18 @@ static int read_state(
 	for (int i = 0; i < ARRAYS; i++)
 		if (read_array(arrays[i], t->count, st, names[i], e))
 			return -1;
+	for (size_t i = 0; i < t->count; i++)
+		if (t->v[i] < 0)
+			return err_set(e, ERR_FORMAT, "%s: tensor 'second_moment': item %zu is negative",
+				st->path, i);
 	const struct st_tensor *sums = safetensors_need(st, "losses", ST_F64, 1, (int64_t[]){3}, e);
 	if (!sums)
 		return -1;
 	memcpy(losses, sums->data, sizeof losses);
+	for (int i = 0; i < 3; i++)
+		if (!isfinite(losses[i]))
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor 'losses': item %d is not finite", st->path, i);
 	t->sum = (struct step_losses){losses[0], losses[1], losses[2]};
 	t->iteration = (long)iteration;
 	return 0;

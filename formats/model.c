@@ -109,8 +109,8 @@ static int read_all(struct model *m, const struct safetensors *st, struct err *e
 		!(first = safetensors_need(st, "text.0.weight", ST_F32, 2, (int64_t[]){REFER_T1, -1}, e)))
 		return -1;
 	if (first->shape[1] < 1 || first->shape[1] > 65536)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'text.0.weight': %lld columns", st->path,
-			(long long)first->shape[1]);
+		return err_set(e, ERR_FORMAT, "%s: tensor 'text.0.weight': %lld columns, expected 1 to 65536",
+			st->path, (long long)first->shape[1]);
 	m->similarity = (enum refer_similarity)similarity;
 	refer_layout_init(&m->layout, (enum refer_interaction)interaction, (int)first->shape[1]);
 	return read_bounds(m, st, e) || read_features(m, st, e) || read_parameters(m, st, e) ? -1 : 0;

@@ -3,8 +3,8 @@
 #include "base/mem.h"
 
 #include <cjson/cJSON.h>
-#include <math.h>
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -475,6 +475,12 @@ static char *make_header(const struct st_tensor *tensors, const size_t *order, s
 	return text;
 }
 
+/* A failed write is found out at once, while errno still says why. */
+static int put(struct file_out *out, const void *data, size_t bytes, struct err *e)
+{
+	return bytes && fwrite(data, 1, bytes, out->stream) != bytes ? err_errno(e, "%s", file_name(out->path)) : 0;
+}
+
 int safetensors_write(const char *path, const struct st_tensor *tensors, size_t n, const struct st_meta *meta,
 	size_t meta_count, struct err *e)
 {
@@ -503,12 +509,13 @@ int safetensors_write(const char *path, const struct st_tensor *tensors, size_t 
 	unsigned char length[8];
 	for (int i = 0; i < 8; i++)
 		length[i] = (unsigned char)((uint64_t)padded >> (8 * i));
-	fwrite(length, 1, 8, out.stream);
-	fwrite(header, 1, used, out.stream);
-	fwrite(spaces, 1, padded - used, out.stream);
-	for (k = 0; k < n; k++)
-		fwrite(tensors[order[k]].data, 1, tensor_bytes(&tensors[order[k]]), out.stream);
+	int bad = put(&out, length, 8, e) || put(&out, header, used, e) || put(&out, spaces, padded - used, e);
+	for (k = 0; k < n && !bad; k++)
+		bad = put(&out, tensors[order[k]].data, tensor_bytes(&tensors[order[k]]), e);
 	free(order);
 	free(header);
-	return file_out_commit(&out, e);
+	if (!bad)
+		return file_out_commit(&out, e);
+	file_out_abort(&out);
+	return -1;
 }
