@@ -7,6 +7,7 @@
 #include "formats/pictures.h"
 #include "formats/scene.h"
 #include "formats/text.h"
+#include "refer/calibrate.h"
 #include "refer/respond.h"
 #include "splat/render.h"
 
@@ -22,7 +23,7 @@ enum {
 static struct {
 	const char *scene, *text, *model, *views, *refs;
 	struct pictures pictures;
-	int split, sentences, size[2];
+	int split, sentences, is_plain, size[2];
 	double scale; /* 0: not given */
 } options = {.split = SPLIT_TEST, .sentences = SPLIT_ALL};
 
@@ -35,6 +36,9 @@ static const struct cli_option table[] = {
 	{"sentences", 0, CLI_CHOICE, &options.sentences, "train|test|all", "which sentences (default all)", 0,
 		0},
 	{"refs", 0, CLI_STRING, &options.refs, "REF,...", "these sentences instead of a split", 0, 0},
+	{"calibration", 0, CLI_CHOICE, &options.is_plain, "peak|none",
+		"peak (default): lift a sentence's responses until its best are clearly above 0; none: as trained",
+		0, 0},
 	{"size", 0, CLI_SIZE, &options.size, "WxH", "size of the masks (default: the view's)", 1, 65536},
 	{"scale", 0, CLI_REAL, &options.scale, "S", "size of the masks as a share of the view's (default 1)",
 		1e-4, 16},
@@ -62,6 +66,7 @@ struct run {
 	size_t *refs; /* indices in text */
 	const struct camera **views;
 	float *responses; /* (ref_count,N) */
+	double *lifts;	  /* (ref_count) */
 	struct file_out out;
 };
 
@@ -118,18 +123,25 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 	if (!r->ref_count)
 		cli_warn(c, "%s: no sentence in this split", file_name(options.text));
 	r->responses = mem_alloc(r->ref_count, r->scene.splats.n * sizeof(float), "responses", e);
-	if (!r->responses)
+	r->lifts = mem_zalloc(r->ref_count, sizeof *r->lifts, "responses", e);
+	if (!r->responses || !r->lifts)
 		return -1;
 	const struct respond_model m = {&r->model.layout, r->model.similarity, r->model.scene_gaussians,
 		r->model.n, r->model.ids, r->model.features, r->model.parameters, r->scene.splats.means,
 		r->model.low, r->model.high};
-	return respond_all(&m, r->text.offsets, r->text.words, r->refs, r->ref_count, r->responses, e);
+	if (respond_all(&m, r->text.offsets, r->text.words, r->refs, r->ref_count, r->responses, e))
+		return -1;
+	if (!options.is_plain)
+		return calibrate(&r->scene.splats, &r->scene.cameras, r->model.ids, r->model.n, r->responses,
+			r->ref_count, r->lifts, e);
+	return 0;
 }
 
 /* One mask: its record and pictures. */
-static int put_mask(struct run *r, const struct camera *c, size_t sentence, const float *image,
-	const uint8_t *rgb, struct err *e)
+static int put_mask(struct run *r, const struct camera *c, size_t ref, const float *image, const uint8_t *rgb,
+	struct err *e)
 {
+	const size_t sentence = r->refs[ref];
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 	uint8_t *mask = mem_alloc(pixels, 1, "mask", e);
 	struct mask_record record = {
@@ -138,7 +150,7 @@ static int put_mask(struct run *r, const struct camera *c, size_t sentence, cons
 
 	if (!mask)
 		return -1;
-	record.score = respond_mask(image, pixels, mask);
+	record.score = respond_mask(image, pixels, r->lifts[ref], mask);
 	int bad = rle_encode(&record.mask, mask, c->height, c->width, e) ||
 		  masks_put(r->out.stream, &record, e) || pictures_put(&options.pictures, &picture, e);
 	rle_free(&record.mask);
@@ -185,7 +197,7 @@ static int render(struct run *r, const struct camera *view, struct err *e)
 		const size_t now = r->ref_count - first < most ? r->ref_count - first : most;
 		bad = render_values(v, r->responses + first * r->scene.splats.n, (int)now, image, NULL, e);
 		for (size_t i = 0; i < now && !bad; i++)
-			bad = put_mask(r, &c, r->refs[first + i], image + i * pixels, rgb, e);
+			bad = put_mask(r, &c, first + i, image + i * pixels, rgb, e);
 	}
 	render_free(v);
 	free(image);
@@ -232,5 +244,6 @@ int main(int argc, char **argv)
 	free(r.refs);
 	free(r.views);
 	free(r.responses);
+	free(r.lifts);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -3,9 +3,9 @@
 set -eu
 dir=$1
 
-# The number at a key of a score file, as a percentage.
+# The number at a key of a score file, as a percentage; the objects' own come after the scene's.
 percent() {
-	sed -n 's/.*"'"$1"'":\([0-9.eE+-]*\).*/\1/p' "$2" | head -n 1 | awk '{ printf "%6.1f", 100 * $1 }'
+	grep -o "\"$1\":[0-9.eE+-]*" "$2" | head -n 1 | awk -F: '{ printf "%6.1f", 100 * $2 }'
 }
 
 # row LABEL FILE

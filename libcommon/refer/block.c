@@ -8,8 +8,9 @@ const struct block_kernels *block_select(const char *name)
 {
 #if defined __x86_64__
 	const int has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-	const int has_avx512 = has_avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-			       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+	const int has_avx512 = has_avx2 && __builtin_cpu_supports("avx512f") &&
+			       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+			       __builtin_cpu_supports("avx512vl");
 
 	if (has_avx512 && (!name || !strcmp(name, "avx512")))
 		return &block_kernels_avx512;
@@ -22,12 +23,13 @@ const struct block_kernels *block_select(const char *name)
 size_t block_scratch_floats(const struct block_model *b)
 {
 	const size_t lanes = BLOCK_LANES, block = BLOCK_SIZE, words = (size_t)b->words, z = (size_t)b->z_size;
-	size_t back = 2 * block * BLOCK_G + 2 * block * REFER_XH + lanes * (2 * words > 2 * BLOCK_G ? 2 * words : 2 * BLOCK_G);
+	size_t back = 2 * block * BLOCK_G + 2 * block * REFER_XH +
+		      lanes * (2 * words > 2 * BLOCK_G ? 2 * words : 2 * BLOCK_G);
 	size_t most = back;
 
 	if (words * block > most)
 		most = words * block;
-	if ((4 * z + 3) * lanes > most)
-		most = (4 * z + 3) * lanes;
+	if (block * (words + z + 1) + z * lanes > most)
+		most = block * (words + z + 1) + z * lanes;
 	return most;
 }

@@ -1,8 +1,6 @@
-/* The kernels of refer/block.h, included by one file for each instruction set, which names itself BLOCK_ISA and selects its
- * target before (see base/vecmath.h). */
-#include "refer/block.h"
-
-#include "base/vecmath.h"
+/* The kernels of refer/block.h, included by one file for each instruction set, which names itself BLOCK_ISA
+ * and selects its target before (see base/vecmath.h). */
+#include "refer/block_product.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,168 +10,6 @@
 #define TEXT(a) #a
 #define NAME_TEXT(a) TEXT(a)
 
-enum {
-	L = BLOCK_LANES,
-	TILE = VEC_LANES == 16 ? 4 : 2, /* vectors held in registers for each row of a product */
-	MAX_ROWS = 4,
-};
-
-VEC_INLINE vecn vec_sqrt(vecn x)
-{
-	for (int i = 0; i < VEC_LANES; i++)
-		x[i] = sqrtf(x[i]);
-	return x;
-}
-
-/* x in the first `count` lanes, `fill` in the others. */
-VEC_INLINE vecn vec_first(vecn x, int count, float fill)
-{
-	static const float lanes[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-
-	return vec_choose(vec_lt(vec_load(lanes), vec_splat((float)count)), x, vec_splat(fill));
-}
-
-/* `rows` rows of out = [base +] W in, over TILE vectors. base: 0 nothing, 1 what out holds, 2 bias. */
-VEC_INLINE void product_tile(const int rows, float *out, const float *w, int stride, int columns, const float *in,
-	const float *bias, const int base, const int relu)
-{
-	vecn sum[MAX_ROWS][TILE];
-
-	for (int r = 0; r < rows; r++)
-		for (int v = 0; v < TILE; v++)
-			sum[r][v] = base == 1 ? vec_load(out + r * L + VEC_LANES * v) : vec_splat(base == 2 ? bias[r] : 0);
-	for (int c = 0; c < columns; c++) {
-		vecn x[TILE];
-		for (int v = 0; v < TILE; v++)
-			x[v] = vec_load(in + c * L + VEC_LANES * v);
-		for (int r = 0; r < rows; r++) {
-			vecn scale = vec_splat(w[r * stride + c]);
-			for (int v = 0; v < TILE; v++)
-				sum[r][v] = vec_fma(scale, x[v], sum[r][v]);
-		}
-	}
-	for (int r = 0; r < rows; r++)
-		for (int v = 0; v < TILE; v++) {
-			if (relu)
-				sum[r][v] = vec_max(sum[r][v], vec_splat(0));
-			vec_store(out + r * L + VEC_LANES * v, sum[r][v]);
-		}
-}
-
-/* out (rows,L) = [base +] w (rows,columns; rows `stride` apart) in (columns,L), for one panel. */
-VEC_INLINE void product(float *out, const float *w, int rows, int columns, int stride, const float *in, const float *bias,
-	const int base, const int relu)
-{
-	for (int v = 0; v < L; v += TILE * VEC_LANES) {
-		int r = 0;
-		for (; r + 4 <= rows; r += 4)
-			product_tile(4, out + r * L + v, w + r * stride, stride, columns, in + v, bias + r, base, relu);
-		if (rows - r == 3)
-			product_tile(3, out + r * L + v, w + r * stride, stride, columns, in + v, bias + r, base, relu);
-		else if (rows - r == 2)
-			product_tile(2, out + r * L + v, w + r * stride, stride, columns, in + v, bias + r, base, relu);
-		else if (rows - r == 1)
-			product_tile(1, out + r * L + v, w + r * stride, stride, columns, in + v, bias + r, base, relu);
-	}
-}
-
-static const float no_bias[BLOCK_WORDS];
-
-static void product_set(float *out, const float *w, int rows, int columns, int stride, const float *in)
-{
-	product(out, w, rows, columns, stride, in, no_bias, 0, 0);
-}
-
-static void product_add(float *out, const float *w, int rows, int columns, int stride, const float *in)
-{
-	product(out, w, rows, columns, stride, in, no_bias, 1, 0);
-}
-
-static void product_relu(float *out, const float *w, int rows, int columns, const float *in, const float *bias)
-{
-	product(out, w, rows, columns, columns, in, bias, 2, 1);
-}
-
-VEC_INLINE float sum_lanes(vecn v)
-{
-	float s[VEC_LANES];
-
-	vec_store(s, v);
-	for (int half = VEC_LANES / 2; half; half /= 2)
-		for (int i = 0; i < half; i++)
-			s[i] += s[i + half];
-	return s[0];
-}
-
-/* (4 x 4) sums of products over the lanes of every panel: out[r][c] += sum a_r b_c. */
-VEC_INLINE void outer_tile(const int rows, const int columns, float *out, int stride, const float *a, int a_panel,
-	const float *b, int b_panel, int panels)
-{
-	vecn sum[MAX_ROWS][4];
-
-	for (int r = 0; r < rows; r++)
-		for (int c = 0; c < columns; c++)
-			sum[r][c] = vec_splat(0);
-	for (int p = 0; p < panels; p++, a += a_panel, b += b_panel)
-		for (int v = 0; v < L; v += VEC_LANES) {
-			vecn y[4];
-			for (int c = 0; c < columns; c++)
-				y[c] = vec_load(b + c * L + v);
-			for (int r = 0; r < rows; r++) {
-				vecn x = vec_load(a + r * L + v);
-				for (int c = 0; c < columns; c++)
-					sum[r][c] = vec_fma(x, y[c], sum[r][c]);
-			}
-		}
-	for (int r = 0; r < rows; r++)
-		for (int c = 0; c < columns; c++)
-			out[r * stride + c] += sum_lanes(sum[r][c]);
-}
-
-VEC_INLINE void outer_rows(const int rows, float *out, int columns, int stride, const float *a, int a_panel, const float *b,
-	int b_panel, int panels)
-{
-	int c = 0;
-
-	for (; c + 4 <= columns; c += 4)
-		outer_tile(rows, 4, out + c, stride, a, a_panel, b + (size_t)c * L, b_panel, panels);
-	for (; c < columns; c++)
-		outer_tile(rows, 1, out + c, stride, a, a_panel, b + (size_t)c * L, b_panel, panels);
-}
-
-/* out (rows,columns; rows `stride` apart) += sum over the lanes of `panels` panels of a (rows) times b (columns);
- * a_channels and b_channels are the channels in a panel of each. */
-static void outer(float *out, int rows, int columns, int stride, const float *a, int a_channels, const float *b,
-	int b_channels, int panels)
-{
-	int r = 0;
-
-	for (; r + 4 <= rows; r += 4)
-		outer_rows(4, out + (size_t)r * (size_t)stride, columns, stride, a + (size_t)r * L, a_channels * L, b, b_channels * L, panels);
-	for (; r < rows; r++)
-		outer_rows(1, out + (size_t)r * (size_t)stride, columns, stride, a + (size_t)r * L, a_channels * L, b, b_channels * L, panels);
-}
-
-/* out (rows) += sums of a's channels over the lanes. */
-static void sum_channels(float *out, int rows, const float *a, int channels, int panels)
-{
-	for (int r = 0; r < rows; r++) {
-		const float *row = a + r * L;
-		vecn sum = vec_splat(0);
-		for (int p = 0; p < panels; p++, row += channels * L)
-			for (int v = 0; v < L; v += VEC_LANES)
-				sum += vec_load(row + v);
-		out[r] += sum_lanes(sum);
-	}
-}
-
-/* Zeroes the gradient where the layer's output was not positive. */
-static void relu_back(float *d, const float *value, int channels)
-{
-	for (int i = 0; i < channels * L; i += VEC_LANES)
-		vec_store(d + i, vec_keep(vec_lt(vec_splat(0), vec_load(value + i)), vec_load(d + i)));
-}
-
 static const float *panel_of(const float *array, int channels, size_t panel)
 {
 	return array + panel * (size_t)channels * L;
@@ -182,6 +18,12 @@ static const float *panel_of(const float *array, int channels, size_t panel)
 static float *panel_at(float *array, int channels, size_t panel)
 {
 	return array + panel * (size_t)channels * L;
+}
+
+/* The panel of BLOCK_G channels to fetch ahead; NULL where there is none. */
+static const float *panel_ahead(const struct block_model *b, const float *array, size_t panel)
+{
+	return array && panel * L < b->gaussians ? panel_of(array, BLOCK_G, panel) : NULL;
 }
 
 /* Lanes of a panel that hold Gaussians. */
@@ -195,7 +37,7 @@ static int panel_lanes(const struct block_model *b, size_t panel)
 /* r_i = nu_i [q_i; 1] in place of [q_i; 1], nu = 1/|p|, |p|^2 = [q;1]^T P [q;1]. */
 static void scale_positions(const struct block_model *b, float *r, float *scratch)
 {
-	product_set(scratch, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r);
+	product_set(scratch, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r, NULL);
 	for (int v = 0; v < L; v += VEC_LANES) {
 		vecn squared = vec_splat(0);
 		for (int c = 0; c < BLOCK_G; c++)
@@ -237,38 +79,45 @@ static void add_word_positions(const struct block_model *b, const float *logits,
 			const float *l = panel_of(logits, n, (size_t)p) + j * L;
 			float *to = panel_at(e, n, (size_t)p) + j * L;
 			for (int v = 0; v < L; v += VEC_LANES)
-				vec_store(to + v, vec_first(vec_exp(vec_load(l + v) - vec_splat(largest)), lanes - v, 0));
+				vec_store(to + v, vec_first(vec_exp(vec_load(l + v) - vec_splat(largest)),
+							  lanes - v, 0));
 		}
 	}
 	sum_channels(sums->l_sum, n, e, n, BLOCK_PANELS);
 	outer(sums->c_sum, n, BLOCK_G, BLOCK_G, e, n, r, BLOCK_G, BLOCK_PANELS);
 }
 
-static void hidden(const struct block_model *b, const struct block_arrays *a, size_t block, struct block_sums *sums,
-	float *scratch)
+static void hidden(const struct block_model *b, const struct block_arrays *a, size_t block,
+	struct block_sums *sums, float *scratch)
 {
 	const size_t first = block * BLOCK_PANELS;
 
 	for (size_t panel = first; panel < first + BLOCK_PANELS; panel++) {
 		float *g = panel_at(a->g, BLOCK_G, panel);
-		product_relu(scratch, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel), b->feature0_bias);
-		product_relu(g, b->feature1, REFER_H, REFER_XH, scratch, b->feature1_bias);
+		product_relu(scratch, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel),
+			b->feature0_bias, NULL);
+		product_relu(g, b->feature1, REFER_H, REFER_XH, scratch, b->feature1_bias,
+			panel_ahead(b, a->g, panel + 1));
 		for (int v = 0; v < L; v += VEC_LANES)
 			vec_store(g + REFER_H * L + v, vec_splat(1));
 		if (b->has_words)
-			product_set(panel_at(a->beta, b->words, panel), b->y, b->words, BLOCK_G, BLOCK_G, g);
+			product_set(panel_at(a->beta, b->words, panel), b->y, b->words, BLOCK_G, BLOCK_G, g,
+				NULL);
 		if (!b->uses_position)
 			continue;
 		float *r = panel_at(a->r, BLOCK_G, panel);
-		product_relu(scratch, b->position0, REFER_PH, 3, panel_of(a->position, 3, panel), b->position0_bias);
-		product_relu(r, b->position1, REFER_H, REFER_PH, scratch, b->position1_bias);
+		product_relu(scratch, b->position0, REFER_PH, 3, panel_of(a->position, 3, panel),
+			b->position0_bias, NULL);
+		product_relu(r, b->position1, REFER_H, REFER_PH, scratch, b->position1_bias,
+			panel_ahead(b, a->r, panel + 1));
 		for (int v = 0; v < L; v += VEC_LANES)
 			vec_store(r + REFER_H * L + v, vec_splat(1));
 		if (b->is_projected)
 			scale_positions(b, r, scratch);
 	}
 	if (b->has_words)
-		add_word_positions(b, panel_of(a->beta, b->words, first), panel_of(a->r, BLOCK_G, first), first, sums, scratch);
+		add_word_positions(b, panel_of(a->beta, b->words, first), panel_of(a->r, BLOCK_G, first),
+			first, sums, scratch);
 }
 
 /* alpha in place of scores for the words [from,to) of one panel. */
@@ -300,66 +149,127 @@ static int z_channels(const struct block_model *b, int s)
 	return z_fixed(b) + (b->has_attention ? b->first[s + 1] - b->first[s] : 0);
 }
 
-/* z of one sentence and panel, copied together. */
-static void make_z(const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *z)
+/* A part of z, where it lies: `count` of the `channels` of a panel, which are z's from `start` on. */
+struct stretch {
+	const float *at;
+	int channels, start, count;
+};
+
+enum { STRETCHES = 3 };
+
+/* z of one sentence and panel. Returns how many stretches it has. */
+static int stretches(const struct block_model *b, const struct block_arrays *a, size_t panel, int s,
+	struct stretch z[STRETCHES])
 {
-	memcpy(z, panel_of(a->g, BLOCK_G, panel), sizeof(float) * BLOCK_G * L);
+	int count = 0;
+
+	z[count++] = (struct stretch){panel_of(a->g, BLOCK_G, panel), BLOCK_G, 0, BLOCK_G};
 	if (b->is_add)
-		memcpy(z + BLOCK_G * L, panel_of(a->r, BLOCK_G, panel), sizeof(float) * BLOCK_G * L);
+		z[count++] = (struct stretch){panel_of(a->r, BLOCK_G, panel), BLOCK_G, BLOCK_G, BLOCK_G};
 	if (b->has_attention)
-		memcpy(z + z_fixed(b) * L, panel_of(a->alpha, b->words, panel) + b->first[s] * L,
-			sizeof(float) * (size_t)(b->first[s + 1] - b->first[s]) * L);
+		z[count++] = (struct stretch){panel_of(a->alpha, b->words, panel) + b->first[s] * L, b->words,
+			z_fixed(b), b->first[s + 1] - b->first[s]};
+	return count;
 }
 
-/* m = k.z without a copy of z. */
-static void plain_response(const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *m)
+/* m = k.z */
+static void plain_response(
+	const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *m)
 {
 	const float *k = b->k + (size_t)s * (size_t)b->z_size;
+	struct stretch z[STRETCHES];
+	const int count = stretches(b, a, panel, s, z);
 
-	product_set(m, k, 1, BLOCK_G, BLOCK_G, panel_of(a->g, BLOCK_G, panel));
-	if (b->is_add)
-		product_add(m, k + BLOCK_G, 1, BLOCK_G, BLOCK_G, panel_of(a->r, BLOCK_G, panel));
-	if (b->has_attention) {
-		int words = b->first[s + 1] - b->first[s];
-		product_add(m, k + z_fixed(b), 1, words, words, panel_of(a->alpha, b->words, panel) + b->first[s] * L);
+	product_set(m, k, 1, z[0].count, z[0].count, z[0].at, NULL);
+	for (int i = 1; i < count; i++)
+		product_add(m, k + z[i].start, 1, z[i].count, z[i].count, z[i].at, NULL);
+}
+
+/* Adds the share of `rows` rows of the triangle H, from row r of z's stretch `own` on, to z^T H z and to k.z.
+ */
+VEC_INLINE void quadratic_tile(const int rows, const float *half, const float *k, int size,
+	const struct stretch *z, int own, int r, int v, vecn squared[TILE], vecn along[TILE])
+{
+	const float *row = half + (size_t)(z[own].start + r) * (size_t)size;
+	vecn sum[ROWS][TILE];
+
+#pragma GCC unroll 6
+	for (int i = 0; i < rows; i++)
+#pragma GCC unroll 4
+		for (int w = 0; w < TILE; w++)
+			sum[i][w] = vec_splat(0);
+	for (int p = 0; p <= own; p++)
+		tile_add(rows, sum, row + z[p].start, size, p < own ? z[p].count : r + rows, z[p].at + v);
+#pragma GCC unroll 6
+	for (int i = 0; i < rows; i++) {
+		const vecn scale = vec_splat(k[z[own].start + r + i]);
+#pragma GCC unroll 4
+		for (int w = 0; w < TILE; w++) {
+			vecn x = vec_load(z[own].at + (r + i) * L + v + VEC_LANES * w);
+			squared[w] = vec_fma(sum[i][w], x, squared[w]);
+			along[w] = vec_fma(scale, x, along[w]);
+		}
 	}
 }
 
 static void normalised_response(
-	const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *m, float *scratch)
+	const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *m)
 {
-	const int size = b->z_size, channels = z_channels(b, s);
-	float *z = scratch, *gz = scratch + size * L;
+	const int size = b->z_size;
+	const float *half = b->half + (size_t)s * (size_t)size * (size_t)size,
+		    *k = b->k + (size_t)s * (size_t)size;
 	float *sigma = panel_at(a->sigma, b->sentences, panel) + s * L;
+	struct stretch z[STRETCHES];
+	const int count = stretches(b, a, panel, s, z);
 
-	make_z(b, a, panel, s, z);
-	product_set(gz, b->gram + (size_t)s * (size_t)size * (size_t)size, channels, channels, size, z);
-	product_set(m, b->k + (size_t)s * (size_t)size, 1, channels, size, z);
-	for (int v = 0; v < L; v += VEC_LANES) {
-		vecn squared = vec_splat(b->eps);
-		for (int c = 0; c < channels; c++)
-			squared += vec_load(gz + c * L + v) * vec_load(z + c * L + v);
-		vecn scale = vec_splat(1) / vec_sqrt(vec_max(squared, vec_splat(b->floor)));
-		vec_store(sigma + v, scale);
-		vec_store(m + v, vec_load(m + v) * scale + vec_splat(b->m0[s]));
+	for (int v = 0; v < L; v += TILE * VEC_LANES) {
+		vecn squared[TILE], along[TILE];
+		for (int w = 0; w < TILE; w++) {
+			squared[w] = vec_splat(b->eps);
+			along[w] = vec_splat(0);
+		}
+		for (int own = 0; own < count; own++) {
+			int r = 0;
+			for (; r + ROWS <= z[own].count; r += ROWS) {
+				if (own == 0 && v == 0) {
+					fetch_part(panel_ahead(b, a->g, panel + 1), r / ROWS,
+						z[own].count / ROWS);
+					fetch_part(panel_ahead(b, a->r, panel + 1), r / ROWS,
+						z[own].count / ROWS);
+				}
+				quadratic_tile(ROWS, half, k, size, z, own, r, v, squared, along);
+			}
+			for (; r + 2 <= z[own].count; r += 2)
+				quadratic_tile(2, half, k, size, z, own, r, v, squared, along);
+			for (; r < z[own].count; r++)
+				quadratic_tile(1, half, k, size, z, own, r, v, squared, along);
+		}
+		for (int w = 0; w < TILE; w++) {
+			vecn scale = vec_splat(1) / vec_sqrt(vec_max(squared[w], vec_splat(b->floor)));
+			vec_store(sigma + v + VEC_LANES * w, scale);
+			vec_store(m + v + VEC_LANES * w, along[w] * scale + vec_splat(b->m0[s]));
+		}
 	}
 }
 
-static void respond(const struct block_model *b, const struct block_arrays *a, size_t block, float *scratch)
+static void respond(const struct block_model *b, const struct block_arrays *a, size_t block)
 {
 	for (size_t panel = block * BLOCK_PANELS; panel < (block + 1) * BLOCK_PANELS; panel++) {
 		float *m = panel_at(a->m, b->sentences, panel);
 		if (b->has_attention) {
 			float *s = panel_at(a->alpha, b->words, panel);
-			product_set(s, b->uh, b->words, BLOCK_G, BLOCK_G, panel_of(a->g, BLOCK_G, panel));
+			product_set(
+				s, b->uh, b->words, BLOCK_G, BLOCK_G, panel_of(a->g, BLOCK_G, panel), NULL);
 			if (b->has_positions)
-				product_add(s, b->uq, b->words, BLOCK_G, BLOCK_G, panel_of(a->r, BLOCK_G, panel));
+				product_add(s, b->uq, b->words, BLOCK_G, BLOCK_G,
+					panel_of(a->r, BLOCK_G, panel), NULL);
 		}
 		for (int s = 0; s < b->sentences; s++) {
 			if (b->has_attention)
-				softmax_words(panel_at(a->alpha, b->words, panel), b->first[s], b->first[s + 1]);
+				softmax_words(
+					panel_at(a->alpha, b->words, panel), b->first[s], b->first[s + 1]);
 			if (b->is_normalised)
-				normalised_response(b, a, panel, s, m + s * L, scratch);
+				normalised_response(b, a, panel, s, m + s * L);
 			else
 				plain_response(b, a, panel, s, m + s * L);
 		}
@@ -374,30 +284,32 @@ static int is_zero(const float *p)
 	return 1;
 }
 
-static void gather(const struct block_model *b, const struct block_arrays *a, size_t block, struct block_sums *sums,
-	float *scratch)
+static void gather(
+	const struct block_model *b, const struct block_arrays *a, size_t block, struct block_sums *sums)
 {
-	float *weight = scratch, *z = scratch + L;
-
 	for (size_t panel = block * BLOCK_PANELS; panel < (block + 1) * BLOCK_PANELS; panel++)
 		for (int s = 0; s < b->sentences; s++) {
 			const float *top = panel_of(a->top, b->sentences, panel) + s * L;
+			float weight[L], *mean = sums->mean + (size_t)s * (size_t)b->z_size;
+			struct stretch z[STRETCHES];
 			if (is_zero(top))
 				continue;
-			memcpy(weight, top, sizeof(float) * L);
+			memcpy(weight, top, sizeof weight);
 			if (b->is_projected) {
 				const float *sigma = panel_of(a->sigma, b->sentences, panel) + s * L;
 				for (int i = 0; i < L; i++)
 					weight[i] *= sigma[i];
 			}
-			make_z(b, a, panel, s, z);
-			outer(sums->mean + (size_t)s * (size_t)b->z_size, 1, z_channels(b, s), b->z_size, weight, 1, z, b->z_size,
-				1);
+			const int count = stretches(b, a, panel, s, z);
+			for (int i = 0; i < count; i++)
+				outer(mean + z[i].start, 1, z[i].count, b->z_size, weight, 1, z[i].at,
+					z[i].channels, 1);
 		}
 }
 
-/* dz = dm k + top dmean for the alphas of a sentence where m = k.z, in `dz`. */
-static void plain_dalpha(const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *dz)
+/* dz = dm k + top dmean for the alphas of a sentence where m = k.z, in `dalpha`. */
+static void plain_dalpha(
+	const struct block_model *b, const struct block_arrays *a, size_t panel, int s, float *dalpha)
 {
 	const float *dm = panel_of(a->dm, b->sentences, panel) + s * L;
 	const float *top = panel_of(a->top, b->sentences, panel) + s * L;
@@ -408,60 +320,112 @@ static void plain_dalpha(const struct block_model *b, const struct block_arrays 
 	for (int v = 0; v < L; v += VEC_LANES) {
 		vecn x = vec_load(dm + v), y = vec_load(top + v);
 		for (int j = 0; j < words; j++)
-			vec_store(dz + j * L + v, x * vec_splat(k[j]) + y * vec_splat(dmean[j]));
+			vec_store(dalpha + j * L + v, x * vec_splat(k[j]) + y * vec_splat(dmean[j]));
 	}
 }
 
-/* The same for a normalised response: all of dz, with dg (and dr) kept for hidden_back, and the sums of k, G and m0.
- * m = (k.z) u + m0 with u = (z^T G z + eps)^(-1/2), and the top set averages t = z u. */
-static void normalised_back(const struct block_model *b, const struct block_arrays *a, size_t panel, int s,
-	struct block_sums *sums, float *scratch)
+/* out = x k + y t + w Gz for `count` channels, added to what it holds unless `is_first`; weighted = d z. */
+static void normalised_channels(const struct stretch *z, const float *k, const float *t, const float *gz,
+	const float *x, const float *y, const float *d, int is_first, float *out, float *weighted)
 {
-	const int size = b->z_size, channels = z_channels(b, s), fixed = z_fixed(b);
+	for (int c = 0; c < z->count; c++) {
+		const vecn scale = vec_splat(k[c]), mean = vec_splat(t[c]);
+#pragma GCC unroll 4
+		for (int v = 0; v < L; v += VEC_LANES) {
+			vecn ds = vec_load(d + v), sum = is_first ? vec_splat(0) : vec_load(out + c * L + v);
+			sum = vec_fma(scale, vec_load(x + v), sum);
+			sum = vec_fma(mean, vec_load(y + v), sum);
+			vec_store(out + c * L + v, vec_fma(ds + ds, vec_load(gz + c * L + v), sum));
+			vec_store(weighted + c * L + v, ds * vec_load(z->at + c * L + v));
+		}
+	}
+}
+
+/* out = k.z */
+static void along_z(const float *k, const struct stretch *z, int count, float *out)
+{
+	vecn sum[L / VEC_LANES];
+
+	for (int v = 0; v < L / VEC_LANES; v++)
+		sum[v] = vec_splat(0);
+	for (int i = 0; i < count; i++)
+		for (int c = 0; c < z[i].count; c++)
+			for (int v = 0; v < L / VEC_LANES; v++)
+				sum[v] = vec_fma(vec_splat(k[z[i].start + c]),
+					vec_load(z[i].at + c * L + VEC_LANES * v), sum[v]);
+	for (int v = 0; v < L / VEC_LANES; v++)
+		vec_store(out + VEC_LANES * v, sum[v]);
+}
+
+/* One panel of a normalised response: dz, of which dg (and dr) are kept for hidden_back, with `weighted` = ds
+ * z and `numerator` = dL/d(k.z) for the sums. m = (k.z) u + m0 with u = (z^T G z + eps)^(-1/2); LayerNorm's
+ * top set averages z u, cosine's z itself. */
+static void normalised_panel(const struct block_model *b, const struct block_arrays *a, size_t panel, int s,
+	float *dalpha, float *weighted, float *numerator, float *gz)
+{
+	const int size = b->z_size, channels = z_channels(b, s), averages_scaled = b->is_projected;
 	const float *dm = panel_of(a->dm, b->sentences, panel) + s * L;
 	const float *top = panel_of(a->top, b->sentences, panel) + s * L;
 	const float *sigma = panel_of(a->sigma, b->sentences, panel) + s * L;
 	const float *k = b->k + (size_t)s * (size_t)size, *dmean = b->dmean + (size_t)s * (size_t)size;
-	float *z = scratch, *gz = z + size * L, *dz = gz + size * L, *dnumerator = dz + size * L, *dsquared = dnumerator + L;
-	float *weighted = dsquared + L;
-	const int averages_scaled = b->is_projected; /* LayerNorm: the top set averages z u; cosine: z itself */
+	const float *gram = b->gram + (size_t)s * (size_t)size * (size_t)size;
+	const vecn largest =
+		vec_splat(1) / vec_sqrt(vec_splat(b->floor)); /* u at the floor, where it is constant */
+	float kz[L], tz[L] = {0}, mean[L], d[L];
+	struct stretch z[STRETCHES];
+	const int count = stretches(b, a, panel, s, z);
 
-	make_z(b, a, panel, s, z);
-	product_set(gz, b->gram + (size_t)s * (size_t)size * (size_t)size, channels, channels, size, z);
+	product_set(gz, gram, channels, z[0].count, size, z[0].at, panel_ahead(b, a->dg, panel));
+	for (int i = 1; i < count; i++)
+		product_add(gz, gram + z[i].start, channels, z[i].count, size, z[i].at,
+			panel_ahead(b, a->g, panel + 1));
+	along_z(k, z, count, kz);
+	if (averages_scaled)
+		along_z(dmean, z, count, tz);
 	for (int v = 0; v < L; v += VEC_LANES) {
-		vecn kz = vec_splat(0), tz = vec_splat(0), squared = vec_splat(b->eps);
-		for (int c = 0; c < channels; c++) {
-			vecn x = vec_load(z + c * L + v);
-			kz += vec_splat(k[c]) * x;
-			tz += vec_splat(dmean[c]) * x;
-			squared += vec_load(gz + c * L + v) * x;
-		}
-		vecn u = vec_load(sigma + v), d = vec_load(dm + v), t = averages_scaled ? vec_load(top + v) : vec_splat(0);
-		vecn du = d * kz + t * tz;
-		vecn inside = vec_keep(vec_lt(vec_splat(b->floor), squared), vec_splat(1));
-		vecn ds = vec_splat(-0.5f) * du * u * u * u * inside;
-		vecn mean_scale = averages_scaled ? vec_load(top + v) * u : vec_load(top + v);
-		vec_store(dnumerator + v, d * u);
-		vec_store(dsquared + v, ds);
-		for (int c = 0; c < channels; c++) {
-			vecn g = vec_splat(k[c]) * d * u + vec_splat(dmean[c]) * mean_scale;
-			vec_store(dz + c * L + v, g + vec_splat(2) * ds * vec_load(gz + c * L + v));
-			vec_store(weighted + c * L + v, ds * vec_load(z + c * L + v));
-		}
+		vecn u = vec_load(sigma + v), t = vec_load(top + v), from = vec_load(dm + v);
+		vecn du = from * vec_load(kz + v) + t * vec_load(tz + v);
+		du = vec_keep(vec_lt(u, largest), du);
+		vec_store(d + v, vec_splat(-0.5f) * du * u * u * u);
+		vec_store(mean + v, averages_scaled ? t * u : t);
+		vec_store(numerator + v, from * u);
 	}
-	float *dg = panel_at(a->dg, BLOCK_G, panel);
-	for (int i = 0; i < BLOCK_G * L; i += VEC_LANES)
-		vec_store(dg + i, (s ? vec_load(dg + i) : vec_splat(0)) + vec_load(dz + i));
-	if (b->is_add) {
-		float *dr = panel_at(a->dr, BLOCK_G, panel);
-		for (int i = 0; i < BLOCK_G * L; i += VEC_LANES)
-			vec_store(dr + i, (s ? vec_load(dr + i) : vec_splat(0)) + vec_load(dz + BLOCK_G * L + i));
+	for (int i = 0; i < count; i++) {
+		const int at = z[i].start, is_alpha = b->has_attention && i == count - 1;
+		float *out = is_alpha ? dalpha : panel_at(i ? a->dr : a->dg, BLOCK_G, panel);
+		normalised_channels(z + i, k + at, dmean + at, gz + at * L, numerator, mean, d,
+			is_alpha || !s, out, weighted + at * L);
 	}
-	outer(sums->dk + (size_t)s * (size_t)size, 1, channels, size, dnumerator, 1, z, size, 1);
-	outer(sums->dgram + (size_t)s * (size_t)size * (size_t)size, channels, channels, size, weighted, size, z, size, 1);
-	sum_channels(sums->dm0 + s, 1, dm, b->sentences, 1);
-	if (fixed < channels)
-		memmove(scratch, dz + fixed * L, sizeof(float) * (size_t)(channels - fixed) * L);
+}
+
+/* A block of normalised responses, with the sums of G, k (as the row below G) and m0. */
+static void normalised_back(const struct block_model *b, const struct block_arrays *a, size_t first, int s,
+	struct block_sums *sums, float *dalpha, float *scratch)
+{
+	const int size = b->z_size, channels = z_channels(b, s), words = channels - z_fixed(b),
+		  rows = size + 1;
+	float *dgram = sums->dgram + (size_t)s * (size_t)rows * (size_t)size;
+	float *weighted = scratch, *gz = weighted + BLOCK_PANELS * rows * L;
+	struct stretch z[STRETCHES];
+	const int count = stretches(b, a, first, s, z);
+
+	for (int p = 0; p < BLOCK_PANELS; p++) {
+		float *own = panel_at(weighted, rows, (size_t)p);
+		normalised_panel(b, a, first + (size_t)p, s, panel_at(dalpha, words, (size_t)p), own,
+			own + channels * L, gz);
+	}
+	for (int i = 0; i < count; i++) {
+		const int height = z[i].count + (i == count - 1);
+		float *out = dgram + (size_t)z[i].start * (size_t)size;
+		const float *left = weighted + z[i].start * L;
+		for (int j = 0; j < i; j++)
+			outer(out + z[j].start, height, z[j].count, size, left, rows, z[j].at, z[j].channels,
+				BLOCK_PANELS);
+		outer_lower(out + z[i].start, height, z[i].count, size, left, rows, z[i].at, z[i].channels,
+			BLOCK_PANELS);
+	}
+	sum_channels(
+		sums->dm0 + s, 1, panel_of(a->dm, b->sentences, first) + s * L, b->sentences, BLOCK_PANELS);
 }
 
 /* Through the softmax over words: ds = alpha (dalpha - alpha.dalpha), in place of alpha. */
@@ -472,47 +436,49 @@ static void softmax_back(float *alpha, const float *dalpha, int words)
 		for (int j = 0; j < words; j++)
 			dot += vec_load(alpha + j * L + v) * vec_load(dalpha + j * L + v);
 		for (int j = 0; j < words; j++)
-			vec_store(alpha + j * L + v, vec_load(alpha + j * L + v) * (vec_load(dalpha + j * L + v) - dot));
+			vec_store(alpha + j * L + v,
+				vec_load(alpha + j * L + v) * (vec_load(dalpha + j * L + v) - dot));
 	}
 }
 
-static void scores_back(const struct block_model *b, const struct block_arrays *a, size_t block, struct block_sums *sums,
-	float *scratch)
+static void scores_back(const struct block_model *b, const struct block_arrays *a, size_t block,
+	struct block_sums *sums, float *scratch)
 {
 	const size_t first = block * BLOCK_PANELS;
-	const int n = b->words, fixed = z_fixed(b);
+	const int n = b->words;
 
-	if (!b->is_normalised)
-		for (int s = 0; s < b->sentences; s++) {
-			const float *dm = panel_of(a->dm, b->sentences, first) + s * L;
-			float *dk = sums->dk + (size_t)s * (size_t)b->z_size;
-			outer(dk, 1, BLOCK_G, b->z_size, dm, b->sentences, panel_of(a->g, BLOCK_G, first), BLOCK_G, BLOCK_PANELS);
-			if (b->is_add)
-				outer(dk + BLOCK_G, 1, BLOCK_G, b->z_size, dm, b->sentences, panel_of(a->r, BLOCK_G, first), BLOCK_G,
-					BLOCK_PANELS);
-			if (b->has_attention)
-				outer(dk + fixed, 1, b->first[s + 1] - b->first[s], b->z_size, dm, b->sentences,
-					panel_of(a->alpha, n, first) + b->first[s] * L, n, BLOCK_PANELS);
+	for (int s = 0; s < b->sentences; s++) {
+		const int words = z_channels(b, s) - z_fixed(b);
+		float *dalpha = scratch, *rest = dalpha + BLOCK_SIZE * words;
+		if (b->is_normalised) {
+			normalised_back(b, a, first, s, sums, dalpha, rest);
+		} else {
+			struct stretch z[STRETCHES];
+			const int count = stretches(b, a, first, s, z);
+			for (int i = 0; i < count; i++)
+				outer(sums->dk + (size_t)s * (size_t)b->z_size + z[i].start, 1, z[i].count,
+					b->z_size, panel_of(a->dm, b->sentences, first) + s * L, b->sentences,
+					z[i].at, z[i].channels, BLOCK_PANELS);
 		}
-	for (size_t panel = first; panel < first + BLOCK_PANELS; panel++)
-		for (int s = 0; s < b->sentences; s++) {
-			if (b->is_normalised)
-				normalised_back(b, a, panel, s, sums, scratch);
-			else if (b->has_attention)
-				plain_dalpha(b, a, panel, s, scratch);
-			if (b->has_attention)
-				softmax_back(panel_at(a->alpha, n, panel) + b->first[s] * L, scratch, b->first[s + 1] - b->first[s]);
+		for (size_t p = 0; p < BLOCK_PANELS && b->has_attention; p++) {
+			if (!b->is_normalised)
+				plain_dalpha(b, a, first + p, s, panel_at(dalpha, words, p));
+			softmax_back(panel_at(a->alpha, n, first + p) + b->first[s] * L,
+				panel_at(dalpha, words, p), words);
 		}
+	}
 	if (!b->has_attention)
 		return;
 	const float *ds = panel_of(a->alpha, n, first);
 	outer(sums->duh, n, BLOCK_G, BLOCK_G, ds, n, panel_of(a->g, BLOCK_G, first), BLOCK_G, BLOCK_PANELS);
 	if (b->has_positions)
-		outer(sums->duq, n, BLOCK_G, BLOCK_G, ds, n, panel_of(a->r, BLOCK_G, first), BLOCK_G, BLOCK_PANELS);
+		outer(sums->duq, n, BLOCK_G, BLOCK_G, ds, n, panel_of(a->r, BLOCK_G, first), BLOCK_G,
+			BLOCK_PANELS);
 }
 
 /* Where m = k.z: d(g or r) = sum_s dm_s k_s + top_s dmean_s, for the 65 channels from `at` in z. */
-static void plain_dz(const struct block_model *b, const struct block_arrays *a, size_t panel, int at, float *d)
+static void plain_dz(
+	const struct block_model *b, const struct block_arrays *a, size_t panel, int at, float *d)
 {
 	for (int s = 0; s < b->sentences; s++) {
 		const float *dm = panel_of(a->dm, b->sentences, panel) + s * L;
@@ -530,30 +496,32 @@ static void plain_dz(const struct block_model *b, const struct block_arrays *a, 
 }
 
 /* beta_ji (r_i.dc_j - cbar_j.dc_j) in place of the logits, and dr += sum_j beta_ji dc_j. */
-static void word_positions_back(const struct block_model *b, size_t panel, float *logits, const float *r, float *dr,
-	float *scratch)
+static void word_positions_back(
+	const struct block_model *b, size_t panel, float *logits, const float *r, float *dr, float *scratch)
 {
 	const int n = b->words, lanes = panel_lanes(b, panel);
 	float *beta = scratch, *along = scratch + n * L;
 
-	product_set(along, b->dc, n, BLOCK_G, BLOCK_G, r);
+	product_set(along, b->dc, n, BLOCK_G, BLOCK_G, r, NULL);
 	for (int j = 0; j < n; j++)
 		for (int v = 0; v < L; v += VEC_LANES) {
-			vecn e = vec_exp(vec_load(logits + j * L + v) - vec_splat(b->l_max[j])) * vec_splat(b->l_scale[j]);
+			vecn e = vec_exp(vec_load(logits + j * L + v) - vec_splat(b->l_max[j])) *
+				 vec_splat(b->l_scale[j]);
 			e = vec_first(e, lanes - v, 0);
 			vec_store(beta + j * L + v, e);
-			vec_store(logits + j * L + v, e * (vec_load(along + j * L + v) - vec_splat(b->dc_dot[j])));
+			vec_store(logits + j * L + v,
+				e * (vec_load(along + j * L + v) - vec_splat(b->dc_dot[j])));
 		}
-	product_add(dr, b->dc_t, BLOCK_G, n, n, beta);
+	product_add(dr, b->dc_t, BLOCK_G, n, n, beta, NULL);
 }
 
 /* From r = nu [q;1] to q: d in place of dr's first 64 channels; and the gradient of P. */
-static void scale_positions_back(const struct block_model *b, const float *r, float *dr, struct block_sums *sums,
-	float *scratch)
+static void scale_positions_back(
+	const struct block_model *b, const float *r, float *dr, struct block_sums *sums, float *scratch)
 {
 	float *pr = scratch, *weighted = scratch + BLOCK_G * L;
 
-	product_set(pr, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r);
+	product_set(pr, b->p_gram, BLOCK_G, BLOCK_G, BLOCK_G, r, NULL);
 	for (int v = 0; v < L; v += VEC_LANES) {
 		vecn nu = vec_load(r + REFER_H * L + v), dot = vec_splat(0);
 		for (int c = 0; c < BLOCK_G; c++)
@@ -561,29 +529,33 @@ static void scale_positions_back(const struct block_model *b, const float *r, fl
 		/* dnu = dot/nu; d|p|^2 = -nu^3 dnu / 2 */
 		for (int c = 0; c < BLOCK_G; c++) {
 			vec_store(weighted + c * L + v, vec_splat(-0.5f) * dot * vec_load(r + c * L + v));
-			vec_store(dr + c * L + v, nu * (vec_load(dr + c * L + v) - dot * vec_load(pr + c * L + v)));
+			vec_store(dr + c * L + v,
+				nu * (vec_load(dr + c * L + v) - dot * vec_load(pr + c * L + v)));
 		}
 	}
 	outer(sums->dp_gram, BLOCK_G, BLOCK_G, BLOCK_G, weighted, BLOCK_G, r, BLOCK_G, 1);
 }
 
-static void hidden_back(const struct block_model *b, const struct block_arrays *a, size_t block, struct block_sums *sums,
-	float *scratch)
+static void hidden_back(const struct block_model *b, const struct block_arrays *a, size_t block,
+	struct block_sums *sums, float *scratch)
 {
 	const size_t first = block * BLOCK_PANELS;
 	const int n = b->words;
-	float *dg = scratch, *dr = dg + BLOCK_PANELS * BLOCK_G * L, *hidden0 = dr + BLOCK_PANELS * BLOCK_G * L;
-	float *dhidden0 = hidden0 + BLOCK_PANELS * REFER_XH * L, *rest = dhidden0 + BLOCK_PANELS * REFER_XH * L;
+	float *dg = scratch, *dr = dg + BLOCK_PANELS * BLOCK_G * L,
+	      *hidden0 = dr + BLOCK_PANELS * BLOCK_G * L;
+	float *dhidden0 = hidden0 + BLOCK_PANELS * REFER_XH * L,
+	      *rest = dhidden0 + BLOCK_PANELS * REFER_XH * L;
 
 	for (int p = 0; p < BLOCK_PANELS; p++) {
 		size_t panel = first + (size_t)p;
 		float *d = panel_at(dg, BLOCK_G, (size_t)p), *e = panel_at(dr, BLOCK_G, (size_t)p);
-		if (b->is_normalised)
-			memcpy(d, panel_of(a->dg, BLOCK_G, panel), sizeof(float) * BLOCK_G * L);
-		else
+		const float *from = b->is_normalised ? panel_of(a->dg, BLOCK_G, panel) : d;
+		if (!b->is_normalised)
 			plain_dz(b, a, panel, 0, d);
-		if (b->has_attention)
-			product_add(d, b->uh_t, BLOCK_G, n, n, panel_of(a->alpha, n, panel));
+		/* without attention a product with no columns: a copy */
+		product_from(d, from, b->uh_t, BLOCK_G, n, n,
+			b->has_attention ? panel_of(a->alpha, n, panel) : d,
+			panel_ahead(b, a->dg, panel + 1));
 		if (b->uses_position) {
 			if (!b->is_add)
 				memset(e, 0, sizeof(float) * BLOCK_G * L);
@@ -592,27 +564,31 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 			else
 				plain_dz(b, a, panel, BLOCK_G, e);
 			if (b->has_positions)
-				product_add(e, b->uq_t, BLOCK_G, n, n, panel_of(a->alpha, n, panel));
+				product_add(e, b->uq_t, BLOCK_G, n, n, panel_of(a->alpha, n, panel),
+					panel_ahead(b, a->g, panel + 1));
 		}
 		if (b->has_words) {
 			float *logits = panel_at(a->beta, n, panel);
 			word_positions_back(b, panel, logits, panel_of(a->r, BLOCK_G, panel), e, rest);
-			product_add(d, b->y_t, BLOCK_G, n, n, logits);
+			product_add(d, b->y_t, BLOCK_G, n, n, logits, panel_ahead(b, a->r, panel + 1));
 		}
 		relu_back(d, panel_of(a->g, BLOCK_G, panel), REFER_H);
-		float *h0 = panel_at(hidden0, REFER_XH, (size_t)p), *d0 = panel_at(dhidden0, REFER_XH, (size_t)p);
-		product_relu(h0, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel), b->feature0_bias);
-		product_set(d0, b->feature1_t, REFER_XH, REFER_H, REFER_H, d);
+		float *h0 = panel_at(hidden0, REFER_XH, (size_t)p),
+		      *d0 = panel_at(dhidden0, REFER_XH, (size_t)p);
+		product_relu(h0, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel),
+			b->feature0_bias, NULL);
+		product_set(d0, b->feature1_t, REFER_XH, REFER_H, REFER_H, d, NULL);
 		relu_back(d0, h0, REFER_XH);
-		product_set(panel_at(a->dx, REFER_X, panel), b->feature0_t, REFER_X, REFER_XH, REFER_XH, d0);
+		product_set(panel_at(a->dx, REFER_X, panel), b->feature0_t, REFER_X, REFER_XH, REFER_XH, d0,
+			NULL);
 	}
 	if (b->has_words)
-		outer(sums->dy, n, BLOCK_G, BLOCK_G, panel_of(a->beta, n, first), n, panel_of(a->g, BLOCK_G, first), BLOCK_G,
-			BLOCK_PANELS);
+		outer(sums->dy, n, BLOCK_G, BLOCK_G, panel_of(a->beta, n, first), n,
+			panel_of(a->g, BLOCK_G, first), BLOCK_G, BLOCK_PANELS);
 	outer(sums->dfeature1, REFER_H, REFER_XH, REFER_XH, dg, BLOCK_G, hidden0, REFER_XH, BLOCK_PANELS);
 	sum_channels(sums->dfeature1_bias, REFER_H, dg, BLOCK_G, BLOCK_PANELS);
-	outer(sums->dfeature0, REFER_XH, REFER_X, REFER_X, dhidden0, REFER_XH, panel_of(a->x, REFER_X, first), REFER_X,
-		BLOCK_PANELS);
+	outer(sums->dfeature0, REFER_XH, REFER_X, REFER_X, dhidden0, REFER_XH, panel_of(a->x, REFER_X, first),
+		REFER_X, BLOCK_PANELS);
 	sum_channels(sums->dfeature0_bias, REFER_XH, dhidden0, REFER_XH, BLOCK_PANELS);
 	if (!b->uses_position)
 		return;
@@ -623,14 +599,17 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 		if (b->is_projected)
 			scale_positions_back(b, r, e, sums, rest);
 		relu_back(e, r, REFER_H);
-		float *h0 = panel_at(hidden0, REFER_PH, (size_t)p), *d0 = panel_at(dhidden0, REFER_PH, (size_t)p);
-		product_relu(h0, b->position0, REFER_PH, 3, panel_of(a->position, 3, panel), b->position0_bias);
-		product_set(d0, b->position1_t, REFER_PH, REFER_H, REFER_H, e);
+		float *h0 = panel_at(hidden0, REFER_PH, (size_t)p),
+		      *d0 = panel_at(dhidden0, REFER_PH, (size_t)p);
+		product_relu(h0, b->position0, REFER_PH, 3, panel_of(a->position, 3, panel),
+			b->position0_bias, NULL);
+		product_set(d0, b->position1_t, REFER_PH, REFER_H, REFER_H, e, NULL);
 		relu_back(d0, h0, REFER_PH);
 	}
 	outer(sums->dposition1, REFER_H, REFER_PH, REFER_PH, dr, BLOCK_G, hidden0, REFER_PH, BLOCK_PANELS);
 	sum_channels(sums->dposition1_bias, REFER_H, dr, BLOCK_G, BLOCK_PANELS);
-	outer(sums->dposition0, REFER_PH, 3, 3, dhidden0, REFER_PH, panel_of(a->position, 3, first), 3, BLOCK_PANELS);
+	outer(sums->dposition0, REFER_PH, 3, 3, dhidden0, REFER_PH, panel_of(a->position, 3, first), 3,
+		BLOCK_PANELS);
 	sum_channels(sums->dposition0_bias, REFER_PH, dhidden0, REFER_PH, BLOCK_PANELS);
 }
 

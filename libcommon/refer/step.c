@@ -14,8 +14,25 @@ enum { L = BLOCK_LANES, G = BLOCK_G, CHUNKS = 32 };
 
 /* The parts of a chunk's sums, in the order of struct block_sums. */
 enum part {
-	L_MAX, L_SUM, C_SUM, DUH, DUQ, DY, DK, DGRAM, DM0, MEAN, DP_GRAM,
-	DFEATURE0, DFEATURE0_BIAS, DFEATURE1, DFEATURE1_BIAS, DPOSITION0, DPOSITION0_BIAS, DPOSITION1, DPOSITION1_BIAS,
+	L_MAX,
+	L_SUM,
+	C_SUM,
+	DUH,
+	DUQ,
+	DY,
+	DK,
+	DGRAM,
+	DM0,
+	MEAN,
+	DP_GRAM,
+	DFEATURE0,
+	DFEATURE0_BIAS,
+	DFEATURE1,
+	DFEATURE1_BIAS,
+	DPOSITION0,
+	DPOSITION0_BIAS,
+	DPOSITION1,
+	DPOSITION1_BIAS,
 	PARTS
 };
 
@@ -30,21 +47,35 @@ struct step {
 	int *first;    /* (batch+1) */
 	float *slab;   /* all per-Gaussian arrays but x and dx */
 	float *position;
-	float *image, *dimage;	 /* (P) */
+	float *image, *dimage;			 /* (P) */
 	float *response, *dresponse;		 /* (padded) one sentence's channel */
 	float *scene_response, *scene_dresponse; /* (scene_gaussians) */
 	float *view_scratch;			 /* (VIEW_SLABS,scene_gaussians) */
-	float *vectors, *dvectors; /* (n,128) */
-	double *fg, *dfg, *score;  /* (S,128), (S,128), (R) */
+	float *vectors, *dvectors;		 /* (n,128) */
+	double *fg, *dfg, *score;		 /* (S,128), (S,128), (R) */
 	struct block_sums sums[CHUNKS];
-	size_t at[PARTS + 1];	 /* where each part lies in a chunk's slab, for the current step */
-	float *chunks;		 /* (CHUNKS, chunk_size) */
+	size_t at[PARTS + 1]; /* where each part lies in a chunk's slab, for the current step */
+	float *chunks;	      /* (CHUNKS, chunk_size) */
 	size_t chunk_size;
-	double *total;		 /* (chunk_size) the chunks' sums, added in order */
-	float *scratch;		 /* (threads, scratch_size) */
+	double *total;	/* (chunk_size) the chunks' sums, added in order */
+	float *scratch; /* (threads, scratch_size) */
 	size_t scratch_size;
 	int threads;
+	void (*ended)(void *data, enum step_phase phase);
+	void *ended_data;
 };
+
+void step_watch(struct step *s, void (*ended)(void *data, enum step_phase phase), void *data)
+{
+	s->ended = ended;
+	s->ended_data = data;
+}
+
+static void phase_ended(const struct step *s, enum step_phase phase)
+{
+	if (s->ended)
+		s->ended(s->ended_data, phase);
+}
 
 size_t step_padded(size_t gaussians)
 {
@@ -79,9 +110,9 @@ void step_unpack(const float *panels, size_t gaussians, float *x)
 /* Lengths of a chunk's parts for n words, S sentences and z channels. */
 static void lay_out(size_t at[PARTS + 1], size_t n, size_t sentences, size_t z, int is_normalised)
 {
-	const size_t length[PARTS] = {
-		n, n, n * G, n * G, n * G, n * G, sentences * z, is_normalised ? sentences * z * z : 0, sentences, sentences * z,
-		(size_t)G * G, REFER_XH * REFER_X, REFER_XH, REFER_H * REFER_XH, REFER_H, REFER_PH * 3, REFER_PH,
+	const size_t length[PARTS] = {n, n, n * G, n * G, n * G, n * G, sentences * z,
+		is_normalised ? sentences * (z + 1) * z : 0, sentences, sentences * z, (size_t)G * G,
+		REFER_XH * REFER_X, REFER_XH, REFER_H * REFER_XH, REFER_H, REFER_PH * 3, REFER_PH,
 		REFER_H * REFER_PH, REFER_H};
 
 	at[0] = 0;
@@ -91,13 +122,16 @@ static void lay_out(size_t at[PARTS + 1], size_t n, size_t sentences, size_t z, 
 
 static void set_chunks(struct step *s)
 {
-	lay_out(s->at, (size_t)s->model.words, (size_t)s->model.sentences, (size_t)s->model.z_size, s->model.is_normalised);
+	lay_out(s->at, (size_t)s->model.words, (size_t)s->model.sentences, (size_t)s->model.z_size,
+		s->model.is_normalised);
 	for (int c = 0; c < CHUNKS; c++) {
 		float *base = s->chunks + (size_t)c * s->chunk_size;
-		float **parts[PARTS] = {&s->sums[c].l_max, &s->sums[c].l_sum, &s->sums[c].c_sum, &s->sums[c].duh, &s->sums[c].duq,
-			&s->sums[c].dy, &s->sums[c].dk, &s->sums[c].dgram, &s->sums[c].dm0, &s->sums[c].mean, &s->sums[c].dp_gram,
-			&s->sums[c].dfeature0, &s->sums[c].dfeature0_bias, &s->sums[c].dfeature1, &s->sums[c].dfeature1_bias,
-			&s->sums[c].dposition0, &s->sums[c].dposition0_bias, &s->sums[c].dposition1, &s->sums[c].dposition1_bias};
+		float **parts[PARTS] = {&s->sums[c].l_max, &s->sums[c].l_sum, &s->sums[c].c_sum,
+			&s->sums[c].duh, &s->sums[c].duq, &s->sums[c].dy, &s->sums[c].dk, &s->sums[c].dgram,
+			&s->sums[c].dm0, &s->sums[c].mean, &s->sums[c].dp_gram, &s->sums[c].dfeature0,
+			&s->sums[c].dfeature0_bias, &s->sums[c].dfeature1, &s->sums[c].dfeature1_bias,
+			&s->sums[c].dposition0, &s->sums[c].dposition0_bias, &s->sums[c].dposition1,
+			&s->sums[c].dposition1_bias};
 		for (int p = 0; p < PARTS; p++)
 			*parts[p] = base + s->at[p];
 	}
@@ -106,7 +140,8 @@ static void set_chunks(struct step *s)
 static void clear_parts(struct step *s, enum part from, enum part to)
 {
 	for (int c = 0; c < CHUNKS; c++)
-		memset(s->chunks + (size_t)c * s->chunk_size + s->at[from], 0, sizeof(float) * (s->at[to + 1] - s->at[from]));
+		memset(s->chunks + (size_t)c * s->chunk_size + s->at[from], 0,
+			sizeof(float) * (s->at[to + 1] - s->at[from]));
 }
 
 /* total = the chunks' parts, added in order. */
@@ -120,35 +155,35 @@ static void add_chunks(struct step *s, enum part from, enum part to)
 			s->total[i] += (double)s->chunks[(size_t)c * s->chunk_size + i];
 }
 
-enum phase { HIDDEN, RESPOND, GATHER, SCORES_BACK, HIDDEN_BACK };
-
 /* Runs a phase over all blocks, each chunk's in order. */
-static void run_phase(struct step *s, enum phase phase)
+static void run_phase(struct step *s, enum step_phase phase)
 {
 	const struct block_kernels *k = s->setup.kernels;
 
+	phase_ended(s, STEP_FOLD);
 #pragma omp parallel for schedule(dynamic) num_threads(s->threads)
 	for (int c = 0; c < CHUNKS; c++) {
 		float *scratch = s->scratch + (size_t)omp_get_thread_num() * s->scratch_size;
 		for (size_t b = s->blocks * (size_t)c / CHUNKS; b < s->blocks * (size_t)(c + 1) / CHUNKS; b++)
 			switch (phase) {
-			case HIDDEN:
+			case STEP_HIDDEN:
 				k->hidden(&s->model, &s->arrays, b, &s->sums[c], scratch);
 				break;
-			case RESPOND:
-				k->respond(&s->model, &s->arrays, b, scratch);
+			case STEP_RESPOND:
+				k->respond(&s->model, &s->arrays, b);
 				break;
-			case GATHER:
-				k->gather(&s->model, &s->arrays, b, &s->sums[c], scratch);
+			case STEP_GATHER:
+				k->gather(&s->model, &s->arrays, b, &s->sums[c]);
 				break;
-			case SCORES_BACK:
+			case STEP_SCORES_BACK:
 				k->scores_back(&s->model, &s->arrays, b, &s->sums[c], scratch);
 				break;
-			case HIDDEN_BACK:
+			default:
 				k->hidden_back(&s->model, &s->arrays, b, &s->sums[c], scratch);
 				break;
 			}
 	}
+	phase_ended(s, phase);
 }
 
 static int check_sentences(const struct step_setup *u, int *longest, struct err *e)
@@ -159,7 +194,8 @@ static int check_sentences(const struct step_setup *u, int *longest, struct err 
 		if (n < 1)
 			return err_set(e, ERR_FORMAT, "sentence %zu has no words", r);
 		if (n > BLOCK_WORDS)
-			return err_set(e, ERR_FORMAT, "sentence %zu has %lld words, more than %d", r, (long long)n, BLOCK_WORDS);
+			return err_set(e, ERR_FORMAT, "sentence %zu has %lld words, more than %d", r,
+				(long long)n, BLOCK_WORDS);
 		if (n > *longest)
 			*longest = (int)n;
 	}
@@ -173,10 +209,11 @@ static int alloc_arrays(struct step *s, struct err *e)
 	const int normalised = u->similarity == REFER_COSINE || i == REFER_PCMI_PROJ;
 	const size_t n = (size_t)s->max_words, batch = (size_t)u->batch;
 	const int attention = i != REFER_NONE && i != REFER_ADD;
-	const size_t channels[10] = {G, refer_uses_position(i) ? G : 0, i >= REFER_PCMI ? n : 0, attention ? n : 0, batch, batch, batch,
-		batch, normalised ? G : 0, normalised && i == REFER_ADD ? G : 0};
-	float **arrays[10] = {&s->arrays.g, &s->arrays.r, &s->arrays.beta, &s->arrays.alpha, &s->arrays.m, &s->arrays.sigma,
-		&s->arrays.dm, &s->arrays.top, &s->arrays.dg, &s->arrays.dr};
+	const size_t channels[10] = {G, refer_uses_position(i) ? G : 0, i >= REFER_PCMI ? n : 0,
+		attention ? n : 0, batch, batch, batch, batch, normalised ? G : 0,
+		normalised && i == REFER_ADD ? G : 0};
+	float **arrays[10] = {&s->arrays.g, &s->arrays.r, &s->arrays.beta, &s->arrays.alpha, &s->arrays.m,
+		&s->arrays.sigma, &s->arrays.dm, &s->arrays.top, &s->arrays.dg, &s->arrays.dr};
 	size_t all = 0, floats;
 
 	for (int k = 0; k < 10; k++)
@@ -276,7 +313,8 @@ void step_free(struct step *s)
 /* The softmax over Gaussians from the chunks' running sums: cbar, l_max and l_sum in place of the totals. */
 static void join_word_positions(struct step *s)
 {
-	double *top = s->total + s->at[L_MAX], *sum = s->total + s->at[L_SUM], *mean = s->total + s->at[C_SUM];
+	double *top = s->total + s->at[L_MAX], *sum = s->total + s->at[L_SUM],
+	       *mean = s->total + s->at[C_SUM];
 
 	for (int j = 0; j < s->model.words; j++) {
 		double *row = mean + j * G;
@@ -297,15 +335,16 @@ static void join_word_positions(struct step *s)
 }
 
 /* From words to responses, in arrays.m. */
-static void forward(struct step *s, const float *parameters, const float *x, const size_t *sentences, int count)
+static void forward(
+	struct step *s, const float *parameters, const float *x, const size_t *sentences, int count)
 {
 	struct block_model *b = &s->model;
 
 	s->first[0] = 0;
 	for (int i = 0; i < count; i++) {
 		words_vectors(&s->words, parameters, sentences[i], s->vectors + s->first[i] * REFER_D);
-		s->first[i + 1] =
-			s->first[i] + (int)(s->setup.offsets[sentences[i] + 1] - s->setup.offsets[sentences[i]]);
+		s->first[i + 1] = s->first[i] +
+				  (int)(s->setup.offsets[sentences[i] + 1] - s->setup.offsets[sentences[i]]);
 	}
 	fold_begin(s->fold, parameters, s->setup.gaussians, s->first, count, b);
 	fold_words(s->fold, s->vectors, b);
@@ -315,11 +354,11 @@ static void forward(struct step *s, const float *parameters, const float *x, con
 	for (int c = 0; c < CHUNKS; c++)
 		for (int j = 0; j < b->words; j++)
 			s->sums[c].l_max[j] = -INFINITY;
-	run_phase(s, HIDDEN);
+	run_phase(s, STEP_HIDDEN);
 	if (b->has_words)
 		join_word_positions(s);
 	fold_scores(s->fold, s->total + s->at[C_SUM], s->total + s->at[L_MAX], s->total + s->at[L_SUM], b);
-	run_phase(s, RESPOND);
+	run_phase(s, STEP_RESPOND);
 }
 
 /* One sentence's channel of a panel array, to or from (padded) floats. */
@@ -350,7 +389,8 @@ static void from_scene(const struct step *s, const float *scene, float *m)
 }
 
 /* Images, their loss, and dm. */
-static double image_losses(struct step *s, const struct view_weights *view, const struct step_target *targets, int count)
+static double image_losses(
+	struct step *s, const struct view_weights *view, const struct step_target *targets, int count)
 {
 	double bce = 0;
 
@@ -377,15 +417,16 @@ static double contrast_losses(struct step *s, const struct step_target *targets,
 		contrast_top_set(s->response, s->setup.gaussians, top_count, s->dresponse);
 		channel_put(s->arrays.top, s->padded, count, i, s->dresponse);
 	}
+	phase_ended(s, STEP_TOP);
 	clear_parts(s, MEAN, MEAN);
-	run_phase(s, GATHER);
+	run_phase(s, STEP_GATHER);
 	add_chunks(s, MEAN, MEAN);
 	fold_top(s->fold, s->total + s->at[MEAN], s->fg);
 	memset(s->words.de, 0, sizeof(float) * s->setup.sentences * REFER_D);
 	for (int i = 0; i < count; i++)
-		sum += contrast_loss(s->setup.contrast, s->setup.temperature, s->fg + i * REFER_D, s->words.e, s->setup.objects,
-			       s->setup.sentences, s->setup.objects[targets[i].sentence], s->setup.lambda / count,
-			       s->dfg + i * REFER_D, s->words.de, s->score) /
+		sum += contrast_loss(s->setup.contrast, s->setup.temperature, s->fg + i * REFER_D, s->words.e,
+			       s->setup.objects, s->setup.sentences, s->setup.objects[targets[i].sentence],
+			       s->setup.lambda / count, s->dfg + i * REFER_D, s->words.de, s->score) /
 		       count;
 	fold_top_back(s->fold, s->dfg, &s->model);
 	return sum;
@@ -401,20 +442,20 @@ static void add_tensor(struct step *s, enum part part, enum refer_tensor t, floa
 }
 
 /* From dm and dmean to every gradient. */
-static void backward(struct step *s, const float *parameters, const struct step_target *targets, int count, float *gradient,
-	float *dx)
+static void backward(struct step *s, const float *parameters, const struct step_target *targets, int count,
+	float *gradient, float *dx)
 {
 	const int has_contrast = s->setup.contrast != REFER_CONTRAST_NONE;
 
 	clear_parts(s, DUH, DM0);
-	run_phase(s, SCORES_BACK);
+	run_phase(s, STEP_SCORES_BACK);
 	add_chunks(s, DUH, DM0);
-	fold_scores_back(s->fold, s->total + s->at[DUH], s->total + s->at[DUQ], s->total + s->at[DK], s->total + s->at[DGRAM],
-		s->total + s->at[DM0], &s->model);
+	fold_scores_back(s->fold, s->total + s->at[DUH], s->total + s->at[DUQ], s->total + s->at[DK],
+		s->total + s->at[DGRAM], s->total + s->at[DM0], &s->model);
 	s->arrays.dx = dx;
 	clear_parts(s, DY, DY);
 	clear_parts(s, DP_GRAM, DPOSITION1_BIAS);
-	run_phase(s, HIDDEN_BACK);
+	run_phase(s, STEP_HIDDEN_BACK);
 	add_chunks(s, DY, DY);
 	add_chunks(s, DP_GRAM, DPOSITION1_BIAS);
 	for (int i = 0; i < 4; i++) {
@@ -422,6 +463,7 @@ static void backward(struct step *s, const float *parameters, const struct step_
 		add_tensor(s, DPOSITION0 + (enum part)i, POSITION_0_WEIGHT + (enum refer_tensor)i, gradient);
 	}
 	fold_end(s->fold, s->total + s->at[DY], s->total + s->at[DP_GRAM], gradient, s->dvectors);
+	phase_ended(s, STEP_FOLD);
 	size_t from = 0, to = s->setup.sentences;
 	if (!has_contrast)
 		for (int i = 0; i < count; i++) { /* the span of the targets' sentences */
@@ -430,13 +472,15 @@ static void backward(struct step *s, const float *parameters, const struct step_
 		}
 	words_back_begin(&s->words, parameters, gradient, from, to, has_contrast);
 	for (int i = 0; i < count; i++)
-		words_back_vectors(
-			&s->words, parameters, gradient, targets[i].sentence, s->dvectors + s->first[i] * REFER_D);
+		words_back_vectors(&s->words, parameters, gradient, targets[i].sentence,
+			s->dvectors + s->first[i] * REFER_D);
 	words_back_end(&s->words, parameters, gradient, from, to);
+	phase_ended(s, STEP_WORDS);
 }
 
-struct step_losses step_run(struct step *s, const float *parameters, const float *x, const struct view_weights *view,
-	const struct step_target *targets, int count, size_t top_count, float *gradient, float *dx)
+struct step_losses step_run(struct step *s, const float *parameters, const float *x,
+	const struct view_weights *view, const struct step_target *targets, int count, size_t top_count,
+	float *gradient, float *dx)
 {
 	const int has_contrast = s->setup.contrast != REFER_CONTRAST_NONE;
 	struct step_losses losses = {0};
@@ -456,8 +500,10 @@ struct step_losses step_run(struct step *s, const float *parameters, const float
 		}
 		words_hidden(&s->words, parameters, from, to);
 	}
+	phase_ended(s, STEP_WORDS);
 	forward(s, parameters, x, sentences, count);
 	losses.bce = image_losses(s, view, targets, count);
+	phase_ended(s, STEP_IMAGES);
 	if (has_contrast) {
 		losses.contrast = contrast_losses(s, targets, count, top_count);
 	} else {

@@ -1,5 +1,6 @@
-/* One training step of the referring model, folded and in float32 (design section 4): responses of the step's sentences,
- * images of a view, both losses and every gradient. Results do not depend on the number of threads. */
+/* One training step of the referring model, folded and in float32 (design section 4): responses of the step's
+ * sentences, images of a view, both losses and every gradient. Results do not depend on the number of
+ * threads. */
 #ifndef REFER_STEP_H
 #define REFER_STEP_H
 
@@ -17,16 +18,16 @@ struct step_setup {
 	enum refer_similarity similarity;
 	enum refer_contrast contrast;
 	double temperature, lambda;
-	size_t gaussians;      /* N, those that have features */
-	const int32_t *ids;    /* (N) their indices in the scene; NULL: 0 to N-1 */
+	size_t gaussians;	/* N, those that have features */
+	const int32_t *ids;	/* (N) their indices in the scene; NULL: 0 to N-1 */
 	size_t scene_gaussians; /* of the scene, the range of a view's weights */
-	const float *position; /* (N,3) means scaled to [-1,1] */
-	size_t sentences;      /* R */
+	const float *position;	/* (N,3) means scaled to [-1,1] */
+	size_t sentences;	/* R */
 	const int64_t *offsets; /* (R+1) into words */
-	const float *words;    /* (offsets[R], D_text) */
-	const int *objects;    /* (R) which object a sentence means; may be NULL without contrast */
-	size_t pixels;	       /* the largest view's */
-	int batch;	       /* most sentences in a step */
+	const float *words;	/* (offsets[R], D_text) */
+	const int *objects;	/* (R) which object a sentence means; may be NULL without contrast */
+	size_t pixels;		/* the largest view's */
+	int batch;		/* most sentences in a step */
 	const struct block_kernels *kernels; /* NULL: block_select(NULL) */
 };
 
@@ -35,6 +36,24 @@ struct step;
 /* NULL with *e set (memory; a sentence without words). */
 struct step *step_new(const struct step_setup *setup, struct err *e);
 void step_free(struct step *s);
+
+/* What step_run's time goes to. */
+enum step_phase {
+	STEP_WORDS, /* MLP_t and its gradients */
+	STEP_FOLD,  /* folding, the contrast, sums of the chunks */
+	STEP_HIDDEN,
+	STEP_RESPOND,
+	STEP_IMAGES, /* images, their loss and dm */
+	STEP_TOP,    /* choosing the top sets */
+	STEP_GATHER,
+	STEP_SCORES_BACK,
+	STEP_HIDDEN_BACK,
+	STEP_PHASES
+};
+
+/* Has `ended` called at the end of every phase, for measurements: the time since the last call is that
+ * phase's. */
+void step_watch(struct step *s, void (*ended)(void *data, enum step_phase phase), void *data);
 
 /* Referring features are kept in panels (refer/block.h): N padded to step_padded(N), 16 channels. */
 size_t step_padded(size_t gaussians);
@@ -51,10 +70,11 @@ struct step_losses {
 	double total;	      /* bce + lambda contrast */
 };
 
-/* One step over `count` sentences of one view. gradient (layout count) and dx (panels) are overwritten with the gradients of
- * the total loss. top_count is contrast_top_count's. */
-struct step_losses step_run(struct step *s, const float *parameters, const float *x, const struct view_weights *view,
-	const struct step_target *targets, int count, size_t top_count, float *gradient, float *dx);
+/* One step over `count` sentences of one view. gradient (layout count) and dx (panels) are overwritten with
+ * the gradients of the total loss. top_count is contrast_top_count's. */
+struct step_losses step_run(struct step *s, const float *parameters, const float *x,
+	const struct view_weights *view, const struct step_target *targets, int count, size_t top_count,
+	float *gradient, float *dx);
 
 /* Responses m (scene_gaussians) of one sentence; 0 for Gaussians without features. */
 void step_respond(struct step *s, const float *parameters, const float *x, size_t sentence, float *m);

@@ -194,6 +194,15 @@ float *train_state_x(const struct train_state *t)
 	return t->values + t->parameters;
 }
 
+void train_adam(struct train_state *t, const struct train_rates *rates)
+{
+	t->iteration++;
+	adam_step(t->values, t->gradient, t->m, t->v, t->parameters, rates->mlps, 0.9, 0.999, 1e-15,
+		t->iteration);
+	adam_step(train_state_x(t), t->gradient + t->parameters, t->m + t->parameters, t->v + t->parameters,
+		t->count - t->parameters, rates->features, 0.9, 0.999, 1e-15, t->iteration);
+}
+
 struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o,
 	const struct train_rates *rates, size_t gaussians)
 {
@@ -206,13 +215,9 @@ struct step_losses train_step(struct train_state *t, struct step *s, struct trai
 		targets[i] = (struct step_target){(size_t)view->sentences[picks[i]], view->masks[picks[i]]};
 	struct step_losses losses = step_run(s, t->values, train_state_x(t), &view->weights, targets, count,
 		contrast_top_count(t->iteration, gaussians), t->gradient, t->gradient + t->parameters);
-	t->iteration++;
 	t->sum.bce += losses.bce;
 	t->sum.contrast += losses.contrast;
 	t->sum.total += losses.total;
-	adam_step(t->values, t->gradient, t->m, t->v, t->parameters, rates->mlps, 0.9, 0.999, 1e-15,
-		t->iteration);
-	adam_step(train_state_x(t), t->gradient + t->parameters, t->m + t->parameters, t->v + t->parameters,
-		t->count - t->parameters, rates->features, 0.9, 0.999, 1e-15, t->iteration);
+	train_adam(t, rates);
 	return losses;
 }

@@ -71,6 +71,9 @@ struct train_rates {
 	double features, mlps; /* Adam's */
 };
 
+/* Adam on all parameters with the gradient that is there; iteration + 1. */
+void train_adam(struct train_state *t, const struct train_rates *rates);
+
 /* One step: gradient, Adam, iteration + 1, losses added to sum. */
 struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o,
 	const struct train_rates *rates, size_t gaussians);

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-int words_init(struct words *w, const struct refer_layout *l, size_t sentences, const int64_t *offsets, const float *input,
-	struct err *e)
+int words_init(struct words *w, const struct refer_layout *l, size_t sentences, const int64_t *offsets,
+	const float *input, struct err *e)
 {
 	const size_t rows = (size_t)offsets[sentences];
 
@@ -64,10 +64,11 @@ void words_hidden(struct words *w, const float *p, size_t from, size_t to)
 	const size_t width = (size_t)w->layout->text_width;
 	float *h1 = w->h1 + first * REFER_T1, *h2 = w->h2 + first * REFER_T2;
 
-	linear_forward(h1, w->input + first * width, tensor_of(w, p, TEXT_0_WEIGHT), tensor_of(w, p, TEXT_0_BIAS), rows, width,
-		REFER_T1);
+	linear_forward(h1, w->input + first * width, tensor_of(w, p, TEXT_0_WEIGHT),
+		tensor_of(w, p, TEXT_0_BIAS), rows, width, REFER_T1);
 	relu(h1, rows * REFER_T1);
-	linear_forward(h2, h1, tensor_of(w, p, TEXT_1_WEIGHT), tensor_of(w, p, TEXT_1_BIAS), rows, REFER_T1, REFER_T2);
+	linear_forward(h2, h1, tensor_of(w, p, TEXT_1_WEIGHT), tensor_of(w, p, TEXT_1_BIAS), rows, REFER_T1,
+		REFER_T2);
 	relu(h2, rows * REFER_T2);
 }
 
@@ -75,8 +76,8 @@ void words_vectors(const struct words *w, const float *p, size_t sentence, float
 {
 	const size_t first = (size_t)w->offsets[sentence], rows = (size_t)w->offsets[sentence + 1] - first;
 
-	linear_forward(out, w->h2 + first * REFER_T2, tensor_of(w, p, TEXT_2_WEIGHT), tensor_of(w, p, TEXT_2_BIAS), rows,
-		REFER_T2, REFER_D);
+	linear_forward(out, w->h2 + first * REFER_T2, tensor_of(w, p, TEXT_2_WEIGHT),
+		tensor_of(w, p, TEXT_2_BIAS), rows, REFER_T2, REFER_D);
 }
 
 void words_embed(struct words *w, const float *p)
@@ -91,24 +92,26 @@ void words_embed(struct words *w, const float *p)
 		for (int c = 0; c < REFER_T2 && to > from; c++)
 			mean[c] /= (float)(to - from);
 	}
-	linear_forward(w->e, w->mean, tensor_of(w, p, TEXT_2_WEIGHT), tensor_of(w, p, TEXT_2_BIAS), w->sentences, REFER_T2,
-		REFER_D);
+	linear_forward(w->e, w->mean, tensor_of(w, p, TEXT_2_WEIGHT), tensor_of(w, p, TEXT_2_BIAS),
+		w->sentences, REFER_T2, REFER_D);
 }
 
-void words_back_begin(struct words *w, const float *p, float *gradient, size_t from, size_t to, int has_embeddings)
+void words_back_begin(
+	struct words *w, const float *p, float *gradient, size_t from, size_t to, int has_embeddings)
 {
 	if (!has_embeddings) {
 		const size_t first = (size_t)w->offsets[from], rows = (size_t)w->offsets[to] - first;
 		memset(w->dh2 + first * REFER_T2, 0, sizeof(float) * rows * REFER_T2);
 		return;
 	}
-	linear_backward(w->dmean, gradient_of(w, gradient, TEXT_2_WEIGHT), gradient_of(w, gradient, TEXT_2_BIAS), w->de, w->mean,
-		tensor_of(w, p, TEXT_2_WEIGHT), w->sentences, REFER_T2, REFER_D);
+	linear_backward(w->dmean, gradient_of(w, gradient, TEXT_2_WEIGHT),
+		gradient_of(w, gradient, TEXT_2_BIAS), w->de, w->mean, tensor_of(w, p, TEXT_2_WEIGHT),
+		w->sentences, REFER_T2, REFER_D);
 	for (size_t s = from; s < to; s++)
 		for (int64_t j = w->offsets[s]; j < w->offsets[s + 1]; j++)
 			for (int c = 0; c < REFER_T2; c++)
-				w->dh2[j * REFER_T2 + c] =
-					w->dmean[s * REFER_T2 + (size_t)c] / (float)(w->offsets[s + 1] - w->offsets[s]);
+				w->dh2[j * REFER_T2 + c] = w->dmean[s * REFER_T2 + (size_t)c] /
+							   (float)(w->offsets[s + 1] - w->offsets[s]);
 }
 
 void words_back_vectors(struct words *w, const float *p, float *gradient, size_t sentence, const float *dw)
@@ -117,8 +120,8 @@ void words_back_vectors(struct words *w, const float *p, float *gradient, size_t
 	float *dh2 = w->dh2 + first * REFER_T2;
 	float *din = w->dh1 + first * REFER_T1; /* free until words_back_end; wide enough */
 
-	linear_backward(din, gradient_of(w, gradient, TEXT_2_WEIGHT), gradient_of(w, gradient, TEXT_2_BIAS), dw,
-		w->h2 + first * REFER_T2, tensor_of(w, p, TEXT_2_WEIGHT), rows, REFER_T2, REFER_D);
+	linear_backward(din, gradient_of(w, gradient, TEXT_2_WEIGHT), gradient_of(w, gradient, TEXT_2_BIAS),
+		dw, w->h2 + first * REFER_T2, tensor_of(w, p, TEXT_2_WEIGHT), rows, REFER_T2, REFER_D);
 	for (size_t i = 0; i < rows * REFER_T2; i++)
 		dh2[i] += din[i];
 }
@@ -131,9 +134,9 @@ void words_back_end(struct words *w, const float *p, float *gradient, size_t fro
 	const float *h1 = w->h1 + first * REFER_T1;
 
 	relu_back(dh2, w->h2 + first * REFER_T2, rows * REFER_T2);
-	linear_backward(dh1, gradient_of(w, gradient, TEXT_1_WEIGHT), gradient_of(w, gradient, TEXT_1_BIAS), dh2, h1,
-		tensor_of(w, p, TEXT_1_WEIGHT), rows, REFER_T1, REFER_T2);
+	linear_backward(dh1, gradient_of(w, gradient, TEXT_1_WEIGHT), gradient_of(w, gradient, TEXT_1_BIAS),
+		dh2, h1, tensor_of(w, p, TEXT_1_WEIGHT), rows, REFER_T1, REFER_T2);
 	relu_back(dh1, h1, rows * REFER_T1);
-	linear_backward(NULL, gradient_of(w, gradient, TEXT_0_WEIGHT), gradient_of(w, gradient, TEXT_0_BIAS), dh1,
-		w->input + first * width, tensor_of(w, p, TEXT_0_WEIGHT), rows, width, REFER_T1);
+	linear_backward(NULL, gradient_of(w, gradient, TEXT_0_WEIGHT), gradient_of(w, gradient, TEXT_0_BIAS),
+		dh1, w->input + first * width, tensor_of(w, p, TEXT_0_WEIGHT), rows, width, REFER_T1);
 }

@@ -227,7 +227,7 @@ static void round_trip(int k, const double offset[3])
 
 	make_splats(&a, n, k);
 	int bad = ply_write(&a, offset, path, &e) || ply_read(&b, back, NULL, path, &e);
-	if (!CHECK(!bad, "K = %d: %s", k, e.message))
+	if (!CHECK(!bad, "K = %d: %s", k, e.message) || !b.means)
 		return;
 	CHECK(b.n == n && b.sh_coefficients == k, "%zu Gaussians, K = %d", b.n, b.sh_coefficients);
 	for (size_t i = 0; i < 3 * n; i++) {
