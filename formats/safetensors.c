@@ -478,7 +478,9 @@ static char *make_header(const struct st_tensor *tensors, const size_t *order, s
 /* A failed write is found out at once, while errno still says why. */
 static int put(struct file_out *out, const void *data, size_t bytes, struct err *e)
 {
-	return bytes && fwrite(data, 1, bytes, out->stream) != bytes ? err_errno(e, "%s", file_name(out->path)) : 0;
+	return bytes && fwrite(data, 1, bytes, out->stream) != bytes
+		       ? err_errno(e, "%s", file_name(out->path))
+		       : 0;
 }
 
 int safetensors_write(const char *path, const struct st_tensor *tensors, size_t n, const struct st_meta *meta,
@@ -509,7 +511,8 @@ int safetensors_write(const char *path, const struct st_tensor *tensors, size_t 
 	unsigned char length[8];
 	for (int i = 0; i < 8; i++)
 		length[i] = (unsigned char)((uint64_t)padded >> (8 * i));
-	int bad = put(&out, length, 8, e) || put(&out, header, used, e) || put(&out, spaces, padded - used, e);
+	int bad =
+		put(&out, length, 8, e) || put(&out, header, used, e) || put(&out, spaces, padded - used, e);
 	for (k = 0; k < n && !bad; k++)
 		bad = put(&out, tensors[order[k]].data, tensor_bytes(&tensors[order[k]]), e);
 	free(order);
