@@ -77,6 +77,19 @@ $test_view silent nothing" ]
 	[ "$(jq .score pred.jsonl)" = 0 ]
 }
 
+@test "--calibration lifts what is below 0, and leaves scores as they were learned" {
+	# A model that has hardly begun answers nearly nothing.
+	"$BIN/refer-train" --scene scene --weights "$made/weights" --text text.safetensors --masks "$made/masks.jsonl" \
+		--iterations 60 -o model.safetensors
+	render --split all --response p --response-type npy -o peak.jsonl
+	render --split all --response n --response-type npy --calibration none -o none.jsonl
+	[ "$(areas <peak.jsonl | awk '{ n += $1 } END { print n }')" -gt "$(areas <none.jsonl | awk '{ n += $1 } END { print n }')" ]
+	render --split all --calibration peak | cmp - peak.jsonl
+	# Where nothing is seen there is nothing to lift: the least difference of a picture is not negative.
+	values() { tail -c $((64 * 48 * 4)) "$1/$test_view/brown-box-1.npy" | od -An -v -t f4 -w4; }
+	paste <(values p) <(values n) | awk '$1 < $2 - 1e-6 { bad = 1 } $1 > $2 { more = 1 } END { exit bad || !more }'
+}
+
 @test "--threads 1, 2 and 3 give the same bytes" {
 	for n in 1 2 3; do
 		mkdir $n

@@ -20,9 +20,9 @@ setup() {
 	cp -r "$made/scene" "$made/weights" "$made/text.safetensors" "$made/masks.jsonl" .
 }
 
-# train [OPTION]...: 30 steps, unless the options say otherwise.
+# train [OPTION]...: eight steps, unless the options say otherwise; few, since sanitizers make them slow.
 train() {
-	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 30 "$@"
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 8 "$@"
 }
 
 # meta FILE KEY
@@ -45,7 +45,7 @@ refuses() {
 	[ "$(ls | tr '\n' ' ')" = "masks.jsonl out.safetensors printed scene text.safetensors weights " ]
 	"$BIN/gs-check" out.safetensors
 	[ "$(meta out.safetensors gaussians)" = 1000 ]
-	[[ "$(meta out.safetensors options)" == "--iterations 30 --interaction pcmi --similarity dot --contrast cosine \
+	[[ "$(meta out.safetensors options)" == "--iterations 8 --interaction pcmi --similarity dot --contrast cosine \
 --temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --tolerance 0 --seed 1, inputs "???????? ]]
 }
 
@@ -69,31 +69,32 @@ refuses() {
 	train -o file
 	train -o - >piped
 	cmp file piped
-	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks - --iterations 30 -o from <masks.jsonl
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks - --iterations 8 -o from <masks.jsonl
 	cmp file from
-	"$BIN/refer-train" --scene scene --weights weights --text - --masks masks.jsonl --iterations 30 -o from <text.safetensors
+	"$BIN/refer-train" --scene scene --weights weights --text - --masks masks.jsonl --iterations 8 -o from <text.safetensors
 	cmp file from
 }
 
 @test "a line of the log every 100 steps, and the loss falls" {
-	train --iterations 350 --log log -o m
+	train --iterations 310 --log log -o m
 	[ "$(jq -r .iteration log | tr '\n' ' ')" = "100 200 300 " ]
 	jq -se '.[2].loss < 0.2 * .[0].loss and .[2].bce < 0.15 and all(.[]; .loss > .bce and .contrast > 0)' log
 	jq -se 'all(.[]; (.bce + 0.02 * .contrast - .loss | fabs) < 1e-6 * .loss)' log
 }
 
 @test "--log - is stdout, and a pipe is written to" {
-	train --iterations 200 --log log -o m
-	train --iterations 200 --log - -o m >out
+	hundred() { train --interaction none --iterations 100 -o m "$@"; }
+	hundred --log log
+	hundred --log - >out
 	cmp log out
-	train --iterations 200 --log >(cat >piped) -o m
+	hundred --log >(cat >piped)
 	for _ in 1 2 3 4 5 6 7 8 9 10; do cmp -s log piped && break; sleep 0.1; done
 	cmp log piped
 }
 
 @test "every --interaction, --similarity and --contrast learns finite numbers" {
 	for way in none attention attention+fp add pcmi pcmi-proj; do
-		train --interaction $way --log log -o m
+		train --interaction $way --iterations 30 -o m
 		[ "$(meta m interaction)" = $way ]
 		"$BIN/gs-check" m # finite, all of it
 	done
@@ -110,9 +111,9 @@ refuses() {
 }
 
 @test "a killed training goes on to the same model and log" {
-	train --iterations 430 --log log -o whole
-	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 430 \
-		--checkpoint 30 --log part.log -o part &
+	train --interaction none --iterations 230 --log log -o whole
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl \
+		--interaction none --iterations 230 --checkpoint 30 --log part.log -o part &
 	pid=$!
 	for ((i = 0; i < 1000; i++)); do [ -e part.checkpoint ] && break; sleep 0.01; done
 	kill -KILL $pid
@@ -121,7 +122,7 @@ refuses() {
 	[ ! -e part ]
 	# What the killed one wrote after its checkpoint is written again.
 	printf '{"iteration":100000,"bce":1}\n{"iteration":1' >>part.log
-	train -v --iterations 430 --checkpoint 30 --resume --log part.log -o part 2>err
+	train -v --interaction none --iterations 230 --checkpoint 30 --resume --log part.log -o part 2>err
 	grep -qE '^refer-train: going on after step [0-9]+$' err
 	cmp whole part
 	cmp log part.log
@@ -130,18 +131,18 @@ refuses() {
 	[ "$(ls | tr '\n' ' ')" = "err log masks.jsonl part part.log scene text.safetensors weights whole " ]
 }
 
-# cut_short [OPTION]...: m.checkpoint of 50 steps: step 100 cannot be logged.
+# m.checkpoint of 50 steps without interaction: step 100 cannot be logged.
 cut_short() {
 	rm -rf m m.checkpoint
 	says 4 "refer-train: /dev/full: No space left on device" \
-		train --iterations 150 --checkpoint 50 -o m --log /dev/full "$@"
+		train --interaction none --iterations 150 --checkpoint 50 -o m --log /dev/full
 	[ "$(meta m.checkpoint iteration)" = 50 ]
 }
 
 @test "a training that failed goes on from its checkpoint" {
-	train --iterations 60 --log log -o whole
+	train --interaction none --iterations 60 -o whole
 	cut_short
-	train --iterations 60 --resume -o m
+	train --interaction none --iterations 60 --resume -o m
 	cmp whole m
 	[ ! -e m.checkpoint ]
 }
@@ -149,13 +150,13 @@ cut_short() {
 @test "--resume with other options or inputs is refused" {
 	cut_short
 	other="m.checkpoint: is of another training (its options or inputs differ); remove it or train without --resume"
-	for option in "--seed 2" "--interaction none" "--similarity cosine" "--contrast dot" "--temperature 0.2" "--lambda 0.03" \
+	for option in "--seed 2" "--interaction attention" "--similarity cosine" "--contrast dot" "--temperature 0.2" "--lambda 0.03" \
 		"--feature-rate 0.001" "--mlp-rate 0.001" "--batch 2" "--tolerance 0.1"; do
-		says 3 "refer-train: $other" train --resume $option -o m
+		says 3 "refer-train: $other" train --resume --interaction none $option -o m
 	done
 	head -n 11 masks.jsonl >fewer.jsonl
-	says 3 "refer-train: $other" train --resume --masks fewer.jsonl -o m
-	says 3 "refer-train: m.checkpoint: has 50 steps, more than the 49 asked for" train --resume --iterations 49 -o m
+	says 3 "refer-train: $other" train --resume --interaction none --masks fewer.jsonl -o m
+	says 3 "refer-train: m.checkpoint: has 50 steps, more than the 49 asked for" train --resume --interaction none --iterations 49 -o m
 	[ ! -e m ]
 	[ -e m.checkpoint ]
 	cp text.safetensors m.checkpoint
@@ -172,7 +173,7 @@ cut_short() {
 	cut_short
 	cp m.checkpoint kept
 	says 0 "refer-train: warning: m.checkpoint: is of an earlier training and will be replaced; --resume would go on from it" \
-		train --iterations 31 --checkpoint 30 -o m
+		train --checkpoint 5 -o m
 	[ ! -e m.checkpoint ] # it became this training's own
 	cp kept m.checkpoint
 	says 0 "" train --checkpoint 0 -o m
@@ -203,10 +204,10 @@ cut_short() {
 @test "a full disk: exit 4, and nothing is left" {
 	[ -e /dev/full ] || skip "no /dev/full"
 	says 4 "refer-train: /dev/full: No space left on device" train -o /dev/full
-	says 4 "refer-train: /dev/full: No space left on device" train --iterations 100 --log /dev/full -o m
+	says 4 "refer-train: /dev/full: No space left on device" train --interaction none --iterations 100 --log /dev/full -o m
 	[ ! -e m ]
 	# No file above 100 KiB can be written: the checkpoint cannot.
-	small() { (trap '' XFSZ; ulimit -f 100; train -q --checkpoint 10 -o m); }
+	small() { (trap '' XFSZ; ulimit -f 100; train -q --checkpoint 2 -o m); }
 	says 4 "refer-train: m.checkpoint: File too large" small
 	[ "$(ls | tr '\n' ' ')" = "masks.jsonl scene text.safetensors weights " ]
 }
