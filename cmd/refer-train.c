@@ -5,29 +5,24 @@
 #include "formats/checkpoint.h"
 #include "formats/model.h"
 #include "formats/training.h"
+#include "formats/trainlog.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-struct options {
+static struct {
 	const char *scene, *weights, *text, *masks, *log;
 	int interaction, similarity, contrast, is_resumed;
-	long long iterations, batch, checkpoint;
-	double temperature, lambda, tolerance;
-	struct train_rates rates;
-};
-
-static struct options options = {.interaction = REFER_PCMI,
+	long long iterations, checkpoint;
+	struct trainer_options trainer;
+} options = {.interaction = REFER_PCMI,
 	.similarity = REFER_DOT,
 	.contrast = REFER_CONTRAST_COSINE,
 	.iterations = 45000,
-	.batch = 1,
 	.checkpoint = 1000,
-	.temperature = 0.1,
-	.lambda = 0.02,
-	.rates = {0.0025, 0.0001}};
+	.trainer = {.temperature = 0.1, .lambda = 0.02, .batch = 1, .rates = {0.0025, 0.0001}}};
 
 static const struct cli_option table[] = {
 	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
@@ -41,17 +36,24 @@ static const struct cli_option table[] = {
 		"how features answer words (default dot)", 0, 0},
 	{"contrast", 0, CLI_CHOICE, &options.contrast, REFER_CONTRAST_CHOICES,
 		"contrast between sentences (default cosine)", 0, 0},
-	{"temperature", 0, CLI_REAL, &options.temperature, "T", "of the contrast (default 0.1)", 1e-6, 1e6},
-	{"lambda", 0, CLI_REAL, &options.lambda, "X", "weight of the contrast in the loss (default 0.02)", 0, 1e6},
-	{"feature-rate", 0, CLI_REAL, &options.rates.features, "R", "learning rate of the features (default 0.0025)", 1e-12, 10},
-	{"mlp-rate", 0, CLI_REAL, &options.rates.mlps, "R", "learning rate of the MLPs (default 0.0001)", 1e-12, 10},
-	{"batch", 0, CLI_INT, &options.batch, "N", "sentences of a view in one step (default 1)", 1, 64},
-	{"tolerance", 0, CLI_REAL, &options.tolerance, "T",
+	{"temperature", 0, CLI_REAL, &options.trainer.temperature, "T", "of the contrast (default 0.1)", 1e-6,
+		1e6},
+	{"lambda", 0, CLI_REAL, &options.trainer.lambda, "X",
+		"weight of the contrast in the loss (default 0.02)", 0, 1e6},
+	{"feature-rate", 0, CLI_REAL, &options.trainer.rates.features, "R",
+		"learning rate of the features (default 0.0025)", 1e-12, 10},
+	{"mlp-rate", 0, CLI_REAL, &options.trainer.rates.mlps, "R",
+		"learning rate of the MLPs (default 0.0001)", 1e-12, 10},
+	{"batch", 0, CLI_INT, &options.trainer.batch, "N", "sentences of a view in one step (default 1)", 1,
+		64},
+	{"tolerance", 0, CLI_REAL, &options.trainer.tolerance, "T",
 		"leave out the Gaussians that carry this share of all weight (default 0)", 0, 0.99},
-	{"log", 0, CLI_STRING, &options.log, "FILE", "write the losses there, JSON Lines, a line every 100 steps", 0, 0},
+	{"log", 0, CLI_STRING, &options.log, "FILE",
+		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{"checkpoint", 0, CLI_INT, &options.checkpoint, "N",
 		"write MODEL.checkpoint every N steps, 0 never (default 1000)", 0, 100000000},
-	{"resume", 0, CLI_FLAG, &options.is_resumed, NULL, "go on from MODEL.checkpoint where there is one", 0, 0},
+	{"resume", 0, CLI_FLAG, &options.is_resumed, NULL, "go on from MODEL.checkpoint where there is one",
+		0, 0},
 	{0}};
 
 static const struct cli_tool tool = {.name = "refer-train",
@@ -67,156 +69,116 @@ enum { LOG_EVERY = 100 };
 /* Everything a run holds. */
 struct run {
 	struct training data;
-	struct model model;
-	float *position;
-	struct step *step;
-	struct train_order order;
-	struct train_state state;
-	char *checkpoint, identity[512];
-	FILE *log;
-	struct step_losses sum; /* since the last line of the log */
+	struct trainer trainer;
+	struct trainlog log;
+	char *checkpoint, identity[CHECKPOINT_IDENTITY];
+	int is_own; /* the checkpoint is of this training */
 };
 
-static int prepare(struct run *r, const struct cli *c, struct err *e)
+static int start(struct run *r, const struct cli *c, struct err *e)
 {
-	struct training *d = &r->data;
-	struct model *m = &r->model;
+	const struct training *d = &r->data;
+	const struct trainer_source source = {d->scene.splats.means, d->scene.splats.n, d->text.width,
+		d->sentences, d->offsets, d->words, d->objects, d->views, d->view_count, d->pixels};
 
-	if (training_read(d, options.scene, options.weights, options.text, options.masks, e))
-		return -1;
-	if (d->left_out)
-		cli_warn(c, "%s: %zu training sentences without words are left out", options.text, d->left_out);
-	refer_layout_init(&m->layout, (enum refer_interaction)options.interaction, d->text.width);
-	m->similarity = (enum refer_similarity)options.similarity;
-	m->scene_gaussians = d->scene.splats.n;
-	m->ids = mem_alloc(m->scene_gaussians, sizeof *m->ids, "ids", e);
-	if (!m->ids ||
-		train_active_set(d->views, d->view_count, m->scene_gaussians, options.tolerance, m->ids, &m->n, e) ||
-		train_bounds(d->scene.splats.means, m->ids, m->n, m->low, m->high, e))
-		return -1;
-	r->position = mem_alloc(m->n, 3 * sizeof(float), "positions", e);
-	if (!r->position)
-		return -1;
-	train_positions(d->scene.splats.means, m->ids, m->n, m->low, m->high, r->position);
-	const struct step_setup setup = {.layout = &m->layout,
-		.similarity = m->similarity,
-		.contrast = (enum refer_contrast)options.contrast,
-		.temperature = options.temperature,
-		.lambda = options.lambda,
-		.gaussians = m->n,
-		.ids = m->ids,
-		.scene_gaussians = m->scene_gaussians,
-		.position = r->position,
-		.sentences = d->sentences,
-		.offsets = d->offsets,
-		.words = d->words,
-		.objects = d->objects,
-		.pixels = d->pixels,
-		.batch = (int)options.batch};
-	r->step = step_new(&setup, e);
-	if (!r->step || train_order_init(&r->order, d->views, d->view_count, (int)options.batch, (uint64_t)c->seed, e) ||
-		train_state_init(&r->state, &m->layout, m->n, (uint64_t)c->seed, e))
-		return -1;
-	cli_note(c, 1, "%zu of %zu Gaussians, %zu views, %zu sentences, %zu pairs", m->n, m->scene_gaussians, d->view_count,
-		d->sentences, d->pairs);
-	if (d->test_masks)
-		cli_note(c, 1, "%zu masks of test views are not used", d->test_masks);
-	snprintf(r->identity, sizeof r->identity,
-		"interaction %s similarity %s contrast %d temperature %.17g lambda %.17g rates %.17g %.17g batch %lld tolerance %.17g "
-		"seed %lld inputs %08x",
-		refer_interaction_name(m->layout.interaction), refer_similarity_name(m->similarity), options.contrast,
-		options.temperature, options.lambda, options.rates.features, options.rates.mlps, options.batch,
-		options.tolerance, c->seed, d->checksum);
+	checkpoint_identity(r->identity, &options.trainer, d->checksum);
+	if (trainer_init(&r->trainer, &source, &options.trainer, e))
+		return e->code == ERR_FORMAT ? err_prefix(e, options.weights) : -1;
+	cli_note(c, 1, "%zu of %zu Gaussians, %zu views, %zu sentences, %zu pairs", r->trainer.n,
+		d->scene.splats.n, d->view_count, d->sentences, d->pairs);
 	return 0;
 }
 
-/* Opens the log; after a resume it keeps the lines up to the checkpoint's iteration. */
-static int open_log(struct run *r, struct err *e)
+/* Goes on from a checkpoint where that is wanted. */
+static int resume(struct run *r, const struct cli *c, struct err *e)
 {
-	char *line = NULL;
-	size_t capacity = 0;
-	long at = 0, keep = 0, iteration;
-
-	if (!options.log)
+	if (!r->checkpoint || !file_exists(r->checkpoint))
 		return 0;
-	r->log = fopen(options.log, r->state.iteration ? "a+" : "w+");
-	if (!r->log)
-		return err_errno(e, "%s", options.log);
-	rewind(r->log);
-	while (getline(&line, &capacity, r->log) > 0) {
-		at = ftell(r->log);
-		if (sscanf(line, "{\"iteration\":%ld,", &iteration) == 1 && iteration <= r->state.iteration)
-			keep = at;
+	if (!options.is_resumed) {
+		if (options.checkpoint)
+			cli_warn(c,
+				"%s: is of an earlier training and will be replaced; --resume would go on from it",
+				r->checkpoint);
+		return 0;
 	}
-	free(line);
-	if (fflush(r->log) || ftruncate(fileno(r->log), keep) || fseek(r->log, 0, SEEK_END))
-		return err_errno(e, "%s", options.log);
+	if (checkpoint_read(&r->trainer.state, r->checkpoint, r->identity, e))
+		return -1;
+	if (r->trainer.state.iteration > options.iterations)
+		return err_set(e, ERR_FORMAT, "%s: has %ld steps, more than the %lld asked for",
+			r->checkpoint, r->trainer.state.iteration, options.iterations);
+	r->is_own = 1;
+	cli_note(c, 1, "going on after step %ld", r->trainer.state.iteration);
 	return 0;
 }
 
-static int put_log(struct run *r, struct err *e)
+/* What is due after a step: a line of the log, a checkpoint. */
+static int record(struct run *r, const struct cli *c, const struct step_losses *last, struct err *e)
 {
-	const double n = LOG_EVERY;
+	const long done = r->trainer.state.iteration;
 
-	if (r->log && (fprintf(r->log, "{\"iteration\":%ld,\"bce\":%.9g,\"contrast\":%.9g,\"loss\":%.9g}\n", r->state.iteration,
-			       r->sum.bce / n, r->sum.contrast / n, r->sum.total / n) < 0 ||
-			      fflush(r->log)))
-		return err_errno(e, "%s", options.log);
-	r->sum = (struct step_losses){0};
+	if (!isfinite(last->total))
+		return err_set(e, ERR_CHECK, "%s: the loss is not finite at step %ld", c->output, done);
+	if (done % LOG_EVERY == 0) {
+		if (trainlog_put(&r->log, done, &r->trainer.state.sum, LOG_EVERY, e))
+			return -1;
+		r->trainer.state.sum = (struct step_losses){0};
+	}
+	if (!options.checkpoint || done % options.checkpoint || done == options.iterations)
+		return 0;
+	if (checkpoint_write(&r->trainer.state, r->checkpoint, r->identity, e))
+		return -1;
+	r->is_own = 1;
 	return 0;
 }
 
 static int train(struct run *r, const struct cli *c, struct err *e)
 {
 	struct cli_progress progress;
-	char note[64];
-	const long begin = r->state.iteration;
+	char note[64] = "";
+	const long begin = r->trainer.state.iteration;
+	int bad = 0;
 
 	cli_progress_start(&progress, c, "steps", (double)(options.iterations - begin));
-	while (r->state.iteration < options.iterations) {
-		struct step_losses l = train_step(&r->state, r->step, &r->order, &options.rates, r->model.n);
-		const long done = r->state.iteration;
-		if (!isfinite(l.total)) {
-			cli_progress_end(&progress);
-			return err_set(e, ERR_CHECK, "%s: the loss is not finite at step %ld", c->output, done);
-		}
-		r->sum.bce += l.bce;
-		r->sum.contrast += l.contrast;
-		r->sum.total += l.total;
-		if (done % LOG_EVERY == 0) {
-			snprintf(note, sizeof note, "loss %.4f", r->sum.total / LOG_EVERY);
-			if (put_log(r, e))
-				return -1;
-		}
-		if (options.checkpoint && done % options.checkpoint == 0 && done < options.iterations &&
-			checkpoint_write(&r->state, r->checkpoint, r->identity, e))
-			return -1;
-		cli_progress_step(&progress, (double)(done - begin), done - begin >= LOG_EVERY ? note : NULL);
+	while (r->trainer.state.iteration < options.iterations && !bad) {
+		struct step_losses last = trainer_step(&r->trainer);
+		if (r->trainer.state.iteration % LOG_EVERY == 0)
+			snprintf(note, sizeof note, "loss %.4f", r->trainer.state.sum.total / LOG_EVERY);
+		bad = record(r, c, &last, e);
+		cli_progress_step(
+			&progress, (double)(r->trainer.state.iteration - begin), *note ? note : NULL);
 	}
 	cli_progress_end(&progress);
-	return 0;
+	return bad;
 }
 
 static int write_result(struct run *r, const struct cli *c, struct err *e)
 {
-	struct model *m = &r->model;
-	char text[640];
+	const struct trainer *t = &r->trainer;
+	const struct model m = {.layout = t->layout,
+		.similarity = options.trainer.similarity,
+		.scene_gaussians = r->data.scene.splats.n,
+		.n = t->n,
+		.ids = t->ids,
+		.features = mem_alloc(t->n, REFER_X * sizeof(float), "features", e),
+		.parameters = t->state.values,
+		.low = {t->low[0], t->low[1], t->low[2]},
+		.high = {t->high[0], t->high[1], t->high[2]}};
+	char text[CHECKPOINT_IDENTITY + 64];
 
-	m->features = mem_alloc(m->n, REFER_X * sizeof(float), "features", e);
-	if (!m->features)
+	if (!m.features)
 		return -1;
-	step_unpack(train_state_x(&r->state), m->n, m->features);
-	m->parameters = r->state.values;
-	snprintf(text, sizeof text, "iterations %ld %s", r->state.iteration, r->identity);
-	int bad = model_write(m, c->output, text, c->seed, e);
-	m->parameters = NULL;
-	if (!bad && r->checkpoint)
+	step_unpack(train_state_x(&t->state), t->n, m.features);
+	snprintf(text, sizeof text, "--iterations %ld %s", t->state.iteration, r->identity);
+	int bad = model_write(&m, c->output, text, c->seed, e);
+	if (!bad && r->is_own)
 		unlink(r->checkpoint);
+	free(m.features);
 	return bad;
 }
 
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
+	const struct training *d = &r->data;
 	const size_t bytes = strlen(c->output) + sizeof ".checkpoint";
 
 	if (strcmp(c->output, "-")) {
@@ -225,39 +187,60 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 			return -1;
 		snprintf(r->checkpoint, bytes, "%s.checkpoint", c->output);
 	}
-	if (prepare(r, c, e))
+	if (training_read(&r->data, options.scene, options.weights, options.text, options.masks, e))
 		return -1;
-	if (options.is_resumed && r->checkpoint && file_exists(r->checkpoint)) {
-		if (checkpoint_read(&r->state, r->checkpoint, r->identity, e))
-			return -1;
-		cli_note(c, 1, "going on after step %ld", r->state.iteration);
-	}
-	return open_log(r, e) || train(r, c, e) || write_result(r, c, e) ? -1 : 0;
+	if (d->left_out)
+		cli_warn(c, "%s: %zu training sentences without words are left out", options.text,
+			d->left_out);
+	if (d->test_masks)
+		cli_note(c, 1, "%zu masks of test views are not used", d->test_masks);
+	return file_out_probe(c->output, e) || start(r, c, e) || resume(r, c, e) ||
+			       trainlog_open(&r->log, options.log, r->trainer.state.iteration, e) ||
+			       train(r, c, e) || write_result(r, c, e)
+		       ? -1
+		       : 0;
+}
+
+static void check_options(const struct cli *c)
+{
+	struct trainer_options *o = &options.trainer;
+	const int is_stdout = !strcmp(c->output, "-");
+
+	o->interaction = (enum refer_interaction)options.interaction;
+	o->similarity = (enum refer_similarity)options.similarity;
+	o->contrast = (enum refer_contrast)options.contrast;
+	o->seed = c->seed;
+	if (!options.scene || !options.weights || !options.text || !options.masks)
+		cli_usage(c, "--scene, --weights, --text and --masks are required");
+	if (!strcmp(options.text, "-") && !strcmp(options.masks, "-"))
+		cli_usage(c, "--text and --masks cannot both be stdin");
+	if (o->interaction == REFER_PCMI_PROJ && o->similarity == REFER_COSINE)
+		cli_usage(c,
+			"--similarity cosine does not go with --interaction pcmi-proj, whose features are normalised");
+	if (is_stdout && options.is_resumed)
+		cli_usage(c, "--resume needs a file to write to: there is no checkpoint of stdout");
+	if (is_stdout && options.log && !strcmp(options.log, "-"))
+		cli_usage(c, "--log and --output cannot both be stdout");
+	if (is_stdout)
+		options.checkpoint = 0;
+	cli_refuse_terminal(c);
 }
 
 int main(int argc, char **argv)
 {
 	struct run r = {0};
 	struct cli c;
-	struct err e = {0};
+	struct err e = {0}, late;
 
 	cli_parse(&c, &tool, argc, argv);
-	if (!options.scene || !options.weights || !options.text || !options.masks)
-		cli_usage(&c, "--scene, --weights, --text and --masks are required");
-	if (options.interaction == REFER_PCMI_PROJ && options.similarity == REFER_COSINE)
-		cli_usage(&c, "--similarity cosine does not go with --interaction pcmi-proj, whose features are normalised");
-	if (options.checkpoint && !strcmp(c.output, "-"))
-		options.checkpoint = 0;
-	cli_refuse_terminal(&c);
+	check_options(&c);
 	int bad = run(&r, &c, &e);
-	if (r.log && fclose(r.log) && !bad)
-		bad = err_errno(&e, "%s", options.log);
-	step_free(r.step);
-	train_order_free(&r.order);
-	train_state_free(&r.state);
+	if (trainlog_close(&r.log, &late) && !bad) {
+		e = late;
+		bad = -1;
+	}
+	trainer_free(&r.trainer);
 	training_free(&r.data);
-	model_free(&r.model);
-	free(r.position);
 	free(r.checkpoint);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -16,6 +16,7 @@
 #include "formats/text.h"
 #include "formats/weights.h"
 
+#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -396,23 +397,64 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 	return err_set(e, ERR_FORMAT, "%s: not a kind of file that the suite reads", file_name(path));
 }
 
+/* Adds the views of a folder of gs-weigh, in the order of their names; *views says how many there are. */
+static int add_weights(
+	struct check *c, const char *path, struct dirent **names, int n, long long *views, struct err *e)
+{
+	long long total = 0;
+
+	*views = 0;
+	for (int i = 0; i < n; i++) {
+		const char *dot = strrchr(names[i]->d_name, '.');
+		if (!dot || strcmp(dot, ".safetensors"))
+			continue;
+		char *file = file_join(path, names[i]->d_name, "", e);
+		struct weights w;
+		int bad = file ? weights_open_file(&w, file, e) : -1;
+		free(file);
+		if (bad)
+			return -1;
+		total += (long long)w.indptr[(int64_t)w.width * w.height];
+		weights_close(&w);
+		++*views;
+	}
+	c->kind = "weights";
+	add_fact(c, "views", *views);
+	add_fact(c, "weights", total);
+	return 0;
+}
+
+/* Each kind of folder is known by what lies in it. */
 static int check_folder(struct check *c, const char *path, struct err *e)
 {
 	static const char *const parts[] = {"splats.safetensors", "cameras.json"};
+	struct dirent **names = NULL;
+	long long views = 0;
+	int found = 0;
 
-	if (colmap_is_model(path))
-		return check_cameras(c, path, "COLMAP model", e);
 	for (int i = 0; i < 2; i++) {
 		char *part = file_join(path, parts[i], "", e);
 		if (!part)
 			return -1;
-		int found = file_exists(part);
+		found |= file_exists(part) << i;
 		free(part);
-		if (!found)
-			return err_set(e, ERR_FORMAT, "%s: neither a scene (no %s) nor a COLMAP model", path,
-				parts[i]);
 	}
-	return check_scene(c, path, e);
+	if (found == 3)
+		return check_scene(c, path, e);
+	if (found & 1)
+		return err_set(e, ERR_FORMAT, "%s: a scene without %s", path, parts[1]);
+	if (colmap_is_model(path))
+		return check_cameras(c, path, "COLMAP model", e);
+	int n = scandir(path, &names, NULL, alphasort);
+	if (n < 0)
+		return err_errno(e, "%s", path);
+	int bad = add_weights(c, path, names, n, &views, e);
+	for (int i = 0; i < n; i++)
+		free(names[i]);
+	free(names);
+	if (!bad && !views)
+		return err_set(e, ERR_FORMAT, "%s: not a scene, COLMAP model or folder of weights", path);
+	return bad;
 }
 
 int check_file(struct check *c, const char *path, struct err *e)

@@ -1,48 +1,100 @@
 #include "formats/checkpoint.h"
 
+#include "base/number.h"
 #include "formats/safetensors.h"
 
+#include <limits.h>
+#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+enum { ARRAYS = 3 };
+
+static const char *const names[ARRAYS] = {"values", "first_moment", "second_moment"};
+
+void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_options *o, uint32_t inputs)
+{
+	char temperature[NUMBER_SIZE], lambda[NUMBER_SIZE], features[NUMBER_SIZE], mlps[NUMBER_SIZE],
+		tolerance[NUMBER_SIZE];
+
+	snprintf(text, CHECKPOINT_IDENTITY,
+		"--interaction %s --similarity %s --contrast %s --temperature %s --lambda %s --feature-rate %s --mlp-rate %s "
+		"--batch %lld --tolerance %s --seed %lld, inputs %08x",
+		refer_interaction_name(o->interaction), refer_similarity_name(o->similarity),
+		refer_contrast_name(o->contrast), number_text(temperature, o->temperature),
+		number_text(lambda, o->lambda), number_text(features, o->rates.features),
+		number_text(mlps, o->rates.mlps), o->batch, number_text(tolerance, o->tolerance), o->seed,
+		(unsigned)inputs);
+}
 
 int checkpoint_write(const struct train_state *t, const char *path, const char *identity, struct err *e)
 {
-	const int64_t count = (int64_t)t->count;
-	const struct st_tensor tensors[] = {
-		{.name = "values", .dtype = ST_F32, .dims = 1, .shape = {count}, .data = t->values},
-		{.name = "first_moment", .dtype = ST_F32, .dims = 1, .shape = {count}, .data = t->m},
-		{.name = "second_moment", .dtype = ST_F32, .dims = 1, .shape = {count}, .data = t->v}};
+	const float *arrays[ARRAYS] = {t->values, t->m, t->v};
+	const double losses[3] = {t->sum.bce, t->sum.contrast, t->sum.total};
+	struct st_tensor tensors[ARRAYS + 1] = {
+		{.name = "losses", .dtype = ST_F64, .dims = 1, .shape = {3}, .data = losses}};
 	char iteration[32];
-	const struct st_meta meta[] = {{"format", "refer.checkpoint"}, {"version", "1"}, {"tool", "refer-train"},
-		{"iteration", iteration}, {"identity", identity}};
+	const struct st_meta meta[] = {{"format", "refer.checkpoint"}, {"version", "1"},
+		{"tool", "refer-train"}, {"iteration", iteration}, {"identity", identity}};
 
+	for (int i = 0; i < ARRAYS; i++)
+		tensors[i + 1] = (struct st_tensor){.name = names[i],
+			.dtype = ST_F32,
+			.dims = 1,
+			.shape = {(int64_t)t->count},
+			.data = arrays[i]};
 	snprintf(iteration, sizeof iteration, "%ld", t->iteration);
-	return safetensors_write(path, tensors, 3, meta, sizeof meta / sizeof *meta, e);
+	return safetensors_write(path, tensors, ARRAYS + 1, meta, sizeof meta / sizeof *meta, e);
 }
 
-static int read_state(struct train_state *t, const struct safetensors *st, const char *identity, struct err *e)
+static int read_array(float *to, size_t count, const struct safetensors *st, const char *name, struct err *e)
 {
-	static const char *const names[3] = {"values", "first_moment", "second_moment"};
-	float *to[3] = {t->values, t->m, t->v};
-	char *end = NULL;
+	const struct st_tensor *tensor =
+		safetensors_need(st, name, ST_F32, 1, (int64_t[]){(int64_t)count}, e);
+
+	if (!tensor)
+		return -1;
+	memcpy(to, tensor->data, tensor->bytes);
+	for (size_t i = 0; i < count; i++)
+		if (!isfinite(to[i]))
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path, name, i);
+	return 0;
+}
+
+static int read_state(
+	struct train_state *t, const struct safetensors *st, const char *identity, struct err *e)
+{
+	float *arrays[ARRAYS] = {t->values, t->m, t->v};
+	long long iteration;
+	double losses[3];
 
 	if (safetensors_need_format(st, "refer.checkpoint", 1, e))
 		return -1;
-	const char *own = safetensors_meta(st, "identity"), *text = safetensors_meta(st, "iteration");
+	const char *own = safetensors_meta(st, "identity");
 	if (!own || strcmp(own, identity))
 		return err_set(e, ERR_FORMAT,
-			"%s: is of another training (its options or inputs differ); remove it or train without --resume", st->path);
-	t->iteration = text ? strtol(text, &end, 10) : -1;
-	if (t->iteration < 0 || *end)
-		return err_set(e, ERR_FORMAT, "%s: metadata 'iteration' is not a count", st->path);
-	for (int i = 0; i < 3; i++) {
-		const struct st_tensor *tensor =
-			safetensors_need(st, names[i], ST_F32, 1, (int64_t[]){(int64_t)t->count}, e);
-		if (!tensor)
+			"%s: is of another training (its options or inputs differ); remove it or train without --resume",
+			st->path);
+	if (safetensors_meta_int(st, "iteration", 1, LONG_MAX, &iteration, e))
+		return -1;
+	for (int i = 0; i < ARRAYS; i++)
+		if (read_array(arrays[i], t->count, st, names[i], e))
 			return -1;
-		memcpy(to[i], tensor->data, tensor->bytes);
-	}
+	for (size_t i = 0; i < t->count; i++)
+		if (t->v[i] < 0)
+			return err_set(e, ERR_FORMAT, "%s: tensor 'second_moment': item %zu is negative",
+				st->path, i);
+	const struct st_tensor *sums = safetensors_need(st, "losses", ST_F64, 1, (int64_t[]){3}, e);
+	if (!sums)
+		return -1;
+	memcpy(losses, sums->data, sizeof losses);
+	for (int i = 0; i < 3; i++)
+		if (!isfinite(losses[i]))
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor 'losses': item %d is not finite", st->path, i);
+	t->sum = (struct step_losses){losses[0], losses[1], losses[2]};
+	t->iteration = (long)iteration;
 	return 0;
 }
 

@@ -1,15 +1,21 @@
-/* Training checkpoints (refer.checkpoint): everything that continues a training to the same bytes. formats/checkpoint.md. */
+/* Training checkpoints (refer.checkpoint): everything that continues a training to the same bytes.
+ * formats/checkpoint.md. */
 #ifndef FORMATS_CHECKPOINT_H
 #define FORMATS_CHECKPOINT_H
 
 #include "base/err.h"
-#include "refer/train.h"
+#include "refer/trainer.h"
 
-/* Writes the state whole, so that a kill at any time leaves the old or the new file. `identity` says what is trained: the
- * options and checksums of the inputs. */
+enum { CHECKPOINT_IDENTITY = 512 };
+
+/* What must be the same for a training to be gone on with: its options and the checksum of its inputs. */
+void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_options *o, uint32_t inputs);
+
+/* Writes the state whole, so that a kill at any time leaves the old or the new file. */
 int checkpoint_write(const struct train_state *t, const char *path, const char *identity, struct err *e);
 
-/* Fills a state of the same sizes. ERR_FORMAT where the file's identity is another. */
+/* Fills a state of the same sizes; after an error its arrays may be half filled. ERR_FORMAT where the file's
+ * identity is another. */
 int checkpoint_read(struct train_state *t, const char *path, const char *identity, struct err *e);
 
 #endif

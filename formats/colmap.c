@@ -205,13 +205,13 @@ static int check_end(const struct cursor *in, struct err *e)
 
 static int read_lenses_binary(struct lenses *all, struct cursor *in, const char *path, struct err *e)
 {
-	uint64_t count;
+	uint64_t count = 0;
 
 	if (open_binary(in, path, 24 + 3 * 8, &count, e))
 		return -1;
 	for (uint64_t i = 0; i < count; i++) {
 		const unsigned char *p = take(in, 24, "camera entry", i, e);
-		double params[PARAMS_MAX];
+		double params[PARAMS_MAX] = {0};
 		if (!p)
 			return -1;
 		struct lens l = {.id = (uint32_t)get_bits(p, 4)};
@@ -235,7 +235,7 @@ static int read_lenses_binary(struct lenses *all, struct cursor *in, const char 
 static int read_images_binary(
 	struct cameras *c, const struct lenses *all, struct cursor *in, const char *path, struct err *e)
 {
-	uint64_t count;
+	uint64_t count = 0;
 	size_t capacity = 0;
 
 	if (open_binary(in, path, 64 + 1 + 8, &count, e))
@@ -326,7 +326,7 @@ static int open_text(struct lines *in, const char *path, struct err *e)
 
 static int read_lens_text(struct lenses *all, struct lines *in, char *line, const char *path, struct err *e)
 {
-	double size[2], params[PARAMS_MAX];
+	double size[2], params[PARAMS_MAX] = {0};
 	struct lens l = {0};
 	int known;
 

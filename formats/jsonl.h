@@ -1,4 +1,4 @@
-/* JSON Lines: one object a line, read as a stream. */
+/* JSON Lines: one object a line, read as a stream. formats/jsonl.md. */
 #ifndef FORMATS_JSONL_H
 #define FORMATS_JSONL_H
 

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/number.h"
 #include "formats/png.h"
 
 #include <math.h>
@@ -228,17 +229,11 @@ static int put_string(FILE *out, const char *before, const char *text, struct er
 	return 0;
 }
 
-/* The fewest digits that read back as the same number, so that 0.83 stays 0.83. */
 static void put_number(FILE *out, const char *before, double x)
 {
-	char text[40];
+	char text[NUMBER_SIZE];
 
-	for (int digits = 1; digits <= 17; digits++) {
-		snprintf(text, sizeof text, "%.*g", digits, x);
-		if (strtod(text, NULL) == x)
-			break;
-	}
-	fprintf(out, "%s%s", before, text);
+	fprintf(out, "%s%s", before, number_text(text, x));
 }
 
 int masks_put(FILE *out, const struct mask_record *r, struct err *e)

@@ -31,9 +31,12 @@ static int read_choice(
 static int read_bounds(struct model *m, const struct safetensors *st, struct err *e)
 {
 	const char *text = safetensors_meta(st, "bounds");
+	int end = 0;
 
-	if (!text || sscanf(text, "[[%lf,%lf,%lf],[%lf,%lf,%lf]]", &m->low[0], &m->low[1], &m->low[2], &m->high[0],
-			     &m->high[1], &m->high[2]) != 6)
+	if (!text ||
+		sscanf(text, "[[%lf,%lf,%lf],[%lf,%lf,%lf]]%n", &m->low[0], &m->low[1], &m->low[2],
+			&m->high[0], &m->high[1], &m->high[2], &end) != 6 ||
+		!end || text[end])
 		return err_set(e, ERR_FORMAT, "%s: metadata 'bounds' is not two corners", st->path);
 	for (int k = 0; k < 3; k++)
 		if (!isfinite(m->low[k]) || !isfinite(m->high[k]) || !(m->low[k] < m->high[k]))
@@ -43,15 +46,11 @@ static int read_bounds(struct model *m, const struct safetensors *st, struct err
 
 static int read_features(struct model *m, const struct safetensors *st, struct err *e)
 {
-	const char *text = safetensors_meta(st, "gaussians");
-	char *end = NULL;
-	long long scene = text ? strtoll(text, &end, 10) : -1;
+	long long scene;
 	const struct st_tensor *ids = safetensors_need(st, "ids", ST_I32, 1, (int64_t[]){-1}, e);
 
-	if (!ids)
+	if (!ids || safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &scene, e))
 		return -1;
-	if (scene < 0 || *end)
-		return err_set(e, ERR_FORMAT, "%s: metadata 'gaussians' is not a count", st->path);
 	const struct st_tensor *x =
 		safetensors_need(st, "features", ST_F32, 2, (int64_t[]){ids->shape[0], REFER_X}, e);
 	if (!x)
@@ -66,11 +65,13 @@ static int read_features(struct model *m, const struct safetensors *st, struct e
 	memcpy(m->features, x->data, x->bytes);
 	for (size_t i = 0; i < m->n; i++)
 		if (m->ids[i] < 0 || m->ids[i] >= scene || (i && m->ids[i] <= m->ids[i - 1]))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'ids': item %zu does not rise within 0 to %lld", st->path, i,
+			return err_set(e, ERR_FORMAT,
+				"%s: tensor 'ids': item %zu does not rise within 0 to %lld", st->path, i,
 				scene - 1);
 	for (size_t i = 0; i < m->n * REFER_X; i++)
 		if (!isfinite(m->features[i]))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'features': item %zu is not finite", st->path, i);
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor 'features': item %zu is not finite", st->path, i);
 	return 0;
 }
 
@@ -83,15 +84,16 @@ static int read_parameters(struct model *m, const struct safetensors *st, struct
 		const int rows = m->layout.tensors[t].rows, is_bias = t % 2 || t >= NORM_WEIGHT;
 		if (!rows)
 			continue;
-		const struct st_tensor *tensor = safetensors_need(st, m->layout.tensors[t].name, ST_F32, is_bias ? 1 : 2,
-			(int64_t[]){rows, m->layout.tensors[t].columns}, e);
+		const struct st_tensor *tensor = safetensors_need(st, m->layout.tensors[t].name, ST_F32,
+			is_bias ? 1 : 2, (int64_t[]){rows, m->layout.tensors[t].columns}, e);
 		if (!tensor)
 			return -1;
 		float *to = m->parameters + m->layout.tensors[t].offset;
 		memcpy(to, tensor->data, tensor->bytes);
 		for (size_t i = 0; i < tensor->bytes / sizeof(float); i++)
 			if (!isfinite(to[i]))
-				return err_set(e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path, tensor->name, i);
+				return err_set(e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite",
+					st->path, tensor->name, i);
 	}
 	return 0;
 }
@@ -107,7 +109,8 @@ static int read_all(struct model *m, const struct safetensors *st, struct err *e
 		!(first = safetensors_need(st, "text.0.weight", ST_F32, 2, (int64_t[]){REFER_T1, -1}, e)))
 		return -1;
 	if (first->shape[1] < 1 || first->shape[1] > 65536)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'text.0.weight': %lld columns", st->path, (long long)first->shape[1]);
+		return err_set(e, ERR_FORMAT, "%s: tensor 'text.0.weight': %lld columns, expected 1 to 65536",
+			st->path, (long long)first->shape[1]);
 	m->similarity = (enum refer_similarity)similarity;
 	refer_layout_init(&m->layout, (enum refer_interaction)interaction, (int)first->shape[1]);
 	return read_bounds(m, st, e) || read_features(m, st, e) || read_parameters(m, st, e) ? -1 : 0;
@@ -131,7 +134,11 @@ int model_write(const struct model *m, const char *path, const char *options, lo
 {
 	struct st_tensor tensors[REFER_TENSORS + 2] = {
 		{.name = "ids", .dtype = ST_I32, .dims = 1, .shape = {(int64_t)m->n}, .data = m->ids},
-		{.name = "features", .dtype = ST_F32, .dims = 2, .shape = {(int64_t)m->n, REFER_X}, .data = m->features}};
+		{.name = "features",
+			.dtype = ST_F32,
+			.dims = 2,
+			.shape = {(int64_t)m->n, REFER_X},
+			.data = m->features}};
 	char bounds[256], gaussians[32], seed_text[32];
 	size_t n = 2;
 
@@ -142,12 +149,14 @@ int model_write(const struct model *m, const char *path, const char *options, lo
 				.dims = t % 2 || t >= NORM_WEIGHT ? 1 : 2,
 				.shape = {m->layout.tensors[t].rows, m->layout.tensors[t].columns},
 				.data = m->parameters + m->layout.tensors[t].offset};
-	snprintf(bounds, sizeof bounds, "[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]]", m->low[0], m->low[1], m->low[2],
-		m->high[0], m->high[1], m->high[2]);
+	snprintf(bounds, sizeof bounds, "[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]]", m->low[0], m->low[1],
+		m->low[2], m->high[0], m->high[1], m->high[2]);
 	snprintf(gaussians, sizeof gaussians, "%zu", m->scene_gaussians);
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
-	struct st_meta meta[] = {{"format", "refer.model"}, {"version", "1"}, {"tool", "refer-train"}, {"options", options},
-		{"seed", seed_text}, {"interaction", refer_interaction_name(m->layout.interaction)},
-		{"similarity", refer_similarity_name(m->similarity)}, {"gaussians", gaussians}, {"bounds", bounds}};
+	struct st_meta meta[] = {{"format", "refer.model"}, {"version", "1"}, {"tool", "refer-train"},
+		{"options", options}, {"seed", seed_text},
+		{"interaction", refer_interaction_name(m->layout.interaction)},
+		{"similarity", refer_similarity_name(m->similarity)}, {"gaussians", gaussians},
+		{"bounds", bounds}};
 	return safetensors_write(path, tensors, n, meta, sizeof meta / sizeof *meta, e);
 }

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/plyfile.h"
+#include "formats/plypacked.h"
 
 #include <float.h>
 #include <math.h>
@@ -21,6 +22,16 @@ enum { SLOT_MEAN = 0, SLOT_DC = 3, SLOT_OPACITY = 6, SLOT_SCALE = 7, SLOT_ROT = 
 struct layout {
 	long slot[FIXED + REST_MAX]; /* property index of each */
 	int rest;		     /* number of f_rest properties: 3 (K-1) */
+};
+
+/* Where the rows come from: the usual layout, or packed ones, which are unpacked to that of fixed_names. */
+struct source {
+	struct plyfile *file;
+	const struct plyfile_element *vertex;
+	struct layout layout;
+	int is_packed;
+	struct plypacked packed;
+	double *row;
 };
 
 enum verdict { KEEP, NOT_FINITE, ZERO_QUAT };
@@ -47,6 +58,54 @@ static int find_layout(
 		if (l->slot[FIXED + i] < 0)
 			return -1;
 	}
+	return 0;
+}
+
+/* The inverse of the sigmoid. 0 and 1 have none: these give them back in single precision. */
+static double logit(double o)
+{
+	if (o <= 0)
+		return -110;
+	if (o >= 1)
+		return 30;
+	return log(o / (1 - o));
+}
+
+/* `chunks` is the offset of the element of that name, where there is one. Release with close_source in any
+ * case. */
+static int open_source(struct source *in, struct plyfile *f, const struct plyfile_element *vertex,
+	size_t chunks, struct err *e)
+{
+	size_t width = vertex->n;
+
+	*in = (struct source){.file = f, .vertex = vertex, .is_packed = plypacked_is(f)};
+	if (in->is_packed) {
+		if (plypacked_open(&in->packed, f, vertex, chunks, e))
+			return -1;
+		in->layout.rest = in->packed.rest;
+		for (int i = 0; i < FIXED + REST_MAX; i++)
+			in->layout.slot[i] = i;
+		width = FIXED + REST_MAX;
+	} else if (find_layout(&in->layout, f, vertex, e) || plyfile_check_rows(f, vertex, e)) {
+		return -1;
+	}
+	in->row = mem_alloc(width, sizeof *in->row, f->path, e);
+	return in->row ? 0 : -1;
+}
+
+static void close_source(struct source *in)
+{
+	plypacked_close(&in->packed);
+	free(in->row);
+}
+
+static int next_row(struct source *in, size_t row, struct err *e)
+{
+	if (!in->is_packed)
+		return plyfile_row(in->file, in->vertex, row, in->row, e);
+	if (plypacked_row(&in->packed, in->file, in->vertex, row, in->row, e))
+		return -1;
+	in->row[SLOT_OPACITY] = logit(in->row[SLOT_OPACITY]);
 	return 0;
 }
 
@@ -143,71 +202,81 @@ static int note_dropped(
 	return 0;
 }
 
-static int read_gaussians(struct splats *s, double *means, struct ply_report *report, const struct layout *l,
-	struct plyfile *f, const struct plyfile_element *el, struct err *e)
+static int read_gaussians(
+	struct splats *s, double *means, struct ply_report *report, struct source *in, struct err *e)
 {
-	double *row = mem_alloc(el->n, sizeof *row, f->path, e);
 	size_t kept = 0, capacity = 0;
-	int bad = row ? 0 : -1;
+	int bad = 0;
 
-	for (size_t i = 0; !bad && i < el->rows; i++) {
-		if (plyfile_row(f, el, i, row, e)) {
-			bad = -1;
+	for (size_t i = 0; !bad && i < in->vertex->rows; i++) {
+		bad = next_row(in, i, e);
+		if (bad)
 			break;
-		}
-		enum verdict v = put_gaussian(s, kept, means + 3 * kept, l, row);
+		enum verdict v = put_gaussian(s, kept, means + 3 * kept, &in->layout, in->row);
 		if (v == KEEP)
 			kept++;
 		else
 			bad = note_dropped(report, &capacity, i, v, e);
 	}
-	free(row);
 	s->n = kept;
-	report->read = el->rows;
+	report->read = in->vertex->rows;
 	return bad;
 }
 
-static int read_vertices(struct splats *s, double offset[3], struct ply_report *report, struct plyfile *f,
-	const struct plyfile_element *el, struct err *e)
+static int read_vertices(
+	struct splats *s, double offset[3], struct ply_report *report, struct source *in, struct err *e)
 {
-	struct layout l;
-	size_t unused;
+	size_t n = in->vertex->rows, unused;
 
-	if (find_layout(&l, f, el, e) || plyfile_check_rows(f, el, e))
+	if (mem_size(n, (FIXED + REST_MAX) * sizeof(double), &unused))
+		return err_set(e, ERR_SYSTEM, "%s: %zu Gaussians do not fit in memory", in->file->path, n);
+	if (splats_alloc(s, n, 1 + in->layout.rest / 3, e))
 		return -1;
-	if (mem_size(el->rows, (FIXED + REST_MAX) * sizeof(double), &unused))
-		return err_set(e, ERR_SYSTEM, "%s: %zu Gaussians do not fit in memory", f->path, el->rows);
-	if (splats_alloc(s, el->rows, 1 + l.rest / 3, e))
-		return -1;
-	double *means = mem_alloc(el->rows, 3 * sizeof *means, "means", e);
-	int bad = !means || read_gaussians(s, means, report, &l, f, el, e) ||
-		  choose_offset(offset, means, s->n, e);
+	double *means = mem_alloc(n, 3 * sizeof *means, "means", e);
+	int bad = !means || read_gaussians(s, means, report, in, e) || choose_offset(offset, means, s->n, e);
 	for (size_t i = 0; !bad && i < 3 * s->n; i++)
 		s->means[i] = (float)(means[i] - offset[i % 3]);
 	free(means);
-	return bad ? -1 : 0;
+	return -bad;
+}
+
+/* All elements in the file's order. */
+static int read_elements(
+	struct splats *s, double offset[3], struct ply_report *report, struct plyfile *f, struct err *e)
+{
+	const struct plyfile_element *vertex = plyfile_find(f, "vertex");
+	size_t chunks = 0;
+	int bad = 0;
+
+	if (!vertex)
+		return err_set(e, ERR_FORMAT, "%s: no element 'vertex'", f->path);
+	for (size_t i = 0; !bad && i < f->n; i++) {
+		const struct plyfile_element *el = &f->elements[i];
+		if (!strcmp(el->name, "chunk"))
+			chunks = f->at;
+		if (el == vertex) {
+			struct source in;
+			bad = open_source(&in, f, vertex, chunks, e) ||
+			      read_vertices(s, offset, report, &in, e);
+			close_source(&in);
+		} else {
+			bad = plyfile_skip(f, el, e);
+		}
+	}
+	return bad || plyfile_end(f, e) ? -1 : 0;
 }
 
 int ply_read(struct splats *s, double offset[3], struct ply_report *report, const char *path, struct err *e)
 {
-	struct ply_report local;
+	struct ply_report local = {0};
 	struct plyfile f;
-	int bad = 0;
 
 	*s = (struct splats){0};
-	local = (struct ply_report){0};
 	if (report)
 		*report = local;
 	if (plyfile_open(&f, path, e))
 		return -1;
-	const struct plyfile_element *vertex = plyfile_find(&f, "vertex");
-	if (!vertex)
-		bad = err_set(e, ERR_FORMAT, "%s: no element 'vertex'", f.path);
-	for (size_t i = 0; !bad && i < f.n; i++)
-		bad = &f.elements[i] == vertex ? read_vertices(s, offset, &local, &f, vertex, e)
-					       : plyfile_skip(&f, &f.elements[i], e);
-	if (!bad)
-		bad = plyfile_end(&f, e);
+	int bad = read_elements(s, offset, &local, &f, e);
 	plyfile_close(&f);
 	if (bad)
 		splats_free(s);
@@ -240,16 +309,6 @@ static unsigned char *put_double(unsigned char *p, double value)
 
 	memcpy(&bits, &value, 8);
 	return put_bytes(p, bits, 8);
-}
-
-/* The inverse of the sigmoid. 0 and 1 have none: these give them back in single precision. */
-static double logit(double o)
-{
-	if (o <= 0)
-		return -110;
-	if (o >= 1)
-		return 30;
-	return log(o / (1 - o));
 }
 
 static void put_header(FILE *out, const struct splats *s, const char *mean_type)
@@ -294,7 +353,7 @@ int ply_write(const struct splats *s, const double offset[3], const char *path, 
 		p = put_float(p, logit(s->opacities[i]));
 		/* The logarithm of 0 is not finite; the smallest float's stands for it. */
 		for (int k = 0; k < 3; k++)
-			p = put_float(p, log(fmax(s->scales[3 * i + (size_t)k], FLT_TRUE_MIN)));
+			p = put_float(p, log(fmax((double)s->scales[3 * i + (size_t)k], FLT_TRUE_MIN)));
 		for (int k = 0; k < 4; k++)
 			p = put_float(p, s->quats[4 * i + (size_t)k]);
 		fwrite(row, 1, (size_t)(p - row), out.stream);

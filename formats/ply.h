@@ -12,10 +12,10 @@ struct ply_report {
 	size_t *dropped; /* (not_finite + zero_quat) vertex indices, rising; owned by the caller */
 };
 
-/* Reads a 3DGS .ply ("-" is stdin; binary of either byte order, or ascii): activations applied (scales exp,
- * opacity sigmoid), means minus `offset`, which is chosen here by the rule in ply.md (0 for scenes near the
- * origin) and returned. Quaternions keep their length unless it is extreme (ply.md). `report` may be NULL.
- * Returns 0, or -1 with *e set, *s zeroed and report->dropped NULL. */
+/* Reads a 3DGS .ply ("-" is stdin; binary of either byte order, or ascii; or PlayCanvas's packed form):
+ * activations applied (scales exp, opacity sigmoid), means minus `offset`, which is chosen here by the rule
+ * in ply.md (0 for scenes near the origin) and returned. Quaternions keep their length unless it is extreme
+ * (ply.md). `report` may be NULL. Returns 0, or -1 with *e set, *s zeroed and report->dropped NULL. */
 int ply_read(struct splats *s, double offset[3], struct ply_report *report, const char *path, struct err *e);
 
 /* Writes the usual 3DGS layout (x y z nx ny nz f_dc f_rest opacity scale rot), binary little-endian, with

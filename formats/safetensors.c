@@ -3,6 +3,7 @@
 #include "base/mem.h"
 
 #include <cjson/cJSON.h>
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -263,6 +264,22 @@ const char *safetensors_meta(const struct safetensors *st, const char *key)
 	return NULL;
 }
 
+int safetensors_meta_int(const struct safetensors *st, const char *key, long long low, long long high,
+	long long *value, struct err *e)
+{
+	const char *text = safetensors_meta(st, key);
+	char *end = NULL;
+
+	errno = 0;
+	*value = text ? strtoll(text, &end, 10) : 0;
+	if (!text || (*text != '-' && (*text < '0' || *text > '9')) || end == text || *end || errno ||
+		*value < low || *value > high)
+		return err_set(e, ERR_FORMAT,
+			"%s: metadata '%s' is '%s', not a whole number from %lld to %lld", st->path, key,
+			text ? text : "", low, high);
+	return 0;
+}
+
 static void shape_text(char *text, size_t size, int dims, const int64_t *shape)
 {
 	size_t used = (size_t)snprintf(text, size, "[");
@@ -458,6 +475,14 @@ static char *make_header(const struct st_tensor *tensors, const size_t *order, s
 	return text;
 }
 
+/* A failed write is found out at once, while errno still says why. */
+static int put(struct file_out *out, const void *data, size_t bytes, struct err *e)
+{
+	return bytes && fwrite(data, 1, bytes, out->stream) != bytes
+		       ? err_errno(e, "%s", file_name(out->path))
+		       : 0;
+}
+
 int safetensors_write(const char *path, const struct st_tensor *tensors, size_t n, const struct st_meta *meta,
 	size_t meta_count, struct err *e)
 {
@@ -486,12 +511,14 @@ int safetensors_write(const char *path, const struct st_tensor *tensors, size_t 
 	unsigned char length[8];
 	for (int i = 0; i < 8; i++)
 		length[i] = (unsigned char)((uint64_t)padded >> (8 * i));
-	fwrite(length, 1, 8, out.stream);
-	fwrite(header, 1, used, out.stream);
-	fwrite(spaces, 1, padded - used, out.stream);
-	for (k = 0; k < n; k++)
-		fwrite(tensors[order[k]].data, 1, tensor_bytes(&tensors[order[k]]), out.stream);
+	int bad =
+		put(&out, length, 8, e) || put(&out, header, used, e) || put(&out, spaces, padded - used, e);
+	for (k = 0; k < n && !bad; k++)
+		bad = put(&out, tensors[order[k]].data, tensor_bytes(&tensors[order[k]]), e);
 	free(order);
 	free(header);
-	return file_out_commit(&out, e);
+	if (!bad)
+		return file_out_commit(&out, e);
+	file_out_abort(&out);
+	return -1;
 }

@@ -60,6 +60,11 @@ void safetensors_close(struct safetensors *st);
 const struct st_tensor *safetensors_find(const struct safetensors *st, const char *name);
 const char *safetensors_meta(const struct safetensors *st, const char *key);
 
+/* A metadata value that is a whole number in [low,high]: digits, after a minus sign or none. Returns 0, or -1
+ * with *e set (ERR_FORMAT, "path: metadata 'key' is ..."). */
+int safetensors_meta_int(const struct safetensors *st, const char *key, long long low, long long high,
+	long long *value, struct err *e);
+
 /* The tensor of that name with exactly this type and shape (-1 in shape matches any length); NULL with *e set
  * (ERR_FORMAT, "path: tensor 'x': ..."). */
 const struct st_tensor *safetensors_need(const struct safetensors *st, const char *name, enum st_dtype dtype,

@@ -15,7 +15,7 @@ static int check_values(const struct splats *s, const char *path, struct err *e)
 {
 	for (size_t i = 0; i < s->n; i++) {
 		const float *m = s->means + 3 * i, *c = s->scales + 3 * i, *q = s->quats + 4 * i;
-		double length = fabs(q[0]) + fabs(q[1]) + fabs(q[2]) + fabs(q[3]);
+		double length = (double)fabsf(q[0]) + fabsf(q[1]) + fabsf(q[2]) + fabsf(q[3]);
 		if (!isfinite(m[0]) || !isfinite(m[1]) || !isfinite(m[2]))
 			return err_set(
 				e, ERR_FORMAT, "%s: tensor 'means': Gaussian %zu is not finite", path, i);

@@ -25,12 +25,17 @@ void text_free(struct text *t)
 	*t = (struct text){0};
 }
 
-long text_find(const struct text *t, const char *ref)
+int text_mark(const struct text *t, const char *list, char *chosen, struct list_name *unknown)
 {
-	for (size_t i = 0; i < t->n; i++)
-		if (!strcmp(t->refs[i], ref))
-			return (long)i;
-	return -1;
+	while (list_next(&list, unknown)) {
+		size_t i = 0;
+		while (i < t->n && !list_name_is(unknown, t->refs[i]))
+			i++;
+		if (i == t->n)
+			return -1;
+		chosen[i] = 1;
+	}
+	return 0;
 }
 
 /* The metadata value `key` as a JSON list of n strings. */

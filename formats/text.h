@@ -22,7 +22,8 @@ int text_read(struct text *t, const char *path, struct err *e);
 int text_write(const struct text *t, const char *path, const char *options, struct err *e);
 void text_free(struct text *t);
 
-/* Index of a ref, or -1. */
-long text_find(const struct text *t, const char *ref);
+/* Sets chosen[r] (n) to 1 for the refs in a comma-separated list. 0, or -1 and *unknown the first that no
+ * sentence has. */
+int text_mark(const struct text *t, const char *list, char *chosen, struct list_name *unknown);
 
 #endif

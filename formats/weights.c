@@ -9,22 +9,6 @@
 
 enum { VERSION_READ = 1, MAX_SIDE = 65536 };
 
-/* A whole number in the metadata. */
-static int read_number(const struct safetensors *st, const char *key, long long low, long long high,
-	long long *out, struct err *e)
-{
-	const char *text = safetensors_meta(st, key);
-	char *end = NULL;
-	long long x = text ? strtoll(text, &end, 10) : 0;
-
-	if (!text || end == text || *end || x < low || x > high)
-		return err_set(e, ERR_FORMAT,
-			"%s: metadata '%s' is '%s', not a whole number from %lld to %lld", st->path, key,
-			text ? text : "", low, high);
-	*out = x;
-	return 0;
-}
-
 static int check_indptr(const struct weights *w, int64_t pixels, int64_t nnz, struct err *e)
 {
 	const char *path = w->file.path;
@@ -88,9 +72,9 @@ static int read_all(struct weights *w, struct err *e)
 	long long width = 0, height = 0, gaussians = 0;
 
 	if (safetensors_need_format(st, "refer.weights", VERSION_READ, e) ||
-		read_number(st, "width", 1, MAX_SIDE, &width, e) ||
-		read_number(st, "height", 1, MAX_SIDE, &height, e) ||
-		read_number(st, "gaussians", 0, INT32_MAX, &gaussians, e))
+		safetensors_meta_int(st, "width", 1, MAX_SIDE, &width, e) ||
+		safetensors_meta_int(st, "height", 1, MAX_SIDE, &height, e) ||
+		safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e))
 		return -1;
 	w->width = (int)width;
 	w->height = (int)height;

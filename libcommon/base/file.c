@@ -202,6 +202,20 @@ void file_out_abort(struct file_out *out)
 	*out = (struct file_out){0};
 }
 
+int file_out_probe(const char *path, struct err *e)
+{
+	struct file_out out;
+	struct stat st;
+
+	/* A pipe that is opened and closed again would end for its reader. */
+	if (is_standard(path) || (!stat(path, &st) && !S_ISREG(st.st_mode) && !S_ISDIR(st.st_mode)))
+		return 0;
+	if (file_out_open(&out, path, e))
+		return -1;
+	file_out_abort(&out);
+	return 0;
+}
+
 int file_make_dir(const char *path, struct err *e)
 {
 	char *copy = mem_strdup(path, e);

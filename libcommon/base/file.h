@@ -38,6 +38,10 @@ int file_out_open(struct file_out *out, const char *path, struct err *e);
 int file_out_commit(struct file_out *out, struct err *e); /* closes in any case */
 void file_out_abort(struct file_out *out);		  /* harmless after commit, and on a zeroed struct */
 
+/* Fails where an output of that name could not be opened: to be found out before long work. Leaves nothing
+ * behind. */
+int file_out_probe(const char *path, struct err *e);
+
 /* Makes a directory and its parents. An existing directory is fine. */
 int file_make_dir(const char *path, struct err *e);
 

@@ -1,4 +1,4 @@
-#define _XOPEN_SOURCE 700 /* realpath */
+#define _XOPEN_SOURCE 700 /* realpath; NOLINT(bugprone-reserved-identifier) */
 #include "base/path.h"
 
 #include "base/file.h"
@@ -39,8 +39,8 @@ static char *relative(const char *from, const char *folder, const char *name, st
 	char *out = mem_alloc(bytes, 1, "path", e), *p = out;
 	if (!out)
 		return NULL;
-	for (; ups; ups--, p += 3)
-		memcpy(p, "../", 3);
+	for (; ups; ups--)
+		p += snprintf(p, 4, "../");
 	snprintf(p, bytes - (size_t)(p - out), "%s%s%s", folder, *folder ? "/" : "", name);
 	return out;
 }

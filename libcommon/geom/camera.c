@@ -22,6 +22,19 @@ const struct camera *cameras_find(const struct cameras *c, const char *name)
 	return NULL;
 }
 
+int cameras_mark(const struct cameras *c, const char *list, char *chosen, struct list_name *unknown)
+{
+	while (list_next(&list, unknown)) {
+		size_t i = 0;
+		while (i < c->n && !list_name_is(unknown, c->views[i].name))
+			i++;
+		if (i == c->n)
+			return -1;
+		chosen[i] = 1;
+	}
+	return 0;
+}
+
 struct camera camera_resize(const struct camera *from, int width, int height)
 {
 	struct camera to = *from;

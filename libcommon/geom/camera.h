@@ -2,6 +2,8 @@
 #ifndef GEOM_CAMERA_H
 #define GEOM_CAMERA_H
 
+#include "base/list.h"
+
 #include <stddef.h>
 
 enum camera_split { SPLIT_TRAIN, SPLIT_TEST };
@@ -24,6 +26,11 @@ void cameras_free(struct cameras *c);
 
 /* The view of that name, or NULL. */
 const struct camera *cameras_find(const struct cameras *c, const char *name);
+
+/* Sets chosen[i] (n) to 1 for the views in a comma-separated list. 0, or -1 and *unknown the first name that
+ * is no view's.
+ */
+int cameras_mark(const struct cameras *c, const char *list, char *chosen, struct list_name *unknown);
 
 /* The same camera at another image size; intrinsics scale alike (an off-centre principal point is honoured).
  * name and image still belong to `from`. */

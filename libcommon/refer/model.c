@@ -6,6 +6,7 @@
 static const char *const interactions[REFER_INTERACTIONS] = {
 	"none", "attention", "attention+fp", "add", "pcmi", "pcmi-proj"};
 static const char *const similarities[2] = {"dot", "cosine"};
+static const char *const contrasts[3] = {"none", "dot", "cosine"};
 
 const char *refer_interaction_name(enum refer_interaction i)
 {
@@ -31,6 +32,11 @@ int refer_similarity_parse(const char *name)
 		if (!strcmp(name, similarities[i]))
 			return i;
 	return -1;
+}
+
+const char *refer_contrast_name(enum refer_contrast c)
+{
+	return contrasts[c];
 }
 
 int refer_uses_position(enum refer_interaction i)

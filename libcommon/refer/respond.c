@@ -26,8 +26,8 @@ static struct step *make_step(const struct respond_model *m, const float *positi
 	return step_new(&setup, e);
 }
 
-int respond_all(const struct respond_model *m, const int64_t *offsets, const float *words, const size_t *which, size_t count,
-	float *out, struct err *e)
+int respond_all(const struct respond_model *m, const int64_t *offsets, const float *words,
+	const size_t *which, size_t count, float *out, struct err *e)
 {
 	const size_t width = (size_t)m->layout->text_width;
 	float *panels = mem_alloc(step_padded(m->n), REFER_X * sizeof(float), "features", e);
@@ -43,7 +43,7 @@ int respond_all(const struct respond_model *m, const int64_t *offsets, const flo
 		const int64_t own[2] = {0, offsets[which[i] + 1] - offsets[which[i]]};
 		float *m_out = out + i * m->scene_gaussians;
 		memset(m_out, 0, sizeof *m_out * m->scene_gaussians);
-		if (!own[1])
+		if (!own[1] || !m->n)
 			continue;
 		struct step *s = make_step(m, position, own, words + (size_t)offsets[which[i]] * width, 1, e);
 		if (s)
@@ -57,7 +57,7 @@ int respond_all(const struct respond_model *m, const int64_t *offsets, const flo
 	return bad;
 }
 
-double respond_mask(const float *image, size_t pixels, uint8_t *mask)
+double respond_mask(const float *image, size_t pixels, double lift, uint8_t *mask)
 {
 	double sum = 0;
 	size_t area = 0;
@@ -66,7 +66,7 @@ double respond_mask(const float *image, size_t pixels, uint8_t *mask)
 		mask[p] = image[p] > 0;
 		if (!mask[p])
 			continue;
-		sum += 1 / (1 + exp(-(double)image[p]));
+		sum += 1 / (1 + exp(lift - (double)image[p]));
 		area++;
 	}
 	return area ? sum / (double)area : 0;

@@ -19,12 +19,13 @@ struct respond_model {
 	const double *low, *high; /* (3) what means are scaled by */
 };
 
-/* out (count,N): responses to the sentences `which` (count), whose words are words[offsets[r]..]. A sentence without words
- * has no answer: all zero. */
-int respond_all(const struct respond_model *m, const int64_t *offsets, const float *words, const size_t *which, size_t count,
-	float *out, struct err *e);
+/* out (count,N): responses to the sentences `which` (count), whose words are words[offsets[r]..]. A sentence
+ * without words has no answer: all zero. */
+int respond_all(const struct respond_model *m, const int64_t *offsets, const float *words,
+	const size_t *which, size_t count, float *out, struct err *e);
 
-/* mask = image > 0; returns how sure it is: the mean of sigmoid(M) over the mask, 0 for an empty one. */
-double respond_mask(const float *image, size_t pixels, uint8_t *mask);
+/* mask = image > 0; returns how sure it is: the mean of sigmoid(image - lift) over the mask, 0 for an empty
+ * one. `lift` is what calibration added. */
+double respond_mask(const float *image, size_t pixels, double lift, uint8_t *mask);
 
 #endif

@@ -215,6 +215,9 @@ struct step_losses train_step(struct train_state *t, struct step *s, struct trai
 		targets[i] = (struct step_target){(size_t)view->sentences[picks[i]], view->masks[picks[i]]};
 	struct step_losses losses = step_run(s, t->values, train_state_x(t), &view->weights, targets, count,
 		contrast_top_count(t->iteration, gaussians), t->gradient, t->gradient + t->parameters);
+	t->sum.bce += losses.bce;
+	t->sum.contrast += losses.contrast;
+	t->sum.total += losses.total;
 	train_adam(t, rates);
 	return losses;
 }

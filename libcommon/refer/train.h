@@ -54,11 +54,12 @@ void train_order_free(struct train_order *o);
 size_t train_order_at(struct train_order *o, long iteration, uint32_t *picks, int *count);
 
 /* Parameters and referring features in one slab with gradient and both Adam moments alike; a checkpoint is
- * these and the iteration. */
+ * the slab, the iteration and the sum. */
 struct train_state {
 	size_t parameters, count;	  /* floats of the parameters (padded) and of the slab */
 	float *values, *gradient, *m, *v; /* (count): parameters, then x in panels */
 	long iteration;			  /* steps done */
+	struct step_losses sum;		  /* of the steps since the caller last set it to zero */
 };
 
 int train_state_init(
@@ -73,7 +74,7 @@ struct train_rates {
 /* Adam on all parameters with the gradient that is there; iteration + 1. */
 void train_adam(struct train_state *t, const struct train_rates *rates);
 
-/* One step: gradient, Adam, iteration + 1. */
+/* One step: gradient, Adam, iteration + 1, losses added to sum. */
 struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o,
 	const struct train_rates *rates, size_t gaussians);
 

@@ -16,7 +16,7 @@ enum {
 };
 
 #define BLEND_ALPHA_MAX 0.99f
-#define BLEND_ALPHA_MIN_LOG2 -7.99435344f /* log2(1/255) */
+#define BLEND_ALPHA_MIN_LOG2 (-7.99435344f) /* log2(1/255) */
 #define BLEND_STOP 1e-4f /* a Gaussian that would bring T below this ends the pixel instead */
 
 /* State of a tile's pixels, block by block (blend_place). */

@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
 # Makes the folder in which the EXAMPLES of the manual pages run. usage: examples-setup.sh DIR BIN
-# It holds one small file of each kind, under the names that the manual pages use: sentences.jsonl, candidates.jsonl,
-# scene/ and so on.
+# It holds a small synthetic scene (formats/synth.md) and what each tool makes of it, under the names that the manual pages
+# use: scene, weights, text.safetensors, masks.jsonl, model.safetensors, pred.jsonl; and encoder, a tiny BERT.
 set -eu
-dir=$1
-mkdir -p "$dir"
+mkdir -p "$1"
 golden=$(cd "$(dirname "$0")/../golden" && pwd)
-BIN=$(cd "$2" && pwd)
-cd "$dir"
-PATH=$BIN:$PATH
+PATH=$(cd "$2" && pwd):$PATH
+cd "$1"
 
-printf '%s\n' '{"ref":"r1","object":"cup","text":"the red cup","split":"train"}' \
-	'{"ref":"r2","object":"cup","text":"the cup on the left","split":"test"}' >sentences.jsonl
-# A 3x2 mask with its first column set.
-printf '{"view":"v%d","object":"cup","score":0.9,"segmentation":{"size":[2,3],"counts":[0,2,4]}}\n' 1 2 >candidates.jsonl
-cp candidates.jsonl truth.jsonl
-cp candidates.jsonl pred.jsonl
 cp -r "$golden/bert" encoder
+gs-synth -q --objects 3 --views 5 --size 64x48 --gaussians 1000 -o .
+gs-import -q --images images --test-views "$(cat test-views)" -o scene point_cloud.ply
+gs-weigh -q -o weights scene
+text-encode -q --model encoder -o text.safetensors sentences.jsonl
+pseudomask-select -q -o masks.jsonl candidates.jsonl
+refer-train -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 20 \
+	-o model.safetensors
+# Perfect, so that examples that demand a score go on.
+cp truth.jsonl pred.jsonl

@@ -99,7 +99,21 @@ says_in() {
 
 @test "a folder of another kind" {
 	mkdir other
-	says 1 "other: neither a scene (no splats.safetensors) nor a COLMAP model" "$BIN/gs-check" other
+	says 1 "other: not a scene, COLMAP model or folder of weights" "$BIN/gs-check" other
+}
+
+@test "a folder of weights, and one view of it" {
+	tensors='"indptr":{"dtype":"I64","shape":[3],"data_offsets":[0,24]},"index":{"dtype":"I32","shape":[2],"data_offsets":[24,32]},"dropped":{"dtype":"F32","shape":[2],"data_offsets":[32,40]},"weight":{"dtype":"F32","shape":[2],"data_offsets":[40,48]}'
+	header="{\"__metadata__\":{\"format\":\"refer.weights\",\"version\":\"1\",\"width\":\"2\",\"height\":\"1\",\"gaussians\":\"3\"},$tensors}"
+	while (((8 + ${#header}) % 8)); do header+=' '; done
+	mkdir weights
+	for id in 00 02 03; do
+		st weights/v$id.safetensors "$header" 000000000000000001000000000000000200000000000000${id}00000001000000$f0$f0$fhalf$f1
+	done
+	says 0 "weights/v02.safetensors: ok: refer.weights, 2x1, 2 weights, 3 gaussians of the scene" "$BIN/gs-check" weights/v02.safetensors
+	says 1 "weights/v03.safetensors: tensor 'index': entry 0 is 3, not in 0 to 2" "$BIN/gs-check" weights
+	rm weights/v03.safetensors
+	says 0 "weights: ok: weights, 2 views, 4 weights" "$BIN/gs-check" weights
 }
 
 @test "no operand is a usage error" {

@@ -157,3 +157,10 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 	[[ "$output" == "miou-score: ../cut.jsonl:2: not JSON at column "* ]]
 	[ -z "$(strays)" ]
 }
+
+@test "--predicted-views leaves out the truth of views without a prediction" {
+	printf '{"view":"v%d","object":"cup","segmentation":{"size":[2,3],"counts":[0,2,4]}}\n' 1 2 >two.jsonl
+	head -n 1 two.jsonl >one.jsonl
+	[ "$("$BIN/miou-score" --json --truth two.jsonl one.jsonl | jq -c '[.miou,.pairs,.missing]')" = '[0.5,2,1]' ]
+	[ "$("$BIN/miou-score" --json --predicted-views --truth two.jsonl one.jsonl | jq -c '[.miou,.pairs,.missing]')" = '[1,1,0]' ]
+}

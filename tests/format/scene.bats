@@ -81,10 +81,10 @@ bad_list() {
 
 @test "a missing part" {
 	rm scene/cameras.json
-	says 1 "scene: neither a scene (no cameras.json) nor a COLMAP model" "$BIN/gs-check" scene
+	says 1 "scene: a scene without cameras.json" "$BIN/gs-check" scene
 	scene scene
 	rm scene/splats.safetensors
-	says 1 "scene: neither a scene (no splats.safetensors) nor a COLMAP model" "$BIN/gs-check" scene
+	says 1 "scene: not a scene, COLMAP model or folder of weights" "$BIN/gs-check" scene
 }
 
 @test "cameras.json that is no list of views" {

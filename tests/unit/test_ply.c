@@ -163,7 +163,7 @@ static void broken(int encoding)
 {
 	static struct bytes b;
 	struct splats s;
-	double offset[3];
+	double offset[3] = {0};
 	int accepted = 0, wrong_code = 0;
 
 	build_foreign(&b, encoding, 3, 9);
@@ -220,23 +220,24 @@ static void make_splats(struct splats *s, size_t n, int k)
 
 static void round_trip(int k, const double offset[3])
 {
-	struct splats a, b;
+	struct splats a, b = {0};
 	struct err e = {0};
-	double back[3], worst_mean = 0, worst_scale = 0, worst_opacity = 0;
+	double back[3] = {0}, worst_mean = 0, worst_scale = 0, worst_opacity = 0;
 	size_t n = 200;
 
 	make_splats(&a, n, k);
 	int bad = ply_write(&a, offset, path, &e) || ply_read(&b, back, NULL, path, &e);
-	if (!CHECK(!bad, "K = %d: %s", k, e.message))
+	if (!CHECK(!bad, "K = %d: %s", k, e.message) || !b.means)
 		return;
 	CHECK(b.n == n && b.sh_coefficients == k, "%zu Gaussians, K = %d", b.n, b.sh_coefficients);
 	for (size_t i = 0; i < 3 * n; i++) {
 		double want = a.means[i] + offset[i % 3], have = b.means[i] + back[i % 3];
 		worst_mean = fmax(worst_mean, fabs(want - have));
-		worst_scale = fmax(worst_scale, fabs(a.scales[i] - b.scales[i]) / fmax(a.scales[i], 1e-30));
+		worst_scale = fmax(worst_scale,
+			fabs((double)a.scales[i] - b.scales[i]) / fmax((double)a.scales[i], 1e-30));
 	}
 	for (size_t i = 0; i < n; i++)
-		worst_opacity = fmax(worst_opacity, fabs(a.opacities[i] - b.opacities[i]));
+		worst_opacity = fmax(worst_opacity, fabs((double)a.opacities[i] - b.opacities[i]));
 	CHECK(worst_mean < 1e-6, "means off by %g", worst_mean);
 	CHECK(worst_scale < 2e-6, "scales off by a factor of 1 + %g", worst_scale);
 	CHECK(worst_opacity < 2e-7, "opacities off by %g", worst_opacity);
@@ -281,7 +282,7 @@ static void left_out(void)
 	struct splats s;
 	struct ply_report report;
 	struct err e = {0};
-	double offset[3];
+	double offset[3] = {0};
 
 	for (int i = 0; i < 24; i++)
 		for (int k = 0; k < 14; k++)
@@ -320,7 +321,7 @@ static void recentring(void)
 	double rows[5][14];
 	struct splats s;
 	struct err e = {0};
-	double offset[3];
+	double offset[3] = {0};
 
 	for (int i = 0; i < 5; i++) {
 		for (int k = 0; k < 14; k++)
@@ -356,7 +357,7 @@ static void huge_counts(void)
 		"18446744073709551616", "99999999999999999999999"};
 	char text[256];
 	struct splats s;
-	double offset[3];
+	double offset[3] = {0};
 
 	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
 		struct err e = {0};

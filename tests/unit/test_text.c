@@ -67,7 +67,12 @@ static void text_round_trip(void)
 		CHECK(!strcmp(out.refs[i], refs[i]) && !strcmp(out.objects[i], objects[i]) &&
 				!strcmp(out.texts[i], texts[i]),
 			"names of sentence %d differ", i);
-	CHECK(text_find(&out, "r3") == 2 && text_find(&out, "r4") == -1, "text_find");
+	char chosen[3] = {0};
+	struct list_name unknown;
+	CHECK(!text_mark(&out, "r3,r1,r3", chosen, &unknown) && chosen[0] && !chosen[1] && chosen[2],
+		"text_mark");
+	CHECK(text_mark(&out, "r1,r,r2", chosen, &unknown) == -1 && unknown.length == 1 && !chosen[1],
+		"an unknown ref");
 	text_free(&out);
 }
 

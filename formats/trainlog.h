@@ -1,0 +1,26 @@
+/* Training logs: how the losses went, JSON Lines. formats/trainlog.md. */
+#ifndef FORMATS_TRAINLOG_H
+#define FORMATS_TRAINLOG_H
+
+#include "base/err.h"
+#include "base/file.h"
+#include "refer/step.h"
+
+struct trainlog {
+	const char *path;    /* NULL: no log */
+	FILE *stream;	     /* a file, written line by line so that it can be watched */
+	struct file_out out; /* or stdout, a device or a pipe */
+};
+
+/* Begins a log, or goes on with one: the lines of steps after `iteration` are cut off, as they will be
+ * written again. path NULL makes a log that takes lines and writes none; "-" is stdout. */
+int trainlog_open(struct trainlog *l, const char *path, long iteration, struct err *e);
+
+/* A line: the means of the `steps` losses that add up to *sum. */
+int trainlog_put(
+	struct trainlog *l, long iteration, const struct step_losses *sum, long steps, struct err *e);
+
+/* Closes in any case, also a log that was not opened. */
+int trainlog_close(struct trainlog *l, struct err *e);
+
+#endif

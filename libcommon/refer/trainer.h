@@ -1,0 +1,53 @@
+/* A training in progress: the Gaussians that learn, the step over them, the order of the views and the state.
+ */
+#ifndef REFER_TRAINER_H
+#define REFER_TRAINER_H
+
+#include "base/err.h"
+#include "refer/train.h"
+
+struct trainer_options {
+	enum refer_interaction interaction;
+	enum refer_similarity similarity;
+	enum refer_contrast contrast;
+	double temperature, lambda; /* of the contrast */
+	double tolerance;	    /* train_active_set's */
+	long long batch;	    /* most sentences in a step */
+	struct train_rates rates;
+	long long seed;
+};
+
+/* What is learned from. Referred to, not copied. */
+struct trainer_source {
+	const float *means;	/* (scene_gaussians,3) */
+	size_t scene_gaussians; /* N */
+	int text_width;
+	size_t sentences;	/* R */
+	const int64_t *offsets; /* (R+1) into words */
+	const float *words;	/* (offsets[R], text_width) */
+	const int *objects;	/* (R) */
+	const struct train_view *views;
+	size_t view_count, pixels; /* pixels of the largest view */
+};
+
+struct trainer {
+	struct refer_layout layout;
+	struct train_rates rates;
+	size_t n;     /* M Gaussians that learn */
+	int32_t *ids; /* (M) */
+	double low[3], high[3];
+	float *position; /* (M,3) */
+	struct step *step;
+	struct train_order order;
+	struct train_state state;
+};
+
+/* ERR_FORMAT, without a file name, where no Gaussian has weight. */
+int trainer_init(
+	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e);
+void trainer_free(struct trainer *t);
+
+/* The next step, train_step's. */
+struct step_losses trainer_step(struct trainer *t);
+
+#endif

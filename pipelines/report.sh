@@ -1,0 +1,31 @@
+#!/bin/sh
+# Prints what two-stage.mk made in a folder: scores, times and memory. usage: report.sh SCENE
+set -eu
+dir=$1
+
+# The number at a key of a score file, as a percentage; the objects' own come after the scene's.
+percent() {
+	grep -o "\"$1\":[0-9.eE+-]*" "$2" | head -n 1 | awk -F: '{ printf "%6.1f", 100 * $2 }'
+}
+
+# row LABEL FILE
+row() {
+	[ -e "$2" ] || return 0
+	printf '%-42s %s %s %s %s %s\n' "$1" "$(percent miou "$2")" "$(percent oiou "$2")" "$(percent p25 "$2")" \
+		"$(percent p50 "$2")" "$(percent p75 "$2")"
+}
+
+printf '%-42s %6s %6s %6s %6s %6s\n' "" mIoU oIoU P@25 P@50 P@75
+row "selected masks, training views" "$dir/stage1/masks.score.json"
+for stage in 1 2; do
+	[ $stage = 1 ] || row "stage 1's masks, training views" "$dir/stage2/masks.score.json"
+	row "stage $stage, test views, training sentences" "$dir/stage$stage/predictions.train.score.json"
+	row "stage $stage, test views, test sentences" "$dir/stage$stage/predictions.test.score.json"
+done
+echo
+printf '%-12s %10s %12s\n' step seconds "peak MiB"
+for step in import weigh encode select train1 teach train2 render1.train render1.test render2.train render2.test overlay1 overlay2; do
+	[ -e "$dir/log/$step" ] || continue
+	sed -n 's/.*: \([0-9.]*\) s, peak memory \([0-9.]*\) MiB$/\1 \2/p' "$dir/log/$step" | tail -n 1 |
+		awk -v step="$step" '{ printf "%-12s %10s %12s\n", step, $1, $2 }'
+done

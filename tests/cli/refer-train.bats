@@ -1,0 +1,367 @@
+#!/usr/bin/env bats
+# refer-train. Options that every tool has are in common.bats; what makes a model or a checkpoint malformed in
+# format/model.bats and format/checkpoint.bats; the step, the order and the state in unit/test_step.c and unit/test_train.c.
+
+setup_file() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	"$BATS_TEST_DIRNAME/examples-setup.sh" "$BATS_FILE_TMPDIR" "$BIN"
+	cd "$BATS_FILE_TMPDIR"
+	# A training sentence of each object, and a test sentence.
+	jq -c 'select(.ref | test("-1$|bowl-5"))' sentences.jsonl >some.jsonl
+	"$BIN/text-encode" --model encoder -o text.safetensors some.jsonl
+}
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load ../format/files
+	cd "$BATS_TEST_TMPDIR"
+	export OMP_WAIT_POLICY=passive # tests run beside each other
+	made=$BATS_FILE_TMPDIR
+	cp -r "$made/scene" "$made/weights" "$made/text.safetensors" "$made/masks.jsonl" .
+}
+
+# train [OPTION]...: eight steps, unless the options say otherwise; few, since sanitizers make them slow.
+train() {
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 8 "$@"
+}
+
+# meta FILE KEY
+meta() {
+	head -c $((8 + $(od -An -t d8 -N 8 "$1"))) "$1" | tail -c +9 | jq -r ".__metadata__[\"$2\"]"
+}
+
+# refuses STATUS MESSAGE [OPTION]...: training fails so, and leaves nothing.
+refuses() {
+	local status=$1 message=$2
+	shift 2
+	rm -rf out
+	mkdir out
+	says "$status" "refer-train: $message" train -q -o out/m "$@" && [ -z "$(ls -A out)" ]
+}
+
+@test "a model, and nothing else" {
+	train -o out.safetensors >printed 2>&1
+	[ ! -s printed ]
+	[ "$(ls | tr '\n' ' ')" = "masks.jsonl out.safetensors printed scene text.safetensors weights " ]
+	"$BIN/gs-check" out.safetensors
+	[ "$(meta out.safetensors gaussians)" = 1000 ]
+	[[ "$(meta out.safetensors options)" == "--iterations 8 --interaction pcmi --similarity dot --contrast cosine \
+--temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --tolerance 0 --seed 1, inputs "???????? ]]
+}
+
+@test "--threads 1, 2 and 3 give the same bytes" {
+	for n in 1 2 3; do train --threads $n --batch 2 --log log$n -o m$n; done
+	cmp m1 m2
+	cmp m1 m3
+	cmp log1 log2
+}
+
+@test "the same seed gives the same bytes, another seed others" {
+	train -o a
+	train -o b --seed 1
+	train -o c --seed 2
+	cmp a b
+	! cmp -s a c
+	[ "$(meta c seed)" = 2 ]
+}
+
+@test "stdout and stdin equal files" {
+	train -o file
+	train -o - >piped
+	cmp file piped
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks - --iterations 8 -o from <masks.jsonl
+	cmp file from
+	"$BIN/refer-train" --scene scene --weights weights --text - --masks masks.jsonl --iterations 8 -o from <text.safetensors
+	cmp file from
+}
+
+@test "a line of the log every 100 steps, and the loss falls" {
+	train --iterations 310 --log log -o m
+	[ "$(jq -r .iteration log | tr '\n' ' ')" = "100 200 300 " ]
+	jq -se '.[2].loss < 0.2 * .[0].loss and .[2].bce < 0.15 and all(.[]; .loss > .bce and .contrast > 0)' log
+	jq -se 'all(.[]; (.bce + 0.02 * .contrast - .loss | fabs) < 1e-6 * .loss)' log
+}
+
+@test "--log - is stdout, and a pipe is written to" {
+	hundred() { train --interaction none --iterations 100 -o m "$@"; }
+	hundred --log log
+	hundred --log - >out
+	cmp log out
+	hundred --log >(cat >piped)
+	for _ in 1 2 3 4 5 6 7 8 9 10; do cmp -s log piped && break; sleep 0.1; done
+	cmp log piped
+}
+
+@test "every --interaction, --similarity and --contrast learns finite numbers" {
+	for way in none attention attention+fp add pcmi pcmi-proj; do
+		train --interaction $way --iterations 30 -o m
+		[ "$(meta m interaction)" = $way ]
+		"$BIN/gs-check" m # finite, all of it
+	done
+	for way in none attention pcmi; do
+		train --interaction $way --similarity cosine -o m
+		[ "$(meta m similarity)" = cosine ]
+		"$BIN/gs-check" m
+	done
+	for way in none dot; do
+		train --contrast $way -o m.$way
+		"$BIN/gs-check" m.$way
+	done
+	! cmp -s m.none m.dot
+}
+
+@test "a killed training goes on to the same model and log" {
+	train --interaction none --iterations 230 --log log -o whole
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl \
+		--interaction none --iterations 230 --checkpoint 30 --log part.log -o part &
+	pid=$!
+	for ((i = 0; i < 1000; i++)); do [ -e part.checkpoint ] && break; sleep 0.01; done
+	kill -KILL $pid
+	wait $pid || true
+	[ -e part.checkpoint ]
+	[ ! -e part ]
+	# What the killed one wrote after its checkpoint is written again.
+	printf '{"iteration":100000,"bce":1}\n{"iteration":1' >>part.log
+	train -v --interaction none --iterations 230 --checkpoint 30 --resume --log part.log -o part 2>err
+	grep -qE '^refer-train: going on after step [0-9]+$' err
+	cmp whole part
+	cmp log part.log
+	[ ! -e part.checkpoint ]
+	rm -f part.checkpoint.tmp.* # of a checkpoint that the kill met
+	[ "$(ls | tr '\n' ' ')" = "err log masks.jsonl part part.log scene text.safetensors weights whole " ]
+}
+
+# m.checkpoint of 50 steps without interaction: step 100 cannot be logged.
+cut_short() {
+	rm -rf m m.checkpoint
+	says 4 "refer-train: /dev/full: No space left on device" \
+		train --interaction none --iterations 150 --checkpoint 50 -o m --log /dev/full
+	[ "$(meta m.checkpoint iteration)" = 50 ]
+}
+
+@test "a training that failed goes on from its checkpoint" {
+	train --interaction none --iterations 60 -o whole
+	cut_short
+	train --interaction none --iterations 60 --resume -o m
+	cmp whole m
+	[ ! -e m.checkpoint ]
+}
+
+@test "--resume with other options or inputs is refused" {
+	cut_short
+	other="m.checkpoint: is of another training (its options or inputs differ); remove it or train without --resume"
+	for option in "--seed 2" "--interaction attention" "--similarity cosine" "--contrast dot" "--temperature 0.2" "--lambda 0.03" \
+		"--feature-rate 0.001" "--mlp-rate 0.001" "--batch 2" "--tolerance 0.1"; do
+		says 3 "refer-train: $other" train --resume --interaction none $option -o m
+	done
+	head -n 11 masks.jsonl >fewer.jsonl
+	says 3 "refer-train: $other" train --resume --interaction none --masks fewer.jsonl -o m
+	says 3 "refer-train: m.checkpoint: has 50 steps, more than the 49 asked for" train --resume --interaction none --iterations 49 -o m
+	[ ! -e m ]
+	[ -e m.checkpoint ]
+	cp text.safetensors m.checkpoint
+	says 3 "refer-train: m.checkpoint: format is 'refer.text', expected 'refer.checkpoint'" train --resume -o m
+}
+
+@test "--resume without a checkpoint starts at the beginning" {
+	train -o a
+	train --resume -o b
+	cmp a b
+}
+
+@test "without --resume a checkpoint is replaced with a warning, or left alone where none are written" {
+	cut_short
+	cp m.checkpoint kept
+	says 0 "refer-train: warning: m.checkpoint: is of an earlier training and will be replaced; --resume would go on from it" \
+		train --checkpoint 5 -o m
+	[ ! -e m.checkpoint ] # it became this training's own
+	cp kept m.checkpoint
+	says 0 "" train --checkpoint 0 -o m
+	cmp kept m.checkpoint
+}
+
+@test "a model that exists is replaced, in the end" {
+	echo old >m
+	refused() { says 3 "refer-train: none.jsonl: no mask of a training view is of a training sentence of text.safetensors" "$@"; }
+	: >none.jsonl
+	refused train --masks none.jsonl -o m
+	[ "$(cat m)" = old ]
+	train -o m
+	"$BIN/gs-check" m
+}
+
+@test "a model that cannot be written is found out before training" {
+	mkdir folder
+	for out in folder none/m; do
+		run train --iterations 100000000 --log log -o $out
+		[ "$status" = 4 ]
+		[ ! -e log ]
+	done
+	[ "$output" = "refer-train: none/m: No such file or directory" ]
+	says 4 "refer-train: none/log: No such file or directory" train --iterations 100000000 --log none/log -o m
+}
+
+@test "a full disk: exit 4, and nothing is left" {
+	[ -e /dev/full ] || skip "no /dev/full"
+	says 4 "refer-train: /dev/full: No space left on device" train -o /dev/full
+	says 4 "refer-train: /dev/full: No space left on device" train --interaction none --iterations 100 --log /dev/full -o m
+	[ ! -e m ]
+	# No file above 100 KiB can be written: the checkpoint cannot.
+	small() { (trap '' XFSZ; ulimit -f 100; train -q --checkpoint 2 -o m); }
+	says 4 "refer-train: m.checkpoint: File too large" small
+	[ "$(ls | tr '\n' ' ')" = "masks.jsonl scene text.safetensors weights " ]
+}
+
+@test "inputs that are not there: exit 4" {
+	refuses 4 "none/splats.safetensors: No such file or directory" --scene none
+	refuses 4 "none/view_000.safetensors: No such file or directory" --weights none
+	refuses 4 "none: No such file or directory" --text none
+	refuses 4 "none: No such file or directory" --masks none
+	rm weights/view_001.safetensors
+	refuses 4 "weights/view_001.safetensors: No such file or directory"
+}
+
+@test "inputs that are empty: exit 3" {
+	: >empty
+	refuses 3 "empty: 0 bytes, too short for a safetensors file" --text empty
+	refuses 3 "empty: no mask of a training view is of a training sentence of text.safetensors" --masks empty
+	: >weights/view_000.safetensors
+	refuses 3 "weights/view_000.safetensors: 0 bytes, too short for a safetensors file"
+	: >scene/splats.safetensors
+	refuses 3 "scene/splats.safetensors: 0 bytes, too short for a safetensors file"
+}
+
+@test "inputs that are cut short: exit 3" {
+	cut() { truncate -s -1 "$1"; }
+	cut masks.jsonl
+	truncate -s -40 masks.jsonl
+	run train -o m
+	[ "$status" = 3 ]
+	[[ $output == "refer-train: masks.jsonl:12: "* ]]
+	cp "$made/masks.jsonl" .
+	cut text.safetensors
+	run train -o m
+	[ "$status" = 3 ]
+	[[ $output == "refer-train: text.safetensors: tensor 'sentences': ends at data offset "* ]]
+	cp "$made/text.safetensors" .
+	cut weights/view_000.safetensors
+	run train -o m
+	[ "$status" = 3 ]
+	[[ $output == "refer-train: weights/view_000.safetensors: tensor 'weight': ends at data offset "* ]]
+	cut scene/splats.safetensors
+	run train -o m
+	[ "$status" = 3 ]
+	[[ $output == "refer-train: scene/splats.safetensors: tensor 'sh': ends at data offset "* ]]
+	[ ! -e m ]
+}
+
+@test "inputs of another kind: exit 3" {
+	refuses 3 "weights/view_000.safetensors: format is 'refer.weights', expected 'refer.text'" --text weights/view_000.safetensors
+	refuses 3 "$made/sentences.jsonl:1: key 'view' is missing" --masks "$made/sentences.jsonl"
+	cp text.safetensors weights/view_000.safetensors
+	refuses 3 "weights/view_000.safetensors: format is 'refer.text', expected 'refer.weights'"
+	cp text.safetensors scene/splats.safetensors
+	refuses 3 "scene/splats.safetensors: format is 'refer.text', expected 'refer.splats'"
+}
+
+@test "a mask of a view that the scene does not have" {
+	sed '3s/"view_[0-9]*"/"view_999"/' masks.jsonl >other.jsonl
+	refuses 3 "other.jsonl:3: key 'view': the scene has no view 'view_999'" --masks other.jsonl
+}
+
+@test "two masks of one sentence or object in a view" {
+	sed 's/"object":"[^"]*"/"ref":"brown-box-1"/' masks.jsonl >refs.jsonl
+	refuses 3 "refs.jsonl:2: a second mask of ref 'brown-box-1' in the same view" --masks refs.jsonl
+	sed 's/"object":"[^"]*"/"object":"cup"/' masks.jsonl >objects.jsonl
+	refuses 3 "objects.jsonl:2: a second mask of object 'cup' in the same view" --masks objects.jsonl
+}
+
+@test "weights of another scene" {
+	"$BIN/gs-synth" -q --objects 2 --views 5 --size 64x48 --gaussians 1001 -o other
+	"$BIN/gs-import" -q --images other/images -o other/scene other/point_cloud.ply
+	"$BIN/gs-weigh" -q -o other/weights other/scene
+	refuses 3 "other/weights/view_000.safetensors: is of a scene of 1001 Gaussians, this one has 1000" --weights other/weights
+}
+
+@test "masks that match no sentence" {
+	sed 's/"object":"/&other /' masks.jsonl >other.jsonl
+	refuses 3 "other.jsonl: no mask of a training view is of a training sentence of text.safetensors" --masks other.jsonl
+	# Masks of test views teach nothing.
+	sed 's/"view":"[^"]*"/"view":"'"$(cat "$made/test-views")"'"/' masks.jsonl | head -n 3 >test.jsonl
+	refuses 3 "test.jsonl: no mask of a training view is of a training sentence of text.safetensors" --masks test.jsonl
+}
+
+@test "a text without training sentences, or with some that have no words" {
+	jq -c '.split = "test"' "$made/some.jsonl" | "$BIN/text-encode" --model "$made/encoder" -o test.safetensors
+	refuses 3 "test.safetensors: no training sentence with words" --text test.safetensors
+	jq -c 'if .ref == "pink-cone-1" then .text = "" else . end' "$made/some.jsonl" |
+		"$BIN/text-encode" --model "$made/encoder" -o wordless.safetensors
+	says 0 "refer-train: warning: wordless.safetensors: 1 training sentences without words are left out" \
+		train --text wordless.safetensors -o m
+	says 0 "" train -q --text wordless.safetensors -o m
+}
+
+@test "masks of another size are resized" {
+	# Each pixel four times is the same mask.
+	"$BIN/gs-weigh" -q --scale 0.5 -o half scene
+	"$BIN/gs-weigh" -q --scale 0.25 -o quarter scene
+	train --weights half -o a
+	[ -s a ]
+	# All and nothing stay that at any size.
+	for size in 1,1 48,64 97,31; do
+		h=${size%,*} w=${size#*,}
+		jq -nc --argjson h $h --argjson w $w '{view:"view_000",object:"brown box",segmentation:{size:[$h,$w],counts:[0,$h*$w]}}' >full.jsonl
+		train --weights quarter --masks full.jsonl -o m.$w
+	done
+	cmp m.1 m.64
+	cmp m.1 m.31
+}
+
+@test "a mask of a sentence goes before that of its object, whatever their order" {
+	mask() { printf '{"view":"view_000",%s,"segmentation":{"size":[1,1],"counts":[%s]}}\n' "$1" "$2"; }
+	{ mask '"ref":"brown-box-1"' 0,1; mask '"object":"brown box"' 1; } >a.jsonl
+	{ mask '"object":"brown box"' 1; mask '"ref":"brown-box-1"' 0,1; } >b.jsonl
+	mask '"ref":"brown-box-1"' 0,1 >c.jsonl
+	for f in a b c; do train --masks $f.jsonl -o $f; done
+	cmp a b
+	cmp a c
+}
+
+@test "views without any weight" {
+	jq -c '.[].world_to_camera[2][3] = -1000' scene/cameras.json >moved && mv moved scene/cameras.json
+	"$BIN/gs-weigh" -q -o nothing scene
+	refuses 3 "nothing: no Gaussian has weight in a view with masks" --weights nothing
+}
+
+@test "--tolerance leaves Gaussians out" {
+	train -o all
+	train --tolerance 0.2 -o some
+	[ "$(wc -c <some)" -lt "$(wc -c <all)" ]
+	"$BIN/gs-check" some
+}
+
+@test "-v says what is learned from, and -q leaves out warnings" {
+	cat masks.jsonl >more.jsonl
+	printf '{"view":"%s","object":"brown box","segmentation":{"size":[1,1],"counts":[1]}}\n' "$(cat "$made/test-views")" >>more.jsonl
+	train -v --masks more.jsonl -o m 2>err
+	grep -qx 'refer-train: 1 masks of test views are not used' err
+	grep -qxE 'refer-train: [0-9]+ of 1000 Gaussians, 4 views, 3 sentences, 12 pairs' err
+	tail -n 1 err | grep -qE '^refer-train: [0-9.]+ s, peak memory [0-9.]+ MiB$'
+}
+
+@test "usage errors" {
+	try=$'\n'"Try 'refer-train --help'."
+	says 2 "refer-train: --scene, --weights, --text and --masks are required$try" "$BIN/refer-train" -o m
+	says 2 "refer-train: -o MODEL is required$try" train
+	says 2 "refer-train: --text and --masks cannot both be stdin$try" train --text - --masks - -o m
+	says 2 "refer-train: --similarity cosine does not go with --interaction pcmi-proj, whose features are normalised$try" \
+		train --similarity cosine --interaction pcmi-proj -o m
+	says 2 "refer-train: --resume needs a file to write to: there is no checkpoint of stdout$try" train --resume -o -
+	says 2 "refer-train: --log and --output cannot both be stdout$try" train --log - -o -
+	says 2 "refer-train: --iterations: '0' is not a whole number from 1 to 100000000$try" train --iterations 0 -o m
+	says 2 "refer-train: --batch: '65' is not a whole number from 1 to 64$try" train --batch 65 -o m
+	says 2 "refer-train: --tolerance: '1' is not a number from 0 to 0.99$try" train --tolerance 1 -o m
+	says 2 "refer-train: --interaction: 'all' is not one of none|attention|attention+fp|add|pcmi|pcmi-proj$try" \
+		train --interaction all -o m
+	[ ! -e m ]
+}

@@ -1,0 +1,148 @@
+#!/usr/bin/env bats
+# formats/model.md: what a model of a scene holds. Rules of every safetensors file are in safetensors.bats.
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load files
+	cd "$BATS_TEST_TMPDIR"
+}
+
+# model FILE [NAME=VALUE]...: the smallest model, without interaction, of one of three Gaussians and texts of one column; all
+# numbers are 0. VALUE replaces a metadata value (an empty one leaves it out) or, with dots written _, a tensor's shape
+# (text_0_weight='[512,2]'), its type (_type) or one item's four bytes (_item=3:0000c07f). without=NAME leaves a tensor out.
+model() {
+	local file=$1 assignment at=0 name shape type key items header= sep= patches=() without=
+	local interaction=none similarity=dot gaussians=3 bounds='[[-1,-1,-1],[1,1,1]]'
+	local -A shapes=([ids]='[1]' [features]='[1,16]' [text_0_weight]='[512,1]' [text_0_bias]='[512]'
+		[text_1_weight]='[256,512]' [text_1_bias]='[256]' [text_2_weight]='[128,256]' [text_2_bias]='[128]'
+		[feature_0_weight]='[32,16]' [feature_0_bias]='[32]' [feature_1_weight]='[64,32]' [feature_1_bias]='[64]'
+		[feature_2_weight]='[128,64]' [feature_2_bias]='[128]') types=([ids]=I32) patch=()
+	shift
+	for assignment; do
+		key=${assignment%%=*}
+		case $key in
+		*_type) types[${key%_type}]=${assignment#*=} ;;
+		*_item) patch[${key%_item}]=${assignment#*=} ;;
+		interaction | similarity | gaussians | bounds | without) local "$key=${assignment#*=}" ;;
+		*) shapes[$key]=${assignment#*=} ;;
+		esac
+	done
+	for name in "${!shapes[@]}"; do
+		[ "$name" != "$without" ] || continue
+		shape=${shapes[$name]}
+		items=$((1${shape//[\[\],]/*}1))
+		[ -z "${patch[$name]:-}" ] || patches+=("$((at + 4 * ${patch[$name]%%:*})):${patch[$name]#*:}")
+		type=${types[$name]:-F32}
+		key=$name
+		[[ $name != *_*_* ]] || key=${name//_/.}
+		header+=",\"$key\":{\"dtype\":\"$type\",\"shape\":$shape,\"data_offsets\":[$at,$((at + 4 * items))]}"
+		at=$((at + 4 * items))
+	done
+	for name in interaction similarity gaussians bounds; do
+		[ -z "${!name}" ] || sep+=",\"$name\":\"${!name}\""
+	done
+	header="{\"__metadata__\":{\"format\":\"refer.model\",\"version\":\"1\"$sep}$header}"
+	while (((8 + ${#header}) % 64)); do header+=' '; done
+	st "$file" "$header"
+	truncate -s +$at "$file"
+	for assignment in "${patches[@]}"; do
+		printf '%s' "${assignment#*:}" | xxd -r -p |
+			dd of="$file" bs=1 seek=$((8 + ${#header} + ${assignment%%:*})) conv=notrunc status=none
+	done
+}
+
+# bad REASON [NAME=VALUE]...: the model with those changes is refused.
+bad() {
+	local reason=$1
+	shift
+	model m "$@"
+	says 1 "m: $reason" "$BIN/gs-check" m
+}
+
+@test "a model made by hand is fine" {
+	model m
+	says 0 "m: ok: refer.model, 1 gaussians, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	model m ids='[2]' features='[2,16]' ids_item=1:02000000 similarity=cosine interaction=attention
+	says 0 "m: ok: refer.model, 2 gaussians, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+}
+
+@test "it may be of no Gaussian, and then answers nothing" {
+	model m ids='[0]' features='[0,16]' gaussians=1 interaction=none
+	says 0 "m: ok: refer.model, 0 gaussians, 1 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	scene scene
+	header='{"__metadata__":{"format":"refer.text","version":"1","refs":"[\"r1\"]","objects":"[\"cup\"]","texts":"[\"cup\"]","splits":"[\"test\"]"},"offsets":{"dtype":"I64","shape":[2],"data_offsets":[0,16]},"words":{"dtype":"F32","shape":[1,1],"data_offsets":[16,20]},"sentences":{"dtype":"F32","shape":[1,1],"data_offsets":[20,24]}}'
+	while (((8 + ${#header}) % 8)); do header+=' '; done
+	st text "$header" "00000000000000000100000000000000$f1$f1"
+	says 0 '{"view":"v1","ref":"r1","object":"cup","score":0,"segmentation":{"size":[3,4],"counts":"<"}}' \
+		"$BIN/refer-render" --scene scene --text text --model m --split train
+}
+
+@test "how it answers" {
+	bad "metadata 'interaction' is 'all'" interaction=all
+	bad "metadata 'interaction' is ''" interaction=
+	bad "metadata 'similarity' is 'dots'" similarity=dots
+	bad "metadata 'similarity' is ''" similarity=
+}
+
+@test "the scene's Gaussians" {
+	bad "metadata 'gaussians' is '', not a whole number from 0 to 2147483647" gaussians=
+	bad "metadata 'gaussians' is '-1', not a whole number from 0 to 2147483647" gaussians=-1
+	bad "metadata 'gaussians' is '3x', not a whole number from 0 to 2147483647" gaussians=3x
+	bad "metadata 'gaussians' is ' 3', not a whole number from 0 to 2147483647" gaussians=' 3'
+	bad "metadata 'gaussians' is '2147483648', not a whole number from 0 to 2147483647" gaussians=2147483648
+}
+
+@test "bounds" {
+	for bounds in '' '[]' '[[-1,-1,-1],[1,1]]' '[[-1,-1,-1],[1,1,1]' '[[-1,-1,-1],[1,1,1]]]' '[[-1,-1,x],[1,1,1]]'; do
+		bad "metadata 'bounds' is not two corners" bounds="$bounds"
+	done
+	for bounds in '[[-1,1,-1],[1,1,1]]' '[[-1,-1,-1],[1,1,-2]]' '[[nan,-1,-1],[1,1,1]]' '[[-1,-1,-1],[1,inf,1]]'; do
+		bad "metadata 'bounds' is not low < high" bounds="$bounds"
+	done
+}
+
+@test "tensors that are missing or of another type or shape" {
+	bad "tensor 'ids' is missing" without=ids
+	bad "tensor 'features' is missing" without=features
+	bad "tensor 'text.0.weight' is missing" without=text_0_weight
+	bad "tensor 'feature.2.bias' is missing" without=feature_2_bias
+	bad "tensor 'position.0.weight' is missing" interaction=pcmi
+	bad "tensor 'ids': is F32[1], expected I32[*]" ids_type=F32
+	bad "tensor 'features': is F32[2,16], expected F32[1,16]" features='[2,16]'
+	bad "tensor 'features': is F32[1,8], expected F32[1,16]" features='[1,8]'
+	bad "tensor 'text.0.weight': is F32[256,1], expected F32[512,*]" text_0_weight='[256,1]'
+	bad "tensor 'text.0.weight': 0 columns, expected 1 to 65536" text_0_weight='[512,0]'
+	bad "tensor 'text.0.weight': 65537 columns, expected 1 to 65536" text_0_weight='[512,65537]'
+	bad "tensor 'text.0.bias': is F32[512,1], expected F32[512]" text_0_bias='[512,1]'
+	bad "tensor 'text.1.weight': is I32[256,512], expected F32[256,512]" text_1_weight_type=I32
+	bad "tensor 'feature.1.weight': is F32[32,64], expected F32[64,32]" feature_1_weight='[32,64]'
+}
+
+@test "values" {
+	bad "tensor 'ids': item 0 does not rise within 0 to 2" ids_item=0:03000000
+	bad "tensor 'ids': item 0 does not rise within 0 to 2" ids_item=0:ffffffff
+	bad "tensor 'ids': item 1 does not rise within 0 to 2" ids='[2]' features='[2,16]'
+	bad "tensor 'features': item 15 is not finite" features_item=15:$fnan
+	bad "tensor 'text.1.weight': item 131071 is not finite" text_1_weight_item=131071:$finf
+	bad "tensor 'feature.2.bias': item 0 is not finite" feature_2_bias_item=0:000080ff
+}
+
+@test "a file cut short anywhere is refused" {
+	model m
+	size=$(wc -c <m)
+	for length in $((size - 1)) $((size - 4)) $((size / 2)) 4000 2000 1000 100 9 8 7 1; do
+		head -c "$length" m >cut
+		run "$BIN/gs-check" cut
+		[ "$status" = 1 ] || { echo "length $length: $output"; return 1; }
+	done
+}
+
+@test "a changed bit is found by the checksum" {
+	"$BATS_TEST_DIRNAME/../cli/examples-setup.sh" made "$BIN"
+	cd made
+	size=$(wc -c <model.safetensors)
+	printf '\x3e' | dd of=model.safetensors bs=1 seek=$((size - 2)) conv=notrunc status=none
+	run "$BIN/gs-check" model.safetensors
+	[ "$status" = 1 ]
+	[[ $output == "model.safetensors: tensor '"*"': crc32 is "*", the header says "* ]]
+}

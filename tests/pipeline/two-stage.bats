@@ -1,0 +1,83 @@
+#!/usr/bin/env bats
+# The pipelines, on the smallest scene there is.
+
+setup_file() {
+	export BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	BIN=$(cd "$BIN" && pwd)
+	export ROOT=$BATS_TEST_DIRNAME/../..
+	cd "$BATS_FILE_TMPDIR"
+	"$BIN/gs-synth" --objects 2 --views 6 --size 64x48 --gaussians 1200 -o data
+	export DATA=$BATS_FILE_TMPDIR/data WORK=$BATS_FILE_TMPDIR/work
+	two_stage >first.log 2>&1
+}
+
+# two_stage ARGUMENT...: the workflow on the scene, all outputs under WORK.
+two_stage() {
+	make -f "$ROOT/pipelines/two-stage.mk" SCENE="$WORK" SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" \
+		IMAGES="$DATA/images" TEST_VIEWS="$(cat "$DATA/test-views")" SENTENCES="$DATA/sentences.jsonl" \
+		CANDIDATES="$DATA/candidates.jsonl" TRUTH="$DATA/truth.jsonl" BERT="$ROOT/tests/golden/bert" BIN="$BIN" SCALE=0.5 \
+		ITERATIONS=60 "$@"
+}
+
+@test "it makes models, predictions, overlays and scores of both stages" {
+	for stage in 1 2; do
+		"$BIN/gs-check" "$WORK/stage$stage/model.safetensors" "$WORK/stage$stage/predictions.test.jsonl"
+		[ "$(jq -s length "$WORK/stage$stage/predictions.test.jsonl")" = 2 ]
+		[ "$(jq -s length "$WORK/stage$stage/predictions.train.jsonl")" = 8 ]
+		[ "$(find "$WORK/stage$stage/overlays" -name '*.png' | wc -l)" = 2 ]
+		jq -e '.miou >= 0 and .pairs > 0' "$WORK/stage$stage/predictions.test.score.json"
+	done
+}
+
+@test "it ends with a table of both stages and of times" {
+	grep -qE '^stage 1, test views, training sentences +[0-9.]+ ' "$BATS_FILE_TMPDIR/first.log"
+	grep -qE '^stage 2, test views, test sentences +[0-9.]+ ' "$BATS_FILE_TMPDIR/first.log"
+	grep -qE '^train2 +[0-9.]+ +[0-9.]+$' "$BATS_FILE_TMPDIR/first.log"
+}
+
+@test "a second make does nothing" {
+	run two_stage predictions overlays scores
+	[ "$status" = 0 ]
+	! grep -qE "$BIN/" <<<"$output"
+}
+
+@test "a changed input remakes what depends on it, and nothing else" {
+	touch "$DATA/candidates.jsonl"
+	run two_stage -n predictions
+	grep -q pseudomask-select <<<"$output"
+	grep -q refer-train <<<"$output"
+	! grep -qE 'gs-import|gs-weigh|text-encode' <<<"$output"
+}
+
+@test "make -j gives the same bytes" {
+	WORK=$BATS_TEST_TMPDIR/parallel two_stage -j4 predictions
+	for stage in 1 2; do
+		cmp "$WORK/stage$stage/model.safetensors" "$BATS_TEST_TMPDIR/parallel/stage$stage/model.safetensors"
+		cmp "$WORK/stage$stage/predictions.test.jsonl" "$BATS_TEST_TMPDIR/parallel/stage$stage/predictions.test.jsonl"
+	done
+}
+
+@test "a missing variable is named" {
+	run make -f "$ROOT/pipelines/two-stage.mk" SCENE=x
+	[ "$status" = 2 ]
+	grep -q "SPLATS is not set" <<<"$output"
+}
+
+@test "a step that fails shows what its tool said, and leaves no result" {
+	printf '{"view":1}\n' >"$BATS_TEST_TMPDIR/bad.jsonl"
+	WORK=$BATS_TEST_TMPDIR/bad run two_stage CANDIDATES="$BATS_TEST_TMPDIR/bad.jsonl"
+	[ "$status" = 2 ]
+	grep -q "pseudomask-select: .*bad.jsonl:1: " <<<"$output"
+	[ ! -e "$BATS_TEST_TMPDIR/bad/stage1/masks.jsonl" ]
+}
+
+@test "the table's figures are those of the score files" {
+	for stage in 1 2; do
+		score=$(jq '100 * .miou' "$WORK/stage$stage/predictions.train.score.json")
+		row=$(grep "^stage $stage, test views, training sentences" "$BATS_FILE_TMPDIR/first.log" | awk '{ print $7 }')
+		awk -v a="$score" -v b="$row" 'BEGIN { exit !(a - b < 0.051 && b - a < 0.051) }'
+	done
+	score=$(jq '100 * .miou' "$WORK/stage1/masks.score.json")
+	row=$(grep "^selected masks" "$BATS_FILE_TMPDIR/first.log" | awk '{ print $5 }')
+	[ "$(printf %.1f "$score")" = "$row" ]
+}

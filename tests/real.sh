@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# Tries the tools on real scenes and checks what comes out against what is known of them. Ends with "N passed, N failed".
+# usage: real.sh DATA BUILD ENCODER [ITERATIONS]
+set -u
+data=$1 build=$2 encoder=$3 iterations=${4:-3000}
+desk=$data/desk
+out=$build/desk-short
+bin=$build/bin
+export OMP_WAIT_POLICY=passive
+passed=0 failed=0
+
+# check NAME COMMAND...: one test; what it prints is shown when it fails.
+check() {
+	local name=$1 said
+	shift
+	if said=$("$@" 2>&1); then
+		passed=$((passed + 1))
+		echo "ok: $name${said:+ ($(echo "$said" | tail -n 1))}"
+	else
+		failed=$((failed + 1))
+		printf 'FAILED: %s\n%s\n' "$name" "$said"
+	fi
+}
+
+# within VALUE LOW HIGH
+within() {
+	echo "$1"
+	awk -v x="$1" -v low="$2" -v high="$3" 'BEGIN { exit !(x >= low && x <= high) }'
+}
+
+# score FILE: its mIoU in percent, on the views that it has predictions of.
+score() {
+	"$bin/miou-score" --json --quiet --predicted-views --truth "$desk/truth.jsonl" "$1" | jq '100 * .miou'
+}
+
+# selected METHOD LOW HIGH: quality of the masks that a method selects in the labelled training views.
+selected() {
+	"$bin/pseudomask-select" --method "$1" "$desk/candidates.jsonl" >"$out/$1.jsonl" &&
+		within "$(score "$out/$1.jsonl")" "$2" "$3"
+}
+
+# The cameras of two imports are the same to 1e-5.
+same_cameras() {
+	"$bin/gs-import" --cameras "$desk/cameras.json" -o "$out/other" "$desk/point_cloud.ply" || return 1
+	paste <(jq -c 'sort_by(.name)[] | [.world_to_camera, .fx, .fy, .cx, .cy] | flatten[]' "$out/other/cameras.json") \
+		<(jq -c 'sort_by(.name)[] | [.world_to_camera, .fx, .fy, .cx, .cy] | flatten[]' "$out/scene/cameras.json") |
+		awk '{ d = $1 - $2; if (d < 0) d = -d; if (d > worst) worst = d } END { print "largest difference", worst; exit !(NR > 0 && worst < 1e-5) }'
+}
+
+cup() {
+	head -c 100 "$data/cup/sparse/0/cameras.bin" >/dev/null || return 1
+	"$bin/gs-import" -v --cameras "$data/cup/sparse/0" --images "$data/cup/images" --test-views every:8 -o "$out/cup" \
+		"$desk/point_cloud.ply" && [ "$(jq length "$out/cup/cameras.json")" = 77 ]
+}
+
+mkdir -p "$out"
+check "the whole workflow, $iterations steps a stage" make --no-print-directory -f pipelines/desk.mk DATA="$desk" OUT="$out" \
+	ITERATIONS="$iterations" BERT="$encoder" BIN="$bin"
+check "confidence-weighted IoU selects as known (72 +- 2)" selected ciou 70 74
+check "IoU selects as known (66 +- 2)" selected iou 64 68
+check "top-1 selects as known (44 +- 2)" selected top1 42 46
+check "COLMAP and cameras.json give the same cameras" same_cameras
+check "77 views of a COLMAP model with SIMPLE_PINHOLE cameras" cup
+check "weights agree with the float64 twin on the desk" env REFER_SCENE="$out/scene" "$build/unit/test_render"
+check "the encoder agrees with the published vector" env REFER_BERT="$encoder" "$build/unit/test_bert"
+check "everything made is well-formed" "$bin/gs-check" "$out/scene" "$out/text.safetensors" "$out/stage2/model.safetensors" \
+	"$out/stage2/predictions.test.jsonl"
+check "stage 1 finds training sentences in new views (mIoU over 25)" \
+	within "$(score "$out/stage1/predictions.train.jsonl")" 25 100
+check "stage 2 too" within "$(score "$out/stage2/predictions.train.jsonl")" 25 100
+pipelines/report.sh "$out"
+echo "$passed passed, $failed failed"
+[ $failed = 0 ] && [ $passed != 0 ]

@@ -1,0 +1,390 @@
+/* Training but for its step: which Gaussians learn, their positions, the order of the views, which mask
+ * teaches what, the top set of the contrast, and a state that goes on to the same bytes. */
+#include "unit.h"
+
+#include "base/mem.h"
+#include "base/rng.h"
+#include "formats/checkpoint.h"
+#include "refer/contrast.h"
+#include "refer/supervision.h"
+#include "refer/trainer.h"
+
+#include <unistd.h>
+
+enum { GAUSSIANS = 60, PIXELS = 25, ENTRIES = 4, VIEWS = 4 };
+
+/* Random weights of a view over the scene's Gaussians, of which every fifth has none. */
+struct random_view {
+	int64_t indptr[PIXELS + 1];
+	int32_t index[PIXELS * ENTRIES];
+	float weight[PIXELS * ENTRIES];
+};
+
+static void random_views(struct random_view *r, struct train_view *views, uint64_t seed)
+{
+	struct rng rng;
+
+	rng_seed(&rng, seed, 1);
+	for (int v = 0; v < VIEWS; v++) {
+		for (int p = 0; p <= PIXELS; p++)
+			r[v].indptr[p] = (int64_t)p * ENTRIES;
+		for (int k = 0; k < PIXELS * ENTRIES; k++) {
+			r[v].index[k] =
+				(int32_t)(rng_below(&rng, GAUSSIANS / 5) * 5 + 1 + rng_below(&rng, 4));
+			r[v].weight[k] = (float)(rng_uniform(&rng) * rng_uniform(&rng) / ENTRIES);
+		}
+		views[v] = (struct train_view){
+			.weights = {PIXELS, GAUSSIANS, r[v].indptr, r[v].index, r[v].weight}};
+	}
+}
+
+static void test_active_set(void)
+{
+	struct random_view random[VIEWS];
+	struct train_view views[VIEWS];
+	const double tolerances[] = {0, 0.01, 0.1, 0.5, 0.9};
+	struct err e;
+
+	random_views(random, views, 3);
+	double total[GAUSSIANS] = {0}, all = 0;
+	for (int v = 0; v < VIEWS; v++)
+		for (int k = 0; k < PIXELS * ENTRIES; k++) {
+			total[random[v].index[k]] += (double)random[v].weight[k];
+			all += (double)random[v].weight[k];
+		}
+	for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++) {
+		int32_t ids[GAUSSIANS];
+		size_t n = 0;
+		char is_in[GAUSSIANS] = {0};
+		double left_out = 0, smallest = INFINITY, largest_out = 0;
+
+		CHECK(!train_active_set(views, VIEWS, GAUSSIANS, tolerances[t], ids, &n, &e), "%s",
+			e.message);
+		for (size_t i = 0; i < n; i++) {
+			CHECK(!i || ids[i] > ids[i - 1], "ids do not rise at %zu", i);
+			is_in[ids[i]] = 1;
+			smallest = fmin(smallest, total[ids[i]]);
+		}
+		for (int g = 0; g < GAUSSIANS; g++) {
+			left_out += is_in[g] ? 0 : total[g];
+			largest_out = is_in[g] ? largest_out : fmax(largest_out, total[g]);
+		}
+		CHECK(left_out <= tolerances[t] * all, "tolerance %g: %g left out of %g", tolerances[t],
+			left_out, all);
+		CHECK(left_out + smallest > tolerances[t] * all, "tolerance %g: more could go",
+			tolerances[t]);
+		CHECK(largest_out <= smallest, "tolerance %g: a larger one went first", tolerances[t]);
+	}
+	for (int v = 0; v < VIEWS; v++)
+		memset(random[v].weight, 0, sizeof random[v].weight);
+	int32_t ids[GAUSSIANS];
+	size_t n = 1;
+	CHECK(!train_active_set(views, VIEWS, GAUSSIANS, 0, ids, &n, &e) && n == 0,
+		"%zu Gaussians without weight", n);
+}
+
+static void test_bounds(void)
+{
+	enum { N = 500 };
+	float means[N * 3], position[N * 3];
+	int32_t ids[N];
+	double low[3], high[3];
+	struct err e;
+
+	for (int i = 0; i < N; i++) {
+		ids[i] = i;
+		means[3 * i] = (float)((i * 7) % N); /* 0 to 499 in some order */
+		means[3 * i + 1] = -(float)i;
+		means[3 * i + 2] = 4;
+	}
+	CHECK(!train_bounds(means, ids, N, low, high, &e), "%s", e.message);
+	CHECK(low[0] == 5 && high[0] == 494, "x: %g to %g", low[0], high[0]);
+	CHECK(low[1] == -494 && high[1] == -5, "y: %g to %g", low[1], high[1]);
+	CHECK(low[2] == 3 && high[2] == 5, "z is widened: %g to %g", low[2], high[2]);
+	train_positions(means, ids, N, low, high, position);
+	for (int i = 0; i < N; i++) {
+		double x = fmax(-1, fmin(1, 2 * ((double)means[3 * i] - 5) / 489 - 1));
+		CHECK(fabs((double)position[3 * i] - x) < 1e-6, "position of %d is %g, not %g", i,
+			(double)position[3 * i], x);
+		CHECK(position[3 * i + 2] == 0, "z of %d is %g", i, (double)position[3 * i + 2]);
+	}
+	/* Only the Gaussians that learn count. */
+	CHECK(!train_bounds(means, ids + 100, 1, low, high, &e) && low[1] == -101 && high[1] == -99,
+		"y of one: %g to %g", low[1], high[1]);
+	train_positions(means, ids + 100, 1, low, high, position);
+	CHECK(position[0] == 0 && position[1] == 0, "one Gaussian is in the middle");
+}
+
+enum { COUNTS = 5, MOST = 7 };
+
+/* Every pair once an epoch, in groups of one view that are full but for one a view. */
+static void check_epoch(struct train_order *o, const int *counts, int batch, long first)
+{
+	int seen[COUNTS][MOST] = {{0}}, partial[COUNTS] = {0};
+
+	for (uint32_t g = 0; g < o->groups; g++) {
+		uint32_t picks[MOST];
+		int count = 0;
+		size_t view = train_order_at(o, first + (long)g, picks, &count);
+		if (!CHECK(view < COUNTS && count >= 1 && count <= batch, "view %zu, %d sentences", view,
+			    count))
+			return;
+		partial[view] += count < batch;
+		for (int i = 0; i < count; i++)
+			if (CHECK(picks[i] < (uint32_t)counts[view], "pick %u of %d", picks[i], counts[view]))
+				seen[view][picks[i]]++;
+	}
+	for (int v = 0; v < COUNTS; v++) {
+		CHECK(partial[v] == (counts[v] % batch != 0), "view %d has %d smaller groups", v, partial[v]);
+		for (int k = 0; k < counts[v]; k++)
+			CHECK(seen[v][k] == 1, "batch %d: pair %d of view %d came %d times", batch, k, v,
+				seen[v][k]);
+	}
+}
+
+static void test_order(void)
+{
+	const int counts[COUNTS] = {3, 0, 7, 1, 4};
+	struct train_view views[COUNTS] = {{.count = 0}};
+	struct err e;
+
+	for (int v = 0; v < COUNTS; v++)
+		views[v].count = counts[v];
+	for (int batch = 1; batch <= 4; batch++) {
+		struct train_order o, other;
+		uint32_t groups = 0;
+		int differ = 0;
+
+		for (int v = 0; v < COUNTS; v++)
+			groups += (uint32_t)((counts[v] + batch - 1) / batch);
+		CHECK(!train_order_init(&o, views, COUNTS, batch, 9, &e), "%s", e.message);
+		CHECK(!train_order_init(&other, views, COUNTS, batch, 9, &e), "%s", e.message);
+		CHECK(o.groups == groups, "batch %d: %u groups", batch, o.groups);
+		for (long epoch = 0; epoch < 5; epoch++)
+			check_epoch(&o, counts, batch, epoch * (long)groups);
+		/* An iteration is found again from anywhere, and the epochs differ. */
+		for (long i = 3 * (long)groups - 1; i >= 0; i--) {
+			uint32_t a[MOST], b[MOST], c[MOST];
+			int na, nb, nc;
+			size_t va = train_order_at(&o, i, a, &na), vb, vc;
+			train_order_at(&other, 1000 - i, b, &nb);
+			vb = train_order_at(&other, i, b, &nb);
+			CHECK(va == vb && na == nb && !memcmp(a, b, sizeof *a * (size_t)na),
+				"iteration %ld differs", i);
+			vc = train_order_at(&other, i + (long)groups, c, &nc);
+			differ += vc != va || nc != na || memcmp(a, c, sizeof *a * (size_t)na);
+		}
+		CHECK(differ > 0, "batch %d: all epochs are alike", batch);
+		train_order_free(&o);
+		train_order_free(&other);
+	}
+}
+
+/* A mask of `side` squared pixels, all of one value. */
+static void add(struct supervision *s, size_t view, const char *ref, const char *object, int side,
+	uint8_t value, int bad)
+{
+	uint8_t pixels[16];
+	struct rle mask;
+	struct err e = {0};
+
+	memset(pixels, value, sizeof pixels);
+	CHECK(!rle_encode(&mask, pixels, side, side, &e), "%s", e.message);
+	int got = supervision_add(s, view, 2, 2, ref, object, &mask, &e);
+	CHECK(!got == !bad && (!bad || e.code == ERR_FORMAT), "%s %s: %d %s", ref ? ref : "-",
+		object ? object : "-", got, e.message);
+	rle_free(&mask);
+}
+
+static void test_supervision(void)
+{
+	const char *const refs[] = {"r1", "r2", "r3", "r4"}, *const objects[] = {"cup", "cup", "pan", "jar"};
+	struct train_view views[2] = {{.count = 0}, {.count = 0}};
+	struct supervision s = {0};
+	struct err e;
+
+	add(&s, 0, NULL, "cup", 2, 0, 0);
+	add(&s, 0, "r2", "cup", 4, 1, 0); /* reduced to 2x2 */
+	add(&s, 0, "r3", NULL, 1, 1, 0);  /* enlarged */
+	add(&s, 0, "r9", "jar", 2, 1, 0); /* of no sentence: a mask of a ref does not serve its object */
+	add(&s, 1, NULL, "jar", 2, 1, 0);
+	add(&s, 0, NULL, "cup", 2, 1, 1);
+	add(&s, 0, "r2", "pan", 2, 1, 1);
+	add(&s, 1, "r2", "pan", 2, 1, 0); /* another view; and the ref goes before the object */
+	CHECK(!supervision_link(&s, refs, objects, 4, views, 2, &e), "%s", e.message);
+	CHECK(views[0].count == 3 && views[1].count == 2, "%d and %d pairs", views[0].count, views[1].count);
+	const int sentences[2][3] = {{0, 1, 2}, {1, 3}}, values[2][3] = {{0, 1, 1}, {1, 1}};
+	for (int v = 0; v < 2; v++)
+		for (int k = 0; k < views[v].count; k++) {
+			CHECK(views[v].sentences[k] == sentences[v][k], "pair %d of view %d is of %d", k, v,
+				views[v].sentences[k]);
+			for (int p = 0; p < 4; p++)
+				CHECK(views[v].masks[k][p] == values[v][k], "pixel %d of pair %d of view %d",
+					p, k, v);
+		}
+	supervision_unlink(views, 2);
+	supervision_free(&s);
+}
+
+static const float *sorted_values;
+
+static int by_rank(const void *a, const void *b)
+{
+	const size_t i = *(const size_t *)a, k = *(const size_t *)b;
+	const float x = sorted_values[i], y = sorted_values[k];
+
+	return x != y ? (x < y) - (x > y) : (i > k) - (i < k);
+}
+
+static void test_top(void)
+{
+	enum { N = 300 };
+	struct rng rng;
+
+	CHECK(contrast_top_count(0, 1000) == 100, "%zu at the start", contrast_top_count(0, 1000));
+	CHECK(contrast_top_count(1000, 1000) == 60, "%zu after 1000", contrast_top_count(1000, 1000));
+	CHECK(contrast_top_count(500, 1000) == 77, "%zu after 500", contrast_top_count(500, 1000));
+	CHECK(contrast_top_count(45000, 1000) == 5, "%zu in the end", contrast_top_count(45000, 1000));
+	CHECK(contrast_top_count(0, 9) == 1 && contrast_top_count(0, 1) == 1, "never none");
+	rng_seed(&rng, 5, 1);
+	for (int trial = 0; trial < 60; trial++) {
+		float m[N], top[N];
+		size_t rank[N];
+		const size_t n = trial ? 1 + rng_below(&rng, N) : N, k = 1 + rng_below(&rng, (uint32_t)n);
+		int wrong = 0;
+
+		/* Many ties, but no -0, which ranks below 0. */
+		for (size_t i = 0; i < n; i++) {
+			m[i] = trial % 3 ? (float)rng_normal(&rng) : (float)((int)rng_below(&rng, 7) - 3);
+			m[i] = m[i] == 0 ? 0 : m[i];
+			rank[i] = i;
+		}
+		sorted_values = m;
+		qsort(rank, n, sizeof *rank, by_rank);
+		contrast_top_set(m, n, k, top);
+		for (size_t i = 0; i < n; i++)
+			wrong += top[rank[i]] != (i < k ? 1 / (float)k : 0);
+		CHECK(!wrong, "trial %d: %d of %zu wrong, k %zu", trial, wrong, n, k);
+	}
+}
+
+/* A training of two sentences over the random views. */
+struct sample {
+	struct random_view random[VIEWS];
+	struct train_view views[VIEWS];
+	float means[GAUSSIANS * 3], words[5 * 8];
+	int64_t offsets[3];
+	int objects[2], sentences[2];
+	uint8_t mask[2][PIXELS];
+	const uint8_t *masks[2];
+};
+
+static void sample_init(struct sample *s)
+{
+	struct rng rng;
+
+	*s = (struct sample){.offsets = {0, 2, 5}, .objects = {0, 1}, .sentences = {0, 1}};
+	random_views(s->random, s->views, 11);
+	rng_seed(&rng, 12, 1);
+	for (int i = 0; i < GAUSSIANS * 3; i++)
+		s->means[i] = (float)rng_normal(&rng);
+	for (int i = 0; i < 5 * 8; i++)
+		s->words[i] = (float)rng_normal(&rng);
+	for (int k = 0; k < 2; k++)
+		for (int p = 0; p < PIXELS; p++)
+			s->mask[k][p] = (uint8_t)rng_below(&rng, 2);
+	s->masks[0] = s->mask[0];
+	s->masks[1] = s->mask[1];
+	for (int v = 0; v < VIEWS; v++) {
+		s->views[v].count = 2;
+		s->views[v].sentences = s->sentences;
+		s->views[v].masks = s->masks;
+	}
+}
+
+static int start(struct trainer *t, const struct sample *s, const struct trainer_options *o)
+{
+	const struct trainer_source source = {
+		s->means, GAUSSIANS, 8, 2, s->offsets, s->words, s->objects, s->views, VIEWS, PIXELS};
+	struct err e;
+
+	return CHECK(!trainer_init(t, &source, o, &e), "%s", e.message);
+}
+
+static int same_state(const struct train_state *a, const struct train_state *b)
+{
+	const size_t bytes = a->count * sizeof(float);
+
+	return a->iteration == b->iteration && a->count == b->count && !memcmp(a->values, b->values, bytes) &&
+	       !memcmp(a->m, b->m, bytes) && !memcmp(a->v, b->v, bytes) &&
+	       !memcmp(&a->sum, &b->sum, sizeof a->sum);
+}
+
+static void test_resume(void)
+{
+	const struct trainer_options options = {.interaction = REFER_PCMI,
+		.contrast = REFER_CONTRAST_COSINE,
+		.temperature = 0.1,
+		.lambda = 0.02,
+		.batch = 1,
+		.rates = {0.0025, 0.0001},
+		.seed = 7};
+	struct sample s;
+	struct trainer whole, part, fresh;
+	char path[] = "/tmp/test_train.XXXXXX", identity[CHECKPOINT_IDENTITY], other[CHECKPOINT_IDENTITY];
+	struct err e;
+	int fd = mkstemp(path);
+
+	sample_init(&s);
+	if (!CHECK(fd >= 0, "no temporary file") || !start(&whole, &s, &options) ||
+		!start(&part, &s, &options) || !start(&fresh, &s, &options))
+		return;
+	close(fd);
+	checkpoint_identity(identity, &options, 0x1234abcd);
+	for (int i = 0; i < 25; i++)
+		trainer_step(&whole);
+	for (int i = 0; i < 11; i++)
+		trainer_step(&part);
+	CHECK(part.state.iteration == 11 && part.state.sum.total > 0, "%ld steps", part.state.iteration);
+	CHECK(!checkpoint_write(&part.state, path, identity, &e), "%s", e.message);
+	CHECK(!checkpoint_read(&fresh.state, path, identity, &e), "%s", e.message);
+	CHECK(same_state(&fresh.state, &part.state), "the checkpoint is not the state");
+	for (int i = 11; i < 25; i++)
+		trainer_step(&fresh);
+	CHECK(same_state(&fresh.state, &whole.state), "going on is not the same");
+	CHECK(!same_state(&fresh.state, &part.state), "nothing was learned");
+	checkpoint_identity(other, &options, 0x1234abce);
+	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
+		"another training's inputs");
+	unlink(path);
+	trainer_free(&whole);
+	trainer_free(&part);
+	trainer_free(&fresh);
+}
+
+static void test_no_weight(void)
+{
+	const struct trainer_options options = {.batch = 1, .temperature = 1};
+	struct sample s;
+	struct trainer t;
+	struct err e = {0};
+
+	sample_init(&s);
+	for (int v = 0; v < VIEWS; v++)
+		memset(s.random[v].weight, 0, sizeof s.random[v].weight);
+	const struct trainer_source source = {
+		s.means, GAUSSIANS, 8, 2, s.offsets, s.words, s.objects, s.views, VIEWS, PIXELS};
+	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
+}
+
+int main(void)
+{
+	test_active_set();
+	test_bounds();
+	test_order();
+	test_supervision();
+	test_top();
+	test_resume();
+	test_no_weight();
+	return unit_end();
+}
