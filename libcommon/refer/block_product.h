@@ -1,5 +1,5 @@
 /* Products on panels of Gaussians (refer/block.h): W x, and the sums of outer products that give the
- * gradients of W. Included by block_kernel.h, for each instruction set. */
+ * gradients of W. Included by block_forward.h, for each instruction set. */
 #include "refer/block.h"
 
 #include "base/vecmath.h"
