@@ -197,7 +197,8 @@ install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 	install -m 755 $(BINARIES) "$(DESTDIR)$(PREFIX)/bin"
 	for page in $(MAN_PAGES); do install -m 644 $$page "$(DESTDIR)$(PREFIX)/share/man/man$${page##*.}" || exit; done
 	for file in $(wildcard pipelines/*); do \
-		install -m 644 $$file "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines" || exit; done
+		mode=644; [ ! -x $$file ] || mode=755; \
+		install -m $$mode $$file "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines" || exit; done
 
 uninstall: ## remove what install put there
 	rm -f $(TOOLS:%="$(DESTDIR)$(PREFIX)/bin/%")

@@ -54,8 +54,8 @@ static int add_view(struct training *t, const char *weights, const char *name, s
 		return -1;
 	t->view_count++;
 	if (w->gaussians != (int64_t)t->scene.splats.n)
-		return err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, this one has %zu", w->file.path,
-			(long long)w->gaussians, t->scene.splats.n);
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, this one has %zu",
+			w->file.path, (long long)w->gaussians, t->scene.splats.n);
 	const size_t pixels = (size_t)w->width * (size_t)w->height;
 	t->views[t->view_count - 1].weights =
 		(struct view_weights){pixels, t->scene.splats.n, w->indptr, w->index, w->weight};
@@ -63,9 +63,10 @@ static int add_view(struct training *t, const char *weights, const char *name, s
 	return 0;
 }
 
-/* One record: its view's weights are opened when it is the first of the view; at[] is a scene view's training view or -1. */
-static int add_mask(struct training *t, const struct jsonl *j, const struct mask_record *r, const char *weights, long *at,
-	struct err *e)
+/* One record: its view's weights are opened when it is the first of the view; at[] is a scene view's training
+ * view or -1. */
+static int add_mask(struct training *t, const struct jsonl *j, const struct mask_record *r,
+	const char *weights, long *at, struct err *e)
 {
 	const struct camera *c = cameras_find(&t->scene.cameras, r->view);
 	struct err reason;
@@ -83,7 +84,8 @@ static int add_mask(struct training *t, const struct jsonl *j, const struct mask
 			return -1;
 	}
 	const struct weights *w = &t->weights[*view];
-	if (supervision_add(&t->masks, (size_t)*view, w->width, w->height, r->ref, r->object, &r->mask, &reason))
+	if (supervision_add(
+		    &t->masks, (size_t)*view, w->width, w->height, r->ref, r->object, &r->mask, &reason))
 		return reason.code == ERR_FORMAT ? jsonl_err(j, e, "%s", reason.message)
 						 : err_set(e, reason.code, "%s", reason.message);
 	return 0;
@@ -126,7 +128,8 @@ static void make_checksum(struct training *t)
 	uint32_t sum = 0;
 
 	sum = add_checksum(sum, t->scene.splats.means, sizeof(float) * 3 * t->scene.splats.n);
-	sum = add_checksum(sum, t->words, sizeof(float) * (size_t)t->offsets[t->sentences] * (size_t)t->text.width);
+	sum = add_checksum(
+		sum, t->words, sizeof(float) * (size_t)t->offsets[t->sentences] * (size_t)t->text.width);
 	sum = add_checksum(sum, t->offsets, sizeof *t->offsets * (t->sentences + 1));
 	sum = add_checksum(sum, t->objects, sizeof *t->objects * t->sentences);
 	for (size_t v = 0; v < t->view_count; v++) {
@@ -142,27 +145,28 @@ static void make_checksum(struct training *t)
 	t->checksum = sum;
 }
 
-static int read_all(
-	struct training *t, const char *scene, const char *weights, const char *text, const char *masks, struct err *e)
+static int read_all(struct training *t, const char *scene, const char *weights, const char *text,
+	const char *masks, struct err *e)
 {
 	if (scene_read(&t->scene, scene, e) || text_read(&t->text, text, e) || pack_sentences(t, e))
 		return -1;
 	if (!t->sentences)
 		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(text));
-	if (read_masks(t, weights, masks, e) ||
-		supervision_link(&t->masks, t->refs, t->object_names, t->sentences, t->views, t->view_count, e))
+	if (read_masks(t, weights, masks, e) || supervision_link(&t->masks, t->refs, t->object_names,
+							t->sentences, t->views, t->view_count, e))
 		return -1;
 	for (size_t v = 0; v < t->view_count; v++)
 		t->pairs += (size_t)t->views[v].count;
 	if (!t->pairs)
-		return err_set(e, ERR_FORMAT, "%s: no mask of a training view is of a training sentence of %s", file_name(masks),
+		return err_set(e, ERR_FORMAT,
+			"%s: no mask of a training view is of a training sentence of %s", file_name(masks),
 			file_name(text));
 	make_checksum(t);
 	return 0;
 }
 
-int training_read(struct training *t, const char *scene, const char *weights, const char *text, const char *masks,
-	struct err *e)
+int training_read(struct training *t, const char *scene, const char *weights, const char *text,
+	const char *masks, struct err *e)
 {
 	*t = (struct training){0};
 	int bad = read_all(t, scene, weights, text, masks, e);

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* Blocks of at least LARGE are asked for in huge pages: a view's weights take a hundred megabytes, and faulting
- * them in by 4 KiB costs as much as rendering them. */
+/* Blocks of at least LARGE are asked for in huge pages: a view's weights take a hundred megabytes, and
+ * faulting them in by 4 KiB costs as much as rendering them. */
 enum { ALIGNMENT = 64, HUGE_PAGE = 2 << 20, LARGE = 8 << 20 };
 
 int mem_size(size_t a, size_t b, size_t *out)

@@ -79,8 +79,8 @@ static double norm(const float *x)
 	return fmax(sqrt(sum), 1e-12);
 }
 
-double contrast_loss(enum refer_contrast kind, double temperature, const double *fg, const float *e, const int *objects,
-	size_t count, int object, double scale, double *dfg, float *de, double *score)
+double contrast_loss(enum refer_contrast kind, double temperature, const double *fg, const float *e,
+	const int *objects, size_t count, int object, double scale, double *dfg, float *de, double *score)
 {
 	double length = 0, largest = -INFINITY, sum = 0, positive = 0;
 	size_t positives = 0;

@@ -10,7 +10,8 @@ static int same(const char *a, const char *b)
 	return a && b && !strcmp(a, b);
 }
 
-static const struct supervision_mask *find(const struct supervision *s, size_t view, const char *ref, const char *object)
+static const struct supervision_mask *find(
+	const struct supervision *s, size_t view, const char *ref, const char *object)
 {
 	for (size_t i = 0; i < s->n; i++) {
 		const struct supervision_mask *m = &s->masks[i];
@@ -20,14 +21,15 @@ static const struct supervision_mask *find(const struct supervision *s, size_t v
 	return NULL;
 }
 
-int supervision_add(struct supervision *s, size_t view, int width, int height, const char *ref, const char *object,
-	const struct rle *mask, struct err *e)
+int supervision_add(struct supervision *s, size_t view, int width, int height, const char *ref,
+	const char *object, const struct rle *mask, struct err *e)
 {
 	struct rle resized = {0};
 	void *block = s->masks;
 
 	if (find(s, view, ref, object))
-		return err_set(e, ERR_FORMAT, "a second mask of %s '%s' in the same view", ref ? "ref" : "object", ref ? ref : object);
+		return err_set(e, ERR_FORMAT, "a second mask of %s '%s' in the same view",
+			ref ? "ref" : "object", ref ? ref : object);
 	if (mem_grow(&block, &s->capacity, s->n + 1, sizeof *s->masks, "masks", e))
 		return -1;
 	s->masks = block;
@@ -55,8 +57,8 @@ void supervision_free(struct supervision *s)
 	*s = (struct supervision){0};
 }
 
-int supervision_link(const struct supervision *s, const char *const *refs, const char *const *objects, size_t sentences,
-	struct train_view *views, size_t view_count, struct err *e)
+int supervision_link(const struct supervision *s, const char *const *refs, const char *const *objects,
+	size_t sentences, struct train_view *views, size_t view_count, struct err *e)
 {
 	for (size_t v = 0; v < view_count; v++) {
 		views[v].count = 0;

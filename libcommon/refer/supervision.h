@@ -20,16 +20,17 @@ struct supervision {
 	struct supervision_mask *masks;
 };
 
-/* Takes a copy of a mask, at the size of the view's weights: another size is reduced by area and cut at one half.
- * ERR_FORMAT (without a file name) where the view already has a mask of that ref, or of that object without ref. */
-int supervision_add(struct supervision *s, size_t view, int width, int height, const char *ref, const char *object,
-	const struct rle *mask, struct err *e);
+/* Takes a copy of a mask, at the size of the view's weights: another size is reduced by area and cut at one
+ * half. ERR_FORMAT (without a file name) where the view already has a mask of that ref, or of that object
+ * without ref. */
+int supervision_add(struct supervision *s, size_t view, int width, int height, const char *ref,
+	const char *object, const struct rle *mask, struct err *e);
 void supervision_free(struct supervision *s);
 
-/* Fills count, sentences and masks of every view: a sentence is taught by the mask of its ref, else by that of its object
- * without ref. The views' weights are left alone. Free with supervision_unlink. */
-int supervision_link(const struct supervision *s, const char *const *refs, const char *const *objects, size_t sentences,
-	struct train_view *views, size_t view_count, struct err *e);
+/* Fills count, sentences and masks of every view: a sentence is taught by the mask of its ref, else by that
+ * of its object without ref. The views' weights are left alone. Free with supervision_unlink. */
+int supervision_link(const struct supervision *s, const char *const *refs, const char *const *objects,
+	size_t sentences, struct train_view *views, size_t view_count, struct err *e);
 void supervision_unlink(struct train_view *views, size_t view_count);
 
 #endif

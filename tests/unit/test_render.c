@@ -323,7 +323,8 @@ static void ten_thousand_layers(void)
 	struct splats s = make_splats(10000);
 
 	for (size_t i = 0; i < s.n; i++)
-		set_splat(&s, i, (double[3]){0, 0, 10 - 5e-4 * (double)i}, (double[3]){900, 900, 900}, 0.0041);
+		set_splat(
+			&s, i, (double[3]){0, 0, 10 - 5e-4 * (double)i}, (double[3]){900, 900, 900}, 0.0041);
 	double nnz = check_view("10,000 layers", &s, &c);
 	CHECK(nnz > 25 * 2000 && nnz < 25 * 2500, "%g weights: all pixels end before the last layer", nnz);
 	splats_free(&s);

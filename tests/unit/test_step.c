@@ -46,7 +46,8 @@ static void floats_init(struct floats *f, const struct reference_sample *s)
 
 static void floats_free(struct floats *f)
 {
-	float *all[] = {f->parameters, f->x, f->panels, f->position, f->words, f->weight, f->gradient, f->dpanels, f->dx};
+	float *all[] = {f->parameters, f->x, f->panels, f->position, f->words, f->weight, f->gradient,
+		f->dpanels, f->dx};
 
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		free(all[i]);
@@ -65,7 +66,8 @@ static double distance(const float *a, const double *b, size_t count)
 	return size > 0 ? sqrt(difference / size) : sqrt(difference);
 }
 
-static struct step *make_step(const struct reference_sample *s, const struct floats *f, int batch, const char *kernels)
+static struct step *make_step(
+	const struct reference_sample *s, const struct floats *f, int batch, const char *kernels)
 {
 	const struct refer_problem *p = &s->problem;
 	struct err e = {0};
@@ -116,18 +118,20 @@ static double compare(const struct reference_options *o, const char *kernels, co
 	double *dx = mem_alloc(p->n * REFER_X, sizeof *dx, "test", &e);
 	double *dparameters = mem_alloc(s.layout.count, sizeof *dparameters, "test", &e), worst = 0;
 	struct step *step = make_step(&s, &f, 1, kernels);
-	CHECK(!reference_forward(p, &result, &e) && !reference_backward(p, &result, dx, dparameters, &e), "%s", name);
+	CHECK(!reference_forward(p, &result, &e) && !reference_backward(p, &result, dx, dparameters, &e),
+		"%s", name);
 	struct view_weights view = view_of(p, &f);
 	struct step_target target = {p->target, p->mask};
-	struct step_losses losses =
-		step_run(step, f.parameters, f.panels, &view, &target, 1, top_count(p), f.gradient, f.dpanels);
+	struct step_losses losses = step_run(
+		step, f.parameters, f.panels, &view, &target, 1, top_count(p), f.gradient, f.dpanels);
 	float *m = mem_alloc(p->n, sizeof *m, "test", &e);
 	step_respond(step, f.parameters, f.panels, p->target, m);
 	double off = distance(m, result.m, p->n);
 	CHECK(off < 1e-5, "%s: responses differ by %.3g", name, off);
-	CHECK(fabs(losses.bce - result.bce) < 1e-5 * fabs(result.bce), "%s: bce %.9g, reference %.9g", name, losses.bce, result.bce);
-	CHECK(fabs(losses.contrast - result.contrast) <= 1e-4 * fabs(result.contrast), "%s: contrast %.9g, reference %.9g", name,
-		losses.contrast, result.contrast);
+	CHECK(fabs(losses.bce - result.bce) < 1e-5 * fabs(result.bce), "%s: bce %.9g, reference %.9g", name,
+		losses.bce, result.bce);
+	CHECK(fabs(losses.contrast - result.contrast) <= 1e-4 * fabs(result.contrast),
+		"%s: contrast %.9g, reference %.9g", name, losses.contrast, result.contrast);
 	step_unpack(f.dpanels, p->n, f.dx);
 	worst = distance(f.dx, dx, p->n * REFER_X);
 	CHECK(worst < 2e-4, "%s: dx differs by %.3g", name, worst);
@@ -137,8 +141,8 @@ static double compare(const struct reference_options *o, const char *kernels, co
 		double own = distance(f.gradient + at, dparameters + at, count);
 		if (t == KEY_BIAS || t == KEY_POSITION_BIAS) { /* 0 but for rounding; ours is exactly 0 */
 			for (size_t k = 0; k < count; k++)
-				CHECK(f.gradient[at + k] == 0 && fabs(dparameters[at + k]) < 1e-12, "%s: %s is not 0", name,
-					s.layout.tensors[t].name);
+				CHECK(f.gradient[at + k] == 0 && fabs(dparameters[at + k]) < 1e-12,
+					"%s: %s is not 0", name, s.layout.tensors[t].name);
 			continue;
 		}
 		CHECK(own < 2e-4, "%s: gradient of %s differs by %.3g", name, s.layout.tensors[t].name, own);
@@ -162,14 +166,17 @@ static void against_reference(const char *kernels)
 			for (int c = 0; c < 3; c++) {
 				char name[128];
 				struct reference_options o =
-					reference_defaults(7 + (uint64_t)c, (enum refer_interaction)i, (enum refer_similarity)sim, (enum refer_contrast)c);
-				snprintf(name, sizeof name, "%s, %s, %s, contrast %d", kernels, refer_interaction_name((enum refer_interaction)i),
+					reference_defaults(7 + (uint64_t)c, (enum refer_interaction)i,
+						(enum refer_similarity)sim, (enum refer_contrast)c);
+				snprintf(name, sizeof name, "%s, %s, %s, contrast %d", kernels,
+					refer_interaction_name((enum refer_interaction)i),
 					refer_similarity_name((enum refer_similarity)sim), c);
 				o.n = 1500; /* several blocks, the last not full */
 				double own = compare(&o, kernels, name);
 				worst = own > worst ? own : worst;
 			}
-			printf("%s, %s, %s: worst relative gradient error %.2g\n", kernels, refer_interaction_name((enum refer_interaction)i),
+			printf("%s, %s, %s: worst relative gradient error %.2g\n", kernels,
+				refer_interaction_name((enum refer_interaction)i),
 				refer_similarity_name((enum refer_similarity)sim), worst);
 		}
 }
@@ -193,15 +200,21 @@ static void batch_is_the_mean(enum refer_interaction interaction, enum refer_sim
 	struct step *one = make_step(&s, &f, 1, NULL), *three = make_step(&s, &f, 3, NULL);
 	double loss = 0;
 	for (int i = 0; i < 3; i++) {
-		loss += step_run(one, f.parameters, f.panels, &view, &targets[i], 1, 50, f.gradient, f.dpanels).total / 3;
+		loss += step_run(
+				one, f.parameters, f.panels, &view, &targets[i], 1, 50, f.gradient, f.dpanels)
+				.total /
+			3;
 		for (size_t k = 0; k < count; k++)
 			sum[k] += (double)f.gradient[k] / 3;
 		for (size_t k = 0; k < features; k++)
 			sum[count + k] += (double)f.dpanels[k] / 3;
 	}
-	double together = step_run(three, f.parameters, f.panels, &view, targets, 3, 50, f.gradient, f.dpanels).total;
-	CHECK(fabs(together - loss) < 1e-6 * loss, "%d: loss %.9g, mean of three %.9g", interaction, together, loss);
-	CHECK(distance(f.gradient, sum, count) < 1e-4, "%d: gradients differ by %.3g", interaction, distance(f.gradient, sum, count));
+	double together =
+		step_run(three, f.parameters, f.panels, &view, targets, 3, 50, f.gradient, f.dpanels).total;
+	CHECK(fabs(together - loss) < 1e-6 * loss, "%d: loss %.9g, mean of three %.9g", interaction, together,
+		loss);
+	CHECK(distance(f.gradient, sum, count) < 1e-4, "%d: gradients differ by %.3g", interaction,
+		distance(f.gradient, sum, count));
 	CHECK(distance(f.dpanels, sum + count, features) < 1e-4, "%d: dx differs by %.3g", interaction,
 		distance(f.dpanels, sum + count, features));
 	step_free(one);
@@ -234,7 +247,8 @@ static void threads_agree(enum refer_interaction interaction)
 		step_run(step, f.parameters, f.panels, &view, &target, 1, 60, f.gradient, f.dpanels);
 		step_free(step);
 		if (threads > 1)
-			CHECK(!memcmp(kept, f.gradient, sizeof *kept * count) && !memcmp(kept + count, f.dpanels, sizeof *kept * features),
+			CHECK(!memcmp(kept, f.gradient, sizeof *kept * count) &&
+					!memcmp(kept + count, f.dpanels, sizeof *kept * features),
 				"%d: %d threads give other bytes than one", interaction, threads);
 		memcpy(kept, f.gradient, sizeof *kept * count);
 		memcpy(kept + count, f.dpanels, sizeof *kept * features);
