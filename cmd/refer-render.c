@@ -11,7 +11,6 @@
 #include "refer/respond.h"
 #include "splat/render.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
