@@ -56,8 +56,10 @@ static int split_names(const struct cli *cli, struct cameras *c, struct err *e)
 
 	if (!is_test)
 		return -1;
-	if (cameras_mark(c, test_views, is_test, &name))
+	if (cameras_mark(c, test_views, is_test, &name)) {
+		free(is_test);
 		cli_usage(cli, "--test-views: no view '%.*s'", (int)name.length, name.text);
+	}
 	for (size_t i = 0; i < c->n; i++)
 		c->views[i].split = is_test[i] ? SPLIT_TEST : SPLIT_TRAIN;
 	free(is_test);

@@ -11,7 +11,6 @@
 #include "refer/respond.h"
 #include "splat/render.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -63,6 +62,7 @@ struct run {
 	struct text text;
 	struct model model;
 	size_t ref_count, view_count;
+	char *chosen; /* of the views, then of the sentences: which a list names */
 	size_t *refs; /* indices in text */
 	const struct camera **views;
 	float *responses; /* (ref_count,N) */
@@ -73,35 +73,38 @@ struct run {
 static int choose_views(struct run *r, const struct cli *c, struct err *e)
 {
 	const struct cameras *from = &r->scene.cameras;
-	char *chosen = mem_zalloc(from->n, 1, "views", e);
 	struct list_name name;
 
+	r->chosen = mem_zalloc(from->n, 1, "views", e);
 	r->views = mem_alloc(from->n, sizeof *r->views, "views", e);
-	if (chosen && r->views && options.views && cameras_mark(from, options.views, chosen, &name))
+	if (!r->chosen || !r->views)
+		return -1;
+	if (options.views && cameras_mark(from, options.views, r->chosen, &name))
 		cli_usage(c, "--views: no view '%.*s'", (int)name.length, name.text);
-	for (size_t i = 0; chosen && r->views && i < from->n; i++)
-		if (options.views ? chosen[i]
+	for (size_t i = 0; i < from->n; i++)
+		if (options.views ? r->chosen[i]
 				  : options.split == SPLIT_ALL || (int)from->views[i].split == options.split)
 			r->views[r->view_count++] = &from->views[i];
-	free(chosen);
-	return chosen && r->views ? 0 : -1;
+	return 0;
 }
 
 static int choose_refs(struct run *r, const struct cli *c, struct err *e)
 {
-	char *chosen = mem_zalloc(r->text.n, 1, "sentences", e);
 	struct list_name name;
 
+	free(r->chosen);
+	r->chosen = mem_zalloc(r->text.n, 1, "sentences", e);
 	r->refs = mem_alloc(r->text.n, sizeof *r->refs, "sentences", e);
-	if (chosen && r->refs && options.refs && text_mark(&r->text, options.refs, chosen, &name))
+	if (!r->chosen || !r->refs)
+		return -1;
+	if (options.refs && text_mark(&r->text, options.refs, r->chosen, &name))
 		cli_usage(c, "--refs: no sentence '%.*s'", (int)name.length, name.text);
-	for (size_t i = 0; chosen && r->refs && i < r->text.n; i++)
-		if (options.refs ? chosen[i]
+	for (size_t i = 0; i < r->text.n; i++)
+		if (options.refs ? r->chosen[i]
 				 : options.sentences == SPLIT_ALL ||
 					   (int)r->text.splits[i] == options.sentences)
 			r->refs[r->ref_count++] = i;
-	free(chosen);
-	return chosen && r->refs ? 0 : -1;
+	return 0;
 }
 
 static int load(struct run *r, const struct cli *c, struct err *e)
@@ -138,7 +141,7 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 }
 
 /* One mask: its record and pictures. */
-static int put_mask(struct run *r, const struct camera *c, size_t ref, const float *image, const uint8_t *rgb,
+static int put_mask(struct run *r, const struct camera *c, size_t ref, const float *image, const float *rgb,
 	struct err *e)
 {
 	const size_t sentence = r->refs[ref];
@@ -159,21 +162,15 @@ static int put_mask(struct run *r, const struct camera *c, size_t ref, const flo
 }
 
 /* The view's colours (P,3), for overlays. */
-static uint8_t *render_rgb(
+static float *render_rgb(
 	const struct run *r, const struct render_view *v, const struct camera *c, struct err *e)
 {
-	const size_t count = 3 * (size_t)c->width * (size_t)c->height;
-	float *colours = mem_alloc(count, sizeof *colours, "colours", e);
-	uint8_t *rgb = mem_alloc(count, 1, "colours", e);
+	float *rgb = mem_alloc((size_t)c->width * (size_t)c->height, 3 * sizeof *rgb, "colours", e);
 
-	if (!colours || !rgb || render_colors(v, &r->scene.splats, c, (const float[3]){0}, colours, e)) {
-		free(rgb);
-		rgb = NULL;
-	}
-	for (size_t i = 0; rgb && i < count; i++)
-		rgb[i] = (uint8_t)lrintf(255 * colours[i]);
-	free(colours);
-	return rgb;
+	if (!rgb || !render_colors(v, &r->scene.splats, c, (const float[3]){0}, rgb, e))
+		return rgb;
+	free(rgb);
+	return NULL;
 }
 
 static int render(struct run *r, const struct camera *view, struct err *e)
@@ -189,7 +186,7 @@ static int render(struct run *r, const struct camera *view, struct err *e)
 		     most = r->ref_count < TOGETHER ? r->ref_count : TOGETHER;
 	struct render_view *v = render_prepare(&r->scene.splats, &c, e);
 	float *image = v ? mem_alloc(most, pixels * sizeof *image, "images", e) : NULL;
-	uint8_t *rgb = image && options.pictures.overlays ? render_rgb(r, v, &c, e) : NULL;
+	float *rgb = image && options.pictures.overlays ? render_rgb(r, v, &c, e) : NULL;
 
 	if (image && (rgb || !options.pictures.overlays))
 		bad = 0;
@@ -241,6 +238,7 @@ int main(int argc, char **argv)
 	scene_free(&r.scene);
 	text_free(&r.text);
 	model_free(&r.model);
+	free(r.chosen);
 	free(r.refs);
 	free(r.views);
 	free(r.responses);

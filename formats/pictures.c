@@ -80,7 +80,8 @@ static int put_overlay(const char *path, const struct picture *one, struct err *
 
 	if (!copy)
 		return -1;
-	memcpy(copy, one->rgb, bytes);
+	for (size_t i = 0; i < bytes; i++)
+		copy[i] = (uint8_t)lrintf(255 * one->rgb[i]);
 	overlay_draw(copy, one->mask, one->height, one->width);
 	int bad = png_write(path, copy, one->height, one->width, 3, e);
 	free(copy);

@@ -19,7 +19,8 @@ struct picture {
 	const char *view, *ref;
 	int height, width;
 	const float *image;
-	const uint8_t *mask, *rgb;
+	const uint8_t *mask;
+	const float *rgb; /* in [0,1] */
 };
 
 /* Writes DIR/VIEW/REF.png (.npy) of each kind, each appearing whole; makes the folders. */
