@@ -217,7 +217,7 @@ VEC_INLINE void outer_tile(const int rows, const int columns, float *out, int st
 #pragma GCC unroll 27
 	for (int i = 0; i < MOST + 3; i++)
 		sum[i] = vec_splat(0);
-	for (int p = 0; p < panels; p++, a += a_panel, b += b_panel)
+	for (int p = 0; p < panels; p++, a += a_panel, b += b_panel) {
 #pragma GCC unroll 1
 		for (int v = 0; v < L; v += VEC_LANES) { /* unrolled, the sums would move between registers */
 			vecn y[OUTER_COLUMNS];
@@ -232,6 +232,7 @@ VEC_INLINE void outer_tile(const int rows, const int columns, float *out, int st
 					sum[r * columns + c] = vec_fma(x, y[c], sum[r * columns + c]);
 			}
 		}
+	}
 #pragma GCC unroll 8
 	for (int i = 0; i < (rows * columns + 3) / 4 * 4; i += 4)
 		sum_lanes_4(total + i, sum[i], sum[i + 1], sum[i + 2], sum[i + 3]);
