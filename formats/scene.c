@@ -214,7 +214,7 @@ int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 	return bad;
 }
 
-int scene_read_cameras(struct cameras *c, const char *dir, struct err *e)
+static int read_cameras(struct cameras *c, const char *dir, struct err *e)
 {
 	char *path = file_join(dir, "cameras.json", "", e);
 	int bad = path ? scene_read_cameras_file(c, path, e) : -1;
@@ -230,7 +230,7 @@ int scene_read(struct scene *s, const char *dir, struct err *e)
 	*s = (struct scene){0};
 	int bad = path ? scene_read_splats(s, path, e) : -1;
 	free(path);
-	if (bad || scene_read_cameras(&s->cameras, dir, e)) {
+	if (bad || read_cameras(&s->cameras, dir, e)) {
 		scene_free(s);
 		return -1;
 	}

@@ -16,10 +16,7 @@ struct scene {
 int scene_read(struct scene *s, const char *dir, struct err *e);
 void scene_free(struct scene *s);
 
-/* Only the cameras, from DIR/cameras.json. */
-int scene_read_cameras(struct cameras *c, const char *dir, struct err *e);
-
-/* The same from one file. scene_read_splats sets splats and offset of a zeroed *s. */
+/* One of the files. scene_read_splats sets splats and offset of a zeroed *s. */
 int scene_read_splats(struct scene *s, const char *path, struct err *e);
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e);
 

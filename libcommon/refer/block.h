@@ -26,7 +26,6 @@ enum {
 	BLOCK_SIZE = BLOCK_LANES * BLOCK_PANELS, /* Gaussians in a block */
 	BLOCK_G = REFER_H + 1,			 /* channels of g and r */
 	BLOCK_WORDS = 1024,			 /* most words in a step */
-	BLOCK_Z = 2 * BLOCK_G + 512,		 /* most channels of z */
 };
 
 /* The folded model of one step: everything the kernels read. Row-major float32 matrices. */
