@@ -22,7 +22,7 @@ static struct {
 	.contrast = REFER_CONTRAST_COSINE,
 	.iterations = 45000,
 	.checkpoint = 1000,
-	.trainer = {.temperature = 0.1, .lambda = 0.02, .batch = 1, .rates = {0.0025, 0.0001}}};
+	.trainer = {.temperature = 0.1, .price = 1, .lambda = 0.02, .batch = 1, .rates = {0.0025, 0.0001}}};
 
 static const struct cli_option table[] = {
 	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
@@ -46,8 +46,15 @@ static const struct cli_option table[] = {
 		"learning rate of the MLPs (default 0.0001)", 1e-12, 10},
 	{"batch", 0, CLI_INT, &options.trainer.batch, "N", "sentences of a view in one step (default 1)", 1,
 		64},
+	{"negatives", 0, CLI_INT, &options.trainer.negatives, "N",
+		"contrast each step with N sentences; 0 (default): all", 0, 1000000},
 	{"tolerance", 0, CLI_REAL, &options.trainer.tolerance, "T",
 		"leave out the Gaussians that carry this share of all weight (default 0)", 0, 0.99},
+	{"cell", 0, CLI_REAL, &options.trainer.cell, "C",
+		"let Gaussians share a feature in cubes of C pixels or more; 0 (default): one for each", 0,
+		1e6},
+	{"price", 0, CLI_REAL, &options.trainer.price, "E",
+		"cut cubes where a feature more saves E pixels of mask (default 1)", 0, 1e6},
 	{"log", 0, CLI_STRING, &options.log, "FILE",
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{"checkpoint", 0, CLI_INT, &options.checkpoint, "N",
@@ -78,14 +85,16 @@ struct run {
 static int start(struct run *r, const struct cli *c, struct err *e)
 {
 	const struct training *d = &r->data;
-	const struct trainer_source source = {d->scene.splats.means, d->scene.splats.n, d->text.width,
-		d->sentences, d->offsets, d->words, d->objects, d->views, d->view_count, d->pixels};
+	const struct trainer_source source = {d->scene.splats.means, d->cameras, d->scene.splats.n,
+		d->text.width, d->sentences, d->offsets, d->words, d->objects, d->views, d->view_count,
+		d->pixels};
 
 	checkpoint_identity(r->identity, &options.trainer, d->checksum);
 	if (trainer_init(&r->trainer, &source, &options.trainer, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, options.weights) : -1;
-	cli_note(c, 1, "%zu of %zu Gaussians, %zu views, %zu sentences, %zu pairs", r->trainer.n,
-		d->scene.splats.n, d->view_count, d->sentences, d->pairs);
+	cli_note(c, 1, "%zu of %zu Gaussians in %zu features, %zu views, %zu sentences, %zu pairs",
+		r->trainer.learning, d->scene.splats.n, r->trainer.rows.n, d->view_count, d->sentences,
+		d->pairs);
 	return 0;
 }
 
@@ -157,9 +166,10 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 	const struct model m = {.layout = t->layout,
 		.similarity = options.trainer.similarity,
 		.scene_gaussians = r->data.scene.splats.n,
-		.n = t->n,
-		.ids = t->ids,
-		.features = mem_alloc(t->n, REFER_X * sizeof(float), "features", e),
+		.n = t->rows.n,
+		.ids = t->octree.n ? NULL : t->ids,
+		.octree = t->octree,
+		.features = mem_alloc(t->rows.n, REFER_X * sizeof(float), "features", e),
 		.parameters = t->state.values,
 		.low = {t->low[0], t->low[1], t->low[2]},
 		.high = {t->high[0], t->high[1], t->high[2]}};
@@ -167,7 +177,7 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 
 	if (!m.features)
 		return -1;
-	step_unpack(train_state_x(&t->state), t->n, m.features);
+	step_unpack(train_state_x(&t->state), t->rows.n, m.features);
 	snprintf(text, sizeof text, "--iterations %ld %s", t->state.iteration, r->identity);
 	int bad = model_write(&m, c->output, text, c->seed, e);
 	if (!bad && r->is_own)

@@ -11,6 +11,7 @@
 void model_free(struct model *m)
 {
 	free(m->ids);
+	octree_free(&m->octree);
 	free(m->features);
 	free(m->parameters);
 	*m = (struct model){0};
@@ -44,30 +45,72 @@ static int read_bounds(struct model *m, const struct safetensors *st, struct err
 	return 0;
 }
 
+static int read_ids(struct model *m, const struct safetensors *st, const struct st_tensor *ids, struct err *e)
+{
+	const int32_t *from = ids->data;
+
+	m->n = (size_t)ids->shape[0];
+	m->ids = mem_alloc(m->n, sizeof *m->ids, st->path, e);
+	if (!m->ids)
+		return -1;
+	memcpy(m->ids, from, ids->bytes);
+	for (size_t i = 0; i < m->n; i++)
+		if (from[i] < 0 || (size_t)from[i] >= m->scene_gaussians || (i && from[i] <= from[i - 1]))
+			return err_set(e, ERR_FORMAT,
+				"%s: tensor 'ids': item %zu does not rise within 0 to %lld", st->path, i,
+				(long long)m->scene_gaussians - 1);
+	return 0;
+}
+
+static int read_octree(struct model *m, const struct safetensors *st, struct err *e)
+{
+	const struct st_tensor *leaves = safetensors_need(st, "leaves", ST_I64, 1, (int64_t[]){-1}, e);
+	const char *text = safetensors_meta(st, "root");
+	struct octree *t = &m->octree;
+	int end = 0;
+	size_t bad;
+
+	if (!leaves)
+		return -1;
+	if (!text ||
+		sscanf(text, "[[%lf,%lf,%lf],%lf]%n", &t->low[0], &t->low[1], &t->low[2], &t->edge, &end) !=
+			4 ||
+		!end || text[end])
+		return err_set(e, ERR_FORMAT, "%s: metadata 'root' is not a corner and an edge", st->path);
+	if (!isfinite(t->low[0] + t->low[1] + t->low[2] + t->edge) || !(t->edge > 0))
+		return err_set(
+			e, ERR_FORMAT, "%s: metadata 'root' is not finite with an edge above 0", st->path);
+	m->n = t->n = (size_t)leaves->shape[0];
+	t->codes = mem_alloc(t->n, sizeof *t->codes, st->path, e);
+	if (!t->codes)
+		return -1;
+	memcpy(t->codes, leaves->data, leaves->bytes);
+	if (octree_check(t, &bad))
+		return err_set(e, ERR_FORMAT,
+			"%s: tensor 'leaves': item %zu is not a leaf after the one before", st->path, bad);
+	return 0;
+}
+
 static int read_features(struct model *m, const struct safetensors *st, struct err *e)
 {
 	long long scene;
-	const struct st_tensor *ids = safetensors_need(st, "ids", ST_I32, 1, (int64_t[]){-1}, e);
+	const int has_leaves = safetensors_find(st, "leaves") != NULL;
+	const struct st_tensor *ids =
+		has_leaves ? NULL : safetensors_need(st, "ids", ST_I32, 1, (int64_t[]){-1}, e);
 
-	if (!ids || safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &scene, e))
-		return -1;
-	const struct st_tensor *x =
-		safetensors_need(st, "features", ST_F32, 2, (int64_t[]){ids->shape[0], REFER_X}, e);
-	if (!x)
+	if ((!ids && !has_leaves) || safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &scene, e))
 		return -1;
 	m->scene_gaussians = (size_t)scene;
-	m->n = (size_t)ids->shape[0];
-	m->ids = mem_alloc(m->n, sizeof *m->ids, st->path, e);
-	m->features = mem_alloc(m->n, sizeof(float) * REFER_X, st->path, e);
-	if (!m->ids || !m->features)
+	if (has_leaves ? read_octree(m, st, e) : read_ids(m, st, ids, e))
 		return -1;
-	memcpy(m->ids, ids->data, ids->bytes);
+	const struct st_tensor *x =
+		safetensors_need(st, "features", ST_F32, 2, (int64_t[]){(int64_t)m->n, REFER_X}, e);
+	if (!x)
+		return -1;
+	m->features = mem_alloc(m->n, sizeof(float) * REFER_X, st->path, e);
+	if (!m->features)
+		return -1;
 	memcpy(m->features, x->data, x->bytes);
-	for (size_t i = 0; i < m->n; i++)
-		if (m->ids[i] < 0 || m->ids[i] >= scene || (i && m->ids[i] <= m->ids[i - 1]))
-			return err_set(e, ERR_FORMAT,
-				"%s: tensor 'ids': item %zu does not rise within 0 to %lld", st->path, i,
-				scene - 1);
 	for (size_t i = 0; i < m->n * REFER_X; i++)
 		if (!isfinite(m->features[i]))
 			return err_set(
@@ -130,16 +173,30 @@ int model_read(struct model *m, const char *path, struct err *e)
 	return bad;
 }
 
+int model_rows(const struct model *m, const float *means, struct rows *rows, struct err *e)
+{
+	return m->octree.n ? rows_of_leaves(rows, &m->octree, means, m->scene_gaussians, e)
+			   : rows_of_ids(rows, m->ids, m->n, m->scene_gaussians, e);
+}
+
 int model_write(const struct model *m, const char *path, const char *options, long long seed, struct err *e)
 {
-	struct st_tensor tensors[REFER_TENSORS + 2] = {
-		{.name = "ids", .dtype = ST_I32, .dims = 1, .shape = {(int64_t)m->n}, .data = m->ids},
+	struct st_tensor tensors[REFER_TENSORS + 2] = {m->octree.n ? (struct st_tensor){.name = "leaves",
+									     .dtype = ST_I64,
+									     .dims = 1,
+									     .shape = {(int64_t)m->n},
+									     .data = m->octree.codes}
+								   : (struct st_tensor){.name = "ids",
+									     .dtype = ST_I32,
+									     .dims = 1,
+									     .shape = {(int64_t)m->n},
+									     .data = m->ids},
 		{.name = "features",
 			.dtype = ST_F32,
 			.dims = 2,
 			.shape = {(int64_t)m->n, REFER_X},
 			.data = m->features}};
-	char bounds[256], gaussians[32], seed_text[32];
+	char bounds[256], root[128], gaussians[32], seed_text[32];
 	size_t n = 2;
 
 	for (int t = 0; t < REFER_TENSORS; t++)
@@ -151,12 +208,15 @@ int model_write(const struct model *m, const char *path, const char *options, lo
 				.data = m->parameters + m->layout.tensors[t].offset};
 	snprintf(bounds, sizeof bounds, "[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]]", m->low[0], m->low[1],
 		m->low[2], m->high[0], m->high[1], m->high[2]);
+	snprintf(root, sizeof root, "[[%.17g,%.17g,%.17g],%.17g]", m->octree.low[0], m->octree.low[1],
+		m->octree.low[2], m->octree.edge);
 	snprintf(gaussians, sizeof gaussians, "%zu", m->scene_gaussians);
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
 	struct st_meta meta[] = {{"format", "refer.model"}, {"version", "1"}, {"tool", "refer-train"},
 		{"options", options}, {"seed", seed_text},
 		{"interaction", refer_interaction_name(m->layout.interaction)},
 		{"similarity", refer_similarity_name(m->similarity)}, {"gaussians", gaussians},
-		{"bounds", bounds}};
-	return safetensors_write(path, tensors, n, meta, sizeof meta / sizeof *meta, e);
+		{"bounds", bounds}, {"root", root}};
+	const size_t count = sizeof meta / sizeof *meta - (m->octree.n ? 0 : 1);
+	return safetensors_write(path, tensors, n, meta, count, e);
 }

@@ -4,6 +4,7 @@
 
 #include "base/err.h"
 #include "refer/model.h"
+#include "refer/rows.h"
 
 #include <stdint.h>
 
@@ -11,8 +12,9 @@ struct model {
 	struct refer_layout layout;
 	enum refer_similarity similarity;
 	size_t scene_gaussians; /* N of the scene that it belongs to */
-	size_t n;		/* M Gaussians with features */
-	int32_t *ids;		/* (M) rising indices in the scene */
+	size_t n;		/* M rows of features */
+	int32_t *ids;		/* (M) the Gaussian of each, rising indices in the scene; NULL: of leaves */
+	struct octree octree;	/* (M) leaves, or none */
 	float *features;	/* (M,16) */
 	float *parameters;	/* (layout.count) */
 	double low[3], high[3]; /* what the scene's means are scaled to [-1,1] by */
@@ -21,5 +23,9 @@ struct model {
 int model_read(struct model *m, const char *path, struct err *e);
 int model_write(const struct model *m, const char *path, const char *options, long long seed, struct err *e);
 void model_free(struct model *m);
+
+/* Which row serves each Gaussian of the scene (scene_gaussians), whose means are means (scene_gaussians,3).
+ */
+int model_rows(const struct model *m, const float *means, struct rows *rows, struct err *e);
 
 #endif

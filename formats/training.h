@@ -22,6 +22,7 @@ struct training {
 	size_t view_count;		   /* training views that have masks */
 	struct weights *weights;
 	struct train_view *views;
+	struct camera *cameras; /* of the views, at the size of their weights; names belong to scene */
 	struct supervision masks;
 	size_t test_masks; /* masks of test views, not used */
 	size_t pairs;	   /* (view, sentence) pairs to learn from */

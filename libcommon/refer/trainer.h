@@ -4,6 +4,9 @@
 #define REFER_TRAINER_H
 
 #include "base/err.h"
+#include "geom/camera.h"
+#include "refer/octree.h"
+#include "refer/rows.h"
 #include "refer/train.h"
 
 struct trainer_options {
@@ -12,15 +15,19 @@ struct trainer_options {
 	enum refer_contrast contrast;
 	double temperature, lambda; /* of the contrast */
 	double tolerance;	    /* train_active_set's */
+	double cell;		    /* octree_points.finest, in pixels of the views; 0: no octree */
+	double price;		    /* octree_build's */
 	long long batch;	    /* most sentences in a step */
+	long long negatives;	    /* train_order's */
 	struct train_rates rates;
 	long long seed;
 };
 
 /* What is learned from. Referred to, not copied. */
 struct trainer_source {
-	const float *means;	/* (scene_gaussians,3) */
-	size_t scene_gaussians; /* N */
+	const float *means;	      /* (scene_gaussians,3) */
+	const struct camera *cameras; /* (view_count) of the views, at the size of their weights */
+	size_t scene_gaussians;	      /* N */
 	int text_width;
 	size_t sentences;	/* R */
 	const int64_t *offsets; /* (R+1) into words */
@@ -33,10 +40,14 @@ struct trainer_source {
 struct trainer {
 	struct refer_layout layout;
 	struct train_rates rates;
-	size_t n;     /* M Gaussians that learn */
-	int32_t *ids; /* (M) */
+	size_t learning;      /* Gaussians that learn */
+	int32_t *ids;	      /* (learning) */
+	struct octree octree; /* no leaves: a row for each of ids */
+	struct rows rows;
 	double low[3], high[3];
-	float *position; /* (M,3) */
+	float *position;	  /* (rows,3) */
+	struct train_view *views; /* the source's, over rows */
+	size_t view_count;
 	struct step *step;
 	struct train_order order;
 	struct train_state state;

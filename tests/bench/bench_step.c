@@ -217,7 +217,7 @@ static void measure(const struct step_setup *setup, struct train_state *t, const
 		memset(w.spent, 0, sizeof w.spent);
 		const double start = w.last = now(w.clock);
 		step_run(s, t->values, train_state_x(t), view, &target, 1,
-			contrast_top_count(i, setup->gaussians), t->gradient, t->gradient + t->parameters);
+			contrast_top_count(i, setup->gaussians), NULL, t->gradient, t->gradient + t->parameters);
 		const double middle = now(w.clock);
 		train_adam(t, &(struct train_rates){1e-4, 1e-3});
 		const double end = now(w.clock);
@@ -280,7 +280,6 @@ int main(int argc, char **argv)
 		.temperature = 0.1,
 		.lambda = 0.1,
 		.gaussians = gaussians,
-		.scene_gaussians = gaussians,
 		.position = position,
 		.sentences = SENTENCES,
 		.offsets = offsets,
