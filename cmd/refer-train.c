@@ -22,7 +22,8 @@ static struct {
 	.contrast = REFER_CONTRAST_COSINE,
 	.iterations = 45000,
 	.checkpoint = 1000,
-	.trainer = {.temperature = 0.1, .price = 1, .lambda = 0.02, .batch = 1, .rates = {0.0025, 0.0001}}};
+	.trainer = {
+		.temperature = 0.1, .share = 0.04, .lambda = 0.02, .batch = 1, .rates = {0.0025, 0.0001}}};
 
 static const struct cli_option table[] = {
 	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
@@ -50,11 +51,9 @@ static const struct cli_option table[] = {
 		"contrast each step with N sentences; 0 (default): all", 0, 1000000},
 	{"tolerance", 0, CLI_REAL, &options.trainer.tolerance, "T",
 		"leave out the Gaussians that carry this share of all weight (default 0)", 0, 0.99},
-	{"cell", 0, CLI_REAL, &options.trainer.cell, "C",
-		"let Gaussians share a feature in cubes of C pixels or more; 0 (default): one for each", 0,
-		1e6},
-	{"price", 0, CLI_REAL, &options.trainer.price, "E",
-		"cut cubes where a feature more saves E pixels of mask (default 1)", 0, 1e6},
+	{"share", 0, CLI_REAL, &options.trainer.share, "E",
+		"let Gaussians share a feature where one more saves less than E pixels of mask a view; 0: none do (default 0.04)",
+		0, 1e6},
 	{"log", 0, CLI_STRING, &options.log, "FILE",
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{"checkpoint", 0, CLI_INT, &options.checkpoint, "N",
@@ -92,9 +91,10 @@ static int start(struct run *r, const struct cli *c, struct err *e)
 	checkpoint_identity(r->identity, &options.trainer, d->checksum);
 	if (trainer_init(&r->trainer, &source, &options.trainer, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, options.weights) : -1;
-	cli_note(c, 1, "%zu of %zu Gaussians in %zu features, %zu views, %zu sentences, %zu pairs",
-		r->trainer.learning, d->scene.splats.n, r->trainer.rows.n, d->view_count, d->sentences,
-		d->pairs);
+	cli_note(c, 1,
+		"%zu of %zu Gaussians share %zu features, %.1f a pixel; %zu views, %zu sentences, %zu pairs",
+		r->trainer.learning, d->scene.splats.n, r->trainer.rows.n, trainer_weights(&r->trainer),
+		d->view_count, d->sentences, d->pairs);
 	return 0;
 }
 

@@ -15,17 +15,17 @@ static const char *const names[ARRAYS] = {"values", "first_moment", "second_mome
 void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_options *o, uint32_t inputs)
 {
 	char temperature[NUMBER_SIZE], lambda[NUMBER_SIZE], features[NUMBER_SIZE], mlps[NUMBER_SIZE],
-		tolerance[NUMBER_SIZE], cell[NUMBER_SIZE], price[NUMBER_SIZE];
+		tolerance[NUMBER_SIZE], share[NUMBER_SIZE];
 
 	snprintf(text, CHECKPOINT_IDENTITY,
 		"--interaction %s --similarity %s --contrast %s --temperature %s --lambda %s --feature-rate %s --mlp-rate %s "
-		"--batch %lld --negatives %lld --tolerance %s --cell %s --price %s --seed %lld, inputs %08x",
+		"--batch %lld --negatives %lld --tolerance %s --share %s --seed %lld, inputs %08x",
 		refer_interaction_name(o->interaction), refer_similarity_name(o->similarity),
 		refer_contrast_name(o->contrast), number_text(temperature, o->temperature),
 		number_text(lambda, o->lambda), number_text(features, o->rates.features),
 		number_text(mlps, o->rates.mlps), o->batch, o->negatives,
-		number_text(tolerance, o->tolerance), number_text(cell, o->cell),
-		number_text(price, o->price), o->seed, (unsigned)inputs);
+		number_text(tolerance, o->tolerance), number_text(share, o->share), o->seed,
+		(unsigned)inputs);
 }
 
 int checkpoint_write(const struct train_state *t, const char *path, const char *identity, struct err *e)

@@ -18,11 +18,9 @@ static int build_octree(
 
 	if (!bad) {
 		detail_footprints(from->means, n, from->cameras, from->view_count, finest);
-		for (size_t i = 0; i < n; i++)
-			finest[i] *= (float)o->cell;
 		const struct octree_points points = {
 			t->learning, from->means, t->ids, finest, weight, signature};
-		bad = octree_build(&t->octree, &points, o->price, e);
+		bad = octree_build(&t->octree, &points, o->share * (double)from->view_count, e);
 	}
 	free(finest);
 	free(weight);
@@ -42,10 +40,10 @@ static int choose_rows(
 		return -1;
 	if (!t->learning)
 		return err_set(e, ERR_FORMAT, "no Gaussian has weight in a view with masks");
-	if (o->cell > 0 && build_octree(t, from, o, e))
+	if (o->share > 0 && build_octree(t, from, o, e))
 		return -1;
-	if (o->cell > 0 ? rows_of_leaves(&t->rows, &t->octree, from->means, n, e)
-			: rows_of_ids(&t->rows, t->ids, t->learning, n, e))
+	if (o->share > 0 ? rows_of_leaves(&t->rows, &t->octree, from->means, n, e)
+			 : rows_of_ids(&t->rows, t->ids, t->learning, n, e))
 		return -1;
 	t->position = mem_alloc(t->rows.n, 3 * sizeof(float), "positions", e);
 	return !t->position || train_bounds(from->means, t->ids, t->learning, t->low, t->high, e) ||
@@ -126,6 +124,18 @@ void trainer_free(struct trainer *t)
 	free(t->ids);
 	free(t->position);
 	*t = (struct trainer){0};
+}
+
+double trainer_weights(const struct trainer *t)
+{
+	double weights = 0, pixels = 0;
+
+	for (size_t v = 0; v < t->view_count; v++) {
+		const struct view_weights *w = &t->views[v].weights;
+		weights += (double)w->indptr[w->pixels];
+		pixels += (double)w->pixels;
+	}
+	return pixels > 0 ? weights / pixels : 0;
 }
 
 struct step_losses trainer_step(struct trainer *t)

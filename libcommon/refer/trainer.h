@@ -15,10 +15,9 @@ struct trainer_options {
 	enum refer_contrast contrast;
 	double temperature, lambda; /* of the contrast */
 	double tolerance;	    /* train_active_set's */
-	double cell;		    /* octree_points.finest, in pixels of the views; 0: no octree */
-	double price;		    /* octree_build's */
-	long long batch;	    /* most sentences in a step */
-	long long negatives;	    /* train_order's */
+	double share;	 /* octree_build's price, in pixels a view; 0: every Gaussian has its own feature */
+	long long batch; /* most sentences in a step */
+	long long negatives; /* train_order's */
 	struct train_rates rates;
 	long long seed;
 };
@@ -57,6 +56,9 @@ struct trainer {
 int trainer_init(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e);
 void trainer_free(struct trainer *t);
+
+/* Weights over rows that a pixel has on average. */
+double trainer_weights(const struct trainer *t);
 
 /* The next step, train_step's. */
 struct step_losses trainer_step(struct trainer *t);
