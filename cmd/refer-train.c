@@ -14,12 +14,13 @@
 
 static struct {
 	const char *scene, *weights, *text, *masks, *log;
-	int interaction, similarity, contrast, is_resumed;
+	int interaction, similarity, contrast, precision, is_resumed;
 	long long iterations, checkpoint;
 	struct trainer_options trainer;
 } options = {.interaction = REFER_PCMI,
 	.similarity = REFER_DOT,
 	.contrast = REFER_CONTRAST_COSINE,
+	.precision = PRECISION_U8,
 	.iterations = 45000,
 	.checkpoint = 1000,
 	.trainer = {.temperature = 0.1, .lambda = 0.02, .batch = 1, .rates = {0.0025, 0.0001}}};
@@ -48,6 +49,8 @@ static const struct cli_option table[] = {
 		64},
 	{"tolerance", 0, CLI_REAL, &options.trainer.tolerance, "T",
 		"leave out the Gaussians that carry this share of all weight (default 0)", 0, 0.99},
+	{"precision", 0, CLI_CHOICE, &options.precision, PRECISION_CHOICES,
+		"how features and weights are stored (default u8)", 0, 0},
 	{"log", 0, CLI_STRING, &options.log, "FILE",
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{"checkpoint", 0, CLI_INT, &options.checkpoint, "N",
@@ -156,6 +159,7 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 	const struct trainer *t = &r->trainer;
 	const struct model m = {.layout = t->layout,
 		.similarity = options.trainer.similarity,
+		.precision = (enum precision)options.precision,
 		.scene_gaussians = r->data.scene.splats.n,
 		.n = t->n,
 		.ids = t->ids,
@@ -168,7 +172,8 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 	if (!m.features)
 		return -1;
 	step_unpack(train_state_x(&t->state), t->n, m.features);
-	snprintf(text, sizeof text, "--iterations %ld %s", t->state.iteration, r->identity);
+	snprintf(text, sizeof text, "--iterations %ld --precision %s %s", t->state.iteration,
+		precision_name(m.precision), r->identity);
 	int bad = model_write(&m, c->output, text, c->seed, e);
 	if (!bad && r->is_own)
 		unlink(r->checkpoint);
@@ -179,14 +184,9 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
 	const struct training *d = &r->data;
-	const size_t bytes = strlen(c->output) + sizeof ".checkpoint";
 
-	if (strcmp(c->output, "-")) {
-		r->checkpoint = mem_alloc(bytes, 1, c->output, e);
-		if (!r->checkpoint)
-			return -1;
-		snprintf(r->checkpoint, bytes, "%s.checkpoint", c->output);
-	}
+	if (strcmp(c->output, "-") && !(r->checkpoint = checkpoint_path(c->output, e)))
+		return -1;
 	if (training_read(&r->data, options.scene, options.weights, options.text, options.masks, e))
 		return -1;
 	if (d->left_out)
