@@ -121,28 +121,28 @@ static int read_precision(struct model *m, const struct safetensors *st, struct 
 	return 0;
 }
 
-/* The width of the words that the model takes. */
-static int read_text_width(const struct safetensors *st, int *width, struct err *e)
+/* The width of the words that the model takes, which all other shapes follow from; -1 with *e. */
+static int read_text_width(const struct model *m, const struct safetensors *st, struct err *e)
 {
-	const struct st_tensor *first = safetensors_find(st, "text.0.weight");
+	const struct st_tensor *first = safetensors_need(
+		st, "text.0.weight", precision_dtype(m->precision), 2, (int64_t[]){REFER_T1, -1}, e);
 
 	if (!first)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'text.0.weight' is missing", st->path);
-	if (first->dims == 2 && (first->shape[1] < 1 || first->shape[1] > 65536))
+		return -1;
+	if (first->shape[1] < 1 || first->shape[1] > 65536)
 		return err_set(e, ERR_FORMAT, "%s: tensor 'text.0.weight': %lld columns, expected 1 to 65536",
 			st->path, (long long)first->shape[1]);
-	*width = first->dims == 2 ? (int)first->shape[1] : 1;
-	return 0;
+	return (int)first->shape[1];
 }
 
 static int read_all(struct model *m, const struct safetensors *st, struct err *e)
 {
-	int interaction, similarity, width = 1;
+	int interaction, similarity, width;
 
 	if (safetensors_need_format(st, "refer.model", VERSION_READ, e) ||
 		read_choice(st, "interaction", refer_interaction_parse, &interaction, e) ||
 		read_choice(st, "similarity", refer_similarity_parse, &similarity, e) ||
-		read_precision(m, st, e) || read_text_width(st, &width, e))
+		read_precision(m, st, e) || (width = read_text_width(m, st, e)) < 0)
 		return -1;
 	m->similarity = (enum refer_similarity)similarity;
 	refer_layout_init(&m->layout, (enum refer_interaction)interaction, width);

@@ -30,6 +30,11 @@ int precision_parse(const char *name)
 	return -1;
 }
 
+enum st_dtype precision_dtype(enum precision p)
+{
+	return precisions[p].dtype;
+}
+
 int precision_check(const float *x, size_t n, double limit, enum err_code code, const char *path,
 	const char *name, struct err *e)
 {

@@ -22,6 +22,9 @@ enum precision {
 const char *precision_name(enum precision p);
 int precision_parse(const char *name);
 
+/* What a matrix's items are in a file. */
+enum st_dtype precision_dtype(enum precision p);
+
 /* What the numbers of a matrix have a low and a step in common with. */
 enum precision_group { PRECISION_ROWS, PRECISION_COLUMNS };
 
