@@ -117,6 +117,7 @@ static int check_weights(struct check *c, const char *path, struct err *e)
 
 	if (weights_open_file(&w, path, e))
 		return -1;
+	c->precision = precision_name(w.precision);
 	c->width = w.width;
 	c->height = w.height;
 	add_fact(c, "weights", (long long)w.indptr[(int64_t)w.width * w.height]);
