@@ -14,12 +14,13 @@
 
 static struct {
 	const char *scene, *weights, *text, *masks, *log;
-	int interaction, similarity, contrast, is_resumed;
+	int interaction, similarity, contrast, precision, is_resumed;
 	long long iterations, checkpoint;
 	struct trainer_options trainer;
 } options = {.interaction = REFER_PCMI,
 	.similarity = REFER_DOT,
 	.contrast = REFER_CONTRAST_COSINE,
+	.precision = PRECISION_U8,
 	.iterations = 45000,
 	.checkpoint = 1000,
 	.trainer = {
@@ -54,6 +55,8 @@ static const struct cli_option table[] = {
 	{"share", 0, CLI_REAL, &options.trainer.share, "E",
 		"let Gaussians share a feature where one more saves less than E pixels of mask a view; 0: none do (default 0.04)",
 		0, 1e6},
+	{"precision", 0, CLI_CHOICE, &options.precision, PRECISION_CHOICES,
+		"how features and weights are stored (default u8)", 0, 0},
 	{"log", 0, CLI_STRING, &options.log, "FILE",
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{"checkpoint", 0, CLI_INT, &options.checkpoint, "N",
@@ -165,8 +168,10 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 	const struct trainer *t = &r->trainer;
 	const struct model m = {.layout = t->layout,
 		.similarity = options.trainer.similarity,
+		.precision = (enum precision)options.precision,
 		.scene_gaussians = r->data.scene.splats.n,
 		.n = t->rows.n,
+		.has_leaves = t->octree.n > 0,
 		.ids = t->octree.n ? NULL : t->ids,
 		.octree = t->octree,
 		.features = mem_alloc(t->rows.n, REFER_X * sizeof(float), "features", e),
@@ -178,7 +183,8 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 	if (!m.features)
 		return -1;
 	step_unpack(train_state_x(&t->state), t->rows.n, m.features);
-	snprintf(text, sizeof text, "--iterations %ld %s", t->state.iteration, r->identity);
+	snprintf(text, sizeof text, "--iterations %ld --precision %s %s", t->state.iteration,
+		precision_name(m.precision), r->identity);
 	int bad = model_write(&m, c->output, text, c->seed, e);
 	if (!bad && r->is_own)
 		unlink(r->checkpoint);
@@ -189,14 +195,9 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
 	const struct training *d = &r->data;
-	const size_t bytes = strlen(c->output) + sizeof ".checkpoint";
 
-	if (strcmp(c->output, "-")) {
-		r->checkpoint = mem_alloc(bytes, 1, c->output, e);
-		if (!r->checkpoint)
-			return -1;
-		snprintf(r->checkpoint, bytes, "%s.checkpoint", c->output);
-	}
+	if (strcmp(c->output, "-") && !(r->checkpoint = checkpoint_path(c->output, e)))
+		return -1;
 	if (training_read(&r->data, options.scene, options.weights, options.text, options.masks, e))
 		return -1;
 	if (d->left_out)

@@ -1,5 +1,6 @@
 #include "formats/checkpoint.h"
 
+#include "base/mem.h"
 #include "base/number.h"
 #include "formats/safetensors.h"
 
@@ -26,6 +27,16 @@ void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_op
 		number_text(mlps, o->rates.mlps), o->batch, o->negatives,
 		number_text(tolerance, o->tolerance), number_text(share, o->share), o->seed,
 		(unsigned)inputs);
+}
+
+char *checkpoint_path(const char *model, struct err *e)
+{
+	const size_t bytes = strlen(model) + sizeof ".checkpoint";
+	char *path = mem_alloc(bytes, 1, model, e);
+
+	if (path)
+		snprintf(path, bytes, "%s.checkpoint", model);
+	return path;
 }
 
 int checkpoint_write(const struct train_state *t, const char *path, const char *identity, struct err *e)

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/masks.h"
+#include "mask/bits.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -142,7 +143,7 @@ static void make_checksum(struct training *t)
 		sum = add_checksum(sum, view->weights.weight, sizeof(float) * nnz);
 		sum = add_checksum(sum, view->sentences, sizeof(int) * (size_t)view->count);
 		for (int i = 0; i < view->count; i++)
-			sum = add_checksum(sum, view->masks[i], pixels);
+			sum = add_checksum(sum, view->masks[i], bits_bytes(pixels));
 	}
 	t->checksum = sum;
 }

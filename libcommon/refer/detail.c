@@ -54,10 +54,12 @@ static void sum_masks(const struct train_view *v, const int *objects, float *at)
 		direction(object, d);
 		for (int k = 0; k < K; k++)
 			d[k] /= (float)same;
-		for (size_t p = 0; p < v->weights.pixels; p++)
-			if (v->masks[i][p])
-				for (int k = 0; k < K; k++)
-					at[p * K + (size_t)k] += d[k];
+		for (size_t p = 0; p < v->weights.pixels; p++) {
+			if (!(v->masks[i][p / 8] >> p % 8 & 1))
+				continue;
+			for (int k = 0; k < K; k++)
+				at[p * K + (size_t)k] += d[k];
+		}
 	}
 }
 

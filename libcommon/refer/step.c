@@ -1,6 +1,7 @@
 #include "refer/step.h"
 
 #include "base/mem.h"
+#include "mask/bits.h"
 #include "nn/loss.h"
 #include "refer/fold.h"
 #include "refer/words.h"
@@ -391,19 +392,22 @@ static void channel_put(float *panels, size_t padded, int channels, int c, const
  * Blending back follows part by part, while the part's weights are in cache. */
 static double image_loss(struct step *s, const struct view_weights *view, const uint8_t *mask, double share)
 {
-	const size_t pixels = view->pixels, part = 2048;
+	enum { part = 2048 };
+	const size_t pixels = view->pixels;
 	double sums[VIEW_SLABS] = {0}, sum = 0;
 
 #pragma omp parallel for schedule(dynamic) num_threads(s->threads)
 	for (size_t slab = 0; slab < VIEW_SLABS; slab++) {
 		float *dm = s->view_scratch + slab * view->gaussians;
+		uint8_t wanted[part];
 		const size_t begin = pixels * slab / VIEW_SLABS, end = pixels * (slab + 1) / VIEW_SLABS;
 		memset(dm, 0, sizeof *dm * view->gaussians);
 		for (size_t from = begin; from < end; from += part) {
 			const size_t to = end - from > part ? from + part : end;
 			const double of_all = (double)(to - from) / (double)pixels;
 			view_blend(view, s->response, from, to, s->image);
-			sums[slab] += of_all * loss_bce(s->image + from, mask + from, to - from,
+			bits_expand(mask, from, to, wanted);
+			sums[slab] += of_all * loss_bce(s->image + from, wanted, to - from,
 						       (float)(share * of_all), s->dimage + from);
 			view_blend_back(view, s->dimage, from, to, dm);
 		}

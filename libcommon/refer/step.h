@@ -60,7 +60,7 @@ void step_unpack(const float *panels, size_t gaussians, float *x); /* and back *
 
 struct step_target {
 	size_t sentence;     /* index below R */
-	const uint8_t *mask; /* (P) 0 or 1 */
+	const uint8_t *mask; /* of P pixels, as bits (mask/bits.h) */
 };
 
 struct step_losses {

@@ -13,7 +13,7 @@ struct train_view {
 	struct view_weights weights;
 	int count;
 	int *sentences;	       /* (count) indices of sentences */
-	const uint8_t **masks; /* (count) of weights.pixels each, 0 or 1 */
+	const uint8_t **masks; /* (count) of weights.pixels each, as bits (mask/bits.h) */
 };
 
 /* Gaussians that can learn: those that carry all but `tolerance` of the views' weight; at 0, those with any.

@@ -8,6 +8,7 @@
  *disturbs it little. */
 #include "base/mem.h"
 #include "base/rng.h"
+#include "mask/bits.h"
 #include "refer/step.h"
 #include "refer/train.h"
 
@@ -271,9 +272,9 @@ int main(int argc, char **argv)
 		objects[i] = i / 4;
 	float *position = uniform(&r, gaussians * 3, 1), *text = uniform(&r, SENTENCES * words * TEXT, 0.1f);
 	struct view_weights view = make_view(&r, gaussians, width, height);
-	uint8_t *mask = need(view.pixels, 1);
+	uint8_t *mask = need(bits_bytes(view.pixels), 1);
 	for (size_t p = 0; p < view.pixels; p++)
-		mask[p] = p % width < width / 5;
+		mask[p / 8] |= (uint8_t)((p % width < width / 5) << p % 8);
 	const struct step_setup setup = {.layout = &layout,
 		.similarity = REFER_COSINE,
 		.contrast = REFER_CONTRAST_COSINE,

@@ -217,7 +217,7 @@ static void details(void)
 	int64_t indptr[P + 1] = {0, 2, 3};
 	int32_t index[3] = {0, 1, 1};
 	float w[3] = {0.5f, 0.25f, 0.75f};
-	const uint8_t first[P] = {1, 0}, second[P] = {1, 1};
+	const uint8_t first[1] = {1}, second[1] = {3}; /* bits: pixel 0, and both */
 	const uint8_t *masks[3] = {first, first, second};
 	int sentences[3] = {0, 2, 1};
 	const int objects[3] = {0, 7, 0};

@@ -4,6 +4,7 @@
 #include "reference_problem.h"
 
 #include "base/mem.h"
+#include "mask/bits.h"
 #include "refer/step.h"
 
 #include <omp.h>
@@ -12,6 +13,7 @@
 struct floats {
 	float *parameters, *x, *panels, *position, *words, *weight, *gradient, *dpanels, *dx;
 	int64_t *offsets;
+	uint8_t *mask; /* as bits */
 };
 
 static float *to_floats(const double *from, size_t count)
@@ -39,6 +41,8 @@ static void floats_init(struct floats *f, const struct reference_sample *s)
 	f->dx = mem_alloc(p->n * REFER_X, sizeof(float), "test", &e);
 	f->gradient = mem_alloc(s->layout.count, sizeof(float), "test", &e);
 	f->offsets = mem_alloc(p->sentences + 1, sizeof *f->offsets, "test", &e);
+	f->mask = mem_alloc(bits_bytes(p->pixels), 1, "test", &e);
+	bits_pack(p->mask, p->pixels, f->mask);
 	for (size_t r = 0; r <= p->sentences; r++)
 		f->offsets[r] = (int64_t)p->offsets[r];
 	step_pack(f->x, p->n, f->panels);
@@ -52,6 +56,7 @@ static void floats_free(struct floats *f)
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		free(all[i]);
 	free(f->offsets);
+	free(f->mask);
 }
 
 /* |a - b| / |b| over an array. */
@@ -123,7 +128,7 @@ static double compare(const struct reference_options *o, const char *kernels,
 	CHECK(!reference_forward(p, &result, &e) && !reference_backward(p, &result, dx, dparameters, &e),
 		"%s", name);
 	struct view_weights view = view_of(p, &f);
-	struct step_target target = {p->target, p->mask};
+	struct step_target target = {p->target, f.mask};
 	struct step_losses losses = step_run(
 		step, f.parameters, f.panels, &view, &target, 1, top_count(p), others, f.gradient, f.dpanels);
 	float *m = mem_alloc(p->n, sizeof *m, "test", &e);
@@ -203,7 +208,7 @@ static void batch_is_the_mean(enum refer_interaction interaction, enum refer_sim
 	const size_t count = s.layout.count, features = step_padded(p->n) * REFER_X;
 	double *sum = mem_zalloc(count + features, sizeof *sum, "test", &e);
 	struct view_weights view = view_of(p, &f);
-	struct step_target targets[3] = {{0, p->mask}, {3, p->mask}, {1, p->mask}};
+	struct step_target targets[3] = {{0, f.mask}, {3, f.mask}, {1, f.mask}};
 	struct step *one = make_step(&s, &f, 1, NULL), *three = make_step(&s, &f, 3, NULL);
 	double loss = 0;
 	for (int i = 0; i < 3; i++) {
@@ -248,7 +253,7 @@ static void threads_agree(enum refer_interaction interaction)
 	const size_t count = s.layout.count, features = step_padded(p->n) * REFER_X;
 	float *kept = mem_alloc(count + features, sizeof *kept, "test", &e);
 	struct view_weights view = view_of(p, &f);
-	struct step_target target = {p->target, p->mask};
+	struct step_target target = {p->target, f.mask};
 	for (int threads = 1; threads <= 3; threads++) {
 		omp_set_num_threads(threads);
 		struct step *step = make_step(&s, &f, 1, NULL);
