@@ -178,6 +178,21 @@ int training_read(struct training *t, const char *scene, const char *weights, co
 	return bad;
 }
 
+struct trainer_source training_source(const struct training *t)
+{
+	return (struct trainer_source){.means = t->scene.splats.means,
+		.cameras = t->cameras,
+		.scene_gaussians = t->scene.splats.n,
+		.text_width = t->text.width,
+		.sentences = t->sentences,
+		.offsets = t->offsets,
+		.words = t->words,
+		.objects = t->objects,
+		.views = t->views,
+		.view_count = t->view_count,
+		.pixels = t->pixels};
+}
+
 void training_free(struct training *t)
 {
 	if (t->views)

@@ -8,7 +8,7 @@
 #include "formats/text.h"
 #include "formats/weights.h"
 #include "refer/supervision.h"
-#include "refer/train.h"
+#include "refer/trainer.h"
 
 struct training {
 	struct scene scene;
@@ -32,6 +32,8 @@ struct training {
 
 int training_read(struct training *t, const char *scene, const char *weights, const char *text,
 	const char *masks, struct err *e);
+/* What a trainer learns from; referred to. */
+struct trainer_source training_source(const struct training *t);
 void training_free(struct training *t);
 
 #endif

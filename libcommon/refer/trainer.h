@@ -22,6 +22,16 @@ struct trainer_options {
 	long long seed;
 };
 
+/* pcmi, dot and the rest as refer-train has them where nothing is said. */
+#define TRAINER_DEFAULTS                                                                                     \
+	{                                                                                                    \
+		.interaction = REFER_PCMI, .contrast = REFER_CONTRAST_COSINE, .temperature = 0.1,            \
+		.lambda = 0.02, .share = 0.04, .batch = 1, .negatives = 12, .rates = {                       \
+			0.0025,                                                                              \
+			0.0001                                                                               \
+		}                                                                                            \
+	}
+
 /* What is learned from. Referred to, not copied. */
 struct trainer_source {
 	const float *means;	      /* (scene_gaussians,3) */
