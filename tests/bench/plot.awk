@@ -7,14 +7,15 @@
 #	#xlabel TEXT          #ylabel TEXT              with the unit
 #	#xlog                 #ylog                     logarithmic axis; points that are not above 0 are left out
 #	#xzero                #yzero                    a linear axis begins at 0
-#	#style  SERIES STYLE                            line (default), points, dashed (a line without markers)
+#	#style  SERIES STYLE                            line (default: from left to right), path (a line through the points as
+#	                                                they come), points, dashed (a line without markers)
 #	#ref    Y  TEXT                                 a level to compare with
 #	#xref   X  TEXT
 # Series are drawn, coloured and listed in the order in which they first appear.
 BEGIN {
 	FS = "\t"
 	left = 82; top = 64; plot_w = 560; plot_h = 360; bottom = 64
-	size = 13; char_w = 7.1; small = 11.5; small_w = 6.3
+	size = 13; char_w = 7.8; small = 11.5; small_w = 7
 	split("#0072B2 #D55E00 #009E73 #CC79A7 #B8860B #56B4E9 #444444 #7B3294", colour, " ")
 	colours = 8
 }
@@ -199,12 +200,12 @@ function draw_refs(i, p, w) {
 	}
 }
 
-# The points of a series in order of x (equal ones as they came), in order[1..count].
+# The points of a series in order of x (equal ones, and a path's, as they came), in order[1..count].
 function sort_series(s, i, j, count, held) {
 	count = 0
 	for (i = 1; i <= n; i++) {
 		if (of[i] != s) continue
-		for (j = count++; j > 0 && x[order[j]] > x[i]; j--) order[j + 1] = order[j]
+		for (j = count++; j > 0 && x[order[j]] > x[i] && style[name[s]] != "path"; j--) order[j + 1] = order[j]
 		order[j + 1] = i
 	}
 	return count
