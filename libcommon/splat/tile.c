@@ -1,26 +1,18 @@
 #include "splat/tile.h"
 
 #include "base/mem.h"
+#include "base/threads.h"
 
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* Tiles first to last of one tile row. */
-struct span {
-	uint32_t entry;
-	uint16_t row, first, last;
-};
-
-/* One task's Gaussians: their spans in order, and how many entries each tile gets from them. */
-struct share {
-	size_t begin, end;
-	struct span *spans;
-	size_t count, capacity;
-	uint32_t
-		*tally; /* (tiles); then where the share's next entry of a tile goes, less the tile's start */
-	struct err err;
-};
+struct tile_grid tile_grid(int width, int height)
+{
+	return (struct tile_grid){
+		width, height, (width + TILE_SIZE - 1) / TILE_SIZE, (height + TILE_SIZE - 1) / TILE_SIZE};
+}
 
 /* The tile of the first pixel centre at or after x, and of the last at or before it; within [0, size). */
 static int first_tile(double x, int size)
@@ -54,12 +46,14 @@ struct ellipse {
 	double slope, width, half_height, peak;
 };
 
-static void ellipse_make(struct ellipse *l, const struct projected *p)
+static struct ellipse ellipse_make(const struct project_batch *b, int l)
 {
-	l->slope = -p->l21 / p->l11;
-	l->half_height = p->radius / p->l22;
-	l->width = p->radius / p->l11;
-	l->peak = -p->l21 * l->half_height / sqrt(p->l21 * p->l21 + p->l22 * p->l22);
+	double l11 = b->l11[l], l21 = b->l21[l], l22 = b->l22[l], half_height = b->radius[l] / l22;
+
+	return (struct ellipse){.slope = -l21 / l11,
+		.half_height = half_height,
+		.width = b->radius[l] / l11,
+		.peak = -l21 * half_height / sqrt(l21 * l21 + l22 * l22)};
 }
 
 static double ellipse_half(const struct ellipse *l, double y)
@@ -69,113 +63,125 @@ static double ellipse_half(const struct ellipse *l, double y)
 	return s > 0 ? l->width * sqrt(s) : 0;
 }
 
-static int add_spans(
-	struct share *share, const struct projected *p, uint32_t entry, int width, int height, int columns)
+static void count(const struct tile_grid *g, unsigned row, struct tile_span span, uint32_t *tally)
 {
-	int top = first_tile(p->y - p->half_height, height),
-	    bottom = last_tile(p->y + p->half_height, height);
-	int left = first_tile(p->x - p->half_width, width), right = last_tile(p->x + p->half_width, width);
-	struct ellipse l;
+	for (unsigned k = span.first; k <= span.last; k++)
+		tally[row * (unsigned)g->columns + k]++;
+}
 
-	if (top > bottom || left > right)
+int tile_cover(const struct tile_grid *g, const struct project_batch *b, int l, struct tile_cover *cover,
+	struct tile_spans *spans, uint32_t *tally, struct err *e)
+{
+	const unsigned left = (unsigned)b->columns[0][l] / TILE_SIZE,
+		       right = (unsigned)b->columns[1][l] / TILE_SIZE;
+	const unsigned top = (unsigned)b->rows[0][l] / TILE_SIZE,
+		       bottom = (unsigned)b->rows[1][l] / TILE_SIZE;
+	const struct tile_span box = {(uint16_t)left, (uint16_t)right};
+
+	*cover = (struct tile_cover){.top = top, .rows = bottom - top + 1, .is_same = 1, .span = box};
+	if (top == bottom || left == right) {
+		for (unsigned row = top; row <= bottom; row++)
+			count(g, row, box, tally);
 		return 0;
-	if (mem_grow((void **)&share->spans, &share->capacity, share->count + (size_t)(bottom - top) + 1,
-		    sizeof *share->spans, "tile spans", &share->err))
+	}
+	if (mem_grow((void **)&spans->items, &spans->capacity, spans->n + cover->rows, sizeof *spans->items,
+		    "tile spans", e))
 		return -1;
-	ellipse_make(&l, p);
-	for (int row = top; row <= bottom; row++) {
-		int first = left, last = right;
-		if (top < bottom && left < right) {
-			double low = clamp(row * TILE_SIZE + 0.5 - p->y, -l.half_height, l.half_height);
-			double high =
-				clamp((row + 1) * TILE_SIZE - 0.5 - p->y, -l.half_height, l.half_height);
-			double y_right = clamp(l.peak, low, high), y_left = clamp(-l.peak, low, high);
-			/* a thousandth of a pixel covers the rounding of the ends */
-			first = first_tile(p->x + l.slope * y_left - ellipse_half(&l, y_left) - 1e-3, width);
-			last = last_tile(p->x + l.slope * y_right + ellipse_half(&l, y_right) + 1e-3, width);
-		}
-		if (first > last)
-			continue;
-		share->spans[share->count++] =
-			(struct span){entry, (uint16_t)row, (uint16_t)first, (uint16_t)last};
-		for (int k = first; k <= last; k++)
-			share->tally[row * columns + k]++;
+	cover->is_same = 0;
+	cover->at = (uint32_t)spans->n;
+	const struct ellipse shape = ellipse_make(b, l);
+	const double x = b->x[l], y = b->y[l], tall = shape.half_height;
+	for (unsigned row = top; row <= bottom; row++) {
+		double low = clamp(row * TILE_SIZE + 0.5 - y, -tall, tall);
+		double high = clamp((row + 1) * TILE_SIZE - 0.5 - y, -tall, tall);
+		double y_right = clamp(shape.peak, low, high), y_left = clamp(-shape.peak, low, high);
+		/* a thousandth of a pixel covers the rounding of the ends */
+		int first =
+			first_tile(x + shape.slope * y_left - ellipse_half(&shape, y_left) - 1e-3, g->width);
+		int last =
+			last_tile(x + shape.slope * y_right + ellipse_half(&shape, y_right) + 1e-3, g->width);
+		struct tile_span span = {1, 0};
+		if (first <= last)
+			span = (struct tile_span){(uint16_t)first, (uint16_t)last};
+		spans->items[spans->n++] = span;
+		count(g, row, span, tally);
 	}
 	return 0;
 }
 
-/* From tallies to places: each tile's entries come share after share, so that they stay front to back. */
-static int place_entries(struct tile_lists *t, struct share *shares, int share_count, struct err *e)
+/* Where the lists begin. */
+static size_t place_lists(size_t *start, size_t tiles, const uint32_t *tallies, int tally_count)
 {
-	size_t tiles = (size_t)t->columns * (size_t)t->rows, sum = 0;
+	size_t sum = 0;
 
 	for (size_t k = 0; k < tiles; k++) {
-		size_t here = 0;
-		t->start[k] = sum;
-		for (int i = 0; i < share_count; i++) {
-			uint32_t tally = shares[i].tally[k];
-			shares[i].tally[k] = (uint32_t)here;
-			here += tally;
-		}
-		sum += here;
+		start[k] = sum;
+		for (int i = 0; i < tally_count; i++)
+			sum += tallies[(size_t)i * tiles + k];
 	}
-	t->start[tiles] = sum;
-	t->entries = mem_alloc(sum, sizeof *t->entries, "tile lists", e);
-	if (!t->entries)
-		return -1;
-#pragma omp parallel for schedule(static, 1)
-	for (int i = 0; i < share_count; i++) {
-		struct share *share = &shares[i];
-		for (size_t k = 0; k < share->count; k++) {
-			const struct span *span = &share->spans[k];
-			for (int column = span->first; column <= span->last; column++) {
-				size_t tile = (size_t)span->row * (size_t)t->columns + (size_t)column;
-				t->entries[t->start[tile] + share->tally[tile]++] = span->entry;
-			}
-		}
-	}
-	return 0;
+	start[tiles] = sum;
+	return sum;
 }
 
-int tile_build(
-	struct tile_lists *t, const struct projected *p, size_t n, int width, int height, struct err *e)
+/* Of `parts` bands of tile rows with about equally many entries, where band `part` begins. */
+static unsigned band_begin(const struct tile_lists *t, const struct tile_grid *g, int part, int parts)
 {
-	int share_count = omp_get_max_threads(), bad = 0;
-	int columns = (width + TILE_SIZE - 1) / TILE_SIZE, rows = (height + TILE_SIZE - 1) / TILE_SIZE;
-	size_t tiles = (size_t)columns * (size_t)rows;
+	size_t columns = (size_t)g->columns, all = t->start[columns * (size_t)g->rows];
+	unsigned row = 0;
 
-	*t = (struct tile_lists){.columns = columns, .rows = rows};
-	t->start = mem_alloc(tiles + 1, sizeof *t->start, "tile lists", e);
-	struct share *shares = mem_zalloc((size_t)share_count, sizeof *shares, "tile lists", e);
-	bad = !t->start || !shares;
-	for (int i = 0; !bad && i < share_count; i++) {
-		shares[i].begin = n / (size_t)share_count * (size_t)i;
-		shares[i].end = i + 1 < share_count ? n / (size_t)share_count * (size_t)(i + 1) : n;
-		shares[i].tally = mem_zalloc(tiles, sizeof *shares[i].tally, "tile lists", e);
-		bad = !shares[i].tally;
-	}
-	if (bad)
-		goto done;
-#pragma omp parallel for schedule(static, 1)
-	for (int i = 0; i < share_count; i++)
-		for (size_t k = shares[i].begin; k < shares[i].end; k++)
-			if (add_spans(&shares[i], &p[k], (uint32_t)k, width, height, columns))
-				break;
-	for (int i = 0; !bad && i < share_count; i++)
-		if (shares[i].err.code) {
-			*e = shares[i].err;
-			bad = 1;
+	while (row < (unsigned)g->rows && t->start[row * columns] < all / (size_t)parts * (size_t)part)
+		row++;
+	return part == parts ? (unsigned)g->rows : row;
+}
+
+enum { AHEAD = 24 }; /* Gaussians to fetch before their use */
+
+/* Appends to the lists of tile rows `begin` to `end` - 1; next (tiles) is where each goes on. */
+static void fill_band(uint32_t *entries, size_t *next, const struct tile_grid *g, unsigned begin,
+	unsigned end, const struct order_item *order, size_t n, const struct tile_cover *covers,
+	const struct tile_spans *spans)
+{
+	for (size_t i = 0; i < n; i++) {
+		const uint32_t index = order[i].index;
+		const struct tile_cover cover = covers[index];
+		unsigned row = cover.top, bottom = cover.top + cover.rows;
+		if (i + AHEAD < n)
+			__builtin_prefetch(&covers[order[i + AHEAD].index]);
+		if (bottom > end)
+			bottom = end;
+		for (row = row < begin ? begin : row; row < bottom; row++) {
+			struct tile_span span =
+				cover.is_same ? cover.span
+					      : spans[index / TILE_BLOCK].items[cover.at + row - cover.top];
+			size_t *to = next + (size_t)row * (size_t)g->columns;
+			for (unsigned k = span.first; k <= span.last; k++)
+				entries[to[k]++] = index;
 		}
-	bad = bad || place_entries(t, shares, share_count, e);
-done:
-	for (int i = 0; shares && i < share_count; i++) {
-		free(shares[i].spans);
-		free(shares[i].tally);
 	}
-	free(shares);
-	if (bad)
-		tile_free(t);
-	return bad ? -1 : 0;
+}
+
+int tile_bin(struct tile_lists *t, const struct tile_grid *g, const struct order_item *order, size_t n,
+	const struct tile_cover *covers, const struct tile_spans *spans, const uint32_t *tallies,
+	int tally_count, struct err *e)
+{
+	const size_t tiles = (size_t)g->columns * (size_t)g->rows;
+	const int threads = threads_available();
+
+	/* the second half is where each list goes on while it is filled */
+	if (mem_room(
+		    (void **)&t->start, &t->start_capacity, 2 * tiles + 1, sizeof *t->start, "tile lists", e))
+		return -1;
+	size_t *next = t->start + tiles + 1, all = place_lists(t->start, tiles, tallies, tally_count);
+	if (mem_room((void **)&t->entries, &t->entries_capacity, all, sizeof *t->entries, "tile lists", e))
+		return -1;
+	memcpy(next, t->start, tiles * sizeof *next);
+#pragma omp parallel num_threads(threads)
+	{
+		const int part = omp_get_thread_num(), parts = omp_get_num_threads();
+		fill_band(t->entries, next, g, band_begin(t, g, part, parts),
+			band_begin(t, g, part + 1, parts), order, n, covers, spans);
+	}
+	return 0;
 }
 
 void tile_free(struct tile_lists *t)
