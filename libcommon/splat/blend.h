@@ -22,8 +22,7 @@ enum {
 /* State of a tile's pixels, block by block (blend_place). */
 struct blend_tile {
 	float transmittance[TILE_PIXELS];
-	float cut[TILE_PIXELS]; /* log2 of the least a that blends: log2(1/255), infinite where the pixel has
-				   ended */
+	float lit[TILE_PIXELS]; /* the same, 0 where the pixel has ended or lies outside the image */
 	float sum[BLEND_CHANNELS][TILE_PIXELS]; /* blended values */
 	int32_t count[TILE_PIXELS];		/* weights */
 	double x, y;				/* the tile's centre, pixels */

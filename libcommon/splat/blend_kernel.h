@@ -8,8 +8,6 @@
 #include "base/vecmath.h"
 #include "splat/kernels.h"
 
-#include <math.h>
-
 enum { BLEND_PARTS = BLEND_LANES / VEC_LANES };
 
 /* Offsets of a block's pixels from its centre; times 4, of a tile's block centres from the tile's. */
@@ -96,7 +94,8 @@ VEC_INLINE uint64_t blend_column(const struct blend_chunk *chunk, int b)
 /* A block's pixels. */
 struct blend_block {
 	vecn x[BLEND_PARTS], y[BLEND_PARTS]; /* from the tile's centre */
-	vecn transmittance[BLEND_PARTS], cut[BLEND_PARTS];
+	vecn left[BLEND_PARTS];		     /* transmittance */
+	vecn lit[BLEND_PARTS];		     /* the same, 0 where the pixel has ended or is none */
 };
 
 VEC_INLINE void blend_load(struct blend_block *block, const struct blend_tile *t, int b)
@@ -105,8 +104,8 @@ VEC_INLINE void blend_load(struct blend_block *block, const struct blend_tile *t
 		int at = b * BLEND_LANES + i * VEC_LANES;
 		block->x[i] = vec_load(blend_x + i * VEC_LANES) + (float)(BLEND_SIDE * (b % BLEND_SIDE) - 6);
 		block->y[i] = vec_load(blend_y + i * VEC_LANES) + (float)(BLEND_SIDE * (b / BLEND_SIDE) - 6);
-		block->transmittance[i] = vec_load(t->transmittance + at);
-		block->cut[i] = vec_load(t->cut + at);
+		block->left[i] = vec_load(t->transmittance + at);
+		block->lit[i] = vec_load(t->lit + at);
 	}
 }
 
@@ -117,9 +116,9 @@ VEC_INLINE void blend_store(const struct blend_block *block, struct blend_tile *
 
 	for (int i = 0; i < BLEND_PARTS; i++) {
 		int at = b * BLEND_LANES + i * VEC_LANES;
-		vec_store(t->transmittance + at, block->transmittance[i]);
-		vec_store(t->cut + at, block->cut[i]);
-		live |= vec_bits(vec_lt(block->cut[i], vec_splat(INFINITY)));
+		vec_store(t->transmittance + at, block->left[i]);
+		vec_store(t->lit + at, block->lit[i]);
+		live |= vec_bits(vec_lt(vec_splat(0), block->lit[i]));
 	}
 	if (!live)
 		t->live &= ~(1u << b);
@@ -132,19 +131,16 @@ VEC_INLINE vecn blend_part(struct blend_block *block, const struct blend_splat *
 		vec_splat(s->l11), block->x[i], vec_fma(vec_splat(s->l21), block->y[i], vec_splat(s->u)));
 	vecn v = vec_fma(vec_splat(s->l22), block->y[i], vec_splat(s->v));
 	vecn e = vec_fnma(u, u, vec_fnma(v, v, vec_splat(s->log_opacity)));
-	vecm keep = vec_ge(e, block->cut[i]);
-	/* where e is out of range for vec_exp2 it is below the cut, and what comes out is masked */
-	vecn a = vec_keep(keep, vec_min(vec_exp2(e), vec_splat(BLEND_ALPHA_MAX)));
-	vecn before = block->transmittance[i], w = a * before, after = before - w;
-	vecm stop = vec_lt(after, vec_splat(BLEND_STOP)) & keep;
+	/* where e is out of range for vec_exp2 it is below the least, and what comes out is masked */
+	vecn a = vec_keep(
+		vec_ge(e, vec_splat(BLEND_ALPHA_MIN_LOG2)), vec_min(vec_exp2(e), vec_splat(BLEND_ALPHA_MAX)));
+	vecn lit = block->lit[i], after = vec_fnma(a, lit, lit);
+	/* No branch where a pixel ends: that would wait for all that is before it. */
+	vecm on = vec_ge(after, vec_splat(BLEND_STOP));
 
-	if (__builtin_expect(vec_bits(stop) != 0, 0)) {
-		w = vec_choose(stop, vec_splat(0), w);
-		after = before - w;
-		block->cut[i] = vec_choose(stop, vec_splat(INFINITY), block->cut[i]);
-	}
-	block->transmittance[i] = after;
-	return w;
+	block->lit[i] = vec_keep(on, after);
+	block->left[i] = vec_choose(on, after, block->left[i]);
+	return vec_keep(on, a * lit);
 }
 
 /* Blends the Gaussians of `column` into block b; their values stand at values[list[k] * channels]. */

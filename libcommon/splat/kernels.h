@@ -11,8 +11,8 @@
 
 /* A tile's list names its Gaussians in p, front to back. */
 struct kernels {
-	/* Projects PROJECT_LANES Gaussians; the same on every instruction set, to the bit. */
-	void (*project)(const struct project_lens *lens, struct project_batch *b);
+	/* Projects n Gaussians; the same on every instruction set, to the bit. */
+	void (*project)(const struct project_lens *lens, struct project_batch *b, int n);
 	/* Blends up to BLEND_CHANNELS values, which stand at values[list[k] * channels]. */
 	void (*values)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
 		const float *values, int channels);

@@ -8,9 +8,9 @@
 #include <string.h>
 
 enum {
-	DIGIT_BITS = 11,
+	DIGIT_BITS = 12,
 	DIGITS = 1 << DIGIT_BITS,
-	FEW = 1 << 20, /* below this many items two digits tell nearly all apart, else three are used */
+	FEW = 1 << 22, /* below this many items two digits tell nearly all apart, else three are used */
 	SHORT_RUN = 32,
 };
 

@@ -73,7 +73,7 @@ static int project_block(struct render_view *v, const struct splats *s, const st
 			b.opacity[lanes] = s->opacities[i];
 			number[lanes++] = i;
 		}
-		kernels->project(lens, &b);
+		kernels->project(lens, &b, lanes);
 		for (int l = 0; l < lanes; l++) {
 			if (!b.seen[l])
 				continue;
@@ -93,17 +93,17 @@ static int project_block(struct render_view *v, const struct splats *s, const st
 static int project_all(struct render_view *v, const struct splats *s, const struct camera *c,
 	struct order_item *items, int threads, struct err *e)
 {
-	const size_t blocks = count_blocks(s->n), tiles = (size_t)v->grid.columns * (size_t)v->grid.rows;
+	const size_t blocks = count_blocks(s->n), tallies = tile_tallies(&v->grid);
 	struct project_lens lens;
 	int failed = 0;
 
 	project_lens_make(&lens, c);
-	memset(v->tallies, 0, (size_t)threads * tiles * sizeof *v->tallies);
+	memset(v->tallies, 0, (size_t)threads * tallies * sizeof *v->tallies);
 #pragma omp parallel for schedule(dynamic) num_threads(threads) reduction(| : failed)
 	for (size_t b = 0; b < blocks; b++) {
 		struct err mine;
 		if (!failed && project_block(v, s, &lens, b, items,
-				       v->tallies + (size_t)omp_get_thread_num() * tiles, &mine)) {
+				       v->tallies + (size_t)omp_get_thread_num() * tallies, &mine)) {
 			failed = 1;
 #pragma omp critical
 			*e = mine;
@@ -133,7 +133,7 @@ int render_again(struct render_view *v, const struct splats *s, const struct cam
 	v->grid = tile_grid(c->width, c->height);
 	v->gaussians = s->n;
 	v->visible = 0;
-	if (mem_size((size_t)v->grid.columns * (size_t)v->grid.rows, (size_t)threads, &tallies))
+	if (mem_size(tile_tallies(&v->grid), (size_t)threads, &tallies))
 		return err_set(e, ERR_SYSTEM, "tile lists: %d threads are too many", threads);
 	if (make_room(v, s->n, e) ||
 		mem_room((void **)&v->tallies, &v->tally_room, tallies, sizeof *v->tallies, "tile lists", e))

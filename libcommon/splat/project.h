@@ -30,7 +30,7 @@ struct project_lens {
 
 void project_lens_make(struct project_lens *lens, const struct camera *c);
 
-enum { PROJECT_LANES = 8 };
+enum { PROJECT_LANES = 64 }; /* enough that a lane is in memory when its vector is read */
 
 /* Gaussians side by side; opacities are at least 1/255. Not seen are those with z <= 0.2, those whose ellipse
  * holds no pixel centre, and those whose covariance exceeds double (a standard deviation above 1e75 px). */

@@ -192,8 +192,8 @@ VEC_INLINE void project_some(const struct project_lens *lens, struct project_bat
 	project_store(b->radius + at, radius);
 }
 
-static void project_batch(const struct project_lens *lens, struct project_batch *b)
+static void project_batch(const struct project_lens *lens, struct project_batch *b, int n)
 {
-	for (int at = 0; at < PROJECT_LANES; at += PROJECT_REALS)
+	for (int at = 0; at < n; at += PROJECT_REALS)
 		project_some(lens, b, at);
 }

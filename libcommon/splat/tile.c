@@ -63,61 +63,87 @@ static double ellipse_half(const struct ellipse *l, double y)
 	return s > 0 ? l->width * sqrt(s) : 0;
 }
 
-static void count(const struct tile_grid *g, unsigned row, struct tile_span span, uint32_t *tally)
+/* The tiles `row` that the ellipse of lane l meets. */
+static struct tile_span row_span(
+	const struct tile_grid *g, const struct ellipse *shape, double x, double y, unsigned row)
 {
-	for (unsigned k = span.first; k <= span.last; k++)
-		tally[row * (unsigned)g->columns + k]++;
+	const double tall = shape->half_height;
+	double low = clamp(row * TILE_SIZE + 0.5 - y, -tall, tall);
+	double high = clamp((row + 1) * TILE_SIZE - 0.5 - y, -tall, tall);
+	double y_right = clamp(shape->peak, low, high), y_left = clamp(-shape->peak, low, high);
+	/* a thousandth of a pixel covers the rounding of the ends */
+	int first = first_tile(x + shape->slope * y_left - ellipse_half(shape, y_left) - 1e-3, g->width);
+	int last = last_tile(x + shape->slope * y_right + ellipse_half(shape, y_right) + 1e-3, g->width);
+
+	if (first > last)
+		return (struct tile_span){1, 0};
+	return (struct tile_span){(uint16_t)first, (uint16_t)last};
 }
 
-int tile_cover(const struct tile_grid *g, const struct project_batch *b, int l, struct tile_cover *cover,
+/* Which of the two tiles from `left` on are in a span. */
+static unsigned span_mask(struct tile_span span, unsigned left)
+{
+	return (unsigned)(span.first <= left && left <= span.last) |
+	       (unsigned)(span.first <= left + 1 && left + 1 <= span.last) << 1;
+}
+
+static int cover_many(const struct tile_grid *g, const struct project_batch *b, int l, unsigned top,
+	unsigned bottom, uint32_t *cover, struct tile_spans *spans, uint32_t *tally, struct err *e)
+{
+	const unsigned rows = bottom - top + 1;
+	const struct ellipse shape = ellipse_make(b, l);
+
+	if (mem_grow((void **)&spans->items, &spans->capacity, spans->n + rows + 1, sizeof *spans->items,
+		    "tile spans", e))
+		return -1;
+	*cover = TILE_MANY | (uint32_t)spans->n;
+	spans->items[spans->n++] = (struct tile_span){(uint16_t)top, (uint16_t)rows};
+	for (unsigned row = top; row <= bottom; row++) {
+		struct tile_span span = row_span(g, &shape, b->x[l], b->y[l], row);
+		spans->items[spans->n++] = span;
+		for (unsigned k = span.first; k <= span.last; k++)
+			tally[row * (unsigned)g->columns + k]++;
+	}
+	return 0;
+}
+
+int tile_cover(const struct tile_grid *g, const struct project_batch *b, int l, uint32_t *cover,
 	struct tile_spans *spans, uint32_t *tally, struct err *e)
 {
 	const unsigned left = (unsigned)b->columns[0][l] / TILE_SIZE,
 		       right = (unsigned)b->columns[1][l] / TILE_SIZE;
 	const unsigned top = (unsigned)b->rows[0][l] / TILE_SIZE,
 		       bottom = (unsigned)b->rows[1][l] / TILE_SIZE;
-	const struct tile_span box = {(uint16_t)left, (uint16_t)right};
+	const unsigned more_columns = right - left, more_rows = bottom - top;
 
-	*cover = (struct tile_cover){.top = top, .rows = bottom - top + 1, .is_same = 1, .span = box};
-	if (top == bottom || left == right) {
-		for (unsigned row = top; row <= bottom; row++)
-			count(g, row, box, tally);
-		return 0;
+	if (more_columns > 1 || more_rows > 1)
+		return cover_many(g, b, l, top, bottom, cover, spans, tally, e);
+	unsigned mask = 1 | more_columns << 1 | more_rows << 2;
+	if (more_columns & more_rows) {
+		const struct ellipse shape = ellipse_make(b, l);
+		mask = span_mask(row_span(g, &shape, b->x[l], b->y[l], top), left) |
+		       span_mask(row_span(g, &shape, b->x[l], b->y[l], bottom), left) << 2;
 	}
-	if (mem_grow((void **)&spans->items, &spans->capacity, spans->n + cover->rows, sizeof *spans->items,
-		    "tile spans", e))
-		return -1;
-	cover->is_same = 0;
-	cover->at = (uint32_t)spans->n;
-	const struct ellipse shape = ellipse_make(b, l);
-	const double x = b->x[l], y = b->y[l], tall = shape.half_height;
-	for (unsigned row = top; row <= bottom; row++) {
-		double low = clamp(row * TILE_SIZE + 0.5 - y, -tall, tall);
-		double high = clamp((row + 1) * TILE_SIZE - 0.5 - y, -tall, tall);
-		double y_right = clamp(shape.peak, low, high), y_left = clamp(-shape.peak, low, high);
-		/* a thousandth of a pixel covers the rounding of the ends */
-		int first =
-			first_tile(x + shape.slope * y_left - ellipse_half(&shape, y_left) - 1e-3, g->width);
-		int last =
-			last_tile(x + shape.slope * y_right + ellipse_half(&shape, y_right) + 1e-3, g->width);
-		struct tile_span span = {1, 0};
-		if (first <= last)
-			span = (struct tile_span){(uint16_t)first, (uint16_t)last};
-		spans->items[spans->n++] = span;
-		count(g, row, span, tally);
-	}
+	*cover = top | left << TILE_COLUMN_BIT | mask << TILE_MASK_BIT;
+	/* all four, without asking which: a wrong guess costs more */
+	tally += top * (unsigned)g->columns + left;
+	tally[0] += mask & 1;
+	tally[1] += mask >> 1 & 1;
+	tally[g->columns] += mask >> 2 & 1;
+	tally[g->columns + 1] += mask >> 3;
 	return 0;
 }
 
 /* Where the lists begin. */
-static size_t place_lists(size_t *start, size_t tiles, const uint32_t *tallies, int tally_count)
+static size_t place_lists(size_t *start, const struct tile_grid *g, const uint32_t *tallies, int tally_count)
 {
+	const size_t tiles = (size_t)g->columns * (size_t)g->rows;
 	size_t sum = 0;
 
 	for (size_t k = 0; k < tiles; k++) {
 		start[k] = sum;
 		for (int i = 0; i < tally_count; i++)
-			sum += tallies[(size_t)i * tiles + k];
+			sum += tallies[(size_t)i * tile_tallies(g) + k];
 	}
 	start[tiles] = sum;
 	return sum;
@@ -136,50 +162,87 @@ static unsigned band_begin(const struct tile_lists *t, const struct tile_grid *g
 
 enum { AHEAD = 24 }; /* Gaussians to fetch before their use */
 
-/* Appends to the lists of tile rows `begin` to `end` - 1; next (tiles) is where each goes on. */
-static void fill_band(uint32_t *entries, size_t *next, const struct tile_grid *g, unsigned begin,
-	unsigned end, const struct order_item *order, size_t n, const struct tile_cover *covers,
-	const struct tile_spans *spans)
+/* Lists that are being filled, by one thread. */
+struct filling {
+	uint32_t *entries;
+	size_t *next;	     /* (tiles) where each goes on; then where what goes nowhere is put */
+	size_t nowhere;	     /* which of `next` that is */
+	unsigned begin, end; /* the band's tile rows */
+	unsigned columns;
+};
+
+static void fill_many(const struct filling *f, const struct tile_span *cover, uint32_t index)
 {
+	const unsigned top = cover->first, bottom = top + cover->last;
+
+	for (unsigned row = top < f->begin ? f->begin : top; row < bottom && row < f->end; row++) {
+		const struct tile_span span = cover[1 + row - top];
+		size_t *to = f->next + (size_t)row * f->columns;
+		for (unsigned k = span.first; k <= span.last; k++)
+			f->entries[to[k]++] = index;
+	}
+}
+
+static void fill_one(const struct filling *f, size_t tile, unsigned bit, uint32_t index)
+{
+	size_t *to = f->next + (bit ? tile : f->nowhere);
+
+	f->entries[*to] = index;
+	*to += bit;
+}
+
+static void fill_band(const struct filling *f, const struct order_item *order, size_t n,
+	const uint32_t *covers, const struct tile_spans *spans)
+{
+	const unsigned low = (1 << TILE_COLUMN_BIT) - 1, height = f->end - f->begin;
+
 	for (size_t i = 0; i < n; i++) {
-		const uint32_t index = order[i].index;
-		const struct tile_cover cover = covers[index];
-		unsigned row = cover.top, bottom = cover.top + cover.rows;
+		const uint32_t index = order[i].index, cover = covers[index];
 		if (i + AHEAD < n)
 			__builtin_prefetch(&covers[order[i + AHEAD].index]);
-		if (bottom > end)
-			bottom = end;
-		for (row = row < begin ? begin : row; row < bottom; row++) {
-			struct tile_span span =
-				cover.is_same ? cover.span
-					      : spans[index / TILE_BLOCK].items[cover.at + row - cover.top];
-			size_t *to = next + (size_t)row * (size_t)g->columns;
-			for (unsigned k = span.first; k <= span.last; k++)
-				entries[to[k]++] = index;
+		if (cover & TILE_MANY) {
+			fill_many(f, spans[index / TILE_BLOCK].items + (cover & ~TILE_MANY), index);
+			continue;
 		}
+		const unsigned row = cover & low;
+		const size_t tile = (size_t)row * f->columns + (cover >> TILE_COLUMN_BIT & low);
+		/* rows outside the band wrap around to above its height */
+		unsigned mask = cover >> TILE_MASK_BIT &
+				((row - f->begin < height ? 3 : 0) | (row + 1 - f->begin < height ? 12 : 0));
+		/* all four, as in tile_cover */
+		fill_one(f, tile, mask & 1, index);
+		fill_one(f, tile + 1, mask >> 1 & 1, index);
+		fill_one(f, tile + f->columns, mask >> 2 & 1, index);
+		fill_one(f, tile + f->columns + 1, mask >> 3 & 1, index);
 	}
 }
 
 int tile_bin(struct tile_lists *t, const struct tile_grid *g, const struct order_item *order, size_t n,
-	const struct tile_cover *covers, const struct tile_spans *spans, const uint32_t *tallies,
-	int tally_count, struct err *e)
+	const uint32_t *covers, const struct tile_spans *spans, const uint32_t *tallies, int tally_count,
+	struct err *e)
 {
 	const size_t tiles = (size_t)g->columns * (size_t)g->rows;
 	const int threads = threads_available();
+	const size_t spare = (size_t)threads;
 
-	/* the second half is where each list goes on while it is filled */
-	if (mem_room(
-		    (void **)&t->start, &t->start_capacity, 2 * tiles + 1, sizeof *t->start, "tile lists", e))
+	/* behind the starts are the places where each list goes on while it is filled */
+	if (mem_room((void **)&t->start, &t->start_capacity, 2 * tiles + 1 + spare, sizeof *t->start,
+		    "tile lists", e))
 		return -1;
-	size_t *next = t->start + tiles + 1, all = place_lists(t->start, tiles, tallies, tally_count);
-	if (mem_room((void **)&t->entries, &t->entries_capacity, all, sizeof *t->entries, "tile lists", e))
+	size_t *next = t->start + tiles + 1, all = place_lists(t->start, g, tallies, tally_count);
+	if (mem_room((void **)&t->entries, &t->entries_capacity, all + spare, sizeof *t->entries,
+		    "tile lists", e))
 		return -1;
 	memcpy(next, t->start, tiles * sizeof *next);
+	for (size_t i = 0; i < spare; i++)
+		next[tiles + i] = all + i;
 #pragma omp parallel num_threads(threads)
 	{
 		const int part = omp_get_thread_num(), parts = omp_get_num_threads();
-		fill_band(t->entries, next, g, band_begin(t, g, part, parts),
-			band_begin(t, g, part + 1, parts), order, n, covers, spans);
+		const struct filling f = {t->entries, next, tiles + (size_t)part,
+			band_begin(t, g, part, parts), band_begin(t, g, part + 1, parts),
+			(unsigned)g->columns};
+		fill_band(&f, order, n, covers, spans);
 	}
 	return 0;
 }

@@ -18,21 +18,18 @@ struct tile_grid {
 
 struct tile_grid tile_grid(int width, int height);
 
+/* The tiles of a Gaussian. Up to 2x2, as nearly all are: bits 0 to 11 the first tile row, 12 to 23 the first
+ * column, and 24 to 27 which of the four there are, row after row. Else TILE_MANY and a place in tile_spans.
+ */
+enum { TILE_COLUMN_BIT = 12, TILE_MASK_BIT = 24 };
+#define TILE_MANY 0x80000000u
+
 /* Tiles first to last of a tile row; none where first > last. */
 struct tile_span {
 	uint16_t first, last;
 };
 
-/* The tiles of a Gaussian, in `rows` tile rows from `top` on. */
-struct tile_cover {
-	unsigned top : 12, rows : 13, is_same : 1;
-	union {
-		struct tile_span span; /* the same in each row */
-		uint32_t at;	       /* or row after row from spans[at] on */
-	};
-};
-
-/* Spans of some Gaussians, one after the other. */
+/* Covers of some Gaussians, one after the other: the first tile row and how many, then their spans. */
 struct tile_spans {
 	struct tile_span *items;
 	size_t n, capacity;
@@ -40,10 +37,17 @@ struct tile_spans {
 
 enum { TILE_BLOCK = 4096 }; /* Gaussians that share a tile_spans */
 
-/* The cover of lane l of a batch: the tiles whose rectangle of pixel centres meets the ellipse a >= 1/255.
- * Adds 1 to tally[t] for each tile t of it, and spans, where it needs them, to `spans`. Returns 0, or -1 with
+/* How many tallies there are for a grid: a tile's each, and some that stay 0, so that neighbours of the last
+ * tiles have one. */
+static inline size_t tile_tallies(const struct tile_grid *g)
+{
+	return (size_t)g->columns * ((size_t)g->rows + 1) + 1;
+}
+
+/* *cover gets that of lane l of a batch: the tiles whose rectangle of pixel centres meets the ellipse a >=
+ * 1/255. Adds 1 to tally[t] for each tile t of it, and to `spans` what it needs there. Returns 0, or -1 with
  * *e set. */
-int tile_cover(const struct tile_grid *g, const struct project_batch *b, int l, struct tile_cover *cover,
+int tile_cover(const struct tile_grid *g, const struct project_batch *b, int l, uint32_t *cover,
 	struct tile_spans *spans, uint32_t *tally, struct err *e);
 
 struct tile_lists {
@@ -54,11 +58,11 @@ struct tile_lists {
 };
 
 /* Fills the lists with the n Gaussians of `order`; what they held is lost. covers (Gaussians of the scene),
- * spans (one for each TILE_BLOCK of them), and tallies (tally_count,tiles), whose sum is the length of each
- * list. Returns 0, or -1 with *e set. */
+ * spans (one for each TILE_BLOCK of them), and tallies (tally_count,tile_tallies), whose sum is the length of
+ * each list. Returns 0, or -1 with *e set. */
 int tile_bin(struct tile_lists *t, const struct tile_grid *g, const struct order_item *order, size_t n,
-	const struct tile_cover *covers, const struct tile_spans *spans, const uint32_t *tallies,
-	int tally_count, struct err *e);
+	const uint32_t *covers, const struct tile_spans *spans, const uint32_t *tallies, int tally_count,
+	struct err *e);
 void tile_free(struct tile_lists *t);
 
 #endif

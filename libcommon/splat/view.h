@@ -20,11 +20,11 @@ struct render_view {
 
 	/* how the lists are made, kept for the next camera: items that there is room for, then what for */
 	size_t gaussian_room, block_room, tally_room;
-	struct order_item *order;  /* (2,N) */
-	struct tile_cover *covers; /* (N), those that are visible */
-	struct tile_spans *spans;  /* (blocks) */
-	size_t *found;		   /* (blocks) how many are visible */
-	uint32_t *tallies;	   /* (threads,tiles) */
+	struct order_item *order; /* (2,N) */
+	uint32_t *covers;	  /* (N), those that are visible */
+	struct tile_spans *spans; /* (blocks) */
+	size_t *found;		  /* (blocks) how many are visible */
+	uint32_t *tallies;	  /* (threads,tile_tallies) */
 };
 
 #endif
