@@ -122,6 +122,11 @@ static void gather_items(struct render_view *v, const struct order_item *from, s
 	}
 }
 
+size_t render_bytes(size_t gaussians)
+{
+	return gaussians * (sizeof(struct projected) + 2 * sizeof(struct order_item) + sizeof(uint32_t));
+}
+
 int render_again(struct render_view *v, const struct splats *s, const struct camera *c, struct err *e)
 {
 	const int threads = threads_available();

@@ -32,6 +32,10 @@ void render_free(struct render_view *v);
  */
 int render_again(struct render_view *v, const struct splats *s, const struct camera *c, struct err *e);
 
+/* Bytes that a view of so many Gaussians takes, without its tile lists: those are as long as the Gaussians
+ * are large. */
+size_t render_bytes(size_t gaussians);
+
 /* Blend weights, CSR over the P = width*height pixels of the camera. */
 struct render_weights {
 	int64_t *indptr;      /* (P+1) */
