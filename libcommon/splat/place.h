@@ -29,14 +29,27 @@ static inline size_t place_pixel(const struct tile_grid *g, struct place at, int
 	return (size_t)(at.y + y) * (size_t)g->width + (size_t)(at.x + x);
 }
 
+/* Asks for where place_plane will write: much sooner than it does, as memory is slow. */
+static inline void place_fetch(const struct tile_grid *g, struct place at, float *image)
+{
+	for (int y = 0; y < at.rows; y++) {
+		float *row = image + place_pixel(g, at, 0, y);
+		__builtin_prefetch(row, 1, 2);
+		__builtin_prefetch(row + at.columns - 1, 1, 2);
+	}
+}
+
 /* Copies the tile's part of a plane into the image's. */
 static inline void place_plane(const struct tile_grid *g, struct place at, const float *plane, float *image)
 {
 	for (int y = 0; y < at.rows; y++)
 		for (int x = 0; x < at.columns; x += BLEND_SIDE) {
-			int left = at.columns - x, now = left < BLEND_SIDE ? left : BLEND_SIDE;
-			memcpy(image + place_pixel(g, at, x, y), plane + blend_place(x, y),
-				(size_t)now * sizeof *image);
+			float *to = image + place_pixel(g, at, x, y);
+			const float *from = plane + blend_place(x, y);
+			if (at.columns - x >= BLEND_SIDE)
+				memcpy(to, from, BLEND_SIDE * sizeof *to);
+			else
+				memcpy(to, from, (size_t)(at.columns - x) * sizeof *to);
 		}
 }
 

@@ -22,6 +22,8 @@ static void blend_planes(
 		struct place at = place_of_tile(&v->grid, k);
 		size_t begin = v->tiles.start[k], n = v->tiles.start[k + 1] - begin;
 		struct blend_tile t __attribute__((aligned(64)));
+		for (int c = 0; c < channels; c++)
+			place_fetch(&v->grid, at, out + (size_t)c * pixels);
 		blend_start(&t, at.x, at.y, at.columns, at.rows, channels);
 		kernels->values(&t, v->projected, v->tiles.entries + begin, n, values, channels);
 		for (int c = 0; c < channels; c++)

@@ -26,6 +26,7 @@ static void count_tile(const struct render_view *v, size_t k, struct render_weig
 	size_t n;
 	const uint32_t *list = tile_list(v, k, &n);
 
+	place_fetch(&v->grid, at, w->transmittance);
 	blend_start(&t, at.x, at.y, at.columns, at.rows, 0);
 	kernels_of(v->level)->counts(&t, v->projected, list, n);
 	place_plane(&v->grid, at, t.transmittance, w->transmittance);
