@@ -196,8 +196,13 @@ int file_out_open(struct file_out *out, const char *path, struct err *e)
 	int fd = make_temporary(out, path, e);
 	if (fd < 0)
 		goto fail;
-	mode_t mask = umask(0);
-	umask(mask);
+	mode_t mask;
+	/* it can only be read by changing it, which another thread must not see */
+#pragma omp critical(file_umask)
+	{
+		mask = umask(0);
+		umask(mask);
+	}
 	fchmod(fd, 0666 & ~mask);
 	out->stream = fdopen(fd, "wb");
 	if (!out->stream) {

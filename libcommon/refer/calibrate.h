@@ -19,9 +19,9 @@ enum {
 #define CALIBRATE_SHARE 0.0005 /* of the pixels of these views ... */
 #define CALIBRATE_PEAK 2.0     /* ... shall have at least this response: probability 0.88 */
 
-/* Adds to the responses (count,N) of the Gaussians with rows what lifts each sentence's best answer to
- * CALIBRATE_PEAK; lifts (count) gets it, 0 where it is there already. A scene without training views is
- * looked at from its other views; without any, nothing is lifted. */
+/* Adds to the responses (count,N), as render_pack has them, of the Gaussians with rows what lifts each
+ * sentence's best answer to CALIBRATE_PEAK; lifts (count) gets it, 0 where it is there already. A scene
+ * without training views is looked at from its other views; without any, nothing is lifted. */
 int calibrate(const struct splats *s, const struct cameras *cameras, const struct rows *rows,
 	float *responses, size_t count, double *lifts, struct err *e);
 

@@ -65,12 +65,22 @@ double respond_mask(const float *image, size_t pixels, double lift, uint8_t *mas
 	double sum = 0;
 	size_t area = 0;
 
-	for (size_t p = 0; p < pixels; p++) {
+	for (size_t p = 0; p < pixels; p++)
 		mask[p] = image[p] > 0;
-		if (!mask[p])
+	for (size_t p = 0; p < pixels;) {
+		uint64_t eight = 1;
+		if (pixels - p >= 8)
+			memcpy(&eight, mask + p, 8);
+		if (!eight) { /* most are background */
+			p += 8;
 			continue;
-		sum += 1 / (1 + exp(lift - (double)image[p]));
-		area++;
+		}
+		for (size_t end = pixels - p < 8 ? pixels : p + 8; p < end; p++) {
+			if (!mask[p])
+				continue;
+			sum += 1 / (1 + exp(lift - (double)image[p]));
+			area++;
+		}
 	}
 	return area ? sum / (double)area : 0;
 }
