@@ -61,6 +61,7 @@ struct run {
 	struct scene scene;
 	struct text text;
 	struct model model;
+	struct rows rows; /* of the model, in the scene */
 	size_t ref_count, view_count;
 	char *chosen; /* of the views, then of the sentences: which a list names */
 	size_t *refs; /* indices in text */
@@ -129,14 +130,15 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 	r->lifts = mem_zalloc(r->ref_count, sizeof *r->lifts, "responses", e);
 	if (!r->responses || !r->lifts)
 		return -1;
-	const struct respond_model m = {&r->model.layout, r->model.similarity, r->model.scene_gaussians,
-		r->model.n, r->model.ids, r->model.features, r->model.parameters, r->scene.splats.means,
-		r->model.low, r->model.high};
+	if (model_rows(&r->model, r->scene.splats.means, &r->rows, e))
+		return -1;
+	const struct respond_model m = {&r->model.layout, r->model.similarity, &r->rows, r->model.features,
+		r->model.parameters, r->scene.splats.means, r->model.low, r->model.high};
 	if (respond_all(&m, r->text.offsets, r->text.words, r->refs, r->ref_count, r->responses, e))
 		return -1;
 	if (!options.is_plain)
-		return calibrate(&r->scene.splats, &r->scene.cameras, r->model.ids, r->model.n, r->responses,
-			r->ref_count, r->lifts, e);
+		return calibrate(&r->scene.splats, &r->scene.cameras, &r->rows, r->responses, r->ref_count,
+			r->lifts, e);
 	return 0;
 }
 
@@ -238,6 +240,7 @@ int main(int argc, char **argv)
 	scene_free(&r.scene);
 	text_free(&r.text);
 	model_free(&r.model);
+	rows_free(&r.rows);
 	free(r.chosen);
 	free(r.refs);
 	free(r.views);

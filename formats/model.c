@@ -14,6 +14,7 @@ enum { VERSION_READ = 2 };
 void model_free(struct model *m)
 {
 	free(m->ids);
+	octree_free(&m->octree);
 	free(m->features);
 	free(m->parameters);
 	*m = (struct model){0};
@@ -47,26 +48,72 @@ static int read_bounds(struct model *m, const struct safetensors *st, struct err
 	return 0;
 }
 
-/* Which Gaussians of the scene have features. */
+/* The Gaussians of the scene that have a row of features each. */
 static int read_ids(struct model *m, const struct safetensors *st, struct err *e)
 {
-	long long scene;
 	const struct st_tensor *ids = safetensors_need(st, "ids", ST_I32, 1, (int64_t[]){-1}, e);
 
-	if (!ids || safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &scene, e))
+	if (!ids)
 		return -1;
-	m->scene_gaussians = (size_t)scene;
 	m->n = (size_t)ids->shape[0];
 	m->ids = mem_alloc(m->n, sizeof *m->ids, st->path, e);
 	if (!m->ids)
 		return -1;
 	memcpy(m->ids, ids->data, ids->bytes);
 	for (size_t i = 0; i < m->n; i++)
-		if (m->ids[i] < 0 || m->ids[i] >= scene || (i && m->ids[i] <= m->ids[i - 1]))
+		if (m->ids[i] < 0 || (size_t)m->ids[i] >= m->scene_gaussians ||
+			(i && m->ids[i] <= m->ids[i - 1]))
 			return err_set(e, ERR_FORMAT,
 				"%s: tensor 'ids': item %zu does not rise within 0 to %lld", st->path, i,
-				scene - 1);
+				(long long)m->scene_gaussians - 1);
 	return 0;
+}
+
+static int read_root(struct octree *t, const struct safetensors *st, struct err *e)
+{
+	const char *text = safetensors_meta(st, "root");
+	int end = 0;
+
+	if (!text ||
+		sscanf(text, "[[%lf,%lf,%lf],%lf]%n", &t->low[0], &t->low[1], &t->low[2], &t->edge, &end) !=
+			4 ||
+		!end || text[end])
+		return err_set(e, ERR_FORMAT, "%s: metadata 'root' is not a corner and an edge", st->path);
+	if (!isfinite(t->low[0]) || !isfinite(t->low[1]) || !isfinite(t->low[2]) || !isfinite(t->edge) ||
+		!(t->edge > 0))
+		return err_set(
+			e, ERR_FORMAT, "%s: metadata 'root' is not finite with an edge above 0", st->path);
+	return 0;
+}
+
+/* The leaves whose Gaussians share a row of features. */
+static int read_leaves(struct model *m, const struct safetensors *st, struct err *e)
+{
+	const struct st_tensor *leaves = safetensors_need(st, "leaves", ST_I64, 1, (int64_t[]){-1}, e);
+	size_t bad;
+
+	if (!leaves || read_root(&m->octree, st, e))
+		return -1;
+	m->n = m->octree.n = (size_t)leaves->shape[0];
+	m->octree.codes = mem_alloc(m->n, sizeof *m->octree.codes, st->path, e);
+	if (!m->octree.codes)
+		return -1;
+	memcpy(m->octree.codes, leaves->data, leaves->bytes);
+	if (octree_check(&m->octree, &bad))
+		return err_set(e, ERR_FORMAT,
+			"%s: tensor 'leaves': item %zu is not a leaf after the one before", st->path, bad);
+	return 0;
+}
+
+static int read_rows(struct model *m, const struct safetensors *st, struct err *e)
+{
+	long long scene;
+
+	if (safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &scene, e))
+		return -1;
+	m->scene_gaussians = (size_t)scene;
+	m->has_leaves = safetensors_find(st, "leaves") != NULL;
+	return m->has_leaves ? read_leaves(m, st, e) : read_ids(m, st, e);
 }
 
 static int read_features(struct model *m, const struct safetensors *st, struct err *e)
@@ -146,7 +193,7 @@ static int read_all(struct model *m, const struct safetensors *st, struct err *e
 		return -1;
 	m->similarity = (enum refer_similarity)similarity;
 	refer_layout_init(&m->layout, (enum refer_interaction)interaction, width);
-	return read_bounds(m, st, e) || read_ids(m, st, e) || read_features(m, st, e) ||
+	return read_bounds(m, st, e) || read_rows(m, st, e) || read_features(m, st, e) ||
 			       read_parameters(m, st, e)
 		       ? -1
 		       : 0;
@@ -164,6 +211,12 @@ int model_read(struct model *m, const char *path, struct err *e)
 	if (bad)
 		model_free(m);
 	return bad;
+}
+
+int model_rows(const struct model *m, const float *means, struct rows *rows, struct err *e)
+{
+	return m->has_leaves ? rows_of_leaves(rows, &m->octree, means, m->scene_gaussians, e)
+			     : rows_of_ids(rows, m->ids, m->n, m->scene_gaussians, e);
 }
 
 /* The tensors of a model, while they are written. */
@@ -204,8 +257,15 @@ static int add_parameters(struct parts *p, const struct model *m, const char *pa
 
 static int add_tensors(struct parts *p, const struct model *m, const char *path, struct err *e)
 {
-	p->tensors[p->n++] = (struct st_tensor){
+	p->tensors[p->n] = (struct st_tensor){
 		.name = "ids", .dtype = ST_I32, .dims = 1, .shape = {(int64_t)m->n}, .data = m->ids};
+	if (m->has_leaves)
+		p->tensors[p->n] = (struct st_tensor){.name = "leaves",
+			.dtype = ST_I64,
+			.dims = 1,
+			.shape = {(int64_t)m->n},
+			.data = m->octree.codes};
+	p->n++;
 	if (precision_put(&p->features, "features", m->precision, PRECISION_COLUMNS, m->n, REFER_X,
 		    m->features, path, e))
 		return -1;
@@ -216,21 +276,25 @@ static int add_tensors(struct parts *p, const struct model *m, const char *path,
 int model_write(const struct model *m, const char *path, const char *options, long long seed, struct err *e)
 {
 	struct parts *p = mem_zalloc(1, sizeof *p, path, e);
-	char bounds[256], gaussians[32], seed_text[32];
+	char bounds[256], root[128], gaussians[32], seed_text[32];
 
 	if (!p)
 		return -1;
 	snprintf(bounds, sizeof bounds, "[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]]", m->low[0], m->low[1],
 		m->low[2], m->high[0], m->high[1], m->high[2]);
+	snprintf(root, sizeof root, "[[%.17g,%.17g,%.17g],%.17g]", m->octree.low[0], m->octree.low[1],
+		m->octree.low[2], m->octree.edge);
 	snprintf(gaussians, sizeof gaussians, "%zu", m->scene_gaussians);
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
 	const struct st_meta meta[] = {{"format", "refer.model"}, {"version", "2"}, {"tool", "refer-train"},
 		{"options", options}, {"seed", seed_text},
 		{"interaction", refer_interaction_name(m->layout.interaction)},
 		{"similarity", refer_similarity_name(m->similarity)},
-		{"precision", precision_name(m->precision)}, {"gaussians", gaussians}, {"bounds", bounds}};
-	int bad = add_tensors(p, m, path, e) ||
-		  safetensors_write(path, p->tensors, p->n, meta, sizeof meta / sizeof *meta, e);
+		{"precision", precision_name(m->precision)}, {"gaussians", gaussians}, {"bounds", bounds},
+		{"root", root}};
+	const size_t meta_count = sizeof meta / sizeof *meta - !m->has_leaves;
+	int bad =
+		add_tensors(p, m, path, e) || safetensors_write(path, p->tensors, p->n, meta, meta_count, e);
 	precision_free(&p->features);
 	for (int t = 0; t < REFER_TENSORS; t++)
 		precision_free(&p->weights[t]);

@@ -61,7 +61,7 @@ static int render_all(const struct splats *s, const struct camera *views, int n,
 	return 0;
 }
 
-int calibrate(const struct splats *s, const struct cameras *cameras, const int32_t *ids, size_t n,
+int calibrate(const struct splats *s, const struct cameras *cameras, const struct rows *rows,
 	float *responses, size_t count, double *lifts, struct err *e)
 {
 	struct camera views[CALIBRATE_VIEWS];
@@ -80,8 +80,9 @@ int calibrate(const struct splats *s, const struct cameras *cameras, const int32
 			continue; /* nothing seen, or a sentence without words: no answer to lift */
 		lifts[r] =
 			fmax(0, CALIBRATE_PEAK - (double)image[(size_t)(CALIBRATE_SHARE * (double)pixels)]);
-		for (size_t i = 0; i < n; i++)
-			responses[r * s->n + (size_t)ids[i]] += (float)lifts[r];
+		for (size_t i = 0; i < s->n; i++)
+			if (rows->of[i] >= 0)
+				responses[r * s->n + i] += (float)lifts[r];
 	}
 	free(images);
 	return bad;

@@ -1,45 +1,89 @@
-/* The speed of a training step on made inputs, phase by phase, for one thread and for all.
+/* The speed of a training step on made inputs, phase by phase. bench_step --help lists what can be varied.
  *
- *	bench_step [gaussians [words [width height [steps]]]]
- *
- * PCMI, cosine similarity and cosine contrast; 44 sentences of `words` words, 384 wide. A view has 56 weights
- *a pixel on average, of Gaussians that are near each other in the array for near pixels, as in a scene. Each
- *figure is the least of all steps, in the process's own time where one thread runs, so that a busy machine
- *disturbs it little. */
+ * PCMI, contrast by cosine; text 384 wide. The Gaussians of near pixels are near each other in the array, as
+ * in a scene. The time is the process's own where one thread runs, so that a busy machine disturbs it little,
+ * and the clock's where more do. Figures are medians over the repeats; the table's are the least. */
 #include "base/mem.h"
 #include "base/rng.h"
+#include "cli/cli.h"
 #include "mask/bits.h"
+#include "peak.h"
 #include "refer/step.h"
 #include "refer/train.h"
 
 #include <omp.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#if defined __x86_64__
-#include <immintrin.h>
-#endif
 
-enum { SENTENCES = 44, TEXT = 384, WEIGHTS = 56, PATCH = 8, NEAR = 400 };
+enum { TEXT = 384, PATCH = 8, NEAR = 400, PER_OBJECT = 4, ADAM = STEP_PHASES, STEP, TIMES, LIST = 32 };
+
+static const char *const names[TIMES] = {"words", "fold", "hidden", "respond", "images", "top", "gather",
+	"scores_back", "hidden_back", "adam", "step"};
+
+static struct {
+	const char *gaussians, *threads;
+	long long words, sentences, negatives, batch, weights, repeats;
+	int size[2], similarity;
+} options = {.gaussians = "68270",
+	.words = 14,
+	.sentences = 44,
+	.batch = 1,
+	.weights = 56,
+	.repeats = 10,
+	.size = {318, 178}};
+
+static const struct cli_option table[] = {{"gaussians", 0, CLI_STRING, &options.gaussians, "N,...",
+						  "Gaussians that learn (default 68270)", 0, 0},
+	{"words", 0, CLI_INT, &options.words, "N", "of a sentence (default 14)", 1, 500},
+	{"sentences", 0, CLI_INT, &options.sentences, "R", "of the scene (default 44)", 1, 100000},
+	{"negatives", 0, CLI_INT, &options.negatives, "K",
+		"sentences of the contrast besides the object's own (default 0: all)", 0, 100000},
+	{"batch", 0, CLI_INT, &options.batch, "S", "sentences in a step (default 1)", 1, 64},
+	{"size", 0, CLI_SIZE, options.size, "WxH", "of the view in pixels (default 318x178)", 1, 10000},
+	{"weights", 0, CLI_INT, &options.weights, "N", "of a pixel, on average (default 56)", 1, 10000},
+	{"similarity", 0, CLI_CHOICE, &options.similarity, REFER_SIMILARITY_CHOICES,
+		"how features answer words (default dot)", 0, 0},
+	{"repeats", 0, CLI_INT, &options.repeats, "K", "timed steps (default 10)", 1, 100000},
+	{"threads", 0, CLI_STRING, &options.threads, "T,...", "numbers of threads (default: 1, 2, 4 to all)",
+		0, 0},
+	{0}};
+
+static const struct cli_tool tool = {.name = "bench_step",
+	.operands = "",
+	.summary = "Time a training step.",
+	.options = table,
+	.common = CLI_JSON};
+
+/* A scene, its sentences and one view, all made. */
+struct problem {
+	size_t gaussians;
+	struct refer_layout layout;
+	struct train_state state;
+	float *position, *text;
+	int64_t *offsets;
+	int *objects;
+	struct view_weights view;
+	uint8_t *mask;
+	size_t *others; /* sentences in the order in which the contrast takes them */
+};
+
+/* Seconds of every repeat, phase by phase. */
+struct result {
+	int threads;
+	double *times[TIMES]; /* (repeats), sorted */
+};
 
 struct watch {
 	clockid_t clock;
 	double last, spent[STEP_PHASES];
 };
 
-static double now(clockid_t clock)
-{
-	struct timespec t;
-
-	clock_gettime(clock, &t);
-	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static void ended(void *data, enum step_phase phase)
 {
 	struct watch *w = data;
-	double time = now(w->clock);
+	const double time = clock_seconds(w->clock);
 
 	w->spent[phase] += time - w->last;
 	w->last = time;
@@ -67,20 +111,21 @@ static float *uniform(struct rng *r, size_t count, float size)
 }
 
 /* All the Gaussians of a patch of pixels come from NEAR neighbours in the array. */
-static struct view_weights make_view(struct rng *r, size_t gaussians, size_t width, size_t height)
+static struct view_weights make_view(
+	struct rng *r, size_t gaussians, size_t width, size_t height, size_t mean)
 {
 	const size_t pixels = width * height, across = (width + PATCH - 1) / PATCH,
 		     down = (height + PATCH - 1) / PATCH;
 	int64_t *indptr = need(pixels + 1, sizeof *indptr);
-	int32_t *index = need(pixels * 2 * WEIGHTS, sizeof *index), *base = need(across * down, sizeof *base);
-	float *weight = need(pixels * 2 * WEIGHTS, sizeof *weight);
+	int32_t *index = need(pixels * 2 * mean, sizeof *index), *base = need(across * down, sizeof *base);
+	float *weight = need(pixels * 2 * mean, sizeof *weight);
 	const uint32_t near = gaussians < NEAR ? (uint32_t)gaussians : NEAR;
 
 	for (size_t i = 0; i < across * down; i++)
 		base[i] = (int32_t)rng_below(r, (uint32_t)gaussians - near + 1);
 	for (size_t p = 0; p < pixels; p++) {
 		const int32_t from = base[p / width / PATCH * across + p % width / PATCH];
-		const int64_t count = 1 + rng_below(r, 2 * WEIGHTS - 1);
+		const int64_t count = 1 + rng_below(r, 2 * (uint32_t)mean - 1);
 		for (int64_t k = 0; k < count; k++) {
 			index[indptr[p] + k] = from + (int32_t)rng_below(r, near);
 			weight[indptr[p] + k] = (float)(rng_uniform(r) / (double)count);
@@ -91,217 +136,244 @@ static struct view_weights make_view(struct rng *r, size_t gaussians, size_t wid
 	return (struct view_weights){pixels, gaussians, indptr, index, weight};
 }
 
-/* Multiplications with an addition that the mathematics asks for, folded: for a Gaussian, and for a word of
- * MLP_t. */
-static double work(enum step_phase phase, double gaussians, double n, double words)
+static void problem_make(struct problem *p, size_t gaussians)
 {
-	const double g = BLOCK_G, z = g + n, feature = 16 * 32 + 32 * 64, position = 3 * 16 + 16 * 64;
-	const double text = 512.0 * 256, text0 = 512.0 * TEXT;
+	const size_t sentences = (size_t)options.sentences, words = (size_t)options.words,
+		     width = (size_t)options.size[0];
+	struct rng r;
+	struct err e;
+
+	rng_seed(&r, 1, 1);
+	p->gaussians = gaussians;
+	refer_layout_init(&p->layout, REFER_PCMI, TEXT);
+	if (train_state_init(&p->state, &p->layout, gaussians, 1, &e)) {
+		fprintf(stderr, "bench_step: %s\n", e.message);
+		exit(4);
+	}
+	float *x = uniform(&r, gaussians * REFER_X, 1);
+	step_pack(x, gaussians, train_state_x(&p->state));
+	free(x);
+	p->offsets = need(sentences + 1, sizeof *p->offsets);
+	p->objects = need(sentences, sizeof *p->objects);
+	for (size_t i = 0; i < sentences; i++) {
+		p->offsets[i + 1] = (int64_t)((i + 1) * words);
+		p->objects[i] = (int)i / PER_OBJECT;
+	}
+	p->position = uniform(&r, gaussians * 3, 1);
+	p->text = uniform(&r, sentences * words * TEXT, 0.1f);
+	p->view = make_view(&r, gaussians, width, (size_t)options.size[1], (size_t)options.weights);
+	p->mask = need(bits_bytes(p->view.pixels), 1);
+	for (size_t i = 0; i < p->view.pixels; i++)
+		p->mask[i / 8] |= (uint8_t)((i % width < width / 5) << i % 8);
+	p->others = need(sentences, sizeof *p->others);
+	for (size_t i = 0; i < sentences; i++)
+		p->others[i] = sentences - 1 - i;
+}
+
+static void problem_free(struct problem *p)
+{
+	train_state_free(&p->state);
+	free((void *)p->view.indptr);
+	free((void *)p->view.index);
+	free((void *)p->view.weight);
+	free(p->position);
+	free(p->text);
+	free(p->offsets);
+	free(p->objects);
+	free(p->mask);
+	free(p->others);
+}
+
+/* Multiplications with an addition that the mathematics asks for, folded. */
+static double work(const struct problem *p, enum step_phase phase)
+{
+	const double n = (double)p->gaussians, batch = (double)options.batch, own = (double)options.words;
+	const double others = (double)options.negatives, chosen = (double)options.sentences;
+	const double all = own * (others > 0 ? fmin(others + PER_OBJECT, chosen) : chosen),
+		     nnz = (double)p->view.indptr[p->view.pixels];
+	const double g = BLOCK_G, z = g + own, scores = batch * own * g, feature = 16 * 32 + 32 * 64,
+		     position = 3 * 16 + 16 * 64, text0 = 512.0 * TEXT, text1 = 512.0 * 256;
+	const int is_cosine = options.similarity == REFER_COSINE;
 
 	switch (phase) {
 	case STEP_WORDS:
-		return words * (2 * text0 + 3 * text);
+		return all * (2 * text0 + 3 * text1);
 	case STEP_HIDDEN:
-		return gaussians * (feature + position + 2 * n * g);
+		return n * (feature + position + 2 * scores);
 	case STEP_RESPOND:
-		return gaussians * (2 * n * g + z * (z + 1) / 2 + z);
+		return n * (2 * scores + batch * (is_cosine ? z * (z + 1) / 2 + z : z));
+	case STEP_IMAGES:
+		return 2 * batch * nnz;
 	case STEP_SCORES_BACK:
-		return gaussians * (2 * n * g + z * z + z * (z + 1) / 2 + 3 * z);
+		return n * (2 * scores + batch * (is_cosine ? z * z + z * (z + 1) / 2 + 3 * z : z + 2 * own));
 	case STEP_HIDDEN_BACK:
-		return gaussians * (6 * n * g + 16 * 32 + 2 * feature + 2 * 16 * 64 + 2 * 3 * 16);
+		return n * (6 * scores + 16 * 32 + 2 * feature + 2 * 16 * 64 + 2 * 3 * 16 +
+				   (is_cosine ? 0 : 2 * batch * g));
 	default:
 		return 0;
 	}
 }
 
-/* Independent chains of multiply-adds, as wide as the processor has them: how many it did, each. */
-enum { CHAINS = 12, ROUNDS = 1000000 };
-
-#if defined __x86_64__
-__attribute__((target("avx512f"))) static double chains_avx512(void)
+static int ascending(const void *a, const void *b)
 {
-	__m512 sums[CHAINS], x = _mm512_set1_ps(0.5f);
+	const double x = *(const double *)a, y = *(const double *)b;
 
-	for (int c = 0; c < CHAINS; c++)
-		sums[c] = _mm512_set1_ps((float)c);
-	for (long i = 0; i < ROUNDS; i++)
-		for (int c = 0; c < CHAINS; c++)
-			sums[c] = _mm512_fmadd_ps(sums[c], x, x);
-	for (int c = 1; c < CHAINS; c++)
-		sums[0] = _mm512_add_ps(sums[0], sums[c]);
-	volatile float sink = _mm512_cvtss_f32(sums[0]);
-	(void)sink;
-	return 16.0 * CHAINS * ROUNDS;
+	return (x > y) - (x < y);
 }
 
-__attribute__((target("avx2,fma"))) static double chains_avx2(void)
+static struct result measure(struct problem *p, int threads)
 {
-	__m256 sums[CHAINS], x = _mm256_set1_ps(0.5f);
-
-	for (int c = 0; c < CHAINS; c++)
-		sums[c] = _mm256_set1_ps((float)c);
-	for (long i = 0; i < ROUNDS; i++)
-		for (int c = 0; c < CHAINS; c++)
-			sums[c] = _mm256_fmadd_ps(sums[c], x, x);
-	for (int c = 1; c < CHAINS; c++)
-		sums[0] = _mm256_add_ps(sums[0], sums[c]);
-	volatile float sink = _mm256_cvtss_f32(sums[0]);
-	(void)sink;
-	return 8.0 * CHAINS * ROUNDS;
-}
-#endif
-
-static double chains_plain(void)
-{
-	float __attribute__((vector_size(16))) sums[CHAINS] = {{0}}, x = {0.5f, 0.5f, 0.5f, 0.5f};
-
-	for (long i = 0; i < ROUNDS; i++)
-		for (int c = 0; c < CHAINS; c++)
-			sums[c] = sums[c] * x + x;
-	for (int c = 1; c < CHAINS; c++)
-		sums[0] += sums[c];
-	volatile float sink = sums[0][0];
-	(void)sink;
-	return 4.0 * CHAINS * ROUNDS;
-}
-
-/* The processor's peak for one thread, in multiply-adds a second. */
-static double measure_peak(void)
-{
-	double (*chains)(void) = chains_plain;
-	double best = 0;
-
-#if defined __x86_64__
-	if (__builtin_cpu_supports("avx512f"))
-		chains = chains_avx512;
-	else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-		chains = chains_avx2;
-#endif
-	for (int i = 0; i < 5; i++) {
-		double start = now(CLOCK_THREAD_CPUTIME_ID), done = chains();
-		double rate = done / (now(CLOCK_THREAD_CPUTIME_ID) - start);
-		best = rate > best ? rate : best;
-	}
-	return best;
-}
-
-static void print_row(const char *name, double seconds, double madds, double peak)
-{
-	printf("%-14s %8.2f ms", name, 1e3 * seconds);
-	if (madds > 0)
-		printf(" %8.1f GFLOP/s %5.0f %%", 2e-9 * madds / seconds, 100 * madds / seconds / peak);
-	printf("\n");
-}
-
-static void measure(const struct step_setup *setup, struct train_state *t, const struct view_weights *view,
-	const uint8_t *mask, int steps, int threads, double peak)
-{
-	static const char *const names[STEP_PHASES] = {"words", "fold", "hidden", "respond", "images", "top",
-		"gather", "scores_back", "hidden_back"};
+	const int repeats = (int)options.repeats, batch = (int)options.batch;
+	const struct step_setup setup = {.layout = &p->layout,
+		.similarity = (enum refer_similarity)options.similarity,
+		.contrast = REFER_CONTRAST_COSINE,
+		.temperature = 0.1,
+		.lambda = 0.02,
+		.gaussians = p->gaussians,
+		.position = p->position,
+		.sentences = (size_t)options.sentences,
+		.offsets = p->offsets,
+		.words = p->text,
+		.objects = p->objects,
+		.pixels = p->view.pixels,
+		.batch = batch};
 	struct watch w = {.clock = threads == 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC};
-	double least[STEP_PHASES + 2], all = 0;
+	struct result r = {.threads = threads};
+	struct step_target targets[64];
 	struct err e;
 
 	omp_set_num_threads(threads);
-	struct step *s = step_new(setup, &e);
+	struct step *s = step_new(&setup, &e);
 	if (!s) {
 		fprintf(stderr, "bench_step: %s\n", e.message);
 		exit(4);
 	}
+	const int is_sampled = options.negatives > 0 && options.negatives < options.sentences;
+	const struct step_others others = {p->others, (size_t)options.negatives};
 	step_watch(s, ended, &w);
-	for (int p = 0; p < STEP_PHASES + 2; p++)
-		least[p] = 1e9;
-	const double n = (double)setup->offsets[1], words = (double)setup->offsets[setup->sentences];
-	const double size = (double)setup->gaussians;
-	for (int i = 0; i < steps; i++) {
-		const struct step_target target = {(size_t)i % SENTENCES, mask};
+	for (int t = 0; t < TIMES; t++)
+		r.times[t] = need((size_t)repeats, sizeof(double));
+	for (int i = -1; i < repeats; i++) { /* the first warms up */
+		for (int k = 0; k < batch; k++)
+			targets[k] = (struct step_target){
+				(size_t)((i + 1) * batch + k) % (size_t)options.sentences, p->mask};
 		memset(w.spent, 0, sizeof w.spent);
-		const double start = w.last = now(w.clock);
-		step_run(s, t->values, train_state_x(t), view, &target, 1,
-			contrast_top_count(i, setup->gaussians), t->gradient, t->gradient + t->parameters);
-		const double middle = now(w.clock);
-		train_adam(t, &(struct train_rates){1e-4, 1e-3});
-		const double end = now(w.clock);
-		for (int p = 0; p < STEP_PHASES; p++)
-			least[p] = w.spent[p] < least[p] ? w.spent[p] : least[p];
-		least[STEP_PHASES] = end - middle < least[STEP_PHASES] ? end - middle : least[STEP_PHASES];
-		least[STEP_PHASES + 1] =
-			end - start < least[STEP_PHASES + 1] ? end - start : least[STEP_PHASES + 1];
+		const double start = w.last = clock_seconds(w.clock);
+		step_run(s, p->state.values, train_state_x(&p->state), &p->view, targets, batch,
+			contrast_top_count(0, p->gaussians), is_sampled ? &others : NULL, p->state.gradient,
+			p->state.gradient + p->state.parameters);
+		const double middle = clock_seconds(w.clock);
+		train_adam(&p->state, &(struct train_rates){2.5e-3, 1e-4});
+		const double end = clock_seconds(w.clock);
+		if (i < 0)
+			continue;
+		for (int t = 0; t < STEP_PHASES; t++)
+			r.times[t][i] = w.spent[t];
+		r.times[ADAM][i] = end - middle;
+		r.times[STEP][i] = end - start;
 	}
-	printf("\n%d thread%s\n", threads, threads == 1 ? "" : "s");
-	for (enum step_phase p = 0; p < STEP_PHASES; p++) {
-		double madds = work(p, size, n, words);
-		all += madds;
-		print_row(names[p], least[p], madds, peak * threads);
-	}
-	print_row("adam", least[STEP_PHASES], 0, peak);
-	print_row("step", least[STEP_PHASES + 1], all, peak * threads);
+	for (int t = 0; t < TIMES; t++)
+		qsort(r.times[t], (size_t)repeats, sizeof(double), ascending);
 	step_free(s);
+	return r;
+}
+
+static double median(const double *sorted)
+{
+	const long long n = options.repeats;
+
+	return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
+}
+
+static double whole_work(const struct problem *p)
+{
+	double all = 0;
+
+	for (enum step_phase phase = 0; phase < STEP_PHASES; phase++)
+		all += work(p, phase);
+	return all;
+}
+
+static void print_table(const struct problem *p, const struct result *r, double peak)
+{
+	printf("\n%zu Gaussians, %lld words, %d of %lld sentences, %d x %d pixels, %lld weights, %s, %d thread%s "
+	       "(%s, %.0f GFLOP/s each)\n",
+		p->gaussians, options.words, (int)options.batch, options.sentences, options.size[0],
+		options.size[1], (long long)p->view.indptr[p->view.pixels],
+		refer_similarity_name((enum refer_similarity)options.similarity), r->threads,
+		r->threads == 1 ? "" : "s", block_select(NULL)->name, 2e-9 * peak);
+	for (int t = 0; t < TIMES; t++) {
+		const double seconds = r->times[t][0];
+		const double madds = t == STEP ? whole_work(p) : t < ADAM ? work(p, (enum step_phase)t) : 0;
+		printf("%-14s %8.2f ms", names[t], 1e3 * seconds);
+		if (madds > 0)
+			printf(" %8.1f GFLOP/s %5.0f %%", 2e-9 * madds / seconds,
+				100 * madds / seconds / peak / r->threads);
+		printf("\n");
+	}
+}
+
+static void print_json(const struct problem *p, const struct result *r, double peak)
+{
+	const double seconds = median(r->times[STEP]), rate = 2e-9 * whole_work(p) / seconds,
+		     top = 2e-9 * peak * r->threads;
+
+	printf("{\"bench\":\"step\",\"gaussians\":%zu,\"words\":%lld,\"sentences\":%lld,\"negatives\":%lld,\"batch\":%lld,"
+	       "\"pixels\":%zu,\"weights\":%lld,\"threads\":%d,\"similarity\":\"%s\",\"kernels\":\"%s\","
+	       "\"repeats\":%lld,\"ms\":%.4f,\"min_ms\":%.4f,\"phases\":{",
+		p->gaussians, options.words, options.sentences, options.negatives, options.batch,
+		p->view.pixels, (long long)p->view.indptr[p->view.pixels], r->threads,
+		refer_similarity_name((enum refer_similarity)options.similarity), block_select(NULL)->name,
+		options.repeats, 1e3 * seconds, 1e3 * r->times[STEP][0]);
+	for (int t = 0; t < STEP; t++)
+		printf("%s\"%s\":%.4f", t ? "," : "", names[t], 1e3 * median(r->times[t]));
+	printf("},\"gflops\":%.2f,\"peak_gflops\":%.2f,\"share_of_peak\":%.4f}\n", rate, top, rate / top);
+	fflush(stdout);
+}
+
+/* "N,N,..." into out (LIST). Returns how many. */
+static int numbers(const struct cli *c, const char *option, const char *text, long long most, long long *out)
+{
+	int count = 0;
+
+	for (const char *at = text; *at || at == text;) {
+		char *end;
+		const long long value = strtoll(at, &end, 10);
+		if (end == at || (*end && *end != ',') || value < 1 || value > most || count == LIST)
+			cli_usage(c, "--%s wants at most %d numbers from 1 to %lld, not '%s'", option, LIST,
+				most, text);
+		out[count++] = value;
+		at = end + (*end == ',');
+	}
+	return count;
 }
 
 int main(int argc, char **argv)
 {
-	const size_t gaussians = argc > 1 ? strtoul(argv[1], NULL, 10) : 68270,
-		     words = argc > 2 ? strtoul(argv[2], NULL, 10) : 14;
-	const size_t width = argc > 4 ? strtoul(argv[3], NULL, 10) : 318,
-		     height = argc > 4 ? strtoul(argv[4], NULL, 10) : 178;
-	const int steps = argc > 5 ? atoi(argv[5]) : 10, most = omp_get_max_threads();
-	int64_t offsets[SENTENCES + 1];
-	int objects[SENTENCES];
-	struct refer_layout layout;
-	struct train_state t;
-	struct rng r;
-	struct err e;
+	long long sizes[LIST], threads[LIST];
+	int thread_count = 0;
+	struct cli c;
 
-	if (!gaussians || gaussians > 1 << 26 || !words || words > 500 || !width || width > 10000 ||
-		!height || height > 10000) {
-		fprintf(stderr, "usage: bench_step [gaussians [words [width height [steps]]]]\n");
-		return 2;
-	}
-	rng_seed(&r, 1, 1);
-	refer_layout_init(&layout, REFER_PCMI, TEXT);
-	if (train_state_init(&t, &layout, gaussians, 1, &e)) {
-		fprintf(stderr, "bench_step: %s\n", e.message);
-		return 4;
-	}
-	float *x = uniform(&r, gaussians * REFER_X, 1);
-	step_pack(x, gaussians, train_state_x(&t));
-	for (int i = 0; i <= SENTENCES; i++)
-		offsets[i] = i * (int64_t)words;
-	for (int i = 0; i < SENTENCES; i++)
-		objects[i] = i / 4;
-	float *position = uniform(&r, gaussians * 3, 1), *text = uniform(&r, SENTENCES * words * TEXT, 0.1f);
-	struct view_weights view = make_view(&r, gaussians, width, height);
-	uint8_t *mask = need(bits_bytes(view.pixels), 1);
-	for (size_t p = 0; p < view.pixels; p++)
-		mask[p / 8] |= (uint8_t)((p % width < width / 5) << p % 8);
-	const struct step_setup setup = {.layout = &layout,
-		.similarity = REFER_COSINE,
-		.contrast = REFER_CONTRAST_COSINE,
-		.temperature = 0.1,
-		.lambda = 0.1,
-		.gaussians = gaussians,
-		.scene_gaussians = gaussians,
-		.position = position,
-		.sentences = SENTENCES,
-		.offsets = offsets,
-		.words = text,
-		.objects = objects,
-		.pixels = view.pixels,
-		.batch = 1};
+	cli_parse(&c, &tool, argc, argv);
+	if (options.batch * options.words > BLOCK_WORDS)
+		cli_usage(&c, "a step takes at most %d words", BLOCK_WORDS);
+	const int size_count = numbers(&c, "gaussians", options.gaussians, 1 << 26, sizes);
+	if (options.threads)
+		thread_count = numbers(&c, "threads", options.threads, 1024, threads);
+	else
+		for (int t = 1; t <= omp_get_max_threads(); t *= 2)
+			threads[thread_count++] = t;
 	const double peak = measure_peak();
-	printf("%zu Gaussians, %zu words, %zu x %zu pixels, %lld weights, %s; peak %.0f GFLOP/s a thread\n",
-		gaussians, words, width, height, (long long)view.indptr[view.pixels],
-		block_select(NULL)->name, 2e-9 * peak);
-	for (int threads = 1; threads <= most; threads *= 2)
-		measure(&setup, &t, &view, mask, steps, threads, peak);
-	train_state_free(&t);
-	free((void *)view.indptr);
-	free((void *)view.index);
-	free((void *)view.weight);
-	free(x);
-	free(position);
-	free(text);
-	free(mask);
+	for (int i = 0; i < size_count; i++) {
+		struct problem p;
+		problem_make(&p, (size_t)sizes[i]);
+		for (int t = 0; t < thread_count; t++) {
+			struct result r = measure(&p, (int)threads[t]);
+			(c.json ? print_json : print_table)(&p, &r, peak);
+			for (int k = 0; k < TIMES; k++)
+				free(r.times[k]);
+		}
+		problem_free(&p);
+	}
 	return 0;
 }

@@ -97,12 +97,15 @@ static void make_problem(struct problem *p)
 
 static void respond(const struct problem *p, const struct model *m, float *out)
 {
-	const struct respond_model answers = {&m->layout, m->similarity, m->scene_gaussians, m->n, m->ids,
-		m->features, m->parameters, p->means, m->low, m->high};
+	struct rows rows = {0};
+	const struct respond_model answers = {
+		&m->layout, m->similarity, &rows, m->features, m->parameters, p->means, m->low, m->high};
 	struct err e;
 
-	if (respond_all(&answers, p->offsets, p->words, p->which, p->count, out, &e))
+	if (model_rows(m, p->means, &rows, &e) ||
+		respond_all(&answers, p->offsets, p->words, p->which, p->count, out, &e))
 		give_up(&e);
+	rows_free(&rows);
 }
 
 /* Writes the model in a precision, reads it back, and compares its responses with the exact ones. */

@@ -13,11 +13,11 @@ setup() {
 # Without precision=, a file of version 1.
 model() {
 	local file=$1 assignment at=0 name shape type width bytes key items header= sep= patches=() without=
-	local interaction=none similarity=dot gaussians=3 bounds='[[-1,-1,-1],[1,1,1]]' precision= version=1
+	local interaction=none similarity=dot gaussians=3 bounds='[[-1,-1,-1],[1,1,1]]' precision= root= version=1
 	local -A shapes=([ids]='[1]' [features]='[1,16]' [text_0_weight]='[512,1]' [text_0_bias]='[512]'
 		[text_1_weight]='[256,512]' [text_1_bias]='[256]' [text_2_weight]='[128,256]' [text_2_bias]='[128]'
 		[feature_0_weight]='[32,16]' [feature_0_bias]='[32]' [feature_1_weight]='[64,32]' [feature_1_bias]='[64]'
-		[feature_2_weight]='[128,64]' [feature_2_bias]='[128]') types=([ids]=I32) patch=()
+		[feature_2_weight]='[128,64]' [feature_2_bias]='[128]') types=([ids]=I32 [leaves]=I64) patch=()
 	shift
 	for assignment; do [[ $assignment != precision=* ]] || precision=${assignment#*=}; done
 	[ -z "$precision" ] || version=2
@@ -39,15 +39,15 @@ model() {
 		case $key in
 		*_type) types[${key%_type}]=${assignment#*=} ;;
 		*_item) patch[${key%_item}]=${assignment#*=} ;;
-		interaction | similarity | gaussians | bounds | precision | without) local "$key=${assignment#*=}" ;;
+		interaction | similarity | gaussians | bounds | precision | root | without) local "$key=${assignment#*=}" ;;
 		*) shapes[$key]=${assignment#*=} ;;
 		esac
 	done
-	for width in 4 2 1; do
+	for width in 8 4 2 1; do
 		for name in "${!shapes[@]}"; do
 			[ "$name" != "$without" ] || continue
 			type=${types[$name]:-F32}
-			case $type in U8) bytes=1 ;; F16) bytes=2 ;; *) bytes=4 ;; esac
+			case $type in U8) bytes=1 ;; F16) bytes=2 ;; I64 | F64) bytes=8 ;; *) bytes=4 ;; esac
 			[ $width = $bytes ] || continue
 			shape=${shapes[$name]}
 			items=$((1${shape//[\[\],]/*}1))
@@ -56,7 +56,7 @@ model() {
 			at=$((at + width * items))
 		done
 	done
-	for name in interaction similarity gaussians bounds precision; do
+	for name in interaction similarity gaussians bounds precision root; do
 		[ -z "${!name}" ] || sep+=",\"$name\":\"${!name}\""
 	done
 	header="{\"__metadata__\":{\"format\":\"refer.model\",\"version\":\"$version\"$sep}$header}"
@@ -79,15 +79,15 @@ bad() {
 
 @test "a model made by hand is fine" {
 	model m
-	says 0 "m: ok: refer.model, f32, 1 gaussians, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	says 0 "m: ok: refer.model, f32, 1 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 	model m ids='[2]' features='[2,16]' ids_item=1:02000000 similarity=cosine interaction=attention
-	says 0 "m: ok: refer.model, f32, 2 gaussians, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	says 0 "m: ok: refer.model, f32, 2 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 }
 
 @test "numbers of version 2 are f32, f16 or u8" {
 	for precision in f32 f16 u8; do
 		model m precision=$precision
-		says 0 "m: ok: refer.model, $precision, 1 gaussians, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+		says 0 "m: ok: refer.model, $precision, 1 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 		[ "$("$BIN/gs-check" --json m | jq -r .precision)" = $precision ]
 	done
 	bad "metadata 'precision' is 'u4'" precision=u4
@@ -112,9 +112,57 @@ bad() {
 	bad "tensor 'features': item 2 is not finite" precision=f16 features_item=2:007c
 }
 
+# leaves ITEM... -- ARGUMENT...: a model of cubes, whose location codes are ITEM (one byte each, in hexadecimal).
+leaves() {
+	local -a codes=() args=()
+	while [ "$1" != -- ]; do
+		codes+=("$1")
+		shift
+	done
+	shift
+	model m without=ids leaves="[${#codes[@]}]" features="[${#codes[@]},16]" root='[[-1,0,2.5],4]' "$@"
+	local at=$((8 + $(od -An -t u8 -N 8 m)))
+	for code in "${codes[@]}"; do
+		printf %s "$code" | xxd -r -p | dd of=m bs=1 seek=$at conv=notrunc status=none
+		at=$((at + 8))
+	done
+}
+
+@test "cubes that share a row" {
+	leaves 01 --
+	says 0 "m: ok: refer.model, f32, 1 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	leaves 08 09 0f --
+	says 0 "m: ok: refer.model, f32, 3 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	leaves 40 09 0f --
+	says 0 "m: ok: refer.model, f32, 3 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	leaves -- gaussians=0
+	says 0 "m: ok: refer.model, f32, 0 features, 0 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	local reason="is not a leaf after the one before"
+	leaves 00 --
+	says 1 "m: tensor 'leaves': item 0 $reason" "$BIN/gs-check" m
+	leaves 08 02 --
+	says 1 "m: tensor 'leaves': item 1 $reason" "$BIN/gs-check" m
+	leaves 09 08 --
+	says 1 "m: tensor 'leaves': item 1 $reason" "$BIN/gs-check" m
+	leaves 08 41 --
+	says 1 "m: tensor 'leaves': item 1 $reason" "$BIN/gs-check" m
+	leaves 01 -- leaves_type=F64
+	says 1 "m: tensor 'leaves': is F64[1], expected I64[*]" "$BIN/gs-check" m
+	leaves 01 -- features='[2,16]'
+	says 1 "m: tensor 'features': is F32[2,16], expected F32[1,16]" "$BIN/gs-check" m
+	for root in '' '[[1,2,3]]' '[[1,2,3],4]]' '[[1,2,x],4]'; do
+		leaves 01 -- "root=$root"
+		says 1 "m: metadata 'root' is not a corner and an edge" "$BIN/gs-check" m
+	done
+	for root in '[[1,2,3],0]' '[[1,2,3],-1]' '[[nan,2,3],1]' '[[1,2,3],inf]'; do
+		leaves 01 -- "root=$root"
+		says 1 "m: metadata 'root' is not finite with an edge above 0" "$BIN/gs-check" m
+	done
+}
+
 @test "it may be of no Gaussian, and then answers nothing" {
 	model m ids='[0]' features='[0,16]' gaussians=1 interaction=none
-	says 0 "m: ok: refer.model, f32, 0 gaussians, 1 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	says 0 "m: ok: refer.model, f32, 0 features, 1 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 	scene scene
 	header='{"__metadata__":{"format":"refer.text","version":"1","refs":"[\"r1\"]","objects":"[\"cup\"]","texts":"[\"cup\"]","splits":"[\"test\"]"},"offsets":{"dtype":"I64","shape":[2],"data_offsets":[0,16]},"words":{"dtype":"F32","shape":[1,1],"data_offsets":[16,20]},"sentences":{"dtype":"F32","shape":[1,1],"data_offsets":[20,24]}}'
 	while (((8 + ${#header}) % 8)); do header+=' '; done

@@ -102,7 +102,10 @@ static void test_bounds(void)
 	CHECK(low[0] == 5 && high[0] == 494, "x: %g to %g", low[0], high[0]);
 	CHECK(low[1] == -494 && high[1] == -5, "y: %g to %g", low[1], high[1]);
 	CHECK(low[2] == 3 && high[2] == 5, "z is widened: %g to %g", low[2], high[2]);
-	train_positions(means, ids, N, low, high, position);
+	struct rows rows;
+	CHECK(!rows_of_ids(&rows, ids, N, N, &e) && !rows_positions(&rows, means, low, high, position, &e),
+		"%s", e.message);
+	rows_free(&rows);
 	for (int i = 0; i < N; i++) {
 		double x = fmax(-1, fmin(1, 2 * ((double)means[3 * i] - 5) / 489 - 1));
 		CHECK(fabs((double)position[3 * i] - x) < 1e-6, "position of %d is %g, not %g", i,
@@ -112,7 +115,10 @@ static void test_bounds(void)
 	/* Only the Gaussians that learn count. */
 	CHECK(!train_bounds(means, ids + 100, 1, low, high, &e) && low[1] == -101 && high[1] == -99,
 		"y of one: %g to %g", low[1], high[1]);
-	train_positions(means, ids + 100, 1, low, high, position);
+	CHECK(!rows_of_ids(&rows, ids + 100, 1, N, &e) &&
+			!rows_positions(&rows, means, low, high, position, &e),
+		"%s", e.message);
+	rows_free(&rows);
 	CHECK(position[0] == 0 && position[1] == 0, "one Gaussian is in the middle");
 }
 
@@ -158,8 +164,8 @@ static void test_order(void)
 
 		for (int v = 0; v < COUNTS; v++)
 			groups += (uint32_t)((counts[v] + batch - 1) / batch);
-		CHECK(!train_order_init(&o, views, COUNTS, batch, 9, &e), "%s", e.message);
-		CHECK(!train_order_init(&other, views, COUNTS, batch, 9, &e), "%s", e.message);
+		CHECK(!train_order_init(&o, views, COUNTS, batch, 20, 0, 9, &e), "%s", e.message);
+		CHECK(!train_order_init(&other, views, COUNTS, batch, 20, 0, 9, &e), "%s", e.message);
 		CHECK(o.groups == groups, "batch %d: %u groups", batch, o.groups);
 		for (long epoch = 0; epoch < 5; epoch++)
 			check_epoch(&o, counts, batch, epoch * (long)groups);
@@ -380,7 +386,7 @@ static void sample_init(struct sample *s)
 static int start(struct trainer *t, const struct sample *s, const struct trainer_options *o)
 {
 	const struct trainer_source source = {
-		s->means, GAUSSIANS, 8, 2, s->offsets, s->words, s->objects, s->views, VIEWS, PIXELS};
+		s->means, NULL, GAUSSIANS, 8, 2, s->offsets, s->words, s->objects, s->views, VIEWS, PIXELS};
 	struct err e;
 
 	return CHECK(!trainer_init(t, &source, o, &e), "%s", e.message);
@@ -448,7 +454,7 @@ static void test_no_weight(void)
 	for (int v = 0; v < VIEWS; v++)
 		memset(s.random[v].weight, 0, sizeof s.random[v].weight);
 	const struct trainer_source source = {
-		s.means, GAUSSIANS, 8, 2, s.offsets, s.words, s.objects, s.views, VIEWS, PIXELS};
+		s.means, NULL, GAUSSIANS, 8, 2, s.offsets, s.words, s.objects, s.views, VIEWS, PIXELS};
 	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
 }
 
