@@ -5,7 +5,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -124,7 +123,7 @@ void file_unmap(struct file_map *map)
 /* The temporary files there are. The names stay where they are for good, so that a signal's handler can read
  * them at any time, on any thread. */
 static struct {
-	atomic_int state;
+	int state; /* by atomic operations only */
 	char name[PATH_MAX];
 } temporaries[FILE_OUT_MOST];
 
@@ -137,18 +136,19 @@ static int make_temporary(struct file_out *out, const char *path, struct err *e)
 	for (int i = 0; i < FILE_OUT_MOST; i++) {
 		int free_now = FREE;
 		char *name = temporaries[i].name;
-		if (!atomic_compare_exchange_strong(&temporaries[i].state, &free_now, TAKEN))
+		if (!__atomic_compare_exchange_n(
+			    &temporaries[i].state, &free_now, TAKEN, 0, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
 			continue;
 		if (snprintf(name, PATH_MAX, "%s.tmp.XXXXXX", path) >= PATH_MAX) {
-			atomic_store(&temporaries[i].state, FREE);
+			__atomic_store_n(&temporaries[i].state, FREE, __ATOMIC_SEQ_CST);
 			errno = ENAMETOOLONG;
 			return err_errno(e, "%s", path);
 		}
-		atomic_store(&temporaries[i].state, NAMED);
+		__atomic_store_n(&temporaries[i].state, NAMED, __ATOMIC_SEQ_CST);
 		int fd = mkstemp(name);
 		if (fd < 0) {
 			err_errno(e, "%s", path);
-			atomic_store(&temporaries[i].state, FREE);
+			__atomic_store_n(&temporaries[i].state, FREE, __ATOMIC_SEQ_CST);
 		} else {
 			out->temporary = name;
 		}
@@ -162,14 +162,14 @@ static void forget_temporary(struct file_out *out)
 {
 	for (int i = 0; i < FILE_OUT_MOST; i++)
 		if (out->temporary == temporaries[i].name)
-			atomic_store(&temporaries[i].state, FREE);
+			__atomic_store_n(&temporaries[i].state, FREE, __ATOMIC_SEQ_CST);
 	out->temporary = NULL;
 }
 
 void file_out_remove_all(void)
 {
 	for (int i = 0; i < FILE_OUT_MOST; i++)
-		if (atomic_load(&temporaries[i].state) == NAMED)
+		if (__atomic_load_n(&temporaries[i].state, __ATOMIC_SEQ_CST) == NAMED)
 			unlink(temporaries[i].name);
 }
 
