@@ -54,12 +54,14 @@ no_longer_than() {
 @test "the rooms of libcommon include only base, and the rooms below them" {
 	# What each room may include besides itself.
 	declare -A below=([base]= [cli]=base [geom]=base [mask]=base [nn]=base [splat]='base|geom'
-		[refer]='base|mask|nn|splat' [synth]='base|geom|mask|splat')
+		[refer]='base|geom|mask|nn|splat' [synth]='base|geom|mask|splat')
 	for dir in libcommon/*/; do
 		room=$(basename "$dir")
 		[ -n "${below[$room]+set}" ] || { echo "unknown room: $room"; return 1; }
-		! grep -rnE --include='*.[ch]' '^[[:space:]]*#[[:space:]]*include[[:space:]]+"' "$dir" |
-			grep -vE "include[[:space:]]+\"($room${below[$room]:+|${below[$room]}})/"
+		if grep -rnE --include='*.[ch]' '^[[:space:]]*#[[:space:]]*include[[:space:]]+"' "$dir" |
+			grep -vE "include[[:space:]]+\"($room${below[$room]:+|${below[$room]}})/"; then
+			return 1
+		fi
 	done
 }
 
