@@ -22,42 +22,67 @@ static int in_split(const struct camera *c, int split)
 	return split == WEIGH_ALL || c->split == (split == WEIGH_TEST ? SPLIT_TEST : SPLIT_TRAIN);
 }
 
+/* Memory that one view after the other uses: a view's weights take a hundred megabytes. */
+struct room {
+	struct render_view *view;
+	struct render_weights rendered;
+	float *dropped;
+	size_t dropped_room;
+};
+
+static void room_free(struct room *room)
+{
+	render_free(room->view);
+	render_weights_free(&room->rendered);
+	free(room->dropped);
+}
+
+static int render(struct room *room, const struct splats *s, const struct camera *c, const struct options *o,
+	struct err *e)
+{
+	size_t pixels = (size_t)c->width * (size_t)c->height;
+
+	if (mem_room((void **)&room->dropped, &room->dropped_room, pixels, sizeof *room->dropped, "weights",
+		    e))
+		return -1;
+	memset(room->dropped, 0, pixels * sizeof *room->dropped);
+	if (room->view ? render_again(room->view, s, c, e) : !(room->view = render_prepare(s, c, e)))
+		return -1;
+	if (render_weights_again(room->view, &room->rendered, e))
+		return -1;
+	if (o->tolerance > 0 && prune_weights(&room->rendered, pixels, o->tolerance, room->dropped, e))
+		return -1;
+	if (o->precision == PRECISION_U8)
+		prune_below(&room->rendered, pixels, WEIGHTS_U8_LEAST, room->dropped);
+	return 0;
+}
+
 static int weigh_view(const struct cli *cli, const struct scene *s, const struct camera *full,
-	const struct options *o, struct err *e)
+	const struct options *o, struct room *room, struct err *e)
 {
 	double start = cli_seconds();
-	struct render_weights rendered = {0};
 	int width, height;
 
 	camera_scaled_size(full, o->scale, &width, &height);
 	struct camera camera = camera_resize(full, width, height);
+	if (render(room, &s->splats, &camera, o, e))
+		return -1;
+	double ms = 1e3 * (cli_seconds() - start);
+	struct weights w = {.width = width,
+		.height = height,
+		.gaussians = (int64_t)s->splats.n,
+		.indptr = room->rendered.indptr,
+		.index = room->rendered.index,
+		.weight = room->rendered.weight,
+		.dropped = room->dropped,
+		.precision = (enum precision)o->precision};
+	if (weights_write(&w, cli->output, full->name, o->text, e))
+		return -1;
 	size_t pixels = (size_t)width * (size_t)height;
-	float *dropped = mem_zalloc(pixels, sizeof *dropped, "weights", e);
-	struct render_view *view = dropped ? render_prepare(&s->splats, &camera, e) : NULL;
-	int bad = !view || render_weights(view, &rendered, e);
-	render_free(view);
-	if (!bad && o->tolerance > 0)
-		bad = prune_weights(&rendered, pixels, o->tolerance, dropped, e);
-	if (!bad && o->precision == PRECISION_U8)
-		prune_below(&rendered, pixels, WEIGHTS_U8_LEAST, dropped);
-	if (!bad) {
-		double ms = 1e3 * (cli_seconds() - start);
-		struct weights w = {.width = width,
-			.height = height,
-			.gaussians = (int64_t)s->splats.n,
-			.indptr = rendered.indptr,
-			.index = rendered.index,
-			.weight = rendered.weight,
-			.dropped = dropped,
-			.precision = (enum precision)o->precision};
-		bad = weights_write(&w, cli->output, full->name, o->text, e);
-		double nnz = (double)rendered.indptr[pixels];
-		cli_note(cli, 1, "%s: %dx%d, %.0f weights, %.1f a pixel, %.1f ms", full->name, width, height,
-			nnz, nnz / (double)pixels, ms);
-	}
-	render_weights_free(&rendered);
-	free(dropped);
-	return bad ? -1 : 0;
+	double nnz = (double)w.indptr[pixels];
+	cli_note(cli, 1, "%s: %dx%d, %.0f weights, %.1f a pixel, %.1f ms", full->name, width, height, nnz,
+		nnz / (double)pixels, ms);
+	return 0;
 }
 
 static int weigh_scene(const struct cli *cli, const struct scene *s, const struct options *o, struct err *e)
@@ -65,6 +90,7 @@ static int weigh_scene(const struct cli *cli, const struct scene *s, const struc
 	static const char *const names[] = {"train", "test", "all"};
 	size_t views = 0, done = 0;
 	struct cli_progress progress;
+	struct room room = {0};
 	int bad = 0;
 
 	for (size_t i = 0; i < s->cameras.n; i++)
@@ -79,10 +105,11 @@ static int weigh_scene(const struct cli *cli, const struct scene *s, const struc
 		const struct camera *view = &s->cameras.views[i];
 		if (!in_split(view, o->split))
 			continue;
-		bad = weigh_view(cli, s, view, o, e);
+		bad = weigh_view(cli, s, view, o, &room, e);
 		cli_progress_step(&progress, (double)++done, view->name);
 	}
 	cli_progress_end(&progress);
+	room_free(&room);
 	return bad;
 }
 

@@ -54,6 +54,13 @@ static const struct cli_tool tool = {.name = "refer-render",
 	.options = table,
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT};
 
+/* A view's records, until those of the views before it are written. */
+struct records {
+	FILE *stream;
+	char *text;
+	size_t length;
+};
+
 /* What is rendered from. */
 struct run {
 	struct scene scene;
@@ -61,11 +68,12 @@ struct run {
 	struct model model;
 	struct rows rows; /* of the model, in the scene */
 	size_t ref_count, view_count;
-	char *chosen; /* of the views, then of the sentences: which a list names */
-	size_t *refs; /* indices in text */
-	const struct camera **views;
-	float *responses; /* (ref_count,N), as render_pack has them */
-	double *lifts;	  /* (ref_count) */
+	char *chosen;		 /* of the views, then of the sentences: which a list names */
+	size_t *refs;		 /* indices in text */
+	struct camera *views;	 /* at the size of the masks */
+	float *responses;	 /* (ref_count,N), as render_pack has them */
+	double *lifts;		 /* (ref_count) */
+	struct records *records; /* (view_count) */
 	struct file_out out;
 	struct cli_progress progress;
 };
@@ -81,10 +89,18 @@ static int choose_views(struct run *r, const struct cli *c, struct err *e)
 		return -1;
 	if (options.views && cameras_mark(from, options.views, r->chosen, &name))
 		cli_usage(c, "--views: no view '%.*s'", (int)name.length, name.text);
-	for (size_t i = 0; i < from->n; i++)
-		if (options.views ? r->chosen[i]
-				  : options.split == SPLIT_ALL || (int)from->views[i].split == options.split)
-			r->views[r->view_count++] = &from->views[i];
+	for (size_t i = 0; i < from->n; i++) {
+		const struct camera *view = &from->views[i];
+		int width = options.size[0], height = options.size[1];
+		if (options.views ? !r->chosen[i]
+				  : options.split != SPLIT_ALL && (int)view->split != options.split)
+			continue;
+		if (!width)
+			camera_scaled_size(view, options.scale ? options.scale : 1, &width, &height);
+		if (rle_check_size(height, width, e))
+			return err_prefix(e, view->name);
+		r->views[r->view_count++] = camera_resize(view, width, height);
+	}
 	return 0;
 }
 
@@ -127,45 +143,54 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 		cli_warn(c, "%s: no sentence in this split", file_name(options.text));
 	r->responses = mem_alloc(r->ref_count, r->scene.splats.n * sizeof(float), "responses", e);
 	r->lifts = mem_zalloc(r->ref_count, sizeof *r->lifts, "responses", e);
-	if (!r->responses || !r->lifts)
-		return -1;
-	if (model_rows(&r->model, r->scene.splats.means, &r->rows, e))
+	if (!r->responses || !r->lifts || model_rows(&r->model, r->scene.splats.means, &r->rows, e))
 		return -1;
 	const struct respond_model m = {&r->model.layout, r->model.similarity, &r->rows, r->model.features,
 		r->model.parameters, r->scene.splats.means, r->model.low, r->model.high};
 	if (respond_all(&m, r->text.offsets, r->text.words, r->refs, r->ref_count, r->responses, e) ||
 		render_pack(r->responses, r->scene.splats.n, (int)r->ref_count, e))
 		return -1;
-	if (!options.is_plain)
-		return calibrate(&r->scene.splats, &r->scene.cameras, &r->rows, r->responses, r->ref_count,
-			r->lifts, e);
-	return 0;
+	return options.is_plain ? 0
+				: calibrate(&r->scene.splats, &r->scene.cameras, &r->rows, r->responses,
+					  r->ref_count, r->lifts, e);
 }
 
 /* One mask: its record and pictures. */
-static int put_mask(void *data, const struct answer *a, FILE *out, struct err *e)
+static int put_mask(void *data, const struct answer *a, struct err *e)
 {
 	const struct run *r = data;
+	struct records *to = &r->records[a->view];
 	const size_t sentence = r->refs[a->sentence];
 	const struct camera *c = a->camera;
-	struct mask_record record = {.view = c->name,
-		.ref = r->text.refs[sentence],
-		.object = r->text.objects[sentence],
-		.score = a->score};
+	struct mask_record record = {
+		c->name, r->text.refs[sentence], r->text.objects[sentence], a->score, {0}};
 	const struct picture picture = {c->name, record.ref, c->height, c->width, a->image, a->mask, a->rgb};
-	int bad = rle_encode(&record.mask, a->mask, c->height, c->width, e) || masks_put(out, &record, e) ||
-		  pictures_put(&options.pictures, &picture, e);
+
+	if (!to->stream && !(to->stream = open_memstream(&to->text, &to->length)))
+		return err_errno(e, "records");
+	int bad = rle_encode(&record.mask, a->mask, c->height, c->width, e) ||
+		  masks_put(to->stream, &record, e) || pictures_put(&options.pictures, &picture, e);
 
 	rle_free(&record.mask);
 	return bad ? -1 : 0;
 }
 
-static void put_view(void *data, size_t view, const char *records)
+static int put_view(void *data, size_t view, struct err *e)
 {
 	struct run *r = data;
+	struct records *from = &r->records[view];
+	int bad = 0;
 
-	fputs(records, r->out.stream);
+	if (from->stream) {
+		if (fclose(from->stream))
+			bad = err_errno(e, "records");
+		else
+			fwrite(from->text, 1, from->length, r->out.stream);
+		free(from->text);
+		*from = (struct records){0};
+	}
 	cli_progress_step(&r->progress, (double)view + 1, NULL);
+	return bad;
 }
 
 static int render(struct run *r, struct err *e)
@@ -173,20 +198,15 @@ static int render(struct run *r, struct err *e)
 	const struct answer_question q = {
 		&r->scene.splats, r->responses, r->lifts, r->ref_count, options.pictures.overlays != NULL};
 	const struct answer_calls calls = {r, put_mask, put_view};
-	struct camera *cameras = mem_alloc(r->view_count, sizeof *cameras, "views", e);
-	int bad = cameras ? 0 : -1;
 
-	for (size_t i = 0; i < r->view_count && !bad; i++) {
-		int width = options.size[0], height = options.size[1];
-		if (!width)
-			camera_scaled_size(r->views[i], options.scale ? options.scale : 1, &width, &height);
-		bad = rle_check_size(height, width, e);
-		if (bad)
-			err_prefix(e, r->views[i]->name);
-		cameras[i] = camera_resize(r->views[i], width, height);
+	r->records = mem_zalloc(r->view_count, sizeof *r->records, "records", e);
+	int bad = !r->records || answer_all(&q, r->views, r->view_count, &calls, e) ? -1 : 0;
+	for (size_t i = 0; r->records && i < r->view_count; i++) {
+		if (r->records[i].stream)
+			fclose(r->records[i].stream);
+		free(r->records[i].text);
 	}
-	bad = bad || answer_all(&q, cameras, r->view_count, &calls, e) ? -1 : 0;
-	free(cameras);
+	free(r->records);
 	return bad;
 }
 

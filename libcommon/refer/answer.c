@@ -51,7 +51,7 @@ static int prepare(struct room *room, const struct answer_question *q, const str
 }
 
 static int answer_view(struct room *room, const struct answer_question *q, const struct camera *c,
-	const struct answer_calls *calls, FILE *records, struct err *e)
+	size_t view, const struct answer_calls *calls, struct err *e)
 {
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 	size_t images;
@@ -72,80 +72,61 @@ static int answer_view(struct room *room, const struct answer_question *q, const
 		for (size_t i = 0; i < now; i++) {
 			const float *image = room->images + i * pixels;
 			const struct answer a = {.camera = c,
+				.view = view,
 				.sentence = first + i,
 				.image = image,
 				.mask = room->mask,
 				.rgb = q->wants_rgb ? room->rgb : NULL,
 				.score = respond_mask(image, pixels, q->lifts[first + i], room->mask)};
-			if (calls->each(calls->data, &a, records, e))
+			if (calls->each(calls->data, &a, e))
 				return -1;
 		}
 	}
 	return 0;
 }
 
-/* The records of a view, which the caller frees; NULL with *e set. */
-static char *view_records(struct room *room, const struct answer_question *q, const struct camera *c,
-	const struct answer_calls *calls, struct err *e)
-{
-	char *text = NULL;
-	size_t length;
-	FILE *records = open_memstream(&text, &length);
-
-	if (!records) {
-		err_errno(e, "records");
-		return NULL;
-	}
-	int bad = answer_view(room, q, c, calls, records, e);
-	if (fclose(records) && !bad)
-		bad = err_errno(e, "records");
-	if (!bad)
-		return text;
-	free(text);
-	return NULL;
-}
-
 /* Views that wait for those before them. */
 struct queue {
-	char **texts; /* (n) */
-	size_t written;
+	const struct answer_calls *calls;
+	size_t next;
+	char *ready;   /* (n) */
 	size_t failed; /* the first view where anything went wrong; n: none */
+	struct err *e;
 };
 
-static void queue_put(struct queue *q, size_t n, size_t i, char *text, const struct answer_calls *calls)
+/* View i went well, or not for the reason *why. */
+static void queue_put(struct queue *q, size_t i, int bad, const struct err *why)
 {
-	q->texts[i] = text;
-	for (; q->written < n && q->texts[q->written]; q->written++) {
-		calls->done(calls->data, q->written, q->texts[q->written]);
-		free(q->texts[q->written]);
-		q->texts[q->written] = NULL;
+	if (bad && i < q->failed) {
+		q->failed = i;
+		*q->e = *why;
 	}
+	q->ready[i] = !bad;
+	for (struct err e; q->next < q->failed && q->ready[q->next]; q->next++)
+		if (q->calls->done(q->calls->data, q->next, &e)) {
+			q->failed = q->next;
+			*q->e = e;
+		}
 }
 
 /* Views begin to end - 1, by so many threads. */
-static void answer_some(const struct answer_question *q, const struct camera *cameras, size_t n, size_t begin,
-	size_t end, int threads, const struct answer_calls *calls, struct queue *queue, struct err *e)
+static void answer_some(struct queue *queue, const struct answer_question *q, const struct camera *cameras,
+	size_t begin, size_t end, int threads)
 {
 #pragma omp parallel num_threads(threads) if (threads > 1)
 	{
 		struct room room = {0};
 #pragma omp for schedule(dynamic)
 		for (size_t i = begin; i < end; i++) {
-			struct err mine;
+			struct err e;
 			size_t failed;
-#pragma omp atomic read
+#pragma omp critical(answer_queue)
 			failed = queue->failed;
 			if (failed < i)
 				continue;
-			char *text = view_records(&room, q, &cameras[i], calls, &mine);
+			int bad = answer_view(&room, q, &cameras[i], i, queue->calls, &e);
 #pragma omp critical(answer_queue)
-			if (text) {
-				queue_put(queue, n, i, text, calls);
-			} else if (i < queue->failed) {
-				*e = mine;
-#pragma omp atomic write
-				queue->failed = i;
-			}
+			queue_put(queue, i, bad, &e);
 		}
 		room_free(&room);
 	}
@@ -154,20 +135,18 @@ static void answer_some(const struct answer_question *q, const struct camera *ca
 int answer_all(const struct answer_question *q, const struct camera *cameras, size_t n,
 	const struct answer_calls *calls, struct err *e)
 {
-	struct queue queue = {mem_zalloc(n, sizeof *queue.texts, "records", e), 0, n};
 	const int threads = threads_available();
+	struct queue queue = {.calls = calls, .ready = mem_zalloc(n, 1, "views", e), .failed = n, .e = e};
 	double most = 0;
 
-	if (!queue.texts)
+	if (!queue.ready)
 		return -1;
 	for (size_t i = 0; i < n; i++)
 		most = fmax(most, room_bytes(q, (double)cameras[i].width * cameras[i].height));
 	/* the last ones, too few for all threads, one after the other */
 	size_t together = most * threads <= SIDE_BY_SIDE_BYTES ? n - n % (size_t)threads : 0;
-	answer_some(q, cameras, n, 0, together, threads, calls, &queue, e);
-	answer_some(q, cameras, n, together, n, 1, calls, &queue, e);
-	for (size_t i = 0; i < n; i++)
-		free(queue.texts[i]);
-	free(queue.texts);
+	answer_some(&queue, q, cameras, 0, together, threads);
+	answer_some(&queue, q, cameras, together, n, 1);
+	free(queue.ready);
 	return queue.failed < n ? -1 : 0;
 }

@@ -10,7 +10,6 @@
 
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
 /* What is asked, the same for every view. */
 struct answer_question {
@@ -24,7 +23,7 @@ struct answer_question {
 /* The answer to one sentence, row-major; good until the callback returns. */
 struct answer {
 	const struct camera *camera;
-	size_t sentence;
+	size_t view, sentence;
 	const float *image;  /* (P) M */
 	const uint8_t *mask; /* (P) M > 0 */
 	const float *rgb;    /* (P,3) the scene's colours on black, where they are wanted */
@@ -33,12 +32,11 @@ struct answer {
 
 struct answer_calls {
 	void *data;
-	/* One answer; what it puts into `records` is that view's text. Called by several threads at once, but
-	 * for a view by one, sentence after sentence. Returns 0, or -1 with *e set. */
-	int (*each)(void *data, const struct answer *a, FILE *records, struct err *e);
-	/* A view is done: called for one after the other, in order. */
-	void (*done)(void *data, size_t view, const char *records);
-};
+	/* One answer. Called by several threads at once, but for a view by one, sentence after sentence. */
+	int (*each)(void *data, const struct answer *a, struct err *e);
+	/* All of a view's answers were given: called for one view after the other, in order. */
+	int (*done)(void *data, size_t view, struct err *e);
+}; /* both return 0, or -1 with *e set */
 
 /* Answers in n views. Each is rendered by a thread of its own, where there is memory for as many, as threads
  * in one view have less to share. Returns 0, or -1 with *e set by what went wrong in the first view where
