@@ -105,7 +105,7 @@ measure() {
 	[ "$knob" != batch ] || batch=$value
 	count=$((steps / batch)) shown=$((steps / batch * batch))
 	weights=$runs/$(printf '%s' "${weigh[@]}").weights
-	if [ "$(cat "$weights/build" 2>/dev/null)" != "$build" ]; then
+	if ! is_of "$weights/build" "$build"; then
 		rm -rf "$weights"
 		logged "$weights.log" gs-weigh "${weigh[@]}" -o "$weights" "$dir/scene" && echo "$build" >"$weights/build" || return
 	fi
@@ -217,6 +217,7 @@ plots() {
 }
 
 heading "knobs: speed against accuracy, scene $scene"
+need_encoder
 setup || die "the scene could not be made"
 build=$(build_sum)
 measure_all

@@ -11,7 +11,8 @@
 #	                                                they come), points, dashed (a line without markers)
 #	#ref    Y  TEXT                                 a level to compare with
 #	#xref   X  TEXT
-# Series are drawn, coloured and listed in the order in which they first appear.
+# Series are drawn, coloured and listed in the order in which a point or a #style first names them; one without points has
+# its colour, so that several plots can agree, and is not listed.
 BEGIN {
 	FS = "\t"
 	left = 82; top = 64; plot_w = 560; plot_h = 360; bottom = 64
@@ -21,20 +22,25 @@ BEGIN {
 }
 
 /^#/ {
-	if ($1 == "#style") style[$2] = $3
+	if ($1 == "#style") { style[$2] = $3; number($2) }
 	else if ($1 == "#ref" || $1 == "#xref") { refs++; ref_axis[refs] = $1 == "#ref" ? "y" : "x"; ref_at[refs] = $2 + 0; ref_text[refs] = $3 }
 	else set[substr($1, 2)] = NF > 1 ? $2 : 1
 	next
 }
 
 NF >= 3 {
-	if (!($1 in index_of)) { index_of[$1] = ++series; name[series] = $1 }
 	n++
-	of[n] = index_of[$1]; x[n] = $2 + 0; y[n] = $3 + 0
+	of[n] = number($1); x[n] = $2 + 0; y[n] = $3 + 0
 	y_low[n] = $4 == "" ? y[n] : $4 + 0; y_high[n] = $5 == "" ? y[n] : $5 + 0
 	x_low[n] = $6 == "" ? x[n] : $6 + 0; x_high[n] = $7 == "" ? x[n] : $7 + 0
 	label[n] = $8
 	if (("xlog" in set && x_low[n] <= 0) || ("ylog" in set && y_low[n] <= 0)) n--
+}
+
+# A series' number; a new one gets the next.
+function number(s) {
+	if (!(s in index_of)) { index_of[s] = ++series; name[series] = s }
+	return index_of[s]
 }
 
 function escape(s) { gsub(/&/, "\\&amp;", s); gsub(/</, "\\&lt;", s); gsub(/>/, "\\&gt;", s); return s }
@@ -237,10 +243,10 @@ function draw_line(s, count, i, ink, a, b) {
 }
 
 function draw_legend(s, py, px) {
-	if (series < 2) return
-	px = left + plot_w + 22
+	px = left + plot_w + 22; py = top - 11
 	for (s = 1; s <= series; s++) {
-		py = top + 10 + (s - 1) * 21
+		if (!points[s]) continue
+		py += 21
 		if (style[name[s]] != "points") segment(px, py, px + 22, py, "stroke=\"" colour[(s - 1) % colours + 1] "\" stroke-width=\"2\"" (style[name[s]] == "dashed" ? " stroke-dasharray=\"5,5\"" : ""))
 		if (style[name[s]] != "dashed") marker(s, px + 11, py)
 		text(px + 30, py + 4.5, "start", name[s], "")
@@ -249,9 +255,9 @@ function draw_legend(s, py, px) {
 
 END {
 	if (!n) { print "plot.awk: no points" >"/dev/stderr"; exit 1 }
-	longest = 0
-	for (s = 1; s <= series; s++) longest = max(longest, length(name[s]))
-	width = left + plot_w + (series > 1 ? 22 + 30 + longest * char_w + 14 : 28)
+	longest = listed = 0
+	for (i = 1; i <= n; i++) if (!points[of[i]]++) { listed++; longest = max(longest, length(name[of[i]])) }
+	width = left + plot_w + (listed > 1 ? 22 + 30 + longest * char_w + 14 : 28)
 	width = max(width, left + max(length(set["title"]) * 9.6, length(set["note"]) * small_w) + 14)
 	height = top + plot_h + bottom
 	bounds()
@@ -265,6 +271,6 @@ END {
 			occupy(at_x(x[i]) - 5, at_y(y[i]) - 5, at_x(x[i]) + 5, at_y(y[i]) + 5, 15)
 		}
 	for (i = 1; i <= n; i++) if (label[i] != "") place(at_x(x[i]), at_y(y[i]), label[i], colour[(of[i] - 1) % colours + 1])
-	draw_legend()
+	if (listed > 1) draw_legend()
 	print "</svg>"
 }
