@@ -186,24 +186,31 @@ function draw_axes(i, p, last) {
 	printf "<text transform=\"matrix(0,-1,1,0,24,%.1f)\" text-anchor=\"middle\">%s</text>\n", p, escape(set["ylabel"])
 }
 
-function draw_refs(i, p, w) {
-	for (i = 1; i <= refs; i++) {
-		w = length(ref_text[i]) * small_w
+function draw_refs(i, p) {
+	for (i = 1; i <= refs; i++)
 		if (ref_axis[i] == "y") {
 			p = at_y(ref_at[i])
 			segment(left, p, left + plot_w, p, "stroke=\"#777777\" stroke-width=\"1.2\" stroke-dasharray=\"7,4\"")
-			occupy(left, p - 1, left + plot_w, p + 1, 3)
-			ref_y[i] = p - 5 < top + 12 ? p + 13 : p - 5
-			text(left + plot_w - 6, ref_y[i], "end", ref_text[i], "font-size=\"" small "\" fill=\"#555555\"")
-			occupy(left + plot_w - 6 - w, ref_y[i] - 11, left + plot_w, ref_y[i] + 3, 40)
+			occupy(left, p - 1, left + plot_w, p + 1, 9)
 		} else {
 			p = at_x(ref_at[i])
 			segment(p, top, p, top + plot_h, "stroke=\"#777777\" stroke-width=\"1.2\" stroke-dasharray=\"7,4\"")
-			occupy(p - 1, top, p + 1, top + plot_h, 3)
-			if (p + 6 + w < left + plot_w) { text(p + 6, top + 14, "start", ref_text[i], "font-size=\"" small "\" fill=\"#555555\""); occupy(p, top, p + 6 + w, top + 17, 40) }
-			else { text(p - 6, top + 14, "end", ref_text[i], "font-size=\"" small "\" fill=\"#555555\""); occupy(p - 6 - w, top, p, top + 17, 40) }
+			occupy(p - 1, top, p + 1, top + plot_h, 9)
 		}
+}
+
+# Names a level at an end of its line, above or below (left or right) of it, where that covers least.
+function name_ref(i, p, w, k, x1, y1, bx, by, cost, best, end) {
+	w = length(ref_text[i]) * small_w; best = 1e9
+	p = ref_axis[i] == "y" ? at_y(ref_at[i]) : at_x(ref_at[i])
+	for (k = 0; k < 4; k++) {
+		x1 = ref_axis[i] == "y" ? (k < 2 ? left + plot_w - 6 - w : left + 6) : (k % 2 ? p - 5 - w : p + 5)
+		y1 = ref_axis[i] == "y" ? (k % 2 ? p + 3 : p - 16) : (k < 2 ? top + 3 : top + plot_h - 18)
+		cost = clash(x1, y1, x1 + w, y1 + 13) + k
+		if (cost < best) { best = cost; bx = x1; by = y1; end = ref_axis[i] == "y" ? k < 2 : k % 2 }
 	}
+	text(end ? bx + w : bx, by + 10.5, end ? "end" : "start", ref_text[i], "font-size=\"" small "\" fill=\"#555555\"")
+	occupy(bx, by, bx + w, by + 13, 40)
 }
 
 # The points of a series in order of x (equal ones, and a path's, as they came), in order[1..count].
@@ -270,6 +277,7 @@ END {
 			marker(of[i], at_x(x[i]), at_y(y[i]))
 			occupy(at_x(x[i]) - 5, at_y(y[i]) - 5, at_x(x[i]) + 5, at_y(y[i]) + 5, 15)
 		}
+	for (i = 1; i <= refs; i++) name_ref(i)
 	for (i = 1; i <= n; i++) if (label[i] != "") place(at_x(x[i]), at_y(y[i]), label[i], colour[(of[i] - 1) % colours + 1])
 	if (listed > 1) draw_legend()
 	print "</svg>"
