@@ -20,6 +20,8 @@ static const struct cli_tool tool = {
 static void print_text(const char *name, const struct check *c)
 {
 	printf("%s: ok: %s", name, c->kind);
+	if (c->precision)
+		printf(", %s", c->precision);
 	if (c->width)
 		printf(", %dx%d", c->width, c->height);
 	for (int i = 0; i < c->n; i++)
@@ -64,6 +66,8 @@ static int print_json(const char *name, const struct check *c, const char *reaso
 	cJSON_AddBoolToObject(object, "ok", c != NULL);
 	if (c) {
 		cJSON_AddStringToObject(object, "kind", c->kind);
+		if (c->precision)
+			cJSON_AddStringToObject(object, "precision", c->precision);
 		if (c->width) {
 			cJSON_AddNumberToObject(object, "width", c->width);
 			cJSON_AddNumberToObject(object, "height", c->height);

@@ -38,6 +38,8 @@ static int weigh_view(const struct cli *cli, const struct scene *s, const struct
 	render_free(view);
 	if (!bad && o->tolerance > 0)
 		bad = prune_weights(&rendered, pixels, o->tolerance, dropped, e);
+	if (!bad && o->precision == PRECISION_U8)
+		prune_below(&rendered, pixels, WEIGHTS_U8_LEAST, dropped);
 	if (!bad) {
 		double ms = 1e3 * (cli_seconds() - start);
 		struct weights w = {.width = width,
@@ -46,8 +48,9 @@ static int weigh_view(const struct cli *cli, const struct scene *s, const struct
 			.indptr = rendered.indptr,
 			.index = rendered.index,
 			.weight = rendered.weight,
-			.dropped = dropped};
-		bad = weights_write(&w, cli->output, full->name, o->precision, o->text, e);
+			.dropped = dropped,
+			.precision = (enum precision)o->precision};
+		bad = weights_write(&w, cli->output, full->name, o->text, e);
 		double nnz = (double)rendered.indptr[pixels];
 		cli_note(cli, 1, "%s: %dx%d, %.0f weights, %.1f a pixel, %.1f ms", full->name, width, height,
 			nnz, nnz / (double)pixels, ms);
@@ -94,8 +97,8 @@ int main(int argc, char **argv)
 		{"tolerance", 0, CLI_REAL, &o.tolerance, "T",
 			"leave out the smallest weights of a pixel, up to this share of its weight (default 0)",
 			0, 0.999},
-		{"precision", 0, CLI_CHOICE, &o.precision, "f32|f16", "how weights are stored (default f32)",
-			0, 0},
+		{"precision", 0, CLI_CHOICE, &o.precision, PRECISION_CHOICES,
+			"how weights are stored (default f32)", 0, 0},
 		{0},
 	};
 	const struct cli_tool tool = {.name = "gs-weigh",
@@ -116,7 +119,7 @@ int main(int argc, char **argv)
 	if (!strcmp(cli.output, "-"))
 		cli_usage(&cli, "--output: weights go to a folder, not to stdout");
 	snprintf(o.text, sizeof o.text, "--scale %.15g --tolerance %.15g --precision %s", o.scale,
-		o.tolerance, o.precision ? "f16" : "f32");
+		o.tolerance, precision_name((enum precision)o.precision));
 	if (scene_read(&scene, cli.operands[0], &e))
 		return cli_fail(&cli, &e);
 	int bad = weigh_scene(&cli, &scene, &o, &e);

@@ -7,6 +7,7 @@
 #include "formats/pictures.h"
 #include "formats/scene.h"
 #include "formats/text.h"
+#include "refer/answer.h"
 #include "refer/calibrate.h"
 #include "refer/respond.h"
 #include "splat/render.h"
@@ -14,10 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-	SPLIT_ALL = 2,
-	TOGETHER = 32, /* sentences whose images are in memory at a time */
-};
+enum { SPLIT_ALL = 2 };
 
 static struct {
 	const char *scene, *text, *model, *views, *refs;
@@ -61,13 +59,15 @@ struct run {
 	struct scene scene;
 	struct text text;
 	struct model model;
+	struct rows rows; /* of the model, in the scene */
 	size_t ref_count, view_count;
 	char *chosen; /* of the views, then of the sentences: which a list names */
 	size_t *refs; /* indices in text */
 	const struct camera **views;
-	float *responses; /* (ref_count,N) */
+	float *responses; /* (ref_count,N), as render_pack has them */
 	double *lifts;	  /* (ref_count) */
 	struct file_out out;
+	struct cli_progress progress;
 };
 
 static int choose_views(struct run *r, const struct cli *c, struct err *e)
@@ -129,92 +129,74 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 	r->lifts = mem_zalloc(r->ref_count, sizeof *r->lifts, "responses", e);
 	if (!r->responses || !r->lifts)
 		return -1;
-	const struct respond_model m = {&r->model.layout, r->model.similarity, r->model.scene_gaussians,
-		r->model.n, r->model.ids, r->model.features, r->model.parameters, r->scene.splats.means,
-		r->model.low, r->model.high};
-	if (respond_all(&m, r->text.offsets, r->text.words, r->refs, r->ref_count, r->responses, e))
+	if (model_rows(&r->model, r->scene.splats.means, &r->rows, e))
+		return -1;
+	const struct respond_model m = {&r->model.layout, r->model.similarity, &r->rows, r->model.features,
+		r->model.parameters, r->scene.splats.means, r->model.low, r->model.high};
+	if (respond_all(&m, r->text.offsets, r->text.words, r->refs, r->ref_count, r->responses, e) ||
+		render_pack(r->responses, r->scene.splats.n, (int)r->ref_count, e))
 		return -1;
 	if (!options.is_plain)
-		return calibrate(&r->scene.splats, &r->scene.cameras, r->model.ids, r->model.n, r->responses,
-			r->ref_count, r->lifts, e);
+		return calibrate(&r->scene.splats, &r->scene.cameras, &r->rows, r->responses, r->ref_count,
+			r->lifts, e);
 	return 0;
 }
 
 /* One mask: its record and pictures. */
-static int put_mask(struct run *r, const struct camera *c, size_t ref, const float *image, const float *rgb,
-	struct err *e)
+static int put_mask(void *data, const struct answer *a, FILE *out, struct err *e)
 {
-	const size_t sentence = r->refs[ref];
-	const size_t pixels = (size_t)c->width * (size_t)c->height;
-	uint8_t *mask = mem_alloc(pixels, 1, "mask", e);
-	struct mask_record record = {
-		.view = c->name, .ref = r->text.refs[sentence], .object = r->text.objects[sentence]};
-	const struct picture picture = {c->name, record.ref, c->height, c->width, image, mask, rgb};
+	const struct run *r = data;
+	const size_t sentence = r->refs[a->sentence];
+	const struct camera *c = a->camera;
+	struct mask_record record = {.view = c->name,
+		.ref = r->text.refs[sentence],
+		.object = r->text.objects[sentence],
+		.score = a->score};
+	const struct picture picture = {c->name, record.ref, c->height, c->width, a->image, a->mask, a->rgb};
+	int bad = rle_encode(&record.mask, a->mask, c->height, c->width, e) || masks_put(out, &record, e) ||
+		  pictures_put(&options.pictures, &picture, e);
 
-	if (!mask)
-		return -1;
-	record.score = respond_mask(image, pixels, r->lifts[ref], mask);
-	int bad = rle_encode(&record.mask, mask, c->height, c->width, e) ||
-		  masks_put(r->out.stream, &record, e) || pictures_put(&options.pictures, &picture, e);
 	rle_free(&record.mask);
-	free(mask);
 	return bad ? -1 : 0;
 }
 
-/* The view's colours (P,3), for overlays. */
-static float *render_rgb(
-	const struct run *r, const struct render_view *v, const struct camera *c, struct err *e)
+static void put_view(void *data, size_t view, const char *records)
 {
-	float *rgb = mem_alloc((size_t)c->width * (size_t)c->height, 3 * sizeof *rgb, "colours", e);
+	struct run *r = data;
 
-	if (!rgb || !render_colors(v, &r->scene.splats, c, (const float[3]){0}, rgb, e))
-		return rgb;
-	free(rgb);
-	return NULL;
+	fputs(records, r->out.stream);
+	cli_progress_step(&r->progress, (double)view + 1, NULL);
 }
 
-static int render(struct run *r, const struct camera *view, struct err *e)
+static int render(struct run *r, struct err *e)
 {
-	int width = options.size[0], height = options.size[1], bad = -1;
+	const struct answer_question q = {
+		&r->scene.splats, r->responses, r->lifts, r->ref_count, options.pictures.overlays != NULL};
+	const struct answer_calls calls = {r, put_mask, put_view};
+	struct camera *cameras = mem_alloc(r->view_count, sizeof *cameras, "views", e);
+	int bad = cameras ? 0 : -1;
 
-	if (!width)
-		camera_scaled_size(view, options.scale ? options.scale : 1, &width, &height);
-	if (rle_check_size(height, width, e))
-		return err_prefix(e, view->name);
-	const struct camera c = camera_resize(view, width, height);
-	const size_t pixels = (size_t)width * (size_t)height,
-		     most = r->ref_count < TOGETHER ? r->ref_count : TOGETHER;
-	struct render_view *v = render_prepare(&r->scene.splats, &c, e);
-	float *image = v ? mem_alloc(most, pixels * sizeof *image, "images", e) : NULL;
-	float *rgb = image && options.pictures.overlays ? render_rgb(r, v, &c, e) : NULL;
-
-	if (image && (rgb || !options.pictures.overlays))
-		bad = 0;
-	for (size_t first = 0; first < r->ref_count && !bad; first += most) {
-		const size_t now = r->ref_count - first < most ? r->ref_count - first : most;
-		bad = render_values(v, r->responses + first * r->scene.splats.n, (int)now, image, NULL, e);
-		for (size_t i = 0; i < now && !bad; i++)
-			bad = put_mask(r, &c, first + i, image + i * pixels, rgb, e);
+	for (size_t i = 0; i < r->view_count && !bad; i++) {
+		int width = options.size[0], height = options.size[1];
+		if (!width)
+			camera_scaled_size(r->views[i], options.scale ? options.scale : 1, &width, &height);
+		bad = rle_check_size(height, width, e);
+		if (bad)
+			err_prefix(e, r->views[i]->name);
+		cameras[i] = camera_resize(r->views[i], width, height);
 	}
-	render_free(v);
-	free(image);
-	free(rgb);
+	bad = bad || answer_all(&q, cameras, r->view_count, &calls, e) ? -1 : 0;
+	free(cameras);
 	return bad;
 }
 
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
-	struct cli_progress progress;
-	int bad = 0;
-
 	if (load(r, c, e) || file_out_open(&r->out, c->output, e))
 		return -1;
-	cli_progress_start(&progress, c, "views", (double)r->view_count);
-	for (size_t i = 0; i < r->view_count && !bad; i++) {
-		bad = render(r, r->views[i], e);
-		cli_progress_step(&progress, (double)i + 1, NULL);
-	}
-	cli_progress_end(&progress);
+	cli_progress_start(&r->progress, c, "views", (double)r->view_count);
+	int bad = render(r, e);
+	cli_progress_end(&r->progress);
 	if (!bad)
 		return file_out_commit(&r->out, e);
 	file_out_abort(&r->out);
@@ -238,6 +220,7 @@ int main(int argc, char **argv)
 	scene_free(&r.scene);
 	text_free(&r.text);
 	model_free(&r.model);
+	rows_free(&r.rows);
 	free(r.chosen);
 	free(r.refs);
 	free(r.views);

@@ -14,15 +14,16 @@
 
 static struct {
 	const char *scene, *weights, *text, *masks, *log;
-	int interaction, similarity, contrast, is_resumed;
+	int interaction, similarity, contrast, precision, is_resumed;
 	long long iterations, checkpoint;
 	struct trainer_options trainer;
 } options = {.interaction = REFER_PCMI,
 	.similarity = REFER_DOT,
 	.contrast = REFER_CONTRAST_COSINE,
+	.precision = PRECISION_U8,
 	.iterations = 45000,
 	.checkpoint = 1000,
-	.trainer = {.temperature = 0.1, .lambda = 0.02, .batch = 1, .rates = {0.0025, 0.0001}}};
+	.trainer = TRAINER_DEFAULTS};
 
 static const struct cli_option table[] = {
 	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
@@ -46,8 +47,15 @@ static const struct cli_option table[] = {
 		"learning rate of the MLPs (default 0.0001)", 1e-12, 10},
 	{"batch", 0, CLI_INT, &options.trainer.batch, "N", "sentences of a view in one step (default 1)", 1,
 		64},
+	{"negatives", 0, CLI_INT, &options.trainer.negatives, "N",
+		"sentences that a step is contrasted with; 0: all (default 12)", 0, 1000000},
 	{"tolerance", 0, CLI_REAL, &options.trainer.tolerance, "T",
-		"leave out the Gaussians that carry this share of all weight (default 0)", 0, 0.99},
+		"leave out Gaussians with this share of all weight (default 0)", 0, 0.99},
+	{"share", 0, CLI_REAL, &options.trainer.share, "E",
+		"pixels of mask a view that a feature must save; 0: all have their own (default 0.04)", 0,
+		1e6},
+	{"precision", 0, CLI_CHOICE, &options.precision, PRECISION_CHOICES,
+		"how features and weights are stored (default u8)", 0, 0},
 	{"log", 0, CLI_STRING, &options.log, "FILE",
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{"checkpoint", 0, CLI_INT, &options.checkpoint, "N",
@@ -78,14 +86,14 @@ struct run {
 static int start(struct run *r, const struct cli *c, struct err *e)
 {
 	const struct training *d = &r->data;
-	const struct trainer_source source = {d->scene.splats.means, d->scene.splats.n, d->text.width,
-		d->sentences, d->offsets, d->words, d->objects, d->views, d->view_count, d->pixels};
+	const struct trainer_source source = training_source(d);
 
 	checkpoint_identity(r->identity, &options.trainer, d->checksum);
 	if (trainer_init(&r->trainer, &source, &options.trainer, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, options.weights) : -1;
-	cli_note(c, 1, "%zu of %zu Gaussians, %zu views, %zu sentences, %zu pairs", r->trainer.n,
-		d->scene.splats.n, d->view_count, d->sentences, d->pairs);
+	cli_note(c, 1, "%zu of %zu Gaussians share %zu features, %.1f a pixel", r->trainer.learning,
+		d->scene.splats.n, r->trainer.rows.n, trainer_weights(&r->trainer));
+	cli_note(c, 1, "%zu views, %zu sentences, %zu pairs", d->view_count, d->sentences, d->pairs);
 	return 0;
 }
 
@@ -144,8 +152,8 @@ static int train(struct run *r, const struct cli *c, struct err *e)
 		if (r->trainer.state.iteration % LOG_EVERY == 0)
 			snprintf(note, sizeof note, "loss %.4f", r->trainer.state.sum.total / LOG_EVERY);
 		bad = record(r, c, &last, e);
-		cli_progress_step(
-			&progress, (double)(r->trainer.state.iteration - begin), *note ? note : NULL);
+		const double done = (double)(r->trainer.state.iteration - begin);
+		cli_progress_step(&progress, done, *note ? note : NULL);
 	}
 	cli_progress_end(&progress);
 	return bad;
@@ -156,10 +164,13 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 	const struct trainer *t = &r->trainer;
 	const struct model m = {.layout = t->layout,
 		.similarity = options.trainer.similarity,
+		.precision = (enum precision)options.precision,
 		.scene_gaussians = r->data.scene.splats.n,
-		.n = t->n,
-		.ids = t->ids,
-		.features = mem_alloc(t->n, REFER_X * sizeof(float), "features", e),
+		.n = t->rows.n,
+		.has_leaves = t->octree.n > 0,
+		.ids = t->octree.n ? NULL : t->ids,
+		.octree = t->octree,
+		.features = mem_alloc(t->rows.n, REFER_X * sizeof(float), "features", e),
 		.parameters = t->state.values,
 		.low = {t->low[0], t->low[1], t->low[2]},
 		.high = {t->high[0], t->high[1], t->high[2]}};
@@ -167,8 +178,9 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 
 	if (!m.features)
 		return -1;
-	step_unpack(train_state_x(&t->state), t->n, m.features);
-	snprintf(text, sizeof text, "--iterations %ld %s", t->state.iteration, r->identity);
+	step_unpack(train_state_x(&t->state), t->rows.n, m.features);
+	snprintf(text, sizeof text, "--iterations %ld --precision %s %s", t->state.iteration,
+		precision_name(m.precision), r->identity);
 	int bad = model_write(&m, c->output, text, c->seed, e);
 	if (!bad && r->is_own)
 		unlink(r->checkpoint);
@@ -179,14 +191,9 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
 	const struct training *d = &r->data;
-	const size_t bytes = strlen(c->output) + sizeof ".checkpoint";
 
-	if (strcmp(c->output, "-")) {
-		r->checkpoint = mem_alloc(bytes, 1, c->output, e);
-		if (!r->checkpoint)
-			return -1;
-		snprintf(r->checkpoint, bytes, "%s.checkpoint", c->output);
-	}
+	if (strcmp(c->output, "-") && !(r->checkpoint = checkpoint_path(c->output, e)))
+		return -1;
 	if (training_read(&r->data, options.scene, options.weights, options.text, options.masks, e))
 		return -1;
 	if (d->left_out)
@@ -194,11 +201,10 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 			d->left_out);
 	if (d->test_masks)
 		cli_note(c, 1, "%zu masks of test views are not used", d->test_masks);
-	return file_out_probe(c->output, e) || start(r, c, e) || resume(r, c, e) ||
-			       trainlog_open(&r->log, options.log, r->trainer.state.iteration, e) ||
-			       train(r, c, e) || write_result(r, c, e)
-		       ? -1
-		       : 0;
+	if (file_out_probe(c->output, e) || start(r, c, e) || resume(r, c, e) ||
+		trainlog_open(&r->log, options.log, r->trainer.state.iteration, e))
+		return -1;
+	return train(r, c, e) || write_result(r, c, e) ? -1 : 0;
 }
 
 static void check_options(const struct cli *c)
@@ -215,22 +221,20 @@ static void check_options(const struct cli *c)
 	if (!strcmp(options.text, "-") && !strcmp(options.masks, "-"))
 		cli_usage(c, "--text and --masks cannot both be stdin");
 	if (o->interaction == REFER_PCMI_PROJ && o->similarity == REFER_COSINE)
-		cli_usage(c,
-			"--similarity cosine does not go with --interaction pcmi-proj, whose features are normalised");
+		cli_usage(c, "--similarity cosine does not go with --interaction pcmi-proj");
 	if (is_stdout && options.is_resumed)
 		cli_usage(c, "--resume needs a file to write to: there is no checkpoint of stdout");
 	if (is_stdout && options.log && !strcmp(options.log, "-"))
 		cli_usage(c, "--log and --output cannot both be stdout");
-	if (is_stdout)
-		options.checkpoint = 0;
+	options.checkpoint = is_stdout ? 0 : options.checkpoint;
 	cli_refuse_terminal(c);
 }
 
 int main(int argc, char **argv)
 {
 	struct run r = {0};
-	struct cli c;
 	struct err e = {0}, late;
+	struct cli c;
 
 	cli_parse(&c, &tool, argc, argv);
 	check_options(&c);

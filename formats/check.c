@@ -117,6 +117,7 @@ static int check_weights(struct check *c, const char *path, struct err *e)
 
 	if (weights_open_file(&w, path, e))
 		return -1;
+	c->precision = precision_name(w.precision);
 	c->width = w.width;
 	c->height = w.height;
 	add_fact(c, "weights", (long long)w.indptr[(int64_t)w.width * w.height]);
@@ -144,7 +145,8 @@ static int check_model(struct check *c, const char *path, struct err *e)
 
 	if (model_read(&m, path, e))
 		return -1;
-	add_fact(c, "gaussians", (long long)m.n);
+	c->precision = precision_name(m.precision);
+	add_fact(c, "features", (long long)m.n);
 	add_fact(c, "gaussians of the scene", (long long)m.scene_gaussians);
 	add_fact(c, "parameters", (long long)m.layout.count);
 	model_free(&m);

@@ -14,8 +14,9 @@ struct check_fact {
 };
 
 struct check {
-	const char *kind;  /* "refer.weights", "scene", "masks" ... */
-	int width, height; /* of its image or views; 0 where there is none, or more than one */
+	const char *kind;      /* "refer.weights", "scene", "masks" ... */
+	const char *precision; /* of its numbers; NULL where there is no choice */
+	int width, height;     /* of its image or views; 0 where there is none, or more than one */
 	int n;
 	struct check_fact facts[CHECK_MAX_FACTS];
 	struct safetensors

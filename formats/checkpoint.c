@@ -1,5 +1,6 @@
 #include "formats/checkpoint.h"
 
+#include "base/mem.h"
 #include "base/number.h"
 #include "formats/safetensors.h"
 
@@ -15,16 +16,27 @@ static const char *const names[ARRAYS] = {"values", "first_moment", "second_mome
 void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_options *o, uint32_t inputs)
 {
 	char temperature[NUMBER_SIZE], lambda[NUMBER_SIZE], features[NUMBER_SIZE], mlps[NUMBER_SIZE],
-		tolerance[NUMBER_SIZE];
+		tolerance[NUMBER_SIZE], share[NUMBER_SIZE];
 
 	snprintf(text, CHECKPOINT_IDENTITY,
 		"--interaction %s --similarity %s --contrast %s --temperature %s --lambda %s --feature-rate %s --mlp-rate %s "
-		"--batch %lld --tolerance %s --seed %lld, inputs %08x",
+		"--batch %lld --negatives %lld --tolerance %s --share %s --seed %lld, inputs %08x",
 		refer_interaction_name(o->interaction), refer_similarity_name(o->similarity),
 		refer_contrast_name(o->contrast), number_text(temperature, o->temperature),
 		number_text(lambda, o->lambda), number_text(features, o->rates.features),
-		number_text(mlps, o->rates.mlps), o->batch, number_text(tolerance, o->tolerance), o->seed,
+		number_text(mlps, o->rates.mlps), o->batch, o->negatives,
+		number_text(tolerance, o->tolerance), number_text(share, o->share), o->seed,
 		(unsigned)inputs);
+}
+
+char *checkpoint_path(const char *model, struct err *e)
+{
+	const size_t bytes = strlen(model) + sizeof ".checkpoint";
+	char *path = mem_alloc(bytes, 1, model, e);
+
+	if (path)
+		snprintf(path, bytes, "%s.checkpoint", model);
+	return path;
 }
 
 int checkpoint_write(const struct train_state *t, const char *path, const char *identity, struct err *e)

@@ -11,6 +11,10 @@ enum { CHECKPOINT_IDENTITY = 512 };
 /* What must be the same for a training to be gone on with: its options and the checksum of its inputs. */
 void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_options *o, uint32_t inputs);
 
+/* MODEL.checkpoint, where a training of MODEL leaves its state; free() it. NULL with *e when memory is out.
+ */
+char *checkpoint_path(const char *model, struct err *e);
+
 /* Writes the state whole, so that a kill at any time leaves the old or the new file. */
 int checkpoint_write(const struct train_state *t, const char *path, const char *identity, struct err *e);
 

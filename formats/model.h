@@ -3,23 +3,34 @@
 #define FORMATS_MODEL_H
 
 #include "base/err.h"
+#include "formats/precision.h"
 #include "refer/model.h"
+#include "refer/rows.h"
 
 #include <stdint.h>
 
 struct model {
 	struct refer_layout layout;
 	enum refer_similarity similarity;
-	size_t scene_gaussians; /* N of the scene that it belongs to */
-	size_t n;		/* M Gaussians with features */
-	int32_t *ids;		/* (M) rising indices in the scene */
-	float *features;	/* (M,16) */
-	float *parameters;	/* (layout.count) */
-	double low[3], high[3]; /* what the scene's means are scaled to [-1,1] by */
+	enum precision precision; /* of features and weights in the file; here they are float32 */
+	size_t scene_gaussians;	  /* N of the scene that it belongs to */
+	size_t n;		  /* M rows of features */
+	int has_leaves;		  /* a row is of a leaf, or of one Gaussian */
+	int32_t *ids;		  /* (M) the Gaussians, rising indices in the scene; NULL with leaves */
+	struct octree octree;	  /* of M leaves */
+	float *features;	  /* (M,16) */
+	float *parameters;	  /* (layout.count) */
+	double low[3], high[3];	  /* what the scene's means are scaled to [-1,1] by */
 };
 
+/* ERR_FORMAT where the file is malformed. */
 int model_read(struct model *m, const char *path, struct err *e);
+/* ERR_CHECK where a number is not finite, or too large for the precision. */
 int model_write(const struct model *m, const char *path, const char *options, long long seed, struct err *e);
 void model_free(struct model *m);
+
+/* Which row serves each Gaussian of the scene (scene_gaussians), whose means are means (scene_gaussians,3).
+ */
+int model_rows(const struct model *m, const float *means, struct rows *rows, struct err *e);
 
 #endif

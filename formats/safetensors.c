@@ -343,19 +343,18 @@ int safetensors_need_format(const struct safetensors *st, const char *format, in
 	return 0;
 }
 
+/* The exponent of a half is 112 less than a float's; the product is exact, also for subnormal halves.
+ * Infinities and NaN get the float's largest exponent. */
 float st_half_to_float(uint16_t h)
 {
-	uint32_t sign = (uint32_t)(h & 0x8000) << 16, exponent = h >> 10 & 31, fraction = h & 1023, bits;
+	uint32_t bits = (uint32_t)(h & 0x7fff) << 13;
 	float f;
 
-	if (exponent == 31)
-		bits = sign | 0x7f800000 | fraction << 13;
-	else if (exponent)
-		bits = sign | (exponent + 112) << 23 | fraction << 13;
-	else {
-		f = (float)fraction * 0x1p-24f;
-		return sign ? -f : f;
-	}
+	memcpy(&f, &bits, 4);
+	f *= 0x1p112f;
+	memcpy(&bits, &f, 4);
+	bits |= (h & 0x7c00) == 0x7c00 ? 0x7f800000 : 0;
+	bits |= (uint32_t)(h & 0x8000) << 16;
 	memcpy(&f, &bits, 4);
 	return f;
 }
@@ -408,20 +407,25 @@ int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, st
 	if (t->bytes / size != count)
 		return err_set(e, ERR_FORMAT, "tensor '%s': has %zu items, expected %zu", t->name,
 			t->bytes / size, count);
+	if (t->dtype == ST_F32) {
+		memcpy(out, p, 4 * count);
+		return 0;
+	}
+	if (t->dtype == ST_F16) {
+		for (size_t i = 0; i < count; i++) {
+			uint16_t half;
+			memcpy(&half, p + 2 * i, 2);
+			out[i] = st_half_to_float(half);
+		}
+		return 0;
+	}
 	for (size_t i = 0; i < count; i++, p += size) {
 		uint16_t half;
 		double wide;
 		switch (t->dtype) {
-		case ST_F32:
-			memcpy(&out[i], p, 4);
-			break;
 		case ST_F64:
 			memcpy(&wide, p, 8);
 			out[i] = (float)wide;
-			break;
-		case ST_F16:
-			memcpy(&half, p, 2);
-			out[i] = st_half_to_float(half);
 			break;
 		case ST_BF16:
 			memcpy(&half, p, 2);

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/masks.h"
+#include "mask/bits.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -46,17 +47,18 @@ static int pack_sentences(struct training *t, struct err *e)
 }
 
 /* Opens a view's weights and makes it the next training view. */
-static int add_view(struct training *t, const char *weights, const char *name, struct err *e)
+static int add_view(struct training *t, const char *weights, const struct camera *c, struct err *e)
 {
 	struct weights *w = &t->weights[t->view_count];
 
-	if (weights_open(w, weights, name, e))
+	if (weights_open(w, weights, c->name, e))
 		return -1;
 	t->view_count++;
 	if (w->gaussians != (int64_t)t->scene.splats.n)
 		return err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, this one has %zu",
 			w->file.path, (long long)w->gaussians, t->scene.splats.n);
 	const size_t pixels = (size_t)w->width * (size_t)w->height;
+	t->cameras[t->view_count - 1] = camera_resize(c, w->width, w->height);
 	t->views[t->view_count - 1].weights =
 		(struct view_weights){pixels, t->scene.splats.n, w->indptr, w->index, w->weight};
 	t->pixels = pixels > t->pixels ? pixels : t->pixels;
@@ -80,7 +82,7 @@ static int add_mask(struct training *t, const struct jsonl *j, const struct mask
 	long *view = &at[c - t->scene.cameras.views];
 	if (*view < 0) {
 		*view = (long)t->view_count;
-		if (add_view(t, weights, c->name, e))
+		if (add_view(t, weights, c, e))
 			return -1;
 	}
 	const struct weights *w = &t->weights[*view];
@@ -101,7 +103,8 @@ static int read_masks(struct training *t, const char *weights, const char *path,
 
 	t->weights = mem_zalloc(count, sizeof *t->weights, "views", e);
 	t->views = mem_zalloc(count, sizeof *t->views, "views", e);
-	if (at && t->weights && t->views && !jsonl_open(&j, path, e)) {
+	t->cameras = mem_zalloc(count, sizeof *t->cameras, "views", e);
+	if (at && t->weights && t->views && t->cameras && !jsonl_open(&j, path, e)) {
 		for (size_t v = 0; v < count; v++)
 			at[v] = -1;
 		while ((more = masks_next(&j, &r, e)) == 1) {
@@ -140,7 +143,7 @@ static void make_checksum(struct training *t)
 		sum = add_checksum(sum, view->weights.weight, sizeof(float) * nnz);
 		sum = add_checksum(sum, view->sentences, sizeof(int) * (size_t)view->count);
 		for (int i = 0; i < view->count; i++)
-			sum = add_checksum(sum, view->masks[i], pixels);
+			sum = add_checksum(sum, view->masks[i], bits_bytes(pixels));
 	}
 	t->checksum = sum;
 }
@@ -175,6 +178,21 @@ int training_read(struct training *t, const char *scene, const char *weights, co
 	return bad;
 }
 
+struct trainer_source training_source(const struct training *t)
+{
+	return (struct trainer_source){.means = t->scene.splats.means,
+		.cameras = t->cameras,
+		.scene_gaussians = t->scene.splats.n,
+		.text_width = t->text.width,
+		.sentences = t->sentences,
+		.offsets = t->offsets,
+		.words = t->words,
+		.objects = t->objects,
+		.views = t->views,
+		.view_count = t->view_count,
+		.pixels = t->pixels};
+}
+
 void training_free(struct training *t)
 {
 	if (t->views)
@@ -191,5 +209,6 @@ void training_free(struct training *t)
 	free(t->object_names);
 	free(t->weights);
 	free(t->views);
+	free(t->cameras);
 	*t = (struct training){0};
 }

@@ -8,7 +8,7 @@
 #include "formats/text.h"
 #include "formats/weights.h"
 #include "refer/supervision.h"
-#include "refer/train.h"
+#include "refer/trainer.h"
 
 struct training {
 	struct scene scene;
@@ -22,6 +22,7 @@ struct training {
 	size_t view_count;		   /* training views that have masks */
 	struct weights *weights;
 	struct train_view *views;
+	struct camera *cameras; /* of the views, at the size of their weights; names belong to scene */
 	struct supervision masks;
 	size_t test_masks; /* masks of test views, not used */
 	size_t pairs;	   /* (view, sentence) pairs to learn from */
@@ -31,6 +32,8 @@ struct training {
 
 int training_read(struct training *t, const char *scene, const char *weights, const char *text,
 	const char *masks, struct err *e);
+/* What a trainer learns from; referred to. */
+struct trainer_source training_source(const struct training *t);
 void training_free(struct training *t);
 
 #endif

@@ -3,20 +3,26 @@
 #define FORMATS_WEIGHTS_H
 
 #include "base/err.h"
+#include "formats/precision.h"
 #include "formats/safetensors.h"
 
 #include <stdint.h>
 
 struct weights {
-	int width, height;	 /* of the rendered size: P = width*height pixels, row-major */
-	int64_t gaussians;	 /* N of the scene it belongs to */
-	const int64_t *indptr;	 /* (P+1) */
-	const int32_t *index;	 /* (nnz) Gaussian ids, front to back within a pixel */
-	const float *weight;	 /* (nnz) a_i prod_{k<i} (1-a_k); from f32 in place, from f16 converted */
-	const float *dropped;	 /* (P) weight left out by --tolerance */
-	struct safetensors file; /* keeps the map alive */
-	float *owned;		 /* the converted copy of f16 weights, else NULL */
+	int width, height;	  /* of the rendered size: P = width*height pixels, row-major */
+	int64_t gaussians;	  /* N of the scene it belongs to */
+	const int64_t *indptr;	  /* (P+1) */
+	const int32_t *index;	  /* (nnz) Gaussian ids, front to back within a pixel */
+	const float *weight;	  /* (nnz) a_i prod_{k<i} (1-a_k); from f32 in place, else converted */
+	const float *dropped;	  /* (P) weight left out by --tolerance */
+	struct safetensors file;  /* keeps the map alive */
+	float *owned;		  /* the converted copy of f16 and u8 weights, else NULL */
+	enum precision precision; /* of the weights in the file */
 };
+
+/* Weights below half of 1/255 round to 0 as u8: prune_below leaves them out, so that they count as dropped.
+ */
+#define WEIGHTS_U8_LEAST (0.5 / 255)
 
 /* Maps and checks DIR/VIEW.safetensors: indptr rises from 0 to nnz, ids in [0,gaussians), weights finite in
  * [0,1]. */
@@ -25,8 +31,8 @@ int weights_open(struct weights *w, const char *dir, const char *view, struct er
 int weights_open_file(struct weights *w, const char *path, struct err *e);
 void weights_close(struct weights *w);
 
-/* Writes DIR/VIEW.safetensors; is_half stores the weights as f16. */
-int weights_write(const struct weights *w, const char *dir, const char *view, int is_half,
-	const char *options, struct err *e);
+/* Writes DIR/VIEW.safetensors, with the weights in w's precision; u8 has whole numbers of 1/255. */
+int weights_write(
+	const struct weights *w, const char *dir, const char *view, const char *options, struct err *e);
 
 #endif

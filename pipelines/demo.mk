@@ -2,6 +2,8 @@
 #
 # DEMO        folder; default demo
 # SEED        of the scene and the training; default 1
+# SYNTH       more options for gs-synth: "--objects 4 --gaussians 50000", say; with other ones, or another SEED, the data are
+#             made anew, and all that depends on them
 # ITERATIONS  steps of each stage; default 3000
 # BERT, BIN   as in two-stage.mk
 
@@ -11,9 +13,10 @@ SEED ?= 1
 ITERATIONS ?= 3000
 BIN ?= $(if $(wildcard $(here)../build/bin/gs-synth),$(abspath $(here)../build/bin))
 data := $(DEMO)/data
+make_data := gs-synth --seed $(SEED)$(if $(SYNTH), $(SYNTH))
 
-.PHONY: demo
-demo: $(data)/truth.jsonl
+.PHONY: demo FORCE
+demo: $(data)/made-by
 	@$(MAKE) --no-print-directory -f $(here)two-stage.mk SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply CAMERAS=$(data)/sparse/0 \
 		IMAGES=$(data)/images TEST_VIEWS=$$(cat $(data)/test-views) SENTENCES=$(data)/sentences.jsonl \
 		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl SCALE=0.5 ITERATIONS=$(ITERATIONS) SEED=$(SEED) \
@@ -23,5 +26,7 @@ demo: $(data)/truth.jsonl
 	@echo "sentences:   $(data)/sentences.jsonl"
 	@echo "masks drawn over the test views, a picture for each test sentence: $(DEMO)/stage2/overlays"
 
-$(data)/truth.jsonl:
-	$(if $(BIN),$(BIN)/)gs-synth --seed $(SEED) -o $(data)
+# The command that made the data, once they are whole. They stay as they are while it is the same.
+$(data)/made-by: FORCE
+	@[ "$$(cat $@ 2>/dev/null)" = "$(make_data)" ] || { rm -f $@ && echo "$(make_data) -o $(data)" && \
+		$(if $(BIN),$(BIN)/)$(make_data) -o $(data) && echo "$(make_data)" >$@; }

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -119,6 +120,59 @@ void file_unmap(struct file_map *map)
 	*map = (struct file_map){0};
 }
 
+/* The temporary files there are. The names stay where they are for good, so that a signal's handler can read
+ * them at any time, on any thread. */
+static struct {
+	int state; /* by atomic operations only */
+	char name[PATH_MAX];
+} temporaries[FILE_OUT_MOST];
+
+enum { FREE, TAKEN, NAMED };
+
+/* Makes a temporary file beside path. Its name is known here before mkstemp fills it in and makes the file,
+ * so that there is no moment at which a signal would leave it. Returns the descriptor or -1 with *e. */
+static int make_temporary(struct file_out *out, const char *path, struct err *e)
+{
+	for (int i = 0; i < FILE_OUT_MOST; i++) {
+		int free_now = FREE;
+		char *name = temporaries[i].name;
+		if (!__atomic_compare_exchange_n(
+			    &temporaries[i].state, &free_now, TAKEN, 0, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+			continue;
+		if (snprintf(name, PATH_MAX, "%s.tmp.XXXXXX", path) >= PATH_MAX) {
+			__atomic_store_n(&temporaries[i].state, FREE, __ATOMIC_SEQ_CST);
+			errno = ENAMETOOLONG;
+			return err_errno(e, "%s", path);
+		}
+		__atomic_store_n(&temporaries[i].state, NAMED, __ATOMIC_SEQ_CST);
+		int fd = mkstemp(name);
+		if (fd < 0) {
+			err_errno(e, "%s", path);
+			__atomic_store_n(&temporaries[i].state, FREE, __ATOMIC_SEQ_CST);
+		} else {
+			out->temporary = name;
+		}
+		return fd;
+	}
+	return err_set(e, ERR_SYSTEM, "%s: more than %d outputs at a time", path, FILE_OUT_MOST);
+}
+
+/* The temporary file is there no more. */
+static void forget_temporary(struct file_out *out)
+{
+	for (int i = 0; i < FILE_OUT_MOST; i++)
+		if (out->temporary == temporaries[i].name)
+			__atomic_store_n(&temporaries[i].state, FREE, __ATOMIC_SEQ_CST);
+	out->temporary = NULL;
+}
+
+void file_out_remove_all(void)
+{
+	for (int i = 0; i < FILE_OUT_MOST; i++)
+		if (__atomic_load_n(&temporaries[i].state, __ATOMIC_SEQ_CST) == NAMED)
+			unlink(temporaries[i].name);
+}
+
 int file_out_open(struct file_out *out, const char *path, struct err *e)
 {
 	*out = (struct file_out){0};
@@ -139,20 +193,16 @@ int file_out_open(struct file_out *out, const char *path, struct err *e)
 		err_errno(e, "%s", path);
 		goto fail;
 	}
-	size_t bytes = strlen(path) + 16;
-	out->temporary = mem_alloc(bytes, 1, path, e);
-	if (!out->temporary)
+	int fd = make_temporary(out, path, e);
+	if (fd < 0)
 		goto fail;
-	snprintf(out->temporary, bytes, "%s.tmp.XXXXXX", path);
-	int fd = mkstemp(out->temporary);
-	if (fd < 0) {
-		err_errno(e, "%s", path);
-		free(out->temporary);
-		out->temporary = NULL;
-		goto fail;
+	mode_t mask;
+	/* it can only be read by changing it, which another thread must not see */
+#pragma omp critical(file_umask)
+	{
+		mask = umask(0);
+		umask(mask);
 	}
-	mode_t mask = umask(0);
-	umask(mask);
 	fchmod(fd, 0666 & ~mask);
 	out->stream = fdopen(fd, "wb");
 	if (!out->stream) {
@@ -184,9 +234,9 @@ int file_out_commit(struct file_out *out, struct err *e)
 			bad = err_errno(e, "%s", name);
 		if (bad)
 			unlink(out->temporary);
+		forget_temporary(out);
 	}
 	free(out->path);
-	free(out->temporary);
 	*out = (struct file_out){0};
 	return bad;
 }
@@ -195,10 +245,11 @@ void file_out_abort(struct file_out *out)
 {
 	if (out->stream && out->stream != stdout)
 		fclose(out->stream);
-	if (out->temporary)
+	if (out->temporary) {
 		unlink(out->temporary);
+		forget_temporary(out);
+	}
 	free(out->path);
-	free(out->temporary);
 	*out = (struct file_out){0};
 }
 

@@ -32,11 +32,16 @@ const char *file_name(const char *path);
 struct file_out {
 	FILE *stream;
 	char *path;
-	char *temporary; /* NULL where the output is written to directly */
+	char *temporary; /* NULL where the output is written to directly; not owned */
 };
+enum { FILE_OUT_MOST = 16 }; /* with temporary files at a time */
 int file_out_open(struct file_out *out, const char *path, struct err *e);
 int file_out_commit(struct file_out *out, struct err *e); /* closes in any case */
 void file_out_abort(struct file_out *out);		  /* harmless after commit, and on a zeroed struct */
+
+/* Removes the temporary files of all outputs that are open: for a signal's handler, after which the process
+ * ends. */
+void file_out_remove_all(void);
 
 /* Fails where an output of that name could not be opened: to be found out before long work. Leaves nothing
  * behind. */

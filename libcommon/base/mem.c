@@ -69,6 +69,19 @@ int mem_grow(void **block, size_t *capacity, size_t need, size_t size, const cha
 	return 0;
 }
 
+int mem_room(void **block, size_t *capacity, size_t need, size_t size, const char *what, struct err *e)
+{
+	if (*block && need <= *capacity)
+		return 0;
+	free(*block);
+	*capacity = need <= SIZE_MAX - need / 8 ? need + need / 8 : need;
+	*block = mem_alloc(*capacity, size, what, e);
+	if (*block)
+		return 0;
+	*capacity = 0;
+	return -1;
+}
+
 char *mem_strdup(const char *text, struct err *e)
 {
 	size_t bytes = strlen(text) + 1;

@@ -18,6 +18,10 @@ void *mem_zalloc(size_t n, size_t size, const char *what, struct err *e);
  * the block as it was. */
 int mem_grow(void **block, size_t *capacity, size_t need, size_t size, const char *what, struct err *e);
 
+/* The same for contents that may be lost: nothing is copied, and capacity is exact but for an eighth, so that
+ * needs that vary a little are met at once. On failure *block is NULL and *capacity 0. */
+int mem_room(void **block, size_t *capacity, size_t need, size_t size, const char *what, struct err *e);
+
 /* A copy of a string, NULL with *e set when memory is out. */
 char *mem_strdup(const char *text, struct err *e);
 

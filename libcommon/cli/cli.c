@@ -1,9 +1,12 @@
 #include "cli/cli.h"
 
+#include "base/file.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -261,6 +264,25 @@ static void parse_short(struct cli *c, const struct cli_option *rows, int n, cha
 	}
 }
 
+/* The signal's own action is in place again, and ends the process with the status that belongs to it. */
+static void end_by_signal(int number)
+{
+	file_out_remove_all();
+	raise(number);
+}
+
+/* An interrupted tool leaves no temporary file. What is ignored, by nohup say, stays so. */
+static void catch_signals(void)
+{
+	static const int numbers[] = {SIGHUP, SIGINT, SIGTERM};
+	struct sigaction was, own = {.sa_handler = end_by_signal, .sa_flags = SA_RESETHAND | SA_NODEFER};
+
+	sigemptyset(&own.sa_mask);
+	for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+		if (!sigaction(numbers[i], NULL, &was) && was.sa_handler == SIG_DFL)
+			sigaction(numbers[i], &own, NULL);
+}
+
 void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv)
 {
 	struct cli_option rows[COMMON_COUNT];
@@ -268,6 +290,7 @@ void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv
 
 	*c = (struct cli){
 		.tool = tool, .seed = 1, .output = tool->needs_output ? NULL : "-", .start = cli_seconds()};
+	catch_signals();
 	c->operands = (const char **)(argv + 1);
 	n = common_rows(c, rows);
 	for (int i = 1; i < argc; i++) {

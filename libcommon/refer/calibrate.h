@@ -7,6 +7,7 @@
 
 #include "base/err.h"
 #include "geom/camera.h"
+#include "refer/rows.h"
 #include "splat/splats.h"
 
 #include <stdint.h>
@@ -18,10 +19,10 @@ enum {
 #define CALIBRATE_SHARE 0.0005 /* of the pixels of these views ... */
 #define CALIBRATE_PEAK 2.0     /* ... shall have at least this response: probability 0.88 */
 
-/* Adds to the responses (count,N) of the Gaussians ids (n) what lifts each sentence's best answer to
- * CALIBRATE_PEAK; lifts (count) gets it, 0 where it is there already. A scene without training views is
- * looked at from its other views; without any, nothing is lifted. */
-int calibrate(const struct splats *s, const struct cameras *cameras, const int32_t *ids, size_t n,
+/* Adds to the responses (count,N), as render_pack has them, of the Gaussians with rows what lifts each
+ * sentence's best answer to CALIBRATE_PEAK; lifts (count) gets it, 0 where it is there already. A scene
+ * without training views is looked at from its other views; without any, nothing is lifted. */
+int calibrate(const struct splats *s, const struct cameras *cameras, const struct rows *rows,
 	float *responses, size_t count, double *lifts, struct err *e);
 
 #endif

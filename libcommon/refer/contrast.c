@@ -80,7 +80,8 @@ static double norm(const float *x)
 }
 
 double contrast_loss(enum refer_contrast kind, double temperature, const double *fg, const float *e,
-	const int *objects, size_t count, int object, double scale, double *dfg, float *de, double *score)
+	const int *objects, size_t count, int object, double others, double scale, double *dfg, float *de,
+	double *score)
 {
 	double length = 0, largest = -INFINITY, sum = 0, positive = 0;
 	size_t positives = 0;
@@ -94,7 +95,7 @@ double contrast_loss(enum refer_contrast kind, double temperature, const double 
 		largest = fmax(largest, score[r]);
 	}
 	for (size_t r = 0; r < count; r++) {
-		sum += exp(score[r] - largest);
+		sum += (objects[r] == object ? 1 : others) * exp(score[r] - largest);
 		if (objects[r] == object) {
 			positive += score[r];
 			positives++;
@@ -105,7 +106,8 @@ double contrast_loss(enum refer_contrast kind, double temperature, const double 
 	for (size_t r = 0; r < count; r++) {
 		const float *row = e + r * D;
 		double own = kind == REFER_CONTRAST_COSINE ? norm(row) : 1;
-		double d = exp(score[r] - log_sum) - (objects[r] == object ? 1 / (double)positives : 0);
+		double p = exp(score[r] - log_sum);
+		double d = objects[r] == object ? p - 1 / (double)positives : others * p;
 		double along = scale * d / (length * own * temperature), back = scale * d * score[r];
 		for (int i = 0; i < D; i++) {
 			double df = along * (double)row[i], dr = along * fg[i];

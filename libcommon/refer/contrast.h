@@ -14,9 +14,10 @@ size_t contrast_top_count(long iteration, size_t n);
 void contrast_top_set(const float *m, size_t n, size_t k, float *top);
 
 /* L_con of one sentence, whose mean feature is fg (128), over `count` embeddings e (count,128) with their
- * objects; the positives are those of `object`. dfg (128) = scale dL/dfg; de (count,128) += scale dL/de.
- * `score` holds count doubles. */
+ * objects; the positives are those of `object`, and each other one counts `others` times. dfg (128) = scale
+ * dL/dfg; de (count,128) += scale dL/de. `score` holds count doubles. */
 double contrast_loss(enum refer_contrast kind, double temperature, const double *fg, const float *e,
-	const int *objects, size_t count, int object, double scale, double *dfg, float *de, double *score);
+	const int *objects, size_t count, int object, double others, double scale, double *dfg, float *de,
+	double *score);
 
 #endif

@@ -25,6 +25,7 @@ struct refer_problem {
 	size_t sentences;      /* R >= 1, "all sentences" of the contrast */
 	const size_t *offsets; /* (R+1) sentence r has the words offsets[r] .. offsets[r+1]-1, one at least */
 	const double *words;   /* (W, text_width) */
+	const double *times;   /* (R) how often each counts in the sum over all; NULL: once */
 	const int *objects;    /* (R) E+ are the sentences with the target's object */
 	size_t target;	       /* r < R */
 

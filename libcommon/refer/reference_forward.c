@@ -335,6 +335,8 @@ void reference_sentence_scores(
 		} else {
 			scores[r] = dot(result->f_g, e, D) / problem->temperature;
 		}
+		if (problem->times)
+			scores[r] += log(problem->times[r]);
 	}
 }
 

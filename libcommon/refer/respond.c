@@ -14,9 +14,7 @@ static struct step *make_step(const struct respond_model *m, const float *positi
 	const struct step_setup setup = {.layout = m->layout,
 		.similarity = m->similarity,
 		.temperature = 1,
-		.gaussians = m->n,
-		.ids = m->ids,
-		.scene_gaussians = m->scene_gaussians,
+		.gaussians = m->rows->n,
 		.position = position,
 		.sentences = sentences,
 		.offsets = offsets,
@@ -30,30 +28,35 @@ int respond_all(const struct respond_model *m, const int64_t *offsets, const flo
 	const size_t *which, size_t count, float *out, struct err *e)
 {
 	const size_t width = (size_t)m->layout->text_width;
-	float *panels = mem_alloc(step_padded(m->n), REFER_X * sizeof(float), "features", e);
-	float *position = mem_alloc(m->n, 3 * sizeof(float), "positions", e);
-	int bad = !panels || !position ? -1 : 0;
+	const size_t rows = m->rows->n, gaussians = m->rows->gaussians;
+	float *panels = mem_alloc(step_padded(rows), REFER_X * sizeof(float), "features", e);
+	float *position = mem_alloc(rows, 3 * sizeof(float), "positions", e);
+	float *response = mem_alloc(rows, sizeof *response, "responses", e);
+	int bad = !panels || !position || !response ||
+				  rows_positions(m->rows, m->means, m->low, m->high, position, e)
+			  ? -1
+			  : 0;
 
-	if (!bad) {
-		step_pack(m->features, m->n, panels);
-		train_positions(m->means, m->ids, m->n, m->low, m->high, position);
-	}
+	if (!bad)
+		step_pack(m->features, rows, panels);
 	/* One sentence at a time: the buffers are then as large as its own words ask. */
 	for (size_t i = 0; i < count && !bad; i++) {
 		const int64_t own[2] = {0, offsets[which[i] + 1] - offsets[which[i]]};
-		float *m_out = out + i * m->scene_gaussians;
-		memset(m_out, 0, sizeof *m_out * m->scene_gaussians);
-		if (!own[1] || !m->n)
+		memset(out + i * gaussians, 0, sizeof *out * gaussians);
+		if (!own[1] || !rows)
 			continue;
 		struct step *s = make_step(m, position, own, words + (size_t)offsets[which[i]] * width, 1, e);
 		if (s)
-			step_respond(s, m->parameters, panels, 0, m_out);
+			step_respond(s, m->parameters, panels, 0, response);
 		else
 			bad = -1;
+		if (s)
+			rows_spread(m->rows, response, out + i * gaussians);
 		step_free(s);
 	}
 	free(panels);
 	free(position);
+	free(response);
 	return bad;
 }
 
@@ -62,12 +65,22 @@ double respond_mask(const float *image, size_t pixels, double lift, uint8_t *mas
 	double sum = 0;
 	size_t area = 0;
 
-	for (size_t p = 0; p < pixels; p++) {
+	for (size_t p = 0; p < pixels; p++)
 		mask[p] = image[p] > 0;
-		if (!mask[p])
+	for (size_t p = 0; p < pixels;) {
+		uint64_t eight = 1;
+		if (pixels - p >= 8)
+			memcpy(&eight, mask + p, 8);
+		if (!eight) { /* most are background */
+			p += 8;
 			continue;
-		sum += 1 / (1 + exp(lift - (double)image[p]));
-		area++;
+		}
+		for (size_t end = pixels - p < 8 ? pixels : p + 8; p < end; p++) {
+			if (!mask[p])
+				continue;
+			sum += 1 / (1 + exp(lift - (double)image[p]));
+			area++;
+		}
 	}
 	return area ? sum / (double)area : 0;
 }

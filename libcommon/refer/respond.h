@@ -4,6 +4,7 @@
 
 #include "base/err.h"
 #include "refer/model.h"
+#include "refer/rows.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -11,11 +12,10 @@
 struct respond_model {
 	const struct refer_layout *layout;
 	enum refer_similarity similarity;
-	size_t scene_gaussians, n; /* N of the scene, M with features */
-	const int32_t *ids;	   /* (M) */
-	const float *features;	   /* (M,16) */
+	const struct rows *rows;
+	const float *features; /* (rows,16) */
 	const float *parameters;
-	const float *means;	  /* (N,3) of the scene */
+	const float *means;	  /* (N,3) of the rows' scene */
 	const double *low, *high; /* (3) what means are scaled by */
 };
 

@@ -1,6 +1,7 @@
 #include "refer/step.h"
 
 #include "base/mem.h"
+#include "mask/bits.h"
 #include "nn/loss.h"
 #include "refer/fold.h"
 #include "refer/words.h"
@@ -39,6 +40,11 @@ enum part {
 struct step {
 	struct step_setup setup;
 	struct words words;
+	size_t *chosen; /* (R) sentences of the step: its targets' first, or all in order */
+	size_t chosen_count;
+	int *chosen_objects; /* (R) */
+	char *is_chosen;     /* (R) */
+	size_t *places;	     /* (batch) of the targets in chosen */
 	struct fold *fold;
 	struct block_model model;
 	struct block_arrays arrays;
@@ -47,12 +53,11 @@ struct step {
 	int *first;    /* (batch+1) */
 	float *slab;   /* all per-Gaussian arrays but x and dx */
 	float *position;
-	float *image, *dimage;			 /* (P) */
-	float *response, *dresponse;		 /* (padded) one sentence's channel */
-	float *scene_response, *scene_dresponse; /* (scene_gaussians) */
-	float *view_scratch;			 /* (VIEW_SLABS,scene_gaussians) */
-	float *vectors, *dvectors;		 /* (n,128) */
-	double *fg, *dfg, *score;		 /* (S,128), (S,128), (R) */
+	float *image, *dimage;	     /* (P) */
+	float *response, *dresponse; /* (padded) one sentence's channel */
+	float *view_scratch;	     /* (VIEW_SLABS,padded) */
+	float *vectors, *dvectors;   /* (n,128) */
+	double *fg, *dfg, *score;    /* (S,128), (S,128), (R) */
 	struct block_sums sums[CHUNKS];
 	size_t at[PARTS + 1]; /* where each part lies in a chunk's slab, for the current step */
 	float *chunks;	      /* (CHUNKS, chunk_size) */
@@ -226,15 +231,12 @@ static int alloc_arrays(struct step *s, struct err *e)
 		return err_set(e, ERR_SYSTEM, "%zu Gaussians do not fit in memory", u->gaussians);
 	s->slab = mem_zalloc(floats, sizeof(float), "features", e);
 	s->position = mem_alloc(s->padded, 3 * sizeof(float), "positions", e);
-	const size_t scene = u->scene_gaussians > s->padded ? u->scene_gaussians : s->padded;
-	s->response = mem_zalloc(scene, (4 + VIEW_SLABS) * sizeof(float), "responses", e);
+	s->response = mem_zalloc(s->padded, (2 + VIEW_SLABS) * sizeof(float), "responses", e);
 	s->image = mem_zalloc(u->pixels, 2 * sizeof(float), "images", e);
 	if (!s->slab || !s->position || !s->response || !s->image)
 		return -1;
-	s->dresponse = s->response + scene;
-	s->scene_response = s->dresponse + scene;
-	s->scene_dresponse = s->scene_response + scene;
-	s->view_scratch = s->scene_dresponse + scene;
+	s->dresponse = s->response + s->padded;
+	s->view_scratch = s->dresponse + s->padded;
 	s->dimage = s->image + u->pixels;
 	float *at = s->slab;
 	for (int k = 0; k < 10; k++) {
@@ -265,7 +267,12 @@ static int alloc_sums(struct step *s, struct err *e)
 	s->vectors = mem_zalloc(n, 2 * REFER_D * sizeof(float), "words", e);
 	s->fg = mem_zalloc(2 * batch * REFER_D + u->sentences, sizeof(double), "contrast", e);
 	s->first = mem_zalloc(batch + 1, sizeof *s->first, "batch", e);
-	if (!s->chunks || !s->total || !s->scratch || !s->vectors || !s->fg || !s->first)
+	s->places = mem_zalloc(batch, sizeof *s->places, "batch", e);
+	s->chosen = mem_zalloc(u->sentences, sizeof *s->chosen, "batch", e);
+	s->chosen_objects = mem_zalloc(u->sentences, sizeof *s->chosen_objects, "batch", e);
+	s->is_chosen = mem_zalloc(u->sentences, 1, "batch", e);
+	if (!s->chunks || !s->total || !s->scratch || !s->vectors || !s->fg || !s->first || !s->places ||
+		!s->chosen || !s->chosen_objects || !s->is_chosen)
 		return -1;
 	s->dvectors = s->vectors + n * REFER_D;
 	s->dfg = s->fg + batch * REFER_D;
@@ -302,6 +309,10 @@ void step_free(struct step *s)
 	words_free(&s->words);
 	fold_free(s->fold);
 	free(s->first);
+	free(s->places);
+	free(s->chosen);
+	free(s->chosen_objects);
+	free(s->is_chosen);
 	free(s->slab);
 	free(s->position);
 	free(s->response);
@@ -339,16 +350,15 @@ static void join_word_positions(struct step *s)
 }
 
 /* From words to responses, in arrays.m. */
-static void forward(
-	struct step *s, const float *parameters, const float *x, const size_t *sentences, int count)
+static void forward(struct step *s, const float *parameters, const float *x, int count)
 {
 	struct block_model *b = &s->model;
 
 	s->first[0] = 0;
 	for (int i = 0; i < count; i++) {
-		words_vectors(&s->words, parameters, sentences[i], s->vectors + s->first[i] * REFER_D);
-		s->first[i + 1] = s->first[i] +
-				  (int)(s->setup.offsets[sentences[i] + 1] - s->setup.offsets[sentences[i]]);
+		const int64_t *at = s->words.at + s->places[i];
+		words_vectors(&s->words, parameters, s->places[i], s->vectors + s->first[i] * REFER_D);
+		s->first[i + 1] = s->first[i] + (int)(at[1] - at[0]);
 	}
 	fold_begin(s->fold, parameters, s->setup.gaussians, s->first, count, b);
 	fold_words(s->fold, s->vectors, b);
@@ -378,42 +388,31 @@ static void channel_put(float *panels, size_t padded, int channels, int c, const
 		memcpy(panels + panel_index(i, channels, c), in + i, sizeof(float) * L);
 }
 
-/* From the Gaussians with features to those of the scene; the others stay 0. */
-static void to_scene(const struct step *s, const float *m, float *scene)
-{
-	for (size_t i = 0; i < s->setup.gaussians; i++)
-		scene[s->setup.ids ? (size_t)s->setup.ids[i] : i] = m[i];
-}
-
-static void from_scene(const struct step *s, const float *scene, float *m)
-{
-	for (size_t i = 0; i < s->setup.gaussians; i++)
-		m[i] = scene[s->setup.ids ? (size_t)s->setup.ids[i] : i];
-	memset(m + s->setup.gaussians, 0, sizeof *m * (s->padded - s->setup.gaussians));
-}
-
-/* The image of one response, its loss and, in scene_dresponse, the response's gradient times `share`.
+/* The image of one response, its loss and, in dresponse, the response's gradient times `share`.
  * Blending back follows part by part, while the part's weights are in cache. */
 static double image_loss(struct step *s, const struct view_weights *view, const uint8_t *mask, double share)
 {
-	const size_t pixels = view->pixels, part = 2048;
+	enum { part = 2048 };
+	const size_t pixels = view->pixels;
 	double sums[VIEW_SLABS] = {0}, sum = 0;
 
 #pragma omp parallel for schedule(dynamic) num_threads(s->threads)
 	for (size_t slab = 0; slab < VIEW_SLABS; slab++) {
 		float *dm = s->view_scratch + slab * view->gaussians;
+		uint8_t wanted[part];
 		const size_t begin = pixels * slab / VIEW_SLABS, end = pixels * (slab + 1) / VIEW_SLABS;
 		memset(dm, 0, sizeof *dm * view->gaussians);
 		for (size_t from = begin; from < end; from += part) {
 			const size_t to = end - from > part ? from + part : end;
 			const double of_all = (double)(to - from) / (double)pixels;
-			view_blend(view, s->scene_response, from, to, s->image);
-			sums[slab] += of_all * loss_bce(s->image + from, mask + from, to - from,
+			view_blend(view, s->response, from, to, s->image);
+			bits_expand(mask, from, to, wanted);
+			sums[slab] += of_all * loss_bce(s->image + from, wanted, to - from,
 						       (float)(share * of_all), s->dimage + from);
 			view_blend_back(view, s->dimage, from, to, dm);
 		}
 	}
-	view_join(s->view_scratch, view->gaussians, s->scene_dresponse);
+	view_join(s->view_scratch, view->gaussians, s->dresponse);
 	for (size_t slab = 0; slab < VIEW_SLABS; slab++)
 		sum += sums[slab];
 	return sum;
@@ -427,12 +426,22 @@ static double image_losses(
 
 	for (int i = 0; i < count; i++) {
 		channel_get(s->arrays.m, s->padded, count, i, s->response);
-		to_scene(s, s->response, s->scene_response);
 		bce += image_loss(s, view, targets[i].mask, 1 / (double)count) / count;
-		from_scene(s, s->scene_dresponse, s->dresponse);
 		channel_put(s->arrays.dm, s->padded, count, i, s->dresponse);
 	}
 	return bce;
+}
+
+/* How often each chosen sentence of another object counts, to stand for all of them. */
+static double times_of_others(const struct step *s, int object)
+{
+	size_t all = 0, chosen = 0;
+
+	for (size_t r = 0; r < s->setup.sentences; r++)
+		all += s->setup.objects[r] != object;
+	for (size_t k = 0; k < s->chosen_count; k++)
+		chosen += s->chosen_objects[k] != object;
+	return chosen ? (double)all / (double)chosen : 1;
 }
 
 /* The contrast of each sentence; its gradient goes to fold's dmean and words.de. */
@@ -451,12 +460,14 @@ static double contrast_losses(struct step *s, const struct step_target *targets,
 	run_phase(s, STEP_GATHER);
 	add_chunks(s, MEAN, MEAN);
 	fold_top(s->fold, s->total + s->at[MEAN], s->fg);
-	memset(s->words.de, 0, sizeof(float) * s->setup.sentences * REFER_D);
-	for (int i = 0; i < count; i++)
+	memset(s->words.de, 0, sizeof(float) * s->chosen_count * REFER_D);
+	for (int i = 0; i < count; i++) {
+		const int object = s->setup.objects[targets[i].sentence];
 		sum += contrast_loss(s->setup.contrast, s->setup.temperature, s->fg + i * REFER_D, s->words.e,
-			       s->setup.objects, s->setup.sentences, s->setup.objects[targets[i].sentence],
+			       s->chosen_objects, s->chosen_count, object, times_of_others(s, object),
 			       s->setup.lambda / count, s->dfg + i * REFER_D, s->words.de, s->score) /
 		       count;
+	}
 	fold_top_back(s->fold, s->dfg, &s->model);
 	return sum;
 }
@@ -471,8 +482,7 @@ static void add_tensor(struct step *s, enum part part, enum refer_tensor t, floa
 }
 
 /* From dm and dmean to every gradient. */
-static void backward(struct step *s, const float *parameters, const struct step_target *targets, int count,
-	float *gradient, float *dx)
+static void backward(struct step *s, const float *parameters, int count, float *gradient, float *dx)
 {
 	const int has_contrast = s->setup.contrast != REFER_CONTRAST_NONE;
 
@@ -493,44 +503,61 @@ static void backward(struct step *s, const float *parameters, const struct step_
 	}
 	fold_end(s->fold, s->total + s->at[DY], s->total + s->at[DP_GRAM], gradient, s->dvectors);
 	phase_ended(s, STEP_FOLD);
-	size_t from = 0, to = s->setup.sentences;
-	if (!has_contrast)
-		for (int i = 0; i < count; i++) { /* the span of the targets' sentences */
-			from = i && from < targets[i].sentence ? from : targets[i].sentence;
-			to = i && to > targets[i].sentence + 1 ? to : targets[i].sentence + 1;
-		}
-	words_back_begin(&s->words, parameters, gradient, from, to, has_contrast);
+	words_back_begin(&s->words, parameters, gradient, has_contrast);
 	for (int i = 0; i < count; i++)
-		words_back_vectors(&s->words, parameters, gradient, targets[i].sentence,
-			s->dvectors + s->first[i] * REFER_D);
-	words_back_end(&s->words, parameters, gradient, from, to);
+		words_back_vectors(
+			&s->words, parameters, gradient, s->places[i], s->dvectors + s->first[i] * REFER_D);
+	words_back_end(&s->words, parameters, gradient);
 	phase_ended(s, STEP_WORDS);
+}
+
+static void choose(struct step *s, size_t sentence)
+{
+	if (s->is_chosen[sentence])
+		return;
+	s->is_chosen[sentence] = 1;
+	s->chosen[s->chosen_count] = sentence;
+	s->chosen_objects[s->chosen_count++] = s->setup.objects ? s->setup.objects[sentence] : 0;
+}
+
+/* The sentences of the step: all, or the targets, those of their objects, and the others that are named. */
+static void choose_sentences(struct step *s, const struct step_target *targets, int count, int is_contrasted,
+	const struct step_others *others)
+{
+	const int *objects = s->setup.objects;
+
+	s->chosen_count = 0;
+	memset(s->is_chosen, 0, s->setup.sentences);
+	for (int i = 0; i < count; i++)
+		s->places[i] = is_contrasted && !others ? targets[i].sentence : (size_t)i;
+	for (int i = 0; i < count && (!is_contrasted || others); i++)
+		choose(s, targets[i].sentence);
+	for (size_t r = 0; r < s->setup.sentences && is_contrasted; r++) {
+		int is_own = !others;
+		for (int i = 0; i < count && !is_own; i++)
+			is_own = objects[r] == objects[targets[i].sentence];
+		if (is_own)
+			choose(s, r);
+	}
+	for (size_t k = 0; is_contrasted && others && k < others->count; k++)
+		choose(s, others->list[k]);
+	words_choose(&s->words, s->chosen, s->chosen_count);
 }
 
 struct step_losses step_run(struct step *s, const float *parameters, const float *x,
 	const struct view_weights *view, const struct step_target *targets, int count, size_t top_count,
-	float *gradient, float *dx)
+	const struct step_others *others, float *gradient, float *dx)
 {
 	const int has_contrast = s->setup.contrast != REFER_CONTRAST_NONE;
 	struct step_losses losses = {0};
-	size_t sentences[BLOCK_WORDS] = {0};
 
 	memset(gradient, 0, sizeof *gradient * s->setup.layout->count);
-	for (int i = 0; i < count; i++)
-		sentences[i] = targets[i].sentence;
-	if (has_contrast) {
-		words_hidden(&s->words, parameters, 0, s->setup.sentences);
+	choose_sentences(s, targets, count, has_contrast, others);
+	words_hidden(&s->words, parameters);
+	if (has_contrast)
 		words_embed(&s->words, parameters);
-	} else {
-		size_t from = sentences[0], to = sentences[0] + 1;
-		for (int i = 1; i < count; i++) {
-			from = from < sentences[i] ? from : sentences[i];
-			to = to > sentences[i] + 1 ? to : sentences[i] + 1;
-		}
-		words_hidden(&s->words, parameters, from, to);
-	}
 	phase_ended(s, STEP_WORDS);
-	forward(s, parameters, x, sentences, count);
+	forward(s, parameters, x, count);
 	losses.bce = image_losses(s, view, targets, count);
 	phase_ended(s, STEP_IMAGES);
 	if (has_contrast) {
@@ -539,16 +566,17 @@ struct step_losses step_run(struct step *s, const float *parameters, const float
 		memset(s->arrays.top, 0, sizeof(float) * s->padded * (size_t)count);
 		fold_top_back(s->fold, NULL, &s->model);
 	}
-	backward(s, parameters, targets, count, gradient, dx);
+	backward(s, parameters, count, gradient, dx);
 	losses.total = losses.bce + s->setup.lambda * losses.contrast;
 	return losses;
 }
 
 void step_respond(struct step *s, const float *parameters, const float *x, size_t sentence, float *m)
 {
-	words_hidden(&s->words, parameters, sentence, sentence + 1);
-	forward(s, parameters, x, &sentence, 1);
+	s->places[0] = 0;
+	words_choose(&s->words, &sentence, 1);
+	words_hidden(&s->words, parameters);
+	forward(s, parameters, x, 1);
 	channel_get(s->arrays.m, s->padded, 1, 0, s->response);
-	memset(m, 0, sizeof *m * s->setup.scene_gaussians);
-	to_scene(s, s->response, m);
+	memcpy(m, s->response, sizeof *m * s->setup.gaussians);
 }

@@ -18,9 +18,7 @@ struct step_setup {
 	enum refer_similarity similarity;
 	enum refer_contrast contrast;
 	double temperature, lambda;
-	size_t gaussians;	/* N, those that have features */
-	const int32_t *ids;	/* (N) their indices in the scene; NULL: 0 to N-1 */
-	size_t scene_gaussians; /* of the scene, the range of a view's weights */
+	size_t gaussians;	/* N, the rows of features; a view's weights are over them */
 	const float *position;	/* (N,3) means scaled to [-1,1] */
 	size_t sentences;	/* R */
 	const int64_t *offsets; /* (R+1) into words */
@@ -62,7 +60,7 @@ void step_unpack(const float *panels, size_t gaussians, float *x); /* and back *
 
 struct step_target {
 	size_t sentence;     /* index below R */
-	const uint8_t *mask; /* (P) 0 or 1 */
+	const uint8_t *mask; /* of P pixels, as bits (mask/bits.h) */
 };
 
 struct step_losses {
@@ -70,13 +68,22 @@ struct step_losses {
 	double total;	      /* bce + lambda contrast */
 };
 
+/* Sentences of other objects that a step's contrast takes: `list` (count) of different ones, which may hold
+ * sentences of the targets' objects too. They stand for all: each counts as often as makes up for the others.
+ */
+struct step_others {
+	const size_t *list;
+	size_t count;
+};
+
 /* One step over `count` sentences of one view. gradient (layout count) and dx (panels) are overwritten with
- * the gradients of the total loss. top_count is contrast_top_count's. */
+ * the gradients of the total loss. top_count is contrast_top_count's. others NULL: the contrast is with all
+ * sentences. */
 struct step_losses step_run(struct step *s, const float *parameters, const float *x,
 	const struct view_weights *view, const struct step_target *targets, int count, size_t top_count,
-	float *gradient, float *dx);
+	const struct step_others *others, float *gradient, float *dx);
 
-/* Responses m (scene_gaussians) of one sentence; 0 for Gaussians without features. */
+/* Responses m (gaussians) of one sentence. */
 void step_respond(struct step *s, const float *parameters, const float *x, size_t sentence, float *m);
 
 #endif

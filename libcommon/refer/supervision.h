@@ -12,12 +12,18 @@
 struct supervision_mask {
 	size_t view;
 	char *ref, *object; /* NULL where the record had none */
-	uint8_t *pixels;    /* (P) of the view's weights, 0 or 1 */
+	uint8_t *bits;	    /* of the view's weights' pixels, mask/bits.h */
+	size_t bytes;
+	int is_shared; /* the bits are those of an earlier mask of the view, which is equal */
+	uint64_t name_hash, bits_hash;
 };
 
 struct supervision {
 	size_t n, capacity;
 	struct supervision_mask *masks;
+	/* Two hash tables of mask numbers + 1, 0 where free: all masks by view and name, those with bits of
+	 * their own by view and bits. */
+	size_t slots, *by_name, *by_bits;
 };
 
 /* Takes a copy of a mask, at the size of the view's weights: another size is reduced by area and cut at one

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Streams of random numbers, one a purpose. */
-enum { STREAM_INIT = 1, STREAM_GROUPS = 2, STREAM_VIEWS = 1000 };
+enum { STREAM_INIT = 1, STREAM_GROUPS = 2, STREAM_OTHERS = 4, STREAM_VIEWS = 1000 };
 
 static int by_weight(const void *a, const void *b)
 {
@@ -82,38 +82,33 @@ int train_bounds(
 	return 0;
 }
 
-void train_positions(const float *means, const int32_t *ids, size_t n, const double low[3],
-	const double high[3], float *position)
-{
-	for (size_t i = 0; i < n; i++)
-		for (int k = 0; k < 3; k++) {
-			double x = (double)means[3 * (size_t)ids[i] + (size_t)k];
-			x = 2 * (x - low[k]) / (high[k] - low[k]) - 1;
-			position[3 * i + (size_t)k] = (float)fmax(-1, fmin(1, x));
-		}
-}
-
 int train_order_init(struct train_order *o, const struct train_view *views, size_t view_count, int batch,
-	uint64_t seed, struct err *e)
+	size_t sentences, size_t negatives, uint64_t seed, struct err *e)
 {
-	size_t sentences = 0, groups = 0;
+	size_t pairs = 0, groups = 0;
 
-	*o = (struct train_order){
-		.views = views, .view_count = view_count, .batch = batch, .seed = seed, .epoch = -1};
+	*o = (struct train_order){.views = views,
+		.view_count = view_count,
+		.batch = batch,
+		.seed = seed,
+		.sentences = sentences,
+		.negatives = negatives < sentences ? negatives : 0,
+		.epoch = -1};
 	for (size_t v = 0; v < view_count; v++) {
-		sentences += (size_t)views[v].count;
+		pairs += (size_t)views[v].count;
 		groups += ((size_t)views[v].count + (size_t)batch - 1) / (size_t)batch;
 	}
 	o->groups = (uint32_t)groups;
 	o->order = mem_alloc(groups, 3 * sizeof *o->order, "order", e);
-	o->shuffled = mem_alloc(sentences + view_count + 1, sizeof *o->shuffled, "order", e);
-	if (!o->order || !o->shuffled) {
+	o->shuffled = mem_alloc(pairs + view_count + 1, sizeof *o->shuffled, "order", e);
+	o->others = mem_alloc(sentences, sizeof *o->others, "order", e);
+	if (!o->order || !o->shuffled || !o->others) {
 		train_order_free(o);
 		return -1;
 	}
 	o->view = o->order + groups;
 	o->first = o->view + groups;
-	o->start = o->shuffled + sentences;
+	o->start = o->shuffled + pairs;
 	uint32_t g = 0;
 	o->start[0] = 0;
 	for (size_t v = 0; v < view_count; v++) {
@@ -130,6 +125,7 @@ void train_order_free(struct train_order *o)
 {
 	free(o->order);
 	free(o->shuffled);
+	free(o->others);
 	*o = (struct train_order){0};
 }
 
@@ -163,6 +159,23 @@ size_t train_order_at(struct train_order *o, long iteration, uint32_t *picks, in
 	for (int i = 0; i < *count; i++)
 		picks[i] = o->shuffled[o->start[view] + o->first[group] + (uint32_t)i];
 	return view;
+}
+
+const size_t *train_order_others(struct train_order *o, long iteration)
+{
+	struct rng r;
+
+	if (!o->negatives)
+		return NULL;
+	for (size_t k = 0; k < o->sentences; k++)
+		o->others[k] = k;
+	rng_seed(&r, o->seed + ((uint64_t)iteration << 32), STREAM_OTHERS);
+	for (size_t k = 0; k < o->negatives; k++) {
+		const size_t from = k + rng_below(&r, (uint32_t)(o->sentences - k)), taken = o->others[from];
+		o->others[from] = o->others[k];
+		o->others[k] = taken;
+	}
+	return o->others;
 }
 
 int train_state_init(
@@ -213,8 +226,10 @@ struct step_losses train_step(struct train_state *t, struct step *s, struct trai
 
 	for (int i = 0; i < count; i++)
 		targets[i] = (struct step_target){(size_t)view->sentences[picks[i]], view->masks[picks[i]]};
+	const struct step_others others = {train_order_others(o, t->iteration), o->negatives};
 	struct step_losses losses = step_run(s, t->values, train_state_x(t), &view->weights, targets, count,
-		contrast_top_count(t->iteration, gaussians), t->gradient, t->gradient + t->parameters);
+		contrast_top_count(t->iteration, gaussians), others.list ? &others : NULL, t->gradient,
+		t->gradient + t->parameters);
 	t->sum.bce += losses.bce;
 	t->sum.contrast += losses.contrast;
 	t->sum.total += losses.total;

@@ -13,7 +13,7 @@ struct train_view {
 	struct view_weights weights;
 	int count;
 	int *sentences;	       /* (count) indices of sentences */
-	const uint8_t **masks; /* (count) of weights.pixels each, 0 or 1 */
+	const uint8_t **masks; /* (count) of weights.pixels each, as bits (mask/bits.h) */
 };
 
 /* Gaussians that can learn: those that carry all but `tolerance` of the views' weight; at 0, those with any.
@@ -26,10 +26,6 @@ int train_active_set(const struct train_view *views, size_t view_count, size_t s
 int train_bounds(
 	const float *means, const int32_t *ids, size_t n, double low[3], double high[3], struct err *e);
 
-/* position (n,3): means scaled from the bounds to [-1,1], and cut there. */
-void train_positions(const float *means, const int32_t *ids, size_t n, const double low[3],
-	const double high[3], float *position);
-
 /* The order of training: epochs, each a shuffle of every view's sentences into groups of at most `batch` and
  * of those groups. It depends on seed, epoch and view alone, so that any iteration can be found again. */
 struct train_order {
@@ -37,21 +33,26 @@ struct train_order {
 	size_t view_count;
 	int batch;
 	uint64_t seed;
-	uint32_t groups;	/* in an epoch */
-	long epoch;		/* that `order` holds, or -1 */
-	uint32_t *order;	/* (groups) */
-	uint32_t *view, *first; /* (groups) the view, and the first of its shuffled sentences */
-	uint32_t *shuffled;	/* every view's sentences, one after another */
-	uint32_t *start;	/* (view_count+1) into shuffled */
+	size_t sentences, negatives; /* R; how many a step's contrast is with, 0: all */
+	size_t *others;		     /* (R) */
+	uint32_t groups;	     /* in an epoch */
+	long epoch;		     /* that `order` holds, or -1 */
+	uint32_t *order;	     /* (groups) */
+	uint32_t *view, *first;	     /* (groups) the view, and the first of its shuffled sentences */
+	uint32_t *shuffled;	     /* every view's sentences, one after another */
+	uint32_t *start;	     /* (view_count+1) into shuffled */
 };
 
 int train_order_init(struct train_order *o, const struct train_view *views, size_t view_count, int batch,
-	uint64_t seed, struct err *e);
+	size_t sentences, size_t negatives, uint64_t seed, struct err *e);
 void train_order_free(struct train_order *o);
 
 /* The view of an iteration (counted from 0), and which of its sentences: picks (batch) gets *count positions
  * in the view's list. */
 size_t train_order_at(struct train_order *o, long iteration, uint32_t *picks, int *count);
+
+/* The sentences that an iteration's contrast is with: `negatives` of all, drawn evenly. NULL: all. */
+const size_t *train_order_others(struct train_order *o, long iteration);
 
 /* Parameters and referring features in one slab with gradient and both Adam moments alike; a checkpoint is
  * the slab, the iteration and the sum. */

@@ -4,6 +4,9 @@
 #define REFER_TRAINER_H
 
 #include "base/err.h"
+#include "geom/camera.h"
+#include "refer/octree.h"
+#include "refer/rows.h"
 #include "refer/train.h"
 
 struct trainer_options {
@@ -12,15 +15,28 @@ struct trainer_options {
 	enum refer_contrast contrast;
 	double temperature, lambda; /* of the contrast */
 	double tolerance;	    /* train_active_set's */
-	long long batch;	    /* most sentences in a step */
+	double share;	 /* octree_build's price, in pixels a view; 0: every Gaussian has its own feature */
+	long long batch; /* most sentences in a step */
+	long long negatives; /* train_order's */
 	struct train_rates rates;
 	long long seed;
 };
 
+/* pcmi, dot and the rest as refer-train has them where nothing is said. */
+#define TRAINER_DEFAULTS                                                                                     \
+	{                                                                                                    \
+		.interaction = REFER_PCMI, .contrast = REFER_CONTRAST_COSINE, .temperature = 0.1,            \
+		.lambda = 0.02, .share = 0.04, .batch = 1, .negatives = 12, .rates = {                       \
+			0.0025,                                                                              \
+			0.0001                                                                               \
+		}                                                                                            \
+	}
+
 /* What is learned from. Referred to, not copied. */
 struct trainer_source {
-	const float *means;	/* (scene_gaussians,3) */
-	size_t scene_gaussians; /* N */
+	const float *means;	      /* (scene_gaussians,3) */
+	const struct camera *cameras; /* (view_count) of the views, at the size of their weights */
+	size_t scene_gaussians;	      /* N */
 	int text_width;
 	size_t sentences;	/* R */
 	const int64_t *offsets; /* (R+1) into words */
@@ -33,10 +49,14 @@ struct trainer_source {
 struct trainer {
 	struct refer_layout layout;
 	struct train_rates rates;
-	size_t n;     /* M Gaussians that learn */
-	int32_t *ids; /* (M) */
+	size_t learning;      /* Gaussians that learn */
+	int32_t *ids;	      /* (learning) */
+	struct octree octree; /* no leaves: a row for each of ids */
+	struct rows rows;
 	double low[3], high[3];
-	float *position; /* (M,3) */
+	float *position;	  /* (rows,3) */
+	struct train_view *views; /* the source's, over rows */
+	size_t view_count;
 	struct step *step;
 	struct train_order order;
 	struct train_state state;
@@ -46,6 +66,9 @@ struct trainer {
 int trainer_init(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e);
 void trainer_free(struct trainer *t);
+
+/* Weights over rows that a pixel has on average. */
+double trainer_weights(const struct trainer *t);
 
 /* The next step, train_step's. */
 struct step_losses trainer_step(struct trainer *t);

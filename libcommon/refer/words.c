@@ -14,7 +14,9 @@ int words_init(struct words *w, const struct refer_layout *l, size_t sentences, 
 	*w = (struct words){.layout = l, .sentences = sentences, .offsets = offsets, .input = input};
 	w->h1 = mem_alloc(rows, 2 * sizeof(float) * (REFER_T1 + REFER_T2), "words", e);
 	w->mean = mem_zalloc(sentences, 2 * sizeof(float) * (REFER_T2 + REFER_D), "words", e);
-	if (!w->h1 || !w->mean) {
+	w->copied = mem_alloc(rows, (size_t)l->text_width * sizeof *w->copied, "words", e);
+	w->at = mem_zalloc(sentences + 1, sizeof *w->at, "words", e);
+	if (!w->h1 || !w->mean || !w->copied || !w->at) {
 		words_free(w);
 		return -1;
 	}
@@ -31,6 +33,8 @@ void words_free(struct words *w)
 {
 	free(w->h1);
 	free(w->mean);
+	free(w->copied);
+	free(w->at);
 	*w = (struct words){0};
 }
 
@@ -58,23 +62,37 @@ static void relu_back(float *d, const float *value, size_t count)
 		d[i] = value[i] > 0 ? d[i] : 0;
 }
 
-void words_hidden(struct words *w, const float *p, size_t from, size_t to)
+void words_choose(struct words *w, const size_t *list, size_t count)
 {
-	const size_t first = (size_t)w->offsets[from], rows = (size_t)w->offsets[to] - first;
 	const size_t width = (size_t)w->layout->text_width;
-	float *h1 = w->h1 + first * REFER_T1, *h2 = w->h2 + first * REFER_T2;
+	int is_all = count == w->sentences;
 
-	linear_forward(h1, w->input + first * width, tensor_of(w, p, TEXT_0_WEIGHT),
-		tensor_of(w, p, TEXT_0_BIAS), rows, width, REFER_T1);
-	relu(h1, rows * REFER_T1);
-	linear_forward(h2, h1, tensor_of(w, p, TEXT_1_WEIGHT), tensor_of(w, p, TEXT_1_BIAS), rows, REFER_T1,
-		REFER_T2);
-	relu(h2, rows * REFER_T2);
+	w->count = count;
+	for (size_t k = 0; k < count; k++) {
+		w->at[k + 1] = w->at[k] + w->offsets[list[k] + 1] - w->offsets[list[k]];
+		is_all = is_all && list[k] == k;
+	}
+	w->chosen = is_all ? w->input : w->copied;
+	for (size_t k = 0; k < count && !is_all; k++)
+		memcpy(w->copied + (size_t)w->at[k] * width, w->input + (size_t)w->offsets[list[k]] * width,
+			(size_t)(w->at[k + 1] - w->at[k]) * width * sizeof *w->copied);
 }
 
-void words_vectors(const struct words *w, const float *p, size_t sentence, float *out)
+void words_hidden(struct words *w, const float *p)
 {
-	const size_t first = (size_t)w->offsets[sentence], rows = (size_t)w->offsets[sentence + 1] - first;
+	const size_t rows = (size_t)w->at[w->count], width = (size_t)w->layout->text_width;
+
+	linear_forward(w->h1, w->chosen, tensor_of(w, p, TEXT_0_WEIGHT), tensor_of(w, p, TEXT_0_BIAS), rows,
+		width, REFER_T1);
+	relu(w->h1, rows * REFER_T1);
+	linear_forward(w->h2, w->h1, tensor_of(w, p, TEXT_1_WEIGHT), tensor_of(w, p, TEXT_1_BIAS), rows,
+		REFER_T1, REFER_T2);
+	relu(w->h2, rows * REFER_T2);
+}
+
+void words_vectors(const struct words *w, const float *p, size_t place, float *out)
+{
+	const size_t first = (size_t)w->at[place], rows = (size_t)w->at[place + 1] - first;
 
 	linear_forward(out, w->h2 + first * REFER_T2, tensor_of(w, p, TEXT_2_WEIGHT),
 		tensor_of(w, p, TEXT_2_BIAS), rows, REFER_T2, REFER_D);
@@ -82,8 +100,8 @@ void words_vectors(const struct words *w, const float *p, size_t sentence, float
 
 void words_embed(struct words *w, const float *p)
 {
-	for (size_t s = 0; s < w->sentences; s++) {
-		const int64_t from = w->offsets[s], to = w->offsets[s + 1];
+	for (size_t s = 0; s < w->count; s++) {
+		const int64_t from = w->at[s], to = w->at[s + 1];
 		float *mean = w->mean + s * REFER_T2;
 		memset(mean, 0, sizeof *mean * REFER_T2);
 		for (int64_t j = from; j < to; j++)
@@ -92,31 +110,29 @@ void words_embed(struct words *w, const float *p)
 		for (int c = 0; c < REFER_T2 && to > from; c++)
 			mean[c] /= (float)(to - from);
 	}
-	linear_forward(w->e, w->mean, tensor_of(w, p, TEXT_2_WEIGHT), tensor_of(w, p, TEXT_2_BIAS),
-		w->sentences, REFER_T2, REFER_D);
+	linear_forward(w->e, w->mean, tensor_of(w, p, TEXT_2_WEIGHT), tensor_of(w, p, TEXT_2_BIAS), w->count,
+		REFER_T2, REFER_D);
 }
 
-void words_back_begin(
-	struct words *w, const float *p, float *gradient, size_t from, size_t to, int has_embeddings)
+void words_back_begin(struct words *w, const float *p, float *gradient, int has_embeddings)
 {
 	if (!has_embeddings) {
-		const size_t first = (size_t)w->offsets[from], rows = (size_t)w->offsets[to] - first;
-		memset(w->dh2 + first * REFER_T2, 0, sizeof(float) * rows * REFER_T2);
+		memset(w->dh2, 0, sizeof(float) * (size_t)w->at[w->count] * REFER_T2);
 		return;
 	}
 	linear_backward(w->dmean, gradient_of(w, gradient, TEXT_2_WEIGHT),
 		gradient_of(w, gradient, TEXT_2_BIAS), w->de, w->mean, tensor_of(w, p, TEXT_2_WEIGHT),
-		w->sentences, REFER_T2, REFER_D);
-	for (size_t s = from; s < to; s++)
-		for (int64_t j = w->offsets[s]; j < w->offsets[s + 1]; j++)
+		w->count, REFER_T2, REFER_D);
+	for (size_t s = 0; s < w->count; s++)
+		for (int64_t j = w->at[s]; j < w->at[s + 1]; j++)
 			for (int c = 0; c < REFER_T2; c++)
-				w->dh2[j * REFER_T2 + c] = w->dmean[s * REFER_T2 + (size_t)c] /
-							   (float)(w->offsets[s + 1] - w->offsets[s]);
+				w->dh2[j * REFER_T2 + c] =
+					w->dmean[s * REFER_T2 + (size_t)c] / (float)(w->at[s + 1] - w->at[s]);
 }
 
-void words_back_vectors(struct words *w, const float *p, float *gradient, size_t sentence, const float *dw)
+void words_back_vectors(struct words *w, const float *p, float *gradient, size_t place, const float *dw)
 {
-	const size_t first = (size_t)w->offsets[sentence], rows = (size_t)w->offsets[sentence + 1] - first;
+	const size_t first = (size_t)w->at[place], rows = (size_t)w->at[place + 1] - first;
 	float *dh2 = w->dh2 + first * REFER_T2;
 	float *din = w->dh1 + first * REFER_T1; /* free until words_back_end; wide enough */
 
@@ -126,17 +142,15 @@ void words_back_vectors(struct words *w, const float *p, float *gradient, size_t
 		dh2[i] += din[i];
 }
 
-void words_back_end(struct words *w, const float *p, float *gradient, size_t from, size_t to)
+void words_back_end(struct words *w, const float *p, float *gradient)
 {
-	const size_t first = (size_t)w->offsets[from], rows = (size_t)w->offsets[to] - first;
-	const size_t width = (size_t)w->layout->text_width;
-	float *dh1 = w->dh1 + first * REFER_T1, *dh2 = w->dh2 + first * REFER_T2;
-	const float *h1 = w->h1 + first * REFER_T1;
+	const size_t rows = (size_t)w->at[w->count], width = (size_t)w->layout->text_width;
 
-	relu_back(dh2, w->h2 + first * REFER_T2, rows * REFER_T2);
-	linear_backward(dh1, gradient_of(w, gradient, TEXT_1_WEIGHT), gradient_of(w, gradient, TEXT_1_BIAS),
-		dh2, h1, tensor_of(w, p, TEXT_1_WEIGHT), rows, REFER_T1, REFER_T2);
-	relu_back(dh1, h1, rows * REFER_T1);
+	relu_back(w->dh2, w->h2, rows * REFER_T2);
+	linear_backward(w->dh1, gradient_of(w, gradient, TEXT_1_WEIGHT),
+		gradient_of(w, gradient, TEXT_1_BIAS), w->dh2, w->h1, tensor_of(w, p, TEXT_1_WEIGHT), rows,
+		REFER_T1, REFER_T2);
+	relu_back(w->dh1, w->h1, rows * REFER_T1);
 	linear_backward(NULL, gradient_of(w, gradient, TEXT_0_WEIGHT), gradient_of(w, gradient, TEXT_0_BIAS),
-		dh1, w->input + first * width, tensor_of(w, p, TEXT_0_WEIGHT), rows, width, REFER_T1);
+		w->dh1, w->chosen, tensor_of(w, p, TEXT_0_WEIGHT), rows, width, REFER_T1);
 }

@@ -2,17 +2,17 @@
 #ifndef SPLAT_BLEND_H
 #define SPLAT_BLEND_H
 
-#include "splat/project.h"
 #include "splat/tile.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
 enum {
-	BLEND_CHANNELS = 8, /* the most that one pass blends */
-	BLEND_SIDE = 4,	    /* a tile is 4x4 blocks of 4x4 pixels */
+	BLEND_CHANNELS = 16, /* the most that one pass blends */
+	BLEND_SIDE = 4,	     /* a tile is 4x4 blocks of 4x4 pixels */
 	BLEND_BLOCKS = 16,
 	BLEND_LANES = 16,
+	BLEND_CHUNK = 64, /* Gaussians whose blocks are found before any is blended */
 };
 
 #define BLEND_ALPHA_MAX 0.99f
@@ -22,10 +22,9 @@ enum {
 /* State of a tile's pixels, block by block (blend_place). */
 struct blend_tile {
 	float transmittance[TILE_PIXELS];
-	float cut[TILE_PIXELS]; /* log2 of the least a that blends: log2(1/255), infinite where the pixel has
-				   ended */
+	float lit[TILE_PIXELS]; /* the same, 0 where the pixel has ended or lies outside the image */
 	float sum[BLEND_CHANNELS][TILE_PIXELS]; /* blended values */
-	int32_t count[TILE_PIXELS];		/* weights recorded */
+	int32_t count[TILE_PIXELS];		/* weights */
 	double x, y;				/* the tile's centre, pixels */
 	uint32_t live;				/* bit b: some pixel of block b has not ended */
 };
@@ -44,8 +43,11 @@ struct blend_records {
 	size_t weight_count, weight_capacity;
 };
 
-/* The room that one Gaussian may need: weights are stored by whole blocks. */
-enum { BLEND_RECORD_ROOM = BLEND_BLOCKS, BLEND_WEIGHT_ROOM = TILE_PIXELS + BLEND_LANES };
+/* The room that a chunk may need: weights are stored by whole blocks. */
+enum {
+	BLEND_RECORD_ROOM = BLEND_CHUNK * BLEND_BLOCKS,
+	BLEND_WEIGHT_ROOM = BLEND_CHUNK * TILE_PIXELS + BLEND_LANES
+};
 
 /* Where the arrays of blend_tile hold the pixel at column x and row y of the tile. */
 static inline int blend_place(int x, int y)
@@ -54,7 +56,8 @@ static inline int blend_place(int x, int y)
 	       x % BLEND_SIDE;
 }
 
-/* Starts a tile of which `columns` x `rows` pixels lie in the image; (x0, y0) is its corner. */
-void blend_start(struct blend_tile *t, int x0, int y0, int columns, int rows);
+/* Starts a tile of which `columns` x `rows` pixels lie in the image; (x0, y0) is its corner. Of the sums only
+ * those of `channels` channels are set. */
+void blend_start(struct blend_tile *t, int x0, int y0, int columns, int rows, int channels);
 
 #endif

@@ -1,14 +1,12 @@
-/* The blending kernels, for the instruction set in force where this is included; BLEND_TABLE names the
- * result.
+/* The blending kernels, for the instruction set in force where this is included.
  *
  * A tile is 4x4 blocks of 4x4 pixels, and a block is BLEND_PARTS vectors: small Gaussians leave fewer lanes
- * idle so than in rows of 16 (on a trained scene a third fewer vectors). u and v (splat/project.h) of the
- * tile's centre are computed in double; what is added in float is small, so that a needle far from its mean
- * keeps its digits. */
+ * idle so than in rows of 16 (on a trained scene a third fewer vectors). Of a chunk of Gaussians the blocks
+ * that each may meet are found first; then block after block is blended, its pixels in registers. u and v
+ * (splat/project.h) of the tile's centre are computed in double; what is added in float is small, so that a
+ * needle far from its mean keeps its digits. */
 #include "base/vecmath.h"
 #include "splat/kernels.h"
-
-#include <math.h>
 
 enum { BLEND_PARTS = BLEND_LANES / VEC_LANES };
 
@@ -20,92 +18,186 @@ static const float blend_y[BLEND_LANES] __attribute__((aligned(64))) = {-1.5f, -
 
 /* One Gaussian in one tile. */
 struct blend_splat {
-	float u[BLEND_BLOCKS] __attribute__((aligned(64))); /* at the blocks' centres */
-	float v[BLEND_BLOCKS] __attribute__((aligned(64)));
-	vecn du[BLEND_PARTS], dv[BLEND_PARTS]; /* what a pixel's place in its block adds */
-	vecn log_opacity;
+	float u, v;	     /* at the tile's centre */
+	float l11, l21, l22; /* what they change by from there, a pixel */
+	float log_opacity;
 };
 
-/* Fills *s; returns a bit for each block that the ellipse a >= 1/255 may meet. */
-VEC_INLINE uint32_t blend_setup(struct blend_splat *s, const struct blend_tile *t, const struct projected *p)
+struct blend_chunk {
+	struct blend_splat splats[BLEND_CHUNK];
+	uint16_t blocks[BLEND_CHUNK] __attribute__((aligned(64))); /* bit b: it may meet block b */
+};
+
+/* A bit for each block that the ellipse a >= 1/255 may meet. */
+VEC_INLINE uint32_t blend_blocks(const struct blend_splat *s)
 {
-	double dx = t->x - p->x, dy = t->y - p->y;
-	vecn u0 = vec_splat((float)(p->l11 * dx + p->l21 * dy)), v0 = vec_splat((float)(p->l22 * dy));
-	vecn l11 = vec_splat((float)p->l11), l21 = vec_splat((float)p->l21), l22 = vec_splat((float)p->l22);
+	vecn l11 = vec_splat(s->l11), l21 = vec_splat(s->l21), l22 = vec_splat(s->l22);
 	/* how far u and v stray from their values at a block's centre */
 	vecn du = 1.5f * (l11 + vec_max(l21, -l21)), dv = 1.5f * l22;
 	uint32_t bits = 0;
 
-	s->log_opacity = vec_splat(p->log_opacity);
 	for (int i = 0; i < BLEND_PARTS; i++) {
-		vecn x = vec_load(blend_x + i * VEC_LANES), y = vec_load(blend_y + i * VEC_LANES);
-		s->du[i] = vec_fma(l11, x, l21 * y);
-		s->dv[i] = l22 * y;
-		vecn u = vec_fma(vec_splat(4), s->du[i], u0), v = vec_fma(vec_splat(4), s->dv[i], v0);
-		vec_store(s->u + i * VEC_LANES, u);
-		vec_store(s->v + i * VEC_LANES, v);
+		vecn x = 4 * vec_load(blend_x + i * VEC_LANES), y = 4 * vec_load(blend_y + i * VEC_LANES);
+		vecn u = vec_fma(l11, x, vec_fma(l21, y, vec_splat(s->u)));
+		vecn v = vec_fma(l22, y, vec_splat(s->v));
 		/* the least |u| and |v| in the block */
 		u = vec_max(vec_max(u, -u) - du, vec_splat(0));
 		v = vec_max(vec_max(v, -v) - dv, vec_splat(0));
 		/* 1e-3 covers rounding; each pixel decides by itself */
-		vecn most = vec_fnma(u, u, vec_fnma(v, v, s->log_opacity));
+		vecn most = vec_fnma(u, u, vec_fnma(v, v, vec_splat(s->log_opacity)));
 		bits |= vec_bits(vec_ge(most, vec_splat(BLEND_ALPHA_MIN_LOG2 - 1e-3f))) << (i * VEC_LANES);
 	}
 	return bits;
 }
 
-/* Ends the pixels of `stop` in the part at `at` of block b, and the block when no pixel of it is left. */
-VEC_INLINE void blend_stop(struct blend_tile *t, int b, int at, vecm stop)
+VEC_INLINE void blend_chunk_make(struct blend_chunk *chunk, const struct blend_tile *t,
+	const struct projected *p, const uint32_t *list, size_t n)
 {
-	int is_live = 0;
+	for (size_t k = 0; k < n; k++) {
+		const struct projected *one = &p[list[k]];
+		struct blend_splat *s = &chunk->splats[k];
+		double dx = t->x - one->x, dy = t->y - one->y;
+		*s = (struct blend_splat){(float)(one->l11 * dx + one->l21 * dy), (float)(one->l22 * dy),
+			one->slope[0], one->slope[1], one->slope[2], one->log_opacity};
+		chunk->blocks[k] = (uint16_t)blend_blocks(s);
+	}
+	for (size_t k = n; k < BLEND_CHUNK; k++)
+		chunk->blocks[k] = 0;
+}
 
-	vec_store(t->cut + at, vec_choose(stop, vec_splat(INFINITY), vec_load(t->cut + at)));
-	for (int i = 0; i < BLEND_PARTS; i++)
-		is_live |= vec_bits(vec_lt(vec_load(t->cut + b * BLEND_LANES + i * VEC_LANES),
-				   vec_splat(INFINITY))) != 0;
-	if (!is_live)
+/* Bit k: Gaussian k of the chunk may meet block b. */
+VEC_INLINE uint64_t blend_column(const struct blend_chunk *chunk, int b)
+{
+	uint64_t column = 0;
+
+#if VEC_LANES == 16
+	const __m512i bit = _mm512_set1_epi16((short)(1 << b));
+	column = _mm512_test_epi16_mask(_mm512_load_si512(chunk->blocks), bit);
+	column |= (uint64_t)_mm512_test_epi16_mask(_mm512_load_si512(chunk->blocks + 32), bit) << 32;
+#elif VEC_LANES == 8
+	const __m256i bit = _mm256_set1_epi16((short)(1 << b));
+	for (int k = 0; k < BLEND_CHUNK; k += 32) {
+		const __m256i *at = (const __m256i *)(chunk->blocks + k);
+		__m256i low = _mm256_cmpeq_epi16(_mm256_and_si256(_mm256_load_si256(at), bit), bit);
+		__m256i high = _mm256_cmpeq_epi16(_mm256_and_si256(_mm256_load_si256(at + 1), bit), bit);
+		/* packs within halves: the quarters come as 0, 2, 1, 3 */
+		__m256i both = _mm256_permute4x64_epi64(_mm256_packs_epi16(low, high), 0xd8);
+		column |= (uint64_t)(uint32_t)_mm256_movemask_epi8(both) << k;
+	}
+#else
+	for (int k = 0; k < BLEND_CHUNK; k++)
+		column |= (uint64_t)(chunk->blocks[k] >> b & 1) << k;
+#endif
+	return column;
+}
+
+/* A block's pixels. */
+struct blend_block {
+	vecn x[BLEND_PARTS], y[BLEND_PARTS]; /* from the tile's centre */
+	vecn left[BLEND_PARTS];		     /* transmittance */
+	vecn lit[BLEND_PARTS];		     /* the same, 0 where the pixel has ended or is none */
+};
+
+VEC_INLINE void blend_load(struct blend_block *block, const struct blend_tile *t, int b)
+{
+	for (int i = 0; i < BLEND_PARTS; i++) {
+		int at = b * BLEND_LANES + i * VEC_LANES;
+		block->x[i] = vec_load(blend_x + i * VEC_LANES) + (float)(BLEND_SIDE * (b % BLEND_SIDE) - 6);
+		block->y[i] = vec_load(blend_y + i * VEC_LANES) + (float)(BLEND_SIDE * (b / BLEND_SIDE) - 6);
+		block->left[i] = vec_load(t->transmittance + at);
+		block->lit[i] = vec_load(t->lit + at);
+	}
+}
+
+/* Puts a block back; it is not live any more when no pixel of it is left. */
+VEC_INLINE void blend_store(const struct blend_block *block, struct blend_tile *t, int b)
+{
+	uint32_t live = 0;
+
+	for (int i = 0; i < BLEND_PARTS; i++) {
+		int at = b * BLEND_LANES + i * VEC_LANES;
+		vec_store(t->transmittance + at, block->left[i]);
+		vec_store(t->lit + at, block->lit[i]);
+		live |= vec_bits(vec_lt(vec_splat(0), block->lit[i]));
+	}
+	if (!live)
 		t->live &= ~(1u << b);
 }
 
-/* The weights of part i of block b, zero where none. Updates transmittance, cut and live. */
-VEC_INLINE vecn blend_part(struct blend_tile *t, const struct blend_splat *s, int b, int i)
+/* The weights of one Gaussian in part i of a block, zero where none. */
+VEC_INLINE vecn blend_part(struct blend_block *block, const struct blend_splat *s, int i)
 {
-	int at = b * BLEND_LANES + i * VEC_LANES;
-	vecn u = s->du[i] + vec_splat(s->u[b]), v = s->dv[i] + vec_splat(s->v[b]);
-	vecn e = vec_fnma(u, u, vec_fnma(v, v, s->log_opacity));
-	vecm keep = vec_ge(e, vec_load(t->cut + at));
-	/* where e is out of range for vec_exp2 it is below the cut, and what comes out is masked */
-	vecn a = vec_keep(keep, vec_min(vec_exp2(e), vec_splat(BLEND_ALPHA_MAX)));
-	vecn before = vec_load(t->transmittance + at), w = a * before, after = before - w;
-	vecm stop = vec_lt(after, vec_splat(BLEND_STOP)) & keep;
+	vecn u = vec_fma(
+		vec_splat(s->l11), block->x[i], vec_fma(vec_splat(s->l21), block->y[i], vec_splat(s->u)));
+	vecn v = vec_fma(vec_splat(s->l22), block->y[i], vec_splat(s->v));
+	vecn e = vec_fnma(u, u, vec_fnma(v, v, vec_splat(s->log_opacity)));
+	/* where e is out of range for vec_exp2 it is below the least, and what comes out is masked */
+	vecn a = vec_keep(
+		vec_ge(e, vec_splat(BLEND_ALPHA_MIN_LOG2)), vec_min(vec_exp2(e), vec_splat(BLEND_ALPHA_MAX)));
+	vecn lit = block->lit[i], after = vec_fnma(a, lit, lit);
+	/* No branch where a pixel ends: that would wait for all that is before it. */
+	vecm on = vec_ge(after, vec_splat(BLEND_STOP));
 
-	if (__builtin_expect(vec_bits(stop) != 0, 0)) {
-		w = vec_choose(stop, vec_splat(0), w);
-		after = before - w;
-		blend_stop(t, b, at, stop);
+	block->lit[i] = vec_keep(on, after);
+	block->left[i] = vec_choose(on, after, block->left[i]);
+	return vec_keep(on, a * lit);
+}
+
+/* Blends the Gaussians of `column` into block b; their values stand at values[list[k] * channels]. */
+VEC_INLINE void blend_block_values(struct blend_tile *t, const struct blend_chunk *chunk, uint64_t column,
+	int b, const uint32_t *list, const float *values, int channels)
+{
+	struct blend_block block;
+	vecn sum[BLEND_CHANNELS][BLEND_PARTS];
+
+	blend_load(&block, t, b);
+	for (int c = 0; c < channels; c++)
+		for (int i = 0; i < BLEND_PARTS; i++)
+			sum[c][i] = vec_load(t->sum[c] + b * BLEND_LANES + i * VEC_LANES);
+	for (; column; column &= column - 1) {
+		int k = __builtin_ctzll(column);
+		const float *value = values + (size_t)list[k] * (size_t)channels;
+		for (int i = 0; i < BLEND_PARTS; i++) {
+			vecn w = blend_part(&block, &chunk->splats[k], i);
+			for (int c = 0; c < channels; c++)
+				sum[c][i] = vec_fma(w, vec_splat(value[c]), sum[c][i]);
+		}
 	}
-	vec_store(t->transmittance + at, after);
-	return w;
+	for (int c = 0; c < channels; c++)
+		for (int i = 0; i < BLEND_PARTS; i++)
+			vec_store(t->sum[c] + b * BLEND_LANES + i * VEC_LANES, sum[c][i]);
+	blend_store(&block, t, b);
+}
+
+/* What the next chunk looks up is asked for while this one is blended. */
+VEC_INLINE void blend_fetch(
+	const struct projected *p, const uint32_t *list, size_t n, const float *values, int channels)
+{
+	for (size_t k = 0; k < n; k++) {
+		__builtin_prefetch(&p[list[k]]);
+		__builtin_prefetch(values + (size_t)list[k] * (size_t)channels);
+	}
+}
+
+VEC_INLINE size_t blend_chunk_size(size_t left)
+{
+	return left < BLEND_CHUNK ? left : BLEND_CHUNK;
 }
 
 VEC_INLINE void blend_channels(struct blend_tile *t, const struct projected *p, const uint32_t *list,
 	size_t n, const float *values, int channels)
 {
-	struct blend_splat s;
+	struct blend_chunk chunk;
 
-	for (size_t k = 0; k < n && t->live; k++) {
-		const float *value = values + (size_t)list[k] * (size_t)channels;
-		if (k + 8 < n)
-			__builtin_prefetch(&p[list[k + 8]]);
-		for (uint32_t left = blend_setup(&s, t, &p[list[k]]) & t->live; left; left &= left - 1) {
-			int b = __builtin_ctz(left);
-			for (int i = 0; i < BLEND_PARTS; i++) {
-				vecn w = blend_part(t, &s, b, i);
-				for (int c = 0; c < channels; c++) {
-					float *sum = t->sum[c] + b * BLEND_LANES + i * VEC_LANES;
-					vec_store(sum, vec_fma(w, vec_splat(value[c]), vec_load(sum)));
-				}
-			}
+	for (size_t at = 0; at < n && t->live; at += BLEND_CHUNK) {
+		size_t now = blend_chunk_size(n - at), next = at + now;
+		blend_fetch(p, list + next, blend_chunk_size(n - next), values, channels);
+		blend_chunk_make(&chunk, t, p, list + at, now);
+		for (uint32_t live = t->live; live; live &= live - 1) {
+			int b = __builtin_ctz(live);
+			uint64_t column = blend_column(&chunk, b);
+			if (column)
+				blend_block_values(t, &chunk, column, b, list + at, values, channels);
 		}
 	}
 }
@@ -113,10 +205,13 @@ VEC_INLINE void blend_channels(struct blend_tile *t, const struct projected *p, 
 static void blend_values(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
 	const float *values, int channels)
 {
+	/* so that the sums of a block stay in registers */
 	if (channels == 1)
 		blend_channels(t, p, list, n, values, 1);
 	else if (channels == 3)
 		blend_channels(t, p, list, n, values, 3);
+	else if (channels == BLEND_CHANNELS)
+		blend_channels(t, p, list, n, values, BLEND_CHANNELS);
 	else
 		blend_channels(t, p, list, n, values, channels);
 }
@@ -132,36 +227,66 @@ VEC_INLINE void blend_pack(float *out, vecn w, uint32_t lanes)
 #endif
 }
 
-static size_t blend_weights(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
+/* Counts the weights of the Gaussians of `column` in block b, and records them where records are wanted. */
+VEC_INLINE void blend_block_weights(struct blend_tile *t, const struct blend_chunk *chunk, uint64_t column,
+	int b, const uint32_t *list, struct blend_records *records)
+{
+	struct blend_block block;
+
+	blend_load(&block, t, b);
+	for (; column; column &= column - 1) {
+		int k = __builtin_ctzll(column);
+		uint32_t all = 0;
+		for (int i = 0; i < BLEND_PARTS; i++) {
+			vecn w = blend_part(&block, &chunk->splats[k], i);
+			vecm has = vec_lt(vec_splat(0), w);
+			vec_count(t->count + b * BLEND_LANES + i * VEC_LANES, has);
+			if (!records)
+				continue;
+			uint32_t lanes = vec_bits(has);
+			blend_pack(records->weights + records->weight_count, w, lanes);
+			records->weight_count += (size_t)__builtin_popcount(lanes);
+			all |= lanes << (i * VEC_LANES);
+		}
+		if (!records)
+			continue;
+		records->items[records->count] =
+			(struct blend_record){(int32_t)list[k], (uint16_t)b, (uint16_t)all};
+		records->count += all != 0;
+	}
+	blend_store(&block, t, b);
+}
+
+VEC_INLINE size_t blend_each(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
 	struct blend_records *records)
 {
-	struct blend_splat s;
+	struct blend_chunk chunk;
 
-	for (size_t k = 0; k < n; k++) {
-		const struct projected *one = &p[list[k]];
-		if (!t->live)
-			return n;
-		if (records->capacity - records->count < BLEND_RECORD_ROOM ||
-			records->weight_capacity - records->weight_count < BLEND_WEIGHT_ROOM)
-			return k;
-		if (k + 8 < n)
-			__builtin_prefetch(&p[list[k + 8]]);
-		for (uint32_t left = blend_setup(&s, t, one) & t->live; left; left &= left - 1) {
-			int b = __builtin_ctz(left);
-			uint32_t all = 0;
-			for (int i = 0; i < BLEND_PARTS; i++) {
-				vecn w = blend_part(t, &s, b, i);
-				vecm has = vec_lt(vec_splat(0), w);
-				uint32_t lanes = vec_bits(has);
-				vec_count(t->count + b * BLEND_LANES + i * VEC_LANES, has);
-				blend_pack(records->weights + records->weight_count, w, lanes);
-				records->weight_count += (size_t)__builtin_popcount(lanes);
-				all |= lanes << (i * VEC_LANES);
-			}
-			records->items[records->count] =
-				(struct blend_record){one->index, (uint16_t)b, (uint16_t)all};
-			records->count += all != 0;
+	for (size_t at = 0; at < n && t->live; at += BLEND_CHUNK) {
+		size_t now = blend_chunk_size(n - at), next = at + now;
+		if (records && (records->capacity - records->count < BLEND_RECORD_ROOM ||
+				       records->weight_capacity - records->weight_count < BLEND_WEIGHT_ROOM))
+			return at;
+		for (size_t k = next; k < n && k < next + BLEND_CHUNK; k++)
+			__builtin_prefetch(&p[list[k]]);
+		blend_chunk_make(&chunk, t, p, list + at, now);
+		for (uint32_t live = t->live; live; live &= live - 1) {
+			int b = __builtin_ctz(live);
+			uint64_t column = blend_column(&chunk, b);
+			if (column)
+				blend_block_weights(t, &chunk, column, b, list + at, records);
 		}
 	}
 	return n;
+}
+
+static size_t blend_weights(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
+	struct blend_records *records)
+{
+	return blend_each(t, p, list, n, records);
+}
+
+static void blend_counts(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n)
+{
+	blend_each(t, p, list, n, NULL);
 }

@@ -9,15 +9,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* A tile's list names its Gaussians in p, front to back. */
 struct kernels {
-	/* Projects PROJECT_LANES Gaussians; the same on every instruction set, to the bit. */
-	void (*project)(const struct project_lens *lens, struct project_batch *b);
-	/* Blends the Gaussians p[list[0..n)] front to back. `values` holds `channels` values for each entry
-	 * of p. */
+	/* Projects n Gaussians; the same on every instruction set, to the bit. */
+	void (*project)(const struct project_lens *lens, struct project_batch *b, int n);
+	/* Blends up to BLEND_CHANNELS values, which stand at values[list[k] * channels]. */
 	void (*values)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
 		const float *values, int channels);
-	/* As far as the records have room. Returns how many of the n are done; n also when every pixel has
-	 * ended. */
+	/* Counts the weights of each pixel. */
+	void (*counts)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n);
+	/* Counts and records them, as far as the records have room. Returns how many of the n are done; n
+	 * also when every pixel has ended. */
 	size_t (*weights)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
 		struct blend_records *records);
 };

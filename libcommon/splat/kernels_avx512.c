@@ -3,5 +3,5 @@
 #include "splat/project_kernel.h"
 #include "splat/blend_kernel.h"
 
-const struct kernels kernels_avx512 = {project_batch, blend_values, blend_weights};
+const struct kernels kernels_avx512 = {project_batch, blend_values, blend_counts, blend_weights};
 #endif

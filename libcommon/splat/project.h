@@ -3,49 +3,48 @@
 #ifndef SPLAT_PROJECT_H
 #define SPLAT_PROJECT_H
 
-#include "base/cpu.h"
-#include "base/err.h"
 #include "geom/camera.h"
-#include "splat/splats.h"
 
 #include <stdint.h>
 
-/* A Gaussian that may touch a pixel. At (x, y), with dx = x - x_mean and dy = y - y_mean,
+/* A Gaussian that may touch a pixel, a cache line of it. At (x, y), with dx = x - x_mean and dy = y - y_mean,
  *	u = l11 dx + l21 dy,  v = l22 dy,  a = 2^(log_opacity - u^2 - v^2):
  * a Cholesky factor of the inverse covariance, times log2(e)/2. Unlike the conic it has no cancellation in
- *u^2 + v^2. */
+ * u^2 + v^2. */
 struct projected {
 	double x, y;	      /* mean, pixels */
 	double l11, l21, l22; /* 1/pixels */
-	double radius;	   /* u^2 + v^2 <= radius^2 where a >= 1/255 (and, for rounding, a little beyond) */
-	float half_width;  /* pixels: where u^2 + v^2 <= radius^2, |dx| <= half_width */
-	float half_height; /* and |dy| <= half_height */
-	float log_opacity; /* log2 o */
-	int32_t index;	   /* of the Gaussian in its scene */
+	double depth;	      /* camera z */
+	float slope[3];	      /* l11, l21, l22 rounded: how u and v change between near pixels */
+	float log_opacity;    /* log2 o */
 };
-
-/* The visible Gaussians front to back (by camera z, ties by index). Left out are those with z <= 0.2 or o <
- * 1/255, those whose ellipse holds no pixel centre, and those whose covariance exceeds double (a standard
- * deviation above 1e75 px). The caller frees *out. Returns 0, or -1 with *e set. */
-int project_splats(const struct splats *s, const struct camera *c, enum cpu_level level,
-	struct projected **out, size_t *count, struct err *e);
 
 /* For the kernels: what a camera contributes to every Gaussian. */
 struct project_lens {
 	double world_to_camera[3][4];
 	double fx, fy, cx, cy;
+	double width, height;	/* pixels */
 	double normal[3][3];	/* row k: the cross product of the rotation's other two rows */
 	double low[2], high[2]; /* limits of x/z and y/z in the Jacobian */
 };
 
-enum { PROJECT_LANES = 8 };
+void project_lens_make(struct project_lens *lens, const struct camera *c);
 
-/* Gaussians side by side, so that the compiler can take them at once. */
+enum { PROJECT_LANES = 64 }; /* enough that a lane is in memory when its vector is read */
+
+/* Gaussians side by side; opacities are at least 1/255. Not seen are those with z <= 0.2, those whose ellipse
+ * holds no pixel centre, and those whose covariance exceeds double (a standard deviation above 1e75 px). */
 struct project_batch {
-	double mean[3][PROJECT_LANES], scale[3][PROJECT_LANES], quat[4][PROJECT_LANES];
-	double x[PROJECT_LANES], y[PROJECT_LANES], z[PROJECT_LANES];	/* mean in pixels, and camera z */
-	double xx[PROJECT_LANES], xy[PROJECT_LANES], yy[PROJECT_LANES]; /* covariance, pixels^2 */
-	double det[PROJECT_LANES];					/* and its determinant */
+	float mean[3][PROJECT_LANES], scale[3][PROJECT_LANES], quat[4][PROJECT_LANES];
+	float opacity[PROJECT_LANES];
+	double x[PROJECT_LANES], y[PROJECT_LANES], z[PROJECT_LANES];	   /* mean in pixels, and camera z */
+	double l11[PROJECT_LANES], l21[PROJECT_LANES], l22[PROJECT_LANES]; /* as struct projected */
+	double log_opacity[PROJECT_LANES];
+	double radius[PROJECT_LANES]; /* u^2 + v^2 <= radius^2 where a >= 1/255, and, for rounding, a little
+					 beyond */
+	int32_t seen[PROJECT_LANES];  /* 0: not seen, and the rest means nothing */
+	/* first and last of the pixels whose centres the ellipse's bounding box holds */
+	int32_t columns[2][PROJECT_LANES], rows[2][PROJECT_LANES];
 };
 
 #endif

@@ -52,6 +52,23 @@ static double mark_row(float *weight, size_t n, double tolerance, uint64_t *heap
 	return out;
 }
 
+/* Closes the gaps of what is marked by -1. */
+static void close_gaps(struct render_weights *w, size_t pixels)
+{
+	int64_t kept = 0, begin = 0;
+
+	for (size_t p = 0; p < pixels; p++) {
+		int64_t end = w->indptr[p + 1];
+		for (int64_t i = begin; i < end; i++) {
+			w->index[kept] = w->index[i];
+			w->weight[kept] = w->weight[i];
+			kept += w->weight[i] >= 0;
+		}
+		begin = end;
+		w->indptr[p + 1] = kept;
+	}
+}
+
 int prune_weights(struct render_weights *w, size_t pixels, double tolerance, float *dropped, struct err *e)
 {
 	size_t longest = 0;
@@ -69,16 +86,21 @@ int prune_weights(struct render_weights *w, size_t pixels, double tolerance, flo
 			(float)mark_row(w->weight + w->indptr[p], (size_t)(w->indptr[p + 1] - w->indptr[p]),
 				tolerance, heaps + longest * (size_t)omp_get_thread_num());
 	free(heaps);
-	int64_t kept = 0, begin = 0;
-	for (size_t p = 0; p < pixels; p++) {
-		int64_t end = w->indptr[p + 1];
-		for (int64_t i = begin; i < end; i++) {
-			w->index[kept] = w->index[i];
-			w->weight[kept] = w->weight[i];
-			kept += w->weight[i] >= 0;
-		}
-		begin = end;
-		w->indptr[p + 1] = kept;
-	}
+	close_gaps(w, pixels);
 	return 0;
+}
+
+void prune_below(struct render_weights *w, size_t pixels, double least, float *dropped)
+{
+#pragma omp parallel for schedule(static)
+	for (size_t p = 0; p < pixels; p++) {
+		double out = (double)dropped[p];
+		for (int64_t i = w->indptr[p]; i < w->indptr[p + 1]; i++)
+			if ((double)w->weight[i] < least) {
+				out += (double)w->weight[i];
+				w->weight[i] = -1;
+			}
+		dropped[p] = out < 1 ? (float)out : 1;
+	}
+	close_gaps(w, pixels);
 }

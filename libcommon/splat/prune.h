@@ -13,4 +13,7 @@
  * was. */
 int prune_weights(struct render_weights *w, size_t pixels, double tolerance, float *dropped, struct err *e);
 
+/* Takes every weight below `least` out, and adds it to the pixel's `dropped`, which stays at most 1. */
+void prune_below(struct render_weights *w, size_t pixels, double least, float *dropped);
+
 #endif

@@ -27,21 +27,43 @@ struct render_view; /* projected, culled, tiled and depth-sorted Gaussians of on
 struct render_view *render_prepare(const struct splats *s, const struct camera *c, struct err *e);
 void render_free(struct render_view *v);
 
-/* Blend weights, CSR over the P = width*height pixels of the camera. Arrays are allocated here, the caller
- * frees them. */
+/* The same for another camera, or other splats, in the memory that the view has: fresh memory costs as much
+ * as projecting. Returns 0, or -1 with *e set; then the view is good for render_again and render_free only.
+ */
+int render_again(struct render_view *v, const struct splats *s, const struct camera *c, struct err *e);
+
+/* Bytes that a view of so many Gaussians takes, without its tile lists: those are as long as the Gaussians
+ * are large. */
+size_t render_bytes(size_t gaussians);
+
+/* Blend weights, CSR over the P = width*height pixels of the camera. */
 struct render_weights {
 	int64_t *indptr;      /* (P+1) */
 	int32_t *index;	      /* (nnz) front to back */
 	float *weight;	      /* (nnz) */
 	float *transmittance; /* (P) what is left: sum of weights + transmittance = 1 */
+	size_t indptr_room, index_room, weight_room, transmittance_room; /* items the arrays could hold */
 };
+
+/* Arrays are allocated here. Returns 0, or -1 with *e set and nothing to free. */
 int render_weights(const struct render_view *v, struct render_weights *w, struct err *e);
+/* The same in the arrays that *w has from another view, or in new ones where it is zeroed. On failure they
+ * are freed. */
+int render_weights_again(const struct render_view *v, struct render_weights *w, struct err *e);
 void render_weights_free(struct render_weights *w);
 
 /* Blends `channels` values per Gaussian: out (channels,P) = sum_i w_i values[c][i], values (channels,N)
  * planar, no background. `transmittance` (P) may be NULL. */
 int render_values(const struct render_view *v, const float *values, int channels, float *out,
 	float *transmittance, struct err *e);
+
+/* The same for values that are packed once and blended in many views: planes in groups of RENDER_GROUP, the
+ * last perhaps of fewer, each group (N,channels of it). One pass blends a group. render_pack packs in place,
+ * and fails for want of memory only. */
+enum { RENDER_GROUP = 16 };
+int render_pack(float *values, size_t n, int channels, struct err *e);
+void render_packed(
+	const struct render_view *v, const float *values, int channels, float *out, float *transmittance);
 
 /* Colours from spherical harmonics over a background: rgb (P,3) in [0,1] clamped. */
 int render_colors(const struct render_view *v, const struct splats *s, const struct camera *c,

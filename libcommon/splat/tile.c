@@ -1,26 +1,18 @@
 #include "splat/tile.h"
 
 #include "base/mem.h"
+#include "base/threads.h"
 
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* Tiles first to last of one tile row. */
-struct span {
-	uint32_t entry;
-	uint16_t row, first, last;
-};
-
-/* One task's Gaussians: their spans in order, and how many entries each tile gets from them. */
-struct share {
-	size_t begin, end;
-	struct span *spans;
-	size_t count, capacity;
-	uint32_t
-		*tally; /* (tiles); then where the share's next entry of a tile goes, less the tile's start */
-	struct err err;
-};
+struct tile_grid tile_grid(int width, int height)
+{
+	return (struct tile_grid){
+		width, height, (width + TILE_SIZE - 1) / TILE_SIZE, (height + TILE_SIZE - 1) / TILE_SIZE};
+}
 
 /* The tile of the first pixel centre at or after x, and of the last at or before it; within [0, size). */
 static int first_tile(double x, int size)
@@ -54,12 +46,14 @@ struct ellipse {
 	double slope, width, half_height, peak;
 };
 
-static void ellipse_make(struct ellipse *l, const struct projected *p)
+static struct ellipse ellipse_make(const struct project_batch *b, int l)
 {
-	l->slope = -p->l21 / p->l11;
-	l->half_height = p->radius / p->l22;
-	l->width = p->radius / p->l11;
-	l->peak = -p->l21 * l->half_height / sqrt(p->l21 * p->l21 + p->l22 * p->l22);
+	double l11 = b->l11[l], l21 = b->l21[l], l22 = b->l22[l], half_height = b->radius[l] / l22;
+
+	return (struct ellipse){.slope = -l21 / l11,
+		.half_height = half_height,
+		.width = b->radius[l] / l11,
+		.peak = -l21 * half_height / sqrt(l21 * l21 + l22 * l22)};
 }
 
 static double ellipse_half(const struct ellipse *l, double y)
@@ -69,113 +63,188 @@ static double ellipse_half(const struct ellipse *l, double y)
 	return s > 0 ? l->width * sqrt(s) : 0;
 }
 
-static int add_spans(
-	struct share *share, const struct projected *p, uint32_t entry, int width, int height, int columns)
+/* The tiles `row` that the ellipse of lane l meets. */
+static struct tile_span row_span(
+	const struct tile_grid *g, const struct ellipse *shape, double x, double y, unsigned row)
 {
-	int top = first_tile(p->y - p->half_height, height),
-	    bottom = last_tile(p->y + p->half_height, height);
-	int left = first_tile(p->x - p->half_width, width), right = last_tile(p->x + p->half_width, width);
-	struct ellipse l;
+	const double tall = shape->half_height;
+	double low = clamp(row * TILE_SIZE + 0.5 - y, -tall, tall);
+	double high = clamp((row + 1) * TILE_SIZE - 0.5 - y, -tall, tall);
+	double y_right = clamp(shape->peak, low, high), y_left = clamp(-shape->peak, low, high);
+	/* a thousandth of a pixel covers the rounding of the ends */
+	int first = first_tile(x + shape->slope * y_left - ellipse_half(shape, y_left) - 1e-3, g->width);
+	int last = last_tile(x + shape->slope * y_right + ellipse_half(shape, y_right) + 1e-3, g->width);
 
-	if (top > bottom || left > right)
-		return 0;
-	if (mem_grow((void **)&share->spans, &share->capacity, share->count + (size_t)(bottom - top) + 1,
-		    sizeof *share->spans, "tile spans", &share->err))
+	if (first > last)
+		return (struct tile_span){1, 0};
+	return (struct tile_span){(uint16_t)first, (uint16_t)last};
+}
+
+/* Which of the two tiles from `left` on are in a span. */
+static unsigned span_mask(struct tile_span span, unsigned left)
+{
+	return (unsigned)(span.first <= left && left <= span.last) |
+	       (unsigned)(span.first <= left + 1 && left + 1 <= span.last) << 1;
+}
+
+static int cover_many(const struct tile_grid *g, const struct project_batch *b, int l, unsigned top,
+	unsigned bottom, uint32_t *cover, struct tile_spans *spans, uint32_t *tally, struct err *e)
+{
+	const unsigned rows = bottom - top + 1;
+	const struct ellipse shape = ellipse_make(b, l);
+
+	if (mem_grow((void **)&spans->items, &spans->capacity, spans->n + rows + 1, sizeof *spans->items,
+		    "tile spans", e))
 		return -1;
-	ellipse_make(&l, p);
-	for (int row = top; row <= bottom; row++) {
-		int first = left, last = right;
-		if (top < bottom && left < right) {
-			double low = clamp(row * TILE_SIZE + 0.5 - p->y, -l.half_height, l.half_height);
-			double high =
-				clamp((row + 1) * TILE_SIZE - 0.5 - p->y, -l.half_height, l.half_height);
-			double y_right = clamp(l.peak, low, high), y_left = clamp(-l.peak, low, high);
-			/* a thousandth of a pixel covers the rounding of the ends */
-			first = first_tile(p->x + l.slope * y_left - ellipse_half(&l, y_left) - 1e-3, width);
-			last = last_tile(p->x + l.slope * y_right + ellipse_half(&l, y_right) + 1e-3, width);
-		}
-		if (first > last)
-			continue;
-		share->spans[share->count++] =
-			(struct span){entry, (uint16_t)row, (uint16_t)first, (uint16_t)last};
-		for (int k = first; k <= last; k++)
-			share->tally[row * columns + k]++;
+	*cover = TILE_MANY | (uint32_t)spans->n;
+	spans->items[spans->n++] = (struct tile_span){(uint16_t)top, (uint16_t)rows};
+	for (unsigned row = top; row <= bottom; row++) {
+		struct tile_span span = row_span(g, &shape, b->x[l], b->y[l], row);
+		spans->items[spans->n++] = span;
+		for (unsigned k = span.first; k <= span.last; k++)
+			tally[row * (unsigned)g->columns + k]++;
 	}
 	return 0;
 }
 
-/* From tallies to places: each tile's entries come share after share, so that they stay front to back. */
-static int place_entries(struct tile_lists *t, struct share *shares, int share_count, struct err *e)
+int tile_cover(const struct tile_grid *g, const struct project_batch *b, int l, uint32_t *cover,
+	struct tile_spans *spans, uint32_t *tally, struct err *e)
 {
-	size_t tiles = (size_t)t->columns * (size_t)t->rows, sum = 0;
+	const unsigned left = (unsigned)b->columns[0][l] / TILE_SIZE,
+		       right = (unsigned)b->columns[1][l] / TILE_SIZE;
+	const unsigned top = (unsigned)b->rows[0][l] / TILE_SIZE,
+		       bottom = (unsigned)b->rows[1][l] / TILE_SIZE;
+	const unsigned more_columns = right - left, more_rows = bottom - top;
+
+	if (more_columns > 1 || more_rows > 1)
+		return cover_many(g, b, l, top, bottom, cover, spans, tally, e);
+	unsigned mask = 1 | more_columns << 1 | more_rows << 2;
+	if (more_columns & more_rows) {
+		const struct ellipse shape = ellipse_make(b, l);
+		mask = span_mask(row_span(g, &shape, b->x[l], b->y[l], top), left) |
+		       span_mask(row_span(g, &shape, b->x[l], b->y[l], bottom), left) << 2;
+	}
+	*cover = top | left << TILE_COLUMN_BIT | mask << TILE_MASK_BIT;
+	/* all four, without asking which: a wrong guess costs more */
+	tally += top * (unsigned)g->columns + left;
+	tally[0] += mask & 1;
+	tally[1] += mask >> 1 & 1;
+	tally[g->columns] += mask >> 2 & 1;
+	tally[g->columns + 1] += mask >> 3;
+	return 0;
+}
+
+/* Where the lists begin. */
+static size_t place_lists(size_t *start, const struct tile_grid *g, const uint32_t *tallies, int tally_count)
+{
+	const size_t tiles = (size_t)g->columns * (size_t)g->rows;
+	size_t sum = 0;
 
 	for (size_t k = 0; k < tiles; k++) {
-		size_t here = 0;
-		t->start[k] = sum;
-		for (int i = 0; i < share_count; i++) {
-			uint32_t tally = shares[i].tally[k];
-			shares[i].tally[k] = (uint32_t)here;
-			here += tally;
-		}
-		sum += here;
+		start[k] = sum;
+		for (int i = 0; i < tally_count; i++)
+			sum += tallies[(size_t)i * tile_tallies(g) + k];
 	}
-	t->start[tiles] = sum;
-	t->entries = mem_alloc(sum, sizeof *t->entries, "tile lists", e);
-	if (!t->entries)
-		return -1;
-#pragma omp parallel for schedule(static, 1)
-	for (int i = 0; i < share_count; i++) {
-		struct share *share = &shares[i];
-		for (size_t k = 0; k < share->count; k++) {
-			const struct span *span = &share->spans[k];
-			for (int column = span->first; column <= span->last; column++) {
-				size_t tile = (size_t)span->row * (size_t)t->columns + (size_t)column;
-				t->entries[t->start[tile] + share->tally[tile]++] = span->entry;
-			}
-		}
-	}
-	return 0;
+	start[tiles] = sum;
+	return sum;
 }
 
-int tile_build(
-	struct tile_lists *t, const struct projected *p, size_t n, int width, int height, struct err *e)
+/* Of `parts` bands of tile rows with about equally many entries, where band `part` begins. */
+static unsigned band_begin(const struct tile_lists *t, const struct tile_grid *g, int part, int parts)
 {
-	int share_count = omp_get_max_threads(), bad = 0;
-	int columns = (width + TILE_SIZE - 1) / TILE_SIZE, rows = (height + TILE_SIZE - 1) / TILE_SIZE;
-	size_t tiles = (size_t)columns * (size_t)rows;
+	size_t columns = (size_t)g->columns, all = t->start[columns * (size_t)g->rows];
+	unsigned row = 0;
 
-	*t = (struct tile_lists){.columns = columns, .rows = rows};
-	t->start = mem_alloc(tiles + 1, sizeof *t->start, "tile lists", e);
-	struct share *shares = mem_zalloc((size_t)share_count, sizeof *shares, "tile lists", e);
-	bad = !t->start || !shares;
-	for (int i = 0; !bad && i < share_count; i++) {
-		shares[i].begin = n / (size_t)share_count * (size_t)i;
-		shares[i].end = i + 1 < share_count ? n / (size_t)share_count * (size_t)(i + 1) : n;
-		shares[i].tally = mem_zalloc(tiles, sizeof *shares[i].tally, "tile lists", e);
-		bad = !shares[i].tally;
+	while (row < (unsigned)g->rows && t->start[row * columns] < all / (size_t)parts * (size_t)part)
+		row++;
+	return part == parts ? (unsigned)g->rows : row;
+}
+
+enum { AHEAD = 24 }; /* Gaussians to fetch before their use */
+
+/* Lists that are being filled, by one thread. */
+struct filling {
+	uint32_t *entries;
+	size_t *next;	     /* (tiles) where each goes on; then where what goes nowhere is put */
+	size_t nowhere;	     /* which of `next` that is */
+	unsigned begin, end; /* the band's tile rows */
+	unsigned columns;
+};
+
+static void fill_many(const struct filling *f, const struct tile_span *cover, uint32_t index)
+{
+	const unsigned top = cover->first, bottom = top + cover->last;
+
+	for (unsigned row = top < f->begin ? f->begin : top; row < bottom && row < f->end; row++) {
+		const struct tile_span span = cover[1 + row - top];
+		size_t *to = f->next + (size_t)row * f->columns;
+		for (unsigned k = span.first; k <= span.last; k++)
+			f->entries[to[k]++] = index;
 	}
-	if (bad)
-		goto done;
-#pragma omp parallel for schedule(static, 1)
-	for (int i = 0; i < share_count; i++)
-		for (size_t k = shares[i].begin; k < shares[i].end; k++)
-			if (add_spans(&shares[i], &p[k], (uint32_t)k, width, height, columns))
-				break;
-	for (int i = 0; !bad && i < share_count; i++)
-		if (shares[i].err.code) {
-			*e = shares[i].err;
-			bad = 1;
+}
+
+static void fill_one(const struct filling *f, size_t tile, unsigned bit, uint32_t index)
+{
+	size_t *to = f->next + (bit ? tile : f->nowhere);
+
+	f->entries[*to] = index;
+	*to += bit;
+}
+
+static void fill_band(const struct filling *f, const struct order_item *order, size_t n,
+	const uint32_t *covers, const struct tile_spans *spans)
+{
+	const unsigned low = (1 << TILE_COLUMN_BIT) - 1, height = f->end - f->begin;
+
+	for (size_t i = 0; i < n; i++) {
+		const uint32_t index = order[i].index, cover = covers[index];
+		if (i + AHEAD < n)
+			__builtin_prefetch(&covers[order[i + AHEAD].index]);
+		if (cover & TILE_MANY) {
+			fill_many(f, spans[index / TILE_BLOCK].items + (cover & ~TILE_MANY), index);
+			continue;
 		}
-	bad = bad || place_entries(t, shares, share_count, e);
-done:
-	for (int i = 0; shares && i < share_count; i++) {
-		free(shares[i].spans);
-		free(shares[i].tally);
+		const unsigned row = cover & low;
+		const size_t tile = (size_t)row * f->columns + (cover >> TILE_COLUMN_BIT & low);
+		/* rows outside the band wrap around to above its height */
+		unsigned mask = cover >> TILE_MASK_BIT &
+				((row - f->begin < height ? 3 : 0) | (row + 1 - f->begin < height ? 12 : 0));
+		/* all four, as in tile_cover */
+		fill_one(f, tile, mask & 1, index);
+		fill_one(f, tile + 1, mask >> 1 & 1, index);
+		fill_one(f, tile + f->columns, mask >> 2 & 1, index);
+		fill_one(f, tile + f->columns + 1, mask >> 3 & 1, index);
 	}
-	free(shares);
-	if (bad)
-		tile_free(t);
-	return bad ? -1 : 0;
+}
+
+int tile_bin(struct tile_lists *t, const struct tile_grid *g, const struct order_item *order, size_t n,
+	const uint32_t *covers, const struct tile_spans *spans, const uint32_t *tallies, int tally_count,
+	struct err *e)
+{
+	const size_t tiles = (size_t)g->columns * (size_t)g->rows;
+	const int threads = threads_available();
+	const size_t spare = (size_t)threads;
+
+	/* behind the starts are the places where each list goes on while it is filled */
+	if (mem_room((void **)&t->start, &t->start_capacity, 2 * tiles + 1 + spare, sizeof *t->start,
+		    "tile lists", e))
+		return -1;
+	size_t *next = t->start + tiles + 1, all = place_lists(t->start, g, tallies, tally_count);
+	if (mem_room((void **)&t->entries, &t->entries_capacity, all + spare, sizeof *t->entries,
+		    "tile lists", e))
+		return -1;
+	memcpy(next, t->start, tiles * sizeof *next);
+	for (size_t i = 0; i < spare; i++)
+		next[tiles + i] = all + i;
+#pragma omp parallel num_threads(threads)
+	{
+		const int part = omp_get_thread_num(), parts = omp_get_num_threads();
+		const struct filling f = {t->entries, next, tiles + (size_t)part,
+			band_begin(t, g, part, parts), band_begin(t, g, part + 1, parts),
+			(unsigned)g->columns};
+		fill_band(&f, order, n, covers, spans);
+	}
+	return 0;
 }
 
 void tile_free(struct tile_lists *t)

@@ -7,11 +7,13 @@
 #include "base/mem.h"
 #include "base/rng.h"
 #include "cli/cli.h"
+#include "mask/bits.h"
 #include "peak.h"
 #include "refer/step.h"
 #include "refer/train.h"
 
 #include <omp.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +25,7 @@ static const char *const names[TIMES] = {"words", "fold", "hidden", "respond", "
 
 static struct {
 	const char *gaussians, *threads;
-	long long words, sentences, batch, weights, repeats;
+	long long words, sentences, negatives, batch, weights, repeats;
 	int size[2], similarity, is_wall;
 } options = {.gaussians = "68270",
 	.words = 14,
@@ -37,6 +39,8 @@ static const struct cli_option table[] = {{"gaussians", 0, CLI_STRING, &options.
 						  "Gaussians that learn (default 68270)", 0, 0},
 	{"words", 0, CLI_INT, &options.words, "N", "of a sentence (default 14)", 1, 500},
 	{"sentences", 0, CLI_INT, &options.sentences, "R", "of the scene (default 44)", 1, 100000},
+	{"negatives", 0, CLI_INT, &options.negatives, "K",
+		"sentences of the contrast besides the object's own (default 0: all)", 0, 100000},
 	{"batch", 0, CLI_INT, &options.batch, "S", "sentences in a step (default 1)", 1, 64},
 	{"size", 0, CLI_SIZE, options.size, "WxH", "of the view in pixels (default 318x178)", 1, 10000},
 	{"weights", 0, CLI_INT, &options.weights, "N", "of a pixel, on average (default 56)", 1, 10000},
@@ -63,6 +67,7 @@ struct problem {
 	int *objects;
 	struct view_weights view;
 	uint8_t *mask;
+	size_t *others; /* sentences in the order in which the contrast takes them */
 };
 
 /* Seconds of every repeat, phase by phase. */
@@ -158,9 +163,12 @@ static void problem_make(struct problem *p, size_t gaussians)
 	p->position = uniform(&r, gaussians * 3, 1);
 	p->text = uniform(&r, sentences * words * TEXT, 0.1f);
 	p->view = make_view(&r, gaussians, width, (size_t)options.size[1], (size_t)options.weights);
-	p->mask = need(p->view.pixels, 1);
+	p->mask = need(bits_bytes(p->view.pixels), 1);
 	for (size_t i = 0; i < p->view.pixels; i++)
-		p->mask[i] = i % width < width / 5;
+		p->mask[i / 8] |= (uint8_t)((i % width < width / 5) << i % 8);
+	p->others = need(sentences, sizeof *p->others);
+	for (size_t i = 0; i < sentences; i++)
+		p->others[i] = sentences - 1 - i;
 }
 
 static void problem_free(struct problem *p)
@@ -174,13 +182,16 @@ static void problem_free(struct problem *p)
 	free(p->offsets);
 	free(p->objects);
 	free(p->mask);
+	free(p->others);
 }
 
 /* Multiplications with an addition that the mathematics asks for, folded. */
 static double work(const struct problem *p, enum step_phase phase)
 {
 	const double n = (double)p->gaussians, batch = (double)options.batch, own = (double)options.words;
-	const double all = own * (double)options.sentences, nnz = (double)p->view.indptr[p->view.pixels];
+	const double others = (double)options.negatives, chosen = (double)options.sentences;
+	const double all = own * (others > 0 ? fmin(others + PER_OBJECT, chosen) : chosen),
+		     nnz = (double)p->view.indptr[p->view.pixels];
 	const double g = BLOCK_G, z = g + own, scores = batch * own * g, feature = 16 * 32 + 32 * 64,
 		     position = 3 * 16 + 16 * 64, text0 = 512.0 * TEXT, text1 = 512.0 * 256;
 	const int is_cosine = options.similarity == REFER_COSINE;
@@ -220,7 +231,6 @@ static struct result measure(struct problem *p, int threads)
 		.temperature = 0.1,
 		.lambda = 0.02,
 		.gaussians = p->gaussians,
-		.scene_gaussians = p->gaussians,
 		.position = p->position,
 		.sentences = (size_t)options.sentences,
 		.offsets = p->offsets,
@@ -240,6 +250,8 @@ static struct result measure(struct problem *p, int threads)
 		fprintf(stderr, "bench_step: %s\n", e.message);
 		exit(4);
 	}
+	const int is_sampled = options.negatives > 0 && options.negatives < options.sentences;
+	const struct step_others others = {p->others, (size_t)options.negatives};
 	step_watch(s, ended, &w);
 	for (int t = 0; t < TIMES; t++)
 		r.times[t] = need((size_t)repeats, sizeof(double));
@@ -250,7 +262,7 @@ static struct result measure(struct problem *p, int threads)
 		memset(w.spent, 0, sizeof w.spent);
 		const double start = w.last = clock_seconds(w.clock);
 		step_run(s, p->state.values, train_state_x(&p->state), &p->view, targets, batch,
-			contrast_top_count(0, p->gaussians), p->state.gradient,
+			contrast_top_count(0, p->gaussians), is_sampled ? &others : NULL, p->state.gradient,
 			p->state.gradient + p->state.parameters);
 		const double middle = clock_seconds(w.clock);
 		train_adam(&p->state, &(struct train_rates){2.5e-3, 1e-4});
@@ -308,11 +320,11 @@ static void print_json(const struct problem *p, const struct result *r, double p
 	const double seconds = median(r->times[STEP]), rate = 2e-9 * whole_work(p) / seconds,
 		     top = 2e-9 * peak * r->threads;
 
-	printf("{\"bench\":\"step\",\"gaussians\":%zu,\"words\":%lld,\"sentences\":%lld,\"batch\":%lld,"
+	printf("{\"bench\":\"step\",\"gaussians\":%zu,\"words\":%lld,\"sentences\":%lld,\"negatives\":%lld,\"batch\":%lld,"
 	       "\"pixels\":%zu,\"weights\":%lld,\"threads\":%d,\"similarity\":\"%s\",\"kernels\":\"%s\","
 	       "\"repeats\":%lld,\"ms\":%.4f,\"min_ms\":%.4f,\"phases\":{",
-		p->gaussians, options.words, options.sentences, options.batch, p->view.pixels,
-		(long long)p->view.indptr[p->view.pixels], r->threads,
+		p->gaussians, options.words, options.sentences, options.negatives, options.batch,
+		p->view.pixels, (long long)p->view.indptr[p->view.pixels], r->threads,
 		refer_similarity_name((enum refer_similarity)options.similarity), block_select(NULL)->name,
 		options.repeats, 1e3 * seconds, 1e3 * r->times[STEP][0]);
 	for (int t = 0; t < STEP; t++)

@@ -110,7 +110,7 @@ says_in() {
 	for id in 00 02 03; do
 		st weights/v$id.safetensors "$header" 000000000000000001000000000000000200000000000000${id}00000001000000$f0$f0$fhalf$f1
 	done
-	says 0 "weights/v02.safetensors: ok: refer.weights, 2x1, 2 weights, 3 gaussians of the scene" "$BIN/gs-check" weights/v02.safetensors
+	says 0 "weights/v02.safetensors: ok: refer.weights, f32, 2x1, 2 weights, 3 gaussians of the scene" "$BIN/gs-check" weights/v02.safetensors
 	says 1 "weights/v03.safetensors: tensor 'index': entry 0 is 3, not in 0 to 2" "$BIN/gs-check" weights
 	rm weights/v03.safetensors
 	says 0 "weights: ok: weights, 2 views, 4 weights" "$BIN/gs-check" weights

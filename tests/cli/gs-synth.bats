@@ -70,6 +70,38 @@ differ() {
 	[ -z "$(find . -name '*.tmp.*')" ]
 }
 
+# interrupted SIGNAL [OPTION OF env]...: sends the signal when two outputs are half written; sets status.
+interrupted() {
+	local signal=$1 pid i
+	shift
+	rm -rf out
+	env "$@" "$BIN/gs-synth" --views 25 --size 400x300 --gaussians 1000 --objects 2 -o out >printed 2>&1 &
+	pid=$!
+	for ((i = 0; i < 1000; i++)); do
+		[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = 2 ] && break
+		sleep 0.01
+	done
+	[ $i -lt 1000 ]
+	kill "-$signal" $pid
+	status=0
+	wait $pid || status=$?
+	[ -z "$(find . -name '*.tmp.*')" ]
+}
+
+@test "a signal leaves no temporary file, and its own exit status" {
+	for signal in HUP INT TERM; do
+		interrupted $signal --default-signal
+		[ $status = $((128 + $(kill -l $signal))) ]
+		[ ! -e out/truth.jsonl ]
+	done
+}
+
+@test "a signal that is ignored from the start stays so" {
+	interrupted HUP --ignore-signal=HUP
+	[ $status = 0 ]
+	[ -e out/truth.jsonl ]
+}
+
 @test "the folder holds what formats/synth.md says" {
 	small -o out
 	[ "$(cd out && find . -type f | LC_ALL=C sort | tr '\n' ' ')" = "./candidates.jsonl ./images/view_000.png \

@@ -83,13 +83,25 @@ v3.safetensors" ]
 	"$BIN/gs-check" weights/v1.safetensors
 }
 
-# Two Gaussians behind each other in one pixel: 0.5 in front, then 0.99 of the rest.
+@test "--precision u8 stores whole numbers of 1/255" {
+	cameras "$(view width=3 height=1 cx=1.5 cy=0.5)"
+	"$BIN/gs-weigh" --precision u8 -o weights scene
+	# 0.7645 is 194.9 / 255, 0.99 is 252.45 / 255
+	[ "$(tensor weights/v1.safetensors weight u1)" = "195 252 195" ]
+	[ "$(tensor weights/v1.safetensors dropped f4)" = "0 0 0" ]
+	[ "$(meta weights/v1.safetensors options)" = "--scale 1 --tolerance 0 --precision u8" ]
+	says 0 "weights/v1.safetensors: ok: refer.weights, u8, 3x1, 3 weights, 1 gaussians of the scene" \
+		"$BIN/gs-check" weights/v1.safetensors
+}
+
+# Two Gaussians behind each other in one pixel: 0.5 in front, then 0.99 of the rest. OPACITIES, of the one behind and the one
+# in front, are others.
 two_layers() {
-	local header
+	local header opacities=${1:-$f1$fhalf}
 	header='{"__metadata__":{"format":"refer.splats","version":"1"},"means":{"dtype":"F32","shape":[2,3],"data_offsets":[0,24]},"scales":{"dtype":"F32","shape":[2,3],"data_offsets":[24,48]},"quats":{"dtype":"F32","shape":[2,4],"data_offsets":[48,80]},"opacities":{"dtype":"F32","shape":[2],"data_offsets":[80,88]},"sh":{"dtype":"F32","shape":[2,1,3],"data_offsets":[88,112]}}'
 	while (((8 + ${#header}) % 4)); do header+=' '; done
 	st scene/splats.safetensors "$header" \
-		"$f0$f0$f1$f0$f0$f0$f1$f1$f1$f1$f1$f1$f1$f0$f0$f0$f1$f0$f0$f0$f1$fhalf$f0$f0$f0$f0$f0$f0"
+		"$f0$f0$f1$f0$f0$f0$f1$f1$f1$f1$f1$f1$f1$f0$f0$f0$f1$f0$f0$f0$opacities$f0$f0$f0$f0$f0$f0"
 	cameras "$(view width=1 height=1 cx=0.5 cy=0.5)"
 }
 
@@ -112,20 +124,40 @@ two_layers() {
 	"$BIN/gs-check" weights/v1.safetensors
 }
 
+@test "--precision u8 leaves out what would round to 0, and records it with the rest" {
+	two_layers cdcccc3d$f1 # 0.1 behind 0.99: 0.001, which is below 1/510
+	"$BIN/gs-weigh" --precision u8 -v -o weights scene 2>err
+	grep -q '^gs-weigh: v1: 1x1, 1 weights' err
+	[ "$(tensor weights/v1.safetensors indptr d8)" = "0 1" ]
+	[ "$(tensor weights/v1.safetensors index d4)" = 1 ]
+	[ "$(tensor weights/v1.safetensors weight u1)" = 252 ]
+	tensor weights/v1.safetensors dropped f4 | awk '{ exit !(($1 - 0.001) ^ 2 < 1e-12) }'
+	two_layers cdcc4c3e$f1 # 0.2: 0.002, which is 1/255
+	"$BIN/gs-weigh" --precision u8 -o weights scene
+	[ "$(tensor weights/v1.safetensors weight u1)" = "252 1" ]
+	# What --tolerance leaves out is in the same sum: 0.495 of 0.5 in front, 0.99 of the rest behind.
+	two_layers
+	"$BIN/gs-weigh" --precision u8 --tolerance 0.5 -o weights scene
+	tensor weights/v1.safetensors dropped f4 | awk '{ exit !(($1 - 0.495) ^ 2 < 1e-12) }'
+	"$BIN/gs-check" weights/v1.safetensors
+}
+
 @test "a scene without Gaussians has empty weights" {
 	header='{"__metadata__":{"format":"refer.splats","version":"1"},"means":{"dtype":"F32","shape":[0,3],"data_offsets":[0,0]},"scales":{"dtype":"F32","shape":[0,3],"data_offsets":[0,0]},"quats":{"dtype":"F32","shape":[0,4],"data_offsets":[0,0]},"opacities":{"dtype":"F32","shape":[0],"data_offsets":[0,0]},"sh":{"dtype":"F32","shape":[0,1,3],"data_offsets":[0,0]}}'
 	while (((8 + ${#header}) % 4)); do header+=' '; done
 	st scene/splats.safetensors "$header"
 	"$BIN/gs-weigh" -o weights scene
-	says 0 "weights/v1.safetensors: ok: refer.weights, 4x3, 0 weights, 0 gaussians of the scene" \
+	says 0 "weights/v1.safetensors: ok: refer.weights, f32, 4x3, 0 weights, 0 gaussians of the scene" \
 		"$BIN/gs-check" weights/v1.safetensors
 }
 
 @test "--threads 1, 2 and 3 give the same bytes" {
 	cameras "$(view width=150 height=70 cx=75 cy=35)" "$(view name='"v2"')"
-	for n in 1 2 3; do "$BIN/gs-weigh" --threads $n --tolerance 0.01 -o t$n scene; done
-	diff -r t1 t2
-	diff -r t1 t3
+	for precision in f32 u8; do
+		for n in 1 2 3; do "$BIN/gs-weigh" --threads $n --tolerance 0.01 --precision $precision -o t$n scene; done
+		diff -r t1 t2
+		diff -r t1 t3
+	done
 }
 
 @test "files that exist are replaced" {

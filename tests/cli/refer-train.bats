@@ -45,8 +45,8 @@ refuses() {
 	[ "$(ls | tr '\n' ' ')" = "masks.jsonl out.safetensors printed scene text.safetensors weights " ]
 	"$BIN/gs-check" out.safetensors
 	[ "$(meta out.safetensors gaussians)" = 1000 ]
-	[[ "$(meta out.safetensors options)" == "--iterations 8 --interaction pcmi --similarity dot --contrast cosine \
---temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --tolerance 0 --seed 1, inputs "???????? ]]
+	[[ "$(meta out.safetensors options)" == "--iterations 8 --precision u8 --interaction pcmi --similarity dot --contrast cosine \
+--temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --negatives 12 --tolerance 0 --share 0.04 --seed 1, inputs "???????? ]]
 }
 
 @test "--threads 1, 2 and 3 give the same bytes" {
@@ -333,6 +333,26 @@ cut_short() {
 	refuses 3 "nothing: no Gaussian has weight in a view with masks" --weights nothing
 }
 
+@test "--precision f32, f16 and u8 store the same model in fewer bytes" {
+	for p in f32 f16 u8; do
+		train --iterations 100 --precision $p -o m.$p
+		"$BIN/gs-check" m.$p | grep -q "^m.$p: ok: refer.model, $p, 259 features, "
+		"$BIN/refer-render" -q --scene scene --text text.safetensors --model m.$p --split all -o masks.$p
+		"$BIN/miou-score" -q --fail-under 0.99 --truth masks.f32 masks.$p >scores
+	done
+	train --iterations 100 -o m
+	cmp m m.u8
+	[ "$(wc -c <m.f16)" -lt $(($(wc -c <m.f32) * 53 / 100)) ]
+	[ "$(wc -c <m.u8)" -lt $(($(wc -c <m.f32) * 32 / 100)) ]
+}
+
+@test "--precision does not belong to a checkpoint: a training may end in another" {
+	train --interaction none --iterations 60 --precision f16 -o whole
+	cut_short
+	train --interaction none --iterations 60 --precision f16 --resume -o m
+	cmp whole m
+}
+
 @test "--tolerance leaves Gaussians out" {
 	train -o all
 	train --tolerance 0.2 -o some
@@ -345,7 +365,8 @@ cut_short() {
 	printf '{"view":"%s","object":"brown box","segmentation":{"size":[1,1],"counts":[1]}}\n' "$(cat "$made/test-views")" >>more.jsonl
 	train -v --masks more.jsonl -o m 2>err
 	grep -qx 'refer-train: 1 masks of test views are not used' err
-	grep -qxE 'refer-train: [0-9]+ of 1000 Gaussians, 4 views, 3 sentences, 12 pairs' err
+	grep -qxE 'refer-train: [0-9]+ of 1000 Gaussians share [0-9]+ features, [0-9.]+ a pixel' err
+	grep -qx 'refer-train: 4 views, 3 sentences, 12 pairs' err
 	tail -n 1 err | grep -qE '^refer-train: [0-9.]+ s, peak memory [0-9.]+ MiB$'
 }
 
@@ -354,13 +375,14 @@ cut_short() {
 	says 2 "refer-train: --scene, --weights, --text and --masks are required$try" "$BIN/refer-train" -o m
 	says 2 "refer-train: -o MODEL is required$try" train
 	says 2 "refer-train: --text and --masks cannot both be stdin$try" train --text - --masks - -o m
-	says 2 "refer-train: --similarity cosine does not go with --interaction pcmi-proj, whose features are normalised$try" \
+	says 2 "refer-train: --similarity cosine does not go with --interaction pcmi-proj$try" \
 		train --similarity cosine --interaction pcmi-proj -o m
 	says 2 "refer-train: --resume needs a file to write to: there is no checkpoint of stdout$try" train --resume -o -
 	says 2 "refer-train: --log and --output cannot both be stdout$try" train --log - -o -
 	says 2 "refer-train: --iterations: '0' is not a whole number from 1 to 100000000$try" train --iterations 0 -o m
 	says 2 "refer-train: --batch: '65' is not a whole number from 1 to 64$try" train --batch 65 -o m
 	says 2 "refer-train: --tolerance: '1' is not a number from 0 to 0.99$try" train --tolerance 1 -o m
+	says 2 "refer-train: --precision: 'u4' is not one of f32|f16|u8$try" train --precision u4 -o m
 	says 2 "refer-train: --interaction: 'all' is not one of none|attention|attention+fp|add|pcmi|pcmi-proj$try" \
 		train --interaction all -o m
 	[ ! -e m ]

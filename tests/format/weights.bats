@@ -51,11 +51,13 @@ bad() {
 	says 1 "w: $reason" "$BIN/gs-check" w
 }
 
-@test "a file made by hand is fine, with single and half weights" {
+@test "a file made by hand is fine, with single, half and byte weights" {
 	weights w
-	says 0 "w: ok: refer.weights, 2x1, 3 weights, 5 gaussians of the scene" "$BIN/gs-check" w
+	says 0 "w: ok: refer.weights, f32, 2x1, 3 weights, 5 gaussians of the scene" "$BIN/gs-check" w
 	weights w weight=00380038003c weight_type=F16
-	says 0 "w: ok: refer.weights, 2x1, 3 weights, 5 gaussians of the scene" "$BIN/gs-check" w
+	says 0 "w: ok: refer.weights, f16, 2x1, 3 weights, 5 gaussians of the scene" "$BIN/gs-check" w
+	weights w weight=0080ff weight_type=U8
+	says 0 "w: ok: refer.weights, u8, 2x1, 3 weights, 5 gaussians of the scene" "$BIN/gs-check" w
 }
 
 @test "size and number of Gaussians" {
@@ -78,7 +80,17 @@ bad() {
 	bad "tensor 'dropped': is F32[1], expected F32[2]" dropped=$f0 dropped_shape='[1]'
 	bad "tensor 'weight': is F32[2], expected F32[3]" weight=$f0$f0 weight_shape='[2]'
 	bad "tensor 'weight': is F16[2], expected F16[3]" weight=00000000 weight_shape='[2]' weight_type=F16
+	bad "tensor 'weight': is U8[2], expected U8[3]" weight=0000 weight_shape='[2]' weight_type=U8
 	bad "tensor 'weight': is I32[3], expected F32[3]" weight_type=I32
+}
+
+@test "the ends of the range are fine: -0, 1, the last Gaussian, no Gaussian" {
+	weights w weight=00000080$f1$f0 dropped=${f1}00000080 index=$(i32 4 0 4)
+	says 0 "w: ok: refer.weights, f32, 2x1, 3 weights, 5 gaussians of the scene" "$BIN/gs-check" w
+	bad "tensor 'index': entry 0 is 4, not in 0 to 3" gaussians=4
+	bad "tensor 'index': entry 0 is 4, not in 0 to -1" gaussians=0
+	weights w gaussians=0 index= weight= index_shape='[0]' weight_shape='[0]' indptr=$(i64 0 0 0)
+	says 0 "w: ok: refer.weights, f32, 2x1, 0 weights, 0 gaussians of the scene" "$BIN/gs-check" w
 }
 
 @test "rows that do not tile the weights" {
@@ -97,6 +109,9 @@ bad() {
 	bad "tensor 'weight': entry 2 is nan, not in 0 to 1" weight=$f0$f0$fnan
 	bad "tensor 'weight': entry 1 is inf, not in 0 to 1" weight=$f0$finf$f0
 	bad "tensor 'weight': entry 1 is 2, not in 0 to 1" weight=003800400038 weight_type=F16
+	bad "tensor 'weight': entry 1 is nan, not in 0 to 1" weight=0038007e0038 weight_type=F16
+	bad "tensor 'weight': entry 2 is -inf, not in 0 to 1" weight=0038003800fc weight_type=F16
+	bad "tensor 'weight': entry 0 is 1, not in 0 to 1" weight=0100803f$f0$f0 # one step above 1
 	bad "tensor 'dropped': pixel 1 has nan, not in 0 to 1" dropped=$f0$fnan
 	bad "tensor 'dropped': pixel 0 has -1, not in 0 to 1" dropped=$fminus$f0
 }

@@ -81,3 +81,26 @@ two_stage() {
 	row=$(grep "^selected masks" "$BATS_FILE_TMPDIR/first.log" | awk '{ print $5 }')
 	[ "$(printf %.1f "$score")" = "$row" ]
 }
+
+# demo SEED OPTIONS: the demo's data, and which files of them are new.
+demo() {
+	touch -d '1 hour ago' stamp "$BATS_TEST_TMPDIR"/demo/data/* 2>/dev/null || true
+	make -f "$ROOT/pipelines/demo.mk" DEMO=demo BIN="$BIN" SEED="$1" SYNTH="$2" demo/data/made-by >log 2>&1
+	find demo/data -maxdepth 1 -newer stamp -type f | grep -c . || true
+}
+
+@test "the demo makes its data anew when SEED or the options of gs-synth change, and only then" {
+	cd "$BATS_TEST_TMPDIR"
+	small="--objects 2 --views 5 --size 32x24 --gaussians 1000"
+	[ "$(demo 1 "$small")" -gt 3 ]
+	cp demo/data/truth.jsonl first
+	[ "$(demo 1 "$small")" = 0 ]
+	[ "$(demo 2 "$small")" -gt 3 ]
+	! cmp -s first demo/data/truth.jsonl
+	[ "$(demo 2 "${small/1000/1001}")" -gt 3 ]
+	[ "$(demo 2 "${small/1000/1001}")" = 0 ]
+	# A remake that fails leaves no data that pass for the old ones.
+	[ "$(demo 3 "--objects 0")" = 0 ]
+	[ ! -e demo/data/made-by ]
+	[ "$(demo 2 "${small/1000/1001}")" -gt 3 ]
+}

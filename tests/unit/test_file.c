@@ -95,6 +95,34 @@ static void failed_write_leaves_what_was(void)
 	CHECK(holds(path, "new") && entries() == 1, "the old output is still there, and nothing else");
 }
 
+/* As many at a time as there may be, and what a signal's handler does with them. */
+static void many_outputs(void)
+{
+	struct file_out out[FILE_OUT_MOST + 1];
+	struct err e = {0};
+	char name[16];
+
+	for (int round = 0; round < 2; round++) {
+		for (int i = 0; i < FILE_OUT_MOST; i++) {
+			snprintf(name, sizeof name, "many%d", i);
+			CHECK(!file_out_open(&out[i], in_dir(name), &e), "%d: %s", i, e.message);
+		}
+		CHECK(file_out_open(&out[FILE_OUT_MOST], in_dir("more"), &e) && e.code == ERR_SYSTEM,
+			"one more than there may be");
+		CHECK(entries() == FILE_OUT_MOST, "%d entries", entries());
+		if (round)
+			file_out_remove_all();
+		CHECK(entries() == (round ? 0 : FILE_OUT_MOST), "%d entries", entries());
+		for (int i = 0; i < FILE_OUT_MOST; i++)
+			file_out_abort(&out[i]);
+		CHECK(entries() == 0, "%d entries", entries());
+	}
+	CHECK(!file_out_open(&out[0], in_dir("kept"), &e) && !file_out_commit(&out[0], &e), "%s", e.message);
+	file_out_remove_all();
+	CHECK(entries() == 1, "what is whole is no temporary file");
+	unlink(in_dir("kept"));
+}
+
 static void devices_are_not_replaced(void)
 {
 	struct file_out out;
@@ -221,6 +249,7 @@ int main(void)
 {
 	if (!mkdtemp(dir))
 		return 1;
+	many_outputs();
 	output_appears_on_commit();
 	abort_leaves_what_was();
 	failed_write_leaves_what_was();

@@ -4,6 +4,7 @@
 #include "reference_problem.h"
 
 #include "base/mem.h"
+#include "mask/bits.h"
 #include "refer/step.h"
 
 #include <omp.h>
@@ -12,6 +13,7 @@
 struct floats {
 	float *parameters, *x, *panels, *position, *words, *weight, *gradient, *dpanels, *dx;
 	int64_t *offsets;
+	uint8_t *mask; /* as bits */
 };
 
 static float *to_floats(const double *from, size_t count)
@@ -39,6 +41,8 @@ static void floats_init(struct floats *f, const struct reference_sample *s)
 	f->dx = mem_alloc(p->n * REFER_X, sizeof(float), "test", &e);
 	f->gradient = mem_alloc(s->layout.count, sizeof(float), "test", &e);
 	f->offsets = mem_alloc(p->sentences + 1, sizeof *f->offsets, "test", &e);
+	f->mask = mem_alloc(bits_bytes(p->pixels), 1, "test", &e);
+	bits_pack(p->mask, p->pixels, f->mask);
 	for (size_t r = 0; r <= p->sentences; r++)
 		f->offsets[r] = (int64_t)p->offsets[r];
 	step_pack(f->x, p->n, f->panels);
@@ -52,6 +56,7 @@ static void floats_free(struct floats *f)
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		free(all[i]);
 	free(f->offsets);
+	free(f->mask);
 }
 
 /* |a - b| / |b| over an array. */
@@ -77,7 +82,6 @@ static struct step *make_step(
 		.temperature = p->temperature,
 		.lambda = p->lambda,
 		.gaussians = p->n,
-		.scene_gaussians = p->n,
 		.position = f->position,
 		.sentences = p->sentences,
 		.offsets = f->offsets,
@@ -105,7 +109,8 @@ static size_t top_count(const struct refer_problem *p)
 }
 
 /* One sample against the reference; returns the worst relative gradient error over the arrays. */
-static double compare(const struct reference_options *o, const char *kernels, const char *name)
+static double compare(const struct reference_options *o, const char *kernels,
+	const struct step_others *others, const char *name)
 {
 	struct reference_sample s;
 	struct refer_result result;
@@ -114,16 +119,18 @@ static double compare(const struct reference_options *o, const char *kernels, co
 
 	reference_sample_init(&s, o);
 	floats_init(&f, &s);
-	const struct refer_problem *p = &s.problem;
+	struct refer_problem *p = &s.problem;
+	const double times[5] = {1, 2, 1, 0, 1}; /* of two other sentences one stands for both */
+	p->times = others ? times : NULL;
 	double *dx = mem_alloc(p->n * REFER_X, sizeof *dx, "test", &e);
 	double *dparameters = mem_alloc(s.layout.count, sizeof *dparameters, "test", &e), worst = 0;
 	struct step *step = make_step(&s, &f, 1, kernels);
 	CHECK(!reference_forward(p, &result, &e) && !reference_backward(p, &result, dx, dparameters, &e),
 		"%s", name);
 	struct view_weights view = view_of(p, &f);
-	struct step_target target = {p->target, p->mask};
+	struct step_target target = {p->target, f.mask};
 	struct step_losses losses = step_run(
-		step, f.parameters, f.panels, &view, &target, 1, top_count(p), f.gradient, f.dpanels);
+		step, f.parameters, f.panels, &view, &target, 1, top_count(p), others, f.gradient, f.dpanels);
 	float *m = mem_alloc(p->n, sizeof *m, "test", &e);
 	step_respond(step, f.parameters, f.panels, p->target, m);
 	double off = distance(m, result.m, p->n);
@@ -172,7 +179,12 @@ static void against_reference(const char *kernels)
 					refer_interaction_name((enum refer_interaction)i),
 					refer_similarity_name((enum refer_similarity)sim), c);
 				o.n = 1500; /* several blocks, the last not full */
-				double own = compare(&o, kernels, name);
+				double own = compare(&o, kernels, NULL, name);
+				worst = own > worst ? own : worst;
+				snprintf(name, sizeof name, "%s, %s, %s, contrast %d with one of two",
+					kernels, refer_interaction_name((enum refer_interaction)i),
+					refer_similarity_name((enum refer_similarity)sim), c);
+				own = compare(&o, kernels, &(struct step_others){(size_t[]){1}, 1}, name);
 				worst = own > worst ? own : worst;
 			}
 			printf("%s, %s, %s: worst relative gradient error %.2g\n", kernels,
@@ -196,12 +208,12 @@ static void batch_is_the_mean(enum refer_interaction interaction, enum refer_sim
 	const size_t count = s.layout.count, features = step_padded(p->n) * REFER_X;
 	double *sum = mem_zalloc(count + features, sizeof *sum, "test", &e);
 	struct view_weights view = view_of(p, &f);
-	struct step_target targets[3] = {{0, p->mask}, {3, p->mask}, {1, p->mask}};
+	struct step_target targets[3] = {{0, f.mask}, {3, f.mask}, {1, f.mask}};
 	struct step *one = make_step(&s, &f, 1, NULL), *three = make_step(&s, &f, 3, NULL);
 	double loss = 0;
 	for (int i = 0; i < 3; i++) {
-		loss += step_run(
-				one, f.parameters, f.panels, &view, &targets[i], 1, 50, f.gradient, f.dpanels)
+		loss += step_run(one, f.parameters, f.panels, &view, &targets[i], 1, 50, NULL, f.gradient,
+				f.dpanels)
 				.total /
 			3;
 		for (size_t k = 0; k < count; k++)
@@ -210,7 +222,8 @@ static void batch_is_the_mean(enum refer_interaction interaction, enum refer_sim
 			sum[count + k] += (double)f.dpanels[k] / 3;
 	}
 	double together =
-		step_run(three, f.parameters, f.panels, &view, targets, 3, 50, f.gradient, f.dpanels).total;
+		step_run(three, f.parameters, f.panels, &view, targets, 3, 50, NULL, f.gradient, f.dpanels)
+			.total;
 	CHECK(fabs(together - loss) < 1e-6 * loss, "%d: loss %.9g, mean of three %.9g", interaction, together,
 		loss);
 	CHECK(distance(f.gradient, sum, count) < 1e-4, "%d: gradients differ by %.3g", interaction,
@@ -240,11 +253,11 @@ static void threads_agree(enum refer_interaction interaction)
 	const size_t count = s.layout.count, features = step_padded(p->n) * REFER_X;
 	float *kept = mem_alloc(count + features, sizeof *kept, "test", &e);
 	struct view_weights view = view_of(p, &f);
-	struct step_target target = {p->target, p->mask};
+	struct step_target target = {p->target, f.mask};
 	for (int threads = 1; threads <= 3; threads++) {
 		omp_set_num_threads(threads);
 		struct step *step = make_step(&s, &f, 1, NULL);
-		step_run(step, f.parameters, f.panels, &view, &target, 1, 60, f.gradient, f.dpanels);
+		step_run(step, f.parameters, f.panels, &view, &target, 1, 60, NULL, f.gradient, f.dpanels);
 		step_free(step);
 		if (threads > 1)
 			CHECK(!memcmp(kept, f.gradient, sizeof *kept * count) &&

@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "base/rng.h"
 #include "formats/checkpoint.h"
+#include "mask/bits.h"
 #include "refer/contrast.h"
 #include "refer/supervision.h"
 #include "refer/trainer.h"
@@ -101,7 +102,10 @@ static void test_bounds(void)
 	CHECK(low[0] == 5 && high[0] == 494, "x: %g to %g", low[0], high[0]);
 	CHECK(low[1] == -494 && high[1] == -5, "y: %g to %g", low[1], high[1]);
 	CHECK(low[2] == 3 && high[2] == 5, "z is widened: %g to %g", low[2], high[2]);
-	train_positions(means, ids, N, low, high, position);
+	struct rows rows;
+	CHECK(!rows_of_ids(&rows, ids, N, N, &e) && !rows_positions(&rows, means, low, high, position, &e),
+		"%s", e.message);
+	rows_free(&rows);
 	for (int i = 0; i < N; i++) {
 		double x = fmax(-1, fmin(1, 2 * ((double)means[3 * i] - 5) / 489 - 1));
 		CHECK(fabs((double)position[3 * i] - x) < 1e-6, "position of %d is %g, not %g", i,
@@ -111,7 +115,10 @@ static void test_bounds(void)
 	/* Only the Gaussians that learn count. */
 	CHECK(!train_bounds(means, ids + 100, 1, low, high, &e) && low[1] == -101 && high[1] == -99,
 		"y of one: %g to %g", low[1], high[1]);
-	train_positions(means, ids + 100, 1, low, high, position);
+	CHECK(!rows_of_ids(&rows, ids + 100, 1, N, &e) &&
+			!rows_positions(&rows, means, low, high, position, &e),
+		"%s", e.message);
+	rows_free(&rows);
 	CHECK(position[0] == 0 && position[1] == 0, "one Gaussian is in the middle");
 }
 
@@ -157,8 +164,8 @@ static void test_order(void)
 
 		for (int v = 0; v < COUNTS; v++)
 			groups += (uint32_t)((counts[v] + batch - 1) / batch);
-		CHECK(!train_order_init(&o, views, COUNTS, batch, 9, &e), "%s", e.message);
-		CHECK(!train_order_init(&other, views, COUNTS, batch, 9, &e), "%s", e.message);
+		CHECK(!train_order_init(&o, views, COUNTS, batch, 20, 0, 9, &e), "%s", e.message);
+		CHECK(!train_order_init(&other, views, COUNTS, batch, 20, 0, 9, &e), "%s", e.message);
 		CHECK(o.groups == groups, "batch %d: %u groups", batch, o.groups);
 		for (long epoch = 0; epoch < 5; epoch++)
 			check_epoch(&o, counts, batch, epoch * (long)groups);
@@ -219,10 +226,81 @@ static void test_supervision(void)
 			CHECK(views[v].sentences[k] == sentences[v][k], "pair %d of view %d is of %d", k, v,
 				views[v].sentences[k]);
 			for (int p = 0; p < 4; p++)
-				CHECK(views[v].masks[k][p] == values[v][k], "pixel %d of pair %d of view %d",
-					p, k, v);
+				CHECK((views[v].masks[k][0] >> p & 1) == values[v][k],
+					"pixel %d of pair %d of view %d", p, k, v);
 		}
 	supervision_unlink(views, 2);
+	supervision_free(&s);
+}
+
+/* Equal masks of a view are one; a view's own stay apart, as do those that differ in one pixel. */
+static void test_shared_masks(void)
+{
+	const char *const refs[] = {"a", "b", "c"}, *const objects[] = {"cup", "pan", "jar"};
+	struct train_view views[2] = {{.count = 0}, {.count = 0}};
+	struct supervision s = {0};
+	struct err e;
+
+	for (size_t v = 0; v < 2; v++) {
+		add(&s, v, "a", NULL, 2, 1, 0);
+		add(&s, v, NULL, "pan", 4, 1, 0);
+		add(&s, v, "c", NULL, 2, 0, 0);
+	}
+	CHECK(!supervision_link(&s, refs, objects, 3, views, 2, &e), "%s", e.message);
+	CHECK(views[0].count == 3 && views[1].count == 3, "%d and %d pairs", views[0].count, views[1].count);
+	CHECK(views[0].masks[0] == views[0].masks[1] && views[1].masks[0] == views[1].masks[1],
+		"equal masks are stored twice");
+	CHECK(views[0].masks[0] != views[1].masks[0], "two views share a mask");
+	CHECK(views[0].masks[0] != views[0].masks[2] && views[0].masks[2][0] == 0, "other masks are shared");
+	supervision_unlink(views, 2);
+	supervision_free(&s);
+}
+
+/* As many masks as a scene may have, each with pixels of its own: found again, all of them, and refused a
+ * second time. */
+static void test_many_masks(void)
+{
+	enum { MANY_VIEWS = 60, REFS = 60, W = 19, H = 11 };
+	static char names[REFS][8];
+	const char *refs[REFS], *objects[REFS];
+	static struct train_view views[MANY_VIEWS];
+	struct supervision s = {0};
+	struct err e;
+	int wrong = 0;
+
+	for (int r = 0; r < REFS; r++) {
+		snprintf(names[r], sizeof names[r], "r%d", r);
+		refs[r] = names[r];
+		objects[r] = r % 2 ? names[r] : "none";
+	}
+	for (int round = 0; round < 2; round++)
+		for (int k = 0; k < MANY_VIEWS * REFS; k++) {
+			const int v = k % MANY_VIEWS, r = k / MANY_VIEWS;
+			uint8_t pixels[W * H] = {0};
+			struct rle mask;
+			pixels[r] = pixels[REFS + v] = 1;
+			CHECK(!rle_encode(&mask, pixels, H, W, &e), "%s", e.message);
+			/* odd ones by their object, which is named as the ref of an even one might be */
+			int bad = supervision_add(&s, (size_t)v, W, H, r % 2 ? NULL : refs[r],
+				r % 2 ? refs[r] : "pot", &mask, &e);
+			wrong += round ? !bad || e.code != ERR_FORMAT : bad;
+			rle_free(&mask);
+		}
+	CHECK(!wrong && s.n == MANY_VIEWS * REFS, "%d wrong, %zu masks", wrong, s.n);
+	CHECK(!supervision_link(&s, refs, objects, REFS, views, MANY_VIEWS, &e), "%s", e.message);
+	for (int v = 0; v < MANY_VIEWS; v++) {
+		wrong += views[v].count != REFS;
+		for (int r = 0; r < views[v].count; r++) {
+			uint8_t pixels[W * H];
+			int area = 0;
+			bits_expand(views[v].masks[r], 0, W * H, pixels);
+			for (int p = 0; p < W * H; p++)
+				area += pixels[p];
+			wrong += views[v].sentences[r] != r || !pixels[r] || !pixels[REFS + v] || area != 2;
+		}
+	}
+	CHECK(!wrong, "%d masks are wrong", wrong);
+	supervision_unlink(views, MANY_VIEWS);
 	supervision_free(&s);
 }
 
@@ -275,7 +353,7 @@ struct sample {
 	float means[GAUSSIANS * 3], words[5 * 8];
 	int64_t offsets[3];
 	int objects[2], sentences[2];
-	uint8_t mask[2][PIXELS];
+	uint8_t mask[2][PIXELS / 8 + 1]; /* bits */
 	const uint8_t *masks[2];
 };
 
@@ -290,9 +368,12 @@ static void sample_init(struct sample *s)
 		s->means[i] = (float)rng_normal(&rng);
 	for (int i = 0; i < 5 * 8; i++)
 		s->words[i] = (float)rng_normal(&rng);
-	for (int k = 0; k < 2; k++)
+	for (int k = 0; k < 2; k++) {
+		uint8_t pixels[PIXELS];
 		for (int p = 0; p < PIXELS; p++)
-			s->mask[k][p] = (uint8_t)rng_below(&rng, 2);
+			pixels[p] = (uint8_t)rng_below(&rng, 2);
+		bits_pack(pixels, PIXELS, s->mask[k]);
+	}
 	s->masks[0] = s->mask[0];
 	s->masks[1] = s->mask[1];
 	for (int v = 0; v < VIEWS; v++) {
@@ -305,7 +386,7 @@ static void sample_init(struct sample *s)
 static int start(struct trainer *t, const struct sample *s, const struct trainer_options *o)
 {
 	const struct trainer_source source = {
-		s->means, GAUSSIANS, 8, 2, s->offsets, s->words, s->objects, s->views, VIEWS, PIXELS};
+		s->means, NULL, GAUSSIANS, 8, 2, s->offsets, s->words, s->objects, s->views, VIEWS, PIXELS};
 	struct err e;
 
 	return CHECK(!trainer_init(t, &source, o, &e), "%s", e.message);
@@ -373,7 +454,7 @@ static void test_no_weight(void)
 	for (int v = 0; v < VIEWS; v++)
 		memset(s.random[v].weight, 0, sizeof s.random[v].weight);
 	const struct trainer_source source = {
-		s.means, GAUSSIANS, 8, 2, s.offsets, s.words, s.objects, s.views, VIEWS, PIXELS};
+		s.means, NULL, GAUSSIANS, 8, 2, s.offsets, s.words, s.objects, s.views, VIEWS, PIXELS};
 	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
 }
 
@@ -383,6 +464,8 @@ int main(void)
 	test_bounds();
 	test_order();
 	test_supervision();
+	test_shared_masks();
+	test_many_masks();
 	test_top();
 	test_resume();
 	test_no_weight();

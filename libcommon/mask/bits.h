@@ -1,0 +1,18 @@
+/* Masks at eight pixels a byte: pixel p (row-major) is bit p % 8, the lowest first, of byte p / 8. What is
+ * left of the last byte is 0, so that equal masks have equal bytes. */
+#ifndef MASK_BITS_H
+#define MASK_BITS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Bytes for n pixels. */
+size_t bits_bytes(size_t n);
+
+/* mask (n) of 0 or 1. */
+void bits_pack(const uint8_t *mask, size_t n, uint8_t *bits);
+
+/* Pixels [from,to) of the bits: mask (to-from) gets 0 or 1. */
+void bits_expand(const uint8_t *bits, size_t from, size_t to, uint8_t *mask);
+
+#endif

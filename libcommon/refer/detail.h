@@ -1,0 +1,25 @@
+/* How much detail the training views can teach of each Gaussian: what the octree of shared features is built
+ * from. */
+#ifndef REFER_DETAIL_H
+#define REFER_DETAIL_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+#include "refer/octree.h"
+#include "refer/train.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* footprint (n): the size of a pixel at each of the points means (n,3), in the scene's units, in the view
+ * that sees it largest; INFINITY where no view has it within its image. */
+void detail_footprints(
+	const float *means, size_t n, const struct camera *cameras, size_t count, float *footprint);
+
+/* weight (scene_gaussians): each Gaussian's weight over all views; signature (scene_gaussians,
+ * OCTREE_SIGNATURE): the weighted mean over its pixels of the sum of the masks there, every object with a
+ * random direction of length 1 (a mask counts by its share of the object's masks in the view). */
+int detail_signatures(const struct train_view *views, size_t view_count, const int *objects,
+	size_t scene_gaussians, float *weight, float *signature, struct err *e);
+
+#endif
