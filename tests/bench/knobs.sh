@@ -9,12 +9,15 @@
 
 # A knob is a line here: its name, its tool, the option, and the values, the exact one first. Options and values that the
 # built tools do not know are left out. Values of weigh-scale are shares of the exact run's size. A batch of S sentences
-# gets an S-th of the steps, so that every training sees the same number of sentences.
+# gets an S-th of the steps, so that every training sees the same number of sentences. Besides these there is a run, named
+# defaults, with every option as the tools have it where nothing is said (but for the size and the length).
 knobs="
 weigh-scale     gs-weigh    --scale     1 0.71 0.5 0.35
 weigh-tolerance gs-weigh    --tolerance 0 0.02 0.1
 weigh-precision gs-weigh    --precision f32 f16 u8
-tolerance       refer-train --tolerance 0 0.01 0.05 0.2
+tolerance       refer-train --tolerance 0 0.01 0.1
+share           refer-train --share     0 0.01 0.04 0.15
+negatives       refer-train --negatives 0 12 4
 batch           refer-train --batch     1 2 4
 precision       refer-train --precision f32 f16 u8
 "
@@ -60,6 +63,7 @@ options() {
 	local name tool option exact rest
 	while read -r name tool option exact rest; do
 		if [ "$tool" != "$1" ] || ! known "$tool" "$option" "$exact"; then continue; fi
+		if [ "$2" = defaults ] && [ "$name" != weigh-scale ]; then continue; fi
 		[ "$name" != "$2" ] || exact=$3
 		[ "$name" != weigh-scale ] || exact=$(awk -v a="$scale" -v b="$exact" 'BEGIN { print a * b }')
 		printf '%s %s ' "$option" "$exact"
@@ -99,7 +103,7 @@ apart() {
 measure() {
 	local knob=$1 value=$2 seed=$3 batch=1 count shown name=$1=$2 run short first=${seeds%% *} how
 	local trained tested relative=null noise=null
-	[ "$knob" != exact ] || name=exact
+	[ "$value" != - ] || name=$knob
 	run=$runs/$name-$seed
 	read -ra weigh < <(options gs-weigh "$knob" "$value")
 	read -ra learn < <(options refer-train "$knob" "$value")
@@ -145,8 +149,9 @@ measure_all() {
 			for seed in $seeds; do measure "$name" "$value" "$seed" || echo "FAILED: $name $value, seed $seed"; done
 		done
 	done <<<"$knobs"
+	for seed in $seeds; do measure defaults - "$seed" || echo "FAILED: the defaults, seed $seed"; done
 	# The results of what was asked for this time, and no others that lie there.
-	for seed in $seeds; do cat "$runs/exact-$seed.json"; done >"$results"
+	for seed in $seeds; do cat "$runs/exact-$seed.json" "$runs/defaults-$seed.json"; done >"$results"
 	while read -r name tool option values; do
 		for value in ${values#* }; do
 			for seed in $seeds; do cat "$runs/$name=$value-$seed.json" 2>/dev/null; done
@@ -161,10 +166,10 @@ summarise() {
 	order=$(awk 'NF { for (i = 5; i <= NF; i++) printf ",\"%s %s\"", $1, $i }' <<<"$knobs")
 	jq -s 'def median: sort | (.[(length - 1) / 2 | floor] + .[length / 2 | floor]) / 2;
 		def spread(f): map(f) | {mid: median, low: min, high: max};
-		['"\"exact -\"$order"'] as $order
+		['"\"exact -\"$order"', "defaults -"] as $order
 		| (map(select(.knob == "exact") | {key: "\(.seed)", value: .}) | from_entries) as $exact
 		| [group_by([.knob, .value])[] | {knob: .[0].knob, value: .[0].value, runs: length,
-			label: (if .[0].knob == "exact" then "exact" else .[0].value end),
+			label: (if .[0].value == "-" then .[0].knob else .[0].value end),
 			ms: spread(.ms_a_sentence), faster: spread($exact["\(.seed)"].ms_a_sentence / .ms_a_sentence),
 			miou: spread(100 * .miou_train_sentences), test: spread(100 * .miou_test_sentences),
 			change: spread(100 * (.miou_train_sentences - $exact["\(.seed)"].miou_train_sentences)),
@@ -188,7 +193,7 @@ tables() {
 
 # paths PLACE: a line of points for each knob, from the exact run through its values. PLACE makes a run's numbers.
 paths() {
-	jq -rs 'map(select(.knob == "exact"))[0] as $exact | map(select(.knob != "exact")) as $runs
+	jq -rs 'map(select(.knob == "exact"))[0] as $exact | map(select(.value != "-")) as $runs
 		| ($runs | map(.knob) | reduce .[] as $k ([]; if index([$k]) then . else . + [$k] end))[] as $k
 		| ($exact | .label = ""), ($runs[] | select(.knob == $k)) | [$k, '"$1"', .label] | @tsv' "$summary"
 }
@@ -210,7 +215,7 @@ plots() {
 		echo "$styles"
 		place='.ms.mid, .miou.mid, .miou.low, .miou.high, .ms.low, .ms.high'
 		paths "$place"
-		each '.knob == "exact"' "$place"
+		each '.value == "-"' "$place"
 	} | plot knobs-miou
 	{
 		plot_head "Speed against the error of responses, one knob at a time" "$note" "training, ms a sentence" \

@@ -17,8 +17,8 @@ BEGIN {
 	FS = "\t"
 	left = 82; top = 64; plot_w = 560; plot_h = 360; bottom = 64
 	size = 13; char_w = 7.8; small = 11.5; small_w = 7
-	split("#0072B2 #D55E00 #009E73 #CC79A7 #B8860B #56B4E9 #444444 #7B3294", colour, " ")
-	colours = 8
+	split("#0072B2 #D55E00 #009E73 #CC79A7 #B8860B #56B4E9 #7B3294 #8C564B #5F9E2F #222222", colour, " ")
+	colours = 10
 }
 
 /^#/ {

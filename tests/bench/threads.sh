@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A training step, gs-weigh and refer-render with 1 to all threads: BUILD/bench/threads.jsonl. The rasteriser of a frame is
-# there too where bench_render is built.
+# A training step, gs-weigh, refer-render and a frame with 1 to all threads: BUILD/bench/threads.jsonl. Threads share a frame,
+# or each has frames of its own.
 . tests/bench/common.sh
 results=$out/threads.jsonl repeats=3 gaussians=100000 size=640x480 scene=$out/scenes/threads
 [ -z "$FULL" ] || repeats=9
@@ -38,10 +38,11 @@ measure() {
 		ms=$(least gs-weigh --threads "$t" --split all -o "$scene/again" "$scene/scene") && put "gs-weigh, 5 views" "$t" "$ms" || return
 		ms=$(least refer-render --threads "$t" --split all --scene "$scene/scene" --text "$scene/text.safetensors" \
 			--model "$scene/model.safetensors" -o "$scene/again.jsonl") && put "refer-render, 5 views, 40 sentences" "$t" "$ms" || return
-		[ ! -x "$bench/bench_render" ] || { ms=$("$bench/bench_render" --json --gaussians $gaussians --threads "$t" |
-			jq -s '.[0].frame_ms') && put "a frame" "$t" "$ms"; } || return
 	done
 	rm -rf "$scene/again" "$scene/again.jsonl"
+	"$bench/bench_render" -r $repeats -n $gaussians -s 986x728 | jq -c 'select(.channels == 1)
+		| {bench: "threads", what: (if .mode == "within" then "a frame" else empty end, if .mode == "beside" or .threads == 1 then
+		"a frame each" else empty end), threads, ms: .frame_ms}' >>"$results"
 }
 
 heading "threads: 1 to $threads"
