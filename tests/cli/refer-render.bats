@@ -51,6 +51,9 @@ refuses() {
 	says "$status" "refer-render: $message" render -o out/pred.jsonl "$@" && [ -z "$(ls -A out)" ]
 }
 
+# Fails where the command succeeds; a plain ! would let the test go on.
+not() { ! "$@"; }
+
 @test "a record for every test view and sentence, in the order of the files" {
 	render -o pred.jsonl >printed 2>&1
 	[ ! -s printed ]
@@ -161,7 +164,7 @@ png/$test_view/yellow-bowl-1.png " ]
 @test "--overlay draws over the scene's colours" {
 	render --overlay o --refs brown-box-1,silent -o pred.jsonl
 	[ "$(picture o/$test_view/silent.png)" = "64 48 8 2" ]
-	! cmp -s o/$test_view/silent.png o/$test_view/brown-box-1.png
+	not cmp -s o/$test_view/silent.png o/$test_view/brown-box-1.png
 	"$BIN/gs-check" o/$test_view/brown-box-1.png
 }
 

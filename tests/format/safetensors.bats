@@ -17,6 +17,9 @@ refuses() {
 # A tensor of two halves, four bytes of data.
 half='{"dtype":"F16","shape":[2],"data_offsets":[0,4]}'
 
+# Fails where the command succeeds; a plain ! would let the test go on.
+not() { ! "$@"; }
+
 @test "a good file" {
 	st x "{\"a\":$half}" 003c00c1
 	says 0 "x: ok: safetensors, 1 tensors
@@ -42,7 +45,7 @@ half='{"dtype":"F16","shape":[2],"data_offsets":[0,4]}'
 	[ $status = 1 ]
 	[ ! -s err ]
 	[ "$(wc -l <out)" = "$size" ]
-	! grep -F ': ok' out
+	not grep -F ': ok' out
 	grep -Fx 'cut.0000: empty' out
 	grep -Fx 'cut.0007: not a kind of file that the suite reads' out
 	grep -Fx 'cut.0008: header of 568 bytes does not fit a file of 8: not safetensors, or cut short' out
