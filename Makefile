@@ -48,11 +48,12 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean help FORCE
+.PHONY: all bench benches tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
 units: $(UNITS)
 fuzzers: $(FUZZERS)
+benches: $(BENCHES)
 objects: $(OBJECTS) $(TOOLS:%=$(BUILD)/obj/cmd/%.o)
 
 $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
@@ -160,8 +161,10 @@ test-real: packages ## the whole method on real scenes: make test-real DATA=DIR
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units
 	@tests/real.sh "$(DATA)" "$(CURDIR)/$(BUILD)" "$(BERT)"
 
-bench: $(BENCHES) ## measure the speed of a training step, phase by phase
-	@for bench in $(BENCHES); do $$bench || exit; done
+bench: packages ## measure speed, memory and accuracy, and plot them: BENCH="step knobs", FULL=1, DATA=DIR (tests/bench/README.md)
+	-@$(MAKE) --no-print-directory encoder
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools benches
+	@BERT="$(BERT)" FULL="$(FULL)" DATA="$(DATA)" tests/bench/run.sh "$(BUILD)" $(BENCH)
 
 sanitize: packages ## every test again with address and undefined-behaviour sanitizers, in build-asan
 	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" \

@@ -20,6 +20,11 @@ heading() {
 	printf '\n== %s\n' "$1"
 }
 
+# Ends a part that needs the language encoder where that is not.
+need_encoder() {
+	[ -f "$BERT/config.json" ] || { echo "left out: no language encoder in $BERT (make encoder)"; exit 0; }
+}
+
 # Lines of fields separated by tabs, the first a heading, as an aligned table.
 table() {
 	awk -F '\t' '{ rows = NR; if (NF > columns) columns = NF
@@ -73,24 +78,31 @@ has_option() {
 	"$bin/$1" --help | grep -q -e "^ *\(-., \)\? *$2\b"
 }
 
-# What the tools are made of, to know a result of another build by.
+# Which build the tools are of: results and scenes of another are made again.
 build_sum() {
-	cat "$bin"/gs-weigh "$bin"/refer-train "$bin"/refer-render "$bin"/miou-score | cksum | cut -d ' ' -f 1
+	cat "$bin"/* | cksum | cut -d ' ' -f 1
+}
+
+# is_of FILE BUILD_SUM: whether a stamp is of a build.
+is_of() {
+	[ "$(cat "$1" 2>/dev/null)" = "$2" ]
 }
 
 # prepare DIR SPLATS CAMERAS TEST_VIEWS SENTENCES CANDIDATES: everything that gs-weigh and refer-train read, in DIR.
 prepare() {
 	local dir=$1
-	[ -e "$dir/complete" ] && return
+	! is_of "$dir/prepared" "$(build_sum)" || return 0
 	logged "$dir/log/gs-import" gs-import --cameras "$3" --test-views "$4" -o "$dir/scene" "$2" &&
 		logged "$dir/log/text-encode" text-encode --model "$BERT" -o "$dir/text.safetensors" "$5" &&
 		logged "$dir/log/pseudomask-select" pseudomask-select -o "$dir/masks.jsonl" "$6" &&
-		touch "$dir/complete"
+		build_sum >"$dir/prepared"
 }
 
-# synthetic DIR GAUSSIANS SIZE VIEWS SEED: a synthetic scene in DIR/data, prepared in DIR.
+# synthetic DIR GAUSSIANS SIZE VIEWS SEED: a synthetic scene in DIR/data, prepared in DIR; nothing else stays in DIR when it is
+# made again.
 synthetic() {
 	local dir=$1
+	is_of "$dir/prepared" "$(build_sum)" || rm -rf "$dir"
 	[ -e "$dir/data/truth.jsonl" ] ||
 		logged "$dir/log/gs-synth" gs-synth --gaussians "$2" --size "$3" --views "$4" --seed "$5" -o "$dir/data" || return
 	prepare "$dir" "$dir/data/point_cloud.ply" "$dir/data/sparse/0" "$(cat "$dir/data/test-views")" \

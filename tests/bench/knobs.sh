@@ -3,18 +3,21 @@
 # gs-weigh, refer-train, refer-render on the test views, miou-score; once for each seed of the training. A run's result is
 # kept in BUILD/bench/runs, and made again only where the tools have changed since.
 #	DATA=DIR       a real scene in the desk's layout, for the synthetic one
-#	ITERATIONS     sentences shown in a training
+#	ITERATIONS     sentences shown in a training, 1000 or more
 #	SEEDS="1 2"    seeds of the trainings
 . tests/bench/common.sh
 
 # A knob is a line here: its name, its tool, the option, and the values, the exact one first. Options and values that the
 # built tools do not know are left out. Values of weigh-scale are shares of the exact run's size. A batch of S sentences
-# gets an S-th of the steps, so that every training sees the same number of sentences.
+# gets an S-th of the steps, so that every training sees the same number of sentences. Besides these there is a run, named
+# defaults, with every option as the tools have it where nothing is said (but for the size and the length).
 knobs="
 weigh-scale     gs-weigh    --scale     1 0.71 0.5 0.35
 weigh-tolerance gs-weigh    --tolerance 0 0.02 0.1
 weigh-precision gs-weigh    --precision f32 f16 u8
-tolerance       refer-train --tolerance 0 0.01 0.05 0.2
+tolerance       refer-train --tolerance 0 0.01 0.1
+share           refer-train --share     0 0.01 0.04 0.15
+negatives       refer-train --negatives 0 12 4
 batch           refer-train --batch     1 2 4
 precision       refer-train --precision f32 f16 u8
 "
@@ -30,6 +33,7 @@ if [ -n "$DATA" ]; then
 	[ -z "$FULL" ] || steps=15000
 fi
 steps=${ITERATIONS:-$steps} seeds=${SEEDS:-$seeds}
+[ "$steps" -ge 1000 ] 2>/dev/null || die "ITERATIONS is to be at least 1000"
 dir=$out/scenes/$scene runs=$out/runs/$scene-$steps${rates:+-fast}
 results=$out/knobs.jsonl summary=$out/knobs-summary.jsonl
 
@@ -58,7 +62,8 @@ known() {
 options() {
 	local name tool option exact rest
 	while read -r name tool option exact rest; do
-		[ "$tool" = "$1" ] && known "$tool" "$option" "$exact" || continue
+		if [ "$tool" != "$1" ] || ! known "$tool" "$option" "$exact"; then continue; fi
+		if [ "$2" = defaults ] && [ "$name" != weigh-scale ]; then continue; fi
 		[ "$name" != "$2" ] || exact=$3
 		[ "$name" != weigh-scale ] || exact=$(awk -v a="$scale" -v b="$exact" 'BEGIN { print a * b }')
 		printf '%s %s ' "$option" "$exact"
@@ -96,22 +101,24 @@ apart() {
 
 # measure KNOB VALUE SEED: one run; its line in RUN.json, and its response maps in RUN.responses where it is exact.
 measure() {
-	local knob=$1 value=$2 seed=$3 batch=1 count shown name=$1=$2 run short first=${seeds%% *}
-	[ "$knob" != exact ] || name=exact
+	local knob=$1 value=$2 seed=$3 batch=1 count shown name=$1=$2 run short first=${seeds%% *} how
+	local trained tested relative=null noise=null
+	[ "$value" != - ] || name=$knob
 	run=$runs/$name-$seed
-	[ "$(jq -r .build "$run.json" 2>/dev/null)" = "$build" ] && return
 	read -ra weigh < <(options gs-weigh "$knob" "$value")
 	read -ra learn < <(options refer-train "$knob" "$value")
+	how="gs-weigh ${weigh[*]}; refer-train $rates ${learn[*]}"
+	[ "$(jq -r '"\(.build) \(.how)"' "$run.json" 2>/dev/null)" != "$build $how" ] || return 0
+	rm -f "$run.json"
 	[ "$knob" != batch ] || batch=$value
 	count=$((steps / batch)) shown=$((steps / batch * batch))
 	weights=$runs/$(printf '%s' "${weigh[@]}").weights
-	if [ "$(cat "$weights/build" 2>/dev/null)" != "$build" ]; then
+	if ! is_of "$weights/build" "$build"; then
 		rm -rf "$weights"
 		logged "$weights.log" gs-weigh "${weigh[@]}" -o "$weights" "$dir/scene" && echo "$build" >"$weights/build" || return
 	fi
 	train "$run" $SHORT "$seed" "$run.short" "${learn[@]}" && train "$run" "$count" "$seed" "$run.train" "${learn[@]}" || return
 	short=$(seconds "$run.short")
-	local trained tested relative=null noise=null
 	trained=$(score "$run" train) && tested=$(score "$run" test) && respond "$run" "$run.responses" || return
 	[ "$knob" = exact ] || relative=$(apart "$run" "$seed") || return
 	[ "$knob" != exact ] || [ "$seed" = "$first" ] || noise=$(apart "$run" "$first") || return
@@ -121,29 +128,34 @@ measure() {
 		--argjson weigh_s "$(seconds "$weights.log")" --argjson render_s "$(seconds "$run.render-train")" \
 		--argjson weights_bytes "$(cat "$weights"/*.safetensors | wc -c)" --argjson model_bytes "$(wc -c <"$run.safetensors")" \
 		--argjson memory_mib "$(mebibytes "$run.train")" --argjson trained "$trained" --argjson tested "$tested" \
-		--argjson relative "$relative" --argjson noise "$noise" \
+		--argjson relative "$relative" --argjson noise "$noise" --arg how "$how" \
 		'{bench: "knobs", scene: $scene, knob: $knob, value: $value, seed: $seed, threads: $threads, steps: $steps, batch: $batch,
 		ms_a_sentence: (1000 * ($train_s - $short_s) / ($shown - $short_steps * $batch)), train_s: $train_s, weigh_s: $weigh_s,
 		render_s: $render_s, weights_bytes: $weights_bytes, model_bytes: $model_bytes, memory_mib: $memory_mib,
-		miou_train_sentences: $trained, miou_test_sentences: $tested, response_rms: $relative, seed_rms: $noise, build: $build}' \
+		miou_train_sentences: $trained, miou_test_sentences: $tested, response_rms: $relative, seed_rms: $noise, build: $build, how: $how}' \
 		>"$run.json" || return
 	[ "$knob" = exact ] || rm -rf "$run.responses"
 	rm -f "$run".{train,test}.jsonl "$run.safetensors"
 }
 
-# All runs, the exact ones first; one that fails is named and left out.
+# All runs, a seed's close together in time; one that fails is named and left out.
 measure_all() {
 	local name tool option values value seed
-	for seed in $seeds; do measure exact - "$seed" || die "the exact run with seed $seed failed"; done
-	while read -r name tool option values; do
-		[ -n "$name" ] || continue
-		for value in ${values#* }; do
-			known "$tool" "$option" "$value" || { echo "left out: $tool has no $option $value"; continue; }
-			for seed in $seeds; do measure "$name" "$value" "$seed" || echo "FAILED: $name $value, seed $seed"; done
-		done
-	done <<<"$knobs"
+	for seed in $seeds; do
+		measure exact - "$seed" || die "the exact run with seed $seed failed"
+		while read -r name tool option values; do
+			for value in ${values#* }; do
+				if known "$tool" "$option" "$value"; then
+					measure "$name" "$value" "$seed" || echo "FAILED: $name $value, seed $seed"
+				elif [ "$seed" = "${seeds%% *}" ]; then
+					echo "left out: $tool has no $option $value"
+				fi
+			done
+		done <<<"$knobs"
+		measure defaults - "$seed" || echo "FAILED: the defaults, seed $seed"
+	done
 	# The results of what was asked for this time, and no others that lie there.
-	for seed in $seeds; do cat "$runs/exact-$seed.json"; done >"$results"
+	for seed in $seeds; do cat "$runs/exact-$seed.json" "$runs/defaults-$seed.json"; done >"$results"
 	while read -r name tool option values; do
 		for value in ${values#* }; do
 			for seed in $seeds; do cat "$runs/$name=$value-$seed.json" 2>/dev/null; done
@@ -158,10 +170,10 @@ summarise() {
 	order=$(awk 'NF { for (i = 5; i <= NF; i++) printf ",\"%s %s\"", $1, $i }' <<<"$knobs")
 	jq -s 'def median: sort | (.[(length - 1) / 2 | floor] + .[length / 2 | floor]) / 2;
 		def spread(f): map(f) | {mid: median, low: min, high: max};
-		['"\"exact -\"$order"'] as $order
+		['"\"exact -\"$order"', "defaults -"] as $order
 		| (map(select(.knob == "exact") | {key: "\(.seed)", value: .}) | from_entries) as $exact
 		| [group_by([.knob, .value])[] | {knob: .[0].knob, value: .[0].value, runs: length,
-			label: (if .[0].knob == "exact" then "exact" else .[0].value end),
+			label: (if .[0].value == "-" then .[0].knob else .[0].value end),
 			ms: spread(.ms_a_sentence), faster: spread($exact["\(.seed)"].ms_a_sentence / .ms_a_sentence),
 			miou: spread(100 * .miou_train_sentences), test: spread(100 * .miou_test_sentences),
 			change: spread(100 * (.miou_train_sentences - $exact["\(.seed)"].miou_train_sentences)),
@@ -183,40 +195,47 @@ tables() {
 	echo "rms of responses: of the difference to the exact run of the same seed, as a share.${noise:+ Exact runs of two seeds are $noise apart.}"
 }
 
-# points FILTER: a line of each knob, from the exact point through its values; FILTER makes the numbers of a point.
-points() {
-	jq -rs '(map(select(.knob == "exact"))[0]) as $exact | (map(.knob) | reduce .[] as $k ([]; if index($k) then . else . + [$k] end)
-		| .[1:][]) as $k | ($exact | .label = ""), (.[] | select(.knob == $k)) | select(.rms != null or '"$2"') | [$k, '"$1"', .label] | @tsv' "$summary"
+# paths PLACE: a line of points for each knob, from the exact run through its values. PLACE makes a run's numbers.
+paths() {
+	jq -rs 'map(select(.knob == "exact"))[0] as $exact | map(select(.value != "-")) as $runs
+		| ($runs | map(.knob) | reduce .[] as $k ([]; if index([$k]) then . else . + [$k] end))[] as $k
+		| ($exact | .label = ""), ($runs[] | select(.knob == $k)) | [$k, '"$1"', .label] | @tsv' "$summary"
+}
+
+# each SELECTION PLACE: a point for each run that the selection holds for.
+each() {
+	jq -r "select($1) | [.knob, $2, .label] | @tsv" "$summary"
 }
 
 plots() {
-	local note="scene $scene, $steps sentences shown, $(wc -w <<<"$seeds") seeds: medians and ranges" place
-	local paths="" knob
-	for knob in $(jq -r .knob "$summary" | uniq); do paths+="#style$tab$knob${tab}path"$'\n'; done
+	local note place styles="" knob exact
+	note="scene $scene, $steps sentences shown, $(wc -w <<<"$seeds") seeds: medians and ranges"
+	exact=$(jq 'select(.knob == "exact") | .model_kb' "$summary")
+	# The same colours in every plot.
+	for knob in $(jq -r 'select(.knob != "exact") | .knob' "$summary" | uniq); do styles+="#style$tab$knob${tab}path"$'\n'; done
+	styles+="#style${tab}exact${tab}points"
 	{
 		plot_head "Speed against accuracy, one knob at a time" "$note" "training, ms a sentence" "mIoU in test views, %"
-		printf '%s#style\texact\tpoints\n' "$paths"
+		echo "$styles"
 		place='.ms.mid, .miou.mid, .miou.low, .miou.high, .ms.low, .ms.high'
-		points "$place" true
-		jq -r 'select(.knob == "exact") | ["exact", '"$place"', .label] | @tsv' "$summary"
+		paths "$place"
+		each '.value == "-"' "$place"
 	} | plot knobs-miou
 	{
 		plot_head "Speed against the error of responses, one knob at a time" "$note" "training, ms a sentence" \
 			"rms difference to the exact run, share" yzero ${noise:+"ref$tab$noise${tab}exact, another seed"}
-		printf '%s' "$paths"
-		points '.ms.mid, .rms.mid, .rms.low, .rms.high, .ms.low, .ms.high' false
+		echo "$styles"
+		each .rms '.ms.mid, .rms.mid, .rms.low, .rms.high, .ms.low, .ms.high'
 	} | plot knobs-responses
 	{
 		plot_head "Size of the model against accuracy" "$note" "model, kB" "mIoU in test views, %"
-		printf '%s#style\texact\tpoints\n' "$paths"
-		place='.model_kb, .miou.mid, .miou.low, .miou.high, "", ""'
-		jq -rs '(map(select(.knob == "exact"))[0].model_kb) as $exact
-			| .[] | select((.model_kb / $exact - 1 | fabs) > 0.02) | [.knob, '"$place"', .label] | @tsv' "$summary"
-		jq -r 'select(.knob == "exact") | ["exact", '"$place"', .label] | @tsv' "$summary"
+		echo "$styles"
+		each ".knob == \"exact\" or (.model_kb / $exact - 1 | fabs) > 0.02" '.model_kb, .miou.mid, .miou.low, .miou.high, "", ""'
 	} | plot knobs-size
 }
 
 heading "knobs: speed against accuracy, scene $scene"
+need_encoder
 setup || die "the scene could not be made"
 build=$(build_sum)
 measure_all

@@ -11,30 +11,36 @@
 #	                                                they come), points, dashed (a line without markers)
 #	#ref    Y  TEXT                                 a level to compare with
 #	#xref   X  TEXT
-# Series are drawn, coloured and listed in the order in which they first appear.
+# Series are drawn, coloured and listed in the order in which a point or a #style first names them; one without points has
+# its colour, so that several plots can agree, and is not listed.
 BEGIN {
 	FS = "\t"
 	left = 82; top = 64; plot_w = 560; plot_h = 360; bottom = 64
 	size = 13; char_w = 7.8; small = 11.5; small_w = 7
-	split("#0072B2 #D55E00 #009E73 #CC79A7 #B8860B #56B4E9 #444444 #7B3294", colour, " ")
-	colours = 8
+	split("#0072B2 #D55E00 #009E73 #CC79A7 #B8860B #56B4E9 #7B3294 #8C564B #5F9E2F #222222", colour, " ")
+	colours = 10
 }
 
 /^#/ {
-	if ($1 == "#style") style[$2] = $3
+	if ($1 == "#style") { style[$2] = $3; number($2) }
 	else if ($1 == "#ref" || $1 == "#xref") { refs++; ref_axis[refs] = $1 == "#ref" ? "y" : "x"; ref_at[refs] = $2 + 0; ref_text[refs] = $3 }
 	else set[substr($1, 2)] = NF > 1 ? $2 : 1
 	next
 }
 
 NF >= 3 {
-	if (!($1 in index_of)) { index_of[$1] = ++series; name[series] = $1 }
 	n++
-	of[n] = index_of[$1]; x[n] = $2 + 0; y[n] = $3 + 0
+	of[n] = number($1); x[n] = $2 + 0; y[n] = $3 + 0
 	y_low[n] = $4 == "" ? y[n] : $4 + 0; y_high[n] = $5 == "" ? y[n] : $5 + 0
 	x_low[n] = $6 == "" ? x[n] : $6 + 0; x_high[n] = $7 == "" ? x[n] : $7 + 0
 	label[n] = $8
 	if (("xlog" in set && x_low[n] <= 0) || ("ylog" in set && y_low[n] <= 0)) n--
+}
+
+# A series' number; a new one gets the next.
+function number(s) {
+	if (!(s in index_of)) { index_of[s] = ++series; name[series] = s }
+	return index_of[s]
 }
 
 function escape(s) { gsub(/&/, "\\&amp;", s); gsub(/</, "\\&lt;", s); gsub(/>/, "\\&gt;", s); return s }
@@ -180,24 +186,31 @@ function draw_axes(i, p, last) {
 	printf "<text transform=\"matrix(0,-1,1,0,24,%.1f)\" text-anchor=\"middle\">%s</text>\n", p, escape(set["ylabel"])
 }
 
-function draw_refs(i, p, w) {
-	for (i = 1; i <= refs; i++) {
-		w = length(ref_text[i]) * small_w
+function draw_refs(i, p) {
+	for (i = 1; i <= refs; i++)
 		if (ref_axis[i] == "y") {
 			p = at_y(ref_at[i])
 			segment(left, p, left + plot_w, p, "stroke=\"#777777\" stroke-width=\"1.2\" stroke-dasharray=\"7,4\"")
-			occupy(left, p - 1, left + plot_w, p + 1, 3)
-			ref_y[i] = p - 5 < top + 12 ? p + 13 : p - 5
-			text(left + plot_w - 6, ref_y[i], "end", ref_text[i], "font-size=\"" small "\" fill=\"#555555\"")
-			occupy(left + plot_w - 6 - w, ref_y[i] - 11, left + plot_w, ref_y[i] + 3, 40)
+			occupy(left, p - 1, left + plot_w, p + 1, 9)
 		} else {
 			p = at_x(ref_at[i])
 			segment(p, top, p, top + plot_h, "stroke=\"#777777\" stroke-width=\"1.2\" stroke-dasharray=\"7,4\"")
-			occupy(p - 1, top, p + 1, top + plot_h, 3)
-			if (p + 6 + w < left + plot_w) { text(p + 6, top + 14, "start", ref_text[i], "font-size=\"" small "\" fill=\"#555555\""); occupy(p, top, p + 6 + w, top + 17, 40) }
-			else { text(p - 6, top + 14, "end", ref_text[i], "font-size=\"" small "\" fill=\"#555555\""); occupy(p - 6 - w, top, p, top + 17, 40) }
+			occupy(p - 1, top, p + 1, top + plot_h, 9)
 		}
+}
+
+# Names a level at an end of its line, above or below (left or right) of it, where that covers least.
+function name_ref(i, p, w, k, x1, y1, bx, by, cost, best, end) {
+	w = length(ref_text[i]) * small_w; best = 1e9
+	p = ref_axis[i] == "y" ? at_y(ref_at[i]) : at_x(ref_at[i])
+	for (k = 0; k < 4; k++) {
+		x1 = ref_axis[i] == "y" ? (k < 2 ? left + plot_w - 6 - w : left + 6) : (k % 2 ? p - 5 - w : p + 5)
+		y1 = ref_axis[i] == "y" ? (k % 2 ? p + 3 : p - 16) : (k < 2 ? top + 3 : top + plot_h - 18)
+		cost = clash(x1, y1, x1 + w, y1 + 13) + k
+		if (cost < best) { best = cost; bx = x1; by = y1; end = ref_axis[i] == "y" ? k < 2 : k % 2 }
 	}
+	text(end ? bx + w : bx, by + 10.5, end ? "end" : "start", ref_text[i], "font-size=\"" small "\" fill=\"#555555\"")
+	occupy(bx, by, bx + w, by + 13, 40)
 }
 
 # The points of a series in order of x (equal ones, and a path's, as they came), in order[1..count].
@@ -237,10 +250,10 @@ function draw_line(s, count, i, ink, a, b) {
 }
 
 function draw_legend(s, py, px) {
-	if (series < 2) return
-	px = left + plot_w + 22
+	px = left + plot_w + 22; py = top - 11
 	for (s = 1; s <= series; s++) {
-		py = top + 10 + (s - 1) * 21
+		if (!points[s]) continue
+		py += 21
 		if (style[name[s]] != "points") segment(px, py, px + 22, py, "stroke=\"" colour[(s - 1) % colours + 1] "\" stroke-width=\"2\"" (style[name[s]] == "dashed" ? " stroke-dasharray=\"5,5\"" : ""))
 		if (style[name[s]] != "dashed") marker(s, px + 11, py)
 		text(px + 30, py + 4.5, "start", name[s], "")
@@ -249,9 +262,9 @@ function draw_legend(s, py, px) {
 
 END {
 	if (!n) { print "plot.awk: no points" >"/dev/stderr"; exit 1 }
-	longest = 0
-	for (s = 1; s <= series; s++) longest = max(longest, length(name[s]))
-	width = left + plot_w + (series > 1 ? 22 + 30 + longest * char_w + 14 : 28)
+	longest = listed = 0
+	for (i = 1; i <= n; i++) if (!points[of[i]]++) { listed++; longest = max(longest, length(name[of[i]])) }
+	width = left + plot_w + (listed > 1 ? 22 + 30 + longest * char_w + 14 : 28)
 	width = max(width, left + max(length(set["title"]) * 9.6, length(set["note"]) * small_w) + 14)
 	height = top + plot_h + bottom
 	bounds()
@@ -264,7 +277,8 @@ END {
 			marker(of[i], at_x(x[i]), at_y(y[i]))
 			occupy(at_x(x[i]) - 5, at_y(y[i]) - 5, at_x(x[i]) + 5, at_y(y[i]) + 5, 15)
 		}
+	for (i = 1; i <= refs; i++) name_ref(i)
 	for (i = 1; i <= n; i++) if (label[i] != "") place(at_x(x[i]), at_y(y[i]), label[i], colour[(of[i] - 1) % colours + 1])
-	draw_legend()
+	if (listed > 1) draw_legend()
 	print "</svg>"
 }

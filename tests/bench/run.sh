@@ -8,6 +8,7 @@ shift
 parts=${*:-peer step render threads memory knobs}
 failed=0
 echo "$(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1), $(nproc) processors; load $(cut -d ' ' -f 1-3 /proc/loadavg)"
+awk '{ exit !($1 > 0.5) }' /proc/loadavg && echo "This machine is busy with something else: times of several threads will be too long."
 for part in $parts; do
 	script=tests/bench/$part.sh
 	case $part in run | common) script= ;; esac

@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # A training step against everything it depends on, one at a time: BUILD/bench/step.jsonl.
 . tests/bench/common.sh
+# The contrast takes NEGATIVES sentences, refer-train's default, but where all of the scene's are said.
+NEGATIVES=12
 results=$out/step.jsonl repeats=9
 gaussians=25000,50000,100000,200000,500000
 sentences="11 22 44 88" batches="1 2 4 8" words="5 10 20 40"
@@ -18,11 +20,12 @@ sweep() {
 }
 
 measure() {
-	local v all="--threads $threads"
+	local v all="--negatives $NEGATIVES --threads $threads"
 	: >"$results"
-	sweep gaussians --gaussians $gaussians --threads "$([ "$threads" = 1 ] || echo 1,)$threads" || return
+	sweep gaussians --gaussians $gaussians --negatives $NEGATIVES --threads "$([ "$threads" = 1 ] || echo 1,)$threads" || return
 	sweep similarity --gaussians 100000 --similarity cosine $all || return
 	for v in $sentences; do sweep sentences --gaussians 50000 --sentences "$v" $all || return; done
+	for v in $sentences; do sweep all-sentences --gaussians 50000 --sentences "$v" --negatives 0 --threads "$threads" || return; done
 	for v in $batches; do sweep batch --gaussians 50000 --batch "$v" $all || return; done
 	for v in $words; do sweep words --gaussians 50000 --words "$v" $all || return; done
 	for v in $sizes; do sweep weights --gaussians 50000 --size "$v" $all || return; done
@@ -34,7 +37,7 @@ rows() {
 }
 
 tables() {
-	echo "Against Gaussians: 14 words, 44 sentences, one a step, 318x178 pixels. peer: PyTorch, $threads threads, without images and contrast."
+	echo "Against Gaussians: 14 words, 44 sentences, $NEGATIVES of them in the contrast, one a step, 318x178 pixels. peer: PyTorch, $threads threads, without images and contrast."
 	{
 		printf 'Gaussians\tthreads\tmedian, ms\tleast, ms\tGFLOP/s\tof peak\tpeer, ms\tpeer / median\n'
 		jq -rs --slurpfile peer "$peer" '.[] | select(.sweep == "gaussians") | . as $r
@@ -45,10 +48,11 @@ tables() {
 	printf '\nPhases of a step, ms, medians, %s threads\n' "$threads"
 	jq -rs "[.[] | select(.sweep == \"gaussians\" and .threads == $threads)] | ([\"Gaussians\"] + (.[0].phases | keys_unsorted) | @tsv),
 		(.[] | [.gaussians] + [.phases[]] | @tsv)" "$results" | table
-	for by in sentences batch words weights; do
+	for by in sentences all-sentences batch words weights; do
 		printf '\nAgainst %s: 50,000 Gaussians, %s threads\n' "$by" "$threads"
-		jq -rs "[.[] | select(.sweep == \"$by\")] | ([\"words\", \"sentences\", \"a step\", \"pixels\", \"weights\", \"median, ms\",
-			\"ms a sentence\", \"of peak\"] | @tsv), (.[] | [.words, .sentences, .batch, .pixels, .weights, .ms,
+		jq -rs "[.[] | select(.sweep == \"$by\")] | ([\"words\", \"sentences\", \"in the contrast\", \"a step\", \"pixels\", \"weights\", \"median, ms\",
+			\"ms a sentence\", \"of peak\"] | @tsv), (.[] | [.words, .sentences,
+			(if .negatives > 0 then \"4 + \(.negatives)\" else \"all\" end), .batch, .pixels, .weights, .ms,
 			(.ms / .batch * 1000 | round / 1000), \"\(.share_of_peak * 1000 | round / 10) %\"] | @tsv)" "$results" | table
 	done
 	printf '\nSimilarity at 100,000 Gaussians, %s threads\n' "$threads"
@@ -62,7 +66,8 @@ tables() {
 		rows weights '[.weights, .ms]' | fit "a step / weights"
 		rows weights '[.weights, .phases.images]' | fit "images / weights"
 		rows sentences '[.sentences, .ms]' | fit "a step / sentences of the scene"
-		rows sentences '[.sentences, .phases.words]' | fit "words / sentences of the scene"
+		rows all-sentences '[.sentences, .ms]' | fit "a step / sentences, all in the contrast"
+		rows all-sentences '[.sentences, .phases.words]' | fit "words / sentences, all in the contrast"
 		rows batch '[.batch, .ms]' | fit "a step / sentences a step"
 		rows words '[.words, .ms]' | fit "a step / words of a sentence"
 		jq -r "select(.threads == $threads) | [.gaussians, .feature_ms] | @tsv" "$peer" | fit "the peer / Gaussians"
@@ -86,8 +91,9 @@ plots() {
 	{
 		plot_head "A training step against the sentences of the scene" "50,000 Gaussians, 14 words, one sentence a step; $threads threads" \
 			"sentences of the scene" "time of a step, ms" xzero yzero
-		rows sentences '["a step", .sentences, .ms]'
-		rows sentences '["words: MLP_t, forward and back", .sentences, .phases.words]'
+		rows sentences "[\"a step, contrast with $NEGATIVES\", .sentences, .ms]"
+		rows all-sentences '["a step, contrast with all", .sentences, .ms]'
+		rows all-sentences '["of this, MLP_t", .sentences, .phases.words]'
 	} | plot step-sentences
 	{
 		plot_head "A training step against its sentences" "50,000 Gaussians, 14 words, 44 sentences; $threads threads" \
@@ -99,7 +105,7 @@ plots() {
 		plot_head "A training step against the words of a sentence" "50,000 Gaussians, 44 sentences; $threads threads" \
 			"words of a sentence" "time of a step, ms" xzero yzero
 		rows words '["a step", .words, .ms]'
-		rows words '["words: MLP_t, forward and back", .words, .phases.words]'
+		rows words '["of this, MLP_t", .words, .phases.words]'
 	} | plot step-words
 	{
 		plot_head "A training step against the weights of its view" "50,000 Gaussians, 56 weights a pixel; $threads threads" \
