@@ -1,9 +1,8 @@
 #include "refer/step.h"
 
 #include "base/mem.h"
-#include "mask/bits.h"
-#include "nn/loss.h"
 #include "refer/fold.h"
+#include "refer/images.h"
 #include "refer/words.h"
 
 #include <math.h>
@@ -53,11 +52,10 @@ struct step {
 	int *first;    /* (batch+1) */
 	float *slab;   /* all per-Gaussian arrays but x and dx */
 	float *position;
-	float *image, *dimage;	     /* (P) */
-	float *response, *dresponse; /* (padded) one sentence's channel */
-	float *view_scratch;	     /* (VIEW_SLABS,padded) */
-	float *vectors, *dvectors;   /* (n,128) */
-	double *fg, *dfg, *score;    /* (S,128), (S,128), (R) */
+	float *response, *top; /* (padded) one sentence's channel */
+	struct images images;
+	float *vectors, *dvectors; /* (n,128) */
+	double *fg, *dfg, *score;  /* (S,128), (S,128), (R) */
 	struct block_sums sums[CHUNKS];
 	size_t at[PARTS + 1]; /* where each part lies in a chunk's slab, for the current step */
 	float *chunks;	      /* (CHUNKS, chunk_size) */
@@ -231,13 +229,11 @@ static int alloc_arrays(struct step *s, struct err *e)
 		return err_set(e, ERR_SYSTEM, "%zu Gaussians do not fit in memory", u->gaussians);
 	s->slab = mem_zalloc(floats, sizeof(float), "features", e);
 	s->position = mem_alloc(s->padded, 3 * sizeof(float), "positions", e);
-	s->response = mem_zalloc(s->padded, (2 + VIEW_SLABS) * sizeof(float), "responses", e);
-	s->image = mem_zalloc(u->pixels, 2 * sizeof(float), "images", e);
-	if (!s->slab || !s->position || !s->response || !s->image)
+	s->response = mem_zalloc(s->padded, 2 * sizeof(float), "responses", e);
+	if (!s->slab || !s->position || !s->response ||
+		images_init(&s->images, u->pixels, s->padded, u->batch, s->threads, e))
 		return -1;
-	s->dresponse = s->response + s->padded;
-	s->view_scratch = s->dresponse + s->padded;
-	s->dimage = s->image + u->pixels;
+	s->top = s->response + s->padded;
 	float *at = s->slab;
 	for (int k = 0; k < 10; k++) {
 		*arrays[k] = channels[k] ? at : NULL;
@@ -260,7 +256,6 @@ static int alloc_sums(struct step *s, struct err *e)
 	s->chunk_size = at[PARTS];
 	const struct block_model largest = {.words = s->max_words, .z_size = (int)z};
 	s->scratch_size = (block_scratch_floats(&largest) + 15) / 16 * 16;
-	s->threads = omp_get_max_threads();
 	s->chunks = mem_zalloc(CHUNKS, s->chunk_size * sizeof(float), "sums", e);
 	s->total = mem_zalloc(s->chunk_size, sizeof(double), "sums", e);
 	s->scratch = mem_zalloc((size_t)s->threads, s->scratch_size * sizeof(float), "scratch", e);
@@ -293,6 +288,7 @@ struct step *step_new(const struct step_setup *setup, struct err *e)
 	s->padded = step_padded(setup->gaussians);
 	s->blocks = s->padded / BLOCK_SIZE;
 	s->max_words = longest * setup->batch;
+	s->threads = omp_get_max_threads();
 	if (alloc_arrays(s, e) || alloc_sums(s, e) ||
 		words_init(&s->words, setup->layout, setup->sentences, setup->offsets, setup->words, e) ||
 		!(s->fold = fold_new(setup->layout, setup->similarity, s->max_words, setup->batch, e))) {
@@ -316,7 +312,7 @@ void step_free(struct step *s)
 	free(s->slab);
 	free(s->position);
 	free(s->response);
-	free(s->image);
+	images_free(&s->images);
 	free(s->vectors);
 	free(s->fg);
 	free(s->chunks);
@@ -388,48 +384,18 @@ static void channel_put(float *panels, size_t padded, int channels, int c, const
 		memcpy(panels + panel_index(i, channels, c), in + i, sizeof(float) * L);
 }
 
-/* The image of one response, its loss and, in dresponse, the response's gradient times `share`.
- * Blending back follows part by part, while the part's weights are in cache. */
-static double image_loss(struct step *s, const struct view_weights *view, const uint8_t *mask, double share)
-{
-	enum { part = 2048 };
-	const size_t pixels = view->pixels;
-	double sums[VIEW_SLABS] = {0}, sum = 0;
-
-#pragma omp parallel for schedule(dynamic) num_threads(s->threads)
-	for (size_t slab = 0; slab < VIEW_SLABS; slab++) {
-		float *dm = s->view_scratch + slab * view->gaussians;
-		uint8_t wanted[part];
-		const size_t begin = pixels * slab / VIEW_SLABS, end = pixels * (slab + 1) / VIEW_SLABS;
-		memset(dm, 0, sizeof *dm * view->gaussians);
-		for (size_t from = begin; from < end; from += part) {
-			const size_t to = end - from > part ? from + part : end;
-			const double of_all = (double)(to - from) / (double)pixels;
-			view_blend(view, s->response, from, to, s->image);
-			bits_expand(mask, from, to, wanted);
-			sums[slab] += of_all * loss_bce(s->image + from, wanted, to - from,
-						       (float)(share * of_all), s->dimage + from);
-			view_blend_back(view, s->dimage, from, to, dm);
-		}
-	}
-	view_join(s->view_scratch, view->gaussians, s->dresponse);
-	for (size_t slab = 0; slab < VIEW_SLABS; slab++)
-		sum += sums[slab];
-	return sum;
-}
-
 /* Images, their loss, and dm. */
 static double image_losses(
 	struct step *s, const struct view_weights *view, const struct step_target *targets, int count)
 {
-	double bce = 0;
+	const size_t whole = s->setup.gaussians / L * L, channels = (size_t)count;
+	const uint8_t *masks[BLOCK_WORDS];
 
-	for (int i = 0; i < count; i++) {
-		channel_get(s->arrays.m, s->padded, count, i, s->response);
-		bce += image_loss(s, view, targets[i].mask, 1 / (double)count) / count;
-		channel_put(s->arrays.dm, s->padded, count, i, s->dresponse);
-	}
-	return bce;
+	/* the padding of a last panel may hold what a step of other channels left */
+	memset(s->arrays.dm + whole * channels, 0, sizeof(float) * (s->padded - whole) * channels);
+	for (int i = 0; i < count; i++)
+		masks[i] = targets[i].mask;
+	return images_loss(&s->images, view, s->arrays.m, count, masks, s->arrays.dm);
 }
 
 /* How often each chosen sentence of another object counts, to stand for all of them. */
@@ -451,9 +417,9 @@ static double contrast_losses(struct step *s, const struct step_target *targets,
 
 	for (int i = 0; i < count; i++) {
 		channel_get(s->arrays.m, s->padded, count, i, s->response);
-		memset(s->dresponse, 0, sizeof(float) * s->padded);
-		contrast_top_set(s->response, s->setup.gaussians, top_count, s->dresponse);
-		channel_put(s->arrays.top, s->padded, count, i, s->dresponse);
+		memset(s->top, 0, sizeof(float) * s->padded);
+		contrast_top_set(s->response, s->setup.gaussians, top_count, s->top);
+		channel_put(s->arrays.top, s->padded, count, i, s->top);
 	}
 	phase_ended(s, STEP_TOP);
 	clear_parts(s, MEAN, MEAN);

@@ -71,6 +71,36 @@ void view_blend_back(const struct view_weights *w, const float *dimage, size_t f
 	}
 }
 
+void view_blend_group(const struct view_weights *w, const float *m, int count, size_t from, size_t to,
+	float *image, size_t stride)
+{
+	for (size_t p = from; p < to; p++) {
+		float sums[VIEW_GROUP] = {0};
+		for (int64_t i = w->indptr[p]; i < w->indptr[p + 1]; i++) {
+			const float *values = m + (size_t)w->index[i] * VIEW_GROUP;
+			for (int k = 0; k < VIEW_GROUP; k++)
+				sums[k] += w->weight[i] * values[k];
+		}
+		for (int k = 0; k < count; k++)
+			image[(size_t)k * stride + p] = sums[k];
+	}
+}
+
+void view_blend_back_group(const struct view_weights *w, const float *dimage, size_t stride, int count,
+	size_t from, size_t to, float *dm)
+{
+	for (size_t p = from; p < to; p++) {
+		float d[VIEW_GROUP] = {0};
+		for (int k = 0; k < count; k++)
+			d[k] = dimage[(size_t)k * stride + p];
+		for (int64_t i = w->indptr[p]; i < w->indptr[p + 1]; i++) {
+			float *to_row = dm + (size_t)w->index[i] * VIEW_GROUP;
+			for (int k = 0; k < VIEW_GROUP; k++)
+				to_row[k] += w->weight[i] * d[k];
+		}
+	}
+}
+
 void view_join(const float *slabs, size_t gaussians, float *dm)
 {
 #pragma omp parallel for schedule(static)

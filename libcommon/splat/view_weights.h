@@ -20,6 +20,14 @@ void view_blend(const struct view_weights *w, const float *m, size_t from, size_
 /* dm (N) += W^T dimage over the pixels [from,to), by one thread. */
 void view_blend_back(const struct view_weights *w, const float *dimage, size_t from, size_t to, float *dm);
 
+/* The same for `count` responses at once, at most VIEW_GROUP: m (N,VIEW_GROUP), image[k * stride + p] of
+ * response k, and back. */
+enum { VIEW_GROUP = 4 };
+void view_blend_group(const struct view_weights *w, const float *m, int count, size_t from, size_t to,
+	float *image, size_t stride);
+void view_blend_back_group(const struct view_weights *w, const float *dimage, size_t stride, int count,
+	size_t from, size_t to, float *dm);
+
 /* For a backward pass by many threads: the pixels are cut into VIEW_SLABS parts, each with a dm of its own in
  * slabs (VIEW_SLABS,N), and these are added in order, whatever the number of threads. */
 enum { VIEW_SLABS = 8 };
