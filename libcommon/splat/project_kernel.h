@@ -172,8 +172,8 @@ VEC_INLINE void project_some(const struct project_lens *lens, struct project_bat
 	project_real half_height = (1 + 1e-6) * (radius * (yy * l22 * (1 / PROJECT_HALF_LOG2E)));
 	project_real px = lens->fx * rx + lens->cx, py = lens->fy * ry + lens->cy;
 	project_int columns[2], rows[2];
-	/* a difference is 0 where it is of finite numbers */
-	project_mask seen = (cz > PROJECT_NEAR) & (px - px == 0) & (py - py == 0) & (det - det == 0) &
+	/* a product with 0 is 0 where the other is finite */
+	project_mask seen = (cz > PROJECT_NEAR) & (0 * px == 0) & (0 * py == 0) & (0 * det == 0) &
 			    project_range(px, half_width, lens->width, &columns[0], &columns[1]) &
 			    project_range(py, half_height, lens->height, &rows[0], &rows[1]);
 

@@ -160,7 +160,10 @@ static unsigned band_begin(const struct tile_lists *t, const struct tile_grid *g
 	return part == parts ? (unsigned)g->rows : row;
 }
 
-enum { AHEAD = 24 }; /* Gaussians to fetch before their use */
+enum {
+	AHEAD = 24, /* Gaussians to fetch before their use */
+	APART = 32, /* between what two threads write all the time: more than a cache line */
+};
 
 /* Lists that are being filled, by one thread. */
 struct filling {
@@ -223,7 +226,7 @@ int tile_bin(struct tile_lists *t, const struct tile_grid *g, const struct order
 {
 	const size_t tiles = (size_t)g->columns * (size_t)g->rows;
 	const int threads = threads_available();
-	const size_t spare = (size_t)threads;
+	const size_t spare = (size_t)threads * APART;
 
 	/* behind the starts are the places where each list goes on while it is filled */
 	if (mem_room((void **)&t->start, &t->start_capacity, 2 * tiles + 1 + spare, sizeof *t->start,
@@ -239,7 +242,7 @@ int tile_bin(struct tile_lists *t, const struct tile_grid *g, const struct order
 #pragma omp parallel num_threads(threads)
 	{
 		const int part = omp_get_thread_num(), parts = omp_get_num_threads();
-		const struct filling f = {t->entries, next, tiles + (size_t)part,
+		const struct filling f = {t->entries, next, tiles + (size_t)part * APART,
 			band_begin(t, g, part, parts), band_begin(t, g, part + 1, parts),
 			(unsigned)g->columns};
 		fill_band(&f, order, n, covers, spans);

@@ -4,16 +4,18 @@
  *
  * SCENE is a folder of gs-import and VIEW a view of it; without them scenes of -n Gaussians (default
  * 100000,500000) are made as gs-synth makes them. Sizes default to 493x364,986x728, and to the view's own.
- *For each scene, size, number of threads (1, 2, 4 ... and all) and of channels (1, 4, 16) a line:
+ * For each scene, size, number of threads (1, 2, 4 ... and all) and of channels (1, 4, 16) a line:
  *
  *	{"bench":"render","mode":"within","gaussians":N,"width":W,"height":H,"threads":T,"channels":C,
- *	 "prepare_ms":...,"blend_ms":...,"frame_ms":...,"fps":...,"prepare_median_ms":...,"blend_median_ms":...,
- *	 "frame_median_ms":...,"pairs":...}
+ *	 "prepare_ms":...,"blend_ms":...,"frame_ms":...,"fps":...,"prepare_median_ms":...,
+ *	 "blend_median_ms":...,"frame_median_ms":...,"cpu_ms":...,"pairs":...}
  *
- * Mode "within": all threads share a frame. "beside" (more than one thread): each has frames of its own, and
- *times are the threads' mean divided by their number, so that again fps = 1000 / frame_ms. The times are the
- *least and the median of the repeats, in the process's own time where one thread runs, so that a busy machine
- *disturbs them little. pairs counts Gaussians in tiles. Values are in memory as refer-render has them. */
+ * Mode "within": all threads share a frame. "beside" (more than one thread): each has frames of its own;
+ * prepare_ms and blend_ms are then the threads' mean divided by their number, and frame_ms is the wall time
+ * over the frames of all. fps = 1000 / frame_ms. Times are the least and the median of the repeats, in the
+ * process's own time where one thread runs, so that a busy machine disturbs them little. cpu_ms is what all
+ * processors together spend on a frame, at least: divided by the threads, what a free machine would take at
+ * best. pairs counts Gaussians in tiles. Values are in memory as refer-render has them. */
 #include "base/mem.h"
 #include "formats/scene.h"
 #include "splat/render.h"
@@ -34,8 +36,8 @@ struct options {
 	int repeats;
 };
 
-/* One repeat's times in ms: prepare, blend, and both. */
-enum { PREPARE, BLEND, FRAME, TIMES };
+/* One repeat's times in ms: prepare, blend, both, and the processors' for both. */
+enum { PREPARE, BLEND, FRAME, CPU, TIMES };
 
 struct job {
 	const struct splats *splats;
@@ -116,8 +118,11 @@ static void measure_within(struct job *j, double (*times)[TIMES])
 
 	j->pairs = room.view->tiles.start[(size_t)room.view->grid.columns * (size_t)room.view->grid.rows];
 	render_frame(j, &room, clock, unused);
-	for (int i = 0; i < j->repeats; i++)
+	for (int i = 0; i < j->repeats; i++) {
+		const double start = now(CLOCK_PROCESS_CPUTIME_ID);
 		render_frame(j, &room, clock, times[i]);
+		times[i][CPU] = now(CLOCK_PROCESS_CPUTIME_ID) - start;
+	}
 	free_room(&room);
 }
 
@@ -135,7 +140,7 @@ static void measure_beside(const struct job *j, double (*times)[TIMES])
 		for (int i = 0; i < j->repeats; i++) {
 			memset(mine, 0, sizeof *own);
 #pragma omp barrier
-			const double start = now(CLOCK_MONOTONIC);
+			const double start = now(CLOCK_MONOTONIC), cpu_start = now(CLOCK_PROCESS_CPUTIME_ID);
 			for (int k = 0; k < BESIDE_FRAMES; k++)
 				render_frame(j, room, CLOCK_MONOTONIC, mine);
 #pragma omp barrier
@@ -143,6 +148,7 @@ static void measure_beside(const struct job *j, double (*times)[TIMES])
 			{
 				const double frames = BESIDE_FRAMES * (double)j->threads;
 				times[i][FRAME] = (now(CLOCK_MONOTONIC) - start) / frames;
+				times[i][CPU] = (now(CLOCK_PROCESS_CPUTIME_ID) - cpu_start) / frames;
 				for (int t = 0; t < j->threads; t++)
 					for (int k = 0; k < FRAME; k++)
 						times[i][k] += own[t][k] / frames / j->threads;
@@ -175,10 +181,10 @@ static void print_line(const struct job *j, const char *mode, double (*times)[TI
 	free(sorted);
 	printf("{\"bench\":\"render\",\"mode\":\"%s\",\"gaussians\":%zu,\"width\":%d,\"height\":%d,\"threads\":%d,"
 	       "\"channels\":%d,\"prepare_ms\":%.3f,\"blend_ms\":%.3f,\"frame_ms\":%.3f,\"fps\":%.2f,"
-	       "\"prepare_median_ms\":%.3f,\"blend_median_ms\":%.3f,\"frame_median_ms\":%.3f,\"pairs\":%zu}\n",
+	       "\"prepare_median_ms\":%.3f,\"blend_median_ms\":%.3f,\"frame_median_ms\":%.3f,\"cpu_ms\":%.3f,\"pairs\":%zu}\n",
 		mode, j->splats->n, j->camera.width, j->camera.height, j->threads, j->channels,
 		least[PREPARE], least[BLEND], least[FRAME], 1e3 / least[FRAME], median[PREPARE],
-		median[BLEND], median[FRAME], j->pairs);
+		median[BLEND], median[FRAME], least[CPU], j->pairs);
 	fflush(stdout);
 }
 
