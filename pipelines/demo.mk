@@ -5,12 +5,15 @@
 # SYNTH       more options for gs-synth: "--objects 4 --gaussians 50000", say; with other ones, or another SEED, the data are
 #             made anew, and all that depends on them
 # ITERATIONS  steps of each stage; default 3000
+# SCALE       as in two-stage.mk; default 0.5
+# TRAIN       more options for refer-train
 # BERT, BIN   as in two-stage.mk
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
 DEMO ?= demo
 SEED ?= 1
 ITERATIONS ?= 3000
+SCALE ?= 0.5
 BIN ?= $(if $(wildcard $(here)../build/bin/gs-synth),$(abspath $(here)../build/bin))
 data := $(DEMO)/data
 make_data := gs-synth --seed $(SEED)$(if $(SYNTH), $(SYNTH))
@@ -19,7 +22,8 @@ make_data := gs-synth --seed $(SEED)$(if $(SYNTH), $(SYNTH))
 demo: $(data)/made-by
 	@$(MAKE) --no-print-directory -f $(here)two-stage.mk SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply CAMERAS=$(data)/sparse/0 \
 		IMAGES=$(data)/images TEST_VIEWS=$$(cat $(data)/test-views) SENTENCES=$(data)/sentences.jsonl \
-		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl SCALE=0.5 ITERATIONS=$(ITERATIONS) SEED=$(SEED) \
+		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl SCALE=$(SCALE) ITERATIONS=$(ITERATIONS) SEED=$(SEED) \
+		$(if $(TRAIN),TRAIN="$(TRAIN)") \
 		$(if $(BIN),BIN=$(BIN)) $(if $(BERT),BERT=$(BERT))
 	@echo
 	@echo "photographs: $(data)/images"
