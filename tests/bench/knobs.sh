@@ -5,6 +5,7 @@
 #	DATA=DIR       a real scene in the desk's layout, for the synthetic one
 #	ITERATIONS     sentences shown in a training, 1000 or more
 #	SEEDS="1 2"    seeds of the trainings
+#	KNOBS="a b"    only these knobs
 . tests/bench/common.sh
 
 # A knob is a line here: its name, its tool, the option, and the values, the exact one first. Options and values that the
@@ -21,6 +22,10 @@ negatives       refer-train --negatives 0 12 4
 batch           refer-train --batch     1 2 4
 precision       refer-train --precision f32 f16 u8
 "
+
+[ -z "${KNOBS:=}" ] || knobs=$(awk -v names="$KNOBS" 'BEGIN { count = split(names, want) }
+	{ shown = 0; for (i = 1; i <= count; i++) if ($1 == want[i]) shown = 1
+	if (!shown && NF) NF = 4; print }' <<<"$knobs")
 
 SHORT=10 # steps of the training that is taken off a run's time: reading, setting up
 # The quick run learns at higher rates than the defaults, to get somewhere in few steps.
@@ -138,13 +143,18 @@ measure() {
 	rm -f "$run".{train,test}.jsonl "$run.safetensors"
 }
 
+# others VALUES: all but the first, which is exact.
+others() {
+	[ "${1#* }" = "$1" ] || echo "${1#* }"
+}
+
 # All runs, a seed's close together in time; one that fails is named and left out.
 measure_all() {
 	local name tool option values value seed
 	for seed in $seeds; do
 		measure exact - "$seed" || die "the exact run with seed $seed failed"
 		while read -r name tool option values; do
-			for value in ${values#* }; do
+			for value in $(others "$values"); do
 				if known "$tool" "$option" "$value"; then
 					measure "$name" "$value" "$seed" || echo "FAILED: $name $value, seed $seed"
 				elif [ "$seed" = "${seeds%% *}" ]; then
@@ -157,7 +167,7 @@ measure_all() {
 	# The results of what was asked for this time, and no others that lie there.
 	for seed in $seeds; do cat "$runs/exact-$seed.json" "$runs/defaults-$seed.json"; done >"$results"
 	while read -r name tool option values; do
-		for value in ${values#* }; do
+		for value in $(others "$values"); do
 			for seed in $seeds; do cat "$runs/$name=$value-$seed.json" 2>/dev/null; done
 		done
 	done <<<"$knobs" | jq -c "select(.build == \"$build\")" >>"$results"

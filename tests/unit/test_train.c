@@ -458,6 +458,41 @@ static void test_no_weight(void)
 	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
 }
 
+/* The sentences of a contrast: so many different ones, the same for the same step, each as often as any. */
+static void test_others(void)
+{
+	enum { SENTENCES = 20, PICKED = 6, STEPS = 4000 };
+	struct train_view views[1] = {{.count = 1, .sentences = (int[]){0}}};
+	struct train_order o;
+	int drawn[SENTENCES] = {0}, repeats = 0;
+	size_t kept[PICKED] = {0};
+	struct err e;
+
+	CHECK(!train_order_init(&o, views, 1, 1, SENTENCES, PICKED, 3, &e), "%s", e.message);
+	for (long i = 0; i < STEPS; i++) {
+		const size_t *list = train_order_others(&o, i);
+		char is_in[SENTENCES] = {0};
+		for (int k = 0; k < PICKED; k++) {
+			if (!CHECK(list[k] < SENTENCES && !is_in[list[k]], "step %ld draws %zu", i, list[k]))
+				break;
+			is_in[list[k]] = 1;
+			drawn[list[k]]++;
+		}
+		repeats += i && !memcmp(kept, list, sizeof kept);
+		memcpy(kept, list, sizeof kept);
+		CHECK(!memcmp(kept, train_order_others(&o, i), sizeof kept), "step %ld again", i);
+	}
+	CHECK(repeats < 5, "%d steps draw as the one before", repeats);
+	for (int r = 0; r < SENTENCES; r++) /* 1200 +- 29, four times that */
+		CHECK(abs(drawn[r] - STEPS * PICKED / SENTENCES) < 116, "%d: drawn %d times", r, drawn[r]);
+	train_order_free(&o);
+	for (size_t all = 0; all <= SENTENCES; all += SENTENCES) {
+		CHECK(!train_order_init(&o, views, 1, 1, SENTENCES, all, 3, &e), "%s", e.message);
+		CHECK(!train_order_others(&o, 0), "%zu are all", all);
+		train_order_free(&o);
+	}
+}
+
 int main(void)
 {
 	test_active_set();
@@ -469,5 +504,6 @@ int main(void)
 	test_top();
 	test_resume();
 	test_no_weight();
+	test_others();
 	return unit_end();
 }
