@@ -1,6 +1,8 @@
+/* clang-format off */
 /* The referring model (ReferSplat, ICML 2025; design section 4): what is learned, and how it is laid out.
  *
- * N Gaussians, a sentence of n words, D = 128. [W;b](x) is a linear layer W x + b with W (out,in) row-major.
+ * N Gaussians, or rows that Gaussians share (refer/rows.h), a sentence of n words, D = 128. [W;b](x) is a
+ * linear layer W x + b with W (out,in) row-major.
  *   w_j  = MLP_t(BERT word j)      D_text-512-256-128, ReLU between layers
  *   e    = mean_j w_j              sentence embedding
  *   f_i  = MLP_f(x_i)              16-32-64-128, x_i the referring feature
@@ -16,15 +18,21 @@
  *                 c_j  = sum_i softmax_i(w_j.f_i) p^_i                       (no 1/sqrt D here)
  *                 Q_i  = [query](f_i) + [query_position](p^_i),  K_j = [key](w_j) + [key_position](c_j),
  *                 V_j  = [value](w_j)
- *                 f'_i = LayerNorm(f_i + sum_j softmax_j(Q_i.K_j / sqrt D) V_j), eps 1e-5, scale and shift
- * learned Response: dot     m_i = sum_j f'_i.w_j cosine  m_i = sum_j f'_i.w_j / (|f'_i| |w_j|), each norm at
- * least 1e-12 (not with pcmi-proj) M(v) = sum_i w_vi m_i over the view's blend weights. Loss of one sentence
- * r in one view: L = L_bce + lambda L_con L_bce  mean over pixels of the binary cross-entropy with logits M
- * against the mask L_con  = -1/|E+| sum_{e+ in E+} log( exp(s(e+)/T) / sum_{all e} exp(s(e)/T) ), E+ the
- * sentences of r's object, "all" the scene's training sentences; s(e) = f_g.e (contrast dot) or
- * f_g.e/(|f_g||e|) (cosine); f_g = mean of f'_i over the k Gaussians of largest m_i (ties: lower index
- * first), k = max(1, floor(tau N)), tau = max(0.005, 0.1 * 0.6^(iteration/1000)); the choice itself has no
- * gradient. */
+ *                 f'_i = LayerNorm(f_i + sum_j softmax_j(Q_i.K_j / sqrt D) V_j), eps 1e-5, scale and shift learned
+ *
+ * Response: dot     m_i = sum_j f'_i.w_j
+ *           cosine  m_i = sum_j f'_i.w_j / (|f'_i| |w_j|), each norm at least 1e-12 (not with pcmi-proj)
+ * M(v) = sum_i w_vi m_i over the view's blend weights.
+ *
+ * Loss of one sentence r in one view: L = L_bce + lambda L_con.
+ * L_bce  mean over pixels of the binary cross-entropy with logits M against the mask
+ * L_con  = -1/|E+| sum_{e+ in E+} log( exp(s(e+)/T) / sum_{all e} exp(s(e)/T) ), E+ the sentences of r's
+ *        object, "all" the scene's training sentences, or a sample of those of other objects, each counted as
+ *        often as makes up for the rest (struct step_others); s(e) = f_g.e (contrast dot) or
+ *        f_g.e/(|f_g||e|) (cosine); f_g = mean of f'_i over the k Gaussians of largest m_i (ties: lower
+ *        index first), k = max(1, floor(tau N)), tau = max(0.005, 0.1 * 0.6^(iteration/1000)); the choice
+ *        itself has no gradient. */
+/* clang-format on */
 #ifndef REFER_MODEL_H
 #define REFER_MODEL_H
 
