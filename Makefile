@@ -182,7 +182,7 @@ lint-man:
 	@$(if $(MAN_PAGES),mandoc -T lint -W warning $(MAN_PAGES))
 
 lint-gcc:
-	@$(MAKE) --no-print-directory -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers
+	@$(MAKE) --no-print-directory -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers benches
 
 lint-clang:
 	@$(MAKE) --no-print-directory -s BUILD=build-lint/clang CC=clang CFLAGS="-O1 $(CLANG_FLAGS)" \
