@@ -109,12 +109,17 @@ static void kinds_stay_apart(void)
 	CHECK(!octree_find(&t, c->means, N, leaf, &e), "%s", e.message);
 	CHECK(error_of(c, leaf, t.n) < 0.05, "error %g", error_of(c, leaf, t.n));
 	CHECK(t.n < N / 2, "%zu leaves", t.n);
-	/* A point outside the root belongs to the cube at its side. */
-	const float far[6] = {-50, -50, -50, 60, 70, 80};
-	int32_t at[2];
-	CHECK(!octree_find(&t, far, 2, at, &e), "%s", e.message);
-	for (int k = 0; k < 2; k++)
-		CHECK(at[k] < (int32_t)t.n, "leaf %d", at[k]);
+	/* A point outside the root belongs to the cube at its side: here to those of two corners. */
+	float far[12] = {-50, -50, -50, 60, 70, 80};
+	int32_t at[4];
+	for (int k = 0; k < 3; k++) {
+		far[6 + k] = (float)t.low[k];
+		far[9 + k] = (float)(t.low[k] + t.edge);
+	}
+	CHECK(!octree_find(&t, far, 4, at, &e), "%s", e.message);
+	CHECK(at[0] == at[2] && at[1] == at[3] && (at[0] != at[1] || at[0] < 0), "leaves %d %d %d %d", at[0],
+		at[1], at[2], at[3]);
+	CHECK(at[0] == 0, "the lowest corner is in leaf %d", at[0]);
 	/* Leaves out of order, inside one another, or with a number of bits that no level has. */
 	size_t bad = 0;
 	int64_t kept = t.codes[1];
