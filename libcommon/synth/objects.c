@@ -244,6 +244,7 @@ void synth_objects_make(struct synth_object *objects, int n, struct synth_table 
 	choose_kinds(objects, n, &r);
 	for (int i = 0; i < n; i++) {
 		struct synth_object *o = &objects[i];
+		o->on = -1;
 		o->scale = size_scales[o->size];
 		o->radius = o->scale * measures[o->shape][0];
 		o->height = o->scale * measures[o->shape][1];

@@ -62,10 +62,11 @@ struct synth_object {
 	enum synth_colour colour;
 	enum synth_size size;
 	enum synth_finish finish;
-	double x, y;   /* where it stands */
-	double yaw;    /* turn about the vertical, radians */
-	double scale;  /* of the shape's own measures */
-	double radius; /* nothing of it is farther than this from its vertical */
+	double x, y, z; /* the middle of its foot */
+	int on;		/* the object that it stands on; -1: the table */
+	double yaw;	/* turn about the vertical, radians */
+	double scale;	/* of the shape's own measures */
+	double radius;	/* nothing of it is farther than this from its vertical */
 	double height;
 	char name[SYNTH_NAME]; /* unique: "red mug", "red mug 2" */
 	char ref[SYNTH_NAME];  /* the same for names of sentences: "red-mug", "red-mug-2" */

@@ -130,7 +130,7 @@ static void put_object(struct work *w, int owner, size_t n)
 		enum synth_tint tint = synth_surface_at(&surface, a, b, p, q);
 		synth_object_colour(o, tint, p, &w->texture, rgb);
 		double point[3] = {o->x + o->scale * (c * p[0] - s * p[1]),
-			o->y + o->scale * (s * p[0] + c * p[1]), o->scale * p[2]};
+			o->y + o->scale * (s * p[0] + c * p[1]), o->z + o->scale * p[2]};
 		double normal[3] = {c * q[0] - s * q[1], s * q[0] + c * q[1], q[2]};
 		put_on_surface(w, owner, point, normal, spacing, rgb, o->finish == SYNTH_SHINY ? 0.16 : 0.03);
 	}
