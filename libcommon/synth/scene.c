@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "synth/arrange.h"
 #include "synth/cameras.h"
+#include "synth/hiding.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -147,8 +148,8 @@ static void put_object(struct work *w, int owner, size_t n)
 		spread(i, &w->rng, &a, &b);
 		enum synth_tint tint = synth_surface_at(&surface, a, b, p, q);
 		synth_object_colour(o, tint, p, &w->texture, rgb);
-		double point[3] = {o->x + o->scale * (c * p[0] - s * p[1]),
-			o->y + o->scale * (s * p[0] + c * p[1]), o->z + o->scale * p[2]};
+		double point[3];
+		synth_object_place(o, p, point);
 		double normal[3] = {c * q[0] - s * q[1], s * q[0] + c * q[1], q[2]};
 		if (normal[2] > 0.5) {
 			double left = shadow(w->s, owner, point[0], point[1], point[2]);
@@ -276,7 +277,8 @@ int synth_scene_make(struct synth_scene *s, const struct synth_options *o, struc
 	if (!s->objects || !s->owner || splats_alloc(&s->splats, o->gaussians, SH_COEFFICIENTS, e))
 		goto fail;
 	synth_arrange(s->objects, o->objects, &s->table, o->preset, o->seed);
-	if (synth_cameras_make(&s->cameras, o, &s->table, e))
+	if (synth_cameras_make(&s->cameras, o, &s->table, e) ||
+		synth_hiding_cameras(&s->cameras, o, s->objects, &s->table, e))
 		goto fail;
 	w->s = s;
 	rng_seed(&w->rng, o->seed, SYNTH_STREAM_TEXTURE);
