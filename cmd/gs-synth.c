@@ -10,6 +10,7 @@
 #include "synth/cameras.h"
 #include "synth/scene.h"
 #include "synth/sentences.h"
+#include "synth/truth.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -163,7 +164,7 @@ static int write_view(struct job *j, int number, struct err *e)
 	uint8_t *masks = mem_alloc((size_t)j->scene.object_count, pixels, "truth", e);
 	struct render_view *view = masks ? render_prepare(&j->scene.splats, c, e) : NULL;
 	int bad = !view || write_photograph(j, c, view, e) ||
-		  synth_scene_truth(&j->scene, view, pixels, masks, e) || put_truth(j, c, masks, e) ||
+		  synth_truth_visible(&j->scene, view, pixels, masks, e) || put_truth(j, c, masks, e) ||
 		  (c->split == SPLIT_TRAIN && put_candidates(j, number, c, masks, e));
 
 	if (view)
