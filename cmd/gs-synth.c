@@ -204,8 +204,11 @@ static int make(struct job *j, struct err *e)
 		return -1;
 	synth_cameras_reference(&s->cameras, right, away);
 	synth_layout_make(&layout, s->objects, s->object_count, &s->table, right, away);
-	synth_detector_make(&j->detector, s->objects, s->object_count, j->options.seed);
-	return synth_sentences_make(j->sentences, &layout, j->options.seed, e);
+	if (synth_sentences_make(j->sentences, &layout, j->options.seed, e))
+		return -1;
+	synth_detector_make(
+		&j->detector, s->objects, s->object_count, j->sentences, SYNTH_MILD, j->options.seed);
+	return 0;
 }
 
 int main(int argc, char **argv)

@@ -46,7 +46,7 @@ static const struct {
 		{"on the left-hand side of %A", "over to the left from %A"}},
 	[SYNTH_RIGHT_OF] = {14, {"to the right of %A", "right of %A"},
 		{"on the right-hand side of %A", "over to the right from %A"}},
-	[SYNTH_IN_FRONT_OF] = {12, {"in front of %A", "to the front of %A"},
+	[SYNTH_IN_FRONT_OF] = {12, {"in front of %A"},
 		{"on the near side of %A", "on our side of %A"}},
 	[SYNTH_BEHIND] = {12, {"behind %A", "to the rear of %A"},
 		{"on the far side of %A", "on the other side of %A from us"}},

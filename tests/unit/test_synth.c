@@ -195,13 +195,14 @@ static void detector_depends_on_the_view_alone(void)
 	int confused = 0, out_of_range = 0, hidden = 0;
 
 	synth_objects_make(o, N, &t, 9);
-	synth_detector_make(&d, o, N, 9);
+	synth_detector_make(&d, o, N, NULL, SYNTH_MILD, 9);
 	for (int i = 0; i + 1 < N; i++) /* the last one is hidden */
 		draw_disc(truth + (size_t)i * H * W, 15 + 28 * i, 45, 12);
 	for (int i = 0; i < N; i++) {
-		CHECK(d.confusers[i] != i && d.neighbours[i] != i, "object %d is mistaken for another", i);
+		CHECK(d.habits.mistaken[i][0] != i && d.habits.neighbours[i] != i,
+			"object %d is mistaken for another", i);
 		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
-			confused += d.habits[i][k] == SYNTH_HABIT_CONFUSED;
+			confused += d.habits.of[i][k] == SYNTH_HABIT_CONFUSED;
 	}
 	CHECK(confused > 0 && confused < N * SYNTH_TRAIN_SENTENCES / 2, "%d confused sentences", confused);
 	for (int view = 0; view < 6; view++) {
