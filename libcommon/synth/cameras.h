@@ -6,10 +6,13 @@
 #include "base/err.h"
 #include "geom/camera.h"
 #include "synth/objects.h"
+#include "synth/presets.h"
 
-/* n views of one size, all looking at the table; split set. Returns 0, or -1 with *e set and *c zeroed. */
-int synth_cameras_make(struct cameras *c, int n, int width, int height, const struct synth_table *table,
-	uint64_t seed, struct err *e);
+/* o->views views of one size, all looking at the table; split set: of V views the share of the preset is for
+ * testing, at least one, spread evenly and the last among them. Returns 0, or -1 with *e set and *c zeroed.
+ */
+int synth_cameras_make(
+	struct cameras *c, const struct synth_options *o, const struct synth_table *table, struct err *e);
 
 /* The reference viewpoint of spatial words: the mean of the training cameras' centres, looking at the table's
  * middle. right and away are its unit directions in the plane of the table. */

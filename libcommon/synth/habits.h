@@ -5,11 +5,8 @@
 
 #include "base/rng.h"
 #include "synth/objects.h"
+#include "synth/presets.h"
 #include "synth/sentences.h"
-
-/* MILD: of every object some sentence is understood. SEVERE: as Grounded-SAM does on Ref-LERF; of many
- * objects most sentences are taken to mean one other thing. */
-enum synth_severity { SYNTH_MILD, SYNTH_SEVERE, SYNTH_SEVERITIES };
 
 /* A sentence's habit, the same in every view. */
 enum synth_habit {

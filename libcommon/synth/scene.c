@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
+#include "synth/arrange.h"
 #include "synth/cameras.h"
 
 #include <math.h>
@@ -116,6 +117,23 @@ static void spread(size_t i, struct rng *r, double *a, double *b)
 	*b = y - floor(y);
 }
 
+/* How much light the objects leave on a point of the table or of `owner`'s top. */
+static double shadow(const struct synth_scene *s, int owner, double x, double y, double z)
+{
+	double left = 1;
+
+	for (int i = 0; i < s->object_count; i++) {
+		const struct synth_object *o = &s->objects[i];
+		double reach = o->z + 0.5 * o->height - z;
+		if (i == owner || reach <= 0)
+			continue;
+		double dx = x - o->x + light[0] * reach, dy = y - o->y + light[1] * reach;
+		double at = hypot(dx, dy) / (0.8 * o->radius + 0.4 * reach);
+		left *= 1 - 0.45 * fmax(0, 1 - at * at);
+	}
+	return left;
+}
+
 static void put_object(struct work *w, int owner, size_t n)
 {
 	const struct synth_object *o = &w->s->objects[owner];
@@ -132,29 +150,19 @@ static void put_object(struct work *w, int owner, size_t n)
 		double point[3] = {o->x + o->scale * (c * p[0] - s * p[1]),
 			o->y + o->scale * (s * p[0] + c * p[1]), o->z + o->scale * p[2]};
 		double normal[3] = {c * q[0] - s * q[1], s * q[0] + c * q[1], q[2]};
+		if (normal[2] > 0.5) {
+			double left = shadow(w->s, owner, point[0], point[1], point[2]);
+			for (int k = 0; k < 3; k++)
+				rgb[k] *= left;
+		}
 		put_on_surface(w, owner, point, normal, spacing, rgb, o->finish == SYNTH_SHINY ? 0.16 : 0.03);
 	}
-}
-
-/* How much light the objects leave on a point of the table. */
-static double shadow(const struct synth_scene *s, double x, double y)
-{
-	double left = 1;
-
-	for (int i = 0; i < s->object_count; i++) {
-		const struct synth_object *o = &s->objects[i];
-		double reach = 0.5 * o->height;
-		double dx = x - o->x + light[0] * reach, dy = y - o->y + light[1] * reach;
-		double at = hypot(dx, dy) / (0.8 * o->radius + 0.4 * reach);
-		left *= 1 - 0.45 * fmax(0, 1 - at * at);
-	}
-	return left;
 }
 
 /* The slab's boards run along x; its legs are square. */
 static void put_table(struct work *w, size_t n)
 {
-	static const double wood[3] = {0.70, 0.52, 0.34}, thickness = 0.16, leg = 0.16, depth = 2.2;
+	static const double thickness = 0.16, leg = 0.16, depth = 2.2;
 	const struct synth_table *t = &w->s->table;
 	struct synth_surface surface = {0};
 
@@ -172,12 +180,12 @@ static void put_table(struct work *w, size_t n)
 		double a, b, p[3], normal[3], rgb[3];
 		spread(i, &w->rng, &a, &b);
 		enum synth_tint tint = synth_surface_at(&surface, a, b, p, normal);
-		double board = floor((p[1] + t->half_depth) / 0.55);
+		double board = floor((p[1] + t->half_depth) / w->s->preset->boards);
 		double grain = synth_noise_at(&w->texture, 0.6 * p[0] + 17 * board, 9 * p[1]);
 		double tone = 1 + 0.13 * grain + 0.05 * synth_noise_at(&w->texture, 7.3 * board, 0.5);
-		tone *= tint == SYNTH_OWN ? shadow(w->s, p[0], p[1]) : 0.8;
+		tone *= tint == SYNTH_OWN ? shadow(w->s, -1, p[0], p[1], 0) : 0.8;
 		for (int k = 0; k < 3; k++)
-			rgb[k] = wood[k] * tone;
+			rgb[k] = w->s->preset->wood[k] * tone;
 		put_on_surface(w, -1, p, normal, spacing, rgb, 0.02);
 	}
 }
@@ -185,9 +193,9 @@ static void put_table(struct work *w, size_t n)
 /* A round room: floor and wall, far enough for every camera to stand inside. */
 static void put_room(struct work *w, size_t n)
 {
-	static const double wall[3] = {0.78, 0.80, 0.84}, floor_colour[3] = {0.42, 0.40, 0.41};
+	const struct synth_preset *preset = w->s->preset;
 	const struct synth_table *t = &w->s->table;
-	double radius = 3.4 * fmax(t->half_width, 1.3 * t->half_depth), height = 0.8 * radius;
+	double radius = preset->room * fmax(t->half_width, 1.3 * t->half_depth), height = 0.8 * radius;
 	double profile[3][2] = {{radius, height}, {radius, -2.2}, {0, -2.2}};
 	struct synth_surface surface = {0};
 
@@ -200,7 +208,7 @@ static void put_room(struct work *w, size_t n)
 		int is_floor = normal[2] > 0.5;
 		double tone = 1 + 0.10 * synth_noise_at(&w->texture, 0.7 * p[0] + 0.9 * p[2], 0.7 * p[1]);
 		for (int k = 0; k < 3; k++)
-			rgb[k] = (is_floor ? floor_colour : wall)[k] * tone;
+			rgb[k] = (is_floor ? preset->carpet : preset->wall)[k] * tone;
 		put_on_surface(w, -1, p, normal, spacing, rgb, 0.01);
 	}
 }
@@ -260,15 +268,15 @@ int synth_scene_make(struct synth_scene *s, const struct synth_options *o, struc
 {
 	struct work *w = mem_zalloc(1, sizeof *w, "scene", e);
 
-	*s = (struct synth_scene){.object_count = o->objects};
+	*s = (struct synth_scene){.preset = o->preset, .object_count = o->objects};
 	if (!w)
 		return -1;
 	s->objects = mem_zalloc((size_t)o->objects, sizeof *s->objects, "objects", e);
 	s->owner = mem_alloc(o->gaussians, sizeof *s->owner, "owners", e);
 	if (!s->objects || !s->owner || splats_alloc(&s->splats, o->gaussians, SH_COEFFICIENTS, e))
 		goto fail;
-	synth_objects_make(s->objects, o->objects, &s->table, o->seed);
-	if (synth_cameras_make(&s->cameras, o->views, o->width, o->height, &s->table, o->seed, e))
+	synth_arrange(s->objects, o->objects, &s->table, o->preset, o->seed);
+	if (synth_cameras_make(&s->cameras, o, &s->table, e))
 		goto fail;
 	w->s = s;
 	rng_seed(&w->rng, o->seed, SYNTH_STREAM_TEXTURE);

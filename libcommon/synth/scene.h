@@ -8,6 +8,7 @@
 #include "splat/render.h"
 #include "splat/splats.h"
 #include "synth/objects.h"
+#include "synth/presets.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,16 +16,10 @@
 enum {
 	SYNTH_MIN_VIEWS = 2,
 	SYNTH_MAX_VIEWS = 1000, /* names have three digits */
-	SYNTH_TEST_EVERY = 5,	/* views 4, 9, 14 ... are for testing; of fewer than 5 the last one is */
-};
-
-struct synth_options {
-	uint64_t seed;
-	int objects, views, width, height;
-	size_t gaussians;
 };
 
 struct synth_scene {
+	const struct synth_preset *preset;
 	struct synth_table table;
 	int object_count;
 	struct synth_object *objects; /* (object_count) */

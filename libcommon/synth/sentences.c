@@ -290,6 +290,42 @@ struct described {
 	const struct synth_word *hues[SYNTH_SENTENCES], *nouns[SYNTH_SENTENCES];
 };
 
+/* "black" of "jet black". */
+static const char *basic_colour(const struct synth_word *hue)
+{
+	const char *space = strrchr(hue->text, ' ');
+
+	return space ? space + 1 : hue->text;
+}
+
+static int has_pair(const char *text, const struct synth_word *hue, const struct synth_word *noun)
+{
+	char pair[64];
+
+	snprintf(pair, sizeof pair, "%s %s", basic_colour(hue), noun->text);
+	return strstr(text, pair) != NULL;
+}
+
+/* 1 where the draft's colour word and noun occur together in one of the n earlier sentences, be it of another
+ * object, or those of an earlier one in the draft. */
+static int is_pair_known(
+	const struct draft *d, const struct described *so_far, const struct synth_sentence *earlier, int n)
+{
+	int has_own = d->hue && d->noun;
+
+	for (int i = 0; i < n; i++) {
+		const struct synth_word *hue = so_far->hues[i], *noun = so_far->nouns[i];
+		if (has_own && has_pair(earlier[i].text, d->hue, d->noun))
+			return 1;
+		if (!hue || !noun)
+			continue;
+		if (has_pair(d->s.text, hue, noun) ||
+			(has_own && noun == d->noun && !strcmp(basic_colour(hue), basic_colour(d->hue))))
+			return 1;
+	}
+	return 0;
+}
+
 /* Sentence number `done` of an object, of about `wanted` words. */
 static int say(struct synth_sentence *out, int done, struct described *so_far, int object, int wanted,
 	const struct synth_layout *l, struct rng *r)
@@ -306,10 +342,9 @@ static int say(struct synth_sentence *out, int done, struct described *so_far, i
 		int f = (int)rng_below(r, (uint32_t)synth_frame_count(is_test));
 		if ((!is_test && so_far->frames >> f & 1) || fill(&d, synth_frame(is_test, f)))
 			continue;
-		int words = count_words(d.s.text), is_known = 0;
-		for (int i = 0; is_test && d.hue && d.noun && i < done; i++)
-			is_known |= so_far->hues[i] == d.hue && so_far->nouns[i] == d.noun;
-		if (words < SYNTH_MIN_WORDS || words > SYNTH_MAX_WORDS || is_known ||
+		int words = count_words(d.s.text);
+		if (words < SYNTH_MIN_WORDS || words > SYNTH_MAX_WORDS ||
+			(is_test && is_pair_known(&d, so_far, out, done)) ||
 			(stage < STAGE_LENGTH && (words < wanted - 1 || words > wanted + 1)) ||
 			(stage < STAGE_REPEATED && repeats(&d.s, out, done)) ||
 			!means_only_its_object(&d.s, l))
