@@ -202,11 +202,13 @@ static int make_once(struct job *j, struct err *e)
 		return -1;
 	synth_cameras_reference(&s->cameras, right, away);
 	synth_layout_make(&layout, s->objects, s->object_count, &s->table, right, away);
-	synth_detector_make(&j->detector, s->objects, s->object_count, j->options.seed);
-	if (!synth_sentences_make(j->sentences, &layout, j->options.seed, e))
-		return 0;
-	synth_scene_free(s);
-	return -1;
+	if (synth_sentences_make(j->sentences, &layout, j->options.seed, e)) {
+		synth_scene_free(s);
+		return -1;
+	}
+	synth_detector_make(&j->detector, s->objects, s->object_count, j->sentences, s->preset->severity,
+		j->options.seed);
+	return 0;
 }
 
 /* Things may stand so that words cannot tell them apart; then they are put otherwise. Nothing is written

@@ -8,6 +8,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* The detector. MILD: of every object some sentence is understood. SEVERE: as Grounded-SAM does on Ref-LERF;
+ * of many objects most sentences are taken to mean one other thing. */
+enum synth_severity { SYNTH_MILD, SYNTH_SEVERE, SYNTH_SEVERITIES };
+
 struct synth_preset {
 	const char *name;
 	/* Where nobody asks for others. */
@@ -17,12 +21,13 @@ struct synth_preset {
 	int shapes[SYNTH_SHAPES]; /* lots of each shape; at least three shapes have some */
 	int sizes[SYNTH_SIZES];	  /* lots of each size */
 	int is_stacked;		  /* one object in six stands on another */
-	double aspect;		  /* the table's width over its depth */
-	double filled;		  /* the share of the table that is covered, at most about 0.5 */
-	double hidden;		  /* the share of (test view, object) pairs that are less than half visible */
-	double distance;	  /* of the cameras, in half widths of the table */
-	double room;		  /* the wall's radius over the same */
-	double wood[3], boards;	  /* the table's colour, and how wide its boards are */
+	enum synth_severity severity;
+	double aspect;		/* the table's width over its depth */
+	double filled;		/* the share of the table that is covered, at most about 0.5 */
+	double hidden;		/* the share of (test view, object) pairs that are less than half visible */
+	double distance;	/* of the cameras, in half widths of the table */
+	double room;		/* the wall's radius over the same */
+	double wood[3], boards; /* the table's colour, and how wide its boards are */
 	double wall[3], carpet[3]; /* colours of the room */
 };
 

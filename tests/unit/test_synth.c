@@ -1,4 +1,4 @@
-/* The synthetic scene: surfaces, objects, cameras, what the sentences mean, truth and the faulty detector. */
+/* The synthetic scene: surfaces, objects, cameras, truth and the faulty detector. */
 #include "unit.h"
 
 #include "base/mem.h"
@@ -152,130 +152,6 @@ static void cameras_see_the_table(void)
 	cameras_free(&c);
 }
 
-/* Five things in a cross, seen from -y. */
-static void relations_are_judged(void)
-{
-	struct synth_object o[5] = {{.x = 0}, {.x = -1}, {.x = 1}, {.y = -1}, {.y = 1}};
-	enum { MIDDLE, LEFT, RIGHT, FRONT, BACK };
-	struct synth_table t = {2, 2};
-	struct synth_layout l;
-	struct synth_meaning any = synth_meaning_any();
-	static const struct {
-		enum synth_relation relation;
-		int a, b, of, verdict;
-	} cases[] = {
-		{SYNTH_LEFT_OF, MIDDLE, -1, LEFT, 1},
-		{SYNTH_LEFT_OF, MIDDLE, -1, RIGHT, -1},
-		{SYNTH_LEFT_OF, MIDDLE, -1, BACK, -1},
-		{SYNTH_LEFT_OF, BACK, -1, LEFT, 0},
-		{SYNTH_RIGHT_OF, MIDDLE, -1, RIGHT, 1},
-		{SYNTH_RIGHT_OF, LEFT, -1, LEFT, -1},
-		{SYNTH_IN_FRONT_OF, MIDDLE, -1, FRONT, 1},
-		{SYNTH_IN_FRONT_OF, MIDDLE, -1, BACK, -1},
-		{SYNTH_BEHIND, MIDDLE, -1, BACK, 1},
-		{SYNTH_BEHIND, MIDDLE, -1, FRONT, -1},
-		{SYNTH_NEXT_TO, MIDDLE, -1, LEFT, -1},
-		{SYNTH_BETWEEN, LEFT, RIGHT, MIDDLE, 1},
-		{SYNTH_BETWEEN, LEFT, RIGHT, BACK, -1},
-		{SYNTH_BETWEEN, LEFT, RIGHT, LEFT, -1},
-		{SYNTH_NEAREST_TO, LEFT, -1, MIDDLE, 1},
-		{SYNTH_NEAREST_TO, LEFT, -1, RIGHT, -1},
-		{SYNTH_FARTHEST_FROM, LEFT, -1, RIGHT, 1},
-		{SYNTH_FARTHEST_FROM, MIDDLE, -1, RIGHT, 0},
-		{SYNTH_LEFT_SIDE, -1, -1, LEFT, 1},
-		{SYNTH_LEFT_SIDE, -1, -1, MIDDLE, -1},
-		{SYNTH_RIGHT_SIDE, -1, -1, RIGHT, 1},
-		{SYNTH_FRONT_SIDE, -1, -1, FRONT, 1},
-		{SYNTH_BACK_SIDE, -1, -1, FRONT, -1},
-		{SYNTH_MIDDLE, -1, -1, MIDDLE, 1},
-		{SYNTH_MIDDLE, -1, -1, LEFT, 0},
-		{SYNTH_LEFTMOST, -1, -1, LEFT, 1},
-		{SYNTH_RIGHTMOST, -1, -1, RIGHT, 1},
-		{SYNTH_RIGHTMOST, -1, -1, MIDDLE, -1},
-	};
-
-	synth_layout_make(&l, o, 5, &t, (double[2]){1, 0}, (double[2]){0, 1});
-	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-		struct synth_clause c = {cases[i].relation, cases[i].a, cases[i].b};
-		int verdict = synth_clause_judge(&l, &c, cases[i].of, &any);
-		CHECK(verdict == cases[i].verdict, "case %zu: %d", i, verdict);
-	}
-	/* From the other side of the table left is right. */
-	synth_layout_make(&l, o, 5, &t, (double[2]){-1, 0}, (double[2]){0, -1});
-	struct synth_clause c = {SYNTH_LEFT_OF, MIDDLE, -1};
-	CHECK(synth_clause_judge(&l, &c, RIGHT, &any) == 1, "left depends on the viewpoint");
-}
-
-static int shares_words(const char *text, const struct synth_sentence *with, const struct synth_object *o)
-{
-	/* The pair "colour noun" in its plainest form; synonyms are covered by the generator's own rule. */
-	char pair[64];
-
-	snprintf(pair, sizeof pair, "%s %s", synth_colour_name(o->colour), synth_shape_name(o->shape));
-	return strstr(text, pair) && strstr(with->text, pair);
-}
-
-static void sentences_of(uint64_t seed, int n)
-{
-	struct synth_object o[SYNTH_MAX_OBJECTS];
-	static struct synth_sentence s[SYNTH_MAX_OBJECTS * SYNTH_SENTENCES];
-	struct synth_table t;
-	struct synth_layout l;
-	struct cameras c;
-	struct err e = {0};
-	struct synth_options options = {.preset = synth_preset(0),
-		.seed = seed,
-		.objects = n,
-		.views = 25,
-		.width = W,
-		.height = H,
-		.gaussians = 1000};
-	double right[2], away[2];
-	int unclear = 0, false_side = 0, same = 0, length = 0, shared = 0, total = n * SYNTH_SENTENCES;
-	int is_impossible = -1;
-
-	/* Of many alike some may stand so that there are no words for them. */
-	for (int attempt = 0; attempt < 5 && is_impossible; attempt++) {
-		options.seed = synth_preset_seed(0, seed, attempt);
-		synth_arrange(o, n, &t, options.preset, options.seed);
-		if (synth_cameras_make(&c, &options, &t, &e))
-			return;
-		synth_cameras_reference(&c, right, away);
-		cameras_free(&c);
-		synth_layout_make(&l, o, n, &t, right, away);
-		is_impossible = synth_sentences_make(s, &l, options.seed, &e);
-	}
-	if (!CHECK(!is_impossible, "%s", e.message))
-		return;
-	for (int i = 0; i < total; i++) {
-		int fitting = 0, words = 1;
-		for (int k = 0; k < n; k++)
-			fitting += synth_sentence_judge(&s[i], &l, k) >= 0;
-		unclear += fitting != 1 || synth_sentence_judge(&s[i], &l, s[i].object) != 1;
-		for (const char *p = s[i].text; *p; p++)
-			words += *p == ' ';
-		length += words < 8 || words > 18 || strchr(s[i].text, '%') != NULL;
-		for (int k = 0; k < i; k++) {
-			same += !strcmp(s[i].ref, s[k].ref) ||
-				(s[i].object == s[k].object && !strcmp(s[i].text, s[k].text));
-			if (s[i].split == SPLIT_TEST && s[k].object == s[i].object)
-				shared += shares_words(s[i].text, &s[k], &o[s[i].object]);
-		}
-		for (int k = 0; k < s[i].clause_count; k++) {
-			const struct synth_clause *q = &s[i].clauses[k];
-			if (q->relation == SYNTH_LEFT_OF)
-				false_side += l.u[s[i].object] >= l.u[q->a] || !strstr(s[i].text, "left");
-			if (q->relation == SYNTH_BEHIND)
-				false_side += l.v[s[i].object] <= l.v[q->a];
-		}
-		CHECK((s[i].split == SPLIT_TEST) == (i % SYNTH_SENTENCES == SYNTH_TRAIN_SENTENCES),
-			"split of %s", s[i].ref);
-	}
-	CHECK(!unclear && !false_side && !same && !length && !shared,
-		"seed %d, %d objects: %d unclear, %d on the wrong side, %d twice, %d too short or long, %d not new",
-		(int)seed, n, unclear, false_side, same, length, shared);
-}
-
 /* The disc of radius r about column x, row y. */
 static void draw_disc(uint8_t *mask, double x, double y, double r)
 {
@@ -331,13 +207,14 @@ static void detector_depends_on_the_view_alone(void)
 	int confused = 0, out_of_range = 0, hidden = 0;
 
 	synth_arrange(o, N, &t, synth_preset(0), 9);
-	synth_detector_make(&d, o, N, 9);
+	synth_detector_make(&d, o, N, NULL, SYNTH_MILD, 9);
 	for (int i = 0; i + 1 < N; i++) /* the last one is hidden */
 		draw_disc(truth + (size_t)i * H * W, 15 + 28 * i, 45, 12);
 	for (int i = 0; i < N; i++) {
-		CHECK(d.confusers[i] != i && d.neighbours[i] != i, "object %d is mistaken for another", i);
+		CHECK(d.habits.mistaken[i][0] != i && d.habits.neighbours[i] != i,
+			"object %d is mistaken for another", i);
 		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
-			confused += d.habits[i][k] == SYNTH_HABIT_CONFUSED;
+			confused += d.habits.of[i][k] == SYNTH_HABIT_CONFUSED;
 	}
 	CHECK(confused > 0 && confused < N * SYNTH_TRAIN_SENTENCES / 2, "%d confused sentences", confused);
 	for (int view = 0; view < 6; view++) {
@@ -443,10 +320,6 @@ int main(void)
 	shapes_keep_their_measures();
 	objects_stand_apart();
 	cameras_see_the_table();
-	relations_are_judged();
-	for (uint64_t seed = 1; seed <= SEEDS; seed++)
-		for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
-			sentences_of(seed, counts[c]);
 	outlines_change_as_asked();
 	detector_depends_on_the_view_alone();
 	truth_is_where_the_objects_are();
