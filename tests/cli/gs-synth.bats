@@ -48,6 +48,9 @@ differ() {
 	[ "${lines[0]}" = "gs-synth: --gaussians: '999' is not a whole number from 1000 to 10000000" ]
 	run small --size 8x60 -o out
 	[ "${lines[0]}" = "gs-synth: --size: '8x60' is not WIDTHxHEIGHT with both from 16 to 4096" ]
+	run small --scene pub -o out
+	[ "$status" = 2 ]
+	[ "${lines[0]}" = "gs-synth: --scene: 'pub' is not one of table|diner|toys|tea|kitchen" ]
 	run small operand -o out
 	[ "$status" = 2 ]
 	[ "${lines[0]}" = "gs-synth: unexpected operand 'operand'" ]
@@ -70,7 +73,7 @@ differ() {
 	[ -z "$(find . -name '*.tmp.*')" ]
 }
 
-# interrupted SIGNAL [OPTION OF env]...: sends the signal when two outputs are half written; sets status.
+# interrupted SIGNAL [OPTION OF env]...: sends the signal when three outputs are half written; sets status.
 interrupted() {
 	local signal=$1 pid i
 	shift
@@ -78,7 +81,7 @@ interrupted() {
 	env "$@" "$BIN/gs-synth" --views 25 --size 400x300 --gaussians 1000 --objects 2 -o out >printed 2>&1 &
 	pid=$!
 	for ((i = 0; i < 1000; i++)); do
-		[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = 2 ] && break
+		[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = 3 ] && break
 		sleep 0.01
 	done
 	[ $i -lt 1000 ]
@@ -106,12 +109,14 @@ interrupted() {
 	small -o out
 	[ "$(cd out && find . -type f | LC_ALL=C sort | tr '\n' ' ')" = "./candidates.jsonl ./images/view_000.png \
 ./images/view_001.png ./images/view_002.png ./images/view_003.png ./images/view_004.png ./point_cloud.ply \
-./sentences.jsonl ./sparse/0/cameras.txt ./sparse/0/images.txt ./sparse/0/points3D.txt ./test-views ./truth.jsonl " ]
+./sentences.jsonl ./sparse/0/cameras.txt ./sparse/0/images.txt ./sparse/0/points3D.txt ./statistics.json ./test-views \
+./truth.jsonl ./whole.jsonl " ]
 	[ "$(cat out/test-views)" = view_004 ]
 	[ "$(wc -l <out/sentences.jsonl)" = 40 ]
 	[ "$(jq -r .split out/sentences.jsonl | sort | uniq -c | xargs)" = "8 test 32 train" ]
 	[ "$(wc -l <out/truth.jsonl)" = 40 ]
-	[ "$(jq -c .segmentation.size out/truth.jsonl out/candidates.jsonl | sort -u)" = "[60,80]" ]
+	[ "$(wc -l <out/whole.jsonl)" = 40 ]
+	[ "$(jq -c .segmentation.size out/truth.jsonl out/whole.jsonl out/candidates.jsonl | sort -u)" = "[60,80]" ]
 }
 
 @test "truth is of objects in every view, candidates of training sentences in training views" {
@@ -151,12 +156,16 @@ interrupted() {
 	small --seed 7 --threads 1 -o one
 	small --seed 7 --threads 2 -o two
 	[ "$(hash_of one)" = "$(hash_of two)" ]
+	small --scene toys --seed 7 --threads 1 -o three
+	small --scene toys --seed 7 --threads 2 -o four
+	[ "$(hash_of three)" = "$(hash_of four)" ]
 }
 
 @test "another seed gives another scene" {
 	small --seed 7 -o one
 	small --seed 8 -o two
-	for file in point_cloud.ply sparse/0/images.txt sentences.jsonl truth.jsonl candidates.jsonl images/view_000.png; do
+	for file in point_cloud.ply sparse/0/images.txt sentences.jsonl truth.jsonl whole.jsonl candidates.jsonl statistics.json \
+		images/view_000.png; do
 		differ one/$file two/$file
 	done
 }
@@ -183,4 +192,74 @@ interrupted() {
 	small -o out
 	jq -se 'all(.[]; .text | split(" ") | length >= 7 and length <= 22)' out/sentences.jsonl >/dev/null
 	[ "$(stat -c %s out/images/view_000.png)" -gt 3000 ]
+}
+
+# named SCENE OBJECTS ALIKE STACKED TRAINING TEST: what the statistics of the scene must be at its number of views.
+named() {
+	for seed in 1 2; do
+		"$BIN/gs-synth" --scene $1 --seed $seed --size 123x91 --gaussians 10000 --threads 1 -o $1-$seed
+		jq -e --argjson want "[$2,$3,$4,$5,$6]" '
+			([.objects, .alike, .stacked, .views.train, .views.test] == $want) and
+			(.sentences == {train: (4 * .objects), test: .objects}) and .gaussians == 10000 and
+			(.words | .train >= 8 and .train <= 18 and .test >= 8 and .test <= 18)' $1-$seed/statistics.json
+		# Of the test pairs about a fifth is less than half visible, some of it hardly; next to nothing is out of sight.
+		jq -e '.visibility.test | ((."0" + ."<0.15" + ."0.15-0.5") as $hidden | $hidden >= 0.15 and $hidden <= 0.35) and
+			."<0.15" >= 0.02 and ."<0.15" <= 0.1 and ."0" <= 0.03 and .outside <= 0.03 * .pairs' $1-$seed/statistics.json
+		jq -e '.visibility | .test.pairs + .test.outside + .train.pairs + .train.outside' $1-$seed/statistics.json |
+			grep -qx $(($2 * ($5 + $6)))
+		# As a trained scene: a third faint, a third opaque, flakes and needles.
+		jq -e '(.opacity | .[1] < 0.1 and .[2] > 0.15 and .[2] < 0.6 and .[3] > 0.9) and
+			(.aspect | .[0] > 1.3 and .[2] > 5 and .[2] < 15 and .[4] > 100)' $1-$seed/statistics.json
+	done
+	differ $1-1/truth.jsonl $1-2/truth.jsonl
+	differ $1-1/point_cloud.ply $1-2/point_cloud.ply
+}
+
+@test "--scene diner" {
+	named diner 12 6 2 32 6
+}
+
+@test "--scene toys" {
+	named toys 20 10 3 44 8
+}
+
+@test "--scene tea" {
+	named tea 13 7 2 38 7
+}
+
+@test "--scene kitchen" {
+	named kitchen 14 7 2 50 10
+}
+
+@test "a seed gives each scene other things" {
+	for scene in table diner kitchen; do
+		small --scene $scene --objects 12 --seed 3 -o $scene
+		jq -r .object $scene/sentences.jsonl | sort -u >$scene.objects
+	done
+	differ table.objects diner.objects
+	differ table.objects kitchen.objects
+	differ diner.objects kitchen.objects
+}
+
+@test "options go before what the scene has" {
+	"$BIN/gs-synth" --scene tea --objects 5 --views 13 --size 100x50 --gaussians 2000 -o out
+	jq -e '[.scene, .objects, .views.train, .views.test, .gaussians] == ["tea", 5, 11, 2, 2000]' out/statistics.json
+	[ "$(jq -c .segmentation.size out/truth.jsonl | sort -u)" = "[50,100]" ]
+}
+
+@test "the whole is more than the truth where things hide each other" {
+	small --scene toys --objects 8 --gaussians 8000 -o out
+	overlap() { "$BIN/miou-score" --json --truth out/whole.jsonl "$1" | jq "$2"; }
+	[ "$(overlap out/whole.jsonl .miou)" = 1 ]
+	[ "$(overlap out/truth.jsonl '.miou > 0.6 and .miou < 0.99')" = true ]
+}
+
+@test "-v prints the statistics" {
+	run small --scene diner -v -o out
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "gs-synth: 12 objects: 6 in 2 groups of look-alikes, 2 on others; 3000 Gaussians" ] ||
+		[ "${lines[0]}" = "gs-synth: 12 objects: 6 in 3 groups of look-alikes, 2 on others; 3000 Gaussians" ]
+	[[ ${lines[3]} = "gs-synth: quantile "*"95%" ]]
+	[[ ${lines[8]} = "gs-synth: training  "* ]]
+	[ "$(wc -l <out/statistics.json)" = 1 ]
 }
