@@ -23,8 +23,7 @@ static void normalise(double a[3])
 		a[k] /= length;
 }
 
-/* A camera at `centre` that sees `target` in its middle, turned by `roll` about its axis. */
-static void look_at(struct camera *c, const double centre[3], const double target[3], double roll)
+void synth_cameras_aim(struct camera *c, const double centre[3], const double target[3], double roll)
 {
 	double forward[3], right[3], down[3], up[3] = {0, 0, 1}, cosine = cos(roll), sine = sin(roll);
 
@@ -47,6 +46,11 @@ static void look_at(struct camera *c, const double centre[3], const double targe
 	c->world_to_camera[3][3] = 1;
 }
 
+double synth_cameras_distance(const struct synth_table *table, const struct synth_preset *preset)
+{
+	return preset->distance * fmax(table->half_width, 1.3 * table->half_depth);
+}
+
 static int test_views(const struct synth_options *o)
 {
 	int n = o->views * o->preset->test_views / o->preset->views;
@@ -57,7 +61,7 @@ static int test_views(const struct synth_options *o)
 int synth_cameras_make(
 	struct cameras *c, const struct synth_options *o, const struct synth_table *table, struct err *e)
 {
-	double reach = fmax(table->half_width, 1.3 * table->half_depth);
+	double far = synth_cameras_distance(table, o->preset), reach = far / o->preset->distance;
 	int n = o->views, tests = test_views(o);
 	struct rng r;
 
@@ -85,11 +89,11 @@ int synth_cameras_make(
 		double walked = 2 * (i + 0.5) / n, side = walked < 1 ? walked : 2 - walked;
 		double azimuth = (-70 + 140 * side + rng_range(&r, -6, 6)) * PI / 180;
 		double elevation = ((walked < 1 ? 26 : 44) + rng_range(&r, -6, 6)) * PI / 180;
-		double distance = reach * o->preset->distance * rng_range(&r, 0.9, 1.1);
+		double distance = far * rng_range(&r, 0.9, 1.1);
 		double centre[3] = {distance * cos(elevation) * sin(azimuth),
 			-distance * cos(elevation) * cos(azimuth), distance * sin(elevation)};
 		double target[3] = {0.12 * reach * rng_normal(&r), 0.12 * reach * rng_normal(&r), 0.1};
-		look_at(v, centre, target, 0.03 * rng_normal(&r));
+		synth_cameras_aim(v, centre, target, 0.03 * rng_normal(&r));
 	}
 	return 0;
 }

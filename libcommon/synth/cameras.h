@@ -14,6 +14,12 @@
 int synth_cameras_make(
 	struct cameras *c, const struct synth_options *o, const struct synth_table *table, struct err *e);
 
+/* How far the cameras are from the table's middle, but for some tenths. */
+double synth_cameras_distance(const struct synth_table *table, const struct synth_preset *preset);
+
+/* Puts a camera at `centre` with `target` in its middle, turned by `roll` (radians) about its axis. */
+void synth_cameras_aim(struct camera *c, const double centre[3], const double target[3], double roll);
+
 /* The reference viewpoint of spatial words: the mean of the training cameras' centres, looking at the table's
  * middle. right and away are its unit directions in the plane of the table. */
 void synth_cameras_reference(const struct cameras *c, double right[2], double away[2]);

@@ -145,6 +145,15 @@ void synth_object_surface(struct synth_surface *s, enum synth_shape shape)
 	}
 }
 
+void synth_object_place(const struct synth_object *o, const double point[3], double world[3])
+{
+	double c = cos(o->yaw), s = sin(o->yaw), x = point[0], y = point[1];
+
+	world[0] = o->x + o->scale * (c * x - s * y);
+	world[1] = o->y + o->scale * (s * x + c * y);
+	world[2] = o->z + o->scale * point[2];
+}
+
 static void mix(double rgb[3], const double with[3], double share)
 {
 	for (int k = 0; k < 3; k++)

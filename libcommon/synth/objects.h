@@ -24,6 +24,7 @@ enum synth_stream {
 	SYNTH_STREAM_TEXTURE,
 	SYNTH_STREAM_SENTENCES,
 	SYNTH_STREAM_FAULTS,
+	SYNTH_STREAM_HIDING,
 	SYNTH_STREAM_VIEWS = 1024, /* candidates: one stream a view */
 };
 
@@ -92,6 +93,9 @@ struct synth_area synth_object_top(const struct synth_object *o, double *z);
 
 /* The surface of an object of scale 1 that stands on the origin, its underside left out. */
 void synth_object_surface(struct synth_surface *s, enum synth_shape shape);
+
+/* The point of the world that a point of that surface is. `point` and `world` may be the same. */
+void synth_object_place(const struct synth_object *o, const double point[3], double world[3]);
 
 /* The colour (sRGB in [0,1]) before any light at a point of that surface. */
 void synth_object_colour(const struct synth_object *o, enum synth_tint tint, const double point[3],

@@ -8,6 +8,7 @@
 #include "synth/outline.h"
 #include "synth/scene.h"
 #include "synth/sentences.h"
+#include "synth/truth.h"
 
 enum { SEEDS = 12, H = 90, W = 120 };
 
@@ -284,7 +285,7 @@ static void truth_is_where_the_objects_are(void)
 	for (size_t v = 0; v < s.cameras.n; v++) {
 		const struct camera *c = &s.cameras.views[v];
 		struct render_view *view = render_prepare(&s.splats, c, &e);
-		if (!CHECK(view && !synth_scene_truth(&s, view, H * W, masks, &e), "%s", e.message))
+		if (!CHECK(view && !synth_truth_visible(&s, view, H * W, masks, &e), "%s", e.message))
 			break;
 		size_t both = 0;
 		for (int k = 0; k < 2; k++) {
