@@ -53,7 +53,7 @@ static const struct {
 		.score = 0.45,
 		.quality = 0.15,
 		.noise = 0.05,
-		.confused = 0.145,
+		.confused = 0.15,
 		.guessing = -0.07,
 		.wrong_noise = 0.16,
 		.wrong_rag = 0.43,

@@ -154,7 +154,7 @@ static void choose_severe(struct synth_habits *h, const struct synth_object *obj
 	rank_by_difficulty(by_rank, objects, n, r);
 	for (int rank = 0; rank < n; rank++) {
 		double share = (rank + 0.5) / n;
-		int trapped = share < 0.08 ? 4 : share < 0.39 ? 3 : share < 0.82 ? 2 : 0;
+		int trapped = share < 0.08 ? 4 : share < 0.40 ? 3 : share < 0.82 ? 2 : 0;
 		mislead(h, by_rank[rank], objects, n, sentences, trapped, r);
 	}
 }
