@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
+#include "synth/cameras.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -29,6 +30,8 @@ struct coat {
 	const struct synth_object *object; /* that the surface is of; NULL: it lies in the world as it is */
 	struct synth_surface surface;
 	double gloss;
+	double longest; /* more than that a Gaussian is only where there are too few to cover; 0: any length
+			 */
 	/* The colour before the lamp's light, of the spot (as in the surface) and its place in the world. */
 	void (*paint)(const struct work *w, const struct coat *c, const struct synth_spot *spot,
 		const double world[3], double rgb[3]);
@@ -188,6 +191,9 @@ static void lay(struct work *w, const struct coat *c, struct grain g, double spa
 		g.along = g.across;
 		g.across = other;
 	}
+	double cap = c->longest > 0 ? fmax(c->longest, 0.66 * spacing) : INFINITY;
+	g.along = fmin(g.along, cap);
+	g.across = fmin(g.across, cap);
 	double longest = fmax(g.along, g.across);
 	synth_surface_spot(&c->surface, a, b, inside * fmin(longest, straight(0.3, spacing)) / scale, &spot);
 	double normal[3] = {cosine * spot.normal[0] - sine * spot.normal[1],
@@ -215,7 +221,7 @@ static void lay(struct work *w, const struct coat *c, struct grain g, double spa
 		g.along = fmin(g.along, most[0]);
 		g.across = fmin(g.across, most[1]);
 	}
-	g.thick = fmin(g.thick, fmin(g.along, g.across));
+	g.thick = fmin(fmin(g.thick, 0.3 * spacing), fmin(g.along, g.across));
 	c->paint(w, c, &spot, point, rgb);
 	double shade = normal[0] * light[0] + normal[1] * light[1] + normal[2] * light[2];
 	shade = ambient + (1 - ambient) * fmax(0, shade) + 0.02 * rng_normal(r);
@@ -354,48 +360,74 @@ static void put_room(struct work *w, size_t n)
 {
 	double radius = room_radius(w->s), height = 0.8 * radius;
 	double profile[3][2] = {{radius, height}, {radius, -2.2}, {0, -2.2}};
-	struct coat c = {.owner = -1, .gloss = 0.01, .paint = paint_room};
+	/* The rasteriser's projection, like that of 3DGS, spreads what is large and just beside or below a
+	 * camera over the whole image. */
+	struct coat c = {.owner = -1, .gloss = 0.01, .longest = 0.08 * radius, .paint = paint_room};
 
 	synth_surface_turn(&c.surface, SYNTH_OWN, (double[3]){0}, 3, (const double(*)[2])profile);
 	put_coat(w, &c, n);
 }
 
-/* What training leaves behind: faint specks and needles in the air, and large soft ones far away. */
-static void put_stray(struct work *w, size_t n)
+static void draw_frame(struct rng *r, double normal[3], double along[3])
+{
+	double turn = rng_range(r, 0, 2 * PI), rise = rng_range(r, -1, 1), flat = sqrt(1 - rise * rise);
+
+	normal[0] = flat * cos(turn);
+	normal[1] = flat * sin(turn);
+	normal[2] = rise;
+	for (int k = 0; k < 3; k++)
+		along[k] = rng_normal(r);
+}
+
+/* A speck or needle in the air, mostly faint. */
+static void put_speck(struct work *w, double fine)
 {
 	const struct synth_table *t = &w->s->table;
-	/* However many there are, they hide about as much. */
-	double radius = room_radius(w->s), fine = fmin(1.4, sqrt(60000.0 / (double)w->s->splats.n));
 	struct rng *r = &w->rng;
+	double mean[3] = {t->half_width * rng_range(r, -1.3, 1.3), t->half_depth * rng_range(r, -1.3, 1.3),
+		rng_range(r, 0.05, 2.2)};
+	struct grain g = {.along = fine * 0.022 * exp(0.5 * rng_normal(r)),
+		.opacity = rng_below(r, 6) ? 0.005 * pow(24, rng_uniform(r)) : rng_range(r, 0.1, 0.6)};
+	double normal[3], along[3], rgb[3], tone = rng_range(r, 0.2, 0.9);
 
-	for (size_t i = 0; i < n; i++) {
-		int is_large = i % 8 == 0;
-		double turn = rng_range(r, 0, 2 * PI), rise = rng_range(r, -1, 1),
-		       flat = sqrt(1 - rise * rise);
-		double normal[3] = {flat * cos(turn), flat * sin(turn), rise}, tone = rng_range(r, 0.2, 0.9),
-		       rgb[3];
-		double along[3] = {rng_normal(r), rng_normal(r), rng_normal(r)};
-		double size = fine * (is_large ? rng_range(r, 0.3, 1.1) : 0.022 * exp(0.5 * rng_normal(r)));
-		double around = rng_range(r, 0, 2 * PI);
-		double mean[3] = {t->half_width * rng_range(r, -1.3, 1.3),
-			t->half_depth * rng_range(r, -1.3, 1.3), rng_range(r, 0.05, 2.2)};
-		struct grain g = {.along = size,
-			.across = size / ratio(r, is_large ? 0.4 : 1.3),
-			.opacity =
-				rng_below(r, 6) ? 0.005 * pow(24, rng_uniform(r)) : rng_range(r, 0.1, 0.6)};
-		if (is_large) {
-			double far = radius * rng_range(r, 0.85, 0.97);
-			mean[0] = far * cos(around);
-			mean[1] = far * sin(around);
-			mean[2] = rng_range(r, -1.8, 0.6 * radius);
-			g.opacity = rng_range(r, 0.02, 0.5);
-		}
-		g.thick = g.across / ratio(r, is_large ? 0.4 : 1.3);
-		for (int k = 0; k < 3; k++)
-			rgb[k] = is_large ? w->s->preset->wall[k] * (0.75 + 0.4 * tone)
-					  : fmin(1, fmax(0, tone + 0.12 * rng_normal(r)));
-		put(w, -1, mean, &g, normal, along, rgb, 0.02);
-	}
+	g.across = g.along / ratio(r, 1.3);
+	g.thick = g.across / ratio(r, 1.3);
+	draw_frame(r, normal, along);
+	for (int k = 0; k < 3; k++)
+		rgb[k] = fmin(1, fmax(0, tone + 0.12 * rng_normal(r)));
+	put(w, -1, mean, &g, normal, along, rgb, 0.02);
+}
+
+/* Something large and soft before the wall, too far from the cameras to reach them. */
+static void put_cloud(struct work *w, double fine)
+{
+	const struct synth_scene *s = w->s;
+	struct rng *r = &w->rng;
+	double radius = room_radius(s),
+	       gap = 0.9 * radius - 1.1 * synth_cameras_distance(&s->table, s->preset);
+	double far = radius * rng_range(r, 0.9, 0.97), around = rng_range(r, 0, 2 * PI);
+	double mean[3] = {far * cos(around), far * sin(around), rng_range(r, -1.8, 0.6 * radius)};
+	struct grain g = {.along = fine * gap * rng_range(r, 0.06, 0.25), .opacity = rng_range(r, 0.02, 0.5)};
+	double normal[3], along[3], rgb[3], tone = rng_range(r, 0.9, 1.15);
+
+	g.across = g.along / ratio(r, 0.4);
+	g.thick = g.across / ratio(r, 0.4);
+	draw_frame(r, normal, along);
+	for (int k = 0; k < 3; k++)
+		rgb[k] = fmin(1, s->preset->wall[k] * tone);
+	put(w, -1, mean, &g, normal, along, rgb, 0.02);
+}
+
+/* What training leaves behind. However many there are, they hide about as much. */
+static void put_stray(struct work *w, size_t n)
+{
+	double fine = fmin(1, sqrt(60000.0 / (double)w->s->splats.n));
+
+	for (size_t i = 0; i < n; i++)
+		if (i % 8)
+			put_speck(w, fine);
+		else
+			put_cloud(w, fine);
 }
 
 /* Of n Gaussians: 2.5% stray, 10% room, 17% table, the rest on the objects in proportion to surface^0.7, so

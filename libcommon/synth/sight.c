@@ -53,7 +53,15 @@ void synth_sight_look(struct synth_sight *s, const struct camera *c, int *visibl
 {
 	int longer = c->width > c->height ? c->width : c->height;
 	double scale = (double)SYNTH_SIGHT_COLUMNS / longer;
+	const float near = 0.2f, columns = (float)(scale * c->width), rows = (float)(scale * c->height);
+	float m[3][4]; /* from the world to cells, times z */
 
+	for (int k = 0; k < 4; k++) {
+		double z = c->world_to_camera[2][k];
+		m[0][k] = (float)(scale * (c->fx * c->world_to_camera[0][k] + c->cx * z));
+		m[1][k] = (float)(scale * (c->fy * c->world_to_camera[1][k] + c->cy * z));
+		m[2][k] = (float)z;
+	}
 	for (int i = 0; i < CELLS; i++) {
 		s->depth[i] = INFINITY;
 		s->seen[i] = s->last[i] = -1;
@@ -63,18 +71,19 @@ void synth_sight_look(struct synth_sight *s, const struct camera *c, int *visibl
 	for (int o = 0; o < s->n; o++) {
 		const float *point = s->points + (size_t)o * 3 * SYNTH_SIGHT_POINTS;
 		for (int i = 0; i < SYNTH_SIGHT_POINTS; i++, point += 3) {
-			double p[3], world[3] = {point[0], point[1], point[2]};
-			camera_transform(c, world, p);
-			if (p[2] <= 0.2)
+			float p[3];
+			for (int k = 0; k < 3; k++)
+				p[k] = m[k][0] * point[0] + m[k][1] * point[1] + m[k][2] * point[2] + m[k][3];
+			if (!(p[2] > near))
 				continue;
-			double x = c->fx * p[0] / p[2] + c->cx, y = c->fy * p[1] / p[2] + c->cy;
-			if (!(x >= 0 && x < c->width && y >= 0 && y < c->height))
+			float x = p[0] / p[2], y = p[1] / p[2];
+			if (!(x >= 0 && x < columns && y >= 0 && y < rows))
 				continue;
-			int cell = (int)(y * scale) * SYNTH_SIGHT_COLUMNS + (int)(x * scale);
+			int cell = (int)y * SYNTH_SIGHT_COLUMNS + (int)x;
 			whole[o] += s->last[cell] != o;
 			s->last[cell] = o;
-			if (p[2] < (double)s->depth[cell]) {
-				s->depth[cell] = (float)p[2];
+			if (p[2] < s->depth[cell]) {
+				s->depth[cell] = p[2];
 				s->seen[cell] = o;
 			}
 		}
