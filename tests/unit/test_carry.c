@@ -103,7 +103,7 @@ static void check_view(
 static void test_carry(void)
 {
 	static struct scene s;
-	static char names[OBJECTS][4];
+	static char names[OBJECTS][16];
 	struct pool_record records[MOST];
 	struct rle masks[MOST];
 	uint8_t *pixels[MOST];
