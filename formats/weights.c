@@ -173,8 +173,8 @@ void weights_close(struct weights *w)
 
 struct view_weights weights_view(const struct weights *w)
 {
-	return (struct view_weights){(size_t)w->width * (size_t)w->height, (size_t)w->gaussians, w->indptr,
-		w->index, w->weight};
+	return (struct view_weights){
+		(size_t)w->width * (size_t)w->height, (size_t)w->gaussians, w->indptr, w->index, w->weight};
 }
 
 /* The weights as the file has them: its own, or a converted copy in *owned. */
