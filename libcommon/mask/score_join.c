@@ -17,6 +17,13 @@ static int order_pairs(const void *a, const void *b)
 	return (p->ref != NULL) - (q->ref != NULL);
 }
 
+static int order_places(const void *a, const void *b)
+{
+	const struct score_pair *p = a, *q = b;
+
+	return (p->place > q->place) - (p->place < q->place);
+}
+
 /* The pairs of one truth on one side. */
 struct run {
 	const struct score_pair
@@ -110,6 +117,8 @@ int score_join(struct score_pairs *a, struct score_pairs *b, struct err *e)
 			free(j.joined[s]);
 			continue;
 		}
+		if (j.count)
+			qsort(j.joined[s], j.count, sizeof *j.joined[s], order_places);
 		free(sides[s]->items);
 		sides[s]->items = j.joined[s];
 		sides[s]->n = j.count;
