@@ -6,6 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Additions from which on threads pay. */
+enum { WORTH_THREADS = 1 << 20 };
+
 /* The finaliser of splitmix64 (Steele, Lea and Flood 2014). */
 static uint64_t mixed(uint64_t x)
 {
@@ -64,7 +67,7 @@ int bootstrap_ratios(struct interval *intervals, const double *sums, size_t n, s
 	double *ratios = mem_alloc(how->resamples, k * sizeof *ratios, "resamples", e); /* (k,resamples) */
 	if (!ratios)
 		return -1;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if ((double)n * (double)k * (double)resamples > WORTH_THREADS)
 	for (ptrdiff_t b = 0; b < resamples; b++) {
 		struct rng r = resample_rng(how, (size_t)b);
 		draw(ratios + b, how->resamples, sums, n, k, &r);
@@ -124,7 +127,7 @@ int bootstrap_sign_test(
 	const double far = fabs(sum) - 1e-12 * size;
 	const int is_exact = kept < 20 && (size_t)1 << kept <= how->resamples;
 	const ptrdiff_t patterns = is_exact ? (ptrdiff_t)1 << kept : (ptrdiff_t)how->resamples;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if ((double)kept * (double)patterns > WORTH_THREADS)
 	for (ptrdiff_t b = 0; b < patterns; b++) {
 		struct rng r = resample_rng(how, (size_t)b);
 		is_far[b] = (is_exact ? pattern_sum(values, kept, (size_t)b)

@@ -296,10 +296,13 @@ static int is_same(const struct word *w, const char *text, size_t len)
 static int is_of_class(const struct word *w, char letter)
 {
 	for (const char *p = classes[letter - 'A']; *p;) {
-		size_t len = strcspn(p, " ");
-		if (is_same(w, p, len))
+		size_t i = 0;
+		while (i < w->len && lower(w->text[i]) == p[i])
+			i++;
+		if (i == w->len && (p[i] == ' ' || !p[i]))
 			return 1;
-		p += len + (p[len] == ' ');
+		while (*p && *p++ != ' ')
+			;
 	}
 	return 0;
 }
@@ -357,6 +360,9 @@ static uint32_t begin_of(const struct words *words, int *taken)
 
 	*taken = 1;
 	for (size_t i = 0; i < sizeof phrases / sizeof *phrases; i++) {
+		const char first = *phrases[i].text;
+		if (first >= 'a' && first <= 'z' && first != lower(*words->items[0].text))
+			continue; /* most phrases, at little cost */
 		int own, len = match(phrases[i].text, words, 0, &own);
 		if (len <= longest)
 			continue;
