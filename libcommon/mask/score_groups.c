@@ -45,8 +45,12 @@ int score_sayings(uint32_t *sets, const struct score_pair *pairs, size_t pair_n,
 	for (size_t i = 0; i < pair_n; i++) {
 		const struct score_pair *p = &pairs[i];
 		const struct saying key = {p->ref ? p->ref : p->truth_ref, 0};
-		const struct saying *found =
-			key.ref ? bsearch(&key, list, n, sizeof *list, order_sayings) : NULL;
+		const struct saying *found = NULL;
+		sets[i] = 0;
+		if (p->is_empty)
+			continue;
+		if (key.ref)
+			found = bsearch(&key, list, n, sizeof *list, order_sayings);
 		sets[i] = found ? found->set : (uint32_t)1 << SCORE_SAYS_UNKNOWN;
 		*unknown += !found;
 	}

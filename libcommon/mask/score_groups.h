@@ -18,8 +18,8 @@ struct score_sentence {
 	const char *ref, *text; /* refs are unique */
 };
 
-/* Fills sets (pair_n) by the sentence of the prediction's ref, else of the truth's. *unknown counts the pairs
- * that have none. */
+/* Fills sets (pair_n) by the sentence of the prediction's ref, else of the truth's; 0 for pairs with nothing
+ * in their truth. *unknown counts the other pairs that have no sentence. The pairs are measured. */
 int score_sayings(uint32_t *sets, const struct score_pair *pairs, size_t pair_n,
 	const struct score_sentence *sentences, size_t n, size_t *unknown, struct err *e);
 

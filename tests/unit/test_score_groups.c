@@ -188,17 +188,18 @@ static void test_sayings(void)
 	const struct score_sentence sentences[] = {
 		{"r3", "red"}, {"r1", "left of it"}, {"r2", "between the two, on the table"}};
 	const struct score_pair pairs[] = {{.ref = "r1", .truth_ref = "r3"}, {.truth_ref = "r2"},
-		{.ref = "r3"}, {.ref = "r4"}, {.ref = NULL}};
-	uint32_t sets[5];
+		{.ref = "r3"}, {.ref = "r4"}, {.ref = NULL}, {.ref = "r5", .is_empty = 1}};
+	uint32_t sets[6];
 	const char *names[SCORE_SAYINGS];
 	size_t unknown = 0;
 	struct err e;
 
-	CHECK(!score_sayings(sets, pairs, 5, sentences, 3, &unknown, &e) && unknown == 2, "%zu", unknown);
+	CHECK(!score_sayings(sets, pairs, 6, sentences, 3, &unknown, &e) && unknown == 2, "%zu", unknown);
 	CHECK(sets[0] == 1u << RELATION_LEFT, "the prediction's ref before the truth's");
 	CHECK(sets[1] == (1u << RELATION_BETWEEN | 1u << RELATION_ON), "the truth's");
 	CHECK(sets[2] == 1u << SCORE_SAYS_NONE, "no relation");
 	CHECK(sets[3] == 1u << SCORE_SAYS_UNKNOWN && sets[4] == sets[3], "no sentence");
+	CHECK(sets[5] == 0, "nothing in its truth");
 	score_saying_names(names);
 	CHECK(!strcmp(names[RELATION_NEXT_TO], "next to") && !strcmp(names[SCORE_SAYS_UNKNOWN], "(unknown)"),
 		"names");
