@@ -92,7 +92,7 @@ static void test_coverage(void)
 static void test_clusters(void)
 {
 	enum { RUNS = 300, OBJECTS = 20, EACH = 10 };
-	static char names[OBJECTS][8];
+	static char names[OBJECTS][16];
 	static struct score_pair pairs[OBJECTS * EACH];
 	struct rng r;
 	int covered = 0, covered_singly = 0;
