@@ -47,7 +47,8 @@ static void test_active_set(void)
 	struct err e;
 
 	random_views(random, views, 3);
-	double total[GAUSSIANS] = {0}, all = 0;
+	double total[GAUSSIANS] = {0}, all = 0, weight[GAUSSIANS];
+	train_weights(views, VIEWS, GAUSSIANS, weight);
 	for (int v = 0; v < VIEWS; v++)
 		for (int k = 0; k < PIXELS * ENTRIES; k++) {
 			total[random[v].index[k]] += (double)random[v].weight[k];
@@ -59,8 +60,7 @@ static void test_active_set(void)
 		char is_in[GAUSSIANS] = {0};
 		double left_out = 0, smallest = INFINITY, largest_out = 0;
 
-		CHECK(!train_active_set(views, VIEWS, GAUSSIANS, tolerances[t], ids, &n, &e), "%s",
-			e.message);
+		CHECK(!train_active_set(weight, GAUSSIANS, tolerances[t], ids, &n, &e), "%s", e.message);
 		for (size_t i = 0; i < n; i++) {
 			CHECK(!i || ids[i] > ids[i - 1], "ids do not rise at %zu", i);
 			is_in[ids[i]] = 1;
@@ -80,8 +80,9 @@ static void test_active_set(void)
 		memset(random[v].weight, 0, sizeof random[v].weight);
 	int32_t ids[GAUSSIANS];
 	size_t n = 1;
-	CHECK(!train_active_set(views, VIEWS, GAUSSIANS, 0, ids, &n, &e) && n == 0,
-		"%zu Gaussians without weight", n);
+	train_weights(views, VIEWS, GAUSSIANS, weight);
+	CHECK(!train_active_set(weight, GAUSSIANS, 0, ids, &n, &e) && n == 0, "%zu Gaussians without weight",
+		n);
 }
 
 static void test_bounds(void)
