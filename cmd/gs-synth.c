@@ -10,10 +10,13 @@
 #include "synth/cameras.h"
 #include "synth/scene.h"
 #include "synth/sentences.h"
+#include "synth/truth.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { ATTEMPTS = 20 };
 
 /* What is made, and the open outputs. */
 struct job {
@@ -161,7 +164,7 @@ static int write_view(struct job *j, int number, struct err *e)
 	uint8_t *masks = mem_alloc((size_t)j->scene.object_count, pixels, "truth", e);
 	struct render_view *view = masks ? render_prepare(&j->scene.splats, c, e) : NULL;
 	int bad = !view || write_photograph(j, c, view, e) ||
-		  synth_scene_truth(&j->scene, view, pixels, masks, e) || put_truth(j, c, masks, e) ||
+		  synth_truth_visible(&j->scene, view, pixels, masks, e) || put_truth(j, c, masks, e) ||
 		  (c->split == SPLIT_TRAIN && put_candidates(j, number, c, masks, e));
 
 	if (view)
@@ -189,8 +192,7 @@ static int write_views(struct job *j, const char *dir, struct err *e)
 	return bad ? -1 : 0;
 }
 
-/* The sentences come first: they alone can turn out impossible, and then nothing is written. */
-static int make(struct job *j, struct err *e)
+static int make_once(struct job *j, struct err *e)
 {
 	struct synth_layout layout;
 	double right[2], away[2];
@@ -198,31 +200,56 @@ static int make(struct job *j, struct err *e)
 
 	if (synth_scene_make(s, &j->options, e))
 		return -1;
-	j->sentences =
-		mem_zalloc((size_t)s->object_count * SYNTH_SENTENCES, sizeof *j->sentences, "sentences", e);
-	if (!j->sentences)
-		return -1;
 	synth_cameras_reference(&s->cameras, right, away);
 	synth_layout_make(&layout, s->objects, s->object_count, &s->table, right, away);
-	synth_detector_make(&j->detector, s->objects, s->object_count, j->options.seed);
-	return synth_sentences_make(j->sentences, &layout, j->options.seed, e);
+	if (synth_sentences_make(j->sentences, &layout, j->options.seed, e)) {
+		synth_scene_free(s);
+		return -1;
+	}
+	synth_detector_make(&j->detector, s->objects, s->object_count, j->sentences, s->preset->severity,
+		j->options.seed);
+	return 0;
+}
+
+/* Things may stand so that words cannot tell them apart; then they are put otherwise. Nothing is written
+ * before. */
+static int make(struct job *j, int number, struct err *e)
+{
+	j->sentences = mem_zalloc(
+		(size_t)j->options.objects * SYNTH_SENTENCES, sizeof *j->sentences, "sentences", e);
+	if (!j->sentences)
+		return -1;
+	for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
+		j->options.seed = synth_preset_seed(number, (uint64_t)j->cli.seed, attempt);
+		*e = (struct err){0};
+		if (!make_once(j, e))
+			return 0;
+		if (e->code != ERR_CHECK)
+			return -1;
+	}
+	return err_set(e, ERR_CHECK, "seed %lld: words cannot tell the objects apart; try another --seed",
+		j->cli.seed);
 }
 
 int main(int argc, char **argv)
 {
-	long long objects = 8, views = 25, gaussians = 20000;
-	int size[2] = {320, 240};
+	long long objects = 0, views = 0, gaussians = 0;
+	int number = 0, size[2] = {0};
 	struct job j = {0};
 	struct err e = {0};
 	const struct cli_option options[] = {
-		{"objects", 0, CLI_INT, &objects, "K", "objects on the table (default 8)", SYNTH_MIN_OBJECTS,
-			SYNTH_MAX_OBJECTS},
-		{"views", 0, CLI_INT, &views, "V", "views; every fifth is a test view (default 25)",
+		{"scene", 0, CLI_CHOICE, &number, "table|diner|toys|tea|kitchen",
+			"what is made (default table)", 0, 0},
+		{"objects", 0, CLI_INT, &objects, "K", "objects (default: the scene's; of the table 8)",
+			SYNTH_MIN_OBJECTS, SYNTH_MAX_OBJECTS},
+		{"views", 0, CLI_INT, &views, "V",
+			"views for training and testing (default: the scene's; of the table 25)",
 			SYNTH_MIN_VIEWS, SYNTH_MAX_VIEWS},
-		{"size", 0, CLI_SIZE, size, "WxH", "size of the photographs in pixels (default 320x240)", 16,
+		{"size", 0, CLI_SIZE, size, "WxH",
+			"size of the photographs in pixels (default 492x364; of the table 320x240)", 16,
 			4096},
-		{"gaussians", 0, CLI_INT, &gaussians, "N", "Gaussians of the scene (default 20000)", 1000,
-			10000000},
+		{"gaussians", 0, CLI_INT, &gaussians, "N", "Gaussians (default 60000; of the table 20000)",
+			1000, 10000000},
 		{0},
 	};
 	const struct cli_tool tool = {
@@ -239,10 +266,12 @@ int main(int argc, char **argv)
 	cli_parse(&j.cli, &tool, argc, argv);
 	if (!strcmp(j.cli.output, "-"))
 		cli_usage(&j.cli, "-o must name a folder");
-	j.options = (struct synth_options){
-		(uint64_t)j.cli.seed, (int)objects, (int)views, size[0], size[1], (size_t)gaussians};
+	const struct synth_preset *p = synth_preset(number);
+	j.options = (struct synth_options){p, 0, objects ? (int)objects : p->objects,
+		views ? (int)views : p->views, size[0] ? size[0] : p->width, size[0] ? size[1] : p->height,
+		gaussians ? (size_t)gaussians : p->gaussians};
 	const char *dir = j.cli.output;
-	int bad = make(&j, &e) || name_photographs(&j, dir, &e) || write_model(&j, dir, &e) ||
+	int bad = make(&j, number, &e) || name_photographs(&j, dir, &e) || write_model(&j, dir, &e) ||
 		  write_sentences(&j, dir, &e) || write_test_views(&j, dir, &e) || write_views(&j, dir, &e);
 	free(j.sentences);
 	synth_scene_free(&j.scene);

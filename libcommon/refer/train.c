@@ -187,7 +187,7 @@ int train_state_init(
 	struct rng r;
 
 	*t = (struct train_state){.parameters = (l->count + 15) / 16 * 16};
-	t->count = t->parameters + step_padded(gaussians) * REFER_X;
+	t->count = t->parameters + step_padded(gaussians) * (size_t)l->feature_width;
 	t->values = mem_zalloc(t->count, 4 * sizeof(float), "training state", e);
 	if (!t->values)
 		return -1;

@@ -108,7 +108,7 @@ int trainer_init(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
 	*t = (struct trainer){.rates = o->rates};
-	refer_layout_init(&t->layout, o->interaction, from->text_width);
+	refer_layout_init(&t->layout, o->interaction, from->text_width, (int)o->feature_width);
 	int bad = init(t, from, o, e);
 	if (bad)
 		trainer_free(t);
@@ -140,6 +140,16 @@ double trainer_weights(const struct trainer *t)
 		pixels += (double)w->pixels;
 	}
 	return pixels > 0 ? weights / pixels : 0;
+}
+
+float *trainer_features(const struct trainer *t, struct err *e)
+{
+	const int width = t->layout.feature_width;
+	float *x = mem_alloc(t->rows.n, (size_t)width * sizeof *x, "features", e);
+
+	if (x)
+		step_unpack(train_state_x(&t->state), t->rows.n, width, x);
+	return x;
 }
 
 struct step_losses trainer_step(struct trainer *t)

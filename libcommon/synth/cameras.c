@@ -2,7 +2,6 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
-#include "synth/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -24,8 +23,7 @@ static void normalise(double a[3])
 		a[k] /= length;
 }
 
-/* A camera at `centre` that sees `target` in its middle, turned by `roll` about its axis. */
-static void look_at(struct camera *c, const double centre[3], const double target[3], double roll)
+void synth_cameras_aim(struct camera *c, const double centre[3], const double target[3], double roll)
 {
 	double forward[3], right[3], down[3], up[3] = {0, 0, 1}, cosine = cos(roll), sine = sin(roll);
 
@@ -48,17 +46,30 @@ static void look_at(struct camera *c, const double centre[3], const double targe
 	c->world_to_camera[3][3] = 1;
 }
 
-int synth_cameras_make(struct cameras *c, int n, int width, int height, const struct synth_table *table,
-	uint64_t seed, struct err *e)
+double synth_cameras_distance(const struct synth_table *table, const struct synth_preset *preset)
 {
-	double reach = fmax(table->half_width, 1.3 * table->half_depth);
+	return preset->distance * fmax(table->half_width, 1.3 * table->half_depth);
+}
+
+static int test_views(const struct synth_options *o)
+{
+	int n = o->views * o->preset->test_views / o->preset->views;
+
+	return n > 0 ? n : 1;
+}
+
+int synth_cameras_make(
+	struct cameras *c, const struct synth_options *o, const struct synth_table *table, struct err *e)
+{
+	double far = synth_cameras_distance(table, o->preset), reach = far / o->preset->distance;
+	int n = o->views, tests = test_views(o);
 	struct rng r;
 
 	*c = (struct cameras){0};
 	c->views = mem_zalloc((size_t)n, sizeof *c->views, "cameras", e);
 	if (!c->views)
 		return -1;
-	rng_seed(&r, seed, SYNTH_STREAM_CAMERAS);
+	rng_seed(&r, o->seed, SYNTH_STREAM_CAMERAS);
 	for (int i = 0; i < n; i++) {
 		struct camera *v = &c->views[c->n++];
 		char name[32];
@@ -68,24 +79,21 @@ int synth_cameras_make(struct cameras *c, int n, int width, int height, const st
 			cameras_free(c);
 			return -1;
 		}
-		v->width = width;
-		v->height = height;
-		v->fx = v->fy = 0.95 * fmax(width, height * 4 / 3.0);
-		v->cx = width / 2.0;
-		v->cy = height / 2.0;
-		v->split =
-			i % SYNTH_TEST_EVERY == SYNTH_TEST_EVERY - 1 || (n < SYNTH_TEST_EVERY && i == n - 1)
-				? SPLIT_TEST
-				: SPLIT_TRAIN;
+		v->width = o->width;
+		v->height = o->height;
+		v->fx = v->fy = 0.95 * fmax(o->width, o->height * 4 / 3.0);
+		v->cx = o->width / 2.0;
+		v->cy = o->height / 2.0;
+		v->split = (i + 1) * tests / n > i * tests / n ? SPLIT_TEST : SPLIT_TRAIN;
 		/* Out along the arc and back again. */
 		double walked = 2 * (i + 0.5) / n, side = walked < 1 ? walked : 2 - walked;
 		double azimuth = (-70 + 140 * side + rng_range(&r, -6, 6)) * PI / 180;
 		double elevation = ((walked < 1 ? 26 : 44) + rng_range(&r, -6, 6)) * PI / 180;
-		double distance = reach * rng_range(&r, 2.35, 2.85);
+		double distance = far * rng_range(&r, 0.9, 1.1);
 		double centre[3] = {distance * cos(elevation) * sin(azimuth),
 			-distance * cos(elevation) * cos(azimuth), distance * sin(elevation)};
 		double target[3] = {0.12 * reach * rng_normal(&r), 0.12 * reach * rng_normal(&r), 0.1};
-		look_at(v, centre, target, 0.03 * rng_normal(&r));
+		synth_cameras_aim(v, centre, target, 0.03 * rng_normal(&r));
 	}
 	return 0;
 }

@@ -6,10 +6,19 @@
 #include "base/err.h"
 #include "geom/camera.h"
 #include "synth/objects.h"
+#include "synth/presets.h"
 
-/* n views of one size, all looking at the table; split set. Returns 0, or -1 with *e set and *c zeroed. */
-int synth_cameras_make(struct cameras *c, int n, int width, int height, const struct synth_table *table,
-	uint64_t seed, struct err *e);
+/* o->views views of one size, all looking at the table; split set: of V views the share of the preset is for
+ * testing, at least one, spread evenly and the last among them. Returns 0, or -1 with *e set and *c zeroed.
+ */
+int synth_cameras_make(
+	struct cameras *c, const struct synth_options *o, const struct synth_table *table, struct err *e);
+
+/* How far the cameras are from the table's middle, but for some tenths. */
+double synth_cameras_distance(const struct synth_table *table, const struct synth_preset *preset);
+
+/* Puts a camera at `centre` with `target` in its middle, turned by `roll` (radians) about its axis. */
+void synth_cameras_aim(struct camera *c, const double centre[3], const double target[3], double roll);
 
 /* The reference viewpoint of spatial words: the mean of the training cameras' centres, looking at the table's
  * middle. right and away are its unit directions in the plane of the table. */

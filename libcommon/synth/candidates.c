@@ -11,82 +11,62 @@
 enum { SMALLEST = 12 };
 
 /* What one candidate shows. */
-enum fault { FAULT_NONE, FAULT_OTHER, FAULT_PART, FAULT_UNION, FAULT_EMPTY, FAULT_MISSING, FAULTS };
-
-/* How often a sentence of each habit has each fault, in percent. */
-static const int fault_rates[SYNTH_HABITS][FAULTS] = {
-	[SYNTH_HABIT_GOOD] = {72, 7, 8, 7, 1, 5},
-	[SYNTH_HABIT_CONFUSED] = {14, 75, 3, 3, 1, 4},
-	[SYNTH_HABIT_GUESSING] = {22, 68, 3, 3, 1, 3},
-	[SYNTH_HABIT_PART] = {42, 8, 40, 4, 1, 5},
-	[SYNTH_HABIT_UNION] = {42, 8, 4, 40, 1, 5},
+enum fault {
+	FAULT_NONE,
+	FAULT_OTHER,
+	FAULT_PART,
+	FAULT_UNION,
+	FAULT_EMPTY,
+	FAULT_MISSING,
+	FAULT_GROUP,
+	FAULTS
 };
 
-static int likeness(const struct synth_object *a, const struct synth_object *b)
-{
-	return 2 * (a->shape == b->shape) + 2 * (a->colour == b->colour) + (a->size == b->size);
-}
+/* A kind of detector: its faults, and how its confidence comes about. */
+static const struct {
+	int rates[SYNTH_HABITS][FAULTS]; /* how often a sentence of each habit has each fault, in percent */
+	double score, quality, noise;	 /* confidence is score + quality * IoU, with noise */
+	double confused, guessing;	 /* more where such a sentence takes another object */
+	double faint; /* a thing of less than this share of the picture is found seldom, and with less
+			 confidence */
+} kinds[SYNTH_SEVERITIES] = {
+	[SYNTH_MILD] = {{
+				[SYNTH_HABIT_GOOD] = {72, 7, 8, 7, 1, 5},
+				[SYNTH_HABIT_CONFUSED] = {14, 75, 3, 3, 1, 4},
+				[SYNTH_HABIT_GUESSING] = {22, 68, 3, 3, 1, 3},
+				[SYNTH_HABIT_PART] = {42, 8, 40, 4, 1, 5},
+				[SYNTH_HABIT_UNION] = {42, 8, 4, 40, 1, 5},
+			},
+		0.30, 0.40, 0.12, 0.54, 0.05, 0},
+	[SYNTH_SEVERE] = {{
+				  [SYNTH_HABIT_GOOD] = {74, 6, 6, 5, 1, 5, 3},
+				  [SYNTH_HABIT_CONFUSED] = {11, 78, 3, 3, 1, 3, 1},
+				  [SYNTH_HABIT_GUESSING] = {11, 77, 3, 3, 1, 3, 2},
+				  [SYNTH_HABIT_PART] = {40, 6, 42, 3, 1, 6, 2},
+				  [SYNTH_HABIT_UNION] = {40, 6, 3, 42, 1, 5, 3},
+				  [SYNTH_HABIT_GROUP] = {36, 8, 3, 3, 1, 4, 45},
+			  },
+		0.34, 0.20, 0.12, 0.30, 0.05, 0.004},
+};
 
-/* Most objects have a confused sentence, three in four a guessing one too: by rank rather than by lot,
- * so that few objects have their share of faults too. */
-static void choose_habits(struct synth_detector *d, struct rng *r)
-{
-	static const enum synth_habit usual[10] = {SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD,
-		SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_PART, SYNTH_HABIT_PART,
-		SYNTH_HABIT_UNION, SYNTH_HABIT_UNION};
-	uint32_t objects[SYNTH_MAX_OBJECTS], order[SYNTH_TRAIN_SENTENCES];
-
-	for (uint32_t i = 0; i < (uint32_t)d->n; i++)
-		objects[i] = i;
-	rng_shuffle(r, objects, (uint32_t)d->n);
-	for (int rank = 0; rank < d->n; rank++) {
-		double share = (rank + 0.5) / d->n;
-		int confused = share < 0.85, guessing = share < 0.75;
-		for (uint32_t k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
-			order[k] = k;
-		rng_shuffle(r, order, SYNTH_TRAIN_SENTENCES);
-		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
-			enum synth_habit habit = usual[rng_below(r, 10)];
-			if (k < confused)
-				habit = SYNTH_HABIT_CONFUSED;
-			else if (k < confused + guessing)
-				habit = SYNTH_HABIT_GUESSING;
-			d->habits[objects[rank]][order[k]] = habit;
-		}
-	}
-}
-
-void synth_detector_make(struct synth_detector *d, const struct synth_object *objects, int n, uint64_t seed)
+void synth_detector_make(struct synth_detector *d, const struct synth_object *objects, int n,
+	const struct synth_sentence *sentences, enum synth_severity severity, uint64_t seed)
 {
 	struct rng r;
 
-	*d = (struct synth_detector){.seed = seed, .n = n, .objects = objects};
+	*d = (struct synth_detector){.seed = seed, .severity = severity, .n = n, .objects = objects};
 	rng_seed(&r, seed, SYNTH_STREAM_FAULTS);
 	synth_noise_make(&d->noise, &r);
-	choose_habits(d, &r);
-	for (int i = 0; i < n; i++) {
-		double nearest = INFINITY, best = -INFINITY;
-		for (int j = 0; j < n; j++) {
-			if (j == i)
-				continue;
-			double distance = hypot(objects[i].x - objects[j].x, objects[i].y - objects[j].y);
-			double like = likeness(&objects[i], &objects[j]) - 0.1 * distance;
-			if (distance < nearest)
-				d->neighbours[i] = j;
-			if (like > best)
-				d->confusers[i] = j;
-			nearest = fmin(nearest, distance);
-			best = fmax(best, like);
-		}
-	}
+	synth_habits_make(&d->habits, objects, n, sentences, severity, &r);
 }
 
-static enum fault choose_fault(enum synth_habit habit, struct rng *r)
+static enum fault choose_fault(const struct synth_detector *d, enum synth_habit habit, struct rng *r)
 {
+	const int *rates = kinds[d->severity].rates[habit];
 	int at = (int)rng_below(r, 100), f = 0;
 
-	while (at >= fault_rates[habit][f])
-		at -= fault_rates[habit][f++];
+	while (at >= rates[f])
+		at -= rates[f++];
 	return (enum fault)f;
 }
 
@@ -116,11 +96,18 @@ static double iou(const uint8_t *a, const uint8_t *b, size_t pixels)
 	return either ? (double)both / (double)either : 0;
 }
 
-/* Draws the candidate's mask; its object may be changed by the fault. */
-static int draw(struct detection *v, int object, enum fault f, struct err *e)
+static void join(struct detection *v, int object)
+{
+	const uint8_t *with = shown(v, object);
+
+	for (size_t p = 0; p < v->pixels; p++)
+		v->mask[p] |= with[p];
+}
+
+/* Draws the candidate's mask for the sentence of an object; `other` is what it may be mistaken for. */
+static int draw(struct detection *v, int object, int other, enum fault f, struct err *e)
 {
 	const struct synth_detector *d = v->d;
-	int other = d->confusers[object], neighbour = d->neighbours[object];
 	struct rng *r = &v->rng;
 
 	if (f == FAULT_EMPTY) {
@@ -129,22 +116,37 @@ static int draw(struct detection *v, int object, enum fault f, struct err *e)
 	}
 	memcpy(v->mask, shown(v, f == FAULT_OTHER ? other : object), v->pixels);
 	if (f == FAULT_UNION)
-		for (size_t p = 0; p < v->pixels; p++)
-			v->mask[p] |= shown(v, neighbour)[p];
+		join(v, d->habits.neighbours[object]);
+	for (int j = 0; j < d->n && f == FAULT_GROUP; j++)
+		if (synth_look_alike(&d->objects[object], &d->objects[j]))
+			join(v, j);
 	if (f == FAULT_PART)
 		synth_outline_cut(v->mask, v->height, v->width, rng_range(r, 0.35, 0.65), r);
 	double rag = rng_range(r, 0.1, 0.4), shrink = 0.09 * rng_normal(r);
 	return synth_outline_rag(v->mask, v->height, v->width, rag, shrink, &d->noise, r, e);
 }
 
+/* 0 for what is large enough to be seen well, up to 1 for what is as good as hidden. */
+static double faintness(const struct detection *v, int object)
+{
+	double area = (double)synth_outline_area(shown(v, object), v->pixels);
+	double enough = kinds[v->d->severity].faint * (double)v->pixels;
+
+	return area < enough ? 1 - area / enough : 0;
+}
+
 /* Confidence follows quality, loosely; a confused sentence is often surer than a right one. */
 static double choose_score(struct detection *v, int object, enum fault f, enum synth_habit habit)
 {
 	double quality = iou(v->mask, shown(v, object), v->pixels);
-	double score = 0.30 + 0.40 * quality + 0.12 * rng_normal(&v->rng);
+	double score = kinds[v->d->severity].score + kinds[v->d->severity].quality * quality +
+		       kinds[v->d->severity].noise * rng_normal(&v->rng);
 
 	if (f == FAULT_OTHER)
-		score += habit == SYNTH_HABIT_CONFUSED ? 0.54 : 0.05;
+		score += habit == SYNTH_HABIT_CONFUSED ? kinds[v->d->severity].confused
+						       : kinds[v->d->severity].guessing;
+	else
+		score -= 0.15 * faintness(v, object);
 	if (f == FAULT_EMPTY)
 		score = 0.3;
 	return round(1000 * fmin(0.95, fmax(0.2, score))) / 1000;
@@ -163,22 +165,36 @@ static int put(struct synth_candidates *out, struct detection *v, int object, in
 	return 0;
 }
 
+/* What goes wrong this time. A hidden object is not found, but at times something else is; a small or mostly
+ * hidden one is found seldom. */
+static enum fault meet_fault(
+	struct detection *v, int object, int other, enum synth_habit habit, int is_hidden)
+{
+	struct rng *r = &v->rng;
+	enum fault f = choose_fault(v->d, habit, r);
+
+	if (is_hidden)
+		return rng_below(r, 100) < 65 ? FAULT_MISSING : FAULT_OTHER;
+	if (v->d->severity == SYNTH_MILD)
+		return f;
+	if (f == FAULT_OTHER)
+		return synth_outline_area(shown(v, other), v->pixels) < SMALLEST ? FAULT_NONE : f;
+	return rng_uniform(r) < 0.6 * faintness(v, object) ? FAULT_MISSING : f;
+}
+
 static int detect_sentence(
 	struct synth_candidates *out, struct detection *v, int object, int sentence, struct err *e)
 {
-	enum synth_habit habit = v->d->habits[object][sentence];
-	struct rng *r = &v->rng;
-	/* A hidden object is not found, but at times something else is. */
+	enum synth_habit habit = v->d->habits.of[object][sentence];
+	int other = v->d->habits.mistaken[object][sentence];
 	int is_hidden = synth_outline_area(shown(v, object), v->pixels) < SMALLEST;
-	int count = rng_below(r, 100) < 30 ? 2 : 1;
+	int count = rng_below(&v->rng, 100) < 30 ? 2 : 1;
 
 	for (int i = 0; i < count; i++) {
-		enum fault f = choose_fault(habit, r);
-		if (is_hidden)
-			f = rng_below(r, 100) < 65 ? FAULT_MISSING : FAULT_OTHER;
+		enum fault f = meet_fault(v, object, other, habit, is_hidden);
 		if (f == FAULT_MISSING)
 			return 0;
-		if (draw(v, object, f, e))
+		if (draw(v, object, other, f, e))
 			return -1;
 		if (f != FAULT_EMPTY && !synth_outline_area(v->mask, v->pixels))
 			return 0;

@@ -5,34 +5,24 @@
 
 #include "base/err.h"
 #include "mask/rle.h"
+#include "synth/habits.h"
 #include "synth/noise.h"
-#include "synth/objects.h"
-#include "synth/sentences.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* A sentence's habit, the same in every view. */
-enum synth_habit {
-	SYNTH_HABIT_GOOD,
-	SYNTH_HABIT_CONFUSED, /* in most views another object, and sure of it */
-	SYNTH_HABIT_GUESSING, /* the same, but not sure */
-	SYNTH_HABIT_PART,     /* often a part only */
-	SYNTH_HABIT_UNION,    /* often with a neighbour */
-	SYNTH_HABITS
-};
-
 struct synth_detector {
 	uint64_t seed;
+	enum synth_severity severity;
 	int n; /* objects */
 	const struct synth_object *objects;
-	enum synth_habit habits[SYNTH_MAX_OBJECTS][SYNTH_TRAIN_SENTENCES];
-	int confusers[SYNTH_MAX_OBJECTS];  /* what a confused sentence finds: alike in colour or shape */
-	int neighbours[SYNTH_MAX_OBJECTS]; /* the nearest on the table */
+	struct synth_habits habits;
 	struct synth_noise noise;
 };
 
-void synth_detector_make(struct synth_detector *d, const struct synth_object *objects, int n, uint64_t seed);
+/* sentences: (n objects, SYNTH_SENTENCES); not kept. */
+void synth_detector_make(struct synth_detector *d, const struct synth_object *objects, int n,
+	const struct synth_sentence *sentences, enum synth_severity severity, uint64_t seed);
 
 struct synth_candidate {
 	int object, sentence; /* sentence 0 to SYNTH_TRAIN_SENTENCES-1 of that object */

@@ -1,7 +1,6 @@
 #include "synth/objects.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
@@ -27,20 +26,48 @@ static const struct {
 	{"teal", {0.05, 0.58, 0.58}},
 };
 
-/* Radius and height at scale 1. A mug's radius includes its handle. */
-static const double measures[SYNTH_SHAPES][2] = {
-	[SYNTH_BALL] = {0.38, 0.76},
-	[SYNTH_BOX] = {0.46, 0.55},
-	[SYNTH_CYLINDER] = {0.28, 0.80},
-	[SYNTH_CONE] = {0.40, 0.90},
-	[SYNTH_MUG] = {0.56, 0.62},
-	[SYNTH_BOWL] = {0.52, 0.34},
-	[SYNTH_PLATE] = {0.62, 0.11},
-	[SYNTH_BOOK] = {0.54, 0.17},
-	[SYNTH_BOTTLE] = {0.24, 1.16},
+/* At scale 1. A mug's radius includes its handle. */
+static const struct {
+	double radius, height;
+	struct synth_area foot;
+	struct synth_area top; /* what another thing can stand on */
+	double top_z;
+} measures[SYNTH_SHAPES] = {
+	/* A ball touches in a point; a little more keeps it from looking as if it would roll off. */
+	[SYNTH_BALL] = {0.38, 0.76, {0.18, 0}, {0, 0}, 0},
+	[SYNTH_BOX] = {0.46, 0.55, {0.35, 0.29}, {0.35, 0.29}, 0.55},
+	[SYNTH_CYLINDER] = {0.28, 0.80, {0.28, 0}, {0, 0}, 0},
+	[SYNTH_CONE] = {0.40, 0.90, {0.40, 0}, {0, 0}, 0},
+	[SYNTH_MUG] = {0.56, 0.62, {0.32, 0}, {0, 0}, 0},
+	[SYNTH_BOWL] = {0.52, 0.34, {0.20, 0}, {0, 0}, 0},
+	[SYNTH_PLATE] = {0.62, 0.11, {0.36, 0}, {0.38, 0}, 0.05},
+	[SYNTH_BOOK] = {0.54, 0.17, {0.43, 0.31}, {0.43, 0.31}, 0.17},
+	[SYNTH_BOTTLE] = {0.24, 1.16, {0.24, 0}, {0, 0}, 0},
 };
 
 static const double size_scales[SYNTH_SIZES] = {0.75, 1.0, 1.3};
+
+void synth_object_measure(struct synth_object *o)
+{
+	o->scale = size_scales[o->size];
+	o->radius = o->scale * measures[o->shape].radius;
+	o->height = o->scale * measures[o->shape].height;
+}
+
+struct synth_area synth_object_foot(const struct synth_object *o)
+{
+	struct synth_area a = measures[o->shape].foot;
+
+	return (struct synth_area){o->scale * a.x, o->scale * a.y};
+}
+
+struct synth_area synth_object_top(const struct synth_object *o, double *z)
+{
+	struct synth_area a = measures[o->shape].top;
+
+	*z = o->scale * measures[o->shape].top_z;
+	return (struct synth_area){o->scale * a.x, o->scale * a.y};
+}
 
 const char *synth_shape_name(enum synth_shape s)
 {
@@ -55,7 +82,7 @@ const char *synth_colour_name(enum synth_colour c)
 static void ball_surface(struct synth_surface *s)
 {
 	enum { RINGS = 18 };
-	double profile[RINGS + 1][2], r = measures[SYNTH_BALL][0];
+	double profile[RINGS + 1][2], r = measures[SYNTH_BALL].radius;
 
 	for (int i = 0; i <= RINGS; i++) {
 		double turn = PI * i / RINGS;
@@ -118,6 +145,15 @@ void synth_object_surface(struct synth_surface *s, enum synth_shape shape)
 	}
 }
 
+void synth_object_place(const struct synth_object *o, const double point[3], double world[3])
+{
+	double c = cos(o->yaw), s = sin(o->yaw), x = point[0], y = point[1];
+
+	world[0] = o->x + o->scale * (c * x - s * y);
+	world[1] = o->y + o->scale * (s * x + c * y);
+	world[2] = o->z + o->scale * point[2];
+}
+
 static void mix(double rgb[3], const double with[3], double share)
 {
 	for (int k = 0; k < 3; k++)
@@ -153,107 +189,4 @@ void synth_object_colour(const struct synth_object *o, enum synth_tint tint, con
 		if (at > 0.33)
 			mix(rgb, second, 0.7);
 	}
-}
-
-static void name_objects(struct synth_object *objects, int n)
-{
-	for (int i = 0; i < n; i++) {
-		struct synth_object *o = &objects[i];
-		int count = 1;
-		for (int j = 0; j < i; j++)
-			count += objects[j].shape == o->shape && objects[j].colour == o->colour;
-		const char *colour = synth_colour_name(o->colour), *shape = synth_shape_name(o->shape);
-		if (count == 1) {
-			snprintf(o->name, sizeof o->name, "%s %s", colour, shape);
-			snprintf(o->ref, sizeof o->ref, "%s-%s", colour, shape);
-		} else {
-			snprintf(o->name, sizeof o->name, "%s %s %d", colour, shape, count);
-			snprintf(o->ref, sizeof o->ref, "%s-%s-%d", colour, shape, count);
-		}
-	}
-}
-
-/* Kinds of things: a twin of an earlier one, or a kind of its own that shares colour or shape with some
- * others. */
-static void choose_kinds(struct synth_object *objects, int n, struct rng *r)
-{
-	int twins = n >= 5 ? n / 4 : 0;
-
-	for (int i = 0; i < n; i++) {
-		struct synth_object *o = &objects[i];
-		if (i >= n - twins) {
-			*o = objects[i - (n - twins)];
-			continue;
-		}
-		int is_new;
-		do {
-			o->shape = (enum synth_shape)rng_below(r, SYNTH_SHAPES);
-			o->colour = (enum synth_colour)rng_below(r, SYNTH_COLOURS);
-			is_new = 1;
-			int same_shape = 0;
-			for (int j = 0; j < i; j++) {
-				is_new &= objects[j].shape != o->shape || objects[j].colour != o->colour;
-				same_shape += objects[j].shape == o->shape;
-			}
-			is_new &= same_shape <= i / 4;
-		} while (!is_new);
-		o->size = (enum synth_size)rng_below(r, SYNTH_SIZES);
-		/* Seven in ten are of one colour all over. */
-		uint32_t lot = rng_below(r, 20);
-		o->finish = lot < 8    ? SYNTH_PLAIN
-			    : lot < 14 ? SYNTH_SHINY
-			    : lot < 17 ? SYNTH_STRIPED
-				       : SYNTH_SPECKLED;
-	}
-}
-
-static int fits(const struct synth_object *objects, int i, double gap)
-{
-	for (int j = 0; j < i; j++) {
-		double need = objects[i].radius + objects[j].radius + gap;
-		if (hypot(objects[i].x - objects[j].x, objects[i].y - objects[j].y) < need)
-			return 0;
-	}
-	return 1;
-}
-
-/* Random places, from the start again where one object finds none. */
-static int place(struct synth_object *objects, int n, const struct synth_table *table, struct rng *r)
-{
-	for (int i = 0; i < n; i++) {
-		struct synth_object *o = &objects[i];
-		double w = table->half_width - o->radius - 0.05, d = table->half_depth - o->radius - 0.05;
-		int tries = 0;
-		do {
-			if (tries++ == 200)
-				return 0;
-			o->x = rng_range(r, -w, w);
-			o->y = rng_range(r, -d, d);
-		} while (!fits(objects, i, 0.08));
-		o->yaw = rng_range(r, -PI, PI);
-	}
-	return 1;
-}
-
-void synth_objects_make(struct synth_object *objects, int n, struct synth_table *table, uint64_t seed)
-{
-	struct rng r;
-
-	rng_seed(&r, seed, SYNTH_STREAM_OBJECTS);
-	memset(objects, 0, (size_t)n * sizeof *objects);
-	choose_kinds(objects, n, &r);
-	for (int i = 0; i < n; i++) {
-		struct synth_object *o = &objects[i];
-		o->on = -1;
-		o->scale = size_scales[o->size];
-		o->radius = o->scale * measures[o->shape][0];
-		o->height = o->scale * measures[o->shape][1];
-	}
-	*table = (struct synth_table){fmax(1.7, 2.2 * sqrt(n / 8.0)), fmax(1.2, 1.55 * sqrt(n / 8.0))};
-	for (int tries = 1; !place(objects, n, table, &r); tries++)
-		if (tries % 20 == 0) {
-			table->half_width *= 1.05;
-			table->half_depth *= 1.05;
-		}
-	name_objects(objects, n);
 }

@@ -24,6 +24,7 @@ enum synth_stream {
 	SYNTH_STREAM_TEXTURE,
 	SYNTH_STREAM_SENTENCES,
 	SYNTH_STREAM_FAULTS,
+	SYNTH_STREAM_HIDING,
 	SYNTH_STREAM_VIEWS = 1024, /* candidates: one stream a view */
 };
 
@@ -76,12 +77,25 @@ struct synth_table {
 	double half_width, half_depth; /* along x and y */
 };
 
-/* Chooses n objects (SYNTH_MIN_OBJECTS to SYNTH_MAX_OBJECTS) and puts them on a table of fitting size; none
- * touches another. Of five objects or more some pairs are alike in shape, colour, size and finish. */
-void synth_objects_make(struct synth_object *objects, int n, struct synth_table *table, uint64_t seed);
+/* Sets scale, radius and height, by shape and size. */
+void synth_object_measure(struct synth_object *o);
+
+/* A part of a level plane about the object's vertical: half the sides of a rectangle that is turned with the
+ * object, or (y = 0) the radius of a disc; x = 0 where there is none. */
+struct synth_area {
+	double x, y;
+};
+
+struct synth_area synth_object_foot(const struct synth_object *o);
+
+/* Where another thing can stand; *z gets how high that is above the object's own foot. */
+struct synth_area synth_object_top(const struct synth_object *o, double *z);
 
 /* The surface of an object of scale 1 that stands on the origin, its underside left out. */
 void synth_object_surface(struct synth_surface *s, enum synth_shape shape);
+
+/* The point of the world that a point of that surface is. `point` and `world` may be the same. */
+void synth_object_place(const struct synth_object *o, const double point[3], double world[3]);
 
 /* The colour (sRGB in [0,1]) before any light at a point of that surface. */
 void synth_object_colour(const struct synth_object *o, enum synth_tint tint, const double point[3],

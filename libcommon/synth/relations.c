@@ -31,14 +31,37 @@ static double distance(const struct synth_layout *l, int i, int j)
 	return hypot(l->u[i] - l->u[j], l->v[i] - l->v[j]);
 }
 
+int synth_layout_stands_on(const struct synth_layout *l, int i, int a)
+{
+	for (i = l->objects[i].on; i >= 0; i = l->objects[i].on)
+		if (i == a)
+			return 1;
+	return 0;
+}
+
+static int are_stacked(const struct synth_layout *l, int i, int j)
+{
+	return synth_layout_stands_on(l, i, j) || synth_layout_stands_on(l, j, i);
+}
+
+/* What stands on a thing is hardly "beside" it, but who is to say. */
+static int unless_stacked(const struct synth_layout *l, int i, int j, int verdict)
+{
+	return verdict > 0 && are_stacked(l, i, j) ? 0 : verdict;
+}
+
 static int between(const struct synth_layout *l, int i, int a, int b)
 {
 	double du = l->u[b] - l->u[a], dv = l->v[b] - l->v[a], length = hypot(du, dv);
 	double pu = l->u[i] - l->u[a], pv = l->v[i] - l->v[a];
+
+	if (length < 0.3)
+		return 0;
 	double along = (pu * du + pv * dv) / (length * length),
 	       off = fabs(pu * dv - pv * du) / (length * length);
-
-	return judge(along > 0.25 && along < 0.75 && off < 0.2, along < 0.05 || along > 0.95 || off > 0.45);
+	int verdict =
+		judge(along > 0.25 && along < 0.75 && off < 0.2, along < 0.05 || along > 0.95 || off > 0.45);
+	return unless_stacked(l, i, a, unless_stacked(l, i, b, verdict));
 }
 
 /* The quantity of which the superlative's object has the least. */
@@ -50,13 +73,21 @@ static double amount(const struct synth_layout *l, const struct synth_clause *c,
 	case SYNTH_FARTHEST_FROM:
 		return -distance(l, i, c->a);
 	case SYNTH_LEFTMOST:
+	case SYNTH_LEFT_ONE:
 		return l->u[i];
-	default:
+	case SYNTH_RIGHTMOST:
+	case SYNTH_RIGHT_ONE:
 		return -l->u[i];
+	case SYNTH_NEAREST_US:
+	case SYNTH_NEAR_ONE:
+		return l->v[i];
+	default:
+		return -l->v[i];
 	}
 }
 
-/* Against those that fit `among`; where there are none, against every other object. */
+/* Against those that fit `among`; where there are none, against every other object, or of "ones" against
+ * nothing. */
 static int superlative(
 	const struct synth_layout *l, const struct synth_clause *c, int i, const struct synth_meaning *among)
 {
@@ -70,8 +101,74 @@ static int superlative(
 		if (synth_meaning_fits(among, &l->objects[j]))
 			best_fitting = fmin(best_fitting, other);
 	}
+	if (isinf(best_fitting) && c->relation >= SYNTH_LEFT_ONE)
+		return 0;
 	best = isinf(best_fitting) ? best : best_fitting;
 	return judge(own<best - 0.25, own> best + 0.25);
+}
+
+/* What stands on A has no distance from it that a person would compare. */
+static int nearest(
+	const struct synth_layout *l, const struct synth_clause *c, int i, const struct synth_meaning *among)
+{
+	for (int j = 0; j < l->n; j++)
+		if (are_stacked(l, j, c->a) && (j == i || synth_meaning_fits(among, &l->objects[j])))
+			return 0;
+	return superlative(l, c, i, among);
+}
+
+static int middle_one(const struct synth_layout *l, int i, const struct synth_meaning *among)
+{
+	int others[2], n = 0;
+
+	for (int j = 0; j < l->n; j++) {
+		if (j == i || !synth_meaning_fits(among, &l->objects[j]))
+			continue;
+		if (n == 2)
+			return 0;
+		others[n++] = j;
+	}
+	return n == 2 ? between(l, i, others[0], others[1]) : 0;
+}
+
+/* 1 where a is plainly larger than b, -1 where it is plainly smaller: things of different shapes both in bulk
+ * and in their longest extent. */
+static int compare_sizes(const struct synth_object *a, const struct synth_object *b, enum synth_relation by)
+{
+	static const double margin = 1.12;
+	double tall = a->height / b->height;
+
+	if (by == SYNTH_TALLEST)
+		return judge(tall > margin, tall < 1 / margin);
+	double bulk = cbrt(a->radius * a->radius * a->height / (b->radius * b->radius * b->height));
+	double extent = fmax(2 * a->radius, a->height) / fmax(2 * b->radius, b->height);
+	return judge(bulk > margin && extent > margin, bulk < 1 / margin && extent < 1 / margin);
+}
+
+static int largest(
+	const struct synth_layout *l, enum synth_relation by, int i, const struct synth_meaning *among)
+{
+	int verdict = 1, rivals = 0;
+
+	for (int j = 0; j < l->n; j++) {
+		if (j == i || !synth_meaning_fits(among, &l->objects[j]))
+			continue;
+		int larger = compare_sizes(&l->objects[i], &l->objects[j], by);
+		larger = by == SYNTH_SMALLEST ? -larger : larger;
+		verdict = larger < verdict ? larger : verdict;
+		rivals++;
+	}
+	return rivals ? verdict : 0;
+}
+
+/* "The red mug at the far left" should not stand on the right, were it the only one or not. */
+static int outermost(
+	const struct synth_layout *l, const struct synth_clause *c, int i, const struct synth_meaning *among)
+{
+	double side = c->relation == SYNTH_LEFTMOST ? -l->u[i] : l->u[i];
+	int verdict = superlative(l, c, i, among);
+
+	return verdict == 1 && side < 0.1 * l->half_u ? 0 : verdict;
 }
 
 int synth_clause_judge(
@@ -84,19 +181,23 @@ int synth_clause_judge(
 		return -1;
 	switch (c->relation) {
 	case SYNTH_LEFT_OF:
-		return towards(l->u[a] - l->u[i], l->v[a] - l->v[i]);
+		return unless_stacked(l, i, a, towards(l->u[a] - l->u[i], l->v[a] - l->v[i]));
 	case SYNTH_RIGHT_OF:
-		return towards(l->u[i] - l->u[a], l->v[a] - l->v[i]);
+		return unless_stacked(l, i, a, towards(l->u[i] - l->u[a], l->v[a] - l->v[i]));
 	case SYNTH_IN_FRONT_OF:
-		return towards(l->v[a] - l->v[i], l->u[a] - l->u[i]);
+		return unless_stacked(l, i, a, towards(l->v[a] - l->v[i], l->u[a] - l->u[i]));
 	case SYNTH_BEHIND:
-		return towards(l->v[i] - l->v[a], l->u[a] - l->u[i]);
+		return unless_stacked(l, i, a, towards(l->v[i] - l->v[a], l->u[a] - l->u[i]));
 	case SYNTH_NEXT_TO: {
 		double gap = distance(l, i, a) - l->objects[i].radius - l->objects[a].radius;
-		return judge(gap<0.4, gap> 0.8);
+		return unless_stacked(l, i, a, judge(gap<0.4, gap> 0.8));
 	}
 	case SYNTH_BETWEEN:
 		return between(l, i, a, c->b);
+	case SYNTH_ON:
+		return judge(l->objects[i].on == a, !synth_layout_stands_on(l, i, a));
+	case SYNTH_UNDER:
+		return judge(l->objects[a].on == i, !synth_layout_stands_on(l, a, i));
 	case SYNTH_LEFT_SIDE:
 		return judge(u<-0.3, u> - 0.1);
 	case SYNTH_RIGHT_SIDE:
@@ -107,17 +208,27 @@ int synth_clause_judge(
 		return judge(v > 0.3, v < 0.1);
 	case SYNTH_MIDDLE:
 		return judge(hypot(u, v) < 0.35, hypot(u, v) > 0.55);
+	case SYNTH_ON_TABLE:
+		return judge(l->objects[i].on < 0, l->objects[i].on >= 0);
 	case SYNTH_LEFTMOST:
-	case SYNTH_RIGHTMOST: {
-		/* "The red mug at the far left" should not stand on the right, were it the only one or not.
-		 */
-		double side = c->relation == SYNTH_LEFTMOST ? -u : u;
-		int verdict = superlative(l, c, i, among);
-		return verdict == 1 && side < 0.1 ? 0 : verdict;
-	}
+	case SYNTH_RIGHTMOST:
+		return outermost(l, c, i, among);
 	case SYNTH_NEAREST_TO:
+		return nearest(l, c, i, among);
 	case SYNTH_FARTHEST_FROM:
+	case SYNTH_NEAREST_US:
+	case SYNTH_FARTHEST_US:
+	case SYNTH_LEFT_ONE:
+	case SYNTH_RIGHT_ONE:
+	case SYNTH_NEAR_ONE:
+	case SYNTH_FAR_ONE:
 		return superlative(l, c, i, among);
+	case SYNTH_MIDDLE_ONE:
+		return middle_one(l, i, among);
+	case SYNTH_LARGEST:
+	case SYNTH_SMALLEST:
+	case SYNTH_TALLEST:
+		return largest(l, c->relation, i, among);
 	case SYNTH_RELATIONS:
 		break;
 	}

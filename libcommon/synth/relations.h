@@ -15,6 +15,8 @@ enum synth_relation {
 	SYNTH_NEXT_TO,
 	SYNTH_NEAREST_TO,
 	SYNTH_FARTHEST_FROM,
+	SYNTH_ON,
+	SYNTH_UNDER,
 	/* of two */
 	SYNTH_BETWEEN,
 	/* of the table */
@@ -23,8 +25,21 @@ enum synth_relation {
 	SYNTH_FRONT_SIDE,
 	SYNTH_BACK_SIDE,
 	SYNTH_MIDDLE,
+	SYNTH_ON_TABLE, /* and on no other object */
 	SYNTH_LEFTMOST,
 	SYNTH_RIGHTMOST,
+	/* of whoever looks */
+	SYNTH_NEAREST_US,
+	SYNTH_FARTHEST_US,
+	/* of the others that fit the noun phrase, and there must be such: "the left one of the two mugs" */
+	SYNTH_LEFT_ONE,
+	SYNTH_RIGHT_ONE,
+	SYNTH_NEAR_ONE,
+	SYNTH_FAR_ONE,
+	SYNTH_MIDDLE_ONE, /* of three */
+	SYNTH_LARGEST,
+	SYNTH_SMALLEST,
+	SYNTH_TALLEST,
 	SYNTH_RELATIONS
 };
 
@@ -45,9 +60,13 @@ struct synth_clause {
 	int a, b;
 };
 
-/* 1: plainly true of object i; -1: plainly false; 0: could be argued. "nearest", "farthest" and "-most"
- * compare i with the other objects that fit `among`. */
+/* 1: plainly true of object i; -1: plainly false; 0: could be argued. What compares (nearest, leftmost,
+ * largest
+ * ...) compares i with the other objects that fit `among`. */
 int synth_clause_judge(
 	const struct synth_layout *l, const struct synth_clause *c, int i, const struct synth_meaning *among);
+
+/* 1 where object i stands on object a, or on what stands on it. */
+int synth_layout_stands_on(const struct synth_layout *l, int i, int a);
 
 #endif

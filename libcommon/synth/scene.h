@@ -5,9 +5,9 @@
 
 #include "base/err.h"
 #include "geom/camera.h"
-#include "splat/render.h"
 #include "splat/splats.h"
 #include "synth/objects.h"
+#include "synth/presets.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,31 +15,23 @@
 enum {
 	SYNTH_MIN_VIEWS = 2,
 	SYNTH_MAX_VIEWS = 1000, /* names have three digits */
-	SYNTH_TEST_EVERY = 5,	/* views 4, 9, 14 ... are for testing; of fewer than 5 the last one is */
-};
-
-struct synth_options {
-	uint64_t seed;
-	int objects, views, width, height;
-	size_t gaussians;
+	SYNTH_SH_COEFFICIENTS = 4,
 };
 
 struct synth_scene {
+	const struct synth_preset *preset;
 	struct synth_table table;
 	int object_count;
 	struct synth_object *objects; /* (object_count) */
 	struct splats splats;	      /* SH degree 1 */
 	int32_t *owner;		      /* (splats.n) the object a Gaussian belongs to, or -1 */
-	struct cameras cameras;	      /* "view_000" ..., without image */
+	/* Those of object i are first[i] to first[i+1]. */
+	size_t first[SYNTH_MAX_OBJECTS + 1];
+	struct cameras cameras; /* "view_000" ..., without image */
 };
 
 /* Returns 0, or -1 with *e set (memory) and *s zeroed. */
 int synth_scene_make(struct synth_scene *s, const struct synth_options *o, struct err *e);
 void synth_scene_free(struct synth_scene *s);
-
-/* What each object shows in a view: masks (object_count,P) gets 1 where the object's share of the pixel's
- * blend weights, sum of w_i over its own Gaussians, is above one half. Hidden parts are therefore 0. */
-int synth_scene_truth(const struct synth_scene *s, const struct render_view *view, size_t pixels,
-	uint8_t *masks, struct err *e);
 
 #endif

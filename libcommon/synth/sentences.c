@@ -1,73 +1,36 @@
 #include "synth/sentences.h"
 
+#include "synth/frames.h"
+
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { TRIES = 20000, ANCHOR_TRIES = 6 };
-
-/* Frames: %S size, %F finish, %C colour, %N noun, %G group, %M material, %R a relation. */
-static const char *const train_frames[] = {
-	"the %S %C %N %R",
-	"the %C %N standing %R",
-	"the %F %C %N that stands %R",
-	"the %S %N %R and %R",
-	"the %C %G placed %R",
-	"the %M %N with a %F %C surface, %R",
-	"the %S %F %C %N on the wooden table",
-	"the %C object %R",
-	"the %F thing %R and %R",
-	"the %S %M %N %R",
-	"the %N %R, %R",
-	"the %S %C %G set down %R",
-	"the %N made of %M, %R",
-};
-static const char *const test_frames[] = {
-	"the %C coloured %N resting %R",
-	"the %F %N of %C colour, located %R",
-	"the %S %C %G that you can see %R",
-	"the %S %N in %C, positioned %R",
-	"the %N whose colour is %C, %R",
-	"the %C item found %R and %R",
-	"the %S %F %N lying %R",
+/* How hard a sentence was to find decides what is asked of it. */
+enum { TRIES_OF_STAGE = 4000, ANCHOR_TRIES = 6, CLAUSE_TRIES = 40, RELATION_TRIES = 6 };
+enum stage {
+	STAGE_FINE,	/* of the wanted length, and nothing said before */
+	STAGE_LENGTH,	/* of any length */
+	STAGE_REPEATED, /* what an earlier sentence of the object says too */
+	STAGE_ARGUABLE, /* it could be argued of its object, but of no other */
+	STAGES
 };
 
-enum {
-	TRAIN_FRAMES = sizeof train_frames / sizeof *train_frames,
-	TEST_FRAMES = sizeof test_frames / sizeof *test_frames,
-	WAYS = 3,
-};
+/* 13.6 words on average and a little more often short than long, as in Ref-LERF. */
+static const double mean_words = 13.6;
+static const int usual_words[] = {9, 10, 11, 11, 12, 12, 13, 13, 14, 14, 15, 16, 17, 18, 19};
 
-/* How each relation is said; %A and %B are the other objects. The last way is only for test sentences. */
-static const char *const ways[SYNTH_RELATIONS][WAYS] = {
-	[SYNTH_LEFT_OF] = {"to the left of %A", "left of %A", "on the left-hand side of %A"},
-	[SYNTH_RIGHT_OF] = {"to the right of %A", "right of %A", "on the right-hand side of %A"},
-	[SYNTH_IN_FRONT_OF] = {"in front of %A", "just in front of %A", "on the near side of %A"},
-	[SYNTH_BEHIND] = {"behind %A", "just behind %A", "on the far side of %A"},
-	[SYNTH_NEXT_TO] = {"next to %A", "beside %A", "right by %A"},
-	[SYNTH_NEAREST_TO] = {"nearest to %A", "closest to %A", "at the least distance from %A"},
-	[SYNTH_FARTHEST_FROM] = {"farthest from %A", "furthest away from %A", "most distant from %A"},
-	[SYNTH_BETWEEN] = {"between %A and %B", "in between %A and %B", "with %A and %B on either side"},
-	[SYNTH_LEFT_SIDE] = {"on the left side of the table", "at the left of the table",
-		"on the left half of the table"},
-	[SYNTH_RIGHT_SIDE] = {"on the right side of the table", "at the right of the table",
-		"on the right half of the table"},
-	[SYNTH_FRONT_SIDE] = {"near the front edge of the table", "at the front of the table",
-		"on the near half of the table"},
-	[SYNTH_BACK_SIDE] = {"near the back edge of the table", "at the back of the table",
-		"on the far half of the table"},
-	[SYNTH_MIDDLE] = {"in the middle of the table", "near the centre of the table",
-		"in the central part of the table"},
-	[SYNTH_LEFTMOST] = {"farthest to the left", "at the far left", "at the leftmost place"},
-	[SYNTH_RIGHTMOST] = {"farthest to the right", "at the far right", "at the rightmost place"},
-};
+enum { USUAL = sizeof usual_words / sizeof *usual_words, SLOTS = 8 };
 
 /* A sentence in the making. */
 struct draft {
 	struct synth_sentence s;
+	const struct synth_word *words[SLOTS]; /* of the frame's slots in order; NULL for %K, %Z and %R */
 	const struct synth_word *hue, *noun;
 	const struct synth_layout *layout;
 	struct rng *rng;
-	int is_test;
+	enum stage stage;
+	int is_test, fitting;
 };
 
 static int append(char *text, size_t size, const char *more)
@@ -80,93 +43,20 @@ static int append(char *text, size_t size, const char *more)
 	return 0;
 }
 
-/* A short name for an object that no other has: "the red mug", with its size or finish where that helps. */
-static int append_anchor(struct draft *d, int anchor)
+static int append_plural(char *text, size_t size, const char *noun)
 {
-	static const char *const kinds[ANCHOR_TRIES] = {"N", "CN", "CN", "SCN", "FCN", "SFCN"};
-	const struct synth_layout *l = d->layout;
+	size_t n = strlen(noun);
 
-	for (int i = (int)rng_below(d->rng, 2); i < ANCHOR_TRIES; i++) {
-		struct synth_meaning m = synth_meaning_any();
-		char text[96] = "the";
-		for (const char *k = kinds[i]; *k; k++) {
-			const struct synth_word *w =
-				synth_word_choose((enum synth_word_kind) * k, &l->objects[anchor], d->rng);
-			synth_meaning_add(&m, w);
-			append(text, sizeof text, " ");
-			append(text, sizeof text, w->text);
-		}
-		int fitting = 0;
-		for (int j = 0; j < l->n; j++)
-			fitting += synth_meaning_fits(&m, &l->objects[j]);
-		if (fitting == 1)
-			return append(d->s.text, sizeof d->s.text, text);
-	}
-	return -1;
+	return append(text, size, noun) || append(text, size, noun[n - 1] == 'x' ? "es" : "s");
 }
 
-static int append_clause(struct draft *d)
+static int count_fitting(const struct synth_layout *l, const struct synth_meaning *m)
 {
-	struct synth_sentence *s = &d->s;
-	const struct synth_layout *l = d->layout;
-	uint32_t n = (uint32_t)l->n, of_table = SYNTH_BETWEEN + 1;
-	struct synth_clause c = {.a = -1, .b = -1};
+	int n = 0;
 
-	/* People say where a thing is by other things more often than by the table. */
-	if (rng_uniform(d->rng) < 0.25) {
-		c.relation = (enum synth_relation)(of_table + rng_below(d->rng, SYNTH_RELATIONS - of_table));
-	} else {
-		c.relation = (enum synth_relation)rng_below(d->rng, of_table);
-		c.a = (int)rng_below(d->rng, n);
-	}
-	if (c.relation == SYNTH_BETWEEN)
-		c.b = (int)rng_below(d->rng, n);
-	if (c.a == s->object || c.b == s->object || (c.a >= 0 && c.a == c.b))
-		return -1;
-	for (int i = 0; i < s->clause_count; i++)
-		if (s->clauses[i].relation == c.relation || s->clauses[i].a == c.a)
-			return -1;
-	const char *way = ways[c.relation][rng_below(d->rng, d->is_test ? WAYS : WAYS - 1)];
-	for (; *way; way++) {
-		char letter[2] = {*way, 0};
-		if (*way != '%') {
-			if (append(s->text, sizeof s->text, letter))
-				return -1;
-		} else if (append_anchor(d, *++way == 'A' ? c.a : c.b)) {
-			return -1;
-		}
-	}
-	s->clauses[s->clause_count++] = c;
-	return 0;
-}
-
-static int fill(struct draft *d, const char *frame)
-{
-	struct synth_sentence *s = &d->s;
-
-	for (const char *p = frame; *p; p++) {
-		char letter[2] = {*p, 0};
-		if (*p != '%') {
-			if (append(s->text, sizeof s->text, letter))
-				return -1;
-			continue;
-		}
-		if (*++p == 'R') {
-			if (append_clause(d))
-				return -1;
-			continue;
-		}
-		const struct synth_word *w =
-			synth_word_choose((enum synth_word_kind) * p, &d->layout->objects[s->object], d->rng);
-		if (!w || append(s->text, sizeof s->text, w->text))
-			return -1;
-		synth_meaning_add(&s->meaning, w);
-		if (w->kind == SYNTH_HUE)
-			d->hue = w;
-		if (w->kind == SYNTH_NOUN)
-			d->noun = w;
-	}
-	return 0;
+	for (int i = 0; i < l->n; i++)
+		n += synth_meaning_fits(m, &l->objects[i]);
+	return n;
 }
 
 int synth_sentence_judge(const struct synth_sentence *s, const struct synth_layout *l, int i)
@@ -185,9 +75,192 @@ int synth_sentence_judge(const struct synth_sentence *s, const struct synth_layo
 static int means_only_its_object(const struct synth_sentence *s, const struct synth_layout *l)
 {
 	for (int i = 0; i < l->n; i++)
-		if (synth_sentence_judge(s, l, i) != (i == s->object ? 1 : -1))
+		if (i != s->object && synth_sentence_judge(s, l, i) >= 0)
 			return 0;
 	return 1;
+}
+
+/* A short name for an object that no other has: "the red mug", with its size or finish where that helps. */
+static int append_anchor(struct draft *d, int anchor)
+{
+	static const char *const kinds[ANCHOR_TRIES] = {"N", "CN", "CN", "SCN", "FCN", "SFCN"};
+	const struct synth_layout *l = d->layout;
+
+	for (int i = (int)rng_below(d->rng, 2); i < ANCHOR_TRIES; i++) {
+		struct synth_meaning m = synth_meaning_any();
+		char text[96] = "the";
+		for (const char *k = kinds[i]; *k; k++) {
+			const struct synth_word *w =
+				synth_word_choose((enum synth_word_kind) * k, &l->objects[anchor], d->rng);
+			synth_meaning_add(&m, w);
+			append(text, sizeof text, " ");
+			append(text, sizeof text, w->text);
+		}
+		if (count_fitting(l, &m) == 1)
+			return append(d->s.text, sizeof d->s.text, text);
+	}
+	return -1;
+}
+
+/* Nobody says of a thing that it is on the table unless another one like it is not. */
+static int is_worth_saying(const struct draft *d, const struct synth_clause *c)
+{
+	int worth = c->relation != SYNTH_ON_TABLE;
+
+	for (int i = 0; i < d->layout->n; i++)
+		worth |= d->layout->objects[i].on >= 0 &&
+			 synth_meaning_fits(&d->s.meaning, &d->layout->objects[i]);
+	return worth;
+}
+
+/* Relations that say nearly the same: "the farthest one of the two, farthest from us". */
+static int say_alike(enum synth_relation a, enum synth_relation b)
+{
+	static const char direction[SYNTH_RELATIONS] = {[SYNTH_LEFT_SIDE] = 'l',
+		[SYNTH_LEFTMOST] = 'l',
+		[SYNTH_LEFT_ONE] = 'l',
+		[SYNTH_RIGHT_SIDE] = 'r',
+		[SYNTH_RIGHTMOST] = 'r',
+		[SYNTH_RIGHT_ONE] = 'r',
+		[SYNTH_FRONT_SIDE] = 'f',
+		[SYNTH_NEAREST_US] = 'f',
+		[SYNTH_NEAR_ONE] = 'f',
+		[SYNTH_BACK_SIDE] = 'b',
+		[SYNTH_FARTHEST_US] = 'b',
+		[SYNTH_FAR_ONE] = 'b',
+		[SYNTH_MIDDLE] = 'm',
+		[SYNTH_MIDDLE_ONE] = 'm'};
+
+	return a == b || (direction[a] && direction[a] == direction[b]);
+}
+
+/* 1 where the clause tells the object from one that the sentence so far may mean as well, or none is left. */
+static int helps(const struct draft *d, const struct synth_clause *c)
+{
+	const struct synth_sentence *s = &d->s;
+	int rivals = 0;
+
+	for (int i = 0; i < d->layout->n; i++) {
+		if (i == s->object || synth_sentence_judge(s, d->layout, i) < 0)
+			continue;
+		if (synth_clause_judge(d->layout, c, i, &s->meaning) < 0)
+			return 1;
+		rivals++;
+	}
+	return !rivals;
+}
+
+/* 1 where the sentence may say this of its object. */
+static int holds(const struct draft *d, const struct synth_clause *c)
+{
+	const struct synth_sentence *s = &d->s;
+
+	if (c->a == s->object || c->b == s->object || (c->a >= 0 && c->a == c->b))
+		return 0;
+	for (int i = 0; i < s->clause_count; i++)
+		if (say_alike(s->clauses[i].relation, c->relation) || (c->a >= 0 && s->clauses[i].a == c->a))
+			return 0;
+	return is_worth_saying(d, c) &&
+	       synth_clause_judge(d->layout, c, s->object, &s->meaning) >= (d->stage < STAGE_ARGUABLE) &&
+	       (d->stage < STAGE_REPEATED || helps(d, c));
+}
+
+/* A clause that is true of the object; -1 where none was met. */
+static int choose_clause(struct draft *d, char slot, struct synth_clause *c)
+{
+	uint32_t n = (uint32_t)d->layout->n;
+
+	for (int i = 0; i < CLAUSE_TRIES; i++) {
+		*c = (struct synth_clause){.relation = synth_relation_choose(slot, d->rng), .a = -1, .b = -1};
+		int has_other = c->relation <= SYNTH_BETWEEN;
+		for (int k = 0; k < (has_other ? RELATION_TRIES : 1); k++) {
+			if (has_other)
+				c->a = (int)rng_below(d->rng, n);
+			if (c->relation == SYNTH_BETWEEN)
+				c->b = (int)rng_below(d->rng, n);
+			if (holds(d, c))
+				return 0;
+		}
+	}
+	return -1;
+}
+
+static int append_clause(struct draft *d, char slot)
+{
+	struct synth_sentence *s = &d->s;
+	struct synth_clause c;
+
+	if (s->clause_count == SYNTH_CLAUSES || choose_clause(d, slot, &c))
+		return -1;
+	for (const char *p = synth_wording(c.relation, d->is_test, d->rng); *p; p++) {
+		char letter[2] = {*p, 0};
+		if (*p != '%') {
+			if (append(s->text, sizeof s->text, letter))
+				return -1;
+		} else if (append_anchor(d, *++p == 'A' ? c.a : c.b)) {
+			return -1;
+		}
+	}
+	s->clauses[s->clause_count++] = c;
+	return 0;
+}
+
+/* The words of the noun phrase, before anything is written: comparisons and numbers depend on all of them. */
+static int choose_words(struct draft *d, const char *frame)
+{
+	struct synth_sentence *s = &d->s;
+	int n = 0;
+
+	for (const char *p = frame; *p; p++) {
+		if (*p != '%')
+			continue;
+		p++;
+		if (strchr("KZR", *p)) {
+			d->words[n++] = NULL;
+			continue;
+		}
+		enum synth_word_kind kind = *p == 'P' ? SYNTH_NOUN : (enum synth_word_kind) * p;
+		const struct synth_word *w = synth_word_choose(kind, &d->layout->objects[s->object], d->rng);
+		if (!w)
+			return -1;
+		synth_meaning_add(&s->meaning, w);
+		if (kind == SYNTH_HUE)
+			d->hue = w;
+		if (kind == SYNTH_NOUN)
+			d->noun = w;
+		d->words[n++] = w;
+	}
+	d->fitting = count_fitting(d->layout, &s->meaning);
+	return 0;
+}
+
+static int fill(struct draft *d, const char *frame)
+{
+	static const char *const numbers[] = {"two", "three", "four", "five", "six"};
+	struct synth_sentence *s = &d->s;
+	size_t size = sizeof s->text;
+	int slot = 0, bad = choose_words(d, frame);
+
+	for (const char *p = frame; *p && !bad; p++) {
+		char letter[2] = {*p, 0};
+		if (*p != '%') {
+			bad = append(s->text, size, letter);
+			continue;
+		}
+		const struct synth_word *w = d->words[slot++];
+		if (*++p == 'R' || *p == 'Z')
+			bad = append_clause(d, *p);
+		else if (*p == 'K')
+			bad = d->fitting < 2 || d->fitting > 6 ||
+			      append(s->text, size, numbers[d->fitting - 2]);
+		else
+			bad = *p == 'P' ? append_plural(s->text, size, w->text)
+					: append(s->text, size, w->text);
+	}
+	/* One more where words are hard to find. */
+	if (!bad && d->stage >= STAGE_REPEATED && !means_only_its_object(s, d->layout))
+		bad = append(s->text, size, ", ") || append_clause(d, 'R');
+	return bad ? -1 : 0;
 }
 
 /* 1 where one of the sentences so far already says the same of the same other object. */
@@ -211,49 +284,102 @@ static int count_words(const char *text)
 	return n;
 }
 
-/* The five sentences of one object, no frame twice. */
-static int describe(struct synth_sentence *out, int object, const struct synth_layout *l, struct rng *r)
-{
+/* What the sentences of an object have used up. */
+struct described {
+	unsigned frames; /* training ones, a bit each */
 	const struct synth_word *hues[SYNTH_SENTENCES], *nouns[SYNTH_SENTENCES];
-	unsigned used = 0;
-	int done = 0;
+};
 
-	for (int tries = 0; tries < TRIES && done < SYNTH_SENTENCES; tries++) {
-		struct draft d = {
-			.s = {.object = object, .meaning = synth_meaning_any()}, .layout = l, .rng = r};
-		d.is_test = done >= SYNTH_TRAIN_SENTENCES;
-		uint32_t f = rng_below(r, d.is_test ? TEST_FRAMES : TRAIN_FRAMES);
-		if ((!d.is_test && used >> f & 1) || fill(&d, d.is_test ? test_frames[f] : train_frames[f]))
+/* "black" of "jet black". */
+static const char *basic_colour(const struct synth_word *hue)
+{
+	const char *space = strrchr(hue->text, ' ');
+
+	return space ? space + 1 : hue->text;
+}
+
+static int has_pair(const char *text, const struct synth_word *hue, const struct synth_word *noun)
+{
+	char pair[64];
+
+	snprintf(pair, sizeof pair, "%s %s", basic_colour(hue), noun->text);
+	return strstr(text, pair) != NULL;
+}
+
+/* 1 where the draft's colour word and noun occur together in one of the n earlier sentences, be it of another
+ * object, or those of an earlier one in the draft. */
+static int is_pair_known(
+	const struct draft *d, const struct described *so_far, const struct synth_sentence *earlier, int n)
+{
+	int has_own = d->hue && d->noun;
+
+	for (int i = 0; i < n; i++) {
+		const struct synth_word *hue = so_far->hues[i], *noun = so_far->nouns[i];
+		if (has_own && has_pair(earlier[i].text, d->hue, d->noun))
+			return 1;
+		if (!hue || !noun)
 			continue;
-		int words = count_words(d.s.text), is_known = 0;
-		for (int i = 0; d.is_test && d.hue && d.noun && i < done; i++)
-			is_known |= hues[i] == d.hue && nouns[i] == d.noun;
-		if (words < SYNTH_MIN_WORDS || words > SYNTH_MAX_WORDS || is_known ||
+		if (has_pair(d->s.text, hue, noun) ||
+			(has_own && noun == d->noun && !strcmp(basic_colour(hue), basic_colour(d->hue))))
+			return 1;
+	}
+	return 0;
+}
+
+/* Sentence number `done` of an object, of about `wanted` words. */
+static int say(struct synth_sentence *out, int done, struct described *so_far, int object, int wanted,
+	const struct synth_layout *l, struct rng *r)
+{
+	int is_test = done >= SYNTH_TRAIN_SENTENCES;
+
+	for (int tries = 0; tries < STAGES * TRIES_OF_STAGE; tries++) {
+		enum stage stage = (enum stage)(tries / TRIES_OF_STAGE);
+		struct draft d = {.s = {.object = object, .meaning = synth_meaning_any()},
+			.layout = l,
+			.rng = r,
+			.is_test = is_test,
+			.stage = stage};
+		int f = (int)rng_below(r, (uint32_t)synth_frame_count(is_test));
+		if ((!is_test && so_far->frames >> f & 1) || fill(&d, synth_frame(is_test, f)))
+			continue;
+		int words = count_words(d.s.text);
+		if (words < SYNTH_MIN_WORDS || words > SYNTH_MAX_WORDS ||
+			(is_test && is_pair_known(&d, so_far, out, done)) ||
+			(stage < STAGE_LENGTH && (words < wanted - 1 || words > wanted + 1)) ||
+			(stage < STAGE_REPEATED && repeats(&d.s, out, done)) ||
 			!means_only_its_object(&d.s, l))
 			continue;
-		/* Variety is wanted, but few objects leave little to say. */
-		if (tries < TRIES / 2 && repeats(&d.s, out, done))
-			continue;
-		used |= 1u << f;
-		hues[done] = d.hue;
-		nouns[done] = d.noun;
-		d.s.split = d.is_test ? SPLIT_TEST : SPLIT_TRAIN;
+		if (!is_test)
+			so_far->frames |= 1u << f;
+		so_far->hues[done] = d.hue;
+		so_far->nouns[done] = d.noun;
+		d.s.split = is_test ? SPLIT_TEST : SPLIT_TRAIN;
 		snprintf(d.s.ref, sizeof d.s.ref, "%s-%d", l->objects[object].ref, done + 1);
-		out[done++] = d.s;
+		out[done] = d.s;
+		return words;
 	}
-	return done == SYNTH_SENTENCES ? 0 : -1;
+	return -1;
 }
 
 int synth_sentences_make(
 	struct synth_sentence *sentences, const struct synth_layout *l, uint64_t seed, struct err *e)
 {
 	struct rng r;
+	double owed = 0; /* words that the sentences so far are short of the mean */
 
 	rng_seed(&r, seed, SYNTH_STREAM_SENTENCES);
-	for (int i = 0; i < l->n; i++)
-		if (describe(sentences + (size_t)i * SYNTH_SENTENCES, i, l, &r))
-			return err_set(e, ERR_CHECK,
-				"seed %llu: the %s cannot be told apart in words; try another seed",
-				(unsigned long long)seed, l->objects[i].name);
+	for (int i = 0; i < l->n; i++) {
+		struct described so_far = {0};
+		for (int k = 0; k < SYNTH_SENTENCES; k++) {
+			int wanted = usual_words[rng_below(&r, USUAL)] + (int)lrint(owed / 2);
+			int words =
+				say(sentences + (size_t)i * SYNTH_SENTENCES, k, &so_far, i, wanted, l, &r);
+			if (words < 0)
+				return err_set(e, ERR_CHECK,
+					"seed %llu: the %s cannot be told apart in words; try another seed",
+					(unsigned long long)seed, l->objects[i].name);
+			owed += mean_words - words;
+		}
+	}
 	return 0;
 }

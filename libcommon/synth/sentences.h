@@ -12,9 +12,9 @@
 enum {
 	SYNTH_TRAIN_SENTENCES = 4,
 	SYNTH_SENTENCES = 5, /* an object; the last is for testing */
-	SYNTH_MIN_WORDS = 8,
-	SYNTH_MAX_WORDS = 18,
-	SYNTH_CLAUSES = 2,
+	SYNTH_MIN_WORDS = 7,
+	SYNTH_MAX_WORDS = 22,
+	SYNTH_CLAUSES = 3,
 };
 
 struct synth_sentence {
@@ -28,9 +28,10 @@ struct synth_sentence {
 	struct synth_clause clauses[SYNTH_CLAUSES];
 };
 
-/* sentences (n objects, SYNTH_SENTENCES). A test sentence has a frame that no training sentence has, and no
- * pair of colour word and noun that a training sentence of its object has. Returns 0, or -1 with *e set
- * (ERR_CHECK) where some object cannot be told apart in words; another seed then helps. */
+/* sentences (n objects, SYNTH_SENTENCES), of 13.6 words on average. A test sentence has a frame and wordings
+ * of relations that no training sentence has, and no pair of colour word and noun that a training sentence of
+ * its object has. Returns 0, or -1 with *e set (ERR_CHECK) where some object cannot be told apart in words;
+ * another seed then helps. */
 int synth_sentences_make(
 	struct synth_sentence *sentences, const struct synth_layout *l, uint64_t seed, struct err *e);
 

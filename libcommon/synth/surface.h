@@ -19,6 +19,10 @@ struct synth_patch {
 	double r0, z0, r1, z1; /* FRUSTUM: rims. Going from 0 to 1 the outside is on the right. HALF_RING: r0
 				  ring, r1 tube */
 	double u[3], v[3];     /* RECTANGLE: edges; u x v points outwards */
+	/* FRUSTUM: whether the rims are sharp, and the radius of the curve that the profile stands for where
+	 * they are not (INFINITY: a straight line). */
+	int is_sharp[2];
+	double bend;
 };
 
 enum { SYNTH_PATCHES = 32 };
@@ -39,6 +43,20 @@ void synth_surface_box(struct synth_surface *s, enum synth_tint top, enum synth_
 	const double centre[3], double width, double depth, double height);
 /* The half with x > centre[0] of a ring that stands in the plane y = centre[1]. */
 void synth_surface_half_ring(struct synth_surface *s, const double centre[3], double ring, double tube);
+
+/* A place on a surface, for something flat to be laid there. */
+struct synth_spot {
+	enum synth_tint tint;
+	double point[3], normal[3];
+	double along[3]; /* a unit tangent: a rectangle's first edge, otherwise straight up or down the slope;
+			    across it is normal x along */
+	double room[2];	 /* along and across: how far it is, one way and the other, to a sharp edge */
+	double bend[2];	 /* the same: radius of curvature */
+};
+
+/* The spot at (a,b), moved away from sharp edges until they are `margin` away, or it is in the middle. */
+void synth_surface_spot(
+	const struct synth_surface *s, double a, double b, double margin, struct synth_spot *spot);
 
 /* The point (a,b), its outward unit normal, and the patch's tint. */
 enum synth_tint synth_surface_at(

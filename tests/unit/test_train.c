@@ -406,6 +406,7 @@ static void test_resume(void)
 {
 	const struct trainer_options options = {.interaction = REFER_PCMI,
 		.contrast = REFER_CONTRAST_COSINE,
+		.feature_width = 5,
 		.temperature = 0.1,
 		.lambda = 0.02,
 		.batch = 1,
@@ -438,6 +439,17 @@ static void test_resume(void)
 	checkpoint_identity(other, &options, 0x1234abce);
 	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
 		"another training's inputs");
+	struct trainer_options wider = options;
+	wider.feature_width = 6;
+	checkpoint_identity(other, &wider, 0x1234abcd);
+	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
+		"features of another width");
+	float *x = trainer_features(&whole, &e);
+	const size_t last = whole.rows.n - 1; /* in the first panel, of 64 */
+	CHECK(x && whole.rows.n <= 64, "%zu rows", whole.rows.n);
+	for (size_t c = 0; x && c < 5; c++)
+		CHECK(x[last * 5 + c] == train_state_x(&whole.state)[c * 64 + last], "number %zu", c);
+	free(x);
 	unlink(path);
 	trainer_free(&whole);
 	trainer_free(&part);
@@ -446,7 +458,7 @@ static void test_resume(void)
 
 static void test_no_weight(void)
 {
-	const struct trainer_options options = {.batch = 1, .temperature = 1};
+	const struct trainer_options options = {.batch = 1, .feature_width = 1, .temperature = 1};
 	struct sample s;
 	struct trainer t;
 	struct err e = {0};

@@ -1,0 +1,441 @@
+#include "synth/gaussians.h"
+
+#include "base/mem.h"
+#include "base/rng.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+#define SH_C0 0.28209479177387814
+#define SH_C1 0.4886025119029199
+
+/* Towards the light, and how much of a colour comes from everywhere. */
+static const double light[3] = {-0.45, -0.40, 0.80};
+static const double ambient = 0.58;
+
+/* What is being filled in: the next Gaussian's number goes up as Gaussians are put. */
+struct work {
+	struct synth_scene *s;
+	struct synth_noise texture;
+	struct rng rng;
+	size_t next;
+};
+
+/* A surface to be covered. */
+struct coat {
+	int owner;
+	const struct synth_object *object; /* that the surface is of; NULL: it lies in the world as it is */
+	struct synth_surface surface;
+	double gloss;
+	/* The colour before the lamp's light, of the spot (as in the surface) and its place in the world. */
+	void (*paint)(const struct work *w, const struct coat *c, const struct synth_spot *spot,
+		const double world[3], double rgb[3]);
+};
+
+/* A Gaussian in the making: extents along and across its place's tangents, and out of the surface. */
+struct grain {
+	double along, across, thick, opacity;
+};
+
+/* The rotation that takes z to n and x as near to `along` as then can be, as a quaternion (w,x,y,z). */
+static void frame_quaternion(const double n[3], const double along[3], float q[4])
+{
+	/* The shortest turn from z to n, after a turn about z. */
+	double w = 1 + n[2], x = -n[1], y = n[0], x_axis[3] = {1, 0, 0}, y_axis[3] = {0, -1, 0};
+
+	if (w < 1e-9) {
+		w = 0;
+		x = 1;
+		y = 0;
+	} else {
+		x_axis[0] = 1 - n[0] * n[0] / w;
+		x_axis[1] = y_axis[0] = -n[0] * n[1] / w;
+		x_axis[2] = -n[0];
+		y_axis[1] = 1 - n[1] * n[1] / w;
+		y_axis[2] = -n[1];
+	}
+	double turn = atan2(along[0] * y_axis[0] + along[1] * y_axis[1] + along[2] * y_axis[2],
+		along[0] * x_axis[0] + along[1] * x_axis[1] + along[2] * x_axis[2]);
+	double length = sqrt(w * w + x * x + y * y), c = cos(turn / 2) / length, s = sin(turn / 2) / length;
+	q[0] = (float)(w * c);
+	q[1] = (float)(x * c + y * s);
+	q[2] = (float)(y * c - x * s);
+	q[3] = (float)(w * s);
+}
+
+/* Colour as spherical harmonics: `rgb` on average, brighter by up to `gloss` seen from where the light is
+ * mirrored. */
+static void set_colour(float *sh, const double rgb[3], const double normal[3], double gloss)
+{
+	double along = 2 * (light[0] * normal[0] + light[1] * normal[1] + light[2] * normal[2]), mirrored[3];
+
+	for (int k = 0; k < 3; k++)
+		mirrored[k] = along * normal[k] - light[k];
+	for (int k = 0; k < 3; k++) {
+		sh[k] = (float)((rgb[k] - 0.5) / SH_C0);
+		/* The direction in the harmonics is from the camera to the Gaussian. */
+		sh[3 + k] = (float)(gloss * mirrored[1] / SH_C1);
+		sh[6 + k] = (float)(-gloss * mirrored[2] / SH_C1);
+		sh[9 + k] = (float)(gloss * mirrored[0] / SH_C1);
+	}
+}
+
+static void put(struct work *w, int owner, const double mean[3], const struct grain *g,
+	const double normal[3], const double along[3], const double rgb[3], double gloss)
+{
+	struct splats *p = &w->s->splats;
+	size_t i = w->next++;
+
+	for (int k = 0; k < 3; k++)
+		p->means[3 * i + (size_t)k] = (float)mean[k];
+	p->scales[3 * i] = (float)g->along;
+	p->scales[3 * i + 1] = (float)g->across;
+	p->scales[3 * i + 2] = (float)g->thick;
+	frame_quaternion(normal, along, p->quats + 4 * i);
+	p->opacities[i] = (float)g->opacity;
+	set_colour(p->sh + 3 * SYNTH_SH_COEFFICIENTS * i, rgb, normal, gloss);
+	w->s->owner[i] = owner;
+}
+
+/* Exp of the size of a normal number: how many times larger the largest side is than the next, with a long
+ * tail. The median is exp(0.67 spread). */
+static double ratio(struct rng *r, double spread)
+{
+	return exp(spread * fabs(rng_normal(r)));
+}
+
+/* Of those that cover: nearly opaque, and never so long and thin that they leave holes. Some on flat ground
+ * are large. */
+static struct grain covering(double spacing, struct rng *r)
+{
+	double size = 0.66 * spacing * exp(0.15 * rng_normal(r)), aspect = sqrt(fmin(ratio(r, 0.8), 4));
+	struct grain g = {.along = size * aspect, .across = size / aspect};
+
+	if (rng_below(r, 30) == 0) {
+		g.along *= 2.5;
+		g.across *= 2.5;
+	}
+	g.thick = fmin(g.along, g.across) / ratio(r, 1.7);
+	g.opacity = rng_below(r, 4) ? 1 - 0.09 * pow(rng_uniform(r), 3) : rng_range(r, 0.5, 0.95);
+	return g;
+}
+
+/* Of the others: what training adds for details, and does not take away again. */
+static struct grain detailing(double spacing, struct rng *r)
+{
+	double u = rng_uniform(r);
+	struct grain g = {.along = 0.75 * spacing * exp(0.55 * rng_normal(r))};
+
+	g.across = g.along / ratio(r, 1.7);
+	g.thick = g.across / ratio(r, 1.7);
+	g.opacity = u < 0.62   ? 0.005 * pow(20, rng_uniform(r))
+		    : u < 0.94 ? rng_range(r, 0.1, 0.5)
+			       : rng_range(r, 0.5, 1);
+	return g;
+}
+
+/* How long something flat may be where the surface bends, so as not to stand off it by more than a trifle. */
+static double straight(double bend, double spacing)
+{
+	return fmax(0.66 * spacing, sqrt(0.003 * bend));
+}
+
+/* Nobody has seen what is under an object's foot, so that nothing of it is in a trained scene, and what is
+ * close to a foot is small. Moves a level point from under a foot to beside it; returns how far it is then
+ * from the nearest. */
+static double clear_feet(struct work *w, int owner, double spacing, double point[3])
+{
+	double nearest = INFINITY, push = fmin(1.5 * spacing, 0.04) * rng_uniform(&w->rng);
+
+	for (int i = 0; i < w->s->object_count; i++) {
+		const struct synth_object *o = &w->s->objects[i];
+		if (i == owner || fabs(o->z - point[2]) > 0.02)
+			continue;
+		double dx = point[0] - o->x, dy = point[1] - o->y, distance = hypot(dx, dy), edge;
+		double x = fabs(cos(o->yaw) * dx + sin(o->yaw) * dy),
+		       y = fabs(cos(o->yaw) * dy - sin(o->yaw) * dx);
+		struct synth_area foot = synth_object_foot(o);
+		if (foot.y > 0) /* how much longer the way from the middle is than to the rectangle's edge */
+			edge = distance * (1 - 1 / fmax(fmax(x / foot.x, y / foot.y), 0.01));
+		else
+			edge = distance - foot.x;
+		if (edge < 0 && distance > 1e-6) {
+			double factor = 1 + (push - edge) / distance;
+			point[0] = o->x + factor * dx;
+			point[1] = o->y + factor * dy;
+			edge = push;
+		}
+		nearest = fmin(nearest, edge);
+	}
+	return nearest;
+}
+
+/* Lays one Gaussian on the spot of (a,b). */
+static void lay(struct work *w, const struct coat *c, struct grain g, double spacing, double a, double b)
+{
+	/* With its middle so far inside an edge, the edge is where an opaque one begins to fade. */
+	static const double inside = 1.1;
+	const struct synth_object *o = c->object;
+	struct rng *r = &w->rng;
+	double scale = o ? o->scale : 1, yaw = o ? o->yaw : 0, cosine = cos(yaw), sine = sin(yaw);
+	double point[3], mean[3], tilted[3], along[3], rgb[3], turn = 0, length = 0;
+	struct synth_spot spot;
+
+	if (rng_below(r, 2)) {
+		double other = g.along;
+		g.along = g.across;
+		g.across = other;
+	}
+	double longest = fmax(g.along, g.across);
+	synth_surface_spot(&c->surface, a, b, inside * fmin(longest, straight(0.3, spacing)) / scale, &spot);
+	double normal[3] = {cosine * spot.normal[0] - sine * spot.normal[1],
+		sine * spot.normal[0] + cosine * spot.normal[1], spot.normal[2]};
+	double tangent[3] = {cosine * spot.along[0] - sine * spot.along[1],
+		sine * spot.along[0] + cosine * spot.along[1], spot.along[2]};
+	double aside[3] = {normal[1] * tangent[2] - normal[2] * tangent[1],
+		normal[2] * tangent[0] - normal[0] * tangent[2],
+		normal[0] * tangent[1] - normal[1] * tangent[0]};
+	double most[2];
+	for (int k = 0; k < 2; k++)
+		most[k] = fmin(scale * spot.room[k] / inside, straight(scale * spot.bend[k], spacing));
+	if (o)
+		synth_object_place(o, spot.point, point);
+	else
+		memcpy(point, spot.point, sizeof point);
+	if (normal[2] > 0.99) {
+		double clear = fmax(0.4 * spacing, 0.8 * clear_feet(w, c->owner, spacing, point));
+		most[0] = fmin(most[0], clear);
+		most[1] = fmin(most[1], clear);
+	}
+	if (longest <= fmin(most[0], most[1])) {
+		turn = rng_range(r, 0, 2 * PI);
+	} else {
+		g.along = fmin(g.along, most[0]);
+		g.across = fmin(g.across, most[1]);
+	}
+	g.thick = fmin(g.thick, fmin(g.along, g.across));
+	c->paint(w, c, &spot, point, rgb);
+	double shade = normal[0] * light[0] + normal[1] * light[1] + normal[2] * light[2];
+	shade = ambient + (1 - ambient) * fmax(0, shade) + 0.02 * rng_normal(r);
+	double tilt = 0.07 * fmin(1, spacing / fmax(g.along, g.across));
+	for (int k = 0; k < 3; k++) {
+		rgb[k] = fmin(1, fmax(0, rgb[k] * shade + 0.012 * rng_normal(r)));
+		tilted[k] = normal[k] + tilt * rng_normal(r);
+		length += tilted[k] * tilted[k];
+		along[k] = cos(turn) * tangent[k] + sin(turn) * aside[k];
+		mean[k] = point[k] - g.thick * normal[k];
+	}
+	for (int k = 0; k < 3; k++)
+		tilted[k] /= sqrt(length);
+	put(w, c->owner, mean, &g, tilted, along, rgb, c->gloss);
+}
+
+/* The i-th point of an evenly spread sequence in the unit square (R2, after the plastic number), shaken a
+ * little. */
+static void spread(size_t i, struct rng *r, double *a, double *b)
+{
+	double x = 0.7548776662466927 * (double)(i + 1) + 0.08 * rng_uniform(r) / sqrt((double)(i + 1));
+	double y = 0.5698402909980532 * (double)(i + 1);
+
+	*a = x - floor(x);
+	*b = y - floor(y);
+}
+
+/* n Gaussians: those that cover the surface, evenly spread, and among them the others. */
+static void put_coat(struct work *w, const struct coat *c, size_t n)
+{
+	size_t covers = n - n * 56 / 100;
+	double scale = c->object ? c->object->scale : 1;
+	double spacing = scale * sqrt(c->surface.area / (double)covers), a, b;
+
+	for (size_t i = 0; i < covers; i++) {
+		spread(i, &w->rng, &a, &b);
+		lay(w, c, covering(spacing, &w->rng), spacing, a, b);
+	}
+	for (size_t i = 0; i < n - covers; i++) {
+		a = rng_uniform(&w->rng);
+		b = rng_uniform(&w->rng);
+		lay(w, c, detailing(spacing, &w->rng), spacing, a, b);
+	}
+}
+
+/* How much light the objects leave on a point of the table or of `owner`'s top. */
+static double shadow(const struct synth_scene *s, int owner, const double point[3])
+{
+	double left = 1;
+
+	for (int i = 0; i < s->object_count; i++) {
+		const struct synth_object *o = &s->objects[i];
+		double reach = o->z + 0.5 * o->height - point[2];
+		if (i == owner || reach <= 0)
+			continue;
+		double dx = point[0] - o->x + light[0] * reach, dy = point[1] - o->y + light[1] * reach;
+		double at = hypot(dx, dy) / (0.8 * o->radius + 0.4 * reach);
+		left *= 1 - 0.45 * fmax(0, 1 - at * at);
+	}
+	return left;
+}
+
+static void paint_object(const struct work *w, const struct coat *c, const struct synth_spot *spot,
+	const double world[3], double rgb[3])
+{
+	double left = spot->normal[2] > 0.5 ? shadow(w->s, c->owner, world) : 1;
+
+	synth_object_colour(c->object, spot->tint, spot->point, &w->texture, rgb);
+	for (int k = 0; k < 3; k++)
+		rgb[k] *= left;
+}
+
+static void put_object(struct work *w, int owner, size_t n)
+{
+	const struct synth_object *o = &w->s->objects[owner];
+	struct coat c = {.owner = owner,
+		.object = o,
+		.gloss = o->finish == SYNTH_SHINY ? 0.16 : 0.03,
+		.paint = paint_object};
+
+	synth_object_surface(&c.surface, o->shape);
+	put_coat(w, &c, n);
+}
+
+/* Boards along x. */
+static void paint_table(const struct work *w, const struct coat *c, const struct synth_spot *spot,
+	const double p[3], double rgb[3])
+{
+	const struct synth_preset *preset = w->s->preset;
+	double board = floor((p[1] + w->s->table.half_depth) / preset->boards);
+	double grain = synth_noise_at(&w->texture, 0.6 * p[0] + 17 * board, 9 * p[1]);
+	double tone = 1 + 0.13 * grain + 0.05 * synth_noise_at(&w->texture, 7.3 * board, 0.5);
+
+	tone *= spot->tint == SYNTH_OWN ? shadow(w->s, c->owner, p) : 0.8;
+	for (int k = 0; k < 3; k++)
+		rgb[k] = preset->wood[k] * tone;
+}
+
+/* A slab on square legs. */
+static void put_table(struct work *w, size_t n)
+{
+	static const double thickness = 0.16, leg = 0.16, depth = 2.2;
+	const struct synth_table *t = &w->s->table;
+	struct coat c = {.owner = -1, .gloss = 0.02, .paint = paint_table};
+
+	synth_surface_box(&c.surface, SYNTH_OWN, SYNTH_INNER, (double[3]){0, 0, -thickness},
+		2 * t->half_width, 2 * t->half_depth, thickness);
+	for (int i = 0; i < 4; i++) {
+		double x = (i & 1 ? 1 : -1) * (t->half_width - 0.2),
+		       y = (i & 2 ? 1 : -1) * (t->half_depth - 0.2);
+		double profile[2][2] = {{leg / 2, -depth}, {leg / 2, -thickness}};
+		synth_surface_turn(
+			&c.surface, SYNTH_INNER, (double[3]){x, y, 0}, 2, (const double(*)[2])profile);
+	}
+	put_coat(w, &c, n);
+}
+
+static void paint_room(const struct work *w, const struct coat *c, const struct synth_spot *spot,
+	const double p[3], double rgb[3])
+{
+	const struct synth_preset *preset = w->s->preset;
+	double tone = 1 + 0.10 * synth_noise_at(&w->texture, 0.7 * p[0] + 0.9 * p[2], 0.7 * p[1]);
+
+	(void)c;
+	for (int k = 0; k < 3; k++)
+		rgb[k] = (spot->normal[2] > 0.5 ? preset->carpet : preset->wall)[k] * tone;
+}
+
+static double room_radius(const struct synth_scene *s)
+{
+	return s->preset->room * fmax(s->table.half_width, 1.3 * s->table.half_depth);
+}
+
+/* A round room: floor and wall, far enough for every camera to stand inside. */
+static void put_room(struct work *w, size_t n)
+{
+	double radius = room_radius(w->s), height = 0.8 * radius;
+	double profile[3][2] = {{radius, height}, {radius, -2.2}, {0, -2.2}};
+	struct coat c = {.owner = -1, .gloss = 0.01, .paint = paint_room};
+
+	synth_surface_turn(&c.surface, SYNTH_OWN, (double[3]){0}, 3, (const double(*)[2])profile);
+	put_coat(w, &c, n);
+}
+
+/* What training leaves behind: faint specks and needles in the air, and large soft ones far away. */
+static void put_stray(struct work *w, size_t n)
+{
+	const struct synth_table *t = &w->s->table;
+	double radius = room_radius(w->s);
+	struct rng *r = &w->rng;
+
+	for (size_t i = 0; i < n; i++) {
+		int is_large = i % 8 == 0;
+		double turn = rng_range(r, 0, 2 * PI), rise = rng_range(r, -1, 1),
+		       flat = sqrt(1 - rise * rise);
+		double normal[3] = {flat * cos(turn), flat * sin(turn), rise}, tone = rng_range(r, 0.2, 0.9),
+		       rgb[3];
+		double along[3] = {rng_normal(r), rng_normal(r), rng_normal(r)};
+		double size = is_large ? rng_range(r, 0.3, 1.1) : 0.022 * exp(0.5 * rng_normal(r));
+		double around = rng_range(r, 0, 2 * PI);
+		double mean[3] = {t->half_width * rng_range(r, -1.3, 1.3),
+			t->half_depth * rng_range(r, -1.3, 1.3), rng_range(r, 0.05, 2.2)};
+		struct grain g = {.along = size,
+			.across = size / ratio(r, is_large ? 0.4 : 1.3),
+			.opacity =
+				rng_below(r, 6) ? 0.005 * pow(24, rng_uniform(r)) : rng_range(r, 0.1, 0.6)};
+		if (is_large) {
+			double far = radius * rng_range(r, 0.85, 0.97);
+			mean[0] = far * cos(around);
+			mean[1] = far * sin(around);
+			mean[2] = rng_range(r, -1.8, 0.6 * radius);
+			g.opacity = rng_range(r, 0.02, 0.5);
+		}
+		g.thick = g.across / ratio(r, is_large ? 0.4 : 1.3);
+		for (int k = 0; k < 3; k++)
+			rgb[k] = is_large ? w->s->preset->wall[k] * (0.75 + 0.4 * tone)
+					  : fmin(1, fmax(0, tone + 0.12 * rng_normal(r)));
+		put(w, -1, mean, &g, normal, along, rgb, 0.02);
+	}
+}
+
+/* Of n Gaussians: 2.5% stray, 10% room, 17% table, the rest on the objects in proportion to surface^0.7, so
+ * that a small thing is not coarse. */
+static void put_all(struct work *w)
+{
+	struct synth_scene *s = w->s;
+	size_t n = s->splats.n, stray = n / 40, room = n / 10, table = n * 17 / 100;
+	size_t left = n - stray - room - table;
+	double share[SYNTH_MAX_OBJECTS], sum = 0;
+
+	for (int i = 0; i < s->object_count; i++) {
+		struct synth_surface surface;
+		synth_object_surface(&surface, s->objects[i].shape);
+		share[i] = pow(surface.area * s->objects[i].scale * s->objects[i].scale, 0.7);
+		sum += share[i];
+	}
+	for (int i = 0; i < s->object_count; i++) {
+		size_t part = i + 1 == s->object_count ? left : (size_t)((double)left * share[i] / sum);
+		s->first[i] = w->next;
+		put_object(w, i, part);
+		left -= part;
+		sum -= share[i];
+	}
+	s->first[s->object_count] = w->next;
+	put_table(w, table);
+	put_room(w, room);
+	put_stray(w, stray);
+}
+
+int synth_gaussians_make(struct synth_scene *s, uint64_t seed, struct err *e)
+{
+	struct work *w = mem_zalloc(1, sizeof *w, "scene", e);
+
+	if (!w)
+		return -1;
+	w->s = s;
+	rng_seed(&w->rng, seed, SYNTH_STREAM_TEXTURE);
+	synth_noise_make(&w->texture, &w->rng);
+	rng_seed(&w->rng, seed, SYNTH_STREAM_GAUSSIANS);
+	put_all(w);
+	free(w);
+	return 0;
+}

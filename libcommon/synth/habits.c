@@ -1,0 +1,183 @@
+#include "synth/habits.h"
+
+#include <math.h>
+
+int synth_look_alike(const struct synth_object *a, const struct synth_object *b)
+{
+	return a->shape == b->shape && a->colour == b->colour;
+}
+
+static int likeness(const struct synth_object *a, const struct synth_object *b)
+{
+	return 2 * (a->shape == b->shape) + 2 * (a->colour == b->colour) + (a->size == b->size);
+}
+
+static double distance(const struct synth_object *a, const struct synth_object *b)
+{
+	return hypot(a->x - b->x, a->y - b->y);
+}
+
+/* The numbers 0 to n-1 in random order. */
+static void shuffled(uint32_t *order, int n, struct rng *r)
+{
+	for (uint32_t i = 0; i < (uint32_t)n; i++)
+		order[i] = i;
+	rng_shuffle(r, order, (uint32_t)n);
+}
+
+/* Most objects have a confused sentence, three in four a guessing one too: by rank rather than by lot,
+ * so that few objects have their share of faults too. */
+static void choose_mild(struct synth_habits *h, const struct synth_object *objects, int n, struct rng *r)
+{
+	static const enum synth_habit usual[10] = {SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD,
+		SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_PART, SYNTH_HABIT_PART,
+		SYNTH_HABIT_UNION, SYNTH_HABIT_UNION};
+	uint32_t by_rank[SYNTH_MAX_OBJECTS], order[SYNTH_TRAIN_SENTENCES];
+
+	shuffled(by_rank, n, r);
+	for (int rank = 0; rank < n; rank++) {
+		double share = (rank + 0.5) / n;
+		int confused = share < 0.85, guessing = share < 0.75;
+		shuffled(order, SYNTH_TRAIN_SENTENCES, r);
+		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
+			enum synth_habit habit = usual[rng_below(r, 10)];
+			if (k < confused)
+				habit = SYNTH_HABIT_CONFUSED;
+			else if (k < confused + guessing)
+				habit = SYNTH_HABIT_GUESSING;
+			h->of[by_rank[rank]][order[k]] = habit;
+		}
+	}
+	for (int i = 0; i < n; i++) {
+		double best = -INFINITY;
+		for (int j = 0; j < n; j++) {
+			double like =
+				likeness(&objects[i], &objects[j]) - 0.1 * distance(&objects[i], &objects[j]);
+			if (j == i || like <= best)
+				continue;
+			best = like;
+			for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
+				h->mistaken[i][k] = j;
+		}
+	}
+}
+
+/* How likely a sentence is taken to mean object j: for what the noun phrase says, or because its relation
+ * names that object; what is large draws the eye. */
+static double temptation(
+	const struct synth_sentence *s, const struct synth_object *objects, int j, struct rng *r)
+{
+	const struct synth_object *own = &objects[s->object], *other = &objects[j];
+	double pull = 0.5 * likeness(own, other) - 0.1 * distance(own, other) + 0.8 * rng_uniform(r);
+
+	if (synth_meaning_fits(&s->meaning, other))
+		pull += 2;
+	for (int k = 0; k < s->clause_count; k++)
+		if (s->clauses[k].a == j || s->clauses[k].b == j)
+			pull += 2.5;
+	return pull + 1.5 * log(fmax(2 * other->radius, other->height) / fmax(2 * own->radius, own->height));
+}
+
+static int is_unique(const struct synth_object *objects, int n, int i)
+{
+	for (int j = 0; j < n; j++)
+		if (j != i && synth_look_alike(&objects[i], &objects[j]))
+			return 0;
+	return 1;
+}
+
+/* Object numbers, the harder first: those with look-alikes, and small ones, but not only they. */
+static void rank_by_difficulty(int *by_rank, const struct synth_object *objects, int n, struct rng *r)
+{
+	double difficulty[SYNTH_MAX_OBJECTS];
+
+	for (int i = 0; i < n; i++) {
+		difficulty[i] = rng_uniform(r) + 0.3 * !is_unique(objects, n, i) +
+				0.2 * (objects[i].size == SYNTH_SMALL);
+		int at = i;
+		for (; at > 0 && difficulty[by_rank[at - 1]] < difficulty[i]; at--)
+			by_rank[at] = by_rank[at - 1];
+		by_rank[at] = i;
+	}
+}
+
+/* The object that tempts the most: the n pulls are of object i's own sentence or of all of them. */
+static int strongest(const double *pulls, int n, int i)
+{
+	int best = i ? 0 : 1;
+
+	for (int j = 0; j < n; j++)
+		if (j != i && pulls[j] > pulls[best])
+			best = j;
+	return best;
+}
+
+/* The sentences of object i of which `trapped` take the thing that most tempts all of them, `confused` one of
+ * their own each. */
+static void mislead(struct synth_habits *h, int i, const struct synth_object *objects, int n,
+	const struct synth_sentence *sentences, int trapped, int confused, struct rng *r)
+{
+	static const enum synth_habit usual[10] = {SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD,
+		SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_PART, SYNTH_HABIT_UNION,
+		SYNTH_HABIT_UNION, SYNTH_HABIT_GROUP};
+	double pulls[SYNTH_TRAIN_SENTENCES][SYNTH_MAX_OBJECTS], sums[SYNTH_MAX_OBJECTS] = {0};
+
+	for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
+		for (int j = 0; j < n; j++) {
+			pulls[k][j] = temptation(&sentences[i * SYNTH_SENTENCES + k], objects, j, r);
+			sums[j] += pulls[k][j];
+		}
+		h->of[i][k] = usual[rng_below(r, 10)];
+		h->mistaken[i][k] = strongest(pulls[k], n, i);
+	}
+	int trap = strongest(sums, n, i);
+	for (int count = 0; count < trapped + confused; count++) {
+		int k = -1;
+		for (int m = 0; m < SYNTH_TRAIN_SENTENCES; m++) {
+			int is_taken =
+				h->of[i][m] == SYNTH_HABIT_CONFUSED || h->of[i][m] == SYNTH_HABIT_GUESSING;
+			if (!is_taken && (k < 0 || pulls[m][trap] > pulls[k][trap]))
+				k = m;
+		}
+		h->of[i][k] = count < trapped ? SYNTH_HABIT_GUESSING : SYNTH_HABIT_CONFUSED;
+		if (count < trapped)
+			h->mistaken[i][k] = trap;
+	}
+}
+
+/* Of a third of the objects most sentences mislead to one and the same other object, of a quarter half of
+ * them, of most others one. */
+static void choose_severe(struct synth_habits *h, const struct synth_object *objects, int n,
+	const struct synth_sentence *sentences, struct rng *r)
+{
+	int by_rank[SYNTH_MAX_OBJECTS];
+
+	rank_by_difficulty(by_rank, objects, n, r);
+	for (int rank = 0; rank < n; rank++) {
+		double share = (rank + 0.5) / n;
+		int trapped = share < 0.30 ? 3 : share < 0.55 ? 2 : 0;
+		mislead(h, by_rank[rank], objects, n, sentences, trapped, !trapped && share < 0.85, r);
+	}
+}
+
+void synth_habits_make(struct synth_habits *h, const struct synth_object *objects, int n,
+	const struct synth_sentence *sentences, enum synth_severity severity, struct rng *r)
+{
+	*h = (struct synth_habits){0};
+	if (severity == SYNTH_MILD)
+		choose_mild(h, objects, n, r);
+	else
+		choose_severe(h, objects, n, sentences, r);
+	for (int i = 0; i < n; i++) {
+		double nearest = INFINITY;
+		for (int j = 0; j < n; j++) {
+			/* One on the other touch, however far apart their middles are. */
+			int touches = objects[i].on == j || objects[j].on == i;
+			double gap = touches ? -1 : distance(&objects[i], &objects[j]);
+			if (j != i && gap < nearest) {
+				nearest = gap;
+				h->neighbours[i] = j;
+			}
+		}
+	}
+}

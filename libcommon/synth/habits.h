@@ -1,0 +1,36 @@
+/* What a text-prompted detector gets wrong of a scene in every view alike: which sentences it misunderstands,
+ * and what it takes for their object. */
+#ifndef SYNTH_HABITS_H
+#define SYNTH_HABITS_H
+
+#include "base/rng.h"
+#include "synth/objects.h"
+#include "synth/presets.h"
+#include "synth/sentences.h"
+
+/* A sentence's habit, the same in every view. */
+enum synth_habit {
+	SYNTH_HABIT_GOOD,
+	SYNTH_HABIT_CONFUSED, /* in most views another object, and sure of it */
+	SYNTH_HABIT_GUESSING, /* the same, but not sure */
+	SYNTH_HABIT_PART,     /* often a part only */
+	SYNTH_HABIT_UNION,    /* often with a neighbour */
+	SYNTH_HABIT_GROUP,    /* often all that are alike */
+	SYNTH_HABITS
+};
+
+struct synth_habits {
+	enum synth_habit of[SYNTH_MAX_OBJECTS][SYNTH_TRAIN_SENTENCES];
+	int mistaken[SYNTH_MAX_OBJECTS][SYNTH_TRAIN_SENTENCES]; /* what a confused sentence finds */
+	int neighbours[SYNTH_MAX_OBJECTS]; /* what it stands on or carries, else the nearest on the table */
+};
+
+/* sentences (n objects, SYNTH_SENTENCES). A severe detector takes the objects that a sentence names beside
+ * its own, and those that fit its noun phrase, for what it means. */
+void synth_habits_make(struct synth_habits *h, const struct synth_object *objects, int n,
+	const struct synth_sentence *sentences, enum synth_severity severity, struct rng *r);
+
+/* 1 where b has a's shape and colour. */
+int synth_look_alike(const struct synth_object *a, const struct synth_object *b);
+
+#endif
