@@ -26,6 +26,13 @@ enum {
 	MIDDLE = 1 << RELATION_MIDDLE,
 };
 
+static const char any_side[] = "far very extreme upper lower top bottom near outer inner other opposite same "
+			       "front back left right nearest closest";
+static const char strengthened[] =
+	"by next beside alongside behind above below beneath under underneath over in on at "
+	"inside outside between against near around opposite across up down before after "
+	"here there where away";
+
 /* Words that may stand for one another; a phrase names them by the letter. */
 #define CLASS(letter) [(letter) - 'A']
 static const char *const classes[26] = {
@@ -34,19 +41,14 @@ static const char *const classes[26] = {
 	CLASS('O') = "its his her their",
 	/* between that and a side */
 	CLASS('V') = "far very extreme upper lower top bottom near outer inner other opposite same",
-	CLASS('W') =
-		"far very extreme upper lower top bottom near outer inner other opposite same front back left "
-		"right nearest closest",
+	CLASS('W') = any_side,
 	/* parts of a place, and those that have a relation of their own */
 	CLASS('P') = "side sides half edge edges end ends row corner corners part border rim",
 	CLASS('Q') = "front back rear middle centre center central foreground background",
 	CLASS('H') = "left right",
 	CLASS('N') = "side sides half end",
 	/* after "right": it then only strengthens, or measures */
-	CLASS('R') =
-		"by next beside alongside behind above below beneath under underneath over in on at inside "
-		"outside between against near around opposite across up down before after here there where "
-		"away",
+	CLASS('R') = strengthened,
 	CLASS('A') = "angle angles angled",
 	/* after "left": somebody left it there */
 	CLASS('L') = "on in behind by over open lying standing there out alone unattended",
@@ -54,8 +56,7 @@ static const char *const classes[26] = {
 	CLASS('F') = "cover covers page pages door doors pocket pockets leg legs wheel wheels panel face",
 	/* after "in": a manner, not a container */
 	CLASS('I') =
-		"picture image photo photograph scene room view frame row rows line group pair shape form "
-		"colour color style way pile stack distance midst light dark",
+		"picture image photo scene view frame row line group shape form colour color style way dark",
 	/* before "on", "over" and "by" that are not about a place */
 	CLASS('S') = "turned switched printed written painted drawn based",
 	CLASS('T') = "turned knocked tipped flipped all left",

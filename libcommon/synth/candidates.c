@@ -26,9 +26,12 @@ enum fault {
 static const struct {
 	int rates[SYNTH_HABITS][FAULTS]; /* how often a sentence of each habit has each fault, in percent */
 	double score, quality, noise;	 /* confidence is score + quality * IoU, with noise */
+	double wrong_noise;		 /* where it shows another object */
 	double confused, guessing;	 /* more where such a sentence takes another object */
-	double faint; /* a thing of less than this share of the picture is found seldom, and with less
-			 confidence */
+	double wrong_rag; /* how ragged another object is, over the own one: what draws the eye is outlined
+			     well */
+	double faint;	  /* a thing of less than this share of the picture is found seldom, and with less
+			     confidence */
 } kinds[SYNTH_SEVERITIES] = {
 	[SYNTH_MILD] = {{
 				[SYNTH_HABIT_GOOD] = {72, 7, 8, 7, 1, 5},
@@ -37,7 +40,7 @@ static const struct {
 				[SYNTH_HABIT_PART] = {42, 8, 40, 4, 1, 5},
 				[SYNTH_HABIT_UNION] = {42, 8, 4, 40, 1, 5},
 			},
-		0.30, 0.40, 0.12, 0.54, 0.05, 0},
+		0.30, 0.40, 0.12, 0.12, 0.54, 0.05, 1, 0},
 	[SYNTH_SEVERE] = {{
 				  [SYNTH_HABIT_GOOD] = {74, 6, 6, 5, 1, 5, 3},
 				  [SYNTH_HABIT_CONFUSED] = {11, 78, 3, 3, 1, 3, 1},
@@ -46,7 +49,7 @@ static const struct {
 				  [SYNTH_HABIT_UNION] = {40, 6, 3, 42, 1, 5, 3},
 				  [SYNTH_HABIT_GROUP] = {36, 8, 3, 3, 1, 4, 45},
 			  },
-		0.34, 0.20, 0.12, 0.30, 0.05, 0.004},
+		0.45, 0.15, 0.05, 0.16, 0.13, -0.07, 0.4, 0.004},
 };
 
 void synth_detector_make(struct synth_detector *d, const struct synth_object *objects, int n,
@@ -122,7 +125,8 @@ static int draw(struct detection *v, int object, int other, enum fault f, struct
 			join(v, j);
 	if (f == FAULT_PART)
 		synth_outline_cut(v->mask, v->height, v->width, rng_range(r, 0.35, 0.65), r);
-	double rag = rng_range(r, 0.1, 0.4), shrink = 0.09 * rng_normal(r);
+	double ragged = f == FAULT_OTHER ? kinds[d->severity].wrong_rag : 1;
+	double rag = ragged * rng_range(r, 0.1, 0.4), shrink = ragged * 0.09 * rng_normal(r);
 	return synth_outline_rag(v->mask, v->height, v->width, rag, shrink, &d->noise, r, e);
 }
 
@@ -140,7 +144,8 @@ static double choose_score(struct detection *v, int object, enum fault f, enum s
 {
 	double quality = iou(v->mask, shown(v, object), v->pixels);
 	double score = kinds[v->d->severity].score + kinds[v->d->severity].quality * quality +
-		       kinds[v->d->severity].noise * rng_normal(&v->rng);
+		       (f == FAULT_OTHER ? kinds[v->d->severity].wrong_noise : kinds[v->d->severity].noise) *
+			       rng_normal(&v->rng);
 
 	if (f == FAULT_OTHER)
 		score += habit == SYNTH_HABIT_CONFUSED ? kinds[v->d->severity].confused

@@ -139,7 +139,7 @@ static void mislead(struct synth_habits *h, int i, const struct synth_object *ob
 			if (!is_taken && (k < 0 || pulls[m][trap] > pulls[k][trap]))
 				k = m;
 		}
-		h->of[i][k] = count < trapped ? SYNTH_HABIT_GUESSING : SYNTH_HABIT_CONFUSED;
+		h->of[i][k] = count % 2 ? SYNTH_HABIT_GUESSING : SYNTH_HABIT_CONFUSED;
 		if (count < trapped)
 			h->mistaken[i][k] = trap;
 	}
@@ -155,7 +155,7 @@ static void choose_severe(struct synth_habits *h, const struct synth_object *obj
 	rank_by_difficulty(by_rank, objects, n, r);
 	for (int rank = 0; rank < n; rank++) {
 		double share = (rank + 0.5) / n;
-		int trapped = share < 0.30 ? 3 : share < 0.55 ? 2 : 0;
+		int trapped = share < 0.08 ? 4 : share < 0.42 ? 3 : share < 0.84 ? 2 : 0;
 		mislead(h, by_rank[rank], objects, n, sentences, trapped, !trapped && share < 0.85, r);
 	}
 }

@@ -58,6 +58,15 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 	[ "$(echo "$output" | jq -c keys)" = '["empty_truth","miou","missing","objects","oiou","p25","p50","p75","pairs"]' ]
 }
 
+@test "figures are summed in the order of the files, whatever the objects are called" {
+	for n in 1 2 3; do
+		echo "{\"view\":\"v\",\"object\":\"$((4 - n))\",\"segmentation\":{\"size\":[1,10],\"counts\":[0,$n,$((10 - n))]}}"
+	done >p
+	sed 's/"counts":.*/"counts":[0,10]}}/' p >t
+	# 0.1 + 0.2 + 0.3, which is not 0.3 + 0.2 + 0.1
+	[[ "$("$BIN/miou-score" --csv --truth t p | sed -n 2p)" == all,,3,0.20000000000000004,* ]]
+}
+
 @test "truth against itself is 1" {
 	"$BIN/miou-score" --json --truth truth.jsonl truth.jsonl | jq -e '.miou == 1 and .oiou == 1 and .missing == 0'
 }
@@ -269,6 +278,11 @@ make_scene() {
 		and $c.compare.difference_low < $c.compare.difference and $c.compare.difference < $c.compare.difference_high
 		and $c.compare.p == 0.1875' c.json own.json other.json # 12 of 64 patterns
 	[ "$(jq -c '.compare | keys' c.json)" = '["better","difference","difference_high","difference_low","equal","miou","miou_high","miou_low","missing","oiou","oiou_high","oiou_low","p","p25","p50","p75","worse"]' ]
+	# the intervals are those of each file alone
+	for file in pred other; do "$BIN/miou-score" --json --truth truth.jsonl --bootstrap 500 $file.jsonl; done |
+		jq -s -e --slurpfile c c.json 'def ends: [.miou_low,.miou_high,.oiou_low,.oiou_high];
+			(.[0] | ends) == ($c[0] | ends) and (.[1] | ends) == ($c[0].compare | ends)
+			and (.[0] | ends | unique | length) == 4'
 	"$BIN/miou-score" --json --truth truth.jsonl --compare pred.jsonl other.jsonl | jq -s -e '.[0].compare.difference == -.[1].compare.difference
 		and .[0].compare.better == .[1].compare.worse and (.[0].compare | has("p") | not)' - c.json
 }

@@ -136,11 +136,13 @@ static double sign_test(const double *differences, size_t n, size_t resamples)
 static void test_signs(void)
 {
 	const double rising[3] = {1, 2, 3}, balanced[4] = {0.1, -0.3, 0.2, 0}, none[5] = {0};
+	const double rounded[4] = {0.1, 0.2, -0.3, 0.001};
 	double ones[40], mixed[12];
 	struct rng r;
 
 	CHECK(sign_test(rising, 3, 8) == 0.25, "two of eight patterns");
 	CHECK(sign_test(balanced, 4, 1000) == 1, "a sum of 0 is never beaten");
+	CHECK(sign_test(rounded, 4, 16) == 1, "0.001 more or less, however it is rounded");
 	CHECK(sign_test(none, 5, 10) == 1, "no difference");
 	CHECK(sign_test(none, 0, 10) == 1, "no units");
 	for (int i = 0; i < 40; i++)

@@ -95,6 +95,12 @@ static void test_join(void)
 	score_pairs_free(&a);
 	score_pairs_free(&b);
 
+	const struct score_mask nameless = {"v", "r1", NULL, &mask[8]};
+	join(&a, &b, &nameless, 1, NULL, 0, both, 3);
+	CHECK(!strcmp(a.items[0].object, "cup"), "the only prediction's: %s", a.items[0].object);
+	score_pairs_free(&a);
+	score_pairs_free(&b);
+
 	join(&a, &b, truth, 0, both, 3, both, 3);
 	CHECK(a.n == 0, "no truth");
 	score_pairs_free(&a);

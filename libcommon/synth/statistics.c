@@ -1,0 +1,152 @@
+#include "synth/statistics.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const char *const relation_names[SYNTH_RELATIONS] = {
+	[SYNTH_LEFT_OF] = "left of",
+	[SYNTH_RIGHT_OF] = "right of",
+	[SYNTH_IN_FRONT_OF] = "in front of",
+	[SYNTH_BEHIND] = "behind",
+	[SYNTH_NEXT_TO] = "next to",
+	[SYNTH_NEAREST_TO] = "nearest to",
+	[SYNTH_FARTHEST_FROM] = "farthest from",
+	[SYNTH_ON] = "on",
+	[SYNTH_UNDER] = "under",
+	[SYNTH_BETWEEN] = "between",
+	[SYNTH_LEFT_SIDE] = "left side of the table",
+	[SYNTH_RIGHT_SIDE] = "right side of the table",
+	[SYNTH_FRONT_SIDE] = "front of the table",
+	[SYNTH_BACK_SIDE] = "back of the table",
+	[SYNTH_MIDDLE] = "middle of the table",
+	[SYNTH_ON_TABLE] = "on the table",
+	[SYNTH_LEFTMOST] = "leftmost",
+	[SYNTH_RIGHTMOST] = "rightmost",
+	[SYNTH_NEAREST_US] = "nearest to us",
+	[SYNTH_FARTHEST_US] = "farthest from us",
+	[SYNTH_LEFT_ONE] = "the left one",
+	[SYNTH_RIGHT_ONE] = "the right one",
+	[SYNTH_NEAR_ONE] = "the nearer one",
+	[SYNTH_FAR_ONE] = "the farther one",
+	[SYNTH_MIDDLE_ONE] = "the middle one",
+	[SYNTH_LARGEST] = "largest",
+	[SYNTH_SMALLEST] = "smallest",
+	[SYNTH_TALLEST] = "tallest",
+};
+
+const char *synth_statistics_relation(enum synth_relation r)
+{
+	return relation_names[r];
+}
+
+const char *synth_statistics_band(int band)
+{
+	static const char *const names[SYNTH_BANDS] = {"0", "<0.15", "0.15-0.5", "0.5-0.85", ">=0.85"};
+
+	return names[band];
+}
+
+static void count_objects(struct synth_statistics *s, const struct synth_object *objects, int n)
+{
+	s->objects = n;
+	for (int i = 0; i < n; i++) {
+		int earlier = 0, later = 0;
+		for (int j = 0; j < n; j++)
+			if (j != i && objects[j].shape == objects[i].shape &&
+				objects[j].colour == objects[i].colour)
+				*(j < i ? &earlier : &later) += 1;
+		s->alike += earlier + later > 0;
+		s->alike_groups += !earlier && later;
+		s->stacked += objects[i].on >= 0;
+	}
+}
+
+static void count_sentences(struct synth_statistics *s, const struct synth_sentence *sentences, int n)
+{
+	for (int i = 0; i < n; i++) {
+		const struct synth_sentence *t = &sentences[i];
+		int words = 1;
+		for (const char *p = t->text; *p; p++)
+			words += *p == ' ';
+		s->sentences[t->split]++;
+		s->words[t->split] += words;
+		for (int r = 0; r < SYNTH_RELATIONS; r++) {
+			int has = 0;
+			for (int k = 0; k < t->clause_count; k++)
+				has |= (int)t->clauses[k].relation == r;
+			s->relations[r] += has;
+		}
+	}
+	for (int k = 0; k < SYNTH_SPLITS; k++)
+		s->words[k] /= s->sentences[k] ? s->sentences[k] : 1;
+}
+
+static int compare(const void *a, const void *b)
+{
+	float x = *(const float *)a, y = *(const float *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* Sorts the values. */
+static void take_quantiles(float *values, size_t n, double quantiles[SYNTH_QUANTILES])
+{
+	static const double at[SYNTH_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
+
+	qsort(values, n, sizeof *values, compare);
+	for (int k = 0; k < SYNTH_QUANTILES; k++)
+		quantiles[k] = (double)values[(size_t)(at[k] * (double)(n - 1) + 0.5)];
+}
+
+static int measure_gaussians(struct synth_statistics *s, const struct splats *p, struct err *e)
+{
+	float *values = mem_alloc(p->n, sizeof *values, "statistics", e);
+
+	if (!values)
+		return -1;
+	s->gaussians = p->n;
+	for (size_t i = 0; i < p->n; i++)
+		values[i] = p->opacities[i];
+	take_quantiles(values, p->n, s->opacity);
+	for (int size = 0; size < 2; size++) {
+		for (size_t i = 0; i < p->n; i++) {
+			const float *scale = p->scales + 3 * i;
+			float most = fmaxf(scale[0], fmaxf(scale[1], scale[2]));
+			float least = fminf(scale[0], fminf(scale[1], scale[2]));
+			values[i] = size ? most : most / least;
+		}
+		take_quantiles(values, p->n, size ? s->size : s->aspect);
+	}
+	free(values);
+	return 0;
+}
+
+int synth_statistics_make(struct synth_statistics *s, const struct synth_scene *scene,
+	const struct synth_sentence *sentences, struct err *e)
+{
+	*s = (struct synth_statistics){0};
+	count_objects(s, scene->objects, scene->object_count);
+	count_sentences(s, sentences, scene->object_count * SYNTH_SENTENCES);
+	for (size_t i = 0; i < scene->cameras.n; i++)
+		s->views[scene->cameras.views[i].split]++;
+	return measure_gaussians(s, &scene->splats, e);
+}
+
+void synth_statistics_see(struct synth_statistics *s, enum camera_split split, size_t visible, size_t whole)
+{
+	static const double ends[SYNTH_BANDS - 2] = {0.15, 0.5, 0.85};
+	struct synth_visibility *v = &s->visibility[split];
+	double share = whole ? (double)visible / (double)whole : 0;
+	int band = visible > 0;
+
+	if (!whole) {
+		v->outside++;
+		return;
+	}
+	for (int i = 0; i < SYNTH_BANDS - 2; i++)
+		band += share >= ends[i];
+	v->pairs++;
+	v->bands[band]++;
+}
