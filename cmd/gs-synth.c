@@ -38,8 +38,8 @@ static int make_once(struct job *j, struct err *e)
 	return 0;
 }
 
-/* Things may stand so that words cannot tell them apart; then they are put otherwise. Nothing is written
- * before. */
+/* Things may stand so that they hide one, or that words cannot tell them apart; then they are put otherwise.
+ * Nothing is written before. */
 static int make(struct job *j, int number, struct err *e)
 {
 	j->sentences = mem_zalloc(
@@ -54,7 +54,8 @@ static int make(struct job *j, int number, struct err *e)
 		if (e->code != ERR_CHECK)
 			return -1;
 	}
-	return err_set(e, ERR_CHECK, "seed %lld: words cannot tell the objects apart; try another --seed",
+	return err_set(e, ERR_CHECK,
+		"seed %lld: things cannot all be seen and told apart in words; try another --seed",
 		j->cli.seed);
 }
 

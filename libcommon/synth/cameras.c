@@ -88,7 +88,7 @@ int synth_cameras_make(
 		/* Out along the arc and back again. */
 		double walked = 2 * (i + 0.5) / n, side = walked < 1 ? walked : 2 - walked;
 		double azimuth = (-70 + 140 * side + rng_range(&r, -6, 6)) * PI / 180;
-		double elevation = ((walked < 1 ? 26 : 44) + rng_range(&r, -6, 6)) * PI / 180;
+		double elevation = (o->preset->elevations[walked >= 1] + rng_range(&r, -6, 6)) * PI / 180;
 		double distance = far * rng_range(&r, 0.9, 1.1);
 		double centre[3] = {distance * cos(elevation) * sin(azimuth),
 			-distance * cos(elevation) * cos(azimuth), distance * sin(elevation)};

@@ -110,14 +110,14 @@ static double ratio(struct rng *r, double spread)
  * are large. */
 static struct grain covering(double spacing, struct rng *r)
 {
-	double size = 0.66 * spacing * exp(0.15 * rng_normal(r)), aspect = sqrt(fmin(ratio(r, 0.8), 4));
+	double size = 0.66 * spacing * exp(0.15 * rng_normal(r)), aspect = sqrt(fmin(ratio(r, 0.9), 5));
 	struct grain g = {.along = size * aspect, .across = size / aspect};
 
 	if (rng_below(r, 30) == 0) {
 		g.along *= 2.5;
 		g.across *= 2.5;
 	}
-	g.thick = fmin(g.along, g.across) / ratio(r, 1.7);
+	g.thick = fmin(g.along, g.across) / ratio(r, 1.8);
 	g.opacity = rng_below(r, 4) ? 1 - 0.09 * pow(rng_uniform(r), 3) : rng_range(r, 0.5, 0.95);
 	return g;
 }
@@ -128,10 +128,10 @@ static struct grain detailing(double spacing, struct rng *r)
 	double u = rng_uniform(r);
 	struct grain g = {.along = 0.75 * spacing * exp(0.55 * rng_normal(r))};
 
-	g.across = g.along / ratio(r, 1.7);
+	g.across = g.along / ratio(r, 2.1);
 	g.thick = g.across / ratio(r, 1.7);
 	g.opacity = u < 0.62   ? 0.005 * pow(20, rng_uniform(r))
-		    : u < 0.94 ? rng_range(r, 0.1, 0.5)
+		    : u < 0.94 ? 0.1 + 0.4 * pow(rng_uniform(r), 2)
 			       : rng_range(r, 0.5, 1);
 	return g;
 }
@@ -246,7 +246,7 @@ static void spread(size_t i, struct rng *r, double *a, double *b)
 /* n Gaussians: those that cover the surface, evenly spread, and among them the others. */
 static void put_coat(struct work *w, const struct coat *c, size_t n)
 {
-	size_t covers = n - n * 56 / 100;
+	size_t covers = n - n * 58 / 100;
 	double scale = c->object ? c->object->scale : 1;
 	double spacing = scale * sqrt(c->surface.area / (double)covers), a, b;
 
@@ -364,7 +364,8 @@ static void put_room(struct work *w, size_t n)
 static void put_stray(struct work *w, size_t n)
 {
 	const struct synth_table *t = &w->s->table;
-	double radius = room_radius(w->s);
+	/* However many there are, they hide about as much. */
+	double radius = room_radius(w->s), fine = fmin(1.4, sqrt(60000.0 / (double)w->s->splats.n));
 	struct rng *r = &w->rng;
 
 	for (size_t i = 0; i < n; i++) {
@@ -374,7 +375,7 @@ static void put_stray(struct work *w, size_t n)
 		double normal[3] = {flat * cos(turn), flat * sin(turn), rise}, tone = rng_range(r, 0.2, 0.9),
 		       rgb[3];
 		double along[3] = {rng_normal(r), rng_normal(r), rng_normal(r)};
-		double size = is_large ? rng_range(r, 0.3, 1.1) : 0.022 * exp(0.5 * rng_normal(r));
+		double size = fine * (is_large ? rng_range(r, 0.3, 1.1) : 0.022 * exp(0.5 * rng_normal(r)));
 		double around = rng_range(r, 0, 2 * PI);
 		double mean[3] = {t->half_width * rng_range(r, -1.3, 1.3),
 			t->half_depth * rng_range(r, -1.3, 1.3), rng_range(r, 0.05, 2.2)};

@@ -37,12 +37,35 @@ static enum look judge(int visible, int whole)
 				: LOOK_NONE;
 }
 
+int synth_hiding_check(const struct cameras *c, const struct synth_object *objects, int n, struct err *e)
+{
+	int visible[SYNTH_MAX_OBJECTS], whole[SYNTH_MAX_OBJECTS], clear[SYNTH_MAX_OBJECTS] = {0}, views = 0;
+	struct synth_sight sight;
+
+	if (synth_sight_make(&sight, objects, n, e))
+		return -1;
+	for (size_t i = 0; i < c->n; i++) {
+		if (c->views[i].split != SPLIT_TRAIN)
+			continue;
+		views++;
+		synth_sight_look(&sight, &c->views[i], visible, whole);
+		for (int k = 0; k < n; k++)
+			clear[k] += judge(visible[k], whole[k]) == LOOK_CLEAR;
+	}
+	synth_sight_free(&sight);
+	for (int k = 0; k < n; k++)
+		if (3 * clear[k] < views)
+			return err_set(
+				e, ERR_CHECK, "the %s is hidden in most training views", objects[k].name);
+	return 0;
+}
+
 /* Near to the table and low, looking at some object. */
 static void draw_place(struct place *p, const struct camera *like, const struct synth_options *o,
 	const struct synth_object *objects, const struct synth_table *table, struct rng *r)
 {
 	double distance = synth_cameras_distance(table, o->preset) * rng_range(r, 0.85, 1.05);
-	double elevation = rng_range(r, 7, 24) * PI / 180;
+	double elevation = rng_range(r, 7, 28) * PI / 180;
 	const struct synth_object *at = &objects[rng_below(r, (uint32_t)o->objects)];
 
 	p->azimuth = rng_range(r, -76, 76) * PI / 180;

@@ -1,4 +1,4 @@
-/* Test cameras from which things hide each other. */
+/* From where things hide each other. */
 #ifndef SYNTH_HIDING_H
 #define SYNTH_HIDING_H
 
@@ -6,6 +6,10 @@
 #include "geom/camera.h"
 #include "synth/objects.h"
 #include "synth/presets.h"
+
+/* Whether the training cameras see enough: each object at least half visible to at least a third of them.
+ * Returns 0; -1 with *e set (ERR_CHECK: the name of one that is not). */
+int synth_hiding_check(const struct cameras *c, const struct synth_object *objects, int n, struct err *e);
 
 /* Moves the test cameras of *c: low, and so placed that over all (test view, object) pairs about the share
  * o->preset->hidden is less than half visible, a quarter of those hardly at all, and next to none out of

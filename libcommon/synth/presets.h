@@ -26,6 +26,7 @@ struct synth_preset {
 	double filled;		/* the share of the table that is covered, at most about 0.5 */
 	double hidden;		/* the share of (test view, object) pairs that are less than half visible */
 	double distance;	/* of the cameras, in half widths of the table */
+	double elevations[2];	/* of the training cameras, out and back, degrees */
 	double room;		/* the wall's radius over the same */
 	double wood[3], boards; /* the table's colour, and how wide its boards are */
 	double wall[3], carpet[3]; /* colours of the room */

@@ -30,7 +30,8 @@ struct synth_scene {
 	struct cameras cameras; /* "view_000" ..., without image */
 };
 
-/* Returns 0, or -1 with *e set (memory) and *s zeroed. */
+/* Returns 0, or -1 with *e set and *s zeroed: memory, or (ERR_CHECK) something is hidden in most training
+ * views; another seed then helps. */
 int synth_scene_make(struct synth_scene *s, const struct synth_options *o, struct err *e);
 void synth_scene_free(struct synth_scene *s);
 

@@ -35,39 +35,51 @@ done:
 	return bad;
 }
 
-int synth_truth_whole(const struct synth_scene *s, const struct camera *c, uint8_t *masks, struct err *e)
+/* One object's own Gaussians, alone. ones: as many as it has. */
+static int see_alone(const struct synth_scene *s, int object, const struct camera *c, const float *ones,
+	uint8_t *mask, struct err *e)
 {
-	size_t pixels = (size_t)c->width * (size_t)c->height, most = 0;
-	struct render_view *view = NULL;
-	int bad = 0;
-
-	for (int i = 0; i < s->object_count; i++)
-		most = s->first[i + 1] - s->first[i] > most ? s->first[i + 1] - s->first[i] : most;
-	float *ones = mem_alloc(most, sizeof *ones, "object indicators", e);
+	size_t pixels = (size_t)c->width * (size_t)c->height, from = s->first[object];
+	const struct splats *all = &s->splats;
+	struct splats own = {.n = s->first[object + 1] - from,
+		.sh_coefficients = all->sh_coefficients,
+		.means = all->means + 3 * from,
+		.scales = all->scales + 3 * from,
+		.quats = all->quats + 4 * from,
+		.opacities = all->opacities + from,
+		.sh = all->sh + 3 * (size_t)all->sh_coefficients * from};
 	float *share = mem_alloc(pixels, sizeof *share, "object shares", e);
-	bad = !ones || !share;
-	for (size_t i = 0; i < most && !bad; i++)
-		ones[i] = 1;
-	for (int i = 0; i < s->object_count && !bad; i++) {
-		size_t from = s->first[i];
-		struct splats own = {.n = s->first[i + 1] - from,
-			.sh_coefficients = s->splats.sh_coefficients,
-			.means = s->splats.means + 3 * from,
-			.scales = s->splats.scales + 3 * from,
-			.quats = s->splats.quats + 4 * from,
-			.opacities = s->splats.opacities + from,
-			.sh = s->splats.sh + 3 * (size_t)s->splats.sh_coefficients * from};
-		if (view)
-			bad = render_again(view, &own, c, e);
-		else
-			bad = !(view = render_prepare(&own, c, e));
-		bad = bad || render_values(view, ones, 1, share, NULL, e);
-		for (size_t p = 0; p < pixels && !bad; p++)
-			masks[(size_t)i * pixels + p] = share[p] > 0.5f;
-	}
+	struct render_view *view = share ? render_prepare(&own, c, e) : NULL;
+	int bad = !view || render_values(view, ones, 1, share, NULL, e) ? -1 : 0;
+
+	for (size_t p = 0; p < pixels && !bad; p++)
+		mask[p] = share[p] > 0.5f;
 	if (view)
 		render_free(view);
-	free(ones);
 	free(share);
-	return bad ? -1 : 0;
+	return bad;
+}
+
+int synth_truth_whole(const struct synth_scene *s, const struct camera *c, uint8_t *masks, struct err *e)
+{
+	size_t pixels = (size_t)c->width * (size_t)c->height;
+	float *ones = mem_alloc(s->splats.n, sizeof *ones, "object indicators", e);
+	int failed = 0;
+
+	if (!ones)
+		return -1;
+	for (size_t i = 0; i < s->splats.n; i++)
+		ones[i] = 1;
+		/* An object is little work: one each for the threads, not one for all of them. */
+#pragma omp parallel for schedule(dynamic) reduction(| : failed)
+	for (int i = 0; i < s->object_count; i++) {
+		struct err own = {0};
+		if (see_alone(s, i, c, ones, masks + (size_t)i * pixels, &own)) {
+			failed |= 1;
+#pragma omp critical
+			*e = own;
+		}
+	}
+	free(ones);
+	return failed ? -1 : 0;
 }
