@@ -3,183 +3,198 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "formats/masks.h"
-#include "mask/score.h"
+#include "formats/score_masks.h"
+#include "formats/scores.h"
+#include "formats/sentences.h"
+#include "mask/score_groups.h"
+#include "mask/score_join.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* A file of masks, as scoring sees them. */
-struct side {
-	const char *path;
-	struct mask_set set;
-	size_t count;		  /* of masks */
-	struct score_mask *masks; /* (count), pointing into set */
-	long *lines;		  /* (set.n) of the file */
+/* The files; NULL where one was not named. */
+struct paths {
+	const char *predictions, *truth, *other, *sentences, *whole;
 };
 
-static void side_free(struct side *s)
+struct inputs {
+	struct score_masks predictions, truth, other, whole;
+	struct sentences sentences;
+};
+
+static int inputs_read(struct inputs *in, const struct paths *p, struct err *e)
 {
-	masks_free(&s->set);
-	free(s->masks);
-	free(s->lines);
+	return score_masks_read(&in->truth, p->truth, e) ||
+	       score_masks_read(&in->predictions, p->predictions, e) ||
+	       (p->other && score_masks_read(&in->other, p->other, e)) ||
+	       (p->whole && score_masks_read(&in->whole, p->whole, e)) ||
+	       (p->sentences && sentences_read(&in->sentences, p->sentences, e));
 }
 
-/* "FILE:LINE: ..." for a record that names what an earlier one named. */
-static int duplicate_err(const struct side *s, size_t earlier, size_t later, struct err *e)
+static void inputs_free(struct inputs *in)
 {
-	const struct score_mask *m = &s->masks[later];
-
-	return err_set(e, ERR_FORMAT, "%s:%ld: view '%s', %s '%s' is on line %ld already", file_name(s->path),
-		s->lines[later], m->view, m->ref ? "ref" : "object", m->ref ? m->ref : m->object,
-		s->lines[earlier]);
+	score_masks_free(&in->predictions);
+	score_masks_free(&in->truth);
+	score_masks_free(&in->other);
+	score_masks_free(&in->whole);
+	sentences_free(&in->sentences);
 }
 
-static int side_read(struct side *s, const char *path, struct err *e)
+static void tell_left_out(
+	const struct cli *c, const struct score_pairs *pairs, const struct score_masks *predictions)
 {
-	size_t earlier, later;
+	cli_note(c, 1, "%zu predictions of views without truth were left out", pairs->unlabelled);
+	if (pairs->unmatched)
+		cli_warn(c,
+			"%s: %zu predictions of labelled views match no truth's ref or object and were left out",
+			file_name(predictions->path), pairs->unmatched);
+}
 
-	s->path = path;
-	if (masks_read_lines(&s->set, &s->lines, path, e))
+static int match(struct score_pairs *pairs, const struct score_masks *truth,
+	const struct score_masks *predictions, struct err *e)
+{
+	return score_match(pairs, truth->masks, truth->n, predictions->masks, predictions->n, e);
+}
+
+/* Matched, measured and sorted pairs of the predictions and, with --compare, of the others beside them. The
+ * figures of all are summed before they are sorted, so that no object's name changes their last digit. */
+static int pair_up(const struct cli *c, const struct inputs *in, int is_compared, struct score_pairs *pairs,
+	struct score_pairs *others, struct score *sum, struct score *other_sum, struct err *e)
+{
+
+	if (match(pairs, &in->truth, &in->predictions, e) ||
+		(is_compared && (match(others, &in->truth, &in->other, e) || score_join(pairs, others, e))) ||
+		score_measure_all(pairs, e) || score_measure_all(others, e))
 		return -1;
-	s->masks = mem_alloc(s->set.n, sizeof *s->masks, path, e);
-	if (!s->masks)
-		return -1;
-	for (size_t i = 0; i < s->set.n; i++) {
-		const struct mask_record *r = &s->set.records[i];
-		s->masks[i] = (struct score_mask){r->view, r->ref, r->object, &r->mask};
-	}
-	s->count = s->set.n;
-	int found = score_duplicate(s->masks, s->set.n, &earlier, &later, e);
-	return found > 0 ? duplicate_err(s, earlier, later, e) : found;
-}
-
-/* The end of the pairs of the object at `begin`. */
-static size_t object_end(const struct score_pairs *pairs, size_t begin)
-{
-	size_t end = begin;
-
-	while (end < pairs->n && !strcmp(pairs->items[end].object, pairs->items[begin].object))
-		end++;
-	return end;
-}
-
-static void put_table(FILE *out, const struct score *s, const struct score_pairs *pairs)
-{
-	fprintf(out, "mIoU         %6.2f %%\noverall IoU  %6.2f %%\n", 100 * s->miou, 100 * s->oiou);
-	for (int k = 0; k < 3; k++)
-		fprintf(out, "P@%-10g %6.2f %%\n", score_cut[k], 100 * s->precision[k]);
-	fprintf(out, "pairs        %6zu\nmissing      %6zu\nempty truth  %6zu\n\npairs     mIoU  object\n",
-		s->pairs, s->missing, s->empty_truth);
-	for (size_t begin = 0, end; begin < pairs->n; begin = end) {
-		struct score one;
-		end = object_end(pairs, begin);
-		score_sum(&one, pairs->items + begin, end - begin);
-		if (one.pairs)
-			fprintf(out, "%5zu %6.2f %%  %s\n", one.pairs, 100 * one.miou,
-				pairs->items[begin].object);
-		else
-			fprintf(out, "%5zu %8s  %s\n", one.pairs, "-", pairs->items[begin].object);
-	}
-}
-
-static int put_json(FILE *out, const struct score *s, const struct score_pairs *pairs, struct err *e)
-{
-	cJSON *root = cJSON_CreateObject();
-	int is_whole = cJSON_AddNumberToObject(root, "miou", s->miou) &&
-		       cJSON_AddNumberToObject(root, "oiou", s->oiou) &&
-		       cJSON_AddNumberToObject(root, "p25", s->precision[0]) &&
-		       cJSON_AddNumberToObject(root, "p50", s->precision[1]) &&
-		       cJSON_AddNumberToObject(root, "p75", s->precision[2]) &&
-		       cJSON_AddNumberToObject(root, "pairs", (double)s->pairs) &&
-		       cJSON_AddNumberToObject(root, "empty_truth", (double)s->empty_truth) &&
-		       cJSON_AddNumberToObject(root, "missing", (double)s->missing);
-	cJSON *objects = cJSON_AddObjectToObject(root, "objects");
-	for (size_t begin = 0, end; begin < pairs->n; begin = end) {
-		struct score one;
-		end = object_end(pairs, begin);
-		score_sum(&one, pairs->items + begin, end - begin);
-		cJSON *row = cJSON_AddObjectToObject(objects, pairs->items[begin].object);
-		is_whole = is_whole && cJSON_AddNumberToObject(row, "pairs", (double)one.pairs) &&
-			   (one.pairs ? cJSON_AddNumberToObject(row, "miou", one.miou)
-				      : cJSON_AddNullToObject(row, "miou"));
-	}
-	char *text = is_whole ? cJSON_PrintUnformatted(root) : NULL;
-	cJSON_Delete(root);
-	if (!text)
-		return err_set(e, ERR_SYSTEM, "scores: out of memory");
-	fprintf(out, "%s\n", text);
-	cJSON_free(text);
+	score_sum(sum, pairs->items, pairs->n);
+	score_sum(other_sum, others->items, others->n);
+	if (!sum->pairs)
+		return err_set(e, ERR_FORMAT, "%s: no mask with anything in it: there is nothing to score",
+			file_name(in->truth.path));
+	score_sort(pairs->items, pairs->n);
+	score_sort(others->items, others->n);
+	tell_left_out(c, pairs, &in->predictions);
+	if (is_compared)
+		tell_left_out(c, others, &in->other);
 	return 0;
 }
 
-static int write_scores(
-	const struct cli *c, const struct score *s, const struct score_pairs *pairs, struct err *e)
+static int by_relation(const struct cli *c, struct scores *s, const struct score_sample *sample,
+	const struct inputs *in, const struct paths *paths, struct err *e)
+{
+	const size_t n = in->sentences.n;
+	struct score_sentence *list = mem_alloc(n, sizeof *list, "sentences", e);
+	uint32_t *sets = mem_alloc(sample->n, sizeof *sets, "pairs", e);
+	const char *names[SCORE_SAYINGS];
+	size_t unknown;
+	int bad = !list || !sets;
+
+	for (size_t i = 0; i < n && !bad; i++)
+		list[i] = (struct score_sentence){in->sentences.items[i].ref, in->sentences.items[i].text};
+	score_saying_names(names);
+	bad = bad || score_sayings(sets, sample->pairs, sample->n, list, n, &unknown, e) ||
+	      score_table_groups(&s->relations, sample, sets, names, SCORE_SAYINGS, 0, e);
+	if (!bad && unknown)
+		cli_warn(c, "%s: %zu pairs have no sentence there", file_name(paths->sentences), unknown);
+	free(list);
+	free(sets);
+	return bad;
+}
+
+static int by_visibility(const struct cli *c, struct scores *s, const struct score_sample *sample,
+	const struct inputs *in, struct err *e)
+{
+	const uint32_t always = ((uint32_t)1 << SCORE_SEEN_UNKNOWN) - 1;
+	uint32_t *sets = mem_alloc(sample->n, sizeof *sets, "pairs", e);
+	size_t unknown;
+	int bad = !sets ||
+		  score_seen(sets, sample->pairs, sample->n, in->truth.masks, in->truth.n, in->whole.masks,
+			  in->whole.n, &unknown, e) ||
+		  score_table_groups(&s->visibility, sample, sets, score_seen_name, SCORE_SEEN, always, e);
+
+	if (!bad && unknown)
+		cli_warn(c, "%s: %zu masks of the truth have no whole there", file_name(in->whole.path),
+			unknown);
+	free(sets);
+	return bad;
+}
+
+static int score(const struct cli *c, const struct inputs *in, const struct paths *paths, struct scores *s,
+	struct err *e)
+{
+	struct score_pairs pairs = {0}, others = {0};
+	struct score sum, other_sum;
+	int bad = pair_up(c, in, s->is_compared, &pairs, &others, &sum, &other_sum, e);
+	const struct score_sample sample = {
+		pairs.n, pairs.items, s->is_compared ? others.items : NULL, s->how};
+
+	bad = bad || score_row_make(&s->all, "", &sample, e) ||
+	      score_table_objects(&s->objects, &sample, e) ||
+	      (s->has_relations && by_relation(c, s, &sample, in, paths, e)) ||
+	      (s->has_visibility && by_visibility(c, s, &sample, in, e));
+	if (!bad) {
+		s->all.score = sum;
+		s->all.other.score = other_sum;
+	}
+	score_pairs_free(&pairs);
+	score_pairs_free(&others);
+	return bad;
+}
+
+static int write_scores(const struct cli *c, const struct scores *s, enum scores_form form, struct err *e)
 {
 	struct file_out out;
 
 	if (file_out_open(&out, c->output, e))
 		return -1;
-	if (!c->json) {
-		put_table(out.stream, s, pairs);
-	} else if (put_json(out.stream, s, pairs, e)) {
+	if (scores_put(out.stream, s, form, e)) {
 		file_out_abort(&out);
 		return -1;
 	}
 	return file_out_commit(&out, e);
 }
 
-/* Drops truth of views that no prediction is of. The predictions of a view lie together in what the tools
- * write, so the last match is tried first. */
-static void keep_predicted_views(struct side *truth, const struct side *predictions)
+static void check_paths(const struct cli *c, const struct paths *p)
 {
-	size_t kept = 0, at = 0;
+	const char *all[] = {p->truth, p->predictions, p->other, p->sentences, p->whole};
+	int stdins = 0;
 
-	for (size_t i = 0; i < truth->set.n; i++)
-		for (size_t k = 0; k < predictions->set.n; k++) {
-			const size_t try = (at + k) % predictions->set.n;
-			if (strcmp(truth->masks[i].view, predictions->masks[try].view))
-				continue;
-			truth->masks[kept++] = truth->masks[i];
-			at = try;
-			break;
-		}
-	truth->count = kept;
-}
-
-static int compare(const struct cli *c, const struct side *truth, const struct side *predictions,
-	struct score_pairs *pairs, struct score *s, struct err *e)
-{
-	if (score_match(pairs, truth->masks, truth->count, predictions->masks, predictions->count, e))
-		return -1;
-	for (size_t i = 0; i < pairs->n; i++)
-		if (score_measure(&pairs->items[i], e))
-			return -1;
-	score_sum(s, pairs->items, pairs->n);
-	if (!s->pairs)
-		return err_set(e, ERR_FORMAT, "%s: no mask with anything in it: there is nothing to score",
-			file_name(truth->path));
-	score_sort(pairs->items, pairs->n);
-	cli_note(c, 1, "%zu predictions of views without truth were left out", pairs->unlabelled);
-	if (pairs->unmatched)
-		cli_warn(c,
-			"%s: %zu predictions of labelled views match no truth's ref or object and were left out",
-			file_name(predictions->path), pairs->unmatched);
-	return 0;
+	if (!p->truth)
+		cli_usage(c, "--truth TRUTH is required");
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+		stdins += all[i] && !strcmp(all[i], "-");
+		if (stdins == 2 && i == 1)
+			cli_usage(c, "truth and predictions cannot both be stdin");
+	}
+	if (stdins > 1)
+		cli_usage(c, "only one file can be stdin");
 }
 
 int main(int argc, char **argv)
 {
-	const char *truth_path = NULL;
-	double fail_under = 0;
-	int is_partial = 0;
+	struct paths paths = {0};
+	double fail_under = 0, confidence = 0.95;
+	long long resamples = 0;
+	int is_partial = 0, is_csv = 0;
 	const struct cli_option options[] = {
-		{"truth", 0, CLI_STRING, &truth_path, "TRUTH", "the true masks (required)", 0, 0},
+		{"truth", 0, CLI_STRING, &paths.truth, "TRUTH", "the true masks (required)", 0, 0},
 		{"predicted-views", 0, CLI_FLAG, &is_partial, NULL,
 			"score only views that have a prediction; else truth of others counts as missing", 0,
 			0},
+		{"compare", 0, CLI_STRING, &paths.other, "OTHER",
+			"other predictions of the same truth: which are better, pair by pair", 0, 0},
+		{"sentences", 0, CLI_STRING, &paths.sentences, "FILE",
+			"a row for each relation that the sentences speak of", 0, 0},
+		{"whole", 0, CLI_STRING, &paths.whole, "FILE",
+			"masks as if nothing hid the objects: a row for each range of what is seen", 0, 0},
+		{"bootstrap", 0, CLI_INT, &resamples, "N",
+			"intervals from so many resamples (1000 is usual; default 0: none)", 0,
+			BOOTSTRAP_MAX},
+		{"confidence", 0, CLI_REAL, &confidence, "X",
+			"share of the resamples within an interval (default 0.95)", 0.01, 0.9999},
 		{"fail-under", 0, CLI_REAL, &fail_under, "X", "exit 1 where mIoU is below X, in 0 to 1", 0,
 			1},
+		{"csv", 0, CLI_FLAG, &is_csv, NULL, "print comma-separated values instead of text", 0, 0},
 		{0},
 	};
 	const struct cli_tool tool = {
@@ -187,29 +202,36 @@ int main(int argc, char **argv)
 		.operands = "[PREDICTIONS]",
 		.summary = "Score predicted masks against true ones.",
 		.options = options,
-		.common = CLI_OUTPUT | CLI_JSON | CLI_VERBOSE | CLI_QUIET,
+		.common = CLI_OUTPUT | CLI_JSON | CLI_SEED | CLI_THREADS | CLI_VERBOSE | CLI_QUIET,
 		.max_operands = 1,
 	};
-	struct side truth = {0}, predictions = {0};
-	struct score_pairs pairs = {0};
-	struct score s;
+	struct inputs in = {0};
 	struct cli c;
 	struct err e;
 
 	cli_parse(&c, &tool, argc, argv);
-	const char *path = c.operand_count ? c.operands[0] : "-";
-	if (!truth_path)
-		cli_usage(&c, "--truth TRUTH is required");
-	if (!strcmp(truth_path, "-") && !strcmp(path, "-"))
-		cli_usage(&c, "truth and predictions cannot both be stdin");
-	int bad = side_read(&truth, truth_path, &e) || side_read(&predictions, path, &e);
+	paths.predictions = c.operand_count ? c.operands[0] : "-";
+	check_paths(&c, &paths);
+	if (c.json && is_csv)
+		cli_usage(&c, "--json and --csv exclude each other");
+	const struct bootstrap how = {(size_t)resamples, confidence, (uint64_t)c.seed};
+	struct scores s = {.is_compared = paths.other != NULL,
+		.has_relations = paths.sentences != NULL,
+		.has_visibility = paths.whole != NULL,
+		.how = resamples ? &how : NULL};
+	int bad = inputs_read(&in, &paths, &e);
 	if (!bad && is_partial)
-		keep_predicted_views(&truth, &predictions);
-	bad = bad || compare(&c, &truth, &predictions, &pairs, &s, &e) || write_scores(&c, &s, &pairs, &e);
-	if (!bad && s.miou < fail_under)
-		bad = err_set(&e, ERR_CHECK, "mIoU %.4f is below %g", s.miou, fail_under);
-	score_pairs_free(&pairs);
-	side_free(&predictions);
-	side_free(&truth);
+		bad = score_keep_views(in.truth.masks, &in.truth.n, in.predictions.masks, in.predictions.n,
+			in.other.masks, in.other.n, &e);
+	bad = bad || score(&c, &in, &paths, &s, &e) ||
+	      write_scores(&c, &s,
+		      is_csv   ? SCORES_CSV
+		      : c.json ? SCORES_JSON
+			       : SCORES_TEXT,
+		      &e);
+	if (!bad && s.all.score.miou < fail_under)
+		bad = err_set(&e, ERR_CHECK, "mIoU %.4f is below %g", s.all.score.miou, fail_under);
+	scores_free(&s);
+	inputs_free(&in);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -1,6 +1,5 @@
 /* refer-train: learns the referring model of a scene from masks (one stage of the method). */
 #include "base/file.h"
-#include "base/mem.h"
 #include "cli/cli.h"
 #include "formats/checkpoint.h"
 #include "formats/model.h"
@@ -37,6 +36,8 @@ static const struct cli_option table[] = {
 		"how features answer words (default dot)", 0, 0},
 	{"contrast", 0, CLI_CHOICE, &options.contrast, REFER_CONTRAST_CHOICES,
 		"contrast between sentences (default cosine)", 0, 0},
+	{"feature-width", 0, CLI_INT, &options.trainer.feature_width, "N",
+		"numbers of a referring feature (default 16)", 1, REFER_MAX_X},
 	{"temperature", 0, CLI_REAL, &options.trainer.temperature, "T", "of the contrast (default 0.1)", 1e-6,
 		1e6},
 	{"lambda", 0, CLI_REAL, &options.trainer.lambda, "X",
@@ -170,7 +171,7 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 		.has_leaves = t->octree.n > 0,
 		.ids = t->octree.n ? NULL : t->ids,
 		.octree = t->octree,
-		.features = mem_alloc(t->rows.n, REFER_X * sizeof(float), "features", e),
+		.features = trainer_features(t, e),
 		.parameters = t->state.values,
 		.low = {t->low[0], t->low[1], t->low[2]},
 		.high = {t->high[0], t->high[1], t->high[2]}};
@@ -178,7 +179,6 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 
 	if (!m.features)
 		return -1;
-	step_unpack(train_state_x(&t->state), t->rows.n, m.features);
 	snprintf(text, sizeof text, "--iterations %ld --precision %s %s", t->state.iteration,
 		precision_name(m.precision), r->identity);
 	int bad = model_write(&m, c->output, text, c->seed, e);

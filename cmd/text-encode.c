@@ -1,5 +1,6 @@
 /* Sentences to word vectors, by a BERT encoder. */
 #include "base/mem.h"
+#include "base/path.h"
 #include "cli/cli.h"
 #include "formats/bert_model.h"
 #include "formats/sentences.h"
@@ -11,9 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-	ROWS_AT_ONCE = 1024
-}; /* tokens in one forward pass: enough to keep the products busy, little memory */
+/* Tokens in one forward pass: enough to keep the products busy, little memory. */
+enum { ROWS_AT_ONCE = 1024 };
+
+/* In the order of the choices of --words. */
+enum words { CONTEXTUAL, STATIC };
 
 /* All sentences as token ids, [CLS] and [SEP] included. */
 struct tokens {
@@ -141,8 +144,8 @@ static int keep_words(struct text *out, size_t sentence, const float *rows, stru
 	return 0;
 }
 
-static int encode(
-	const struct cli *c, struct text *out, const struct bert *b, const struct tokens *t, struct err *e)
+static int encode(const struct cli *c, struct text *out, const struct bert *b, const struct tokens *t,
+	enum words words, struct err *e)
 {
 	size_t width = (size_t)b->width, most = 0, longest = 0, floats, rows;
 	float *scratch = NULL, *vectors = NULL;
@@ -165,7 +168,11 @@ static int encode(
 	cli_progress_start(&progress, c, "sentences", (double)out->n);
 	for (size_t first = 0, end; first < out->n && !bad; first = end) {
 		end = pass_end(t->starts, first, out->n);
-		bert_forward(b, t->pieces.ids, t->starts + first, end - first, vectors, scratch);
+		rows = t->starts[end] - t->starts[first];
+		if (words == STATIC)
+			bert_static(b, t->pieces.ids + t->starts[first], rows, vectors);
+		else
+			bert_forward(b, t->pieces.ids, t->starts + first, end - first, vectors, scratch);
 		for (size_t i = first; i < end && !bad; i++)
 			bad = keep_words(out, i, vectors + (t->starts[i] - t->starts[first]) * width, e);
 		cli_progress_step(&progress, (double)end, NULL);
@@ -176,20 +183,7 @@ static int encode(
 	return bad ? -1 : 0;
 }
 
-/* The last part of a path, so that outputs do not depend on where a model is kept. */
-static void name_options(char *options, size_t size, const char *dir)
-{
-	size_t len = strlen(dir);
-
-	while (len > 1 && dir[len - 1] == '/')
-		len--;
-	size_t first = len;
-	while (first && dir[first - 1] != '/')
-		first--;
-	snprintf(options, size, "--model %.*s", (int)(len - first), dir + first);
-}
-
-static int run(const struct cli *c, const char *dir, struct err *e)
+static int run(const struct cli *c, const char *dir, enum words words, struct err *e)
 {
 	struct sentences s = {0};
 	struct vocab v = {0};
@@ -197,13 +191,15 @@ static int run(const struct cli *c, const char *dir, struct err *e)
 	struct tokens t = {0};
 	struct text out = {0};
 	char options[512];
-	int bad;
+	int bad, length;
+	const char *name = path_last(dir, &length); /* so that bytes do not depend on where a model is */
 
-	name_options(options, sizeof options, dir);
+	snprintf(options, sizeof options, "--model %.*s%s", length, name,
+		words == STATIC ? " --words static" : "");
 	bad = vocab_read(&v, dir, e) || sentences_read(&s, c->operand_count ? c->operands[0] : "-", e) ||
 	      bert_model_read(&b, dir, e) || check_vocab(&v, &b, dir, e) ||
 	      tokenise(c, &t, &s, &v, (size_t)b.positions, e) || alloc_text(&out, &s, &t, b.width, e) ||
-	      encode(c, &out, &b, &t, e);
+	      encode(c, &out, &b, &t, words, e);
 	if (!bad) {
 		cli_note(c, 1, "%zu sentences, %lld words of width %d", out.n, (long long)out.offsets[out.n],
 			out.width);
@@ -220,9 +216,12 @@ static int run(const struct cli *c, const char *dir, struct err *e)
 int main(int argc, char **argv)
 {
 	const char *model = NULL;
+	int words = CONTEXTUAL;
 	const struct cli_option options[] = {
 		{"model", 0, CLI_STRING, &model, "DIR",
 			"the encoder's folder: config.json, a tokenizer and *.safetensors (required)", 0, 0},
+		{"words", 0, CLI_CHOICE, &words, "contextual|static",
+			"as the sentence makes them or the vocabulary has them (default contextual)", 0, 0},
 		{0}};
 	const struct cli_tool tool = {.name = "text-encode",
 		.operands = "[SENTENCES]",
@@ -238,7 +237,7 @@ int main(int argc, char **argv)
 	if (!model)
 		cli_usage(&c, "--model DIR is required");
 	cli_refuse_terminal(&c);
-	if (run(&c, model, &e))
+	if (run(&c, model, (enum words)words, &e))
 		return cli_fail(&c, &e);
 	return cli_done(&c);
 }

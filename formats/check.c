@@ -147,6 +147,7 @@ static int check_model(struct check *c, const char *path, struct err *e)
 		return -1;
 	c->precision = precision_name(m.precision);
 	add_fact(c, "features", (long long)m.n);
+	add_fact(c, "columns", m.layout.feature_width);
 	add_fact(c, "gaussians of the scene", (long long)m.scene_gaussians);
 	add_fact(c, "parameters", (long long)m.layout.count);
 	model_free(&m);

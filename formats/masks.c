@@ -215,6 +215,48 @@ void masks_free(struct mask_set *set)
 	*set = (struct mask_set){0};
 }
 
+int masks_pool(struct pool *p, const struct mask_set *set, const long *lines, const char *path, struct err *e)
+{
+	size_t bad, first;
+	struct pool_record *records = mem_alloc(set->n, sizeof *records, "masks", e);
+
+	*p = (struct pool){0};
+	if (!records)
+		return -1;
+	for (size_t i = 0; i < set->n; i++) {
+		const struct mask_record *r = &set->records[i];
+		records[i] = (struct pool_record){
+			r->view, r->ref, r->object, &r->mask, isnan(r->score) ? 1 : r->score};
+	}
+	int failed = pool_make(p, records, set->n, e);
+	free(records);
+	if (failed || !pool_check_sizes(p, &bad, &first))
+		return failed;
+	pool_free(p);
+	const struct mask_record *a = &set->records[bad], *b = &set->records[first];
+	return err_set(e, ERR_FORMAT, "%s:%ld: a mask of %dx%d, but view '%s' has %dx%d on line %ld",
+		file_name(path), lines[bad], a->mask.width, a->mask.height, a->view, b->mask.width,
+		b->mask.height, lines[first]);
+}
+
+int masks_views(const struct mask_set *set, const long *lines, const char *path,
+	const struct cameras *cameras, size_t *views, struct err *e)
+{
+	for (size_t i = 0; i < set->n; i++) {
+		const char *name = set->records[i].view;
+		if (i && !strcmp(name, set->records[i - 1].view)) {
+			views[i] = views[i - 1];
+			continue;
+		}
+		const struct camera *camera = cameras_find(cameras, name);
+		if (!camera)
+			return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%s'",
+				file_name(path), lines[i], name);
+		views[i] = (size_t)(camera - cameras->views);
+	}
+	return 0;
+}
+
 /* ,"key":"text" with the text escaped. */
 static int put_string(FILE *out, const char *before, const char *text, struct err *e)
 {

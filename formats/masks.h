@@ -4,7 +4,8 @@
 
 #include "base/err.h"
 #include "formats/jsonl.h"
-#include "mask/rle.h"
+#include "geom/camera.h"
+#include "mask/pool.h"
 
 #include <stdio.h>
 
@@ -31,6 +32,14 @@ int masks_read(struct mask_set *set, const char *path, struct err *e);
 /* As masks_read; *lines (n) gets the line of each record. free() it. */
 int masks_read_lines(struct mask_set *set, long **lines, const char *path, struct err *e);
 void masks_free(struct mask_set *set);
+
+/* The records of a file pooled, without a score as if it were 1. ERR_FORMAT where masks of a view differ in
+ * size. */
+int masks_pool(
+	struct pool *p, const struct mask_set *set, const long *lines, const char *path, struct err *e);
+/* views (n): the number of each record's view. ERR_FORMAT where there is none of the name. */
+int masks_views(const struct mask_set *set, const long *lines, const char *path,
+	const struct cameras *cameras, size_t *views, struct err *e);
 
 /* One line. Keys in the order view, ref, object, score, segmentation; absent ones left out. */
 int masks_put(FILE *out, const struct mask_record *r, struct err *e);

@@ -118,8 +118,10 @@ static int read_rows(struct model *m, const struct safetensors *st, struct err *
 
 static int read_features(struct model *m, const struct safetensors *st, struct err *e)
 {
-	m->features = mem_alloc(m->n, sizeof(float) * REFER_X, st->path, e);
-	return m->features ? precision_get(st, "features", m->precision, PRECISION_COLUMNS, m->n, REFER_X,
+	const size_t width = (size_t)m->layout.feature_width;
+
+	m->features = mem_alloc(m->n, sizeof(float) * width, st->path, e);
+	return m->features ? precision_get(st, "features", m->precision, PRECISION_COLUMNS, m->n, width,
 				     m->features, e)
 			   : -1;
 }
@@ -168,31 +170,35 @@ static int read_precision(struct model *m, const struct safetensors *st, struct 
 	return 0;
 }
 
-/* The width of the words that the model takes, which all other shapes follow from; -1 with *e. */
-static int read_text_width(const struct model *m, const struct safetensors *st, struct err *e)
+/* What the first layer of a network takes, which all other shapes follow from: 1 to `most` columns; -1 with
+ * *e. */
+static int read_width(const struct model *m, const struct safetensors *st, const char *name, int rows,
+	int most, struct err *e)
 {
-	const struct st_tensor *first = safetensors_need(
-		st, "text.0.weight", precision_dtype(m->precision), 2, (int64_t[]){REFER_T1, -1}, e);
+	const struct st_tensor *first =
+		safetensors_need(st, name, precision_dtype(m->precision), 2, (int64_t[]){rows, -1}, e);
 
 	if (!first)
 		return -1;
-	if (first->shape[1] < 1 || first->shape[1] > 65536)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'text.0.weight': %lld columns, expected 1 to 65536",
-			st->path, (long long)first->shape[1]);
+	if (first->shape[1] < 1 || first->shape[1] > most)
+		return err_set(e, ERR_FORMAT, "%s: tensor '%s': %lld columns, expected 1 to %d", st->path,
+			name, (long long)first->shape[1], most);
 	return (int)first->shape[1];
 }
 
 static int read_all(struct model *m, const struct safetensors *st, struct err *e)
 {
-	int interaction, similarity, width;
+	int interaction, similarity, text, feature;
 
 	if (safetensors_need_format(st, "refer.model", VERSION_READ, e) ||
 		read_choice(st, "interaction", refer_interaction_parse, &interaction, e) ||
 		read_choice(st, "similarity", refer_similarity_parse, &similarity, e) ||
-		read_precision(m, st, e) || (width = read_text_width(m, st, e)) < 0)
+		read_precision(m, st, e) ||
+		(text = read_width(m, st, "text.0.weight", REFER_T1, 65536, e)) < 0 ||
+		(feature = read_width(m, st, "feature.0.weight", REFER_XH, REFER_MAX_X, e)) < 0)
 		return -1;
 	m->similarity = (enum refer_similarity)similarity;
-	refer_layout_init(&m->layout, (enum refer_interaction)interaction, width);
+	refer_layout_init(&m->layout, (enum refer_interaction)interaction, text, feature);
 	return read_bounds(m, st, e) || read_rows(m, st, e) || read_features(m, st, e) ||
 			       read_parameters(m, st, e)
 		       ? -1
@@ -266,8 +272,8 @@ static int add_tensors(struct parts *p, const struct model *m, const char *path,
 			.shape = {(int64_t)m->n},
 			.data = m->octree.codes};
 	p->n++;
-	if (precision_put(&p->features, "features", m->precision, PRECISION_COLUMNS, m->n, REFER_X,
-		    m->features, path, e))
+	if (precision_put(&p->features, "features", m->precision, PRECISION_COLUMNS, m->n,
+		    (size_t)m->layout.feature_width, m->features, path, e))
 		return -1;
 	add_matrix(p, &p->features);
 	return add_parameters(p, m, path, e);

@@ -18,7 +18,7 @@ struct model {
 	int has_leaves;		  /* a row is of a leaf, or of one Gaussian */
 	int32_t *ids;		  /* (M) the Gaussians, rising indices in the scene; NULL with leaves */
 	struct octree octree;	  /* of M leaves */
-	float *features;	  /* (M,16) */
+	float *features;	  /* (M, layout.feature_width) */
 	float *parameters;	  /* (layout.count) */
 	double low[3], high[3];	  /* what the scene's means are scaled to [-1,1] by */
 };

@@ -51,17 +51,12 @@ static int add_view(struct training *t, const char *weights, const struct camera
 {
 	struct weights *w = &t->weights[t->view_count];
 
-	if (weights_open(w, weights, c->name, e))
+	if (weights_open(w, weights, c->name, t->scene.splats.n, e))
 		return -1;
-	t->view_count++;
-	if (w->gaussians != (int64_t)t->scene.splats.n)
-		return err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, this one has %zu",
-			w->file.path, (long long)w->gaussians, t->scene.splats.n);
-	const size_t pixels = (size_t)w->width * (size_t)w->height;
-	t->cameras[t->view_count - 1] = camera_resize(c, w->width, w->height);
-	t->views[t->view_count - 1].weights =
-		(struct view_weights){pixels, t->scene.splats.n, w->indptr, w->index, w->weight};
-	t->pixels = pixels > t->pixels ? pixels : t->pixels;
+	const struct view_weights view = weights_view(w);
+	t->cameras[t->view_count] = camera_resize(c, w->width, w->height);
+	t->views[t->view_count++].weights = view;
+	t->pixels = view.pixels > t->pixels ? view.pixels : t->pixels;
 	return 0;
 }
 

@@ -140,14 +140,28 @@ int weights_open_file(struct weights *w, const char *path, struct err *e)
 	return -1;
 }
 
-int weights_open(struct weights *w, const char *dir, const char *view, struct err *e)
+int weights_open(struct weights *w, const char *dir, const char *view, size_t gaussians, struct err *e)
 {
 	char *path = file_join(dir, view, ".safetensors", e);
 
 	*w = (struct weights){0};
 	int bad = path ? weights_open_file(w, path, e) : -1;
+	if (!bad && w->gaussians != (int64_t)gaussians) {
+		bad = err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, this one has %zu", path,
+			(long long)w->gaussians, gaussians);
+		weights_close(w);
+	}
 	free(path);
 	return bad;
+}
+
+int weights_exist(const char *dir, const char *view, struct err *e)
+{
+	char *path = file_join(dir, view, ".safetensors", e);
+	int found = path ? file_exists(path) : -1;
+
+	free(path);
+	return found;
 }
 
 void weights_close(struct weights *w)
@@ -155,6 +169,12 @@ void weights_close(struct weights *w)
 	safetensors_close(&w->file);
 	free(w->owned);
 	*w = (struct weights){0};
+}
+
+struct view_weights weights_view(const struct weights *w)
+{
+	return (struct view_weights){
+		(size_t)w->width * (size_t)w->height, (size_t)w->gaussians, w->indptr, w->index, w->weight};
 }
 
 /* The weights as the file has them: its own, or a converted copy in *owned. */

@@ -5,6 +5,7 @@
 #include "base/err.h"
 #include "formats/precision.h"
 #include "formats/safetensors.h"
+#include "splat/view_weights.h"
 
 #include <stdint.h>
 
@@ -25,11 +26,16 @@ struct weights {
 #define WEIGHTS_U8_LEAST (0.5 / 255)
 
 /* Maps and checks DIR/VIEW.safetensors: indptr rises from 0 to nnz, ids in [0,gaussians), weights finite in
- * [0,1]. */
-int weights_open(struct weights *w, const char *dir, const char *view, struct err *e);
-/* The same by its path; "-" is stdin. */
+ * [0,1]. The scene has that many Gaussians; weights of another are an error. */
+int weights_open(struct weights *w, const char *dir, const char *view, size_t gaussians, struct err *e);
+/* The same by its path and of any scene; "-" is stdin. */
 int weights_open_file(struct weights *w, const char *path, struct err *e);
+/* 1 where DIR/VIEW.safetensors is there, 0 where it is not, -1 with *e. */
+int weights_exist(const char *dir, const char *view, struct err *e);
 void weights_close(struct weights *w);
+
+/* What the library blends with; referred to. */
+struct view_weights weights_view(const struct weights *w);
 
 /* Writes DIR/VIEW.safetensors, with the weights in w's precision; u8 has whole numbers of 1/255. */
 int weights_write(

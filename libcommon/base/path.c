@@ -61,3 +61,16 @@ char *path_relative(const char *dir, const char *target, struct err *e)
 	free(folder);
 	return out;
 }
+
+const char *path_last(const char *path, int *length)
+{
+	size_t end = strlen(path);
+
+	while (end > 1 && path[end - 1] == '/')
+		end--;
+	size_t first = end;
+	while (first && path[first - 1] != '/')
+		first--;
+	*length = (int)(end - first);
+	return path + first;
+}

@@ -1,98 +1,33 @@
 #include "mask/score.h"
 
 #include "base/mem.h"
+#include "mask/score_lookup.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 const double score_cut[3] = {0.25, 0.5, 0.75};
 
-/* What a record is looked up by. */
-struct name {
-	const char *view, *name;
-	size_t index;
-};
-
-static int order_texts(const struct name *a, const struct name *b)
-{
-	int order = strcmp(a->view, b->view);
-
-	return order ? order : strcmp(a->name, b->name);
-}
-
-static int order_names(const void *a, const void *b)
-{
-	const struct name *p = a, *q = b;
-	int order = order_texts(p, q);
-
-	return order ? order : (p->index > q->index) - (p->index < q->index);
-}
-
-struct names {
-	size_t n;
-	struct name *items; /* sorted */
-};
-
-enum lookup { BY_REF, BY_OBJECT, BY_VIEW, LOOKUPS };
-
-static int names_make(
-	struct names *list, const struct score_mask *masks, size_t n, enum lookup by, struct err *e)
-{
-	*list = (struct names){0};
-	list->items = mem_alloc(n, sizeof *list->items, "masks", e);
-	if (!list->items)
-		return -1;
-	for (size_t i = 0; i < n; i++) {
-		const char *name = by == BY_REF ? masks[i].ref : by == BY_OBJECT ? masks[i].object : "";
-		if (name)
-			list->items[list->n++] = (struct name){masks[i].view, name, i};
-	}
-	if (list->n)
-		qsort(list->items, list->n, sizeof *list->items, order_names);
-	return 0;
-}
-
-/* The range [*begin,*end) of a name; empty where it is not listed (or NULL). */
-static void names_find(
-	const struct names *list, const char *view, const char *name, size_t *begin, size_t *end)
-{
-	struct name key = {view, name, 0};
-	size_t low = 0, high = name ? list->n : 0;
-
-	while (low < high) {
-		size_t middle = low + (high - low) / 2;
-		if (order_texts(&list->items[middle], &key) < 0)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	*begin = *end = low;
-	while (name && *end < list->n && !order_texts(&list->items[*end], &key))
-		++*end;
-}
-
 int score_duplicate(const struct score_mask *masks, size_t n, size_t *earlier, size_t *later, struct err *e)
 {
 	int found = 0;
 
-	for (enum lookup by = BY_REF; by <= BY_OBJECT; by++) {
-		struct names list;
-		if (names_make(&list, masks, n, by, e))
+	/* sentences of one object share it rightly */
+	static const enum score_lookup_by keys[] = {SCORE_BY_REF, SCORE_BY_BARE_OBJECT};
+
+	for (int k = 0; k < 2; k++) {
+		struct score_lookup list;
+		if (score_lookup_make(&list, masks, n, keys[k], e))
 			return -1;
-		const struct name *before = NULL;
-		for (size_t i = 0; i < list.n; i++) {
-			const struct name *one = &list.items[i];
-			/* sentences of one object share it rightly */
-			if (by == BY_OBJECT && masks[one->index].ref)
-				continue;
-			if (before && !order_texts(before, one) && (!found || one->index < *later)) {
+		for (size_t i = 1; i < list.n; i++) {
+			const struct score_name *before = &list.items[i - 1], *one = &list.items[i];
+			if (!score_name_order(before, one) && (!found || one->index < *later)) {
 				*earlier = before->index;
 				*later = one->index;
 				found = 1;
 			}
-			before = one;
 		}
-		free(list.items);
+		score_lookup_free(&list);
 	}
 	return found;
 }
@@ -109,8 +44,8 @@ enum { IS_MET = 1, IS_NAMED = 2 /* by a prediction's own ref */ };
 struct match {
 	struct score_pairs *pairs;
 	const struct score_mask *truth;
-	struct names lists[LOOKUPS]; /* of the truth */
-	unsigned char *state;	     /* of each truth */
+	struct score_lookup lists[SCORE_LOOKUPS]; /* of the truth */
+	unsigned char *state;			  /* of each truth */
 };
 
 static int add_pair(struct match *m, size_t t, const struct score_mask *prediction, struct err *e)
@@ -123,6 +58,9 @@ static int add_pair(struct match *m, size_t t, const struct score_mask *predicti
 		return -1;
 	m->pairs->items = items;
 	m->pairs->items[m->pairs->n] = (struct score_pair){.object = object ? object : truth->ref,
+		.ref = prediction ? prediction->ref : NULL,
+		.truth_ref = truth->ref,
+		.truth_index = t,
 		.place = m->pairs->n,
 		.prediction = prediction ? prediction->mask : NULL,
 		.truth = truth->mask};
@@ -133,23 +71,15 @@ static int add_pair(struct match *m, size_t t, const struct score_mask *predicti
 
 static int match_ref(struct match *m, const struct score_mask *p, struct err *e)
 {
-	size_t begin, end, best;
+	size_t best;
+	int found = score_lookup_best(m->lists, p->view, p->ref, p->object, &best);
 
-	names_find(&m->lists[BY_REF], p->view, p->ref, &begin, &end);
-	if (begin < end) {
-		best = m->lists[BY_REF].items[begin].index;
-		m->state[best] |= IS_NAMED;
-		return add_pair(m, best, p, e);
-	}
-	names_find(&m->lists[BY_OBJECT], p->view, p->object, &begin, &end);
-	if (begin == end) {
+	if (!found) {
 		m->pairs->unmatched++;
 		return 0;
 	}
-	best = m->lists[BY_OBJECT].items[begin].index;
-	for (size_t i = begin; i < end && m->truth[best].ref; i++)
-		if (!m->truth[m->lists[BY_OBJECT].items[i].index].ref)
-			best = m->lists[BY_OBJECT].items[i].index;
+	if (found == 1)
+		m->state[best] |= IS_NAMED;
 	return add_pair(m, best, p, e);
 }
 
@@ -157,9 +87,9 @@ static int match_object(struct match *m, const struct score_mask *p, struct err 
 {
 	size_t begin, end, met = 0;
 
-	names_find(&m->lists[BY_OBJECT], p->view, p->object, &begin, &end);
+	score_lookup_find(&m->lists[SCORE_BY_OBJECT], p->view, p->object, &begin, &end);
 	for (size_t i = begin; i < end; i++) {
-		size_t t = m->lists[BY_OBJECT].items[i].index;
+		size_t t = m->lists[SCORE_BY_OBJECT].items[i].index;
 		if (m->state[t] & IS_NAMED)
 			continue;
 		if (add_pair(m, t, p, e))
@@ -180,7 +110,7 @@ static int match_all(struct match *m, size_t truth_n, const struct score_mask *p
 			size_t begin, end;
 			if ((p->ref != NULL) != with_ref)
 				continue;
-			names_find(&m->lists[BY_VIEW], p->view, "", &begin, &end);
+			score_lookup_find(&m->lists[SCORE_BY_VIEW], p->view, "", &begin, &end);
 			if (begin == end)
 				m->pairs->unlabelled++;
 			else if (with_ref ? match_ref(m, p, e) : match_object(m, p, e))
@@ -199,15 +129,15 @@ int score_match(struct score_pairs *pairs, const struct score_mask *truth, size_
 	int bad = 0;
 
 	*pairs = (struct score_pairs){0};
-	for (int by = 0; by < LOOKUPS && !bad; by++)
-		bad = names_make(&m.lists[by], truth, truth_n, (enum lookup)by, e);
+	for (int by = 0; by < SCORE_LOOKUPS && !bad; by++)
+		bad = score_lookup_make(&m.lists[by], truth, truth_n, (enum score_lookup_by)by, e);
 	m.state = mem_zalloc(truth_n, 1, "masks", e);
 	if (!m.state)
 		bad = -1;
 	if (!bad)
 		bad = match_all(&m, truth_n, predictions, prediction_n, e);
-	for (int by = 0; by < LOOKUPS; by++)
-		free(m.lists[by].items);
+	for (int by = 0; by < SCORE_LOOKUPS; by++)
+		score_lookup_free(&m.lists[by]);
 	free(m.state);
 	if (bad)
 		score_pairs_free(pairs);
@@ -236,6 +166,53 @@ int score_measure(struct score_pair *pair, struct err *e)
 	pair->iou = pair->either ? (double)pair->intersection / (double)pair->either : 1;
 	rle_free(&resized);
 	return 0;
+}
+
+int score_measure_all(struct score_pairs *pairs, struct err *e)
+{
+	const ptrdiff_t n = (ptrdiff_t)pairs->n;
+	ptrdiff_t first_bad = n;
+
+#pragma omp parallel for schedule(dynamic, 64)
+	for (ptrdiff_t i = 0; i < n; i++) {
+		struct err own;
+		if (!score_measure(&pairs->items[i], &own))
+			continue;
+#pragma omp critical(score_measure_failed)
+		if (i < first_bad) {
+			first_bad = i;
+			*e = own;
+		}
+	}
+	return first_bad < n ? -1 : 0;
+}
+
+int score_keep_views(struct score_mask *truth, size_t *n, const struct score_mask *predictions,
+	size_t prediction_n, const struct score_mask *others, size_t other_n, struct err *e)
+{
+	const struct score_mask *sides[2] = {predictions, others};
+	const size_t counts[2] = {prediction_n, other_n};
+	struct score_lookup views[2] = {{0}, {0}};
+	size_t kept = 0;
+	int bad = 0;
+
+	for (int k = 0; k < 2 && !bad; k++)
+		bad = score_lookup_make(&views[k], sides[k], counts[k], SCORE_BY_VIEW, e);
+	for (size_t i = 0; i < *n && !bad; i++) {
+		int is_kept = 0;
+		for (int k = 0; k < 2 && !is_kept; k++) {
+			size_t begin, end;
+			score_lookup_find(&views[k], truth[i].view, "", &begin, &end);
+			is_kept = begin < end;
+		}
+		if (is_kept)
+			truth[kept++] = truth[i];
+	}
+	if (!bad)
+		*n = kept;
+	for (int k = 0; k < 2; k++)
+		score_lookup_free(&views[k]);
+	return bad;
 }
 
 static int order_pairs(const void *a, const void *b)

@@ -14,9 +14,12 @@ struct score_mask {
 
 struct score_pair {
 	const char *object;	      /* of the truth, else of the prediction, else the truth's ref */
+	const char *ref;	      /* of the prediction; NULL where it has none */
+	const char *truth_ref;	      /* of the truth; NULL where it has none */
 	const struct rle *prediction; /* NULL: no prediction for this truth */
 	const struct rle *truth;
-	size_t place; /* in the order of matching */
+	size_t truth_index; /* among the truth that was matched */
+	size_t place;	    /* in the order of matching */
 	/* filled by score_measure */
 	size_t intersection, either; /* |prediction and truth|, |prediction or truth| */
 	double iou;
@@ -57,6 +60,11 @@ void score_pairs_free(struct score_pairs *pairs);
 
 /* Fills a pair's numbers. A prediction of another size is brought to the truth's by rle_resize. */
 int score_measure(struct score_pair *pair, struct err *e);
+int score_measure_all(struct score_pairs *pairs, struct err *e);
+
+/* Drops truth of views that neither list has a record of; *n becomes the number of those left, in order. */
+int score_keep_views(struct score_mask *truth, size_t *n, const struct score_mask *predictions,
+	size_t prediction_n, const struct score_mask *others, size_t other_n, struct err *e);
 
 /* By object name, then by place: the pairs of an object then lie side by side. */
 void score_sort(struct score_pair *pairs, size_t n);

@@ -258,3 +258,11 @@ void bert_forward(
 		add_and_normalise(b, out, w.query, rows, &layer->norm);
 	}
 }
+
+void bert_static(const struct bert *b, const int32_t *ids, size_t n, float *out)
+{
+	const size_t width = (size_t)b->width;
+
+	for (size_t k = 0; k < n; k++)
+		memcpy(out + k * width, b->word + (size_t)ids[k] * width, width * sizeof *out);
+}

@@ -61,4 +61,8 @@ int bert_scratch(const struct bert *b, size_t rows, size_t longest, size_t *floa
 void bert_forward(
 	const struct bert *b, const int32_t *ids, const size_t *starts, size_t n, float *out, float *scratch);
 
+/* What a token is before its sentence is read: out (n,width) = word[ids[k]], nothing added and not
+ * normalised. Kernel: cannot fail. */
+void bert_static(const struct bert *b, const int32_t *ids, size_t n, float *out);
+
 #endif

@@ -38,12 +38,13 @@ struct block_model {
 	int has_positions; /* scores and word positions use r: uq */
 	int has_words;	   /* word positions c_j: y, beta */
 	int is_normalised; /* responses are divided by sqrt(z^T G z + eps) */
+	int feature_width; /* d_r, channels of x */
 	int words;	   /* n over all sentences of the step; 0 without attention */
 	int sentences;	   /* S */
 	const int *first;  /* (S+1) first word of each sentence */
 	int z_size;	   /* channels of z for the sentence with most words */
 
-	const float *feature0, *feature0_bias, *feature0_t;    /* (32,16), (32), (16,32) */
+	const float *feature0, *feature0_bias, *feature0_t;    /* (32,d_r), (32), (d_r,32) */
 	const float *feature1, *feature1_bias, *feature1_t;    /* (64,32), (64), (32,64) */
 	const float *position0, *position0_bias;	       /* (16,3), (16) */
 	const float *position1, *position1_bias, *position1_t; /* (64,16), (64), (16,64) */
@@ -67,7 +68,7 @@ struct block_model {
 
 /* Per-Gaussian arrays, panels; NULL where the interaction has no use for them. */
 struct block_arrays {
-	const float *x;	       /* 16 channels */
+	const float *x;	       /* d_r channels */
 	const float *position; /* 3 channels */
 	float *g, *r;	       /* 65 channels */
 	float *beta;	       /* n channels: logits l, then dl */
@@ -75,7 +76,7 @@ struct block_arrays {
 	float *m, *sigma;      /* S channels: responses; 1/sqrt(z^T G z + eps) */
 	float *dm, *top;       /* S channels: dL/dm; 1/k for the top set, else 0 */
 	float *dg, *dr;	       /* 65 channels, only where normalised */
-	float *dx;	       /* 16 channels */
+	float *dx;	       /* d_r channels */
 };
 
 /* Sums over the Gaussians of a chunk of blocks; float32 within, added up in double by the caller. */

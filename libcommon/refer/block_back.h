@@ -234,7 +234,7 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 	struct block_sums *sums, float *scratch)
 {
 	const size_t first = block * BLOCK_PANELS;
-	const int n = b->words;
+	const int n = b->words, width = b->feature_width;
 	float *dg = scratch, *dr = dg + BLOCK_PANELS * BLOCK_G * L,
 	      *hidden0 = dr + BLOCK_PANELS * BLOCK_G * L;
 	float *dhidden0 = hidden0 + BLOCK_PANELS * REFER_XH * L,
@@ -273,19 +273,19 @@ static void hidden_back(const struct block_model *b, const struct block_arrays *
 		relu_back(d, panel_of(a->g, BLOCK_G, panel), REFER_H);
 		float *h0 = panel_at(hidden0, REFER_XH, (size_t)p),
 		      *d0 = panel_at(dhidden0, REFER_XH, (size_t)p);
-		product_relu(h0, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel),
-			b->feature0_bias, NULL);
+		product_relu(h0, b->feature0, REFER_XH, width, panel_of(a->x, width, panel), b->feature0_bias,
+			NULL);
 		product_set(d0, b->feature1_t, REFER_XH, REFER_H, REFER_H, d);
 		relu_back(d0, h0, REFER_XH);
-		product_set(panel_at(a->dx, REFER_X, panel), b->feature0_t, REFER_X, REFER_XH, REFER_XH, d0);
+		product_set(panel_at(a->dx, width, panel), b->feature0_t, width, REFER_XH, REFER_XH, d0);
 	}
 	if (b->has_words)
 		outer(sums->dy, n, BLOCK_G, BLOCK_G, panel_of(a->beta, n, first), n,
 			panel_of(a->g, BLOCK_G, first), BLOCK_G, BLOCK_PANELS);
 	outer(sums->dfeature1, REFER_H, REFER_XH, REFER_XH, dg, BLOCK_G, hidden0, REFER_XH, BLOCK_PANELS);
 	sum_channels(sums->dfeature1_bias, REFER_H, dg, BLOCK_G, BLOCK_PANELS);
-	outer(sums->dfeature0, REFER_XH, REFER_X, REFER_X, dhidden0, REFER_XH, panel_of(a->x, REFER_X, first),
-		REFER_X, BLOCK_PANELS);
+	outer(sums->dfeature0, REFER_XH, width, width, dhidden0, REFER_XH, panel_of(a->x, width, first),
+		width, BLOCK_PANELS);
 	sum_channels(sums->dfeature0_bias, REFER_XH, dhidden0, REFER_XH, BLOCK_PANELS);
 	if (!b->uses_position)
 		return;

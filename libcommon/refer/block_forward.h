@@ -85,10 +85,11 @@ static void hidden(const struct block_model *b, const struct block_arrays *a, si
 	struct block_sums *sums, float *scratch)
 {
 	const size_t first = block * BLOCK_PANELS;
+	const int width = b->feature_width;
 
 	for (size_t panel = first; panel < first + BLOCK_PANELS; panel++) {
 		float *g = panel_at(a->g, BLOCK_G, panel);
-		product_relu(scratch, b->feature0, REFER_XH, REFER_X, panel_of(a->x, REFER_X, panel),
+		product_relu(scratch, b->feature0, REFER_XH, width, panel_of(a->x, width, panel),
 			b->feature0_bias, NULL);
 		product_relu(g, b->feature1, REFER_H, REFER_XH, scratch, b->feature1_bias,
 			panel_ahead(b, a->g, panel + 1));

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
+#include "splat/lift.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -41,10 +42,12 @@ static void direction(int object, float d[K])
 		d[k] = rng_below(&r, 2) ? 0.25f : -0.25f; /* 1/sqrt(K) */
 }
 
-/* The sum of a view's masks at each pixel: at (P,K). */
+/* The sum of a view's masks at each pixel: at (K,P). */
 static void sum_masks(const struct train_view *v, const int *objects, float *at)
 {
-	memset(at, 0, sizeof *at * K * v->weights.pixels);
+	const size_t pixels = v->weights.pixels;
+
+	memset(at, 0, sizeof *at * K * pixels);
 	for (int i = 0; i < v->count; i++) {
 		const int object = objects[v->sentences[i]];
 		int same = 0;
@@ -54,41 +57,38 @@ static void sum_masks(const struct train_view *v, const int *objects, float *at)
 		direction(object, d);
 		for (int k = 0; k < K; k++)
 			d[k] /= (float)same;
-		for (size_t p = 0; p < v->weights.pixels; p++) {
+		for (size_t p = 0; p < pixels; p++) {
 			if (!(v->masks[i][p / 8] >> p % 8 & 1))
 				continue;
-			for (int k = 0; k < K; k++)
-				at[p * K + (size_t)k] += d[k];
+			for (size_t k = 0; k < K; k++)
+				at[k * pixels + p] += d[k];
 		}
 	}
 }
 
 int detail_signatures(const struct train_view *views, size_t view_count, const int *objects,
-	size_t scene_gaussians, float *weight, float *signature, struct err *e)
+	size_t scene_gaussians, const double *weight, float *signature, struct err *e)
 {
 	size_t pixels = 0;
 
 	for (size_t v = 0; v < view_count; v++)
 		pixels = views[v].weights.pixels > pixels ? views[v].weights.pixels : pixels;
 	float *at = mem_alloc(pixels, K * sizeof *at, "signatures", e);
-	if (!at)
+	float *sum = mem_zalloc(scene_gaussians, lift_groups(K) * VIEW_GROUP * sizeof *sum, "signatures", e);
+	if (!at || !sum) {
+		free(at);
+		free(sum);
 		return -1;
-	memset(weight, 0, sizeof *weight * scene_gaussians);
-	memset(signature, 0, sizeof *signature * K * scene_gaussians);
+	}
 	for (size_t v = 0; v < view_count; v++) {
-		const struct view_weights *w = &views[v].weights;
 		sum_masks(&views[v], objects, at);
-		for (size_t p = 0; p < w->pixels; p++)
-			for (int64_t i = w->indptr[p]; i < w->indptr[p + 1]; i++) {
-				float *to = signature + (size_t)w->index[i] * K;
-				weight[w->index[i]] += w->weight[i];
-				for (size_t k = 0; k < K; k++)
-					to[k] += w->weight[i] * at[p * K + k];
-			}
+		lift_add(&views[v].weights, at, K, sum);
 	}
 	for (size_t i = 0; i < scene_gaussians; i++)
-		for (size_t k = 0; k < K && weight[i] > 0; k++)
-			signature[i * K + k] /= weight[i];
+		for (size_t k = 0; k < K; k++)
+			signature[i * K + k] =
+				weight[i] > 0 ? sum[lift_index(scene_gaussians, k, i)] / (float)weight[i] : 0;
 	free(at);
+	free(sum);
 	return 0;
 }

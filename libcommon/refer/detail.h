@@ -16,10 +16,10 @@
 void detail_footprints(
 	const float *means, size_t n, const struct camera *cameras, size_t count, float *footprint);
 
-/* weight (scene_gaussians): each Gaussian's weight over all views; signature (scene_gaussians,
- * OCTREE_SIGNATURE): the weighted mean over its pixels of the sum of the masks there, every object with a
- * random direction of length 1 (a mask counts by its share of the object's masks in the view). */
+/* signature (scene_gaussians, OCTREE_SIGNATURE): the weighted mean over a Gaussian's pixels of the sum of the
+ * masks there, every object with a random direction of length 1 (a mask counts by its share of the object's
+ * masks in the view). weight (scene_gaussians) is train_weights's. */
 int detail_signatures(const struct train_view *views, size_t view_count, const int *objects,
-	size_t scene_gaussians, float *weight, float *signature, struct err *e);
+	size_t scene_gaussians, const double *weight, float *signature, struct err *e);
 
 #endif

@@ -125,6 +125,7 @@ void fold_begin(struct fold *f, const float *parameters, size_t gaussians, const
 		.has_positions = interaction == REFER_ATTENTION_FP || has_words(f),
 		.has_words = has_words(f),
 		.is_normalised = is_projected(f) || f->similarity == REFER_COSINE,
+		.feature_width = f->layout->feature_width,
 		.words = has_attention(f) ? f->n : 0,
 		.sentences = sentences,
 		.first = f->first,
@@ -134,7 +135,7 @@ void fold_begin(struct fold *f, const float *parameters, size_t gaussians, const
 		b->z_size = z_channels(f, s) > b->z_size ? z_channels(f, s) : b->z_size;
 	b->feature0 = tensor_of(f, parameters, FEATURE_0_WEIGHT);
 	b->feature0_bias = tensor_of(f, parameters, FEATURE_0_BIAS);
-	b->feature0_t = transposed(f, b->feature0, REFER_XH, REFER_X);
+	b->feature0_t = transposed(f, b->feature0, REFER_XH, b->feature_width);
 	b->feature1 = tensor_of(f, parameters, FEATURE_1_WEIGHT);
 	b->feature1_bias = tensor_of(f, parameters, FEATURE_1_BIAS);
 	b->feature1_t = transposed(f, b->feature1, H, REFER_XH);

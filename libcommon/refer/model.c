@@ -44,7 +44,8 @@ int refer_uses_position(enum refer_interaction i)
 	return i != REFER_NONE && i != REFER_ATTENTION;
 }
 
-void refer_layout_init(struct refer_layout *l, enum refer_interaction interaction, int text_width)
+void refer_layout_init(
+	struct refer_layout *l, enum refer_interaction interaction, int text_width, int feature_width)
 {
 	const int position = refer_uses_position(interaction), projected = interaction == REFER_PCMI_PROJ;
 	const struct {
@@ -54,7 +55,7 @@ void refer_layout_init(struct refer_layout *l, enum refer_interaction interactio
 		{"text.0.weight", "text.0.bias", REFER_T1, text_width, 1},
 		{"text.1.weight", "text.1.bias", REFER_T2, REFER_T1, 1},
 		{"text.2.weight", "text.2.bias", REFER_D, REFER_T2, 1},
-		{"feature.0.weight", "feature.0.bias", REFER_XH, REFER_X, 1},
+		{"feature.0.weight", "feature.0.bias", REFER_XH, feature_width, 1},
 		{"feature.1.weight", "feature.1.bias", REFER_H, REFER_XH, 1},
 		{"feature.2.weight", "feature.2.bias", REFER_D, REFER_H, 1},
 		{"position.0.weight", "position.0.bias", REFER_PH, 3, position},
@@ -68,7 +69,8 @@ void refer_layout_init(struct refer_layout *l, enum refer_interaction interactio
 		{"norm.weight", "norm.bias", REFER_D, 1, projected},
 	};
 
-	*l = (struct refer_layout){.interaction = interaction, .text_width = text_width};
+	*l = (struct refer_layout){
+		.interaction = interaction, .text_width = text_width, .feature_width = feature_width};
 	for (int i = 0; i < REFER_TENSORS / 2; i++) {
 		int rows = layers[i].present ? layers[i].out : 0;
 		l->tensors[2 * i].name = layers[i].weight;

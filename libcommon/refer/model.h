@@ -5,7 +5,7 @@
  * linear layer W x + b with W (out,in) row-major.
  *   w_j  = MLP_t(BERT word j)      D_text-512-256-128, ReLU between layers
  *   e    = mean_j w_j              sentence embedding
- *   f_i  = MLP_f(x_i)              16-32-64-128, x_i the referring feature
+ *   f_i  = MLP_f(x_i)              d_r-32-64-128, x_i the referring feature, d_r wide
  *   p_i  = MLP_p(mu_i)             3-16-64-128, mu_i the mean scaled to [-1,1] by the scene's robust bounds
  * Interaction gives f'_i:
  *   none          f'_i = f_i
@@ -42,12 +42,12 @@
 #include <stddef.h>
 
 enum {
-	REFER_D = 128,	/* width of words and features */
-	REFER_H = 64,	/* last hidden width of MLP_f and MLP_p */
-	REFER_X = 16,	/* width of the referring feature */
-	REFER_XH = 32,	/* first hidden width of MLP_f */
-	REFER_PH = 16,	/* first hidden width of MLP_p */
-	REFER_T1 = 512, /* hidden widths of MLP_t */
+	REFER_D = 128,	  /* width of words and features */
+	REFER_H = 64,	  /* last hidden width of MLP_f and MLP_p */
+	REFER_MAX_X = 32, /* widest referring feature; 1 at least */
+	REFER_XH = 32,	  /* first hidden width of MLP_f */
+	REFER_PH = 16,	  /* first hidden width of MLP_p */
+	REFER_T1 = 512,	  /* hidden widths of MLP_t */
 	REFER_T2 = 256,
 };
 
@@ -114,7 +114,8 @@ enum refer_tensor {
  */
 struct refer_layout {
 	enum refer_interaction interaction;
-	int text_width; /* D_text */
+	int text_width;	   /* D_text */
+	int feature_width; /* d_r, 1 to REFER_MAX_X */
 	struct {
 		const char *name;  /* "text.0.weight" */
 		int rows, columns; /* a bias has columns 1 */
@@ -123,7 +124,8 @@ struct refer_layout {
 	size_t count; /* floats in the slab */
 };
 
-void refer_layout_init(struct refer_layout *l, enum refer_interaction interaction, int text_width);
+void refer_layout_init(
+	struct refer_layout *l, enum refer_interaction interaction, int text_width, int feature_width);
 
 /* 1 when the interaction has MLP_p. */
 int refer_uses_position(enum refer_interaction i);

@@ -55,7 +55,7 @@ static struct moments moments_of(const struct octree_points *p, const struct ent
 	struct moments m = {0};
 
 	for (size_t i = 0; i < n; i++) {
-		const double w = (double)p->weight[entries[i].point];
+		const double w = p->weight[entries[i].point];
 		const float *s = p->signature + (size_t)entries[i].point * OCTREE_SIGNATURE;
 		m.weight += w;
 		for (int k = 0; k < OCTREE_SIGNATURE; k++) {

@@ -26,7 +26,7 @@ struct octree_points {
 	const float *means;	/* (scene_gaussians,3) */
 	const int32_t *ids;	/* (n) which of them */
 	const float *finest;	/* (n) cubes no longer than this are not cut */
-	const float *weight;	/* (n) how much a point counts */
+	const double *weight;	/* (n) how much a point counts */
 	const float *signature; /* (n,OCTREE_SIGNATURE) */
 };
 

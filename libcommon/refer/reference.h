@@ -19,7 +19,7 @@ struct refer_problem {
 	const double *parameters; /* (layout->count) */
 
 	size_t n;		/* N >= 1 */
-	const double *x;	/* (N,16) referring features */
+	const double *x;	/* (N,d_r) referring features */
 	const double *position; /* (N,3) means scaled to [-1,1] */
 
 	size_t sentences;      /* R >= 1, "all sentences" of the contrast */
@@ -72,7 +72,7 @@ struct refer_result {
  * above, ERR_SYSTEM where memory is out. */
 int reference_forward(const struct refer_problem *problem, struct refer_result *out, struct err *e);
 
-/* The gradient of the loss. dx (N,16) and dparameters (layout->count) are overwritten. Returns 0, or -1 with
+/* The gradient of the loss. dx (N,d_r) and dparameters (layout->count) are overwritten. Returns 0, or -1 with
  * *e set. */
 int reference_backward(const struct refer_problem *problem, const struct refer_result *result, double *dx,
 	double *dparameters, struct err *e);

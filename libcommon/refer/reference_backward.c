@@ -365,7 +365,7 @@ int reference_backward(const struct refer_problem *problem, const struct refer_r
 		return -1;
 	pass.w = result->w + begin * D;
 	pass.dw = d.w + begin * D;
-	memset(dx, 0, problem->n * REFER_X * sizeof *dx);
+	memset(dx, 0, problem->n * (size_t)problem->layout->feature_width * sizeof *dx);
 	memset(dparameters, 0, problem->layout->count * sizeof *dparameters);
 
 	if (contrast_back(&pass, e) || respond_back(&pass, e) || interact_back(&pass, e))

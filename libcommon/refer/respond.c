@@ -28,8 +28,9 @@ int respond_all(const struct respond_model *m, const int64_t *offsets, const flo
 	const size_t *which, size_t count, float *out, struct err *e)
 {
 	const size_t width = (size_t)m->layout->text_width;
+	const int channels = m->layout->feature_width;
 	const size_t rows = m->rows->n, gaussians = m->rows->gaussians;
-	float *panels = mem_alloc(step_padded(rows), REFER_X * sizeof(float), "features", e);
+	float *panels = mem_alloc(step_padded(rows), (size_t)channels * sizeof(float), "features", e);
 	float *position = mem_alloc(rows, 3 * sizeof(float), "positions", e);
 	float *response = mem_alloc(rows, sizeof *response, "responses", e);
 	int bad = !panels || !position || !response ||
@@ -38,7 +39,7 @@ int respond_all(const struct respond_model *m, const int64_t *offsets, const flo
 			  : 0;
 
 	if (!bad)
-		step_pack(m->features, rows, panels);
+		step_pack(m->features, rows, channels, panels);
 	/* One sentence at a time: the buffers are then as large as its own words ask. */
 	for (size_t i = 0; i < count && !bad; i++) {
 		const int64_t own[2] = {0, offsets[which[i] + 1] - offsets[which[i]]};

@@ -13,7 +13,7 @@ struct respond_model {
 	const struct refer_layout *layout;
 	enum refer_similarity similarity;
 	const struct rows *rows;
-	const float *features; /* (rows,16) */
+	const float *features; /* (rows,d_r) */
 	const float *parameters;
 	const float *means;	  /* (N,3) of the rows' scene */
 	const double *low, *high; /* (3) what means are scaled by */

@@ -98,24 +98,25 @@ static void pack(const float *rows, size_t n, int channels, float *panels)
 			panels[panel_index(i, channels, c)] = rows[i * (size_t)channels + (size_t)c];
 }
 
-void step_pack(const float *x, size_t gaussians, float *panels)
+void step_pack(const float *x, size_t gaussians, int width, float *panels)
 {
-	pack(x, gaussians, REFER_X, panels);
+	pack(x, gaussians, width, panels);
 }
 
-void step_unpack(const float *panels, size_t gaussians, float *x)
+void step_unpack(const float *panels, size_t gaussians, int width, float *x)
 {
 	for (size_t i = 0; i < gaussians; i++)
-		for (int c = 0; c < REFER_X; c++)
-			x[i * REFER_X + (size_t)c] = panels[panel_index(i, REFER_X, c)];
+		for (int c = 0; c < width; c++)
+			x[i * (size_t)width + (size_t)c] = panels[panel_index(i, width, c)];
 }
 
-/* Lengths of a chunk's parts for n words, S sentences and z channels. */
-static void lay_out(size_t at[PARTS + 1], size_t n, size_t sentences, size_t z, int is_normalised)
+/* Lengths of a chunk's parts for n words, S sentences and z channels; x has `width`. */
+static void lay_out(
+	size_t at[PARTS + 1], size_t n, size_t sentences, size_t z, int is_normalised, size_t width)
 {
 	const size_t length[PARTS] = {n, n, n * G, n * G, n * G, n * G, sentences * z,
 		is_normalised ? sentences * (z + 1) * z : 0, sentences, sentences * z, (size_t)G * G,
-		REFER_XH * REFER_X, REFER_XH, REFER_H * REFER_XH, REFER_H, REFER_PH * 3, REFER_PH,
+		REFER_XH * width, REFER_XH, REFER_H * REFER_XH, REFER_H, REFER_PH * 3, REFER_PH,
 		REFER_H * REFER_PH, REFER_H};
 
 	at[0] = 0;
@@ -126,7 +127,7 @@ static void lay_out(size_t at[PARTS + 1], size_t n, size_t sentences, size_t z, 
 static void set_chunks(struct step *s)
 {
 	lay_out(s->at, (size_t)s->model.words, (size_t)s->model.sentences, (size_t)s->model.z_size,
-		s->model.is_normalised);
+		s->model.is_normalised, (size_t)s->model.feature_width);
 	for (int c = 0; c < CHUNKS; c++) {
 		float *base = s->chunks + (size_t)c * s->chunk_size;
 		float **parts[PARTS] = {&s->sums[c].l_max, &s->sums[c].l_sum, &s->sums[c].c_sum,
@@ -252,7 +253,7 @@ static int alloc_sums(struct step *s, struct err *e)
 	const int normalised = u->similarity == REFER_COSINE || u->layout->interaction == REFER_PCMI_PROJ;
 	size_t at[PARTS + 1];
 
-	lay_out(at, n, batch, z, normalised);
+	lay_out(at, n, batch, z, normalised, (size_t)u->layout->feature_width);
 	s->chunk_size = at[PARTS];
 	const struct block_model largest = {.words = s->max_words, .z_size = (int)z};
 	s->scratch_size = (block_scratch_floats(&largest) + 15) / 16 * 16;

@@ -53,10 +53,11 @@ enum step_phase {
  * phase's. */
 void step_watch(struct step *s, void (*ended)(void *data, enum step_phase phase), void *data);
 
-/* Referring features are kept in panels (refer/block.h): N padded to step_padded(N), 16 channels. */
+/* Referring features are kept in panels (refer/block.h): N padded to step_padded(N), d_r channels (`width`
+ * below). */
 size_t step_padded(size_t gaussians);
-void step_pack(const float *x, size_t gaussians, float *panels);   /* (N,16) row-major to panels */
-void step_unpack(const float *panels, size_t gaussians, float *x); /* and back */
+void step_pack(const float *x, size_t gaussians, int width, float *panels); /* (N,d_r) row-major to panels */
+void step_unpack(const float *panels, size_t gaussians, int width, float *x); /* and back */
 
 struct step_target {
 	size_t sentence;     /* index below R */

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/rng.h"
 #include "nn/adam.h"
+#include "splat/lift.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,11 +19,17 @@ static int by_weight(const void *a, const void *b)
 	return x[0] != y[0] ? (x[0] > y[0]) - (x[0] < y[0]) : (x[1] > y[1]) - (x[1] < y[1]);
 }
 
-int train_active_set(const struct train_view *views, size_t view_count, size_t scene_gaussians,
-	double tolerance, int32_t *ids, size_t *n, struct err *e)
+void train_weights(const struct train_view *views, size_t view_count, size_t scene_gaussians, double *weight)
 {
-	double(*total)[2] = mem_zalloc(scene_gaussians, sizeof *total, "active set", e), all = 0,
-	left_out = 0;
+	memset(weight, 0, sizeof *weight * scene_gaussians);
+	for (size_t v = 0; v < view_count; v++)
+		lift_weight(&views[v].weights, weight);
+}
+
+int train_active_set(const double *weight, size_t scene_gaussians, double tolerance, int32_t *ids, size_t *n,
+	struct err *e)
+{
+	double(*total)[2] = mem_alloc(scene_gaussians, sizeof *total, "active set", e), all = 0, left_out = 0;
 	unsigned char *dropped = mem_zalloc(scene_gaussians, 1, "active set", e);
 
 	if (!total || !dropped) {
@@ -30,15 +37,11 @@ int train_active_set(const struct train_view *views, size_t view_count, size_t s
 		free(dropped);
 		return -1;
 	}
-	for (size_t i = 0; i < scene_gaussians; i++)
+	for (size_t i = 0; i < scene_gaussians; i++) {
+		total[i][0] = weight[i];
 		total[i][1] = (double)i;
-	for (size_t v = 0; v < view_count; v++) {
-		const struct view_weights *w = &views[v].weights;
-		for (int64_t k = 0; k < w->indptr[w->pixels]; k++)
-			total[w->index[k]][0] += (double)w->weight[k];
+		all += weight[i];
 	}
-	for (size_t i = 0; i < scene_gaussians; i++)
-		all += total[i][0];
 	qsort(total, scene_gaussians, sizeof *total, by_weight);
 	for (size_t i = 0; i < scene_gaussians && left_out + total[i][0] <= tolerance * all; i++) {
 		left_out += total[i][0];
@@ -184,7 +187,7 @@ int train_state_init(
 	struct rng r;
 
 	*t = (struct train_state){.parameters = (l->count + 15) / 16 * 16};
-	t->count = t->parameters + step_padded(gaussians) * REFER_X;
+	t->count = t->parameters + step_padded(gaussians) * (size_t)l->feature_width;
 	t->values = mem_zalloc(t->count, 4 * sizeof(float), "training state", e);
 	if (!t->values)
 		return -1;

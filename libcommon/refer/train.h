@@ -16,10 +16,13 @@ struct train_view {
 	const uint8_t **masks; /* (count) of weights.pixels each, as bits (mask/bits.h) */
 };
 
-/* Gaussians that can learn: those that carry all but `tolerance` of the views' weight; at 0, those with any.
- * ids (scene_gaussians) gets *n rising indices. */
-int train_active_set(const struct train_view *views, size_t view_count, size_t scene_gaussians,
-	double tolerance, int32_t *ids, size_t *n, struct err *e);
+/* weight (scene_gaussians): each Gaussian's weight over all views. */
+void train_weights(const struct train_view *views, size_t view_count, size_t scene_gaussians, double *weight);
+
+/* Gaussians that can learn: those that carry all but `tolerance` of the weight (scene_gaussians); at 0, those
+ * with any. ids (scene_gaussians) gets *n rising indices. */
+int train_active_set(const double *weight, size_t scene_gaussians, double tolerance, int32_t *ids, size_t *n,
+	struct err *e);
 
 /* Robust bounds of the means (N,3) of the Gaussians ids (n): the 1st and 99th percentile of each axis,
  * widened where they meet. */

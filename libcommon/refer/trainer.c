@@ -6,14 +6,13 @@
 #include <stdlib.h>
 
 /* The octree whose leaves share a feature. */
-static int build_octree(
-	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
+static int build_octree(struct trainer *t, const struct trainer_source *from, const struct trainer_options *o,
+	const double *weight, struct err *e)
 {
 	const size_t n = from->scene_gaussians, k = OCTREE_SIGNATURE;
 	float *finest = mem_alloc(n, sizeof *finest, "octree", e);
-	float *weight = mem_alloc(n, sizeof *weight, "octree", e);
 	float *signature = mem_alloc(n, k * sizeof *signature, "octree", e);
-	int bad = !finest || !weight || !signature ||
+	int bad = !finest || !signature ||
 		  detail_signatures(from->views, from->view_count, from->objects, n, weight, signature, e);
 
 	if (!bad) {
@@ -23,7 +22,6 @@ static int build_octree(
 		bad = octree_build(&t->octree, &points, o->share * (double)from->view_count, e);
 	}
 	free(finest);
-	free(weight);
 	free(signature);
 	return bad ? -1 : 0;
 }
@@ -34,13 +32,19 @@ static int choose_rows(
 {
 	const size_t n = from->scene_gaussians;
 
+	double *weight = mem_alloc(n, sizeof *weight, "weight", e);
 	t->ids = mem_alloc(n, sizeof *t->ids, "ids", e);
-	if (!t->ids ||
-		train_active_set(from->views, from->view_count, n, o->tolerance, t->ids, &t->learning, e))
-		return -1;
-	if (!t->learning)
-		return err_set(e, ERR_FORMAT, "no Gaussian has weight in a view with masks");
-	if (o->share > 0 && build_octree(t, from, o, e))
+	int bad = !t->ids || !weight;
+	if (!bad) {
+		train_weights(from->views, from->view_count, n, weight);
+		bad = train_active_set(weight, n, o->tolerance, t->ids, &t->learning, e);
+	}
+	if (!bad && !t->learning)
+		bad = err_set(e, ERR_FORMAT, "no Gaussian has weight in a view with masks");
+	if (!bad && o->share > 0)
+		bad = build_octree(t, from, o, weight, e);
+	free(weight);
+	if (bad)
 		return -1;
 	if (o->share > 0 ? rows_of_leaves(&t->rows, &t->octree, from->means, n, e)
 			 : rows_of_ids(&t->rows, t->ids, t->learning, n, e))
@@ -104,7 +108,7 @@ int trainer_init(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
 	*t = (struct trainer){.rates = o->rates};
-	refer_layout_init(&t->layout, o->interaction, from->text_width);
+	refer_layout_init(&t->layout, o->interaction, from->text_width, (int)o->feature_width);
 	int bad = init(t, from, o, e);
 	if (bad)
 		trainer_free(t);
@@ -136,6 +140,16 @@ double trainer_weights(const struct trainer *t)
 		pixels += (double)w->pixels;
 	}
 	return pixels > 0 ? weights / pixels : 0;
+}
+
+float *trainer_features(const struct trainer *t, struct err *e)
+{
+	const int width = t->layout.feature_width;
+	float *x = mem_alloc(t->rows.n, (size_t)width * sizeof *x, "features", e);
+
+	if (x)
+		step_unpack(train_state_x(&t->state), t->rows.n, width, x);
+	return x;
 }
 
 struct step_losses trainer_step(struct trainer *t)

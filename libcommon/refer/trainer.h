@@ -13,6 +13,7 @@ struct trainer_options {
 	enum refer_interaction interaction;
 	enum refer_similarity similarity;
 	enum refer_contrast contrast;
+	long long feature_width;    /* d_r, 1 to REFER_MAX_X */
 	double temperature, lambda; /* of the contrast */
 	double tolerance;	    /* train_active_set's */
 	double share;	 /* octree_build's price, in pixels a view; 0: every Gaussian has its own feature */
@@ -25,8 +26,8 @@ struct trainer_options {
 /* pcmi, dot and the rest as refer-train has them where nothing is said. */
 #define TRAINER_DEFAULTS                                                                                     \
 	{                                                                                                    \
-		.interaction = REFER_PCMI, .contrast = REFER_CONTRAST_COSINE, .temperature = 0.1,            \
-		.lambda = 0.02, .share = 0.04, .batch = 1, .negatives = 12, .rates = {                       \
+		.interaction = REFER_PCMI, .contrast = REFER_CONTRAST_COSINE, .feature_width = 16,           \
+		.temperature = 0.1, .lambda = 0.02, .share = 0.04, .batch = 1, .negatives = 12, .rates = {   \
 			0.0025,                                                                              \
 			0.0001                                                                               \
 		}                                                                                            \
@@ -69,6 +70,9 @@ void trainer_free(struct trainer *t);
 
 /* Weights over rows that a pixel has on average. */
 double trainer_weights(const struct trainer *t);
+
+/* (rows.n, d_r) the features as they are now, row-major; free() them. NULL with *e when memory is out. */
+float *trainer_features(const struct trainer *t, struct err *e);
 
 /* The next step, train_step's. */
 struct step_losses trainer_step(struct trainer *t);

@@ -26,27 +26,38 @@ enum fault {
 static const struct {
 	int rates[SYNTH_HABITS][FAULTS]; /* how often a sentence of each habit has each fault, in percent */
 	double score, quality, noise;	 /* confidence is score + quality * IoU, with noise */
-	double confused, guessing;	 /* more where such a sentence takes another object */
-	double faint; /* a thing of less than this share of the picture is found seldom, and with less
-			 confidence */
+	/* The same where another object is shown: what such a sentence adds, the noise, and how ragged the
+	 * outline is over that of the right one. What draws the eye is outlined well. */
+	double confused, guessing, wrong_noise, wrong_rag;
+	/* A thing of less than this share of the picture is found seldom, and with less confidence. */
+	double faint;
 } kinds[SYNTH_SEVERITIES] = {
-	[SYNTH_MILD] = {{
-				[SYNTH_HABIT_GOOD] = {72, 7, 8, 7, 1, 5},
+	[SYNTH_MILD] = {.rates = {[SYNTH_HABIT_GOOD] = {72, 7, 8, 7, 1, 5},
 				[SYNTH_HABIT_CONFUSED] = {14, 75, 3, 3, 1, 4},
 				[SYNTH_HABIT_GUESSING] = {22, 68, 3, 3, 1, 3},
 				[SYNTH_HABIT_PART] = {42, 8, 40, 4, 1, 5},
-				[SYNTH_HABIT_UNION] = {42, 8, 4, 40, 1, 5},
-			},
-		0.30, 0.40, 0.12, 0.54, 0.05, 0},
-	[SYNTH_SEVERE] = {{
-				  [SYNTH_HABIT_GOOD] = {74, 6, 6, 5, 1, 5, 3},
+				[SYNTH_HABIT_UNION] = {42, 8, 4, 40, 1, 5}},
+		.score = 0.30,
+		.quality = 0.40,
+		.noise = 0.12,
+		.confused = 0.54,
+		.guessing = 0.05,
+		.wrong_noise = 0.12,
+		.wrong_rag = 1},
+	[SYNTH_SEVERE] = {.rates = {[SYNTH_HABIT_GOOD] = {74, 6, 6, 5, 1, 5, 3},
 				  [SYNTH_HABIT_CONFUSED] = {11, 78, 3, 3, 1, 3, 1},
 				  [SYNTH_HABIT_GUESSING] = {11, 77, 3, 3, 1, 3, 2},
 				  [SYNTH_HABIT_PART] = {40, 6, 42, 3, 1, 6, 2},
 				  [SYNTH_HABIT_UNION] = {40, 6, 3, 42, 1, 5, 3},
-				  [SYNTH_HABIT_GROUP] = {36, 8, 3, 3, 1, 4, 45},
-			  },
-		0.34, 0.20, 0.12, 0.30, 0.05, 0.004},
+				  [SYNTH_HABIT_GROUP] = {36, 8, 3, 3, 1, 4, 45}},
+		.score = 0.45,
+		.quality = 0.15,
+		.noise = 0.05,
+		.confused = 0.15,
+		.guessing = -0.07,
+		.wrong_noise = 0.16,
+		.wrong_rag = 0.43,
+		.faint = 0.004},
 };
 
 void synth_detector_make(struct synth_detector *d, const struct synth_object *objects, int n,
@@ -122,7 +133,8 @@ static int draw(struct detection *v, int object, int other, enum fault f, struct
 			join(v, j);
 	if (f == FAULT_PART)
 		synth_outline_cut(v->mask, v->height, v->width, rng_range(r, 0.35, 0.65), r);
-	double rag = rng_range(r, 0.1, 0.4), shrink = 0.09 * rng_normal(r);
+	double ragged = f == FAULT_OTHER ? kinds[d->severity].wrong_rag : 1;
+	double rag = ragged * rng_range(r, 0.1, 0.4), shrink = ragged * 0.09 * rng_normal(r);
 	return synth_outline_rag(v->mask, v->height, v->width, rag, shrink, &d->noise, r, e);
 }
 
@@ -138,15 +150,15 @@ static double faintness(const struct detection *v, int object)
 /* Confidence follows quality, loosely; a confused sentence is often surer than a right one. */
 static double choose_score(struct detection *v, int object, enum fault f, enum synth_habit habit)
 {
-	double quality = iou(v->mask, shown(v, object), v->pixels);
-	double score = kinds[v->d->severity].score + kinds[v->d->severity].quality * quality +
-		       kinds[v->d->severity].noise * rng_normal(&v->rng);
+	double quality = iou(v->mask, shown(v, object), v->pixels), luck = rng_normal(&v->rng);
+	double score = kinds[v->d->severity].score + kinds[v->d->severity].quality * quality;
 
 	if (f == FAULT_OTHER)
-		score += habit == SYNTH_HABIT_CONFUSED ? kinds[v->d->severity].confused
-						       : kinds[v->d->severity].guessing;
+		score += kinds[v->d->severity].wrong_noise * luck +
+			 (habit == SYNTH_HABIT_CONFUSED ? kinds[v->d->severity].confused
+							: kinds[v->d->severity].guessing);
 	else
-		score -= 0.15 * faintness(v, object);
+		score += kinds[v->d->severity].noise * luck - 0.15 * faintness(v, object);
 	if (f == FAULT_EMPTY)
 		score = 0.3;
 	return round(1000 * fmin(0.95, fmax(0.2, score))) / 1000;

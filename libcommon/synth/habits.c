@@ -101,7 +101,7 @@ static void rank_by_difficulty(int *by_rank, const struct synth_object *objects,
 	}
 }
 
-/* The object that tempts the most: the n pulls are of object i's own sentence or of all of them. */
+/* The object that tempts the most: pulls (n) are those of one sentence of object i, or of all four. */
 static int strongest(const double *pulls, int n, int i)
 {
 	int best = i ? 0 : 1;
@@ -112,10 +112,10 @@ static int strongest(const double *pulls, int n, int i)
 	return best;
 }
 
-/* The sentences of object i of which `trapped` take the thing that most tempts all of them, `confused` one of
- * their own each. */
+/* `trapped` of the sentences of object i, those that tempt the most, mislead to the thing that most tempts
+ * all four. The detector is sure of every other one. */
 static void mislead(struct synth_habits *h, int i, const struct synth_object *objects, int n,
-	const struct synth_sentence *sentences, int trapped, int confused, struct rng *r)
+	const struct synth_sentence *sentences, int trapped, struct rng *r)
 {
 	static const enum synth_habit usual[10] = {SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD,
 		SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_PART, SYNTH_HABIT_UNION,
@@ -131,7 +131,7 @@ static void mislead(struct synth_habits *h, int i, const struct synth_object *ob
 		h->mistaken[i][k] = strongest(pulls[k], n, i);
 	}
 	int trap = strongest(sums, n, i);
-	for (int count = 0; count < trapped + confused; count++) {
+	for (int count = 0; count < trapped; count++) {
 		int k = -1;
 		for (int m = 0; m < SYNTH_TRAIN_SENTENCES; m++) {
 			int is_taken =
@@ -139,14 +139,13 @@ static void mislead(struct synth_habits *h, int i, const struct synth_object *ob
 			if (!is_taken && (k < 0 || pulls[m][trap] > pulls[k][trap]))
 				k = m;
 		}
-		h->of[i][k] = count < trapped ? SYNTH_HABIT_GUESSING : SYNTH_HABIT_CONFUSED;
-		if (count < trapped)
-			h->mistaken[i][k] = trap;
+		h->of[i][k] = count % 2 ? SYNTH_HABIT_GUESSING : SYNTH_HABIT_CONFUSED;
+		h->mistaken[i][k] = trap;
 	}
 }
 
-/* Of a third of the objects most sentences mislead to one and the same other object, of a quarter half of
- * them, of most others one. */
+/* Of two in five objects most sentences mislead to one and the same other object, of two in five half of
+ * them. */
 static void choose_severe(struct synth_habits *h, const struct synth_object *objects, int n,
 	const struct synth_sentence *sentences, struct rng *r)
 {
@@ -155,8 +154,8 @@ static void choose_severe(struct synth_habits *h, const struct synth_object *obj
 	rank_by_difficulty(by_rank, objects, n, r);
 	for (int rank = 0; rank < n; rank++) {
 		double share = (rank + 0.5) / n;
-		int trapped = share < 0.30 ? 3 : share < 0.55 ? 2 : 0;
-		mislead(h, by_rank[rank], objects, n, sentences, trapped, !trapped && share < 0.85, r);
+		int trapped = share < 0.08 ? 4 : share < 0.40 ? 3 : share < 0.82 ? 2 : 0;
+		mislead(h, by_rank[rank], objects, n, sentences, trapped, r);
 	}
 }
 

@@ -165,19 +165,30 @@ static int holds(const struct draft *d, const struct synth_clause *c)
 	       (d->stage < STAGE_REPEATED || helps(d, c));
 }
 
+/* Another object for a relation: any, but of a stack the one that it can only be. */
+static int choose_other(const struct draft *d, enum synth_relation relation)
+{
+	const struct synth_layout *l = d->layout;
+	int load = 0;
+
+	if (relation == SYNTH_ON && l->objects[d->s.object].on >= 0)
+		return l->objects[d->s.object].on;
+	while (load < l->n && l->objects[load].on != d->s.object)
+		load++;
+	return relation == SYNTH_UNDER && load < l->n ? load : (int)rng_below(d->rng, (uint32_t)l->n);
+}
+
 /* A clause that is true of the object; -1 where none was met. */
 static int choose_clause(struct draft *d, char slot, struct synth_clause *c)
 {
-	uint32_t n = (uint32_t)d->layout->n;
-
 	for (int i = 0; i < CLAUSE_TRIES; i++) {
 		*c = (struct synth_clause){.relation = synth_relation_choose(slot, d->rng), .a = -1, .b = -1};
 		int has_other = c->relation <= SYNTH_BETWEEN;
 		for (int k = 0; k < (has_other ? RELATION_TRIES : 1); k++) {
 			if (has_other)
-				c->a = (int)rng_below(d->rng, n);
+				c->a = choose_other(d, c->relation);
 			if (c->relation == SYNTH_BETWEEN)
-				c->b = (int)rng_below(d->rng, n);
+				c->b = choose_other(d, c->relation);
 			if (holds(d, c))
 				return 0;
 		}

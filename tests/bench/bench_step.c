@@ -18,7 +18,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TEXT = 384, PATCH = 8, NEAR = 400, PER_OBJECT = 4, ADAM = STEP_PHASES, STEP, TIMES, LIST = 32 };
+enum {
+	TEXT = 384,
+	FEATURE = 16,
+	PATCH = 8,
+	NEAR = 400,
+	PER_OBJECT = 4,
+	ADAM = STEP_PHASES,
+	STEP,
+	TIMES,
+	LIST = 32
+};
 
 static const char *const names[TIMES] = {"words", "fold", "hidden", "respond", "images", "top", "gather",
 	"scores_back", "hidden_back", "adam", "step"};
@@ -146,13 +156,13 @@ static void problem_make(struct problem *p, size_t gaussians)
 
 	rng_seed(&r, 1, 1);
 	p->gaussians = gaussians;
-	refer_layout_init(&p->layout, REFER_PCMI, TEXT);
+	refer_layout_init(&p->layout, REFER_PCMI, TEXT, FEATURE);
 	if (train_state_init(&p->state, &p->layout, gaussians, 1, &e)) {
 		fprintf(stderr, "bench_step: %s\n", e.message);
 		exit(4);
 	}
-	float *x = uniform(&r, gaussians * REFER_X, 1);
-	step_pack(x, gaussians, train_state_x(&p->state));
+	float *x = uniform(&r, gaussians * FEATURE, 1);
+	step_pack(x, gaussians, FEATURE, train_state_x(&p->state));
 	free(x);
 	p->offsets = need(sentences + 1, sizeof *p->offsets);
 	p->objects = need(sentences, sizeof *p->objects);
@@ -192,7 +202,7 @@ static double work(const struct problem *p, enum step_phase phase)
 	const double others = (double)options.negatives, chosen = (double)options.sentences;
 	const double all = own * (others > 0 ? fmin(others + PER_OBJECT, chosen) : chosen),
 		     nnz = (double)p->view.indptr[p->view.pixels];
-	const double g = BLOCK_G, z = g + own, scores = batch * own * g, feature = 16 * 32 + 32 * 64,
+	const double g = BLOCK_G, z = g + own, scores = batch * own * g, feature = FEATURE * 32 + 32 * 64,
 		     position = 3 * 16 + 16 * 64, text0 = 512.0 * TEXT, text1 = 512.0 * 256;
 	const int is_cosine = options.similarity == REFER_COSINE;
 
@@ -208,7 +218,7 @@ static double work(const struct problem *p, enum step_phase phase)
 	case STEP_SCORES_BACK:
 		return n * (2 * scores + batch * (is_cosine ? z * z + z * (z + 1) / 2 + 3 * z : z + 2 * own));
 	case STEP_HIDDEN_BACK:
-		return n * (6 * scores + 16 * 32 + 2 * feature + 2 * 16 * 64 + 2 * 3 * 16 +
+		return n * (6 * scores + FEATURE * 32 + 2 * feature + 2 * 16 * 64 + 2 * 3 * 16 +
 				   (is_cosine ? 0 : 2 * batch * g));
 	default:
 		return 0;

@@ -20,7 +20,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { GAUSSIANS = 40000, SENTENCES = 8, WORDS = 6, WIDTH = 384 };
+enum { GAUSSIANS = 40000, SENTENCES = 8, WORDS = 6, WIDTH = 384, FEATURE = 16 };
 
 /* A model and what it is asked. */
 struct problem {
@@ -74,9 +74,9 @@ static void make_problem(struct problem *p)
 	rng_seed(&r, 1, 1);
 	*m = (struct model){
 		.scene_gaussians = GAUSSIANS, .n = GAUSSIANS, .low = {-1, -1, -1}, .high = {1, 1, 1}};
-	refer_layout_init(&m->layout, REFER_PCMI, WIDTH);
+	refer_layout_init(&m->layout, REFER_PCMI, WIDTH, FEATURE);
 	m->ids = need(GAUSSIANS, sizeof *m->ids);
-	m->features = need(GAUSSIANS * REFER_X, sizeof(float));
+	m->features = need(GAUSSIANS * FEATURE, sizeof(float));
 	m->parameters = need(m->layout.count, sizeof(float));
 	p->means = need(GAUSSIANS * 3, sizeof(float));
 	p->words = need(SENTENCES * WORDS * WIDTH, sizeof(float));
@@ -85,7 +85,7 @@ static void make_problem(struct problem *p)
 	refer_init(&m->layout, m->parameters, &r);
 	for (int i = 0; i < GAUSSIANS; i++)
 		m->ids[i] = i;
-	for (int i = 0; i < GAUSSIANS * REFER_X; i++)
+	for (int i = 0; i < GAUSSIANS * FEATURE; i++)
 		m->features[i] = (float)rng_normal(&r);
 	for (int i = 0; i < GAUSSIANS * 3; i++)
 		p->means[i] = (float)rng_range(&r, -1, 1);

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the folder in which the EXAMPLES of the manual pages run. usage: examples-setup.sh DIR BIN
 # It holds a small synthetic scene (formats/synth.md) and what each tool makes of it, under the names that the manual pages
-# use: scene, weights, text.safetensors, masks.jsonl, model.safetensors, pred.jsonl; and encoder, a tiny BERT.
+# use: scene, weights, text.safetensors, masks.jsonl, model.safetensors, pred.jsonl, whole.jsonl; and encoder, a tiny BERT.
 set -eu
 mkdir -p "$1"
 golden=$(cd "$(dirname "$0")/../golden" && pwd)

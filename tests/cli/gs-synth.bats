@@ -188,6 +188,14 @@ interrupted() {
 	"$BIN/gs-check" few/truth.jsonl many/truth.jsonl many/candidates.jsonl many/sentences.jsonl
 }
 
+@test "the detector of a named scene misleads selection, and its sentences are as long as Ref-LERF's" {
+	"$BIN/gs-synth" --scene diner --views 12 --size 100x74 --gaussians 3000 -o out
+	grep -v -F -f <(tr , '\n' <out/test-views) out/truth.jsonl >truth
+	score() { "$BIN/pseudomask-select" --method "$1" out/candidates.jsonl | "$BIN/miou-score" --json --truth truth - | jq .miou; }
+	[ "$(jq -n "$(score ciou) as \$c | $(score top1) as \$t | \$t > 0.3 and \$t + 0.02 < \$c and \$c < 0.62")" = true ]
+	[ "$(jq -s 'map(.text | split(" ") | length) | add / length | . > 13.2 and . < 14' out/sentences.jsonl)" = true ]
+}
+
 @test "sentences have 7 to 22 words, and photographs are not of one colour" {
 	small -o out
 	jq -se 'all(.[]; .text | split(" ") | length >= 7 and length <= 22)' out/sentences.jsonl >/dev/null

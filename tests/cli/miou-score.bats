@@ -58,6 +58,15 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 	[ "$(echo "$output" | jq -c keys)" = '["empty_truth","miou","missing","objects","oiou","p25","p50","p75","pairs"]' ]
 }
 
+@test "figures are summed in the order of the files, whatever the objects are called" {
+	for n in 1 2 3; do
+		echo "{\"view\":\"v\",\"object\":\"$((4 - n))\",\"segmentation\":{\"size\":[1,10],\"counts\":[0,$n,$((10 - n))]}}"
+	done >p
+	sed 's/"counts":.*/"counts":[0,10]}}/' p >t
+	# 0.1 + 0.2 + 0.3, which is not 0.3 + 0.2 + 0.1
+	[[ "$("$BIN/miou-score" --csv --truth t p | sed -n 2p)" == all,,3,0.20000000000000004,* ]]
+}
+
 @test "truth against itself is 1" {
 	"$BIN/miou-score" --json --truth truth.jsonl truth.jsonl | jq -e '.miou == 1 and .oiou == 1 and .missing == 0'
 }
@@ -163,4 +172,242 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 	head -n 1 two.jsonl >one.jsonl
 	[ "$("$BIN/miou-score" --json --truth two.jsonl one.jsonl | jq -c '[.miou,.pairs,.missing]')" = '[0.5,2,1]' ]
 	[ "$("$BIN/miou-score" --json --predicted-views --truth two.jsonl one.jsonl | jq -c '[.miou,.pairs,.missing]')" = '[1,1,0]' ]
+}
+
+# Six objects in three views, two sentences each; the predictions share most with the truth, the others less.
+make_scene() {
+	local o v r n
+	mkdir -p ../scene && cd ../scene
+	for o in 0 1 2 3 4 5; do
+		echo "{\"ref\":\"o$o-0\",\"object\":\"obj$o\",\"text\":\"the cup right by the box on the table\"}"
+		echo "{\"ref\":\"o$o-1\",\"object\":\"obj$o\",\"text\":\"${1:-the red cup}\"}"
+	done >sentences.jsonl
+	for o in 0 1 2 3 4 5; do
+		for v in 1 2 3; do
+			n=$((4 + o + v))
+			echo "{\"view\":\"v$v\",\"object\":\"obj$o\",\"segmentation\":{\"size\":[1,40],\"counts\":[0,$n,$((40 - n))]}}"
+			echo "{\"view\":\"v$v\",\"object\":\"obj$o\",\"segmentation\":{\"size\":[1,40],\"counts\":[0,$((n * v)),$((40 - n * v))]}}" >&3
+			for r in 0 1; do
+				echo "{\"view\":\"v$v\",\"ref\":\"o$o-$r\",\"object\":\"obj$o\",\"segmentation\":{\"size\":[1,40],\"counts\":[$((o / 2)),$((n - r)),$((40 - n + r - o / 2))]}}" >&4
+				echo "{\"view\":\"v$v\",\"ref\":\"o$o-$r\",\"object\":\"obj$o\",\"segmentation\":{\"size\":[1,40],\"counts\":[$((r + v - 1)),$n,$((41 - n - r - v))]}}" >&5
+			done
+		done
+	done >truth.jsonl 3>whole.jsonl 4>pred.jsonl 5>other.jsonl
+}
+
+@test "--bootstrap: an interval, and of what" {
+	make_scene
+	run --separate-stderr "$BIN/miou-score" --truth truth.jsonl --bootstrap 1000 pred.jsonl
+	[ "$status" -eq 0 ]
+	[ -z "$stderr" ]
+	grep -qxE 'mIoU          82\.10 %  \[7[0-9]\.[0-9], 8[0-9]\.[0-9]\]' <<<"${lines[0]}"
+	grep -qxE 'overall IoU   80\.00 %  \[7[0-9]\.[0-9], 8[0-9]\.[0-9]\]' <<<"${lines[1]}"
+	[ "${lines[8]}" = "interval     95 % of 1000 resamples of 6 objects" ]
+	[ "${lines[9]}" = "pairs     mIoU  interval        object" ]
+	"$BIN/miou-score" --json --truth truth.jsonl --bootstrap 1000 pred.jsonl | jq -e '.miou_low < .miou and .miou < .miou_high
+		and .oiou_low < .oiou and .oiou < .oiou_high and .resampled == "objects" and .units == 6 and .resamples == 1000
+		and .confidence == 0.95 and .seed == 1 and .objects.obj3.resampled == "pairs" and .objects.obj3.units == 6
+		and .objects.obj3.miou_low <= .objects.obj3.miou'
+	# the figures themselves stay
+	diff <("$BIN/miou-score" --truth truth.jsonl pred.jsonl | sed 1,2d | head -n 6) \
+		<("$BIN/miou-score" --truth truth.jsonl --bootstrap 10 pred.jsonl | sed 1,2d | head -n 6)
+	cmp <("$BIN/miou-score" --truth truth.jsonl pred.jsonl) <("$BIN/miou-score" --truth truth.jsonl --bootstrap 0 pred.jsonl)
+}
+
+@test "--bootstrap draws pairs where objects are few, and says so" {
+	run "$BIN/miou-score" --truth truth.jsonl --bootstrap 100 pred.jsonl
+	[ "${lines[8]}" = "interval     95 % of 100 resamples of 4 pairs, as there are fewer than 5 objects" ]
+	[ "${lines[11]}" = "    0        -  -               plate" ]
+	head -n 1 truth.jsonl >../one.jsonl
+	head -n 1 pred.jsonl >../one-pred.jsonl
+	run "$BIN/miou-score" --truth ../one.jsonl --bootstrap 100 ../one-pred.jsonl
+	[ "${lines[0]}" = "mIoU         100.00 %" ]
+	[ "${lines[8]}" = "interval     none: there is one pair alone" ]
+	"$BIN/miou-score" --json --truth ../one.jsonl --bootstrap 100 ../one-pred.jsonl |
+		jq -e 'has("miou_low") and .miou_low == null and .resampled == null'
+}
+
+@test "--confidence widens the interval, --seed changes it" {
+	make_scene
+	range() { "$BIN/miou-score" --json --truth truth.jsonl --bootstrap 500 "$@" pred.jsonl | jq -c '[.miou_low,.miou_high]'; }
+	[ "$(range)" = "$(range --seed 1 --confidence 0.95)" ]
+	[ "$(range)" != "$(range --seed 2)" ]
+	jq -n -e --argjson narrow "$(range --confidence 0.5)" --argjson wide "$(range)" \
+		'$wide[0] < $narrow[0] and $narrow[1] < $wide[1]'
+	run "$BIN/miou-score" --truth truth.jsonl --bootstrap 1000001 pred.jsonl
+	[ "$status" -eq 2 ]
+	[ "${lines[0]}" = "miou-score: --bootstrap: '1000001' is not a whole number from 0 to 1000000" ]
+	run "$BIN/miou-score" --truth truth.jsonl --confidence 95 pred.jsonl
+	[ "$status" -eq 2 ]
+	[ "${lines[0]}" = "miou-score: --confidence: '95' is not a number from 0.01 to 0.9999" ]
+}
+
+@test "the number of threads changes no byte" {
+	make_scene
+	for form in --json --csv -q; do
+		all="$form --truth truth.jsonl --bootstrap 2000 --compare other.jsonl --sentences sentences.jsonl --whole whole.jsonl pred.jsonl"
+		cmp <("$BIN/miou-score" --threads 1 $all) <("$BIN/miou-score" --threads 2 $all)
+	done
+}
+
+@test "--compare: both, the difference, and how sure it is" {
+	make_scene
+	run --separate-stderr "$BIN/miou-score" --truth truth.jsonl --compare other.jsonl --bootstrap 500 pred.jsonl
+	[ "$status" -eq 0 ]
+	[ -z "$stderr" ]
+	diff - <(echo "$output" | sed -n '10,18p' | sed -E 's/\[[-+0-9., ]+\]/I/') <<-END
+
+	other mIoU    71.67 %  I
+	other oIoU    70.00 %  I
+	difference   +10.43 %  I, p 0.188
+	better           22
+	worse             8
+	equal             6
+	other missed      0
+
+	END
+	[ "${lines[16]}" = "pairs     mIoU  interval           other  difference  object" ]
+	grep -qxE '    6  69\.54 %  \[6[0-9.]+, 7[0-9.]+\]     75\.81 %     -6\.27 %  obj4' <<<"$output"
+	"$BIN/miou-score" --json --truth truth.jsonl --compare other.jsonl --bootstrap 500 pred.jsonl >c.json
+	"$BIN/miou-score" --json --truth truth.jsonl pred.jsonl >own.json
+	"$BIN/miou-score" --json --truth truth.jsonl other.jsonl >other.json
+	jq -s -e '.[0] as $c | $c.miou == .[1].miou and $c.compare.miou == .[2].miou and $c.compare.oiou == .[2].oiou
+		and ($c.compare.difference - ($c.miou - $c.compare.miou) | fabs) < 1e-12
+		and $c.compare.better + $c.compare.worse + $c.compare.equal == $c.pairs
+		and $c.objects.obj2.compare.miou == .[2].objects.obj2.miou
+		and $c.compare.difference_low < $c.compare.difference and $c.compare.difference < $c.compare.difference_high
+		and $c.compare.p == 0.1875' c.json own.json other.json # 12 of 64 patterns
+	[ "$(jq -c '.compare | keys' c.json)" = '["better","difference","difference_high","difference_low","equal","miou","miou_high","miou_low","missing","oiou","oiou_high","oiou_low","p","p25","p50","p75","worse"]' ]
+	# the intervals are those of each file alone
+	for file in pred other; do "$BIN/miou-score" --json --truth truth.jsonl --bootstrap 500 $file.jsonl; done |
+		jq -s -e --slurpfile c c.json 'def ends: [.miou_low,.miou_high,.oiou_low,.oiou_high];
+			(.[0] | ends) == ($c[0] | ends) and (.[1] | ends) == ($c[0].compare | ends)
+			and (.[0] | ends | unique | length) == 4'
+	"$BIN/miou-score" --json --truth truth.jsonl --compare pred.jsonl other.jsonl | jq -s -e '.[0].compare.difference == -.[1].compare.difference
+		and .[0].compare.better == .[1].compare.worse and (.[0].compare | has("p") | not)' - c.json
+}
+
+@test "--compare with the same file: no difference, and p is 1" {
+	make_scene
+	"$BIN/miou-score" --json --truth truth.jsonl --compare pred.jsonl --bootstrap 100 pred.jsonl | jq -e '.compare |
+		.difference == 0 and .difference_low == 0 and .difference_high == 0 and .p == 1 and .better == 0 and .worse == 0 and .equal == 36'
+}
+
+@test "--compare: what one file lacks is missing there" {
+	make_scene
+	sed 1d pred.jsonl >less.jsonl
+	"$BIN/miou-score" --json --truth truth.jsonl --compare less.jsonl pred.jsonl |
+		jq -e '.pairs == 36 and .missing == 0 and .compare.missing == 1 and .compare.better == 1 and .compare.equal == 35'
+	"$BIN/miou-score" --json --truth truth.jsonl --compare pred.jsonl less.jsonl |
+		jq -e '.pairs == 36 and .missing == 1 and .compare.missing == 0 and .compare.worse == 1'
+	grep -v '"v2"' other.jsonl >views.jsonl
+	"$BIN/miou-score" --json --truth truth.jsonl --predicted-views --compare views.jsonl views.jsonl | jq -e '.pairs == 24'
+	"$BIN/miou-score" --json --truth truth.jsonl --predicted-views --compare pred.jsonl views.jsonl |
+		jq -e '.pairs == 36 and .missing == 12 and .compare.missing == 0'
+}
+
+@test "--compare: bad files are named, and duplicates in them" {
+	make_scene
+	run "$BIN/miou-score" --truth truth.jsonl --compare nowhere.jsonl -o ../out pred.jsonl
+	[ "$status" -eq 4 ]
+	[ "$output" = "miou-score: nowhere.jsonl: No such file or directory" ]
+	{ cat other.jsonl; head -n 1 other.jsonl; } >twice.jsonl
+	run "$BIN/miou-score" --truth truth.jsonl --compare twice.jsonl -o ../out pred.jsonl
+	[ "$status" -eq 3 ]
+	[ "$output" = "miou-score: twice.jsonl:37: view 'v1', ref 'o0-0' is on line 1 already" ]
+	echo '{"view":"v1","object":"fork","segmentation":{"size":[1,1],"counts":[1]}}' >>other.jsonl
+	run --separate-stderr "$BIN/miou-score" --truth truth.jsonl --compare other.jsonl pred.jsonl
+	[ "$stderr" = "miou-score: warning: other.jsonl: 1 predictions of labelled views match no truth's ref or object and were left out" ]
+	[ ! -e ../out ]
+}
+
+@test "--sentences: a row for each relation that occurs" {
+	make_scene
+	run --separate-stderr "$BIN/miou-score" --truth truth.jsonl --sentences sentences.jsonl pred.jsonl
+	[ "$status" -eq 0 ]
+	[ -z "$stderr" ]
+	diff - <(echo "$output" | sed -n '/relation/,$p' | sed 's/[0-9.]* %/N/') <<-END
+	pairs     mIoU  relation
+	   18  N  next to
+	   18  N  on
+	   18  N  (none)
+	END
+	# the same figures as of those sentences alone
+	grep -e '-0"' pred.jsonl >first.jsonl
+	[ "$("$BIN/miou-score" --json --truth truth.jsonl --sentences sentences.jsonl pred.jsonl | jq -c '.relations.on')" = \
+		"$("$BIN/miou-score" --json --truth truth.jsonl first.jsonl | jq -c '{pairs,miou,oiou,p25,p50,p75,missing}')" ]
+}
+
+@test "--sentences: pairs without one are a row, and told" {
+	make_scene
+	sed -i '/o3-/d' sentences.jsonl
+	run --separate-stderr "$BIN/miou-score" --json --truth truth.jsonl --sentences sentences.jsonl pred.jsonl
+	[ "$status" -eq 0 ]
+	[ "$stderr" = "miou-score: warning: sentences.jsonl: 6 pairs have no sentence there" ]
+	echo "$output" | jq -e '.relations["(unknown)"].pairs == 6 and .relations.on.pairs == 15'
+	run "$BIN/miou-score" --truth truth.jsonl --sentences truth.jsonl -o ../out pred.jsonl
+	[ "$status" -eq 3 ]
+	[ "$output" = "miou-score: truth.jsonl:1: key 'ref' is missing" ]
+	run "$BIN/miou-score" --truth truth.jsonl --sentences nowhere.jsonl -o ../out pred.jsonl
+	[ "$status" -eq 4 ]
+	[ "$output" = "miou-score: nowhere.jsonl: No such file or directory" ]
+	[ ! -e ../out ]
+}
+
+@test "--whole: a row for each range of what is seen" {
+	make_scene
+	run --separate-stderr "$BIN/miou-score" --truth truth.jsonl --whole whole.jsonl pred.jsonl
+	[ "$status" -eq 0 ]
+	[ -z "$stderr" ]
+	# all is seen in view 1, a half in view 2, a third in view 3
+	diff - <(echo "$output" | sed -n '/visibility/,$p' | sed 's/[0-9.]* %/N/') <<-END
+	pairs     mIoU  visibility
+	    0        -  <0.15
+	   12  N  0.15-0.5
+	   12  N  0.5-0.85
+	   12  N  >=0.85
+	END
+	grep '"v2"' pred.jsonl >second.jsonl
+	[ "$("$BIN/miou-score" --json --truth truth.jsonl --whole whole.jsonl pred.jsonl | jq -c '.visibility["0.5-0.85"]')" = \
+		"$("$BIN/miou-score" --json --truth truth.jsonl --predicted-views second.jsonl | jq -c '{pairs,miou,oiou,p25,p50,p75,missing}')" ]
+}
+
+@test "--whole: truth without its whole is a row, and told; empty truth is not" {
+	make_scene
+	sed -i 3,4d whole.jsonl
+	run --separate-stderr "$BIN/miou-score" --json --truth truth.jsonl --whole whole.jsonl pred.jsonl
+	[ "$status" -eq 0 ]
+	[ "$stderr" = "miou-score: warning: whole.jsonl: 2 masks of the truth have no whole there" ]
+	echo "$output" | jq -e '.visibility["(unknown)"].pairs == 4 and ([.visibility[].pairs] | add) == .pairs and .visibility["<0.15"].miou == null'
+	sed -i '3s/"counts":.*/"counts":[40]}}/' truth.jsonl
+	run --separate-stderr "$BIN/miou-score" --json --truth truth.jsonl --whole whole.jsonl pred.jsonl
+	[ "$stderr" = "miou-score: warning: whole.jsonl: 1 masks of the truth have no whole there" ]
+	echo "$output" | jq -e '.empty_truth == 2 and .visibility["(unknown)"].pairs == 2'
+	run "$BIN/miou-score" --truth truth.jsonl --whole sentences.jsonl -o ../out pred.jsonl
+	[ "$status" -eq 3 ]
+	[ "$output" = "miou-score: sentences.jsonl:1: key 'view' is missing" ]
+	[ ! -e ../out ]
+}
+
+@test "only one file is stdin" {
+	make_scene
+	cmp <("$BIN/miou-score" --truth truth.jsonl --compare other.jsonl pred.jsonl) \
+		<("$BIN/miou-score" --truth truth.jsonl --compare - pred.jsonl <other.jsonl)
+	cmp <("$BIN/miou-score" --truth truth.jsonl --sentences sentences.jsonl pred.jsonl) \
+		<("$BIN/miou-score" --truth truth.jsonl --sentences - pred.jsonl <sentences.jsonl)
+	cmp <("$BIN/miou-score" --truth truth.jsonl --whole whole.jsonl pred.jsonl) \
+		<("$BIN/miou-score" --truth truth.jsonl --whole - pred.jsonl <whole.jsonl)
+	for option in --compare --sentences --whole; do
+		run "$BIN/miou-score" --truth truth.jsonl $option - <pred.jsonl
+		[ "$status" -eq 2 ]
+		[ "${lines[0]}" = "miou-score: only one file can be stdin" ]
+	done
+}
+
+@test "many pairs of one view and object take no time" {
+	seq 30000 | sed 's/.*/{"view":"v","ref":"t&","object":"o","segmentation":{"size":[1,1],"counts":[0,1]}}/' >t.jsonl
+	sed 's/"t/"p/' t.jsonl >p.jsonl
+	sed 's/"view":"v"/"view":"w"/' t.jsonl >w.jsonl
+	[ "$(timeout 20 "$BIN/miou-score" --json --truth t.jsonl p.jsonl | jq .pairs)" = 59999 ]
+	[ "$(cat t.jsonl w.jsonl | timeout 20 "$BIN/miou-score" --json --predicted-views --truth - w.jsonl | jq .pairs)" = 30000 ]
 }

@@ -26,7 +26,8 @@ strays() { ls | grep -v -x candidates.jsonl || true; }
 	run "$BIN/pseudomask-select" --help
 	[ "$status" -eq 0 ]
 	[[ "${lines[0]}" == "Usage: pseudomask-select [OPTION]... [CANDIDATES]" ]]
-	[[ "$output" == *"--method ciou|iou|top1"* && "$output" == *"--min-score G"* ]]
+	[[ "$output" == *"--method ciou|iou|top1|first"* && "$output" == *"--min-score G"* ]]
+	[[ "$output" == *"--scene SCENE"* && "$output" == *"--weights WEIGHTS"* ]]
 	run "$BIN/pseudomask-select" -V
 	[ "$status" -eq 0 ]
 	[[ "$output" == "pseudomask-select (refersplat) "* ]]
@@ -39,13 +40,30 @@ strays() { ls | grep -v -x candidates.jsonl || true; }
 	[ "${lines[1]}" = "Try 'pseudomask-select --help'." ]
 	run "$BIN/pseudomask-select" --method best candidates.jsonl
 	[ "$status" -eq 2 ]
-	[ "${lines[0]}" = "pseudomask-select: --method: 'best' is not one of ciou|iou|top1" ]
+	[ "${lines[0]}" = "pseudomask-select: --method: 'best' is not one of ciou|iou|top1|first" ]
 	run "$BIN/pseudomask-select" --min-score 1.5 candidates.jsonl
 	[ "$status" -eq 2 ]
 	[ "${lines[0]}" = "pseudomask-select: --min-score: '1.5' is not a number from 0 to 1" ]
 	run "$BIN/pseudomask-select" candidates.jsonl other.jsonl
 	[ "$status" -eq 2 ]
 	[ "${lines[0]}" = "pseudomask-select: unexpected operand 'other.jsonl'" ]
+}
+
+@test "scene and weights are for the method that needs them, and both" {
+	for method in "" "--method iou" "--method top1"; do
+		run "$BIN/pseudomask-select" $method --scene scene candidates.jsonl
+		[ "$status" -eq 2 ]
+		[ "${lines[0]}" = "pseudomask-select: --scene is for --method first" ]
+		run "$BIN/pseudomask-select" $method --weights weights candidates.jsonl
+		[ "$status" -eq 2 ]
+		[ "${lines[0]}" = "pseudomask-select: --weights is for --method first" ]
+	done
+	for given in "" "--scene scene" "--weights weights"; do
+		run "$BIN/pseudomask-select" --method first $given candidates.jsonl
+		[ "$status" -eq 2 ]
+		[ "${lines[0]}" = "pseudomask-select: --method first needs --scene SCENE and --weights WEIGHTS" ]
+		[ "${lines[1]}" = "Try 'pseudomask-select --help'." ]
+	done
 }
 
 @test "ciou: the object's sentences outvote the most confident of them" {
@@ -164,4 +182,163 @@ strays() { ls | grep -v -x candidates.jsonl || true; }
 	echo before > out
 	run "$BIN/pseudomask-select" -o out nowhere.jsonl
 	[ "$(cat out)" = before ]
+}
+
+setup_file() {
+	local bin=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	cd "$BATS_FILE_TMPDIR"
+	"$bin/gs-synth" -q --seed 2 --gaussians 3000 --views 6 --size 96x72 -o .
+	"$bin/gs-import" -q --images images --test-views view_004 -o scene point_cloud.ply
+	"$bin/gs-weigh" -q -o weights scene
+	# two objects that every view sees
+	jq -r .object truth.jsonl | sort | uniq -c | sed -n 's/^ *6 //p' | head -n 2 > objects
+}
+
+# The masks of the first or second of the two objects, as 1 or 2, or of both.
+of() {
+	jq -c --arg name "$(sed -n "$1p" "$BATS_FILE_TMPDIR/objects")" 'select(.object == $name)'
+}
+of_both() {
+	jq -c --rawfile names "$BATS_FILE_TMPDIR/objects" 'select(.object | IN($names | split("\n")[]))'
+}
+
+# first ARG...: --method first on the synthetic scene, which is linked to as synth.
+first() {
+	ln -sfn "$BATS_FILE_TMPDIR" synth
+	"$BIN/pseudomask-select" --method first --scene synth/scene --weights synth/weights "$@"
+}
+
+# The truth of one view as candidates.
+truth_of() { jq -c "select(.view == \"$1\") | .score = 0.9" "$BATS_FILE_TMPDIR/truth.jsonl"; }
+
+@test "first: a true mask of one view is carried to every other training view" {
+	truth_of view_000 > true.jsonl
+	run --separate-stderr first -v -o carried.jsonl true.jsonl
+	[ "$status" -eq 0 ]
+	[ "${stderr_lines[0]}" = "pseudomask-select: 8 candidates, 0 of them not above 0.3" ]
+	[ "${stderr_lines[1]}" = "pseudomask-select: 8 objects, which begin in 1 views; 40 masks in 5 views" ]
+	# views in the scene's order, and in each the objects in the order of the candidates
+	for view in 0 1 2 3 5; do jq -c "[\"view_00$view\", .object, 0.9]" true.jsonl; done > expected
+	jq -c '[.view, .object, .score]' carried.jsonl | cmp - expected
+	jq -e -s 'all(.segmentation.size == [72, 96] and (has("ref") | not))' carried.jsonl
+	# the view itself keeps its masks, the others' are right but for what it does not see
+	cmp <(jq -c 'select(.view == "view_000") | .segmentation' carried.jsonl) <(jq -c .segmentation true.jsonl)
+	jq -c 'select(.view != "view_000")' carried.jsonl > others.jsonl
+	"$BIN/miou-score" --truth synth/truth.jsonl --predicted-views --fail-under 0.7 others.jsonl
+}
+
+@test "first: the order of the scene decides, not that of the file; test views and weak candidates do not" {
+	{ truth_of view_004; truth_of view_003; truth_of view_001; } | of 1 |
+		jq -c '.score = if .view == "view_001" then 0.3 else 0.8 end' > late.jsonl
+	first -o late late.jsonl
+	[ "$(jq -r .view late | tr '\n' ' ')" = "view_000 view_001 view_002 view_003 view_005 " ]
+	cmp <(jq -c 'select(.view == "view_003") | .segmentation' late) <(jq -c 'select(.view == "view_003") | .segmentation' late.jsonl)
+	first --min-score 0.2 -o early late.jsonl
+	cmp <(jq -c 'select(.view == "view_001") | .segmentation' early) <(jq -c 'select(.view == "view_001") | .segmentation' late.jsonl)
+	[ "$(jq .score early | sort -u)" = 0.3 ]
+	# objects may begin in different views; each is the same as alone
+	truth_of view_002 | of 2 > other.jsonl
+	first -o other other.jsonl
+	cat other.jsonl late.jsonl > both.jsonl
+	first -o both both.jsonl
+	of 1 < both | cmp - late
+	of 2 < both | cmp - other
+	[ "$(wc -l < both)" -eq 10 ]
+}
+
+@test "first: the most confident candidate of the view, a ref's own where there is no object" {
+	truth_of view_000 | of_both > two
+	{ jq -c '.object = "thing" | .ref = "r" + (.score | tostring)' two
+	of 2 < two | jq -c '.object = "thing" | .score = 0.95'
+	of 1 < two | jq -c 'del(.object, .score) | .ref = "lone"'; } > some.jsonl
+	first -o out some.jsonl
+	[ "$(jq -c 'select(.view == "view_000") | [.object, .ref, .score]' out | tr '\n' ' ')" = '["thing",null,0.95] [null,"lone",1] ' ]
+	cmp <(jq -c 'select(.view == "view_000" and .object) | .segmentation' out) <(of 2 < two | jq -c .segmentation)
+}
+
+@test "first: masks of another size are reduced to that of the weights" {
+	"$BIN/gs-weigh" -q --scale 0.5 -o half "$BATS_FILE_TMPDIR/scene"
+	truth_of view_000 > true.jsonl
+	first --weights half -o out true.jsonl
+	jq -e -s 'length >= 36 and all(.segmentation.size == [36, 48])' out
+	"$BIN/miou-score" --truth synth/truth.jsonl --predicted-views --fail-under 0.4 out
+}
+
+@test "first: empty masks are not written" {
+	truth_of view_000 | of 1 | jq -c '.segmentation = {size: [72, 96], counts: [6912]}' > empty.jsonl
+	run --separate-stderr first -v empty.jsonl
+	[ "$status" -eq 0 ]
+	[ -z "$output" ]
+	[ "${stderr_lines[1]}" = "pseudomask-select: 1 objects, which begin in 1 views; 0 masks in 5 views" ]
+}
+
+@test "first: - and a pipe are the file, and threads do not change a byte" {
+	cp "$BATS_FILE_TMPDIR/candidates.jsonl" many.jsonl
+	first --threads 1 -o one many.jsonl
+	first --threads 2 -o two many.jsonl
+	first --threads 2 - < many.jsonl > three
+	cat many.jsonl | first > four
+	[ "$(wc -l < one)" -ge 35 ]
+	cmp one two && cmp one three && cmp one four
+}
+
+@test "first: training views without weights get no masks, and a warning" {
+	truth_of view_000 > true.jsonl
+	cp -r "$BATS_FILE_TMPDIR/weights" some
+	rm some/view_002.safetensors
+	run --separate-stderr first --weights some -o out true.jsonl
+	[ "$status" -eq 0 ]
+	[ "$stderr" = "pseudomask-select: warning: some: 1 training views have no weights, and get no masks" ]
+	first -o whole true.jsonl
+	jq -c 'select(.view != "view_002")' whole | cmp - <(jq -c . out)
+	# the masks of a view cannot be lifted without
+	rm some/view_000.safetensors
+	run first --weights some -o out2 true.jsonl
+	[ "$status" -eq 4 ]
+	[ "$output" = "pseudomask-select: some/view_000.safetensors: No such file or directory" ]
+	[ ! -e out2 ]
+}
+
+@test "first: nothing to carry" {
+	run --separate-stderr first /dev/null
+	[ "$status" -eq 0 ]
+	[ -z "$output" ]
+	[ "$stderr" = "pseudomask-select: warning: /dev/null: no candidates" ]
+	truth_of view_004 > test.jsonl
+	run --separate-stderr first test.jsonl
+	[ "$status" -eq 0 ]
+	[ -z "$output" ]
+	[ "$stderr" = "pseudomask-select: warning: test.jsonl: no candidate of a training view is above 0.3" ]
+}
+
+@test "first: bad scenes and weights, and no stray file" {
+	truth_of view_000 > ../true.jsonl
+	rm candidates.jsonl
+	refuses() {
+		local code=$1 message=$2
+		shift 2
+		run first -o out "$@"
+		[ "$status" -eq "$code" ] && [ "$output" = "pseudomask-select: $message" ] && [ "$(ls)" = synth ] ||
+			{ echo "$status: $output"; ls; return 1; }
+	}
+	refuses 4 "nowhere/splats.safetensors: No such file or directory" --scene nowhere ../true.jsonl
+	refuses 4 "nowhere/view_000.safetensors: No such file or directory" --weights nowhere ../true.jsonl
+	jq -c '.view = "view_999"' ../true.jsonl | head -n 1 | cat ../true.jsonl - > ../other.jsonl
+	refuses 3 "../other.jsonl:9: key 'view': the scene has no view 'view_999'" ../other.jsonl
+	"$BIN/gs-synth" -q --gaussians 3001 --views 6 --size 96x72 -o ../other
+	"$BIN/gs-import" -q --images ../other/images --test-views view_004 -o ../other/scene ../other/point_cloud.ply
+	refuses 3 "synth/weights/view_000.safetensors: is of a scene of 3000 Gaussians, this one has 3001" --scene ../other/scene ../true.jsonl
+	mkdir ../cut
+	head -c 5000 synth/weights/view_000.safetensors > ../cut/view_000.safetensors
+	run first --weights ../cut -o out ../true.jsonl
+	[ "$status" -eq 3 ]
+	[[ "$output" == "pseudomask-select: ../cut/view_000.safetensors: "* ]]
+	[ "$(ls)" = synth ]
+	# found only after others were read
+	cp -r synth/weights ../late
+	printf x | dd of=../late/view_003.safetensors bs=1 seek=9000 conv=notrunc 2>/dev/null
+	run first --weights ../late -o out ../true.jsonl
+	[ "$status" -eq 3 ]
+	[[ "$output" == "pseudomask-select: ../late/view_003.safetensors: "* ]]
+	[ "$(ls)" = synth ]
 }

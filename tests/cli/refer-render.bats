@@ -10,7 +10,7 @@ setup_file() {
 	jq -c 'select(.ref | test("-1$|bowl-5"))' sentences.jsonl >some.jsonl
 	echo '{"ref":"silent","object":"nothing","text":"","split":"test"}' >>some.jsonl
 	"$BIN/text-encode" -q --model encoder -o text.safetensors some.jsonl
-	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 200 \
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 400 \
 		-o model.safetensors
 }
 

@@ -48,7 +48,7 @@ not() { ! "$@"; }
 	[ "$(ls | tr '\n' ' ')" = "masks.jsonl out.safetensors printed scene text.safetensors weights " ]
 	"$BIN/gs-check" out.safetensors
 	[ "$(meta out.safetensors gaussians)" = 1000 ]
-	[[ "$(meta out.safetensors options)" == "--iterations 8 --precision u8 --interaction pcmi --similarity dot --contrast cosine \
+	[[ "$(meta out.safetensors options)" == "--iterations 8 --precision u8 --interaction pcmi --similarity dot --contrast cosine --feature-width 16 \
 --temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --negatives 12 --tolerance 0 --share 0.04 --seed 1, inputs "???????? ]]
 }
 
@@ -153,7 +153,7 @@ cut_short() {
 @test "--resume with other options or inputs is refused" {
 	cut_short
 	other="m.checkpoint: is of another training (its options or inputs differ); remove it or train without --resume"
-	for option in "--seed 2" "--interaction attention" "--similarity cosine" "--contrast dot" "--temperature 0.2" "--lambda 0.03" \
+	for option in "--seed 2" "--interaction attention" "--similarity cosine" "--contrast dot" "--feature-width 15" "--temperature 0.2" "--lambda 0.03" \
 		"--feature-rate 0.001" "--mlp-rate 0.001" "--batch 2" "--tolerance 0.1"; do
 		says 3 "refer-train: $other" train --resume --interaction none $option -o m
 	done
@@ -339,7 +339,9 @@ cut_short() {
 @test "--precision f32, f16 and u8 store the same model in fewer bytes" {
 	for p in f32 f16 u8; do
 		train --iterations 100 --precision $p -o m.$p
-		"$BIN/gs-check" m.$p | grep -q "^m.$p: ok: refer.model, $p, 259 features, "
+		"$BIN/gs-check" m.$p | sed -n "s/^m.$p: ok: refer.model, $p, \([0-9]* features\), .*/\1/p" >features.$p
+		grep -q "features" features.$p
+		cmp features.f32 features.$p
 		"$BIN/refer-render" -q --scene scene --text text.safetensors --model m.$p --split all -o masks.$p
 		"$BIN/miou-score" -q --fail-under 0.99 --truth masks.f32 masks.$p >scores
 	done
@@ -353,6 +355,32 @@ cut_short() {
 	train --interaction none --iterations 60 --precision f16 -o whole
 	cut_short
 	train --interaction none --iterations 60 --precision f16 --resume -o m
+	cmp whole m
+}
+
+@test "--feature-width: features of any width learn the same with any number of threads, and answer as bytes too" {
+	train -o default
+	train --feature-width 16 -o m
+	cmp default m
+	for n in 1 5; do
+		train --iterations 200 --feature-width $n --precision f32 --threads 1 --log log.f32 -o m.f32
+		train --iterations 200 --feature-width $n --threads 3 --log log.u8 -o m.u8
+		cmp log.f32 log.u8
+		for p in f32 u8; do
+			[ "$("$BIN/gs-check" --json m.$p | jq .columns)" = $n ]
+			"$BIN/refer-render" -q --scene scene --text text.safetensors --model m.$p --split all -o masks.$p
+		done
+		"$BIN/miou-score" -q --fail-under 0.4 --truth masks.jsonl masks.f32 >scores
+		"$BIN/miou-score" -q --fail-under 0.99 --truth masks.f32 masks.u8 >scores
+	done
+}
+
+@test "--feature-width: a training of another width than the default goes on from its checkpoint" {
+	train --interaction none --feature-width 5 --iterations 110 -o whole
+	says 4 "refer-train: /dev/full: No space left on device" \
+		train --interaction none --feature-width 5 --iterations 150 --checkpoint 10 -o m --log /dev/full
+	[ "$(meta m.checkpoint iteration)" = 90 ]
+	train --interaction none --feature-width 5 --iterations 110 --resume -o m
 	cmp whole m
 }
 
@@ -384,6 +412,9 @@ cut_short() {
 	says 2 "refer-train: --log and --output cannot both be stdout$try" train --log - -o -
 	says 2 "refer-train: --iterations: '0' is not a whole number from 1 to 100000000$try" train --iterations 0 -o m
 	says 2 "refer-train: --batch: '65' is not a whole number from 1 to 64$try" train --batch 65 -o m
+	for width in 0 33 1.5; do
+		says 2 "refer-train: --feature-width: '$width' is not a whole number from 1 to 32$try" train --feature-width $width -o m
+	done
 	says 2 "refer-train: --tolerance: '1' is not a number from 0 to 0.99$try" train --tolerance 1 -o m
 	says 2 "refer-train: --precision: 'u4' is not one of f32|f16|u8$try" train --precision u4 -o m
 	says 2 "refer-train: --interaction: 'all' is not one of none|attention|attention+fp|add|pcmi|pcmi-proj$try" \

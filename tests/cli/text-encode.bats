@@ -45,6 +45,61 @@ not() { ! "$@"; }
 	[ "$(tensor text sentences f4 4 | tail -n 24 | sort -u | tr -d ' ')" = 0 ]
 }
 
+# rows FILE: its word vectors, a line each.
+rows() {
+	tensor "$1" words x4 4 | xargs -n 24
+}
+
+@test "--words static: the vocabulary's rows, the same for a word in any sentence; contextual ones are not" {
+	printf '{"ref":"%s","object":"x","text":"%s"}\n' a "red cup" b "cup red cup unbelievable" c "cup" d " " >few
+	encode --words static -o static few
+	encode --words contextual -o contextual few
+	encode -o default few
+	cmp contextual default
+	cmp <(tensor static offsets d8 8) <(tensor default offsets d8 8)
+	[ "$(header static | jq -c .words.shape)" = "$(header default | jq -c .words.shape)" ]
+	rows static >s
+	rows default >c
+	at() { sed -n "$2p" "$1"; }
+	[ "$(at s 2)" = "$(at s 3)" ] && [ "$(at s 2)" = "$(at s 5)" ] && [ "$(at s 1)" = "$(at s 4)" ]
+	[ "$(at s 1)" != "$(at s 2)" ]
+	[ "$(at c 2)" != "$(at c 3)" ] && [ "$(at c 3)" != "$(at c 5)" ] && [ "$(at c 1)" != "$(at c 4)" ]
+	# Row 2 is the very row of "cup" in the encoder's table, halves in its file.
+	id=$(($(grep -nxF cup model/vocab.txt | cut -d: -f1) - 1))
+	begin=$(header model/model.safetensors | jq '."embeddings.word_embeddings.weight".data_offsets[0]')
+	start=$((8 + $(od -An -tu8 -N8 model/model.safetensors) + begin + id * 48))
+	paste <(tensor static words f4 4 | sed -n 25,48p) <(od -An -v -t u2 -w2 -j $start -N 48 model/model.safetensors) | awk '
+		{ e = int($2 / 1024) % 32; m = $2 % 1024; v = e ? (1 + m / 1024) * 2 ^ (e - 15) : m * 2 ^ -24
+		if ($2 >= 32768) v = -v
+		if ($1 - v > 1e-6 || v - $1 > 1e-6) exit 1 } END { exit NR != 24 }'
+	# The mean is of these.
+	paste <(tensor static words f4 4 | head -n 24) <(tensor static words f4 4 | sed -n 25,48p) <(tensor static sentences f4 4 | head -n 24) |
+		awk '{ d = ($1 + $2) / 2 - $3; if (d < -1e-6 || d > 1e-6) exit 1 }'
+	[ "$(header static | jq -r .__metadata__.options)" = '--model model --words static' ]
+	[ "$(header contextual | jq -r .__metadata__.options)" = '--model model' ]
+	"$BIN/gs-check" static
+}
+
+@test "--words static: many sentences, one or two threads, and a sentence that is cut" {
+	encode --words static -o a sentences.jsonl
+	encode --words static --threads 1 -o b sentences.jsonl
+	cmp a b
+	encode -o c sentences.jsonl
+	cmp <(tensor a offsets d8 8) <(tensor c offsets d8 8)
+	for i in 1 2 3; do sed "s/\"ref\": \"/&$i/" sentences.jsonl; done >thrice
+	encode --words static -o three thrice
+	for i in 1 2 3; do tensor a words x4 4; done | cmp - <(tensor three words x4 4)
+	printf '{"ref":"long","object":"x","text":"%s"}\n' "$(printf 'cup %.0s' {1..63})" >long
+	says 0 "text-encode: warning: ref 'long': 63 word pieces, cut to the 62 that the encoder takes" \
+		"$BIN/text-encode" --words static --model model -o text long
+	[ "$(header text | jq .words.shape[0])" = 62 ]
+}
+
+@test "--words: a third way is refused" {
+	says 2 "text-encode: --words: 'mean' is not one of contextual|static
+Try 'text-encode --help'." "$BIN/text-encode" --model model --words mean sentences.jsonl
+}
+
 @test "names, splits and texts come along" {
 	encode -o text sentences.jsonl
 	for key in ref object text split; do

@@ -79,22 +79,22 @@ bad() {
 
 @test "a model made by hand is fine" {
 	model m
-	says 0 "m: ok: refer.model, f32, 1 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	says 0 "m: ok: refer.model, f32, 1 features, 16 columns, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 	model m ids='[2]' features='[2,16]' ids_item=1:02000000 similarity=cosine interaction=attention
-	says 0 "m: ok: refer.model, f32, 2 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	says 0 "m: ok: refer.model, f32, 2 features, 16 columns, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 }
 
 @test "numbers of version 2 are f32, f16 or u8" {
 	for precision in f32 f16 u8; do
 		model m precision=$precision
-		says 0 "m: ok: refer.model, $precision, 1 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+		says 0 "m: ok: refer.model, $precision, 1 features, 16 columns, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 		[ "$("$BIN/gs-check" --json m | jq -r .precision)" = $precision ]
 	done
 	bad "metadata 'precision' is 'u4'" precision=u4
 	bad "tensor 'text.0.weight': is U8[512,1], expected F16[512,*]" precision=f16 text_0_weight_type=U8
 	bad "tensor 'features': is F32[1,16], expected U8[1,16]" precision=u8 features_type=F32
-	bad "tensor 'feature.0.weight': is U8[32,16], expected F32[32,16]" feature_0_weight_type=U8
-	bad "tensor 'feature.0.weight': is F32[32,16], expected F16[32,16]" precision=f16 feature_0_weight_type=F32
+	bad "tensor 'feature.0.weight': is U8[32,16], expected F32[32,*]" feature_0_weight_type=U8
+	bad "tensor 'feature.0.weight': is F32[32,16], expected F16[32,*]" precision=f16 feature_0_weight_type=F32
 	bad "tensor 'text.0.bias': is F16[512], expected F32[512]" precision=f16 text_0_bias_type=F16
 }
 
@@ -130,13 +130,13 @@ leaves() {
 
 @test "cubes that share a row" {
 	leaves 01 --
-	says 0 "m: ok: refer.model, f32, 1 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	says 0 "m: ok: refer.model, f32, 1 features, 16 columns, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 	leaves 08 09 0f --
-	says 0 "m: ok: refer.model, f32, 3 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	says 0 "m: ok: refer.model, f32, 3 features, 16 columns, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 	leaves 40 09 0f --
-	says 0 "m: ok: refer.model, f32, 3 features, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	says 0 "m: ok: refer.model, f32, 3 features, 16 columns, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 	leaves -- gaussians=0
-	says 0 "m: ok: refer.model, f32, 0 features, 0 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	says 0 "m: ok: refer.model, f32, 0 features, 16 columns, 0 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 	local reason="is not a leaf after the one before"
 	leaves 00 --
 	says 1 "m: tensor 'leaves': item 0 $reason" "$BIN/gs-check" m
@@ -162,13 +162,31 @@ leaves() {
 
 @test "it may be of no Gaussian, and then answers nothing" {
 	model m ids='[0]' features='[0,16]' gaussians=1 interaction=none
-	says 0 "m: ok: refer.model, f32, 0 features, 1 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	says 0 "m: ok: refer.model, f32, 0 features, 16 columns, 1 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
 	scene scene
 	header='{"__metadata__":{"format":"refer.text","version":"1","refs":"[\"r1\"]","objects":"[\"cup\"]","texts":"[\"cup\"]","splits":"[\"test\"]"},"offsets":{"dtype":"I64","shape":[2],"data_offsets":[0,16]},"words":{"dtype":"F32","shape":[1,1],"data_offsets":[16,20]},"sentences":{"dtype":"F32","shape":[1,1],"data_offsets":[20,24]}}'
 	while (((8 + ${#header}) % 8)); do header+=' '; done
 	st text "$header" "00000000000000000100000000000000$f1$f1"
 	says 0 '{"view":"v1","ref":"r1","object":"cup","score":0,"segmentation":{"size":[3,4],"counts":"<"}}' \
 		"$BIN/refer-render" --scene scene --text text --model m --split train
+}
+
+@test "a feature has 1 to 32 numbers" {
+	for width in 1 4 5 32; do
+		model m feature_0_weight="[32,$width]" features="[1,$width]"
+		says 0 "m: ok: refer.model, f32, 1 features, $width columns, 3 gaussians of the scene, $((175712 + 32 * width)) parameters" \
+			"$BIN/gs-check" m
+		model m precision=u8 feature_0_weight="[32,$width]" features="[1,$width]" features_low="[1,$width]" features_step="[1,$width]"
+		[ "$("$BIN/gs-check" --json m | jq -c '[.precision, .columns]')" = "[\"u8\",$width]" ]
+	done
+	bad "tensor 'feature.0.weight': 0 columns, expected 1 to 32" feature_0_weight='[32,0]' features='[1,0]'
+	bad "tensor 'feature.0.weight': 33 columns, expected 1 to 32" feature_0_weight='[32,33]' features='[1,33]'
+	bad "tensor 'feature.0.weight': is F32[31,16], expected F32[32,*]" feature_0_weight='[31,16]'
+	bad "tensor 'feature.0.weight': is F32[512], expected F32[32,*]" feature_0_weight='[512]'
+	bad "tensor 'features': is F32[1,16], expected F32[1,5]" feature_0_weight='[32,5]'
+	bad "tensor 'features': is F32[5], expected F32[1,5]" feature_0_weight='[32,5]' features='[5]'
+	bad "tensor 'features.low': is F32[1,16], expected F32[1,5]" precision=u8 feature_0_weight='[32,5]' features='[1,5]'
+	bad "tensor 'features': item 4 is not finite" feature_0_weight='[32,5]' features='[1,5]' features_item=4:$fnan
 }
 
 @test "how it answers" {

@@ -7,6 +7,7 @@ TEST_REFERENCE is the built unit test (build/unit/test_reference); its --dump gi
 answer as JSON. Written from the header of refer/model.h. Prints one line a case and exits 1 where a number differs by
 more than 1e-10. Needs PyTorch and NumPy; `make test` does not run it.
 """
+import itertools
 import json
 import math
 import subprocess
@@ -16,6 +17,7 @@ import torch
 from torch.nn import functional as F
 
 D = 128
+WIDTHS = [1, 5, 16, 32]
 BOUND = 1e-10
 
 
@@ -96,7 +98,7 @@ def compare(problem):
         else tensor(problem["parameters"][offset:offset + rows * columns], rows, columns)
         for name, (offset, rows, columns) in problem["tensors"].items()
     }
-    x = tensor(problem["x"], -1, 16)
+    x = tensor(problem["x"], -1, t["feature.0.weight"].shape[1])
     for leaf in [x, *t.values()]:
         leaf.requires_grad_()
 
@@ -121,7 +123,7 @@ def compare(problem):
         "contrast": abs(contrast.item() - problem["contrast_loss"]),
         "loss": abs(loss.item() / problem["loss"] - 1),
         "top": 0.0 if top.tolist() == problem["top"] else 1.0,
-        "dx": difference(x.grad, tensor(problem["dx"], -1, 16)),
+        "dx": difference(x.grad, tensor(problem["dx"], *x.shape)),
     }
     for name, (offset, rows, columns) in problem["tensors"].items():
         theirs = tensor(problem["dparameters"][offset:offset + rows * columns], *t[name].shape)
@@ -135,15 +137,15 @@ def main():
     failed = False
     for interaction in ["none", "attention", "attention+fp", "add", "pcmi", "pcmi-proj"]:
         for similarity in ["dot", "cosine"][:1 if interaction == "pcmi-proj" else 2]:
-            for contrast in range(3):
-                out = subprocess.run([sys.argv[1], "--dump", interaction, similarity, str(contrast)], check=True,
+            for contrast, width in itertools.product(range(3), WIDTHS):
+                out = subprocess.run([sys.argv[1], "--dump", interaction, similarity, str(contrast), str(width)], check=True,
                                      stdout=subprocess.PIPE).stdout
                 loss, found = compare(json.loads(out))
                 worst = max(found, key=found.get)
                 values = max(found[k] for k in found if not k.startswith("d"))
                 ok = all(v <= BOUND for v in found.values())
                 failed |= not ok
-                print(f"{interaction:12} {similarity:6} contrast {contrast}: loss {loss:.15g}, values within "
+                print(f"{interaction:12} {similarity:6} contrast {contrast}, x {width:2}: loss {loss:.15g}, values within "
                       f"{values:.1e}, worst of all {found[worst]:.1e} ({worst}){'' if ok else '  DIFFERS'}", flush=True)
     sys.exit(failed)
 

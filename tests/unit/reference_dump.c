@@ -47,7 +47,8 @@ static void put_tensors(const struct refer_layout *l)
 static void put_answer(const struct reference_sample *s)
 {
 	const struct refer_problem *p = &s->problem;
-	double *dx = malloc(p->n * REFER_X * sizeof *dx), *d = malloc(s->layout.count * sizeof *d);
+	const size_t features = p->n * (size_t)s->layout.feature_width;
+	double *dx = malloc(features * sizeof *dx), *d = malloc(s->layout.count * sizeof *d);
 	struct refer_result r;
 	struct err e = {0};
 
@@ -59,7 +60,7 @@ static void put_answer(const struct reference_sample *s)
 	put_reals("m", r.m, p->n);
 	put_reals("image", r.image, p->pixels);
 	PUT_INTEGERS("top", r.top, r.top_count);
-	put_reals("dx", dx, p->n * REFER_X);
+	put_reals("dx", dx, features);
 	put_reals("dparameters", d, s->layout.count);
 	reference_free(&r);
 	free(dx);
@@ -78,7 +79,7 @@ void reference_dump(const struct reference_sample *s)
 		p->lambda, p->tau, p->target);
 	put_tensors(&s->layout);
 	put_reals("parameters", p->parameters, s->layout.count);
-	put_reals("x", p->x, p->n * REFER_X);
+	put_reals("x", p->x, p->n * (size_t)s->layout.feature_width);
 	put_reals("position", p->position, p->n * 3);
 	put_reals("words", p->words, p->offsets[p->sentences] * (size_t)s->layout.text_width);
 	put_reals("weight", p->weight, entries);

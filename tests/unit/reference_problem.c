@@ -25,6 +25,7 @@ struct reference_options reference_defaults(uint64_t seed, enum refer_interactio
 	return (struct reference_options){
 		.n = 40,
 		.text_width = 24,
+		.feature_width = 16,
 		.sentences = 5, /* of the objects 0 1 0 1 0; the middle one is the target */
 		.min_words = 3,
 		.max_words = 7,
@@ -114,12 +115,13 @@ void reference_sample_init(struct reference_sample *s, const struct reference_op
 
 	*s = (struct reference_sample){0};
 	rng_seed(&r, o->seed, 7);
-	refer_layout_init(&s->layout, o->interaction, o->text_width);
+	refer_layout_init(&s->layout, o->interaction, o->text_width, o->feature_width);
+	const size_t features = o->n * (size_t)o->feature_width;
 	s->parameters = get(s->layout.count, sizeof *s->parameters);
-	s->x = get(o->n * REFER_X, sizeof *s->x);
+	s->x = get(features, sizeof *s->x);
 	s->position = get(o->n * 3, sizeof *s->position);
 	draw_parameters(s, o->gain, &r);
-	for (size_t k = 0; k < o->n * REFER_X; k++)
+	for (size_t k = 0; k < features; k++)
 		s->x[k] = (float)(o->x_scale * rng_normal(&r));
 	for (size_t k = 0; k < o->n * 3; k++)
 		s->position[k] = (float)rng_range(&r, -1, 1);
@@ -155,7 +157,7 @@ void reference_sample_copy(struct reference_sample *s, const struct reference_sa
 
 	*s = *from;
 	s->parameters = copy_of(from->parameters, from->layout.count, sizeof *s->parameters);
-	s->x = copy_of(from->x, p->n * REFER_X, sizeof *s->x);
+	s->x = copy_of(from->x, p->n * (size_t)from->layout.feature_width, sizeof *s->x);
 	s->position = copy_of(from->position, p->n * 3, sizeof *s->position);
 	s->offsets = copy_of(from->offsets, p->sentences + 1, sizeof *s->offsets);
 	s->words = copy_of(from->words, words, sizeof *s->words);

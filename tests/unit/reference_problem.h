@@ -7,7 +7,7 @@
 
 struct reference_options {
 	size_t n;
-	int text_width;
+	int text_width, feature_width;
 	size_t sentences;
 	uint32_t min_words, max_words;
 	size_t pixels;
@@ -21,7 +21,7 @@ struct reference_options {
 	uint64_t seed;
 };
 
-/* N 40, D_text 24, 5 sentences of 3 to 7 words of two objects, 30 pixels of about 6 weights, tau 0.1;
+/* N 40, D_text 24, d_r 16, 5 sentences of 3 to 7 words of two objects, 30 pixels of about 6 weights, tau 0.1;
  * temperatures at which neither contrast is saturated. */
 struct reference_options reference_defaults(uint64_t seed, enum refer_interaction interaction,
 	enum refer_similarity similarity, enum refer_contrast contrast);

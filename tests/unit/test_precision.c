@@ -7,7 +7,7 @@
 #include <float.h>
 #include <unistd.h>
 
-enum { ROWS = 37, COLUMNS = 16, COUNT = ROWS * COLUMNS };
+enum { ROWS = 37, MAX_COLUMNS = 16 };
 
 static char path[] = "/tmp/test_precision.XXXXXX";
 
@@ -29,38 +29,41 @@ static int through(enum precision p, enum precision_group group, size_t rows, si
 	return bad;
 }
 
-static void returns(void)
+static void returns(int columns)
 {
-	static float x[COUNT], y[COUNT];
+	static float x[ROWS * MAX_COLUMNS], y[ROWS * MAX_COLUMNS];
+	const int count = ROWS * columns;
+	const size_t width = (size_t)columns;
 	struct rng r;
 	struct err e;
 
 	rng_seed(&r, 7, 1);
-	for (int i = 0; i < COUNT; i++) /* every row and column of another size */
-		x[i] = (float)(rng_normal(&r) * exp((double)(i % COLUMNS) - 6 - (double)(i / COLUMNS) / 3));
-	for (int i = 0; i < ROWS; i++)
-		x[i * COLUMNS + 5] = 0.1f;
-	CHECK(!through(PRECISION_F32, PRECISION_ROWS, ROWS, COLUMNS, x, y, &e), "%s", e.message);
-	CHECK(!memcmp(x, y, sizeof x), "f32 is not exact");
-	CHECK(!through(PRECISION_F16, PRECISION_ROWS, ROWS, COLUMNS, x, y, &e), "%s", e.message);
-	for (int i = 0; i < COUNT; i++)
+	for (int i = 0; i < count; i++) /* every row and column of another size */
+		x[i] = (float)(rng_normal(&r) *
+			       exp((double)(i % columns - columns) + 10 - (double)(i / columns) / 3));
+	for (int i = 0; i < ROWS && columns > 5; i++)
+		x[i * columns + 5] = 0.1f;
+	CHECK(!through(PRECISION_F32, PRECISION_ROWS, ROWS, width, x, y, &e), "%s", e.message);
+	CHECK(!memcmp(x, y, sizeof *x * (size_t)count), "f32 is not exact");
+	CHECK(!through(PRECISION_F16, PRECISION_ROWS, ROWS, width, x, y, &e), "%s", e.message);
+	for (int i = 0; i < count; i++)
 		CHECK(fabsf(x[i] - y[i]) <= fmaxf(fabsf(x[i]) * 0x1p-11f, 0x1p-25f), "f16: %g for %g",
 			(double)y[i], (double)x[i]);
 	for (int g = 0; g < 2; g++) {
 		const enum precision_group group = g ? PRECISION_COLUMNS : PRECISION_ROWS;
-		const int groups = g ? COLUMNS : ROWS, n = g ? ROWS : COLUMNS;
-		CHECK(!through(PRECISION_U8, group, ROWS, COLUMNS, x, y, &e), "%s", e.message);
+		const int groups = g ? columns : ROWS, n = g ? ROWS : columns;
+		CHECK(!through(PRECISION_U8, group, ROWS, width, x, y, &e), "%s", e.message);
 		for (int k = 0; k < groups; k++) {
-			const float *first = g ? x + k : x + (ptrdiff_t)k * COLUMNS;
+			const float *first = g ? x + k : x + (ptrdiff_t)k * columns;
 			float low = INFINITY, high = -INFINITY, worst = 0, error = 0;
 			for (int i = 0; i < n; i++) {
-				const int at = g ? i * COLUMNS : i;
+				const int at = g ? i * columns : i;
 				low = fminf(low, first[at]);
 				high = fmaxf(high, first[at]);
 			}
 			const float half = (high - low) / 255 / 2;
 			for (int i = 0; i < n; i++) {
-				const int at = g ? i * COLUMNS : i;
+				const int at = g ? i * columns : i;
 				error = fabsf(first[at] - y[first - x + at]);
 				worst = fmaxf(worst, error);
 				if (first[at] == low)
@@ -124,7 +127,9 @@ int main(void)
 
 	if (CHECK(fd >= 0, "no temporary file")) {
 		close(fd);
-		returns();
+		returns(1);
+		returns(5);
+		returns(MAX_COLUMNS);
 		extremes();
 		refuses();
 		unlink(path);

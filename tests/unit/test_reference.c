@@ -111,7 +111,7 @@ static int sample_array(const struct reference_sample *sample, const struct refe
 	double *const dx[CONTRASTS], double *const dparameters[CONTRASTS], struct agreement found[CONTRASTS])
 {
 	const struct refer_layout *l = &sample->layout;
-	const size_t count = a == REFER_TENSORS ? sample->problem.n * REFER_X
+	const size_t count = a == REFER_TENSORS ? sample->problem.n * (size_t)l->feature_width
 						: (size_t)l->tensors[a].rows * (size_t)l->tensors[a].columns;
 	const size_t offset = a == REFER_TENSORS ? 0 : l->tensors[a].offset;
 	struct reference_sample s;
@@ -175,7 +175,7 @@ static void gradients(const struct reference_sample *s, struct tally *tally)
 	losses(s, &at, loss);
 	for (int c = 0; c < CONTRASTS; c++) {
 		const struct refer_problem with = with_contrast(s, c);
-		dx[c] = malloc(with.n * REFER_X * sizeof **dx);
+		dx[c] = malloc(with.n * (size_t)s->layout.feature_width * sizeof **dx);
 		dparameters[c] = malloc(s->layout.count * sizeof **dparameters);
 		CHECK(!reference_backward(&with, &at, dx[c], dparameters[c], &e), "%s", e.message);
 	}
@@ -221,13 +221,17 @@ static void check_gradients(const struct reference_options *o, struct tally *tal
 	reference_sample_free(&s);
 }
 
+/* Of features of several widths: those of pcmi, the method, are 1 and 5. */
 static void all_gradients(void)
 {
+	static const int widths[4] = {1, 5, 16, REFER_MAX_X};
+
 	for (int i = 0; i < REFER_INTERACTIONS; i++) {
 		struct tally tally = {0};
 		for (int k = REFER_DOT; k <= (i == REFER_PCMI_PROJ ? REFER_DOT : REFER_COSINE); k++) {
-			const struct reference_options o =
+			struct reference_options o =
 				small_options((enum refer_interaction)i, (enum refer_similarity)k);
+			o.feature_width = widths[(i + k) % 4];
 			check_gradients(&o, &tally);
 		}
 		printf("reference: %-12s worst relative error of a gradient %.1e (%s), %d entries, %d skipped\n",
@@ -382,10 +386,11 @@ static void empty_view(void)
 
 	reference_sample_init(&s, &o);
 	memset(s.indptr, 0, (o.pixels + 1) * sizeof *s.indptr);
-	double *dx = malloc(o.n * REFER_X * sizeof *dx), *d = malloc(s.layout.count * sizeof *d);
+	const size_t features = o.n * (size_t)o.feature_width;
+	double *dx = malloc(features * sizeof *dx), *d = malloc(s.layout.count * sizeof *d);
 	CHECK(!reference_forward(&s.problem, &r, &e) && !reference_backward(&s.problem, &r, dx, d, &e), "%s",
 		e.message);
-	for (size_t k = 0; k < o.n * REFER_X; k++)
+	for (size_t k = 0; k < features; k++)
 		sum += fabs(dx[k]);
 	for (size_t k = 0; k < s.layout.count; k++)
 		sum += fabs(d[k]);
@@ -407,7 +412,8 @@ static void top_set(void)
 	struct err e = {0};
 
 	reference_sample_init(&s, &o);
-	memcpy(s.x + 20 * REFER_X, s.x, 20 * REFER_X * sizeof *s.x);
+	const size_t twenty = 20 * (size_t)o.feature_width;
+	memcpy(s.x + twenty, s.x, twenty * sizeof *s.x);
 	for (int k = 0; k < 4; k++) {
 		struct refer_result r;
 		double mean = 0;
@@ -466,18 +472,20 @@ static void refusals(void)
 	reference_sample_free(&s);
 }
 
-/* test_reference --dump INTERACTION SIMILARITY CONTRAST, the last as a number. */
+/* test_reference --dump INTERACTION SIMILARITY CONTRAST WIDTH, the last two as numbers. */
 static int dump(char **words)
 {
 	const int interaction = refer_interaction_parse(words[0]),
 		  similarity = refer_similarity_parse(words[1]);
-	const int contrast = atoi(words[2]);
+	const int contrast = atoi(words[2]), width = atoi(words[3]);
 
-	if (interaction < 0 || similarity < 0 || contrast < 0 || contrast >= CONTRASTS)
+	if (interaction < 0 || similarity < 0 || contrast < 0 || contrast >= CONTRASTS || width < 1 ||
+		width > REFER_MAX_X)
 		return 2;
-	const struct reference_options o = reference_defaults(1, (enum refer_interaction)interaction,
+	struct reference_options o = reference_defaults(1, (enum refer_interaction)interaction,
 		(enum refer_similarity)similarity, (enum refer_contrast)contrast);
 	struct reference_sample s;
+	o.feature_width = width;
 	reference_sample_init(&s, &o);
 	reference_dump(&s);
 	reference_sample_free(&s);
@@ -486,7 +494,7 @@ static int dump(char **words)
 
 int main(int argc, char **argv)
 {
-	if (argc == 5 && !strcmp(argv[1], "--dump"))
+	if (argc == 6 && !strcmp(argv[1], "--dump"))
 		return dump(argv + 2);
 	all_gradients();
 	contrast_is_live();

@@ -11,7 +11,8 @@
 enum { N = 3000, K = OCTREE_SIGNATURE };
 
 struct cloud {
-	float means[N * 3], finest[N], weight[N], signature[N * K];
+	float means[N * 3], finest[N], signature[N * K];
+	double weight[N];
 	int32_t ids[N];
 };
 
@@ -28,7 +29,7 @@ static struct cloud *make_cloud(double noise)
 		for (int k = 0; k < 3; k++)
 			c->means[3 * i + k] = (float)rng_range(&r, -1, 1);
 		c->finest[i] = 0.01f;
-		c->weight[i] = (float)rng_range(&r, 0.5, 3);
+		c->weight[i] = rng_range(&r, 0.5, 3);
 		c->signature[i * K] = (float)((c->means[3 * i] > 0.3f) + noise * rng_normal(&r));
 	}
 	return c;
@@ -52,14 +53,14 @@ static double error_of(const struct cloud *c, const int32_t *leaf, size_t leaves
 
 	for (int i = 0; i < N; i++) {
 		double *to = sum[leaf[i]];
-		to[0] += (double)c->weight[i];
+		to[0] += c->weight[i];
 		for (int k = 0; k < K; k++)
-			to[2 + k] += (double)c->weight[i] * (double)c->signature[i * K + k];
+			to[2 + k] += c->weight[i] * (double)c->signature[i * K + k];
 	}
 	for (int i = 0; i < N; i++)
 		for (int k = 0; k < K; k++) {
 			double d = (double)c->signature[i * K + k] - sum[leaf[i]][2 + k] / sum[leaf[i]][0];
-			error += (double)c->weight[i] * d * d;
+			error += c->weight[i] * d * d;
 		}
 	free(sum);
 	return error;
@@ -139,7 +140,8 @@ static void kinds_stay_apart(void)
 /* Needles in the haystack of a tree: one point, two at one place, a scene without extent. */
 static void hard_places(void)
 {
-	float means[6] = {1e6f, -1e6f, 3, 1e6f, -1e6f, 3}, finest[2] = {0, 0}, weight[2] = {1, 1};
+	float means[6] = {1e6f, -1e6f, 3, 1e6f, -1e6f, 3}, finest[2] = {0, 0};
+	double weight[2] = {1, 1};
 	float signature[2 * K] = {0};
 	int32_t ids[2] = {0, 1}, leaf[2];
 	struct octree t;
@@ -218,7 +220,8 @@ static void details(void)
 			.cy = 40,
 			.world_to_camera = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 5}, {0, 0, 0, 1}}}};
 	const float means[9] = {0, 0, 10, 0.9f, 0, 1, 0, 0, -9};
-	float footprint[3], weight[G], signature[G * K];
+	float footprint[3], signature[G * K];
+	double weight[G];
 	int64_t indptr[P + 1] = {0, 2, 3};
 	int32_t index[3] = {0, 1, 1};
 	float w[3] = {0.5f, 0.25f, 0.75f};
@@ -233,9 +236,10 @@ static void details(void)
 	CHECK(fabs((double)footprint[0] - 15.0 / 200) < 1e-6, "%g", (double)footprint[0]);
 	CHECK(fabs((double)footprint[1] - 1.0 / 50) < 1e-6, "%g", (double)footprint[1]);
 	CHECK(isinf(footprint[2]), "%g", (double)footprint[2]);
+	train_weights(&view, 1, G, weight);
+	CHECK(weight[0] == 0.5 && weight[1] == 1 && weight[2] == 0, "%g %g %g", weight[0], weight[1],
+		weight[2]);
 	CHECK(!detail_signatures(&view, 1, objects, G, weight, signature, &e), "%s", e.message);
-	CHECK(weight[0] == 0.5f && weight[1] == 1 && weight[2] == 0, "%g %g %g", (double)weight[0],
-		(double)weight[1], (double)weight[2]);
 	/* Gaussian 0 is in the masks of both; 1 wholly in the second's and a quarter in the first's. */
 	for (int k = 0; k < K; k++) {
 		double a =

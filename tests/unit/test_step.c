@@ -1,4 +1,5 @@
-/* The folded float32 step against the plain float64 reference: losses, responses and every gradient. */
+/* The folded float32 step against the plain float64 reference: losses, responses and every gradient; with
+ * features of several widths. */
 #include "unit.h"
 
 #include "reference_problem.h"
@@ -8,6 +9,9 @@
 #include "refer/step.h"
 
 #include <omp.h>
+
+/* One, a part of a tile, the default and the most. */
+static const int widths[4] = {1, 5, 16, REFER_MAX_X};
 
 /* A sample's arrays in the types that the step takes. */
 struct floats {
@@ -29,23 +33,25 @@ static float *to_floats(const double *from, size_t count)
 static void floats_init(struct floats *f, const struct reference_sample *s)
 {
 	const struct refer_problem *p = &s->problem;
+	const int width = s->layout.feature_width;
+	const size_t features = p->n * (size_t)width, padded = step_padded(p->n) * (size_t)width;
 	struct err e;
 
 	f->parameters = to_floats(p->parameters, s->layout.count);
-	f->x = to_floats(p->x, p->n * REFER_X);
+	f->x = to_floats(p->x, features);
 	f->position = to_floats(p->position, p->n * 3);
 	f->words = to_floats(p->words, p->offsets[p->sentences] * (size_t)s->layout.text_width);
 	f->weight = to_floats(p->weight, (size_t)p->indptr[p->pixels]);
-	f->panels = mem_alloc(step_padded(p->n) * REFER_X, sizeof(float), "test", &e);
-	f->dpanels = mem_alloc(step_padded(p->n) * REFER_X, sizeof(float), "test", &e);
-	f->dx = mem_alloc(p->n * REFER_X, sizeof(float), "test", &e);
+	f->panels = mem_alloc(padded, sizeof(float), "test", &e);
+	f->dpanels = mem_alloc(padded, sizeof(float), "test", &e);
+	f->dx = mem_alloc(features, sizeof(float), "test", &e);
 	f->gradient = mem_alloc(s->layout.count, sizeof(float), "test", &e);
 	f->offsets = mem_alloc(p->sentences + 1, sizeof *f->offsets, "test", &e);
 	f->mask = mem_alloc(bits_bytes(p->pixels), 1, "test", &e);
 	bits_pack(p->mask, p->pixels, f->mask);
 	for (size_t r = 0; r <= p->sentences; r++)
 		f->offsets[r] = (int64_t)p->offsets[r];
-	step_pack(f->x, p->n, f->panels);
+	step_pack(f->x, p->n, width, f->panels);
 }
 
 static void floats_free(struct floats *f)
@@ -120,9 +126,10 @@ static double compare(const struct reference_options *o, const char *kernels,
 	reference_sample_init(&s, o);
 	floats_init(&f, &s);
 	struct refer_problem *p = &s.problem;
+	const size_t features = p->n * (size_t)o->feature_width;
 	const double times[5] = {1, 2, 1, 0, 1}; /* of two other sentences one stands for both */
 	p->times = others ? times : NULL;
-	double *dx = mem_alloc(p->n * REFER_X, sizeof *dx, "test", &e);
+	double *dx = mem_alloc(features, sizeof *dx, "test", &e);
 	double *dparameters = mem_alloc(s.layout.count, sizeof *dparameters, "test", &e), worst = 0;
 	struct step *step = make_step(&s, &f, 1, kernels);
 	CHECK(!reference_forward(p, &result, &e) && !reference_backward(p, &result, dx, dparameters, &e),
@@ -139,8 +146,8 @@ static double compare(const struct reference_options *o, const char *kernels,
 		losses.bce, result.bce);
 	CHECK(fabs(losses.contrast - result.contrast) <= 1e-4 * fabs(result.contrast),
 		"%s: contrast %.9g, reference %.9g", name, losses.contrast, result.contrast);
-	step_unpack(f.dpanels, p->n, f.dx);
-	worst = distance(f.dx, dx, p->n * REFER_X);
+	step_unpack(f.dpanels, p->n, o->feature_width, f.dx);
+	worst = distance(f.dx, dx, features);
 	CHECK(worst < 2e-4, "%s: dx differs by %.3g", name, worst);
 	for (int t = 0; t < REFER_TENSORS; t++) {
 		size_t count = (size_t)s.layout.tensors[t].rows * (size_t)s.layout.tensors[t].columns;
@@ -170,22 +177,20 @@ static void against_reference(const char *kernels)
 	for (int i = 0; i < REFER_INTERACTIONS; i++)
 		for (int sim = 0; sim < (i == REFER_PCMI_PROJ ? 1 : 2); sim++) {
 			double worst = 0;
-			for (int c = 0; c < 3; c++) {
-				char name[128];
+			for (int k = 0; k < 6; k++) { /* each contrast with all others, and with one of two */
+				const int c = k / 2;
+				const struct step_others one = {(size_t[]){1}, 1};
 				struct reference_options o =
 					reference_defaults(7 + (uint64_t)c, (enum refer_interaction)i,
 						(enum refer_similarity)sim, (enum refer_contrast)c);
-				snprintf(name, sizeof name, "%s, %s, %s, contrast %d", kernels,
-					refer_interaction_name((enum refer_interaction)i),
-					refer_similarity_name((enum refer_similarity)sim), c);
+				char name[128];
 				o.n = 1500; /* several blocks, the last not full */
-				double own = compare(&o, kernels, NULL, name);
-				worst = own > worst ? own : worst;
-				snprintf(name, sizeof name, "%s, %s, %s, contrast %d with one of two",
-					kernels, refer_interaction_name((enum refer_interaction)i),
-					refer_similarity_name((enum refer_similarity)sim), c);
-				own = compare(&o, kernels, &(struct step_others){(size_t[]){1}, 1}, name);
-				worst = own > worst ? own : worst;
+				o.feature_width = widths[k % 4];
+				snprintf(name, sizeof name, "%s, %s, %s, contrast %d%s, width %d", kernels,
+					refer_interaction_name((enum refer_interaction)i),
+					refer_similarity_name((enum refer_similarity)sim), c,
+					k % 2 ? " with one of two" : "", o.feature_width);
+				worst = fmax(worst, compare(&o, kernels, k % 2 ? &one : NULL, name));
 			}
 			printf("%s, %s, %s: worst relative gradient error %.2g\n", kernels,
 				refer_interaction_name((enum refer_interaction)i),
@@ -202,10 +207,11 @@ static void batch_is_the_mean(enum refer_interaction interaction, enum refer_sim
 	struct err e;
 
 	o.n = 1100;
+	o.feature_width = widths[interaction % 4];
 	reference_sample_init(&s, &o);
 	floats_init(&f, &s);
 	const struct refer_problem *p = &s.problem;
-	const size_t count = s.layout.count, features = step_padded(p->n) * REFER_X;
+	const size_t count = s.layout.count, features = step_padded(p->n) * (size_t)o.feature_width;
 	double *sum = mem_zalloc(count + features, sizeof *sum, "test", &e);
 	struct view_weights view = view_of(p, &f);
 	struct step_target targets[3] = {{0, f.mask}, {3, f.mask}, {1, f.mask}};
@@ -246,11 +252,12 @@ static void threads_agree(enum refer_interaction interaction)
 	struct err e;
 
 	o.n = 6000;
+	o.feature_width = widths[(interaction + 1) % 4];
 	o.pixels = 3000;
 	reference_sample_init(&s, &o);
 	floats_init(&f, &s);
 	const struct refer_problem *p = &s.problem;
-	const size_t count = s.layout.count, features = step_padded(p->n) * REFER_X;
+	const size_t count = s.layout.count, features = step_padded(p->n) * (size_t)o.feature_width;
 	float *kept = mem_alloc(count + features, sizeof *kept, "test", &e);
 	struct view_weights view = view_of(p, &f);
 	struct step_target target = {p->target, f.mask};

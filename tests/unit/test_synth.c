@@ -1,11 +1,9 @@
-/* The synthetic scene: surfaces, objects, cameras, truth and the faulty detector. */
+/* The synthetic scene: surfaces, objects, cameras and truth. */
 #include "unit.h"
 
 #include "base/mem.h"
 #include "synth/arrange.h"
 #include "synth/cameras.h"
-#include "synth/candidates.h"
-#include "synth/outline.h"
 #include "synth/scene.h"
 #include "synth/sentences.h"
 #include "synth/truth.h"
@@ -152,93 +150,6 @@ static void cameras_see_the_table(void)
 	cameras_free(&c);
 }
 
-/* The disc of radius r about column x, row y. */
-static void draw_disc(uint8_t *mask, double x, double y, double r)
-{
-	for (int i = 0; i < H; i++)
-		for (int j = 0; j < W; j++)
-			mask[i * W + j] = hypot(j - x, i - y) < r;
-}
-
-static void outlines_change_as_asked(void)
-{
-	static uint8_t disc[H * W], mask[H * W];
-	static struct synth_noise noise;
-	struct rng r;
-	struct err e = {0};
-
-	rng_seed(&r, 5, 5);
-	synth_noise_make(&noise, &r);
-	draw_disc(disc, 60, 45, 25);
-	double area = (double)synth_outline_area(disc, H * W);
-	for (int i = 0; i < 20; i++) {
-		double share = 0.3 + 0.02 * i;
-		memcpy(mask, disc, sizeof disc);
-		synth_outline_cut(mask, H, W, share, &r);
-		double kept = (double)synth_outline_area(mask, H * W) / area;
-		CHECK(fabs(kept - share) < 0.05, "%g kept of the disc, asked for %g", kept, share);
-		memcpy(mask, disc, sizeof disc);
-		synth_outline_rag(mask, H, W, 0.4, 0, &noise, &r, &e);
-		size_t both = 0, either = 0;
-		for (int p = 0; p < H * W; p++) {
-			both += mask[p] && disc[p];
-			either += mask[p] || disc[p];
-		}
-		double iou = (double)both / (double)either;
-		CHECK(iou > 0.85 && iou < 0.999, "a ragged disc has IoU %g", iou);
-	}
-	memcpy(mask, disc, sizeof disc);
-	synth_outline_rag(mask, H, W, 0, 0.3, &noise, &r, &e);
-	CHECK((double)synth_outline_area(mask, H * W) < area, "a higher cut shrinks the disc");
-	memset(mask, 0, sizeof mask);
-	synth_outline_cut(mask, H, W, 0.5, &r);
-	CHECK(!synth_outline_rag(mask, H, W, 0.4, 0, &noise, &r, &e) && !synth_outline_area(mask, H * W),
-		"an empty mask stays empty");
-}
-
-static void detector_depends_on_the_view_alone(void)
-{
-	enum { N = 5 };
-	static uint8_t truth[N * H * W];
-	static struct synth_detector d;
-	struct synth_object o[N];
-	struct synth_table t;
-	struct err e = {0};
-	int confused = 0, out_of_range = 0, hidden = 0;
-
-	synth_arrange(o, N, &t, synth_preset(0), 9);
-	synth_detector_make(&d, o, N, NULL, SYNTH_MILD, 9);
-	for (int i = 0; i + 1 < N; i++) /* the last one is hidden */
-		draw_disc(truth + (size_t)i * H * W, 15 + 28 * i, 45, 12);
-	for (int i = 0; i < N; i++) {
-		CHECK(d.habits.mistaken[i][0] != i && d.habits.neighbours[i] != i,
-			"object %d is mistaken for another", i);
-		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
-			confused += d.habits.of[i][k] == SYNTH_HABIT_CONFUSED;
-	}
-	CHECK(confused > 0 && confused < N * SYNTH_TRAIN_SENTENCES / 2, "%d confused sentences", confused);
-	for (int view = 0; view < 6; view++) {
-		struct synth_candidates a = {0}, b = {0};
-		CHECK(!synth_detect(&a, &d, view, truth, H, W, &e), "%s", e.message);
-		synth_detect(&b, &d, view + 1, truth, H, W, &e);
-		size_t other_view = b.n;
-		synth_detect(&b, &d, view, truth, H, W, &e);
-		int same = b.n - other_view == a.n;
-		for (size_t i = 0; i < a.n && same; i++) {
-			const struct synth_candidate *x = &a.items[i], *y = &b.items[other_view + i];
-			same = x->score == y->score && x->object == y->object && x->sentence == y->sentence &&
-			       rle_iou(&x->mask, &y->mask) == 1;
-			out_of_range += !(x->score >= 0.2 && x->score <= 0.95);
-			hidden += x->object == N - 1;
-		}
-		CHECK(same, "view %d: the same candidates after another view", view);
-		synth_candidates_free(&a);
-		synth_candidates_free(&b);
-	}
-	CHECK(!out_of_range, "%d scores out of range", out_of_range);
-	CHECK(hidden < 6 * 4, "a hidden object is mostly not found, %d times", hidden);
-}
-
 /* The masks against the blend weights themselves; returns the pixels that differ where the share is not a
  * tie. */
 static int differing(const struct synth_scene *s, const struct render_view *view, const uint8_t *masks)
@@ -320,8 +231,6 @@ int main(void)
 	shapes_keep_their_measures();
 	objects_stand_apart();
 	cameras_see_the_table();
-	outlines_change_as_asked();
-	detector_depends_on_the_view_alone();
 	truth_is_where_the_objects_are();
 	return unit_end();
 }

@@ -47,7 +47,8 @@ static void test_active_set(void)
 	struct err e;
 
 	random_views(random, views, 3);
-	double total[GAUSSIANS] = {0}, all = 0;
+	double total[GAUSSIANS] = {0}, all = 0, weight[GAUSSIANS];
+	train_weights(views, VIEWS, GAUSSIANS, weight);
 	for (int v = 0; v < VIEWS; v++)
 		for (int k = 0; k < PIXELS * ENTRIES; k++) {
 			total[random[v].index[k]] += (double)random[v].weight[k];
@@ -59,8 +60,7 @@ static void test_active_set(void)
 		char is_in[GAUSSIANS] = {0};
 		double left_out = 0, smallest = INFINITY, largest_out = 0;
 
-		CHECK(!train_active_set(views, VIEWS, GAUSSIANS, tolerances[t], ids, &n, &e), "%s",
-			e.message);
+		CHECK(!train_active_set(weight, GAUSSIANS, tolerances[t], ids, &n, &e), "%s", e.message);
 		for (size_t i = 0; i < n; i++) {
 			CHECK(!i || ids[i] > ids[i - 1], "ids do not rise at %zu", i);
 			is_in[ids[i]] = 1;
@@ -80,8 +80,9 @@ static void test_active_set(void)
 		memset(random[v].weight, 0, sizeof random[v].weight);
 	int32_t ids[GAUSSIANS];
 	size_t n = 1;
-	CHECK(!train_active_set(views, VIEWS, GAUSSIANS, 0, ids, &n, &e) && n == 0,
-		"%zu Gaussians without weight", n);
+	train_weights(views, VIEWS, GAUSSIANS, weight);
+	CHECK(!train_active_set(weight, GAUSSIANS, 0, ids, &n, &e) && n == 0, "%zu Gaussians without weight",
+		n);
 }
 
 static void test_bounds(void)
@@ -405,6 +406,7 @@ static void test_resume(void)
 {
 	const struct trainer_options options = {.interaction = REFER_PCMI,
 		.contrast = REFER_CONTRAST_COSINE,
+		.feature_width = 5,
 		.temperature = 0.1,
 		.lambda = 0.02,
 		.batch = 1,
@@ -437,6 +439,17 @@ static void test_resume(void)
 	checkpoint_identity(other, &options, 0x1234abce);
 	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
 		"another training's inputs");
+	struct trainer_options wider = options;
+	wider.feature_width = 6;
+	checkpoint_identity(other, &wider, 0x1234abcd);
+	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
+		"features of another width");
+	float *x = trainer_features(&whole, &e);
+	const size_t last = whole.rows.n - 1; /* in the first panel, of 64 */
+	CHECK(x && whole.rows.n <= 64, "%zu rows", whole.rows.n);
+	for (size_t c = 0; x && c < 5; c++)
+		CHECK(x[last * 5 + c] == train_state_x(&whole.state)[c * 64 + last], "number %zu", c);
+	free(x);
 	unlink(path);
 	trainer_free(&whole);
 	trainer_free(&part);
@@ -445,7 +458,7 @@ static void test_resume(void)
 
 static void test_no_weight(void)
 {
-	const struct trainer_options options = {.batch = 1, .temperature = 1};
+	const struct trainer_options options = {.batch = 1, .feature_width = 1, .temperature = 1};
 	struct sample s;
 	struct trainer t;
 	struct err e = {0};

@@ -1,0 +1,194 @@
+# The ablation tables of the paper (ReferSplat, ICML 2025) on synthetic scenes, the published figures beside ours.
+#
+#	make -f pipelines/ablation.mk -j2 all
+#
+# OUT         folder for everything that is made; default ablation
+# SIZE        full or quick; default quick: fewer seeds and steps, smaller scenes, to see that all of it works
+# SCENES      named scenes of gs-synth; default diner toys tea kitchen
+# SEEDS       of scenes and trainings alike; default 11 12 13 (full), 11 (quick)
+# ITERATIONS  steps of a training; default 8000 (full), 2000 (quick)
+# SYNTH       more options for gs-synth; the quick size has its own
+# SCALE       size at which training looks at the views; default 0.5 (full), 1 (quick)
+# TRAIN       options of every training, before its own
+# RUNS        trainings to do, of those below; default all. A new one: RUNS="both mine" run.mine="--lambda 0.1"
+# BERTS       more language encoders for the encoder table, as NAME=DIR ...
+# BERT        folder of the language encoder; default: where `make encoder` puts it
+# THREADS     of each tool; default 1, because -j has several of them at work
+# BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
+#
+# Targets: tables (all but the cost), cost (times its own trainings, so nothing else should run), all, and one for each
+# table: modules similarity masks interaction width encoder contrast settings sentences. They print; OUT/SIZE/NAME.md keeps what
+# was printed. Every cell is the mean over the seeds, each the mean over the scenes, with the spread between seeds.
+# Every file is made under its own name: what is there is not made again, unless what it is made of changed.
+
+here := $(dir $(lastword $(MAKEFILE_LIST)))
+BIN ?= $(if $(wildcard $(here)../build/bin/refer-train),$(abspath $(here)../build/bin))
+tool = $(if $(BIN),$(BIN)/)
+BERT ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/encoder
+OUT ?= ablation
+SIZE ?= quick
+SCENES ?= diner toys tea kitchen
+THREADS ?= 1
+ifeq ($(SIZE),full)
+SEEDS ?= 11 12 13
+ITERATIONS ?= 8000
+SCALE ?= 0.5
+else ifeq ($(SIZE),quick)
+SEEDS ?= 11
+ITERATIONS ?= 2000
+SCALE ?= 1
+SYNTH ?= --size 246x182 --gaussians 15000
+else
+$(error SIZE is full or quick)
+endif
+
+# The trainings: options; the masks and the word vectors that they learn from, where these are not the usual ones.
+run.none = --interaction none --contrast none
+run.pcmi = --interaction pcmi --contrast none
+run.gtcl = --interaction none --contrast cosine
+run.both = --interaction pcmi --contrast cosine
+run.two = $(run.both)
+masks.two = both/teach
+run.cosine = $(run.none) --similarity cosine
+run.top1 = $(run.both)
+masks.top1 = masks/top1
+run.first = $(run.both)
+masks.first = masks/first
+run.iou = $(run.both)
+masks.iou = masks/iou
+run.attention = --interaction attention --contrast none
+run.attention+fp = --interaction attention+fp --contrast none
+run.add = --interaction add --contrast none
+run.proj = --interaction pcmi-proj --contrast none
+run.width1 = $(run.both) --feature-width 1
+run.width4 = $(run.both) --feature-width 4
+run.width32 = $(run.both) --feature-width 32
+run.static = $(run.both)
+text.static = static
+run.dot = --interaction pcmi --contrast dot
+run.proj-dot = --interaction pcmi-proj --contrast dot
+run.proj-both = --interaction pcmi-proj --contrast cosine
+run.cold = $(run.both) --temperature 0.05
+run.warm = $(run.both) --temperature 0.2
+run.lambda = $(run.both) --lambda 0.1
+run.mlp = $(run.both) --mlp-rate 0.0004
+run.feature = $(run.both) --feature-rate 0.01
+run.half = $(run.both)
+steps.half = $(shell expr $(ITERATIONS) / 2)
+run.twice = $(run.both)
+steps.twice = $(shell expr $(ITERATIONS) \* 2)
+encoders := $(foreach b,$(BERTS),$(firstword $(subst =, ,$(b))))
+$(foreach b,$(BERTS),$(eval dir.$(firstword $(subst =, ,$(b))) := $(lastword $(subst =, ,$(b)))))
+$(foreach e,$(encoders),$(eval run.$(e) = $$(run.both))$(eval text.$(e) = $(e)))
+
+modules := none pcmi gtcl both two
+similarity := none cosine
+masks := both iou top1 first
+interaction := none attention attention+fp add pcmi proj
+width := width1 width4 both width32
+encoder := both static $(encoders)
+contrast := pcmi dot both proj proj-dot proj-both
+settings := both cold warm lambda mlp feature half twice
+sentences := both two
+tables := modules similarity masks interaction width encoder contrast settings sentences
+RUNS ?= $(sort $(foreach t,$(tables),$($(t))))
+
+root := $(OUT)/$(SIZE)
+cells := $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(root)/$(s)-$(n)))
+
+# One thread a tool, or those that wait for one another give their processor to other programs.
+export OMP_WAIT_POLICY ?= passive
+export OMP_NUM_THREADS := $(THREADS)
+
+.PHONY: all tables cost scores help FORCE $(tables)
+.DELETE_ON_ERROR:
+.SECONDARY:
+all: tables
+	@$(MAKE) --no-print-directory -f $(firstword $(MAKEFILE_LIST)) cost
+tables: $(tables)
+help:
+	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(lastword $(MAKEFILE_LIST))
+
+# What is asked of a file that nothing but a command line makes: it holds that line, and is as old as the line.
+define keep
+@mkdir -p $(@D); printf '%s\n' '$(1)' | cmp -s - $@ || printf '%s\n' '$(1)' >$@
+endef
+
+# $(call run,LOG,COMMAND): the last line of -v, time and memory, stays beside the result.
+run = mkdir -p $(dir $(1)) && $(tool)$(2) -v 2>$(1) || { cat $(1) >&2; exit 1; }
+
+# $(call data_rules,FOLDER,SCENE,SEED)
+define data_rules
+$(1)/data/made-by: FORCE
+	@want='gs-synth --scene $(2) --seed $(3) $(SYNTH)'; [ "$$$$(cat $$@ 2>/dev/null)" = "$$$$want" ] || { rm -f $$@ && \
+		$(tool)$$$$want -q -o $(1)/data && printf '%s\n' "$$$$want" >$$@; }
+$(1)/scene/cameras.json: $(1)/data/made-by
+	$$(call run,$(1)/log/import,gs-import --cameras $(1)/data/sparse/0 --images $(1)/data/images \
+		--test-views $$$$(cat $(1)/data/test-views) -o $(1)/scene $(1)/data/point_cloud.ply)
+$(1)/weights/complete: $(1)/scene/cameras.json
+	$$(call run,$(1)/log/weigh,gs-weigh --scale $(SCALE) -o $(1)/weights $(1)/scene)
+	@touch $$@
+$(1)/text/contextual.safetensors: $(1)/data/made-by
+	@mkdir -p $$(@D)
+	$$(call run,$(1)/log/contextual,text-encode --model $(BERT) -o $$@ $(1)/data/sentences.jsonl)
+$(1)/text/static.safetensors: $(1)/data/made-by
+	@mkdir -p $$(@D)
+	$$(call run,$(1)/log/static,text-encode --words static --model $(BERT) -o $$@ $(1)/data/sentences.jsonl)
+$(1)/masks/first.jsonl: $(1)/weights/complete
+	@mkdir -p $$(@D)
+	$$(call run,$(1)/log/first,pseudomask-select --method first --scene $(1)/scene --weights $(1)/weights -o $$@ \
+		$(1)/data/candidates.jsonl)
+$(1)/masks/%.jsonl: $(1)/data/made-by
+	@mkdir -p $$(@D)
+	$$(call run,$(1)/log/$$*,pseudomask-select --method $$* -o $$@ $(1)/data/candidates.jsonl)
+$(1)/both/teach.jsonl: $(1)/both/model.safetensors
+	$$(call run,$(1)/log/teach,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
+		--split train --sentences train --scale $(SCALE) -o $$@)
+$(1)/%.quality.json: $(1)/%.jsonl
+	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/truth.jsonl -o $$@ $$<
+endef
+
+# $(call encoder_rules,FOLDER,NAME)
+define encoder_rules
+$(1)/text/$(2).safetensors: $(1)/data/made-by
+	@mkdir -p $$(@D)
+	$$(call run,$(1)/log/$(2),text-encode --model $(dir.$(2)) -o $$@ $(1)/data/sentences.jsonl)
+endef
+
+masks_of = $(or $(masks.$(1)),masks/ciou)
+text_of = text/$(or $(text.$(1)),contextual).safetensors
+options_of = --iterations $(or $(steps.$(1)),$(ITERATIONS)) $(TRAIN) $(run.$(1))
+
+# $(call run_rules,FOLDER,SEED,RUN)
+define run_rules
+$(1)/$(3)/options: FORCE
+	$$(call keep,--seed $(2) $(call options_of,$(3)))
+$(1)/$(3)/model.safetensors: $(1)/$(3)/options $(1)/$(call masks_of,$(3)).jsonl $(1)/weights/complete $(1)/$(call text_of,$(3))
+	$$(call run,$(1)/$(3)/train.log,refer-train --scene $(1)/scene --weights $(1)/weights --text $(1)/$(call text_of,$(3)) \
+		--masks $(1)/$(call masks_of,$(3)).jsonl --seed $(2) $(call options_of,$(3)) --checkpoint 0 \
+		--log $(1)/$(3)/losses.jsonl -o $$@)
+$(1)/$(3)/%.jsonl: $(1)/$(3)/model.safetensors
+	$$(call run,$(1)/$(3)/render.log,refer-render --scene $(1)/scene --text $(1)/$(call text_of,$(3)) --model $$< \
+		--sentences $$* -o $$@)
+$(1)/$(3)/%.csv: $(1)/$(3)/%.jsonl
+	$(tool)miou-score --csv --quiet --predicted-views --truth $(1)/data/truth.jsonl --whole $(1)/data/whole.jsonl \
+		--sentences $(1)/data/sentences.jsonl -o $$@ $$<
+endef
+
+$(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(eval $(call data_rules,$(root)/$(s)-$(n),$(s),$(n)))))
+$(foreach c,$(cells),$(foreach e,$(encoders),$(eval $(call encoder_rules,$(c),$(e)))))
+$(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(foreach r,$(RUNS),$(eval $(call run_rules,$(root)/$(s)-$(n),$(n),$(r))))))
+
+scores_of = $(foreach c,$(cells),$(foreach r,$(filter $(RUNS),$(1)),$(c)/$(r)/test.csv $(c)/$(r)/train.csv))
+scores: $(call scores_of,$(RUNS))
+define table_rules
+$(1): $(call scores_of,$($(1)))
+	@ROOT='$(root)' SCENES='$(SCENES)' SEEDS='$(SEEDS)' RUNS='$(filter $(RUNS),$($(1)))' $(here)ablation-report.sh $(1) | tee $(root)/$(1).md
+endef
+$(foreach t,$(tables),$(eval $(call table_rules,$(t))))
+masks: $(foreach c,$(cells),$(foreach m,ciou iou top1 first,$(c)/masks/$(m).quality.json))
+
+# Alone on the machine, or its seconds mean nothing.
+cost_runs := none both proj-both
+cost: $(foreach r,$(cost_runs),$(firstword $(cells))/$(r)/test.csv $(firstword $(cells))/$(r)/train.csv)
+	@CELL='$(firstword $(cells))' OUT='$(root)/cost' BIN='$(tool)' $(here)ablation-cost.sh $(cost_runs) | tee $(root)/cost.md

@@ -1,0 +1,98 @@
+#!/usr/bin/env bats
+# The ablation tables: what the report makes of given scores, and the pipeline on the smallest scene there is.
+
+setup() {
+	export BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	BIN=$(cd "$BIN" && pwd)
+	export ROOT=$BATS_TEST_DIRNAME/../..
+	cd "$BATS_TEST_TMPDIR"
+}
+
+not() { ! "$@"; }
+
+# ablation ARGUMENT...: the pipeline on one tiny scene.
+ablation() {
+	make -f "$ROOT/pipelines/ablation.mk" OUT="$BATS_TEST_TMPDIR/out" SCENES=diner SEEDS=1 ITERATIONS=20 SCALE=1 BIN="$BIN" \
+		SYNTH="--objects 3 --views 6 --size 64x48 --gaussians 1500" BERT="$ROOT/tests/golden/bert" "$@"
+}
+
+# score CELL RUN TEST TRAIN: the scores of a training, in shares of 1.
+score() {
+	mkdir -p "given/$1/$2"
+	echo "all,,10,$3" >"given/$1/$2/test.csv"
+	echo "all,,10,$4" >"given/$1/$2/train.csv"
+}
+
+report() {
+	ROOT=given SCENES="a b" SEEDS="1 2" RUNS="$2" "$ROOT/pipelines/ablation-report.sh" "$1"
+}
+
+@test "a cell is the mean over seeds of the mean over scenes, with the spread of the seeds" {
+	score a-1 none 0.10 0.5; score b-1 none 0.20 0.5
+	score a-2 none 0.30 0.5; score b-2 none 0.40 0.5
+	score a-1 cosine 0.05 0.6; score b-1 cosine 0.15 0.6
+	score a-2 cosine 0.25 0.6; score b-2 cosine 0.35 0.6
+	run report similarity "none cosine"
+	[ "$status" = 0 ]
+	grep -qF '| dot product | 28.4 / 18.5 | 25.0 ± 14.1 | 50.0 ± 0.0 |' <<<"$output"
+	grep -qF '| cosine | below dot product | 20.0 ± 14.1 | 60.0 ± 0.0 |' <<<"$output"
+}
+
+@test "the published order is said to agree, to be the other way round, or not to be told" {
+	for cell in a-1 b-1 a-2 b-2; do score $cell none 0.30 0.40; score $cell cosine 0.20 0.50; done
+	run report similarity "none cosine"
+	grep -qF 'on test sentences agrees (+10.0 ± 0.0); on training sentences is the other way round (-10.0 ± 0.0)' <<<"$output"
+	score a-1 cosine 0.50 0.40
+	run report similarity "none cosine"
+	grep -qF 'on test sentences cannot be told (+2.5 ± 7.5)' <<<"$output"
+}
+
+@test "groups are pooled by their number of pairs" {
+	for cell in a-1 b-1 a-2 b-2; do
+		mkdir -p given/$cell/both
+		printf '%s\n' 'relation,left,1,0.2' 'visibility,<0.15,3,0.1' >given/$cell/both/test.csv
+		cp given/$cell/both/test.csv given/$cell/both/train.csv
+	done
+	echo 'relation,left,9,0.6' >given/b-2/both/test.csv
+	run report sentences both
+	[ "$status" = 0 ]
+	grep -qF '| left | 12 | 50.0 | 20.0 |' <<<"$output" # (3 of 0.2 and 9 of 0.6) / 12
+	grep -qF '| <0.15 | 9 | 10.0 | 10.0 |' <<<"$output"
+}
+
+@test "the pipeline makes its tables, keeps them, and does nothing the second time" {
+	ablation -j2 modules masks sentences >first.log 2>&1
+	grep -qE '^\| \+ second stage \| 36.9 / 25.2 \| [0-9.]+ \| [0-9.]+ \|$' first.log
+	grep -qE '^\| top-1 \| below \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \|$' out/quick/masks.md
+	grep -q '^### By visible share' out/quick/sentences.md
+	run ablation scores RUNS="none pcmi gtcl both two top1 iou first"
+	[ "$status" = 0 ]
+	not grep -qE 'refer-train|refer-render|gs-weigh|miou-score' <<<"$output"
+}
+
+@test "a training with other options is made again, and no other" {
+	ablation scores RUNS="none both" >/dev/null 2>&1
+	run ablation scores RUNS="none both" run.none="--interaction add --contrast none"
+	[ "$status" = 0 ]
+	grep -q 'diner-1/none/model.safetensors' <<<"$output"
+	not grep -q 'diner-1/both/model.safetensors' <<<"$output"
+}
+
+@test "a training of one's own is a row of its own" {
+	run ablation settings RUNS="both mine" run.mine="--lambda 0.5" settings="both mine"
+	[ "$status" = 0 ]
+	grep -qE '^\| mine \|  \| [0-9.]+ \| [0-9.]+ \|$' <<<"$output"
+}
+
+@test "the cost table times a training and weighs its model" {
+	ablation scores RUNS="none both proj-both" >/dev/null 2>&1
+	run ablation cost RUNS="none both proj-both"
+	[ "$status" = 0 ]
+	grep -qE '^\| both: .* \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \|$' <<<"$output"
+}
+
+@test "bad sizes are refused" {
+	run ablation tables SIZE=huge
+	[ "$status" = 2 ]
+	grep -q 'SIZE is full or quick' <<<"$output"
+}
