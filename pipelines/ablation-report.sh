@@ -40,7 +40,35 @@ groups() {
 	done
 }
 
-if [ "$table" = sentences ]; then
+# What the data are: a row for each scene and seed, from gs-synth's own statistics and the scores of the selected masks.
+statistics() {
+	printf '### The scenes\n\n'
+	printf '| scene | objects | alike | stacked | sentences | words each | test targets less than half visible | less than 0.15 | top-1 | IoU | confidence-weighted |\n'
+	printf '|---|---|---|---|---|---|---|---|---|---|---|\n'
+	for scene in $SCENES; do
+		for seed in $SEEDS; do
+			cell=$ROOT/$scene-$seed
+			for mask in top1 iou ciou; do
+				sed -n 's/.*"miou":\([0-9.eE+-]*\),"oiou.*/\1/p' "$cell/masks/$mask.quality.json"
+			done | paste -sd' ' - | cat "$cell/data/statistics.json" - | awk -v name="$scene, seed $seed" '
+				function number(key) { return match(json, "\"" key "\":[0-9.]+") ? substr(json, RSTART + length(key) + 3, RLENGTH - length(key) - 3) + 0 : 0 }
+				NR == 1 {
+					json = $0; objects = number("objects"); alike = number("alike"); stacked = number("stacked")
+					rest = json; sub(/.*"sentences":/, "", rest); json = rest; train = number("train"); test = number("test")
+					sub(/.*"words":/, "", rest); json = rest; words = (number("train") * train + number("test") * test) / (train + test)
+					sub(/.*"visibility":/, "", rest); sub(/.*"test":/, "", rest); json = rest
+					hidden = number("0") + number("<0.15"); half = hidden + number("0.15-0.5")
+				}
+				NR == 2 { printf "| %s | %d | %d | %d | %d + %d | %.1f | %.0f%% | %.0f%% | %.1f | %.1f | %.1f |\n", name, objects, alike, stacked,
+					train, test, words, 100 * half, 100 * hidden, 100 * $1, 100 * $2, 100 * $3 }'
+		done
+	done
+	echo
+}
+
+if [ "$table" = statistics ]; then
+	statistics
+elif [ "$table" = sentences ]; then
 	groups | awk -f "$here/ablation-groups.awk" -v runs="$RUNS"
 else
 	values | awk -f "$here/ablation-table.awk" -v table="$table" -v seeds="$SEEDS" -v scenes="$SCENES" "$here/published.tsv" -

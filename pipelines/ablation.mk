@@ -17,8 +17,8 @@
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 #
 # Targets: tables (all but the cost), cost (times its own trainings, so nothing else should run), all, and one for each
-# table: modules similarity masks interaction width encoder contrast settings sentences. They print; OUT/SIZE/NAME.md keeps what
-# was printed. Every cell is the mean over the seeds, each the mean over the scenes, with the spread between seeds.
+# table: statistics (of the scenes) modules similarity masks interaction width encoder contrast settings sentences. They print;
+# OUT/SIZE/NAME.md keeps what was printed. Every cell is the mean over the seeds, each the mean over the scenes, with the spread between seeds.
 # Every file is made under its own name: what is there is not made again, unless what it is made of changed.
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
@@ -79,6 +79,7 @@ encoders := $(foreach b,$(BERTS),$(firstword $(subst =, ,$(b))))
 $(foreach b,$(BERTS),$(eval dir.$(firstword $(subst =, ,$(b))) := $(lastword $(subst =, ,$(b)))))
 $(foreach e,$(encoders),$(eval run.$(e) = $$(run.both))$(eval text.$(e) = $(e)))
 
+statistics :=
 modules := none pcmi gtcl both two
 similarity := none cosine
 masks := both iou top1 first
@@ -88,7 +89,7 @@ encoder := both static $(encoders)
 contrast := pcmi dot both proj proj-dot proj-both
 settings := both cold warm lambda slow half
 sentences := both two
-tables := modules similarity masks interaction width encoder contrast settings sentences
+tables := statistics modules similarity masks interaction width encoder contrast settings sentences
 RUNS ?= $(sort $(foreach t,$(tables),$($(t))))
 
 root := $(OUT)/$(SIZE)
@@ -184,7 +185,7 @@ $(1): $(call scores_of,$($(1)))
 	@ROOT='$(root)' SCENES='$(SCENES)' SEEDS='$(SEEDS)' RUNS='$(filter $(RUNS),$($(1)))' $(here)ablation-report.sh $(1) | tee $(root)/$(1).md
 endef
 $(foreach t,$(tables),$(eval $(call table_rules,$(t))))
-masks: $(foreach c,$(cells),$(foreach m,ciou iou top1 first,$(c)/masks/$(m).quality.json))
+statistics masks: $(foreach c,$(cells),$(foreach m,ciou iou top1 first,$(c)/masks/$(m).quality.json))
 
 # Alone on the machine, or its seconds mean nothing.
 cost_runs := none both proj-both

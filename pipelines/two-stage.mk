@@ -78,7 +78,8 @@ $(weights): $(scene)
 $(text): $(SENTENCES)
 	$(call run,$(SCENE)/log/encode,text-encode --model $(BERT) -o $@ $(SENTENCES))
 
-$(masks1): $(CANDIDATES)
+# A way of selecting that looks at the scene has to wait for it.
+$(masks1): $(CANDIDATES) $(if $(findstring --weights,$(SELECT)),$(weights))
 	@mkdir -p $(dir $@)
 	$(call run,$(SCENE)/log/select,pseudomask-select $(SELECT) -o $@ $(CANDIDATES))
 

@@ -70,6 +70,17 @@ report() {
 	not grep -qE 'refer-train|refer-render|gs-weigh|miou-score' <<<"$output"
 }
 
+@test "the scenes' own figures are those of gs-synth" {
+	run ablation -s statistics
+	[ "$status" = 0 ]
+	words=$(jq '(.words.train * .sentences.train + .words.test * .sentences.test) / (.sentences.train + .sentences.test)' \
+		out/quick/diner-1/data/statistics.json)
+	hidden=$(jq '.visibility.test | 100 * (.["0"] + .["<0.15"])' out/quick/diner-1/data/statistics.json)
+	ciou=$(jq '100 * .miou' out/quick/diner-1/masks/ciou.quality.json)
+	grep -qE "^\| diner, seed 1 \| 3 \| .* \| 12 \+ 3 \| $(printf %.1f "$words") \| .*% \| $(printf %.0f "$hidden")% \| .* \| $(printf %.1f "$ciou") \|$" \
+		<<<"$output"
+}
+
 @test "a training with other options is made again, and no other" {
 	ablation scores RUNS="none both" >/dev/null 2>&1
 	run ablation scores RUNS="none both" run.none="--interaction add --contrast none"
