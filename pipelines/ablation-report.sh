@@ -17,8 +17,8 @@ values() {
 				done
 			done
 			[ "$table" = masks ] || continue
-			for run in both=ciou iou=iou top1=top1 first=first; do
-				sed -n 's/.*"miou":\([0-9.eE+-]*\),"oiou.*/\1/p' "$ROOT/$cell/masks/${run#*=}.quality.json" |
+			for run in both=masks/ciou iou=masks/iou top1=masks/top1 first=masks/first two=both/teach; do
+				sed -n 's/.*"miou":\([0-9.eE+-]*\),"oiou.*/\1/p' "$ROOT/$cell/${run#*=}.quality.json" |
 					awk -v OFS='\t' -v run="${run%=*}" -v cell="$cell" -v seed="$seed" \
 						'{ print run, cell, seed, "quality", 100 * $1 }'
 			done

@@ -82,7 +82,7 @@ $(foreach e,$(encoders),$(eval run.$(e) = $$(run.both))$(eval text.$(e) = $(e)))
 statistics :=
 modules := none pcmi gtcl both two
 similarity := none cosine
-masks := both iou top1 first
+masks := both iou top1 first two
 interaction := none attention attention+fp add pcmi proj
 width := width1 width4 both width32
 encoder := both static $(encoders)
@@ -185,7 +185,8 @@ $(1): $(call scores_of,$($(1)))
 	@ROOT='$(root)' SCENES='$(SCENES)' SEEDS='$(SEEDS)' RUNS='$(filter $(RUNS),$($(1)))' $(here)ablation-report.sh $(1) | tee $(root)/$(1).md
 endef
 $(foreach t,$(tables),$(eval $(call table_rules,$(t))))
-statistics masks: $(foreach c,$(cells),$(foreach m,ciou iou top1 first,$(c)/masks/$(m).quality.json))
+statistics masks: $(foreach c,$(cells),$(foreach m,ciou iou top1,$(c)/masks/$(m).quality.json))
+masks: $(foreach c,$(cells),$(c)/masks/first.quality.json $(c)/both/teach.quality.json)
 
 # Alone on the machine, or its seconds mean nothing.
 cost_runs := none both proj-both
