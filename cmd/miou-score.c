@@ -6,6 +6,7 @@
 #include "formats/score_masks.h"
 #include "formats/scores.h"
 #include "formats/sentences.h"
+#include "mask/score_choice.h"
 #include "mask/score_groups.h"
 #include "mask/score_join.h"
 
@@ -64,7 +65,9 @@ static int pair_up(const struct cli *c, const struct inputs *in, int is_compared
 
 	if (match(pairs, &in->truth, &in->predictions, e) ||
 		(is_compared && (match(others, &in->truth, &in->other, e) || score_join(pairs, others, e))) ||
-		score_measure_all(pairs, e) || score_measure_all(others, e))
+		score_measure_all(pairs, e) || score_measure_all(others, e) ||
+		score_choices(pairs, in->truth.masks, in->truth.n, e) ||
+		score_choices(others, in->truth.masks, in->truth.n, e))
 		return -1;
 	score_sum(sum, pairs->items, pairs->n);
 	score_sum(other_sum, others->items, others->n);

@@ -122,6 +122,7 @@ static void put_text(FILE *out, const struct scores *s)
 	text_figure(out, "overall IoU", all->oiou, &s->all.oiou, &s->all);
 	for (int k = 0; k < 3; k++)
 		fprintf(out, "P@%-10g %6.2f %%\n", score_cut[k], 100 * all->precision[k]);
+	fprintf(out, "right object %6.2f %%\n", 100 * all->right);
 	fprintf(out, "pairs        %6zu\nmissing      %6zu\nempty truth  %6zu\n", all->pairs, all->missing,
 		all->empty_truth);
 	if (s->how)
@@ -148,7 +149,7 @@ static int add_figure(cJSON *to, const char *key, double x, const struct score_r
 static int add_precisions(cJSON *to, const struct score *s, const struct score_row *row)
 {
 	return add_figure(to, "p25", s->precision[0], row) && add_figure(to, "p50", s->precision[1], row) &&
-	       add_figure(to, "p75", s->precision[2], row);
+	       add_figure(to, "p75", s->precision[2], row) && add_figure(to, "right", s->right, row);
 }
 
 /* A key for either end; null where there is no interval. */
@@ -286,6 +287,7 @@ static void csv_row(FILE *out, const struct scores *s, const char *group, const 
 	csv_number(out, own->oiou, is_scored);
 	for (int k = 0; k < 3; k++)
 		csv_number(out, own->precision[k], is_scored);
+	csv_number(out, own->right, is_scored);
 	fprintf(out, ",%zu,%s", own->missing, score_unit_name[row->unit]);
 	if (s->is_compared) {
 		csv_number(out, c->score.miou, is_scored);
@@ -306,7 +308,7 @@ static void put_csv(FILE *out, const struct scores *s)
 	struct section sections[SECTIONS];
 	const int n = sections_of(sections, s);
 
-	fputs("group,name,pairs,miou,low,high,oiou,p25,p50,p75,missing,resampled", out);
+	fputs("group,name,pairs,miou,low,high,oiou,p25,p50,p75,right,missing,resampled", out);
 	if (s->is_compared)
 		fputs(",other,other_low,other_high,other_missing,difference,difference_low,difference_high,p,"
 		      "better,worse,equal",

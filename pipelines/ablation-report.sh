@@ -5,15 +5,18 @@ set -eu
 table=$1
 here=$(dirname "$0")
 
-# Tab-separated: RUN CELL SEED KIND VALUE; kinds test and train are mIoU in test views, quality that of masks in training views.
+# Tab-separated: RUN CELL SEED KIND VALUE; kinds test and train are mIoU in test views, test-right and train-right
+# the share of masks on the right object, quality the mIoU of masks in training views.
 values() {
 	for scene in $SCENES; do
 		for seed in $SEEDS; do
 			cell=$scene-$seed
 			for run in $RUNS; do
 				for kind in test train; do
-					awk -F, -v OFS='\t' -v run="$run" -v cell="$cell" -v seed="$seed" -v kind=$kind \
-						'$1 == "all" { print run, cell, seed, kind, 100 * $4 }' "$ROOT/$cell/$run/$kind.csv"
+					awk -F, -v OFS='\t' -v run="$run" -v cell="$cell" -v seed="$seed" -v kind=$kind '
+						NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i }
+						$1 == "all" { print run, cell, seed, kind, 100 * $at["miou"]; print run, cell, seed, kind "-right", 100 * $at["right"] }
+						' "$ROOT/$cell/$run/$kind.csv"
 				done
 			done
 			[ "$table" = masks ] || continue

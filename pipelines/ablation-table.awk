@@ -55,12 +55,12 @@ function claim_line(i, kind, what,    verdict) {
 END {
 	quality = "quality" in kind_seen
 	printf "### %s\n\n", title[table]
-	printf "Scenes %s, seeds %s. mIoU in test views, mean over seeds ± spread between them.\n\n", scenes, seeds
-	printf "| | published |%s test sentences | training sentences |\n|---|---|%s---|---|\n", quality ? " quality of masks |" : "", quality ? "---|" : ""
+	printf "Scenes %s, seeds %s. mIoU in test views and share of the masks that fit the right object best, in percent: mean over seeds ± spread between them.\n\n", scenes, seeds
+	printf "| | published |%s test sentences | right object | training sentences | right object |\n|---|---|%s---|---|---|---|\n", quality ? " quality of masks |" : "", quality ? "---|" : ""
 	for (i = 1; i <= rows; i++)
 		if (row[i] in has)
-			printf "| %s | %s |%s %s | %s |\n", label[row[i]], published[row[i]],
-				quality ? " " cell_text(row[i], "quality") " |" : "", cell_text(row[i], "test"), cell_text(row[i], "train")
+			printf "| %s | %s |%s %s | %s | %s | %s |\n", label[row[i]], published[row[i]],
+				quality ? " " cell_text(row[i], "quality") " |" : "", cell_text(row[i], "test"), cell_text(row[i], "test-right"), cell_text(row[i], "train"), cell_text(row[i], "train-right")
 	if (claims) print "\nThe published order, as mean paired difference ± its standard error:\n"
 	for (i = 1; i <= claims; i++)
 		if ((better[i] in has) && (worse[i] in has))

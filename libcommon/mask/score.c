@@ -231,7 +231,7 @@ void score_sort(struct score_pair *pairs, size_t n)
 
 void score_sum(struct score *s, const struct score_pair *pairs, size_t n)
 {
-	size_t intersection = 0, either = 0, hits[3] = {0};
+	size_t intersection = 0, either = 0, right = 0, hits[3] = {0};
 
 	*s = (struct score){0};
 	for (size_t i = 0; i < n; i++) {
@@ -245,6 +245,7 @@ void score_sum(struct score *s, const struct score_pair *pairs, size_t n)
 		s->miou += p->iou;
 		intersection += p->intersection;
 		either += p->either;
+		right += p->is_right != 0;
 		for (int k = 0; k < 3; k++)
 			hits[k] += p->iou >= score_cut[k];
 	}
@@ -252,6 +253,7 @@ void score_sum(struct score *s, const struct score_pair *pairs, size_t n)
 		return;
 	s->miou /= (double)s->pairs;
 	s->oiou = (double)intersection / (double)either;
+	s->right = (double)right / (double)s->pairs;
 	for (int k = 0; k < 3; k++)
 		s->precision[k] = (double)hits[k] / (double)s->pairs;
 }

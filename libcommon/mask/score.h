@@ -24,6 +24,8 @@ struct score_pair {
 	size_t intersection, either; /* |prediction and truth|, |prediction or truth| */
 	double iou;
 	int is_empty; /* nothing in the truth */
+	/* filled by score_choices (mask/score_choice.h) */
+	int is_right; /* it shows its own object more than any other */
 };
 
 struct score_pairs {
@@ -40,6 +42,7 @@ struct score {
 	double miou;	     /* mean IoU */
 	double oiou;	     /* sum of intersections / sum of unions */
 	double precision[3]; /* share of pairs with IoU >= score_cut[i] */
+	double right;	     /* share of pairs that show the right object */
 };
 extern const double score_cut[3]; /* 0.25, 0.5, 0.75 */
 

@@ -37,6 +37,7 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 	P@0.25        75.00 %
 	P@0.5         75.00 %
 	P@0.75        50.00 %
+	right object  50.00 %
 	pairs             4
 	missing           1
 	empty truth       1
@@ -55,7 +56,7 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 	[ "$(echo "$output" | jq '.oiou * 14 - 8 | fabs < 1e-12')" = true ]
 	[ "$(echo "$output" | jq -c .objects)" = \
 		'{"cup":{"pairs":3,"miou":0.5},"plate":{"pairs":0,"miou":null},"spoon":{"pairs":1,"miou":1}}' ]
-	[ "$(echo "$output" | jq -c keys)" = '["empty_truth","miou","missing","objects","oiou","p25","p50","p75","pairs"]' ]
+	[ "$(echo "$output" | jq -c keys)" = '["empty_truth","miou","missing","objects","oiou","p25","p50","p75","pairs","right"]' ]
 }
 
 @test "figures are summed in the order of the files, whatever the objects are called" {
@@ -69,6 +70,28 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 
 @test "truth against itself is 1" {
 	"$BIN/miou-score" --json --truth truth.jsonl truth.jsonl | jq -e '.miou == 1 and .oiou == 1 and .missing == 0'
+}
+
+@test "the right object is the one that a mask fits best" {
+	mask() { echo "{\"view\":\"$1\",\"object\":\"$2\",\"segmentation\":{\"size\":[1,$4],\"counts\":[$3]}}"; }
+	{ mask v a 0,4,8 12; mask v b 4,4,4 12; mask v c 8,4 12; mask v none 12 12; mask w a 0,2,2 4; mask w b 2,2 4; } >truth.jsonl
+	right() { "$BIN/miou-score" --json --truth truth.jsonl pred.jsonl | jq -c "[.right, .pairs, .p25]"; }
+	mask v a 0,7,5 12 >pred.jsonl # a whole, and most of b
+	[ "$(right)" = "[0.2,5,0.2]" ]
+	mask v a 1,7,4 12 >pred.jsonl # more of b than of a, though well above a quarter of a
+	[ "$(right)" = "[0,5,0.2]" ]
+	mask v a 2,4,6 12 >pred.jsonl # as much of either
+	[ "$(right)" = "[0,5,0.2]" ]
+	mask v a 12 12 >pred.jsonl # nothing
+	[ "$(right)" = "[0,5,0]" ]
+	mask v a 0,2,4 6 >pred.jsonl # of another size: a
+	[ "$(right)" = "[0.2,5,0.2]" ]
+	{ mask v b 4,4,4 12; mask w a 2,2 4; } >pred.jsonl # objects of other views do not count
+	[ "$(right)" = "[0.2,5,0.2]" ]
+	# Sentences of one object share it.
+	sed -i 's/"object":"b"/"ref":"x","object":"a"/' truth.jsonl
+	mask v a 1,7,4 12 >pred.jsonl
+	[ "$(right)" = "[0.4,5,0.4]" ]
 }
 
 @test "--fail-under: exit 1 below, 0 at it, and the scores all the same" {
@@ -202,8 +225,8 @@ make_scene() {
 	[ -z "$stderr" ]
 	grep -qxE 'mIoU          82\.10 %  \[7[0-9]\.[0-9], 8[0-9]\.[0-9]\]' <<<"${lines[0]}"
 	grep -qxE 'overall IoU   80\.00 %  \[7[0-9]\.[0-9], 8[0-9]\.[0-9]\]' <<<"${lines[1]}"
-	[ "${lines[8]}" = "interval     95 % of 1000 resamples of 6 objects" ]
-	[ "${lines[9]}" = "pairs     mIoU  interval        object" ]
+	[ "${lines[9]}" = "interval     95 % of 1000 resamples of 6 objects" ]
+	[ "${lines[10]}" = "pairs     mIoU  interval        object" ]
 	"$BIN/miou-score" --json --truth truth.jsonl --bootstrap 1000 pred.jsonl | jq -e '.miou_low < .miou and .miou < .miou_high
 		and .oiou_low < .oiou and .oiou < .oiou_high and .resampled == "objects" and .units == 6 and .resamples == 1000
 		and .confidence == 0.95 and .seed == 1 and .objects.obj3.resampled == "pairs" and .objects.obj3.units == 6
@@ -216,13 +239,13 @@ make_scene() {
 
 @test "--bootstrap draws pairs where objects are few, and says so" {
 	run "$BIN/miou-score" --truth truth.jsonl --bootstrap 100 pred.jsonl
-	[ "${lines[8]}" = "interval     95 % of 100 resamples of 4 pairs, as there are fewer than 5 objects" ]
-	[ "${lines[11]}" = "    0        -  -               plate" ]
+	[ "${lines[9]}" = "interval     95 % of 100 resamples of 4 pairs, as there are fewer than 5 objects" ]
+	[ "${lines[12]}" = "    0        -  -               plate" ]
 	head -n 1 truth.jsonl >../one.jsonl
 	head -n 1 pred.jsonl >../one-pred.jsonl
 	run "$BIN/miou-score" --truth ../one.jsonl --bootstrap 100 ../one-pred.jsonl
 	[ "${lines[0]}" = "mIoU         100.00 %" ]
-	[ "${lines[8]}" = "interval     none: there is one pair alone" ]
+	[ "${lines[9]}" = "interval     none: there is one pair alone" ]
 	"$BIN/miou-score" --json --truth ../one.jsonl --bootstrap 100 ../one-pred.jsonl |
 		jq -e 'has("miou_low") and .miou_low == null and .resampled == null'
 }
@@ -255,7 +278,7 @@ make_scene() {
 	run --separate-stderr "$BIN/miou-score" --truth truth.jsonl --compare other.jsonl --bootstrap 500 pred.jsonl
 	[ "$status" -eq 0 ]
 	[ -z "$stderr" ]
-	diff - <(echo "$output" | sed -n '10,18p' | sed -E 's/\[[-+0-9., ]+\]/I/') <<-END
+	diff - <(echo "$output" | sed -n '11,19p' | sed -E 's/\[[-+0-9., ]+\]/I/') <<-END
 
 	other mIoU    71.67 %  I
 	other oIoU    70.00 %  I
@@ -266,7 +289,7 @@ make_scene() {
 	other missed      0
 
 	END
-	[ "${lines[16]}" = "pairs     mIoU  interval           other  difference  object" ]
+	[ "${lines[17]}" = "pairs     mIoU  interval           other  difference  object" ]
 	grep -qxE '    6  69\.54 %  \[6[0-9.]+, 7[0-9.]+\]     75\.81 %     -6\.27 %  obj4' <<<"$output"
 	"$BIN/miou-score" --json --truth truth.jsonl --compare other.jsonl --bootstrap 500 pred.jsonl >c.json
 	"$BIN/miou-score" --json --truth truth.jsonl pred.jsonl >own.json
@@ -277,7 +300,7 @@ make_scene() {
 		and $c.objects.obj2.compare.miou == .[2].objects.obj2.miou
 		and $c.compare.difference_low < $c.compare.difference and $c.compare.difference < $c.compare.difference_high
 		and $c.compare.p == 0.1875' c.json own.json other.json # 12 of 64 patterns
-	[ "$(jq -c '.compare | keys' c.json)" = '["better","difference","difference_high","difference_low","equal","miou","miou_high","miou_low","missing","oiou","oiou_high","oiou_low","p","p25","p50","p75","worse"]' ]
+	[ "$(jq -c '.compare | keys' c.json)" = '["better","difference","difference_high","difference_low","equal","miou","miou_high","miou_low","missing","oiou","oiou_high","oiou_low","p","p25","p50","p75","right","worse"]' ]
 	# the intervals are those of each file alone
 	for file in pred other; do "$BIN/miou-score" --json --truth truth.jsonl --bootstrap 500 $file.jsonl; done |
 		jq -s -e --slurpfile c c.json 'def ends: [.miou_low,.miou_high,.oiou_low,.oiou_high];
@@ -335,7 +358,7 @@ make_scene() {
 	# the same figures as of those sentences alone
 	grep -e '-0"' pred.jsonl >first.jsonl
 	[ "$("$BIN/miou-score" --json --truth truth.jsonl --sentences sentences.jsonl pred.jsonl | jq -c '.relations.on')" = \
-		"$("$BIN/miou-score" --json --truth truth.jsonl first.jsonl | jq -c '{pairs,miou,oiou,p25,p50,p75,missing}')" ]
+		"$("$BIN/miou-score" --json --truth truth.jsonl first.jsonl | jq -c '{pairs,miou,oiou,p25,p50,p75,right,missing}')" ]
 }
 
 @test "--sentences: pairs without one are a row, and told" {
@@ -369,7 +392,7 @@ make_scene() {
 	END
 	grep '"v2"' pred.jsonl >second.jsonl
 	[ "$("$BIN/miou-score" --json --truth truth.jsonl --whole whole.jsonl pred.jsonl | jq -c '.visibility["0.5-0.85"]')" = \
-		"$("$BIN/miou-score" --json --truth truth.jsonl --predicted-views second.jsonl | jq -c '{pairs,miou,oiou,p25,p50,p75,missing}')" ]
+		"$("$BIN/miou-score" --json --truth truth.jsonl --predicted-views second.jsonl | jq -c '{pairs,miou,oiou,p25,p50,p75,right,missing}')" ]
 }
 
 @test "--whole: truth without its whole is a row, and told; empty truth is not" {

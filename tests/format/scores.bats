@@ -35,12 +35,12 @@ keys() { sed -n "/^| $1 |/,/^\$/p" "$PAGE" | sed -n 's/^| \(`.*`\) | .*/\1/p' | 
 	diff <(keys key) <(jq -r 'keys_unsorted[]' all.json)
 	[ "$(jq -r '.objects["cup, red"] | keys_unsorted[]' all.json | xargs)" = "pairs miou miou_low miou_high resampled units compare" ]
 	[ "$(jq -r '.relations.left | keys_unsorted[]' all.json | xargs)" = \
-		"pairs miou oiou p25 p50 p75 missing miou_low miou_high oiou_low oiou_high resampled units compare" ]
+		"pairs miou oiou p25 p50 p75 right missing miou_low miou_high oiou_low oiou_high resampled units compare" ]
 	[ "$(jq -c '[.compare, .relations.left.compare, .objects.plate.compare | keys_unsorted] | unique | length' all.json)" = 1 ]
 	for key in $(keys 'key of `compare`'); do jq -e --arg key "$key" '.compare | has($key)' all.json; done
 	# every key is absent without its option
 	[ "$("$BIN/miou-score" --json --truth truth.jsonl pred.jsonl | jq -r 'keys_unsorted[]' | xargs)" = \
-		"miou oiou p25 p50 p75 pairs empty_truth missing objects" ]
+		"miou oiou p25 p50 p75 right pairs empty_truth missing objects" ]
 }
 
 @test "CSV has the columns of the page, and as many fields in every row" {
@@ -65,7 +65,7 @@ keys() { sed -n "/^| $1 |/,/^\$/p" "$PAGE" | sed -n 's/^| \(`.*`\) | .*/\1/p' | 
 	"$BIN/miou-score" --json $all | jq -r 'def row: [.pairs, .miou, .miou_low, .miou_high, .compare.miou, .compare.difference, .compare.p, .compare.worse];
 		row, (.objects[] | row), (.relations[] | row), (.visibility[] | row) | map(if . == null then "" else . * 1e9 | round end) | join(" ")' >json
 	"$BIN/miou-score" --csv $all | sed '1d; s/"[^"]*"/x/' | awk -F, '{
-		n = split($3 "," $4 "," $5 "," $6 "," $13 "," $17 "," $20 "," $22, f, ",")
+		n = split($3 "," $4 "," $5 "," $6 "," $14 "," $18 "," $21 "," $23, f, ",")
 		for (i = 1; i <= n; i++) printf "%s%s", f[i] == "" ? "" : sprintf("%.0f", f[i] * 1e9), i < n ? " " : "\n"
 	}' | cmp json -
 }
