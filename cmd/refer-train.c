@@ -14,46 +14,45 @@
 static struct {
 	const char *scene, *weights, *text, *masks, *log;
 	int interaction, similarity, contrast, precision, is_resumed;
-	long long checkpoint;
-	struct trainer_options train;
+	long long iterations, checkpoint;
+	struct trainer_options trainer;
 } options = {.interaction = REFER_PCMI,
 	.similarity = REFER_DOT,
 	.contrast = REFER_CONTRAST_COSINE,
 	.precision = PRECISION_U8,
+	.iterations = 45000,
 	.checkpoint = 1000,
-	.train = TRAINER_DEFAULTS};
+	.trainer = TRAINER_DEFAULTS};
 
 static const struct cli_option table[] = {
 	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
 	{"weights", 0, CLI_STRING, &options.weights, "WEIGHTS", "folder of gs-weigh (required)", 0, 0},
 	{"text", 0, CLI_STRING, &options.text, "TEXT", "sentences encoded by text-encode (required)", 0, 0},
 	{"masks", 0, CLI_STRING, &options.masks, "MASKS", "mask records to learn from (required)", 0, 0},
-	{"iterations", 0, CLI_INT, &options.train.iterations, "N", "training steps (default 45000)", 1,
-		100000000},
+	{"iterations", 0, CLI_INT, &options.iterations, "N", "training steps (default 45000)", 1, 100000000},
 	{"interaction", 0, CLI_CHOICE, &options.interaction, REFER_INTERACTION_CHOICES,
 		"how words act on Gaussians (default pcmi)", 0, 0},
 	{"similarity", 0, CLI_CHOICE, &options.similarity, REFER_SIMILARITY_CHOICES,
 		"how features answer words (default dot)", 0, 0},
 	{"contrast", 0, CLI_CHOICE, &options.contrast, REFER_CONTRAST_CHOICES,
 		"contrast between sentences (default cosine)", 0, 0},
-	{"feature-width", 0, CLI_INT, &options.train.feature_width, "N",
+	{"feature-width", 0, CLI_INT, &options.trainer.feature_width, "N",
 		"numbers of a referring feature (default 16)", 1, REFER_MAX_X},
-	{"temperature", 0, CLI_REAL, &options.train.temperature, "T", "of the contrast (default 0.1)", 1e-6,
+	{"temperature", 0, CLI_REAL, &options.trainer.temperature, "T", "of the contrast (default 0.1)", 1e-6,
 		1e6},
-	{"lambda", 0, CLI_REAL, &options.train.lambda, "X",
+	{"lambda", 0, CLI_REAL, &options.trainer.lambda, "X",
 		"weight of the contrast in the loss (default 0.02)", 0, 1e6},
-	{"feature-rate", 0, CLI_REAL, &options.train.rates.features, "R",
+	{"feature-rate", 0, CLI_REAL, &options.trainer.rates.features, "R",
 		"learning rate of the features (default 0.0025)", 1e-12, 10},
-	{"mlp-rate", 0, CLI_REAL, &options.train.rates.mlps, "R",
+	{"mlp-rate", 0, CLI_REAL, &options.trainer.rates.mlps, "R",
 		"learning rate of the MLPs (default 0.0001)", 1e-12, 10},
-	{"decay", 0, CLI_REAL, &options.train.decay, "X",
-		"share of the steps over which the rates fall to 0 (default 0.5)", 0, 1},
-	{"batch", 0, CLI_INT, &options.train.batch, "N", "sentences of a view in a step (default 1)", 1, 64},
-	{"negatives", 0, CLI_INT, &options.train.negatives, "N",
+	{"batch", 0, CLI_INT, &options.trainer.batch, "N", "sentences of a view in one step (default 1)", 1,
+		64},
+	{"negatives", 0, CLI_INT, &options.trainer.negatives, "N",
 		"sentences that a step is contrasted with; 0: all (default 12)", 0, 1000000},
-	{"tolerance", 0, CLI_REAL, &options.train.tolerance, "T",
+	{"tolerance", 0, CLI_REAL, &options.trainer.tolerance, "T",
 		"leave out Gaussians with this share of all weight (default 0)", 0, 0.99},
-	{"share", 0, CLI_REAL, &options.train.share, "E",
+	{"share", 0, CLI_REAL, &options.trainer.share, "E",
 		"pixels of mask a view that a feature must save; 0: all have their own (default 0.04)", 0,
 		1e6},
 	{"precision", 0, CLI_CHOICE, &options.precision, PRECISION_CHOICES,
@@ -62,7 +61,9 @@ static const struct cli_option table[] = {
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{"checkpoint", 0, CLI_INT, &options.checkpoint, "N",
 		"write MODEL.checkpoint every N steps, 0 never (default 1000)", 0, 100000000},
-	{"resume", 0, CLI_FLAG, &options.is_resumed, NULL, "go on from MODEL.checkpoint if any", 0, 0}, {0}};
+	{"resume", 0, CLI_FLAG, &options.is_resumed, NULL, "go on from MODEL.checkpoint where there is one",
+		0, 0},
+	{0}};
 
 static const struct cli_tool tool = {.name = "refer-train",
 	.operands = "-o MODEL",
@@ -88,8 +89,8 @@ static int start(struct run *r, const struct cli *c, struct err *e)
 	const struct training *d = &r->data;
 	const struct trainer_source source = training_source(d);
 
-	checkpoint_identity(r->identity, &options.train, d->checksum);
-	if (trainer_init(&r->trainer, &source, &options.train, e))
+	checkpoint_identity(r->identity, &options.trainer, d->checksum);
+	if (trainer_init(&r->trainer, &source, &options.trainer, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, options.weights) : -1;
 	cli_note(c, 1, "%zu of %zu Gaussians share %zu features, %.1f a pixel", r->trainer.learning,
 		d->scene.splats.n, r->trainer.rows.n, trainer_weights(&r->trainer));
@@ -111,9 +112,9 @@ static int resume(struct run *r, const struct cli *c, struct err *e)
 	}
 	if (checkpoint_read(&r->trainer.state, r->checkpoint, r->identity, e))
 		return -1;
-	if (r->trainer.state.iteration > options.train.iterations)
+	if (r->trainer.state.iteration > options.iterations)
 		return err_set(e, ERR_FORMAT, "%s: has %ld steps, more than the %lld asked for",
-			r->checkpoint, r->trainer.state.iteration, options.train.iterations);
+			r->checkpoint, r->trainer.state.iteration, options.iterations);
 	r->is_own = 1;
 	cli_note(c, 1, "going on after step %ld", r->trainer.state.iteration);
 	return 0;
@@ -131,7 +132,7 @@ static int record(struct run *r, const struct cli *c, const struct step_losses *
 			return -1;
 		r->trainer.state.sum = (struct step_losses){0};
 	}
-	if (!options.checkpoint || done % options.checkpoint || done == options.train.iterations)
+	if (!options.checkpoint || done % options.checkpoint || done == options.iterations)
 		return 0;
 	if (checkpoint_write(&r->trainer.state, r->checkpoint, r->identity, e))
 		return -1;
@@ -146,8 +147,8 @@ static int train(struct run *r, const struct cli *c, struct err *e)
 	const long begin = r->trainer.state.iteration;
 	int bad = 0;
 
-	cli_progress_start(&progress, c, "steps", (double)(options.train.iterations - begin));
-	while (r->trainer.state.iteration < options.train.iterations && !bad) {
+	cli_progress_start(&progress, c, "steps", (double)(options.iterations - begin));
+	while (r->trainer.state.iteration < options.iterations && !bad) {
 		struct step_losses last = trainer_step(&r->trainer);
 		if (r->trainer.state.iteration % LOG_EVERY == 0)
 			snprintf(note, sizeof note, "loss %.4f", r->trainer.state.sum.total / LOG_EVERY);
@@ -163,7 +164,7 @@ static int write_result(struct run *r, const struct cli *c, struct err *e)
 {
 	const struct trainer *t = &r->trainer;
 	const struct model m = {.layout = t->layout,
-		.similarity = options.train.similarity,
+		.similarity = options.trainer.similarity,
 		.precision = (enum precision)options.precision,
 		.scene_gaussians = r->data.scene.splats.n,
 		.n = t->rows.n,
@@ -208,7 +209,7 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 
 static void check_options(const struct cli *c)
 {
-	struct trainer_options *o = &options.train;
+	struct trainer_options *o = &options.trainer;
 	const int is_stdout = !strcmp(c->output, "-");
 
 	o->interaction = (enum refer_interaction)options.interaction;

@@ -16,21 +16,17 @@ static const char *const names[ARRAYS] = {"values", "first_moment", "second_mome
 void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_options *o, uint32_t inputs)
 {
 	char temperature[NUMBER_SIZE], lambda[NUMBER_SIZE], features[NUMBER_SIZE], mlps[NUMBER_SIZE],
-		tolerance[NUMBER_SIZE], share[NUMBER_SIZE], decay[NUMBER_SIZE], steps[32] = "";
-
-	/* A rate that falls depends on where it falls to. */
-	if (o->decay > 0)
-		snprintf(steps, sizeof steps, ", %lld steps", o->iterations);
+		tolerance[NUMBER_SIZE], share[NUMBER_SIZE];
 
 	snprintf(text, CHECKPOINT_IDENTITY,
 		"--interaction %s --similarity %s --contrast %s --feature-width %lld --temperature %s --lambda %s --feature-rate %s --mlp-rate %s "
-		"--batch %lld --negatives %lld --decay %s --tolerance %s --share %s --seed %lld, inputs %08x%s",
+		"--batch %lld --negatives %lld --tolerance %s --share %s --seed %lld, inputs %08x",
 		refer_interaction_name(o->interaction), refer_similarity_name(o->similarity),
 		refer_contrast_name(o->contrast), o->feature_width, number_text(temperature, o->temperature),
 		number_text(lambda, o->lambda), number_text(features, o->rates.features),
-		number_text(mlps, o->rates.mlps), o->batch, o->negatives, number_text(decay, o->decay),
-		number_text(tolerance, o->tolerance), number_text(share, o->share), o->seed, (unsigned)inputs,
-		steps);
+		number_text(mlps, o->rates.mlps), o->batch, o->negatives,
+		number_text(tolerance, o->tolerance), number_text(share, o->share), o->seed,
+		(unsigned)inputs);
 }
 
 char *checkpoint_path(const char *model, struct err *e)

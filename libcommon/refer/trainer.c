@@ -107,7 +107,7 @@ static int init(
 int trainer_init(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
-	*t = (struct trainer){.rates = o->rates, .iterations = (double)o->iterations, .decay = o->decay};
+	*t = (struct trainer){.rates = o->rates};
 	refer_layout_init(&t->layout, o->interaction, from->text_width, (int)o->feature_width);
 	int bad = init(t, from, o, e);
 	if (bad)
@@ -154,9 +154,5 @@ float *trainer_features(const struct trainer *t, struct err *e)
 
 struct step_losses trainer_step(struct trainer *t)
 {
-	const double left = t->iterations - (double)t->state.iteration, fall = t->decay * t->iterations;
-	const double share = fall > 0 && left < fall ? left / fall : 1;
-	const struct train_rates rates = {share * t->rates.features, share * t->rates.mlps};
-
-	return train_step(&t->state, t->step, &t->order, &rates, t->rows.n);
+	return train_step(&t->state, t->step, &t->order, &t->rates, t->rows.n);
 }

@@ -20,8 +20,6 @@ struct trainer_options {
 	long long batch; /* most sentences in a step */
 	long long negatives; /* train_order's */
 	struct train_rates rates;
-	long long iterations;
-	double decay; /* share of the iterations, the last ones, over which the rates fall to 0 */
 	long long seed;
 };
 
@@ -29,8 +27,7 @@ struct trainer_options {
 #define TRAINER_DEFAULTS                                                                                     \
 	{                                                                                                    \
 		.interaction = REFER_PCMI, .contrast = REFER_CONTRAST_COSINE, .feature_width = 16,           \
-		.temperature = 0.1, .lambda = 0.02, .share = 0.04, .batch = 1, .negatives = 12,              \
-		.iterations = 45000, .decay = 0.5, .rates = {                                                \
+		.temperature = 0.1, .lambda = 0.02, .share = 0.04, .batch = 1, .negatives = 12, .rates = {   \
 			0.0025,                                                                              \
 			0.0001                                                                               \
 		}                                                                                            \
@@ -53,7 +50,6 @@ struct trainer_source {
 struct trainer {
 	struct refer_layout layout;
 	struct train_rates rates;
-	double iterations, decay;
 	size_t learning;      /* Gaussians that learn */
 	int32_t *ids;	      /* (learning) */
 	struct octree octree; /* no leaves: a row for each of ids */
@@ -78,8 +74,7 @@ double trainer_weights(const struct trainer *t);
 /* (rows.n, d_r) the features as they are now, row-major; free() them. NULL with *e when memory is out. */
 float *trainer_features(const struct trainer *t, struct err *e);
 
-/* The next step, train_step's, at the rates of its iteration: the options' own until the decay begins, then
- * on a straight line to 0. */
+/* The next step, train_step's. */
 struct step_losses trainer_step(struct trainer *t);
 
 #endif

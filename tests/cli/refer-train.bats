@@ -49,7 +49,7 @@ not() { ! "$@"; }
 	"$BIN/gs-check" out.safetensors
 	[ "$(meta out.safetensors gaussians)" = 1000 ]
 	[[ "$(meta out.safetensors options)" == "--iterations 8 --precision u8 --interaction pcmi --similarity dot --contrast cosine --feature-width 16 \
---temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --negatives 12 --decay 0.5 --tolerance 0 --share 0.04 --seed 1, inputs "????????", 8 steps" ]]
+--temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --negatives 12 --tolerance 0 --share 0.04 --seed 1, inputs "???????? ]]
 }
 
 @test "--threads 1, 2 and 3 give the same bytes" {
@@ -138,48 +138,28 @@ not() { ! "$@"; }
 cut_short() {
 	rm -rf m m.checkpoint
 	says 4 "refer-train: /dev/full: No space left on device" \
-		train --interaction none --iterations 150 --checkpoint 50 -o m --log /dev/full "$@"
+		train --interaction none --iterations 150 --checkpoint 50 -o m --log /dev/full
 	[ "$(meta m.checkpoint iteration)" = 50 ]
 }
 
 @test "a training that failed goes on from its checkpoint" {
-	train --interaction none --iterations 150 -o whole
+	train --interaction none --iterations 60 -o whole
 	cut_short
-	train --interaction none --iterations 150 --resume -o m
+	train --interaction none --iterations 60 --resume -o m
 	cmp whole m
 	[ ! -e m.checkpoint ]
 }
 
-@test "--decay: with rates that stay, a training goes on to any number of steps; else to its own" {
-	train --interaction none --iterations 60 --decay 0 -o whole
-	cut_short --decay 0
-	train --interaction none --iterations 60 --decay 0 --resume -o m
-	cmp whole m
-	cut_short
-	says 3 "refer-train: m.checkpoint: is of another training (its options or inputs differ); remove it or train without --resume" \
-		train --interaction none --iterations 60 --resume -o m
-}
-
-@test "--decay: rates that fall to 0 end where the loss is lower" {
-	for x in 0 0.5 1; do train --interaction none --iterations 400 --feature-rate 0.05 --mlp-rate 0.005 --decay $x --log log.$x -o m.$x; done
-	not cmp -s m.0 m.1
-	end() { tail -n 1 log.$1 | jq .bce; }
-	jq -n -e --argjson stays "$(end 0)" --argjson falls "$(end 0.5)" --argjson all "$(end 1)" '$falls < $stays and $all < $stays'
-	# before they fall the rates are the same
-	cmp <(head -n 2 log.0) <(head -n 2 log.0.5)
-	not cmp -s <(sed -n 3p log.0) <(sed -n 3p log.0.5)
-}
-
 @test "--resume with other options or inputs is refused" {
-	cut_short --decay 0
+	cut_short
 	other="m.checkpoint: is of another training (its options or inputs differ); remove it or train without --resume"
 	for option in "--seed 2" "--interaction attention" "--similarity cosine" "--contrast dot" "--feature-width 15" "--temperature 0.2" "--lambda 0.03" \
-		"--feature-rate 0.001" "--mlp-rate 0.001" "--batch 2" "--tolerance 0.1" "--decay 0.1"; do
-		says 3 "refer-train: $other" train --resume --interaction none --decay 0 $option -o m
+		"--feature-rate 0.001" "--mlp-rate 0.001" "--batch 2" "--tolerance 0.1"; do
+		says 3 "refer-train: $other" train --resume --interaction none $option -o m
 	done
 	head -n 11 masks.jsonl >fewer.jsonl
-	says 3 "refer-train: $other" train --resume --interaction none --decay 0 --masks fewer.jsonl -o m
-	says 3 "refer-train: m.checkpoint: has 50 steps, more than the 49 asked for" train --resume --interaction none --decay 0 --iterations 49 -o m
+	says 3 "refer-train: $other" train --resume --interaction none --masks fewer.jsonl -o m
+	says 3 "refer-train: m.checkpoint: has 50 steps, more than the 49 asked for" train --resume --interaction none --iterations 49 -o m
 	[ ! -e m ]
 	[ -e m.checkpoint ]
 	cp text.safetensors m.checkpoint
@@ -372,9 +352,9 @@ cut_short() {
 }
 
 @test "--precision does not belong to a checkpoint: a training may end in another" {
-	train --interaction none --iterations 150 --precision f16 -o whole
+	train --interaction none --iterations 60 --precision f16 -o whole
 	cut_short
-	train --interaction none --iterations 150 --precision f16 --resume -o m
+	train --interaction none --iterations 60 --precision f16 --resume -o m
 	cmp whole m
 }
 
@@ -396,11 +376,11 @@ cut_short() {
 }
 
 @test "--feature-width: a training of another width than the default goes on from its checkpoint" {
-	train --interaction none --feature-width 5 --iterations 150 -o whole
+	train --interaction none --feature-width 5 --iterations 110 -o whole
 	says 4 "refer-train: /dev/full: No space left on device" \
 		train --interaction none --feature-width 5 --iterations 150 --checkpoint 10 -o m --log /dev/full
 	[ "$(meta m.checkpoint iteration)" = 90 ]
-	train --interaction none --feature-width 5 --iterations 150 --resume -o m
+	train --interaction none --feature-width 5 --iterations 110 --resume -o m
 	cmp whole m
 }
 

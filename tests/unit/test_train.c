@@ -411,8 +411,6 @@ static void test_resume(void)
 		.lambda = 0.02,
 		.batch = 1,
 		.rates = {0.0025, 0.0001},
-		.iterations = 25,
-		.decay = 0.8,
 		.seed = 7};
 	struct sample s;
 	struct trainer whole, part, fresh;
