@@ -5,6 +5,11 @@ set -eu
 table=$1
 here=$(dirname "$0")
 
+# The mIoU in a JSON score file, in percent.
+quality() {
+	sed -n 's/.*"miou":\([0-9.eE+-]*\),"oiou.*/\1/p' "$1" | awk '{ print 100 * $1 }'
+}
+
 # Tab-separated: RUN CELL SEED KIND VALUE; kinds test and train are mIoU in test views, test-right and train-right
 # the share of masks on the right object, quality the mIoU of masks in training views.
 values() {
@@ -21,9 +26,7 @@ values() {
 			done
 			[ "$table" = masks ] || continue
 			for run in both=masks/ciou iou=masks/iou top1=masks/top1 first=masks/first two=both/teach; do
-				sed -n 's/.*"miou":\([0-9.eE+-]*\),"oiou.*/\1/p' "$ROOT/$cell/${run#*=}.quality.json" |
-					awk -v OFS='\t' -v run="${run%=*}" -v cell="$cell" -v seed="$seed" \
-						'{ print run, cell, seed, "quality", 100 * $1 }'
+				printf '%s\t%s\t%s\tquality\t%s\n' "${run%=*}" "$cell" "$seed" "$(quality "$ROOT/$cell/${run#*=}.quality.json")"
 			done
 		done
 	done
@@ -52,7 +55,7 @@ statistics() {
 		for seed in $SEEDS; do
 			cell=$ROOT/$scene-$seed
 			for mask in top1 iou ciou; do
-				sed -n 's/.*"miou":\([0-9.eE+-]*\),"oiou.*/\1/p' "$cell/masks/$mask.quality.json"
+				quality "$cell/masks/$mask.quality.json"
 			done | paste -sd' ' - | cat "$cell/data/statistics.json" - | awk -v name="$scene, seed $seed" '
 				function number(key) { return match(json, "\"" key "\":[0-9.]+") ? substr(json, RSTART + length(key) + 3, RLENGTH - length(key) - 3) + 0 : 0 }
 				NR == 1 {
@@ -63,7 +66,7 @@ statistics() {
 					hidden = number("0") + number("<0.15"); half = hidden + number("0.15-0.5")
 				}
 				NR == 2 { printf "| %s | %d | %d | %d | %d + %d | %.1f | %.0f%% | %.0f%% | %.1f | %.1f | %.1f |\n", name, objects, alike, stacked,
-					train, test, words, 100 * half, 100 * hidden, 100 * $1, 100 * $2, 100 * $3 }'
+					train, test, words, 100 * half, 100 * hidden, $1, $2, $3 }'
 		done
 	done
 	echo

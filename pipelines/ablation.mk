@@ -9,7 +9,7 @@
 # ITERATIONS  steps of a training; default 5000 (full), 2000 (quick)
 # SYNTH       more options for gs-synth; the quick size has its own
 # SCALE       size at which training looks at the views; default 0.5 (full), 1 (quick)
-# TRAIN       options of every training, before its own; default: rates four times the paper's, so that 5000 steps are enough
+# TRAIN       options of every training, before its own; default: rates four times the paper's, for few steps
 # RUNS        trainings to do, of those below; default all. A new one: RUNS="both mine" run.mine="--lambda 0.1"
 # BERTS       more language encoders for the encoder table, as NAME=DIR ...
 # BERT        folder of the language encoder; default: where `make encoder` puts it

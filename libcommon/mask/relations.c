@@ -165,6 +165,7 @@ static const struct phrase {
 	{ABOVE, "over"},
 	{NOTHING, "over | there"},
 	{NOTHING, "over | here"},
+	{NOTHING, "over | to"},
 	{NOTHING, "T over"},
 
 	{INSIDE, "inside"},

@@ -86,6 +86,7 @@ static const char *const table[][2] = {
 	{"made by the potter", ""},
 	{"at the shortest distance", "nearest"},
 	{"the one over there", ""},
+	{"over to the right from the bowl", "right"},
 
 	/* parts of words are not words */
 	{"a bright leftover frontier onion belonging to copyright", ""},
