@@ -101,8 +101,25 @@ static int alloc_text(
 	return out->words && out->sentences ? 0 : -1;
 }
 
+static int keep_pieces(struct text *out, const struct tokens *t, const struct vocab *v, struct err *e)
+{
+	out->pieces = mem_zalloc(out->n, sizeof *out->pieces, "pieces", e);
+	if (!out->pieces)
+		return -1;
+	for (size_t i = 0; i < out->n; i++) {
+		out->pieces[i] = wordpiece_print(
+			v, t->pieces.ids + t->starts[i] + 1, t->starts[i + 1] - t->starts[i] - 2, e);
+		if (!out->pieces[i])
+			return -1;
+	}
+	return 0;
+}
+
 static void free_text(struct text *out)
 {
+	for (size_t i = 0; out->pieces && i < out->n; i++)
+		free(out->pieces[i]);
+	free(out->pieces);
 	free(out->offsets);
 	free(out->refs);
 	free(out->objects);
@@ -123,25 +140,13 @@ static size_t pass_end(const size_t *starts, size_t first, size_t n)
 	return end;
 }
 
-/* Leaves [CLS] and [SEP] out and takes the mean. */
-static int keep_words(struct text *out, size_t sentence, const float *rows, struct err *e)
+/* Leaves [CLS] and [SEP] out. */
+static void keep_words(struct text *out, size_t sentence, const float *rows)
 {
-	size_t width = (size_t)out->width,
-	       words = (size_t)(out->offsets[sentence + 1] - out->offsets[sentence]);
-	float *to = out->words + (size_t)out->offsets[sentence] * width,
-	      *mean = out->sentences + sentence * width;
+	size_t width = (size_t)out->width, first = (size_t)out->offsets[sentence];
 
-	memcpy(to, rows + width, words * width * sizeof *to);
-	for (size_t i = 0; i < width && words; i++) {
-		double sum = 0;
-		for (size_t j = 0; j < words; j++)
-			sum += to[j * width + i];
-		mean[i] = (float)(sum / (double)words);
-		if (!isfinite(mean[i]))
-			return err_set(e, ERR_FORMAT, "ref '%s': the encoder's output is not finite",
-				out->refs[sentence]);
-	}
-	return 0;
+	memcpy(out->words + first * width, rows + width,
+		((size_t)out->offsets[sentence + 1] - first) * width * sizeof *rows);
 }
 
 static int encode(const struct cli *c, struct text *out, const struct bert *b, const struct tokens *t,
@@ -173,14 +178,14 @@ static int encode(const struct cli *c, struct text *out, const struct bert *b, c
 			bert_static(b, t->pieces.ids + t->starts[first], rows, vectors);
 		else
 			bert_forward(b, t->pieces.ids, t->starts + first, end - first, vectors, scratch);
-		for (size_t i = first; i < end && !bad; i++)
-			bad = keep_words(out, i, vectors + (t->starts[i] - t->starts[first]) * width, e);
+		for (size_t i = first; i < end; i++)
+			keep_words(out, i, vectors + (t->starts[i] - t->starts[first]) * width);
 		cli_progress_step(&progress, (double)end, NULL);
 	}
 	cli_progress_end(&progress);
 	free(scratch);
 	free(vectors);
-	return bad ? -1 : 0;
+	return bad || text_take_means(out, e) ? -1 : 0;
 }
 
 static int run(const struct cli *c, const char *dir, enum words words, struct err *e)
@@ -199,7 +204,7 @@ static int run(const struct cli *c, const char *dir, enum words words, struct er
 	bad = vocab_read(&v, dir, e) || sentences_read(&s, c->operand_count ? c->operands[0] : "-", e) ||
 	      bert_model_read(&b, dir, e) || check_vocab(&v, &b, dir, e) ||
 	      tokenise(c, &t, &s, &v, (size_t)b.positions, e) || alloc_text(&out, &s, &t, b.width, e) ||
-	      encode(c, &out, &b, &t, words, e);
+	      keep_pieces(&out, &t, &v, e) || encode(c, &out, &b, &t, words, e);
 	if (!bad) {
 		cli_note(c, 1, "%zu sentences, %lld words of width %d", out.n, (long long)out.offsets[out.n],
 			out.width);

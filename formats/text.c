@@ -11,9 +11,9 @@
 
 void text_free(struct text *t)
 {
-	char **lists[3] = {t->refs, t->objects, t->texts};
+	char **lists[4] = {t->refs, t->objects, t->texts, t->pieces};
 
-	for (int k = 0; k < 3; k++) {
+	for (int k = 0; k < 4; k++) {
 		for (size_t i = 0; lists[k] && i < t->n; i++)
 			free(lists[k][i]);
 		free(lists[k]);
@@ -23,6 +23,25 @@ void text_free(struct text *t)
 	free(t->sentences);
 	free(t->splits);
 	*t = (struct text){0};
+}
+
+int text_take_means(struct text *t, struct err *e)
+{
+	const size_t width = (size_t)t->width;
+
+	for (size_t r = 0; r < t->n; r++) {
+		const size_t first = (size_t)t->offsets[r], end = (size_t)t->offsets[r + 1];
+		for (size_t i = 0; i < width && end > first; i++) {
+			double sum = 0;
+			for (size_t w = first; w < end; w++)
+				sum += t->words[w * width + i];
+			t->sentences[r * width + i] = (float)(sum / (double)(end - first));
+			if (!isfinite(t->sentences[r * width + i]))
+				return err_set(e, ERR_FORMAT, "ref '%s': the encoder's output is not finite",
+					t->refs[r]);
+		}
+	}
+	return 0;
 }
 
 int text_mark(const struct text *t, const char *list, char *chosen, struct list_name *unknown)
@@ -190,12 +209,30 @@ static int read_tensors(struct text *t, const struct safetensors *st, struct err
 	return t->sentences ? check_offsets(t, words->shape[0], st->path, e) : -1;
 }
 
+/* As many pieces as the sentence has words. */
+static int check_pieces(const struct text *t, const char *path, struct err *e)
+{
+	for (size_t i = 0; i < t->n; i++) {
+		int64_t count = 0, words = t->offsets[i + 1] - t->offsets[i];
+		for (const char *c = t->pieces[i]; *c; c++)
+			count += *c != ' ' && (c[1] == ' ' || !c[1]);
+		if (count != words)
+			return err_set(e, ERR_FORMAT,
+				"%s: metadata 'pieces': entry %zu has %lld pieces for %lld words", path, i,
+				(long long)count, (long long)words);
+	}
+	return 0;
+}
+
 static int read_names(struct text *t, const struct safetensors *st, struct err *e)
 {
 	t->refs = read_strings(st, "refs", t->n, e);
 	t->objects = t->refs ? read_strings(st, "objects", t->n, e) : NULL;
 	t->texts = t->objects ? read_strings(st, "texts", t->n, e) : NULL;
 	if (!t->texts || read_splits(t, st, e))
+		return -1;
+	if (safetensors_meta(st, "pieces") &&
+		(!(t->pieces = read_strings(st, "pieces", t->n, e)) || check_pieces(t, st->path, e)))
 		return -1;
 	return check_unique(t, st->path, e);
 }
@@ -267,13 +304,14 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 	};
 	char *refs = print_strings(t->refs, t->n), *objects = print_strings(t->objects, t->n);
 	char *texts = print_strings(t->texts, t->n), *splits = print_splits(t, e);
+	char *pieces = t->pieces ? print_strings(t->pieces, t->n) : NULL;
 	int bad;
 
-	if (refs && objects && texts && splits) {
+	if (refs && objects && texts && splits && (pieces || !t->pieces)) {
 		const struct st_meta meta[] = {{"format", "refer.text"}, {"version", "1"},
 			{"tool", "text-encode"}, {"options", options}, {"seed", "0"}, {"refs", refs},
-			{"objects", objects}, {"texts", texts}, {"splits", splits}};
-		bad = safetensors_write(path, tensors, 3, meta, sizeof meta / sizeof *meta, e);
+			{"objects", objects}, {"texts", texts}, {"splits", splits}, {"pieces", pieces}};
+		bad = safetensors_write(path, tensors, 3, meta, sizeof meta / sizeof *meta - !pieces, e);
 	} else {
 		bad = err_set(e, ERR_SYSTEM, "%s: out of memory", path);
 	}
@@ -281,5 +319,6 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 	free(objects);
 	free(texts);
 	free(splits);
+	free(pieces);
 	return bad;
 }

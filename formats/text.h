@@ -15,11 +15,15 @@ struct text {
 	float *words;	  /* (offsets[n], width), [CLS] and [SEP] left out */
 	float *sentences; /* (n, width), mean of the words; zero for a sentence without words */
 	char **refs, **objects, **texts;
+	char **pieces; /* (n) word pieces with a space between, one for each word; NULL where the file has
+			  none */
 	enum camera_split *splits;
 };
 
 int text_read(struct text *t, const char *path, struct err *e);
 int text_write(const struct text *t, const char *path, const char *options, struct err *e);
+/* sentences from words. ERR_FORMAT, with the ref, where one is not finite. */
+int text_take_means(struct text *t, struct err *e);
 void text_free(struct text *t);
 
 /* Sets chosen[r] (n) to 1 for the refs in a comma-separated list. 0, or -1 and *unknown the first that no

@@ -68,3 +68,10 @@ with() {
 	refuses "metadata 'refs': 'r1' appears twice" "$(with "$META" r2 r1)" "$TENSORS" $OFFSETS$REST
 	refuses "metadata 'splits': entry 0 is 'val', not 'train' or 'test'" "$(with "$META" train val)" "$TENSORS" $OFFSETS$REST
 }
+
+@test "pieces: as many as words" {
+	text "$META,\"pieces\":\"[\\\"a ##b\\\",\\\"\\\"]\"" "$TENSORS" $OFFSETS$REST
+	says 0 'x: ok: refer.text, 2 sentences, 2 words, 2 columns' "$BIN/gs-check" x
+	refuses "metadata 'pieces': entry 0 has 1 pieces for 2 words" "$META,\"pieces\":\"[\\\"ab\\\",\\\"\\\"]\"" "$TENSORS" $OFFSETS$REST
+	refuses "metadata 'pieces' has 1 entries for 2 sentences" "$META,\"pieces\":\"[\\\"a b\\\"]\"" "$TENSORS" $OFFSETS$REST
+}

@@ -51,8 +51,9 @@ static void text_round_trip(void)
 	float words[] = {1, 2, 3, 3, 4, 5, -1, 0.5f, 0.25f}, means[] = {2, 3, 4, 0, 0, 0, -1, 0.5f, 0.25f};
 	char *refs[] = {"r1", "r2", "r3"}, *objects[] = {"cup", "cup", "\xe7\x93\xb6"};
 	char *texts[] = {"a \"red\" cup\n", "", "bottle"};
+	char *pieces[] = {"a ##b", "", "bottle"};
 	enum camera_split splits[] = {SPLIT_TRAIN, SPLIT_TEST, SPLIT_TRAIN};
-	struct text in = {3, 3, offsets, words, means, refs, objects, texts, splits}, out;
+	struct text in = {3, 3, offsets, words, means, refs, objects, texts, pieces, splits}, out;
 	struct err e = {0};
 
 	CHECK(!text_write(&in, path, "--model x", &e), "%s", e.message);
@@ -65,7 +66,7 @@ static void text_round_trip(void)
 	CHECK(same_bytes(out.splits, splits, sizeof splits), "splits differ");
 	for (int i = 0; i < 3; i++)
 		CHECK(!strcmp(out.refs[i], refs[i]) && !strcmp(out.objects[i], objects[i]) &&
-				!strcmp(out.texts[i], texts[i]),
+				!strcmp(out.texts[i], texts[i]) && !strcmp(out.pieces[i], pieces[i]),
 			"names of sentence %d differ", i);
 	char chosen[3] = {0};
 	struct list_name unknown;
@@ -98,7 +99,7 @@ static void text_broken_rules(void)
 	float words[] = {1, 2}, infinite[] = {1, INFINITY}, means[] = {1, 2};
 	char *refs[] = {"r1", "r2"}, *same[] = {"r1", "r1"}, *bad[] = {"r1", "\xff"};
 	enum camera_split splits[] = {SPLIT_TRAIN, SPLIT_TRAIN};
-	struct text t = {2, 1, (int64_t[]){0, 1, 2}, infinite, means, refs, refs, refs, splits};
+	struct text t = {2, 1, (int64_t[]){0, 1, 2}, infinite, means, refs, refs, refs, NULL, splits};
 
 	expect(&t, ": tensor 'words': item 1 is not finite");
 	t.words = words;

@@ -1,0 +1,25 @@
+#include "refer/lifted.h"
+
+#include <stdlib.h>
+
+static void strings_free(char **strings, size_t n)
+{
+	for (size_t i = 0; strings && i < n; i++)
+		free(strings[i]);
+	free(strings);
+}
+
+void lifted_free(struct lifted *l)
+{
+	strings_free(l->names, l->objects);
+	strings_free(l->texts, l->sentences);
+	strings_free(l->pieces, l->sentences);
+	free(l->confidence);
+	free(l->indptr);
+	free(l->index);
+	free(l->share);
+	free(l->object);
+	free(l->offsets);
+	free(l->words);
+	*l = (struct lifted){0};
+}

@@ -1,0 +1,35 @@
+/* Objects lifted onto the Gaussians in closed form: geometry is frozen, so the share of a Gaussian's blend
+ * weight that falls inside an object's masks says whether it is of the object, and nothing is trained. With
+ * the sentences that named the objects, this is a model that answers as a trained one does. */
+#ifndef REFER_LIFTED_H
+#define REFER_LIFTED_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct lifted {
+	size_t gaussians; /* N of the scene */
+
+	size_t objects;	   /* O */
+	char **names;	   /* (O), different */
+	float *confidence; /* (O) in [0,1]: how well the object's masks agree with what was lifted of them */
+	/* The Gaussians of object o are index[indptr[o]..indptr[o+1]), rising; the others have the share 0.
+	 */
+	int64_t *indptr; /* (O+1) */
+	int32_t *index;	 /* (indptr[O]) */
+	float *share;	 /* (indptr[O]) in (0,1]: part of the Gaussian's weight inside the object's masks */
+
+	/* The training sentences: what other sentences are compared with. */
+	size_t sentences; /* R */
+	int width;	  /* D_text */
+	int32_t *object;  /* (R) the object that each names */
+	char **texts;	  /* (R) */
+	char **pieces;	  /* (R) its word pieces with single spaces between, as many as it has words here */
+	int64_t *offsets; /* (R+1) into words */
+	float *words;	  /* (offsets[R], width) */
+};
+
+/* All arrays are the struct's own; a zeroed one may be freed. */
+void lifted_free(struct lifted *l);
+
+#endif
