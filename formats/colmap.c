@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "geom/rotation.h"
 #include "geom/views.h"
 
 #include <math.h>
@@ -459,32 +460,6 @@ int colmap_read(struct cameras *c, const char *dir, struct err *e)
 	return bad ? -1 : 0;
 }
 
-/* w x y z of a rotation, w >= 0. Whichever of the four is largest is found first, so nothing small is divided
- * by. */
-static void rotation_to_quat(const double m[4][4], double q[4])
-{
-	double trace = m[0][0] + m[1][1] + m[2][2];
-	int a = m[1][1] > m[0][0] ? 1 : 0;
-
-	a = m[2][2] > m[a][a] ? 2 : a;
-	if (trace > m[a][a]) {
-		double s = 2 * sqrt(1 + trace);
-		q[0] = s / 4;
-		q[1] = (m[2][1] - m[1][2]) / s;
-		q[2] = (m[0][2] - m[2][0]) / s;
-		q[3] = (m[1][0] - m[0][1]) / s;
-	} else {
-		int b = (a + 1) % 3, c = (a + 2) % 3;
-		double s = 2 * sqrt(1 + m[a][a] - m[b][b] - m[c][c]);
-		q[0] = (m[c][b] - m[b][c]) / s;
-		q[1 + a] = s / 4;
-		q[1 + b] = (m[b][a] + m[a][b]) / s;
-		q[1 + c] = (m[c][a] + m[a][c]) / s;
-	}
-	for (int i = 0, flip = q[0] < 0; flip && i < 4; i++)
-		q[i] = -q[i];
-}
-
 /* The first view with the intrinsics of view i: its number, from 1, is the camera's id. */
 static size_t lens_of(const struct cameras *c, size_t i)
 {
@@ -517,8 +492,10 @@ static void put_images(FILE *out, const struct cameras *c)
 		out);
 	for (size_t i = 0; i < c->n; i++) {
 		const struct camera *v = &c->views[i];
-		double q[4];
-		rotation_to_quat(v->world_to_camera, q);
+		double rotation[3][3], q[4];
+		for (int k = 0; k < 3; k++)
+			memcpy(rotation[k], v->world_to_camera[k], sizeof rotation[k]);
+		rotation_to_quat(rotation, q);
 		fprintf(out, "%zu", i + 1);
 		for (int k = 0; k < 4; k++)
 			fprintf(out, " %.17g", q[k]);

@@ -1,8 +1,10 @@
 #include "formats/jsonl.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,4 +74,45 @@ int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, in
 		return jsonl_err(j, e, "key '%s' is not a string", key);
 	*value = item->valuestring;
 	return 1;
+}
+
+int jsonl_name(
+	const struct jsonl *j, const cJSON *object, const char *key, int need, char **name, struct err *e)
+{
+	const char *text = NULL;
+
+	if (jsonl_string(j, object, key, need, &text, e) < 0)
+		return -1;
+	if (!text)
+		return 0;
+	if (!*text)
+		return jsonl_err(j, e, "key '%s' is empty", key);
+	*name = mem_strdup(text, e);
+	return *name ? 0 : -1;
+}
+
+int jsonl_score(const struct jsonl *j, const cJSON *object, double *score, struct err *e)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, "score");
+
+	*score = NAN;
+	if (!item || cJSON_IsNull(item))
+		return 0;
+	if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
+		return jsonl_err(j, e, "key 'score' is not a finite number");
+	*score = item->valuedouble;
+	return 0;
+}
+
+int jsonl_put_string(FILE *out, const char *before, const char *text, struct err *e)
+{
+	cJSON *item = cJSON_CreateString(text);
+	char *escaped = item ? cJSON_PrintUnformatted(item) : NULL;
+
+	cJSON_Delete(item);
+	if (!escaped)
+		return err_set(e, ERR_SYSTEM, "record: out of memory");
+	fprintf(out, "%s%s", before, escaped);
+	cJSON_free(escaped);
+	return 0;
 }

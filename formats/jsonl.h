@@ -32,4 +32,15 @@ int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
 int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, int need, const char **value,
 	struct err *e);
 
+/* A copy of a name in *name, which stays as it was where the key is absent or null. An empty name, which
+ * would match by accident, is an error. Returns 0, or -1 with *e. */
+int jsonl_name(
+	const struct jsonl *j, const cJSON *object, const char *key, int need, char **name, struct err *e);
+
+/* The number 'score'; NAN where it is absent or null. Returns 0, or -1 with *e. */
+int jsonl_score(const struct jsonl *j, const cJSON *object, double *score, struct err *e);
+
+/* Writes `before`, then the text as a JSON string. Returns 0, or -1 with *e. */
+int jsonl_put_string(FILE *out, const char *before, const char *text, struct err *e);
+
 #endif

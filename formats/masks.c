@@ -28,35 +28,6 @@ static int key_err(const struct jsonl *j, struct err *e, const char *key)
 	return jsonl_err(j, e, "key '%s': %s", key, inner.message);
 }
 
-/* A copy of a name; *to stays NULL where it is absent. An empty name would match by accident. */
-static int read_name(
-	const struct jsonl *j, const cJSON *object, const char *key, int need, char **to, struct err *e)
-{
-	const char *text = NULL;
-
-	if (jsonl_string(j, object, key, need, &text, e) < 0)
-		return -1;
-	if (!text)
-		return 0;
-	if (!*text)
-		return jsonl_err(j, e, "key '%s' is empty", key);
-	*to = mem_strdup(text, e);
-	return *to ? 0 : -1;
-}
-
-static int read_score(const struct jsonl *j, const cJSON *object, double *score, struct err *e)
-{
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, "score");
-
-	*score = NAN;
-	if (!item || cJSON_IsNull(item))
-		return 0;
-	if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
-		return jsonl_err(j, e, "key 'score' is not a finite number");
-	*score = item->valuedouble;
-	return 0;
-}
-
 /* COCO's uncompressed list of lengths. */
 static int read_list(
 	const struct jsonl *j, const cJSON *list, struct rle *mask, int height, int width, struct err *e)
@@ -131,8 +102,8 @@ static int read_record(const struct jsonl *j, const cJSON *object, struct mask_r
 	const cJSON *segmentation = cJSON_GetObjectItemCaseSensitive(object, "segmentation");
 	const char *path = NULL;
 
-	if (read_name(j, object, "view", 1, &r->view, e) || read_name(j, object, "ref", 0, &r->ref, e) ||
-		read_name(j, object, "object", 0, &r->object, e) || read_score(j, object, &r->score, e))
+	if (jsonl_name(j, object, "view", 1, &r->view, e) || jsonl_name(j, object, "ref", 0, &r->ref, e) ||
+		jsonl_name(j, object, "object", 0, &r->object, e) || jsonl_score(j, object, &r->score, e))
 		return -1;
 	if (!r->ref && !r->object)
 		return jsonl_err(j, e, "neither key 'ref' nor key 'object'");
@@ -257,20 +228,6 @@ int masks_views(const struct mask_set *set, const long *lines, const char *path,
 	return 0;
 }
 
-/* ,"key":"text" with the text escaped. */
-static int put_string(FILE *out, const char *before, const char *text, struct err *e)
-{
-	cJSON *item = cJSON_CreateString(text);
-	char *escaped = item ? cJSON_PrintUnformatted(item) : NULL;
-
-	cJSON_Delete(item);
-	if (!escaped)
-		return err_set(e, ERR_SYSTEM, "mask record: out of memory");
-	fprintf(out, "%s%s", before, escaped);
-	cJSON_free(escaped);
-	return 0;
-}
-
 static void put_number(FILE *out, const char *before, double x)
 {
 	char text[NUMBER_SIZE];
@@ -285,14 +242,14 @@ int masks_put(FILE *out, const struct mask_record *r, struct err *e)
 
 	if (!counts)
 		return -1;
-	if (put_string(out, "{\"view\":", r->view, e) ||
-		(r->ref && put_string(out, ",\"ref\":", r->ref, e)) ||
-		(r->object && put_string(out, ",\"object\":", r->object, e)))
+	if (jsonl_put_string(out, "{\"view\":", r->view, e) ||
+		(r->ref && jsonl_put_string(out, ",\"ref\":", r->ref, e)) ||
+		(r->object && jsonl_put_string(out, ",\"object\":", r->object, e)))
 		goto done;
 	if (!isnan(r->score))
 		put_number(out, ",\"score\":", r->score);
 	fprintf(out, ",\"segmentation\":{\"size\":[%d,%d],\"counts\":", r->mask.height, r->mask.width);
-	if (put_string(out, "", counts, e))
+	if (jsonl_put_string(out, "", counts, e))
 		goto done;
 	fputs("}}\n", out);
 	bad = ferror(out) ? err_errno(e, "write") : 0;

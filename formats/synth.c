@@ -1,10 +1,12 @@
 #include "formats/synth.h"
 
 #include "base/mem.h"
+#include "formats/boxes.h"
 #include "formats/colmap.h"
 #include "formats/masks.h"
 #include "formats/ply.h"
 #include "formats/png.h"
+#include "synth/boxes.h"
 #include "synth/outline.h"
 #include "synth/truth.h"
 
@@ -69,6 +71,25 @@ static int write_sentences(const struct synth_folder *f, struct err *e)
 	return file_out_commit(&out, e);
 }
 
+static int write_boxes(const struct synth_folder *f, struct err *e)
+{
+	struct file_out out = {0};
+	int bad = open_in(&out, f->dir, "boxes.jsonl", e);
+
+	if (bad)
+		return -1;
+	for (int i = 0; i < f->scene->object_count && !bad; i++) {
+		struct synth_object *o = &f->scene->objects[i];
+		struct box_record r = {.object = o->name, .score = NAN};
+		synth_object_boxes(o, &r.aligned, &r.turned);
+		bad = boxes_put(out.stream, &r, NULL, e);
+	}
+	if (!bad)
+		return file_out_commit(&out, e);
+	file_out_abort(&out);
+	return -1;
+}
+
 /* One line, as --test-views takes it. */
 static int write_test_views(const struct synth_folder *f, struct err *e)
 {
@@ -91,7 +112,7 @@ static int write_test_views(const struct synth_folder *f, struct err *e)
 int synth_folder_begin(struct synth_folder *f, struct err *e)
 {
 	return name_photographs(f, e) || write_model(f, e) || write_sentences(f, e) ||
-			       write_test_views(f, e) ||
+			       write_test_views(f, e) || write_boxes(f, e) ||
 			       open_in(&f->candidates, f->dir, "candidates.jsonl", e) ||
 			       open_in(&f->truth, f->dir, "truth.jsonl", e) ||
 			       open_in(&f->whole, f->dir, "whole.jsonl", e)

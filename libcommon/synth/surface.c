@@ -208,3 +208,45 @@ enum synth_tint synth_surface_at(
 	}
 	return spot.tint;
 }
+
+static double patch_reach(const struct synth_patch *p, const double d[3])
+{
+	const double level = hypot(d[0], d[1]);
+
+	switch (p->kind) {
+	case SYNTH_FRUSTUM:
+		return fmax(p->r0 * level + p->z0 * d[2], p->r1 * level + p->z1 * d[2]);
+	case SYNTH_RECTANGLE:
+		return fmax(0, p->u[0] * d[0] + p->u[1] * d[1] + p->u[2] * d[2]) +
+		       fmax(0, p->v[0] * d[0] + p->v[1] * d[1] + p->v[2] * d[2]);
+	case SYNTH_HALF_RING: {
+		/* The ring's point that is farthest along d, then the tube's around it. */
+		const double along = d[0] > 0 ? hypot(d[0], d[2]) : fabs(d[2]);
+		return p->r0 * along + p->r1 * hypot(along, d[1]);
+	}
+	}
+	return 0;
+}
+
+double synth_surface_reach(const struct synth_surface *s, const double d[3])
+{
+	double most = -INFINITY;
+
+	for (int i = 0; i < s->n; i++) {
+		const struct synth_patch *p = &s->patches[i];
+		const double at = p->centre[0] * d[0] + p->centre[1] * d[1] + p->centre[2] * d[2];
+		most = fmax(most, at + patch_reach(p, d));
+	}
+	return most;
+}
+
+int synth_surface_is_round(const struct synth_surface *s)
+{
+	int is_round = 1;
+
+	for (int i = 0; i < s->n; i++) {
+		const struct synth_patch *p = &s->patches[i];
+		is_round = is_round && p->kind == SYNTH_FRUSTUM && p->centre[0] == 0 && p->centre[1] == 0;
+	}
+	return is_round;
+}

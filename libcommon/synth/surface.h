@@ -62,4 +62,11 @@ void synth_surface_spot(
 enum synth_tint synth_surface_at(
 	const struct synth_surface *s, double a, double b, double point[3], double normal[3]);
 
+/* How far the surface reaches in direction d: the greatest d . p of its points. */
+double synth_surface_reach(const struct synth_surface *s, const double d[3]);
+
+/* 1 where the surface is the same from all sides: nothing but frustums about the vertical through the origin.
+ */
+int synth_surface_is_round(const struct synth_surface *s);
+
 #endif

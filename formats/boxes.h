@@ -1,0 +1,38 @@
+/* Where objects are in space (JSON Lines). formats/boxes.md. */
+#ifndef FORMATS_BOXES_H
+#define FORMATS_BOXES_H
+
+#include "base/err.h"
+#include "geom/box.h"
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+struct box_record {
+	char *ref, *object; /* either may be NULL, not both */
+	double score;	    /* NAN: none */
+	int is_empty;	    /* there is nothing, and no box */
+	struct box aligned; /* along the world's axes */
+	struct box turned;
+};
+
+struct box_set {
+	size_t n;
+	struct box_record *records;
+};
+
+/* "-" is stdin. Two records of one ref (or, without ref, of one object) are an error. */
+int boxes_read(struct box_set *s, const char *path, struct err *e);
+void boxes_free(struct box_set *s);
+
+/* The Gaussians that a box is of: ids (n). */
+struct box_gaussians {
+	size_t n;
+	const int32_t *ids;
+};
+
+/* One line. `of` may be NULL: the record then says nothing of Gaussians. */
+int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of, struct err *e);
+
+#endif

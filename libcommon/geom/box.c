@@ -1,0 +1,142 @@
+#include "geom/box.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CORNERS = 16 }; /* of a face that six planes cut: four, and one more for each */
+
+struct polygon {
+	int n;
+	double points[CORNERS][3];
+};
+
+static double dot(const double a[3], const double b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+struct box box_between(const double low[3], const double high[3])
+{
+	struct box b = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+	for (int k = 0; k < 3; k++) {
+		b.centre[k] = low[k] + (high[k] - low[k]) / 2;
+		b.half[k] = (high[k] - low[k]) / 2;
+	}
+	return b;
+}
+
+void box_bounds(const struct box *b, double low[3], double high[3])
+{
+	for (int k = 0; k < 3; k++) {
+		double reach = 0;
+		for (int a = 0; a < 3; a++)
+			reach += fabs(b->axes[a][k]) * b->half[a];
+		low[k] = b->centre[k] - reach;
+		high[k] = b->centre[k] + reach;
+	}
+}
+
+double box_volume(const struct box *b)
+{
+	return 8 * b->half[0] * b->half[1] * b->half[2];
+}
+
+double box_diagonal(const struct box *b)
+{
+	return 2 * sqrt(dot(b->half, b->half));
+}
+
+/* The face of b across axis k, on the side `sign`. */
+static struct polygon face_of(const struct box *b, int k, double sign)
+{
+	static const double corners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+	const int u = (k + 1) % 3, v = (k + 2) % 3;
+	struct polygon p = {.n = 4};
+
+	for (int i = 0; i < 4; i++)
+		for (int d = 0; d < 3; d++)
+			p.points[i][d] = b->centre[d] + sign * b->half[k] * b->axes[k][d] +
+					 corners[i][0] * b->half[u] * b->axes[u][d] +
+					 corners[i][1] * b->half[v] * b->axes[v][d];
+	return p;
+}
+
+/* Keeps of p the part with normal . x <= limit (Sutherland and Hodgman 1974). */
+static void cut(struct polygon *p, const double normal[3], double limit)
+{
+	struct polygon kept = {0};
+
+	for (int i = 0; i < p->n; i++) {
+		const double *a = p->points[i], *b = p->points[(i + 1) % p->n];
+		double over_a = dot(normal, a) - limit, over_b = dot(normal, b) - limit;
+		if (over_a <= 0 && kept.n < CORNERS)
+			memcpy(kept.points[kept.n++], a, sizeof kept.points[0]);
+		if ((over_a <= 0) != (over_b <= 0) && kept.n < CORNERS) {
+			double t = over_a / (over_a - over_b);
+			for (int d = 0; d < 3; d++)
+				kept.points[kept.n][d] = a[d] + t * (b[d] - a[d]);
+			kept.n++;
+		}
+	}
+	*p = kept;
+}
+
+/* The area of a convex polygon in a plane with this unit normal. */
+static double area_of(const struct polygon *p, const double normal[3])
+{
+	double area = 0;
+
+	for (int i = 2; i < p->n; i++) {
+		double u[3], v[3];
+		for (int d = 0; d < 3; d++) {
+			u[d] = p->points[i - 1][d] - p->points[0][d];
+			v[d] = p->points[i][d] - p->points[0][d];
+		}
+		area += normal[0] * (u[1] * v[2] - u[2] * v[1]) + normal[1] * (u[2] * v[0] - u[0] * v[2]) +
+			normal[2] * (u[0] * v[1] - u[1] * v[0]);
+	}
+	return fabs(area) / 2;
+}
+
+/* Three times what the faces of b inside a, grown by `grown`, add to the integral of x . normal about the
+ * origin. */
+static double flux(const struct box *b, const struct box *a, double grown)
+{
+	double sum = 0;
+
+	for (int k = 0; k < 3; k++)
+		for (int side = -1; side <= 1; side += 2) {
+			struct polygon p = face_of(b, k, side);
+			for (int j = 0; j < 3; j++) {
+				double at = dot(a->axes[j], a->centre), reach = a->half[j] + grown;
+				double other[3] = {-a->axes[j][0], -a->axes[j][1], -a->axes[j][2]};
+				cut(&p, a->axes[j], at + reach);
+				cut(&p, other, reach - at);
+			}
+			sum += area_of(&p, b->axes[k]) * (side * dot(b->axes[k], b->centre) + b->half[k]);
+		}
+	return sum;
+}
+
+/* What bounds the common part is of one box's faces, inside the other box. A face that both have counts once:
+ * it is inside the grown box, and not inside the shrunken one. */
+static double common_volume(const struct box *a, const struct box *b)
+{
+	const double hair = 1e-10 * fmin(box_diagonal(a), box_diagonal(b));
+	struct box here = *a, there = *b;
+
+	for (int d = 0; d < 3; d++) {
+		here.centre[d] = 0;
+		there.centre[d] -= a->centre[d];
+	}
+	double volume = (flux(&here, &there, hair) + flux(&there, &here, -hair)) / 3;
+	return fmin(fmax(volume, 0), fmin(box_volume(a), box_volume(b)));
+}
+
+double box_iou(const struct box *a, const struct box *b)
+{
+	double common = common_volume(a, b), all = box_volume(a) + box_volume(b) - common;
+
+	return all > 0 ? common / all : 0;
+}
