@@ -44,16 +44,27 @@ static int read_name(
 	return *to ? 0 : -1;
 }
 
-static int read_score(const struct jsonl *j, const cJSON *object, double *score, struct err *e)
+/* *to is NaN where the number is absent. */
+static int read_number(
+	const struct jsonl *j, const cJSON *object, const char *key, double *to, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, "score");
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
 
-	*score = NAN;
+	*to = NAN;
 	if (!item || cJSON_IsNull(item))
 		return 0;
 	if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
-		return jsonl_err(j, e, "key 'score' is not a finite number");
-	*score = item->valuedouble;
+		return jsonl_err(j, e, "key '%s' is not a finite number", key);
+	*to = item->valuedouble;
+	return 0;
+}
+
+static int read_visible(const struct jsonl *j, const cJSON *object, double *visible, struct err *e)
+{
+	if (read_number(j, object, "visible", visible, e))
+		return -1;
+	if (*visible < 0 || *visible > 1)
+		return jsonl_err(j, e, "key 'visible' is not within 0 to 1");
 	return 0;
 }
 
@@ -132,7 +143,8 @@ static int read_record(const struct jsonl *j, const cJSON *object, struct mask_r
 	const char *path = NULL;
 
 	if (read_name(j, object, "view", 1, &r->view, e) || read_name(j, object, "ref", 0, &r->ref, e) ||
-		read_name(j, object, "object", 0, &r->object, e) || read_score(j, object, &r->score, e))
+		read_name(j, object, "object", 0, &r->object, e) ||
+		read_number(j, object, "score", &r->score, e) || read_visible(j, object, &r->visible, e))
 		return -1;
 	if (!r->ref && !r->object)
 		return jsonl_err(j, e, "neither key 'ref' nor key 'object'");
@@ -291,6 +303,8 @@ int masks_put(FILE *out, const struct mask_record *r, struct err *e)
 		goto done;
 	if (!isnan(r->score))
 		put_number(out, ",\"score\":", r->score);
+	if (!isnan(r->visible))
+		put_number(out, ",\"visible\":", r->visible);
 	fprintf(out, ",\"segmentation\":{\"size\":[%d,%d],\"counts\":", r->mask.height, r->mask.width);
 	if (put_string(out, "", counts, e))
 		goto done;
