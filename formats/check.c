@@ -6,6 +6,7 @@
 #include "formats/colmap.h"
 #include "formats/json.h"
 #include "formats/jsonl.h"
+#include "formats/lifted.h"
 #include "formats/masks.h"
 #include "formats/model.h"
 #include "formats/npy.h"
@@ -154,6 +155,22 @@ static int check_model(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
+static int check_lifted(struct check *c, const char *path, struct err *e)
+{
+	struct lifted l;
+
+	if (lifted_read(&l, path, e))
+		return -1;
+	add_fact(c, "objects", (long long)l.objects);
+	add_fact(c, "shares", (long long)l.indptr[l.objects]);
+	add_fact(c, "sentences", (long long)l.sentences);
+	add_fact(c, "words", (long long)l.offsets[l.sentences]);
+	add_fact(c, "columns", l.width);
+	add_fact(c, "gaussians of the scene", (long long)l.gaussians);
+	lifted_free(&l);
+	return 0;
+}
+
 static int check_ply(struct check *c, const char *path, struct err *e)
 {
 	struct splats s;
@@ -204,6 +221,7 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 		{"refer.text", check_text},
 		{"refer.weights", check_weights},
 		{"refer.model", check_model},
+		{"refer.lifted", check_lifted},
 	};
 
 	if (safetensors_open(&c->listing, path, e))

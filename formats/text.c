@@ -1,23 +1,19 @@
 #include "formats/text.h"
 
 #include "base/mem.h"
-#include "base/utf8.h"
+#include "formats/metalist.h"
 #include "formats/safetensors.h"
 
-#include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 void text_free(struct text *t)
 {
-	char **lists[4] = {t->refs, t->objects, t->texts, t->pieces};
-
-	for (int k = 0; k < 4; k++) {
-		for (size_t i = 0; lists[k] && i < t->n; i++)
-			free(lists[k][i]);
-		free(lists[k]);
-	}
+	metalist_free(t->refs, t->n);
+	metalist_free(t->objects, t->n);
+	metalist_free(t->texts, t->n);
+	metalist_free(t->pieces, t->n);
 	free(t->offsets);
 	free(t->words);
 	free(t->sentences);
@@ -57,50 +53,9 @@ int text_mark(const struct text *t, const char *list, char *chosen, struct list_
 	return 0;
 }
 
-/* The metadata value `key` as a JSON list of n strings. */
-static char **read_strings(const struct safetensors *st, const char *key, size_t n, struct err *e)
-{
-	const char *value = safetensors_meta(st, key);
-	cJSON *list = value ? cJSON_Parse(value) : NULL;
-	char **strings = NULL;
-	size_t used = 0;
-
-	if (!list || !cJSON_IsArray(list)) {
-		err_set(e, ERR_FORMAT, "%s: metadata '%s' is not a JSON list", st->path, key);
-		goto fail;
-	}
-	if ((size_t)cJSON_GetArraySize(list) != n) {
-		err_set(e, ERR_FORMAT, "%s: metadata '%s' has %d entries for %zu sentences", st->path, key,
-			cJSON_GetArraySize(list), n);
-		goto fail;
-	}
-	strings = mem_zalloc(n, sizeof *strings, st->path, e);
-	if (!strings)
-		goto fail;
-	for (const cJSON *item = list->child; item; item = item->next, used++) {
-		const char *s = item->valuestring;
-		if (!cJSON_IsString(item) || utf8_check(s, strlen(s)) < strlen(s)) {
-			err_set(e, ERR_FORMAT, "%s: metadata '%s': entry %zu is not a UTF-8 string", st->path,
-				key, used);
-			goto fail;
-		}
-		strings[used] = mem_strdup(s, e);
-		if (!strings[used])
-			goto fail;
-	}
-	cJSON_Delete(list);
-	return strings;
-fail:
-	for (size_t i = 0; i < used; i++)
-		free(strings[i]);
-	free(strings);
-	cJSON_Delete(list);
-	return NULL;
-}
-
 static int read_splits(struct text *t, const struct safetensors *st, struct err *e)
 {
-	char **names = read_strings(st, "splits", t->n, e);
+	char **names = metalist_read(st, "splits", t->n, "sentences", e);
 	int bad = 0;
 
 	if (!names)
@@ -118,47 +73,6 @@ static int read_splits(struct text *t, const struct safetensors *st, struct err 
 	}
 	free(names);
 	return t->splits ? bad : -1;
-}
-
-static int by_name(const void *a, const void *b)
-{
-	return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-static int check_unique(const struct text *t, const char *path, struct err *e)
-{
-	char **sorted = mem_alloc(t->n, sizeof *sorted, path, e);
-	int bad = 0;
-
-	if (!sorted)
-		return -1;
-	for (size_t i = 0; i < t->n; i++)
-		sorted[i] = t->refs[i];
-	if (t->n)
-		qsort(sorted, t->n, sizeof *sorted, by_name);
-	for (size_t i = 1; i < t->n && !bad; i++)
-		if (!strcmp(sorted[i - 1], sorted[i]))
-			bad = err_set(
-				e, ERR_FORMAT, "%s: metadata 'refs': '%s' appears twice", path, sorted[i]);
-	free(sorted);
-	return bad;
-}
-
-static int check_offsets(const struct text *t, int64_t word_count, const char *path, struct err *e)
-{
-	if (t->offsets[0] != 0)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'offsets': begins with %lld, expected 0", path,
-			(long long)t->offsets[0]);
-	for (size_t i = 0; i < t->n; i++)
-		if (t->offsets[i + 1] < t->offsets[i])
-			return err_set(e, ERR_FORMAT,
-				"%s: tensor 'offsets': falls from %lld to %lld at entry %zu", path,
-				(long long)t->offsets[i], (long long)t->offsets[i + 1], i + 1);
-	if (t->offsets[t->n] != word_count)
-		return err_set(e, ERR_FORMAT,
-			"%s: tensor 'offsets': ends with %lld, but there are %lld words", path,
-			(long long)t->offsets[t->n], (long long)word_count);
-	return 0;
 }
 
 /* A copy of a float tensor, all of it finite. */
@@ -206,35 +120,23 @@ static int read_tensors(struct text *t, const struct safetensors *st, struct err
 	memcpy(t->offsets, offsets->data, offsets->bytes);
 	t->words = copy_floats(st, words, e);
 	t->sentences = t->words ? copy_floats(st, sentences, e) : NULL;
-	return t->sentences ? check_offsets(t, words->shape[0], st->path, e) : -1;
-}
-
-/* As many pieces as the sentence has words. */
-static int check_pieces(const struct text *t, const char *path, struct err *e)
-{
-	for (size_t i = 0; i < t->n; i++) {
-		int64_t count = 0, words = t->offsets[i + 1] - t->offsets[i];
-		for (const char *c = t->pieces[i]; *c; c++)
-			count += *c != ' ' && (c[1] == ' ' || !c[1]);
-		if (count != words)
-			return err_set(e, ERR_FORMAT,
-				"%s: metadata 'pieces': entry %zu has %lld pieces for %lld words", path, i,
-				(long long)count, (long long)words);
-	}
-	return 0;
+	return t->sentences ? metalist_check_offsets(
+				      "offsets", t->offsets, t->n, words->shape[0], "words", st->path, e)
+			    : -1;
 }
 
 static int read_names(struct text *t, const struct safetensors *st, struct err *e)
 {
-	t->refs = read_strings(st, "refs", t->n, e);
-	t->objects = t->refs ? read_strings(st, "objects", t->n, e) : NULL;
-	t->texts = t->objects ? read_strings(st, "texts", t->n, e) : NULL;
+	t->refs = metalist_read(st, "refs", t->n, "sentences", e);
+	t->objects = t->refs ? metalist_read(st, "objects", t->n, "sentences", e) : NULL;
+	t->texts = t->objects ? metalist_read(st, "texts", t->n, "sentences", e) : NULL;
 	if (!t->texts || read_splits(t, st, e))
 		return -1;
 	if (safetensors_meta(st, "pieces") &&
-		(!(t->pieces = read_strings(st, "pieces", t->n, e)) || check_pieces(t, st->path, e)))
+		(!(t->pieces = metalist_read(st, "pieces", t->n, "sentences", e)) ||
+			metalist_check_pieces(t->pieces, t->offsets, t->n, st->path, e)))
 		return -1;
-	return check_unique(t, st->path, e);
+	return metalist_check_unique(t->refs, t->n, "refs", st->path, e);
 }
 
 int text_read(struct text *t, const char *path, struct err *e)
@@ -252,26 +154,6 @@ int text_read(struct text *t, const char *path, struct err *e)
 	return bad ? -1 : 0;
 }
 
-/* n strings as a JSON list; NULL when memory is out. */
-static char *print_strings(char *const *strings, size_t n)
-{
-	cJSON *list = cJSON_CreateArray();
-	char *text = NULL;
-
-	for (size_t i = 0; list && i < n; i++) {
-		cJSON *item = cJSON_CreateString(strings[i]);
-		if (!item || !cJSON_AddItemToArray(list, item)) {
-			cJSON_Delete(item);
-			goto done;
-		}
-	}
-	if (list)
-		text = cJSON_PrintUnformatted(list);
-done:
-	cJSON_Delete(list);
-	return text;
-}
-
 static char *print_splits(const struct text *t, struct err *e)
 {
 	static char train[] = "train", test[] = "test";
@@ -281,7 +163,7 @@ static char *print_splits(const struct text *t, struct err *e)
 		return NULL;
 	for (size_t i = 0; i < t->n; i++)
 		names[i] = t->splits[i] == SPLIT_TEST ? test : train;
-	text = print_strings(names, t->n);
+	text = metalist_print(names, t->n);
 	free(names);
 	return text;
 }
@@ -302,9 +184,9 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 			.shape = {n, t->width},
 			.data = t->sentences},
 	};
-	char *refs = print_strings(t->refs, t->n), *objects = print_strings(t->objects, t->n);
-	char *texts = print_strings(t->texts, t->n), *splits = print_splits(t, e);
-	char *pieces = t->pieces ? print_strings(t->pieces, t->n) : NULL;
+	char *refs = metalist_print(t->refs, t->n), *objects = metalist_print(t->objects, t->n);
+	char *texts = metalist_print(t->texts, t->n), *splits = print_splits(t, e);
+	char *pieces = t->pieces ? metalist_print(t->pieces, t->n) : NULL;
 	int bad;
 
 	if (refs && objects && texts && splits && (pieces || !t->pieces)) {

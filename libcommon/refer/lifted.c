@@ -23,3 +23,11 @@ void lifted_free(struct lifted *l)
 	free(l->words);
 	*l = (struct lifted){0};
 }
+
+void lifted_responses(const struct lifted *l, size_t object, float *responses)
+{
+	for (size_t i = 0; i < l->gaussians; i++)
+		responses[i] = -LIFTED_CUT;
+	for (int64_t k = l->indptr[object]; k < l->indptr[object + 1]; k++)
+		responses[l->index[k]] = l->share[k] - LIFTED_CUT;
+}

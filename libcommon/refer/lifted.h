@@ -32,4 +32,11 @@ struct lifted {
 /* All arrays are the struct's own; a zeroed one may be freed. */
 void lifted_free(struct lifted *l);
 
+/* An object's mask in a view is where sum_i w_pi (a_i - LIFTED_CUT) > 0: where more than this part of what is
+ * seen in the pixel is the object's. */
+#define LIFTED_CUT 0.5f
+
+/* responses (N) = a_i - LIFTED_CUT, with the share a_i of each Gaussian in the object. */
+void lifted_responses(const struct lifted *l, size_t object, float *responses);
+
 #endif

@@ -1,0 +1,34 @@
+/* Lists of strings in the metadata of safetensors, each a JSON list (metadata are strings), and the offsets
+ * that share out the rows of a tensor among them: what sentences are in formats/text.md and
+ * formats/lifted.md. */
+#ifndef FORMATS_METALIST_H
+#define FORMATS_METALIST_H
+
+#include "base/err.h"
+#include "formats/safetensors.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The metadata value `key`, a list of one string for each of n `of` ("sentences"). The strings are UTF-8;
+ * metalist_free them. NULL with *e (ERR_FORMAT, "path: metadata 'key' ..."). */
+char **metalist_read(const struct safetensors *st, const char *key, size_t n, const char *of, struct err *e);
+void metalist_free(char **strings, size_t n);
+
+/* n strings as such a value, to be freed; NULL when memory is out. */
+char *metalist_print(char *const *strings, size_t n);
+
+/* No two are the same: 0, or -1 with *e. */
+int metalist_check_unique(char *const *strings, size_t n, const char *key, const char *path, struct err *e);
+
+/* Tensor `name` (n+1) begins with 0, never falls and ends with the count of the rows, which are `of`
+ * ("words"): 0, or -1 with *e. */
+int metalist_check_offsets(const char *name, const int64_t *offsets, size_t n, int64_t count, const char *of,
+	const char *path, struct err *e);
+
+/* Metadata 'pieces': string i has single pieces with spaces between, offsets[i+1] - offsets[i] of them. 0, or
+ * -1 with *e. */
+int metalist_check_pieces(
+	char *const *pieces, const int64_t *offsets, size_t n, const char *path, struct err *e);
+
+#endif
