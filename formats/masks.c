@@ -45,8 +45,7 @@ static int read_name(
 }
 
 /* *to is NaN where the number is absent. */
-static int read_number(
-	const struct jsonl *j, const cJSON *object, const char *key, double *to, struct err *e)
+static int read_number(const struct jsonl *j, const cJSON *object, const char *key, double *to, struct err *e)
 {
 	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
 

@@ -15,7 +15,8 @@ struct mask_record {
 	char *object; /* may be NULL where ref is given */
 	double score; /* NaN where absent */
 	struct rle mask;
-	double visible; /* of the outline of a whole object, the share in [0,1] that is in sight; NaN where absent */
+	double visible; /* of the outline of a whole object, the share in [0,1] that is in sight; NaN where
+			   absent */
 };
 
 struct mask_set {

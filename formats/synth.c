@@ -125,7 +125,8 @@ static int put_masks(
 	int bad = 0;
 
 	for (int i = 0; i < f->scene->object_count && !bad; i++) {
-		struct mask_record r = {.view = c->name, .object = f->scene->objects[i].name, .score = NAN, .visible = NAN};
+		struct mask_record r = {
+			.view = c->name, .object = f->scene->objects[i].name, .score = NAN, .visible = NAN};
 		bad = rle_encode(&r.mask, masks + (size_t)i * pixels, c->height, c->width, e) ||
 		      masks_put(to, &r, e);
 		rle_free(&r.mask);
