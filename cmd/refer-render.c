@@ -1,17 +1,16 @@
-/* refer-render: the masks of sentences in any view, from a trained model. */
+/* refer-render: the masks of sentences in any view, from a model. */
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
+#include "formats/anymodel.h"
 #include "formats/masks.h"
-#include "formats/model.h"
 #include "formats/pictures.h"
 #include "formats/scene.h"
 #include "formats/text.h"
 #include "refer/answer.h"
-#include "refer/calibrate.h"
-#include "refer/respond.h"
-#include "splat/render.h"
+#include "refer/asked.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,14 +19,16 @@ enum { SPLIT_ALL = 2 };
 static struct {
 	const char *scene, *text, *model, *views, *refs;
 	struct pictures pictures;
-	int split, sentences, is_plain, size[2];
+	int split, sentences, is_plain, is_amodal, size[2];
 	double scale; /* 0: not given */
+	double least;
 } options = {.split = SPLIT_TEST, .sentences = SPLIT_ALL};
 
 static const struct cli_option table[] = {
 	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
 	{"text", 0, CLI_STRING, &options.text, "TEXT", "sentences encoded by text-encode (required)", 0, 0},
-	{"model", 0, CLI_STRING, &options.model, "MODEL", "model of refer-train (required)", 0, 0},
+	{"model", 0, CLI_STRING, &options.model, "MODEL", "model of refer-train or refer-lift (required)", 0,
+		0},
 	{"split", 0, CLI_CHOICE, &options.split, "train|test|all", "which views (default test)", 0, 0},
 	{"views", 0, CLI_STRING, &options.views, "NAME,...", "these views instead of a split", 0, 0},
 	{"sentences", 0, CLI_CHOICE, &options.sentences, "train|test|all", "which sentences (default all)", 0,
@@ -36,6 +37,10 @@ static const struct cli_option table[] = {
 	{"calibration", 0, CLI_CHOICE, &options.is_plain, "peak|none",
 		"peak (default): lift a sentence's responses until its best are clearly above 0; none: as trained",
 		0, 0},
+	{"min-probability", 0, CLI_REAL, &options.least, "P",
+		"lifted models: nothing is meant where the best object is less probable (default 0)", 0, 1},
+	{"amodal", 0, CLI_FLAG, &options.is_amodal, NULL,
+		"outlines of whole objects as if nothing hid them, and the share in sight", 0, 0},
 	{"size", 0, CLI_SIZE, &options.size, "WxH", "size of the masks (default: the view's)", 1, 65536},
 	{"scale", 0, CLI_REAL, &options.scale, "S", "size of the masks as a share of the view's (default 1)",
 		1e-4, 16},
@@ -54,26 +59,24 @@ static const struct cli_tool tool = {.name = "refer-render",
 	.options = table,
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT};
 
-/* A view's records, until those of the views before it are written. */
-struct records {
-	FILE *stream;
-	char *text;
-	size_t length;
+/* What a view shows of an answer, until the views before it are written. */
+struct shown {
+	struct rle mask;
+	double score, visible;
 };
 
 /* What is rendered from. */
 struct run {
 	struct scene scene;
 	struct text text;
-	struct model model;
-	struct rows rows; /* of the model, in the scene */
+	struct anymodel model;
+	struct asked asked;
 	size_t ref_count, view_count;
-	char *chosen;		 /* of the views, then of the sentences: which a list names */
-	size_t *refs;		 /* indices in text */
-	struct camera *views;	 /* at the size of the masks */
-	float *responses;	 /* (ref_count,N), as render_pack has them */
-	double *lifts;		 /* (ref_count) */
-	struct records *records; /* (view_count) */
+	char *chosen;	       /* of the views, then of the sentences: which a list names */
+	size_t *refs;	       /* indices in text */
+	struct camera *views;  /* at the size of the masks */
+	struct splats *wholes; /* (channels) for --amodal */
+	struct shown *shown;   /* (view_count,channels) */
 	struct file_out out;
 	struct cli_progress progress;
 };
@@ -126,87 +129,77 @@ static int choose_refs(struct run *r, const struct cli *c, struct err *e)
 static int load(struct run *r, const struct cli *c, struct err *e)
 {
 	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
-		model_read(&r->model, options.model, e))
-		return -1;
-	if (r->model.scene_gaussians != r->scene.splats.n)
-		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu",
-			file_name(options.model), r->model.scene_gaussians, options.scene, r->scene.splats.n);
-	if (r->model.layout.text_width != r->text.width)
-		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, %s has %d",
-			file_name(options.model), r->model.layout.text_width, file_name(options.text),
-			r->text.width);
-	if (choose_views(r, c, e) || choose_refs(r, c, e))
+		anymodel_read(&r->model, options.model, e) || choose_views(r, c, e) || choose_refs(r, c, e))
 		return -1;
 	if (!r->view_count)
 		cli_warn(c, "%s: no view in this split", options.scene);
 	if (!r->ref_count)
 		cli_warn(c, "%s: no sentence in this split", file_name(options.text));
-	r->responses = mem_alloc(r->ref_count, r->scene.splats.n * sizeof(float), "responses", e);
-	r->lifts = mem_zalloc(r->ref_count, sizeof *r->lifts, "responses", e);
-	if (!r->responses || !r->lifts || model_rows(&r->model, r->scene.splats.means, &r->rows, e))
+	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
+		r->refs, r->ref_count, !options.is_plain, options.least};
+	if (anymodel_answer(&r->model, &ask, &r->asked, e))
 		return -1;
-	const struct respond_model m = {&r->model.layout, r->model.similarity, &r->rows, r->model.features,
-		r->model.parameters, r->scene.splats.means, r->model.low, r->model.high};
-	if (respond_all(&m, r->text.offsets, r->text.words, r->refs, r->ref_count, r->responses, e) ||
-		render_pack(r->responses, r->scene.splats.n, (int)r->ref_count, e))
+	r->wholes = mem_zalloc(r->asked.channels, sizeof *r->wholes, "objects", e);
+	if (!r->wholes)
 		return -1;
-	return options.is_plain ? 0
-				: calibrate(&r->scene.splats, &r->scene.cameras, &r->rows, r->responses,
-					  r->ref_count, r->lifts, e);
+	return options.is_amodal ? asked_wholes(&r->asked, &r->scene.splats, r->wholes, e) : 0;
 }
 
-/* One mask: its record and pictures. */
-static int put_mask(void *data, const struct answer *a, struct err *e)
+/* One answer: its mask, and the pictures of all sentences that it is the answer to. */
+static int put_answer(void *data, const struct answer *a, struct err *e)
 {
 	const struct run *r = data;
-	struct records *to = &r->records[a->view];
-	const size_t sentence = r->refs[a->sentence];
+	struct shown *to = &r->shown[a->view * r->asked.channels + a->channel];
 	const struct camera *c = a->camera;
-	struct mask_record record = {
-		c->name, r->text.refs[sentence], r->text.objects[sentence], a->score, {0}};
-	const struct picture picture = {c->name, record.ref, c->height, c->width, a->image, a->mask, a->rgb};
+	int bad = rle_encode(&to->mask, a->mask, c->height, c->width, e);
 
-	if (!to->stream && !(to->stream = open_memstream(&to->text, &to->length)))
-		return err_errno(e, "records");
-	int bad = rle_encode(&record.mask, a->mask, c->height, c->width, e) ||
-		  masks_put(to->stream, &record, e) || pictures_put(&options.pictures, &picture, e);
-
-	rle_free(&record.mask);
-	return bad ? -1 : 0;
+	to->score = a->score;
+	to->visible = a->visible;
+	for (size_t i = 0; i < r->ref_count && !bad; i++) {
+		const struct picture picture = {
+			c->name, r->text.refs[r->refs[i]], c->height, c->width, a->image, a->mask, a->rgb};
+		if (r->asked.channel[i] == a->channel)
+			bad = pictures_put(&options.pictures, &picture, e);
+	}
+	return bad;
 }
 
 static int put_view(void *data, size_t view, struct err *e)
 {
 	struct run *r = data;
-	struct records *from = &r->records[view];
+	struct shown *shown = r->shown + view * r->asked.channels;
 	int bad = 0;
 
-	if (from->stream) {
-		if (fclose(from->stream))
-			bad = err_errno(e, "records");
-		else
-			fwrite(from->text, 1, from->length, r->out.stream);
-		free(from->text);
-		*from = (struct records){0};
+	for (size_t i = 0; i < r->ref_count && !bad; i++) {
+		const struct shown *from = &shown[r->asked.channel[i]];
+		const size_t sentence = r->refs[i];
+		double score = from->score;
+		if (r->asked.sure)
+			score = rle_area(&from->mask) ? r->asked.sure[i] : 0;
+		const struct mask_record record = {r->views[view].name, r->text.refs[sentence],
+			r->text.objects[sentence], score, from->mask, from->visible};
+		bad = masks_put(r->out.stream, &record, e);
 	}
+	for (size_t k = 0; k < r->asked.channels; k++)
+		rle_free(&shown[k].mask);
 	cli_progress_step(&r->progress, (double)view + 1, NULL);
 	return bad;
 }
 
 static int render(struct run *r, struct err *e)
 {
-	const struct answer_question q = {
-		&r->scene.splats, r->responses, r->lifts, r->ref_count, options.pictures.overlays != NULL};
-	const struct answer_calls calls = {r, put_mask, put_view};
+	const struct answer_question q = {&r->scene.splats, &r->asked, options.is_amodal ? r->wholes : NULL,
+		options.pictures.overlays != NULL};
+	const struct answer_calls calls = {r, put_answer, put_view};
+	size_t count = r->asked.channels;
 
-	r->records = mem_zalloc(r->view_count, sizeof *r->records, "records", e);
-	int bad = !r->records || answer_all(&q, r->views, r->view_count, &calls, e) ? -1 : 0;
-	for (size_t i = 0; r->records && i < r->view_count; i++) {
-		if (r->records[i].stream)
-			fclose(r->records[i].stream);
-		free(r->records[i].text);
-	}
-	free(r->records);
+	if (mem_size(count, r->view_count, &count))
+		return err_set(e, ERR_SYSTEM, "masks do not fit in memory");
+	r->shown = mem_zalloc(count, sizeof *r->shown, "masks", e);
+	int bad = !r->shown || answer_all(&q, r->views, r->view_count, &calls, e) ? -1 : 0;
+	for (size_t i = 0; r->shown && i < count; i++)
+		rle_free(&r->shown[i].mask);
+	free(r->shown);
 	return bad;
 }
 
@@ -239,12 +232,13 @@ int main(int argc, char **argv)
 	int bad = run(&r, &c, &e);
 	scene_free(&r.scene);
 	text_free(&r.text);
-	model_free(&r.model);
-	rows_free(&r.rows);
+	anymodel_free(&r.model);
+	for (size_t k = 0; r.wholes && k < r.asked.channels; k++)
+		splats_free(&r.wholes[k]);
+	free(r.wholes);
+	asked_free(&r.asked);
 	free(r.chosen);
 	free(r.refs);
 	free(r.views);
-	free(r.responses);
-	free(r.lifts);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -91,16 +91,16 @@ int jsonl_name(
 	return *name ? 0 : -1;
 }
 
-int jsonl_score(const struct jsonl *j, const cJSON *object, double *score, struct err *e)
+int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, double *number, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, "score");
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
 
-	*score = NAN;
+	*number = NAN;
 	if (!item || cJSON_IsNull(item))
 		return 0;
 	if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
-		return jsonl_err(j, e, "key 'score' is not a finite number");
-	*score = item->valuedouble;
+		return jsonl_err(j, e, "key '%s' is not a finite number", key);
+	*number = item->valuedouble;
 	return 0;
 }
 

@@ -37,8 +37,8 @@ int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, in
 int jsonl_name(
 	const struct jsonl *j, const cJSON *object, const char *key, int need, char **name, struct err *e);
 
-/* The number 'score'; NAN where it is absent or null. Returns 0, or -1 with *e. */
-int jsonl_score(const struct jsonl *j, const cJSON *object, double *score, struct err *e);
+/* A finite number; NAN where the key is absent or null. Returns 0, or -1 with *e. */
+int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, double *number, struct err *e);
 
 /* Writes `before`, then the text as a JSON string. Returns 0, or -1 with *e. */
 int jsonl_put_string(FILE *out, const char *before, const char *text, struct err *e);

@@ -142,22 +142,30 @@ static int read_sentences(struct lifted *l, const struct safetensors *st, struct
 	return metalist_check_pieces(l->pieces, l->offsets, l->sentences, st->path, e);
 }
 
+int lifted_take(struct lifted *l, const struct safetensors *st, struct err *e)
+{
+	long long gaussians = 0;
+
+	*l = (struct lifted){0};
+	int bad = safetensors_need_format(st, "refer.lifted", VERSION_READ, e) ||
+		  safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e);
+	l->gaussians = (size_t)gaussians;
+	bad = bad || read_objects(l, st, e) || read_sentences(l, st, e);
+	if (bad)
+		lifted_free(l);
+	return bad ? -1 : 0;
+}
+
 int lifted_read(struct lifted *l, const char *path, struct err *e)
 {
 	struct safetensors st;
-	long long gaussians = 0;
 
 	*l = (struct lifted){0};
 	if (safetensors_open(&st, path, e))
 		return -1;
-	int bad = safetensors_need_format(&st, "refer.lifted", VERSION_READ, e) ||
-		  safetensors_meta_int(&st, "gaussians", 0, INT32_MAX, &gaussians, e);
-	l->gaussians = (size_t)gaussians;
-	bad = bad || read_objects(l, &st, e) || read_sentences(l, &st, e);
+	int bad = lifted_take(l, &st, e);
 	safetensors_close(&st);
-	if (bad)
-		lifted_free(l);
-	return bad ? -1 : 0;
+	return bad;
 }
 
 /* All above 0, or 0 where it may be, and at most 1. */

@@ -28,6 +28,15 @@ static int key_err(const struct jsonl *j, struct err *e, const char *key)
 	return jsonl_err(j, e, "key '%s': %s", key, inner.message);
 }
 
+static int read_visible(const struct jsonl *j, const cJSON *object, double *visible, struct err *e)
+{
+	if (jsonl_number(j, object, "visible", visible, e))
+		return -1;
+	if (*visible < 0 || *visible > 1)
+		return jsonl_err(j, e, "key 'visible' is not within 0 to 1");
+	return 0;
+}
+
 /* COCO's uncompressed list of lengths. */
 static int read_list(
 	const struct jsonl *j, const cJSON *list, struct rle *mask, int height, int width, struct err *e)
@@ -103,7 +112,8 @@ static int read_record(const struct jsonl *j, const cJSON *object, struct mask_r
 	const char *path = NULL;
 
 	if (jsonl_name(j, object, "view", 1, &r->view, e) || jsonl_name(j, object, "ref", 0, &r->ref, e) ||
-		jsonl_name(j, object, "object", 0, &r->object, e) || jsonl_score(j, object, &r->score, e))
+		jsonl_name(j, object, "object", 0, &r->object, e) ||
+		jsonl_number(j, object, "score", &r->score, e) || read_visible(j, object, &r->visible, e))
 		return -1;
 	if (!r->ref && !r->object)
 		return jsonl_err(j, e, "neither key 'ref' nor key 'object'");
@@ -248,6 +258,8 @@ int masks_put(FILE *out, const struct mask_record *r, struct err *e)
 		goto done;
 	if (!isnan(r->score))
 		put_number(out, ",\"score\":", r->score);
+	if (!isnan(r->visible))
+		put_number(out, ",\"visible\":", r->visible);
 	fprintf(out, ",\"segmentation\":{\"size\":[%d,%d],\"counts\":", r->mask.height, r->mask.width);
 	if (jsonl_put_string(out, "", counts, e))
 		goto done;

@@ -15,6 +15,8 @@ struct mask_record {
 	char *object; /* may be NULL where ref is given */
 	double score; /* NaN where absent */
 	struct rle mask;
+	double visible; /* of the outline of a whole object, the share in [0,1] that is in sight; NaN where
+			   absent */
 };
 
 struct mask_set {
@@ -41,7 +43,7 @@ int masks_pool(
 int masks_views(const struct mask_set *set, const long *lines, const char *path,
 	const struct cameras *cameras, size_t *views, struct err *e);
 
-/* One line. Keys in the order view, ref, object, score, segmentation; absent ones left out. */
+/* One line. Keys in the order view, ref, object, score, visible, segmentation; absent ones left out. */
 int masks_put(FILE *out, const struct mask_record *r, struct err *e);
 
 #endif

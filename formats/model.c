@@ -205,6 +205,15 @@ static int read_all(struct model *m, const struct safetensors *st, struct err *e
 		       : 0;
 }
 
+int model_take(struct model *m, const struct safetensors *st, struct err *e)
+{
+	*m = (struct model){0};
+	int bad = read_all(m, st, e);
+	if (bad)
+		model_free(m);
+	return bad;
+}
+
 int model_read(struct model *m, const char *path, struct err *e)
 {
 	struct safetensors st;
@@ -212,10 +221,8 @@ int model_read(struct model *m, const char *path, struct err *e)
 	*m = (struct model){0};
 	if (safetensors_open(&st, path, e))
 		return -1;
-	int bad = read_all(m, &st, e);
+	int bad = model_take(m, &st, e);
 	safetensors_close(&st);
-	if (bad)
-		model_free(m);
 	return bad;
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/err.h"
 #include "formats/precision.h"
+#include "formats/safetensors.h"
 #include "refer/model.h"
 #include "refer/rows.h"
 
@@ -25,6 +26,8 @@ struct model {
 
 /* ERR_FORMAT where the file is malformed. */
 int model_read(struct model *m, const char *path, struct err *e);
+/* The same of a file that is open. */
+int model_take(struct model *m, const struct safetensors *st, struct err *e);
 /* ERR_CHECK where a number is not finite, or too large for the precision. */
 int model_write(const struct model *m, const char *path, const char *options, long long seed, struct err *e);
 void model_free(struct model *m);

@@ -146,7 +146,8 @@ static int put_masks(
 	int bad = 0;
 
 	for (int i = 0; i < f->scene->object_count && !bad; i++) {
-		struct mask_record r = {.view = c->name, .object = f->scene->objects[i].name, .score = NAN};
+		struct mask_record r = {
+			.view = c->name, .object = f->scene->objects[i].name, .score = NAN, .visible = NAN};
 		bad = rle_encode(&r.mask, masks + (size_t)i * pixels, c->height, c->width, e) ||
 		      masks_put(to, &r, e);
 		rle_free(&r.mask);
@@ -167,7 +168,8 @@ static int put_candidates(
 			.ref = (char *)s->ref,
 			.object = f->scene->objects[m->object].name,
 			.score = m->score,
-			.mask = m->mask};
+			.mask = m->mask,
+			.visible = NAN};
 		bad = masks_put(f->candidates.stream, &r, e);
 	}
 	synth_candidates_free(&found);

@@ -13,24 +13,28 @@
 
 /* Memory that one view after the other uses. */
 struct room {
-	struct render_view *view;
-	float *images, *rgb;
+	struct render_view *view, *alone; /* of the scene, and of an object */
+	float *images, *rgb, *ones;
 	uint8_t *mask;
-	size_t image_room, rgb_room, mask_room;
+	size_t image_room, rgb_room, ones_room, mask_room;
 };
 
 static void room_free(struct room *room)
 {
 	render_free(room->view);
+	render_free(room->alone);
 	free(room->images);
 	free(room->rgb);
+	free(room->ones);
 	free(room->mask);
 }
 
-/* Sentences that are blended in one pass. */
+/* Channels that are blended in one pass. */
 static size_t group_size(const struct answer_question *q, size_t first)
 {
-	return q->sentences - first < RENDER_GROUP ? q->sentences - first : RENDER_GROUP;
+	const size_t left = q->asked->channels - first;
+
+	return left < RENDER_GROUP ? left : RENDER_GROUP;
 }
 
 /* About what a room needs. */
@@ -39,20 +43,44 @@ static double room_bytes(const struct answer_question *q, double pixels)
 	const double images =
 		(double)group_size(q, 0) * sizeof(float) + (q->wants_rgb ? 7 * sizeof(float) : 0);
 
-	return pixels * images + (double)render_bytes(q->splats->n);
+	return pixels * images + (double)render_bytes(q->splats->n) * (q->wholes ? 2 : 1);
 }
 
-static int prepare(struct room *room, const struct answer_question *q, const struct camera *c, struct err *e)
+static int prepare(struct render_view **view, const struct splats *s, const struct camera *c, struct err *e)
 {
-	if (room->view)
-		return render_again(room->view, q->splats, c, e);
-	room->view = render_prepare(q->splats, c, e);
-	return room->view ? 0 : -1;
+	if (*view)
+		return render_again(*view, s, c, e);
+	*view = render_prepare(s, c, e);
+	return *view ? 0 : -1;
+}
+
+/* The outline of a whole object in place of what a->image and a->mask have of it. */
+static int take_outline(struct room *room, const struct splats *whole, struct answer *a, float *image,
+	uint8_t *mask, struct err *e)
+{
+	const size_t pixels = (size_t)a->camera->width * (size_t)a->camera->height;
+	size_t covered = 0, seen = 0;
+
+	if (prepare(&room->alone, whole, a->camera, e) ||
+		mem_room((void **)&room->ones, &room->ones_room, whole->n, sizeof(float), "values", e))
+		return -1;
+	for (size_t i = 0; i < whole->n; i++)
+		room->ones[i] = 1;
+	render_packed(room->alone, room->ones, 1, image, NULL);
+	for (size_t p = 0; p < pixels; p++) {
+		image[p] -= ANSWER_OUTLINE;
+		covered += image[p] > 0;
+		seen += image[p] > 0 && mask[p];
+		mask[p] = image[p] > 0;
+	}
+	a->visible = covered ? (double)seen / (double)covered : 0;
+	return 0;
 }
 
 static int answer_view(struct room *room, const struct answer_question *q, const struct camera *c,
 	size_t view, const struct answer_calls *calls, struct err *e)
 {
+	const struct asked *asked = q->asked;
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 	size_t images;
 
@@ -63,21 +91,25 @@ static int answer_view(struct room *room, const struct answer_question *q, const
 		mem_room((void **)&room->mask, &room->mask_room, pixels, 1, "mask", e) ||
 		(q->wants_rgb && mem_room((void **)&room->rgb, &room->rgb_room, pixels, 3 * sizeof(float),
 					 "colours", e)) ||
-		prepare(room, q, c, e) ||
+		prepare(&room->view, q->splats, c, e) ||
 		(q->wants_rgb && render_colors(room->view, q->splats, c, (const float[3]){0}, room->rgb, e)))
 		return -1;
-	for (size_t first = 0; first < q->sentences; first += RENDER_GROUP) {
+	for (size_t first = 0; first < asked->channels; first += RENDER_GROUP) {
 		const size_t now = group_size(q, first);
-		render_packed(room->view, q->responses + first * q->splats->n, (int)now, room->images, NULL);
+		render_packed(
+			room->view, asked->responses + first * q->splats->n, (int)now, room->images, NULL);
 		for (size_t i = 0; i < now; i++) {
-			const float *image = room->images + i * pixels;
-			const struct answer a = {.camera = c,
+			float *image = room->images + i * pixels;
+			struct answer a = {.camera = c,
 				.view = view,
-				.sentence = first + i,
+				.channel = first + i,
 				.image = image,
 				.mask = room->mask,
 				.rgb = q->wants_rgb ? room->rgb : NULL,
-				.score = respond_mask(image, pixels, q->lifts[first + i], room->mask)};
+				.score = respond_mask(image, pixels, asked->lifts[first + i], room->mask),
+				.visible = NAN};
+			if (q->wholes && take_outline(room, &q->wholes[first + i], &a, image, room->mask, e))
+				return -1;
 			if (calls->each(calls->data, &a, e))
 				return -1;
 		}

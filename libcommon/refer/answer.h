@@ -1,11 +1,11 @@
-/* A trained model's answers in one view: for each sentence the image of its responses, its mask and its
- * score.
- */
+/* A model's answers in a view: for each channel of what was asked (refer/asked.h) the image of its responses,
+ * its mask and its score; or, amodally, the outline of the whole object as if nothing hid it. */
 #ifndef REFER_ANSWER_H
 #define REFER_ANSWER_H
 
 #include "base/err.h"
 #include "geom/camera.h"
+#include "refer/asked.h"
 #include "splat/splats.h"
 
 #include <stddef.h>
@@ -14,25 +14,29 @@
 /* What is asked, the same for every view. */
 struct answer_question {
 	const struct splats *splats;
-	const float *responses; /* (sentences,N) as render_pack has them */
-	const double *lifts;	/* (sentences) what calibration added to them */
-	size_t sentences;
+	const struct asked *asked;
+	const struct splats *wholes; /* (channels) of asked_wholes, for outlines; NULL: what is in sight */
 	int wants_rgb;
 };
 
-/* The answer to one sentence, row-major; good until the callback returns. */
+/* One answer, row-major; good until the callback returns. */
 struct answer {
 	const struct camera *camera;
-	size_t view, sentence;
-	const float *image;  /* (P) M */
-	const uint8_t *mask; /* (P) M > 0 */
+	size_t view, channel;
+	/* (P) M; of an outline how much of the whole object's opacity is above ANSWER_OUTLINE */
+	const float *image;
+	const uint8_t *mask; /* (P) image > 0 */
 	const float *rgb;    /* (P,3) the scene's colours on black, where they are wanted */
-	double score;	     /* of respond_mask */
+	double score;	     /* of respond_mask, for what is in sight */
+	double visible;	     /* share of the outline's pixels that are in sight; NaN without an outline */
 };
+
+/* A whole object covers a pixel where its Gaussians alone have more than this opacity. */
+#define ANSWER_OUTLINE 0.5f
 
 struct answer_calls {
 	void *data;
-	/* One answer. Called by several threads at once, but for a view by one, sentence after sentence. */
+	/* One answer. Called by several threads at once, but for a view by one, channel after channel. */
 	int (*each)(void *data, const struct answer *a, struct err *e);
 	/* All of a view's answers were given: called for one view after the other, in order. */
 	int (*done)(void *data, size_t view, struct err *e);

@@ -24,6 +24,7 @@ reads() {
 	cat >x.jsonl <<-'END'
 	{"view":"v1","ref":"r1","score":0.83,"segmentation":{"size":[2,3],"counts":"132"}}
 	{"view":"v \"2\" \\ ü","ref":"r1","score":0.3000000000000001,"segmentation":{"size":[1,1],"counts":"01"}}
+	{"view":"v2","ref":"r1","score":0.5,"visible":0.125,"segmentation":{"size":[1,1],"counts":"01"}}
 	{"view":"v3","ref":"r1","score":1e+30,"segmentation":{"size":[65536,65535],"counts":"0PPPnoo3"}}
 	END
 	"$BIN/pseudomask-select" --method top1 x.jsonl | cmp x.jsonl -
@@ -70,6 +71,12 @@ reads() {
 	refuses "key 'object' is not a string" "{\"view\":\"v\",\"object\":7,$mask}"
 	refuses "neither key 'ref' nor key 'object'" "{\"view\":\"v\",$mask}"
 	refuses "neither key 'ref' nor key 'object'" "{\"view\":\"v\",\"ref\":null,$mask}"
+}
+
+@test "visible" {
+	refuses "key 'visible' is not a finite number" "{\"view\":\"v\",\"object\":\"o\",\"visible\":\"all\",$mask}"
+	refuses "key 'visible' is not within 0 to 1" "{\"view\":\"v\",\"object\":\"o\",\"visible\":1.01,$mask}"
+	refuses "key 'visible' is not within 0 to 1" "{\"view\":\"v\",\"object\":\"o\",\"visible\":-0.5,$mask}"
 }
 
 @test "score" {

@@ -37,7 +37,8 @@ static void test_round_trips(void)
 		uint8_t *pixels = mask_random(&rng, h, w, round % 5);
 		char view[] = "view \"1\"", ref[] = "r\\1\n", object[] = "r\xc3\xa4t";
 		struct mask_record r = {view, round % 3 ? ref : NULL, round % 3 == 1 ? NULL : object,
-			round % 4 ? rng_uniform(&rng) : NAN, mask_rle(pixels, h, w)};
+			round % 4 ? rng_uniform(&rng) : NAN, mask_rle(pixels, h, w),
+			round % 7 ? NAN : rng_uniform(&rng)};
 		struct mask_record back;
 		char *text = print(&r);
 		if (CHECK(parse(text, strlen(text), &back, &e) == 1, "round %d: %s", round, e.message)) {
@@ -47,6 +48,8 @@ static void test_round_trips(void)
 				"names");
 			CHECK(isnan(r.score) ? isnan(back.score) : back.score == r.score, "%.17g",
 				back.score);
+			CHECK(isnan(r.visible) ? isnan(back.visible) : back.visible == r.visible, "%.17g",
+				back.visible);
 			free(again);
 			mask_record_free(&back);
 		}

@@ -1,0 +1,75 @@
+#include "formats/anymodel.h"
+
+#include "base/file.h"
+#include "formats/lifted.h"
+#include "formats/safetensors.h"
+
+#include <string.h>
+
+int anymodel_read(struct anymodel *m, const char *path, struct err *e)
+{
+	struct safetensors st;
+	int bad;
+
+	*m = (struct anymodel){0};
+	if (safetensors_open(&st, path, e))
+		return -1;
+	const char *format = safetensors_meta(&st, "format");
+	m->is_lifted = format && !strcmp(format, "refer.lifted");
+	if (m->is_lifted)
+		bad = lifted_take(&m->lifted, &st, e);
+	else if (!format || strcmp(format, "refer.model"))
+		bad = err_set(e, ERR_FORMAT, "%s: format is '%s', expected 'refer.model' or 'refer.lifted'",
+			st.path, format ? format : "");
+	else
+		bad = model_take(&m->trained, &st, e);
+	safetensors_close(&st);
+	return bad;
+}
+
+void anymodel_free(struct anymodel *m)
+{
+	model_free(&m->trained);
+	lifted_free(&m->lifted);
+	*m = (struct anymodel){0};
+}
+
+static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, struct err *e)
+{
+	const char *model = file_name(q->model_path), *text = file_name(q->text_path);
+	const size_t gaussians = m->is_lifted ? m->lifted.gaussians : m->trained.scene_gaussians;
+	const int width = m->is_lifted ? m->lifted.width : m->trained.layout.text_width;
+
+	if (gaussians != q->scene->splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", model,
+			gaussians, q->scene_path, q->scene->splats.n);
+	if (width != q->text->width)
+		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, %s has %d", model, width,
+			text, q->text->width);
+	if (m->is_lifted && !q->text->pieces)
+		return err_set(e, ERR_FORMAT,
+			"%s: no word pieces, which %s asks for: encode its sentences again", text, model);
+	return 0;
+}
+
+int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, struct asked *a, struct err *e)
+{
+	const struct model *t = &m->trained;
+	const float *means = q->scene->splats.means;
+	const struct asked_of of = {&q->scene->splats, &q->scene->cameras, q->text->offsets, q->text->words,
+		q->text->pieces, q->which, q->count};
+	struct rows rows = {0};
+
+	*a = (struct asked){0};
+	if (check_fit(m, q, e))
+		return -1;
+	if (m->is_lifted)
+		return asked_lifted(a, &m->lifted, &of, q->least, e);
+	if (model_rows(t, means, &rows, e))
+		return -1;
+	const struct respond_model respond = {
+		&t->layout, t->similarity, &rows, t->features, t->parameters, means, t->low, t->high};
+	int bad = asked_trained(a, &respond, &of, q->wants_calibration, e);
+	rows_free(&rows);
+	return bad;
+}

@@ -1,0 +1,50 @@
+/* What a model of either kind answers to sentences before any view is rendered: responses of the Gaussians.
+ * Sentences that get the same answer share it, so that it is blended once. */
+#ifndef REFER_ASKED_H
+#define REFER_ASKED_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+#include "refer/lifted.h"
+#include "refer/respond.h"
+#include "splat/splats.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The sentences, and the scene that they are about. */
+struct asked_of {
+	const struct splats *splats;
+	const struct cameras *cameras;
+	const int64_t *offsets; /* sentence r has words offsets[r] to offsets[r+1] */
+	const float *words;
+	char **pieces;	     /* of each sentence; trained models need none */
+	const size_t *which; /* (count) the sentences */
+	size_t count;
+};
+
+struct asked {
+	size_t channels;
+	float *responses; /* (channels,N) as render_pack has them */
+	double *lifts;	  /* (channels) what calibration added to them */
+	size_t *channel;  /* (count) of each sentence */
+	double *sure;	  /* (count) in [0,1], or NULL: a trained model says so in each view (respond_mask) */
+};
+
+/* A channel for each sentence, calibrated or as trained. Returns 0, or -1 with *e set and nothing to free. */
+int asked_trained(struct asked *a, const struct respond_model *m, const struct asked_of *q,
+	int wants_calibration, struct err *e);
+
+/* A channel for each object that is the most probable one for a sentence. A sentence whose best object is
+ * less probable than `least`, or that has no words, means nothing that was lifted: its responses are 0. How
+ * sure an answer is: the probability that the object is meant times the object's confidence, which is about
+ * what its masks' IoU is worth. */
+int asked_lifted(
+	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e);
+void asked_free(struct asked *a);
+
+/* wholes (channels) gets the Gaussians of each answer, those with a response above 0, as splats of their own
+ * without colour. splats_free each. On failure there are none. */
+int asked_wholes(const struct asked *a, const struct splats *s, struct splats *wholes, struct err *e);
+
+#endif
