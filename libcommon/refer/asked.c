@@ -143,6 +143,21 @@ static float packed(const struct asked *a, size_t n, size_t channel, size_t i)
 	return a->responses[first * n + i * now + channel - first];
 }
 
+size_t asked_gaussians(
+	const struct asked *a, size_t gaussians, size_t channel, int32_t *ids, float *responses)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < gaussians; i++) {
+		const float response = packed(a, gaussians, channel, i);
+		if (!(response > 0))
+			continue;
+		ids[n] = (int32_t)i;
+		responses[n++] = response;
+	}
+	return n;
+}
+
 static int take_whole(
 	const struct asked *a, size_t channel, const struct splats *s, struct splats *whole, struct err *e)
 {

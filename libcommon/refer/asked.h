@@ -43,6 +43,11 @@ int asked_lifted(
 	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e);
 void asked_free(struct asked *a);
 
+/* The Gaussians of an answer, those with a response above 0: ids and responses (both with room for all
+ * `gaussians` of the scene). Returns how many. */
+size_t asked_gaussians(
+	const struct asked *a, size_t gaussians, size_t channel, int32_t *ids, float *responses);
+
 /* wholes (channels) gets the Gaussians of each answer, those with a response above 0, as splats of their own
  * without colour. splats_free each. On failure there are none. */
 int asked_wholes(const struct asked *a, const struct splats *s, struct splats *wholes, struct err *e);

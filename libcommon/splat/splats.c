@@ -3,6 +3,7 @@
 #include "base/mem.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 int splats_alloc(struct splats *s, size_t n, int sh_coefficients, struct err *e)
 {
@@ -26,4 +27,26 @@ void splats_free(struct splats *s)
 	free(s->opacities);
 	free(s->sh);
 	*s = (struct splats){0};
+}
+
+int splats_keep(struct splats *to, const struct splats *from, const char *kept, struct err *e)
+{
+	const size_t colours = 3 * (size_t)from->sh_coefficients;
+	size_t n = 0, at = 0;
+
+	*to = (struct splats){0};
+	for (size_t i = 0; i < from->n; i++)
+		n += kept[i] != 0;
+	if (splats_alloc(to, n, from->sh_coefficients, e))
+		return -1;
+	for (size_t i = 0; i < from->n; i++) {
+		if (!kept[i])
+			continue;
+		memcpy(to->means + 3 * at, from->means + 3 * i, 3 * sizeof *to->means);
+		memcpy(to->scales + 3 * at, from->scales + 3 * i, 3 * sizeof *to->scales);
+		memcpy(to->quats + 4 * at, from->quats + 4 * i, 4 * sizeof *to->quats);
+		memcpy(to->sh + colours * at, from->sh + colours * i, colours * sizeof *to->sh);
+		to->opacities[at++] = from->opacities[i];
+	}
+	return 0;
 }

@@ -18,6 +18,9 @@ struct splats {
 
 /* Allocates every array (not initialised). Returns 0, or -1 with *e set and *s zeroed. */
 int splats_alloc(struct splats *s, size_t n, int sh_coefficients, struct err *e);
+/* to: those of `from` where kept (n) is not 0, in their order. Returns 0, or -1 with *e set and *to zeroed.
+ */
+int splats_keep(struct splats *to, const struct splats *from, const char *kept, struct err *e);
 void splats_free(struct splats *s);
 
 #endif

@@ -1,0 +1,80 @@
+#include "formats/splat.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { RECORD = 32 };
+
+struct place {
+	double size; /* volume times opacity */
+	size_t gaussian;
+};
+
+static int largest_first(const void *a, const void *b)
+{
+	const struct place *x = a, *y = b;
+
+	if (x->size != y->size)
+		return x->size > y->size ? -1 : 1;
+	return (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
+}
+
+static unsigned char *put_float(unsigned char *p, float value)
+{
+	uint32_t bits;
+
+	memcpy(&bits, &value, 4);
+	for (int i = 0; i < 4; i++)
+		*p++ = (unsigned char)(bits >> 8 * i);
+	return p;
+}
+
+static unsigned char to_byte(double x)
+{
+	return (unsigned char)lrint(fmin(fmax(x, 0), 255));
+}
+
+static void put_record(unsigned char *p, const struct splats *s, size_t i)
+{
+	static const double basis = 0.28209479177387814; /* 1 / (2 sqrt(pi)) */
+	const float *sh = s->sh + 3 * (size_t)s->sh_coefficients * i, *q = s->quats + 4 * i;
+	const double length = hypot(hypot(q[0], q[1]), hypot(q[2], q[3]));
+
+	for (size_t k = 0; k < 3; k++)
+		p = put_float(p, s->means[3 * i + k]);
+	for (size_t k = 0; k < 3; k++)
+		p = put_float(p, s->scales[3 * i + k]);
+	for (int c = 0; c < 3; c++)
+		*p++ = to_byte(255 * (0.5 + basis * (double)sh[c]));
+	*p++ = to_byte(255 * (double)s->opacities[i]);
+	for (int k = 0; k < 4; k++)
+		*p++ = to_byte(128 + 128 * (double)q[k] / length);
+}
+
+int splat_write(const struct splats *s, const char *path, struct err *e)
+{
+	struct place *places = mem_alloc(s->n, sizeof *places, "splats", e);
+	struct file_out out;
+
+	if (!places)
+		return -1;
+	for (size_t i = 0; i < s->n; i++) {
+		const float *scale = s->scales + 3 * i;
+		places[i] =
+			(struct place){(double)scale[0] * scale[1] * scale[2] * (double)s->opacities[i], i};
+	}
+	qsort(places, s->n, sizeof *places, largest_first);
+	int bad = file_out_open(&out, path, e);
+	for (size_t i = 0; i < s->n && !bad; i++) {
+		unsigned char record[RECORD];
+		put_record(record, s, places[i].gaussian);
+		fwrite(record, 1, sizeof record, out.stream);
+	}
+	free(places);
+	return bad ? -1 : file_out_commit(&out, e);
+}
