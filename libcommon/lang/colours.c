@@ -1,0 +1,104 @@
+#include "lang/colours.h"
+
+#include <math.h>
+#include <string.h>
+
+static const struct {
+	const char *word;
+	unsigned char rgb[3];
+} colours[COLOUR_WORDS] = {
+	{"black", {20, 20, 20}},
+	{"white", {240, 240, 240}},
+	{"grey", {128, 128, 128}},
+	{"gray", {128, 128, 128}},
+	{"silver", {180, 180, 185}},
+	{"red", {200, 25, 30}},
+	{"crimson", {185, 20, 45}},
+	{"scarlet", {215, 35, 20}},
+	{"maroon", {110, 15, 25}},
+	{"burgundy", {110, 15, 40}},
+	{"orange", {245, 130, 20}},
+	{"tangerine", {245, 135, 20}},
+	{"yellow", {245, 215, 30}},
+	{"lemon", {245, 225, 50}},
+	{"gold", {215, 170, 40}},
+	{"golden", {215, 170, 40}},
+	{"green", {40, 140, 50}},
+	{"emerald", {20, 150, 80}},
+	{"olive", {115, 115, 30}},
+	{"lime", {130, 210, 40}},
+	{"mint", {160, 225, 185}},
+	{"turquoise", {50, 190, 180}},
+	{"teal", {10, 125, 125}},
+	{"aqua", {50, 190, 190}},
+	{"cyan", {30, 200, 215}},
+	{"blue", {35, 70, 190}},
+	{"navy", {20, 30, 90}},
+	{"cobalt", {20, 70, 175}},
+	{"azure", {50, 130, 230}},
+	{"purple", {120, 40, 145}},
+	{"violet", {130, 60, 190}},
+	{"plum", {120, 45, 120}},
+	{"lilac", {190, 150, 205}},
+	{"lavender", {190, 160, 220}},
+	{"magenta", {205, 30, 150}},
+	{"pink", {240, 150, 185}},
+	{"rose", {235, 120, 150}},
+	{"salmon", {245, 140, 120}},
+	{"brown", {115, 70, 35}},
+	{"chocolate", {90, 50, 25}},
+	{"chestnut", {130, 65, 45}},
+	{"tan", {205, 170, 125}},
+	{"beige", {225, 205, 170}},
+	{"cream", {245, 235, 205}},
+	{"bronze", {165, 115, 55}},
+	{"copper", {180, 105, 60}},
+	{"chrome", {170, 175, 180}},
+	{"steel", {150, 155, 160}},
+	{"metallic", {160, 160, 165}},
+};
+
+int colour_word(const char *word)
+{
+	for (int i = 0; i < COLOUR_WORDS; i++)
+		if (!strcmp(word, colours[i].word))
+			return i;
+	return -1;
+}
+
+static double linear(double c)
+{
+	c = fmin(fmax(c, 0), 1);
+	return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+}
+
+static double curve(double t)
+{
+	return t > 216.0 / 24389 ? cbrt(t) : (24389.0 / 27 * t + 16) / 116;
+}
+
+void colour_lab(const double rgb[3], double lab[3])
+{
+	const double r = linear(rgb[0]), g = linear(rgb[1]), b = linear(rgb[2]);
+	const double x = curve((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505);
+	const double y = curve(0.2126 * r + 0.7152 * g + 0.0722 * b);
+	const double z = curve((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089);
+
+	lab[0] = 116 * y - 16;
+	lab[1] = 500 * (x - y);
+	lab[2] = 200 * (y - z);
+}
+
+void colour_word_lab(int word, double lab[3])
+{
+	const unsigned char *c = colours[word].rgb;
+
+	colour_lab((double[3]){c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}, lab);
+}
+
+double colour_fit(const float lab[3], const double word[3])
+{
+	double l = 0.5 * (lab[0] - word[0]), a = lab[1] - word[1], b = lab[2] - word[2];
+
+	return exp(-0.5 * (l * l + a * a + b * b) / (25 * 25));
+}
