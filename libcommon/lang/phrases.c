@@ -20,6 +20,7 @@ static const struct phrase {
 	{LANG_LEFTMOST, LANG_ADJECTIVE, "leftmost"},
 	{LANG_LEFTMOST, LANG_ADJECTIVE, "left most"},
 	{LANG_LEFTMOST, LANG_ADJECTIVE, "at|in the leftmost place|position"},
+	{LANG_LEFTMOST, LANG_OUTERMOST, "farthest|furthest"},
 	{LANG_LEFTMOST, LANG_SIDE_WORD, "far? left hand?"},
 
 	{LANG_RIGHT, LANG_AFTER, "to|on|at? the|its? right hand? side? of|from"},
@@ -33,6 +34,7 @@ static const struct phrase {
 	{LANG_RIGHTMOST, LANG_ADJECTIVE, "rightmost"},
 	{LANG_RIGHTMOST, LANG_ADJECTIVE, "right most"},
 	{LANG_RIGHTMOST, LANG_ADJECTIVE, "at|in the rightmost place|position"},
+	{LANG_RIGHTMOST, LANG_OUTERMOST, "farthest|furthest"},
 	{LANG_RIGHTMOST, LANG_SIDE_WORD, "far? right hand?"},
 
 	{LANG_FRONT, LANG_AFTER, "in front of"},
@@ -187,6 +189,10 @@ static int is_meant(const struct phrase *p, const struct lang_sentence *s, int a
 	case LANG_SIDE_WORD: /* "the left one" */
 		return is_at(s, at - 1, lang_determiners) && end < s->word_count &&
 		       (is_at(s, end, "one") || !is_at(s, end, functions));
+	case LANG_OUTERMOST:
+		return is_at(s, end, "to") && is_at(s, end + 1, "the") &&
+		       is_at(s, end + 2, p->relation == LANG_LEFTMOST ? "left" : "right") &&
+		       is_at(s, end + 3, "of from");
 	case LANG_ADJECTIVE: /* "nearest to the mug" is no adjective */
 		return !is_at(s, end, "to from away");
 	case LANG_PLACE: /* of something is another phrase */

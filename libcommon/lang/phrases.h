@@ -13,6 +13,7 @@ enum lang_form {
 	LANG_PLACE,	  /* nothing, or the name of a surface */
 	LANG_ADJECTIVE,	  /* nothing; it may stand within a noun phrase */
 	LANG_SIDE_WORD,	  /* the same, but only as in "the left one", "the left-hand mug" */
+	LANG_OUTERMOST,	  /* the same, but only before "to the left of" or "to the right of" */
 };
 
 struct lang_match {

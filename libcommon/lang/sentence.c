@@ -219,7 +219,7 @@ void lang_sentence_read(struct lang_sentence *s, const char *pieces)
 			continue;
 		}
 		at += m.length;
-		if (m.form == LANG_ADJECTIVE || m.form == LANG_SIDE_WORD) {
+		if (m.form == LANG_ADJECTIVE || m.form == LANG_SIDE_WORD || m.form == LANG_OUTERMOST) {
 			if (s->clause_count < LANG_CLAUSES)
 				s->clauses[s->clause_count++] = (struct lang_clause){.relation = m.relation};
 			continue;

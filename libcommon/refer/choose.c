@@ -12,7 +12,7 @@ static const double words_weight = 3.5, relations_weight = 1.3, sentence_weight 
 static const double fit_sharpness = 5, anchor_sharpness = 12;
 static const double colour_weight = 0.6, colour_least = 0.05;
 static const double known_word = 0.5, known_soft = 0.05, relation_least = 0.02;
-static const double absent_match = 0.6, absent_colour = 0.2, absent_relation = 0.3;
+static const double absent_match = 0.5, absent_colour = 0.2, absent_relation = 0.3;
 
 const char *choose_part_name(enum choose_part p)
 {

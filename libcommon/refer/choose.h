@@ -14,7 +14,7 @@
  * object's (cosine below 0.5): what is said of unknown things says nothing sentence   S_o the best cosine of
  * the sentence's mean with a training sentence's, counted by the share of the target in the sentence's words;
  * a training sentence means what it meant score_o = 3.5 A_o + 1.3 R_o + 5 S_o; the probability is its
- * softmax, times that of anything being meant at all: against a thing whose words match by 0.6, whose colours
+ * softmax, times that of anything being meant at all: against a thing whose words match by 0.5, whose colours
  * fit by 0.2 and its relations by 0.3. The figures were chosen on synthetic scenes (seeds 1 to 3). */
 #ifndef REFER_CHOOSE_H
 #define REFER_CHOOSE_H
