@@ -1,13 +1,12 @@
 /* miou-score: how well predicted masks match the true ones. */
 #include "base/err.h"
 #include "base/file.h"
-#include "base/mem.h"
 #include "cli/cli.h"
+#include "formats/box_scores.h"
 #include "formats/score_masks.h"
 #include "formats/scores.h"
 #include "formats/sentences.h"
 #include "mask/score_choice.h"
-#include "mask/score_groups.h"
 #include "mask/score_join.h"
 
 #include <stdlib.h>
@@ -62,7 +61,6 @@ static int match(struct score_pairs *pairs, const struct score_masks *truth,
 static int pair_up(const struct cli *c, const struct inputs *in, int is_compared, struct score_pairs *pairs,
 	struct score_pairs *others, struct score *sum, struct score *other_sum, struct err *e)
 {
-
 	if (match(pairs, &in->truth, &in->predictions, e) ||
 		(is_compared && (match(others, &in->truth, &in->other, e) || score_join(pairs, others, e))) ||
 		score_measure_all(pairs, e) || score_measure_all(others, e) ||
@@ -82,44 +80,21 @@ static int pair_up(const struct cli *c, const struct inputs *in, int is_compared
 	return 0;
 }
 
-static int by_relation(const struct cli *c, struct scores *s, const struct score_sample *sample,
+/* The tables of --sentences and --whole. */
+static int by_group(const struct cli *c, struct scores *s, const struct score_sample *sample,
 	const struct inputs *in, const struct paths *paths, struct err *e)
 {
-	const size_t n = in->sentences.n;
-	struct score_sentence *list = mem_alloc(n, sizeof *list, "sentences", e);
-	uint32_t *sets = mem_alloc(sample->n, sizeof *sets, "pairs", e);
-	const char *names[SCORE_SAYINGS];
-	size_t unknown;
-	int bad = !list || !sets;
+	size_t no_sentence = 0, no_whole = 0;
 
-	for (size_t i = 0; i < n && !bad; i++)
-		list[i] = (struct score_sentence){in->sentences.items[i].ref, in->sentences.items[i].text};
-	score_saying_names(names);
-	bad = bad || score_sayings(sets, sample->pairs, sample->n, list, n, &unknown, e) ||
-	      score_table_groups(&s->relations, sample, sets, names, SCORE_SAYINGS, 0, e);
-	if (!bad && unknown)
-		cli_warn(c, "%s: %zu pairs have no sentence there", file_name(paths->sentences), unknown);
-	free(list);
-	free(sets);
-	return bad;
-}
-
-static int by_visibility(const struct cli *c, struct scores *s, const struct score_sample *sample,
-	const struct inputs *in, struct err *e)
-{
-	const uint32_t always = ((uint32_t)1 << SCORE_SEEN_UNKNOWN) - 1;
-	uint32_t *sets = mem_alloc(sample->n, sizeof *sets, "pairs", e);
-	size_t unknown;
-	int bad = !sets ||
-		  score_seen(sets, sample->pairs, sample->n, in->truth.masks, in->truth.n, in->whole.masks,
-			  in->whole.n, &unknown, e) ||
-		  score_table_groups(&s->visibility, sample, sets, score_seen_name, SCORE_SEEN, always, e);
-
-	if (!bad && unknown)
+	if ((s->has_relations && scores_by_relation(s, sample, &in->sentences, &no_sentence, e)) ||
+		(s->has_visibility && scores_by_visibility(s, sample, &in->truth, &in->whole, &no_whole, e)))
+		return -1;
+	if (no_sentence)
+		cli_warn(c, "%s: %zu pairs have no sentence there", file_name(paths->sentences), no_sentence);
+	if (no_whole)
 		cli_warn(c, "%s: %zu masks of the truth have no whole there", file_name(in->whole.path),
-			unknown);
-	free(sets);
-	return bad;
+			no_whole);
+	return 0;
 }
 
 static int score(const struct cli *c, const struct inputs *in, const struct paths *paths, struct scores *s,
@@ -132,9 +107,7 @@ static int score(const struct cli *c, const struct inputs *in, const struct path
 		pairs.n, pairs.items, s->is_compared ? others.items : NULL, s->how};
 
 	bad = bad || score_row_make(&s->all, "", &sample, e) ||
-	      score_table_objects(&s->objects, &sample, e) ||
-	      (s->has_relations && by_relation(c, s, &sample, in, paths, e)) ||
-	      (s->has_visibility && by_visibility(c, s, &sample, in, e));
+	      score_table_objects(&s->objects, &sample, e) || by_group(c, s, &sample, in, paths, e);
 	if (!bad) {
 		s->all.score = sum;
 		s->all.other.score = other_sum;
@@ -155,6 +128,21 @@ static int write_scores(const struct cli *c, const struct scores *s, enum scores
 		return -1;
 	}
 	return file_out_commit(&out, e);
+}
+
+static int score_boxes(const struct cli *c, const struct paths *p, double *miou, struct err *e)
+{
+	struct box_scores s;
+
+	if (box_scores_read(&s, p->truth, p->predictions, e))
+		return -1;
+	if (s.unmatched)
+		cli_warn(c, "%s: %zu boxes match no truth's ref or object and were left out",
+			file_name(p->predictions), s.unmatched);
+	*miou = s.all.aligned.iou;
+	int bad = box_scores_write(&s, c->output, c->json, e);
+	box_scores_free(&s);
+	return bad;
 }
 
 static void check_paths(const struct cli *c, const struct paths *p)
@@ -178,7 +166,7 @@ int main(int argc, char **argv)
 	struct paths paths = {0};
 	double fail_under = 0, confidence = 0.95;
 	long long resamples = 0;
-	int is_partial = 0, is_csv = 0;
+	int is_partial = 0, is_csv = 0, is_boxes = 0;
 	const struct cli_option options[] = {
 		{"truth", 0, CLI_STRING, &paths.truth, "TRUTH", "the true masks (required)", 0, 0},
 		{"predicted-views", 0, CLI_FLAG, &is_partial, NULL,
@@ -195,6 +183,8 @@ int main(int argc, char **argv)
 			BOOTSTRAP_MAX},
 		{"confidence", 0, CLI_REAL, &confidence, "X",
 			"share of the resamples within an interval (default 0.95)", 0.01, 0.9999},
+		{"boxes", 0, CLI_FLAG, &is_boxes, NULL,
+			"score boxes in space, as refer-locate and gs-synth write them", 0, 0},
 		{"fail-under", 0, CLI_REAL, &fail_under, "X", "exit 1 where mIoU is below X, in 0 to 1", 0,
 			1},
 		{"csv", 0, CLI_FLAG, &is_csv, NULL, "print comma-separated values instead of text", 0, 0},
@@ -217,21 +207,23 @@ int main(int argc, char **argv)
 	check_paths(&c, &paths);
 	if (c.json && is_csv)
 		cli_usage(&c, "--json and --csv exclude each other");
+	if (is_boxes && (is_partial || paths.other || paths.sentences || paths.whole || resamples || is_csv))
+		cli_usage(&c, "--boxes goes with --truth, --json and --fail-under only");
 	const struct bootstrap how = {(size_t)resamples, confidence, (uint64_t)c.seed};
 	struct scores s = {.is_compared = paths.other != NULL,
 		.has_relations = paths.sentences != NULL,
 		.has_visibility = paths.whole != NULL,
 		.how = resamples ? &how : NULL};
-	int bad = inputs_read(&in, &paths, &e);
+	int bad = is_boxes ? score_boxes(&c, &paths, &s.all.score.miou, &e) : inputs_read(&in, &paths, &e);
 	if (!bad && is_partial)
 		bad = score_keep_views(in.truth.masks, &in.truth.n, in.predictions.masks, in.predictions.n,
 			in.other.masks, in.other.n, &e);
-	bad = bad || score(&c, &in, &paths, &s, &e) ||
-	      write_scores(&c, &s,
-		      is_csv   ? SCORES_CSV
-		      : c.json ? SCORES_JSON
-			       : SCORES_TEXT,
-		      &e);
+	if (!bad && !is_boxes)
+		bad = score(&c, &in, &paths, &s, &e) || write_scores(&c, &s,
+								is_csv	 ? SCORES_CSV
+								: c.json ? SCORES_JSON
+									 : SCORES_TEXT,
+								&e);
 	if (!bad && s.all.score.miou < fail_under)
 		bad = err_set(&e, ERR_CHECK, "mIoU %.4f is below %g", s.all.score.miou, fail_under);
 	scores_free(&s);

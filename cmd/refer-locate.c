@@ -49,7 +49,7 @@ struct run {
 	struct asked asked;
 	char *chosen; /* of the sentences: which --refs names */
 	size_t count, *refs;
-	struct located *located; /* (channels) */
+	struct located *located; /* (answers) */
 };
 
 static int choose_refs(struct run *r, const struct cli *c, struct err *e)
@@ -87,7 +87,7 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 		&r->scene, &r->text, options.model, options.scene, options.text, r->refs, r->count, 1, 0};
 	if (anymodel_answer(&r->model, &ask, &r->asked, e))
 		return -1;
-	r->located = mem_zalloc(r->asked.channels, sizeof *r->located, "objects", e);
+	r->located = mem_zalloc(r->asked.answers, sizeof *r->located, "objects", e);
 	if (!r->located)
 		return -1;
 	cameras_up(&r->scene.cameras, up);
@@ -103,7 +103,7 @@ static void move(struct box *b, const double by[3])
 
 static int put_sentence(const struct run *r, size_t i, FILE *out, struct err *e)
 {
-	const struct located *l = &r->located[r->asked.channel[i]];
+	const struct located *l = &r->located[r->asked.answer[i]];
 	const struct extent *x = &l->extent;
 	const struct box_gaussians of = {x->n, x->ids};
 	double sure = r->asked.sure ? r->asked.sure[i] : l->sure;
@@ -132,7 +132,7 @@ static int write_boxes(const struct run *r, const struct cli *c, struct err *e)
 
 static int write_scene(const struct run *r, struct err *e)
 {
-	const struct extent *x = &r->located[r->asked.channel[0]].extent;
+	const struct extent *x = &r->located[r->asked.answer[0]].extent;
 	struct splats shown;
 
 	if (locate_show(&shown, &r->scene.splats, x, (enum locate_show)options.show, e))
@@ -165,7 +165,7 @@ int main(int argc, char **argv)
 	check(&c);
 	int bad = load(&r, &c, &e) || ((options.ply || options.splat) && write_scene(&r, &e)) ||
 		  write_boxes(&r, &c, &e);
-	for (size_t k = 0; r.located && k < r.asked.channels; k++)
+	for (size_t k = 0; r.located && k < r.asked.answers; k++)
 		extent_free(&r.located[k].extent);
 	free(r.located);
 	asked_free(&r.asked);

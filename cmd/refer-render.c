@@ -75,8 +75,8 @@ struct run {
 	char *chosen;	       /* of the views, then of the sentences: which a list names */
 	size_t *refs;	       /* indices in text */
 	struct camera *views;  /* at the size of the masks */
-	struct splats *wholes; /* (channels) for --amodal */
-	struct shown *shown;   /* (view_count,channels) */
+	struct splats *wholes; /* (answers) for --amodal */
+	struct shown *shown;   /* (view_count,answers) */
 	struct file_out out;
 	struct cli_progress progress;
 };
@@ -139,7 +139,7 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 		r->refs, r->ref_count, !options.is_plain, options.least};
 	if (anymodel_answer(&r->model, &ask, &r->asked, e))
 		return -1;
-	r->wholes = mem_zalloc(r->asked.channels, sizeof *r->wholes, "objects", e);
+	r->wholes = mem_zalloc(r->asked.answers, sizeof *r->wholes, "objects", e);
 	if (!r->wholes)
 		return -1;
 	return options.is_amodal ? asked_wholes(&r->asked, &r->scene.splats, r->wholes, e) : 0;
@@ -149,7 +149,7 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 static int put_answer(void *data, const struct answer *a, struct err *e)
 {
 	const struct run *r = data;
-	struct shown *to = &r->shown[a->view * r->asked.channels + a->channel];
+	struct shown *to = &r->shown[a->view * r->asked.answers + a->answer];
 	const struct camera *c = a->camera;
 	int bad = rle_encode(&to->mask, a->mask, c->height, c->width, e);
 
@@ -158,7 +158,7 @@ static int put_answer(void *data, const struct answer *a, struct err *e)
 	for (size_t i = 0; i < r->ref_count && !bad; i++) {
 		const struct picture picture = {
 			c->name, r->text.refs[r->refs[i]], c->height, c->width, a->image, a->mask, a->rgb};
-		if (r->asked.channel[i] == a->channel)
+		if (r->asked.answer[i] == a->answer)
 			bad = pictures_put(&options.pictures, &picture, e);
 	}
 	return bad;
@@ -167,11 +167,11 @@ static int put_answer(void *data, const struct answer *a, struct err *e)
 static int put_view(void *data, size_t view, struct err *e)
 {
 	struct run *r = data;
-	struct shown *shown = r->shown + view * r->asked.channels;
+	struct shown *shown = r->shown + view * r->asked.answers;
 	int bad = 0;
 
 	for (size_t i = 0; i < r->ref_count && !bad; i++) {
-		const struct shown *from = &shown[r->asked.channel[i]];
+		const struct shown *from = &shown[r->asked.answer[i]];
 		const size_t sentence = r->refs[i];
 		double score = from->score;
 		if (r->asked.sure)
@@ -180,7 +180,7 @@ static int put_view(void *data, size_t view, struct err *e)
 			r->text.objects[sentence], score, from->mask, from->visible};
 		bad = masks_put(r->out.stream, &record, e);
 	}
-	for (size_t k = 0; k < r->asked.channels; k++)
+	for (size_t k = 0; k < r->asked.answers; k++)
 		rle_free(&shown[k].mask);
 	cli_progress_step(&r->progress, (double)view + 1, NULL);
 	return bad;
@@ -191,7 +191,7 @@ static int render(struct run *r, struct err *e)
 	const struct answer_question q = {&r->scene.splats, &r->asked, options.is_amodal ? r->wholes : NULL,
 		options.pictures.overlays != NULL};
 	const struct answer_calls calls = {r, put_answer, put_view};
-	size_t count = r->asked.channels;
+	size_t count = r->asked.answers;
 
 	if (mem_size(count, r->view_count, &count))
 		return err_set(e, ERR_SYSTEM, "masks do not fit in memory");
@@ -233,7 +233,7 @@ int main(int argc, char **argv)
 	scene_free(&r.scene);
 	text_free(&r.text);
 	anymodel_free(&r.model);
-	for (size_t k = 0; r.wholes && k < r.asked.channels; k++)
+	for (size_t k = 0; r.wholes && k < r.asked.answers; k++)
 		splats_free(&r.wholes[k]);
 	free(r.wholes);
 	asked_free(&r.asked);

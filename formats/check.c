@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/boxes.h"
 #include "formats/camerafile.h"
 #include "formats/colmap.h"
 #include "formats/json.h"
@@ -289,6 +290,29 @@ static int check_masks(struct check *c, const char *path, struct err *e)
 	return bad ? -1 : 0;
 }
 
+static int check_boxes(struct check *c, const char *path, struct err *e)
+{
+	struct box_set set;
+	struct names objects = {0};
+	size_t empty = 0;
+	int bad = 0;
+
+	if (boxes_read(&set, path, e))
+		return -1;
+	for (size_t i = 0; i < set.n && !bad; i++) {
+		const struct box_record *r = &set.records[i];
+		empty += r->is_empty != 0;
+		bad = r->object && names_add(&objects, r->object, e);
+	}
+	c->kind = "boxes";
+	add_fact(c, "boxes", (long long)(set.n - empty));
+	add_fact(c, "objects", (long long)objects.n);
+	add_fact(c, "empty", (long long)empty);
+	names_free(&objects);
+	boxes_free(&set);
+	return bad ? -1 : 0;
+}
+
 static int check_image(struct check *c, const char *path, struct err *e)
 {
 	uint8_t *rgb;
@@ -326,7 +350,8 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 	int is_sentence = cJSON_HasObjectItem(first, "text"),
 	    is_frames = cJSON_HasObjectItem(first, "frames");
 	int is_mask = cJSON_HasObjectItem(first, "segmentation") || cJSON_HasObjectItem(first, "path");
-	if (got == 1 && !is_sentence && !is_mask && !is_frames)
+	int is_box = cJSON_HasObjectItem(first, "oriented");
+	if (got == 1 && !is_sentence && !is_mask && !is_frames && !is_box)
 		got = jsonl_err(
 			&j, e, "neither a sentence (key 'text') nor a mask (key 'segmentation' or 'path')");
 	else if (got < 0 && e->code == ERR_FORMAT && !start_again(path, &ignored))
@@ -339,6 +364,8 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 		return -1;
 	if (is_frames)
 		return check_cameras(c, path, "nerfstudio cameras", e);
+	if (is_box && !is_sentence && !is_mask)
+		return check_boxes(c, path, e);
 	return is_sentence ? check_sentences(c, path, e) : check_masks(c, path, e);
 }
 

@@ -99,9 +99,8 @@ static double area_of(const struct polygon *p, const double normal[3])
 	return fabs(area) / 2;
 }
 
-/* Three times what the faces of b inside a, grown by `grown`, add to the integral of x . normal about the
- * origin. */
-static double flux(const struct box *b, const struct box *a, double grown)
+/* What the faces of b inside a add to the integral of x . normal about the origin. */
+static double flux(const struct box *b, const struct box *a)
 {
 	double sum = 0;
 
@@ -109,18 +108,19 @@ static double flux(const struct box *b, const struct box *a, double grown)
 		for (int side = -1; side <= 1; side += 2) {
 			struct polygon p = face_of(b, k, side);
 			for (int j = 0; j < 3; j++) {
-				double at = dot(a->axes[j], a->centre), reach = a->half[j] + grown;
+				const double at = dot(a->axes[j], a->centre);
 				double other[3] = {-a->axes[j][0], -a->axes[j][1], -a->axes[j][2]};
-				cut(&p, a->axes[j], at + reach);
-				cut(&p, other, reach - at);
+				cut(&p, a->axes[j], at + a->half[j]);
+				cut(&p, other, a->half[j] - at);
 			}
 			sum += area_of(&p, b->axes[k]) * (side * dot(b->axes[k], b->centre) + b->half[k]);
 		}
 	return sum;
 }
 
-/* What bounds the common part is of one box's faces, inside the other box. A face that both have counts once:
- * it is inside the grown box, and not inside the shrunken one. */
+/* What bounds the common part is of one box's faces, inside the other box: three times its volume is their
+ * flux. One box is a hair larger, so that faces of both are never in one plane, where they would count twice
+ * or be left open. */
 static double common_volume(const struct box *a, const struct box *b)
 {
 	const double hair = 1e-10 * fmin(box_diagonal(a), box_diagonal(b));
@@ -129,8 +129,9 @@ static double common_volume(const struct box *a, const struct box *b)
 	for (int d = 0; d < 3; d++) {
 		here.centre[d] = 0;
 		there.centre[d] -= a->centre[d];
+		there.half[d] += hair;
 	}
-	double volume = (flux(&here, &there, hair) + flux(&there, &here, -hair)) / 3;
+	double volume = (flux(&here, &there) + flux(&there, &here)) / 3;
 	return fmin(fmax(volume, 0), fmin(box_volume(a), box_volume(b)));
 }
 

@@ -1,4 +1,4 @@
-/* A model's answers in a view: for each channel of what was asked (refer/asked.h) the image of its responses,
+/* A model's answers in a view: for each answer to what was asked (refer/asked.h) the image of its responses,
  * its mask and its score; or, amodally, the outline of the whole object as if nothing hid it. */
 #ifndef REFER_ANSWER_H
 #define REFER_ANSWER_H
@@ -15,14 +15,14 @@
 struct answer_question {
 	const struct splats *splats;
 	const struct asked *asked;
-	const struct splats *wholes; /* (channels) of asked_wholes, for outlines; NULL: what is in sight */
+	const struct splats *wholes; /* (answers) of asked_wholes, for outlines; NULL: what is in sight */
 	int wants_rgb;
 };
 
 /* One answer, row-major; good until the callback returns. */
 struct answer {
 	const struct camera *camera;
-	size_t view, channel;
+	size_t view, answer;
 	/* (P) M; of an outline how much of the whole object's opacity is above ANSWER_OUTLINE */
 	const float *image;
 	const uint8_t *mask; /* (P) image > 0 */
@@ -36,7 +36,7 @@ struct answer {
 
 struct answer_calls {
 	void *data;
-	/* One answer. Called by several threads at once, but for a view by one, channel after channel. */
+	/* One answer. Called by several threads at once, but for a view by one, answer after answer. */
 	int (*each)(void *data, const struct answer *a, struct err *e);
 	/* All of a view's answers were given: called for one view after the other, in order. */
 	int (*done)(void *data, size_t view, struct err *e);

@@ -5,38 +5,44 @@
 #include "refer/choose.h"
 #include "splat/render.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define UNUSED SIZE_MAX
+/* Overlap above which two objects are taken for one. */
+#define SAME_OBJECT 0.5
 
 void asked_free(struct asked *a)
 {
 	free(a->responses);
 	free(a->lifts);
-	free(a->channel);
+	free(a->answer);
 	free(a->sure);
 	*a = (struct asked){0};
 }
 
-static int alloc_channels(struct asked *a, size_t channels, size_t gaussians, struct err *e)
+static int alloc_answers(struct asked *a, size_t answers, size_t parts, size_t gaussians, struct err *e)
 {
 	size_t bytes;
 
-	if (mem_size(gaussians, sizeof *a->responses, &bytes))
+	if (mem_size(gaussians, parts * sizeof *a->responses, &bytes))
 		return err_set(e, ERR_SYSTEM, "responses: %zu Gaussians do not fit in memory", gaussians);
-	a->channels = channels;
-	a->responses = mem_alloc(channels, bytes, "responses", e);
-	a->lifts = mem_zalloc(channels, sizeof *a->lifts, "responses", e);
+	a->answers = answers;
+	a->parts = parts;
+	a->responses = mem_alloc(answers, bytes, "responses", e);
+	a->lifts = mem_zalloc(answers, sizeof *a->lifts, "responses", e);
 	return a->responses && a->lifts ? 0 : -1;
 }
 
 static int ask_trained(struct asked *a, const struct respond_model *m, const struct asked_of *q,
 	int wants_calibration, struct err *e)
 {
-	a->channel = mem_alloc(q->count, sizeof *a->channel, "sentences", e);
-	if (!a->channel || alloc_channels(a, q->count, q->splats->n, e))
+	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
+	if (!a->answer || alloc_answers(a, q->count, 1, q->splats->n, e))
 		return -1;
 	for (size_t i = 0; i < q->count; i++)
-		a->channel[i] = i;
+		a->answer[i] = i;
 	if (respond_all(m, q->offsets, q->words, q->which, q->count, a->responses, e) ||
 		render_pack(a->responses, q->splats->n, (int)q->count, e))
 		return -1;
@@ -55,7 +61,7 @@ int asked_trained(struct asked *a, const struct respond_model *m, const struct a
 	return -1;
 }
 
-/* channel[i] becomes the object that sentence i means, or, for none, the number of objects. */
+/* answer[i] becomes the object that sentence i means, or, for none, the number of objects. */
 static int choose_objects(
 	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e)
 {
@@ -84,7 +90,7 @@ static int choose_objects(
 			if (row[o] > row[best])
 				best = o;
 		const int is_found = sentences[i].words && l->objects && row[best] >= least;
-		a->channel[i] = is_found ? best : l->objects;
+		a->answer[i] = is_found ? best : l->objects;
 		a->sure[i] = is_found ? (double)row[best] * l->confidence[best] : 0;
 	}
 	free(sentences);
@@ -92,36 +98,83 @@ static int choose_objects(
 	return bad;
 }
 
+/* Sum of the lesser over sum of the greater share of two objects; own (N) has those of the first. */
+static double overlap(const struct lifted *l, const float *own, double own_sum, size_t other)
+{
+	double both = 0, sum = own_sum;
+
+	for (int64_t k = l->indptr[other]; k < l->indptr[other + 1]; k++) {
+		both += (double)fminf(own[l->index[k]], l->share[k]);
+		sum += (double)l->share[k];
+	}
+	return sum > both ? both / (sum - both) : 1;
+}
+
+/* margin (N): how much larger an object's share is than the largest of any other. Two objects that are mostly
+ * of the same Gaussians are one thing under two names, and do not compete for it. own (N) is room. */
+static void take_margin(const struct lifted *l, size_t object, float *own, float *margin)
+{
+	double sum = 0;
+
+	memset(own, 0, l->gaussians * sizeof *own);
+	memset(margin, 0, l->gaussians * sizeof *margin);
+	for (int64_t k = l->indptr[object]; k < l->indptr[object + 1]; k++) {
+		own[l->index[k]] = l->share[k];
+		sum += (double)l->share[k];
+	}
+	for (size_t o = 0; o < l->objects; o++) {
+		if (o == object || overlap(l, own, sum, o) > SAME_OBJECT)
+			continue;
+		for (int64_t k = l->indptr[o]; k < l->indptr[o + 1]; k++)
+			margin[l->index[k]] = fmaxf(margin[l->index[k]], l->share[k]);
+	}
+	for (size_t i = 0; i < l->gaussians; i++)
+		margin[i] = own[i] - margin[i];
+}
+
+static int take_responses(struct asked *a, const struct lifted *l, const size_t *of, struct err *e)
+{
+	const size_t n = l->gaussians;
+	float *own = mem_alloc(n, sizeof *own, "responses", e);
+
+	if (!own)
+		return -1;
+	for (size_t o = 0; o <= l->objects; o++) {
+		if (of[o] == UNUSED)
+			continue;
+		float *to = a->responses + 2 * n * of[o];
+		if (o == l->objects) {
+			memset(to, 0, 2 * n * sizeof *to);
+			continue;
+		}
+		lifted_responses(l, o, to);
+		take_margin(l, o, own, to + n);
+	}
+	free(own);
+	return render_pack(a->responses, n, (int)(2 * a->answers), e);
+}
+
 static int ask_lifted(
 	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e)
 {
-	const size_t unused = SIZE_MAX, n = q->splats->n;
-	size_t *of, channels = 0;
-	int bad = -1;
+	size_t *of, answers = 0;
 
-	a->channel = mem_alloc(q->count, sizeof *a->channel, "sentences", e);
+	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
 	a->sure = mem_alloc(q->count, sizeof *a->sure, "sentences", e);
-	if (!a->channel || !a->sure || choose_objects(a, l, q, least, e))
+	if (!a->answer || !a->sure || choose_objects(a, l, q, least, e))
 		return -1;
 	of = mem_alloc(l->objects + 1, sizeof *of, "objects", e);
 	for (size_t o = 0; o <= l->objects && of; o++)
-		of[o] = unused;
+		of[o] = UNUSED;
 	for (size_t i = 0; i < q->count && of; i++) {
-		size_t *own = &of[a->channel[i]];
-		if (*own == unused)
-			*own = channels++;
-		a->channel[i] = *own;
+		size_t *own = &of[a->answer[i]];
+		if (*own == UNUSED)
+			*own = answers++;
+		a->answer[i] = *own;
 	}
-	if (of && !alloc_channels(a, channels, n, e)) {
-		for (size_t o = 0; o < l->objects; o++)
-			if (of[o] != unused)
-				lifted_responses(l, o, a->responses + of[o] * n);
-		if (of[l->objects] != unused)
-			memset(a->responses + of[l->objects] * n, 0, n * sizeof *a->responses);
-		bad = render_pack(a->responses, n, (int)channels, e);
-	}
+	int bad = !of || alloc_answers(a, answers, 2, l->gaussians, e) || take_responses(a, l, of, e);
 	free(of);
-	return bad;
+	return bad ? -1 : 0;
 }
 
 int asked_lifted(
@@ -137,19 +190,33 @@ int asked_lifted(
 /* A Gaussian's response, where render_pack has put it. */
 static float packed(const struct asked *a, size_t n, size_t channel, size_t i)
 {
-	const size_t first = channel - channel % RENDER_GROUP, left = a->channels - first;
+	const size_t first = channel - channel % RENDER_GROUP, left = a->answers * a->parts - first;
 	const size_t now = left < RENDER_GROUP ? left : RENDER_GROUP;
 
 	return a->responses[first * n + i * now + channel - first];
 }
 
-size_t asked_gaussians(
-	const struct asked *a, size_t gaussians, size_t channel, int32_t *ids, float *responses)
+/* The least of a Gaussian's responses of an answer. */
+static float least_part(const struct asked *a, size_t n, size_t answer, size_t i)
+{
+	float least = packed(a, n, answer * a->parts, i);
+
+	for (size_t k = 1; k < a->parts; k++)
+		least = fminf(least, packed(a, n, answer * a->parts + k, i));
+	return least;
+}
+
+static int is_of(const struct asked *a, size_t n, size_t answer, size_t i)
+{
+	return least_part(a, n, answer, i) > 0;
+}
+
+size_t asked_gaussians(const struct asked *a, size_t gaussians, size_t answer, int32_t *ids, float *responses)
 {
 	size_t n = 0;
 
 	for (size_t i = 0; i < gaussians; i++) {
-		const float response = packed(a, gaussians, channel, i);
+		const float response = least_part(a, gaussians, answer, i);
 		if (!(response > 0))
 			continue;
 		ids[n] = (int32_t)i;
@@ -159,17 +226,17 @@ size_t asked_gaussians(
 }
 
 static int take_whole(
-	const struct asked *a, size_t channel, const struct splats *s, struct splats *whole, struct err *e)
+	const struct asked *a, size_t answer, const struct splats *s, struct splats *whole, struct err *e)
 {
 	size_t n = 0, at = 0;
 
 	for (size_t i = 0; i < s->n; i++)
-		n += packed(a, s->n, channel, i) > 0;
+		n += (size_t)is_of(a, s->n, answer, i);
 	if (splats_alloc(whole, n, 1, e))
 		return -1;
 	memset(whole->sh, 0, n * 3 * sizeof *whole->sh);
 	for (size_t i = 0; i < s->n; i++) {
-		if (!(packed(a, s->n, channel, i) > 0))
+		if (!is_of(a, s->n, answer, i))
 			continue;
 		memcpy(whole->means + 3 * at, s->means + 3 * i, 3 * sizeof *s->means);
 		memcpy(whole->scales + 3 * at, s->scales + 3 * i, 3 * sizeof *s->scales);
@@ -181,11 +248,11 @@ static int take_whole(
 
 int asked_wholes(const struct asked *a, const struct splats *s, struct splats *wholes, struct err *e)
 {
-	for (size_t c = 0; c < a->channels; c++) {
-		if (!take_whole(a, c, s, &wholes[c], e))
+	for (size_t k = 0; k < a->answers; k++) {
+		if (!take_whole(a, k, s, &wholes[k], e))
 			continue;
-		while (c--)
-			splats_free(&wholes[c]);
+		while (k--)
+			splats_free(&wholes[k]);
 		return -1;
 	}
 	return 0;

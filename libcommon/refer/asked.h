@@ -23,19 +23,23 @@ struct asked_of {
 	size_t count;
 };
 
+/* An answer is `parts` channels side by side: its image is the least of theirs. A lifted object's second one
+ * is how much more a Gaussian is the object's than any other's, so that at a border every pixel goes to the
+ * object that has more of it. */
 struct asked {
-	size_t channels;
-	float *responses; /* (channels,N) as render_pack has them */
-	double *lifts;	  /* (channels) what calibration added to them */
-	size_t *channel;  /* (count) of each sentence */
+	size_t answers;
+	size_t parts;	  /* 1 or 2 */
+	float *responses; /* (answers * parts,N) as render_pack has them */
+	double *lifts;	  /* (answers) what calibration added to them */
+	size_t *answer;	  /* (count) of each sentence */
 	double *sure;	  /* (count) in [0,1], or NULL: a trained model says so in each view (respond_mask) */
 };
 
-/* A channel for each sentence, calibrated or as trained. Returns 0, or -1 with *e set and nothing to free. */
+/* An answer for each sentence, calibrated or as trained. Returns 0, or -1 with *e set and nothing to free. */
 int asked_trained(struct asked *a, const struct respond_model *m, const struct asked_of *q,
 	int wants_calibration, struct err *e);
 
-/* A channel for each object that is the most probable one for a sentence. A sentence whose best object is
+/* An answer for each object that is the most probable one for a sentence. A sentence whose best object is
  * less probable than `least`, or that has no words, means nothing that was lifted: its responses are 0. How
  * sure an answer is: the probability that the object is meant times the object's confidence, which is about
  * what its masks' IoU is worth. */
@@ -43,12 +47,12 @@ int asked_lifted(
 	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e);
 void asked_free(struct asked *a);
 
-/* The Gaussians of an answer, those with a response above 0: ids and responses (both with room for all
- * `gaussians` of the scene). Returns how many. */
+/* The Gaussians of an answer, those whose least response of its parts is above 0: ids, and these responses
+ * (both with room for all `gaussians` of the scene). Returns how many. */
 size_t asked_gaussians(
-	const struct asked *a, size_t gaussians, size_t channel, int32_t *ids, float *responses);
+	const struct asked *a, size_t gaussians, size_t answer, int32_t *ids, float *responses);
 
-/* wholes (channels) gets the Gaussians of each answer, those with a response above 0, as splats of their own
+/* wholes (answers) gets the Gaussians of each answer, those with responses above 0, as splats of their own
  * without colour. splats_free each. On failure there are none. */
 int asked_wholes(const struct asked *a, const struct splats *s, struct splats *wholes, struct err *e);
 

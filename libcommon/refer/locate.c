@@ -14,7 +14,7 @@ static const double paint[3] = {1, 0.25, 0.125};
 static const double thickness = 0.65;
 
 static int locate_one(
-	struct located *to, const struct asked *a, size_t channel, const struct splats *s, const double up[3])
+	struct located *to, const struct asked *a, size_t answer, const struct splats *s, const double up[3])
 {
 	struct err ignored;
 	int32_t *ids = mem_alloc(s->n, sizeof *ids, "object", &ignored);
@@ -23,9 +23,9 @@ static int locate_one(
 	int bad = -1;
 
 	if (ids && responses) {
-		const size_t n = asked_gaussians(a, s->n, channel, ids, responses);
+		const size_t n = asked_gaussians(a, s->n, answer, ids, responses);
 		for (size_t i = 0; i < n; i++)
-			sum += 1 / (1 + exp(a->lifts[channel] - (double)responses[i]));
+			sum += 1 / (1 + exp(a->lifts[answer] - (double)responses[i]));
 		to->sure = n ? sum / (double)n : 0;
 		bad = extent_find(&to->extent, s, ids, responses, n, up, &ignored);
 	}
@@ -40,7 +40,7 @@ int locate_all(
 	int bad = 0;
 
 #pragma omp parallel for schedule(dynamic) reduction(| : bad)
-	for (size_t k = 0; k < a->channels; k++)
+	for (size_t k = 0; k < a->answers; k++)
 		bad |= locate_one(&all[k], a, k, s, up) != 0;
 	return bad ? err_set(e, ERR_SYSTEM, "objects: out of memory") : 0;
 }

@@ -23,6 +23,7 @@ missing_input() {
 		pseudomask-select -o out none
 		refer-train --scene none --weights none --text none --masks none -o out
 		refer-render --scene none --text none --model none -o out
+		refer-locate --scene none --text none --model none -o out
 		miou-score --truth none none
 		gs-synth --seed 1 -o /dev/null/none
 	END

@@ -51,6 +51,28 @@ refuses() {
 	says "$status" "refer-render: $message" render -o out/pred.jsonl "$@" && [ -z "$(ls -A out)" ]
 }
 
+# lifted: two objects of 300 of the scene's Gaussians each in lifted.safetensors, and in asked.safetensors sentences that
+# mean the first, the second, again the first, any of both, and nothing for want of words. Word vectors have two columns.
+lifted() {
+	local header one=003c zero=0000 index share
+	header='{"__metadata__":{"format":"refer.lifted","version":"1","gaussians":"1000","names":"[\"cup\",\"box\"]","texts":"[\"cup\",\"box\"]","pieces":"[\"cup\",\"box\"]"},"indptr":{"dtype":"I64","shape":[3],"data_offsets":[0,24]},"offsets":{"dtype":"I64","shape":[3],"data_offsets":[24,48]},"index":{"dtype":"I32","shape":[600],"data_offsets":[48,2448]},"object":{"dtype":"I32","shape":[2],"data_offsets":[2448,2456]},"confidence":{"dtype":"F32","shape":[2],"data_offsets":[2456,2464]},"words":{"dtype":"F16","shape":[2,2],"data_offsets":[2464,2472]},"share":{"dtype":"U8","shape":[600],"data_offsets":[2472,3072]}}'
+	while (((8 + ${#header}) % 8)); do header+=' '; done
+	index=$(seq 400 999 | awk '{ printf "%02x%02x0000", $1 % 256, $1 / 256 }')
+	share=$(printf 'ff%.0s' $(seq 600))
+	st lifted.safetensors "$header" "$(printf '%s' 0000000000000000 2c01000000000000 5802000000000000 \
+		0000000000000000 0100000000000000 0200000000000000 "$index" 00000000 01000000 $f1 $fhalf \
+		$one$zero $zero$one "$share")"
+	header='{"__metadata__":{"format":"refer.text","version":"1","refs":"[\"first\",\"second\",\"again\",\"any\",\"none\"]","objects":"[\"cup\",\"box\",\"cup\",\"?\",\"?\"]","texts":"[\"cup\",\"box\",\"cup\",\"it\",\"\"]","pieces":"[\"cup\",\"box\",\"cup\",\"it\",\"\"]","splits":"[\"test\",\"test\",\"test\",\"test\",\"test\"]"},"offsets":{"dtype":"I64","shape":[6],"data_offsets":[0,48]},"words":{"dtype":"F32","shape":[4,2],"data_offsets":[48,80]},"sentences":{"dtype":"F32","shape":[5,2],"data_offsets":[80,120]}}'
+	while (((8 + ${#header}) % 8)); do header+=' '; done
+	st asked.safetensors "$header" "$(printf '%02x00000000000000' 0 1 2 3 4 4)$f1$f0$f0$f1$f1$f0$f1$f1$f1$f0$f0$f1$f1$f0$f1$f1$f0$f0"
+	"$BIN/gs-check" lifted.safetensors asked.safetensors >/dev/null
+}
+
+# ask [OPTION]...: renders from the lifted model.
+ask() {
+	"$BIN/refer-render" --scene scene --text asked.safetensors --model lifted.safetensors "$@"
+}
+
 # Fails where the command succeeds; a plain ! would let the test go on.
 not() { ! "$@"; }
 
@@ -233,7 +255,7 @@ png/$test_view/yellow-bowl-1.png " ]
 	: >empty
 	refuses 3 "empty: 0 bytes, too short for a safetensors file" --text empty
 	refuses 3 "empty: 0 bytes, too short for a safetensors file" --model empty
-	refuses 3 "text.safetensors: format is 'refer.text', expected 'refer.model'" --model text.safetensors
+	refuses 3 "text.safetensors: format is 'refer.text', expected 'refer.model' or 'refer.lifted'" --model text.safetensors
 	refuses 3 "model.safetensors: format is 'refer.model', expected 'refer.text'" --text model.safetensors
 	truncate -s -1 model.safetensors
 	run render -o pred.jsonl
@@ -255,6 +277,83 @@ png/$test_view/yellow-bowl-1.png " ]
 	says 4 "refer-render: /dev/full: No space left on device" render -o /dev/full
 }
 
+@test "a lifted model: the most probable object, as sure as it is probable and its masks are good" {
+	lifted
+	ask -o pred.jsonl
+	[ "$(jq -r '[.ref, .object] | join(" ")' pred.jsonl | tr '\n' ,)" = "first cup,second box,again cup,any ?,none ?," ]
+	mask() { jq -r "select(.ref == \"$1\").segmentation.counts" pred.jsonl; }
+	[ "$(mask first)" = "$(mask again)" ]
+	[ "$(mask first)" != "$(mask second)" ]
+	[ "$(areas <pred.jsonl | awk '{ print ($1 > 20) }' | tr -d '\n')" = 11110 ]
+	# The second object's confidence is a half.
+	jq -se 'map({(.ref): .score}) | add | .first > 0.6 and .first <= 1 and .second > 0.3 and .second <= 0.5 and .none == 0' pred.jsonl
+	"$BIN/refer-render" --scene scene --text asked.safetensors --model - <lifted.safetensors | cmp - pred.jsonl
+	ask --calibration none | cmp - pred.jsonl
+}
+
+@test "sentences that mean one object have a picture each" {
+	lifted
+	ask --png png -o pred.jsonl
+	[ "$(ls png/$test_view | tr '\n' ' ')" = "again.png any.png first.png none.png second.png " ]
+	cmp png/$test_view/first.png png/$test_view/again.png
+	not cmp -s png/$test_view/first.png png/$test_view/second.png
+}
+
+@test "--min-probability: what means nothing that was lifted has an empty mask and score 0" {
+	lifted
+	# A sentence that is as near to both objects.
+	ask --min-probability 0.6 --refs any,first -o pred.jsonl
+	[ "$(areas <pred.jsonl | awk '{ print ($1 > 0) }' | tr -d '\n')" = 10 ]
+	[ "$(jq 'select(.ref == "any").score' pred.jsonl)" = 0 ]
+	# A trained model has no such probabilities.
+	render -o none.jsonl
+	render --min-probability 1 | cmp - none.jsonl
+}
+
+@test "--amodal: outlines hold what is in sight, and say how much that is" {
+	lifted
+	ask --split all -o seen.jsonl
+	ask --split all --amodal --png whole -o whole.jsonl
+	jq -se 'all(.[]; has("visible") | not)' seen.jsonl
+	jq -se 'all(.[]; .visible >= 0 and .visible <= 1) and any(.[]; .visible > 0.1 and .visible < 0.9)' whole.jsonl
+	[ "$(jq -c 'select(.ref == "none").visible' whole.jsonl | sort -u)" = 0 ]
+	[ "$(areas <whole.jsonl | awk '{ n += $1 } END { print n }')" -gt 0 ]
+	"$BIN/gs-check" whole.jsonl whole/view_001/first.png
+	"$BIN/pseudomask-select" --method top1 whole.jsonl | jq -se 'all(.[]; has("visible"))'
+}
+
+@test "--amodal of a trained model" {
+	render --split train --refs brown-box-1 --amodal -o whole.jsonl
+	jq -se 'all(.[]; .visible >= 0 and .visible <= 1) and any(.[]; .visible > 0.3)' whole.jsonl
+	"$BIN/miou-score" --json -q --predicted-views --truth "$made/whole.jsonl" whole.jsonl |
+		jq -e '.objects["brown box"].miou > 0.2'
+}
+
+@test "lifted models, too: --threads 1, 2 and 3 give the same bytes" {
+	lifted
+	for n in 1 2 3; do
+		mkdir $n
+		ask --threads $n --split all --amodal --png $n/png --response $n/response --overlay $n/overlay -o $n/pred.jsonl
+	done
+	diff -r 1 2
+	diff -r 1 3
+}
+
+@test "a lifted model that does not fit" {
+	lifted
+	fails() { says 3 "refer-render: $1" "$BIN/refer-render" --scene scene "${@:2}" -o pred.jsonl && [ ! -e pred.jsonl ]; }
+	fails "lifted.safetensors: is of sentences of width 2, text.safetensors has 24" --text text.safetensors --model lifted.safetensors
+	sed 's/"pieces":/"pieced":/' asked.safetensors >other.safetensors
+	fails "other.safetensors: no word pieces, which lifted.safetensors asks for: encode its sentences again" \
+		--text other.safetensors --model lifted.safetensors
+	truncate -s -1 lifted.safetensors
+	run ask -o pred.jsonl
+	[ "$status" = 3 ] && [ ! -e pred.jsonl ]
+	lifted
+	splats scene/splats.safetensors
+	fails "lifted.safetensors: is of a scene of 1000 Gaussians, scene has 1" --text asked.safetensors --model lifted.safetensors
+}
+
 @test "usage errors" {
 	try=$'\n'"Try 'refer-render --help'."
 	says 2 "refer-render: --scene, --text and --model are required$try" "$BIN/refer-render" --scene scene
@@ -262,6 +361,7 @@ png/$test_view/yellow-bowl-1.png " ]
 	says 2 "refer-render: --size and --scale do not go together$try" render --size 4x3 --scale 1
 	says 2 "refer-render: --size: '0x3' is not WIDTHxHEIGHT with both from 1 to 65536$try" render --size 0x3
 	says 2 "refer-render: --scale: '0' is not a number from 0.0001 to 16$try" render --scale 0
+	says 2 "refer-render: --min-probability: '2' is not a number from 0 to 1$try" render --min-probability 2
 	says 2 "refer-render: --response-type: 'jpg' is not one of png|npy$try" render --response-type jpg
 	says 2 "refer-render: unexpected operand 'more'$try" render more
 }

@@ -1,0 +1,203 @@
+#!/usr/bin/env bats
+# refer-locate. Options that every tool has are in common.bats; what its lines say in format/boxes.bats.
+
+setup_file() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	export OMP_WAIT_POLICY=passive
+	"$BATS_TEST_DIRNAME/examples-setup.sh" "$BATS_FILE_TMPDIR" "$BIN"
+	cd "$BATS_FILE_TMPDIR"
+	# A training sentence of each object, a test sentence, and one without words. Trained until it finds something.
+	jq -c 'select(.ref | test("-1$|bowl-5"))' sentences.jsonl >some.jsonl
+	echo '{"ref":"silent","object":"nothing","text":"","split":"test"}' >>some.jsonl
+	"$BIN/text-encode" -q --model encoder -o text.safetensors some.jsonl
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 400 \
+		-o model.safetensors
+}
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load ../format/files
+	cd "$BATS_TEST_TMPDIR"
+	export OMP_WAIT_POLICY=passive
+	made=$BATS_FILE_TMPDIR
+	cp -r "$made/scene" "$made/text.safetensors" "$made/model.safetensors" .
+}
+
+locate() {
+	"$BIN/refer-locate" --scene scene --text text.safetensors --model model.safetensors "$@"
+}
+
+# refuses STATUS MESSAGE [OPTION]...: it fails so, and leaves nothing.
+refuses() {
+	local status=$1 message=$2
+	shift 2
+	rm -rf out
+	mkdir out
+	says "$status" "refer-locate: $message" locate -o out/boxes.jsonl "$@" && [ -z "$(ls -A out)" ]
+}
+
+# means FILE COUNT: the means of a scene's Gaussians, its first tensor, a line each.
+means() {
+	local header
+	header=$(od -An -t u8 -N 8 "$1" | tr -d ' ')
+	tail -c +$((9 + header)) "$1" | head -c $((12 * $2)) | od -An -v -w12 -t x4
+}
+
+# vertices FILE: how many Gaussians a .ply says that it has.
+vertices() {
+	grep -a -m 1 '^element vertex' "$1" | cut -d ' ' -f 3
+}
+
+@test "a line for each sentence, in the order of the file" {
+	locate -o boxes.jsonl >printed 2>&1
+	[ ! -s printed ]
+	[ "$(jq -r '[.ref, .object] | join(" ")' boxes.jsonl)" = "brown-box-1 brown box
+pink-cone-1 pink cone
+yellow-bowl-1 yellow bowl
+yellow-bowl-5 yellow bowl
+silent nothing" ]
+	[ "$(jq -r 'keys_unsorted | join(" ")' boxes.jsonl | sort -u)" = \
+		"ref object score count centre min max oriented gaussians" ]
+	"$BIN/gs-check" boxes.jsonl
+}
+
+@test "what was learned is near where it is" {
+	locate --sentences train -o boxes.jsonl
+	"$BIN/miou-score" --json --boxes --truth "$made/boxes.jsonl" boxes.jsonl >score.json
+	jq -e '.objects["brown box"].aligned > 0.15 and .objects["yellow bowl"].centre_relative < 0.5' score.json
+	jq -se 'all(.[]; .score > 0.5 and .score <= 1 and .count == (.gaussians | length) and .count > 0)' boxes.jsonl
+	jq -se 'all(.[]; . as $r | all(range(3); $r.min[.] < $r.centre[.] and $r.centre[.] < $r.max[.]))' boxes.jsonl
+	jq -se 'all(.[].gaussians; . == (sort | unique) and .[0] >= 0 and .[-1] < 1000)' boxes.jsonl
+}
+
+@test "a sentence without words is nowhere" {
+	says 0 '{"ref":"silent","object":"nothing","score":0,"count":0,"centre":null,"min":null,"max":null,"oriented":null,"gaussians":[]}' \
+		locate --refs silent
+}
+
+@test "which sentences" {
+	[ "$(locate --sentences train | jq -r .ref | tr '\n' ' ')" = "brown-box-1 pink-cone-1 yellow-bowl-1 " ]
+	[ "$(locate --sentences test | jq -r .ref | tr '\n' ' ')" = "yellow-bowl-5 silent " ]
+	[ "$(locate --refs silent,pink-cone-1 | jq -r .ref | tr '\n' ' ')" = "pink-cone-1 silent " ]
+	refuses 2 "--refs: no sentence 'none'
+Try 'refer-locate --help'." --refs pink-cone-1,none
+}
+
+@test "the same bytes for any number of threads" {
+	locate --threads 1 --refs brown-box-1 --ply 1.ply --splat 1.splat -o 1.jsonl
+	locate --threads 2 --refs brown-box-1 --ply 2.ply --splat 2.splat -o 2.jsonl
+	cmp 1.ply 2.ply
+	cmp 1.splat 2.splat
+	locate --threads 1 -o 1.jsonl
+	locate --threads 2 -o 2.jsonl
+	cmp 1.jsonl 2.jsonl
+}
+
+@test "text and model from stdin" {
+	locate -o expected
+	locate --text - <text.safetensors | cmp - expected
+	locate --model - <model.safetensors | cmp - expected
+}
+
+@test "a scene far away: boxes and files are where it was" {
+	locate --refs brown-box-1 --ply near.ply -o near.jsonl
+	# The same with everything moved by a million.
+	# The offset's text is two bytes longer, for which two of the blanks that pad the header go.
+	header=$(od -An -t u8 -N 8 scene/splats.safetensors | tr -d ' ')
+	{
+		head -c 8 scene/splats.safetensors
+		head -c $((8 + header)) scene/splats.safetensors | tail -c +9 |
+			sed 's/"offset":"\[0,0,0\]"/"offset":"[1e6,0,0]"/; s/  $//' | head -c "$header"
+		tail -c +$((9 + header)) scene/splats.safetensors
+	} >moved
+	mv moved scene/splats.safetensors
+	locate --refs brown-box-1 --ply far.ply -o far.jsonl
+	jq -se '.[0] as $n | .[1] as $f | ($f.min[0] - $n.min[0] - 1e6 | fabs) < 1e-4 and ($f.max[1] - $n.max[1] | fabs) < 1e-9 and
+		($f.oriented.centre[0] - $n.oriented.centre[0] - 1e6 | fabs) < 1e-4 and $f.gaussians == $n.gaussians' near.jsonl far.jsonl
+	grep -a -q '^property double x' far.ply
+	grep -a -q '^property float x' near.ply
+}
+
+@test "--ply: isolated and removed are all of the scene, coloured too, and gs-import reads them back" {
+	for show in coloured isolated removed; do
+		locate --refs brown-box-1 --show $show --ply $show.ply -o boxes.jsonl
+	done
+	count=$(jq .count boxes.jsonl)
+	[ "$(vertices coloured.ply)" = 1000 ]
+	[ "$(vertices isolated.ply)" = "$count" ]
+	[ "$(vertices removed.ply)" = $((1000 - count)) ]
+	for show in coloured isolated removed; do
+		"$BIN/gs-import" -q --cameras "$made/sparse/0" --images "$made/images" -o $show $show.ply
+		says 0 "$show/splats.safetensors: ok: refer.splats, $(vertices $show.ply) gaussians, 4 harmonics" \
+			"$BIN/gs-check" $show/splats.safetensors
+	done
+	means scene/splats.safetensors 1000 >all
+	means coloured/splats.safetensors 1000 | cmp - all
+	{
+		means isolated/splats.safetensors "$count"
+		means removed/splats.safetensors $((1000 - count))
+	} | sort | cmp - <(sort all)
+	jq -r '.gaussians[] + 1' boxes.jsonl | sed 's/$/p/' | sed -n -f - all | cmp - <(means isolated/splats.safetensors "$count")
+}
+
+@test "--splat: 32 bytes for each Gaussian, the largest first" {
+	locate --refs brown-box-1 --show isolated --splat x.splat -o boxes.jsonl
+	count=$(jq .count boxes.jsonl)
+	[ "$(wc -c <x.splat)" = $((32 * count)) ]
+	od -An -v -w32 -t f4 x.splat | awk '{ print $4 * $5 * $6 }' >volumes
+	od -An -v -w32 -t u1 x.splat | awk '{ print $28 }' | paste volumes - |
+		awk '$2 > 25 { size = $1 * $2; bad = bad || (n++ && size > last * 1.04); last = size } END { exit bad || n < 20 }'
+	# Means of the object lie around its box.
+	jq -r '[.centre[], (.max[0] - .min[0])] | @tsv' boxes.jsonl >centre
+	od -An -v -w32 -t f4 x.splat | awk 'NR == FNR { split($0, c); next } { x += $1; n++ }
+		END { exit !((x / n - c[1]) ^ 2 < (c[4] / 2) ^ 2) }' centre -
+}
+
+@test "scenes are of one sentence" {
+	for option in --ply --splat; do
+		refuses 2 "--ply and --splat show the object of one sentence, not of 5: choose it with --refs
+Try 'refer-locate --help'." $option out/x
+		refuses 2 "--ply and --splat must name a file
+Try 'refer-locate --help'." $option - --refs silent
+	done
+	refuses 2 "--show is for --ply and --splat
+Try 'refer-locate --help'." --show removed
+	refuses 2 "--show: 'all' is not one of coloured|isolated|removed
+Try 'refer-locate --help'." --show all
+}
+
+@test "nothing to isolate is an empty scene" {
+	locate --refs silent --show isolated --ply x.ply --splat x.splat -o boxes.jsonl
+	[ "$(vertices x.ply)" = 0 ]
+	[ -e x.splat ] && [ ! -s x.splat ]
+}
+
+@test "missing, empty, truncated and other files" {
+	refuses 4 "none: No such file or directory" --model none
+	: >empty
+	refuses 3 "empty: 0 bytes, too short for a safetensors file" --model empty
+	head -c 1000 model.safetensors >cut
+	run locate --model cut -o out.jsonl
+	[ "$status" = 3 ] && [ ! -e out.jsonl ]
+	refuses 3 "text.safetensors: format is 'refer.text', expected 'refer.model' or 'refer.lifted'" --model text.safetensors
+}
+
+@test "files that do not belong together" {
+	jq -c . "$made/sentences.jsonl" | head -n 1 >one.jsonl
+	"$BIN/gs-synth" -q --objects 3 --views 5 --size 64x48 --gaussians 1200 -o other
+	"$BIN/gs-import" -q --images other/images -o other/scene other/point_cloud.ply
+	refuses 3 "model.safetensors: is of a scene of 1000 Gaussians, other/scene has 1200" --scene other/scene
+}
+
+@test "what cannot be written leaves nothing" {
+	refuses 4 "no/x.ply: No such file or directory" --refs silent --ply no/x.ply
+	run locate --refs brown-box-1 -o no/x.jsonl
+	[ "$status" = 4 ]
+}
+
+@test "required options" {
+	says 2 "refer-locate: --scene, --text and --model are required
+Try 'refer-locate --help'." "$BIN/refer-locate" --scene scene
+	refuses 2 "--text and --model cannot both be stdin
+Try 'refer-locate --help'." --text - --model -
+}

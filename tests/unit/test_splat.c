@@ -1,0 +1,60 @@
+/* The bytes of a .splat: formats/splat.md. */
+#include "unit.h"
+
+#include "formats/splat.h"
+
+#include <unistd.h>
+
+enum { N = 3, RECORD = 32 };
+
+static void fill(struct splats *s)
+{
+	static const float means[N][3] = {{-1, 0, 0}, {1, 2, 3}, {0, 0, 9}};
+	static const float scales[N][3] = {{0.25f, 0.25f, 0.25f}, {0.5f, 0.25f, 0.125f}, {1, 1, 1}};
+	static const float quats[N][4] = {{0, 0, -2, 0}, {3, 0, 0, 0}, {0.5f, 0.5f, 0.5f, 0.5f}};
+	static const float opacities[N] = {0.5f, 1, 0.001f}, colours[N][3] = {{9, -9, 1}, {0}, {0}};
+
+	for (int i = 0; i < N; i++) {
+		memcpy(s->means + 3 * i, means[i], sizeof means[i]);
+		memcpy(s->scales + 3 * i, scales[i], sizeof scales[i]);
+		memcpy(s->quats + 4 * i, quats[i], sizeof quats[i]);
+		s->opacities[i] = opacities[i];
+		for (int k = 0; k < 12; k++)
+			s->sh[12 * i + k] = k < 3 ? colours[i][k] : 5;
+	}
+}
+
+int main(void)
+{
+	/* The page's example is the largest, as faint things come late however large they are. */
+	static const unsigned char example[RECORD] = {0x00, 0x00, 0x80, 0x3f, 0x00, 0x00, 0x00, 0x40, 0x00,
+		0x00, 0x40, 0x40, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x00, 0x80, 0x3e, 0x00, 0x00, 0x00, 0x3e,
+		0x80, 0x80, 0x80, 0xff, 0xff, 0x80, 0x80, 0x80};
+	/* Colours are cut to a byte, a quaternion is made one, and what is -1 fits. */
+	static const unsigned char second[8] = {255, 0, 199, 128, 128, 128, 0, 128};
+	static const unsigned char third[4] = {192, 192, 192, 192};
+	char path[] = "/tmp/test_splat.XXXXXX";
+	unsigned char bytes[N * RECORD + 1] = {0};
+	struct splats s;
+	struct err e;
+	const int temporary = mkstemp(path);
+
+	if (temporary < 0 || splats_alloc(&s, N, 4, &e))
+		return 1;
+	fill(&s);
+	CHECK(!splat_write(&s, path, &e), "%s", e.message);
+	FILE *in = fopen(path, "rb");
+	size_t got = in ? fread(bytes, 1, sizeof bytes, in) : 0;
+	if (in)
+		fclose(in);
+	CHECK(got == N * RECORD, "%zu bytes", got);
+	CHECK(!memcmp(bytes, example, RECORD), "the example");
+	CHECK(!memcmp(bytes + RECORD + 24, second, 8), "%d %d %d, %d, %d %d %d %d", bytes[56], bytes[57],
+		bytes[58], bytes[59], bytes[60], bytes[61], bytes[62], bytes[63]);
+	CHECK(!memcmp(bytes + 2 * RECORD + 28, third, 4), "%d", bytes[92]);
+	CHECK(splat_write(&s, "/nowhere/x.splat", &e) && e.code == ERR_SYSTEM, "no folder");
+	close(temporary);
+	unlink(path);
+	splats_free(&s);
+	return unit_end();
+}
