@@ -92,14 +92,17 @@ int regions_assign(struct regions *r, struct err *e)
 	return bad ? -1 : 0;
 }
 
-/* The candidate that is an object's mask in a view, or REGIONS_NONE. */
-static size_t find_candidate(const struct region *region, size_t view)
+/* The candidate that is an object's mask in a view, or REGIONS_NONE. Those of a small thing agree less in all
+ * views, so that only a comparison with the others tells. */
+static size_t find_candidate(const struct regions *r, const struct region *region, size_t view)
 {
-	const size_t c = region->chosen[view];
+	size_t best = REGIONS_NONE;
 
-	if (c == REGIONS_NONE || !((double)region->agreement[c] > PEER * region->typical))
-		return REGIONS_NONE;
-	return c;
+	for (size_t c = 0; c < r->count; c++)
+		if (r->candidates[c].view == view && (double)region->agreement[c] > PEER * region->typical &&
+			(best == REGIONS_NONE || region->agreement[c] > region->agreement[best]))
+			best = c;
+	return best;
 }
 
 static int cut(const float *image, uint8_t *pixels, int height, int width, const struct rle *like,
@@ -151,7 +154,7 @@ int regions_render(const struct regions *r, size_t view, const struct view_weigh
 		if (r->served[o] == REGIONS_NONE)
 			continue;
 		const struct region *region = &r->regions[r->served[o]];
-		const size_t c = find_candidate(region, view), group = o / VIEW_GROUP;
+		const size_t c = find_candidate(r, region, view), group = o / VIEW_GROUP;
 		if (c != REGIONS_NONE) {
 			bad = copy_candidate(&masks[o], region, c, r->candidates[c].mask, e);
 			continue;
