@@ -5,12 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct pool_place {
-	const char *view, *name;
-	int is_ref;
-	size_t index; /* of the record */
-};
-
 static int order_names(const struct pool_place *p, const struct pool_place *q)
 {
 	int order = p->is_ref - q->is_ref;
@@ -95,7 +89,8 @@ int pool_make(struct pool *p, const struct pool_record *records, size_t n, struc
 		goto fail;
 	for (size_t i = 0; i < n; i++) {
 		const struct pool_record *r = &records[i];
-		p->places[i] = (struct pool_place){r->view, r->object ? r->object : r->ref, !r->object, i};
+		p->places[i] =
+			(struct pool_place){r->view, r->object ? r->object : r->ref, !r->object, r->ref, i};
 	}
 	if (n)
 		qsort(p->places, n, sizeof *p->places, order_places);

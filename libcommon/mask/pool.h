@@ -13,6 +13,14 @@ struct pool_record {
 	double score;
 };
 
+/* Where a record's candidate is. */
+struct pool_place {
+	const char *view, *name; /* of the object, or the ref where there is none */
+	int is_ref;
+	const char *ref; /* may be NULL */
+	size_t index;	 /* of the record */
+};
+
 /* The candidates of one object in one view. */
 struct pool_group {
 	size_t first;  /* the record that came first */
