@@ -105,8 +105,8 @@ const char lang_links[] = "and or farthest furthest directly just";
 static const char adverbs[] =
 	"directly just right immediately slightly bit far over close up down straight partly";
 static const char verbs[] =
-	"lying lies standing stands placed located resting rests positioned set put sitting sits situated found "
-	"seen hanging leaning kept is are be can see which that surrounded among things";
+	"lying lies standing stand stands placed located resting rests positioned set put sitting sits situated found "
+	"seen hanging leaning kept is are be see which that surrounded among things";
 static const char functions[] =
 	"to of in at on by from with and or , . - ; : whose who where for as it them some any other both out";
 static const char generic[] = "thing things object objects item items one ones something piece stuff element "

@@ -66,13 +66,20 @@ static int has_one_of(const struct lang_sentence *s, const struct lang_phrase *p
 	return 0;
 }
 
+/* "that you can see" speaks of no can. */
+static int is_auxiliary(const struct lang_sentence *s, int word)
+{
+	return word && !strcmp(s->words[word].text, "can") &&
+	       lang_is_one_of(s->words[word - 1].text, lang_viewers);
+}
+
 /* Keeps the words that say something. */
 static void keep_content(const struct lang_sentence *s, struct lang_phrase *p)
 {
 	int n = 0;
 
 	for (int i = 0; i < p->n; i++)
-		if (lang_says_something(text_of(s, p, i)))
+		if (lang_says_something(text_of(s, p, i)) && !is_auxiliary(s, p->words[i]))
 			p->words[n++] = p->words[i];
 	p->n = n;
 }
@@ -114,9 +121,8 @@ static void cut_anchors(struct lang_clause *c, const struct lang_sentence *s, co
 			break;
 	}
 	for (int i = 0; i < LANG_ANCHORS; i++) {
-		int looks = !has_one_of(s, &parts[i], lang_viewers);
 		keep_content(s, &parts[i]);
-		if (parts[i].n && looks)
+		if (parts[i].n)
 			c->anchors[c->anchor_count++] = parts[i];
 	}
 }
