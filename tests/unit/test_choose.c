@@ -1,0 +1,181 @@
+/* The choice of an object by a sentence: each part by itself, on a made-up scene of four objects whose words
+ * have made-up vectors. */
+#include "refer/choose.h"
+#include "unit.h"
+
+#include <string.h>
+
+enum { OBJECTS = 4, EACH = 30, N = OBJECTS * EACH, WIDTH = 96, MOST = 64 };
+
+/* A word's vector: its own direction, and all the same one besides. */
+static void vector_of(const char *word, size_t length, float out[WIDTH])
+{
+	unsigned state = 1;
+
+	for (size_t i = 0; i < length; i++)
+		state = state * 31 + (unsigned char)word[i];
+	for (int d = 0; d < WIDTH; d++) {
+		state = state * 1664525u + 1013904223u;
+		out[d] = (float)(state >> 8) / (1 << 23) - 1 + (d == 0 ? 5 : 0);
+	}
+}
+
+static size_t encode(const char *pieces, float *vectors)
+{
+	size_t n = 0;
+
+	for (const char *p = pieces; *p; n++) {
+		size_t length = strcspn(p, " ");
+		vector_of(p, length, vectors + n * WIDTH);
+		p += length + (p[length] == ' ');
+	}
+	return n;
+}
+
+/* mug 1 and mug 2 look the same, on the left and on the right; a red box behind, a tin before them. */
+static char *names[] = {"mug", "mug 2", "crate", "tin"};
+static char *pieces[] = {"the shiny mug", "the striped cup to the left of the crate", "the small mug",
+	"the wooden box", "the metal can nearest to us", "the dull can"};
+static int32_t object[] = {0, 0, 1, 2, 3, 3};
+static int64_t offsets[7];
+static float words[6 * 16 * WIDTH];
+
+static float means[3 * N], scales[3 * N], quats[4 * N], opacities[N], sh[3 * N], share[N];
+static int32_t index_of[N];
+static int64_t indptr[OBJECTS + 1];
+static float confidence[OBJECTS] = {1, 1, 1, 1};
+static struct splats splats = {N, 1, means, scales, quats, opacities, sh};
+static struct lifted lifted = {N, OBJECTS, names, confidence, indptr, index_of, share, 6, WIDTH, object,
+	pieces, pieces, offsets, words};
+static struct camera view;
+static struct cameras cameras = {1, &view};
+
+static void make_scene(void)
+{
+	static const double at[OBJECTS][3] = {{-2, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, -3, 0}};
+	static const float colour[OBJECTS][3] = {{1, 1, 1}, {1, 1, 1}, {1.2f, -1.5f, -1.5f}, {0, 0, 0}};
+	double rotation[3][3] = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+
+	view = (struct camera){.width = 100, .height = 100, .fx = 100, .fy = 100, .cx = 50, .cy = 50};
+	camera_set_centre(&view, rotation, (double[3]){0, -10, 1});
+	for (int i = 0; i < N; i++) {
+		const int o = i / EACH, k = i % EACH;
+		const double size = o == 2 ? 2 : 1;
+		const double offset[3] = {
+			size * 0.1 * (k % 3), size * 0.1 * (k / 3 % 3), size * 0.1 * (k % 7)};
+		for (int d = 0; d < 3; d++) {
+			means[3 * i + d] = (float)(at[o][d] + offset[d]);
+			scales[3 * i + d] = 0.1f;
+			sh[3 * i + d] = colour[o][d];
+		}
+		index_of[i] = i;
+		share[i] = opacities[i] = 1;
+	}
+	for (int o = 0; o <= OBJECTS; o++)
+		indptr[o] = o * EACH;
+	for (int r = 0; r < 6; r++)
+		offsets[r + 1] = offsets[r] + (int64_t)encode(pieces[r], words + (size_t)offsets[r] * WIDTH);
+}
+
+static float probability[OBJECTS];
+
+static int ask(const char *text, unsigned parts)
+{
+	static float vectors[MOST * WIDTH];
+	const struct choose_scene scene = {&lifted, &splats, &cameras};
+	const struct choose_sentence s = {text, vectors, encode(text, vectors)};
+	struct err e;
+	int best = 0;
+
+	if (!CHECK(!choose(&scene, &s, 1, parts, probability, &e), "%s", e.message))
+		return -1;
+	double sum = 0;
+	for (int o = 0; o < OBJECTS; o++) {
+		best = probability[o] > probability[best] ? o : best;
+		sum += probability[o];
+	}
+	CHECK(sum >= 0 && sum <= 1.0001, "'%s': probabilities sum to %g", text, sum);
+	return best;
+}
+
+enum {
+	WORDS = 1 << CHOOSE_WORDS,
+	NAMES = 1 << CHOOSE_NAMES,
+	ALIKE = 1 << CHOOSE_ALIKE,
+	COLOURS = 1 << CHOOSE_COLOURS,
+	RELATIONS = 1 << CHOOSE_RELATIONS,
+	SENTENCE = 1 << CHOOSE_SENTENCE
+};
+
+static void parts(void)
+{
+	CHECK(ask("the wooden thing", WORDS) == 2 && probability[2] > 0.7, "words");
+	CHECK(ask("the crate", NAMES) == 2 && probability[2] > 0.5, "names");
+	CHECK(ask("the crates", NAMES) == 2 && probability[2] > 0.5, "names in the plural: %g",
+		probability[2]);
+	CHECK(ask("the red thing", COLOURS) == 2 && probability[2] > 0.8, "colours");
+	CHECK(ask("the dull can", SENTENCE) == 3 && probability[3] > 0.99, "a training sentence");
+	CHECK(ask("the thing nearest to us", RELATIONS) == 3 && probability[3] > 0.8, "relations");
+	CHECK(ask("the thing to the left of the box", WORDS | RELATIONS) == 0, "an anchor");
+	CHECK(ask("the thing to the right of the box", WORDS | RELATIONS) == 1, "an anchor");
+	CHECK(ask("the thing to the right of the crate", NAMES | RELATIONS) == 1, "an anchor by its name");
+	CHECK(ask("the shiny mug on the right", CHOOSE_ALL) == 1,
+		"shiny is only said of the other, which looks the same");
+	CHECK(ask("the shiny mug on the right", CHOOSE_ALL & ~(unsigned)ALIKE) == 0, "without looks");
+}
+
+/* What is said of something that is no object says nothing. */
+static void unknown_anchor(void)
+{
+	ask("the mug to the left of the zeppelin", CHOOSE_ALL);
+	const float left = probability[0] / probability[1];
+	ask("the mug", CHOOSE_ALL);
+	CHECK(fabsf(left / (probability[0] / probability[1]) - 1) < 0.5F, "%g against %g", (double)left,
+		(double)(probability[0] / probability[1]));
+}
+
+static void absent(void)
+{
+	double here, sum = 0;
+
+	ask("the small wooden box", CHOOSE_ALL);
+	here = probability[2];
+	ask("the violet zeppelin", CHOOSE_ALL);
+	for (int o = 0; o < OBJECTS; o++)
+		sum += probability[o];
+	CHECK(here > 0.8 && sum < 0.5, "what is there has %g, what is not %g", here, sum);
+	ask("", CHOOSE_ALL);
+	for (int o = 0; o < OBJECTS; o++)
+		CHECK(probability[o] == 0, "no words mean nothing");
+}
+
+/* Several at once are as one by one; pieces may be unknown. */
+static void many(void)
+{
+	static float a[MOST * WIDTH], b[MOST * WIDTH];
+	const struct choose_scene scene = {&lifted, &splats, &cameras};
+	const struct choose_sentence s[] = {
+		{"the red box", a, encode("the red box", a)}, {NULL, b, encode("the dull can", b)}};
+	float both[2 * OBJECTS];
+	struct err e;
+
+	if (!CHECK(!choose(&scene, s, 2, CHOOSE_ALL, both, &e), "%s", e.message))
+		return;
+	ask("the red box", CHOOSE_ALL);
+	CHECK(!memcmp(both, probability, sizeof probability), "one of two differs from it alone");
+	CHECK(both[OBJECTS + 3] > 0.3F && both[OBJECTS + 3] > both[OBJECTS], "without pieces: %g",
+		(double)both[OBJECTS + 3]);
+	const struct lifted none = {.gaussians = N, .width = WIDTH, .indptr = indptr, .offsets = offsets};
+	const struct choose_scene empty = {&none, &splats, &cameras};
+	CHECK(!choose(&empty, s, 2, CHOOSE_ALL, both, &e), "a model without objects");
+}
+
+int main(void)
+{
+	make_scene();
+	parts();
+	unknown_anchor();
+	absent();
+	many();
+	return unit_end();
+}
