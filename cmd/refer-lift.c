@@ -37,7 +37,7 @@ struct run {
 	struct mask_set set;
 	long *lines;			       /* (set.n) */
 	size_t *views;			       /* (set.n) of each mask */
-	size_t *sentence_object, *mask_object; /* (text.n), (set.n) in names; NONE: does not count */
+	size_t *sentence_object, *mask_object; /* (text.n), (set.n) in names; LIFTED_NONE: does not count */
 	size_t objects;
 	char **names; /* (objects) of the sentences, in the order in which these first name them; not owned */
 	char *is_there; /* (scene.cameras.n) the view has weights */
@@ -45,8 +45,6 @@ struct run {
 	struct lifted model;
 	struct cli_progress progress;
 };
-
-static const size_t NONE = (size_t)-1;
 
 static void run_free(struct run *r)
 {
@@ -68,15 +66,7 @@ static size_t find_object(const struct run *r, const char *name)
 	for (size_t o = 0; name && o < r->objects; o++)
 		if (!strcmp(r->names[o], name))
 			return o;
-	return NONE;
-}
-
-static size_t find_sentence(const struct text *t, const char *ref)
-{
-	for (size_t i = 0; ref && i < t->n; i++)
-		if (!strcmp(t->refs[i], ref))
-			return i;
-	return NONE;
+	return LIFTED_NONE;
 }
 
 static int load(struct run *r, struct err *e)
@@ -118,61 +108,64 @@ static int find_views(struct run *r, const struct cli *c, struct err *e)
 	return 0;
 }
 
-/* A mask of a sentence is one of its object; those of test sentences are not looked at. */
-static size_t object_of_mask(const struct run *r, const struct mask_record *m)
+/* The object that a mask is of: a sentence's is its object's, but those of test sentences, and of views
+ * without weights, are not looked at. NULL where it does not count. */
+static const char *name_of_mask(const struct run *r, size_t mask)
 {
-	const size_t sentence = find_sentence(&r->text, m->ref);
+	const struct mask_record *m = &r->set.records[mask];
 
-	if (sentence != NONE)
-		return r->sentence_object[sentence];
-	return find_object(r, m->object);
+	if (!r->is_there[r->views[mask]])
+		return NULL;
+	for (size_t i = 0; m->ref && i < r->text.n; i++)
+		if (!strcmp(r->text.refs[i], m->ref))
+			return r->text.splits[i] == SPLIT_TRAIN ? r->text.objects[i] : NULL;
+	return m->object;
 }
 
-/* The objects that a training sentence names and a mask shows, in their new numbers. */
-static int find_objects(struct run *r, const struct cli *c, struct err *e)
+static int has_mask(const struct run *r, const char *name)
 {
-	for (size_t i = 0; i < r->text.n; i++) {
-		size_t o = NONE;
-		if (r->text.splits[i] == SPLIT_TRAIN) {
-			o = find_object(r, r->text.objects[i]);
-			if (o == NONE) {
-				o = r->objects++;
-				r->names[o] = r->text.objects[i];
-			}
-		}
-		r->sentence_object[i] = o;
-	}
-	size_t *number = mem_alloc(r->objects, sizeof *number, "objects", e), unknown = 0, kept = 0;
-	if (!number)
-		return -1;
-	for (size_t o = 0; o < r->objects; o++)
-		number[o] = NONE;
 	for (size_t i = 0; i < r->set.n; i++) {
-		const size_t o = r->is_there[r->views[i]] ? object_of_mask(r, &r->set.records[i]) : NONE;
-		r->mask_object[i] = o;
-		unknown += r->is_there[r->views[i]] && o == NONE;
-		if (o != NONE)
-			number[o] = 0;
+		const char *other = name_of_mask(r, i);
+		if (other && !strcmp(name, other))
+			return 1;
 	}
-	for (size_t o = 0; o < r->objects; o++) {
-		if (number[o] == NONE) {
-			cli_warn(c, "%s: '%s' has no mask in a training view, and is left out",
-				file_name(options.masks), r->names[o]);
+	return 0;
+}
+
+static int is_named_before(const struct text *t, size_t sentence)
+{
+	for (size_t i = 0; i < sentence; i++)
+		if (t->splits[i] == SPLIT_TRAIN && !strcmp(t->objects[i], t->objects[sentence]))
+			return 1;
+	return 0;
+}
+
+/* The objects that a training sentence names and a mask shows. */
+static void find_objects(struct run *r, const struct cli *c)
+{
+	size_t unknown = 0;
+
+	for (size_t i = 0; i < r->text.n; i++) {
+		char *name = r->text.objects[i];
+		r->sentence_object[i] = LIFTED_NONE;
+		if (r->text.splits[i] != SPLIT_TRAIN)
 			continue;
+		if (!is_named_before(&r->text, i)) {
+			if (has_mask(r, name))
+				r->names[r->objects++] = name;
+			else
+				cli_warn(c, "%s: '%s' has no mask in a training view, and is left out",
+					file_name(options.masks), name);
 		}
-		r->names[kept] = r->names[o];
-		number[o] = kept++;
+		r->sentence_object[i] = find_object(r, name);
 	}
-	r->objects = kept;
-	for (size_t i = 0; i < r->set.n; i++)
-		r->mask_object[i] = r->mask_object[i] == NONE ? NONE : number[r->mask_object[i]];
-	for (size_t i = 0; i < r->text.n; i++)
-		r->sentence_object[i] = r->sentence_object[i] == NONE ? NONE : number[r->sentence_object[i]];
-	free(number);
+	for (size_t i = 0; i < r->set.n; i++) {
+		r->mask_object[i] = find_object(r, name_of_mask(r, i));
+		unknown += r->is_there[r->views[i]] && r->mask_object[i] == LIFTED_NONE;
+	}
 	if (unknown)
 		cli_warn(c, "%s: %zu masks are of no training sentence's object", file_name(options.masks),
 			unknown);
-	return 0;
 }
 
 static int by_object(const void *a, const void *b)
@@ -188,7 +181,7 @@ static int lift_view(struct run *r, size_t view, struct lift_mask *masks, struct
 	size_t n = 0;
 
 	for (size_t i = 0; i < r->set.n; i++)
-		if (r->views[i] == view && r->mask_object[i] != NONE)
+		if (r->views[i] == view && r->mask_object[i] != LIFTED_NONE)
 			masks[n++] = (struct lift_mask){r->mask_object[i], &r->set.records[i].mask};
 	if (!n)
 		return 0;
@@ -219,50 +212,17 @@ static int lift(struct run *r, struct err *e)
 	return bad || lift_objects_finish(&r->lift, &r->model, e) ? -1 : 0;
 }
 
-/* Names and sentences. The words stay the text's. */
-static int add_sentences(struct run *r, struct err *e)
-{
-	struct lifted *l = &r->model;
-	const struct text *t = &r->text;
-	const size_t width = (size_t)t->width, words = (size_t)t->offsets[t->n];
-
-	l->width = t->width;
-	l->names = mem_zalloc(l->objects, sizeof *l->names, "objects", e);
-	l->object = mem_alloc(t->n, sizeof *l->object, "sentences", e);
-	l->texts = mem_zalloc(t->n, sizeof *l->texts, "sentences", e);
-	l->pieces = mem_zalloc(t->n, sizeof *l->pieces, "sentences", e);
-	l->offsets = mem_zalloc(t->n + 1, sizeof *l->offsets, "sentences", e);
-	l->words = mem_alloc(words, width * sizeof *l->words, "sentences", e);
-	if (!l->names || !l->object || !l->texts || !l->pieces || !l->offsets || !l->words)
-		return -1;
-	for (size_t o = 0; o < l->objects; o++)
-		if (!(l->names[o] = mem_strdup(r->names[o], e)))
-			return -1;
-	for (size_t i = 0; i < t->n; i++) {
-		if (r->sentence_object[i] == NONE)
-			continue;
-		const size_t to = l->sentences++, from = (size_t)t->offsets[i];
-		const size_t count = (size_t)t->offsets[i + 1] - from, at = (size_t)l->offsets[to];
-		l->object[to] = (int32_t)r->sentence_object[i];
-		memcpy(l->words + at * width, t->words + from * width, count * width * sizeof *l->words);
-		l->offsets[to + 1] = (int64_t)(at + count);
-		if (!(l->texts[to] = mem_strdup(t->texts[i], e)) ||
-			!(l->pieces[to] = mem_strdup(t->pieces[i], e)))
-			return -1;
-	}
-	return 0;
-}
-
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
 	double confidence = 0;
 
-	if (load(r, e) || find_views(r, c, e) || find_objects(r, c, e))
+	if (load(r, e) || find_views(r, c, e))
 		return -1;
+	find_objects(r, c);
 	cli_progress_start(&r->progress, c, "views", (double)r->scene.cameras.n * LIFT_ROUNDS);
 	int bad = lift(r, e);
 	cli_progress_end(&r->progress);
-	if (bad || add_sentences(r, e))
+	if (bad || lifted_add_sentences(&r->model, &r->text, r->sentence_object, r->names, e))
 		return -1;
 	for (size_t o = 0; o < r->model.objects; o++)
 		confidence += (double)r->model.confidence[o] / (double)r->model.objects;

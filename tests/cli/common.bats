@@ -22,6 +22,7 @@ missing_input() {
 		text-encode --model none -o out none
 		pseudomask-select -o out none
 		refer-train --scene none --weights none --text none --masks none -o out
+		refer-lift --scene none --weights none --text none --masks none -o out
 		refer-render --scene none --text none --model none -o out
 		refer-locate --scene none --text none --model none -o out
 		miou-score --truth none none

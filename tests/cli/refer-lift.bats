@@ -1,0 +1,218 @@
+#!/usr/bin/env bats
+# refer-lift. Options that every tool has are in common.bats; what makes a model malformed in format/lifted.bats; whether
+# the shares are right in unit/test_lift_objects.c.
+
+setup_file() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	export OMP_WAIT_POLICY=passive
+	cd "$BATS_FILE_TMPDIR"
+	cp -r "$BATS_TEST_DIRNAME/../golden/bert" encoder
+	"$BIN/gs-synth" -q --objects 3 --views 6 --size 64x48 --gaussians 2000 -o .
+	"$BIN/gs-import" -q --images images --test-views "$(cat test-views)" -o scene point_cloud.ply
+	"$BIN/gs-weigh" -q -o weights scene
+	"$BIN/text-encode" -q --model encoder -o text.safetensors sentences.jsonl
+	jq -r .object sentences.jsonl | uniq | sort -u >objects
+	# the truth as a detector would have found it: of training views, of objects that are seen
+	jq -c --arg test "$(cat test-views)" 'select(.view as $v | $test | split(",") | index($v) | not)' truth.jsonl >masks.jsonl
+}
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load ../format/files
+	cd "$BATS_TEST_TMPDIR"
+	export OMP_WAIT_POLICY=passive
+	made=$BATS_FILE_TMPDIR
+	cp -r "$made/scene" "$made/text.safetensors" "$made/masks.jsonl" .
+	object=$(head -n 1 "$made/objects")
+}
+
+lift() {
+	"$BIN/refer-lift" --scene scene --weights "$made/weights" --text text.safetensors --masks masks.jsonl "$@"
+}
+
+# meta FILE KEY
+meta() {
+	head -c $((8 + $(od -An -t d8 -N 8 "$1"))) "$1" | tail -c +9 | jq -r ".__metadata__[\"$2\"]"
+}
+
+# tensor FILE NAME TYPE: a tensor's numbers on one line; TYPE as od has it (d8, d4, f4).
+tensor() {
+	local length begin end
+	length=$(od -An -t d8 -N 8 "$1" | tr -d ' ')
+	read -r begin end < <(head -c $((8 + length)) "$1" | tail -c +9 | jq -r ".[\"$2\"].data_offsets | @tsv")
+	tail -c +$((9 + length + begin)) "$1" | head -c $((end - begin)) | od -An -v -t "$3" | tr -s ' \n' ' ' | sed 's/^ //; s/ $//'
+}
+
+# refuses STATUS MESSAGE [OPTION]...: lifting fails so, and leaves nothing.
+refuses() {
+	local status=$1 message=$2
+	shift 2
+	rm -rf out
+	mkdir out
+	says "$status" "refer-lift: $message" lift -o out/model "$@" && [ -z "$(ls -A out)" ]
+}
+
+# Fails where the command succeeds; a plain ! would let the test go on.
+not() { ! "$@"; }
+
+@test "objects and training sentences, and nothing printed" {
+	lift -o model >printed 2>&1
+	[ ! -s printed ]
+	"$BIN/gs-check" model
+	[ "$(meta model names | jq -r '.[]' | sort)" = "$(cat "$made/objects")" ]
+	[ "$(meta model texts | jq -r '.[]')" = "$(jq -r 'select(.split == "train").text' "$made/sentences.jsonl")" ]
+	[ "$(meta model gaussians)" = 2000 ]
+	# each object has Gaussians, and true masks agree
+	read -r -a indptr <<<"$(tensor model indptr d8)"
+	for k in 1 2 3; do [ "${indptr[k]}" -gt $((indptr[k - 1] + 20)) ]; done
+	tensor model confidence f4 | tr ' ' '\n' | awk '$1 < 0.6 { exit 1 }'
+	# the sentences' objects are their own
+	[ "$(jq -r --argjson names "$(meta model names)" 'select(.split == "train") | .object as $o | $names | index($o)' \
+		"$made/sentences.jsonl" | paste -sd' ')" = "$(tensor model object d4)" ]
+}
+
+@test "pipes, stdin, stdout and any number of threads give the same" {
+	lift -o expected
+	lift --threads 1 >one
+	lift --threads 2 >two
+	cat masks.jsonl | lift --masks - --threads 7 -o - >three
+	lift --text - <text.safetensors >four
+	for file in one two three four; do cmp expected $file; done
+}
+
+@test "the order of the masks does not matter" {
+	lift -o expected
+	tac masks.jsonl >backwards
+	lift --masks backwards | cmp expected
+}
+
+@test "a third of one object's masks show another object: the rest outvote them" {
+	lift -o right
+	# the last of its masks gets that of the second object
+	jq -sc --arg a "$object" --arg b "$(sed -n 2p "$made/objects")" '
+		(map(select(.object == $a).view) | .[-1]) as $view
+		| (map(select(.view == $view and .object == $b).segmentation) | .[0]) as $wrong
+		| .[] | if .object == $a and .view == $view then .segmentation = $wrong else . end' masks.jsonl >wrong.jsonl
+	not cmp -s masks.jsonl wrong.jsonl
+	lift --masks wrong.jsonl -o wrong
+	# as many Gaussians above the cut as before, within a fifth
+	count() {
+		local begin end
+		read -r begin end < <(tensor "$1" indptr d8 | cut -d' ' -f "$2,$(($2 + 1))")
+		tensor "$1" share u1 | tr ' ' '\n' | sed -n "$((begin + 1)),${end}p" | awk '$1 > 0.45 * 255' | wc -l
+	}
+	at=$(($(meta right names | jq --arg a "$object" 'index($a)') + 1))
+	[ "$(meta right names)" = "$(meta wrong names)" ]
+	before=$(count right $at) after=$(count wrong $at)
+	echo "$before, then $after"
+	[ $((before * 4)) -lt $((after * 5)) ]
+	[ $((after * 4)) -lt $((before * 5)) ]
+}
+
+@test "a record of a training sentence is of its object, one of a test sentence does not count" {
+	lift -o expected
+	train=$(jq -r --arg o "$object" 'select(.object == $o and .split == "train").ref' "$made/sentences.jsonl" | head -n 1)
+	jq -c --arg o "$object" --arg r "$train" 'if .object == $o then del(.object) | .ref = $r else . end' masks.jsonl >by-ref
+	lift --masks by-ref | cmp expected
+	test=$(jq -r --arg o "$object" 'select(.object == $o and .split == "test").ref' "$made/sentences.jsonl" | head -n 1)
+	jq -c --arg o "$object" --arg r "$test" 'if .object == $o then .ref = $r else . end' masks.jsonl >by-test
+	count=$(grep -c "\"ref\":\"$test\"" by-test)
+	says 0 "refer-lift: warning: by-test: '$object' has no mask in a training view, and is left out
+refer-lift: warning: by-test: $count masks are of no training sentence's object" lift --masks by-test -o model
+	[ "$(meta model names | jq length)" = 2 ]
+	# those of another text are by their object
+	jq -c '.ref = "unknown"' masks.jsonl >unknown
+	lift --masks unknown | cmp expected
+}
+
+@test "an object without a mask, or without a sentence, is left out with a warning" {
+	jq -c --arg o "$object" 'select(.object != $o)' masks.jsonl >two
+	says 0 "refer-lift: warning: two: '$object' has no mask in a training view, and is left out" lift --masks two -o model
+	[ "$(meta model names | jq length)" = 2 ]
+	[ "$(meta model texts | jq length)" = "$(jq -r --arg o "$object" 'select(.object != $o and .split == "train").ref' \
+		"$made/sentences.jsonl" | wc -l)" ]
+	says 0 "" lift -q --masks two -o quiet
+	cmp model quiet
+	jq -c --arg o "$object" 'if .object == $o then .object = "nobody" else . end' masks.jsonl >unknown
+	says 0 "refer-lift: warning: unknown: '$object' has no mask in a training view, and is left out
+refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training sentence's object" lift --masks unknown -o model
+}
+
+@test "no masks: an empty model, and a warning for each object" {
+	[ "$(lift --masks /dev/null -o model 2>&1 | grep -c "has no mask in a training view")" = 3 ]
+	says 0 "model: ok: refer.lifted, 0 objects, 0 shares, 0 sentences, 0 words, 24 columns, 2000 gaussians of the scene" \
+		"$BIN/gs-check" model
+}
+
+@test "views without weights do not count, nor test views" {
+	mkdir some
+	view=$(jq -r .view masks.jsonl | sort -u | head -n 1)
+	cp "$made/weights/"* some
+	rm "some/$view.safetensors"
+	jq -c --arg v "$view" 'select(.view != $v)' masks.jsonl >rest
+	lift --masks rest -o expected
+	says 0 "refer-lift: warning: some: 1 training views have no weights, and their masks do not count" \
+		lift --weights some -o model
+	cmp expected model
+	jq -c --arg v "$(head -n 1 "$made/test-views" | cut -d, -f1)" '.view = $v' masks.jsonl >test
+	[ "$(lift --masks test -o model 2>&1 | grep -c "has no mask in a training view")" = 3 ]
+}
+
+@test "masks of another size" {
+	lift -o expected
+	# one of all of its view, in one pixel
+	{ cat masks.jsonl; head -n 1 masks.jsonl | jq -c '.segmentation = {size: [1, 1], counts: [0, 1]}'; } >more
+	lift --masks more -o model
+	not cmp -s expected model
+}
+
+@test "-v says what was found" {
+	lift -v -o model 2>said
+	grep -qE '^refer-lift: 3 objects, [0-9]+ Gaussians with a share in one; agreement of the masks 0\.[0-9]{3}$' said
+	[ "$(wc -l <said)" = 2 ]
+}
+
+@test "text without word pieces" {
+	# the key under another name of the same length
+	LC_ALL=C sed 's/"pieces"/"piecez"/' text.safetensors >old
+	refuses 3 "old: has no word pieces: encode the sentences anew" --text old
+}
+
+@test "input that does not belong together, or is of another kind" {
+	jq -c '.view = "elsewhere"' masks.jsonl | head -n 1 >away
+	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'" --masks away
+	refuses 3 "scene/splats.safetensors: format is 'refer.splats', expected 'refer.text'" --text scene/splats.safetensors
+	refuses 3 "scene/cameras.json:1: not JSON at column 3" --masks scene/cameras.json
+}
+
+@test "missing, empty and truncated files" {
+	refuses 4 "none: No such file or directory" --text none
+	refuses 4 "none: No such file or directory" --masks none
+	refuses 4 "none/splats.safetensors: No such file or directory" --scene none
+	refuses 3 "empty: 0 bytes, too short for a safetensors file" --text empty 3<>empty
+	head -c 2000 text.safetensors >cut
+	refuses 3 "cut: header of $(od -An -t d8 -N 8 cut | tr -d ' ') bytes does not fit a file of 2000: not safetensors, or cut short" --text cut
+	head -c 300 masks.jsonl >cut
+	rm -rf out && mkdir out
+	run lift --masks cut -o out/model
+	[ "$status" = 3 ]
+	[[ "$output" == "refer-lift: cut:"*": not JSON at column "* ]]
+	[ -z "$(ls -A out)" ]
+}
+
+@test "usage" {
+	run "$BIN/refer-lift" --scene scene --weights weights --text text
+	[ "$status" = 2 ]
+	[ "${lines[0]}" = "refer-lift: --scene, --weights, --text and --masks are required" ]
+	[ "${lines[1]}" = "Try 'refer-lift --help'." ]
+	run lift --text - --masks -
+	[ "$status" = 2 ]
+	[ "${lines[0]}" = "refer-lift: --text and --masks cannot both be stdin" ]
+}
+
+@test "an output that cannot be written leaves what was there" {
+	echo before >out
+	run lift --text none -o out
+	[ "$(cat out)" = before ]
+	refuses 4 "nowhere/model: No such file or directory" -o nowhere/model
+}
