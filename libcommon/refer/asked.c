@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "refer/calibrate.h"
 #include "refer/choose.h"
+#include "refer/sight.h"
 #include "splat/render.h"
 
 #include <math.h>
@@ -204,18 +205,18 @@ static int is_of(const struct asked *a, size_t n, size_t answer, size_t i)
 	return 1;
 }
 
-static int take_whole(
-	const struct asked *a, size_t answer, const struct splats *s, struct splats *whole, struct err *e)
+static int take_whole(const struct asked *a, size_t answer, const struct splats *s, const char *in_sight,
+	struct splats *whole, struct err *e)
 {
 	size_t n = 0, at = 0;
 
 	for (size_t i = 0; i < s->n; i++)
-		n += (size_t)is_of(a, s->n, answer, i);
+		n += in_sight[i] && is_of(a, s->n, answer, i);
 	if (splats_alloc(whole, n, 1, e))
 		return -1;
 	memset(whole->sh, 0, n * 3 * sizeof *whole->sh);
 	for (size_t i = 0; i < s->n; i++) {
-		if (!is_of(a, s->n, answer, i))
+		if (!in_sight[i] || !is_of(a, s->n, answer, i))
 			continue;
 		memcpy(whole->means + 3 * at, s->means + 3 * i, 3 * sizeof *s->means);
 		memcpy(whole->scales + 3 * at, s->scales + 3 * i, 3 * sizeof *s->scales);
@@ -225,14 +226,21 @@ static int take_whole(
 	return 0;
 }
 
-int asked_wholes(const struct asked *a, const struct splats *s, struct splats *wholes, struct err *e)
+int asked_wholes(const struct asked *a, const struct splats *s, const struct cameras *cameras,
+	struct splats *wholes, struct err *e)
 {
-	for (size_t k = 0; k < a->answers; k++) {
-		if (!take_whole(a, k, s, &wholes[k], e))
-			continue;
-		while (k--)
-			splats_free(&wholes[k]);
-		return -1;
-	}
-	return 0;
+	char *in_sight = mem_alloc(s->n, 1, "Gaussians", e);
+	size_t done = 0;
+
+	if (in_sight && !sight_find(s, cameras, in_sight, e))
+		while (done < a->answers && !take_whole(a, done, s, in_sight, &wholes[done], e))
+			done++;
+	else
+		done = SIZE_MAX;
+	free(in_sight);
+	if (done == a->answers)
+		return 0;
+	for (size_t k = 0; done != SIZE_MAX && k < done; k++)
+		splats_free(&wholes[k]);
+	return -1;
 }

@@ -47,8 +47,10 @@ int asked_lifted(
 	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e);
 void asked_free(struct asked *a);
 
-/* wholes (answers) gets the Gaussians of each answer, those with responses above 0, as splats of their own
- * without colour. splats_free each. On failure there are none. */
-int asked_wholes(const struct asked *a, const struct splats *s, struct splats *wholes, struct err *e);
+/* wholes (answers) gets the Gaussians of each answer, those with responses above 0 that are in sight of the
+ * cameras (refer/sight.h), as splats of their own without colour. splats_free each. On failure there are
+ * none. */
+int asked_wholes(const struct asked *a, const struct splats *s, const struct cameras *cameras,
+	struct splats *wholes, struct err *e);
 
 #endif
