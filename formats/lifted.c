@@ -241,3 +241,35 @@ int lifted_write(const struct lifted *l, const char *path, const char *options, 
 	free(share);
 	return bad ? -1 : 0;
 }
+
+int lifted_add_sentences(
+	struct lifted *l, const struct text *t, const size_t *object, char *const *names, struct err *e)
+{
+	const size_t width = (size_t)t->width, words = (size_t)t->offsets[t->n];
+
+	l->width = t->width;
+	l->names = mem_zalloc(l->objects, sizeof *l->names, "objects", e);
+	l->object = mem_alloc(t->n, sizeof *l->object, "sentences", e);
+	l->texts = mem_zalloc(t->n, sizeof *l->texts, "sentences", e);
+	l->pieces = mem_zalloc(t->n, sizeof *l->pieces, "sentences", e);
+	l->offsets = mem_zalloc(t->n + 1, sizeof *l->offsets, "sentences", e);
+	l->words = mem_alloc(words, width * sizeof *l->words, "sentences", e);
+	if (!l->names || !l->object || !l->texts || !l->pieces || !l->offsets || !l->words)
+		return -1;
+	for (size_t o = 0; o < l->objects; o++)
+		if (!(l->names[o] = mem_strdup(names[o], e)))
+			return -1;
+	for (size_t i = 0; i < t->n; i++) {
+		if (object[i] == LIFTED_NONE)
+			continue;
+		const size_t to = l->sentences++, from = (size_t)t->offsets[i];
+		const size_t count = (size_t)t->offsets[i + 1] - from, at = (size_t)l->offsets[to];
+		l->object[to] = (int32_t)object[i];
+		memcpy(l->words + at * width, t->words + from * width, count * width * sizeof *l->words);
+		l->offsets[to + 1] = (int64_t)(at + count);
+		if (!(l->texts[to] = mem_strdup(t->texts[i], e)) ||
+			!(l->pieces[to] = mem_strdup(t->pieces[i], e)))
+			return -1;
+	}
+	return 0;
+}
