@@ -23,13 +23,9 @@ struct asked_of {
 	size_t count;
 };
 
-/* An answer is `parts` channels side by side: its image is the least of theirs. A lifted object's second one
- * is how much more a Gaussian is the object's than any other's, so that at a border every pixel goes to the
- * object that has more of it. */
 struct asked {
 	size_t answers;
-	size_t parts;	  /* 1 or 2 */
-	float *responses; /* (answers * parts,N) as render_pack has them */
+	float *responses; /* (answers,N) as render_pack has them */
 	double *lifts;	  /* (answers) what calibration added to them */
 	size_t *answer;	  /* (count) of each sentence */
 	double *sure;	  /* (count) in [0,1], or NULL: a trained model says so in each view (respond_mask) */
