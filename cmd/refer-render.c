@@ -142,7 +142,8 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 	r->wholes = mem_zalloc(r->asked.answers, sizeof *r->wholes, "objects", e);
 	if (!r->wholes)
 		return -1;
-	return options.is_amodal ? asked_wholes(&r->asked, &r->scene.splats, r->wholes, e) : 0;
+	return options.is_amodal ? asked_wholes(&r->asked, &r->scene.splats, &r->scene.cameras, r->wholes, e)
+				 : 0;
 }
 
 /* One answer: its mask, and the pictures of all sentences that it is the answer to. */

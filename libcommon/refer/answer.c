@@ -32,7 +32,7 @@ static void room_free(struct room *room)
 /* Channels that are blended in one pass. */
 static size_t group_size(const struct answer_question *q, size_t first)
 {
-	const size_t left = q->asked->answers * q->asked->parts - first;
+	const size_t left = q->asked->answers - first;
 
 	return left < RENDER_GROUP ? left : RENDER_GROUP;
 }
@@ -77,14 +77,6 @@ static int take_outline(struct room *room, const struct splats *whole, struct an
 	return 0;
 }
 
-/* The least of the parts of an answer, in the first. A group of channels has whole answers. */
-static void join_parts(float *image, size_t pixels, size_t parts)
-{
-	for (size_t k = 1; k < parts; k++)
-		for (size_t p = 0; p < pixels; p++)
-			image[p] = fminf(image[p], image[k * pixels + p]);
-}
-
 static int answer_view(struct room *room, const struct answer_question *q, const struct camera *c,
 	size_t view, const struct answer_calls *calls, struct err *e)
 {
@@ -102,14 +94,13 @@ static int answer_view(struct room *room, const struct answer_question *q, const
 		prepare(&room->view, q->splats, c, e) ||
 		(q->wants_rgb && render_colors(room->view, q->splats, c, (const float[3]){0}, room->rgb, e)))
 		return -1;
-	for (size_t first = 0; first < asked->answers * asked->parts; first += RENDER_GROUP) {
+	for (size_t first = 0; first < asked->answers; first += RENDER_GROUP) {
 		const size_t now = group_size(q, first);
 		render_packed(
 			room->view, asked->responses + first * q->splats->n, (int)now, room->images, NULL);
-		for (size_t i = 0; i < now; i += asked->parts) {
+		for (size_t i = 0; i < now; i++) {
 			float *image = room->images + i * pixels;
-			const size_t answer = (first + i) / asked->parts;
-			join_parts(image, pixels, asked->parts);
+			const size_t answer = first + i;
 			struct answer a = {.camera = c,
 				.view = view,
 				.answer = answer,

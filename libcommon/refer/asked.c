@@ -3,15 +3,13 @@
 #include "base/mem.h"
 #include "refer/calibrate.h"
 #include "refer/choose.h"
+#include "refer/sight.h"
 #include "splat/render.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define UNUSED SIZE_MAX
-/* Overlap above which two objects are taken for one. */
-#define SAME_OBJECT 0.5
 
 void asked_free(struct asked *a)
 {
@@ -22,14 +20,13 @@ void asked_free(struct asked *a)
 	*a = (struct asked){0};
 }
 
-static int alloc_answers(struct asked *a, size_t answers, size_t parts, size_t gaussians, struct err *e)
+static int alloc_answers(struct asked *a, size_t answers, size_t gaussians, struct err *e)
 {
 	size_t bytes;
 
-	if (mem_size(gaussians, parts * sizeof *a->responses, &bytes))
+	if (mem_size(gaussians, sizeof *a->responses, &bytes))
 		return err_set(e, ERR_SYSTEM, "responses: %zu Gaussians do not fit in memory", gaussians);
 	a->answers = answers;
-	a->parts = parts;
 	a->responses = mem_alloc(answers, bytes, "responses", e);
 	a->lifts = mem_zalloc(answers, sizeof *a->lifts, "responses", e);
 	return a->responses && a->lifts ? 0 : -1;
@@ -39,7 +36,7 @@ static int ask_trained(struct asked *a, const struct respond_model *m, const str
 	int wants_calibration, struct err *e)
 {
 	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
-	if (!a->answer || alloc_answers(a, q->count, 1, q->splats->n, e))
+	if (!a->answer || alloc_answers(a, q->count, q->splats->n, e))
 		return -1;
 	for (size_t i = 0; i < q->count; i++)
 		a->answer[i] = i;
@@ -98,60 +95,16 @@ static int choose_objects(
 	return bad;
 }
 
-/* Sum of the lesser over sum of the greater share of two objects; own (N) has those of the first. */
-static double overlap(const struct lifted *l, const float *own, double own_sum, size_t other)
-{
-	double both = 0, sum = own_sum;
-
-	for (int64_t k = l->indptr[other]; k < l->indptr[other + 1]; k++) {
-		both += (double)fminf(own[l->index[k]], l->share[k]);
-		sum += (double)l->share[k];
-	}
-	return sum > both ? both / (sum - both) : 1;
-}
-
-/* margin (N): how much larger an object's share is than the largest of any other. Two objects that are mostly
- * of the same Gaussians are one thing under two names, and do not compete for it. own (N) is room. */
-static void take_margin(const struct lifted *l, size_t object, float *own, float *margin)
-{
-	double sum = 0;
-
-	memset(own, 0, l->gaussians * sizeof *own);
-	memset(margin, 0, l->gaussians * sizeof *margin);
-	for (int64_t k = l->indptr[object]; k < l->indptr[object + 1]; k++) {
-		own[l->index[k]] = l->share[k];
-		sum += (double)l->share[k];
-	}
-	for (size_t o = 0; o < l->objects; o++) {
-		if (o == object || overlap(l, own, sum, o) > SAME_OBJECT)
-			continue;
-		for (int64_t k = l->indptr[o]; k < l->indptr[o + 1]; k++)
-			margin[l->index[k]] = fmaxf(margin[l->index[k]], l->share[k]);
-	}
-	for (size_t i = 0; i < l->gaussians; i++)
-		margin[i] = own[i] - margin[i];
-}
-
 static int take_responses(struct asked *a, const struct lifted *l, const size_t *of, struct err *e)
 {
 	const size_t n = l->gaussians;
-	float *own = mem_alloc(n, sizeof *own, "responses", e);
 
-	if (!own)
-		return -1;
-	for (size_t o = 0; o <= l->objects; o++) {
-		if (of[o] == UNUSED)
-			continue;
-		float *to = a->responses + 2 * n * of[o];
-		if (o == l->objects) {
-			memset(to, 0, 2 * n * sizeof *to);
-			continue;
-		}
-		lifted_responses(l, o, to);
-		take_margin(l, o, own, to + n);
-	}
-	free(own);
-	return render_pack(a->responses, n, (int)(2 * a->answers), e);
+	for (size_t o = 0; o < l->objects; o++)
+		if (of[o] != UNUSED)
+			lifted_responses(l, o, a->responses + n * of[o]);
+	if (of[l->objects] != UNUSED)
+		memset(a->responses + n * of[l->objects], 0, n * sizeof *a->responses);
+	return render_pack(a->responses, n, (int)a->answers, e);
 }
 
 static int ask_lifted(
@@ -172,7 +125,7 @@ static int ask_lifted(
 			*own = answers++;
 		a->answer[i] = *own;
 	}
-	int bad = !of || alloc_answers(a, answers, 2, l->gaussians, e) || take_responses(a, l, of, e);
+	int bad = !of || alloc_answers(a, answers, l->gaussians, e) || take_responses(a, l, of, e);
 	free(of);
 	return bad ? -1 : 0;
 }
@@ -188,27 +141,17 @@ int asked_lifted(
 }
 
 /* A Gaussian's response, where render_pack has put it. */
-static float packed(const struct asked *a, size_t n, size_t channel, size_t i)
+static float packed(const struct asked *a, size_t n, size_t answer, size_t i)
 {
-	const size_t first = channel - channel % RENDER_GROUP, left = a->answers * a->parts - first;
+	const size_t first = answer - answer % RENDER_GROUP, left = a->answers - first;
 	const size_t now = left < RENDER_GROUP ? left : RENDER_GROUP;
 
-	return a->responses[first * n + i * now + channel - first];
-}
-
-/* The least of a Gaussian's responses of an answer. */
-static float least_part(const struct asked *a, size_t n, size_t answer, size_t i)
-{
-	float least = packed(a, n, answer * a->parts, i);
-
-	for (size_t k = 1; k < a->parts; k++)
-		least = fminf(least, packed(a, n, answer * a->parts + k, i));
-	return least;
+	return a->responses[first * n + i * now + answer - first];
 }
 
 static int is_of(const struct asked *a, size_t n, size_t answer, size_t i)
 {
-	return least_part(a, n, answer, i) > 0;
+	return packed(a, n, answer, i) > 0;
 }
 
 size_t asked_gaussians(const struct asked *a, size_t gaussians, size_t answer, int32_t *ids, float *responses)
@@ -216,7 +159,7 @@ size_t asked_gaussians(const struct asked *a, size_t gaussians, size_t answer, i
 	size_t n = 0;
 
 	for (size_t i = 0; i < gaussians; i++) {
-		const float response = least_part(a, gaussians, answer, i);
+		const float response = packed(a, gaussians, answer, i);
 		if (!(response > 0))
 			continue;
 		ids[n] = (int32_t)i;
@@ -225,18 +168,18 @@ size_t asked_gaussians(const struct asked *a, size_t gaussians, size_t answer, i
 	return n;
 }
 
-static int take_whole(
-	const struct asked *a, size_t answer, const struct splats *s, struct splats *whole, struct err *e)
+static int take_whole(const struct asked *a, size_t answer, const struct splats *s, const char *in_sight,
+	struct splats *whole, struct err *e)
 {
 	size_t n = 0, at = 0;
 
 	for (size_t i = 0; i < s->n; i++)
-		n += (size_t)is_of(a, s->n, answer, i);
+		n += in_sight[i] && is_of(a, s->n, answer, i);
 	if (splats_alloc(whole, n, 1, e))
 		return -1;
 	memset(whole->sh, 0, n * 3 * sizeof *whole->sh);
 	for (size_t i = 0; i < s->n; i++) {
-		if (!is_of(a, s->n, answer, i))
+		if (!in_sight[i] || !is_of(a, s->n, answer, i))
 			continue;
 		memcpy(whole->means + 3 * at, s->means + 3 * i, 3 * sizeof *s->means);
 		memcpy(whole->scales + 3 * at, s->scales + 3 * i, 3 * sizeof *s->scales);
@@ -246,14 +189,21 @@ static int take_whole(
 	return 0;
 }
 
-int asked_wholes(const struct asked *a, const struct splats *s, struct splats *wholes, struct err *e)
+int asked_wholes(const struct asked *a, const struct splats *s, const struct cameras *cameras,
+	struct splats *wholes, struct err *e)
 {
-	for (size_t k = 0; k < a->answers; k++) {
-		if (!take_whole(a, k, s, &wholes[k], e))
-			continue;
-		while (k--)
-			splats_free(&wholes[k]);
-		return -1;
-	}
-	return 0;
+	char *in_sight = mem_alloc(s->n, 1, "Gaussians", e);
+	size_t done = 0;
+
+	if (in_sight && !sight_find(s, cameras, in_sight, e))
+		while (done < a->answers && !take_whole(a, done, s, in_sight, &wholes[done], e))
+			done++;
+	else
+		done = SIZE_MAX;
+	free(in_sight);
+	if (done == a->answers)
+		return 0;
+	for (size_t k = 0; done != SIZE_MAX && k < done; k++)
+		splats_free(&wholes[k]);
+	return -1;
 }

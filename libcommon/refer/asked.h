@@ -23,13 +23,9 @@ struct asked_of {
 	size_t count;
 };
 
-/* An answer is `parts` channels side by side: its image is the least of theirs. A lifted object's second one
- * is how much more a Gaussian is the object's than any other's, so that at a border every pixel goes to the
- * object that has more of it. */
 struct asked {
 	size_t answers;
-	size_t parts;	  /* 1 or 2 */
-	float *responses; /* (answers * parts,N) as render_pack has them */
+	float *responses; /* (answers,N) as render_pack has them */
 	double *lifts;	  /* (answers) what calibration added to them */
 	size_t *answer;	  /* (count) of each sentence */
 	double *sure;	  /* (count) in [0,1], or NULL: a trained model says so in each view (respond_mask) */
@@ -47,13 +43,15 @@ int asked_lifted(
 	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e);
 void asked_free(struct asked *a);
 
-/* The Gaussians of an answer, those whose least response of its parts is above 0: ids, and these responses
- * (both with room for all `gaussians` of the scene). Returns how many. */
+/* The Gaussians of an answer, those with responses above 0: ids, and these responses (both with room for all
+ * `gaussians` of the scene). Returns how many. */
 size_t asked_gaussians(
 	const struct asked *a, size_t gaussians, size_t answer, int32_t *ids, float *responses);
 
-/* wholes (answers) gets the Gaussians of each answer, those with responses above 0, as splats of their own
- * without colour. splats_free each. On failure there are none. */
-int asked_wholes(const struct asked *a, const struct splats *s, struct splats *wholes, struct err *e);
+/* wholes (answers) gets the Gaussians of each answer, those with responses above 0 that are in sight of the
+ * cameras (refer/sight.h), as splats of their own without colour. splats_free each. On failure there are
+ * none. */
+int asked_wholes(const struct asked *a, const struct splats *s, const struct cameras *cameras,
+	struct splats *wholes, struct err *e);
 
 #endif
