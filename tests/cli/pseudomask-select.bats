@@ -40,7 +40,7 @@ strays() { ls | grep -v -x candidates.jsonl || true; }
 	[ "${lines[1]}" = "Try 'pseudomask-select --help'." ]
 	run "$BIN/pseudomask-select" --method best candidates.jsonl
 	[ "$status" -eq 2 ]
-	[ "${lines[0]}" = "pseudomask-select: --method: 'best' is not one of ciou|iou|top1|first" ]
+	[ "${lines[0]}" = "pseudomask-select: --method: 'best' is not one of ciou|iou|top1|first|scene" ]
 	run "$BIN/pseudomask-select" --min-score 1.5 candidates.jsonl
 	[ "$status" -eq 2 ]
 	[ "${lines[0]}" = "pseudomask-select: --min-score: '1.5' is not a number from 0 to 1" ]
