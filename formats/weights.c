@@ -226,3 +226,27 @@ done:
 	free(owned);
 	return bad;
 }
+
+int weights_each(const char *dir, const struct cameras *cameras, size_t gaussians,
+	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
+	size_t *missing, struct err *e)
+{
+	*missing = 0;
+	for (size_t v = 0; v < cameras->n; v++) {
+		const struct camera *camera = &cameras->views[v];
+		struct weights w;
+		if (camera->split != SPLIT_TRAIN)
+			continue;
+		int found = weights_exist(dir, camera->name, e);
+		if (found < 0 || (found && weights_open(&w, dir, camera->name, gaussians, e)))
+			return -1;
+		*missing += !found;
+		if (!found)
+			continue;
+		int bad = visit(context, v, &w, e);
+		weights_close(&w);
+		if (bad)
+			return -1;
+	}
+	return 0;
+}

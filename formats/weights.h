@@ -5,6 +5,7 @@
 #include "base/err.h"
 #include "formats/precision.h"
 #include "formats/safetensors.h"
+#include "geom/camera.h"
 #include "splat/view_weights.h"
 
 #include <stdint.h>
@@ -33,6 +34,12 @@ int weights_open_file(struct weights *w, const char *path, struct err *e);
 /* 1 where DIR/VIEW.safetensors is there, 0 where it is not, -1 with *e. */
 int weights_exist(const char *dir, const char *view, struct err *e);
 void weights_close(struct weights *w);
+
+/* Visits the training views that have weights, in the order of the cameras, each open only meanwhile; a visit
+ * that does not give 0 ends it. *missing gets the number of training views without. -1 with *e. */
+int weights_each(const char *dir, const struct cameras *cameras, size_t gaussians,
+	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
+	size_t *missing, struct err *e);
 
 /* What the library blends with; referred to. */
 struct view_weights weights_view(const struct weights *w);

@@ -38,7 +38,7 @@ static void find_masks(
 		struct carry_mask *m = &c->masks[g->object];
 		const size_t view = views[g->first];
 		if (g->winner >= 0 && cameras->views[view].split == SPLIT_TRAIN && view < m->view)
-			*m = (struct carry_mask){view, (size_t)g->winner, g->mask};
+			*m = (struct carry_mask){view, (size_t)g->winner, g->vote, g->mask};
 	}
 	for (size_t i = 0; i < p->n; i++)
 		if (c->masks[i].view < cameras->n)

@@ -19,6 +19,7 @@
 struct carry_mask {
 	size_t view;   /* of the scene, where it begins */
 	size_t record; /* of the pool */
+	double score;  /* its vote */
 	const struct rle *mask;
 };
 

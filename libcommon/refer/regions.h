@@ -84,17 +84,11 @@ int regions_grow(struct regions *r, struct err *e);
 /* Gives each object its region, after regions_grow. */
 int regions_assign(struct regions *r, struct err *e);
 
-/* An object's mask in a view. */
-struct regions_mask {
-	struct rle mask;
-	double score; /* the candidate's agreement with the region; `typical` where it is rendered */
-	int is_rendered;
-};
-
-/* masks (object_count) in a view, after regions_assign; rle_free each. They have the size of the view's
- * candidates, or of its weights where it has none; empty where an object has no region or shows nothing of
- * it. On failure there are none. */
+/* masks and scores (object_count) in a view, after regions_assign; rle_free each mask. They have the size of
+ * the view's candidates, or of its weights where it has none; empty where an object has no region or shows
+ * nothing of it. The score is the agreement of the candidate with the region, and the region's typical one
+ * where it is rendered: *rendered goes up by each such mask that is not empty. On failure there are none. */
 int regions_render(const struct regions *r, size_t view, const struct view_weights *w, int height, int width,
-	struct regions_mask *masks, struct err *e);
+	struct rle *masks, double *scores, size_t *rendered, struct err *e);
 
 #endif

@@ -7,9 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SHOWS 0.5   /* agreement from which a candidate is of a region at all */
 #define CHANCE 0.02 /* share of a sentence's candidates that is found by accident */
-#define PEER 0.7    /* of the region's typical agreement, from which a candidate is better than the region */
+#define PEER 0.65   /* of the region's typical agreement, from which a candidate shows it */
 
 /* share (sentences,regions): of each sentence's candidates, by confidence, in each region. */
 static int find_shares(const struct regions *r, double *share, struct err *e)
@@ -25,7 +24,7 @@ static int find_shares(const struct regions *r, double *share, struct err *e)
 			continue;
 		total[at->sentence] += at->score;
 		for (size_t i = 0; i < r->region_count; i++)
-			if (r->regions[i].agreement[c] > (float)SHOWS &&
+			if ((double)r->regions[i].agreement[c] > PEER * r->regions[i].typical &&
 				(best == REGIONS_NONE ||
 					r->regions[i].agreement[c] > r->regions[best].agreement[c]))
 				best = i;
@@ -132,15 +131,8 @@ static const struct rle *find_size(const struct regions *r, size_t view)
 	return NULL;
 }
 
-static int copy_candidate(
-	struct regions_mask *m, const struct region *region, size_t c, const struct rle *mask, struct err *e)
-{
-	m->score = (double)region->agreement[c];
-	return rle_from_runs(&m->mask, mask->runs, mask->n, mask->height, mask->width, e);
-}
-
 int regions_render(const struct regions *r, size_t view, const struct view_weights *w, int height, int width,
-	struct regions_mask *masks, struct err *e)
+	struct rle *masks, double *scores, size_t *rendered, struct err *e)
 {
 	float *image = mem_alloc(w->pixels, VIEW_GROUP * sizeof *image, "masks", e);
 	uint8_t *pixels = mem_alloc(w->pixels, 1, "masks", e);
@@ -148,26 +140,30 @@ int regions_render(const struct regions *r, size_t view, const struct view_weigh
 	size_t there = REGIONS_NONE; /* the group that the image has */
 	int bad = !image || !pixels;
 
-	for (size_t o = 0; o < r->object_count; o++)
-		masks[o] = (struct regions_mask){0};
+	for (size_t o = 0; o < r->object_count; o++) {
+		masks[o] = (struct rle){0};
+		scores[o] = 0;
+	}
 	for (size_t o = 0; o < r->object_count && !bad; o++) {
 		if (r->served[o] == REGIONS_NONE)
 			continue;
 		const struct region *region = &r->regions[r->served[o]];
 		const size_t c = find_candidate(r, region, view), group = o / VIEW_GROUP;
 		if (c != REGIONS_NONE) {
-			bad = copy_candidate(&masks[o], region, c, r->candidates[c].mask, e);
+			const struct rle *mask = r->candidates[c].mask;
+			scores[o] = (double)region->agreement[c];
+			bad = rle_from_runs(&masks[o], mask->runs, mask->n, mask->height, mask->width, e);
 			continue;
 		}
 		if (group != there)
 			lift_render(w, r->field + group * VIEW_GROUP * r->gaussians, VIEW_GROUP, image);
 		there = group;
-		masks[o].score = region->typical;
-		masks[o].is_rendered = 1;
-		bad = cut(image + o % VIEW_GROUP * w->pixels, pixels, height, width, like, &masks[o].mask, e);
+		scores[o] = region->typical;
+		bad = cut(image + o % VIEW_GROUP * w->pixels, pixels, height, width, like, &masks[o], e);
+		*rendered += !bad && rle_area(&masks[o]) > 0;
 	}
 	for (size_t o = 0; o < r->object_count && bad; o++)
-		rle_free(&masks[o].mask);
+		rle_free(&masks[o]);
 	free(image);
 	free(pixels);
 	return bad ? -1 : 0;

@@ -40,7 +40,7 @@ strays() { ls | grep -v -x candidates.jsonl || true; }
 	[ "${lines[1]}" = "Try 'pseudomask-select --help'." ]
 	run "$BIN/pseudomask-select" --method best candidates.jsonl
 	[ "$status" -eq 2 ]
-	[ "${lines[0]}" = "pseudomask-select: --method: 'best' is not one of ciou|iou|top1|first" ]
+	[ "${lines[0]}" = "pseudomask-select: --method: 'best' is not one of ciou|iou|top1|first|scene" ]
 	run "$BIN/pseudomask-select" --min-score 1.5 candidates.jsonl
 	[ "$status" -eq 2 ]
 	[ "${lines[0]}" = "pseudomask-select: --min-score: '1.5' is not a number from 0 to 1" ]
@@ -49,21 +49,27 @@ strays() { ls | grep -v -x candidates.jsonl || true; }
 	[ "${lines[0]}" = "pseudomask-select: unexpected operand 'other.jsonl'" ]
 }
 
-@test "scene and weights are for the method that needs them, and both" {
-	for method in "" "--method iou" "--method top1"; do
-		run "$BIN/pseudomask-select" $method --scene scene candidates.jsonl
+@test "scene and weights are for the methods that need them, and both" {
+	for method in ciou iou top1; do
+		run "$BIN/pseudomask-select" --method $method --scene scene --weights weights candidates.jsonl
 		[ "$status" -eq 2 ]
-		[ "${lines[0]}" = "pseudomask-select: --scene is for --method first" ]
-		run "$BIN/pseudomask-select" $method --weights weights candidates.jsonl
+		[ "${lines[0]}" = "pseudomask-select: --scene is for --method scene and first" ]
+		run "$BIN/pseudomask-select" --method $method --weights weights candidates.jsonl
 		[ "$status" -eq 2 ]
-		[ "${lines[0]}" = "pseudomask-select: --weights is for --method first" ]
+		[ "${lines[0]}" = "pseudomask-select: --weights is for --method scene and first" ]
 	done
 	for given in "" "--scene scene" "--weights weights"; do
-		run "$BIN/pseudomask-select" --method first $given candidates.jsonl
-		[ "$status" -eq 2 ]
-		[ "${lines[0]}" = "pseudomask-select: --method first needs --scene SCENE and --weights WEIGHTS" ]
-		[ "${lines[1]}" = "Try 'pseudomask-select --help'." ]
+		for method in first scene; do
+			run "$BIN/pseudomask-select" --method $method $given candidates.jsonl
+			[ "$status" -eq 2 ]
+			[ "${lines[0]}" = "pseudomask-select: --method $method needs --scene SCENE and --weights WEIGHTS" ]
+			[ "${lines[1]}" = "Try 'pseudomask-select --help'." ]
+		done
 	done
+	# without a method, either asks for scene
+	run "$BIN/pseudomask-select" --scene scene candidates.jsonl
+	[ "$status" -eq 2 ]
+	[ "${lines[0]}" = "pseudomask-select: --method scene needs --scene SCENE and --weights WEIGHTS" ]
 }
 
 @test "ciou: the object's sentences outvote the most confident of them" {
@@ -341,4 +347,107 @@ truth_of() { jq -c "select(.view == \"$1\") | .score = 0.9" "$BATS_FILE_TMPDIR/t
 	[ "$status" -eq 3 ]
 	[[ "$output" == "pseudomask-select: ../late/view_003.safetensors: "* ]]
 	[ "$(ls)" = synth ]
+}
+
+# scene ARG...: the objects' regions in the synthetic scene.
+scene() {
+	ln -sfn "$BATS_FILE_TMPDIR" synth
+	"$BIN/pseudomask-select" --scene synth/scene --weights synth/weights "$@"
+}
+
+@test "scene: better than votes, in the scene's order, and the default with a scene and weights" {
+	cp "$BATS_FILE_TMPDIR/candidates.jsonl" many.jsonl
+	scene -o regions many.jsonl
+	scene --method scene many.jsonl | cmp - regions
+	"$BIN/pseudomask-select" -o votes many.jsonl
+	jq -c '[.view, .object]' regions > keys
+	for view in 0 1 2 3 5; do
+		jq -r .object many.jsonl | awk '!seen[$0]++' | jq -R -c "[\"view_00$view\", .]"
+	done | grep -Fxf keys | cmp - keys
+	jq -e -s 'all(.segmentation.size == [72, 96] and (has("ref") | not) and .score > 0 and .score <= 1)' regions
+	quality() { "$BIN/miou-score" --json -q --predicted-views --truth synth/truth.jsonl "$1" | jq .miou; }
+	jq -n -e "$(quality regions) > $(quality votes) + 0.1"
+}
+
+@test "scene: a confusion that votes get wrong, and the other object's masks that it is settled with" {
+	grep -v view_004 "$BATS_FILE_TMPDIR/truth.jsonl" | of_both > two
+	# three of four sentences take the second object for the first, but for a view each
+	{ jq -c '.ref = .object + " own" | .score = 0.6' two
+	of 1 < two | jq -c '.ref = .object + " same" | .score = 0.7'
+	for k in 0 1 2; do
+		of 1 < two | grep -v "view_00$k" | jq -c --arg o "$(sed -n 2p "$BATS_FILE_TMPDIR/objects")" ".object = \$o | .ref = \"r$k\" | .score = 0.9"
+		of 2 < two | grep "view_00$k" | jq -c ".ref = \"r$k\" | .score = 0.5"
+	done; } > confused.jsonl
+	"$BIN/pseudomask-select" -o votes confused.jsonl
+	of 2 < votes | jq -c .segmentation | sort | comm -12 - <(of 1 < two | jq -c .segmentation | sort) > wrong
+	[ "$(wc -l < wrong)" -ge 4 ]
+	scene -o regions confused.jsonl
+	cmp <(jq -c '[.view, .object, .segmentation]' regions | sort) <(jq -c '[.view, .object, .segmentation]' two | sort)
+}
+
+@test "scene: a view without candidates has the rendered region, in the size of its weights" {
+	truth_of view_000 > true.jsonl
+	truth_of view_001 | jq -c '.segmentation' > size
+	run --separate-stderr scene -v -o out true.jsonl
+	[ "$status" -eq 0 ]
+	[[ "${stderr_lines[1]}" == "pseudomask-select: 8 objects, 8 regions; "*" masks in 5 views, "*" of them rendered" ]]
+	cmp <(jq -c 'select(.view == "view_000") | .segmentation' out) <(jq -c .segmentation true.jsonl)
+	jq -c 'select(.view != "view_000")' out > others.jsonl
+	"$BIN/miou-score" --truth synth/truth.jsonl --predicted-views --fail-under 0.6 others.jsonl
+	# candidates larger than the weights: as they are, and what is rendered there as large
+	"$BIN/gs-weigh" -q --scale 0.5 -o half "$BATS_FILE_TMPDIR/scene"
+	scene --weights half -o half.jsonl true.jsonl
+	jq -e -s 'all(.segmentation.size == if .view == "view_000" then [72, 96] else [36, 48] end)' half.jsonl
+	"$BIN/miou-score" --truth synth/truth.jsonl --predicted-views --fail-under 0.4 half.jsonl
+}
+
+@test "scene: - and a pipe are the file, the order of objects decides theirs alone, and threads do not change a byte" {
+	cp "$BATS_FILE_TMPDIR/candidates.jsonl" many.jsonl
+	scene --threads 1 -o one many.jsonl
+	scene --threads 2 -o two many.jsonl
+	scene --threads 2 - < many.jsonl > three
+	cat many.jsonl | scene > four
+	[ "$(wc -l < one)" -ge 35 ]
+	cmp one two && cmp one three && cmp one four
+}
+
+@test "scene: training views without weights, and nothing to find" {
+	cp -r "$BATS_FILE_TMPDIR/weights" some
+	rm some/view_002.safetensors
+	run --separate-stderr scene --weights some -o out "$BATS_FILE_TMPDIR/candidates.jsonl"
+	[ "$status" -eq 0 ]
+	[ "$stderr" = "pseudomask-select: warning: some: 1 training views have no weights, and get no masks" ]
+	[ "$(jq -r .view out | sort -u | tr '\n' ' ')" = "view_000 view_001 view_003 view_005 " ]
+	run --separate-stderr scene /dev/null
+	[ "$status" -eq 0 ]
+	[ -z "$output" ]
+	[ "$stderr" = "pseudomask-select: warning: /dev/null: no candidates" ]
+	truth_of view_004 > test.jsonl
+	truth_of view_000 | jq -c '.score = 0.3' >> test.jsonl
+	run --separate-stderr scene test.jsonl
+	[ "$status" -eq 0 ]
+	[ -z "$output" ]
+	[ "$stderr" = "pseudomask-select: warning: test.jsonl: no candidate of a training view is above 0.3" ]
+	truth_of view_000 | jq -c '.segmentation = {size: [72, 96], counts: [6912]}' > empty.jsonl
+	run --separate-stderr scene -q empty.jsonl
+	[ "$status" -eq 0 ]
+	[ -z "$output$stderr" ]
+}
+
+@test "scene: bad scenes and weights, and no stray file" {
+	truth_of view_000 > ../true.jsonl
+	rm candidates.jsonl
+	refuses() {
+		local code=$1 message=$2
+		shift 2
+		run scene -o out "$@"
+		[ "$status" -eq "$code" ] && [[ "$output" == "pseudomask-select: "$message ]] && [ "$(ls)" = synth ] ||
+			{ echo "$status: $output"; ls; return 1; }
+	}
+	refuses 4 "nowhere/splats.safetensors: No such file or directory" --scene nowhere ../true.jsonl
+	jq -c '.view = "view_999"' ../true.jsonl | head -n 1 | cat ../true.jsonl - > ../other.jsonl
+	refuses 3 "../other.jsonl:9: key 'view': the scene has no view 'view_999'" ../other.jsonl
+	mkdir ../regions-cut
+	head -c 5000 synth/weights/view_000.safetensors > ../regions-cut/view_000.safetensors
+	refuses 3 "../regions-cut/view_000.safetensors: *" --weights ../regions-cut ../true.jsonl
 }

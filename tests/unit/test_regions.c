@@ -1,0 +1,256 @@
+/* Regions on a made-up scene: the detector takes one object for another in most views of most sentences, so
+ * that votes get it wrong and regions right; and sums and agreements against the definition in float64. */
+#include "mask_help.h"
+#include "refer/regions.h"
+#include "unit.h"
+
+#include <omp.h>
+#include <stdio.h>
+
+enum { H = 24, W = 32, P = H * W, VIEWS = 7, N = P + VIEWS, MOST = 400, BARE = 5, UNLIT = 6 };
+enum { BOX, BAG, CAN, JAR, OBJECTS }; /* in the order in which they come */
+
+/* Gaussian p + v is what pixel p of view v shows, with a little of another through it. The last view has no
+ * weights, the one before no candidates. */
+struct scene {
+	int64_t indptr[VIEWS][P + 1];
+	int32_t index[VIEWS][2 * P];
+	float weight[VIEWS][2 * P];
+	struct view_weights weights[VIEWS];
+	size_t n, views[MOST];
+	struct pool_record records[MOST];
+	struct rle masks[MOST];
+};
+
+static const char *const objects[OBJECTS] = {"box", "bag", "can", "jar"};
+static const int sides[OBJECTS][4] = {{2, 3, 9, 11}, {3, 17, 10, 26}, {15, 20, 20, 24}, {13, 9, 21, 14}};
+
+static void make_weights(struct scene *s, struct rng *r)
+{
+	for (int v = 0; v < VIEWS; v++) {
+		for (int p = 0; p < P; p++) {
+			s->indptr[v][p] = 2 * p;
+			s->index[v][2 * p] = p + v;
+			s->index[v][2 * p + 1] = (int32_t)rng_below(r, N);
+			s->weight[v][2 * p] = (float)(0.6 + 0.3 * rng_uniform(r));
+			s->weight[v][2 * p + 1] = (float)(0.03 * rng_uniform(r));
+		}
+		s->indptr[v][P] = 2 * P;
+		s->weights[v] = (struct view_weights){P, N, s->indptr[v], s->index[v], s->weight[v]};
+	}
+}
+
+/* An object in a view, its rows short by `cut` pixels: pixels (P). */
+static void draw(uint8_t *pixels, int object, int view, int cut)
+{
+	const int *side = sides[object];
+
+	memset(pixels, 0, P);
+	for (int y = side[0]; y < side[2]; y++)
+		for (int x = side[1]; x < side[3] - cut; x++)
+			pixels[y * W + x - view] = 1;
+}
+
+static void add(struct scene *s, int object, const char *ref, int view, int shown, int cut, double score)
+{
+	static const char *const names[VIEWS] = {"v0", "v1", "v2", "v3", "v4", "v5", "v6"};
+	uint8_t pixels[P];
+	struct err e;
+
+	draw(pixels, shown, view, cut);
+	struct rle *mask = &s->masks[s->n], small = mask_rle(pixels, H, W);
+	/* one view has larger pictures */
+	if (view == 2) {
+		CHECK(!rle_resize(mask, &small, 2 * H, 2 * W, &e), "%s", e.message);
+		rle_free(&small);
+	} else {
+		*mask = small;
+	}
+	s->views[s->n] = (size_t)view;
+	s->records[s->n++] = (struct pool_record){names[view], ref, objects[object], mask, score};
+}
+
+/* Three of the bag's four sentences show the box, surely, in all views but one; the fourth knows it.
+ * The jar is found in one view only, the can never with confidence. */
+static void make_candidates(struct scene *s)
+{
+	static const char *const box[] = {"box-1", "box-2", "box-3", "box-4"};
+	static const char *const bag[] = {"bag-1", "bag-2", "bag-3", "bag-4"};
+
+	for (int v = 0; v < VIEWS; v++) {
+		if (v == BARE)
+			continue;
+		for (int k = 0; k < 4; k++) {
+			add(s, BOX, box[k], v, BOX, (k + v) % 3 == 2, 0.6 + 0.05 * k);
+			const int is_wrong = k < 3 && v != k;
+			/* where nobody finds the bag, it is rendered */
+			add(s, BAG, bag[k], v, is_wrong || v == 4 ? BOX : BAG, (k + v) % 3 == 1,
+				is_wrong ? 0.9 : 0.5);
+		}
+		if (v == 3)
+			add(s, JAR, NULL, v, JAR, 0, 0.7);
+		add(s, CAN, "can-1", v, CAN, 0, 0.3);
+	}
+}
+
+static double iou(const struct rle *mask, int object, int view)
+{
+	uint8_t pixels[P];
+	struct rle truth, same;
+	struct err e;
+
+	draw(pixels, object, view, 0);
+	truth = mask_rle(pixels, H, W);
+	CHECK(!rle_resize(&same, mask, H, W, &e), "%s", e.message);
+	double is = rle_iou(&truth, &same);
+	rle_free(&truth);
+	rle_free(&same);
+	return is;
+}
+
+static double naive_sum(const struct scene *s, size_t view, const uint8_t *mask, int32_t gaussian)
+{
+	double sum = 0;
+
+	for (int64_t k = 0; k < 2 * P; k++)
+		if (s->index[view][k] == gaussian && (!mask || mask[k / 2]))
+			sum += (double)s->weight[view][k];
+	return sum;
+}
+
+static void check_sums(const struct scene *s, const struct regions *r)
+{
+	for (size_t c = 0; c < r->count; c += 5) {
+		const struct regions_candidate *at = &r->candidates[c];
+		uint8_t pixels[P];
+		double share[N], mass = 0;
+		struct rle same;
+		struct err e;
+		if (at->view == UNLIT) {
+			CHECK(at->begin == at->end, "candidate %zu has no weights", c);
+			continue;
+		}
+		CHECK(!rle_resize(&same, at->mask, H, W, &e), "%s", e.message);
+		rle_decode(&same, pixels);
+		rle_free(&same);
+		for (int i = 0; i < N; i++)
+			mass += share[i] = naive_sum(s, at->view, pixels, i);
+		for (size_t k = at->begin; k < at->end; k++)
+			CHECK(fabs((double)r->share[k] - share[r->index[k]]) < 1e-5, "candidate %zu, %d: %g",
+				c, r->index[k], (double)r->share[k]);
+		CHECK(fabs(at->mass - mass) < 1e-3, "candidate %zu: %g, expected %g", c, at->mass, mass);
+		for (size_t i = 0; i < r->region_count; i++) {
+			const struct region *region = &r->regions[i];
+			double both = 0, area = 0;
+			for (size_t k = 0; k < region->n; k++) {
+				both += share[region->members[k]];
+				area += naive_sum(s, at->view, NULL, region->members[k]);
+			}
+			double expected = both / (area + mass - both);
+			CHECK(fabs((double)region->agreement[c] - expected) < 1e-5,
+				"region %zu, candidate %zu: %g, expected %g", i, c,
+				(double)region->agreement[c], expected);
+		}
+	}
+}
+
+/* A copy of everything that one number of threads gave, to compare with the next. */
+struct result {
+	struct rle masks[VIEWS][OBJECTS];
+	double scores[VIEWS][OBJECTS];
+};
+
+static void solve(const struct scene *s, const struct pool *p, struct result *to)
+{
+	struct regions r;
+	size_t rendered = 0;
+	struct err e;
+
+	CHECK(!regions_init(&r, p, s->views, VIEWS, N, 0.3, &e), "%s", e.message);
+	CHECK(r.object_count == OBJECTS && r.sentence_count == 9, "%zu objects, %zu sentences",
+		r.object_count, r.sentence_count);
+	for (size_t v = 0; v < UNLIT; v++)
+		CHECK(!regions_lift(&r, v, &s->weights[v], H, W, &e), "%s", e.message);
+	CHECK(!regions_grow(&r, &e) && r.region_count == 3, "%zu regions", r.region_count);
+	CHECK(!regions_assign(&r, &e), "%s", e.message);
+	check_sums(s, &r);
+	CHECK(r.served[CAN] == REGIONS_NONE, "the can has region %zu", r.served[CAN]);
+	for (size_t v = 0; v < UNLIT; v++) {
+		CHECK(!regions_render(
+			      &r, v, &s->weights[v], H, W, to->masks[v], to->scores[v], &rendered, &e),
+			"%s", e.message);
+		CHECK(!rle_area(&to->masks[v][CAN]), "view %zu has a can", v);
+		for (int o = 0; o < OBJECTS; o++) {
+			const struct rle *mask = &to->masks[v][o];
+			if (o == CAN)
+				continue;
+			CHECK(mask->height == (v == 2 ? 2 * H : H) && mask->width == (v == 2 ? 2 * W : W),
+				"view %zu: %dx%d", v, mask->width, mask->height);
+			CHECK(iou(mask, o, (int)v) > 0.85, "view %zu: %s has %g", v, objects[o],
+				iou(mask, o, (int)v));
+			CHECK(to->scores[v][o] > 0.5 && to->scores[v][o] <= 1, "view %zu: %g", v,
+				to->scores[v][o]);
+		}
+	}
+	/* all in the view without candidates, the bag where nobody finds it, the jar where it was not found
+	 */
+	CHECK(rendered == 3 + 1 + 4, "%zu rendered", rendered);
+	regions_free(&r);
+}
+
+static void test_confusion(void)
+{
+	static struct scene s;
+	static struct result results[2];
+	size_t wrong = 0;
+	struct pool pool;
+	struct rng r;
+	struct err e;
+
+	rng_seed(&r, 21, 1);
+	make_weights(&s, &r);
+	make_candidates(&s);
+	CHECK(!pool_make(&pool, s.records, s.n, &e) && !pool_select(&pool, SELECT_CIOU, 0.3, &e), "%s",
+		e.message);
+	for (size_t g = 0; g < pool.group_count; g++)
+		if (!strcmp(s.records[pool.groups[g].first].object, "bag"))
+			wrong += iou(pool.groups[g].mask, BAG, (int)s.views[pool.groups[g].first]) < 0.1;
+	CHECK(wrong == 4, "votes err in %zu views", wrong);
+	for (int threads = 1; threads <= 2; threads++) {
+		omp_set_num_threads(threads);
+		solve(&s, &pool, &results[threads - 1]);
+	}
+	for (int v = 0; v < UNLIT; v++)
+		for (int o = 0; o < OBJECTS; o++) {
+			struct rle *m = &results[0].masks[v][o], *other = &results[1].masks[v][o];
+			CHECK(m->n == other->n &&
+					(!m->n || !memcmp(m->runs, other->runs, m->n * sizeof *m->runs)) &&
+					results[0].scores[v][o] == results[1].scores[v][o],
+				"view %d, %s: threads differ", v, objects[o]);
+			rle_free(m);
+			rle_free(other);
+		}
+	pool_free(&pool);
+	for (size_t i = 0; i < s.n; i++)
+		rle_free(&s.masks[i]);
+}
+
+static void test_none(void)
+{
+	const size_t none[1] = {0};
+	struct regions r;
+	struct pool p;
+	struct err e;
+
+	CHECK(!pool_make(&p, NULL, 0, &e) && !regions_init(&r, &p, none, 2, 5, 0.3, &e), "%s", e.message);
+	CHECK(!regions_grow(&r, &e) && !regions_assign(&r, &e) && !r.region_count, "none");
+	regions_free(&r);
+	pool_free(&p);
+}
+
+int main(void)
+{
+	test_confusion();
+	test_none();
+	return unit_end();
+}
