@@ -15,7 +15,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define EXTENT_PART 0.3
+#define EXTENT_PART 0.1
 #define EXTENT_TRIM 0.01
 #define EXTENT_SIGMAS 1.0
 /* Cells in which clusters are looked for, over the mean distance of Gaussians on a surface of this extent. */

@@ -107,7 +107,7 @@ interrupted() {
 
 @test "the folder holds what formats/synth.md says" {
 	small -o out
-	[ "$(cd out && find . -type f | LC_ALL=C sort | tr '\n' ' ')" = "./candidates.jsonl ./images/view_000.png \
+	[ "$(cd out && find . -type f | LC_ALL=C sort | tr '\n' ' ')" = "./boxes.jsonl ./candidates.jsonl ./images/view_000.png \
 ./images/view_001.png ./images/view_002.png ./images/view_003.png ./images/view_004.png ./point_cloud.ply \
 ./sentences.jsonl ./sparse/0/cameras.txt ./sparse/0/images.txt ./sparse/0/points3D.txt ./statistics.json ./test-views \
 ./truth.jsonl ./whole.jsonl " ]
@@ -130,6 +130,14 @@ interrupted() {
 	[ -s pointed ]
 	[ -z "$(comm -13 train pointed)" ]
 	jq -se 'all(.[]; .score >= 0.2 and .score <= 0.95)' out/candidates.jsonl >/dev/null
+}
+
+@test "a box for every object, which scores 100 against itself" {
+	"$BIN/gs-synth" -q --objects 5 --views 2 --size 80x60 --gaussians 1000 -o boxed
+	[ "$("$BIN/gs-check" boxed/boxes.jsonl)" = "boxed/boxes.jsonl: ok: boxes, 5 boxes, 5 objects, 0 empty" ]
+	[ "$(jq -r .object boxed/boxes.jsonl | sort)" = "$(jq -r .object boxed/sentences.jsonl | sort -u)" ]
+	jq -se 'all(.[]; .min[2] >= 0 and (.oriented.size[2] - .max[2] + .min[2] | fabs) < 1e-9)' boxed/boxes.jsonl
+	"$BIN/miou-score" --json --boxes --truth boxed/boxes.jsonl boxed/boxes.jsonl | jq -e '.aligned.p50 == 1 and .oriented.miou > 0.999'
 }
 
 @test "the truth scores 100 against itself, and candidates much less" {

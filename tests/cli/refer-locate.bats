@@ -12,6 +12,11 @@ setup_file() {
 	"$BIN/text-encode" -q --model encoder -o text.safetensors some.jsonl
 	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 400 \
 		-o model.safetensors
+	# True masks for each training sentence in the training views.
+	grep -v -F -f <(tr , '\n' <test-views) truth.jsonl >train.jsonl
+	jq -c --slurpfile s <(grep '"train"' sentences.jsonl) '. as $m | $s[] | select(.object == $m.object) | $m + {ref, score: 1}' \
+		train.jsonl >lift-masks.jsonl
+	"$BIN/text-encode" -q --model encoder -o all.safetensors sentences.jsonl
 }
 
 setup() {
@@ -68,6 +73,15 @@ silent nothing" ]
 	jq -se 'all(.[]; .score > 0.5 and .score <= 1 and .count == (.gaussians | length) and .count > 0)' boxes.jsonl
 	jq -se 'all(.[]; . as $r | all(range(3); $r.min[.] < $r.centre[.] and $r.centre[.] < $r.max[.]))' boxes.jsonl
 	jq -se 'all(.[].gaussians; . == (sort | unique) and .[0] >= 0 and .[-1] < 1000)' boxes.jsonl
+}
+
+@test "objects lifted from true masks are where they are" {
+	"$BIN/refer-lift" -q --scene scene --weights "$made/weights" --text "$made/all.safetensors" --masks "$made/lift-masks.jsonl" \
+		-o lifted.safetensors
+	"$BIN/refer-locate" --scene scene --text "$made/all.safetensors" --model lifted.safetensors --sentences train -o boxes.jsonl
+	"$BIN/miou-score" --json --boxes --truth "$made/boxes.jsonl" boxes.jsonl >score.json
+	jq -e '.pairs == 12 and .aligned.p25 == 1 and .aligned.miou > 0.6 and .oriented.miou > 0.5 and .centre_relative < 0.15' score.json
+	jq -se 'all(.[]; .score > 0 and .score <= 1)' boxes.jsonl
 }
 
 @test "a sentence without words is nowhere" {
