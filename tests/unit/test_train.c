@@ -444,7 +444,7 @@ static void test_resume(void)
 	checkpoint_identity(other, &wider, 0x1234abcd);
 	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
 		"features of another width");
-	float *x = trainer_features(&whole, &e);
+	float *x = trainer_features(&whole, whole.state.values, &e);
 	const size_t last = whole.rows.n - 1; /* in the first panel, of 64 */
 	CHECK(x && whole.rows.n <= 64, "%zu rows", whole.rows.n);
 	for (size_t c = 0; x && c < 5; c++)
