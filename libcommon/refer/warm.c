@@ -181,36 +181,49 @@ void warm_free(struct warm *w)
 	*w = (struct warm){0};
 }
 
-/* A direction, evenly among all. */
-static void draw_direction(struct rng *r, int width, double *direction)
+static double dot(const double *a, const double *b, int width)
 {
-	double square = 0;
+	double sum = 0;
 
-	for (int c = 0; c < width; c++) {
+	for (int c = 0; c < width; c++)
+		sum += a[c] * b[c];
+	return sum;
+}
+
+/* A random direction at a right angle to those before it (before, width), fewer than width. */
+static void draw_direction(struct rng *r, int width, const double *before, int count, double *direction)
+{
+	for (int c = 0; c < width; c++)
 		direction[c] = rng_normal(r);
-		square += direction[c] * direction[c];
+	for (int k = 0; k < count; k++) {
+		const double *other = before + k * width, along = dot(direction, other, width);
+		for (int c = 0; c < width; c++)
+			direction[c] -= along * other[c];
 	}
-	for (int c = 0; c < width && square > 0; c++)
-		direction[c] /= sqrt(square);
+	const double size = sqrt(dot(direction, direction, width));
+	for (int c = 0; c < width && size > 0; c++)
+		direction[c] /= size;
 }
 
 int warm_features(const struct warm *w, int width, uint64_t seed, float *x, struct err *e)
 {
 	const size_t rows = w->view.weights.gaussians;
-	double *direction = mem_alloc((size_t)width, sizeof *direction, "features", e);
+	double *directions = mem_alloc((size_t)width, (size_t)width * sizeof *directions, "features", e);
 	struct rng r;
 
-	if (!direction)
+	if (!directions)
 		return -1;
 	rng_seed(&r, seed, STREAM_DIRECTIONS);
 	memset(x, 0, sizeof *x * rows * (size_t)width);
 	for (size_t k = 0; k < w->objects; k++) {
-		draw_direction(&r, width, direction);
+		const int place = (int)(k % (size_t)width);
+		double *direction = directions + place * width;
+		draw_direction(&r, width, directions, place, direction);
 		for (size_t i = 0; i < rows; i++)
 			for (int c = 0; c < width; c++)
 				x[i * (size_t)width + (size_t)c] +=
 					(float)(length * (double)w->share[k * rows + i] * direction[c]);
 	}
-	free(direction);
+	free(directions);
 	return 0;
 }

@@ -42,7 +42,8 @@ enum {
 int warm_init(struct warm *w, const struct warm_source *from, size_t negatives, uint64_t seed, struct err *e);
 void warm_free(struct warm *w);
 
-/* x (rows, width): the sum over objects of their share times a random direction. */
+/* x (rows, width): the sum over objects of their share times a direction of the object's, random but at right
+ * angles, as far as the width has room. */
 int warm_features(const struct warm *w, int width, uint64_t seed, float *x, struct err *e);
 
 #endif
