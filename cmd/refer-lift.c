@@ -1,0 +1,289 @@
+/* refer-lift: objects lifted onto the Gaussians from their masks, in closed form. */
+#include "base/file.h"
+#include "base/mem.h"
+#include "cli/cli.h"
+#include "formats/lifted.h"
+#include "formats/masks.h"
+#include "formats/scene.h"
+#include "formats/text.h"
+#include "formats/weights.h"
+#include "refer/lift_objects.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct {
+	const char *scene, *weights, *text, *masks;
+} options;
+
+static const struct cli_option table[] = {
+	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
+	{"weights", 0, CLI_STRING, &options.weights, "WEIGHTS",
+		"blend weights of the training views, by gs-weigh (required)", 0, 0},
+	{"text", 0, CLI_STRING, &options.text, "TEXT", "sentences encoded by text-encode (required)", 0, 0},
+	{"masks", 0, CLI_STRING, &options.masks, "MASKS", "masks of pseudomask-select (required)", 0, 0},
+	{0}};
+
+static const struct cli_tool tool = {.name = "refer-lift",
+	.operands = "--scene SCENE --weights WEIGHTS --text TEXT --masks MASKS",
+	.summary = "Lift the objects that sentences name onto the Gaussians of a scene, from their masks.",
+	.options = table,
+	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT,
+	.output_arg = "MODEL"};
+
+struct run {
+	struct scene scene;
+	struct text text;
+	struct mask_set set;
+	long *lines;			       /* (set.n) */
+	size_t *views;			       /* (set.n) of each mask */
+	size_t *sentence_object, *mask_object; /* (text.n), (set.n) in names; NONE: does not count */
+	size_t objects;
+	char **names; /* (objects) of the sentences, in the order in which these first name them; not owned */
+	char *is_there; /* (scene.cameras.n) the view has weights */
+	struct lift_objects lift;
+	struct lifted model;
+	struct cli_progress progress;
+};
+
+static const size_t NONE = (size_t)-1;
+
+static void run_free(struct run *r)
+{
+	scene_free(&r->scene);
+	text_free(&r->text);
+	masks_free(&r->set);
+	free(r->lines);
+	free(r->views);
+	free(r->sentence_object);
+	free(r->mask_object);
+	free(r->names);
+	free(r->is_there);
+	lift_objects_free(&r->lift);
+	lifted_free(&r->model);
+}
+
+static size_t find_object(const struct run *r, const char *name)
+{
+	for (size_t o = 0; name && o < r->objects; o++)
+		if (!strcmp(r->names[o], name))
+			return o;
+	return NONE;
+}
+
+static size_t find_sentence(const struct text *t, const char *ref)
+{
+	for (size_t i = 0; ref && i < t->n; i++)
+		if (!strcmp(t->refs[i], ref))
+			return i;
+	return NONE;
+}
+
+static int load(struct run *r, struct err *e)
+{
+	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
+		masks_read_lines(&r->set, &r->lines, options.masks, e))
+		return -1;
+	if (!r->text.pieces)
+		return err_set(e, ERR_FORMAT, "%s: has no word pieces: encode the sentences anew",
+			file_name(options.text));
+	r->views = mem_alloc(r->set.n, sizeof *r->views, "masks", e);
+	r->mask_object = mem_alloc(r->set.n, sizeof *r->mask_object, "masks", e);
+	r->sentence_object = mem_alloc(r->text.n, sizeof *r->sentence_object, "sentences", e);
+	r->names = mem_alloc(r->text.n, sizeof *r->names, "objects", e);
+	r->is_there = mem_zalloc(r->scene.cameras.n, 1, "views", e);
+	if (!r->views || !r->mask_object || !r->sentence_object || !r->names || !r->is_there)
+		return -1;
+	return masks_views(&r->set, r->lines, options.masks, &r->scene.cameras, r->views, e);
+}
+
+/* Which training views can be looked at. */
+static int find_views(struct run *r, const struct cli *c, struct err *e)
+{
+	size_t left_out = 0;
+
+	for (size_t v = 0; v < r->scene.cameras.n; v++) {
+		const struct camera *camera = &r->scene.cameras.views[v];
+		if (camera->split != SPLIT_TRAIN)
+			continue;
+		int found = weights_exist(options.weights, camera->name, e);
+		if (found < 0)
+			return -1;
+		r->is_there[v] = (char)found;
+		left_out += !found;
+	}
+	if (left_out)
+		cli_warn(c, "%s: %zu training views have no weights, and their masks do not count",
+			options.weights, left_out);
+	return 0;
+}
+
+/* A mask of a sentence is one of its object; those of test sentences are not looked at. */
+static size_t object_of_mask(const struct run *r, const struct mask_record *m)
+{
+	const size_t sentence = find_sentence(&r->text, m->ref);
+
+	if (sentence != NONE)
+		return r->sentence_object[sentence];
+	return find_object(r, m->object);
+}
+
+/* The objects that a training sentence names and a mask shows, in their new numbers. */
+static int find_objects(struct run *r, const struct cli *c, struct err *e)
+{
+	for (size_t i = 0; i < r->text.n; i++) {
+		size_t o = NONE;
+		if (r->text.splits[i] == SPLIT_TRAIN) {
+			o = find_object(r, r->text.objects[i]);
+			if (o == NONE) {
+				o = r->objects++;
+				r->names[o] = r->text.objects[i];
+			}
+		}
+		r->sentence_object[i] = o;
+	}
+	size_t *number = mem_alloc(r->objects, sizeof *number, "objects", e), unknown = 0, kept = 0;
+	if (!number)
+		return -1;
+	for (size_t o = 0; o < r->objects; o++)
+		number[o] = NONE;
+	for (size_t i = 0; i < r->set.n; i++) {
+		const size_t o = r->is_there[r->views[i]] ? object_of_mask(r, &r->set.records[i]) : NONE;
+		r->mask_object[i] = o;
+		unknown += r->is_there[r->views[i]] && o == NONE;
+		if (o != NONE)
+			number[o] = 0;
+	}
+	for (size_t o = 0; o < r->objects; o++) {
+		if (number[o] == NONE) {
+			cli_warn(c, "%s: '%s' has no mask in a training view, and is left out",
+				file_name(options.masks), r->names[o]);
+			continue;
+		}
+		r->names[kept] = r->names[o];
+		number[o] = kept++;
+	}
+	r->objects = kept;
+	for (size_t i = 0; i < r->set.n; i++)
+		r->mask_object[i] = r->mask_object[i] == NONE ? NONE : number[r->mask_object[i]];
+	for (size_t i = 0; i < r->text.n; i++)
+		r->sentence_object[i] = r->sentence_object[i] == NONE ? NONE : number[r->sentence_object[i]];
+	free(number);
+	if (unknown)
+		cli_warn(c, "%s: %zu masks are of no training sentence's object", file_name(options.masks),
+			unknown);
+	return 0;
+}
+
+static int by_object(const void *a, const void *b)
+{
+	const struct lift_mask *x = a, *y = b;
+
+	return (x->object > y->object) - (x->object < y->object);
+}
+
+static int lift_view(struct run *r, size_t view, struct lift_mask *masks, struct err *e)
+{
+	struct weights weights;
+	size_t n = 0;
+
+	for (size_t i = 0; i < r->set.n; i++)
+		if (r->views[i] == view && r->mask_object[i] != NONE)
+			masks[n++] = (struct lift_mask){r->mask_object[i], &r->set.records[i].mask};
+	if (!n)
+		return 0;
+	qsort(masks, n, sizeof *masks, by_object);
+	if (weights_open(&weights, options.weights, r->scene.cameras.views[view].name, r->scene.splats.n, e))
+		return -1;
+	const struct view_weights blend = weights_view(&weights);
+	int bad = lift_objects_view(&r->lift, &blend, weights.height, weights.width, masks, n, e);
+	weights_close(&weights);
+	return bad;
+}
+
+static int lift(struct run *r, struct err *e)
+{
+	const size_t n = r->scene.cameras.n;
+	struct lift_mask *masks = mem_alloc(r->set.n, sizeof *masks, "masks", e);
+	int bad = !masks || lift_objects_init(&r->lift, r->scene.splats.n, r->objects, e);
+
+	for (int round = 0; round < LIFT_ROUNDS && !bad; round++) {
+		for (size_t v = 0; v < n && !bad; v++) {
+			bad = lift_view(r, v, masks, e);
+			cli_progress_step(&r->progress, (double)((size_t)round * n + v + 1), NULL);
+		}
+		if (!bad)
+			lift_objects_settle(&r->lift);
+	}
+	free(masks);
+	return bad || lift_objects_finish(&r->lift, &r->model, e) ? -1 : 0;
+}
+
+/* Names and sentences. The words stay the text's. */
+static int add_sentences(struct run *r, struct err *e)
+{
+	struct lifted *l = &r->model;
+	const struct text *t = &r->text;
+	const size_t width = (size_t)t->width, words = (size_t)t->offsets[t->n];
+
+	l->width = t->width;
+	l->names = mem_zalloc(l->objects, sizeof *l->names, "objects", e);
+	l->object = mem_alloc(t->n, sizeof *l->object, "sentences", e);
+	l->texts = mem_zalloc(t->n, sizeof *l->texts, "sentences", e);
+	l->pieces = mem_zalloc(t->n, sizeof *l->pieces, "sentences", e);
+	l->offsets = mem_zalloc(t->n + 1, sizeof *l->offsets, "sentences", e);
+	l->words = mem_alloc(words, width * sizeof *l->words, "sentences", e);
+	if (!l->names || !l->object || !l->texts || !l->pieces || !l->offsets || !l->words)
+		return -1;
+	for (size_t o = 0; o < l->objects; o++)
+		if (!(l->names[o] = mem_strdup(r->names[o], e)))
+			return -1;
+	for (size_t i = 0; i < t->n; i++) {
+		if (r->sentence_object[i] == NONE)
+			continue;
+		const size_t to = l->sentences++, from = (size_t)t->offsets[i];
+		const size_t count = (size_t)t->offsets[i + 1] - from, at = (size_t)l->offsets[to];
+		l->object[to] = (int32_t)r->sentence_object[i];
+		memcpy(l->words + at * width, t->words + from * width, count * width * sizeof *l->words);
+		l->offsets[to + 1] = (int64_t)(at + count);
+		if (!(l->texts[to] = mem_strdup(t->texts[i], e)) ||
+			!(l->pieces[to] = mem_strdup(t->pieces[i], e)))
+			return -1;
+	}
+	return 0;
+}
+
+static int run(struct run *r, const struct cli *c, struct err *e)
+{
+	double confidence = 0;
+
+	if (load(r, e) || find_views(r, c, e) || find_objects(r, c, e))
+		return -1;
+	cli_progress_start(&r->progress, c, "views", (double)r->scene.cameras.n * LIFT_ROUNDS);
+	int bad = lift(r, e);
+	cli_progress_end(&r->progress);
+	if (bad || add_sentences(r, e))
+		return -1;
+	for (size_t o = 0; o < r->model.objects; o++)
+		confidence += (double)r->model.confidence[o] / (double)r->model.objects;
+	cli_note(c, 1, "%zu objects, %lld Gaussians with a share in one; agreement of the masks %.3f",
+		r->model.objects, (long long)r->model.indptr[r->model.objects], confidence);
+	return lifted_write(&r->model, c->output, "", e);
+}
+
+int main(int argc, char **argv)
+{
+	struct run r = {0};
+	struct cli c;
+	struct err e = {0};
+
+	cli_parse(&c, &tool, argc, argv);
+	if (!options.scene || !options.weights || !options.text || !options.masks)
+		cli_usage(&c, "--scene, --weights, --text and --masks are required");
+	if (!strcmp(options.text, "-") && !strcmp(options.masks, "-"))
+		cli_usage(&c, "--text and --masks cannot both be stdin");
+	cli_refuse_terminal(&c);
+	int bad = run(&r, &c, &e);
+	run_free(&r);
+	return bad ? cli_fail(&c, &e) : cli_done(&c);
+}
