@@ -457,14 +457,10 @@ lifted() {
 	[[ "$(meta m options)" == *" --init-iterations 400 "* ]]
 }
 
-@test "a warm start answers as what was lifted" {
+@test "a warm start fits what was lifted" {
 	lifted l
 	train --init l --iterations 400 --share 0 --precision f32 --log log -o m
 	jq -se '.[0].iteration == 100 and .[3].bce < 0.01 and .[3].bce < 0.1 * .[0].bce' log
-	"$BIN/refer-render" -q --calibration none --scene scene --text text.safetensors --model m --refs brown-box-1 --views view_000 \
-		--response . --response-type npy -o pred
-	[ -s view_000/brown-box-1.npy ]
-	jq -e '.score > 0' pred
 }
 
 @test "a training goes on to the same model from within the warm start, and from after it" {
@@ -526,8 +522,14 @@ lifted() {
 @test "a training with held-out masks goes on to the same model and log, and stops at the same step" {
 	held() { train --interaction none --hold-out 0.3 --patience 3 --iterations 5000 --checkpoint 200 -o "$@"; }
 	held whole --log log
-	(ulimit -f 20000; exec timeout -s KILL 0.4 "$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl \
-		--interaction none --hold-out 0.3 --patience 3 --iterations 5000 --checkpoint 200 -o part --log part.log) || true
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --interaction none --hold-out 0.3 \
+		--patience 3 --iterations 5000 --checkpoint 200 -o part --log part.log &
+	pid=$!
+	for ((i = 0; i < 1000; i++)); do [ "$(meta part.checkpoint best_iteration 2>none)" -gt 0 ] 2>none && break; sleep 0.01; done
+	kill -KILL $pid
+	wait $pid || true
+	[ -e part.checkpoint ]
+	[ ! -e part ]
 	held part --log part.log --resume
 	cmp whole part
 	cmp log part.log

@@ -104,6 +104,39 @@ patched() {
 	patched losses 000000000000f07f "tensor 'losses': item 0 is not finite"
 }
 
+@test "a training with held-out masks: the best state so far" {
+	hold=("$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --interaction none
+		--hold-out 0.5 --iterations 100000 --checkpoint 250 -o m)
+	"${hold[@]}" &
+	pid=$!
+	for ((i = 0; i < 1000; i++)); do [ -e m.checkpoint ] && break; sleep 0.01; done
+	kill -KILL $pid
+	wait $pid || true
+	length=$(od -An -t d8 -N 8 m.checkpoint | tr -d ' ')
+	head -c $((8 + length)) m.checkpoint | tail -c +9 | jq -c 'del(.__metadata__[] | select(test("^[0-9a-f]{8}$")))' >held.header
+	tail -c +$((9 + length)) m.checkpoint >held.data
+	jq -e '.best_score.shape == [1] and .best.shape == .values.shape and .best.dtype == "F32"' held.header
+	jq -e '.__metadata__ | (.best_iteration | tonumber) % 250 == 0 and (.evaluations_since | tonumber) >= 0' held.header
+	# refused REASON FILTER
+	refused() {
+		local header
+		header=$(jq -c "$2" held.header)
+		while (((8 + ${#header}) % 64)); do header+=' '; done
+		st m.checkpoint "$header"
+		cat held.data >>m.checkpoint
+		says 3 "refer-train: m.checkpoint: $1" "${hold[@]}" --resume
+	}
+	at=$(jq -r .__metadata__.iteration held.header)
+	refused "metadata 'best_iteration' is '0', not a whole number from 1 to $at" '.__metadata__.best_iteration = "0"'
+	refused "metadata 'best_iteration' is '100001', not a whole number from 1 to $at" '.__metadata__.best_iteration = "100001"'
+	refused "metadata 'evaluations_since' is '', not a whole number from 0 to 9223372036854775807" 'del(.__metadata__.evaluations_since)'
+	refused "tensor 'best' is missing" '.other = .best | del(.best)'
+	refused "tensor 'best_score': is I64[1], expected F64[1]" '.best_score.dtype = "I64"'
+	at=$(jq .best_score.data_offsets[0] held.header)
+	printf '000000000000f07f' | xxd -r -p | dd of=held.data bs=1 seek="$at" conv=notrunc status=none
+	refused "tensor 'best_score': item 0 is not finite" .
+}
+
 @test "a file cut short anywhere is refused" {
 	size=$(wc -c <good)
 	for length in $((size - 1)) $((size / 2)) 1000 100 8 1 0; do
