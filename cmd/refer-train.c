@@ -2,19 +2,20 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "formats/checkpoint.h"
-#include "formats/model.h"
 #include "formats/training.h"
 #include "formats/trainlog.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 static struct {
-	const char *scene, *weights, *text, *masks, *log;
+	struct training_files from;
+	const char *log;
 	int interaction, similarity, contrast, precision, is_resumed;
-	long long iterations, checkpoint;
+	long long iterations, checkpoint, patience;
 	struct trainer_options trainer;
 } options = {.interaction = REFER_PCMI,
 	.similarity = REFER_DOT,
@@ -25,11 +26,19 @@ static struct {
 	.trainer = TRAINER_DEFAULTS};
 
 static const struct cli_option table[] = {
-	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
-	{"weights", 0, CLI_STRING, &options.weights, "WEIGHTS", "folder of gs-weigh (required)", 0, 0},
-	{"text", 0, CLI_STRING, &options.text, "TEXT", "sentences encoded by text-encode (required)", 0, 0},
-	{"masks", 0, CLI_STRING, &options.masks, "MASKS", "mask records to learn from (required)", 0, 0},
+	{"scene", 0, CLI_STRING, &options.from.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
+	{"weights", 0, CLI_STRING, &options.from.weights, "WEIGHTS", "folder of gs-weigh (required)", 0, 0},
+	{"text", 0, CLI_STRING, &options.from.text, "TEXT", "sentences of text-encode (required)", 0, 0},
+	{"masks", 0, CLI_STRING, &options.from.masks, "MASKS", "mask records to learn from (required)", 0, 0},
 	{"iterations", 0, CLI_INT, &options.iterations, "N", "training steps (default 45000)", 1, 100000000},
+	{"init", 0, CLI_STRING, &options.from.lifted, "LIFTED",
+		"start from the objects of this lifted model of refer-lift", 0, 0},
+	{"init-iterations", 0, CLI_INT, &options.trainer.warm, "N",
+		"how many of the steps fit these objects, at the start (default 400)", 1, 100000000},
+	{"hold-out", 0, CLI_REAL, &options.trainer.hold_out, "F",
+		"keep this share of the masks to judge by, and stop in time (default 0)", 0, 0.9},
+	{"patience", 0, CLI_INT, &options.patience, "N",
+		"stop after N evaluations that were no better, one every 250 steps (default 8)", 1, 1000000},
 	{"interaction", 0, CLI_CHOICE, &options.interaction, REFER_INTERACTION_CHOICES,
 		"how words act on Gaussians (default pcmi)", 0, 0},
 	{"similarity", 0, CLI_CHOICE, &options.similarity, REFER_SIMILARITY_CHOICES,
@@ -40,21 +49,18 @@ static const struct cli_option table[] = {
 		"numbers of a referring feature (default 16)", 1, REFER_MAX_X},
 	{"temperature", 0, CLI_REAL, &options.trainer.temperature, "T", "of the contrast (default 0.1)", 1e-6,
 		1e6},
-	{"lambda", 0, CLI_REAL, &options.trainer.lambda, "X",
-		"weight of the contrast in the loss (default 0.02)", 0, 1e6},
+	{"lambda", 0, CLI_REAL, &options.trainer.lambda, "X", "share of the contrast (default 0.02)", 0, 1e6},
 	{"feature-rate", 0, CLI_REAL, &options.trainer.rates.features, "R",
 		"learning rate of the features (default 0.0025)", 1e-12, 10},
 	{"mlp-rate", 0, CLI_REAL, &options.trainer.rates.mlps, "R",
 		"learning rate of the MLPs (default 0.0001)", 1e-12, 10},
-	{"batch", 0, CLI_INT, &options.trainer.batch, "N", "sentences of a view in one step (default 1)", 1,
-		64},
+	{"batch", 0, CLI_INT, &options.trainer.batch, "N", "sentences a step (default 1)", 1, 64},
 	{"negatives", 0, CLI_INT, &options.trainer.negatives, "N",
 		"sentences that a step is contrasted with; 0: all (default 12)", 0, 1000000},
 	{"tolerance", 0, CLI_REAL, &options.trainer.tolerance, "T",
 		"leave out Gaussians with this share of all weight (default 0)", 0, 0.99},
 	{"share", 0, CLI_REAL, &options.trainer.share, "E",
-		"pixels of mask a view that a feature must save; 0: all have their own (default 0.04)", 0,
-		1e6},
+		"pixels a feature must save; 0: one each (default 0.04)", 0, 1e6},
 	{"precision", 0, CLI_CHOICE, &options.precision, PRECISION_CHOICES,
 		"how features and weights are stored (default u8)", 0, 0},
 	{"log", 0, CLI_STRING, &options.log, "FILE",
@@ -73,15 +79,14 @@ static const struct cli_tool tool = {.name = "refer-train",
 	.output_arg = "MODEL",
 	.needs_output = 1};
 
-enum { LOG_EVERY = 100 };
-
 /* Everything a run holds. */
 struct run {
 	struct training data;
 	struct trainer trainer;
 	struct trainlog log;
 	char *checkpoint, identity[CHECKPOINT_IDENTITY];
-	int is_own; /* the checkpoint is of this training */
+	int is_own;    /* the checkpoint is of this training */
+	char note[64]; /* the latest losses */
 };
 
 static int start(struct run *r, const struct cli *c, struct err *e)
@@ -91,10 +96,11 @@ static int start(struct run *r, const struct cli *c, struct err *e)
 
 	checkpoint_identity(r->identity, &options.trainer, d->checksum);
 	if (trainer_init(&r->trainer, &source, &options.trainer, e))
-		return e->code == ERR_FORMAT ? err_prefix(e, options.weights) : -1;
+		return e->code == ERR_FORMAT ? err_prefix(e, options.from.weights) : -1;
 	cli_note(c, 1, "%zu of %zu Gaussians share %zu features, %.1f a pixel", r->trainer.learning,
 		d->scene.splats.n, r->trainer.rows.n, trainer_weights(&r->trainer));
-	cli_note(c, 1, "%zu views, %zu sentences, %zu pairs", d->view_count, d->sentences, d->pairs);
+	cli_note(c, 1, "%zu views, %zu sentences, %zu pairs, %zu more held out", d->view_count, d->sentences,
+		d->pairs, d->held);
 	return 0;
 }
 
@@ -110,31 +116,41 @@ static int resume(struct run *r, const struct cli *c, struct err *e)
 				r->checkpoint);
 		return 0;
 	}
-	if (checkpoint_read(&r->trainer.state, r->checkpoint, r->identity, e))
+	if (checkpoint_resume(&r->trainer.state, r->checkpoint, r->identity, options.iterations, e))
 		return -1;
-	if (r->trainer.state.iteration > options.iterations)
-		return err_set(e, ERR_FORMAT, "%s: has %ld steps, more than the %lld asked for",
-			r->checkpoint, r->trainer.state.iteration, options.iterations);
 	r->is_own = 1;
 	cli_note(c, 1, "going on after step %ld", r->trainer.state.iteration);
 	return 0;
 }
 
-/* What is due after a step: a line of the log, a checkpoint. */
+/* Whether training is over: all steps are done, or the held-out masks say so. */
+static int is_over(const struct run *r)
+{
+	const struct train_state *t = &r->trainer.state;
+
+	return t->iteration >= options.iterations || (t->best.values && t->best.since >= options.patience);
+}
+
+/* What is due after a step: lines of the log, a checkpoint. */
 static int record(struct run *r, const struct cli *c, const struct step_losses *last, struct err *e)
 {
-	const long done = r->trainer.state.iteration;
+	struct train_state *t = &r->trainer.state;
+	const long done = t->iteration;
 
 	if (!isfinite(last->total))
 		return err_set(e, ERR_CHECK, "%s: the loss is not finite at step %ld", c->output, done);
-	if (done % LOG_EVERY == 0) {
-		if (trainlog_put(&r->log, done, &r->trainer.state.sum, LOG_EVERY, e))
+	if (done % TRAINLOG_EVERY == 0)
+		snprintf(r->note, sizeof r->note, "loss %.4f", t->sum.total / TRAINLOG_EVERY);
+	if (trainlog_step(&r->log, t, e))
+		return -1;
+	if (t->best.values && (done % TRAINER_EVALUATE == 0 || done == options.iterations)) {
+		const struct held_score score = trainer_evaluate(&r->trainer);
+		if (trainlog_put_held(&r->log, done, &score, e))
 			return -1;
-		r->trainer.state.sum = (struct step_losses){0};
 	}
-	if (!options.checkpoint || done % options.checkpoint || done == options.iterations)
+	if (!options.checkpoint || done % options.checkpoint || is_over(r))
 		return 0;
-	if (checkpoint_write(&r->trainer.state, r->checkpoint, r->identity, e))
+	if (checkpoint_write(t, r->checkpoint, r->identity, e))
 		return -1;
 	r->is_own = 1;
 	return 0;
@@ -142,49 +158,21 @@ static int record(struct run *r, const struct cli *c, const struct step_losses *
 
 static int train(struct run *r, const struct cli *c, struct err *e)
 {
+	struct train_state *t = &r->trainer.state;
 	struct cli_progress progress;
-	char note[64] = "";
-	const long begin = r->trainer.state.iteration;
+	const long begin = t->iteration;
 	int bad = 0;
 
 	cli_progress_start(&progress, c, "steps", (double)(options.iterations - begin));
-	while (r->trainer.state.iteration < options.iterations && !bad) {
+	while (!is_over(r) && !bad) {
 		struct step_losses last = trainer_step(&r->trainer);
-		if (r->trainer.state.iteration % LOG_EVERY == 0)
-			snprintf(note, sizeof note, "loss %.4f", r->trainer.state.sum.total / LOG_EVERY);
 		bad = record(r, c, &last, e);
-		const double done = (double)(r->trainer.state.iteration - begin);
-		cli_progress_step(&progress, done, *note ? note : NULL);
+		cli_progress_step(&progress, (double)(t->iteration - begin), *r->note ? r->note : NULL);
 	}
 	cli_progress_end(&progress);
-	return bad;
-}
-
-static int write_result(struct run *r, const struct cli *c, struct err *e)
-{
-	const struct trainer *t = &r->trainer;
-	const struct model m = {.layout = t->layout,
-		.similarity = options.trainer.similarity,
-		.precision = (enum precision)options.precision,
-		.scene_gaussians = r->data.scene.splats.n,
-		.n = t->rows.n,
-		.has_leaves = t->octree.n > 0,
-		.ids = t->octree.n ? NULL : t->ids,
-		.octree = t->octree,
-		.features = trainer_features(t, e),
-		.parameters = t->state.values,
-		.low = {t->low[0], t->low[1], t->low[2]},
-		.high = {t->high[0], t->high[1], t->high[2]}};
-	char text[CHECKPOINT_IDENTITY + 64];
-
-	if (!m.features)
-		return -1;
-	snprintf(text, sizeof text, "--iterations %ld --precision %s %s", t->state.iteration,
-		precision_name(m.precision), r->identity);
-	int bad = model_write(&m, c->output, text, c->seed, e);
-	if (!bad && r->is_own)
-		unlink(r->checkpoint);
-	free(m.features);
+	if (!bad && t->best.values)
+		cli_note(c, 1, "%ld steps, the held-out masks were answered best after %ld: IoU %.4f",
+			t->iteration, t->best.iteration, t->best.score);
 	return bad;
 }
 
@@ -194,32 +182,44 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 
 	if (strcmp(c->output, "-") && !(r->checkpoint = checkpoint_path(c->output, e)))
 		return -1;
-	if (training_read(&r->data, options.scene, options.weights, options.text, options.masks, e))
+	if (training_read(&r->data, &options.from, options.trainer.hold_out, (uint64_t)c->seed, e))
 		return -1;
 	if (d->left_out)
-		cli_warn(c, "%s: %zu training sentences without words are left out", options.text,
+		cli_warn(c, "%s: %zu training sentences without words are left out", options.from.text,
 			d->left_out);
 	if (d->test_masks)
 		cli_note(c, 1, "%zu masks of test views are not used", d->test_masks);
 	if (file_out_probe(c->output, e) || start(r, c, e) || resume(r, c, e) ||
 		trainlog_open(&r->log, options.log, r->trainer.state.iteration, e))
 		return -1;
-	return train(r, c, e) || write_result(r, c, e) ? -1 : 0;
+	if (train(r, c, e) || training_write(d, &r->trainer, options.trainer.similarity,
+				      (enum precision)options.precision, c->output, r->identity, c->seed, e))
+		return -1;
+	if (r->is_own)
+		unlink(r->checkpoint);
+	return 0;
 }
 
 static void check_options(const struct cli *c)
 {
 	struct trainer_options *o = &options.trainer;
+	const struct training_files *f = &options.from;
 	const int is_stdout = !strcmp(c->output, "-");
 
 	o->interaction = (enum refer_interaction)options.interaction;
 	o->similarity = (enum refer_similarity)options.similarity;
 	o->contrast = (enum refer_contrast)options.contrast;
 	o->seed = c->seed;
-	if (!options.scene || !options.weights || !options.text || !options.masks)
+	if (!f->scene || !f->weights || !f->text || !f->masks)
 		cli_usage(c, "--scene, --weights, --text and --masks are required");
-	if (!strcmp(options.text, "-") && !strcmp(options.masks, "-"))
-		cli_usage(c, "--text and --masks cannot both be stdin");
+	if (!strcmp(f->text, "-") + !strcmp(f->masks, "-") + (f->lifted && !strcmp(f->lifted, "-")) > 1)
+		cli_usage(c, "only one of --text, --masks and --init can be stdin");
+	if (!f->lifted && o->warm)
+		cli_usage(c, "--init-iterations needs --init");
+	if (o->hold_out <= 0 && options.patience)
+		cli_usage(c, "--patience needs --hold-out");
+	o->warm = f->lifted && !o->warm ? 400 : o->warm;
+	options.patience = options.patience ? options.patience : 8;
 	if (o->interaction == REFER_PCMI_PROJ && o->similarity == REFER_COSINE)
 		cli_usage(c, "--similarity cosine does not go with --interaction pcmi-proj");
 	if (is_stdout && options.is_resumed)

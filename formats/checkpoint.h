@@ -6,7 +6,7 @@
 #include "base/err.h"
 #include "refer/trainer.h"
 
-enum { CHECKPOINT_IDENTITY = 512 };
+enum { CHECKPOINT_IDENTITY = 640 };
 
 /* What must be the same for a training to be gone on with: its options and the checksum of its inputs. */
 void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_options *o, uint32_t inputs);
@@ -21,5 +21,9 @@ int checkpoint_write(const struct train_state *t, const char *path, const char *
 /* Fills a state of the same sizes; after an error its arrays may be half filled. ERR_FORMAT where the file's
  * identity is another. */
 int checkpoint_read(struct train_state *t, const char *path, const char *identity, struct err *e);
+
+/* The same; ERR_FORMAT also where it has more steps than `most`. */
+int checkpoint_resume(
+	struct train_state *t, const char *path, const char *identity, long long most, struct err *e);
 
 #endif

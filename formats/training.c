@@ -2,9 +2,13 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/checkpoint.h"
+#include "formats/lifted.h"
 #include "formats/masks.h"
+#include "formats/model.h"
 #include "mask/bits.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -140,34 +144,78 @@ static void make_checksum(struct training *t)
 		for (int i = 0; i < view->count; i++)
 			sum = add_checksum(sum, view->masks[i], bits_bytes(pixels));
 	}
+	for (size_t o = 0; o < t->lifted.objects; o++) /* all of them with the 0 that ends them */
+		sum = add_checksum(sum, t->lifted.names[o], strlen(t->lifted.names[o]) + 1);
+	if (t->lifted.objects) {
+		const size_t shares = (size_t)t->lifted.indptr[t->lifted.objects];
+		sum = add_checksum(sum, t->lifted.indptr, sizeof(int64_t) * (t->lifted.objects + 1));
+		sum = add_checksum(sum, t->lifted.index, sizeof(int32_t) * shares);
+		sum = add_checksum(sum, t->lifted.share, sizeof(float) * shares);
+	}
 	t->checksum = sum;
 }
 
-static int read_all(struct training *t, const char *scene, const char *weights, const char *text,
-	const char *masks, struct err *e)
+/* What a warm start is fitted to. */
+static int read_lifted(struct training *t, const struct training_files *from, struct err *e)
 {
-	if (scene_read(&t->scene, scene, e) || text_read(&t->text, text, e) || pack_sentences(t, e))
+	if (!from->lifted)
+		return 0;
+	if (lifted_read(&t->lifted, from->lifted, e))
+		return -1;
+	if (t->lifted.gaussians != t->scene.splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu",
+			file_name(from->lifted), t->lifted.gaussians, from->scene, t->scene.splats.n);
+	for (size_t r = 0; r < t->sentences; r++)
+		for (size_t o = 0; o < t->lifted.objects; o++)
+			if (!strcmp(t->object_names[r], t->lifted.names[o]))
+				return 0;
+	return err_set(e, ERR_FORMAT, "%s: has no object of a training sentence of %s",
+		file_name(from->lifted), file_name(from->text));
+}
+
+static int hold_out(
+	struct training *t, const struct training_files *from, double share, uint64_t seed, struct err *e)
+{
+	if (share > 0 && held_choose(t->views, t->view_count, t->objects, t->sentences, share, seed, e))
+		return e->code == ERR_FORMAT ? err_prefix(e, file_name(from->masks)) : -1;
+	for (size_t v = 0; v < t->view_count; v++) {
+		t->pairs += (size_t)t->views[v].count;
+		t->held += (size_t)t->views[v].held;
+	}
+	return 0;
+}
+
+static int read_all(
+	struct training *t, const struct training_files *from, double share, uint64_t seed, struct err *e)
+{
+	size_t pairs = 0;
+
+	if (scene_read(&t->scene, from->scene, e) || text_read(&t->text, from->text, e) ||
+		pack_sentences(t, e))
 		return -1;
 	if (!t->sentences)
-		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(text));
-	if (read_masks(t, weights, masks, e) || supervision_link(&t->masks, t->refs, t->object_names,
-							t->sentences, t->views, t->view_count, e))
+		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(from->text));
+	if (read_masks(t, from->weights, from->masks, e) ||
+		supervision_link(
+			&t->masks, t->refs, t->object_names, t->sentences, t->views, t->view_count, e))
 		return -1;
 	for (size_t v = 0; v < t->view_count; v++)
-		t->pairs += (size_t)t->views[v].count;
-	if (!t->pairs)
+		pairs += (size_t)t->views[v].count;
+	if (!pairs)
 		return err_set(e, ERR_FORMAT,
-			"%s: no mask of a training view is of a training sentence of %s", file_name(masks),
-			file_name(text));
+			"%s: no mask of a training view is of a training sentence of %s",
+			file_name(from->masks), file_name(from->text));
+	if (read_lifted(t, from, e) || hold_out(t, from, share, seed, e))
+		return -1;
 	make_checksum(t);
 	return 0;
 }
 
-int training_read(struct training *t, const char *scene, const char *weights, const char *text,
-	const char *masks, struct err *e)
+int training_read(
+	struct training *t, const struct training_files *from, double share, uint64_t seed, struct err *e)
 {
 	*t = (struct training){0};
-	int bad = read_all(t, scene, weights, text, masks, e);
+	int bad = read_all(t, from, share, seed, e);
 	if (bad)
 		training_free(t);
 	return bad;
@@ -185,7 +233,37 @@ struct trainer_source training_source(const struct training *t)
 		.objects = t->objects,
 		.views = t->views,
 		.view_count = t->view_count,
-		.pixels = t->pixels};
+		.pixels = t->pixels,
+		.lifted = t->lifted.objects ? &t->lifted : NULL,
+		.object_names = t->object_names};
+}
+
+int training_write(const struct training *t, const struct trainer *learned, enum refer_similarity similarity,
+	enum precision precision, const char *path, const char *options, long long seed, struct err *e)
+{
+	long iteration;
+	const float *values = trainer_result(learned, &iteration);
+	const struct model m = {.layout = learned->layout,
+		.similarity = similarity,
+		.precision = precision,
+		.scene_gaussians = t->scene.splats.n,
+		.n = learned->rows.n,
+		.has_leaves = learned->octree.n > 0,
+		.ids = learned->octree.n ? NULL : learned->ids,
+		.octree = learned->octree,
+		.features = trainer_features(learned, values, e),
+		.parameters = (float *)values, /* a model that is read owns them */
+		.low = {learned->low[0], learned->low[1], learned->low[2]},
+		.high = {learned->high[0], learned->high[1], learned->high[2]}};
+	char text[CHECKPOINT_IDENTITY + 64];
+
+	if (!m.features)
+		return -1;
+	snprintf(text, sizeof text, "--iterations %ld --precision %s %s", iteration,
+		precision_name(precision), options);
+	int bad = model_write(&m, path, text, seed, e);
+	free(m.features);
+	return bad;
 }
 
 void training_free(struct training *t)
@@ -195,6 +273,7 @@ void training_free(struct training *t)
 	for (size_t v = 0; v < t->view_count; v++)
 		weights_close(&t->weights[v]);
 	supervision_free(&t->masks);
+	lifted_free(&t->lifted);
 	scene_free(&t->scene);
 	text_free(&t->text);
 	free(t->offsets);

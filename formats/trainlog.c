@@ -46,14 +46,26 @@ int trainlog_open(struct trainlog *l, const char *path, long iteration, struct e
 	return 0;
 }
 
-int trainlog_put(struct trainlog *l, long iteration, const struct step_losses *sum, long steps, struct err *e)
+int trainlog_step(struct trainlog *l, struct train_state *t, struct err *e)
 {
-	const double n = (double)steps;
+	const double n = TRAINLOG_EVERY;
 
+	if (t->iteration % TRAINLOG_EVERY)
+		return 0;
 	if (l->stream &&
 		(fprintf(l->stream, "{\"iteration\":%ld,\"bce\":%.9g,\"contrast\":%.9g,\"loss\":%.9g}\n",
-			 iteration, sum->bce / n, sum->contrast / n, sum->total / n) < 0 ||
+			 t->iteration, t->sum.bce / n, t->sum.contrast / n, t->sum.total / n) < 0 ||
 			fflush(l->stream)))
+		return err_errno(e, "%s", file_name(l->path));
+	t->sum = (struct step_losses){0};
+	return 0;
+}
+
+int trainlog_put_held(struct trainlog *l, long iteration, const struct held_score *score, struct err *e)
+{
+	if (l->stream && (fprintf(l->stream, "{\"iteration\":%ld,\"held_bce\":%.9g,\"held_iou\":%.9g}\n",
+				  iteration, score->bce, score->iou) < 0 ||
+				 fflush(l->stream)))
 		return err_errno(e, "%s", file_name(l->path));
 	return 0;
 }

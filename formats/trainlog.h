@@ -4,7 +4,8 @@
 
 #include "base/err.h"
 #include "base/file.h"
-#include "refer/step.h"
+#include "refer/held.h"
+#include "refer/train.h"
 
 struct trainlog {
 	const char *path;    /* NULL: no log */
@@ -16,9 +17,14 @@ struct trainlog {
  * written again. path NULL makes a log that takes lines and writes none; "-" is stdout. */
 int trainlog_open(struct trainlog *l, const char *path, long iteration, struct err *e);
 
-/* A line: the means of the `steps` losses that add up to *sum. */
-int trainlog_put(
-	struct trainlog *l, long iteration, const struct step_losses *sum, long steps, struct err *e);
+enum { TRAINLOG_EVERY = 100 };
+
+/* After each step: every TRAINLOG_EVERY steps a line of their mean losses, and the state's sum begins anew.
+ */
+int trainlog_step(struct trainlog *l, struct train_state *t, struct err *e);
+
+/* A line of what the held-out masks say. */
+int trainlog_put_held(struct trainlog *l, long iteration, const struct held_score *score, struct err *e);
 
 /* Closes in any case, also a log that was not opened. */
 int trainlog_close(struct trainlog *l, struct err *e);

@@ -12,8 +12,9 @@
 struct train_view {
 	struct view_weights weights;
 	int count;
-	int *sentences;	       /* (count) indices of sentences */
-	const uint8_t **masks; /* (count) of weights.pixels each, as bits (mask/bits.h) */
+	int *sentences;	       /* (count + held) indices of sentences */
+	const uint8_t **masks; /* (count + held) of weights.pixels each, as bits (mask/bits.h) */
+	int held;	       /* further sentences and masks that are not learned from (refer/held.h) */
 };
 
 /* weight (scene_gaussians): each Gaussian's weight over all views. */
@@ -39,6 +40,7 @@ struct train_order {
 	size_t sentences, negatives; /* R; how many a step's contrast is with, 0: all */
 	size_t *others;		     /* (R) */
 	uint32_t groups;	     /* in an epoch */
+	long begin;		     /* the training's iteration where this order begins */
 	long epoch;		     /* that `order` holds, or -1 */
 	uint32_t *order;	     /* (groups) */
 	uint32_t *view, *first;	     /* (groups) the view, and the first of its shuffled sentences */
@@ -57,6 +59,14 @@ size_t train_order_at(struct train_order *o, long iteration, uint32_t *picks, in
 /* The sentences that an iteration's contrast is with: `negatives` of all, drawn evenly. NULL: all. */
 const size_t *train_order_others(struct train_order *o, long iteration);
 
+/* The best state so far by the masks that were held out. */
+struct train_best {
+	float *values;	/* (count) as train_state's; NULL where nothing is held out */
+	long iteration; /* steps that it had; 0: nothing was evaluated yet */
+	double score;	/* the higher the better */
+	long since;	/* evaluations since then */
+};
+
 /* Parameters and referring features in one slab with gradient and both Adam moments alike; a checkpoint is
  * the slab, the iteration and the sum. */
 struct train_state {
@@ -64,16 +74,21 @@ struct train_state {
 	float *values, *gradient, *m, *v; /* (count): parameters, then x in panels */
 	long iteration;			  /* steps done */
 	struct step_losses sum;		  /* of the steps since the caller last set it to zero */
+	struct train_best best;
 };
 
-int train_state_init(
-	struct train_state *t, const struct refer_layout *l, size_t gaussians, uint64_t seed, struct err *e);
+/* keeps_best: 0, or 1 for room for the best state. */
+int train_state_init(struct train_state *t, const struct refer_layout *l, size_t gaussians, int keeps_best,
+	uint64_t seed, struct err *e);
 void train_state_free(struct train_state *t);
 float *train_state_x(const struct train_state *t);
 
 struct train_rates {
 	double features, mlps; /* Adam's */
 };
+
+/* An evaluation of the state as it is: it becomes the best one where its score is higher than any before. */
+void train_evaluated(struct train_state *t, double score);
 
 /* Adam on all parameters with the gradient that is there; iteration + 1. */
 void train_adam(struct train_state *t, const struct train_rates *rates);

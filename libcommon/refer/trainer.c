@@ -27,24 +27,17 @@ static int build_octree(struct trainer *t, const struct trainer_source *from, co
 }
 
 /* The Gaussians that learn, the rows that they share, and the rows' positions. */
-static int choose_rows(
-	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
+static int choose_rows(struct trainer *t, const struct trainer_source *from, const struct trainer_options *o,
+	const double *weight, struct err *e)
 {
 	const size_t n = from->scene_gaussians;
 
-	double *weight = mem_alloc(n, sizeof *weight, "weight", e);
 	t->ids = mem_alloc(n, sizeof *t->ids, "ids", e);
-	int bad = !t->ids || !weight;
-	if (!bad) {
-		train_weights(from->views, from->view_count, n, weight);
-		bad = train_active_set(weight, n, o->tolerance, t->ids, &t->learning, e);
-	}
-	if (!bad && !t->learning)
-		bad = err_set(e, ERR_FORMAT, "no Gaussian has weight in a view with masks");
-	if (!bad && o->share > 0)
-		bad = build_octree(t, from, o, weight, e);
-	free(weight);
-	if (bad)
+	if (!t->ids || train_active_set(weight, n, o->tolerance, t->ids, &t->learning, e))
+		return -1;
+	if (!t->learning)
+		return err_set(e, ERR_FORMAT, "no Gaussian has weight in a view with masks");
+	if (o->share > 0 && build_octree(t, from, o, weight, e))
 		return -1;
 	if (o->share > 0 ? rows_of_leaves(&t->rows, &t->octree, from->means, n, e)
 			 : rows_of_ids(&t->rows, t->ids, t->learning, n, e))
@@ -77,11 +70,43 @@ static int make_views(struct trainer *t, const struct trainer_source *from, stru
 	return failed ? -1 : 0;
 }
 
-static int init(
+/* The rows; what a warm start fits them to. */
+static int make_rows(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
-	if (choose_rows(t, from, o, e) || make_views(t, from, e))
+	double *weight = mem_alloc(from->scene_gaussians, sizeof *weight, "weight", e);
+	const struct warm_source source = {
+		from->lifted, &t->rows, weight, from->sentences, from->object_names};
+
+	if (!weight)
 		return -1;
+	train_weights(from->views, from->view_count, from->scene_gaussians, weight);
+	int bad = choose_rows(t, from, o, weight, e) ||
+		  (t->warm_steps && warm_init(&t->warm, &source, (size_t)o->negatives, (uint64_t)o->seed, e));
+	free(weight);
+	return bad ? -1 : 0;
+}
+
+/* The features that a warm start begins with. */
+static int init_features(struct trainer *t, uint64_t seed, struct err *e)
+{
+	const int width = t->layout.feature_width;
+	float *x = mem_alloc(t->rows.n, (size_t)width * sizeof *x, "features", e);
+
+	if (!x || warm_features(&t->warm, width, seed, x, e)) {
+		free(x);
+		return -1;
+	}
+	step_pack(x, t->rows.n, width, train_state_x(&t->state));
+	free(x);
+	return 0;
+}
+
+static int init_step(
+	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
+{
+	const size_t pixels = t->warm.view.weights.pixels;
+	const int batch = (int)o->batch;
 	const struct step_setup setup = {.layout = &t->layout,
 		.similarity = o->similarity,
 		.contrast = o->contrast,
@@ -93,21 +118,33 @@ static int init(
 		.offsets = from->offsets,
 		.words = from->words,
 		.objects = from->objects,
-		.pixels = from->pixels,
-		.batch = (int)o->batch};
+		.pixels = pixels > from->pixels ? pixels : from->pixels,
+		.batch = t->warm_steps && batch < WARM_BATCH ? WARM_BATCH : batch};
 	t->step = step_new(&setup, e);
-	if (!t->step ||
+	return t->step ? 0 : -1;
+}
+
+static int init(
+	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
+{
+	const uint64_t seed = (uint64_t)o->seed;
+
+	if (make_rows(t, from, o, e) || make_views(t, from, e) || init_step(t, from, o, e) ||
 		train_order_init(&t->order, t->views, t->view_count, (int)o->batch, from->sentences,
-			(size_t)o->negatives, (uint64_t)o->seed, e) ||
-		train_state_init(&t->state, &t->layout, t->rows.n, (uint64_t)o->seed, e))
+			(size_t)o->negatives, seed, e) ||
+		train_state_init(&t->state, &t->layout, t->rows.n, o->hold_out > 0, seed, e) ||
+		(t->warm_steps && init_features(t, seed, e)))
 		return -1;
-	return 0;
+	t->order.begin = t->warm_steps;
+	return o->hold_out > 0 ? held_init(&t->held, t->views, t->view_count, from->objects, from->sentences,
+					 t->rows.n, e)
+			       : 0;
 }
 
 int trainer_init(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
-	*t = (struct trainer){.rates = o->rates};
+	*t = (struct trainer){.rates = o->rates, .warm_steps = from->lifted ? (long)o->warm : 0};
 	refer_layout_init(&t->layout, o->interaction, from->text_width, (int)o->feature_width);
 	int bad = init(t, from, o, e);
 	if (bad)
@@ -123,6 +160,8 @@ void trainer_free(struct trainer *t)
 	step_free(t->step);
 	train_order_free(&t->order);
 	train_state_free(&t->state);
+	warm_free(&t->warm);
+	held_free(&t->held);
 	octree_free(&t->octree);
 	rows_free(&t->rows);
 	free(t->ids);
@@ -142,17 +181,38 @@ double trainer_weights(const struct trainer *t)
 	return pixels > 0 ? weights / pixels : 0;
 }
 
-float *trainer_features(const struct trainer *t, struct err *e)
+float *trainer_features(const struct trainer *t, const float *values, struct err *e)
 {
 	const int width = t->layout.feature_width;
 	float *x = mem_alloc(t->rows.n, (size_t)width * sizeof *x, "features", e);
 
 	if (x)
-		step_unpack(train_state_x(&t->state), t->rows.n, width, x);
+		step_unpack(values + t->state.parameters, t->rows.n, width, x);
 	return x;
 }
 
 struct step_losses trainer_step(struct trainer *t)
 {
+	const struct train_rates rates = {t->rates.features, WARM_MLP_RATE * t->rates.mlps};
+
+	if (t->state.iteration < t->warm_steps)
+		return train_step(&t->state, t->step, &t->warm.order, &rates, t->rows.n);
 	return train_step(&t->state, t->step, &t->order, &t->rates, t->rows.n);
+}
+
+struct held_score trainer_evaluate(struct trainer *t)
+{
+	const struct held_score score =
+		held_evaluate(&t->held, t->step, t->state.values, train_state_x(&t->state));
+
+	train_evaluated(&t->state, score.iou);
+	return score;
+}
+
+const float *trainer_result(const struct trainer *t, long *iteration)
+{
+	const int is_best = t->state.best.iteration > 0;
+
+	*iteration = is_best ? t->state.best.iteration : t->state.iteration;
+	return is_best ? t->state.best.values : t->state.values;
 }

@@ -5,9 +5,11 @@
 
 #include "base/err.h"
 #include "geom/camera.h"
+#include "refer/held.h"
 #include "refer/octree.h"
 #include "refer/rows.h"
 #include "refer/train.h"
+#include "refer/warm.h"
 
 struct trainer_options {
 	enum refer_interaction interaction;
@@ -19,6 +21,8 @@ struct trainer_options {
 	double share;	 /* octree_build's price, in pixels a view; 0: every Gaussian has its own feature */
 	long long batch; /* most sentences in a step */
 	long long negatives; /* train_order's */
+	long long warm;	     /* steps of a warm start; 0: none */
+	double hold_out;     /* share of the supervision that is held out, which is the source's to do */
 	struct train_rates rates;
 	long long seed;
 };
@@ -44,7 +48,9 @@ struct trainer_source {
 	const float *words;	/* (offsets[R], text_width) */
 	const int *objects;	/* (R) */
 	const struct train_view *views;
-	size_t view_count, pixels; /* pixels of the largest view */
+	size_t view_count, pixels;	 /* pixels of the largest view */
+	const struct lifted *lifted;	 /* what a warm start is fitted to; NULL without one */
+	const char *const *object_names; /* (R) for it */
 };
 
 struct trainer {
@@ -61,6 +67,9 @@ struct trainer {
 	struct step *step;
 	struct train_order order;
 	struct train_state state;
+	long warm_steps; /* the first of all */
+	struct warm warm;
+	struct held held;
 };
 
 /* ERR_FORMAT, without a file name, where no Gaussian has weight. */
@@ -71,10 +80,20 @@ void trainer_free(struct trainer *t);
 /* Weights over rows that a pixel has on average. */
 double trainer_weights(const struct trainer *t);
 
-/* (rows.n, d_r) the features as they are now, row-major; free() them. NULL with *e when memory is out. */
-float *trainer_features(const struct trainer *t, struct err *e);
+/* (rows.n, d_r) the features of a slab of trainer_result, row-major; free() them. NULL with *e when memory is
+ * out. */
+float *trainer_features(const struct trainer *t, const float *values, struct err *e);
 
 /* The next step, train_step's. */
 struct step_losses trainer_step(struct trainer *t);
+
+enum { TRAINER_EVALUATE = 250 }; /* steps from one evaluation to the next */
+
+/* Scores the held-out masks, and keeps the state where it is the best so far. */
+struct held_score trainer_evaluate(struct trainer *t);
+
+/* What is learned, as it is or, where masks are held out, as it was when they were answered best: the slab
+ * (train_state's values), and the steps that it had. */
+const float *trainer_result(const struct trainer *t, long *iteration);
 
 #endif

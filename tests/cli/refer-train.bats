@@ -49,7 +49,7 @@ not() { ! "$@"; }
 	"$BIN/gs-check" out.safetensors
 	[ "$(meta out.safetensors gaussians)" = 1000 ]
 	[[ "$(meta out.safetensors options)" == "--iterations 8 --precision u8 --interaction pcmi --similarity dot --contrast cosine --feature-width 16 \
---temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --negatives 12 --tolerance 0 --share 0.04 --seed 1, inputs "???????? ]]
+--temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --negatives 12 --tolerance 0 --share 0.04 --init-iterations 0 --hold-out 0 --seed 1, inputs "???????? ]]
 }
 
 @test "--threads 1, 2 and 3 give the same bytes" {
@@ -397,7 +397,7 @@ cut_short() {
 	train -v --masks more.jsonl -o m 2>err
 	grep -qx 'refer-train: 1 masks of test views are not used' err
 	grep -qxE 'refer-train: [0-9]+ of 1000 Gaussians share [0-9]+ features, [0-9.]+ a pixel' err
-	grep -qx 'refer-train: 4 views, 3 sentences, 12 pairs' err
+	grep -qx 'refer-train: 4 views, 3 sentences, 12 pairs, 0 more held out' err
 	tail -n 1 err | grep -qE '^refer-train: [0-9.]+ s, peak memory [0-9.]+ MiB$'
 }
 
@@ -405,7 +405,13 @@ cut_short() {
 	try=$'\n'"Try 'refer-train --help'."
 	says 2 "refer-train: --scene, --weights, --text and --masks are required$try" "$BIN/refer-train" -o m
 	says 2 "refer-train: -o MODEL is required$try" train
-	says 2 "refer-train: --text and --masks cannot both be stdin$try" train --text - --masks - -o m
+	only="refer-train: only one of --text, --masks and --init can be stdin$try"
+	says 2 "$only" train --text - --masks - -o m
+	says 2 "$only" train --init - --masks - -o m
+	says 2 "refer-train: --init-iterations needs --init$try" train --init-iterations 5 -o m
+	says 2 "refer-train: --patience needs --hold-out$try" train --patience 5 -o m
+	says 2 "refer-train: --hold-out: '0.95' is not a number from 0 to 0.9$try" train --hold-out 0.95 -o m
+	says 2 "refer-train: --patience: '0' is not a whole number from 1 to 1000000$try" train --hold-out 0.5 --patience 0 -o m
 	says 2 "refer-train: --similarity cosine does not go with --interaction pcmi-proj$try" \
 		train --similarity cosine --interaction pcmi-proj -o m
 	says 2 "refer-train: --resume needs a file to write to: there is no checkpoint of stdout$try" train --resume -o -
@@ -420,4 +426,117 @@ cut_short() {
 	says 2 "refer-train: --interaction: 'all' is not one of none|attention|attention+fp|add|pcmi|pcmi-proj$try" \
 		train --interaction all -o m
 	[ ! -e m ]
+}
+
+# lifted FILE [OBJECT [GAUSSIANS]]: a lifted model of one object, "brown box" unless another is named: wholly the
+# Gaussians 0 to 199 of the scene's 1000.
+lifted() {
+	local index= share= i header
+	for ((i = 0; i < 200; i++)); do index+=$(printf '%02x000000' $i) share+=ff; done
+	header='{"__metadata__":{"format":"refer.lifted","version":"1","gaussians":"'"${3:-1000}"'","names":"[\"'"${2:-brown box}"'\"]",
+"texts":"[]","pieces":"[]"},
+"indptr":{"dtype":"I64","shape":[2],"data_offsets":[0,16]},"offsets":{"dtype":"I64","shape":[1],"data_offsets":[16,24]},
+"confidence":{"dtype":"F32","shape":[1],"data_offsets":[24,28]},"index":{"dtype":"I32","shape":[200],"data_offsets":[28,828]},
+"share":{"dtype":"U8","shape":[200],"data_offsets":[828,1028]},"object":{"dtype":"I32","shape":[0],"data_offsets":[1028,1028]},
+"words":{"dtype":"F16","shape":[0,8],"data_offsets":[1028,1028]}}'
+	while ((${#header} % 8)); do header+=' '; done
+	st "$1" "$header" "0000000000000000c800000000000000""0000000000000000""$f1$index$share"
+}
+
+@test "--init: a warm start, the same for any number of threads and from stdin" {
+	lifted l
+	for n in 1 2 3; do train --init l --init-iterations 6 --threads $n -o m$n; done
+	cmp m1 m2
+	cmp m1 m3
+	train --init - --init-iterations 6 -o piped <l
+	cmp m1 piped
+	[[ "$(meta m1 options)" == *" --init-iterations 6 --hold-out 0 "* ]]
+	train -o cold
+	not cmp -s m1 cold
+	train --init l -o m
+	[[ "$(meta m options)" == *" --init-iterations 400 "* ]]
+}
+
+@test "a warm start fits what was lifted" {
+	lifted l
+	train --init l --iterations 400 --share 0 --precision f32 --log log -o m
+	jq -se '.[0].iteration == 100 and .[3].bce < 0.01 and .[3].bce < 0.1 * .[0].bce' log
+}
+
+@test "a training goes on to the same model from within the warm start, and from after it" {
+	lifted l
+	for warm in 80 30; do
+		options=(--interaction none --init l --init-iterations $warm)
+		train "${options[@]}" --iterations 120 -o whole
+		rm -f m m.checkpoint
+		says 4 "refer-train: /dev/full: No space left on device" train "${options[@]}" --iterations 150 --checkpoint 50 -o m --log /dev/full
+		[ "$(meta m.checkpoint iteration)" = 50 ]
+		says 3 "refer-train: m.checkpoint: is of another training (its options or inputs differ); remove it or train without --resume" \
+			train --resume --interaction none --init l --init-iterations 81 -o m
+		lifted other "pink cone"
+		says 3 "refer-train: m.checkpoint: is of another training (its options or inputs differ); remove it or train without --resume" \
+			train --resume "${options[@]}" --init other -o m
+		train "${options[@]}" --iterations 120 --resume -o m
+		cmp whole m
+	done
+}
+
+@test "--init that does not fit" {
+	lifted l "brown box" 999
+	refuses 3 "l: is of a scene of 999 Gaussians, scene has 1000" --init l
+	lifted l "brown boy"
+	refuses 3 "l: has no object of a training sentence of text.safetensors" --init l
+	refuses 4 "none: No such file or directory" --init none
+	refuses 3 "text.safetensors: format is 'refer.text', expected 'refer.lifted'" --init text.safetensors
+	lifted l
+	truncate -s -1 l
+	run train --init l -o m
+	[ "$status" = 3 ]
+	[[ $output == "refer-train: l: "* ]]
+	: >l
+	refuses 3 "l: 0 bytes, too short for a safetensors file" --init l
+}
+
+@test "--hold-out: evaluations in the log, the best state in the model, and a stop" {
+	held() { train --interaction none --hold-out 0.3 --patience 1 --iterations 20000 "$@"; }
+	held -v --log log -o m 2>err
+	grep -qx 'refer-train: 4 views, 3 sentences, 8 pairs, 4 more held out' err
+	best=$(jq -s 'map(select(.held_iou)) | max_by(.held_iou).iteration' log)
+	steps=$(jq -s 'last.iteration' log)
+	[ "$steps" = $((best + 250)) ]
+	[ "$steps" -lt 20000 ]
+	grep -qE "^refer-train: $steps steps, the held-out masks were answered best after $best: IoU 0\.[0-9]{4}$" err
+	[[ "$(meta m options)" == "--iterations $best "*" --hold-out 0.3 "* ]]
+	jq -se 'map(select(.held_iou)) | all(.[]; .held_bce > 0 and .held_iou >= 0 and .held_iou <= 1) and .[0].iteration == 250' log
+	for n in 1 2 3; do held --threads $n --iterations "$best" --log log$n -o best; cmp m best; done
+	cmp log1 log2
+	cmp log1 log3
+	# The last step is evaluated too.
+	train --interaction none --hold-out 0.3 --iterations 90 --log log -o last
+	[ "$(jq -r 'select(.held_iou).iteration' log)" = 90 ]
+	# Another seed holds out others.
+	held --seed 2 -o other
+	not cmp -s m other
+}
+
+@test "a training with held-out masks goes on to the same model and log, and stops at the same step" {
+	held() { train --interaction none --hold-out 0.3 --patience 3 --iterations 5000 --checkpoint 200 -o "$@"; }
+	held whole --log log
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --interaction none --hold-out 0.3 \
+		--patience 3 --iterations 5000 --checkpoint 200 -o part --log part.log &
+	pid=$!
+	for ((i = 0; i < 1000; i++)); do [ "$(meta part.checkpoint best_iteration 2>none)" -gt 0 ] 2>none && break; sleep 0.01; done
+	kill -KILL $pid
+	wait $pid || true
+	[ -e part.checkpoint ]
+	[ ! -e part ]
+	held part --log part.log --resume
+	cmp whole part
+	cmp log part.log
+	[ ! -e part.checkpoint ]
+}
+
+@test "nothing to hold out" {
+	head -n 1 masks.jsonl >one.jsonl
+	refuses 3 "one.jsonl: one pair of a view and an object, none to hold out" --hold-out 0.5 --masks one.jsonl
 }

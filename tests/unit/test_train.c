@@ -356,6 +356,12 @@ struct sample {
 	int objects[2], sentences[2];
 	uint8_t mask[2][PIXELS / 8 + 1]; /* bits */
 	const uint8_t *masks[2];
+	/* For a warm start: the second sentence's object. */
+	struct lifted lifted;
+	const char *object_names[2];
+	int64_t shares[2];
+	int32_t share_index[GAUSSIANS];
+	float share[GAUSSIANS];
 };
 
 static void sample_init(struct sample *s)
@@ -384,10 +390,30 @@ static void sample_init(struct sample *s)
 	}
 }
 
+static char lifted_name[] = "jug", *lifted_names[] = {lifted_name};
+
+static void sample_lift(struct sample *s)
+{
+	s->object_names[0] = "mug";
+	s->object_names[1] = "jug";
+	s->shares[1] = GAUSSIANS / 2;
+	for (int k = 0; k < GAUSSIANS / 2; k++) {
+		s->share_index[k] = k;
+		s->share[k] = 0.9f;
+	}
+	s->lifted = (struct lifted){.gaussians = GAUSSIANS,
+		.objects = 1,
+		.names = lifted_names,
+		.indptr = s->shares,
+		.index = s->share_index,
+		.share = s->share};
+}
+
+/* A warm start and what is held out where the options say so. */
 static int start(struct trainer *t, const struct sample *s, const struct trainer_options *o)
 {
-	const struct trainer_source source = {
-		s->means, NULL, GAUSSIANS, 8, 2, s->offsets, s->words, s->objects, s->views, VIEWS, PIXELS};
+	const struct trainer_source source = {s->means, NULL, GAUSSIANS, 8, 2, s->offsets, s->words,
+		s->objects, s->views, VIEWS, PIXELS, o->warm ? &s->lifted : NULL, s->object_names};
 	struct err e;
 
 	return CHECK(!trainer_init(t, &source, o, &e), "%s", e.message);
@@ -399,12 +425,28 @@ static int same_state(const struct train_state *a, const struct train_state *b)
 
 	return a->iteration == b->iteration && a->count == b->count && !memcmp(a->values, b->values, bytes) &&
 	       !memcmp(a->m, b->m, bytes) && !memcmp(a->v, b->v, bytes) &&
-	       !memcmp(&a->sum, &b->sum, sizeof a->sum);
+	       !memcmp(&a->sum, &b->sum, sizeof a->sum) && !a->best.values == !b->best.values &&
+	       a->best.iteration == b->best.iteration && a->best.since == b->best.since &&
+	       (!a->best.iteration || (!memcmp(&a->best.score, &b->best.score, sizeof(double)) &&
+					      !memcmp(a->best.values, b->best.values, bytes)));
 }
 
-static void test_resume(void)
+/* Steps [from,to), with an evaluation after every fourth where there is something to evaluate. */
+static void steps(struct trainer *t, int from, int to)
 {
-	const struct trainer_options options = {.interaction = REFER_PCMI,
+	for (int i = from; i < to; i++) {
+		trainer_step(t);
+		if (t->state.best.values && i % 4 == 3)
+			trainer_evaluate(t);
+	}
+}
+
+/* Goes on after `cut` steps, with a warm start of so many and a share that is held out. */
+static void test_resume(int cut, long long warm, double hold_out)
+{
+	const struct trainer_options options = {.warm = warm,
+		.hold_out = hold_out,
+		.interaction = REFER_PCMI,
 		.contrast = REFER_CONTRAST_COSINE,
 		.feature_width = 5,
 		.temperature = 0.1,
@@ -419,21 +461,22 @@ static void test_resume(void)
 	int fd = mkstemp(path);
 
 	sample_init(&s);
+	sample_lift(&s);
+	CHECK(hold_out <= 0 || !held_choose(s.views, VIEWS, s.objects, 2, hold_out, 7, &e), "%s", e.message);
 	if (!CHECK(fd >= 0, "no temporary file") || !start(&whole, &s, &options) ||
 		!start(&part, &s, &options) || !start(&fresh, &s, &options))
 		return;
 	close(fd);
 	checkpoint_identity(identity, &options, 0x1234abcd);
-	for (int i = 0; i < 25; i++)
-		trainer_step(&whole);
-	for (int i = 0; i < 11; i++)
-		trainer_step(&part);
-	CHECK(part.state.iteration == 11 && part.state.sum.total > 0, "%ld steps", part.state.iteration);
+	steps(&whole, 0, 25);
+	steps(&part, 0, cut);
+	CHECK(whole.warm_steps == warm && !warm == !whole.warm.objects, "%ld warm steps", whole.warm_steps);
+	CHECK(!whole.state.best.iteration == !(hold_out > 0), "evaluated");
+	CHECK(part.state.iteration == cut && part.state.sum.total > 0, "%ld steps", part.state.iteration);
 	CHECK(!checkpoint_write(&part.state, path, identity, &e), "%s", e.message);
 	CHECK(!checkpoint_read(&fresh.state, path, identity, &e), "%s", e.message);
 	CHECK(same_state(&fresh.state, &part.state), "the checkpoint is not the state");
-	for (int i = 11; i < 25; i++)
-		trainer_step(&fresh);
+	steps(&fresh, cut, 25);
 	CHECK(same_state(&fresh.state, &whole.state), "going on is not the same");
 	CHECK(!same_state(&fresh.state, &part.state), "nothing was learned");
 	checkpoint_identity(other, &options, 0x1234abce);
@@ -444,7 +487,20 @@ static void test_resume(void)
 	checkpoint_identity(other, &wider, 0x1234abcd);
 	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
 		"features of another width");
-	float *x = trainer_features(&whole, &e);
+	struct trainer_options others[2] = {options, options};
+	others[0].warm++;
+	others[1].hold_out += 0.1;
+	for (int k = 0; k < 2; k++) {
+		checkpoint_identity(other, &others[k], 0x1234abcd);
+		CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
+			"another start or hold-out");
+	}
+	long written;
+	const float *result = trainer_result(&whole, &written);
+	CHECK(hold_out > 0 ? result == whole.state.best.values && written == whole.state.best.iteration
+			   : result == whole.state.values && written == 25,
+		"the result is of step %ld", written);
+	float *x = trainer_features(&whole, whole.state.values, &e);
 	const size_t last = whole.rows.n - 1; /* in the first panel, of 64 */
 	CHECK(x && whole.rows.n <= 64, "%zu rows", whole.rows.n);
 	for (size_t c = 0; x && c < 5; c++)
@@ -466,8 +522,8 @@ static void test_no_weight(void)
 	sample_init(&s);
 	for (int v = 0; v < VIEWS; v++)
 		memset(s.random[v].weight, 0, sizeof s.random[v].weight);
-	const struct trainer_source source = {
-		s.means, NULL, GAUSSIANS, 8, 2, s.offsets, s.words, s.objects, s.views, VIEWS, PIXELS};
+	const struct trainer_source source = {s.means, NULL, GAUSSIANS, 8, 2, s.offsets, s.words, s.objects,
+		s.views, VIEWS, PIXELS, NULL, NULL};
 	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
 }
 
@@ -515,7 +571,12 @@ int main(void)
 	test_shared_masks();
 	test_many_masks();
 	test_top();
-	test_resume();
+	test_resume(11, 0, 0);
+	test_resume(11, 17, 0); /* within the warm start, and after it */
+	test_resume(11, 6, 0);
+	test_resume(11, 0, 0.4);
+	test_resume(2, 6, 0.4); /* before anything was evaluated */
+	test_resume(13, 17, 0.4);
 	test_no_weight();
 	test_others();
 	return unit_end();
