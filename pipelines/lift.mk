@@ -29,7 +29,7 @@ lifted_scores := $(if $(TRUTH),$(SCENE)/lifted/masks.score.json $(answers:.jsonl
 
 .PHONY: lifted
 lifted: $(answers) $(whole) $(SCENE)/lifted/boxes.jsonl $(SCENE)/lifted/overlays/complete $(lifted_scores)
-	@$(here)report.sh $(SCENE) lifted
+	@$(here)report.sh $(SCENE)
 
 $(masks3): $(CANDIDATES) $(weights)
 	@mkdir -p $(dir $@)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Prints what two-stage.mk made in a folder: scores, times and memory. usage: report.sh SCENE
+# Prints what two-stage.mk and lift.mk made in a folder: scores, times and memory. usage: report.sh SCENE
 set -eu
 dir=$1
 
@@ -22,9 +22,15 @@ for stage in 1 2; do
 	row "stage $stage, test views, training sentences" "$dir/stage$stage/predictions.train.score.json"
 	row "stage $stage, test views, test sentences" "$dir/stage$stage/predictions.test.score.json"
 done
+row "masks selected in 3D, training views" "$dir/lifted/masks.score.json"
+row "lifted, test views, training sentences" "$dir/lifted/predictions.train.score.json"
+row "lifted, test views, test sentences" "$dir/lifted/predictions.test.score.json"
+row "lifted, test views, more sentences" "$dir/lifted/asked.score.json"
+row "lifted, whole objects, test sentences" "$dir/lifted/whole.score.json"
 echo
 printf '%-12s %10s %12s\n' step seconds "peak MiB"
-for step in import weigh encode select train1 teach train2 render1.train render1.test render2.train render2.test overlay1 overlay2; do
+for step in import weigh encode select train1 teach train2 render1.train render1.test render2.train render2.test overlay1 overlay2 \
+	select3d lift encode3 render3.train render3.test render3.asked render3.whole locate overlay3; do
 	[ -e "$dir/log/$step" ] || continue
 	sed -n 's/.*: \([0-9.]*\) s, peak memory \([0-9.]*\) MiB$/\1 \2/p' "$dir/log/$step" | tail -n 1 |
 		awk -v step="$step" '{ printf "%-12s %10s %12s\n", step, $1, $2 }'
