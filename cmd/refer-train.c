@@ -34,7 +34,7 @@ static const struct cli_option table[] = {
 	{"init", 0, CLI_STRING, &options.from.lifted, "LIFTED",
 		"start from the objects of this lifted model of refer-lift", 0, 0},
 	{"init-iterations", 0, CLI_INT, &options.trainer.warm, "N",
-		"how many of the steps fit these objects, at the start (default 400)", 1, 100000000},
+		"how many of the steps fit these objects, at the start (default 500)", 1, 100000000},
 	{"hold-out", 0, CLI_REAL, &options.trainer.hold_out, "F",
 		"keep this share of the masks to judge by, and stop in time (default 0)", 0, 0.9},
 	{"patience", 0, CLI_INT, &options.patience, "N",
@@ -218,7 +218,7 @@ static void check_options(const struct cli *c)
 		cli_usage(c, "--init-iterations needs --init");
 	if (o->hold_out <= 0 && options.patience)
 		cli_usage(c, "--patience needs --hold-out");
-	o->warm = f->lifted && !o->warm ? 400 : o->warm;
+	o->warm = f->lifted && !o->warm ? 500 : o->warm;
 	options.patience = options.patience ? options.patience : 8;
 	if (o->interaction == REFER_PCMI_PROJ && o->similarity == REFER_COSINE)
 		cli_usage(c, "--similarity cosine does not go with --interaction pcmi-proj");

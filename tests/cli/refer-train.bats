@@ -454,7 +454,7 @@ lifted() {
 	train -o cold
 	not cmp -s m1 cold
 	train --init l -o m
-	[[ "$(meta m options)" == *" --init-iterations 400 "* ]]
+	[[ "$(meta m options)" == *" --init-iterations 500 "* ]]
 }
 
 @test "a warm start fits what was lifted" {
