@@ -4,14 +4,15 @@
  * both sums over the views that have a mask of the object: one without says nothing, as a detector may have
  * missed it. The weighted mean minimises sum_p w_pi (M(p) - a)^2: Occam's LGS (arXiv 2412.01807) and LUDVIG
  * (arXiv 2410.14462) lift features so; FlashSplat (arXiv 2409.08270) shows that cutting it at one half is the
- * optimum of a linear programme for the mask; Splat Feature Solver (arXiv 2508.12216) bounds its error by
- * how near each row of weights is to a single Gaussian.
+ * optimum of a linear programme for the mask; Splat Feature Solver (arXiv 2508.12216,
+ * the row-sum preconditioner) bounds how far it is from the best solution of all Gaussians together.
  *
  * Detectors are wrong, and alike in many views. The vote u_vo of a mask is therefore the square of how well
  * it agrees with what all masks of its object have in common, found in a few rounds; and where objects claim
  * the same Gaussian, the one with the larger share has it while votes are found. So "the yellow box" that is
  * a red bag in half of the views loses those, as the bag's own masks are there in nearly all. Measured on the
- * desk (11 objects, two test views, weights at a third): base 71 mIoU, with all of it 88.
+ * desk (11 objects, two test views, weights at a third, the cut of lifted.h): the mean alone 70.9 mIoU, with
+ * all of it 88.0.
  *
  * Views come one at a time, each once in each round:
  *     for each of LIFT_ROUNDS rounds { lift_objects_view for each view; lift_objects_settle; }
