@@ -107,7 +107,7 @@ static int keep_pieces(struct text *out, const struct tokens *t, const struct vo
 	if (!out->pieces)
 		return -1;
 	for (size_t i = 0; i < out->n; i++) {
-		out->pieces[i] = wordpiece_print(
+		out->pieces[i] = vocab_print(
 			v, t->pieces.ids + t->starts[i] + 1, t->starts[i + 1] - t->starts[i] - 2, e);
 		if (!out->pieces[i])
 			return -1;

@@ -9,4 +9,7 @@
  * there). Tokenizers that wordpiece_encode does not do are refused. Release with vocab_free. */
 int vocab_read(struct vocab *v, const char *dir, struct err *e);
 
+/* n ids of the vocabulary written out as tokens with a space between; free() it. NULL when memory is out. */
+char *vocab_print(const struct vocab *v, const int32_t *ids, size_t n, struct err *e);
+
 #endif

@@ -4,7 +4,6 @@
 #include "base/utf8.h"
 #include "nn/unicode.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -215,29 +214,4 @@ int wordpiece_encode(const struct vocab *v, const char *text, struct wordpieces 
 			return -1;
 	}
 	return end_word(v, &w, out, e);
-}
-
-static const char *token_of(const struct vocab *v, int32_t id)
-{
-	size_t i = 0;
-
-	while (v->entries[i].id != id)
-		i++;
-	return v->entries[i].token;
-}
-
-char *wordpiece_print(const struct vocab *v, const int32_t *ids, size_t n, struct err *e)
-{
-	char *text = NULL;
-	size_t length;
-	FILE *stream = open_memstream(&text, &length);
-
-	for (size_t i = 0; stream && i < n; i++)
-		fprintf(stream, "%s%s", i ? " " : "", token_of(v, ids[i]));
-	if (!stream || fclose(stream)) {
-		err_errno(e, "pieces");
-		free(text);
-		return NULL;
-	}
-	return text;
 }

@@ -57,7 +57,4 @@ struct wordpieces {
  */
 int wordpiece_encode(const struct vocab *v, const char *text, struct wordpieces *out, struct err *e);
 
-/* n ids of the vocabulary written out as tokens with a space between; free() it. NULL when memory is out. */
-char *wordpiece_print(const struct vocab *v, const int32_t *ids, size_t n, struct err *e);
-
 #endif
