@@ -8,12 +8,14 @@
 #include "formats/text.h"
 #include "formats/weights.h"
 #include "refer/lift_objects.h"
+#include "refer/recognise.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static struct {
 	const char *scene, *weights, *text, *masks;
+	int is_as_masked;
 } options;
 
 static const struct cli_option table[] = {
@@ -22,6 +24,9 @@ static const struct cli_option table[] = {
 		"blend weights of the training views, by gs-weigh (required)", 0, 0},
 	{"text", 0, CLI_STRING, &options.text, "TEXT", "sentences encoded by text-encode (required)", 0, 0},
 	{"masks", 0, CLI_STRING, &options.masks, "MASKS", "masks of pseudomask-select (required)", 0, 0},
+	{"names", 0, CLI_CHOICE, &options.is_as_masked, "sentences|masks",
+		"which of several alike an object is: as its sentences say (default), or as its masks do", 0,
+		0},
 	{0}};
 
 static const struct cli_tool tool = {.name = "refer-lift",
@@ -90,18 +95,10 @@ static int load(struct run *r, struct err *e)
 /* Which training views can be looked at. */
 static int find_views(struct run *r, const struct cli *c, struct err *e)
 {
-	size_t left_out = 0;
+	size_t left_out;
 
-	for (size_t v = 0; v < r->scene.cameras.n; v++) {
-		const struct camera *camera = &r->scene.cameras.views[v];
-		if (camera->split != SPLIT_TRAIN)
-			continue;
-		int found = weights_exist(options.weights, camera->name, e);
-		if (found < 0)
-			return -1;
-		r->is_there[v] = (char)found;
-		left_out += !found;
-	}
+	if (weights_mark(options.weights, &r->scene.cameras, r->is_there, &left_out, e))
+		return -1;
 	if (left_out)
 		cli_warn(c, "%s: %zu training views have no weights, and their masks do not count",
 			options.weights, left_out);
@@ -215,6 +212,7 @@ static int lift(struct run *r, struct err *e)
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
 	double confidence = 0;
+	size_t moved = 0;
 
 	if (load(r, e) || find_views(r, c, e))
 		return -1;
@@ -222,12 +220,15 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 	cli_progress_start(&r->progress, c, "views", (double)r->scene.cameras.n * LIFT_ROUNDS);
 	int bad = lift(r, e);
 	cli_progress_end(&r->progress);
-	if (bad || lifted_add_sentences(&r->model, &r->text, r->sentence_object, r->names, e))
+	if (bad || lifted_add_sentences(&r->model, &r->text, r->sentence_object, r->names, e) ||
+		(!options.is_as_masked &&
+			recognise(&r->model, &r->scene.splats, &r->scene.cameras, &moved, e)))
 		return -1;
 	for (size_t o = 0; o < r->model.objects; o++)
 		confidence += (double)r->model.confidence[o] / (double)r->model.objects;
-	cli_note(c, 1, "%zu objects, %lld Gaussians with a share in one; agreement of the masks %.3f",
-		r->model.objects, (long long)r->model.indptr[r->model.objects], confidence);
+	cli_note(c, 1,
+		"%zu objects, %lld Gaussians with a share in one; agreement of the masks %.3f; %zu changed places",
+		r->model.objects, (long long)r->model.indptr[r->model.objects], confidence, moved);
 	return lifted_write(&r->model, c->output, "", e);
 }
 

@@ -227,6 +227,22 @@ done:
 	return bad;
 }
 
+int weights_mark(const char *dir, const struct cameras *cameras, char *there, size_t *missing, struct err *e)
+{
+	*missing = 0;
+	for (size_t v = 0; v < cameras->n; v++) {
+		there[v] = 0;
+		if (cameras->views[v].split != SPLIT_TRAIN)
+			continue;
+		int found = weights_exist(dir, cameras->views[v].name, e);
+		if (found < 0)
+			return -1;
+		there[v] = (char)found;
+		*missing += !found;
+	}
+	return 0;
+}
+
 int weights_each(const char *dir, const struct cameras *cameras, size_t gaussians,
 	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
 	size_t *missing, struct err *e)

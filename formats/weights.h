@@ -35,6 +35,9 @@ int weights_open_file(struct weights *w, const char *path, struct err *e);
 int weights_exist(const char *dir, const char *view, struct err *e);
 void weights_close(struct weights *w);
 
+/* there (cameras->n): 1 for the training views that have weights. *missing gets the number of those without.
+ */
+int weights_mark(const char *dir, const struct cameras *cameras, char *there, size_t *missing, struct err *e);
 /* Visits the training views that have weights, in the order of the cameras, each open only meanwhile; a visit
  * that does not give 0 ends it. *missing gets the number of training views without. -1 with *e. */
 int weights_each(const char *dir, const struct cameras *cameras, size_t gaussians,

@@ -168,7 +168,7 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 
 @test "-v says what was found" {
 	lift -v -o model 2>said
-	grep -qE '^refer-lift: 3 objects, [0-9]+ Gaussians with a share in one; agreement of the masks 0\.[0-9]{3}$' said
+	grep -qE '^refer-lift: 3 objects, [0-9]+ Gaussians with a share in one; agreement of the masks 0\.[0-9]{3}; 0 changed places$' said
 	[ "$(wc -l <said)" = 2 ]
 }
 

@@ -1,0 +1,20 @@
+/* Which lifted object is which: a detector that cannot tell two things that look the same gives each the
+ * other's masks as readily as its own, but the training sentences say where each is. */
+#ifndef REFER_RECOGNISE_H
+#define REFER_RECOGNISE_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+#include "refer/lifted.h"
+#include "splat/splats.h"
+
+/* Gives each object the Gaussians that its training sentences mean: of all ways to share them out, the one
+ * with the largest sum over sentences of log(p + 0.003), p of refer/choose.h without its part `sentence`, at
+ * most one lot of Gaussians to an object; again, as anchors move with their objects, until nothing changes,
+ * four times at most. An object's own words fit its own Gaussians best, so that only things that look the
+ * same change places. *moved gets how many objects have others than before. Returns 0, or -1 with *e set and
+ * the model as it was. */
+int recognise(struct lifted *l, const struct splats *splats, const struct cameras *cameras, size_t *moved,
+	struct err *e);
+
+#endif
