@@ -8,6 +8,7 @@
 #include "formats/scene.h"
 #include "formats/splat.h"
 #include "formats/text.h"
+#include "refer/choose.h"
 #include "geom/up.h"
 #include "refer/locate.h"
 
@@ -83,8 +84,8 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
 		anymodel_read(&r->model, options.model, e) || choose_refs(r, c, e))
 		return -1;
-	const struct anymodel_ask ask = {
-		&r->scene, &r->text, options.model, options.scene, options.text, r->refs, r->count, 1, 0};
+	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
+		r->refs, r->count, 1, CHOOSE_ALL, 0};
 	if (anymodel_answer(&r->model, &ask, &r->asked, e))
 		return -1;
 	r->located = mem_zalloc(r->asked.answers, sizeof *r->located, "objects", e);

@@ -9,6 +9,7 @@
 #include "formats/text.h"
 #include "refer/answer.h"
 #include "refer/asked.h"
+#include "refer/choose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +18,8 @@
 enum { SPLIT_ALL = 2 };
 
 static struct {
-	const char *scene, *text, *model, *views, *refs;
+	const char *scene, *text, *model, *views, *refs, *without;
+	unsigned parts;
 	struct pictures pictures;
 	int split, sentences, is_plain, is_amodal, size[2];
 	double scale; /* 0: not given */
@@ -39,6 +41,9 @@ static const struct cli_option table[] = {
 		0, 0},
 	{"min-probability", 0, CLI_REAL, &options.least, "P",
 		"lifted models: nothing is meant where the best object is less probable (default 0)", 0, 1},
+	{"without", 0, CLI_STRING, &options.without, "PART,...",
+		"lifted models: choose objects without words, names, alike, colours, relations or sentence",
+		0, 0},
 	{"amodal", 0, CLI_FLAG, &options.is_amodal, NULL,
 		"outlines of whole objects as if nothing hid them, and the share in sight", 0, 0},
 	{"size", 0, CLI_SIZE, &options.size, "WxH", "size of the masks (default: the view's)", 1, 65536},
@@ -118,6 +123,8 @@ static int choose_refs(struct run *r, const struct cli *c, struct err *e)
 		return -1;
 	if (options.refs && text_mark(&r->text, options.refs, r->chosen, &name))
 		cli_usage(c, "--refs: no sentence '%.*s'", (int)name.length, name.text);
+	if (choose_without(options.without, &options.parts, &name))
+		cli_usage(c, "--without: no part '%.*s'", (int)name.length, name.text);
 	for (size_t i = 0; i < r->text.n; i++)
 		if (options.refs ? r->chosen[i]
 				 : options.sentences == SPLIT_ALL ||
@@ -131,19 +138,17 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
 		anymodel_read(&r->model, options.model, e) || choose_views(r, c, e) || choose_refs(r, c, e))
 		return -1;
-	if (!r->view_count)
-		cli_warn(c, "%s: no view in this split", options.scene);
-	if (!r->ref_count)
-		cli_warn(c, "%s: no sentence in this split", file_name(options.text));
+	if (!r->view_count || !r->ref_count)
+		cli_warn(c, "%s: no %s in this split",
+			r->view_count ? file_name(options.text) : options.scene,
+			r->view_count ? "sentence" : "view");
 	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
-		r->refs, r->ref_count, !options.is_plain, options.least};
-	if (anymodel_answer(&r->model, &ask, &r->asked, e))
-		return -1;
-	r->wholes = mem_zalloc(r->asked.answers, sizeof *r->wholes, "objects", e);
-	if (!r->wholes)
-		return -1;
-	return options.is_amodal ? asked_wholes(&r->asked, &r->scene.splats, &r->scene.cameras, r->wholes, e)
-				 : 0;
+		r->refs, r->ref_count, !options.is_plain, options.parts, options.least};
+	int bad = anymodel_answer(&r->model, &ask, &r->asked, e) ||
+		  !(r->wholes = mem_zalloc(r->asked.answers, sizeof *r->wholes, "objects", e));
+	if (!bad && options.is_amodal)
+		bad = asked_wholes(&r->asked, &r->scene.splats, &r->scene.cameras, r->wholes, e);
+	return bad ? -1 : 0;
 }
 
 /* One answer: its mask, and the pictures of all sentences that it is the answer to. */

@@ -64,7 +64,7 @@ int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, stru
 	if (check_fit(m, q, e))
 		return -1;
 	if (m->is_lifted)
-		return asked_lifted(a, &m->lifted, &of, q->least, e);
+		return asked_lifted(a, &m->lifted, &of, q->parts, q->least, e);
 	if (model_rows(t, means, &rows, e))
 		return -1;
 	const struct respond_model respond = {

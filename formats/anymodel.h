@@ -25,7 +25,8 @@ struct anymodel_ask {
 	const char *model_path, *scene_path, *text_path; /* for messages */
 	const size_t *which;				 /* (count) the sentences */
 	size_t count;
-	int wants_calibration; /* of trained models, and the next is of lifted ones: see refer/asked.h */
+	int wants_calibration; /* of trained models, and the next are of lifted ones: see refer/asked.h */
+	unsigned parts;
 	double least;
 };
 

@@ -28,4 +28,4 @@ function print_group(name, heading,    i, k, p) {
 	print ""
 }
 
-END { print_group("relation", "relation word"); print_group("visibility", "visible share of the target") }
+END { print_group("alike", "objects that look the same"); print_group("relation", "relation word"); print_group("visibility", "visible share of the target") }

@@ -24,8 +24,12 @@ values() {
 						' "$ROOT/$cell/$run/$kind.csv"
 				done
 			done
-			[ "$table" = masks ] || continue
-			for run in both=masks/ciou iou=masks/iou top1=masks/top1 first=masks/first two=both/teach; do
+			case $table in
+			masks) made='both=masks/ciou iou=masks/iou top1=masks/top1 first=masks/first two=both/teach' ;;
+			lifted) made='both=masks/ciou two=both/teach onscene=masks/scene warmed=masks/scene lift=masks/scene lift-voted=masks/ciou' ;;
+			*) continue ;;
+			esac
+			for run in $made; do
 				printf '%s\t%s\t%s\tquality\t%s\n' "${run%=*}" "$cell" "$seed" "$(quality "$ROOT/$cell/${run#*=}.quality.json")"
 			done
 		done
@@ -38,8 +42,11 @@ groups() {
 		for seed in $SEEDS; do
 			for run in $RUNS; do
 				for kind in test train; do
-					awk -F, -v OFS='\t' -v run="$run" -v kind=$kind '$1 == "relation" || $1 == "visibility" {
-						print run, kind, $1, $2, $3, 100 * $4 }' "$ROOT/$scene-$seed/$run/$kind.csv"
+					awk -F, -v OFS='\t' -v run="$run" -v kind=$kind '
+						$1 == "relation" || $1 == "visibility" { print run, kind, $1, $2, $3, 100 * $4 }
+						$1 == "object" { n++; name[n] = base[n] = $2; sub(/ [0-9]+$/, "", base[n]); same[base[n]]++; pairs[n] = $3; miou[n] = $4 }
+						END { for (i = 1; i <= n; i++) print run, kind, "alike", (same[base[i]] > 1 ? "several" : "one"), pairs[i], 100 * miou[i] }
+						' "$ROOT/$scene-$seed/$run/$kind.csv"
 				done
 			done
 		done
@@ -74,7 +81,7 @@ statistics() {
 
 if [ "$table" = statistics ]; then
 	statistics
-elif [ "$table" = sentences ]; then
+elif [ "$table" = sentences ] || [ "$table" = hard ]; then
 	groups | awk -f "$here/ablation-groups.awk" -v runs="$RUNS"
 else
 	values | awk -f "$here/ablation-table.awk" -v table="$table" -v seeds="$SEEDS" -v scenes="$SCENES" "$here/published.tsv" -

@@ -17,7 +17,8 @@
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 #
 # Targets: tables (all but the cost), cost (times its own trainings, so nothing else should run), all, and one for each
-# table: statistics (of the scenes) modules similarity masks interaction width encoder contrast settings sentences. They print;
+# table: statistics (of the scenes) modules similarity masks interaction width encoder contrast settings sentences lifted (and,
+# not in the paper, answers without training, and trainings that start from them) hard (the same by what makes a case hard). They print;
 # OUT/SIZE/NAME.md keeps what was printed. Every cell is the mean over the seeds, each the mean over the scenes, with the spread between seeds.
 # Every file is made under its own name: what is there is not made again, unless what it is made of changed.
 
@@ -75,6 +76,27 @@ run.lambda = $(run.both) --lambda 0.1
 run.slow = $(run.both) --feature-rate 0.0025 --mlp-rate 0.0001
 run.half = $(run.both)
 steps.half = $(shell expr $(ITERATIONS) / 2)
+run.onscene = $(run.both)
+masks.onscene = masks/scene
+run.warmed = $(run.both)
+masks.warmed = masks/scene
+init.warmed = lifted/full
+steps.warmed = 500
+
+# Answers of lifted models: which model, and which parts of the choice it goes without.
+lift.lift = full
+lift.lift-voted = voted
+lift.lift-relations = plain
+lift.lift-colours = plain
+ask.lift-colours = --without relations
+lift.lift-alike = plain
+ask.lift-alike = --without relations,colours
+lift.lift-names = plain
+ask.lift-names = --without relations,colours,alike
+lift.lift-words = plain
+ask.lift-words = --without relations,colours,alike,names
+lift.lift-sentence = plain
+ask.lift-sentence = --without relations,colours,alike,names,words
 encoders := $(foreach b,$(BERTS),$(firstword $(subst =, ,$(b))))
 $(foreach b,$(BERTS),$(eval dir.$(firstword $(subst =, ,$(b))) := $(lastword $(subst =, ,$(b)))))
 $(foreach e,$(encoders),$(eval run.$(e) = $$(run.both))$(eval text.$(e) = $(e)))
@@ -89,7 +111,9 @@ encoder := both static $(encoders)
 contrast := pcmi dot both proj proj-dot proj-both
 settings := both cold warm lambda slow half
 sentences := both two
-tables := statistics modules similarity masks interaction width encoder contrast settings sentences
+lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike lift-colours lift-relations lift lift-voted
+hard := two warmed lift-relations lift
+tables := statistics modules similarity masks interaction width encoder contrast settings sentences lifted hard
 RUNS ?= $(sort $(foreach t,$(tables),$($(t))))
 
 root := $(OUT)/$(SIZE)
@@ -137,6 +161,15 @@ $(1)/masks/first.jsonl: $(1)/weights/complete
 	@mkdir -p $$(@D)
 	$$(call run,$(1)/log/first,pseudomask-select --method first --scene $(1)/scene --weights $(1)/weights -o $$@ \
 		$(1)/data/candidates.jsonl)
+$(1)/masks/scene.jsonl: $(1)/weights/complete
+	@mkdir -p $$(@D)
+	$$(call run,$(1)/log/select3d,pseudomask-select --scene $(1)/scene --weights $(1)/weights -o $$@ $(1)/data/candidates.jsonl)
+$(1)/lifted/voted.safetensors: $(1)/masks/ciou.jsonl
+$(1)/lifted/plain.safetensors $(1)/lifted/full.safetensors: $(1)/masks/scene.jsonl
+$(1)/lifted/%.safetensors: $(1)/weights/complete $(1)/text/contextual.safetensors
+	@mkdir -p $$(@D)
+	$$(call run,$(1)/log/lift.$$*,refer-lift --scene $(1)/scene --weights $(1)/weights --text $(1)/text/contextual.safetensors \
+		--masks $$(filter %.jsonl,$$^) $$(if $$(filter plain,$$*),--names masks) -o $$@)
 $(1)/masks/%.jsonl: $(1)/data/made-by
 	@mkdir -p $$(@D)
 	$$(call run,$(1)/log/$$*,pseudomask-select --method $$* -o $$@ $(1)/data/candidates.jsonl)
@@ -158,25 +191,41 @@ masks_of = $(or $(masks.$(1)),masks/ciou)
 text_of = text/$(or $(text.$(1)),contextual).safetensors
 options_of = --iterations $(or $(steps.$(1)),$(ITERATIONS)) $(TRAIN) $(run.$(1))
 
+# $(call score_rule,FOLDER/RUN)
+define score_rule
+$(1)/%.csv: $(1)/%.jsonl
+	$(tool)miou-score --csv --quiet --predicted-views --truth $(dir $(1))data/truth.jsonl --whole $(dir $(1))data/whole.jsonl \
+		--sentences $(dir $(1))data/sentences.jsonl -o $$@ $$<
+endef
+
 # $(call run_rules,FOLDER,SEED,RUN)
 define run_rules
 $(1)/$(3)/options: FORCE
 	$$(call keep,--seed $(2) $(call options_of,$(3)))
-$(1)/$(3)/model.safetensors: $(1)/$(3)/options $(1)/$(call masks_of,$(3)).jsonl $(1)/weights/complete $(1)/$(call text_of,$(3))
+$(1)/$(3)/model.safetensors: $(1)/$(3)/options $(1)/$(call masks_of,$(3)).jsonl $(1)/weights/complete $(1)/$(call text_of,$(3)) \
+		$(if $(init.$(3)),$(1)/$(init.$(3)).safetensors)
 	$$(call run,$(1)/$(3)/train.log,refer-train --scene $(1)/scene --weights $(1)/weights --text $(1)/$(call text_of,$(3)) \
-		--masks $(1)/$(call masks_of,$(3)).jsonl --seed $(2) $(call options_of,$(3)) --checkpoint 0 \
+		--masks $(1)/$(call masks_of,$(3)).jsonl --seed $(2) $(call options_of,$(3)) --checkpoint 0 $(if $(init.$(3)),--init $(1)/$(init.$(3)).safetensors) \
 		--log $(1)/$(3)/losses.jsonl -o $$@)
 $(1)/$(3)/%.jsonl: $(1)/$(3)/model.safetensors
 	$$(call run,$(1)/$(3)/render.log,refer-render --scene $(1)/scene --text $(1)/$(call text_of,$(3)) --model $$< \
 		--sentences $$* -o $$@)
-$(1)/$(3)/%.csv: $(1)/$(3)/%.jsonl
-	$(tool)miou-score --csv --quiet --predicted-views --truth $(1)/data/truth.jsonl --whole $(1)/data/whole.jsonl \
-		--sentences $(1)/data/sentences.jsonl -o $$@ $$<
+endef
+
+# $(call lift_rules,FOLDER,RUN)
+define lift_rules
+$(1)/$(2)/options: FORCE
+	$$(call keep,$(ask.$(2)))
+$(1)/$(2)/%.jsonl: $(1)/$(2)/options $(1)/lifted/$(lift.$(2)).safetensors
+	$$(call run,$(1)/$(2)/render.log,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors \
+		--model $(1)/lifted/$(lift.$(2)).safetensors --sentences $$* $$(ask.$(2)) -o $$@)
 endef
 
 $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(eval $(call data_rules,$(root)/$(s)-$(n),$(s),$(n)))))
 $(foreach c,$(cells),$(foreach e,$(encoders),$(eval $(call encoder_rules,$(c),$(e)))))
-$(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(foreach r,$(RUNS),$(eval $(call run_rules,$(root)/$(s)-$(n),$(n),$(r))))))
+$(foreach c,$(cells),$(foreach r,$(filter lift%,$(RUNS)),$(eval $(call lift_rules,$(c),$(r)))))
+$(foreach c,$(cells),$(foreach r,$(RUNS),$(eval $(call score_rule,$(c)/$(r)))))
+$(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(foreach r,$(filter-out lift%,$(RUNS)),$(eval $(call run_rules,$(root)/$(s)-$(n),$(n),$(r))))))
 
 scores_of = $(foreach c,$(cells),$(foreach r,$(filter $(RUNS),$(1)),$(c)/$(r)/test.csv $(c)/$(r)/train.csv))
 scores: $(call scores_of,$(RUNS))
@@ -187,6 +236,7 @@ endef
 $(foreach t,$(tables),$(eval $(call table_rules,$(t))))
 statistics masks: $(foreach c,$(cells),$(foreach m,ciou iou top1,$(c)/masks/$(m).quality.json))
 masks: $(foreach c,$(cells),$(c)/masks/first.quality.json $(c)/both/teach.quality.json)
+lifted: $(foreach c,$(cells),$(foreach m,ciou scene,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
 
 # Alone on the machine, or its seconds mean nothing.
 cost_runs := none both proj-both

@@ -59,8 +59,8 @@ int asked_trained(struct asked *a, const struct respond_model *m, const struct a
 }
 
 /* answer[i] becomes the object that sentence i means, or, for none, the number of objects. */
-static int choose_objects(
-	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e)
+static int choose_objects(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
+	double least, struct err *e)
 {
 	const struct choose_scene scene = {l, q->splats, q->cameras};
 	struct choose_sentence *sentences = mem_alloc(q->count, sizeof *sentences, "sentences", e);
@@ -79,7 +79,7 @@ static int choose_objects(
 			(size_t)(q->offsets[r + 1] - q->offsets[r])};
 	}
 	if (probability)
-		bad = choose(&scene, sentences, q->count, CHOOSE_ALL, probability, e);
+		bad = choose(&scene, sentences, q->count, parts, probability, e);
 	for (size_t i = 0; i < q->count && !bad; i++) {
 		const float *row = probability + i * l->objects;
 		size_t best = 0;
@@ -107,14 +107,14 @@ static int take_responses(struct asked *a, const struct lifted *l, const size_t 
 	return render_pack(a->responses, n, (int)a->answers, e);
 }
 
-static int ask_lifted(
-	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e)
+static int ask_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
+	double least, struct err *e)
 {
 	size_t *of, answers = 0;
 
 	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
 	a->sure = mem_alloc(q->count, sizeof *a->sure, "sentences", e);
-	if (!a->answer || !a->sure || choose_objects(a, l, q, least, e))
+	if (!a->answer || !a->sure || choose_objects(a, l, q, parts, least, e))
 		return -1;
 	of = mem_alloc(l->objects + 1, sizeof *of, "objects", e);
 	for (size_t o = 0; o <= l->objects && of; o++)
@@ -130,11 +130,11 @@ static int ask_lifted(
 	return bad ? -1 : 0;
 }
 
-int asked_lifted(
-	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e)
+int asked_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
+	double least, struct err *e)
 {
 	*a = (struct asked){0};
-	if (!ask_lifted(a, l, q, least, e))
+	if (!ask_lifted(a, l, q, parts, least, e))
 		return 0;
 	asked_free(a);
 	return -1;

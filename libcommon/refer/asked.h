@@ -38,9 +38,9 @@ int asked_trained(struct asked *a, const struct respond_model *m, const struct a
 /* An answer for each object that is the most probable one for a sentence. A sentence whose best object is
  * less probable than `least`, or that has no words, means nothing that was lifted: its responses are 0. How
  * sure an answer is: the probability that the object is meant times the object's confidence, which is about
- * what its masks' IoU is worth. */
-int asked_lifted(
-	struct asked *a, const struct lifted *l, const struct asked_of *q, double least, struct err *e);
+ * what its masks' IoU is worth. parts: choose()'s. */
+int asked_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
+	double least, struct err *e);
 void asked_free(struct asked *a);
 
 /* The Gaussians of an answer, those with responses above 0: ids, and these responses (both with room for all

@@ -14,12 +14,21 @@ static const double colour_weight = 0.6, colour_least = 0.05;
 static const double known_word = 0.5, known_soft = 0.05, relation_least = 0.02;
 static const double absent_match = 0.5, absent_colour = 0.2, absent_relation = 0.3;
 
-const char *choose_part_name(enum choose_part p)
+int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
 {
 	static const char *const names[CHOOSE_PARTS] = {
 		"words", "names", "alike", "colours", "relations", "sentence"};
 
-	return names[p];
+	*parts = CHOOSE_ALL;
+	while (list_next(&list, unknown)) {
+		int p = 0;
+		while (p < CHOOSE_PARTS && !list_name_is(unknown, names[p]))
+			p++;
+		if (p == CHOOSE_PARTS)
+			return -1;
+		*parts &= ~(1U << p);
+	}
+	return 0;
 }
 
 /* What all sentences of a call share, and scratch of (O). */

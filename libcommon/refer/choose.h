@@ -20,6 +20,7 @@
 #define REFER_CHOOSE_H
 
 #include "base/err.h"
+#include "base/list.h"
 #include "geom/camera.h"
 #include "refer/lifted.h"
 #include "splat/splats.h"
@@ -35,8 +36,9 @@ enum choose_part {
 };
 enum { CHOOSE_ALL = (1 << CHOOSE_PARTS) - 1 };
 
-/* "words" ... "sentence". */
-const char *choose_part_name(enum choose_part p);
+/* All parts but those in a comma-separated list of "words" ... "sentence" (NULL: all). 0, or -1 and *unknown
+ * the first name that is no part's. */
+int choose_without(const char *list, unsigned *parts, struct list_name *unknown);
 
 struct choose_sentence {
 	const char *pieces;   /* word pieces with single spaces between; NULL: not known, and only the part

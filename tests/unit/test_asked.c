@@ -3,6 +3,7 @@
 
 #include "refer/answer.h"
 #include "refer/asked.h"
+#include "refer/choose.h"
 #include "splat/render.h"
 
 enum { N = 4, SIDE = 32, SENTENCES = 6, MOST = 4 };
@@ -51,7 +52,7 @@ static void test_sharing(void)
 	struct asked a;
 	struct err e = {0};
 
-	if (!CHECK(!asked_lifted(&a, &lifted, &of, 0.6, &e), "%s", e.message))
+	if (!CHECK(!asked_lifted(&a, &lifted, &of, CHOOSE_ALL, 0.6, &e), "%s", e.message))
 		return;
 	CHECK(a.answers == 3, "%zu answers", a.answers);
 	CHECK(a.answer[0] == a.answer[2] && a.answer[1] != a.answer[0], "one answer for one object");
@@ -67,7 +68,7 @@ static void test_sharing(void)
 			fabsf(at(&a, a.answer[1], 1) + LIFTED_CUT) < 1e-6f,
 		"responses");
 	asked_free(&a);
-	if (!CHECK(!asked_lifted(&a, &lifted, &of, 0, &e), "%s", e.message))
+	if (!CHECK(!asked_lifted(&a, &lifted, &of, CHOOSE_ALL, 0, &e), "%s", e.message))
 		return;
 	CHECK(a.answer[4] != a.answer[3],
 		"with no least probability every sentence with words means something");
@@ -80,7 +81,7 @@ static void test_wholes(void)
 	struct splats wholes[MOST];
 	struct err e = {0};
 
-	if (!CHECK(!asked_lifted(&a, &lifted, &of, 0.6, &e), "%s", e.message))
+	if (!CHECK(!asked_lifted(&a, &lifted, &of, CHOOSE_ALL, 0.6, &e), "%s", e.message))
 		return;
 	if (CHECK(!asked_wholes(&a, &splats, &cameras, wholes, &e), "%s", e.message)) {
 		const struct splats *large = &wholes[a.answer[0]], *small = &wholes[a.answer[1]];
@@ -132,7 +133,7 @@ static void test_outlines(void)
 	struct seen seen = {0}, whole = {0};
 	struct err e = {0};
 
-	if (!CHECK(!asked_lifted(&a, &lifted, &of, 0.6, &e) &&
+	if (!CHECK(!asked_lifted(&a, &lifted, &of, CHOOSE_ALL, 0.6, &e) &&
 			    !asked_wholes(&a, &splats, &cameras, wholes, &e),
 		    "%s", e.message))
 		return;
