@@ -1,4 +1,4 @@
-# The whole method on a small synthetic scene.
+# The whole method on a small synthetic scene: both stages of training, and the answers without training.
 #
 # DEMO        folder; default demo
 # SEED        of the scene and the training; default 1
@@ -20,15 +20,17 @@ make_data := gs-synth --seed $(SEED)$(if $(SYNTH), $(SYNTH))
 
 .PHONY: demo FORCE
 demo: $(data)/made-by
-	@$(MAKE) --no-print-directory -f $(here)two-stage.mk SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply CAMERAS=$(data)/sparse/0 \
+	@$(MAKE) --no-print-directory -f $(here)lift.mk predictions overlays scores lifted SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply CAMERAS=$(data)/sparse/0 \
 		IMAGES=$(data)/images TEST_VIEWS=$$(cat $(data)/test-views) SENTENCES=$(data)/sentences.jsonl \
-		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl SCALE=$(SCALE) ITERATIONS=$(ITERATIONS) SEED=$(SEED) \
+		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl WHOLE=$(data)/whole.jsonl BOXES=$(data)/boxes.jsonl SCALE=$(SCALE) ITERATIONS=$(ITERATIONS) SEED=$(SEED) \
 		$(if $(TRAIN),TRAIN="$(TRAIN)") \
 		$(if $(BIN),BIN=$(BIN)) $(if $(BERT),BERT=$(BERT))
 	@echo
 	@echo "photographs: $(data)/images"
 	@echo "sentences:   $(data)/sentences.jsonl"
-	@echo "masks drawn over the test views, a picture for each test sentence: $(DEMO)/stage2/overlays"
+	@echo "masks drawn over the test views, a picture for each test sentence: $(DEMO)/lifted/overlays (without training),"
+	@echo "             $(DEMO)/stage2/overlays (trained as in the paper)"
+	@echo "where the things are in space: $(DEMO)/lifted/boxes.jsonl"
 
 # The command that made the data, once they are whole. They stay as they are while it is the same.
 $(data)/made-by: FORCE

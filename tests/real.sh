@@ -68,6 +68,13 @@ check "everything made is well-formed" "$bin/gs-check" "$out/scene" "$out/text.s
 check "stage 1 finds training sentences in new views (mIoU over 25)" \
 	within "$(score "$out/stage1/predictions.train.jsonl")" 25 100
 check "stage 2 too" within "$(score "$out/stage2/predictions.train.jsonl")" 25 100
+check "the workflow without training" make --no-print-directory -f pipelines/desk.mk lift DATA="$desk" OUT="$out-lift" \
+	BERT="$encoder" BIN="$bin"
+check "selection in 3D (masks' mIoU over 90)" within "$(score "$out-lift/lifted/masks.jsonl")" 90 100
+check "lifted objects are found by test sentences (mIoU over 87)" \
+	within "$(score "$out-lift/lifted/predictions.test.jsonl")" 87 100
+check "and by relations alone (mIoU over 75)" within "$(score "$out-lift/lifted/asked.jsonl")" 75 100
 pipelines/report.sh "$out"
+pipelines/report.sh "$out-lift"
 echo "$passed passed, $failed failed"
 [ $failed = 0 ] && [ $passed != 0 ]

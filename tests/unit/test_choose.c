@@ -1,6 +1,7 @@
-/* The choice of an object by a sentence: each part by itself, on a made-up scene of four objects whose words
- * have made-up vectors. */
+/* The choice of an object by a sentence, and of Gaussians for an object: each part by itself, on a made-up
+ * scene of four objects whose words have made-up vectors. */
 #include "refer/choose.h"
+#include "refer/recognise.h"
 #include "unit.h"
 
 #include <string.h>
@@ -170,9 +171,52 @@ static void many(void)
 	CHECK(!choose(&empty, s, 2, CHOOSE_ALL, both, &e), "a model without objects");
 }
 
+/* A copy whose shares can be moved. */
+static struct lifted copy(int64_t copied_indptr[OBJECTS + 1], int32_t copied_index[N], float copied_share[N],
+	float copied_confidence[OBJECTS])
+{
+	struct lifted l = lifted;
+
+	memcpy(copied_indptr, indptr, sizeof indptr);
+	memcpy(copied_index, index_of, sizeof index_of);
+	memcpy(copied_share, share, sizeof share);
+	memcpy(copied_confidence, confidence, sizeof confidence);
+	l.indptr = copied_indptr;
+	l.index = copied_index;
+	l.share = copied_share;
+	l.confidence = copied_confidence;
+	return l;
+}
+
+/* Two mugs that have each other's Gaussians get their own, as one of them is left of the crate; what is as it
+ * should be stays, and so does a crate that is called a tin, if all of its words are a tin's. */
+static void twins(void)
+{
+	int64_t at[OBJECTS + 1];
+	int32_t index[N];
+	float shares[N], sure[OBJECTS];
+	struct lifted l = copy(at, index, shares, sure);
+	size_t moved = 0;
+	struct err e;
+
+	CHECK(!recognise(&l, &splats, &cameras, &moved, &e) && moved == 0, "%zu moved in a right model",
+		moved);
+	CHECK(!memcmp(index, index_of, sizeof index), "a right model changed");
+	for (int i = 0; i < 2 * EACH; i++)
+		index[i] = (i + EACH) % (2 * EACH);
+	sure[1] = 0.5F;
+	CHECK(!recognise(&l, &splats, &cameras, &moved, &e) && moved == 2, "not two have moved");
+	CHECK(!memcmp(index, index_of, sizeof index) && at[1] == EACH, "the mugs have not changed places");
+	CHECK(sure[0] == 0.5F && sure[1] == 1, "confidence stays with the Gaussians");
+	const struct lifted none = {.gaussians = N, .width = WIDTH, .indptr = indptr, .offsets = offsets};
+	struct lifted empty = none;
+	CHECK(!recognise(&empty, &splats, &cameras, &moved, &e) && moved == 0, "a model without objects");
+}
+
 int main(void)
 {
 	make_scene();
+	twins();
 	parts();
 	unknown_anchor();
 	absent();

@@ -1,0 +1,60 @@
+#!/usr/bin/env bats
+# The workflow without training, on a small scene.
+
+setup_file() {
+	export BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	BIN=$(cd "$BIN" && pwd)
+	export ROOT=$BATS_TEST_DIRNAME/../..
+	cd "$BATS_FILE_TMPDIR"
+	"$BIN/gs-synth" --objects 3 --views 6 --size 96x72 --gaussians 2000 -o data
+	export DATA=$BATS_FILE_TMPDIR/data WORK=$BATS_FILE_TMPDIR/work
+	jq -c 'select(.split == "test") | .ref += "-again"' data/sentences.jsonl >more.jsonl
+	lift >first.log 2>&1
+}
+
+# lift ARGUMENT...: the workflow on the scene, all outputs under WORK.
+lift() {
+	make -f "$ROOT/pipelines/lift.mk" SCENE="$WORK" SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" \
+		IMAGES="$DATA/images" TEST_VIEWS="$(cat "$DATA/test-views")" SENTENCES="$DATA/sentences.jsonl" \
+		CANDIDATES="$DATA/candidates.jsonl" TRUTH="$DATA/truth.jsonl" BERT="$ROOT/tests/golden/bert" BIN="$BIN" SCALE=1 \
+		ASK="$BATS_FILE_TMPDIR/more.jsonl" WHOLE="$DATA/whole.jsonl" BOXES="$DATA/boxes.jsonl" "$@"
+}
+
+# Fails where the command succeeds; a plain ! would let the test go on.
+not() { ! "$@"; }
+
+@test "it makes a model, answers, outlines, boxes, overlays and scores" {
+	"$BIN/gs-check" "$WORK"/lifted/{model.safetensors,masks.jsonl,predictions.test.jsonl,predictions.train.jsonl,asked.jsonl,whole.jsonl,boxes.jsonl}
+	[ "$(jq -s length "$WORK/lifted/predictions.test.jsonl")" = 3 ]
+	[ "$(jq -s length "$WORK/lifted/asked.jsonl")" = 3 ]
+	[ "$(find "$WORK/lifted/overlays" -name '*.png' | wc -l)" = 3 ]
+	for made in masks predictions.test predictions.train asked whole; do
+		jq -e '.miou >= 0 and .pairs > 0' "$WORK/lifted/$made.score.json"
+	done
+	jq -e '.pairs == 3' "$WORK/lifted/boxes.score.json"
+}
+
+@test "training sentences find their objects where the candidates are right" {
+	jq -e '.miou > 0.5' "$WORK/lifted/predictions.train.score.json"
+}
+
+@test "it ends with a table" {
+	grep -qE '^lifted, test views, test sentences +[0-9.]+ ' "$BATS_FILE_TMPDIR/first.log"
+	grep -qE '^lifted, test views, more sentences +[0-9.]+ ' "$BATS_FILE_TMPDIR/first.log"
+	grep -qE '^lift +[0-9.]+ +[0-9.]+$' "$BATS_FILE_TMPDIR/first.log"
+}
+
+@test "a second make does nothing but print the table" {
+	run lift
+	[ "$status" = 0 ]
+	not grep -qE "$BIN/" <<<"$output"
+}
+
+@test "nothing is asked, scored or trained that was not wanted" {
+	WORK=$BATS_TEST_TMPDIR/plain lift ASK= WHOLE= BOXES= TRUTH= >log 2>&1
+	[ ! -e "$BATS_TEST_TMPDIR/plain/lifted/asked.jsonl" ]
+	[ ! -e "$BATS_TEST_TMPDIR/plain/lifted/whole.jsonl" ]
+	[ -e "$BATS_TEST_TMPDIR/plain/lifted/boxes.jsonl" ]
+	[ -z "$(find "$BATS_TEST_TMPDIR/plain" -name '*.score.json' -o -name 'stage*')" ]
+	cmp "$BATS_TEST_TMPDIR/plain/lifted/model.safetensors" "$WORK/lifted/model.safetensors"
+}
