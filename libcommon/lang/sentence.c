@@ -210,6 +210,22 @@ static void read_pair_before(struct lang_sentence *s, struct lang_phrase *p)
 		s->clauses[s->clause_count++] = c;
 }
 
+/* The last word of the first run of target words; "and" goes on. */
+static int find_head(const struct lang_sentence *s)
+{
+	int head = -1;
+
+	for (int i = 0, at = 0; i < s->word_count; i++) {
+		while (at < s->target.n && s->target.words[at] < i)
+			at++;
+		if (at < s->target.n && s->target.words[at] == i)
+			head = i;
+		else if (head >= 0 && strcmp(s->words[i].text, "and") != 0)
+			break;
+	}
+	return head;
+}
+
 void lang_sentence_read(struct lang_sentence *s, const char *pieces)
 {
 	struct lang_match m, open = {0}; /* open: the phrase whose words are being gathered */
@@ -246,4 +262,5 @@ void lang_sentence_read(struct lang_sentence *s, const char *pieces)
 	for (int i = 0; i < s->word_count; i++)
 		put(&s->all, i);
 	keep_content(s, &s->all);
+	s->head = find_head(s);
 }

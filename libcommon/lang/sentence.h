@@ -69,6 +69,8 @@ struct lang_sentence {
 	int word_count;
 	struct lang_word words[LANG_WORDS];
 	struct lang_phrase target, all; /* all: every word that says something, in target and clauses */
+	int head; /* the word of the target that names the thing: the last of its first noun phrase; -1: none
+		   */
 	int clause_count;
 	struct lang_clause clauses[LANG_CLAUSES];
 };

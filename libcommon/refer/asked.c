@@ -83,10 +83,12 @@ static int choose_objects(struct asked *a, const struct lifted *l, const struct 
 	for (size_t i = 0; i < q->count && !bad; i++) {
 		const float *row = probability + i * l->objects;
 		size_t best = 0;
-		for (size_t o = 1; o < l->objects; o++)
-			if (row[o] > row[best])
-				best = o;
-		const int is_found = sentences[i].words && l->objects && row[best] >= least;
+		double any = 0;
+		for (size_t o = 0; o < l->objects; o++) {
+			best = row[o] > row[best] ? o : best;
+			any += (double)row[o];
+		}
+		const int is_found = sentences[i].words && l->objects && any >= least;
 		a->answer[i] = is_found ? best : l->objects;
 		a->sure[i] = is_found ? (double)row[best] * l->confidence[best] : 0;
 	}

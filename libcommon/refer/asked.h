@@ -35,10 +35,11 @@ struct asked {
 int asked_trained(struct asked *a, const struct respond_model *m, const struct asked_of *q,
 	int wants_calibration, struct err *e);
 
-/* An answer for each object that is the most probable one for a sentence. A sentence whose best object is
- * less probable than `least`, or that has no words, means nothing that was lifted: its responses are 0. How
+/* An answer for each object that is the most probable one for a sentence. A sentence that is less likely than
+ * `least` to mean any object, or that has no words, means nothing that was lifted: its responses are 0. How
  * sure an answer is: the probability that the object is meant times the object's confidence, which is about
  * what its masks' IoU is worth. parts: choose()'s. */
+#define ASKED_LEAST 0.6
 int asked_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
 	double least, struct err *e);
 void asked_free(struct asked *a);

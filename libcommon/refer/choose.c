@@ -12,7 +12,13 @@ static const double words_weight = 3.5, relations_weight = 1.3, sentence_weight 
 static const double fit_sharpness = 5, anchor_sharpness = 12;
 static const double colour_weight = 0.6, colour_least = 0.05;
 static const double known_word = 0.5, known_soft = 0.05, relation_least = 0.02;
-static const double absent_match = 0.5, absent_colour = 0.2, absent_relation = 0.3;
+/* How well a sentence fits its object: weights of the match of its head noun, the mean match of its words,
+ * its colours and its relations, by logistic regression on present and absent sentences. */
+static const double head_known = 3, words_known = 5.9, colours_known = 1.4, relations_known = 1;
+static const double usual_colour = 0.2, usual_relation = 0.3;
+/* Of sentences about what is not there, p is distributed as p^(shape-1); of five sentences, four are about
+ * what is. */
+static const double absent_shape = 0.25, present_odds = 4;
 
 int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
 {
@@ -40,6 +46,7 @@ struct chooser {
 	double *match, *colour; /* (O) of one word */
 	double *anchors;	/* (LANG_ANCHORS,O) */
 	double *fit, *judged, *key, *attributes, *relations, *whole;
+	double *known; /* (R) rising: how well each training sentence fits its object by the others alone */
 };
 
 static int has(const struct chooser *c, enum choose_part p)
@@ -78,13 +85,11 @@ static void sharpen(double *x, size_t n, double sharpness)
 		x[i] = exp(sharpness * (x[i] - most));
 }
 
-/* attributes (O): A of a phrase's words. Returns how much better a thing would match that is not there. */
-static double match_phrase(struct chooser *c, const struct lang_sentence *s, const struct lang_phrase *p,
+/* attributes (O): A of a phrase's words. */
+static void match_phrase(struct chooser *c, const struct lang_sentence *s, const struct lang_phrase *p,
 	const float *vectors, double *attributes)
 {
 	const size_t objects = c->l->objects;
-	double absent = 0;
-
 	memset(attributes, 0, objects * sizeof *attributes);
 	for (int i = 0; i < p->n; i++) {
 		const struct lang_word *w = &s->words[p->words[i]];
@@ -95,16 +100,13 @@ static double match_phrase(struct chooser *c, const struct lang_sentence *s, con
 			double best = largest(c->match, objects);
 			for (size_t o = 0; o < objects; o++)
 				attributes[o] += c->match[o] - best;
-			absent += absent_match - best;
 		}
 		if (has(c, CHOOSE_COLOURS) && vocabulary_colour(&c->arrangement, w, c->colour)) {
 			double best = log(colour_least + largest(c->colour, objects));
 			for (size_t o = 0; o < objects; o++)
 				attributes[o] += colour_weight * (log(colour_least + c->colour[o]) - best);
-			absent += colour_weight * (log(colour_least + absent_colour) - best);
 		}
 	}
-	return absent;
 }
 
 /* anchors (O): how likely each object is to be meant by an anchor. Returns whether it is known at all. */
@@ -128,12 +130,11 @@ static double find_anchor(struct chooser *c, const struct lang_sentence *s, cons
 	return known;
 }
 
-/* relations (O): R. fit (O) is how well the objects fit the target's words. */
+/* Adds to relations (O): R. fit (O) is how well the objects fit the target's words. */
 static void relate_all(struct chooser *c, const struct lang_sentence *s, const float *vectors)
 {
 	const size_t objects = c->l->objects;
 
-	memset(c->relations, 0, objects * sizeof *c->relations);
 	for (int i = 0; i < s->clause_count; i++) {
 		const struct lang_clause *clause = &s->clauses[i];
 		double known = 1;
@@ -147,39 +148,112 @@ static void relate_all(struct chooser *c, const struct lang_sentence *s, const f
 	}
 }
 
-/* score (O) of a sentence, and *absent that of its meaning none of them. */
-static void score(struct chooser *c, const struct choose_sentence *from, double *score, double *absent)
+/* score (O) of a sentence whose pieces are known, by all parts but `sentence`. */
+static void score_parts(struct chooser *c, const struct lang_sentence *s, const float *vectors, double *score)
+{
+	const size_t objects = c->l->objects;
+
+	match_phrase(c, s, &s->target, vectors, c->attributes);
+	memcpy(c->fit, c->attributes, objects * sizeof *c->fit);
+	sharpen(c->fit, objects, fit_sharpness);
+	memset(c->relations, 0, objects * sizeof *c->relations);
+	if (has(c, CHOOSE_RELATIONS))
+		relate_all(c, s, vectors);
+	for (size_t o = 0; o < objects; o++)
+		score[o] = words_weight * c->attributes[o] + relations_weight * c->relations[o];
+}
+
+static size_t best_of(const double *score, size_t n)
+{
+	size_t best = 0;
+
+	for (size_t o = 1; o < n; o++)
+		best = score[o] > score[best] ? o : best;
+	return best;
+}
+
+/* How well a sentence fits object o, after score_parts. */
+static double fitness(struct chooser *c, const struct lang_sentence *s, const float *vectors, size_t o)
+{
+	double fit = 0;
+
+	for (int i = 0; i < s->target.n; i++) {
+		const struct lang_word *w = &s->words[s->target.words[i]];
+		vocabulary_match(&c->vocabulary, w, vectors, has(c, CHOOSE_WORDS), has(c, CHOOSE_NAMES),
+			has(c, CHOOSE_ALIKE) ? &c->arrangement : NULL, c->match);
+		fit += words_known * c->match[o] / s->target.n;
+		if (s->target.words[i] == s->head)
+			fit += head_known * c->match[o];
+		if (has(c, CHOOSE_COLOURS) && vocabulary_colour(&c->arrangement, w, c->colour))
+			fit += colours_known *
+			       log((colour_least + c->colour[o]) / (colour_least + usual_colour));
+	}
+	if (has(c, CHOOSE_RELATIONS))
+		fit += relations_known *
+		       (c->relations[o] - s->clause_count * log(usual_relation + relation_least));
+	return fit;
+}
+
+/* The probability that a sentence of this fitness means anything that was lifted. */
+static double presence(const struct chooser *c, double fit)
+{
+	const size_t n = c->l->sentences;
+	size_t below = 0;
+
+	while (below < n && c->known[below] <= fit)
+		below++;
+	const double p = (double)(below + 1) / (double)(n + 1);
+	return present_odds / (present_odds + absent_shape * pow(p, absent_shape - 1));
+}
+
+/* score (O) of a sentence. Returns the probability that it means any of them. */
+static double score(struct chooser *c, const struct choose_sentence *from, double *score)
 {
 	const size_t objects = c->l->objects;
 	struct lang_sentence s;
-	double share = 1;
+	double share = 1, there = 1;
 
 	memset(score, 0, objects * sizeof *score);
-	*absent = -INFINITY;
 	if (from->pieces) {
 		lang_sentence_read(&s, from->pieces);
 		share = s.all.n ? (double)s.target.n / s.all.n : 0;
-		*absent = words_weight * match_phrase(c, &s, &s.target, from->vectors, c->attributes);
-		memcpy(c->fit, c->attributes, objects * sizeof *c->fit);
-		sharpen(c->fit, objects, fit_sharpness);
-		for (size_t o = 0; o < objects; o++)
-			score[o] = words_weight * c->attributes[o];
-		if (has(c, CHOOSE_RELATIONS)) {
-			relate_all(c, &s, from->vectors);
-			for (size_t o = 0; o < objects; o++)
-				score[o] += relations_weight * c->relations[o];
-			*absent += relations_weight * s.clause_count * log(absent_relation + relation_least);
-		}
-		*absent -= log_sum(score, objects);
+		score_parts(c, &s, from->vectors, score);
+		if (s.target.n)
+			there = presence(c, fitness(c, &s, from->vectors, best_of(score, objects)));
 	}
 	if (has(c, CHOOSE_SENTENCE)) {
 		size_t same = vocabulary_sentence(
 			&c->vocabulary, from->pieces, from->vectors, from->words, c->whole);
 		for (size_t o = 0; o < objects; o++)
 			score[o] += sentence_weight * share * c->whole[o] + learned * (same == o);
-		if (same < objects)
-			*absent = -INFINITY;
+		there = same < objects ? 1 : there;
 	}
+	return there;
+}
+
+static int by_value(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* What a right sentence looks like in this scene: each training sentence, as if it had not been there. */
+static void learn_fitness(struct chooser *c, double *score)
+{
+	const struct lifted *l = c->l;
+	struct lang_sentence s;
+
+	for (size_t r = 0; r < l->sentences; r++) {
+		const float *vectors = l->words + (size_t)l->offsets[r] * (size_t)l->width;
+		lang_sentence_read(&s, l->pieces[r]);
+		c->vocabulary.without = r;
+		score_parts(c, &s, vectors, score);
+		c->known[r] = fitness(c, &s, vectors, best_of(score, l->objects));
+	}
+	c->vocabulary.without = l->sentences;
+	if (l->sentences)
+		qsort(c->known, l->sentences, sizeof *c->known, by_value);
 }
 
 static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigned parts, struct err *e)
@@ -197,7 +271,10 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 		&c->relations, &c->whole, &c->anchors};
 	for (size_t i = 0; i < sizeof parts_of / sizeof *parts_of; i++)
 		*parts_of[i] = scratch + i * objects;
-	return 0;
+	c->known = mem_alloc(s->lifted->sentences, sizeof *c->known, "choice", e);
+	if (c->known && objects)
+		learn_fitness(c, c->judged);
+	return c->known ? 0 : -1;
 }
 
 static void chooser_free(struct chooser *c)
@@ -205,13 +282,14 @@ static void chooser_free(struct chooser *c)
 	arrangement_free(&c->arrangement);
 	vocabulary_free(&c->vocabulary);
 	free(c->match);
+	free(c->known);
 }
 
 int choose(const struct choose_scene *s, const struct choose_sentence *sentences, size_t n, unsigned parts,
 	float *probability, struct err *e)
 {
 	const size_t objects = s->lifted->objects;
-	double *scores = mem_alloc(objects, sizeof *scores, "choice", e), absent;
+	double *scores = mem_alloc(objects, sizeof *scores, "choice", e);
 	struct chooser c = {0};
 
 	if (!scores || chooser_init(&c, s, parts, e)) {
@@ -224,8 +302,7 @@ int choose(const struct choose_scene *s, const struct choose_sentence *sentences
 		memset(row, 0, objects * sizeof *row);
 		if (!sentences[i].words || !objects)
 			continue;
-		score(&c, &sentences[i], scores, &absent);
-		const double total = log_sum(scores, objects), there = 1 / (1 + exp(absent));
+		const double there = score(&c, &sentences[i], scores), total = log_sum(scores, objects);
 		for (size_t o = 0; o < objects; o++)
 			row[o] = (float)(there * exp(scores[o] - total));
 	}

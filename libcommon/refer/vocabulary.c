@@ -13,6 +13,7 @@ void vocabulary_free(struct vocabulary *v)
 	free(v->sentence_mean);
 	free(v->vectors);
 	free(v->begin);
+	free(v->of);
 	free(v->sentences);
 	free(v->scratch);
 	free(v->own);
@@ -95,10 +96,12 @@ static void keep_words(struct vocabulary *v, struct lang_sentence *s)
 			if ((size_t)l->object[r] != o)
 				continue;
 			lang_sentence_read(s, l->pieces[r]);
-			for (int i = 0; i < s->target.n; i++)
+			for (int i = 0; i < s->target.n; i++) {
+				v->of[v->n] = r;
 				word_vector(v, &s->words[s->target.words[i]],
 					l->words + (size_t)l->offsets[r] * width,
 					v->vectors + width * v->n++);
+			}
 		}
 	}
 	v->begin[l->objects] = v->n;
@@ -109,16 +112,17 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, struct err *e)
 	const size_t width = (size_t)l->width;
 	struct lang_sentence *s = mem_alloc(1, sizeof *s, "sentence", e);
 
-	*v = (struct vocabulary){.lifted = l};
+	*v = (struct vocabulary){.lifted = l, .without = l->sentences};
 	v->mean = mem_zalloc(width, sizeof *v->mean, "vocabulary", e);
 	v->sentence_mean = mem_zalloc(width, sizeof *v->sentence_mean, "vocabulary", e);
 	v->vectors = mem_alloc((size_t)l->offsets[l->sentences], width * sizeof *v->vectors, "vocabulary", e);
 	v->begin = mem_alloc(l->objects + 1, sizeof *v->begin, "vocabulary", e);
+	v->of = mem_alloc((size_t)l->offsets[l->sentences], sizeof *v->of, "vocabulary", e);
 	v->sentences = mem_alloc(l->sentences + 1, width * sizeof *v->sentences, "vocabulary", e);
 	v->scratch = mem_alloc(width, sizeof *v->scratch, "vocabulary", e);
 	v->own = mem_alloc(l->objects, sizeof *v->own, "vocabulary", e);
-	if (!s || !v->mean || !v->sentence_mean || !v->vectors || !v->begin || !v->sentences || !v->scratch ||
-		!v->own) {
+	if (!s || !v->mean || !v->sentence_mean || !v->vectors || !v->begin || !v->of || !v->sentences ||
+		!v->scratch || !v->own) {
 		free(s);
 		return -1;
 	}
@@ -171,9 +175,11 @@ void vocabulary_match(struct vocabulary *v, const struct lang_word *w, const flo
 
 	word_vector(v, w, vectors, mine);
 	for (size_t o = 0; o < l->objects; o++) {
-		double best = words && v->begin[o] < v->begin[o + 1] ? -1 : 0;
+		double best = -1;
 		for (size_t i = v->begin[o]; i < v->begin[o + 1] && words; i++)
-			best = fmax(best, dot(mine, v->vectors + i * width, width));
+			if (v->of[i] != v->without)
+				best = fmax(best, dot(mine, v->vectors + i * width, width));
+		best = best < -0.999 ? 0 : best;
 		if (names && is_in_name(w->text, l->names[o]))
 			best = fmax(best, VOCABULARY_NAME);
 		v->own[o] = best;

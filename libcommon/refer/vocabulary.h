@@ -14,7 +14,9 @@ struct vocabulary {
 	size_t n;
 	float *vectors;	  /* (n,width) of length 1: target words of the training sentences, less the mean */
 	size_t *begin;	  /* (O+1) words begin[o] to begin[o+1] are of object o */
+	size_t *of;	  /* (n) the sentence that each is of */
 	float *sentences; /* (R,width) of length 1: means of the sentences, less sentence_mean */
+	size_t without;	  /* the training sentence whose words do not count, for the caller to set; R: none */
 	double *scratch, *own; /* (width), (O) */
 };
 

@@ -62,7 +62,7 @@ lifted() {
 	st lifted.safetensors "$header" "$(printf '%s' 0000000000000000 2c01000000000000 5802000000000000 \
 		0000000000000000 0100000000000000 0200000000000000 "$index" 00000000 01000000 $f1 $fhalf \
 		$one$zero $zero$one "$share")"
-	header='{"__metadata__":{"format":"refer.text","version":"1","refs":"[\"first\",\"second\",\"again\",\"any\",\"none\"]","objects":"[\"cup\",\"box\",\"cup\",\"?\",\"?\"]","texts":"[\"cup\",\"box\",\"cup\",\"it\",\"\"]","pieces":"[\"cup\",\"box\",\"cup\",\"it\",\"\"]","splits":"[\"test\",\"test\",\"test\",\"test\",\"test\"]"},"offsets":{"dtype":"I64","shape":[6],"data_offsets":[0,48]},"words":{"dtype":"F32","shape":[4,2],"data_offsets":[48,80]},"sentences":{"dtype":"F32","shape":[5,2],"data_offsets":[80,120]}}'
+	header='{"__metadata__":{"format":"refer.text","version":"1","refs":"[\"first\",\"second\",\"again\",\"any\",\"none\"]","objects":"[\"cup\",\"box\",\"cup\",\"?\",\"?\"]","texts":"[\"cup\",\"box\",\"cup\",\"it\",\"\"]","pieces":"[\"cup\",\"box\",\"cup\",\"fig\",\"\"]","splits":"[\"test\",\"test\",\"test\",\"test\",\"test\"]"},"offsets":{"dtype":"I64","shape":[6],"data_offsets":[0,48]},"words":{"dtype":"F32","shape":[4,2],"data_offsets":[48,80]},"sentences":{"dtype":"F32","shape":[5,2],"data_offsets":[80,120]}}'
 	while (((8 + ${#header}) % 8)); do header+=' '; done
 	st asked.safetensors "$header" "$(printf '%02x00000000000000' 0 1 2 3 4 4)$f1$f0$f0$f1$f1$f0$f1$f1$f1$f0$f0$f1$f1$f0$f1$f1$f0$f0"
 	"$BIN/gs-check" lifted.safetensors asked.safetensors >/dev/null
@@ -217,7 +217,7 @@ png/$test_view/yellow-bowl-1.png " ]
 	"$BIN/gs-weigh" -q --scale 0.5 -o half scene
 	"$BIN/refer-train" -v --scene scene --weights half --text text.safetensors --masks masks2.jsonl --iterations 20 \
 		-o model2.safetensors 2>err
-	grep -q '4 views, 3 sentences, 12 pairs$' err
+	grep -q '4 views, 3 sentences, 12 pairs, 0 more held out$' err
 	"$BIN/refer-render" --scene scene --text text.safetensors --model model2.safetensors -o pred.jsonl
 	"$BIN/gs-check" pred.jsonl
 }
@@ -301,13 +301,23 @@ png/$test_view/yellow-bowl-1.png " ]
 
 @test "--min-probability: what means nothing that was lifted has an empty mask and score 0" {
 	lifted
-	# A sentence that is as near to both objects.
-	ask --min-probability 0.6 --refs any,first -o pred.jsonl
+	# A sentence that no training sentence says is a match.
+	ask --min-probability 0.95 --refs any,first -o pred.jsonl
 	[ "$(areas <pred.jsonl | awk '{ print ($1 > 0) }' | tr -d '\n')" = 10 ]
 	[ "$(jq 'select(.ref == "any").score' pred.jsonl)" = 0 ]
 	# A trained model has no such probabilities.
 	render -o none.jsonl
 	render --min-probability 1 | cmp - none.jsonl
+}
+
+@test "--without leaves parts of the choice out, and knows their names" {
+	lifted
+	ask --without names,alike,colours,relations,sentence --refs first -o pred.jsonl
+	ask --refs first -o all.jsonl
+	[ "$(areas <pred.jsonl)" = "$(areas <all.jsonl)" ]
+	not cmp -s pred.jsonl all.jsonl
+	says 2 "refer-render: --without: no part 'word'
+Try 'refer-render --help'." ask --without words,word
 }
 
 @test "--amodal: outlines hold what is in sight, and say how much that is" {
