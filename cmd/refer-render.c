@@ -40,7 +40,7 @@ static const struct cli_option table[] = {
 		"peak (default): lift a sentence's responses until its best are clearly above 0; none: as trained",
 		0, 0},
 	{"min-probability", 0, CLI_REAL, &options.least, "P",
-		"lifted models: a sentence less likely to mean anything gets no mask (default 0.6)", 0, 1},
+		"lifted models: a sentence less likely to mean anything gets no mask (default 0.65)", 0, 1},
 	{"without", 0, CLI_STRING, &options.without, "PART,...",
 		"lifted models: choose objects without words, names, alike, colours, relations or sentence",
 		0, 0},

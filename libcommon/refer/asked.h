@@ -39,7 +39,7 @@ int asked_trained(struct asked *a, const struct respond_model *m, const struct a
  * `least` to mean any object, or that has no words, means nothing that was lifted: its responses are 0. How
  * sure an answer is: the probability that the object is meant times the object's confidence, which is about
  * what its masks' IoU is worth. parts: choose()'s. */
-#define ASKED_LEAST 0.6
+#define ASKED_LEAST 0.65
 int asked_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
 	double least, struct err *e);
 void asked_free(struct asked *a);

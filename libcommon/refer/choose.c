@@ -12,9 +12,11 @@ static const double words_weight = 3.5, relations_weight = 1.3, sentence_weight 
 static const double fit_sharpness = 5, anchor_sharpness = 12;
 static const double colour_weight = 0.6, colour_least = 0.05;
 static const double known_word = 0.5, known_soft = 0.05, relation_least = 0.02;
-/* How well a sentence fits its object: weights of the match of its head noun, the mean match of its words,
- * its colours and its relations, by logistic regression on present and absent sentences. */
-static const double head_known = 3, words_known = 5.9, colours_known = 1.4, relations_known = 1;
+/* How well a sentence fits: weights of the match of its head noun, the mean best match of its words, its
+ * colours, its relations and how plainly it means one object, by logistic regression on present and absent
+ * sentences. */
+static const double head_known = 3.2, words_known = 8.9, colours_known = 1, relations_known = 0.9,
+		    plainly_known = 1.7;
 static const double usual_colour = 0.2, usual_relation = 0.3;
 /* Of sentences about what is not there, p is distributed as p^(shape-1); of five sentences, four are about
  * what is. */
@@ -172,16 +174,18 @@ static size_t best_of(const double *score, size_t n)
 	return best;
 }
 
-/* How well a sentence fits object o, after score_parts. */
-static double fitness(struct chooser *c, const struct lang_sentence *s, const float *vectors, size_t o)
+/* How well a sentence fits its best object, after score_parts. */
+static double fitness(
+	struct chooser *c, const struct lang_sentence *s, const float *vectors, const double *score)
 {
-	double fit = 0;
+	const size_t objects = c->l->objects, o = best_of(score, objects);
+	double fit = plainly_known * (score[o] - log_sum(score, objects));
 
 	for (int i = 0; i < s->target.n; i++) {
 		const struct lang_word *w = &s->words[s->target.words[i]];
 		vocabulary_match(&c->vocabulary, w, vectors, has(c, CHOOSE_WORDS), has(c, CHOOSE_NAMES),
 			has(c, CHOOSE_ALIKE) ? &c->arrangement : NULL, c->match);
-		fit += words_known * c->match[o] / s->target.n;
+		fit += words_known * largest(c->match, objects) / s->target.n;
 		if (s->target.words[i] == s->head)
 			fit += head_known * c->match[o];
 		if (has(c, CHOOSE_COLOURS) && vocabulary_colour(&c->arrangement, w, c->colour))
@@ -219,7 +223,7 @@ static double score(struct chooser *c, const struct choose_sentence *from, doubl
 		share = s.all.n ? (double)s.target.n / s.all.n : 0;
 		score_parts(c, &s, from->vectors, score);
 		if (s.target.n)
-			there = presence(c, fitness(c, &s, from->vectors, best_of(score, objects)));
+			there = presence(c, fitness(c, &s, from->vectors, score));
 	}
 	if (has(c, CHOOSE_SENTENCE)) {
 		size_t same = vocabulary_sentence(
@@ -249,7 +253,7 @@ static void learn_fitness(struct chooser *c, double *score)
 		lang_sentence_read(&s, l->pieces[r]);
 		c->vocabulary.without = r;
 		score_parts(c, &s, vectors, score);
-		c->known[r] = fitness(c, &s, vectors, best_of(score, l->objects));
+		c->known[r] = fitness(c, &s, vectors, score);
 	}
 	c->vocabulary.without = l->sentences;
 	if (l->sentences)

@@ -16,9 +16,9 @@
  *   sentence   S_o the best cosine of the sentence's mean with a training sentence's, counted by the share of
  *              the target in the sentence's words; a training sentence means what it meant
  * score_o = 3.5 A_o + 1.3 R_o + 5 S_o; the probability is its softmax, times that of the sentence meaning
- * anything at all. That goes by how well it fits its best object,
- *   f = 3 M of the head noun + 5.9 mean M + 1.4 sum over colour words of log((0.05 + fit) / 0.25)
- *       + R - clauses log 0.32,
+ * anything at all. That goes by how well it fits its best object o,
+ *   f = 3.2 M_o of the head noun + 8.9 mean over words of max M + sum over colour words of
+ *       log((0.05 + fit_o) / 0.25) + 0.9 (R_o - clauses log 0.32) + 1.7 log of o's softmax,
  * against the scene's own training sentences, each fitted by the others alone: p = (1 + how many fit no
  * better) / (1 + R) is even for sentences about what is there, however freely the scene's sentences are
  * worded, and near 0 for others. P = 4 / (4 + p^-0.75 / 4). A sentence with no word for the thing itself is
