@@ -62,7 +62,7 @@ int asked_trained(struct asked *a, const struct respond_model *m, const struct a
 static int choose_objects(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
 	double least, struct err *e)
 {
-	const struct choose_scene scene = {l, q->splats, q->cameras};
+	const struct choose_scene scene = {l, q->splats, q->cameras, 1};
 	struct choose_sentence *sentences = mem_alloc(q->count, sizeof *sentences, "sentences", e);
 	float *probability = NULL;
 	size_t bytes;

@@ -43,6 +43,7 @@ int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
 struct chooser {
 	const struct lifted *l;
 	unsigned parts;
+	double naming;
 	struct vocabulary vocabulary;
 	struct arrangement arrangement;
 	double *match, *colour; /* (O) of one word */
@@ -89,7 +90,7 @@ static void sharpen(double *x, size_t n, double sharpness)
 
 /* attributes (O): A of a phrase's words. */
 static void match_phrase(struct chooser *c, const struct lang_sentence *s, const struct lang_phrase *p,
-	const float *vectors, double *attributes)
+	const float *vectors, double naming, double *attributes)
 {
 	const size_t objects = c->l->objects;
 	memset(attributes, 0, objects * sizeof *attributes);
@@ -101,7 +102,7 @@ static void match_phrase(struct chooser *c, const struct lang_sentence *s, const
 				c->match);
 			double best = largest(c->match, objects);
 			for (size_t o = 0; o < objects; o++)
-				attributes[o] += c->match[o] - best;
+				attributes[o] += naming * (c->match[o] - best);
 		}
 		if (has(c, CHOOSE_COLOURS) && vocabulary_colour(&c->arrangement, w, c->colour)) {
 			double best = log(colour_least + largest(c->colour, objects));
@@ -118,7 +119,7 @@ static double find_anchor(struct chooser *c, const struct lang_sentence *s, cons
 	const size_t objects = c->l->objects;
 	double sum = 0, known = 1;
 
-	match_phrase(c, s, p, vectors, anchors);
+	match_phrase(c, s, p, vectors, 1, anchors);
 	if (has(c, CHOOSE_WORDS) || has(c, CHOOSE_NAMES)) {
 		vocabulary_match(&c->vocabulary, &s->words[p->words[p->n - 1]], vectors, has(c, CHOOSE_WORDS),
 			has(c, CHOOSE_NAMES), NULL, c->match);
@@ -155,7 +156,7 @@ static void score_parts(struct chooser *c, const struct lang_sentence *s, const 
 {
 	const size_t objects = c->l->objects;
 
-	match_phrase(c, s, &s->target, vectors, c->attributes);
+	match_phrase(c, s, &s->target, vectors, c->naming, c->attributes);
 	memcpy(c->fit, c->attributes, objects * sizeof *c->fit);
 	sharpen(c->fit, objects, fit_sharpness);
 	memset(c->relations, 0, objects * sizeof *c->relations);
@@ -264,7 +265,7 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 {
 	const size_t objects = s->lifted->objects;
 
-	*c = (struct chooser){.l = s->lifted, .parts = parts};
+	*c = (struct chooser){.l = s->lifted, .parts = parts, .naming = s->naming};
 	if (arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
 		vocabulary_make(&c->vocabulary, s->lifted, e))
 		return -1;

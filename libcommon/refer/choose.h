@@ -59,6 +59,8 @@ struct choose_scene {
 	const struct lifted *lifted;
 	const struct splats *splats;
 	const struct cameras *cameras; /* relations are as seen by the training views among them */
+	double naming; /* how much words for the thing itself count, 1 but where it is in doubt which lifted
+			  object has which name: colours and relations then tell */
 };
 
 /* probability (n,O): each row sums to at most 1; what is missing is the probability that the sentence means

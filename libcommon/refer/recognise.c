@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum { ROUNDS = 4 };
-static const double least = 0.003;
+static const double least = 0.003, naming = 0.1;
 
 /* value (O,O): how well object o's sentences fit the Gaussians of object k. */
 static int judge(const struct lifted *l, const struct choose_scene *scene,
@@ -108,7 +108,7 @@ static int settle(struct lifted *l, const struct lifted *old, const struct choos
 int recognise(struct lifted *l, const struct splats *splats, const struct cameras *cameras, size_t *moved,
 	struct err *e)
 {
-	const struct choose_scene scene = {l, splats, cameras};
+	const struct choose_scene scene = {l, splats, cameras, naming};
 	size_t *from = mem_alloc(l->objects, sizeof *from, "objects", e);
 	struct lifted old = {0};
 

@@ -83,7 +83,7 @@ static float probability[OBJECTS];
 static int ask(const char *text, unsigned parts)
 {
 	static float vectors[MOST * WIDTH];
-	const struct choose_scene scene = {&lifted, &splats, &cameras};
+	const struct choose_scene scene = {&lifted, &splats, &cameras, 1};
 	const struct choose_sentence s = {text, vectors, encode(text, vectors)};
 	struct err e;
 	int best = 0;
@@ -156,7 +156,7 @@ static void absent(void)
 static void many(void)
 {
 	static float a[MOST * WIDTH], b[MOST * WIDTH];
-	const struct choose_scene scene = {&lifted, &splats, &cameras};
+	const struct choose_scene scene = {&lifted, &splats, &cameras, 1};
 	const struct choose_sentence s[] = {
 		{"the red box", a, encode("the red box", a)}, {NULL, b, encode("the dull can", b)}};
 	float both[2 * OBJECTS];
@@ -169,7 +169,7 @@ static void many(void)
 	CHECK(both[OBJECTS + 3] > 0.3F && both[OBJECTS + 3] > both[OBJECTS], "without pieces: %g",
 		(double)both[OBJECTS + 3]);
 	const struct lifted none = {.gaussians = N, .width = WIDTH, .indptr = indptr, .offsets = offsets};
-	const struct choose_scene empty = {&none, &splats, &cameras};
+	const struct choose_scene empty = {&none, &splats, &cameras, 1};
 	CHECK(!choose(&empty, s, 2, CHOOSE_ALL, both, &e), "a model without objects");
 }
 
