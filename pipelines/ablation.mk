@@ -87,16 +87,18 @@ steps.warmed = 500
 lift.lift = full
 lift.lift-voted = voted
 lift.lift-relations = plain
+lift.lift-sizes = plain
+ask.lift-sizes = --without relations
 lift.lift-colours = plain
-ask.lift-colours = --without relations
+ask.lift-colours = --without relations,sizes
 lift.lift-alike = plain
-ask.lift-alike = --without relations,colours
+ask.lift-alike = --without relations,sizes,colours
 lift.lift-names = plain
-ask.lift-names = --without relations,colours,alike
+ask.lift-names = --without relations,sizes,colours,alike
 lift.lift-words = plain
-ask.lift-words = --without relations,colours,alike,names
+ask.lift-words = --without relations,sizes,colours,alike,names
 lift.lift-sentence = plain
-ask.lift-sentence = --without relations,colours,alike,names,words
+ask.lift-sentence = --without relations,sizes,colours,alike,names,words
 encoders := $(foreach b,$(BERTS),$(firstword $(subst =, ,$(b))))
 $(foreach b,$(BERTS),$(eval dir.$(firstword $(subst =, ,$(b))) := $(lastword $(subst =, ,$(b)))))
 $(foreach e,$(encoders),$(eval run.$(e) = $$(run.both))$(eval text.$(e) = $(e)))
@@ -111,7 +113,7 @@ encoder := both static $(encoders)
 contrast := pcmi dot both proj proj-dot proj-both
 settings := both cold warm lambda slow half
 sentences := both two
-lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike lift-colours lift-relations lift lift-voted
+lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike lift-colours lift-sizes lift-relations lift lift-voted
 hard := two warmed lift-relations lift
 tables := statistics modules similarity masks interaction width encoder contrast settings sentences lifted hard
 RUNS ?= $(sort $(foreach t,$(tables),$($(t))))

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double words_weight = 3.5, relations_weight = 1.3, sentence_weight = 5, learned = 10;
-static const double fit_sharpness = 5, anchor_sharpness = 12;
-static const double colour_weight = 0.6, colour_least = 0.05;
+static const double words_weight = 3.5, relations_weight = 1.6, sentence_weight = 1, learned = 10;
+static const double fit_sharpness = 3, anchor_sharpness = 12;
+static const double colour_weight = 0.6, colour_least = 0.05, size_weight = 0.6;
 static const double known_word = 0.5, known_soft = 0.05, relation_least = 0.02;
 /* How well a sentence fits: weights of the match of its head noun, the mean best match of its words, its
  * colours, its relations and how plainly it means one object, by logistic regression on present and absent
@@ -25,7 +25,7 @@ static const double absent_shape = 0.25, present_odds = 4;
 int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
 {
 	static const char *const names[CHOOSE_PARTS] = {
-		"words", "names", "alike", "colours", "relations", "sentence"};
+		"words", "names", "alike", "colours", "sizes", "relations", "sentence"};
 
 	*parts = CHOOSE_ALL;
 	while (list_next(&list, unknown)) {
@@ -108,6 +108,11 @@ static void match_phrase(struct chooser *c, const struct lang_sentence *s, const
 			double best = log(colour_least + largest(c->colour, objects));
 			for (size_t o = 0; o < objects; o++)
 				attributes[o] += colour_weight * (log(colour_least + c->colour[o]) - best);
+		}
+		if (has(c, CHOOSE_SIZES) && vocabulary_size(&c->arrangement, w, c->colour)) {
+			const double best = largest(c->colour, objects);
+			for (size_t o = 0; o < objects; o++)
+				attributes[o] += size_weight * (c->colour[o] - best);
 		}
 	}
 }

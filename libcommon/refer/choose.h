@@ -10,19 +10,20 @@
  *              arrangement_alike
  *   colours    for a colour word A_o += 0.6 (log(0.05 + fit_o) - max), fit_o the share of the object's own
  *              colours that fit it
+ *   sizes      for "small", "medium" or "large" A_o += 0.6 fit_o less its maximum, of vocabulary_size
  *   relations  R_o = sum over clauses of log(t r_o + (1 - t) / 2 + 0.02), r of refer/relate.h with each anchor
  *              as likely each object as exp(12 A) of its words; t falls to 0 where the anchor's last word is
  *              no object's (cosine below 0.5): what is said of unknown things says nothing
  *   sentence   S_o the best cosine of the sentence's mean with a training sentence's, counted by the share of
  *              the target in the sentence's words; a training sentence means what it meant
- * score_o = 3.5 A_o + 1.3 R_o + 5 S_o; the probability is its softmax, times that of the sentence meaning
+ * score_o = 3.5 A_o + 1.6 R_o + S_o; the probability is its softmax, times that of the sentence meaning
  * anything at all. That goes by how well it fits its best object o,
  *   f = 3.2 M_o of the head noun + 8.9 mean over words of max M + sum over colour words of
  *       log((0.05 + fit_o) / 0.25) + 0.9 (R_o - clauses log 0.32) + 1.7 log of o's softmax,
  * against the scene's own training sentences, each fitted by the others alone: p = (1 + how many fit no
  * better) / (1 + R) is even for sentences about what is there, however freely the scene's sentences are
  * worded, and near 0 for others. P = 4 / (4 + p^-0.75 / 4). A sentence with no word for the thing itself is
- * taken to mean something. The figures were chosen on synthetic scenes (seeds 1 to 3). */
+ * taken to mean something. The figures were chosen on synthetic scenes (seeds 1 to 9). */
 /* clang-format on */
 #ifndef REFER_CHOOSE_H
 #define REFER_CHOOSE_H
@@ -38,6 +39,7 @@ enum choose_part {
 	CHOOSE_NAMES,
 	CHOOSE_ALIKE,
 	CHOOSE_COLOURS,
+	CHOOSE_SIZES,
 	CHOOSE_RELATIONS,
 	CHOOSE_SENTENCE,
 	CHOOSE_PARTS

@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-/* All lengths are shares of the arrangement's spacing. Found on synthetic scenes (seeds 1 to 3); none of them
+/* All lengths are shares of the arrangement's spacing. Found on synthetic scenes (seeds 1 to 9); none of them
  * is sharp: half or twice each moves few choices. */
-static const double sideways_least = 0.55, sideways_soft = 0.1; /* cosine of the angle to the direction */
+static const double sideways_least = 0.65, sideways_soft = 0.1; /* cosine of the angle to the direction */
 static const double apart_least = 0.04, apart_soft = 0.03;	/* how far that way at least */
 static const double nearby = 0.3;      /* e-folds by which what is near is preferred */
 static const double low_is_near = 0.7; /* a thing's foot this much higher looks as if it were 1 farther */

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "lang/colours.h"
+#include "lang/phrases.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -205,6 +206,46 @@ int vocabulary_colour(const struct arrangement *a, const struct lang_word *w, do
 		fit[o] = 0;
 		for (size_t i = 0; i < p->colours; i++)
 			fit[o] += p->part[i] * colour_fit(p->palette + 3 * i, lab);
+	}
+	return 1;
+}
+
+/* -1 small, 0 medium, 1 large; anything else no word of size. */
+static int size_word(const char *word)
+{
+	if (lang_is_one_of(word, "small little tiny miniature mini"))
+		return -1;
+	if (lang_is_one_of(word, "medium mid midsized"))
+		return 0;
+	return lang_is_one_of(word, "big large huge giant") ? 1 : 2;
+}
+
+static double bulk(const struct arranged *o)
+{
+	double sum = 0;
+
+	for (int k = 0; k < 3; k++)
+		sum += log(fmax(o->high[k] - o->low[k], 1e-6)) / 3;
+	return sum;
+}
+
+int vocabulary_size(const struct arrangement *a, const struct lang_word *w, double *fit)
+{
+	const int expected = size_word(w->text);
+	double sum = 0, square = 0, n = 0;
+
+	if (expected > 1)
+		return 0;
+	for (size_t o = 0; o < a->n; o++)
+		if (a->objects[o].is_there) {
+			sum += bulk(&a->objects[o]);
+			square += bulk(&a->objects[o]) * bulk(&a->objects[o]);
+			n++;
+		}
+	const double mean = sum / fmax(n, 1), deviation = sqrt(fmax(square / fmax(n, 1) - mean * mean, 1e-6));
+	for (size_t o = 0; o < a->n; o++) {
+		const double z = a->objects[o].is_there ? (bulk(&a->objects[o]) - mean) / deviation : 0;
+		fit[o] = -0.5 * (z - expected) * (z - expected) / (1.5 * 1.5);
 	}
 	return 1;
 }

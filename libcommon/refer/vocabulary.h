@@ -36,6 +36,11 @@ void vocabulary_match(struct vocabulary *v, const struct lang_word *w, const flo
  */
 int vocabulary_colour(const struct arrangement *a, const struct lang_word *w, double *fit);
 
+/* fit (O) at most 0: how well an object's size fits a word as "small", "medium" or "large", from -1/2 of the
+ * square of how far log bulk is from one deviation below, at, or above the objects' mean, in units of 1.5. 0
+ * where it is no such word. */
+int vocabulary_size(const struct arrangement *a, const struct lang_word *w, double *fit);
+
 /* match (O): the best cosine of the mean of a sentence's pieces with that of an object's training sentences,
  * -1 where it has none. Returns the object of the training sentence of the same pieces, or O. */
 size_t vocabulary_sentence(

@@ -104,6 +104,7 @@ enum {
 	NAMES = 1 << CHOOSE_NAMES,
 	ALIKE = 1 << CHOOSE_ALIKE,
 	COLOURS = 1 << CHOOSE_COLOURS,
+	SIZES = 1 << CHOOSE_SIZES,
 	RELATIONS = 1 << CHOOSE_RELATIONS,
 	SENTENCE = 1 << CHOOSE_SENTENCE
 };
@@ -115,6 +116,7 @@ static void parts(void)
 	CHECK(ask("the crates", NAMES) == 2 && probability[2] > 0.5, "names in the plural: %g",
 		probability[2]);
 	CHECK(ask("the red thing", COLOURS) == 2 && probability[2] > 0.8, "colours");
+	CHECK(ask("the large thing", SIZES) == 2 && ask("the small thing", SIZES) != 2, "sizes");
 	CHECK(ask("the dull can", SENTENCE) == 3 && probability[3] > 0.99, "a training sentence");
 	CHECK(ask("the thing nearest to us", RELATIONS) == 3 && probability[3] > 0.8, "relations");
 	CHECK(ask("the thing to the left of the box", WORDS | RELATIONS) == 0, "an anchor");
