@@ -124,7 +124,9 @@ static void parts(void)
 	CHECK(ask("the thing to the right of the crate", NAMES | RELATIONS) == 1, "an anchor by its name");
 	CHECK(ask("the shiny mug on the right", CHOOSE_ALL) == 1,
 		"shiny is only said of the other, which looks the same");
-	CHECK(ask("the shiny mug on the right", CHOOSE_ALL & ~(unsigned)ALIKE) == 0, "without looks");
+	const float alike = probability[0];
+	ask("the shiny mug on the right", CHOOSE_ALL & ~(unsigned)ALIKE);
+	CHECK(probability[0] > 2 * alike, "without looks the one that is called shiny gains");
 }
 
 /* What is said of something that is no object says nothing. */
@@ -141,7 +143,7 @@ static void absent(void)
 {
 	double here, sum = 0;
 
-	ask("the small wooden box", CHOOSE_ALL);
+	ask("the large wooden box", CHOOSE_ALL);
 	here = probability[2];
 	ask("the violet zeppelin", CHOOSE_ALL);
 	for (int o = 0; o < OBJECTS; o++)
