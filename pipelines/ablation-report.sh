@@ -79,8 +79,30 @@ statistics() {
 	echo
 }
 
+# Boxes and whole outlines of the lifted objects: a row for each scene and seed.
+space() {
+	printf '### Where things are, and all of them\n\n'
+	printf 'Of test sentences / training sentences, in percent. Outlines: mIoU with the whole objects, hidden parts too, of --amodal and of ordinary masks.\n\n'
+	printf '| scene | boxes along the axes, IoU | over 0.25 | over 0.5 | turned boxes, IoU | centre off, of the diagonal | whole outlines | ordinary masks |\n|---|---|---|---|---|---|---|---|\n'
+	for scene in $SCENES; do
+		for seed in $SEEDS; do
+			for kind in test train; do
+				cell=$ROOT/$scene-$seed/lift
+				jq -r --slurpfile whole "$cell/whole.$kind.score.json" --slurpfile visible "$cell/visible.$kind.score.json" \
+					'[.aligned.miou, .aligned.p25, .aligned.p50, .oriented.miou, .centre_relative, $whole[0].miou, $visible[0].miou]
+					| map(100 * .) | @tsv' "$cell/boxes.$kind.score.json"
+			done | awk -v name="$scene, seed $seed" '
+				NR == 1 { split($0, test) }
+				END { printf "| %s |", name; for (i = 1; i <= NF; i++) printf " %.1f / %.1f |", test[i], $i; print "" }'
+		done
+	done
+	echo
+}
+
 if [ "$table" = statistics ]; then
 	statistics
+elif [ "$table" = space ]; then
+	space
 elif [ "$table" = sentences ] || [ "$table" = hard ]; then
 	groups | awk -f "$here/ablation-groups.awk" -v runs="$RUNS"
 else

@@ -18,7 +18,8 @@
 #
 # Targets: tables (all but the cost), cost (times its own trainings, so nothing else should run), all, and one for each
 # table: statistics (of the scenes) modules similarity masks interaction width encoder contrast settings sentences lifted (and,
-# not in the paper, answers without training, and trainings that start from them) hard (the same by what makes a case hard). They print;
+# not in the paper, answers without training, and trainings that start from them) hard (the same by what makes a case hard)
+# space (its boxes and outlines of whole objects). They print;
 # OUT/SIZE/NAME.md keeps what was printed. Every cell is the mean over the seeds, each the mean over the scenes, with the spread between seeds.
 # Every file is made under its own name: what is there is not made again, unless what it is made of changed.
 
@@ -115,7 +116,8 @@ settings := both cold warm lambda slow half
 sentences := both two
 lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike lift-colours lift-sizes lift-relations lift lift-voted
 hard := two warmed lift-relations lift
-tables := statistics modules similarity masks interaction width encoder contrast settings sentences lifted hard
+space := lift
+tables := statistics modules similarity masks interaction width encoder contrast settings sentences lifted hard space
 RUNS ?= $(sort $(foreach t,$(tables),$($(t))))
 
 root := $(OUT)/$(SIZE)
@@ -214,6 +216,22 @@ $(1)/$(3)/%.jsonl: $(1)/$(3)/model.safetensors
 		--sentences $$* -o $$@)
 endef
 
+# Where the lifted objects are, and their whole outlines. $(call space_rules,FOLDER)
+define space_rules
+$(1)/lift/boxes.%.jsonl: $(1)/lifted/full.safetensors
+	$$(call run,$(1)/lift/locate.log,refer-locate --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
+		--sentences $$* -o $$@)
+$(1)/lift/boxes.%.score.json: $(1)/lift/boxes.%.jsonl
+	$(tool)miou-score --boxes --json --quiet --truth $(1)/data/boxes.jsonl -o $$@ $$<
+$(1)/lift/whole.%.jsonl: $(1)/lifted/full.safetensors
+	$$(call run,$(1)/lift/whole.log,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
+		--sentences $$* --amodal -o $$@)
+$(1)/lift/whole.%.score.json: $(1)/lift/whole.%.jsonl
+	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/whole.jsonl -o $$@ $$<
+$(1)/lift/visible.%.score.json: $(1)/lift/%.jsonl
+	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/whole.jsonl -o $$@ $$<
+endef
+
 # $(call lift_rules,FOLDER,RUN)
 define lift_rules
 $(1)/$(2)/options: FORCE
@@ -225,6 +243,7 @@ endef
 
 $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(eval $(call data_rules,$(root)/$(s)-$(n),$(s),$(n)))))
 $(foreach c,$(cells),$(foreach e,$(encoders),$(eval $(call encoder_rules,$(c),$(e)))))
+$(foreach c,$(cells),$(eval $(call space_rules,$(c))))
 $(foreach c,$(cells),$(foreach r,$(filter lift%,$(RUNS)),$(eval $(call lift_rules,$(c),$(r)))))
 $(foreach c,$(cells),$(foreach r,$(RUNS),$(eval $(call score_rule,$(c)/$(r)))))
 $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(foreach r,$(filter-out lift%,$(RUNS)),$(eval $(call run_rules,$(root)/$(s)-$(n),$(n),$(r))))))
@@ -238,6 +257,7 @@ endef
 $(foreach t,$(tables),$(eval $(call table_rules,$(t))))
 statistics masks: $(foreach c,$(cells),$(foreach m,ciou iou top1,$(c)/masks/$(m).quality.json))
 masks: $(foreach c,$(cells),$(c)/masks/first.quality.json $(c)/both/teach.quality.json)
+space: $(foreach c,$(cells),$(foreach k,boxes whole visible,$(foreach t,test train,$(c)/lift/$(k).$(t).score.json)))
 lifted: $(foreach c,$(cells),$(foreach m,ciou scene,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
 
 # Alone on the machine, or its seconds mean nothing.
