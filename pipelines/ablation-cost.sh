@@ -36,4 +36,10 @@ for run in "$@"; do
 		"$(memory "$OUT/$run.log")" "$(frames "$model")" "$(wc -c <"$model" | awk '{ printf "%.2f", $1 / 1e6 }')" \
 		"$(miou "$CELL/$run/test.csv")" "$(miou "$CELL/$run/train.csv")"
 done
-echo
+# Without training: selection in 3D and lifting.
+"${bin}pseudomask-select" --scene "$CELL/scene" --weights "$CELL/weights" -v -o "$OUT/lifted.jsonl" "$CELL/data/candidates.jsonl" 2>"$OUT/select.log"
+model=$OUT/lifted.safetensors
+"${bin}refer-lift" --scene "$CELL/scene" --weights "$CELL/weights" --text "$text" --masks "$OUT/lifted.jsonl" -v -o "$model" 2>"$OUT/lift.log"
+printf '| lifted: selection in 3D, refer-lift | %s + %s | %s | %s | %s | %s | %s |\n\n' "$(seconds "$OUT/select.log")" "$(seconds "$OUT/lift.log")" \
+	"$({ memory "$OUT/select.log"; memory "$OUT/lift.log"; } | sort -n | tail -n 1)" "$(frames "$model")" \
+	"$(wc -c <"$model" | awk '{ printf "%.2f", $1 / 1e6 }')" "$(miou "$CELL/lift/test.csv")" "$(miou "$CELL/lift/train.csv")"

@@ -235,7 +235,7 @@ endef
 # $(call lift_rules,FOLDER,RUN)
 define lift_rules
 $(1)/$(2)/options: FORCE
-	$$(call keep,$(ask.$(2)))
+	$$(call keep,$$(ask.$(2)))
 $(1)/$(2)/%.jsonl: $(1)/$(2)/options $(1)/lifted/$(lift.$(2)).safetensors
 	$$(call run,$(1)/$(2)/render.log,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors \
 		--model $(1)/lifted/$(lift.$(2)).safetensors --sentences $$* $$(ask.$(2)) -o $$@)
@@ -262,5 +262,5 @@ lifted: $(foreach c,$(cells),$(foreach m,ciou scene,$(c)/masks/$(m).quality.json
 
 # Alone on the machine, or its seconds mean nothing.
 cost_runs := none both proj-both
-cost: $(foreach r,$(cost_runs),$(firstword $(cells))/$(r)/test.csv $(firstword $(cells))/$(r)/train.csv)
+cost: $(foreach r,$(cost_runs) lift,$(firstword $(cells))/$(r)/test.csv $(firstword $(cells))/$(r)/train.csv)
 	@CELL='$(firstword $(cells))' OUT='$(root)/cost' BIN='$(tool)' $(here)ablation-cost.sh $(cost_runs) | tee $(root)/cost.md

@@ -96,10 +96,25 @@ report() {
 }
 
 @test "the cost table times a training and weighs its model" {
-	ablation scores RUNS="none both proj-both" >/dev/null 2>&1
-	run ablation cost RUNS="none both proj-both"
+	ablation scores RUNS="none both proj-both lift" >/dev/null 2>&1
+	run ablation cost RUNS="none both proj-both lift"
 	[ "$status" = 0 ]
+	grep -qE '^\| lifted: .* \| [0-9.]+ \+ [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \|$' <<<"$output"
 	grep -qE '^\| both: .* \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \|$' <<<"$output"
+}
+
+@test "answers without training have tables: by parts, by what is hard, and in space" {
+	ablation -j2 lifted hard space >first.log 2>&1
+	for row in 'stage 1 from the lifted model' '\+ relations' '\+ sentences say which of several alike'; do
+		grep -qE "^\| $row \|  \| [-0-9.]+( \| [0-9.]+){4} \|\$" out/quick/lifted.md
+	done
+	# Parts are left out one after another: the first row is by the sentence alone.
+	[ "$(cat out/quick/diner-1/lift-sentence/options)" = "--without relations,sizes,colours,alike,names,words" ]
+	[ -z "$(cat out/quick/diner-1/lift-relations/options)" ]
+	grep -q '^### By objects that look the same' out/quick/hard.md
+	grep -qE '^\| diner, seed 1 \|( [0-9.]+ / [0-9.]+ \|){7}$' out/quick/space.md
+	run ablation lifted hard space
+	not grep -qE 'refer-lift|refer-train|refer-render|miou-score' <<<"$output"
 }
 
 @test "bad sizes are refused" {
