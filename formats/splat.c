@@ -43,7 +43,7 @@ static void put_record(unsigned char *p, const struct splats *s, size_t i)
 {
 	static const double basis = 0.28209479177387814; /* 1 / (2 sqrt(pi)) */
 	const float *sh = s->sh + 3 * (size_t)s->sh_coefficients * i, *q = s->quats + 4 * i;
-	const double length = hypot(hypot(q[0], q[1]), hypot(q[2], q[3]));
+	const double w = q[0], x = q[1], y = q[2], z = q[3], length = sqrt(w * w + x * x + y * y + z * z);
 
 	for (size_t k = 0; k < 3; k++)
 		p = put_float(p, s->means[3 * i + k]);
