@@ -100,6 +100,8 @@ lift.lift-words = plain
 ask.lift-words = --without relations,sizes,colours,alike,names
 lift.lift-sentence = plain
 ask.lift-sentence = --without relations,sizes,colours,alike,names,words
+parts := words names alike colours sizes relations sentence
+$(foreach p,$(parts),$(eval lift.lift-but-$(p) = full)$(eval ask.lift-but-$(p) = --without $(p)))
 encoders := $(foreach b,$(BERTS),$(firstword $(subst =, ,$(b))))
 $(foreach b,$(BERTS),$(eval dir.$(firstword $(subst =, ,$(b))) := $(lastword $(subst =, ,$(b)))))
 $(foreach e,$(encoders),$(eval run.$(e) = $$(run.both))$(eval text.$(e) = $(e)))
@@ -114,7 +116,7 @@ encoder := both static $(encoders)
 contrast := pcmi dot both proj proj-dot proj-both
 settings := both cold warm lambda slow half
 sentences := both two
-lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike lift-colours lift-sizes lift-relations lift lift-voted
+lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike lift-colours lift-sizes lift-relations lift lift-voted $(foreach p,$(parts),lift-but-$(p))
 hard := two warmed lift-relations lift
 space := lift
 tables := statistics modules similarity masks interaction width encoder contrast settings sentences lifted hard space
