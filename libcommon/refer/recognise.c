@@ -55,6 +55,8 @@ static int copy_shares(struct lifted *to, const struct lifted *l, struct err *e)
 	to->confidence = mem_alloc(l->objects, sizeof *to->confidence, "objects", e);
 	if (!to->indptr || !to->index || !to->share || !to->confidence)
 		return -1;
+	if (!l->objects)
+		return 0;
 	memcpy(to->indptr, l->indptr, (l->objects + 1) * sizeof *to->indptr);
 	memcpy(to->index, l->index, shares * sizeof *to->index);
 	memcpy(to->share, l->share, shares * sizeof *to->share);
