@@ -3,8 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* All lengths are shares of the arrangement's spacing. Found on synthetic scenes (seeds 1 to 9); none of them
- * is sharp: half or twice each moves few choices. */
+/* All lengths are shares of the arrangement's spacing. Found on synthetic scenes (seeds 1 to 9). */
 static const double sideways_least = 0.65, sideways_soft = 0.1; /* cosine of the angle to the direction */
 static const double apart_least = 0.04, apart_soft = 0.03;	/* how far that way at least */
 static const double nearby = 0.3;      /* e-folds by which what is near is preferred */
