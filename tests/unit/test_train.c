@@ -527,6 +527,54 @@ static void test_no_weight(void)
 	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
 }
 
+/* A Gaussian that no view sees, put first, changes no leaf. */
+static void test_unseen_first(void)
+{
+	static const struct trainer_options options = {.batch = 1,
+		.feature_width = 5,
+		.interaction = REFER_PCMI,
+		.rates = {0.01, 0.001},
+		.temperature = 0.1,
+		.lambda = 0.02,
+		.share = 0.01};
+	static struct sample s, more;
+	static struct camera cameras[VIEWS];
+	struct trainer t, u;
+	struct err e;
+
+	sample_init(&s);
+	sample_init(&more);
+	for (int v = 0; v < VIEWS; v++) {
+		cameras[v] = (struct camera){.width = 8, .height = 8, .fx = 8, .fy = 8, .cx = 4, .cy = 4};
+		for (int k = 0; k < 4; k++)
+			cameras[v].world_to_camera[k][k] = 1;
+		cameras[v].world_to_camera[2][3] = 5;
+	}
+	static float means[(GAUSSIANS + 1) * 3];
+	memcpy(means + 3, s.means, sizeof s.means);
+	for (int v = 0; v < VIEWS; v++) {
+		int32_t *index = more.random[v].index;
+		for (int64_t k = 0; k < more.random[v].indptr[PIXELS]; k++)
+			index[k]++;
+		more.views[v].weights.gaussians++;
+	}
+	const struct trainer_source with = {means, cameras, GAUSSIANS + 1, 8, 2, more.offsets, more.words,
+		more.objects, more.views, VIEWS, PIXELS, NULL, NULL};
+	const struct trainer_source without = {s.means, cameras, GAUSSIANS, 8, 2, s.offsets, s.words,
+		s.objects, s.views, VIEWS, PIXELS, NULL, NULL};
+	if (!CHECK(!trainer_init(&t, &without, &options, &e), "%s", e.message) ||
+		!CHECK(!trainer_init(&u, &with, &options, &e), "%s", e.message))
+		return;
+	CHECK(t.rows.n > 1 && t.rows.n < t.learning, "%zu rows of %zu", t.rows.n, t.learning);
+	CHECK(u.rows.n == t.rows.n && u.learning == t.learning, "%zu rows, and %zu with one more", t.rows.n,
+		u.rows.n);
+	CHECK(t.octree.n == u.octree.n &&
+			!memcmp(t.octree.codes, u.octree.codes, t.octree.n * sizeof(int64_t)),
+		"other leaves");
+	trainer_free(&t);
+	trainer_free(&u);
+}
+
 /* The sentences of a contrast: so many different ones, the same for the same step, each as often as any. */
 static void test_others(void)
 {
@@ -578,6 +626,7 @@ int main(void)
 	test_resume(2, 6, 0.4); /* before anything was evaluated */
 	test_resume(13, 17, 0.4);
 	test_no_weight();
+	test_unseen_first();
 	test_others();
 	return unit_end();
 }
