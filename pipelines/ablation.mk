@@ -17,9 +17,10 @@
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 #
 # Targets: tables (all but the cost), cost (times its own trainings, so nothing else should run), all, and one for each
-# table: statistics (of the scenes) modules similarity masks interaction width encoder contrast settings sentences lifted (and,
+# table: statistics (of the scenes) modules second (what may teach a second stage) similarity masks interaction width encoder contrast settings sentences lifted (and,
 # not in the paper, answers without training, and trainings that start from them) hard (the same by what makes a case hard)
-# space (its boxes and outlines of whole objects). They print;
+# space (its boxes and outlines of whole objects). Not among them: exact, the modules without the shortcuts of a training
+# step, several times as long. They print;
 # OUT/SIZE/NAME.md keeps what was printed. Every cell is the mean over the seeds, each the mean over the scenes, with the spread between seeds.
 # Every file is made under its own name: what is there is not made again, unless what it is made of changed.
 
@@ -77,8 +78,24 @@ run.lambda = $(run.both) --lambda 0.1
 run.slow = $(run.both) --feature-rate 0.0025 --mlp-rate 0.0001
 run.half = $(run.both)
 steps.half = $(shell expr $(ITERATIONS) / 2)
+run.double = $(run.both)
+steps.double = $(shell expr $(ITERATIONS) \* 2)
 run.onscene = $(run.both)
 masks.onscene = masks/scene
+# Other second stages: one mask chosen of stage 1's for each object; stage 1's and the detector's, chosen together in
+# each view and in 3D; and the masks of the objects that were lifted from what was selected in 3D.
+run.two-chosen = $(run.both)
+masks.two-chosen = masks/chosen
+run.two-pooled = $(run.both)
+masks.two-pooled = masks/pooled
+run.two-pooled3d = $(run.both)
+masks.two-pooled3d = masks/pooled3d
+run.two-lifted = $(run.both)
+masks.two-lifted = masks/lifted
+# Table 1 without the shortcuts of a step: every Gaussian has its own feature, every sentence is in the contrast.
+$(foreach r,none pcmi gtcl both two two-lifted,$(eval run.$(r)-exact = $$(run.$(r)) --share 0 --negatives 0))
+masks.two-exact = both-exact/teach
+masks.two-lifted-exact = masks/lifted
 run.warmed = $(run.both)
 masks.warmed = masks/scene
 init.warmed = lifted/full
@@ -114,13 +131,15 @@ interaction := none attention attention+fp add pcmi proj
 width := width1 width4 both width32
 encoder := both static $(encoders)
 contrast := pcmi dot both proj proj-dot proj-both
-settings := both cold warm lambda slow half
+settings := both cold warm lambda slow half double
+second := both two two-chosen two-pooled two-pooled3d onscene two-lifted
+exact := none none-exact pcmi pcmi-exact gtcl gtcl-exact both both-exact two two-exact two-lifted two-lifted-exact
 sentences := both two
 lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike lift-colours lift-sizes lift-relations lift lift-voted $(foreach p,$(parts),lift-but-$(p))
 hard := two warmed lift-relations lift
 space := lift
-tables := statistics modules similarity masks interaction width encoder contrast settings sentences lifted hard space
-RUNS ?= $(sort $(foreach t,$(tables),$($(t))))
+tables := statistics modules second similarity masks interaction width encoder contrast settings sentences lifted hard space
+RUNS ?= $(sort $(foreach t,$(tables) exact,$($(t))))
 
 root := $(OUT)/$(SIZE)
 cells := $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(root)/$(s)-$(n)))
@@ -129,7 +148,7 @@ cells := $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(root)/$(s)-$(n)))
 export OMP_WAIT_POLICY ?= passive
 export OMP_NUM_THREADS := $(THREADS)
 
-.PHONY: all tables cost scores help FORCE $(tables)
+.PHONY: all tables cost scores help FORCE $(tables) exact
 .DELETE_ON_ERROR:
 .SECONDARY:
 all: tables
@@ -179,9 +198,22 @@ $(1)/lifted/%.safetensors: $(1)/weights/complete $(1)/text/contextual.safetensor
 $(1)/masks/%.jsonl: $(1)/data/made-by
 	@mkdir -p $$(@D)
 	$$(call run,$(1)/log/$$*,pseudomask-select --method $$* -o $$@ $(1)/data/candidates.jsonl)
-$(1)/both/teach.jsonl: $(1)/both/model.safetensors
-	$$(call run,$(1)/log/teach,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
+$(1)/both/teach.jsonl $(1)/both-exact/teach.jsonl: $(1)/%/teach.jsonl: $(1)/%/model.safetensors
+	$$(call run,$(1)/log/teach.$$*,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
 		--split train --sentences train --scale $(SCALE) -o $$@)
+$(1)/masks/lifted.jsonl $(1)/masks/answers.jsonl: $(1)/masks/%.jsonl:
+	$$(call run,$(1)/log/answers.$$*,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
+		--split train --sentences train -o $$@)
+$(1)/masks/lifted.jsonl: $(1)/lifted/full.safetensors
+$(1)/masks/answers.jsonl: $(1)/both/model.safetensors
+$(1)/masks/chosen.jsonl: $(1)/masks/answers.jsonl
+	$$(call run,$(1)/log/chosen,pseudomask-select --min-score 0 -o $$@ $$<)
+$(1)/masks/both.jsonl: $(1)/masks/answers.jsonl
+	cat $(1)/data/candidates.jsonl $$< >$$@
+$(1)/masks/pooled.jsonl: $(1)/masks/both.jsonl
+	$$(call run,$(1)/log/pooled,pseudomask-select -o $$@ $$<)
+$(1)/masks/pooled3d.jsonl: $(1)/masks/both.jsonl $(1)/weights/complete
+	$$(call run,$(1)/log/pooled3d,pseudomask-select --scene $(1)/scene --weights $(1)/weights -o $$@ $$<)
 $(1)/%.quality.json: $(1)/%.jsonl
 	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/truth.jsonl -o $$@ $$<
 endef
@@ -256,9 +288,10 @@ define table_rules
 $(1): $(call scores_of,$($(1)))
 	@ROOT='$(root)' SCENES='$(SCENES)' SEEDS='$(SEEDS)' RUNS='$(filter $(RUNS),$($(1)))' $(here)ablation-report.sh $(1) | tee $(root)/$(1).md
 endef
-$(foreach t,$(tables),$(eval $(call table_rules,$(t))))
+$(foreach t,$(tables) exact,$(eval $(call table_rules,$(t))))
 statistics masks: $(foreach c,$(cells),$(foreach m,ciou iou top1,$(c)/masks/$(m).quality.json))
 masks: $(foreach c,$(cells),$(c)/masks/first.quality.json $(c)/both/teach.quality.json)
+second: $(foreach c,$(cells),$(foreach m,ciou scene chosen pooled pooled3d lifted,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
 space: $(foreach c,$(cells),$(foreach k,boxes whole visible,$(foreach t,test train,$(c)/lift/$(k).$(t).score.json)))
 lifted: $(foreach c,$(cells),$(foreach m,ciou scene,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
 
