@@ -198,6 +198,17 @@ png/$test_view/yellow-bowl-1.png " ]
 	[ "$(ls png)" = "$test_view" ]
 }
 
+@test "a view that is called .. is refused, and nothing is written outside the folder of pictures" {
+	mkdir in
+	for name in .. . a/b ''; do
+		jq -c --arg name "$name" '.[0].name = $name' "$made/scene/cameras.json" >scene/cameras.json
+		run render --split all --png in/png --overlay in/overlay -o in/pred.jsonl
+		[ "$status" = 3 ]
+		[[ $output == "refer-render: scene/cameras.json: view 0: key 'name' "* ]]
+		[ -z "$(ls -A in)" ]
+	done
+}
+
 @test "--size and --scale are the sizes of records and pictures" {
 	size() { rm -rf png; render --refs silent --png png "$@" | jq -c .segmentation.size; picture png/$test_view/silent.png; }
 	[ "$(size --size 20x10)" = "[10,20]
