@@ -234,9 +234,9 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 @test "the camera file is not overwritten by the scene's" {
 	printf '[%s]' "$(camera3dgs)" >cameras.json
 	cp cameras.json before
-	says 2 "gs-import: -o: ./cameras.json is the camera file that is read
+	says 2 "gs-import: -o . would overwrite --cameras ./cameras.json
 Try 'gs-import --help'." "$BIN/gs-import" -o . s.ply
-	says 2 "gs-import: -o: ../$(basename "$PWD")/cameras.json is the camera file that is read
+	says 2 "gs-import: -o ../$(basename "$PWD") would overwrite --cameras ./cameras.json
 Try 'gs-import --help'." "$BIN/gs-import" -o "../$(basename "$PWD")" s.ply
 	cmp before cameras.json
 	[ ! -e splats.safetensors ]

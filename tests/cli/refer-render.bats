@@ -350,6 +350,14 @@ Try 'refer-render --help'." ask --without words,word
 		jq -e '.objects["brown box"].miou > 0.2'
 }
 
+@test "as many pictures at a time as there are threads" {
+	lifted
+	ask --threads 64 --split all --png 64/png --response 64/response --overlay 64/overlay -o 64.jsonl
+	ask --threads 1 --split all --png 1/png --response 1/response --overlay 1/overlay -o 1.jsonl
+	cmp 1.jsonl 64.jsonl
+	diff -r 1 64
+}
+
 @test "lifted models, too: --threads 1, 2 and 3 give the same bytes" {
 	lifted
 	for n in 1 2 3; do
