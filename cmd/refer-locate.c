@@ -2,6 +2,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
+#include "cli/overwrite.h"
 #include "formats/anymodel.h"
 #include "formats/boxes.h"
 #include "formats/ply.h"
@@ -164,6 +165,12 @@ int main(int argc, char **argv)
 
 	cli_parse(&c, &tool, argc, argv);
 	check(&c);
+	cli_refuse_overwrite(&c, (const struct cli_file[]){{"-o", c.output, CLI_WRITES, NULL},
+					 {"--ply", options.ply, CLI_WRITES, NULL},
+					 {"--splat", options.splat, CLI_WRITES, NULL},
+					 {"--scene", options.scene, CLI_READS, CLI_SCENE_PARTS},
+					 {"--text", options.text, CLI_READS, NULL},
+					 {"--model", options.model, CLI_READS, NULL}, {0}});
 	int bad = load(&r, &c, &e) || ((options.ply || options.splat) && write_scene(&r, &e)) ||
 		  write_boxes(&r, &c, &e);
 	for (size_t k = 0; r.located && k < r.asked.answers; k++)

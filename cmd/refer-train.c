@@ -1,6 +1,7 @@
 /* refer-train: learns the referring model of a scene from masks (one stage of the method). */
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/overwrite.h"
 #include "formats/checkpoint.h"
 #include "formats/training.h"
 #include "formats/trainlog.h"
@@ -176,12 +177,25 @@ static int train(struct run *r, const struct cli *c, struct err *e)
 	return bad;
 }
 
+static void refuse_overwrite(const struct run *r, const struct cli *c)
+{
+	const struct training_files *f = &options.from;
+	const struct cli_file files[] = {{"-o", c->output, CLI_WRITES, NULL},
+		{"--log", options.log, CLI_WRITES, NULL}, {"checkpoint", r->checkpoint, CLI_WRITES, NULL},
+		{"--scene", f->scene, CLI_READS, CLI_SCENE_PARTS},
+		{"--weights", f->weights, CLI_READS, CLI_WEIGHTS_PARTS}, {"--text", f->text, CLI_READS, NULL},
+		{"--masks", f->masks, CLI_READS, NULL}, {"--init", f->lifted, CLI_READS, NULL}, {0}};
+
+	cli_refuse_overwrite(c, files);
+}
+
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
 	const struct training *d = &r->data;
 
 	if (strcmp(c->output, "-") && !(r->checkpoint = checkpoint_path(c->output, e)))
 		return -1;
+	refuse_overwrite(r, c);
 	if (training_read(&r->data, &options.from, options.trainer.hold_out, (uint64_t)c->seed, e))
 		return -1;
 	if (d->left_out)
@@ -189,7 +203,8 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 			d->left_out);
 	if (d->test_masks)
 		cli_note(c, 1, "%zu masks of test views are not used", d->test_masks);
-	if (file_out_probe(c->output, e) || start(r, c, e) || resume(r, c, e) ||
+	if (file_out_probe(c->output, e) || (r->checkpoint && file_out_probe(r->checkpoint, e)) ||
+		start(r, c, e) || resume(r, c, e) ||
 		trainlog_open(&r->log, options.log, r->trainer.state.iteration, e))
 		return -1;
 	if (train(r, c, e) || training_write(d, &r->trainer, options.trainer.similarity,

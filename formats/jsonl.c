@@ -2,6 +2,8 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/name.h"
+#include "formats/json.h"
 
 #include <errno.h>
 #include <math.h>
@@ -53,10 +55,12 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 		*object = cJSON_ParseWithOpts(j->line, &stop, 1);
 		if (!*object)
 			return jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);
-		if (cJSON_IsObject(*object))
+		const int is_cut = json_has_nul(j->line);
+		if (cJSON_IsObject(*object) && !is_cut)
 			return 1;
 		cJSON_Delete(*object);
-		return jsonl_err(j, e, "not a JSON object");
+		return jsonl_err(
+			j, e, is_cut ? "a NUL character (\\u0000) in a string" : "not a JSON object");
 	}
 }
 
@@ -76,17 +80,19 @@ int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, in
 	return 1;
 }
 
-int jsonl_name(
-	const struct jsonl *j, const cJSON *object, const char *key, int need, char **name, struct err *e)
+int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum name_kind kind, int need,
+	char **name, struct err *e)
 {
 	const char *text = NULL;
+	char fault[NAME_FAULT];
 
 	if (jsonl_string(j, object, key, need, &text, e) < 0)
 		return -1;
 	if (!text)
 		return 0;
-	if (!*text)
-		return jsonl_err(j, e, "key '%s' is empty", key);
+	const char *reason = name_fault(text, kind, fault);
+	if (reason)
+		return jsonl_err(j, e, "key '%s' %s", key, reason);
 	*name = mem_strdup(text, e);
 	return *name ? 0 : -1;
 }

@@ -95,7 +95,8 @@ static int read_objects(struct lifted *l, const struct safetensors *st, struct e
 			return err_set(e, ERR_FORMAT, "%s: tensor 'confidence': item %zu is not in 0 to 1",
 				st->path, o);
 	l->names = metalist_read(st, "names", l->objects, "objects", e);
-	return !l->names || metalist_check_unique(l->names, l->objects, "names", st->path, e) ||
+	return !l->names || metalist_check_names(l->names, l->objects, "names", st->path, e) ||
+			       metalist_check_unique(l->names, l->objects, "names", st->path, e) ||
 			       read_shares(l, st, e)
 		       ? -1
 		       : 0;

@@ -111,8 +111,9 @@ static int read_record(const struct jsonl *j, const cJSON *object, struct mask_r
 	const cJSON *segmentation = cJSON_GetObjectItemCaseSensitive(object, "segmentation");
 	const char *path = NULL;
 
-	if (jsonl_name(j, object, "view", 1, &r->view, e) || jsonl_name(j, object, "ref", 0, &r->ref, e) ||
-		jsonl_name(j, object, "object", 0, &r->object, e) ||
+	if (jsonl_name(j, object, "view", NAME_VIEW, 1, &r->view, e) ||
+		jsonl_name(j, object, "ref", NAME_DATA, 0, &r->ref, e) ||
+		jsonl_name(j, object, "object", NAME_DATA, 0, &r->object, e) ||
 		jsonl_number(j, object, "score", &r->score, e) || read_visible(j, object, &r->visible, e))
 		return -1;
 	if (!r->ref && !r->object)

@@ -1,7 +1,9 @@
 #include "formats/metalist.h"
 
 #include "base/mem.h"
+#include "base/name.h"
 #include "base/utf8.h"
+#include "formats/json.h"
 
 #include <cjson/cJSON.h>
 #include <stdlib.h>
@@ -23,6 +25,11 @@ char **metalist_read(const struct safetensors *st, const char *key, size_t n, co
 
 	if (!list || !cJSON_IsArray(list)) {
 		err_set(e, ERR_FORMAT, "%s: metadata '%s' is not a JSON list", st->path, key);
+		goto fail;
+	}
+	if (json_has_nul(value)) {
+		err_set(e, ERR_FORMAT, "%s: metadata '%s': a NUL character (\\u0000) in a string", st->path,
+			key);
 		goto fail;
 	}
 	if ((size_t)cJSON_GetArraySize(list) != n) {
@@ -69,6 +76,19 @@ char *metalist_print(char *const *strings, size_t n)
 done:
 	cJSON_Delete(list);
 	return text;
+}
+
+int metalist_check_names(char *const *strings, size_t n, const char *key, const char *path, struct err *e)
+{
+	char fault[NAME_FAULT];
+
+	for (size_t i = 0; i < n; i++) {
+		const char *reason = name_fault(strings[i], NAME_DATA, fault);
+		if (reason)
+			return err_set(
+				e, ERR_FORMAT, "%s: metadata '%s': entry %zu %s", path, key, i, reason);
+	}
+	return 0;
 }
 
 static int by_name(const void *a, const void *b)

@@ -18,6 +18,9 @@ void metalist_free(char **strings, size_t n);
 /* n strings as such a value, to be freed; NULL when memory is out. */
 char *metalist_print(char *const *strings, size_t n);
 
+/* All are names of refs or objects (base/name.h): 0, or -1 with *e. */
+int metalist_check_names(char *const *strings, size_t n, const char *key, const char *path, struct err *e);
+
 /* No two are the same: 0, or -1 with *e. */
 int metalist_check_unique(char *const *strings, size_t n, const char *key, const char *path, struct err *e);
 

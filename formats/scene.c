@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/name.h"
 #include "formats/json.h"
 #include "formats/safetensors.h"
 
@@ -140,20 +141,27 @@ static int read_pose(struct camera *c, const cJSON *view, const char *path, int 
 	return check_rigid(c, path, index, e);
 }
 
-static int read_view(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
+static int read_name(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
 {
 	const cJSON *name = cJSON_GetObjectItemCaseSensitive(view, "name");
+	char fault[NAME_FAULT];
+
+	if (!cJSON_IsString(name))
+		return err_set(e, ERR_FORMAT, "%s: view %d: key 'name' is not a string", path, index);
+	const char *reason = name_fault(name->valuestring, NAME_VIEW, fault);
+	if (reason)
+		return err_set(e, ERR_FORMAT, "%s: view %d: key 'name' %s", path, index, reason);
+	c->name = mem_strdup(name->valuestring, e);
+	return c->name ? 0 : -1;
+}
+
+static int read_view(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
+{
 	const cJSON *split = cJSON_GetObjectItemCaseSensitive(view, "split");
 	const cJSON *image = cJSON_GetObjectItemCaseSensitive(view, "image");
 	double width = 0, height = 0;
 
-	if (!cJSON_IsString(name) || !name->valuestring[0] || strchr(name->valuestring, '/'))
-		return err_set(
-			e, ERR_FORMAT, "%s: view %d: key 'name' is not a name without slashes", path, index);
-	c->name = mem_strdup(name->valuestring, e);
-	if (!c->name)
-		return -1;
-	if (view_number(view, "width", path, index, &width, e) ||
+	if (read_name(c, view, path, index, e) || view_number(view, "width", path, index, &width, e) ||
 		view_number(view, "height", path, index, &height, e) ||
 		view_number(view, "fx", path, index, &c->fx, e) ||
 		view_number(view, "fy", path, index, &c->fy, e) ||

@@ -25,17 +25,24 @@ void sentences_free(struct sentences *s)
 	*s = (struct sentences){0};
 }
 
-static char *copy_string(
-	const struct jsonl *j, const char *key, const char *value, int may_be_empty, struct err *e)
+static char *copy_text(const struct jsonl *j, const char *value, struct err *e)
 {
 	size_t len = strlen(value), bad = utf8_check(value, len);
 
 	if (bad < len) {
-		jsonl_err(j, e, "key '%s' is not UTF-8 at byte %zu", key, bad + 1);
+		jsonl_err(j, e, "key 'text' is not UTF-8 at byte %zu", bad + 1);
 		return NULL;
 	}
-	if (!len && !may_be_empty) {
-		jsonl_err(j, e, "key '%s' is empty", key);
+	return mem_strdup(value, e);
+}
+
+static char *copy_view(const struct jsonl *j, const char *value, struct err *e)
+{
+	char fault[NAME_FAULT];
+	const char *reason = name_fault(value, NAME_VIEW, fault);
+
+	if (reason) {
+		jsonl_err(j, e, "key 'views': item '%s' %s", value, reason);
 		return NULL;
 	}
 	return mem_strdup(value, e);
@@ -56,7 +63,7 @@ static int read_views(struct sentence *s, const struct jsonl *j, const cJSON *ob
 	{
 		if (!cJSON_IsString(view))
 			return jsonl_err(j, e, "key 'views' holds something other than strings");
-		s->views[s->view_count] = copy_string(j, "views", view->valuestring, 0, e);
+		s->views[s->view_count] = copy_view(j, view->valuestring, e);
 		if (!s->views[s->view_count])
 			return -1;
 		s->view_count++;
@@ -64,32 +71,19 @@ static int read_views(struct sentence *s, const struct jsonl *j, const cJSON *ob
 	return 0;
 }
 
-/* A NUL that JSON writes as \u0000 would silently end the string there. */
-static int has_nul_escape(const char *line)
-{
-	for (const char *p = strchr(line, '\\'); p; p = strchr(p + 2, '\\'))
-		if (!strncmp(p, "\\u0000", 6))
-			return 1;
-	return 0;
-}
-
 static int read_one(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
 {
-	const char *ref, *target, *text, *split = "train";
+	const char *text, *split = "train";
 
-	if (has_nul_escape(j->line))
-		return jsonl_err(j, e, "a NUL character (\\u0000) in a string");
-	if (jsonl_string(j, object, "ref", 1, &ref, e) < 0 ||
-		jsonl_string(j, object, "object", 1, &target, e) < 0 ||
+	if (jsonl_name(j, object, "ref", NAME_DATA, 1, &s->ref, e) ||
+		jsonl_name(j, object, "object", NAME_DATA, 1, &s->object, e) ||
 		jsonl_string(j, object, "text", 1, &text, e) < 0 ||
 		jsonl_string(j, object, "split", 0, &split, e) < 0)
 		return -1;
 	if (strcmp(split, "train") && strcmp(split, "test"))
 		return jsonl_err(j, e, "key 'split' is '%s', not 'train' or 'test'", split);
 	s->split = !strcmp(split, "test") ? SPLIT_TEST : SPLIT_TRAIN;
-	s->ref = copy_string(j, "ref", ref, 0, e);
-	s->object = s->ref ? copy_string(j, "object", target, 0, e) : NULL;
-	s->text = s->object ? copy_string(j, "text", text, 1, e) : NULL;
+	s->text = copy_text(j, text, e);
 	return s->text ? read_views(s, j, object, e) : -1;
 }
 

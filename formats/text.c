@@ -130,7 +130,8 @@ static int read_names(struct text *t, const struct safetensors *st, struct err *
 	t->refs = metalist_read(st, "refs", t->n, "sentences", e);
 	t->objects = t->refs ? metalist_read(st, "objects", t->n, "sentences", e) : NULL;
 	t->texts = t->objects ? metalist_read(st, "texts", t->n, "sentences", e) : NULL;
-	if (!t->texts || read_splits(t, st, e))
+	if (!t->texts || metalist_check_names(t->refs, t->n, "refs", st->path, e) ||
+		metalist_check_names(t->objects, t->n, "objects", st->path, e) || read_splits(t, st, e))
 		return -1;
 	if (safetensors_meta(st, "pieces") &&
 		(!(t->pieces = metalist_read(st, "pieces", t->n, "sentences", e)) ||

@@ -198,6 +198,17 @@ png/$test_view/yellow-bowl-1.png " ]
 	[ "$(ls png)" = "$test_view" ]
 }
 
+@test "a view that is called .. is refused, and nothing is written outside the folder of pictures" {
+	mkdir in
+	for name in .. . a/b ''; do
+		jq -c --arg name "$name" '.[0].name = $name' "$made/scene/cameras.json" >scene/cameras.json
+		run render --split all --png in/png --overlay in/overlay -o in/pred.jsonl
+		[ "$status" = 3 ]
+		[[ $output == "refer-render: scene/cameras.json: view 0: key 'name' "* ]]
+		[ -z "$(ls -A in)" ]
+	done
+}
+
 @test "--size and --scale are the sizes of records and pictures" {
 	size() { rm -rf png; render --refs silent --png png "$@" | jq -c .segmentation.size; picture png/$test_view/silent.png; }
 	[ "$(size --size 20x10)" = "[10,20]
@@ -337,6 +348,14 @@ Try 'refer-render --help'." ask --without words,word
 	jq -se 'all(.[]; .visible >= 0 and .visible <= 1) and any(.[]; .visible > 0.3)' whole.jsonl
 	"$BIN/miou-score" --json -q --predicted-views --truth "$made/whole.jsonl" whole.jsonl |
 		jq -e '.objects["brown box"].miou > 0.2'
+}
+
+@test "as many pictures at a time as there are threads" {
+	lifted
+	ask --threads 64 --split all --png 64/png --response 64/response --overlay 64/overlay -o 64.jsonl
+	ask --threads 1 --split all --png 1/png --response 1/response --overlay 1/overlay -o 1.jsonl
+	cmp 1.jsonl 64.jsonl
+	diff -r 1 64
 }
 
 @test "lifted models, too: --threads 1, 2 and 3 give the same bytes" {

@@ -92,7 +92,6 @@ load refer-train
 	cmp whole part
 	cmp log part.log
 	[ ! -e part.checkpoint ]
-	rm -f part.checkpoint.tmp.* # of a checkpoint that the kill met
 	[ "$(ls | tr '\n' ' ')" = "err log masks.jsonl part part.log scene text.safetensors weights whole " ]
 }
 

@@ -115,6 +115,8 @@ refuses() {
 	refuses "metadata 'names' is not a JSON list" names=
 	refuses "metadata 'names' has 1 entries for 2 objects" names='[\"cup\"]'
 	refuses "metadata 'names': 'cup' appears twice" names='[\"cup\",\"cup\"]'
+	refuses "metadata 'names': entry 0 is empty" names='[\"\",\"cup\"]'
+	refuses "metadata 'names': entry 1 has a control character at byte 1" names='[\"cup\",\"\\n\"]'
 	refuses "metadata 'texts' is not a JSON list" texts='{}'
 	refuses "metadata 'texts' has 3 entries for 2 sentences" texts='[\"a\",\"b\",\"c\"]'
 	refuses "metadata 'texts': entry 1 is not a UTF-8 string" texts='[\"a\",2]'

@@ -104,13 +104,30 @@ not() { ! "$@"; }
 		bad_view "key '$key' is not a number" $key=
 		bad_view "key '$key' is not a number" $key='"4"'
 	done
-	for name in '' 1 '""' '"a/b"'; do
-		bad_view "key 'name' is not a name without slashes" name="$name"
+	for name in '' 1 null; do
+		bad_view "key 'name' is not a string" name="$name"
 	done
 	for split in '' '"x"' 1; do
 		bad_view 'key '\''split'\'' is not "train" or "test"' split="$split"
 	done
 	bad_view "key 'image' is not a string" image=1
+}
+
+@test "names that no file can have" {
+	bad_view "key 'name' is empty" name='""'
+	bad_view "key 'name' has a slash" name='"a/b"'
+	for name in . ..; do
+		bad_view "key 'name' is '.' or '..'" name="\"$name\""
+	done
+	bad_view "key 'name' has a control character at byte 2" name='"a\n"'
+	bad_view "key 'name' has a control character at byte 3" name='"é\u0085"'
+	bad_view "key 'name' is not UTF-8 at byte 1" name="$(printf '"\xff"')"
+	printf '[%s]' "$(view name='"a\u0000b"')" >scene/cameras.json
+	says 1 'scene/cameras.json: a NUL character (\u0000) in a string' "$BIN/gs-check" scene
+	for name in ... '杯 1' 50% '-a' 'a\\b'; do
+		printf '[%s]' "$(view name="\"$name\"")" >scene/cameras.json
+		"$BIN/gs-check" scene
+	done
 }
 
 @test "numbers of a view out of range" {

@@ -47,6 +47,13 @@ refuses() {
 	refuses "3: key 'object' is empty" '{"ref":"a","object":"","text":"t"}'
 }
 
+@test "refs and objects: any text but control characters" {
+	refuses "3: key 'ref' has a control character at byte 2" '{"ref":"a\nb","object":"o","text":"t"}'
+	refuses "3: key 'object' has a control character at byte 1" '{"ref":"a","object":"\u007f","text":"t"}'
+	refuses "3: key 'object' is not UTF-8 at byte 3" "$(printf '{"ref":"a","object":"ab\xff","text":"t"}')"
+	echo '{"ref":"../a b%","object":"..","text":"t"}' | "$BIN/text-encode" --model "$MODEL" -o out
+}
+
 @test "UTF-8" {
 	for bytes in '\xff' '\xc3' '\xc0\x80' '\xed\xa0\x80' '\xf4\x90\x80\x80' '\x80'; do
 		refuses "3: key 'text' is not UTF-8 at byte 2" "$(printf "{\"ref\":\"a\",\"object\":\"o\",\"text\":\"a$bytes\"}")"
@@ -58,7 +65,9 @@ refuses() {
 	refuses "3: key 'split' is 'val', not 'train' or 'test'" '{"ref":"a","object":"o","text":"t","split":"val"}'
 	refuses "3: key 'views' is not a list" '{"ref":"a","object":"o","text":"t","views":"v"}'
 	refuses "3: key 'views' holds something other than strings" '{"ref":"a","object":"o","text":"t","views":["v",1]}'
-	refuses "3: key 'views' is empty" '{"ref":"a","object":"o","text":"t","views":[""]}'
+	refuses "3: key 'views': item '' is empty" '{"ref":"a","object":"o","text":"t","views":[""]}'
+	refuses "3: key 'views': item 'a/b' has a slash" '{"ref":"a","object":"o","text":"t","views":["v","a/b"]}'
+	refuses "3: key 'views': item '..' is '.' or '..'" '{"ref":"a","object":"o","text":"t","views":[".."]}'
 }
 
 @test "a ref twice: the first line that repeats one is named" {
