@@ -76,6 +76,8 @@ static int weigh_view(const struct cli *cli, const struct scene *s, const struct
 		.index = room->rendered.index,
 		.weight = room->rendered.weight,
 		.dropped = room->dropped,
+		.scene = s->fingerprint,
+		.camera = fingerprint_camera(&camera),
 		.precision = (enum precision)o->precision};
 	if (weights_write(&w, cli->output, full->name, o->text, e))
 		return -1;

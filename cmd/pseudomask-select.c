@@ -11,6 +11,7 @@
 #include "refer/carry.h"
 #include "refer/regions.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum { METHOD_FIRST = SELECT_TOP1 + 1, METHOD_SCENE, METHOD_DEFAULT };
@@ -73,10 +74,10 @@ static int put_winners(const struct work *w, const struct cli *c, struct err *e)
 
 static int lift_source(struct work *w, size_t source, struct err *e)
 {
-	const char *name = w->scene.cameras.views[w->carry.sources[source].view].name;
+	const size_t view = w->carry.sources[source].view;
 	struct weights weights;
 
-	if (weights_open(&weights, w->options.weights, name, w->scene.splats.n, e))
+	if (weights_open(&weights, w->options.weights, &w->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
 	int bad = carry_lift(&w->carry, source, &blend, weights.height, weights.width, e);
@@ -107,7 +108,7 @@ static int lift_regions(struct work *w, struct err *e)
 	struct regions *r = &w->regions;
 
 	if (regions_init(r, &w->pool, w->views, cameras->n, n, w->options.min_score, e) ||
-		weights_each(w->options.weights, cameras, n, lift_view, r, &w->left_out, e))
+		weights_each(w->options.weights, &w->scene, lift_view, r, &w->left_out, e))
 		return -1;
 	return regions_grow(r, e) || regions_assign(r, e) ? -1 : 0;
 }
@@ -141,6 +142,7 @@ static int put_view(void *work, size_t view, const struct weights *weights, stru
 			w->set.records[is_scene ? w->regions.objects[i] : w->carry.masks[i].record];
 		if (!bad && rle_area(&masks[i])) {
 			r.view = w->scene.cameras.views[view].name;
+			r.visible = NAN; /* the record's is of its own view */
 			r.mask = masks[i];
 			w->masks++;
 			bad = put_mask(w->out, r, scores[i], e);
@@ -168,7 +170,7 @@ static int put_views(struct work *w, const struct cli *c, struct err *e)
 	if (!found && w->set.n)
 		cli_warn(c, "%s: no candidate of a training view is above %g", file_name(w->path),
 			w->options.min_score);
-	if (found && weights_each(dir, cameras, w->scene.splats.n, put_view, w, &w->left_out, e))
+	if (found && weights_each(dir, &w->scene, put_view, w, &w->left_out, e))
 		return -1;
 	if (w->left_out)
 		cli_warn(c, "%s: %zu training views have no weights, and get no masks", dir, w->left_out);

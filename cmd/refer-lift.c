@@ -184,7 +184,7 @@ static int lift_view(struct run *r, size_t view, struct lift_mask *masks, struct
 	if (!n)
 		return 0;
 	qsort(masks, n, sizeof *masks, by_object);
-	if (weights_open(&weights, options.weights, r->scene.cameras.views[view].name, r->scene.splats.n, e))
+	if (weights_open(&weights, options.weights, &r->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
 	int bad = lift_objects_view(&r->lift, &blend, weights.height, weights.width, masks, n, e);
@@ -230,7 +230,9 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 	cli_note(c, 1,
 		"%zu objects, %lld Gaussians with a share in one; agreement of the masks %.3f; %zu changed places",
 		r->model.objects, (long long)r->model.indptr[r->model.objects], confidence, moved);
-	return lifted_write(&r->model, c->output, "", e);
+	const struct origin origin = {r->scene.fingerprint, r->text.encoder};
+	return lifted_write(&r->model, &origin, c->output,
+		options.is_as_masked ? "--names masks" : "--names sentences", e);
 }
 
 int main(int argc, char **argv)

@@ -85,7 +85,8 @@ struct run {
 	struct training data;
 	struct trainer trainer;
 	struct trainlog log;
-	char *checkpoint, identity[CHECKPOINT_IDENTITY];
+	char *checkpoint;
+	struct checkpoint_of of;
 	int is_own;    /* the checkpoint is of this training */
 	char note[64]; /* the latest losses */
 };
@@ -95,7 +96,10 @@ static int start(struct run *r, const struct cli *c, struct err *e)
 	const struct training *d = &r->data;
 	const struct trainer_source source = training_source(d);
 
-	checkpoint_identity(r->identity, &options.trainer, d->checksum);
+	checkpoint_identity(r->of.identity, &options.trainer, d->checksum);
+	r->of.origin = training_origin(d);
+	r->of.scene_path = options.from.scene;
+	r->of.text_path = file_name(options.from.text);
 	if (trainer_init(&r->trainer, &source, &options.trainer, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, options.from.weights) : -1;
 	cli_note(c, 1, "%zu of %zu Gaussians share %zu features, %.1f a pixel", r->trainer.learning,
@@ -117,7 +121,7 @@ static int resume(struct run *r, const struct cli *c, struct err *e)
 				r->checkpoint);
 		return 0;
 	}
-	if (checkpoint_resume(&r->trainer.state, r->checkpoint, r->identity, options.iterations, e))
+	if (checkpoint_resume(&r->trainer.state, r->checkpoint, &r->of, options.iterations, e))
 		return -1;
 	r->is_own = 1;
 	cli_note(c, 1, "going on after step %ld", r->trainer.state.iteration);
@@ -151,7 +155,7 @@ static int record(struct run *r, const struct cli *c, const struct step_losses *
 	}
 	if (!options.checkpoint || done % options.checkpoint || is_over(r))
 		return 0;
-	if (checkpoint_write(t, r->checkpoint, r->identity, e))
+	if (checkpoint_write(t, r->checkpoint, &r->of, e))
 		return -1;
 	r->is_own = 1;
 	return 0;
@@ -208,7 +212,7 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 		trainlog_open(&r->log, options.log, r->trainer.state.iteration, e))
 		return -1;
 	if (train(r, c, e) || training_write(d, &r->trainer, options.trainer.similarity,
-				      (enum precision)options.precision, c->output, r->identity, c->seed, e))
+				      (enum precision)options.precision, c->output, r->of.identity, c->seed, e))
 		return -1;
 	if (r->is_own)
 		unlink(r->checkpoint);

@@ -207,6 +207,7 @@ static int run(const struct cli *c, const char *dir, enum words words, struct er
 	      tokenise(c, &t, &s, &v, (size_t)b.positions, e) || alloc_text(&out, &s, &t, b.width, e) ||
 	      keep_pieces(&out, &t, &v, e) || encode(c, &out, &b, &t, words, e);
 	if (!bad) {
+		out.encoder = fingerprint_encoder(&b, &v, words == STATIC);
 		cli_note(c, 1, "%zu sentences, %lld words of width %d", out.n, (long long)out.offsets[out.n],
 			out.width);
 		bad = text_write(&out, c->output, options, e);

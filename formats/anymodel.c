@@ -17,12 +17,14 @@ int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 	const char *format = safetensors_meta(&st, "format");
 	m->is_lifted = format && !strcmp(format, "refer.lifted");
 	if (m->is_lifted)
-		bad = lifted_take(&m->lifted, &st, e);
+		bad = lifted_take(&m->lifted, &m->origin, &st, e);
 	else if (!format || strcmp(format, "refer.model"))
 		bad = err_set(e, ERR_FORMAT, "%s: format is '%s', expected 'refer.model' or 'refer.lifted'",
 			st.path, format ? format : "");
 	else
 		bad = model_take(&m->trained, &st, e);
+	if (!bad && !m->is_lifted)
+		m->origin = m->trained.origin;
 	safetensors_close(&st);
 	return bad;
 }
@@ -46,6 +48,9 @@ static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, str
 	if (width != q->text->width)
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, %s has %d", model, width,
 			text, q->text->width);
+	if (fingerprint_check("scene", model, &m->origin.scene, q->scene_path, &q->scene->fingerprint, e) ||
+		fingerprint_check("encoder", text, &q->text->encoder, model, &m->origin.encoder, e))
+		return -1;
 	if (m->is_lifted && !q->text->pieces)
 		return err_set(e, ERR_FORMAT,
 			"%s: no word pieces, which %s asks for: encode its sentences again", text, model);

@@ -13,6 +13,7 @@ struct anymodel {
 	int is_lifted;
 	struct model trained;
 	struct lifted lifted;
+	struct origin origin; /* the scene and the encoder that it was made with */
 };
 
 /* ERR_FORMAT where the file is malformed, or of another kind. */
@@ -30,7 +31,8 @@ struct anymodel_ask {
 	double least;
 };
 
-/* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text does not fit. */
+/* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text
+ * does not fit or is of another encoder. */
 int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, struct asked *a, struct err *e);
 
 #endif

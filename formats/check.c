@@ -84,6 +84,7 @@ static int check_scene(struct check *c, const char *path, struct err *e)
 	if (scene_read(&s, path, e))
 		return -1;
 	c->kind = "scene";
+	c->scene = s.fingerprint;
 	add_splats(c, &s.splats);
 	add_views(c, &s.cameras);
 	scene_free(&s);
@@ -96,6 +97,7 @@ static int check_splats(struct check *c, const char *path, struct err *e)
 
 	if (scene_read_splats(&s, path, e))
 		return -1;
+	c->scene = s.fingerprint;
 	add_splats(c, &s.splats);
 	scene_free(&s);
 	return 0;
@@ -122,6 +124,8 @@ static int check_weights(struct check *c, const char *path, struct err *e)
 	c->precision = precision_name(w.precision);
 	c->width = w.width;
 	c->height = w.height;
+	c->scene = w.scene;
+	c->camera = w.camera;
 	add_fact(c, "weights", (long long)w.indptr[(int64_t)w.width * w.height]);
 	add_fact(c, "gaussians of the scene", (long long)w.gaussians);
 	weights_close(&w);
@@ -137,6 +141,7 @@ static int check_text(struct check *c, const char *path, struct err *e)
 	add_fact(c, "sentences", (long long)t.n);
 	add_fact(c, "words", (long long)t.offsets[t.n]);
 	add_fact(c, "columns", t.width);
+	c->encoder = t.encoder;
 	text_free(&t);
 	return 0;
 }
@@ -152,6 +157,8 @@ static int check_model(struct check *c, const char *path, struct err *e)
 	add_fact(c, "columns", m.layout.feature_width);
 	add_fact(c, "gaussians of the scene", (long long)m.scene_gaussians);
 	add_fact(c, "parameters", (long long)m.layout.count);
+	c->scene = m.origin.scene;
+	c->encoder = m.origin.encoder;
 	model_free(&m);
 	return 0;
 }
@@ -159,9 +166,12 @@ static int check_model(struct check *c, const char *path, struct err *e)
 static int check_lifted(struct check *c, const char *path, struct err *e)
 {
 	struct lifted l;
+	struct origin origin;
 
-	if (lifted_read(&l, path, e))
+	if (lifted_read(&l, &origin, path, e))
 		return -1;
+	c->scene = origin.scene;
+	c->encoder = origin.encoder;
 	add_fact(c, "objects", (long long)l.objects);
 	add_fact(c, "shares", (long long)l.indptr[l.objects]);
 	add_fact(c, "sentences", (long long)l.sentences);
@@ -445,27 +455,45 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 	return err_set(e, ERR_FORMAT, "%s: not a kind of file that the suite reads", file_name(path));
 }
 
+/* One view of a folder, which is of the scene that the folder's first one with a fingerprint is of. */
+static int add_view_weights(struct check *c, const char *file, char **first, long long *total, struct err *e)
+{
+	struct weights w;
+
+	if (weights_open_file(&w, file, e))
+		return -1;
+	int bad = *first ? fingerprint_check("scene", file, &w.scene, *first, &c->scene, e) : 0;
+	if (!bad && !*first && *w.scene.hex) {
+		c->scene = w.scene;
+		*first = mem_strdup(file, e);
+		bad = *first ? 0 : -1;
+	}
+	*total += (long long)w.indptr[(int64_t)w.width * w.height];
+	weights_close(&w);
+	return bad;
+}
+
 /* Adds the views of a folder of gs-weigh, in the order of their names; *views says how many there are. */
 static int add_weights(
 	struct check *c, const char *path, struct dirent **names, int n, long long *views, struct err *e)
 {
 	long long total = 0;
+	char *first = NULL;
+	int bad = 0;
 
 	*views = 0;
-	for (int i = 0; i < n; i++) {
+	for (int i = 0; i < n && !bad; i++) {
 		const char *dot = strrchr(names[i]->d_name, '.');
 		if (!dot || strcmp(dot, ".safetensors"))
 			continue;
 		char *file = file_join(path, names[i]->d_name, "", e);
-		struct weights w;
-		int bad = file ? weights_open_file(&w, file, e) : -1;
+		bad = file ? add_view_weights(c, file, &first, &total, e) : -1;
 		free(file);
-		if (bad)
-			return -1;
-		total += (long long)w.indptr[(int64_t)w.width * w.height];
-		weights_close(&w);
 		++*views;
 	}
+	free(first);
+	if (bad)
+		return -1;
 	c->kind = "weights";
 	add_fact(c, "views", *views);
 	add_fact(c, "weights", total);

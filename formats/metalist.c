@@ -136,8 +136,13 @@ int metalist_check_pieces(
 {
 	for (size_t i = 0; i < n; i++) {
 		int64_t count = 0, words = offsets[i + 1] - offsets[i];
-		for (const char *c = pieces[i]; *c; c++)
+		for (const char *c = pieces[i]; *c; c++) {
+			if (*c == ' ' && (c == pieces[i] || c[1] == ' ' || !c[1]))
+				return err_set(e, ERR_FORMAT,
+					"%s: metadata 'pieces': entry %zu does not have one space between pieces, and none around",
+					path, i);
 			count += *c != ' ' && (c[1] == ' ' || !c[1]);
+		}
 		if (count != words)
 			return err_set(e, ERR_FORMAT,
 				"%s: metadata 'pieces': entry %zu has %lld pieces for %lld words", path, i,

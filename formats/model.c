@@ -199,7 +199,7 @@ static int read_all(struct model *m, const struct safetensors *st, struct err *e
 		return -1;
 	m->similarity = (enum refer_similarity)similarity;
 	refer_layout_init(&m->layout, (enum refer_interaction)interaction, text, feature);
-	return read_bounds(m, st, e) || read_rows(m, st, e) || read_features(m, st, e) ||
+	return origin_read(&m->origin, st, e) || read_bounds(m, st, e) || read_rows(m, st, e) || read_features(m, st, e) ||
 			       read_parameters(m, st, e)
 		       ? -1
 		       : 0;
@@ -303,11 +303,12 @@ int model_write(const struct model *m, const char *path, const char *options, lo
 		{"options", options}, {"seed", seed_text},
 		{"interaction", refer_interaction_name(m->layout.interaction)},
 		{"similarity", refer_similarity_name(m->similarity)},
-		{"precision", precision_name(m->precision)}, {"gaussians", gaussians}, {"bounds", bounds},
-		{"root", root}};
-	const size_t meta_count = sizeof meta / sizeof *meta - !m->has_leaves;
-	int bad =
-		add_tensors(p, m, path, e) || safetensors_write(path, p->tensors, p->n, meta, meta_count, e);
+		{"precision", precision_name(m->precision)}, {"gaussians", gaussians},
+		{"scene", fingerprint_text(&m->origin.scene)},
+		{"encoder", fingerprint_text(&m->origin.encoder)}, {"bounds", bounds},
+		{"root", m->has_leaves ? root : NULL}};
+	int bad = add_tensors(p, m, path, e) ||
+		  safetensors_write(path, p->tensors, p->n, meta, sizeof meta / sizeof *meta, e);
 	precision_free(&p->features);
 	for (int t = 0; t < REFER_TENSORS; t++)
 		precision_free(&p->weights[t]);

@@ -3,6 +3,7 @@
 #define FORMATS_MODEL_H
 
 #include "base/err.h"
+#include "formats/fingerprint.h"
 #include "formats/precision.h"
 #include "formats/safetensors.h"
 #include "refer/model.h"
@@ -21,6 +22,7 @@ struct model {
 	struct octree octree;	  /* of M leaves */
 	float *features;	  /* (M, layout.feature_width) */
 	float *parameters;	  /* (layout.count) */
+	struct origin origin;	  /* the scene and the encoder that it was made with */
 	double low[3], high[3];	  /* what the scene's means are scaled to [-1,1] by */
 };
 

@@ -456,7 +456,8 @@ static char *make_header(const struct st_tensor *tensors, const size_t *order, s
 	size_t at = 0;
 
 	for (size_t i = 0; i < meta_count; i++)
-		cJSON_AddStringToObject(m, meta[i].key, meta[i].value);
+		if (meta[i].value)
+			cJSON_AddStringToObject(m, meta[i].key, meta[i].value);
 	for (size_t k = 0; k < n; k++) {
 		const struct st_tensor *t = &tensors[order[k]];
 		size_t bytes = tensor_bytes(t);

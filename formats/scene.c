@@ -36,6 +36,20 @@ static int check_values(const struct splats *s, const char *path, struct err *e)
 	return 0;
 }
 
+/* The means say it; the file's own word of it, where there is one, must be the same. */
+static int take_fingerprint(struct scene *s, const struct safetensors *st, struct err *e)
+{
+	struct fingerprint own;
+
+	s->fingerprint = fingerprint_scene(s->splats.means, s->splats.n);
+	if (fingerprint_read(&own, st, "scene", e))
+		return -1;
+	if (*own.hex && strcmp(own.hex, s->fingerprint.hex))
+		return err_set(e, ERR_FORMAT, "%s: metadata 'scene' is %s, but the means have %s", st->path,
+			own.hex, s->fingerprint.hex);
+	return 0;
+}
+
 int scene_read_splats(struct scene *s, const char *path, struct err *e)
 {
 	struct safetensors st;
@@ -72,7 +86,7 @@ int scene_read_splats(struct scene *s, const char *path, struct err *e)
 		s->splats.means, s->splats.scales, s->splats.quats, s->splats.opacities, s->splats.sh};
 	for (int i = 0; i < 5; i++)
 		memcpy(to[i], t[i]->data, t[i]->bytes);
-	bad = check_values(&s->splats, path, e);
+	bad = check_values(&s->splats, path, e) || take_fingerprint(s, &st, e) ? -1 : 0;
 done:
 	safetensors_close(&st);
 	if (bad)
@@ -238,7 +252,7 @@ int scene_read(struct scene *s, const char *dir, struct err *e)
 	*s = (struct scene){0};
 	int bad = path ? scene_read_splats(s, path, e) : -1;
 	free(path);
-	if (bad || read_cameras(&s->cameras, dir, e)) {
+	if (bad || !(s->path = mem_strdup(dir, e)) || read_cameras(&s->cameras, dir, e)) {
 		scene_free(s);
 		return -1;
 	}
@@ -247,6 +261,7 @@ int scene_read(struct scene *s, const char *dir, struct err *e)
 
 void scene_free(struct scene *s)
 {
+	free(s->path);
 	splats_free(&s->splats);
 	cameras_free(&s->cameras);
 }
@@ -304,6 +319,7 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 {
 	const struct splats *p = &s->splats;
 	int64_t n = (int64_t)p->n;
+	const struct fingerprint own = fingerprint_scene(p->means, p->n);
 	char offset[128];
 	struct st_tensor tensors[] = {
 		{.name = "means", .dtype = ST_F32, .dims = 2, .shape = {n, 3}, .data = p->means},
@@ -317,14 +333,14 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 			.data = p->sh},
 	};
 	struct st_meta meta[] = {{"format", "refer.splats"}, {"version", "1"}, {"tool", "gs-import"},
-		{"options", options}, {"seed", "0"}, {"offset", offset}};
+		{"options", options}, {"seed", "0"}, {"offset", offset}, {"scene", own.hex}};
 
 	snprintf(offset, sizeof offset, "[%.17g,%.17g,%.17g]", s->offset[0], s->offset[1], s->offset[2]);
 	if (file_make_dir(dir, e))
 		return -1;
 	char *splats = file_join(dir, "splats.safetensors", "", e),
 	     *cameras = file_join(dir, "cameras.json", "", e);
-	int bad = !splats || !cameras || safetensors_write(splats, tensors, 5, meta, 6, e) ||
+	int bad = !splats || !cameras || safetensors_write(splats, tensors, 5, meta, sizeof meta / sizeof *meta, e) ||
 		  write_cameras(&s->cameras, cameras, e);
 	free(splats);
 	free(cameras);

@@ -148,7 +148,7 @@ int text_read(struct text *t, const char *path, struct err *e)
 	if (safetensors_open(&st, path, e))
 		return -1;
 	int bad = safetensors_need_format(&st, "refer.text", 1, e) || read_tensors(t, &st, e) ||
-		  read_names(t, &st, e);
+		  read_names(t, &st, e) || fingerprint_read(&t->encoder, &st, "encoder", e);
 	safetensors_close(&st);
 	if (bad)
 		text_free(t);
@@ -192,9 +192,10 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 
 	if (refs && objects && texts && splits && (pieces || !t->pieces)) {
 		const struct st_meta meta[] = {{"format", "refer.text"}, {"version", "1"},
-			{"tool", "text-encode"}, {"options", options}, {"seed", "0"}, {"refs", refs},
-			{"objects", objects}, {"texts", texts}, {"splits", splits}, {"pieces", pieces}};
-		bad = safetensors_write(path, tensors, 3, meta, sizeof meta / sizeof *meta - !pieces, e);
+			{"tool", "text-encode"}, {"options", options}, {"seed", "0"},
+			{"encoder", fingerprint_text(&t->encoder)}, {"refs", refs}, {"objects", objects}, {"texts", texts},
+			{"splits", splits}, {"pieces", pieces}};
+		bad = safetensors_write(path, tensors, 3, meta, sizeof meta / sizeof *meta, e);
 	} else {
 		bad = err_set(e, ERR_SYSTEM, "%s: out of memory", path);
 	}

@@ -3,6 +3,7 @@
 #define FORMATS_TEXT_H
 
 #include "base/err.h"
+#include "formats/fingerprint.h"
 #include "geom/camera.h"
 
 #include <stddef.h>
@@ -18,6 +19,7 @@ struct text {
 	char **pieces; /* (n) word pieces with a space between, one for each word; NULL where the file has
 			  none */
 	enum camera_split *splits;
+	struct fingerprint encoder; /* what made the words */
 };
 
 int text_read(struct text *t, const char *path, struct err *e);

@@ -55,7 +55,7 @@ static int add_view(struct training *t, const char *weights, const struct camera
 {
 	struct weights *w = &t->weights[t->view_count];
 
-	if (weights_open(w, weights, c->name, t->scene.splats.n, e))
+	if (weights_open(w, weights, &t->scene, (size_t)(c - t->scene.cameras.views), e))
 		return -1;
 	const struct view_weights view = weights_view(w);
 	t->cameras[t->view_count] = camera_resize(c, w->width, w->height);
@@ -158,13 +158,18 @@ static void make_checksum(struct training *t)
 /* What a warm start is fitted to. */
 static int read_lifted(struct training *t, const struct training_files *from, struct err *e)
 {
+	struct origin origin;
+
 	if (!from->lifted)
 		return 0;
-	if (lifted_read(&t->lifted, from->lifted, e))
+	if (lifted_read(&t->lifted, &origin, from->lifted, e))
 		return -1;
 	if (t->lifted.gaussians != t->scene.splats.n)
 		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu",
 			file_name(from->lifted), t->lifted.gaussians, from->scene, t->scene.splats.n);
+	if (fingerprint_check("scene", file_name(from->lifted), &origin.scene, from->scene,
+		    &t->scene.fingerprint, e))
+		return -1;
 	for (size_t r = 0; r < t->sentences; r++)
 		for (size_t o = 0; o < t->lifted.objects; o++)
 			if (!strcmp(t->object_names[r], t->lifted.names[o]))
@@ -238,6 +243,11 @@ struct trainer_source training_source(const struct training *t)
 		.object_names = t->object_names};
 }
 
+struct origin training_origin(const struct training *t)
+{
+	return (struct origin){t->scene.fingerprint, t->text.encoder};
+}
+
 int training_write(const struct training *t, const struct trainer *learned, enum refer_similarity similarity,
 	enum precision precision, const char *path, const char *options, long long seed, struct err *e)
 {
@@ -246,6 +256,7 @@ int training_write(const struct training *t, const struct trainer *learned, enum
 	const struct model m = {.layout = learned->layout,
 		.similarity = similarity,
 		.precision = precision,
+		.origin = training_origin(t),
 		.scene_gaussians = t->scene.splats.n,
 		.n = learned->rows.n,
 		.has_leaves = learned->octree.n > 0,

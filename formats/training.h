@@ -41,6 +41,8 @@ struct training_files {
 
 int training_read(
 	struct training *t, const struct training_files *from, double hold_out, uint64_t seed, struct err *e);
+/* The scene and the encoder that it is of. */
+struct origin training_origin(const struct training *t);
 /* What a trainer learns from; referred to. */
 struct trainer_source training_source(const struct training *t);
 void training_free(struct training *t);

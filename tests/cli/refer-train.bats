@@ -244,7 +244,7 @@ cut_short() {
 	"$BIN/gs-synth" -q --objects 2 --views 5 --size 64x48 --gaussians 1001 -o other
 	"$BIN/gs-import" -q --images other/images -o other/scene other/point_cloud.ply
 	"$BIN/gs-weigh" -q -o other/weights other/scene
-	refuses 3 "other/weights/view_000.safetensors: is of a scene of 1001 Gaussians, this one has 1000" --weights other/weights
+	refuses 3 "other/weights/view_000.safetensors: is of a scene of 1001 Gaussians, scene has 1000" --weights other/weights
 }
 
 @test "masks that match no sentence" {

@@ -122,4 +122,9 @@ refuses() {
 	refuses "metadata 'texts': entry 1 is not a UTF-8 string" texts='[\"a\",2]'
 	refuses "metadata 'pieces' is not a JSON list" pieces=
 	refuses "metadata 'pieces': entry 0 has 1 pieces for 2 words" pieces='[\"redcup\",\"\"]'
+	for blanks in 'red  cup' ' red cup' 'red cup '; do
+		refuses "metadata 'pieces': entry 0 does not have one space between pieces, and none around" \
+			pieces="[\\\"$blanks\\\",\\\"\\\"]"
+	done
+	refuses "metadata 'pieces': entry 1 does not have one space between pieces, and none around" pieces='[\"red cup\",\" \"]'
 }

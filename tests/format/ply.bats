@@ -30,7 +30,7 @@ header() {
 @test "the smallest scene" {
 	splats_ply s.ply
 	import s.ply
-	says 0 "scene: ok: scene, 40x30, 2 gaussians, 1 harmonics, 3 training views, 0 test views" "$BIN/gs-check" scene
+	says 0 "scene: ok: scene, 40x30, 2 gaussians, 1 harmonics, 3 training views, 0 test views, scene 27a5296455df5ef9" "$BIN/gs-check" scene
 }
 
 @test "not a PLY file" {

@@ -34,8 +34,8 @@ bad_list() {
 not() { ! "$@"; }
 
 @test "the smallest scene is fine, and its parts are" {
-	says 0 "scene: ok: scene, 4x3, 1 gaussians, 1 harmonics, 1 training views, 0 test views" "$BIN/gs-check" scene
-	says 0 "scene/splats.safetensors: ok: refer.splats, 1 gaussians, 1 harmonics" "$BIN/gs-check" scene/splats.safetensors
+	says 0 "scene: ok: scene, 4x3, 1 gaussians, 1 harmonics, 1 training views, 0 test views, scene ef6eb604187a17fa" "$BIN/gs-check" scene
+	says 0 "scene/splats.safetensors: ok: refer.splats, 1 gaussians, 1 harmonics, scene ef6eb604187a17fa" "$BIN/gs-check" scene/splats.safetensors
 	says 0 "scene/cameras.json: ok: scene cameras, 4x3, 1 training views, 0 test views" "$BIN/gs-check" scene/cameras.json
 }
 

@@ -21,7 +21,7 @@ refuses() {
 	printf '%s\n' '{"ref":"a","object":"o","text":"t","split":"test","views":["v1","v2"],"more":[1]}' ' ' \
 		'{"ref":"b","object":"o","text":"","split":null,"views":null}' '{"ref":"c","object":"é","text":"\u00e9","views":[]}' >x
 	"$BIN/text-encode" --model "$MODEL" -o out x
-	says 0 'out: ok: refer.text, 3 sentences, 2 words, 24 columns' "$BIN/gs-check" out
+	says 0 'out: ok: refer.text, 3 sentences, 2 words, 24 columns, encoder 6c0c28a4bc757d74' "$BIN/gs-check" out
 }
 
 @test "lines that are not objects" {

@@ -78,5 +78,7 @@ with() {
 	text "$META,\"pieces\":\"[\\\"a ##b\\\",\\\"\\\"]\"" "$TENSORS" $OFFSETS$REST
 	says 0 'x: ok: refer.text, 2 sentences, 2 words, 2 columns' "$BIN/gs-check" x
 	refuses "metadata 'pieces': entry 0 has 1 pieces for 2 words" "$META,\"pieces\":\"[\\\"ab\\\",\\\"\\\"]\"" "$TENSORS" $OFFSETS$REST
+	refuses "metadata 'pieces': entry 0 does not have one space between pieces, and none around" \
+		"$META,\"pieces\":\"[\\\"a  ##b\\\",\\\"\\\"]\"" "$TENSORS" $OFFSETS$REST
 	refuses "metadata 'pieces' has 1 entries for 2 sentences" "$META,\"pieces\":\"[\\\"a b\\\"]\"" "$TENSORS" $OFFSETS$REST
 }

@@ -53,12 +53,14 @@ static void text_round_trip(void)
 	char *texts[] = {"a \"red\" cup\n", "", "bottle"};
 	char *pieces[] = {"a ##b", "", "bottle"};
 	enum camera_split splits[] = {SPLIT_TRAIN, SPLIT_TEST, SPLIT_TRAIN};
-	struct text in = {3, 3, offsets, words, means, refs, objects, texts, pieces, splits}, out;
+	struct text in = {3, 3, offsets, words, means, refs, objects, texts, pieces, splits,
+		{"fedcba9876543210"}}, out;
 	struct err e = {0};
 
 	CHECK(!text_write(&in, path, "--model x", &e), "%s", e.message);
 	if (!CHECK(!text_read(&out, path, &e), "%s", e.message))
 		return;
+	CHECK(!strcmp(out.encoder.hex, in.encoder.hex), "encoder %s", out.encoder.hex);
 	CHECK(out.n == 3 && out.width == 3, "n %zu width %d", out.n, out.width);
 	CHECK(same_bytes(out.offsets, offsets, sizeof offsets), "offsets differ");
 	CHECK(same_bytes(out.words, words, sizeof words), "words differ");
@@ -99,7 +101,7 @@ static void text_broken_rules(void)
 	float words[] = {1, 2}, infinite[] = {1, INFINITY}, means[] = {1, 2};
 	char *refs[] = {"r1", "r2"}, *same[] = {"r1", "r1"}, *bad[] = {"r1", "\xff"};
 	enum camera_split splits[] = {SPLIT_TRAIN, SPLIT_TRAIN};
-	struct text t = {2, 1, (int64_t[]){0, 1, 2}, infinite, means, refs, refs, refs, NULL, splits};
+	struct text t = {2, 1, (int64_t[]){0, 1, 2}, infinite, means, refs, refs, refs, NULL, splits, {""}};
 
 	expect(&t, ": tensor 'words': item 1 is not finite");
 	t.words = words;

@@ -456,7 +456,8 @@ static void test_resume(int cut, long long warm, double hold_out)
 		.seed = 7};
 	struct sample s;
 	struct trainer whole, part, fresh;
-	char path[] = "/tmp/test_train.XXXXXX", identity[CHECKPOINT_IDENTITY], other[CHECKPOINT_IDENTITY];
+	char path[] = "/tmp/test_train.XXXXXX";
+	struct checkpoint_of own = {.scene_path = "scene", .text_path = "text"}, other = own;
 	struct err e;
 	int fd = mkstemp(path);
 
@@ -467,32 +468,32 @@ static void test_resume(int cut, long long warm, double hold_out)
 		!start(&part, &s, &options) || !start(&fresh, &s, &options))
 		return;
 	close(fd);
-	checkpoint_identity(identity, &options, 0x1234abcd);
+	checkpoint_identity(own.identity, &options, 0x1234abcd);
 	steps(&whole, 0, 25);
 	steps(&part, 0, cut);
 	CHECK(whole.warm_steps == warm && !warm == !whole.warm.objects, "%ld warm steps", whole.warm_steps);
 	CHECK(!whole.state.best.iteration == !(hold_out > 0), "evaluated");
 	CHECK(part.state.iteration == cut && part.state.sum.total > 0, "%ld steps", part.state.iteration);
-	CHECK(!checkpoint_write(&part.state, path, identity, &e), "%s", e.message);
-	CHECK(!checkpoint_read(&fresh.state, path, identity, &e), "%s", e.message);
+	CHECK(!checkpoint_write(&part.state, path, &own, &e), "%s", e.message);
+	CHECK(!checkpoint_read(&fresh.state, path, &own, &e), "%s", e.message);
 	CHECK(same_state(&fresh.state, &part.state), "the checkpoint is not the state");
 	steps(&fresh, cut, 25);
 	CHECK(same_state(&fresh.state, &whole.state), "going on is not the same");
 	CHECK(!same_state(&fresh.state, &part.state), "nothing was learned");
-	checkpoint_identity(other, &options, 0x1234abce);
-	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
+	checkpoint_identity(other.identity, &options, 0x1234abce);
+	CHECK(checkpoint_read(&fresh.state, path, &other, &e) && e.code == ERR_FORMAT,
 		"another training's inputs");
 	struct trainer_options wider = options;
 	wider.feature_width = 6;
-	checkpoint_identity(other, &wider, 0x1234abcd);
-	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
+	checkpoint_identity(other.identity, &wider, 0x1234abcd);
+	CHECK(checkpoint_read(&fresh.state, path, &other, &e) && e.code == ERR_FORMAT,
 		"features of another width");
 	struct trainer_options others[2] = {options, options};
 	others[0].warm++;
 	others[1].hold_out += 0.1;
 	for (int k = 0; k < 2; k++) {
-		checkpoint_identity(other, &others[k], 0x1234abcd);
-		CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
+		checkpoint_identity(other.identity, &others[k], 0x1234abcd);
+		CHECK(checkpoint_read(&fresh.state, path, &other, &e) && e.code == ERR_FORMAT,
 			"another start or hold-out");
 	}
 	long written;
