@@ -106,11 +106,20 @@ static int make_stands(struct stands *s, const struct synth_object *objects, int
 	return 0;
 }
 
-static int is_said(const struct synth_unseen_list *list, const struct synth_unseen *x)
+/* 1 where the same was said, or, for what is made `afresh`, a sentence of the kind that means the same with
+ * the same relation. */
+static int is_said(const struct synth_unseen_list *list, const struct synth_unseen *x, int afresh)
 {
-	for (int i = 0; i < list->n; i++)
-		if (!strcmp(list->items[i].text, x->text) && list->items[i].view == x->view)
+	for (int i = 0; i < list->n; i++) {
+		const struct synth_unseen *y = &list->items[i];
+		if (!strcmp(y->text, x->text) && y->view == x->view)
 			return 1;
+		if (afresh && x->objects && y->kind == x->kind && y->objects == x->objects &&
+			!x->clause_count == !y->clause_count &&
+			(!x->clause_count || (x->clauses[0].relation == y->clauses[0].relation &&
+						     x->clauses[0].degree == y->clauses[0].degree)))
+			return 1;
+	}
 	return 0;
 }
 
@@ -209,7 +218,7 @@ static int make_kind(struct maker *m, enum synth_unseen_kind kind, struct err *e
 		if (kind <= SYNTH_UNSEEN_CHATTY && !(d.x.objects >> (made + i / 200) % n & 1))
 			continue;
 		synth_unseen_type(d.x.text, &m->rng);
-		if (is_said(m->list, &d.x))
+		if (is_said(m->list, &d.x, i < TRIES / 2))
 			continue;
 		if (add(m, &d.x, e))
 			return -1;
@@ -229,6 +238,17 @@ static int other_view(const struct maker *m, const struct synth_unseen *x, uint3
 	return -1;
 }
 
+/* What goes around a sentence said of a picture; nothing around whole sentences. */
+static void frame_view(struct synth_unseen_draft *d, const char *inner)
+{
+	int n = synth_unseen_frame_count(SYNTH_BUILD_VIEW);
+	int is_phrase = !strncmp(inner, "the ", 4) && !strchr(inner, '?');
+
+	d->fill = (struct synth_unseen_fill){.inner = inner, .frame = "%Z"};
+	if (is_phrase)
+		d->fill.frame = synth_unseen_frame(SYNTH_BUILD_VIEW, (int)rng_below(d->rng, (uint32_t)n));
+}
+
 /* Sentences in pairs: the same words of two test pictures, with other answers. */
 static int make_views(struct maker *m, struct err *e)
 {
@@ -245,15 +265,11 @@ static int make_views(struct maker *m, struct err *e)
 		if (view < 0)
 			continue;
 		struct synth_unseen inner = d.x;
-		d.fill = (struct synth_unseen_fill){
-			.frame = synth_unseen_frame(SYNTH_BUILD_VIEW,
-				(int)rng_below(
-					&m->rng, (uint32_t)synth_unseen_frame_count(SYNTH_BUILD_VIEW))),
-			.inner = inner.text};
+		frame_view(&d, inner.text);
 		if (synth_unseen_write(&d.x, &d.fill, &m->rng))
 			continue;
 		synth_unseen_type(d.x.text, &m->rng);
-		if (is_said(m->list, &d.x))
+		if (is_said(m->list, &d.x, 0))
 			continue;
 		if (add(m, &d.x, e))
 			return -1;

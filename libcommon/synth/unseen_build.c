@@ -314,11 +314,19 @@ static int build_group(struct synth_unseen_draft *d, int object)
 	return 0;
 }
 
+/* Nobody speaks of a tall plate. */
+static int has_height(enum synth_shape s)
+{
+	return s == SYNTH_BOTTLE || s == SYNTH_CONE || s == SYNTH_CYLINDER || s == SYNTH_MUG ||
+	       s == SYNTH_BOX;
+}
+
 static int build_compared(struct synth_unseen_draft *d, enum synth_unseen_build b, int object)
 {
 	static const enum parse_relation sizes[] = {PARSE_LARGER, PARSE_SMALLER, PARSE_TALLER, PARSE_SHORTER};
 
-	if (build_ranked(d, object, sizes, 4, b == SYNTH_BUILD_MOST ? PARSE_MOST : PARSE_MORE))
+	if (build_ranked(d, object, sizes, has_height(d->stand->objects[object].shape) ? 4 : 2,
+		    b == SYNTH_BUILD_MOST ? PARSE_MOST : PARSE_MORE))
 		return -1;
 	if (b == SYNTH_BUILD_PAIR)
 		d->x.phrases[0].group = 2;

@@ -114,7 +114,8 @@ static void put_first(struct writer *w, const char *forms)
 	const struct synth_unseen_phrase *p = &w->x->phrases[0];
 	const struct synth_unseen_clause *c = &w->x->clauses[p->clauses[0]];
 
-	if (p->clause_count != 1 || !strchr(forms, c->form)) {
+	/* Nobody looks "nearest to the cup". */
+	if (p->clause_count != 1 || !strchr(forms, c->form) || (!forms[1] && c->degree == PARSE_MOST)) {
 		w->is_bad = 1;
 		return;
 	}
@@ -179,6 +180,7 @@ static void put_slot(struct writer *w, char slot)
 		put_noun(w, p, 0);
 		break;
 	case 'R':
+		w->is_bad |= !p->clause_count && w->used > 4 && !strcmp(w->text + w->used - 4, "one ");
 		put_clauses(w, p);
 		break;
 	case 'V':
@@ -188,7 +190,10 @@ static void put_slot(struct writer *w, char slot)
 		put_first(w, "p");
 		break;
 	case 'A':
-		w->is_bad |= !p->clause_count || !w->x->clauses[p->clauses[0]].anchor_count;
+		w->is_bad |= !p->clause_count || !w->x->clauses[p->clauses[0]].anchor_count ||
+			     (w->x->clauses[p->clauses[0]].form != 'p' &&
+				     w->x->clauses[p->clauses[0]].form != 'c') ||
+			     w->x->phrases[w->x->clauses[p->clauses[0]].anchors[0]].viewer;
 		if (!w->is_bad)
 			put_anchor(w, w->x->clauses[p->clauses[0]].anchors[0]);
 		w->is_it = 1;
