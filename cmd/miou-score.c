@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cli/overwrite.h"
+#include "formats/answer_scores.h"
 #include "formats/box_scores.h"
 #include "formats/score_masks.h"
 #include "formats/scores.h"
@@ -51,19 +52,16 @@ static void tell_left_out(
 			file_name(predictions->path), pairs->unmatched);
 }
 
-static int match(struct score_pairs *pairs, const struct score_masks *truth,
-	const struct score_masks *predictions, struct err *e)
-{
-	return score_match(pairs, truth->masks, truth->n, predictions->masks, predictions->n, e);
-}
-
 /* Matched, measured and sorted pairs of the predictions and, with --compare, of the others beside them. The
  * figures of all are summed before they are sorted, so that no object's name changes their last digit. */
 static int pair_up(const struct cli *c, const struct inputs *in, int is_compared, struct score_pairs *pairs,
 	struct score_pairs *others, struct score *sum, struct score *other_sum, struct err *e)
 {
-	if (match(pairs, &in->truth, &in->predictions, e) ||
-		(is_compared && (match(others, &in->truth, &in->other, e) || score_join(pairs, others, e))) ||
+	const struct score_masks *t = &in->truth;
+
+	if (score_match(pairs, t->masks, t->n, in->predictions.masks, in->predictions.n, e) ||
+		(is_compared && (score_match(others, t->masks, t->n, in->other.masks, in->other.n, e) ||
+					score_join(pairs, others, e))) ||
 		score_measure_all(pairs, e) || score_measure_all(others, e) ||
 		score_choices(pairs, in->truth.masks, in->truth.n, e) ||
 		score_choices(others, in->truth.masks, in->truth.n, e))
@@ -118,19 +116,6 @@ static int score(const struct cli *c, const struct inputs *in, const struct path
 	return bad;
 }
 
-static int write_scores(const struct cli *c, const struct scores *s, enum scores_form form, struct err *e)
-{
-	struct file_out out;
-
-	if (file_out_open(&out, c->output, e))
-		return -1;
-	if (scores_put(out.stream, s, form, e)) {
-		file_out_abort(&out);
-		return -1;
-	}
-	return file_out_commit(&out, e);
-}
-
 static int score_boxes(const struct cli *c, const struct paths *p, double *miou, struct err *e)
 {
 	struct box_scores s;
@@ -143,6 +128,28 @@ static int score_boxes(const struct cli *c, const struct paths *p, double *miou,
 	*miou = s.all.aligned.iou;
 	int bad = box_scores_write(&s, c->output, c->json, e);
 	box_scores_free(&s);
+	return bad;
+}
+
+/* Of all answers the share that is right goes into *right. */
+static int score_answers(
+	const struct cli *c, const struct inputs *in, const struct paths *p, double *right, struct err *e)
+{
+	struct answer_scores s;
+	struct answer_score all;
+
+	if (answer_scores_make(&s, &in->sentences, &in->truth, &in->predictions, e))
+		return -1;
+	if (s.answers.unknown)
+		cli_warn(c, "%s: %zu sentences mean an object that %s does not have", file_name(p->sentences),
+			s.answers.unknown, file_name(p->truth));
+	if (s.answers.unmatched)
+		cli_warn(c, "%s: %zu predictions have no sentence's ref and were left out",
+			file_name(p->predictions), s.answers.unmatched);
+	answer_score_sum(&all, &s.answers, ANSWER_ANY, NULL);
+	*right = all.right;
+	int bad = answer_scores_write(&s, c->output, c->json, e);
+	answer_scores_free(&s);
 	return bad;
 }
 
@@ -177,7 +184,7 @@ int main(int argc, char **argv)
 	struct paths paths = {0};
 	double fail_under = 0, confidence = 0.95;
 	long long resamples = 0;
-	int is_partial = 0, is_csv = 0, is_boxes = 0;
+	int is_partial = 0, is_csv = 0, is_boxes = 0, is_answers = 0;
 	const struct cli_option options[] = {
 		{"truth", 0, CLI_STRING, &paths.truth, "TRUTH", "the true masks (required)", 0, 0},
 		{"predicted-views", 0, CLI_FLAG, &is_partial, NULL,
@@ -196,8 +203,10 @@ int main(int argc, char **argv)
 			"share of the resamples within an interval (default 0.95)", 0.01, 0.9999},
 		{"boxes", 0, CLI_FLAG, &is_boxes, NULL,
 			"score boxes in space, as refer-locate and gs-synth write them", 0, 0},
-		{"fail-under", 0, CLI_REAL, &fail_under, "X", "exit 1 where mIoU is below X, in 0 to 1", 0,
-			1},
+		{"answers", 0, CLI_FLAG, &is_answers, NULL,
+			"score answers to --sentences that may mean one object, several or none", 0, 0},
+		{"fail-under", 0, CLI_REAL, &fail_under, "X",
+			"exit 1 where mIoU (of --answers: what is right) is below X, in 0 to 1", 0, 1},
 		{"csv", 0, CLI_FLAG, &is_csv, NULL, "print comma-separated values instead of text", 0, 0},
 		{0},
 	};
@@ -220,6 +229,11 @@ int main(int argc, char **argv)
 		cli_usage(&c, "--json and --csv exclude each other");
 	if (is_boxes && (is_partial || paths.other || paths.sentences || paths.whole || resamples || is_csv))
 		cli_usage(&c, "--boxes goes with --truth, --json and --fail-under only");
+	if (is_answers && !paths.sentences)
+		cli_usage(&c, "--answers needs --sentences");
+	if (is_answers && (is_boxes || paths.other || paths.whole || resamples || is_csv))
+		cli_usage(&c,
+			"--answers goes with --truth, --sentences, --predicted-views, --json and --fail-under only");
 	refuse_overwrite(&c, &paths);
 	const struct bootstrap how = {(size_t)resamples, confidence, (uint64_t)c.seed};
 	struct scores s = {.is_compared = paths.other != NULL,
@@ -230,14 +244,16 @@ int main(int argc, char **argv)
 	if (!bad && is_partial)
 		bad = score_keep_views(in.truth.masks, &in.truth.n, in.predictions.masks, in.predictions.n,
 			in.other.masks, in.other.n, &e);
-	if (!bad && !is_boxes)
-		bad = score(&c, &in, &paths, &s, &e) || write_scores(&c, &s,
-								is_csv	 ? SCORES_CSV
-								: c.json ? SCORES_JSON
-									 : SCORES_TEXT,
-								&e);
-	if (!bad && s.all.score.miou < fail_under)
-		bad = err_set(&e, ERR_CHECK, "mIoU %.4f is below %g", s.all.score.miou, fail_under);
+	const enum scores_form form = is_csv ? SCORES_CSV : c.json ? SCORES_JSON : SCORES_TEXT;
+	double right = 0;
+	if (!bad && is_answers)
+		bad = score_answers(&c, &in, &paths, &right, &e);
+	if (!bad && !is_boxes && !is_answers)
+		bad = score(&c, &in, &paths, &s, &e) || scores_write(&s, c.output, form, &e);
+	const double reached = is_answers ? right : s.all.score.miou;
+	if (!bad && reached < fail_under)
+		bad = err_set(&e, ERR_CHECK, "%s %.4f is below %g", is_answers ? "right" : "mIoU", reached,
+			fail_under);
 	scores_free(&s);
 	inputs_free(&in);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);

@@ -211,8 +211,9 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 		start(r, c, e) || resume(r, c, e) ||
 		trainlog_open(&r->log, options.log, r->trainer.state.iteration, e))
 		return -1;
-	if (train(r, c, e) || training_write(d, &r->trainer, options.trainer.similarity,
-				      (enum precision)options.precision, c->output, r->of.identity, c->seed, e))
+	if (train(r, c, e) ||
+		training_write(d, &r->trainer, options.trainer.similarity, (enum precision)options.precision,
+			c->output, r->of.identity, c->seed, e))
 		return -1;
 	if (r->is_own)
 		unlink(r->checkpoint);

@@ -120,6 +120,7 @@ static void free_text(struct text *out)
 {
 	for (size_t i = 0; out->pieces && i < out->n; i++)
 		free(out->pieces[i]);
+	text_free_more(out);
 	free(out->pieces);
 	free(out->offsets);
 	free(out->refs);
@@ -205,7 +206,8 @@ static int run(const struct cli *c, const char *dir, enum words words, struct er
 	bad = vocab_read(&v, dir, e) || sentences_read(&s, c->operand_count ? c->operands[0] : "-", e) ||
 	      bert_model_read(&b, dir, e) || check_vocab(&v, &b, dir, e) ||
 	      tokenise(c, &t, &s, &v, (size_t)b.positions, e) || alloc_text(&out, &s, &t, b.width, e) ||
-	      keep_pieces(&out, &t, &v, e) || encode(c, &out, &b, &t, words, e);
+	      keep_pieces(&out, &t, &v, e) || text_take_more(&out, &s, e) ||
+	      encode(c, &out, &b, &t, words, e);
 	if (!bad) {
 		out.encoder = fingerprint_encoder(&b, &v, words == STATIC);
 		cli_note(c, 1, "%zu sentences, %lld words of width %d", out.n, (long long)out.offsets[out.n],

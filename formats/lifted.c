@@ -95,7 +95,7 @@ static int read_objects(struct lifted *l, const struct safetensors *st, struct e
 			return err_set(e, ERR_FORMAT, "%s: tensor 'confidence': item %zu is not in 0 to 1",
 				st->path, o);
 	l->names = metalist_read(st, "names", l->objects, "objects", e);
-	return !l->names || metalist_check_names(l->names, l->objects, "names", st->path, e) ||
+	return !l->names || metalist_check_names(l->names, l->objects, 0, "names", st->path, e) ||
 			       metalist_check_unique(l->names, l->objects, "names", st->path, e) ||
 			       read_shares(l, st, e)
 		       ? -1
@@ -217,7 +217,8 @@ static int write_all(const struct lifted *l, const struct origin *origin, const 
 		const struct st_meta meta[] = {{"format", "refer.lifted"}, {"version", "1"},
 			{"tool", "refer-lift"}, {"options", options}, {"seed", "0"}, {"gaussians", gaussians},
 			{"scene", fingerprint_text(&origin->scene)},
-			{"encoder", fingerprint_text(&origin->encoder)}, {"names", names}, {"texts", texts}, {"pieces", pieces}};
+			{"encoder", fingerprint_text(&origin->encoder)}, {"names", names}, {"texts", texts},
+			{"pieces", pieces}};
 		bad = safetensors_write(
 			path, tensors, sizeof tensors / sizeof *tensors, meta, sizeof meta / sizeof *meta, e);
 	} else {

@@ -11,7 +11,12 @@ static void sentence_free(struct sentence *s)
 {
 	for (size_t i = 0; i < s->view_count; i++)
 		free(s->views[i]);
+	for (size_t i = 0; i < s->object_count; i++)
+		free(s->objects[i]);
 	free(s->views);
+	free(s->objects);
+	free(s->view);
+	free(s->kind);
 	free(s->ref);
 	free(s->object);
 	free(s->text);
@@ -36,39 +41,70 @@ static char *copy_text(const struct jsonl *j, const char *value, struct err *e)
 	return mem_strdup(value, e);
 }
 
-static char *copy_view(const struct jsonl *j, const char *value, struct err *e)
+static char *copy_item(
+	const struct jsonl *j, const char *key, enum name_kind kind, const char *value, struct err *e)
 {
 	char fault[NAME_FAULT];
-	const char *reason = name_fault(value, NAME_VIEW, fault);
+	const char *reason = name_fault(value, kind, fault);
 
 	if (reason) {
-		jsonl_err(j, e, "key 'views': item '%s' %s", value, reason);
+		jsonl_err(j, e, "key '%s': item '%s' %s", key, value, reason);
 		return NULL;
 	}
 	return mem_strdup(value, e);
 }
 
-static int read_views(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+/* A list of strings that may be absent or null: then *strings stays NULL. */
+static int read_list(char ***strings, size_t *n, const struct jsonl *j, const cJSON *object, const char *key,
+	enum name_kind kind, struct err *e)
 {
-	const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, "views"), *view;
+	const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, key), *item;
 
 	if (!list || cJSON_IsNull(list))
 		return 0;
 	if (!cJSON_IsArray(list))
-		return jsonl_err(j, e, "key 'views' is not a list");
-	s->views = mem_zalloc((size_t)cJSON_GetArraySize(list), sizeof *s->views, j->path, e);
-	if (!s->views)
+		return jsonl_err(j, e, "key '%s' is not a list", key);
+	*strings = mem_zalloc((size_t)cJSON_GetArraySize(list), sizeof **strings, j->path, e);
+	if (!*strings)
 		return -1;
-	cJSON_ArrayForEach(view, list)
+	cJSON_ArrayForEach(item, list)
 	{
-		if (!cJSON_IsString(view))
-			return jsonl_err(j, e, "key 'views' holds something other than strings");
-		s->views[s->view_count] = copy_view(j, view->valuestring, e);
-		if (!s->views[s->view_count])
+		if (!cJSON_IsString(item))
+			return jsonl_err(j, e, "key '%s' holds something other than strings", key);
+		(*strings)[*n] = copy_item(j, key, kind, item->valuestring, e);
+		if (!(*strings)[*n])
 			return -1;
-		s->view_count++;
+		++*n;
 	}
 	return 0;
+}
+
+static int read_objects(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+{
+	if (read_list(&s->objects, &s->object_count, j, object, "objects", NAME_DATA, e))
+		return -1;
+	s->has_objects = s->objects != NULL;
+	for (size_t i = 0; i < s->object_count; i++)
+		for (size_t k = 0; k < i; k++)
+			if (!strcmp(s->objects[i], s->objects[k]))
+				return jsonl_err(j, e, "key 'objects' names '%s' twice", s->objects[i]);
+	return 0;
+}
+
+/* The name of the target: where it is not given, that of the only object. What teaches has one. */
+static int read_target(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+{
+	const int is_free = s->has_objects && (s->object_count == 1 || s->split == SPLIT_TEST);
+	const char *only = s->object_count == 1 ? s->objects[0] : "";
+
+	if (jsonl_name(j, object, "object", NAME_DATA, !is_free, &s->object, e))
+		return -1;
+	if (s->object && s->object_count == 1 && strcmp(s->object, only))
+		return jsonl_err(
+			j, e, "key 'object' is '%s', but the one of 'objects' '%s'", s->object, only);
+	if (!s->object)
+		s->object = mem_strdup(only, e);
+	return s->object ? 0 : -1;
 }
 
 static int read_one(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
@@ -76,15 +112,20 @@ static int read_one(struct sentence *s, const struct jsonl *j, const cJSON *obje
 	const char *text, *split = "train";
 
 	if (jsonl_name(j, object, "ref", NAME_DATA, 1, &s->ref, e) ||
-		jsonl_name(j, object, "object", NAME_DATA, 1, &s->object, e) ||
-		jsonl_string(j, object, "text", 1, &text, e) < 0 ||
 		jsonl_string(j, object, "split", 0, &split, e) < 0)
 		return -1;
 	if (strcmp(split, "train") && strcmp(split, "test"))
 		return jsonl_err(j, e, "key 'split' is '%s', not 'train' or 'test'", split);
 	s->split = !strcmp(split, "test") ? SPLIT_TEST : SPLIT_TRAIN;
+	if (read_objects(s, j, object, e) || read_target(s, j, object, e) ||
+		jsonl_string(j, object, "text", 1, &text, e) < 0)
+		return -1;
 	s->text = copy_text(j, text, e);
-	return s->text ? read_views(s, j, object, e) : -1;
+	return !s->text || read_list(&s->views, &s->view_count, j, object, "views", NAME_VIEW, e) ||
+			       jsonl_name(j, object, "view", NAME_VIEW, 0, &s->view, e) ||
+			       jsonl_name(j, object, "kind", NAME_DATA, 0, &s->kind, e)
+		       ? -1
+		       : 0;
 }
 
 struct ref_place {
