@@ -4,6 +4,7 @@
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
 	PAGE=$BATS_TEST_DIRNAME/../../formats/scores.md
+	load files
 	cd "$BATS_TEST_TMPDIR"
 	files
 }
