@@ -2,7 +2,6 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "cli/overwrite.h"
 #include "formats/camerafile.h"
 #include "formats/colmap.h"
 #include "formats/ply.h"
@@ -98,11 +97,10 @@ static char *choose_cameras(const struct cli *cli, const char *splats, struct er
 
 static void refuse_overwrite(const struct cli *cli, const char *cameras)
 {
-	const struct cli_file files[] = {{"-o", cli->output, CLI_WRITES, CLI_SCENE_PARTS},
-		{"SPLATS", cli->operands[0], CLI_READS, NULL},
+	const struct cli_file found[] = {
 		{"--cameras", cameras, CLI_READS, file_is_dir(cameras) ? COLMAP_PARTS : NULL}, {0}};
 
-	cli_refuse_overwrite(cli, files);
+	cli_refuse_overwrite(cli, "SPLATS", "output:" CLI_SCENE_PARTS, found);
 }
 
 static void note_splats(

@@ -1,7 +1,6 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "cli/overwrite.h"
 #include "formats/scene.h"
 #include "formats/weights.h"
 #include "splat/prune.h"
@@ -148,9 +147,7 @@ int main(int argc, char **argv)
 	cli_parse(&cli, &tool, argc, argv);
 	if (!strcmp(cli.output, "-"))
 		cli_usage(&cli, "--output: weights go to a folder, not to stdout");
-	cli_refuse_overwrite(
-		&cli, (const struct cli_file[]){{"-o", cli.output, CLI_WRITES, CLI_WEIGHTS_PARTS},
-			      {"SCENE", cli.operands[0], CLI_READS, CLI_SCENE_PARTS}, {0}});
+	cli_refuse_overwrite(&cli, "SCENE:" CLI_SCENE_PARTS, "output:" CLI_WEIGHTS_PARTS, NULL);
 	snprintf(o.text, sizeof o.text, "--scale %.15g --tolerance %.15g --precision %s", o.scale,
 		o.tolerance, precision_name((enum precision)o.precision));
 	if (scene_read(&scene, cli.operands[0], &e))

@@ -2,7 +2,6 @@
 #include "base/err.h"
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cli/overwrite.h"
 #include "formats/answer_scores.h"
 #include "formats/box_scores.h"
 #include "formats/score_masks.h"
@@ -169,16 +168,6 @@ static void check_paths(const struct cli *c, const struct paths *p)
 		cli_usage(c, "only one file can be stdin");
 }
 
-static void refuse_overwrite(const struct cli *c, const struct paths *p)
-{
-	const struct cli_file files[] = {{"-o", c->output, CLI_WRITES, NULL},
-		{"PREDICTIONS", p->predictions, CLI_READS, NULL}, {"--truth", p->truth, CLI_READS, NULL},
-		{"--compare", p->other, CLI_READS, NULL}, {"--sentences", p->sentences, CLI_READS, NULL},
-		{"--whole", p->whole, CLI_READS, NULL}, {0}};
-
-	cli_refuse_overwrite(c, files);
-}
-
 int main(int argc, char **argv)
 {
 	struct paths paths = {0};
@@ -234,7 +223,7 @@ int main(int argc, char **argv)
 	if (is_answers && (is_boxes || paths.other || paths.whole || resamples || is_csv))
 		cli_usage(&c,
 			"--answers goes with --truth, --sentences, --predicted-views, --json and --fail-under only");
-	refuse_overwrite(&c, &paths);
+	cli_refuse_overwrite(&c, "PREDICTIONS truth compare sentences whole", "output", NULL);
 	const struct bootstrap how = {(size_t)resamples, confidence, (uint64_t)c.seed};
 	struct scores s = {.is_compared = paths.other != NULL,
 		.has_relations = paths.sentences != NULL,

@@ -4,7 +4,6 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "cli/overwrite.h"
 #include "formats/masks.h"
 #include "formats/scene.h"
 #include "formats/weights.h"
@@ -246,10 +245,7 @@ int main(int argc, char **argv)
 			o->method == METHOD_FIRST ? "first" : "scene");
 	if (o->method < METHOD_FIRST && (o->scene || o->weights))
 		cli_usage(&c, "%s is for --method scene and first", o->scene ? "--scene" : "--weights");
-	cli_refuse_overwrite(&c, (const struct cli_file[]){{"-o", c.output, CLI_WRITES, NULL},
-					 {"CANDIDATES", w.path, CLI_READS, NULL},
-					 {"--scene", o->scene, CLI_READS, CLI_SCENE_PARTS},
-					 {"--weights", o->weights, CLI_READS, CLI_WEIGHTS_PARTS}, {0}});
+	cli_refuse_overwrite(&c, "CANDIDATES " CLI_SCENE " " CLI_WEIGHTS, "output", NULL);
 	int bad = run(&w, &c, &e);
 	work_free(&w);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);

@@ -2,7 +2,6 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "cli/overwrite.h"
 #include "formats/lifted.h"
 #include "formats/masks.h"
 #include "formats/scene.h"
@@ -244,14 +243,8 @@ int main(int argc, char **argv)
 	cli_parse(&c, &tool, argc, argv);
 	if (!options.scene || !options.weights || !options.text || !options.masks)
 		cli_usage(&c, "--scene, --weights, --text and --masks are required");
-	if (!strcmp(options.text, "-") && !strcmp(options.masks, "-"))
-		cli_usage(&c, "--text and --masks cannot both be stdin");
+	cli_refuse_overwrite(&c, CLI_SCENE " " CLI_WEIGHTS " text masks", "output", NULL);
 	cli_refuse_terminal(&c);
-	cli_refuse_overwrite(&c, (const struct cli_file[]){{"-o", c.output, CLI_WRITES, NULL},
-					 {"--scene", options.scene, CLI_READS, CLI_SCENE_PARTS},
-					 {"--weights", options.weights, CLI_READS, CLI_WEIGHTS_PARTS},
-					 {"--text", options.text, CLI_READS, NULL},
-					 {"--masks", options.masks, CLI_READS, NULL}, {0}});
 	int bad = run(&r, &c, &e);
 	run_free(&r);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);

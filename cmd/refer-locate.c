@@ -2,7 +2,6 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "cli/overwrite.h"
 #include "formats/anymodel.h"
 #include "formats/boxes.h"
 #include "formats/ply.h"
@@ -149,8 +148,6 @@ static void check(const struct cli *c)
 {
 	if (!options.scene || !options.text || !options.model)
 		cli_usage(c, "--scene, --text and --model are required");
-	if (!strcmp(options.text, "-") && !strcmp(options.model, "-"))
-		cli_usage(c, "--text and --model cannot both be stdin");
 	if ((options.ply && !strcmp(options.ply, "-")) || (options.splat && !strcmp(options.splat, "-")))
 		cli_usage(c, "--ply and --splat must name a file");
 	if (options.show && !options.ply && !options.splat)
@@ -165,12 +162,7 @@ int main(int argc, char **argv)
 
 	cli_parse(&c, &tool, argc, argv);
 	check(&c);
-	cli_refuse_overwrite(&c, (const struct cli_file[]){{"-o", c.output, CLI_WRITES, NULL},
-					 {"--ply", options.ply, CLI_WRITES, NULL},
-					 {"--splat", options.splat, CLI_WRITES, NULL},
-					 {"--scene", options.scene, CLI_READS, CLI_SCENE_PARTS},
-					 {"--text", options.text, CLI_READS, NULL},
-					 {"--model", options.model, CLI_READS, NULL}, {0}});
+	cli_refuse_overwrite(&c, CLI_SCENE " text model", "output ply splat", NULL);
 	int bad = load(&r, &c, &e) || ((options.ply || options.splat) && write_scene(&r, &e)) ||
 		  write_boxes(&r, &c, &e);
 	for (size_t k = 0; r.located && k < r.asked.answers; k++)

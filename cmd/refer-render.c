@@ -2,7 +2,6 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "cli/overwrite.h"
 #include "formats/anymodel.h"
 #include "formats/masks.h"
 #include "formats/pictures.h"
@@ -223,19 +222,6 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 	return -1;
 }
 
-static void refuse_overwrite(const struct cli *c)
-{
-	const struct pictures *p = &options.pictures;
-	const struct cli_file files[] = {{"-o", c->output, CLI_WRITES, NULL},
-		{"--png", p->masks, CLI_WRITES, "*.png"},
-		{"--response", p->responses, CLI_WRITES, p->is_npy ? "*.npy" : "*.png"},
-		{"--overlay", p->overlays, CLI_WRITES, "*.png"},
-		{"--scene", options.scene, CLI_READS, CLI_SCENE_PARTS},
-		{"--text", options.text, CLI_READS, NULL}, {"--model", options.model, CLI_READS, NULL}, {0}};
-
-	cli_refuse_overwrite(c, files);
-}
-
 int main(int argc, char **argv)
 {
 	struct run r = {0};
@@ -245,11 +231,10 @@ int main(int argc, char **argv)
 	cli_parse(&c, &tool, argc, argv);
 	if (!options.scene || !options.text || !options.model)
 		cli_usage(&c, "--scene, --text and --model are required");
-	if (!strcmp(options.text, "-") && !strcmp(options.model, "-"))
-		cli_usage(&c, "--text and --model cannot both be stdin");
+	cli_refuse_overwrite(
+		&c, CLI_SCENE " text model", "output png:*.png response:*.png overlay:*.png", NULL);
 	if (options.size[0] && options.scale)
 		cli_usage(&c, "--size and --scale do not go together");
-	refuse_overwrite(&c);
 	int bad = run(&r, &c, &e);
 	scene_free(&r.scene);
 	text_free(&r.text);

@@ -1,7 +1,6 @@
 /* refer-train: learns the referring model of a scene from masks (one stage of the method). */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cli/overwrite.h"
 #include "formats/checkpoint.h"
 #include "formats/training.h"
 #include "formats/trainlog.h"
@@ -181,25 +180,14 @@ static int train(struct run *r, const struct cli *c, struct err *e)
 	return bad;
 }
 
-static void refuse_overwrite(const struct run *r, const struct cli *c)
-{
-	const struct training_files *f = &options.from;
-	const struct cli_file files[] = {{"-o", c->output, CLI_WRITES, NULL},
-		{"--log", options.log, CLI_WRITES, NULL}, {"checkpoint", r->checkpoint, CLI_WRITES, NULL},
-		{"--scene", f->scene, CLI_READS, CLI_SCENE_PARTS},
-		{"--weights", f->weights, CLI_READS, CLI_WEIGHTS_PARTS}, {"--text", f->text, CLI_READS, NULL},
-		{"--masks", f->masks, CLI_READS, NULL}, {"--init", f->lifted, CLI_READS, NULL}, {0}};
-
-	cli_refuse_overwrite(c, files);
-}
-
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
 	const struct training *d = &r->data;
 
 	if (strcmp(c->output, "-") && !(r->checkpoint = checkpoint_path(c->output, e)))
 		return -1;
-	refuse_overwrite(r, c);
+	cli_refuse_overwrite(c, CLI_SCENE " " CLI_WEIGHTS " text masks init", "output log",
+		(const struct cli_file[]){{"checkpoint", r->checkpoint, CLI_WRITES, NULL}, {0}});
 	if (training_read(&r->data, &options.from, options.trainer.hold_out, (uint64_t)c->seed, e))
 		return -1;
 	if (d->left_out)
@@ -232,8 +220,6 @@ static void check_options(const struct cli *c)
 	o->seed = c->seed;
 	if (!f->scene || !f->weights || !f->text || !f->masks)
 		cli_usage(c, "--scene, --weights, --text and --masks are required");
-	if (!strcmp(f->text, "-") + !strcmp(f->masks, "-") + (f->lifted && !strcmp(f->lifted, "-")) > 1)
-		cli_usage(c, "only one of --text, --masks and --init can be stdin");
 	if (!f->lifted && o->warm)
 		cli_usage(c, "--init-iterations needs --init");
 	if (o->hold_out <= 0 && options.patience)
@@ -244,8 +230,6 @@ static void check_options(const struct cli *c)
 		cli_usage(c, "--similarity cosine does not go with --interaction pcmi-proj");
 	if (is_stdout && options.is_resumed)
 		cli_usage(c, "--resume needs a file to write to: there is no checkpoint of stdout");
-	if (is_stdout && options.log && !strcmp(options.log, "-"))
-		cli_usage(c, "--log and --output cannot both be stdout");
 	options.checkpoint = is_stdout ? 0 : options.checkpoint;
 	cli_refuse_terminal(c);
 }

@@ -2,7 +2,6 @@
 #include "base/mem.h"
 #include "base/path.h"
 #include "cli/cli.h"
-#include "cli/overwrite.h"
 #include "formats/bert_model.h"
 #include "formats/sentences.h"
 #include "formats/text.h"
@@ -246,10 +245,7 @@ int main(int argc, char **argv)
 	if (!model)
 		cli_usage(&c, "--model DIR is required");
 	cli_refuse_terminal(&c);
-	cli_refuse_overwrite(
-		&c, (const struct cli_file[]){{"-o", c.output, CLI_WRITES, NULL},
-			    {"SENTENCES", c.operand_count ? c.operands[0] : "-", CLI_READS, NULL},
-			    {"--model", model, CLI_READS, BERT_MODEL_PARTS}, {0}});
+	cli_refuse_overwrite(&c, "SENTENCES model:" BERT_MODEL_PARTS, "output", NULL);
 	if (run(&c, model, (enum words)words, &e))
 		return cli_fail(&c, &e);
 	return cli_done(&c);

@@ -5,6 +5,7 @@
 #define CLI_CLI_H
 
 #include "base/err.h"
+#include "cli/overwrite.h"
 
 #include <stdio.h>
 

@@ -2,10 +2,14 @@
 
 #include "base/file.h"
 #include "base/path.h"
+#include "cli/cli.h"
 
+#include <assert.h>
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { MOST = 16, NAME_ROOM = 32 }; /* files of a tool; letters of an option */
 
 static _Noreturn void fail(const struct cli *c, const struct err *e)
 {
@@ -95,19 +99,29 @@ static int is_within(const struct cli *c, const char *file, const struct cli_fil
 	return found;
 }
 
+static int is_stdin(const struct cli_file *f)
+{
+	return f->use == CLI_READS && !strcmp(f->path, "-");
+}
+
 static int do_clash(const struct cli *c, const struct cli_file *a, const struct cli_file *b)
 {
-	if (a->use == CLI_WRITES && b->use == CLI_WRITES && !strcmp(a->path, "-") && !strcmp(b->path, "-"))
+	if (a->use == b->use && !strcmp(a->path, "-") && !strcmp(b->path, "-"))
 		return 1;
+	if (a->use == CLI_READS && b->use == CLI_READS)
+		return 0;
 	if (!a->parts == !b->parts)
 		return is_same(c, path_of(a), path_of(b)) && (!a->parts || parts_meet(a->parts, b->parts));
 	return a->parts ? is_within(c, path_of(b), a) : is_within(c, path_of(a), b);
 }
 
-static void refuse(const struct cli *c, const struct cli_file *out, const struct cli_file *other)
+static void refuse(const struct cli *c, const struct cli_file *a, const struct cli_file *b)
 {
-	if (!strcmp(out->path, "-") && !strcmp(other->path, "-") && other->use == CLI_WRITES)
-		cli_usage(c, "%s and %s cannot both be stdout", out->name, other->name);
+	const struct cli_file *out = a->use == CLI_WRITES ? a : b, *other = out == a ? b : a;
+
+	if (a->use == b->use && !strcmp(a->path, "-") && !strcmp(b->path, "-"))
+		cli_usage(
+			c, "%s and %s cannot both be %s", a->name, b->name, is_stdin(a) ? "stdin" : "stdout");
 	if (other->use == CLI_WRITES && !out->parts == !other->parts)
 		cli_usage(c, "%s %s and %s %s are the same", out->name, out->path, other->name, other->path);
 	if (other->parts && !out->parts)
@@ -116,10 +130,60 @@ static void refuse(const struct cli *c, const struct cli_file *out, const struct
 	cli_usage(c, "%s %s would overwrite %s %s", out->name, out->path, other->name, other->path);
 }
 
-void cli_refuse_overwrite(const struct cli *c, const struct cli_file *files)
+static void check_pairs(const struct cli *c, const struct cli_file *files, size_t n)
 {
-	for (const struct cli_file *a = files; a->name; a++)
-		for (const struct cli_file *b = files; a->path && a->use == CLI_WRITES && b->name; b++)
-			if (b->path && (b->use == CLI_READS || b > a) && do_clash(c, a, b))
-				refuse(c, a, b);
+	for (size_t i = 0; i < n; i++)
+		for (size_t k = i + 1; k < n; k++)
+			if (files[i].path && files[k].path && do_clash(c, &files[i], &files[k]))
+				refuse(c, &files[i], &files[k]);
+}
+
+/* What a word of a list, "NAME" or "NAME:PARTS", stands for. The word and `shown` are pointed to. */
+static struct cli_file from_word(const struct cli *c, char *word, char *shown, enum cli_use use)
+{
+	struct cli_file f = {.name = shown, .use = use};
+	char *colon = strchr(word, ':');
+
+	if (colon) {
+		*colon = 0;
+		f.parts = colon + 1;
+	}
+	snprintf(shown, NAME_ROOM, "--%s", word);
+	if (!strcmp(word, "output")) {
+		f.name = "-o";
+		f.path = c->output;
+	} else if (*word >= 'A' && *word <= 'Z') {
+		f.name = word;
+		f.path = c->operand_count ? c->operands[0] : "-";
+	}
+	for (const struct cli_option *o = c->tool->options; o && o->name; o++)
+		if (!f.path && !strcmp(o->name, word))
+			f.path = *(const char **)o->value;
+	return f;
+}
+
+void cli_refuse_overwrite(
+	const struct cli *c, const char *reads, const char *writes, const struct cli_file *more)
+{
+	struct cli_file files[MOST];
+	char text[1024], shown[MOST][NAME_ROOM], *rest;
+	const int length = snprintf(text, sizeof text, "%s > %s", writes, reads);
+	enum cli_use use = CLI_WRITES;
+	size_t n = 0;
+
+	assert(length < (int)sizeof text);
+	for (char *word = strtok_r(text, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
+		assert(n < MOST);
+		if (!strcmp(word, ">")) {
+			use = CLI_READS;
+			continue;
+		}
+		files[n] = from_word(c, word, shown[n], use);
+		n++;
+	}
+	for (; more && more->name; more++) {
+		assert(n < MOST);
+		files[n++] = *more;
+	}
+	check_pairs(c, files, n);
 }

@@ -65,8 +65,6 @@ locate() { refuses "$1" refer-locate --scene scene --text text.safetensors --mod
 	render "-o scene/cameras.json would be among the files of --scene scene" -o scene/cameras.json
 	render "--png p and --response ./p/ are the same" --png p --response ./p/
 	render "--png p and --overlay p are the same" --png p --overlay p
-	"$BIN/refer-render" -q --scene scene --text text.safetensors --model model.safetensors --png p --response p \
-		--response-type npy -o pred.jsonl
 }
 
 @test "refer-locate" {

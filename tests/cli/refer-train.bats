@@ -366,9 +366,8 @@ cut_short() {
 	try=$'\n'"Try 'refer-train --help'."
 	says 2 "refer-train: --scene, --weights, --text and --masks are required$try" "$BIN/refer-train" -o m
 	says 2 "refer-train: -o MODEL is required$try" train
-	only="refer-train: only one of --text, --masks and --init can be stdin$try"
-	says 2 "$only" train --text - --masks - -o m
-	says 2 "$only" train --init - --masks - -o m
+	says 2 "refer-train: --text and --masks cannot both be stdin$try" train --text - --masks - -o m
+	says 2 "refer-train: --masks and --init cannot both be stdin$try" train --init - --masks - -o m
 	says 2 "refer-train: --init-iterations needs --init$try" train --init-iterations 5 -o m
 	says 2 "refer-train: --patience needs --hold-out$try" train --patience 5 -o m
 	says 2 "refer-train: --hold-out: '0.95' is not a number from 0 to 0.9$try" train --hold-out 0.95 -o m
@@ -376,7 +375,7 @@ cut_short() {
 	says 2 "refer-train: --similarity cosine does not go with --interaction pcmi-proj$try" \
 		train --similarity cosine --interaction pcmi-proj -o m
 	says 2 "refer-train: --resume needs a file to write to: there is no checkpoint of stdout$try" train --resume -o -
-	says 2 "refer-train: --log and --output cannot both be stdout$try" train --log - -o -
+	says 2 "refer-train: -o and --log cannot both be stdout$try" train --log - -o -
 	says 2 "refer-train: --iterations: '0' is not a whole number from 1 to 100000000$try" train --iterations 0 -o m
 	says 2 "refer-train: --batch: '65' is not a whole number from 1 to 64$try" train --batch 65 -o m
 	for width in 0 33 1.5; do

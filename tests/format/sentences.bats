@@ -90,7 +90,7 @@ refuses() {
 @test "objects, view and kind" {
 	refuses "3: key 'objects' is not a list" '{"ref":"a","objects":"o","text":"t"}'
 	refuses "3: key 'objects' holds something other than strings" '{"ref":"a","objects":[1],"text":"t"}'
-	refuses "3: key 'objects' is empty" '{"ref":"a","objects":[""],"text":"t"}'
+	refuses "3: key 'objects': item '' is empty" '{"ref":"a","objects":[""],"text":"t"}'
 	refuses "3: key 'objects' names 'o' twice" '{"ref":"a","objects":["o","p","o"],"text":"t"}'
 	refuses "3: key 'object' is 'x', but the one of 'objects' 'o'" '{"ref":"a","object":"x","objects":["o"],"text":"t"}'
 	refuses "3: key 'object' is missing" '{"ref":"a","objects":["o","p"],"text":"t","split":"train"}'
