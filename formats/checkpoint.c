@@ -121,8 +121,8 @@ static int read_best(struct train_state *t, const struct safetensors *st, long l
 	return 0;
 }
 
-/* That it is of this training: of this scene and encoder, which have messages of their own, with these options
- * and inputs. */
+/* That it is of this training: of this scene and encoder, which have messages of their own, with these
+ * options and inputs. */
 static int check_training(const struct safetensors *st, const struct checkpoint_of *of, struct err *e)
 {
 	struct origin own;
@@ -164,8 +164,7 @@ static int read_state(
 	return 0;
 }
 
-int checkpoint_read(
-	struct train_state *t, const char *path, const struct checkpoint_of *of, struct err *e)
+int checkpoint_read(struct train_state *t, const char *path, const struct checkpoint_of *of, struct err *e)
 {
 	struct safetensors st;
 
@@ -176,8 +175,8 @@ int checkpoint_read(
 	return bad;
 }
 
-int checkpoint_resume(
-	struct train_state *t, const char *path, const struct checkpoint_of *of, long long most, struct err *e)
+int checkpoint_resume(struct train_state *t, const char *path, const struct checkpoint_of *of, long long most,
+	struct err *e)
 {
 	if (checkpoint_read(t, path, of, e))
 		return -1;

@@ -28,11 +28,10 @@ int checkpoint_write(
 
 /* Fills a state of the same sizes; after an error its arrays may be half filled. ERR_FORMAT where the file
  * is of another training. */
-int checkpoint_read(
-	struct train_state *t, const char *path, const struct checkpoint_of *of, struct err *e);
+int checkpoint_read(struct train_state *t, const char *path, const struct checkpoint_of *of, struct err *e);
 
 /* The same; ERR_FORMAT also where it has more steps than `most`. */
-int checkpoint_resume(
-	struct train_state *t, const char *path, const struct checkpoint_of *of, long long most, struct err *e);
+int checkpoint_resume(struct train_state *t, const char *path, const struct checkpoint_of *of, long long most,
+	struct err *e);
 
 #endif

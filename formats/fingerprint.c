@@ -31,14 +31,14 @@ struct fingerprint fingerprint_camera(const struct camera *c)
 
 struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab *v, int is_static)
 {
-	const int64_t sizes[] = {b->words, b->positions, b->types, b->width, b->heads, b->inner, b->layer_count,
-		(int64_t)b->activation, is_static};
+	const int64_t sizes[] = {b->words, b->positions, b->types, b->width, b->heads, b->inner,
+		b->layer_count, (int64_t)b->activation, is_static};
 	uint64_t vocabulary = 0;
 
 	/* A sum, as the order in which a file lists its tokens means nothing. */
 	for (size_t i = 0; i < v->n; i++)
-		vocabulary += hash64(
-			v->entries[i].token, strlen(v->entries[i].token), (uint64_t)v->entries[i].id);
+		vocabulary +=
+			hash64(v->entries[i].token, strlen(v->entries[i].token), (uint64_t)v->entries[i].id);
 	uint64_t hash = hash64(sizes, sizeof sizes, 0);
 	hash = hash64(&b->eps, sizeof b->eps, hash);
 	hash = bert_hash(b, hash);
@@ -53,8 +53,8 @@ int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const 
 	if (!text)
 		return 0;
 	if (strlen(text) != sizeof f->hex - 1 || strspn(text, "0123456789abcdef") != sizeof f->hex - 1)
-		return err_set(e, ERR_FORMAT, "%s: metadata '%s' is '%s', not 16 hexadecimal digits", st->path,
-			key, text);
+		return err_set(e, ERR_FORMAT, "%s: metadata '%s' is '%s', not 16 hexadecimal digits",
+			st->path, key, text);
 	memcpy(f->hex, text, sizeof f->hex);
 	return 0;
 }
@@ -76,6 +76,6 @@ int fingerprint_check(const char *what, const char *path, const struct fingerpri
 {
 	if (!*mine->hex || !*theirs->hex || !strcmp(mine->hex, theirs->hex))
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: is of another %s than %s (%s, not %s)", path, what, other, mine->hex,
-		theirs->hex);
+	return err_set(e, ERR_FORMAT, "%s: is of another %s than %s (%s, not %s)", path, what, other,
+		mine->hex, theirs->hex);
 }

@@ -216,7 +216,8 @@ static int write_all(const struct lifted *l, const struct origin *origin, const 
 		const struct st_meta meta[] = {{"format", "refer.lifted"}, {"version", "1"},
 			{"tool", "refer-lift"}, {"options", options}, {"seed", "0"}, {"gaussians", gaussians},
 			{"scene", fingerprint_text(&origin->scene)},
-			{"encoder", fingerprint_text(&origin->encoder)}, {"names", names}, {"texts", texts}, {"pieces", pieces}};
+			{"encoder", fingerprint_text(&origin->encoder)}, {"names", names}, {"texts", texts},
+			{"pieces", pieces}};
 		bad = safetensors_write(
 			path, tensors, sizeof tensors / sizeof *tensors, meta, sizeof meta / sizeof *meta, e);
 	} else {

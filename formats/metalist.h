@@ -26,8 +26,8 @@ int metalist_check_unique(char *const *strings, size_t n, const char *key, const
 int metalist_check_offsets(const char *name, const int64_t *offsets, size_t n, int64_t count, const char *of,
 	const char *path, struct err *e);
 
-/* Metadata 'pieces': string i has pieces with one space between and none around, offsets[i+1] - offsets[i] of them. 0, or
- * -1 with *e. */
+/* Metadata 'pieces': string i has pieces with one space between and none around, offsets[i+1] - offsets[i] of
+ * them. 0, or -1 with *e. */
 int metalist_check_pieces(
 	char *const *pieces, const int64_t *offsets, size_t n, const char *path, struct err *e);
 

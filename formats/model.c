@@ -199,8 +199,8 @@ static int read_all(struct model *m, const struct safetensors *st, struct err *e
 		return -1;
 	m->similarity = (enum refer_similarity)similarity;
 	refer_layout_init(&m->layout, (enum refer_interaction)interaction, text, feature);
-	return origin_read(&m->origin, st, e) || read_bounds(m, st, e) || read_rows(m, st, e) || read_features(m, st, e) ||
-			       read_parameters(m, st, e)
+	return origin_read(&m->origin, st, e) || read_bounds(m, st, e) || read_rows(m, st, e) ||
+			       read_features(m, st, e) || read_parameters(m, st, e)
 		       ? -1
 		       : 0;
 }

@@ -79,8 +79,8 @@ int safetensors_need_format(const struct safetensors *st, const char *format, in
 int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, struct err *e);
 
 /* Writes path whole ("-" is stdout). Adds crc32.<tensor> for each tensor; `meta` should hold format, version,
- * tool, options and seed; a key whose value is NULL is left out. Data begin on a 64-byte boundary; tensors are laid out widest type first, so that
- * each is aligned to its own type. */
+ * tool, options and seed; a key whose value is NULL is left out. Data begin on a 64-byte boundary; tensors
+ * are laid out widest type first, so that each is aligned to its own type. */
 int safetensors_write(const char *path, const struct st_tensor *tensors, size_t n, const struct st_meta *meta,
 	size_t meta_count, struct err *e);
 

@@ -332,7 +332,8 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 		return -1;
 	char *splats = file_join(dir, "splats.safetensors", "", e),
 	     *cameras = file_join(dir, "cameras.json", "", e);
-	int bad = !splats || !cameras || safetensors_write(splats, tensors, 5, meta, sizeof meta / sizeof *meta, e) ||
+	int bad = !splats || !cameras ||
+		  safetensors_write(splats, tensors, 5, meta, sizeof meta / sizeof *meta, e) ||
 		  write_cameras(&s->cameras, cameras, e);
 	free(splats);
 	free(cameras);

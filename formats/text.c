@@ -192,8 +192,8 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 	if (refs && objects && texts && splits && (pieces || !t->pieces)) {
 		const struct st_meta meta[] = {{"format", "refer.text"}, {"version", "1"},
 			{"tool", "text-encode"}, {"options", options}, {"seed", "0"},
-			{"encoder", fingerprint_text(&t->encoder)}, {"refs", refs}, {"objects", objects}, {"texts", texts},
-			{"splits", splits}, {"pieces", pieces}};
+			{"encoder", fingerprint_text(&t->encoder)}, {"refs", refs}, {"objects", objects},
+			{"texts", texts}, {"splits", splits}, {"pieces", pieces}};
 		bad = safetensors_write(path, tensors, 3, meta, sizeof meta / sizeof *meta, e);
 	} else {
 		bad = err_set(e, ERR_SYSTEM, "%s: out of memory", path);

@@ -167,8 +167,8 @@ static int read_lifted(struct training *t, const struct training_files *from, st
 	if (t->lifted.gaussians != t->scene.splats.n)
 		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu",
 			file_name(from->lifted), t->lifted.gaussians, from->scene, t->scene.splats.n);
-	if (fingerprint_check("scene", file_name(from->lifted), &origin.scene, from->scene,
-		    &t->scene.fingerprint, e))
+	if (fingerprint_check(
+		    "scene", file_name(from->lifted), &origin.scene, from->scene, &t->scene.fingerprint, e))
 		return -1;
 	for (size_t r = 0; r < t->sentences; r++)
 		for (size_t o = 0; o < t->lifted.objects; o++)

@@ -1,5 +1,5 @@
-/* A 64-bit hash for telling data apart: XXH64 (Collet, xxHash; github.com/Cyan4973/xxHash, doc/xxhash_spec.md).
- * Not for secrets. */
+/* A 64-bit hash for telling data apart: XXH64 (Collet, xxHash; github.com/Cyan4973/xxHash,
+ * doc/xxhash_spec.md). Not for secrets. */
 #ifndef BASE_HASH_H
 #define BASE_HASH_H
 

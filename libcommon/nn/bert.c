@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Hands out consecutive arrays, and hashes those that are there. With slab NULL it only counts; -1 in `bad` when
- * the count does not fit. */
+/* Hands out consecutive arrays, and hashes those that are there. With slab NULL it only counts; -1 in `bad`
+ * when the count does not fit. */
 struct layout {
 	float *slab;
 	size_t used;

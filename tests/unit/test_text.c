@@ -54,7 +54,8 @@ static void text_round_trip(void)
 	char *pieces[] = {"a ##b", "", "bottle"};
 	enum camera_split splits[] = {SPLIT_TRAIN, SPLIT_TEST, SPLIT_TRAIN};
 	struct text in = {3, 3, offsets, words, means, refs, objects, texts, pieces, splits,
-		{"fedcba9876543210"}}, out;
+			    {"fedcba9876543210"}},
+		    out;
 	struct err e = {0};
 
 	CHECK(!text_write(&in, path, "--model x", &e), "%s", e.message);
