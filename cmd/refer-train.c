@@ -4,8 +4,8 @@
 #include "formats/checkpoint.h"
 #include "formats/training.h"
 #include "formats/trainlog.h"
+#include "refer/divergence.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -84,6 +84,7 @@ struct run {
 	struct training data;
 	struct trainer trainer;
 	struct trainlog log;
+	struct divergence divergence;
 	char *checkpoint;
 	struct checkpoint_of of;
 	int is_own;    /* the checkpoint is of this training */
@@ -141,8 +142,8 @@ static int record(struct run *r, const struct cli *c, const struct step_losses *
 	struct train_state *t = &r->trainer.state;
 	const long done = t->iteration;
 
-	if (!isfinite(last->total))
-		return err_set(e, ERR_CHECK, "%s: the loss is not finite at step %ld", c->output, done);
+	if (divergence_check(&r->divergence, t, last, is_over(r), e))
+		return err_prefix(e, file_name(c->output));
 	if (done % TRAINLOG_EVERY == 0)
 		snprintf(r->note, sizeof r->note, "loss %.4f", t->sum.total / TRAINLOG_EVERY);
 	if (trainlog_step(&r->log, t, e))
@@ -152,7 +153,8 @@ static int record(struct run *r, const struct cli *c, const struct step_losses *
 		if (trainlog_put_held(&r->log, done, &score, e))
 			return -1;
 	}
-	if (!options.checkpoint || done % options.checkpoint || is_over(r))
+	if (!options.checkpoint || done % options.checkpoint || is_over(r) ||
+		!divergence_is_good(&r->divergence, t))
 		return 0;
 	if (checkpoint_write(t, r->checkpoint, &r->of, e))
 		return -1;

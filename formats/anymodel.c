@@ -62,7 +62,7 @@ int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, stru
 	const struct model *t = &m->trained;
 	const float *means = q->scene->splats.means;
 	const struct asked_of of = {&q->scene->splats, &q->scene->cameras, q->text->offsets, q->text->words,
-		q->text->pieces, q->which, q->count};
+		q->text->pieces, q->which, q->count, q->text->refs, file_name(q->model_path)};
 	struct rows rows = {0};
 
 	*a = (struct asked){0};

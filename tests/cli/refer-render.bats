@@ -401,3 +401,24 @@ Try 'refer-render --help'." ask --without words,word
 	render -v -o pred.jsonl 2>err
 	tail -n 1 err | grep -qE '^refer-render: [0-9.]+ s, peak memory [0-9.]+ MiB$'
 }
+
+@test "weights that are finite but so large that responses are not: the model and the sentence are named" {
+	local length begin
+	"$BIN/refer-train" -q --scene "$made/scene" --weights "$made/weights" --text "$made/text.safetensors" \
+		--masks "$made/masks.jsonl" --iterations 2 --precision f32 -o huge
+	length=$(od -An -t d8 -N 8 huge | tr -d ' ')
+	begin=$(head -c $((8 + length)) huge | tail -c +9 | jq '.["feature.2.weight"].data_offsets[0]')
+	for ((i = 0; i < 64 * 128; i++)); do printf '\xff\xff\x7f\x7f'; done | # the largest float
+		dd of=huge bs=1 seek=$((8 + length + begin)) conv=notrunc 2>/dev/null
+	LC_ALL=C sed -i 's/crc32.feature.2.weight/crc3_.feature.2.weight/' huge
+	"$BIN/gs-check" huge
+	mkdir out
+	for tool in refer-render refer-locate; do
+		status=0
+		"$BIN/$tool" --scene "$made/scene" --text "$made/text.safetensors" --model huge -o out/x 2>line || status=$?
+		[ $status = 3 ]
+		grep -qE "^$tool: huge: the responses to ref '[^']+' are not finite: its weights are too large$" line
+		[ "$(wc -l <line)" = 1 ]
+		[ -z "$(ls -A out)" ]
+	done
+}

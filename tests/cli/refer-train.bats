@@ -387,3 +387,22 @@ cut_short() {
 		train --interaction all -o m
 	[ ! -e m ]
 }
+
+@test "a training that diverges says so, and writes no model and no checkpoint of it" {
+	mkdir out
+	# rates far too high: the loss is not finite, or stays far above that of no answer
+	status=0
+	train --iterations 250 --mlp-rate 10 --feature-rate 10 --interaction none --checkpoint 50 -o out/m 2>line || status=$?
+	[ $status = 1 ]
+	[ "$(wc -l <line)" = 1 ]
+	grep -qE '^refer-train: out/m: training diverged after step [0-9]+: .*; lower rates may help$' line
+	[ -z "$(ls -A out)" ]
+}
+
+@test "trainings that end well are no false alarm, however short" {
+	for interaction in none pcmi pcmi-proj; do
+		train --iterations 1 --interaction $interaction -o m
+		train --iterations 120 --interaction $interaction -o m
+	done
+	train --iterations 210 --interaction none --feature-rate 0.1 -o m
+}

@@ -40,7 +40,8 @@ static const int64_t asked_offsets[] = {0, 1, 2, 3, 3, 4, 4};
 static const float asked_words[] = {0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 static char *pieces[] = {"large", "small", "large", "", "zeppelin", ""};
 static const size_t which[] = {0, 1, 2, 3, 4, 5};
-static const struct asked_of of = {&splats, &cameras, asked_offsets, asked_words, pieces, which, SENTENCES};
+static const struct asked_of of = {
+	&splats, &cameras, asked_offsets, asked_words, pieces, which, SENTENCES, pieces, "model"};
 
 static float at(const struct asked *a, size_t answer, size_t gaussian)
 {
