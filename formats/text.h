@@ -26,8 +26,8 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 int text_take_means(struct text *t, struct err *e);
 void text_free(struct text *t);
 
-/* Sets chosen[r] (n) to 1 for the refs in a comma-separated list. 0, or -1 and *unknown the first that no
- * sentence has. */
-int text_mark(const struct text *t, const char *list, char *chosen, struct list_name *unknown);
+/* Sets chosen[r] (n) to 1 for the refs in a comma-separated list, the value of an option. 0, or -1 with *e:
+ * ERR_USAGE for a ref that no sentence has. */
+int text_mark(const struct text *t, const char *list, const char *option, char *chosen, struct err *e);
 
 #endif
