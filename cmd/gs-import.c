@@ -49,21 +49,15 @@ static void split_every(const struct cli *cli, struct cameras *c, const char *te
 		c->views[i].split = i % n ? SPLIT_TRAIN : SPLIT_TEST;
 }
 
-static int split_names(const struct cli *cli, struct cameras *c, struct err *e)
+static int split_names(struct cameras *c, struct err *e)
 {
 	char *is_test = mem_zalloc(c->n, 1, "views", e);
-	struct list_name name;
+	int bad = is_test ? cameras_mark(c, test_views, "--test-views", is_test, e) : -1;
 
-	if (!is_test)
-		return -1;
-	if (cameras_mark(c, test_views, is_test, &name)) {
-		free(is_test);
-		cli_usage(cli, "--test-views: no view '%.*s'", (int)name.length, name.text);
-	}
-	for (size_t i = 0; i < c->n; i++)
+	for (size_t i = 0; i < c->n && !bad; i++)
 		c->views[i].split = is_test[i] ? SPLIT_TEST : SPLIT_TRAIN;
 	free(is_test);
-	return 0;
+	return bad;
 }
 
 /* What is beside SPLATS or, where 3DGS put it into point_cloud/iteration_N, in the folder of the trained
@@ -175,7 +169,7 @@ static int run(
 		return -1;
 	if (test_views && !strncmp(test_views, "every:", 6))
 		split_every(cli, &s->cameras, test_views + 6);
-	else if (test_views && split_names(cli, &s->cameras, e))
+	else if (test_views && split_names(&s->cameras, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
 	metadata = describe_options(e);

@@ -55,14 +55,12 @@ struct run {
 
 static int choose_refs(struct run *r, const struct cli *c, struct err *e)
 {
-	struct list_name name;
-
 	r->chosen = mem_zalloc(r->text.n, 1, "sentences", e);
 	r->refs = mem_alloc(r->text.n, sizeof *r->refs, "sentences", e);
 	if (!r->chosen || !r->refs)
 		return -1;
-	if (options.refs && text_mark(&r->text, options.refs, r->chosen, &name))
-		cli_usage(c, "--refs: no sentence '%.*s'", (int)name.length, name.text);
+	if (options.refs && text_mark(&r->text, options.refs, "--refs", r->chosen, e))
+		return -1;
 	for (size_t i = 0; i < r->text.n; i++)
 		if (options.refs ? r->chosen[i]
 				 : options.sentences == SPLIT_ALL ||

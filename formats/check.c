@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/names.h"
 #include "formats/boxes.h"
 #include "formats/camerafile.h"
 #include "formats/colmap.h"
@@ -19,6 +20,7 @@
 #include "formats/weights.h"
 
 #include <dirent.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,28 +31,17 @@ static void add_fact(struct check *c, const char *name, long long value)
 	c->facts[c->n++] = (struct check_fact){name, value};
 }
 
-/* Different names, to be counted. */
-struct names {
-	size_t n, capacity;
-	const char **list; /* not owned */
-};
-
-static int names_add(struct names *names, const char *name, struct err *e)
+/* Adds the number of different names, as names_make finds them. */
+static int add_names(struct check *c, const char *fact, const void *items, size_t stride, size_t offset,
+	size_t n, struct err *e)
 {
-	for (size_t i = names->n; i-- > 0;)
-		if (!strcmp(names->list[i], name))
-			return 0;
-	void *block = names->list;
-	if (mem_grow(&block, &names->capacity, names->n + 1, sizeof *names->list, "names", e))
+	struct names names;
+
+	if (names_make(&names, items, stride, offset, n, e))
 		return -1;
-	names->list = block;
-	names->list[names->n++] = name;
+	add_fact(c, fact, (long long)names_count(&names));
+	names_free(&names);
 	return 0;
-}
-
-static void names_free(struct names *names)
-{
-	free(names->list);
 }
 
 static void add_splats(struct check *c, const struct splats *s)
@@ -249,45 +240,55 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
+/* Every object that sentences name: an array of names to free, none of them owned; *n gets their number. */
+static const char **sentence_objects(const struct sentences *s, size_t *n, struct err *e)
+{
+	size_t most = s->n;
+
+	for (size_t i = 0; i < s->n; i++)
+		most += s->items[i].object_count;
+	const char **names = mem_alloc(most, sizeof *names, "objects", e);
+	*n = 0;
+	for (size_t i = 0; names && i < s->n; i++) {
+		if (*s->items[i].object)
+			names[(*n)++] = s->items[i].object;
+		for (size_t k = 0; k < s->items[i].object_count; k++)
+			names[(*n)++] = s->items[i].objects[k];
+	}
+	return names;
+}
+
 static int check_sentences(struct check *c, const char *path, struct err *e)
 {
 	struct sentences s;
-	struct names objects = {0};
 	size_t test = 0;
-	int bad = 0;
 
 	if (sentences_read(&s, path, e))
 		return -1;
-	for (size_t i = 0; i < s.n && !bad; i++) {
+	for (size_t i = 0; i < s.n; i++)
 		test += s.items[i].split == SPLIT_TEST;
-		if (*s.items[i].object)
-			bad = names_add(&objects, s.items[i].object, e);
-		for (size_t k = 0; k < s.items[i].object_count && !bad; k++)
-			bad = names_add(&objects, s.items[i].objects[k], e);
-	}
 	c->kind = "sentences";
 	add_fact(c, "training sentences", (long long)(s.n - test));
 	add_fact(c, "test sentences", (long long)test);
-	add_fact(c, "objects", (long long)objects.n);
-	names_free(&objects);
+	size_t n;
+	const char **names = sentence_objects(&s, &n, e);
+	int bad = !names || add_names(c, "objects", names, sizeof *names, 0, n, e);
+	free(names);
 	sentences_free(&s);
-	return bad;
+	return bad ? -1 : 0;
 }
 
 static int check_masks(struct check *c, const char *path, struct err *e)
 {
 	struct mask_set set;
-	struct names views = {0}, objects = {0};
 	size_t same = 0;
-	int bad = 0;
 
 	if (masks_read(&set, path, e))
 		return -1;
-	for (size_t i = 0; i < set.n && !bad; i++) {
+	for (size_t i = 0; i < set.n; i++) {
 		const struct mask_record *r = &set.records[i];
 		same += r->mask.width == set.records[0].mask.width &&
 			r->mask.height == set.records[0].mask.height;
-		bad = names_add(&views, r->view, e) || (r->object && names_add(&objects, r->object, e));
 	}
 	c->kind = "masks";
 	if (set.n && same == set.n) {
@@ -295,10 +296,10 @@ static int check_masks(struct check *c, const char *path, struct err *e)
 		c->height = set.records[0].mask.height;
 	}
 	add_fact(c, "masks", (long long)set.n);
-	add_fact(c, "views", (long long)views.n);
-	add_fact(c, "objects", (long long)objects.n);
-	names_free(&views);
-	names_free(&objects);
+	const size_t stride = sizeof *set.records;
+	int bad =
+		add_names(c, "views", set.records, stride, offsetof(struct mask_record, view), set.n, e) ||
+		add_names(c, "objects", set.records, stride, offsetof(struct mask_record, object), set.n, e);
 	masks_free(&set);
 	return bad ? -1 : 0;
 }
@@ -306,22 +307,17 @@ static int check_masks(struct check *c, const char *path, struct err *e)
 static int check_boxes(struct check *c, const char *path, struct err *e)
 {
 	struct box_set set;
-	struct names objects = {0};
 	size_t empty = 0;
-	int bad = 0;
 
 	if (boxes_read(&set, path, e))
 		return -1;
-	for (size_t i = 0; i < set.n && !bad; i++) {
-		const struct box_record *r = &set.records[i];
-		empty += r->is_empty != 0;
-		bad = r->object && names_add(&objects, r->object, e);
-	}
+	for (size_t i = 0; i < set.n; i++)
+		empty += set.records[i].is_empty != 0;
 	c->kind = "boxes";
 	add_fact(c, "boxes", (long long)(set.n - empty));
-	add_fact(c, "objects", (long long)objects.n);
+	int bad = add_names(c, "objects", set.records, sizeof *set.records,
+		offsetof(struct box_record, object), set.n, e);
 	add_fact(c, "empty", (long long)empty);
-	names_free(&objects);
 	boxes_free(&set);
 	return bad ? -1 : 0;
 }

@@ -5,11 +5,11 @@
 #include "base/name.h"
 #include "formats/json.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
 
 int jsonl_open(struct jsonl *j, const char *path, struct err *e)
 {
@@ -36,16 +36,37 @@ int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
 	return err_set(e, ERR_FORMAT, "%s:%ld: %s", j->path, j->line_number, reason);
 }
 
+/* The next line, with a NUL after it: its length, 0 at the end, -1 with *e. Nothing of a line that is too
+ * long is kept beyond the limit. */
+static ssize_t read_line(struct jsonl *j, struct err *e)
+{
+	void *block = j->line;
+	size_t len = 0;
+	int byte = 0;
+
+	while (byte != '\n' && (byte = getc_unlocked(j->in)) != EOF) {
+		if (len == JSONL_LINE_MAX) {
+			j->line_number++;
+			return jsonl_err(j, e, "a line of more than %d bytes", JSONL_LINE_MAX);
+		}
+		if (len + 2 > j->capacity && mem_grow(&block, &j->capacity, len + 2, 1, j->path, e))
+			return -1;
+		j->line = block;
+		j->line[len++] = (char)byte;
+	}
+	if (ferror(j->in))
+		return err_errno(e, "%s", j->path);
+	if (len)
+		j->line[len] = 0;
+	return (ssize_t)len;
+}
+
 int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 {
 	for (;;) {
-		errno = 0;
-		ssize_t len = getline(&j->line, &j->capacity, j->in);
-		if (len < 0) {
-			if (ferror(j->in) || errno == ENOMEM)
-				return err_errno(e, "%s", j->path);
-			return 0;
-		}
+		ssize_t len = read_line(j, e);
+		if (len <= 0)
+			return (int)len;
 		j->line_number++;
 		if ((size_t)len != strlen(j->line))
 			return jsonl_err(j, e, "a NUL byte at column %zu", strlen(j->line) + 1);

@@ -8,6 +8,8 @@
 #include <cjson/cJSON.h>
 #include <stdio.h>
 
+enum { JSONL_LINE_MAX = 64 << 20 }; /* bytes */
+
 struct jsonl {
 	FILE *in;
 	const char *path; /* as messages name it */

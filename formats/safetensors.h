@@ -5,6 +5,7 @@
 
 #include "base/err.h"
 #include "base/file.h"
+#include "base/names.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -48,6 +49,7 @@ struct safetensors {
 	size_t n, meta_count;
 	struct st_tensor *tensors; /* in the order of the file's data */
 	struct st_meta *meta;
+	struct names tensor_names, meta_keys;
 	struct file_map map;
 };
 

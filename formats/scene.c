@@ -3,11 +3,13 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
+#include "base/names.h"
 #include "formats/json.h"
 #include "formats/safetensors.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -204,6 +206,20 @@ static int read_view(struct camera *c, const cJSON *view, const char *path, int 
 	return 0;
 }
 
+static int check_unique(const struct cameras *c, const char *path, struct err *e)
+{
+	struct names names;
+	size_t earlier;
+
+	if (names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e))
+		return -1;
+	const size_t twice = names_twice(&names, &earlier);
+	names_free(&names);
+	return twice == NAMES_NONE ? 0
+				   : err_set(e, ERR_FORMAT, "%s: view name '%s' appears twice", path,
+					     c->views[twice].name);
+}
+
 static int read_views(struct cameras *c, const cJSON *list, const char *path, struct err *e)
 {
 	const cJSON *view;
@@ -218,10 +234,8 @@ static int read_views(struct cameras *c, const cJSON *list, const char *path, st
 		struct camera *one = &c->views[c->n++];
 		if (read_view(one, view, path, (int)c->n - 1, e))
 			return -1;
-		if (cameras_find(c, one->name) != one)
-			return err_set(e, ERR_FORMAT, "%s: view name '%s' appears twice", path, one->name);
 	}
-	return 0;
+	return check_unique(c, path, e);
 }
 
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)

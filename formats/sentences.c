@@ -1,9 +1,11 @@
 #include "formats/sentences.h"
 
 #include "base/mem.h"
+#include "base/names.h"
 #include "base/utf8.h"
 #include "formats/jsonl.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -128,40 +130,24 @@ static int read_one(struct sentence *s, const struct jsonl *j, const cJSON *obje
 		       : 0;
 }
 
-struct ref_place {
-	const char *ref;
-	long line;
-};
-
-static int by_ref(const void *a, const void *b)
+static int check_unique(const struct sentences *s, const long *lines, const char *path, struct err *e)
 {
-	const struct ref_place *x = a, *y = b;
-	int order = strcmp(x->ref, y->ref);
+	struct names refs;
+	size_t earlier;
 
-	return order ? order : (x->line > y->line) - (x->line < y->line);
-}
-
-/* Sorts the places; two equal refs then stand side by side, the earlier line first. */
-static int check_unique(struct ref_place *places, size_t n, const char *path, struct err *e)
-{
-	const struct ref_place *found = NULL;
-
-	if (!places)
-		return 0;
-	qsort(places, n, sizeof *places, by_ref);
-	for (size_t i = 1; i < n; i++)
-		if (!strcmp(places[i - 1].ref, places[i].ref) && (!found || places[i].line < found->line))
-			found = &places[i];
-	if (!found)
-		return 0;
-	return err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", path, found->line,
-		found->ref, found[-1].line);
+	if (names_make(&refs, s->items, sizeof *s->items, offsetof(struct sentence, ref), s->n, e))
+		return -1;
+	const size_t twice = names_twice(&refs, &earlier);
+	names_free(&refs);
+	return twice == NAMES_NONE ? 0
+				   : err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", path,
+					     lines[twice], s->items[twice].ref, lines[earlier]);
 }
 
 static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 {
-	struct ref_place *places = NULL;
-	size_t capacity = 0, place_capacity = 0;
+	long *lines = NULL;
+	size_t capacity = 0, line_capacity = 0;
 	cJSON *object;
 	int got;
 
@@ -169,21 +155,21 @@ static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 		struct sentence one = {0};
 		int bad = read_one(&one, j, object, e) ||
 			  mem_grow((void **)&s->items, &capacity, s->n + 1, sizeof *s->items, j->path, e) ||
-			  mem_grow((void **)&places, &place_capacity, s->n + 1, sizeof *places, j->path, e);
+			  mem_grow((void **)&lines, &line_capacity, s->n + 1, sizeof *lines, j->path, e);
 		cJSON_Delete(object);
 		if (bad) {
 			sentence_free(&one);
-			free(places);
+			free(lines);
 			return -1;
 		}
-		places[s->n] = (struct ref_place){one.ref, j->line_number};
+		lines[s->n] = j->line_number;
 		s->items[s->n++] = one;
 	}
 	if (!got && !s->n)
 		got = err_set(e, ERR_FORMAT, "%s: holds no sentences", j->path);
 	if (!got)
-		got = check_unique(places, s->n, j->path, e);
-	free(places);
+		got = check_unique(s, lines, j->path, e);
+	free(lines);
 	return got;
 }
 

@@ -1,6 +1,7 @@
 #include "formats/text.h"
 
 #include "base/mem.h"
+#include "base/names.h"
 #include "formats/metalist.h"
 #include "formats/safetensors.h"
 
@@ -83,17 +84,9 @@ int text_take_means(struct text *t, struct err *e)
 	return 0;
 }
 
-int text_mark(const struct text *t, const char *list, char *chosen, struct list_name *unknown)
+int text_mark(const struct text *t, const char *list, const char *option, char *chosen, struct err *e)
 {
-	while (list_next(&list, unknown)) {
-		size_t i = 0;
-		while (i < t->n && !list_name_is(unknown, t->refs[i]))
-			i++;
-		if (i == t->n)
-			return -1;
-		chosen[i] = 1;
-	}
-	return 0;
+	return names_mark(t->refs, sizeof *t->refs, 0, t->n, list, option, "sentence", chosen, e);
 }
 
 const char *text_object(const struct text *t, size_t sentence)

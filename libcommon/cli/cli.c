@@ -320,6 +320,8 @@ void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv
 
 int cli_fail(const struct cli *c, const struct err *e)
 {
+	if (e->code == ERR_USAGE)
+		cli_usage(c, "%s", e->message);
 	fprintf(stderr, "%s: %s\n", c->tool->name, e->message);
 	return e->code ? (int)e->code : ERR_SYSTEM;
 }

@@ -132,3 +132,20 @@ report() {
 	[ "$status" = 2 ]
 	grep -q 'SIZE is full or quick' <<<"$output"
 }
+
+@test "another SCALE weighs anew, and nothing in a value is done" {
+	ablation scores RUNS=none >/dev/null 2>&1
+	run ablation scores RUNS=none SCALE=0.5
+	grep -q gs-weigh <<<"$output"
+	not grep -q gs-import <<<"$output"
+	for variable in SCENES SEEDS RUNS SYNTH TRAIN SCALE ITERATIONS THREADS; do
+		run ablation scores "$variable=1; touch done"
+		[ "$status" = 2 ]
+		grep -qF "*** $variable has a ;" <<<"$output"
+		run ablation scores "$variable="'$(shell touch done)'
+		[ "$status" = 2 ]
+	done
+	run ablation scores "OUT=a b"
+	grep -qF "*** OUT has a blank" <<<"$output"
+	[ ! -e done ]
+}

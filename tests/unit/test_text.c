@@ -108,11 +108,11 @@ static void text_round_trip(void)
 			"names of sentence %d differ", i);
 	check_object_lists(&out, &e);
 	char chosen[3] = {0};
-	struct list_name unknown;
-	CHECK(!text_mark(&out, "r3,r1,r3", chosen, &unknown) && chosen[0] && !chosen[1] && chosen[2],
+	CHECK(!text_mark(&out, "r3,r1,r3", "--refs", chosen, &e) && chosen[0] && !chosen[1] && chosen[2],
 		"text_mark");
-	CHECK(text_mark(&out, "r1,r,r2", chosen, &unknown) == -1 && unknown.length == 1 && !chosen[1],
-		"an unknown ref");
+	CHECK(text_mark(&out, "r1,r,r2", "--refs", chosen, &e) == -1 && e.code == ERR_USAGE &&
+			!strcmp(e.message, "--refs: no sentence 'r'") && !chosen[1],
+		"an unknown ref: %s", e.message);
 	text_free(&out);
 }
 
