@@ -157,12 +157,11 @@ static int put_view(void *work, size_t view, const struct weights *weights, stru
 static int put_views(struct work *w, const struct cli *c, struct err *e)
 {
 	const int is_scene = w->options.method == METHOD_SCENE;
-	const struct cameras *cameras = &w->scene.cameras;
 	const char *dir = w->options.weights;
 
 	w->views = mem_alloc(w->set.n, sizeof *w->views, "views", e);
 	if (!w->views || scene_read(&w->scene, w->options.scene, e) ||
-		masks_views(&w->set, w->lines, w->path, cameras, w->views, e) ||
+		masks_views(&w->set, w->lines, w->path, &w->scene.cameras, w->views, e) ||
 		(is_scene ? lift_regions(w, e) : lift_carried(w, e)))
 		return -1;
 	const size_t found = is_scene ? w->regions.region_count : w->carry.count;

@@ -21,13 +21,11 @@ static struct {
 
 static const struct cli_option table[] = {
 	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
-	{"weights", 0, CLI_STRING, &options.weights, "WEIGHTS",
-		"blend weights of the training views, by gs-weigh (required)", 0, 0},
+	{"weights", 0, CLI_STRING, &options.weights, "WEIGHTS", "folder of gs-weigh (required)", 0, 0},
 	{"text", 0, CLI_STRING, &options.text, "TEXT", "sentences encoded by text-encode (required)", 0, 0},
 	{"masks", 0, CLI_STRING, &options.masks, "MASKS", "masks of pseudomask-select (required)", 0, 0},
 	{"names", 0, CLI_CHOICE, &options.is_as_masked, "sentences|masks",
-		"which of several alike an object is: as its sentences say (default), or as its masks do", 0,
-		0},
+		"which of several alike an object is: as sentences say (default), or as masks do", 0, 0},
 	{0}};
 
 static const struct cli_tool tool = {.name = "refer-lift",

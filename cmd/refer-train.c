@@ -67,9 +67,7 @@ static const struct cli_option table[] = {
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{"checkpoint", 0, CLI_INT, &options.checkpoint, "N",
 		"write MODEL.checkpoint every N steps, 0 never (default 1000)", 0, 100000000},
-	{"resume", 0, CLI_FLAG, &options.is_resumed, NULL, "go on from MODEL.checkpoint where there is one",
-		0, 0},
-	{0}};
+	{"resume", 0, CLI_FLAG, &options.is_resumed, NULL, "go on from MODEL.checkpoint, if any", 0, 0}, {0}};
 
 static const struct cli_tool tool = {.name = "refer-train",
 	.operands = "-o MODEL",
@@ -96,10 +94,7 @@ static int start(struct run *r, const struct cli *c, struct err *e)
 	const struct training *d = &r->data;
 	const struct trainer_source source = training_source(d);
 
-	checkpoint_identity(r->of.identity, &options.trainer, d->checksum);
-	r->of.origin = training_origin(d);
-	r->of.scene_path = options.from.scene;
-	r->of.text_path = file_name(options.from.text);
+	r->of = training_identity(d, &options.from, &options.trainer);
 	if (trainer_init(&r->trainer, &source, &options.trainer, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, options.from.weights) : -1;
 	cli_note(c, 1, "%zu of %zu Gaussians share %zu features, %.1f a pixel", r->trainer.learning,
@@ -114,13 +109,12 @@ static int resume(struct run *r, const struct cli *c, struct err *e)
 {
 	if (!r->checkpoint || !file_exists(r->checkpoint))
 		return 0;
-	if (!options.is_resumed) {
-		if (options.checkpoint)
-			cli_warn(c,
-				"%s: is of an earlier training and will be replaced; --resume would go on from it",
-				r->checkpoint);
+	if (!options.is_resumed && options.checkpoint)
+		cli_warn(c,
+			"%s: is of an earlier training and will be replaced; --resume would go on from it",
+			r->checkpoint);
+	if (!options.is_resumed)
 		return 0;
-	}
 	if (checkpoint_resume(&r->trainer.state, r->checkpoint, &r->of, options.iterations, e))
 		return -1;
 	r->is_own = 1;
@@ -156,10 +150,9 @@ static int record(struct run *r, const struct cli *c, const struct step_losses *
 	if (!options.checkpoint || done % options.checkpoint || is_over(r) ||
 		!divergence_is_good(&r->divergence, t))
 		return 0;
-	if (checkpoint_write(t, r->checkpoint, &r->of, e))
-		return -1;
-	r->is_own = 1;
-	return 0;
+	const int bad = checkpoint_write(t, r->checkpoint, &r->of, e);
+	r->is_own |= !bad;
+	return bad;
 }
 
 static int train(struct run *r, const struct cli *c, struct err *e)

@@ -3,7 +3,6 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
-#include "formats/checkpoint.h"
 #include "formats/lifted.h"
 #include "formats/masks.h"
 #include "formats/model.h"
@@ -262,9 +261,20 @@ struct trainer_source training_source(const struct training *t)
 		.object_names = t->object_names};
 }
 
-struct origin training_origin(const struct training *t)
+/* The scene and the encoder that it is of. */
+static struct origin origin_of(const struct training *t)
 {
 	return (struct origin){t->scene.fingerprint, t->text.encoder};
+}
+
+struct checkpoint_of training_identity(
+	const struct training *t, const struct training_files *from, const struct trainer_options *o)
+{
+	struct checkpoint_of of = {
+		.origin = origin_of(t), .scene_path = from->scene, .text_path = file_name(from->text)};
+
+	checkpoint_identity(of.identity, o, t->checksum);
+	return of;
 }
 
 int training_write(const struct training *t, const struct trainer *learned, enum refer_similarity similarity,
@@ -275,11 +285,12 @@ int training_write(const struct training *t, const struct trainer *learned, enum
 	const struct model m = {.layout = learned->layout,
 		.similarity = similarity,
 		.precision = precision,
-		.origin = training_origin(t),
+		.origin = origin_of(t),
 		.scene_gaussians = t->scene.splats.n,
 		.n = learned->rows.n,
 		.has_leaves = learned->octree.n > 0,
-		.ids = learned->octree.n ? NULL : learned->ids,
+		.learning = learned->learning,
+		.ids = learned->ids,
 		.octree = learned->octree,
 		.features = trainer_features(learned, values, e),
 		.parameters = (float *)values, /* a model that is read owns them */

@@ -48,5 +48,8 @@ int divergence_check(struct divergence *d, const struct train_state *t, const st
 
 int divergence_is_good(const struct divergence *d, const struct train_state *t)
 {
-	return !d->windows && (!t->sum.bce || is_window_good(t)) && is_finite(t);
+	/* The first steps of a good training are often far off. */
+	const int is_start = t->iteration < DIVERGENCE_WINDOW;
+
+	return !d->windows && (is_start || !t->sum.bce || is_window_good(t)) && is_finite(t);
 }

@@ -392,7 +392,7 @@ cut_short() {
 	mkdir out
 	# rates far too high: the loss is not finite, or stays far above that of no answer
 	status=0
-	train --iterations 250 --mlp-rate 10 --feature-rate 10 --interaction none --checkpoint 50 -o out/m 2>line || status=$?
+	train --iterations 250 --mlp-rate 10 --feature-rate 10 --interaction none --checkpoint 100 -o out/m 2>line || status=$?
 	[ $status = 1 ]
 	[ "$(wc -l <line)" = 1 ]
 	grep -qE '^refer-train: out/m: training diverged after step [0-9]+: .*; lower rates may help$' line
@@ -405,4 +405,22 @@ cut_short() {
 		train --iterations 120 --interaction $interaction -o m
 	done
 	train --iterations 210 --interaction none --feature-rate 0.1 -o m
+}
+
+@test "Gaussians that --tolerance leaves out stay out where features are shared, and the model says which" {
+	# learns OPTION...: as many bits of the model's tensor 'learning' as Gaussians learn
+	learns() {
+		local n begin end bits
+		train -v -o m "$@" 2>said
+		read -r begin end < <(head -c $((8 + $(od -An -t d8 -N 8 m))) m | tail -c +9 | jq -r '.learning.data_offsets | @tsv')
+		[ $((end - begin)) = 125 ]
+		n=$(od -An -t d8 -N 8 m)
+		bits=$(tail -c +$((9 + n + begin)) m | head -c 125 | xxd -b -c 1 | awk '{ n += gsub(1, "", $2) } END { print n }')
+		grep -q "refer-train: $bits of 1000 Gaussians share" said
+		echo "$bits"
+	}
+	all=$(learns)
+	some=$(learns --tolerance 0.2)
+	[ "$some" -gt 0 ]
+	[ $((2 * some)) -lt "$all" ]
 }

@@ -62,6 +62,7 @@ int main(void)
 	/* a checkpoint is of good states only */
 	d = (struct divergence){0};
 	t = start();
+	CHECK(!steps(&d, &t, 20, BAD, 0, &e) && divergence_is_good(&d, &t), "the first steps");
 	CHECK(!steps(&d, &t, 150, 1, 0, &e) && divergence_is_good(&d, &t), "good");
 	CHECK(!steps(&d, &t, 300, BAD, 0, &e) && !divergence_is_good(&d, &t), "a bad window");
 	CHECK(!steps(&d, &t, 350, 1, 0, &e) && !divergence_is_good(&d, &t), "a window that is not over");

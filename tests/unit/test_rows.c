@@ -286,6 +286,30 @@ static void any_order(void)
 	free(c);
 }
 
+/* A leaf has the Gaussians that learn, and no other that lies in it. */
+static void left_out_stay_out(void)
+{
+	struct cloud *c = make_cloud(0);
+	struct octree t = build(c, 3);
+	struct rows all, some;
+	struct err e;
+	int32_t every_third[N / 3];
+	int wrong = 0;
+
+	for (int i = 0; i < N / 3; i++)
+		every_third[i] = 3 * i;
+	CHECK(!rows_of_leaves(&all, &t, c->means, N, NULL, 0, &e) &&
+			!rows_of_leaves(&some, &t, c->means, N, every_third, N / 3, &e),
+		"%s", e.message);
+	for (int i = 0; i < N; i++)
+		wrong += all.of[i] < 0 || some.of[i] != (i % 3 ? -1 : all.of[i]);
+	CHECK(!wrong && some.n == all.n, "%d Gaussians have another row", wrong);
+	rows_free(&all);
+	rows_free(&some);
+	octree_free(&t);
+	free(c);
+}
+
 int main(void)
 {
 	leaves_cost_least();
@@ -294,5 +318,6 @@ int main(void)
 	any_order();
 	views_agree();
 	details();
+	left_out_stay_out();
 	return unit_end();
 }
