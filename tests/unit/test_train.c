@@ -528,7 +528,7 @@ static void test_no_weight(void)
 	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
 }
 
-/* A Gaussian that no view sees, put first, changes no leaf. */
+/* A Gaussian that no view sees, put first, changes nothing that is learned. */
 static void test_unseen_first(void)
 {
 	static const struct trainer_options options = {.batch = 1,
@@ -572,6 +572,9 @@ static void test_unseen_first(void)
 	CHECK(t.octree.n == u.octree.n &&
 			!memcmp(t.octree.codes, u.octree.codes, t.octree.n * sizeof(int64_t)),
 		"other leaves");
+	steps(&t, 0, 5);
+	steps(&u, 0, 5);
+	CHECK(same_state(&t.state, &u.state), "it is learned from");
 	trainer_free(&t);
 	trainer_free(&u);
 }
