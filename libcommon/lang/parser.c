@@ -45,6 +45,7 @@ int parse_sentence(struct parse *p, const struct parser *parser, const char *tex
 			return -1;
 		a = learnt;
 	}
+	analysis_mend(&a, &t);
 	if (parse_build(p, &a, &t, e))
 		return -1;
 	p->confidence *= sure;
