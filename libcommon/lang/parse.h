@@ -71,13 +71,14 @@ struct parse_phrase {
 	struct parse_list except;     /* phrases that are left out: "but not the red one", "except the mug" */
 	struct parse_list also;	      /* phrases meant too: "the red mug and the bowl"; of the target only */
 	int count;		      /* PARSE_ONE, PARSE_ALL, PARSE_SEVERAL or a number */
-	int group;		      /* "the left one of the two cups": 2; 0: no group is spoken of */
-	int ordinal;		      /* 2 for "second"; 0: none */
-	enum parse_relation from;     /* of an ordinal: the end it counts from ("from the left": PARSE_LEFT;
-					 PARSE_OTHER: not said) */
-	int viewer;		      /* 1: who looks or the camera: "us", "me", "the camera" */
-	int scene;		      /* 1: the place as a whole: "the picture", "the room", "the table" as in
-					 "the left side of the table" */
+	int group;   /* "the left one of the two cups": 2; "which of the cups": PARSE_SEVERAL; 0: no
+			group is spoken of */
+	int ordinal; /* 2 for "second", -1 for "last"; 0: none */
+	enum parse_relation from; /* of an ordinal: the end it counts from ("from the left": PARSE_LEFT;
+				     PARSE_OTHER: not said) */
+	int viewer;		  /* 1: who looks or the camera: "us", "me", "the camera" */
+	int scene;		  /* 1: the place as a whole: "the picture", "the room", "the table" as in
+				     "the left side of the table" */
 };
 
 struct parse_clause {
@@ -108,5 +109,10 @@ void parse_free(struct parse *p);
 
 /* "left" ... "other": as in parses.jsonl. */
 const char *parse_relation_name(enum parse_relation r);
+/* The relation of that name or -1. */
+int parse_relation_find(const char *name);
+
+/* Appends to a list; -1 only where memory is out. */
+int parse_list_add(struct parse_list *list, int item, struct err *e);
 
 #endif

@@ -1,0 +1,88 @@
+/* Sentences taken apart: who is meant, and how it stands to what. */
+#include "base/file.h"
+#include "cli/cli.h"
+#include "formats/parser_weights.h"
+#include "formats/parses.h"
+#include "formats/text.h"
+#include "lang/parser.h"
+
+#include <omp.h>
+#include <stdio.h>
+
+static int put_parses(const struct parser *parser, const struct text *t, FILE *out, struct err *e)
+{
+	for (size_t r = 0; r < t->n; r++) {
+		struct parser_vectors v = {.width = t->width};
+		struct parse p;
+		if (t->pieces)
+			v = (struct parser_vectors){t->pieces[r],
+				t->words + (size_t)t->offsets[r] * (size_t)t->width,
+				(int)(t->offsets[r + 1] - t->offsets[r]), t->width};
+		if (parse_sentence(&p, parser, t->texts[r], &v, e))
+			return -1;
+		int bad = parses_put(out, t->refs[r], t->texts[r], &p, e);
+		parse_free(&p);
+		if (bad)
+			return -1;
+	}
+	return 0;
+}
+
+enum method { BOTH, GRAMMAR };
+
+static int run(const struct cli *c, const char *weights, enum method method, struct err *e)
+{
+	struct parser parser = {0};
+	struct parser_weights w = {0};
+	struct text t = {0};
+	struct file_out out = {0};
+	int bad;
+
+	if (method == BOTH) {
+		if (weights ? parser_weights_read(&w, weights, e) : parser_weights_default(&w, e))
+			return -1;
+		parser.weights = &w;
+	}
+	if (text_read(&t, c->operand_count ? c->operands[0] : "-", e))
+		return -1;
+	if (parser.weights && (!t.pieces || t.width != w.width))
+		cli_warn(c, "%s: %s: by grammar alone", file_name(c->operand_count ? c->operands[0] : "-"),
+			t.pieces ? "of another encoder than the parser's weights" : "has no word pieces");
+	bad = file_out_open(&out, c->output, e) || put_parses(&parser, &t, out.stream, e);
+	if (!bad)
+		bad = file_out_commit(&out, e);
+	else
+		file_out_abort(&out);
+	text_free(&t);
+	parser_weights_free(&w);
+	return bad;
+}
+
+int main(int argc, char **argv)
+{
+	const char *weights = NULL;
+	int method = BOTH;
+	const struct cli_option options[] = {
+		{"parser", 0, CLI_STRING, &weights, "PARSER",
+			"weights of the learnt parser (default: those that come with the program)", 0, 0},
+		{"method", 0, CLI_CHOICE, &method, "both|grammar",
+			"grammar and what was learnt on word vectors, or grammar alone (default both)", 0, 0},
+		{0},
+	};
+	const struct cli_tool tool = {
+		.name = "text-parse",
+		.operands = "[TEXT]",
+		.summary =
+			"Take encoded sentences (text.safetensors; stdin by default) apart into parses (JSON Lines).",
+		.options = options,
+		.common = CLI_VERBOSE | CLI_QUIET | CLI_OUTPUT,
+		.max_operands = 1,
+	};
+	struct err e = {0};
+	struct cli c;
+
+	cli_parse(&c, &tool, argc, argv);
+	/* a sentence is too little to share among threads */
+	omp_set_num_threads(1);
+	return run(&c, weights, (enum method)method, &e) ? cli_fail(&c, &e) : cli_done(&c);
+}
