@@ -2,22 +2,18 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "base/names.h"
-#include "formats/boxes.h"
 #include "formats/camerafile.h"
+#include "formats/check_records.h"
 #include "formats/colmap.h"
 #include "formats/json.h"
 #include "formats/jsonl.h"
 #include "formats/lifted.h"
-#include "formats/masks.h"
 #include "formats/model.h"
 #include "formats/npy.h"
 #include "formats/parser_weights.h"
-#include "formats/parses.h"
 #include "formats/ply.h"
 #include "formats/png.h"
 #include "formats/scene.h"
-#include "formats/sentences.h"
 #include "formats/text.h"
 #include "formats/weights.h"
 
@@ -28,28 +24,10 @@
 #include <string.h>
 #include <unistd.h>
 
-static void add_fact(struct check *c, const char *name, long long value)
-{
-	c->facts[c->n++] = (struct check_fact){name, value};
-}
-
-/* Adds the number of different names, as names_make finds them. */
-static int add_names(struct check *c, const char *fact, const void *items, size_t stride, size_t offset,
-	size_t n, struct err *e)
-{
-	struct names names;
-
-	if (names_make(&names, items, stride, offset, n, e))
-		return -1;
-	add_fact(c, fact, (long long)names_count(&names));
-	names_free(&names);
-	return 0;
-}
-
 static void add_splats(struct check *c, const struct splats *s)
 {
-	add_fact(c, "gaussians", (long long)s->n);
-	add_fact(c, "harmonics", s->sh_coefficients);
+	check_add(c, "gaussians", (long long)s->n);
+	check_add(c, "harmonics", s->sh_coefficients);
 }
 
 /* The views and, where they have one size, that. */
@@ -66,8 +44,8 @@ static void add_views(struct check *c, const struct cameras *views)
 		c->width = views->views[0].width;
 		c->height = views->views[0].height;
 	}
-	add_fact(c, "training views", (long long)(views->n - test));
-	add_fact(c, "test views", (long long)test);
+	check_add(c, "training views", (long long)(views->n - test));
+	check_add(c, "test views", (long long)test);
 }
 
 static int check_scene(struct check *c, const char *path, struct err *e)
@@ -119,8 +97,8 @@ static int check_weights(struct check *c, const char *path, struct err *e)
 	c->height = w.height;
 	c->scene = w.scene;
 	c->camera = w.camera;
-	add_fact(c, "weights", (long long)w.indptr[(int64_t)w.width * w.height]);
-	add_fact(c, "gaussians of the scene", (long long)w.gaussians);
+	check_add(c, "weights", (long long)w.indptr[(int64_t)w.width * w.height]);
+	check_add(c, "gaussians of the scene", (long long)w.gaussians);
 	weights_close(&w);
 	return 0;
 }
@@ -131,9 +109,9 @@ static int check_text(struct check *c, const char *path, struct err *e)
 
 	if (text_read(&t, path, e))
 		return -1;
-	add_fact(c, "sentences", (long long)t.n);
-	add_fact(c, "words", (long long)t.offsets[t.n]);
-	add_fact(c, "columns", t.width);
+	check_add(c, "sentences", (long long)t.n);
+	check_add(c, "words", (long long)t.offsets[t.n]);
+	check_add(c, "columns", t.width);
 	c->encoder = t.encoder;
 	text_free(&t);
 	return 0;
@@ -146,10 +124,10 @@ static int check_model(struct check *c, const char *path, struct err *e)
 	if (model_read(&m, path, e))
 		return -1;
 	c->precision = precision_name(m.precision);
-	add_fact(c, "features", (long long)m.n);
-	add_fact(c, "columns", m.layout.feature_width);
-	add_fact(c, "gaussians of the scene", (long long)m.scene_gaussians);
-	add_fact(c, "parameters", (long long)m.layout.count);
+	check_add(c, "features", (long long)m.n);
+	check_add(c, "columns", m.layout.feature_width);
+	check_add(c, "gaussians of the scene", (long long)m.scene_gaussians);
+	check_add(c, "parameters", (long long)m.layout.count);
 	c->scene = m.origin.scene;
 	c->encoder = m.origin.encoder;
 	model_free(&m);
@@ -165,12 +143,12 @@ static int check_lifted(struct check *c, const char *path, struct err *e)
 		return -1;
 	c->scene = origin.scene;
 	c->encoder = origin.encoder;
-	add_fact(c, "objects", (long long)l.objects);
-	add_fact(c, "shares", (long long)l.indptr[l.objects]);
-	add_fact(c, "sentences", (long long)l.sentences);
-	add_fact(c, "words", (long long)l.offsets[l.sentences]);
-	add_fact(c, "columns", l.width);
-	add_fact(c, "gaussians of the scene", (long long)l.gaussians);
+	check_add(c, "objects", (long long)l.objects);
+	check_add(c, "shares", (long long)l.indptr[l.objects]);
+	check_add(c, "sentences", (long long)l.sentences);
+	check_add(c, "words", (long long)l.offsets[l.sentences]);
+	check_add(c, "columns", l.width);
+	check_add(c, "gaussians of the scene", (long long)l.gaussians);
 	lifted_free(&l);
 	return 0;
 }
@@ -186,7 +164,7 @@ static int check_ply(struct check *c, const char *path, struct err *e)
 	c->kind = "3DGS ply";
 	add_splats(c, &s);
 	if (report.read > s.n)
-		add_fact(c, "unusable gaussians", (long long)(report.read - s.n));
+		check_add(c, "unusable gaussians", (long long)(report.read - s.n));
 	free(report.dropped);
 	splats_free(&s);
 	return 0;
@@ -199,8 +177,8 @@ static int check_npy(struct check *c, const char *path, struct err *e)
 	if (npy_read(&a, path, e))
 		return -1;
 	c->kind = "npy";
-	add_fact(c, "dimensions", a.dims);
-	add_fact(c, "values", (long long)a.count);
+	check_add(c, "dimensions", a.dims);
+	check_add(c, "values", (long long)a.count);
 	npy_free(&a);
 	return 0;
 }
@@ -211,24 +189,8 @@ static int check_parser(struct check *c, const char *path, struct err *e)
 
 	if (parser_weights_read(&w, path, e))
 		return -1;
-	add_fact(c, "parameters", (long long)w.count);
+	check_add(c, "parameters", (long long)w.count);
 	parser_weights_free(&w);
-	return 0;
-}
-
-static int check_parses(struct check *c, const char *path, struct err *e)
-{
-	struct parse_set s;
-	size_t clauses = 0;
-
-	if (parses_read(&s, path, e))
-		return -1;
-	c->kind = "parses";
-	for (size_t i = 0; i < s.n; i++)
-		clauses += (size_t)s.records[i].parse.clause_count;
-	add_fact(c, "parses", (long long)s.n);
-	add_fact(c, "clauses", (long long)clauses);
-	parses_free(&s);
 	return 0;
 }
 
@@ -266,90 +228,8 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 			return start_again(path, e) || ours[i].check(c, path, e) ? -1 : 0;
 		}
 	c->kind = "safetensors";
-	add_fact(c, "tensors", (long long)c->listing.n);
+	check_add(c, "tensors", (long long)c->listing.n);
 	return 0;
-}
-
-/* Every object that sentences name: an array of names to free, none of them owned; *n gets their number. */
-static const char **sentence_objects(const struct sentences *s, size_t *n, struct err *e)
-{
-	size_t most = s->n;
-
-	for (size_t i = 0; i < s->n; i++)
-		most += s->items[i].object_count;
-	const char **names = mem_alloc(most, sizeof *names, "objects", e);
-	*n = 0;
-	for (size_t i = 0; names && i < s->n; i++) {
-		if (*s->items[i].object)
-			names[(*n)++] = s->items[i].object;
-		for (size_t k = 0; k < s->items[i].object_count; k++)
-			names[(*n)++] = s->items[i].objects[k];
-	}
-	return names;
-}
-
-static int check_sentences(struct check *c, const char *path, struct err *e)
-{
-	struct sentences s;
-	size_t test = 0;
-
-	if (sentences_read(&s, path, e))
-		return -1;
-	for (size_t i = 0; i < s.n; i++)
-		test += s.items[i].split == SPLIT_TEST;
-	c->kind = "sentences";
-	add_fact(c, "training sentences", (long long)(s.n - test));
-	add_fact(c, "test sentences", (long long)test);
-	size_t n;
-	const char **names = sentence_objects(&s, &n, e);
-	int bad = !names || add_names(c, "objects", names, sizeof *names, 0, n, e);
-	free(names);
-	sentences_free(&s);
-	return bad ? -1 : 0;
-}
-
-static int check_masks(struct check *c, const char *path, struct err *e)
-{
-	struct mask_set set;
-	size_t same = 0;
-
-	if (masks_read(&set, path, e))
-		return -1;
-	for (size_t i = 0; i < set.n; i++) {
-		const struct mask_record *r = &set.records[i];
-		same += r->mask.width == set.records[0].mask.width &&
-			r->mask.height == set.records[0].mask.height;
-	}
-	c->kind = "masks";
-	if (set.n && same == set.n) {
-		c->width = set.records[0].mask.width;
-		c->height = set.records[0].mask.height;
-	}
-	add_fact(c, "masks", (long long)set.n);
-	const size_t stride = sizeof *set.records;
-	int bad =
-		add_names(c, "views", set.records, stride, offsetof(struct mask_record, view), set.n, e) ||
-		add_names(c, "objects", set.records, stride, offsetof(struct mask_record, object), set.n, e);
-	masks_free(&set);
-	return bad ? -1 : 0;
-}
-
-static int check_boxes(struct check *c, const char *path, struct err *e)
-{
-	struct box_set set;
-	size_t empty = 0;
-
-	if (boxes_read(&set, path, e))
-		return -1;
-	for (size_t i = 0; i < set.n; i++)
-		empty += set.records[i].is_empty != 0;
-	c->kind = "boxes";
-	add_fact(c, "boxes", (long long)(set.n - empty));
-	int bad = add_names(c, "objects", set.records, sizeof *set.records,
-		offsetof(struct box_record, object), set.n, e);
-	add_fact(c, "empty", (long long)empty);
-	boxes_free(&set);
-	return bad ? -1 : 0;
 }
 
 static int check_image(struct check *c, const char *path, struct err *e)
@@ -527,8 +407,8 @@ static int add_weights(
 	if (bad)
 		return -1;
 	c->kind = "weights";
-	add_fact(c, "views", *views);
-	add_fact(c, "weights", total);
+	check_add(c, "views", *views);
+	check_add(c, "weights", total);
 	return 0;
 }
 
