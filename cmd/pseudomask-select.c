@@ -237,8 +237,9 @@ int main(int argc, char **argv)
 
 	cli_parse(&c, &tool, argc, argv);
 	w.path = c.operand_count ? c.operands[0] : "-";
-	if (o->method == METHOD_DEFAULT)
-		o->method = o->scene || o->weights ? METHOD_SCENE : SELECT_CIOU;
+	o->method = o->method != METHOD_DEFAULT ? o->method
+		    : o->scene || o->weights	? METHOD_SCENE
+						: SELECT_CIOU;
 	if (o->method >= METHOD_FIRST && (!o->scene || !o->weights))
 		cli_usage(&c, "--method %s needs --scene SCENE and --weights WEIGHTS",
 			o->method == METHOD_FIRST ? "first" : "scene");

@@ -278,6 +278,7 @@ void scene_free(struct scene *s)
 	free(s->path);
 	splats_free(&s->splats);
 	cameras_free(&s->cameras);
+	*s = (struct scene){0};
 }
 
 /* A JSON string, null for NULL. Returns -1 when memory is out. */
