@@ -7,7 +7,7 @@
 # ITERATIONS  steps of each stage; default 3000
 # SCALE       as in two-stage.mk; default 0.5
 # TRAIN       more options for refer-train
-# BERT, BIN   as in two-stage.mk
+# TEACH, BERT, BIN   as in two-stage.mk
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
 DEMO ?= demo
@@ -17,7 +17,7 @@ SCALE ?= 0.5
 include $(here)common.mk
 # The workflow gets what is said below, and nothing else.
 MAKEOVERRIDES :=
-$(call check,DEMO,DEMO,SEED SYNTH ITERATIONS SCALE TRAIN BERT BIN,pipelines/demo.mk)
+$(call check,DEMO,DEMO,SEED SYNTH ITERATIONS SCALE TRAIN TEACH BERT BIN,pipelines/demo.mk)
 data := $(DEMO)/data
 make_data = gs-synth --seed $(call quoted,SEED) $(call options,SYNTH) -o $(data)
 
@@ -28,7 +28,7 @@ demo: $(data)/made-by
 		CAMERAS=$(data)/sparse/0 IMAGES=$(data)/images TEST_VIEWS="$$(cat $(data)/test-views)" SENTENCES=$(data)/sentences.jsonl \
 		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl WHOLE=$(data)/whole.jsonl BOXES=$(data)/boxes.jsonl \
 		SCALE=$(call quoted,SCALE) ITERATIONS=$(call quoted,ITERATIONS) SEED=$(call quoted,SEED) \
-		$(if $(TRAIN),TRAIN=$(call quoted,TRAIN)) BIN=$(call quoted,BIN) BERT=$(call quoted,BERT)
+		$(if $(TRAIN),TRAIN=$(call quoted,TRAIN)) $(if $(TEACH),TEACH=$(call quoted,TEACH)) BIN=$(call quoted,BIN) BERT=$(call quoted,BERT)
 	@echo
 	@echo "photographs: $(data)/images"
 	@echo "sentences:   $(data)/sentences.jsonl"

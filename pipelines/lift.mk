@@ -8,7 +8,6 @@
 # ASK         more sentences to answer, JSON Lines; optional
 # WHOLE       true masks of whole objects, to score those of --amodal against; optional
 # BOXES       true boxes, to score those of refer-locate against; optional
-# LIFT        more options for refer-lift
 # The other variables, and the folder's layout, are those of two-stage.mk; both workflows may use one folder where SCALE and
 # WEIGH (here --precision u8 by default) are the same.
 #
@@ -18,10 +17,8 @@
 SCALE ?= 0.3333
 WEIGH ?= --precision u8
 include $(dir $(lastword $(MAKEFILE_LIST)))two-stage.mk
-$(call check,,ASK WHOLE BOXES,LIFT,pipelines/lift.mk)
+$(call check,,ASK WHOLE BOXES,,pipelines/lift.mk)
 
-masks3 := $(SCENE)/lifted/masks.jsonl
-model3 := $(SCENE)/lifted/model.safetensors
 asked := $(if $(ASK),$(SCENE)/lifted/asked.jsonl)
 answers := $(foreach t,train test,$(SCENE)/lifted/predictions.$(t).jsonl) $(asked)
 whole := $(if $(WHOLE),$(SCENE)/lifted/whole.jsonl)
@@ -34,9 +31,6 @@ lifted: $(answers) $(whole) $(SCENE)/lifted/boxes.jsonl $(SCENE)/lifted/overlays
 
 # The steps.
 ask3 = refer-render --scene $(SCENE)/scene --text $(1) --model $(model3)
-command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights -o $(masks3) $(CANDIDATES)
-command.lift = refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks3) $(call options,LIFT) \
-	-o $(model3)
 $(foreach t,train test,$(eval command.render3.$(t) = $$(call ask3,$$(text)) --sentences $(t) -o $(SCENE)/lifted/predictions.$(t).jsonl))
 command.encode3 = text-encode --model $(call quoted,BERT) -o $(SCENE)/lifted/asked.safetensors $(ASK)
 command.render3.asked = $(call ask3,$(SCENE)/lifted/asked.safetensors) -o $(asked)
@@ -45,14 +39,7 @@ command.locate = refer-locate --scene $(SCENE)/scene --text $(text) --model $(mo
 command.overlay3 = $(call ask3,$(text)) --sentences test --overlay $(SCENE)/lifted/overlays -o $(SCENE)/lifted/overlays/masks.jsonl
 command.score_whole = miou-score --json --quiet --predicted-views --truth $(WHOLE)
 command.score_boxes = miou-score --boxes --json --quiet --truth $(BOXES)
-$(call track,select3d lift render3.train render3.test encode3 render3.asked render3.whole locate overlay3 score_whole score_boxes)
-
-$(masks3): $(CANDIDATES) $(weights) $(SCENE)/log/select3d.command
-	@mkdir -p $(@D)
-	$(call run,select3d)
-
-$(model3): $(masks3) $(weights) $(text) $(SCENE)/log/lift.command
-	$(call run,lift)
+$(call track,render3.train render3.test encode3 render3.asked render3.whole locate overlay3 score_whole score_boxes)
 
 $(SCENE)/lifted/predictions.%.jsonl: $(model3) $(SCENE)/log/render3.%.command
 	$(call run,render3.$*)

@@ -1,4 +1,4 @@
-# The two-stage workflow on one scene: import, weigh, encode, select, train, render on the training views, train again on
+# The two-stage workflow on one scene: import, weigh, encode, select, train, render masks of the training views, train again on
 # those masks, render on the test views, score.
 #
 #	make -f pipelines/two-stage.mk SCENE=work/desk SPLATS=point_cloud.ply CAMERAS=sparse/0 SENTENCES=sentences.jsonl \
@@ -16,7 +16,9 @@
 # SCALE       size at which training looks at the views, as a share of theirs; default 0.25
 # ITERATIONS  steps of each stage; default 45000
 # SEED        default 1
-# SELECT, WEIGH, TRAIN   more options for pseudomask-select, gs-weigh, refer-train, with blanks between them
+# TEACH       whose masks of the training views teach stage 2: stage1, as in the paper, or lifted, those of the objects that
+#             are lifted from masks selected in 3D; default lifted, which pipelines/ablation.md shows to be better
+# SELECT, WEIGH, LIFT, TRAIN   more options for pseudomask-select, gs-weigh, refer-lift, refer-train, with blanks between them
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 #
 # Targets: all (predictions, overlays and, with TRUTH, scores), predictions, overlays, scores, report.
@@ -29,9 +31,11 @@ TEST_VIEWS ?= every:8
 SCALE ?= 0.25
 ITERATIONS ?= 45000
 SEED ?= 1
+TEACH ?= lifted
 include $(here)common.mk
 $(call check,SCENE SPLATS SENTENCES CANDIDATES,SCENE SPLATS CAMERAS SENTENCES CANDIDATES TRUTH,IMAGES TEST_VIEWS BERT SCALE \
-	ITERATIONS SEED SELECT WEIGH TRAIN BIN,pipelines/two-stage.mk)
+	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN,pipelines/two-stage.mk)
+$(if $(filter stage1 lifted,$(TEACH)),,$(error TEACH is stage1 or lifted))
 
 beside := $(patsubst %/,%,$(dir $(SPLATS)))
 cameras := $(if $(CAMERAS),$(if $(wildcard $(CAMERAS)/.),$(call camera_files,$(CAMERAS)),$(CAMERAS)),$(or $(call \
@@ -41,8 +45,11 @@ weights := $(SCENE)/weights/complete
 text := $(SCENE)/text.safetensors
 masks1 := $(SCENE)/stage1/masks.jsonl
 masks2 := $(SCENE)/stage2/masks.jsonl
+masks3 := $(SCENE)/lifted/masks.jsonl
 model1 := $(SCENE)/stage1/model.safetensors
 model2 := $(SCENE)/stage2/model.safetensors
+model3 := $(SCENE)/lifted/model.safetensors
+teacher := $(if $(filter lifted,$(TEACH)),3,1)
 predictions := $(foreach s,1 2,$(foreach t,train test,$(SCENE)/stage$(s)/predictions.$(t).jsonl))
 overlays := $(SCENE)/stage1/overlays/complete $(SCENE)/stage2/overlays/complete
 scores := $(if $(TRUTH),$(predictions:$(SCENE)/%.jsonl=$(SCENE)/%.score.json) $(SCENE)/stage1/masks.score.json $(SCENE)/stage2/masks.score.json)
@@ -68,13 +75,16 @@ train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(t
 	$(call options,TRAIN) -o $(model$(1))
 render = refer-render --scene $(SCENE)/scene --text $(text) --model $(model$(1))
 predict = $(call render,$(1)) --sentences $(2) -o $(SCENE)/stage$(1)/predictions.$(2).jsonl
-command.teach = $(call render,1) --split train --sentences train --scale $(call quoted,SCALE) -o $(masks2)
+command.teach = $(call render,$(teacher)) --split train --sentences train --scale $(call quoted,SCALE) -o $(masks2)
+command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights -o $(masks3) $(CANDIDATES)
+command.lift = refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks3) $(call options,LIFT) \
+	-o $(model3)
 command.score = miou-score --json --quiet --predicted-views --truth $(TRUTH)
 $(foreach s,1 2,$(eval command.train$(s) = $$(call train,$(s))))
 $(foreach s,1 2,$(foreach t,train test,$(eval command.render$(s).$(t) = $$(call predict,$(s),$(t)))))
 $(foreach s,1 2,$(eval command.overlay$(s) = $$(call render,$(s)) --sentences test --overlay $(SCENE)/stage$(s)/overlays \
 	-o $(SCENE)/stage$(s)/overlays/masks.jsonl))
-$(call track,import weigh encode select train1 train2 teach score overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
+$(call track,import weigh encode select select3d lift train1 train2 teach score overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
 
 $(SCENE)/log/%.command:
 	@mkdir -p $(@D) && printf %s $(call quote,$(command.$*)) >$@
@@ -99,8 +109,15 @@ $(SCENE)/stage%/model.safetensors: $(SCENE)/stage%/masks.jsonl $(weights) $(text
 	@[ ! -e $@.checkpoint ] || [ -z "$$(find $^ -newer $@.checkpoint)" ] || rm $@.checkpoint
 	$(call run,train$*)
 
-# What stage 1 answers in the training views teaches stage 2.
-$(masks2): $(model1) $(SCENE)/log/teach.command
+$(masks3): $(CANDIDATES) $(weights) $(SCENE)/log/select3d.command
+	@mkdir -p $(@D)
+	$(call run,select3d)
+
+$(model3): $(masks3) $(weights) $(text) $(SCENE)/log/lift.command
+	$(call run,lift)
+
+# What another model answers in the training views teaches stage 2.
+$(masks2): $(model$(teacher)) $(SCENE)/log/teach.command
 	@mkdir -p $(@D)
 	$(call run,teach)
 
