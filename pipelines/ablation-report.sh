@@ -100,7 +100,26 @@ space() {
 	echo
 }
 
-if [ "$table" = statistics ]; then
+# Sentences in a wording kept apart: a row for each kind, pooled over all scenes and seeds by their pairs.
+unseen() {
+	printf '### Sentences in a wording kept apart\n\n'
+	printf 'Scenes %s, seeds %s; in percent of the pairs of a sentence and a test view.\n\n' "$SCENES" "$SEEDS"
+	printf '| sentences | pairs | right | mIoU | refused | F1@25 |\n|---|---|---|---|---|---|\n'
+	for scene in $SCENES; do
+		for seed in $SEEDS; do
+			cat "$ROOT/$scene-$seed/lift/unseen.answers.json"
+		done
+	done | jq -rs '[.[] | ({"that mean one thing": .one, "that mean several": .several, "that mean nothing there": .none} + .kinds) | to_entries[]
+			| select(.value.pairs > 0)] | group_by(.key) | map({key: .[0].key, pairs: (map(.value.pairs) | add), v: map(.value)})
+		| sort_by(if .key | startswith("that") then [0, -.pairs] else [1, .key] end) | .[]
+		| . as $g | "| \(.key) | \(.pairs) | " + ([("right", "miou", "refused", "f1_25") as $f
+			| ($g.v | map((.[$f] // 0) * .pairs) | add) / $g.pairs | 1000 * . | round / 10 | tostring] | join(" | ")) + " |"'
+	echo
+}
+
+if [ "$table" = unseen ]; then
+	unseen
+elif [ "$table" = statistics ]; then
 	statistics
 elif [ "$table" = space ]; then
 	space

@@ -17,7 +17,7 @@
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 #
 # Targets: tables (all but the cost), cost (times its own trainings, so nothing else should run), all, and one for each
-# table: statistics (of the scenes) modules second (what may teach a second stage) similarity masks interaction width encoder contrast settings sentences lifted (and,
+# table: statistics (of the scenes) unseen (answers of the lifted model to sentences in a wording kept apart) modules second (what may teach a second stage) similarity masks interaction width encoder contrast settings sentences lifted (and,
 # not in the paper, answers without training, and trainings that start from them) hard (the same by what makes a case hard)
 # space (its boxes and outlines of whole objects). Not among them: exact, the modules without the shortcuts of a training
 # step, several times as long. They print;
@@ -141,7 +141,8 @@ sentences := both two
 lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike lift-colours lift-sizes lift-relations lift lift-voted $(foreach p,$(parts),lift-but-$(p))
 hard := two warmed lift-relations lift
 space := lift
-tables := statistics modules second similarity masks interaction width encoder contrast settings sentences lifted hard space
+unseen := lift
+tables := statistics unseen modules second similarity masks interaction width encoder contrast settings sentences lifted hard space
 RUNS ?= $(sort $(foreach t,$(tables) exact,$($(t))))
 
 root := $(OUT)/$(SIZE)
@@ -264,6 +265,13 @@ $(1)/lift/whole.%.jsonl: $(1)/lifted/full.safetensors
 		--sentences $$* --amodal -o $$@)
 $(1)/lift/whole.%.score.json: $(1)/lift/whole.%.jsonl
 	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/whole.jsonl -o $$@ $$<
+$(1)/text/unseen.safetensors: $(1)/data/made-by
+	@mkdir -p $$(@D)
+	$$(call log,$(1)/log/unseen,text-encode --model $(BERT) -o $$@ $(1)/data/unseen.jsonl)
+$(1)/lift/unseen.jsonl: $(1)/lifted/full.safetensors $(1)/text/unseen.safetensors
+	$$(call log,$(1)/lift/unseen.log,refer-render --scene $(1)/scene --text $(1)/text/unseen.safetensors --model $$< -o $$@)
+$(1)/lift/unseen.answers.json: $(1)/lift/unseen.jsonl
+	$(tool)miou-score --answers --json --quiet --predicted-views --sentences $(1)/data/unseen.jsonl --truth $(1)/data/truth.jsonl -o $$@ $$<
 $(1)/lift/visible.%.score.json: $(1)/lift/%.jsonl
 	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/whole.jsonl -o $$@ $$<
 endef
@@ -294,6 +302,7 @@ $(foreach t,$(tables) exact,$(eval $(call table_rules,$(t))))
 statistics masks: $(foreach c,$(cells),$(foreach m,ciou iou top1,$(c)/masks/$(m).quality.json))
 masks: $(foreach c,$(cells),$(c)/masks/first.quality.json $(c)/both/teach.quality.json)
 second: $(foreach c,$(cells),$(foreach m,ciou scene chosen pooled pooled3d lifted,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
+unseen: $(foreach c,$(cells),$(c)/lift/unseen.answers.json)
 space: $(foreach c,$(cells),$(foreach k,boxes whole visible,$(foreach t,test train,$(c)/lift/$(k).$(t).score.json)))
 lifted: $(foreach c,$(cells),$(foreach m,ciou scene,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
 

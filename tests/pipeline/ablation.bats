@@ -114,7 +114,10 @@ report() {
 }
 
 @test "answers without training have tables: by parts, by what is hard, and in space" {
-	ablation -j2 lifted hard space >first.log 2>&1
+	ablation -j2 lifted hard space unseen >first.log 2>&1
+	pairs=$(jq '[.one, .several, .none | .pairs] | add' out/quick/diner-1/lift/unseen.answers.json)
+	[ "$(awk -F'|' '/^\| that mean/ { n += $3 } END { print n }' out/quick/unseen.md)" = "$pairs" ]
+	[ "$(grep -cE '^\| [a-z -]+ \| [0-9]+( \| [0-9.]+){4} \|$' out/quick/unseen.md)" -ge 8 ]
 	for row in 'stage 1 from the lifted model' '\+ relations' '\+ sentences say which of several alike'; do
 		grep -qE "^\| $row \|  \| [-0-9.]+( \| [0-9.]+){4} \|\$" out/quick/lifted.md
 	done
