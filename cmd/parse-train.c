@@ -122,7 +122,8 @@ static void say(void *context, int epoch, double loss)
 static int put_parses(
 	const struct training *s, const struct parser_weights *w, int fold, FILE *out, struct err *e)
 {
-	const struct parser parser = {.weights = w, .is_blind = s->o->no_grammar};
+	const struct parser parser = {
+		.weights = w, .is_blind = s->o->no_grammar, .encoder = s->others.encoder.hex};
 
 	for (size_t i = 0; i < s->others.n; i++) {
 		struct parse p;
@@ -188,8 +189,8 @@ static int run(const struct cli *c, const struct options *o, struct err *e)
 		      text_read(&s.others, o->readings_text, e) || take_readings(&s, e);
 	if (!bad && o->no_grammar)
 		parser_school_blind(&s.school);
-	if (!bad)
-		bad = parser_weights_make(&w, s.examples.width, e);
+	if (!bad && !(bad = parser_weights_make(&w, s.examples.width, e)))
+		memcpy(w.encoder, s.examples.encoder.hex, sizeof w.encoder);
 	if (!bad)
 		bad = o->folds ? cross_validate(&s, &w, e)
 			       : parser_school_examples(&s.school, &w, e) ||

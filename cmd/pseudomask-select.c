@@ -222,8 +222,7 @@ int main(int argc, char **argv)
 		{"scene", 0, CLI_STRING, &o->scene, "SCENE", "for scene and first: the scene's folder", 0, 0},
 		{"weights", 0, CLI_STRING, &o->weights, "WEIGHTS",
 			"for scene and first: the folder of its training views' blend weights", 0, 0},
-		{0},
-	};
+		{0}};
 	const struct cli_tool tool = {
 		.name = "pseudomask-select",
 		.operands = "[CANDIDATES]",
@@ -237,9 +236,8 @@ int main(int argc, char **argv)
 
 	cli_parse(&c, &tool, argc, argv);
 	w.path = c.operand_count ? c.operands[0] : "-";
-	o->method = o->method != METHOD_DEFAULT ? o->method
-		    : o->scene || o->weights	? METHOD_SCENE
-						: SELECT_CIOU;
+	if (o->method == METHOD_DEFAULT)
+		o->method = o->scene || o->weights ? METHOD_SCENE : SELECT_CIOU;
 	if (o->method >= METHOD_FIRST && (!o->scene || !o->weights))
 		cli_usage(&c, "--method %s needs --scene SCENE and --weights WEIGHTS",
 			o->method == METHOD_FIRST ? "first" : "scene");

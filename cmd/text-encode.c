@@ -7,7 +7,6 @@
 #include "formats/text.h"
 #include "formats/vocab.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -199,7 +198,6 @@ static int run(const struct cli *c, const char *dir, enum words words, struct er
 	char options[512];
 	int bad, length;
 	const char *name = path_last(dir, &length); /* so that bytes do not depend on where a model is */
-
 	snprintf(options, sizeof options, "--model %.*s%s", length, name,
 		words == STATIC ? " --words static" : "");
 	bad = vocab_read(&v, dir, e) || sentences_read(&s, c->operand_count ? c->operands[0] : "-", e) ||
