@@ -8,7 +8,7 @@
 #include "formats/scene.h"
 #include "formats/splat.h"
 #include "formats/text.h"
-#include "refer/choose.h"
+#include "ask/choose.h"
 #include "geom/up.h"
 #include "refer/locate.h"
 

@@ -9,7 +9,7 @@
 #include "formats/text.h"
 #include "refer/answer.h"
 #include "refer/asked.h"
-#include "refer/choose.h"
+#include "ask/choose.h"
 
 #include <math.h>
 #include <stdlib.h>

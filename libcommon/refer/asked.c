@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "refer/calibrate.h"
-#include "refer/choose.h"
+#include "ask/choose.h"
 #include "refer/sight.h"
 #include "splat/render.h"
 

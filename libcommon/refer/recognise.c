@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "mask/assign.h"
-#include "refer/choose.h"
+#include "ask/choose.h"
 
 #include <math.h>
 #include <stdlib.h>

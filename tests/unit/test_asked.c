@@ -3,7 +3,7 @@
 
 #include "refer/answer.h"
 #include "refer/asked.h"
-#include "refer/choose.h"
+#include "ask/choose.h"
 #include "splat/render.h"
 
 enum { N = 4, SIDE = 32, SENTENCES = 6, MOST = 4 };

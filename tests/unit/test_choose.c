@@ -1,6 +1,6 @@
 /* The choice of an object by a sentence, and of Gaussians for an object: each part by itself, on a made-up
  * scene of four objects whose words have made-up vectors. */
-#include "refer/choose.h"
+#include "ask/choose.h"
 #include "refer/recognise.h"
 #include "unit.h"
 

@@ -1,6 +1,6 @@
 /* Relations between objects, on a made-up table, and where lifted objects are. */
-#include "refer/arrangement.h"
-#include "refer/relate.h"
+#include "ask/arrangement.h"
+#include "ask/relate.h"
 #include "unit.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "refer/vocabulary.h"
+#include "ask/vocabulary.h"
 
 #include "base/mem.h"
 #include "lang/colours.h"

@@ -1,8 +1,8 @@
-#include "refer/choose.h"
+#include "ask/choose.h"
 
 #include "base/mem.h"
-#include "refer/relate.h"
-#include "refer/vocabulary.h"
+#include "ask/relate.h"
+#include "ask/vocabulary.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -25,8 +25,8 @@
  * worded, and near 0 for others. P = 4 / (4 + p^-0.75 / 4). A sentence with no word for the thing itself is
  * taken to mean something. The figures were chosen on synthetic scenes (seeds 1 to 9). */
 /* clang-format on */
-#ifndef REFER_CHOOSE_H
-#define REFER_CHOOSE_H
+#ifndef ASK_CHOOSE_H
+#define ASK_CHOOSE_H
 
 #include "base/err.h"
 #include "base/list.h"

@@ -1,10 +1,10 @@
 /* The words by which training sentences call each lifted object, and how other words match them. */
-#ifndef REFER_VOCABULARY_H
-#define REFER_VOCABULARY_H
+#ifndef ASK_VOCABULARY_H
+#define ASK_VOCABULARY_H
 
 #include "base/err.h"
 #include "lang/sentence.h"
-#include "refer/arrangement.h"
+#include "ask/arrangement.h"
 #include "refer/lifted.h"
 
 struct vocabulary {
