@@ -1,6 +1,6 @@
-/* A referring sentence taken apart: noun phrases, and the clauses that say how they stand to one another. "the
- * small mug on the plate that is left of the red book" is the target phrase "small mug" with a clause on, whose
- * anchor is the phrase "plate" with a clause left, whose anchor is the phrase "red book". English.
+/* A referring sentence taken apart: noun phrases, and the clauses that say how they stand to one another.
+ * "the small mug on the plate that is left of the red book" is the target phrase "small mug" with a clause
+ * on, whose anchor is the phrase "plate" with a clause left, whose anchor is the phrase "red book". English.
  *
  * A parse is flat: phrases and clauses are arrays, and refer to one another by index. Phrase 0 is the target;
  * every other phrase is reached from it. formats/parses.md shows the same as JSON. */
@@ -64,20 +64,21 @@ struct parse_word {
 };
 
 struct parse_phrase {
-	struct parse_span span;	       /* from its first word to its last, without its clauses */
-	struct parse_list noun;	       /* words of the noun, the head last ("trash can"); none: "the other one" */
-	struct parse_list attributes;  /* other words that say something of it: "red", "wooden", "shiny" */
-	struct parse_list clauses;     /* clauses that it is the figure of */
-	struct parse_list except;      /* phrases that are left out: "but not the red one", "except the mug" */
-	struct parse_list also;	       /* phrases meant too: "the red mug and the bowl"; of the target only */
-	int count;		       /* PARSE_ONE, PARSE_ALL, PARSE_SEVERAL or a number */
-	int group;		       /* "the left one of the two cups": 2; 0: no group is spoken of */
-	int ordinal;		       /* 2 for "second"; 0: none */
-	enum parse_relation from;      /* of an ordinal: the end it counts from ("from the left": PARSE_LEFT;
-					  PARSE_OTHER: not said) */
-	int viewer;		       /* 1: who looks or the camera: "us", "me", "the camera" */
-	int scene;		       /* 1: the place as a whole: "the picture", "the room", "the table" as in
-					  "the left side of the table" */
+	struct parse_span span; /* from its first word to its last, without its clauses */
+	struct parse_list noun; /* words of the noun, the head last ("trash can"); none: "the other one" */
+	struct parse_list attributes; /* other words that say something of it: "red", "wooden", "shiny" */
+	struct parse_list clauses;    /* clauses that it is the figure of */
+	struct parse_list except;     /* phrases that are left out: "but not the red one", "except the mug" */
+	struct parse_list also;	      /* phrases meant too: "the red mug and the bowl"; of the target only */
+	int count;		      /* PARSE_ONE, PARSE_ALL, PARSE_SEVERAL or a number */
+	int group;   /* "the left one of the two cups": 2; "which of the cups": PARSE_SEVERAL; 0: no
+			group is spoken of */
+	int ordinal; /* 2 for "second", -1 for "last"; 0: none */
+	enum parse_relation from; /* of an ordinal: the end it counts from ("from the left": PARSE_LEFT;
+				     PARSE_OTHER: not said) */
+	int viewer;		  /* 1: who looks or the camera: "us", "me", "the camera" */
+	int scene;		  /* 1: the place as a whole: "the picture", "the room", "the table" as in
+				     "the left side of the table" */
 };
 
 struct parse_clause {
@@ -85,8 +86,9 @@ struct parse_clause {
 	enum parse_relation relation;
 	enum parse_degree degree;
 	int negated;
-	struct parse_list anchors; /* phrases; none: of the whole scene, or of the things that the words fit */
-	struct parse_list words;   /* words of the predicate that say something: "type" for PARSE_OTHER */
+	struct parse_list
+		anchors;	 /* phrases; none: of the whole scene, or of the things that the words fit */
+	struct parse_list words; /* words of the predicate that say something: "type" for PARSE_OTHER */
 };
 
 enum parse_view { PARSE_VIEW_NONE, PARSE_VIEW_FACING, PARSE_VIEW_FROM };
@@ -96,9 +98,9 @@ struct parse {
 	struct parse_word *words;
 	struct parse_phrase *phrases; /* phrases[0] is the target, always there */
 	struct parse_clause *clauses;
-	enum parse_view view; /* "when facing the window", "from the door" */
-	int view_phrase;      /* the phrase of the window or door; -1 */
-	double confidence;    /* of the parse, in [0,1] */
+	enum parse_view view;	       /* "when facing the window", "from the door" */
+	int view_phrase;	       /* the phrase of the window or door; -1 */
+	double confidence;	       /* of the parse, in [0,1] */
 	struct parse_list unexplained; /* words that say something and found no place */
 };
 
@@ -107,5 +109,10 @@ void parse_free(struct parse *p);
 
 /* "left" ... "other": as in parses.jsonl. */
 const char *parse_relation_name(enum parse_relation r);
+/* The relation of that name or -1. */
+int parse_relation_find(const char *name);
+
+/* Appends to a list; -1 only where memory is out. */
+int parse_list_add(struct parse_list *list, int item, struct err *e);
 
 #endif

@@ -1,0 +1,64 @@
+/* Sentences taken apart: who is meant, and how it stands to what. */
+#include "base/file.h"
+#include "cli/cli.h"
+#include "formats/parses.h"
+#include "formats/text.h"
+#include "lang/parser.h"
+
+#include <stdio.h>
+
+static int put_parses(const struct parser *parser, const struct text *t, FILE *out, struct err *e)
+{
+	for (size_t r = 0; r < t->n; r++) {
+		struct parser_vectors v = {.width = t->width};
+		struct parse p;
+		if (t->pieces)
+			v = (struct parser_vectors){t->pieces[r],
+				t->words + (size_t)t->offsets[r] * (size_t)t->width,
+				(int)(t->offsets[r + 1] - t->offsets[r]), t->width};
+		if (parse_sentence(&p, parser, t->texts[r], &v, e))
+			return -1;
+		int bad = parses_put(out, t->refs[r], t->texts[r], &p, e);
+		parse_free(&p);
+		if (bad)
+			return -1;
+	}
+	return 0;
+}
+
+static int run(const struct cli *c, struct err *e)
+{
+	struct parser parser = {0};
+	struct text t = {0};
+	struct file_out out = {0};
+	int bad;
+
+	if (text_read(&t, c->operand_count ? c->operands[0] : "-", e))
+		return -1;
+	bad = file_out_open(&out, c->output, e) || put_parses(&parser, &t, out.stream, e);
+	if (!bad)
+		bad = file_out_commit(&out, e);
+	else
+		file_out_abort(&out);
+	text_free(&t);
+	return bad;
+}
+
+int main(int argc, char **argv)
+{
+	const struct cli_option options[] = {{0}};
+	const struct cli_tool tool = {
+		.name = "text-parse",
+		.operands = "[TEXT]",
+		.summary =
+			"Take encoded sentences (text.safetensors; stdin by default) apart into parses (JSON Lines).",
+		.options = options,
+		.common = CLI_VERBOSE | CLI_QUIET | CLI_OUTPUT,
+		.max_operands = 1,
+	};
+	struct err e = {0};
+	struct cli c;
+
+	cli_parse(&c, &tool, argc, argv);
+	return run(&c, &e) ? cli_fail(&c, &e) : cli_done(&c);
+}

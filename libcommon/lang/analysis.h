@@ -1,0 +1,50 @@
+/* What a word is in a sentence and what it hangs on: the common ground of the grammar, the learnt parser and
+ * the sentences that it learns from. parse_build makes a parse of it.
+ *
+ *   "the small mug on the plate": small: predicate (smaller) of the target; mug: target; on: predicate of the
+ *   target; plate: anchor of "on". */
+#ifndef LANG_ANALYSIS_H
+#define LANG_ANALYSIS_H
+
+#include "lang/parse.h"
+#include "lang/tokens.h"
+
+enum word_role {
+	ROLE_NONE,	/* says nothing: articles, requests, the rest of a predicate */
+	ROLE_TARGET,	/* the target's noun, or what stands for it ("one", "thing"); hangs on ROOT */
+	ROLE_ANCHOR,	/* a noun, hangs on its predicate */
+	ROLE_ALSO,	/* the noun of a further target; ROOT */
+	ROLE_EXCEPT,	/* the noun of what is left out; ROOT or the phrase that it is left out of */
+	ROLE_VIEW,	/* the noun of what is faced or stood at; ROOT */
+	ROLE_NAME,	/* a part of a noun of several words ("trash" can); hangs on the noun */
+	ROLE_ATTRIBUTE, /* hangs on a noun, or on ROOT for the target */
+	ROLE_PREDICATE, /* the main word of a relation; hangs on its figure: a noun, or ROOT for the target */
+	ROLES
+};
+
+enum { ROOT = -1 };
+
+struct analysis {
+	int n;
+	struct {
+		enum word_role role;
+		int head; /* a word or ROOT */
+		enum parse_relation relation;
+		int negated;
+	} word[TOKENS_MOST];
+};
+
+/* 1 for the roles of nouns that head a phrase. */
+int role_is_phrase(enum word_role r);
+
+/* By closed-class words and the order of words alone. */
+void grammar_analyse(struct analysis *a, const struct tokens *t);
+
+/* Makes every head one that its role may have, without a circle; what then hangs on nothing hangs on ROOT. */
+void analysis_repair(struct analysis *a);
+
+/* The parse that an analysis stands for; -1 only where memory is out. Degrees, counts, ordinals, groups and
+ * views are told from the words themselves. */
+int parse_build(struct parse *p, const struct analysis *a, const struct tokens *t, struct err *e);
+
+#endif

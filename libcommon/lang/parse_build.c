@@ -1,0 +1,461 @@
+/* A parse of an analysis. What an analysis does not say is told from the closed-class words around: how many
+ * things a phrase means, ordinals, groups, degrees, and from where one looks. */
+#include "base/mem.h"
+#include "lang/analysis.h"
+#include "lang/closed.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct build {
+	struct parse *p;
+	const struct analysis *a;
+	const struct tokens *t;
+	struct err *e;
+	int phrase_of[TOKENS_MOST]; /* of a phrase's head: its phrase, else -1 */
+	int noun;		    /* the target's main noun, or -1 */
+	int from;		    /* the place word that an ordinal counts from, or -1 */
+};
+
+static int class_of(const struct tokens *t, int i)
+{
+	return i < 0 || i >= t->n || t->word[i].closed < 0 ? -1 : (int)closed_words[t->word[i].closed].class;
+}
+
+static int value_of(const struct tokens *t, int i)
+{
+	return closed_words[t->word[i].closed].value;
+}
+
+static int is(const struct tokens *t, int i, const char *word)
+{
+	return i >= 0 && i < t->n && !strcmp(t->word[i].text, word);
+}
+
+static int is_any(const struct tokens *t, int i, const char *const *words)
+{
+	for (; *words; words++)
+		if (is(t, i, *words))
+			return 1;
+	return 0;
+}
+
+static int tail(const char *w, const char *end)
+{
+	size_t n = strlen(w), m = strlen(end);
+
+	return n > m + 2 && !strcmp(w + n - m, end);
+}
+
+static int is_plural(const struct tokens *t, int i)
+{
+	return strcmp(t->word[i].text, t->word[i].lemma) != 0 && !is(t, i, "glasses") &&
+	       !is(t, i, "scissors");
+}
+
+static int add_words(struct build *b)
+{
+	struct parse *p = b->p;
+
+	p->words = mem_zalloc((size_t)b->t->n, sizeof *p->words, "words", b->e);
+	if (!p->words)
+		return -1;
+	for (int i = 0; i < b->t->n; i++) {
+		const struct token *w = &b->t->word[i];
+		struct parse_word *out = &p->words[p->word_count++];
+		*out = (struct parse_word){.span = w->span, .piece = w->piece, .pieces = w->pieces};
+		out->text = mem_strdup(w->text, b->e);
+		out->lemma = mem_strdup(w->lemma, b->e);
+		if (!out->text || !out->lemma)
+			return -1;
+	}
+	return 0;
+}
+
+static int add_phrases(struct build *b)
+{
+	struct parse *p = b->p;
+	int n = 1;
+
+	b->noun = -1;
+	for (int i = 0; i < b->t->n; i++) {
+		enum word_role r = b->a->word[i].role;
+		b->phrase_of[i] = r == ROLE_TARGET ? 0 : role_is_phrase(r) ? n++ : -1;
+		/* the first noun that names a kind is the target's */
+		if (r == ROLE_TARGET &&
+			(b->noun < 0 || (class_of(b->t, b->noun) >= 0 && class_of(b->t, i) < 0)))
+			b->noun = i;
+	}
+	p->phrases = mem_zalloc((size_t)n, sizeof *p->phrases, "phrases", b->e);
+	if (!p->phrases)
+		return -1;
+	p->phrase_count = n;
+	for (int i = 0; i < n; i++)
+		p->phrases[i].from = PARSE_OTHER;
+	return 0;
+}
+
+static int phrase_under(const struct build *b, int head)
+{
+	return head == ROOT ? 0 : b->phrase_of[head];
+}
+
+/* A head that names no kind of thing is none. */
+static int names_kind(const struct build *b, int i)
+{
+	return class_of(b->t, i) != CLOSED_GENERIC && class_of(b->t, i) != CLOSED_NUMBER &&
+	       class_of(b->t, i) != CLOSED_RELATIVE && class_of(b->t, i) != CLOSED_DETERMINER;
+}
+
+static void widen(struct parse_span *s, struct parse_span by)
+{
+	if (s->begin == s->end) {
+		*s = by;
+	} else {
+		s->begin = by.begin < s->begin ? by.begin : s->begin;
+		s->end = by.end > s->end ? by.end : s->end;
+	}
+}
+
+static int add_noun(struct build *b, int head, struct parse_phrase *f)
+{
+	int first = head, owner = b->a->word[head].role == ROLE_TARGET ? ROOT : head;
+
+	while (first > 0 && b->a->word[first - 1].role == ROLE_NAME && b->a->word[first - 1].head == owner &&
+		!b->t->word[first].before)
+		first--;
+	widen(&f->span, b->t->word[head].span);
+	if (!names_kind(b, head))
+		return 0;
+	for (int i = first; i <= head; i++) {
+		widen(&f->span, b->t->word[i].span);
+		if (parse_list_add(&f->noun, i, b->e))
+			return -1;
+	}
+	return 0;
+}
+
+static int is_in(const struct parse_list *list, int item)
+{
+	for (int i = 0; i < list->n; i++)
+		if (list->item[i] == item)
+			return 1;
+	return 0;
+}
+
+static int fill_phrases(struct build *b)
+{
+	static const char *const viewers[] = {
+		"us", "me", "you", "i", "myself", "yourself", "camera", "viewer", NULL};
+	static const char *const places[] = {
+		"room", "scene", "photo", "image", "picture", "table", "desk", "view", "row", NULL};
+
+	for (int i = 0; i < b->t->n; i++) {
+		if (b->phrase_of[i] < 0)
+			continue;
+		struct parse_phrase *f = &b->p->phrases[b->phrase_of[i]];
+		if (b->phrase_of[i] == 0 && i != b->noun)
+			continue;
+		if (add_noun(b, i, f))
+			return -1;
+		f->viewer = b->phrase_of[i] && is_any(b->t, i, viewers);
+		f->scene = is(b->t, i, "room") || is(b->t, i, "scene") ||
+			   (b->phrase_of[i] && is_any(b->t, i, places) && is(b->t, i - 1, "the") &&
+				   is(b->t, i - 2, "of"));
+	}
+	for (int i = 0; i < b->t->n; i++) {
+		enum word_role r = b->a->word[i].role;
+		int owner = phrase_under(b, b->a->word[i].head);
+		if ((r != ROLE_ATTRIBUTE && r != ROLE_NAME) || owner < 0)
+			continue;
+		struct parse_phrase *f = &b->p->phrases[owner];
+		if (is_in(&f->noun, i))
+			continue;
+		if (!f->span.end || b->t->word[i].span.end > f->span.begin - 20)
+			widen(&f->span, b->t->word[i].span);
+		if (parse_list_add(&f->attributes, i, b->e))
+			return -1;
+	}
+	return 0;
+}
+
+/* By the words around a predicate: "furthest back", "more to the left", "the very left". */
+static enum parse_degree degree_of(const struct build *b, int i)
+{
+	static const char *const most[] = {"most", "extreme", "very", "farthest", "furthest", NULL};
+	static const char *const more[] = {"more", "further", "farther", NULL};
+	const struct tokens *t = b->t;
+	const char *w = t->word[i].text;
+	int c = class_of(t, i);
+
+	if (c == CLOSED_PLACE || c == CLOSED_SIZE) {
+		if (value_of(t, i))
+			return (enum parse_degree)value_of(t, i);
+	} else if (tail(w, "est") || tail(w, "most")) {
+		return PARSE_MOST;
+	} else if (tail(w, "er") && is(t, i + 1, "than")) {
+		return PARSE_MORE;
+	}
+	for (int j = i - 1; j >= 0 && j >= i - 3; j--) {
+		if (b->a->word[j].role != ROLE_NONE || t->word[j + 1].before)
+			break;
+		if (is_any(t, j, most))
+			return PARSE_MOST;
+		if (is_any(t, j, more))
+			return PARSE_MORE;
+	}
+	if (is(t, i + 1, "most"))
+		return PARSE_MOST;
+	return PARSE_PLAIN;
+}
+
+static int is_filler(const struct build *b, int i)
+{
+	int c = class_of(b->t, i);
+
+	return i >= 0 && i < b->t->n && b->a->word[i].role == ROLE_NONE &&
+	       (c == CLOSED_ADVERB || c == CLOSED_PREPOSITION || c == CLOSED_PLACE);
+}
+
+static struct parse_span predicate_span(const struct build *b, int i)
+{
+	int first = i, last = i;
+
+	while (!b->t->word[first].before &&
+		(is_filler(b, first - 1) || (is(b->t, first - 1, "the") && is_filler(b, first - 2))))
+		first--;
+	while (is_filler(b, last + 1) && !b->t->word[last + 1].before)
+		last++;
+	return (struct parse_span){b->t->word[first].span.begin, b->t->word[last].span.end};
+}
+
+static int add_clause(struct build *b, int i)
+{
+	struct parse *p = b->p;
+	int figure = phrase_under(b, b->a->word[i].head), at = p->clause_count;
+	struct parse_clause *c = &p->clauses[at];
+
+	if (figure < 0)
+		figure = 0;
+	*c = (struct parse_clause){.span = predicate_span(b, i),
+		.relation = b->a->word[i].relation,
+		.degree = degree_of(b, i),
+		.negated = b->a->word[i].negated};
+	p->clause_count++;
+	if (parse_list_add(&c->words, i, b->e) || parse_list_add(&p->phrases[figure].clauses, at, b->e))
+		return -1;
+	for (int j = 0; j < b->t->n; j++) {
+		if (b->a->word[j].role != ROLE_ANCHOR || b->a->word[j].head != i)
+			continue;
+		if (is(b->t, j, "nothing") || is(b->t, j, "nobody") || is(b->t, j, "none"))
+			c->negated = 1;
+		if (parse_list_add(&c->anchors, b->phrase_of[j], b->e))
+			return -1;
+	}
+	return 0;
+}
+
+static int add_clauses(struct build *b)
+{
+	int n = 0;
+
+	for (int i = 0; i < b->t->n; i++)
+		n += b->a->word[i].role == ROLE_PREDICATE;
+	b->p->clauses = mem_zalloc((size_t)n, sizeof *b->p->clauses, "clauses", b->e);
+	if (!b->p->clauses)
+		return -1;
+	for (int i = 0; i < b->t->n; i++)
+		if (b->a->word[i].role == ROLE_PREDICATE && i != b->from && add_clause(b, i))
+			return -1;
+	return 0;
+}
+
+static int add_others(struct build *b)
+{
+	struct parse *p = b->p;
+
+	for (int i = 0; i < b->t->n; i++) {
+		enum word_role r = b->a->word[i].role;
+		int bad = 0;
+		if (r == ROLE_ALSO) {
+			bad = parse_list_add(&p->phrases[0].also, b->phrase_of[i], b->e);
+		} else if (r == ROLE_EXCEPT) {
+			int owner = phrase_under(b, b->a->word[i].head);
+			bad = parse_list_add(
+				&p->phrases[owner < 0 ? 0 : owner].except, b->phrase_of[i], b->e);
+		} else if (r == ROLE_NONE && b->t->word[i].closed < 0 &&
+			   strcmp(b->t->word[i].text, "'s") != 0 && strcmp(b->t->word[i].text, "side") != 0 &&
+			   strcmp(b->t->word[i].text, "hand") != 0 &&
+			   strcmp(b->t->word[i].text, "end") != 0) {
+			bad = parse_list_add(&p->unexplained, i, b->e);
+		}
+		if (bad)
+			return -1;
+	}
+	return 0;
+}
+
+/* Words back from a head that belong to its phrase: articles, numbers, attributes. */
+static int phrase_start(const struct build *b, int head)
+{
+	int i = head;
+
+	while (i > 0 && !b->t->word[i].before) {
+		int c = class_of(b->t, i - 1);
+		enum word_role r = b->a->word[i - 1].role;
+		if (!(r == ROLE_NAME || r == ROLE_ATTRIBUTE || c == CLOSED_DETERMINER || c == CLOSED_NUMBER ||
+			    c == CLOSED_ORDINAL || c == CLOSED_SIZE || c == CLOSED_ATTRIBUTE ||
+			    c == CLOSED_ADVERB ||
+			    (c == CLOSED_PLACE && r == ROLE_PREDICATE &&
+				    b->a->word[i - 1].head == b->a->word[head].head) ||
+			    (is(b->t, i - 1, "of") && i > 1 && class_of(b->t, i - 2) == CLOSED_NUMBER)))
+			break;
+		i--;
+	}
+	return i;
+}
+
+static void count_phrase(struct build *b, int head, struct parse_phrase *f)
+{
+	const struct tokens *t = b->t;
+	int start = phrase_start(b, head), number = 0, of;
+
+	for (int i = start; i <= head; i++)
+		if (class_of(t, i) == CLOSED_NUMBER && (!number || value_of(t, i) > 0))
+			number = value_of(t, i);
+	if (is(t, head, "everything") || is(t, head, "anything"))
+		number = PARSE_ALL;
+	if (!number && names_kind(b, head) && is_plural(t, head))
+		number = PARSE_SEVERAL;
+	if (is(t, head, "ones"))
+		number = PARSE_SEVERAL;
+	f->count = number ? number : PARSE_ONE;
+	/* "of the two cups", "which of the cups", unless all of them are meant */
+	of = start - 1;
+	if (of >= 0 && (is(t, of, "of") || is(t, of, "between")) && is(t, of, "of") &&
+		f->count != PARSE_ONE && class_of(t, of - 1) != CLOSED_NUMBER && f == &b->p->phrases[0]) {
+		f->group = number;
+		f->count = PARSE_ONE;
+	}
+}
+
+/* "Two black balls. Which one is ...": a later word of the target that means one of them. */
+static void find_group(struct build *b)
+{
+	struct parse_phrase *f = &b->p->phrases[0];
+
+	if (f->count == PARSE_ONE || f->count == PARSE_ALL || b->noun < 0)
+		return;
+	for (int i = b->noun + 1; i < b->t->n; i++)
+		if ((b->a->word[i].role == ROLE_TARGET && !is(b->t, i, "ones") && !is_plural(b->t, i)) ||
+			(is(b->t, i, "one") && b->a->word[i].role == ROLE_NONE)) {
+			f->group = f->count;
+			f->count = PARSE_ONE;
+			return;
+		}
+}
+
+static void count_phrases(struct build *b)
+{
+	for (int k = 0; k < b->p->phrase_count; k++)
+		b->p->phrases[k].count = PARSE_ONE;
+	for (int i = 0; i < b->t->n; i++)
+		if (b->phrase_of[i] > 0 || (b->phrase_of[i] == 0 && i == b->noun))
+			count_phrase(b, i, &b->p->phrases[b->phrase_of[i]]);
+	find_group(b);
+}
+
+static enum parse_relation end_of(const struct tokens *t, int i)
+{
+	enum parse_relation r = PARSE_OTHER;
+
+	if (class_of(t, i) == CLOSED_PLACE)
+		r = (enum parse_relation)closed_words[t->word[i].closed].relation;
+	return r <= PARSE_BELOW ? r : PARSE_OTHER;
+}
+
+/* "from the left", "from left", "left to right", "start at the left-hand end". */
+static enum parse_relation counted_from(struct build *b)
+{
+	const struct tokens *t = b->t;
+
+	for (int i = 0; i < t->n; i++) {
+		if (end_of(t, i) != PARSE_OTHER && is(t, i + 1, "to") && end_of(t, i + 2) != PARSE_OTHER)
+			return end_of(t, i);
+		if (!is(t, i, "from") && !is(t, i, "at"))
+			continue;
+		int j = i + 1;
+		while (is(t, j, "the") || is(t, j, "very") || is(t, j, "far"))
+			j++;
+		if (end_of(t, j) != PARSE_OTHER && !is(t, j + 1, "of")) {
+			b->from = b->a->word[j].role == ROLE_PREDICATE ? j : b->from;
+			return end_of(t, j);
+		}
+	}
+	return PARSE_OTHER;
+}
+
+static void find_ordinals(struct build *b)
+{
+	const struct tokens *t = b->t;
+
+	for (int i = 0; i < t->n; i++) {
+		int value = 0, owner = 0;
+		if (class_of(t, i) == CLOSED_ORDINAL)
+			value = value_of(t, i);
+		else if (is(t, i, "number") && i + 1 < t->n)
+			value = is(t, i + 1, "one") ? 1
+				: class_of(t, i + 1) == CLOSED_NUMBER && value_of(t, i + 1) > 0
+					? value_of(t, i + 1)
+					: 0;
+		if (!value)
+			continue;
+		for (int j = i + 1; j < t->n && j <= i + 4 && !t->word[j].before; j++)
+			if (b->phrase_of[j] >= 0) {
+				owner = b->phrase_of[j];
+				break;
+			}
+		b->p->phrases[owner].ordinal = value;
+		b->p->phrases[owner].from = counted_from(b);
+	}
+}
+
+static void find_view(struct build *b)
+{
+	b->p->view_phrase = -1;
+	for (int i = 0; i < b->t->n; i++) {
+		if (b->a->word[i].role != ROLE_VIEW)
+			continue;
+		b->p->view_phrase = b->phrase_of[i];
+		b->p->view = PARSE_VIEW_FACING;
+		for (int j = i - 1; j >= 0 && j >= i - 5 && !b->t->word[j + 1].before; j--) {
+			if (is(b->t, j, "facing") || is(b->t, j, "face") || is(b->t, j, "towards") ||
+				is(b->t, j, "toward"))
+				break;
+			if (is(b->t, j, "from") || is(b->t, j, "through") || is(b->t, j, "entering") ||
+				is(b->t, j, "enter") || is(b->t, j, "standing") || is(b->t, j, "in"))
+				b->p->view = PARSE_VIEW_FROM;
+		}
+		return;
+	}
+}
+
+int parse_build(struct parse *p, const struct analysis *a, const struct tokens *t, struct err *e)
+{
+	struct build b = {.p = p, .a = a, .t = t, .e = e, .from = -1};
+
+	*p = (struct parse){.view_phrase = -1};
+	if (add_words(&b) || add_phrases(&b) || fill_phrases(&b)) {
+		parse_free(p);
+		return -1;
+	}
+	count_phrases(&b);
+	find_ordinals(&b);
+	if (add_clauses(&b) || add_others(&b)) {
+		parse_free(p);
+		return -1;
+	}
+	find_view(&b);
+	p->confidence = t->n ? 1 - (double)p->unexplained.n / t->n : 0;
+	return 0;
+}

@@ -1,0 +1,27 @@
+/* Takes sentences apart: by grammar alone, or with what was learnt on the encoder's word vectors. */
+#ifndef LANG_PARSER_H
+#define LANG_PARSER_H
+
+#include "lang/analysis.h"
+
+struct parser_weights; /* lang/parser_net.h */
+
+struct parser {
+	const struct parser_weights *weights; /* NULL: grammar alone */
+	const char *const *known; /* words spelt right besides the closed ones: a scene's vocabulary */
+	int known_count;
+};
+
+/* What the encoder made of the sentence; zeroed where there is none. */
+struct parser_vectors {
+	const char *pieces;   /* its word pieces with a space between */
+	const float *vectors; /* (count, width) */
+	int count, width;
+};
+
+/* No sentence is refused: what the parser cannot place is `unexplained`. -1 only where memory is out. Without
+ * vectors, or vectors of another width than the weights', the grammar alone speaks. */
+int parse_sentence(struct parse *p, const struct parser *parser, const char *text,
+	const struct parser_vectors *v, struct err *e);
+
+#endif

@@ -1,0 +1,304 @@
+#include "lang/tokens.h"
+
+#include "lang/closed.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int ends(const char *w, const char *tail)
+{
+	size_t n = strlen(w), m = strlen(tail);
+
+	return n > m && !strcmp(w + n - m, tail);
+}
+
+void token_lemma(const char *word, char *out)
+{
+	static const char *const odd[][2] = {{"mice", "mouse"}, {"shelves", "shelf"},
+		{"bookshelves", "bookshelf"}, {"knives", "knife"}, {"feet", "foot"}, {"men", "man"},
+		{"women", "woman"}, {"people", "person"}, {"children", "child"}, {"leaves", "leaf"},
+		{"loaves", "loaf"}, {"halves", "half"}, {"teeth", "tooth"}, {"geese", "goose"},
+		{"scarves", "scarf"}};
+	/* the tails of plurals, and what they become */
+	static const char *const tails[][2] = {{"ies", "y"}, {"sses", "ss"}, {"xes", "x"}, {"ches", "ch"},
+		{"shes", "sh"}, {"zes", "ze"}, {"oes", "o"}};
+	size_t n = strlen(word);
+
+	strcpy(out, word);
+	for (size_t i = 0; i < sizeof odd / sizeof *odd; i++)
+		if (!strcmp(word, odd[i][0])) {
+			strcpy(out, odd[i][1]);
+			return;
+		}
+	if (n < 4)
+		return;
+	for (size_t i = 0; i < sizeof tails / sizeof *tails; i++)
+		if (ends(word, tails[i][0])) {
+			strcpy(out + n - strlen(tails[i][0]), tails[i][1]);
+			return;
+		}
+	if (word[n - 1] == 's' && word[n - 2] != 's' && word[n - 2] != 'u' && word[n - 2] != 'i')
+		out[n - 1] = 0;
+}
+
+int spelling_near(const char *a, const char *b)
+{
+	size_t n = strlen(a), m = strlen(b), i = 0;
+
+	if (n > m)
+		return spelling_near(b, a);
+	if (m - n > 1)
+		return 0;
+	while (i < n && a[i] == b[i])
+		i++;
+	if (m > n)
+		return !strcmp(a + i, b + i + 1);
+	if (i == n)
+		return 0;
+	if (!strcmp(a + i + 1, b + i + 1))
+		return 1;
+	return i + 1 < n && a[i] == b[i + 1] && a[i + 1] == b[i] && !strcmp(a + i + 2, b + i + 2);
+}
+
+/* 1 where b is a with two neighbours exchanged. */
+static int exchanged(const char *a, const char *b)
+{
+	size_t i = 0;
+
+	if (strlen(a) != strlen(b) || !spelling_near(a, b))
+		return 0;
+	while (a[i] && a[i] == b[i])
+		i++;
+	return a[i] && a[i + 1] && a[i] == b[i + 1] && a[i + 1] == b[i];
+}
+
+/* Two letters the wrong way round are a slip in any word of three or more; another slip is told from another
+ * word only in a long one. */
+static int may_be(const char *word, const char *right)
+{
+	size_t n = strlen(right);
+
+	return n >= 3 &&
+	       (exchanged(word, right) || (n >= 6 && word[0] == right[0] && spelling_near(word, right)));
+}
+
+static void repair(struct token *w, const char *const *known, int known_count)
+{
+	char lemma[TOKEN_LENGTH];
+
+	if (strlen(w->text) < 3 || strlen(w->text) > TOKEN_LENGTH - 3 || isdigit((unsigned char)w->text[0]))
+		return;
+	token_lemma(w->text, lemma);
+	for (int i = 0; i < known_count; i++)
+		if (!strcmp(known[i], w->text) || !strcmp(known[i], lemma))
+			return;
+	for (int i = 0; i < closed_count; i++)
+		if (may_be(w->text, closed_words[i].text)) {
+			strcpy(w->text, closed_words[i].text);
+			w->closed = i;
+			return;
+		}
+	for (int i = 0; i < known_count; i++)
+		if (may_be(w->text, known[i]) && strlen(known[i]) < TOKEN_LENGTH) {
+			strcpy(w->text, known[i]);
+			return;
+		}
+}
+
+static int push(struct tokens *t, const char *text, int begin, int end, enum token_pause before)
+{
+	struct token *w = &t->word[t->n];
+	int n = 0;
+
+	if (t->n == TOKENS_MOST || begin == end)
+		return 0;
+	*w = (struct token){.span = {begin, end}, .before = before, .closed = -1};
+	for (int i = begin; i < end && n < TOKEN_LENGTH - 1; i++) {
+		if ((unsigned char)text[i] == 0xE2 && i + 2 < end && (unsigned char)text[i + 1] == 0x80 &&
+			((unsigned char)text[i + 2] == 0x99 || (unsigned char)text[i + 2] == 0x98)) {
+			w->text[n++] = '\'';
+			i += 2;
+		} else {
+			w->text[n++] = (char)tolower((unsigned char)text[i]);
+		}
+	}
+	w->closed = closed_find(w->text);
+	t->n++;
+	return 1;
+}
+
+/* Where a clitic begins in a word of lower case, or 0: "is|n't", "penguin|'s", "where|s". */
+static int clitic(const char *word)
+{
+	static const char *const bare[] = {"isnt", "arent", "doesnt", "dont", "didnt", "hasnt", "havent",
+		"wasnt", "wouldnt", "couldnt", "shouldnt"};
+	static const char *const bare_s[] = {"wheres", "whats", "thats", "theres", "whos"};
+	size_t n = strlen(word);
+
+	for (size_t i = 0; i < sizeof bare / sizeof *bare; i++)
+		if (!strcmp(word, bare[i]))
+			return (int)n - 2;
+	for (size_t i = 0; i < sizeof bare_s / sizeof *bare_s; i++)
+		if (!strcmp(word, bare_s[i]))
+			return (int)n - 1;
+	if (ends(word, "n't"))
+		return (int)n - 3;
+	for (size_t i = n; i-- > 1;)
+		if (word[i] == '\'' && n - i <= 3)
+			return (int)i;
+	return 0;
+}
+
+static void take_word(struct tokens *t, const char *text, int begin, int end, enum token_pause before,
+	const char *const *known, int known_count)
+{
+	struct token *w;
+	int cut, first = t->n;
+
+	while (begin < end && text[begin] == '\'')
+		begin++;
+	while (end > begin && text[end - 1] == '\'')
+		end--;
+	if (!push(t, text, begin, end, before))
+		return;
+	w = &t->word[first];
+	cut = end - begin < TOKEN_LENGTH ? clitic(w->text) : 0;
+	if (cut) {
+		/* the bytes before the clitic: the text may have a longer apostrophe */
+		int rest = (int)strlen(w->text) - cut, wide = 0;
+		for (int i = begin; i < end; i++)
+			wide += (unsigned char)text[i] >= 0x80;
+		int middle = end - rest - (wide && wide % 3 == 0 ? 2 : 0);
+		t->n = first;
+		if (middle <= begin || middle >= end)
+			middle = end;
+		push(t, text, begin, middle, before);
+		if (push(t, text, middle, end, PAUSE_NONE)) {
+			w = &t->word[t->n - 1];
+			if (strcmp(w->text, "nt") == 0)
+				strcpy(w->text, "n't");
+			else if (strcmp(w->text, "s") == 0)
+				strcpy(w->text, "'s");
+			w->closed = closed_find(w->text);
+		}
+		w = &t->word[first];
+	}
+	if (w->closed < 0)
+		repair(w, known, known_count);
+	for (int i = first; i < t->n; i++) {
+		token_lemma(t->word[i].text, t->word[i].lemma);
+		if (!strcmp(t->word[i].text, "is") || !strcmp(t->word[i].text, "its"))
+			strcpy(t->word[i].lemma, t->word[i].text);
+	}
+}
+
+/* Bytes of a character that parts words, 0 for one that does not; *pause rises to what it stands for. */
+static int parting(const char *s, enum token_pause *pause)
+{
+	const unsigned char *u = (const unsigned char *)s;
+	enum token_pause p = PAUSE_NONE;
+	int bytes = 0;
+
+	if (*u < 0x80) {
+		if (isalnum(*u) || *u == '\'')
+			return 0;
+		p = strchr(".?!;", *u) ? PAUSE_STOP : strchr(",:()[]/\"", *u) ? PAUSE_COMMA : PAUSE_NONE;
+		if (*u == '-' && (u[1] == '-' || u[1] == ' '))
+			p = PAUSE_COMMA;
+		/* a point within a number parts nothing */
+		if (*u == '.' && isdigit(u[1]))
+			p = PAUSE_NONE;
+		bytes = 1;
+	} else if (u[0] == 0xE2 && u[1] == 0x80) { /* dashes, curly quotes, ellipsis */
+		if (u[2] == 0x98 || u[2] == 0x99)
+			return 0;
+		p = PAUSE_COMMA;
+		bytes = u[2] ? 3 : 2;
+	} else if (u[0] == 0xC2 && u[1] == 0xA0) { /* a space that does not break */
+		bytes = 2;
+	} else {
+		return 0;
+	}
+	if (p > *pause)
+		*pause = p;
+	return bytes;
+}
+
+void tokens_take(struct tokens *t, const char *text, const char *const *known, int known_count)
+{
+	enum token_pause pause = PAUSE_NONE;
+	int at = 0, bytes;
+
+	t->n = 0;
+	while (text[at] && t->n < TOKENS_MOST) {
+		int begin = at;
+		if ((bytes = parting(text + at, &pause))) {
+			at += bytes;
+			continue;
+		}
+		while (text[at] && !parting(text + at, &(enum token_pause){PAUSE_NONE}))
+			at++;
+		/* "t-shirt", "e-mail": one letter before a hyphen is no word */
+		if (at - begin == 1 && text[at] == '-' && isalpha((unsigned char)text[at + 1]))
+			for (at++; text[at] && !parting(text + at, &(enum token_pause){PAUSE_NONE});)
+				at++;
+		int before = t->n;
+		take_word(t, text, begin, at, pause, known, known_count);
+		if (t->n > before)
+			pause = PAUSE_NONE;
+	}
+}
+
+static int give(struct tokens *t, int begin, int end, int piece, int word)
+{
+	while (word < t->n && t->word[word].span.end <= begin)
+		word++;
+	if (word < t->n && t->word[word].span.begin < end) {
+		if (!t->word[word].pieces)
+			t->word[word].piece = piece;
+		t->word[word].pieces = piece + 1 - t->word[word].piece;
+	}
+	return word;
+}
+
+/* Steps over white space and what the encoder drops. */
+static int skip_space(const char *text, int at)
+{
+	while (text[at] && (isspace((unsigned char)text[at]) || iscntrl((unsigned char)text[at])))
+		at++;
+	return at;
+}
+
+int tokens_pieces(struct tokens *t, const char *text, const char *pieces)
+{
+	int at = 0, word = 0, piece = 0;
+
+	for (const char *p = pieces; *p;) {
+		int length = (int)strcspn(p, " "), begin;
+		const char *s = p;
+		begin = at = skip_space(text, at);
+		if (length >= 5 && !strncmp(p, "[UNK]", 5)) {
+			if (text[at] && ispunct((unsigned char)text[at]))
+				at++;
+			else
+				while (text[at] && !isspace((unsigned char)text[at]) &&
+					!ispunct((unsigned char)text[at]))
+					at++;
+		} else {
+			int skip = length > 2 && s[0] == '#' && s[1] == '#' ? 2 : 0;
+			for (int k = skip; k < length && text[at];) {
+				/* one character each; accents and capitals are gone from the piece */
+				for (k++; k < length && ((unsigned char)s[k] & 0xC0) == 0x80;)
+					k++;
+				for (at++; ((unsigned char)text[at] & 0xC0) == 0x80;)
+					at++;
+			}
+		}
+		word = give(t, begin, at, piece, word);
+		p += length;
+		p += *p == ' ';
+		piece++;
+	}
+	return piece;
+}

@@ -1,0 +1,46 @@
+/* The one tokeniser of sentences: words with their place in the text, their lemma and the pause before them.
+ *
+ * Clitics are words of their own ("isn't" is "is" and "n't", "penguin's" is "penguin" and "'s"), also where
+ * the apostrophe is left out ("isnt", "wheres"); hyphens part words. Any bytes may come in; what is not ASCII
+ * is part of a word. */
+#ifndef LANG_TOKENS_H
+#define LANG_TOKENS_H
+
+#include "lang/parse.h"
+
+enum {
+	TOKENS_MOST = 256, /* words of a sentence; what comes after them is not looked at */
+	TOKEN_LENGTH = 32, /* bytes of a word with its 0; longer ones are cut */
+};
+
+enum token_pause { PAUSE_NONE, PAUSE_COMMA, PAUSE_STOP }; /* "," ":" "-" and brackets; "." "?" "!" ";" */
+
+struct token {
+	struct parse_span span;
+	char text[TOKEN_LENGTH];  /* lower case, spelling repaired */
+	char lemma[TOKEN_LENGTH]; /* singular */
+	enum token_pause before;
+	int closed; /* its closed_word, or -1 */
+	int piece, pieces;
+};
+
+struct tokens {
+	int n;
+	struct token word[TOKENS_MOST];
+};
+
+/* `known` (known_count, may be NULL): words that are spelt right besides the closed ones, as a scene's
+ * vocabulary. */
+void tokens_take(struct tokens *t, const char *text, const char *const *known, int known_count);
+
+/* Gives each word its word pieces: pieces of the encoder with a space between, as text.safetensors has them;
+ * continuations begin with "##". Returns how many pieces there are. */
+int tokens_pieces(struct tokens *t, const char *text, const char *pieces);
+
+/* Singular of a noun ("boxes", "shelves", "mice"); others as they are. out holds TOKEN_LENGTH bytes. */
+void token_lemma(const char *word, char *out);
+
+/* 1 where one insertion, deletion, replacement or exchange of neighbours makes a into b. */
+int spelling_near(const char *a, const char *b);
+
+#endif
