@@ -211,6 +211,7 @@ static int lift(struct run *r, struct err *e)
 
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
+	static const struct parser parser = {0};
 	double confidence = 0;
 	size_t moved = 0;
 
@@ -222,7 +223,7 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 	cli_progress_end(&r->progress);
 	if (bad || lifted_add_sentences(&r->model, &r->text, r->sentence_object, r->names, e) ||
 		(!options.is_as_masked &&
-			recognise(&r->model, &r->scene.splats, &r->scene.cameras, &moved, e)))
+			recognise(&r->model, &r->scene.splats, &r->scene.cameras, &parser, &moved, e)))
 		return -1;
 	for (size_t o = 0; o < r->model.objects; o++)
 		confidence += (double)r->model.confidence[o] / (double)r->model.objects;

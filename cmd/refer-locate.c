@@ -84,8 +84,9 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
 		anymodel_read(&r->model, options.model, e) || choose_refs(r, c, e))
 		return -1;
+	static const struct parser parser = {0};
 	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
-		r->refs, r->count, 1, CHOOSE_ALL, ASKED_LEAST};
+		r->refs, r->count, 1, CHOOSE_ALL, ASKED_LEAST, NULL, &parser};
 	if (anymodel_answer(&r->model, &ask, &r->asked, e))
 		return -1;
 	r->located = mem_zalloc(r->asked.answers, sizeof *r->located, "objects", e);

@@ -42,7 +42,7 @@ static const struct cli_option table[] = {
 	{"min-probability", 0, CLI_REAL, &options.least, "P",
 		"lifted models: a sentence less likely to mean anything gets no mask (default 0.65)", 0, 1},
 	{"without", 0, CLI_STRING, &options.without, "PART,...",
-		"lifted models: choose without words, names, alike, colours, sizes, relations or sentence", 0,
+		"lifted models: choose without words, alike, colours, relations, except or sentence", 0,
 		0},
 	{"amodal", 0, CLI_FLAG, &options.is_amodal, NULL,
 		"outlines of whole objects as if nothing hid them, and the share in sight", 0, 0},
@@ -142,8 +142,9 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 		cli_warn(c, "%s: no %s in this split",
 			r->view_count ? file_name(options.text) : options.scene,
 			r->view_count ? "sentence" : "view");
+	static const struct parser parser = {0};
 	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
-		r->refs, r->ref_count, !options.is_plain, options.parts, options.least};
+		r->refs, r->ref_count, !options.is_plain, options.parts, options.least, NULL, &parser};
 	int bad = anymodel_answer(&r->model, &ask, &r->asked, e) ||
 		  !(r->wholes = mem_zalloc(r->asked.answers, sizeof *r->wholes, "objects", e));
 	if (!bad && options.is_amodal)

@@ -57,7 +57,7 @@ int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, stru
 	const struct model *t = &m->trained;
 	const float *means = q->scene->splats.means;
 	const struct asked_of of = {&q->scene->splats, &q->scene->cameras, q->text->offsets, q->text->words,
-		q->text->pieces, q->which, q->count};
+		q->text->texts, q->text->pieces, q->from, q->parser, q->which, q->count};
 	struct rows rows = {0};
 
 	*a = (struct asked){0};

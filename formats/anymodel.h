@@ -28,6 +28,8 @@ struct anymodel_ask {
 	int wants_calibration; /* of trained models, and the next are of lifted ones: see refer/asked.h */
 	unsigned parts;
 	double least;
+	const struct viewpoint *from; /* (count) or NULL */
+	const struct parser *parser;
 };
 
 /* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text does not fit. */

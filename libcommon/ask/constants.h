@@ -18,8 +18,44 @@
 #define BEST_SOFT 0.04 /* differences that are told apart: of lengths, and of logarithms of sizes */
 #define BEST_SOFT_SIZE 0.06
 
-/* What parts of a phrase say when they do not hold. */
+/* What parts of a phrase leave to an object for which they do not hold. A noun that is contradicted weighs more
+ * than a colour, and a colour more than another attribute. */
+#define NOUN_LEAST 0.005
+#define COLOUR_LEAST 0.03
+#define ATTRIBUTE_LEAST 0.4
+#define MODIFIER_LEAST 0.6  /* "soup" of "soup dish" */
+#define PREDICATE_LEAST 0.3 /* what a thing does or is for */
 #define RELATION_LEAST 0.02
-#define COLOUR_LEAST 0.05
+#define SIZE_LEAST 0.4	  /* "large" */
+#define EXCEPT_LEAST 0.01
+#define GROUP_ELSE 0.02	  /* "of the two cups", and it is neither */
+#define OUT_OF_SIGHT 0.02 /* a picture is spoken of, and it is not in it */
+
+#define GENERIC_THERE 0.95    /* how known a thing is that is called "thing" */
+#define UNKNOWN_RELATION 0.5  /* how true a relation to something unknown is */
+#define SAID_WORTH 0.85	      /* a relation that a training sentence has */
+#define RELATION_THERE 0.05   /* how true a relation has to be for its thing to be there */
+#define COLOUR_SHARE 0.15     /* the share of a thing's colours at which it half has a colour */
+#define LOOKS_WORTH 1	      /* how fast look-alikes share fewer words as they look less alike */
+
+/* What words are worth: cosines of word vectors at which two words are as likely the same thing as not. */
+#define NOUN_HALF 0.6
+#define NOUN_SOFT 0.06
+#define ATTRIBUTE_HALF 0.55
+#define ATTRIBUTE_SOFT 0.08
+#define WORDNET_WORTH 0.95
+#define NAME_PART 0.3 /* a word of a name that is not its last */
+
+/* The answer. */
+#define SENTENCE_WEIGHT 0.5 /* of the sentences' cosine, beside the logarithm of the fit */
+#define SCORE_WEIGHT 1
+#define SEVERAL_SHARE 0.35 /* of the best fit: what is one of several meant */
+#define COUNTED_SHARE 0.05 /* the same where their number is said */
+/* P that the thing is there: logistic regression. */
+#define PRESENCE_BASE 3.0
+#define PRESENCE_OWN 1.5
+#define PRESENCE_ANCHORS 1.0
+#define PRESENCE_UNKNOWN 0.3
+#define UNKNOWN_ANCHOR 0.6
 
 #endif

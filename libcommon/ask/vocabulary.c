@@ -1,8 +1,8 @@
 #include "ask/vocabulary.h"
 
+#include "ask/constants.h"
 #include "base/mem.h"
 #include "lang/colours.h"
-#include "lang/phrases.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,34 +10,41 @@
 
 void vocabulary_free(struct vocabulary *v)
 {
+	for (size_t r = 0; v->parses && r < v->lifted->sentences; r++)
+		parse_free(&v->parses[r]);
+	free(v->parses);
 	free(v->mean);
 	free(v->sentence_mean);
+	free(v->items);
 	free(v->vectors);
-	free(v->begin);
-	free(v->of);
 	free(v->sentences);
+	free(v->nouns);
+	free(v->lemmas);
 	free(v->scratch);
-	free(v->own);
+	free(v->word);
 	*v = (struct vocabulary){0};
 }
 
-static double length_of(const double *x, int width)
+/* out (width) of length 1: x over its length. */
+static void take_direction(const double *x, int width, float *out)
 {
-	double sum = 0;
+	double square = 0;
 
 	for (int d = 0; d < width; d++)
-		sum += x[d] * x[d];
-	return sqrt(sum);
+		square += x[d] * x[d];
+	const double length = sqrt(square);
+	for (int d = 0; d < width; d++)
+		out[d] = length > 0 ? (float)(x[d] / length) : 0;
 }
 
 /* out (width) of length 1: the mean direction of a word's pieces, less the scene's mean. */
-static void word_vector(struct vocabulary *v, const struct lang_word *w, const float *vectors, float *out)
+static void word_vector(struct vocabulary *v, const struct parse_word *w, const float *vectors, float *out)
 {
 	const int width = v->lifted->width;
 	double *sum = v->scratch;
 
 	memset(sum, 0, (size_t)width * sizeof *sum);
-	for (int p = w->first; p < w->first + w->count; p++) {
+	for (int p = w->piece; p < w->piece + w->pieces; p++) {
 		const float *x = vectors + (size_t)p * (size_t)width;
 		double square = 0;
 		for (int d = 0; d < width; d++)
@@ -45,27 +52,22 @@ static void word_vector(struct vocabulary *v, const struct lang_word *w, const f
 		for (int d = 0; d < width && square > 0; d++)
 			sum[d] += (x[d] - v->mean[d]) / sqrt(square);
 	}
-	const double length = length_of(sum, width);
-	for (int d = 0; d < width; d++)
-		out[d] = length > 0 ? (float)(sum[d] / length) : 0;
+	take_direction(sum, width, out);
 }
 
-/* out (width) of length 1: the mean of pieces, less `less`. */
-static void sentence_vector(
-	struct vocabulary *v, const float *vectors, size_t words, const double *less, float *out)
+/* out (width) of length 1: the mean of pieces, less sentence_mean. */
+static void sentence_vector(struct vocabulary *v, const float *vectors, size_t pieces, float *out)
 {
 	const int width = v->lifted->width;
 	double *sum = v->scratch;
 
 	for (int d = 0; d < width; d++) {
 		sum[d] = 0;
-		for (size_t w = 0; w < words; w++)
+		for (size_t w = 0; w < pieces; w++)
 			sum[d] += vectors[w * (size_t)width + (size_t)d];
-		sum[d] = sum[d] / (double)(words ? words : 1) - less[d];
+		sum[d] = sum[d] / (double)(pieces ? pieces : 1) - v->sentence_mean[d];
 	}
-	const double length = length_of(sum, width);
-	for (int d = 0; d < width; d++)
-		out[d] = length > 0 ? (float)(sum[d] / length) : 0;
+	take_direction(sum, width, out);
 }
 
 /* Both means, of length not 1. */
@@ -85,55 +87,108 @@ static void find_means(struct vocabulary *v)
 	}
 }
 
-/* The target words of all training sentences of one object after another. */
-static void keep_words(struct vocabulary *v, struct lang_sentence *s)
+static const float *vectors_of(const struct lifted *l, size_t r)
 {
-	const struct lifted *l = v->lifted;
-	const size_t width = (size_t)l->width;
-
-	for (size_t o = 0; o < l->objects; o++) {
-		v->begin[o] = v->n;
-		for (size_t r = 0; r < l->sentences; r++) {
-			if ((size_t)l->object[r] != o)
-				continue;
-			lang_sentence_read(s, l->pieces[r]);
-			for (int i = 0; i < s->target.n; i++) {
-				v->of[v->n] = r;
-				word_vector(v, &s->words[s->target.words[i]],
-					l->words + (size_t)l->offsets[r] * width,
-					v->vectors + width * v->n++);
-			}
-		}
-	}
-	v->begin[l->objects] = v->n;
+	return l->words + (size_t)l->offsets[r] * (size_t)l->width;
 }
 
-int vocabulary_make(struct vocabulary *v, const struct lifted *l, struct err *e)
+static int add_noun(struct vocabulary *v, const char *lemma, size_t *noun, struct err *e)
+{
+	size_t capacity = v->noun_capacity;
+
+	for (*noun = 0; *noun < v->noun_count; ++*noun)
+		if (!strcmp(v->lemmas[*noun], lemma))
+			return 0;
+	if (mem_grow((void **)&v->lemmas, &capacity, v->noun_count + 1, sizeof *v->lemmas, "nouns", e) ||
+		mem_grow((void **)&v->nouns, &v->noun_capacity, v->noun_count + 1, sizeof *v->nouns, "nouns", e))
+		return -1;
+	v->lemmas[v->noun_count] = lemma;
+	wordnet_find(&v->nouns[v->noun_count++], lemma);
+	return 0;
+}
+
+static int add_item(struct vocabulary *v, size_t r, int word, enum vocabulary_role role,
+	enum parse_relation relation, struct err *e)
+{
+	const struct lifted *l = v->lifted;
+	const struct parse_word *w = &v->parses[r].words[word];
+	const size_t width = (size_t)l->width;
+	size_t capacity = v->capacity;
+
+	if (mem_grow((void **)&v->items, &capacity, v->n + 1, sizeof *v->items, "vocabulary", e) ||
+		mem_grow((void **)&v->vectors, &v->capacity, v->n + 1, width * sizeof *v->vectors, "vocabulary", e))
+		return -1;
+	struct vocabulary_item *item = &v->items[v->n];
+	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0};
+	if ((role == VOCABULARY_NOUN || role == VOCABULARY_ANCHOR) && add_noun(v, w->lemma, &item->noun, e))
+		return -1;
+	word_vector(v, w, vectors_of(l, r), v->vectors + width * v->n++);
+	return 0;
+}
+
+/* The words of a phrase: its head by one role, the others as what is said of it. */
+static int add_phrase(struct vocabulary *v, size_t r, const struct parse_phrase *f, enum vocabulary_role head,
+	enum vocabulary_role other, enum parse_relation relation, struct err *e)
+{
+	int bad = 0;
+
+	for (int i = 0; i < f->noun.n && !bad; i++)
+		bad = add_item(v, r, f->noun.item[i], i + 1 == f->noun.n ? head : other, relation, e);
+	for (int i = 0; i < f->attributes.n && !bad; i++)
+		bad = add_item(v, r, f->attributes.item[i], other, relation, e);
+	return bad;
+}
+
+static int add_sentence(struct vocabulary *v, size_t r, struct err *e)
+{
+	const struct parse *p = &v->parses[r];
+	int bad = add_phrase(v, r, &p->phrases[0], VOCABULARY_NOUN, VOCABULARY_ATTRIBUTE, PARSE_OTHER, e);
+
+	for (int c = 0; c < p->clause_count && !bad; c++) {
+		const struct parse_clause *clause = &p->clauses[c];
+		for (int k = 0; k < clause->anchors.n && !bad; k++)
+			bad = add_phrase(v, r, &p->phrases[clause->anchors.item[k]], VOCABULARY_ANCHOR,
+				VOCABULARY_OTHER, clause->relation, e);
+		for (int k = 0; k < clause->words.n && !bad; k++)
+			bad = add_item(v, r, clause->words.item[k], VOCABULARY_OTHER, clause->relation, e);
+	}
+	for (int k = 0; k < p->unexplained.n && !bad; k++)
+		bad = add_item(v, r, p->unexplained.item[k], VOCABULARY_OTHER, PARSE_OTHER, e);
+	return bad;
+}
+
+static int read_sentences(struct vocabulary *v, const struct parser *parser, struct err *e)
+{
+	const struct lifted *l = v->lifted;
+	int bad = 0;
+
+	for (size_t r = 0; r < l->sentences && !bad; r++) {
+		const struct parser_vectors vectors = {
+			l->pieces[r], vectors_of(l, r), (int)(l->offsets[r + 1] - l->offsets[r]), l->width};
+		bad = parse_sentence(&v->parses[r], parser, l->texts[r], &vectors, e) || add_sentence(v, r, e);
+	}
+	return bad ? -1 : 0;
+}
+
+int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct parser *parser, struct err *e)
 {
 	const size_t width = (size_t)l->width;
-	struct lang_sentence *s = mem_alloc(1, sizeof *s, "sentence", e);
 
 	*v = (struct vocabulary){.lifted = l, .without = l->sentences};
+	v->parses = mem_zalloc(l->sentences, sizeof *v->parses, "vocabulary", e);
 	v->mean = mem_zalloc(width, sizeof *v->mean, "vocabulary", e);
 	v->sentence_mean = mem_zalloc(width, sizeof *v->sentence_mean, "vocabulary", e);
-	v->vectors = mem_alloc((size_t)l->offsets[l->sentences], width * sizeof *v->vectors, "vocabulary", e);
-	v->begin = mem_alloc(l->objects + 1, sizeof *v->begin, "vocabulary", e);
-	v->of = mem_alloc((size_t)l->offsets[l->sentences], sizeof *v->of, "vocabulary", e);
-	v->sentences = mem_alloc(l->sentences + 1, width * sizeof *v->sentences, "vocabulary", e);
+	v->sentences = mem_alloc(l->sentences, width * sizeof *v->sentences, "vocabulary", e);
 	v->scratch = mem_alloc(width, sizeof *v->scratch, "vocabulary", e);
-	v->own = mem_alloc(l->objects, sizeof *v->own, "vocabulary", e);
-	if (!s || !v->mean || !v->sentence_mean || !v->vectors || !v->begin || !v->of || !v->sentences ||
-		!v->scratch || !v->own) {
-		free(s);
+	v->word = mem_alloc(width, sizeof *v->word, "vocabulary", e);
+	if (!v->parses || !v->mean || !v->sentence_mean || !v->sentences || !v->scratch || !v->word)
 		return -1;
-	}
 	find_means(v);
-	keep_words(v, s);
+	if (read_sentences(v, parser, e))
+		return -1;
 	for (size_t r = 0; r < l->sentences; r++)
-		sentence_vector(v, l->words + (size_t)l->offsets[r] * width,
-			(size_t)(l->offsets[r + 1] - l->offsets[r]), v->sentence_mean,
+		sentence_vector(v, vectors_of(l, r), (size_t)(l->offsets[r + 1] - l->offsets[r]),
 			v->sentences + r * width);
-	free(s);
 	return 0;
 }
 
@@ -146,56 +201,123 @@ static double dot(const float *a, const float *b, size_t n)
 	return sum;
 }
 
+static double step(double x)
+{
+	return 1 / (1 + exp(-fmin(fmax(x, -40), 40)));
+}
+
 static char lower(char c)
 {
 	return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
-/* Whether a word, or it without an s at its end, is a word of a name. */
+/* Whether a word is a word of a name: 2 the last one that is no number, 1 another. */
 static int is_in_name(const char *word, const char *name)
 {
 	const size_t length = strlen(word);
+	int is = 0;
 
 	for (const char *p = name; *p; p += strspn(p, " -_")) {
 		size_t n = strcspn(p, " -_"), same = 0;
 		while (same < n && same < length && lower(p[same]) == word[same])
 			same++;
-		if (n && same == n && (length == n || (length == n + 1 && word[n] == 's')))
-			return 1;
+		if (n && same == n && length == n)
+			is = 2;
+		else if (n && (*p < '0' || *p > '9'))
+			is = is ? 1 : 0;
 		p += n;
 	}
-	return 0;
+	return is;
 }
 
-void vocabulary_match(struct vocabulary *v, const struct lang_word *w, const float *vectors, int words,
-	int names, const struct arrangement *alike, double *match)
+/* What the cosine of two words of a role is worth. */
+static double worth(double cosine, double half, double soft)
+{
+	return step((cosine - half) / soft);
+}
+
+void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
 {
 	const struct lifted *l = v->lifted;
-	const size_t width = (size_t)l->width;
-	float *mine = v->sentences + l->sentences * width;
+	const struct parse_word *word = &s->parse->words[w];
+	const size_t width = (size_t)l->width, objects = l->objects;
+	struct wordnet_noun noun;
 
-	word_vector(v, w, vectors, mine);
-	for (size_t o = 0; o < l->objects; o++) {
-		double best = -1;
-		for (size_t i = v->begin[o]; i < v->begin[o + 1] && words; i++)
-			if (v->of[i] != v->without)
-				best = fmax(best, dot(mine, v->vectors + i * width, width));
-		best = best < -0.999 ? 0 : best;
-		if (names && is_in_name(w->text, l->names[o]))
-			best = fmax(best, VOCABULARY_NAME);
-		v->own[o] = best;
+	word_vector(v, word, s->vectors, v->word);
+	wordnet_find(&noun, word->lemma);
+	for (size_t o = 0; o < objects; o++) {
+		const int named = is_in_name(word->lemma, l->names[o]);
+		match[o] = named == 2 ? 1 : named ? NAME_PART : 0;
 	}
-	for (size_t o = 0; o < l->objects; o++) {
-		match[o] = v->own[o];
-		for (size_t k = 0; k < l->objects && alike; k++)
-			match[o] = fmax(
-				match[o], v->own[k] + VOCABULARY_UNLIKE * arrangement_alike(alike, o, k));
+	match[objects] = 0;
+	for (size_t i = 0; i < v->n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->sentence == v->without ||
+			(item->role != VOCABULARY_NOUN && item->role != VOCABULARY_ANCHOR))
+			continue;
+		double x = !strcmp(word->lemma, item->lemma) ? 1 : 0;
+		if (x < 1) {
+			x = worth(dot(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
+			x = fmax(x, WORDNET_WORTH * wordnet_fits(&noun, &v->nouns[item->noun]));
+		}
+		double *to = &match[item->role == VOCABULARY_NOUN ? item->object : objects];
+		*to = fmax(*to, x);
 	}
 }
 
-int vocabulary_colour(const struct arrangement *a, const struct lang_word *w, double *fit)
+void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
 {
-	const int colour = colour_word(w->text);
+	const struct lifted *l = v->lifted;
+	const struct parse_word *word = &s->parse->words[w];
+	const size_t width = (size_t)l->width;
+
+	word_vector(v, word, s->vectors, v->word);
+	for (size_t o = 0; o < l->objects; o++)
+		match[o] = is_in_name(word->lemma, l->names[o]) ? 1 : 0;
+	for (size_t i = 0; i < v->n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->sentence == v->without)
+			continue;
+		double x = worth(dot(v->word, v->vectors + i * width, width), ATTRIBUTE_HALF, ATTRIBUTE_SOFT);
+		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
+		match[item->object] = fmax(match[item->object], x);
+	}
+}
+
+/* What a training sentence's relation says of another: on a shelf is above it. */
+static int is_like(enum parse_relation said, enum parse_relation meant)
+{
+	static const unsigned on = 1U << PARSE_ON | 1U << PARSE_ABOVE | 1U << PARSE_INSIDE;
+	static const unsigned near = 1U << PARSE_NEAR | 1U << PARSE_WITH;
+
+	return said == meant || ((on >> said & 1) && (on >> meant & 1)) ||
+	       ((near >> said & 1) && (near >> meant & 1)) ||
+	       ((1U << PARSE_NEAR | 1U << PARSE_OTHER) >> meant & 1);
+}
+
+void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
+	enum parse_relation relation, double *match)
+{
+	const struct lifted *l = v->lifted;
+	const struct parse_word *word = &s->parse->words[w];
+	const size_t width = (size_t)l->width;
+
+	word_vector(v, word, s->vectors, v->word);
+	memset(match, 0, l->objects * sizeof *match);
+	for (size_t i = 0; i < v->n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->sentence == v->without || item->role != VOCABULARY_ANCHOR ||
+			!is_like(item->relation, relation))
+			continue;
+		double x = worth(dot(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
+		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
+		match[item->object] = fmax(match[item->object], x);
+	}
+}
+
+int vocabulary_colour(const struct arrangement *a, const char *word, double *fit)
+{
+	const int colour = colour_word(word);
 	double lab[3];
 
 	if (colour < 0)
@@ -210,61 +332,21 @@ int vocabulary_colour(const struct arrangement *a, const struct lang_word *w, do
 	return 1;
 }
 
-/* -1 small, 0 medium, 1 large; anything else no word of size. */
-static int size_word(const char *word)
-{
-	if (lang_is_one_of(word, "small little tiny miniature mini"))
-		return -1;
-	if (lang_is_one_of(word, "medium mid midsized"))
-		return 0;
-	return lang_is_one_of(word, "big large huge giant") ? 1 : 2;
-}
-
-static double bulk(const struct arranged *o)
-{
-	double sum = 0;
-
-	for (int k = 0; k < 3; k++)
-		sum += log(fmax(o->high[k] - o->low[k], 1e-6)) / 3;
-	return sum;
-}
-
-int vocabulary_size(const struct arrangement *a, const struct lang_word *w, double *fit)
-{
-	const int expected = size_word(w->text);
-	double sum = 0, square = 0, n = 0;
-
-	if (expected > 1)
-		return 0;
-	for (size_t o = 0; o < a->n; o++)
-		if (a->objects[o].is_there) {
-			sum += bulk(&a->objects[o]);
-			square += bulk(&a->objects[o]) * bulk(&a->objects[o]);
-			n++;
-		}
-	const double mean = sum / fmax(n, 1), deviation = sqrt(fmax(square / fmax(n, 1) - mean * mean, 1e-6));
-	for (size_t o = 0; o < a->n; o++) {
-		const double z = a->objects[o].is_there ? (bulk(&a->objects[o]) - mean) / deviation : 0;
-		fit[o] = -0.5 * (z - expected) * (z - expected) / (1.5 * 1.5);
-	}
-	return 1;
-}
-
-size_t vocabulary_sentence(
-	struct vocabulary *v, const char *pieces, const float *vectors, size_t words, double *match)
+size_t vocabulary_whole(struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match)
 {
 	const struct lifted *l = v->lifted;
 	const size_t width = (size_t)l->width;
-	float *mine = v->sentences + l->sentences * width;
 	size_t same = l->objects;
 
-	sentence_vector(v, vectors, words, v->sentence_mean, mine);
+	sentence_vector(v, vectors, pieces, v->word);
 	for (size_t o = 0; o < l->objects; o++)
 		match[o] = -1;
 	for (size_t r = 0; r < l->sentences; r++) {
 		const size_t o = (size_t)l->object[r];
-		match[o] = fmax(match[o], dot(mine, v->sentences + r * width, width));
-		if (pieces && same == l->objects && !strcmp(pieces, l->pieces[r]))
+		if (r == v->without)
+			continue;
+		match[o] = fmax(match[o], dot(v->word, v->sentences + r * width, width));
+		if (text && same == l->objects && !strcmp(text, l->texts[r]))
 			same = o;
 	}
 	return same;

@@ -1,49 +1,74 @@
-/* The words by which training sentences call each lifted object, and how other words match them. */
+/* The words by which training sentences call each lifted object and say where it is, and how other words match
+ * them. */
 #ifndef ASK_VOCABULARY_H
 #define ASK_VOCABULARY_H
 
-#include "base/err.h"
-#include "lang/sentence.h"
 #include "ask/arrangement.h"
+#include "base/err.h"
+#include "lang/parser.h"
+#include "lang/wordnet.h"
 #include "refer/lifted.h"
+
+/* A sentence and what is known of it. */
+struct vocabulary_sentence {
+	const struct parse *parse;
+	const float *vectors; /* (pieces, width) */
+	size_t pieces;
+};
+
+enum vocabulary_role {
+	VOCABULARY_NOUN,      /* what the object is called */
+	VOCABULARY_ATTRIBUTE, /* what is said of it */
+	VOCABULARY_ANCHOR,    /* a noun that a clause of it names: what it is near, on, with */
+	VOCABULARY_OTHER      /* other words of its clauses */
+};
+
+struct vocabulary_item {
+	enum vocabulary_role role;
+	size_t object, sentence;
+	const char *lemma;
+	enum parse_relation relation; /* of VOCABULARY_ANCHOR: the clause's */
+	size_t noun;		      /* of VOCABULARY_NOUN and ANCHOR: into nouns */
+};
 
 struct vocabulary {
 	const struct lifted *lifted;
+	struct parse *parses;  /* (R) of the training sentences */
 	double *mean;	       /* (width) of all word pieces of the training sentences */
 	double *sentence_mean; /* (width) of the sentences' means */
-	size_t n;
-	float *vectors;	  /* (n,width) of length 1: target words of the training sentences, less the mean */
-	size_t *begin;	  /* (O+1) words begin[o] to begin[o+1] are of object o */
-	size_t *of;	  /* (n) the sentence that each is of */
+	size_t n, capacity;
+	struct vocabulary_item *items;
+	float *vectors;	  /* (n,width) of length 1: the items' words, less the mean */
 	float *sentences; /* (R,width) of length 1: means of the sentences, less sentence_mean */
-	size_t without;	  /* the training sentence whose words do not count, for the caller to set; R: none */
-	double *scratch, *own; /* (width), (O) */
+	size_t noun_count, noun_capacity;
+	struct wordnet_noun *nouns; /* of different lemmas */
+	const char **lemmas;	    /* (noun_count) */
+	size_t without;		    /* the training sentence whose words do not count, for the caller to set; R: none */
+	double *scratch;	    /* (width) */
+	float *word;		    /* (width) */
 };
 
 /* Refers to l, which must outlive it. Returns 0, or -1 with *e set; vocabulary_free after either. */
-int vocabulary_make(struct vocabulary *v, const struct lifted *l, struct err *e);
+int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct parser *parser, struct err *e);
 void vocabulary_free(struct vocabulary *v);
 
-/* match (O): the best cosine of a word, whose sentence has these vectors of pieces, with an object's words
- * (where `words`; 0 where it has none), or VOCABULARY_NAME where it is a word of the object's name (where
- * `names`). With `alike`, objects that look the same share theirs. */
-#define VOCABULARY_NAME 0.95
-#define VOCABULARY_UNLIKE 0.07
-void vocabulary_match(struct vocabulary *v, const struct lang_word *w, const float *vectors, int words,
-	int names, const struct arrangement *alike, double *match);
+/* match (O + 1): how likely an object is called by word w of a sentence, in [0,1]: 1 where its name or a training
+ * sentence calls it so; what WordNet thinks of the two nouns; or what the cosine of their vectors is worth. The
+ * last is of the best thing that training sentences name and that is no object: "on the shelf". */
+void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
-/* fit (O): the share of an object's colours that a colour word fits, in [0,1]. 0 where it is no colour word.
- */
-int vocabulary_colour(const struct arrangement *a, const struct lang_word *w, double *fit);
+/* match (O): how far an object is said to be what a word says, as an attribute or in any other way, in [0,1]. */
+void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
-/* fit (O) at most 0: how well an object's size fits a word as "small", "medium" or "large", from -1/2 of the
- * square of how far log bulk is from one deviation below, at, or above the objects' mean, in units of 1.5. 0
- * where it is no such word. */
-int vocabulary_size(const struct arrangement *a, const struct lang_word *w, double *fit);
+/* match (O) in [0,1]: that a training sentence has the object in a like relation to what word w names. */
+void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
+	enum parse_relation relation, double *match);
 
-/* match (O): the best cosine of the mean of a sentence's pieces with that of an object's training sentences,
- * -1 where it has none. Returns the object of the training sentence of the same pieces, or O. */
-size_t vocabulary_sentence(
-	struct vocabulary *v, const char *pieces, const float *vectors, size_t words, double *match);
+/* fit (O): the share of an object's colours that a colour word fits, in [0,1]. 0 where it is no colour word. */
+int vocabulary_colour(const struct arrangement *a, const char *word, double *fit);
+
+/* match (O): the best cosine of the mean of a sentence's pieces with that of an object's training sentences, -1
+ * where it has none. Returns the object of the training sentence of the same text, or O; text may be NULL. */
+size_t vocabulary_whole(struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match);
 
 #endif

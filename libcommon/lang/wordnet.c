@@ -1,0 +1,90 @@
+#include "lang/wordnet.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef HAVE_WORDNET
+#include <unistd.h>
+#include <wn.h>
+
+enum { DEEPEST = 10 };
+
+int wordnet_is_there(void)
+{
+	static int is_open = -1;
+
+	if (is_open < 0) {
+		const char *folder = getenv("WNSEARCHDIR");
+		/* libwordnet complains on stderr of what is not there */
+		is_open = !access(folder ? folder : "/usr/share/wordnet", R_OK) && !wninit();
+	}
+	return is_open;
+}
+
+/* Adds a synset and what it is a kind of. */
+static void climb(struct wordnet_noun *to, long synset, int depth, int sense)
+{
+	static char none[] = "";
+
+	if (to->n == WORDNET_UP || depth > DEEPEST)
+		return;
+	to->up[to->n].synset = synset;
+	to->up[to->n].depth = (short)depth;
+	to->up[to->n++].sense = (short)sense;
+	SynsetPtr s = read_synset(NOUN, synset, none);
+	for (int i = 0; s && i < s->ptrcount; i++)
+		if (s->ptrtyp[i] == HYPERPTR && s->ppos[i] == NOUN)
+			climb(to, s->ptroff[i], depth + 1, sense);
+	if (s)
+		free_synset(s);
+}
+
+void wordnet_find(struct wordnet_noun *to, const char *lemma)
+{
+	char word[128];
+
+	to->n = 0;
+	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
+		return;
+	strcpy(word, lemma);
+	IndexPtr index = index_lookup(word, NOUN);
+	for (int i = 0; index && i < index->off_cnt && i < WORDNET_SENSES; i++)
+		climb(to, (long)index->offset[i], 0, i);
+	if (index)
+		free_index(index);
+}
+#else
+int wordnet_is_there(void)
+{
+	return 0;
+}
+
+void wordnet_find(struct wordnet_noun *to, const char *lemma)
+{
+	(void)lemma;
+	to->n = 0;
+}
+#endif
+
+/* A step up or down, and a rarer sense, each make it so much less likely. */
+static const double per_step = 0.93, per_sense = 0.95;
+/* What is so near the top names no kind: artifact, whole, object, entity. */
+enum { STEPS = 5 };
+
+double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known)
+{
+	double best = 0;
+
+	for (int i = 0; i < word->n; i++)
+		for (int k = 0; k < known->n; k++) {
+			const int steps = word->up[i].depth + known->up[k].depth;
+			/* one of them is above the other */
+			if (word->up[i].synset != known->up[k].synset || steps > STEPS ||
+				(word->up[i].depth && known->up[k].depth))
+				continue;
+			best = fmax(best, pow(per_step, steps) *
+						  pow(per_sense, word->up[i].sense + known->up[k].sense));
+		}
+	return best;
+}
