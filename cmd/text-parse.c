@@ -1,6 +1,7 @@
 /* Sentences taken apart: who is meant, and how it stands to what. */
 #include "base/file.h"
 #include "cli/cli.h"
+#include "formats/parser.h"
 #include "formats/parses.h"
 #include "formats/text.h"
 #include "lang/parser.h"
@@ -26,13 +27,18 @@ static int put_parses(const struct parser *parser, const struct text *t, FILE *o
 	return 0;
 }
 
-static int run(const struct cli *c, struct err *e)
+static int run(const struct cli *c, const char *weights, struct err *e)
 {
 	struct parser parser = {0};
+	struct parser_weights w = {0};
 	struct text t = {0};
 	struct file_out out = {0};
 	int bad;
 
+	if (weights && parser_read(&w, weights, e))
+		return -1;
+	if (w.slab)
+		parser.weights = &w;
 	if (text_read(&t, c->operand_count ? c->operands[0] : "-", e))
 		return -1;
 	bad = file_out_open(&out, c->output, e) || put_parses(&parser, &t, out.stream, e);
@@ -41,12 +47,17 @@ static int run(const struct cli *c, struct err *e)
 	else
 		file_out_abort(&out);
 	text_free(&t);
+	parser_weights_free(&w);
 	return bad;
 }
 
 int main(int argc, char **argv)
 {
-	const struct cli_option options[] = {{0}};
+	const char *weights = NULL;
+	const struct cli_option options[] = {
+		{"parser", 0, CLI_STRING, &weights, "PARSER", "weights of the learnt parser (default: grammar alone)", 0, 0},
+		{0},
+	};
 	const struct cli_tool tool = {
 		.name = "text-parse",
 		.operands = "[TEXT]",
@@ -60,5 +71,5 @@ int main(int argc, char **argv)
 	struct cli c;
 
 	cli_parse(&c, &tool, argc, argv);
-	return run(&c, &e) ? cli_fail(&c, &e) : cli_done(&c);
+	return run(&c, weights, &e) ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -24,14 +24,16 @@ enum word_role {
 
 enum { ROOT = -1 };
 
+struct analysis_word {
+	enum word_role role;
+	int head;		      /* a word or ROOT */
+	enum parse_relation relation; /* of predicates, as the next */
+	int negated;
+};
+
 struct analysis {
 	int n;
-	struct {
-		enum word_role role;
-		int head; /* a word or ROOT */
-		enum parse_relation relation;
-		int negated;
-	} word[TOKENS_MOST];
+	struct analysis_word word[TOKENS_MOST];
 };
 
 /* 1 for the roles of nouns that head a phrase. */

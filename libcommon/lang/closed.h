@@ -38,7 +38,7 @@ struct closed_word {
 
 extern const struct closed_word closed_words[];
 extern const int closed_count; /* at most CLOSED_MOST */
-enum { CLOSED_MOST = 640 };
+enum { CLOSED_MOST = 576 };
 
 /* Its index or -1. */
 int closed_find(const char *text);

@@ -1,14 +1,51 @@
 #include "lang/parser.h"
 
+#include "base/mem.h"
+#include "lang/parser_net.h"
+
+#include <stdlib.h>
+
+static int learnt_analyse(struct analysis *a, const struct tokens *t, const struct analysis *grammar,
+	const struct parser_weights *w, const struct parser_vectors *v, double *sure, struct err *e)
+{
+	struct parser_batch b;
+	struct parser_features features[TOKENS_MOST];
+	float *vectors;
+
+	if (parser_batch_make(&b, t->n, 1, w->width, e))
+		return -1;
+	vectors = mem_alloc((size_t)t->n, sizeof *vectors * (size_t)w->width, "word vectors", e);
+	if (vectors) {
+		parser_vectors_of_words(t, v->vectors, v->count, w->width, vectors);
+		parser_features_take(features, t, grammar);
+		parser_batch_add(&b, features, vectors, t->n, w->width);
+		parser_forward(w, &b);
+		parser_decode(w, &b, 0, t, a, sure);
+	}
+	free(vectors);
+	parser_batch_free(&b);
+	return vectors ? 0 : -1;
+}
+
 int parse_sentence(struct parse *p, const struct parser *parser, const char *text,
 	const struct parser_vectors *v, struct err *e)
 {
+	const struct parser_weights *w = parser->weights;
 	struct tokens t;
-	struct analysis a;
+	struct analysis a, learnt;
+	double sure = 1;
 
 	tokens_take(&t, text, parser->known, parser->known_count);
 	if (v && v->pieces)
 		tokens_pieces(&t, text, v->pieces);
 	grammar_analyse(&a, &t);
-	return parse_build(p, &a, &t, e);
+	if (w && v && v->vectors && v->width == w->width && t.n) {
+		if (learnt_analyse(&learnt, &t, &a, w, v, &sure, e))
+			return -1;
+		a = learnt;
+	}
+	if (parse_build(p, &a, &t, e))
+		return -1;
+	p->confidence *= sure;
+	return 0;
 }

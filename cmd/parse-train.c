@@ -1,0 +1,290 @@
+/* Learns the weights of text-parse: from the project's own example sentences, and readings of others if given. */
+#include "base/file.h"
+#include "base/mem.h"
+#include "cli/cli.h"
+#include "formats/jsonl.h"
+#include "formats/parser.h"
+#include "formats/parses.h"
+#include "formats/readings.h"
+#include "formats/text.h"
+#include "lang/examples.h"
+#include "lang/parser.h"
+#include "lang/parser_learn.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct options {
+	long long write, epochs, rounds, folds;
+	const char *readings, *readings_text, *source;
+	int test;
+};
+
+struct training {
+	const struct cli *c;
+	const struct options *o;
+	struct text examples, others;
+	struct reading_set readings;
+	struct parser_sample *own, *read; /* (examples.n), (others.n) */
+	const struct reading **reading;	  /* (others.n) */
+	int *fold;			  /* (others.n) */
+	const struct parser_sample **set;
+};
+
+static int write_examples(const struct cli *c, long long n, int test, struct err *e)
+{
+	struct file_out out = {0};
+	struct rng r;
+	int bad = file_out_open(&out, c->output, e);
+	static struct example x;
+
+	rng_seed(&r, (uint64_t)c->seed, (uint64_t)test);
+	for (long long i = 0; i < n && !bad; i++) {
+		example_make(&x, test ? EXAMPLES_TEST : EXAMPLES_TRAIN, &r);
+		fprintf(out.stream, "{\"ref\":\"e%lld\",\"object\":\"example\"", i);
+		bad = jsonl_put_string(out.stream, ",\"text\":", x.text, e);
+		fprintf(out.stream, ",\"split\":\"%s\"}\n", test ? "test" : "train");
+	}
+	if (bad)
+		file_out_abort(&out);
+	return bad ? -1 : file_out_commit(&out, e);
+}
+
+/* The vectors of sentence r. */
+static const float *vectors_of(const struct text *t, size_t r, int *count)
+{
+	*count = (int)(t->offsets[r + 1] - t->offsets[r]);
+	return t->words + (size_t)t->offsets[r] * (size_t)t->width;
+}
+
+/* Makes the examples again, to have their analyses. */
+static int take_examples(struct training *s, const char *path, struct err *e)
+{
+	static struct example x;
+	struct rng r;
+
+	rng_seed(&r, (uint64_t)s->c->seed, 0);
+	s->own = mem_zalloc(s->examples.n, sizeof *s->own, "samples", e);
+	if (!s->own)
+		return -1;
+	for (size_t i = 0; i < s->examples.n; i++) {
+		int count;
+		const float *v = vectors_of(&s->examples, i, &count);
+		example_make(&x, EXAMPLES_TRAIN, &r);
+		if (!s->examples.pieces || strcmp(x.text, s->examples.texts[i]) != 0)
+			return err_set(e, ERR_FORMAT, "%s: ref '%s': not what parse-train --write makes with --seed %lld",
+				path, s->examples.refs[i], s->c->seed);
+		tokens_pieces(&x.tokens, x.text, s->examples.pieces[i]);
+		if (parser_sample_make(&s->own[i], &x.tokens, &x.analysis, v, count, s->examples.width, e))
+			return -1;
+	}
+	return 0;
+}
+
+static int take_tokens(const struct text *t, size_t r, struct tokens *out)
+{
+	tokens_take(out, t->texts[r], NULL, 0);
+	return tokens_pieces(out, t->texts[r], t->pieces[r]);
+}
+
+static int take_readings(struct training *s, struct err *e)
+{
+	static struct tokens t;
+	size_t n = s->others.n;
+
+	s->read = mem_zalloc(n, sizeof *s->read, "samples", e);
+	s->reading = mem_zalloc(n, sizeof *s->reading, "samples", e);
+	s->fold = mem_zalloc(n, sizeof *s->fold, "samples", e);
+	if (!s->read || !s->reading || !s->fold)
+		return -1;
+	for (size_t i = 0; i < n; i++) {
+		const struct reading_record *r = readings_find(&s->readings, s->others.refs[i]);
+		int count;
+		const float *v = vectors_of(&s->others, i, &count);
+		if (!r)
+			return err_set(e, ERR_FORMAT, "%s: no reading of ref '%s'", s->o->readings, s->others.refs[i]);
+		s->reading[i] = &r->reading;
+		if (r->room)
+			for (const char *p = r->room; *p; p++)
+				s->fold[i] = (int)(((unsigned)s->fold[i] * 31u + (unsigned char)*p) & 0xffff);
+		if (s->o->folds)
+			s->fold[i] %= (int)s->o->folds;
+		take_tokens(&s->others, i, &t);
+		if (parser_sample_make(&s->read[i], &t, NULL, v, count, s->others.width, e))
+			return -1;
+	}
+	return 0;
+}
+
+/* What the readings say, in words, by the weights as they are. */
+static int align(struct training *s, const struct parser_weights *w, struct err *e)
+{
+	struct parser_batch b;
+	static struct tokens t;
+	static struct analysis a;
+
+	if (parser_batch_make(&b, TOKENS_MOST, 1, w->width, e))
+		return -1;
+	for (size_t i = 0; i < s->others.n; i++) {
+		struct parser_sample *x = &s->read[i];
+		if (!x->n)
+			continue;
+		take_tokens(&s->others, i, &t);
+		parser_batch_clear(&b);
+		parser_batch_add(&b, x->features, x->vectors, x->n, w->width);
+		parser_forward(w, &b);
+		reading_align(s->reading[i], w, &b, 0, &t, &a);
+		memcpy(x->right, a.word, sizeof *x->right * (size_t)x->n);
+	}
+	parser_batch_free(&b);
+	return 0;
+}
+
+static void say(void *context, int epoch, double loss)
+{
+	cli_note(context, 1, "epoch %d: loss %.4f", epoch + 1, loss);
+}
+
+/* All examples, and the readings but those of fold `without`. */
+static int learn(struct training *s, struct parser_weights *w, int without, struct err *e)
+{
+	const struct options *o = s->o;
+	struct parser_course course = {(int)o->epochs, 16, 0.002, 0.25, say, (void *)s->c};
+	struct rng r;
+	size_t n = 0;
+	int bad;
+
+	rng_seed(&r, (uint64_t)s->c->seed, 7);
+	parser_weights_begin(w, &r);
+	for (size_t i = 0; i < s->examples.n; i++)
+		if (s->own[i].n)
+			s->set[n++] = &s->own[i];
+	bad = parser_learn(w, s->set, n, &course, &r, e);
+	for (long long k = 0; k < o->rounds && s->others.n && !bad; k++) {
+		bad = align(s, w, e);
+		for (size_t i = n = 0; i < s->others.n; i++)
+			if (s->read[i].n && s->fold[i] != without)
+				s->set[n++] = &s->read[i];
+		/* as many of the project's own, another part each round */
+		for (size_t i = 0; i < s->examples.n && i < s->others.n; i++) {
+			size_t at = (i + (size_t)k * s->others.n) % s->examples.n;
+			if (s->own[at].n)
+				s->set[n++] = &s->own[at];
+		}
+		course.rate = 0.001;
+		course.epochs = k + 1 == o->rounds ? 6 : 4;
+		if (!bad)
+			bad = parser_learn(w, s->set, n, &course, &r, e);
+	}
+	return bad;
+}
+
+static int put_parses(
+	const struct training *s, const struct parser_weights *w, int fold, FILE *out, struct err *e)
+{
+	const struct parser parser = {.weights = w};
+
+	for (size_t i = 0; i < s->others.n; i++) {
+		struct parse p;
+		struct parser_vectors v = {.pieces = s->others.pieces[i], .width = s->others.width};
+		if (s->fold[i] != fold)
+			continue;
+		v.vectors = vectors_of(&s->others, i, &v.count);
+		if (parse_sentence(&p, &parser, s->others.texts[i], &v, e))
+			return -1;
+		int bad = parses_put(out, s->others.refs[i], s->others.texts[i], &p, e);
+		parse_free(&p);
+		if (bad)
+			return -1;
+	}
+	return 0;
+}
+
+static int cross_validate(struct training *s, struct parser_weights *w, struct err *e)
+{
+	struct file_out out = {0};
+	int bad = file_out_open(&out, s->c->output, e);
+
+	for (int fold = 0; fold < s->o->folds && !bad; fold++)
+		bad = learn(s, w, fold, e) || put_parses(s, w, fold, out.stream, e);
+	if (bad)
+		file_out_abort(&out);
+	return bad ? -1 : file_out_commit(&out, e);
+}
+
+static void training_free(struct training *s)
+{
+	for (size_t i = 0; s->own && i < s->examples.n; i++)
+		parser_sample_free(&s->own[i]);
+	for (size_t i = 0; s->read && i < s->others.n; i++)
+		parser_sample_free(&s->read[i]);
+	free(s->own);
+	free(s->read);
+	free(s->reading);
+	free(s->fold);
+	free(s->set);
+	text_free(&s->examples);
+	text_free(&s->others);
+	readings_free(&s->readings);
+}
+
+static int run(const struct cli *c, const struct options *o, struct err *e)
+{
+	struct training s = {.c = c, .o = o};
+	struct parser_weights w = {0};
+	const char *path = c->operand_count ? c->operands[0] : "-";
+	int bad;
+
+	bad = text_read(&s.examples, path, e) || take_examples(&s, path, e);
+	if (!bad && o->readings)
+		bad = readings_read(&s.readings, o->readings, e) || text_read(&s.others, o->readings_text, e) ||
+		      take_readings(&s, e);
+	if (!bad)
+		bad = parser_weights_make(&w, s.examples.width, e) ||
+		      !(s.set = mem_alloc(s.examples.n + s.others.n, sizeof *s.set, "samples", e));
+	if (!bad)
+		bad = o->folds ? cross_validate(&s, &w, e)
+			       : learn(&s, &w, -1, e) ||
+					 parser_write(&w, c->output, o->readings ? "--readings" : "", c->seed, o->source, e);
+	training_free(&s);
+	parser_weights_free(&w);
+	return bad;
+}
+
+int main(int argc, char **argv)
+{
+	struct options o = {.epochs = 5, .rounds = 2, .source = "the example sentences of refersplat"};
+	const struct cli_option options[] = {
+		{"write", 0, CLI_INT, &o.write, "N", "write N example sentences (JSON Lines) instead of learning", 0, 1e6},
+		{"test", 0, CLI_FLAG, &o.test, NULL, "with --write: sentences in the wordings kept for testing", 0, 0},
+		{"readings", 0, CLI_STRING, &o.readings, "READINGS", "learn from these readings too (JSON Lines)", 0, 0},
+		{"readings-text", 0, CLI_STRING, &o.readings_text, "TEXT", "their encoded sentences", 0, 0},
+		{"epochs", 0, CLI_INT, &o.epochs, "N", "passes over the examples (default 5)", 1, 1000},
+		{"rounds", 0, CLI_INT, &o.rounds, "N", "rounds with the readings (default 2)", 0, 100},
+		{"folds", 0, CLI_INT, &o.folds, "N",
+			"cross-validate: write parses of the readings' sentences, each by weights that saw no sentence of its room",
+			0, 100},
+		{"source", 0, CLI_STRING, &o.source, "TEXT", "what the weights say that they were learnt from", 0, 0},
+		{0},
+	};
+	const struct cli_tool tool = {
+		.name = "parse-train",
+		.operands = "[TEXT]",
+		.summary = "Learn the weights of text-parse from encoded example sentences.",
+		.options = options,
+		.common = CLI_VERBOSE | CLI_QUIET | CLI_OUTPUT | CLI_SEED | CLI_THREADS,
+		.max_operands = 1,
+	};
+	struct err e = {0};
+	struct cli c;
+	int bad;
+
+	cli_parse(&c, &tool, argc, argv);
+	if (!o.readings != !o.readings_text)
+		cli_usage(&c, "--readings and --readings-text go together");
+	if (o.folds && !o.readings)
+		cli_usage(&c, "--folds needs --readings");
+	bad = o.write ? write_examples(&c, o.write, o.test, &e) : run(&c, &o, &e);
+	return bad ? cli_fail(&c, &e) : cli_done(&c);
+}

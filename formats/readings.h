@@ -1,0 +1,23 @@
+/* Readings of sentences to learn a parser from (JSON Lines). formats/readings.md. */
+#ifndef FORMATS_READINGS_H
+#define FORMATS_READINGS_H
+
+#include "lang/readings.h"
+
+#include <stddef.h>
+
+struct reading_record {
+	char *ref, *room; /* room may be NULL */
+	struct reading reading;
+};
+
+struct reading_set {
+	size_t n;
+	struct reading_record *records;
+};
+
+int readings_read(struct reading_set *s, const char *path, struct err *e);
+void readings_free(struct reading_set *s);
+const struct reading_record *readings_find(const struct reading_set *s, const char *ref);
+
+#endif

@@ -1,0 +1,445 @@
+#include "lang/examples.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MADE_MOST = 160, MADE_LENGTH = 40, DEPTH_MOST = 2 };
+
+/* A sentence in the making: words with what they are. */
+struct making {
+	const struct example_wordings *w;
+	struct rng *r;
+	int n, depth, has_noun, noun, is_plural;
+	struct made {
+		char text[MADE_LENGTH];
+		enum word_role role;
+		int head, negated, begin;
+		enum parse_relation relation;
+	} word[MADE_MOST];
+};
+
+static int chance(struct making *m, double p)
+{
+	return rng_uniform(m->r) < p;
+}
+
+static const char *pick(struct making *m, const struct example_list *list)
+{
+	return list->item[rng_below(m->r, (uint32_t)list->n)];
+}
+
+static int put(struct making *m, const char *text, size_t length)
+{
+	if (m->n == MADE_MOST)
+		return m->n - 1;
+	struct made *w = &m->word[m->n];
+	*w = (struct made){.head = ROOT};
+	snprintf(w->text, sizeof w->text, "%.*s", (int)length, text);
+	return m->n++;
+}
+
+/* One of the choices of "a|b|"; words of it are parted by "_". Returns the index of the last. */
+static int put_choice(struct making *m, const char *text, size_t length)
+{
+	int choices = 1, last = m->n - 1;
+	const char *end = text + length;
+
+	for (const char *p = text; p < end; p++)
+		choices += *p == '|';
+	for (int skip = (int)rng_below(m->r, (uint32_t)choices); skip; text++)
+		skip -= *text == '|';
+	while (text < end && *text != '|') {
+		const char *stop = text;
+		while (stop < end && *stop != '_' && *stop != '|')
+			stop++;
+		last = put(m, text, (size_t)(stop - text));
+		text = stop + (stop < end && *stop == '_');
+	}
+	return last;
+}
+
+static int put_any(struct making *m, const char *choices)
+{
+	return put_choice(m, choices, strlen(choices));
+}
+
+static void mark(struct making *m, int from, int to, enum word_role role, int head)
+{
+	for (int i = from; i < to; i++)
+		if (strcmp(m->word[i].text, "of")) {
+			m->word[i].role = role;
+			m->word[i].head = head;
+		}
+}
+
+static void clause(struct making *m, int figure, int forms, int denied);
+
+enum { FORM_PLACED = 1, FORM_HAVING = 2, FORM_TURNED = 4, FORM_HAS = 8 };
+
+static void make_plural(char *noun)
+{
+	size_t n = strlen(noun);
+
+	if (n + 3 > MADE_LENGTH)
+		return;
+	if (n > 2 && (noun[n - 1] == 's' || noun[n - 1] == 'x' || !strcmp(noun + n - 2, "ch") || !strcmp(noun + n - 2, "sh")))
+		strcat(noun, "es");
+	else if (n > 1 && noun[n - 1] == 'f')
+		strcpy(noun + n - 1, "ves");
+	else if (n > 2 && noun[n - 1] == 'y' && !strchr("aeiou", noun[n - 2]))
+		strcpy(noun + n - 1, "ies");
+	else
+		strcat(noun, "s");
+}
+
+static void put_before(struct making *m, int *list, int *count)
+{
+	const struct example_clause *c = &m->w->before.item[rng_below(m->r, (uint32_t)m->w->before.n)];
+	const char *star = strchr(c->text, '*');
+	int i;
+
+	if (star > c->text)
+		put(m, c->text, (size_t)(star - c->text - 1));
+	i = put_any(m, star + 1);
+	m->word[i].role = ROLE_PREDICATE;
+	m->word[i].relation = c->relation;
+	list[(*count)++] = i;
+}
+
+/* A noun with what stands before it. Returns its index. */
+static int noun_phrase(struct making *m, enum word_role role, int head, const char *noun, int is_plural, int plain)
+{
+	static const char determiners[] = "the|the|the|the|the|the|a|a|an|my|that|this|these|another|some|our|";
+	int list[8], count = 0, first, last, owner;
+
+	if (!plain)
+		put_any(m, is_plural ? chance(m, 0.3) ? "the_two|two|three|the_three|four|both|2|3|some|several" : "the|the|these|my|"
+				     : determiners);
+	if (!plain && chance(m, role == ROLE_TARGET ? 0.3 : 0.15))
+		put_before(m, list, &count);
+	if (chance(m, 0.35))
+		for (int k = chance(m, 0.25) ? 2 : 1; k; k--) {
+			first = m->n;
+			put_any(m, pick(m, &m->w->attributes));
+			for (int i = first; i < m->n && count < 8; i++) {
+				m->word[i].role = ROLE_ATTRIBUTE;
+				list[count++] = i;
+			}
+			if (k > 1 && chance(m, 0.3))
+				put(m, "and", 3);
+		}
+	first = m->n;
+	last = put_any(m, noun);
+	if (is_plural)
+		make_plural(m->word[last].text);
+	owner = role == ROLE_TARGET ? ROOT : last;
+	mark(m, first, last, ROLE_NAME, owner);
+	m->word[last].role = role;
+	m->word[last].head = head;
+	for (int i = 0; i < count; i++)
+		m->word[list[i]].head = owner;
+	return last;
+}
+
+static int anchor(struct making *m, enum word_role role, int may_nest)
+{
+	int head, first = m->n;
+
+	m->depth++;
+	if (chance(m, 0.05)) { /* "the red one", "it" names nothing */
+		put_any(m, "the|the|that|another");
+		if (chance(m, 0.6))
+			put_any(m, pick(m, &m->w->attributes));
+		head = put_any(m, "one|thing|object|other_one|ones");
+		mark(m, head, head + 1, role, ROOT);
+		if (head - first == 2 && strcmp(m->word[head - 1].text, "other"))
+			mark(m, head - 1, head, ROLE_ATTRIBUTE, head);
+	} else {
+		head = noun_phrase(m, role, ROOT, pick(m, &m->w->nouns), chance(m, 0.15), 0);
+	}
+	if (may_nest && m->depth < DEPTH_MOST + 1 && chance(m, 0.2)) {
+		if (chance(m, 0.4))
+			put_any(m, "that_is|that_'s|which_is");
+		clause(m, head, strcmp(m->word[m->n - 1].text, "is") && strcmp(m->word[m->n - 1].text, "'s")
+				? FORM_PLACED | FORM_HAVING | FORM_TURNED : FORM_PLACED, 0);
+	}
+	m->depth--;
+	return head;
+}
+
+static void expand_clause(struct making *m, const struct example_clause *c, int figure, int denied, int has)
+{
+	int anchors[4], n = 0, main = -1;
+
+	for (const char *p = c->text; *p;) {
+		size_t length = strcspn(p, " ");
+		if (*p == '*') {
+			main = put_choice(m, p + 1, length - 1);
+		} else if ((*p == '@' || *p == '0') && length == 1) {
+			int is_last = !strchr(p, ' ');
+			if (n < 4)
+				anchors[n++] = anchor(m, ROLE_ANCHOR, *p == '@' && (is_last || chance(m, 0.3)));
+			/* "the desk and the chair" */
+			if (n < 4 && *p == '@' && is_last && chance(m, 0.06)) {
+				put(m, "and", 3);
+				anchors[n++] = anchor(m, ROLE_ANCHOR, 0);
+			}
+		} else if (*p == '$' && length == 1) {
+			put_any(m, has ? "has|has|has_got|'s_got" : "with|with|with|that_has|which_has|having|that_have|that_'s_got");
+		} else if (*p == '^' && length == 1) {
+			put_any(m, "||||sitting|standing|placed|lying|located|resting|leaning|stacked|hanging|mounted|sits|set");
+		} else if (*p == '~' && length == 1) {
+			put_any(m, "||||just|directly|right|immediately");
+		} else {
+			put_choice(m, p, length);
+		}
+		p += length;
+		p += *p == ' ';
+	}
+	if (main < 0)
+		return;
+	m->word[main].role = ROLE_PREDICATE;
+	m->word[main].relation = c->relation;
+	m->word[main].negated = c->negated ^ denied;
+	m->word[main].head = figure;
+	for (int i = 0; i < n; i++)
+		m->word[anchors[i]].head = main;
+}
+
+static void clause(struct making *m, int figure, int forms, int denied)
+{
+	const struct example_clauses *of;
+	const struct example_clause *c;
+	int tries = 0;
+
+	do {
+		of = (forms & FORM_HAS) ? &m->w->having
+		     : (forms & FORM_HAVING) && chance(m, 0.3)	? &m->w->having
+		     : (forms & FORM_TURNED) && chance(m, 0.12) ? &m->w->turned
+								: &m->w->placed;
+		c = &of->item[rng_below(m->r, (uint32_t)of->n)];
+	} while (((c->negated && (denied || chance(m, 0.5))) || ((forms & FORM_HAS) && c->text[0] != '$')) && ++tries < 50);
+	if (of == &m->w->placed && (forms & FORM_TURNED) && chance(m, 0.25))
+		put_any(m, ",|that_is|that_'s|which_is|it_is|that_sits");
+	expand_clause(m, c, figure, denied, forms & FORM_HAS);
+}
+
+static const char *target_noun(struct making *m)
+{
+	return m->w->nouns.item[m->noun];
+}
+
+static void target_clauses(struct making *m)
+{
+	int n = chance(m, 0.12) ? 0 : chance(m, 0.25) ? 2 : 1;
+
+	for (int k = 0; k < n; k++) {
+		if (k)
+			put_any(m, "and|,|,|and_is|");
+		clause(m, ROOT, FORM_PLACED | FORM_HAVING | FORM_TURNED, 0);
+	}
+}
+
+/* "the one", "the left one": the target where its noun is left out. */
+static void target_one(struct making *m)
+{
+	int list[8], count = 0, last;
+
+	put_any(m, "the|the|the|that|this");
+	if (chance(m, 0.25))
+		put_before(m, list, &count);
+	if (chance(m, 0.2)) {
+		last = put_any(m, pick(m, &m->w->attributes));
+		mark(m, last, last + 1, ROLE_ATTRIBUTE, ROOT);
+	}
+	last = put_any(m, "one|one|one|thing|object");
+	if (!m->has_noun)
+		m->word[last].role = ROLE_TARGET;
+}
+
+static void function(struct making *m)
+{
+	struct example_clause c = {PARSE_OTHER, 0, pick(m, &m->w->functions)};
+
+	expand_clause(m, &c, ROOT, 0, 0);
+}
+
+static void adjective(struct making *m)
+{
+	int list[8], count = 0;
+
+	put_before(m, list, &count);
+	m->word[list[0]].head = ROOT;
+}
+
+/* 1 where the symbol was one. */
+static int symbol(struct making *m, const char *p, size_t length, int before_sure)
+{
+	if (length == 2 && p[0] == 'C' && p[1] == '2') {
+		clause(m, ROOT, FORM_PLACED, 1);
+		return 1;
+	}
+	if (length != 1)
+		return 0;
+	switch (*p) {
+	case 'T':
+	case 'N':
+		noun_phrase(m, ROLE_TARGET, ROOT, target_noun(m), *p == 'T' && chance(m, 0.06), before_sure);
+		m->has_noun = 1;
+		if (*p == 'T')
+			target_clauses(m);
+		return 1;
+	case 'L':
+		noun_phrase(m, ROLE_TARGET, ROOT, target_noun(m), 1, 1);
+		m->has_noun = 1;
+		return 1;
+	case 'n':
+		if (chance(m, 0.7))
+			noun_phrase(m, ROLE_TARGET, ROOT, target_noun(m), 0, 1);
+		else
+			put(m, "one", 3);
+		return 1;
+	case 'U':
+		target_one(m);
+		if (chance(m, 0.8))
+			target_clauses(m);
+		return 1;
+	case 'C':
+		clause(m, ROOT, FORM_PLACED, 0);
+		return 1;
+	case 'H':
+		clause(m, ROOT, FORM_HAS, 0);
+		return 1;
+	case 'A':
+		adjective(m);
+		return 1;
+	case 'F':
+		function(m);
+		return 1;
+	case 'V':
+		anchor(m, ROLE_VIEW, 1);
+		return 1;
+	case 'X':
+		anchor(m, ROLE_EXCEPT, 1);
+		return 1;
+	case 'S':
+		anchor(m, ROLE_ALSO, 1);
+		return 1;
+	default:
+		return 0;
+	}
+}
+
+/* Whether the word before already is an article or the like. */
+static int follows_article(const struct making *m)
+{
+	static const char *const words[] = {"the", "a", "this", "that", "all", "every", "each", "other", "same", "correct", "which",
+		"first", "second", "third", "fourth", "last", "any", "2nd"};
+
+	for (size_t i = 0; m->n && i < sizeof words / sizeof *words; i++)
+		if (!strcmp(m->word[m->n - 1].text, words[i]))
+			return 1;
+	return 0;
+}
+
+static void sentence(struct making *m, const char *text)
+{
+	/* the target's noun may stand after "the one", which is the target only where none does */
+	m->has_noun = strpbrk(text, "NL") != NULL || strchr(text, 'n') == text;
+	for (const char *p = text; *p;) {
+		size_t length = strcspn(p, " ");
+		if (!symbol(m, p, length, follows_article(m))) {
+			int first = m->n;
+			put_choice(m, p, length);
+			for (int i = first; i < m->n; i++)
+				if (!m->has_noun && (!strcmp(m->word[i].text, "thing") || !strncmp(m->word[i].text, "everything", 10) ||
+							    !strcmp(m->word[i].text, "object") || !strcmp(m->word[i].text, "something") ||
+							    !strcmp(m->word[i].text, "anything") || !strcmp(m->word[i].text, "whatever")))
+					m->word[i].role = ROLE_TARGET;
+		}
+		p += length;
+		p += *p == ' ';
+	}
+}
+
+/* A slip of the fingers. */
+static void misspell(struct making *m, char *w)
+{
+	size_t n = strlen(w), i;
+	char c;
+
+	if (n < 4 || !isalpha((unsigned char)w[0]))
+		return;
+	i = 1 + rng_below(m->r, (uint32_t)n - 2);
+	if (chance(m, 0.5)) {
+		c = w[i];
+		w[i] = w[i + 1] ? w[i + 1] : w[i];
+		w[i + 1] = w[i + 1] ? c : 0;
+	} else {
+		memmove(w + i, w + i + 1, n - i);
+	}
+}
+
+static void write_text(struct making *m, struct example *x)
+{
+	int at = 0, capital = chance(m, 0.6), stops = chance(m, 0.75), slips = chance(m, 0.08);
+
+	for (int i = 0; i < m->n; i++) {
+		struct made *w = &m->word[i];
+		int is_pause = !strcmp(w->text, ",") || !strcmp(w->text, ".") || !strcmp(w->text, "?");
+		if (slips && chance(m, 0.2))
+			misspell(m, w->text);
+		if (is_pause && !stops)
+			w->text[0] = 0;
+		if (!w->text[0]) {
+			w->begin = -1;
+			continue;
+		}
+		if (at + MADE_LENGTH + 2 > EXAMPLE_LENGTH)
+			break;
+		if (at && !is_pause && w->text[0] != '\'')
+			x->text[at++] = ' ';
+		w->begin = at;
+		at += sprintf(x->text + at, "%s", w->text);
+	}
+	x->text[at] = 0;
+	if (capital)
+		x->text[0] = (char)toupper((unsigned char)x->text[0]);
+}
+
+static void analyse(const struct making *m, struct example *x)
+{
+	int at[MADE_MOST], next = 0;
+
+	tokens_take(&x->tokens, x->text, NULL, 0);
+	x->analysis = (struct analysis){.n = x->tokens.n};
+	for (int i = 0; i < m->n; i++) {
+		while (next < x->tokens.n && x->tokens.word[next].span.begin < m->word[i].begin)
+			next++;
+		at[i] = next < x->tokens.n && x->tokens.word[next].span.begin == m->word[i].begin ? next : -1;
+	}
+	for (int i = 0; i < x->tokens.n; i++)
+		x->analysis.word[i].head = ROOT;
+	for (int i = 0; i < m->n; i++) {
+		const struct made *w = &m->word[i];
+		if (at[i] < 0 || w->role == ROLE_NONE)
+			continue;
+		x->analysis.word[at[i]].role = w->role;
+		x->analysis.word[at[i]].head = w->head == ROOT ? ROOT : at[w->head];
+		x->analysis.word[at[i]].relation = w->relation;
+		x->analysis.word[at[i]].negated = w->negated;
+	}
+	analysis_repair(&x->analysis);
+}
+
+void example_make(struct example *x, enum examples_set set, struct rng *r)
+{
+	struct making m = {.w = &example_wordings[set], .r = r};
+
+	m.noun = (int)rng_below(r, (uint32_t)m.w->nouns.n);
+	/* functions and nouns of the list have stars only in templates */
+	sentence(&m, pick(&m, &m.w->sentences));
+	write_text(&m, x);
+	analyse(&m, x);
+}

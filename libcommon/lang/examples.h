@@ -1,0 +1,58 @@
+/* Sentences with their analyses, to learn a parser from: wordings written for this project, multiplied by a
+ * generator. Wordings for learning and for testing are disjoint: those of EXAMPLES_TEST have templates, requests
+ * and nouns of their own. */
+#ifndef LANG_EXAMPLES_H
+#define LANG_EXAMPLES_H
+
+#include "base/rng.h"
+#include "lang/analysis.h"
+
+enum examples_set { EXAMPLES_TRAIN, EXAMPLES_TEST };
+
+enum { EXAMPLE_LENGTH = 1024 };
+
+/* One sentence. Its words are those that tokens_take makes of the text. The same state of the generator gives
+ * the same sentence. */
+struct example {
+	char text[EXAMPLE_LENGTH];
+	struct tokens tokens;
+	struct analysis analysis;
+};
+
+void example_make(struct example *x, enum examples_set set, struct rng *r);
+
+/* The wordings, in examples_words.c. A template is words with a blank between; "a|b" is a choice, "_" a blank
+ * within one.
+ *   *w  the main word of the predicate        @  a phrase that it has as anchor    $  "with", "that has"
+ *   ^   "sitting", "placed" or nothing        ~  "just", "directly" or nothing
+ *   0   an anchor without clauses
+ * and in whole sentences
+ *   T   the target with its clauses           N  without                           n  its noun again, or "one"
+ *   C   a clause as after "is"                H  one with "has"                    A  a size or place adjective
+ *   C2  a clause that is denied
+ *   V   what is faced or stood at             X  what is left out                  S  a further target
+ *   L   several of the target's noun          U  a target of no noun ("the one") with its clauses
+ *   F   what a thing is for ("to write with"), all predicates of PARSE_OTHER       ,.? punctuation */
+struct example_clause {
+	enum parse_relation relation;
+	int negated;
+	const char *text;
+};
+struct example_list {
+	int n;
+	const char *const *item;
+};
+struct example_clauses {
+	int n;
+	const struct example_clause *item;
+};
+struct example_wordings {
+	struct example_clauses placed; /* after a noun, "that is" or "it is" */
+	struct example_clauses having; /* after $ in its place, or "has" */
+	struct example_clauses turned; /* after a noun as a relative clause: "that @ is on" */
+	struct example_clauses before; /* adjectives that place or size: "left", "smallest" */
+	struct example_list sentences, nouns, attributes, functions;
+};
+extern const struct example_wordings example_wordings[2];
+
+#endif

@@ -1,0 +1,98 @@
+/* The learnt parser: what each word is, what it hangs on, and which relation it says, from the encoder's word
+ * vectors, its closed-class word and what the grammar thinks of it.
+ *
+ *   h0 = relu(Wv x + b + E[closed] + E[grammar's role] + E[grammar's relation] + E[pause])     x: mean of the word's pieces
+ *   h_{l+1} = h_l + relu(W_l [h_l(i-d), h_l(i), h_l(i+d), mean h_l] + b_l),  d = 1, 2, 4      zero outside the sentence
+ *   roles, relations, negation: linear in h3
+ *   arc(i,j) = (A h3_i + a) . (B h3_j + b) / sqrt K + distance[j - i] + agree [the grammar hangs i on j]
+ * after Dozat and Manning (2017), "Deep biaffine attention for neural dependency parsing"; ROOT is a j of its own. */
+#ifndef LANG_PARSER_NET_H
+#define LANG_PARSER_NET_H
+
+#include "lang/analysis.h"
+#include "lang/closed.h"
+
+#include <stddef.h>
+
+enum {
+	NET_HIDDEN = 96,
+	NET_ARC = 48,
+	NET_LAYERS = 3,
+	NET_BLOCKS = 4,	   /* that a layer looks at: before, here, after, mean */
+	NET_DISTANCES = 17, /* -8 or less ... 8 or more */
+	NET_CLOSED = CLOSED_MOST + 1,
+	NET_PAUSES = 4, /* as before a word; 3: a plural */
+};
+
+/* One slab; the order is that of the file. */
+struct parser_weights {
+	int width; /* of the encoder */
+	size_t count;
+	float *slab;
+	float *vector, *vector_bias;	      /* (H,width), (H) */
+	float *closed, *role, *relation, *pause; /* (NET_CLOSED,H), (ROLES,H), (PARSE_RELATIONS + 1,H), (NET_PAUSES,H) */
+	float *layer[NET_LAYERS], *layer_bias[NET_LAYERS]; /* (H,4H), (H) */
+	float *out, *out_bias;		      /* (ROLES + PARSE_RELATIONS + 1, H): roles, relations, negated */
+	float *dependent, *dependent_bias;    /* (K,H), (K) */
+	float *head, *head_bias;	      /* (K,H), (K) */
+	float *root;			      /* (K) and a bias */
+	float *distance;		      /* (NET_DISTANCES) */
+	float *agree;			      /* (2): with the grammar's head; and where that is ROOT */
+};
+
+/* Names and shapes of the parts, in order; columns 0: a vector. */
+struct parser_part {
+	const char *name;
+	size_t rows, columns;
+};
+enum { PARSER_PARTS = 21 };
+void parser_parts(int width, struct parser_part parts[PARSER_PARTS]);
+
+/* Zeroed. parser_weights_free frees. */
+int parser_weights_make(struct parser_weights *w, int width, struct err *e);
+void parser_weights_free(struct parser_weights *w);
+
+/* What is known of a word besides its vector. */
+struct parser_features {
+	int closed, role, relation, pause;
+	int head; /* that the grammar gives it, in its sentence */
+};
+
+/* Several sentences, one after the other. */
+struct parser_batch {
+	int rows, sentences, capacity;
+	int *start;			  /* (sentences + 1) */
+	float *x;			  /* (rows,width) */
+	struct parser_features *features; /* (rows) */
+	float *keep;			  /* (rows,H): factors of dropout; NULL: none */
+	float *h[NET_LAYERS + 1], *gathered[NET_LAYERS], *grown[NET_LAYERS]; /* (rows,H), (rows,4H), (rows,H) */
+	float *out;			  /* (rows, ROLES + PARSE_RELATIONS + 1) */
+	float *dependent, *head;	  /* (rows,K) */
+};
+
+enum { NET_OUT = ROLES + PARSE_RELATIONS + 1 };
+
+int parser_batch_make(struct parser_batch *b, int capacity, int sentences, int width, struct err *e);
+void parser_batch_free(struct parser_batch *b);
+void parser_batch_clear(struct parser_batch *b);
+/* Adds a sentence of n words: their features and vectors (n, width), means of pieces. */
+void parser_batch_add(
+	struct parser_batch *b, const struct parser_features *f, const float *vectors, int n, int width);
+
+void parser_features_take(struct parser_features *f, const struct tokens *t, const struct analysis *grammar);
+
+void parser_forward(const struct parser_weights *w, struct parser_batch *b);
+
+/* Scores of what word i of a sentence may hang on: scores[0] ROOT, scores[1 + j] word j (n + 1). */
+void parser_arcs(const struct parser_weights *w, const struct parser_batch *b, int sentence, int i, float *scores);
+
+int parser_distance(int from, int to);
+
+/* Means of the pieces of each word: out (t->n, width); zero for a word without. */
+void parser_vectors_of_words(const struct tokens *t, const float *vectors, int count, int width, float *out);
+
+/* The best analysis that is well formed. *sure gets the mean probability of the roles. */
+void parser_decode(const struct parser_weights *w, const struct parser_batch *b, int sentence,
+	const struct tokens *t, struct analysis *a, double *sure);
+
+#endif
