@@ -9,16 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { COLOURS_SEEN = 1024 }; /* Gaussians of an object */
 static const double trimmed = 0.1, longer = 0.1, most_weight = 4;
 static const double alike_colour = 8, alike_size = 0.15;
 static const double degree0 = 0.28209479177387814; /* the spherical harmonic of degree 0 */
 
 void arrangement_free(struct arrangement *a)
 {
-	for (size_t o = 0; a->objects && o < a->n; o++) {
-		free(a->objects[o].palette);
-		free(a->objects[o].part);
-	}
 	free(a->objects);
 	*a = (struct arrangement){0};
 }
@@ -185,43 +182,42 @@ struct measured {
 	struct weighted *along;	  /* (n) */
 };
 
-/* Colours of the Gaussians, as parts of the whole. */
-static void take_colours(struct arranged *o, const struct splats *s, const int32_t *ids, const double *weight)
+/* Mean colour, and what it is called, of a sample of its Gaussians. */
+static void take_colours(struct arranged *o, const struct splats *s, const int32_t *ids, const double *weight, size_t n)
 {
+	const size_t step = 1 + n / COLOURS_SEEN;
 	double total = 0;
 
-	for (size_t i = 0; i < o->colours; i++)
+	for (size_t i = 0; i < n; i += step)
 		total += weight[i];
-	for (size_t i = 0; i < o->colours; i++) {
+	for (size_t i = 0; i < n; i += step) {
 		const float *sh = s->sh + (size_t)ids[i] * (size_t)s->sh_coefficients * 3;
 		double lab[3], rgb[3];
 		for (int k = 0; k < 3; k++)
 			rgb[k] = 0.5 + degree0 * sh[k];
 		colour_lab(rgb, lab);
-		for (size_t k = 0; k < 3; k++) {
-			o->palette[3 * i + k] = (float)lab[k];
+		for (size_t k = 0; k < 3; k++)
 			o->lab[k] += weight[i] / total * lab[k];
-		}
-		o->part[i] = (float)(weight[i] / total);
+		colour_call(lab, weight[i] / total, o->colours);
 	}
 }
 
 static void take_box(struct arranged *o, const struct splats *s, const int32_t *ids, double axes[3][3],
-	struct measured *m)
+	const struct measured *m, size_t n)
 {
 	double total = 0;
 
-	for (size_t i = 0; i < o->colours; i++)
+	for (size_t i = 0; i < n; i++)
 		total += m->weight[i];
 	for (int k = 0; k < 3; k++) {
-		for (size_t i = 0; i < o->colours; i++) {
+		for (size_t i = 0; i < n; i++) {
 			const float *mean = s->means + 3 * (size_t)ids[i];
 			m->along[i] = (struct weighted){
 				axes[k][0] * mean[0] + axes[k][1] * mean[1] + axes[k][2] * mean[2], m->weight[i]};
 		}
-		qsort(m->along, o->colours, sizeof *m->along, by_place);
-		const double low = quantile(m->along, o->colours, trimmed * total);
-		const double high = quantile(m->along, o->colours, (1 - trimmed) * total);
+		qsort(m->along, n, sizeof *m->along, by_place);
+		const double low = quantile(m->along, n, trimmed * total);
+		const double high = quantile(m->along, n, (1 - trimmed) * total);
 		o->low[k] = low - longer * (high - low);
 		o->high[k] = high + longer * (high - low);
 		o->centre[k] = (low + high) / 2;
@@ -237,17 +233,14 @@ static int measure(struct arranged *o, const struct lifted *l, size_t object, co
 		return -1;
 	struct measured m = {mem_alloc(own.n, sizeof *m.weight, "objects", e),
 		mem_alloc(own.n, sizeof *m.sorted, "objects", e), mem_alloc(own.n, sizeof *m.along, "objects", e)};
-	o->palette = mem_alloc(3 * own.n, sizeof *o->palette, "objects", e);
-	o->part = mem_alloc(own.n, sizeof *o->part, "objects", e);
-	const int bad = !m.weight || !m.sorted || !m.along || !o->palette || !o->part;
+	const int bad = !m.weight || !m.sorted || !m.along;
 	if (!bad && own.n) {
 		o->is_there = o->in_sight = 1;
-		o->colours = own.n;
 		for (size_t i = 0; i < own.n; i++)
 			m.weight[i] = size_of(s, (size_t)own.ids[i]);
 		level_weights(m.weight, m.sorted, own.n);
-		take_colours(o, s, own.ids, m.weight);
-		take_box(o, s, own.ids, axes, &m);
+		take_colours(o, s, own.ids, m.weight, own.n);
+		take_box(o, s, own.ids, axes, &m, own.n);
 	}
 	free(m.weight);
 	free(m.sorted);

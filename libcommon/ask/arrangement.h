@@ -5,6 +5,7 @@
 
 #include "base/err.h"
 #include "geom/camera.h"
+#include "lang/colours.h"
 #include "refer/lifted.h"
 #include "splat/splats.h"
 
@@ -17,9 +18,7 @@ struct arranged {
 	double centre[3];	/* of the box */
 	double side;		/* how far right it looks: centre[0], or, in a picture, in perspective */
 	double lab[3];		/* mean colour, CIE L*a*b* (D65) */
-	/* Its Gaussians' colours (colours,3) and how much of the object each makes up: they sum to 1. */
-	size_t colours;
-	float *palette, *part;
+	double colours[COLOUR_WORDS]; /* part of it that people would call so (lang/colours.h) */
 };
 
 struct arrangement {

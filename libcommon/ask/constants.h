@@ -39,11 +39,12 @@
 #define LOOKS_WORTH 1	      /* how fast look-alikes share fewer words as they look less alike */
 
 /* What words are worth: cosines of word vectors at which two words are as likely the same thing as not. */
-#define NOUN_HALF 0.6
-#define NOUN_SOFT 0.06
+#define NOUN_HALF 0.56
+#define NOUN_SOFT 0.04
 #define ATTRIBUTE_HALF 0.55
 #define ATTRIBUTE_SOFT 0.08
 #define WORDNET_WORTH 0.95
+#define KINDS_WORTH 0.85 /* two nouns of one group of lang/kinds.h */
 #define NAME_PART 0.3 /* a word of a name that is not its last */
 
 /* The answer. */

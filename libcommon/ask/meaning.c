@@ -149,21 +149,9 @@ static void judge_noun(struct meaning *m, int phrase)
 static void judge_colour(struct meaning *m, int phrase, int word)
 {
 	const size_t n = objects_of(m);
-	const struct vocabulary *v = m->vocabulary;
-	double *value = add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase), lab[3], other[3];
+	double *value = add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
 
-	vocabulary_colour(m->arrangement, m->sentence->parse->words[word].lemma, value);
-	colour_word_lab(colour_word(m->sentence->parse->words[word].lemma), lab);
-	for (size_t o = 0; o < n; o++)
-		value[o] /= value[o] + COLOUR_SHARE;
-	for (size_t i = 0; i < v->n; i++) {
-		const int said = colour_word(v->items[i].lemma);
-		if (said < 0 || v->items[i].role != VOCABULARY_ATTRIBUTE || v->items[i].sentence == v->without)
-			continue;
-		colour_word_lab(said, other);
-		const float at[3] = {(float)other[0], (float)other[1], (float)other[2]};
-		value[v->items[i].object] = fmax(value[v->items[i].object], colour_fit(at, lab));
-	}
+	vocabulary_colour(m->vocabulary, m->arrangement, m->sentence->parse->words[word].lemma, value);
 	for (size_t o = 0; o < n; o++) {
 		value[o] = COLOUR_LEAST + (1 - COLOUR_LEAST) * value[o];
 		there[o] *= value[o];

@@ -3,6 +3,7 @@
 #include "ask/constants.h"
 #include "base/mem.h"
 #include "lang/colours.h"
+#include "lang/kinds.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -119,7 +120,7 @@ static int add_item(struct vocabulary *v, size_t r, int word, enum vocabulary_ro
 		mem_grow((void **)&v->vectors, &v->capacity, v->n + 1, width * sizeof *v->vectors, "vocabulary", e))
 		return -1;
 	struct vocabulary_item *item = &v->items[v->n];
-	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0};
+	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0, 0};
 	if ((role == VOCABULARY_NOUN || role == VOCABULARY_ANCHOR) && add_noun(v, w->lemma, &item->noun, e))
 		return -1;
 	word_vector(v, w, vectors_of(l, r), v->vectors + width * v->n++);
@@ -170,6 +171,16 @@ static int read_sentences(struct vocabulary *v, const struct parser *parser, str
 	return bad ? -1 : 0;
 }
 
+/* What kinds of a general noun there are says nothing of a thing that is called so. */
+static void mark_general(struct vocabulary *v)
+{
+	for (size_t i = 0; i < v->n; i++)
+		for (size_t k = 0; k < v->n && v->items[i].role == VOCABULARY_NOUN; k++)
+			v->items[i].is_general |=
+				v->items[k].role == VOCABULARY_NOUN && v->items[k].object == v->items[i].object &&
+				wordnet_is_above(&v->nouns[v->items[i].noun], &v->nouns[v->items[k].noun]);
+}
+
 int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct parser *parser, struct err *e)
 {
 	const size_t width = (size_t)l->width;
@@ -186,6 +197,7 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	find_means(v);
 	if (read_sentences(v, parser, e))
 		return -1;
+	mark_general(v);
 	for (size_t r = 0; r < l->sentences; r++)
 		sentence_vector(v, vectors_of(l, r), (size_t)(l->offsets[r + 1] - l->offsets[r]),
 			v->sentences + r * width);
@@ -258,7 +270,9 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		double x = !strcmp(word->lemma, item->lemma) ? 1 : 0;
 		if (x < 1) {
 			x = worth(dot(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
-			x = fmax(x, WORDNET_WORTH * wordnet_fits(&noun, &v->nouns[item->noun]));
+			x = fmax(x, WORDNET_WORTH * wordnet_fits(&noun, &v->nouns[item->noun], item->is_general));
+			if (!item->is_general && kinds_share(word->lemma, item->lemma))
+				x = fmax(x, KINDS_WORTH);
 		}
 		double *to = &match[item->role == VOCABULARY_NOUN ? item->object : objects];
 		*to = fmax(*to, x);
@@ -315,19 +329,19 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
 	}
 }
 
-int vocabulary_colour(const struct arrangement *a, const char *word, double *fit)
+int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit)
 {
 	const int colour = colour_word(word);
-	double lab[3];
 
 	if (colour < 0)
 		return 0;
-	colour_word_lab(colour, lab);
-	for (size_t o = 0; o < a->n; o++) {
-		const struct arranged *p = &a->objects[o];
-		fit[o] = 0;
-		for (size_t i = 0; i < p->colours; i++)
-			fit[o] += p->part[i] * colour_fit(p->palette + 3 * i, lab);
+	for (size_t o = 0; o < a->n; o++)
+		fit[o] = a->objects[o].colours[colour] / (a->objects[o].colours[colour] + COLOUR_SHARE);
+	for (size_t i = 0; i < v->n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		const int said = item->role == VOCABULARY_ATTRIBUTE ? colour_word(item->lemma) : -1;
+		if (said >= 0 && item->sentence != v->without)
+			fit[item->object] = fmax(fit[item->object], colour_words_alike(said, colour));
 	}
 	return 1;
 }

@@ -29,6 +29,7 @@ struct vocabulary_item {
 	const char *lemma;
 	enum parse_relation relation; /* of VOCABULARY_ANCHOR: the clause's */
 	size_t noun;		      /* of VOCABULARY_NOUN and ANCHOR: into nouns */
+	int is_general;		      /* a noun that is above another one of the same object: "container" of a bowl */
 };
 
 struct vocabulary {
@@ -64,8 +65,9 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
 	enum parse_relation relation, double *match);
 
-/* fit (O): the share of an object's colours that a colour word fits, in [0,1]. 0 where it is no colour word. */
-int vocabulary_colour(const struct arrangement *a, const char *word, double *fit);
+/* fit (O): how far an object is of the colour of a word, in [0,1], by its Gaussians and by the colours that training
+ * sentences say it has. Returns 0 where it is no colour word. */
+int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit);
 
 /* match (O): the best cosine of the mean of a sentence's pieces with that of an object's training sentences, -1
  * where it has none. Returns the object of the training sentence of the same text, or O; text may be NULL. */

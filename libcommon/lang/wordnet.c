@@ -68,23 +68,31 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma)
 #endif
 
 /* A step up or down, and a rarer sense, each make it so much less likely. */
-static const double per_step = 0.93, per_sense = 0.95;
-/* What is so near the top names no kind: artifact, whole, object, entity. */
-enum { STEPS = 5 };
+static const double per_step_up = 0.96, per_step_down = 0.93, per_sense = 0.95;
+enum { STEPS_UP = 9, STEPS_DOWN = 4 };
 
-double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known)
+double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known, int is_general)
 {
 	double best = 0;
 
 	for (int i = 0; i < word->n; i++)
 		for (int k = 0; k < known->n; k++) {
-			const int steps = word->up[i].depth + known->up[k].depth;
 			/* one of them is above the other */
-			if (word->up[i].synset != known->up[k].synset || steps > STEPS ||
-				(word->up[i].depth && known->up[k].depth))
+			const int up = known->up[k].depth, down = word->up[i].depth;
+			if (word->up[i].synset != known->up[k].synset || (up && down) || up > STEPS_UP ||
+				down > (is_general ? 0 : STEPS_DOWN))
 				continue;
-			best = fmax(best, pow(per_step, steps) *
+			best = fmax(best, pow(per_step_up, up) * pow(per_step_down, down) *
 						  pow(per_sense, word->up[i].sense + known->up[k].sense));
 		}
 	return best;
+}
+
+int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun *word)
+{
+	for (int i = 0; i < above->n; i++)
+		for (int k = 0; k < word->n; k++)
+			if (!above->up[i].depth && word->up[k].depth && above->up[i].synset == word->up[k].synset)
+				return 1;
+	return 0;
 }

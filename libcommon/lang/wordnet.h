@@ -25,7 +25,10 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma);
 
 /* Whether a thing called `known` may be called `word`, in [0,1]: 1 for the same sense, less for what it is a kind
  * of ("vessel" for a mug) or what is a kind of it ("hardback" for a book), the less the more steps away and the
- * rarer the sense; 0 otherwise. */
-double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known);
+ * rarer the sense; 0 otherwise. Where `known` is general, its kinds do not count. */
+double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known, int is_general);
+
+/* Whether some sense of a noun is what a sense of the other is a kind of. */
+int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun *word);
 
 #endif
