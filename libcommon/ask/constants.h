@@ -15,6 +15,7 @@
 #define FAR_FROM 0.8	/* the distance at which "far from" is half true */
 #define SIDE_LEAST 0.15 /* of half the objects' extent: where the left side begins */
 #define SIDE_SOFT 0.1
+#define ON_THE_REST 0.5 /* how wrong it is to say of a thing on another that it is on the table */
 #define BEST_SOFT 0.04 /* differences that are told apart: of lengths, and of logarithms of sizes */
 #define BEST_SOFT_SIZE 0.06
 
@@ -24,6 +25,7 @@
 #define COLOUR_LEAST 0.03
 #define ATTRIBUTE_LEAST 0.4
 #define MODIFIER_LEAST 0.6  /* "soup" of "soup dish" */
+#define OPPOSITE 0.2	    /* of it, where the opposite is said */
 #define PREDICATE_LEAST 0.3 /* what a thing does or is for */
 #define RELATION_LEAST 0.02
 #define SIZE_LEAST 0.4	  /* "large" */

@@ -81,7 +81,7 @@ static void share_looks(const struct meaning *m, double *match)
 	memcpy(own, match, n * sizeof *own);
 	for (size_t o = 0; o < n; o++)
 		for (size_t k = 0; k < n; k++)
-			if (own[k] > match[o])
+			if (own[k] > match[o] && match[o] >= 0)
 				match[o] = fmax(match[o],
 					own[k] * exp(LOOKS_WORTH * arrangement_alike(m->arrangement, o, k)));
 }
@@ -173,7 +173,8 @@ static void judge_attribute(struct meaning *m, int phrase, int word, double leas
 	const double most = largest(value, n);
 	m->unknown += most < 0.5;
 	for (size_t o = 0; o < n; o++)
-		value[o] = (least + (1 - least) * value[o]) / (least + (1 - least) * most);
+		value[o] = (value[o] < 0 ? least * (1 + (1 - OPPOSITE) * value[o]) : least + (1 - least) * value[o]) /
+			   (least + (1 - least) * most);
 	take_part(m, &m->parts[m->part_count - 1]);
 }
 
@@ -212,7 +213,7 @@ static void judge_predicate(struct meaning *m, const struct parse_clause *c, dou
 			continue;
 		vocabulary_attribute(m->vocabulary, m->sentence, word, match);
 		for (size_t o = 0; o < n; o++)
-			value[o] += match[o];
+			value[o] += fmax(match[o], 0);
 		words++;
 	}
 	const double most = largest(value, n);

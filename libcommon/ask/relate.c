@@ -325,6 +325,16 @@ static void by_itself(const struct arrangement *a, const struct relation *r, con
 		sized(a, r->kind, fit, key, out);
 		return;
 	}
+	if (r->kind == PARSE_ON && r->count) { /* on the table itself, rather than on a thing that is on it */
+		for (size_t o = 0; o < a->n; o++) {
+			out[o] = 1;
+			for (size_t i = 0; i < a->n; i++)
+				if (i != o && a->objects[i].is_there)
+					out[o] = fmin(out[o], 1 - ON_THE_REST * relate_stands_on(a, &a->objects[o],
+									      &a->objects[i]));
+		}
+		return;
+	}
 	relate_rank(a, r->kind, 1, fit, key, out);
 	const int is_ordered = r->kind <= PARSE_BELOW || r->kind == PARSE_NEAR || r->kind == PARSE_FAR;
 	for (size_t o = 0; o < a->n; o++) {

@@ -19,8 +19,7 @@ void vocabulary_free(struct vocabulary *v)
 	free(v->items);
 	free(v->vectors);
 	free(v->sentences);
-	free(v->nouns);
-	free(v->lemmas);
+	free(v->kinds);
 	free(v->scratch);
 	free(v->word);
 	*v = (struct vocabulary){0};
@@ -93,18 +92,17 @@ static const float *vectors_of(const struct lifted *l, size_t r)
 	return l->words + (size_t)l->offsets[r] * (size_t)l->width;
 }
 
-static int add_noun(struct vocabulary *v, const char *lemma, size_t *noun, struct err *e)
+static int add_kind(struct vocabulary *v, const char *lemma, size_t *kind, struct err *e)
 {
-	size_t capacity = v->noun_capacity;
-
-	for (*noun = 0; *noun < v->noun_count; ++*noun)
-		if (!strcmp(v->lemmas[*noun], lemma))
+	for (*kind = 0; *kind < v->kind_count; ++*kind)
+		if (!strcmp(v->kinds[*kind].lemma, lemma))
 			return 0;
-	if (mem_grow((void **)&v->lemmas, &capacity, v->noun_count + 1, sizeof *v->lemmas, "nouns", e) ||
-		mem_grow((void **)&v->nouns, &v->noun_capacity, v->noun_count + 1, sizeof *v->nouns, "nouns", e))
+	if (mem_grow((void **)&v->kinds, &v->kind_capacity, v->kind_count + 1, sizeof *v->kinds, "vocabulary", e))
 		return -1;
-	v->lemmas[v->noun_count] = lemma;
-	wordnet_find(&v->nouns[v->noun_count++], lemma);
+	struct vocabulary_kind *to = &v->kinds[v->kind_count++];
+	to->lemma = lemma;
+	wordnet_find(&to->noun, lemma);
+	wordnet_find_adjective(&to->adjective, lemma);
 	return 0;
 }
 
@@ -121,7 +119,7 @@ static int add_item(struct vocabulary *v, size_t r, int word, enum vocabulary_ro
 		return -1;
 	struct vocabulary_item *item = &v->items[v->n];
 	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0, 0};
-	if ((role == VOCABULARY_NOUN || role == VOCABULARY_ANCHOR) && add_noun(v, w->lemma, &item->noun, e))
+	if (add_kind(v, w->lemma, &item->kind, e))
 		return -1;
 	word_vector(v, w, vectors_of(l, r), v->vectors + width * v->n++);
 	return 0;
@@ -178,7 +176,7 @@ static void mark_general(struct vocabulary *v)
 		for (size_t k = 0; k < v->n && v->items[i].role == VOCABULARY_NOUN; k++)
 			v->items[i].is_general |=
 				v->items[k].role == VOCABULARY_NOUN && v->items[k].object == v->items[i].object &&
-				wordnet_is_above(&v->nouns[v->items[i].noun], &v->nouns[v->items[k].noun]);
+				wordnet_is_above(&v->kinds[v->items[i].kind].noun, &v->kinds[v->items[k].kind].noun);
 }
 
 int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct parser *parser, struct err *e)
@@ -270,7 +268,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		double x = !strcmp(word->lemma, item->lemma) ? 1 : 0;
 		if (x < 1) {
 			x = worth(dot(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
-			x = fmax(x, WORDNET_WORTH * wordnet_fits(&noun, &v->nouns[item->noun], item->is_general));
+			x = fmax(x, WORDNET_WORTH * wordnet_fits(&noun, &v->kinds[item->kind].noun, item->is_general));
 			if (!item->is_general && kinds_share(word->lemma, item->lemma))
 				x = fmax(x, KINDS_WORTH);
 		}
@@ -284,17 +282,26 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 	const struct lifted *l = v->lifted;
 	const struct parse_word *word = &s->parse->words[w];
 	const size_t width = (size_t)l->width;
+	struct wordnet_adjective adjective;
 
 	word_vector(v, word, s->vectors, v->word);
+	wordnet_find_adjective(&adjective, word->lemma);
 	for (size_t o = 0; o < l->objects; o++)
 		match[o] = is_in_name(word->lemma, l->names[o]) ? 1 : 0;
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
+		double *to = &match[item->object], x;
 		if (item->sentence == v->without)
 			continue;
-		double x = worth(dot(v->word, v->vectors + i * width, width), ATTRIBUTE_HALF, ATTRIBUTE_SOFT);
+		x = item->role == VOCABULARY_ATTRIBUTE
+			    ? wordnet_adjectives_fit(&adjective, &v->kinds[item->kind].adjective)
+			    : 0;
+		if (x == 0)
+			x = worth(dot(v->word, v->vectors + i * width, width), ATTRIBUTE_HALF, ATTRIBUTE_SOFT);
 		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
-		match[item->object] = fmax(match[item->object], x);
+		/* what is said to be so once is so, whatever else is said */
+		if (x > 0 ? x > *to && x > -*to : -x > fabs(*to))
+			*to = x;
 	}
 }
 

@@ -28,8 +28,15 @@ struct vocabulary_item {
 	size_t object, sentence;
 	const char *lemma;
 	enum parse_relation relation; /* of VOCABULARY_ANCHOR: the clause's */
-	size_t noun;		      /* of VOCABULARY_NOUN and ANCHOR: into nouns */
+	size_t kind;		      /* into kinds */
 	int is_general;		      /* a noun that is above another one of the same object: "container" of a bowl */
+};
+
+/* What WordNet knows of a lemma. */
+struct vocabulary_kind {
+	const char *lemma;
+	struct wordnet_noun noun;
+	struct wordnet_adjective adjective;
 };
 
 struct vocabulary {
@@ -41,9 +48,8 @@ struct vocabulary {
 	struct vocabulary_item *items;
 	float *vectors;	  /* (n,width) of length 1: the items' words, less the mean */
 	float *sentences; /* (R,width) of length 1: means of the sentences, less sentence_mean */
-	size_t noun_count, noun_capacity;
-	struct wordnet_noun *nouns; /* of different lemmas */
-	const char **lemmas;	    /* (noun_count) */
+	size_t kind_count, kind_capacity;
+	struct vocabulary_kind *kinds; /* of different lemmas */
 	size_t without;		    /* the training sentence whose words do not count, for the caller to set; R: none */
 	double *scratch;	    /* (width) */
 	float *word;		    /* (width) */
@@ -58,7 +64,8 @@ void vocabulary_free(struct vocabulary *v);
  * last is of the best thing that training sentences name and that is no object: "on the shelf". */
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
-/* match (O): how far an object is said to be what a word says, as an attribute or in any other way, in [0,1]. */
+/* match (O): how far an object is said to be what a word says, as an attribute or in any other way, in [0,1]; below 0,
+ * to -1, where it is said to be the opposite. */
 void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* match (O) in [0,1]: that a training sentence has the object in a like relation to what word w names. */

@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <wn.h>
 
-enum { DEEPEST = 10 };
+enum { DEEPEST = 10, ADJECTIVE_SENSES = 4 };
 
 int wordnet_is_there(void)
 {
@@ -54,7 +54,58 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma)
 	if (index)
 		free_index(index);
 }
+static void add_near(struct wordnet_adjective *to, long synset, int distance)
+{
+	for (int i = 0; i < to->n; i++)
+		if (to->near[i].synset == synset)
+			return;
+	if (to->n == WORDNET_NEAR)
+		return;
+	to->near[to->n].synset = synset;
+	to->near[to->n++].distance = (signed char)distance;
+}
+
+/* Adds what is similar or opposite to the adjectives so far, from the i-th on. */
+static void add_around(struct wordnet_adjective *to, int i, int distance)
+{
+	static char none[] = "";
+	SynsetPtr s = read_synset(ADJ, to->near[i].synset, none);
+
+	for (int k = 0; s && k < s->ptrcount; k++) {
+		if (s->ptrtyp[k] == SIMPTR)
+			add_near(to, s->ptroff[k], distance);
+		else if (s->ptrtyp[k] == ANTPTR && s->ppos[k] == ADJ)
+			add_near(to, s->ptroff[k], -1);
+	}
+	if (s)
+		free_synset(s);
+}
+
+void wordnet_find_adjective(struct wordnet_adjective *to, const char *lemma)
+{
+	char word[128];
+
+	to->n = 0;
+	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
+		return;
+	strcpy(word, lemma);
+	IndexPtr index = index_lookup(word, ADJ);
+	for (int i = 0; index && i < index->off_cnt && i < ADJECTIVE_SENSES; i++)
+		add_near(to, (long)index->offset[i], 0);
+	if (index)
+		free_index(index);
+	for (int distance = 1, done = 0; distance <= 2; distance++)
+		for (const int n = to->n; done < n; done++)
+			if (to->near[done].distance >= 0)
+				add_around(to, done, distance);
+}
 #else
+void wordnet_find_adjective(struct wordnet_adjective *to, const char *lemma)
+{
+	(void)lemma;
+	to->n = 0;
+}
+
 int wordnet_is_there(void)
 {
 	return 0;
@@ -95,4 +146,22 @@ int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun
 			if (!above->up[i].depth && word->up[k].depth && above->up[i].synset == word->up[k].synset)
 				return 1;
 	return 0;
+}
+
+double wordnet_adjectives_fit(const struct wordnet_adjective *word, const struct wordnet_adjective *known)
+{
+	static const double by_distance[] = {1, 0.9, 0.6, 0.3, 0.2};
+	double best = 0, opposite = 0;
+
+	for (int i = 0; i < word->n; i++)
+		for (int k = 0; k < known->n; k++) {
+			const int p = word->near[i].distance, q = known->near[k].distance;
+			if (word->near[i].synset != known->near[k].synset)
+				continue;
+			if (p >= 0 && q >= 0)
+				best = fmax(best, by_distance[p + q]);
+			else if (p * q < 0 || p == 0 || q == 0)
+				opposite = fmax(opposite, by_distance[(p > 0 ? p : 0) + (q > 0 ? q : 0)]);
+		}
+	return best >= opposite ? best : -opposite;
 }
