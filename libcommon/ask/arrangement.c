@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLOURS_SEEN = 1024 }; /* Gaussians of an object */
+enum { POINTS = 2048 }; /* of an object, at most about so many */
 static const double trimmed = 0.1, longer = 0.1, most_weight = 4;
 static const double alike_colour = 8, alike_size = 0.15;
 static const double degree0 = 0.28209479177387814; /* the spherical harmonic of degree 0 */
@@ -17,6 +17,9 @@ static const double degree0 = 0.28209479177387814; /* the spherical harmonic of 
 void arrangement_free(struct arrangement *a)
 {
 	free(a->objects);
+	free(a->begin);
+	free(a->points);
+	free(a->along);
 	*a = (struct arrangement){0};
 }
 
@@ -61,18 +64,15 @@ static void level_axes(const double up[3], const double direction[3], double axe
 	memcpy(axes[2], up, 3 * sizeof *up);
 }
 
-/* Where the objects are, roughly: the mean of a few of their Gaussians. */
-static void find_middle(const struct lifted *l, const struct splats *s, double middle[3])
+/* Where the objects are, roughly: the mean of their points. */
+static void find_middle(const struct arrangement *a, double middle[3])
 {
-	const size_t shares = (size_t)l->indptr[l->objects], step = 1 + shares / 1024;
-	double count = 0;
+	const size_t n = a->begin[a->n];
 
 	memset(middle, 0, 3 * sizeof *middle);
-	for (size_t i = 0; i < shares; i += step, count++)
-		for (size_t k = 0; k < 3; k++)
-			middle[k] += s->means[3 * (size_t)l->index[i] + k];
-	for (int k = 0; k < 3; k++)
-		middle[k] /= count > 0 ? count : 1;
+	for (size_t i = 0; i < n; i++)
+		for (int k = 0; k < 3; k++)
+			middle[k] += a->points[i].at[k] / (double)n;
 }
 
 /* Axes and centre of the viewpoint. */
@@ -107,18 +107,14 @@ static void look(const struct cameras *c, const struct viewpoint *from, const do
 	level_axes(up, away, axes);
 }
 
-struct weighted {
-	double at, weight;
-};
-
 static int by_place(const void *a, const void *b)
 {
-	const struct weighted *x = a, *y = b;
+	const struct arranged_along *x = a, *y = b;
 
 	return (x->at > y->at) - (x->at < y->at);
 }
 
-static double quantile(const struct weighted *w, size_t n, double weight)
+static double quantile(const struct arranged_along *w, size_t n, double weight)
 {
 	double sum = 0;
 
@@ -176,22 +172,16 @@ static int find_own(struct extent *x, const struct lifted *l, size_t object, con
 	return bad ? -1 : 0;
 }
 
-/* What is made of one object's Gaussians. */
-struct measured {
-	double *weight, *sorted;  /* (n) */
-	struct weighted *along;	  /* (n) */
-};
-
-/* Mean colour, and what it is called, of a sample of its Gaussians. */
-static void take_colours(struct arranged *o, const struct splats *s, const int32_t *ids, const double *weight, size_t n)
+/* Mean colour, and what it is called, of every `step`th Gaussian. */
+static void take_colours(struct arranged *o, const struct splats *s, const struct extent *own, size_t step,
+	const double *weight)
 {
-	const size_t step = 1 + n / COLOURS_SEEN;
 	double total = 0;
 
-	for (size_t i = 0; i < n; i += step)
+	for (size_t i = 0; i < own->n; i += step)
 		total += weight[i];
-	for (size_t i = 0; i < n; i += step) {
-		const float *sh = s->sh + (size_t)ids[i] * (size_t)s->sh_coefficients * 3;
+	for (size_t i = 0; i < own->n; i += step) {
+		const float *sh = s->sh + (size_t)own->ids[i] * (size_t)s->sh_coefficients * 3;
 		double lab[3], rgb[3];
 		for (int k = 0; k < 3; k++)
 			rgb[k] = 0.5 + degree0 * sh[k];
@@ -202,51 +192,58 @@ static void take_colours(struct arranged *o, const struct splats *s, const int32
 	}
 }
 
-static void take_box(struct arranged *o, const struct splats *s, const int32_t *ids, double axes[3][3],
-	const struct measured *m, size_t n)
-{
-	double total = 0;
-
-	for (size_t i = 0; i < n; i++)
-		total += m->weight[i];
-	for (int k = 0; k < 3; k++) {
-		for (size_t i = 0; i < n; i++) {
-			const float *mean = s->means + 3 * (size_t)ids[i];
-			m->along[i] = (struct weighted){
-				axes[k][0] * mean[0] + axes[k][1] * mean[1] + axes[k][2] * mean[2], m->weight[i]};
-		}
-		qsort(m->along, n, sizeof *m->along, by_place);
-		const double low = quantile(m->along, n, trimmed * total);
-		const double high = quantile(m->along, n, (1 - trimmed) * total);
-		o->low[k] = low - longer * (high - low);
-		o->high[k] = high + longer * (high - low);
-		o->centre[k] = (low + high) / 2;
-	}
-}
-
-static int measure(struct arranged *o, const struct lifted *l, size_t object, const struct splats *s,
-	double axes[3][3], struct err *e)
+/* The points of object o, after those before it. */
+static int take_points(struct arrangement *a, size_t o, const struct lifted *l, const struct splats *s,
+	const double up[3], struct err *e)
 {
 	struct extent own;
 
-	if (find_own(&own, l, object, s, axes[2], e))
+	if (find_own(&own, l, o, s, up, e))
 		return -1;
-	struct measured m = {mem_alloc(own.n, sizeof *m.weight, "objects", e),
-		mem_alloc(own.n, sizeof *m.sorted, "objects", e), mem_alloc(own.n, sizeof *m.along, "objects", e)};
-	const int bad = !m.weight || !m.sorted || !m.along;
+	const size_t step = 1 + own.n / POINTS;
+	double *weight = mem_alloc(own.n, sizeof *weight, "objects", e);
+	double *sorted = mem_alloc(own.n, sizeof *sorted, "objects", e);
+	const int bad = !weight || !sorted;
+	a->begin[o + 1] = a->begin[o];
+	a->objects[o].is_there = own.n > 0;
 	if (!bad && own.n) {
-		o->is_there = o->in_sight = 1;
 		for (size_t i = 0; i < own.n; i++)
-			m.weight[i] = size_of(s, (size_t)own.ids[i]);
-		level_weights(m.weight, m.sorted, own.n);
-		take_colours(o, s, own.ids, m.weight, own.n);
-		take_box(o, s, own.ids, axes, &m, own.n);
+			weight[i] = size_of(s, (size_t)own.ids[i]);
+		level_weights(weight, sorted, own.n);
+		take_colours(&a->objects[o], s, &own, step, weight);
+		for (size_t i = 0; i < own.n; i += step) {
+			const float *mean = s->means + 3 * (size_t)own.ids[i];
+			a->points[a->begin[o + 1]++] =
+				(struct arranged_point){{mean[0], mean[1], mean[2]}, weight[i]};
+		}
 	}
-	free(m.weight);
-	free(m.sorted);
-	free(m.along);
+	free(weight);
+	free(sorted);
 	extent_free(&own);
 	return bad ? -1 : 0;
+}
+
+static void take_box(struct arrangement *a, size_t o, double axes[3][3])
+{
+	const size_t n = a->begin[o + 1] - a->begin[o];
+	struct arranged *to = &a->objects[o];
+
+	for (int k = 0; k < 3 && n; k++) {
+		double total = 0;
+		for (size_t i = 0; i < n; i++) {
+			const struct arranged_point *p = &a->points[a->begin[o] + i];
+			a->along[i] = (struct arranged_along){dot(axes[k], p->at), p->weight};
+			total += p->weight;
+		}
+		qsort(a->along, n, sizeof *a->along, by_place);
+		const double low = quantile(a->along, n, trimmed * total);
+		const double high = quantile(a->along, n, (1 - trimmed) * total);
+		to->low[k] = low - longer * (high - low);
+		to->high[k] = high + longer * (high - low);
+		to->centre[k] = (low + high) / 2;
+	}
+	to->side = to->centre[0];
+	to->in_sight = to->is_there;
 }
 
 /* Where objects are in a picture: whether their middle is in it, and how far right it is there, as a length at
@@ -299,54 +296,58 @@ static void centre_all(struct arrangement *a)
 	}
 }
 
-static int find_spacing(struct arrangement *a, struct err *e)
+static void find_spacing(struct arrangement *a)
 {
-	struct weighted *between = mem_alloc(a->n * a->n, sizeof *between, "objects", e);
 	size_t n = 0;
 
-	if (!between)
-		return -1;
 	for (size_t i = 0; i < a->n; i++)
 		for (size_t k = 0; k < i; k++) {
 			const struct arranged *p = &a->objects[i], *q = &a->objects[k];
 			if (p->is_there && q->is_there)
-				between[n++] = (struct weighted){
-					hypot(p->centre[0] - q->centre[0], p->centre[1] - q->centre[1]), 1};
+				a->along[n++].at = hypot(p->centre[0] - q->centre[0], p->centre[1] - q->centre[1]);
 		}
 	if (n)
-		qsort(between, n, sizeof *between, by_place);
-	a->spacing = n && between[n / 2].at > 0 ? between[n / 2].at : 1;
-	free(between);
-	return 0;
+		qsort(a->along, n, sizeof *a->along, by_place);
+	a->spacing = n && a->along[n / 2].at > 0 ? a->along[n / 2].at : 1;
 }
 
-int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,
-	const struct cameras *cameras, const struct viewpoint *from, struct err *e)
+void arrangement_look(struct arrangement *a, const struct viewpoint *from)
 {
 	double axes[3][3], eye[3], middle[3];
-	int bad = 0;
 
-	*a = (struct arrangement){.n = l->objects};
-	a->objects = mem_zalloc(a->n, sizeof *a->objects, "objects", e);
-	if (!a->objects)
-		return -1;
-	find_middle(l, splats, middle);
-	look(cameras, from, middle, axes, eye);
+	find_middle(a, middle);
+	look(a->cameras, from, middle, axes, eye);
 	a->viewer.is_there = 1;
 	for (int k = 0; k < 3; k++)
 		a->viewer.centre[k] = dot(axes[k], eye);
+	for (size_t o = 0; o < a->n; o++)
+		take_box(a, o, axes);
+	if (from->kind == VIEWPOINT_CAMERA)
+		see(a, from->camera, axes);
+	centre_all(a);
+	find_spacing(a);
+}
+
+int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,
+	const struct cameras *cameras, struct err *e)
+{
+	static const struct viewpoint usual = {.kind = VIEWPOINT_USUAL};
+	size_t along = l->objects * l->objects;
+	double up[3];
+
+	*a = (struct arrangement){.n = l->objects, .cameras = cameras};
+	a->objects = mem_zalloc(a->n, sizeof *a->objects, "objects", e);
+	a->begin = mem_zalloc(a->n + 1, sizeof *a->begin, "objects", e);
+	a->points = mem_alloc(a->n, (POINTS + 1) * sizeof *a->points, "objects", e);
+	a->along = mem_alloc(along > POINTS ? along : POINTS + 1, sizeof *a->along, "objects", e);
+	int bad = !a->objects || !a->begin || !a->points || !a->along;
+	cameras_up(cameras, up);
 	for (size_t o = 0; o < a->n && !bad; o++)
-		bad = measure(&a->objects[o], l, o, splats, axes, e);
-	if (!bad) {
-		for (size_t o = 0; o < a->n; o++)
-			a->objects[o].side = a->objects[o].centre[0];
-		if (from->kind == VIEWPOINT_CAMERA)
-			see(a, from->camera, axes);
-		centre_all(a);
-		bad = find_spacing(a, e);
-	}
+		bad = take_points(a, o, l, splats, up, e);
 	if (bad)
 		arrangement_free(a);
+	else
+		arrangement_look(a, &usual);
 	return bad ? -1 : 0;
 }
 

@@ -21,11 +21,25 @@ struct arranged {
 	double colours[COLOUR_WORDS]; /* part of it that people would call so (lang/colours.h) */
 };
 
+/* A Gaussian of an object: where it is in the scene, and how much it counts. */
+struct arranged_point {
+	double at[3], weight;
+};
+
+struct arranged_along {
+	double at, weight;
+};
+
 struct arrangement {
 	size_t n;
 	struct arranged *objects; /* (n) */
 	struct arranged viewer;	  /* a point: where the viewer stands, in the same axes */
 	double spacing;		  /* median distance between two objects on the ground; > 0 */
+
+	const struct cameras *cameras;
+	size_t *begin;		       /* (n+1) points begin[o] to begin[o+1] are of object o */
+	struct arranged_point *points; /* (begin[n]) */
+	struct arranged_along *along;  /* scratch */
 };
 
 /* Where a sentence is said. */
@@ -35,12 +49,16 @@ struct viewpoint {
 	double point[3];	     /* of VIEWPOINT_POINT, in the scene: looking level at the middle of the objects */
 };
 
-/* Of the objects of l in the scene that splats and cameras are of. VIEWPOINT_USUAL is the mean of the training
- * cameras' centres (of all, where none is for training), looking level along the mean of their directions.
- * Only Gaussians that hang together count (refer/extent.h), and none for more than its fellows do, so that
- * strays and large ones do not decide where an object is. Returns 0, or -1 with *e set and nothing to free. */
+/* Of the objects of l in the scene that splats and cameras are of, which must outlive it, seen from the usual
+ * viewpoint. Only Gaussians that hang together count (refer/extent.h), and none for much more than its fellows do,
+ * so that strays and large ones do not decide where an object is. Returns 0, or -1 with *e set and nothing to free.
+ */
 int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,
-	const struct cameras *cameras, const struct viewpoint *from, struct err *e);
+	const struct cameras *cameras, struct err *e);
+
+/* The same seen from elsewhere. VIEWPOINT_USUAL is the mean of the training cameras' centres (of all, where none is
+ * for training), looking level along the mean of their directions. */
+void arrangement_look(struct arrangement *a, const struct viewpoint *from);
 void arrangement_free(struct arrangement *a);
 
 /* Whether two objects are the same to look at, but for where they are: 0 where they are, and less the more

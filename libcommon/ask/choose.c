@@ -67,14 +67,11 @@ static int is_same_view(const struct viewpoint *a, const struct viewpoint *b)
 	       (a->kind != VIEWPOINT_POINT || !memcmp(a->point, b->point, sizeof a->point));
 }
 
-static int look_from(struct chooser *c, const struct viewpoint *from, struct err *e)
+static void look_from(struct chooser *c, const struct viewpoint *from)
 {
-	if (c->arrangement.objects && is_same_view(&c->from, from))
-		return 0;
-	arrangement_free(&c->arrangement);
+	if (!is_same_view(&c->from, from))
+		arrangement_look(&c->arrangement, from);
 	c->from = *from;
-	return arrangement_make(
-		&c->arrangement, c->scene->lifted, c->scene->splats, c->scene->cameras, from, e);
 }
 
 static size_t best_of(const double *x, size_t n)
@@ -201,8 +198,7 @@ static int choose_one(struct chooser *c, const struct choose_sentence *from, str
 	memset(probability, 0, n * sizeof *probability);
 	if (!from->words || !n)
 		return 0;
-	if (look_from(c, &from->from, e))
-		return -1;
+	look_from(c, &from->from);
 	const size_t same = vocabulary_whole(
 		&c->vocabulary, has(c, CHOOSE_SENTENCE) ? from->text : NULL, from->vectors, from->words, c->whole);
 	if (from->pieces) {
@@ -226,13 +222,12 @@ static int choose_one(struct chooser *c, const struct choose_sentence *from, str
 
 static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigned parts, struct err *e)
 {
-	static const struct viewpoint usual = {.kind = VIEWPOINT_USUAL};
 	const size_t objects = s->lifted->objects;
 
-	*c = (struct chooser){.scene = s, .parts = parts};
+	*c = (struct chooser){.scene = s, .parts = parts, .from = {.kind = VIEWPOINT_USUAL}};
 	c->score = mem_alloc(objects, sizeof *c->score, "choice", e);
 	c->whole = mem_alloc(objects, sizeof *c->whole, "choice", e);
-	if (!c->score || !c->whole || look_from(c, &usual, e) ||
+	if (!c->score || !c->whole || arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
 		vocabulary_make(&c->vocabulary, s->lifted, s->parser, e))
 		return -1;
 	c->meaning = (struct meaning){.arrangement = &c->arrangement,
