@@ -33,6 +33,7 @@ struct chooser {
 	struct viewpoint from; /* of the arrangement */
 	struct meaning meaning;
 	double *score, *whole; /* (O) */
+	double *looks;	       /* (O,O) */
 };
 
 static int has(const struct chooser *c, enum choose_part p)
@@ -220,6 +221,18 @@ static int choose_one(struct chooser *c, const struct choose_sentence *from, str
 	return bad;
 }
 
+/* How far objects share what is said of them: things of one name that look the same. */
+static void find_looks(struct chooser *c)
+{
+	const size_t n = c->arrangement.n;
+
+	for (size_t i = 0; i < n; i++)
+		for (size_t k = 0; k < n; k++)
+			c->looks[i * n + k] = vocabulary_shares_noun(&c->vocabulary, i, k)
+						      ? exp(LOOKS_WORTH * arrangement_alike(&c->arrangement, i, k))
+						      : 0;
+}
+
 static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigned parts, struct err *e)
 {
 	const size_t objects = s->lifted->objects;
@@ -227,12 +240,14 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	*c = (struct chooser){.scene = s, .parts = parts, .from = {.kind = VIEWPOINT_USUAL}};
 	c->score = mem_alloc(objects, sizeof *c->score, "choice", e);
 	c->whole = mem_alloc(objects, sizeof *c->whole, "choice", e);
-	if (!c->score || !c->whole || arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
+	c->looks = mem_alloc(objects, objects * sizeof *c->looks, "choice", e);
+	if (!c->score || !c->whole || !c->looks || arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
 		vocabulary_make(&c->vocabulary, s->lifted, s->parser, e))
 		return -1;
+	find_looks(c);
 	c->meaning = (struct meaning){.arrangement = &c->arrangement,
 		.vocabulary = &c->vocabulary,
-		.shares_looks = has(c, CHOOSE_ALIKE),
+		.looks = has(c, CHOOSE_ALIKE) ? c->looks : NULL,
 		.naming = s->naming};
 	if (!has(c, CHOOSE_WORDS))
 		c->meaning.without |= 1U << MEANING_NOUN | 1U << MEANING_ATTRIBUTE;
@@ -253,6 +268,7 @@ static void chooser_free(struct chooser *c)
 	meaning_free(&c->meaning);
 	free(c->score);
 	free(c->whole);
+	free(c->looks);
 }
 
 int choose(const struct choose_scene *s, const struct choose_sentence *sentences, size_t n, unsigned parts,

@@ -37,6 +37,7 @@
 #define UNKNOWN_RELATION 0.5  /* how true a relation to something unknown is */
 #define SAID_WORTH 0.85	      /* a relation that a training sentence has */
 #define RELATION_THERE 0.05   /* how true a relation has to be for its thing to be there */
+#define PART_COLOUR 0.3 /* "a bottle with a green base" is called green */
 #define COLOUR_SHARE 0.15     /* the share of a thing's colours at which it half has a colour */
 #define LOOKS_WORTH 1	      /* how fast look-alikes share fewer words as they look less alike */
 
@@ -50,7 +51,7 @@
 #define NAME_PART 0.3 /* a word of a name that is not its last */
 
 /* The answer. */
-#define SENTENCE_WEIGHT 0.5 /* of the sentences' cosine, beside the logarithm of the fit */
+#define SENTENCE_WEIGHT 0.3 /* of the sentences' cosine, beside the logarithm of the fit */
 #define SCORE_WEIGHT 1
 #define SEVERAL_SHARE 0.35 /* of the best fit: what is one of several meant */
 #define COUNTED_SHARE 0.05 /* the same where their number is said */

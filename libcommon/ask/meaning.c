@@ -3,6 +3,7 @@
 #include "ask/constants.h"
 #include "ask/relate.h"
 #include "base/mem.h"
+#include "lang/closed.h"
 #include "lang/colours.h"
 
 #include <math.h>
@@ -76,14 +77,11 @@ static void share_looks(const struct meaning *m, double *match)
 	const size_t n = objects_of(m);
 	double *own = m->scratch;
 
-	if (!m->shares_looks)
-		return;
 	memcpy(own, match, n * sizeof *own);
-	for (size_t o = 0; o < n; o++)
+	for (size_t o = 0; o < n && m->looks; o++)
 		for (size_t k = 0; k < n; k++)
-			if (own[k] > match[o] && match[o] >= 0)
-				match[o] = fmax(match[o],
-					own[k] * exp(LOOKS_WORTH * arrangement_alike(m->arrangement, o, k)));
+			if (match[o] >= 0)
+				match[o] = fmax(match[o], own[k] * m->looks[o * n + k]);
 }
 
 static int word_is(const struct parse_word *w, const char *const *list)
@@ -101,7 +99,7 @@ static int head_of(const struct parse *p, const struct parse_phrase *f)
 		"stuff", "what", "whatever", "which", "thingy", "other", "another", "piece", NULL};
 	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
 
-	return head >= 0 && word_is(&p->words[head], generic) ? -1 : head;
+	return head >= 0 && (word_is(&p->words[head], generic) || closed_find(p->words[head].text) >= 0) ? -1 : head;
 }
 
 /* "the red one", "the other two": a thing of the kind that was spoken of. */
@@ -135,7 +133,6 @@ static void judge_noun(struct meaning *m, int phrase)
 		return;
 	value = add_part(m, phrase, MEANING_NOUN, head);
 	vocabulary_noun(m->vocabulary, m->sentence, head, match);
-	share_looks(m, match);
 	const double best = largest(match, n), most = fmax(best, match[n]);
 	m->known[phrase] = best;
 	for (size_t o = 0; o < n; o++) {
@@ -211,7 +208,8 @@ static void judge_predicate(struct meaning *m, const struct parse_clause *c, dou
 						: head_of(p, &p->phrases[c->anchors.item[k - c->words.n]]);
 		if (word < 0)
 			continue;
-		vocabulary_attribute(m->vocabulary, m->sentence, word, match);
+		if (!vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match))
+			vocabulary_attribute(m->vocabulary, m->sentence, word, match);
 		for (size_t o = 0; o < n; o++)
 			value[o] += fmax(match[o], 0);
 		words++;
@@ -222,10 +220,19 @@ static void judge_predicate(struct meaning *m, const struct parse_clause *c, dou
 		value[o] = words ? (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most) : 1;
 }
 
+/* There is no more or less of some relations: "on top of". */
+static enum parse_degree degree_of(const struct parse_clause *c)
+{
+	const unsigned plain = 1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_SUPPORTS | 1U << PARSE_BETWEEN |
+			       1U << PARSE_WITH | 1U << PARSE_OTHER;
+
+	return plain >> c->relation & 1 ? PARSE_PLAIN : c->degree;
+}
+
 /* Whether a clause compares with what else fits, and so has to wait for it. */
 static int is_late(const struct parse_clause *c)
 {
-	return c->degree != PARSE_PLAIN || !c->anchors.n || c->relation == PARSE_MIDDLE;
+	return degree_of(c) != PARSE_PLAIN || !c->anchors.n || c->relation == PARSE_MIDDLE;
 }
 
 /* The place as a whole, unless something is called so. */
@@ -247,13 +254,18 @@ static double judge_relation(struct meaning *m, int phrase, const struct parse_c
 				     1U << PARSE_WITH | 1U << PARSE_BELOW | 1U << PARSE_ABOVE;
 	const struct parse *p = m->sentence->parse;
 	struct relate_anchor anchors[ANCHORS];
-	struct relation r = {c->relation, c->degree, p->phrases[phrase].count != PARSE_ONE, 0, anchors};
+	struct relation r = {c->relation, degree_of(c), p->phrases[phrase].count != PARSE_ONE, 0, anchors};
 	double known = 1;
 
+	if (!c->anchors.n && (c->relation == PARSE_SUPPORTS || c->relation == PARSE_INSIDE)) {
+		for (size_t o = 0; o <= objects_of(m); o++) /* "with nothing on it" */
+			m->scratch[o] = o < objects_of(m);
+		anchors[r.count++] = (struct relate_anchor){.p = m->scratch};
+	}
 	for (int k = 0; k < c->anchors.n && r.count < ANCHORS; k++) {
 		const int i = c->anchors.item[k];
 		const int is_many = p->phrases[i].count != PARSE_ONE &&
-				    (c->degree != PARSE_PLAIN || !(one_will_do >> c->relation & 1));
+				    (r.degree != PARSE_PLAIN || !(one_will_do >> c->relation & 1));
 		anchors[r.count] = (struct relate_anchor){fit_of(m, i), is_scene(m, i), is_many && !c->negated};
 		if (!p->phrases[i].viewer && !anchors[r.count].is_scene)
 			known = fmin(known, m->known[i]);
@@ -282,7 +294,7 @@ static void judge_clause(struct meaning *m, int phrase, int clause, const double
 			judge_said(m, c, said);
 			for (size_t o = 0; o < n; o++)
 				value[o] = fmax(known * value[o] + (1 - known) * UNKNOWN_RELATION,
-					SAID_WORTH * said[o]);
+					(1 - known) * SAID_WORTH * said[o]);
 		}
 	}
 	const int is_size = c->degree == PARSE_PLAIN && c->relation >= PARSE_LARGER && c->relation <= PARSE_WIDER;

@@ -33,7 +33,7 @@ struct meaning {
 	const struct arrangement *arrangement;
 	struct vocabulary *vocabulary;
 	unsigned without; /* a bit 1 << meaning_kind for each kind of part that counts for nothing */
-	int shares_looks; /* whether objects that look the same share their words */
+	const double *looks; /* (O,O): how far two objects share what is said of them; NULL: not at all */
 	double naming;	  /* the power of nouns and attributes that are no colours; 1 */
 
 	/* Of the sentence that was judged last. */

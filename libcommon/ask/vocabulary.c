@@ -336,21 +336,55 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
 	}
 }
 
+/* fit (O): how many of the training sentences that say a colour of an object say one like this: one of them may have
+ * been misread. What is said of a part of it counts less. */
+static void said_colours(const struct vocabulary *v, int colour, double *fit)
+{
+	const struct lifted *l = v->lifted;
+
+	for (size_t o = 0; o < l->objects; o++) {
+		double like = 0, all = 0, part = 0;
+		for (size_t i = 0; i < v->n; i++) {
+			const struct vocabulary_item *item = &v->items[i];
+			const int said = item->object == o && item->sentence != v->without
+						 ? colour_word(item->lemma)
+						 : -1;
+			if (said < 0)
+				continue;
+			const double alike = colour_words_alike(said, colour);
+			if (item->role == VOCABULARY_ATTRIBUTE) {
+				like += alike;
+				all++;
+			} else {
+				part = fmax(part, PART_COLOUR * alike);
+			}
+		}
+		fit[o] = fmax(all > 0 ? like / all : 0, part);
+	}
+}
+
 int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit)
 {
 	const int colour = colour_word(word);
 
 	if (colour < 0)
 		return 0;
-	for (size_t o = 0; o < a->n; o++)
-		fit[o] = a->objects[o].colours[colour] / (a->objects[o].colours[colour] + COLOUR_SHARE);
-	for (size_t i = 0; i < v->n; i++) {
-		const struct vocabulary_item *item = &v->items[i];
-		const int said = item->role == VOCABULARY_ATTRIBUTE ? colour_word(item->lemma) : -1;
-		if (said >= 0 && item->sentence != v->without)
-			fit[item->object] = fmax(fit[item->object], colour_words_alike(said, colour));
+	said_colours(v, colour, fit);
+	for (size_t o = 0; o < a->n; o++) {
+		const double share = a->objects[o].colours[colour];
+		fit[o] = fmax(fit[o], share / (share + COLOUR_SHARE));
 	}
 	return 1;
+}
+
+int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
+{
+	for (size_t i = 0; i < v->n; i++)
+		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN; k++)
+			if (v->items[k].object == b && v->items[k].role == VOCABULARY_NOUN &&
+				v->items[k].kind == v->items[i].kind)
+				return 1;
+	return 0;
 }
 
 size_t vocabulary_whole(struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match)

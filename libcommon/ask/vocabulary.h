@@ -76,6 +76,9 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
  * sentences say it has. Returns 0 where it is no colour word. */
 int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit);
 
+/* Whether two objects were called by one noun. */
+int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b);
+
 /* match (O): the best cosine of the mean of a sentence's pieces with that of an object's training sentences, -1
  * where it has none. Returns the object of the training sentence of the same text, or O; text may be NULL. */
 size_t vocabulary_whole(struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match);

@@ -150,7 +150,7 @@ int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun
 
 double wordnet_adjectives_fit(const struct wordnet_adjective *word, const struct wordnet_adjective *known)
 {
-	static const double by_distance[] = {1, 0.9, 0.6, 0.3, 0.2};
+	static const double by_distance[] = {1, 0.9, 0.3, 0.1, 0};
 	double best = 0, opposite = 0;
 
 	for (int i = 0; i < word->n; i++)
