@@ -41,7 +41,7 @@ static int write_examples(const struct cli *c, long long n, int test, struct err
 
 	rng_seed(&r, (uint64_t)c->seed, (uint64_t)test);
 	for (long long i = 0; i < n && !bad; i++) {
-		example_make(&x, test ? EXAMPLES_TEST : EXAMPLES_TRAIN, &r);
+		example_make(&x, test ? EXAMPLES_TEST : EXAMPLES_TRAIN, NULL, &r);
 		fprintf(out.stream, "{\"ref\":\"e%lld\",\"object\":\"example\"", i);
 		bad = jsonl_put_string(out.stream, ",\"text\":", x.text, e);
 		fprintf(out.stream, ",\"split\":\"%s\"}\n", test ? "test" : "train");
@@ -71,21 +71,19 @@ static int take_examples(struct training *s, const char *path, struct err *e)
 	for (size_t i = 0; i < s->examples.n; i++) {
 		int count;
 		const float *v = vectors_of(&s->examples, i, &count);
-		example_make(&x, EXAMPLES_TRAIN, &r);
+		example_make(&x, EXAMPLES_TRAIN, s->examples.pieces ? s->examples.pieces[i] : NULL, &r);
 		if (!s->examples.pieces || strcmp(x.text, s->examples.texts[i]) != 0)
 			return err_set(e, ERR_FORMAT, "%s: ref '%s': not what parse-train --write makes with --seed %lld",
 				path, s->examples.refs[i], s->c->seed);
-		tokens_pieces(&x.tokens, x.text, s->examples.pieces[i]);
 		if (parser_sample_make(&s->own[i], &x.tokens, &x.analysis, v, count, s->examples.width, e))
 			return -1;
 	}
 	return 0;
 }
 
-static int take_tokens(const struct text *t, size_t r, struct tokens *out)
+static void take_tokens(const struct text *t, size_t r, struct tokens *out)
 {
-	tokens_take(out, t->texts[r], NULL, 0);
-	return tokens_pieces(out, t->texts[r], t->pieces[r]);
+	tokens_take(out, t->texts[r], t->pieces[r], NULL, 0);
 }
 
 static int take_readings(struct training *s, struct err *e)
@@ -146,21 +144,30 @@ static void say(void *context, int epoch, double loss)
 	cli_note(context, 1, "epoch %d: loss %.4f", epoch + 1, loss);
 }
 
-/* All examples, and the readings but those of fold `without`. */
-static int learn(struct training *s, struct parser_weights *w, int without, struct err *e)
+static int learn_examples(struct training *s, struct parser_weights *w, struct err *e)
 {
-	const struct options *o = s->o;
-	struct parser_course course = {(int)o->epochs, 16, 0.002, 0.25, say, (void *)s->c};
+	struct parser_course course = {(int)s->o->epochs, 16, 0.002, 0.25, say, (void *)s->c};
 	struct rng r;
 	size_t n = 0;
-	int bad;
 
 	rng_seed(&r, (uint64_t)s->c->seed, 7);
 	parser_weights_begin(w, &r);
 	for (size_t i = 0; i < s->examples.n; i++)
 		if (s->own[i].n)
 			s->set[n++] = &s->own[i];
-	bad = parser_learn(w, s->set, n, &course, &r, e);
+	return parser_learn(w, s->set, n, &course, &r, e);
+}
+
+/* Goes on with the readings but those of fold `without`, and examples. */
+static int learn_readings(struct training *s, struct parser_weights *w, int without, struct err *e)
+{
+	const struct options *o = s->o;
+	struct parser_course course = {0, 16, 0.001, 0.25, say, (void *)s->c};
+	struct rng r;
+	size_t n = 0;
+	int bad = 0;
+
+	rng_seed(&r, (uint64_t)s->c->seed, 8);
 	for (long long k = 0; k < o->rounds && s->others.n && !bad; k++) {
 		bad = align(s, w, e);
 		for (size_t i = n = 0; i < s->others.n; i++)
@@ -172,7 +179,6 @@ static int learn(struct training *s, struct parser_weights *w, int without, stru
 			if (s->own[at].n)
 				s->set[n++] = &s->own[at];
 		}
-		course.rate = 0.001;
 		course.epochs = k + 1 == o->rounds ? 6 : 4;
 		if (!bad)
 			bad = parser_learn(w, s->set, n, &course, &r, e);
@@ -204,10 +210,19 @@ static int put_parses(
 static int cross_validate(struct training *s, struct parser_weights *w, struct err *e)
 {
 	struct file_out out = {0};
+	struct parser_weights begun = {0};
 	int bad = file_out_open(&out, s->c->output, e);
 
-	for (int fold = 0; fold < s->o->folds && !bad; fold++)
-		bad = learn(s, w, fold, e) || put_parses(s, w, fold, out.stream, e);
+	if (!bad)
+		bad = learn_examples(s, w, e) || parser_weights_make(&begun, w->width, e);
+	for (int fold = 0; fold < s->o->folds && !bad; fold++) {
+		if (fold)
+			memcpy(w->slab, begun.slab, sizeof(float) * w->count);
+		else
+			memcpy(begun.slab, w->slab, sizeof(float) * w->count);
+		bad = learn_readings(s, w, fold, e) || put_parses(s, w, fold, out.stream, e);
+	}
+	parser_weights_free(&begun);
 	if (bad)
 		file_out_abort(&out);
 	return bad ? -1 : file_out_commit(&out, e);
@@ -245,7 +260,7 @@ static int run(const struct cli *c, const struct options *o, struct err *e)
 		      !(s.set = mem_alloc(s.examples.n + s.others.n, sizeof *s.set, "samples", e));
 	if (!bad)
 		bad = o->folds ? cross_validate(&s, &w, e)
-			       : learn(&s, &w, -1, e) ||
+			       : learn_examples(&s, &w, e) || learn_readings(&s, &w, -1, e) ||
 					 parser_write(&w, c->output, o->readings ? "--readings" : "", c->seed, o->source, e);
 	training_free(&s);
 	parser_weights_free(&w);

@@ -95,6 +95,19 @@ static void add_relation(cJSON *o, enum parse_relation r)
 		cJSON_AddTrueToObject(o, "contact");
 }
 
+/* "between the two beds" has two anchors, though one phrase names them. */
+static void add_anchors(const struct writer *w, cJSON *o, const struct parse_clause *c)
+{
+	struct parse_list twice = {2, (int[]){0, 0}};
+
+	if (c->relation != PARSE_BETWEEN || c->anchors.n != 1 || w->p->phrases[c->anchors.item[0]].count == PARSE_ONE) {
+		add_phrases(w, o, "anchors", &c->anchors);
+		return;
+	}
+	twice.item[0] = twice.item[1] = c->anchors.item[0];
+	add_phrases(w, o, "anchors", &twice);
+}
+
 static cJSON *clause(const struct writer *w, const struct parse_clause *c)
 {
 	cJSON *o = cJSON_CreateObject();
@@ -105,7 +118,7 @@ static cJSON *clause(const struct writer *w, const struct parse_clause *c)
 	if (c->negated)
 		cJSON_AddTrueToObject(o, "negated");
 	add_words(w, o, "words", &c->words);
-	add_phrases(w, o, "anchors", &c->anchors);
+	add_anchors(w, o, c);
 	add_span(w, o, c->span);
 	return o;
 }

@@ -158,7 +158,7 @@ static int anchor(struct making *m, enum word_role role, int may_nest)
 	} else {
 		head = noun_phrase(m, role, ROOT, pick(m, &m->w->nouns), chance(m, 0.15), 0);
 	}
-	if (may_nest && m->depth < DEPTH_MOST + 1 && chance(m, 0.2)) {
+	if (may_nest && m->depth < DEPTH_MOST + 1 && chance(m, 0.35)) {
 		if (chance(m, 0.4))
 			put_any(m, "that_is|that_'s|which_is");
 		clause(m, head, strcmp(m->word[m->n - 1].text, "is") && strcmp(m->word[m->n - 1].text, "'s")
@@ -408,11 +408,11 @@ static void write_text(struct making *m, struct example *x)
 		x->text[0] = (char)toupper((unsigned char)x->text[0]);
 }
 
-static void analyse(const struct making *m, struct example *x)
+static void analyse(const struct making *m, struct example *x, const char *pieces)
 {
 	int at[MADE_MOST], next = 0;
 
-	tokens_take(&x->tokens, x->text, NULL, 0);
+	tokens_take(&x->tokens, x->text, pieces, NULL, 0);
 	x->analysis = (struct analysis){.n = x->tokens.n};
 	for (int i = 0; i < m->n; i++) {
 		while (next < x->tokens.n && x->tokens.word[next].span.begin < m->word[i].begin)
@@ -433,7 +433,7 @@ static void analyse(const struct making *m, struct example *x)
 	analysis_repair(&x->analysis);
 }
 
-void example_make(struct example *x, enum examples_set set, struct rng *r)
+void example_make(struct example *x, enum examples_set set, const char *pieces, struct rng *r)
 {
 	struct making m = {.w = &example_wordings[set], .r = r};
 
@@ -441,5 +441,5 @@ void example_make(struct example *x, enum examples_set set, struct rng *r)
 	/* functions and nouns of the list have stars only in templates */
 	sentence(&m, pick(&m, &m.w->sentences));
 	write_text(&m, x);
-	analyse(&m, x);
+	analyse(&m, x, pieces);
 }

@@ -19,7 +19,8 @@ struct example {
 	struct analysis analysis;
 };
 
-void example_make(struct example *x, enum examples_set set, struct rng *r);
+/* `pieces` of the sentence that will come out, where the encoder was asked before; NULL. */
+void example_make(struct example *x, enum examples_set set, const char *pieces, struct rng *r);
 
 /* The wordings, in examples_words.c. A template is words with a blank between; "a|b" is a choice, "_" a blank
  * within one.

@@ -238,7 +238,10 @@ static const char *const sentences[] = {
 	"facing|face V , T", "facing|face V , T .", "when facing|looking_at V , T .", "T when facing V", "if you face V , it 's T .",
 	"looking at|toward V , choose|pick T .", "standing at|by|in V , T", "when you are|'re facing V it is|'s T .",
 	"from V , T", "when you enter from|through V , T", "entering from|through V , it is T .",
-	"with your back to V , T", "as you walk in|through V it is T", "if you stand at V facing V , T .", "T as seen from V",
+	"with your back to V , T", "facing V , U .", "facing V , choose|pick U", "when facing V , it is U", "facing V , the correct one is C",
+	"when standing in V facing|looking_at V , the correct one is C .", "standing in V , U", "looking at V , the one C", "facing V , C .",
+	"when looking from V , U", "if facing V , it 's U", "facing V it 's the N C and C", "V is in front of you . choose T", "walk into V , T",
+	"if you are facing V from V it is T", "face V and pick T", "C as you face V , the N", "in V , the N C", "when you 're in V , T", "as you walk in|through V it is T", "if you stand at V facing V , T .", "T as seen from V",
 	"T , not X .", "T , not X", "not X , T", "not X but T", "it is|'s not X . it is|'s T .", "T . not X", "it is T and not X .",
 	"all|every of|| the L except X", "all the L but not X", "every N apart from X", "all L C except X",
 	"all the L", "every N C", "all L that are C", "both L", "both of the L C", "the two|three L C", "all three L",
@@ -284,7 +287,8 @@ static const char *const nouns[] = {
 	"hammer", "bucket", "broom", "ladder", "crate", "parcel", "envelope", "letter", "magazine", "newspaper", "napkin",
 	"cereal_box", "milk_carton", "tea_cup", "wine_glass", "water_bottle", "coffee_mug", "salt_shaker", "ice_cream_cone", "cutting_board",
 	"stack_of_books", "row_of_chairs", "group_of_tables", "fireplace", "closet", "entrance", "stairs", "wall", "ceiling_light", "rack", "coat_rack",
-	"conference_table", "round_table", "dining_chair", "exit_sign", "projector", "copier", "vending_machine", "washing_machine",
+	"conference_table", "room", "room", "room", "corner", "floor", "ceiling", "kitchen", "closet", "closet", "bathroom", "hallway", "wall", "wall", "wall",
+	"island", "hole", "person", "people", "cat", "dog", "photo", "picture", "row_of_tables", "set_of_windows", "pair_of_shoes", "table", "chair", "bed", "round_table", "dining_chair", "exit_sign", "projector", "copier", "vending_machine", "washing_machine",
 };
 
 static const char *const attributes[] = {

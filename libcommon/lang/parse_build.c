@@ -143,6 +143,22 @@ static int is_in(const struct parse_list *list, int item)
 	return 0;
 }
 
+/* "the cup next to the red one": a red cup. */
+static int name_ones(struct build *b)
+{
+	const struct parse_list *noun = &b->p->phrases[0].noun;
+
+	for (int i = 0; i < b->t->n; i++) {
+		if (b->phrase_of[i] <= 0 || !(is(b->t, i, "one") || is(b->t, i, "ones") || is(b->t, i, "twin") ||
+						    is(b->t, i, "others") || class_of(b->t, i) == CLOSED_NUMBER))
+			continue;
+		for (int k = 0; k < noun->n; k++)
+			if (parse_list_add(&b->p->phrases[b->phrase_of[i]].noun, noun->item[k], b->e))
+				return -1;
+	}
+	return 0;
+}
+
 static int fill_phrases(struct build *b)
 {
 	static const char *const viewers[] = {
@@ -176,7 +192,7 @@ static int fill_phrases(struct build *b)
 		if (parse_list_add(&f->attributes, i, b->e))
 			return -1;
 	}
-	return 0;
+	return name_ones(b);
 }
 
 /* By the words around a predicate: "furthest back", "more to the left", "the very left". */
@@ -229,10 +245,16 @@ static struct parse_span predicate_span(const struct build *b, int i)
 	return (struct parse_span){b->t->word[first].span.begin, b->t->word[last].span.end};
 }
 
-static int add_clause(struct build *b, int i)
+static int is_nothing(const struct tokens *t, int i)
+{
+	return is(t, i, "nothing") || is(t, i, "nobody") || is(t, i, "none");
+}
+
+/* The clause of predicate i with the anchors `from` to `end` of those that it has; all where end is -1. */
+static int add_clause(struct build *b, int i, int from, int end)
 {
 	struct parse *p = b->p;
-	int figure = phrase_under(b, b->a->word[i].head), at = p->clause_count;
+	int figure = phrase_under(b, b->a->word[i].head), at = p->clause_count, k = 0;
 	struct parse_clause *c = &p->clauses[at];
 
 	if (figure < 0)
@@ -247,11 +269,29 @@ static int add_clause(struct build *b, int i)
 	for (int j = 0; j < b->t->n; j++) {
 		if (b->a->word[j].role != ROLE_ANCHOR || b->a->word[j].head != i)
 			continue;
-		if (is(b->t, j, "nothing") || is(b->t, j, "nobody") || is(b->t, j, "none"))
-			c->negated = 1;
-		if (parse_list_add(&c->anchors, b->phrase_of[j], b->e))
-			return -1;
+		if (k >= from && (end < 0 || k < end)) {
+			if (is_nothing(b->t, j))
+				c->negated = 1;
+			if (parse_list_add(&c->anchors, b->phrase_of[j], b->e))
+				return -1;
+		}
+		k++;
 	}
+	return 0;
+}
+
+/* "near the desk and the chair" says two things, "between the desk and the chair" one. */
+static int add_predicate(struct build *b, int i)
+{
+	int anchors = 0;
+
+	for (int j = 0; j < b->t->n; j++)
+		anchors += b->a->word[j].role == ROLE_ANCHOR && b->a->word[j].head == i;
+	if (anchors < 2 || b->a->word[i].relation == PARSE_BETWEEN || b->a->word[i].relation == PARSE_MIDDLE)
+		return add_clause(b, i, 0, -1);
+	for (int k = 0; k < anchors; k++)
+		if (add_clause(b, i, k, k + 1))
+			return -1;
 	return 0;
 }
 
@@ -260,12 +300,12 @@ static int add_clauses(struct build *b)
 	int n = 0;
 
 	for (int i = 0; i < b->t->n; i++)
-		n += b->a->word[i].role == ROLE_PREDICATE;
+		n += b->a->word[i].role == ROLE_PREDICATE || b->a->word[i].role == ROLE_ANCHOR;
 	b->p->clauses = mem_zalloc((size_t)n, sizeof *b->p->clauses, "clauses", b->e);
 	if (!b->p->clauses)
 		return -1;
 	for (int i = 0; i < b->t->n; i++)
-		if (b->a->word[i].role == ROLE_PREDICATE && i != b->from && add_clause(b, i))
+		if (b->a->word[i].role == ROLE_PREDICATE && i != b->from && add_predicate(b, i))
 			return -1;
 	return 0;
 }

@@ -35,9 +35,7 @@ int parse_sentence(struct parse *p, const struct parser *parser, const char *tex
 	struct analysis a, learnt;
 	double sure = 1;
 
-	tokens_take(&t, text, parser->known, parser->known_count);
-	if (v && v->pieces)
-		tokens_pieces(&t, text, v->pieces);
+	tokens_take(&t, text, v ? v->pieces : NULL, parser->known, parser->known_count);
 	grammar_analyse(&a, &t);
 	if (w && v && v->vectors && v->width == w->width && t.n) {
 		if (learnt_analyse(&learnt, &t, &a, w, v, &sure, e))

@@ -114,17 +114,24 @@ static double predicate_score(const struct aligning *s, int c, int p, int figure
 	for (int r = 0; r < PARSE_RELATIONS; r++)
 		if (!s->r->clause[c].relations || s->r->clause[c].relations >> r & 1)
 			sum += exp(s->relations[p][r]);
-	return fmax(s->roles[p][ROLE_PREDICATE], -7) + log(sum + 1e-4) + fmax(s->arcs[p][figure + 1], -5);
+	/* a noun seldom says a relation */
+	return (s->t->word[p].closed < 0 ? -2 : 0) + fmax(s->roles[p][ROLE_PREDICATE], -7) + log(sum + 1e-4) + fmax(s->arcs[p][figure + 1], -5);
 }
 
+/* Of those that the reading allows. That a thing holds its anchor is the rarer way to read "below" and "inside", and
+ * one without a name here is none that has a name unless that is likely. */
 static enum parse_relation likeliest(const struct aligning *s, int c, int p)
 {
+	unsigned allowed = s->r->clause[c].relations;
 	int best = -1;
 
-	for (int r = 0; r < PARSE_RELATIONS; r++)
-		if ((!s->r->clause[c].relations || s->r->clause[c].relations >> r & 1) &&
-			(best < 0 || s->relations[p][r] > s->relations[p][best]))
+	for (int r = 0; r < PARSE_RELATIONS; r++) {
+		if ((allowed && !(allowed >> r & 1)) || (!allowed && r != PARSE_OTHER && s->relations[p][r] < logf(0.6f)) ||
+			(allowed && r == PARSE_SUPPORTS && s->relations[p][r] < logf(0.4f)))
+			continue;
+		if (best < 0 || s->relations[p][r] > s->relations[p][best])
 			best = r;
+	}
 	return (enum parse_relation)best;
 }
 

@@ -150,8 +150,7 @@ static int clitic(const char *word)
 	return 0;
 }
 
-static void take_word(struct tokens *t, const char *text, int begin, int end, enum token_pause before,
-	const char *const *known, int known_count)
+static void take_word(struct tokens *t, const char *text, int begin, int end, enum token_pause before)
 {
 	struct token *w;
 	int cut, first = t->n;
@@ -182,14 +181,6 @@ static void take_word(struct tokens *t, const char *text, int begin, int end, en
 				strcpy(w->text, "'s");
 			w->closed = closed_find(w->text);
 		}
-		w = &t->word[first];
-	}
-	if (w->closed < 0)
-		repair(w, known, known_count);
-	for (int i = first; i < t->n; i++) {
-		token_lemma(t->word[i].text, t->word[i].lemma);
-		if (!strcmp(t->word[i].text, "is") || !strcmp(t->word[i].text, "its"))
-			strcpy(t->word[i].lemma, t->word[i].text);
 	}
 }
 
@@ -225,31 +216,6 @@ static int parting(const char *s, enum token_pause *pause)
 	return bytes;
 }
 
-void tokens_take(struct tokens *t, const char *text, const char *const *known, int known_count)
-{
-	enum token_pause pause = PAUSE_NONE;
-	int at = 0, bytes;
-
-	t->n = 0;
-	while (text[at] && t->n < TOKENS_MOST) {
-		int begin = at;
-		if ((bytes = parting(text + at, &pause))) {
-			at += bytes;
-			continue;
-		}
-		while (text[at] && !parting(text + at, &(enum token_pause){PAUSE_NONE}))
-			at++;
-		/* "t-shirt", "e-mail": one letter before a hyphen is no word */
-		if (at - begin == 1 && text[at] == '-' && isalpha((unsigned char)text[at + 1]))
-			for (at++; text[at] && !parting(text + at, &(enum token_pause){PAUSE_NONE});)
-				at++;
-		int before = t->n;
-		take_word(t, text, begin, at, pause, known, known_count);
-		if (t->n > before)
-			pause = PAUSE_NONE;
-	}
-}
-
 static int give(struct tokens *t, int begin, int end, int piece, int word)
 {
 	while (word < t->n && t->word[word].span.end <= begin)
@@ -270,7 +236,7 @@ static int skip_space(const char *text, int at)
 	return at;
 }
 
-int tokens_pieces(struct tokens *t, const char *text, const char *pieces)
+static void give_pieces(struct tokens *t, const char *text, const char *pieces)
 {
 	int at = 0, word = 0, piece = 0;
 
@@ -300,5 +266,39 @@ int tokens_pieces(struct tokens *t, const char *text, const char *pieces)
 		p += *p == ' ';
 		piece++;
 	}
-	return piece;
+}
+
+void tokens_take(struct tokens *t, const char *text, const char *pieces, const char *const *known, int known_count)
+{
+	enum token_pause pause = PAUSE_NONE;
+	int at = 0, bytes;
+
+	t->n = 0;
+	while (text[at] && t->n < TOKENS_MOST) {
+		int begin = at;
+		if ((bytes = parting(text + at, &pause))) {
+			at += bytes;
+			continue;
+		}
+		while (text[at] && !parting(text + at, &(enum token_pause){PAUSE_NONE}))
+			at++;
+		/* "t-shirt", "e-mail": one letter before a hyphen is no word */
+		if (at - begin == 1 && text[at] == '-' && isalpha((unsigned char)text[at + 1]))
+			for (at++; text[at] && !parting(text + at, &(enum token_pause){PAUSE_NONE});)
+				at++;
+		int before = t->n;
+		take_word(t, text, begin, at, pause);
+		if (t->n > before)
+			pause = PAUSE_NONE;
+	}
+	if (pieces)
+		give_pieces(t, text, pieces);
+	for (int i = 0; i < t->n; i++) {
+		struct token *w = &t->word[i];
+		if (w->closed < 0 && w->pieces != 1)
+			repair(w, known, known_count);
+		token_lemma(w->text, w->lemma);
+		if (!strcmp(w->text, "is") || !strcmp(w->text, "its"))
+			strcpy(w->lemma, w->text);
+	}
 }
