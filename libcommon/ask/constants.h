@@ -36,13 +36,13 @@
 #define GENERIC_THERE 0.95    /* how known a thing is that is called "thing" */
 #define UNKNOWN_RELATION 0.5  /* how true a relation to something unknown is */
 #define SAID_WORTH 0.85	      /* a relation that a training sentence has */
-#define RELATION_THERE 0.05   /* how true a relation has to be for its thing to be there */
-#define PART_COLOUR 0.3 /* "a bottle with a green base" is called green */
+#define RELATION_THERE 0.1   /* how true a relation has to be for its thing to be there */
+#define PART_COLOUR 0.12 /* "a bottle with a green base" is called green */
 #define COLOUR_SHARE 0.15     /* the share of a thing's colours at which it half has a colour */
 #define LOOKS_WORTH 1	      /* how fast look-alikes share fewer words as they look less alike */
 
 /* What words are worth: cosines of word vectors at which two words are as likely the same thing as not. */
-#define NOUN_HALF 0.56
+#define NOUN_HALF 0.65
 #define NOUN_SOFT 0.04
 #define ATTRIBUTE_HALF 0.55
 #define ATTRIBUTE_SOFT 0.08
@@ -56,8 +56,8 @@
 #define SEVERAL_SHARE 0.35 /* of the best fit: what is one of several meant */
 #define COUNTED_SHARE 0.05 /* the same where their number is said */
 /* P that the thing is there: logistic regression. */
-#define PRESENCE_BASE 3.0
-#define PRESENCE_OWN 1.5
+#define PRESENCE_BASE 2.6
+#define PRESENCE_OWN 2
 #define PRESENCE_ANCHORS 1.0
 #define PRESENCE_UNKNOWN 0.3
 #define UNKNOWN_ANCHOR 0.6

@@ -92,6 +92,13 @@ static int word_is(const struct parse_word *w, const char *const *list)
 	return 0;
 }
 
+static int is_verb_to_be(const struct parse_word *w)
+{
+	const int closed = closed_find(w->text);
+
+	return closed >= 0 && closed_words[closed].class == CLOSED_BE;
+}
+
 /* The word that names the kind of thing, or -1: "something", "the red one". */
 static int head_of(const struct parse *p, const struct parse_phrase *f)
 {
@@ -99,7 +106,7 @@ static int head_of(const struct parse *p, const struct parse_phrase *f)
 		"stuff", "what", "whatever", "which", "thingy", "other", "another", "piece", NULL};
 	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
 
-	return head >= 0 && (word_is(&p->words[head], generic) || closed_find(p->words[head].text) >= 0) ? -1 : head;
+	return head >= 0 && (word_is(&p->words[head], generic) || is_verb_to_be(&p->words[head])) ? -1 : head;
 }
 
 /* "the red one", "the other two": a thing of the kind that was spoken of. */
