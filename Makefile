@@ -66,6 +66,9 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
 	@mkdir -p $(@D)
 	$(COMPILE) -MMD -MP -c -o $@ $<
 
+# The default weights of the parser are in the library.
+$(BUILD)/obj/formats/parser_weights.o: formats/parser_default.safetensors
+
 $(LIBRARY): $(OBJECTS)
 	@rm -f $@
 	ar rcs $@ $^

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "cli/cli.h"
 #include "formats/jsonl.h"
-#include "formats/parser.h"
+#include "formats/parser_weights.h"
 #include "formats/parses.h"
 #include "formats/readings.h"
 #include "formats/text.h"
@@ -261,7 +261,7 @@ static int run(const struct cli *c, const struct options *o, struct err *e)
 	if (!bad)
 		bad = o->folds ? cross_validate(&s, &w, e)
 			       : learn_examples(&s, &w, e) || learn_readings(&s, &w, -1, e) ||
-					 parser_write(&w, c->output, o->readings ? "--readings" : "", c->seed, o->source, e);
+					 parser_weights_write(&w, c->output, o->readings ? "--readings" : "", c->seed, o->source, e);
 	training_free(&s);
 	parser_weights_free(&w);
 	return bad;

@@ -1,7 +1,7 @@
 /* Sentences taken apart: who is meant, and how it stands to what. */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "formats/parser.h"
+#include "formats/parser_weights.h"
 #include "formats/parses.h"
 #include "formats/text.h"
 #include "lang/parser.h"
@@ -27,7 +27,9 @@ static int put_parses(const struct parser *parser, const struct text *t, FILE *o
 	return 0;
 }
 
-static int run(const struct cli *c, const char *weights, struct err *e)
+enum method { BOTH, GRAMMAR };
+
+static int run(const struct cli *c, const char *weights, enum method method, struct err *e)
 {
 	struct parser parser = {0};
 	struct parser_weights w = {0};
@@ -35,12 +37,16 @@ static int run(const struct cli *c, const char *weights, struct err *e)
 	struct file_out out = {0};
 	int bad;
 
-	if (weights && parser_read(&w, weights, e))
-		return -1;
-	if (w.slab)
+	if (method == BOTH) {
+		if (weights ? parser_weights_read(&w, weights, e) : parser_weights_default(&w, e))
+			return -1;
 		parser.weights = &w;
+	}
 	if (text_read(&t, c->operand_count ? c->operands[0] : "-", e))
 		return -1;
+	if (parser.weights && (!t.pieces || t.width != w.width))
+		cli_warn(c, "%s: %s: by grammar alone", file_name(c->operand_count ? c->operands[0] : "-"),
+			t.pieces ? "of another encoder than the parser's weights" : "has no word pieces");
 	bad = file_out_open(&out, c->output, e) || put_parses(&parser, &t, out.stream, e);
 	if (!bad)
 		bad = file_out_commit(&out, e);
@@ -54,8 +60,11 @@ static int run(const struct cli *c, const char *weights, struct err *e)
 int main(int argc, char **argv)
 {
 	const char *weights = NULL;
+	int method = BOTH;
 	const struct cli_option options[] = {
-		{"parser", 0, CLI_STRING, &weights, "PARSER", "weights of the learnt parser (default: grammar alone)", 0, 0},
+		{"parser", 0, CLI_STRING, &weights, "PARSER", "weights of the learnt parser (default: those that come with the program)", 0, 0},
+		{"method", 0, CLI_CHOICE, &method, "both|grammar",
+			"grammar and what was learnt on word vectors, or grammar alone (default both)", 0, 0},
 		{0},
 	};
 	const struct cli_tool tool = {
@@ -71,5 +80,5 @@ int main(int argc, char **argv)
 	struct cli c;
 
 	cli_parse(&c, &tool, argc, argv);
-	return run(&c, weights, &e) ? cli_fail(&c, &e) : cli_done(&c);
+	return run(&c, weights, (enum method)method, &e) ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -11,6 +11,8 @@
 #include "formats/masks.h"
 #include "formats/model.h"
 #include "formats/npy.h"
+#include "formats/parser_weights.h"
+#include "formats/parses.h"
 #include "formats/ply.h"
 #include "formats/png.h"
 #include "formats/scene.h"
@@ -202,6 +204,33 @@ static int check_npy(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
+static int check_parser(struct check *c, const char *path, struct err *e)
+{
+	struct parser_weights w;
+
+	if (parser_weights_read(&w, path, e))
+		return -1;
+	add_fact(c, "parameters", (long long)w.count);
+	parser_weights_free(&w);
+	return 0;
+}
+
+static int check_parses(struct check *c, const char *path, struct err *e)
+{
+	struct parse_set s;
+	size_t clauses = 0;
+
+	if (parses_read(&s, path, e))
+		return -1;
+	c->kind = "parses";
+	for (size_t i = 0; i < s.n; i++)
+		clauses += (size_t)s.records[i].parse.clause_count;
+	add_fact(c, "parses", (long long)s.n);
+	add_fact(c, "clauses", (long long)clauses);
+	parses_free(&s);
+	return 0;
+}
+
 /* Reading starts again at the beginning; only stdin keeps its place between readers. */
 static int start_again(const char *path, struct err *e)
 {
@@ -223,6 +252,7 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 		{"refer.weights", check_weights},
 		{"refer.model", check_model},
 		{"refer.lifted", check_lifted},
+		{"refer.parser", check_parser},
 	};
 
 	if (safetensors_open(&c->listing, path, e))
@@ -351,7 +381,8 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 	    is_frames = cJSON_HasObjectItem(first, "frames");
 	int is_mask = cJSON_HasObjectItem(first, "segmentation") || cJSON_HasObjectItem(first, "path");
 	int is_box = cJSON_HasObjectItem(first, "oriented");
-	if (got == 1 && !is_sentence && !is_mask && !is_frames && !is_box)
+	int is_parse = cJSON_IsObject(cJSON_GetObjectItemCaseSensitive(first, "target"));
+	if (got == 1 && !is_sentence && !is_parse && !is_mask && !is_frames && !is_box)
 		got = jsonl_err(
 			&j, e, "neither a sentence (key 'text') nor a mask (key 'segmentation' or 'path')");
 	else if (got < 0 && e->code == ERR_FORMAT && !start_again(path, &ignored))
@@ -364,6 +395,8 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 		return -1;
 	if (is_frames)
 		return check_cameras(c, path, "nerfstudio cameras", e);
+	if (is_parse)
+		return check_parses(c, path, e);
 	if (is_box && !is_sentence && !is_mask)
 		return check_boxes(c, path, e);
 	return is_sentence ? check_sentences(c, path, e) : check_masks(c, path, e);

@@ -188,15 +188,12 @@ static int read_header(struct safetensors *st, const cJSON *root, size_t header_
 	return check_layout(st, data, data_len, e) || check_crcs(st, e) ? -1 : 0;
 }
 
-int safetensors_open(struct safetensors *st, const char *path, struct err *e)
+/* Reads what st->map holds; closes on failure. */
+static int read_map(struct safetensors *st, struct err *e)
 {
 	uint64_t header_len = 0;
 	cJSON *root = NULL;
 
-	*st = (struct safetensors){0};
-	st->path = mem_strdup(file_name(path), e);
-	if (!st->path || file_map(path, &st->map, e))
-		goto fail;
 	if (st->map.len < 8) {
 		err_set(e, ERR_FORMAT, "%s: %zu bytes, too short for a safetensors file", st->path,
 			st->map.len);
@@ -233,6 +230,29 @@ fail:
 	return -1;
 }
 
+int safetensors_open(struct safetensors *st, const char *path, struct err *e)
+{
+	*st = (struct safetensors){0};
+	st->path = mem_strdup(file_name(path), e);
+	if (!st->path || file_map(path, &st->map, e)) {
+		safetensors_close(st);
+		return -1;
+	}
+	return read_map(st, e);
+}
+
+int safetensors_open_bytes(
+	struct safetensors *st, const char *name, const unsigned char *bytes, size_t len, struct err *e)
+{
+	*st = (struct safetensors){.map = {.data = bytes, .len = len}, .is_borrowed = 1};
+	st->path = mem_strdup(name, e);
+	if (!st->path) {
+		safetensors_close(st);
+		return -1;
+	}
+	return read_map(st, e);
+}
+
 void safetensors_close(struct safetensors *st)
 {
 	for (size_t i = 0; i < st->n; i++)
@@ -244,7 +264,8 @@ void safetensors_close(struct safetensors *st)
 	free(st->tensors);
 	free(st->meta);
 	free(st->path);
-	file_unmap(&st->map);
+	if (!st->is_borrowed)
+		file_unmap(&st->map);
 	*st = (struct safetensors){0};
 }
 

@@ -49,11 +49,15 @@ struct safetensors {
 	struct st_tensor *tensors; /* in the order of the file's data */
 	struct st_meta *meta;
 	struct file_map map;
+	int is_borrowed; /* the bytes are not the reader's to free */
 };
 
 /* Opens and checks a whole file: header, ranges, no overlap or hole, crc32 where it is given. The tensors
  * point into the file's map until safetensors_close. Messages name the path and the tensor or offset. */
 int safetensors_open(struct safetensors *st, const char *path, struct err *e);
+/* The same of bytes in memory, which stay the caller's; messages call them `name`. */
+int safetensors_open_bytes(
+	struct safetensors *st, const char *name, const unsigned char *bytes, size_t len, struct err *e);
 void safetensors_close(struct safetensors *st);
 
 /* The tensor / metadata value of that name, or NULL. */

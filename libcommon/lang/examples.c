@@ -142,6 +142,18 @@ static int noun_phrase(struct making *m, enum word_role role, int head, const ch
 	return last;
 }
 
+/* Whether the word before already is an article or the like. */
+static int follows_article(const struct making *m)
+{
+	static const char *const words[] = {"the", "a", "this", "that", "all", "every", "each", "other", "same", "correct", "which",
+		"first", "second", "third", "fourth", "last", "any", "2nd", "no"};
+
+	for (size_t i = 0; m->n && i < sizeof words / sizeof *words; i++)
+		if (!strcmp(m->word[m->n - 1].text, words[i]))
+			return 1;
+	return 0;
+}
+
 static int anchor(struct making *m, enum word_role role, int may_nest)
 {
 	int head, first = m->n;
@@ -156,7 +168,7 @@ static int anchor(struct making *m, enum word_role role, int may_nest)
 		if (head - first == 2 && strcmp(m->word[head - 1].text, "other"))
 			mark(m, head - 1, head, ROLE_ATTRIBUTE, head);
 	} else {
-		head = noun_phrase(m, role, ROOT, pick(m, &m->w->nouns), chance(m, 0.15), 0);
+		head = noun_phrase(m, role, ROOT, pick(m, &m->w->nouns), chance(m, 0.15), m->n && follows_article(m));
 	}
 	if (may_nest && m->depth < DEPTH_MOST + 1 && chance(m, 0.35)) {
 		if (chance(m, 0.4))
@@ -168,9 +180,19 @@ static int anchor(struct making *m, enum word_role role, int may_nest)
 	return head;
 }
 
+/* "with", "that has", or that it has not. Returns the word that says so. */
+static int put_having(struct making *m, int has, int denied)
+{
+	if (denied)
+		return put_any(m, has ? "has_no|does_n't_have_a|has_n't_got_a"
+				      : "without|without|without_a|without_the|with_no|that_has_no|that_does_n't_have_a|which_does_not_have_a|"
+					"not_the_one_with_the");
+	return put_any(m, has ? "has|has|has_got|'s_got" : "with|with|with|that_has|which_has|having|that_have|that_'s_got");
+}
+
 static void expand_clause(struct making *m, const struct example_clause *c, int figure, int denied, int has)
 {
-	int anchors[4], n = 0, main = -1;
+	int anchors[4], n = 0, main = -1, with = -1;
 
 	for (const char *p = c->text; *p;) {
 		size_t length = strcspn(p, " ");
@@ -186,7 +208,12 @@ static void expand_clause(struct making *m, const struct example_clause *c, int 
 				anchors[n++] = anchor(m, ROLE_ANCHOR, 0);
 			}
 		} else if (*p == '$' && length == 1) {
-			put_any(m, has ? "has|has|has_got|'s_got" : "with|with|with|that_has|which_has|having|that_have|that_'s_got");
+			int first = m->n;
+			put_having(m, has, denied);
+			/* the word that means having is the relation's where no other is */
+			for (with = m->n - 1; with > first; with--)
+				if (strstr("with without has have having got", m->word[with].text) && strlen(m->word[with].text) > 2)
+					break;
 		} else if (*p == '^' && length == 1) {
 			put_any(m, "||||sitting|standing|placed|lying|located|resting|leaning|stacked|hanging|mounted|sits|set");
 		} else if (*p == '~' && length == 1) {
@@ -197,6 +224,8 @@ static void expand_clause(struct making *m, const struct example_clause *c, int 
 		p += length;
 		p += *p == ' ';
 	}
+	if (main < 0)
+		main = with;
 	if (main < 0)
 		return;
 	m->word[main].role = ROLE_PREDICATE;
@@ -220,6 +249,8 @@ static void clause(struct making *m, int figure, int forms, int denied)
 								: &m->w->placed;
 		c = &of->item[rng_below(m->r, (uint32_t)of->n)];
 	} while (((c->negated && (denied || chance(m, 0.5))) || ((forms & FORM_HAS) && c->text[0] != '$')) && ++tries < 50);
+	if (c->text[0] == '$' && !denied && !c->negated)
+		denied = chance(m, 0.18);
 	if (of == &m->w->placed && (forms & FORM_TURNED) && chance(m, 0.25))
 		put_any(m, ",|that_is|that_'s|which_is|it_is|that_sits");
 	expand_clause(m, c, figure, denied, forms & FORM_HAS);
@@ -331,18 +362,6 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 	}
 }
 
-/* Whether the word before already is an article or the like. */
-static int follows_article(const struct making *m)
-{
-	static const char *const words[] = {"the", "a", "this", "that", "all", "every", "each", "other", "same", "correct", "which",
-		"first", "second", "third", "fourth", "last", "any", "2nd"};
-
-	for (size_t i = 0; m->n && i < sizeof words / sizeof *words; i++)
-		if (!strcmp(m->word[m->n - 1].text, words[i]))
-			return 1;
-	return 0;
-}
-
 static void sentence(struct making *m, const char *text)
 {
 	/* the target's noun may stand after "the one", which is the target only where none does */
@@ -398,7 +417,7 @@ static void write_text(struct making *m, struct example *x)
 		}
 		if (at + MADE_LENGTH + 2 > EXAMPLE_LENGTH)
 			break;
-		if (at && !is_pause && w->text[0] != '\'')
+		if (at && !is_pause && w->text[0] != '\'' && strcmp(w->text, "n't") != 0)
 			x->text[at++] = ' ';
 		w->begin = at;
 		at += sprintf(x->text + at, "%s", w->text);

@@ -7,6 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of the decoder, by the development sentences: how likely a word must be a predicate to become one for its anchor, and
+ * what that counts beside the arc. */
+#define NET_PREDICATE_LEAST 0.02
+#define NET_PREDICATE_WEIGHT 0.5
+
 static const int reach[NET_LAYERS] = {1, 2, 4};
 
 void parser_parts(int width, struct parser_part parts[PARSER_PARTS])
@@ -276,6 +281,54 @@ static int is_below(const struct analysis *a, int i, int above)
 	return 0;
 }
 
+static double role_log(const struct parser_batch *b, int sentence, int i, enum word_role r)
+{
+	const float *out = b->out + (size_t)(b->start[sentence] + i) * NET_OUT;
+
+	return (double)out[r] - log_sum(out, ROLES);
+}
+
+static void make_predicate(const struct parser_batch *b, int sentence, struct analysis *a, int i)
+{
+	const float *out = b->out + (size_t)(b->start[sentence] + i) * NET_OUT;
+
+	a->word[i].role = ROLE_PREDICATE;
+	a->word[i].relation = (enum parse_relation)best_of(out + ROLES, PARSE_RELATIONS);
+	a->word[i].negated = out[ROLES + PARSE_RELATIONS] > 0;
+}
+
+/* Hangs each anchor on the word that is likeliest its predicate, whatever that word seemed to be by itself: an anchor
+ * says that there is a predicate. */
+static void hang_anchors(const struct parser_weights *w, const struct parser_batch *b, int sentence, struct analysis *a)
+{
+	float scores[TOKENS_MOST + 1];
+
+	for (int i = 0; i < a->n; i++) {
+		int best = ROOT;
+		double most = -INFINITY, all;
+		if (a->word[i].role != ROLE_ANCHOR)
+			continue;
+		parser_arcs(w, b, sentence, i, scores);
+		all = log_sum(scores, a->n + 1);
+		for (int j = 0; j < a->n; j++) {
+			enum word_role r = a->word[j].role;
+			if (j == i || (r != ROLE_PREDICATE && r != ROLE_NONE))
+				continue;
+			double p = role_log(b, sentence, j, ROLE_PREDICATE);
+			if (r == ROLE_NONE && p < log(NET_PREDICATE_LEAST))
+				continue;
+			double score = scores[j + 1] - all + NET_PREDICATE_WEIGHT * p;
+			if (score > most) {
+				most = score;
+				best = j;
+			}
+		}
+		a->word[i].head = best;
+		if (best != ROOT && a->word[best].role != ROLE_PREDICATE)
+			make_predicate(b, sentence, a, best);
+	}
+}
+
 /* Hangs each word of these roles on the best that it may hang on. */
 static void hang(const struct parser_weights *w, const struct parser_batch *b, int sentence, struct analysis *a,
 	int wanted)
@@ -291,8 +344,7 @@ static void hang(const struct parser_weights *w, const struct parser_batch *b, i
 		parser_arcs(w, b, sentence, i, scores);
 		for (int j = -1; j < a->n; j++) {
 			enum word_role up = j < 0 ? ROLE_TARGET : a->word[j].role;
-			int may = r == ROLE_ANCHOR ? j >= 0 && up == ROLE_PREDICATE
-						   : j < 0 || (role_is_phrase(up) && up != ROLE_TARGET);
+			int may = j < 0 || (role_is_phrase(up) && up != ROLE_TARGET);
 			if (!may || (j >= 0 && is_below(a, j, i)))
 				continue;
 			if (scores[j + 1] > most) {
@@ -316,12 +368,10 @@ void parser_decode(const struct parser_weights *w, const struct parser_batch *b,
 		a->word[i].role = (enum word_role)best_of(out, ROLES);
 		a->word[i].head = ROOT;
 		sum += exp((double)out[a->word[i].role] - log_sum(out, ROLES));
-		if (a->word[i].role == ROLE_PREDICATE) {
-			a->word[i].relation = (enum parse_relation)best_of(out + ROLES, PARSE_RELATIONS);
-			a->word[i].negated = out[ROLES + PARSE_RELATIONS] > 0;
-		}
+		if (a->word[i].role == ROLE_PREDICATE)
+			make_predicate(b, sentence, a, i);
 	}
-	hang(w, b, sentence, a, 1 << ROLE_ANCHOR);
+	hang_anchors(w, b, sentence, a);
 	hang(w, b, sentence, a, 1 << ROLE_PREDICATE);
 	hang(w, b, sentence, a, 1 << ROLE_ATTRIBUTE | 1 << ROLE_NAME | 1 << ROLE_EXCEPT);
 	analysis_repair(a);

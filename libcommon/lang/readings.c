@@ -107,6 +107,14 @@ static int find_anchor(const struct aligning *s, int anchor, int p, const char *
 	return best;
 }
 
+static int is_having(const struct aligning *s, int p)
+{
+	int c = s->t->word[p].closed;
+
+	return c >= 0 && (closed_words[c].class == CLOSED_WITH || closed_words[c].class == CLOSED_HAVE ||
+				 !strcmp(closed_words[c].text, "without"));
+}
+
 static double predicate_score(const struct aligning *s, int c, int p, int figure)
 {
 	double sum = 0;
@@ -114,6 +122,9 @@ static double predicate_score(const struct aligning *s, int c, int p, int figure
 	for (int r = 0; r < PARSE_RELATIONS; r++)
 		if (!s->r->clause[c].relations || s->r->clause[c].relations >> r & 1)
 			sum += exp(s->relations[p][r]);
+	/* "with" may stand for most */
+	if (is_having(s, p))
+		sum = fmax(sum, exp(s->relations[p][PARSE_WITH]));
 	/* a noun seldom says a relation */
 	return (s->t->word[p].closed < 0 ? -2 : 0) + fmax(s->roles[p][ROLE_PREDICATE], -7) + log(sum + 1e-4) + fmax(s->arcs[p][figure + 1], -5);
 }
@@ -127,8 +138,10 @@ static enum parse_relation likeliest(const struct aligning *s, int c, int p)
 
 	for (int r = 0; r < PARSE_RELATIONS; r++) {
 		if ((allowed && !(allowed >> r & 1)) || (!allowed && r != PARSE_OTHER && s->relations[p][r] < logf(0.6f)) ||
-			(allowed && r == PARSE_SUPPORTS && s->relations[p][r] < logf(0.4f)))
+			(allowed && r == PARSE_SUPPORTS && !is_having(s, p) && s->relations[p][r] < logf(0.4f)))
 			continue;
+		if (allowed && is_having(s, p) && r == PARSE_SUPPORTS)
+			return PARSE_SUPPORTS;
 		if (best < 0 || s->relations[p][r] > s->relations[p][best])
 			best = r;
 	}
@@ -138,7 +151,7 @@ static enum parse_relation likeliest(const struct aligning *s, int c, int p)
 static void place_clause(struct aligning *s, int c, int figure)
 {
 	int best = -1, words[READING_ANCHORS], best_words[READING_ANCHORS] = {0};
-	double most = -11;
+	double most = -15;
 
 	for (int p = 0; p < s->t->n; p++) {
 		char taken[TOKENS_MOST] = {0};

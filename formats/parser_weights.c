@@ -1,0 +1,110 @@
+#include "formats/parser_weights.h"
+
+#include "base/mem.h"
+#include "formats/safetensors.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* The default weights are part of the program, so that every tool has them: formats/parser_default.safetensors. */
+#define EMBED(name, file)                                                                                              \
+	__asm__(".section .rodata\n"                                                                                   \
+		".balign 64\n"                                                                                         \
+		".globl " #name "_begin\n" #name "_begin:\n"                                                          \
+		".incbin \"" file "\"\n"                                                                              \
+		".globl " #name "_end\n" #name "_end:\n"                                                              \
+		".byte 0\n"                                                                                            \
+		".previous\n")
+EMBED(parser_default, "formats/parser_default.safetensors");
+extern const unsigned char parser_default_begin[], parser_default_end[];
+
+static int take_tensors(struct parser_weights *w, const struct safetensors *st, struct err *e)
+{
+	struct parser_part parts[PARSER_PARTS];
+	const struct st_tensor *t;
+	int bad = 0;
+	float *at;
+
+	if (safetensors_need_format(st, "refer.parser", 1, e) ||
+		!(t = safetensors_need(st, "vector.weight", ST_F16, 2, (int64_t[]){NET_HIDDEN, -1}, e)))
+		return -1;
+	if (t->shape[1] < 1 || t->shape[1] > 65536)
+		return err_set(e, ERR_FORMAT, "%s: tensor 'vector.weight': width %lld is not in 1 to 65536", st->path,
+			(long long)t->shape[1]);
+	if (parser_weights_make(w, (int)t->shape[1], e))
+		return -1;
+	parser_parts(w->width, parts);
+	at = w->slab;
+	for (int i = 0; i < PARSER_PARTS && !bad; i++) {
+		size_t n = parts[i].rows * (parts[i].columns ? parts[i].columns : 1);
+		const int64_t shape[2] = {(int64_t)parts[i].rows, (int64_t)parts[i].columns};
+		t = safetensors_need(st, parts[i].name, ST_F16, parts[i].columns ? 2 : 1, shape, e);
+		bad = !t || safetensors_to_float(t, at, n, e);
+		for (size_t k = 0; k < n && !bad; k++)
+			if (!isfinite(at[k]))
+				bad = err_set(e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path,
+					parts[i].name, k);
+		at += n;
+	}
+	return bad ? -1 : 0;
+}
+
+static int take(struct parser_weights *w, struct safetensors *st, struct err *e)
+{
+	int bad = take_tensors(w, st, e);
+
+	safetensors_close(st);
+	if (bad)
+		parser_weights_free(w);
+	return bad;
+}
+
+int parser_weights_read(struct parser_weights *w, const char *path, struct err *e)
+{
+	struct safetensors st;
+
+	*w = (struct parser_weights){0};
+	return safetensors_open(&st, path, e) ? -1 : take(w, &st, e);
+}
+
+int parser_weights_default(struct parser_weights *w, struct err *e)
+{
+	struct safetensors st;
+
+	*w = (struct parser_weights){0};
+	return safetensors_open_bytes(&st, "the parser's own weights", parser_default_begin,
+		       (size_t)(parser_default_end - parser_default_begin), e)
+		       ? -1
+		       : take(w, &st, e);
+}
+
+int parser_weights_write(const struct parser_weights *w, const char *path, const char *options, long long seed,
+	const char *source, struct err *e)
+{
+	struct parser_part parts[PARSER_PARTS];
+	struct st_tensor tensors[PARSER_PARTS];
+	uint16_t *half = mem_alloc(w->count, sizeof *half, path, e), *at = half;
+	char seed_text[32];
+	int bad;
+
+	if (!half)
+		return -1;
+	for (size_t i = 0; i < w->count; i++)
+		half[i] = st_float_to_half(w->slab[i]);
+	parser_parts(w->width, parts);
+	for (int i = 0; i < PARSER_PARTS; i++) {
+		tensors[i] = (struct st_tensor){.name = parts[i].name,
+			.dtype = ST_F16,
+			.dims = parts[i].columns ? 2 : 1,
+			.shape = {(int64_t)parts[i].rows, (int64_t)parts[i].columns},
+			.data = at};
+		at += parts[i].rows * (parts[i].columns ? parts[i].columns : 1);
+	}
+	snprintf(seed_text, sizeof seed_text, "%lld", seed);
+	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "1"}, {"tool", "parse-train"},
+		{"options", options}, {"seed", seed_text}, {"source", source}};
+	bad = safetensors_write(path, tensors, PARSER_PARTS, meta, sizeof meta / sizeof *meta, e);
+	free(half);
+	return bad;
+}
