@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 #include "formats/anymodel.h"
 #include "formats/boxes.h"
+#include "formats/parser_weights.h"
 #include "formats/ply.h"
 #include "formats/scene.h"
 #include "formats/splat.h"
@@ -47,6 +48,7 @@ struct run {
 	struct scene scene;
 	struct text text;
 	struct anymodel model;
+	struct parser_weights weights;
 	struct asked asked;
 	char *chosen; /* of the sentences: which --refs names */
 	size_t count, *refs;
@@ -82,9 +84,10 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 	double up[3];
 
 	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
-		anymodel_read(&r->model, options.model, e) || choose_refs(r, c, e))
+		anymodel_read(&r->model, options.model, e) ||
+		(r->model.is_lifted && parser_weights_default(&r->weights, e)) || choose_refs(r, c, e))
 		return -1;
-	static const struct parser parser = {0};
+	const struct parser parser = {.weights = &r->weights};
 	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
 		r->refs, r->count, 1, CHOOSE_ALL, ASKED_LEAST, NULL, &parser};
 	if (anymodel_answer(&r->model, &ask, &r->asked, e))
@@ -172,6 +175,7 @@ int main(int argc, char **argv)
 	free(r.located);
 	asked_free(&r.asked);
 	anymodel_free(&r.model);
+	parser_weights_free(&r.weights);
 	text_free(&r.text);
 	scene_free(&r.scene);
 	free(r.chosen);

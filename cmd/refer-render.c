@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 #include "formats/anymodel.h"
 #include "formats/masks.h"
+#include "formats/parser_weights.h"
 #include "formats/pictures.h"
 #include "formats/scene.h"
 #include "formats/text.h"
@@ -75,6 +76,7 @@ struct run {
 	struct scene scene;
 	struct text text;
 	struct anymodel model;
+	struct parser_weights weights;
 	struct asked asked;
 	size_t ref_count, view_count;
 	char *chosen;	       /* of the views, then of the sentences: which a list names */
@@ -136,13 +138,14 @@ static int choose_refs(struct run *r, const struct cli *c, struct err *e)
 static int load(struct run *r, const struct cli *c, struct err *e)
 {
 	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
-		anymodel_read(&r->model, options.model, e) || choose_views(r, c, e) || choose_refs(r, c, e))
+		anymodel_read(&r->model, options.model, e) ||
+		(r->model.is_lifted && parser_weights_default(&r->weights, e)) || choose_views(r, c, e) || choose_refs(r, c, e))
 		return -1;
 	if (!r->view_count || !r->ref_count)
 		cli_warn(c, "%s: no %s in this split",
 			r->view_count ? file_name(options.text) : options.scene,
 			r->view_count ? "sentence" : "view");
-	static const struct parser parser = {0};
+	const struct parser parser = {.weights = &r->weights};
 	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
 		r->refs, r->ref_count, !options.is_plain, options.parts, options.least, NULL, &parser};
 	int bad = anymodel_answer(&r->model, &ask, &r->asked, e) ||
@@ -240,6 +243,7 @@ int main(int argc, char **argv)
 	scene_free(&r.scene);
 	text_free(&r.text);
 	anymodel_free(&r.model);
+	parser_weights_free(&r.weights);
 	for (size_t k = 0; r.wholes && k < r.asked.answers; k++)
 		splats_free(&r.wholes[k]);
 	free(r.wholes);
