@@ -38,6 +38,7 @@
 #define SAID_WORTH 0.85	      /* a relation that a training sentence has */
 #define RELATION_THERE 0.1   /* how true a relation has to be for its thing to be there */
 #define PART_COLOUR 0.12 /* "a bottle with a green base" is called green */
+#define OTHER_COLOUR 0.6 /* what a shade is worth less where sentences call the thing by another colour */
 #define COLOUR_SHARE 0.15     /* the share of a thing's colours at which it half has a colour */
 #define LOOKS_WORTH 1	      /* how fast look-alikes share fewer words as they look less alike */
 

@@ -109,18 +109,43 @@ static int head_of(const struct parse *p, const struct parse_phrase *f)
 	return head >= 0 && (word_is(&p->words[head], generic) || is_verb_to_be(&p->words[head])) ? -1 : head;
 }
 
+static int has_word(const struct parse *p, const struct parse_phrase *f, const char *const *list)
+{
+	for (int w = 0; w < p->word_count; w++)
+		if (p->words[w].span.begin >= f->span.begin && p->words[w].span.end <= f->span.end &&
+			word_is(&p->words[w], list))
+			return 1;
+	return 0;
+}
+
 /* "the red one", "the other two": a thing of the kind that was spoken of. */
 static int is_elliptic(const struct parse *p, const struct parse_phrase *f)
 {
 	static const char *const again[] = {"one", "ones", "other", "others", "another", "two", "three", "those", NULL};
 
-	if (!f->noun.n && f->attributes.n && f->span.begin == f->span.end)
-		return 1;
-	for (int w = 0; w < p->word_count; w++)
-		if (p->words[w].span.begin >= f->span.begin && p->words[w].span.end <= f->span.end &&
-			word_is(&p->words[w], again))
-			return 1;
-	return 0;
+	return !f->noun.n && (f->span.begin == f->span.end || has_word(p, f, again));
+}
+
+/* "the other cups", "anything else". */
+static int is_other(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char *const other[] = {"other", "others", "else", "rest", "remaining", NULL};
+
+	return has_word(p, f, other);
+}
+
+/* How well an object's colours, or those that training sentences say it has, are that of a word. */
+static void judge_colour(struct meaning *m, int phrase, int word)
+{
+	const size_t n = objects_of(m);
+	double *value = add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
+
+	vocabulary_colour(m->vocabulary, m->arrangement, m->sentence->parse->words[word].lemma, value);
+	for (size_t o = 0; o < n; o++) {
+		value[o] = COLOUR_LEAST + (1 - COLOUR_LEAST) * value[o];
+		there[o] *= value[o];
+	}
+	take_part(m, &m->parts[m->part_count - 1]);
 }
 
 static void judge_noun(struct meaning *m, int phrase)
@@ -138,27 +163,17 @@ static void judge_noun(struct meaning *m, int phrase)
 	m->known[phrase] = GENERIC_THERE;
 	if (head < 0)
 		return;
-	value = add_part(m, phrase, MEANING_NOUN, head);
 	vocabulary_noun(m->vocabulary, m->sentence, head, match);
+	if (colour_word(p->words[head].lemma) >= 0 && largest(match, n) < 0.5) { /* "something orange" */
+		judge_colour(m, phrase, head);
+		return;
+	}
+	value = add_part(m, phrase, MEANING_NOUN, head);
 	const double best = largest(match, n), most = fmax(best, match[n]);
 	m->known[phrase] = best;
 	for (size_t o = 0; o < n; o++) {
 		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * match[o] * match[o] / fmax(most, 1e-9);
 		there[o] = match[o] * (most > best ? best / most : 1);
-	}
-	take_part(m, &m->parts[m->part_count - 1]);
-}
-
-/* How well an object's colours, or those that training sentences say it has, are that of a word. */
-static void judge_colour(struct meaning *m, int phrase, int word)
-{
-	const size_t n = objects_of(m);
-	double *value = add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
-
-	vocabulary_colour(m->vocabulary, m->arrangement, m->sentence->parse->words[word].lemma, value);
-	for (size_t o = 0; o < n; o++) {
-		value[o] = COLOUR_LEAST + (1 - COLOUR_LEAST) * value[o];
-		there[o] *= value[o];
 	}
 	take_part(m, &m->parts[m->part_count - 1]);
 }
@@ -273,7 +288,8 @@ static double judge_relation(struct meaning *m, int phrase, const struct parse_c
 		const int i = c->anchors.item[k];
 		const int is_many = p->phrases[i].count != PARSE_ONE &&
 				    (r.degree != PARSE_PLAIN || !(one_will_do >> c->relation & 1));
-		anchors[r.count] = (struct relate_anchor){fit_of(m, i), is_scene(m, i), is_many && !c->negated};
+		anchors[r.count] = (struct relate_anchor){fit_of(m, i), is_scene(m, i),
+			is_many && !c->negated, is_other(p, &p->phrases[i])};
 		if (!p->phrases[i].viewer && !anchors[r.count].is_scene)
 			known = fmin(known, m->known[i]);
 		r.count++;
@@ -379,6 +395,22 @@ static void judge_order(struct meaning *m, int phrase)
 		judge_ordinal(m, phrase, before);
 }
 
+/* The clauses that do not compare. Those of the place as a whole are the thing's: "everything on the desk that is
+ * right of the laptop". */
+static void judge_early(struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit, int depth)
+{
+	const struct parse *p = m->sentence->parse;
+
+	for (int k = 0; k < f->clauses.n && depth < 2; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		if (!is_late(c))
+			judge_clause(m, phrase, f->clauses.item[k], fit);
+		for (int j = 0; j < c->anchors.n; j++)
+			if (is_scene(m, c->anchors.item[j]))
+				judge_early(m, phrase, &p->phrases[c->anchors.item[j]], fit, depth + 1);
+	}
+}
+
 /* The phrases that a phrase needs, before it. */
 static void judge_below(struct meaning *m, const struct parse_phrase *f, int depth)
 {
@@ -413,9 +445,7 @@ static void judge_phrase(struct meaning *m, int phrase, int depth)
 		judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);
 	for (int k = 0; k < f->attributes.n; k++)
 		judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
-	for (int k = 0; k < f->clauses.n; k++)
-		if (!is_late(&p->clauses[f->clauses.item[k]]))
-			judge_clause(m, phrase, f->clauses.item[k], fit);
+	judge_early(m, phrase, f, fit, 0);
 	for (int k = 0; k < f->except.n; k++)
 		judge_except(m, phrase, f->except.item[k]);
 	keep_group(f, fit, n, m->scratch);
@@ -430,7 +460,7 @@ static size_t parts_of(const struct parse *p)
 
 	for (int i = 0; i < p->phrase_count; i++) {
 		const struct parse_phrase *f = &p->phrases[i];
-		n += 2 + (size_t)(f->noun.n + f->attributes.n + f->clauses.n + f->except.n);
+		n += 3 + (size_t)(f->noun.n + f->attributes.n + 3 * f->clauses.n + f->except.n);
 	}
 	return n;
 }

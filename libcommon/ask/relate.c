@@ -415,8 +415,10 @@ static void to_anchor(const struct arrangement *a, const struct relation *r, con
 		if (r->degree != PARSE_PLAIN)
 			compare(a, r, i, fit, key, one);
 		for (size_t o = 0; o < a->n; o++) {
-			if (o == i)
+			if (o == i) { /* no thing is left of itself */
+				out[o] *= anchor->is_every && !anchor->is_other ? 1 - w : 1;
 				continue;
+			}
 			const double x = r->degree != PARSE_PLAIN
 						 ? one[o]
 						 : pair(a, r->kind, r->is_loose, &a->objects[o], at(a, i));

@@ -11,7 +11,8 @@
 struct relate_anchor {
 	const double *p; /* (a->n + 1) in [0,1] */
 	int is_scene;	 /* the place as a whole; p means nothing */
-	int is_every;	 /* all that fit ("taller than the other cups"), not one of them */
+	int is_every;	 /* all that fit ("taller than the cups"), not one of them */
+	int is_other;	 /* the thing itself is one of those that fit: "than the other cups" */
 };
 
 struct relation {

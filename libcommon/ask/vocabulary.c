@@ -22,6 +22,7 @@ void vocabulary_free(struct vocabulary *v)
 	free(v->kinds);
 	free(v->scratch);
 	free(v->word);
+	free(v->other);
 	*v = (struct vocabulary){0};
 }
 
@@ -190,7 +191,8 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	v->sentences = mem_alloc(l->sentences, width * sizeof *v->sentences, "vocabulary", e);
 	v->scratch = mem_alloc(width, sizeof *v->scratch, "vocabulary", e);
 	v->word = mem_alloc(width, sizeof *v->word, "vocabulary", e);
-	if (!v->parses || !v->mean || !v->sentence_mean || !v->sentences || !v->scratch || !v->word)
+	v->other = mem_alloc(l->objects, sizeof *v->other, "vocabulary", e);
+	if (!v->other || !v->parses || !v->mean || !v->sentence_mean || !v->sentences || !v->scratch || !v->word)
 		return -1;
 	find_means(v);
 	if (read_sentences(v, parser, e))
@@ -337,8 +339,8 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
 }
 
 /* fit (O): how many of the training sentences that say a colour of an object say one like this: one of them may have
- * been misread. What is said of a part of it counts less. */
-static void said_colours(const struct vocabulary *v, int colour, double *fit)
+ * been misread. What is said of a part of it counts less. other (O): how many say another one. */
+static void said_colours(const struct vocabulary *v, int colour, double *fit, double *other)
 {
 	const struct lifted *l = v->lifted;
 
@@ -360,6 +362,7 @@ static void said_colours(const struct vocabulary *v, int colour, double *fit)
 			}
 		}
 		fit[o] = fmax(all > 0 ? like / all : 0, part);
+		other[o] = all > 0 ? 1 - like / all : 0;
 	}
 }
 
@@ -369,10 +372,11 @@ int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, c
 
 	if (colour < 0)
 		return 0;
-	said_colours(v, colour, fit);
+	said_colours(v, colour, fit, v->other);
 	for (size_t o = 0; o < a->n; o++) {
 		const double share = a->objects[o].colours[colour];
-		fit[o] = fmax(fit[o], share / (share + COLOUR_SHARE));
+		const double looks = share / (share + COLOUR_SHARE);
+		fit[o] = fmax(fit[o], looks * (1 - OTHER_COLOUR * v->other[o]));
 	}
 	return 1;
 }

@@ -53,6 +53,7 @@ struct vocabulary {
 	size_t without;		    /* the training sentence whose words do not count, for the caller to set; R: none */
 	double *scratch;	    /* (width) */
 	float *word;		    /* (width) */
+	double *other;		    /* (O) */
 };
 
 /* Refers to l, which must outlive it. Returns 0, or -1 with *e set; vocabulary_free after either. */
