@@ -1,4 +1,5 @@
-/* Learns the weights of text-parse: from the project's own example sentences, and readings of others if given. */
+/* Learns the weights of text-parse: from the project's own example sentences, and readings of others if
+ * given. */
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
@@ -9,7 +10,7 @@
 #include "formats/text.h"
 #include "lang/examples.h"
 #include "lang/parser.h"
-#include "lang/parser_learn.h"
+#include "lang/parser_school.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,10 +27,7 @@ struct training {
 	const struct options *o;
 	struct text examples, others;
 	struct reading_set readings;
-	struct parser_sample *own, *read; /* (examples.n), (others.n) */
-	const struct reading **reading;	  /* (others.n) */
-	int *fold;			  /* (others.n) */
-	const struct parser_sample **set;
+	struct parser_school school;
 };
 
 static int write_examples(const struct cli *c, long long n, int test, struct err *e)
@@ -65,125 +63,70 @@ static int take_examples(struct training *s, const char *path, struct err *e)
 	struct rng r;
 
 	rng_seed(&r, (uint64_t)s->c->seed, 0);
-	s->own = mem_zalloc(s->examples.n, sizeof *s->own, "samples", e);
-	if (!s->own)
+	s->school.examples = mem_zalloc(s->examples.n, sizeof *s->school.examples, "samples", e);
+	if (!s->school.examples)
 		return -1;
+	s->school.example_count = s->examples.n;
 	for (size_t i = 0; i < s->examples.n; i++) {
 		int count;
 		const float *v = vectors_of(&s->examples, i, &count);
 		example_make(&x, EXAMPLES_TRAIN, s->examples.pieces ? s->examples.pieces[i] : NULL, &r);
 		if (!s->examples.pieces || strcmp(x.text, s->examples.texts[i]) != 0)
-			return err_set(e, ERR_FORMAT, "%s: ref '%s': not what parse-train --write makes with --seed %lld",
-				path, s->examples.refs[i], s->c->seed);
-		if (parser_sample_make(&s->own[i], &x.tokens, &x.analysis, v, count, s->examples.width, e))
+			return err_set(e, ERR_FORMAT,
+				"%s: ref '%s': not what parse-train --write makes with --seed %lld", path,
+				s->examples.refs[i], s->c->seed);
+		if (parser_sample_make(
+			    &s->school.examples[i], &x.tokens, &x.analysis, v, count, s->examples.width, e))
 			return -1;
 	}
 	return 0;
 }
 
-static void take_tokens(const struct text *t, size_t r, struct tokens *out)
+/* Rooms by a hash of their names: a room's sentences are held out together. */
+static int fold_of(const char *room, long long folds)
 {
-	tokens_take(out, t->texts[r], t->pieces[r], NULL, 0);
+	unsigned hash = 0;
+
+	for (const char *p = room ? room : ""; *p; p++)
+		hash = (hash * 31u + (unsigned char)*p) & 0xffff;
+	return folds ? (int)(hash % folds) : 0;
 }
 
 static int take_readings(struct training *s, struct err *e)
 {
 	static struct tokens t;
+	struct parser_school *c = &s->school;
 	size_t n = s->others.n;
 
-	s->read = mem_zalloc(n, sizeof *s->read, "samples", e);
-	s->reading = mem_zalloc(n, sizeof *s->reading, "samples", e);
-	s->fold = mem_zalloc(n, sizeof *s->fold, "samples", e);
-	if (!s->read || !s->reading || !s->fold)
+	c->read = mem_zalloc(n, sizeof *c->read, "samples", e);
+	c->readings = mem_zalloc(n, sizeof *c->readings, "samples", e);
+	c->fold = mem_zalloc(n, sizeof *c->fold, "samples", e);
+	if (!c->read || !c->readings || !c->fold)
 		return -1;
+	if (!s->others.pieces || s->others.width != s->examples.width)
+		return err_set(e, ERR_FORMAT, "%s: not encoded as the examples are", s->o->readings_text);
+	c->read_count = n;
+	c->texts = s->others.texts;
+	c->pieces = s->others.pieces;
 	for (size_t i = 0; i < n; i++) {
 		const struct reading_record *r = readings_find(&s->readings, s->others.refs[i]);
 		int count;
 		const float *v = vectors_of(&s->others, i, &count);
 		if (!r)
-			return err_set(e, ERR_FORMAT, "%s: no reading of ref '%s'", s->o->readings, s->others.refs[i]);
-		s->reading[i] = &r->reading;
-		if (r->room)
-			for (const char *p = r->room; *p; p++)
-				s->fold[i] = (int)(((unsigned)s->fold[i] * 31u + (unsigned char)*p) & 0xffff);
-		if (s->o->folds)
-			s->fold[i] %= (int)s->o->folds;
-		take_tokens(&s->others, i, &t);
-		if (parser_sample_make(&s->read[i], &t, NULL, v, count, s->others.width, e))
+			return err_set(e, ERR_FORMAT, "%s: no reading of ref '%s'", s->o->readings,
+				s->others.refs[i]);
+		c->readings[i] = &r->reading;
+		c->fold[i] = fold_of(r->room, s->o->folds);
+		tokens_take(&t, c->texts[i], c->pieces[i], NULL, 0);
+		if (parser_sample_make(&c->read[i], &t, NULL, v, count, s->others.width, e))
 			return -1;
 	}
-	return 0;
-}
-
-/* What the readings say, in words, by the weights as they are. */
-static int align(struct training *s, const struct parser_weights *w, struct err *e)
-{
-	struct parser_batch b;
-	static struct tokens t;
-	static struct analysis a;
-
-	if (parser_batch_make(&b, TOKENS_MOST, 1, w->width, e))
-		return -1;
-	for (size_t i = 0; i < s->others.n; i++) {
-		struct parser_sample *x = &s->read[i];
-		if (!x->n)
-			continue;
-		take_tokens(&s->others, i, &t);
-		parser_batch_clear(&b);
-		parser_batch_add(&b, x->features, x->vectors, x->n, w->width);
-		parser_forward(w, &b);
-		reading_align(s->reading[i], w, &b, 0, &t, &a);
-		memcpy(x->right, a.word, sizeof *x->right * (size_t)x->n);
-	}
-	parser_batch_free(&b);
 	return 0;
 }
 
 static void say(void *context, int epoch, double loss)
 {
 	cli_note(context, 1, "epoch %d: loss %.4f", epoch + 1, loss);
-}
-
-static int learn_examples(struct training *s, struct parser_weights *w, struct err *e)
-{
-	struct parser_course course = {(int)s->o->epochs, 16, 0.002, 0.25, say, (void *)s->c};
-	struct rng r;
-	size_t n = 0;
-
-	rng_seed(&r, (uint64_t)s->c->seed, 7);
-	parser_weights_begin(w, &r);
-	for (size_t i = 0; i < s->examples.n; i++)
-		if (s->own[i].n)
-			s->set[n++] = &s->own[i];
-	return parser_learn(w, s->set, n, &course, &r, e);
-}
-
-/* Goes on with the readings but those of fold `without`, and examples. */
-static int learn_readings(struct training *s, struct parser_weights *w, int without, struct err *e)
-{
-	const struct options *o = s->o;
-	struct parser_course course = {0, 16, 0.001, 0.25, say, (void *)s->c};
-	struct rng r;
-	size_t n = 0;
-	int bad = 0;
-
-	rng_seed(&r, (uint64_t)s->c->seed, 8);
-	for (long long k = 0; k < o->rounds && s->others.n && !bad; k++) {
-		bad = align(s, w, e);
-		for (size_t i = n = 0; i < s->others.n; i++)
-			if (s->read[i].n && s->fold[i] != without)
-				s->set[n++] = &s->read[i];
-		/* as many of the project's own, another part each round */
-		for (size_t i = 0; i < s->examples.n && i < s->others.n; i++) {
-			size_t at = (i + (size_t)k * s->others.n) % s->examples.n;
-			if (s->own[at].n)
-				s->set[n++] = &s->own[at];
-		}
-		course.epochs = k + 1 == o->rounds ? 6 : 4;
-		if (!bad)
-			bad = parser_learn(w, s->set, n, &course, &r, e);
-	}
-	return bad;
 }
 
 static int put_parses(
@@ -194,7 +137,7 @@ static int put_parses(
 	for (size_t i = 0; i < s->others.n; i++) {
 		struct parse p;
 		struct parser_vectors v = {.pieces = s->others.pieces[i], .width = s->others.width};
-		if (s->fold[i] != fold)
+		if (s->school.fold[i] != fold)
 			continue;
 		v.vectors = vectors_of(&s->others, i, &v.count);
 		if (parse_sentence(&p, &parser, s->others.texts[i], &v, e))
@@ -214,13 +157,13 @@ static int cross_validate(struct training *s, struct parser_weights *w, struct e
 	int bad = file_out_open(&out, s->c->output, e);
 
 	if (!bad)
-		bad = learn_examples(s, w, e) || parser_weights_make(&begun, w->width, e);
+		bad = parser_school_examples(&s->school, w, e) || parser_weights_make(&begun, w->width, e);
 	for (int fold = 0; fold < s->o->folds && !bad; fold++) {
 		if (fold)
 			memcpy(w->slab, begun.slab, sizeof(float) * w->count);
 		else
 			memcpy(begun.slab, w->slab, sizeof(float) * w->count);
-		bad = learn_readings(s, w, fold, e) || put_parses(s, w, fold, out.stream, e);
+		bad = parser_school_readings(&s->school, w, fold, e) || put_parses(s, w, fold, out.stream, e);
 	}
 	parser_weights_free(&begun);
 	if (bad)
@@ -230,15 +173,7 @@ static int cross_validate(struct training *s, struct parser_weights *w, struct e
 
 static void training_free(struct training *s)
 {
-	for (size_t i = 0; s->own && i < s->examples.n; i++)
-		parser_sample_free(&s->own[i]);
-	for (size_t i = 0; s->read && i < s->others.n; i++)
-		parser_sample_free(&s->read[i]);
-	free(s->own);
-	free(s->read);
-	free(s->reading);
-	free(s->fold);
-	free(s->set);
+	parser_school_free(&s->school);
 	text_free(&s->examples);
 	text_free(&s->others);
 	readings_free(&s->readings);
@@ -246,22 +181,29 @@ static void training_free(struct training *s)
 
 static int run(const struct cli *c, const struct options *o, struct err *e)
 {
-	struct training s = {.c = c, .o = o};
+	struct training s = {.c = c,
+		.o = o,
+		.school = {.epochs = (int)o->epochs,
+			.rounds = (int)o->rounds,
+			.seed = (unsigned long long)c->seed,
+			.progress = say,
+			.context = (void *)c}};
 	struct parser_weights w = {0};
 	const char *path = c->operand_count ? c->operands[0] : "-";
 	int bad;
 
 	bad = text_read(&s.examples, path, e) || take_examples(&s, path, e);
 	if (!bad && o->readings)
-		bad = readings_read(&s.readings, o->readings, e) || text_read(&s.others, o->readings_text, e) ||
-		      take_readings(&s, e);
+		bad = readings_read(&s.readings, o->readings, e) ||
+		      text_read(&s.others, o->readings_text, e) || take_readings(&s, e);
 	if (!bad)
-		bad = parser_weights_make(&w, s.examples.width, e) ||
-		      !(s.set = mem_alloc(s.examples.n + s.others.n, sizeof *s.set, "samples", e));
+		bad = parser_weights_make(&w, s.examples.width, e);
 	if (!bad)
 		bad = o->folds ? cross_validate(&s, &w, e)
-			       : learn_examples(&s, &w, e) || learn_readings(&s, &w, -1, e) ||
-					 parser_weights_write(&w, c->output, o->readings ? "--readings" : "", c->seed, o->source, e);
+			       : parser_school_examples(&s.school, &w, e) ||
+					 parser_school_readings(&s.school, &w, -1, e) ||
+					 parser_weights_write(&w, c->output, o->readings ? "--readings" : "",
+						 c->seed, o->source, e);
 	training_free(&s);
 	parser_weights_free(&w);
 	return bad;
@@ -271,16 +213,20 @@ int main(int argc, char **argv)
 {
 	struct options o = {.epochs = 5, .rounds = 2, .source = "the example sentences of refersplat"};
 	const struct cli_option options[] = {
-		{"write", 0, CLI_INT, &o.write, "N", "write N example sentences (JSON Lines) instead of learning", 0, 1e6},
-		{"test", 0, CLI_FLAG, &o.test, NULL, "with --write: sentences in the wordings kept for testing", 0, 0},
-		{"readings", 0, CLI_STRING, &o.readings, "READINGS", "learn from these readings too (JSON Lines)", 0, 0},
+		{"write", 0, CLI_INT, &o.write, "N",
+			"write N example sentences (JSON Lines) instead of learning", 0, 1e6},
+		{"test", 0, CLI_FLAG, &o.test, NULL,
+			"with --write: sentences in the wordings kept for testing", 0, 0},
+		{"readings", 0, CLI_STRING, &o.readings, "READINGS",
+			"learn from these readings too (JSON Lines)", 0, 0},
 		{"readings-text", 0, CLI_STRING, &o.readings_text, "TEXT", "their encoded sentences", 0, 0},
 		{"epochs", 0, CLI_INT, &o.epochs, "N", "passes over the examples (default 5)", 1, 1000},
 		{"rounds", 0, CLI_INT, &o.rounds, "N", "rounds with the readings (default 2)", 0, 100},
 		{"folds", 0, CLI_INT, &o.folds, "N",
 			"cross-validate: write parses of the readings' sentences, each by weights that saw no sentence of its room",
 			0, 100},
-		{"source", 0, CLI_STRING, &o.source, "TEXT", "what the weights say that they were learnt from", 0, 0},
+		{"source", 0, CLI_STRING, &o.source, "TEXT",
+			"what the weights say that they were learnt from", 0, 0},
 		{0},
 	};
 	const struct cli_tool tool = {
@@ -300,6 +246,8 @@ int main(int argc, char **argv)
 		cli_usage(&c, "--readings and --readings-text go together");
 	if (o.folds && !o.readings)
 		cli_usage(&c, "--folds needs --readings");
+	if (!o.write && !o.folds)
+		cli_refuse_terminal(&c);
 	bad = o.write ? write_examples(&c, o.write, o.test, &e) : run(&c, &o, &e);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

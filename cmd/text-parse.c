@@ -62,7 +62,8 @@ int main(int argc, char **argv)
 	const char *weights = NULL;
 	int method = BOTH;
 	const struct cli_option options[] = {
-		{"parser", 0, CLI_STRING, &weights, "PARSER", "weights of the learnt parser (default: those that come with the program)", 0, 0},
+		{"parser", 0, CLI_STRING, &weights, "PARSER",
+			"weights of the learnt parser (default: those that come with the program)", 0, 0},
 		{"method", 0, CLI_CHOICE, &method, "both|grammar",
 			"grammar and what was learnt on word vectors, or grammar alone (default both)", 0, 0},
 		{0},

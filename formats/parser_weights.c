@@ -7,14 +7,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The default weights are part of the program, so that every tool has them: formats/parser_default.safetensors. */
-#define EMBED(name, file)                                                                                              \
-	__asm__(".section .rodata\n"                                                                                   \
-		".balign 64\n"                                                                                         \
-		".globl " #name "_begin\n" #name "_begin:\n"                                                          \
-		".incbin \"" file "\"\n"                                                                              \
-		".globl " #name "_end\n" #name "_end:\n"                                                              \
-		".byte 0\n"                                                                                            \
+/* The default weights are part of the program, so that every tool has them:
+ * formats/parser_default.safetensors. */
+#define EMBED(name, file)                                                                                    \
+	__asm__(".section .rodata\n"                                                                         \
+		".balign 64\n"                                                                               \
+		".globl " #name "_begin\n" #name "_begin:\n"                                                 \
+		".incbin \"" file "\"\n"                                                                     \
+		".globl " #name "_end\n" #name "_end:\n"                                                     \
+		".byte 0\n"                                                                                  \
 		".previous\n")
 EMBED(parser_default, "formats/parser_default.safetensors");
 extern const unsigned char parser_default_begin[], parser_default_end[];
@@ -30,8 +31,8 @@ static int take_tensors(struct parser_weights *w, const struct safetensors *st, 
 		!(t = safetensors_need(st, "vector.weight", ST_F16, 2, (int64_t[]){NET_HIDDEN, -1}, e)))
 		return -1;
 	if (t->shape[1] < 1 || t->shape[1] > 65536)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'vector.weight': width %lld is not in 1 to 65536", st->path,
-			(long long)t->shape[1]);
+		return err_set(e, ERR_FORMAT, "%s: tensor 'vector.weight': width %lld is not in 1 to 65536",
+			st->path, (long long)t->shape[1]);
 	if (parser_weights_make(w, (int)t->shape[1], e))
 		return -1;
 	parser_parts(w->width, parts);
@@ -43,8 +44,8 @@ static int take_tensors(struct parser_weights *w, const struct safetensors *st, 
 		bad = !t || safetensors_to_float(t, at, n, e);
 		for (size_t k = 0; k < n && !bad; k++)
 			if (!isfinite(at[k]))
-				bad = err_set(e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path,
-					parts[i].name, k);
+				bad = err_set(e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite",
+					st->path, parts[i].name, k);
 		at += n;
 	}
 	return bad ? -1 : 0;
@@ -79,8 +80,8 @@ int parser_weights_default(struct parser_weights *w, struct err *e)
 		       : take(w, &st, e);
 }
 
-int parser_weights_write(const struct parser_weights *w, const char *path, const char *options, long long seed,
-	const char *source, struct err *e)
+int parser_weights_write(const struct parser_weights *w, const char *path, const char *options,
+	long long seed, const char *source, struct err *e)
 {
 	struct parser_part parts[PARSER_PARTS];
 	struct st_tensor tensors[PARSER_PARTS];

@@ -9,7 +9,7 @@ int parser_weights_read(struct parser_weights *w, const char *path, struct err *
 /* Those that come with the program, of all-MiniLM-L6-v2. */
 int parser_weights_default(struct parser_weights *w, struct err *e);
 /* Stored as half floats. `source`: what they were learnt from. */
-int parser_weights_write(const struct parser_weights *w, const char *path, const char *options, long long seed,
-	const char *source, struct err *e);
+int parser_weights_write(const struct parser_weights *w, const char *path, const char *options,
+	long long seed, const char *source, struct err *e);
 
 #endif

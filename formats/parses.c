@@ -100,7 +100,8 @@ static void add_anchors(const struct writer *w, cJSON *o, const struct parse_cla
 {
 	struct parse_list twice = {2, (int[]){0, 0}};
 
-	if (c->relation != PARSE_BETWEEN || c->anchors.n != 1 || w->p->phrases[c->anchors.item[0]].count == PARSE_ONE) {
+	if (c->relation != PARSE_BETWEEN || c->anchors.n != 1 ||
+		w->p->phrases[c->anchors.item[0]].count == PARSE_ONE) {
 		add_phrases(w, o, "anchors", &c->anchors);
 		return;
 	}

@@ -39,12 +39,14 @@ static int add_word(struct reader *r, const char *text, size_t length, struct pa
 	char word[TOKEN_LENGTH], lemma[TOKEN_LENGTH];
 	struct parse_word *w;
 
-	if (mem_grow((void **)&p->words, &r->words, (size_t)p->word_count + 1, sizeof *p->words, "words", r->e))
+	if (mem_grow((void **)&p->words, &r->words, (size_t)p->word_count + 1, sizeof *p->words, "words",
+		    r->e))
 		return -1;
 	snprintf(word, sizeof word, "%.*s", (int)length, text);
 	token_lemma(word, lemma);
 	w = &p->words[p->word_count++];
-	*w = (struct parse_word){.span = span, .text = mem_strdup(word, r->e), .lemma = mem_strdup(lemma, r->e)};
+	*w = (struct parse_word){
+		.span = span, .text = mem_strdup(word, r->e), .lemma = mem_strdup(lemma, r->e)};
 	return w->text && w->lemma ? p->word_count - 1 : -1;
 }
 
@@ -165,7 +167,8 @@ static int read_ordinal(struct reader *r, const cJSON *o, struct parse_phrase *f
 	return 0;
 }
 
-static int read_list(struct reader *r, const cJSON *o, const char *key, struct parse_span span, struct parse_list *list)
+static int read_list(
+	struct reader *r, const cJSON *o, const char *key, struct parse_span span, struct parse_list *list)
 {
 	const cJSON *item = member(o, key), *word;
 
@@ -191,7 +194,8 @@ static int read_phrases(struct reader *r, const cJSON *o, const char *key, struc
 		return bad(r, key, "a list of phrases");
 	cJSON_ArrayForEach(phrase, item)
 	{
-		int which = cJSON_IsObject(phrase) ? read_phrase(r, phrase, phrase) : bad(r, key, "a list of phrases");
+		int which = cJSON_IsObject(phrase) ? read_phrase(r, phrase, phrase)
+						   : bad(r, key, "a list of phrases");
 		if (which < 0 || parse_list_add(list, which, r->e))
 			return -1;
 	}
@@ -207,7 +211,9 @@ static int read_relation(struct reader *r, const cJSON *o, struct parse_clause *
 	if (relation < 0)
 		return bad(r, "relation", "the name of a relation");
 	if (cJSON_IsTrue(member(o, "contact")))
-		relation = relation == PARSE_ABOVE ? PARSE_ON : relation == PARSE_BELOW ? PARSE_SUPPORTS : relation;
+		relation = relation == PARSE_ABOVE   ? PARSE_ON
+			   : relation == PARSE_BELOW ? PARSE_SUPPORTS
+						     : relation;
 	c->relation = (enum parse_relation)relation;
 	c->negated = cJSON_IsTrue(member(o, "negated"));
 	for (int k = PARSE_MORE; degree && k <= PARSE_MOST; k++)
@@ -222,7 +228,8 @@ static int read_view(struct reader *r, const cJSON *o)
 	struct parse_list list = {0};
 	int failed;
 
-	if (!cJSON_IsString(view) || (strcmp(view->valuestring, "from") != 0 && strcmp(view->valuestring, "facing") != 0))
+	if (!cJSON_IsString(view) ||
+		(strcmp(view->valuestring, "from") != 0 && strcmp(view->valuestring, "facing") != 0))
 		return bad(r, "view", "'from' or 'facing'");
 	r->p->view = strcmp(view->valuestring, "from") ? PARSE_VIEW_FACING : PARSE_VIEW_FROM;
 	failed = read_phrases(r, o, "anchors", &list);
@@ -245,7 +252,8 @@ static int read_clause(struct reader *r, const cJSON *o, int figure)
 	if (++r->depth > DEEPEST)
 		return jsonl_err(r->j, r->e, "key 'clauses' is more than %d deep", DEEPEST);
 	if (read_relation(r, o, &c) || read_span(r, o, &c.span) ||
-		mem_grow((void **)&r->p->clauses, &r->clauses, (size_t)r->p->clause_count + 1, sizeof c, "clauses", r->e))
+		mem_grow((void **)&r->p->clauses, &r->clauses, (size_t)r->p->clause_count + 1, sizeof c,
+			"clauses", r->e))
 		return -1;
 	at = r->p->clause_count++;
 	r->p->clauses[at] = c;

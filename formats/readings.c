@@ -25,7 +25,8 @@ static void last_lemma(const char *noun, char *out)
 
 	while (end && !isalnum((unsigned char)noun[end - 1]))
 		end--;
-	for (begin = end; begin && noun[begin - 1] != ' ' && noun[begin - 1] != '-' && noun[begin - 1] != '/';)
+	for (begin = end;
+		begin && noun[begin - 1] != ' ' && noun[begin - 1] != '-' && noun[begin - 1] != '/';)
 		begin--;
 	while (begin < end && n < TOKEN_LENGTH - 1)
 		word[n++] = (char)tolower((unsigned char)noun[begin++]);
@@ -87,7 +88,8 @@ int readings_read(struct reading_set *s, const char *path, struct err *e)
 		return -1;
 	while ((got = jsonl_next(&j, &o, e)) > 0) {
 		struct reading_record r = {0};
-		int bad = read_record(&j, o, &r, e) || mem_grow(&records, &capacity, s->n + 1, sizeof r, j.path, e);
+		int bad = read_record(&j, o, &r, e) ||
+			  mem_grow(&records, &capacity, s->n + 1, sizeof r, j.path, e);
 		cJSON_Delete(o);
 		s->records = records;
 		if (bad) {

@@ -512,7 +512,6 @@ const struct closed_word closed_words[] = {
 	{"silver", CLOSED_ATTRIBUTE, -1, 0},
 	{"gold", CLOSED_ATTRIBUTE, -1, 0},
 	{"cream", CLOSED_ATTRIBUTE, -1, 0},
-	{"nothing", CLOSED_GENERIC, -1, 0},
 	{"nobody", CLOSED_GENERIC, -1, 0},
 	{"anywhere", CLOSED_ADVERB, -1, 0},
 	{"twin", CLOSED_GENERIC, -1, 0},

@@ -83,7 +83,8 @@ static void make_plural(char *noun)
 
 	if (n + 3 > MADE_LENGTH)
 		return;
-	if (n > 2 && (noun[n - 1] == 's' || noun[n - 1] == 'x' || !strcmp(noun + n - 2, "ch") || !strcmp(noun + n - 2, "sh")))
+	if (n > 2 && (noun[n - 1] == 's' || noun[n - 1] == 'x' || !strcmp(noun + n - 2, "ch") ||
+			     !strcmp(noun + n - 2, "sh")))
 		strcat(noun, "es");
 	else if (n > 1 && noun[n - 1] == 'f')
 		strcpy(noun + n - 1, "ves");
@@ -108,13 +109,17 @@ static void put_before(struct making *m, int *list, int *count)
 }
 
 /* A noun with what stands before it. Returns its index. */
-static int noun_phrase(struct making *m, enum word_role role, int head, const char *noun, int is_plural, int plain)
+static int noun_phrase(
+	struct making *m, enum word_role role, int head, const char *noun, int is_plural, int plain)
 {
-	static const char determiners[] = "the|the|the|the|the|the|a|a|an|my|that|this|these|another|some|our|";
+	static const char determiners[] =
+		"the|the|the|the|the|the|a|a|an|my|that|this|these|another|some|our|";
 	int list[8], count = 0, first, last, owner;
 
 	if (!plain)
-		put_any(m, is_plural ? chance(m, 0.3) ? "the_two|two|three|the_three|four|both|2|3|some|several" : "the|the|these|my|"
+		put_any(m, is_plural ? chance(m, 0.3)
+					       ? "the_two|two|three|the_three|four|both|2|3|some|several"
+					       : "the|the|these|my|"
 				     : determiners);
 	if (!plain && chance(m, role == ROLE_TARGET ? 0.3 : 0.15))
 		put_before(m, list, &count);
@@ -145,8 +150,8 @@ static int noun_phrase(struct making *m, enum word_role role, int head, const ch
 /* Whether the word before already is an article or the like. */
 static int follows_article(const struct making *m)
 {
-	static const char *const words[] = {"the", "a", "this", "that", "all", "every", "each", "other", "same", "correct", "which",
-		"first", "second", "third", "fourth", "last", "any", "2nd", "no"};
+	static const char *const words[] = {"the", "a", "this", "that", "all", "every", "each", "other",
+		"same", "correct", "which", "first", "second", "third", "fourth", "last", "any", "2nd", "no"};
 
 	for (size_t i = 0; m->n && i < sizeof words / sizeof *words; i++)
 		if (!strcmp(m->word[m->n - 1].text, words[i]))
@@ -168,13 +173,17 @@ static int anchor(struct making *m, enum word_role role, int may_nest)
 		if (head - first == 2 && strcmp(m->word[head - 1].text, "other"))
 			mark(m, head - 1, head, ROLE_ATTRIBUTE, head);
 	} else {
-		head = noun_phrase(m, role, ROOT, pick(m, &m->w->nouns), chance(m, 0.15), m->n && follows_article(m));
+		head = noun_phrase(
+			m, role, ROOT, pick(m, &m->w->nouns), chance(m, 0.15), m->n && follows_article(m));
 	}
 	if (may_nest && m->depth < DEPTH_MOST + 1 && chance(m, 0.35)) {
 		if (chance(m, 0.4))
 			put_any(m, "that_is|that_'s|which_is");
-		clause(m, head, strcmp(m->word[m->n - 1].text, "is") && strcmp(m->word[m->n - 1].text, "'s")
-				? FORM_PLACED | FORM_HAVING | FORM_TURNED : FORM_PLACED, 0);
+		clause(m, head,
+			strcmp(m->word[m->n - 1].text, "is") && strcmp(m->word[m->n - 1].text, "'s")
+				? FORM_PLACED | FORM_HAVING | FORM_TURNED
+				: FORM_PLACED,
+			0);
 	}
 	m->depth--;
 	return head;
@@ -184,10 +193,12 @@ static int anchor(struct making *m, enum word_role role, int may_nest)
 static int put_having(struct making *m, int has, int denied)
 {
 	if (denied)
-		return put_any(m, has ? "has_no|does_n't_have_a|has_n't_got_a"
-				      : "without|without|without_a|without_the|with_no|that_has_no|that_does_n't_have_a|which_does_not_have_a|"
-					"not_the_one_with_the");
-	return put_any(m, has ? "has|has|has_got|'s_got" : "with|with|with|that_has|which_has|having|that_have|that_'s_got");
+		return put_any(m,
+			has ? "has_no|does_n't_have_a|has_n't_got_a"
+			    : "without|without|without_a|without_the|with_no|that_has_no|that_does_n't_have_a|which_does_not_have_a|"
+			      "not_the_one_with_the");
+	return put_any(m, has ? "has|has|has_got|'s_got"
+			      : "with|with|with|that_has|which_has|having|that_have|that_'s_got");
 }
 
 static void expand_clause(struct making *m, const struct example_clause *c, int figure, int denied, int has)
@@ -201,7 +212,8 @@ static void expand_clause(struct making *m, const struct example_clause *c, int 
 		} else if ((*p == '@' || *p == '0') && length == 1) {
 			int is_last = !strchr(p, ' ');
 			if (n < 4)
-				anchors[n++] = anchor(m, ROLE_ANCHOR, *p == '@' && (is_last || chance(m, 0.3)));
+				anchors[n++] =
+					anchor(m, ROLE_ANCHOR, *p == '@' && (is_last || chance(m, 0.3)));
 			/* "the desk and the chair" */
 			if (n < 4 && *p == '@' && is_last && chance(m, 0.06)) {
 				put(m, "and", 3);
@@ -212,10 +224,12 @@ static void expand_clause(struct making *m, const struct example_clause *c, int 
 			put_having(m, has, denied);
 			/* the word that means having is the relation's where no other is */
 			for (with = m->n - 1; with > first; with--)
-				if (strstr("with without has have having got", m->word[with].text) && strlen(m->word[with].text) > 2)
+				if (strstr("with without has have having got", m->word[with].text) &&
+					strlen(m->word[with].text) > 2)
 					break;
 		} else if (*p == '^' && length == 1) {
-			put_any(m, "||||sitting|standing|placed|lying|located|resting|leaning|stacked|hanging|mounted|sits|set");
+			put_any(m,
+				"||||sitting|standing|placed|lying|located|resting|leaning|stacked|hanging|mounted|sits|set");
 		} else if (*p == '~' && length == 1) {
 			put_any(m, "||||just|directly|right|immediately");
 		} else {
@@ -243,12 +257,13 @@ static void clause(struct making *m, int figure, int forms, int denied)
 	int tries = 0;
 
 	do {
-		of = (forms & FORM_HAS) ? &m->w->having
+		of = (forms & FORM_HAS)				? &m->w->having
 		     : (forms & FORM_HAVING) && chance(m, 0.3)	? &m->w->having
 		     : (forms & FORM_TURNED) && chance(m, 0.12) ? &m->w->turned
 								: &m->w->placed;
 		c = &of->item[rng_below(m->r, (uint32_t)of->n)];
-	} while (((c->negated && (denied || chance(m, 0.5))) || ((forms & FORM_HAS) && c->text[0] != '$')) && ++tries < 50);
+	} while (((c->negated && (denied || chance(m, 0.5))) || ((forms & FORM_HAS) && c->text[0] != '$')) &&
+		 ++tries < 50);
 	if (c->text[0] == '$' && !denied && !c->negated)
 		denied = chance(m, 0.18);
 	if (of == &m->w->placed && (forms & FORM_TURNED) && chance(m, 0.25))
@@ -304,6 +319,21 @@ static void adjective(struct making *m)
 	m->word[list[0]].head = ROOT;
 }
 
+/* "the red one", that is meant. */
+static void one_of_look(struct making *m, enum word_role role)
+{
+	int first, last;
+
+	put_any(m, "the|the|that|a");
+	first = m->n;
+	put_any(m, pick(m, &m->w->attributes));
+	last = put_any(m, "one|one|one|thing|ones");
+	mark(m, last, last + 1, role, ROOT);
+	mark(m, first, last, ROLE_ATTRIBUTE, role == ROLE_TARGET ? ROOT : last);
+	if (chance(m, 0.25))
+		clause(m, role == ROLE_TARGET ? ROOT : last, FORM_PLACED | FORM_HAVING, 0);
+}
+
 /* 1 where the symbol was one. */
 static int symbol(struct making *m, const char *p, size_t length, int before_sure)
 {
@@ -345,6 +375,18 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 	case 'A':
 		adjective(m);
 		return 1;
+	case 'Q':
+		one_of_look(m, ROLE_TARGET);
+		return 1;
+	case 'O':
+		one_of_look(m, ROLE_ALSO);
+		return 1;
+	case 'q': {
+		int first = m->n;
+		put_any(m, pick(m, &m->w->attributes));
+		mark(m, first, m->n, ROLE_ATTRIBUTE, ROOT);
+		return 1;
+	}
 	case 'F':
 		function(m);
 		return 1;
@@ -372,9 +414,12 @@ static void sentence(struct making *m, const char *text)
 			int first = m->n;
 			put_choice(m, p, length);
 			for (int i = first; i < m->n; i++)
-				if (!m->has_noun && (!strcmp(m->word[i].text, "thing") || !strncmp(m->word[i].text, "everything", 10) ||
-							    !strcmp(m->word[i].text, "object") || !strcmp(m->word[i].text, "something") ||
-							    !strcmp(m->word[i].text, "anything") || !strcmp(m->word[i].text, "whatever")))
+				if (!m->has_noun && (!strcmp(m->word[i].text, "thing") ||
+							    !strncmp(m->word[i].text, "everything", 10) ||
+							    !strcmp(m->word[i].text, "object") ||
+							    !strcmp(m->word[i].text, "something") ||
+							    !strcmp(m->word[i].text, "anything") ||
+							    !strcmp(m->word[i].text, "whatever")))
 					m->word[i].role = ROLE_TARGET;
 		}
 		p += length;

@@ -1,6 +1,6 @@
 /* Sentences with their analyses, to learn a parser from: wordings written for this project, multiplied by a
- * generator. Wordings for learning and for testing are disjoint: those of EXAMPLES_TEST have templates, requests
- * and nouns of their own. */
+ * generator. Wordings for learning and for testing are disjoint: those of EXAMPLES_TEST have templates,
+ * requests and nouns of their own. */
 #ifndef LANG_EXAMPLES_H
 #define LANG_EXAMPLES_H
 
@@ -28,12 +28,12 @@ void example_make(struct example *x, enum examples_set set, const char *pieces, 
  *   ^   "sitting", "placed" or nothing        ~  "just", "directly" or nothing
  *   0   an anchor without clauses
  * and in whole sentences
- *   T   the target with its clauses           N  without                           n  its noun again, or "one"
- *   C   a clause as after "is"                H  one with "has"                    A  a size or place adjective
- *   C2  a clause that is denied
- *   V   what is faced or stood at             X  what is left out                  S  a further target
- *   L   several of the target's noun          U  a target of no noun ("the one") with its clauses
- *   F   what a thing is for ("to write with"), all predicates of PARSE_OTHER       ,.? punctuation */
+ *   T   the target with its clauses           N  without                           n  its noun again, or
+ * "one" C   a clause as after "is"                H  one with "has"                    A  a size or place
+ * adjective C2  a clause that is denied V   what is faced or stood at             X  what is left out S  a
+ * further target L   several of the target's noun          U  a target of no noun ("the one") with its
+ * clauses Q   "the red one" that is meant            O  a further one                    q  a word of its
+ * look F   what a thing is for ("to write with"), all predicates of PARSE_OTHER       ,.? punctuation */
 struct example_clause {
 	enum parse_relation relation;
 	int negated;

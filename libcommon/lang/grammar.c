@@ -279,7 +279,9 @@ static int take_place(struct state *s, int i)
 	}
 	set_predicate(s, main, s->figure, r);
 	s->predicate = main;
-	if (end >= t->n || t->word[end].before)
+	/* "the larger of the two cups": the noun to come is the target's */
+	if (end >= t->n || t->word[end].before ||
+		(!s->found && is(t, main + 1, "of") && closed_words[t->word[main].closed].value))
 		s->predicate = -1;
 	if ((r == PARSE_INSIDE || r == PARSE_ON) && end < t->n && s->predicate >= 0 &&
 		(is(t, end, "wall") || is(t, end, "floor") || is(t, end, "ground") || is(t, end, "corner"))) {

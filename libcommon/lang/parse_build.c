@@ -149,8 +149,9 @@ static int name_ones(struct build *b)
 	const struct parse_list *noun = &b->p->phrases[0].noun;
 
 	for (int i = 0; i < b->t->n; i++) {
-		if (b->phrase_of[i] <= 0 || !(is(b->t, i, "one") || is(b->t, i, "ones") || is(b->t, i, "twin") ||
-						    is(b->t, i, "others") || class_of(b->t, i) == CLOSED_NUMBER))
+		if (b->phrase_of[i] <= 0 ||
+			!(is(b->t, i, "one") || is(b->t, i, "ones") || is(b->t, i, "twin") ||
+				is(b->t, i, "others") || class_of(b->t, i) == CLOSED_NUMBER))
 			continue;
 		for (int k = 0; k < noun->n; k++)
 			if (parse_list_add(&b->p->phrases[b->phrase_of[i]].noun, noun->item[k], b->e))

@@ -14,7 +14,7 @@ void parser_weights_begin(struct parser_weights *w, struct rng *r)
 	for (int i = 0; i < PARSER_PARTS; i++) {
 		size_t n = parts[i].rows * (parts[i].columns ? parts[i].columns : 1);
 		/* tables of words are sums' terms: small */
-		double most = !parts[i].columns		       ? 0
+		double most = !parts[i].columns			  ? 0
 			      : p >= w->closed && p < w->layer[0] ? 0.1
 								  : sqrt(3.0 / (double)parts[i].columns);
 		for (size_t k = 0; k < n; k++)
@@ -42,11 +42,12 @@ static double entropy(const float *x, int n, int right, float *d, double scale)
 
 static int has_head(enum word_role r)
 {
-	return r == ROLE_ANCHOR || r == ROLE_PREDICATE || r == ROLE_NAME || r == ROLE_ATTRIBUTE || r == ROLE_EXCEPT;
+	return r == ROLE_ANCHOR || r == ROLE_PREDICATE || r == ROLE_NAME || r == ROLE_ATTRIBUTE ||
+	       r == ROLE_EXCEPT;
 }
 
-static double arc_loss(const struct parser_weights *w, struct parser_weights *dw, const struct parser_batch *b,
-	int sentence, int i, int right, struct parser_batch *d, double scale)
+static double arc_loss(const struct parser_weights *w, struct parser_weights *dw,
+	const struct parser_batch *b, int sentence, int i, int right, struct parser_batch *d, double scale)
 {
 	int first = b->start[sentence], n = b->start[sentence + 1] - first;
 	float scores[TOKENS_MOST + 1], ds[TOKENS_MOST + 1] = {0};
@@ -96,8 +97,8 @@ static double losses(const struct parser_weights *w, struct parser_weights *dw, 
 				continue;
 			loss += entropy(out, ROLES, (int)r, dout, scale);
 			if (r == ROLE_PREDICATE) {
-				loss += entropy(out + ROLES, PARSE_RELATIONS, (int)a[i].relation, dout + ROLES,
-					scale);
+				loss += entropy(out + ROLES, PARSE_RELATIONS, (int)a[i].relation,
+					dout + ROLES, scale);
 				loss += negation_loss(out[ROLES + PARSE_RELATIONS], a[i].negated,
 					dout + ROLES + PARSE_RELATIONS, scale);
 			}
@@ -120,7 +121,8 @@ static void scatter(const struct parser_batch *b, const float *dgathered, int re
 				int at = r + (k - 1) * reach;
 				if (at >= first && at < end)
 					for (int c = 0; c < NET_HIDDEN; c++)
-						dh[(size_t)at * NET_HIDDEN + (size_t)c] += row[k * NET_HIDDEN + c];
+						dh[(size_t)at * NET_HIDDEN + (size_t)c] +=
+							row[k * NET_HIDDEN + c];
 			}
 			for (int c = 0; c < NET_HIDDEN; c++)
 				mean[c] += row[3 * NET_HIDDEN + c] / (float)(end - first);
@@ -157,8 +159,8 @@ static void embed_back(struct parser_weights *dw, const struct parser_batch *b, 
 		NET_HIDDEN);
 }
 
-double parser_backward(const struct parser_weights *w, struct parser_weights *dw, const struct parser_batch *b,
-	const struct analysis_word *const *lessons, struct parser_batch *d)
+double parser_backward(const struct parser_weights *w, struct parser_weights *dw,
+	const struct parser_batch *b, const struct analysis_word *const *lessons, struct parser_batch *d)
 {
 	static const int reach[NET_LAYERS] = {1, 2, 4};
 	size_t rows = (size_t)b->rows, h = rows * NET_HIDDEN;
@@ -169,19 +171,21 @@ double parser_backward(const struct parser_weights *w, struct parser_weights *dw
 	memset(d->dependent, 0, sizeof(float) * rows * NET_ARC);
 	memset(d->head, 0, sizeof(float) * rows * NET_ARC);
 	loss = losses(w, dw, b, lessons, d);
-	linear_backward(dh, dw->out, dw->out_bias, d->out, b->h[NET_LAYERS], w->out, rows, NET_HIDDEN, NET_OUT);
-	linear_backward(part, dw->dependent, dw->dependent_bias, d->dependent, b->h[NET_LAYERS], w->dependent, rows,
-		NET_HIDDEN, NET_ARC);
+	linear_backward(
+		dh, dw->out, dw->out_bias, d->out, b->h[NET_LAYERS], w->out, rows, NET_HIDDEN, NET_OUT);
+	linear_backward(part, dw->dependent, dw->dependent_bias, d->dependent, b->h[NET_LAYERS], w->dependent,
+		rows, NET_HIDDEN, NET_ARC);
 	for (size_t i = 0; i < h; i++)
 		dh[i] += part[i];
-	linear_backward(part, dw->head, dw->head_bias, d->head, b->h[NET_LAYERS], w->head, rows, NET_HIDDEN, NET_ARC);
+	linear_backward(
+		part, dw->head, dw->head_bias, d->head, b->h[NET_LAYERS], w->head, rows, NET_HIDDEN, NET_ARC);
 	for (size_t i = 0; i < h; i++)
 		dh[i] += part[i];
 	for (int l = NET_LAYERS; l-- > 0;) {
 		for (size_t i = 0; i < h; i++)
 			part[i] = b->grown[l][i] > 0 ? dh[i] : 0;
-		linear_backward(d->gathered[0], dw->layer[l], dw->layer_bias[l], part, b->gathered[l], w->layer[l], rows,
-			NET_BLOCKS * NET_HIDDEN, NET_HIDDEN);
+		linear_backward(d->gathered[0], dw->layer[l], dw->layer_bias[l], part, b->gathered[l],
+			w->layer[l], rows, NET_BLOCKS * NET_HIDDEN, NET_HIDDEN);
 		scatter(b, d->gathered[0], reach[l], dh);
 	}
 	embed_back(dw, b, dh);

@@ -8,16 +8,17 @@
 /* Uniform in +-sqrt(6 / inputs) for the matrices. */
 void parser_weights_begin(struct parser_weights *w, struct rng *r);
 
-/* Adds to dw the gradient of the loss, and returns the loss: the sum over words of the cross-entropies of role,
- * and where it has them head, relation and negation, divided by the number of words. b holds parser_forward's
- * results. lessons: what each sentence's words should be, an array a sentence; a word whose role is ROLES is not
- * learnt from. scratch is of the shape of b, its contents are lost. */
-double parser_backward(const struct parser_weights *w, struct parser_weights *dw, const struct parser_batch *b,
-	const struct analysis_word *const *lessons, struct parser_batch *scratch);
+/* Adds to dw the gradient of the loss, and returns the loss: the sum over words of the cross-entropies of
+ * role, and where it has them head, relation and negation, divided by the number of words. b holds
+ * parser_forward's results. lessons: what each sentence's words should be, an array a sentence; a word whose
+ * role is ROLES is not learnt from. scratch is of the shape of b, its contents are lost. */
+double parser_backward(const struct parser_weights *w, struct parser_weights *dw,
+	const struct parser_batch *b, const struct analysis_word *const *lessons,
+	struct parser_batch *scratch);
 
 /* A sentence to learn from. */
 struct parser_sample {
-	int n; /* words; one without is not learnt from */
+	int n;				  /* words; one without is not learnt from */
 	struct parser_features *features; /* (n) */
 	struct analysis_word *right;	  /* (n) */
 	float *vectors;			  /* (n, width) */
@@ -35,8 +36,8 @@ struct parser_course {
 	void *context;
 };
 
-/* Adam from the weights as they are, the rate falling to zero; samples in the order of r. The same bytes for any
- * number of threads. */
+/* Adam from the weights as they are, the rate falling to zero; samples in the order of r. The same bytes for
+ * any number of threads. */
 int parser_learn(struct parser_weights *w, const struct parser_sample *const *samples, size_t n,
 	const struct parser_course *course, struct rng *r, struct err *e);
 

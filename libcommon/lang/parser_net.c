@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the decoder, by the development sentences: how likely a word must be a predicate to become one for its anchor, and
- * what that counts beside the arc. */
+/* Of the decoder, by the development sentences: how likely a word must be a predicate to become one for its
+ * anchor, and what that counts beside the arc. */
 #define NET_PREDICATE_LEAST 0.02
 #define NET_PREDICATE_WEIGHT 0.5
 
@@ -46,10 +46,10 @@ void parser_parts(int width, struct parser_part parts[PARSER_PARTS])
 int parser_weights_make(struct parser_weights *w, int width, struct err *e)
 {
 	struct parser_part parts[PARSER_PARTS];
-	float **const at[PARSER_PARTS] = {&w->vector, &w->vector_bias, &w->closed, &w->role, &w->relation, &w->pause,
-		&w->layer[0], &w->layer_bias[0], &w->layer[1], &w->layer_bias[1], &w->layer[2], &w->layer_bias[2],
-		&w->out, &w->out_bias, &w->dependent, &w->dependent_bias, &w->head, &w->head_bias, &w->root,
-		&w->distance, &w->agree};
+	float **const at[PARSER_PARTS] = {&w->vector, &w->vector_bias, &w->closed, &w->role, &w->relation,
+		&w->pause, &w->layer[0], &w->layer_bias[0], &w->layer[1], &w->layer_bias[1], &w->layer[2],
+		&w->layer_bias[2], &w->out, &w->out_bias, &w->dependent, &w->dependent_bias, &w->head,
+		&w->head_bias, &w->root, &w->distance, &w->agree};
 
 	*w = (struct parser_weights){.width = width};
 	parser_parts(width, parts);
@@ -81,11 +81,11 @@ int parser_batch_make(struct parser_batch *b, int capacity, int sentences, int w
 	struct {
 		float **at;
 		size_t columns;
-	} floats[] = {{&b->x, (size_t)width}, {&b->h[0], NET_HIDDEN}, {&b->h[1], NET_HIDDEN}, {&b->h[2], NET_HIDDEN},
-		{&b->h[3], NET_HIDDEN}, {&b->gathered[0], NET_BLOCKS * NET_HIDDEN},
+	} floats[] = {{&b->x, (size_t)width}, {&b->h[0], NET_HIDDEN}, {&b->h[1], NET_HIDDEN},
+		{&b->h[2], NET_HIDDEN}, {&b->h[3], NET_HIDDEN}, {&b->gathered[0], NET_BLOCKS * NET_HIDDEN},
 		{&b->gathered[1], NET_BLOCKS * NET_HIDDEN}, {&b->gathered[2], NET_BLOCKS * NET_HIDDEN},
-		{&b->grown[0], NET_HIDDEN}, {&b->grown[1], NET_HIDDEN}, {&b->grown[2], NET_HIDDEN}, {&b->out, NET_OUT},
-		{&b->dependent, NET_ARC}, {&b->head, NET_ARC}};
+		{&b->grown[0], NET_HIDDEN}, {&b->grown[1], NET_HIDDEN}, {&b->grown[2], NET_HIDDEN},
+		{&b->out, NET_OUT}, {&b->dependent, NET_ARC}, {&b->head, NET_ARC}};
 	for (size_t i = 0; i < sizeof floats / sizeof *floats && !bad; i++)
 		bad = !(*floats[i].at = mem_zalloc(n, floats[i].columns * sizeof(float), "parser", e));
 	if (!bad)
@@ -128,7 +128,9 @@ void parser_features_take(struct parser_features *f, const struct tokens *t, con
 		f[i] = (struct parser_features){.closed = w->closed < 0 ? NET_CLOSED - 1 : w->closed,
 			.role = (int)g->role,
 			.relation = g->role == ROLE_PREDICATE ? (int)g->relation : PARSE_RELATIONS,
-			.pause = w->before ? (int)w->before : strcmp(w->text, w->lemma) ? NET_PAUSES - 1 : 0,
+			.pause = w->before		     ? (int)w->before
+				 : strcmp(w->text, w->lemma) ? NET_PAUSES - 1
+							     : 0,
 			.head = g->head};
 	}
 }
@@ -162,7 +164,8 @@ static void add_row(float *to, const float *from)
 
 static void embed(const struct parser_weights *w, struct parser_batch *b)
 {
-	linear_forward(b->h[0], b->x, w->vector, w->vector_bias, (size_t)b->rows, (size_t)w->width, NET_HIDDEN);
+	linear_forward(
+		b->h[0], b->x, w->vector, w->vector_bias, (size_t)b->rows, (size_t)w->width, NET_HIDDEN);
 	for (int r = 0; r < b->rows; r++) {
 		float *h = b->h[0] + (size_t)r * NET_HIDDEN;
 		add_row(h, w->closed + b->features[r].closed * NET_HIDDEN);
@@ -231,9 +234,11 @@ int parser_distance(int from, int to)
 	return d + most;
 }
 
-void parser_arcs(const struct parser_weights *w, const struct parser_batch *b, int sentence, int i, float *scores)
+void parser_arcs(
+	const struct parser_weights *w, const struct parser_batch *b, int sentence, int i, float *scores)
 {
-	int first = b->start[sentence], n = b->start[sentence + 1] - first, grammar = b->features[first + i].head;
+	int first = b->start[sentence], n = b->start[sentence + 1] - first,
+	    grammar = b->features[first + i].head;
 	const float *dependent = b->dependent + (size_t)(first + i) * NET_ARC;
 	const float scale = 1 / sqrtf(NET_ARC);
 
@@ -297,9 +302,10 @@ static void make_predicate(const struct parser_batch *b, int sentence, struct an
 	a->word[i].negated = out[ROLES + PARSE_RELATIONS] > 0;
 }
 
-/* Hangs each anchor on the word that is likeliest its predicate, whatever that word seemed to be by itself: an anchor
- * says that there is a predicate. */
-static void hang_anchors(const struct parser_weights *w, const struct parser_batch *b, int sentence, struct analysis *a)
+/* Hangs each anchor on the word that is likeliest its predicate, whatever that word seemed to be by itself:
+ * an anchor says that there is a predicate. */
+static void hang_anchors(
+	const struct parser_weights *w, const struct parser_batch *b, int sentence, struct analysis *a)
 {
 	float scores[TOKENS_MOST + 1];
 
@@ -330,8 +336,8 @@ static void hang_anchors(const struct parser_weights *w, const struct parser_bat
 }
 
 /* Hangs each word of these roles on the best that it may hang on. */
-static void hang(const struct parser_weights *w, const struct parser_batch *b, int sentence, struct analysis *a,
-	int wanted)
+static void hang(const struct parser_weights *w, const struct parser_batch *b, int sentence,
+	struct analysis *a, int wanted)
 {
 	float scores[TOKENS_MOST + 1];
 

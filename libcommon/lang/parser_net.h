@@ -1,11 +1,11 @@
 /* The learnt parser: what each word is, what it hangs on, and which relation it says, from the encoder's word
  * vectors, its closed-class word and what the grammar thinks of it.
  *
- *   h0 = relu(Wv x + b + E[closed] + E[grammar's role] + E[grammar's relation] + E[pause])     x: mean of the word's pieces
- *   h_{l+1} = h_l + relu(W_l [h_l(i-d), h_l(i), h_l(i+d), mean h_l] + b_l),  d = 1, 2, 4      zero outside the sentence
- *   roles, relations, negation: linear in h3
- *   arc(i,j) = (A h3_i + a) . (B h3_j + b) / sqrt K + distance[j - i] + agree [the grammar hangs i on j]
- * after Dozat and Manning (2017), "Deep biaffine attention for neural dependency parsing"; ROOT is a j of its own. */
+ *   h0 = relu(Wv x + b + E[closed] + E[grammar's role] + E[grammar's relation] + E[pause])     x: mean of the
+ * word's pieces h_{l+1} = h_l + relu(W_l [h_l(i-d), h_l(i), h_l(i+d), mean h_l] + b_l),  d = 1, 2, 4 zero
+ * outside the sentence roles, relations, negation: linear in h3 arc(i,j) = (A h3_i + a) . (B h3_j + b) / sqrt
+ * K + distance[j - i] + agree [the grammar hangs i on j] after Dozat and Manning (2017), "Deep biaffine
+ * attention for neural dependency parsing"; ROOT is a j of its own. */
 #ifndef LANG_PARSER_NET_H
 #define LANG_PARSER_NET_H
 
@@ -18,7 +18,7 @@ enum {
 	NET_HIDDEN = 96,
 	NET_ARC = 48,
 	NET_LAYERS = 3,
-	NET_BLOCKS = 4,	   /* that a layer looks at: before, here, after, mean */
+	NET_BLOCKS = 4,	    /* that a layer looks at: before, here, after, mean */
 	NET_DISTANCES = 17, /* -8 or less ... 8 or more */
 	NET_CLOSED = CLOSED_MOST + 1,
 	NET_PAUSES = 4, /* as before a word; 3: a plural */
@@ -29,15 +29,16 @@ struct parser_weights {
 	int width; /* of the encoder */
 	size_t count;
 	float *slab;
-	float *vector, *vector_bias;	      /* (H,width), (H) */
-	float *closed, *role, *relation, *pause; /* (NET_CLOSED,H), (ROLES,H), (PARSE_RELATIONS + 1,H), (NET_PAUSES,H) */
+	float *vector, *vector_bias; /* (H,width), (H) */
+	float *closed, *role, *relation,
+		*pause; /* (NET_CLOSED,H), (ROLES,H), (PARSE_RELATIONS + 1,H), (NET_PAUSES,H) */
 	float *layer[NET_LAYERS], *layer_bias[NET_LAYERS]; /* (H,4H), (H) */
-	float *out, *out_bias;		      /* (ROLES + PARSE_RELATIONS + 1, H): roles, relations, negated */
-	float *dependent, *dependent_bias;    /* (K,H), (K) */
-	float *head, *head_bias;	      /* (K,H), (K) */
-	float *root;			      /* (K) and a bias */
-	float *distance;		      /* (NET_DISTANCES) */
-	float *agree;			      /* (2): with the grammar's head; and where that is ROOT */
+	float *out, *out_bias;		   /* (ROLES + PARSE_RELATIONS + 1, H): roles, relations, negated */
+	float *dependent, *dependent_bias; /* (K,H), (K) */
+	float *head, *head_bias;	   /* (K,H), (K) */
+	float *root;			   /* (K) and a bias */
+	float *distance;		   /* (NET_DISTANCES) */
+	float *agree;			   /* (2): with the grammar's head; and where that is ROOT */
 };
 
 /* Names and shapes of the parts, in order; columns 0: a vector. */
@@ -65,9 +66,10 @@ struct parser_batch {
 	float *x;			  /* (rows,width) */
 	struct parser_features *features; /* (rows) */
 	float *keep;			  /* (rows,H): factors of dropout; NULL: none */
-	float *h[NET_LAYERS + 1], *gathered[NET_LAYERS], *grown[NET_LAYERS]; /* (rows,H), (rows,4H), (rows,H) */
-	float *out;			  /* (rows, ROLES + PARSE_RELATIONS + 1) */
-	float *dependent, *head;	  /* (rows,K) */
+	float *h[NET_LAYERS + 1], *gathered[NET_LAYERS],
+		*grown[NET_LAYERS]; /* (rows,H), (rows,4H), (rows,H) */
+	float *out;		    /* (rows, ROLES + PARSE_RELATIONS + 1) */
+	float *dependent, *head;    /* (rows,K) */
 };
 
 enum { NET_OUT = ROLES + PARSE_RELATIONS + 1 };
@@ -84,7 +86,8 @@ void parser_features_take(struct parser_features *f, const struct tokens *t, con
 void parser_forward(const struct parser_weights *w, struct parser_batch *b);
 
 /* Scores of what word i of a sentence may hang on: scores[0] ROOT, scores[1 + j] word j (n + 1). */
-void parser_arcs(const struct parser_weights *w, const struct parser_batch *b, int sentence, int i, float *scores);
+void parser_arcs(
+	const struct parser_weights *w, const struct parser_batch *b, int sentence, int i, float *scores);
 
 int parser_distance(int from, int to);
 

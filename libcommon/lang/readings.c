@@ -34,7 +34,7 @@ struct aligning {
 	struct analysis *a;
 	int word_of[READING_ANCHORS]; /* an anchor's word; -1: none yet; -2: has none */
 	char used[TOKENS_MOST];
-	int is_loose; /* a clause found no words */
+	int is_loose;				  /* a clause found no words */
 	float arcs[TOKENS_MOST][TOKENS_MOST + 1]; /* log probabilities */
 	float roles[TOKENS_MOST][ROLES], relations[TOKENS_MOST][PARSE_RELATIONS];
 };
@@ -115,30 +115,56 @@ static int is_having(const struct aligning *s, int p)
 				 !strcmp(closed_words[c].text, "without"));
 }
 
+/* After "with" or "has" a relation may be turned round ("with a lamp behind it"), which readers forget. */
+static int is_turned(const struct aligning *s, int p, enum parse_relation r)
+{
+	if (closed_inverse(r) == r || r == PARSE_INSIDE)
+		return 0;
+	while (p-- > 0)
+		if (is_having(s, p))
+			return 1;
+	return 0;
+}
+
+/* The relations that clause c may have at word p. */
+static unsigned allowed_at(const struct aligning *s, int c, int p)
+{
+	unsigned given = s->r->clause[c].relations, all = given;
+
+	for (int r = 0; r < PARSE_RELATIONS; r++)
+		if (given >> r & 1 && is_turned(s, p, (enum parse_relation)r))
+			all |= 1u << closed_inverse((enum parse_relation)r);
+	return all;
+}
+
 static double predicate_score(const struct aligning *s, int c, int p, int figure)
 {
 	double sum = 0;
+	unsigned allowed = allowed_at(s, c, p);
 
 	for (int r = 0; r < PARSE_RELATIONS; r++)
-		if (!s->r->clause[c].relations || s->r->clause[c].relations >> r & 1)
+		if (!allowed || allowed >> r & 1)
 			sum += exp(s->relations[p][r]);
 	/* "with" may stand for most */
 	if (is_having(s, p))
 		sum = fmax(sum, exp(s->relations[p][PARSE_WITH]));
 	/* a noun seldom says a relation */
-	return (s->t->word[p].closed < 0 ? -2 : 0) + fmax(s->roles[p][ROLE_PREDICATE], -7) + log(sum + 1e-4) + fmax(s->arcs[p][figure + 1], -5);
+	return (s->t->word[p].closed < 0 ? -2 : 0) + fmax(s->roles[p][ROLE_PREDICATE], -7) + log(sum + 1e-4) +
+	       fmax(s->arcs[p][figure + 1], -5);
 }
 
-/* Of those that the reading allows. That a thing holds its anchor is the rarer way to read "below" and "inside", and
- * one without a name here is none that has a name unless that is likely. */
+/* Of those that the reading allows. That a thing holds its anchor is the rarer way to read "below" and
+ * "inside", and one without a name here is none that has a name unless that is likely. */
 static enum parse_relation likeliest(const struct aligning *s, int c, int p)
 {
-	unsigned allowed = s->r->clause[c].relations;
+	unsigned allowed = allowed_at(s, c, p);
 	int best = -1;
 
 	for (int r = 0; r < PARSE_RELATIONS; r++) {
-		if ((allowed && !(allowed >> r & 1)) || (!allowed && r != PARSE_OTHER && s->relations[p][r] < logf(0.6f)) ||
-			(allowed && r == PARSE_SUPPORTS && !is_having(s, p) && s->relations[p][r] < logf(0.4f)))
+		if ((allowed && !(allowed >> r & 1)) ||
+			(!allowed && r != PARSE_OTHER && s->relations[p][r] < logf(0.6f)) ||
+			(allowed && r == PARSE_SUPPORTS && !is_having(s, p) &&
+				s->relations[p][r] < logf(0.4f)))
 			continue;
 		if (allowed && is_having(s, p) && r == PARSE_SUPPORTS)
 			return PARSE_SUPPORTS;
@@ -151,7 +177,7 @@ static enum parse_relation likeliest(const struct aligning *s, int c, int p)
 static void place_clause(struct aligning *s, int c, int figure)
 {
 	int best = -1, words[READING_ANCHORS], best_words[READING_ANCHORS] = {0};
-	double most = -15;
+	double most = -12;
 
 	for (int p = 0; p < s->t->n; p++) {
 		char taken[TOKENS_MOST] = {0};
@@ -217,7 +243,8 @@ static void fill(struct aligning *s, const struct analysis *free_analysis)
 			continue;
 		s->a->word[i] = free_analysis->word[i];
 		if (r == ROLE_TARGET && has_target && !is_noun(s, i, s->r->target))
-			s->a->word[i].role = best_role(s, i, 1u << ROLE_TARGET | 1u << ROLE_PREDICATE | 1u << ROLE_ANCHOR);
+			s->a->word[i].role =
+				best_role(s, i, 1u << ROLE_TARGET | 1u << ROLE_PREDICATE | 1u << ROLE_ANCHOR);
 		else if (r == ROLE_TARGET && !has_target)
 			s->a->word[i].role = ROLES;
 		else if (r == ROLE_ANCHOR)
@@ -234,7 +261,8 @@ void reading_align(const struct reading *r, const struct parser_weights *w, cons
 	struct analysis free_analysis;
 	double sure;
 
-	s = (struct aligning){.r = r, .w = w, .b = b, .sentence = sentence, .first = b->start[sentence], .t = t, .a = a};
+	s = (struct aligning){
+		.r = r, .w = w, .b = b, .sentence = sentence, .first = b->start[sentence], .t = t, .a = a};
 	*a = (struct analysis){.n = t->n};
 	for (int i = 0; i < t->n; i++)
 		a->word[i].head = ROOT;

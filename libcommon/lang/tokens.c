@@ -268,7 +268,8 @@ static void give_pieces(struct tokens *t, const char *text, const char *pieces)
 	}
 }
 
-void tokens_take(struct tokens *t, const char *text, const char *pieces, const char *const *known, int known_count)
+void tokens_take(
+	struct tokens *t, const char *text, const char *pieces, const char *const *known, int known_count)
 {
 	enum token_pause pause = PAUSE_NONE;
 	int at = 0, bytes;

@@ -29,11 +29,12 @@ struct tokens {
 	struct token word[TOKENS_MOST];
 };
 
-/* Takes a text apart. `pieces` are the encoder's word pieces of it with a space between, as text.safetensors has
- * them (continuations begin with "##"), or NULL. A word that is one piece is spelt right, as are the closed words and
- * those of `known` (known_count, may be NULL: a scene's vocabulary); others are repaired to one of these where one
- * slip makes it. */
-void tokens_take(struct tokens *t, const char *text, const char *pieces, const char *const *known, int known_count);
+/* Takes a text apart. `pieces` are the encoder's word pieces of it with a space between, as text.safetensors
+ * has them (continuations begin with "##"), or NULL. A word that is one piece is spelt right, as are the
+ * closed words and those of `known` (known_count, may be NULL: a scene's vocabulary); others are repaired to
+ * one of these where one slip makes it. */
+void tokens_take(
+	struct tokens *t, const char *text, const char *pieces, const char *const *known, int known_count);
 
 /* Singular of a noun ("boxes", "shelves", "mice"); others as they are. out holds TOKEN_LENGTH bytes. */
 void token_lemma(const char *word, char *out);

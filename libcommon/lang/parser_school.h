@@ -1,0 +1,29 @@
+/* The whole course of a parser: first examples whose analyses are known, then readings whose words are found
+ * by the weights learnt so far. */
+#ifndef LANG_PARSER_SCHOOL_H
+#define LANG_PARSER_SCHOOL_H
+
+#include "lang/parser_learn.h"
+#include "lang/readings.h"
+
+struct parser_school {
+	struct parser_sample *examples; /* (example_count) */
+	size_t example_count;
+	struct parser_sample *read; /* (read_count): sentences with readings; `right` is found */
+	const struct reading **readings;
+	char **texts, **pieces; /* (read_count) of these */
+	int *fold;		/* (read_count): which part they are left out with */
+	size_t read_count;
+	int epochs, rounds;
+	unsigned long long seed;
+	void (*progress)(void *context, int epoch, double loss); /* may be NULL */
+	void *context;
+};
+
+int parser_school_examples(const struct parser_school *s, struct parser_weights *w, struct err *e);
+/* Goes on from there with the readings but those of fold `without` (-1: with all), and as many examples. */
+int parser_school_readings(
+	const struct parser_school *s, struct parser_weights *w, int without, struct err *e);
+void parser_school_free(struct parser_school *s); /* samples, readings' list and folds */
+
+#endif

@@ -1,0 +1,346 @@
+#include "unit.h"
+
+#include "base/rng.h"
+#include "lang/closed.h"
+#include "lang/examples.h"
+#include "lang/parser.h"
+#include "lang/parser_learn.h"
+
+static void words(const char *text, const char *expected)
+{
+	struct tokens t;
+	char got[1024] = "";
+
+	tokens_take(&t, text, NULL, NULL, 0);
+	for (int i = 0; i < t.n; i++) {
+		strcat(got, i ? " " : "");
+		strcat(got, t.word[i].text);
+	}
+	CHECK(!strcmp(got, expected), "'%s': got '%s', expected '%s'", text, got, expected);
+}
+
+static void tokenises(void)
+{
+	words("The Red MUG.", "the red mug");
+	words("it isn't the penguin's", "it is n't the penguin 's");
+	words("wheres the one that isnt green", "where 's the one that is n't green");
+	words("it isn\xe2\x80\x99t here", "it is n't here");
+	words("left-hand T-shirt", "left hand t-shirt");
+	words("teh box behnid it", "the box behind it");
+	words("", "");
+	words(" ,.;- ", "");
+	words("\xff\xfe\x80", "\xff\xfe\x80");
+}
+
+static void closed_table_fits(void)
+{
+	CHECK(closed_count <= CLOSED_MOST, "%d closed words", closed_count);
+	for (int i = 0; i < closed_count; i++) {
+		CHECK(closed_find(closed_words[i].text) == i, "'%s' is twice in the table",
+			closed_words[i].text);
+		CHECK(strlen(closed_words[i].text) < TOKEN_LENGTH, "'%s' is too long", closed_words[i].text);
+		int has = closed_words[i].class == CLOSED_PLACE || closed_words[i].class == CLOSED_SIZE;
+		CHECK(has == (closed_words[i].relation >= 0), "'%s'", closed_words[i].text);
+	}
+}
+
+static void lemmas(void)
+{
+	static const char *const pairs[][2] = {{"boxes", "box"}, {"shelves", "shelf"}, {"mice", "mouse"},
+		{"glass", "glass"}, {"berries", "berry"}, {"bus", "bus"}, {"cups", "cup"},
+		{"dishes", "dish"}};
+	char out[TOKEN_LENGTH];
+
+	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+		token_lemma(pairs[i][0], out);
+		CHECK(!strcmp(out, pairs[i][1]), "%s gives %s", pairs[i][0], out);
+	}
+}
+
+/* Whatever comes in, a parse comes out whose indices are all within it and whose phrases make no circle. */
+static int depth_of(const struct parse *p, int phrase, int depth)
+{
+	if (depth > p->phrase_count)
+		return depth;
+	for (int i = 0; i < p->phrases[phrase].clauses.n; i++) {
+		int c = p->phrases[phrase].clauses.item[i];
+		if (c < 0 || c >= p->clause_count)
+			return 1 << 20;
+		for (int k = 0; k < p->clauses[c].anchors.n; k++) {
+			int a = p->clauses[c].anchors.item[k];
+			int below = a <= 0 || a >= p->phrase_count ? 1 << 20 : depth_of(p, a, depth + 1);
+			if (below > p->phrase_count)
+				return below;
+		}
+	}
+	return depth;
+}
+
+static void check_whole(const struct parse *p, const char *text)
+{
+	int length = (int)strlen(text);
+
+	CHECK(p->phrase_count >= 1, "'%s' has no target", text);
+	CHECK(depth_of(p, 0, 0) <= p->phrase_count, "'%s' has a circle or a wrong index", text);
+	for (int i = 0; i < p->word_count; i++)
+		CHECK(p->words[i].span.begin >= 0 && p->words[i].span.begin < p->words[i].span.end &&
+				p->words[i].span.end <= length,
+			"'%s': word %d", text, i);
+	CHECK(p->confidence >= 0 && p->confidence <= 1, "confidence %g", p->confidence);
+}
+
+static void parse_any(const struct parser *parser, const char *text, const struct parser_vectors *v)
+{
+	struct parse p;
+	struct err e = {0};
+
+	if (CHECK(!parse_sentence(&p, parser, text, v, &e), "%s", e.message))
+		check_whole(&p, text);
+	parse_free(&p);
+}
+
+static void takes_anything(void)
+{
+	static char text[20000];
+	struct parser_weights w;
+	struct parser grammar = {0}, learnt = {.weights = &w};
+	struct err e = {0};
+	struct rng r;
+	static float vectors[600 * 8];
+
+	rng_seed(&r, 3, 1);
+	CHECK(!parser_weights_make(&w, 8, &e), "%s", e.message);
+	for (int trial = 0; trial < 400; trial++) {
+		struct parser_vectors v = {.pieces = "a b c", .vectors = vectors, .count = 3, .width = 8};
+		int n = 0, count = (int)rng_below(&r, trial % 50 ? 40 : 900);
+		parser_weights_begin(&w, &r);
+		for (int i = 0; i < 24; i++)
+			vectors[i] = (float)rng_normal(&r) * 4;
+		for (int i = 0; i < count; i++) {
+			if (rng_below(&r, 6))
+				n += sprintf(text + n, "%s ",
+					closed_words[rng_below(&r, (uint32_t)closed_count)].text);
+			else
+				text[n++] = (char)(1 + rng_below(&r, 255));
+		}
+		text[n] = 0;
+		parse_any(&grammar, text, NULL);
+		parse_any(&learnt, text, &v);
+	}
+	parser_weights_free(&w);
+}
+
+/* Spaces, capitals and a stop at the end change nothing but offsets. */
+static void indifferent_to_dress(void)
+{
+	static const char *const pairs[][2] = {
+		{"the red cup left of the box", "The  Red   CUP left of the box."},
+		{"the cup that is not on the plate", "THE CUP that is not on the plate!"}};
+	const struct parser parser = {0};
+	struct err e;
+
+	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+		struct parse a, b;
+		CHECK(!parse_sentence(&a, &parser, pairs[i][0], NULL, &e) &&
+				!parse_sentence(&b, &parser, pairs[i][1], NULL, &e),
+			"parses");
+		CHECK(a.clause_count == b.clause_count && a.phrase_count == b.phrase_count, "%s",
+			pairs[i][1]);
+		for (int c = 0; c < a.clause_count && c < b.clause_count; c++)
+			CHECK(a.clauses[c].relation == b.clauses[c].relation &&
+					a.clauses[c].negated == b.clauses[c].negated,
+				"%s: clause %d", pairs[i][1], c);
+		parse_free(&a);
+		parse_free(&b);
+	}
+}
+
+/* What is said with one relation's word is said with another's too: for each pair of a word and its opposite,
+ * the turned form swaps them. */
+static void turned_round(void)
+{
+	static const struct {
+		const char *text;
+		enum parse_relation relation;
+		int negated;
+	} cases[] = {
+		{"the wug left of the dax", PARSE_LEFT, 0},
+		{"the wug right of the dax", PARSE_RIGHT, 0},
+		{"the wug with the dax on its left", PARSE_RIGHT, 0},
+		{"the wug with the dax on its right", PARSE_LEFT, 0},
+		{"the wug with the dax behind it", PARSE_FRONT, 0},
+		{"the wug with the dax in front of it", PARSE_BEHIND, 0},
+		{"the wug that has the dax on it", PARSE_SUPPORTS, 0},
+		{"the wug with the dax under it", PARSE_ABOVE, 0},
+		{"the wug on the dax", PARSE_ON, 0},
+		{"the wug not on the dax", PARSE_ON, 1},
+		{"the wug with nothing on it", PARSE_SUPPORTS, 1},
+	};
+	const struct parser parser = {0};
+	struct err e;
+
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		struct parse p;
+		if (!CHECK(!parse_sentence(&p, &parser, cases[i].text, NULL, &e), "%s", e.message))
+			continue;
+		CHECK(p.phrases[0].noun.n == 1 && !strcmp(p.words[p.phrases[0].noun.item[0]].text, "wug"),
+			"'%s': target", cases[i].text);
+		CHECK(p.phrases[0].clauses.n == 1 && p.clauses[0].relation == cases[i].relation &&
+				p.clauses[0].negated == cases[i].negated,
+			"'%s': %d clauses, %s", cases[i].text, p.phrases[0].clauses.n,
+			p.clause_count ? parse_relation_name(p.clauses[0].relation) : "none");
+		parse_free(&p);
+	}
+}
+
+static void counts_and_orders(void)
+{
+	const struct parser parser = {0};
+	struct parse p;
+	struct err e;
+
+	CHECK(!parse_sentence(&p, &parser, "the third wug from the right", NULL, &e), "parses");
+	CHECK(p.phrases[0].ordinal == 3 && p.phrases[0].from == PARSE_RIGHT && !p.clause_count,
+		"ordinal %d, %d clauses", p.phrases[0].ordinal, p.clause_count);
+	parse_free(&p);
+	CHECK(!parse_sentence(&p, &parser, "all the wugs", NULL, &e) && p.phrases[0].count == PARSE_ALL,
+		"all");
+	parse_free(&p);
+	CHECK(!parse_sentence(&p, &parser, "the larger of the two wugs", NULL, &e), "parses");
+	CHECK(p.phrases[0].count == PARSE_ONE && p.phrases[0].group == 2, "count %d group %d",
+		p.phrases[0].count, p.phrases[0].group);
+	parse_free(&p);
+}
+
+enum { WIDTH = 12 };
+
+/* The loss of a batch, and its gradient where dw is given. */
+static double loss_of(const struct parser_weights *w, struct parser_weights *dw, struct parser_batch *b,
+	const struct analysis_word *const *lessons, struct parser_batch *scratch,
+	struct parser_weights *spare)
+{
+	struct parser_weights *to = dw ? dw : spare;
+
+	parser_forward(w, b);
+	scratch->rows = b->rows;
+	return parser_backward(w, to, b, lessons, scratch);
+}
+
+/* Central differences at random parameters, in single precision: the largest wrong share of the gradient's
+ * size. */
+static void gradient_is_right(void)
+{
+	struct parser_weights w, dw, spare;
+	struct parser_batch b, scratch;
+	struct parser_sample samples[3];
+	const struct analysis_word *lessons[3];
+	static struct example x;
+	struct err e = {0};
+	struct rng r;
+	double worst = 0, size = 0;
+
+	rng_seed(&r, 5, 2);
+	CHECK(!parser_weights_make(&w, WIDTH, &e) && !parser_weights_make(&dw, WIDTH, &e) &&
+			!parser_weights_make(&spare, WIDTH, &e) &&
+			!parser_batch_make(&b, 200, 3, WIDTH, &e) &&
+			!parser_batch_make(&scratch, 200, 3, WIDTH, &e),
+		"%s", e.message);
+	parser_weights_begin(&w, &r);
+	for (int k = 0; k < 3; k++) {
+		do
+			example_make(&x, EXAMPLES_TRAIN, NULL, &r);
+		while (x.tokens.n < 6 || x.tokens.n > 40);
+		CHECK(!parser_sample_make(&samples[k], &x.tokens, &x.analysis, NULL, 0, WIDTH, &e), "%s",
+			e.message);
+		for (int i = 0; i < x.tokens.n * WIDTH; i++)
+			samples[k].vectors[i] = (float)rng_normal(&r);
+		lessons[k] = samples[k].right;
+		parser_batch_add(&b, samples[k].features, samples[k].vectors, samples[k].n, WIDTH);
+	}
+	loss_of(&w, &dw, &b, lessons, &scratch, &spare);
+	for (size_t i = 0; i < w.count; i++)
+		size += (double)dw.slab[i] * dw.slab[i];
+	size = sqrt(size);
+	/* along random directions within each part, the largest steps that single precision resolves */
+	struct parser_part parts[PARSER_PARTS];
+	size_t at = 0;
+	parser_parts(WIDTH, parts);
+	for (int k = 0; k < PARSER_PARTS; k++) {
+		size_t n = parts[k].rows * (parts[k].columns ? parts[k].columns : 1);
+		double sum = 0, step = 2e-3, along = 0, loss[2];
+		float *direction = malloc(n * sizeof *direction);
+		for (size_t i = 0; i < n; i++) {
+			direction[i] =
+				(float)rng_normal(&r) + 5 * dw.slab[at + i] / (float)(size / sqrt((double)n));
+			sum += (double)direction[i] * direction[i];
+		}
+		for (size_t i = 0; i < n; i++)
+			along += direction[i] * (double)dw.slab[at + i] / sqrt(sum);
+		for (int side = 0; side < 2; side++) {
+			for (size_t i = 0; i < n; i++)
+				w.slab[at + i] += (float)((side ? -2 : 1) * step * direction[i] / sqrt(sum));
+			loss[side] = loss_of(&w, NULL, &b, lessons, &scratch, &spare);
+		}
+		for (size_t i = 0; i < n; i++)
+			w.slab[at + i] += (float)(step * direction[i] / sqrt(sum));
+		double wrong = fabs((loss[0] - loss[1]) / (2 * step) - along);
+		CHECK(wrong < 0.02 * fabs(along) + 2e-3 * size, "%s: %g, by differences %g", parts[k].name,
+			along, (loss[0] - loss[1]) / (2 * step));
+		worst = wrong > worst ? wrong : worst;
+		free(direction);
+		at += n;
+	}
+	CHECK(size > 1e-3, "gradient %g", size);
+	for (int k = 0; k < 3; k++)
+		parser_sample_free(&samples[k]);
+	parser_batch_free(&b);
+	parser_batch_free(&scratch);
+	parser_weights_free(&w);
+	parser_weights_free(&dw);
+	parser_weights_free(&spare);
+}
+
+/* Every example is well formed and its words carry what the templates say; the two sets share no sentence
+ * form of their nouns. */
+static void examples_are_whole(void)
+{
+	static struct example x;
+	struct rng r;
+	int predicates = 0, negated = 0, anchors = 0;
+
+	rng_seed(&r, 9, 1);
+	for (int i = 0; i < 3000; i++) {
+		struct analysis again;
+		struct parse p;
+		struct err e;
+		example_make(&x, i % 2 ? EXAMPLES_TEST : EXAMPLES_TRAIN, NULL, &r);
+		again = x.analysis;
+		analysis_repair(&again);
+		CHECK(!memcmp(again.word, x.analysis.word, sizeof *again.word * (size_t)x.tokens.n),
+			"'%s' is not well formed", x.text);
+		for (int k = 0; k < x.tokens.n; k++) {
+			predicates += x.analysis.word[k].role == ROLE_PREDICATE;
+			anchors += x.analysis.word[k].role == ROLE_ANCHOR;
+			negated += x.analysis.word[k].role == ROLE_PREDICATE && x.analysis.word[k].negated;
+		}
+		if (CHECK(!parse_build(&p, &x.analysis, &x.tokens, &e), "builds"))
+			check_whole(&p, x.text);
+		parse_free(&p);
+	}
+	CHECK(predicates > 3000 && anchors > 2000 && negated > 150, "%d predicates, %d anchors, %d negated",
+		predicates, anchors, negated);
+}
+
+int main(void)
+{
+	tokenises();
+	closed_table_fits();
+	lemmas();
+	takes_anything();
+	indifferent_to_dress();
+	turned_round();
+	counts_and_orders();
+	gradient_is_right();
+	examples_are_whole();
+	return unit_end();
+}
