@@ -16,6 +16,7 @@ struct job {
 	struct synth_scene scene;
 	struct synth_detector detector;
 	struct synth_sentence *sentences;
+	struct synth_unseen_list unseen;
 	struct synth_statistics statistics;
 };
 
@@ -29,7 +30,9 @@ static int make_once(struct job *j, struct err *e)
 		return -1;
 	synth_cameras_reference(&s->cameras, right, away);
 	synth_layout_make(&layout, s->objects, s->object_count, &s->table, right, away);
-	if (synth_sentences_make(j->sentences, &layout, j->options.seed, e)) {
+	if (synth_sentences_make(j->sentences, &layout, j->options.seed, e) ||
+		synth_unseen_make(&j->unseen, s->objects, s->object_count, &s->table, &s->cameras,
+			j->options.seed, e)) {
 		synth_scene_free(s);
 		return -1;
 	}
@@ -64,6 +67,7 @@ static int write_folder(struct job *j, struct err *e)
 	struct synth_folder f = {.dir = j->cli.output,
 		.scene = &j->scene,
 		.sentences = j->sentences,
+		.unseen = &j->unseen,
 		.detector = &j->detector,
 		.statistics = &j->statistics};
 	struct cli_progress progress;
@@ -161,6 +165,7 @@ int main(int argc, char **argv)
 	if (!bad)
 		note_statistics(&j);
 	free(j.sentences);
+	synth_unseen_free(&j.unseen);
 	synth_scene_free(&j.scene);
 	return bad ? cli_fail(&j.cli, &e) : cli_done(&j.cli);
 }

@@ -2,6 +2,7 @@
 #include "base/err.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "formats/answer_scores.h"
 #include "formats/box_scores.h"
 #include "formats/score_masks.h"
 #include "formats/scores.h"
@@ -145,6 +146,28 @@ static int score_boxes(const struct cli *c, const struct paths *p, double *miou,
 	return bad;
 }
 
+/* Of all answers the share that is right goes into *right. */
+static int score_answers(
+	const struct cli *c, const struct inputs *in, const struct paths *p, double *right, struct err *e)
+{
+	struct answer_scores s;
+	struct answer_score all;
+
+	if (answer_scores_make(&s, &in->sentences, &in->truth, &in->predictions, e))
+		return -1;
+	if (s.answers.unknown)
+		cli_warn(c, "%s: %zu sentences mean an object that %s does not have", file_name(p->sentences),
+			s.answers.unknown, file_name(p->truth));
+	if (s.answers.unmatched)
+		cli_warn(c, "%s: %zu predictions have no sentence's ref and were left out",
+			file_name(p->predictions), s.answers.unmatched);
+	answer_score_sum(&all, &s.answers, ANSWER_ANY, NULL);
+	*right = all.right;
+	int bad = answer_scores_write(&s, c->output, c->json, e);
+	answer_scores_free(&s);
+	return bad;
+}
+
 static void check_paths(const struct cli *c, const struct paths *p)
 {
 	const char *all[] = {p->truth, p->predictions, p->other, p->sentences, p->whole};
@@ -166,7 +189,7 @@ int main(int argc, char **argv)
 	struct paths paths = {0};
 	double fail_under = 0, confidence = 0.95;
 	long long resamples = 0;
-	int is_partial = 0, is_csv = 0, is_boxes = 0;
+	int is_partial = 0, is_csv = 0, is_boxes = 0, is_answers = 0;
 	const struct cli_option options[] = {
 		{"truth", 0, CLI_STRING, &paths.truth, "TRUTH", "the true masks (required)", 0, 0},
 		{"predicted-views", 0, CLI_FLAG, &is_partial, NULL,
@@ -185,8 +208,10 @@ int main(int argc, char **argv)
 			"share of the resamples within an interval (default 0.95)", 0.01, 0.9999},
 		{"boxes", 0, CLI_FLAG, &is_boxes, NULL,
 			"score boxes in space, as refer-locate and gs-synth write them", 0, 0},
-		{"fail-under", 0, CLI_REAL, &fail_under, "X", "exit 1 where mIoU is below X, in 0 to 1", 0,
-			1},
+		{"answers", 0, CLI_FLAG, &is_answers, NULL,
+			"score answers to --sentences that may mean one object, several or none", 0, 0},
+		{"fail-under", 0, CLI_REAL, &fail_under, "X",
+			"exit 1 where mIoU (of --answers: what is right) is below X, in 0 to 1", 0, 1},
 		{"csv", 0, CLI_FLAG, &is_csv, NULL, "print comma-separated values instead of text", 0, 0},
 		{0},
 	};
@@ -209,6 +234,11 @@ int main(int argc, char **argv)
 		cli_usage(&c, "--json and --csv exclude each other");
 	if (is_boxes && (is_partial || paths.other || paths.sentences || paths.whole || resamples || is_csv))
 		cli_usage(&c, "--boxes goes with --truth, --json and --fail-under only");
+	if (is_answers && !paths.sentences)
+		cli_usage(&c, "--answers needs --sentences");
+	if (is_answers && (is_boxes || paths.other || paths.whole || resamples || is_csv))
+		cli_usage(&c,
+			"--answers goes with --truth, --sentences, --predicted-views, --json and --fail-under only");
 	const struct bootstrap how = {(size_t)resamples, confidence, (uint64_t)c.seed};
 	struct scores s = {.is_compared = paths.other != NULL,
 		.has_relations = paths.sentences != NULL,
@@ -218,14 +248,20 @@ int main(int argc, char **argv)
 	if (!bad && is_partial)
 		bad = score_keep_views(in.truth.masks, &in.truth.n, in.predictions.masks, in.predictions.n,
 			in.other.masks, in.other.n, &e);
-	if (!bad && !is_boxes)
+	double reached = 0;
+	if (!bad && is_answers)
+		bad = score_answers(&c, &in, &paths, &reached, &e);
+	if (!bad && !is_boxes && !is_answers)
 		bad = score(&c, &in, &paths, &s, &e) || write_scores(&c, &s,
 								is_csv	 ? SCORES_CSV
 								: c.json ? SCORES_JSON
 									 : SCORES_TEXT,
 								&e);
-	if (!bad && s.all.score.miou < fail_under)
-		bad = err_set(&e, ERR_CHECK, "mIoU %.4f is below %g", s.all.score.miou, fail_under);
+	if (!is_answers)
+		reached = s.all.score.miou;
+	if (!bad && reached < fail_under)
+		bad = err_set(&e, ERR_CHECK, "%s %.4f is below %g", is_answers ? "right" : "mIoU", reached,
+			fail_under);
 	scores_free(&s);
 	inputs_free(&in);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);

@@ -112,8 +112,8 @@ static int put_sentence(const struct run *r, size_t i, FILE *out, struct err *e)
 	const struct extent *x = &l->extent;
 	const struct box_gaussians of = {x->n, x->ids};
 	double sure = r->asked.sure ? r->asked.sure[i] : l->sure;
-	struct box_record record = {r->text.refs[r->refs[i]], r->text.objects[r->refs[i]], x->n ? sure : 0,
-		!x->n, x->aligned, x->turned};
+	struct box_record record = {r->text.refs[r->refs[i]], (char *)text_object(&r->text, r->refs[i]),
+		x->n ? sure : 0, !x->n, x->aligned, x->turned};
 
 	move(&record.aligned, r->scene.offset);
 	move(&record.turned, r->scene.offset);

@@ -187,7 +187,7 @@ static int put_view(void *data, size_t view, struct err *e)
 		if (r->asked.sure)
 			score = rle_area(&from->mask) ? r->asked.sure[i] : 0;
 		const struct mask_record record = {r->views[view].name, r->text.refs[sentence],
-			r->text.objects[sentence], score, from->mask, from->visible};
+			(char *)text_object(&r->text, sentence), score, from->mask, from->visible};
 		bad = masks_put(r->out.stream, &record, e);
 	}
 	for (size_t k = 0; k < r->asked.answers; k++)

@@ -280,7 +280,10 @@ static int check_sentences(struct check *c, const char *path, struct err *e)
 		return -1;
 	for (size_t i = 0; i < s.n && !bad; i++) {
 		test += s.items[i].split == SPLIT_TEST;
-		bad = names_add(&objects, s.items[i].object, e);
+		if (*s.items[i].object)
+			bad = names_add(&objects, s.items[i].object, e);
+		for (size_t k = 0; k < s.items[i].object_count && !bad; k++)
+			bad = names_add(&objects, s.items[i].objects[k], e);
 	}
 	c->kind = "sentences";
 	add_fact(c, "training sentences", (long long)(s.n - test));

@@ -52,6 +52,33 @@ fail:
 	return NULL;
 }
 
+char **metalist_parse(const char *value, size_t *n, struct err *e)
+{
+	cJSON *list = cJSON_Parse(value);
+	char **strings = NULL;
+
+	*n = 0;
+	if (!list || !cJSON_IsArray(list)) {
+		err_set(e, ERR_FORMAT, "not a JSON list");
+		goto done;
+	}
+	strings = mem_zalloc((size_t)cJSON_GetArraySize(list) + 1, sizeof *strings, "names", e);
+	for (const cJSON *item = list->child; item && strings; item = item->next) {
+		const char *s = item->valuestring;
+		if (!cJSON_IsString(item) || utf8_check(s, strlen(s)) < strlen(s))
+			err_set(e, ERR_FORMAT, "entry %zu is not a UTF-8 string", *n);
+		else if ((strings[*n] = mem_strdup(s, e)) != NULL) {
+			++*n;
+			continue;
+		}
+		metalist_free(strings, *n);
+		strings = NULL;
+	}
+done:
+	cJSON_Delete(list);
+	return strings;
+}
+
 char *metalist_print(char *const *strings, size_t n)
 {
 	cJSON *list = cJSON_CreateArray();

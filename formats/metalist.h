@@ -18,6 +18,10 @@ void metalist_free(char **strings, size_t n);
 /* n strings as such a value, to be freed; NULL when memory is out. */
 char *metalist_print(char *const *strings, size_t n);
 
+/* Such a value taken apart, whatever its length: NULL with *e (ERR_FORMAT: no list of UTF-8 strings). Of no
+ * strings it is not NULL. */
+char **metalist_parse(const char *value, size_t *n, struct err *e);
+
 /* No two are the same: 0, or -1 with *e. */
 int metalist_check_unique(char *const *strings, size_t n, const char *key, const char *path, struct err *e);
 

@@ -11,7 +11,12 @@ static void sentence_free(struct sentence *s)
 {
 	for (size_t i = 0; i < s->view_count; i++)
 		free(s->views[i]);
+	for (size_t i = 0; i < s->object_count; i++)
+		free(s->objects[i]);
 	free(s->views);
+	free(s->objects);
+	free(s->view);
+	free(s->kind);
 	free(s->ref);
 	free(s->object);
 	free(s->text);
@@ -41,26 +46,68 @@ static char *copy_string(
 	return mem_strdup(value, e);
 }
 
-static int read_views(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+/* A list of strings that may be absent or null: then *strings stays NULL. */
+static int read_list(char ***strings, size_t *n, const struct jsonl *j, const cJSON *object, const char *key,
+	struct err *e)
 {
-	const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, "views"), *view;
+	const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, key), *item;
 
 	if (!list || cJSON_IsNull(list))
 		return 0;
 	if (!cJSON_IsArray(list))
-		return jsonl_err(j, e, "key 'views' is not a list");
-	s->views = mem_zalloc((size_t)cJSON_GetArraySize(list), sizeof *s->views, j->path, e);
-	if (!s->views)
+		return jsonl_err(j, e, "key '%s' is not a list", key);
+	*strings = mem_zalloc((size_t)cJSON_GetArraySize(list), sizeof **strings, j->path, e);
+	if (!*strings)
 		return -1;
-	cJSON_ArrayForEach(view, list)
+	cJSON_ArrayForEach(item, list)
 	{
-		if (!cJSON_IsString(view))
-			return jsonl_err(j, e, "key 'views' holds something other than strings");
-		s->views[s->view_count] = copy_string(j, "views", view->valuestring, 0, e);
-		if (!s->views[s->view_count])
+		if (!cJSON_IsString(item))
+			return jsonl_err(j, e, "key '%s' holds something other than strings", key);
+		(*strings)[*n] = copy_string(j, key, item->valuestring, 0, e);
+		if (!(*strings)[*n])
 			return -1;
-		s->view_count++;
+		++*n;
 	}
+	return 0;
+}
+
+static int read_objects(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+{
+	if (read_list(&s->objects, &s->object_count, j, object, "objects", e))
+		return -1;
+	s->has_objects = s->objects != NULL;
+	for (size_t i = 0; i < s->object_count; i++)
+		for (size_t k = 0; k < i; k++)
+			if (!strcmp(s->objects[i], s->objects[k]))
+				return jsonl_err(j, e, "key 'objects' names '%s' twice", s->objects[i]);
+	return 0;
+}
+
+/* The name of the target: where it is not given, that of the only object. What teaches has one. */
+static int read_target(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+{
+	int is_free = s->has_objects && (s->object_count == 1 || s->split == SPLIT_TEST);
+	const char *target = s->object_count == 1 ? s->objects[0] : "";
+	int got = jsonl_string(j, object, "object", !is_free, &target, e);
+
+	if (got < 0)
+		return -1;
+	if (got > 0 && s->object_count == 1 && strcmp(target, s->objects[0]))
+		return jsonl_err(
+			j, e, "key 'object' is '%s', but the one of 'objects' '%s'", target, s->objects[0]);
+	s->object = copy_string(j, "object", target, !got, e);
+	return s->object ? 0 : -1;
+}
+
+/* A name that may be absent or null: then *to stays NULL. */
+static int read_name(char **to, const struct jsonl *j, const cJSON *object, const char *key, struct err *e)
+{
+	const char *name = NULL;
+
+	if (jsonl_string(j, object, key, 0, &name, e) < 0)
+		return -1;
+	if (name && !(*to = copy_string(j, key, name, 0, e)))
+		return -1;
 	return 0;
 }
 
@@ -75,22 +122,26 @@ static int has_nul_escape(const char *line)
 
 static int read_one(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
 {
-	const char *ref, *target, *text, *split = "train";
+	const char *ref, *text, *split = "train";
 
 	if (has_nul_escape(j->line))
 		return jsonl_err(j, e, "a NUL character (\\u0000) in a string");
 	if (jsonl_string(j, object, "ref", 1, &ref, e) < 0 ||
-		jsonl_string(j, object, "object", 1, &target, e) < 0 ||
-		jsonl_string(j, object, "text", 1, &text, e) < 0 ||
 		jsonl_string(j, object, "split", 0, &split, e) < 0)
 		return -1;
 	if (strcmp(split, "train") && strcmp(split, "test"))
 		return jsonl_err(j, e, "key 'split' is '%s', not 'train' or 'test'", split);
 	s->split = !strcmp(split, "test") ? SPLIT_TEST : SPLIT_TRAIN;
 	s->ref = copy_string(j, "ref", ref, 0, e);
-	s->object = s->ref ? copy_string(j, "object", target, 0, e) : NULL;
-	s->text = s->object ? copy_string(j, "text", text, 1, e) : NULL;
-	return s->text ? read_views(s, j, object, e) : -1;
+	if (!s->ref || read_objects(s, j, object, e) || read_target(s, j, object, e) ||
+		jsonl_string(j, object, "text", 1, &text, e) < 0)
+		return -1;
+	s->text = copy_string(j, "text", text, 1, e);
+	return !s->text || read_list(&s->views, &s->view_count, j, object, "views", e) ||
+			       read_name(&s->view, j, object, "view", e) ||
+			       read_name(&s->kind, j, object, "kind", e)
+		       ? -1
+		       : 0;
 }
 
 struct ref_place {

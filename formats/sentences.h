@@ -8,8 +8,13 @@
 #include <stddef.h>
 
 struct sentence {
-	char *ref;		 /* unique in the file */
-	char *object;		 /* what the sentences of one target share */
+	char *ref;	     /* unique in the file */
+	char *object;	     /* what the sentences of one target share; "" where several are meant, or none */
+	int has_objects;     /* 1: it says which objects it means */
+	size_t object_count; /* of those; 0: it means nothing that is there */
+	char **objects;
+	char *view;		 /* the view whose picture it is said of; NULL: of no one picture */
+	char *kind;		 /* what is hard about it ("negation"); NULL: not said */
 	char *text;		 /* UTF-8 */
 	enum camera_split split; /* "train" (default) or "test" */
 	size_t view_count;	 /* 0: every view */

@@ -6,6 +6,7 @@
 #include "formats/masks.h"
 #include "formats/ply.h"
 #include "formats/png.h"
+#include "formats/synth_unseen.h"
 #include "synth/boxes.h"
 #include "synth/outline.h"
 #include "synth/truth.h"
@@ -112,6 +113,8 @@ static int write_test_views(const struct synth_folder *f, struct err *e)
 int synth_folder_begin(struct synth_folder *f, struct err *e)
 {
 	return name_photographs(f, e) || write_model(f, e) || write_sentences(f, e) ||
+			       synth_unseen_files(
+				       f->dir, f->unseen, f->scene->objects, &f->scene->cameras, e) ||
 			       write_test_views(f, e) || write_boxes(f, e) ||
 			       open_in(&f->candidates, f->dir, "candidates.jsonl", e) ||
 			       open_in(&f->truth, f->dir, "truth.jsonl", e) ||

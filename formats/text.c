@@ -14,6 +14,9 @@ void text_free(struct text *t)
 	metalist_free(t->objects, t->n);
 	metalist_free(t->texts, t->n);
 	metalist_free(t->pieces, t->n);
+	metalist_free(t->object_lists, t->n);
+	metalist_free(t->views, t->n);
+	metalist_free(t->kinds, t->n);
 	free(t->offsets);
 	free(t->words);
 	free(t->sentences);
@@ -51,6 +54,20 @@ int text_mark(const struct text *t, const char *list, char *chosen, struct list_
 		chosen[i] = 1;
 	}
 	return 0;
+}
+
+const char *text_object(const struct text *t, size_t sentence)
+{
+	return *t->objects[sentence] ? t->objects[sentence] : NULL;
+}
+
+char **text_object_list(const struct text *t, size_t sentence, size_t *n, int *has, struct err *e)
+{
+	const char *list = t->object_lists ? t->object_lists[sentence] : "";
+
+	*n = 0;
+	*has = *list != 0;
+	return metalist_parse(*has ? list : "[]", n, e);
 }
 
 static int read_splits(struct text *t, const struct safetensors *st, struct err *e)
@@ -125,6 +142,31 @@ static int read_tensors(struct text *t, const struct safetensors *st, struct err
 			    : -1;
 }
 
+/* A list that may not be there: then *to stays NULL. */
+static int read_more(
+	char ***to, const struct text *t, const struct safetensors *st, const char *key, struct err *e)
+{
+	if (safetensors_meta(st, key) && !(*to = metalist_read(st, key, t->n, "sentences", e)))
+		return -1;
+	return 0;
+}
+
+static int check_lists(const struct text *t, const char *path, struct err *e)
+{
+	for (size_t i = 0; t->object_lists && i < t->n; i++) {
+		size_t n;
+		struct err own;
+		char **names = *t->object_lists[i] ? metalist_parse(t->object_lists[i], &n, &own) : NULL;
+		if (!names && *t->object_lists[i])
+			return err_set(e, ERR_FORMAT,
+				"%s: metadata 'object_lists': entry %zu is not a JSON list of names", path,
+				i);
+		if (names)
+			metalist_free(names, n);
+	}
+	return 0;
+}
+
 static int read_names(struct text *t, const struct safetensors *st, struct err *e)
 {
 	t->refs = metalist_read(st, "refs", t->n, "sentences", e);
@@ -135,6 +177,10 @@ static int read_names(struct text *t, const struct safetensors *st, struct err *
 	if (safetensors_meta(st, "pieces") &&
 		(!(t->pieces = metalist_read(st, "pieces", t->n, "sentences", e)) ||
 			metalist_check_pieces(t->pieces, t->offsets, t->n, st->path, e)))
+		return -1;
+	if (read_more(&t->object_lists, t, st, "object_lists", e) ||
+		read_more(&t->views, t, st, "views", e) || read_more(&t->kinds, t, st, "kinds", e) ||
+		check_lists(t, st->path, e))
 		return -1;
 	return metalist_check_unique(t->refs, t->n, "refs", st->path, e);
 }
@@ -184,23 +230,27 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 			.shape = {n, t->width},
 			.data = t->sentences},
 	};
-	char *refs = metalist_print(t->refs, t->n), *objects = metalist_print(t->objects, t->n);
-	char *texts = metalist_print(t->texts, t->n), *splits = print_splits(t, e);
-	char *pieces = t->pieces ? metalist_print(t->pieces, t->n) : NULL;
-	int bad;
+	/* In the order of formats/text.md; those that are NULL are left out. */
+	char **const lists[] = {
+		t->refs, t->objects, t->texts, NULL, t->pieces, t->object_lists, t->views, t->kinds};
+	static const char *const keys[] = {
+		"refs", "objects", "texts", "splits", "pieces", "object_lists", "views", "kinds"};
+	enum { LISTS = sizeof keys / sizeof *keys, SPLITS = 3, FIXED = 5 };
+	struct st_meta meta[FIXED + LISTS] = {{"format", "refer.text"}, {"version", "1"},
+		{"tool", "text-encode"}, {"options", options}, {"seed", "0"}};
+	char *printed[LISTS] = {0};
+	int used = FIXED, bad = 0;
 
-	if (refs && objects && texts && splits && (pieces || !t->pieces)) {
-		const struct st_meta meta[] = {{"format", "refer.text"}, {"version", "1"},
-			{"tool", "text-encode"}, {"options", options}, {"seed", "0"}, {"refs", refs},
-			{"objects", objects}, {"texts", texts}, {"splits", splits}, {"pieces", pieces}};
-		bad = safetensors_write(path, tensors, 3, meta, sizeof meta / sizeof *meta - !pieces, e);
-	} else {
-		bad = err_set(e, ERR_SYSTEM, "%s: out of memory", path);
+	for (int i = 0; i < LISTS && !bad; i++) {
+		if (i != SPLITS && !lists[i])
+			continue;
+		printed[i] = i == SPLITS ? print_splits(t, e) : metalist_print(lists[i], t->n);
+		if (!printed[i])
+			bad = err_set(e, ERR_SYSTEM, "%s: out of memory", path);
+		meta[used++] = (struct st_meta){keys[i], printed[i]};
 	}
-	free(refs);
-	free(objects);
-	free(texts);
-	free(splits);
-	free(pieces);
-	return bad;
+	bad = bad || safetensors_write(path, tensors, 3, meta, (size_t)used, e);
+	for (int i = 0; i < LISTS; i++)
+		free(printed[i]);
+	return bad ? -1 : 0;
 }

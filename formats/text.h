@@ -14,10 +14,15 @@ struct text {
 	int64_t *offsets; /* (n+1): sentence r has words offsets[r] to offsets[r+1] */
 	float *words;	  /* (offsets[n], width), [CLS] and [SEP] left out */
 	float *sentences; /* (n, width), mean of the words; zero for a sentence without words */
-	char **refs, **objects, **texts;
+	char **refs, **objects, **texts; /* objects: "" where several are meant, or none */
 	char **pieces; /* (n) word pieces with a space between, one for each word; NULL where the file has
 			  none */
 	enum camera_split *splits;
+	/* What sentences that say more than their object's name say (formats/sentences.md). (n) each, NULL
+	 * where no sentence of the file says it. */
+	char **object_lists; /* a JSON list of the names of the objects meant; "" where the sentence has none
+			      */
+	char **views, **kinds; /* "" where the sentence has none */
 };
 
 int text_read(struct text *t, const char *path, struct err *e);
@@ -25,6 +30,13 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 /* sentences from words. ERR_FORMAT, with the ref, where one is not finite. */
 int text_take_means(struct text *t, struct err *e);
 void text_free(struct text *t);
+
+/* The name that a sentence's masks and boxes go by; NULL where it means several objects or none. */
+const char *text_object(const struct text *t, size_t sentence);
+
+/* The names in object_lists of a sentence; *n is their number. metalist_free the result. NULL with *e where
+ * memory is out; *has 0 where the sentence has no such list. */
+char **text_object_list(const struct text *t, size_t sentence, size_t *n, int *has, struct err *e);
 
 /* Sets chosen[r] (n) to 1 for the refs in a comma-separated list. 0, or -1 and *unknown the first that no
  * sentence has. */

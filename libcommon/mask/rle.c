@@ -277,6 +277,34 @@ size_t rle_intersection(const struct rle *a, const struct rle *b)
 	return both;
 }
 
+int rle_unite(struct rle *to, const struct rle *a, const struct rle *b, struct err *e)
+{
+	size_t i = 0, j = 0;
+	uint64_t end_a = 0, end_b = 0, at = 0;
+
+	if (alloc_runs(to, a->n + b->n + 1, a->height, a->width, e))
+		return -1;
+	to->n = 1;
+	to->runs[0] = 0;
+	while (i < a->n || j < b->n) {
+		if (end_a <= end_b && i < a->n)
+			end_a += a->runs[i++];
+		else if (j < b->n)
+			end_b += b->runs[j++];
+		else
+			break;
+		uint64_t end = end_a < end_b ? end_a : end_b;
+		if (end <= at)
+			continue;
+		/* A run is foreground where their number is even. */
+		if ((!(i % 2) || !(j % 2)) != !(to->n % 2))
+			to->runs[to->n++] = 0;
+		to->runs[to->n - 1] += (uint32_t)(end - at);
+		at = end;
+	}
+	return 0;
+}
+
 double rle_iou(const struct rle *a, const struct rle *b)
 {
 	size_t both = rle_intersection(a, b), either = rle_area(a) + rle_area(b) - both;

@@ -39,6 +39,8 @@ char *rle_to_string(const struct rle *r, struct err *e);
 size_t rle_area(const struct rle *r);
 /* |a and b|; both must have the same size. */
 size_t rle_intersection(const struct rle *a, const struct rle *b);
+/* a or b, of the same size. `to` is neither of them. */
+int rle_unite(struct rle *to, const struct rle *a, const struct rle *b, struct err *e);
 /* Intersection over union; two empty masks give 1. */
 double rle_iou(const struct rle *a, const struct rle *b);
 

@@ -108,9 +108,9 @@ interrupted() {
 @test "the folder holds what formats/synth.md says" {
 	small -o out
 	[ "$(cd out && find . -type f | LC_ALL=C sort | tr '\n' ' ')" = "./boxes.jsonl ./candidates.jsonl ./images/view_000.png \
-./images/view_001.png ./images/view_002.png ./images/view_003.png ./images/view_004.png ./point_cloud.ply \
-./sentences.jsonl ./sparse/0/cameras.txt ./sparse/0/images.txt ./sparse/0/points3D.txt ./statistics.json ./test-views \
-./truth.jsonl ./whole.jsonl " ]
+./images/view_001.png ./images/view_002.png ./images/view_003.png ./images/view_004.png ./parses.unseen.jsonl \
+./point_cloud.ply ./sentences.jsonl ./sparse/0/cameras.txt ./sparse/0/images.txt ./sparse/0/points3D.txt ./statistics.json ./test-views \
+./truth.jsonl ./unseen.jsonl ./whole.jsonl " ]
 	[ "$(cat out/test-views)" = view_004 ]
 	[ "$(wc -l <out/sentences.jsonl)" = 40 ]
 	[ "$(jq -r .split out/sentences.jsonl | sort | uniq -c | xargs)" = "8 test 32 train" ]
@@ -169,10 +169,43 @@ interrupted() {
 	[ "$(hash_of three)" = "$(hash_of four)" ]
 }
 
+@test "the named scenes are those that they were before there was an unseen split" {
+	local scene sum
+	while read -r scene sum; do
+		"$BIN/gs-synth" --scene $scene --seed 81 --views 6 --size 64x48 --gaussians 3000 -o $scene
+		[ "$(cd $scene && cat sentences.jsonl candidates.jsonl truth.jsonl test-views sparse/0/images.txt | sha256sum)" = "$sum  -" ]
+	done <<-END
+	diner 69128bb5878afb660c04ef35ea002d937b62950023aadf7e248b9e8c3037a26c
+	toys 04e584da2ba76beddec76ea34390c65258ba2b569a426dffd77554d265b40f08
+	tea 0ecc3236fe173e8507c7f6e2d4120c4007f87bfd9803e9e3f2504cb9865b93e2
+	kitchen f3a9ea77bfa8cb1f67a91f30ba9d6cca3cb03a841f090826fbc3dac5942446ab
+	END
+}
+
+@test "unseen sentences: kinds, targets among the objects, views among the test views, a parse for each" {
+	small --scene tea --views 20 -o out
+	"$BIN/gs-check" out/unseen.jsonl
+	[ "$(jq -r .kind out/unseen.jsonl | sort -u | xargs)" = \
+		"absent chatty comparative function negation ordinal plain several two-hop view" ]
+	jq -r '.objects[]' out/unseen.jsonl | sort -u >named
+	[ -z "$(comm -23 named <(jq -r .object out/boxes.jsonl | sort))" ]
+	jq -r '.view // empty' out/unseen.jsonl | sort -u >views
+	[ -s views ]
+	[ -z "$(comm -23 views <(tr , '\n' <out/test-views | sort))" ]
+	jq -se 'all(.[]; .split == "test" and (.object == (if (.objects | length) == 1 then .objects[0] else null end)) and
+		((.objects == []) == (.kind == "absent")) and ((.view != null) == (.kind == "view")))' out/unseen.jsonl >/dev/null
+	diff <(jq -r .ref out/unseen.jsonl) <(jq -r .ref out/parses.unseen.jsonl)
+	jq -se 'all(.[]; .target and (.clauses | type == "array") and has("viewpoint") and has("count")) and
+		any(.[]; .ordinal) and any(.[]; .except) and any(.[].clauses[]; .negated) and any(.[].clauses[].anchors[]; .clauses != [])' \
+		out/parses.unseen.jsonl >/dev/null
+	# none of the sentences is one of the others
+	[ -z "$(comm -12 <(jq -r '.text | ascii_downcase' out/unseen.jsonl | sort -u) <(jq -r .text out/sentences.jsonl | sort -u))" ]
+}
+
 @test "another seed gives another scene" {
 	small --seed 7 -o one
 	small --seed 8 -o two
-	for file in point_cloud.ply sparse/0/images.txt sentences.jsonl truth.jsonl whole.jsonl candidates.jsonl statistics.json \
+	for file in point_cloud.ply sparse/0/images.txt sentences.jsonl unseen.jsonl parses.unseen.jsonl truth.jsonl whole.jsonl candidates.jsonl statistics.json \
 		images/view_000.png; do
 		differ one/$file two/$file
 	done
@@ -182,6 +215,7 @@ interrupted() {
 	small -o one
 	small --gaussians 4000 -o two
 	cmp one/sentences.jsonl two/sentences.jsonl
+	cmp one/unseen.jsonl two/unseen.jsonl
 	cmp one/sparse/0/images.txt two/sparse/0/images.txt
 	differ one/point_cloud.ply two/point_cloud.ply
 }

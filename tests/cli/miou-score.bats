@@ -434,3 +434,86 @@ make_scene() {
 	[ "$(timeout 20 "$BIN/miou-score" --json --truth t.jsonl p.jsonl | jq .pairs)" = 59999 ]
 	[ "$(cat t.jsonl w.jsonl | timeout 20 "$BIN/miou-score" --json --predicted-views --truth - w.jsonl | jq .pairs)" = 30000 ]
 }
+
+# Two objects beside each other in v1, the cup alone in v2; a sentence for each number of targets.
+answers() {
+	cat >at.jsonl <<-END
+	{"view":"v1","object":"cup","segmentation":{"size":[1,8],"counts":[0,4,4]}}
+	{"view":"v1","object":"plate","segmentation":{"size":[1,8],"counts":[4,4]}}
+	{"view":"v2","object":"cup","segmentation":$four}
+	{"view":"v2","object":"plate","segmentation":$none}
+	END
+	cat >as.jsonl <<-END
+	{"ref":"one","object":"plate","text":"the plate","split":"test"}
+	{"ref":"both","objects":["cup","plate"],"text":"both","split":"test","kind":"several"}
+	{"ref":"fork","objects":[],"text":"the fork","split":"test","kind":"absent"}
+	{"ref":"here","objects":["cup"],"text":"the left one","split":"test","kind":"view","view":"v2"}
+	END
+	cat >ap.jsonl <<-END
+	{"view":"v1","ref":"one","segmentation":{"size":[1,8],"counts":[4,4]}}
+	{"view":"v1","ref":"both","segmentation":{"size":[1,8],"counts":[0,5,3]}}
+	{"view":"v2","ref":"both","segmentation":$four}
+	{"view":"v1","ref":"fork","segmentation":$none}
+	{"view":"v2","ref":"fork","segmentation":$two}
+	{"view":"v1","ref":"here","segmentation":$two}
+	END
+}
+
+@test "--answers: one, several and none, by kind" {
+	answers
+	run --separate-stderr "$BIN/miou-score" --answers --sentences as.jsonl --truth at.jsonl ap.jsonl
+	[ "$status" -eq 0 ]
+	[ -z "$stderr" ]
+	# "both" in v1: 5 of 8 pixels, the cup covered, a quarter of the plate, which is not more than that
+	diff - <(echo "$output") <<-END
+	pairs     right      mIoU   refused   F1@0.25    F1@0.5  means
+	    6   50.00 %   60.42 %   16.67 %   61.11 %   61.11 %  all
+	    2   50.00 %   50.00 %    0.00 %   50.00 %   50.00 %  one
+	    2   50.00 %   81.25 %    0.00 %   83.33 %   83.33 %  several
+	    2   50.00 %   50.00 %   50.00 %   50.00 %   50.00 %  none
+
+	pairs     right      mIoU   refused   F1@0.25    F1@0.5  kind
+	    1  100.00 %  100.00 %    0.00 %  100.00 %  100.00 %  (unknown)
+	    2   50.00 %   50.00 %   50.00 %   50.00 %   50.00 %  absent
+	    2   50.00 %   81.25 %    0.00 %   83.33 %   83.33 %  several
+	    1    0.00 %    0.00 %    0.00 %    0.00 %    0.00 %  view
+
+	missing           1
+	out of sight      1
+	END
+	[ "$("$BIN/miou-score" --answers --json --sentences as.jsonl --truth at.jsonl ap.jsonl | jq -c '[.all.pairs,.none.refused,.several.miou,.kinds.view.missing,.out_of_sight]')" = '[6,0.5,0.8125,1,1]' ]
+}
+
+@test "--answers: the order of the files does not matter, nor threads or names in another alphabet" {
+	answers
+	"$BIN/miou-score" --answers --json --sentences as.jsonl --truth at.jsonl ap.jsonl >one
+	"$BIN/miou-score" --answers --json --threads 7 --sentences as.jsonl --truth <(tac at.jsonl) <(tac ap.jsonl) >two
+	cmp one two
+	sed -i 's/"cup"/"чашка"/; s/"plate"/"Ω"/' at.jsonl as.jsonl
+	sed -i 's/\["cup","plate"\]/["чашка","Ω"]/; s/,"plate"\]/,"Ω"]/' as.jsonl
+	"$BIN/miou-score" --answers --json --sentences as.jsonl --truth at.jsonl ap.jsonl >three
+	cmp one three
+}
+
+@test "--answers: warnings, --fail-under, and what does not go with it" {
+	answers
+	run --separate-stderr "$BIN/miou-score" --answers --sentences <(sed 's/\["cup"\]/["mug"]/' as.jsonl; echo) --truth at.jsonl \
+		<(cat ap.jsonl; echo "{\"view\":\"v1\",\"ref\":\"x\",\"segmentation\":$two}")
+	[ "$status" -eq 0 ]
+	[[ "${stderr_lines[0]}" == *": 1 sentences mean an object that at.jsonl does not have" ]]
+	[[ "${stderr_lines[1]}" == *": 1 predictions have no sentence's ref and were left out" ]]
+	run --separate-stderr "$BIN/miou-score" --answers --fail-under 0.6 --sentences as.jsonl --truth at.jsonl ap.jsonl
+	[ "$status" -eq 1 ]
+	[ "$stderr" = "miou-score: right 0.5000 is below 0.6" ]
+	run "$BIN/miou-score" --answers --truth at.jsonl ap.jsonl
+	[ "$status" -eq 2 ]
+	[ "${lines[0]}" = "miou-score: --answers needs --sentences" ]
+	run "$BIN/miou-score" --answers --csv --sentences as.jsonl --truth at.jsonl ap.jsonl
+	[ "$status" -eq 2 ]
+	[ "${lines[0]}" = "miou-score: --answers goes with --truth, --sentences, --predicted-views, --json and --fail-under only" ]
+	echo '{"ref":"x","objects":["mug"],"text":"mug","split":"test"}' >nothing.jsonl
+	run --separate-stderr "$BIN/miou-score" --answers --sentences nothing.jsonl --truth at.jsonl ap.jsonl
+	[ "$status" -eq 3 ]
+	[ "$stderr" = "miou-score: at.jsonl: shows nothing that a sentence means: there is nothing to score" ]
+	[ -z "$output" ]
+}

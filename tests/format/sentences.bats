@@ -61,6 +61,37 @@ refuses() {
 	refuses "3: key 'views' is empty" '{"ref":"a","object":"o","text":"t","views":[""]}'
 }
 
+@test "several objects, one, or none, the view it is said of and its kind" {
+	printf '%s\n' '{"ref":"a","objects":["cup","dish"],"text":"both","split":"test","kind":"several"}' \
+		'{"ref":"b","objects":[],"text":"the fork","split":"test","view":"v1"}' '{"ref":"c","objects":["cup"],"text":"cup"}' \
+		'{"ref":"d","object":"cup","objects":null,"text":"cup","view":null,"kind":null}' >x
+	says 0 'x: ok: sentences, 2 training sentences, 2 test sentences, 2 objects' "$BIN/gs-check" x
+	"$BIN/text-encode" --model "$MODEL" -o out x
+	[ "$(head -c 4000 out | strings | grep -o '"objects":"[^ ]*\]","texts"' | head -n 1)" = \
+		'"objects":"[\"\",\"\",\"cup\",\"cup\"]","texts"' ]
+	[ "$(head -c 4000 out | strings | grep -c '"kinds":"\[\\"several')" = 1 ]
+}
+
+@test "sentences of one object and nothing more are encoded without a word of objects, views and kinds" {
+	echo '{"ref":"a","object":"cup","text":"red cup","views":["v1"]}' >x
+	"$BIN/text-encode" --model "$MODEL" -o out x
+	[ "$(head -c 4000 out | strings | grep -c -e object_lists -e '"kinds"' -e '"views"')" = 0 ]
+}
+
+@test "objects, view and kind" {
+	refuses "3: key 'objects' is not a list" '{"ref":"a","objects":"o","text":"t"}'
+	refuses "3: key 'objects' holds something other than strings" '{"ref":"a","objects":[1],"text":"t"}'
+	refuses "3: key 'objects' is empty" '{"ref":"a","objects":[""],"text":"t"}'
+	refuses "3: key 'objects' names 'o' twice" '{"ref":"a","objects":["o","p","o"],"text":"t"}'
+	refuses "3: key 'object' is 'x', but the one of 'objects' 'o'" '{"ref":"a","object":"x","objects":["o"],"text":"t"}'
+	refuses "3: key 'object' is missing" '{"ref":"a","objects":["o","p"],"text":"t","split":"train"}'
+	refuses "3: key 'object' is missing" '{"ref":"a","objects":[],"text":"t"}'
+	refuses "3: key 'view' is not a string" '{"ref":"a","object":"o","text":"t","view":1}'
+	refuses "3: key 'view' is empty" '{"ref":"a","object":"o","text":"t","view":""}'
+	refuses "3: key 'kind' is empty" '{"ref":"a","object":"o","text":"t","kind":""}'
+	refuses "3: key 'kind' is not UTF-8 at byte 1" "$(printf '{"ref":"a","object":"o","text":"t","kind":"\xff"}')"
+}
+
 @test "a ref twice: the first line that repeats one is named" {
 	refuses "4: ref 'r1' is already on line 1" '{"ref":"a","object":"o","text":"t"}' '{"ref":"r1","object":"o","text":"t"}' \
 		'{"ref":"a","object":"o","text":"t"}'

@@ -75,3 +75,12 @@ with() {
 	refuses "metadata 'pieces': entry 0 has 1 pieces for 2 words" "$META,\"pieces\":\"[\\\"ab\\\",\\\"\\\"]\"" "$TENSORS" $OFFSETS$REST
 	refuses "metadata 'pieces' has 1 entries for 2 sentences" "$META,\"pieces\":\"[\\\"a b\\\"]\"" "$TENSORS" $OFFSETS$REST
 }
+
+@test "what only some sentences say: objects, view and kind" {
+	local lists='"object_lists":"[\"[\\\"a\\\",\\\"b\\\"]\",\"\"]"'
+	text "$META,$lists,\"views\":\"[\\\"\\\",\\\"v\\\"]\",\"kinds\":\"[\\\"several\\\",\\\"\\\"]\"" "$TENSORS" $OFFSETS$REST
+	says 0 'x: ok: refer.text, 2 sentences, 2 words, 2 columns' "$BIN/gs-check" x
+	refuses "metadata 'object_lists': entry 1 is not a JSON list of names" "$META,\"object_lists\":\"[\\\"[]\\\",\\\"x\\\"]\"" "$TENSORS" $OFFSETS$REST
+	refuses "metadata 'views' has 1 entries for 2 sentences" "$META,\"views\":\"[\\\"v\\\"]\"" "$TENSORS" $OFFSETS$REST
+	refuses "metadata 'kinds' is not a JSON list" "$META,\"kinds\":\"plain\"" "$TENSORS" $OFFSETS$REST
+}

@@ -1,6 +1,7 @@
 #include "unit.h"
 
 #include "base/utf8.h"
+#include "formats/metalist.h"
 #include "formats/text.h"
 
 #include <unistd.h>
@@ -44,6 +45,24 @@ static void utf8_round_trip(void)
 	CHECK(wrong == 0, "%zu characters change on the way through UTF-8", wrong);
 }
 
+/* A list of one, an empty list, and none. */
+static void check_object_lists(const struct text *t, struct err *e)
+{
+	static const struct {
+		size_t n;
+		int has;
+	} expected[] = {{1, 1}, {0, 1}, {0, 0}};
+
+	for (size_t i = 0; i < 3; i++) {
+		size_t n;
+		int has;
+		char **names = text_object_list(t, i, &n, &has, e);
+		CHECK(names && n == expected[i].n && has == expected[i].has, "list %zu: %zu, %d", i, n, has);
+		CHECK(!n || !strcmp(names[0], "cup"), "a name of list %zu differs", i);
+		metalist_free(names, n);
+	}
+}
+
 /* Three sentences of 2, 0 and 1 words of width 3. */
 static void text_round_trip(void)
 {
@@ -53,7 +72,22 @@ static void text_round_trip(void)
 	char *texts[] = {"a \"red\" cup\n", "", "bottle"};
 	char *pieces[] = {"a ##b", "", "bottle"};
 	enum camera_split splits[] = {SPLIT_TRAIN, SPLIT_TEST, SPLIT_TRAIN};
-	struct text in = {3, 3, offsets, words, means, refs, objects, texts, pieces, splits}, out;
+	char *lists[] = {"[\"cup\"]", "[]", ""}, *views[] = {"", "v1", ""},
+	     *kinds[] = {"plain", "absent", ""};
+	struct text in = {.n = 3,
+		.width = 3,
+		.offsets = offsets,
+		.words = words,
+		.sentences = means,
+		.refs = refs,
+		.objects = objects,
+		.texts = texts,
+		.pieces = pieces,
+		.splits = splits,
+		.object_lists = lists,
+		.views = views,
+		.kinds = kinds};
+	struct text out;
 	struct err e = {0};
 
 	CHECK(!text_write(&in, path, "--model x", &e), "%s", e.message);
@@ -66,8 +100,11 @@ static void text_round_trip(void)
 	CHECK(same_bytes(out.splits, splits, sizeof splits), "splits differ");
 	for (int i = 0; i < 3; i++)
 		CHECK(!strcmp(out.refs[i], refs[i]) && !strcmp(out.objects[i], objects[i]) &&
-				!strcmp(out.texts[i], texts[i]) && !strcmp(out.pieces[i], pieces[i]),
+				!strcmp(out.texts[i], texts[i]) && !strcmp(out.pieces[i], pieces[i]) &&
+				!strcmp(out.object_lists[i], lists[i]) && !strcmp(out.views[i], views[i]) &&
+				!strcmp(out.kinds[i], kinds[i]),
 			"names of sentence %d differ", i);
+	check_object_lists(&out, &e);
 	char chosen[3] = {0};
 	struct list_name unknown;
 	CHECK(!text_mark(&out, "r3,r1,r3", chosen, &unknown) && chosen[0] && !chosen[1] && chosen[2],
@@ -99,7 +136,15 @@ static void text_broken_rules(void)
 	float words[] = {1, 2}, infinite[] = {1, INFINITY}, means[] = {1, 2};
 	char *refs[] = {"r1", "r2"}, *same[] = {"r1", "r1"}, *bad[] = {"r1", "\xff"};
 	enum camera_split splits[] = {SPLIT_TRAIN, SPLIT_TRAIN};
-	struct text t = {2, 1, (int64_t[]){0, 1, 2}, infinite, means, refs, refs, refs, NULL, splits};
+	struct text t = {.n = 2,
+		.width = 1,
+		.offsets = (int64_t[]){0, 1, 2},
+		.words = infinite,
+		.sentences = means,
+		.refs = refs,
+		.objects = refs,
+		.texts = refs,
+		.splits = splits};
 
 	expect(&t, ": tensor 'words': item 1 is not finite");
 	t.words = words;
@@ -109,6 +154,11 @@ static void text_broken_rules(void)
 	t.texts = bad;
 	expect(&t, ": metadata 'texts': entry 1 is not a UTF-8 string");
 	t.texts = refs;
+	t.object_lists = (char *[]){"[]", "{}"};
+	expect(&t, ": metadata 'object_lists': entry 1 is not a JSON list of names");
+	t.object_lists = (char *[]){"[1]", ""};
+	expect(&t, ": metadata 'object_lists': entry 0 is not a JSON list of names");
+	t.object_lists = NULL;
 	t.offsets = late;
 	expect(&t, ": tensor 'offsets': begins with 1, expected 0");
 	t.offsets = falling;

@@ -1,0 +1,299 @@
+/* Answers against a twin on plain pixels, and what must not change them. */
+#include "unit.h"
+
+#include "base/rng.h"
+#include "mask/score_answers.h"
+#include "mask_help.h"
+
+enum { VIEWS = 3, OBJECTS = 4, SENTENCES = 12, H = 13, W = 17, P = H * W };
+
+static char *const object_names[OBJECTS] = {"cup", "\xe7\x93\xb6", "plate", "Schl\xc3\xbcssel"};
+static const char *const view_names[VIEWS] = {"v2", "v10", "v1"};
+
+/* Everything is plain here; records point into it. */
+struct world {
+	uint8_t truth[VIEWS][OBJECTS][P], said[VIEWS][SENTENCES][P];
+	struct rle truth_rle[VIEWS][OBJECTS], said_rle[VIEWS][SENTENCES];
+	char refs[SENTENCES][8];
+	char *meant[SENTENCES][OBJECTS];
+	struct answer_sentence sentences[SENTENCES];
+	struct score_mask truths[VIEWS * OBJECTS], predictions[VIEWS * SENTENCES];
+	size_t truth_n, prediction_n;
+};
+
+static void world_make(struct world *w, uint64_t seed)
+{
+	struct rng r;
+
+	rng_seed(&r, seed, 1);
+	w->truth_n = w->prediction_n = 0;
+	for (int s = 0; s < SENTENCES; s++) {
+		snprintf(w->refs[s], sizeof w->refs[s], "r%d", s);
+		w->sentences[s] = (struct answer_sentence){.ref = w->refs[s],
+			.kind = s % 3 ? "a" : NULL,
+			.view = s % 5 == 4 ? view_names[s % VIEWS] : NULL,
+			.objects = w->meant[s]};
+		for (int o = 0; o < OBJECTS; o++)
+			if (rng_below(&r, 3) == 0)
+				w->meant[s][w->sentences[s].object_count++] = object_names[o];
+	}
+	for (int v = 0; v < VIEWS; v++) {
+		for (int o = 0; o < OBJECTS; o++) {
+			uint8_t *m = mask_random(&r, H, W, rng_below(&r, 4) ? 1 : 2);
+			memcpy(w->truth[v][o], m, P);
+			free(m);
+			w->truth_rle[v][o] = mask_rle(w->truth[v][o], H, W);
+			w->truths[w->truth_n++] = (struct score_mask){
+				view_names[v], NULL, object_names[o], &w->truth_rle[v][o]};
+		}
+		for (int s = 0; s < SENTENCES; s++) {
+			uint8_t *m = mask_random(&r, H, W, rng_below(&r, 3) ? 1 : 2);
+			/* Often an object's own mask, or two. */
+			for (int k = 0; k < 2; k++)
+				for (int p = 0, o = (int)rng_below(&r, OBJECTS + 2); p < P && o < OBJECTS;
+					p++)
+					m[p] = (uint8_t)(k ? m[p] | w->truth[v][o][p] : w->truth[v][o][p]);
+			memcpy(w->said[v][s], m, P);
+			free(m);
+			w->said_rle[v][s] = mask_rle(w->said[v][s], H, W);
+			if (rng_below(&r, 8))
+				w->predictions[w->prediction_n++] = (struct score_mask){
+					view_names[v], w->refs[s], NULL, &w->said_rle[v][s]};
+		}
+	}
+}
+
+static void world_free(struct world *w)
+{
+	for (int v = 0; v < VIEWS; v++) {
+		for (int o = 0; o < OBJECTS; o++)
+			rle_free(&w->truth_rle[v][o]);
+		for (int s = 0; s < SENTENCES; s++)
+			rle_free(&w->said_rle[v][s]);
+	}
+}
+
+static double iou(const uint8_t *a, const uint8_t *b)
+{
+	int both = 0, either = 0;
+
+	for (int p = 0; p < P; p++) {
+		both += a[p] && b[p];
+		either += a[p] || b[p];
+	}
+	return either ? (double)both / either : 0;
+}
+
+static double covered(const uint8_t *object, const uint8_t *by)
+{
+	int both = 0, area = 0;
+
+	for (int p = 0; p < P; p++) {
+		both += object[p] && by[p];
+		area += object[p] != 0;
+	}
+	return (double)both / area;
+}
+
+static int is_blank(const uint8_t *m)
+{
+	for (int p = 0; p < P; p++)
+		if (m[p])
+			return 0;
+	return 1;
+}
+
+static int is_meant(const struct answer_sentence *s, const char *object)
+{
+	for (size_t i = 0; i < s->object_count; i++)
+		if (!strcmp(s->objects[i], object))
+			return 1;
+	return 0;
+}
+
+static void check_one(const struct world *w, const struct answer *a)
+{
+	int s = (int)(a->sentence - w->sentences), v = 0, shown = 0, hit = 0, meant = 0;
+	uint8_t all[P] = {0};
+	double own = 0, other = 0;
+
+	while (strcmp(view_names[v], a->view))
+		v++;
+	const uint8_t *said = w->said[v][s];
+	for (int o = 0; o < OBJECTS; o++) {
+		int of = is_meant(a->sentence, object_names[o]);
+		if (is_blank(w->truth[v][o]))
+			continue;
+		int covers = covered(w->truth[v][o], said) > 0.5;
+		double one = iou(said, w->truth[v][o]);
+		shown += covers;
+		hit += covers && of;
+		meant += of;
+		if (of)
+			own = fmax(own, one);
+		else
+			other = fmax(other, one);
+		for (int p = 0; p < P && of; p++)
+			all[p] |= w->truth[v][o][p];
+	}
+	if (a->is_missing)
+		return;
+	int none = !a->sentence->object_count, blank = is_blank(said);
+	double f1 = none ? blank : 2.0 * hit / (shown + meant);
+	int right = none			     ? blank
+		    : a->sentence->object_count == 1 ? own > 0 && own >= other
+						     : hit == meant && shown == meant;
+	CHECK(a->is_refused == blank, "sentence %d, view %d: refused", s, v);
+	CHECK(fabs(a->f1[1] - f1) < 1e-12, "sentence %d, view %d: %g, not %g", s, v, a->f1[1], f1);
+	CHECK(fabs(a->iou - (none ? blank : iou(said, all))) < 1e-12, "sentence %d, view %d: %g", s, v,
+		a->iou);
+	CHECK(a->is_right == right, "sentence %d, view %d: right %d", s, v, right);
+}
+
+static void against_pixels(const struct world *w)
+{
+	struct answers a;
+	struct err e;
+	size_t missing = 0;
+
+	if (!CHECK(!answers_make(&a, w->sentences, SENTENCES, w->truths, w->truth_n, w->predictions,
+			   w->prediction_n, &e),
+		    "%s", e.message))
+		return;
+	CHECK(!a.unknown && !a.unmatched, "%zu, %zu", a.unknown, a.unmatched);
+	for (size_t i = 0; i < a.n; i++) {
+		check_one(w, &a.items[i]);
+		missing += (size_t)a.items[i].is_missing;
+	}
+	size_t asked = 0;
+	for (int s = 0; s < SENTENCES; s++)
+		asked += w->sentences[s].view ? 1 : VIEWS;
+	CHECK(a.n + a.out_of_sight == asked, "%zu of %zu", a.n, asked);
+	struct answer_score all, parts[3];
+	answer_score_sum(&all, &a, ANSWER_ANY, NULL);
+	CHECK(all.missing == missing && all.pairs == a.n, "%zu missing", all.missing);
+	for (int k = 0; k < 3; k++)
+		answer_score_sum(&parts[k], &a, (enum answer_targets)(ANSWER_ONE + k), NULL);
+	CHECK(parts[0].pairs + parts[1].pairs + parts[2].pairs == a.n, "targets do not sum");
+	answer_score_sum(&parts[0], &a, ANSWER_ANY, "a");
+	answer_score_sum(&parts[1], &a, ANSWER_ANY, "");
+	CHECK(parts[0].pairs + parts[1].pairs == a.n, "kinds do not sum");
+	answers_free(&a);
+}
+
+/* Records in another order: the same answers. */
+static void order_does_not_matter(const struct world *w)
+{
+	struct score_mask truths[VIEWS * OBJECTS], predictions[VIEWS * SENTENCES];
+	struct answers a, b;
+	struct err e;
+
+	for (size_t i = 0; i < w->truth_n; i++)
+		truths[i] = w->truths[w->truth_n - 1 - i];
+	for (size_t i = 0; i < w->prediction_n; i++)
+		predictions[i] = w->predictions[w->prediction_n - 1 - i];
+	if (!CHECK(!answers_make(&a, w->sentences, SENTENCES, w->truths, w->truth_n, w->predictions,
+			   w->prediction_n, &e) &&
+			    !answers_make(&b, w->sentences, SENTENCES, truths, w->truth_n, predictions,
+				    w->prediction_n, &e),
+		    "%s", e.message))
+		return;
+	CHECK(a.n == b.n, "%zu, %zu", a.n, b.n);
+	for (size_t i = 0; i < a.n && i < b.n; i++)
+		CHECK(a.items[i].sentence == b.items[i].sentence &&
+				!strcmp(a.items[i].view, b.items[i].view) &&
+				a.items[i].is_right == b.items[i].is_right &&
+				!(a.items[i].iou < b.items[i].iou) && !(a.items[i].iou > b.items[i].iou),
+			"answer %zu", i);
+	answers_free(&a);
+	answers_free(&b);
+}
+
+/* Twice as large in each direction: the same figures, of masks that are held against the truth's size. */
+static void predictions_of_another_size(void)
+{
+	uint8_t small[P] = {0}, large[4 * P] = {0};
+	char *objects[] = {object_names[0]};
+	struct answer_sentence s = {.ref = "r", .object_count = 1, .objects = objects};
+	struct answers a;
+	struct err e;
+
+	for (int p = 0; p < P / 3; p++)
+		small[p] = 1;
+	for (int y = 0; y < 2 * H; y++)
+		for (int x = 0; x < 2 * W; x++)
+			large[y * 2 * W + x] = small[y / 2 * W + x / 2];
+	struct rle t = mask_rle(small, H, W), p = mask_rle(large, 2 * H, 2 * W);
+	struct score_mask truth = {"v", NULL, "cup", &t}, prediction = {"v", "r", NULL, &p};
+	if (CHECK(!answers_make(&a, &s, 1, &truth, 1, &prediction, 1, &e), "%s", e.message)) {
+		CHECK(a.n == 1 && a.items[0].is_right && a.items[0].iou > 0.999 && a.items[0].f1[1] > 0.999,
+			"iou %g", a.items[0].iou);
+		answers_free(&a);
+	}
+	rle_free(&t);
+	rle_free(&p);
+}
+
+static void unknown_and_unmatched(void)
+{
+	uint8_t pixels[P] = {1};
+	char *objects[] = {object_names[0], object_names[1]};
+	struct answer_sentence s[2] = {{.ref = "r", .object_count = 2, .objects = objects}, {.ref = "none"}};
+	struct rle m = mask_rle(pixels, H, W);
+	struct score_mask truth = {"v", NULL, "cup", &m};
+	struct score_mask predictions[2] = {{"v", "other", NULL, &m}, {"v", NULL, "cup", &m}};
+	struct answers a;
+	struct err e;
+
+	if (CHECK(!answers_make(&a, s, 2, &truth, 1, predictions, 2, &e), "%s", e.message)) {
+		CHECK(a.unknown == 1 && a.unmatched == 2, "%zu, %zu", a.unknown, a.unmatched);
+		CHECK(a.n == 2 && a.items[0].is_missing && a.items[1].is_missing && !a.items[1].is_right,
+			"what is missing is no refusal");
+		answers_free(&a);
+	}
+	rle_free(&m);
+}
+
+static void unions(void)
+{
+	struct rng r;
+
+	rng_seed(&r, 5, 5);
+	for (int i = 0; i < 200; i++) {
+		uint8_t *a = mask_random(&r, H, W, (int)rng_below(&r, 5)),
+			*b = mask_random(&r, H, W, (int)rng_below(&r, 5));
+		struct rle p = mask_rle(a, H, W), q = mask_rle(b, H, W), both;
+		struct err e;
+		uint8_t got[P];
+		int wrong = 0;
+		if (CHECK(!rle_unite(&both, &p, &q, &e), "%s", e.message)) {
+			rle_decode(&both, got);
+			for (int k = 0; k < P; k++)
+				wrong += got[k] != (a[k] || b[k]);
+			for (size_t k = 1; k < both.n; k++)
+				wrong += !both.runs[k];
+			CHECK(!wrong, "union %d: %d pixels or runs are wrong", i, wrong);
+			rle_free(&both);
+		}
+		rle_free(&p);
+		rle_free(&q);
+		free(a);
+		free(b);
+	}
+}
+
+int main(void)
+{
+	static struct world w;
+
+	for (uint64_t seed = 1; seed <= 20; seed++) {
+		world_make(&w, seed);
+		against_pixels(&w);
+		order_does_not_matter(&w);
+		world_free(&w);
+	}
+	predictions_of_another_size();
+	unknown_and_unmatched();
+	unions();
+	return unit_end();
+}
