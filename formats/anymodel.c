@@ -1,9 +1,11 @@
 #include "formats/anymodel.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "formats/lifted.h"
 #include "formats/safetensors.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 int anymodel_read(struct anymodel *m, const char *path, struct err *e)
@@ -52,19 +54,47 @@ static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, str
 	return 0;
 }
 
+/* Where each sentence is said: from (q->count). */
+static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from, struct err *e)
+{
+	for (size_t i = 0; i < q->count; i++) {
+		const char *view = q->text->views ? q->text->views[q->which[i]] : "";
+		from[i] = q->from ? *q->from : (struct viewpoint){.kind = VIEWPOINT_USUAL};
+		if (q->from || !*view)
+			continue;
+		from[i] = (struct viewpoint){
+			.kind = VIEWPOINT_CAMERA, .camera = cameras_find(&q->scene->cameras, view)};
+		if (!from[i].camera)
+			return err_set(e, ERR_FORMAT, "%s: sentence '%s' is of view '%s', which %s does not have",
+				file_name(q->text_path), q->text->refs[q->which[i]], view, q->scene_path);
+	}
+	return 0;
+}
+
+static int answer_lifted(const struct lifted *l, const struct anymodel_ask *q, struct asked_of *of, struct asked *a,
+	struct err *e)
+{
+	struct viewpoint *from = mem_alloc(q->count, sizeof *from, "sentences", e);
+
+	of->from = from;
+	const int bad = !from || find_viewpoints(q, from, e) || asked_lifted(a, l, of, q->parts, q->least, e);
+	free(from);
+	return bad ? -1 : 0;
+}
+
 int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, struct asked *a, struct err *e)
 {
 	const struct model *t = &m->trained;
 	const float *means = q->scene->splats.means;
-	const struct asked_of of = {&q->scene->splats, &q->scene->cameras, q->text->offsets, q->text->words,
-		q->text->texts, q->text->pieces, q->from, q->parser, q->which, q->count};
+	struct asked_of of = {&q->scene->splats, &q->scene->cameras, q->text->offsets, q->text->words,
+		q->text->texts, q->text->pieces, NULL, q->parser, q->which, q->count};
 	struct rows rows = {0};
 
 	*a = (struct asked){0};
 	if (check_fit(m, q, e))
 		return -1;
 	if (m->is_lifted)
-		return asked_lifted(a, &m->lifted, &of, q->parts, q->least, e);
+		return answer_lifted(&m->lifted, q, &of, a, e);
 	if (model_rows(t, means, &rows, e))
 		return -1;
 	const struct respond_model respond = {

@@ -28,7 +28,7 @@ struct anymodel_ask {
 	int wants_calibration; /* of trained models, and the next are of lifted ones: see refer/asked.h */
 	unsigned parts;
 	double least;
-	const struct viewpoint *from; /* (count) or NULL */
+	const struct viewpoint *from; /* where all sentences are said; NULL: each of the view that it names, if any */
 	const struct parser *parser;
 };
 

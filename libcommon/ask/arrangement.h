@@ -3,6 +3,7 @@
 #ifndef ASK_ARRANGEMENT_H
 #define ASK_ARRANGEMENT_H
 
+#include "ask/viewpoint.h"
 #include "base/err.h"
 #include "geom/camera.h"
 #include "lang/colours.h"
@@ -40,13 +41,6 @@ struct arrangement {
 	size_t *begin;		       /* (n+1) points begin[o] to begin[o+1] are of object o */
 	struct arranged_point *points; /* (begin[n]) */
 	struct arranged_along *along;  /* scratch */
-};
-
-/* Where a sentence is said. */
-struct viewpoint {
-	enum { VIEWPOINT_USUAL, VIEWPOINT_CAMERA, VIEWPOINT_POINT } kind;
-	const struct camera *camera; /* of VIEWPOINT_CAMERA: as seen in its picture */
-	double point[3];	     /* of VIEWPOINT_POINT, in the scene: looking level at the middle of the objects */
 };
 
 /* Of the objects of l in the scene that splats and cameras are of, which must outlive it, seen from the usual

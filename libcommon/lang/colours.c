@@ -89,7 +89,7 @@ void colour_lab(const double rgb[3], double lab[3])
 	lab[2] = 200 * (y - z);
 }
 
-static const double told_apart = 12, one_colour = 16;
+static const double told_apart = 16, one_colour = 16;
 
 static double square_distance(const double lab[3], int word)
 {

@@ -10,7 +10,7 @@ enum { COLOUR_WORDS = 49 };
 void colour_lab(const double rgb[3], double lab[3]);
 
 /* Adds to share (COLOUR_WORDS) how far people would call a colour by each word, times weight: in [0,1], near 1 for
- * the nearest words, exp(-1/2 (d^2 - least^2) / 12^2) with d the distance of L*a*b* to the word's colour and least
+ * the nearest words, exp(-1/2 (d^2 - least^2) / 16^2) with d the distance of L*a*b* to the word's colour and least
  * that to the nearest word's. Lightness counts half, as it depends on the light. */
 void colour_call(const double lab[3], double weight, double *share);
 

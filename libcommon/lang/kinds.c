@@ -109,7 +109,7 @@ int kinds_share(const char *a, const char *b)
 {
 	char x[40], y[40];
 
-	if (strlen(a) > 32 || strlen(b) > 32)
+	if (!*a || !*b || strlen(a) > 32 || strlen(b) > 32 || strchr(a, ' ') || strchr(b, ' '))
 		return 0;
 	snprintf(x, sizeof x, " %s ", a);
 	snprintf(y, sizeof y, " %s ", b);
