@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEEPEST = 64 }; /* clauses within clauses */
+enum { DEEPEST = 128 }; /* clauses within clauses */
 
 struct reader {
 	const struct jsonl *j;

@@ -9,6 +9,7 @@ enum { MADE_MOST = 160, MADE_LENGTH = 40, DEPTH_MOST = 2 };
 /* A sentence in the making: words with what they are. */
 struct making {
 	const struct example_wordings *w;
+	const struct example_list *nouns;
 	struct rng *r;
 	int n, depth, has_noun, noun, is_plural;
 	struct made {
@@ -126,7 +127,7 @@ static int noun_phrase(
 	if (chance(m, 0.35))
 		for (int k = chance(m, 0.25) ? 2 : 1; k; k--) {
 			first = m->n;
-			put_any(m, pick(m, &m->w->attributes));
+			put_any(m, pick(m, &example_attributes));
 			for (int i = first; i < m->n && count < 8; i++) {
 				m->word[i].role = ROLE_ATTRIBUTE;
 				list[count++] = i;
@@ -167,14 +168,14 @@ static int anchor(struct making *m, enum word_role role, int may_nest)
 	if (chance(m, 0.05)) { /* "the red one", "it" names nothing */
 		put_any(m, "the|the|that|another");
 		if (chance(m, 0.6))
-			put_any(m, pick(m, &m->w->attributes));
+			put_any(m, pick(m, &example_attributes));
 		head = put_any(m, "one|thing|object|other_one|ones");
 		mark(m, head, head + 1, role, ROOT);
 		if (head - first == 2 && strcmp(m->word[head - 1].text, "other"))
 			mark(m, head - 1, head, ROLE_ATTRIBUTE, head);
 	} else {
 		head = noun_phrase(
-			m, role, ROOT, pick(m, &m->w->nouns), chance(m, 0.15), m->n && follows_article(m));
+			m, role, ROOT, pick(m, m->nouns), chance(m, 0.15), m->n && follows_article(m));
 	}
 	if (may_nest && m->depth < DEPTH_MOST + 1 && chance(m, 0.35)) {
 		if (chance(m, 0.4))
@@ -273,7 +274,7 @@ static void clause(struct making *m, int figure, int forms, int denied)
 
 static const char *target_noun(struct making *m)
 {
-	return m->w->nouns.item[m->noun];
+	return m->nouns->item[m->noun];
 }
 
 static void target_clauses(struct making *m)
@@ -296,7 +297,7 @@ static void target_one(struct making *m)
 	if (chance(m, 0.25))
 		put_before(m, list, &count);
 	if (chance(m, 0.2)) {
-		last = put_any(m, pick(m, &m->w->attributes));
+		last = put_any(m, pick(m, &example_attributes));
 		mark(m, last, last + 1, ROLE_ATTRIBUTE, ROOT);
 	}
 	last = put_any(m, "one|one|one|thing|object");
@@ -326,7 +327,7 @@ static void one_of_look(struct making *m, enum word_role role)
 
 	put_any(m, "the|the|that|a");
 	first = m->n;
-	put_any(m, pick(m, &m->w->attributes));
+	put_any(m, pick(m, &example_attributes));
 	last = put_any(m, "one|one|one|thing|ones");
 	mark(m, last, last + 1, role, ROOT);
 	mark(m, first, last, ROLE_ATTRIBUTE, role == ROLE_TARGET ? ROOT : last);
@@ -383,7 +384,7 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 		return 1;
 	case 'q': {
 		int first = m->n;
-		put_any(m, pick(m, &m->w->attributes));
+		put_any(m, pick(m, &example_attributes));
 		mark(m, first, m->n, ROLE_ATTRIBUTE, ROOT);
 		return 1;
 	}
@@ -499,10 +500,9 @@ static void analyse(const struct making *m, struct example *x, const char *piece
 
 void example_make(struct example *x, enum examples_set set, const char *pieces, struct rng *r)
 {
-	struct making m = {.w = &example_wordings[set], .r = r};
+	struct making m = {.w = &example_wordings[set], .nouns = &example_nouns[set], .r = r};
 
-	m.noun = (int)rng_below(r, (uint32_t)m.w->nouns.n);
-	/* functions and nouns of the list have stars only in templates */
+	m.noun = (int)rng_below(r, (uint32_t)m.nouns->n);
 	sentence(&m, pick(&m, &m.w->sentences));
 	write_text(&m, x);
 	analyse(&m, x, pieces);

@@ -52,8 +52,11 @@ struct example_wordings {
 	struct example_clauses having; /* after $ in its place, or "has" */
 	struct example_clauses turned; /* after a noun as a relative clause: "that @ is on" */
 	struct example_clauses before; /* adjectives that place or size: "left", "smallest" */
-	struct example_list sentences, nouns, attributes, functions;
+	struct example_list sentences, functions;
 };
 extern const struct example_wordings example_wordings[2];
+
+/* In examples_nouns.c. */
+extern const struct example_list example_nouns[2], example_attributes;
 
 #endif

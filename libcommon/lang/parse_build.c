@@ -281,14 +281,15 @@ static int add_clause(struct build *b, int i, int from, int end)
 	return 0;
 }
 
-/* "near the desk and the chair" says two things, "between the desk and the chair" one. */
+/* "near the desk and the chair" says two things; "between the desk and the chair" one. Of what is above both
+ * a person says so once. */
 static int add_predicate(struct build *b, int i)
 {
 	int anchors = 0;
 
 	for (int j = 0; j < b->t->n; j++)
 		anchors += b->a->word[j].role == ROLE_ANCHOR && b->a->word[j].head == i;
-	if (anchors < 2 || b->a->word[i].relation == PARSE_BETWEEN || b->a->word[i].relation == PARSE_MIDDLE)
+	if (anchors < 2 || b->a->word[i].relation != PARSE_NEAR)
 		return add_clause(b, i, 0, -1);
 	for (int k = 0; k < anchors; k++)
 		if (add_clause(b, i, k, k + 1))

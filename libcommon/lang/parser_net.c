@@ -11,6 +11,9 @@
  * anchor, and what that counts beside the arc. */
 #define NET_PREDICATE_LEAST 0.02
 #define NET_PREDICATE_WEIGHT 0.5
+#define NET_LIST_COST 3.0
+#define NET_CLOSE 4
+#define NET_CLOSE_BONUS 1.5f
 
 static const int reach[NET_LAYERS] = {1, 2, 4};
 
@@ -302,10 +305,29 @@ static void make_predicate(const struct parser_batch *b, int sentence, struct an
 	a->word[i].negated = out[ROLES + PARSE_RELATIONS] > 0;
 }
 
+/* 1 where a pause or "and" parts words i and j, i before j. */
+static int is_parted(const struct tokens *t, int i, int j)
+{
+	for (int k = i + 1; k <= j; k++)
+		if (t->word[k].before || (k < j && t->word[k].closed >= 0 &&
+						 closed_words[t->word[k].closed].class == CLOSED_CONJUNCTION))
+			return 1;
+	return 0;
+}
+
+/* 1 where predicate j has an anchor already, and nothing parts that from word i: the two are no list. */
+static int has_near_anchor(const struct analysis *a, const struct tokens *t, int j, int i)
+{
+	for (int k = i - 1; k >= 0; k--)
+		if (a->word[k].role == ROLE_ANCHOR && a->word[k].head == j)
+			return !is_parted(t, k, i);
+	return 0;
+}
+
 /* Hangs each anchor on the word that is likeliest its predicate, whatever that word seemed to be by itself:
  * an anchor says that there is a predicate. */
-static void hang_anchors(
-	const struct parser_weights *w, const struct parser_batch *b, int sentence, struct analysis *a)
+static void hang_anchors(const struct parser_weights *w, const struct parser_batch *b, int sentence,
+	const struct tokens *t, struct analysis *a)
 {
 	float scores[TOKENS_MOST + 1];
 
@@ -324,6 +346,8 @@ static void hang_anchors(
 			if (r == ROLE_NONE && p < log(NET_PREDICATE_LEAST))
 				continue;
 			double score = scores[j + 1] - all + NET_PREDICATE_WEIGHT * p;
+			if (has_near_anchor(a, t, j, i))
+				score -= NET_LIST_COST;
 			if (score > most) {
 				most = score;
 				best = j;
@@ -337,7 +361,7 @@ static void hang_anchors(
 
 /* Hangs each word of these roles on the best that it may hang on. */
 static void hang(const struct parser_weights *w, const struct parser_batch *b, int sentence,
-	struct analysis *a, int wanted)
+	const struct tokens *t, struct analysis *a, int wanted)
 {
 	float scores[TOKENS_MOST + 1];
 
@@ -353,6 +377,10 @@ static void hang(const struct parser_weights *w, const struct parser_batch *b, i
 			int may = j < 0 || (role_is_phrase(up) && up != ROLE_TARGET);
 			if (!may || (j >= 0 && is_below(a, j, i)))
 				continue;
+			/* a predicate right after an anchor is rather said of that */
+			if (r == ROLE_PREDICATE && j >= 0 && j < i && i - j <= NET_CLOSE &&
+				!is_parted(t, j, i))
+				scores[j + 1] += NET_CLOSE_BONUS;
 			if (scores[j + 1] > most) {
 				most = scores[j + 1];
 				best = j;
@@ -377,9 +405,9 @@ void parser_decode(const struct parser_weights *w, const struct parser_batch *b,
 		if (a->word[i].role == ROLE_PREDICATE)
 			make_predicate(b, sentence, a, i);
 	}
-	hang_anchors(w, b, sentence, a);
-	hang(w, b, sentence, a, 1 << ROLE_PREDICATE);
-	hang(w, b, sentence, a, 1 << ROLE_ATTRIBUTE | 1 << ROLE_NAME | 1 << ROLE_EXCEPT);
+	hang_anchors(w, b, sentence, t, a);
+	hang(w, b, sentence, t, a, 1 << ROLE_PREDICATE);
+	hang(w, b, sentence, t, a, 1 << ROLE_ATTRIBUTE | 1 << ROLE_NAME | 1 << ROLE_EXCEPT);
 	analysis_repair(a);
 	*sure = t->n ? sum / t->n : 0;
 }

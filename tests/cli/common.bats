@@ -20,6 +20,8 @@ missing_input() {
 		gs-import -o out none
 		gs-weigh -o out none
 		text-encode --model none -o out none
+		text-parse -o out none
+		parse-train -o out none
 		pseudomask-select -o out none
 		refer-train --scene none --weights none --text none --masks none -o out
 		refer-lift --scene none --weights none --text none --masks none -o out
