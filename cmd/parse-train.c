@@ -19,7 +19,7 @@
 struct options {
 	long long write, epochs, rounds, folds;
 	const char *readings, *readings_text, *source;
-	int test;
+	int test, no_grammar;
 };
 
 struct training {
@@ -82,16 +82,6 @@ static int take_examples(struct training *s, const char *path, struct err *e)
 	return 0;
 }
 
-/* Rooms by a hash of their names: a room's sentences are held out together. */
-static int fold_of(const char *room, long long folds)
-{
-	unsigned hash = 0;
-
-	for (const char *p = room ? room : ""; *p; p++)
-		hash = (hash * 31u + (unsigned char)*p) & 0xffff;
-	return folds ? (int)(hash % folds) : 0;
-}
-
 static int take_readings(struct training *s, struct err *e)
 {
 	static struct tokens t;
@@ -116,7 +106,7 @@ static int take_readings(struct training *s, struct err *e)
 			return err_set(e, ERR_FORMAT, "%s: no reading of ref '%s'", s->o->readings,
 				s->others.refs[i]);
 		c->readings[i] = &r->reading;
-		c->fold[i] = fold_of(r->room, s->o->folds);
+		c->fold[i] = readings_fold(r, s->o->folds);
 		tokens_take(&t, c->texts[i], c->pieces[i], NULL, 0);
 		if (parser_sample_make(&c->read[i], &t, NULL, v, count, s->others.width, e))
 			return -1;
@@ -132,7 +122,7 @@ static void say(void *context, int epoch, double loss)
 static int put_parses(
 	const struct training *s, const struct parser_weights *w, int fold, FILE *out, struct err *e)
 {
-	const struct parser parser = {.weights = w};
+	const struct parser parser = {.weights = w, .is_blind = s->o->no_grammar};
 
 	for (size_t i = 0; i < s->others.n; i++) {
 		struct parse p;
@@ -196,6 +186,8 @@ static int run(const struct cli *c, const struct options *o, struct err *e)
 	if (!bad && o->readings)
 		bad = readings_read(&s.readings, o->readings, e) ||
 		      text_read(&s.others, o->readings_text, e) || take_readings(&s, e);
+	if (!bad && o->no_grammar)
+		parser_school_blind(&s.school);
 	if (!bad)
 		bad = parser_weights_make(&w, s.examples.width, e);
 	if (!bad)
@@ -225,6 +217,8 @@ int main(int argc, char **argv)
 		{"folds", 0, CLI_INT, &o.folds, "N",
 			"cross-validate: write parses of the readings' sentences, each by weights that saw no sentence of its room",
 			0, 100},
+		{"no-grammar", 0, CLI_FLAG, &o.no_grammar, NULL,
+			"with --folds: the network is not told what the grammar says, for comparison", 0, 0},
 		{"source", 0, CLI_STRING, &o.source, "TEXT",
 			"what the weights say that they were learnt from", 0, 0},
 		{0},
@@ -246,6 +240,8 @@ int main(int argc, char **argv)
 		cli_usage(&c, "--readings and --readings-text go together");
 	if (o.folds && !o.readings)
 		cli_usage(&c, "--folds needs --readings");
+	if (o.no_grammar && !o.folds)
+		cli_usage(&c, "--no-grammar needs --folds");
 	if (!o.write && !o.folds)
 		cli_refuse_terminal(&c);
 	bad = o.write ? write_examples(&c, o.write, o.test, &e) : run(&c, &o, &e);

@@ -113,3 +113,12 @@ const struct reading_record *readings_find(const struct reading_set *s, const ch
 			return &s->records[i];
 	return NULL;
 }
+
+int readings_fold(const struct reading_record *r, long long folds)
+{
+	unsigned hash = 0;
+
+	for (const char *p = r->room ? r->room : ""; *p; p++)
+		hash = (hash * 31u + (unsigned char)*p) & 0xffff;
+	return folds ? (int)(hash % folds) : 0;
+}

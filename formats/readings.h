@@ -20,4 +20,7 @@ int readings_read(struct reading_set *s, const char *path, struct err *e);
 void readings_free(struct reading_set *s);
 const struct reading_record *readings_find(const struct reading_set *s, const char *ref);
 
+/* Which of `folds` parts a record is held out with: a room's all together. 0 where there are no folds. */
+int readings_fold(const struct reading_record *r, long long folds);
+
 #endif

@@ -45,6 +45,9 @@ void grammar_analyse(struct analysis *a, const struct tokens *t);
 /* Makes every head one that its role may have, without a circle; what then hangs on nothing hangs on ROOT. */
 void analysis_repair(struct analysis *a);
 
+/* What closed-class words settle whatever was made of them: sizes before a noun, who looks, "not the one". */
+void analysis_mend(struct analysis *a, const struct tokens *t);
+
 /* The parse that an analysis stands for; -1 only where memory is out. Degrees, counts, ordinals, groups and
  * views are told from the words themselves. */
 int parse_build(struct parse *p, const struct analysis *a, const struct tokens *t, struct err *e);

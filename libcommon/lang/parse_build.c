@@ -204,7 +204,11 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	const struct tokens *t = b->t;
 	const char *w = t->word[i].text;
 	int c = class_of(t, i);
+	enum parse_relation r = b->a->word[i].relation;
 
+	/* "on top of it" compares nothing */
+	if (r == PARSE_ON || r == PARSE_SUPPORTS || r == PARSE_INSIDE || r == PARSE_WITH)
+		return PARSE_PLAIN;
 	if (c == CLOSED_PLACE || c == CLOSED_SIZE) {
 		if (value_of(t, i))
 			return (enum parse_degree)value_of(t, i);

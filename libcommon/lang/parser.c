@@ -6,8 +6,9 @@
 #include <stdlib.h>
 
 static int learnt_analyse(struct analysis *a, const struct tokens *t, const struct analysis *grammar,
-	const struct parser_weights *w, const struct parser_vectors *v, double *sure, struct err *e)
+	const struct parser *parser, const struct parser_vectors *v, double *sure, struct err *e)
 {
+	const struct parser_weights *w = parser->weights;
 	struct parser_batch b;
 	struct parser_features features[TOKENS_MOST];
 	float *vectors;
@@ -18,6 +19,8 @@ static int learnt_analyse(struct analysis *a, const struct tokens *t, const stru
 	if (vectors) {
 		parser_vectors_of_words(t, v->vectors, v->count, w->width, vectors);
 		parser_features_take(features, t, grammar);
+		if (parser->is_blind)
+			parser_features_blank(features, t->n);
 		parser_batch_add(&b, features, vectors, t->n, w->width);
 		parser_forward(w, &b);
 		parser_decode(w, &b, 0, t, a, sure);
@@ -38,10 +41,11 @@ int parse_sentence(struct parse *p, const struct parser *parser, const char *tex
 	tokens_take(&t, text, v ? v->pieces : NULL, parser->known, parser->known_count);
 	grammar_analyse(&a, &t);
 	if (w && v && v->vectors && v->width == w->width && t.n) {
-		if (learnt_analyse(&learnt, &t, &a, w, v, &sure, e))
+		if (learnt_analyse(&learnt, &t, &a, parser, v, &sure, e))
 			return -1;
 		a = learnt;
 	}
+	analysis_mend(&a, &t);
 	if (parse_build(p, &a, &t, e))
 		return -1;
 	p->confidence *= sure;

@@ -10,6 +10,7 @@ struct parser {
 	const struct parser_weights *weights; /* NULL: grammar alone */
 	const char *const *known; /* words spelt right besides the closed ones: a scene's vocabulary */
 	int known_count;
+	int is_blind; /* the network is not told what the grammar says: for a comparison */
 };
 
 /* What the encoder made of the sentence; zeroed where there is none. */

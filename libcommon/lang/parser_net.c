@@ -138,6 +138,15 @@ void parser_features_take(struct parser_features *f, const struct tokens *t, con
 	}
 }
 
+void parser_features_blank(struct parser_features *f, int n)
+{
+	for (int i = 0; i < n; i++) {
+		f[i].role = ROLE_NONE;
+		f[i].relation = PARSE_RELATIONS;
+		f[i].head = ROOT;
+	}
+}
+
 void parser_batch_add(
 	struct parser_batch *b, const struct parser_features *f, const float *vectors, int n, int width)
 {

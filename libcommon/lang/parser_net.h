@@ -81,6 +81,9 @@ void parser_batch_clear(struct parser_batch *b);
 void parser_batch_add(
 	struct parser_batch *b, const struct parser_features *f, const float *vectors, int n, int width);
 
+/* As if the grammar had said nothing: for a comparison. */
+void parser_features_blank(struct parser_features *f, int n);
+
 void parser_features_take(struct parser_features *f, const struct tokens *t, const struct analysis *grammar);
 
 void parser_forward(const struct parser_weights *w, struct parser_batch *b);

@@ -93,6 +93,14 @@ int parser_school_readings(
 	return bad ? -1 : 0;
 }
 
+void parser_school_blind(struct parser_school *s)
+{
+	for (size_t i = 0; i < s->example_count; i++)
+		parser_features_blank(s->examples[i].features, s->examples[i].n);
+	for (size_t i = 0; i < s->read_count; i++)
+		parser_features_blank(s->read[i].features, s->read[i].n);
+}
+
 void parser_school_free(struct parser_school *s)
 {
 	for (size_t i = 0; s->examples && i < s->example_count; i++)

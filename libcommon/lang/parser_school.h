@@ -24,6 +24,8 @@ int parser_school_examples(const struct parser_school *s, struct parser_weights 
 /* Goes on from there with the readings but those of fold `without` (-1: with all), and as many examples. */
 int parser_school_readings(
 	const struct parser_school *s, struct parser_weights *w, int without, struct err *e);
+/* Takes away what the grammar says of every sentence. */
+void parser_school_blind(struct parser_school *s);
 void parser_school_free(struct parser_school *s); /* samples, readings' list and folds */
 
 #endif
