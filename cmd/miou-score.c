@@ -51,19 +51,16 @@ static void tell_left_out(
 			file_name(predictions->path), pairs->unmatched);
 }
 
-static int match(struct score_pairs *pairs, const struct score_masks *truth,
-	const struct score_masks *predictions, struct err *e)
-{
-	return score_match(pairs, truth->masks, truth->n, predictions->masks, predictions->n, e);
-}
-
 /* Matched, measured and sorted pairs of the predictions and, with --compare, of the others beside them. The
  * figures of all are summed before they are sorted, so that no object's name changes their last digit. */
 static int pair_up(const struct cli *c, const struct inputs *in, int is_compared, struct score_pairs *pairs,
 	struct score_pairs *others, struct score *sum, struct score *other_sum, struct err *e)
 {
-	if (match(pairs, &in->truth, &in->predictions, e) ||
-		(is_compared && (match(others, &in->truth, &in->other, e) || score_join(pairs, others, e))) ||
+	const struct score_masks *t = &in->truth;
+
+	if (score_match(pairs, t->masks, t->n, in->predictions.masks, in->predictions.n, e) ||
+		(is_compared && (score_match(others, t->masks, t->n, in->other.masks, in->other.n, e) ||
+					score_join(pairs, others, e))) ||
 		score_measure_all(pairs, e) || score_measure_all(others, e) ||
 		score_choices(pairs, in->truth.masks, in->truth.n, e) ||
 		score_choices(others, in->truth.masks, in->truth.n, e))
@@ -116,19 +113,6 @@ static int score(const struct cli *c, const struct inputs *in, const struct path
 	score_pairs_free(&pairs);
 	score_pairs_free(&others);
 	return bad;
-}
-
-static int write_scores(const struct cli *c, const struct scores *s, enum scores_form form, struct err *e)
-{
-	struct file_out out;
-
-	if (file_out_open(&out, c->output, e))
-		return -1;
-	if (scores_put(out.stream, s, form, e)) {
-		file_out_abort(&out);
-		return -1;
-	}
-	return file_out_commit(&out, e);
 }
 
 static int score_boxes(const struct cli *c, const struct paths *p, double *miou, struct err *e)
@@ -248,17 +232,13 @@ int main(int argc, char **argv)
 	if (!bad && is_partial)
 		bad = score_keep_views(in.truth.masks, &in.truth.n, in.predictions.masks, in.predictions.n,
 			in.other.masks, in.other.n, &e);
-	double reached = 0;
+	const enum scores_form form = is_csv ? SCORES_CSV : c.json ? SCORES_JSON : SCORES_TEXT;
+	double right = 0;
 	if (!bad && is_answers)
-		bad = score_answers(&c, &in, &paths, &reached, &e);
+		bad = score_answers(&c, &in, &paths, &right, &e);
 	if (!bad && !is_boxes && !is_answers)
-		bad = score(&c, &in, &paths, &s, &e) || write_scores(&c, &s,
-								is_csv	 ? SCORES_CSV
-								: c.json ? SCORES_JSON
-									 : SCORES_TEXT,
-								&e);
-	if (!is_answers)
-		reached = s.all.score.miou;
+		bad = score(&c, &in, &paths, &s, &e) || scores_write(&s, c.output, form, &e);
+	const double reached = is_answers ? right : s.all.score.miou;
 	if (!bad && reached < fail_under)
 		bad = err_set(&e, ERR_CHECK, "%s %.4f is below %g", is_answers ? "right" : "mIoU", reached,
 			fail_under);

@@ -3,7 +3,6 @@
 #include "base/path.h"
 #include "cli/cli.h"
 #include "formats/bert_model.h"
-#include "formats/metalist.h"
 #include "formats/sentences.h"
 #include "formats/text.h"
 #include "formats/vocab.h"
@@ -120,9 +119,7 @@ static void free_text(struct text *out)
 {
 	for (size_t i = 0; out->pieces && i < out->n; i++)
 		free(out->pieces[i]);
-	metalist_free(out->object_lists, out->n);
-	free(out->views);
-	free(out->kinds);
+	text_free_more(out);
 	free(out->pieces);
 	free(out->offsets);
 	free(out->refs);
@@ -142,38 +139,6 @@ static size_t pass_end(const size_t *starts, size_t first, size_t n)
 	while (end < n && starts[end + 1] - starts[first] <= ROWS_AT_ONCE)
 		end++;
 	return end;
-}
-
-/* What only some sentences say: the lists stay NULL where none does. Strings that are not the sentences' own
- * are object_lists. */
-static int keep_more(struct text *out, const struct sentences *s, struct err *e)
-{
-	static char nothing[] = "";
-	int has_lists = 0, has_views = 0, has_kinds = 0;
-
-	for (size_t i = 0; i < s->n; i++) {
-		has_lists |= s->items[i].has_objects;
-		has_views |= s->items[i].view != NULL;
-		has_kinds |= s->items[i].kind != NULL;
-	}
-	if ((has_lists && !(out->object_lists = mem_zalloc(s->n, sizeof(char *), "objects", e))) ||
-		(has_views && !(out->views = mem_zalloc(s->n, sizeof(char *), "views", e))) ||
-		(has_kinds && !(out->kinds = mem_zalloc(s->n, sizeof(char *), "kinds", e))))
-		return -1;
-	for (size_t i = 0; i < s->n; i++) {
-		const struct sentence *one = &s->items[i];
-		if (has_views)
-			out->views[i] = one->view ? one->view : nothing;
-		if (has_kinds)
-			out->kinds[i] = one->kind ? one->kind : nothing;
-		if (!has_lists)
-			continue;
-		out->object_lists[i] = one->has_objects ? metalist_print(one->objects, one->object_count)
-							: mem_strdup("", e);
-		if (!out->object_lists[i])
-			return err_set(e, ERR_SYSTEM, "objects: out of memory");
-	}
-	return 0;
 }
 
 /* Leaves [CLS] and [SEP] out. */
@@ -240,7 +205,8 @@ static int run(const struct cli *c, const char *dir, enum words words, struct er
 	bad = vocab_read(&v, dir, e) || sentences_read(&s, c->operand_count ? c->operands[0] : "-", e) ||
 	      bert_model_read(&b, dir, e) || check_vocab(&v, &b, dir, e) ||
 	      tokenise(c, &t, &s, &v, (size_t)b.positions, e) || alloc_text(&out, &s, &t, b.width, e) ||
-	      keep_pieces(&out, &t, &v, e) || keep_more(&out, &s, e) || encode(c, &out, &b, &t, words, e);
+	      keep_pieces(&out, &t, &v, e) || text_take_more(&out, &s, e) ||
+	      encode(c, &out, &b, &t, words, e);
 	if (!bad) {
 		cli_note(c, 1, "%zu sentences, %lld words of width %d", out.n, (long long)out.offsets[out.n],
 			out.width);

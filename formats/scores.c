@@ -1,5 +1,6 @@
 #include "formats/scores.h"
 
+#include "base/file.h"
 #include "base/mem.h"
 #include "base/number.h"
 #include "mask/score_groups.h"
@@ -364,4 +365,17 @@ int scores_put(FILE *out, const struct scores *s, enum scores_form form, struct 
 	else
 		put_text(out, s);
 	return 0;
+}
+
+int scores_write(const struct scores *s, const char *path, enum scores_form form, struct err *e)
+{
+	struct file_out out;
+
+	if (file_out_open(&out, path, e))
+		return -1;
+	if (scores_put(out.stream, s, form, e)) {
+		file_out_abort(&out);
+		return -1;
+	}
+	return file_out_commit(&out, e);
 }

@@ -31,5 +31,7 @@ int scores_by_visibility(struct scores *s, const struct score_sample *sample, co
 	const struct score_masks *whole, size_t *unknown, struct err *e);
 
 int scores_put(FILE *out, const struct scores *s, enum scores_form form, struct err *e);
+/* The same into a file; "-" is stdout. */
+int scores_write(const struct scores *s, const char *path, enum scores_form form, struct err *e);
 
 #endif

@@ -7,10 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The names of enum parse_relation, in its order. */
+/* The names of enum parse_relation, in its order. What stands on or carries its anchor is above or below it,
+ * with contact. */
 static const char *const relation_names[PARSE_RELATIONS] = {"left", "right", "front", "behind", "above",
-	"below", "on", "inside", "near", "far", "between", "middle", "larger", "smaller", "taller", "shorter",
-	"longer", "wider", "corner", "wall", "floor", "facing", "across", "supports", "with", "other"};
+	"below", "above", "inside", "near", "far", "between", "middle", "larger", "smaller", "taller",
+	"shorter", "longer", "wider", "corner", "wall", "floor", "facing", "across", "below", "with",
+	"other"};
 
 static void put_strings(FILE *to, const char *key, const char *const *strings, int n)
 {
@@ -20,21 +22,26 @@ static void put_strings(FILE *to, const char *key, const char *const *strings, i
 	fputc(']', to);
 }
 
-/* "dark blue" is the colour blue with the word dark. */
+/* Other attributes, then those of the colour: "dark blue" is the colour blue with the word dark. */
 static void put_attributes(FILE *to, const struct synth_unseen_phrase *p)
 {
 	const char *space = p->colour ? strrchr(p->colour, ' ') : NULL, *comma = "";
+	const char *basic = space ? space + 1 : p->colour;
 
-	if (p->word_count || space) {
-		fputs(",\"words\":[", to);
-		for (int i = 0; i < p->word_count; i++, comma = ",")
-			fprintf(to, "%s\"%s\"", comma, p->words[i]);
-		if (space)
-			fprintf(to, "%s\"%.*s\"", comma, (int)(space - p->colour), p->colour);
-		fputc(']', to);
+	if (!p->word_count && !p->colour)
+		return;
+	fputs(",\"words\":[", to);
+	for (int i = 0; i < p->word_count; i++, comma = ",")
+		fprintf(to, "%s\"%s\"", comma, p->words[i]);
+	if (space) {
+		fprintf(to, "%s\"%.*s\"", comma, (int)(space - p->colour), p->colour);
+		comma = ",";
 	}
-	if (p->colour)
-		fprintf(to, ",\"colour\":\"%s\"", space ? space + 1 : p->colour);
+	if (basic)
+		fprintf(to, "%s\"%s\"", comma, basic);
+	fputc(']', to);
+	if (basic)
+		fprintf(to, ",\"colour\":\"%s\"", basic);
 }
 
 static void put_count(FILE *to, const struct synth_unseen_phrase *p)
@@ -67,6 +74,8 @@ static void put_clause(FILE *to, const struct synth_unseen *x, const struct synt
 
 	fprintf(to, "{\"relation\":\"%s\",\"negated\":%s", relation_names[c->relation],
 		c->negated ? "true" : "false");
+	if (c->relation == PARSE_ON || c->relation == PARSE_SUPPORTS)
+		fputs(",\"contact\":true", to);
 	if (c->degree != PARSE_PLAIN)
 		fprintf(to, ",\"degree\":\"%s\"", degrees[c->degree]);
 	put_phrases(to, x, "anchors", c->anchors, c->anchor_count);
@@ -79,11 +88,16 @@ static void put_clause(FILE *to, const struct synth_unseen *x, const struct synt
 static void put_rest(FILE *to, const struct synth_unseen *x, const struct synth_unseen_phrase *p)
 {
 	fputs(",\"clauses\":[", to);
+	if (p->size)
+		fprintf(to, "{\"relation\":\"%s\",\"negated\":false,\"anchors\":[],\"words\":[\"%s\"]}",
+			p->sense.sizes >> SYNTH_BIG & 1 ? "larger" : "smaller", p->size);
 	for (int i = 0; i < p->clause_count; i++) {
-		fputs(i ? "," : "", to);
+		fputs(i || p->size ? "," : "", to);
 		put_clause(to, x, &x->clauses[p->clauses[i]]);
 	}
 	fputc(']', to);
+	if (p->of_several)
+		fputs(",\"group\":\"several\"", to);
 	if (p->group)
 		fprintf(to, ",\"group\":%d", p->group);
 	if (p->ordinal)
@@ -94,11 +108,12 @@ static void put_rest(FILE *to, const struct synth_unseen *x, const struct synth_
 		put_phrases(to, x, "also", p->also, p->also_count);
 }
 
+/* "One" goes by the target's noun, but for "nothing", which goes by none. */
 static void put_phrase(FILE *to, const struct synth_unseen *x, int phrase)
 {
 	const struct synth_unseen_phrase *p = &x->phrases[phrase];
 
-	fprintf(to, "{\"noun\":\"%s\"", p->noun);
+	fprintf(to, "{\"noun\":\"%s\"", *p->noun || p->is_anything ? p->noun : x->phrases[0].noun);
 	put_attributes(to, p);
 	put_count(to, p);
 	if (p->viewer)
@@ -111,11 +126,10 @@ static void put_parse(FILE *to, const struct synth_unseen *x)
 {
 	const struct synth_unseen_phrase *p = &x->phrases[0];
 
-	fprintf(to, "{\"ref\":\"%s\",\"target\":{\"noun\":\"%s\"", x->ref, p->noun);
+	fprintf(to, "{\"ref\":\"%s\",\"text\":\"%s\",\"target\":{\"noun\":\"%s\"", x->ref, x->text, p->noun);
 	put_attributes(to, p);
 	fputc('}', to);
 	put_count(to, p);
-	fputs(",\"viewpoint\":null", to);
 	put_rest(to, x, p);
 	fputs("}\n", to);
 }

@@ -8,15 +8,55 @@
 #include <stdlib.h>
 #include <string.h>
 
+void text_free_more(struct text *t)
+{
+	metalist_free(t->object_lists, t->n);
+	metalist_free(t->views, t->n);
+	metalist_free(t->kinds, t->n);
+	t->object_lists = t->views = t->kinds = NULL;
+}
+
+/* Sets (*list)[i], in a list that the first such entry makes. */
+static int set_entry(char ***list, size_t n, size_t i, const char *value, struct err *e)
+{
+	if (!*list) {
+		*list = mem_zalloc(n, sizeof **list, "sentences", e);
+		for (size_t k = 0; *list && k < n; k++)
+			if (!((*list)[k] = mem_strdup("", e)))
+				return -1;
+	}
+	char *copy = *list ? mem_strdup(value, e) : NULL;
+	if (!copy)
+		return -1;
+	free((*list)[i]);
+	(*list)[i] = copy;
+	return 0;
+}
+
+int text_take_more(struct text *t, const struct sentences *s, struct err *e)
+{
+	int bad = 0;
+
+	for (size_t i = 0; i < s->n && !bad; i++) {
+		const struct sentence *one = &s->items[i];
+		char *list = one->has_objects ? metalist_print(one->objects, one->object_count) : NULL;
+		if (one->has_objects && !list)
+			bad = err_set(e, ERR_SYSTEM, "objects: out of memory");
+		bad = bad || (list && set_entry(&t->object_lists, s->n, i, list, e)) ||
+		      (one->view && set_entry(&t->views, s->n, i, one->view, e)) ||
+		      (one->kind && set_entry(&t->kinds, s->n, i, one->kind, e));
+		free(list);
+	}
+	return bad ? -1 : 0;
+}
+
 void text_free(struct text *t)
 {
 	metalist_free(t->refs, t->n);
 	metalist_free(t->objects, t->n);
 	metalist_free(t->texts, t->n);
 	metalist_free(t->pieces, t->n);
-	metalist_free(t->object_lists, t->n);
-	metalist_free(t->views, t->n);
-	metalist_free(t->kinds, t->n);
+	text_free_more(t);
 	free(t->offsets);
 	free(t->words);
 	free(t->sentences);

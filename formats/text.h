@@ -3,6 +3,7 @@
 #define FORMATS_TEXT_H
 
 #include "base/err.h"
+#include "formats/sentences.h"
 #include "geom/camera.h"
 
 #include <stddef.h>
@@ -29,6 +30,10 @@ int text_read(struct text *t, const char *path, struct err *e);
 int text_write(const struct text *t, const char *path, const char *options, struct err *e);
 /* sentences from words. ERR_FORMAT, with the ref, where one is not finite. */
 int text_take_means(struct text *t, struct err *e);
+/* object_lists, views and kinds of the n sentences that the text is made from; what no sentence says stays
+ * NULL. */
+int text_take_more(struct text *t, const struct sentences *s, struct err *e);
+void text_free_more(struct text *t);
 void text_free(struct text *t);
 
 /* The name that a sentence's masks and boxes go by; NULL where it means several objects or none. */

@@ -6,6 +6,7 @@
 #include "lang/kinds.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -170,14 +171,38 @@ static int read_sentences(struct vocabulary *v, const struct parser *parser, str
 	return bad ? -1 : 0;
 }
 
-/* What kinds of a general noun there are says nothing of a thing that is called so. */
-static void mark_general(struct vocabulary *v)
+/* Whether two objects were called by one noun, other than this one. */
+static int shares_other_noun(const struct vocabulary *v, size_t a, size_t b, size_t but)
 {
 	for (size_t i = 0; i < v->n; i++)
-		for (size_t k = 0; k < v->n && v->items[i].role == VOCABULARY_NOUN; k++)
-			v->items[i].is_general |=
-				v->items[k].role == VOCABULARY_NOUN && v->items[k].object == v->items[i].object &&
-				wordnet_is_above(&v->kinds[v->items[i].kind].noun, &v->kinds[v->items[k].kind].noun);
+		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN; k++)
+			if (v->items[k].object == b && v->items[k].role == VOCABULARY_NOUN &&
+				v->items[k].kind == v->items[i].kind && v->items[i].kind != but)
+				return 1;
+	return 0;
+}
+
+int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
+{
+	return shares_other_noun(v, a, b, SIZE_MAX);
+}
+
+/* What kinds of a general noun there are says nothing of a thing that is called so. A noun is general that is above
+ * another one of the same thing, or that two things have in common and no other: "crockery" of a plate and a bowl. */
+static void mark_general(struct vocabulary *v)
+{
+	for (size_t i = 0; i < v->n; i++) {
+		struct vocabulary_item *a = &v->items[i];
+		for (size_t k = 0; k < v->n && a->role == VOCABULARY_NOUN && !a->is_general; k++) {
+			const struct vocabulary_item *b = &v->items[k];
+			if (b->role != VOCABULARY_NOUN)
+				continue;
+			if (b->object == a->object)
+				a->is_general = wordnet_is_above(&v->kinds[a->kind].noun, &v->kinds[b->kind].noun);
+			else if (b->kind == a->kind)
+				a->is_general = !shares_other_noun(v, a->object, b->object, a->kind);
+		}
+	}
 }
 
 int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct parser *parser, struct err *e)
@@ -379,16 +404,6 @@ int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, c
 		fit[o] = fmax(fit[o], looks * (1 - OTHER_COLOUR * v->other[o]));
 	}
 	return 1;
-}
-
-int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
-{
-	for (size_t i = 0; i < v->n; i++)
-		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN; k++)
-			if (v->items[k].object == b && v->items[k].role == VOCABULARY_NOUN &&
-				v->items[k].kind == v->items[i].kind)
-				return 1;
-	return 0;
 }
 
 size_t vocabulary_whole(struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match)

@@ -42,11 +42,13 @@ struct synth_unseen_phrase {
 	const char *plural;
 	const char *words[SYNTH_UNSEEN_LIST]; /* attributes but for the colour */
 	const char *colour;		      /* NULL: none */
+	const char *size;		      /* "small"; NULL: none. A parse has it as a clause */
 	int word_count, clause_count, except_count, also_count;
 	int clauses[SYNTH_UNSEEN_LIST], except[SYNTH_UNSEEN_LIST], also[SYNTH_UNSEEN_LIST];
 	int count, group, ordinal;
 	enum parse_relation from;
 	int viewer;
+	int of_several;	 /* "of all the cups, the ..." */
 	int is_anything; /* as an anchor: whatever there is */
 	struct synth_unseen_sense sense;
 };

@@ -55,7 +55,7 @@ static void describe(struct synth_unseen_draft *d, int phrase, int object, int c
 
 	add_noun(d, p, o->shape);
 	if (o->size != SYNTH_MEDIUM && is_likely(d, size)) {
-		add_word(p, synth_unseen_size(o->size, d->rng));
+		p->size = synth_unseen_size(o->size, d->rng);
 		p->sense.sizes = BIT(o->size);
 		p->sense.maybe_sizes = BIT(SYNTH_MEDIUM);
 	}
@@ -244,7 +244,7 @@ static int leave_out(struct synth_unseen_draft *d, int object, int is_named)
 	p->plural = is_named ? t->plural : "";
 	p->sense.shapes = t->sense.shapes;
 	p->sense.maybe_shapes = t->sense.maybe_shapes;
-	if (!p->colour && !p->word_count && add_relation(d, phrase, object, 0, "p"))
+	if (!p->colour && !p->word_count && !p->size && add_relation(d, phrase, object, 0, "p"))
 		return -1;
 	return phrase;
 }
@@ -298,6 +298,7 @@ static int build_ranked(struct synth_unseen_draft *d, int object, const enum par
 	if (d->x.phrases[0].colour && is_likely(d, 20))
 		blur_noun(d, 0);
 	int clause = add_clause(d, 0, relations[rng_below(d->rng, (uint32_t)n)], degree);
+	d->x.phrases[0].of_several = strstr(d->fill.frame, "of all the %P") != NULL;
 	return word_clause(d, clause, 0, strstr(d->fill.frame, "%C") ? "c" : "p");
 }
 
@@ -433,6 +434,7 @@ int synth_unseen_build_absent(struct synth_unseen_draft *d, int object)
 		p->plural = n->many;
 		p->sense.shapes = p->sense.maybe_shapes = 0;
 		p->word_count = 0;
+		p->size = NULL;
 		p->sense.finishes = p->sense.sizes = ~0u;
 	} else if (how == 1) { /* a colour that another thing has */
 		enum synth_colour c = s->objects[other_object(d, object)].colour;

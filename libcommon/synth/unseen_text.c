@@ -32,6 +32,10 @@ static void put_clauses(struct writer *w, const struct synth_unseen_phrase *p);
 /* "small striped red mug" */
 static void put_words(struct writer *w, const struct synth_unseen_phrase *p, int is_plural)
 {
+	if (p->size) {
+		put(w, p->size);
+		put(w, " ");
+	}
 	for (int i = 0; i < p->word_count; i++) {
 		put(w, p->words[i]);
 		put(w, " ");
@@ -44,7 +48,7 @@ static void put_words(struct writer *w, const struct synth_unseen_phrase *p, int
 		put(w, is_plural ? p->plural : p->noun);
 	else
 		put(w, is_plural ? "ones" : "one");
-	w->is_bad |= !*p->noun && !p->word_count && !p->colour && !p->clause_count;
+	w->is_bad |= !*p->noun && !p->word_count && !p->colour && !p->size && !p->clause_count;
 }
 
 /* The target where it is the noun alone that counts. */

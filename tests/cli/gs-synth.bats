@@ -195,7 +195,7 @@ interrupted() {
 	jq -se 'all(.[]; .split == "test" and (.object == (if (.objects | length) == 1 then .objects[0] else null end)) and
 		((.objects == []) == (.kind == "absent")) and ((.view != null) == (.kind == "view")))' out/unseen.jsonl >/dev/null
 	diff <(jq -r .ref out/unseen.jsonl) <(jq -r .ref out/parses.unseen.jsonl)
-	jq -se 'all(.[]; .target and (.clauses | type == "array") and has("viewpoint") and has("count")) and
+	jq -se 'all(.[]; .target and (.clauses | type == "array") and has("text") and has("count")) and
 		any(.[]; .ordinal) and any(.[]; .except) and any(.[].clauses[]; .negated) and any(.[].clauses[].anchors[]; .clauses != [])' \
 		out/parses.unseen.jsonl >/dev/null
 	# none of the sentences is one of the others
