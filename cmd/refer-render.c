@@ -44,7 +44,7 @@ static const struct cli_option table[] = {
 	{"min-probability", 0, CLI_REAL, &options.least, "P",
 		"lifted models: a sentence less likely to mean anything gets no mask (default 0.65)", 0, 1},
 	{"without", 0, CLI_STRING, &options.without, "PART,...",
-		"lifted models: choose without words, alike, colours, relations, except or sentence", 0,
+		"lifted models: choose without words, names, knowledge, alike, colours, sizes, relations, except or sentence", 0,
 		0},
 	{"viewpoint", 0, CLI_STRING, &options.viewpoint, "VIEW|x,y,z|each",
 		"lifted models: where sentences are said; each: in every view that is rendered (default: the view that a sentence names, else between the training views)",

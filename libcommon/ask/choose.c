@@ -10,7 +10,7 @@
 int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
 {
 	static const char *const names[CHOOSE_PARTS] = {
-		"words", "alike", "colours", "relations", "except", "sentence"};
+		"words", "names", "knowledge", "alike", "colours", "sizes", "relations", "except", "sentence"};
 
 	*parts = CHOOSE_ALL;
 	while (list_next(&list, unknown)) {
@@ -253,6 +253,10 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 		c->meaning.without |= 1U << MEANING_NOUN | 1U << MEANING_ATTRIBUTE;
 	if (!has(c, CHOOSE_COLOURS))
 		c->meaning.without |= 1U << MEANING_COLOUR;
+	c->vocabulary.has_names = has(c, CHOOSE_NAMES);
+	c->vocabulary.has_knowledge = has(c, CHOOSE_KNOWLEDGE);
+	if (!has(c, CHOOSE_SIZES))
+		c->meaning.without |= 1U << MEANING_SIZE;
 	if (!has(c, CHOOSE_RELATIONS))
 		c->meaning.without |= 1U << MEANING_CLAUSE | 1U << MEANING_ORDINAL;
 	if (!has(c, CHOOSE_EXCEPT))

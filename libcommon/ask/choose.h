@@ -20,11 +20,14 @@
 #include "splat/splats.h"
 
 enum choose_part {
-	CHOOSE_WORDS,	 /* nouns and attributes */
-	CHOOSE_ALIKE,	 /* look-alikes share them */
+	CHOOSE_WORDS,	  /* nouns and attributes */
+	CHOOSE_NAMES,	  /* the objects' names are nouns too */
+	CHOOSE_KNOWLEDGE, /* what words mean besides: WordNet, and lang/kinds.h */
+	CHOOSE_ALIKE,	  /* look-alikes share words */
 	CHOOSE_COLOURS,
-	CHOOSE_RELATIONS, /* clauses and ordinals */
-	CHOOSE_EXCEPT,
+	CHOOSE_SIZES,	  /* "large" */
+	CHOOSE_RELATIONS, /* other clauses, and ordinals */
+	CHOOSE_EXCEPT,	  /* "but not the red one" */
 	CHOOSE_SENTENCE,
 	CHOOSE_PARTS
 };

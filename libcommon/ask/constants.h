@@ -11,6 +11,7 @@
 #define APART_SOFT 0.03
 #define NEARBY 0.3	/* e-folds by which what is near is preferred */
 #define LOW_IS_NEAR 0.7 /* a thing's foot this much higher looks as if it were 1 farther */
+#define TOUCHING 0.05	/* a gap that is none: the undersides of things are seen badly */
 #define NEXT_TO 0.3	/* the gap at which "next to" is half true */
 #define FAR_FROM 0.8	/* the distance at which "far from" is half true */
 #define SIDE_LEAST 0.15 /* of half the objects' extent: where the left side begins */

@@ -298,34 +298,47 @@ static double judge_relation(struct meaning *m, int phrase, const struct parse_c
 	return known;
 }
 
+/* "large", of a thing by itself. */
+static int is_size(const struct parse_clause *c)
+{
+	return c->degree == PARSE_PLAIN && c->relation >= PARSE_LARGER && c->relation <= PARSE_WIDER;
+}
+
+/* value (O): how far a clause holds, before what is negated is turned round. said (O) is scratch. */
+static void judge_predication(struct meaning *m, int phrase, const struct parse_clause *c, const double *fit,
+	double *said, double *value)
+{
+	const size_t n = objects_of(m);
+
+	if (c->relation == PARSE_OTHER) {
+		judge_predicate(m, c, value);
+		return;
+	}
+	const double known = judge_relation(m, phrase, c, fit, value);
+	if (c->relation == PARSE_WITH) {
+		judge_predicate(m, c, said);
+		for (size_t o = 0; o < n; o++)
+			value[o] = fmax(said[o], known * value[o]);
+		return;
+	}
+	judge_said(m, c, said);
+	for (size_t o = 0; o < n; o++)
+		value[o] = fmax(known * value[o] + (1 - known) * UNKNOWN_RELATION, (1 - known) * SAID_WORTH * said[o]);
+}
+
 static void judge_clause(struct meaning *m, int phrase, int clause, const double *fit)
 {
 	const struct parse_clause *c = &m->sentence->parse->clauses[clause];
 	const size_t n = objects_of(m);
-	double *value = add_part(m, phrase, MEANING_CLAUSE, clause), *there = there_of(m, phrase);
-	double *said = m->scratch + 7 * n;
+	double *value = add_part(m, phrase, is_size(c) ? MEANING_SIZE : MEANING_CLAUSE, clause);
+	double *there = there_of(m, phrase);
+	const double least = is_size(c) ? SIZE_LEAST : RELATION_LEAST;
 
-	if (c->relation == PARSE_OTHER) {
-		judge_predicate(m, c, value);
-	} else {
-		const double known = judge_relation(m, phrase, c, fit, value);
-		if (c->relation == PARSE_WITH) {
-			judge_predicate(m, c, said);
-			for (size_t o = 0; o < n; o++)
-				value[o] = fmax(said[o], known * value[o]);
-		} else {
-			judge_said(m, c, said);
-			for (size_t o = 0; o < n; o++)
-				value[o] = fmax(known * value[o] + (1 - known) * UNKNOWN_RELATION,
-					(1 - known) * SAID_WORTH * said[o]);
-		}
-	}
-	const int is_size = c->degree == PARSE_PLAIN && c->relation >= PARSE_LARGER && c->relation <= PARSE_WIDER;
-	const double least = is_size ? SIZE_LEAST : RELATION_LEAST;
+	judge_predication(m, phrase, c, fit, m->scratch + 7 * n, value);
 	for (size_t o = 0; o < n; o++) {
 		const double x = c->negated ? 1 - value[o] : value[o];
 		value[o] = least + (1 - least) * x;
-		there[o] *= is_size ? 1 : value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
+		there[o] *= is_size(c) ? 1 : value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
 	}
 	take_part(m, &m->parts[m->part_count - 1]);
 }

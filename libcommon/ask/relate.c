@@ -35,7 +35,7 @@ double relate_stands_on(const struct arrangement *a, const struct arranged *p, c
 {
 	return step((feet_overlap(p, q) - 0.4) / 0.1) *
 	       step((p->centre[2] - q->centre[2]) / (0.02 * a->spacing)) *
-	       exp(-fmax(0, p->low[2] - q->high[2]) / (0.1 * a->spacing));
+	       exp(-fmax(0, (p->low[2] - q->high[2]) / a->spacing - TOUCHING) / 0.1);
 }
 
 static double gap(const struct arranged *p, const struct arranged *q)

@@ -6,7 +6,6 @@
 #include "lang/kinds.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -171,24 +170,41 @@ static int read_sentences(struct vocabulary *v, const struct parser *parser, str
 	return bad ? -1 : 0;
 }
 
-/* Whether two objects were called by one noun, other than this one. */
-static int shares_other_noun(const struct vocabulary *v, size_t a, size_t b, size_t but)
+int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
 {
 	for (size_t i = 0; i < v->n; i++)
 		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN; k++)
 			if (v->items[k].object == b && v->items[k].role == VOCABULARY_NOUN &&
-				v->items[k].kind == v->items[i].kind && v->items[i].kind != but)
+				v->items[k].kind == v->items[i].kind)
 				return 1;
 	return 0;
 }
 
-int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
+static int are_akin(const struct vocabulary_kind *a, const struct vocabulary_kind *b)
 {
-	return shares_other_noun(v, a, b, SIZE_MAX);
+	return a == b || wordnet_fits(&a->noun, &b->noun, 0) > 0 || wordnet_fits(&b->noun, &a->noun, 0) > 0 ||
+	       kinds_share(a->lemma, b->lemma);
+}
+
+/* Whether two objects were called by other nouns than this one, and none of them are akin. */
+static int differ_but_for(const struct vocabulary *v, size_t a, size_t b, size_t kind)
+{
+	int compared = 0;
+
+	for (size_t i = 0; i < v->n; i++)
+		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN; k++) {
+			const struct vocabulary_item *p = &v->items[i], *q = &v->items[k];
+			if (q->object != b || q->role != VOCABULARY_NOUN || p->kind == kind || q->kind == kind)
+				continue;
+			if (are_akin(&v->kinds[p->kind], &v->kinds[q->kind]))
+				return 0;
+			compared = 1;
+		}
+	return compared;
 }
 
 /* What kinds of a general noun there are says nothing of a thing that is called so. A noun is general that is above
- * another one of the same thing, or that two things have in common and no other: "crockery" of a plate and a bowl. */
+ * another one of the same thing, or that is all that two things have in common: "crockery" of a plate and a bowl. */
 static void mark_general(struct vocabulary *v)
 {
 	for (size_t i = 0; i < v->n; i++) {
@@ -200,7 +216,7 @@ static void mark_general(struct vocabulary *v)
 			if (b->object == a->object)
 				a->is_general = wordnet_is_above(&v->kinds[a->kind].noun, &v->kinds[b->kind].noun);
 			else if (b->kind == a->kind)
-				a->is_general = !shares_other_noun(v, a->object, b->object, a->kind);
+				a->is_general = differ_but_for(v, a->object, b->object, a->kind);
 		}
 	}
 }
@@ -209,7 +225,7 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 {
 	const size_t width = (size_t)l->width;
 
-	*v = (struct vocabulary){.lifted = l, .without = l->sentences};
+	*v = (struct vocabulary){.lifted = l, .has_names = 1, .has_knowledge = 1, .without = l->sentences};
 	v->parses = mem_zalloc(l->sentences, sizeof *v->parses, "vocabulary", e);
 	v->mean = mem_zalloc(width, sizeof *v->mean, "vocabulary", e);
 	v->sentence_mean = mem_zalloc(width, sizeof *v->sentence_mean, "vocabulary", e);
@@ -281,9 +297,11 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 	struct wordnet_noun noun;
 
 	word_vector(v, word, s->vectors, v->word);
-	wordnet_find(&noun, word->lemma);
+	noun.n = 0;
+	if (v->has_knowledge)
+		wordnet_find(&noun, word->lemma);
 	for (size_t o = 0; o < objects; o++) {
-		const int named = is_in_name(word->lemma, l->names[o]);
+		const int named = v->has_names ? is_in_name(word->lemma, l->names[o]) : 0;
 		match[o] = named == 2 ? 1 : named ? NAME_PART : 0;
 	}
 	match[objects] = 0;
@@ -296,7 +314,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		if (x < 1) {
 			x = worth(dot(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
 			x = fmax(x, WORDNET_WORTH * wordnet_fits(&noun, &v->kinds[item->kind].noun, item->is_general));
-			if (!item->is_general && kinds_share(word->lemma, item->lemma))
+			if (v->has_knowledge && !item->is_general && kinds_share(word->lemma, item->lemma))
 				x = fmax(x, KINDS_WORTH);
 		}
 		double *to = &match[item->role == VOCABULARY_NOUN ? item->object : objects];
@@ -312,9 +330,11 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 	struct wordnet_adjective adjective;
 
 	word_vector(v, word, s->vectors, v->word);
-	wordnet_find_adjective(&adjective, word->lemma);
+	adjective.n = 0;
+	if (v->has_knowledge)
+		wordnet_find_adjective(&adjective, word->lemma);
 	for (size_t o = 0; o < l->objects; o++)
-		match[o] = is_in_name(word->lemma, l->names[o]) ? 1 : 0;
+		match[o] = v->has_names && is_in_name(word->lemma, l->names[o]) ? 1 : 0;
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
 		double *to = &match[item->object], x;

@@ -50,6 +50,7 @@ struct vocabulary {
 	float *sentences; /* (R,width) of length 1: means of the sentences, less sentence_mean */
 	size_t kind_count, kind_capacity;
 	struct vocabulary_kind *kinds; /* of different lemmas */
+	int has_names, has_knowledge; /* whether names, and WordNet with lang/kinds.h, count: 1, for the caller to set */
 	size_t without;		    /* the training sentence whose words do not count, for the caller to set; R: none */
 	double *scratch;	    /* (width) */
 	float *word;		    /* (width) */
