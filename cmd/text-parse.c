@@ -6,6 +6,7 @@
 #include "formats/text.h"
 #include "lang/parser.h"
 
+#include <omp.h>
 #include <stdio.h>
 
 static int put_parses(const struct parser *parser, const struct text *t, FILE *out, struct err *e)
@@ -81,5 +82,7 @@ int main(int argc, char **argv)
 	struct cli c;
 
 	cli_parse(&c, &tool, argc, argv);
+	/* a sentence is too little to share among threads */
+	omp_set_num_threads(1);
 	return run(&c, weights, (enum method)method, &e) ? cli_fail(&c, &e) : cli_done(&c);
 }
