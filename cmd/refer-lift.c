@@ -224,8 +224,8 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 	int bad = lift(r, e);
 	cli_progress_end(&r->progress);
 	if (bad || lifted_add_sentences(&r->model, &r->text, r->sentence_object, r->names, e) ||
-		(!options.is_as_masked &&
-			recognise(&r->model, &r->scene.splats, &r->scene.cameras, &(struct parser){.weights = &r->weights}, &moved, e)))
+		(!options.is_as_masked && recognise(&r->model, &r->scene.splats, &r->scene.cameras,
+						  &(struct parser){.weights = &r->weights}, &moved, e)))
 		return -1;
 	for (size_t o = 0; o < r->model.objects; o++)
 		confidence += (double)r->model.confidence[o] / (double)r->model.objects;

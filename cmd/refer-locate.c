@@ -4,7 +4,6 @@
 #include "cli/cli.h"
 #include "formats/anymodel.h"
 #include "formats/boxes.h"
-#include "formats/parser_weights.h"
 #include "formats/ply.h"
 #include "formats/scene.h"
 #include "formats/splat.h"
@@ -51,7 +50,6 @@ struct run {
 	struct scene scene;
 	struct text text;
 	struct anymodel model;
-	struct parser_weights weights;
 	struct asked asked;
 	char *chosen; /* of the sentences: which --refs names */
 	size_t count, *refs;
@@ -88,15 +86,12 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 	double up[3];
 
 	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
-		anymodel_read(&r->model, options.model, e) ||
-		(r->model.is_lifted && parser_weights_default(&r->weights, e)) || choose_refs(r, c, e))
+		anymodel_read(&r->model, options.model, e) || choose_refs(r, c, e))
 		return -1;
-	if (options.viewpoint &&
-		viewpoint_read(&from, options.viewpoint, &r->scene.cameras, r->scene.offset))
+	if (options.viewpoint && viewpoint_read(&from, options.viewpoint, &r->scene.cameras, r->scene.offset))
 		cli_usage(c, "--viewpoint: '%s' is no view and no x,y,z", options.viewpoint);
-	const struct parser parser = {.weights = &r->weights};
 	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
-		r->refs, r->count, 1, CHOOSE_ALL, ASKED_LEAST, options.viewpoint ? &from : NULL, &parser};
+		r->refs, r->count, 1, CHOOSE_ALL, ASKED_LEAST, options.viewpoint ? &from : NULL};
 	if (anymodel_answer(&r->model, &ask, &r->asked, e))
 		return -1;
 	r->located = mem_zalloc(r->asked.answers, sizeof *r->located, "objects", e);
@@ -182,7 +177,6 @@ int main(int argc, char **argv)
 	free(r.located);
 	asked_free(&r.asked);
 	anymodel_free(&r.model);
-	parser_weights_free(&r.weights);
 	text_free(&r.text);
 	scene_free(&r.scene);
 	free(r.chosen);

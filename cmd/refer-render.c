@@ -4,7 +4,6 @@
 #include "cli/cli.h"
 #include "formats/anymodel.h"
 #include "formats/masks.h"
-#include "formats/parser_weights.h"
 #include "formats/pictures.h"
 #include "formats/scene.h"
 #include "formats/text.h"
@@ -24,7 +23,7 @@ static struct {
 	struct pictures pictures;
 	int split, sentences, is_plain, is_amodal, size[2];
 	const char *viewpoint; /* "each": the view that is rendered */
-	double scale; /* 0: not given */
+	double scale;	       /* 0: not given */
 	double least;
 } options = {.split = SPLIT_TEST, .sentences = SPLIT_ALL, .least = ASKED_LEAST};
 
@@ -44,8 +43,8 @@ static const struct cli_option table[] = {
 	{"min-probability", 0, CLI_REAL, &options.least, "P",
 		"lifted models: a sentence less likely to mean anything gets no mask (default 0.65)", 0, 1},
 	{"without", 0, CLI_STRING, &options.without, "PART,...",
-		"lifted models: choose without words, names, knowledge, alike, colours, sizes, relations, except or sentence", 0,
-		0},
+		"lifted models: choose without words, names, knowledge, alike, colours, sizes, relations, except or sentence",
+		0, 0},
 	{"viewpoint", 0, CLI_STRING, &options.viewpoint, "VIEW|x,y,z|each",
 		"lifted models: where sentences are said; each: in every view that is rendered (default: the view that a sentence names, else between the training views)",
 		0, 0},
@@ -80,7 +79,6 @@ struct run {
 	struct scene scene;
 	struct text text;
 	struct anymodel model;
-	struct parser_weights weights;
 	struct asked asked;
 	size_t ref_count, view_count;
 	char *chosen;	       /* of the views, then of the sentences: which a list names */
@@ -143,8 +141,7 @@ static int choose_refs(struct run *r, const struct cli *c, struct err *e)
 static int load(struct run *r, const struct cli *c, struct err *e)
 {
 	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
-		anymodel_read(&r->model, options.model, e) ||
-		(r->model.is_lifted && parser_weights_default(&r->weights, e)) || choose_views(r, c, e) || choose_refs(r, c, e))
+		anymodel_read(&r->model, options.model, e) || choose_views(r, c, e) || choose_refs(r, c, e))
 		return -1;
 	if (!r->view_count || !r->ref_count)
 		cli_warn(c, "%s: no %s in this split",
@@ -165,9 +162,8 @@ static void free_answers(struct run *r)
 /* What all sentences mean, said from a viewpoint or each from its own. */
 static int answer(struct run *r, const struct viewpoint *from, struct err *e)
 {
-	const struct parser parser = {.weights = &r->weights};
 	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
-		r->refs, r->ref_count, !options.is_plain, options.parts, options.least, from, &parser};
+		r->refs, r->ref_count, !options.is_plain, options.parts, options.least, from};
 
 	free_answers(r);
 	int bad = anymodel_answer(&r->model, &ask, &r->asked, e) ||
@@ -286,7 +282,6 @@ int main(int argc, char **argv)
 	scene_free(&r.scene);
 	text_free(&r.text);
 	anymodel_free(&r.model);
-	parser_weights_free(&r.weights);
 	free_answers(&r);
 	free(r.chosen);
 	free(r.refs);

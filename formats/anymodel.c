@@ -19,20 +19,21 @@ int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 	const char *format = safetensors_meta(&st, "format");
 	m->is_lifted = format && !strcmp(format, "refer.lifted");
 	if (m->is_lifted)
-		bad = lifted_take(&m->lifted, &st, e);
+		bad = lifted_take(&m->lifted, &st, e) || parser_weights_default(&m->weights, e);
 	else if (!format || strcmp(format, "refer.model"))
 		bad = err_set(e, ERR_FORMAT, "%s: format is '%s', expected 'refer.model' or 'refer.lifted'",
 			st.path, format ? format : "");
 	else
 		bad = model_take(&m->trained, &st, e);
 	safetensors_close(&st);
-	return bad;
+	return bad ? -1 : 0;
 }
 
 void anymodel_free(struct anymodel *m)
 {
 	model_free(&m->trained);
 	lifted_free(&m->lifted);
+	parser_weights_free(&m->weights);
 	*m = (struct anymodel){0};
 }
 
@@ -65,14 +66,15 @@ static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from,
 		from[i] = (struct viewpoint){
 			.kind = VIEWPOINT_CAMERA, .camera = cameras_find(&q->scene->cameras, view)};
 		if (!from[i].camera)
-			return err_set(e, ERR_FORMAT, "%s: sentence '%s' is of view '%s', which %s does not have",
+			return err_set(e, ERR_FORMAT,
+				"%s: sentence '%s' is of view '%s', which %s does not have",
 				file_name(q->text_path), q->text->refs[q->which[i]], view, q->scene_path);
 	}
 	return 0;
 }
 
-static int answer_lifted(const struct lifted *l, const struct anymodel_ask *q, struct asked_of *of, struct asked *a,
-	struct err *e)
+static int answer_lifted(const struct lifted *l, const struct anymodel_ask *q, struct asked_of *of,
+	struct asked *a, struct err *e)
 {
 	struct viewpoint *from = mem_alloc(q->count, sizeof *from, "sentences", e);
 
@@ -86,8 +88,9 @@ int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, stru
 {
 	const struct model *t = &m->trained;
 	const float *means = q->scene->splats.means;
+	const struct parser parser = {.weights = &m->weights};
 	struct asked_of of = {&q->scene->splats, &q->scene->cameras, q->text->offsets, q->text->words,
-		q->text->texts, q->text->pieces, NULL, q->parser, q->which, q->count};
+		q->text->texts, q->text->pieces, NULL, &parser, q->which, q->count};
 	struct rows rows = {0};
 
 	*a = (struct asked){0};

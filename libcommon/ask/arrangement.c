@@ -246,8 +246,8 @@ static void take_box(struct arrangement *a, size_t o, double axes[3][3])
 	to->in_sight = to->is_there;
 }
 
-/* Where objects are in a picture: whether their middle is in it, and how far right it is there, as a length at
- * the objects' mean distance. */
+/* Where objects are in a picture: whether their middle is in it, and how far right it is there, as a length
+ * at the objects' mean distance. */
 static void see(struct arrangement *a, const struct camera *c, double axes[3][3])
 {
 	double mean = 0, count = 0, depth;
@@ -304,7 +304,8 @@ static void find_spacing(struct arrangement *a)
 		for (size_t k = 0; k < i; k++) {
 			const struct arranged *p = &a->objects[i], *q = &a->objects[k];
 			if (p->is_there && q->is_there)
-				a->along[n++].at = hypot(p->centre[0] - q->centre[0], p->centre[1] - q->centre[1]);
+				a->along[n++].at =
+					hypot(p->centre[0] - q->centre[0], p->centre[1] - q->centre[1]);
 		}
 	if (n)
 		qsort(a->along, n, sizeof *a->along, by_place);

@@ -15,10 +15,11 @@ struct arranged {
 	int in_sight; /* 0: the viewpoint is a picture, and the centre is outside of it */
 	/* Axes: 0 to the right, 1 away from the viewer, 2 up; scene units, the origin at the middle of the
 	 * objects. */
-	double low[3], high[3]; /* box: the middle 80% of its weight along each axis, a tenth longer each way */
-	double centre[3];	/* of the box */
-	double side;		/* how far right it looks: centre[0], or, in a picture, in perspective */
-	double lab[3];		/* mean colour, CIE L*a*b* (D65) */
+	double low[3],
+		high[3];  /* box: the middle 80% of its weight along each axis, a tenth longer each way */
+	double centre[3]; /* of the box */
+	double side;	  /* how far right it looks: centre[0], or, in a picture, in perspective */
+	double lab[3];	  /* mean colour, CIE L*a*b* (D65) */
 	double colours[COLOUR_WORDS]; /* part of it that people would call so (lang/colours.h) */
 };
 
@@ -44,14 +45,15 @@ struct arrangement {
 };
 
 /* Of the objects of l in the scene that splats and cameras are of, which must outlive it, seen from the usual
- * viewpoint. Only Gaussians that hang together count (refer/extent.h), and none for much more than its fellows do,
- * so that strays and large ones do not decide where an object is. Returns 0, or -1 with *e set and nothing to free.
+ * viewpoint. Only Gaussians that hang together count (refer/extent.h), and none for much more than its
+ * fellows do, so that strays and large ones do not decide where an object is. Returns 0, or -1 with *e set
+ * and nothing to free.
  */
 int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,
 	const struct cameras *cameras, struct err *e);
 
-/* The same seen from elsewhere. VIEWPOINT_USUAL is the mean of the training cameras' centres (of all, where none is
- * for training), looking level along the mean of their directions. */
+/* The same seen from elsewhere. VIEWPOINT_USUAL is the mean of the training cameras' centres (of all, where
+ * none is for training), looking level along the mean of their directions. */
 void arrangement_look(struct arrangement *a, const struct viewpoint *from);
 void arrangement_free(struct arrangement *a);
 

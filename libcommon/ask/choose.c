@@ -9,8 +9,8 @@
 
 int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
 {
-	static const char *const names[CHOOSE_PARTS] = {
-		"words", "names", "knowledge", "alike", "colours", "sizes", "relations", "except", "sentence"};
+	static const char *const names[CHOOSE_PARTS] = {"words", "names", "knowledge", "alike", "colours",
+		"sizes", "relations", "except", "sentence"};
 
 	*parts = CHOOSE_ALL;
 	while (list_next(&list, unknown)) {
@@ -84,7 +84,8 @@ static size_t best_of(const double *x, size_t n)
 	return best;
 }
 
-/* How far the anchors of a phrase are there: what is said to be on the green plate where no plate is green. */
+/* How far the anchors of a phrase are there: what is said to be on the green plate where no plate is green.
+ */
 static double anchors_there(const struct meaning *m, const struct parse *p, int phrase, int depth)
 {
 	const size_t n = m->arrangement->n;
@@ -127,7 +128,8 @@ static double choose_phrase(struct chooser *c, const struct parse *p, int phrase
 	const double *fit = c->meaning.fit + (size_t)phrase * (n + 1);
 
 	for (size_t o = 0; o < n; o++)
-		c->score[o] = log(fmax(fit[o], 1e-12)) + (has(c, CHOOSE_SENTENCE) ? SENTENCE_WEIGHT * c->whole[o] : 0);
+		c->score[o] = log(fmax(fit[o], 1e-12)) +
+			      (has(c, CHOOSE_SENTENCE) ? SENTENCE_WEIGHT * c->whole[o] : 0);
 	const size_t best = best_of(c->score, n);
 	const double top = fit[best], there = presence(c, p, phrase, best);
 	if (f->count == PARSE_ONE) {
@@ -167,8 +169,8 @@ static void choose_whole(struct chooser *c, double *row, char *chosen)
 	chosen[best_of(row, n)] = 1;
 }
 
-static int choose_parsed(struct chooser *c, const struct choose_sentence *from, struct choice *to, double *row,
-	char *chosen, struct parse *p, struct err *e)
+static int choose_parsed(struct chooser *c, const struct choose_sentence *from, struct choice *to,
+	double *row, char *chosen, struct parse *p, struct err *e)
 {
 	const struct lifted *l = c->scene->lifted;
 	const struct parser_vectors vectors = {from->pieces, from->vectors, (int)from->words, l->width};
@@ -200,8 +202,8 @@ static int choose_one(struct chooser *c, const struct choose_sentence *from, str
 	if (!from->words || !n)
 		return 0;
 	look_from(c, &from->from);
-	const size_t same = vocabulary_whole(
-		&c->vocabulary, has(c, CHOOSE_SENTENCE) ? from->text : NULL, from->vectors, from->words, c->whole);
+	const size_t same = vocabulary_whole(&c->vocabulary, has(c, CHOOSE_SENTENCE) ? from->text : NULL,
+		from->vectors, from->words, c->whole);
 	if (from->pieces) {
 		bad = choose_parsed(c, from, to, row, chosen, &p, e);
 		if (!bad && watch)
@@ -228,9 +230,10 @@ static void find_looks(struct chooser *c)
 
 	for (size_t i = 0; i < n; i++)
 		for (size_t k = 0; k < n; k++)
-			c->looks[i * n + k] = vocabulary_shares_noun(&c->vocabulary, i, k)
-						      ? exp(LOOKS_WORTH * arrangement_alike(&c->arrangement, i, k))
-						      : 0;
+			c->looks[i * n + k] =
+				vocabulary_shares_noun(&c->vocabulary, i, k)
+					? exp(LOOKS_WORTH * arrangement_alike(&c->arrangement, i, k))
+					: 0;
 }
 
 static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigned parts, struct err *e)
@@ -241,7 +244,8 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	c->score = mem_alloc(objects, sizeof *c->score, "choice", e);
 	c->whole = mem_alloc(objects, sizeof *c->whole, "choice", e);
 	c->looks = mem_alloc(objects, objects * sizeof *c->looks, "choice", e);
-	if (!c->score || !c->whole || !c->looks || arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
+	if (!c->score || !c->whole || !c->looks ||
+		arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
 		vocabulary_make(&c->vocabulary, s->lifted, s->parser, e))
 		return -1;
 	find_looks(c);
@@ -276,7 +280,8 @@ static void chooser_free(struct chooser *c)
 }
 
 int choose(const struct choose_scene *s, const struct choose_sentence *sentences, size_t n, unsigned parts,
-	struct choice *choices, float *probability, char *chosen, const struct choose_watch *watch, struct err *e)
+	struct choice *choices, float *probability, char *chosen, const struct choose_watch *watch,
+	struct err *e)
 {
 	const size_t objects = s->lifted->objects;
 	double *row = mem_alloc(objects, sizeof *row, "choice", e);
@@ -284,8 +289,8 @@ int choose(const struct choose_scene *s, const struct choose_sentence *sentences
 	int bad = !row || chooser_init(&c, s, parts, e);
 
 	for (size_t i = 0; i < n && !bad; i++)
-		bad = choose_one(&c, &sentences[i], &choices[i], row, probability + i * objects, chosen + i * objects,
-			watch, i, e);
+		bad = choose_one(&c, &sentences[i], &choices[i], row, probability + i * objects,
+			chosen + i * objects, watch, i, e);
 	chooser_free(&c);
 	free(row);
 	return bad ? -1 : 0;

@@ -102,8 +102,9 @@ static int is_verb_to_be(const struct parse_word *w)
 /* The word that names the kind of thing, or -1: "something", "the red one". */
 static int head_of(const struct parse *p, const struct parse_phrase *f)
 {
-	static const char *const generic[] = {"thing", "object", "item", "one", "something", "anything", "everything",
-		"stuff", "what", "whatever", "which", "thingy", "other", "another", "piece", NULL};
+	static const char *const generic[] = {"thing", "object", "item", "one", "something", "anything",
+		"everything", "stuff", "what", "whatever", "which", "thingy", "other", "another", "piece",
+		NULL};
 	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
 
 	return head >= 0 && (word_is(&p->words[head], generic) || is_verb_to_be(&p->words[head])) ? -1 : head;
@@ -121,7 +122,8 @@ static int has_word(const struct parse *p, const struct parse_phrase *f, const c
 /* "the red one", "the other two": a thing of the kind that was spoken of. */
 static int is_elliptic(const struct parse *p, const struct parse_phrase *f)
 {
-	static const char *const again[] = {"one", "ones", "other", "others", "another", "two", "three", "those", NULL};
+	static const char *const again[] = {
+		"one", "ones", "other", "others", "another", "two", "three", "those", NULL};
 
 	return !f->noun.n && (f->span.begin == f->span.end || has_word(p, f, again));
 }
@@ -192,12 +194,14 @@ static void judge_attribute(struct meaning *m, int phrase, int word, double leas
 	const double most = largest(value, n);
 	m->unknown += most < 0.5;
 	for (size_t o = 0; o < n; o++)
-		value[o] = (value[o] < 0 ? least * (1 + (1 - OPPOSITE) * value[o]) : least + (1 - least) * value[o]) /
+		value[o] = (value[o] < 0 ? least * (1 + (1 - OPPOSITE) * value[o])
+					 : least + (1 - least) * value[o]) /
 			   (least + (1 - least) * most);
 	take_part(m, &m->parts[m->part_count - 1]);
 }
 
-/* A part that is, or fits, no object, but that training sentences may tell of: "with a handle", "on the shelf". */
+/* A part that is, or fits, no object, but that training sentences may tell of: "with a handle", "on the
+ * shelf". */
 static void judge_said(struct meaning *m, const struct parse_clause *c, double *said)
 {
 	const struct parse *p = m->sentence->parse;
@@ -245,8 +249,8 @@ static void judge_predicate(struct meaning *m, const struct parse_clause *c, dou
 /* There is no more or less of some relations: "on top of". */
 static enum parse_degree degree_of(const struct parse_clause *c)
 {
-	const unsigned plain = 1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_SUPPORTS | 1U << PARSE_BETWEEN |
-			       1U << PARSE_WITH | 1U << PARSE_OTHER;
+	const unsigned plain = 1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_SUPPORTS |
+			       1U << PARSE_BETWEEN | 1U << PARSE_WITH | 1U << PARSE_OTHER;
 
 	return plain >> c->relation & 1 ? PARSE_PLAIN : c->degree;
 }
@@ -260,20 +264,22 @@ static int is_late(const struct parse_clause *c)
 /* The place as a whole, unless something is called so. */
 static int is_scene(const struct meaning *m, int phrase)
 {
-	static const char *const places[] = {"table", "tabletop", "desk", "picture", "photo", "image", "scene", "room",
-		"shot", "frame", "view", "floor", "ground", "surface", NULL};
+	static const char *const places[] = {"table", "tabletop", "desk", "picture", "photo", "image",
+		"scene", "room", "shot", "frame", "view", "floor", "ground", "surface", NULL};
 	const struct parse *p = m->sentence->parse;
 	const int head = head_of(p, &p->phrases[phrase]);
 
-	return p->phrases[phrase].scene || (head >= 0 && m->known[phrase] < 0.5 && word_is(&p->words[head], places));
+	return p->phrases[phrase].scene ||
+	       (head >= 0 && m->known[phrase] < 0.5 && word_is(&p->words[head], places));
 }
 
 /* value (O) of a clause that has places in it; returns how far its anchors are known. */
-static double judge_relation(struct meaning *m, int phrase, const struct parse_clause *c, const double *fit,
-	double *value)
+static double judge_relation(
+	struct meaning *m, int phrase, const struct parse_clause *c, const double *fit, double *value)
 {
-	const unsigned one_will_do = 1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_SUPPORTS | 1U << PARSE_NEAR |
-				     1U << PARSE_WITH | 1U << PARSE_BELOW | 1U << PARSE_ABOVE;
+	const unsigned one_will_do = 1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_SUPPORTS |
+				     1U << PARSE_NEAR | 1U << PARSE_WITH | 1U << PARSE_BELOW |
+				     1U << PARSE_ABOVE;
 	const struct parse *p = m->sentence->parse;
 	struct relate_anchor anchors[ANCHORS];
 	struct relation r = {c->relation, degree_of(c), p->phrases[phrase].count != PARSE_ONE, 0, anchors};
@@ -288,8 +294,8 @@ static double judge_relation(struct meaning *m, int phrase, const struct parse_c
 		const int i = c->anchors.item[k];
 		const int is_many = p->phrases[i].count != PARSE_ONE &&
 				    (r.degree != PARSE_PLAIN || !(one_will_do >> c->relation & 1));
-		anchors[r.count] = (struct relate_anchor){fit_of(m, i), is_scene(m, i),
-			is_many && !c->negated, is_other(p, &p->phrases[i])};
+		anchors[r.count] = (struct relate_anchor){
+			fit_of(m, i), is_scene(m, i), is_many && !c->negated, is_other(p, &p->phrases[i])};
 		if (!p->phrases[i].viewer && !anchors[r.count].is_scene)
 			known = fmin(known, m->known[i]);
 		r.count++;
@@ -323,7 +329,8 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	}
 	judge_said(m, c, said);
 	for (size_t o = 0; o < n; o++)
-		value[o] = fmax(known * value[o] + (1 - known) * UNKNOWN_RELATION, (1 - known) * SAID_WORTH * said[o]);
+		value[o] = fmax(known * value[o] + (1 - known) * UNKNOWN_RELATION,
+			(1 - known) * SAID_WORTH * said[o]);
 }
 
 static void judge_clause(struct meaning *m, int phrase, int clause, const double *fit)
@@ -408,9 +415,10 @@ static void judge_order(struct meaning *m, int phrase)
 		judge_ordinal(m, phrase, before);
 }
 
-/* The clauses that do not compare. Those of the place as a whole are the thing's: "everything on the desk that is
- * right of the laptop". */
-static void judge_early(struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit, int depth)
+/* The clauses that do not compare. Those of the place as a whole are the thing's: "everything on the desk
+ * that is right of the laptop". */
+static void judge_early(
+	struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit, int depth)
 {
 	const struct parse *p = m->sentence->parse;
 
@@ -485,12 +493,17 @@ static int make_room(struct meaning *m, const struct parse *p, struct err *e)
 	if (!m->scratch)
 		m->scratch = mem_alloc(n + 1, 8 * sizeof *m->scratch, "choice", e);
 	return !m->scratch ||
-			       mem_room((void **)&m->fit, &m->fit_room, phrases * (n + 1), sizeof *m->fit, "choice", e) ||
-			       mem_room((void **)&m->there, &m->there_room, phrases * n, sizeof *m->there, "choice", e) ||
-			       mem_room((void **)&m->known, &m->known_room, phrases, sizeof *m->known, "choice", e) ||
+			       mem_room((void **)&m->fit, &m->fit_room, phrases * (n + 1), sizeof *m->fit,
+				       "choice", e) ||
+			       mem_room((void **)&m->there, &m->there_room, phrases * n, sizeof *m->there,
+				       "choice", e) ||
+			       mem_room((void **)&m->known, &m->known_room, phrases, sizeof *m->known,
+				       "choice", e) ||
 			       mem_room((void **)&m->done, &m->phrase_room, phrases, 1, "choice", e) ||
-			       mem_room((void **)&m->parts, &m->part_room, parts, sizeof *m->parts, "choice", e) ||
-			       mem_room((void **)&m->values, &m->value_room, parts * n, sizeof *m->values, "choice", e)
+			       mem_room((void **)&m->parts, &m->part_room, parts, sizeof *m->parts, "choice",
+				       e) ||
+			       mem_room((void **)&m->values, &m->value_room, parts * n, sizeof *m->values,
+				       "choice", e)
 		       ? -1
 		       : 0;
 }

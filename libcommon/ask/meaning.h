@@ -1,10 +1,11 @@
-/* What a parsed sentence means among a scene's objects: for each of its phrases, how well each object fits it.
+/* What a parsed sentence means among a scene's objects: for each of its phrases, how well each object fits
+ * it.
  *
- * A phrase is judged part by part: its noun, its attributes, its clauses, what it leaves out, and then what orders
- * the things that fit so far: superlatives, comparatives, ordinals. A clause's anchors are phrases themselves and
- * are judged first. Each part gives every object a number in [0,1], and a phrase's fit is their product. How far
- * the best object fits at all, where parts that nothing speaks for or against are left aside, is what the
- * presence of the thing goes by. */
+ * A phrase is judged part by part: its noun, its attributes, its clauses, what it leaves out, and then what
+ * orders the things that fit so far: superlatives, comparatives, ordinals. A clause's anchors are phrases
+ * themselves and are judged first. Each part gives every object a number in [0,1], and a phrase's fit is
+ * their product. How far the best object fits at all, where parts that nothing speaks for or against are left
+ * aside, is what the presence of the thing goes by. */
 #ifndef ASK_MEANING_H
 #define ASK_MEANING_H
 
@@ -33,9 +34,9 @@ struct meaning_part {
 struct meaning {
 	const struct arrangement *arrangement;
 	struct vocabulary *vocabulary;
-	unsigned without; /* a bit 1 << meaning_kind for each kind of part that counts for nothing */
+	unsigned without;    /* a bit 1 << meaning_kind for each kind of part that counts for nothing */
 	const double *looks; /* (O,O): how far two objects share what is said of them; NULL: not at all */
-	double naming;	  /* the power of nouns and attributes that are no colours; 1 */
+	double naming;	     /* the power of nouns and attributes that are no colours; 1 */
 
 	/* Of the sentence that was judged last. */
 	const struct vocabulary_sentence *sentence;

@@ -65,8 +65,9 @@ static double on_side(const struct arrangement *a, const struct arranged *p, con
 	if (is_loose)
 		return there;
 	const double straight = step((along - SIDEWAYS_LEAST) / SIDEWAYS_SOFT);
-	return there * (SIDEWAYS_ELSE + (1 - SIDEWAYS_ELSE) * straight) * exp(-NEARBY * distance / a->spacing) *
-	       (1 - relate_stands_on(a, p, q)) * (1 - relate_stands_on(a, q, p));
+	return there * (SIDEWAYS_ELSE + (1 - SIDEWAYS_ELSE) * straight) *
+	       exp(-NEARBY * distance / a->spacing) * (1 - relate_stands_on(a, p, q)) *
+	       (1 - relate_stands_on(a, q, p));
 }
 
 static double near(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
@@ -188,8 +189,8 @@ static double largest(const double *x, size_t n)
 }
 
 /* out[o]: that exactly k - 1 of the others that fit have a smaller key. `but` counts for none. */
-static void rank(const struct arrangement *a, const double *key, const double *fit, int k, double soft, size_t but,
-	double *out)
+static void rank(const struct arrangement *a, const double *key, const double *fit, int k, double soft,
+	size_t but, double *out)
 {
 	const double most = fmax(largest(fit, a->n), 1e-12);
 	double few[RANKS];
@@ -317,9 +318,10 @@ static void sized(const struct arrangement *a, enum parse_relation relation, con
 		out[o] = step(-(key[o] - mean) / (0.5 * deviation) + 0.5);
 }
 
-/* Where nothing is named: "the left one", "on the left" is the leftmost of those that fit or on the left side. */
-static void by_itself(const struct arrangement *a, const struct relation *r, const double *fit, double *key,
-	double *out)
+/* Where nothing is named: "the left one", "on the left" is the leftmost of those that fit or on the left
+ * side. */
+static void by_itself(
+	const struct arrangement *a, const struct relation *r, const double *fit, double *key, double *out)
 {
 	if (is_size(r->kind)) {
 		sized(a, r->kind, fit, key, out);
@@ -330,8 +332,9 @@ static void by_itself(const struct arrangement *a, const struct relation *r, con
 			out[o] = 1;
 			for (size_t i = 0; i < a->n; i++)
 				if (i != o && a->objects[i].is_there)
-					out[o] = fmin(out[o], 1 - ON_THE_REST * relate_stands_on(a, &a->objects[o],
-									      &a->objects[i]));
+					out[o] = fmin(
+						out[o], 1 - ON_THE_REST * relate_stands_on(a, &a->objects[o],
+										  &a->objects[i]));
 		}
 		return;
 	}
@@ -373,13 +376,14 @@ static void between_pairs(const struct arrangement *a, const struct relate_ancho
 			const double p = weight_of(a, first, i) * weight_of(a, second, k);
 			for (size_t o = 0; p > 1e-3 && o < a->n; o++)
 				if (o != i && o != k)
-					out[o] = fmax(out[o], p * between(a, &a->objects[o], at(a, i), at(a, k)));
+					out[o] = fmax(
+						out[o], p * between(a, &a->objects[o], at(a, i), at(a, k)));
 		}
 }
 
 /* "the nearest to", "taller than": out[o] for the anchor being thing i. */
-static void compare(const struct arrangement *a, const struct relation *r, size_t i, const double *fit, double *key,
-	double *out)
+static void compare(const struct arrangement *a, const struct relation *r, size_t i, const double *fit,
+	double *key, double *out)
 {
 	const struct arranged *q = at(a, i);
 	const int is_distance = r->kind == PARSE_NEAR || r->kind == PARSE_FAR || r->kind == PARSE_WITH;
@@ -403,8 +407,8 @@ static void compare(const struct arrangement *a, const struct relation *r, size_
 }
 
 /* Of one anchor: the best of what it may be, or all of what it is. */
-static void to_anchor(const struct arrangement *a, const struct relation *r, const struct relate_anchor *anchor,
-	const double *fit, double *key, double *one, double *out)
+static void to_anchor(const struct arrangement *a, const struct relation *r,
+	const struct relate_anchor *anchor, const double *fit, double *key, double *one, double *out)
 {
 	for (size_t o = 0; o < a->n; o++)
 		out[o] = anchor->is_every;
@@ -447,7 +451,8 @@ static void to_anchors(const struct arrangement *a, const struct relation *r, co
 		out[o] = pow(out[o], 1.0 / count);
 }
 
-void relate(const struct arrangement *a, const struct relation *r, const double *fit, double *key, double *out)
+void relate(
+	const struct arrangement *a, const struct relation *r, const double *fit, double *key, double *out)
 {
 	const struct relate_anchor *named[2] = {NULL, NULL};
 	int count = 0;
@@ -463,7 +468,8 @@ void relate(const struct arrangement *a, const struct relation *r, const double 
 			by_itself(a, r, fit, key, out);
 		else
 			relate_rank(a, r->kind, 1, fit, key, out);
-	} else if (r->kind == PARSE_BETWEEN || (r->kind == PARSE_MIDDLE && (count > 1 || named[0]->is_every))) {
+	} else if (r->kind == PARSE_BETWEEN ||
+		   (r->kind == PARSE_MIDDLE && (count > 1 || named[0]->is_every))) {
 		memset(out, 0, a->n * sizeof *out);
 		between_pairs(a, named[0], named[count > 1], out);
 	} else {

@@ -24,12 +24,13 @@ struct relation {
 };
 
 /* out (a->n). fit (n) in [0,1]: how well each object fits what else is said of the target, for what compares
- * (nearest, leftmost, largest ...) compares with those that fit. key (3n) is scratch. An object is not its own
- * anchor. */
-void relate(const struct arrangement *a, const struct relation *r, const double *fit, double *key, double *out);
+ * (nearest, leftmost, largest ...) compares with those that fit. key (3n) is scratch. An object is not its
+ * own anchor. */
+void relate(
+	const struct arrangement *a, const struct relation *r, const double *fit, double *key, double *out);
 
-/* out (n): that an object is the k-th from an end (k > 0; from the other end: k < 0) among those that fit, by a
- * relation that orders them: PARSE_LEFT counts from the left. key (n) is scratch. */
+/* out (n): that an object is the k-th from an end (k > 0; from the other end: k < 0) among those that fit, by
+ * a relation that orders them: PARSE_LEFT counts from the left. key (n) is scratch. */
 void relate_rank(const struct arrangement *a, enum parse_relation from, int k, const double *fit, double *key,
 	double *out);
 

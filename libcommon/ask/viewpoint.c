@@ -3,7 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-int viewpoint_read(struct viewpoint *v, const char *text, const struct cameras *cameras, const double offset[3])
+int viewpoint_read(
+	struct viewpoint *v, const char *text, const struct cameras *cameras, const double offset[3])
 {
 	char *end;
 

@@ -10,8 +10,9 @@ struct viewpoint {
 	double point[3]; /* of VIEWPOINT_POINT, in the scene: looking level at the middle of the objects */
 };
 
-/* The name of a view, or "x,y,z" in the world that the scene was imported from, whose origin is at -offset. 0, or -1
- * where it is neither. */
-int viewpoint_read(struct viewpoint *v, const char *text, const struct cameras *cameras, const double offset[3]);
+/* The name of a view, or "x,y,z" in the world that the scene was imported from, whose origin is at -offset.
+ * 0, or -1 where it is neither. */
+int viewpoint_read(
+	struct viewpoint *v, const char *text, const struct cameras *cameras, const double offset[3]);
 
 #endif

@@ -98,7 +98,8 @@ static int add_kind(struct vocabulary *v, const char *lemma, size_t *kind, struc
 	for (*kind = 0; *kind < v->kind_count; ++*kind)
 		if (!strcmp(v->kinds[*kind].lemma, lemma))
 			return 0;
-	if (mem_grow((void **)&v->kinds, &v->kind_capacity, v->kind_count + 1, sizeof *v->kinds, "vocabulary", e))
+	if (mem_grow((void **)&v->kinds, &v->kind_capacity, v->kind_count + 1, sizeof *v->kinds, "vocabulary",
+		    e))
 		return -1;
 	struct vocabulary_kind *to = &v->kinds[v->kind_count++];
 	to->lemma = lemma;
@@ -116,7 +117,8 @@ static int add_item(struct vocabulary *v, size_t r, int word, enum vocabulary_ro
 	size_t capacity = v->capacity;
 
 	if (mem_grow((void **)&v->items, &capacity, v->n + 1, sizeof *v->items, "vocabulary", e) ||
-		mem_grow((void **)&v->vectors, &v->capacity, v->n + 1, width * sizeof *v->vectors, "vocabulary", e))
+		mem_grow((void **)&v->vectors, &v->capacity, v->n + 1, width * sizeof *v->vectors,
+			"vocabulary", e))
 		return -1;
 	struct vocabulary_item *item = &v->items[v->n];
 	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0, 0};
@@ -165,7 +167,8 @@ static int read_sentences(struct vocabulary *v, const struct parser *parser, str
 	for (size_t r = 0; r < l->sentences && !bad; r++) {
 		const struct parser_vectors vectors = {
 			l->pieces[r], vectors_of(l, r), (int)(l->offsets[r + 1] - l->offsets[r]), l->width};
-		bad = parse_sentence(&v->parses[r], parser, l->texts[r], &vectors, e) || add_sentence(v, r, e);
+		bad = parse_sentence(&v->parses[r], parser, l->texts[r], &vectors, e) ||
+		      add_sentence(v, r, e);
 	}
 	return bad ? -1 : 0;
 }
@@ -173,7 +176,8 @@ static int read_sentences(struct vocabulary *v, const struct parser *parser, str
 int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
 {
 	for (size_t i = 0; i < v->n; i++)
-		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN; k++)
+		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN;
+			k++)
 			if (v->items[k].object == b && v->items[k].role == VOCABULARY_NOUN &&
 				v->items[k].kind == v->items[i].kind)
 				return 1;
@@ -192,9 +196,11 @@ static int differ_but_for(const struct vocabulary *v, size_t a, size_t b, size_t
 	int compared = 0;
 
 	for (size_t i = 0; i < v->n; i++)
-		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN; k++) {
+		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN;
+			k++) {
 			const struct vocabulary_item *p = &v->items[i], *q = &v->items[k];
-			if (q->object != b || q->role != VOCABULARY_NOUN || p->kind == kind || q->kind == kind)
+			if (q->object != b || q->role != VOCABULARY_NOUN || p->kind == kind ||
+				q->kind == kind)
 				continue;
 			if (are_akin(&v->kinds[p->kind], &v->kinds[q->kind]))
 				return 0;
@@ -203,8 +209,9 @@ static int differ_but_for(const struct vocabulary *v, size_t a, size_t b, size_t
 	return compared;
 }
 
-/* What kinds of a general noun there are says nothing of a thing that is called so. A noun is general that is above
- * another one of the same thing, or that is all that two things have in common: "crockery" of a plate and a bowl. */
+/* What kinds of a general noun there are says nothing of a thing that is called so. A noun is general that is
+ * above another one of the same thing, or that is all that two things have in common: "crockery" of a plate
+ * and a bowl. */
 static void mark_general(struct vocabulary *v)
 {
 	for (size_t i = 0; i < v->n; i++) {
@@ -214,7 +221,8 @@ static void mark_general(struct vocabulary *v)
 			if (b->role != VOCABULARY_NOUN)
 				continue;
 			if (b->object == a->object)
-				a->is_general = wordnet_is_above(&v->kinds[a->kind].noun, &v->kinds[b->kind].noun);
+				a->is_general =
+					wordnet_is_above(&v->kinds[a->kind].noun, &v->kinds[b->kind].noun);
 			else if (b->kind == a->kind)
 				a->is_general = differ_but_for(v, a->object, b->object, a->kind);
 		}
@@ -233,7 +241,8 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	v->scratch = mem_alloc(width, sizeof *v->scratch, "vocabulary", e);
 	v->word = mem_alloc(width, sizeof *v->word, "vocabulary", e);
 	v->other = mem_alloc(l->objects, sizeof *v->other, "vocabulary", e);
-	if (!v->other || !v->parses || !v->mean || !v->sentence_mean || !v->sentences || !v->scratch || !v->word)
+	if (!v->other || !v->parses || !v->mean || !v->sentence_mean || !v->sentences || !v->scratch ||
+		!v->word)
 		return -1;
 	find_means(v);
 	if (read_sentences(v, parser, e))
@@ -313,7 +322,8 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		double x = !strcmp(word->lemma, item->lemma) ? 1 : 0;
 		if (x < 1) {
 			x = worth(dot(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
-			x = fmax(x, WORDNET_WORTH * wordnet_fits(&noun, &v->kinds[item->kind].noun, item->is_general));
+			x = fmax(x, WORDNET_WORTH * wordnet_fits(&noun, &v->kinds[item->kind].noun,
+							    item->is_general));
 			if (v->has_knowledge && !item->is_general && kinds_share(word->lemma, item->lemma))
 				x = fmax(x, KINDS_WORTH);
 		}
@@ -344,7 +354,8 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 			    ? wordnet_adjectives_fit(&adjective, &v->kinds[item->kind].adjective)
 			    : 0;
 		if (x == 0)
-			x = worth(dot(v->word, v->vectors + i * width, width), ATTRIBUTE_HALF, ATTRIBUTE_SOFT);
+			x = worth(
+				dot(v->word, v->vectors + i * width, width), ATTRIBUTE_HALF, ATTRIBUTE_SOFT);
 		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
 		/* what is said to be so once is so, whatever else is said */
 		if (x > 0 ? x > *to && x > -*to : -x > fabs(*to))
@@ -383,8 +394,8 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
 	}
 }
 
-/* fit (O): how many of the training sentences that say a colour of an object say one like this: one of them may have
- * been misread. What is said of a part of it counts less. other (O): how many say another one. */
+/* fit (O): how many of the training sentences that say a colour of an object say one like this: one of them
+ * may have been misread. What is said of a part of it counts less. other (O): how many say another one. */
 static void said_colours(const struct vocabulary *v, int colour, double *fit, double *other)
 {
 	const struct lifted *l = v->lifted;
@@ -426,7 +437,8 @@ int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, c
 	return 1;
 }
 
-size_t vocabulary_whole(struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match)
+size_t vocabulary_whole(
+	struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match)
 {
 	const struct lifted *l = v->lifted;
 	const size_t width = (size_t)l->width;

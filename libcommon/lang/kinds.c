@@ -1,5 +1,5 @@
-/* Groups of everyday nouns, each with spaces around every word. Written from a dictionary's point of view: rooms,
- * kitchens, desks, toys, gardens, streets; a word may be in several groups. */
+/* Groups of everyday nouns, each with spaces around every word. Written from a dictionary's point of view:
+ * rooms, kitchens, desks, toys, gardens, streets; a word may be in several groups. */
 #include "lang/kinds.h"
 
 #include <stdio.h>

@@ -16,7 +16,7 @@ int wordnet_is_there(void)
 
 	if (is_open < 0) {
 		const char *folder = getenv("WNSEARCHDIR");
-		/* libwordnet complains on stderr of what is not there */
+		/* libwordnet complains aloud of what is not there */
 		is_open = !access(folder ? folder : "/usr/share/wordnet", R_OK) && !wninit();
 	}
 	return is_open;
@@ -143,7 +143,8 @@ int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun
 {
 	for (int i = 0; i < above->n; i++)
 		for (int k = 0; k < word->n; k++)
-			if (!above->up[i].depth && word->up[k].depth && above->up[i].synset == word->up[k].synset)
+			if (!above->up[i].depth && word->up[k].depth &&
+				above->up[i].synset == word->up[k].synset)
 				return 1;
 	return 0;
 }

@@ -115,13 +115,15 @@ static int find_meant(struct meant *m, struct asked *a, const struct lifted *l, 
 }
 
 /* Sentences that mean the same objects have one answer, that of the first of them: firsts (answers). */
-static size_t share_answers(const struct meant *m, size_t count, size_t objects, size_t *answer, size_t *firsts)
+static size_t share_answers(
+	const struct meant *m, size_t count, size_t objects, size_t *answer, size_t *firsts)
 {
 	size_t answers = 0;
 
 	for (size_t i = 0; i < count; i++) {
 		size_t k = 0;
-		while (k < answers && memcmp(m->chosen + firsts[k] * objects, m->chosen + i * objects, objects))
+		while (k < answers &&
+			memcmp(m->chosen + firsts[k] * objects, m->chosen + i * objects, objects))
 			k++;
 		if (k == answers)
 			firsts[answers++] = i;

@@ -20,7 +20,8 @@ struct asked_of {
 	const int64_t *offsets; /* sentence r has words offsets[r] to offsets[r+1] */
 	const float *words;
 	char **texts, **pieces; /* of each sentence; trained models need none */
-	const struct viewpoint *from; /* (count) where each of `which` is said; NULL: from the usual viewpoint */
+	const struct viewpoint
+		*from; /* (count) where each of `which` is said; NULL: from the usual viewpoint */
 	const struct parser *parser;
 	const size_t *which; /* (count) the sentences */
 	size_t count;
@@ -39,9 +40,10 @@ int asked_trained(struct asked *a, const struct respond_model *m, const struct a
 	int wants_calibration, struct err *e);
 
 /* An answer for each set of objects that a sentence means: their union. A sentence that is less likely than
- * `least` to mean anything, or that has no words, means nothing that was lifted: its responses are 0. How sure an
- * answer is: the probability that anything is meant, times the mean over its objects of the probability of each to
- * be meant times its confidence, which is about what its masks' IoU is worth. parts: choose()'s. */
+ * `least` to mean anything, or that has no words, means nothing that was lifted: its responses are 0. How
+ * sure an answer is: the probability that anything is meant, times the mean over its objects of the
+ * probability of each to be meant times its confidence, which is about what its masks' IoU is worth. parts:
+ * choose()'s. */
 #define ASKED_LEAST 0.65
 int asked_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
 	double least, struct err *e);

@@ -18,8 +18,8 @@ static int judge(const struct lifted *l, const struct choose_scene *scene,
 {
 	const size_t n = l->objects;
 
-	if (choose(scene, sentences, l->sentences, CHOOSE_ALL & ~(1U << CHOOSE_SENTENCE), choices, probability,
-		    chosen, NULL, e))
+	if (choose(scene, sentences, l->sentences, CHOOSE_ALL & ~(1U << CHOOSE_SENTENCE), choices,
+		    probability, chosen, NULL, e))
 		return -1;
 	memset(value, 0, n * n * sizeof *value);
 	for (size_t r = 0; r < l->sentences; r++) {
@@ -88,11 +88,12 @@ static int settle(struct lifted *l, const struct lifted *old, const struct choos
 	int bad = !sentences || !choices || !chosen || !probability || !value || !next || !now, changes = 1;
 
 	for (size_t r = 0; r < l->sentences && !bad; r++)
-		sentences[r] =
-			(struct choose_sentence){l->texts[r], l->pieces[r], l->words + (size_t)l->offsets[r] * width,
-				(size_t)(l->offsets[r + 1] - l->offsets[r]), {.kind = VIEWPOINT_USUAL}};
+		sentences[r] = (struct choose_sentence){l->texts[r], l->pieces[r],
+			l->words + (size_t)l->offsets[r] * width, (size_t)(l->offsets[r + 1] - l->offsets[r]),
+			{.kind = VIEWPOINT_USUAL}};
 	for (int round = 0; round < ROUNDS && changes && !bad; round++) {
-		bad = judge(l, scene, sentences, choices, probability, chosen, value, e) || assign_best(value, n, n, next, e);
+		bad = judge(l, scene, sentences, choices, probability, chosen, value, e) ||
+		      assign_best(value, n, n, next, e);
 		changes = 0;
 		for (size_t o = 0; o < n && !bad; o++) {
 			changes |= next[o] != o;

@@ -25,8 +25,8 @@ static struct camera camera = {.name = (char[]){"v"},
 	.world_to_camera = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
 static const struct cameras cameras = {1, &camera};
 
-/* A small ball, a large box, and a third thing with something of the small one; each is named by one word along an axis of its
- * own. */
+/* A small ball, a large box, and a third thing with something of the small one; each is named by one word
+ * along an axis of its own. */
 static char *names[] = {"ball", "box", "book"};
 static float confidence[] = {0.5f, 1, 1}, share[] = {1, 0.1f, 1, 0.7f, 0.3f, 0.7f};
 static int64_t indptr[] = {0, 1, 4, 6}, offsets[] = {0, 1, 2, 3};
@@ -41,8 +41,8 @@ static const float asked_words[] = {0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 static char *pieces[] = {"box", "ball", "box", "", "zeppelin", ""};
 static const size_t which[] = {0, 1, 2, 3, 4, 5};
 static const struct parser parser = {0};
-static const struct asked_of of = {&splats, &cameras, asked_offsets, asked_words, pieces, pieces, NULL, &parser,
-	which, SENTENCES};
+static const struct asked_of of = {
+	&splats, &cameras, asked_offsets, asked_words, pieces, pieces, NULL, &parser, which, SENTENCES};
 
 static float at(const struct asked *a, size_t answer, size_t gaussian)
 {

@@ -137,7 +137,8 @@ static void parts(void)
 	CHECK(ask("the thing nearest to us", RELATIONS) == 3 && probability[3] > 0.8, "relations");
 	CHECK(ask("the thing to the left of the box", WORDS | RELATIONS) == 0, "an anchor");
 	CHECK(ask("the thing to the right of the box", WORDS | RELATIONS) == 1, "an anchor");
-	CHECK(ask("the thing to the right of the crate", WORDS | NAMES | RELATIONS) == 1, "an anchor by its name");
+	CHECK(ask("the thing to the right of the crate", WORDS | NAMES | RELATIONS) == 1,
+		"an anchor by its name");
 	CHECK(ask("the shiny mug on the right", CHOOSE_ALL) == 1,
 		"shiny is only said of the other, which looks the same");
 	ask("the mug", CHOOSE_ALL);
@@ -243,8 +244,8 @@ static void twins(void)
 	size_t moved = 0;
 	struct err e;
 
-	CHECK(!recognise(&l, &splats, &cameras, &parser, &moved, &e) && moved == 0, "%zu moved in a right model",
-		moved);
+	CHECK(!recognise(&l, &splats, &cameras, &parser, &moved, &e) && moved == 0,
+		"%zu moved in a right model", moved);
 	CHECK(!memcmp(index, index_of, sizeof index), "a right model changed");
 	for (int i = 0; i < 2 * EACH; i++)
 		index[i] = (i + EACH) % (2 * EACH);
@@ -254,7 +255,8 @@ static void twins(void)
 	CHECK(sure[0] == 0.5F && sure[1] == 1, "confidence stays with the Gaussians");
 	const struct lifted none = {.gaussians = N, .width = WIDTH, .indptr = indptr, .offsets = offsets};
 	struct lifted empty = none;
-	CHECK(!recognise(&empty, &splats, &cameras, &parser, &moved, &e) && moved == 0, "a model without objects");
+	CHECK(!recognise(&empty, &splats, &cameras, &parser, &moved, &e) && moved == 0,
+		"a model without objects");
 }
 
 int main(void)

@@ -25,7 +25,8 @@ static void colours(void)
 	for (int i = 0; i < COLOUR_WORDS; i++) {
 		CHECK(colour_words_alike(i, i) > 1 - 1e-9, "colour %d is not like itself", i);
 		for (int k = 0; k < COLOUR_WORDS; k++)
-			CHECK(fabs(colour_words_alike(i, k) - colour_words_alike(k, i)) < 1e-12, "%d and %d", i, k);
+			CHECK(fabs(colour_words_alike(i, k) - colour_words_alike(k, i)) < 1e-12, "%d and %d",
+				i, k);
 	}
 	CHECK(colour_words_alike(colour_word("red"), colour_word("crimson")) > 0.5, "crimson is red");
 	CHECK(colour_words_alike(colour_word("red"), colour_word("blue")) < 0.01, "blue is not red");
@@ -34,14 +35,17 @@ static void colours(void)
 	colour_lab(red, lab);
 	colour_call(lab, 0.5, share);
 	colour_call(lab, 0.5, share);
-	CHECK(share[colour_word("red")] > 0.3 && share[colour_word("scarlet")] > 0.9 && share[colour_word("green")] < 0.01, "red is called %g red, %g green",
-		share[colour_word("red")], share[colour_word("green")]);
+	CHECK(share[colour_word("red")] > 0.3 && share[colour_word("scarlet")] > 0.9 &&
+			share[colour_word("green")] < 0.01,
+		"red is called %g red, %g green", share[colour_word("red")], share[colour_word("green")]);
 }
 
 static void kinds(void)
 {
-	CHECK(kinds_share("cube", "box") && kinds_share("box", "cube") && !kinds_share("cube", "ball"), "kinds");
-	CHECK(!kinds_share("", "box") && !kinds_share("ox", "box") && !kinds_share("box block", "box"), "whole words");
+	CHECK(kinds_share("cube", "box") && kinds_share("box", "cube") && !kinds_share("cube", "ball"),
+		"kinds");
+	CHECK(!kinds_share("", "box") && !kinds_share("ox", "box") && !kinds_share("box block", "box"),
+		"whole words");
 }
 
 static double fits(const char *word, const char *known)
@@ -71,12 +75,15 @@ static void wordnet(void)
 	wordnet_find(&noun, "qqqqq");
 	CHECK(noun.n == 0 && fits("qqqqq", "qqqqq") == 0, "no noun");
 	if (!wordnet_is_there()) {
-		CHECK(fits("book", "book") == 0 && is_so("shiny", "shiny") == 0, "without WordNet nothing is known");
+		CHECK(fits("book", "book") == 0 && is_so("shiny", "shiny") == 0,
+			"without WordNet nothing is known");
 		return;
 	}
 	CHECK(fits("book", "book") == 1, "a book is a book");
-	CHECK(fits("paperback", "book") > 0.6 && fits("vessel", "bottle") > 0.5 && fits("bird", "penguin") > 0.5,
-		"kinds of things: %g, %g, %g", fits("paperback", "book"), fits("vessel", "bottle"), fits("bird", "penguin"));
+	CHECK(fits("paperback", "book") > 0.6 && fits("vessel", "bottle") > 0.5 &&
+			fits("bird", "penguin") > 0.5,
+		"kinds of things: %g, %g, %g", fits("paperback", "book"), fits("vessel", "bottle"),
+		fits("bird", "penguin"));
 	CHECK(fits("lamp", "laptop") == 0, "a lamp is no laptop");
 	CHECK(is_so("shiny", "glossy") == 1 && is_so("stripy", "striped") == 1, "the same");
 	CHECK(is_so("shiny", "matt") < -0.5 && is_so("small", "large") == -1, "the opposite");

@@ -104,10 +104,11 @@ static void relations(void)
 		int got = winner(cases[i].kind, cases[i].degree, cases[i].first, cases[i].second);
 		/* the tray is as much between two things as what stands on it */
 		CHECK(got == cases[i].expected || (cases[i].expected == CUP && got == TRAY && out[CUP] > 0.8),
-			"%s, degree %d: %d, expected %d", parse_relation_name(cases[i].kind), cases[i].degree, got,
-			cases[i].expected);
+			"%s, degree %d: %d, expected %d", parse_relation_name(cases[i].kind), cases[i].degree,
+			got, cases[i].expected);
 	}
-	CHECK(winner(PARSE_FRONT, PARSE_PLAIN, TALL, NONE) != TALL && out[TALL] == 0, "nothing is its own anchor");
+	CHECK(winner(PARSE_FRONT, PARSE_PLAIN, TALL, NONE) != TALL && out[TALL] == 0,
+		"nothing is its own anchor");
 	winner(PARSE_LEFT, PARSE_PLAIN, TRAY, NONE);
 	CHECK(out[CUP] < 0.01, "what stands on a thing is not left of it: %g", out[CUP]);
 	winner(PARSE_TALLER, PARSE_MORE, CUP, NONE);
@@ -128,7 +129,8 @@ static void comparisons(void)
 	CHECK(out[CUP] > out[FRONT], "leftmost of those that fit");
 }
 
-/* The k-th from one end is the last but k - 1 from the other; each place among those that fit is somebody's. */
+/* The k-th from one end is the last but k - 1 from the other; each place among those that fit is somebody's.
+ */
 static void ranks(void)
 {
 	double back[OBJECTS];
@@ -233,14 +235,16 @@ static void arrangement(void)
 		arrangement_alike(&a, 0, 1));
 	CHECK(arrangement_alike(&a, 0, 1) == arrangement_alike(&a, 1, 0), "alike both ways");
 	CHECK(arrangement_alike(&a, 0, 2) == -INFINITY, "like nothing");
-	CHECK(a.objects[0].colours[colour_word("red")] > 0.5 && a.objects[0].colours[colour_word("blue")] < 0.01,
+	CHECK(a.objects[0].colours[colour_word("red")] > 0.5 &&
+			a.objects[0].colours[colour_word("blue")] < 0.01,
 		"red is called %g red", a.objects[0].colours[colour_word("red")]);
 	/* from behind, left is right; and back again */
-	const struct viewpoint behind = {.kind = VIEWPOINT_POINT, .point = {0, 30, 1}}, usual = {.kind = VIEWPOINT_USUAL};
+	const struct viewpoint behind = {.kind = VIEWPOINT_POINT, .point = {0, 30, 1}},
+			       usual = {.kind = VIEWPOINT_USUAL};
 	const double left = a.objects[0].centre[0];
 	arrangement_look(&a, &behind);
-	CHECK(a.objects[0].centre[0] > 2 && a.objects[1].centre[0] < -2, "from behind: %g, %g", a.objects[0].centre[0],
-		a.objects[1].centre[0]);
+	CHECK(a.objects[0].centre[0] > 2 && a.objects[1].centre[0] < -2, "from behind: %g, %g",
+		a.objects[0].centre[0], a.objects[1].centre[0]);
 	arrangement_look(&a, &usual);
 	CHECK(a.objects[0].centre[0] == left, "the usual viewpoint again");
 	/* a picture that has only the right one in it */
