@@ -257,6 +257,7 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 		c->meaning.without |= 1U << MEANING_NOUN | 1U << MEANING_ATTRIBUTE;
 	if (!has(c, CHOOSE_COLOURS))
 		c->meaning.without |= 1U << MEANING_COLOUR;
+	c->vocabulary.has_said = s->naming == 1; /* what is said of its name is of other Gaussians, perhaps */
 	c->vocabulary.has_names = has(c, CHOOSE_NAMES);
 	c->vocabulary.has_knowledge = has(c, CHOOSE_KNOWLEDGE);
 	if (!has(c, CHOOSE_SIZES))

@@ -233,7 +233,7 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 {
 	const size_t width = (size_t)l->width;
 
-	*v = (struct vocabulary){.lifted = l, .has_names = 1, .has_knowledge = 1, .without = l->sentences};
+	*v = (struct vocabulary){.lifted = l, .has_names = 1, .has_knowledge = 1, .has_said = 1, .without = l->sentences};
 	v->parses = mem_zalloc(l->sentences, sizeof *v->parses, "vocabulary", e);
 	v->mean = mem_zalloc(width, sizeof *v->mean, "vocabulary", e);
 	v->sentence_mean = mem_zalloc(width, sizeof *v->sentence_mean, "vocabulary", e);
@@ -383,7 +383,7 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
 
 	word_vector(v, word, s->vectors, v->word);
 	memset(match, 0, l->objects * sizeof *match);
-	for (size_t i = 0; i < v->n; i++) {
+	for (size_t i = 0; i < v->n && v->has_said; i++) {
 		const struct vocabulary_item *item = &v->items[i];
 		if (item->sentence == v->without || item->role != VOCABULARY_ANCHOR ||
 			!is_like(item->relation, relation))
@@ -402,7 +402,7 @@ static void said_colours(const struct vocabulary *v, int colour, double *fit, do
 
 	for (size_t o = 0; o < l->objects; o++) {
 		double like = 0, all = 0, part = 0;
-		for (size_t i = 0; i < v->n; i++) {
+		for (size_t i = 0; i < v->n && v->has_said; i++) {
 			const struct vocabulary_item *item = &v->items[i];
 			const int said = item->object == o && item->sentence != v->without
 						 ? colour_word(item->lemma)
