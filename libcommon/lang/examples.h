@@ -1,6 +1,6 @@
 /* Sentences with their analyses, to learn a parser from: wordings written for this project, multiplied by a
  * generator. Wordings for learning and for testing are disjoint: those of EXAMPLES_TEST have templates,
- * requests and nouns of their own. */
+ * requests and nouns of their own; adjectives are shared. */
 #ifndef LANG_EXAMPLES_H
 #define LANG_EXAMPLES_H
 

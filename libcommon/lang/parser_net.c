@@ -7,8 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the decoder, by the development sentences: how likely a word must be a predicate to become one for its
- * anchor, and what that counts beside the arc. */
+/* Of the decoder: first guesses, each kept since the readings' sentences were parsed better with it, none
+ * searched. How likely a word must be a predicate to become one for its anchor, and what that counts beside
+ * the arc; what a second anchor without "and" costs; how near an anchor a predicate is rather said of it, and
+ * by how much. */
 #define NET_PREDICATE_LEAST 0.02
 #define NET_PREDICATE_WEIGHT 0.5
 #define NET_LIST_COST 3.0

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Sentences in a step, the rates of both parts and the share of units dropped: by cross-validation on
- * readings. */
+/* Sentences in a step, the rates of both parts and the share of units dropped: first guesses, not searched.
+ */
 enum { SCHOOL_BATCH = 16 };
 static const double examples_rate = 0.002, readings_rate = 0.001, dropout = 0.25;
 /* passes of a round, and of the last */
