@@ -392,9 +392,30 @@ static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
 
 	relate_rank(m->arrangement, f->from == PARSE_OTHER ? PARSE_LEFT : f->from, f->ordinal, fit,
 		m->scratch + 3 * n, value);
-	for (size_t o = 0; o < n; o++)
+	for (size_t o = 0; o < n; o++) {
 		value[o] = RELATION_LEAST + (1 - RELATION_LEAST) * value[o];
+		/* "the second penguin" where there is but one */
+		there_of(m, phrase)[o] *= value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
+	}
 	take_part(m, &m->parts[m->part_count - 1]);
+}
+
+/* The clauses that compare, or those that do not. Those of the place as a whole are the thing's: "everything
+ * on the desk that is right of the laptop". */
+static void judge_clauses(
+	struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit, int late, int depth)
+{
+	const struct parse *p = m->sentence->parse;
+
+	for (int k = 0; k < f->clauses.n && depth < 2; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		if (is_late(c) == late)
+			judge_clause(m, phrase, f->clauses.item[k], fit);
+		for (int j = 0; j < c->anchors.n; j++)
+			if (is_scene(m, c->anchors.item[j]))
+				judge_clauses(
+					m, phrase, &p->phrases[c->anchors.item[j]], fit, late, depth + 1);
+	}
 }
 
 /* What orders those that fit so far, each by itself. */
@@ -408,28 +429,9 @@ static void judge_order(struct meaning *m, int phrase)
 	memcpy(before, fit_of(m, phrase), n * sizeof *before);
 	for (size_t o = 0; o < n; o++) /* what fits half as well is hardly one of them */
 		before[o] *= before[o] * m->arrangement->objects[o].in_sight;
-	for (int k = 0; k < f->clauses.n; k++)
-		if (is_late(&p->clauses[f->clauses.item[k]]))
-			judge_clause(m, phrase, f->clauses.item[k], before);
+	judge_clauses(m, phrase, f, before, 1, 0);
 	if (f->ordinal)
 		judge_ordinal(m, phrase, before);
-}
-
-/* The clauses that do not compare. Those of the place as a whole are the thing's: "everything on the desk
- * that is right of the laptop". */
-static void judge_early(
-	struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit, int depth)
-{
-	const struct parse *p = m->sentence->parse;
-
-	for (int k = 0; k < f->clauses.n && depth < 2; k++) {
-		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
-		if (!is_late(c))
-			judge_clause(m, phrase, f->clauses.item[k], fit);
-		for (int j = 0; j < c->anchors.n; j++)
-			if (is_scene(m, c->anchors.item[j]))
-				judge_early(m, phrase, &p->phrases[c->anchors.item[j]], fit, depth + 1);
-	}
 }
 
 /* The phrases that a phrase needs, before it. */
@@ -466,7 +468,7 @@ static void judge_phrase(struct meaning *m, int phrase, int depth)
 		judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);
 	for (int k = 0; k < f->attributes.n; k++)
 		judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
-	judge_early(m, phrase, f, fit, 0);
+	judge_clauses(m, phrase, f, fit, 0, 0);
 	for (int k = 0; k < f->except.n; k++)
 		judge_except(m, phrase, f->except.item[k]);
 	keep_group(f, fit, n, m->scratch);

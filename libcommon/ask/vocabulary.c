@@ -233,7 +233,8 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 {
 	const size_t width = (size_t)l->width;
 
-	*v = (struct vocabulary){.lifted = l, .has_names = 1, .has_knowledge = 1, .has_said = 1, .without = l->sentences};
+	*v = (struct vocabulary){
+		.lifted = l, .has_names = 1, .has_knowledge = 1, .has_said = 1, .without = l->sentences};
 	v->parses = mem_zalloc(l->sentences, sizeof *v->parses, "vocabulary", e);
 	v->mean = mem_zalloc(width, sizeof *v->mean, "vocabulary", e);
 	v->sentence_mean = mem_zalloc(width, sizeof *v->sentence_mean, "vocabulary", e);

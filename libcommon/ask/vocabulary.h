@@ -52,7 +52,8 @@ struct vocabulary {
 	struct vocabulary_kind *kinds; /* of different lemmas */
 	int has_names, has_knowledge;  /* whether names, and WordNet with lang/kinds.h, count: 1, for the
 					  caller to set */
-	int has_said; /* whether colours and relations that training sentences give an object count: 1, likewise */
+	int has_said;	 /* whether colours and relations that training sentences give an object count: 1,
+			    likewise */
 	size_t without;	 /* the training sentence whose words do not count, for the caller to set; R: none */
 	double *scratch; /* (width) */
 	float *word;	 /* (width) */

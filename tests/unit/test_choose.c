@@ -191,6 +191,8 @@ static void absent(void)
 	CHECK(choice.there < 0.5, "a colour that it has not: %g", choice.there);
 	ask("the mug on top of the tin", CHOOSE_ALL);
 	CHECK(choice.there < 0.65, "a relation that is not so: %g", choice.there);
+	ask("the second crate from the left", CHOOSE_ALL);
+	CHECK(choice.there < 0.65, "there is but one crate: %g", choice.there);
 	CHECK(set_of("") == 0 && choice.there == 0, "no words mean nothing");
 }
 
