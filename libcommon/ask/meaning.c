@@ -136,13 +136,23 @@ static int is_other(const struct parse *p, const struct parse_phrase *f)
 	return has_word(p, f, other);
 }
 
-/* How well an object's colours, or those that training sentences say it has, are that of a word. */
+/* How far objects are of the colour of a word, and of those right after it that are colours too: "salmon
+ * pink" and "black and white" are either. Nothing where the word before it has done so. */
 static void judge_colour(struct meaning *m, int phrase, int word)
 {
+	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
-	double *value = add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
+	double *match = m->scratch + n;
 
-	vocabulary_colour(m->vocabulary, m->arrangement, m->sentence->parse->words[word].lemma, value);
+	if (word && colour_word(p->words[word - 1].lemma) >= 0)
+		return;
+	double *value = add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
+	memset(value, 0, n * sizeof *value);
+	for (; word < p->word_count && colour_word(p->words[word].lemma) >= 0; word++) {
+		vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);
+		for (size_t o = 0; o < n; o++)
+			value[o] = fmax(value[o], match[o]);
+	}
 	for (size_t o = 0; o < n; o++) {
 		value[o] = COLOUR_LEAST + (1 - COLOUR_LEAST) * value[o];
 		there[o] *= value[o];

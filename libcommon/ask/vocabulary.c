@@ -20,6 +20,10 @@ void vocabulary_free(struct vocabulary *v)
 	free(v->vectors);
 	free(v->sentences);
 	free(v->kinds);
+	for (size_t o = 0; v->heads && o < v->lifted->objects; o++)
+		free(v->heads[o]);
+	free(v->heads);
+	free(v->head_kinds);
 	free(v->scratch);
 	free(v->word);
 	free(v->other);
@@ -229,6 +233,37 @@ static void mark_general(struct vocabulary *v)
 	}
 }
 
+static char lower(char c)
+{
+	return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+/* The nouns that objects' names end in. */
+static int read_names(struct vocabulary *v, struct err *e)
+{
+	for (size_t o = 0; o < v->lifted->objects; o++) {
+		const char *name = v->lifted->names[o], *head = name;
+		size_t length = 0;
+		for (const char *p = name; *p; p += strspn(p, " -_")) {
+			const size_t n = strcspn(p, " -_");
+			if (n && (*p < '0' || *p > '9')) {
+				head = p;
+				length = n;
+			}
+			p += n;
+		}
+		v->heads[o] = mem_strdup(head, e);
+		if (!v->heads[o])
+			return -1;
+		v->heads[o][length] = 0;
+		for (char *p = v->heads[o]; *p; p++)
+			*p = lower(*p);
+		if (add_kind(v, v->heads[o], &v->head_kinds[o], e))
+			return -1;
+	}
+	return 0;
+}
+
 int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct parser *parser, struct err *e)
 {
 	const size_t width = (size_t)l->width;
@@ -241,12 +276,14 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	v->sentences = mem_alloc(l->sentences, width * sizeof *v->sentences, "vocabulary", e);
 	v->scratch = mem_alloc(width, sizeof *v->scratch, "vocabulary", e);
 	v->word = mem_alloc(width, sizeof *v->word, "vocabulary", e);
+	v->heads = mem_zalloc(l->objects, sizeof *v->heads, "vocabulary", e);
+	v->head_kinds = mem_alloc(l->objects, sizeof *v->head_kinds, "vocabulary", e);
 	v->other = mem_alloc(l->objects, sizeof *v->other, "vocabulary", e);
-	if (!v->other || !v->parses || !v->mean || !v->sentence_mean || !v->sentences || !v->scratch ||
-		!v->word)
+	if (!v->heads || !v->head_kinds || !v->other || !v->parses || !v->mean || !v->sentence_mean ||
+		!v->sentences || !v->scratch || !v->word)
 		return -1;
 	find_means(v);
-	if (read_sentences(v, parser, e))
+	if (read_names(v, e) || read_sentences(v, parser, e))
 		return -1;
 	mark_general(v);
 	for (size_t r = 0; r < l->sentences; r++)
@@ -267,11 +304,6 @@ static double dot(const float *a, const float *b, size_t n)
 static double step(double x)
 {
 	return 1 / (1 + exp(-fmin(fmax(x, -40), 40)));
-}
-
-static char lower(char c)
-{
-	return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
 /* Whether a word is a word of a name: 2 the last one that is no number, 1 another. */
@@ -299,6 +331,15 @@ static double worth(double cosine, double half, double soft)
 	return step((cosine - half) / soft);
 }
 
+/* What is known besides of a noun and the one of this kind that a thing is called by. */
+static double knowledge(const struct vocabulary *v, const char *lemma, const struct wordnet_noun *noun,
+	const struct vocabulary_kind *kind, int is_general)
+{
+	const double x = WORDNET_WORTH * wordnet_fits(noun, &kind->noun, is_general);
+
+	return v->has_knowledge && !is_general && kinds_share(lemma, kind->lemma) ? fmax(x, KINDS_WORTH) : x;
+}
+
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
 {
 	const struct lifted *l = v->lifted;
@@ -313,6 +354,9 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 	for (size_t o = 0; o < objects; o++) {
 		const int named = v->has_names ? is_in_name(word->lemma, l->names[o]) : 0;
 		match[o] = named == 2 ? 1 : named ? NAME_PART : 0;
+		if (v->has_names && named < 2)
+			match[o] = fmax(
+				match[o], knowledge(v, word->lemma, &noun, &v->kinds[v->head_kinds[o]], 0));
 	}
 	match[objects] = 0;
 	for (size_t i = 0; i < v->n; i++) {
@@ -323,10 +367,8 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		double x = !strcmp(word->lemma, item->lemma) ? 1 : 0;
 		if (x < 1) {
 			x = worth(dot(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
-			x = fmax(x, WORDNET_WORTH * wordnet_fits(&noun, &v->kinds[item->kind].noun,
-							    item->is_general));
-			if (v->has_knowledge && !item->is_general && kinds_share(word->lemma, item->lemma))
-				x = fmax(x, KINDS_WORTH);
+			x = fmax(
+				x, knowledge(v, word->lemma, &noun, &v->kinds[item->kind], item->is_general));
 		}
 		double *to = &match[item->role == VOCABULARY_NOUN ? item->object : objects];
 		*to = fmax(*to, x);

@@ -50,8 +50,10 @@ struct vocabulary {
 	float *sentences; /* (R,width) of length 1: means of the sentences, less sentence_mean */
 	size_t kind_count, kind_capacity;
 	struct vocabulary_kind *kinds; /* of different lemmas */
-	int has_names, has_knowledge;  /* whether names, and WordNet with lang/kinds.h, count: 1, for the
-					  caller to set */
+	char **heads;	    /* (O) the last word of an object's name that is no number, lower case */
+	size_t *head_kinds; /* (O) into kinds */
+	int has_names, has_knowledge; /* whether names, and WordNet with lang/kinds.h, count: 1, for the
+					 caller to set */
 	int has_said;	 /* whether colours and relations that training sentences give an object count: 1,
 			    likewise */
 	size_t without;	 /* the training sentence whose words do not count, for the caller to set; R: none */
