@@ -256,6 +256,28 @@ static void judge_predicate(struct meaning *m, const struct parse_clause *c, dou
 		value[o] = words ? (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most) : 1;
 }
 
+/* "On the near side of" is before, and "on the far side of" or "on the other side of" behind. */
+static enum parse_relation relation_of(const struct parse *p, const struct parse_clause *c)
+{
+	static const char *const side[] = {"side", NULL}, *const near[] = {"near", "nearer", "front", NULL},
+				 *const far[] = {
+					 "far", "farther", "further", "other", "opposite", "back", NULL};
+	const int is_distance =
+		c->relation == PARSE_NEAR || c->relation == PARSE_FAR || c->relation == PARSE_ACROSS;
+
+	for (int w = 1; is_distance && c->anchors.n && w < p->word_count; w++) {
+		const struct parse_word *word = &p->words[w];
+		if (!word_is(word, side) || word->span.end < c->span.begin ||
+			word[-1].span.begin > c->span.end)
+			continue;
+		if (word_is(&word[-1], near))
+			return PARSE_FRONT;
+		if (word_is(&word[-1], far))
+			return PARSE_BEHIND;
+	}
+	return c->relation;
+}
+
 /* There is no more or less of some relations: "on top of". */
 static enum parse_degree degree_of(const struct parse_clause *c)
 {
@@ -292,7 +314,8 @@ static double judge_relation(
 				     1U << PARSE_ABOVE;
 	const struct parse *p = m->sentence->parse;
 	struct relate_anchor anchors[ANCHORS];
-	struct relation r = {c->relation, degree_of(c), p->phrases[phrase].count != PARSE_ONE, 0, anchors};
+	struct relation r = {
+		relation_of(p, c), degree_of(c), p->phrases[phrase].count != PARSE_ONE, 0, anchors};
 	double known = 1;
 
 	if (!c->anchors.n && (c->relation == PARSE_SUPPORTS || c->relation == PARSE_INSIDE)) {
@@ -320,13 +343,24 @@ static int is_size(const struct parse_clause *c)
 	return c->degree == PARSE_PLAIN && c->relation >= PARSE_LARGER && c->relation <= PARSE_WIDER;
 }
 
+/* "in tangerine", where nothing is called so. */
+static int is_of_colour(const struct meaning *m, const struct parse_clause *c)
+{
+	const struct parse *p = m->sentence->parse;
+	const int a = c->relation == PARSE_INSIDE && c->anchors.n == 1 ? c->anchors.item[0] : -1;
+	const struct parse_list *noun = a >= 0 ? &p->phrases[a].noun : NULL;
+
+	return noun && noun->n && m->known[a] <= GENERIC_THERE &&
+	       colour_word(p->words[noun->item[noun->n - 1]].lemma) >= 0;
+}
+
 /* value (O): how far a clause holds, before what is negated is turned round. said (O) is scratch. */
 static void judge_predication(struct meaning *m, int phrase, const struct parse_clause *c, const double *fit,
 	double *said, double *value)
 {
 	const size_t n = objects_of(m);
 
-	if (c->relation == PARSE_OTHER) {
+	if (c->relation == PARSE_OTHER || is_of_colour(m, c)) {
 		judge_predicate(m, c, value);
 		return;
 	}
