@@ -17,6 +17,17 @@ static const struct cli_tool tool = {
 	.max_operands = -1,
 };
 
+/* The fingerprints that a file may have, in the order in which they are printed. */
+enum { FINGERPRINTS = 3 };
+static const char *const fingerprint_names[FINGERPRINTS] = {"scene", "camera", "encoder"};
+
+static const char *fingerprint(const struct check *c, int which)
+{
+	const struct fingerprint *const all[FINGERPRINTS] = {&c->scene, &c->camera, &c->encoder};
+
+	return fingerprint_text(all[which]);
+}
+
 static void print_text(const char *name, const struct check *c)
 {
 	printf("%s: ok: %s", name, c->kind);
@@ -26,6 +37,9 @@ static void print_text(const char *name, const struct check *c)
 		printf(", %dx%d", c->width, c->height);
 	for (int i = 0; i < c->n; i++)
 		printf(", %lld %s", c->facts[i].value, c->facts[i].name);
+	for (int i = 0; i < FINGERPRINTS; i++)
+		if (fingerprint(c, i))
+			printf(", %s %s", fingerprint_names[i], fingerprint(c, i));
 	printf("\n");
 	for (size_t i = 0; i < c->listing.n; i++) {
 		const struct st_tensor *t = &c->listing.tensors[i];
@@ -79,6 +93,9 @@ static int print_json(const char *name, const struct check *c, const char *reaso
 				*p = *p == ' ' ? '_' : *p;
 			cJSON_AddNumberToObject(object, key, (double)c->facts[i].value);
 		}
+		for (int i = 0; i < FINGERPRINTS; i++)
+			if (fingerprint(c, i))
+				cJSON_AddStringToObject(object, fingerprint_names[i], fingerprint(c, i));
 		if (c->listing.n)
 			cJSON_AddItemToObject(object, "list", listing_json(&c->listing));
 	} else {

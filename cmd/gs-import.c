@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "cli/cli.h"
 #include "formats/camerafile.h"
+#include "formats/colmap.h"
 #include "formats/ply.h"
 #include "formats/scene.h"
 
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const char *cameras_path, *images_path, *test_views;
 
@@ -49,21 +49,15 @@ static void split_every(const struct cli *cli, struct cameras *c, const char *te
 		c->views[i].split = i % n ? SPLIT_TRAIN : SPLIT_TEST;
 }
 
-static int split_names(const struct cli *cli, struct cameras *c, struct err *e)
+static int split_names(struct cameras *c, struct err *e)
 {
 	char *is_test = mem_zalloc(c->n, 1, "views", e);
-	struct list_name name;
+	int bad = is_test ? cameras_mark(c, test_views, "--test-views", is_test, e) : -1;
 
-	if (!is_test)
-		return -1;
-	if (cameras_mark(c, test_views, is_test, &name)) {
-		free(is_test);
-		cli_usage(cli, "--test-views: no view '%.*s'", (int)name.length, name.text);
-	}
-	for (size_t i = 0; i < c->n; i++)
+	for (size_t i = 0; i < c->n && !bad; i++)
 		c->views[i].split = is_test[i] ? SPLIT_TEST : SPLIT_TRAIN;
 	free(is_test);
-	return 0;
+	return bad;
 }
 
 /* What is beside SPLATS or, where 3DGS put it into point_cloud/iteration_N, in the folder of the trained
@@ -95,15 +89,12 @@ static char *choose_cameras(const struct cli *cli, const char *splats, struct er
 	return found;
 }
 
-/* A scene's cameras.json must not take the place of the one that is read. */
-static void refuse_overwrite(const struct cli *cli, const char *cameras, struct err *e)
+static void refuse_overwrite(const struct cli *cli, const char *cameras)
 {
-	char *target = file_join(cli->output, "cameras.json", "", e);
-	struct stat a, b;
+	const struct cli_file found[] = {
+		{"--cameras", cameras, CLI_READS, file_is_dir(cameras) ? COLMAP_PARTS : NULL}, {0}};
 
-	if (target && !stat(target, &a) && !stat(cameras, &b) && a.st_dev == b.st_dev && a.st_ino == b.st_ino)
-		cli_usage(cli, "-o: %s is the camera file that is read", target);
-	free(target);
+	cli_refuse_overwrite(cli, "SPLATS", "output:" CLI_SCENE_PARTS, found);
 }
 
 static void note_splats(
@@ -155,6 +146,12 @@ static int check_images(struct err *e)
 	return err_errno(e, "%s", images_path);
 }
 
+/* So that a file that is missing is said to be so before cameras are looked for beside it. */
+static int check_splats(const char *path, struct err *e)
+{
+	return strcmp(path, "-") && !file_exists(path) ? err_errno(e, "%s", path) : 0;
+}
+
 static int run(
 	const struct cli *cli, struct scene *s, struct ply_report *report, char **cameras, struct err *e)
 {
@@ -162,17 +159,19 @@ static int run(
 	char *metadata;
 	size_t missing;
 
-	if (check_images(e) || ply_read(&s->splats, s->offset, report, splats, e))
+	if (check_images(e) || check_splats(splats, e))
 		return -1;
 	*cameras = choose_cameras(cli, splats, e);
-	if (!*cameras || camerafile_read(&s->cameras, *cameras, e))
+	if (!*cameras)
+		return -1;
+	refuse_overwrite(cli, *cameras);
+	if (ply_read(&s->splats, s->offset, report, splats, e) || camerafile_read(&s->cameras, *cameras, e))
 		return -1;
 	if (test_views && !strncmp(test_views, "every:", 6))
 		split_every(cli, &s->cameras, test_views + 6);
-	else if (test_views && split_names(cli, &s->cameras, e))
+	else if (test_views && split_names(&s->cameras, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
-	refuse_overwrite(cli, *cameras, e);
 	metadata = describe_options(e);
 	int bad = !metadata || file_make_dir(cli->output, e) ||
 		  camerafile_images(&s->cameras, images_path, cli->output, &missing, e) ||

@@ -75,6 +75,8 @@ static int weigh_view(const struct cli *cli, const struct scene *s, const struct
 		.index = room->rendered.index,
 		.weight = room->rendered.weight,
 		.dropped = room->dropped,
+		.scene = s->fingerprint,
+		.camera = fingerprint_camera(&camera),
 		.precision = (enum precision)o->precision};
 	if (weights_write(&w, cli->output, full->name, o->text, e))
 		return -1;
@@ -145,6 +147,7 @@ int main(int argc, char **argv)
 	cli_parse(&cli, &tool, argc, argv);
 	if (!strcmp(cli.output, "-"))
 		cli_usage(&cli, "--output: weights go to a folder, not to stdout");
+	cli_refuse_overwrite(&cli, "SCENE:" CLI_SCENE_PARTS, "output:" CLI_WEIGHTS_PARTS, NULL);
 	snprintf(o.text, sizeof o.text, "--scale %.15g --tolerance %.15g --precision %s", o.scale,
 		o.tolerance, precision_name((enum precision)o.precision));
 	if (scene_read(&scene, cli.operands[0], &e))

@@ -223,6 +223,7 @@ int main(int argc, char **argv)
 	if (is_answers && (is_boxes || paths.other || paths.whole || resamples || is_csv))
 		cli_usage(&c,
 			"--answers goes with --truth, --sentences, --predicted-views, --json and --fail-under only");
+	cli_refuse_overwrite(&c, "PREDICTIONS truth compare sentences whole", "output", NULL);
 	const struct bootstrap how = {(size_t)resamples, confidence, (uint64_t)c.seed};
 	struct scores s = {.is_compared = paths.other != NULL,
 		.has_relations = paths.sentences != NULL,

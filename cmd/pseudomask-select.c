@@ -10,6 +10,7 @@
 #include "refer/carry.h"
 #include "refer/regions.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum { METHOD_FIRST = SELECT_TOP1 + 1, METHOD_SCENE, METHOD_DEFAULT };
@@ -72,10 +73,10 @@ static int put_winners(const struct work *w, const struct cli *c, struct err *e)
 
 static int lift_source(struct work *w, size_t source, struct err *e)
 {
-	const char *name = w->scene.cameras.views[w->carry.sources[source].view].name;
+	const size_t view = w->carry.sources[source].view;
 	struct weights weights;
 
-	if (weights_open(&weights, w->options.weights, name, w->scene.splats.n, e))
+	if (weights_open(&weights, w->options.weights, &w->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
 	int bad = carry_lift(&w->carry, source, &blend, weights.height, weights.width, e);
@@ -106,7 +107,7 @@ static int lift_regions(struct work *w, struct err *e)
 	struct regions *r = &w->regions;
 
 	if (regions_init(r, &w->pool, w->views, cameras->n, n, w->options.min_score, e) ||
-		weights_each(w->options.weights, cameras, n, lift_view, r, &w->left_out, e))
+		weights_each(w->options.weights, &w->scene, lift_view, r, &w->left_out, e))
 		return -1;
 	return regions_grow(r, e) || regions_assign(r, e) ? -1 : 0;
 }
@@ -140,6 +141,7 @@ static int put_view(void *work, size_t view, const struct weights *weights, stru
 			w->set.records[is_scene ? w->regions.objects[i] : w->carry.masks[i].record];
 		if (!bad && rle_area(&masks[i])) {
 			r.view = w->scene.cameras.views[view].name;
+			r.visible = NAN; /* the record's is of its own view */
 			r.mask = masks[i];
 			w->masks++;
 			bad = put_mask(w->out, r, scores[i], e);
@@ -155,19 +157,18 @@ static int put_view(void *work, size_t view, const struct weights *weights, stru
 static int put_views(struct work *w, const struct cli *c, struct err *e)
 {
 	const int is_scene = w->options.method == METHOD_SCENE;
-	const struct cameras *cameras = &w->scene.cameras;
 	const char *dir = w->options.weights;
 
 	w->views = mem_alloc(w->set.n, sizeof *w->views, "views", e);
 	if (!w->views || scene_read(&w->scene, w->options.scene, e) ||
-		masks_views(&w->set, w->lines, w->path, cameras, w->views, e) ||
+		masks_views(&w->set, w->lines, w->path, &w->scene.cameras, w->views, e) ||
 		(is_scene ? lift_regions(w, e) : lift_carried(w, e)))
 		return -1;
 	const size_t found = is_scene ? w->regions.region_count : w->carry.count;
 	if (!found && w->set.n)
 		cli_warn(c, "%s: no candidate of a training view is above %g", file_name(w->path),
 			w->options.min_score);
-	if (found && weights_each(dir, cameras, w->scene.splats.n, put_view, w, &w->left_out, e))
+	if (found && weights_each(dir, &w->scene, put_view, w, &w->left_out, e))
 		return -1;
 	if (w->left_out)
 		cli_warn(c, "%s: %zu training views have no weights, and get no masks", dir, w->left_out);
@@ -236,13 +237,15 @@ int main(int argc, char **argv)
 
 	cli_parse(&c, &tool, argc, argv);
 	w.path = c.operand_count ? c.operands[0] : "-";
-	if (o->method == METHOD_DEFAULT)
-		o->method = o->scene || o->weights ? METHOD_SCENE : SELECT_CIOU;
+	o->method = o->method != METHOD_DEFAULT ? o->method
+		    : o->scene || o->weights	? METHOD_SCENE
+						: SELECT_CIOU;
 	if (o->method >= METHOD_FIRST && (!o->scene || !o->weights))
 		cli_usage(&c, "--method %s needs --scene SCENE and --weights WEIGHTS",
 			o->method == METHOD_FIRST ? "first" : "scene");
 	if (o->method < METHOD_FIRST && (o->scene || o->weights))
 		cli_usage(&c, "%s is for --method scene and first", o->scene ? "--scene" : "--weights");
+	cli_refuse_overwrite(&c, "CANDIDATES " CLI_SCENE " " CLI_WEIGHTS, "output", NULL);
 	int bad = run(&w, &c, &e);
 	work_free(&w);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);

@@ -1,6 +1,7 @@
 /* refer-lift: objects lifted onto the Gaussians from their masks, in closed form. */
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/names.h"
 #include "cli/cli.h"
 #include "formats/lifted.h"
 #include "formats/masks.h"
@@ -21,13 +22,11 @@ static struct {
 
 static const struct cli_option table[] = {
 	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
-	{"weights", 0, CLI_STRING, &options.weights, "WEIGHTS",
-		"blend weights of the training views, by gs-weigh (required)", 0, 0},
+	{"weights", 0, CLI_STRING, &options.weights, "WEIGHTS", "folder of gs-weigh (required)", 0, 0},
 	{"text", 0, CLI_STRING, &options.text, "TEXT", "sentences encoded by text-encode (required)", 0, 0},
 	{"masks", 0, CLI_STRING, &options.masks, "MASKS", "masks of pseudomask-select (required)", 0, 0},
 	{"names", 0, CLI_CHOICE, &options.is_as_masked, "sentences|masks",
-		"which of several alike an object is: as its sentences say (default), or as its masks do", 0,
-		0},
+		"which of several alike an object is: as sentences say (default), or as masks do", 0, 0},
 	{0}};
 
 static const struct cli_tool tool = {.name = "refer-lift",
@@ -44,6 +43,9 @@ struct run {
 	long *lines;			       /* (set.n) */
 	size_t *views;			       /* (set.n) of each mask */
 	size_t *sentence_object, *mask_object; /* (text.n), (set.n) in names; LIFTED_NONE: does not count */
+	struct names refs, objects_of;	       /* of the sentences; of `trained` */
+	const char **trained;		       /* (text.n) objects of the training sentences, else NULL */
+	char *is_shown; /* (text.n) by a mask, at the first training sentence of an object */
 	size_t objects;
 	char **names; /* (objects) of the sentences, in the order in which these first name them; not owned */
 	char *is_there; /* (scene.cameras.n) the view has weights */
@@ -62,19 +64,15 @@ static void run_free(struct run *r)
 	free(r->views);
 	free(r->sentence_object);
 	free(r->mask_object);
+	names_free(&r->refs);
+	names_free(&r->objects_of);
+	free(r->trained);
+	free(r->is_shown);
 	free(r->names);
 	free(r->is_there);
 	lift_objects_free(&r->lift);
 	lifted_free(&r->model);
 	parser_weights_free(&r->weights);
-}
-
-static size_t find_object(const struct run *r, const char *name)
-{
-	for (size_t o = 0; name && o < r->objects; o++)
-		if (!strcmp(r->names[o], name))
-			return o;
-	return LIFTED_NONE;
 }
 
 static int load(struct run *r, struct err *e)
@@ -89,8 +87,11 @@ static int load(struct run *r, struct err *e)
 	r->mask_object = mem_alloc(r->set.n, sizeof *r->mask_object, "masks", e);
 	r->sentence_object = mem_alloc(r->text.n, sizeof *r->sentence_object, "sentences", e);
 	r->names = mem_alloc(r->text.n, sizeof *r->names, "objects", e);
+	r->trained = mem_alloc(r->text.n, sizeof *r->trained, "sentences", e);
+	r->is_shown = mem_zalloc(r->text.n, 1, "sentences", e);
 	r->is_there = mem_zalloc(r->scene.cameras.n, 1, "views", e);
-	if (!r->views || !r->mask_object || !r->sentence_object || !r->names || !r->is_there)
+	if (!r->views || !r->mask_object || !r->sentence_object || !r->names || !r->trained || !r->is_shown ||
+		!r->is_there)
 		return -1;
 	return masks_views(&r->set, r->lines, options.masks, &r->scene.cameras, r->views, e);
 }
@@ -108,35 +109,31 @@ static int find_views(struct run *r, const struct cli *c, struct err *e)
 	return 0;
 }
 
-/* The object that a mask is of: a sentence's is its object's, but those of test sentences, and of views
- * without weights, are not looked at. NULL where it does not count. */
-static const char *name_of_mask(const struct run *r, size_t mask)
+/* The first training sentence of a mask's object: a sentence's mask is its object's, but those of test
+ * sentences, and of views without weights, are not looked at. NAMES_NONE where the mask does not count. */
+static size_t sentence_of_mask(const struct run *r, size_t mask)
 {
 	const struct mask_record *m = &r->set.records[mask];
+	const size_t ref = m->ref ? names_find(&r->refs, m->ref) : NAMES_NONE;
+	const char *name = ref == NAMES_NONE ? m->object : r->trained[ref];
 
-	if (!r->is_there[r->views[mask]])
-		return NULL;
-	for (size_t i = 0; m->ref && i < r->text.n; i++)
-		if (!strcmp(r->text.refs[i], m->ref))
-			return r->text.splits[i] == SPLIT_TRAIN ? r->text.objects[i] : NULL;
-	return m->object;
+	return name && r->is_there[r->views[mask]] ? names_find(&r->objects_of, name) : NAMES_NONE;
 }
 
-static int has_mask(const struct run *r, const char *name)
+static int find_sentences(struct run *r, struct err *e)
 {
+	const size_t n = r->text.n;
+
+	for (size_t i = 0; i < n; i++)
+		r->trained[i] = r->text.splits[i] == SPLIT_TRAIN ? r->text.objects[i] : NULL;
+	if (names_make(&r->refs, r->text.refs, sizeof(char *), 0, n, e) ||
+		names_make(&r->objects_of, r->trained, sizeof(char *), 0, n, e))
+		return -1;
 	for (size_t i = 0; i < r->set.n; i++) {
-		const char *other = name_of_mask(r, i);
-		if (other && !strcmp(name, other))
-			return 1;
+		r->mask_object[i] = sentence_of_mask(r, i);
+		if (r->mask_object[i] != NAMES_NONE)
+			r->is_shown[r->mask_object[i]] = 1;
 	}
-	return 0;
-}
-
-static int is_named_before(const struct text *t, size_t sentence)
-{
-	for (size_t i = 0; i < sentence; i++)
-		if (t->splits[i] == SPLIT_TRAIN && !strcmp(t->objects[i], t->objects[sentence]))
-			return 1;
 	return 0;
 }
 
@@ -146,21 +143,19 @@ static void find_objects(struct run *r, const struct cli *c)
 	size_t unknown = 0;
 
 	for (size_t i = 0; i < r->text.n; i++) {
-		char *name = r->text.objects[i];
-		r->sentence_object[i] = LIFTED_NONE;
-		if (r->text.splits[i] != SPLIT_TRAIN)
+		const size_t first = r->trained[i] ? names_find(&r->objects_of, r->trained[i]) : i;
+		r->sentence_object[i] = first < i ? r->sentence_object[first] : LIFTED_NONE;
+		if (first < i || !r->trained[i])
 			continue;
-		if (!is_named_before(&r->text, i)) {
-			if (has_mask(r, name))
-				r->names[r->objects++] = name;
-			else
-				cli_warn(c, "%s: '%s' has no mask in a training view, and is left out",
-					file_name(options.masks), name);
-		}
-		r->sentence_object[i] = find_object(r, name);
+		if (r->is_shown[i])
+			r->names[r->sentence_object[i] = r->objects++] = r->text.objects[i];
+		else
+			cli_warn(c, "%s: '%s' has no mask in a training view, and is left out",
+				file_name(options.masks), r->trained[i]);
 	}
 	for (size_t i = 0; i < r->set.n; i++) {
-		r->mask_object[i] = find_object(r, name_of_mask(r, i));
+		const size_t first = r->mask_object[i];
+		r->mask_object[i] = first == NAMES_NONE ? LIFTED_NONE : r->sentence_object[first];
 		unknown += r->is_there[r->views[i]] && r->mask_object[i] == LIFTED_NONE;
 	}
 	if (unknown)
@@ -186,7 +181,7 @@ static int lift_view(struct run *r, size_t view, struct lift_mask *masks, struct
 	if (!n)
 		return 0;
 	qsort(masks, n, sizeof *masks, by_object);
-	if (weights_open(&weights, options.weights, r->scene.cameras.views[view].name, r->scene.splats.n, e))
+	if (weights_open(&weights, options.weights, &r->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
 	int bad = lift_objects_view(&r->lift, &blend, weights.height, weights.width, masks, n, e);
@@ -217,7 +212,8 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 	double confidence = 0;
 	size_t moved = 0;
 
-	if (load(r, e) || parser_weights_default(&r->weights, e) || find_views(r, c, e))
+	if (load(r, e) || parser_weights_default(&r->weights, e) || find_views(r, c, e) ||
+		find_sentences(r, e))
 		return -1;
 	find_objects(r, c);
 	cli_progress_start(&r->progress, c, "views", (double)r->scene.cameras.n * LIFT_ROUNDS);
@@ -232,7 +228,9 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 	cli_note(c, 1,
 		"%zu objects, %lld Gaussians with a share in one; agreement of the masks %.3f; %zu changed places",
 		r->model.objects, (long long)r->model.indptr[r->model.objects], confidence, moved);
-	return lifted_write(&r->model, c->output, "", e);
+	const struct origin origin = {r->scene.fingerprint, r->text.encoder};
+	return lifted_write(&r->model, &origin, c->output,
+		options.is_as_masked ? "--names masks" : "--names sentences", e);
 }
 
 int main(int argc, char **argv)
@@ -244,8 +242,7 @@ int main(int argc, char **argv)
 	cli_parse(&c, &tool, argc, argv);
 	if (!options.scene || !options.weights || !options.text || !options.masks)
 		cli_usage(&c, "--scene, --weights, --text and --masks are required");
-	if (!strcmp(options.text, "-") && !strcmp(options.masks, "-"))
-		cli_usage(&c, "--text and --masks cannot both be stdin");
+	cli_refuse_overwrite(&c, CLI_SCENE " " CLI_WEIGHTS " text masks", "output", NULL);
 	cli_refuse_terminal(&c);
 	int bad = run(&r, &c, &e);
 	run_free(&r);

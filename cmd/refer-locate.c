@@ -58,14 +58,12 @@ struct run {
 
 static int choose_refs(struct run *r, const struct cli *c, struct err *e)
 {
-	struct list_name name;
-
 	r->chosen = mem_zalloc(r->text.n, 1, "sentences", e);
 	r->refs = mem_alloc(r->text.n, sizeof *r->refs, "sentences", e);
 	if (!r->chosen || !r->refs)
 		return -1;
-	if (options.refs && text_mark(&r->text, options.refs, r->chosen, &name))
-		cli_usage(c, "--refs: no sentence '%.*s'", (int)name.length, name.text);
+	if (options.refs && text_mark(&r->text, options.refs, "--refs", r->chosen, e))
+		return -1;
 	for (size_t i = 0; i < r->text.n; i++)
 		if (options.refs ? r->chosen[i]
 				 : options.sentences == SPLIT_ALL ||
@@ -154,8 +152,6 @@ static void check(const struct cli *c)
 {
 	if (!options.scene || !options.text || !options.model)
 		cli_usage(c, "--scene, --text and --model are required");
-	if (!strcmp(options.text, "-") && !strcmp(options.model, "-"))
-		cli_usage(c, "--text and --model cannot both be stdin");
 	if ((options.ply && !strcmp(options.ply, "-")) || (options.splat && !strcmp(options.splat, "-")))
 		cli_usage(c, "--ply and --splat must name a file");
 	if (options.show && !options.ply && !options.splat)
@@ -170,6 +166,7 @@ int main(int argc, char **argv)
 
 	cli_parse(&c, &tool, argc, argv);
 	check(&c);
+	cli_refuse_overwrite(&c, CLI_SCENE " text model", "output ply splat", NULL);
 	int bad = load(&r, &c, &e) || ((options.ply || options.splat) && write_scene(&r, &e)) ||
 		  write_boxes(&r, &c, &e);
 	for (size_t k = 0; r.located && k < r.asked.answers; k++)

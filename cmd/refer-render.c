@@ -91,17 +91,16 @@ struct run {
 	struct cli_progress progress;
 };
 
-static int choose_views(struct run *r, const struct cli *c, struct err *e)
+static int choose_views(struct run *r, struct err *e)
 {
 	const struct cameras *from = &r->scene.cameras;
-	struct list_name name;
 
 	r->chosen = mem_zalloc(from->n, 1, "views", e);
 	r->views = mem_alloc(from->n, sizeof *r->views, "views", e);
 	if (!r->chosen || !r->views)
 		return -1;
-	if (options.views && cameras_mark(from, options.views, r->chosen, &name))
-		cli_usage(c, "--views: no view '%.*s'", (int)name.length, name.text);
+	if (options.views && cameras_mark(from, options.views, "--views", r->chosen, e))
+		return -1;
 	for (size_t i = 0; i < from->n; i++) {
 		const struct camera *view = &from->views[i];
 		int width = options.size[0], height = options.size[1];
@@ -126,8 +125,8 @@ static int choose_refs(struct run *r, const struct cli *c, struct err *e)
 	r->refs = mem_alloc(r->text.n, sizeof *r->refs, "sentences", e);
 	if (!r->chosen || !r->refs)
 		return -1;
-	if (options.refs && text_mark(&r->text, options.refs, r->chosen, &name))
-		cli_usage(c, "--refs: no sentence '%.*s'", (int)name.length, name.text);
+	if (options.refs && text_mark(&r->text, options.refs, "--refs", r->chosen, e))
+		return -1;
 	if (choose_without(options.without, &options.parts, &name))
 		cli_usage(c, "--without: no part '%.*s'", (int)name.length, name.text);
 	for (size_t i = 0; i < r->text.n; i++)
@@ -141,7 +140,7 @@ static int choose_refs(struct run *r, const struct cli *c, struct err *e)
 static int load(struct run *r, const struct cli *c, struct err *e)
 {
 	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
-		anymodel_read(&r->model, options.model, e) || choose_views(r, c, e) || choose_refs(r, c, e))
+		anymodel_read(&r->model, options.model, e) || choose_views(r, e) || choose_refs(r, c, e))
 		return -1;
 	if (!r->view_count || !r->ref_count)
 		cli_warn(c, "%s: no %s in this split",
@@ -274,8 +273,8 @@ int main(int argc, char **argv)
 	cli_parse(&c, &tool, argc, argv);
 	if (!options.scene || !options.text || !options.model)
 		cli_usage(&c, "--scene, --text and --model are required");
-	if (!strcmp(options.text, "-") && !strcmp(options.model, "-"))
-		cli_usage(&c, "--text and --model cannot both be stdin");
+	cli_refuse_overwrite(
+		&c, CLI_SCENE " text model", "output png:*.png response:*.png overlay:*.png", NULL);
 	if (options.size[0] && options.scale)
 		cli_usage(&c, "--size and --scale do not go together");
 	int bad = run(&r, &c, &e);

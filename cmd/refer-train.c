@@ -4,8 +4,8 @@
 #include "formats/checkpoint.h"
 #include "formats/training.h"
 #include "formats/trainlog.h"
+#include "refer/divergence.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,9 +67,7 @@ static const struct cli_option table[] = {
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{"checkpoint", 0, CLI_INT, &options.checkpoint, "N",
 		"write MODEL.checkpoint every N steps, 0 never (default 1000)", 0, 100000000},
-	{"resume", 0, CLI_FLAG, &options.is_resumed, NULL, "go on from MODEL.checkpoint where there is one",
-		0, 0},
-	{0}};
+	{"resume", 0, CLI_FLAG, &options.is_resumed, NULL, "go on from MODEL.checkpoint, if any", 0, 0}, {0}};
 
 static const struct cli_tool tool = {.name = "refer-train",
 	.operands = "-o MODEL",
@@ -84,7 +82,9 @@ struct run {
 	struct training data;
 	struct trainer trainer;
 	struct trainlog log;
-	char *checkpoint, identity[CHECKPOINT_IDENTITY];
+	struct divergence divergence;
+	char *checkpoint;
+	struct checkpoint_of of;
 	int is_own;    /* the checkpoint is of this training */
 	char note[64]; /* the latest losses */
 };
@@ -94,7 +94,7 @@ static int start(struct run *r, const struct cli *c, struct err *e)
 	const struct training *d = &r->data;
 	const struct trainer_source source = training_source(d);
 
-	checkpoint_identity(r->identity, &options.trainer, d->checksum);
+	r->of = training_identity(d, &options.from, &options.trainer);
 	if (trainer_init(&r->trainer, &source, &options.trainer, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, options.from.weights) : -1;
 	cli_note(c, 1, "%zu of %zu Gaussians share %zu features, %.1f a pixel", r->trainer.learning,
@@ -109,14 +109,13 @@ static int resume(struct run *r, const struct cli *c, struct err *e)
 {
 	if (!r->checkpoint || !file_exists(r->checkpoint))
 		return 0;
-	if (!options.is_resumed) {
-		if (options.checkpoint)
-			cli_warn(c,
-				"%s: is of an earlier training and will be replaced; --resume would go on from it",
-				r->checkpoint);
+	if (!options.is_resumed && options.checkpoint)
+		cli_warn(c,
+			"%s: is of an earlier training and will be replaced; --resume would go on from it",
+			r->checkpoint);
+	if (!options.is_resumed)
 		return 0;
-	}
-	if (checkpoint_resume(&r->trainer.state, r->checkpoint, r->identity, options.iterations, e))
+	if (checkpoint_resume(&r->trainer.state, r->checkpoint, &r->of, options.iterations, e))
 		return -1;
 	r->is_own = 1;
 	cli_note(c, 1, "going on after step %ld", r->trainer.state.iteration);
@@ -137,8 +136,8 @@ static int record(struct run *r, const struct cli *c, const struct step_losses *
 	struct train_state *t = &r->trainer.state;
 	const long done = t->iteration;
 
-	if (!isfinite(last->total))
-		return err_set(e, ERR_CHECK, "%s: the loss is not finite at step %ld", c->output, done);
+	if (divergence_check(&r->divergence, t, last, is_over(r), e))
+		return err_prefix(e, file_name(c->output));
 	if (done % TRAINLOG_EVERY == 0)
 		snprintf(r->note, sizeof r->note, "loss %.4f", t->sum.total / TRAINLOG_EVERY);
 	if (trainlog_step(&r->log, t, e))
@@ -148,12 +147,12 @@ static int record(struct run *r, const struct cli *c, const struct step_losses *
 		if (trainlog_put_held(&r->log, done, &score, e))
 			return -1;
 	}
-	if (!options.checkpoint || done % options.checkpoint || is_over(r))
+	if (!options.checkpoint || done % options.checkpoint || is_over(r) ||
+		!divergence_is_good(&r->divergence, t))
 		return 0;
-	if (checkpoint_write(t, r->checkpoint, r->identity, e))
-		return -1;
-	r->is_own = 1;
-	return 0;
+	const int bad = checkpoint_write(t, r->checkpoint, &r->of, e);
+	r->is_own |= !bad;
+	return bad;
 }
 
 static int train(struct run *r, const struct cli *c, struct err *e)
@@ -182,6 +181,8 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 
 	if (strcmp(c->output, "-") && !(r->checkpoint = checkpoint_path(c->output, e)))
 		return -1;
+	cli_refuse_overwrite(c, CLI_SCENE " " CLI_WEIGHTS " text masks init", "output log",
+		(const struct cli_file[]){{"checkpoint", r->checkpoint, CLI_WRITES, NULL}, {0}});
 	if (training_read(&r->data, &options.from, options.trainer.hold_out, (uint64_t)c->seed, e))
 		return -1;
 	if (d->left_out)
@@ -189,11 +190,13 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 			d->left_out);
 	if (d->test_masks)
 		cli_note(c, 1, "%zu masks of test views are not used", d->test_masks);
-	if (file_out_probe(c->output, e) || start(r, c, e) || resume(r, c, e) ||
+	if (file_out_probe(c->output, e) || (r->checkpoint && file_out_probe(r->checkpoint, e)) ||
+		start(r, c, e) || resume(r, c, e) ||
 		trainlog_open(&r->log, options.log, r->trainer.state.iteration, e))
 		return -1;
-	if (train(r, c, e) || training_write(d, &r->trainer, options.trainer.similarity,
-				      (enum precision)options.precision, c->output, r->identity, c->seed, e))
+	if (train(r, c, e) ||
+		training_write(d, &r->trainer, options.trainer.similarity, (enum precision)options.precision,
+			c->output, r->of.identity, c->seed, e))
 		return -1;
 	if (r->is_own)
 		unlink(r->checkpoint);
@@ -212,8 +215,6 @@ static void check_options(const struct cli *c)
 	o->seed = c->seed;
 	if (!f->scene || !f->weights || !f->text || !f->masks)
 		cli_usage(c, "--scene, --weights, --text and --masks are required");
-	if (!strcmp(f->text, "-") + !strcmp(f->masks, "-") + (f->lifted && !strcmp(f->lifted, "-")) > 1)
-		cli_usage(c, "only one of --text, --masks and --init can be stdin");
 	if (!f->lifted && o->warm)
 		cli_usage(c, "--init-iterations needs --init");
 	if (o->hold_out <= 0 && options.patience)
@@ -224,8 +225,6 @@ static void check_options(const struct cli *c)
 		cli_usage(c, "--similarity cosine does not go with --interaction pcmi-proj");
 	if (is_stdout && options.is_resumed)
 		cli_usage(c, "--resume needs a file to write to: there is no checkpoint of stdout");
-	if (is_stdout && options.log && !strcmp(options.log, "-"))
-		cli_usage(c, "--log and --output cannot both be stdout");
 	options.checkpoint = is_stdout ? 0 : options.checkpoint;
 	cli_refuse_terminal(c);
 }

@@ -208,6 +208,7 @@ static int run(const struct cli *c, const char *dir, enum words words, struct er
 	      keep_pieces(&out, &t, &v, e) || text_take_more(&out, &s, e) ||
 	      encode(c, &out, &b, &t, words, e);
 	if (!bad) {
+		out.encoder = fingerprint_encoder(&b, &v, words == STATIC);
 		cli_note(c, 1, "%zu sentences, %lld words of width %d", out.n, (long long)out.offsets[out.n],
 			out.width);
 		bad = text_write(&out, c->output, options, e);
@@ -244,6 +245,7 @@ int main(int argc, char **argv)
 	if (!model)
 		cli_usage(&c, "--model DIR is required");
 	cli_refuse_terminal(&c);
+	cli_refuse_overwrite(&c, "SENTENCES model:" BERT_MODEL_PARTS, "output", NULL);
 	if (run(&c, model, (enum words)words, &e))
 		return cli_fail(&c, &e);
 	return cli_done(&c);

@@ -14,6 +14,7 @@ struct anymodel {
 	int is_lifted;
 	struct model trained;
 	struct lifted lifted;
+	struct origin origin;	       /* the scene and the encoder that it was made with */
 	struct parser_weights weights; /* of the sentences' parser, for a lifted model: the default ones */
 };
 
@@ -34,7 +35,8 @@ struct anymodel_ask {
 		*from; /* where all sentences are said; NULL: each of the view that it names, if any */
 };
 
-/* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text does not fit. */
+/* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text
+ * does not fit or is of another encoder. */
 int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, struct asked *a, struct err *e);
 
 #endif

@@ -78,8 +78,8 @@ static int read_boxes(const struct jsonl *j, const cJSON *object, struct box_rec
 
 static int read_record(const struct jsonl *j, const cJSON *object, struct box_record *r, struct err *e)
 {
-	if (jsonl_name(j, object, "ref", 0, &r->ref, e) ||
-		jsonl_name(j, object, "object", 0, &r->object, e) ||
+	if (jsonl_name(j, object, "ref", NAME_DATA, 0, &r->ref, e) ||
+		jsonl_name(j, object, "object", NAME_DATA, 0, &r->object, e) ||
 		jsonl_number(j, object, "score", &r->score, e))
 		return -1;
 	if (!r->ref && !r->object)

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/path.h"
+#include "base/utf8.h"
 #include "formats/cameras3dgs.h"
 #include "formats/colmap.h"
 #include "formats/json.h"
@@ -84,6 +85,19 @@ static char *find_image(const char *dir, const char *image, struct err *e)
 	return path;
 }
 
+/* The photograph's path as the scene has it, or NULL: JSON cannot have a path that is not UTF-8. */
+static char *image_path(const char *scene, const char *path, struct err *e)
+{
+	char *relative = path_relative(scene, path, e);
+
+	if (relative && utf8_check(relative, strlen(relative)) < strlen(relative)) {
+		free(relative);
+		*e = (struct err){0};
+		return NULL;
+	}
+	return relative;
+}
+
 int camerafile_images(
 	struct cameras *c, const char *images, const char *scene, size_t *missing, struct err *e)
 {
@@ -94,13 +108,13 @@ int camerafile_images(
 		free(v->image);
 		v->image = NULL;
 		if (path) {
-			v->image = path_relative(scene, path, e);
+			*e = (struct err){0};
+			v->image = image_path(scene, path, e);
 			free(path);
-			if (!v->image)
+			if (!v->image && e->code)
 				return -1;
-		} else {
-			(*missing)++;
 		}
+		*missing += !v->image;
 	}
 	return 0;
 }

@@ -2,63 +2,32 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/boxes.h"
 #include "formats/camerafile.h"
+#include "formats/check_records.h"
 #include "formats/colmap.h"
 #include "formats/json.h"
 #include "formats/jsonl.h"
 #include "formats/lifted.h"
-#include "formats/masks.h"
 #include "formats/model.h"
 #include "formats/npy.h"
 #include "formats/parser_weights.h"
-#include "formats/parses.h"
 #include "formats/ply.h"
 #include "formats/png.h"
 #include "formats/scene.h"
-#include "formats/sentences.h"
 #include "formats/text.h"
 #include "formats/weights.h"
 
 #include <dirent.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-static void add_fact(struct check *c, const char *name, long long value)
-{
-	c->facts[c->n++] = (struct check_fact){name, value};
-}
-
-/* Different names, to be counted. */
-struct names {
-	size_t n, capacity;
-	const char **list; /* not owned */
-};
-
-static int names_add(struct names *names, const char *name, struct err *e)
-{
-	for (size_t i = names->n; i-- > 0;)
-		if (!strcmp(names->list[i], name))
-			return 0;
-	void *block = names->list;
-	if (mem_grow(&block, &names->capacity, names->n + 1, sizeof *names->list, "names", e))
-		return -1;
-	names->list = block;
-	names->list[names->n++] = name;
-	return 0;
-}
-
-static void names_free(struct names *names)
-{
-	free(names->list);
-}
-
 static void add_splats(struct check *c, const struct splats *s)
 {
-	add_fact(c, "gaussians", (long long)s->n);
-	add_fact(c, "harmonics", s->sh_coefficients);
+	check_add(c, "gaussians", (long long)s->n);
+	check_add(c, "harmonics", s->sh_coefficients);
 }
 
 /* The views and, where they have one size, that. */
@@ -75,8 +44,8 @@ static void add_views(struct check *c, const struct cameras *views)
 		c->width = views->views[0].width;
 		c->height = views->views[0].height;
 	}
-	add_fact(c, "training views", (long long)(views->n - test));
-	add_fact(c, "test views", (long long)test);
+	check_add(c, "training views", (long long)(views->n - test));
+	check_add(c, "test views", (long long)test);
 }
 
 static int check_scene(struct check *c, const char *path, struct err *e)
@@ -86,6 +55,7 @@ static int check_scene(struct check *c, const char *path, struct err *e)
 	if (scene_read(&s, path, e))
 		return -1;
 	c->kind = "scene";
+	c->scene = s.fingerprint;
 	add_splats(c, &s.splats);
 	add_views(c, &s.cameras);
 	scene_free(&s);
@@ -98,6 +68,7 @@ static int check_splats(struct check *c, const char *path, struct err *e)
 
 	if (scene_read_splats(&s, path, e))
 		return -1;
+	c->scene = s.fingerprint;
 	add_splats(c, &s.splats);
 	scene_free(&s);
 	return 0;
@@ -124,8 +95,10 @@ static int check_weights(struct check *c, const char *path, struct err *e)
 	c->precision = precision_name(w.precision);
 	c->width = w.width;
 	c->height = w.height;
-	add_fact(c, "weights", (long long)w.indptr[(int64_t)w.width * w.height]);
-	add_fact(c, "gaussians of the scene", (long long)w.gaussians);
+	c->scene = w.scene;
+	c->camera = w.camera;
+	check_add(c, "weights", (long long)w.indptr[(int64_t)w.width * w.height]);
+	check_add(c, "gaussians of the scene", (long long)w.gaussians);
 	weights_close(&w);
 	return 0;
 }
@@ -136,9 +109,10 @@ static int check_text(struct check *c, const char *path, struct err *e)
 
 	if (text_read(&t, path, e))
 		return -1;
-	add_fact(c, "sentences", (long long)t.n);
-	add_fact(c, "words", (long long)t.offsets[t.n]);
-	add_fact(c, "columns", t.width);
+	check_add(c, "sentences", (long long)t.n);
+	check_add(c, "words", (long long)t.offsets[t.n]);
+	check_add(c, "columns", t.width);
+	c->encoder = t.encoder;
 	text_free(&t);
 	return 0;
 }
@@ -150,10 +124,12 @@ static int check_model(struct check *c, const char *path, struct err *e)
 	if (model_read(&m, path, e))
 		return -1;
 	c->precision = precision_name(m.precision);
-	add_fact(c, "features", (long long)m.n);
-	add_fact(c, "columns", m.layout.feature_width);
-	add_fact(c, "gaussians of the scene", (long long)m.scene_gaussians);
-	add_fact(c, "parameters", (long long)m.layout.count);
+	check_add(c, "features", (long long)m.n);
+	check_add(c, "columns", m.layout.feature_width);
+	check_add(c, "gaussians of the scene", (long long)m.scene_gaussians);
+	check_add(c, "parameters", (long long)m.layout.count);
+	c->scene = m.origin.scene;
+	c->encoder = m.origin.encoder;
 	model_free(&m);
 	return 0;
 }
@@ -161,15 +137,18 @@ static int check_model(struct check *c, const char *path, struct err *e)
 static int check_lifted(struct check *c, const char *path, struct err *e)
 {
 	struct lifted l;
+	struct origin origin;
 
-	if (lifted_read(&l, path, e))
+	if (lifted_read(&l, &origin, path, e))
 		return -1;
-	add_fact(c, "objects", (long long)l.objects);
-	add_fact(c, "shares", (long long)l.indptr[l.objects]);
-	add_fact(c, "sentences", (long long)l.sentences);
-	add_fact(c, "words", (long long)l.offsets[l.sentences]);
-	add_fact(c, "columns", l.width);
-	add_fact(c, "gaussians of the scene", (long long)l.gaussians);
+	c->scene = origin.scene;
+	c->encoder = origin.encoder;
+	check_add(c, "objects", (long long)l.objects);
+	check_add(c, "shares", (long long)l.indptr[l.objects]);
+	check_add(c, "sentences", (long long)l.sentences);
+	check_add(c, "words", (long long)l.offsets[l.sentences]);
+	check_add(c, "columns", l.width);
+	check_add(c, "gaussians of the scene", (long long)l.gaussians);
 	lifted_free(&l);
 	return 0;
 }
@@ -185,7 +164,7 @@ static int check_ply(struct check *c, const char *path, struct err *e)
 	c->kind = "3DGS ply";
 	add_splats(c, &s);
 	if (report.read > s.n)
-		add_fact(c, "unusable gaussians", (long long)(report.read - s.n));
+		check_add(c, "unusable gaussians", (long long)(report.read - s.n));
 	free(report.dropped);
 	splats_free(&s);
 	return 0;
@@ -198,8 +177,8 @@ static int check_npy(struct check *c, const char *path, struct err *e)
 	if (npy_read(&a, path, e))
 		return -1;
 	c->kind = "npy";
-	add_fact(c, "dimensions", a.dims);
-	add_fact(c, "values", (long long)a.count);
+	check_add(c, "dimensions", a.dims);
+	check_add(c, "values", (long long)a.count);
 	npy_free(&a);
 	return 0;
 }
@@ -210,24 +189,8 @@ static int check_parser(struct check *c, const char *path, struct err *e)
 
 	if (parser_weights_read(&w, path, e))
 		return -1;
-	add_fact(c, "parameters", (long long)w.count);
+	check_add(c, "parameters", (long long)w.count);
 	parser_weights_free(&w);
-	return 0;
-}
-
-static int check_parses(struct check *c, const char *path, struct err *e)
-{
-	struct parse_set s;
-	size_t clauses = 0;
-
-	if (parses_read(&s, path, e))
-		return -1;
-	c->kind = "parses";
-	for (size_t i = 0; i < s.n; i++)
-		clauses += (size_t)s.records[i].parse.clause_count;
-	add_fact(c, "parses", (long long)s.n);
-	add_fact(c, "clauses", (long long)clauses);
-	parses_free(&s);
 	return 0;
 }
 
@@ -265,85 +228,8 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 			return start_again(path, e) || ours[i].check(c, path, e) ? -1 : 0;
 		}
 	c->kind = "safetensors";
-	add_fact(c, "tensors", (long long)c->listing.n);
+	check_add(c, "tensors", (long long)c->listing.n);
 	return 0;
-}
-
-static int check_sentences(struct check *c, const char *path, struct err *e)
-{
-	struct sentences s;
-	struct names objects = {0};
-	size_t test = 0;
-	int bad = 0;
-
-	if (sentences_read(&s, path, e))
-		return -1;
-	for (size_t i = 0; i < s.n && !bad; i++) {
-		test += s.items[i].split == SPLIT_TEST;
-		if (*s.items[i].object)
-			bad = names_add(&objects, s.items[i].object, e);
-		for (size_t k = 0; k < s.items[i].object_count && !bad; k++)
-			bad = names_add(&objects, s.items[i].objects[k], e);
-	}
-	c->kind = "sentences";
-	add_fact(c, "training sentences", (long long)(s.n - test));
-	add_fact(c, "test sentences", (long long)test);
-	add_fact(c, "objects", (long long)objects.n);
-	names_free(&objects);
-	sentences_free(&s);
-	return bad;
-}
-
-static int check_masks(struct check *c, const char *path, struct err *e)
-{
-	struct mask_set set;
-	struct names views = {0}, objects = {0};
-	size_t same = 0;
-	int bad = 0;
-
-	if (masks_read(&set, path, e))
-		return -1;
-	for (size_t i = 0; i < set.n && !bad; i++) {
-		const struct mask_record *r = &set.records[i];
-		same += r->mask.width == set.records[0].mask.width &&
-			r->mask.height == set.records[0].mask.height;
-		bad = names_add(&views, r->view, e) || (r->object && names_add(&objects, r->object, e));
-	}
-	c->kind = "masks";
-	if (set.n && same == set.n) {
-		c->width = set.records[0].mask.width;
-		c->height = set.records[0].mask.height;
-	}
-	add_fact(c, "masks", (long long)set.n);
-	add_fact(c, "views", (long long)views.n);
-	add_fact(c, "objects", (long long)objects.n);
-	names_free(&views);
-	names_free(&objects);
-	masks_free(&set);
-	return bad ? -1 : 0;
-}
-
-static int check_boxes(struct check *c, const char *path, struct err *e)
-{
-	struct box_set set;
-	struct names objects = {0};
-	size_t empty = 0;
-	int bad = 0;
-
-	if (boxes_read(&set, path, e))
-		return -1;
-	for (size_t i = 0; i < set.n && !bad; i++) {
-		const struct box_record *r = &set.records[i];
-		empty += r->is_empty != 0;
-		bad = r->object && names_add(&objects, r->object, e);
-	}
-	c->kind = "boxes";
-	add_fact(c, "boxes", (long long)(set.n - empty));
-	add_fact(c, "objects", (long long)objects.n);
-	add_fact(c, "empty", (long long)empty);
-	names_free(&objects);
-	boxes_free(&set);
-	return bad ? -1 : 0;
 }
 
 static int check_image(struct check *c, const char *path, struct err *e)
@@ -481,30 +367,48 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 	return err_set(e, ERR_FORMAT, "%s: not a kind of file that the suite reads", file_name(path));
 }
 
+/* One view of a folder, which is of the scene that the folder's first one with a fingerprint is of. */
+static int add_view_weights(struct check *c, const char *file, char **first, long long *total, struct err *e)
+{
+	struct weights w;
+
+	if (weights_open_file(&w, file, e))
+		return -1;
+	int bad = *first ? fingerprint_check("scene", file, &w.scene, *first, &c->scene, e) : 0;
+	if (!bad && !*first && *w.scene.hex) {
+		c->scene = w.scene;
+		*first = mem_strdup(file, e);
+		bad = *first ? 0 : -1;
+	}
+	*total += (long long)w.indptr[(int64_t)w.width * w.height];
+	weights_close(&w);
+	return bad;
+}
+
 /* Adds the views of a folder of gs-weigh, in the order of their names; *views says how many there are. */
 static int add_weights(
 	struct check *c, const char *path, struct dirent **names, int n, long long *views, struct err *e)
 {
 	long long total = 0;
+	char *first = NULL;
+	int bad = 0;
 
 	*views = 0;
-	for (int i = 0; i < n; i++) {
+	for (int i = 0; i < n && !bad; i++) {
 		const char *dot = strrchr(names[i]->d_name, '.');
 		if (!dot || strcmp(dot, ".safetensors"))
 			continue;
 		char *file = file_join(path, names[i]->d_name, "", e);
-		struct weights w;
-		int bad = file ? weights_open_file(&w, file, e) : -1;
+		bad = file ? add_view_weights(c, file, &first, &total, e) : -1;
 		free(file);
-		if (bad)
-			return -1;
-		total += (long long)w.indptr[(int64_t)w.width * w.height];
-		weights_close(&w);
 		++*views;
 	}
+	free(first);
+	if (bad)
+		return -1;
 	c->kind = "weights";
-	add_fact(c, "views", *views);
-	add_fact(c, "weights", total);
+	check_add(c, "views", *views);
+	check_add(c, "weights", total);
 	return 0;
 }
 

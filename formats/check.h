@@ -4,6 +4,7 @@
 #define FORMATS_CHECK_H
 
 #include "base/err.h"
+#include "formats/fingerprint.h"
 #include "formats/safetensors.h"
 
 enum { CHECK_MAX_FACTS = 6 };
@@ -17,6 +18,7 @@ struct check {
 	const char *kind;      /* "refer.weights", "scene", "masks" ... */
 	const char *precision; /* of its numbers; NULL where there is no choice */
 	int width, height;     /* of its image or views; 0 where there is none, or more than one */
+	struct fingerprint scene, camera, encoder; /* those that the file has */
 	int n;
 	struct check_fact facts[CHECK_MAX_FACTS];
 	struct safetensors

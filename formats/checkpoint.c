@@ -40,18 +40,20 @@ char *checkpoint_path(const char *model, struct err *e)
 	return path;
 }
 
-int checkpoint_write(const struct train_state *t, const char *path, const char *identity, struct err *e)
+int checkpoint_write(
+	const struct train_state *t, const char *path, const struct checkpoint_of *of, struct err *e)
 {
+	const int has_best = t->best.values && t->best.iteration;
 	const float *arrays[ARRAYS] = {t->values, t->m, t->v, t->best.values};
 	const double losses[3] = {t->sum.bce, t->sum.contrast, t->sum.total};
 	struct st_tensor tensors[NUMBERS + ARRAYS] = {
 		{.name = "losses", .dtype = ST_F64, .dims = 1, .shape = {3}, .data = losses}};
 	char iteration[32], best[32], since[32];
 	const struct st_meta meta[] = {{"format", "refer.checkpoint"}, {"version", "1"},
-		{"tool", "refer-train"}, {"iteration", iteration}, {"identity", identity},
-		{"best_iteration", best}, {"evaluations_since", since}};
-	const int has_best = t->best.values && t->best.iteration;
-	const size_t left_out = has_best ? 0 : 2;
+		{"tool", "refer-train"}, {"iteration", iteration}, {"identity", of->identity},
+		{"scene", fingerprint_text(&of->origin.scene)},
+		{"encoder", fingerprint_text(&of->origin.encoder)},
+		{"best_iteration", has_best ? best : NULL}, {"evaluations_since", has_best ? since : NULL}};
 	size_t n = 1;
 
 	if (has_best)
@@ -69,7 +71,7 @@ int checkpoint_write(const struct train_state *t, const char *path, const char *
 	snprintf(iteration, sizeof iteration, "%ld", t->iteration);
 	snprintf(best, sizeof best, "%ld", t->best.iteration);
 	snprintf(since, sizeof since, "%ld", t->best.since);
-	return safetensors_write(path, tensors, n, meta, sizeof meta / sizeof *meta - left_out, e);
+	return safetensors_write(path, tensors, n, meta, sizeof meta / sizeof *meta, e);
 }
 
 static int read_array(float *to, size_t count, const struct safetensors *st, const char *name, struct err *e)
@@ -119,20 +121,33 @@ static int read_best(struct train_state *t, const struct safetensors *st, long l
 	return 0;
 }
 
+/* That it is of this training: of this scene and encoder, which have messages of their own, with these
+ * options and inputs. */
+static int check_training(const struct safetensors *st, const struct checkpoint_of *of, struct err *e)
+{
+	struct origin own;
+
+	if (origin_read(&own, st, e) ||
+		fingerprint_check("scene", st->path, &own.scene, of->scene_path, &of->origin.scene, e) ||
+		fingerprint_check("encoder", st->path, &own.encoder, of->text_path, &of->origin.encoder, e))
+		return -1;
+	const char *identity = safetensors_meta(st, "identity");
+	if (!identity || strcmp(identity, of->identity))
+		return err_set(e, ERR_FORMAT,
+			"%s: is of another training (its options or inputs differ); remove it or train without --resume",
+			st->path);
+	return 0;
+}
+
 static int read_state(
-	struct train_state *t, const struct safetensors *st, const char *identity, struct err *e)
+	struct train_state *t, const struct safetensors *st, const struct checkpoint_of *of, struct err *e)
 {
 	float *arrays[] = {t->values, t->m, t->v};
 	long long iteration;
 	double losses[3];
 
-	if (safetensors_need_format(st, "refer.checkpoint", 1, e))
+	if (safetensors_need_format(st, "refer.checkpoint", 1, e) || check_training(st, of, e))
 		return -1;
-	const char *own = safetensors_meta(st, "identity");
-	if (!own || strcmp(own, identity))
-		return err_set(e, ERR_FORMAT,
-			"%s: is of another training (its options or inputs differ); remove it or train without --resume",
-			st->path);
 	if (safetensors_meta_int(st, "iteration", 1, LONG_MAX, &iteration, e))
 		return -1;
 	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
@@ -149,21 +164,21 @@ static int read_state(
 	return 0;
 }
 
-int checkpoint_read(struct train_state *t, const char *path, const char *identity, struct err *e)
+int checkpoint_read(struct train_state *t, const char *path, const struct checkpoint_of *of, struct err *e)
 {
 	struct safetensors st;
 
 	if (safetensors_open(&st, path, e))
 		return -1;
-	int bad = read_state(t, &st, identity, e);
+	int bad = read_state(t, &st, of, e);
 	safetensors_close(&st);
 	return bad;
 }
 
-int checkpoint_resume(
-	struct train_state *t, const char *path, const char *identity, long long most, struct err *e)
+int checkpoint_resume(struct train_state *t, const char *path, const struct checkpoint_of *of, long long most,
+	struct err *e)
 {
-	if (checkpoint_read(t, path, identity, e))
+	if (checkpoint_read(t, path, of, e))
 		return -1;
 	return t->iteration > most ? err_set(e, ERR_FORMAT, "%s: has %ld steps, more than the %lld asked for",
 					     path, t->iteration, most)

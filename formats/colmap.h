@@ -5,6 +5,9 @@
 #include "base/err.h"
 #include "geom/camera.h"
 
+/* What may be read of a model's folder. */
+#define COLMAP_PARTS "cameras.bin|cameras.txt|images.bin|images.txt"
+
 /* 1 where dir holds cameras.bin and images.bin, or cameras.txt and images.txt. */
 int colmap_is_model(const char *dir);
 

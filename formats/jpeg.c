@@ -1,6 +1,7 @@
 #include "formats/jpeg.h"
 
 #include "base/mem.h"
+#include "formats/png.h"
 
 #include <setjmp.h>
 #include <stdlib.h>
@@ -47,6 +48,8 @@ static int decode(struct jpeg_job *job, FILE *in)
 	jpeg_create_decompress(jpeg);
 	jpeg_stdio_src(jpeg, in);
 	jpeg_read_header(jpeg, TRUE);
+	if (picture_check_size(job->name, "JPEG", jpeg->image_width, jpeg->image_height, job->e))
+		return -1;
 	if (jpeg->jpeg_color_space == JCS_CMYK || jpeg->jpeg_color_space == JCS_YCCK)
 		return err_set(job->e, ERR_FORMAT, "%s: JPEG: CMYK colours are not supported", job->name);
 	jpeg->out_color_space = JCS_RGB;

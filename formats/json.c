@@ -19,8 +19,21 @@ cJSON *json_read(const char *path, struct err *e)
 		err_set(e, ERR_FORMAT, "%s: not JSON: a NUL byte at offset %zu", name, strlen(text));
 	else if (!(value = cJSON_ParseWithOpts(text, &stop, 1)))
 		err_set(e, ERR_FORMAT, "%s: not JSON at offset %td", name, stop ? stop - text : (ptrdiff_t)0);
+	if (value && json_has_nul(text)) {
+		cJSON_Delete(value);
+		value = NULL;
+		err_set(e, ERR_FORMAT, "%s: a NUL character (\\u0000) in a string", name);
+	}
 	free(text);
 	return value;
+}
+
+int json_has_nul(const char *json)
+{
+	for (const char *p = strchr(json, '\\'); p && p[1]; p = strchr(p + 2, '\\'))
+		if (!strncmp(p, "\\u0000", 6))
+			return 1;
+	return 0;
 }
 
 static const cJSON *member(const cJSON *object, const char *key)

@@ -9,6 +9,9 @@
 /* The value in a file ("-" is stdin): cJSON_Delete it. NULL with *e set ("path: not JSON at offset N"). */
 cJSON *json_read(const char *path, struct err *e);
 
+/* 1 where a string in JSON that was parsed has the escape \u0000, at which cJSON silently ends the string. */
+int json_has_nul(const char *json);
+
 /* A number member, finite. Returns 1 and *value, 0 where it is absent or null (an error if `need`), -1 with
  * *e
  * ("WHERE: key 'k' ..."). */

@@ -2,12 +2,14 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/name.h"
+#include "formats/json.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
 
 int jsonl_open(struct jsonl *j, const char *path, struct err *e)
 {
@@ -34,16 +36,37 @@ int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
 	return err_set(e, ERR_FORMAT, "%s:%ld: %s", j->path, j->line_number, reason);
 }
 
+/* The next line, with a NUL after it: its length, 0 at the end, -1 with *e. Nothing of a line that is too
+ * long is kept beyond the limit. */
+static ssize_t read_line(struct jsonl *j, struct err *e)
+{
+	void *block = j->line;
+	size_t len = 0;
+	int byte = 0;
+
+	while (byte != '\n' && (byte = getc_unlocked(j->in)) != EOF) {
+		if (len == JSONL_LINE_MAX) {
+			j->line_number++;
+			return jsonl_err(j, e, "a line of more than %d bytes", JSONL_LINE_MAX);
+		}
+		if (len + 2 > j->capacity && mem_grow(&block, &j->capacity, len + 2, 1, j->path, e))
+			return -1;
+		j->line = block;
+		j->line[len++] = (char)byte;
+	}
+	if (ferror(j->in))
+		return err_errno(e, "%s", j->path);
+	if (len)
+		j->line[len] = 0;
+	return (ssize_t)len;
+}
+
 int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 {
 	for (;;) {
-		errno = 0;
-		ssize_t len = getline(&j->line, &j->capacity, j->in);
-		if (len < 0) {
-			if (ferror(j->in) || errno == ENOMEM)
-				return err_errno(e, "%s", j->path);
-			return 0;
-		}
+		ssize_t len = read_line(j, e);
+		if (len <= 0)
+			return (int)len;
 		j->line_number++;
 		if ((size_t)len != strlen(j->line))
 			return jsonl_err(j, e, "a NUL byte at column %zu", strlen(j->line) + 1);
@@ -53,10 +76,12 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 		*object = cJSON_ParseWithOpts(j->line, &stop, 1);
 		if (!*object)
 			return jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);
-		if (cJSON_IsObject(*object))
+		const int is_cut = json_has_nul(j->line);
+		if (cJSON_IsObject(*object) && !is_cut)
 			return 1;
 		cJSON_Delete(*object);
-		return jsonl_err(j, e, "not a JSON object");
+		return jsonl_err(
+			j, e, is_cut ? "a NUL character (\\u0000) in a string" : "not a JSON object");
 	}
 }
 
@@ -76,17 +101,19 @@ int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, in
 	return 1;
 }
 
-int jsonl_name(
-	const struct jsonl *j, const cJSON *object, const char *key, int need, char **name, struct err *e)
+int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum name_kind kind, int need,
+	char **name, struct err *e)
 {
 	const char *text = NULL;
+	char fault[NAME_FAULT];
 
 	if (jsonl_string(j, object, key, need, &text, e) < 0)
 		return -1;
 	if (!text)
 		return 0;
-	if (!*text)
-		return jsonl_err(j, e, "key '%s' is empty", key);
+	const char *reason = name_fault(text, kind, fault);
+	if (reason)
+		return jsonl_err(j, e, "key '%s' %s", key, reason);
 	*name = mem_strdup(text, e);
 	return *name ? 0 : -1;
 }

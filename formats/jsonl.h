@@ -3,9 +3,12 @@
 #define FORMATS_JSONL_H
 
 #include "base/err.h"
+#include "base/name.h"
 
 #include <cjson/cJSON.h>
 #include <stdio.h>
+
+enum { JSONL_LINE_MAX = 64 << 20 }; /* bytes */
 
 struct jsonl {
 	FILE *in;
@@ -32,10 +35,10 @@ int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
 int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, int need, const char **value,
 	struct err *e);
 
-/* A copy of a name in *name, which stays as it was where the key is absent or null. An empty name, which
- * would match by accident, is an error. Returns 0, or -1 with *e. */
-int jsonl_name(
-	const struct jsonl *j, const cJSON *object, const char *key, int need, char **name, struct err *e);
+/* A copy of a name in *name, which stays as it was where the key is absent or null. What base/name.h does not
+ * take as a name is an error. Returns 0, or -1 with *e. */
+int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum name_kind kind, int need,
+	char **name, struct err *e);
 
 /* A finite number; NAN where the key is absent or null. Returns 0, or -1 with *e. */
 int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, double *number, struct err *e);

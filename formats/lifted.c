@@ -95,7 +95,8 @@ static int read_objects(struct lifted *l, const struct safetensors *st, struct e
 			return err_set(e, ERR_FORMAT, "%s: tensor 'confidence': item %zu is not in 0 to 1",
 				st->path, o);
 	l->names = metalist_read(st, "names", l->objects, "objects", e);
-	return !l->names || metalist_check_unique(l->names, l->objects, "names", st->path, e) ||
+	return !l->names || metalist_check_names(l->names, l->objects, 0, "names", st->path, e) ||
+			       metalist_check_unique(l->names, l->objects, "names", st->path, e) ||
 			       read_shares(l, st, e)
 		       ? -1
 		       : 0;
@@ -142,13 +143,14 @@ static int read_sentences(struct lifted *l, const struct safetensors *st, struct
 	return metalist_check_pieces(l->pieces, l->offsets, l->sentences, st->path, e);
 }
 
-int lifted_take(struct lifted *l, const struct safetensors *st, struct err *e)
+int lifted_take(struct lifted *l, struct origin *origin, const struct safetensors *st, struct err *e)
 {
 	long long gaussians = 0;
 
 	*l = (struct lifted){0};
 	int bad = safetensors_need_format(st, "refer.lifted", VERSION_READ, e) ||
-		  safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e);
+		  safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e) ||
+		  origin_read(origin, st, e);
 	l->gaussians = (size_t)gaussians;
 	bad = bad || read_objects(l, st, e) || read_sentences(l, st, e);
 	if (bad)
@@ -156,14 +158,14 @@ int lifted_take(struct lifted *l, const struct safetensors *st, struct err *e)
 	return bad ? -1 : 0;
 }
 
-int lifted_read(struct lifted *l, const char *path, struct err *e)
+int lifted_read(struct lifted *l, struct origin *origin, const char *path, struct err *e)
 {
 	struct safetensors st;
 
 	*l = (struct lifted){0};
 	if (safetensors_open(&st, path, e))
 		return -1;
-	int bad = lifted_take(l, &st, e);
+	int bad = lifted_take(l, origin, &st, e);
 	safetensors_close(&st);
 	return bad;
 }
@@ -192,8 +194,8 @@ static uint8_t *pack_shares(const struct lifted *l, const char *path, struct err
 	return steps;
 }
 
-static int write_all(const struct lifted *l, const uint8_t *share, const struct precision_matrix *words,
-	const char *path, const char *options, struct err *e)
+static int write_all(const struct lifted *l, const struct origin *origin, const uint8_t *share,
+	const struct precision_matrix *words, const char *path, const char *options, struct err *e)
 {
 	const int64_t objects = (int64_t)l->objects, sentences = (int64_t)l->sentences;
 	const int64_t count = l->indptr[objects];
@@ -214,7 +216,9 @@ static int write_all(const struct lifted *l, const uint8_t *share, const struct 
 	if (names && texts && pieces) {
 		const struct st_meta meta[] = {{"format", "refer.lifted"}, {"version", "1"},
 			{"tool", "refer-lift"}, {"options", options}, {"seed", "0"}, {"gaussians", gaussians},
-			{"names", names}, {"texts", texts}, {"pieces", pieces}};
+			{"scene", fingerprint_text(&origin->scene)},
+			{"encoder", fingerprint_text(&origin->encoder)}, {"names", names}, {"texts", texts},
+			{"pieces", pieces}};
 		bad = safetensors_write(
 			path, tensors, sizeof tensors / sizeof *tensors, meta, sizeof meta / sizeof *meta, e);
 	} else {
@@ -226,7 +230,8 @@ static int write_all(const struct lifted *l, const uint8_t *share, const struct 
 	return bad;
 }
 
-int lifted_write(const struct lifted *l, const char *path, const char *options, struct err *e)
+int lifted_write(const struct lifted *l, const struct origin *origin, const char *path, const char *options,
+	struct err *e)
 {
 	struct precision_matrix words = {0};
 	uint8_t *share = NULL;
@@ -235,7 +240,7 @@ int lifted_write(const struct lifted *l, const char *path, const char *options, 
 		  !(share = pack_shares(l, path, e)) ||
 		  precision_put(&words, "words", PRECISION_F16, PRECISION_ROWS,
 			  (size_t)l->offsets[l->sentences], (size_t)l->width, l->words, path, e) ||
-		  write_all(l, share, &words, path, options, e);
+		  write_all(l, origin, share, &words, path, options, e);
 
 	precision_free(&words);
 	free(share);

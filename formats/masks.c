@@ -2,10 +2,12 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/names.h"
 #include "base/number.h"
 #include "formats/png.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -111,8 +113,9 @@ static int read_record(const struct jsonl *j, const cJSON *object, struct mask_r
 	const cJSON *segmentation = cJSON_GetObjectItemCaseSensitive(object, "segmentation");
 	const char *path = NULL;
 
-	if (jsonl_name(j, object, "view", 1, &r->view, e) || jsonl_name(j, object, "ref", 0, &r->ref, e) ||
-		jsonl_name(j, object, "object", 0, &r->object, e) ||
+	if (jsonl_name(j, object, "view", NAME_VIEW, 1, &r->view, e) ||
+		jsonl_name(j, object, "ref", NAME_DATA, 0, &r->ref, e) ||
+		jsonl_name(j, object, "object", NAME_DATA, 0, &r->object, e) ||
 		jsonl_number(j, object, "score", &r->score, e) || read_visible(j, object, &r->visible, e))
 		return -1;
 	if (!r->ref && !r->object)
@@ -223,19 +226,18 @@ int masks_pool(struct pool *p, const struct mask_set *set, const long *lines, co
 int masks_views(const struct mask_set *set, const long *lines, const char *path,
 	const struct cameras *cameras, size_t *views, struct err *e)
 {
-	for (size_t i = 0; i < set->n; i++) {
-		const char *name = set->records[i].view;
-		if (i && !strcmp(name, set->records[i - 1].view)) {
-			views[i] = views[i - 1];
-			continue;
-		}
-		const struct camera *camera = cameras_find(cameras, name);
-		if (!camera)
-			return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%s'",
-				file_name(path), lines[i], name);
-		views[i] = (size_t)(camera - cameras->views);
+	struct names names;
+	int bad = names_make(
+		&names, cameras->views, sizeof *cameras->views, offsetof(struct camera, name), cameras->n, e);
+
+	for (size_t i = 0; i < set->n && !bad; i++) {
+		views[i] = names_find(&names, set->records[i].view);
+		if (views[i] == NAMES_NONE)
+			bad = err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%s'",
+				file_name(path), lines[i], set->records[i].view);
 	}
-	return 0;
+	names_free(&names);
+	return bad;
 }
 
 static void put_number(FILE *out, const char *before, double x)

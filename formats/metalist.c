@@ -1,7 +1,9 @@
 #include "formats/metalist.h"
 
 #include "base/mem.h"
+#include "base/name.h"
 #include "base/utf8.h"
+#include "formats/json.h"
 
 #include <cjson/cJSON.h>
 #include <stdlib.h>
@@ -23,6 +25,11 @@ char **metalist_read(const struct safetensors *st, const char *key, size_t n, co
 
 	if (!list || !cJSON_IsArray(list)) {
 		err_set(e, ERR_FORMAT, "%s: metadata '%s' is not a JSON list", st->path, key);
+		goto fail;
+	}
+	if (json_has_nul(value)) {
+		err_set(e, ERR_FORMAT, "%s: metadata '%s': a NUL character (\\u0000) in a string", st->path,
+			key);
 		goto fail;
 	}
 	if ((size_t)cJSON_GetArraySize(list) != n) {
@@ -98,6 +105,20 @@ done:
 	return text;
 }
 
+int metalist_check_names(
+	char *const *strings, size_t n, int may_be_empty, const char *key, const char *path, struct err *e)
+{
+	char fault[NAME_FAULT];
+
+	for (size_t i = 0; i < n; i++) {
+		const char *reason = name_fault(strings[i], NAME_DATA, fault);
+		if (reason && (*strings[i] || !may_be_empty))
+			return err_set(
+				e, ERR_FORMAT, "%s: metadata '%s': entry %zu %s", path, key, i, reason);
+	}
+	return 0;
+}
+
 static int by_name(const void *a, const void *b)
 {
 	return strcmp(*(char *const *)a, *(char *const *)b);
@@ -143,8 +164,13 @@ int metalist_check_pieces(
 {
 	for (size_t i = 0; i < n; i++) {
 		int64_t count = 0, words = offsets[i + 1] - offsets[i];
-		for (const char *c = pieces[i]; *c; c++)
+		for (const char *c = pieces[i]; *c; c++) {
+			if (*c == ' ' && (c == pieces[i] || c[1] == ' ' || !c[1]))
+				return err_set(e, ERR_FORMAT,
+					"%s: metadata 'pieces': entry %zu does not have one space between pieces, and none around",
+					path, i);
 			count += *c != ' ' && (c[1] == ' ' || !c[1]);
+		}
 		if (count != words)
 			return err_set(e, ERR_FORMAT,
 				"%s: metadata 'pieces': entry %zu has %lld pieces for %lld words", path, i,

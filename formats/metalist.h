@@ -18,6 +18,10 @@ void metalist_free(char **strings, size_t n);
 /* n strings as such a value, to be freed; NULL when memory is out. */
 char *metalist_print(char *const *strings, size_t n);
 
+/* All are names of refs or objects (base/name.h), or empty where they may be: 0, or -1 with *e. */
+int metalist_check_names(
+	char *const *strings, size_t n, int may_be_empty, const char *key, const char *path, struct err *e);
+
 /* Such a value taken apart, whatever its length: NULL with *e (ERR_FORMAT: no list of UTF-8 strings). Of no
  * strings it is not NULL. */
 char **metalist_parse(const char *value, size_t *n, struct err *e);
@@ -30,8 +34,8 @@ int metalist_check_unique(char *const *strings, size_t n, const char *key, const
 int metalist_check_offsets(const char *name, const int64_t *offsets, size_t n, int64_t count, const char *of,
 	const char *path, struct err *e);
 
-/* Metadata 'pieces': string i has single pieces with spaces between, offsets[i+1] - offsets[i] of them. 0, or
- * -1 with *e. */
+/* Metadata 'pieces': string i has pieces with one space between and none around, offsets[i+1] - offsets[i] of
+ * them. 0, or -1 with *e. */
 int metalist_check_pieces(
 	char *const *pieces, const int64_t *offsets, size_t n, const char *path, struct err *e);
 

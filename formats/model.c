@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "formats/safetensors.h"
+#include "mask/bits.h"
 
 #include <float.h>
 #include <math.h>
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VERSION_READ = 2 };
+enum { VERSION_READ = 3 };
 
 void model_free(struct model *m)
 {
@@ -55,7 +56,7 @@ static int read_ids(struct model *m, const struct safetensors *st, struct err *e
 
 	if (!ids)
 		return -1;
-	m->n = (size_t)ids->shape[0];
+	m->n = m->learning = (size_t)ids->shape[0];
 	m->ids = mem_alloc(m->n, sizeof *m->ids, st->path, e);
 	if (!m->ids)
 		return -1;
@@ -86,6 +87,30 @@ static int read_root(struct octree *t, const struct safetensors *st, struct err 
 	return 0;
 }
 
+/* The Gaussians that have a row, of those in the leaves: a bit of each of the scene's. Before version 3 there
+ * were none, and all in a leaf had its row. */
+static int read_learning(struct model *m, const struct safetensors *st, struct err *e)
+{
+	const size_t n = m->scene_gaussians;
+	const int64_t bytes[] = {(int64_t)bits_bytes(n)};
+
+	if (!safetensors_find(st, "learning"))
+		return 0;
+	const struct st_tensor *t = safetensors_need(st, "learning", ST_U8, 1, bytes, e);
+	if (!t || !(m->ids = mem_alloc(n, sizeof *m->ids, st->path, e)))
+		return -1;
+	const uint8_t *bits = t->data;
+	for (size_t i = 0; i < 8 * bits_bytes(n); i++)
+		if (bits[i / 8] >> i % 8 & 1) {
+			if (i >= n)
+				return err_set(e, ERR_FORMAT,
+					"%s: tensor 'learning': bit %zu is set, of %zu Gaussians", st->path,
+					i, n);
+			m->ids[m->learning++] = (int32_t)i;
+		}
+	return 0;
+}
+
 /* The leaves whose Gaussians share a row of features. */
 static int read_leaves(struct model *m, const struct safetensors *st, struct err *e)
 {
@@ -102,7 +127,7 @@ static int read_leaves(struct model *m, const struct safetensors *st, struct err
 	if (octree_check(&m->octree, &bad))
 		return err_set(e, ERR_FORMAT,
 			"%s: tensor 'leaves': item %zu is not a leaf after the one before", st->path, bad);
-	return 0;
+	return read_learning(m, st, e);
 }
 
 static int read_rows(struct model *m, const struct safetensors *st, struct err *e)
@@ -199,8 +224,8 @@ static int read_all(struct model *m, const struct safetensors *st, struct err *e
 		return -1;
 	m->similarity = (enum refer_similarity)similarity;
 	refer_layout_init(&m->layout, (enum refer_interaction)interaction, text, feature);
-	return read_bounds(m, st, e) || read_rows(m, st, e) || read_features(m, st, e) ||
-			       read_parameters(m, st, e)
+	return origin_read(&m->origin, st, e) || read_bounds(m, st, e) || read_rows(m, st, e) ||
+			       read_features(m, st, e) || read_parameters(m, st, e)
 		       ? -1
 		       : 0;
 }
@@ -228,14 +253,16 @@ int model_read(struct model *m, const char *path, struct err *e)
 
 int model_rows(const struct model *m, const float *means, struct rows *rows, struct err *e)
 {
-	return m->has_leaves ? rows_of_leaves(rows, &m->octree, means, m->scene_gaussians, e)
-			     : rows_of_ids(rows, m->ids, m->n, m->scene_gaussians, e);
+	return m->has_leaves
+		       ? rows_of_leaves(rows, &m->octree, means, m->scene_gaussians, m->ids, m->learning, e)
+		       : rows_of_ids(rows, m->ids, m->n, m->scene_gaussians, e);
 }
 
 /* The tensors of a model, while they are written. */
 struct parts {
-	struct st_tensor tensors[1 + 3 * (1 + REFER_TENSORS)];
+	struct st_tensor tensors[2 + 3 * (1 + REFER_TENSORS)];
 	size_t n;
+	uint8_t *learning; /* bits */
 	struct precision_matrix features, weights[REFER_TENSORS];
 };
 
@@ -268,6 +295,26 @@ static int add_parameters(struct parts *p, const struct model *m, const char *pa
 	return 0;
 }
 
+/* Which Gaussians have a row, where it is the leaf's that they lie in. */
+static int add_learning(struct parts *p, const struct model *m, const char *path, struct err *e)
+{
+	const size_t bytes = bits_bytes(m->scene_gaussians);
+
+	if (!m->has_leaves || !m->ids)
+		return 0;
+	p->learning = mem_zalloc(bytes, 1, path, e);
+	if (!p->learning)
+		return -1;
+	for (size_t i = 0; i < m->learning; i++)
+		p->learning[m->ids[i] / 8] |= (uint8_t)(1 << m->ids[i] % 8);
+	p->tensors[p->n++] = (struct st_tensor){.name = "learning",
+		.dtype = ST_U8,
+		.dims = 1,
+		.shape = {(int64_t)bytes},
+		.data = p->learning};
+	return 0;
+}
+
 static int add_tensors(struct parts *p, const struct model *m, const char *path, struct err *e)
 {
 	p->tensors[p->n] = (struct st_tensor){
@@ -279,8 +326,9 @@ static int add_tensors(struct parts *p, const struct model *m, const char *path,
 			.shape = {(int64_t)m->n},
 			.data = m->octree.codes};
 	p->n++;
-	if (precision_put(&p->features, "features", m->precision, PRECISION_COLUMNS, m->n,
-		    (size_t)m->layout.feature_width, m->features, path, e))
+	if (add_learning(p, m, path, e) ||
+		precision_put(&p->features, "features", m->precision, PRECISION_COLUMNS, m->n,
+			(size_t)m->layout.feature_width, m->features, path, e))
 		return -1;
 	add_matrix(p, &p->features);
 	return add_parameters(p, m, path, e);
@@ -299,18 +347,20 @@ int model_write(const struct model *m, const char *path, const char *options, lo
 		m->octree.low[2], m->octree.edge);
 	snprintf(gaussians, sizeof gaussians, "%zu", m->scene_gaussians);
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
-	const struct st_meta meta[] = {{"format", "refer.model"}, {"version", "2"}, {"tool", "refer-train"},
+	const struct st_meta meta[] = {{"format", "refer.model"}, {"version", "3"}, {"tool", "refer-train"},
 		{"options", options}, {"seed", seed_text},
 		{"interaction", refer_interaction_name(m->layout.interaction)},
 		{"similarity", refer_similarity_name(m->similarity)},
-		{"precision", precision_name(m->precision)}, {"gaussians", gaussians}, {"bounds", bounds},
-		{"root", root}};
-	const size_t meta_count = sizeof meta / sizeof *meta - !m->has_leaves;
-	int bad =
-		add_tensors(p, m, path, e) || safetensors_write(path, p->tensors, p->n, meta, meta_count, e);
+		{"precision", precision_name(m->precision)}, {"gaussians", gaussians},
+		{"scene", fingerprint_text(&m->origin.scene)},
+		{"encoder", fingerprint_text(&m->origin.encoder)}, {"bounds", bounds},
+		{"root", m->has_leaves ? root : NULL}};
+	int bad = add_tensors(p, m, path, e) ||
+		  safetensors_write(path, p->tensors, p->n, meta, sizeof meta / sizeof *meta, e);
 	precision_free(&p->features);
 	for (int t = 0; t < REFER_TENSORS; t++)
 		precision_free(&p->weights[t]);
+	free(p->learning);
 	free(p);
 	return bad ? -1 : 0;
 }

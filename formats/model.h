@@ -3,6 +3,7 @@
 #define FORMATS_MODEL_H
 
 #include "base/err.h"
+#include "formats/fingerprint.h"
 #include "formats/precision.h"
 #include "formats/safetensors.h"
 #include "refer/model.h"
@@ -17,11 +18,13 @@ struct model {
 	size_t scene_gaussians;	  /* N of the scene that it belongs to */
 	size_t n;		  /* M rows of features */
 	int has_leaves;		  /* a row is of a leaf, or of one Gaussian */
-	int32_t *ids;		  /* (M) the Gaussians, rising indices in the scene; NULL with leaves */
-	struct octree octree;	  /* of M leaves */
-	float *features;	  /* (M, layout.feature_width) */
-	float *parameters;	  /* (layout.count) */
-	double low[3], high[3];	  /* what the scene's means are scaled to [-1,1] by */
+	size_t learning;	  /* Gaussians that have a row; M without leaves */
+	int32_t *ids; /* (learning) these, rising indices in the scene; NULL: all that lie in a leaf */
+	struct octree octree;	/* of M leaves */
+	float *features;	/* (M, layout.feature_width) */
+	float *parameters;	/* (layout.count) */
+	struct origin origin;	/* the scene and the encoder that it was made with */
+	double low[3], high[3]; /* what the scene's means are scaled to [-1,1] by */
 };
 
 /* ERR_FORMAT where the file is malformed. */

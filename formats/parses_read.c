@@ -306,7 +306,8 @@ static int read_record(const struct jsonl *j, const cJSON *o, struct parse_recor
 	const char *text = NULL;
 
 	r.p->view_phrase = -1;
-	if (jsonl_name(j, o, "ref", 1, &record->ref, e) || jsonl_string(j, o, "text", 0, &text, e) < 0 ||
+	if (jsonl_name(j, o, "ref", NAME_DATA, 1, &record->ref, e) ||
+		jsonl_string(j, o, "text", 0, &text, e) < 0 ||
 		jsonl_number(j, o, "confidence", &r.p->confidence, e))
 		return -1;
 	record->text = mem_strdup(text ? text : "", e);

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/name.h"
 #include "formats/npy.h"
 #include "formats/png.h"
 #include "mask/overlay.h"
@@ -11,27 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A ref as a file name, such that different refs have different names. free() it. */
-static char *ref_file(const char *ref, struct err *e)
-{
-	size_t length = strlen(ref);
-	char *name = length < SIZE_MAX / 4 ? mem_alloc(3 * length + 1, 1, "name", e) : NULL, *to = name;
-
-	if (!name)
-		return NULL;
-	for (const char *p = ref; *p; p++)
-		if (*p == '/' || *p == '%')
-			to += snprintf(to, 4, "%%%02X", (unsigned)*p);
-		else
-			*to++ = *p;
-	*to = 0;
-	return name;
-}
-
 /* DIR/VIEW/REF + suffix, with the folder made. free() it; NULL with *e set. */
 static char *make_path(const char *dir, const struct picture *one, const char *suffix, struct err *e)
 {
-	char *folder = file_join(dir, one->view, "", e), *name = ref_file(one->ref, e), *path = NULL;
+	char *folder = file_join(dir, one->view, "", e), *name = name_to_file(one->ref, e), *path = NULL;
 
 	if (folder && name && !file_make_dir(folder, e))
 		path = file_join(folder, name, suffix, e);

@@ -1,9 +1,11 @@
 #include "formats/plyfile.h"
 
 #include "base/mem.h"
+#include "base/names.h"
 
 #include <math.h>
 #include <stdint.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,19 +71,17 @@ static int read_element(struct plyfile *f, char *line, int number, struct err *e
 			return err_set(e, ERR_FORMAT,
 				"%s:%d: element '%.80s': %.40s rows do not fit in memory", f->path, number,
 				name, count);
-	if (plyfile_find(f, name))
-		return err_set(e, ERR_FORMAT, "%s:%d: element '%.80s' appears twice", f->path, number, name);
 	if (mem_grow(&block, &f->capacity, f->n + 1, sizeof *f->elements, f->path, e))
 		return -1;
 	f->elements = block;
-	f->elements[f->n++] = (struct plyfile_element){.name = name, .rows = rows};
+	f->elements[f->n++] = (struct plyfile_element){.name = name, .line = number, .rows = rows};
 	return 0;
 }
 
 static int read_property(struct plyfile *f, char *line, int number, struct err *e)
 {
 	struct plyfile_element *el = f->n ? &f->elements[f->n - 1] : NULL;
-	struct plyfile_property p = {0};
+	struct plyfile_property p = {.line = number};
 	const char *word = next_word(&line);
 	int type, count_type = PLY_U8;
 
@@ -105,9 +105,6 @@ static int read_property(struct plyfile *f, char *line, int number, struct err *
 	p.name = next_word(&line);
 	if (!*p.name)
 		return err_set(e, ERR_FORMAT, "%s:%d: property without a name", f->path, number);
-	if (plyfile_property(el, p.name) >= 0)
-		return err_set(
-			e, ERR_FORMAT, "%s:%d: property '%.80s' appears twice", f->path, number, p.name);
 	void *block = el->properties;
 	if (mem_grow(&block, &el->capacity, el->n + 1, sizeof p, f->path, e))
 		return -1;
@@ -139,6 +136,42 @@ static int read_line(struct plyfile *f, char *line, int number, struct err *e)
 	if (!strcmp(word, "end_header"))
 		return 1;
 	return err_set(e, ERR_FORMAT, "%s:%d: header line '%.40s' is unknown", f->path, number, word);
+}
+
+/* The first place whose name an earlier one has, or NAMES_NONE; -1 with *e. */
+static int find_twice(const void *items, size_t stride, size_t offset, size_t n, size_t *twice, struct err *e)
+{
+	struct names names;
+	size_t earlier;
+
+	if (names_make(&names, items, stride, offset, n, e))
+		return -1;
+	*twice = names_twice(&names, &earlier);
+	names_free(&names);
+	return 0;
+}
+
+/* Elements have different names, and the properties of each. */
+static int check_unique(const struct plyfile *f, struct err *e)
+{
+	size_t twice;
+
+	if (find_twice(f->elements, sizeof *f->elements, offsetof(struct plyfile_element, name), f->n, &twice,
+		    e))
+		return -1;
+	if (twice != NAMES_NONE)
+		return err_set(e, ERR_FORMAT, "%s:%d: element '%.80s' appears twice", f->path,
+			f->elements[twice].line, f->elements[twice].name);
+	for (size_t i = 0; i < f->n; i++) {
+		const struct plyfile_element *el = &f->elements[i];
+		if (find_twice(el->properties, sizeof *el->properties,
+			    offsetof(struct plyfile_property, name), el->n, &twice, e))
+			return -1;
+		if (twice != NAMES_NONE)
+			return err_set(e, ERR_FORMAT, "%s:%d: property '%.80s' appears twice", f->path,
+				el->properties[twice].line, el->properties[twice].name);
+	}
+	return 0;
 }
 
 static int read_header(struct plyfile *f, struct err *e)
@@ -173,7 +206,7 @@ static int read_header(struct plyfile *f, struct err *e)
 			break;
 	}
 	f->at = at;
-	return 0;
+	return check_unique(f, e);
 }
 
 int plyfile_open(struct plyfile *f, const char *path, struct err *e)

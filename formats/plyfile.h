@@ -13,6 +13,7 @@ enum plyfile_encoding { PLY_ASCII, PLY_LITTLE, PLY_BIG };
 
 struct plyfile_property {
 	const char *name;
+	int line; /* of the header */
 	enum plyfile_type type;
 	int is_list; /* then each value is a count of type `count_type`, and that many items of `type` */
 	enum plyfile_type count_type;
@@ -20,6 +21,7 @@ struct plyfile_property {
 
 struct plyfile_element {
 	const char *name;
+	int line; /* of the header */
 	size_t rows;
 	size_t n, capacity; /* properties */
 	struct plyfile_property *properties;

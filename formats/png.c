@@ -21,7 +21,16 @@ struct png_job {
 	png_bytep *rows;
 	size_t row_bytes;
 	int height, width, channels, depth;
+	int is_8bit; /* 16 bit samples are read as their high byte */
 };
+
+int picture_check_size(const char *path, const char *kind, size_t width, size_t height, struct err *e)
+{
+	if (width <= PICTURE_PIXELS_MAX / (height ? height : 1))
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: %s: %zux%zu pixels, more than %d altogether", path, kind, width,
+		height, PICTURE_PIXELS_MAX);
+}
 
 static _Noreturn void on_error(png_structp png, png_const_charp message)
 {
@@ -84,10 +93,16 @@ static int decode(struct png_job *job, FILE *in)
 	png_set_read_fn(job->png, in, read_bytes);
 	png_set_user_limits(job->png, MAX_SIDE, MAX_SIDE);
 	png_read_info(job->png, job->info);
+	if (picture_check_size(job->path, "PNG", png_get_image_width(job->png, job->info),
+		    png_get_image_height(job->png, job->info), job->e))
+		return -1;
 	if (png_get_color_type(job->png, job->info) == PNG_COLOR_TYPE_PALETTE)
 		png_set_palette_to_rgb(job->png);
 	else if (png_get_bit_depth(job->png, job->info) < 8)
 		png_set_expand_gray_1_2_4_to_8(job->png);
+	png_set_strip_alpha(job->png);
+	if (job->is_8bit)
+		png_set_strip_16(job->png);
 	png_set_interlace_handling(job->png);
 	png_read_update_info(job->png, job->info);
 	job->height = (int)png_get_image_height(job->png, job->info);
@@ -106,7 +121,7 @@ static int decode(struct png_job *job, FILE *in)
 	return 0;
 }
 
-/* The whole image as 8 or 16 bit (big-endian) samples of 1 to 4 channels. release() it in any case. */
+/* The whole image as 8 or 16 bit (big-endian) samples of 1 or 3 channels. release() it in any case. */
 static int read_raw(struct png_job *job, FILE *in)
 {
 	job->e->code = ERR_NONE;
@@ -116,12 +131,6 @@ static int read_raw(struct png_job *job, FILE *in)
 	int bad = job->info ? decode(job, in) : err_set(job->e, ERR_SYSTEM, "%s: out of memory", job->path);
 	png_destroy_read_struct(&job->png, &job->info, NULL);
 	return bad;
-}
-
-/* Channels that hold colour: an even count has alpha last. */
-static int colours(const struct png_job *job)
-{
-	return job->channels >= 3 ? 3 : 1;
 }
 
 int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e)
@@ -137,11 +146,10 @@ int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, s
 	if (!bad)
 		mask = mem_alloc((size_t)job.height, (size_t)job.width, job.path, e);
 	if (mask) {
-		size_t sample = (size_t)job.depth / 8, step = sample * (size_t)job.channels;
-		size_t used = sample * (size_t)colours(&job);
+		size_t used = (size_t)job.depth / 8 * (size_t)job.channels;
 		for (size_t y = 0; y < (size_t)job.height; y++)
 			for (size_t x = 0; x < (size_t)job.width; x++) {
-				const uint8_t *p = job.rows[y] + x * step;
+				const uint8_t *p = job.rows[y] + x * used;
 				uint8_t any = 0;
 				for (size_t k = 0; k < used; k++)
 					any |= p[k];
@@ -157,14 +165,13 @@ int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, s
 
 static int read_png_rgb(const char *path, FILE *in, uint8_t **rgb, int *height, int *width, struct err *e)
 {
-	struct png_job job = {.path = path, .e = e};
+	struct png_job job = {.path = path, .e = e, .is_8bit = 1};
 	uint8_t *out = NULL;
 
 	if (!read_raw(&job, in))
 		out = mem_alloc((size_t)job.height * (size_t)job.width, 3, path, e);
 	if (out) {
-		size_t sample = (size_t)job.depth / 8, step = sample * (size_t)job.channels;
-		size_t next = colours(&job) == 3 ? sample : 0;
+		size_t step = (size_t)job.channels, next = step == 3;
 		uint8_t *q = out;
 		for (size_t y = 0; y < (size_t)job.height; y++)
 			for (size_t x = 0; x < (size_t)job.width; x++, q += 3)

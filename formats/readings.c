@@ -67,7 +67,8 @@ static int read_record(const struct jsonl *j, const cJSON *o, struct reading_rec
 {
 	const char *target = NULL;
 
-	if (jsonl_name(j, o, "ref", 1, &r->ref, e) || jsonl_name(j, o, "room", 0, &r->room, e) ||
+	if (jsonl_name(j, o, "ref", NAME_DATA, 1, &r->ref, e) ||
+		jsonl_name(j, o, "room", NAME_DATA, 0, &r->room, e) ||
 		jsonl_string(j, o, "target", 1, &target, e) < 0)
 		return -1;
 	last_lemma(target, r->reading.target);

@@ -5,6 +5,7 @@
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -106,7 +107,8 @@ static int read_meta(struct safetensors *st, const cJSON *meta, struct err *e)
 		if (!row->key || !row->value)
 			return -1;
 	}
-	return 0;
+	return names_make(
+		&st->meta_keys, st->meta, sizeof *st->meta, offsetof(struct st_meta, key), st->meta_count, e);
 }
 
 static int by_offset(const void *a, const void *b)
@@ -117,6 +119,24 @@ static int by_offset(const void *a, const void *b)
 	if (px != py)
 		return px < py ? -1 : 1;
 	return (x->bytes > y->bytes) - (x->bytes < y->bytes);
+}
+
+/* No name stands for two tensors; then their names are looked up where they are in the order of the data. */
+static int sort_tensors(struct safetensors *st, struct err *e)
+{
+	size_t earlier;
+
+	if (names_make(&st->tensor_names, st->tensors, sizeof *st->tensors, offsetof(struct st_tensor, name),
+		    st->n, e))
+		return -1;
+	const size_t twice = names_twice(&st->tensor_names, &earlier);
+	if (twice != NAMES_NONE)
+		return err_set(
+			e, ERR_FORMAT, "%s: tensor '%s' appears twice", st->path, st->tensors[twice].name);
+	names_free(&st->tensor_names);
+	qsort(st->tensors, st->n, sizeof *st->tensors, by_offset);
+	return names_make(&st->tensor_names, st->tensors, sizeof *st->tensors,
+		offsetof(struct st_tensor, name), st->n, e);
 }
 
 static int check_layout(
@@ -174,9 +194,6 @@ static int read_header(struct safetensors *st, const cJSON *root, size_t header_
 			continue;
 		}
 		struct st_tensor *t = &st->tensors[st->n];
-		if (safetensors_find(st, item->string))
-			return err_set(
-				e, ERR_FORMAT, "%s: tensor '%s' appears twice", st->path, item->string);
 		if (read_entry(t, item, st->path, data, data_len, e))
 			return -1;
 		t->name = mem_strdup(item->string, e);
@@ -184,8 +201,7 @@ static int read_header(struct safetensors *st, const cJSON *root, size_t header_
 			return -1;
 		st->n++;
 	}
-	qsort(st->tensors, st->n, sizeof *st->tensors, by_offset);
-	return check_layout(st, data, data_len, e) || check_crcs(st, e) ? -1 : 0;
+	return sort_tensors(st, e) || check_layout(st, data, data_len, e) || check_crcs(st, e) ? -1 : 0;
 }
 
 /* Reads what st->map holds; closes on failure. */
@@ -261,6 +277,8 @@ void safetensors_close(struct safetensors *st)
 		free((void *)(size_t)st->meta[i].key);
 		free((void *)(size_t)st->meta[i].value);
 	}
+	names_free(&st->tensor_names);
+	names_free(&st->meta_keys);
 	free(st->tensors);
 	free(st->meta);
 	free(st->path);
@@ -271,18 +289,16 @@ void safetensors_close(struct safetensors *st)
 
 const struct st_tensor *safetensors_find(const struct safetensors *st, const char *name)
 {
-	for (size_t i = 0; i < st->n; i++)
-		if (!strcmp(st->tensors[i].name, name))
-			return &st->tensors[i];
-	return NULL;
+	const size_t i = names_find(&st->tensor_names, name);
+
+	return i == NAMES_NONE ? NULL : &st->tensors[i];
 }
 
 const char *safetensors_meta(const struct safetensors *st, const char *key)
 {
-	for (size_t i = 0; i < st->meta_count; i++)
-		if (!strcmp(st->meta[i].key, key))
-			return st->meta[i].value;
-	return NULL;
+	const size_t i = names_find(&st->meta_keys, key);
+
+	return i == NAMES_NONE ? NULL : st->meta[i].value;
 }
 
 int safetensors_meta_int(const struct safetensors *st, const char *key, long long low, long long high,
@@ -477,7 +493,8 @@ static char *make_header(const struct st_tensor *tensors, const size_t *order, s
 	size_t at = 0;
 
 	for (size_t i = 0; i < meta_count; i++)
-		cJSON_AddStringToObject(m, meta[i].key, meta[i].value);
+		if (meta[i].value)
+			cJSON_AddStringToObject(m, meta[i].key, meta[i].value);
 	for (size_t k = 0; k < n; k++) {
 		const struct st_tensor *t = &tensors[order[k]];
 		size_t bytes = tensor_bytes(t);

@@ -5,6 +5,7 @@
 
 #include "base/err.h"
 #include "base/file.h"
+#include "base/names.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -48,6 +49,7 @@ struct safetensors {
 	size_t n, meta_count;
 	struct st_tensor *tensors; /* in the order of the file's data */
 	struct st_meta *meta;
+	struct names tensor_names, meta_keys;
 	struct file_map map;
 	int is_borrowed; /* the bytes are not the reader's to free */
 };
@@ -83,8 +85,8 @@ int safetensors_need_format(const struct safetensors *st, const char *format, in
 int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, struct err *e);
 
 /* Writes path whole ("-" is stdout). Adds crc32.<tensor> for each tensor; `meta` should hold format, version,
- * tool, options and seed. Data begin on a 64-byte boundary; tensors are laid out widest type first, so that
- * each is aligned to its own type. */
+ * tool, options and seed; a key whose value is NULL is left out. Data begin on a 64-byte boundary; tensors
+ * are laid out widest type first, so that each is aligned to its own type. */
 int safetensors_write(const char *path, const struct st_tensor *tensors, size_t n, const struct st_meta *meta,
 	size_t meta_count, struct err *e);
 

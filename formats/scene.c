@@ -2,11 +2,14 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/name.h"
+#include "base/names.h"
 #include "formats/json.h"
 #include "formats/safetensors.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,6 +35,20 @@ static int check_values(const struct splats *s, const char *path, struct err *e)
 	for (size_t i = 0; i < s->n * (size_t)s->sh_coefficients * 3; i++)
 		if (!isfinite(s->sh[i]))
 			return err_set(e, ERR_FORMAT, "%s: tensor 'sh': value %zu is not finite", path, i);
+	return 0;
+}
+
+/* The means say it; the file's own word of it, where there is one, must be the same. */
+static int take_fingerprint(struct scene *s, const struct safetensors *st, struct err *e)
+{
+	struct fingerprint own;
+
+	s->fingerprint = fingerprint_scene(s->splats.means, s->splats.n);
+	if (fingerprint_read(&own, st, "scene", e))
+		return -1;
+	if (*own.hex && strcmp(own.hex, s->fingerprint.hex))
+		return err_set(e, ERR_FORMAT, "%s: metadata 'scene' is %s, but the means have %s", st->path,
+			own.hex, s->fingerprint.hex);
 	return 0;
 }
 
@@ -71,7 +88,7 @@ int scene_read_splats(struct scene *s, const char *path, struct err *e)
 		s->splats.means, s->splats.scales, s->splats.quats, s->splats.opacities, s->splats.sh};
 	for (int i = 0; i < 5; i++)
 		memcpy(to[i], t[i]->data, t[i]->bytes);
-	bad = check_values(&s->splats, path, e);
+	bad = check_values(&s->splats, path, e) || take_fingerprint(s, &st, e) ? -1 : 0;
 done:
 	safetensors_close(&st);
 	if (bad)
@@ -140,20 +157,27 @@ static int read_pose(struct camera *c, const cJSON *view, const char *path, int 
 	return check_rigid(c, path, index, e);
 }
 
-static int read_view(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
+static int read_name(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
 {
 	const cJSON *name = cJSON_GetObjectItemCaseSensitive(view, "name");
+	char fault[NAME_FAULT];
+
+	if (!cJSON_IsString(name))
+		return err_set(e, ERR_FORMAT, "%s: view %d: key 'name' is not a string", path, index);
+	const char *reason = name_fault(name->valuestring, NAME_VIEW, fault);
+	if (reason)
+		return err_set(e, ERR_FORMAT, "%s: view %d: key 'name' %s", path, index, reason);
+	c->name = mem_strdup(name->valuestring, e);
+	return c->name ? 0 : -1;
+}
+
+static int read_view(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
+{
 	const cJSON *split = cJSON_GetObjectItemCaseSensitive(view, "split");
 	const cJSON *image = cJSON_GetObjectItemCaseSensitive(view, "image");
 	double width = 0, height = 0;
 
-	if (!cJSON_IsString(name) || !name->valuestring[0] || strchr(name->valuestring, '/'))
-		return err_set(
-			e, ERR_FORMAT, "%s: view %d: key 'name' is not a name without slashes", path, index);
-	c->name = mem_strdup(name->valuestring, e);
-	if (!c->name)
-		return -1;
-	if (view_number(view, "width", path, index, &width, e) ||
+	if (read_name(c, view, path, index, e) || view_number(view, "width", path, index, &width, e) ||
 		view_number(view, "height", path, index, &height, e) ||
 		view_number(view, "fx", path, index, &c->fx, e) ||
 		view_number(view, "fy", path, index, &c->fy, e) ||
@@ -182,6 +206,20 @@ static int read_view(struct camera *c, const cJSON *view, const char *path, int 
 	return 0;
 }
 
+static int check_unique(const struct cameras *c, const char *path, struct err *e)
+{
+	struct names names;
+	size_t earlier;
+
+	if (names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e))
+		return -1;
+	const size_t twice = names_twice(&names, &earlier);
+	names_free(&names);
+	return twice == NAMES_NONE ? 0
+				   : err_set(e, ERR_FORMAT, "%s: view name '%s' appears twice", path,
+					     c->views[twice].name);
+}
+
 static int read_views(struct cameras *c, const cJSON *list, const char *path, struct err *e)
 {
 	const cJSON *view;
@@ -196,10 +234,8 @@ static int read_views(struct cameras *c, const cJSON *list, const char *path, st
 		struct camera *one = &c->views[c->n++];
 		if (read_view(one, view, path, (int)c->n - 1, e))
 			return -1;
-		if (cameras_find(c, one->name) != one)
-			return err_set(e, ERR_FORMAT, "%s: view name '%s' appears twice", path, one->name);
 	}
-	return 0;
+	return check_unique(c, path, e);
 }
 
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
@@ -230,7 +266,7 @@ int scene_read(struct scene *s, const char *dir, struct err *e)
 	*s = (struct scene){0};
 	int bad = path ? scene_read_splats(s, path, e) : -1;
 	free(path);
-	if (bad || read_cameras(&s->cameras, dir, e)) {
+	if (bad || !(s->path = mem_strdup(dir, e)) || read_cameras(&s->cameras, dir, e)) {
 		scene_free(s);
 		return -1;
 	}
@@ -239,8 +275,10 @@ int scene_read(struct scene *s, const char *dir, struct err *e)
 
 void scene_free(struct scene *s)
 {
+	free(s->path);
 	splats_free(&s->splats);
 	cameras_free(&s->cameras);
+	*s = (struct scene){0};
 }
 
 /* A JSON string, null for NULL. Returns -1 when memory is out. */
@@ -296,6 +334,7 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 {
 	const struct splats *p = &s->splats;
 	int64_t n = (int64_t)p->n;
+	const struct fingerprint own = fingerprint_scene(p->means, p->n);
 	char offset[128];
 	struct st_tensor tensors[] = {
 		{.name = "means", .dtype = ST_F32, .dims = 2, .shape = {n, 3}, .data = p->means},
@@ -309,14 +348,15 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 			.data = p->sh},
 	};
 	struct st_meta meta[] = {{"format", "refer.splats"}, {"version", "1"}, {"tool", "gs-import"},
-		{"options", options}, {"seed", "0"}, {"offset", offset}};
+		{"options", options}, {"seed", "0"}, {"offset", offset}, {"scene", own.hex}};
 
 	snprintf(offset, sizeof offset, "[%.17g,%.17g,%.17g]", s->offset[0], s->offset[1], s->offset[2]);
 	if (file_make_dir(dir, e))
 		return -1;
 	char *splats = file_join(dir, "splats.safetensors", "", e),
 	     *cameras = file_join(dir, "cameras.json", "", e);
-	int bad = !splats || !cameras || safetensors_write(splats, tensors, 5, meta, 6, e) ||
+	int bad = !splats || !cameras ||
+		  safetensors_write(splats, tensors, 5, meta, sizeof meta / sizeof *meta, e) ||
 		  write_cameras(&s->cameras, cameras, e);
 	free(splats);
 	free(cameras);

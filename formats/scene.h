@@ -3,11 +3,14 @@
 #define FORMATS_SCENE_H
 
 #include "base/err.h"
+#include "formats/fingerprint.h"
 #include "geom/camera.h"
 #include "splat/splats.h"
 
 struct scene {
+	char *path; /* the folder that was read, as it was named; else NULL */
 	struct splats splats;
+	struct fingerprint fingerprint; /* of splats.means; set by the readers */
 	struct cameras cameras;
 	double offset[3]; /* world = means + offset: what the import subtracted */
 };
@@ -16,7 +19,7 @@ struct scene {
 int scene_read(struct scene *s, const char *dir, struct err *e);
 void scene_free(struct scene *s);
 
-/* One of the files. scene_read_splats sets splats and offset of a zeroed *s. */
+/* One of the files. scene_read_splats sets splats, fingerprint and offset of a zeroed *s. */
 int scene_read_splats(struct scene *s, const char *path, struct err *e);
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e);
 

@@ -1,9 +1,11 @@
 #include "formats/sentences.h"
 
 #include "base/mem.h"
+#include "base/names.h"
 #include "base/utf8.h"
 #include "formats/jsonl.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,17 +32,25 @@ void sentences_free(struct sentences *s)
 	*s = (struct sentences){0};
 }
 
-static char *copy_string(
-	const struct jsonl *j, const char *key, const char *value, int may_be_empty, struct err *e)
+static char *copy_text(const struct jsonl *j, const char *value, struct err *e)
 {
 	size_t len = strlen(value), bad = utf8_check(value, len);
 
 	if (bad < len) {
-		jsonl_err(j, e, "key '%s' is not UTF-8 at byte %zu", key, bad + 1);
+		jsonl_err(j, e, "key 'text' is not UTF-8 at byte %zu", bad + 1);
 		return NULL;
 	}
-	if (!len && !may_be_empty) {
-		jsonl_err(j, e, "key '%s' is empty", key);
+	return mem_strdup(value, e);
+}
+
+static char *copy_item(
+	const struct jsonl *j, const char *key, enum name_kind kind, const char *value, struct err *e)
+{
+	char fault[NAME_FAULT];
+	const char *reason = name_fault(value, kind, fault);
+
+	if (reason) {
+		jsonl_err(j, e, "key '%s': item '%s' %s", key, value, reason);
 		return NULL;
 	}
 	return mem_strdup(value, e);
@@ -48,7 +58,7 @@ static char *copy_string(
 
 /* A list of strings that may be absent or null: then *strings stays NULL. */
 static int read_list(char ***strings, size_t *n, const struct jsonl *j, const cJSON *object, const char *key,
-	struct err *e)
+	enum name_kind kind, struct err *e)
 {
 	const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, key), *item;
 
@@ -63,7 +73,7 @@ static int read_list(char ***strings, size_t *n, const struct jsonl *j, const cJ
 	{
 		if (!cJSON_IsString(item))
 			return jsonl_err(j, e, "key '%s' holds something other than strings", key);
-		(*strings)[*n] = copy_string(j, key, item->valuestring, 0, e);
+		(*strings)[*n] = copy_item(j, key, kind, item->valuestring, e);
 		if (!(*strings)[*n])
 			return -1;
 		++*n;
@@ -73,7 +83,7 @@ static int read_list(char ***strings, size_t *n, const struct jsonl *j, const cJ
 
 static int read_objects(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
 {
-	if (read_list(&s->objects, &s->object_count, j, object, "objects", e))
+	if (read_list(&s->objects, &s->object_count, j, object, "objects", NAME_DATA, e))
 		return -1;
 	s->has_objects = s->objects != NULL;
 	for (size_t i = 0; i < s->object_count; i++)
@@ -86,98 +96,58 @@ static int read_objects(struct sentence *s, const struct jsonl *j, const cJSON *
 /* The name of the target: where it is not given, that of the only object. What teaches has one. */
 static int read_target(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
 {
-	int is_free = s->has_objects && (s->object_count == 1 || s->split == SPLIT_TEST);
-	const char *target = s->object_count == 1 ? s->objects[0] : "";
-	int got = jsonl_string(j, object, "object", !is_free, &target, e);
+	const int is_free = s->has_objects && (s->object_count == 1 || s->split == SPLIT_TEST);
+	const char *only = s->object_count == 1 ? s->objects[0] : "";
 
-	if (got < 0)
+	if (jsonl_name(j, object, "object", NAME_DATA, !is_free, &s->object, e))
 		return -1;
-	if (got > 0 && s->object_count == 1 && strcmp(target, s->objects[0]))
+	if (s->object && s->object_count == 1 && strcmp(s->object, only))
 		return jsonl_err(
-			j, e, "key 'object' is '%s', but the one of 'objects' '%s'", target, s->objects[0]);
-	s->object = copy_string(j, "object", target, !got, e);
+			j, e, "key 'object' is '%s', but the one of 'objects' '%s'", s->object, only);
+	if (!s->object)
+		s->object = mem_strdup(only, e);
 	return s->object ? 0 : -1;
-}
-
-/* A name that may be absent or null: then *to stays NULL. */
-static int read_name(char **to, const struct jsonl *j, const cJSON *object, const char *key, struct err *e)
-{
-	const char *name = NULL;
-
-	if (jsonl_string(j, object, key, 0, &name, e) < 0)
-		return -1;
-	if (name && !(*to = copy_string(j, key, name, 0, e)))
-		return -1;
-	return 0;
-}
-
-/* A NUL that JSON writes as \u0000 would silently end the string there. */
-static int has_nul_escape(const char *line)
-{
-	for (const char *p = strchr(line, '\\'); p; p = strchr(p + 2, '\\'))
-		if (!strncmp(p, "\\u0000", 6))
-			return 1;
-	return 0;
 }
 
 static int read_one(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
 {
-	const char *ref, *text, *split = "train";
+	const char *text, *split = "train";
 
-	if (has_nul_escape(j->line))
-		return jsonl_err(j, e, "a NUL character (\\u0000) in a string");
-	if (jsonl_string(j, object, "ref", 1, &ref, e) < 0 ||
+	if (jsonl_name(j, object, "ref", NAME_DATA, 1, &s->ref, e) ||
 		jsonl_string(j, object, "split", 0, &split, e) < 0)
 		return -1;
 	if (strcmp(split, "train") && strcmp(split, "test"))
 		return jsonl_err(j, e, "key 'split' is '%s', not 'train' or 'test'", split);
 	s->split = !strcmp(split, "test") ? SPLIT_TEST : SPLIT_TRAIN;
-	s->ref = copy_string(j, "ref", ref, 0, e);
-	if (!s->ref || read_objects(s, j, object, e) || read_target(s, j, object, e) ||
+	if (read_objects(s, j, object, e) || read_target(s, j, object, e) ||
 		jsonl_string(j, object, "text", 1, &text, e) < 0)
 		return -1;
-	s->text = copy_string(j, "text", text, 1, e);
-	return !s->text || read_list(&s->views, &s->view_count, j, object, "views", e) ||
-			       read_name(&s->view, j, object, "view", e) ||
-			       read_name(&s->kind, j, object, "kind", e)
+	s->text = copy_text(j, text, e);
+	return !s->text || read_list(&s->views, &s->view_count, j, object, "views", NAME_VIEW, e) ||
+			       jsonl_name(j, object, "view", NAME_VIEW, 0, &s->view, e) ||
+			       jsonl_name(j, object, "kind", NAME_DATA, 0, &s->kind, e)
 		       ? -1
 		       : 0;
 }
 
-struct ref_place {
-	const char *ref;
-	long line;
-};
-
-static int by_ref(const void *a, const void *b)
+static int check_unique(const struct sentences *s, const long *lines, const char *path, struct err *e)
 {
-	const struct ref_place *x = a, *y = b;
-	int order = strcmp(x->ref, y->ref);
+	struct names refs;
+	size_t earlier;
 
-	return order ? order : (x->line > y->line) - (x->line < y->line);
-}
-
-/* Sorts the places; two equal refs then stand side by side, the earlier line first. */
-static int check_unique(struct ref_place *places, size_t n, const char *path, struct err *e)
-{
-	const struct ref_place *found = NULL;
-
-	if (!places)
-		return 0;
-	qsort(places, n, sizeof *places, by_ref);
-	for (size_t i = 1; i < n; i++)
-		if (!strcmp(places[i - 1].ref, places[i].ref) && (!found || places[i].line < found->line))
-			found = &places[i];
-	if (!found)
-		return 0;
-	return err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", path, found->line,
-		found->ref, found[-1].line);
+	if (names_make(&refs, s->items, sizeof *s->items, offsetof(struct sentence, ref), s->n, e))
+		return -1;
+	const size_t twice = names_twice(&refs, &earlier);
+	names_free(&refs);
+	return twice == NAMES_NONE ? 0
+				   : err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", path,
+					     lines[twice], s->items[twice].ref, lines[earlier]);
 }
 
 static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 {
-	struct ref_place *places = NULL;
-	size_t capacity = 0, place_capacity = 0;
+	long *lines = NULL;
+	size_t capacity = 0, line_capacity = 0;
 	cJSON *object;
 	int got;
 
@@ -185,21 +155,21 @@ static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 		struct sentence one = {0};
 		int bad = read_one(&one, j, object, e) ||
 			  mem_grow((void **)&s->items, &capacity, s->n + 1, sizeof *s->items, j->path, e) ||
-			  mem_grow((void **)&places, &place_capacity, s->n + 1, sizeof *places, j->path, e);
+			  mem_grow((void **)&lines, &line_capacity, s->n + 1, sizeof *lines, j->path, e);
 		cJSON_Delete(object);
 		if (bad) {
 			sentence_free(&one);
-			free(places);
+			free(lines);
 			return -1;
 		}
-		places[s->n] = (struct ref_place){one.ref, j->line_number};
+		lines[s->n] = j->line_number;
 		s->items[s->n++] = one;
 	}
 	if (!got && !s->n)
 		got = err_set(e, ERR_FORMAT, "%s: holds no sentences", j->path);
 	if (!got)
-		got = check_unique(places, s->n, j->path, e);
-	free(places);
+		got = check_unique(s, lines, j->path, e);
+	free(lines);
 	return got;
 }
 

@@ -1,6 +1,7 @@
 #include "formats/text.h"
 
 #include "base/mem.h"
+#include "base/names.h"
 #include "formats/metalist.h"
 #include "formats/safetensors.h"
 
@@ -83,17 +84,9 @@ int text_take_means(struct text *t, struct err *e)
 	return 0;
 }
 
-int text_mark(const struct text *t, const char *list, char *chosen, struct list_name *unknown)
+int text_mark(const struct text *t, const char *list, const char *option, char *chosen, struct err *e)
 {
-	while (list_next(&list, unknown)) {
-		size_t i = 0;
-		while (i < t->n && !list_name_is(unknown, t->refs[i]))
-			i++;
-		if (i == t->n)
-			return -1;
-		chosen[i] = 1;
-	}
-	return 0;
+	return names_mark(t->refs, sizeof *t->refs, 0, t->n, list, option, "sentence", chosen, e);
 }
 
 const char *text_object(const struct text *t, size_t sentence)
@@ -212,7 +205,7 @@ static int read_names(struct text *t, const struct safetensors *st, struct err *
 	t->refs = metalist_read(st, "refs", t->n, "sentences", e);
 	t->objects = t->refs ? metalist_read(st, "objects", t->n, "sentences", e) : NULL;
 	t->texts = t->objects ? metalist_read(st, "texts", t->n, "sentences", e) : NULL;
-	if (!t->texts || read_splits(t, st, e))
+	if (!t->texts || metalist_check_names(t->refs, t->n, 0, "refs", st->path, e) || read_splits(t, st, e))
 		return -1;
 	if (safetensors_meta(st, "pieces") &&
 		(!(t->pieces = metalist_read(st, "pieces", t->n, "sentences", e)) ||
@@ -220,7 +213,8 @@ static int read_names(struct text *t, const struct safetensors *st, struct err *
 		return -1;
 	if (read_more(&t->object_lists, t, st, "object_lists", e) ||
 		read_more(&t->views, t, st, "views", e) || read_more(&t->kinds, t, st, "kinds", e) ||
-		check_lists(t, st->path, e))
+		check_lists(t, st->path, e) ||
+		metalist_check_names(t->objects, t->n, t->object_lists != NULL, "objects", st->path, e))
 		return -1;
 	return metalist_check_unique(t->refs, t->n, "refs", st->path, e);
 }
@@ -233,7 +227,7 @@ int text_read(struct text *t, const char *path, struct err *e)
 	if (safetensors_open(&st, path, e))
 		return -1;
 	int bad = safetensors_need_format(&st, "refer.text", 1, e) || read_tensors(t, &st, e) ||
-		  read_names(t, &st, e);
+		  read_names(t, &st, e) || fingerprint_read(&t->encoder, &st, "encoder", e);
 	safetensors_close(&st);
 	if (bad)
 		text_free(t);
@@ -275,9 +269,10 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 		t->refs, t->objects, t->texts, NULL, t->pieces, t->object_lists, t->views, t->kinds};
 	static const char *const keys[] = {
 		"refs", "objects", "texts", "splits", "pieces", "object_lists", "views", "kinds"};
-	enum { LISTS = sizeof keys / sizeof *keys, SPLITS = 3, FIXED = 5 };
+	enum { LISTS = sizeof keys / sizeof *keys, SPLITS = 3, FIXED = 6 };
 	struct st_meta meta[FIXED + LISTS] = {{"format", "refer.text"}, {"version", "1"},
-		{"tool", "text-encode"}, {"options", options}, {"seed", "0"}};
+		{"tool", "text-encode"}, {"options", options}, {"seed", "0"},
+		{"encoder", fingerprint_text(&t->encoder)}};
 	char *printed[LISTS] = {0};
 	int used = FIXED, bad = 0;
 

@@ -3,6 +3,7 @@
 #define FORMATS_TEXT_H
 
 #include "base/err.h"
+#include "formats/fingerprint.h"
 #include "formats/sentences.h"
 #include "geom/camera.h"
 
@@ -19,6 +20,7 @@ struct text {
 	char **pieces; /* (n) word pieces with a space between, one for each word; NULL where the file has
 			  none */
 	enum camera_split *splits;
+	struct fingerprint encoder; /* what made the words */
 	/* What sentences that say more than their object's name say (formats/sentences.md). (n) each, NULL
 	 * where no sentence of the file says it. */
 	char **object_lists; /* a JSON list of the names of the objects meant; "" where the sentence has none
@@ -43,8 +45,8 @@ const char *text_object(const struct text *t, size_t sentence);
  * memory is out; *has 0 where the sentence has no such list. */
 char **text_object_list(const struct text *t, size_t sentence, size_t *n, int *has, struct err *e);
 
-/* Sets chosen[r] (n) to 1 for the refs in a comma-separated list. 0, or -1 and *unknown the first that no
- * sentence has. */
-int text_mark(const struct text *t, const char *list, char *chosen, struct list_name *unknown);
+/* Sets chosen[r] (n) to 1 for the refs in a comma-separated list, the value of an option. 0, or -1 with *e:
+ * ERR_USAGE for a ref that no sentence has. */
+int text_mark(const struct text *t, const char *list, const char *option, char *chosen, struct err *e);
 
 #endif

@@ -2,16 +2,30 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/checkpoint.h"
+#include "base/names.h"
 #include "formats/lifted.h"
 #include "formats/masks.h"
 #include "formats/model.h"
 #include "mask/bits.h"
 
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
+
+/* An object is known by the first training sentence that names it. */
+static int number_objects(struct training *t, struct err *e)
+{
+	struct names names;
+
+	if (names_make(&names, t->object_names, sizeof *t->object_names, 0, t->sentences, e))
+		return -1;
+	for (size_t k = 0; k < t->sentences; k++)
+		t->objects[k] = (int)names_find(&names, t->object_names[k]);
+	names_free(&names);
+	return 0;
+}
 
 /* The training sentences of the text, packed. */
 static int pack_sentences(struct training *t, struct err *e)
@@ -37,17 +51,11 @@ static int pack_sentences(struct training *t, struct err *e)
 		const size_t k = t->sentences++;
 		t->refs[k] = text->refs[r];
 		t->object_names[k] = text->objects[r];
-		t->objects[k] = (int)k;
-		for (size_t other = 0; other < k; other++)
-			if (!strcmp(t->object_names[other], t->object_names[k])) {
-				t->objects[k] = t->objects[other];
-				break;
-			}
 		memcpy(t->words + (size_t)t->offsets[k] * width, text->words + (size_t)from * width,
 			sizeof(float) * (size_t)count * width);
 		t->offsets[k + 1] = t->offsets[k] + count;
 	}
-	return 0;
+	return number_objects(t, e);
 }
 
 /* Opens a view's weights and makes it the next training view. */
@@ -55,7 +63,7 @@ static int add_view(struct training *t, const char *weights, const struct camera
 {
 	struct weights *w = &t->weights[t->view_count];
 
-	if (weights_open(w, weights, c->name, t->scene.splats.n, e))
+	if (weights_open(w, weights, &t->scene, (size_t)(c - t->scene.cameras.views), e))
 		return -1;
 	const struct view_weights view = weights_view(w);
 	t->cameras[t->view_count] = camera_resize(c, w->width, w->height);
@@ -64,21 +72,22 @@ static int add_view(struct training *t, const char *weights, const struct camera
 	return 0;
 }
 
-/* One record: its view's weights are opened when it is the first of the view; at[] is a scene view's training
- * view or -1. */
+/* One record: its view's weights are opened when it is the first of the view; names are those of the scene's
+ * views, at[] is a scene view's training view or -1. */
 static int add_mask(struct training *t, const struct jsonl *j, const struct mask_record *r,
-	const char *weights, long *at, struct err *e)
+	const char *weights, const struct names *names, long *at, struct err *e)
 {
-	const struct camera *c = cameras_find(&t->scene.cameras, r->view);
+	const size_t place = names_find(names, r->view);
+	const struct camera *c = t->scene.cameras.views + (place == NAMES_NONE ? 0 : place);
 	struct err reason;
 
-	if (!c)
+	if (place == NAMES_NONE)
 		return jsonl_err(j, e, "key 'view': the scene has no view '%s'", r->view);
 	if (c->split == SPLIT_TEST) {
 		t->test_masks++;
 		return 0;
 	}
-	long *view = &at[c - t->scene.cameras.views];
+	long *view = &at[place];
 	if (*view < 0) {
 		*view = (long)t->view_count;
 		if (add_view(t, weights, c, e))
@@ -96,6 +105,7 @@ static int read_masks(struct training *t, const char *weights, const char *path,
 {
 	const size_t count = t->scene.cameras.n;
 	long *at = mem_alloc(count, sizeof *at, "views", e);
+	struct names names = {0};
 	struct jsonl j = {0};
 	struct mask_record r;
 	int more = -1;
@@ -103,11 +113,14 @@ static int read_masks(struct training *t, const char *weights, const char *path,
 	t->weights = mem_zalloc(count, sizeof *t->weights, "views", e);
 	t->views = mem_zalloc(count, sizeof *t->views, "views", e);
 	t->cameras = mem_zalloc(count, sizeof *t->cameras, "views", e);
-	if (at && t->weights && t->views && t->cameras && !jsonl_open(&j, path, e)) {
+	if (at && t->weights && t->views && t->cameras &&
+		!names_make(&names, t->scene.cameras.views, sizeof *t->scene.cameras.views,
+			offsetof(struct camera, name), count, e) &&
+		!jsonl_open(&j, path, e)) {
 		for (size_t v = 0; v < count; v++)
 			at[v] = -1;
 		while ((more = masks_next(&j, &r, e)) == 1) {
-			int bad = add_mask(t, &j, &r, weights, at, e);
+			int bad = add_mask(t, &j, &r, weights, &names, at, e);
 			mask_record_free(&r);
 			if (bad) {
 				more = -1;
@@ -116,6 +129,7 @@ static int read_masks(struct training *t, const char *weights, const char *path,
 		}
 		jsonl_close(&j);
 	}
+	names_free(&names);
 	free(at);
 	return more;
 }
@@ -158,19 +172,28 @@ static void make_checksum(struct training *t)
 /* What a warm start is fitted to. */
 static int read_lifted(struct training *t, const struct training_files *from, struct err *e)
 {
+	struct origin origin;
+	struct names names;
+	size_t r;
+
 	if (!from->lifted)
 		return 0;
-	if (lifted_read(&t->lifted, from->lifted, e))
+	if (lifted_read(&t->lifted, &origin, from->lifted, e))
 		return -1;
 	if (t->lifted.gaussians != t->scene.splats.n)
 		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu",
 			file_name(from->lifted), t->lifted.gaussians, from->scene, t->scene.splats.n);
-	for (size_t r = 0; r < t->sentences; r++)
-		for (size_t o = 0; o < t->lifted.objects; o++)
-			if (!strcmp(t->object_names[r], t->lifted.names[o]))
-				return 0;
-	return err_set(e, ERR_FORMAT, "%s: has no object of a training sentence of %s",
-		file_name(from->lifted), file_name(from->text));
+	if (fingerprint_check(
+		    "scene", file_name(from->lifted), &origin.scene, from->scene, &t->scene.fingerprint, e) ||
+		names_make(&names, t->lifted.names, sizeof *t->lifted.names, 0, t->lifted.objects, e))
+		return -1;
+	for (r = 0; r < t->sentences; r++)
+		if (names_find(&names, t->object_names[r]) != NAMES_NONE)
+			break;
+	names_free(&names);
+	return r < t->sentences ? 0
+				: err_set(e, ERR_FORMAT, "%s: has no object of a training sentence of %s",
+					  file_name(from->lifted), file_name(from->text));
 }
 
 static int hold_out(
@@ -238,6 +261,22 @@ struct trainer_source training_source(const struct training *t)
 		.object_names = t->object_names};
 }
 
+/* The scene and the encoder that it is of. */
+static struct origin origin_of(const struct training *t)
+{
+	return (struct origin){t->scene.fingerprint, t->text.encoder};
+}
+
+struct checkpoint_of training_identity(
+	const struct training *t, const struct training_files *from, const struct trainer_options *o)
+{
+	struct checkpoint_of of = {
+		.origin = origin_of(t), .scene_path = from->scene, .text_path = file_name(from->text)};
+
+	checkpoint_identity(of.identity, o, t->checksum);
+	return of;
+}
+
 int training_write(const struct training *t, const struct trainer *learned, enum refer_similarity similarity,
 	enum precision precision, const char *path, const char *options, long long seed, struct err *e)
 {
@@ -246,10 +285,12 @@ int training_write(const struct training *t, const struct trainer *learned, enum
 	const struct model m = {.layout = learned->layout,
 		.similarity = similarity,
 		.precision = precision,
+		.origin = origin_of(t),
 		.scene_gaussians = t->scene.splats.n,
 		.n = learned->rows.n,
 		.has_leaves = learned->octree.n > 0,
-		.ids = learned->octree.n ? NULL : learned->ids,
+		.learning = learned->learning,
+		.ids = learned->ids,
 		.octree = learned->octree,
 		.features = trainer_features(learned, values, e),
 		.parameters = (float *)values, /* a model that is read owns them */

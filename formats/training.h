@@ -4,6 +4,7 @@
 #define FORMATS_TRAINING_H
 
 #include "base/err.h"
+#include "formats/checkpoint.h"
 #include "formats/precision.h"
 #include "formats/scene.h"
 #include "formats/text.h"
@@ -41,6 +42,9 @@ struct training_files {
 
 int training_read(
 	struct training *t, const struct training_files *from, double hold_out, uint64_t seed, struct err *e);
+/* What a checkpoint of it is of. */
+struct checkpoint_of training_identity(
+	const struct training *t, const struct training_files *from, const struct trainer_options *o);
 /* What a trainer learns from; referred to. */
 struct trainer_source training_source(const struct training *t);
 void training_free(struct training *t);

@@ -182,11 +182,44 @@ static int read_splits(struct cameras *c, const cJSON *root, const char *path, s
 	return -bad;
 }
 
+/* What frames may leave to the file, without copies: each frame looks these up, whatever else the file has.
+ */
+static cJSON *common_members(const cJSON *root, const char *path, struct err *e)
+{
+	static const char *const keys[] = {"camera_model", "is_fisheye", "k1", "k2", "k3", "k4", "k5", "k6",
+		"p1", "p2", "w", "h", "fl_x", "fl_y", "camera_angle_x", "camera_angle_y", "cx", "cy"};
+	cJSON *common = cJSON_CreateObject();
+	int is_whole = common != NULL;
+
+	for (size_t i = 0; i < sizeof keys / sizeof *keys && is_whole; i++) {
+		cJSON *item = cJSON_GetObjectItemCaseSensitive(root, keys[i]);
+		is_whole = !item || cJSON_AddItemReferenceToObject(common, keys[i], item);
+	}
+	if (is_whole)
+		return common;
+	cJSON_Delete(common);
+	err_set(e, ERR_SYSTEM, "%s: out of memory", path);
+	return NULL;
+}
+
+static int read_frames(
+	struct cameras *c, const cJSON *frames, const cJSON *common, const char *path, struct err *e)
+{
+	const cJSON *frame;
+	char where[512];
+
+	cJSON_ArrayForEach(frame, frames)
+	{
+		snprintf(where, sizeof where, "%s: frame %zu", path, c->n);
+		if (read_frame(&c->views[c->n++], frame, common, where, e))
+			return -1;
+	}
+	return 0;
+}
+
 int transforms_parse(struct cameras *c, const cJSON *root, const char *path, struct err *e)
 {
-	const cJSON *frames = cJSON_GetObjectItemCaseSensitive(root, "frames"), *frame;
-	char where[512];
-	int bad = 0;
+	const cJSON *frames = cJSON_GetObjectItemCaseSensitive(root, "frames");
 
 	*c = (struct cameras){0};
 	if (!cJSON_IsArray(frames))
@@ -194,16 +227,11 @@ int transforms_parse(struct cameras *c, const cJSON *root, const char *path, str
 	c->views = mem_zalloc((size_t)cJSON_GetArraySize(frames), sizeof *c->views, path, e);
 	if (!c->views)
 		return -1;
-	cJSON_ArrayForEach(frame, frames)
-	{
-		snprintf(where, sizeof where, "%s: frame %zu", path, c->n);
-		bad = read_frame(&c->views[c->n++], frame, root, where, e);
-		if (bad)
-			break;
-	}
-	if (!bad)
-		bad = read_splits(c, root, path, e) || views_finish(c, path, e) ? -1 : 0;
+	cJSON *common = common_members(root, path, e);
+	int bad = !common || read_frames(c, frames, common, path, e) || read_splits(c, root, path, e) ||
+		  views_finish(c, path, e);
+	cJSON_Delete(common);
 	if (bad)
 		cameras_free(c);
-	return bad;
+	return bad ? -1 : 0;
 }

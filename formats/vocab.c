@@ -158,15 +158,6 @@ done:
 	return bad ? -1 : 0;
 }
 
-static const char *token_of(const struct vocab *v, int32_t id)
-{
-	size_t i = 0;
-
-	while (v->entries[i].id != id)
-		i++;
-	return v->entries[i].token;
-}
-
 char *vocab_print(const struct vocab *v, const int32_t *ids, size_t n, struct err *e)
 {
 	char *text = NULL;
@@ -174,7 +165,7 @@ char *vocab_print(const struct vocab *v, const int32_t *ids, size_t n, struct er
 	FILE *stream = open_memstream(&text, &length);
 
 	for (size_t i = 0; stream && i < n; i++)
-		fprintf(stream, "%s%s", i ? " " : "", token_of(v, ids[i]));
+		fprintf(stream, "%s%s", i ? " " : "", vocab_token(v, ids[i]));
 	if (!stream || fclose(stream)) {
 		err_errno(e, "pieces");
 		free(text);

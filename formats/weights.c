@@ -118,6 +118,8 @@ static int read_all(struct weights *w, struct err *e)
 	w->width = (int)width;
 	w->height = (int)height;
 	w->gaussians = gaussians;
+	if (fingerprint_read(&w->scene, st, "scene", e) || fingerprint_read(&w->camera, st, "camera", e))
+		return -1;
 	int64_t pixels = width * height, any = -1, ends = pixels + 1;
 	if (!(indptr = safetensors_need(st, "indptr", ST_I64, 1, &ends, e)) ||
 		!(index = safetensors_need(st, "index", ST_I32, 1, &any, e)) ||
@@ -140,17 +142,32 @@ int weights_open_file(struct weights *w, const char *path, struct err *e)
 	return -1;
 }
 
-int weights_open(struct weights *w, const char *dir, const char *view, size_t gaussians, struct err *e)
+/* That they are of this scene, and of this camera at the size that they have. */
+static int check_origin(const struct weights *w, const struct scene *scene, size_t view, struct err *e)
 {
-	char *path = file_join(dir, view, ".safetensors", e);
+	const struct camera sized = camera_resize(&scene->cameras.views[view], w->width, w->height);
+	const struct fingerprint camera = fingerprint_camera(&sized);
+	const char *path = w->file.path;
+
+	if (w->gaussians != (int64_t)scene->splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, %s has %zu", path,
+			(long long)w->gaussians, scene->path, scene->splats.n);
+	if (fingerprint_check("scene", path, &w->scene, scene->path, &scene->fingerprint, e))
+		return -1;
+	char *cameras = file_join(scene->path, "cameras.json", "", e);
+	int bad = !cameras || fingerprint_check("camera", path, &w->camera, cameras, &camera, e);
+	free(cameras);
+	return bad ? -1 : 0;
+}
+
+int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e)
+{
+	char *path = file_join(dir, scene->cameras.views[view].name, ".safetensors", e);
 
 	*w = (struct weights){0};
 	int bad = path ? weights_open_file(w, path, e) : -1;
-	if (!bad && w->gaussians != (int64_t)gaussians) {
-		bad = err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, this one has %zu", path,
-			(long long)w->gaussians, gaussians);
+	if (!bad && (bad = check_origin(w, scene, view, e)))
 		weights_close(w);
-	}
 	free(path);
 	return bad;
 }
@@ -218,7 +235,8 @@ int weights_write(
 	};
 	struct st_meta meta[] = {{"format", "refer.weights"}, {"version", "1"}, {"tool", "gs-weigh"},
 		{"options", options}, {"seed", "0"}, {"view", view}, {"width", width}, {"height", height},
-		{"gaussians", gaussians}};
+		{"gaussians", gaussians}, {"scene", fingerprint_text(&w->scene)},
+		{"camera", fingerprint_text(&w->camera)}};
 	bad = safetensors_write(
 		path, tensors, sizeof tensors / sizeof *tensors, meta, sizeof meta / sizeof *meta, e);
 done:
@@ -243,18 +261,18 @@ int weights_mark(const char *dir, const struct cameras *cameras, char *there, si
 	return 0;
 }
 
-int weights_each(const char *dir, const struct cameras *cameras, size_t gaussians,
+int weights_each(const char *dir, const struct scene *scene,
 	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
 	size_t *missing, struct err *e)
 {
 	*missing = 0;
-	for (size_t v = 0; v < cameras->n; v++) {
-		const struct camera *camera = &cameras->views[v];
+	for (size_t v = 0; v < scene->cameras.n; v++) {
+		const struct camera *camera = &scene->cameras.views[v];
 		struct weights w;
 		if (camera->split != SPLIT_TRAIN)
 			continue;
 		int found = weights_exist(dir, camera->name, e);
-		if (found < 0 || (found && weights_open(&w, dir, camera->name, gaussians, e)))
+		if (found < 0 || (found && weights_open(&w, dir, scene, v, e)))
 			return -1;
 		*missing += !found;
 		if (!found)

@@ -3,23 +3,25 @@
 #define FORMATS_WEIGHTS_H
 
 #include "base/err.h"
+#include "formats/fingerprint.h"
 #include "formats/precision.h"
 #include "formats/safetensors.h"
-#include "geom/camera.h"
+#include "formats/scene.h"
 #include "splat/view_weights.h"
 
 #include <stdint.h>
 
 struct weights {
-	int width, height;	  /* of the rendered size: P = width*height pixels, row-major */
-	int64_t gaussians;	  /* N of the scene it belongs to */
-	const int64_t *indptr;	  /* (P+1) */
-	const int32_t *index;	  /* (nnz) Gaussian ids, front to back within a pixel */
-	const float *weight;	  /* (nnz) a_i prod_{k<i} (1-a_k); from f32 in place, else converted */
-	const float *dropped;	  /* (P) weight left out by --tolerance */
-	struct safetensors file;  /* keeps the map alive */
-	float *owned;		  /* the converted copy of f16 and u8 weights, else NULL */
-	enum precision precision; /* of the weights in the file */
+	int width, height;     /* of the rendered size: P = width*height pixels, row-major */
+	int64_t gaussians;     /* N of the scene it belongs to */
+	const int64_t *indptr; /* (P+1) */
+	const int32_t *index;  /* (nnz) Gaussian ids, front to back within a pixel */
+	const float *weight;   /* (nnz) a_i prod_{k<i} (1-a_k); from f32 in place, else converted */
+	const float *dropped;  /* (P) weight left out by --tolerance */
+	struct fingerprint scene, camera; /* of what it was made from; camera: at the rendered size */
+	struct safetensors file;	  /* keeps the map alive */
+	float *owned;			  /* the converted copy of f16 and u8 weights, else NULL */
+	enum precision precision;	  /* of the weights in the file */
 };
 
 /* Weights below half of 1/255 round to 0 as u8: prune_below leaves them out, so that they count as dropped.
@@ -27,8 +29,8 @@ struct weights {
 #define WEIGHTS_U8_LEAST (0.5 / 255)
 
 /* Maps and checks DIR/VIEW.safetensors: indptr rises from 0 to nnz, ids in [0,gaussians), weights finite in
- * [0,1]. The scene has that many Gaussians; weights of another are an error. */
-int weights_open(struct weights *w, const char *dir, const char *view, size_t gaussians, struct err *e);
+ * [0,1]. VIEW is a view of the scene; weights of another scene, or of another camera, are an error. */
+int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e);
 /* The same by its path and of any scene; "-" is stdin. */
 int weights_open_file(struct weights *w, const char *path, struct err *e);
 /* 1 where DIR/VIEW.safetensors is there, 0 where it is not, -1 with *e. */
@@ -40,7 +42,7 @@ void weights_close(struct weights *w);
 int weights_mark(const char *dir, const struct cameras *cameras, char *there, size_t *missing, struct err *e);
 /* Visits the training views that have weights, in the order of the cameras, each open only meanwhile; a visit
  * that does not give 0 ends it. *missing gets the number of training views without. -1 with *e. */
-int weights_each(const char *dir, const struct cameras *cameras, size_t gaussians,
+int weights_each(const char *dir, const struct scene *scene,
 	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
 	size_t *missing, struct err *e);
 

@@ -2,6 +2,8 @@
 BEGIN {
 	FS = "\t"
 	title["modules"] = "Modules (table 1)"
+	title["second"] = "What teaches a second stage"
+	title["exact"] = "Modules, without the shortcuts of a training step"
 	title["similarity"] = "Similarity of features and words, without interaction (table 2)"
 	title["masks"] = "Choice of pseudo masks (table 3)"
 	title["interaction"] = "Interaction, without contrast (table 4)"

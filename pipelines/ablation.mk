@@ -17,21 +17,21 @@
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 #
 # Targets: tables (all but the cost), cost (times its own trainings, so nothing else should run), all, and one for each
-# table: statistics (of the scenes) modules similarity masks interaction width encoder contrast settings sentences lifted (and,
+# table: statistics (of the scenes) modules second (what may teach a second stage) similarity masks interaction width encoder contrast settings sentences lifted (and,
 # not in the paper, answers without training, and trainings that start from them) hard (the same by what makes a case hard)
-# space (its boxes and outlines of whole objects). They print;
+# space (its boxes and outlines of whole objects). Not among them: exact, the modules without the shortcuts of a training
+# step, several times as long. They print;
 # OUT/SIZE/NAME.md keeps what was printed. Every cell is the mean over the seeds, each the mean over the scenes, with the spread between seeds.
-# Every file is made under its own name: what is there is not made again, unless what it is made of changed.
+# Every file is made under its own name: what is there is not made again, unless what it is made of changed, or its command.
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
-BIN ?= $(if $(wildcard $(here)../build/bin/refer-train),$(abspath $(here)../build/bin))
-tool = $(if $(BIN),$(BIN)/)
-BERT ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/encoder
+include $(here)common.mk
 OUT ?= ablation
 SIZE ?= quick
 SCENES ?= diner toys tea kitchen
 THREADS ?= 1
 TRAIN ?= --feature-rate 0.01 --mlp-rate 0.0004
+$(call check,,OUT BIN BERT,SIZE SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS,pipelines/ablation.mk)
 ifeq ($(SIZE),full)
 SEEDS ?= 21 22
 ITERATIONS ?= 5000
@@ -44,6 +44,10 @@ SYNTH ?= --size 246x182 --gaussians 15000
 else
 $(error SIZE is full or quick)
 endif
+
+# The rules of a scene and a training are made from these, so no character that the shell gives a meaning may be in them.
+shell_characters := ; & ' " ` $$ \ * ? [ ] { } < > | ! ~ $(hash) $(open) $(close)
+$(foreach v,SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS,$(foreach c,$(shell_characters),$(if $(findstring $(c),$($(v))),$(error $(v) has a $(c)))))
 
 # The trainings: options; the masks and the word vectors that they learn from, where these are not the usual ones.
 run.none = --interaction none --contrast none
@@ -77,8 +81,24 @@ run.lambda = $(run.both) --lambda 0.1
 run.slow = $(run.both) --feature-rate 0.0025 --mlp-rate 0.0001
 run.half = $(run.both)
 steps.half = $(shell expr $(ITERATIONS) / 2)
+run.double = $(run.both)
+steps.double = $(shell expr $(ITERATIONS) \* 2)
 run.onscene = $(run.both)
 masks.onscene = masks/scene
+# Other second stages: one mask chosen of stage 1's for each object; stage 1's and the detector's, chosen together in
+# each view and in 3D; and the masks of the objects that were lifted from what was selected in 3D.
+run.two-chosen = $(run.both)
+masks.two-chosen = masks/chosen
+run.two-pooled = $(run.both)
+masks.two-pooled = masks/pooled
+run.two-pooled3d = $(run.both)
+masks.two-pooled3d = masks/pooled3d
+run.two-lifted = $(run.both)
+masks.two-lifted = masks/lifted
+# Table 1 without the shortcuts of a step: every Gaussian has its own feature, every sentence is in the contrast.
+$(foreach r,none pcmi gtcl both two two-lifted,$(eval run.$(r)-exact = $$(run.$(r)) --share 0 --negatives 0))
+masks.two-exact = both-exact/teach
+masks.two-lifted-exact = masks/lifted
 run.warmed = $(run.both)
 masks.warmed = masks/scene
 init.warmed = lifted/full
@@ -114,24 +134,23 @@ interaction := none attention attention+fp add pcmi proj
 width := width1 width4 both width32
 encoder := both static $(encoders)
 contrast := pcmi dot both proj proj-dot proj-both
-settings := both cold warm lambda slow half
+settings := both cold warm lambda slow half double
+second := both two two-chosen two-pooled two-pooled3d onscene two-lifted
+exact := none none-exact pcmi pcmi-exact gtcl gtcl-exact both both-exact two two-exact two-lifted two-lifted-exact
 sentences := both two
 lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike lift-colours lift-sizes lift-relations lift lift-voted $(foreach p,$(parts),lift-but-$(p))
 hard := two warmed lift-relations lift
 space := lift
-tables := statistics modules similarity masks interaction width encoder contrast settings sentences lifted hard space
-RUNS ?= $(sort $(foreach t,$(tables),$($(t))))
+tables := statistics modules second similarity masks interaction width encoder contrast settings sentences lifted hard space
+RUNS ?= $(sort $(foreach t,$(tables) exact,$($(t))))
 
 root := $(OUT)/$(SIZE)
 cells := $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(root)/$(s)-$(n)))
 
-# One thread a tool, or those that wait for one another give their processor to other programs.
-export OMP_WAIT_POLICY ?= passive
 export OMP_NUM_THREADS := $(THREADS)
 
-.PHONY: all tables cost scores help FORCE $(tables)
-.DELETE_ON_ERROR:
-.SECONDARY:
+.PHONY: all tables cost scores $(tables) exact
+.DEFAULT_GOAL := all
 all: tables
 	@$(MAKE) --no-print-directory -f $(firstword $(MAKEFILE_LIST)) cost
 tables: $(tables)
@@ -140,11 +159,11 @@ help:
 
 # What is asked of a file that nothing but a command line makes: it holds that line, and is as old as the line.
 define keep
-@mkdir -p $(@D); printf '%s\n' '$(1)' | cmp -s - $@ || printf '%s\n' '$(1)' >$@
+@mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 endef
 
-# $(call run,LOG,COMMAND): the last line of -v, time and memory, stays beside the result.
-run = mkdir -p $(dir $(1)) && $(tool)$(2) -v 2>$(1) || { cat $(1) >&2; exit 1; }
+# $(call log,FILE,COMMAND): the last line of -v, time and memory, stays beside the result.
+log = mkdir -p $(dir $(1)) && $(tool)$(2) -v 2>$(1) || { cat $(1) >&2; exit 1; }
 
 # $(call data_rules,FOLDER,SCENE,SEED)
 define data_rules
@@ -152,36 +171,51 @@ $(1)/data/made-by: FORCE
 	@want='gs-synth --scene $(2) --seed $(3) $(SYNTH)'; [ "$$$$(cat $$@ 2>/dev/null)" = "$$$$want" ] || { rm -f $$@ && \
 		$(tool)$$$$want -q -o $(1)/data && printf '%s\n' "$$$$want" >$$@; }
 $(1)/scene/cameras.json: $(1)/data/made-by
-	$$(call run,$(1)/log/import,gs-import --cameras $(1)/data/sparse/0 --images $(1)/data/images \
+	$$(call log,$(1)/log/import,gs-import --cameras $(1)/data/sparse/0 --images $(1)/data/images \
 		--test-views $$$$(cat $(1)/data/test-views) -o $(1)/scene $(1)/data/point_cloud.ply)
-$(1)/weights/complete: $(1)/scene/cameras.json
-	$$(call run,$(1)/log/weigh,gs-weigh --scale $(SCALE) -o $(1)/weights $(1)/scene)
+$(1)/log/weigh.options $(1)/log/contextual.options $(1)/log/static.options: FORCE
+	$$(call keep,$$(if $$(findstring weigh,$$@),--scale $(SCALE),--model $(BERT)))
+$(1)/weights/complete: $(1)/scene/cameras.json $(1)/log/weigh.options
+	$$(call log,$(1)/log/weigh,gs-weigh --scale $(SCALE) -o $(1)/weights $(1)/scene)
 	@touch $$@
-$(1)/text/contextual.safetensors: $(1)/data/made-by
+$(1)/text/contextual.safetensors: $(1)/data/made-by $(1)/log/contextual.options
 	@mkdir -p $$(@D)
-	$$(call run,$(1)/log/contextual,text-encode --model $(BERT) -o $$@ $(1)/data/sentences.jsonl)
-$(1)/text/static.safetensors: $(1)/data/made-by
+	$$(call log,$(1)/log/contextual,text-encode --model $(BERT) -o $$@ $(1)/data/sentences.jsonl)
+$(1)/text/static.safetensors: $(1)/data/made-by $(1)/log/static.options
 	@mkdir -p $$(@D)
-	$$(call run,$(1)/log/static,text-encode --words static --model $(BERT) -o $$@ $(1)/data/sentences.jsonl)
+	$$(call log,$(1)/log/static,text-encode --words static --model $(BERT) -o $$@ $(1)/data/sentences.jsonl)
 $(1)/masks/first.jsonl: $(1)/weights/complete
 	@mkdir -p $$(@D)
-	$$(call run,$(1)/log/first,pseudomask-select --method first --scene $(1)/scene --weights $(1)/weights -o $$@ \
+	$$(call log,$(1)/log/first,pseudomask-select --method first --scene $(1)/scene --weights $(1)/weights -o $$@ \
 		$(1)/data/candidates.jsonl)
 $(1)/masks/scene.jsonl: $(1)/weights/complete
 	@mkdir -p $$(@D)
-	$$(call run,$(1)/log/select3d,pseudomask-select --scene $(1)/scene --weights $(1)/weights -o $$@ $(1)/data/candidates.jsonl)
+	$$(call log,$(1)/log/select3d,pseudomask-select --scene $(1)/scene --weights $(1)/weights -o $$@ $(1)/data/candidates.jsonl)
 $(1)/lifted/voted.safetensors: $(1)/masks/ciou.jsonl
 $(1)/lifted/plain.safetensors $(1)/lifted/full.safetensors: $(1)/masks/scene.jsonl
 $(1)/lifted/%.safetensors: $(1)/weights/complete $(1)/text/contextual.safetensors
 	@mkdir -p $$(@D)
-	$$(call run,$(1)/log/lift.$$*,refer-lift --scene $(1)/scene --weights $(1)/weights --text $(1)/text/contextual.safetensors \
+	$$(call log,$(1)/log/lift.$$*,refer-lift --scene $(1)/scene --weights $(1)/weights --text $(1)/text/contextual.safetensors \
 		--masks $$(filter %.jsonl,$$^) $$(if $$(filter plain,$$*),--names masks) -o $$@)
 $(1)/masks/%.jsonl: $(1)/data/made-by
 	@mkdir -p $$(@D)
-	$$(call run,$(1)/log/$$*,pseudomask-select --method $$* -o $$@ $(1)/data/candidates.jsonl)
-$(1)/both/teach.jsonl: $(1)/both/model.safetensors
-	$$(call run,$(1)/log/teach,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
+	$$(call log,$(1)/log/$$*,pseudomask-select --method $$* -o $$@ $(1)/data/candidates.jsonl)
+$(1)/both/teach.jsonl $(1)/both-exact/teach.jsonl: $(1)/%/teach.jsonl: $(1)/%/model.safetensors
+	$$(call log,$(1)/log/teach.$$*,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
 		--split train --sentences train --scale $(SCALE) -o $$@)
+$(1)/masks/lifted.jsonl $(1)/masks/answers.jsonl: $(1)/masks/%.jsonl:
+	$$(call log,$(1)/log/answers.$$*,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
+		--split train --sentences train -o $$@)
+$(1)/masks/lifted.jsonl: $(1)/lifted/full.safetensors
+$(1)/masks/answers.jsonl: $(1)/both/model.safetensors
+$(1)/masks/chosen.jsonl: $(1)/masks/answers.jsonl
+	$$(call log,$(1)/log/chosen,pseudomask-select --min-score 0 -o $$@ $$<)
+$(1)/masks/both.jsonl: $(1)/masks/answers.jsonl
+	cat $(1)/data/candidates.jsonl $$< >$$@
+$(1)/masks/pooled.jsonl: $(1)/masks/both.jsonl
+	$$(call log,$(1)/log/pooled,pseudomask-select -o $$@ $$<)
+$(1)/masks/pooled3d.jsonl: $(1)/masks/both.jsonl $(1)/weights/complete
+	$$(call log,$(1)/log/pooled3d,pseudomask-select --scene $(1)/scene --weights $(1)/weights -o $$@ $$<)
 $(1)/%.quality.json: $(1)/%.jsonl
 	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/truth.jsonl -o $$@ $$<
 endef
@@ -190,7 +224,7 @@ endef
 define encoder_rules
 $(1)/text/$(2).safetensors: $(1)/data/made-by
 	@mkdir -p $$(@D)
-	$$(call run,$(1)/log/$(2),text-encode --model $(dir.$(2)) -o $$@ $(1)/data/sentences.jsonl)
+	$$(call log,$(1)/log/$(2),text-encode --model $(dir.$(2)) -o $$@ $(1)/data/sentences.jsonl)
 endef
 
 masks_of = $(or $(masks.$(1)),masks/ciou)
@@ -210,23 +244,23 @@ $(1)/$(3)/options: FORCE
 	$$(call keep,--seed $(2) $(call options_of,$(3)))
 $(1)/$(3)/model.safetensors: $(1)/$(3)/options $(1)/$(call masks_of,$(3)).jsonl $(1)/weights/complete $(1)/$(call text_of,$(3)) \
 		$(if $(init.$(3)),$(1)/$(init.$(3)).safetensors)
-	$$(call run,$(1)/$(3)/train.log,refer-train --scene $(1)/scene --weights $(1)/weights --text $(1)/$(call text_of,$(3)) \
+	$$(call log,$(1)/$(3)/train.log,refer-train --scene $(1)/scene --weights $(1)/weights --text $(1)/$(call text_of,$(3)) \
 		--masks $(1)/$(call masks_of,$(3)).jsonl --seed $(2) $(call options_of,$(3)) --checkpoint 0 $(if $(init.$(3)),--init $(1)/$(init.$(3)).safetensors) \
 		--log $(1)/$(3)/losses.jsonl -o $$@)
 $(1)/$(3)/%.jsonl: $(1)/$(3)/model.safetensors
-	$$(call run,$(1)/$(3)/render.log,refer-render --scene $(1)/scene --text $(1)/$(call text_of,$(3)) --model $$< \
+	$$(call log,$(1)/$(3)/render.log,refer-render --scene $(1)/scene --text $(1)/$(call text_of,$(3)) --model $$< \
 		--sentences $$* -o $$@)
 endef
 
 # Where the lifted objects are, and their whole outlines. $(call space_rules,FOLDER)
 define space_rules
 $(1)/lift/boxes.%.jsonl: $(1)/lifted/full.safetensors
-	$$(call run,$(1)/lift/locate.log,refer-locate --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
+	$$(call log,$(1)/lift/locate.log,refer-locate --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
 		--sentences $$* -o $$@)
 $(1)/lift/boxes.%.score.json: $(1)/lift/boxes.%.jsonl
 	$(tool)miou-score --boxes --json --quiet --truth $(1)/data/boxes.jsonl -o $$@ $$<
 $(1)/lift/whole.%.jsonl: $(1)/lifted/full.safetensors
-	$$(call run,$(1)/lift/whole.log,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
+	$$(call log,$(1)/lift/whole.log,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
 		--sentences $$* --amodal -o $$@)
 $(1)/lift/whole.%.score.json: $(1)/lift/whole.%.jsonl
 	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/whole.jsonl -o $$@ $$<
@@ -239,7 +273,7 @@ define lift_rules
 $(1)/$(2)/options: FORCE
 	$$(call keep,$$(ask.$(2)))
 $(1)/$(2)/%.jsonl: $(1)/$(2)/options $(1)/lifted/$(lift.$(2)).safetensors
-	$$(call run,$(1)/$(2)/render.log,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors \
+	$$(call log,$(1)/$(2)/render.log,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors \
 		--model $(1)/lifted/$(lift.$(2)).safetensors --sentences $$* $$(ask.$(2)) -o $$@)
 endef
 
@@ -256,13 +290,14 @@ define table_rules
 $(1): $(call scores_of,$($(1)))
 	@ROOT='$(root)' SCENES='$(SCENES)' SEEDS='$(SEEDS)' RUNS='$(filter $(RUNS),$($(1)))' $(here)ablation-report.sh $(1) | tee $(root)/$(1).md
 endef
-$(foreach t,$(tables),$(eval $(call table_rules,$(t))))
+$(foreach t,$(tables) exact,$(eval $(call table_rules,$(t))))
 statistics masks: $(foreach c,$(cells),$(foreach m,ciou iou top1,$(c)/masks/$(m).quality.json))
 masks: $(foreach c,$(cells),$(c)/masks/first.quality.json $(c)/both/teach.quality.json)
+second: $(foreach c,$(cells),$(foreach m,ciou scene chosen pooled pooled3d lifted,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
 space: $(foreach c,$(cells),$(foreach k,boxes whole visible,$(foreach t,test train,$(c)/lift/$(k).$(t).score.json)))
 lifted: $(foreach c,$(cells),$(foreach m,ciou scene,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
 
 # Alone on the machine, or its seconds mean nothing.
 cost_runs := none both proj-both
 cost: $(foreach r,$(cost_runs) lift,$(firstword $(cells))/$(r)/test.csv $(firstword $(cells))/$(r)/train.csv)
-	@CELL='$(firstword $(cells))' OUT='$(root)/cost' BIN='$(tool)' $(here)ablation-cost.sh $(cost_runs) | tee $(root)/cost.md
+	@CELL='$(firstword $(cells))' OUT='$(root)/cost' BIN=$(tool) $(here)ablation-cost.sh $(cost_runs) | tee $(root)/cost.md

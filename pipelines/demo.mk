@@ -7,24 +7,28 @@
 # ITERATIONS  steps of each stage; default 3000
 # SCALE       as in two-stage.mk; default 0.5
 # TRAIN       more options for refer-train
-# BERT, BIN   as in two-stage.mk
+# TEACH, BERT, BIN   as in two-stage.mk
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
 DEMO ?= demo
 SEED ?= 1
 ITERATIONS ?= 3000
 SCALE ?= 0.5
-BIN ?= $(if $(wildcard $(here)../build/bin/gs-synth),$(abspath $(here)../build/bin))
+include $(here)common.mk
+# The workflow gets what is said below, and nothing else.
+MAKEOVERRIDES :=
+$(call check,DEMO,DEMO,SEED SYNTH ITERATIONS SCALE TRAIN TEACH BERT BIN,pipelines/demo.mk)
 data := $(DEMO)/data
-make_data := gs-synth --seed $(SEED)$(if $(SYNTH), $(SYNTH))
+make_data = gs-synth --seed $(call quoted,SEED) $(call options,SYNTH) -o $(data)
 
-.PHONY: demo FORCE
+.PHONY: demo
+.DEFAULT_GOAL := demo
 demo: $(data)/made-by
-	@$(MAKE) --no-print-directory -f $(here)lift.mk predictions overlays scores lifted SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply CAMERAS=$(data)/sparse/0 \
-		IMAGES=$(data)/images TEST_VIEWS=$$(cat $(data)/test-views) SENTENCES=$(data)/sentences.jsonl \
-		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl WHOLE=$(data)/whole.jsonl BOXES=$(data)/boxes.jsonl SCALE=$(SCALE) ITERATIONS=$(ITERATIONS) SEED=$(SEED) \
-		$(if $(TRAIN),TRAIN="$(TRAIN)") \
-		$(if $(BIN),BIN=$(BIN)) $(if $(BERT),BERT=$(BERT))
+	@$(MAKE) --no-print-directory -f $(here)lift.mk predictions overlays scores lifted SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply \
+		CAMERAS=$(data)/sparse/0 IMAGES=$(data)/images TEST_VIEWS="$$(cat $(data)/test-views)" SENTENCES=$(data)/sentences.jsonl \
+		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl WHOLE=$(data)/whole.jsonl BOXES=$(data)/boxes.jsonl \
+		SCALE=$(call quoted,SCALE) ITERATIONS=$(call quoted,ITERATIONS) SEED=$(call quoted,SEED) \
+		$(if $(TRAIN),TRAIN=$(call quoted,TRAIN)) $(if $(TEACH),TEACH=$(call quoted,TEACH)) BIN=$(call quoted,BIN) BERT=$(call quoted,BERT)
 	@echo
 	@echo "photographs: $(data)/images"
 	@echo "sentences:   $(data)/sentences.jsonl"
@@ -33,6 +37,5 @@ demo: $(data)/made-by
 	@echo "where the things are in space: $(DEMO)/lifted/boxes.jsonl"
 
 # The command that made the data, once they are whole. They stay as they are while it is the same.
-$(data)/made-by: FORCE
-	@[ "$$(cat $@ 2>/dev/null)" = "$(make_data)" ] || { rm -f $@ && echo "$(make_data) -o $(data)" && \
-		$(if $(BIN),$(BIN)/)$(make_data) -o $(data) && echo "$(make_data)" >$@; }
+$(data)/made-by: $(if $(call same,$(file <$(data)/made-by),$(make_data)),,FORCE)
+	@rm -f $@ && printf '%s\n' $(call quote,$(make_data)) && $(tool)$(make_data) && printf %s $(call quote,$(make_data)) >$@

@@ -8,30 +8,32 @@
 # ASK         of lift: default desk-relations.jsonl beside this file, sentences that say nothing but relations
 # ITERATIONS  steps of each stage; default 45000
 # TRAIN       options for refer-train; default --tolerance 0.01
-# SEED, BERT, BIN   as in two-stage.mk
+# SEED, TEACH, BERT, BIN   as in two-stage.mk
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
 TEST_VIEWS ?= input_0001,input_0009,input_0017,input_0025
 ITERATIONS ?= 45000
 ASK ?= $(here)desk-relations.jsonl
 TRAIN ?= --tolerance 0.01
+include $(here)common.mk
+# The workflow gets what is said below, and nothing else.
+MAKEOVERRIDES :=
+$(call check,DATA,DATA OUT ASK,TEST_VIEWS SCALE ITERATIONS TRAIN SEED TEACH BERT BIN,pipelines/desk.mk)
 
 .PHONY: desk lift
+.DEFAULT_GOAL := desk
 desk: OUT ?= build/desk
 desk: SCALE ?= 0.1667
 lift: OUT ?= build/desk-lift
 lift: SCALE ?= 0.5
-# What both workflows are given. $(call flow,FILE TARGET)
-define flow
-	$(if $(DATA),,$(error DATA is not set; see the head of pipelines/desk.mk))
-	@$(MAKE) --no-print-directory -f $(here)$(1) SCENE=$(OUT) SPLATS=$(DATA)/point_cloud.ply CAMERAS=$(DATA)/sparse/0 \
-		IMAGES=$(DATA)/images TEST_VIEWS=$(TEST_VIEWS) SENTENCES=$(DATA)/sentences.jsonl \
-		CANDIDATES=$(DATA)/candidates.jsonl TRUTH=$(DATA)/truth.jsonl SCALE=$(SCALE) $(if $(SEED),SEED=$(SEED)) \
-		$(if $(BERT),BERT=$(BERT)) $(if $(BIN),BIN=$(BIN))
-endef
+# What both workflows are given. $(call flow,FILE)
+flow = @$(MAKE) --no-print-directory -f $(here)$(1) SCENE=$(OUT) SPLATS=$(DATA)/point_cloud.ply CAMERAS=$(DATA)/sparse/0 \
+	IMAGES=$(DATA)/images TEST_VIEWS=$(call quoted,TEST_VIEWS) SENTENCES=$(DATA)/sentences.jsonl \
+	CANDIDATES=$(DATA)/candidates.jsonl TRUTH=$(DATA)/truth.jsonl SCALE=$(call quoted,SCALE) \
+	$(if $(SEED),SEED=$(call quoted,SEED)) $(if $(TEACH),TEACH=$(call quoted,TEACH)) BERT=$(call quoted,BERT) BIN=$(call quoted,BIN)
 
 desk:
-	$(call flow,two-stage.mk) ITERATIONS=$(ITERATIONS) TRAIN="$(TRAIN)"
+	$(call flow,two-stage.mk) ITERATIONS=$(call quoted,ITERATIONS) TRAIN=$(call quoted,TRAIN)
 
 lift:
 	$(call flow,lift.mk) ASK=$(ASK)

@@ -8,9 +8,8 @@
 # ASK         more sentences to answer, JSON Lines; optional
 # WHOLE       true masks of whole objects, to score those of --amodal against; optional
 # BOXES       true boxes, to score those of refer-locate against; optional
-# LIFT        more options for refer-lift
-# The other variables, and the folder's layout, are those of two-stage.mk; both workflows may use one folder where SCALE is
-# the same.
+# The other variables, and the folder's layout, are those of two-stage.mk; both workflows may use one folder where SCALE and
+# WEIGH (here --precision u8 by default) are the same.
 #
 # Targets: lifted (predictions, overlays, boxes and, with TRUTH, scores), and those of two-stage.mk.
 
@@ -18,9 +17,8 @@
 SCALE ?= 0.3333
 WEIGH ?= --precision u8
 include $(dir $(lastword $(MAKEFILE_LIST)))two-stage.mk
+$(call check,,ASK WHOLE BOXES,,pipelines/lift.mk)
 
-masks3 := $(SCENE)/lifted/masks.jsonl
-model3 := $(SCENE)/lifted/model.safetensors
 asked := $(if $(ASK),$(SCENE)/lifted/asked.jsonl)
 answers := $(foreach t,train test,$(SCENE)/lifted/predictions.$(t).jsonl) $(asked)
 whole := $(if $(WHOLE),$(SCENE)/lifted/whole.jsonl)
@@ -31,38 +29,41 @@ lifted_scores := $(if $(TRUTH),$(SCENE)/lifted/masks.score.json $(answers:.jsonl
 lifted: $(answers) $(whole) $(SCENE)/lifted/boxes.jsonl $(SCENE)/lifted/overlays/complete $(lifted_scores)
 	@$(here)report.sh $(SCENE)
 
-$(masks3): $(CANDIDATES) $(weights)
-	@mkdir -p $(dir $@)
-	$(call run,$(SCENE)/log/select3d,pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights -o $@ $(CANDIDATES))
-
-$(model3): $(masks3) $(weights) $(text)
-	$(call run,$(SCENE)/log/lift,refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $< $(LIFT) -o $@)
-
+# The steps.
 ask3 = refer-render --scene $(SCENE)/scene --text $(1) --model $(model3)
-$(SCENE)/lifted/predictions.%.jsonl: $(model3)
-	$(call run,$(SCENE)/log/render3.$*,$(call ask3,$(text)) --sentences $* -o $@)
+$(foreach t,train test,$(eval command.render3.$(t) = $$(call ask3,$$(text)) --sentences $(t) -o $(SCENE)/lifted/predictions.$(t).jsonl))
+command.encode3 = text-encode --model $(call quoted,BERT) -o $(SCENE)/lifted/asked.safetensors $(ASK)
+command.render3.asked = $(call ask3,$(SCENE)/lifted/asked.safetensors) -o $(asked)
+command.render3.whole = $(call ask3,$(text)) --sentences test --amodal -o $(SCENE)/lifted/whole.jsonl
+command.locate = refer-locate --scene $(SCENE)/scene --text $(text) --model $(model3) --sentences test -o $(SCENE)/lifted/boxes.jsonl
+command.overlay3 = $(call ask3,$(text)) --sentences test --overlay $(SCENE)/lifted/overlays -o $(SCENE)/lifted/overlays/masks.jsonl
+command.score_whole = miou-score --json --quiet --predicted-views --truth $(WHOLE)
+command.score_boxes = miou-score --boxes --json --quiet --truth $(BOXES)
+$(call track,render3.train render3.test encode3 render3.asked render3.whole locate overlay3 score_whole score_boxes)
 
-$(SCENE)/lifted/asked.safetensors: $(ASK)
-	@mkdir -p $(dir $@)
-	$(call run,$(SCENE)/log/encode3,text-encode --model $(BERT) -o $@ $(ASK))
+$(SCENE)/lifted/predictions.%.jsonl: $(model3) $(SCENE)/log/render3.%.command
+	$(call run,render3.$*)
 
-$(SCENE)/lifted/asked.jsonl: $(SCENE)/lifted/asked.safetensors $(model3)
-	$(call run,$(SCENE)/log/render3.asked,$(call ask3,$<) -o $@)
+$(SCENE)/lifted/asked.safetensors: $(ASK) $(SCENE)/log/encode3.command
+	@mkdir -p $(@D)
+	$(call run,encode3)
 
-$(SCENE)/lifted/whole.jsonl: $(model3)
-	$(call run,$(SCENE)/log/render3.whole,$(call ask3,$(text)) --sentences test --amodal -o $@)
+$(SCENE)/lifted/asked.jsonl: $(SCENE)/lifted/asked.safetensors $(model3) $(SCENE)/log/render3.asked.command
+	$(call run,render3.asked)
 
-$(SCENE)/lifted/whole.score.json: $(SCENE)/lifted/whole.jsonl $(WHOLE)
-	$(tool)miou-score --json --quiet --predicted-views --truth $(WHOLE) -o $@ $<
+$(SCENE)/lifted/whole.jsonl: $(model3) $(SCENE)/log/render3.whole.command
+	$(call run,render3.whole)
 
-$(SCENE)/lifted/boxes.jsonl: $(model3)
-	$(call run,$(SCENE)/log/locate,refer-locate --scene $(SCENE)/scene --text $(text) --model $< --sentences test -o $@)
+$(SCENE)/lifted/whole.score.json: $(SCENE)/lifted/whole.jsonl $(WHOLE) $(SCENE)/log/score_whole.command
+	$(tool)$(command.score_whole) -o $@ $<
 
-$(SCENE)/lifted/boxes.score.json: $(SCENE)/lifted/boxes.jsonl $(BOXES)
-	$(tool)miou-score --boxes --json --quiet --truth $(BOXES) -o $@ $<
+$(SCENE)/lifted/boxes.jsonl: $(model3) $(SCENE)/log/locate.command
+	$(call run,locate)
 
-$(SCENE)/lifted/overlays/complete: $(model3)
-	@mkdir -p $(dir $@)
-	$(call run,$(SCENE)/log/overlay3,$(call ask3,$(text)) --sentences test --overlay $(SCENE)/lifted/overlays \
-		-o $(SCENE)/lifted/overlays/masks.jsonl)
+$(SCENE)/lifted/boxes.score.json: $(SCENE)/lifted/boxes.jsonl $(BOXES) $(SCENE)/log/score_boxes.command
+	$(tool)$(command.score_boxes) -o $@ $<
+
+$(SCENE)/lifted/overlays/complete: $(model3) $(SCENE)/log/overlay3.command
+	@mkdir -p $(@D)
+	$(call run,overlay3)
 	@touch $@

@@ -18,7 +18,7 @@ row() {
 printf '%-42s %6s %6s %6s %6s %6s\n' "" mIoU oIoU P@25 P@50 P@75
 row "selected masks, training views" "$dir/stage1/masks.score.json"
 for stage in 1 2; do
-	[ $stage = 1 ] || row "stage 1's masks, training views" "$dir/stage2/masks.score.json"
+	[ $stage = 1 ] || row "masks that teach stage 2, training views" "$dir/stage2/masks.score.json"
 	row "stage $stage, test views, training sentences" "$dir/stage$stage/predictions.train.score.json"
 	row "stage $stage, test views, test sentences" "$dir/stage$stage/predictions.test.score.json"
 done

@@ -1,4 +1,4 @@
-# The two-stage workflow on one scene: import, weigh, encode, select, train, render on the training views, train again on
+# The two-stage workflow on one scene: import, weigh, encode, select, train, render masks of the training views, train again on
 # those masks, render on the test views, score.
 #
 #	make -f pipelines/two-stage.mk SCENE=work/desk SPLATS=point_cloud.ply CAMERAS=sparse/0 SENTENCES=sentences.jsonl \
@@ -16,97 +16,124 @@
 # SCALE       size at which training looks at the views, as a share of theirs; default 0.25
 # ITERATIONS  steps of each stage; default 45000
 # SEED        default 1
-# SELECT, WEIGH, TRAIN   more options for pseudomask-select, gs-weigh, refer-train
+# TEACH       whose masks of the training views teach stage 2: stage1, as in the paper, or lifted, those of the objects that
+#             are lifted from masks selected in 3D; default lifted, which pipelines/ablation.md shows to be better
+# SELECT, WEIGH, LIFT, TRAIN   more options for pseudomask-select, gs-weigh, refer-lift, refer-train, with blanks between them
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 #
 # Targets: all (predictions, overlays and, with TRUTH, scores), predictions, overlays, scores, report.
-# Every file is made under its own name, so that a second make does nothing and a change remakes what depends on it.
-# A training that was cut off goes on from its checkpoint.
+# Every file is made under its own name, so that a second make does nothing, and a changed input or variable remakes what
+# depends on it. A training that was cut off goes on from its checkpoint, unless something that it learns from changed: then
+# it starts anew. Names of files and folders may not have blanks or characters that make or the shell give a meaning.
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
-BIN ?= $(if $(wildcard $(here)../build/bin/refer-train),$(abspath $(here)../build/bin))
-tool = $(if $(BIN),$(BIN)/)
-BERT ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/encoder
 TEST_VIEWS ?= every:8
 SCALE ?= 0.25
 ITERATIONS ?= 45000
 SEED ?= 1
+TEACH ?= lifted
+include $(here)common.mk
+$(call check,SCENE SPLATS SENTENCES CANDIDATES,SCENE SPLATS CAMERAS SENTENCES CANDIDATES TRUTH,IMAGES TEST_VIEWS BERT SCALE \
+	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN,pipelines/two-stage.mk)
+$(if $(filter stage1 lifted,$(TEACH)),,$(error TEACH is stage1 or lifted))
 
-# Threads that wait for one another give their processor to other programs.
-export OMP_WAIT_POLICY ?= passive
-
-ifeq ($(filter help clean,$(MAKECMDGOALS)),)
-$(foreach v,SCENE SPLATS SENTENCES CANDIDATES,$(if $($(v)),,$(error $(v) is not set; see the head of pipelines/two-stage.mk)))
-endif
-
-cameras := $(if $(CAMERAS),$(if $(wildcard $(CAMERAS)/.),$(wildcard $(CAMERAS)/*),$(CAMERAS)))
+beside := $(patsubst %/,%,$(dir $(SPLATS)))
+cameras := $(if $(CAMERAS),$(if $(wildcard $(CAMERAS)/.),$(call camera_files,$(CAMERAS)),$(CAMERAS)),$(or $(call \
+	camera_files,$(beside)),$(if $(filter iteration_%,$(notdir $(beside))),$(call camera_files,$(beside)/../..))))
 scene := $(SCENE)/scene/cameras.json
 weights := $(SCENE)/weights/complete
 text := $(SCENE)/text.safetensors
 masks1 := $(SCENE)/stage1/masks.jsonl
 masks2 := $(SCENE)/stage2/masks.jsonl
+masks3 := $(SCENE)/lifted/masks.jsonl
 model1 := $(SCENE)/stage1/model.safetensors
 model2 := $(SCENE)/stage2/model.safetensors
+model3 := $(SCENE)/lifted/model.safetensors
+teacher := $(if $(filter lifted,$(TEACH)),3,1)
 predictions := $(foreach s,1 2,$(foreach t,train test,$(SCENE)/stage$(s)/predictions.$(t).jsonl))
 overlays := $(SCENE)/stage1/overlays/complete $(SCENE)/stage2/overlays/complete
 scores := $(if $(TRUTH),$(predictions:$(SCENE)/%.jsonl=$(SCENE)/%.score.json) $(SCENE)/stage1/masks.score.json $(SCENE)/stage2/masks.score.json)
 
-.PHONY: all predictions overlays scores report help
-.DELETE_ON_ERROR:
-.SECONDARY:
+.PHONY: all predictions overlays scores report
 all: predictions overlays scores
-	@$(if $(TRUTH),$(MAKE) --no-print-directory -f $(firstword $(MAKEFILE_LIST)) report)
+	@$(if $(TRUTH),$(here)report.sh $(SCENE))
 predictions: $(predictions)
 overlays: $(overlays)
 scores: $(scores)
 
 help:
-	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(lastword $(MAKEFILE_LIST))
+	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(firstword $(MAKEFILE_LIST))
 
-# Runs a tool with -v: its last line, time and memory, is kept beside the result for the report.
-# $(call run,LOG,COMMAND)
-run = mkdir -p $(dir $(1)) && $(tool)$(2) -v 2>$(1) || { cat $(1) >&2; exit 1; }
+# The steps.
+command.import = gs-import $(if $(CAMERAS),--cameras $(CAMERAS)) $(if $(IMAGES),--images $(call quoted,IMAGES)) \
+	--test-views $(call quoted,TEST_VIEWS) -o $(SCENE)/scene $(SPLATS)
+command.weigh = gs-weigh --scale $(call quoted,SCALE) $(call options,WEIGH) -o $(SCENE)/weights $(SCENE)/scene
+command.encode = text-encode --model $(call quoted,BERT) -o $(text) $(SENTENCES)
+command.select = pseudomask-select $(call options,SELECT) -o $(masks1) $(CANDIDATES)
+train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks$(1)) \
+	--iterations $(call quoted,ITERATIONS) --seed $(call quoted,SEED) --resume --log $(SCENE)/stage$(1)/train.log \
+	$(call options,TRAIN) -o $(model$(1))
+render = refer-render --scene $(SCENE)/scene --text $(text) --model $(model$(1))
+predict = $(call render,$(1)) --sentences $(2) -o $(SCENE)/stage$(1)/predictions.$(2).jsonl
+command.teach = $(call render,$(teacher)) --split train --sentences train --scale $(call quoted,SCALE) -o $(masks2)
+command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights -o $(masks3) $(CANDIDATES)
+command.lift = refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks3) $(call options,LIFT) \
+	-o $(model3)
+command.score = miou-score --json --quiet --predicted-views --truth $(TRUTH)
+$(foreach s,1 2,$(eval command.train$(s) = $$(call train,$(s))))
+$(foreach s,1 2,$(foreach t,train test,$(eval command.render$(s).$(t) = $$(call predict,$(s),$(t)))))
+$(foreach s,1 2,$(eval command.overlay$(s) = $$(call render,$(s)) --sentences test --overlay $(SCENE)/stage$(s)/overlays \
+	-o $(SCENE)/stage$(s)/overlays/masks.jsonl))
+$(call track,import weigh encode select select3d lift train1 train2 teach score overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
 
-$(scene): $(SPLATS) $(cameras)
-	$(call run,$(SCENE)/log/import,gs-import $(if $(CAMERAS),--cameras $(CAMERAS)) $(if $(IMAGES),--images $(IMAGES)) \
-		--test-views $(TEST_VIEWS) -o $(SCENE)/scene $(SPLATS))
+$(SCENE)/log/%.command:
+	@mkdir -p $(@D) && printf %s $(call quote,$(command.$*)) >$@
 
-$(weights): $(scene)
-	$(call run,$(SCENE)/log/weigh,gs-weigh --scale $(SCALE) $(WEIGH) -o $(SCENE)/weights $(SCENE)/scene)
+$(scene): $(SPLATS) $(cameras) $(SCENE)/log/import.command
+	$(call run,import)
+
+$(weights): $(scene) $(SCENE)/log/weigh.command
+	$(call run,weigh)
 	@touch $@
 
-$(text): $(SENTENCES)
-	$(call run,$(SCENE)/log/encode,text-encode --model $(BERT) -o $@ $(SENTENCES))
+$(text): $(SENTENCES) $(SCENE)/log/encode.command
+	$(call run,encode)
 
 # A way of selecting that looks at the scene has to wait for it.
-$(masks1): $(CANDIDATES) $(if $(findstring --weights,$(SELECT)),$(weights))
-	@mkdir -p $(dir $@)
-	$(call run,$(SCENE)/log/select,pseudomask-select $(SELECT) -o $@ $(CANDIDATES))
+$(masks1): $(CANDIDATES) $(SCENE)/log/select.command $(if $(findstring --weights,$(SELECT)),$(weights))
+	@mkdir -p $(@D)
+	$(call run,select)
 
-$(SCENE)/stage%/model.safetensors: $(SCENE)/stage%/masks.jsonl $(weights) $(text)
-	$(call run,$(SCENE)/log/train$*,refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $< \
-		--iterations $(ITERATIONS) --seed $(SEED) --resume --log $(SCENE)/stage$*/train.log $(TRAIN) -o $@)
+# A checkpoint of a training that learned from something else is of no use.
+$(SCENE)/stage%/model.safetensors: $(SCENE)/stage%/masks.jsonl $(weights) $(text) $(SCENE)/log/train%.command
+	@[ ! -e $@.checkpoint ] || [ -z "$$(find $^ -newer $@.checkpoint)" ] || rm $@.checkpoint
+	$(call run,train$*)
 
-# What stage 1 answers in the training views teaches stage 2.
-$(masks2): $(model1)
-	@mkdir -p $(dir $@)
-	$(call run,$(SCENE)/log/teach,refer-render --scene $(SCENE)/scene --text $(text) --model $< --split train --sentences train \
-		--scale $(SCALE) -o $@)
+$(masks3): $(CANDIDATES) $(weights) $(SCENE)/log/select3d.command
+	@mkdir -p $(@D)
+	$(call run,select3d)
 
-$(SCENE)/stage1/predictions.%.jsonl: $(model1)
-	$(call run,$(SCENE)/log/render1.$*,refer-render --scene $(SCENE)/scene --text $(text) --model $< --sentences $* -o $@)
+$(model3): $(masks3) $(weights) $(text) $(SCENE)/log/lift.command
+	$(call run,lift)
 
-$(SCENE)/stage2/predictions.%.jsonl: $(model2)
-	$(call run,$(SCENE)/log/render2.$*,refer-render --scene $(SCENE)/scene --text $(text) --model $< --sentences $* -o $@)
+# What another model answers in the training views teaches stage 2.
+$(masks2): $(model$(teacher)) $(SCENE)/log/teach.command
+	@mkdir -p $(@D)
+	$(call run,teach)
 
-$(SCENE)/stage%/overlays/complete: $(SCENE)/stage%/model.safetensors
-	@mkdir -p $(dir $@)
-	$(call run,$(SCENE)/log/overlay$*,refer-render --scene $(SCENE)/scene --text $(text) --model $< --sentences test \
-		--overlay $(SCENE)/stage$*/overlays -o $(SCENE)/stage$*/overlays/masks.jsonl)
+$(SCENE)/stage1/predictions.%.jsonl: $(model1) $(SCENE)/log/render1.%.command
+	$(call run,render1.$*)
+
+$(SCENE)/stage2/predictions.%.jsonl: $(model2) $(SCENE)/log/render2.%.command
+	$(call run,render2.$*)
+
+$(SCENE)/stage%/overlays/complete: $(SCENE)/stage%/model.safetensors $(SCENE)/log/overlay%.command
+	@mkdir -p $(@D)
+	$(call run,overlay$*)
 	@touch $@
 
-$(SCENE)/%.score.json: $(SCENE)/%.jsonl $(TRUTH)
-	$(tool)miou-score --json --quiet --predicted-views --truth $(TRUTH) -o $@ $<
+$(SCENE)/%.score.json: $(SCENE)/%.jsonl $(TRUTH) $(SCENE)/log/score.command
+	$(tool)$(command.score) -o $@ $<
 
 report: $(scores)
 	@$(here)report.sh $(SCENE)

@@ -1,10 +1,11 @@
 #include "base/file.h"
 
 #include "base/mem.h"
+#include "base/path.h"
+#include "base/temporary.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -120,61 +121,48 @@ void file_unmap(struct file_map *map)
 	*map = (struct file_map){0};
 }
 
-/* The temporary files there are. The names stay where they are for good, so that a signal's handler can read
- * them at any time, on any thread. */
-static struct {
-	int state; /* by atomic operations only */
-	char name[PATH_MAX];
-} temporaries[FILE_OUT_MOST];
-
-enum { FREE, TAKEN, NAMED };
-
-/* Makes a temporary file beside path. Its name is known here before mkstemp fills it in and makes the file,
- * so that there is no moment at which a signal would leave it. Returns the descriptor or -1 with *e. */
-static int make_temporary(struct file_out *out, const char *path, struct err *e)
-{
-	for (int i = 0; i < FILE_OUT_MOST; i++) {
-		int free_now = FREE;
-		char *name = temporaries[i].name;
-		if (!__atomic_compare_exchange_n(
-			    &temporaries[i].state, &free_now, TAKEN, 0, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
-			continue;
-		if (snprintf(name, PATH_MAX, "%s.tmp.XXXXXX", path) >= PATH_MAX) {
-			__atomic_store_n(&temporaries[i].state, FREE, __ATOMIC_SEQ_CST);
-			errno = ENAMETOOLONG;
-			return err_errno(e, "%s", path);
-		}
-		__atomic_store_n(&temporaries[i].state, NAMED, __ATOMIC_SEQ_CST);
-		int fd = mkstemp(name);
-		if (fd < 0) {
-			err_errno(e, "%s", path);
-			__atomic_store_n(&temporaries[i].state, FREE, __ATOMIC_SEQ_CST);
-		} else {
-			out->temporary = name;
-		}
-		return fd;
-	}
-	return err_set(e, ERR_SYSTEM, "%s: more than %d outputs at a time", path, FILE_OUT_MOST);
-}
-
-/* The temporary file is there no more. */
-static void forget_temporary(struct file_out *out)
-{
-	for (int i = 0; i < FILE_OUT_MOST; i++)
-		if (out->temporary == temporaries[i].name)
-			__atomic_store_n(&temporaries[i].state, FREE, __ATOMIC_SEQ_CST);
-	out->temporary = NULL;
-}
-
 void file_out_remove_all(void)
 {
-	for (int i = 0; i < FILE_OUT_MOST; i++)
-		if (__atomic_load_n(&temporaries[i].state, __ATOMIC_SEQ_CST) == NAMED)
-			unlink(temporaries[i].name);
+	temporary_remove_all();
+}
+
+static mode_t new_mode(void)
+{
+	mode_t mask;
+	/* it can only be read by changing it, which another thread must not see */
+#pragma omp critical(file_umask)
+	{
+		mask = umask(0);
+		umask(mask);
+	}
+	return 0666 & ~mask;
+}
+
+/* Gives the file the owner, as far as that may be done, and the mode of the one that it will replace. */
+static void take_mode(int fd, const struct stat *replaced)
+{
+	const int has_owner = replaced && (!fchown(fd, replaced->st_uid, replaced->st_gid) ||
+						  !fchown(fd, (uid_t)-1, replaced->st_gid));
+
+	(void)has_owner; /* else it is the user's own */
+	fchmod(fd, replaced ? replaced->st_mode & 0777 : new_mode());
+}
+
+/* 1 where path is written to directly: a device or pipe is not replaced by a file, nor is what the system
+ * shows as a link without a true target (/dev/stdout). A folder fails when it is opened, before any work. */
+static int is_direct(const struct stat *st, const char *target)
+{
+	struct stat there;
+
+	return !S_ISREG(st->st_mode) || stat(target, &there) || there.st_dev != st->st_dev ||
+	       there.st_ino != st->st_ino;
 }
 
 int file_out_open(struct file_out *out, const char *path, struct err *e)
 {
+	struct stat st;
+	int fd = -1;
+
 	*out = (struct file_out){0};
 	out->path = mem_strdup(path, e);
 	if (!out->path)
@@ -183,34 +171,24 @@ int file_out_open(struct file_out *out, const char *path, struct err *e)
 		out->stream = stdout;
 		return 0;
 	}
-	struct stat st;
-	if (!stat(path, &st) && !S_ISREG(st.st_mode)) {
-		/* A device or pipe is written to, not replaced by a file; a folder fails here, before any
-		 * work. */
+	out->target = path_follow(path, e);
+	if (!out->target)
+		goto fail;
+	const int is_there = !stat(path, &st);
+	if (is_there && is_direct(&st, out->target)) {
 		out->stream = fopen(path, "wb");
-		if (out->stream)
-			return 0;
-		err_errno(e, "%s", path);
-		goto fail;
+	} else {
+		fd = temporary_make(&out->temporary, out->target, path, e);
+		if (fd < 0)
+			goto fail;
+		take_mode(fd, is_there ? &st : NULL);
+		out->stream = fdopen(fd, "wb");
 	}
-	int fd = make_temporary(out, path, e);
-	if (fd < 0)
-		goto fail;
-	mode_t mask;
-	/* it can only be read by changing it, which another thread must not see */
-#pragma omp critical(file_umask)
-	{
-		mask = umask(0);
-		umask(mask);
-	}
-	fchmod(fd, 0666 & ~mask);
-	out->stream = fdopen(fd, "wb");
-	if (!out->stream) {
-		err_errno(e, "%s", path);
+	if (out->stream)
+		return 0;
+	err_errno(e, "%s", path);
+	if (fd >= 0)
 		close(fd);
-		goto fail;
-	}
-	return 0;
 fail:
 	file_out_abort(out);
 	return -1;
@@ -227,29 +205,26 @@ int file_out_commit(struct file_out *out, struct err *e)
 			errno = EIO;
 		bad = err_errno(e, "%s", name);
 	}
+	/* Before it is closed: its lock, without which another run takes it for a leftover, ends with that.
+	 */
+	if (out->temporary && !bad && temporary_rename(out->temporary, out->target))
+		bad = err_errno(e, "%s", name);
+	temporary_end(out->temporary);
 	if (out->stream != stdout && fclose(out->stream) && !bad)
 		bad = err_errno(e, "%s", name);
-	if (out->temporary) {
-		if (!bad && rename(out->temporary, out->path))
-			bad = err_errno(e, "%s", name);
-		if (bad)
-			unlink(out->temporary);
-		forget_temporary(out);
-	}
 	free(out->path);
+	free(out->target);
 	*out = (struct file_out){0};
 	return bad;
 }
 
 void file_out_abort(struct file_out *out)
 {
+	temporary_end(out->temporary);
 	if (out->stream && out->stream != stdout)
 		fclose(out->stream);
-	if (out->temporary) {
-		unlink(out->temporary);
-		forget_temporary(out);
-	}
 	free(out->path);
+	free(out->target);
 	*out = (struct file_out){0};
 }
 

@@ -27,20 +27,22 @@ void file_close(FILE *in);
 /* The name that messages use for a path: "stdin" for "-". */
 const char *file_name(const char *path);
 
-/* An output. Data go to a temporary file in the same folder; file_out_commit syncs it and renames it over
- * `path`; file_out_abort removes it. "-", devices and pipes are written to directly. */
+struct temporary;
+
+/* An output. Data go to a temporary file in the same folder (base/temporary.h); file_out_commit syncs it and
+ * renames it over `path`; file_out_abort removes it. Where `path` is a symbolic link, its target is replaced;
+ * a file that is replaced hands on its mode. "-", devices and pipes are written to directly. */
 struct file_out {
 	FILE *stream;
-	char *path;
-	char *temporary; /* NULL where the output is written to directly; not owned */
+	char *path, *target;
+	struct temporary *temporary; /* NULL where the output is written to directly */
 };
-enum { FILE_OUT_MOST = 16 }; /* with temporary files at a time */
 int file_out_open(struct file_out *out, const char *path, struct err *e);
 int file_out_commit(struct file_out *out, struct err *e); /* closes in any case */
 void file_out_abort(struct file_out *out);		  /* harmless after commit, and on a zeroed struct */
 
 /* Removes the temporary files of all outputs that are open: for a signal's handler, after which the process
- * ends. */
+ * ends. Threads that then open or end an output wait for that. */
 void file_out_remove_all(void);
 
 /* Fails where an output of that name could not be opened: to be found out before long work. Leaves nothing

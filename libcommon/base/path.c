@@ -4,9 +4,15 @@
 #include "base/file.h"
 #include "base/mem.h"
 
+#include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { LINKS = 40 }; /* followed at most, as Linux does */
 
 /* realpath(3) of the folder that holds target. */
 static char *real_folder(const char *target, struct err *e)
@@ -73,4 +79,112 @@ const char *path_last(const char *path, int *length)
 		first--;
 	*length = (int)(end - first);
 	return path + first;
+}
+
+/* What a symbolic link's text means, seen from the link's folder. */
+static char *from_link(const char *link, const char *text, struct err *e)
+{
+	char *folder = file_dir(link, e), *path = folder ? file_join(folder, text, "", e) : NULL;
+
+	free(folder);
+	return path;
+}
+
+char *path_follow(const char *path, struct err *e)
+{
+	char *at = mem_strdup(path, e), text[PATH_MAX];
+
+	for (int i = 0; at && i <= LINKS; i++) {
+		ssize_t length = readlink(at, text, sizeof text - 1);
+		if (length < 0)
+			return at;
+		text[length] = 0;
+		char *next = from_link(at, text, e);
+		free(at);
+		at = next;
+	}
+	if (!at)
+		return NULL;
+	free(at);
+	errno = ELOOP;
+	err_errno(e, "%s", path);
+	return NULL;
+}
+
+/* A file or folder: the deepest folder of its path that exists, or itself, and the rest of the path. */
+struct place {
+	struct stat st;
+	char *path; /* owned */
+	const char *rest;
+};
+
+/* Where the last part of path[0..end) begins. */
+static size_t cut_last(const char *path, size_t end)
+{
+	while (end && path[end - 1] == '/')
+		end--;
+	while (end && path[end - 1] != '/')
+		end--;
+	return end;
+}
+
+static int find_place(struct place *p, const char *path, struct err *e)
+{
+	p->path = stat(path, &p->st) ? path_follow(path, e) : mem_strdup(path, e);
+	char *found = p->path ? mem_strdup(p->path, e) : NULL;
+	if (!found) {
+		free(p->path);
+		return -1;
+	}
+	size_t end = strlen(found);
+	while (stat(end ? found : ".", &p->st) && end) {
+		end = cut_last(found, end);
+		found[end] = 0;
+	}
+	p->rest = p->path + end;
+	free(found);
+	return 0;
+}
+
+/* The next part of a path but for '.', and its length, which is 0 at the end. */
+static const char *next_part(const char *path, size_t *length)
+{
+	for (;; path++) {
+		path += strspn(path, "/");
+		*length = strcspn(path, "/");
+		if (*length != 1 || *path != '.')
+			return path;
+	}
+}
+
+static int is_same_rest(const char *a, const char *b)
+{
+	for (;;) {
+		size_t m, n;
+		a = next_part(a, &m);
+		b = next_part(b, &n);
+		if (m != n || strncmp(a, b, m))
+			return 0;
+		if (!m)
+			return 1;
+		a += m;
+		b += n;
+	}
+}
+
+int path_is_same(const char *a, const char *b, struct err *e)
+{
+	struct place x, y;
+
+	if (find_place(&x, a, e))
+		return -1;
+	if (find_place(&y, b, e)) {
+		free(x.path);
+		return -1;
+	}
+	const int is_same = x.st.st_dev == y.st.st_dev && x.st.st_ino == y.st.st_ino &&
+			    (S_ISREG(x.st.st_mode) || S_ISDIR(x.st.st_mode)) && is_same_rest(x.rest, y.rest);
+	free(x.path);
+	free(y.path);
+	return is_same;
 }

@@ -11,4 +11,13 @@ char *path_relative(const char *dir, const char *target, struct err *e);
 /* The last part of a path, which may end in slashes: where it begins, and its length without them. */
 const char *path_last(const char *path, int *length);
 
+/* Where a chain of symbolic links leads, of which the last may be dangling: what a file of that name that is
+ * made or replaced really is. The path itself where it is no link. free() it; NULL with *e set (links in a
+ * circle, say). */
+char *path_follow(const char *path, struct err *e);
+
+/* 1 where both are one regular file or folder, under whichever names, or will be once they are made; else 0.
+ * Devices and pipes are never the same. -1 with *e set (links in a circle, or memory is out). */
+int path_is_same(const char *a, const char *b, struct err *e);
+
 #endif

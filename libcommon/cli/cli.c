@@ -271,16 +271,19 @@ static void end_by_signal(int number)
 	raise(number);
 }
 
-/* An interrupted tool leaves no temporary file. What is ignored, by nohup say, stays so. */
+/* A tool that a signal ends leaves no temporary file. What is ignored, by nohup say, stays so. At the limit
+ * of a file's size writes fail, as on a full disk, and the tool says so. */
 static void catch_signals(void)
 {
-	static const int numbers[] = {SIGHUP, SIGINT, SIGTERM};
+	static const int numbers[] = {SIGABRT, SIGALRM, SIGBUS, SIGFPE, SIGHUP, SIGILL, SIGINT, SIGPIPE,
+		SIGPROF, SIGQUIT, SIGSEGV, SIGSYS, SIGTERM, SIGTRAP, SIGUSR1, SIGUSR2, SIGVTALRM, SIGXCPU};
 	struct sigaction was, own = {.sa_handler = end_by_signal, .sa_flags = SA_RESETHAND | SA_NODEFER};
 
 	sigemptyset(&own.sa_mask);
 	for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
 		if (!sigaction(numbers[i], NULL, &was) && was.sa_handler == SIG_DFL)
 			sigaction(numbers[i], &own, NULL);
+	signal(SIGXFSZ, SIG_IGN);
 }
 
 void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv)
@@ -317,6 +320,8 @@ void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv
 
 int cli_fail(const struct cli *c, const struct err *e)
 {
+	if (e->code == ERR_USAGE)
+		cli_usage(c, "%s", e->message);
 	fprintf(stderr, "%s: %s\n", c->tool->name, e->message);
 	return e->code ? (int)e->code : ERR_SYSTEM;
 }

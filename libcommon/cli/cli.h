@@ -5,6 +5,7 @@
 #define CLI_CLI_H
 
 #include "base/err.h"
+#include "cli/overwrite.h"
 
 #include <stdio.h>
 
@@ -59,8 +60,7 @@ struct cli {
 };
 
 /* Parses argv (options and operands in any order, "--" ends options). Prints and exits 0 for -h and -V, 2 for
- * a mistake. Has SIGHUP, SIGINT and SIGTERM remove the temporary files of open outputs before they end the
- * process. */
+ * a mistake. Has the signals that end a process remove the temporary files of open outputs before they do. */
 void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv);
 
 /* Prints "tool: message" and "Try 'tool --help'.", and exits 2: for rules that a table cannot state. */

@@ -1,5 +1,7 @@
 #include "geom/camera.h"
 
+#include "base/names.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,25 +16,10 @@ void cameras_free(struct cameras *c)
 	*c = (struct cameras){0};
 }
 
-const struct camera *cameras_find(const struct cameras *c, const char *name)
+int cameras_mark(const struct cameras *c, const char *list, const char *option, char *chosen, struct err *e)
 {
-	for (size_t i = 0; i < c->n; i++)
-		if (!strcmp(c->views[i].name, name))
-			return &c->views[i];
-	return NULL;
-}
-
-int cameras_mark(const struct cameras *c, const char *list, char *chosen, struct list_name *unknown)
-{
-	while (list_next(&list, unknown)) {
-		size_t i = 0;
-		while (i < c->n && !list_name_is(unknown, c->views[i].name))
-			i++;
-		if (i == c->n)
-			return -1;
-		chosen[i] = 1;
-	}
-	return 0;
+	return names_mark(c->views, sizeof *c->views, offsetof(struct camera, name), c->n, list, option,
+		"view", chosen, e);
 }
 
 struct camera camera_resize(const struct camera *from, int width, int height)

@@ -2,7 +2,7 @@
 #ifndef GEOM_CAMERA_H
 #define GEOM_CAMERA_H
 
-#include "base/list.h"
+#include "base/err.h"
 
 #include <stddef.h>
 
@@ -24,13 +24,9 @@ struct cameras {
 
 void cameras_free(struct cameras *c);
 
-/* The view of that name, or NULL. */
-const struct camera *cameras_find(const struct cameras *c, const char *name);
-
-/* Sets chosen[i] (n) to 1 for the views in a comma-separated list. 0, or -1 and *unknown the first name that
- * is no view's.
- */
-int cameras_mark(const struct cameras *c, const char *list, char *chosen, struct list_name *unknown);
+/* Sets chosen[i] (n) to 1 for the views in a comma-separated list, the value of an option. 0, or -1 with *e:
+ * ERR_USAGE for a name that is no view's. */
+int cameras_mark(const struct cameras *c, const char *list, const char *option, char *chosen, struct err *e);
 
 /* The same camera at another image size; intrinsics scale alike (an off-centre principal point is honoured).
  * name and image still belong to `from`. */

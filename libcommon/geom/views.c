@@ -1,14 +1,16 @@
 #include "geom/views.h"
 
 #include "base/mem.h"
+#include "base/name.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-/* How much of the image's path a name keeps. */
-enum level { FILE_STEM, PATH_STEM, WHOLE_PATH };
+/* How much of the image's path a name keeps; the last keeps '/' and '_' apart, so that different paths have
+ * different names. */
+enum level { FILE_STEM, PATH_STEM, WHOLE_PATH, ESCAPED_PATH };
 
 struct entry {
 	struct camera view;
@@ -61,20 +63,21 @@ size_t view_stem(const char *image)
 static int set_name(struct camera *c, enum level level, struct err *e)
 {
 	const char *from = level == FILE_STEM ? view_base(c->image) : c->image;
-	size_t len = level == WHOLE_PATH ? strlen(c->image) : view_stem(c->image);
+	size_t len = level >= WHOLE_PATH ? strlen(c->image) : view_stem(c->image);
 	const char *end = c->image + len;
 
 	while (from < end && (*from == '/' || !strncmp(from, "./", 2)))
 		from++;
 	len = (size_t)(end - from);
-	free(c->name);
-	c->name = mem_alloc(len + 1, 1, "view name", e);
-	if (!c->name)
+	char *part = mem_alloc(len + 1, 1, "view name", e);
+	if (!part)
 		return -1;
-	for (size_t i = 0; i < len; i++)
-		c->name[i] = from[i] == '/' ? '_' : from[i];
-	c->name[len] = 0;
-	return 0;
+	memcpy(part, from, len);
+	part[len] = 0;
+	free(c->name);
+	c->name = level == ESCAPED_PATH ? name_to_file(part, e) : name_to_view(part, e);
+	free(part);
+	return c->name ? 0 : -1;
 }
 
 static int by_name(const void *a, const void *b)
@@ -93,14 +96,14 @@ static int lengthen_shared(struct entry *entries, size_t n, const char *path, st
 	qsort(entries, n, sizeof *entries, by_name);
 	for (size_t i = 0; i + 1 < n; i++)
 		if (!strcmp(entries[i].view.name, entries[i + 1].view.name)) {
-			if (entries[i].level == WHOLE_PATH && entries[i + 1].level == WHOLE_PATH)
+			if (entries[i].level == ESCAPED_PATH && entries[i + 1].level == ESCAPED_PATH)
 				return err_set(e, ERR_FORMAT, "%s: two views have the name '%s'", path,
 					entries[i].view.name);
 			entries[i].is_shared = entries[i + 1].is_shared = was_shared = 1;
 		}
 	for (size_t i = 0; i < n; i++) {
 		struct entry *one = &entries[i];
-		if (one->is_shared && one->level < WHOLE_PATH && set_name(&one->view, ++one->level, e))
+		if (one->is_shared && one->level < ESCAPED_PATH && set_name(&one->view, ++one->level, e))
 			return -1;
 		one->is_shared = 0;
 	}

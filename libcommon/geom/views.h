@@ -17,9 +17,9 @@ int view_set_size(struct camera *c, double width, double height);
  * Checks each (view_fault), names it and sorts by name (byte order).
  *
  * A view's name is its image's file name without folder and without an image extension (.jpg .jpeg .png .bmp
- * .tif .tiff .webp .exr, any case). Views that would share a name keep their folders, '/' written '_'; those
- * that still share one keep the extension too. What then is still the same is an error. `path` is for
- * messages. */
+ * .tif .tiff .webp .exr, any case), as name_to_view writes it. Views that would share a name keep their
+ * folders; those that still share one keep the extension too; those that share even that are the whole path
+ * as name_to_file writes it. Two of the same path are an error. `path` is for messages. */
 int views_finish(struct cameras *c, const char *path, struct err *e);
 
 /* Length of an image path without its extension, where it has one of the above; else its whole length. */

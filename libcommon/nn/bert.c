@@ -1,5 +1,6 @@
 #include "nn/bert.h"
 
+#include "base/hash.h"
 #include "base/mem.h"
 #include "nn/linear.h"
 
@@ -7,11 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Hands out consecutive arrays. With slab NULL it only counts; -1 in `bad` when the count does not fit. */
+/* Hands out consecutive arrays, and hashes those that are there. With slab NULL it only counts; -1 in `bad`
+ * when the count does not fit. */
 struct layout {
 	float *slab;
 	size_t used;
 	int bad;
+	uint64_t *hash; /* NULL: do not read them */
 };
 
 static float *take(struct layout *l, size_t rows, size_t columns)
@@ -20,6 +23,8 @@ static float *take(struct layout *l, size_t rows, size_t columns)
 	size_t count;
 	float *at = l->slab ? l->slab + l->used : NULL;
 
+	if (l->hash)
+		*l->hash = hash64(at, rows * columns * sizeof *at, *l->hash);
 	if (mem_size(rows, columns, &count) || (count = (count + 15) / 16 * 16) > limit - l->used) {
 		l->bad = -1;
 		return NULL;
@@ -81,6 +86,15 @@ int bert_alloc(struct bert *b, struct err *e)
 	place.slab = b->slab;
 	lay_out(b, &place);
 	return 0;
+}
+
+uint64_t bert_hash(const struct bert *b, uint64_t seed)
+{
+	struct bert same = *b; /* its arrays are handed out again, where they are */
+	struct layout l = {.slab = b->slab, .hash = &seed};
+
+	lay_out(&same, &l);
+	return seed;
 }
 
 void bert_free(struct bert *b)

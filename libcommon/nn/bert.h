@@ -51,6 +51,9 @@ struct bert {
 int bert_alloc(struct bert *b, struct err *e);
 void bert_free(struct bert *b);
 
+/* A hash of all weights, from `seed`. */
+uint64_t bert_hash(const struct bert *b, uint64_t seed);
+
 /* Floats of scratch that a forward pass over `rows` tokens in sequences of at most `longest` needs; -1 when
  * their number does not fit. */
 int bert_scratch(const struct bert *b, size_t rows, size_t longest, size_t *floats);

@@ -38,6 +38,13 @@ int32_t vocab_find(const struct vocab *v, const char *token, size_t len)
 	return found ? v->entries[found - 1].id : -1;
 }
 
+/* Every entry in its place; the table has room for them, and is empty. */
+static void fill_table(struct vocab *v)
+{
+	for (size_t i = 0; i < v->n; i++)
+		v->table[find_slot(v, v->entries[i].token, strlen(v->entries[i].token))] = (uint32_t)i + 1;
+}
+
 /* Twice the slots (at least 1024), everything in its new place. */
 static int grow_table(struct vocab *v, struct err *e)
 {
@@ -49,8 +56,7 @@ static int grow_table(struct vocab *v, struct err *e)
 	free(v->table);
 	v->table = table;
 	v->slots = slots;
-	for (size_t i = 0; i < v->n; i++)
-		table[find_slot(v, v->entries[i].token, strlen(v->entries[i].token))] = (uint32_t)i + 1;
+	fill_table(v);
 	return 0;
 }
 
@@ -73,8 +79,35 @@ int vocab_add(struct vocab *v, const char *token, int32_t id, struct err *e)
 	return 0;
 }
 
+static int by_id(const void *a, const void *b)
+{
+	const struct vocab_entry *x = a, *y = b;
+	int order = (x->id > y->id) - (x->id < y->id);
+
+	return order ? order : strcmp(x->token, y->token);
+}
+
+const char *vocab_token(const struct vocab *v, int32_t id)
+{
+	size_t low = 0, high = v->n - 1;
+
+	while (low < high) {
+		const size_t middle = low + (high - low) / 2;
+		if (v->entries[middle].id < id)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return v->entries[low].token;
+}
+
 const char *vocab_finish(struct vocab *v)
 {
+	if (v->n) {
+		qsort(v->entries, v->n, sizeof *v->entries, by_id);
+		memset(v->table, 0, v->slots * sizeof *v->table);
+		fill_table(v);
+	}
 	for (int i = 0; i < WORDPIECE_SPECIALS; i++) {
 		v->special[i] = vocab_find(v, special_tokens[i], strlen(special_tokens[i]));
 		if (v->special[i] < 0 && i >= WORDPIECE_UNK && i <= WORDPIECE_SEP)

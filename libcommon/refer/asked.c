@@ -5,6 +5,7 @@
 #include "refer/sight.h"
 #include "splat/render.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,6 +30,20 @@ static int alloc_answers(struct asked *a, size_t answers, size_t gaussians, stru
 	return a->responses && a->lifts ? 0 : -1;
 }
 
+/* Weights that are finite may still be so large that what is made of them is not. */
+static int check_finite(const float *responses, const struct asked_of *q, struct err *e)
+{
+	const size_t n = q->splats->n;
+
+	for (size_t i = 0; i < q->count; i++)
+		for (size_t k = 0; k < n; k++)
+			if (!isfinite(responses[i * n + k]))
+				return err_set(e, ERR_FORMAT,
+					"%s: the responses to ref '%s' are not finite: its weights are too large",
+					q->model_path, q->refs[q->which[i]]);
+	return 0;
+}
+
 static int ask_trained(struct asked *a, const struct respond_model *m, const struct asked_of *q,
 	int wants_calibration, struct err *e)
 {
@@ -38,7 +53,7 @@ static int ask_trained(struct asked *a, const struct respond_model *m, const str
 	for (size_t i = 0; i < q->count; i++)
 		a->answer[i] = i;
 	if (respond_all(m, q->offsets, q->words, q->which, q->count, a->responses, e) ||
-		render_pack(a->responses, q->splats->n, (int)q->count, e))
+		check_finite(a->responses, q, e) || render_pack(a->responses, q->splats->n, (int)q->count, e))
 		return -1;
 	return wants_calibration
 		       ? calibrate(q->splats, q->cameras, m->rows, a->responses, q->count, a->lifts, e)

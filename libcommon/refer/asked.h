@@ -25,6 +25,8 @@ struct asked_of {
 	const struct parser *parser;
 	const size_t *which; /* (count) the sentences */
 	size_t count;
+	char *const *refs; /* of each sentence, and the model's file: for messages */
+	const char *model_path;
 };
 
 struct asked {
@@ -35,7 +37,8 @@ struct asked {
 	double *sure;	  /* (count) in [0,1], or NULL: a trained model says so in each view (respond_mask) */
 };
 
-/* An answer for each sentence, calibrated or as trained. Returns 0, or -1 with *e set and nothing to free. */
+/* An answer for each sentence, calibrated or as trained. ERR_FORMAT where one is not finite. Returns 0, or -1
+ * with *e set and nothing to free. */
 int asked_trained(struct asked *a, const struct respond_model *m, const struct asked_of *q,
 	int wants_calibration, struct err *e);
 

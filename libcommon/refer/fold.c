@@ -38,7 +38,7 @@ static void layer_load(struct layer *l, const struct refer_layout *layout, enum 
 	memset(l->dbias, 0, sizeof l->dbias);
 }
 
-struct fold *fold_new(const struct refer_layout *l, enum refer_similarity similarity, int words,
+struct fold *fold_new(const struct refer_layout *l, enum refer_similarity similarity, int longest,
 	int sentences, struct err *e)
 {
 	struct fold *f = mem_zalloc(1, sizeof *f, "folded model", e);
@@ -47,14 +47,15 @@ struct fold *fold_new(const struct refer_layout *l, enum refer_similarity simila
 		return NULL;
 	f->layout = l;
 	f->similarity = similarity;
-	f->max_words = words;
-	f->max_sentences = sentences;
-	f->z_max = 2 * G + words;
+	f->z_max = 2 * G + longest;
 	f->score_scale = 1 / sqrt(D);
 	f->word_scale = is_projected(f) ? 1 : f->score_scale;
-	size_t n = (size_t)words, s = (size_t)sentences, z = (size_t)f->z_max;
+	const int is_normalised = is_projected(f) || similarity == REFER_COSINE;
+	size_t s = (size_t)sentences, n = s * (size_t)longest, z = (size_t)f->z_max;
 	size_t doubles = n * D * 9 + n * G + s * D * 3 + 2 * s * z * D + s * z;
-	f->out_size = 8 * n * G + 4 * n + 2 * (size_t)G * G + s * (2 * z * z + 2 * z + 1) + 32 * 1024;
+	f->out_size = 8 * n * G + 4 * n + 2 * (size_t)G * G + s * (2 * z + 1) + 32 * 1024;
+	if (is_normalised)
+		f->out_size += 2 * s * z * z;
 	f->first = mem_zalloc(s + 1, sizeof *f->first, "folded model", e);
 	f->w = mem_zalloc(doubles, sizeof(double), "folded model", e);
 	f->out = mem_zalloc(f->out_size, sizeof(float), "folded model", e);

@@ -15,8 +15,8 @@
 
 struct fold;
 
-/* Buffers for steps of at most `words` words in `sentences` sentences. NULL with *e set. */
-struct fold *fold_new(const struct refer_layout *l, enum refer_similarity similarity, int words,
+/* Buffers for steps of at most `sentences` sentences of at most `longest` words each. NULL with *e set. */
+struct fold *fold_new(const struct refer_layout *l, enum refer_similarity similarity, int longest,
 	int sentences, struct err *e);
 void fold_free(struct fold *f);
 

@@ -18,7 +18,6 @@ struct layer {
 struct fold {
 	const struct refer_layout *layout;
 	enum refer_similarity similarity;
-	int max_words, max_sentences;
 	int n, sentences, z_max;
 	int *first;
 	struct block_model *b;

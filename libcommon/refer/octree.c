@@ -8,10 +8,10 @@
 
 enum { CELLS = 1 << OCTREE_LEVELS };
 
-/* A point's place in the order of space, at the finest level. */
+/* A Gaussian's place in the order of space, at the finest level. */
 struct entry {
 	uint64_t code;
-	uint32_t point;
+	int32_t gaussian;
 };
 
 /* 20 bits, each followed by two zeros. */
@@ -42,7 +42,7 @@ static int by_code(const void *a, const void *b)
 	const struct entry *x = a, *y = b;
 
 	return x->code != y->code ? (x->code > y->code) - (x->code < y->code)
-				  : (x->point > y->point) - (x->point < y->point);
+				  : (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
 }
 
 /* Weighted moments of signatures. */
@@ -55,8 +55,8 @@ static struct moments moments_of(const struct octree_points *p, const struct ent
 	struct moments m = {0};
 
 	for (size_t i = 0; i < n; i++) {
-		const double w = p->weight[entries[i].point];
-		const float *s = p->signature + (size_t)entries[i].point * OCTREE_SIGNATURE;
+		const double w = p->weight[entries[i].gaussian];
+		const float *s = p->signature + (size_t)entries[i].gaussian * OCTREE_SIGNATURE;
 		m.weight += w;
 		for (int k = 0; k < OCTREE_SIGNATURE; k++) {
 			m.sum[k] += w * (double)s[k];
@@ -110,7 +110,7 @@ static int is_finest(const struct builder *b, const struct entry *entries, size_
 	float finest = INFINITY;
 
 	for (size_t i = 0; i < n; i++)
-		finest = fminf(finest, b->points->finest[entries[i].point]);
+		finest = fminf(finest, b->points->finest[entries[i].gaussian]);
 	return n == 1 || level == OCTREE_LEVELS || ldexp(b->tree->edge, -level) <= (double)finest;
 }
 
@@ -167,7 +167,7 @@ int octree_build(struct octree *t, const struct octree_points *p, double price, 
 	if (!entries)
 		return -1;
 	for (size_t i = 0; i < p->n; i++)
-		entries[i] = (struct entry){finest_code(t, p->means + 3 * (size_t)p->ids[i]), (uint32_t)i};
+		entries[i] = (struct entry){finest_code(t, p->means + 3 * (size_t)p->ids[i]), p->ids[i]};
 	qsort(entries, p->n, sizeof *entries, by_code);
 	struct builder b = {t, 0, p, price, e};
 	struct moments all;

@@ -20,14 +20,15 @@ struct octree {
 	int64_t *codes;	     /* (n) location codes, in the order of space (Morton) */
 };
 
-/* What decides where a point's cube is cut further. */
+/* The points: n of a scene's Gaussians, and what decides where a point's cube is cut further. All arrays but
+ * ids have a row for each Gaussian of the scene, whether it is a point or not. */
 struct octree_points {
 	size_t n;
 	const float *means;	/* (scene_gaussians,3) */
-	const int32_t *ids;	/* (n) which of them */
-	const float *finest;	/* (n) cubes no longer than this are not cut */
-	const double *weight;	/* (n) how much a point counts */
-	const float *signature; /* (n,OCTREE_SIGNATURE) */
+	const int32_t *ids;	/* (n) the Gaussians that are points */
+	const float *finest;	/* (scene_gaussians) cubes no longer than this are not cut */
+	const double *weight;	/* (scene_gaussians) how much a point counts */
+	const float *signature; /* (scene_gaussians,OCTREE_SIGNATURE) */
 };
 
 /* The leaves of least cost: the error of a leaf is the sum of weight |signature - mean|^2 over its points,

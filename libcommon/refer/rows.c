@@ -23,13 +23,21 @@ int rows_of_ids(struct rows *r, const int32_t *ids, size_t n, size_t gaussians, 
 	return 0;
 }
 
-int rows_of_leaves(
-	struct rows *r, const struct octree *t, const float *means, size_t gaussians, struct err *e)
+int rows_of_leaves(struct rows *r, const struct octree *t, const float *means, size_t gaussians,
+	const int32_t *ids, size_t n, struct err *e)
 {
-	if (!start(r, t->n, gaussians, e) && !octree_find(t, means, gaussians, r->of, e))
-		return 0;
-	rows_free(r);
-	return -1;
+	size_t next = 0;
+
+	if (start(r, t->n, gaussians, e) || octree_find(t, means, gaussians, r->of, e)) {
+		rows_free(r);
+		return -1;
+	}
+	for (size_t i = 0; ids && i < gaussians; i++)
+		if (next < n && (size_t)ids[next] == i)
+			next++;
+		else
+			r->of[i] = -1;
+	return 0;
 }
 
 void rows_free(struct rows *r)

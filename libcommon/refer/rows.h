@@ -1,5 +1,5 @@
 /* Rows: which referring feature serves each Gaussian of a scene. A row is of one Gaussian, or of all those in
- * a leaf of an octree. */
+ * a leaf of an octree that learn. */
 #ifndef REFER_ROWS_H
 #define REFER_ROWS_H
 
@@ -19,9 +19,10 @@ struct rows {
 /* A row for each of the Gaussians ids (n), rising. */
 int rows_of_ids(struct rows *r, const int32_t *ids, size_t n, size_t gaussians, struct err *e);
 
-/* A row for each leaf; means (gaussians,3). */
-int rows_of_leaves(
-	struct rows *r, const struct octree *t, const float *means, size_t gaussians, struct err *e);
+/* A row for each leaf, of those of the Gaussians ids (n) that lie in it; means (gaussians,3). ids
+ * NULL: of all that do. */
+int rows_of_leaves(struct rows *r, const struct octree *t, const float *means, size_t gaussians,
+	const int32_t *ids, size_t n, struct err *e);
 void rows_free(struct rows *r);
 
 /* position (n,3): the mean of each row's means (gaussians,3) scaled from the bounds to [-1,1], and cut there;

@@ -292,7 +292,7 @@ struct step *step_new(const struct step_setup *setup, struct err *e)
 	s->threads = omp_get_max_threads();
 	if (alloc_arrays(s, e) || alloc_sums(s, e) ||
 		words_init(&s->words, setup->layout, setup->sentences, setup->offsets, setup->words, e) ||
-		!(s->fold = fold_new(setup->layout, setup->similarity, s->max_words, setup->batch, e))) {
+		!(s->fold = fold_new(setup->layout, setup->similarity, longest, setup->batch, e))) {
 		step_free(s);
 		return NULL;
 	}

@@ -39,7 +39,7 @@ static int choose_rows(struct trainer *t, const struct trainer_source *from, con
 		return err_set(e, ERR_FORMAT, "no Gaussian has weight in a view with masks");
 	if (o->share > 0 && build_octree(t, from, o, weight, e))
 		return -1;
-	if (o->share > 0 ? rows_of_leaves(&t->rows, &t->octree, from->means, n, e)
+	if (o->share > 0 ? rows_of_leaves(&t->rows, &t->octree, from->means, n, t->ids, t->learning, e)
 			 : rows_of_ids(&t->rows, t->ids, t->learning, n, e))
 		return -1;
 	t->position = mem_alloc(t->rows.n, 3 * sizeof(float), "positions", e);

@@ -1,6 +1,7 @@
 #include "refer/warm.h"
 
 #include "base/mem.h"
+#include "base/names.h"
 #include "base/rng.h"
 #include "mask/bits.h"
 
@@ -19,21 +20,31 @@ static const double length = 8;
 
 /* numbers (sentences): sentence r is of the matched object numbers[r], or -1; lifted (matched): its number
  * among the lifted. */
-static void match(struct warm *w, const struct warm_source *from, long *numbers, size_t *lifted)
+static int match(struct warm *w, const struct warm_source *from, long *numbers, size_t *lifted, struct err *e)
 {
-	for (size_t r = 0; r < from->sentences; r++) {
-		size_t o = 0, k = 0;
-		while (o < from->lifted->objects && strcmp(from->names[r], from->lifted->names[o]))
-			o++;
-		numbers[r] = -1;
-		if (o == from->lifted->objects)
-			continue;
-		while (k < w->objects && lifted[k] != o)
-			k++;
-		if (k == w->objects)
-			lifted[w->objects++] = o;
-		numbers[r] = (long)k;
+	const size_t objects = from->lifted->objects;
+	size_t *number =
+		mem_zalloc(objects, sizeof *number, "warm start", e); /* + 1; 0: not matched so far */
+	struct names names = {0};
+
+	if (!number || names_make(&names, from->lifted->names, sizeof(char *), 0, objects, e)) {
+		free(number);
+		return -1;
 	}
+	for (size_t r = 0; r < from->sentences; r++) {
+		const size_t o = names_find(&names, from->names[r]);
+		numbers[r] = -1;
+		if (o == NAMES_NONE)
+			continue;
+		if (!number[o]) {
+			lifted[w->objects++] = o;
+			number[o] = w->objects;
+		}
+		numbers[r] = (long)number[o] - 1;
+	}
+	names_free(&names);
+	free(number);
+	return 0;
 }
 
 /* share (rows) of an object; sum (rows). */
@@ -156,10 +167,8 @@ int warm_init(struct warm *w, const struct warm_source *from, size_t negatives, 
 	int bad = !numbers || !lifted;
 
 	*w = (struct warm){0};
-	if (!bad)
-		match(w, from, numbers, lifted);
-	bad = bad || make_shares(w, from, lifted, e) || make_pixels(w, rows, e) ||
-	      make_masks(w, from, rows, numbers, e) ||
+	bad = bad || match(w, from, numbers, lifted, e) || make_shares(w, from, lifted, e) ||
+	      make_pixels(w, rows, e) || make_masks(w, from, rows, numbers, e) ||
 	      train_order_init(&w->order, &w->view, 1, WARM_BATCH, from->sentences, negatives, seed, e);
 	free(numbers);
 	free(lifted);

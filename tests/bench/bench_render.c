@@ -245,10 +245,12 @@ static void measure_scene(const char *dir, const char *name, const struct option
 
 	if (scene_read(&scene, dir, &e))
 		fail(e.message);
-	const struct camera *view = cameras_find(&scene.cameras, name);
-	if (!view)
+	size_t v = 0;
+	while (v < scene.cameras.n && strcmp(scene.cameras.views[v].name, name) != 0)
+		v++;
+	if (v == scene.cameras.n)
 		fail("no such view");
-	measure_sizes(&scene.splats, view, o);
+	measure_sizes(&scene.splats, &scene.cameras.views[v], o);
 	scene_free(&scene);
 }
 

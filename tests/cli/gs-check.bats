@@ -13,7 +13,7 @@ setup() {
 
 @test "a line for each file, in the order given" {
 	says 0 "sentences.jsonl: ok: sentences, 1 training sentences, 0 test sentences, 1 objects
-scene: ok: scene, 4x3, 1 gaussians, 1 harmonics, 1 training views, 0 test views
+scene: ok: scene, 4x3, 1 gaussians, 1 harmonics, 1 training views, 0 test views, scene ef6eb604187a17fa
 masks.jsonl: ok: masks, 3x2, 1 masks, 1 views, 1 objects
 foreign.safetensors: ok: safetensors, 1 tensors
 	weight BF16[2,1]" "$BIN/gs-check" sentences.jsonl scene masks.jsonl foreign.safetensors
@@ -42,7 +42,7 @@ foreign.safetensors: ok: safetensors, 1 tensors
 	"$BIN/gs-check" --json sentences.jsonl scene foreign.safetensors >out
 	cat >expected <<-'END'
 		{"file":"sentences.jsonl","ok":true,"kind":"sentences","training_sentences":1,"test_sentences":0,"objects":1}
-		{"file":"scene","ok":true,"kind":"scene","width":4,"height":3,"gaussians":1,"harmonics":1,"training_views":1,"test_views":0}
+		{"file":"scene","ok":true,"kind":"scene","width":4,"height":3,"gaussians":1,"harmonics":1,"training_views":1,"test_views":0,"scene":"ef6eb604187a17fa"}
 		{"file":"foreign.safetensors","ok":true,"kind":"safetensors","tensors":1,"list":[{"name":"weight","dtype":"BF16","shape":[2,1]}]}
 	END
 	diff expected out
@@ -94,7 +94,7 @@ says_in() {
 	echo '{"view":"v2","object":"pot","segmentation":{"size":[3,3],"counts":[9]}}' >>masks.jsonl
 	says 0 "masks.jsonl: ok: masks, 2 masks, 2 views, 2 objects" "$BIN/gs-check" masks.jsonl
 	printf '[%s,%s]' "$(view)" "$(view name='"v2"' width=8 split='"test"')" >scene/cameras.json
-	says 0 "scene: ok: scene, 1 gaussians, 1 harmonics, 1 training views, 1 test views" "$BIN/gs-check" scene
+	says 0 "scene: ok: scene, 1 gaussians, 1 harmonics, 1 training views, 1 test views, scene ef6eb604187a17fa" "$BIN/gs-check" scene
 }
 
 @test "a folder of another kind" {

@@ -180,6 +180,43 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 	[ "$(wc -l <err)" = 7 ]
 }
 
+@test "photographs whose names no view can have: escaped, and nothing is written outside the output" {
+	for name in .. ../.. a/.. "$(printf 'caf\xe9')" "$(printf 'b\t1.png')" x,y.jpg; do
+		printf '1 1 0 0 0 0 0 2 1 %s\n\n' "$name" >model/images.txt
+		rm -rf in && mkdir in
+		"$BIN/gs-import" --cameras model -o in/scene s.ply
+		"$BIN/gs-weigh" -q -o in/weights in/scene
+		"$BIN/gs-check" in/scene in/weights/*.safetensors >>checked
+		[ "$(ls -A in | tr '\n' ' ')" = "scene weights " ]
+		jq -r '.[].name' in/scene/cameras.json >>named
+	done
+	[ "$(tr '\n' ' ' <named)" = '%2E%2E %2E%2E %2E%2E caf%E9 b%091 x%2Cy ' ]
+}
+
+@test "photographs in folders: short names where they differ, paths where not, whichever order they come in" {
+	{
+		printf '%s 1 0 0 0 0 0 2 1 %s\n\n' 1 images/0001.jpg 2 cam1/0002.png 3 cam2/0002.png 4 x/a_b.jpg 5 x_a/b.jpg \
+			6 y/a_b.jpg 7 y/b.jpg
+	} >model/images.txt
+	names='["0001"]["cam1_0002"]["cam2_0002"]["x%2Fa_b.jpg"]["x_a%2Fb.jpg"]["y_a_b"]["y_b"]'
+	"$BIN/gs-import" --cameras model -o scene s.ply
+	[ "$(imported name | tr -d '\n')" = "$names" ]
+	grep . model/images.txt | tac | sed 's/$/\n/' >turned && mv turned model/images.txt
+	rm -r scene
+	"$BIN/gs-import" --cameras model -o scene s.ply
+	[ "$(imported name | tr -d '\n')" = "$names" ]
+}
+
+@test "a photograph whose path is not UTF-8 is not named" {
+	name=$(printf 'caf\xe9.jpg')
+	mkdir photos && : >"photos/$name" && : >photos/a.jpg
+	printf '1 1 0 0 0 0 0 2 1 %s\n\n2 1 0 0 0 0 0 2 1 a.jpg\n' "$name" >model/images.txt
+	"$BIN/gs-import" --cameras model --images photos -o scene s.ply 2>err
+	[ "$(cat err)" = "gs-import: warning: photos: no photograph for 1 of 2 views" ]
+	[ "$(imported image | tr -d '\n')" = '["../photos/a.jpg"][null]' ]
+	iconv -f utf-8 -t utf-8 scene/cameras.json >/dev/null
+}
+
 @test "no Gaussians at all" {
 	ply_header 0 >s.ply
 	"$BIN/gs-import" --cameras model -o scene s.ply
@@ -197,9 +234,9 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 @test "the camera file is not overwritten by the scene's" {
 	printf '[%s]' "$(camera3dgs)" >cameras.json
 	cp cameras.json before
-	says 2 "gs-import: -o: ./cameras.json is the camera file that is read
+	says 2 "gs-import: -o . would overwrite --cameras ./cameras.json
 Try 'gs-import --help'." "$BIN/gs-import" -o . s.ply
-	says 2 "gs-import: -o: ../$(basename "$PWD")/cameras.json is the camera file that is read
+	says 2 "gs-import: -o ../$(basename "$PWD") would overwrite --cameras ./cameras.json
 Try 'gs-import --help'." "$BIN/gs-import" -o "../$(basename "$PWD")" s.ply
 	cmp before cameras.json
 	[ ! -e splats.safetensors ]

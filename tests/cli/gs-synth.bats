@@ -91,8 +91,37 @@ interrupted() {
 	[ -z "$(find . -name '*.tmp.*')" ]
 }
 
+@test "a file that grows over its limit: exit 4, and nothing is left of it" {
+	status=0
+	(ulimit -f 64; "$BIN/gs-synth" -o out >printed 2>&1) || status=$?
+	[ $status = 4 ]
+	[ "$(cat printed)" = "gs-synth: out/point_cloud.ply: File too large" ]
+	[ -z "$(find out -type f)" ]
+}
+
+@test "what a killed run left is removed by the next that writes the same" {
+	# The first is killed amid its work, the second goes on all the while.
+	for run in first second; do
+		"$BIN/gs-synth" --views 25 --size 400x300 --gaussians 1000 --objects 2 -o out >printed 2>&1 &
+		pids+=($!)
+		for ((i = 0; i < 1000; i++)); do
+			[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = $((3 * ${#pids[@]})) ] && break
+			sleep 0.01
+		done
+		[ $i -lt 1000 ]
+	done
+	kill -KILL ${pids[0]}
+	wait ${pids[0]} || true
+	small -o out
+	# Those of the second, which is alive, are still there.
+	[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = 3 ]
+	wait ${pids[1]}
+	[ -z "$(find . -name '*.tmp.*')" ]
+}
+
 @test "a signal leaves no temporary file, and its own exit status" {
-	for signal in HUP INT TERM; do
+	ulimit -c 0
+	for signal in HUP INT TERM PIPE QUIT XCPU ABRT SEGV USR1; do
 		interrupted $signal --default-signal
 		[ $status = $((128 + $(kill -l $signal))) ]
 		[ ! -e out/truth.jsonl ]

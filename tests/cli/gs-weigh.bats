@@ -90,7 +90,7 @@ v3.safetensors" ]
 	[ "$(tensor weights/v1.safetensors weight u1)" = "195 252 195" ]
 	[ "$(tensor weights/v1.safetensors dropped f4)" = "0 0 0" ]
 	[ "$(meta weights/v1.safetensors options)" = "--scale 1 --tolerance 0 --precision u8" ]
-	says 0 "weights/v1.safetensors: ok: refer.weights, u8, 3x1, 3 weights, 1 gaussians of the scene" \
+	says 0 "weights/v1.safetensors: ok: refer.weights, u8, 3x1, 3 weights, 1 gaussians of the scene, scene ef6eb604187a17fa, camera 235f55ec169d8d85" \
 		"$BIN/gs-check" weights/v1.safetensors
 }
 
@@ -147,7 +147,7 @@ two_layers() {
 	while (((8 + ${#header}) % 4)); do header+=' '; done
 	st scene/splats.safetensors "$header"
 	"$BIN/gs-weigh" -o weights scene
-	says 0 "weights/v1.safetensors: ok: refer.weights, f32, 4x3, 0 weights, 0 gaussians of the scene" \
+	says 0 "weights/v1.safetensors: ok: refer.weights, f32, 4x3, 0 weights, 0 gaussians of the scene, scene ef46db3751d8e999, camera 94cadf8ef19b53e7" \
 		"$BIN/gs-check" weights/v1.safetensors
 }
 

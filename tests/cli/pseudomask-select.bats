@@ -233,6 +233,17 @@ truth_of() { jq -c "select(.view == \"$1\") | .score = 0.9" "$BATS_FILE_TMPDIR/t
 	"$BIN/miou-score" --truth synth/truth.jsonl --predicted-views --fail-under 0.7 others.jsonl
 }
 
+@test "first and scene: how much of a whole object is in sight is said of no mask of another view" {
+	truth_of view_000 | jq -c '.visible = 0.5' >some.jsonl
+	first -o carried.jsonl some.jsonl
+	jq -s -e 'length > 8 and all(has("visible") | not)' carried.jsonl
+	"$BIN/pseudomask-select" --scene synth/scene --weights synth/weights -o grown.jsonl some.jsonl
+	jq -s -e 'length > 8 and all(has("visible") | not)' grown.jsonl
+	# a candidate that is only picked keeps it
+	"$BIN/pseudomask-select" -o picked.jsonl some.jsonl
+	jq -s -e 'length == 8 and all(.visible == 0.5)' picked.jsonl
+}
+
 @test "first: the order of the scene decides, not that of the file; test views and weak candidates do not" {
 	{ truth_of view_004; truth_of view_003; truth_of view_001; } | of 1 |
 		jq -c '.score = if .view == "view_001" then 0.3 else 0.8 end' > late.jsonl
@@ -333,7 +344,7 @@ truth_of() { jq -c "select(.view == \"$1\") | .score = 0.9" "$BATS_FILE_TMPDIR/t
 	refuses 3 "../other.jsonl:9: key 'view': the scene has no view 'view_999'" ../other.jsonl
 	"$BIN/gs-synth" -q --gaussians 3001 --views 6 --size 96x72 -o ../other
 	"$BIN/gs-import" -q --images ../other/images --test-views view_004 -o ../other/scene ../other/point_cloud.ply
-	refuses 3 "synth/weights/view_000.safetensors: is of a scene of 3000 Gaussians, this one has 3001" --scene ../other/scene ../true.jsonl
+	refuses 3 "synth/weights/view_000.safetensors: is of a scene of 3000 Gaussians, ../other/scene has 3001" --scene ../other/scene ../true.jsonl
 	mkdir ../cut
 	head -c 5000 synth/weights/view_000.safetensors > ../cut/view_000.safetensors
 	run first --weights ../cut -o out ../true.jsonl

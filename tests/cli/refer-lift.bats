@@ -55,6 +55,13 @@ refuses() {
 # Fails where the command succeeds; a plain ! would let the test go on.
 not() { ! "$@"; }
 
+@test "the option that changes the model is recorded in it" {
+	lift -o model
+	[ "$(meta model options)" = "--names sentences" ]
+	lift --names masks -o model
+	[ "$(meta model options)" = "--names masks" ]
+}
+
 @test "objects and training sentences, and nothing printed" {
 	lift -o model >printed 2>&1
 	[ ! -s printed ]
@@ -140,8 +147,8 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 
 @test "no masks: an empty model, and a warning for each object" {
 	[ "$(lift --masks /dev/null -o model 2>&1 | grep -c "has no mask in a training view")" = 3 ]
-	says 0 "model: ok: refer.lifted, 0 objects, 0 shares, 0 sentences, 0 words, 24 columns, 2000 gaussians of the scene" \
-		"$BIN/gs-check" model
+	says 0 "model: ok: refer.lifted, 0 objects, 0 shares, 0 sentences, 0 words, 24 columns, 2000 gaussians of the scene, scene $(
+		meta scene/splats.safetensors scene), encoder $(meta text.safetensors encoder)" "$BIN/gs-check" model
 }
 
 @test "views without weights do not count, nor test views" {

@@ -198,6 +198,17 @@ png/$test_view/yellow-bowl-1.png " ]
 	[ "$(ls png)" = "$test_view" ]
 }
 
+@test "a view that is called .. is refused, and nothing is written outside the folder of pictures" {
+	mkdir in
+	for name in .. . a/b ''; do
+		jq -c --arg name "$name" '.[0].name = $name' "$made/scene/cameras.json" >scene/cameras.json
+		run render --split all --png in/png --overlay in/overlay -o in/pred.jsonl
+		[ "$status" = 3 ]
+		[[ $output == "refer-render: scene/cameras.json: view 0: key 'name' "* ]]
+		[ -z "$(ls -A in)" ]
+	done
+}
+
 @test "--size and --scale are the sizes of records and pictures" {
 	size() { rm -rf png; render --refs silent --png png "$@" | jq -c .segmentation.size; picture png/$test_view/silent.png; }
 	[ "$(size --size 20x10)" = "[10,20]
@@ -339,6 +350,16 @@ Try 'refer-render --help'." ask --without words,word
 		jq -e '.objects["brown box"].miou > 0.2'
 }
 
+@test "as many pictures at a time as there are threads" {
+	lifted
+	# All views are rendered side by side only where there are as many as threads.
+	jq -c '[.[0] as $v | range(128) | . as $i | $v | .name = "v\($i)"]' "$made/scene/cameras.json" >scene/cameras.json
+	ask --threads 64 --split all --png 64/png --response 64/response --overlay 64/overlay -o 64.jsonl
+	ask --threads 1 --split all --png 1/png --response 1/response --overlay 1/overlay -o 1.jsonl
+	cmp 1.jsonl 64.jsonl
+	diff -r 1 64
+}
+
 @test "lifted models, too: --threads 1, 2 and 3 give the same bytes" {
 	lifted
 	for n in 1 2 3; do
@@ -379,4 +400,25 @@ Try 'refer-render --help'." ask --without words,word
 @test "-v ends with time and memory" {
 	render -v -o pred.jsonl 2>err
 	tail -n 1 err | grep -qE '^refer-render: [0-9.]+ s, peak memory [0-9.]+ MiB$'
+}
+
+@test "weights that are finite but so large that responses are not: the model and the sentence are named" {
+	local length begin
+	"$BIN/refer-train" -q --scene "$made/scene" --weights "$made/weights" --text "$made/text.safetensors" \
+		--masks "$made/masks.jsonl" --iterations 2 --precision f32 -o huge
+	length=$(od -An -t d8 -N 8 huge | tr -d ' ')
+	begin=$(head -c $((8 + length)) huge | tail -c +9 | jq '.["feature.2.weight"].data_offsets[0]')
+	for ((i = 0; i < 64 * 128; i++)); do printf '\xff\xff\x7f\x7f'; done | # the largest float
+		dd of=huge bs=1 seek=$((8 + length + begin)) conv=notrunc 2>/dev/null
+	LC_ALL=C sed -i 's/crc32.feature.2.weight/crc3_.feature.2.weight/' huge
+	"$BIN/gs-check" huge
+	mkdir out
+	for tool in refer-render refer-locate; do
+		status=0
+		"$BIN/$tool" --scene "$made/scene" --text "$made/text.safetensors" --model huge -o out/x 2>line || status=$?
+		[ $status = 3 ]
+		grep -qE "^$tool: huge: the responses to ref '[^']+' are not finite: its weights are too large$" line
+		[ "$(wc -l <line)" = 1 ]
+		[ -z "$(ls -A out)" ]
+	done
 }

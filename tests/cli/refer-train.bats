@@ -92,7 +92,6 @@ load refer-train
 	cmp whole part
 	cmp log part.log
 	[ ! -e part.checkpoint ]
-	rm -f part.checkpoint.tmp.* # of a checkpoint that the kill met
 	[ "$(ls | tr '\n' ' ')" = "err log masks.jsonl part part.log scene text.safetensors weights whole " ]
 }
 
@@ -245,7 +244,7 @@ cut_short() {
 	"$BIN/gs-synth" -q --objects 2 --views 5 --size 64x48 --gaussians 1001 -o other
 	"$BIN/gs-import" -q --images other/images -o other/scene other/point_cloud.ply
 	"$BIN/gs-weigh" -q -o other/weights other/scene
-	refuses 3 "other/weights/view_000.safetensors: is of a scene of 1001 Gaussians, this one has 1000" --weights other/weights
+	refuses 3 "other/weights/view_000.safetensors: is of a scene of 1001 Gaussians, scene has 1000" --weights other/weights
 }
 
 @test "masks that match no sentence" {
@@ -367,9 +366,8 @@ cut_short() {
 	try=$'\n'"Try 'refer-train --help'."
 	says 2 "refer-train: --scene, --weights, --text and --masks are required$try" "$BIN/refer-train" -o m
 	says 2 "refer-train: -o MODEL is required$try" train
-	only="refer-train: only one of --text, --masks and --init can be stdin$try"
-	says 2 "$only" train --text - --masks - -o m
-	says 2 "$only" train --init - --masks - -o m
+	says 2 "refer-train: --text and --masks cannot both be stdin$try" train --text - --masks - -o m
+	says 2 "refer-train: --masks and --init cannot both be stdin$try" train --init - --masks - -o m
 	says 2 "refer-train: --init-iterations needs --init$try" train --init-iterations 5 -o m
 	says 2 "refer-train: --patience needs --hold-out$try" train --patience 5 -o m
 	says 2 "refer-train: --hold-out: '0.95' is not a number from 0 to 0.9$try" train --hold-out 0.95 -o m
@@ -377,7 +375,7 @@ cut_short() {
 	says 2 "refer-train: --similarity cosine does not go with --interaction pcmi-proj$try" \
 		train --similarity cosine --interaction pcmi-proj -o m
 	says 2 "refer-train: --resume needs a file to write to: there is no checkpoint of stdout$try" train --resume -o -
-	says 2 "refer-train: --log and --output cannot both be stdout$try" train --log - -o -
+	says 2 "refer-train: -o and --log cannot both be stdout$try" train --log - -o -
 	says 2 "refer-train: --iterations: '0' is not a whole number from 1 to 100000000$try" train --iterations 0 -o m
 	says 2 "refer-train: --batch: '65' is not a whole number from 1 to 64$try" train --batch 65 -o m
 	for width in 0 33 1.5; do
@@ -388,4 +386,41 @@ cut_short() {
 	says 2 "refer-train: --interaction: 'all' is not one of none|attention|attention+fp|add|pcmi|pcmi-proj$try" \
 		train --interaction all -o m
 	[ ! -e m ]
+}
+
+@test "a training that diverges says so, and writes no model and no checkpoint of it" {
+	mkdir out
+	# rates far too high: the loss is not finite, or stays far above that of no answer
+	status=0
+	train --iterations 250 --mlp-rate 10 --feature-rate 10 --interaction none --checkpoint 100 -o out/m 2>line || status=$?
+	[ $status = 1 ]
+	[ "$(wc -l <line)" = 1 ]
+	grep -qE '^refer-train: out/m: training diverged after step [0-9]+: .*; lower rates may help$' line
+	[ -z "$(ls -A out)" ]
+}
+
+@test "trainings that end well are no false alarm, however short" {
+	for interaction in none pcmi pcmi-proj; do
+		train --iterations 1 --interaction $interaction -o m
+		train --iterations 120 --interaction $interaction -o m
+	done
+	train --iterations 210 --interaction none --feature-rate 0.1 -o m
+}
+
+@test "Gaussians that --tolerance leaves out stay out where features are shared, and the model says which" {
+	# learns OPTION...: as many bits of the model's tensor 'learning' as Gaussians learn
+	learns() {
+		local n begin end bits
+		train -v -o m "$@" 2>said
+		read -r begin end < <(head -c $((8 + $(od -An -t d8 -N 8 m))) m | tail -c +9 | jq -r '.learning.data_offsets | @tsv')
+		[ $((end - begin)) = 125 ]
+		n=$(od -An -t d8 -N 8 m)
+		bits=$(tail -c +$((9 + n + begin)) m | head -c 125 | xxd -b -c 1 | awk '{ n += gsub(1, "", $2) } END { print n }')
+		grep -q "refer-train: $bits of 1000 Gaussians share" said
+		echo "$bits"
+	}
+	all=$(learns)
+	some=$(learns --tolerance 0.2)
+	[ "$some" -gt 0 ]
+	[ $((2 * some)) -lt "$all" ]
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bats
-# What formats/jsonl.md says of every file of records. The keys have tests of their own: sentences.bats and masks.bats.
+# What formats/jsonl.md says of every file of records. The keys have tests of their own: sentences.bats, masks.bats and
+# boxes.bats. The limit of a line is in many.bats.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -115,9 +115,16 @@ refuses() {
 	refuses "metadata 'names' is not a JSON list" names=
 	refuses "metadata 'names' has 1 entries for 2 objects" names='[\"cup\"]'
 	refuses "metadata 'names': 'cup' appears twice" names='[\"cup\",\"cup\"]'
+	refuses "metadata 'names': entry 0 is empty" names='[\"\",\"cup\"]'
+	refuses "metadata 'names': entry 1 has a control character at byte 1" names='[\"cup\",\"\\n\"]'
 	refuses "metadata 'texts' is not a JSON list" texts='{}'
 	refuses "metadata 'texts' has 3 entries for 2 sentences" texts='[\"a\",\"b\",\"c\"]'
 	refuses "metadata 'texts': entry 1 is not a UTF-8 string" texts='[\"a\",2]'
 	refuses "metadata 'pieces' is not a JSON list" pieces=
 	refuses "metadata 'pieces': entry 0 has 1 pieces for 2 words" pieces='[\"redcup\",\"\"]'
+	for blanks in 'red  cup' ' red cup' 'red cup '; do
+		refuses "metadata 'pieces': entry 0 does not have one space between pieces, and none around" \
+			pieces="[\\\"$blanks\\\",\\\"\\\"]"
+	done
+	refuses "metadata 'pieces': entry 1 does not have one space between pieces, and none around" pieces='[\"red cup\",\" \"]'
 }

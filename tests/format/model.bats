@@ -146,6 +146,12 @@ leaves() {
 	says 1 "m: tensor 'leaves': item 1 $reason" "$BIN/gs-check" m
 	leaves 08 41 --
 	says 1 "m: tensor 'leaves': item 1 $reason" "$BIN/gs-check" m
+	leaves 01 -- "learning=[1]" learning_type=U8 learning_item=0:05
+	says 0 "m: ok: refer.model, f32, 1 features, 16 columns, 3 gaussians of the scene, 176224 parameters" "$BIN/gs-check" m
+	leaves 01 -- "learning=[1]" learning_type=U8 learning_item=0:0d
+	says 1 "m: tensor 'learning': bit 3 is set, of 3 Gaussians" "$BIN/gs-check" m
+	leaves 01 -- "learning=[2]" learning_type=U8
+	says 1 "m: tensor 'learning': is U8[2], expected U8[1]" "$BIN/gs-check" m
 	leaves 01 -- leaves_type=F64
 	says 1 "m: tensor 'leaves': is F64[1], expected I64[*]" "$BIN/gs-check" m
 	leaves 01 -- features='[2,16]'

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/ply.md and formats/plyfile.md broken once. Binary layouts, cuts at every byte, what is left out and
+# Each rule of formats/ply.md, of the container as of its contents, broken once. Binary layouts, cuts at every byte, what is left out and
 # recentring are in tests/unit/test_ply.c.
 
 setup() {
@@ -30,7 +30,7 @@ header() {
 @test "the smallest scene" {
 	splats_ply s.ply
 	import s.ply
-	says 0 "scene: ok: scene, 40x30, 2 gaussians, 1 harmonics, 3 training views, 0 test views" "$BIN/gs-check" scene
+	says 0 "scene: ok: scene, 40x30, 2 gaussians, 1 harmonics, 3 training views, 0 test views, scene 27a5296455df5ef9" "$BIN/gs-check" scene
 }
 
 @test "not a PLY file" {

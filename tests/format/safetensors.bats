@@ -79,6 +79,9 @@ not() { ! "$@"; }
 	refuses 'header is not JSON at offset 13' '{"a":1'
 	refuses 'header has something after its JSON at offset 10' '{}x'
 	refuses 'header has something after its JSON at offset 11' '{} {}'
+	mkdir scene # gs-check takes only what begins with { for safetensors
+	st scene/splats.safetensors '[]'
+	says 3 'gs-weigh: scene/splats.safetensors: header at offset 8 is not a JSON object' "$BIN/gs-weigh" -o weights scene
 }
 
 @test "metadata" {

@@ -34,8 +34,8 @@ bad_list() {
 not() { ! "$@"; }
 
 @test "the smallest scene is fine, and its parts are" {
-	says 0 "scene: ok: scene, 4x3, 1 gaussians, 1 harmonics, 1 training views, 0 test views" "$BIN/gs-check" scene
-	says 0 "scene/splats.safetensors: ok: refer.splats, 1 gaussians, 1 harmonics" "$BIN/gs-check" scene/splats.safetensors
+	says 0 "scene: ok: scene, 4x3, 1 gaussians, 1 harmonics, 1 training views, 0 test views, scene ef6eb604187a17fa" "$BIN/gs-check" scene
+	says 0 "scene/splats.safetensors: ok: refer.splats, 1 gaussians, 1 harmonics, scene ef6eb604187a17fa" "$BIN/gs-check" scene/splats.safetensors
 	says 0 "scene/cameras.json: ok: scene cameras, 4x3, 1 training views, 0 test views" "$BIN/gs-check" scene/cameras.json
 }
 
@@ -104,13 +104,30 @@ not() { ! "$@"; }
 		bad_view "key '$key' is not a number" $key=
 		bad_view "key '$key' is not a number" $key='"4"'
 	done
-	for name in '' 1 '""' '"a/b"'; do
-		bad_view "key 'name' is not a name without slashes" name="$name"
+	for name in '' 1 null; do
+		bad_view "key 'name' is not a string" name="$name"
 	done
 	for split in '' '"x"' 1; do
 		bad_view 'key '\''split'\'' is not "train" or "test"' split="$split"
 	done
 	bad_view "key 'image' is not a string" image=1
+}
+
+@test "names that no file can have" {
+	bad_view "key 'name' is empty" name='""'
+	bad_view "key 'name' has a slash" name='"a/b"'
+	for name in . ..; do
+		bad_view "key 'name' is '.' or '..'" name="\"$name\""
+	done
+	bad_view "key 'name' has a control character at byte 2" name='"a\n"'
+	bad_view "key 'name' has a control character at byte 3" name='"é\u0085"'
+	bad_view "key 'name' is not UTF-8 at byte 1" name="$(printf '"\xff"')"
+	printf '[%s]' "$(view name='"a\u0000b"')" >scene/cameras.json
+	says 1 'scene/cameras.json: a NUL character (\u0000) in a string' "$BIN/gs-check" scene
+	for name in ... '杯 1' 50% '-a' 'a\\b'; do
+		printf '[%s]' "$(view name="\"$name\"")" >scene/cameras.json
+		"$BIN/gs-check" scene
+	done
 }
 
 @test "numbers of a view out of range" {

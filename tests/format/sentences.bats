@@ -21,7 +21,7 @@ refuses() {
 	printf '%s\n' '{"ref":"a","object":"o","text":"t","split":"test","views":["v1","v2"],"more":[1]}' ' ' \
 		'{"ref":"b","object":"o","text":"","split":null,"views":null}' '{"ref":"c","object":"é","text":"\u00e9","views":[]}' >x
 	"$BIN/text-encode" --model "$MODEL" -o out x
-	says 0 'out: ok: refer.text, 3 sentences, 2 words, 24 columns' "$BIN/gs-check" out
+	says 0 'out: ok: refer.text, 3 sentences, 2 words, 24 columns, encoder 6c0c28a4bc757d74' "$BIN/gs-check" out
 }
 
 @test "lines that are not objects" {
@@ -47,6 +47,13 @@ refuses() {
 	refuses "3: key 'object' is empty" '{"ref":"a","object":"","text":"t"}'
 }
 
+@test "refs and objects: any text but control characters" {
+	refuses "3: key 'ref' has a control character at byte 2" '{"ref":"a\nb","object":"o","text":"t"}'
+	refuses "3: key 'object' has a control character at byte 1" '{"ref":"a","object":"\u007f","text":"t"}'
+	refuses "3: key 'object' is not UTF-8 at byte 3" "$(printf '{"ref":"a","object":"ab\xff","text":"t"}')"
+	echo '{"ref":"../a b%","object":"..","text":"t"}' | "$BIN/text-encode" --model "$MODEL" -o out
+}
+
 @test "UTF-8" {
 	for bytes in '\xff' '\xc3' '\xc0\x80' '\xed\xa0\x80' '\xf4\x90\x80\x80' '\x80'; do
 		refuses "3: key 'text' is not UTF-8 at byte 2" "$(printf "{\"ref\":\"a\",\"object\":\"o\",\"text\":\"a$bytes\"}")"
@@ -58,7 +65,9 @@ refuses() {
 	refuses "3: key 'split' is 'val', not 'train' or 'test'" '{"ref":"a","object":"o","text":"t","split":"val"}'
 	refuses "3: key 'views' is not a list" '{"ref":"a","object":"o","text":"t","views":"v"}'
 	refuses "3: key 'views' holds something other than strings" '{"ref":"a","object":"o","text":"t","views":["v",1]}'
-	refuses "3: key 'views' is empty" '{"ref":"a","object":"o","text":"t","views":[""]}'
+	refuses "3: key 'views': item '' is empty" '{"ref":"a","object":"o","text":"t","views":[""]}'
+	refuses "3: key 'views': item 'a/b' has a slash" '{"ref":"a","object":"o","text":"t","views":["v","a/b"]}'
+	refuses "3: key 'views': item '..' is '.' or '..'" '{"ref":"a","object":"o","text":"t","views":[".."]}'
 }
 
 @test "several objects, one, or none, the view it is said of and its kind" {
@@ -81,7 +90,7 @@ refuses() {
 @test "objects, view and kind" {
 	refuses "3: key 'objects' is not a list" '{"ref":"a","objects":"o","text":"t"}'
 	refuses "3: key 'objects' holds something other than strings" '{"ref":"a","objects":[1],"text":"t"}'
-	refuses "3: key 'objects' is empty" '{"ref":"a","objects":[""],"text":"t"}'
+	refuses "3: key 'objects': item '' is empty" '{"ref":"a","objects":[""],"text":"t"}'
 	refuses "3: key 'objects' names 'o' twice" '{"ref":"a","objects":["o","p","o"],"text":"t"}'
 	refuses "3: key 'object' is 'x', but the one of 'objects' 'o'" '{"ref":"a","object":"x","objects":["o"],"text":"t"}'
 	refuses "3: key 'object' is missing" '{"ref":"a","objects":["o","p"],"text":"t","split":"train"}'

@@ -65,6 +65,11 @@ with() {
 	refuses "metadata 'objects' is not a JSON list" "$(with "$META" '[\"o\",\"o\"]' '{}')" "$TENSORS" $OFFSETS$REST
 	refuses "metadata 'refs' has 1 entries for 2 sentences" "$(with "$META" ',\"r2\"' '')" "$TENSORS" $OFFSETS$REST
 	refuses "metadata 'refs': entry 1 is not a UTF-8 string" "$(with "$META" '\"r2\"' 2)" "$TENSORS" $OFFSETS$REST
+	refuses "metadata 'refs': entry 1 is empty" "$(with "$META" r2 '')" "$TENSORS" $OFFSETS$REST
+	refuses "metadata 'refs': entry 1 has a control character at byte 1" "$(with "$META" r2 '\\n')" "$TENSORS" $OFFSETS$REST
+	refuses "metadata 'objects': entry 0 has a control character at byte 2" \
+		"$(with "$META" '[\"o\"' '[\"o\\t\"')" "$TENSORS" $OFFSETS$REST
+	refuses "metadata 'refs': a NUL character (\\u0000) in a string" "$(with "$META" r2 '\\u0000')" "$TENSORS" $OFFSETS$REST
 	refuses "metadata 'refs': 'r1' appears twice" "$(with "$META" r2 r1)" "$TENSORS" $OFFSETS$REST
 	refuses "metadata 'splits': entry 0 is 'val', not 'train' or 'test'" "$(with "$META" train val)" "$TENSORS" $OFFSETS$REST
 }
@@ -73,6 +78,8 @@ with() {
 	text "$META,\"pieces\":\"[\\\"a ##b\\\",\\\"\\\"]\"" "$TENSORS" $OFFSETS$REST
 	says 0 'x: ok: refer.text, 2 sentences, 2 words, 2 columns' "$BIN/gs-check" x
 	refuses "metadata 'pieces': entry 0 has 1 pieces for 2 words" "$META,\"pieces\":\"[\\\"ab\\\",\\\"\\\"]\"" "$TENSORS" $OFFSETS$REST
+	refuses "metadata 'pieces': entry 0 does not have one space between pieces, and none around" \
+		"$META,\"pieces\":\"[\\\"a  ##b\\\",\\\"\\\"]\"" "$TENSORS" $OFFSETS$REST
 	refuses "metadata 'pieces' has 1 entries for 2 sentences" "$META,\"pieces\":\"[\\\"a b\\\"]\"" "$TENSORS" $OFFSETS$REST
 }
 

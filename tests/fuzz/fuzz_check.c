@@ -1,4 +1,6 @@
-/* Everything that gs-check can tell apart, through the tools' own readers. */
+/* What gs-check tells apart, through the tools' own readers: scenes, weights, texts, lifted models and
+ * foreign tensors, sentences, masks, boxes, cameras of three programs, 3DGS ply, npy, PNG and JPEG. Not here:
+ * trained models, whose least size is over the driver's, and folders, a COLMAP model among them. */
 #include "fuzz.h"
 
 #include "formats/check.h"
@@ -40,11 +42,45 @@ static const char foreign[] =
 	"F16\",\"shape\":[1,2],\"data_offsets\":[0,4]},\"b\":{\"dtype\":\"U8\",\"shape\":[1],\"data_offse"
 	"ts\":[4,5]}}      \000<\000\301a";
 
+static const char lifted[] =
+	"H\002\000\000\000\000\000\000{\"__metadata__\":{\"format\":\"refer.lifted\",\"version\":\"1\",\""
+	"gaussians\":\"5\",\"names\":\"[\\\"cup\\\",\\\"pan\\\"]\",\"texts\":\"[\\\"red cup\\\",\\\"\\\"]"
+	"\",\"pieces\":\"[\\\"red cup\\\",\\\"\\\"]\"},\"indptr\":{\"dtype\":\"I64\",\"shape\":[3],\"data"
+	"_offsets\":[0,24]},\"offsets\":{\"dtype\":\"I64\",\"shape\":[3],\"data_offsets\":[24,48]},\"inde"
+	"x\":{\"dtype\":\"I32\",\"shape\":[3],\"data_offsets\":[48,60]},\"object\":{\"dtype\":\"I32\",\"s"
+	"hape\":[2],\"data_offsets\":[60,68]},\"confidence\":{\"dtype\":\"F32\",\"shape\":[2],\"data_offs"
+	"ets\":[68,76]},\"words\":{\"dtype\":\"F16\",\"shape\":[2,2],\"data_offsets\":[76,84]},\"share\":"
+	"{\"dtype\":\"U8\",\"shape\":[3],\"data_offsets\":[84,87]}}   \000\000\000\000\000\000\000\000"
+	"\002\000\000\000\000\000\000\000\003\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000"
+	"\002\000\000\000\000\000\000\000\002\000\000\000\000\000\000\000\001\000\000\000\003\000\000\000"
+	"\000\000\000\000\001\000\000\000\000\000\000\000\000\000\200\077\000\000\000\000\000<\000@\000B"
+	"\000D\3773\001";
+
+/* Two pixels of colour. */
+static const char png[] =
+	"\211PNG\015\012\032\012\000\000\000\015IHDR\000\000\000\002\000\000\000\001\010\002\000\000\000{"
+	"@\350\335\000\000\000\017IDATx\234c`dbfae\003\000\000\077\000\026!\272\324T\000\000\000\000IEND"
+	"\256B`\202";
+
+/* Three grey ones by two. */
+static const char jpeg[] =
+	"\377\330\377\333\000C\000\010\006\006\007\006\005\010\007\007\007\011\011\010\012\014\024\015"
+	"\014\013\013\014\031\022\023\017\024\035\032\037\036\035\032\034\034 $.' \",#\034\034(7),01444"
+	"\037'9=82<.342\377\300\000\013\010\000\002\000\003\001\001\021\000\377\304\000\024\000\001\000"
+	"\000\000\000\000\000\000\000\000\000\000\000\000\000\000\007\377\304\000\032\020\000\001\005\001"
+	"\000\000\000\000\000\000\000\000\000\000\000\000\001\000\006\0077t\261\377\332\000\010\001\001"
+	"\000\000\077\000O\212\352\366\366A\322\277\377\331";
+
 const struct fuzz_seed fuzz_seeds[] = {
 	SEED(splats),
 	SEED(weights),
 	SEED(text),
 	SEED(foreign),
+	SEED(lifted),
+	SEED(png),
+	SEED(jpeg),
+	SEED("{\"ref\":\"r1\",\"object\":\"cup\",\"score\":0.5,\"min\":[0,0,0],\"max\":[1,2,3],\"oriented\":{\"centre\":[0,1,2],"
+	     "\"quat\":[1,0,0,0],\"size\":[1,2,3]}}\n{\"object\":\"pan\",\"oriented\":null}\n"),
 	SEED("{\"ref\":\"r1\",\"object\":\"cup\",\"text\":\"the red cup\",\"split\":\"test\",\"views\":[\"v1\"]}\n"
 	     "{\"ref\":\"r2\",\"object\":\"cup\",\"text\":\"tasse \\u00e9\"}\n"),
 	SEED("{\"view\":\"v1\",\"object\":\"cup\",\"score\":0.5,\"segmentation\":{\"size\":[2,3],\"counts\":[0,2,4]}}\n"

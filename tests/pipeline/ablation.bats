@@ -81,6 +81,16 @@ report() {
 		<<<"$output"
 }
 
+@test "second stages have a table with the quality of what taught them; exact trainings share nothing" {
+	ablation -j2 second exact >first.log 2>&1
+	grep -qE "^\| taught by stage 1's answers \(paper\) \| 36.9 / 25.2 \| [0-9.]+( \| [0-9.]+){4} \|\$" out/quick/second.md
+	[ "$(grep -cE '^\| [^|]+ \| +\| [0-9.]+( \| [0-9.]+){4} \|$' out/quick/second.md)" = 5 ]
+	[ "$(grep -c '^| the same, exact' out/quick/exact.md)" = 6 ]
+	[ "$(cat out/quick/diner-1/two-exact/options)" = "$(sed 's/$/ --share 0 --negatives 0/' out/quick/diner-1/two/options)" ]
+	# A second stage of the exact way is taught by the exact first stage.
+	[ out/quick/diner-1/both-exact/teach.jsonl -nt out/quick/diner-1/both-exact/model.safetensors ]
+}
+
 @test "a training with other options is made again, and no other" {
 	ablation scores RUNS="none both" >/dev/null 2>&1
 	run ablation scores RUNS="none both" run.none="--interaction add --contrast none"
@@ -121,4 +131,21 @@ report() {
 	run ablation tables SIZE=huge
 	[ "$status" = 2 ]
 	grep -q 'SIZE is full or quick' <<<"$output"
+}
+
+@test "another SCALE weighs anew, and nothing in a value is done" {
+	ablation scores RUNS=none >/dev/null 2>&1
+	run ablation scores RUNS=none SCALE=0.5
+	grep -q gs-weigh <<<"$output"
+	not grep -q gs-import <<<"$output"
+	for variable in SCENES SEEDS RUNS SYNTH TRAIN SCALE ITERATIONS THREADS; do
+		run ablation scores "$variable=1; touch done"
+		[ "$status" = 2 ]
+		grep -qF "*** $variable has a ;" <<<"$output"
+		run ablation scores "$variable="'$(shell touch done)'
+		[ "$status" = 2 ]
+	done
+	run ablation scores "OUT=a b"
+	grep -qF "*** OUT has a blank" <<<"$output"
+	[ ! -e done ]
 }

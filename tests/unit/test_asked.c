@@ -41,8 +41,8 @@ static const float asked_words[] = {0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 static char *pieces[] = {"box", "ball", "box", "", "zeppelin", ""};
 static const size_t which[] = {0, 1, 2, 3, 4, 5};
 static const struct parser parser = {0};
-static const struct asked_of of = {
-	&splats, &cameras, asked_offsets, asked_words, pieces, pieces, NULL, &parser, which, SENTENCES};
+static const struct asked_of of = {&splats, &cameras, asked_offsets, asked_words, pieces, pieces, NULL,
+	&parser, which, SENTENCES, pieces, "model"};
 
 static float at(const struct asked *a, size_t answer, size_t gaussian)
 {

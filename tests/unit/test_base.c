@@ -1,5 +1,6 @@
 #include "unit.h"
 
+#include "base/hash.h"
 #include "base/mem.h"
 #include "base/rng.h"
 #include "formats/safetensors.h"
@@ -15,6 +16,21 @@ static void rng_known_answers(void)
 	for (int i = 0; i < 6; i++) {
 		uint32_t x = rng_u32(&r);
 		CHECK(x == expected[i], "output %d is %08x", i, x);
+	}
+}
+
+/* The hashes of xxHash's own command line, xxhsum -H64. */
+static void hash_known_answers(void)
+{
+	static const struct {
+		const char *text;
+		uint64_t hash;
+	} known[] = {{"", 0xef46db3751d8e999}, {"a", 0xd24ec4f1a98c6e5b}, {"abc", 0x44bc2cf5ad770999},
+		{"Nobody inspects the spammish repetition", 0xfbcea83c8a378bf1}};
+
+	for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+		const uint64_t hash = hash64(known[i].text, strlen(known[i].text), 0);
+		CHECK(hash == known[i].hash, "'%s' has %016llx", known[i].text, (unsigned long long)hash);
 	}
 }
 
@@ -45,6 +61,7 @@ static void sizes_overflow(void)
 int main(void)
 {
 	rng_known_answers();
+	hash_known_answers();
 	half_round_trip();
 	sizes_overflow();
 	return unit_end();

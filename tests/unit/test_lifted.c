@@ -23,12 +23,15 @@ static struct lifted example(void)
 static void round_trip(void)
 {
 	const struct lifted in = example();
+	const struct origin origin = {{"0123456789abcdef"}, {""}};
 	struct lifted out;
+	struct origin of;
 	struct err e = {0};
 
-	CHECK(!lifted_write(&in, path, "", &e), "%s", e.message);
-	if (!CHECK(!lifted_read(&out, path, &e), "%s", e.message))
+	CHECK(!lifted_write(&in, &origin, path, "", &e), "%s", e.message);
+	if (!CHECK(!lifted_read(&out, &of, path, &e), "%s", e.message))
 		return;
+	CHECK(!strcmp(of.scene.hex, origin.scene.hex) && !*of.encoder.hex, "of %s", of.scene.hex);
 	CHECK(out.gaussians == 7 && out.objects == 3 && out.sentences == 3 && out.width == 2, "counts");
 	CHECK(!memcmp(out.indptr, indptr, sizeof indptr) && !memcmp(out.offsets, offsets, sizeof offsets),
 		"offsets");
@@ -72,7 +75,7 @@ static void refuses_to_write(float *number, float value, const char *expected)
 	const float before = *number;
 
 	*number = value;
-	CHECK(lifted_write(&l, path, "", &e) == -1 && e.code == ERR_CHECK &&
+	CHECK(lifted_write(&l, &(struct origin){0}, path, "", &e) == -1 && e.code == ERR_CHECK &&
 			strlen(e.message) > strlen(path) && !strcmp(e.message + strlen(path), expected),
 		"expected '%s', got '%s'", expected, e.message);
 	*number = before;

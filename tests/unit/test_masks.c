@@ -35,7 +35,7 @@ static void test_round_trips(void)
 	for (int round = 0; round < 100; round++) {
 		int h = 1 + (int)rng_below(&rng, 30), w = 1 + (int)rng_below(&rng, 30);
 		uint8_t *pixels = mask_random(&rng, h, w, round % 5);
-		char view[] = "view \"1\"", ref[] = "r\\1\n", object[] = "r\xc3\xa4t";
+		char view[] = "view \"1\"", ref[] = "r\\1/%", object[] = "r\xc3\xa4t";
 		struct mask_record r = {view, round % 3 ? ref : NULL, round % 3 == 1 ? NULL : object,
 			round % 4 ? rng_uniform(&rng) : NAN, mask_rle(pixels, h, w),
 			round % 7 ? NAN : rng_uniform(&rng)};

@@ -5,6 +5,7 @@
 
 #include <png.h>
 #include <jpeglib.h>
+#include <zlib.h>
 #include <unistd.h>
 
 static char path[] = "/tmp/test_png.XXXXXX";
@@ -262,6 +263,59 @@ static void test_jpeg(void)
 		"%s", e.message);
 }
 
+/* The file in `bytes` must be refused for its 30000 x 30000 pixels. */
+static void expect_too_large(const char *kind, const char *bytes, size_t len)
+{
+	char expected[128];
+	uint8_t *pixels;
+	int h, w;
+	struct err e = {0};
+
+	snprintf(expected, sizeof expected, "%s: %s: 30000x30000 pixels, more than %d altogether", path, kind,
+		PICTURE_PIXELS_MAX);
+	put(bytes, len);
+	CHECK(image_read_rgb(path, &pixels, &h, &w, &e) && e.code == ERR_FORMAT &&
+			!strcmp(e.message, expected),
+		"%s", e.message);
+	if (!strcmp(kind, "PNG"))
+		CHECK(png_read_mask(path, &pixels, &h, &w, &e) && !strcmp(e.message, expected), "%s",
+			e.message);
+}
+
+static void put_be(char *to, uint32_t x, int bytes)
+{
+	for (int i = bytes; i-- > 0; x >>= 8)
+		to[i] = (char)(x & 255);
+}
+
+/* A picture that says it is large takes no memory, however short its file is. */
+static void test_size(void)
+{
+	static const uint8_t rows[2 * 9];
+	char bytes[4096];
+	struct err e = {0};
+
+	put_png(8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, rows, 9);
+	size_t len = slurp(bytes, sizeof bytes);
+	put_be(bytes + 16, 30000, 4);
+	put_be(bytes + 20, 30000, 4);
+	put_be(bytes + 29, (uint32_t)crc32(0, (const Bytef *)bytes + 12, 17), 4);
+	expect_too_large("PNG", bytes, len);
+	put_jpeg(JCS_GRAYSCALE, 1);
+	len = slurp(bytes, sizeof bytes);
+	for (size_t i = 0; i + 9 < len; i++)
+		if (!memcmp(bytes + i, "\xff\xc0", 2)) {
+			put_be(bytes + i + 5, 30000, 2);
+			put_be(bytes + i + 7, 30000, 2);
+			break;
+		}
+	expect_too_large("JPEG", bytes, len);
+	CHECK(!picture_check_size("x", "PNG", 65536, 4096, &e) &&
+			picture_check_size("x", "PNG", 65536, 4097, &e) &&
+			picture_check_size("x", "PNG", 1, SIZE_MAX, &e),
+		"the limit");
+}
+
 int main(void)
 {
 	int fd = mkstemp(path);
@@ -273,6 +327,7 @@ int main(void)
 	test_write();
 	test_broken_png();
 	test_jpeg();
+	test_size();
 	unlink(path);
 	return unit_end();
 }

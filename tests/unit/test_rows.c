@@ -250,12 +250,74 @@ static void details(void)
 	}
 }
 
+/* The leaves are of the points alone: neither the order of the Gaussians nor one that is no point, put first,
+ * changes them. */
+static void any_order(void)
+{
+	enum { MORE = N / 3 };
+	struct cloud *c = make_cloud(0.1);
+	struct err e;
+	struct octree t, all = build(c, 0.1);
+	float *means = mem_zalloc(N + MORE, 3 * sizeof *means, "test", &e);
+	float *finest = mem_zalloc(N + MORE, sizeof *finest, "test", &e);
+	float *signature = mem_zalloc(N + MORE, K * sizeof *signature, "test", &e);
+	double *weight = mem_zalloc(N + MORE, sizeof *weight, "test", &e);
+	int32_t ids[N];
+	const struct octree_points points = {N, means, ids, finest, weight, signature};
+
+	/* Gaussian MORE + i is point (7 i) mod N; those before are no points. */
+	for (size_t i = 0; i < N; i++) {
+		const size_t from = 7 * i % N, to = MORE + i;
+		ids[i] = (int32_t)to;
+		memcpy(means + 3 * to, c->means + 3 * from, 3 * sizeof *means);
+		memcpy(signature + K * to, c->signature + K * from, K * sizeof *signature);
+		finest[to] = c->finest[from];
+		weight[to] = c->weight[from];
+	}
+	CHECK(!octree_build(&t, &points, 0.1, &e), "%s", e.message);
+	CHECK(t.n == all.n && !memcmp(t.codes, all.codes, t.n * sizeof *t.codes),
+		"%zu leaves, and %zu in another order", all.n, t.n);
+	octree_free(&t);
+	octree_free(&all);
+	free(means);
+	free(finest);
+	free(signature);
+	free(weight);
+	free(c);
+}
+
+/* A leaf has the Gaussians that learn, and no other that lies in it. */
+static void left_out_stay_out(void)
+{
+	struct cloud *c = make_cloud(0);
+	struct octree t = build(c, 3);
+	struct rows all, some;
+	struct err e;
+	int32_t every_third[N / 3];
+	int wrong = 0;
+
+	for (int i = 0; i < N / 3; i++)
+		every_third[i] = 3 * i;
+	CHECK(!rows_of_leaves(&all, &t, c->means, N, NULL, 0, &e) &&
+			!rows_of_leaves(&some, &t, c->means, N, every_third, N / 3, &e),
+		"%s", e.message);
+	for (int i = 0; i < N; i++)
+		wrong += all.of[i] < 0 || some.of[i] != (i % 3 ? -1 : all.of[i]);
+	CHECK(!wrong && some.n == all.n, "%d Gaussians have another row", wrong);
+	rows_free(&all);
+	rows_free(&some);
+	octree_free(&t);
+	free(c);
+}
+
 int main(void)
 {
 	leaves_cost_least();
 	kinds_stay_apart();
 	hard_places();
+	any_order();
 	views_agree();
 	details();
+	left_out_stay_out();
 	return unit_end();
 }

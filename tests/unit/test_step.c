@@ -9,6 +9,7 @@
 #include "refer/step.h"
 
 #include <omp.h>
+#include <sys/resource.h>
 
 /* One, a part of a tile, the default and the most. */
 static const int widths[4] = {1, 5, 16, REFER_MAX_X};
@@ -278,6 +279,36 @@ static void threads_agree(enum refer_interaction interaction)
 	reference_sample_free(&s);
 }
 
+/* Memory goes with the longest sentence, not with all words of a step: 64 sentences of 64 words in 1 GiB. The
+ * address sanitizer takes more than that for itself. */
+static void batches_fit_in_memory(void)
+{
+#ifndef __SANITIZE_ADDRESS__
+	enum { BATCH = 64, WORDS = 64 };
+	struct reference_options o = reference_defaults(5, REFER_PCMI, REFER_DOT, REFER_CONTRAST_COSINE);
+	struct reference_sample s;
+	struct floats f;
+	struct rlimit before, least;
+
+	o.sentences = BATCH;
+	o.min_words = o.max_words = WORDS;
+	reference_sample_init(&s, &o);
+	floats_init(&f, &s);
+	getrlimit(RLIMIT_AS, &before);
+	least = before;
+	least.rlim_cur = (rlim_t)1 << 30;
+	if (CHECK(!setrlimit(RLIMIT_AS, &least), "no limit")) {
+		omp_set_num_threads(1);
+		struct step *step = make_step(&s, &f, BATCH, NULL);
+		CHECK(step, "no memory for %d sentences", BATCH);
+		step_free(step);
+		setrlimit(RLIMIT_AS, &before);
+	}
+	floats_free(&f);
+	reference_sample_free(&s);
+#endif
+}
+
 int main(void)
 {
 	for (int i = 0; i < REFER_INTERACTIONS; i++) {
@@ -286,6 +317,7 @@ int main(void)
 			batch_is_the_mean((enum refer_interaction)i, REFER_COSINE);
 		threads_agree((enum refer_interaction)i);
 	}
+	batches_fit_in_memory();
 	against_reference("plain");
 	if (block_select("avx2"))
 		against_reference("avx2");

@@ -86,13 +86,15 @@ static void text_round_trip(void)
 		.splits = splits,
 		.object_lists = lists,
 		.views = views,
-		.kinds = kinds};
+		.kinds = kinds,
+		.encoder = {"fedcba9876543210"}};
 	struct text out;
 	struct err e = {0};
 
 	CHECK(!text_write(&in, path, "--model x", &e), "%s", e.message);
 	if (!CHECK(!text_read(&out, path, &e), "%s", e.message))
 		return;
+	CHECK(!strcmp(out.encoder.hex, in.encoder.hex), "encoder %s", out.encoder.hex);
 	CHECK(out.n == 3 && out.width == 3, "n %zu width %d", out.n, out.width);
 	CHECK(same_bytes(out.offsets, offsets, sizeof offsets), "offsets differ");
 	CHECK(same_bytes(out.words, words, sizeof words), "words differ");
@@ -106,11 +108,11 @@ static void text_round_trip(void)
 			"names of sentence %d differ", i);
 	check_object_lists(&out, &e);
 	char chosen[3] = {0};
-	struct list_name unknown;
-	CHECK(!text_mark(&out, "r3,r1,r3", chosen, &unknown) && chosen[0] && !chosen[1] && chosen[2],
+	CHECK(!text_mark(&out, "r3,r1,r3", "--refs", chosen, &e) && chosen[0] && !chosen[1] && chosen[2],
 		"text_mark");
-	CHECK(text_mark(&out, "r1,r,r2", chosen, &unknown) == -1 && unknown.length == 1 && !chosen[1],
-		"an unknown ref");
+	CHECK(text_mark(&out, "r1,r,r2", "--refs", chosen, &e) == -1 && e.code == ERR_USAGE &&
+			!strcmp(e.message, "--refs: no sentence 'r'") && !chosen[1],
+		"an unknown ref: %s", e.message);
 	text_free(&out);
 }
 

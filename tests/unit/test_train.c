@@ -1,12 +1,11 @@
 /* Training but for its step: which Gaussians learn, their positions, the order of the views, which mask
- * teaches what, the top set of the contrast, and a state that goes on to the same bytes. */
+ * teaches what, and a state that goes on to the same bytes. */
 #include "unit.h"
 
 #include "base/mem.h"
 #include "base/rng.h"
 #include "formats/checkpoint.h"
 #include "mask/bits.h"
-#include "refer/contrast.h"
 #include "refer/supervision.h"
 #include "refer/trainer.h"
 
@@ -305,48 +304,6 @@ static void test_many_masks(void)
 	supervision_free(&s);
 }
 
-static const float *sorted_values;
-
-static int by_rank(const void *a, const void *b)
-{
-	const size_t i = *(const size_t *)a, k = *(const size_t *)b;
-	const float x = sorted_values[i], y = sorted_values[k];
-
-	return x != y ? (x < y) - (x > y) : (i > k) - (i < k);
-}
-
-static void test_top(void)
-{
-	enum { N = 300 };
-	struct rng rng;
-
-	CHECK(contrast_top_count(0, 1000) == 100, "%zu at the start", contrast_top_count(0, 1000));
-	CHECK(contrast_top_count(1000, 1000) == 60, "%zu after 1000", contrast_top_count(1000, 1000));
-	CHECK(contrast_top_count(500, 1000) == 77, "%zu after 500", contrast_top_count(500, 1000));
-	CHECK(contrast_top_count(45000, 1000) == 5, "%zu in the end", contrast_top_count(45000, 1000));
-	CHECK(contrast_top_count(0, 9) == 1 && contrast_top_count(0, 1) == 1, "never none");
-	rng_seed(&rng, 5, 1);
-	for (int trial = 0; trial < 60; trial++) {
-		float m[N], top[N];
-		size_t rank[N];
-		const size_t n = trial ? 1 + rng_below(&rng, N) : N, k = 1 + rng_below(&rng, (uint32_t)n);
-		int wrong = 0;
-
-		/* Many ties, but no -0, which ranks below 0. */
-		for (size_t i = 0; i < n; i++) {
-			m[i] = trial % 3 ? (float)rng_normal(&rng) : (float)((int)rng_below(&rng, 7) - 3);
-			m[i] = m[i] == 0 ? 0 : m[i];
-			rank[i] = i;
-		}
-		sorted_values = m;
-		qsort(rank, n, sizeof *rank, by_rank);
-		contrast_top_set(m, n, k, top);
-		for (size_t i = 0; i < n; i++)
-			wrong += top[rank[i]] != (i < k ? 1 / (float)k : 0);
-		CHECK(!wrong, "trial %d: %d of %zu wrong, k %zu", trial, wrong, n, k);
-	}
-}
-
 /* A training of two sentences over the random views. */
 struct sample {
 	struct random_view random[VIEWS];
@@ -456,7 +413,8 @@ static void test_resume(int cut, long long warm, double hold_out)
 		.seed = 7};
 	struct sample s;
 	struct trainer whole, part, fresh;
-	char path[] = "/tmp/test_train.XXXXXX", identity[CHECKPOINT_IDENTITY], other[CHECKPOINT_IDENTITY];
+	char path[] = "/tmp/test_train.XXXXXX";
+	struct checkpoint_of own = {.scene_path = "scene", .text_path = "text"}, other = own;
 	struct err e;
 	int fd = mkstemp(path);
 
@@ -467,32 +425,32 @@ static void test_resume(int cut, long long warm, double hold_out)
 		!start(&part, &s, &options) || !start(&fresh, &s, &options))
 		return;
 	close(fd);
-	checkpoint_identity(identity, &options, 0x1234abcd);
+	checkpoint_identity(own.identity, &options, 0x1234abcd);
 	steps(&whole, 0, 25);
 	steps(&part, 0, cut);
 	CHECK(whole.warm_steps == warm && !warm == !whole.warm.objects, "%ld warm steps", whole.warm_steps);
 	CHECK(!whole.state.best.iteration == !(hold_out > 0), "evaluated");
 	CHECK(part.state.iteration == cut && part.state.sum.total > 0, "%ld steps", part.state.iteration);
-	CHECK(!checkpoint_write(&part.state, path, identity, &e), "%s", e.message);
-	CHECK(!checkpoint_read(&fresh.state, path, identity, &e), "%s", e.message);
+	CHECK(!checkpoint_write(&part.state, path, &own, &e), "%s", e.message);
+	CHECK(!checkpoint_read(&fresh.state, path, &own, &e), "%s", e.message);
 	CHECK(same_state(&fresh.state, &part.state), "the checkpoint is not the state");
 	steps(&fresh, cut, 25);
 	CHECK(same_state(&fresh.state, &whole.state), "going on is not the same");
 	CHECK(!same_state(&fresh.state, &part.state), "nothing was learned");
-	checkpoint_identity(other, &options, 0x1234abce);
-	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
+	checkpoint_identity(other.identity, &options, 0x1234abce);
+	CHECK(checkpoint_read(&fresh.state, path, &other, &e) && e.code == ERR_FORMAT,
 		"another training's inputs");
 	struct trainer_options wider = options;
 	wider.feature_width = 6;
-	checkpoint_identity(other, &wider, 0x1234abcd);
-	CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
+	checkpoint_identity(other.identity, &wider, 0x1234abcd);
+	CHECK(checkpoint_read(&fresh.state, path, &other, &e) && e.code == ERR_FORMAT,
 		"features of another width");
 	struct trainer_options others[2] = {options, options};
 	others[0].warm++;
 	others[1].hold_out += 0.1;
 	for (int k = 0; k < 2; k++) {
-		checkpoint_identity(other, &others[k], 0x1234abcd);
-		CHECK(checkpoint_read(&fresh.state, path, other, &e) && e.code == ERR_FORMAT,
+		checkpoint_identity(other.identity, &others[k], 0x1234abcd);
+		CHECK(checkpoint_read(&fresh.state, path, &other, &e) && e.code == ERR_FORMAT,
 			"another start or hold-out");
 	}
 	long written;
@@ -525,6 +483,57 @@ static void test_no_weight(void)
 	const struct trainer_source source = {s.means, NULL, GAUSSIANS, 8, 2, s.offsets, s.words, s.objects,
 		s.views, VIEWS, PIXELS, NULL, NULL};
 	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
+}
+
+/* A Gaussian that no view sees, put first, changes nothing that is learned. */
+static void test_unseen_first(void)
+{
+	static const struct trainer_options options = {.batch = 1,
+		.feature_width = 5,
+		.interaction = REFER_PCMI,
+		.rates = {0.01, 0.001},
+		.temperature = 0.1,
+		.lambda = 0.02,
+		.share = 0.01};
+	static struct sample s, more;
+	static struct camera cameras[VIEWS];
+	struct trainer t, u;
+	struct err e;
+
+	sample_init(&s);
+	sample_init(&more);
+	for (int v = 0; v < VIEWS; v++) {
+		cameras[v] = (struct camera){.width = 8, .height = 8, .fx = 8, .fy = 8, .cx = 4, .cy = 4};
+		for (int k = 0; k < 4; k++)
+			cameras[v].world_to_camera[k][k] = 1;
+		cameras[v].world_to_camera[2][3] = 5;
+	}
+	static float means[(GAUSSIANS + 1) * 3];
+	memcpy(means + 3, s.means, sizeof s.means);
+	for (int v = 0; v < VIEWS; v++) {
+		int32_t *index = more.random[v].index;
+		for (int64_t k = 0; k < more.random[v].indptr[PIXELS]; k++)
+			index[k]++;
+		more.views[v].weights.gaussians++;
+	}
+	const struct trainer_source with = {means, cameras, GAUSSIANS + 1, 8, 2, more.offsets, more.words,
+		more.objects, more.views, VIEWS, PIXELS, NULL, NULL};
+	const struct trainer_source without = {s.means, cameras, GAUSSIANS, 8, 2, s.offsets, s.words,
+		s.objects, s.views, VIEWS, PIXELS, NULL, NULL};
+	if (!CHECK(!trainer_init(&t, &without, &options, &e), "%s", e.message) ||
+		!CHECK(!trainer_init(&u, &with, &options, &e), "%s", e.message))
+		return;
+	CHECK(t.rows.n > 1 && t.rows.n < t.learning, "%zu rows of %zu", t.rows.n, t.learning);
+	CHECK(u.rows.n == t.rows.n && u.learning == t.learning, "%zu rows, and %zu with one more", t.rows.n,
+		u.rows.n);
+	CHECK(t.octree.n == u.octree.n &&
+			!memcmp(t.octree.codes, u.octree.codes, t.octree.n * sizeof(int64_t)),
+		"other leaves");
+	steps(&t, 0, 5);
+	steps(&u, 0, 5);
+	CHECK(same_state(&t.state, &u.state), "it is learned from");
+	trainer_free(&t);
+	trainer_free(&u);
 }
 
 /* The sentences of a contrast: so many different ones, the same for the same step, each as often as any. */
@@ -570,7 +579,6 @@ int main(void)
 	test_supervision();
 	test_shared_masks();
 	test_many_masks();
-	test_top();
 	test_resume(11, 0, 0);
 	test_resume(11, 17, 0); /* within the warm start, and after it */
 	test_resume(11, 6, 0);
@@ -578,6 +586,7 @@ int main(void)
 	test_resume(2, 6, 0.4); /* before anything was evaluated */
 	test_resume(13, 17, 0.4);
 	test_no_weight();
+	test_unseen_first();
 	test_others();
 	return unit_end();
 }

@@ -51,6 +51,14 @@ static void naming(void)
 	names(LIST("l/1.png", "l/1.jpg"), LIST("l_1.jpg", "l_1.png"));
 	/* The longer name of one is another's own. */
 	names(LIST("l/1.jpg", "r/1.jpg", "l_1.png"), LIST("l_1", "l_1.jpg", "r_1"));
+	/* What no file name can be, or no list of names can have. */
+	names(LIST("..", "x/.", "a/caf\xe9.jpg", "b\n.png", "c,d.jpg"),
+		LIST("%2E", "%2E%2E", "b%0A", "c%2Cd", "caf%E9"));
+	/* Paths that '_' for '/' makes the same. */
+	names(LIST("x/a_b.jpg", "x_a/b.jpg", "y/b.jpg", "y/a_b.jpg"),
+		LIST("x%2Fa_b.jpg", "x_a%2Fb.jpg", "y_a_b", "y_b"));
+	names(LIST("cam1/0001.png", "cam2/0001.png", "cam1/0002.png"),
+		LIST("0002", "cam1_0001", "cam2_0001"));
 }
 
 static void faults(void)
@@ -61,6 +69,10 @@ static void faults(void)
 	make_views(&c, LIST("a.jpg", "b.jpg", "a.jpg"));
 	CHECK(views_finish(&c, "file", &e) && e.code == ERR_FORMAT &&
 			!strcmp(e.message, "file: two views have the name 'a.jpg'"),
+		"%s", e.message);
+	cameras_free(&c);
+	make_views(&c, LIST("x/a.jpg", "x//a.jpg", "./x/a.jpg"));
+	CHECK(views_finish(&c, "file", &e) && !strcmp(e.message, "file: two views have the name 'x%2Fa.jpg'"),
 		"%s", e.message);
 	cameras_free(&c);
 	make_views(&c, LIST("l/.jpg"));

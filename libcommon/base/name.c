@@ -1,0 +1,78 @@
+#include "base/name.h"
+
+#include "base/mem.h"
+#include "base/utf8.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+static int is_control(uint32_t c)
+{
+	return c < 0x20 || (c >= 0x7f && c <= 0x9f);
+}
+
+static int is_dots(const char *name)
+{
+	return !strcmp(name, ".") || !strcmp(name, "..");
+}
+
+const char *name_fault(const char *name, enum name_kind kind, char fault[NAME_FAULT])
+{
+	const size_t len = strlen(name), bad = utf8_check(name, len);
+
+	if (!len)
+		return "is empty";
+	if (bad < len) {
+		snprintf(fault, NAME_FAULT, "is not UTF-8 at byte %zu", bad + 1);
+		return fault;
+	}
+	for (size_t at = 0; at < len;) {
+		const size_t first = at;
+		if (is_control(utf8_next(name, len, &at))) {
+			snprintf(fault, NAME_FAULT, "has a control character at byte %zu", first + 1);
+			return fault;
+		}
+	}
+	if (kind == NAME_VIEW && strchr(name, '/'))
+		return "has a slash";
+	return kind == NAME_VIEW && is_dots(name) ? "is '.' or '..'" : NULL;
+}
+
+/* Copies text with the characters of `marked`, and all that no file name may have, as %XX. */
+static char *escape(const char *text, const char *marked, struct err *e)
+{
+	const size_t len = strlen(text);
+	char *name = len < SIZE_MAX / 4 ? mem_alloc(3 * len + 1, 1, "name", e) : NULL, *to = name;
+
+	if (!name)
+		return NULL;
+	for (size_t at = 0; at < len;) {
+		size_t from = at;
+		const uint32_t c = utf8_next(text, len, &at);
+		const int is_bad = utf8_check(text + from, at - from) < at - from || is_control(c) ||
+				   (c < 0x80 && strchr(marked, (int)c)) || is_dots(text);
+		for (; from < at; from++)
+			if (is_bad)
+				to += snprintf(to, 4, "%%%02X", (unsigned)(unsigned char)text[from]);
+			else
+				*to++ = text[from];
+	}
+	*to = 0;
+	return name;
+}
+
+char *name_to_file(const char *text, struct err *e)
+{
+	return escape(text, "/%", e);
+}
+
+char *name_to_view(const char *text, struct err *e)
+{
+	char *name = escape(text, ",", e);
+
+	for (char *p = name; p && *p; p++)
+		if (*p == '/')
+			*p = '_';
+	return name;
+}

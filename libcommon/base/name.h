@@ -1,0 +1,31 @@
+/* Names of views, refs and objects. A view's name is also a file name (VIEW.safetensors, VIEW/REF.png), so it
+ * is checked as one where it is read. Refs and objects are data, and are escaped where they become file
+ * names. */
+#ifndef BASE_NAME_H
+#define BASE_NAME_H
+
+#include "base/err.h"
+
+enum name_kind {
+	NAME_DATA, /* of a ref or object: not empty, UTF-8, no control character */
+	NAME_VIEW, /* also no '/', and not '.' or '..' */
+};
+
+enum { NAME_FAULT = 64 };
+
+/* Why `name` cannot be a name, in words that follow what it is called: "is empty", "is not UTF-8 at byte 3",
+ * "has a control character at byte 1", "has a slash", "is '.' or '..'". NULL where it can; else `fault`.
+ * Control characters are U+0000 to U+001F and U+007F to U+009F. */
+const char *name_fault(const char *name, enum name_kind kind, char fault[NAME_FAULT]);
+
+/* Any text as a file name, such that different texts have different names: '/', '%', control characters,
+ * bytes that are not UTF-8, and the dots of '.' and '..' are written as '%' and two capital hexadecimal
+ * digits for each byte. free() it; NULL with *e set when memory is out. */
+char *name_to_file(const char *text, struct err *e);
+
+/* A view's name from a part of a photograph's path: '/' becomes '_'; what a view's name cannot have, and ',',
+ * which separates names in options, is written as above, but '%' stays. Different texts may have one name.
+ * free() it; NULL with *e set when memory is out. */
+char *name_to_view(const char *text, struct err *e);
+
+#endif

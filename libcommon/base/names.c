@@ -1,0 +1,110 @@
+#include "base/names.h"
+
+#include "base/mem.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int by_name(const void *a, const void *b)
+{
+	const struct names_place *x = a, *y = b;
+	int order = strcmp(x->name, y->name);
+
+	return order ? order : (x->place > y->place) - (x->place < y->place);
+}
+
+int names_make(struct names *names, const void *items, size_t stride, size_t offset, size_t n, struct err *e)
+{
+
+	*names = (struct names){0};
+	names->sorted = mem_alloc(n, sizeof *names->sorted, "names", e);
+	if (!names->sorted)
+		return -1;
+	for (size_t i = 0; i < n; i++) {
+		const char *name;
+		memcpy(&name, (const char *)items + i * stride + offset, sizeof name);
+		if (name)
+			names->sorted[names->n++] = (struct names_place){name, i};
+	}
+	if (names->n)
+		qsort(names->sorted, names->n, sizeof *names->sorted, by_name);
+	return 0;
+}
+
+void names_free(struct names *names)
+{
+	free(names->sorted);
+	*names = (struct names){0};
+}
+
+/* As strcmp, of a name and one of `length` bytes. */
+static int compare(const char *name, const struct list_name *with)
+{
+	int order = strncmp(name, with->text, with->length);
+
+	return order ? order : name[with->length] != 0;
+}
+
+size_t names_find_part(const struct names *names, const struct list_name *name)
+{
+	size_t low = 0, high = names->n;
+
+	while (low < high) {
+		const size_t middle = low + (high - low) / 2;
+		if (compare(names->sorted[middle].name, name) < 0)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low < names->n && !compare(names->sorted[low].name, name) ? names->sorted[low].place
+									 : NAMES_NONE;
+}
+
+size_t names_find(const struct names *names, const char *name)
+{
+	return names_find_part(names, &(struct list_name){name, strlen(name)});
+}
+
+size_t names_twice(const struct names *names, size_t *earlier)
+{
+	size_t later = NAMES_NONE;
+
+	for (size_t i = 1; i < names->n; i++) {
+		const struct names_place *a = &names->sorted[i - 1], *b = &names->sorted[i];
+		if (b->place < later && !strcmp(a->name, b->name)) {
+			*earlier = a->place;
+			later = b->place;
+		}
+	}
+	return later;
+}
+
+size_t names_count(const struct names *names)
+{
+	size_t count = names->n > 0;
+
+	for (size_t i = 1; i < names->n; i++)
+		count += strcmp(names->sorted[i - 1].name, names->sorted[i].name) != 0;
+	return count;
+}
+
+int names_mark(const void *items, size_t stride, size_t offset, size_t n, const char *list,
+	const char *option, const char *what, char *chosen, struct err *e)
+{
+	struct list_name name;
+	struct names names;
+	int bad = 0;
+
+	if (names_make(&names, items, stride, offset, n, e))
+		return -1;
+	while (!bad && list_next(&list, &name)) {
+		const size_t place = names_find_part(&names, &name);
+		if (place == NAMES_NONE)
+			bad = err_set(
+				e, ERR_USAGE, "%s: no %s '%.*s'", option, what, (int)name.length, name.text);
+		else
+			chosen[place] = 1;
+	}
+	names_free(&names);
+	return bad;
+}

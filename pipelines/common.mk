@@ -1,0 +1,64 @@
+# What the pipelines share: variables that are checked and quoted, and steps that are done again when their command changes.
+# Included by the other files, which set `here` to the folder that they are in.
+
+BIN ?= $(if $(wildcard $(here)../build/bin/refer-train),$(here)../build/bin)
+BERT ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/encoder
+
+# Threads that wait for one another give their processor to other programs.
+export OMP_WAIT_POLICY ?= passive
+
+empty :=
+space := $(empty) $(empty)
+tab := $(empty)	$(empty)
+hash := \#
+open := (
+close := )
+define newline
+
+
+endef
+
+# A text as one word of the shell, whatever is in it; a variable as one; a variable as its words. $(call quote,TEXT),
+# $(call quoted,VARIABLE), $(call options,VARIABLE)
+quote = '$(subst ','\'',$(1))'
+quoted = $(call quote,$($(1)))
+options = $(foreach w,$($(1)),$(call quote,$(w)))
+
+# What make or the shell would not take for a part of a file's name.
+unsafe := : ; & ' " ` $$ \ * ? [ ] { } < > | ! ~ % = $(hash) $(open) $(close)
+found_in = $(if $(findstring $(newline),$(1)),newline,$(if $(findstring $(space),$(1))$(findstring $(tab),$(1)),blank,$(firstword \
+	$(foreach c,$(unsafe),$(if $(findstring $(c),$(1)),$(c))))))
+refuse = $(error $(1) has a $(2), which file names cannot have here; use a symbolic link with another name)
+check_path = $(if $(call found_in,$($(1))),$(call refuse,$(1),$(call found_in,$($(1)))))
+check_line = $(if $(findstring $(newline),$($(1))),$(error $(1) has a newline))
+
+# What the user gives is taken as it is: no $ in it stands for anything, here or where make exports it. $(call take,VARIABLE)
+take = $(if $(filter command environment,$(firstword $(origin $(1)))),$(eval override $(1) := $$(value $(1))))
+
+# Takes the variables: names of files and folders, and others. Stops where one that is needed is not set, or one cannot be
+# used. To be called before any of them is looked at. $(call check,NEEDED,NAMES OF FILES,OTHERS,FILE)
+define check
+$(foreach v,$(2) $(3),$(call take,$(v)))$(if $(filter help clean,$(MAKECMDGOALS)),,$(if $(call missing,$(1)),$(error \
+	$(call missing,$(1)) not set; see the head of $(4))))$(foreach v,$(2),$(call check_path,$(v)))$(foreach \
+	v,$(3),$(call check_line,$(v)))
+endef
+missing = $(strip $(foreach v,$(1),$(if $($(v)),,$(v))))
+
+tool = $(if $(BIN),$(call quote,$(BIN)/))
+
+# A step is a tool's command line, the variable command.STEP. log/STEP.command, which its results depend on, is what it was
+# when they were made, and changes only with it. $(call track,STEPS) finds out which changed.
+same = $(if $(subst x$(1),,x$(2))$(subst x$(2),,x$(1)),,same)
+track = $(foreach s,$(1),$(if $(call same,$(file <$(SCENE)/log/$(s).command),$(command.$(s))),,$(eval \
+	$(SCENE)/log/$(s).command: FORCE)))
+
+# Does a step. -v makes its last line, time and memory, which is kept for the report. $(call run,STEP)
+run = mkdir -p $(SCENE)/log && $(tool)$(command.$(1)) -v 2>$(SCENE)/log/$(1) || { cat $(SCENE)/log/$(1) >&2; exit 1; }
+
+# What gs-import may take for the cameras in a folder. $(call camera_files,FOLDER)
+camera_files = $(wildcard $(addprefix $(1)/,cameras.json transforms.json $(foreach d,./ sparse/ sparse/0/,$(foreach f,cameras \
+	images,$(d)$(f).bin $(d)$(f).txt))))
+
+.PHONY: FORCE help
+.DELETE_ON_ERROR:
+.SECONDARY:

@@ -1,0 +1,163 @@
+#!/usr/bin/env bats
+# The variables of the pipelines: a change of one remakes what depends on it, and no value is more than a value.
+
+load two-stage.bash
+
+# remade VARIABLE=VALUE...: the tools that make would run, and how often.
+remade() {
+	two_stage -n predictions overlays scores "$@" | grep -oE "^(mkdir .*)?'[^ ]*/'[a-z-]+ " | sed "s/.*'//" | sort | uniq -c |
+		awk '{ printf "%s%s %d", (NR > 1 ? ", " : ""), $2, $1 }'
+}
+
+@test "a changed variable remakes what depends on it, and nothing else" {
+	[ -z "$(remade)" ]
+	# Stage 2 is taught by lifted objects, which no training changes.
+	training="miou-score 4, refer-render 6, refer-train 2"
+	for variable in ITERATIONS=61 SEED=2 TRAIN='--batch 4'; do
+		[ "$(remade "$variable")" = "$training" ]
+	done
+	[ "$(remade TEACH=stage1)" = "miou-score 3, refer-render 4, refer-train 1" ]
+	lifted="miou-score 5, pseudomask-select 1, refer-lift 1, refer-render 7, refer-train 2"
+	for variable in SCALE=1 WEIGH='--precision f16'; do
+		[ "$(remade "$variable")" = "gs-weigh 1, $lifted" ]
+	done
+	for variable in TEST_VIEWS=every:3 IMAGES=; do
+		[ "$(remade "$variable")" = "gs-import 1, gs-weigh 1, $lifted" ]
+	done
+	[ "$(remade SELECT='--method top1')" = "miou-score 3, pseudomask-select 1, refer-render 3, refer-train 1" ]
+	[ "$(remade LIFT='--names masks')" = "miou-score 3, refer-lift 1, refer-render 4, refer-train 1" ]
+	cp -r "$ROOT/tests/golden/bert" "$BATS_TEST_TMPDIR/bert"
+	[ "$(remade BERT="$BATS_TEST_TMPDIR/bert")" = "miou-score 5, refer-lift 1, refer-render 7, refer-train 2, text-encode 1" ]
+	cp -p "$DATA/truth.jsonl" "$BATS_TEST_TMPDIR/truth.jsonl"
+	[ "$(remade TRUTH="$BATS_TEST_TMPDIR/truth.jsonl")" = "miou-score 6" ]
+}
+
+@test "a variable that was changed and changed back remakes as often as it changed" {
+	WORK=$BATS_TEST_TMPDIR/work two_stage "$BATS_TEST_TMPDIR/work/weights/complete" >/dev/null
+	WORK=$BATS_TEST_TMPDIR/work two_stage "$BATS_TEST_TMPDIR/work/weights/complete" SCALE=1 >/dev/null
+	jq -Rn '[inputs][0]' <"$BATS_TEST_TMPDIR/work/log/weigh.command" | grep -q -- "--scale '1'"
+	WORK=$BATS_TEST_TMPDIR/work run two_stage "$BATS_TEST_TMPDIR/work/weights/complete"
+	grep -q gs-weigh <<<"$output"
+	not grep -q gs-import <<<"$output"
+	WORK=$BATS_TEST_TMPDIR/work run two_stage "$BATS_TEST_TMPDIR/work/weights/complete"
+	not grep -q gs-weigh <<<"$output"
+}
+
+@test "cameras that gs-import finds by itself are a dependency, also those of the trained model's folder" {
+	for at in point_cloud.ply point_cloud/iteration_7/point_cloud.ply; do
+		rm -rf "$BATS_TEST_TMPDIR/data" "$BATS_TEST_TMPDIR/work"
+		mkdir -p "$BATS_TEST_TMPDIR/data/$(dirname $at)"
+		cp "$DATA/point_cloud.ply" "$BATS_TEST_TMPDIR/data/$at"
+		cp -r "$DATA/sparse" "$BATS_TEST_TMPDIR/data"
+		make_scene() {
+			two_stage SCENE="$BATS_TEST_TMPDIR/work" SPLATS="$BATS_TEST_TMPDIR/data/$at" CAMERAS= \
+				"$BATS_TEST_TMPDIR/work/scene/cameras.json"
+		}
+		make_scene >/dev/null
+		run make_scene
+		not grep -q gs-import <<<"$output"
+		touch -d '+2 seconds' "$BATS_TEST_TMPDIR/data/sparse/0/images.txt"
+		run make_scene
+		grep -q gs-import <<<"$output"
+	done
+}
+
+# cut_off ARGUMENT...: the workflow, killed in the training of stage 1 as soon as that has a checkpoint.
+cut_off() {
+	mkdir -p tools
+	ln -sf "$BIN"/* tools
+	rm tools/refer-train
+	cat >tools/refer-train <<-END
+		#!/bin/sh
+		"$BIN/refer-train" "\$@" &
+		while [ ! -e "$WORK/stage1/model.safetensors.checkpoint" ] && kill -0 \$!; do sleep 0.05; done
+		kill -9 \$!
+		exit 137
+	END
+	chmod +x tools/refer-train
+	BIN=$PWD/tools run two_stage "$@"
+	[ "$status" = 2 ]
+	[ -e "$WORK/stage1/model.safetensors.checkpoint" ]
+}
+
+@test "a training that was cut off goes on, and starts anew where something that it learns from changed" {
+	cd "$BATS_TEST_TMPDIR"
+	cp -r "$DATA" data
+	WORK=$PWD/work DATA=$PWD/data
+	long=(ITERATIONS=2000 "TRAIN=--checkpoint 20")
+	cut_off "${long[@]}"
+	run two_stage -n "$WORK/stage1/model.safetensors" "${long[@]}"
+	not grep -q pseudomask-select <<<"$output"
+	# Another input, and another variable.
+	sed -i '$d' data/candidates.jsonl
+	touch -d '+2 seconds' data/candidates.jsonl
+	two_stage "$WORK/stage1/model.safetensors" "${long[@]}" ITERATIONS=40
+	rm "$WORK/stage1/model.safetensors"
+	touch -d '1 hour ago' data/candidates.jsonl
+	cut_off "${long[@]}"
+	two_stage "$WORK/stage1/model.safetensors" ITERATIONS=40 SEED=3
+	# The bytes are those of a training that nothing cut off.
+	cp "$WORK/stage1/model.safetensors" first
+	rm -r work
+	two_stage "$WORK/stage1/model.safetensors" ITERATIONS=40 SEED=3
+	cmp first "$WORK/stage1/model.safetensors"
+	# Nothing changed: it goes on from the checkpoint.
+	rm "$WORK/stage1/model.safetensors"
+	cut_off ITERATIONS=2000 "TRAIN=--checkpoint 20"
+	checkpoint=$(stat -c %Y "$WORK/stage1/model.safetensors.checkpoint")
+	cut_off ITERATIONS=2000 "TRAIN=--checkpoint 20"
+	[ "$(stat -c %Y "$WORK/stage1/model.safetensors.checkpoint")" = "$checkpoint" ]
+}
+
+@test "names that make or the shell would take for something else are refused at once, and nothing in them is done" {
+	cd "$BATS_TEST_TMPDIR"
+	for name in 'a b' 'a:b' 'a$b' 'a$(shell touch done)' 'a$$(touch done)' "a'b" 'a"b' 'a;touch done' 'a&b' 'a(b)' 'a#b' 'a`touch done`' \
+		'a*' 'a%b' 'a=b' 'a\b' '~' 'a|b' $'a\tb' $'a\ntouch done'; do
+		for variable in SCENE SPLATS CAMERAS SENTENCES CANDIDATES TRUTH; do
+			run two_stage "$variable=$name"
+			[ "$status" = 2 ] || { echo "$variable=$name: $status $output"; false; }
+			grep -qF "*** $variable has a " <<<"$output" || { echo "$variable=$name: $output"; false; }
+			[ "${#lines[@]}" = 1 ] || { echo "$variable=$name: $output"; false; }
+		done
+	done
+	SPLATS='a$(shell touch done)' run make -f "$ROOT/pipelines/two-stage.mk" SCENE=x SENTENCES=y CANDIDATES=z
+	grep -qF '*** SPLATS has a ' <<<"$output"
+	[ -z "$(ls)" ]
+}
+
+@test "other values reach the tools as they are, and nothing in them is done" {
+	cd "$BATS_TEST_TMPDIR"
+	for value in '$(shell touch done)' '$(touch done)' '`touch done`' "'; touch done; '" '"; touch done; "' '; touch done' '& touch done' '# x' '$x'; do
+		WORK=$PWD/work run two_stage TEST_VIEWS="$value"
+		[ "$status" = 2 ]
+		grep -qF "gs-import: --test-views: no view '$value'" <<<"$output"
+		WORK=$PWD/work run two_stage SCALE="$value"
+		grep -qF "gs-weigh: --scale: '$value' is not" <<<"$output"
+		WORK=$PWD/work run two_stage BERT="$PWD/$value"
+		grep -qF "text-encode: $PWD/$value" <<<"$output"
+		WORK=$PWD/work run two_stage SELECT="$value"
+		grep -qE "pseudomask-select: |Try 'pseudomask-select" <<<"$output"
+		[ "$(ls)" = work ] || { ls; echo "$value"; false; }
+	done
+	cp -r "$ROOT/tests/golden/bert" "it's a model; # (of words)"
+	WORK=$PWD/work two_stage BERT="$PWD/it's a model; # (of words)" "$PWD/work/text.safetensors"
+}
+
+@test "the demo's and the desk's values are not done either" {
+	cd "$BATS_TEST_TMPDIR"
+	run make -f "$ROOT/pipelines/demo.mk" DEMO=demo BIN="$BIN" SEED='1; touch done'
+	[ "$status" = 2 ]
+	run make -f "$ROOT/pipelines/demo.mk" DEMO=demo BIN="$BIN" SYNTH='--objects 2 `touch done` $(touch done)'
+	[ "$status" = 2 ]
+	grep -qF '`touch' <<<"$output"
+	for variable in DATA OUT ASK; do
+		run make -f "$ROOT/pipelines/desk.mk" BIN="$BIN" DATA=x "$variable=a b"
+		[ "$status" = 2 ]
+		grep -qF "*** $variable has a blank" <<<"$output"
+	done
+	run env -u DATA make -f "$ROOT/pipelines/desk.mk"
+	grep -qF "DATA not set" <<<"$output"
+	run make -f "$ROOT/pipelines/demo.mk" DEMO='$(shell touch done)'
+	grep -qF "*** DEMO has a" <<<"$output"
+	[ ! -e done ]
+}
