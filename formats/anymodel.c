@@ -103,7 +103,7 @@ int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, stru
 {
 	const struct model *t = &m->trained;
 	const float *means = q->scene->splats.means;
-	const struct parser parser = {.weights = &m->weights};
+	const struct parser parser = {.weights = &m->weights, .encoder = q->text->encoder.hex};
 	struct asked_of of = {&q->scene->splats, &q->scene->cameras, q->text->offsets, q->text->words,
 		q->text->texts, q->text->pieces, NULL, &parser, q->which, q->count, q->text->refs,
 		file_name(q->model_path)};
