@@ -9,6 +9,12 @@ WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvl
 LDLIBS := -lcjson -lpng -ljpeg -lz -lm
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 
+# WordNet is used where its library is: Debian's wordnet-dev to build, wordnet-base to run.
+ifneq ($(wildcard /usr/include/wn.h),)
+CPPFLAGS += -DHAVE_WORDNET
+LDLIBS += -lwordnet
+endif
+
 # A change of any of these rebuilds everything (see $(BUILD)/flags).
 COMPILE = $(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L -DVERSION='"$(VERSION)"' -Ilibcommon -I. \
 	$(CFLAGS) -std=c11 -fopenmp -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)

@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 #include "formats/lifted.h"
 #include "formats/masks.h"
+#include "formats/parser_weights.h"
 #include "formats/scene.h"
 #include "formats/text.h"
 #include "formats/weights.h"
@@ -50,6 +51,7 @@ struct run {
 	char *is_there; /* (scene.cameras.n) the view has weights */
 	struct lift_objects lift;
 	struct lifted model;
+	struct parser_weights weights;
 	struct cli_progress progress;
 };
 
@@ -70,6 +72,7 @@ static void run_free(struct run *r)
 	free(r->is_there);
 	lift_objects_free(&r->lift);
 	lifted_free(&r->model);
+	parser_weights_free(&r->weights);
 }
 
 static int load(struct run *r, struct err *e)
@@ -209,15 +212,16 @@ static int run(struct run *r, const struct cli *c, struct err *e)
 	double confidence = 0;
 	size_t moved = 0;
 
-	if (load(r, e) || find_views(r, c, e) || find_sentences(r, e))
+	if (load(r, e) || parser_weights_default(&r->weights, e) || find_views(r, c, e) ||
+		find_sentences(r, e))
 		return -1;
 	find_objects(r, c);
 	cli_progress_start(&r->progress, c, "views", (double)r->scene.cameras.n * LIFT_ROUNDS);
 	int bad = lift(r, e);
 	cli_progress_end(&r->progress);
 	if (bad || lifted_add_sentences(&r->model, &r->text, r->sentence_object, r->names, e) ||
-		(!options.is_as_masked &&
-			recognise(&r->model, &r->scene.splats, &r->scene.cameras, &moved, e)))
+		(!options.is_as_masked && recognise(&r->model, &r->scene.splats, &r->scene.cameras,
+						  &(struct parser){.weights = &r->weights}, &moved, e)))
 		return -1;
 	for (size_t o = 0; o < r->model.objects; o++)
 		confidence += (double)r->model.confidence[o] / (double)r->model.objects;

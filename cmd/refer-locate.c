@@ -8,7 +8,7 @@
 #include "formats/scene.h"
 #include "formats/splat.h"
 #include "formats/text.h"
-#include "refer/choose.h"
+#include "ask/choose.h"
 #include "geom/up.h"
 #include "refer/locate.h"
 
@@ -18,7 +18,7 @@
 enum { SPLIT_ALL = 2 };
 
 static struct {
-	const char *scene, *text, *model, *refs, *ply, *splat;
+	const char *scene, *text, *model, *refs, *ply, *splat, *viewpoint;
 	int sentences, show;
 } options = {.sentences = SPLIT_ALL};
 
@@ -30,6 +30,9 @@ static const struct cli_option table[] = {
 	{"sentences", 0, CLI_CHOICE, &options.sentences, "train|test|all", "which sentences (default all)", 0,
 		0},
 	{"refs", 0, CLI_STRING, &options.refs, "REF,...", "these sentences instead of a split", 0, 0},
+	{"viewpoint", 0, CLI_STRING, &options.viewpoint, "VIEW|x,y,z",
+		"lifted models: where sentences are said (default: the view that a sentence names, else between the training views)",
+		0, 0},
 	{"ply", 0, CLI_STRING, &options.ply, "FILE",
 		"write the scene with the object of the one sentence as a 3DGS .ply", 0, 0},
 	{"splat", 0, CLI_STRING, &options.splat, "FILE", "the same as a .splat for web viewers", 0, 0},
@@ -77,13 +80,16 @@ static int choose_refs(struct run *r, const struct cli *c, struct err *e)
 
 static int load(struct run *r, const struct cli *c, struct err *e)
 {
+	struct viewpoint from;
 	double up[3];
 
 	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
 		anymodel_read(&r->model, options.model, e) || choose_refs(r, c, e))
 		return -1;
+	if (options.viewpoint && viewpoint_read(&from, options.viewpoint, &r->scene.cameras, r->scene.offset))
+		cli_usage(c, "--viewpoint: '%s' is no view and no x,y,z", options.viewpoint);
 	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
-		r->refs, r->count, 1, CHOOSE_ALL, ASKED_LEAST};
+		r->refs, r->count, 1, CHOOSE_ALL, ASKED_LEAST, options.viewpoint ? &from : NULL};
 	if (anymodel_answer(&r->model, &ask, &r->asked, e))
 		return -1;
 	r->located = mem_zalloc(r->asked.answers, sizeof *r->located, "objects", e);

@@ -9,7 +9,7 @@
 #include "formats/text.h"
 #include "refer/answer.h"
 #include "refer/asked.h"
-#include "refer/choose.h"
+#include "ask/choose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,7 +22,8 @@ static struct {
 	unsigned parts;
 	struct pictures pictures;
 	int split, sentences, is_plain, is_amodal, size[2];
-	double scale; /* 0: not given */
+	const char *viewpoint; /* "each": the view that is rendered */
+	double scale;	       /* 0: not given */
 	double least;
 } options = {.split = SPLIT_TEST, .sentences = SPLIT_ALL, .least = ASKED_LEAST};
 
@@ -42,8 +43,11 @@ static const struct cli_option table[] = {
 	{"min-probability", 0, CLI_REAL, &options.least, "P",
 		"lifted models: a sentence less likely to mean anything gets no mask (default 0.65)", 0, 1},
 	{"without", 0, CLI_STRING, &options.without, "PART,...",
-		"lifted models: choose without words, names, alike, colours, sizes, relations or sentence", 0,
-		0},
+		"lifted models: choose without words, names, knowledge, alike, colours, sizes, relations, except or sentence",
+		0, 0},
+	{"viewpoint", 0, CLI_STRING, &options.viewpoint, "VIEW|x,y,z|each",
+		"lifted models: where sentences are said; each: in every view that is rendered (default: the view that a sentence names, else between the training views)",
+		0, 0},
 	{"amodal", 0, CLI_FLAG, &options.is_amodal, NULL,
 		"outlines of whole objects as if nothing hid them, and the share in sight", 0, 0},
 	{"size", 0, CLI_SIZE, &options.size, "WxH", "size of the masks (default: the view's)", 1, 65536},
@@ -80,6 +84,7 @@ struct run {
 	char *chosen;	       /* of the views, then of the sentences: which a list names */
 	size_t *refs;	       /* indices in text */
 	struct camera *views;  /* at the size of the masks */
+	size_t first;	       /* of the views: the first that is rendered now */
 	struct splats *wholes; /* (answers) for --amodal */
 	struct shown *shown;   /* (view_count,answers) */
 	struct file_out out;
@@ -141,8 +146,25 @@ static int load(struct run *r, const struct cli *c, struct err *e)
 		cli_warn(c, "%s: no %s in this split",
 			r->view_count ? file_name(options.text) : options.scene,
 			r->view_count ? "sentence" : "view");
+	return 0;
+}
+
+static void free_answers(struct run *r)
+{
+	for (size_t k = 0; r->wholes && k < r->asked.answers; k++)
+		splats_free(&r->wholes[k]);
+	free(r->wholes);
+	r->wholes = NULL;
+	asked_free(&r->asked);
+}
+
+/* What all sentences mean, said from a viewpoint or each from its own. */
+static int answer(struct run *r, const struct viewpoint *from, struct err *e)
+{
 	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
-		r->refs, r->ref_count, !options.is_plain, options.parts, options.least};
+		r->refs, r->ref_count, !options.is_plain, options.parts, options.least, from};
+
+	free_answers(r);
 	int bad = anymodel_answer(&r->model, &ask, &r->asked, e) ||
 		  !(r->wholes = mem_zalloc(r->asked.answers, sizeof *r->wholes, "objects", e));
 	if (!bad && options.is_amodal)
@@ -181,39 +203,60 @@ static int put_view(void *data, size_t view, struct err *e)
 		double score = from->score;
 		if (r->asked.sure)
 			score = rle_area(&from->mask) ? r->asked.sure[i] : 0;
-		const struct mask_record record = {r->views[view].name, r->text.refs[sentence],
+		const struct mask_record record = {r->views[r->first + view].name, r->text.refs[sentence],
 			(char *)text_object(&r->text, sentence), score, from->mask, from->visible};
 		bad = masks_put(r->out.stream, &record, e);
 	}
 	for (size_t k = 0; k < r->asked.answers; k++)
 		rle_free(&shown[k].mask);
-	cli_progress_step(&r->progress, (double)view + 1, NULL);
+	cli_progress_step(&r->progress, (double)(r->first + view) + 1, NULL);
 	return bad;
 }
 
-static int render(struct run *r, struct err *e)
+/* The views from r->first on. */
+static int render(struct run *r, size_t views, struct err *e)
 {
 	const struct answer_question q = {&r->scene.splats, &r->asked, options.is_amodal ? r->wholes : NULL,
 		options.pictures.overlays != NULL};
 	const struct answer_calls calls = {r, put_answer, put_view};
 	size_t count = r->asked.answers;
 
-	if (mem_size(count, r->view_count, &count))
+	if (mem_size(count, views, &count))
 		return err_set(e, ERR_SYSTEM, "masks do not fit in memory");
 	r->shown = mem_zalloc(count, sizeof *r->shown, "masks", e);
-	int bad = !r->shown || answer_all(&q, r->views, r->view_count, &calls, e) ? -1 : 0;
+	int bad = !r->shown || answer_all(&q, r->views + r->first, views, &calls, e) ? -1 : 0;
 	for (size_t i = 0; r->shown && i < count; i++)
 		rle_free(&r->shown[i].mask);
 	free(r->shown);
 	return bad;
 }
 
+static int render_all(struct run *r, const struct viewpoint *from, struct err *e)
+{
+	int bad = 0;
+
+	if (!options.viewpoint || strcmp(options.viewpoint, "each") != 0)
+		return answer(r, options.viewpoint ? from : NULL, e) || render(r, r->view_count, e);
+	for (r->first = 0; r->first < r->view_count && !bad; r->first++) {
+		const struct viewpoint own = {.kind = VIEWPOINT_CAMERA, .camera = &r->views[r->first]};
+		bad = answer(r, &own, e) || render(r, 1, e);
+	}
+	return bad;
+}
+
 static int run(struct run *r, const struct cli *c, struct err *e)
 {
-	if (load(r, c, e) || file_out_open(&r->out, c->output, e))
+	struct viewpoint from;
+
+	if (load(r, c, e))
+		return -1;
+	if (options.viewpoint && strcmp(options.viewpoint, "each") != 0 &&
+		viewpoint_read(&from, options.viewpoint, &r->scene.cameras, r->scene.offset))
+		cli_usage(c, "--viewpoint: '%s' is no view and no x,y,z", options.viewpoint);
+	if (file_out_open(&r->out, c->output, e))
 		return -1;
 	cli_progress_start(&r->progress, c, "views", (double)r->view_count);
-	int bad = render(r, e);
+	int bad = render_all(r, &from, e);
 	cli_progress_end(&r->progress);
 	if (!bad)
 		return file_out_commit(&r->out, e);
@@ -238,10 +281,7 @@ int main(int argc, char **argv)
 	scene_free(&r.scene);
 	text_free(&r.text);
 	anymodel_free(&r.model);
-	for (size_t k = 0; r.wholes && k < r.asked.answers; k++)
-		splats_free(&r.wholes[k]);
-	free(r.wholes);
-	asked_free(&r.asked);
+	free_answers(&r);
 	free(r.chosen);
 	free(r.refs);
 	free(r.views);

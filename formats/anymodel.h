@@ -4,6 +4,7 @@
 
 #include "base/err.h"
 #include "formats/model.h"
+#include "formats/parser_weights.h"
 #include "formats/scene.h"
 #include "formats/text.h"
 #include "refer/asked.h"
@@ -13,7 +14,8 @@ struct anymodel {
 	int is_lifted;
 	struct model trained;
 	struct lifted lifted;
-	struct origin origin; /* the scene and the encoder that it was made with */
+	struct origin origin;	       /* the scene and the encoder that it was made with */
+	struct parser_weights weights; /* of the sentences' parser, for a lifted model: the default ones */
 };
 
 /* ERR_FORMAT where the file is malformed, or of another kind. */
@@ -29,6 +31,8 @@ struct anymodel_ask {
 	int wants_calibration; /* of trained models, and the next are of lifted ones: see refer/asked.h */
 	unsigned parts;
 	double least;
+	const struct viewpoint
+		*from; /* where all sentences are said; NULL: each of the view that it names, if any */
 };
 
 /* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text

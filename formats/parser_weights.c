@@ -1,11 +1,13 @@
 #include "formats/parser_weights.h"
 
 #include "base/mem.h"
+#include "formats/fingerprint.h"
 #include "formats/safetensors.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The default weights are part of the program, so that every tool has them:
  * formats/parser_default.safetensors. */
@@ -24,6 +26,7 @@ static int take_tensors(struct parser_weights *w, const struct safetensors *st, 
 {
 	struct parser_part parts[PARSER_PARTS];
 	const struct st_tensor *t;
+	struct fingerprint encoder;
 	int bad = 0;
 	float *at;
 
@@ -33,8 +36,9 @@ static int take_tensors(struct parser_weights *w, const struct safetensors *st, 
 	if (t->shape[1] < 1 || t->shape[1] > 65536)
 		return err_set(e, ERR_FORMAT, "%s: tensor 'vector.weight': width %lld is not in 1 to 65536",
 			st->path, (long long)t->shape[1]);
-	if (parser_weights_make(w, (int)t->shape[1], e))
+	if (fingerprint_read(&encoder, st, "encoder", e) || parser_weights_make(w, (int)t->shape[1], e))
 		return -1;
+	memcpy(w->encoder, encoder.hex, sizeof w->encoder);
 	parser_parts(w->width, parts);
 	at = w->slab;
 	for (int i = 0; i < PARSER_PARTS && !bad; i++) {
@@ -104,7 +108,8 @@ int parser_weights_write(const struct parser_weights *w, const char *path, const
 	}
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
 	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "1"}, {"tool", "parse-train"},
-		{"options", options}, {"seed", seed_text}, {"source", source}};
+		{"options", options}, {"seed", seed_text}, {"source", source},
+		{"encoder", w->encoder[0] ? w->encoder : NULL}};
 	bad = safetensors_write(path, tensors, PARSER_PARTS, meta, sizeof meta / sizeof *meta, e);
 	free(half);
 	return bad;

@@ -12,6 +12,7 @@ struct making {
 	const struct example_list *nouns;
 	struct rng *r;
 	int n, depth, has_noun, noun, is_plural;
+	int spoken_of; /* an anchor that waits for its predicate: "see the box ? T near it" */
 	struct made {
 		char text[MADE_LENGTH];
 		enum word_role role;
@@ -99,17 +100,60 @@ static void put_before(struct making *m, int *list, int *count)
 {
 	const struct example_clause *c = &m->w->before.item[rng_below(m->r, (uint32_t)m->w->before.n)];
 	const char *star = strchr(c->text, '*');
+	size_t length = strcspn(star + 1, " ");
 	int i;
 
 	if (star > c->text)
 		put(m, c->text, (size_t)(star - c->text - 1));
-	i = put_any(m, star + 1);
+	i = put_choice(m, star + 1, length);
 	m->word[i].role = ROLE_PREDICATE;
 	m->word[i].relation = c->relation;
+	if (star[1 + length]) /* "left hand" */
+		put_any(m, star + 2 + length);
 	list[(*count)++] = i;
 }
 
-/* A noun with what stands before it. Returns its index. */
+static void put_marked(struct making *m, const struct example_list *list, int owner)
+{
+	int first = m->n;
+
+	put_any(m, pick(m, list));
+	for (int i = first; i < m->n; i++) {
+		m->word[i].role = ROLE_ATTRIBUTE;
+		m->word[i].head = owner;
+	}
+}
+
+/* "in dark green", "of red colour", "made of wood", "with a shiny surface". */
+static void put_look(struct making *m, int owner)
+{
+	switch (rng_below(m->r, 6)) {
+	case 0:
+		put_any(m, "in|in|in_a|coloured|painted|all_in");
+		put_marked(m, &example_hues, owner);
+		return;
+	case 1:
+		put_any(m, "of|of|of_a|in_a");
+		put_marked(m, &example_hues, owner);
+		put_any(m, "colour|color|shade|tone");
+		return;
+	case 2:
+		put_any(m, "whose_colour_is|whose_color_is|that_is|which_is|that_is_all");
+		put_marked(m, &example_hues, owner);
+		return;
+	case 3:
+		put_any(m, "with_a");
+		put_marked(m, chance(m, 0.5) ? &example_hues : &example_attributes, owner);
+		put_any(m, "surface|finish|coat|pattern|look");
+		return;
+	default:
+		put_any(m, "made_of|made_of|made_out_of|of");
+		put_marked(m, &example_stuffs, owner);
+		return;
+	}
+}
+
+/* A noun with what stands before it, and at times its look after it. Returns its index. */
 static int noun_phrase(
 	struct making *m, enum word_role role, int head, const char *noun, int is_plural, int plain)
 {
@@ -145,6 +189,11 @@ static int noun_phrase(
 	m->word[last].head = head;
 	for (int i = 0; i < count; i++)
 		m->word[list[i]].head = owner;
+	if (chance(m, role == ROLE_TARGET ? 0.1 : 0.03)) {
+		put_look(m, owner);
+		if (role == ROLE_TARGET && chance(m, 0.4))
+			put(m, ",", 1);
+	}
 	return last;
 }
 
@@ -230,7 +279,8 @@ static void expand_clause(struct making *m, const struct example_clause *c, int 
 					break;
 		} else if (*p == '^' && length == 1) {
 			put_any(m,
-				"||||sitting|standing|placed|lying|located|resting|leaning|stacked|hanging|mounted|sits|set");
+				"||||||sitting|standing|placed|lying|located|resting|leaning|stacked|hanging|mounted|sits|set|positioned|"
+				"found|set_down|that_you_can_see|that_stands|that_rests|kept");
 		} else if (*p == '~' && length == 1) {
 			put_any(m, "||||just|directly|right|immediately");
 		} else {
@@ -251,6 +301,16 @@ static void expand_clause(struct making *m, const struct example_clause *c, int 
 		m->word[anchors[i]].head = main;
 }
 
+/* "standing", "that you can see" */
+static void put_pose(struct making *m, int is_relative)
+{
+	put_any(m,
+		is_relative
+			? "standing|lying|resting|placed|located|positioned|found|set_down|put|kept|seen|that_stands|"
+			  "that_lies|that_you_can_see|which_can_be_seen|that_was_put|you_see|to_be_found|that_rests"
+			: "standing|lying|resting|placed|located|positioned|found|set_down|put|kept|seen");
+}
+
 static void clause(struct making *m, int figure, int forms, int denied)
 {
 	const struct example_clauses *of;
@@ -269,6 +329,9 @@ static void clause(struct making *m, int figure, int forms, int denied)
 		denied = chance(m, 0.18);
 	if (of == &m->w->placed && (forms & FORM_TURNED) && chance(m, 0.25))
 		put_any(m, ",|that_is|that_'s|which_is|it_is|that_sits");
+	else if (of == &m->w->placed && !strchr("*^", c->text[0]) && strncmp(c->text, "not ", 4) != 0 &&
+		 strncmp(c->text, "the ", 4) != 0 && strncmp(c->text, "that ", 5) != 0 && chance(m, 0.2))
+		put_pose(m, forms & FORM_TURNED);
 	expand_clause(m, c, figure, denied, forms & FORM_HAS);
 }
 
@@ -335,6 +398,19 @@ static void one_of_look(struct making *m, enum word_role role)
 		clause(m, role == ROLE_TARGET ? ROOT : last, FORM_PLACED | FORM_HAVING, 0);
 }
 
+/* "near it": of what was spoken of. */
+static void points_back(struct making *m)
+{
+	const struct example_clause *c = &m->w->back.item[rng_below(m->r, (uint32_t)m->w->back.n)];
+	int at = m->n;
+
+	expand_clause(m, c, ROOT, 0, 0);
+	while (at < m->n && m->word[at].role != ROLE_PREDICATE)
+		at++;
+	if (at < m->n)
+		m->word[m->spoken_of].head = at;
+}
+
 /* 1 where the symbol was one. */
 static int symbol(struct making *m, const char *p, size_t length, int before_sure)
 {
@@ -393,6 +469,12 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 		return 1;
 	case 'V':
 		anchor(m, ROLE_VIEW, 1);
+		return 1;
+	case 'B':
+		m->spoken_of = anchor(m, ROLE_ANCHOR, 0);
+		return 1;
+	case 'D':
+		points_back(m);
 		return 1;
 	case 'X':
 		anchor(m, ROLE_EXCEPT, 1);

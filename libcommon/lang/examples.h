@@ -33,7 +33,8 @@ void example_make(struct example *x, enum examples_set set, const char *pieces, 
  * adjective C2  a clause that is denied V   what is faced or stood at             X  what is left out S  a
  * further target L   several of the target's noun          U  a target of no noun ("the one") with its
  * clauses Q   "the red one" that is meant            O  a further one                    q  a word of its
- * look F   what a thing is for ("to write with"), all predicates of PARSE_OTHER       ,.? punctuation */
+ * look F   what a thing is for ("to write with"), all predicates of PARSE_OTHER       B   an anchor that a
+ * later D points back to: "near it"    ,.? punctuation */
 struct example_clause {
 	enum parse_relation relation;
 	int negated;
@@ -51,12 +52,13 @@ struct example_wordings {
 	struct example_clauses placed; /* after a noun, "that is" or "it is" */
 	struct example_clauses having; /* after $ in its place, or "has" */
 	struct example_clauses turned; /* after a noun as a relative clause: "that @ is on" */
+	struct example_clauses back;   /* of what was spoken of: "near it" */
 	struct example_clauses before; /* adjectives that place or size: "left", "smallest" */
 	struct example_list sentences, functions;
 };
 extern const struct example_wordings example_wordings[2];
 
 /* In examples_nouns.c. */
-extern const struct example_list example_nouns[2], example_attributes;
+extern const struct example_list example_nouns[2], example_attributes, example_hues, example_stuffs;
 
 #endif

@@ -44,6 +44,9 @@ static const char *const nouns[] = {
 	"people", "cat", "dog", "photo", "picture", "row_of_tables", "set_of_windows", "pair_of_shoes",
 	"table", "chair", "bed", "round_table", "dining_chair", "exit_sign", "projector", "copier",
 	"vending_machine", "washing_machine",
+	"table_top", "desk_top", "orb", "carton", "package", "basin", "volume", "hardback", "vessel",
+	"piece_of_crockery", "piece_of_fruit", "piece_of_cutlery", "traffic_cone", "party_hat",
+	"soup_bowl", "dinner_plate", "drinking_glass", "toy", "sketch", "base", "foot", "item",
 };
 /* clang-format on */
 
@@ -61,7 +64,26 @@ static const char *const attributes[] = {
 	"dotted", "coloured", "colored", "multicolored", "greenish", "matte", "glossy", "hollow",
 	"pointy", "pointed", "bent", "upside_down", "adjustable", "portable", "cheap", "pretty", "ugly",
 	"strange", "half_full", "cracked", "used", "blank", "framed", "upholstered", "padded",
-	"stainless", "medium", "medium_sized", "wall_mounted", "swivel", "ripe", "wet",
+	"stainless", "medium", "medium_sized", "mid_sized", "brick_red", "sky_blue", "bottle_green",
+	"jet_black", "snow_white", "slate_grey", "ash_grey", "royal_blue", "lemon_yellow", "salmon_pink",
+	"chalk_white", "coal_black", "bright_orange", "chocolate_brown", "grass_green", "crimson",
+	"emerald", "cobalt", "chestnut", "tangerine", "plum", "rose", "aqua", "banded", "speckled",
+	"polished", "porcelain", "grey_blue", "black_and_white", "wall_mounted", "swivel", "ripe", "wet",
+};
+/* clang-format on */
+
+/* clang-format off */
+static const char *const hues[] = {
+	"red", "green", "blue", "yellow", "black", "white", "brown", "grey", "pink", "purple", "orange",
+	"beige", "teal", "turquoise", "violet", "silver", "cream", "lilac", "navy", "crimson", "scarlet",
+	"emerald", "cobalt", "chestnut", "tangerine", "plum", "rose", "aqua", "light_blue", "dark_green",
+	"brick_red", "sky_blue", "jet_black", "snow_white", "slate_grey", "royal_blue", "lemon_yellow",
+	"salmon_pink", "bright_orange", "chocolate_brown", "grass_green", "pale_pink", "deep_purple",
+};
+
+static const char *const stuffs[] = {
+	"wood", "metal", "plastic", "glass", "china", "porcelain", "ceramic", "rubber", "cardboard",
+	"paper", "leather", "steel", "stone", "cloth", "wool", "brass", "copper", "clay", "foam",
 };
 /* clang-format on */
 
@@ -81,3 +103,4 @@ static const char *const nouns_test[] = {
 
 const struct example_list example_nouns[2] = {LIST(nouns), LIST(nouns_test)};
 const struct example_list example_attributes = LIST(attributes);
+const struct example_list example_hues = LIST(hues), example_stuffs = LIST(stuffs);

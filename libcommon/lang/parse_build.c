@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "lang/analysis.h"
 #include "lang/closed.h"
+#include "lang/colours.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -107,6 +108,17 @@ static int names_kind(const struct build *b, int i)
 	       class_of(b->t, i) != CLOSED_RELATIVE && class_of(b->t, i) != CLOSED_DETERMINER;
 }
 
+/* Words that only lead to one that says something: "of red colour", "a piece of fruit", "mid-sized"; but
+ * "coloured" by itself does. */
+static int says_nothing(const struct tokens *t, int i)
+{
+	static const char *const words[] = {
+		"'s", "side", "hand", "end", "colour", "color", "piece", "sized", NULL};
+
+	return is_any(t, i, words) ||
+	       ((is(t, i, "coloured") || is(t, i, "colored")) && i && colour_word(t->word[i - 1].text) >= 0);
+}
+
 static void widen(struct parse_span *s, struct parse_span by)
 {
 	if (s->begin == s->end) {
@@ -183,7 +195,7 @@ static int fill_phrases(struct build *b)
 	for (int i = 0; i < b->t->n; i++) {
 		enum word_role r = b->a->word[i].role;
 		int owner = phrase_under(b, b->a->word[i].head);
-		if ((r != ROLE_ATTRIBUTE && r != ROLE_NAME) || owner < 0)
+		if ((r != ROLE_ATTRIBUTE && r != ROLE_NAME) || owner < 0 || says_nothing(b->t, i))
 			continue;
 		struct parse_phrase *f = &b->p->phrases[owner];
 		if (is_in(&f->noun, i))
@@ -199,7 +211,8 @@ static int fill_phrases(struct build *b)
 /* By the words around a predicate: "furthest back", "more to the left", "the very left". */
 static enum parse_degree degree_of(const struct build *b, int i)
 {
-	static const char *const most[] = {"most", "extreme", "very", "farthest", "furthest", NULL};
+	static const char *const most[] = {"most", "extreme", "very", "farthest", "furthest", "least",
+		"greatest", "shortest", "smallest", "largest", NULL};
 	static const char *const more[] = {"more", "further", "farther", NULL};
 	const struct tokens *t = b->t;
 	const char *w = t->word[i].text;
@@ -329,10 +342,7 @@ static int add_others(struct build *b)
 			int owner = phrase_under(b, b->a->word[i].head);
 			bad = parse_list_add(
 				&p->phrases[owner < 0 ? 0 : owner].except, b->phrase_of[i], b->e);
-		} else if (r == ROLE_NONE && b->t->word[i].closed < 0 &&
-			   strcmp(b->t->word[i].text, "'s") != 0 && strcmp(b->t->word[i].text, "side") != 0 &&
-			   strcmp(b->t->word[i].text, "hand") != 0 &&
-			   strcmp(b->t->word[i].text, "end") != 0) {
+		} else if (r == ROLE_NONE && b->t->word[i].closed < 0 && !says_nothing(b->t, i)) {
 			bad = parse_list_add(&p->unexplained, i, b->e);
 		}
 		if (bad)

@@ -4,6 +4,7 @@
 #include "lang/parser_net.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static int learnt_analyse(struct analysis *a, const struct tokens *t, const struct analysis *grammar,
 	const struct parser *parser, const struct parser_vectors *v, double *sure, struct err *e)
@@ -30,17 +31,27 @@ static int learnt_analyse(struct analysis *a, const struct tokens *t, const stru
 	return vectors ? 0 : -1;
 }
 
+/* 1 where the weights were learnt on vectors such as these. */
+static int are_mine(const struct parser *parser, const struct parser_vectors *v)
+{
+	const struct parser_weights *w = parser->weights;
+
+	if (!w || !v || !v->vectors || v->width != w->width)
+		return 0;
+	return !w->encoder[0] || !parser->encoder || !parser->encoder[0] ||
+	       !strcmp(w->encoder, parser->encoder);
+}
+
 int parse_sentence(struct parse *p, const struct parser *parser, const char *text,
 	const struct parser_vectors *v, struct err *e)
 {
-	const struct parser_weights *w = parser->weights;
 	struct tokens t;
 	struct analysis a, learnt;
 	double sure = 1;
 
 	tokens_take(&t, text, v ? v->pieces : NULL, parser->known, parser->known_count);
 	grammar_analyse(&a, &t);
-	if (w && v && v->vectors && v->width == w->width && t.n) {
+	if (are_mine(parser, v) && t.n) {
 		if (learnt_analyse(&learnt, &t, &a, parser, v, &sure, e))
 			return -1;
 		a = learnt;

@@ -10,7 +10,8 @@ struct parser {
 	const struct parser_weights *weights; /* NULL: grammar alone */
 	const char *const *known; /* words spelt right besides the closed ones: a scene's vocabulary */
 	int known_count;
-	int is_blind; /* the network is not told what the grammar says: for a comparison */
+	const char *encoder; /* fingerprint of what made the vectors; NULL or "": not known */
+	int is_blind;	     /* the network is not told what the grammar says: for a comparison */
 };
 
 /* What the encoder made of the sentence; zeroed where there is none. */
@@ -21,7 +22,7 @@ struct parser_vectors {
 };
 
 /* No sentence is refused: what the parser cannot place is `unexplained`. -1 only where memory is out. Without
- * vectors, or vectors of another width than the weights', the grammar alone speaks. */
+ * vectors, or with vectors of another width or encoder than the weights', the grammar alone speaks. */
 int parse_sentence(struct parse *p, const struct parser *parser, const char *text,
 	const struct parser_vectors *v, struct err *e);
 

@@ -10,12 +10,13 @@
 /* Of the decoder: first guesses, each kept since the readings' sentences were parsed better with it, none
  * searched. How likely a word must be a predicate to become one for its anchor, and what that counts beside
  * the arc; what a second anchor without "and" costs; how near an anchor a predicate is rather said of it, and
- * by how much. */
+ * by how much; what it costs to be said of an anchor before a pause or "and". */
 #define NET_PREDICATE_LEAST 0.02
 #define NET_PREDICATE_WEIGHT 0.5
 #define NET_LIST_COST 3.0
 #define NET_CLOSE 4
 #define NET_CLOSE_BONUS 1.5f
+#define NET_PARTED_COST 1.5f
 
 static const int reach[NET_LAYERS] = {1, 2, 4};
 
@@ -392,6 +393,9 @@ static void hang(const struct parser_weights *w, const struct parser_batch *b, i
 			if (r == ROLE_PREDICATE && j >= 0 && j < i && i - j <= NET_CLOSE &&
 				!is_parted(t, j, i))
 				scores[j + 1] += NET_CLOSE_BONUS;
+			/* and one after a pause or "and" of the target */
+			if (r == ROLE_PREDICATE && j >= 0 && j < i && is_parted(t, j, i))
+				scores[j + 1] -= NET_PARTED_COST;
 			if (scores[j + 1] > most) {
 				most = scores[j + 1];
 				best = j;

@@ -26,7 +26,8 @@ enum {
 
 /* One slab; the order is that of the file. */
 struct parser_weights {
-	int width; /* of the encoder */
+	int width;	  /* of the encoder */
+	char encoder[17]; /* its fingerprint (formats/fingerprint.h); "": not known */
 	size_t count;
 	float *slab;
 	float *vector, *vector_bias; /* (H,width), (H) */

@@ -7,7 +7,7 @@
 
 /* Sentences in a step, the rates of both parts and the share of units dropped: first guesses, not searched.
  */
-enum { SCHOOL_BATCH = 16 };
+enum { SCHOOL_BATCH = 16, SHARE = 3 };
 static const double examples_rate = 0.002, readings_rate = 0.001, dropout = 0.25;
 /* passes of a round, and of the last */
 enum { ROUND_EPOCHS = 4, LAST_EPOCHS = 6 };
@@ -79,10 +79,11 @@ int parser_school_readings(
 		for (size_t i = 0; i < s->read_count; i++)
 			if (s->read[i].n && s->fold[i] != without)
 				set[n++] = &s->read[i];
-		/* another part of the examples each round */
-		for (size_t i = 0; i < s->example_count && i < s->read_count; i++) {
+		/* another part of the examples each round, SHARE for each reading: people who speak of
+		 * rooms seldom deny or count, and speak otherwise than of what lies on a table */
+		for (size_t i = 0; i < s->example_count && i < SHARE * s->read_count; i++) {
 			const struct parser_sample *x =
-				&s->examples[(i + (size_t)k * s->read_count) % s->example_count];
+				&s->examples[(i + (size_t)k * SHARE * s->read_count) % s->example_count];
 			if (x->n)
 				set[n++] = x;
 		}

@@ -15,11 +15,11 @@ static int ends(const char *w, const char *tail)
 
 void token_lemma(const char *word, char *out)
 {
-	static const char *const odd[][2] = {{"mice", "mouse"}, {"shelves", "shelf"},
-		{"bookshelves", "bookshelf"}, {"knives", "knife"}, {"feet", "foot"}, {"men", "man"},
-		{"women", "woman"}, {"people", "person"}, {"children", "child"}, {"leaves", "leaf"},
-		{"loaves", "loaf"}, {"halves", "half"}, {"teeth", "tooth"}, {"geese", "goose"},
-		{"scarves", "scarf"}};
+	static const char *const odd[][2] = {{"mice", "mouse"}, {"shoes", "shoe"}, {"toes", "toe"},
+		{"shelves", "shelf"}, {"bookshelves", "bookshelf"}, {"knives", "knife"}, {"feet", "foot"},
+		{"men", "man"}, {"women", "woman"}, {"people", "person"}, {"children", "child"},
+		{"leaves", "leaf"}, {"loaves", "loaf"}, {"halves", "half"}, {"teeth", "tooth"},
+		{"geese", "goose"}, {"scarves", "scarf"}};
 	/* the tails of plurals, and what they become */
 	static const char *const tails[][2] = {{"ies", "y"}, {"sses", "ss"}, {"xes", "x"}, {"ches", "ch"},
 		{"shes", "sh"}, {"zes", "ze"}, {"oes", "o"}};

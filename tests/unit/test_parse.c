@@ -2,6 +2,7 @@
 
 #include "base/rng.h"
 #include "lang/closed.h"
+#include "formats/parser_weights.h"
 #include "lang/examples.h"
 #include "lang/parser.h"
 #include "lang/parser_learn.h"
@@ -127,6 +128,58 @@ static void takes_anything(void)
 		parse_any(&grammar, text, NULL);
 		parse_any(&learnt, text, &v);
 	}
+	parser_weights_free(&w);
+}
+
+/* Phrases, clauses, what is left and how sure: of parses that are the same. */
+static int is_same_parse(const struct parse *a, const struct parse *b)
+{
+	return a->phrase_count == b->phrase_count && a->clause_count == b->clause_count &&
+	       a->unexplained.n == b->unexplained.n && a->confidence == b->confidence;
+}
+
+/* Vectors of another encoder, as wide, are not read; those of the same or of an unknown one are. */
+static void other_encoder(void)
+{
+	static const char text[] = "the small red mug on the plate";
+	static float vectors[7 * 8];
+	struct parser_weights w;
+	struct parser grammar = {0}, learnt = {.weights = &w};
+	const struct parser_vectors v = {"the small red mug on the plate", vectors, 7, 8};
+	struct parse by_grammar, p;
+	struct err e = {0};
+	struct rng r;
+
+	rng_seed(&r, 5, 1);
+	for (int i = 0; i < 7 * 8; i++)
+		vectors[i] = (float)rng_normal(&r);
+	CHECK(!parser_weights_make(&w, 8, &e), "%s", e.message);
+	parser_weights_begin(&w, &r);
+	CHECK(!parse_sentence(&by_grammar, &grammar, text, &v, &e), "%s", e.message);
+	static const struct {
+		const char *weights, *vectors;
+		int is_read;
+	} pairs[] = {{"00000000000000aa", "00000000000000aa", 1}, {"00000000000000aa", "00000000000000ab", 0},
+		{"", "00000000000000ab", 1}, {"00000000000000aa", "", 1}, {"00000000000000aa", NULL, 1}};
+	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+		snprintf(w.encoder, sizeof w.encoder, "%s", pairs[i].weights);
+		learnt.encoder = pairs[i].vectors;
+		CHECK(!parse_sentence(&p, &learnt, text, &v, &e), "%s", e.message);
+		CHECK(is_same_parse(&p, &by_grammar) != pairs[i].is_read, "pair %zu", i);
+		parse_free(&p);
+	}
+	parse_free(&by_grammar);
+	parser_weights_free(&w);
+}
+
+/* The program's own weights say which encoder they are of. */
+static void default_has_encoder(void)
+{
+	struct parser_weights w;
+	struct err e = {0};
+
+	CHECK(!parser_weights_default(&w, &e), "%s", e.message);
+	CHECK(strlen(w.encoder) == 16, "'%s'", w.encoder);
 	parser_weights_free(&w);
 }
 
@@ -337,6 +390,8 @@ int main(void)
 	closed_table_fits();
 	lemmas();
 	takes_anything();
+	other_encoder();
+	default_has_encoder();
 	indifferent_to_dress();
 	turned_round();
 	counts_and_orders();
