@@ -1,7 +1,7 @@
 /* gs-synth: a synthetic table-top benchmark, laid out as a person's own data would be. */
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "formats/synth.h"
+#include "cmd/jobs/synth_folder.h"
 #include "synth/cameras.h"
 
 #include <stdlib.h>

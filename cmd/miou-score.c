@@ -2,9 +2,10 @@
 #include "base/err.h"
 #include "base/file.h"
 #include "cli/cli.h"
-#include "formats/answer_scores.h"
-#include "formats/box_scores.h"
-#include "formats/score_masks.h"
+#include "cmd/jobs/answer_scores.h"
+#include "cmd/jobs/box_scores.h"
+#include "cmd/jobs/score_masks.h"
+#include "cmd/jobs/score_tables.h"
 #include "formats/scores.h"
 #include "formats/sentences.h"
 #include "mask/score_choice.h"
@@ -84,8 +85,8 @@ static int by_group(const struct cli *c, struct scores *s, const struct score_sa
 {
 	size_t no_sentence = 0, no_whole = 0;
 
-	if ((s->has_relations && scores_by_relation(s, sample, &in->sentences, &no_sentence, e)) ||
-		(s->has_visibility && scores_by_visibility(s, sample, &in->truth, &in->whole, &no_whole, e)))
+	if ((s->has_relations && score_relations(s, sample, &in->sentences, &no_sentence, e)) ||
+		(s->has_visibility && score_visibility(s, sample, &in->truth, &in->whole, &no_whole, e)))
 		return -1;
 	if (no_sentence)
 		cli_warn(c, "%s: %zu pairs have no sentence there", file_name(paths->sentences), no_sentence);

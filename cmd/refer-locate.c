@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "formats/anymodel.h"
+#include "cmd/jobs/anymodel.h"
 #include "formats/boxes.h"
 #include "formats/ply.h"
 #include "formats/scene.h"

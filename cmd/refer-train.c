@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "formats/checkpoint.h"
-#include "formats/training.h"
+#include "cmd/jobs/training.h"
 #include "formats/trainlog.h"
 #include "refer/divergence.h"
 
