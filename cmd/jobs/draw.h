@@ -10,6 +10,7 @@
 #include "geom/camera.h"
 
 #include <stddef.h>
+#include <stdio.h>
 
 struct draw_options {
 	int split;	   /* the views of which split; REQUEST_ALL */
