@@ -1,5 +1,5 @@
 /* The records of gs-check: sentences, parses, masks and boxes, each read by its own reader and counted. */
-#include "formats/check_records.h"
+#include "cmd/jobs/check_records.h"
 
 #include "base/mem.h"
 #include "base/names.h"

@@ -1,9 +1,9 @@
-/* What formats/check.h says of JSON Lines (formats/jsonl.md): each reads a whole file with its format's
+/* What cmd/jobs/check.h says of JSON Lines (formats/jsonl.md): each reads a whole file with its format's
  * reader, and adds the kind and what it counted. Return 0, or -1 with *e. */
-#ifndef FORMATS_CHECK_RECORDS_H
-#define FORMATS_CHECK_RECORDS_H
+#ifndef CMD_JOBS_CHECK_RECORDS_H
+#define CMD_JOBS_CHECK_RECORDS_H
 
-#include "formats/check.h"
+#include "cmd/jobs/check.h"
 
 /* Adds one fact; there is room for CHECK_MAX_FACTS. */
 void check_add(struct check *c, const char *name, long long value);

@@ -1,4 +1,4 @@
-#include "formats/box_scores.h"
+#include "cmd/jobs/box_scores.h"
 
 #include "base/file.h"
 #include "base/mem.h"

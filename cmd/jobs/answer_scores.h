@@ -1,9 +1,9 @@
 /* Scores of answers to sentences, what miou-score --answers writes. formats/scores.md. */
-#ifndef FORMATS_ANSWER_SCORES_H
-#define FORMATS_ANSWER_SCORES_H
+#ifndef CMD_JOBS_ANSWER_SCORES_H
+#define CMD_JOBS_ANSWER_SCORES_H
 
 #include "base/err.h"
-#include "formats/score_masks.h"
+#include "cmd/jobs/score_masks.h"
 #include "formats/sentences.h"
 #include "mask/score_answers.h"
 

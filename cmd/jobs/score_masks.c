@@ -1,4 +1,4 @@
-#include "formats/score_masks.h"
+#include "cmd/jobs/score_masks.h"
 
 #include "base/file.h"
 #include "base/mem.h"

@@ -1,7 +1,7 @@
 /* Files of masks as scoring takes them: names of one record at most, so that it is clear what belongs to
  * what. formats/masks.md. */
-#ifndef FORMATS_SCORE_MASKS_H
-#define FORMATS_SCORE_MASKS_H
+#ifndef CMD_JOBS_SCORE_MASKS_H
+#define CMD_JOBS_SCORE_MASKS_H
 
 #include "formats/masks.h"
 #include "mask/score.h"

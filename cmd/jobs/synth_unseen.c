@@ -1,6 +1,6 @@
 /* Texts, names and refs hold letters, digits, apostrophes, stops, hyphens and spaces: JSON needs no escapes
  * for them. */
-#include "formats/synth_unseen.h"
+#include "cmd/jobs/synth_unseen.h"
 
 #include "base/file.h"
 

@@ -1,6 +1,6 @@
 /* A model of either kind, told by the file: trained (formats/model.md) or lifted (formats/lifted.md). */
-#ifndef FORMATS_ANYMODEL_H
-#define FORMATS_ANYMODEL_H
+#ifndef CMD_JOBS_ANYMODEL_H
+#define CMD_JOBS_ANYMODEL_H
 
 #include "base/err.h"
 #include "formats/model.h"

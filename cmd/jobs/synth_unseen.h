@@ -1,6 +1,6 @@
 /* The files of the unseen split of a synthetic benchmark: sentences and their parses. formats/synth.md. */
-#ifndef FORMATS_SYNTH_UNSEEN_H
-#define FORMATS_SYNTH_UNSEEN_H
+#ifndef CMD_JOBS_SYNTH_UNSEEN_H
+#define CMD_JOBS_SYNTH_UNSEEN_H
 
 #include "base/err.h"
 #include "geom/camera.h"

@@ -1,6 +1,6 @@
 /* Scores of boxes, what miou-score --boxes writes. formats/boxes.md. */
-#ifndef FORMATS_BOX_SCORES_H
-#define FORMATS_BOX_SCORES_H
+#ifndef CMD_JOBS_BOX_SCORES_H
+#define CMD_JOBS_BOX_SCORES_H
 
 #include "base/err.h"
 #include "formats/boxes.h"

@@ -1,4 +1,4 @@
-#include "formats/pictures.h"
+#include "cmd/jobs/pictures.h"
 
 #include "base/file.h"
 #include "base/mem.h"

@@ -1,6 +1,6 @@
 /* The folder of a synthetic benchmark, as gs-synth makes it. formats/synth.md. */
-#ifndef FORMATS_SYNTH_H
-#define FORMATS_SYNTH_H
+#ifndef CMD_JOBS_SYNTH_FOLDER_H
+#define CMD_JOBS_SYNTH_FOLDER_H
 
 #include "base/err.h"
 #include "base/file.h"

@@ -1,4 +1,4 @@
-#include "formats/synth.h"
+#include "cmd/jobs/synth_folder.h"
 
 #include "base/mem.h"
 #include "formats/boxes.h"
@@ -6,7 +6,7 @@
 #include "formats/masks.h"
 #include "formats/ply.h"
 #include "formats/png.h"
-#include "formats/synth_unseen.h"
+#include "cmd/jobs/synth_unseen.h"
 #include "synth/boxes.h"
 #include "synth/outline.h"
 #include "synth/truth.h"

@@ -1,7 +1,7 @@
 /* What refer-render draws for a person to look at: a picture for each view and sentence. formats/pictures.md.
  */
-#ifndef FORMATS_PICTURES_H
-#define FORMATS_PICTURES_H
+#ifndef CMD_JOBS_PICTURES_H
+#define CMD_JOBS_PICTURES_H
 
 #include "base/err.h"
 

@@ -1,9 +1,9 @@
-#include "formats/check.h"
+#include "cmd/jobs/check.h"
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/camerafile.h"
-#include "formats/check_records.h"
+#include "cmd/jobs/check_records.h"
 #include "formats/colmap.h"
 #include "formats/json.h"
 #include "formats/jsonl.h"

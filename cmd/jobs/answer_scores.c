@@ -1,4 +1,4 @@
-#include "formats/answer_scores.h"
+#include "cmd/jobs/answer_scores.h"
 
 #include "base/file.h"
 #include "base/mem.h"

@@ -1,4 +1,4 @@
-#include "formats/anymodel.h"
+#include "cmd/jobs/anymodel.h"
 
 #include "base/file.h"
 #include "base/mem.h"

@@ -1,4 +1,4 @@
-#include "formats/training.h"
+#include "cmd/jobs/training.h"
 
 #include "base/file.h"
 #include "base/mem.h"
