@@ -9,7 +9,7 @@ WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvl
 LDLIBS := -lcjson -lpng -ljpeg -lz -lm
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 
-# WordNet is used where its library is: Debian's wordnet-dev to build, wordnet-base to run.
+# WordNet is used where its library is; without it words are known by the encoder alone.
 ifneq ($(wildcard /usr/include/wn.h),)
 CPPFLAGS += -DHAVE_WORDNET
 LDLIBS += -lwordnet
@@ -34,7 +34,7 @@ C_FILES = $(wildcard cmd/*.c cmd/jobs/*.[ch] libcommon/*/*.[ch] formats/*.[ch] t
 MAN_PAGES := $(wildcard man/*.[17])
 
 # What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
-NEED_BUILD := png.h=libpng-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev $(CC)=gcc ar=binutils
+NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev $(CC)=gcc ar=binutils
 NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd
 NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
 

@@ -80,6 +80,7 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 		if (cJSON_IsObject(*object) && !is_cut)
 			return 1;
 		cJSON_Delete(*object);
+		*object = NULL;
 		return jsonl_err(
 			j, e, is_cut ? "a NUL character (\\u0000) in a string" : "not a JSON object");
 	}

@@ -90,3 +90,8 @@ not() { ! "$@"; }
 	[ "$(grep -c ': ok: ' out)" = 3 ]
 	not grep -v -e ': ok: ' -e '^cut\.[0-9]*:[12]: not JSON at column [0-9]*$' out
 }
+
+@test "gs-check says so where the first record has an escaped NUL" {
+	printf '%s\n' '{"ref":"a\u0000b","text":"t"}' >nul.jsonl
+	says 1 "gs-check: nul.jsonl:1: a NUL character (\\u0000) in a string" "$BIN/gs-check" nul.jsonl
+}
