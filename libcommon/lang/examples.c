@@ -582,7 +582,9 @@ static void analyse(const struct making *m, struct example *x, const char *piece
 
 void example_make(struct example *x, enum examples_set set, const char *pieces, struct rng *r)
 {
-	struct making m = {.w = &example_wordings[set], .nouns = &example_nouns[set], .r = r};
+	struct making m = {.w = set == EXAMPLES_TEST ? &example_wordings_test : &example_wordings_train,
+		.nouns = &example_nouns[set],
+		.r = r};
 
 	m.noun = (int)rng_below(r, (uint32_t)m.nouns->n);
 	sentence(&m, pick(&m, &m.w->sentences));
