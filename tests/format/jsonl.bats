@@ -93,5 +93,5 @@ not() { ! "$@"; }
 
 @test "gs-check says so where the first record has an escaped NUL" {
 	printf '%s\n' '{"ref":"a\u0000b","text":"t"}' >nul.jsonl
-	says 1 "gs-check: nul.jsonl:1: a NUL character (\\u0000) in a string" "$BIN/gs-check" nul.jsonl
+	says 1 "nul.jsonl:1: a NUL character (\\u0000) in a string" "$BIN/gs-check" nul.jsonl
 }
