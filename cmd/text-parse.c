@@ -8,6 +8,7 @@
 
 #include <omp.h>
 #include <stdio.h>
+#include <string.h>
 
 static int put_parses(const struct parser *parser, const struct text *t, FILE *out, struct err *e)
 {
@@ -45,7 +46,9 @@ static int run(const struct cli *c, const char *weights, enum method method, str
 	}
 	if (text_read(&t, c->operand_count ? c->operands[0] : "-", e))
 		return -1;
-	if (parser.weights && (!t.pieces || t.width != w.width))
+	parser.encoder = t.encoder.hex;
+	const int is_other = *w.encoder && *t.encoder.hex && strcmp(w.encoder, t.encoder.hex);
+	if (parser.weights && (!t.pieces || t.width != w.width || is_other))
 		cli_warn(c, "%s: %s: by grammar alone", file_name(c->operand_count ? c->operands[0] : "-"),
 			t.pieces ? "of another encoder than the parser's weights" : "has no word pieces");
 	bad = file_out_open(&out, c->output, e) || put_parses(&parser, &t, out.stream, e);

@@ -151,7 +151,7 @@ int lifting_read(struct lifting *l, const struct lifting_files *files, const str
 
 int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struct report *to, struct err *e)
 {
-	const struct parser parser = {.weights = &l->weights};
+	const struct parser parser = {.weights = &l->weights, .encoder = l->text.encoder.hex};
 
 	*moved = 0;
 	report_start(to, "views", (double)l->scene.cameras.n * LIFT_ROUNDS);

@@ -116,7 +116,8 @@ static void say(void *context, int epoch, double loss)
 static int put_parses(
 	const struct parser_training *s, const struct parser_weights *w, int fold, FILE *out, struct err *e)
 {
-	const struct parser parser = {.weights = w, .is_blind = s->options->is_blind};
+	const struct parser parser = {
+		.weights = w, .is_blind = s->options->is_blind, .encoder = s->others.encoder.hex};
 
 	for (size_t i = 0; i < s->others.n; i++) {
 		struct parse p;
@@ -161,12 +162,14 @@ static int learn_weights(struct parser_training *s, struct err *e)
 	struct parser_weights w = {0};
 	int bad = parser_weights_make(&w, s->examples.width, e);
 
-	if (!bad)
+	if (!bad) {
+		memcpy(w.encoder, s->examples.encoder.hex, sizeof w.encoder);
 		bad = o->folds ? cross_validate(s, &w, e)
 			       : parser_school_examples(&s->school, &w, e) ||
 					 parser_school_readings(&s->school, &w, -1, e) ||
 					 parser_weights_write(&w, o->output, o->readings ? "--readings" : "",
 						 o->seed, o->source, e);
+	}
 	parser_weights_free(&w);
 	return bad ? -1 : 0;
 }

@@ -445,7 +445,7 @@ static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
 }
 
 /* The clauses that compare, or those that do not. Those of the place as a whole are the thing's: "everything
- * on the desk that is right of the laptop". */
+ * on the shelf that is left of the lamp". */
 static void judge_clauses(
 	struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit, int late, int depth)
 {

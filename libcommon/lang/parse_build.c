@@ -395,7 +395,7 @@ static void count_phrase(struct build *b, int head, struct parse_phrase *f)
 	}
 }
 
-/* "Two black balls. Which one is ...": a later word of the target that means one of them. */
+/* "Two red chairs. Which one is ...": a later word of the target that means one of them. */
 static void find_group(struct build *b)
 {
 	struct parse_phrase *f = &b->p->phrases[0];
