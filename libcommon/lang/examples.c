@@ -87,13 +87,13 @@ static void make_plural(char *noun)
 		return;
 	if (n > 2 && (noun[n - 1] == 's' || noun[n - 1] == 'x' || !strcmp(noun + n - 2, "ch") ||
 			     !strcmp(noun + n - 2, "sh")))
-		strcat(noun, "es");
+		snprintf(noun + n, MADE_LENGTH - n, "es");
 	else if (n > 1 && noun[n - 1] == 'f')
-		strcpy(noun + n - 1, "ves");
+		snprintf(noun + n - 1, MADE_LENGTH - n, "ves");
 	else if (n > 2 && noun[n - 1] == 'y' && !strchr("aeiou", noun[n - 2]))
-		strcpy(noun + n - 1, "ies");
+		snprintf(noun + n - 1, MADE_LENGTH - n, "ies");
 	else
-		strcat(noun, "s");
+		snprintf(noun + n, MADE_LENGTH - n, "s");
 }
 
 static void put_before(struct making *m, int *list, int *count)

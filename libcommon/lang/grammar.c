@@ -126,8 +126,9 @@ static int phrase_at(const struct state *s, int i, int *end)
 			   is(t, j, "corner")) {
 			if (!is_noun_start(t, j + 1))
 				head = j;
-		} else if (head < 0 && (c == CLOSED_DETERMINER || c == CLOSED_NUMBER || c == CLOSED_ORDINAL ||
-					       c == CLOSED_ADVERB)) {
+		} else if ((head < 0 && (c == CLOSED_DETERMINER || c == CLOSED_NUMBER ||
+						c == CLOSED_ORDINAL || c == CLOSED_ADVERB)) ||
+			   (head >= 0 && is(t, j, "'s") && is_open(t, j + 1) && !is_verb(t, j + 1))) {
 			continue;
 		} else if (head < 0 && is_adjective_place(t, j)) {
 			/* an adjective only where a noun follows at once */
@@ -137,8 +138,6 @@ static int phrase_at(const struct state *s, int i, int *end)
 				k++;
 			if (!is_noun_start(t, k) || t->word[k].before || is(t, j + 1, "of"))
 				break;
-		} else if (is(t, j, "'s") && head >= 0 && is_open(t, j + 1) && !is_verb(t, j + 1)) {
-			continue;
 		} else {
 			break;
 		}

@@ -144,10 +144,10 @@ static double predicate_score(const struct aligning *s, int c, int p, int figure
 
 	for (int r = 0; r < PARSE_RELATIONS; r++)
 		if (!allowed || allowed >> r & 1)
-			sum += exp(s->relations[p][r]);
+			sum += exp((double)s->relations[p][r]);
 	/* "with" may stand for most */
 	if (is_having(s, p))
-		sum = fmax(sum, exp(s->relations[p][PARSE_WITH]));
+		sum = fmax(sum, exp((double)s->relations[p][PARSE_WITH]));
 	/* a noun seldom says a relation */
 	return (s->t->word[p].closed < 0 ? -2 : 0) + fmax(s->roles[p][ROLE_PREDICATE], -7) + log(sum + 1e-4) +
 	       fmax(s->arcs[p][figure + 1], -5);
@@ -245,9 +245,7 @@ static void fill(struct aligning *s, const struct analysis *free_analysis)
 		if (r == ROLE_TARGET && has_target && !is_noun(s, i, s->r->target))
 			s->a->word[i].role =
 				best_role(s, i, 1u << ROLE_TARGET | 1u << ROLE_PREDICATE | 1u << ROLE_ANCHOR);
-		else if (r == ROLE_TARGET && !has_target)
-			s->a->word[i].role = ROLES;
-		else if (r == ROLE_ANCHOR)
+		else if ((r == ROLE_TARGET && !has_target) || r == ROLE_ANCHOR)
 			s->a->word[i].role = ROLES;
 		else if (r == ROLE_PREDICATE && free_analysis->word[i].relation < PARSE_SUPPORTS)
 			s->a->word[i].role = s->is_loose ? ROLES : ROLE_NONE;

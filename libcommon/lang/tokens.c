@@ -4,6 +4,7 @@
 
 #include <ctype.h>
 #include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 static int ends(const char *w, const char *tail)
@@ -11,6 +12,12 @@ static int ends(const char *w, const char *tail)
 	size_t n = strlen(w), m = strlen(tail);
 
 	return n > m && !strcmp(w + n - m, tail);
+}
+
+/* A copy of a text in a buffer of `room` bytes. */
+static void put(char *to, const char *text, size_t room)
+{
+	snprintf(to, room, "%s", text);
 }
 
 void token_lemma(const char *word, char *out)
@@ -25,17 +32,17 @@ void token_lemma(const char *word, char *out)
 		{"shes", "sh"}, {"zes", "ze"}, {"oes", "o"}};
 	size_t n = strlen(word);
 
-	strcpy(out, word);
+	put(out, word, TOKEN_LENGTH);
 	for (size_t i = 0; i < sizeof odd / sizeof *odd; i++)
 		if (!strcmp(word, odd[i][0])) {
-			strcpy(out, odd[i][1]);
+			put(out, odd[i][1], TOKEN_LENGTH);
 			return;
 		}
 	if (n < 4)
 		return;
 	for (size_t i = 0; i < sizeof tails / sizeof *tails; i++)
 		if (ends(word, tails[i][0])) {
-			strcpy(out + n - strlen(tails[i][0]), tails[i][1]);
+			put(out + n - strlen(tails[i][0]), tails[i][1], strlen(tails[i][0]) + 1);
 			return;
 		}
 	if (word[n - 1] == 's' && word[n - 2] != 's' && word[n - 2] != 'u' && word[n - 2] != 'i')
@@ -95,13 +102,13 @@ static void repair(struct token *w, const char *const *known, int known_count)
 			return;
 	for (int i = 0; i < closed_count; i++)
 		if (may_be(w->text, closed_words[i].text)) {
-			strcpy(w->text, closed_words[i].text);
+			put(w->text, closed_words[i].text, TOKEN_LENGTH);
 			w->closed = i;
 			return;
 		}
 	for (int i = 0; i < known_count; i++)
 		if (may_be(w->text, known[i]) && strlen(known[i]) < TOKEN_LENGTH) {
-			strcpy(w->text, known[i]);
+			put(w->text, known[i], TOKEN_LENGTH);
 			return;
 		}
 }
@@ -300,6 +307,6 @@ void tokens_take(
 			repair(w, known, known_count);
 		token_lemma(w->text, w->lemma);
 		if (!strcmp(w->text, "is") || !strcmp(w->text, "its"))
-			strcpy(w->lemma, w->text);
+			put(w->lemma, w->text, TOKEN_LENGTH);
 	}
 }
