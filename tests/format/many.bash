@@ -9,9 +9,16 @@ st() {
 	{ printf '%b' "$bytes"; cat "$work/header"; } >"$1"
 }
 
-# lines N FORMAT: the format, %d or %1$d being the number, for 1 to N.
+# lines N FORMAT: the format with the number for each @, for 1 to N.
 lines() {
-	awk -v n="$1" -v format="$2" 'BEGIN { for (i = 1; i <= n; i++) { line = format; gsub(/@/, i, line); print line } }'
+	awk -v n="$1" -v format="$2" 'BEGIN {
+		k = split(format, part, "@")
+		for (i = 1; i <= n; i++) {
+			line = part[1]
+			for (j = 2; j <= k; j++) line = line i part[j]
+			print line
+		}
+	}'
 }
 
 # listed N FORMAT: the same with commas between.

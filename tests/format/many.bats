@@ -40,11 +40,11 @@ reads() {
 	{ lines 50000 '{"ref":"r@","object":"o","text":"a"}'; lines 7 '{"ref":"r@","object":"o","text":"a"}'; } >file
 	run within 25 "$BIN/gs-check" file
 	[ "$status" = 1 ]
-	[ "$output" = "gs-check: file:50001: ref 'r1' is already on line 1" ]
+	[ "$output" = "file:50001: ref 'r1' is already on line 1" ]
 	{ echo '['; listed 50000 '{"name":"v@",'"$view"'}'; echo ',{"name":"v7",'"$view"'}]'; } >file
 	run within 25 "$BIN/gs-check" file
 	[ "$status" = 1 ]
-	[ "$output" = "gs-check: file: view name 'v7' appears twice" ]
+	[ "$output" = "file: view name 'v7' appears twice" ]
 }
 
 @test "a file whose header has many properties, and two of one name" {
@@ -53,12 +53,12 @@ reads() {
 	sed -i '0,/^property char 49999$/s//property char 3/' file
 	run within 25 "$BIN/gs-check" file
 	[ "$status" = 1 ]
-	[ "$output" = "gs-check: file:50016: property '3' appears twice" ]
+	[ "$output" = "file:50016: property '3' appears twice" ]
 }
 
 @test "a line of JSON Lines has a limit" {
 	{ printf '{"ref":"r1","object":"o","text":"a","more":"'; head -c 67108900 /dev/zero | tr '\0' a; echo '"}'; } >file
 	run "$BIN/gs-check" file
 	[ "$status" = 1 ]
-	[ "$output" = "gs-check: file:1: a line of more than 67108864 bytes" ]
+	[ "$output" = "file:1: a line of more than 67108864 bytes" ]
 }
