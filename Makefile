@@ -9,13 +9,19 @@ WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvl
 LDLIBS := -lcjson -lpng -ljpeg -lz -lm
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 
+# WordNet is used where its library is; without it words are known by the encoder alone.
+ifneq ($(wildcard /usr/include/wn.h),)
+CPPFLAGS += -DHAVE_WORDNET
+LDLIBS += -lwordnet
+endif
+
 # A change of any of these rebuilds everything (see $(BUILD)/flags).
 COMPILE = $(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L -DVERSION='"$(VERSION)"' -Ilibcommon -I. \
 	$(CFLAGS) -std=c11 -fopenmp -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
 LINK = $(CC) $(CFLAGS) -fopenmp $(LDFLAGS)
 
 TOOLS := $(patsubst cmd/%.c,%,$(wildcard cmd/*.c))
-SOURCES := $(wildcard libcommon/*/*.c formats/*.c)
+SOURCES := $(wildcard libcommon/*/*.c formats/*.c cmd/jobs/*.c)
 OBJECTS := $(SOURCES:%.c=$(BUILD)/obj/%.o)
 LIBRARY := $(BUILD)/librefersplat.a
 BINARIES := $(TOOLS:%=$(BUILD)/bin/%)
@@ -24,11 +30,11 @@ UNIT_HELPERS := $(filter-out tests/unit/test_%,$(wildcard tests/unit/*.c))
 UNIT_OBJECTS := $(UNIT_HELPERS:%.c=$(BUILD)/obj/%.o)
 BENCHES := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/bench_*.c))
 FUZZERS := $(patsubst tests/fuzz/%.c,$(BUILD)/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
-C_FILES = $(wildcard cmd/*.c libcommon/*/*.[ch] formats/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch] tests/bench/*.[ch])
+C_FILES = $(wildcard cmd/*.c cmd/jobs/*.[ch] libcommon/*/*.[ch] formats/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch] tests/bench/*.[ch])
 MAN_PAGES := $(wildcard man/*.[17])
 
 # What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
-NEED_BUILD := png.h=libpng-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev $(CC)=gcc ar=binutils
+NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev $(CC)=gcc ar=binutils
 NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd
 NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
 

@@ -1,158 +1,11 @@
 /* miou-score: how well predicted masks match the true ones. */
-#include "base/err.h"
-#include "base/file.h"
 #include "cli/cli.h"
-#include "formats/answer_scores.h"
-#include "formats/box_scores.h"
-#include "formats/score_masks.h"
+#include "cmd/jobs/scoring.h"
 #include "formats/scores.h"
-#include "formats/sentences.h"
-#include "mask/score_choice.h"
-#include "mask/score_join.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-/* The files; NULL where one was not named. */
-struct paths {
-	const char *predictions, *truth, *other, *sentences, *whole;
-};
-
-struct inputs {
-	struct score_masks predictions, truth, other, whole;
-	struct sentences sentences;
-};
-
-static int inputs_read(struct inputs *in, const struct paths *p, struct err *e)
-{
-	return score_masks_read(&in->truth, p->truth, e) ||
-	       score_masks_read(&in->predictions, p->predictions, e) ||
-	       (p->other && score_masks_read(&in->other, p->other, e)) ||
-	       (p->whole && score_masks_read(&in->whole, p->whole, e)) ||
-	       (p->sentences && sentences_read(&in->sentences, p->sentences, e));
-}
-
-static void inputs_free(struct inputs *in)
-{
-	score_masks_free(&in->predictions);
-	score_masks_free(&in->truth);
-	score_masks_free(&in->other);
-	score_masks_free(&in->whole);
-	sentences_free(&in->sentences);
-}
-
-static void tell_left_out(
-	const struct cli *c, const struct score_pairs *pairs, const struct score_masks *predictions)
-{
-	cli_note(c, 1, "%zu predictions of views without truth were left out", pairs->unlabelled);
-	if (pairs->unmatched)
-		cli_warn(c,
-			"%s: %zu predictions of labelled views match no truth's ref or object and were left out",
-			file_name(predictions->path), pairs->unmatched);
-}
-
-/* Matched, measured and sorted pairs of the predictions and, with --compare, of the others beside them. The
- * figures of all are summed before they are sorted, so that no object's name changes their last digit. */
-static int pair_up(const struct cli *c, const struct inputs *in, int is_compared, struct score_pairs *pairs,
-	struct score_pairs *others, struct score *sum, struct score *other_sum, struct err *e)
-{
-	const struct score_masks *t = &in->truth;
-
-	if (score_match(pairs, t->masks, t->n, in->predictions.masks, in->predictions.n, e) ||
-		(is_compared && (score_match(others, t->masks, t->n, in->other.masks, in->other.n, e) ||
-					score_join(pairs, others, e))) ||
-		score_measure_all(pairs, e) || score_measure_all(others, e) ||
-		score_choices(pairs, in->truth.masks, in->truth.n, e) ||
-		score_choices(others, in->truth.masks, in->truth.n, e))
-		return -1;
-	score_sum(sum, pairs->items, pairs->n);
-	score_sum(other_sum, others->items, others->n);
-	if (!sum->pairs)
-		return err_set(e, ERR_FORMAT, "%s: no mask with anything in it: there is nothing to score",
-			file_name(in->truth.path));
-	score_sort(pairs->items, pairs->n);
-	score_sort(others->items, others->n);
-	tell_left_out(c, pairs, &in->predictions);
-	if (is_compared)
-		tell_left_out(c, others, &in->other);
-	return 0;
-}
-
-/* The tables of --sentences and --whole. */
-static int by_group(const struct cli *c, struct scores *s, const struct score_sample *sample,
-	const struct inputs *in, const struct paths *paths, struct err *e)
-{
-	size_t no_sentence = 0, no_whole = 0;
-
-	if ((s->has_relations && scores_by_relation(s, sample, &in->sentences, &no_sentence, e)) ||
-		(s->has_visibility && scores_by_visibility(s, sample, &in->truth, &in->whole, &no_whole, e)))
-		return -1;
-	if (no_sentence)
-		cli_warn(c, "%s: %zu pairs have no sentence there", file_name(paths->sentences), no_sentence);
-	if (no_whole)
-		cli_warn(c, "%s: %zu masks of the truth have no whole there", file_name(in->whole.path),
-			no_whole);
-	return 0;
-}
-
-static int score(const struct cli *c, const struct inputs *in, const struct paths *paths, struct scores *s,
-	struct err *e)
-{
-	struct score_pairs pairs = {0}, others = {0};
-	struct score sum, other_sum;
-	int bad = pair_up(c, in, s->is_compared, &pairs, &others, &sum, &other_sum, e);
-	const struct score_sample sample = {
-		pairs.n, pairs.items, s->is_compared ? others.items : NULL, s->how};
-
-	bad = bad || score_row_make(&s->all, "", &sample, e) ||
-	      score_table_objects(&s->objects, &sample, e) || by_group(c, s, &sample, in, paths, e);
-	if (!bad) {
-		s->all.score = sum;
-		s->all.other.score = other_sum;
-	}
-	score_pairs_free(&pairs);
-	score_pairs_free(&others);
-	return bad;
-}
-
-static int score_boxes(const struct cli *c, const struct paths *p, double *miou, struct err *e)
-{
-	struct box_scores s;
-
-	if (box_scores_read(&s, p->truth, p->predictions, e))
-		return -1;
-	if (s.unmatched)
-		cli_warn(c, "%s: %zu boxes match no truth's ref or object and were left out",
-			file_name(p->predictions), s.unmatched);
-	*miou = s.all.aligned.iou;
-	int bad = box_scores_write(&s, c->output, c->json, e);
-	box_scores_free(&s);
-	return bad;
-}
-
-/* Of all answers the share that is right goes into *right. */
-static int score_answers(
-	const struct cli *c, const struct inputs *in, const struct paths *p, double *right, struct err *e)
-{
-	struct answer_scores s;
-	struct answer_score all;
-
-	if (answer_scores_make(&s, &in->sentences, &in->truth, &in->predictions, e))
-		return -1;
-	if (s.answers.unknown)
-		cli_warn(c, "%s: %zu sentences mean an object that %s does not have", file_name(p->sentences),
-			s.answers.unknown, file_name(p->truth));
-	if (s.answers.unmatched)
-		cli_warn(c, "%s: %zu predictions have no sentence's ref and were left out",
-			file_name(p->predictions), s.answers.unmatched);
-	answer_score_sum(&all, &s.answers, ANSWER_ANY, NULL);
-	*right = all.right;
-	int bad = answer_scores_write(&s, c->output, c->json, e);
-	answer_scores_free(&s);
-	return bad;
-}
-
-static void check_paths(const struct cli *c, const struct paths *p)
+static void check_paths(const struct cli *c, const struct scoring_files *p)
 {
 	const char *all[] = {p->truth, p->predictions, p->other, p->sentences, p->whole};
 	int stdins = 0;
@@ -170,7 +23,7 @@ static void check_paths(const struct cli *c, const struct paths *p)
 
 int main(int argc, char **argv)
 {
-	struct paths paths = {0};
+	struct scoring_files paths = {0};
 	double fail_under = 0, confidence = 0.95;
 	long long resamples = 0;
 	int is_partial = 0, is_csv = 0, is_boxes = 0, is_answers = 0;
@@ -207,7 +60,8 @@ int main(int argc, char **argv)
 		.common = CLI_OUTPUT | CLI_JSON | CLI_SEED | CLI_THREADS | CLI_VERBOSE | CLI_QUIET,
 		.max_operands = 1,
 	};
-	struct inputs in = {0};
+	struct scoring in = {0};
+	struct cli_report to;
 	struct cli c;
 	struct err e;
 
@@ -229,21 +83,20 @@ int main(int argc, char **argv)
 		.has_relations = paths.sentences != NULL,
 		.has_visibility = paths.whole != NULL,
 		.how = resamples ? &how : NULL};
-	int bad = is_boxes ? score_boxes(&c, &paths, &s.all.score.miou, &e) : inputs_read(&in, &paths, &e);
-	if (!bad && is_partial)
-		bad = score_keep_views(in.truth.masks, &in.truth.n, in.predictions.masks, in.predictions.n,
-			in.other.masks, in.other.n, &e);
 	const enum scores_form form = is_csv ? SCORES_CSV : c.json ? SCORES_JSON : SCORES_TEXT;
+	const struct report *r = cli_report(&to, &c);
 	double right = 0;
+	int bad = is_boxes ? scoring_boxes(&paths, c.output, c.json, &s.all.score.miou, r, &e)
+			   : scoring_read(&in, &paths, is_partial, &e);
 	if (!bad && is_answers)
-		bad = score_answers(&c, &in, &paths, &right, &e);
+		bad = scoring_answers(&in, c.output, c.json, &right, r, &e);
 	if (!bad && !is_boxes && !is_answers)
-		bad = score(&c, &in, &paths, &s, &e) || scores_write(&s, c.output, form, &e);
+		bad = scoring_pairs(&in, &s, r, &e) || scores_write(&s, c.output, form, &e);
 	const double reached = is_answers ? right : s.all.score.miou;
 	if (!bad && reached < fail_under)
 		bad = err_set(&e, ERR_CHECK, "%s %.4f is below %g", is_answers ? "right" : "mIoU", reached,
 			fail_under);
 	scores_free(&s);
-	inputs_free(&in);
+	scoring_free(&in);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -1,218 +1,16 @@
 /* pseudomask-select: an object's masks in the views, of the candidates that a detector found for its
  * sentences. */
-#include "base/err.h"
-#include "base/file.h"
-#include "base/mem.h"
 #include "cli/cli.h"
-#include "formats/masks.h"
-#include "formats/scene.h"
-#include "formats/weights.h"
-#include "refer/carry.h"
-#include "refer/regions.h"
+#include "cmd/jobs/pseudomasks.h"
 
-#include <math.h>
-#include <stdlib.h>
-
-enum { METHOD_FIRST = SELECT_TOP1 + 1, METHOD_SCENE, METHOD_DEFAULT };
-
-struct options {
-	int method;
-	double min_score;
-	const char *scene, *weights;
-};
-
-struct work {
-	FILE *out;
-	size_t seen, left_out, masks, rendered; /* views, and masks in them */
-	struct options options;
-	const char *path;
-	struct mask_set set;
-	long *lines; /* (set.n) of the file */
-	struct pool pool;
-	struct scene scene;
-	size_t *views;		/* (set.n) of the scene */
-	struct carry carry;	/* of --method first */
-	struct regions regions; /* of --method scene */
-};
-
-static void work_free(struct work *w)
-{
-	carry_free(&w->carry);
-	regions_free(&w->regions);
-	free(w->views);
-	scene_free(&w->scene);
-	pool_free(&w->pool);
-	masks_free(&w->set);
-	free(w->lines);
-}
-
-static int put_mask(FILE *out, struct mask_record r, double score, struct err *e)
-{
-	/* a mask without a sentence serves all of its object's */
-	if (r.object)
-		r.ref = NULL;
-	r.score = score;
-	return masks_put(out, &r, e);
-}
-
-static int put_winners(const struct work *w, const struct cli *c, struct err *e)
-{
-	size_t without = 0;
-
-	for (size_t i = 0; i < w->pool.group_count; i++) {
-		const struct pool_group *g = &w->pool.groups[i];
-		if (g->winner < 0)
-			without++;
-		else if (put_mask(w->out, w->set.records[g->winner], g->vote, e))
-			return -1;
-	}
-	cli_note(c, 1, "%zu masks; %zu views of an object without one", w->pool.group_count - without,
-		without);
-	return 0;
-}
-
-static int lift_source(struct work *w, size_t source, struct err *e)
-{
-	const size_t view = w->carry.sources[source].view;
-	struct weights weights;
-
-	if (weights_open(&weights, w->options.weights, &w->scene, view, e))
-		return -1;
-	const struct view_weights blend = weights_view(&weights);
-	int bad = carry_lift(&w->carry, source, &blend, weights.height, weights.width, e);
-	weights_close(&weights);
-	return bad;
-}
-
-static int lift_carried(struct work *w, struct err *e)
-{
-	int bad = carry_init(&w->carry, &w->pool, w->views, &w->scene.cameras, e);
-
-	for (size_t s = 0; s < w->carry.source_count && !bad; s++)
-		bad = lift_source(w, s, e);
-	return bad;
-}
-
-static int lift_view(void *regions, size_t view, const struct weights *weights, struct err *e)
-{
-	const struct view_weights blend = weights_view(weights);
-
-	return regions_lift(regions, view, &blend, weights->height, weights->width, e);
-}
-
-static int lift_regions(struct work *w, struct err *e)
-{
-	const struct cameras *cameras = &w->scene.cameras;
-	const size_t n = w->scene.splats.n;
-	struct regions *r = &w->regions;
-
-	if (regions_init(r, &w->pool, w->views, cameras->n, n, w->options.min_score, e) ||
-		weights_each(w->options.weights, &w->scene, lift_view, r, &w->left_out, e))
-		return -1;
-	return regions_grow(r, e) || regions_assign(r, e) ? -1 : 0;
-}
-
-static int render(struct work *w, size_t view, const struct weights *weights, struct rle *masks,
-	double *scores, struct err *e)
-{
-	const struct view_weights blend = weights_view(weights);
-
-	if (w->options.method == METHOD_SCENE)
-		return regions_render(&w->regions, view, &blend, weights->height, weights->width, masks,
-			scores, &w->rendered, e);
-	for (size_t i = 0; i < w->carry.count; i++)
-		scores[i] = w->carry.masks[i].score;
-	return carry_render(&w->carry, view, &blend, weights->height, weights->width, masks, e);
-}
-
-/* Writes all masks of a view but empty ones. */
-static int put_view(void *work, size_t view, const struct weights *weights, struct err *e)
-{
-	struct work *w = work;
-	const int is_scene = w->options.method == METHOD_SCENE;
-	const size_t n = is_scene ? w->regions.object_count : w->carry.count;
-	struct rle *masks = mem_zalloc(n, sizeof *masks, "masks", e);
-	double *scores = mem_alloc(n, sizeof *scores, "masks", e);
-	int bad = !masks || !scores || render(w, view, weights, masks, scores, e);
-
-	w->seen++;
-	for (size_t i = 0; i < n && masks; i++) {
-		struct mask_record r =
-			w->set.records[is_scene ? w->regions.objects[i] : w->carry.masks[i].record];
-		if (!bad && rle_area(&masks[i])) {
-			r.view = w->scene.cameras.views[view].name;
-			r.visible = NAN; /* the record's is of its own view */
-			r.mask = masks[i];
-			w->masks++;
-			bad = put_mask(w->out, r, scores[i], e);
-		}
-		rle_free(&masks[i]);
-	}
-	free(masks);
-	free(scores);
-	return bad ? -1 : 0;
-}
-
-/* The masks of all views that have weights, those of one view in memory at a time. */
-static int put_views(struct work *w, const struct cli *c, struct err *e)
-{
-	const int is_scene = w->options.method == METHOD_SCENE;
-	const char *dir = w->options.weights;
-
-	w->views = mem_alloc(w->set.n, sizeof *w->views, "views", e);
-	if (!w->views || scene_read(&w->scene, w->options.scene, e) ||
-		masks_views(&w->set, w->lines, w->path, &w->scene.cameras, w->views, e) ||
-		(is_scene ? lift_regions(w, e) : lift_carried(w, e)))
-		return -1;
-	const size_t found = is_scene ? w->regions.region_count : w->carry.count;
-	if (!found && w->set.n)
-		cli_warn(c, "%s: no candidate of a training view is above %g", file_name(w->path),
-			w->options.min_score);
-	if (found && weights_each(dir, &w->scene, put_view, w, &w->left_out, e))
-		return -1;
-	if (w->left_out)
-		cli_warn(c, "%s: %zu training views have no weights, and get no masks", dir, w->left_out);
-	if (is_scene)
-		cli_note(c, 1, "%zu objects, %zu regions; %zu masks in %zu views, %zu of them rendered",
-			w->regions.object_count, found, w->masks, w->seen, w->rendered);
-	else
-		cli_note(c, 1, "%zu objects, which begin in %zu views; %zu masks in %zu views", found,
-			w->carry.source_count, w->masks, w->seen);
-	return 0;
-}
-
-static int run(struct work *w, const struct cli *c, struct err *e)
-{
-	const int method = w->options.method;
-	size_t weak = 0;
-	struct file_out out;
-
-	if (masks_read_lines(&w->set, &w->lines, w->path, e) ||
-		masks_pool(&w->pool, &w->set, w->lines, w->path, e))
-		return -1;
-	if (!w->set.n)
-		cli_warn(c, "%s: no candidates", file_name(w->path));
-	if (method != METHOD_SCENE &&
-		pool_select(&w->pool, method == METHOD_FIRST ? SELECT_TOP1 : (enum select_method)method,
-			w->options.min_score, e))
-		return -1;
-	for (size_t i = 0; i < w->set.n; i++)
-		weak += !(w->pool.candidates[i].score > w->options.min_score);
-	cli_note(c, 1, "%zu candidates, %zu of them not above %g", w->set.n, weak, w->options.min_score);
-	if (file_out_open(&out, c->output, e))
-		return -1;
-	w->out = out.stream;
-	if (method >= METHOD_FIRST ? put_views(w, c, e) : put_winners(w, c, e)) {
-		file_out_abort(&out);
-		return -1;
-	}
-	return file_out_commit(&out, e);
-}
+/* Where --method is not given. */
+enum { METHOD_DEFAULT = PSEUDOMASK_SCENE + 1 };
 
 int main(int argc, char **argv)
 {
-	struct work w = {.options = {METHOD_DEFAULT, 0.3, NULL, NULL}};
-	struct options *o = &w.options;
+	struct pseudomask_options chosen = {.method = METHOD_DEFAULT, .min_score = 0.3};
+	struct pseudomask_options *o = &chosen;
+	struct pseudomasks w = {0};
 	const struct cli_option options[] = {
 		{"method", 0, CLI_CHOICE, &o->method, "ciou|iou|top1|first|scene",
 			"confidence-weighted IoU votes, IoU votes, the most confident; the first view's, carried to all others; or the object's region in the scene (default: scene where --scene and --weights are given, else ciou)",
@@ -222,7 +20,8 @@ int main(int argc, char **argv)
 		{"scene", 0, CLI_STRING, &o->scene, "SCENE", "for scene and first: the scene's folder", 0, 0},
 		{"weights", 0, CLI_STRING, &o->weights, "WEIGHTS",
 			"for scene and first: the folder of its training views' blend weights", 0, 0},
-		{0}};
+		{0},
+	};
 	const struct cli_tool tool = {
 		.name = "pseudomask-select",
 		.operands = "[CANDIDATES]",
@@ -231,20 +30,22 @@ int main(int argc, char **argv)
 		.common = CLI_OUTPUT | CLI_THREADS | CLI_VERBOSE | CLI_QUIET,
 		.max_operands = 1,
 	};
+	struct cli_report to;
 	struct cli c;
 	struct err e;
 
 	cli_parse(&c, &tool, argc, argv);
-	w.path = c.operand_count ? c.operands[0] : "-";
-	if (o->method == METHOD_DEFAULT)
-		o->method = o->scene || o->weights ? METHOD_SCENE : SELECT_CIOU;
-	if (o->method >= METHOD_FIRST && (!o->scene || !o->weights))
+	o->candidates = c.operand_count ? c.operands[0] : "-";
+	o->method = o->method != METHOD_DEFAULT ? o->method
+		    : o->scene || o->weights	? PSEUDOMASK_SCENE
+						: SELECT_CIOU;
+	if (o->method >= PSEUDOMASK_FIRST && (!o->scene || !o->weights))
 		cli_usage(&c, "--method %s needs --scene SCENE and --weights WEIGHTS",
-			o->method == METHOD_FIRST ? "first" : "scene");
-	if (o->method < METHOD_FIRST && (o->scene || o->weights))
+			o->method == PSEUDOMASK_FIRST ? "first" : "scene");
+	if (o->method < PSEUDOMASK_FIRST && (o->scene || o->weights))
 		cli_usage(&c, "%s is for --method scene and first", o->scene ? "--scene" : "--weights");
 	cli_refuse_overwrite(&c, "CANDIDATES " CLI_SCENE " " CLI_WEIGHTS, "output", NULL);
-	int bad = run(&w, &c, &e);
-	work_free(&w);
+	int bad = pseudomasks_write(&w, o, c.output, cli_report(&to, &c), &e);
+	pseudomasks_free(&w);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -2,34 +2,26 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "formats/anymodel.h"
+#include "cmd/jobs/request.h"
 #include "formats/boxes.h"
 #include "formats/ply.h"
-#include "formats/scene.h"
 #include "formats/splat.h"
-#include "formats/text.h"
-#include "refer/choose.h"
 #include "geom/up.h"
 #include "refer/locate.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { SPLIT_ALL = 2 };
-
 static struct {
-	const char *scene, *text, *model, *refs, *ply, *splat;
-	int sentences, show;
-} options = {.sentences = SPLIT_ALL};
+	struct request_options request;
+	const char *ply, *splat;
+	int show;
+} options = {.request = REQUEST_DEFAULTS};
 
-static const struct cli_option table[] = {
-	{"scene", 0, CLI_STRING, &options.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
-	{"text", 0, CLI_STRING, &options.text, "TEXT", "sentences encoded by text-encode (required)", 0, 0},
-	{"model", 0, CLI_STRING, &options.model, "MODEL", "model of refer-train or refer-lift (required)", 0,
-		0},
-	{"sentences", 0, CLI_CHOICE, &options.sentences, "train|test|all", "which sentences (default all)", 0,
-		0},
-	{"refs", 0, CLI_STRING, &options.refs, "REF,...", "these sentences instead of a split", 0, 0},
+static const struct cli_option table[] = {REQUEST_FILES(options.request), REQUEST_SENTENCES(options.request),
+	{"viewpoint", 0, CLI_STRING, &options.request.viewpoint, "VIEW|x,y,z",
+		"lifted models: where sentences are said (default: the view that a sentence names, else between the training views)",
+		0, 0},
 	{"ply", 0, CLI_STRING, &options.ply, "FILE",
 		"write the scene with the object of the one sentence as a 3DGS .ply", 0, 0},
 	{"splat", 0, CLI_STRING, &options.splat, "FILE", "the same as a .splat for web viewers", 0, 0},
@@ -44,54 +36,40 @@ static const struct cli_tool tool = {.name = "refer-locate",
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT};
 
 struct run {
-	struct scene scene;
-	struct text text;
-	struct anymodel model;
-	struct asked asked;
-	char *chosen; /* of the sentences: which --refs names */
-	size_t count, *refs;
+	struct request request;
 	struct located *located; /* (answers) */
 };
 
-static int choose_refs(struct run *r, const struct cli *c, struct err *e)
+static int choose_sentences(struct request *q, const struct cli *c, struct err *e)
 {
-	r->chosen = mem_zalloc(r->text.n, 1, "sentences", e);
-	r->refs = mem_alloc(r->text.n, sizeof *r->refs, "sentences", e);
-	if (!r->chosen || !r->refs)
+	if (request_choose(q, e))
 		return -1;
-	if (options.refs && text_mark(&r->text, options.refs, "--refs", r->chosen, e))
-		return -1;
-	for (size_t i = 0; i < r->text.n; i++)
-		if (options.refs ? r->chosen[i]
-				 : options.sentences == SPLIT_ALL ||
-					   (int)r->text.splits[i] == options.sentences)
-			r->refs[r->count++] = i;
-	if ((options.ply || options.splat) && r->count != 1)
+	if ((options.ply || options.splat) && q->count != 1)
 		cli_usage(c,
 			"--ply and --splat show the object of one sentence, not of %zu: choose it with --refs",
-			r->count);
-	if (!r->count)
-		cli_warn(c, "%s: no sentence in this split", file_name(options.text));
+			q->count);
+	if (!q->count)
+		cli_warn(c, "%s: no sentence in this split", file_name(options.request.text));
 	return 0;
 }
 
-static int load(struct run *r, const struct cli *c, struct err *e)
+static int locate(struct run *r, const struct cli *c, struct err *e)
 {
+	const int has_viewpoint = options.request.viewpoint != NULL;
+	struct request *q = &r->request;
+	struct viewpoint from;
 	double up[3];
 
-	if (scene_read(&r->scene, options.scene, e) || text_read(&r->text, options.text, e) ||
-		anymodel_read(&r->model, options.model, e) || choose_refs(r, c, e))
+	if (request_read(q, &options.request, e) || choose_sentences(q, c, e) ||
+		(has_viewpoint && request_viewpoint(q, &from, e)) ||
+		request_answer(q, has_viewpoint ? &from : NULL, e))
 		return -1;
-	const struct anymodel_ask ask = {&r->scene, &r->text, options.model, options.scene, options.text,
-		r->refs, r->count, 1, CHOOSE_ALL, ASKED_LEAST};
-	if (anymodel_answer(&r->model, &ask, &r->asked, e))
-		return -1;
-	r->located = mem_zalloc(r->asked.answers, sizeof *r->located, "objects", e);
+	r->located = mem_zalloc(q->asked.answers, sizeof *r->located, "objects", e);
 	if (!r->located)
 		return -1;
-	cameras_up(&r->scene.cameras, up);
+	cameras_up(&q->scene.cameras, up);
 	cli_note(c, 1, "up is %.3f %.3f %.3f", up[0], up[1], up[2]);
-	return locate_all(r->located, &r->asked, &r->scene.splats, up, e);
+	return locate_all(r->located, &q->asked, &q->scene.splats, up, e);
 }
 
 static void move(struct box *b, const double by[3])
@@ -102,26 +80,28 @@ static void move(struct box *b, const double by[3])
 
 static int put_sentence(const struct run *r, size_t i, FILE *out, struct err *e)
 {
-	const struct located *l = &r->located[r->asked.answer[i]];
+	const struct request *q = &r->request;
+	const struct located *l = &r->located[q->asked.answer[i]];
 	const struct extent *x = &l->extent;
 	const struct box_gaussians of = {x->n, x->ids};
-	double sure = r->asked.sure ? r->asked.sure[i] : l->sure;
-	struct box_record record = {r->text.refs[r->refs[i]], (char *)text_object(&r->text, r->refs[i]),
+	double sure = q->asked.sure ? q->asked.sure[i] : l->sure;
+	struct box_record record = {q->text.refs[q->refs[i]], (char *)text_object(&q->text, q->refs[i]),
 		x->n ? sure : 0, !x->n, x->aligned, x->turned};
 
-	move(&record.aligned, r->scene.offset);
-	move(&record.turned, r->scene.offset);
+	move(&record.aligned, q->scene.offset);
+	move(&record.turned, q->scene.offset);
 	return boxes_put(out, &record, &of, e);
 }
 
 static int write_boxes(const struct run *r, const struct cli *c, struct err *e)
 {
+	const struct request *q = &r->request;
 	struct file_out out;
 	int bad = 0;
 
 	if (file_out_open(&out, c->output, e))
 		return -1;
-	for (size_t i = 0; i < r->count && !bad; i++)
+	for (size_t i = 0; i < q->count && !bad; i++)
 		bad = put_sentence(r, i, out.stream, e);
 	if (!bad)
 		return file_out_commit(&out, e);
@@ -131,12 +111,13 @@ static int write_boxes(const struct run *r, const struct cli *c, struct err *e)
 
 static int write_scene(const struct run *r, struct err *e)
 {
-	const struct extent *x = &r->located[r->asked.answer[0]].extent;
+	const struct request *q = &r->request;
+	const struct extent *x = &r->located[q->asked.answer[0]].extent;
 	struct splats shown;
 
-	if (locate_show(&shown, &r->scene.splats, x, (enum locate_show)options.show, e))
+	if (locate_show(&shown, &q->scene.splats, x, (enum locate_show)options.show, e))
 		return -1;
-	int bad = (options.ply && ply_write(&shown, r->scene.offset, options.ply, e)) ||
+	int bad = (options.ply && ply_write(&shown, q->scene.offset, options.ply, e)) ||
 		  (options.splat && splat_write(&shown, options.splat, e));
 	splats_free(&shown);
 	return bad ? -1 : 0;
@@ -144,7 +125,9 @@ static int write_scene(const struct run *r, struct err *e)
 
 static void check(const struct cli *c)
 {
-	if (!options.scene || !options.text || !options.model)
+	const struct request_options *o = &options.request;
+
+	if (!o->scene || !o->text || !o->model)
 		cli_usage(c, "--scene, --text and --model are required");
 	if ((options.ply && !strcmp(options.ply, "-")) || (options.splat && !strcmp(options.splat, "-")))
 		cli_usage(c, "--ply and --splat must name a file");
@@ -161,16 +144,11 @@ int main(int argc, char **argv)
 	cli_parse(&c, &tool, argc, argv);
 	check(&c);
 	cli_refuse_overwrite(&c, CLI_SCENE " text model", "output ply splat", NULL);
-	int bad = load(&r, &c, &e) || ((options.ply || options.splat) && write_scene(&r, &e)) ||
+	int bad = locate(&r, &c, &e) || ((options.ply || options.splat) && write_scene(&r, &e)) ||
 		  write_boxes(&r, &c, &e);
-	for (size_t k = 0; r.located && k < r.asked.answers; k++)
+	for (size_t k = 0; r.located && k < r.request.asked.answers; k++)
 		extent_free(&r.located[k].extent);
 	free(r.located);
-	asked_free(&r.asked);
-	anymodel_free(&r.model);
-	text_free(&r.text);
-	scene_free(&r.scene);
-	free(r.chosen);
-	free(r.refs);
+	request_free(&r.request);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

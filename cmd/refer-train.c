@@ -1,29 +1,17 @@
 /* refer-train: learns the referring model of a scene from masks (one stage of the method). */
-#include "base/file.h"
 #include "cli/cli.h"
+#include "cmd/jobs/learn.h"
 #include "formats/checkpoint.h"
-#include "formats/training.h"
-#include "formats/trainlog.h"
-#include "refer/divergence.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-static struct {
-	struct training_files from;
-	const char *log;
-	int interaction, similarity, contrast, precision, is_resumed;
-	long long iterations, checkpoint, patience;
-	struct trainer_options trainer;
-} options = {.interaction = REFER_PCMI,
-	.similarity = REFER_DOT,
-	.contrast = REFER_CONTRAST_COSINE,
-	.precision = PRECISION_U8,
-	.iterations = 45000,
-	.checkpoint = 1000,
-	.trainer = TRAINER_DEFAULTS};
+static struct learning_options options = {
+	.iterations = 45000, .checkpoint = 1000, .trainer = TRAINER_DEFAULTS};
+
+/* In the order of their choices. */
+static int interaction = REFER_PCMI, similarity = REFER_DOT, contrast = REFER_CONTRAST_COSINE,
+	   precision = PRECISION_U8;
 
 static const struct cli_option table[] = {
 	{"scene", 0, CLI_STRING, &options.from.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
@@ -39,11 +27,11 @@ static const struct cli_option table[] = {
 		"keep this share of the masks to judge by, and stop in time (default 0)", 0, 0.9},
 	{"patience", 0, CLI_INT, &options.patience, "N",
 		"stop after N evaluations that were no better, one every 250 steps (default 8)", 1, 1000000},
-	{"interaction", 0, CLI_CHOICE, &options.interaction, REFER_INTERACTION_CHOICES,
+	{"interaction", 0, CLI_CHOICE, &interaction, REFER_INTERACTION_CHOICES,
 		"how words act on Gaussians (default pcmi)", 0, 0},
-	{"similarity", 0, CLI_CHOICE, &options.similarity, REFER_SIMILARITY_CHOICES,
+	{"similarity", 0, CLI_CHOICE, &similarity, REFER_SIMILARITY_CHOICES,
 		"how features answer words (default dot)", 0, 0},
-	{"contrast", 0, CLI_CHOICE, &options.contrast, REFER_CONTRAST_CHOICES,
+	{"contrast", 0, CLI_CHOICE, &contrast, REFER_CONTRAST_CHOICES,
 		"contrast between sentences (default cosine)", 0, 0},
 	{"feature-width", 0, CLI_INT, &options.trainer.feature_width, "N",
 		"numbers of a referring feature (default 16)", 1, REFER_MAX_X},
@@ -61,7 +49,7 @@ static const struct cli_option table[] = {
 		"leave out Gaussians with this share of all weight (default 0)", 0, 0.99},
 	{"share", 0, CLI_REAL, &options.trainer.share, "E",
 		"pixels a feature must save; 0: one each (default 0.04)", 0, 1e6},
-	{"precision", 0, CLI_CHOICE, &options.precision, PRECISION_CHOICES,
+	{"precision", 0, CLI_CHOICE, &precision, PRECISION_CHOICES,
 		"how features and weights are stored (default u8)", 0, 0},
 	{"log", 0, CLI_STRING, &options.log, "FILE",
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
@@ -77,142 +65,18 @@ static const struct cli_tool tool = {.name = "refer-train",
 	.output_arg = "MODEL",
 	.needs_output = 1};
 
-/* Everything a run holds. */
-struct run {
-	struct training data;
-	struct trainer trainer;
-	struct trainlog log;
-	struct divergence divergence;
-	char *checkpoint;
-	struct checkpoint_of of;
-	int is_own;    /* the checkpoint is of this training */
-	char note[64]; /* the latest losses */
-};
-
-static int start(struct run *r, const struct cli *c, struct err *e)
-{
-	const struct training *d = &r->data;
-	const struct trainer_source source = training_source(d);
-
-	r->of = training_identity(d, &options.from, &options.trainer);
-	if (trainer_init(&r->trainer, &source, &options.trainer, e))
-		return e->code == ERR_FORMAT ? err_prefix(e, options.from.weights) : -1;
-	cli_note(c, 1, "%zu of %zu Gaussians share %zu features, %.1f a pixel", r->trainer.learning,
-		d->scene.splats.n, r->trainer.rows.n, trainer_weights(&r->trainer));
-	cli_note(c, 1, "%zu views, %zu sentences, %zu pairs, %zu more held out", d->view_count, d->sentences,
-		d->pairs, d->held);
-	return 0;
-}
-
-/* Goes on from a checkpoint where that is wanted. */
-static int resume(struct run *r, const struct cli *c, struct err *e)
-{
-	if (!r->checkpoint || !file_exists(r->checkpoint))
-		return 0;
-	if (!options.is_resumed && options.checkpoint)
-		cli_warn(c,
-			"%s: is of an earlier training and will be replaced; --resume would go on from it",
-			r->checkpoint);
-	if (!options.is_resumed)
-		return 0;
-	if (checkpoint_resume(&r->trainer.state, r->checkpoint, &r->of, options.iterations, e))
-		return -1;
-	r->is_own = 1;
-	cli_note(c, 1, "going on after step %ld", r->trainer.state.iteration);
-	return 0;
-}
-
-/* Whether training is over: all steps are done, or the held-out masks say so. */
-static int is_over(const struct run *r)
-{
-	const struct train_state *t = &r->trainer.state;
-
-	return t->iteration >= options.iterations || (t->best.values && t->best.since >= options.patience);
-}
-
-/* What is due after a step: lines of the log, a checkpoint. */
-static int record(struct run *r, const struct cli *c, const struct step_losses *last, struct err *e)
-{
-	struct train_state *t = &r->trainer.state;
-	const long done = t->iteration;
-
-	if (divergence_check(&r->divergence, t, last, is_over(r), e))
-		return err_prefix(e, file_name(c->output));
-	if (done % TRAINLOG_EVERY == 0)
-		snprintf(r->note, sizeof r->note, "loss %.4f", t->sum.total / TRAINLOG_EVERY);
-	if (trainlog_step(&r->log, t, e))
-		return -1;
-	if (t->best.values && (done % TRAINER_EVALUATE == 0 || done == options.iterations)) {
-		const struct held_score score = trainer_evaluate(&r->trainer);
-		if (trainlog_put_held(&r->log, done, &score, e))
-			return -1;
-	}
-	if (!options.checkpoint || done % options.checkpoint || is_over(r) ||
-		!divergence_is_good(&r->divergence, t))
-		return 0;
-	const int bad = checkpoint_write(t, r->checkpoint, &r->of, e);
-	r->is_own |= !bad;
-	return bad;
-}
-
-static int train(struct run *r, const struct cli *c, struct err *e)
-{
-	struct train_state *t = &r->trainer.state;
-	struct cli_progress progress;
-	const long begin = t->iteration;
-	int bad = 0;
-
-	cli_progress_start(&progress, c, "steps", (double)(options.iterations - begin));
-	while (!is_over(r) && !bad) {
-		struct step_losses last = trainer_step(&r->trainer);
-		bad = record(r, c, &last, e);
-		cli_progress_step(&progress, (double)(t->iteration - begin), *r->note ? r->note : NULL);
-	}
-	cli_progress_end(&progress);
-	if (!bad && t->best.values)
-		cli_note(c, 1, "%ld steps, the held-out masks were answered best after %ld: IoU %.4f",
-			t->iteration, t->best.iteration, t->best.score);
-	return bad;
-}
-
-static int run(struct run *r, const struct cli *c, struct err *e)
-{
-	const struct training *d = &r->data;
-
-	if (strcmp(c->output, "-") && !(r->checkpoint = checkpoint_path(c->output, e)))
-		return -1;
-	cli_refuse_overwrite(c, CLI_SCENE " " CLI_WEIGHTS " text masks init", "output log",
-		(const struct cli_file[]){{"checkpoint", r->checkpoint, CLI_WRITES, NULL}, {0}});
-	if (training_read(&r->data, &options.from, options.trainer.hold_out, (uint64_t)c->seed, e))
-		return -1;
-	if (d->left_out)
-		cli_warn(c, "%s: %zu training sentences without words are left out", options.from.text,
-			d->left_out);
-	if (d->test_masks)
-		cli_note(c, 1, "%zu masks of test views are not used", d->test_masks);
-	if (file_out_probe(c->output, e) || (r->checkpoint && file_out_probe(r->checkpoint, e)) ||
-		start(r, c, e) || resume(r, c, e) ||
-		trainlog_open(&r->log, options.log, r->trainer.state.iteration, e))
-		return -1;
-	if (train(r, c, e) ||
-		training_write(d, &r->trainer, options.trainer.similarity, (enum precision)options.precision,
-			c->output, r->of.identity, c->seed, e))
-		return -1;
-	if (r->is_own)
-		unlink(r->checkpoint);
-	return 0;
-}
-
 static void check_options(const struct cli *c)
 {
 	struct trainer_options *o = &options.trainer;
 	const struct training_files *f = &options.from;
 	const int is_stdout = !strcmp(c->output, "-");
 
-	o->interaction = (enum refer_interaction)options.interaction;
-	o->similarity = (enum refer_similarity)options.similarity;
-	o->contrast = (enum refer_contrast)options.contrast;
+	o->interaction = (enum refer_interaction)interaction;
+	o->similarity = (enum refer_similarity)similarity;
+	o->contrast = (enum refer_contrast)contrast;
 	o->seed = c->seed;
+	options.precision = (enum precision)precision;
+	options.output = c->output;
 	if (!f->scene || !f->weights || !f->text || !f->masks)
 		cli_usage(c, "--scene, --weights, --text and --masks are required");
 	if (!f->lifted && o->warm)
@@ -231,19 +95,21 @@ static void check_options(const struct cli *c)
 
 int main(int argc, char **argv)
 {
-	struct run r = {0};
-	struct err e = {0}, late;
+	struct learning l = {0};
+	struct err e = {0};
+	struct cli_report to;
 	struct cli c;
+	char *path = NULL;
 
 	cli_parse(&c, &tool, argc, argv);
 	check_options(&c);
-	int bad = run(&r, &c, &e);
-	if (trainlog_close(&r.log, &late) && !bad) {
-		e = late;
-		bad = -1;
-	}
-	trainer_free(&r.trainer);
-	training_free(&r.data);
-	free(r.checkpoint);
+	if (strcmp(c.output, "-") && !(path = checkpoint_path(c.output, &e)))
+		return cli_fail(&c, &e);
+	cli_refuse_overwrite(&c, CLI_SCENE " " CLI_WEIGHTS " text masks init", "output log",
+		(const struct cli_file[]){{"checkpoint", path, CLI_WRITES, NULL}, {0}});
+	options.checkpoint_path = path;
+	int bad = learn(&l, &options, cli_report(&to, &c), &e);
+	learning_free(&l);
+	free(path);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -3,8 +3,6 @@
 #define FORMATS_SCORES_H
 
 #include "base/err.h"
-#include "formats/score_masks.h"
-#include "formats/sentences.h"
 #include "mask/score_rows.h"
 
 #include <stdio.h>
@@ -22,13 +20,6 @@ struct scores {
 
 /* Frees the tables. */
 void scores_free(struct scores *s);
-
-/* Make the table of relations, or of visibility, of a sample of pairs; *unknown gets how many pairs have no
- * sentence, or masks of the truth no whole. Return 0, or -1 with *e set. */
-int scores_by_relation(struct scores *s, const struct score_sample *sample, const struct sentences *sentences,
-	size_t *unknown, struct err *e);
-int scores_by_visibility(struct scores *s, const struct score_sample *sample, const struct score_masks *truth,
-	const struct score_masks *whole, size_t *unknown, struct err *e);
 
 int scores_put(FILE *out, const struct scores *s, enum scores_form form, struct err *e);
 /* The same into a file; "-" is stdout. */

@@ -1,6 +1,6 @@
 #!/usr/bin/env bats
-# The tree keeps its shape: dependencies point one way (cmd -> formats -> libcommon), the library neither prints nor
-# exits, and every tool and format has its pages and tests.
+# The tree keeps its shape: dependencies point one way (cmd -> cmd/jobs -> formats -> libcommon), all below the tools neither
+# prints nor exits, and every tool and format has its pages and tests.
 
 setup() {
 	cd "$BATS_TEST_DIRNAME/.."
@@ -50,14 +50,18 @@ not() { ! "$@"; }
 	none '^[[:space:]]*#[[:space:]]*include[[:space:]]+"(\.\./)*cmd/' formats
 }
 
-@test "only cmd includes cli" {
-	none '^[[:space:]]*#[[:space:]]*include[[:space:]]+"cli/' formats $(rooms cli)
+@test "jobs include of cmd only jobs" {
+	none '^[[:space:]]*#[[:space:]]*include[[:space:]]+"(\.|cmd/([^j]|j[^o]|jo[^b]|job[^s]|jobs[^/]))' cmd/jobs
+}
+
+@test "only tools include cli" {
+	none '^[[:space:]]*#[[:space:]]*include[[:space:]]+"cli/' cmd/jobs formats $(rooms cli)
 }
 
 @test "the rooms of libcommon include only base, and the rooms below them" {
 	# What each room may include besides itself.
 	declare -A below=([base]= [cli]=base [geom]=base [mask]=base [nn]=base [splat]='base|geom'
-		[lang]='base|nn' [refer]='base|geom|lang|mask|nn|splat' [synth]='base|geom|lang|mask|splat')
+		[lang]='base|nn' [ask]='base|geom|lang|refer|splat' [refer]='ask|base|geom|lang|mask|nn|splat' [synth]='base|geom|lang|mask|splat')
 	for dir in libcommon/*/; do
 		room=$(basename "$dir")
 		[ -n "${below[$room]+set}" ] || { echo "unknown room: $room"; return 1; }
@@ -72,12 +76,19 @@ not() { ! "$@"; }
 	none 'FILE \*|fopen|fread|fwrite|base/file\.h|cJSON|png\.h|jpeglib\.h' $(rooms base cli)
 }
 
-@test "the library never prints or exits" {
-	none '\b(printf|vprintf|puts|putchar|perror|exit|_exit|abort|assert)[[:space:]]*\(|\bstderr\b' formats $(rooms cli)
+@test "jobs, formats and the library never print or exit" {
+	none '\b(printf|vprintf|puts|putchar|perror|exit|_exit|abort|assert)[[:space:]]*\(|\bstderr\b' cmd/jobs formats $(rooms cli)
 }
 
 @test "stdout is named only where file outputs are made" {
-	none '^([^"/*]|\*[a-z])*\bstdout\b' formats $(rooms cli base)
+	none '^([^"/*]|\*[a-z])*\bstdout\b' cmd/jobs formats $(rooms cli base)
+}
+
+# boxes, lifted ... are a format and what it holds; the others wait for better names.
+@test "no two rooms have files of one base name, but for those known" {
+	local known='boxes lifted model readings relations scene sentences sight words' found
+	found=$(ls -d libcommon/*/*.[ch] formats/*.[ch] cmd/jobs/*.[ch] | sed 's,\.[ch]$,,' | sort -u | sed 's,.*/,,' | sort | uniq -d | xargs)
+	[ "$found" = "$known" ] || { echo "found: $found"; return 1; }
 }
 
 @test "no structure is hidden behind a typedef" {
@@ -95,9 +106,9 @@ not() { ! "$@"; }
 
 @test "every format's header names its page, and every page that is named exists" {
 	for header in formats/*.h; do
-		[ "$header" = formats/check.h ] || grep -qE 'formats/[a-z0-9_-]+\.md' "$header" || { echo "names no page: $header"; false; }
+		grep -qE 'formats/[a-z0-9_-]+\.md' "$header" || { echo "names no page: $header"; false; }
 	done
-	grep -ohE 'formats/[a-z0-9_-]+\.md' formats/*.h man/* | sort -u | all_exist
+	grep -ohE 'formats/[a-z0-9_-]+\.md' formats/*.h cmd/jobs/*.h man/* | sort -u | all_exist
 }
 
 @test "every tool has a manual page and tests" {
@@ -108,9 +119,9 @@ not() { ! "$@"; }
 	ls man/*.1 | sed 's,^man/\(.*\)\.1$,cmd/\1.c,' | all_exist
 }
 
-@test "no file is above 600 lines, no tool above 250" {
-	no_longer_than 600 $(find libcommon formats tests -name '*.[ch]' -o -name '*.bats')
-	no_longer_than 250 $(find cmd -name '*.c')
+@test "no file is above 600 lines, no tool above 200" {
+	no_longer_than 600 $(find libcommon formats cmd/jobs tests -name '*.[ch]' -o -name '*.bats')
+	no_longer_than 200 cmd/*.c
 }
 
 @test "no loose ends" {

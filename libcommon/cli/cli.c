@@ -326,30 +326,40 @@ int cli_fail(const struct cli *c, const struct err *e)
 	return e->code ? (int)e->code : ERR_SYSTEM;
 }
 
+static void print_note(const struct cli *c, int level, const char *format, va_list ap)
+{
+	if (c->verbose < level)
+		return;
+	fprintf(stderr, "%s: ", c->tool->name);
+	vfprintf(stderr, format, ap);
+	fputc('\n', stderr);
+}
+
+static void print_warning(const struct cli *c, const char *format, va_list ap)
+{
+	if (c->quiet)
+		return;
+	fprintf(stderr, "%s: warning: ", c->tool->name);
+	vfprintf(stderr, format, ap);
+	fputc('\n', stderr);
+}
+
 void cli_note(const struct cli *c, int level, const char *format, ...)
 {
 	va_list ap;
 
-	if (c->verbose < level)
-		return;
-	fprintf(stderr, "%s: ", c->tool->name);
 	va_start(ap, format);
-	vfprintf(stderr, format, ap);
+	print_note(c, level, format, ap);
 	va_end(ap);
-	fputc('\n', stderr);
 }
 
 void cli_warn(const struct cli *c, const char *format, ...)
 {
 	va_list ap;
 
-	if (c->quiet)
-		return;
-	fprintf(stderr, "%s: warning: ", c->tool->name);
 	va_start(ap, format);
-	vfprintf(stderr, format, ap);
+	print_warning(c, format, ap);
 	va_end(ap);
-	fputc('\n', stderr);
 }
 
 void cli_refuse_terminal(const struct cli *c)
@@ -402,4 +412,39 @@ void cli_progress_end(struct cli_progress *p)
 	if (p->is_shown)
 		fprintf(stderr, "\r\033[K");
 	p->is_shown = 0;
+}
+
+static void report_a_note(void *to, int level, const char *format, va_list ap)
+{
+	print_note(((struct cli_report *)to)->c, level, format, ap);
+}
+
+static void report_a_warning(void *to, const char *format, va_list ap)
+{
+	print_warning(((struct cli_report *)to)->c, format, ap);
+}
+
+static void report_a_start(void *to, const char *what, double total)
+{
+	struct cli_report *r = to;
+
+	cli_progress_start(&r->progress, r->c, what, total);
+}
+
+static void report_a_step(void *to, double done, const char *note)
+{
+	cli_progress_step(&((struct cli_report *)to)->progress, done, note);
+}
+
+static void report_an_end(void *to)
+{
+	cli_progress_end(&((struct cli_report *)to)->progress);
+}
+
+const struct report *cli_report(struct cli_report *r, const struct cli *c)
+{
+	*r = (struct cli_report){.c = c};
+	r->report = (struct report){
+		r, report_a_note, report_a_warning, report_a_start, report_a_step, report_an_end};
+	return &r->report;
 }

@@ -5,6 +5,7 @@
 #define CLI_CLI_H
 
 #include "base/err.h"
+#include "base/report.h"
 #include "cli/overwrite.h"
 
 #include <stdio.h>
@@ -92,6 +93,15 @@ struct cli_progress {
 void cli_progress_start(struct cli_progress *p, const struct cli *c, const char *what, double total);
 void cli_progress_step(struct cli_progress *p, double done, const char *note); /* note may be NULL */
 void cli_progress_end(struct cli_progress *p);
+
+/* What a job reports to (base/report.h): these warnings, notes and progress. Neither may move while it is
+ * used. */
+struct cli_report {
+	struct report report;
+	const struct cli *c;
+	struct cli_progress progress;
+};
+const struct report *cli_report(struct cli_report *r, const struct cli *c);
 
 /* Monotonic seconds. */
 double cli_seconds(void);

@@ -1,5 +1,5 @@
-/* What closed-class words settle whatever a learnt parser makes of them: sizes before a noun, who looks, and
- * what "not the one" denies. */
+/* What closed-class words settle whatever a learnt parser makes of them: sizes before a noun, who looks, what
+ * "not the one" denies, what two things are the anchors of, and what is said of a part of something. */
 #include "lang/analysis.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
@@ -98,11 +98,89 @@ static void mend_colours(struct analysis *a, const struct tokens *t)
 			a->word[i] = (struct analysis_word){.role = ROLE_ATTRIBUTE, .head = ROOT};
 }
 
-void analysis_mend(struct analysis *a, const struct tokens *t)
+/* The predicate of a place that "and" before a phrase joins it to, or -1: "above the kettle and the bag". */
+static int predicate_joined(const struct analysis *a, const struct tokens *t, int noun)
 {
+	static const unsigned takes_two = 1U << PARSE_LEFT | 1U << PARSE_RIGHT | 1U << PARSE_FRONT |
+					  1U << PARSE_BEHIND | 1U << PARSE_ABOVE | 1U << PARSE_BELOW |
+					  1U << PARSE_NEAR | 1U << PARSE_FAR | 1U << PARSE_BETWEEN;
+	int i = noun - 1;
+
+	while (i > 0 && !is(t, i, "and") && !t->word[i + 1].before && !role_is_phrase(a->word[i].role))
+		i--;
+	if (i < 1 || !is(t, i, "and") || t->word[i].before || a->word[i - 1].role != ROLE_ANCHOR)
+		return -1;
+	const int p = a->word[i - 1].head;
+	return p >= 0 && a->word[p].head == ROOT && takes_two >> a->word[p].relation & 1 ? p : -1;
+}
+
+static int has_clause(const struct analysis *a, int noun)
+{
+	for (int i = 0; i < a->n; i++)
+		if (a->word[i].role == ROLE_PREDICATE && a->word[i].head == noun && i > noun)
+			return 1;
+	return 0;
+}
+
+/* "the thing above the kettle and the bag" is above both. */
+static void mend_pairs(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		if (a->word[i].role != ROLE_ALSO || has_clause(a, i))
+			continue;
+		const int p = predicate_joined(a, t, i);
+		if (p >= 0)
+			a->word[i] = (struct analysis_word){.role = ROLE_ANCHOR, .head = p};
+	}
+}
+
+/* "the sheet with white sketches": where the learnt parser made nothing of "with", what the grammar makes. */
+static void mend_with(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		if (grammar->word[i].role != ROLE_PREDICATE || grammar->word[i].relation != PARSE_WITH ||
+			a->word[i].role != ROLE_NONE)
+			continue;
+		for (int j = i + 1; j < t->n; j++) {
+			const int head = grammar->word[j].head;
+			if (role_is_phrase(a->word[j].role))
+				break;
+			if (head == i || (head > i && grammar->word[head].head == i)) {
+				a->word[i] = grammar->word[i];
+				a->word[j] = grammar->word[j];
+			}
+		}
+	}
+}
+
+/* "near the black base of the kettle": black is not the target, which comes before. */
+static void mend_parts(struct analysis *a, const struct tokens *t)
+{
+	int found = 0;
+
+	for (int i = 0; i < t->n; i++) {
+		found |= a->word[i].role == ROLE_TARGET;
+		if (!found || a->word[i].role != ROLE_ATTRIBUTE || a->word[i].head != ROOT ||
+			class_of(t, i - 1) != CLOSED_DETERMINER || i < 2 ||
+			a->word[i - 2].role != ROLE_PREDICATE)
+			continue;
+		int anchor = i + 1;
+		while (anchor < t->n && !is(t, anchor, "of") && a->word[anchor].head != i - 2)
+			anchor++;
+		a->word[i].head = anchor;
+		if (anchor >= t->n || is(t, anchor, "of"))
+			a->word[i] = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
+	}
+}
+
+void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
+{
+	mend_with(a, grammar, t);
+	mend_parts(a, t);
 	mend_sizes(a, t);
 	mend_viewer(a, t);
 	mend_negation(a, t);
 	mend_colours(a, t);
+	mend_pairs(a, t);
 	analysis_repair(a);
 }

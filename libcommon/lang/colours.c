@@ -89,16 +89,35 @@ void colour_lab(const double rgb[3], double lab[3])
 	lab[2] = 200 * (y - z);
 }
 
-void colour_word_lab(int word, double lab[3])
+static const double told_apart = 16, one_colour = 16;
+
+static double square_distance(const double lab[3], int word)
 {
 	const unsigned char *c = colours[word].rgb;
+	double other[3];
 
-	colour_lab((double[3]){c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}, lab);
+	colour_lab((double[3]){c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}, other);
+	const double l = 0.5 * (lab[0] - other[0]), a = lab[1] - other[1], b = lab[2] - other[2];
+	return l * l + a * a + b * b;
 }
 
-double colour_fit(const float lab[3], const double word[3])
+void colour_call(const double lab[3], double weight, double *share)
 {
-	double l = 0.5 * (lab[0] - word[0]), a = lab[1] - word[1], b = lab[2] - word[2];
+	double square[COLOUR_WORDS], least = INFINITY;
 
-	return exp(-0.5 * (l * l + a * a + b * b) / (25 * 25));
+	for (int w = 0; w < COLOUR_WORDS; w++) {
+		square[w] = square_distance(lab, w);
+		least = fmin(least, square[w]);
+	}
+	for (int w = 0; w < COLOUR_WORDS; w++)
+		share[w] += weight * exp(-0.5 * (square[w] - least) / (told_apart * told_apart));
+}
+
+double colour_words_alike(int a, int b)
+{
+	const unsigned char *c = colours[a].rgb;
+	double lab[3];
+
+	colour_lab((double[3]){c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}, lab);
+	return exp(-0.5 * square_distance(lab, b) / (one_colour * one_colour));
 }

@@ -9,10 +9,12 @@ enum { COLOUR_WORDS = 49 };
 /* CIE L*a*b* (D65) of an sRGB colour; what is outside [0,1] is cut. */
 void colour_lab(const double rgb[3], double lab[3]);
 
-void colour_word_lab(int word, double lab[3]);
+/* Adds to share (COLOUR_WORDS) how far people would call a colour by each word, times weight: in [0,1], near
+ * 1 for the nearest words, exp(-1/2 (d^2 - least^2) / 16^2) with d the distance of L*a*b* to the word's
+ * colour and least that to the nearest word's. Lightness counts half, as it depends on the light. */
+void colour_call(const double lab[3], double weight, double *share);
 
-/* How well a colour fits that of a word, in [0,1]: exp(-1/2 (distance / 25)^2), the distance that of L*a*b*
- * with lightness counting half, as it depends on the light. */
-double colour_fit(const float lab[3], const double word[3]);
+/* How far two colour words are words for one colour, in [0,1]. */
+double colour_words_alike(int a, int b);
 
 #endif

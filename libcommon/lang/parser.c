@@ -46,17 +46,16 @@ int parse_sentence(struct parse *p, const struct parser *parser, const char *tex
 	const struct parser_vectors *v, struct err *e)
 {
 	struct tokens t;
-	struct analysis a, learnt;
+	struct analysis a, grammar;
 	double sure = 1;
 
 	tokens_take(&t, text, v ? v->pieces : NULL, parser->known, parser->known_count);
-	grammar_analyse(&a, &t);
-	if (are_mine(parser, v) && t.n) {
-		if (learnt_analyse(&learnt, &t, &a, parser, v, &sure, e))
-			return -1;
-		a = learnt;
-	}
-	analysis_mend(&a, &t);
+	grammar_analyse(&grammar, &t);
+	if (!are_mine(parser, v) || !t.n)
+		a = grammar;
+	else if (learnt_analyse(&a, &t, &grammar, parser, v, &sure, e))
+		return -1;
+	analysis_mend(&a, &grammar, &t);
 	if (parse_build(p, &a, &t, e))
 		return -1;
 	p->confidence *= sure;

@@ -2,15 +2,12 @@
 
 #include "base/mem.h"
 #include "refer/calibrate.h"
-#include "refer/choose.h"
 #include "refer/sight.h"
 #include "splat/render.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define UNUSED SIZE_MAX
 
 void asked_free(struct asked *a)
 {
@@ -73,77 +70,128 @@ int asked_trained(struct asked *a, const struct respond_model *m, const struct a
 	return -1;
 }
 
-/* answer[i] becomes the object that sentence i means, or, for none, the number of objects. */
-static int choose_objects(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
-	double least, struct err *e)
-{
-	const struct choose_scene scene = {l, q->splats, q->cameras, 1};
-	struct choose_sentence *sentences = mem_alloc(q->count, sizeof *sentences, "sentences", e);
-	float *probability = NULL;
-	size_t bytes;
-	int bad = -1;
+/* What sentences mean: sets of objects. */
+struct meant {
+	struct choose_sentence *sentences; /* (count) */
+	struct choice *choices;
+	float *probability; /* (count,O) */
+	char *chosen;
+};
 
-	if (mem_size(l->objects, sizeof *probability, &bytes))
-		err_set(e, ERR_SYSTEM, "probabilities of %zu objects do not fit in memory", l->objects);
-	else if (sentences)
-		probability = mem_alloc(q->count, bytes, "probabilities", e);
-	for (size_t i = 0; i < q->count && probability; i++) {
-		const size_t r = q->which[i];
-		sentences[i] = (struct choose_sentence){q->pieces[r],
-			q->words + (size_t)q->offsets[r] * (size_t)l->width,
-			(size_t)(q->offsets[r + 1] - q->offsets[r])};
-	}
-	if (probability)
-		bad = choose(&scene, sentences, q->count, parts, probability, e);
-	for (size_t i = 0; i < q->count && !bad; i++) {
-		const float *row = probability + i * l->objects;
-		size_t best = 0;
-		double any = 0;
-		for (size_t o = 0; o < l->objects; o++) {
-			best = row[o] > row[best] ? o : best;
-			any += (double)row[o];
-		}
-		const int is_found = sentences[i].words && l->objects && any >= least;
-		a->answer[i] = is_found ? best : l->objects;
-		a->sure[i] = is_found ? (double)row[best] * l->confidence[best] : 0;
-	}
-	free(sentences);
-	free(probability);
-	return bad;
+static void meant_free(struct meant *m)
+{
+	free(m->sentences);
+	free(m->choices);
+	free(m->probability);
+	free(m->chosen);
 }
 
-static int take_responses(struct asked *a, const struct lifted *l, const size_t *of, struct err *e)
+static int meant_alloc(struct meant *m, size_t count, size_t objects, struct err *e)
 {
-	const size_t n = l->gaussians;
+	size_t bytes;
 
-	for (size_t o = 0; o < l->objects; o++)
-		if (of[o] != UNUSED)
-			lifted_responses(l, o, a->responses + n * of[o]);
-	if (of[l->objects] != UNUSED)
-		memset(a->responses + n * of[l->objects], 0, n * sizeof *a->responses);
-	return render_pack(a->responses, n, (int)a->answers, e);
+	if (mem_size(objects, sizeof *m->probability, &bytes))
+		return err_set(e, ERR_SYSTEM, "probabilities of %zu objects do not fit in memory", objects);
+	m->sentences = mem_alloc(count, sizeof *m->sentences, "sentences", e);
+	m->choices = mem_alloc(count, sizeof *m->choices, "sentences", e);
+	m->probability = mem_alloc(count, bytes, "probabilities", e);
+	m->chosen = mem_alloc(count, objects, "objects", e);
+	return m->sentences && m->choices && m->probability && m->chosen ? 0 : -1;
+}
+
+/* What each sentence means; a sentence that means nothing has no objects. */
+static int find_meant(struct meant *m, struct asked *a, const struct lifted *l, const struct asked_of *q,
+	unsigned parts, double least, struct err *e)
+{
+	const struct choose_scene scene = {l, q->splats, q->cameras, q->parser, 1};
+
+	for (size_t i = 0; i < q->count; i++) {
+		const size_t r = q->which[i];
+		m->sentences[i] = (struct choose_sentence){q->texts[r], q->pieces[r],
+			q->words + (size_t)q->offsets[r] * (size_t)l->width,
+			(size_t)(q->offsets[r + 1] - q->offsets[r]),
+			q->from ? q->from[i] : (struct viewpoint){.kind = VIEWPOINT_USUAL}};
+	}
+	if (choose(&scene, m->sentences, q->count, parts, m->choices, m->probability, m->chosen, NULL, e))
+		return -1;
+	for (size_t i = 0; i < q->count; i++) {
+		char *chosen = m->chosen + i * l->objects;
+		double sum = 0, n = 0;
+		if (m->choices[i].there < least)
+			memset(chosen, 0, l->objects);
+		for (size_t o = 0; o < l->objects; o++)
+			if (chosen[o]) {
+				sum += (double)m->probability[i * l->objects + o] * l->confidence[o];
+				n++;
+			}
+		a->sure[i] = n > 0 ? m->choices[i].there * sum / n : 0;
+	}
+	return 0;
+}
+
+/* Sentences that mean the same objects have one answer, that of the first of them: firsts (answers). */
+static size_t share_answers(
+	const struct meant *m, size_t count, size_t objects, size_t *answer, size_t *firsts)
+{
+	size_t answers = 0;
+
+	for (size_t i = 0; i < count; i++) {
+		size_t k = 0;
+		while (k < answers &&
+			memcmp(m->chosen + firsts[k] * objects, m->chosen + i * objects, objects))
+			k++;
+		if (k == answers)
+			firsts[answers++] = i;
+		answer[i] = k;
+	}
+	return answers;
+}
+
+/* to (N): the responses of the union of some objects. own (N) is scratch. */
+static void union_of(const struct lifted *l, const char *chosen, float *own, float *to)
+{
+	size_t count = 0;
+
+	memset(to, 0, l->gaussians * sizeof *to);
+	for (size_t o = 0; o < l->objects; o++) {
+		if (!chosen[o])
+			continue;
+		float *at = count ? own : to;
+		lifted_responses(l, o, at);
+		for (size_t i = 0; i < l->gaussians && count; i++)
+			to[i] = own[i] > to[i] ? own[i] : to[i];
+		count++;
+	}
+}
+
+static int take_answers(struct asked *a, const struct lifted *l, const struct meant *m, const size_t *firsts,
+	size_t answers, struct err *e)
+{
+	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
+	int bad = !own || alloc_answers(a, answers, l->gaussians, e);
+
+	for (size_t k = 0; k < answers && !bad; k++)
+		union_of(l, m->chosen + firsts[k] * l->objects, own, a->responses + k * l->gaussians);
+	free(own);
+	return bad ? -1 : render_pack(a->responses, l->gaussians, (int)answers, e);
 }
 
 static int ask_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
 	double least, struct err *e)
 {
-	size_t *of, answers = 0;
+	struct meant m = {0};
+	size_t *firsts = mem_alloc(q->count, sizeof *firsts, "sentences", e);
 
 	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
 	a->sure = mem_alloc(q->count, sizeof *a->sure, "sentences", e);
-	if (!a->answer || !a->sure || choose_objects(a, l, q, parts, least, e))
-		return -1;
-	of = mem_alloc(l->objects + 1, sizeof *of, "objects", e);
-	for (size_t o = 0; o <= l->objects && of; o++)
-		of[o] = UNUSED;
-	for (size_t i = 0; i < q->count && of; i++) {
-		size_t *own = &of[a->answer[i]];
-		if (*own == UNUSED)
-			*own = answers++;
-		a->answer[i] = *own;
+	int bad = !firsts || !a->answer || !a->sure || meant_alloc(&m, q->count, l->objects, e) ||
+		  find_meant(&m, a, l, q, parts, least, e);
+	if (!bad) {
+		const size_t answers = share_answers(&m, q->count, l->objects, a->answer, firsts);
+		bad = take_answers(a, l, &m, firsts, answers, e);
 	}
-	int bad = !of || alloc_answers(a, answers, l->gaussians, e) || take_responses(a, l, of, e);
-	free(of);
+	meant_free(&m);
+	free(firsts);
 	return bad ? -1 : 0;
 }
 

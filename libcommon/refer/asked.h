@@ -3,6 +3,7 @@
 #ifndef REFER_ASKED_H
 #define REFER_ASKED_H
 
+#include "ask/choose.h"
 #include "base/err.h"
 #include "geom/camera.h"
 #include "refer/lifted.h"
@@ -18,7 +19,10 @@ struct asked_of {
 	const struct cameras *cameras;
 	const int64_t *offsets; /* sentence r has words offsets[r] to offsets[r+1] */
 	const float *words;
-	char **pieces;	     /* of each sentence; trained models need none */
+	char **texts, **pieces; /* of each sentence; trained models need none */
+	const struct viewpoint
+		*from; /* (count) where each of `which` is said; NULL: from the usual viewpoint */
+	const struct parser *parser;
 	const size_t *which; /* (count) the sentences */
 	size_t count;
 	char *const *refs; /* of each sentence, and the model's file: for messages */
@@ -38,10 +42,11 @@ struct asked {
 int asked_trained(struct asked *a, const struct respond_model *m, const struct asked_of *q,
 	int wants_calibration, struct err *e);
 
-/* An answer for each object that is the most probable one for a sentence. A sentence that is less likely than
- * `least` to mean any object, or that has no words, means nothing that was lifted: its responses are 0. How
- * sure an answer is: the probability that the object is meant times the object's confidence, which is about
- * what its masks' IoU is worth. parts: choose()'s. */
+/* An answer for each set of objects that a sentence means: their union. A sentence that is less likely than
+ * `least` to mean anything, or that has no words, means nothing that was lifted: its responses are 0. How
+ * sure an answer is: the probability that anything is meant, times the mean over its objects of the
+ * probability of each to be meant times its confidence, which is about what its masks' IoU is worth. parts:
+ * choose()'s. */
 #define ASKED_LEAST 0.65
 int asked_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
 	double least, struct err *e);

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "mask/assign.h"
-#include "refer/choose.h"
+#include "ask/choose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,11 +13,13 @@ static const double least = 0.003, naming = 0.1;
 
 /* value (O,O): how well object o's sentences fit the Gaussians of object k. */
 static int judge(const struct lifted *l, const struct choose_scene *scene,
-	const struct choose_sentence *sentences, float *probability, double *value, struct err *e)
+	const struct choose_sentence *sentences, struct choice *choices, float *probability, char *chosen,
+	double *value, struct err *e)
 {
 	const size_t n = l->objects;
 
-	if (choose(scene, sentences, l->sentences, CHOOSE_ALL & ~(1U << CHOOSE_SENTENCE), probability, e))
+	if (choose(scene, sentences, l->sentences, CHOOSE_ALL & ~(1U << CHOOSE_SENTENCE | 1U << CHOOSE_WORDING), choices,
+		    probability, chosen, NULL, e))
 		return -1;
 	memset(value, 0, n * n * sizeof *value);
 	for (size_t r = 0; r < l->sentences; r++) {
@@ -78,17 +80,20 @@ static int settle(struct lifted *l, const struct lifted *old, const struct choos
 	const size_t n = l->objects, width = (size_t)l->width;
 	struct choose_sentence *sentences = mem_alloc(l->sentences, sizeof *sentences, "sentences", e);
 	float *probability = mem_alloc(l->sentences, (n + 1) * sizeof *probability, "sentences", e);
+	struct choice *choices = mem_alloc(l->sentences, sizeof *choices, "sentences", e);
+	char *chosen = mem_alloc(l->sentences, n, "sentences", e);
 	double *value = mem_alloc(n * n, sizeof *value, "objects", e);
 	size_t *next = mem_alloc(n, sizeof *next, "objects", e),
 	       *now = mem_alloc(n, sizeof *now, "objects", e);
-	int bad = !sentences || !probability || !value || !next || !now, changes = 1;
+	int bad = !sentences || !choices || !chosen || !probability || !value || !next || !now, changes = 1;
 
 	for (size_t r = 0; r < l->sentences && !bad; r++)
-		sentences[r] =
-			(struct choose_sentence){l->pieces[r], l->words + (size_t)l->offsets[r] * width,
-				(size_t)(l->offsets[r + 1] - l->offsets[r])};
+		sentences[r] = (struct choose_sentence){l->texts[r], l->pieces[r],
+			l->words + (size_t)l->offsets[r] * width, (size_t)(l->offsets[r + 1] - l->offsets[r]),
+			{.kind = VIEWPOINT_USUAL}};
 	for (int round = 0; round < ROUNDS && changes && !bad; round++) {
-		bad = judge(l, scene, sentences, probability, value, e) || assign_best(value, n, n, next, e);
+		bad = judge(l, scene, sentences, choices, probability, chosen, value, e) ||
+		      assign_best(value, n, n, next, e);
 		changes = 0;
 		for (size_t o = 0; o < n && !bad; o++) {
 			changes |= next[o] != o;
@@ -100,6 +105,8 @@ static int settle(struct lifted *l, const struct lifted *old, const struct choos
 		}
 	}
 	free(sentences);
+	free(choices);
+	free(chosen);
 	free(probability);
 	free(value);
 	free(next);
@@ -107,10 +114,10 @@ static int settle(struct lifted *l, const struct lifted *old, const struct choos
 	return bad ? -1 : 0;
 }
 
-int recognise(struct lifted *l, const struct splats *splats, const struct cameras *cameras, size_t *moved,
-	struct err *e)
+int recognise(struct lifted *l, const struct splats *splats, const struct cameras *cameras,
+	const struct parser *parser, size_t *moved, struct err *e)
 {
-	const struct choose_scene scene = {l, splats, cameras, naming};
+	const struct choose_scene scene = {l, splats, cameras, parser, naming};
 	size_t *from = mem_alloc(l->objects, sizeof *from, "objects", e);
 	struct lifted old = {0};
 

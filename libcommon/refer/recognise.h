@@ -5,6 +5,7 @@
 
 #include "base/err.h"
 #include "geom/camera.h"
+#include "lang/parser.h"
 #include "refer/lifted.h"
 #include "splat/splats.h"
 
@@ -14,7 +15,7 @@
  * four times at most. An object's own words fit its own Gaussians best, so that only things that look the
  * same change places. *moved gets how many objects have others than before. Returns 0, or -1 with *e set and
  * the model as it was. */
-int recognise(struct lifted *l, const struct splats *splats, const struct cameras *cameras, size_t *moved,
-	struct err *e);
+int recognise(struct lifted *l, const struct splats *splats, const struct cameras *cameras,
+	const struct parser *parser, size_t *moved, struct err *e);
 
 #endif

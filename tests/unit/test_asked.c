@@ -3,7 +3,7 @@
 
 #include "refer/answer.h"
 #include "refer/asked.h"
-#include "refer/choose.h"
+#include "ask/choose.h"
 #include "splat/render.h"
 
 enum { N = 4, SIDE = 32, SENTENCES = 6, MOST = 4 };
@@ -25,9 +25,9 @@ static struct camera camera = {.name = (char[]){"v"},
 	.world_to_camera = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
 static const struct cameras cameras = {1, &camera};
 
-/* Small, large, and a third with something of the small one; each is named by one word along an axis of its
- * own. */
-static char *names[] = {"small", "large", "third"};
+/* A small ball, a large box, and a third thing with something of the small one; each is named by one word
+ * along an axis of its own. */
+static char *names[] = {"ball", "box", "book"};
 static float confidence[] = {0.5f, 1, 1}, share[] = {1, 0.1f, 1, 0.7f, 0.3f, 0.7f};
 static int64_t indptr[] = {0, 1, 4, 6}, offsets[] = {0, 1, 2, 3};
 static int32_t index_of[] = {0, 0, 1, 2, 0, 3}, object[] = {0, 1, 2};
@@ -38,10 +38,11 @@ static const struct lifted lifted = {
 /* The large one, the small one, again the large one, nothing, the small or the large one, and no words. */
 static const int64_t asked_offsets[] = {0, 1, 2, 3, 3, 4, 4};
 static const float asked_words[] = {0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
-static char *pieces[] = {"large", "small", "large", "", "zeppelin", ""};
+static char *pieces[] = {"box", "ball", "box", "", "zeppelin", ""};
 static const size_t which[] = {0, 1, 2, 3, 4, 5};
-static const struct asked_of of = {
-	&splats, &cameras, asked_offsets, asked_words, pieces, which, SENTENCES, pieces, "model"};
+static const struct parser parser = {0};
+static const struct asked_of of = {&splats, &cameras, asked_offsets, asked_words, pieces, pieces, NULL,
+	&parser, which, SENTENCES, pieces, "model"};
 
 static float at(const struct asked *a, size_t answer, size_t gaussian)
 {

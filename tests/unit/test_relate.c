@@ -1,6 +1,6 @@
 /* Relations between objects, on a made-up table, and where lifted objects are. */
-#include "refer/arrangement.h"
-#include "refer/relate.h"
+#include "ask/arrangement.h"
+#include "ask/relate.h"
 #include "unit.h"
 
 #include <string.h>
@@ -8,13 +8,14 @@
 enum { LEFT, RIGHT, FRONT, BACK, TRAY, CUP, TALL, OBJECTS };
 
 static struct arranged objects[OBJECTS];
-static struct arrangement table = {OBJECTS, objects, {0, -10, 5}, 4};
+static struct arrangement table = {
+	.n = OBJECTS, .objects = objects, .viewer = {.is_there = 1, .centre = {0, -10, 5}}, .spacing = 4};
 
 static void put(int o, double x, double y, double z, double width, double height)
 {
 	const double centre[3] = {x, y, z + height / 2}, half[3] = {width / 2, width / 2, height / 2};
 
-	objects[o] = (struct arranged){.is_there = 1};
+	objects[o] = (struct arranged){.is_there = 1, .in_sight = 1, .side = x};
 	for (int k = 0; k < 3; k++) {
 		objects[o].centre[k] = centre[k];
 		objects[o].low[k] = centre[k] - half[k];
@@ -34,20 +35,25 @@ static void lay_table(void)
 	put(TALL, 2, 3, 0, 1, 3);
 }
 
-static double out[OBJECTS], key[OBJECTS], fit[OBJECTS];
+static double out[OBJECTS], key[3 * OBJECTS], fit[OBJECTS];
 
-static int winner(enum lang_relation relation, int first, int second)
+enum { NONE = -1, VIEWER = OBJECTS };
+
+/* The relation to at most two anchors; out has all. */
+static int winner(enum parse_relation kind, enum parse_degree degree, int first, int second)
 {
-	double anchors[2 * OBJECTS] = {0};
+	double p[2][OBJECTS + 1] = {{0}};
+	const struct relate_anchor anchors[] = {{.p = p[0]}, {.p = p[1]}};
+	const struct relation r = {kind, degree, 0, (first >= 0) + (second >= 0), anchors};
 	int best = 0;
 
 	if (first >= 0)
-		anchors[first] = 1;
+		p[0][first] = 1;
 	if (second >= 0)
-		anchors[OBJECTS + second] = 1;
-	relate(&table, relation, anchors, (first >= 0) + (second >= 0), fit, key, out);
+		p[1][second] = 1;
+	relate(&table, &r, fit, key, out);
 	for (int o = 0; o < OBJECTS; o++) {
-		CHECK(out[o] >= 0 && out[o] <= 1, "%s of %d is %g", lang_relation_name(relation), o, out[o]);
+		CHECK(out[o] >= 0 && out[o] <= 1, "%s of %d is %g", parse_relation_name(kind), o, out[o]);
 		best = out[o] > out[best] ? o : best;
 	}
 	return best;
@@ -56,46 +62,57 @@ static int winner(enum lang_relation relation, int first, int second)
 static void relations(void)
 {
 	static const struct {
-		enum lang_relation relation;
+		enum parse_relation kind;
+		enum parse_degree degree;
 		int first, second, expected;
 	} cases[] = {
-		{LANG_LEFT, CUP, -1, LEFT},
-		{LANG_RIGHT, TRAY, -1, RIGHT},
-		{LANG_FRONT, CUP, -1, FRONT},
-		{LANG_BEHIND, TRAY, -1, BACK},
-		{LANG_ON, TRAY, -1, CUP},
-		{LANG_UNDER, CUP, -1, TRAY},
-		{LANG_NEAR, TALL, -1, BACK},
-		{LANG_NEAREST, RIGHT, -1, TALL},
-		{LANG_FARTHEST, FRONT, -1, BACK},
-		{LANG_BETWEEN, FRONT, BACK, CUP},
-		{LANG_LEFTMOST, -1, -1, LEFT},
-		{LANG_RIGHTMOST, -1, -1, RIGHT},
-		{LANG_NEAREST_US, -1, -1, FRONT},
-		{LANG_FARTHEST_US, -1, -1, BACK},
-		{LANG_LEFT_SIDE, -1, -1, LEFT},
-		{LANG_RIGHT_SIDE, -1, -1, RIGHT},
-		{LANG_FRONT_SIDE, -1, -1, FRONT},
-		{LANG_BACK_SIDE, -1, -1, BACK},
-		{LANG_LARGEST, -1, -1, TALL},
-		{LANG_SMALLEST, -1, -1, TRAY},
-		{LANG_TALLEST, -1, -1, TALL},
-		{LANG_HIGHEST, -1, -1, TALL},
-		{LANG_LOWEST, -1, -1, TRAY},
+		{PARSE_LEFT, PARSE_PLAIN, CUP, NONE, LEFT},
+		{PARSE_RIGHT, PARSE_PLAIN, TRAY, NONE, RIGHT},
+		{PARSE_FRONT, PARSE_PLAIN, CUP, NONE, FRONT},
+		{PARSE_BEHIND, PARSE_PLAIN, TRAY, NONE, BACK},
+		{PARSE_ON, PARSE_PLAIN, TRAY, NONE, CUP},
+		{PARSE_SUPPORTS, PARSE_PLAIN, CUP, NONE, TRAY},
+		{PARSE_BELOW, PARSE_PLAIN, CUP, NONE, TRAY},
+		{PARSE_NEAR, PARSE_PLAIN, TALL, NONE, BACK},
+		{PARSE_NEAR, PARSE_MOST, RIGHT, NONE, TALL},
+		{PARSE_FAR, PARSE_MOST, FRONT, NONE, BACK},
+		{PARSE_BETWEEN, PARSE_PLAIN, FRONT, BACK, CUP},
+		{PARSE_BETWEEN, PARSE_PLAIN, VIEWER, TRAY, FRONT},
+		{PARSE_LEFT, PARSE_MOST, NONE, NONE, LEFT},
+		{PARSE_RIGHT, PARSE_MOST, NONE, NONE, RIGHT},
+		{PARSE_NEAR, PARSE_MOST, VIEWER, NONE, FRONT},
+		{PARSE_FAR, PARSE_MOST, VIEWER, NONE, BACK},
+		{PARSE_FRONT, PARSE_MOST, NONE, NONE, FRONT},
+		{PARSE_LEFT, PARSE_PLAIN, NONE, NONE, LEFT},
+		{PARSE_RIGHT, PARSE_PLAIN, NONE, NONE, RIGHT},
+		{PARSE_FRONT, PARSE_PLAIN, NONE, NONE, FRONT},
+		{PARSE_BEHIND, PARSE_PLAIN, NONE, NONE, BACK},
+		{PARSE_LARGER, PARSE_MOST, NONE, NONE, TALL},
+		{PARSE_LARGER, PARSE_PLAIN, NONE, NONE, TALL},
+		{PARSE_SMALLER, PARSE_MOST, NONE, NONE, TRAY},
+		{PARSE_TALLER, PARSE_MOST, NONE, NONE, TALL},
+		{PARSE_TALLER, PARSE_MORE, CUP, NONE, TALL},
+		{PARSE_WIDER, PARSE_MORE, BACK, NONE, TRAY},
+		{PARSE_ABOVE, PARSE_MOST, NONE, NONE, TALL},
+		{PARSE_BELOW, PARSE_MOST, NONE, NONE, TRAY},
 	};
 
 	lay_table();
 	for (int o = 0; o < OBJECTS; o++)
 		fit[o] = 1;
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-		int got = winner(cases[i].relation, cases[i].first, cases[i].second);
+		int got = winner(cases[i].kind, cases[i].degree, cases[i].first, cases[i].second);
 		/* the tray is as much between two things as what stands on it */
 		CHECK(got == cases[i].expected || (cases[i].expected == CUP && got == TRAY && out[CUP] > 0.8),
-			"%s: %d, expected %d", lang_relation_name(cases[i].relation), got, cases[i].expected);
+			"%s, degree %d: %d, expected %d", parse_relation_name(cases[i].kind), cases[i].degree,
+			got, cases[i].expected);
 	}
-	CHECK(winner(LANG_FRONT, TALL, -1) != TALL && out[TALL] == 0, "nothing is its own anchor");
-	winner(LANG_LEFT, TRAY, -1);
+	CHECK(winner(PARSE_FRONT, PARSE_PLAIN, TALL, NONE) != TALL && out[TALL] == 0,
+		"nothing is its own anchor");
+	winner(PARSE_LEFT, PARSE_PLAIN, TRAY, NONE);
 	CHECK(out[CUP] < 0.01, "what stands on a thing is not left of it: %g", out[CUP]);
+	winner(PARSE_TALLER, PARSE_MORE, CUP, NONE);
+	CHECK(out[LEFT] < 0.1 && out[TALL] > 0.9, "taller than the cup: %g, %g", out[LEFT], out[TALL]);
 }
 
 /* What compares, compares with those that fit the words. */
@@ -103,30 +120,49 @@ static void comparisons(void)
 {
 	memset(fit, 0, sizeof fit);
 	fit[FRONT] = fit[BACK] = fit[CUP] = 1;
-	winner(LANG_MIDDLE_ONE, -1, -1);
+	winner(PARSE_MIDDLE, PARSE_PLAIN, NONE, NONE);
 	CHECK(out[CUP] > 0.9 && out[FRONT] < 0.6 && out[BACK] < 0.6, "the middle one: %g, %g, %g", out[CUP],
 		out[FRONT], out[BACK]);
-	winner(LANG_LARGEST, -1, -1);
+	winner(PARSE_LARGER, PARSE_MOST, NONE, NONE);
 	CHECK(out[BACK] > 0.5 && out[FRONT] < 0.5, "the largest of three: %g, %g", out[BACK], out[FRONT]);
-	fit[LEFT] = 0;
-	winner(LANG_LEFTMOST, -1, -1);
+	winner(PARSE_LEFT, PARSE_MOST, NONE, NONE);
 	CHECK(out[CUP] > out[FRONT], "leftmost of those that fit");
 }
 
-/* The middle of likelihoods: half of each anchor. */
-static void uncertain_anchors(void)
+/* The k-th from one end is the last but k - 1 from the other; each place among those that fit is somebody's.
+ */
+static void ranks(void)
 {
-	double anchors[OBJECTS] = {0}, one[OBJECTS], two[OBJECTS];
+	double back[OBJECTS];
 
-	anchors[CUP] = 1;
-	relate(&table, LANG_LEFT, anchors, 1, fit, key, one);
-	anchors[CUP] = 0;
-	anchors[TALL] = 1;
-	relate(&table, LANG_LEFT, anchors, 1, fit, key, two);
-	anchors[CUP] = anchors[TALL] = 0.5;
-	relate(&table, LANG_LEFT, anchors, 1, fit, key, out);
-	for (int o = 0; o < OBJECTS; o++)
-		CHECK(fabs(out[o] - (one[o] + two[o]) / 2) < 1e-12, "object %d", o);
+	memset(fit, 0, sizeof fit);
+	fit[LEFT] = fit[CUP] = fit[TALL] = fit[RIGHT] = 1;
+	static const int order[] = {LEFT, CUP, TALL, RIGHT};
+	for (int k = 1; k <= 4; k++) {
+		relate_rank(&table, PARSE_LEFT, k, fit, key, out);
+		CHECK(out[order[k - 1]] > 0.9, "number %d from the left: %g", k, out[order[k - 1]]);
+		relate_rank(&table, PARSE_RIGHT, 5 - k, fit, key, back);
+		CHECK(fabs(back[order[k - 1]] - out[order[k - 1]]) < 1e-6, "number %d from the right", 5 - k);
+	}
+	relate_rank(&table, PARSE_LEFT, -1, fit, key, out);
+	CHECK(out[RIGHT] > 0.9, "the last from the left: %g", out[RIGHT]);
+	relate_rank(&table, PARSE_LEFT, 1000000, fit, key, out);
+	CHECK(out[RIGHT] < 0.1, "there is no such number");
+}
+
+/* All that fit, rather than one of them: "taller than the cups", of which it may be one. */
+static void every_anchor(void)
+{
+	double p[OBJECTS + 1] = {0};
+	struct relate_anchor anchor = {.p = p, .is_every = 1};
+	const struct relation r = {PARSE_TALLER, PARSE_MORE, 0, 1, &anchor};
+
+	p[TALL] = p[LEFT] = 1;
+	relate(&table, &r, fit, key, out);
+	CHECK(out[BACK] < 0.1 && out[TALL] < 0.01, "taller than both: %g, %g", out[BACK], out[TALL]);
+	anchor.is_other = 1;
+	relate(&table, &r, fit, key, out);
+	CHECK(out[TALL] > 0.9, "taller than the other: %g", out[TALL]);
 }
 
 static void nobody_there(void)
@@ -134,14 +170,17 @@ static void nobody_there(void)
 	objects[LEFT].is_there = 0;
 	for (int o = 0; o < OBJECTS; o++)
 		fit[o] = 1;
-	CHECK(winner(LANG_LEFTMOST, -1, -1) != LEFT && out[LEFT] == 0, "what is not there");
+	CHECK(winner(PARSE_LEFT, PARSE_MOST, NONE, NONE) != LEFT && out[LEFT] == 0, "what is not there");
 	for (int o = 0; o < OBJECTS; o++)
 		objects[o].is_there = 0;
-	for (int r = 0; r < LANG_RELATIONS; r++) {
-		winner((enum lang_relation)r, r <= LANG_BETWEEN ? CUP : -1, r == LANG_BETWEEN ? TALL : -1);
-		for (int o = 0; o < OBJECTS; o++)
-			CHECK(out[o] == 0, "%s", lang_relation_name((enum lang_relation)r));
-	}
+	for (int r = 0; r < PARSE_RELATIONS; r++)
+		for (int d = PARSE_PLAIN; d <= PARSE_MOST; d++)
+			for (int anchors = 0; anchors < 3; anchors++) {
+				winner((enum parse_relation)r, (enum parse_degree)d, anchors > 0 ? CUP : NONE,
+					anchors > 1 ? TALL : NONE);
+				for (int o = 0; o < OBJECTS; o++)
+					CHECK(out[o] == 0, "%s", parse_relation_name((enum parse_relation)r));
+			}
 }
 
 /* A camera that looks along +y from a height, z up. */
@@ -188,17 +227,36 @@ static void arrangement(void)
 		a.objects[0].centre[0], a.objects[1].centre[0]);
 	CHECK(a.objects[1].high[0] - a.objects[1].low[0] < 0.5, "a stray makes it %g wide",
 		a.objects[1].high[0] - a.objects[1].low[0]);
-	CHECK(a.eye[1] < -9 && fabs(a.eye[0]) < 0.2, "the eye is at %g, %g", a.eye[0], a.eye[1]);
+	CHECK(a.viewer.centre[1] < -9 && fabs(a.viewer.centre[0]) < 0.2, "the eye is at %g, %g",
+		a.viewer.centre[0], a.viewer.centre[1]);
 	CHECK(fabs(a.spacing - 6) < 0.2, "spacing %g", a.spacing);
 	CHECK(a.objects[0].lab[1] > 50 && a.objects[1].lab[2] < -50, "red and blue");
 	CHECK(arrangement_alike(&a, 0, 0) == 0 && arrangement_alike(&a, 0, 1) < -50, "alike: %g",
 		arrangement_alike(&a, 0, 1));
 	CHECK(arrangement_alike(&a, 0, 1) == arrangement_alike(&a, 1, 0), "alike both ways");
 	CHECK(arrangement_alike(&a, 0, 2) == -INFINITY, "like nothing");
+	CHECK(a.objects[0].colours[colour_word("red")] > 0.5 &&
+			a.objects[0].colours[colour_word("blue")] < 0.01,
+		"red is called %g red", a.objects[0].colours[colour_word("red")]);
+	/* from behind, left is right; and back again */
+	const struct viewpoint behind = {.kind = VIEWPOINT_POINT, .point = {0, 30, 1}},
+			       usual = {.kind = VIEWPOINT_USUAL};
+	const double left = a.objects[0].centre[0];
+	arrangement_look(&a, &behind);
+	CHECK(a.objects[0].centre[0] > 2 && a.objects[1].centre[0] < -2, "from behind: %g, %g",
+		a.objects[0].centre[0], a.objects[1].centre[0]);
+	arrangement_look(&a, &usual);
+	CHECK(a.objects[0].centre[0] == left, "the usual viewpoint again");
+	/* a picture that has only the right one in it */
+	struct camera narrow = camera_at(3);
+	narrow.fx = narrow.fy = 400;
+	const struct viewpoint picture = {.kind = VIEWPOINT_CAMERA, .camera = &narrow};
+	arrangement_look(&a, &picture);
+	CHECK(!a.objects[0].in_sight && a.objects[1].in_sight, "what a picture shows");
 	arrangement_free(&a);
 	cameras.n = 0;
 	if (CHECK(!arrangement_make(&a, &l, &s, &cameras, &e), "%s", e.message))
-		CHECK(isfinite(a.eye[0]) && isfinite(a.objects[0].centre[2]), "without cameras");
+		CHECK(isfinite(a.viewer.centre[0]) && isfinite(a.objects[0].centre[2]), "without cameras");
 	arrangement_free(&a);
 }
 
@@ -206,7 +264,8 @@ int main(void)
 {
 	relations();
 	comparisons();
-	uncertain_anchors();
+	ranks();
+	every_anchor();
 	nobody_there();
 	arrangement();
 	return unit_end();

@@ -1,0 +1,124 @@
+#include "cmd/jobs/anymodel.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/names.h"
+#include "formats/lifted.h"
+#include "formats/safetensors.h"
+
+#include <stdlib.h>
+#include <stddef.h>
+#include <string.h>
+
+int anymodel_read(struct anymodel *m, const char *path, struct err *e)
+{
+	struct safetensors st;
+	int bad;
+
+	*m = (struct anymodel){0};
+	if (safetensors_open(&st, path, e))
+		return -1;
+	const char *format = safetensors_meta(&st, "format");
+	m->is_lifted = format && !strcmp(format, "refer.lifted");
+	if (m->is_lifted)
+		bad = lifted_take(&m->lifted, &m->origin, &st, e) || parser_weights_default(&m->weights, e);
+	else if (!format || strcmp(format, "refer.model"))
+		bad = err_set(e, ERR_FORMAT, "%s: format is '%s', expected 'refer.model' or 'refer.lifted'",
+			st.path, format ? format : "");
+	else
+		bad = model_take(&m->trained, &st, e);
+	if (!bad && !m->is_lifted)
+		m->origin = m->trained.origin;
+	safetensors_close(&st);
+	return bad ? -1 : 0;
+}
+
+void anymodel_free(struct anymodel *m)
+{
+	model_free(&m->trained);
+	lifted_free(&m->lifted);
+	parser_weights_free(&m->weights);
+	*m = (struct anymodel){0};
+}
+
+static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, struct err *e)
+{
+	const char *model = file_name(q->model_path), *text = file_name(q->text_path);
+	const size_t gaussians = m->is_lifted ? m->lifted.gaussians : m->trained.scene_gaussians;
+	const int width = m->is_lifted ? m->lifted.width : m->trained.layout.text_width;
+
+	if (gaussians != q->scene->splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", model,
+			gaussians, q->scene_path, q->scene->splats.n);
+	if (width != q->text->width)
+		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, %s has %d", model, width,
+			text, q->text->width);
+	if (fingerprint_check("scene", model, &m->origin.scene, q->scene_path, &q->scene->fingerprint, e) ||
+		fingerprint_check("encoder", text, &q->text->encoder, model, &m->origin.encoder, e))
+		return -1;
+	if (m->is_lifted && !q->text->pieces)
+		return err_set(e, ERR_FORMAT,
+			"%s: no word pieces, which %s asks for: encode its sentences again", text, model);
+	return 0;
+}
+
+/* Where each sentence is said: from (q->count). */
+static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from, struct err *e)
+{
+	const struct cameras *c = &q->scene->cameras;
+	struct names names;
+	int bad = 0;
+
+	if (names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e))
+		return -1;
+	for (size_t i = 0; i < q->count && !bad; i++) {
+		const char *view = q->text->views ? q->text->views[q->which[i]] : "";
+		from[i] = q->from ? *q->from : (struct viewpoint){.kind = VIEWPOINT_USUAL};
+		if (q->from || !*view)
+			continue;
+		const size_t v = names_find(&names, view);
+		if (v == NAMES_NONE)
+			bad = err_set(e, ERR_FORMAT,
+				"%s: sentence '%s' is of view '%s', which %s does not have",
+				file_name(q->text_path), q->text->refs[q->which[i]], view, q->scene_path);
+		else
+			from[i] = (struct viewpoint){.kind = VIEWPOINT_CAMERA, .camera = &c->views[v]};
+	}
+	names_free(&names);
+	return bad;
+}
+
+static int answer_lifted(const struct lifted *l, const struct anymodel_ask *q, struct asked_of *of,
+	struct asked *a, struct err *e)
+{
+	struct viewpoint *from = mem_alloc(q->count, sizeof *from, "sentences", e);
+
+	of->from = from;
+	const int bad = !from || find_viewpoints(q, from, e) || asked_lifted(a, l, of, q->parts, q->least, e);
+	free(from);
+	return bad ? -1 : 0;
+}
+
+int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, struct asked *a, struct err *e)
+{
+	const struct model *t = &m->trained;
+	const float *means = q->scene->splats.means;
+	const struct parser parser = {.weights = &m->weights, .encoder = q->text->encoder.hex};
+	struct asked_of of = {&q->scene->splats, &q->scene->cameras, q->text->offsets, q->text->words,
+		q->text->texts, q->text->pieces, NULL, &parser, q->which, q->count, q->text->refs,
+		file_name(q->model_path)};
+	struct rows rows = {0};
+
+	*a = (struct asked){0};
+	if (check_fit(m, q, e))
+		return -1;
+	if (m->is_lifted)
+		return answer_lifted(&m->lifted, q, &of, a, e);
+	if (model_rows(t, means, &rows, e))
+		return -1;
+	const struct respond_model respond = {
+		&t->layout, t->similarity, &rows, t->features, t->parameters, means, t->low, t->high};
+	int bad = asked_trained(a, &respond, &of, q->wants_calibration, e);
+	rows_free(&rows);
+	return bad;
+}

@@ -1,0 +1,42 @@
+/* A model of either kind, told by the file: trained (formats/model.md) or lifted (formats/lifted.md). */
+#ifndef CMD_JOBS_ANYMODEL_H
+#define CMD_JOBS_ANYMODEL_H
+
+#include "base/err.h"
+#include "formats/model.h"
+#include "formats/parser_weights.h"
+#include "formats/scene.h"
+#include "formats/text.h"
+#include "refer/asked.h"
+#include "refer/lifted.h"
+
+struct anymodel {
+	int is_lifted;
+	struct model trained;
+	struct lifted lifted;
+	struct origin origin;	       /* the scene and the encoder that it was made with */
+	struct parser_weights weights; /* of the sentences' parser, for a lifted model: the default ones */
+};
+
+/* ERR_FORMAT where the file is malformed, or of another kind. */
+int anymodel_read(struct anymodel *m, const char *path, struct err *e);
+void anymodel_free(struct anymodel *m);
+
+struct anymodel_ask {
+	const struct scene *scene;
+	const struct text *text;
+	const char *model_path, *scene_path, *text_path; /* for messages */
+	const size_t *which;				 /* (count) the sentences */
+	size_t count;
+	int wants_calibration; /* of trained models, and the next are of lifted ones: see refer/asked.h */
+	unsigned parts;
+	double least;
+	const struct viewpoint
+		*from; /* where all sentences are said; NULL: each of the view that it names, if any */
+};
+
+/* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text
+ * does not fit or is of another encoder. */
+int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, struct asked *a, struct err *e);
+
+#endif

@@ -1,0 +1,244 @@
+#include "cmd/jobs/box_scores.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/jsonl.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A name of a record of the truth. */
+struct entry {
+	const char *name;
+	int has_ref; /* of an object's name: records without ref come first */
+	size_t record;
+};
+
+static int by_name(const void *a, const void *b)
+{
+	const struct entry *x = a, *y = b;
+	int order = strcmp(x->name, y->name);
+
+	if (!order)
+		order = x->has_ref - y->has_ref;
+	return order ? order : (x->record > y->record) - (x->record < y->record);
+}
+
+/* The first of the entries with that name; NULL where there is none. */
+static const struct entry *find(const struct entry *entries, size_t n, const char *name)
+{
+	size_t low = 0, high = n;
+
+	while (name && low < high) {
+		const size_t middle = low + (high - low) / 2;
+		if (strcmp(entries[middle].name, name) < 0)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return name && low < n && !strcmp(entries[low].name, name) ? &entries[low] : NULL;
+}
+
+static int by_object(const void *a, const void *b)
+{
+	const struct box_pair *x = a, *y = b;
+
+	return strcmp(x->name, y->name);
+}
+
+/* The truth's names; refs and objects (each with room for all) and how many. */
+static void list_names(const struct box_set *truth, struct entry *refs, size_t *ref_count,
+	struct entry *objects, size_t *object_count)
+{
+	*ref_count = *object_count = 0;
+	for (size_t i = 0; i < truth->n; i++) {
+		const struct box_record *r = &truth->records[i];
+		if (r->ref)
+			refs[(*ref_count)++] = (struct entry){r->ref, 1, i};
+		if (r->object)
+			objects[(*object_count)++] = (struct entry){r->object, r->ref != NULL, i};
+	}
+	qsort(refs, *ref_count, sizeof *refs, by_name);
+	qsort(objects, *object_count, sizeof *objects, by_name);
+}
+
+/* Pairs a prediction, NULL where there is none, with a truth that has a box. */
+static void add(struct box_scores *s, const struct box_record *truth, const struct box_record *p)
+{
+	struct box_pair *pair = &s->pairs[s->n++];
+
+	*pair = (struct box_pair){.name = truth->object ? truth->object : truth->ref,
+		.is_missing = !p,
+		.is_empty = p && p->is_empty,
+		.true_aligned = truth->aligned,
+		.true_turned = truth->turned};
+	if (p && !p->is_empty) {
+		pair->aligned = p->aligned;
+		pair->turned = p->turned;
+	}
+}
+
+static void pair_up(struct box_scores *s, const struct box_set *truth, const struct box_set *predictions,
+	struct entry *refs, struct entry *objects, char *is_met)
+{
+	size_t ref_count, object_count;
+
+	list_names(truth, refs, &ref_count, objects, &object_count);
+	for (size_t i = 0; i < predictions->n; i++) {
+		const struct box_record *p = &predictions->records[i];
+		const struct entry *of = find(refs, ref_count, p->ref);
+		if (!of)
+			of = find(objects, object_count, p->object);
+		if (!of) {
+			s->unmatched++;
+			continue;
+		}
+		is_met[of->record] = 1;
+		if (!truth->records[of->record].is_empty)
+			add(s, &truth->records[of->record], p);
+	}
+	for (size_t i = 0; i < truth->n; i++) {
+		s->empty_truth += truth->records[i].is_empty != 0;
+		if (!is_met[i] && !truth->records[i].is_empty)
+			add(s, &truth->records[i], NULL);
+	}
+}
+
+static int make(
+	struct box_scores *s, const struct box_set *predictions, const char *truth_path, struct err *e)
+{
+	const size_t n = s->truth.n;
+	struct entry *refs = mem_alloc(n, sizeof *refs, "boxes", e);
+	struct entry *objects = mem_alloc(n, sizeof *objects, "boxes", e);
+	char *is_met = mem_zalloc(n, 1, "boxes", e);
+	int bad = -1;
+
+	s->pairs = mem_alloc(n + predictions->n, sizeof *s->pairs, "boxes", e);
+	if (refs && objects && is_met && s->pairs) {
+		pair_up(s, &s->truth, predictions, refs, objects, is_met);
+		box_score_sum(&s->all, s->pairs, s->n);
+		qsort(s->pairs, s->n, sizeof *s->pairs, by_object);
+		bad = s->n ? 0
+			   : err_set(e, ERR_FORMAT, "%s: no box at all: there is nothing to score",
+				     file_name(truth_path));
+	}
+	free(refs);
+	free(objects);
+	free(is_met);
+	return bad;
+}
+
+int box_scores_read(struct box_scores *s, const char *truth, const char *predictions, struct err *e)
+{
+	struct box_set p = {0};
+
+	*s = (struct box_scores){0};
+	int bad = boxes_read(&s->truth, truth, e) || boxes_read(&p, predictions, e) || make(s, &p, truth, e);
+	boxes_free(&p);
+	if (bad)
+		box_scores_free(s);
+	return bad ? -1 : 0;
+}
+
+void box_scores_free(struct box_scores *s)
+{
+	free(s->pairs);
+	boxes_free(&s->truth);
+	*s = (struct box_scores){0};
+}
+
+/* How many of the pairs from `first` on have its name. */
+static size_t same_name(const struct box_scores *s, size_t first)
+{
+	size_t n = 1;
+
+	while (first + n < s->n && !strcmp(s->pairs[first + n].name, s->pairs[first].name))
+		n++;
+	return n;
+}
+
+static void text_figures(FILE *out, const char *name, const struct box_figures *f)
+{
+	fprintf(out, "%-12s %6.2f %% %6.2f %% %6.2f %%\n", name, 100 * f->iou, 100 * f->p25, 100 * f->p50);
+}
+
+static void put_text(FILE *out, const struct box_scores *s)
+{
+	const struct box_score *all = &s->all;
+
+	fprintf(out, "%-12s %8s %8s %8s\n", "boxes", "mIoU", "@0.25", "@0.5");
+	text_figures(out, "aligned", &all->aligned);
+	text_figures(out, "oriented", &all->turned);
+	if (!isnan(all->distance))
+		fprintf(out, "centre error %8.4g units, %.2f %% of the diagonal\n", all->distance,
+			100 * all->relative);
+	fprintf(out, "pairs        %6zu\nmissing      %6zu\nempty        %6zu\nempty truth  %6zu\n\n", s->n,
+		all->missing, all->empty, s->empty_truth);
+	fprintf(out, "pairs  aligned  oriented   centre  object\n");
+	for (size_t i = 0, n; i < s->n; i += n) {
+		struct box_score one;
+		n = same_name(s, i);
+		box_score_sum(&one, s->pairs + i, n);
+		fprintf(out, "%5zu %6.2f %%  %6.2f %% ", n, 100 * one.aligned.iou, 100 * one.turned.iou);
+		if (isnan(one.relative))
+			fprintf(out, "%8s  %s\n", "-", s->pairs[i].name);
+		else
+			fprintf(out, "%6.2f %%  %s\n", 100 * one.relative, s->pairs[i].name);
+	}
+}
+
+static void json_figures(FILE *out, const char *key, const struct box_figures *f)
+{
+	fprintf(out, "\"%s\":{\"miou\":%.6g,\"p25\":%.6g,\"p50\":%.6g}", key, f->iou, f->p25, f->p50);
+}
+
+static void json_number(FILE *out, const char *before, double x)
+{
+	if (isnan(x))
+		fprintf(out, "%snull", before);
+	else
+		fprintf(out, "%s%.6g", before, x);
+}
+
+static int put_json(FILE *out, const struct box_scores *s, struct err *e)
+{
+	const struct box_score *all = &s->all;
+
+	fputc('{', out);
+	json_figures(out, "aligned", &all->aligned);
+	fputc(',', out);
+	json_figures(out, "oriented", &all->turned);
+	json_number(out, ",\"centre\":", all->distance);
+	json_number(out, ",\"centre_relative\":", all->relative);
+	fprintf(out, ",\"pairs\":%zu,\"missing\":%zu,\"empty\":%zu,\"empty_truth\":%zu,\"objects\":", s->n,
+		all->missing, all->empty, s->empty_truth);
+	for (size_t i = 0, n; i < s->n; i += n) {
+		struct box_score one;
+		n = same_name(s, i);
+		box_score_sum(&one, s->pairs + i, n);
+		if (jsonl_put_string(out, i ? "," : "{", s->pairs[i].name, e))
+			return -1;
+		fprintf(out, ":{\"pairs\":%zu,\"aligned\":%.6g,\"oriented\":%.6g", n, one.aligned.iou,
+			one.turned.iou);
+		json_number(out, ",\"centre_relative\":", one.relative);
+		fputc('}', out);
+	}
+	fputs("}}\n", out);
+	return 0;
+}
+
+int box_scores_write(const struct box_scores *s, const char *path, int is_json, struct err *e)
+{
+	struct file_out out;
+
+	if (file_out_open(&out, path, e))
+		return -1;
+	if (is_json && put_json(out.stream, s, e)) {
+		file_out_abort(&out);
+		return -1;
+	}
+	if (!is_json)
+		put_text(out.stream, s);
+	return file_out_commit(&out, e);
+}

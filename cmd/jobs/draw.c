@@ -1,0 +1,167 @@
+#include "cmd/jobs/draw.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/masks.h"
+#include "refer/answer.h"
+
+#include <stdlib.h>
+
+/* What a view shows of an answer, until the views before it are written. */
+struct drawing_mask {
+	struct rle mask;
+	double score, visible;
+};
+
+static int add_view(struct drawing *d, const struct camera *view, struct err *e)
+{
+	const struct draw_options *o = d->options;
+	int width = o->size[0], height = o->size[1];
+
+	if (!width)
+		camera_scaled_size(view, o->scale ? o->scale : 1, &width, &height);
+	if (rle_check_size(height, width, e))
+		return err_prefix(e, view->name);
+	d->views[d->view_count++] = camera_resize(view, width, height);
+	return 0;
+}
+
+int draw_choose(struct drawing *d, const struct draw_options *options, struct request *request, struct err *e)
+{
+	const struct cameras *from = &request->scene.cameras;
+	char *chosen = mem_zalloc(from->n, 1, "views", e);
+
+	d->options = options;
+	d->request = request;
+	int bad = !chosen || !(d->views = mem_alloc(from->n, sizeof *d->views, "views", e)) ||
+		  (options->views && cameras_mark(from, options->views, "--views", chosen, e));
+	for (size_t i = 0; i < from->n && !bad; i++)
+		if (options->views ? chosen[i]
+				   : options->split == REQUEST_ALL ||
+					     (int)from->views[i].split == options->split)
+			bad = add_view(d, &from->views[i], e);
+	free(chosen);
+	return bad ? -1 : 0;
+}
+
+static void free_wholes(struct drawing *d)
+{
+	for (size_t k = 0; d->wholes && k < d->request->asked.answers; k++)
+		splats_free(&d->wholes[k]);
+	free(d->wholes);
+	d->wholes = NULL;
+}
+
+/* What all sentences mean, said from a viewpoint or each from its own. */
+static int answer(struct drawing *d, const struct viewpoint *from, struct err *e)
+{
+	struct request *r = d->request;
+
+	free_wholes(d);
+	int bad = request_answer(r, from, e) ||
+		  !(d->wholes = mem_zalloc(r->asked.answers, sizeof *d->wholes, "objects", e));
+	if (!bad && d->options->is_amodal)
+		bad = asked_wholes(&r->asked, &r->scene.splats, &r->scene.cameras, d->wholes, e);
+	return bad ? -1 : 0;
+}
+
+/* One answer: its mask, and the pictures of all sentences that it is the answer to. */
+static int put_answer(void *data, const struct answer *a, struct err *e)
+{
+	const struct drawing *d = data;
+	const struct request *r = d->request;
+	struct drawing_mask *to = &d->shown[a->view * r->asked.answers + a->answer];
+	const struct camera *c = a->camera;
+	int bad = rle_encode(&to->mask, a->mask, c->height, c->width, e);
+
+	to->score = a->score;
+	to->visible = a->visible;
+	for (size_t i = 0; i < r->count && !bad; i++) {
+		const struct picture picture = {
+			c->name, r->text.refs[r->refs[i]], c->height, c->width, a->image, a->mask, a->rgb};
+		if (r->asked.answer[i] == a->answer)
+			bad = pictures_put(&d->options->pictures, &picture, e);
+	}
+	return bad;
+}
+
+static int put_view(void *data, size_t view, struct err *e)
+{
+	struct drawing *d = data;
+	const struct request *r = d->request;
+	struct drawing_mask *shown = d->shown + view * r->asked.answers;
+	int bad = 0;
+
+	for (size_t i = 0; i < r->count && !bad; i++) {
+		const struct drawing_mask *from = &shown[r->asked.answer[i]];
+		const size_t sentence = r->refs[i];
+		double score = from->score;
+		if (r->asked.sure)
+			score = rle_area(&from->mask) ? r->asked.sure[i] : 0;
+		const struct mask_record record = {d->views[d->first + view].name, r->text.refs[sentence],
+			(char *)text_object(&r->text, sentence), score, from->mask, from->visible};
+		bad = masks_put(d->out, &record, e);
+	}
+	for (size_t k = 0; k < r->asked.answers; k++)
+		rle_free(&shown[k].mask);
+	report_step(d->to, (double)(d->first + view) + 1, NULL);
+	return bad;
+}
+
+/* The views from d->first on. */
+static int render(struct drawing *d, size_t views, struct err *e)
+{
+	const struct request *r = d->request;
+	const struct answer_question q = {&r->scene.splats, &r->asked,
+		d->options->is_amodal ? d->wholes : NULL, d->options->pictures.overlays != NULL};
+	const struct answer_calls calls = {d, put_answer, put_view};
+	size_t count = r->asked.answers;
+
+	if (mem_size(count, views, &count))
+		return err_set(e, ERR_SYSTEM, "masks do not fit in memory");
+	d->shown = mem_zalloc(count, sizeof *d->shown, "masks", e);
+	int bad = !d->shown || answer_all(&q, d->views + d->first, views, &calls, e) ? -1 : 0;
+	for (size_t i = 0; d->shown && i < count; i++)
+		rle_free(&d->shown[i].mask);
+	free(d->shown);
+	d->shown = NULL;
+	return bad;
+}
+
+static int render_all(struct drawing *d, const struct viewpoint *from, struct err *e)
+{
+	int bad = 0;
+
+	if (!d->options->is_each)
+		return answer(d, from, e) || render(d, d->view_count, e);
+	for (d->first = 0; d->first < d->view_count && !bad; d->first++) {
+		const struct viewpoint own = {.kind = VIEWPOINT_CAMERA, .camera = &d->views[d->first]};
+		bad = answer(d, &own, e) || render(d, 1, e);
+	}
+	return bad;
+}
+
+int draw(struct drawing *d, const struct viewpoint *from, const char *path, const struct report *to,
+	struct err *e)
+{
+	struct file_out out;
+
+	if (file_out_open(&out, path, e))
+		return -1;
+	d->to = to;
+	d->out = out.stream;
+	report_start(to, "views", (double)d->view_count);
+	int bad = render_all(d, from, e);
+	report_end(to);
+	if (!bad)
+		return file_out_commit(&out, e);
+	file_out_abort(&out);
+	return -1;
+}
+
+void drawing_free(struct drawing *d)
+{
+	if (d->request)
+		free_wholes(d);
+	free(d->views);
+}

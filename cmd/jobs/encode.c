@@ -1,0 +1,209 @@
+#include "cmd/jobs/encode.h"
+
+#include "base/mem.h"
+#include "formats/bert_model.h"
+#include "formats/vocab.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Tokens in one forward pass: enough to keep the products busy, little memory. */
+enum { ROWS_AT_ONCE = 1024 };
+
+static int add_special(
+	struct encoding_tokens *t, const struct vocab *v, enum wordpiece_special which, struct err *e)
+{
+	struct wordpieces *p = &t->pieces;
+
+	if (mem_grow((void **)&p->ids, &p->capacity, p->n + 1, sizeof *p->ids, "word pieces", e))
+		return -1;
+	p->ids[p->n++] = v->special[which];
+	return 0;
+}
+
+static int tokenise(const struct report *to, struct encoding_tokens *t, const struct sentences *s,
+	const struct vocab *v, size_t positions, struct err *e)
+{
+	t->starts = mem_alloc(s->n + 1, sizeof *t->starts, "sentences", e);
+	if (!t->starts)
+		return -1;
+	for (size_t i = 0; i < s->n; i++) {
+		t->starts[i] = t->pieces.n;
+		if (add_special(t, v, WORDPIECE_CLS, e) ||
+			wordpiece_encode(v, s->items[i].text, &t->pieces, e))
+			return -1;
+		size_t words = t->pieces.n - t->starts[i] - 1;
+		if (words > positions - 2) {
+			report_warn(to, "ref '%s': %zu word pieces, cut to the %zu that the encoder takes",
+				s->items[i].ref, words, positions - 2);
+			t->pieces.n = t->starts[i] + positions - 1;
+		}
+		if (add_special(t, v, WORDPIECE_SEP, e))
+			return -1;
+	}
+	t->starts[s->n] = t->pieces.n;
+	return 0;
+}
+
+/* Ids index the embedding, so none may lie past it. */
+static int check_vocab(const struct vocab *v, const struct bert *b, const char *dir, struct err *e)
+{
+	for (size_t i = 0; i < v->n; i++)
+		if (v->entries[i].id >= b->words)
+			return err_set(e, ERR_FORMAT, "%s: token '%s' has id %d, but vocab_size is %d", dir,
+				v->entries[i].token, v->entries[i].id, b->words);
+	return 0;
+}
+
+/* Room for everything but the sentences' names, which are borrowed. */
+static int alloc_text(struct text *out, const struct sentences *s, const struct encoding_tokens *t, int width,
+	struct err *e)
+{
+	size_t n = s->n;
+
+	*out = (struct text){.n = n, .width = width};
+	out->offsets = mem_alloc(n + 1, sizeof *out->offsets, "offsets", e);
+	out->refs = mem_alloc(n, sizeof *out->refs, "refs", e);
+	out->objects = mem_alloc(n, sizeof *out->objects, "objects", e);
+	out->texts = mem_alloc(n, sizeof *out->texts, "texts", e);
+	out->splits = mem_alloc(n, sizeof *out->splits, "splits", e);
+	if (!out->offsets || !out->refs || !out->objects || !out->texts || !out->splits)
+		return -1;
+	for (size_t i = 0; i <= n; i++)
+		out->offsets[i] = (int64_t)(t->starts[i] - 2 * i);
+	for (size_t i = 0; i < n; i++) {
+		out->refs[i] = s->items[i].ref;
+		out->objects[i] = s->items[i].object;
+		out->texts[i] = s->items[i].text;
+		out->splits[i] = s->items[i].split;
+	}
+	out->words = mem_alloc((size_t)out->offsets[n], sizeof *out->words * (size_t)width, "words", e);
+	out->sentences = mem_zalloc(n, sizeof *out->sentences * (size_t)width, "sentence vectors", e);
+	return out->words && out->sentences ? 0 : -1;
+}
+
+static int keep_pieces(
+	struct text *out, const struct encoding_tokens *t, const struct vocab *v, struct err *e)
+{
+	out->pieces = mem_zalloc(out->n, sizeof *out->pieces, "pieces", e);
+	if (!out->pieces)
+		return -1;
+	for (size_t i = 0; i < out->n; i++) {
+		out->pieces[i] = vocab_print(
+			v, t->pieces.ids + t->starts[i] + 1, t->starts[i + 1] - t->starts[i] - 2, e);
+		if (!out->pieces[i])
+			return -1;
+	}
+	return 0;
+}
+
+static void free_text(struct text *out)
+{
+	for (size_t i = 0; out->pieces && i < out->n; i++)
+		free(out->pieces[i]);
+	text_free_more(out);
+	free(out->pieces);
+	free(out->offsets);
+	free(out->refs);
+	free(out->objects);
+	free(out->texts);
+	free(out->splits);
+	free(out->words);
+	free(out->sentences);
+}
+
+/* The sentences from `first` on that one pass takes: at least one, at most ROWS_AT_ONCE tokens if there are
+ * more. */
+static size_t pass_end(const size_t *starts, size_t first, size_t n)
+{
+	size_t end = first + 1;
+
+	while (end < n && starts[end + 1] - starts[first] <= ROWS_AT_ONCE)
+		end++;
+	return end;
+}
+
+/* Leaves [CLS] and [SEP] out. */
+static void keep_words(struct text *out, size_t sentence, const float *rows)
+{
+	size_t width = (size_t)out->width, first = (size_t)out->offsets[sentence];
+
+	memcpy(out->words + first * width, rows + width,
+		((size_t)out->offsets[sentence + 1] - first) * width * sizeof *rows);
+}
+
+/* The most tokens of a pass, and the longest sentence's. */
+static void find_sizes(const struct encoding_tokens *t, size_t n, size_t *most, size_t *longest)
+{
+	size_t rows;
+
+	*most = *longest = 0;
+	for (size_t first = 0, end; first < n; first = end) {
+		end = pass_end(t->starts, first, n);
+		rows = t->starts[end] - t->starts[first];
+		*most = rows > *most ? rows : *most;
+	}
+	for (size_t i = 0; i < n; i++) {
+		rows = t->starts[i + 1] - t->starts[i];
+		*longest = rows > *longest ? rows : *longest;
+	}
+}
+
+static int make_words(struct text *out, const struct bert *b, const struct encoding_tokens *t, int is_static,
+	const struct report *to, struct err *e)
+{
+	size_t width = (size_t)b->width, most, longest, floats;
+	float *scratch = NULL, *vectors = NULL;
+	int bad = 0;
+
+	find_sizes(t, out->n, &most, &longest);
+	if (bert_scratch(b, most, longest, &floats))
+		return err_set(e, ERR_SYSTEM, "encoder: its scratch does not fit in memory");
+	scratch = mem_alloc(floats, sizeof *scratch, "encoder's scratch", e);
+	vectors = mem_alloc(most, sizeof *vectors * width, "encoder's output", e);
+	bad = !scratch || !vectors;
+	report_start(to, "sentences", (double)out->n);
+	for (size_t first = 0, end; first < out->n && !bad; first = end) {
+		end = pass_end(t->starts, first, out->n);
+		if (is_static)
+			bert_static(b, t->pieces.ids + t->starts[first], t->starts[end] - t->starts[first],
+				vectors);
+		else
+			bert_forward(b, t->pieces.ids, t->starts + first, end - first, vectors, scratch);
+		for (size_t i = first; i < end; i++)
+			keep_words(out, i, vectors + (t->starts[i] - t->starts[first]) * width);
+		report_step(to, (double)end, NULL);
+	}
+	report_end(to);
+	free(scratch);
+	free(vectors);
+	return bad || text_take_means(out, e) ? -1 : 0;
+}
+
+int encode(struct encoding *x, const char *dir, const char *path, int is_static, const struct report *to,
+	struct err *e)
+{
+	struct vocab *v = &x->vocab;
+	struct bert *b = &x->bert;
+	struct text *out = &x->text;
+
+	if (vocab_read(v, dir, e) || sentences_read(&x->sentences, path, e) || bert_model_read(b, dir, e) ||
+		check_vocab(v, b, dir, e) ||
+		tokenise(to, &x->tokens, &x->sentences, v, (size_t)b->positions, e) ||
+		alloc_text(out, &x->sentences, &x->tokens, b->width, e) ||
+		keep_pieces(out, &x->tokens, v, e) || text_take_more(out, &x->sentences, e) ||
+		make_words(out, b, &x->tokens, is_static, to, e))
+		return -1;
+	out->encoder = fingerprint_encoder(b, v, is_static);
+	return 0;
+}
+
+void encoding_free(struct encoding *x)
+{
+	free_text(&x->text);
+	free(x->tokens.pieces.ids);
+	free(x->tokens.starts);
+	bert_free(&x->bert);
+	vocab_free(&x->vocab);
+	sentences_free(&x->sentences);
+}

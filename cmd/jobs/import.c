@@ -1,0 +1,118 @@
+#include "cmd/jobs/import.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/camerafile.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char every[] = "every:";
+
+/* 0, N, 2N ... in name order, as 3DGS holds out every 8th. */
+static int split_every(struct cameras *c, const char *test_views, struct err *e)
+{
+	const char *text = test_views + strlen(every);
+	char *end;
+	unsigned long n = strtoul(text, &end, 10);
+
+	if (text[0] < '0' || text[0] > '9' || *end || n < 1 || n > 1000000000)
+		return err_set(e, ERR_USAGE, "--test-views: '%s' is not every:N with N from 1 to 1000000000",
+			test_views);
+	for (size_t i = 0; i < c->n; i++)
+		c->views[i].split = i % n ? SPLIT_TRAIN : SPLIT_TEST;
+	return 0;
+}
+
+static int split_names(struct cameras *c, const char *test_views, struct err *e)
+{
+	char *is_test = mem_zalloc(c->n, 1, "views", e);
+	int bad = is_test ? cameras_mark(c, test_views, "--test-views", is_test, e) : -1;
+
+	for (size_t i = 0; i < c->n && !bad; i++)
+		c->views[i].split = is_test[i] ? SPLIT_TEST : SPLIT_TRAIN;
+	free(is_test);
+	return bad;
+}
+
+/* What is beside SPLATS or, where 3DGS put it into point_cloud/iteration_N, in the folder of the trained
+ * model. */
+static char *find_beside(const char *splats, struct err *e)
+{
+	char *dir = file_dir(splats, e), *found = dir ? camerafile_find(dir, e) : NULL;
+	const char *slash = dir ? strrchr(dir, '/') : NULL;
+
+	if (dir && !found && !strncmp(slash ? slash + 1 : dir, "iteration_", 10)) {
+		struct err ignored;
+		char *model = file_join(dir, "../..", "", e);
+		found = model ? camerafile_find(model, &ignored) : NULL;
+		free(model);
+	}
+	free(dir);
+	return found;
+}
+
+static int check_images(const char *images_path, struct err *e)
+{
+	if (!images_path || file_is_dir(images_path))
+		return 0;
+	errno = file_exists(images_path) ? ENOTDIR : ENOENT;
+	return err_errno(e, "%s", images_path);
+}
+
+/* So that a file that is missing is said to be so before cameras are looked for beside it. */
+static int check_splats(const char *path, struct err *e)
+{
+	return strcmp(path, "-") && !file_exists(path) ? err_errno(e, "%s", path) : 0;
+}
+
+char *import_find_cameras(const struct import_options *o, struct err *e)
+{
+	if (check_images(o->images, e) || check_splats(o->splats, e))
+		return NULL;
+	if (o->cameras)
+		return file_is_dir(o->cameras) ? camerafile_find(o->cameras, e) : mem_strdup(o->cameras, e);
+	char *found = find_beside(o->splats, e);
+	if (!found && e->code == ERR_FORMAT) {
+		const struct err reason = *e;
+		err_set(e, ERR_USAGE, "--cameras is not given, and %s", reason.message);
+	}
+	return found;
+}
+
+static int split(struct cameras *c, const char *test_views, struct err *e)
+{
+	if (!test_views)
+		return 0;
+	return strncmp(test_views, every, strlen(every)) ? split_names(c, test_views, e)
+							 : split_every(c, test_views, e);
+}
+
+/* For the scene's metadata. No paths: a scene's bytes do not depend on where its sources were. */
+static char *describe_options(const char *test_views, struct err *e)
+{
+	size_t bytes = (test_views ? strlen(test_views) : 0) + 16;
+	char *text = mem_alloc(bytes, 1, "options", e);
+
+	if (text)
+		snprintf(
+			text, bytes, "%s%s", test_views ? "--test-views " : "", test_views ? test_views : "");
+	return text;
+}
+
+int import_scene(struct scene *s, struct ply_report *report, const struct import_options *o,
+	const char *cameras, const char *folder, size_t *missing, struct err *e)
+{
+	if (ply_read(&s->splats, s->offset, report, o->splats, e) ||
+		camerafile_read(&s->cameras, cameras, e) || split(&s->cameras, o->test_views, e))
+		return -1;
+	cameras_shift(&s->cameras, s->offset);
+	char *metadata = describe_options(o->test_views, e);
+	int bad = !metadata || file_make_dir(folder, e) ||
+		  camerafile_images(&s->cameras, o->images, folder, missing, e) ||
+		  scene_write(s, folder, metadata, e);
+	free(metadata);
+	return bad ? -1 : 0;
+}

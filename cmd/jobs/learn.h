@@ -1,0 +1,44 @@
+/* One stage of training, from files to the model: reads, goes on from a checkpoint, takes the steps, logs
+ * them, writes. refer-train. formats/training.md. */
+#ifndef CMD_JOBS_LEARN_H
+#define CMD_JOBS_LEARN_H
+
+#include "base/err.h"
+#include "base/report.h"
+#include "cmd/jobs/training.h"
+#include "formats/checkpoint.h"
+#include "formats/precision.h"
+#include "formats/trainlog.h"
+#include "refer/divergence.h"
+#include "refer/trainer.h"
+
+struct learning_options {
+	struct training_files from;
+	const char *output;	     /* the model; "-" is stdout */
+	const char *log;	     /* NULL: none */
+	const char *checkpoint_path; /* NULL: none */
+	int is_resumed;		     /* go on from the checkpoint, if there is one */
+	enum precision precision;    /* of the model */
+	long long iterations;	     /* steps */
+	long long checkpoint;	     /* one every so many steps; 0: never */
+	long long patience;	     /* evaluations that were no better, until it stops */
+	struct trainer_options trainer;
+};
+
+struct learning {
+	const struct learning_options *options;
+	struct training data;
+	struct trainer trainer;
+	struct trainlog log;
+	struct divergence divergence;
+	struct checkpoint_of of;
+	int is_own;    /* the checkpoint is of this training */
+	char note[64]; /* the latest losses */
+};
+
+/* *l is zeroed before. Returns 0, or -1 with *e set; after either learning_free is in order. The checkpoint
+ * goes when the model is written. */
+int learn(struct learning *l, const struct learning_options *options, const struct report *to, struct err *e);
+void learning_free(struct learning *l);
+
+#endif

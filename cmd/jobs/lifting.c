@@ -1,0 +1,185 @@
+#include "cmd/jobs/lifting.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/weights.h"
+#include "refer/recognise.h"
+
+#include <stdlib.h>
+
+static int load(struct lifting *l, struct err *e)
+{
+	if (scene_read(&l->scene, l->files->scene, e) || text_read(&l->text, l->files->text, e) ||
+		masks_read_lines(&l->set, &l->lines, l->files->masks, e))
+		return -1;
+	if (!l->text.pieces)
+		return err_set(e, ERR_FORMAT, "%s: has no word pieces: encode the sentences anew",
+			file_name(l->files->text));
+	l->views = mem_alloc(l->set.n, sizeof *l->views, "masks", e);
+	l->mask_object = mem_alloc(l->set.n, sizeof *l->mask_object, "masks", e);
+	l->sentence_object = mem_alloc(l->text.n, sizeof *l->sentence_object, "sentences", e);
+	l->names = mem_alloc(l->text.n, sizeof *l->names, "objects", e);
+	l->trained = mem_alloc(l->text.n, sizeof *l->trained, "sentences", e);
+	l->is_shown = mem_zalloc(l->text.n, 1, "sentences", e);
+	l->is_there = mem_zalloc(l->scene.cameras.n, 1, "views", e);
+	if (!l->views || !l->mask_object || !l->sentence_object || !l->names || !l->trained || !l->is_shown ||
+		!l->is_there)
+		return -1;
+	return masks_views(&l->set, l->lines, l->files->masks, &l->scene.cameras, l->views, e);
+}
+
+/* Which training views can be looked at. */
+static int find_views(struct lifting *l, const struct report *to, struct err *e)
+{
+	size_t left_out;
+
+	if (weights_mark(l->files->weights, &l->scene.cameras, l->is_there, &left_out, e))
+		return -1;
+	if (left_out)
+		report_warn(to, "%s: %zu training views have no weights, and their masks do not count",
+			l->files->weights, left_out);
+	return 0;
+}
+
+/* The first training sentence of a mask's object: a sentence's mask is its object's, but those of test
+ * sentences, and of views without weights, are not looked at. NAMES_NONE where the mask does not count. */
+static size_t sentence_of_mask(const struct lifting *l, size_t mask)
+{
+	const struct mask_record *m = &l->set.records[mask];
+	const size_t ref = m->ref ? names_find(&l->refs, m->ref) : NAMES_NONE;
+	const char *name = ref == NAMES_NONE ? m->object : l->trained[ref];
+
+	return name && l->is_there[l->views[mask]] ? names_find(&l->objects_of, name) : NAMES_NONE;
+}
+
+static int find_sentences(struct lifting *l, struct err *e)
+{
+	const size_t n = l->text.n;
+
+	for (size_t i = 0; i < n; i++)
+		l->trained[i] = l->text.splits[i] == SPLIT_TRAIN ? l->text.objects[i] : NULL;
+	if (names_make(&l->refs, l->text.refs, sizeof(char *), 0, n, e) ||
+		names_make(&l->objects_of, l->trained, sizeof(char *), 0, n, e))
+		return -1;
+	for (size_t i = 0; i < l->set.n; i++) {
+		l->mask_object[i] = sentence_of_mask(l, i);
+		if (l->mask_object[i] != NAMES_NONE)
+			l->is_shown[l->mask_object[i]] = 1;
+	}
+	return 0;
+}
+
+/* The objects that a training sentence names and a mask shows. */
+static void find_objects(struct lifting *l, const struct report *to)
+{
+	size_t unknown = 0;
+
+	for (size_t i = 0; i < l->text.n; i++) {
+		const size_t first = l->trained[i] ? names_find(&l->objects_of, l->trained[i]) : i;
+		l->sentence_object[i] = first < i ? l->sentence_object[first] : LIFTED_NONE;
+		if (first < i || !l->trained[i])
+			continue;
+		if (l->is_shown[i])
+			l->names[l->sentence_object[i] = l->objects++] = l->text.objects[i];
+		else
+			report_warn(to, "%s: '%s' has no mask in a training view, and is left out",
+				file_name(l->files->masks), l->trained[i]);
+	}
+	for (size_t i = 0; i < l->set.n; i++) {
+		const size_t first = l->mask_object[i];
+		l->mask_object[i] = first == NAMES_NONE ? LIFTED_NONE : l->sentence_object[first];
+		unknown += l->is_there[l->views[i]] && l->mask_object[i] == LIFTED_NONE;
+	}
+	if (unknown)
+		report_warn(to, "%s: %zu masks are of no training sentence's object",
+			file_name(l->files->masks), unknown);
+}
+
+static int by_object(const void *a, const void *b)
+{
+	const struct lift_mask *x = a, *y = b;
+
+	return (x->object > y->object) - (x->object < y->object);
+}
+
+static int lift_view(struct lifting *l, size_t view, struct lift_mask *masks, struct err *e)
+{
+	struct weights weights;
+	size_t n = 0;
+
+	for (size_t i = 0; i < l->set.n; i++)
+		if (l->views[i] == view && l->mask_object[i] != LIFTED_NONE)
+			masks[n++] = (struct lift_mask){l->mask_object[i], &l->set.records[i].mask};
+	if (!n)
+		return 0;
+	qsort(masks, n, sizeof *masks, by_object);
+	if (weights_open(&weights, l->files->weights, &l->scene, view, e))
+		return -1;
+	const struct view_weights blend = weights_view(&weights);
+	int bad = lift_objects_view(&l->lift, &blend, weights.height, weights.width, masks, n, e);
+	weights_close(&weights);
+	return bad;
+}
+
+static int lift(struct lifting *l, const struct report *to, struct err *e)
+{
+	const size_t n = l->scene.cameras.n;
+	struct lift_mask *masks = mem_alloc(l->set.n, sizeof *masks, "masks", e);
+	int bad = !masks || lift_objects_init(&l->lift, l->scene.splats.n, l->objects, e);
+
+	for (int round = 0; round < LIFT_ROUNDS && !bad; round++) {
+		for (size_t v = 0; v < n && !bad; v++) {
+			bad = lift_view(l, v, masks, e);
+			report_step(to, (double)((size_t)round * n + v + 1), NULL);
+		}
+		if (!bad)
+			lift_objects_settle(&l->lift);
+	}
+	free(masks);
+	return bad || lift_objects_finish(&l->lift, &l->model, e) ? -1 : 0;
+}
+
+int lifting_read(struct lifting *l, const struct lifting_files *files, const struct report *to, struct err *e)
+{
+	l->files = files;
+	if (load(l, e) || parser_weights_default(&l->weights, e) || find_views(l, to, e) ||
+		find_sentences(l, e))
+		return -1;
+	find_objects(l, to);
+	return 0;
+}
+
+int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struct report *to, struct err *e)
+{
+	const struct parser parser = {.weights = &l->weights, .encoder = l->text.encoder.hex};
+
+	*moved = 0;
+	report_start(to, "views", (double)l->scene.cameras.n * LIFT_ROUNDS);
+	int bad = lift(l, to, e);
+	report_end(to);
+	if (bad || lifted_add_sentences(&l->model, &l->text, l->sentence_object, l->names, e) ||
+		(!is_as_masked &&
+			recognise(&l->model, &l->scene.splats, &l->scene.cameras, &parser, moved, e)))
+		return -1;
+	return 0;
+}
+
+void lifting_free(struct lifting *l)
+{
+	scene_free(&l->scene);
+	text_free(&l->text);
+	masks_free(&l->set);
+	free(l->lines);
+	free(l->views);
+	free(l->sentence_object);
+	free(l->mask_object);
+	names_free(&l->refs);
+	names_free(&l->objects_of);
+	free(l->trained);
+	free(l->is_shown);
+	free(l->names);
+	free(l->is_there);
+	lift_objects_free(&l->lift);
+	lifted_free(&l->model);
+	parser_weights_free(&l->weights);
+}

@@ -1,0 +1,53 @@
+/* The objects that sentences name, lifted onto the Gaussians from their masks: what refer-lift reads, which
+ * mask is of which object, and the model that comes of it. formats/lifted.md. */
+#ifndef CMD_JOBS_LIFTING_H
+#define CMD_JOBS_LIFTING_H
+
+#include "base/err.h"
+#include "base/names.h"
+#include "base/report.h"
+#include "formats/lifted.h"
+#include "formats/masks.h"
+#include "formats/parser_weights.h"
+#include "formats/scene.h"
+#include "formats/text.h"
+#include "refer/lift_objects.h"
+
+#include <stddef.h>
+
+struct lifting_files {
+	const char *scene, *weights, *text, *masks;
+};
+
+struct lifting {
+	const struct lifting_files *files;
+	struct scene scene;
+	struct text text;
+	struct mask_set set;
+	long *lines;			       /* (set.n) */
+	size_t *views;			       /* (set.n) of each mask */
+	size_t *sentence_object, *mask_object; /* (text.n), (set.n) in names; LIFTED_NONE: does not count */
+	struct names refs, objects_of;	       /* of the sentences; of `trained` */
+	const char **trained;		       /* (text.n) objects of the training sentences, else NULL */
+	char *is_shown; /* (text.n) by a mask, at the first training sentence of an object */
+	size_t objects;
+	char **names; /* (objects) of the sentences, in the order in which these first name them; not owned */
+	char *is_there; /* (scene.cameras.n) the view has weights */
+	struct lift_objects lift;
+	struct lifted model; /* what comes of it */
+	struct parser_weights weights;
+};
+
+/* Reads the files, and finds the objects: those that a training sentence names and a mask of a training view
+ * shows. Warns of what is left out. *l is zeroed before; *files stays the caller's. Returns 0, or -1 with *e
+ * set; after either lifting_free is in order. */
+int lifting_read(
+	struct lifting *l, const struct lifting_files *files, const struct report *to, struct err *e);
+
+/* Lifts them: l->model. Of objects that look alike, each is where its sentences say, and *moved how many
+ * changed places for that; is_as_masked: where its masks are. */
+int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struct report *to, struct err *e);
+
+void lifting_free(struct lifting *l);
+
+#endif

@@ -1,0 +1,198 @@
+#include "cmd/jobs/parser_training.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/rng.h"
+#include "formats/jsonl.h"
+#include "formats/parser_weights.h"
+#include "formats/parses.h"
+#include "formats/readings.h"
+#include "formats/text.h"
+#include "lang/examples.h"
+#include "lang/parser.h"
+#include "lang/parser_school.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int parser_examples_write(const char *path, long long n, int is_test, long long seed, struct err *e)
+{
+	struct file_out out = {0};
+	struct rng r;
+	int bad = file_out_open(&out, path, e);
+	static struct example x;
+
+	rng_seed(&r, (uint64_t)seed, (uint64_t)is_test);
+	for (long long i = 0; i < n && !bad; i++) {
+		example_make(&x, is_test ? EXAMPLES_TEST : EXAMPLES_TRAIN, NULL, &r);
+		fprintf(out.stream, "{\"ref\":\"e%lld\",\"object\":\"example\"", i);
+		bad = jsonl_put_string(out.stream, ",\"text\":", x.text, e);
+		fprintf(out.stream, ",\"split\":\"%s\"}\n", is_test ? "test" : "train");
+	}
+	if (bad)
+		file_out_abort(&out);
+	return bad ? -1 : file_out_commit(&out, e);
+}
+
+struct parser_training {
+	const struct parser_training_options *options;
+	struct text examples, others;
+	struct reading_set readings;
+	struct parser_school school;
+};
+
+/* The vectors of sentence r. */
+static const float *vectors_of(const struct text *t, size_t r, int *count)
+{
+	*count = (int)(t->offsets[r + 1] - t->offsets[r]);
+	return t->words + (size_t)t->offsets[r] * (size_t)t->width;
+}
+
+/* Makes the examples again, to have their analyses. */
+static int take_examples(struct parser_training *s, struct err *e)
+{
+	static struct example x;
+	struct rng r;
+
+	rng_seed(&r, (uint64_t)s->options->seed, 0);
+	s->school.examples = mem_zalloc(s->examples.n, sizeof *s->school.examples, "samples", e);
+	if (!s->school.examples)
+		return -1;
+	s->school.example_count = s->examples.n;
+	for (size_t i = 0; i < s->examples.n; i++) {
+		int count;
+		const float *v = vectors_of(&s->examples, i, &count);
+		example_make(&x, EXAMPLES_TRAIN, s->examples.pieces ? s->examples.pieces[i] : NULL, &r);
+		if (!s->examples.pieces || strcmp(x.text, s->examples.texts[i]) != 0)
+			return err_set(e, ERR_FORMAT,
+				"%s: ref '%s': not what parse-train --write makes with --seed %lld",
+				s->options->examples, s->examples.refs[i], s->options->seed);
+		if (parser_sample_make(
+			    &s->school.examples[i], &x.tokens, &x.analysis, v, count, s->examples.width, e))
+			return -1;
+	}
+	return 0;
+}
+
+static int take_readings(struct parser_training *s, struct err *e)
+{
+	static struct tokens t;
+	struct parser_school *c = &s->school;
+	size_t n = s->others.n;
+
+	c->read = mem_zalloc(n, sizeof *c->read, "samples", e);
+	c->readings = mem_zalloc(n, sizeof *c->readings, "samples", e);
+	c->fold = mem_zalloc(n, sizeof *c->fold, "samples", e);
+	if (!c->read || !c->readings || !c->fold)
+		return -1;
+	if (!s->others.pieces || s->others.width != s->examples.width)
+		return err_set(
+			e, ERR_FORMAT, "%s: not encoded as the examples are", s->options->readings_text);
+	c->read_count = n;
+	c->texts = s->others.texts;
+	c->pieces = s->others.pieces;
+	for (size_t i = 0; i < n; i++) {
+		const struct reading_record *r = readings_find(&s->readings, s->others.refs[i]);
+		int count;
+		const float *v = vectors_of(&s->others, i, &count);
+		if (!r)
+			return err_set(e, ERR_FORMAT, "%s: no reading of ref '%s'", s->options->readings,
+				s->others.refs[i]);
+		c->readings[i] = &r->reading;
+		c->fold[i] = readings_fold(r, s->options->folds);
+		tokens_take(&t, c->texts[i], c->pieces[i], NULL, 0);
+		if (parser_sample_make(&c->read[i], &t, NULL, v, count, s->others.width, e))
+			return -1;
+	}
+	return 0;
+}
+
+static void say(void *context, int epoch, double loss)
+{
+	report_note(context, 1, "epoch %d: loss %.4f", epoch + 1, loss);
+}
+
+static int put_parses(
+	const struct parser_training *s, const struct parser_weights *w, int fold, FILE *out, struct err *e)
+{
+	const struct parser parser = {
+		.weights = w, .is_blind = s->options->is_blind, .encoder = s->others.encoder.hex};
+
+	for (size_t i = 0; i < s->others.n; i++) {
+		struct parse p;
+		struct parser_vectors v = {.pieces = s->others.pieces[i], .width = s->others.width};
+		if (s->school.fold[i] != fold)
+			continue;
+		v.vectors = vectors_of(&s->others, i, &v.count);
+		if (parse_sentence(&p, &parser, s->others.texts[i], &v, e))
+			return -1;
+		int bad = parses_put(out, s->others.refs[i], s->others.texts[i], &p, e);
+		parse_free(&p);
+		if (bad)
+			return -1;
+	}
+	return 0;
+}
+
+static int cross_validate(struct parser_training *s, struct parser_weights *w, struct err *e)
+{
+	struct file_out out = {0};
+	struct parser_weights begun = {0};
+	int bad = file_out_open(&out, s->options->output, e);
+
+	if (!bad)
+		bad = parser_school_examples(&s->school, w, e) || parser_weights_make(&begun, w->width, e);
+	for (int fold = 0; fold < s->options->folds && !bad; fold++) {
+		if (fold)
+			memcpy(w->slab, begun.slab, sizeof(float) * w->count);
+		else
+			memcpy(begun.slab, w->slab, sizeof(float) * w->count);
+		bad = parser_school_readings(&s->school, w, fold, e) || put_parses(s, w, fold, out.stream, e);
+	}
+	parser_weights_free(&begun);
+	if (bad)
+		file_out_abort(&out);
+	return bad ? -1 : file_out_commit(&out, e);
+}
+
+static int learn_weights(struct parser_training *s, struct err *e)
+{
+	const struct parser_training_options *o = s->options;
+	struct parser_weights w = {0};
+	int bad = parser_weights_make(&w, s->examples.width, e);
+
+	if (!bad) {
+		memcpy(w.encoder, s->examples.encoder.hex, sizeof w.encoder);
+		bad = o->folds ? cross_validate(s, &w, e)
+			       : parser_school_examples(&s->school, &w, e) ||
+					 parser_school_readings(&s->school, &w, -1, e) ||
+					 parser_weights_write(&w, o->output, o->readings ? "--readings" : "",
+						 o->seed, o->source, e);
+	}
+	parser_weights_free(&w);
+	return bad ? -1 : 0;
+}
+
+int parser_train(const struct parser_training_options *o, const struct report *to, struct err *e)
+{
+	struct parser_training s = {.options = o,
+		.school = {.epochs = (int)o->epochs,
+			.rounds = (int)o->rounds,
+			.seed = (unsigned long long)o->seed,
+			.progress = say,
+			.context = (void *)to}};
+	int bad = text_read(&s.examples, o->examples, e) || take_examples(&s, e);
+
+	if (!bad && o->readings)
+		bad = readings_read(&s.readings, o->readings, e) ||
+		      text_read(&s.others, o->readings_text, e) || take_readings(&s, e);
+	if (!bad && o->is_blind)
+		parser_school_blind(&s.school);
+	bad = bad || learn_weights(&s, e);
+	parser_school_free(&s.school);
+	text_free(&s.examples);
+	text_free(&s.others);
+	readings_free(&s.readings);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,28 @@
+/* The weights of text-parse, learnt from the project's own example sentences and from readings of others:
+ * parse-train. formats/parser_weights.md, formats/readings.md. */
+#ifndef CMD_JOBS_PARSER_TRAINING_H
+#define CMD_JOBS_PARSER_TRAINING_H
+
+#include "base/err.h"
+#include "base/report.h"
+
+struct parser_training_options {
+	const char *examples;		/* the encoded example sentences */
+	const char *readings;		/* learn from these too; NULL: none */
+	const char *readings_text;	/* their encoded sentences */
+	const char *output;		/* weights, or parses where there are folds; "-" is stdout */
+	const char *source;		/* what the weights say that they were learnt from */
+	long long epochs, rounds, seed; /* the seed is that of the examples, too */
+	long long folds;		/* 0, or cross-validate in so many parts */
+	int is_blind;			/* the network is not told what the grammar says */
+};
+
+/* Writes n example sentences (JSON Lines), of the wordings for training or for testing. Returns 0, or -1 with
+ * *e set. */
+int parser_examples_write(const char *path, long long n, int is_test, long long seed, struct err *e);
+
+/* Learns, and writes the weights; with folds the parses of the readings' sentences instead, each by weights
+ * that saw no sentence of its part. Returns 0, or -1 with *e set. */
+int parser_train(const struct parser_training_options *o, const struct report *to, struct err *e);
+
+#endif

@@ -1,0 +1,185 @@
+#include "cmd/jobs/pseudomasks.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/weights.h"
+#include "mask/select.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static int put_mask(FILE *out, struct mask_record r, double score, struct err *e)
+{
+	/* a mask without a sentence serves all of its object's */
+	if (r.object)
+		r.ref = NULL;
+	r.score = score;
+	return masks_put(out, &r, e);
+}
+
+static int put_winners(const struct pseudomasks *w, const struct report *to, struct err *e)
+{
+	size_t without = 0;
+
+	for (size_t i = 0; i < w->pool.group_count; i++) {
+		const struct pool_group *g = &w->pool.groups[i];
+		if (g->winner < 0)
+			without++;
+		else if (put_mask(w->out, w->set.records[g->winner], g->vote, e))
+			return -1;
+	}
+	report_note(to, 1, "%zu masks; %zu views of an object without one", w->pool.group_count - without,
+		without);
+	return 0;
+}
+
+static int lift_source(struct pseudomasks *w, size_t source, struct err *e)
+{
+	const size_t view = w->carry.sources[source].view;
+	struct weights weights;
+
+	if (weights_open(&weights, w->options->weights, &w->scene, view, e))
+		return -1;
+	const struct view_weights blend = weights_view(&weights);
+	int bad = carry_lift(&w->carry, source, &blend, weights.height, weights.width, e);
+	weights_close(&weights);
+	return bad;
+}
+
+static int lift_carried(struct pseudomasks *w, struct err *e)
+{
+	int bad = carry_init(&w->carry, &w->pool, w->views, &w->scene.cameras, e);
+
+	for (size_t s = 0; s < w->carry.source_count && !bad; s++)
+		bad = lift_source(w, s, e);
+	return bad;
+}
+
+static int lift_view(void *regions, size_t view, const struct weights *weights, struct err *e)
+{
+	const struct view_weights blend = weights_view(weights);
+
+	return regions_lift(regions, view, &blend, weights->height, weights->width, e);
+}
+
+static int lift_regions(struct pseudomasks *w, struct err *e)
+{
+	const struct cameras *cameras = &w->scene.cameras;
+	const size_t n = w->scene.splats.n;
+	struct regions *r = &w->regions;
+
+	if (regions_init(r, &w->pool, w->views, cameras->n, n, w->options->min_score, e) ||
+		weights_each(w->options->weights, &w->scene, lift_view, r, &w->left_out, e))
+		return -1;
+	return regions_grow(r, e) || regions_assign(r, e) ? -1 : 0;
+}
+
+static int render(struct pseudomasks *w, size_t view, const struct weights *weights, struct rle *masks,
+	double *scores, struct err *e)
+{
+	const struct view_weights blend = weights_view(weights);
+
+	if (w->options->method == PSEUDOMASK_SCENE)
+		return regions_render(&w->regions, view, &blend, weights->height, weights->width, masks,
+			scores, &w->rendered, e);
+	for (size_t i = 0; i < w->carry.count; i++)
+		scores[i] = w->carry.masks[i].score;
+	return carry_render(&w->carry, view, &blend, weights->height, weights->width, masks, e);
+}
+
+/* Writes all masks of a view but empty ones. */
+static int put_view(void *data, size_t view, const struct weights *weights, struct err *e)
+{
+	struct pseudomasks *w = data;
+	const int is_scene = w->options->method == PSEUDOMASK_SCENE;
+	const size_t n = is_scene ? w->regions.object_count : w->carry.count;
+	struct rle *masks = mem_zalloc(n, sizeof *masks, "masks", e);
+	double *scores = mem_alloc(n, sizeof *scores, "masks", e);
+	int bad = !masks || !scores || render(w, view, weights, masks, scores, e);
+
+	w->seen++;
+	for (size_t i = 0; i < n && masks; i++) {
+		struct mask_record r =
+			w->set.records[is_scene ? w->regions.objects[i] : w->carry.masks[i].record];
+		if (!bad && rle_area(&masks[i])) {
+			r.view = w->scene.cameras.views[view].name;
+			r.visible = NAN; /* the record's is of its own view */
+			r.mask = masks[i];
+			w->masks++;
+			bad = put_mask(w->out, r, scores[i], e);
+		}
+		rle_free(&masks[i]);
+	}
+	free(masks);
+	free(scores);
+	return bad ? -1 : 0;
+}
+
+/* The masks of all views that have weights, those of one view in memory at a time. */
+static int put_views(struct pseudomasks *w, const struct report *to, struct err *e)
+{
+	const int is_scene = w->options->method == PSEUDOMASK_SCENE;
+	const char *dir = w->options->weights;
+
+	w->views = mem_alloc(w->set.n, sizeof *w->views, "views", e);
+	if (!w->views || scene_read(&w->scene, w->options->scene, e) ||
+		masks_views(&w->set, w->lines, w->options->candidates, &w->scene.cameras, w->views, e) ||
+		(is_scene ? lift_regions(w, e) : lift_carried(w, e)))
+		return -1;
+	const size_t found = is_scene ? w->regions.region_count : w->carry.count;
+	if (!found && w->set.n)
+		report_warn(to, "%s: no candidate of a training view is above %g",
+			file_name(w->options->candidates), w->options->min_score);
+	if (found && weights_each(dir, &w->scene, put_view, w, &w->left_out, e))
+		return -1;
+	if (w->left_out)
+		report_warn(to, "%s: %zu training views have no weights, and get no masks", dir, w->left_out);
+	if (is_scene)
+		report_note(to, 1, "%zu objects, %zu regions; %zu masks in %zu views, %zu of them rendered",
+			w->regions.object_count, found, w->masks, w->seen, w->rendered);
+	else
+		report_note(to, 1, "%zu objects, which begin in %zu views; %zu masks in %zu views", found,
+			w->carry.source_count, w->masks, w->seen);
+	return 0;
+}
+
+int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *options, const char *path,
+	const struct report *to, struct err *e)
+{
+	const int method = options->method;
+	size_t weak = 0;
+	struct file_out out;
+
+	w->options = options;
+	if (masks_read_lines(&w->set, &w->lines, w->options->candidates, e) ||
+		masks_pool(&w->pool, &w->set, w->lines, w->options->candidates, e))
+		return -1;
+	if (!w->set.n)
+		report_warn(to, "%s: no candidates", file_name(w->options->candidates));
+	if (method != PSEUDOMASK_SCENE &&
+		pool_select(&w->pool, method == PSEUDOMASK_FIRST ? SELECT_TOP1 : (enum select_method)method,
+			w->options->min_score, e))
+		return -1;
+	for (size_t i = 0; i < w->set.n; i++)
+		weak += !(w->pool.candidates[i].score > w->options->min_score);
+	report_note(to, 1, "%zu candidates, %zu of them not above %g", w->set.n, weak, w->options->min_score);
+	if (file_out_open(&out, path, e))
+		return -1;
+	w->out = out.stream;
+	if (method >= PSEUDOMASK_FIRST ? put_views(w, to, e) : put_winners(w, to, e)) {
+		file_out_abort(&out);
+		return -1;
+	}
+	return file_out_commit(&out, e);
+}
+
+void pseudomasks_free(struct pseudomasks *w)
+{
+	carry_free(&w->carry);
+	regions_free(&w->regions);
+	free(w->views);
+	scene_free(&w->scene);
+	pool_free(&w->pool);
+	masks_free(&w->set);
+	free(w->lines);
+}

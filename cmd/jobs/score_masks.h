@@ -1,0 +1,23 @@
+/* Files of masks as scoring takes them: names of one record at most, so that it is clear what belongs to
+ * what. formats/masks.md. */
+#ifndef CMD_JOBS_SCORE_MASKS_H
+#define CMD_JOBS_SCORE_MASKS_H
+
+#include "formats/masks.h"
+#include "mask/score.h"
+
+struct score_masks {
+	const char *path; /* the caller's */
+	struct mask_set set;
+	size_t n;		  /* of masks; may be lowered by who leaves some out */
+	struct score_mask *masks; /* pointing into set; owned */
+};
+
+/* As masks_read; two records of the same view and ref (or, without ref, of the same view and object) are an
+ * error: "FILE:LINE: view 'V', ref 'R' is on line N already". */
+int score_masks_read(struct score_masks *s, const char *path, struct err *e);
+
+/* Harmless on a zeroed struct. */
+void score_masks_free(struct score_masks *s);
+
+#endif

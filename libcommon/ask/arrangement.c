@@ -1,0 +1,390 @@
+#include "ask/arrangement.h"
+
+#include "base/mem.h"
+#include "geom/up.h"
+#include "lang/colours.h"
+#include "refer/extent.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { POINTS = 2048 }; /* of an object, at most about so many */
+static const double trimmed = 0.1, longer = 0.1, most_weight = 4;
+static const double alike_colour = 8, alike_size = 0.15;
+static const double degree0 = 0.28209479177387814; /* the spherical harmonic of degree 0 */
+
+void arrangement_free(struct arrangement *a)
+{
+	free(a->objects);
+	free(a->begin);
+	free(a->points);
+	free(a->along);
+	*a = (struct arrangement){0};
+}
+
+static double dot(const double a[3], const double b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+	out[0] = a[1] * b[2] - a[2] * b[1];
+	out[1] = a[2] * b[0] - a[0] * b[2];
+	out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static int is_looked_from(const struct cameras *c, size_t i)
+{
+	int any = 0;
+
+	for (size_t k = 0; k < c->n; k++)
+		any |= c->views[k].split == SPLIT_TRAIN;
+	return !any || c->views[i].split == SPLIT_TRAIN;
+}
+
+/* Level axes in the world (rows: right, away, up) with `away` along a direction. */
+static void level_axes(const double up[3], const double direction[3], double axes[3][3])
+{
+	double away[3], rise = dot(direction, up), length;
+
+	for (int k = 0; k < 3; k++)
+		away[k] = direction[k] - rise * up[k];
+	length = sqrt(dot(away, away));
+	if (!(length > 1e-9)) { /* straight down, or no camera: any level direction */
+		const double other[3] = {fabs(up[0]) < 0.9, fabs(up[0]) >= 0.9, 0};
+		cross(up, other, away);
+		length = sqrt(dot(away, away));
+	}
+	for (int k = 0; k < 3; k++)
+		away[k] /= length;
+	cross(away, up, axes[0]);
+	memcpy(axes[1], away, sizeof away);
+	memcpy(axes[2], up, 3 * sizeof *up);
+}
+
+/* Where the objects are, roughly: the mean of their points. */
+static void find_middle(const struct arrangement *a, double middle[3])
+{
+	const size_t n = a->begin[a->n];
+
+	memset(middle, 0, 3 * sizeof *middle);
+	for (size_t i = 0; i < n; i++)
+		for (int k = 0; k < 3; k++)
+			middle[k] += a->points[i].at[k] / (double)n;
+}
+
+/* Axes and centre of the viewpoint. */
+static void look(const struct cameras *c, const struct viewpoint *from, const double middle[3],
+	double axes[3][3], double eye[3])
+{
+	double away[3] = {0}, count = 0, up[3];
+
+	memset(eye, 0, 3 * sizeof *eye);
+	cameras_up(c, up);
+	for (size_t i = 0; i < c->n && from->kind == VIEWPOINT_USUAL; i++) {
+		double centre[3];
+		if (!is_looked_from(c, i))
+			continue;
+		camera_centre(&c->views[i], centre);
+		for (int k = 0; k < 3; k++) {
+			away[k] += c->views[i].world_to_camera[2][k];
+			eye[k] += centre[k];
+		}
+		count++;
+	}
+	for (int k = 0; k < 3; k++)
+		eye[k] /= count > 0 ? count : 1;
+	if (from->kind == VIEWPOINT_CAMERA) {
+		camera_centre(from->camera, eye);
+		memcpy(away, from->camera->world_to_camera[2], sizeof away);
+	} else if (from->kind == VIEWPOINT_POINT) {
+		memcpy(eye, from->point, 3 * sizeof *eye);
+		for (int k = 0; k < 3; k++)
+			away[k] = middle[k] - eye[k];
+	}
+	level_axes(up, away, axes);
+}
+
+static int by_place(const void *a, const void *b)
+{
+	const struct arranged_along *x = a, *y = b;
+
+	return (x->at > y->at) - (x->at < y->at);
+}
+
+static double quantile(const struct arranged_along *w, size_t n, double weight)
+{
+	double sum = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		sum += w[i].weight;
+		if (sum >= weight)
+			return w[i].at;
+	}
+	return w[n - 1].at;
+}
+
+/* How much of the object a Gaussian makes up: what it covers, seen from anywhere. */
+static double size_of(const struct splats *s, size_t g)
+{
+	const float *r = s->scales + 3 * g;
+	double area = (double)r[0] * r[1] + (double)r[1] * r[2] + (double)r[2] * r[0];
+
+	return isfinite(area) ? area * s->opacities[g] : 0;
+}
+
+static int by_weight(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* No Gaussian counts more than most_weight times the middle one: a stray that is large has much weight. */
+static void level_weights(double *weight, double *sorted, size_t n)
+{
+	memcpy(sorted, weight, n * sizeof *weight);
+	qsort(sorted, n, sizeof *sorted, by_weight);
+	for (size_t i = 0; i < n; i++)
+		weight[i] = fmin(weight[i], most_weight * sorted[n / 2]);
+}
+
+/* The Gaussians that are mostly the object's and hang together: ids (n) of *x. */
+static int find_own(struct extent *x, const struct lifted *l, size_t object, const struct splats *s,
+	const double up[3], struct err *e)
+{
+	const size_t begin = (size_t)l->indptr[object], room = (size_t)l->indptr[object + 1] - begin;
+	int32_t *ids = mem_alloc(room, sizeof *ids, "objects", e);
+	float *shares = mem_alloc(room, sizeof *shares, "objects", e);
+	size_t n = 0;
+	int bad = !ids || !shares;
+
+	for (size_t i = begin; i < begin + room && !bad; i++)
+		if (l->share[i] > 0.5F && size_of(s, (size_t)l->index[i]) > 0) {
+			ids[n] = l->index[i];
+			shares[n++] = l->share[i];
+		}
+	bad = bad || extent_find(x, s, ids, shares, n, up, e);
+	free(ids);
+	free(shares);
+	return bad ? -1 : 0;
+}
+
+/* Mean colour, and what it is called, of every `step`th Gaussian. */
+static void take_colours(struct arranged *o, const struct splats *s, const struct extent *own, size_t step,
+	const double *weight)
+{
+	double total = 0;
+
+	for (size_t i = 0; i < own->n; i += step)
+		total += weight[i];
+	for (size_t i = 0; i < own->n; i += step) {
+		const float *sh = s->sh + (size_t)own->ids[i] * (size_t)s->sh_coefficients * 3;
+		double lab[3], rgb[3];
+		for (int k = 0; k < 3; k++)
+			rgb[k] = 0.5 + degree0 * sh[k];
+		colour_lab(rgb, lab);
+		for (size_t k = 0; k < 3; k++)
+			o->lab[k] += weight[i] / total * lab[k];
+		colour_call(lab, weight[i] / total, o->colours);
+	}
+}
+
+/* The points of object o, after those before it. */
+static int take_points(struct arrangement *a, size_t o, const struct lifted *l, const struct splats *s,
+	const double up[3], struct err *e)
+{
+	struct extent own;
+
+	if (find_own(&own, l, o, s, up, e))
+		return -1;
+	const size_t step = 1 + own.n / POINTS;
+	double *weight = mem_alloc(own.n, sizeof *weight, "objects", e);
+	double *sorted = mem_alloc(own.n, sizeof *sorted, "objects", e);
+	const int bad = !weight || !sorted;
+	a->begin[o + 1] = a->begin[o];
+	a->objects[o].is_there = own.n > 0;
+	if (!bad && own.n) {
+		for (size_t i = 0; i < own.n; i++)
+			weight[i] = size_of(s, (size_t)own.ids[i]);
+		level_weights(weight, sorted, own.n);
+		take_colours(&a->objects[o], s, &own, step, weight);
+		for (size_t i = 0; i < own.n; i += step) {
+			const float *mean = s->means + 3 * (size_t)own.ids[i];
+			a->points[a->begin[o + 1]++] =
+				(struct arranged_point){{mean[0], mean[1], mean[2]}, weight[i]};
+		}
+	}
+	free(weight);
+	free(sorted);
+	extent_free(&own);
+	return bad ? -1 : 0;
+}
+
+static void take_box(struct arrangement *a, size_t o, double axes[3][3])
+{
+	const size_t n = a->begin[o + 1] - a->begin[o];
+	struct arranged *to = &a->objects[o];
+
+	for (int k = 0; k < 3 && n; k++) {
+		double total = 0;
+		for (size_t i = 0; i < n; i++) {
+			const struct arranged_point *p = &a->points[a->begin[o] + i];
+			a->along[i] = (struct arranged_along){dot(axes[k], p->at), p->weight};
+			total += p->weight;
+		}
+		qsort(a->along, n, sizeof *a->along, by_place);
+		const double low = quantile(a->along, n, trimmed * total);
+		const double high = quantile(a->along, n, (1 - trimmed) * total);
+		to->low[k] = low - longer * (high - low);
+		to->high[k] = high + longer * (high - low);
+		to->centre[k] = (low + high) / 2;
+	}
+	to->side = to->centre[0];
+	to->in_sight = to->is_there;
+}
+
+/* Where objects are in a picture: whether their middle is in it, and how far right it is there, as a length
+ * at the objects' mean distance. */
+static void see(struct arrangement *a, const struct camera *c, double axes[3][3])
+{
+	double mean = 0, count = 0, depth;
+
+	for (int pass = 0; pass < 2; pass++)
+		for (size_t o = 0; o < a->n; o++) {
+			struct arranged *p = &a->objects[o];
+			double world[3], at[3];
+			if (!p->is_there)
+				continue;
+			for (int d = 0; d < 3; d++)
+				world[d] = p->centre[0] * axes[0][d] + p->centre[1] * axes[1][d] +
+					   p->centre[2] * axes[2][d];
+			camera_transform(c, world, at);
+			depth = fmax(at[2], 1e-6);
+			if (!pass) {
+				mean += at[2];
+				count++;
+				continue;
+			}
+			const double x = c->fx * at[0] / depth + c->cx, y = c->fy * at[1] / depth + c->cy;
+			p->in_sight = at[2] > 0 && x >= 0 && x <= c->width && y >= 0 && y <= c->height;
+			p->side = at[0] / depth * fmax(mean / count, 1e-6);
+		}
+}
+
+/* Moves the origin to the middle of the objects. */
+static void centre_all(struct arrangement *a)
+{
+	double middle[3] = {0}, n = 0;
+
+	for (size_t o = 0; o < a->n; o++)
+		for (int k = 0; k < 3 && a->objects[o].is_there; k++) {
+			middle[k] += a->objects[o].centre[k];
+			n += k == 0;
+		}
+	for (int k = 0; k < 3; k++) {
+		middle[k] /= n > 0 ? n : 1;
+		a->viewer.centre[k] -= middle[k];
+		a->viewer.low[k] = a->viewer.high[k] = a->viewer.centre[k];
+		for (size_t o = 0; o < a->n; o++) {
+			a->objects[o].low[k] -= middle[k];
+			a->objects[o].high[k] -= middle[k];
+			a->objects[o].centre[k] -= middle[k];
+		}
+	}
+}
+
+static void find_spacing(struct arrangement *a)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < a->n; i++)
+		for (size_t k = 0; k < i; k++) {
+			const struct arranged *p = &a->objects[i], *q = &a->objects[k];
+			if (p->is_there && q->is_there)
+				a->along[n++].at =
+					hypot(p->centre[0] - q->centre[0], p->centre[1] - q->centre[1]);
+		}
+	if (n)
+		qsort(a->along, n, sizeof *a->along, by_place);
+	a->spacing = n && a->along[n / 2].at > 0 ? a->along[n / 2].at : 1;
+}
+
+void arrangement_look(struct arrangement *a, const struct viewpoint *from)
+{
+	double axes[3][3], eye[3], middle[3];
+
+	find_middle(a, middle);
+	look(a->cameras, from, middle, axes, eye);
+	a->viewer.is_there = 1;
+	for (int k = 0; k < 3; k++)
+		a->viewer.centre[k] = dot(axes[k], eye);
+	for (size_t o = 0; o < a->n; o++)
+		take_box(a, o, axes);
+	if (from->kind == VIEWPOINT_CAMERA)
+		see(a, from->camera, axes);
+	centre_all(a);
+	find_spacing(a);
+}
+
+int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,
+	const struct cameras *cameras, struct err *e)
+{
+	static const struct viewpoint usual = {.kind = VIEWPOINT_USUAL};
+	size_t along = l->objects * l->objects;
+	double up[3];
+
+	*a = (struct arrangement){.n = l->objects, .cameras = cameras};
+	a->objects = mem_zalloc(a->n, sizeof *a->objects, "objects", e);
+	a->begin = mem_zalloc(a->n + 1, sizeof *a->begin, "objects", e);
+	a->points = mem_alloc(a->n, (POINTS + 1) * sizeof *a->points, "objects", e);
+	a->along = mem_alloc(along > POINTS ? along : POINTS + 1, sizeof *a->along, "objects", e);
+	int bad = !a->objects || !a->begin || !a->points || !a->along;
+	cameras_up(cameras, up);
+	for (size_t o = 0; o < a->n && !bad; o++)
+		bad = take_points(a, o, l, splats, up, e);
+	if (bad)
+		arrangement_free(a);
+	else
+		arrangement_look(a, &usual);
+	return bad ? -1 : 0;
+}
+
+/* Lengths of the box: the shorter and the longer one on the ground, and the height. */
+static void lengths(const struct arranged *o, double out[3])
+{
+	double a = o->high[0] - o->low[0], b = o->high[1] - o->low[1];
+
+	out[0] = log(fmax(fmin(a, b), 1e-6));
+	out[1] = log(fmax(fmax(a, b), 1e-6));
+	out[2] = log(fmax(o->high[2] - o->low[2], 1e-6));
+}
+
+double arrangement_alike(const struct arrangement *a, size_t i, size_t k)
+{
+	const struct arranged *p = &a->objects[i], *q = &a->objects[k];
+	double x[3], y[3], sum = 0;
+
+	if (i == k)
+		return 0;
+	if (!p->is_there || !q->is_there)
+		return -INFINITY;
+	lengths(p, x);
+	lengths(q, y);
+	for (int d = 0; d < 3; d++) {
+		double colour = (p->lab[d] - q->lab[d]) / alike_colour, size = (x[d] - y[d]) / alike_size;
+		sum += colour * colour + size * size;
+	}
+	return -0.5 * sum;
+}
+
+double arranged_bulk(const struct arranged *o)
+{
+	double sum = 0;
+
+	for (int k = 0; k < 3; k++)
+		sum += log(fmax(o->high[k] - o->low[k], 1e-6)) / 3;
+	return sum;
+}

@@ -1,0 +1,67 @@
+/* Where lifted objects are and what they look like, as seen from a viewpoint. What people say of left, right,
+ * front and back is meant from there. */
+#ifndef ASK_ARRANGEMENT_H
+#define ASK_ARRANGEMENT_H
+
+#include "ask/viewpoint.h"
+#include "base/err.h"
+#include "geom/camera.h"
+#include "lang/colours.h"
+#include "refer/lifted.h"
+#include "splat/splats.h"
+
+struct arranged {
+	int is_there; /* 0: it has no Gaussians, and nothing below means anything */
+	int in_sight; /* 0: the viewpoint is a picture, and the centre is outside of it */
+	/* Axes: 0 to the right, 1 away from the viewer, 2 up; scene units, the origin at the middle of the
+	 * objects. */
+	double low[3],
+		high[3];  /* box: the middle 80% of its weight along each axis, a tenth longer each way */
+	double centre[3]; /* of the box */
+	double side;	  /* how far right it looks: centre[0], or, in a picture, in perspective */
+	double lab[3];	  /* mean colour, CIE L*a*b* (D65) */
+	double colours[COLOUR_WORDS]; /* part of it that people would call so (lang/colours.h) */
+};
+
+/* A Gaussian of an object: where it is in the scene, and how much it counts. */
+struct arranged_point {
+	double at[3], weight;
+};
+
+struct arranged_along {
+	double at, weight;
+};
+
+struct arrangement {
+	size_t n;
+	struct arranged *objects; /* (n) */
+	struct arranged viewer;	  /* a point: where the viewer stands, in the same axes */
+	double spacing;		  /* median distance between two objects on the ground; > 0 */
+
+	const struct cameras *cameras;
+	size_t *begin;		       /* (n+1) points begin[o] to begin[o+1] are of object o */
+	struct arranged_point *points; /* (begin[n]) */
+	struct arranged_along *along;  /* scratch */
+};
+
+/* Of the objects of l in the scene that splats and cameras are of, which must outlive it, seen from the usual
+ * viewpoint. Only Gaussians that hang together count (refer/extent.h), and none for much more than its
+ * fellows do, so that strays and large ones do not decide where an object is. Returns 0, or -1 with *e set
+ * and nothing to free.
+ */
+int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,
+	const struct cameras *cameras, struct err *e);
+
+/* The same seen from elsewhere. VIEWPOINT_USUAL is the mean of the training cameras' centres (of all, where
+ * none is for training), looking level along the mean of their directions. */
+void arrangement_look(struct arrangement *a, const struct viewpoint *from);
+void arrangement_free(struct arrangement *a);
+
+/* Whether two objects are the same to look at, but for where they are: 0 where they are, and less the more
+ * they differ in mean colour (by 8 of L*a*b*) and in size (by 15%): -1/2 of the sum of the squares. */
+double arrangement_alike(const struct arrangement *a, size_t i, size_t k);
+
+/* Mean of the logarithms of a box's lengths. */
+double arranged_bulk(const struct arranged *o);
+
+#endif

@@ -1,0 +1,344 @@
+#include "ask/choose.h"
+
+#include "ask/constants.h"
+#include "ask/wording.h"
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
+{
+	static const char *const names[CHOOSE_PARTS] = {"words", "names", "knowledge", "alike", "colours",
+		"sizes", "relations", "except", "sentence", "wording"};
+
+	*parts = CHOOSE_ALL;
+	while (list_next(&list, unknown)) {
+		int p = 0;
+		while (p < CHOOSE_PARTS && !list_name_is(unknown, names[p]))
+			p++;
+		if (p == CHOOSE_PARTS)
+			return -1;
+		*parts &= ~(1U << p);
+	}
+	return 0;
+}
+
+/* What all sentences of a call share, and scratch. */
+struct chooser {
+	const struct choose_scene *scene;
+	unsigned parts;
+	struct vocabulary vocabulary;
+	struct arrangement arrangement;
+	struct viewpoint from; /* of the arrangement */
+	struct meaning meaning;
+	struct wording wording;
+	double *score, *whole; /* (O) */
+	double *looks;	       /* (O,O) */
+};
+
+static int has(const struct chooser *c, enum choose_part p)
+{
+	return c->parts >> p & 1;
+}
+
+static double largest(const double *x, size_t n)
+{
+	double most = -INFINITY;
+
+	for (size_t i = 0; i < n; i++)
+		most = fmax(most, x[i]);
+	return most;
+}
+
+/* x becomes its softmax. */
+static void softmax(double *x, size_t n)
+{
+	const double most = largest(x, n);
+	double sum = 0;
+
+	for (size_t i = 0; i < n; i++)
+		sum += x[i] = exp(x[i] - most);
+	for (size_t i = 0; i < n; i++)
+		x[i] /= sum;
+}
+
+static int is_same_view(const struct viewpoint *a, const struct viewpoint *b)
+{
+	return a->kind == b->kind && (a->kind != VIEWPOINT_CAMERA || a->camera == b->camera) &&
+	       (a->kind != VIEWPOINT_POINT || !memcmp(a->point, b->point, sizeof a->point));
+}
+
+static void look_from(struct chooser *c, const struct viewpoint *from)
+{
+	if (!is_same_view(&c->from, from))
+		arrangement_look(&c->arrangement, from);
+	c->from = *from;
+}
+
+static size_t best_of(const double *x, size_t n)
+{
+	size_t best = 0;
+
+	for (size_t o = 1; o < n; o++)
+		best = x[o] > x[best] ? o : best;
+	return best;
+}
+
+/* How far the anchors of a phrase are there: what is said to be on the green plate where no plate is green.
+ */
+static double anchors_there(const struct meaning *m, const struct parse *p, int phrase, int depth)
+{
+	const size_t n = m->arrangement->n;
+	const struct parse_phrase *f = &p->phrases[phrase];
+	double there = 1;
+
+	for (int k = 0; k < f->clauses.n && depth < 8; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		for (int j = 0; j < c->anchors.n; j++) {
+			const int a = c->anchors.item[j];
+			const double best = largest(m->there + (size_t)a * n, n);
+			if (p->phrases[a].viewer || p->phrases[a].scene || c->relation == PARSE_OTHER ||
+				c->relation == PARSE_WITH)
+				continue;
+			/* an unknown thing may well be there, without a name */
+			there = fmin(there, fmax(best, m->known[a] < 0.5 ? UNKNOWN_ANCHOR : 0));
+			there = fmin(there, anchors_there(m, p, a, depth + 1));
+		}
+	}
+	return there;
+}
+
+/* P that what a phrase means is there, where object o fits it best. */
+static double presence(const struct chooser *c, const struct parse *p, int phrase, size_t o)
+{
+	const struct meaning *m = &c->meaning;
+	const double own = m->there[(size_t)phrase * m->arrangement->n + o];
+	const double anchors = anchors_there(m, p, phrase, 0);
+	const double x = PRESENCE_BASE + PRESENCE_OWN * log(fmax(own, 1e-6)) +
+			 PRESENCE_ANCHORS * log(fmax(anchors, 1e-6)) - PRESENCE_UNKNOWN * (double)m->unknown;
+
+	return 1 / (1 + exp(-x));
+}
+
+/* One of the phrases of the target: its own objects are added to chosen. Returns P that it means anything. */
+static double choose_phrase(struct chooser *c, const struct parse *p, int phrase, double *row, char *chosen)
+{
+	const size_t n = c->arrangement.n;
+	const struct parse_phrase *f = &p->phrases[phrase];
+	const double *fit = c->meaning.fit + (size_t)phrase * (n + 1);
+
+	for (size_t o = 0; o < n; o++)
+		c->score[o] = log(fmax(fit[o], 1e-12)) +
+			      (has(c, CHOOSE_SENTENCE) ? SENTENCE_WEIGHT * c->whole[o] : 0);
+	const size_t best = best_of(c->score, n);
+	const double top = fit[best], there = presence(c, p, phrase, best);
+	if (f->count == PARSE_ONE) {
+		for (size_t o = 0; o < n; o++)
+			c->score[o] *= SCORE_WEIGHT;
+		softmax(c->score, n);
+		chosen[best] = 1;
+	} else {
+		for (int k = 0; k < f->count; k++) { /* "three": the best three */
+			size_t next = n;
+			for (size_t o = 0; o < n; o++)
+				if (!chosen[o] && fit[o] > COUNTED_SHARE * top &&
+					(next == n || c->score[o] > c->score[next]))
+					next = o;
+			if (next < n)
+				chosen[next] = 1;
+		}
+		for (size_t o = 0; o < n; o++) {
+			c->score[o] = fit[o] / (fit[o] + SEVERAL_SHARE * fmax(top, 1e-12));
+			if (f->count < 0 && c->score[o] >= 0.5)
+				chosen[o] = 1;
+		}
+	}
+	for (size_t o = 0; o < n; o++)
+		row[o] = fmax(row[o], c->score[o]);
+	return there;
+}
+
+/* A sentence whose words are not known: by its mean alone. */
+static void choose_whole(struct chooser *c, double *row, char *chosen)
+{
+	const size_t n = c->arrangement.n;
+
+	for (size_t o = 0; o < n; o++)
+		row[o] = SCORE_WEIGHT * SENTENCE_WEIGHT * c->whole[o];
+	softmax(row, n);
+	chosen[best_of(row, n)] = 1;
+}
+
+/* What colours and clauses of the target leave to object o, at the least and in all. */
+static void find_left(const struct meaning *m, size_t o, double *least, double *left)
+{
+	*least = *left = 1;
+	for (size_t k = 0; k < m->part_count; k++) {
+		const struct meaning_part *part = &m->parts[k];
+		if (part->phrase || (part->kind != MEANING_CLAUSE && part->kind != MEANING_COLOUR))
+			continue;
+		*left *= part->kind == MEANING_CLAUSE ? part->value[o] : 1;
+		*least = fmin(*least, part->value[o]);
+	}
+}
+
+/* A sentence that means one thing, and that its parse finds nothing for: the object that its wording is
+ * nearest to, unless another thing is called so, or what is said of its colour or place is not so. */
+static void choose_wording(struct chooser *c, const struct vocabulary_sentence *s, struct choice *to, double *row,
+	char *chosen)
+{
+	const size_t n = c->arrangement.n;
+	const double there = wording_judge(&c->wording, s, c->score);
+	double least, left;
+
+	if (there < WORDING_LEAST || there <= to->there)
+		return;
+	for (size_t o = 0; o < n; o++) {
+		find_left(&c->meaning, o, &least, &left);
+		c->score[o] += log(fmax(left, 1e-6));
+	}
+	const size_t best = best_of(c->score, n);
+	find_left(&c->meaning, best, &least, &left);
+	if (least < WORDING_CONTRADICTED || (c->meaning.known[0] > GENERIC_THERE && !chosen[best]))
+		return;
+	memcpy(row, c->score, n * sizeof *row);
+	softmax(row, n);
+	memset(chosen, 0, n);
+	chosen[best] = 1;
+	to->there = there;
+}
+
+static int choose_parsed(struct chooser *c, const struct choose_sentence *from, struct choice *to,
+	double *row, char *chosen, struct parse *p, struct err *e)
+{
+	const struct lifted *l = c->scene->lifted;
+	const struct parser_vectors vectors = {from->pieces, from->vectors, (int)from->words, l->width};
+
+	if (parse_sentence(p, c->scene->parser, from->text, &vectors, e))
+		return -1;
+	const struct vocabulary_sentence s = {p, from->vectors, from->words};
+	if (meaning_judge(&c->meaning, &s, e))
+		return -1;
+	memset(row, 0, l->objects * sizeof *row);
+	to->is_several = p->phrases[0].count != PARSE_ONE || p->phrases[0].also.n;
+	to->there = choose_phrase(c, p, 0, row, chosen);
+	for (int k = 0; k < p->phrases[0].also.n; k++)
+		to->there = fmax(to->there, choose_phrase(c, p, p->phrases[0].also.item[k], row, chosen));
+	if (has(c, CHOOSE_WORDING) && !to->is_several && !p->phrases[0].except.n && !p->phrases[0].ordinal && to->there < 0.65)
+		choose_wording(c, &s, to, row, chosen);
+	return 0;
+}
+
+/* Everything of one sentence; row (O) is scratch. */
+static int choose_one(struct chooser *c, const struct choose_sentence *from, struct choice *to, double *row,
+	float *probability, char *chosen, const struct choose_watch *watch, size_t i, struct err *e)
+{
+	const size_t n = c->scene->lifted->objects;
+	struct parse p = {0};
+	int bad = 0;
+
+	*to = (struct choice){0};
+	memset(chosen, 0, n);
+	memset(probability, 0, n * sizeof *probability);
+	if (!from->words || !n)
+		return 0;
+	look_from(c, &from->from);
+	const size_t same = vocabulary_whole(&c->vocabulary, has(c, CHOOSE_SENTENCE) ? from->text : NULL,
+		from->vectors, from->words, c->whole);
+	if (from->pieces) {
+		bad = choose_parsed(c, from, to, row, chosen, &p, e);
+		if (!bad && watch)
+			watch->each(watch->data, i, &c->meaning);
+	} else {
+		to->there = 1;
+		choose_whole(c, row, chosen);
+	}
+	if (!bad && same < n) {
+		to->there = 1;
+		for (size_t o = 0; o < n; o++)
+			row[o] = chosen[o] = o == same;
+	}
+	for (size_t o = 0; o < n && !bad; o++)
+		probability[o] = (float)row[o];
+	parse_free(&p);
+	return bad;
+}
+
+/* How far objects share what is said of them: things of one name that look the same. */
+static void find_looks(struct chooser *c)
+{
+	const size_t n = c->arrangement.n;
+
+	for (size_t i = 0; i < n; i++)
+		for (size_t k = 0; k < n; k++)
+			c->looks[i * n + k] =
+				vocabulary_shares_noun(&c->vocabulary, i, k)
+					? exp(LOOKS_WORTH * arrangement_alike(&c->arrangement, i, k))
+					: 0;
+}
+
+static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigned parts, struct err *e)
+{
+	const size_t objects = s->lifted->objects;
+
+	*c = (struct chooser){.scene = s, .parts = parts, .from = {.kind = VIEWPOINT_USUAL}};
+	c->score = mem_alloc(objects, sizeof *c->score, "choice", e);
+	c->whole = mem_alloc(objects, sizeof *c->whole, "choice", e);
+	c->looks = mem_alloc(objects, objects * sizeof *c->looks, "choice", e);
+	if (!c->score || !c->whole || !c->looks ||
+		arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
+		vocabulary_make(&c->vocabulary, s->lifted, s->parser, e))
+		return -1;
+	if (has(c, CHOOSE_WORDING) && wording_make(&c->wording, &c->vocabulary, &c->arrangement, e))
+		return -1;
+	find_looks(c);
+	c->meaning = (struct meaning){.arrangement = &c->arrangement,
+		.vocabulary = &c->vocabulary,
+		.looks = has(c, CHOOSE_ALIKE) ? c->looks : NULL,
+		.naming = s->naming};
+	if (!has(c, CHOOSE_WORDS))
+		c->meaning.without |= 1U << MEANING_NOUN | 1U << MEANING_ATTRIBUTE;
+	if (!has(c, CHOOSE_COLOURS))
+		c->meaning.without |= 1U << MEANING_COLOUR;
+	c->vocabulary.has_said = s->naming == 1; /* what is said of its name is of other Gaussians, perhaps */
+	c->vocabulary.has_names = has(c, CHOOSE_NAMES);
+	c->vocabulary.has_knowledge = has(c, CHOOSE_KNOWLEDGE);
+	if (!has(c, CHOOSE_SIZES))
+		c->meaning.without |= 1U << MEANING_SIZE;
+	if (!has(c, CHOOSE_RELATIONS))
+		c->meaning.without |= 1U << MEANING_CLAUSE | 1U << MEANING_ORDINAL;
+	if (!has(c, CHOOSE_EXCEPT))
+		c->meaning.without |= 1U << MEANING_EXCEPT;
+	return 0;
+}
+
+static void chooser_free(struct chooser *c)
+{
+	arrangement_free(&c->arrangement);
+	if (c->vocabulary.lifted)
+		vocabulary_free(&c->vocabulary);
+	meaning_free(&c->meaning);
+	wording_free(&c->wording);
+	free(c->score);
+	free(c->whole);
+	free(c->looks);
+}
+
+int choose(const struct choose_scene *s, const struct choose_sentence *sentences, size_t n, unsigned parts,
+	struct choice *choices, float *probability, char *chosen, const struct choose_watch *watch,
+	struct err *e)
+{
+	const size_t objects = s->lifted->objects;
+	double *row = mem_alloc(objects, sizeof *row, "choice", e);
+	struct chooser c = {0};
+	int bad = !row || chooser_init(&c, s, parts, e);
+
+	for (size_t i = 0; i < n && !bad; i++)
+		bad = choose_one(&c, &sentences[i], &choices[i], row, probability + i * objects,
+			chosen + i * objects, watch, i, e);
+	chooser_free(&c);
+	free(row);
+	return bad ? -1 : 0;
+}

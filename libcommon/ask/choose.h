@@ -1,0 +1,79 @@
+/* Which objects a sentence means, by what it means among the scene's objects (ask/meaning.h).
+ *
+ * One thing is meant: score_o = log fit_o + SENTENCE_WEIGHT S_o, S_o the best cosine of the sentence's mean
+ * with a training sentence's, and the probability is the softmax of SCORE_WEIGHT score_o. Several are meant:
+ * each that fits at least SEVERAL_SHARE as well as the best; as many as are said, the best. A training
+ * sentence means what it meant.
+ *
+ * The sentence means nothing that was lifted with the probability 1 - P: P goes by how far the thing that
+ * fits best is known to be what is said (its noun, its colours, its relations), how far the anchors are
+ * there, and how many words say something that is said of nothing. Where that is little and the wording alone
+ * is near to that of one object's training sentences (ask/wording.h), it means that object. All constants are in ask/constants.h. */
+#ifndef ASK_CHOOSE_H
+#define ASK_CHOOSE_H
+
+#include "ask/meaning.h"
+#include "base/err.h"
+#include "base/list.h"
+#include "geom/camera.h"
+#include "lang/parser.h"
+#include "refer/lifted.h"
+#include "splat/splats.h"
+
+enum choose_part {
+	CHOOSE_WORDS,	  /* nouns and attributes */
+	CHOOSE_NAMES,	  /* the objects' names are nouns too */
+	CHOOSE_KNOWLEDGE, /* what words mean besides: WordNet, and lang/kinds.h */
+	CHOOSE_ALIKE,	  /* look-alikes share words */
+	CHOOSE_COLOURS,
+	CHOOSE_SIZES,	  /* "large" */
+	CHOOSE_RELATIONS, /* other clauses, and ordinals */
+	CHOOSE_EXCEPT,	  /* "but not the red one" */
+	CHOOSE_SENTENCE,
+	CHOOSE_WORDING, /* what the wording alone is nearest to, where the parse finds nothing */
+	CHOOSE_PARTS
+};
+enum { CHOOSE_ALL = (1 << CHOOSE_PARTS) - 1 };
+
+/* All parts but those in a comma-separated list of "words" ... "sentence" (NULL: all). 0, or -1 and *unknown
+ * the first name that is no part's. */
+int choose_without(const char *list, unsigned *parts, struct list_name *unknown);
+
+struct choose_sentence {
+	const char *text;
+	const char *pieces;   /* word pieces with single spaces between; NULL: not known, and only the part
+				 `sentence` counts */
+	const float *vectors; /* (words, the model's width) */
+	size_t words;
+	struct viewpoint from;
+};
+
+struct choose_scene {
+	const struct lifted *lifted;
+	const struct splats *splats;
+	const struct cameras *cameras;
+	const struct parser *parser;
+	double naming; /* how much words for the thing itself count, 1 but where it is in doubt which lifted
+			  object has which name: colours and relations then tell */
+};
+
+struct choice {
+	double there;	/* P that the sentence means anything that was lifted */
+	int is_several; /* it may mean more than one object */
+};
+
+/* What is known of a sentence once it is judged, for those who want to explain it; good until the call
+ * returns. */
+struct choose_watch {
+	void *data;
+	void (*each)(void *data, size_t i, const struct meaning *m);
+};
+
+/* probability (n,O): of each object to be meant, or one of those meant, where anything is; with one meant a
+ * row sums to 1. chosen (n,O) 0 or 1: those that are meant. A sentence without words means nothing. parts: a
+ * bit 1 << part for each part that counts. watch may be NULL. Returns 0, or -1 with *e set. */
+int choose(const struct choose_scene *s, const struct choose_sentence *sentences, size_t n, unsigned parts,
+	struct choice *choices, float *probability, char *chosen, const struct choose_watch *watch,
+	struct err *e);
+
+#endif

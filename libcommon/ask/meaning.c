@@ -1,0 +1,572 @@
+#include "ask/meaning.h"
+
+#include "ask/constants.h"
+#include "ask/relate.h"
+#include "base/mem.h"
+#include "lang/closed.h"
+#include "lang/colours.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEPTH = 16, ANCHORS = 16 }; /* deeper nesting, and more anchors of a clause, are not looked at */
+
+void meaning_free(struct meaning *m)
+{
+	free(m->fit);
+	free(m->there);
+	free(m->known);
+	free(m->done);
+	free(m->parts);
+	free(m->values);
+	free(m->scratch);
+	m->fit = m->there = m->known = m->values = m->scratch = NULL;
+	m->done = NULL;
+	m->parts = NULL;
+}
+
+static size_t objects_of(const struct meaning *m)
+{
+	return m->arrangement->n;
+}
+
+static double *fit_of(const struct meaning *m, int phrase)
+{
+	return m->fit + (size_t)phrase * (objects_of(m) + 1);
+}
+
+static double *there_of(const struct meaning *m, int phrase)
+{
+	return m->there + (size_t)phrase * objects_of(m);
+}
+
+static double largest(const double *x, size_t n)
+{
+	double most = 0;
+
+	for (size_t i = 0; i < n; i++)
+		most = fmax(most, x[i]);
+	return most;
+}
+
+/* The next part's values (O). meaning_judge has made room. */
+static double *add_part(struct meaning *m, int phrase, enum meaning_kind kind, int index)
+{
+	double *value = m->values + m->part_count * objects_of(m);
+
+	m->parts[m->part_count++] = (struct meaning_part){phrase, kind, index, value};
+	return value;
+}
+
+/* The phrase's fit takes in a part's values. */
+static void take_part(struct meaning *m, const struct meaning_part *p)
+{
+	double *fit = fit_of(m, p->phrase);
+
+	if (m->without >> p->kind & 1)
+		return;
+	const int names = p->kind == MEANING_NOUN || p->kind == MEANING_ATTRIBUTE;
+	for (size_t o = 0; o < objects_of(m); o++)
+		fit[o] *= names && m->naming != 1 ? pow(p->value[o], m->naming) : p->value[o];
+}
+
+/* Objects that look the same share what is said of them. */
+static void share_looks(const struct meaning *m, double *match)
+{
+	const size_t n = objects_of(m);
+	double *own = m->scratch;
+
+	memcpy(own, match, n * sizeof *own);
+	for (size_t o = 0; o < n && m->looks; o++)
+		for (size_t k = 0; k < n; k++)
+			if (match[o] >= 0)
+				match[o] = fmax(match[o], own[k] * m->looks[o * n + k]);
+}
+
+static int word_is(const struct parse_word *w, const char *const *list)
+{
+	for (; *list; list++)
+		if (!strcmp(w->text, *list) || !strcmp(w->lemma, *list))
+			return 1;
+	return 0;
+}
+
+static int is_verb_to_be(const struct parse_word *w)
+{
+	const int closed = closed_find(w->text);
+
+	return closed >= 0 && closed_words[closed].class == CLOSED_BE;
+}
+
+/* The word that names the kind of thing, or -1: "something", "the red one". */
+static int head_of(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char *const generic[] = {"thing", "object", "item", "one", "something", "anything",
+		"everything", "stuff", "what", "whatever", "which", "thingy", "other", "another", "piece",
+		NULL};
+	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
+
+	return head >= 0 && (word_is(&p->words[head], generic) || is_verb_to_be(&p->words[head])) ? -1 : head;
+}
+
+static int has_word(const struct parse *p, const struct parse_phrase *f, const char *const *list)
+{
+	for (int w = 0; w < p->word_count; w++)
+		if (p->words[w].span.begin >= f->span.begin && p->words[w].span.end <= f->span.end &&
+			word_is(&p->words[w], list))
+			return 1;
+	return 0;
+}
+
+/* "the red one", "the other two": a thing of the kind that was spoken of. */
+static int is_elliptic(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char *const again[] = {
+		"one", "ones", "other", "others", "another", "two", "three", "those", NULL};
+
+	return !f->noun.n && (f->span.begin == f->span.end || has_word(p, f, again));
+}
+
+/* "the other cups", "anything else". */
+static int is_other(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char *const other[] = {"other", "others", "else", "rest", "remaining", NULL};
+
+	return has_word(p, f, other);
+}
+
+/* How far objects are of the colour of a word, and of those right after it that are colours too: "salmon
+ * pink" and "black and white" are either. Nothing where the word before it has done so. */
+static void judge_colour(struct meaning *m, int phrase, int word)
+{
+	const struct parse *p = m->sentence->parse;
+	const size_t n = objects_of(m);
+	double *match = m->scratch + n;
+
+	if (word && colour_word(p->words[word - 1].lemma) >= 0)
+		return;
+	double *value = add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
+	memset(value, 0, n * sizeof *value);
+	for (; word < p->word_count && colour_word(p->words[word].lemma) >= 0; word++) {
+		vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);
+		for (size_t o = 0; o < n; o++)
+			value[o] = fmax(value[o], match[o]);
+	}
+	for (size_t o = 0; o < n; o++) {
+		value[o] = COLOUR_LEAST + (1 - COLOUR_LEAST) * value[o];
+		there[o] *= value[o];
+	}
+	take_part(m, &m->parts[m->part_count - 1]);
+}
+
+static void judge_noun(struct meaning *m, int phrase)
+{
+	const struct parse *p = m->sentence->parse;
+	const struct parse_phrase *f = &p->phrases[phrase];
+	const size_t n = objects_of(m);
+	int head = head_of(p, f);
+	double *value, *there = there_of(m, phrase), *match = m->scratch + n;
+
+	if (head < 0 && phrase && is_elliptic(p, f))
+		head = head_of(p, &p->phrases[0]);
+	for (size_t o = 0; o < n; o++)
+		there[o] = GENERIC_THERE;
+	m->known[phrase] = GENERIC_THERE;
+	if (head < 0)
+		return;
+	vocabulary_noun(m->vocabulary, m->sentence, head, match);
+	if (colour_word(p->words[head].lemma) >= 0 && largest(match, n) < 0.5) { /* "something orange" */
+		judge_colour(m, phrase, head);
+		return;
+	}
+	value = add_part(m, phrase, MEANING_NOUN, head);
+	const double best = largest(match, n), most = fmax(best, match[n]);
+	m->known[phrase] = best;
+	for (size_t o = 0; o < n; o++) {
+		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * match[o] * match[o] / fmax(most, 1e-9);
+		there[o] = match[o] * (most > best ? best / most : 1);
+	}
+	take_part(m, &m->parts[m->part_count - 1]);
+}
+
+static void judge_attribute(struct meaning *m, int phrase, int word, double least)
+{
+	const size_t n = objects_of(m);
+
+	if (colour_word(m->sentence->parse->words[word].lemma) >= 0) {
+		judge_colour(m, phrase, word);
+		return;
+	}
+	double *value = add_part(m, phrase, MEANING_ATTRIBUTE, word);
+	vocabulary_attribute(m->vocabulary, m->sentence, word, value);
+	share_looks(m, value);
+	const double most = largest(value, n);
+	m->unknown += most < 0.5;
+	for (size_t o = 0; o < n; o++)
+		value[o] = (value[o] < 0 ? least * (1 + (1 - OPPOSITE) * value[o])
+					 : least + (1 - least) * value[o]) /
+			   (least + (1 - least) * most);
+	take_part(m, &m->parts[m->part_count - 1]);
+}
+
+/* A part that is, or fits, no object, but that training sentences may tell of: "with a handle", "on the
+ * shelf". */
+static void judge_said(struct meaning *m, const struct parse_clause *c, double *said)
+{
+	const struct parse *p = m->sentence->parse;
+	const size_t n = objects_of(m);
+	double *match = m->scratch + n;
+
+	memset(said, 0, n * sizeof *said);
+	for (int k = 0; k < c->anchors.n; k++) {
+		const int head = head_of(p, &p->phrases[c->anchors.item[k]]);
+		if (head < 0)
+			continue;
+		vocabulary_clause(m->vocabulary, m->sentence, head, c->relation, match);
+		for (size_t o = 0; o < n; o++)
+			said[o] = fmax(said[o], match[o]);
+	}
+}
+
+/* What a thing does, is for, or has: any word of it may be said of an object. */
+static void judge_predicate(struct meaning *m, const struct parse_clause *c, double *value)
+{
+	const struct parse *p = m->sentence->parse;
+	const size_t n = objects_of(m);
+	double *match = m->scratch + n;
+	int words = 0;
+
+	for (size_t o = 0; o < n; o++)
+		value[o] = 0;
+	for (int k = 0; k < c->words.n + c->anchors.n; k++) {
+		const int word = k < c->words.n ? c->words.item[k]
+						: head_of(p, &p->phrases[c->anchors.item[k - c->words.n]]);
+		if (word < 0)
+			continue;
+		if (!vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match))
+			vocabulary_attribute(m->vocabulary, m->sentence, word, match);
+		for (size_t o = 0; o < n; o++)
+			value[o] += fmax(match[o], 0);
+		words++;
+	}
+	const double most = largest(value, n);
+	m->unknown += words && most < 0.5;
+	for (size_t o = 0; o < n; o++)
+		value[o] = words ? (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most) : 1;
+}
+
+/* "On the near side of" is before, and "on the far side of" or "on the other side of" behind. */
+static enum parse_relation relation_of(const struct parse *p, const struct parse_clause *c)
+{
+	static const char *const side[] = {"side", NULL}, *const near[] = {"near", "nearer", "front", NULL},
+				 *const far[] = {
+					 "far", "farther", "further", "other", "opposite", "back", NULL};
+	const int is_distance =
+		c->relation == PARSE_NEAR || c->relation == PARSE_FAR || c->relation == PARSE_ACROSS;
+
+	for (int w = 1; is_distance && c->anchors.n && w < p->word_count; w++) {
+		const struct parse_word *word = &p->words[w];
+		if (!word_is(word, side) || word->span.end < c->span.begin ||
+			word[-1].span.begin > c->span.end)
+			continue;
+		if (word_is(&word[-1], near))
+			return PARSE_FRONT;
+		if (word_is(&word[-1], far))
+			return PARSE_BEHIND;
+	}
+	return c->relation;
+}
+
+/* There is no more or less of some relations: "on top of". */
+static enum parse_degree degree_of(const struct parse_clause *c)
+{
+	const unsigned plain = 1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_SUPPORTS |
+			       1U << PARSE_BETWEEN | 1U << PARSE_WITH | 1U << PARSE_OTHER;
+
+	return plain >> c->relation & 1 ? PARSE_PLAIN : c->degree;
+}
+
+/* Whether a clause compares with what else fits, and so has to wait for it. */
+static int is_late(const struct parse_clause *c)
+{
+	return degree_of(c) != PARSE_PLAIN || !c->anchors.n || c->relation == PARSE_MIDDLE;
+}
+
+/* The place as a whole, unless something is called so. */
+static int is_scene(const struct meaning *m, int phrase)
+{
+	static const char *const places[] = {"table", "tabletop", "desk", "picture", "photo", "image",
+		"scene", "room", "shot", "frame", "view", "floor", "ground", "surface", NULL};
+	const struct parse *p = m->sentence->parse;
+	const int head = head_of(p, &p->phrases[phrase]);
+
+	return p->phrases[phrase].scene ||
+	       (head >= 0 && m->known[phrase] < 0.5 && word_is(&p->words[head], places));
+}
+
+/* value (O) of a clause that has places in it; returns how far its anchors are known. */
+static double judge_relation(
+	struct meaning *m, int phrase, const struct parse_clause *c, const double *fit, double *value)
+{
+	const unsigned one_will_do = 1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_SUPPORTS |
+				     1U << PARSE_NEAR | 1U << PARSE_WITH | 1U << PARSE_BELOW |
+				     1U << PARSE_ABOVE;
+	const struct parse *p = m->sentence->parse;
+	struct relate_anchor anchors[ANCHORS];
+	struct relation r = {
+		relation_of(p, c), degree_of(c), p->phrases[phrase].count != PARSE_ONE, 0, anchors};
+	double known = 1;
+
+	if (!c->anchors.n && (c->relation == PARSE_SUPPORTS || c->relation == PARSE_INSIDE)) {
+		for (size_t o = 0; o <= objects_of(m); o++) /* "with nothing on it" */
+			m->scratch[o] = o < objects_of(m);
+		anchors[r.count++] = (struct relate_anchor){.p = m->scratch};
+	}
+	for (int k = 0; k < c->anchors.n && r.count < ANCHORS; k++) {
+		const int i = c->anchors.item[k];
+		const int is_many = p->phrases[i].count != PARSE_ONE &&
+				    (r.degree != PARSE_PLAIN || !(one_will_do >> c->relation & 1));
+		anchors[r.count] = (struct relate_anchor){
+			fit_of(m, i), is_scene(m, i), is_many && !c->negated, is_other(p, &p->phrases[i])};
+		if (!p->phrases[i].viewer && !anchors[r.count].is_scene)
+			known = fmin(known, m->known[i]);
+		r.count++;
+	}
+	relate(m->arrangement, &r, fit, m->scratch + 3 * objects_of(m), value);
+	return known;
+}
+
+/* "large", of a thing by itself. */
+static int is_size(const struct parse_clause *c)
+{
+	return c->degree == PARSE_PLAIN && c->relation >= PARSE_LARGER && c->relation <= PARSE_WIDER;
+}
+
+/* "in tangerine", where nothing is called so. */
+static int is_of_colour(const struct meaning *m, const struct parse_clause *c)
+{
+	const struct parse *p = m->sentence->parse;
+	const int a = c->relation == PARSE_INSIDE && c->anchors.n == 1 ? c->anchors.item[0] : -1;
+	const struct parse_list *noun = a >= 0 ? &p->phrases[a].noun : NULL;
+
+	return noun && noun->n && m->known[a] <= GENERIC_THERE &&
+	       colour_word(p->words[noun->item[noun->n - 1]].lemma) >= 0;
+}
+
+/* value (O): how far a clause holds, before what is negated is turned round. said (O) is scratch. */
+static void judge_predication(struct meaning *m, int phrase, const struct parse_clause *c, const double *fit,
+	double *said, double *value)
+{
+	const size_t n = objects_of(m);
+
+	if (c->relation == PARSE_OTHER || is_of_colour(m, c)) {
+		judge_predicate(m, c, value);
+		return;
+	}
+	const double known = judge_relation(m, phrase, c, fit, value);
+	if (c->relation == PARSE_WITH) {
+		judge_predicate(m, c, said);
+		for (size_t o = 0; o < n; o++)
+			value[o] = fmax(said[o], known * value[o]);
+		return;
+	}
+	judge_said(m, c, said);
+	for (size_t o = 0; o < n; o++)
+		value[o] = fmax(known * value[o] + (1 - known) * UNKNOWN_RELATION,
+			(1 - known) * SAID_WORTH * said[o]);
+}
+
+static void judge_clause(struct meaning *m, int phrase, int clause, const double *fit)
+{
+	const struct parse_clause *c = &m->sentence->parse->clauses[clause];
+	const size_t n = objects_of(m);
+	double *value = add_part(m, phrase, is_size(c) ? MEANING_SIZE : MEANING_CLAUSE, clause);
+	double *there = there_of(m, phrase);
+	const double least = is_size(c) ? SIZE_LEAST : RELATION_LEAST;
+
+	judge_predication(m, phrase, c, fit, m->scratch + 7 * n, value);
+	for (size_t o = 0; o < n; o++) {
+		const double x = c->negated ? 1 - value[o] : value[o];
+		value[o] = least + (1 - least) * x;
+		there[o] *= is_size(c) ? 1 : value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
+	}
+	take_part(m, &m->parts[m->part_count - 1]);
+}
+
+static void judge_phrase(struct meaning *m, int phrase, int depth);
+
+static void judge_except(struct meaning *m, int phrase, int except)
+{
+	const size_t n = objects_of(m);
+	const double *fit = fit_of(m, except), most = fmax(largest(fit, n), 1e-9);
+	double *value = add_part(m, phrase, MEANING_EXCEPT, except), *there = there_of(m, phrase);
+
+	for (size_t o = 0; o < n; o++) {
+		value[o] = 1 - (1 - EXCEPT_LEAST) * fit[o] / most;
+		there[o] *= value[o];
+	}
+	take_part(m, &m->parts[m->part_count - 1]);
+}
+
+/* "of the two cups": only the best two are compared. */
+static void keep_group(const struct parse_phrase *f, double *fit, size_t n, double *scratch)
+{
+	double limit = 0;
+
+	if (f->group < 2 || (size_t)f->group >= n)
+		return;
+	memcpy(scratch, fit, n * sizeof *fit);
+	for (int k = 0; k < f->group; k++) {
+		size_t best = 0;
+		for (size_t o = 0; o < n; o++)
+			best = scratch[o] > scratch[best] ? o : best;
+		limit = scratch[best];
+		scratch[best] = -1;
+	}
+	for (size_t o = 0; o < n; o++)
+		fit[o] *= fit[o] < limit ? GROUP_ELSE : 1;
+}
+
+static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
+{
+	const struct parse_phrase *f = &m->sentence->parse->phrases[phrase];
+	const size_t n = objects_of(m);
+	double *value = add_part(m, phrase, MEANING_ORDINAL, -1);
+
+	relate_rank(m->arrangement, f->from == PARSE_OTHER ? PARSE_LEFT : f->from, f->ordinal, fit,
+		m->scratch + 3 * n, value);
+	for (size_t o = 0; o < n; o++) {
+		value[o] = RELATION_LEAST + (1 - RELATION_LEAST) * value[o];
+		/* "the second penguin" where there is but one */
+		there_of(m, phrase)[o] *= value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
+	}
+	take_part(m, &m->parts[m->part_count - 1]);
+}
+
+/* The clauses that compare, or those that do not. Those of the place as a whole are the thing's: "everything
+ * on the shelf that is left of the lamp". */
+static void judge_clauses(
+	struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit, int late, int depth)
+{
+	const struct parse *p = m->sentence->parse;
+
+	for (int k = 0; k < f->clauses.n && depth < 2; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		if (is_late(c) == late)
+			judge_clause(m, phrase, f->clauses.item[k], fit);
+		for (int j = 0; j < c->anchors.n; j++)
+			if (is_scene(m, c->anchors.item[j]))
+				judge_clauses(
+					m, phrase, &p->phrases[c->anchors.item[j]], fit, late, depth + 1);
+	}
+}
+
+/* What orders those that fit so far, each by itself. */
+static void judge_order(struct meaning *m, int phrase)
+{
+	const struct parse *p = m->sentence->parse;
+	const struct parse_phrase *f = &p->phrases[phrase];
+	const size_t n = objects_of(m);
+	double *before = m->scratch + 2 * n;
+
+	memcpy(before, fit_of(m, phrase), n * sizeof *before);
+	for (size_t o = 0; o < n; o++) /* what fits half as well is hardly one of them */
+		before[o] *= before[o] * m->arrangement->objects[o].in_sight;
+	judge_clauses(m, phrase, f, before, 1, 0);
+	if (f->ordinal)
+		judge_ordinal(m, phrase, before);
+}
+
+/* The phrases that a phrase needs, before it. */
+static void judge_below(struct meaning *m, const struct parse_phrase *f, int depth)
+{
+	const struct parse *p = m->sentence->parse;
+
+	for (int k = 0; k < f->clauses.n; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		for (int j = 0; j < c->anchors.n; j++)
+			judge_phrase(m, c->anchors.item[j], depth + 1);
+	}
+	for (int k = 0; k < f->except.n; k++)
+		judge_phrase(m, f->except.item[k], depth + 1);
+}
+
+static void judge_phrase(struct meaning *m, int phrase, int depth)
+{
+	const struct parse *p = m->sentence->parse;
+	const struct parse_phrase *f = &p->phrases[phrase];
+	const size_t n = objects_of(m);
+	double *fit = fit_of(m, phrase);
+
+	if (m->done[phrase])
+		return;
+	m->done[phrase] = 1;
+	for (size_t o = 0; o <= n; o++)
+		fit[o] = f->viewer ? o == n : o < n && m->arrangement->objects[o].is_there;
+	judge_noun(m, phrase);
+	if (f->viewer || depth > DEPTH)
+		return;
+	judge_below(m, f, depth);
+	for (int k = 0; k + 1 < f->noun.n; k++)
+		judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);
+	for (int k = 0; k < f->attributes.n; k++)
+		judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
+	judge_clauses(m, phrase, f, fit, 0, 0);
+	for (int k = 0; k < f->except.n; k++)
+		judge_except(m, phrase, f->except.item[k]);
+	keep_group(f, fit, n, m->scratch);
+	judge_order(m, phrase);
+	for (size_t o = 0; o < n; o++)
+		fit[o] *= m->arrangement->objects[o].in_sight ? 1 : OUT_OF_SIGHT;
+}
+
+static size_t parts_of(const struct parse *p)
+{
+	size_t n = 0;
+
+	for (int i = 0; i < p->phrase_count; i++) {
+		const struct parse_phrase *f = &p->phrases[i];
+		n += 3 + (size_t)(f->noun.n + f->attributes.n + 3 * f->clauses.n + f->except.n);
+	}
+	return n;
+}
+
+static int make_room(struct meaning *m, const struct parse *p, struct err *e)
+{
+	const size_t n = objects_of(m), phrases = (size_t)p->phrase_count, parts = parts_of(p);
+
+	if (!m->scratch)
+		m->scratch = mem_alloc(n + 1, 8 * sizeof *m->scratch, "choice", e);
+	return !m->scratch ||
+			       mem_room((void **)&m->fit, &m->fit_room, phrases * (n + 1), sizeof *m->fit,
+				       "choice", e) ||
+			       mem_room((void **)&m->there, &m->there_room, phrases * n, sizeof *m->there,
+				       "choice", e) ||
+			       mem_room((void **)&m->known, &m->known_room, phrases, sizeof *m->known,
+				       "choice", e) ||
+			       mem_room((void **)&m->done, &m->phrase_room, phrases, 1, "choice", e) ||
+			       mem_room((void **)&m->parts, &m->part_room, parts, sizeof *m->parts, "choice",
+				       e) ||
+			       mem_room((void **)&m->values, &m->value_room, parts * n, sizeof *m->values,
+				       "choice", e)
+		       ? -1
+		       : 0;
+}
+
+int meaning_judge(struct meaning *m, const struct vocabulary_sentence *s, struct err *e)
+{
+	const struct parse *p = s->parse;
+
+	if (make_room(m, p, e))
+		return -1;
+	m->sentence = s;
+	m->phrases = (size_t)p->phrase_count;
+	m->part_count = 0;
+	m->unknown = (size_t)p->unexplained.n;
+	memset(m->done, 0, m->phrases);
+	judge_phrase(m, 0, 0);
+	for (int k = 0; k < p->phrases[0].also.n; k++)
+		judge_phrase(m, p->phrases[0].also.item[k], 0);
+	return 0;
+}

@@ -1,0 +1,40 @@
+/* How well each object fits a relation to others, as people mean it from a viewpoint. Every judgement is a
+ * number in [0,1] that changes smoothly with where things are, so that a relation that holds by a hair weighs
+ * little. */
+#ifndef ASK_RELATE_H
+#define ASK_RELATE_H
+
+#include "ask/arrangement.h"
+#include "lang/parse.h"
+
+/* A phrase that a relation is to: how likely each object, and last the viewer, is to be it. */
+struct relate_anchor {
+	const double *p; /* (a->n + 1) in [0,1] */
+	int is_scene;	 /* the place as a whole; p means nothing */
+	int is_every;	 /* all that fit ("taller than the cups"), not one of them */
+	int is_other;	 /* the thing itself is one of those that fit: "than the other cups" */
+};
+
+struct relation {
+	enum parse_relation kind;
+	enum parse_degree degree;
+	int is_loose; /* a half-plane rather than a direction: "everything left of the plate" */
+	int count;
+	const struct relate_anchor *anchors; /* (count) */
+};
+
+/* out (a->n). fit (n) in [0,1]: how well each object fits what else is said of the target, for what compares
+ * (nearest, leftmost, largest ...) compares with those that fit. key (3n) is scratch. An object is not its
+ * own anchor. */
+void relate(
+	const struct arrangement *a, const struct relation *r, const double *fit, double *key, double *out);
+
+/* out (n): that an object is the k-th from an end (k > 0; from the other end: k < 0) among those that fit, by
+ * a relation that orders them: PARSE_LEFT counts from the left. key (n) is scratch. */
+void relate_rank(const struct arrangement *a, enum parse_relation from, int k, const double *fit, double *key,
+	double *out);
+
+/* p stands on q, in [0,1]. */
+double relate_stands_on(const struct arrangement *a, const struct arranged *p, const struct arranged *q);
+
+#endif

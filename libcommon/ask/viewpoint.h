@@ -1,0 +1,18 @@
+/* Where a sentence is said: what left, right, front and behind are seen from. */
+#ifndef ASK_VIEWPOINT_H
+#define ASK_VIEWPOINT_H
+
+#include "geom/camera.h"
+
+struct viewpoint {
+	enum { VIEWPOINT_USUAL, VIEWPOINT_CAMERA, VIEWPOINT_POINT } kind;
+	const struct camera *camera; /* of VIEWPOINT_CAMERA: as seen in its picture */
+	double point[3]; /* of VIEWPOINT_POINT, in the scene: looking level at the middle of the objects */
+};
+
+/* The name of a view, or "x,y,z" in the world that the scene was imported from, whose origin is at -offset.
+ * 0, or -1 where it is neither. */
+int viewpoint_read(
+	struct viewpoint *v, const char *text, const struct cameras *cameras, const double offset[3]);
+
+#endif

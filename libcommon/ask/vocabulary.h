@@ -1,0 +1,99 @@
+/* The words by which training sentences call each lifted object and say where it is, and how other words
+ * match them. */
+#ifndef ASK_VOCABULARY_H
+#define ASK_VOCABULARY_H
+
+#include "ask/arrangement.h"
+#include "base/err.h"
+#include "lang/parser.h"
+#include "lang/wordnet.h"
+#include "refer/lifted.h"
+
+/* A sentence and what is known of it. */
+struct vocabulary_sentence {
+	const struct parse *parse;
+	const float *vectors; /* (pieces, width) */
+	size_t pieces;
+};
+
+enum vocabulary_role {
+	VOCABULARY_NOUN,      /* what the object is called */
+	VOCABULARY_ATTRIBUTE, /* what is said of it */
+	VOCABULARY_ANCHOR,    /* a noun that a clause of it names: what it is near, on, with */
+	VOCABULARY_OTHER      /* other words of its clauses */
+};
+
+struct vocabulary_item {
+	enum vocabulary_role role;
+	size_t object, sentence;
+	const char *lemma;
+	enum parse_relation relation; /* of VOCABULARY_ANCHOR: the clause's */
+	size_t kind;		      /* into kinds */
+	int is_general; /* a noun that is above another one of the same object: "container" of a bowl */
+};
+
+/* What WordNet knows of a lemma. */
+struct vocabulary_kind {
+	const char *lemma;
+	struct wordnet_noun noun;
+	struct wordnet_adjective adjective;
+};
+
+struct vocabulary {
+	const struct lifted *lifted;
+	struct parse *parses;  /* (R) of the training sentences */
+	double *mean;	       /* (width) of all word pieces of the training sentences */
+	double *sentence_mean; /* (width) of the sentences' means */
+	size_t n, capacity;
+	struct vocabulary_item *items;
+	float *vectors;	  /* (n,width) of length 1: the items' words, less the mean */
+	float *sentences; /* (R,width) of length 1: means of the sentences, less sentence_mean */
+	size_t kind_count, kind_capacity;
+	struct vocabulary_kind *kinds; /* of different lemmas */
+	char **heads;	    /* (O) the last word of an object's name that is no number, lower case */
+	size_t *head_kinds; /* (O) into kinds */
+	int has_names, has_knowledge; /* whether names, and WordNet with lang/kinds.h, count: 1, for the
+					 caller to set */
+	int has_said;	 /* whether colours and relations that training sentences give an object count: 1,
+			    likewise */
+	size_t without;	 /* the training sentence whose words do not count, for the caller to set; R: none */
+	double *scratch; /* (width) */
+	float *word;	 /* (width) */
+	double *other;	 /* (O) */
+};
+
+/* Refers to l, which must outlive it. Returns 0, or -1 with *e set; vocabulary_free after either. */
+int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct parser *parser, struct err *e);
+void vocabulary_free(struct vocabulary *v);
+
+/* match (O + 1): how likely an object is called by word w of a sentence, in [0,1]: 1 where its name or a
+ * training sentence calls it so; what WordNet thinks of the two nouns; or what the cosine of their vectors is
+ * worth. The last is of the best thing that training sentences name and that is no object: "on the shelf". */
+void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
+
+/* match (O): how far an object is said to be what a word says, as an attribute or in any other way, in [0,1];
+ * below 0, to -1, where it is said to be the opposite. */
+void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
+
+/* match (O): the best cosine of a word with a noun or an attribute that training sentences give an object, 0
+ * where there is none, or WORDING_NAME where it is a word of the object's name. */
+void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
+
+/* match (O) in [0,1]: that a training sentence has the object in a like relation to what word w names. */
+void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
+	enum parse_relation relation, double *match);
+
+/* fit (O): how far an object is of the colour of a word, in [0,1], by its Gaussians and by the colours that
+ * training sentences say it has. Returns 0 where it is no colour word. */
+int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit);
+
+/* Whether two objects were called by one noun. */
+int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b);
+
+/* match (O): the best cosine of the mean of a sentence's pieces with that of an object's training sentences,
+ * -1 where it has none. Returns the object of the training sentence of the same text, or O; text may be NULL.
+ */
+size_t vocabulary_whole(
+	struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match);
+
+#endif

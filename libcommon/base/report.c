@@ -1,0 +1,34 @@
+#include "base/report.h"
+
+void report_note(const struct report *r, int level, const char *format, ...)
+{
+	va_list ap;
+
+	va_start(ap, format);
+	r->note(r->to, level, format, ap);
+	va_end(ap);
+}
+
+void report_warn(const struct report *r, const char *format, ...)
+{
+	va_list ap;
+
+	va_start(ap, format);
+	r->warn(r->to, format, ap);
+	va_end(ap);
+}
+
+void report_start(const struct report *r, const char *what, double total)
+{
+	r->start(r->to, what, total);
+}
+
+void report_step(const struct report *r, double done, const char *note)
+{
+	r->step(r->to, done, note);
+}
+
+void report_end(const struct report *r)
+{
+	r->end(r->to);
+}

@@ -1,0 +1,168 @@
+#include "lang/wordnet.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef HAVE_WORDNET
+#include <unistd.h>
+#include <wn.h>
+
+enum { DEEPEST = 10, ADJECTIVE_SENSES = 4 };
+
+int wordnet_is_there(void)
+{
+	static int is_open = -1;
+
+	if (is_open < 0) {
+		const char *folder = getenv("WNSEARCHDIR");
+		/* libwordnet complains aloud of what is not there */
+		is_open = !access(folder ? folder : "/usr/share/wordnet", R_OK) && !wninit();
+	}
+	return is_open;
+}
+
+/* Adds a synset and what it is a kind of. */
+static void climb(struct wordnet_noun *to, long synset, int depth, int sense)
+{
+	static char none[] = "";
+
+	if (to->n == WORDNET_UP || depth > DEEPEST)
+		return;
+	to->up[to->n].synset = synset;
+	to->up[to->n].depth = (short)depth;
+	to->up[to->n++].sense = (short)sense;
+	SynsetPtr s = read_synset(NOUN, synset, none);
+	for (int i = 0; s && i < s->ptrcount; i++)
+		if (s->ptrtyp[i] == HYPERPTR && s->ppos[i] == NOUN)
+			climb(to, s->ptroff[i], depth + 1, sense);
+	if (s)
+		free_synset(s);
+}
+
+void wordnet_find(struct wordnet_noun *to, const char *lemma)
+{
+	char word[128];
+
+	to->n = 0;
+	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
+		return;
+	strcpy(word, lemma);
+	IndexPtr index = index_lookup(word, NOUN);
+	for (int i = 0; index && i < index->off_cnt && i < WORDNET_SENSES; i++)
+		climb(to, (long)index->offset[i], 0, i);
+	if (index)
+		free_index(index);
+}
+static void add_near(struct wordnet_adjective *to, long synset, int distance)
+{
+	for (int i = 0; i < to->n; i++)
+		if (to->near[i].synset == synset)
+			return;
+	if (to->n == WORDNET_NEAR)
+		return;
+	to->near[to->n].synset = synset;
+	to->near[to->n++].distance = (signed char)distance;
+}
+
+/* Adds what is similar or opposite to the adjectives so far, from the i-th on. */
+static void add_around(struct wordnet_adjective *to, int i, int distance)
+{
+	static char none[] = "";
+	SynsetPtr s = read_synset(ADJ, to->near[i].synset, none);
+
+	for (int k = 0; s && k < s->ptrcount; k++) {
+		if (s->ptrtyp[k] == SIMPTR)
+			add_near(to, s->ptroff[k], distance);
+		else if (s->ptrtyp[k] == ANTPTR && s->ppos[k] == ADJ)
+			add_near(to, s->ptroff[k], -1);
+	}
+	if (s)
+		free_synset(s);
+}
+
+void wordnet_find_adjective(struct wordnet_adjective *to, const char *lemma)
+{
+	char word[128];
+
+	to->n = 0;
+	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
+		return;
+	strcpy(word, lemma);
+	IndexPtr index = index_lookup(word, ADJ);
+	for (int i = 0; index && i < index->off_cnt && i < ADJECTIVE_SENSES; i++)
+		add_near(to, (long)index->offset[i], 0);
+	if (index)
+		free_index(index);
+	for (int distance = 1, done = 0; distance <= 2; distance++)
+		for (const int n = to->n; done < n; done++)
+			if (to->near[done].distance >= 0)
+				add_around(to, done, distance);
+}
+#else
+void wordnet_find_adjective(struct wordnet_adjective *to, const char *lemma)
+{
+	(void)lemma;
+	to->n = 0;
+}
+
+int wordnet_is_there(void)
+{
+	return 0;
+}
+
+void wordnet_find(struct wordnet_noun *to, const char *lemma)
+{
+	(void)lemma;
+	to->n = 0;
+}
+#endif
+
+/* A step up or down, and a rarer sense, each make it so much less likely. */
+static const double per_step_up = 0.96, per_step_down = 0.93, per_sense = 0.9;
+enum { STEPS_UP = 9, STEPS_DOWN = 4 };
+
+double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known, int is_general)
+{
+	double best = 0;
+
+	for (int i = 0; i < word->n; i++)
+		for (int k = 0; k < known->n; k++) {
+			/* one of them is above the other */
+			const int up = known->up[k].depth, down = word->up[i].depth;
+			if (word->up[i].synset != known->up[k].synset || (up && down) || up > STEPS_UP ||
+				down > (is_general ? 0 : STEPS_DOWN))
+				continue;
+			best = fmax(best, pow(per_step_up, up) * pow(per_step_down, down) *
+						  pow(per_sense, word->up[i].sense + known->up[k].sense));
+		}
+	return best;
+}
+
+int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun *word)
+{
+	for (int i = 0; i < above->n; i++)
+		for (int k = 0; k < word->n; k++)
+			if (!above->up[i].depth && word->up[k].depth &&
+				above->up[i].synset == word->up[k].synset)
+				return 1;
+	return 0;
+}
+
+double wordnet_adjectives_fit(const struct wordnet_adjective *word, const struct wordnet_adjective *known)
+{
+	static const double by_distance[] = {1, 0.9, 0.3, 0.1, 0};
+	double best = 0, opposite = 0;
+
+	for (int i = 0; i < word->n; i++)
+		for (int k = 0; k < known->n; k++) {
+			const int p = word->near[i].distance, q = known->near[k].distance;
+			if (word->near[i].synset != known->near[k].synset)
+				continue;
+			if (p >= 0 && q >= 0)
+				best = fmax(best, by_distance[p + q]);
+			else if (p * q < 0 || p == 0 || q == 0)
+				opposite = fmax(opposite, by_distance[(p > 0 ? p : 0) + (q > 0 ? q : 0)]);
+		}
+	return best >= opposite ? best : -opposite;
+}

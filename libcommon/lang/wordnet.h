@@ -1,0 +1,51 @@
+/* What WordNet (Princeton's lexical database, 3.0) knows of nouns, through Debian's libwordnet. Where the
+ * program was built without it, or the database is not installed, nothing is known and the program works on.
+ *
+ * libwordnet has one set of open files: call from one thread at a time. */
+#ifndef LANG_WORDNET_H
+#define LANG_WORDNET_H
+
+enum { WORDNET_SENSES = 8, WORDNET_UP = 96 };
+
+/* The senses of a noun and what they are kinds of. */
+struct wordnet_noun {
+	int n;
+	struct {
+		long synset;
+		short depth; /* 0: the noun's own sense; 1: what that is a kind of; ... */
+		short sense; /* 0: the commonest */
+	} up[WORDNET_UP];
+};
+
+/* Whether there is a database. */
+int wordnet_is_there(void);
+
+/* Fills `to`, with n = 0 where the lemma is no noun that is known. Words are joined by '_'. */
+void wordnet_find(struct wordnet_noun *to, const char *lemma);
+
+/* Whether a thing called `known` may be called `word`, in [0,1]: 1 for the same sense, less for what it is a
+ * kind of ("vessel" for a mug) or what is a kind of it ("hardback" for a book), the less the more steps away
+ * and the rarer the sense; 0 otherwise. Where `known` is general, its kinds do not count. */
+double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known, int is_general);
+
+/* Whether some sense of a noun is what a sense of the other is a kind of. */
+int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun *word);
+
+enum { WORDNET_NEAR = 48 };
+
+/* The senses of an adjective: its own, those that are similar to them, and those that are opposite. */
+struct wordnet_adjective {
+	int n;
+	struct {
+		long synset;
+		signed char distance; /* 0 own, 1 similar, 2 similar to what is similar; -1 the opposite */
+	} near[WORDNET_NEAR];
+};
+
+void wordnet_find_adjective(struct wordnet_adjective *to, const char *lemma);
+
+/* How far what is `known` is also `word`, from 1 (the same) over 0 (nothing is known) to -1 (the opposite).
+ */
+double wordnet_adjectives_fit(const struct wordnet_adjective *word, const struct wordnet_adjective *known);
+
+#endif
