@@ -44,8 +44,10 @@ static int run(const struct cli *c, const char *weights, enum method method, str
 			return -1;
 		parser.weights = &w;
 	}
-	if (text_read(&t, c->operand_count ? c->operands[0] : "-", e))
+	if (text_read(&t, c->operand_count ? c->operands[0] : "-", e)) {
+		parser_weights_free(&w);
 		return -1;
+	}
 	parser.encoder = t.encoder.hex;
 	const int is_other = *w.encoder && *t.encoder.hex && strcmp(w.encoder, t.encoder.hex);
 	if (parser.weights && (!t.pieces || t.width != w.width || is_other))

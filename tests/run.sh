@@ -12,6 +12,8 @@ case $build in /*) BIN=$build/bin ;; esac
 # Two test files at a time, each with threads of its own: a thread that waits must not keep a processor busy.
 export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 export ASAN_OPTIONS=${ASAN_OPTIONS:-allocator_may_return_null=1} UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
+# A make that a test starts is nobody's child.
+unset MAKEFLAGS MAKELEVEL MFLAGS
 limit=300 # seconds a test file may take
 export limit
 

@@ -78,7 +78,8 @@ interrupted() {
 	local signal=$1 pid i
 	shift
 	rm -rf out
-	env "$@" "$BIN/gs-synth" --views 25 --size 400x300 --gaussians 1000 --objects 2 -o out >printed 2>&1 &
+	# The address sanitizer leaves SIGSEGV to the program.
+	ASAN_OPTIONS=${ASAN_OPTIONS-}:handle_segv=0 env "$@" "$BIN/gs-synth" --views 25 --size 400x300 --gaussians 1000 --objects 2 -o out >printed 2>&1 &
 	pid=$!
 	for ((i = 0; i < 1000; i++)); do
 		[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = 3 ] && break
