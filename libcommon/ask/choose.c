@@ -185,7 +185,8 @@ static void find_left(const struct meaning *m, size_t o, double *least, double *
 }
 
 /* A sentence that means one thing, and that its parse finds nothing for: the object that its wording is
- * nearest to, unless another thing is called so, or what is said of its colour or place is not so. */
+ * nearest to, unless nothing or another thing is called nearly so, or what is said of its colour or place is
+ * not so. */
 static void choose_wording(struct chooser *c, const struct vocabulary_sentence *s, struct choice *to, double *row,
 	char *chosen)
 {
@@ -193,7 +194,8 @@ static void choose_wording(struct chooser *c, const struct vocabulary_sentence *
 	const double there = wording_judge(&c->wording, s, c->score);
 	double least, left;
 
-	if (there < WORDING_LEAST || there <= to->there)
+	const double known = c->meaning.known[0];
+	if (there < WORDING_LEAST || there <= to->there || known < WORDING_NOUN)
 		return;
 	for (size_t o = 0; o < n; o++) {
 		find_left(&c->meaning, o, &least, &left);
@@ -201,7 +203,7 @@ static void choose_wording(struct chooser *c, const struct vocabulary_sentence *
 	}
 	const size_t best = best_of(c->score, n);
 	find_left(&c->meaning, best, &least, &left);
-	if (least < WORDING_CONTRADICTED || (c->meaning.known[0] > GENERIC_THERE && !chosen[best]))
+	if (least < WORDING_CONTRADICTED || (known > GENERIC_THERE && !chosen[best]))
 		return;
 	memcpy(row, c->score, n * sizeof *row);
 	softmax(row, n);

@@ -417,8 +417,9 @@ void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s
 		match[o] = -1;
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
-		if (item->sentence == v->without ||
-			(item->role != VOCABULARY_NOUN && item->role != VOCABULARY_ATTRIBUTE))
+		const int is_place = item->role > VOCABULARY_ATTRIBUTE && item->relation != PARSE_WITH &&
+				     item->relation != PARSE_OTHER;
+		if (item->sentence == v->without || is_place)
 			continue;
 		match[item->object] =
 			fmax(match[item->object], dot(v->word, v->vectors + i * width, width));

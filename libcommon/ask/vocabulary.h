@@ -75,8 +75,8 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
  * below 0, to -1, where it is said to be the opposite. */
 void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
-/* match (O): the best cosine of a word with a noun or an attribute that training sentences give an object, 0
- * where there is none, or WORDING_NAME where it is a word of the object's name. */
+/* match (O): the best cosine of a word with one by which training sentences call or describe an object, but for
+ * places, 0 where there is none, or WORDING_NAME where it is a word of the object's name. */
 void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* match (O) in [0,1]: that a training sentence has the object in a like relation to what word w names. */

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { TARGET_WORDS = 32 };
+
 void wording_free(struct wording *w)
 {
 	free(w->known);
@@ -47,54 +49,77 @@ static void match_word(struct wording *w, const struct vocabulary_sentence *s, i
 	}
 }
 
-/* The target's words: noun, then attributes; -1 after the last. */
-static int target_word(const struct parse *p, int i)
+/* The words of a target, as far as they are no place. */
+struct target {
+	int n, head; /* head: its place among them, or -1 */
+	int word[TARGET_WORDS];
+};
+
+static void add_words(struct target *t, struct parse_list words)
+{
+	for (int i = 0; i < words.n && t->n < TARGET_WORDS; i++)
+		t->word[t->n++] = words.item[i];
+}
+
+/* Noun, attributes, and what it has or does: "with white dots", "that you type on". */
+static struct target target_of(const struct parse *p)
 {
 	const struct parse_phrase *f = &p->phrases[0];
+	struct target t = {0, f->noun.n - 1, {0}};
 
-	if (i < f->noun.n)
-		return f->noun.item[i];
-	return i - f->noun.n < f->attributes.n ? f->attributes.item[i - f->noun.n] : -1;
+	add_words(&t, f->noun);
+	add_words(&t, f->attributes);
+	for (int k = 0; k < f->clauses.n; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		if (c->negated || (c->relation != PARSE_WITH && c->relation != PARSE_OTHER))
+			continue;
+		if (c->relation == PARSE_OTHER)
+			add_words(&t, c->words);
+		for (int j = 0; j < c->anchors.n; j++) {
+			add_words(&t, p->phrases[c->anchors.item[j]].noun);
+			add_words(&t, p->phrases[c->anchors.item[j]].attributes);
+		}
+	}
+	t.head = t.head < t.n ? t.head : -1;
+	return t;
 }
 
 /* score (O), and f of its best object. Returns how many words it went by. */
 static int fit_words(struct wording *w, const struct vocabulary_sentence *s, double *score, double *fit)
 {
 	const size_t n = w->arrangement->n;
-	const struct parse_phrase *f = &s->parse->phrases[0];
-	int words = 0;
+	const struct target t = target_of(s->parse);
 	double sum = 0;
 
 	memset(score, 0, n * sizeof *score);
-	for (int word; (word = target_word(s->parse, words)) >= 0; words++) {
-		match_word(w, s, word, w->match);
+	for (int i = 0; i < t.n; i++) {
+		match_word(w, s, t.word[i], w->match);
 		const double best = largest(w->match, n);
 		for (size_t o = 0; o < n; o++)
 			score[o] += WORDING_SHARP * (w->match[o] - best);
 		sum += best;
-		if (!vocabulary_colour(w->vocabulary, w->arrangement, s->parse->words[word].lemma, w->own))
+		if (!vocabulary_colour(w->vocabulary, w->arrangement, s->parse->words[t.word[i]].lemma, w->own))
 			continue;
 		const double fits = log(COLOUR_FLOOR + largest(w->own, n));
 		for (size_t o = 0; o < n; o++)
 			score[o] += WORDING_SHARP * WORDING_COLOUR * (log(COLOUR_FLOOR + w->own[o]) - fits);
 	}
-	if (!words)
+	if (!t.n)
 		return 0;
 	const size_t o = best_of(score, n);
 	double total = 0;
 	for (size_t k = 0; k < n; k++)
 		total += exp(score[k] - score[o]);
-	*fit = WORDING_ALL * sum / words - WORDING_PLAIN * log(total);
-	for (int i = 0; i < words; i++) {
-		const int word = target_word(s->parse, i);
-		if (i + 1 == f->noun.n) {
-			match_word(w, s, word, w->match);
+	*fit = WORDING_ALL * sum / t.n - WORDING_PLAIN * log(total);
+	for (int i = 0; i < t.n; i++) {
+		if (i == t.head) {
+			match_word(w, s, t.word[i], w->match);
 			*fit += WORDING_HEAD * w->match[o];
 		}
-		if (vocabulary_colour(w->vocabulary, w->arrangement, s->parse->words[word].lemma, w->own))
+		if (vocabulary_colour(w->vocabulary, w->arrangement, s->parse->words[t.word[i]].lemma, w->own))
 			*fit += log((COLOUR_FLOOR + w->own[o]) / (COLOUR_FLOOR + COLOUR_USUAL));
 	}
-	return words;
+	return t.n;
 }
 
 double wording_judge(struct wording *w, const struct vocabulary_sentence *s, double *score)
