@@ -185,7 +185,8 @@ static void judge_noun(struct meaning *m, int phrase)
 	m->known[phrase] = best;
 	for (size_t o = 0; o < n; o++) {
 		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * match[o] * match[o] / fmax(most, 1e-9);
-		there[o] = match[o] * (most > best ? best / most : 1);
+		/* another thing that is called so speaks against it */
+		there[o] = match[o] * match[o] / fmax(best, 1e-9) * (most > best ? best / most : 1);
 	}
 	take_part(m, &m->parts[m->part_count - 1]);
 }

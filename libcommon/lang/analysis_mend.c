@@ -178,10 +178,101 @@ static void mend_parts(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* "the longest way from the cup" is farthest from it, whatever became of the words. */
+static void mend_ways(struct analysis *a, const struct tokens *t)
+{
+	static const char *const far[] = {"longest", "greatest", "largest", "biggest", "furthest", "farthest"};
+	static const char *const near[] = {"shortest", "least", "smallest"};
+
+	for (int i = 0; i + 1 < t->n; i++) {
+		int r = -1, at = -1;
+		if (!is(t, i + 1, "way") && !is(t, i + 1, "distance"))
+			continue;
+		for (size_t k = 0; k < sizeof far / sizeof *far; k++)
+			r = is(t, i, far[k]) ? PARSE_FAR : r;
+		for (size_t k = 0; k < sizeof near / sizeof *near; k++)
+			r = is(t, i, near[k]) ? PARSE_NEAR : r;
+		for (int j = i + 4; j >= i; j--)
+			at = r >= 0 && j < t->n && a->word[j].role == ROLE_PREDICATE ? j : at;
+		if (at < 0)
+			continue;
+		const struct analysis_word predicate = a->word[at];
+		a->word[at] = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
+		a->word[i] = predicate;
+		a->word[i].relation = (enum parse_relation)r;
+		for (int j = 0; j < t->n; j++)
+			if (a->word[j].role == ROLE_ANCHOR && a->word[j].head == at)
+				a->word[j].head = i;
+	}
+}
+
+/* "the cylinder that isn't orange": orange ones are left out. */
+static void mend_isnt(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i + 1 < t->n; i++) {
+		const int next = class_of(t, i + 1) == CLOSED_ADVERB ? i + 2 : i + 1;
+		if (class_of(t, i) == CLOSED_NEGATION && !is(t, i, "no") && !is(t, i, "without") &&
+			next < t->n && !t->word[next].before && a->word[next].role == ROLE_ATTRIBUTE &&
+			a->word[next].head == ROOT && noun_after(a, t, next) < 0)
+			a->word[next] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
+	}
+}
+
+static int has_anchor(const struct analysis *a, int predicate)
+{
+	for (int i = 0; i < a->n; i++)
+		if (a->word[i].role == ROLE_ANCHOR && a->word[i].head == predicate)
+			return 1;
+	return 0;
+}
+
+/* The predicate without an anchor right before a phrase that begins at `begin`, or after the phrase with "its"
+ * before it; or -1. */
+static int predicate_for(const struct analysis *a, const struct tokens *t, int begin, int end)
+{
+	int i = begin - 1;
+
+	while (is(t, i, "of") || is(t, i, "to") || is(t, i, "from") || is(t, i, "than"))
+		i--;
+	if (i >= 0 && a->word[i].role == ROLE_PREDICATE && a->word[i].head == ROOT && !has_anchor(a, i))
+		return i;
+	for (i = end + 1; i < t->n && i <= end + 5 && !t->word[i].before; i++)
+		if (a->word[i].role == ROLE_PREDICATE && a->word[i].head == ROOT && is(t, i - 1, "its"))
+			return has_anchor(a, i) ? -1 : i;
+	return -1;
+}
+
+/* "the can left of the red one": red is the anchor. */
+static void mend_ones(struct analysis *a, const struct tokens *t)
+{
+	int found = 0;
+
+	for (int i = 0; i < t->n; i++) {
+		const int is_free = a->word[i].role == ROLE_NONE || (found && a->word[i].role == ROLE_TARGET);
+		int begin = i;
+		if (is(t, i, "one") && found && is_free) {
+			while (begin > 0 && a->word[begin - 1].role == ROLE_ATTRIBUTE &&
+				a->word[begin - 1].head == ROOT)
+				begin--;
+			if (is(t, begin - 1, "the") && begin < i) {
+				const int p = predicate_for(a, t, begin - 1, i);
+				for (int j = begin; j < i && p >= 0; j++)
+					a->word[j].head = i;
+				if (p >= 0)
+					a->word[i] = (struct analysis_word){.role = ROLE_ANCHOR, .head = p};
+			}
+		}
+		found |= a->word[i].role == ROLE_TARGET;
+	}
+}
+
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	mend_with(a, grammar, t);
 	mend_parts(a, t);
+	mend_ways(a, t);
+	mend_isnt(a, t);
+	mend_ones(a, t);
 	mend_sizes(a, t);
 	mend_viewer(a, t);
 	mend_negation(a, t);

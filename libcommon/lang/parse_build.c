@@ -512,6 +512,7 @@ int parse_build(struct parse *p, const struct analysis *a, const struct tokens *
 		return -1;
 	}
 	find_view(&b);
+	parse_settle(p);
 	p->confidence = t->n ? 1 - (double)p->unexplained.n / t->n : 0;
 	return 0;
 }

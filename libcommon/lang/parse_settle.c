@@ -1,0 +1,79 @@
+/* What a parse still has wrong once it is built, and its own words tell: of what group one thing is meant, and
+ * what the thing is compared with. */
+#include "lang/analysis.h"
+#include "lang/closed.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int is(const struct parse *p, int word, const char *text)
+{
+	return word >= 0 && word < p->word_count && !strcmp(p->words[word].text, text);
+}
+
+static int class_of(const struct parse *p, int word)
+{
+	const int closed = word >= 0 && word < p->word_count ? closed_find(p->words[word].text) : -1;
+
+	return closed < 0 ? -1 : (int)closed_words[closed].class;
+}
+
+/* "the first two mugs" are two, but "there are two mugs, the second one" is one of two. */
+static void settle_ordinal(const struct parse *p, struct parse_phrase *f)
+{
+	if (!f->ordinal || f->count == PARSE_ONE)
+		return;
+	for (int w = 0; w + 1 < p->word_count; w++)
+		if (class_of(p, w) == CLOSED_ORDINAL && class_of(p, w + 1) == CLOSED_NUMBER)
+			return;
+	f->group = f->group ? f->group : f->count;
+	f->count = PARSE_ONE;
+}
+
+static int has_word(const struct parse *p, struct parse_span in, const char *text)
+{
+	for (int w = 0; w < p->word_count; w++)
+		if (p->words[w].span.begin >= in.begin && p->words[w].span.end <= in.end && is(p, w, text))
+			return 1;
+	return 0;
+}
+
+static void move_list(struct parse_list *to, struct parse_list *from)
+{
+	free(to->item);
+	*to = *from;
+	*from = (struct parse_list){0};
+}
+
+/* "the nearer of the two blocks" is a block, and "bigger than all the other balls" a ball: the largest. */
+static void settle_comparison(struct parse *p, struct parse_phrase *f, struct parse_clause *c)
+{
+	struct parse_phrase *a;
+
+	if (c->degree == PARSE_PLAIN || c->anchors.n != 1 || c->words.n < 1)
+		return;
+	a = &p->phrases[c->anchors.item[0]];
+	const int is_of = is(p, c->words.item[0] + 1, "of") && (a->count != PARSE_ONE || a->group);
+	const int is_rest = c->degree == PARSE_MORE &&
+			    (has_word(p, a->span, "other") || has_word(p, a->span, "others") ||
+				    has_word(p, a->span, "rest"));
+	if ((!is_of && !is_rest) || a->clauses.n || a == f)
+		return;
+	if (!f->noun.n)
+		move_list(&f->noun, &a->noun);
+	if (!f->attributes.n)
+		move_list(&f->attributes, &a->attributes);
+	if (is_of && !f->group)
+		f->group = a->count != PARSE_ONE ? a->count : a->group;
+	c->degree = PARSE_MOST;
+	c->anchors.n = 0;
+}
+
+void parse_settle(struct parse *p)
+{
+	struct parse_phrase *f = &p->phrases[0];
+
+	settle_ordinal(p, f);
+	for (int k = 0; k < f->clauses.n; k++)
+		settle_comparison(p, f, &p->clauses[f->clauses.item[k]]);
+}
