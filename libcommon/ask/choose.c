@@ -30,6 +30,8 @@ struct chooser {
 	const struct choose_scene *scene;
 	unsigned parts;
 	struct vocabulary vocabulary;
+	struct parser parser; /* with the words of the vocabulary known */
+	const char **words;
 	struct arrangement arrangement;
 	struct viewpoint from; /* of the arrangement */
 	struct meaning meaning;
@@ -171,17 +173,21 @@ static void choose_whole(struct chooser *c, double *row, char *chosen)
 	chosen[best_of(row, n)] = 1;
 }
 
-/* What colours and clauses of the target leave to object o, at the least and in all. */
-static void find_left(const struct meaning *m, size_t o, double *least, double *left)
+/* What the clauses of the target leave to object o; is_so: nothing of its colour and place is contradicted. */
+static double clauses_leave(const struct meaning *m, size_t o, int *is_so)
 {
-	*least = *left = 1;
+	double left = 1;
+
+	*is_so = 1;
 	for (size_t k = 0; k < m->part_count; k++) {
 		const struct meaning_part *part = &m->parts[k];
 		if (part->phrase || (part->kind != MEANING_CLAUSE && part->kind != MEANING_COLOUR))
 			continue;
-		*left *= part->kind == MEANING_CLAUSE ? part->value[o] : 1;
-		*least = fmin(*least, part->value[o]);
+		const int is_clause = part->kind == MEANING_CLAUSE;
+		left *= is_clause ? part->value[o] : 1;
+		*is_so &= part->value[o] >= (is_clause ? WORDING_CLAUSE : WORDING_COLOUR_SO);
 	}
+	return left;
 }
 
 /* A sentence that means one thing, and that its parse finds nothing for: the object that its wording is
@@ -192,18 +198,16 @@ static void choose_wording(struct chooser *c, const struct vocabulary_sentence *
 {
 	const size_t n = c->arrangement.n;
 	const double there = wording_judge(&c->wording, s, c->score);
-	double least, left;
+	int is_so;
 
 	const double known = c->meaning.known[0];
 	if (there < WORDING_LEAST || there <= to->there || known < WORDING_NOUN)
 		return;
-	for (size_t o = 0; o < n; o++) {
-		find_left(&c->meaning, o, &least, &left);
-		c->score[o] += log(fmax(left, 1e-6));
-	}
+	for (size_t o = 0; o < n; o++)
+		c->score[o] += log(fmax(clauses_leave(&c->meaning, o, &is_so), 1e-6));
 	const size_t best = best_of(c->score, n);
-	find_left(&c->meaning, best, &least, &left);
-	if (least < WORDING_CONTRADICTED || (known > GENERIC_THERE && !chosen[best]))
+	clauses_leave(&c->meaning, best, &is_so);
+	if (!is_so || (known > GENERIC_THERE && !chosen[best]))
 		return;
 	memcpy(row, c->score, n * sizeof *row);
 	softmax(row, n);
@@ -218,7 +222,7 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 	const struct lifted *l = c->scene->lifted;
 	const struct parser_vectors vectors = {from->pieces, from->vectors, (int)from->words, l->width};
 
-	if (parse_sentence(p, c->scene->parser, from->text, &vectors, e))
+	if (parse_sentence(p, &c->parser, from->text, &vectors, e))
 		return -1;
 	const struct vocabulary_sentence s = {p, from->vectors, from->words};
 	if (meaning_judge(&c->meaning, &s, e))
@@ -281,6 +285,22 @@ static void find_looks(struct chooser *c)
 					: 0;
 }
 
+/* Words of the scene's own sentences and names are spelt right. */
+static int know_words(struct chooser *c, struct err *e)
+{
+	const struct vocabulary *v = &c->vocabulary;
+
+	c->words = mem_alloc(v->kind_count, sizeof *c->words, "vocabulary", e);
+	if (!c->words)
+		return -1;
+	for (size_t k = 0; k < v->kind_count; k++)
+		c->words[k] = v->kinds[k].lemma;
+	c->parser = *c->scene->parser;
+	c->parser.known = c->words;
+	c->parser.known_count = (int)v->kind_count;
+	return 0;
+}
+
 static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigned parts, struct err *e)
 {
 	const size_t objects = s->lifted->objects;
@@ -291,7 +311,7 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	c->looks = mem_alloc(objects, objects * sizeof *c->looks, "choice", e);
 	if (!c->score || !c->whole || !c->looks ||
 		arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
-		vocabulary_make(&c->vocabulary, s->lifted, s->parser, e))
+		vocabulary_make(&c->vocabulary, s->lifted, s->parser, e) || know_words(c, e))
 		return -1;
 	if (has(c, CHOOSE_WORDING) && wording_make(&c->wording, &c->vocabulary, &c->arrangement, e))
 		return -1;
@@ -323,6 +343,7 @@ static void chooser_free(struct chooser *c)
 		vocabulary_free(&c->vocabulary);
 	meaning_free(&c->meaning);
 	wording_free(&c->wording);
+	free(c->words);
 	free(c->score);
 	free(c->whole);
 	free(c->looks);

@@ -34,6 +34,7 @@
 #define GROUP_ELSE 0.02	  /* "of the two cups", and it is neither */
 #define OUT_OF_SIGHT 0.02 /* a picture is spoken of, and it is not in it */
 
+#define NOUN_ELSEWHERE 0.7   /* the power of what a noun fits one thing less well than another */
 #define GENERIC_THERE 0.95   /* how known a thing is that is called "thing" */
 #define UNKNOWN_RELATION 0.5 /* how true a relation to something unknown is */
 #define SAID_WORTH 0.85	     /* a relation that a training sentence has */
@@ -76,7 +77,8 @@
 #define WORDING_PLAIN 1.7
 #define WORDING_LEAST 0.88 /* it counts where the sentence fits as well as 0.35 of the training sentences, ... */
 #define WORDING_NOUN 0.3   /* ... and its noun is as known as this */
-#define WORDING_CONTRADICTED 0.25 /* what a colour or a clause leaves to what it is not said of */
+#define WORDING_COLOUR_SO 0.5 /* what a colour and a clause leave to that of which they are so */
+#define WORDING_CLAUSE 0.25
 #define COLOUR_FLOOR 0.05
 #define COLOUR_USUAL 0.2
 #define PRESENT_ODDS 4.0

@@ -186,15 +186,28 @@ static void judge_noun(struct meaning *m, int phrase)
 	for (size_t o = 0; o < n; o++) {
 		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * match[o] * match[o] / fmax(most, 1e-9);
 		/* another thing that is called so speaks against it */
-		there[o] = match[o] * match[o] / fmax(best, 1e-9) * (most > best ? best / most : 1);
+		there[o] = match[o] * pow(match[o] / fmax(best, 1e-9), NOUN_ELSEWHERE) *
+			   (most > best ? best / most : 1);
 	}
 	take_part(m, &m->parts[m->part_count - 1]);
+}
+
+/* "bright", "dark" or "light" before a colour is of the colour. */
+static int is_shade(const struct parse *p, int word)
+{
+	static const char *const shades[] = {
+		"bright", "dark", "light", "pale", "deep", "vivid", "soft", "royal", "pure", "jet", NULL};
+
+	return word + 1 < p->word_count && word_is(&p->words[word], shades) &&
+	       colour_word(p->words[word + 1].lemma) >= 0;
 }
 
 static void judge_attribute(struct meaning *m, int phrase, int word, double least)
 {
 	const size_t n = objects_of(m);
 
+	if (is_shade(m->sentence->parse, word))
+		return;
 	if (colour_word(m->sentence->parse->words[word].lemma) >= 0) {
 		judge_colour(m, phrase, word);
 		return;

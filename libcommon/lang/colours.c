@@ -58,6 +58,11 @@ static const struct {
 	{"metallic", {160, 160, 165}},
 };
 
+const char *colour_name(int word)
+{
+	return colours[word].word;
+}
+
 int colour_word(const char *word)
 {
 	for (int i = 0; i < COLOUR_WORDS; i++)

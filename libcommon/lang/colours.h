@@ -6,6 +6,9 @@
 int colour_word(const char *word);
 enum { COLOUR_WORDS = 49 };
 
+/* The word of a number below COLOUR_WORDS. */
+const char *colour_name(int word);
+
 /* CIE L*a*b* (D65) of an sRGB colour; what is outside [0,1] is cut. */
 void colour_lab(const double rgb[3], double lab[3]);
 

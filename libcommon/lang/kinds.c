@@ -105,6 +105,24 @@ static const char *const groups[] = {
 	" box container receptacle holder bin ",
 };
 
+const char *kinds_group(size_t group)
+{
+	return group < sizeof groups / sizeof *groups ? groups[group] : NULL;
+}
+
+int kinds_have(const char *lemma)
+{
+	char x[KINDS_LENGTH + 3];
+
+	if (!*lemma || strlen(lemma) >= KINDS_LENGTH || strchr(lemma, ' '))
+		return 0;
+	snprintf(x, sizeof x, " %s ", lemma);
+	for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
+		if (strstr(groups[g], x))
+			return 1;
+	return 0;
+}
+
 int kinds_share(const char *a, const char *b)
 {
 	char x[40], y[40];

@@ -3,6 +3,16 @@
 #ifndef LANG_KINDS_H
 #define LANG_KINDS_H
 
+#include <stddef.h>
+
+enum { KINDS_LENGTH = 32 }; /* of the longest noun with its 0 */
+
+/* The nouns of a group with a space around each; NULL past the last group. */
+const char *kinds_group(size_t group);
+
+/* Whether a lemma is in any group. */
+int kinds_have(const char *lemma);
+
 /* Whether two lemmas are in one group. */
 int kinds_share(const char *a, const char *b);
 

@@ -222,6 +222,8 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	/* "on top of it" compares nothing */
 	if (r == PARSE_ON || r == PARSE_SUPPORTS || r == PARSE_INSIDE || r == PARSE_WITH)
 		return PARSE_PLAIN;
+	if (is_any(t, i, most))
+		return PARSE_MOST;
 	if (c == CLOSED_PLACE || c == CLOSED_SIZE) {
 		if (value_of(t, i))
 			return (enum parse_degree)value_of(t, i);

@@ -30,10 +30,13 @@ static void settle_ordinal(const struct parse *p, struct parse_phrase *f)
 	f->count = PARSE_ONE;
 }
 
-static int has_word(const struct parse *p, struct parse_span in, const char *text)
+/* Whether one of the words after `from`, up to the noun of a phrase, is `text`. */
+static int is_before(const struct parse *p, int from, const struct parse_phrase *f, const char *text)
 {
-	for (int w = 0; w < p->word_count; w++)
-		if (p->words[w].span.begin >= in.begin && p->words[w].span.end <= in.end && is(p, w, text))
+	const int end = f->noun.n ? f->noun.item[f->noun.n - 1] : from + 4;
+
+	for (int w = from + 1; w <= end; w++)
+		if (is(p, w, text))
 			return 1;
 	return 0;
 }
@@ -53,10 +56,11 @@ static void settle_comparison(struct parse *p, struct parse_phrase *f, struct pa
 	if (c->degree == PARSE_PLAIN || c->anchors.n != 1 || c->words.n < 1)
 		return;
 	a = &p->phrases[c->anchors.item[0]];
-	const int is_of = is(p, c->words.item[0] + 1, "of") && (a->count != PARSE_ONE || a->group);
+	const int at = c->words.item[0];
+	const int is_of = is(p, at + 1, "of") && (a->count != PARSE_ONE || a->group);
 	const int is_rest = c->degree == PARSE_MORE &&
-			    (has_word(p, a->span, "other") || has_word(p, a->span, "others") ||
-				    has_word(p, a->span, "rest"));
+			    (is_before(p, at, a, "other") || is_before(p, at, a, "others") ||
+				    is_before(p, at, a, "rest"));
 	if ((!is_of && !is_rest) || a->clauses.n || a == f)
 		return;
 	if (!f->noun.n)

@@ -1,6 +1,7 @@
 #include "lang/tokens.h"
 
 #include "lang/closed.h"
+#include "lang/spelling.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -47,70 +48,6 @@ void token_lemma(const char *word, char *out)
 		}
 	if (word[n - 1] == 's' && word[n - 2] != 's' && word[n - 2] != 'u' && word[n - 2] != 'i')
 		out[n - 1] = 0;
-}
-
-int spelling_near(const char *a, const char *b)
-{
-	size_t n = strlen(a), m = strlen(b), i = 0;
-
-	if (n > m)
-		return spelling_near(b, a);
-	if (m - n > 1)
-		return 0;
-	while (i < n && a[i] == b[i])
-		i++;
-	if (m > n)
-		return !strcmp(a + i, b + i + 1);
-	if (i == n)
-		return 0;
-	if (!strcmp(a + i + 1, b + i + 1))
-		return 1;
-	return i + 1 < n && a[i] == b[i + 1] && a[i + 1] == b[i] && !strcmp(a + i + 2, b + i + 2);
-}
-
-/* 1 where b is a with two neighbours exchanged. */
-static int exchanged(const char *a, const char *b)
-{
-	size_t i = 0;
-
-	if (strlen(a) != strlen(b) || !spelling_near(a, b))
-		return 0;
-	while (a[i] && a[i] == b[i])
-		i++;
-	return a[i] && a[i + 1] && a[i] == b[i + 1] && a[i + 1] == b[i];
-}
-
-/* Two letters the wrong way round are a slip in any word of three or more; another slip is told from another
- * word only in a long one. */
-static int may_be(const char *word, const char *right)
-{
-	size_t n = strlen(right);
-
-	return n >= 3 &&
-	       (exchanged(word, right) || (n >= 6 && word[0] == right[0] && spelling_near(word, right)));
-}
-
-static void repair(struct token *w, const char *const *known, int known_count)
-{
-	char lemma[TOKEN_LENGTH];
-
-	if (strlen(w->text) < 3 || strlen(w->text) > TOKEN_LENGTH - 3 || isdigit((unsigned char)w->text[0]))
-		return;
-	token_lemma(w->text, lemma);
-	for (int i = 0; i < known_count; i++)
-		if (!strcmp(known[i], w->text) || !strcmp(known[i], lemma))
-			return;
-	for (int i = 0; i < closed_count; i++)
-		if (may_be(w->text, closed_words[i].text)) {
-			put(w->text, closed_words[i].text, TOKEN_LENGTH);
-			w->closed = i;
-			return;
-		}
-	for (int i = 0; i < known_count; i++)
-		if (may_be(w->text, known[i]) && strlen(known[i]) < TOKEN_LENGTH) {
-			put(w->text, known[i], TOKEN_LENGTH);
-			return;
-		}
 }
 
 static int push(struct tokens *t, const char *text, int begin, int end, enum token_pause before)
@@ -303,8 +240,11 @@ void tokens_take(
 		give_pieces(t, text, pieces);
 	for (int i = 0; i < t->n; i++) {
 		struct token *w = &t->word[i];
-		if (w->closed < 0 && w->pieces != 1)
-			repair(w, known, known_count);
+		char right[TOKEN_LENGTH];
+		if (w->closed < 0 && w->pieces != 1 && spelling_repair(w->text, known, known_count, right)) {
+			put(w->text, right, TOKEN_LENGTH);
+			w->closed = closed_find(right);
+		}
 		token_lemma(w->text, w->lemma);
 		if (!strcmp(w->text, "is") || !strcmp(w->text, "its"))
 			put(w->lemma, w->text, TOKEN_LENGTH);

@@ -31,15 +31,12 @@ struct tokens {
 
 /* Takes a text apart. `pieces` are the encoder's word pieces of it with a space between, as text.safetensors
  * has them (continuations begin with "##"), or NULL. A word that is one piece is spelt right, as are the
- * closed words and those of `known` (known_count, may be NULL: a scene's vocabulary); others are repaired to
- * one of these where one slip makes it. */
+ * closed words and those of `known` (known_count, may be NULL: a scene's vocabulary); others are repaired
+ * (lang/spelling.h). */
 void tokens_take(
 	struct tokens *t, const char *text, const char *pieces, const char *const *known, int known_count);
 
 /* Singular of a noun ("boxes", "shelves", "mice"); others as they are. out holds TOKEN_LENGTH bytes. */
 void token_lemma(const char *word, char *out);
-
-/* 1 where one insertion, deletion, replacement or exchange of neighbours makes a into b. */
-int spelling_near(const char *a, const char *b);
 
 #endif

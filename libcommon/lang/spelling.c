@@ -1,0 +1,127 @@
+#include "lang/spelling.h"
+
+#include "lang/closed.h"
+#include "lang/colours.h"
+#include "lang/kinds.h"
+#include "lang/tokens.h"
+#include "lang/wordnet.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+int spelling_near(const char *a, const char *b)
+{
+	size_t n = strlen(a), m = strlen(b), i = 0;
+
+	if (n > m)
+		return spelling_near(b, a);
+	if (m - n > 1)
+		return 0;
+	while (i < n && a[i] == b[i])
+		i++;
+	if (m > n)
+		return !strcmp(a + i, b + i + 1);
+	if (i == n)
+		return 0;
+	if (!strcmp(a + i + 1, b + i + 1))
+		return 1;
+	return i + 1 < n && a[i] == b[i + 1] && a[i + 1] == b[i] && !strcmp(a + i + 2, b + i + 2);
+}
+
+/* 1 where b is a with two neighbours exchanged. */
+static int is_exchanged(const char *a, const char *b)
+{
+	size_t i = 0;
+
+	if (strlen(a) != strlen(b) || !spelling_near(a, b))
+		return 0;
+	while (a[i] && a[i] == b[i])
+		i++;
+	return a[i] && a[i + 1] && a[i] == b[i + 1] && a[i + 1] == b[i];
+}
+
+/* A word that may be misspelt. */
+struct suspect {
+	const char *word;
+	size_t least; /* letters of a right word of which a slip other than an exchange is told */
+	char *right;
+};
+
+/* Whether the suspect is a slip of this word: right gets it. */
+static int is_slip_of(const struct suspect *s, const char *right)
+{
+	const size_t n = strlen(right);
+
+	if (n < 3 || n >= SPELLING_LENGTH)
+		return 0;
+	if (!is_exchanged(s->word, right) &&
+		(n < s->least || s->word[0] != right[0] || !spelling_near(s->word, right)))
+		return 0;
+	snprintf(s->right, SPELLING_LENGTH, "%s", right);
+	return 1;
+}
+
+/* The noun or its plural. */
+static int is_slip_of_noun(const struct suspect *s, const char *noun)
+{
+	static const char *const plurals[] = {"", "s", "es"};
+	char form[SPELLING_LENGTH + 2];
+
+	for (size_t i = 0; i < sizeof plurals / sizeof *plurals && strlen(noun) < SPELLING_LENGTH - 2; i++) {
+		snprintf(form, sizeof form, "%s%s", noun, plurals[i]);
+		if (is_slip_of(s, form))
+			return 1;
+	}
+	return 0;
+}
+
+static int is_known(const char *word, const char *lemma, const char *const *known, int known_count)
+{
+	for (int i = 0; i < known_count; i++)
+		if (!strcmp(known[i], word) || !strcmp(known[i], lemma))
+			return 1;
+	return colour_word(word) >= 0 || kinds_have(lemma);
+}
+
+/* One of the nouns of a group, or its plural. */
+static int is_slip_of_group(const struct suspect *s, const char *group)
+{
+	char noun[KINDS_LENGTH];
+
+	for (const char *p = group + 1; *p; p += strcspn(p, " ") + 1) {
+		snprintf(noun, sizeof noun, "%.*s", (int)strcspn(p, " "), p);
+		if (is_slip_of_noun(s, noun))
+			return 1;
+	}
+	return 0;
+}
+
+int spelling_repair(const char *word, const char *const *known, int known_count, char *right)
+{
+	char lemma[TOKEN_LENGTH];
+	struct suspect s = {word, 6, right};
+	struct wordnet_noun sense;
+
+	if (strlen(word) < 3 || strlen(word) > SPELLING_LENGTH - 3 || isdigit((unsigned char)word[0]))
+		return 0;
+	token_lemma(word, lemma);
+	if (is_known(word, lemma, known, known_count))
+		return 0;
+	wordnet_find(&sense, lemma);
+	if (wordnet_is_there() && !sense.n)
+		s.least = 5;
+	for (int i = 0; i < known_count; i++)
+		if (is_slip_of_noun(&s, known[i]))
+			return 1;
+	for (int i = 0; i < closed_count; i++)
+		if (is_slip_of(&s, closed_words[i].text))
+			return 1;
+	for (int i = 0; i < COLOUR_WORDS; i++)
+		if (is_slip_of(&s, colour_name(i)))
+			return 1;
+	for (size_t g = 0; kinds_group(g); g++)
+		if (is_slip_of_group(&s, kinds_group(g)))
+			return 1;
+	return 0;
+}
