@@ -391,6 +391,18 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 			(1 - known) * SAID_WORTH * said[o]);
 }
 
+/* How far an object is itself an anchor of a clause: "not beside the mug" is not said of the mug. */
+static double is_anchor(const struct meaning *m, const struct parse_clause *c, size_t o)
+{
+	double is = 0;
+
+	for (int j = 0; j < c->anchors.n; j++) {
+		const double *fit = fit_of(m, c->anchors.item[j]);
+		is = fmax(is, fit[o] / fmax(largest(fit, objects_of(m)), 1e-9));
+	}
+	return is;
+}
+
 static void judge_clause(struct meaning *m, int phrase, int clause, const double *fit)
 {
 	const struct parse_clause *c = &m->sentence->parse->clauses[clause];
@@ -401,7 +413,7 @@ static void judge_clause(struct meaning *m, int phrase, int clause, const double
 
 	judge_predication(m, phrase, c, fit, m->scratch + 7 * n, value);
 	for (size_t o = 0; o < n; o++) {
-		const double x = c->negated ? 1 - value[o] : value[o];
+		const double x = c->negated ? (1 - value[o]) * (1 - is_anchor(m, c, o)) : value[o];
 		value[o] = least + (1 - least) * x;
 		there[o] *= is_size(c) ? 1 : value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
 	}
