@@ -50,6 +50,7 @@
 #define ATTRIBUTE_HALF 0.55
 #define ATTRIBUTE_SOFT 0.08
 #define WORDNET_WORTH 0.95
+#define USE_WORTH 0.8	 /* a thing that WordNet's glosses say is for what a word says */
 #define KINDS_WORTH 0.85 /* two nouns of one group of lang/kinds.h */
 #define NAME_PART 0.3	 /* a word of a name that is not its last */
 

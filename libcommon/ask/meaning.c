@@ -248,7 +248,7 @@ static void judge_predicate(struct meaning *m, const struct parse_clause *c, dou
 {
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
-	double *match = m->scratch + n;
+	double *match = m->scratch + n, *use = m->scratch + 8 * n;
 	int words = 0;
 
 	for (size_t o = 0; o < n; o++)
@@ -258,10 +258,13 @@ static void judge_predicate(struct meaning *m, const struct parse_clause *c, dou
 						: head_of(p, &p->phrases[c->anchors.item[k - c->words.n]]);
 		if (word < 0)
 			continue;
-		if (!vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match))
+		memset(use, 0, n * sizeof *use);
+		if (!vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match)) {
 			vocabulary_attribute(m->vocabulary, m->sentence, word, match);
+			vocabulary_use(m->vocabulary, m->sentence, word, use);
+		}
 		for (size_t o = 0; o < n; o++)
-			value[o] += fmax(match[o], 0);
+			value[o] += fmax(fmax(match[o], USE_WORTH * use[o]), 0);
 		words++;
 	}
 	const double most = largest(value, n);
@@ -470,6 +473,12 @@ static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
 	take_part(m, &m->parts[m->part_count - 1]);
 }
 
+/* "around", and nothing is there that it is around. */
+static int says_nothing(const struct parse_clause *c)
+{
+	return c->relation == PARSE_NEAR && c->degree == PARSE_PLAIN && !c->anchors.n;
+}
+
 /* The clauses that compare, or those that do not. Those of the place as a whole are the thing's: "everything
  * on the shelf that is left of the lamp". */
 static void judge_clauses(
@@ -479,7 +488,7 @@ static void judge_clauses(
 
 	for (int k = 0; k < f->clauses.n && depth < 2; k++) {
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
-		if (is_late(c) == late)
+		if (is_late(c) == late && !says_nothing(c))
 			judge_clause(m, phrase, f->clauses.item[k], fit);
 		for (int j = 0; j < c->anchors.n; j++)
 			if (is_scene(m, c->anchors.item[j]))
@@ -563,7 +572,7 @@ static int make_room(struct meaning *m, const struct parse *p, struct err *e)
 	const size_t n = objects_of(m), phrases = (size_t)p->phrase_count, parts = parts_of(p);
 
 	if (!m->scratch)
-		m->scratch = mem_alloc(n + 1, 8 * sizeof *m->scratch, "choice", e);
+		m->scratch = mem_alloc(n + 1, 9 * sizeof *m->scratch, "choice", e);
 	return !m->scratch ||
 			       mem_room((void **)&m->fit, &m->fit_room, phrases * (n + 1), sizeof *m->fit,
 				       "choice", e) ||

@@ -49,7 +49,7 @@ struct meaning {
 	size_t unknown; /* words that say something, and nothing of any object */
 
 	size_t phrase_room, fit_room, there_room, known_room, part_room, value_room;
-	double *values, *scratch; /* of the parts; (6 O + 6) */
+	double *values, *scratch; /* of the parts; (9 O + 9) */
 };
 
 /* Judges a sentence. Returns 0, or -1 with *e set. */

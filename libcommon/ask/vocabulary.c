@@ -107,6 +107,7 @@ static int add_kind(struct vocabulary *v, const char *lemma, size_t *kind, struc
 		return -1;
 	struct vocabulary_kind *to = &v->kinds[v->kind_count++];
 	to->lemma = lemma;
+	to->uses.n = -1;
 	wordnet_find(&to->noun, lemma);
 	wordnet_find_adjective(&to->adjective, lemma);
 	return 0;
@@ -459,6 +460,34 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
 		double x = worth(dot(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
 		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
 		match[item->object] = fmax(match[item->object], x);
+	}
+}
+
+/* How far things of a kind are for what a word says. */
+static double kind_fits(struct vocabulary *v, size_t kind, const struct uses *word)
+{
+	struct vocabulary_kind *k = &v->kinds[kind];
+
+	if (k->uses.n < 0)
+		uses_of_thing(&k->uses, k->lemma);
+	return uses_fit(&k->uses, word);
+}
+
+void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
+{
+	const struct lifted *l = v->lifted;
+	struct uses word;
+
+	memset(match, 0, l->objects * sizeof *match);
+	if (!v->has_knowledge)
+		return;
+	uses_of_word(&word, s->parse->words[w].lemma);
+	for (size_t o = 0; o < l->objects && word.n && v->has_names; o++)
+		match[o] = kind_fits(v, v->head_kinds[o], &word);
+	for (size_t i = 0; i < v->n && word.n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->role == VOCABULARY_NOUN && item->sentence != v->without && !item->is_general)
+			match[item->object] = fmax(match[item->object], kind_fits(v, item->kind, &word));
 	}
 }
 

@@ -6,6 +6,7 @@
 #include "ask/arrangement.h"
 #include "base/err.h"
 #include "lang/parser.h"
+#include "lang/uses.h"
 #include "lang/wordnet.h"
 #include "refer/lifted.h"
 
@@ -37,6 +38,7 @@ struct vocabulary_kind {
 	const char *lemma;
 	struct wordnet_noun noun;
 	struct wordnet_adjective adjective;
+	struct uses uses; /* found when they are first asked for; n < 0 before */
 };
 
 struct vocabulary {
@@ -82,6 +84,9 @@ void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s
 /* match (O) in [0,1]: that a training sentence has the object in a like relation to what word w names. */
 void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
 	enum parse_relation relation, double *match);
+
+/* match (O) in [0,1]: that what an object is called is for what word w says ("drink"), by WordNet's glosses. */
+void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* fit (O): how far an object is of the colour of a word, in [0,1], by its Gaussians and by the colours that
  * training sentences say it has. Returns 0 where it is no colour word. */

@@ -1,0 +1,185 @@
+#include "lang/uses.h"
+
+#include "lang/wordnet.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+double uses_fit(const struct uses *thing, const struct uses *word)
+{
+	double best = 0;
+
+	for (int i = 0; i < thing->n; i++)
+		for (int k = 0; k < word->n; k++)
+			if (thing->of[i].stem == word->of[k].stem)
+				best = fmax(best, (double)thing->of[i].worth * (double)word->of[k].worth);
+	return best;
+}
+
+#ifdef HAVE_WORDNET
+#include <wn.h>
+
+enum { SENSES = 8, STEPS_OF_THING = 2, STEPS_OF_WORD = 4, LONGEST = 24 };
+static const double per_step = 0.9, per_sense = 0.93;
+
+static int ends(const char *w, size_t n, const char *tail)
+{
+	const size_t m = strlen(tail);
+
+	return n > m + 2 && !strcmp(w + n - m, tail);
+}
+
+/* "drinking" and "drinks" become "drink", "served" and "serve" "serv", "thrown" "throw". */
+static void stem(char *w)
+{
+	static const char *const tails[] = {"ing", "ed", "en", "es", "s"};
+	size_t n = strlen(w);
+
+	for (size_t i = 0; i < sizeof tails / sizeof *tails; i++)
+		if (ends(w, n, tails[i])) {
+			n -= strlen(tails[i]);
+			break;
+		}
+	w[n] = 0;
+	if (ends(w, n, "wn"))
+		w[--n] = 0;
+	if (n > 3 && w[n - 1] == 'e')
+		w[--n] = 0;
+	if (n > 3 && w[n - 1] == w[n - 2] && w[n - 1] != 's' && w[n - 1] != 'l')
+		w[--n] = 0;
+}
+
+static unsigned hash(const char *w)
+{
+	unsigned h = 2166136261U;
+
+	for (; *w; w++)
+		h = (h ^ (unsigned char)*w) * 16777619U;
+	return h;
+}
+
+/* Words of glosses that say nothing of a use. */
+static int is_empty(const char *stemmed)
+{
+	static const char empty[] =
+		" the and for with that from its are was has have any who which one two used use usual made mak "
+		"mad put tak tok get got giv let can may often oft such other than into out onto off not all "
+		"small larg object thing someth someth part typic consist contain various some who whom his her he "
+		"she him they them their it you your what when where were been be is do does an as at by in of on "
+		"or to up go com kind form shap piec set particular especial etc own keep ";
+	char padded[LONGEST + 3];
+
+	snprintf(padded, sizeof padded, " %s ", stemmed);
+	return strlen(stemmed) < 3 || strstr(empty, padded) != NULL;
+}
+
+static void add(struct uses *to, const char *word, size_t length, double worth)
+{
+	char w[LONGEST + 1];
+
+	if (length > LONGEST || to->n == USES_STEMS)
+		return;
+	for (size_t i = 0; i < length; i++)
+		w[i] = (char)tolower((unsigned char)word[i]);
+	w[length] = 0;
+	stem(w);
+	if (is_empty(w))
+		return;
+	const unsigned h = hash(w);
+	for (int i = 0; i < to->n; i++)
+		if (to->of[i].stem == h) {
+			to->of[i].worth = fmaxf(to->of[i].worth, (float)worth);
+			return;
+		}
+	to->of[to->n].stem = h;
+	to->of[to->n++].worth = (float)worth;
+}
+
+static void add_text(struct uses *to, const char *text, double worth)
+{
+	for (const char *p = text; *p;) {
+		size_t n = 0;
+		while (isalpha((unsigned char)p[n]))
+			n++;
+		if (n)
+			add(to, p, n, worth);
+		p += n ? n : 1;
+	}
+}
+
+/* What a synset says, and what it is a kind of: glosses, or its own words. Returns whether an artifact is above
+ * it. */
+static int climb(struct uses *to, long synset, int pos, int is_gloss, int steps, double worth)
+{
+	static char none[] = "";
+	int is_made = 0;
+	SynsetPtr s = read_synset(pos, synset, none);
+
+	if (!s)
+		return 0;
+	for (int i = 0; i < s->wcount; i++)
+		is_made |= !strcmp(s->words[i], "artifact");
+	if (steps >= 0 && is_gloss && s->defn)
+		add_text(to, s->defn, worth);
+	for (int i = 0; i < s->wcount && steps >= 0 && !is_gloss; i++)
+		add(to, s->words[i], strlen(s->words[i]), worth);
+	for (int i = 0; i < s->ptrcount && (is_gloss || steps > 0) && steps > -12; i++)
+		if (s->ptrtyp[i] == HYPERPTR && s->ppos[i] == pos)
+			is_made |= climb(to, s->ptroff[i], pos, is_gloss, steps - 1, worth * per_step);
+	free_synset(s);
+	return is_made;
+}
+
+void uses_of_thing(struct uses *to, const char *lemma)
+{
+	char word[128];
+
+	to->n = 0;
+	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
+		return;
+	strcpy(word, lemma);
+	IndexPtr index = index_lookup(word, NOUN);
+	for (int i = 0; index && i < index->off_cnt && i < SENSES; i++) {
+		struct uses own = *to;
+		if (climb(&own, (long)index->offset[i], NOUN, 1, STEPS_OF_THING, pow(per_sense, i)))
+			*to = own;
+	}
+	if (index)
+		free_index(index);
+}
+
+void uses_of_word(struct uses *to, const char *lemma)
+{
+	static const int pos[] = {NOUN, VERB};
+	char word[128];
+
+	to->n = 0;
+	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
+		return;
+	strcpy(word, lemma);
+	add(to, word, strlen(word), 1);
+	for (int k = 0; k < 2 && to->n; k++) {
+		IndexPtr index = index_lookup(word, pos[k]);
+		for (int i = 0; index && i < index->off_cnt && i < 3; i++)
+			climb(to, (long)index->offset[i], pos[k], 0, pos[k] == VERB ? 1 : STEPS_OF_WORD,
+				pow(per_sense, i));
+		if (index)
+			free_index(index);
+	}
+}
+#else
+void uses_of_thing(struct uses *to, const char *lemma)
+{
+	(void)lemma;
+	to->n = 0;
+}
+
+void uses_of_word(struct uses *to, const char *lemma)
+{
+	(void)lemma;
+	to->n = 0;
+}
+#endif
