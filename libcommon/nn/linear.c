@@ -8,7 +8,7 @@ enum {
 	ROWS = 384, /* of a that share one packing of b, unless that leaves too few parts for the threads */
 	ROWS_LEAST = 48,
 	PARTS_A_THREAD = 4,
-	SMALL = 1 << 17 /* below this many terms a parallel loop costs more than it saves */
+	SMALL = 1 << 20 /* below this many terms a parallel loop costs more than it saves */
 };
 
 static const float zeros[LINEAR_TILE_COLUMNS];
