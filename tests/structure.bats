@@ -61,7 +61,7 @@ not() { ! "$@"; }
 @test "the rooms of libcommon include only base, and the rooms below them" {
 	# What each room may include besides itself.
 	declare -A below=([base]= [cli]=base [geom]=base [mask]=base [nn]=base [splat]='base|geom'
-		[lang]='base|nn' [ask]='base|geom|lang|refer|splat' [refer]='ask|base|geom|lang|mask|nn|splat' [synth]='base|geom|lang|mask|splat')
+		[lang]='base|nn' [ask]='base|geom|lang|refer|splat' [field]="base|mask|nn|splat" [refer]="ask|base|field|geom|lang|mask|nn|splat" [synth]='base|geom|lang|mask|splat')
 	for dir in libcommon/*/; do
 		room=$(basename "$dir")
 		[ -n "${below[$room]+set}" ] || { echo "unknown room: $room"; return 1; }

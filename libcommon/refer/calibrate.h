@@ -6,8 +6,8 @@
 #define REFER_CALIBRATE_H
 
 #include "base/err.h"
+#include "field/rows.h"
 #include "geom/camera.h"
-#include "refer/rows.h"
 #include "splat/splats.h"
 
 #include <stdint.h>

@@ -4,8 +4,8 @@
 #define REFER_DETAIL_H
 
 #include "base/err.h"
+#include "field/octree.h"
 #include "geom/camera.h"
-#include "refer/octree.h"
 #include "refer/train.h"
 
 #include <stddef.h>

@@ -3,8 +3,8 @@
 #define REFER_RESPOND_H
 
 #include "base/err.h"
-#include "refer/model.h"
-#include "refer/rows.h"
+#include "field/referring_model.h"
+#include "field/rows.h"
 
 #include <stddef.h>
 #include <stdint.h>

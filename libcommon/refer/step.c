@@ -1,9 +1,9 @@
 #include "refer/step.h"
 
 #include "base/mem.h"
-#include "refer/fold.h"
-#include "refer/images.h"
-#include "refer/words.h"
+#include "field/fold.h"
+#include "field/image_loss.h"
+#include "field/text_mlp.h"
 
 #include <math.h>
 #include <omp.h>
@@ -38,7 +38,7 @@ enum part {
 
 struct step {
 	struct step_setup setup;
-	struct words words;
+	struct text_mlp words;
 	size_t *chosen; /* (R) sentences of the step: its targets' first, or all in order */
 	size_t chosen_count;
 	int *chosen_objects; /* (R) */
@@ -53,7 +53,7 @@ struct step {
 	float *slab;   /* all per-Gaussian arrays but x and dx */
 	float *position;
 	float *response, *top; /* (padded) one sentence's channel */
-	struct images images;
+	struct image_loss images;
 	float *vectors, *dvectors; /* (n,128) */
 	double *fg, *dfg, *score;  /* (S,128), (S,128), (R) */
 	struct block_sums sums[CHUNKS];
@@ -232,7 +232,7 @@ static int alloc_arrays(struct step *s, struct err *e)
 	s->position = mem_alloc(s->padded, 3 * sizeof(float), "positions", e);
 	s->response = mem_zalloc(s->padded, 2 * sizeof(float), "responses", e);
 	if (!s->slab || !s->position || !s->response ||
-		images_init(&s->images, u->pixels, s->padded, u->batch, s->threads, e))
+		image_loss_init(&s->images, u->pixels, s->padded, u->batch, s->threads, e))
 		return -1;
 	s->top = s->response + s->padded;
 	float *at = s->slab;
@@ -291,7 +291,7 @@ struct step *step_new(const struct step_setup *setup, struct err *e)
 	s->max_words = longest * setup->batch;
 	s->threads = omp_get_max_threads();
 	if (alloc_arrays(s, e) || alloc_sums(s, e) ||
-		words_init(&s->words, setup->layout, setup->sentences, setup->offsets, setup->words, e) ||
+		text_mlp_init(&s->words, setup->layout, setup->sentences, setup->offsets, setup->words, e) ||
 		!(s->fold = fold_new(setup->layout, setup->similarity, longest, setup->batch, e))) {
 		step_free(s);
 		return NULL;
@@ -303,7 +303,7 @@ void step_free(struct step *s)
 {
 	if (!s)
 		return;
-	words_free(&s->words);
+	text_mlp_free(&s->words);
 	fold_free(s->fold);
 	free(s->first);
 	free(s->places);
@@ -313,7 +313,7 @@ void step_free(struct step *s)
 	free(s->slab);
 	free(s->position);
 	free(s->response);
-	images_free(&s->images);
+	image_loss_free(&s->images);
 	free(s->vectors);
 	free(s->fg);
 	free(s->chunks);
@@ -354,7 +354,7 @@ static void forward(struct step *s, const float *parameters, const float *x, int
 	s->first[0] = 0;
 	for (int i = 0; i < count; i++) {
 		const int64_t *at = s->words.at + s->places[i];
-		words_vectors(&s->words, parameters, s->places[i], s->vectors + s->first[i] * REFER_D);
+		text_mlp_vectors(&s->words, parameters, s->places[i], s->vectors + s->first[i] * REFER_D);
 		s->first[i + 1] = s->first[i] + (int)(at[1] - at[0]);
 	}
 	fold_begin(s->fold, parameters, s->setup.gaussians, s->first, count, b);
@@ -396,7 +396,7 @@ static double image_losses(
 	memset(s->arrays.dm + whole * channels, 0, sizeof(float) * (s->padded - whole) * channels);
 	for (int i = 0; i < count; i++)
 		masks[i] = targets[i].mask;
-	return images_loss(&s->images, view, s->arrays.m, count, masks, s->arrays.dm);
+	return image_loss_run(&s->images, view, s->arrays.m, count, masks, s->arrays.dm);
 }
 
 /* How often each chosen sentence of another object counts, to stand for all of them. */
@@ -470,11 +470,11 @@ static void backward(struct step *s, const float *parameters, int count, float *
 	}
 	fold_end(s->fold, s->total + s->at[DY], s->total + s->at[DP_GRAM], gradient, s->dvectors);
 	phase_ended(s, STEP_FOLD);
-	words_back_begin(&s->words, parameters, gradient, has_contrast);
+	text_mlp_back_begin(&s->words, parameters, gradient, has_contrast);
 	for (int i = 0; i < count; i++)
-		words_back_vectors(
+		text_mlp_back_vectors(
 			&s->words, parameters, gradient, s->places[i], s->dvectors + s->first[i] * REFER_D);
-	words_back_end(&s->words, parameters, gradient);
+	text_mlp_back_end(&s->words, parameters, gradient);
 	phase_ended(s, STEP_WORDS);
 }
 
@@ -508,7 +508,7 @@ static void choose_sentences(struct step *s, const struct step_target *targets, 
 	}
 	for (size_t k = 0; is_contrasted && others && k < others->count; k++)
 		choose(s, others->list[k]);
-	words_choose(&s->words, s->chosen, s->chosen_count);
+	text_mlp_choose(&s->words, s->chosen, s->chosen_count);
 }
 
 struct step_losses step_run(struct step *s, const float *parameters, const float *x,
@@ -520,9 +520,9 @@ struct step_losses step_run(struct step *s, const float *parameters, const float
 
 	memset(gradient, 0, sizeof *gradient * s->setup.layout->count);
 	choose_sentences(s, targets, count, has_contrast, others);
-	words_hidden(&s->words, parameters);
+	text_mlp_hidden(&s->words, parameters);
 	if (has_contrast)
-		words_embed(&s->words, parameters);
+		text_mlp_embed(&s->words, parameters);
 	phase_ended(s, STEP_WORDS);
 	forward(s, parameters, x, count);
 	losses.bce = image_losses(s, view, targets, count);
@@ -541,8 +541,8 @@ struct step_losses step_run(struct step *s, const float *parameters, const float
 void step_respond(struct step *s, const float *parameters, const float *x, size_t sentence, float *m)
 {
 	s->places[0] = 0;
-	words_choose(&s->words, &sentence, 1);
-	words_hidden(&s->words, parameters);
+	text_mlp_choose(&s->words, &sentence, 1);
+	text_mlp_hidden(&s->words, parameters);
 	forward(s, parameters, x, 1);
 	channel_get(s->arrays.m, s->padded, 1, 0, s->response);
 	memcpy(m, s->response, sizeof *m * s->setup.gaussians);

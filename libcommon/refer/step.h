@@ -5,9 +5,9 @@
 #define REFER_STEP_H
 
 #include "base/err.h"
-#include "refer/block.h"
-#include "refer/contrast.h"
-#include "refer/model.h"
+#include "field/block.h"
+#include "field/contrast.h"
+#include "field/referring_model.h"
 #include "splat/view_weights.h"
 
 #include <stdint.h>
@@ -53,7 +53,7 @@ enum step_phase {
  * phase's. */
 void step_watch(struct step *s, void (*ended)(void *data, enum step_phase phase), void *data);
 
-/* Referring features are kept in panels (refer/block.h): N padded to step_padded(N), d_r channels (`width`
+/* Referring features are kept in panels (field/block.h): N padded to step_padded(N), d_r channels (`width`
  * below). */
 size_t step_padded(size_t gaussians);
 void step_pack(const float *x, size_t gaussians, int width, float *panels); /* (N,d_r) row-major to panels */

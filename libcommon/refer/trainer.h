@@ -4,10 +4,10 @@
 #define REFER_TRAINER_H
 
 #include "base/err.h"
+#include "field/octree.h"
+#include "field/rows.h"
 #include "geom/camera.h"
 #include "refer/held.h"
-#include "refer/octree.h"
-#include "refer/rows.h"
 #include "refer/train.h"
 #include "refer/warm.h"
 

@@ -8,8 +8,8 @@
 #define REFER_WARM_H
 
 #include "base/err.h"
+#include "field/rows.h"
 #include "refer/lifted.h"
-#include "refer/rows.h"
 #include "refer/train.h"
 
 /* What is fitted. */

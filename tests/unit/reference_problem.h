@@ -3,7 +3,7 @@
 #ifndef REFERENCE_PROBLEM_H
 #define REFERENCE_PROBLEM_H
 
-#include "refer/reference.h"
+#include "field/reference.h"
 
 struct reference_options {
 	size_t n;

@@ -4,9 +4,9 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
+#include "field/octree.h"
+#include "field/rows.h"
 #include "refer/detail.h"
-#include "refer/octree.h"
-#include "refer/rows.h"
 
 enum { N = 3000, K = OCTREE_SIGNATURE };
 

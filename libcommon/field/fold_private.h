@@ -1,8 +1,8 @@
 /* What fold.c (forward) and fold_back.c (backward) share. */
-#ifndef REFER_FOLD_PRIVATE_H
-#define REFER_FOLD_PRIVATE_H
+#ifndef FIELD_FOLD_PRIVATE_H
+#define FIELD_FOLD_PRIVATE_H
 
-#include "refer/fold.h"
+#include "field/fold.h"
 
 enum { D = REFER_D, H = REFER_H, G = BLOCK_G };
 

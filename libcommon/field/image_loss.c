@@ -1,25 +1,25 @@
-#include "refer/images.h"
+#include "field/image_loss.h"
 
 #include "base/mem.h"
+#include "field/block.h"
 #include "mask/bits.h"
 #include "nn/loss.h"
-#include "refer/block.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { PART = 2048 }; /* pixels whose weights stay in cache from blending to blending back */
 
-int images_init(struct images *s, size_t pixels, size_t rows, int most, int threads, struct err *e)
+int image_loss_init(struct image_loss *s, size_t pixels, size_t rows, int most, int threads, struct err *e)
 {
 	const size_t group = most < VIEW_GROUP ? (size_t)most : VIEW_GROUP;
 	const size_t width = most > 1 ? VIEW_GROUP : 1;
 
-	*s = (struct images){.pixels = pixels, .rows = rows, .threads = threads};
+	*s = (struct image_loss){.pixels = pixels, .rows = rows, .threads = threads};
 	s->image = mem_zalloc(pixels, 2 * group * sizeof(float), "images", e);
 	s->slabs = mem_zalloc(rows, (VIEW_SLABS + 2) * width * sizeof(float), "responses", e);
 	if (!s->image || !s->slabs) {
-		images_free(s);
+		image_loss_free(s);
 		return -1;
 	}
 	s->dimage = s->image + group * pixels;
@@ -28,16 +28,16 @@ int images_init(struct images *s, size_t pixels, size_t rows, int most, int thre
 	return 0;
 }
 
-void images_free(struct images *s)
+void image_loss_free(struct image_loss *s)
 {
 	free(s->image);
 	free(s->slabs);
-	*s = (struct images){0};
+	*s = (struct image_loss){0};
 }
 
 /* Pixels [from,to) of one response's loss, and of dimage. */
 static double part_loss(
-	struct images *s, size_t pixels, size_t from, size_t to, int k, const uint8_t *mask, double share)
+	struct image_loss *s, size_t pixels, size_t from, size_t to, int k, const uint8_t *mask, double share)
 {
 	const double of_all = (double)(to - from) / (double)pixels;
 	uint8_t wanted[PART];
@@ -48,7 +48,7 @@ static double part_loss(
 }
 
 /* `count` responses m (rows,VIEW_GROUP), or one (rows) where it is alone; dm alike. */
-static double group_loss(struct images *s, const struct view_weights *view, const float *m, int count,
+static double group_loss(struct image_loss *s, const struct view_weights *view, const float *m, int count,
 	int is_alone, const uint8_t *const *masks, double share, float *dm)
 {
 	const size_t pixels = view->pixels, floats = view->gaussians * (is_alone ? 1 : VIEW_GROUP);
@@ -86,7 +86,7 @@ static size_t panel_index(size_t row, int channels, int c)
 	       row % BLOCK_LANES;
 }
 
-double images_loss(struct images *s, const struct view_weights *view, const float *m, int count,
+double image_loss_run(struct image_loss *s, const struct view_weights *view, const float *m, int count,
 	const uint8_t *const *masks, float *dm)
 {
 	const size_t rows = view->gaussians;

@@ -1,4 +1,4 @@
-#include "refer/octree.h"
+#include "field/octree.h"
 
 #include "base/mem.h"
 

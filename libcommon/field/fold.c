@@ -1,4 +1,4 @@
-#include "refer/fold_private.h"
+#include "field/fold_private.h"
 
 #include "base/mem.h"
 

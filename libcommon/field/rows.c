@@ -1,4 +1,4 @@
-#include "refer/rows.h"
+#include "field/rows.h"
 
 #include "base/mem.h"
 

@@ -1,4 +1,4 @@
-#include "refer/model.h"
+#include "field/referring_model.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* The contrast loss (GTCL): the mean feature of the Gaussians that answer most against the sentences of the
- * scene (refer/model.h has the formula). In float64: it is small. */
-#ifndef REFER_CONTRAST_H
-#define REFER_CONTRAST_H
+ * scene (field/referring_model.h has the formula). In float64: it is small. */
+#ifndef FIELD_CONTRAST_H
+#define FIELD_CONTRAST_H
 
-#include "refer/model.h"
+#include "field/referring_model.h"
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
-/* Products on panels of Gaussians (refer/block.h): W x, and the sums of outer products that give the
+/* Products on panels of Gaussians (field/block.h): W x, and the sums of outer products that give the
  * gradients of W. Included by block_forward.h, for each instruction set. */
-#include "refer/block.h"
+#include "field/block.h"
 
 #include "base/vecmath.h"
 

@@ -1,10 +1,10 @@
 /* Rows: which referring feature serves each Gaussian of a scene. A row is of one Gaussian, or of all those in
  * a leaf of an octree that learn. */
-#ifndef REFER_ROWS_H
-#define REFER_ROWS_H
+#ifndef FIELD_ROWS_H
+#define FIELD_ROWS_H
 
 #include "base/err.h"
-#include "refer/octree.h"
+#include "field/octree.h"
 #include "splat/view_weights.h"
 
 #include <stddef.h>

@@ -1,6 +1,6 @@
-/* The kernels of refer/block.h, included by one file for each instruction set, which names itself BLOCK_ISA
+/* The kernels of field/block.h, included by one file for each instruction set, which names itself BLOCK_ISA
  * and selects its target before (see base/vecmath.h). */
-#include "refer/block_back.h"
+#include "field/block_back.h"
 
 #define PASTE(a, b) a##_##b
 #define EXPAND(a, b) PASTE(a, b)

@@ -6,12 +6,12 @@
  *   f = [A a] g, nu p = [B b] r, f' = C z with C = [A a | B b (add) | V_1 .. V_n] (its rows centred for
  * LayerNorm). Order of calls in a step: fold_begin, fold_words, (hidden), fold_scores, (respond, gather),
  * fold_top, fold_top_back, (scores_back), fold_scores_back, (hidden_back), fold_end. */
-#ifndef REFER_FOLD_H
-#define REFER_FOLD_H
+#ifndef FIELD_FOLD_H
+#define FIELD_FOLD_H
 
 #include "base/err.h"
-#include "refer/block.h"
-#include "refer/model.h"
+#include "field/block.h"
+#include "field/referring_model.h"
 
 struct fold;
 

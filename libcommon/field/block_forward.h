@@ -1,5 +1,5 @@
-/* The forward kernels of refer/block.h, and what both directions use. Included by block_kernel.h. */
-#include "refer/block_product.h"
+/* The forward kernels of field/block.h, and what both directions use. Included by block_kernel.h. */
+#include "field/block_product.h"
 
 #include <math.h>
 #include <string.h>

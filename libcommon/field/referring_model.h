@@ -1,7 +1,7 @@
 /* clang-format off */
 /* The referring model (ReferSplat, ICML 2025; design section 4): what is learned, and how it is laid out.
  *
- * N Gaussians, or rows that Gaussians share (refer/rows.h), a sentence of n words, D = 128. [W;b](x) is a
+ * N Gaussians, or rows that Gaussians share (field/rows.h), a sentence of n words, D = 128. [W;b](x) is a
  * linear layer W x + b with W (out,in) row-major.
  *   w_j  = MLP_t(BERT word j)      D_text-512-256-128, ReLU between layers
  *   e    = mean_j w_j              sentence embedding
@@ -33,8 +33,8 @@
  *        index first), k = max(1, floor(tau N)), tau = max(0.005, 0.1 * 0.6^(iteration/1000)); the choice
  *        itself has no gradient. */
 /* clang-format on */
-#ifndef REFER_MODEL_H
-#define REFER_MODEL_H
+#ifndef FIELD_REFERRING_MODEL_H
+#define FIELD_REFERRING_MODEL_H
 
 #include "base/err.h"
 #include "base/rng.h"

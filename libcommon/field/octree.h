@@ -1,8 +1,8 @@
 /* An octree over the scene whose leaves share a referring feature: Gaussians that no view can tell apart need
  * only one. A leaf is named by its location code: a leading 1, then three bits a level from the root down
  * (bit 0: the upper half in x, bit 1: in y, bit 2: in z). */
-#ifndef REFER_OCTREE_H
-#define REFER_OCTREE_H
+#ifndef FIELD_OCTREE_H
+#define FIELD_OCTREE_H
 
 #include "base/err.h"
 

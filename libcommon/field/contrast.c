@@ -1,4 +1,4 @@
-#include "refer/contrast.h"
+#include "field/contrast.h"
 
 #include <math.h>
 #include <stdint.h>

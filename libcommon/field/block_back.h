@@ -1,5 +1,5 @@
-/* The backward kernels of refer/block.h. Included by block_kernel.h. */
-#include "refer/block_forward.h"
+/* The backward kernels of field/block.h. Included by block_kernel.h. */
+#include "field/block_forward.h"
 
 /* dz = dm k + top dmean for the alphas of a sentence where m = k.z, in `dalpha`. */
 static void plain_dalpha(

@@ -1,16 +1,16 @@
 /* MLP_t over the words of the sentences of a step, with the mean of a sentence taken before the last, linear
  * layer (exact: e = mean_j (W h_j + b) = W mean_j h_j + b). */
-#ifndef REFER_WORDS_H
-#define REFER_WORDS_H
+#ifndef FIELD_TEXT_MLP_H
+#define FIELD_TEXT_MLP_H
 
 #include "base/err.h"
-#include "refer/model.h"
+#include "field/referring_model.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
 /* Arrays are over the chosen sentences, k of them with n words together. */
-struct words {
+struct text_mlp {
 	const struct refer_layout *layout;
 	size_t sentences;	/* R */
 	const int64_t *offsets; /* (R+1), from 0 */
@@ -27,30 +27,30 @@ struct words {
 
 /* Refers to offsets and input, which must outlive it. A sentence without words has the embedding of h2 = 0.
  */
-int words_init(struct words *w, const struct refer_layout *l, size_t sentences, const int64_t *offsets,
+int text_mlp_init(struct text_mlp *w, const struct refer_layout *l, size_t sentences, const int64_t *offsets,
 	const float *input, struct err *e);
-void words_free(struct words *w);
+void text_mlp_free(struct text_mlp *w);
 
 /* Which sentences the step has: `list` (count) of different ones. What follows goes by their place in it. */
-void words_choose(struct words *w, const size_t *list, size_t count);
+void text_mlp_choose(struct text_mlp *w, const size_t *list, size_t count);
 
 /* Hidden layers. */
-void words_hidden(struct words *w, const float *parameters);
+void text_mlp_hidden(struct text_mlp *w, const float *parameters);
 
-/* w_j of one sentence after words_hidden: (its words,128). */
-void words_vectors(const struct words *w, const float *parameters, size_t place, float *out);
+/* w_j of one sentence after text_mlp_hidden: (its words,128). */
+void text_mlp_vectors(const struct text_mlp *w, const float *parameters, size_t place, float *out);
 
-/* Embeddings after words_hidden: in w->e. */
-void words_embed(struct words *w, const float *parameters);
+/* Embeddings after text_mlp_hidden: in w->e. */
+void text_mlp_embed(struct text_mlp *w, const float *parameters);
 
 /* Starts the backward pass: hidden gradients zero, or through w->de where has_embeddings. */
-void words_back_begin(struct words *w, const float *parameters, float *gradient, int has_embeddings);
+void text_mlp_back_begin(struct text_mlp *w, const float *parameters, float *gradient, int has_embeddings);
 
 /* Adds a sentence's dw (its words,128). */
-void words_back_vectors(
-	struct words *w, const float *parameters, float *gradient, size_t place, const float *dw);
+void text_mlp_back_vectors(
+	struct text_mlp *w, const float *parameters, float *gradient, size_t place, const float *dw);
 
 /* Finishes: gradients of the first two layers are added. */
-void words_back_end(struct words *w, const float *parameters, float *gradient);
+void text_mlp_back_end(struct text_mlp *w, const float *parameters, float *gradient);
 
 #endif

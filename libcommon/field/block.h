@@ -1,6 +1,6 @@
 /* The training step's per-Gaussian work, on blocks of Gaussians small enough to stay in cache (design section
  * 4, "what is constant"). No 128-vector per Gaussian exists: the last layers of MLP_f and MLP_p and
- * everything that follows them are folded into small matrices over the last hidden layers (refer/fold.h).
+ * everything that follows them are folded into small matrices over the last hidden layers (field/fold.h).
  *
  * With h_i, q_i in R^64 the last hidden layers, and nu_i = 1 (1/|p_i| for pcmi-proj), the kernels see
  *   g_i = [h_i; 1]   and   r_i = nu_i [q_i; 1]          (65 each)
@@ -13,10 +13,10 @@
  * Arrays over Gaussians are stored in panels of 64: channel c of Gaussian i is at
  * array[(i / 64) * channels * 64 + c * 64 + i % 64]. N is padded to whole blocks; padding Gaussians take no
  * part. */
-#ifndef REFER_BLOCK_H
-#define REFER_BLOCK_H
+#ifndef FIELD_BLOCK_H
+#define FIELD_BLOCK_H
 
-#include "refer/model.h"
+#include "field/referring_model.h"
 
 #include <stddef.h>
 

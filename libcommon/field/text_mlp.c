@@ -1,4 +1,4 @@
-#include "refer/words.h"
+#include "field/text_mlp.h"
 
 #include "base/mem.h"
 #include "nn/linear.h"
@@ -6,18 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-int words_init(struct words *w, const struct refer_layout *l, size_t sentences, const int64_t *offsets,
+int text_mlp_init(struct text_mlp *w, const struct refer_layout *l, size_t sentences, const int64_t *offsets,
 	const float *input, struct err *e)
 {
 	const size_t rows = (size_t)offsets[sentences];
 
-	*w = (struct words){.layout = l, .sentences = sentences, .offsets = offsets, .input = input};
+	*w = (struct text_mlp){.layout = l, .sentences = sentences, .offsets = offsets, .input = input};
 	w->h1 = mem_alloc(rows, 2 * sizeof(float) * (REFER_T1 + REFER_T2), "words", e);
 	w->mean = mem_zalloc(sentences, 2 * sizeof(float) * (REFER_T2 + REFER_D), "words", e);
 	w->copied = mem_alloc(rows, (size_t)l->text_width * sizeof *w->copied, "words", e);
 	w->at = mem_zalloc(sentences + 1, sizeof *w->at, "words", e);
 	if (!w->h1 || !w->mean || !w->copied || !w->at) {
-		words_free(w);
+		text_mlp_free(w);
 		return -1;
 	}
 	w->h2 = w->h1 + rows * REFER_T1;
@@ -29,21 +29,21 @@ int words_init(struct words *w, const struct refer_layout *l, size_t sentences, 
 	return 0;
 }
 
-void words_free(struct words *w)
+void text_mlp_free(struct text_mlp *w)
 {
 	free(w->h1);
 	free(w->mean);
 	free(w->copied);
 	free(w->at);
-	*w = (struct words){0};
+	*w = (struct text_mlp){0};
 }
 
-static const float *tensor_of(const struct words *w, const float *parameters, enum refer_tensor t)
+static const float *tensor_of(const struct text_mlp *w, const float *parameters, enum refer_tensor t)
 {
 	return parameters + w->layout->tensors[t].offset;
 }
 
-static float *gradient_of(const struct words *w, float *gradient, enum refer_tensor t)
+static float *gradient_of(const struct text_mlp *w, float *gradient, enum refer_tensor t)
 {
 	return gradient + w->layout->tensors[t].offset;
 }
@@ -62,7 +62,7 @@ static void relu_back(float *d, const float *value, size_t count)
 		d[i] = value[i] > 0 ? d[i] : 0;
 }
 
-void words_choose(struct words *w, const size_t *list, size_t count)
+void text_mlp_choose(struct text_mlp *w, const size_t *list, size_t count)
 {
 	const size_t width = (size_t)w->layout->text_width;
 	int is_all = count == w->sentences;
@@ -78,7 +78,7 @@ void words_choose(struct words *w, const size_t *list, size_t count)
 			(size_t)(w->at[k + 1] - w->at[k]) * width * sizeof *w->copied);
 }
 
-void words_hidden(struct words *w, const float *p)
+void text_mlp_hidden(struct text_mlp *w, const float *p)
 {
 	const size_t rows = (size_t)w->at[w->count], width = (size_t)w->layout->text_width;
 
@@ -90,7 +90,7 @@ void words_hidden(struct words *w, const float *p)
 	relu(w->h2, rows * REFER_T2);
 }
 
-void words_vectors(const struct words *w, const float *p, size_t place, float *out)
+void text_mlp_vectors(const struct text_mlp *w, const float *p, size_t place, float *out)
 {
 	const size_t first = (size_t)w->at[place], rows = (size_t)w->at[place + 1] - first;
 
@@ -98,7 +98,7 @@ void words_vectors(const struct words *w, const float *p, size_t place, float *o
 		tensor_of(w, p, TEXT_2_BIAS), rows, REFER_T2, REFER_D);
 }
 
-void words_embed(struct words *w, const float *p)
+void text_mlp_embed(struct text_mlp *w, const float *p)
 {
 	for (size_t s = 0; s < w->count; s++) {
 		const int64_t from = w->at[s], to = w->at[s + 1];
@@ -114,7 +114,7 @@ void words_embed(struct words *w, const float *p)
 		REFER_T2, REFER_D);
 }
 
-void words_back_begin(struct words *w, const float *p, float *gradient, int has_embeddings)
+void text_mlp_back_begin(struct text_mlp *w, const float *p, float *gradient, int has_embeddings)
 {
 	if (!has_embeddings) {
 		memset(w->dh2, 0, sizeof(float) * (size_t)w->at[w->count] * REFER_T2);
@@ -130,11 +130,11 @@ void words_back_begin(struct words *w, const float *p, float *gradient, int has_
 					w->dmean[s * REFER_T2 + (size_t)c] / (float)(w->at[s + 1] - w->at[s]);
 }
 
-void words_back_vectors(struct words *w, const float *p, float *gradient, size_t place, const float *dw)
+void text_mlp_back_vectors(struct text_mlp *w, const float *p, float *gradient, size_t place, const float *dw)
 {
 	const size_t first = (size_t)w->at[place], rows = (size_t)w->at[place + 1] - first;
 	float *dh2 = w->dh2 + first * REFER_T2;
-	float *din = w->dh1 + first * REFER_T1; /* free until words_back_end; wide enough */
+	float *din = w->dh1 + first * REFER_T1; /* free until text_mlp_back_end; wide enough */
 
 	linear_backward(din, gradient_of(w, gradient, TEXT_2_WEIGHT), gradient_of(w, gradient, TEXT_2_BIAS),
 		dw, w->h2 + first * REFER_T2, tensor_of(w, p, TEXT_2_WEIGHT), rows, REFER_T2, REFER_D);
@@ -142,7 +142,7 @@ void words_back_vectors(struct words *w, const float *p, float *gradient, size_t
 		dh2[i] += din[i];
 }
 
-void words_back_end(struct words *w, const float *p, float *gradient)
+void text_mlp_back_end(struct text_mlp *w, const float *p, float *gradient)
 {
 	const size_t rows = (size_t)w->at[w->count], width = (size_t)w->layout->text_width;
 

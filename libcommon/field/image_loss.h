@@ -1,6 +1,6 @@
 /* Images of responses in one view, their loss against masks, and the gradient of the responses. */
-#ifndef REFER_IMAGES_H
-#define REFER_IMAGES_H
+#ifndef FIELD_IMAGE_LOSS_H
+#define FIELD_IMAGE_LOSS_H
 
 #include "base/err.h"
 #include "splat/view_weights.h"
@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 /* Buffers for views of at most so many pixels and rows, and for so many responses at a time. */
-struct images {
+struct image_loss {
 	size_t pixels, rows;
 	int threads;
 	float *image, *dimage; /* (group,pixels) */
@@ -17,13 +17,13 @@ struct images {
 	float *slabs;	       /* (VIEW_SLABS,rows,group) */
 };
 
-int images_init(struct images *s, size_t pixels, size_t rows, int most, int threads, struct err *e);
-void images_free(struct images *s);
+int image_loss_init(struct image_loss *s, size_t pixels, size_t rows, int most, int threads, struct err *e);
+void image_loss_free(struct image_loss *s);
 
 /* The mean over `count` responses of the binary cross-entropy of their images against masks (bits, one for
- * each response), and dm, its gradient. m and dm are panels of `count` channels (refer/block.h). Passes over
+ * each response), and dm, its gradient. m and dm are panels of `count` channels (field/block.h). Passes over
  * the view's weights serve VIEW_GROUP responses each. */
-double images_loss(struct images *s, const struct view_weights *view, const float *m, int count,
+double image_loss_run(struct image_loss *s, const struct view_weights *view, const float *m, int count,
 	const uint8_t *const *masks, float *dm);
 
 #endif

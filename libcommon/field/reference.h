@@ -1,13 +1,14 @@
-/* The referring model as it is written in refer/model.h: float64, every 128-vector made, nothing folded, one
- * thread. It is what the fast paths are compared with, and is meant to be read next to that header.
+/* The referring model as it is written in field/referring_model.h: float64, every 128-vector made, nothing
+ * folded, one thread. It is what the fast paths are compared with, and is meant to be read next to that
+ * header.
  *
  * Shapes below: N Gaussians, R sentences, W words of all sentences together, n words of the target sentence,
  * P pixels, D = REFER_D. All arrays are row-major. */
-#ifndef REFER_REFERENCE_H
-#define REFER_REFERENCE_H
+#ifndef FIELD_REFERENCE_H
+#define FIELD_REFERENCE_H
 
 #include "base/err.h"
-#include "refer/model.h"
+#include "field/referring_model.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -42,8 +43,8 @@ struct refer_problem {
 	double tau;	    /* in [0,1], share of the Gaussians in f_g: k = max(1, floor(tau N)) */
 };
 
-/* Everything the forward pass computes, under the names of refer/model.h; the backward pass reads it. Arrays
- * that the interaction does not have are zero. Hidden layers are after their ReLU. Released with
+/* Everything the forward pass computes, under the names of field/referring_model.h; the backward pass reads
+ * it. Arrays that the interaction does not have are zero. Hidden layers are after their ReLU. Released with
  * reference_free. */
 struct refer_result {
 	double *text_hidden0, *text_hidden1, *w;	 /* (W,512) (W,256) (W,D) */

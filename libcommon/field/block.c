@@ -1,4 +1,4 @@
-#include "refer/block.h"
+#include "field/block.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "refer/reference.h"
+#include "field/reference.h"
 
 #include "base/mem.h"
 
