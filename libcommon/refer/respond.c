@@ -1,8 +1,8 @@
 #include "refer/respond.h"
 
 #include "base/mem.h"
-#include "refer/step.h"
-#include "refer/train.h"
+#include "train/step.h"
+#include "train/train.h"
 
 #include <math.h>
 #include <stdlib.h>

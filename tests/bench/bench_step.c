@@ -9,8 +9,8 @@
 #include "cli/cli.h"
 #include "mask/bits.h"
 #include "peak.h"
-#include "refer/step.h"
-#include "refer/train.h"
+#include "train/step.h"
+#include "train/train.h"
 
 #include <omp.h>
 #include <math.h>

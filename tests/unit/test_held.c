@@ -4,7 +4,7 @@
 #include "base/mem.h"
 #include "base/rng.h"
 #include "mask/bits.h"
-#include "refer/held.h"
+#include "train/held_out.h"
 
 #include <omp.h>
 
@@ -93,7 +93,7 @@ static void test_choose(void)
 		char name[32];
 		snprintf(name, sizeof name, "share %g", cases[c].share);
 		sample_init(&s);
-		CHECK(!held_choose(s.views, VIEWS, s.objects, SENTENCES, cases[c].share, 1, &e), "%s",
+		CHECK(!held_out_choose(s.views, VIEWS, s.objects, SENTENCES, cases[c].share, 1, &e), "%s",
 			e.message);
 		const int held = count_held(&s, name);
 		CHECK(held == cases[c].held, "%s: %d pairs", name, held);
@@ -101,15 +101,15 @@ static void test_choose(void)
 	sample_init(&s);
 	sample_init(&again);
 	sample_init(&other);
-	CHECK(!held_choose(s.views, VIEWS, s.objects, SENTENCES, 0.3, 1, &e) &&
-			!held_choose(again.views, VIEWS, s.objects, SENTENCES, 0.3, 1, &e) &&
-			!held_choose(other.views, VIEWS, s.objects, SENTENCES, 0.3, 2, &e),
+	CHECK(!held_out_choose(s.views, VIEWS, s.objects, SENTENCES, 0.3, 1, &e) &&
+			!held_out_choose(again.views, VIEWS, s.objects, SENTENCES, 0.3, 1, &e) &&
+			!held_out_choose(other.views, VIEWS, s.objects, SENTENCES, 0.3, 2, &e),
 		"%s", e.message);
 	CHECK(!memcmp(s.sentences, again.sentences, sizeof s.sentences), "not the same twice");
 	CHECK(memcmp(s.sentences, other.sentences, sizeof s.sentences), "seed 2 is as seed 1");
 	sample_init(&s);
 	s.views[0].count = 1;
-	CHECK(held_choose(s.views, 1, s.objects, SENTENCES, 0.5, 1, &e) && e.code == ERR_FORMAT &&
+	CHECK(held_out_choose(s.views, 1, s.objects, SENTENCES, 0.5, 1, &e) && e.code == ERR_FORMAT &&
 			!strcmp(e.message, "one pair of a view and an object, none to hold out"),
 		"%s", e.message);
 }
@@ -118,12 +118,12 @@ static void test_evaluate(void)
 {
 	static struct sample s;
 	struct refer_layout layout;
-	struct held h;
+	struct held_out h;
 	struct err e;
 	struct rng rng;
 	float position[ROWS * 3], words[SENTENCES * WORDS * WIDTH], m[ROWS];
 	int64_t offsets[SENTENCES + 1];
-	struct held_score expected = {0}, got[3];
+	struct held_out_score expected = {0}, got[3];
 	int pairs = 0;
 
 	sample_init(&s);
@@ -151,13 +151,13 @@ static void test_evaluate(void)
 		.objects = s.objects,
 		.pixels = PIXELS,
 		.batch = 1};
-	CHECK(!held_choose(s.views, VIEWS, s.objects, SENTENCES, 0.4, 1, &e), "%s", e.message);
+	CHECK(!held_out_choose(s.views, VIEWS, s.objects, SENTENCES, 0.4, 1, &e), "%s", e.message);
 	for (int threads = 1; threads <= 3; threads++) {
 		omp_set_num_threads(threads);
 		struct step *step = step_new(&setup, &e);
-		CHECK(step && !held_init(&h, s.views, VIEWS, s.objects, SENTENCES, ROWS, &e), "%s",
+		CHECK(step && !held_out_init(&h, s.views, VIEWS, s.objects, SENTENCES, ROWS, &e), "%s",
 			e.message);
-		got[threads - 1] = held_evaluate(&h, step, parameters, x);
+		got[threads - 1] = held_out_evaluate(&h, step, parameters, x);
 		for (int v = 0; v < VIEWS && threads == 1; v++)
 			for (int k = s.views[v].count; k < s.views[v].count + s.views[v].held; k++) {
 				const int r = s.views[v].sentences[k];
@@ -176,7 +176,7 @@ static void test_evaluate(void)
 				expected.iou += both / either;
 				pairs++;
 			}
-		held_free(&h);
+		held_out_free(&h);
 		step_free(step);
 	}
 	CHECK(pairs > 10, "%d pairs", pairs);

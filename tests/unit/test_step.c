@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 #include "mask/bits.h"
-#include "refer/step.h"
+#include "train/step.h"
 
 #include <omp.h>
 #include <sys/resource.h>

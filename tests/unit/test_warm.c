@@ -7,8 +7,8 @@
 #include "base/mem.h"
 #include "base/rng.h"
 #include "mask/bits.h"
-#include "refer/step.h"
-#include "refer/warm.h"
+#include "train/step.h"
+#include "train/warm_start.h"
 
 enum { N = 200, ROWS = 100, OBJECTS = 3, SENTENCES = 5 };
 
@@ -23,7 +23,7 @@ struct scene {
 	double weight[N + 2];
 	char *names[OBJECTS];
 	const char *sentences[SENTENCES];
-	struct warm_source source;
+	struct warm_start_source source;
 };
 
 static void scene_init(struct scene *s)
@@ -58,7 +58,7 @@ static void scene_init(struct scene *s)
 		.indptr = s->indptr,
 		.index = s->index,
 		.share = s->share};
-	s->source = (struct warm_source){&s->lifted, &s->rows, s->weight, SENTENCES, s->sentences};
+	s->source = (struct warm_start_source){&s->lifted, &s->rows, s->weight, SENTENCES, s->sentences};
 }
 
 /* Matched objects are in the order in which sentences name them. */
@@ -67,12 +67,12 @@ static const int lifted_of[OBJECTS] = {1, 2, 0};
 static void test_view(void)
 {
 	static struct scene s;
-	struct warm w;
+	struct warm_start w;
 	struct err e;
 	int wrong = 0, times[ROWS] = {0};
 
 	scene_init(&s);
-	if (!CHECK(!warm_init(&w, &s.source, 0, 1, &e), "%s", e.message))
+	if (!CHECK(!warm_start_init(&w, &s.source, 0, 1, &e), "%s", e.message))
 		return;
 	CHECK(w.objects == OBJECTS, "%zu objects", w.objects);
 	for (int k = 0; k < OBJECTS; k++)
@@ -107,23 +107,24 @@ static void test_view(void)
 			wrong += mask[p] != (w.share[own * ROWS + v->index[p]] > 0.5f);
 	}
 	CHECK(!wrong, "%d masks are wrong", wrong);
-	warm_free(&w);
+	warm_start_free(&w);
 }
 
 static void test_features(void)
 {
 	static struct scene s;
-	struct warm w;
+	struct warm_start w;
 	struct err e;
 
 	scene_init(&s);
-	if (!CHECK(!warm_init(&w, &s.source, 0, 1, &e), "%s", e.message))
+	if (!CHECK(!warm_start_init(&w, &s.source, 0, 1, &e), "%s", e.message))
 		return;
 	for (int width = 1; width <= 16; width += 15) {
 		float x[ROWS * 16], again[ROWS * 16], other[ROWS * 16];
 		double longest = 0, off = 0;
-		CHECK(!warm_features(&w, width, 1, x, &e) && !warm_features(&w, width, 1, again, &e) &&
-				!warm_features(&w, width, 2, other, &e),
+		CHECK(!warm_start_features(&w, width, 1, x, &e) &&
+				!warm_start_features(&w, width, 1, again, &e) &&
+				!warm_start_features(&w, width, 2, other, &e),
 			"%s", e.message);
 		CHECK(!memcmp(x, again, sizeof *x * ROWS * (size_t)width), "not the same twice");
 		CHECK(width == 1 || memcmp(x, other, sizeof *x * ROWS * (size_t)width),
@@ -140,7 +141,7 @@ static void test_features(void)
 		for (int c = 0; c < width; c++)
 			CHECK(x[70 * width + c] == 0, "a row of nothing");
 	}
-	warm_free(&w);
+	warm_start_free(&w);
 }
 
 static void to_floats(const double *from, size_t count, float *to)
@@ -167,7 +168,7 @@ static void test_step(void)
 	struct reference_options o = reference_defaults(5, REFER_PCMI, REFER_DOT, REFER_CONTRAST_COSINE);
 	struct reference_sample sample;
 	struct refer_result result;
-	struct warm w;
+	struct warm_start w;
 	struct err e;
 
 	scene_init(&s);
@@ -175,7 +176,7 @@ static void test_step(void)
 	o.pixels = ROWS + 1;
 	o.sentences = SENTENCES;
 	reference_sample_init(&sample, &o);
-	if (!CHECK(!warm_init(&w, &s.source, 0, 1, &e), "%s", e.message))
+	if (!CHECK(!warm_start_init(&w, &s.source, 0, 1, &e), "%s", e.message))
 		return;
 	struct refer_problem p = sample.problem;
 	const size_t features = ROWS * (size_t)o.feature_width, parameters = sample.layout.count;
@@ -205,7 +206,7 @@ static void test_step(void)
 	to_floats(p.words, words, vectors);
 	step_pack(x, ROWS, o.feature_width, panels);
 	const struct step_setup setup = {&sample.layout, p.similarity, p.contrast, p.temperature, p.lambda,
-		ROWS, position, SENTENCES, offsets, vectors, p.objects, ROWS + 1, WARM_BATCH, NULL};
+		ROWS, position, SENTENCES, offsets, vectors, p.objects, ROWS + 1, WARM_START_BATCH, NULL};
 	struct step *step = step_new(&setup, &e);
 	const struct step_target target = {p.target, w.view.masks[2]};
 	CHECK(step && !reference_forward(&p, &result, &e) &&
@@ -224,7 +225,7 @@ static void test_step(void)
 	step_free(step);
 	reference_free(&result);
 	reference_sample_free(&sample);
-	warm_free(&w);
+	warm_start_free(&w);
 	free(floats);
 	free(dx);
 }

@@ -1,8 +1,8 @@
 /* One training step of the referring model, folded and in float32 (design section 4): responses of the step's
  * sentences, images of a view, both losses and every gradient. Results do not depend on the number of
  * threads. */
-#ifndef REFER_STEP_H
-#define REFER_STEP_H
+#ifndef TRAIN_STEP_H
+#define TRAIN_STEP_H
 
 #include "base/err.h"
 #include "field/block.h"

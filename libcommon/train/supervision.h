@@ -1,10 +1,10 @@
 /* Supervision: which mask teaches which sentence in which view. */
-#ifndef REFER_SUPERVISION_H
-#define REFER_SUPERVISION_H
+#ifndef TRAIN_SUPERVISION_H
+#define TRAIN_SUPERVISION_H
 
 #include "base/err.h"
 #include "mask/rle.h"
-#include "refer/train.h"
+#include "train/train.h"
 
 #include <stddef.h>
 #include <stdint.h>

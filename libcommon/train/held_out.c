@@ -1,4 +1,4 @@
-#include "refer/held.h"
+#include "train/held_out.h"
 
 #include "base/mem.h"
 #include "base/rng.h"
@@ -69,7 +69,7 @@ static int draw(char *is_held, size_t n, size_t count, uint64_t seed, struct err
 	return 0;
 }
 
-int held_choose(struct train_view *views, size_t view_count, const int *objects, size_t sentences,
+int held_out_choose(struct train_view *views, size_t view_count, const int *objects, size_t sentences,
 	double share, uint64_t seed, struct err *e)
 {
 	uint32_t *seen = mem_alloc(sentences, sizeof *seen, "held-out pairs", e);
@@ -97,7 +97,7 @@ int held_choose(struct train_view *views, size_t view_count, const int *objects,
 
 /* The sentences with held-out masks, by object, so that those of one object, which are held out in the same
  * views, are blended together. */
-static void make_order(struct held *h, const int *objects, size_t sentences, char *is_held)
+static void make_order(struct held_out *h, const int *objects, size_t sentences, char *is_held)
 {
 	for (size_t v = 0; v < h->view_count; v++) {
 		const struct train_view *view = &h->views[v];
@@ -114,12 +114,12 @@ static void make_order(struct held *h, const int *objects, size_t sentences, cha
 			}
 }
 
-int held_init(struct held *h, const struct train_view *views, size_t view_count, const int *objects,
+int held_out_init(struct held_out *h, const struct train_view *views, size_t view_count, const int *objects,
 	size_t sentences, size_t rows, struct err *e)
 {
 	char *is_held = mem_zalloc(sentences, 1, "held-out pairs", e);
 
-	*h = (struct held){
+	*h = (struct held_out){
 		.views = views, .view_count = view_count, .rows = rows, .threads = omp_get_max_threads()};
 	h->order = mem_alloc(sentences, sizeof *h->order, "held-out pairs", e);
 	if (is_held && h->order) {
@@ -132,24 +132,24 @@ int held_init(struct held *h, const struct train_view *views, size_t view_count,
 	}
 	free(is_held);
 	if (!h->response || !h->images || !h->masks || !h->scores) {
-		held_free(h);
+		held_out_free(h);
 		return -1;
 	}
 	h->grouped = h->response + rows;
 	return 0;
 }
 
-void held_free(struct held *h)
+void held_out_free(struct held_out *h)
 {
 	free(h->order);
 	free(h->response);
 	free(h->images);
 	free(h->masks);
 	free(h->scores);
-	*h = (struct held){0};
+	*h = (struct held_out){0};
 }
 
-static struct held_score score_image(const float *image, const uint8_t *mask, size_t pixels)
+static struct held_out_score score_image(const float *image, const uint8_t *mask, size_t pixels)
 {
 	size_t both = 0, either = 0;
 
@@ -157,18 +157,18 @@ static struct held_score score_image(const float *image, const uint8_t *mask, si
 		both += mask[p] && image[p] > 0;
 		either += mask[p] || image[p] > 0;
 	}
-	return (struct held_score){
+	return (struct held_out_score){
 		loss_bce(image, mask, pixels, 1, NULL), either ? (double)both / (double)either : 1};
 }
 
 /* The held-out pairs of one view with `count` sentences, whose responses are in grouped. */
-static struct held_score score_view(
-	const struct held *h, const struct train_view *v, const size_t *sentences, int count)
+static struct held_out_score score_view(
+	const struct held_out *h, const struct train_view *v, const size_t *sentences, int count)
 {
 	const size_t thread = (size_t)omp_get_thread_num(), pixels = v->weights.pixels;
 	float *image = h->images + thread * VIEW_GROUP * h->pixels;
 	uint8_t *mask = h->masks + thread * h->pixels;
-	struct held_score sum = {0};
+	struct held_out_score sum = {0};
 	int is_blended = 0;
 
 	for (int g = 0; g < count; g++)
@@ -180,7 +180,7 @@ static struct held_score score_view(
 					&v->weights, h->grouped, VIEW_GROUP, 0, pixels, image, h->pixels);
 			is_blended = 1;
 			bits_expand(v->masks[k], 0, pixels, mask);
-			const struct held_score one =
+			const struct held_out_score one =
 				score_image(image + (size_t)g * h->pixels, mask, pixels);
 			sum.bce += one.bce;
 			sum.iou += one.iou;
@@ -188,9 +188,10 @@ static struct held_score score_view(
 	return sum;
 }
 
-struct held_score held_evaluate(struct held *h, struct step *s, const float *parameters, const float *x)
+struct held_out_score held_out_evaluate(
+	struct held_out *h, struct step *s, const float *parameters, const float *x)
 {
-	struct held_score all = {0};
+	struct held_out_score all = {0};
 
 	memset(h->grouped, 0, sizeof(float) * VIEW_GROUP * h->rows);
 	for (size_t first = 0; first < h->count; first += VIEW_GROUP) {

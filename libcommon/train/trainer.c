@@ -1,7 +1,7 @@
-#include "refer/trainer.h"
+#include "train/trainer.h"
 
 #include "base/mem.h"
-#include "refer/detail.h"
+#include "train/octree_input.h"
 
 #include <stdlib.h>
 
@@ -13,10 +13,11 @@ static int build_octree(struct trainer *t, const struct trainer_source *from, co
 	float *finest = mem_alloc(n, sizeof *finest, "octree", e);
 	float *signature = mem_alloc(n, k * sizeof *signature, "octree", e);
 	int bad = !finest || !signature ||
-		  detail_signatures(from->views, from->view_count, from->objects, n, weight, signature, e);
+		  octree_input_signatures(
+			  from->views, from->view_count, from->objects, n, weight, signature, e);
 
 	if (!bad) {
-		detail_footprints(from->means, n, from->cameras, from->view_count, finest);
+		octree_input_footprints(from->means, n, from->cameras, from->view_count, finest);
 		const struct octree_points points = {
 			t->learning, from->means, t->ids, finest, weight, signature};
 		bad = octree_build(&t->octree, &points, o->share * (double)from->view_count, e);
@@ -75,14 +76,15 @@ static int make_rows(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
 	double *weight = mem_alloc(from->scene_gaussians, sizeof *weight, "weight", e);
-	const struct warm_source source = {
+	const struct warm_start_source source = {
 		from->lifted, &t->rows, weight, from->sentences, from->object_names};
 
 	if (!weight)
 		return -1;
 	train_weights(from->views, from->view_count, from->scene_gaussians, weight);
 	int bad = choose_rows(t, from, o, weight, e) ||
-		  (t->warm_steps && warm_init(&t->warm, &source, (size_t)o->negatives, (uint64_t)o->seed, e));
+		  (t->warm_steps &&
+			  warm_start_init(&t->warm, &source, (size_t)o->negatives, (uint64_t)o->seed, e));
 	free(weight);
 	return bad ? -1 : 0;
 }
@@ -93,7 +95,7 @@ static int init_features(struct trainer *t, uint64_t seed, struct err *e)
 	const int width = t->layout.feature_width;
 	float *x = mem_alloc(t->rows.n, (size_t)width * sizeof *x, "features", e);
 
-	if (!x || warm_features(&t->warm, width, seed, x, e)) {
+	if (!x || warm_start_features(&t->warm, width, seed, x, e)) {
 		free(x);
 		return -1;
 	}
@@ -119,7 +121,7 @@ static int init_step(
 		.words = from->words,
 		.objects = from->objects,
 		.pixels = pixels > from->pixels ? pixels : from->pixels,
-		.batch = t->warm_steps && batch < WARM_BATCH ? WARM_BATCH : batch};
+		.batch = t->warm_steps && batch < WARM_START_BATCH ? WARM_START_BATCH : batch};
 	t->step = step_new(&setup, e);
 	return t->step ? 0 : -1;
 }
@@ -136,8 +138,8 @@ static int init(
 		(t->warm_steps && init_features(t, seed, e)))
 		return -1;
 	t->order.begin = t->warm_steps;
-	return o->hold_out > 0 ? held_init(&t->held, t->views, t->view_count, from->objects, from->sentences,
-					 t->rows.n, e)
+	return o->hold_out > 0 ? held_out_init(&t->held, t->views, t->view_count, from->objects,
+					 from->sentences, t->rows.n, e)
 			       : 0;
 }
 
@@ -160,8 +162,8 @@ void trainer_free(struct trainer *t)
 	step_free(t->step);
 	train_order_free(&t->order);
 	train_state_free(&t->state);
-	warm_free(&t->warm);
-	held_free(&t->held);
+	warm_start_free(&t->warm);
+	held_out_free(&t->held);
 	octree_free(&t->octree);
 	rows_free(&t->rows);
 	free(t->ids);
@@ -193,17 +195,17 @@ float *trainer_features(const struct trainer *t, const float *values, struct err
 
 struct step_losses trainer_step(struct trainer *t)
 {
-	const struct train_rates rates = {t->rates.features, WARM_MLP_RATE * t->rates.mlps};
+	const struct train_rates rates = {t->rates.features, WARM_START_MLP_RATE * t->rates.mlps};
 
 	if (t->state.iteration < t->warm_steps)
 		return train_step(&t->state, t->step, &t->warm.order, &rates, t->rows.n);
 	return train_step(&t->state, t->step, &t->order, &t->rates, t->rows.n);
 }
 
-struct held_score trainer_evaluate(struct trainer *t)
+struct held_out_score trainer_evaluate(struct trainer *t)
 {
-	const struct held_score score =
-		held_evaluate(&t->held, t->step, t->state.values, train_state_x(&t->state));
+	const struct held_out_score score =
+		held_out_evaluate(&t->held, t->step, t->state.values, train_state_x(&t->state));
 
 	train_evaluated(&t->state, score.iou);
 	return score;

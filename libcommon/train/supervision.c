@@ -1,4 +1,4 @@
-#include "refer/supervision.h"
+#include "train/supervision.h"
 
 #include "base/mem.h"
 #include "mask/bits.h"

@@ -1,4 +1,4 @@
-#include "refer/step.h"
+#include "train/step.h"
 
 #include "base/mem.h"
 #include "field/fold.h"

@@ -1,10 +1,10 @@
 /* Whether a training has diverged, as it does where its rates are too high: a loss or a parameter that is not
  * finite, or losses that stay far above those of a model that says nothing. */
-#ifndef REFER_DIVERGENCE_H
-#define REFER_DIVERGENCE_H
+#ifndef TRAIN_DIVERGENCE_H
+#define TRAIN_DIVERGENCE_H
 
 #include "base/err.h"
-#include "refer/train.h"
+#include "train/train.h"
 
 enum {
 	DIVERGENCE_WINDOW = 100, /* steps over which the cross-entropy is averaged; train_state.sum's */

@@ -1,7 +1,7 @@
 /* The limit is absolute, so that nothing but train_state.sum needs to be kept in a checkpoint: none is
  * written while a window is bad, and a training that goes on from one counts as one that was never cut off.
  */
-#include "refer/divergence.h"
+#include "train/divergence.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "refer/warm.h"
+#include "train/warm_start.h"
 
 #include "base/mem.h"
 #include "base/names.h"
@@ -20,7 +20,8 @@ static const double length = 8;
 
 /* numbers (sentences): sentence r is of the matched object numbers[r], or -1; lifted (matched): its number
  * among the lifted. */
-static int match(struct warm *w, const struct warm_source *from, long *numbers, size_t *lifted, struct err *e)
+static int match(struct warm_start *w, const struct warm_start_source *from, long *numbers, size_t *lifted,
+	struct err *e)
 {
 	const size_t objects = from->lifted->objects;
 	size_t *number =
@@ -49,7 +50,7 @@ static int match(struct warm *w, const struct warm_source *from, long *numbers, 
 
 /* share (rows) of an object; sum (rows). */
 static void find_shares(
-	const struct warm_source *from, size_t object, const double *all, double *sum, float *share)
+	const struct warm_start_source *from, size_t object, const double *all, double *sum, float *share)
 {
 	const struct rows *rows = from->rows;
 	const struct lifted *l = from->lifted;
@@ -64,7 +65,8 @@ static void find_shares(
 		share[r] = all[r] > 0 ? (float)(sum[r] / all[r]) : 0;
 }
 
-static int make_shares(struct warm *w, const struct warm_source *from, const size_t *lifted, struct err *e)
+static int make_shares(
+	struct warm_start *w, const struct warm_start_source *from, const size_t *lifted, struct err *e)
 {
 	const struct rows *rows = from->rows;
 	double *all = mem_zalloc(rows->n, 2 * sizeof *all, "shares", e);
@@ -101,7 +103,7 @@ static size_t copies(size_t count, size_t rows)
 }
 
 /* Every row, and the rows of small objects again. */
-static int make_pixels(struct warm *w, size_t rows, struct err *e)
+static int make_pixels(struct warm_start *w, size_t rows, struct err *e)
 {
 	size_t pixels = rows, p = rows;
 
@@ -132,8 +134,8 @@ static int make_pixels(struct warm *w, size_t rows, struct err *e)
 	return 0;
 }
 
-static int make_masks(
-	struct warm *w, const struct warm_source *from, size_t rows, const long *numbers, struct err *e)
+static int make_masks(struct warm_start *w, const struct warm_start_source *from, size_t rows,
+	const long *numbers, struct err *e)
 {
 	const size_t pixels = w->view.weights.pixels, bytes = bits_bytes(pixels);
 	uint8_t *mask = mem_alloc(pixels, 1, "warm start", e);
@@ -159,25 +161,26 @@ static int make_masks(
 	return 0;
 }
 
-int warm_init(struct warm *w, const struct warm_source *from, size_t negatives, uint64_t seed, struct err *e)
+int warm_start_init(struct warm_start *w, const struct warm_start_source *from, size_t negatives,
+	uint64_t seed, struct err *e)
 {
 	const size_t rows = from->rows->n;
 	long *numbers = mem_alloc(from->sentences, sizeof *numbers, "warm start", e);
 	size_t *lifted = mem_alloc(from->sentences, sizeof *lifted, "warm start", e);
 	int bad = !numbers || !lifted;
 
-	*w = (struct warm){0};
+	*w = (struct warm_start){0};
 	bad = bad || match(w, from, numbers, lifted, e) || make_shares(w, from, lifted, e) ||
 	      make_pixels(w, rows, e) || make_masks(w, from, rows, numbers, e) ||
-	      train_order_init(&w->order, &w->view, 1, WARM_BATCH, from->sentences, negatives, seed, e);
+	      train_order_init(&w->order, &w->view, 1, WARM_START_BATCH, from->sentences, negatives, seed, e);
 	free(numbers);
 	free(lifted);
 	if (bad)
-		warm_free(w);
+		warm_start_free(w);
 	return bad ? -1 : 0;
 }
 
-void warm_free(struct warm *w)
+void warm_start_free(struct warm_start *w)
 {
 	free(w->share);
 	free(w->indptr);
@@ -187,7 +190,7 @@ void warm_free(struct warm *w)
 	free(w->view.sentences);
 	free(w->view.masks);
 	train_order_free(&w->order);
-	*w = (struct warm){0};
+	*w = (struct warm_start){0};
 }
 
 static double dot(const double *a, const double *b, int width)
@@ -214,7 +217,7 @@ static void draw_direction(struct rng *r, int width, const double *before, int c
 		direction[c] /= size;
 }
 
-int warm_features(const struct warm *w, int width, uint64_t seed, float *x, struct err *e)
+int warm_start_features(const struct warm_start *w, int width, uint64_t seed, float *x, struct err *e)
 {
 	const size_t rows = w->view.weights.gaussians;
 	double *directions = mem_alloc((size_t)width, (size_t)width * sizeof *directions, "features", e);

@@ -4,16 +4,16 @@
  * half. That is one weight a pixel where an image of a scene has dozens. The features begin with a direction
  * for each object, so that the networks, which learn slowly, have something to tell apart from the first
  * step. */
-#ifndef REFER_WARM_H
-#define REFER_WARM_H
+#ifndef TRAIN_WARM_START_H
+#define TRAIN_WARM_START_H
 
 #include "base/err.h"
 #include "field/rows.h"
 #include "refer/lifted.h"
-#include "refer/train.h"
+#include "train/train.h"
 
 /* What is fitted. */
-struct warm_source {
+struct warm_start_source {
 	const struct lifted *lifted; /* of the rows' scene */
 	const struct rows *rows;
 	const double *weight; /* (gaussians) how much each counts in its row */
@@ -21,7 +21,7 @@ struct warm_source {
 	const char *const *names; /* (sentences) of their objects */
 };
 
-struct warm {
+struct warm_start {
 	size_t objects;		/* that were lifted and have sentences */
 	float *share;		/* (objects, rows) the mean over each row's Gaussians, by weight */
 	struct train_view view; /* W = 1; pixels of small objects several times */
@@ -34,16 +34,17 @@ struct warm {
 };
 
 enum {
-	WARM_BATCH = 4,	    /* sentences in a step */
-	WARM_MLP_RATE = 10, /* times the usual rate of the networks: what they fit is free of noise */
+	WARM_START_BATCH = 4,	  /* sentences in a step */
+	WARM_START_MLP_RATE = 10, /* times the usual rate of the networks: what they fit is free of noise */
 };
 
 /* The view, and the order of its sentences. Those whose object was not lifted have no mask. */
-int warm_init(struct warm *w, const struct warm_source *from, size_t negatives, uint64_t seed, struct err *e);
-void warm_free(struct warm *w);
+int warm_start_init(struct warm_start *w, const struct warm_start_source *from, size_t negatives,
+	uint64_t seed, struct err *e);
+void warm_start_free(struct warm_start *w);
 
 /* x (rows, width): the sum over objects of their share times a direction of the object's, random but at right
  * angles, as far as the width has room. */
-int warm_features(const struct warm *w, int width, uint64_t seed, float *x, struct err *e);
+int warm_start_features(const struct warm_start *w, int width, uint64_t seed, float *x, struct err *e);
 
 #endif

@@ -1,4 +1,4 @@
-#include "refer/train.h"
+#include "train/train.h"
 
 #include "base/mem.h"
 #include "base/rng.h"

@@ -1,10 +1,10 @@
 /* Training: what is learned from, the order in which it is seen, and the state that a checkpoint holds. */
-#ifndef REFER_TRAIN_H
-#define REFER_TRAIN_H
+#ifndef TRAIN_TRAIN_H
+#define TRAIN_TRAIN_H
 
 #include "base/err.h"
-#include "refer/step.h"
 #include "splat/view_weights.h"
+#include "train/step.h"
 
 #include <stdint.h>
 
@@ -14,7 +14,7 @@ struct train_view {
 	int count;
 	int *sentences;	       /* (count + held) indices of sentences */
 	const uint8_t **masks; /* (count + held) of weights.pixels each, as bits (mask/bits.h) */
-	int held;	       /* further sentences and masks that are not learned from (refer/held.h) */
+	int held;	       /* further sentences and masks that are not learned from (train/held_out.h) */
 };
 
 /* weight (scene_gaussians): each Gaussian's weight over all views. */

@@ -1,4 +1,4 @@
-#include "refer/detail.h"
+#include "train/octree_input.h"
 
 #include "base/mem.h"
 #include "base/rng.h"
@@ -10,7 +10,7 @@
 
 enum { K = OCTREE_SIGNATURE, STREAM_SIGNATURE = 3 };
 
-void detail_footprints(
+void octree_input_footprints(
 	const float *means, size_t n, const struct camera *cameras, size_t count, float *footprint)
 {
 #pragma omp parallel for schedule(static)
@@ -66,7 +66,7 @@ static void sum_masks(const struct train_view *v, const int *objects, float *at)
 	}
 }
 
-int detail_signatures(const struct train_view *views, size_t view_count, const int *objects,
+int octree_input_signatures(const struct train_view *views, size_t view_count, const int *objects,
 	size_t scene_gaussians, const double *weight, float *signature, struct err *e)
 {
 	size_t pixels = 0;

@@ -1,15 +1,15 @@
 /* A training in progress: the Gaussians that learn, the step over them, the order of the views and the state.
  */
-#ifndef REFER_TRAINER_H
-#define REFER_TRAINER_H
+#ifndef TRAIN_TRAINER_H
+#define TRAIN_TRAINER_H
 
 #include "base/err.h"
 #include "field/octree.h"
 #include "field/rows.h"
 #include "geom/camera.h"
-#include "refer/held.h"
-#include "refer/train.h"
-#include "refer/warm.h"
+#include "train/held_out.h"
+#include "train/train.h"
+#include "train/warm_start.h"
 
 struct trainer_options {
 	enum refer_interaction interaction;
@@ -68,8 +68,8 @@ struct trainer {
 	struct train_order order;
 	struct train_state state;
 	long warm_steps; /* the first of all */
-	struct warm warm;
-	struct held held;
+	struct warm_start warm;
+	struct held_out held;
 };
 
 /* ERR_FORMAT, without a file name, where no Gaussian has weight. */
@@ -90,7 +90,7 @@ struct step_losses trainer_step(struct trainer *t);
 enum { TRAINER_EVALUATE = 250 }; /* steps from one evaluation to the next */
 
 /* Scores the held-out masks, and keeps the state where it is the best so far. */
-struct held_score trainer_evaluate(struct trainer *t);
+struct held_out_score trainer_evaluate(struct trainer *t);
 
 /* What is learned, as it is or, where masks are held out, as it was when they were answered best: the slab
  * (train_state's values), and the steps that it had. */
