@@ -7,8 +7,8 @@
 #include "formats/parser_weights.h"
 #include "formats/scene.h"
 #include "formats/text.h"
+#include "lift/lifted_model.h"
 #include "refer/asked.h"
-#include "refer/lifted.h"
 
 struct anymodel {
 	int is_lifted;

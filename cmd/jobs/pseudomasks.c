@@ -41,14 +41,14 @@ static int lift_source(struct pseudomasks *w, size_t source, struct err *e)
 	if (weights_open(&weights, w->options->weights, &w->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
-	int bad = carry_lift(&w->carry, source, &blend, weights.height, weights.width, e);
+	int bad = propagate_lift(&w->carry, source, &blend, weights.height, weights.width, e);
 	weights_close(&weights);
 	return bad;
 }
 
 static int lift_carried(struct pseudomasks *w, struct err *e)
 {
-	int bad = carry_init(&w->carry, &w->pool, w->views, &w->scene.cameras, e);
+	int bad = propagate_init(&w->carry, &w->pool, w->views, &w->scene.cameras, e);
 
 	for (size_t s = 0; s < w->carry.source_count && !bad; s++)
 		bad = lift_source(w, s, e);
@@ -84,7 +84,7 @@ static int render(struct pseudomasks *w, size_t view, const struct weights *weig
 			scores, &w->rendered, e);
 	for (size_t i = 0; i < w->carry.count; i++)
 		scores[i] = w->carry.masks[i].score;
-	return carry_render(&w->carry, view, &blend, weights->height, weights->width, masks, e);
+	return propagate_render(&w->carry, view, &blend, weights->height, weights->width, masks, e);
 }
 
 /* Writes all masks of a view but empty ones. */
@@ -175,7 +175,7 @@ int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *op
 
 void pseudomasks_free(struct pseudomasks *w)
 {
-	carry_free(&w->carry);
+	propagate_free(&w->carry);
 	regions_free(&w->regions);
 	free(w->views);
 	scene_free(&w->scene);

@@ -6,7 +6,7 @@
 #include "ask/choose.h"
 #include "base/err.h"
 #include "geom/camera.h"
-#include "refer/lifted.h"
+#include "lift/lifted_model.h"
 #include "refer/respond.h"
 #include "splat/splats.h"
 

@@ -3,8 +3,8 @@
 #define REFER_LOCATE_H
 
 #include "base/err.h"
+#include "lift/extent.h"
 #include "refer/asked.h"
-#include "refer/extent.h"
 #include "splat/splats.h"
 
 struct located {

@@ -6,7 +6,7 @@
 #include "base/err.h"
 #include "geom/camera.h"
 #include "lang/parser.h"
-#include "refer/lifted.h"
+#include "lift/lifted_model.h"
 #include "splat/splats.h"
 
 /* Gives each object the Gaussians that its training sentences mean: of all ways to share them out, the one

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
-#include "splat/lift.h"
+#include "splat/backproject.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -74,7 +74,8 @@ int octree_input_signatures(const struct train_view *views, size_t view_count, c
 	for (size_t v = 0; v < view_count; v++)
 		pixels = views[v].weights.pixels > pixels ? views[v].weights.pixels : pixels;
 	float *at = mem_alloc(pixels, K * sizeof *at, "signatures", e);
-	float *sum = mem_zalloc(scene_gaussians, lift_groups(K) * VIEW_GROUP * sizeof *sum, "signatures", e);
+	float *sum = mem_zalloc(
+		scene_gaussians, backproject_groups(K) * VIEW_GROUP * sizeof *sum, "signatures", e);
 	if (!at || !sum) {
 		free(at);
 		free(sum);
@@ -82,12 +83,13 @@ int octree_input_signatures(const struct train_view *views, size_t view_count, c
 	}
 	for (size_t v = 0; v < view_count; v++) {
 		sum_masks(&views[v], objects, at);
-		lift_add(&views[v].weights, at, K, sum);
+		backproject_add(&views[v].weights, at, K, sum);
 	}
 	for (size_t i = 0; i < scene_gaussians; i++)
 		for (size_t k = 0; k < K; k++)
-			signature[i * K + k] =
-				weight[i] > 0 ? sum[lift_index(scene_gaussians, k, i)] / (float)weight[i] : 0;
+			signature[i * K + k] = weight[i] > 0 ? sum[backproject_index(scene_gaussians, k, i)] /
+								       (float)weight[i]
+							     : 0;
 	free(at);
 	free(sum);
 	return 0;

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/rng.h"
 #include "nn/adam.h"
-#include "splat/lift.h"
+#include "splat/backproject.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +23,7 @@ void train_weights(const struct train_view *views, size_t view_count, size_t sce
 {
 	memset(weight, 0, sizeof *weight * scene_gaussians);
 	for (size_t v = 0; v < view_count; v++)
-		lift_weight(&views[v].weights, weight);
+		backproject_weight(&views[v].weights, weight);
 }
 
 int train_active_set(const double *weight, size_t scene_gaussians, double tolerance, int32_t *ids, size_t *n,

@@ -9,7 +9,7 @@
 
 #include "base/err.h"
 #include "field/rows.h"
-#include "refer/lifted.h"
+#include "lift/lifted_model.h"
 #include "train/train.h"
 
 /* What is fitted. */

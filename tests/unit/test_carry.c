@@ -1,7 +1,7 @@
 /* Pooling candidates, and masks carried from where they begin to other views, against the definition in plain
  * float64. */
+#include "lift/propagate.h"
 #include "mask_help.h"
-#include "refer/carry.h"
 #include "unit.h"
 
 #include <omp.h>
@@ -65,8 +65,8 @@ static int naive_pixel(const struct scene *s, int from, const uint8_t *mask, int
 	return yes > known / 2 && known >= all / 2;
 }
 
-static void check_view(
-	const struct scene *s, const struct carry *c, uint8_t *const *pixels, int view, int *in, int *out)
+static void check_view(const struct scene *s, const struct propagation *c, uint8_t *const *pixels, int view,
+	int *in, int *out)
 {
 	struct rle masks[2][OBJECTS];
 	uint8_t got[P];
@@ -74,8 +74,8 @@ static void check_view(
 
 	for (int threads = 1; threads <= 2; threads++) {
 		omp_set_num_threads(threads);
-		CHECK(!carry_render(c, (size_t)view, &s->weights[view], H, W, masks[threads - 1], &e), "%s",
-			e.message);
+		CHECK(!propagate_render(c, (size_t)view, &s->weights[view], H, W, masks[threads - 1], &e),
+			"%s", e.message);
 	}
 	for (size_t k = 0; k < c->count; k++) {
 		const struct rle *m = &masks[0][k], *other = &masks[1][k];
@@ -109,7 +109,7 @@ static void test_carry(void)
 	uint8_t *pixels[MOST];
 	size_t views[MOST], n = 0, count = 0;
 	int in = 0, out = 0;
-	struct carry c;
+	struct propagation c;
 	struct pool pool;
 	struct rng r;
 	struct err e;
@@ -130,7 +130,7 @@ static void test_carry(void)
 		}
 	CHECK(!pool_make(&pool, records, n, &e) && !pool_select(&pool, SELECT_TOP1, 0.3, &e), "%s",
 		e.message);
-	CHECK(!carry_init(&c, &pool, views, &s.cameras, &e), "%s", e.message);
+	CHECK(!propagate_init(&c, &pool, views, &s.cameras, &e), "%s", e.message);
 	CHECK(c.count == OBJECTS - 1 && c.source_count == 2, "%zu in %zu views", c.count, c.source_count);
 	for (int o = 0; o < OBJECTS; o++) {
 		if (o == 3)
@@ -140,11 +140,11 @@ static void test_carry(void)
 		count++;
 	}
 	for (size_t i = 0; i < c.source_count; i++)
-		CHECK(!carry_lift(&c, i, &s.weights[c.sources[i].view], H, W, &e), "%s", e.message);
+		CHECK(!propagate_lift(&c, i, &s.weights[c.sources[i].view], H, W, &e), "%s", e.message);
 	for (int v = 0; v < VIEWS; v++)
 		check_view(&s, &c, pixels, v, &in, &out);
 	CHECK(in > P && out > P, "%d pixels in masks, %d not", in, out);
-	carry_free(&c);
+	propagate_free(&c);
 	pool_free(&pool);
 	for (size_t i = 0; i < n; i++) {
 		rle_free(&masks[i]);

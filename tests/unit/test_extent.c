@@ -3,7 +3,7 @@
 
 #include "base/rng.h"
 #include "geom/rotation.h"
-#include "refer/extent.h"
+#include "lift/extent.h"
 #include "refer/locate.h"
 #include "synth/boxes.h"
 

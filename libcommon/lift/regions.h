@@ -20,8 +20,8 @@
  *    none agrees nearly as well as they do in its other views, the region itself is rendered (lift.h).
  *
  * All of it is the same to the bit for any number of threads. */
-#ifndef REFER_REGIONS_H
-#define REFER_REGIONS_H
+#ifndef LIFT_REGIONS_H
+#define LIFT_REGIONS_H
 
 #include "base/err.h"
 #include "mask/pool.h"

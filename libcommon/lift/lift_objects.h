@@ -17,12 +17,12 @@
  * Views come one at a time, each once in each round:
  *     for each of LIFT_ROUNDS rounds { lift_objects_view for each view; lift_objects_settle; }
  * Results are the same to the bit for any number of threads, not for another order of views. */
-#ifndef REFER_LIFT_OBJECTS_H
-#define REFER_LIFT_OBJECTS_H
+#ifndef LIFT_LIFT_OBJECTS_H
+#define LIFT_LIFT_OBJECTS_H
 
 #include "base/err.h"
+#include "lift/lifted_model.h"
 #include "mask/rle.h"
-#include "refer/lifted.h"
 #include "splat/view_weights.h"
 
 #include <stddef.h>
@@ -37,7 +37,7 @@ struct lift_mask {
 struct lift_objects {
 	size_t gaussians, objects;
 	int round;
-	float *sum;    /* a field of splat/lift.h: sum of votes times weights inside the masks */
+	float *sum;    /* a field of splat/backproject.h: sum of votes times weights inside the masks */
 	float *weight; /* (O,N) sum of votes times weights */
 	float *share;  /* a field: what the round before made of them */
 	double *level; /* (O) what the inside of an object has */

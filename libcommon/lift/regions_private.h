@@ -1,8 +1,8 @@
-/* What the parts of refer/regions share. */
-#ifndef REFER_REGIONS_PRIVATE_H
-#define REFER_REGIONS_PRIVATE_H
+/* What the parts of lift/regions share. */
+#ifndef LIFT_REGIONS_PRIVATE_H
+#define LIFT_REGIONS_PRIVATE_H
 
-#include "refer/regions.h"
+#include "lift/regions.h"
 
 /* sum (N) of the weight in the chosen candidates' masks, and all (N) of that in their views. chosen (views)
  * has a candidate or REGIONS_NONE. */

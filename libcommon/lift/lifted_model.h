@@ -1,8 +1,8 @@
 /* Objects lifted onto the Gaussians in closed form: geometry is frozen, so the share of a Gaussian's blend
  * weight that falls inside an object's masks says whether it is of the object, and nothing is trained. With
  * the sentences that named the objects, this is a model that answers as a trained one does. */
-#ifndef REFER_LIFTED_H
-#define REFER_LIFTED_H
+#ifndef LIFT_LIFTED_MODEL_H
+#define LIFT_LIFTED_MODEL_H
 
 #include <stddef.h>
 #include <stdint.h>

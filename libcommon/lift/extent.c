@@ -1,4 +1,4 @@
-#include "refer/extent.h"
+#include "lift/extent.h"
 
 #include "base/mem.h"
 #include "geom/rotation.h"

@@ -1,4 +1,4 @@
-#include "refer/lifted.h"
+#include "lift/lifted_model.h"
 
 #include <stdlib.h>
 

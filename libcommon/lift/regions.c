@@ -1,7 +1,7 @@
-#include "refer/regions.h"
+#include "lift/regions.h"
 
 #include "base/mem.h"
-#include "splat/lift.h"
+#include "splat/backproject.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -172,14 +172,14 @@ static int keep_entries(
 	size_t n = 0;
 
 	for (size_t i = 0; i < r->gaussians; i++)
-		n += sum[lift_index(r->gaussians, k, i)] > 0;
+		n += sum[backproject_index(r->gaussians, k, i)] > 0;
 	if (mem_grow((void **)&r->index, &r->index_capacity, r->entries + n, sizeof *r->index, "masks", e) ||
 		mem_grow(
 			(void **)&r->share, &r->share_capacity, r->entries + n, sizeof *r->share, "masks", e))
 		return -1;
 	c->begin = r->entries;
 	for (size_t i = 0; i < r->gaussians; i++) {
-		const float share = sum[lift_index(r->gaussians, k, i)];
+		const float share = sum[backproject_index(r->gaussians, k, i)];
 		if (!(share > 0))
 			continue;
 		r->index[r->entries] = (int32_t)i;
@@ -201,7 +201,7 @@ int regions_lift(
 	size_t begin = 0, end;
 
 	if (!bad) {
-		lift_weight(w, weight);
+		backproject_weight(w, weight);
 		for (size_t i = 0; i < r->gaussians; i++)
 			r->weight[view * r->gaussians + i] = (float)weight[i];
 	}
@@ -211,10 +211,10 @@ int regions_lift(
 		end++;
 	for (size_t from = begin; from < end && !bad; from += BATCH) {
 		const size_t now = end - from < BATCH ? end - from : BATCH;
-		memset(sum, 0, lift_groups(now) * VIEW_GROUP * r->gaussians * sizeof *sum);
+		memset(sum, 0, backproject_groups(now) * VIEW_GROUP * r->gaussians * sizeof *sum);
 		bad = fill_images(&r->candidates[from], now, height, width, pixels, image, e);
 		if (!bad)
-			lift_add(w, image, now, sum);
+			backproject_add(w, image, now, sum);
 		for (size_t k = 0; k < now && !bad; k++)
 			bad = keep_entries(r, &r->candidates[from + k], sum, k, e);
 	}

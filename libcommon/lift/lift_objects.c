@@ -1,7 +1,7 @@
-#include "refer/lift_objects.h"
+#include "lift/lift_objects.h"
 
 #include "base/mem.h"
-#include "splat/lift.h"
+#include "splat/backproject.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -23,12 +23,12 @@ static size_t least(size_t a, size_t b)
 
 static size_t field_size(const struct lift_objects *l)
 {
-	return lift_groups(l->objects) * l->gaussians * VIEW_GROUP;
+	return backproject_groups(l->objects) * l->gaussians * VIEW_GROUP;
 }
 
 int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, struct err *e)
 {
-	const size_t channels = lift_groups(objects) * VIEW_GROUP;
+	const size_t channels = backproject_groups(objects) * VIEW_GROUP;
 
 	*l = (struct lift_objects){.gaussians = gaussians, .objects = objects};
 	l->sum = mem_zalloc(channels, gaussians * sizeof *l->sum, "shares", e);
@@ -85,7 +85,7 @@ static int room_make(
 		.vote = mem_zalloc(l->objects, sizeof(float), "masks", e)};
 	if (!r->image || !r->rendered || !r->total || !r->weight || !r->pixels || !r->vote)
 		return -1;
-	lift_weight(w, r->weight);
+	backproject_weight(w, r->weight);
 #pragma omp parallel for schedule(static)
 	for (size_t p = 0; p < w->pixels; p++) {
 		double sum = 0;
@@ -134,7 +134,7 @@ static void vote(struct lift_objects *l, const struct view_weights *w, const str
 	size_t now, const char *is_there)
 {
 	if (l->round)
-		lift_render(w, l->share + from * l->gaussians, now, r->rendered);
+		backproject_render(w, l->share + from * l->gaussians, now, r->rendered);
 #pragma omp parallel for schedule(dynamic)
 	for (size_t k = 0; k < now; k++) {
 		const size_t o = from + k;
@@ -185,7 +185,7 @@ int lift_objects_view(struct lift_objects *l, const struct view_weights *w, int 
 		if (bad)
 			break;
 		vote(l, w, &r, from, now, is_there);
-		lift_add(w, r.image, now, l->sum + from * l->gaussians);
+		backproject_add(w, r.image, now, l->sum + from * l->gaussians);
 	}
 	if (!bad)
 		add_weights(l, &r);
@@ -199,7 +199,7 @@ static void divide(struct lift_objects *l)
 #pragma omp parallel for schedule(dynamic)
 	for (size_t o = 0; o < l->objects; o++)
 		for (size_t i = 0; i < l->gaussians; i++) {
-			const size_t at = lift_index(l->gaussians, o, i);
+			const size_t at = backproject_index(l->gaussians, o, i);
 			const float weight = l->weight[o * l->gaussians + i];
 			l->share[at] = weight > 0 ? l->sum[at] / (weight + LEAST_WEIGHT) : 0;
 		}
@@ -214,14 +214,14 @@ static void compete(struct lift_objects *l, int is_last)
 		float most = 0;
 		size_t winner = 0;
 		for (size_t o = 0; o < l->objects; o++) {
-			const float a = l->share[lift_index(l->gaussians, o, i)];
+			const float a = l->share[backproject_index(l->gaussians, o, i)];
 			if (a > most) {
 				most = a;
 				winner = o;
 			}
 		}
 		for (size_t o = 0; o < l->objects && most > 0; o++) {
-			float *a = &l->share[lift_index(l->gaussians, o, i)];
+			float *a = &l->share[backproject_index(l->gaussians, o, i)];
 			if (o != winner)
 				*a = is_last ? *a * (*a / most) : 0;
 		}
@@ -237,7 +237,7 @@ static void find_levels(struct lift_objects *l)
 	for (size_t o = 0; o < l->objects; o++) {
 		double sum = 0, squares = 0;
 		for (size_t i = 0; i < l->gaussians; i++) {
-			const double a = l->share[lift_index(l->gaussians, o, i)];
+			const double a = l->share[backproject_index(l->gaussians, o, i)];
 			const double inside = a * l->weight[o * l->gaussians + i];
 			sum += inside;
 			squares += inside * a;
@@ -251,7 +251,7 @@ static void scale(struct lift_objects *l)
 #pragma omp parallel for schedule(dynamic)
 	for (size_t o = 0; o < l->objects; o++)
 		for (size_t i = 0; i < l->gaussians; i++) {
-			float *a = &l->share[lift_index(l->gaussians, o, i)];
+			float *a = &l->share[backproject_index(l->gaussians, o, i)];
 			const double scaled = *a / l->level[o];
 			*a = scaled < 1 ? (float)scaled : 1;
 		}
@@ -282,7 +282,7 @@ int lift_objects_finish(const struct lift_objects *l, struct lifted *to, struct 
 
 	for (size_t o = 0; o < l->objects; o++)
 		for (size_t i = 0; i < l->gaussians; i++)
-			count += l->share[lift_index(l->gaussians, o, i)] > LEAST_SHARE;
+			count += l->share[backproject_index(l->gaussians, o, i)] > LEAST_SHARE;
 	to->gaussians = l->gaussians;
 	to->objects = l->objects;
 	to->confidence = mem_alloc(l->objects, sizeof *to->confidence, "shares", e);
@@ -294,7 +294,7 @@ int lift_objects_finish(const struct lift_objects *l, struct lifted *to, struct 
 	for (size_t o = 0; o < l->objects; o++) {
 		to->confidence[o] = (float)l->agreement[o];
 		for (size_t i = 0; i < l->gaussians; i++) {
-			const float a = l->share[lift_index(l->gaussians, o, i)];
+			const float a = l->share[backproject_index(l->gaussians, o, i)];
 			if (a > LEAST_SHARE) {
 				to->index[at] = (int32_t)i;
 				to->share[at++] = a;

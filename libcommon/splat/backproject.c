@@ -1,8 +1,8 @@
-#include "splat/lift.h"
+#include "splat/backproject.h"
 
 enum { BLOCK = 1024 }; /* pixels that one thread renders at a time */
 
-void lift_weight(const struct view_weights *w, double *weight)
+void backproject_weight(const struct view_weights *w, double *weight)
 {
 	for (int64_t k = 0, end = w->indptr[w->pixels]; k < end; k++)
 		weight[w->index[k]] += (double)w->weight[k];
@@ -25,10 +25,10 @@ static int is_set(const float *image, size_t stride, int count, size_t p)
 }
 
 /* A group belongs to one thread, which adds its pixels in their order. Those of masks come in runs. */
-void lift_add(const struct view_weights *w, const float *image, size_t channels, float *sum)
+void backproject_add(const struct view_weights *w, const float *image, size_t channels, float *sum)
 {
 #pragma omp parallel for schedule(dynamic)
-	for (size_t g = 0; g < lift_groups(channels); g++) {
+	for (size_t g = 0; g < backproject_groups(channels); g++) {
 		const int count = group_size(channels, g);
 		const float *from = image + g * VIEW_GROUP * w->pixels;
 		float *to = sum + g * VIEW_GROUP * w->gaussians;
@@ -43,9 +43,9 @@ void lift_add(const struct view_weights *w, const float *image, size_t channels,
 	}
 }
 
-void lift_render(const struct view_weights *w, const float *field, size_t channels, float *image)
+void backproject_render(const struct view_weights *w, const float *field, size_t channels, float *image)
 {
-	const size_t groups = lift_groups(channels), blocks = (w->pixels + BLOCK - 1) / BLOCK;
+	const size_t groups = backproject_groups(channels), blocks = (w->pixels + BLOCK - 1) / BLOCK;
 
 #pragma omp parallel for collapse(2) schedule(dynamic)
 	for (size_t g = 0; g < groups; g++)

@@ -1,6 +1,6 @@
 #include "base/mem.h"
-#include "refer/regions.h"
-#include "refer/regions_private.h"
+#include "lift/regions.h"
+#include "lift/regions_private.h"
 
 #include <stdlib.h>
 #include <string.h>

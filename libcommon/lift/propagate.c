@@ -1,7 +1,7 @@
-#include "refer/carry.h"
+#include "lift/propagate.h"
 
 #include "base/mem.h"
-#include "splat/lift.h"
+#include "splat/backproject.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -29,33 +29,33 @@ static int order_places(const void *a, const void *b)
 
 /* Where each object begins: one mask for each that begins anywhere. */
 static void find_masks(
-	struct carry *c, const struct pool *p, const size_t *views, const struct cameras *cameras)
+	struct propagation *c, const struct pool *p, const size_t *views, const struct cameras *cameras)
 {
 	for (size_t i = 0; i < p->n; i++)
 		c->masks[i].view = cameras->n;
 	for (size_t i = 0; i < p->group_count; i++) {
 		const struct pool_group *g = &p->groups[i];
-		struct carry_mask *m = &c->masks[g->object];
+		struct propagate_mask *m = &c->masks[g->object];
 		const size_t view = views[g->first];
 		if (g->winner >= 0 && cameras->views[view].split == SPLIT_TRAIN && view < m->view)
-			*m = (struct carry_mask){view, (size_t)g->winner, g->vote, g->mask};
+			*m = (struct propagate_mask){view, (size_t)g->winner, g->vote, g->mask};
 	}
 	for (size_t i = 0; i < p->n; i++)
 		if (c->masks[i].view < cameras->n)
 			c->masks[c->count++] = c->masks[i];
 }
 
-int carry_init(struct carry *c, const struct pool *p, const size_t *views, const struct cameras *cameras,
-	struct err *e)
+int propagate_init(struct propagation *c, const struct pool *p, const size_t *views,
+	const struct cameras *cameras, struct err *e)
 {
-	*c = (struct carry){0};
+	*c = (struct propagation){0};
 	c->masks = mem_alloc(p->n, sizeof *c->masks, "masks", e);
 	c->order = mem_alloc(p->n, sizeof *c->order, "masks", e);
 	c->sources = mem_alloc(p->n, sizeof *c->sources, "masks", e);
 	struct place *places = mem_alloc(p->n, sizeof *places, "masks", e);
 	if (!c->masks || !c->order || !c->sources || !places) {
 		free(places);
-		carry_free(c);
+		propagate_free(c);
 		return -1;
 	}
 	find_masks(c, p, views, cameras);
@@ -67,21 +67,21 @@ int carry_init(struct carry *c, const struct pool *p, const size_t *views, const
 		c->order[i] = places[i].index;
 		if (!i || places[i].view != places[i - 1].view)
 			c->sources[c->source_count++] =
-				(struct carry_source){.view = places[i].view, .begin = i};
+				(struct propagate_source){.view = places[i].view, .begin = i};
 		c->sources[c->source_count - 1].count++;
 	}
 	free(places);
 	return 0;
 }
 
-void carry_free(struct carry *c)
+void propagate_free(struct propagation *c)
 {
 	for (size_t s = 0; s < c->source_count; s++)
 		free(c->sources[s].field);
 	free(c->masks);
 	free(c->order);
 	free(c->sources);
-	*c = (struct carry){0};
+	*c = (struct propagation){0};
 }
 
 /* An image of 0 and 1 at the view's size; pixels (P) is scratch. */
@@ -105,7 +105,7 @@ static void make_shares(float *field, size_t channels, size_t n, const double *w
 #pragma omp parallel for schedule(static)
 	for (size_t k = 0; k < channels; k++)
 		for (size_t i = 0; i < n; i++) {
-			float *at = &field[lift_index(n, k, i)];
+			float *at = &field[backproject_index(n, k, i)];
 			if (weight[i] > 0)
 				*at = k ? (float)((double)*at / weight[i] - 0.5) : 0.5f;
 			else
@@ -113,20 +113,20 @@ static void make_shares(float *field, size_t channels, size_t n, const double *w
 		}
 }
 
-int carry_lift(
-	struct carry *c, size_t source, const struct view_weights *w, int height, int width, struct err *e)
+int propagate_lift(struct propagation *c, size_t source, const struct view_weights *w, int height, int width,
+	struct err *e)
 {
-	struct carry_source *s = &c->sources[source];
+	struct propagate_source *s = &c->sources[source];
 	const size_t n = w->gaussians, channels = s->count + 1;
 	int bad = -1;
 
-	s->field = mem_zalloc(lift_groups(channels) * VIEW_GROUP, n * sizeof *s->field, "masks", e);
+	s->field = mem_zalloc(backproject_groups(channels) * VIEW_GROUP, n * sizeof *s->field, "masks", e);
 	double *weight = mem_zalloc(n, sizeof *weight, "masks", e);
 	float *image = mem_alloc(w->pixels, BATCH * sizeof *image, "masks", e);
 	uint8_t *pixels = mem_alloc(w->pixels, 1, "masks", e);
 	if (!s->field || !weight || !image || !pixels)
 		goto done;
-	lift_weight(w, weight);
+	backproject_weight(w, weight);
 	for (size_t from = 0; from < channels; from += BATCH) {
 		const size_t now = least(channels - from, BATCH);
 		memset(image, 0, now * w->pixels * sizeof *image);
@@ -134,7 +134,7 @@ int carry_lift(
 			if (fill_image(c->masks[c->order[s->begin + from + k - 1]].mask, height, width,
 				    pixels, image + k * w->pixels, e))
 				goto done;
-		lift_add(w, image, now, s->field + from * n);
+		backproject_add(w, image, now, s->field + from * n);
 	}
 	make_shares(s->field, channels, n, weight);
 	bad = 0;
@@ -153,8 +153,8 @@ struct room {
 };
 
 /* Cuts the images of a source's channels [from,from+now). */
-static int cut(const struct carry *c, const struct carry_source *s, const struct room *room, size_t from,
-	size_t now, int height, int width, struct rle *masks, struct err *e)
+static int cut(const struct propagation *c, const struct propagate_source *s, const struct room *room,
+	size_t from, size_t now, int height, int width, struct rle *masks, struct err *e)
 {
 	const size_t count = (size_t)height * (size_t)width;
 	int failed = 0;
@@ -175,14 +175,15 @@ static int cut(const struct carry *c, const struct carry_source *s, const struct
 	return failed ? -1 : 0;
 }
 
-static int render_source(const struct carry *c, const struct carry_source *s, const struct room *room,
-	const struct view_weights *w, int height, int width, struct rle *masks, struct err *e)
+static int render_source(const struct propagation *c, const struct propagate_source *s,
+	const struct room *room, const struct view_weights *w, int height, int width, struct rle *masks,
+	struct err *e)
 {
 	const size_t channels = s->count + 1;
 
 	for (size_t from = 0; from < channels; from += BATCH) {
 		const size_t now = least(channels - from, BATCH);
-		lift_render(w, s->field + from * w->gaussians, now, room->image);
+		backproject_render(w, s->field + from * w->gaussians, now, room->image);
 		for (size_t p = 0; p < w->pixels && !from; p++)
 			room->is_known[p] = room->image[p] >= 0;
 		if (cut(c, s, room, from, now, height, width, masks, e))
@@ -191,8 +192,8 @@ static int render_source(const struct carry *c, const struct carry_source *s, co
 	return 0;
 }
 
-int carry_render(const struct carry *c, size_t view, const struct view_weights *w, int height, int width,
-	struct rle *masks, struct err *e)
+int propagate_render(const struct propagation *c, size_t view, const struct view_weights *w, int height,
+	int width, struct rle *masks, struct err *e)
 {
 	struct room room = {mem_alloc(w->pixels, BATCH * sizeof *room.image, "masks", e),
 		mem_alloc(w->pixels, BATCH, "masks", e), mem_alloc(w->pixels, 1, "masks", e)};
@@ -201,7 +202,7 @@ int carry_render(const struct carry *c, size_t view, const struct view_weights *
 	for (size_t i = 0; i < c->count; i++)
 		masks[i] = (struct rle){0};
 	for (size_t i = 0; i < c->source_count && !bad; i++) {
-		const struct carry_source *s = &c->sources[i];
+		const struct propagate_source *s = &c->sources[i];
 		if (s->view != view)
 			bad = render_source(c, s, &room, w, height, width, masks, e);
 		for (size_t k = 0; k < s->count && !bad && s->view == view; k++) {

@@ -1,8 +1,8 @@
 #include "base/mem.h"
+#include "lift/regions.h"
+#include "lift/regions_private.h"
 #include "mask/assign.h"
-#include "refer/regions.h"
-#include "refer/regions_private.h"
-#include "splat/lift.h"
+#include "splat/backproject.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -58,7 +58,8 @@ static void fill_field(
 {
 	regions_sum(r, region->chosen, sum, all);
 	for (size_t i = 0; i < r->gaussians; i++)
-		r->field[lift_index(r->gaussians, object, i)] = all[i] > 0 ? sum[i] / all[i] - 0.5f : -0.5f;
+		r->field[backproject_index(r->gaussians, object, i)] =
+			all[i] > 0 ? sum[i] / all[i] - 0.5f : -0.5f;
 }
 
 int regions_assign(struct regions *r, struct err *e)
@@ -69,7 +70,8 @@ int regions_assign(struct regions *r, struct err *e)
 	uint8_t *has_support = mem_zalloc(r->object_count, columns, "regions", e);
 	float *sum = mem_alloc(n, sizeof *sum, "regions", e), *all = mem_alloc(n, sizeof *all, "regions", e);
 	r->served = mem_alloc(r->object_count, sizeof *r->served, "regions", e);
-	r->field = mem_zalloc(lift_groups(r->object_count) * VIEW_GROUP, n * sizeof *r->field, "regions", e);
+	r->field = mem_zalloc(
+		backproject_groups(r->object_count) * VIEW_GROUP, n * sizeof *r->field, "regions", e);
 	int bad = !share || !value || !has_support || !sum || !all || !r->served || !r->field ||
 		  find_shares(r, share, e);
 
@@ -156,7 +158,8 @@ int regions_render(const struct regions *r, size_t view, const struct view_weigh
 			continue;
 		}
 		if (group != there)
-			lift_render(w, r->field + group * VIEW_GROUP * r->gaussians, VIEW_GROUP, image);
+			backproject_render(
+				w, r->field + group * VIEW_GROUP * r->gaussians, VIEW_GROUP, image);
 		there = group;
 		scores[o] = region->typical;
 		bad = cut(image + o % VIEW_GROUP * w->pixels, pixels, height, width, like, &masks[o], e);

@@ -5,8 +5,8 @@
  * only the heaviest cluster stays, and those at least EXTENT_PART as heavy. Along a direction the box begins
  * where EXTENT_TRIM of the weight is passed, and ends likewise, with Gaussians EXTENT_SIGMAS standard
  * deviations long. formats/boxes.md says how these were chosen. */
-#ifndef REFER_EXTENT_H
-#define REFER_EXTENT_H
+#ifndef LIFT_EXTENT_H
+#define LIFT_EXTENT_H
 
 #include "base/err.h"
 #include "geom/box.h"
