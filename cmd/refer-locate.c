@@ -1,4 +1,5 @@
 /* refer-locate: where in space the object of a sentence is, and the scene with it for a viewer. */
+#include "answer/locate.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
@@ -7,7 +8,6 @@
 #include "formats/ply.h"
 #include "formats/splat.h"
 #include "geom/up.h"
-#include "refer/locate.h"
 
 #include <stdlib.h>
 #include <string.h>

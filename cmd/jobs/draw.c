@@ -1,9 +1,9 @@
 #include "cmd/jobs/draw.h"
 
+#include "answer/answer.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/masks.h"
-#include "refer/answer.h"
 
 #include <stdlib.h>
 
@@ -61,7 +61,7 @@ static int answer(struct drawing *d, const struct viewpoint *from, struct err *e
 	int bad = request_answer(r, from, e) ||
 		  !(d->wholes = mem_zalloc(r->asked.answers, sizeof *d->wholes, "objects", e));
 	if (!bad && d->options->is_amodal)
-		bad = asked_wholes(&r->asked, &r->scene.splats, &r->scene.cameras, d->wholes, e);
+		bad = responses_wholes(&r->asked, &r->scene.splats, &r->scene.cameras, d->wholes, e);
 	return bad ? -1 : 0;
 }
 

@@ -1,8 +1,8 @@
 /* Answers from lifted objects: what sentences share, outlines of what is hidden. */
 #include "unit.h"
 
-#include "refer/answer.h"
-#include "refer/asked.h"
+#include "answer/answer.h"
+#include "answer/responses.h"
 #include "ask/choose.h"
 #include "splat/render.h"
 
@@ -41,20 +41,20 @@ static const float asked_words[] = {0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 static char *pieces[] = {"box", "ball", "box", "", "zeppelin", ""};
 static const size_t which[] = {0, 1, 2, 3, 4, 5};
 static const struct parser parser = {0};
-static const struct asked_of of = {&splats, &cameras, asked_offsets, asked_words, pieces, pieces, NULL,
-	&parser, which, SENTENCES, pieces, "model"};
+static const struct responses_question of = {&splats, &cameras, asked_offsets, asked_words, pieces, pieces,
+	NULL, &parser, which, SENTENCES, pieces, "model"};
 
-static float at(const struct asked *a, size_t answer, size_t gaussian)
+static float at(const struct responses *a, size_t answer, size_t gaussian)
 {
 	return a->responses[gaussian * a->answers + answer];
 }
 
 static void test_sharing(void)
 {
-	struct asked a;
+	struct responses a;
 	struct err e = {0};
 
-	if (!CHECK(!asked_lifted(&a, &lifted, &of, CHOOSE_ALL, 0.95, &e), "%s", e.message))
+	if (!CHECK(!responses_lifted(&a, &lifted, &of, CHOOSE_ALL, 0.95, &e), "%s", e.message))
 		return;
 	CHECK(a.answers == 3, "%zu answers", a.answers);
 	CHECK(a.answer[0] == a.answer[2] && a.answer[1] != a.answer[0], "one answer for one object");
@@ -69,23 +69,23 @@ static void test_sharing(void)
 	CHECK(fabsf(at(&a, a.answer[0], 1) - (1 - LIFTED_CUT)) < 1e-6f &&
 			fabsf(at(&a, a.answer[1], 1) + LIFTED_CUT) < 1e-6f,
 		"responses");
-	asked_free(&a);
-	if (!CHECK(!asked_lifted(&a, &lifted, &of, CHOOSE_ALL, 0, &e), "%s", e.message))
+	responses_free(&a);
+	if (!CHECK(!responses_lifted(&a, &lifted, &of, CHOOSE_ALL, 0, &e), "%s", e.message))
 		return;
 	CHECK(a.answer[4] != a.answer[3],
 		"with no least probability every sentence with words means something");
-	asked_free(&a);
+	responses_free(&a);
 }
 
 static void test_wholes(void)
 {
-	struct asked a;
+	struct responses a;
 	struct splats wholes[MOST];
 	struct err e = {0};
 
-	if (!CHECK(!asked_lifted(&a, &lifted, &of, CHOOSE_ALL, 0.95, &e), "%s", e.message))
+	if (!CHECK(!responses_lifted(&a, &lifted, &of, CHOOSE_ALL, 0.95, &e), "%s", e.message))
 		return;
-	if (CHECK(!asked_wholes(&a, &splats, &cameras, wholes, &e), "%s", e.message)) {
+	if (CHECK(!responses_wholes(&a, &splats, &cameras, wholes, &e), "%s", e.message)) {
 		const struct splats *large = &wholes[a.answer[0]], *small = &wholes[a.answer[1]];
 		CHECK(small->n == 1 && !memcmp(small->means, means, 3 * sizeof *means), "the small one");
 		CHECK(large->n == 1 && !memcmp(large->means, means + 3, 3 * sizeof *means) &&
@@ -95,7 +95,7 @@ static void test_wholes(void)
 		for (size_t k = 0; k < a.answers; k++)
 			splats_free(&wholes[k]);
 	}
-	asked_free(&a);
+	responses_free(&a);
 }
 
 struct seen {
@@ -130,13 +130,13 @@ static int done(void *data, size_t view, struct err *e)
 
 static void test_outlines(void)
 {
-	struct asked a;
+	struct responses a;
 	struct splats wholes[MOST];
 	struct seen seen = {0}, whole = {0};
 	struct err e = {0};
 
-	if (!CHECK(!asked_lifted(&a, &lifted, &of, CHOOSE_ALL, 0.95, &e) &&
-			    !asked_wholes(&a, &splats, &cameras, wholes, &e),
+	if (!CHECK(!responses_lifted(&a, &lifted, &of, CHOOSE_ALL, 0.95, &e) &&
+			    !responses_wholes(&a, &splats, &cameras, wholes, &e),
 		    "%s", e.message))
 		return;
 	const struct answer_question visible = {&splats, &a, NULL, 0}, amodal = {&splats, &a, wholes, 0};
@@ -159,7 +159,7 @@ static void test_outlines(void)
 	CHECK(!whole.area[nothing] && !seen.area[nothing] && !(whole.visible[nothing] > 0), "nothing");
 	for (size_t k = 0; k < a.answers; k++)
 		splats_free(&wholes[k]);
-	asked_free(&a);
+	responses_free(&a);
 }
 
 int main(void)

@@ -1,4 +1,4 @@
-#include "synth/sight.h"
+#include "synth/occlusion.h"
 
 #include "base/mem.h"
 
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CELLS = SYNTH_SIGHT_COLUMNS * SYNTH_SIGHT_COLUMNS };
+enum { CELLS = SYNTH_OCCLUSION_COLUMNS * SYNTH_OCCLUSION_COLUMNS };
 
 static void set_points(float *points, const struct synth_object *o)
 {
@@ -14,45 +14,45 @@ static void set_points(float *points, const struct synth_object *o)
 	double p[3], normal[3];
 
 	synth_object_surface(&surface, o->shape);
-	for (int i = 0; i < SYNTH_SIGHT_POINTS; i++, points += 3) {
+	for (int i = 0; i < SYNTH_OCCLUSION_POINTS; i++, points += 3) {
 		/* Evenly spread in two dimensions: multiples of the golden ratio. */
-		synth_surface_at(
-			&surface, (i + 0.5) / SYNTH_SIGHT_POINTS, fmod(0.6180339887498949 * i, 1), p, normal);
+		synth_surface_at(&surface, (i + 0.5) / SYNTH_OCCLUSION_POINTS,
+			fmod(0.6180339887498949 * i, 1), p, normal);
 		synth_object_place(o, p, p);
 		for (int k = 0; k < 3; k++)
 			points[k] = (float)p[k];
 	}
 }
 
-int synth_sight_make(struct synth_sight *s, const struct synth_object *objects, int n, struct err *e)
+int synth_occlusion_make(struct synth_occlusion *s, const struct synth_object *objects, int n, struct err *e)
 {
-	*s = (struct synth_sight){.n = n};
-	s->points = mem_alloc((size_t)n, 3 * SYNTH_SIGHT_POINTS * sizeof *s->points, "points", e);
+	*s = (struct synth_occlusion){.n = n};
+	s->points = mem_alloc((size_t)n, 3 * SYNTH_OCCLUSION_POINTS * sizeof *s->points, "points", e);
 	s->depth = mem_alloc(CELLS, sizeof *s->depth, "depth buffer", e);
 	s->seen = mem_alloc(CELLS, sizeof *s->seen, "depth buffer", e);
 	s->last = mem_alloc(CELLS, sizeof *s->last, "depth buffer", e);
 	if (!s->points || !s->depth || !s->seen || !s->last) {
-		synth_sight_free(s);
+		synth_occlusion_free(s);
 		return -1;
 	}
 	for (int i = 0; i < n; i++)
-		set_points(s->points + (size_t)i * 3 * SYNTH_SIGHT_POINTS, &objects[i]);
+		set_points(s->points + (size_t)i * 3 * SYNTH_OCCLUSION_POINTS, &objects[i]);
 	return 0;
 }
 
-void synth_sight_free(struct synth_sight *s)
+void synth_occlusion_free(struct synth_occlusion *s)
 {
 	free(s->points);
 	free(s->depth);
 	free(s->seen);
 	free(s->last);
-	*s = (struct synth_sight){0};
+	*s = (struct synth_occlusion){0};
 }
 
-void synth_sight_look(struct synth_sight *s, const struct camera *c, int *visible, int *whole)
+void synth_occlusion_look(struct synth_occlusion *s, const struct camera *c, int *visible, int *whole)
 {
 	int longer = c->width > c->height ? c->width : c->height;
-	double scale = (double)SYNTH_SIGHT_COLUMNS / longer;
+	double scale = (double)SYNTH_OCCLUSION_COLUMNS / longer;
 	const float near = 0.2f, columns = (float)(scale * c->width), rows = (float)(scale * c->height);
 	float m[3][4]; /* from the world to cells, times z */
 
@@ -69,8 +69,8 @@ void synth_sight_look(struct synth_sight *s, const struct camera *c, int *visibl
 	memset(visible, 0, (size_t)s->n * sizeof *visible);
 	memset(whole, 0, (size_t)s->n * sizeof *whole);
 	for (int o = 0; o < s->n; o++) {
-		const float *point = s->points + (size_t)o * 3 * SYNTH_SIGHT_POINTS;
-		for (int i = 0; i < SYNTH_SIGHT_POINTS; i++, point += 3) {
+		const float *point = s->points + (size_t)o * 3 * SYNTH_OCCLUSION_POINTS;
+		for (int i = 0; i < SYNTH_OCCLUSION_POINTS; i++, point += 3) {
 			float p[3];
 			for (int k = 0; k < 3; k++)
 				p[k] = m[k][0] * point[0] + m[k][1] * point[1] + m[k][2] * point[2] + m[k][3];
@@ -79,7 +79,7 @@ void synth_sight_look(struct synth_sight *s, const struct camera *c, int *visibl
 			float x = p[0] / p[2], y = p[1] / p[2];
 			if (!(x >= 0 && x < columns && y >= 0 && y < rows))
 				continue;
-			int cell = (int)y * SYNTH_SIGHT_COLUMNS + (int)x;
+			int cell = (int)y * SYNTH_OCCLUSION_COLUMNS + (int)x;
 			whole[o] += s->last[cell] != o;
 			s->last[cell] = o;
 			if (p[2] < s->depth[cell]) {

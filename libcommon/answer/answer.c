@@ -1,8 +1,8 @@
-#include "refer/answer.h"
+#include "answer/answer.h"
 
+#include "answer/respond.h"
 #include "base/mem.h"
 #include "base/threads.h"
-#include "refer/respond.h"
 #include "splat/render.h"
 
 #include <math.h>
@@ -80,7 +80,7 @@ static int take_outline(struct room *room, const struct splats *whole, struct an
 static int answer_view(struct room *room, const struct answer_question *q, const struct camera *c,
 	size_t view, const struct answer_calls *calls, struct err *e)
 {
-	const struct asked *asked = q->asked;
+	const struct responses *asked = q->asked;
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 	size_t images;
 

@@ -1,6 +1,6 @@
 /* A trained model's answers: responses of Gaussians, and the mask of an image of them. */
-#ifndef REFER_RESPOND_H
-#define REFER_RESPOND_H
+#ifndef ANSWER_RESPOND_H
+#define ANSWER_RESPOND_H
 
 #include "base/err.h"
 #include "field/referring_model.h"

@@ -1,7 +1,7 @@
 /* Which lifted object is which: a detector that cannot tell two things that look the same gives each the
  * other's masks as readily as its own, but the training sentences say where each is. */
-#ifndef REFER_RECOGNISE_H
-#define REFER_RECOGNISE_H
+#ifndef ASK_DISAMBIGUATE_H
+#define ASK_DISAMBIGUATE_H
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -15,7 +15,7 @@
  * four times at most. An object's own words fit its own Gaussians best, so that only things that look the
  * same change places. *moved gets how many objects have others than before. Returns 0, or -1 with *e set and
  * the model as it was. */
-int recognise(struct lifted *l, const struct splats *splats, const struct cameras *cameras,
+int disambiguate(struct lifted *l, const struct splats *splats, const struct cameras *cameras,
 	const struct parser *parser, size_t *moved, struct err *e);
 
 #endif

@@ -1,11 +1,11 @@
-/* A model's answers in a view: for each answer to what was asked (refer/asked.h) the image of its responses,
- * its mask and its score; or, amodally, the outline of the whole object as if nothing hid it. */
-#ifndef REFER_ANSWER_H
-#define REFER_ANSWER_H
+/* A model's answers in a view: for each answer to what was asked (answer/responses.h) the image of its
+ * responses, its mask and its score; or, amodally, the outline of the whole object as if nothing hid it. */
+#ifndef ANSWER_ANSWER_H
+#define ANSWER_ANSWER_H
 
+#include "answer/responses.h"
 #include "base/err.h"
 #include "geom/camera.h"
-#include "refer/asked.h"
 #include "splat/splats.h"
 
 #include <stddef.h>
@@ -14,8 +14,8 @@
 /* What is asked, the same for every view. */
 struct answer_question {
 	const struct splats *splats;
-	const struct asked *asked;
-	const struct splats *wholes; /* (answers) of asked_wholes, for outlines; NULL: what is in sight */
+	const struct responses *asked;
+	const struct splats *wholes; /* (answers) of responses_wholes, for outlines; NULL: what is in sight */
 	int wants_rgb;
 };
 

@@ -2,8 +2,8 @@
  * words it often keeps the order of the objects but is less sure, so that all responses are below 0 and M > 0
  * gives an empty mask. Lifting all responses of a sentence alike until its best answer is clearly above 0
  * mends that (pipelines/desk.md has the gain). */
-#ifndef REFER_CALIBRATE_H
-#define REFER_CALIBRATE_H
+#ifndef ANSWER_CALIBRATE_H
+#define ANSWER_CALIBRATE_H
 
 #include "base/err.h"
 #include "field/rows.h"

@@ -1,10 +1,10 @@
 /* A model's answers in space: what each is made of, where it is, and how sure it is. */
-#ifndef REFER_LOCATE_H
-#define REFER_LOCATE_H
+#ifndef ANSWER_LOCATE_H
+#define ANSWER_LOCATE_H
 
+#include "answer/responses.h"
 #include "base/err.h"
 #include "lift/extent.h"
-#include "refer/asked.h"
 #include "splat/splats.h"
 
 struct located {
@@ -14,7 +14,7 @@ struct located {
 
 /* all (a->answers), zeroed, gets each answer; extent_free each, also after a failure. Returns 0, or -1 with
  * *e set. */
-int locate_all(struct located *all, const struct asked *a, const struct splats *s, const double up[3],
+int locate_all(struct located *all, const struct responses *a, const struct splats *s, const double up[3],
 	struct err *e);
 
 /* Which Gaussians a viewer shows of an answer, and in which colour. */

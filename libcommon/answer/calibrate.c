@@ -1,4 +1,4 @@
-#include "refer/calibrate.h"
+#include "answer/calibrate.h"
 
 #include "base/mem.h"
 #include "splat/render.h"

@@ -1,4 +1,4 @@
-#include "refer/respond.h"
+#include "answer/respond.h"
 
 #include "base/mem.h"
 #include "train/step.h"

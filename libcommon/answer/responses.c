@@ -1,24 +1,24 @@
-#include "refer/asked.h"
+#include "answer/responses.h"
 
+#include "answer/calibrate.h"
 #include "base/mem.h"
-#include "refer/calibrate.h"
-#include "refer/sight.h"
 #include "splat/render.h"
+#include "splat/visibility.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-void asked_free(struct asked *a)
+void responses_free(struct responses *a)
 {
 	free(a->responses);
 	free(a->lifts);
 	free(a->answer);
 	free(a->sure);
-	*a = (struct asked){0};
+	*a = (struct responses){0};
 }
 
-static int alloc_answers(struct asked *a, size_t answers, size_t gaussians, struct err *e)
+static int alloc_answers(struct responses *a, size_t answers, size_t gaussians, struct err *e)
 {
 	size_t bytes;
 
@@ -31,7 +31,7 @@ static int alloc_answers(struct asked *a, size_t answers, size_t gaussians, stru
 }
 
 /* Weights that are finite may still be so large that what is made of them is not. */
-static int check_finite(const float *responses, const struct asked_of *q, struct err *e)
+static int check_finite(const float *responses, const struct responses_question *q, struct err *e)
 {
 	const size_t n = q->splats->n;
 
@@ -44,7 +44,7 @@ static int check_finite(const float *responses, const struct asked_of *q, struct
 	return 0;
 }
 
-static int ask_trained(struct asked *a, const struct respond_model *m, const struct asked_of *q,
+static int ask_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
 	int wants_calibration, struct err *e)
 {
 	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
@@ -60,13 +60,13 @@ static int ask_trained(struct asked *a, const struct respond_model *m, const str
 		       : 0;
 }
 
-int asked_trained(struct asked *a, const struct respond_model *m, const struct asked_of *q,
+int responses_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
 	int wants_calibration, struct err *e)
 {
-	*a = (struct asked){0};
+	*a = (struct responses){0};
 	if (!ask_trained(a, m, q, wants_calibration, e))
 		return 0;
-	asked_free(a);
+	responses_free(a);
 	return -1;
 }
 
@@ -100,8 +100,8 @@ static int meant_alloc(struct meant *m, size_t count, size_t objects, struct err
 }
 
 /* What each sentence means; a sentence that means nothing has no objects. */
-static int find_meant(struct meant *m, struct asked *a, const struct lifted *l, const struct asked_of *q,
-	unsigned parts, double least, struct err *e)
+static int find_meant(struct meant *m, struct responses *a, const struct lifted *l,
+	const struct responses_question *q, unsigned parts, double least, struct err *e)
 {
 	const struct choose_scene scene = {l, q->splats, q->cameras, q->parser, 1};
 
@@ -164,8 +164,8 @@ static void union_of(const struct lifted *l, const char *chosen, float *own, flo
 	}
 }
 
-static int take_answers(struct asked *a, const struct lifted *l, const struct meant *m, const size_t *firsts,
-	size_t answers, struct err *e)
+static int take_answers(struct responses *a, const struct lifted *l, const struct meant *m,
+	const size_t *firsts, size_t answers, struct err *e)
 {
 	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
 	int bad = !own || alloc_answers(a, answers, l->gaussians, e);
@@ -176,8 +176,8 @@ static int take_answers(struct asked *a, const struct lifted *l, const struct me
 	return bad ? -1 : render_pack(a->responses, l->gaussians, (int)answers, e);
 }
 
-static int ask_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
-	double least, struct err *e)
+static int ask_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
+	unsigned parts, double least, struct err *e)
 {
 	struct meant m = {0};
 	size_t *firsts = mem_alloc(q->count, sizeof *firsts, "sentences", e);
@@ -195,18 +195,18 @@ static int ask_lifted(struct asked *a, const struct lifted *l, const struct aske
 	return bad ? -1 : 0;
 }
 
-int asked_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
-	double least, struct err *e)
+int responses_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
+	unsigned parts, double least, struct err *e)
 {
-	*a = (struct asked){0};
+	*a = (struct responses){0};
 	if (!ask_lifted(a, l, q, parts, least, e))
 		return 0;
-	asked_free(a);
+	responses_free(a);
 	return -1;
 }
 
 /* A Gaussian's response, where render_pack has put it. */
-static float packed(const struct asked *a, size_t n, size_t answer, size_t i)
+static float packed(const struct responses *a, size_t n, size_t answer, size_t i)
 {
 	const size_t first = answer - answer % RENDER_GROUP, left = a->answers - first;
 	const size_t now = left < RENDER_GROUP ? left : RENDER_GROUP;
@@ -214,12 +214,13 @@ static float packed(const struct asked *a, size_t n, size_t answer, size_t i)
 	return a->responses[first * n + i * now + answer - first];
 }
 
-static int is_of(const struct asked *a, size_t n, size_t answer, size_t i)
+static int is_of(const struct responses *a, size_t n, size_t answer, size_t i)
 {
 	return packed(a, n, answer, i) > 0;
 }
 
-size_t asked_gaussians(const struct asked *a, size_t gaussians, size_t answer, int32_t *ids, float *responses)
+size_t responses_gaussians(
+	const struct responses *a, size_t gaussians, size_t answer, int32_t *ids, float *responses)
 {
 	size_t n = 0;
 
@@ -233,7 +234,7 @@ size_t asked_gaussians(const struct asked *a, size_t gaussians, size_t answer, i
 	return n;
 }
 
-static int take_whole(const struct asked *a, size_t answer, const struct splats *s, const char *in_sight,
+static int take_whole(const struct responses *a, size_t answer, const struct splats *s, const char *in_sight,
 	struct splats *whole, struct err *e)
 {
 	size_t n = 0, at = 0;
@@ -254,13 +255,13 @@ static int take_whole(const struct asked *a, size_t answer, const struct splats 
 	return 0;
 }
 
-int asked_wholes(const struct asked *a, const struct splats *s, const struct cameras *cameras,
+int responses_wholes(const struct responses *a, const struct splats *s, const struct cameras *cameras,
 	struct splats *wholes, struct err *e)
 {
 	char *in_sight = mem_alloc(s->n, 1, "Gaussians", e);
 	size_t done = 0;
 
-	if (in_sight && !sight_find(s, cameras, in_sight, e))
+	if (in_sight && !visibility_find(s, cameras, in_sight, e))
 		while (done < a->answers && !take_whole(a, done, s, in_sight, &wholes[done], e))
 			done++;
 	else

@@ -1,4 +1,4 @@
-#include "refer/locate.h"
+#include "answer/locate.h"
 
 #include "base/mem.h"
 
@@ -13,8 +13,8 @@ static const double basis = 0.28209479177387814;
 static const double paint[3] = {1, 0.25, 0.125};
 static const double thickness = 0.65;
 
-static int locate_one(
-	struct located *to, const struct asked *a, size_t answer, const struct splats *s, const double up[3])
+static int locate_one(struct located *to, const struct responses *a, size_t answer, const struct splats *s,
+	const double up[3])
 {
 	struct err ignored;
 	int32_t *ids = mem_alloc(s->n, sizeof *ids, "object", &ignored);
@@ -23,7 +23,7 @@ static int locate_one(
 	int bad = -1;
 
 	if (ids && responses) {
-		const size_t n = asked_gaussians(a, s->n, answer, ids, responses);
+		const size_t n = responses_gaussians(a, s->n, answer, ids, responses);
 		for (size_t i = 0; i < n; i++)
 			sum += 1 / (1 + exp(a->lifts[answer] - (double)responses[i]));
 		to->sure = n ? sum / (double)n : 0;
@@ -34,8 +34,8 @@ static int locate_one(
 	return bad;
 }
 
-int locate_all(
-	struct located *all, const struct asked *a, const struct splats *s, const double up[3], struct err *e)
+int locate_all(struct located *all, const struct responses *a, const struct splats *s, const double up[3],
+	struct err *e)
 {
 	int bad = 0;
 

@@ -1,4 +1,4 @@
-#include "refer/sight.h"
+#include "splat/visibility.h"
 
 #include "base/mem.h"
 #include "splat/render.h"
@@ -12,7 +12,7 @@ static struct camera reduce(const struct camera *c)
 	const int side = c->width > c->height ? c->width : c->height;
 	int width, height;
 
-	camera_scaled_size(c, fmin(1, (double)SIGHT_SIDE / side), &width, &height);
+	camera_scaled_size(c, fmin(1, (double)VISIBILITY_SIDE / side), &width, &height);
 	return camera_resize(c, width, height);
 }
 
@@ -29,7 +29,7 @@ static int look(struct render_view **v, struct render_weights *w, const struct s
 	return 0;
 }
 
-int sight_find(const struct splats *s, const struct cameras *cameras, char *in_sight, struct err *e)
+int visibility_find(const struct splats *s, const struct cameras *cameras, char *in_sight, struct err *e)
 {
 	struct render_view *v = NULL;
 	struct render_weights w = {0};
@@ -42,7 +42,7 @@ int sight_find(const struct splats *s, const struct cameras *cameras, char *in_s
 	const int any = !all;
 	if (any)
 		all = cameras->n;
-	const size_t take = all < SIGHT_VIEWS ? all : SIGHT_VIEWS;
+	const size_t take = all < VISIBILITY_VIEWS ? all : VISIBILITY_VIEWS;
 	for (size_t i = 0; i < cameras->n && !bad; i++) {
 		if (!any && cameras->views[i].split != SPLIT_TRAIN)
 			continue;
@@ -53,7 +53,7 @@ int sight_find(const struct splats *s, const struct cameras *cameras, char *in_s
 		taken++;
 	}
 	for (size_t i = 0; i < s->n && !bad; i++)
-		in_sight[i] = !take || (most[i] > 0 && most[i] >= SIGHT_LEAST * s->opacities[i]);
+		in_sight[i] = !take || (most[i] > 0 && most[i] >= VISIBILITY_LEAST * s->opacities[i]);
 	render_weights_free(&w);
 	render_free(v);
 	free(most);

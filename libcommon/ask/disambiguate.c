@@ -1,8 +1,8 @@
-#include "refer/recognise.h"
+#include "ask/disambiguate.h"
 
+#include "ask/choose.h"
 #include "base/mem.h"
 #include "mask/assign.h"
-#include "ask/choose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,8 +18,9 @@ static int judge(const struct lifted *l, const struct choose_scene *scene,
 {
 	const size_t n = l->objects;
 
-	if (choose(scene, sentences, l->sentences, CHOOSE_ALL & ~(1U << CHOOSE_SENTENCE | 1U << CHOOSE_WORDING), choices,
-		    probability, chosen, NULL, e))
+	if (choose(scene, sentences, l->sentences,
+		    CHOOSE_ALL & ~(1U << CHOOSE_SENTENCE | 1U << CHOOSE_WORDING), choices, probability,
+		    chosen, NULL, e))
 		return -1;
 	memset(value, 0, n * n * sizeof *value);
 	for (size_t r = 0; r < l->sentences; r++) {
@@ -114,7 +115,7 @@ static int settle(struct lifted *l, const struct lifted *old, const struct choos
 	return bad ? -1 : 0;
 }
 
-int recognise(struct lifted *l, const struct splats *splats, const struct cameras *cameras,
+int disambiguate(struct lifted *l, const struct splats *splats, const struct cameras *cameras,
 	const struct parser *parser, size_t *moved, struct err *e)
 {
 	const struct choose_scene scene = {l, splats, cameras, parser, naming};

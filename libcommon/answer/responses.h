@@ -1,20 +1,20 @@
 /* What a model of either kind answers to sentences before any view is rendered: responses of the Gaussians.
  * Sentences that get the same answer share it, so that it is blended once. */
-#ifndef REFER_ASKED_H
-#define REFER_ASKED_H
+#ifndef ANSWER_RESPONSES_H
+#define ANSWER_RESPONSES_H
 
+#include "answer/respond.h"
 #include "ask/choose.h"
 #include "base/err.h"
 #include "geom/camera.h"
 #include "lift/lifted_model.h"
-#include "refer/respond.h"
 #include "splat/splats.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
 /* The sentences, and the scene that they are about. */
-struct asked_of {
+struct responses_question {
 	const struct splats *splats;
 	const struct cameras *cameras;
 	const int64_t *offsets; /* sentence r has words offsets[r] to offsets[r+1] */
@@ -29,7 +29,7 @@ struct asked_of {
 	const char *model_path;
 };
 
-struct asked {
+struct responses {
 	size_t answers;
 	float *responses; /* (answers,N) as render_pack has them */
 	double *lifts;	  /* (answers) what calibration added to them */
@@ -39,7 +39,7 @@ struct asked {
 
 /* An answer for each sentence, calibrated or as trained. ERR_FORMAT where one is not finite. Returns 0, or -1
  * with *e set and nothing to free. */
-int asked_trained(struct asked *a, const struct respond_model *m, const struct asked_of *q,
+int responses_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
 	int wants_calibration, struct err *e);
 
 /* An answer for each set of objects that a sentence means: their union. A sentence that is less likely than
@@ -47,20 +47,20 @@ int asked_trained(struct asked *a, const struct respond_model *m, const struct a
  * sure an answer is: the probability that anything is meant, times the mean over its objects of the
  * probability of each to be meant times its confidence, which is about what its masks' IoU is worth. parts:
  * choose()'s. */
-#define ASKED_LEAST 0.65
-int asked_lifted(struct asked *a, const struct lifted *l, const struct asked_of *q, unsigned parts,
-	double least, struct err *e);
-void asked_free(struct asked *a);
+#define RESPONSES_LEAST 0.65
+int responses_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
+	unsigned parts, double least, struct err *e);
+void responses_free(struct responses *a);
 
 /* The Gaussians of an answer, those with responses above 0: ids, and these responses (both with room for all
  * `gaussians` of the scene). Returns how many. */
-size_t asked_gaussians(
-	const struct asked *a, size_t gaussians, size_t answer, int32_t *ids, float *responses);
+size_t responses_gaussians(
+	const struct responses *a, size_t gaussians, size_t answer, int32_t *ids, float *responses);
 
 /* wholes (answers) gets the Gaussians of each answer, those with responses above 0 that are in sight of the
- * cameras (refer/sight.h), as splats of their own without colour. splats_free each. On failure there are
+ * cameras (splat/visibility.h), as splats of their own without colour. splats_free each. On failure there are
  * none. */
-int asked_wholes(const struct asked *a, const struct splats *s, const struct cameras *cameras,
+int responses_wholes(const struct responses *a, const struct splats *s, const struct cameras *cameras,
 	struct splats *wholes, struct err *e);
 
 #endif
