@@ -1,6 +1,6 @@
 /* Scoring: predictions against truth, as mIoU, overall IoU and precision. */
-#ifndef MASK_SCORE_H
-#define MASK_SCORE_H
+#ifndef SCORE_SCORE_H
+#define SCORE_SCORE_H
 
 #include "mask/rle.h"
 
@@ -24,7 +24,7 @@ struct score_pair {
 	size_t intersection, either; /* |prediction and truth|, |prediction or truth| */
 	double iou;
 	int is_empty; /* nothing in the truth */
-	/* filled by score_choices (mask/score_choice.h) */
+	/* filled by score_choices (score/score_choice.h) */
 	int is_right; /* it shows its own object more than any other */
 };
 

@@ -1,10 +1,10 @@
 /* Scoring answers to sentences that may mean one object, several or none: which objects a mask shows, as F1,
  * and whether nothing is answered where nothing is meant. As Multi3DRefer scores (Zhang, Gong, Chang, ICCV
  * 2023), but for masks in views. formats/scores.md. */
-#ifndef MASK_SCORE_ANSWERS_H
-#define MASK_SCORE_ANSWERS_H
+#ifndef SCORE_SCORE_ANSWERS_H
+#define SCORE_SCORE_ANSWERS_H
 
-#include "mask/score.h"
+#include "score/score.h"
 
 enum { ANSWER_CUTS = 2 };
 extern const double answer_cut[ANSWER_CUTS]; /* 0.25, 0.5 */

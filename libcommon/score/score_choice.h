@@ -1,9 +1,9 @@
 /* Which object a prediction shows: choosing the wrong one is another fault than drawing the right one badly.
  */
-#ifndef MASK_SCORE_CHOICE_H
-#define MASK_SCORE_CHOICE_H
+#ifndef SCORE_SCORE_CHOICE_H
+#define SCORE_SCORE_CHOICE_H
 
-#include "mask/score.h"
+#include "score/score.h"
 
 /* Fills is_right of measured pairs: whether the prediction's IoU with its own truth is above 0 and above that
  * with the truth of every other object in the view. An object goes by its name, else by its ref. `truth` (n)

@@ -1,4 +1,4 @@
-#include "mask/bootstrap.h"
+#include "score/bootstrap.h"
 
 #include "base/mem.h"
 #include "base/rng.h"

@@ -1,10 +1,10 @@
 /* Groups that pairs belong to: by what their sentence says, and by how much of their object is seen. A pair's
  * set has the bit 1 << group; for score_table_groups. */
-#ifndef MASK_SCORE_GROUPS_H
-#define MASK_SCORE_GROUPS_H
+#ifndef SCORE_SCORE_GROUPS_H
+#define SCORE_SCORE_GROUPS_H
 
 #include "mask/relations.h"
-#include "mask/score.h"
+#include "score/score.h"
 
 /* After the relations themselves. */
 enum {

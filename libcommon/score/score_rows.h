@@ -1,10 +1,10 @@
 /* Tables of scores: a row for all pairs, for each object and for each of other groups, with intervals, and
  * beside the figures of another prediction of the same truth. */
-#ifndef MASK_SCORE_ROWS_H
-#define MASK_SCORE_ROWS_H
+#ifndef SCORE_SCORE_ROWS_H
+#define SCORE_SCORE_ROWS_H
 
-#include "mask/bootstrap.h"
-#include "mask/score.h"
+#include "score/bootstrap.h"
+#include "score/score.h"
 
 /* With at least this many objects in a row whole objects are drawn: the masks of one object, in its views and
  * by its sentences, succeed or fail together, and drawn singly would make the interval too narrow. With fewer

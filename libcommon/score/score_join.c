@@ -1,4 +1,4 @@
-#include "mask/score_join.h"
+#include "score/score_join.h"
 
 #include "base/mem.h"
 

@@ -1,4 +1,4 @@
-#include "geom/box_score.h"
+#include "score/box_score.h"
 
 #include <math.h>
 

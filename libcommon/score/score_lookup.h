@@ -1,8 +1,8 @@
 /* Finding mask records by view and name, without looking at all of them. */
-#ifndef MASK_SCORE_LOOKUP_H
-#define MASK_SCORE_LOOKUP_H
+#ifndef SCORE_SCORE_LOOKUP_H
+#define SCORE_SCORE_LOOKUP_H
 
-#include "mask/score.h"
+#include "score/score.h"
 
 /* What a record is looked up by, besides its view. */
 enum score_lookup_by {

@@ -1,4 +1,4 @@
-#include "mask/score_rows.h"
+#include "score/score_rows.h"
 
 #include "base/mem.h"
 

@@ -1,6 +1,6 @@
-#include "mask/score_choice.h"
+#include "score/score_choice.h"
 
-#include "mask/score_lookup.h"
+#include "score/score_lookup.h"
 
 #include <stddef.h>
 #include <string.h>

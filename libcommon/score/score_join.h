@@ -1,8 +1,8 @@
 /* Two prediction files against one truth: pairs of the one beside pairs of the other. */
-#ifndef MASK_SCORE_JOIN_H
-#define MASK_SCORE_JOIN_H
+#ifndef SCORE_SCORE_JOIN_H
+#define SCORE_SCORE_JOIN_H
 
-#include "mask/score.h"
+#include "score/score.h"
 
 /* Brings the pairs of two predictions with the same truth (score_match of the same array) side by side: after
  * it both lists have the same n, and the items of an index are of the same truth and sentence. The sentences

@@ -1,7 +1,7 @@
 /* How sure a figure is: intervals by resampling (Efron 1979), and a test by swapping signs (Fisher 1935).
  * What is resampled is a unit: things that belong together and are drawn together. */
-#ifndef MASK_BOOTSTRAP_H
-#define MASK_BOOTSTRAP_H
+#ifndef SCORE_BOOTSTRAP_H
+#define SCORE_BOOTSTRAP_H
 
 #include "base/err.h"
 

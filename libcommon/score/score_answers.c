@@ -1,7 +1,7 @@
-#include "mask/score_answers.h"
+#include "score/score_answers.h"
 
 #include "base/mem.h"
-#include "mask/score_lookup.h"
+#include "score/score_lookup.h"
 
 #include <stdlib.h>
 #include <string.h>

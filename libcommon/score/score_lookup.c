@@ -1,4 +1,4 @@
-#include "mask/score_lookup.h"
+#include "score/score_lookup.h"
 
 #include "base/mem.h"
 

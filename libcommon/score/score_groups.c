@@ -1,7 +1,7 @@
-#include "mask/score_groups.h"
+#include "score/score_groups.h"
 
 #include "base/mem.h"
-#include "mask/score_lookup.h"
+#include "score/score_lookup.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* How well boxes in space match true ones: the figures of 3D grounding (Chen et al. 2020, ScanRefer: the
  * share of sentences whose box has an IoU of 0.25, or of 0.5, with the true one). */
-#ifndef GEOM_BOX_SCORE_H
-#define GEOM_BOX_SCORE_H
+#ifndef SCORE_BOX_SCORE_H
+#define SCORE_BOX_SCORE_H
 
 #include "geom/box.h"
 
