@@ -2,7 +2,7 @@
 
 #include "ask/choose.h"
 #include "base/mem.h"
-#include "mask/assign.h"
+#include "nn/assignment.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -94,7 +94,7 @@ static int settle(struct lifted *l, const struct lifted *old, const struct choos
 			{.kind = VIEWPOINT_USUAL}};
 	for (int round = 0; round < ROUNDS && changes && !bad; round++) {
 		bad = judge(l, scene, sentences, choices, probability, chosen, value, e) ||
-		      assign_best(value, n, n, next, e);
+		      assignment_best(value, n, n, next, e);
 		changes = 0;
 		for (size_t o = 0; o < n && !bad; o++) {
 			changes |= next[o] != o;

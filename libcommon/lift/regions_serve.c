@@ -1,7 +1,7 @@
 #include "base/mem.h"
 #include "lift/regions.h"
 #include "lift/regions_private.h"
-#include "mask/assign.h"
+#include "nn/assignment.h"
 #include "splat/backproject.h"
 
 #include <math.h>
@@ -77,7 +77,7 @@ int regions_assign(struct regions *r, struct err *e)
 
 	if (!bad) {
 		find_values(r, share, columns, value, has_support);
-		bad = assign_best(value, r->object_count, columns, r->served, e);
+		bad = assignment_best(value, r->object_count, columns, r->served, e);
 	}
 	for (size_t o = 0; o < r->object_count && !bad; o++) {
 		if (!has_support[o * columns + r->served[o]])

@@ -3,7 +3,7 @@
 #ifndef SCORE_SCORE_GROUPS_H
 #define SCORE_SCORE_GROUPS_H
 
-#include "mask/relations.h"
+#include "lang/relation_words.h"
 #include "score/score.h"
 
 /* After the relations themselves. */

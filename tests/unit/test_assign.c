@@ -1,6 +1,6 @@
 /* The optimal assignment against all assignments tried. */
 #include "base/rng.h"
-#include "mask/assign.h"
+#include "nn/assignment.h"
 #include "unit.h"
 
 enum { MOST_ROWS = 5, MOST_COLUMNS = 7, LARGE = 120 };
@@ -47,7 +47,7 @@ static void test_brute_force(void)
 		/* every third round has whole numbers, so that many assignments are as good */
 		for (size_t i = 0; i < rows * columns; i++)
 			value[i] = round % 3 ? rng_normal(&r) * 5 : (double)rng_below(&r, 3) - 1;
-		CHECK(!assign_best(value, rows, columns, column, &e), "%s", e.message);
+		CHECK(!assignment_best(value, rows, columns, column, &e), "%s", e.message);
 		const double sum = sum_up(value, rows, columns, column, "small");
 		const double most = try_all(value, rows, columns, 0, 0);
 		CHECK(fabs(sum - most) < 1e-12, "round %d, %zux%zu: %g, expected %g", round, rows, columns,
@@ -71,7 +71,7 @@ static void test_large(void)
 		for (size_t j = 0; j < LARGE; j++)
 			value[i * LARGE + j] =
 				price[i] + price[j] - (j == i * 7 % LARGE ? 0 : 1 + rng_uniform(&r));
-	CHECK(!assign_best(value, LARGE, LARGE, column, &e), "%s", e.message);
+	CHECK(!assignment_best(value, LARGE, LARGE, column, &e), "%s", e.message);
 	for (size_t i = 0; i < LARGE; i++)
 		CHECK(column[i] == i * 7 % LARGE, "row %zu has column %zu", i, column[i]);
 	sum_up(value, LARGE, LARGE, column, "large");

@@ -5,7 +5,7 @@
 #include "base/rng.h"
 #include "geom/rotation.h"
 #include "lift/extent.h"
-#include "synth/boxes.h"
+#include "synth/true_boxes.h"
 
 enum { MOST = 4000 };
 

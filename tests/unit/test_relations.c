@@ -1,4 +1,4 @@
-#include "mask/relations.h"
+#include "lang/relation_words.h"
 #include "unit.h"
 
 /* Sentences with the names of their relations, in the order of enum relation. */

@@ -1,7 +1,7 @@
 /* Someone else's readings of sentences: which noun is meant and how it stands to which others, but not which
  * words say so. reading_align finds the words, so that a parser can learn from them. */
-#ifndef LANG_READINGS_H
-#define LANG_READINGS_H
+#ifndef LANG_READING_ALIGN_H
+#define LANG_READING_ALIGN_H
 
 #include "lang/parser_net.h"
 

@@ -1,4 +1,4 @@
-#include "lang/readings.h"
+#include "lang/reading_align.h"
 
 #include <math.h>
 #include <string.h>

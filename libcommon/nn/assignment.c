@@ -1,4 +1,4 @@
-#include "mask/assign.h"
+#include "nn/assignment.h"
 
 #include "base/mem.h"
 
@@ -63,7 +63,7 @@ static void assign_row(struct work *w, size_t row)
 	w->owner[at] = row;
 }
 
-int assign_best(const double *value, size_t rows, size_t columns, size_t *column, struct err *e)
+int assignment_best(const double *value, size_t rows, size_t columns, size_t *column, struct err *e)
 {
 	struct work w = {columns, value, mem_zalloc(rows, sizeof *w.row, "assignment", e),
 		mem_zalloc(columns, sizeof *w.column, "assignment", e),

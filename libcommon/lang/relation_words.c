@@ -1,4 +1,4 @@
-#include "mask/relations.h"
+#include "lang/relation_words.h"
 
 #include "base/utf8.h"
 

@@ -1,7 +1,7 @@
 /* Sentences that each mean one object of the scene, as people would write them: attributes with synonyms, and
  * relations true from the reference viewpoint. */
-#ifndef SYNTH_SENTENCES_H
-#define SYNTH_SENTENCES_H
+#ifndef SYNTH_SYNTH_SENTENCES_H
+#define SYNTH_SYNTH_SENTENCES_H
 
 #include "base/err.h"
 #include "geom/camera.h"

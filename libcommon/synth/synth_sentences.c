@@ -1,4 +1,4 @@
-#include "synth/sentences.h"
+#include "synth/synth_sentences.h"
 
 #include "synth/frames.h"
 

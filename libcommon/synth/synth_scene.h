@@ -1,7 +1,7 @@
 /* A table in a room, with objects, as Gaussians and cameras. Deterministic: the same options give the same
  * scene. */
-#ifndef SYNTH_SCENE_H
-#define SYNTH_SCENE_H
+#ifndef SYNTH_SYNTH_SCENE_H
+#define SYNTH_SYNTH_SCENE_H
 
 #include "base/err.h"
 #include "geom/camera.h"

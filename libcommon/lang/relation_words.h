@@ -1,7 +1,7 @@
 /* Which relations a sentence speaks of, by its words alone: "the mug right by the bowl on the wooden table"
  * is of next to and on, not of right. English; capitals do not matter. */
-#ifndef MASK_RELATIONS_H
-#define MASK_RELATIONS_H
+#ifndef LANG_RELATION_WORDS_H
+#define LANG_RELATION_WORDS_H
 
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 /* The true boxes of the things on the table: exact, from their surfaces. */
-#ifndef SYNTH_BOXES_H
-#define SYNTH_BOXES_H
+#ifndef SYNTH_TRUE_BOXES_H
+#define SYNTH_TRUE_BOXES_H
 
 #include "geom/box.h"
 #include "synth/objects.h"

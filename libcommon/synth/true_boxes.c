@@ -1,4 +1,4 @@
-#include "synth/boxes.h"
+#include "synth/true_boxes.h"
 
 #include <math.h>
 
