@@ -54,7 +54,7 @@ struct request {
 	struct anymodel model;
 	size_t count, *refs; /* (count) the sentences, as indices in text */
 	unsigned parts;	     /* of choose() */
-	struct responses asked;
+	struct responses responses;
 };
 
 /* Reads the files. *r is zeroed before; options stay the caller's. All return 0, or -1 with *e set, ERR_USAGE

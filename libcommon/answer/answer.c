@@ -32,7 +32,7 @@ static void room_free(struct room *room)
 /* Channels that are blended in one pass. */
 static size_t group_size(const struct answer_question *q, size_t first)
 {
-	const size_t left = q->asked->answers - first;
+	const size_t left = q->responses->answers - first;
 
 	return left < RENDER_GROUP ? left : RENDER_GROUP;
 }
@@ -80,7 +80,7 @@ static int take_outline(struct room *room, const struct splats *whole, struct an
 static int answer_view(struct room *room, const struct answer_question *q, const struct camera *c,
 	size_t view, const struct answer_calls *calls, struct err *e)
 {
-	const struct responses *asked = q->asked;
+	const struct responses *responses = q->responses;
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 	size_t images;
 
@@ -94,10 +94,10 @@ static int answer_view(struct room *room, const struct answer_question *q, const
 		prepare(&room->view, q->splats, c, e) ||
 		(q->wants_rgb && render_colors(room->view, q->splats, c, (const float[3]){0}, room->rgb, e)))
 		return -1;
-	for (size_t first = 0; first < asked->answers; first += RENDER_GROUP) {
+	for (size_t first = 0; first < responses->answers; first += RENDER_GROUP) {
 		const size_t now = group_size(q, first);
-		render_packed(
-			room->view, asked->responses + first * q->splats->n, (int)now, room->images, NULL);
+		render_packed(room->view, responses->responses + first * q->splats->n, (int)now, room->images,
+			NULL);
 		for (size_t i = 0; i < now; i++) {
 			float *image = room->images + i * pixels;
 			const size_t answer = first + i;
@@ -107,7 +107,7 @@ static int answer_view(struct room *room, const struct answer_question *q, const
 				.image = image,
 				.mask = room->mask,
 				.rgb = q->wants_rgb ? room->rgb : NULL,
-				.score = respond_mask(image, pixels, asked->lifts[answer], room->mask),
+				.score = respond_mask(image, pixels, responses->lifts[answer], room->mask),
 				.visible = NAN};
 			if (q->wholes && take_outline(room, &q->wholes[answer], &a, image, room->mask, e))
 				return -1;

@@ -1,4 +1,4 @@
-/* A model's answers in a view: for each answer to what was asked (answer/responses.h) the image of its
+/* A model's answers in a view: for each answer to a sentence (answer/responses.h) the image of its
  * responses, its mask and its score; or, amodally, the outline of the whole object as if nothing hid it. */
 #ifndef ANSWER_ANSWER_H
 #define ANSWER_ANSWER_H
@@ -11,10 +11,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What is asked, the same for every view. */
+/* What is drawn, the same for every view. */
 struct answer_question {
 	const struct splats *splats;
-	const struct responses *asked;
+	const struct responses *responses;
 	const struct splats *wholes; /* (answers) of responses_wholes, for outlines; NULL: what is in sight */
 	int wants_rgb;
 };

@@ -10,7 +10,7 @@
 #include "splat/splats.h"
 
 /* Gives each object the Gaussians that its training sentences mean: of all ways to share them out, the one
- * with the largest sum over sentences of log(p + 0.003), p of refer/choose.h without its part `sentence`, at
+ * with the largest sum over sentences of log(p + 0.003), p of ask/choose.h without its part `sentence`, at
  * most one lot of Gaussians to an object; again, as anchors move with their objects, until nothing changes,
  * four times at most. An object's own words fit its own Gaussians best, so that only things that look the
  * same change places. *moved gets how many objects have others than before. Returns 0, or -1 with *e set and

@@ -1,4 +1,4 @@
-/* Masks carried from the view where each begins to all others, through the scene. The paper compares its
+/* Masks propagated from the view where each begins to all others, through the scene. The paper compares its
  * choice of pseudo masks with "the first frame's mask, propagated to the others by SAM2" (section 4,
  * ablations); here the scene itself does what the video tracker does there.
  *

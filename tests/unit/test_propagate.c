@@ -1,5 +1,5 @@
-/* Pooling candidates, and masks carried from where they begin to other views, against the definition in plain
- * float64. */
+/* Pooling candidates, and masks propagated from the view where they begin to the others, against the
+ * definition in plain float64. */
 #include "lift/propagate.h"
 #include "mask_help.h"
 #include "unit.h"
@@ -100,7 +100,7 @@ static void check_view(const struct scene *s, const struct propagation *c, uint8
 
 /* Objects come in order; those below 3 have nothing above 0.3 in the first view, so that they begin in the
  * third (the second is a test view), object 3 nowhere. Each has a weaker candidate too. */
-static void test_carry(void)
+static void test_propagation(void)
 {
 	static struct scene s;
 	static char names[OBJECTS][16];
@@ -194,6 +194,6 @@ static void test_pool(void)
 int main(void)
 {
 	test_pool();
-	test_carry();
+	test_propagation();
 	return unit_end();
 }
