@@ -6,26 +6,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-int text_mlp_init(struct text_mlp *w, const struct refer_layout *l, size_t sentences, const int64_t *offsets,
-	const float *input, struct err *e)
+/* Words of the longest sentence. */
+static size_t find_longest(size_t sentences, const int64_t *offsets)
 {
-	const size_t rows = (size_t)offsets[sentences];
+	int64_t longest = 0;
+
+	for (size_t r = 0; r < sentences; r++)
+		if (offsets[r + 1] - offsets[r] > longest)
+			longest = offsets[r + 1] - offsets[r];
+	return (size_t)longest;
+}
+
+int text_mlp_init(struct text_mlp *w, const struct refer_layout *l, size_t sentences, const int64_t *offsets,
+	const float *input, enum text_mlp_purpose purpose, struct err *e)
+{
+	const int learns = purpose == TEXT_MLP_LEARNING;
+	const size_t rows = learns ? (size_t)offsets[sentences] : find_longest(sentences, offsets);
+	const size_t most = learns ? sentences : 1, sides = learns ? 2 : 1; /* values, and their gradients */
 
 	*w = (struct text_mlp){.layout = l, .sentences = sentences, .offsets = offsets, .input = input};
-	w->h1 = mem_alloc(rows, 2 * sizeof(float) * (REFER_T1 + REFER_T2), "words", e);
-	w->mean = mem_zalloc(sentences, 2 * sizeof(float) * (REFER_T2 + REFER_D), "words", e);
-	w->copied = mem_alloc(rows, (size_t)l->text_width * sizeof *w->copied, "words", e);
-	w->at = mem_zalloc(sentences + 1, sizeof *w->at, "words", e);
+	w->h1 = mem_alloc(rows, sides * sizeof(float) * (REFER_T1 + REFER_T2), "words", e);
+	w->mean = mem_zalloc(most, sides * sizeof(float) * (REFER_T2 + REFER_D), "words", e);
+	w->copied = mem_alloc(learns ? rows : 0, (size_t)l->text_width * sizeof *w->copied, "words", e);
+	w->at = mem_zalloc(most + 1, sizeof *w->at, "words", e);
 	if (!w->h1 || !w->mean || !w->copied || !w->at) {
 		text_mlp_free(w);
 		return -1;
 	}
 	w->h2 = w->h1 + rows * REFER_T1;
+	w->e = w->mean + most * REFER_T2;
+	if (!learns)
+		return 0;
 	w->dh1 = w->h2 + rows * REFER_T2;
 	w->dh2 = w->dh1 + rows * REFER_T1;
-	w->dmean = w->mean + sentences * REFER_T2;
-	w->e = w->dmean + sentences * REFER_T2;
-	w->de = w->e + sentences * REFER_D;
+	w->dmean = w->e + most * REFER_D;
+	w->de = w->dmean + most * REFER_T2;
 	return 0;
 }
 
@@ -65,15 +80,19 @@ static void relu_back(float *d, const float *value, size_t count)
 void text_mlp_choose(struct text_mlp *w, const size_t *list, size_t count)
 {
 	const size_t width = (size_t)w->layout->text_width;
-	int is_all = count == w->sentences;
+	int is_input = count == w->sentences || count == 1;
 
 	w->count = count;
 	for (size_t k = 0; k < count; k++) {
 		w->at[k + 1] = w->at[k] + w->offsets[list[k] + 1] - w->offsets[list[k]];
-		is_all = is_all && list[k] == k;
+		is_input = is_input && (count == 1 || list[k] == k);
 	}
-	w->chosen = is_all ? w->input : w->copied;
-	for (size_t k = 0; k < count && !is_all; k++)
+	if (is_input) {
+		w->chosen = w->input + (count ? (size_t)w->offsets[list[0]] * width : 0);
+		return;
+	}
+	w->chosen = w->copied;
+	for (size_t k = 0; k < count; k++)
 		memcpy(w->copied + (size_t)w->at[k] * width, w->input + (size_t)w->offsets[list[k]] * width,
 			(size_t)(w->at[k + 1] - w->at[k]) * width * sizeof *w->copied);
 }

@@ -18,20 +18,25 @@ struct text_mlp {
 	size_t count;		/* k */
 	int64_t *at;		/* (k+1) where a chosen sentence's words begin */
 	const float *chosen;	/* (n,D_text) their words: copied, or input */
-	float *copied;		/* (offsets[R],D_text) */
+	float *copied;		/* (offsets[R],D_text), for learning */
 	float *h1, *h2;		/* (n,512), (n,256) hidden layers */
 	float *dh1, *dh2;	/* their gradients */
 	float *mean, *dmean;	/* (k,256) mean of h2 */
 	float *e, *de;		/* (k,128) embeddings */
 };
 
+/* What it is for decides its size: answering has buffers for one sentence at a time, and none for gradients.
+ */
+enum text_mlp_purpose { TEXT_MLP_ANSWERING, TEXT_MLP_LEARNING };
+
 /* Refers to offsets and input, which must outlive it. A sentence without words has the embedding of h2 = 0.
  */
 int text_mlp_init(struct text_mlp *w, const struct refer_layout *l, size_t sentences, const int64_t *offsets,
-	const float *input, struct err *e);
+	const float *input, enum text_mlp_purpose purpose, struct err *e);
 void text_mlp_free(struct text_mlp *w);
 
-/* Which sentences the step has: `list` (count) of different ones. What follows goes by their place in it. */
+/* Which sentences go together: `list` (count) of different ones; for answering count is 1. What follows goes
+ * by their place in it. */
 void text_mlp_choose(struct text_mlp *w, const size_t *list, size_t count);
 
 /* Hidden layers. */

@@ -1,22 +1,19 @@
 #include "train/step.h"
 
 #include "base/mem.h"
-#include "field/fold.h"
+#include "field/forward.h"
 #include "field/image_loss.h"
+#include "field/panels.h"
 #include "field/text_mlp.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { L = BLOCK_LANES, G = BLOCK_G, CHUNKS = 32 };
+enum { L = BLOCK_LANES, G = BLOCK_G, CHUNKS = FORWARD_CHUNKS };
 
-/* The parts of a chunk's sums, in the order of struct block_sums. */
+/* The parts of a chunk's sums in the backward pass, in the order of struct block_sums. */
 enum part {
-	L_MAX,
-	L_SUM,
-	C_SUM,
 	DUH,
 	DUQ,
 	DY,
@@ -44,26 +41,17 @@ struct step {
 	int *chosen_objects; /* (R) */
 	char *is_chosen;     /* (R) */
 	size_t *places;	     /* (batch) of the targets in chosen */
-	struct fold *fold;
-	struct block_model model;
-	struct block_arrays arrays;
-	size_t blocks, padded;
-	int max_words; /* of a step */
-	int *first;    /* (batch+1) */
-	float *slab;   /* all per-Gaussian arrays but x and dx */
-	float *position;
+	struct forward forward;
+	float *slab;	       /* the per-Gaussian arrays of the backward pass, but dx */
 	float *response, *top; /* (padded) one sentence's channel */
 	struct image_loss images;
-	float *vectors, *dvectors; /* (n,128) */
-	double *fg, *dfg, *score;  /* (S,128), (S,128), (R) */
+	float *dvectors;	  /* (n,128) */
+	double *fg, *dfg, *score; /* (S,128), (S,128), (R) */
 	struct block_sums sums[CHUNKS];
 	size_t at[PARTS + 1]; /* where each part lies in a chunk's slab, for the current step */
 	float *chunks;	      /* (CHUNKS, chunk_size) */
 	size_t chunk_size;
-	double *total;	/* (chunk_size) the chunks' sums, added in order */
-	float *scratch; /* (threads, scratch_size) */
-	size_t scratch_size;
-	int threads;
+	double *total; /* (chunk_size) the chunks' sums, added in order */
 	void (*ended)(void *data, enum step_phase phase);
 	void *ended_data;
 };
@@ -80,41 +68,11 @@ static void phase_ended(const struct step *s, enum step_phase phase)
 		s->ended(s->ended_data, phase);
 }
 
-size_t step_padded(size_t gaussians)
-{
-	return (gaussians + BLOCK_SIZE - 1) / BLOCK_SIZE * BLOCK_SIZE;
-}
-
-static size_t panel_index(size_t i, int channels, int c)
-{
-	return i / L * (size_t)channels * L + (size_t)c * L + i % L;
-}
-
-static void pack(const float *rows, size_t n, int channels, float *panels)
-{
-	memset(panels, 0, sizeof *panels * step_padded(n) * (size_t)channels);
-	for (size_t i = 0; i < n; i++)
-		for (int c = 0; c < channels; c++)
-			panels[panel_index(i, channels, c)] = rows[i * (size_t)channels + (size_t)c];
-}
-
-void step_pack(const float *x, size_t gaussians, int width, float *panels)
-{
-	pack(x, gaussians, width, panels);
-}
-
-void step_unpack(const float *panels, size_t gaussians, int width, float *x)
-{
-	for (size_t i = 0; i < gaussians; i++)
-		for (int c = 0; c < width; c++)
-			x[i * (size_t)width + (size_t)c] = panels[panel_index(i, width, c)];
-}
-
 /* Lengths of a chunk's parts for n words, S sentences and z channels; x has `width`. */
 static void lay_out(
 	size_t at[PARTS + 1], size_t n, size_t sentences, size_t z, int is_normalised, size_t width)
 {
-	const size_t length[PARTS] = {n, n, n * G, n * G, n * G, n * G, sentences * z,
+	const size_t length[PARTS] = {n * G, n * G, n * G, sentences * z,
 		is_normalised ? sentences * (z + 1) * z : 0, sentences, sentences * z, (size_t)G * G,
 		REFER_XH * width, REFER_XH, REFER_H * REFER_XH, REFER_H, REFER_PH * 3, REFER_PH,
 		REFER_H * REFER_PH, REFER_H};
@@ -126,16 +84,16 @@ static void lay_out(
 
 static void set_chunks(struct step *s)
 {
-	lay_out(s->at, (size_t)s->model.words, (size_t)s->model.sentences, (size_t)s->model.z_size,
-		s->model.is_normalised, (size_t)s->model.feature_width);
+	lay_out(s->at, (size_t)s->forward.model.words, (size_t)s->forward.model.sentences,
+		(size_t)s->forward.model.z_size, s->forward.model.is_normalised,
+		(size_t)s->forward.model.feature_width);
 	for (int c = 0; c < CHUNKS; c++) {
 		float *base = s->chunks + (size_t)c * s->chunk_size;
-		float **parts[PARTS] = {&s->sums[c].l_max, &s->sums[c].l_sum, &s->sums[c].c_sum,
-			&s->sums[c].duh, &s->sums[c].duq, &s->sums[c].dy, &s->sums[c].dk, &s->sums[c].dgram,
-			&s->sums[c].dm0, &s->sums[c].mean, &s->sums[c].dp_gram, &s->sums[c].dfeature0,
-			&s->sums[c].dfeature0_bias, &s->sums[c].dfeature1, &s->sums[c].dfeature1_bias,
-			&s->sums[c].dposition0, &s->sums[c].dposition0_bias, &s->sums[c].dposition1,
-			&s->sums[c].dposition1_bias};
+		float **parts[PARTS] = {&s->sums[c].duh, &s->sums[c].duq, &s->sums[c].dy, &s->sums[c].dk,
+			&s->sums[c].dgram, &s->sums[c].dm0, &s->sums[c].mean, &s->sums[c].dp_gram,
+			&s->sums[c].dfeature0, &s->sums[c].dfeature0_bias, &s->sums[c].dfeature1,
+			&s->sums[c].dfeature1_bias, &s->sums[c].dposition0, &s->sums[c].dposition0_bias,
+			&s->sums[c].dposition1, &s->sums[c].dposition1_bias};
 		for (int p = 0; p < PARTS; p++)
 			*parts[p] = base + s->at[p];
 	}
@@ -153,7 +111,7 @@ static void add_chunks(struct step *s, enum part from, enum part to)
 {
 	const size_t begin = s->at[from], end = s->at[to + 1], part = 1024;
 
-#pragma omp parallel for schedule(static) num_threads(s->threads)
+#pragma omp parallel for schedule(static) num_threads(s->forward.threads)
 	for (size_t first = begin; first < end; first += part) {
 		const size_t last = end - first > part ? first + part : end;
 		memset(s->total + first, 0, sizeof(double) * (last - first));
@@ -163,34 +121,39 @@ static void add_chunks(struct step *s, enum part from, enum part to)
 	}
 }
 
-/* Runs a phase over all blocks, each chunk's in order. */
+static void gather_block(void *data, size_t block, int chunk, float *scratch)
+{
+	struct step *s = data;
+
+	(void)scratch;
+	s->forward.setup.kernels->gather(&s->forward.model, &s->forward.arrays, block, &s->sums[chunk]);
+}
+
+static void scores_back_block(void *data, size_t block, int chunk, float *scratch)
+{
+	struct step *s = data;
+
+	s->forward.setup.kernels->scores_back(
+		&s->forward.model, &s->forward.arrays, block, &s->sums[chunk], scratch);
+}
+
+static void hidden_back_block(void *data, size_t block, int chunk, float *scratch)
+{
+	struct step *s = data;
+
+	s->forward.setup.kernels->hidden_back(
+		&s->forward.model, &s->forward.arrays, block, &s->sums[chunk], scratch);
+}
+
+/* Runs a phase of the backward pass over all blocks. */
 static void run_phase(struct step *s, enum step_phase phase)
 {
-	const struct block_kernels *k = s->setup.kernels;
-
 	phase_ended(s, STEP_FOLD);
-#pragma omp parallel for schedule(dynamic) num_threads(s->threads)
-	for (int c = 0; c < CHUNKS; c++) {
-		float *scratch = s->scratch + (size_t)omp_get_thread_num() * s->scratch_size;
-		for (size_t b = s->blocks * (size_t)c / CHUNKS; b < s->blocks * (size_t)(c + 1) / CHUNKS; b++)
-			switch (phase) {
-			case STEP_HIDDEN:
-				k->hidden(&s->model, &s->arrays, b, &s->sums[c], scratch);
-				break;
-			case STEP_RESPOND:
-				k->respond(&s->model, &s->arrays, b);
-				break;
-			case STEP_GATHER:
-				k->gather(&s->model, &s->arrays, b, &s->sums[c]);
-				break;
-			case STEP_SCORES_BACK:
-				k->scores_back(&s->model, &s->arrays, b, &s->sums[c], scratch);
-				break;
-			default:
-				k->hidden_back(&s->model, &s->arrays, b, &s->sums[c], scratch);
-				break;
-			}
-	}
+	forward_each_block(&s->forward,
+		phase == STEP_GATHER	    ? gather_block
+		: phase == STEP_SCORES_BACK ? scores_back_block
+					    : hidden_back_block,
+		s);
 	phase_ended(s, phase);
 }
 
@@ -215,62 +178,50 @@ static int alloc_arrays(struct step *s, struct err *e)
 	const struct step_setup *u = &s->setup;
 	const enum refer_interaction i = u->layout->interaction;
 	const int normalised = u->similarity == REFER_COSINE || i == REFER_PCMI_PROJ;
-	const size_t n = (size_t)s->max_words, batch = (size_t)u->batch;
-	const int attention = i != REFER_NONE && i != REFER_ADD;
-	const size_t channels[10] = {G, refer_uses_position(i) ? G : 0, i >= REFER_PCMI ? n : 0,
-		attention ? n : 0, batch, batch, batch, batch, normalised ? G : 0,
-		normalised && i == REFER_ADD ? G : 0};
-	float **arrays[10] = {&s->arrays.g, &s->arrays.r, &s->arrays.beta, &s->arrays.alpha, &s->arrays.m,
-		&s->arrays.sigma, &s->arrays.dm, &s->arrays.top, &s->arrays.dg, &s->arrays.dr};
+	const size_t batch = (size_t)u->batch, padded = s->forward.padded;
+	const size_t channels[4] = {batch, batch, normalised ? G : 0, normalised && i == REFER_ADD ? G : 0};
+	struct block_arrays *a = &s->forward.arrays;
+	float **arrays[4] = {&a->dm, &a->top, &a->dg, &a->dr};
 	size_t all = 0, floats;
 
-	for (int k = 0; k < 10; k++)
+	for (int k = 0; k < 4; k++)
 		all += channels[k];
-	if (mem_size(all, s->padded, &floats))
+	if (mem_size(all, padded, &floats))
 		return err_set(e, ERR_SYSTEM, "%zu Gaussians do not fit in memory", u->gaussians);
 	s->slab = mem_zalloc(floats, sizeof(float), "features", e);
-	s->position = mem_alloc(s->padded, 3 * sizeof(float), "positions", e);
-	s->response = mem_zalloc(s->padded, 2 * sizeof(float), "responses", e);
-	if (!s->slab || !s->position || !s->response ||
-		image_loss_init(&s->images, u->pixels, s->padded, u->batch, s->threads, e))
+	s->response = mem_zalloc(padded, 2 * sizeof(float), "responses", e);
+	if (!s->slab || !s->response ||
+		image_loss_init(&s->images, u->pixels, padded, u->batch, s->forward.threads, e))
 		return -1;
-	s->top = s->response + s->padded;
+	s->top = s->response + padded;
 	float *at = s->slab;
-	for (int k = 0; k < 10; k++) {
+	for (int k = 0; k < 4; k++) {
 		*arrays[k] = channels[k] ? at : NULL;
-		at += channels[k] * s->padded;
+		at += channels[k] * padded;
 	}
-	pack(u->position, u->gaussians, 3, s->position);
-	s->arrays.position = s->position;
 	return 0;
 }
 
-static int alloc_sums(struct step *s, struct err *e)
+static int alloc_sums(struct step *s, int longest, struct err *e)
 {
 	const struct step_setup *u = &s->setup;
-	const size_t batch = (size_t)u->batch, n = (size_t)s->max_words;
-	const size_t longest = n / batch, z = 2 * G + longest;
+	const size_t batch = (size_t)u->batch, n = batch * (size_t)longest, z = 2 * G + (size_t)longest;
 	const int normalised = u->similarity == REFER_COSINE || u->layout->interaction == REFER_PCMI_PROJ;
 	size_t at[PARTS + 1];
 
 	lay_out(at, n, batch, z, normalised, (size_t)u->layout->feature_width);
 	s->chunk_size = at[PARTS];
-	const struct block_model largest = {.words = s->max_words, .z_size = (int)z};
-	s->scratch_size = (block_scratch_floats(&largest) + 15) / 16 * 16;
 	s->chunks = mem_zalloc(CHUNKS, s->chunk_size * sizeof(float), "sums", e);
 	s->total = mem_zalloc(s->chunk_size, sizeof(double), "sums", e);
-	s->scratch = mem_zalloc((size_t)s->threads, s->scratch_size * sizeof(float), "scratch", e);
-	s->vectors = mem_zalloc(n, 2 * REFER_D * sizeof(float), "words", e);
+	s->dvectors = mem_zalloc(n, REFER_D * sizeof(float), "words", e);
 	s->fg = mem_zalloc(2 * batch * REFER_D + u->sentences, sizeof(double), "contrast", e);
-	s->first = mem_zalloc(batch + 1, sizeof *s->first, "batch", e);
 	s->places = mem_zalloc(batch, sizeof *s->places, "batch", e);
 	s->chosen = mem_zalloc(u->sentences, sizeof *s->chosen, "batch", e);
 	s->chosen_objects = mem_zalloc(u->sentences, sizeof *s->chosen_objects, "batch", e);
 	s->is_chosen = mem_zalloc(u->sentences, 1, "batch", e);
-	if (!s->chunks || !s->total || !s->scratch || !s->vectors || !s->fg || !s->first || !s->places ||
-		!s->chosen || !s->chosen_objects || !s->is_chosen)
+	if (!s->chunks || !s->total || !s->dvectors || !s->fg || !s->places || !s->chosen ||
+		!s->chosen_objects || !s->is_chosen)
 		return -1;
-	s->dvectors = s->vectors + n * REFER_D;
 	s->dfg = s->fg + batch * REFER_D;
 	s->score = s->dfg + batch * REFER_D;
 	return 0;
@@ -278,21 +229,21 @@ static int alloc_sums(struct step *s, struct err *e)
 
 struct step *step_new(const struct step_setup *setup, struct err *e)
 {
+	struct forward_setup forward = {.layout = setup->layout,
+		.similarity = setup->similarity,
+		.gaussians = setup->gaussians,
+		.position = setup->position,
+		.batch = setup->batch,
+		.kernels = setup->kernels};
 	struct step *s;
-	int longest;
 
-	if (check_sentences(setup, &longest, e) || !(s = mem_zalloc(1, sizeof *s, "step", e)))
+	if (check_sentences(setup, &forward.longest, e) || !(s = mem_zalloc(1, sizeof *s, "step", e)))
 		return NULL;
 	s->setup = *setup;
-	if (!s->setup.kernels)
-		s->setup.kernels = block_select(NULL);
-	s->padded = step_padded(setup->gaussians);
-	s->blocks = s->padded / BLOCK_SIZE;
-	s->max_words = longest * setup->batch;
-	s->threads = omp_get_max_threads();
-	if (alloc_arrays(s, e) || alloc_sums(s, e) ||
-		text_mlp_init(&s->words, setup->layout, setup->sentences, setup->offsets, setup->words, e) ||
-		!(s->fold = fold_new(setup->layout, setup->similarity, longest, setup->batch, e))) {
+	if (forward_init(&s->forward, &forward, e) || alloc_arrays(s, e) ||
+		alloc_sums(s, forward.longest, e) ||
+		text_mlp_init(&s->words, setup->layout, setup->sentences, setup->offsets, setup->words,
+			TEXT_MLP_LEARNING, e)) {
 		step_free(s);
 		return NULL;
 	}
@@ -304,85 +255,40 @@ void step_free(struct step *s)
 	if (!s)
 		return;
 	text_mlp_free(&s->words);
-	fold_free(s->fold);
-	free(s->first);
+	forward_free(&s->forward);
 	free(s->places);
 	free(s->chosen);
 	free(s->chosen_objects);
 	free(s->is_chosen);
 	free(s->slab);
-	free(s->position);
 	free(s->response);
 	image_loss_free(&s->images);
-	free(s->vectors);
+	free(s->dvectors);
 	free(s->fg);
 	free(s->chunks);
 	free(s->total);
-	free(s->scratch);
 	free(s);
-}
-
-/* The softmax over Gaussians from the chunks' running sums: cbar, l_max and l_sum in place of the totals. */
-static void join_word_positions(struct step *s)
-{
-	double *top = s->total + s->at[L_MAX], *sum = s->total + s->at[L_SUM],
-	       *mean = s->total + s->at[C_SUM];
-
-	for (int j = 0; j < s->model.words; j++) {
-		double *row = mean + j * G;
-		top[j] = -INFINITY;
-		sum[j] = 0;
-		memset(row, 0, sizeof *row * G);
-		for (int c = 0; c < CHUNKS; c++)
-			top[j] = fmax(top[j], (double)s->sums[c].l_max[j]);
-		for (int c = 0; c < CHUNKS; c++) {
-			double scale = exp((double)s->sums[c].l_max[j] - top[j]);
-			sum[j] += scale * (double)s->sums[c].l_sum[j];
-			for (int k = 0; k < G; k++)
-				row[k] += scale * (double)s->sums[c].c_sum[j * G + k];
-		}
-		for (int k = 0; k < G; k++)
-			row[k] /= sum[j];
-	}
 }
 
 /* From words to responses, in arrays.m. */
 static void forward(struct step *s, const float *parameters, const float *x, int count)
 {
-	struct block_model *b = &s->model;
+	struct forward *f = &s->forward;
 
-	s->first[0] = 0;
 	for (int i = 0; i < count; i++) {
 		const int64_t *at = s->words.at + s->places[i];
-		text_mlp_vectors(&s->words, parameters, s->places[i], s->vectors + s->first[i] * REFER_D);
-		s->first[i + 1] = s->first[i] + (int)(at[1] - at[0]);
+		text_mlp_vectors(&s->words, parameters, s->places[i], f->vectors + f->first[i] * REFER_D);
+		f->first[i + 1] = f->first[i] + (int)(at[1] - at[0]);
 	}
-	fold_begin(s->fold, parameters, s->setup.gaussians, s->first, count, b);
-	fold_words(s->fold, s->vectors, b);
-	s->arrays.x = x;
+	forward_fold(f, parameters, count);
 	set_chunks(s);
-	clear_parts(s, L_MAX, C_SUM);
-	for (int c = 0; c < CHUNKS; c++)
-		for (int j = 0; j < b->words; j++)
-			s->sums[c].l_max[j] = -INFINITY;
-	run_phase(s, STEP_HIDDEN);
-	if (b->has_words)
-		join_word_positions(s);
-	fold_scores(s->fold, s->total + s->at[C_SUM], s->total + s->at[L_MAX], s->total + s->at[L_SUM], b);
-	run_phase(s, STEP_RESPOND);
-}
-
-/* One sentence's channel of a panel array, to or from (padded) floats. */
-static void channel_get(const float *panels, size_t padded, int channels, int c, float *out)
-{
-	for (size_t i = 0; i < padded; i += L)
-		memcpy(out + i, panels + panel_index(i, channels, c), sizeof(float) * L);
-}
-
-static void channel_put(float *panels, size_t padded, int channels, int c, const float *in)
-{
-	for (size_t i = 0; i < padded; i += L)
-		memcpy(panels + panel_index(i, channels, c), in + i, sizeof(float) * L);
+	phase_ended(s, STEP_FOLD);
+	forward_hidden(f, x);
+	phase_ended(s, STEP_HIDDEN);
+	forward_scores(f);
+	phase_ended(s, STEP_FOLD);
+	forward_respond(f);
+	phase_ended(s, STEP_RESPOND);
 }
 
 /* Images, their loss, and dm. */
@@ -393,10 +299,11 @@ static double image_losses(
 	const uint8_t *masks[BLOCK_WORDS];
 
 	/* the padding of a last panel may hold what a step of other channels left */
-	memset(s->arrays.dm + whole * channels, 0, sizeof(float) * (s->padded - whole) * channels);
+	memset(s->forward.arrays.dm + whole * channels, 0,
+		sizeof(float) * (s->forward.padded - whole) * channels);
 	for (int i = 0; i < count; i++)
 		masks[i] = targets[i].mask;
-	return image_loss_run(&s->images, view, s->arrays.m, count, masks, s->arrays.dm);
+	return image_loss_run(&s->images, view, s->forward.arrays.m, count, masks, s->forward.arrays.dm);
 }
 
 /* How often each chosen sentence of another object counts, to stand for all of them. */
@@ -417,16 +324,16 @@ static double contrast_losses(struct step *s, const struct step_target *targets,
 	double sum = 0;
 
 	for (int i = 0; i < count; i++) {
-		channel_get(s->arrays.m, s->padded, count, i, s->response);
-		memset(s->top, 0, sizeof(float) * s->padded);
+		panels_get(s->forward.arrays.m, s->forward.padded, count, i, s->response);
+		memset(s->top, 0, sizeof(float) * s->forward.padded);
 		contrast_top_set(s->response, s->setup.gaussians, top_count, s->top);
-		channel_put(s->arrays.top, s->padded, count, i, s->top);
+		panels_put(s->forward.arrays.top, s->forward.padded, count, i, s->top);
 	}
 	phase_ended(s, STEP_TOP);
 	clear_parts(s, MEAN, MEAN);
 	run_phase(s, STEP_GATHER);
 	add_chunks(s, MEAN, MEAN);
-	fold_top(s->fold, s->total + s->at[MEAN], s->fg);
+	fold_top(s->forward.fold, s->total + s->at[MEAN], s->fg);
 	memset(s->words.de, 0, sizeof(float) * s->chosen_count * REFER_D);
 	for (int i = 0; i < count; i++) {
 		const int object = s->setup.objects[targets[i].sentence];
@@ -435,7 +342,7 @@ static double contrast_losses(struct step *s, const struct step_target *targets,
 			       s->setup.lambda / count, s->dfg + i * REFER_D, s->words.de, s->score) /
 		       count;
 	}
-	fold_top_back(s->fold, s->dfg, &s->model);
+	fold_top_back(s->forward.fold, s->dfg, &s->forward.model);
 	return sum;
 }
 
@@ -456,9 +363,9 @@ static void backward(struct step *s, const float *parameters, int count, float *
 	clear_parts(s, DUH, DM0);
 	run_phase(s, STEP_SCORES_BACK);
 	add_chunks(s, DUH, DM0);
-	fold_scores_back(s->fold, s->total + s->at[DUH], s->total + s->at[DUQ], s->total + s->at[DK],
-		s->total + s->at[DGRAM], s->total + s->at[DM0], &s->model);
-	s->arrays.dx = dx;
+	fold_scores_back(s->forward.fold, s->total + s->at[DUH], s->total + s->at[DUQ], s->total + s->at[DK],
+		s->total + s->at[DGRAM], s->total + s->at[DM0], &s->forward.model);
+	s->forward.arrays.dx = dx;
 	clear_parts(s, DY, DY);
 	clear_parts(s, DP_GRAM, DPOSITION1_BIAS);
 	run_phase(s, STEP_HIDDEN_BACK);
@@ -468,12 +375,12 @@ static void backward(struct step *s, const float *parameters, int count, float *
 		add_tensor(s, DFEATURE0 + (enum part)i, FEATURE_0_WEIGHT + (enum refer_tensor)i, gradient);
 		add_tensor(s, DPOSITION0 + (enum part)i, POSITION_0_WEIGHT + (enum refer_tensor)i, gradient);
 	}
-	fold_end(s->fold, s->total + s->at[DY], s->total + s->at[DP_GRAM], gradient, s->dvectors);
+	fold_end(s->forward.fold, s->total + s->at[DY], s->total + s->at[DP_GRAM], gradient, s->dvectors);
 	phase_ended(s, STEP_FOLD);
 	text_mlp_back_begin(&s->words, parameters, gradient, has_contrast);
 	for (int i = 0; i < count; i++)
-		text_mlp_back_vectors(
-			&s->words, parameters, gradient, s->places[i], s->dvectors + s->first[i] * REFER_D);
+		text_mlp_back_vectors(&s->words, parameters, gradient, s->places[i],
+			s->dvectors + s->forward.first[i] * REFER_D);
 	text_mlp_back_end(&s->words, parameters, gradient);
 	phase_ended(s, STEP_WORDS);
 }
@@ -530,8 +437,8 @@ struct step_losses step_run(struct step *s, const float *parameters, const float
 	if (has_contrast) {
 		losses.contrast = contrast_losses(s, targets, count, top_count);
 	} else {
-		memset(s->arrays.top, 0, sizeof(float) * s->padded * (size_t)count);
-		fold_top_back(s->fold, NULL, &s->model);
+		memset(s->forward.arrays.top, 0, sizeof(float) * s->forward.padded * (size_t)count);
+		fold_top_back(s->forward.fold, NULL, &s->forward.model);
 	}
 	backward(s, parameters, count, gradient, dx);
 	losses.total = losses.bce + s->setup.lambda * losses.contrast;
@@ -544,6 +451,6 @@ void step_respond(struct step *s, const float *parameters, const float *x, size_
 	text_mlp_choose(&s->words, &sentence, 1);
 	text_mlp_hidden(&s->words, parameters);
 	forward(s, parameters, x, 1);
-	channel_get(s->arrays.m, s->padded, 1, 0, s->response);
+	panels_get(s->forward.arrays.m, s->forward.padded, 1, 0, s->response);
 	memcpy(m, s->response, sizeof *m * s->setup.gaussians);
 }

@@ -7,6 +7,7 @@
 #include "base/err.h"
 #include "field/block.h"
 #include "field/contrast.h"
+#include "field/panels.h"
 #include "field/referring_model.h"
 #include "splat/view_weights.h"
 
@@ -53,12 +54,6 @@ enum step_phase {
  * phase's. */
 void step_watch(struct step *s, void (*ended)(void *data, enum step_phase phase), void *data);
 
-/* Referring features are kept in panels (field/block.h): N padded to step_padded(N), d_r channels (`width`
- * below). */
-size_t step_padded(size_t gaussians);
-void step_pack(const float *x, size_t gaussians, int width, float *panels); /* (N,d_r) row-major to panels */
-void step_unpack(const float *panels, size_t gaussians, int width, float *x); /* and back */
-
 struct step_target {
 	size_t sentence;     /* index below R */
 	const uint8_t *mask; /* of P pixels, as bits (mask/bits.h) */
@@ -77,7 +72,8 @@ struct step_others {
 	size_t count;
 };
 
-/* One step over `count` sentences of one view. gradient (layout count) and dx (panels) are overwritten with
+/* One step over `count` sentences of one view. x (panels of d_r channels, field/panels.h) are the features.
+ * gradient (layout count) and dx (panels) are overwritten with
  * the gradients of the total loss. top_count is contrast_top_count's. others NULL: the contrast is with all
  * sentences. */
 struct step_losses step_run(struct step *s, const float *parameters, const float *x,

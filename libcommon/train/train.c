@@ -187,7 +187,7 @@ int train_state_init(struct train_state *t, const struct refer_layout *l, size_t
 	struct rng r;
 
 	*t = (struct train_state){.parameters = (l->count + 15) / 16 * 16};
-	t->count = t->parameters + step_padded(gaussians) * (size_t)l->feature_width;
+	t->count = t->parameters + panels_padded(gaussians) * (size_t)l->feature_width;
 	t->values = mem_zalloc(t->count, (keeps_best ? 5 : 4) * sizeof(float), "training state", e);
 	if (!t->values)
 		return -1;

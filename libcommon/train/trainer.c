@@ -99,7 +99,7 @@ static int init_features(struct trainer *t, uint64_t seed, struct err *e)
 		free(x);
 		return -1;
 	}
-	step_pack(x, t->rows.n, width, train_state_x(&t->state));
+	panels_pack(x, t->rows.n, width, train_state_x(&t->state));
 	free(x);
 	return 0;
 }
@@ -189,7 +189,7 @@ float *trainer_features(const struct trainer *t, const float *values, struct err
 	float *x = mem_alloc(t->rows.n, (size_t)width * sizeof *x, "features", e);
 
 	if (x)
-		step_unpack(values + t->state.parameters, t->rows.n, width, x);
+		panels_unpack(values + t->state.parameters, t->rows.n, width, x);
 	return x;
 }
 

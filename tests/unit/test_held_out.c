@@ -128,11 +128,11 @@ static void test_evaluate(void)
 
 	sample_init(&s);
 	refer_layout_init(&layout, REFER_PCMI, WIDTH, 4);
-	float *parameters = mem_zalloc(layout.count + step_padded(ROWS) * 4, sizeof(float), "test", &e);
+	float *parameters = mem_zalloc(layout.count + panels_padded(ROWS) * 4, sizeof(float), "test", &e);
 	float *x = parameters + layout.count;
 	rng_seed(&rng, 8, 1);
 	refer_init(&layout, parameters, &rng);
-	for (size_t i = 0; i < step_padded(ROWS) * 4; i++)
+	for (size_t i = 0; i < panels_padded(ROWS) * 4; i++)
 		x[i] = (float)rng_normal(&rng);
 	for (int i = 0; i < ROWS * 3; i++)
 		position[i] = (float)rng_range(&rng, -1, 1);

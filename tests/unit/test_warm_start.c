@@ -195,16 +195,16 @@ static void test_step(void)
 	p.target = (size_t)w.view.sentences[2];
 	const size_t words = p.offsets[SENTENCES] * (size_t)o.text_width;
 	float *floats = mem_alloc(
-		2 * parameters + 4 * step_padded(ROWS) * 32 + words + 3 * ROWS, sizeof(float), "test", &e);
+		2 * parameters + 4 * panels_padded(ROWS) * 32 + words + 3 * ROWS, sizeof(float), "test", &e);
 	float *values = floats, *gradient = values + parameters, *x = gradient + parameters;
-	float *panels = x + features, *dpanels = panels + step_padded(ROWS) * 32;
-	float *position = dpanels + step_padded(ROWS) * 32, *vectors = position + 3 * ROWS;
+	float *panels = x + features, *dpanels = panels + panels_padded(ROWS) * 32;
+	float *position = dpanels + panels_padded(ROWS) * 32, *vectors = position + 3 * ROWS;
 	double *dx = mem_alloc(features + parameters, sizeof *dx, "test", &e);
 	to_floats(p.parameters, parameters, values);
 	to_floats(p.x, features, x);
 	to_floats(p.position, 3 * ROWS, position);
 	to_floats(p.words, words, vectors);
-	step_pack(x, ROWS, o.feature_width, panels);
+	panels_pack(x, ROWS, o.feature_width, panels);
 	const struct step_setup setup = {&sample.layout, p.similarity, p.contrast, p.temperature, p.lambda,
 		ROWS, position, SENTENCES, offsets, vectors, p.objects, ROWS + 1, WARM_START_BATCH, NULL};
 	struct step *step = step_new(&setup, &e);
@@ -218,7 +218,7 @@ static void test_step(void)
 		result.bce);
 	for (int i = 0; i <= ROWS; i++)
 		CHECK(fabs(result.image[i] - result.m[w.index[i]]) < 1e-12, "pixel %d is not its row's m", i);
-	step_unpack(dpanels, ROWS, o.feature_width, x);
+	panels_unpack(dpanels, ROWS, o.feature_width, x);
 	CHECK(distance(x, dx, features) < 2e-4, "dx differs by %.3g", distance(x, dx, features));
 	CHECK(distance(gradient, dx + features, parameters) < 2e-4, "parameters differ by %.3g",
 		distance(gradient, dx + features, parameters));
