@@ -1,4 +1,4 @@
-#include "field/reference.h"
+#include "reference.h"
 
 #include "base/mem.h"
 

@@ -4,8 +4,8 @@
  *
  * Shapes below: N Gaussians, R sentences, W words of all sentences together, n words of the target sentence,
  * P pixels, D = REFER_D. All arrays are row-major. */
-#ifndef FIELD_REFERENCE_H
-#define FIELD_REFERENCE_H
+#ifndef REFERENCE_H
+#define REFERENCE_H
 
 #include "base/err.h"
 #include "field/referring_model.h"
