@@ -35,31 +35,6 @@ static int is_zero(const float *x, size_t n)
 	return 1;
 }
 
-/* The views looked at; returns how many. */
-static int choose_views(const struct cameras *cameras, struct camera chosen[CALIBRATE_VIEWS])
-{
-	size_t counts[2] = {0}, at = 0;
-	int n = 0;
-
-	for (size_t i = 0; i < cameras->n; i++)
-		counts[cameras->views[i].split == SPLIT_TEST]++;
-	const int split = counts[0] ? SPLIT_TRAIN : SPLIT_TEST;
-	const size_t all = counts[split == SPLIT_TEST], take = all < CALIBRATE_VIEWS ? all : CALIBRATE_VIEWS;
-	for (size_t i = 0; i < cameras->n; i++) {
-		const struct camera *c = &cameras->views[i];
-		if ((int)c->split != split)
-			continue;
-		if (at++ != (size_t)n * all / take || n == (int)take)
-			continue;
-		const double scale =
-			fmin(1, (double)CALIBRATE_SIDE / (c->width > c->height ? c->width : c->height));
-		int width, height;
-		camera_scaled_size(c, scale, &width, &height);
-		chosen[n++] = camera_resize(c, width, height);
-	}
-	return n;
-}
-
 /* Renders the views: images (count,pixels), a sentence's views side by side. */
 static int render_all(const struct splats *s, const struct camera *views, int n, const float *responses,
 	size_t count, float *images, size_t pixels, struct err *e)
@@ -106,7 +81,7 @@ int calibrate(const struct splats *s, const struct cameras *cameras, const struc
 	float *responses, size_t count, double *lifts, struct err *e)
 {
 	struct camera views[CALIBRATE_VIEWS];
-	const int view_count = choose_views(cameras, views);
+	const int view_count = (int)cameras_spread(cameras, CALIBRATE_VIEWS, CALIBRATE_SIDE, views);
 	size_t pixels = 0;
 
 	for (int i = 0; i < view_count; i++)

@@ -1,13 +1,11 @@
 #include "answer/locate.h"
 
 #include "base/mem.h"
+#include "splat/sh.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The first basis function of spherical harmonics, 1 / (2 sqrt(pi)). */
-static const double basis = 0.28209479177387814;
 
 /* What an answer is painted with, and how thickly: what is under it still shows its shape. */
 static const double paint[3] = {1, 0.25, 0.125};
@@ -49,8 +47,8 @@ int locate_all(struct located *all, const struct responses *a, const struct spla
 static void paint_one(float *sh, int coefficients)
 {
 	for (int c = 0; c < 3; c++) {
-		const double own = 0.5 + basis * (double)sh[c];
-		sh[c] = (float)(((1 - thickness) * own + thickness * paint[c] - 0.5) / basis);
+		const double own = 0.5 + SH_C0 * (double)sh[c];
+		sh[c] = (float)(((1 - thickness) * own + thickness * paint[c] - 0.5) / SH_C0);
 		for (int k = 1; k < coefficients; k++)
 			sh[3 * k + c] *= (float)(1 - thickness);
 	}

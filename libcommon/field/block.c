@@ -1,5 +1,7 @@
 #include "field/block.h"
 
+#include "base/cpu.h"
+
 #include <string.h>
 
 extern const struct block_kernels block_kernels_avx512, block_kernels_avx2, block_kernels_plain;
@@ -7,14 +9,11 @@ extern const struct block_kernels block_kernels_avx512, block_kernels_avx2, bloc
 const struct block_kernels *block_select(const char *name)
 {
 #if defined __x86_64__
-	const int has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-	const int has_avx512 = has_avx2 && __builtin_cpu_supports("avx512f") &&
-			       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-			       __builtin_cpu_supports("avx512vl");
+	const enum cpu_level level = cpu_level();
 
-	if (has_avx512 && (!name || !strcmp(name, "avx512")))
+	if (level >= CPU_AVX512 && (!name || !strcmp(name, "avx512")))
 		return &block_kernels_avx512;
-	if (has_avx2 && (!name || !strcmp(name, "avx2")))
+	if (level >= CPU_AVX2 && (!name || !strcmp(name, "avx2")))
 		return &block_kernels_avx2;
 #endif
 	return !name || !strcmp(name, "plain") ? &block_kernels_plain : NULL;

@@ -2,6 +2,7 @@
 #ifndef FIELD_FOLD_PRIVATE_H
 #define FIELD_FOLD_PRIVATE_H
 
+#include "base/dot.h"
 #include "field/fold.h"
 
 enum { D = REFER_D, H = REFER_H, G = BLOCK_G };
@@ -39,15 +40,6 @@ static inline void axpy(double *y, double scale, const double *x, int n)
 {
 	for (int i = 0; i < n; i++)
 		y[i] += scale * x[i];
-}
-
-static inline double dot(const double *x, const double *y, int n)
-{
-	double sum = 0;
-
-	for (int i = 0; i < n; i++)
-		sum += x[i] * y[i];
-	return sum;
 }
 
 /* y += scale W x for a layer (out D). */

@@ -7,15 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct camera reduce(const struct camera *c)
-{
-	const int side = c->width > c->height ? c->width : c->height;
-	int width, height;
-
-	camera_scaled_size(c, fmin(1, (double)VISIBILITY_SIDE / side), &width, &height);
-	return camera_resize(c, width, height);
-}
-
 /* most (N): the largest weight of each Gaussian at any pixel, so far. */
 static int look(struct render_view **v, struct render_weights *w, const struct splats *s,
 	const struct camera *c, float *most, struct err *e)
@@ -33,27 +24,15 @@ int visibility_find(const struct splats *s, const struct cameras *cameras, char 
 {
 	struct render_view *v = NULL;
 	struct render_weights w = {0};
-	size_t all = 0, at = 0, taken = 0;
+	struct camera views[VISIBILITY_VIEWS];
+	const size_t n = cameras_spread(cameras, VISIBILITY_VIEWS, VISIBILITY_SIDE, views);
 	float *most = mem_zalloc(s->n, sizeof *most, "weights", e);
 	int bad = most ? 0 : -1;
 
-	for (size_t i = 0; i < cameras->n; i++)
-		all += cameras->views[i].split == SPLIT_TRAIN;
-	const int any = !all;
-	if (any)
-		all = cameras->n;
-	const size_t take = all < VISIBILITY_VIEWS ? all : VISIBILITY_VIEWS;
-	for (size_t i = 0; i < cameras->n && !bad; i++) {
-		if (!any && cameras->views[i].split != SPLIT_TRAIN)
-			continue;
-		if (taken == take || at++ != taken * all / take)
-			continue;
-		const struct camera c = reduce(&cameras->views[i]);
-		bad = look(&v, &w, s, &c, most, e);
-		taken++;
-	}
+	for (size_t i = 0; i < n && !bad; i++)
+		bad = look(&v, &w, s, &views[i], most, e);
 	for (size_t i = 0; i < s->n && !bad; i++)
-		in_sight[i] = !take || (most[i] > 0 && most[i] >= VISIBILITY_LEAST * s->opacities[i]);
+		in_sight[i] = !n || (most[i] > 0 && most[i] >= VISIBILITY_LEAST * s->opacities[i]);
 	render_weights_free(&w);
 	render_free(v);
 	free(most);

@@ -1,5 +1,6 @@
 #include "train/warm_start.h"
 
+#include "base/dot.h"
 #include "base/mem.h"
 #include "base/names.h"
 #include "base/rng.h"
@@ -191,15 +192,6 @@ void warm_start_free(struct warm_start *w)
 	free(w->view.masks);
 	train_order_free(&w->order);
 	*w = (struct warm_start){0};
-}
-
-static double dot(const double *a, const double *b, int width)
-{
-	double sum = 0;
-
-	for (int c = 0; c < width; c++)
-		sum += a[c] * b[c];
-	return sum;
 }
 
 /* A random direction at a right angle to those before it (before, width), fewer than width. */
