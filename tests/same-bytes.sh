@@ -35,9 +35,9 @@ run() {
 	echo $status >"$name.status"
 }
 
-# Trains, lifts, draws and scores in this folder, which has scene, weights, text and masks. train ...: more for refer-train.
+# models STEPS SCALE: trains, lifts, and draws at this scale in this folder, which has scene, weights, text and masks.
 models() {
-	local ask=(--scene scene --text text) steps=${1:-60}
+	local ask=(--scene scene --text text) steps=$1 scale=$2
 	local from=("${ask[@]}" --weights weights --masks masks)
 	run lift refer-lift -q "${from[@]}" -o lifted
 	run lift-masks refer-lift -q "${from[@]}" --names masks -o lifted-masks
@@ -50,13 +50,13 @@ models() {
 	run train-cosine refer-train -q "${from[@]}" --iterations 12 --similarity cosine --batch 2 --tolerance 0.01 -o trained-cosine
 	for model in lifted lifted-masks trained held trained-{none,attention,attention+fp,add,pcmi-proj,cosine}; do
 		run "check-$model" gs-check $model
-		run "render-$model" refer-render -q "${ask[@]}" --model $model --split all -o "render-$model.jsonl"
+		run "render-$model" refer-render -q "${ask[@]}" --model $model --split all --scale "$scale" -o "render-$model.jsonl"
 		run "locate-$model" refer-locate -q "${ask[@]}" --model $model -o "locate-$model.jsonl"
 	done
 	for model in lifted trained; do
-		run "amodal-$model" refer-render -q "${ask[@]}" --model $model --amodal --scale 0.5 --png "png-$model" --overlay "overlay-$model" \
+		run "amodal-$model" refer-render -q "${ask[@]}" --model $model --amodal --scale "$scale" --png "png-$model" --overlay "overlay-$model" \
 			--response "response-$model" --response-type npy -o "amodal-$model.jsonl"
-		run "each-$model" refer-render -q "${ask[@]}" --model $model --viewpoint each --min-probability 0.1 --calibration none \
+		run "each-$model" refer-render -q "${ask[@]}" --model $model --scale "$scale" --viewpoint each --min-probability 0.1 --calibration none \
 			-o "each-$model.jsonl"
 		run "ply-$model" refer-locate -q "${ask[@]}" --model $model --refs "$(head -n 1 sentences | jq -r .ref)" --ply "shown-$model.ply" \
 			--splat "shown-$model.splat" --show isolated
@@ -82,7 +82,7 @@ synthetic() {
 		run "select-$method" pseudomask-select -q --method $method --scene scene --weights weights -o "masks-$method" candidates.jsonl
 	done
 	cp masks-ciou masks
-	models
+	models 60 1
 	for model in lifted trained held; do
 		run "score-$model" miou-score --truth truth.jsonl --predicted-views --sentences sentences --bootstrap 50 --json "render-$model.jsonl"
 		run "text-score-$model" miou-score --truth truth.jsonl --compare render-lifted-masks.jsonl --bootstrap 50 "render-$model.jsonl"
@@ -103,7 +103,7 @@ real() {
 	run weigh gs-weigh -q --scale 0.1667 -o weights scene
 	run encode text-encode -q --model "$bert" -o text sentences
 	run select pseudomask-select -q --scene scene --weights weights -o masks "$data/candidates.jsonl"
-	models 300
+	models 100 0.125
 	cd ..
 }
 
