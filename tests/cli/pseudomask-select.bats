@@ -211,7 +211,7 @@ of_both() {
 # first ARG...: --method first on the synthetic scene, which is linked to as synth.
 first() {
 	ln -sfn "$BATS_FILE_TMPDIR" synth
-	"$BIN/pseudomask-select" --method first --scene synth/synth_scene --weights synth/weights "$@"
+	"$BIN/pseudomask-select" --method first --scene synth/scene --weights synth/weights "$@"
 }
 
 # The truth of one view as candidates.
@@ -237,7 +237,7 @@ truth_of() { jq -c "select(.view == \"$1\") | .score = 0.9" "$BATS_FILE_TMPDIR/t
 	truth_of view_000 | jq -c '.visible = 0.5' >some.jsonl
 	first -o carried.jsonl some.jsonl
 	jq -s -e 'length > 8 and all(has("visible") | not)' carried.jsonl
-	"$BIN/pseudomask-select" --scene synth/synth_scene --weights synth/weights -o grown.jsonl some.jsonl
+	"$BIN/pseudomask-select" --scene synth/scene --weights synth/weights -o grown.jsonl some.jsonl
 	jq -s -e 'length > 8 and all(has("visible") | not)' grown.jsonl
 	# a candidate that is only picked keeps it
 	"$BIN/pseudomask-select" -o picked.jsonl some.jsonl
@@ -363,7 +363,7 @@ truth_of() { jq -c "select(.view == \"$1\") | .score = 0.9" "$BATS_FILE_TMPDIR/t
 # scene ARG...: the objects' regions in the synthetic scene.
 scene() {
 	ln -sfn "$BATS_FILE_TMPDIR" synth
-	"$BIN/pseudomask-select" --scene synth/synth_scene --weights synth/weights "$@"
+	"$BIN/pseudomask-select" --scene synth/scene --weights synth/weights "$@"
 }
 
 @test "scene: better than votes, in the scene's order, and the default with a scene and weights" {
