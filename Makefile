@@ -54,7 +54,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean help FORCE
+.PHONY: all bench benches tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
 units: $(UNITS)
@@ -219,6 +219,9 @@ uninstall: ## remove what install put there
 
 clean: ## remove what was built; the cached encoder and demo data stay
 	rm -rf $(BUILD) build-asan build-lint
+
+map: ## print what the rooms of the tree include of each other, and their lines
+	@tests/map.sh
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12

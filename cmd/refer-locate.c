@@ -1,4 +1,5 @@
 /* refer-locate: where in space the object of a sentence is, and the scene with it for a viewer. */
+#include "answer/locate.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
@@ -7,7 +8,6 @@
 #include "formats/ply.h"
 #include "formats/splat.h"
 #include "geom/up.h"
-#include "refer/locate.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -64,12 +64,12 @@ static int locate(struct run *r, const struct cli *c, struct err *e)
 		(has_viewpoint && request_viewpoint(q, &from, e)) ||
 		request_answer(q, has_viewpoint ? &from : NULL, e))
 		return -1;
-	r->located = mem_zalloc(q->asked.answers, sizeof *r->located, "objects", e);
+	r->located = mem_zalloc(q->responses.answers, sizeof *r->located, "objects", e);
 	if (!r->located)
 		return -1;
 	cameras_up(&q->scene.cameras, up);
 	cli_note(c, 1, "up is %.3f %.3f %.3f", up[0], up[1], up[2]);
-	return locate_all(r->located, &q->asked, &q->scene.splats, up, e);
+	return locate_all(r->located, &q->responses, &q->scene.splats, up, e);
 }
 
 static void move(struct box *b, const double by[3])
@@ -81,10 +81,10 @@ static void move(struct box *b, const double by[3])
 static int put_sentence(const struct run *r, size_t i, FILE *out, struct err *e)
 {
 	const struct request *q = &r->request;
-	const struct located *l = &r->located[q->asked.answer[i]];
+	const struct located *l = &r->located[q->responses.answer[i]];
 	const struct extent *x = &l->extent;
 	const struct box_gaussians of = {x->n, x->ids};
-	double sure = q->asked.sure ? q->asked.sure[i] : l->sure;
+	double sure = q->responses.sure ? q->responses.sure[i] : l->sure;
 	struct box_record record = {q->text.refs[q->refs[i]], (char *)text_object(&q->text, q->refs[i]),
 		x->n ? sure : 0, !x->n, x->aligned, x->turned};
 
@@ -112,7 +112,7 @@ static int write_boxes(const struct run *r, const struct cli *c, struct err *e)
 static int write_scene(const struct run *r, struct err *e)
 {
 	const struct request *q = &r->request;
-	const struct extent *x = &r->located[q->asked.answer[0]].extent;
+	const struct extent *x = &r->located[q->responses.answer[0]].extent;
 	struct splats shown;
 
 	if (locate_show(&shown, &q->scene.splats, x, (enum locate_show)options.show, e))
@@ -146,7 +146,7 @@ int main(int argc, char **argv)
 	cli_refuse_overwrite(&c, CLI_SCENE " text model", "output ply splat", NULL);
 	int bad = locate(&r, &c, &e) || ((options.ply || options.splat) && write_scene(&r, &e)) ||
 		  write_boxes(&r, &c, &e);
-	for (size_t k = 0; r.located && k < r.request.asked.answers; k++)
+	for (size_t k = 0; r.located && k < r.request.responses.answers; k++)
 		extent_free(&r.located[k].extent);
 	free(r.located);
 	request_free(&r.request);

@@ -5,7 +5,7 @@
 
 #include "base/err.h"
 #include "formats/fingerprint.h"
-#include "refer/trainer.h"
+#include "train/trainer.h"
 
 enum { CHECKPOINT_IDENTITY = 640 };
 

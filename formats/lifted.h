@@ -6,7 +6,7 @@
 #include "formats/fingerprint.h"
 #include "formats/safetensors.h"
 #include "formats/text.h"
-#include "refer/lifted.h"
+#include "lift/lifted_model.h"
 
 #define LIFTED_NONE ((size_t)-1)
 

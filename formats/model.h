@@ -3,11 +3,11 @@
 #define FORMATS_MODEL_H
 
 #include "base/err.h"
+#include "field/referring_model.h"
+#include "field/rows.h"
 #include "formats/fingerprint.h"
 #include "formats/precision.h"
 #include "formats/safetensors.h"
-#include "refer/model.h"
-#include "refer/rows.h"
 
 #include <stdint.h>
 

@@ -1,6 +1,7 @@
 #include "formats/plypacked.h"
 
 #include "base/mem.h"
+#include "splat/sh.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -170,8 +171,7 @@ static void unpack_rotation(uint32_t v, double *out)
 int plypacked_row(struct plypacked *p, struct plyfile *f, const struct plyfile_element *vertex, size_t row,
 	double *values, struct err *e)
 {
-	const double *bounds = p->bounds + PLYPACKED_BOUNDS * (row / CHUNK_ROWS),
-		     degree_0 = 0.28209479177387814;
+	const double *bounds = p->bounds + PLYPACKED_BOUNDS * (row / CHUNK_ROWS);
 	uint32_t word[4];
 
 	if (plyfile_row(f, vertex, row, p->row, e) ||
@@ -181,8 +181,8 @@ int plypacked_row(struct plypacked *p, struct plyfile *f, const struct plyfile_e
 		word[i] = (uint32_t)p->row[p->slot[i]];
 	unpack_vector(word[0], bounds + BOUNDS_POSITION, values);
 	for (int c = 0; c < 3; c++)
-		values[3 + c] = (between(bounds + BOUNDS_COLOR + c, fraction(word[3], 24 - 8 * c, 8)) - 0.5) /
-				degree_0;
+		values[3 + c] =
+			(between(bounds + BOUNDS_COLOR + c, fraction(word[3], 24 - 8 * c, 8)) - 0.5) / SH_C0;
 	values[6] = fraction(word[3], 0, 8);
 	unpack_vector(word[2], bounds + BOUNDS_SCALE, values + 7);
 	unpack_rotation(word[1], values + 10);

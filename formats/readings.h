@@ -2,7 +2,7 @@
 #ifndef FORMATS_READINGS_H
 #define FORMATS_READINGS_H
 
-#include "lang/readings.h"
+#include "lang/reading_align.h"
 
 #include <stddef.h>
 

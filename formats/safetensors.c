@@ -425,17 +425,6 @@ float st_bfloat_to_float(uint16_t b)
 	return f;
 }
 
-uint16_t st_float_to_bfloat(float f)
-{
-	uint32_t bits;
-
-	memcpy(&bits, &f, 4);
-	if ((bits & 0x7fffffff) > 0x7f800000)
-		return (uint16_t)(bits >> 16 | 64);
-	bits += 0x7fff + (bits >> 16 & 1);
-	return (uint16_t)(bits >> 16);
-}
-
 int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, struct err *e)
 {
 	const unsigned char *p = t->data;

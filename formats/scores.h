@@ -3,7 +3,7 @@
 #define FORMATS_SCORES_H
 
 #include "base/err.h"
-#include "mask/score_rows.h"
+#include "score/score_rows.h"
 
 #include <stdio.h>
 

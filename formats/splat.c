@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "splat/sh.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -41,7 +42,6 @@ static unsigned char to_byte(double x)
 
 static void put_record(unsigned char *p, const struct splats *s, size_t i)
 {
-	static const double basis = 0.28209479177387814; /* 1 / (2 sqrt(pi)) */
 	const float *sh = s->sh + 3 * (size_t)s->sh_coefficients * i, *q = s->quats + 4 * i;
 	const double w = q[0], x = q[1], y = q[2], z = q[3], length = sqrt(w * w + x * x + y * y + z * z);
 
@@ -50,7 +50,7 @@ static void put_record(unsigned char *p, const struct splats *s, size_t i)
 	for (size_t k = 0; k < 3; k++)
 		p = put_float(p, s->scales[3 * i + k]);
 	for (int c = 0; c < 3; c++)
-		*p++ = to_byte(255 * (0.5 + basis * (double)sh[c]));
+		*p++ = to_byte(255 * (0.5 + SH_C0 * (double)sh[c]));
 	*p++ = to_byte(255 * (double)s->opacities[i]);
 	for (int k = 0; k < 4; k++)
 		*p++ = to_byte(128 + 128 * (double)q[k] / length);

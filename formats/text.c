@@ -94,15 +94,6 @@ const char *text_object(const struct text *t, size_t sentence)
 	return *t->objects[sentence] ? t->objects[sentence] : NULL;
 }
 
-char **text_object_list(const struct text *t, size_t sentence, size_t *n, int *has, struct err *e)
-{
-	const char *list = t->object_lists ? t->object_lists[sentence] : "";
-
-	*n = 0;
-	*has = *list != 0;
-	return metalist_parse(*has ? list : "[]", n, e);
-}
-
 static int read_splits(struct text *t, const struct safetensors *st, struct err *e)
 {
 	char **names = metalist_read(st, "splits", t->n, "sentences", e);

@@ -41,10 +41,6 @@ void text_free(struct text *t);
 /* The name that a sentence's masks and boxes go by; NULL where it means several objects or none. */
 const char *text_object(const struct text *t, size_t sentence);
 
-/* The names in object_lists of a sentence; *n is their number. metalist_free the result. NULL with *e where
- * memory is out; *has 0 where the sentence has no such list. */
-char **text_object_list(const struct text *t, size_t sentence, size_t *n, int *has, struct err *e);
-
 /* Sets chosen[r] (n) to 1 for the refs in a comma-separated list, the value of an option. 0, or -1 with *e:
  * ERR_USAGE for a ref that no sentence has. */
 int text_mark(const struct text *t, const char *list, const char *option, char *chosen, struct err *e);

@@ -61,7 +61,7 @@ int trainlog_step(struct trainlog *l, struct train_state *t, struct err *e)
 	return 0;
 }
 
-int trainlog_put_held(struct trainlog *l, long iteration, const struct held_score *score, struct err *e)
+int trainlog_put_held(struct trainlog *l, long iteration, const struct held_out_score *score, struct err *e)
 {
 	if (l->stream && (fprintf(l->stream, "{\"iteration\":%ld,\"held_bce\":%.9g,\"held_iou\":%.9g}\n",
 				  iteration, score->bce, score->iou) < 0 ||

@@ -4,8 +4,8 @@
 
 #include "base/err.h"
 #include "base/file.h"
-#include "refer/held.h"
-#include "refer/train.h"
+#include "train/held_out.h"
+#include "train/train.h"
 
 struct trainlog {
 	const char *path;    /* NULL: no log */
@@ -24,7 +24,7 @@ enum { TRAINLOG_EVERY = 100 };
 int trainlog_step(struct trainlog *l, struct train_state *t, struct err *e);
 
 /* A line of what the held-out masks say. */
-int trainlog_put_held(struct trainlog *l, long iteration, const struct held_score *score, struct err *e);
+int trainlog_put_held(struct trainlog *l, long iteration, const struct held_out_score *score, struct err *e);
 
 /* Closes in any case, also a log that was not opened. */
 int trainlog_close(struct trainlog *l, struct err *e);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# The tree keeps its shape: dependencies point one way (cmd -> cmd/jobs -> formats -> libcommon), all below the tools neither
+# The tree keeps its shape: dependencies point one way (tests/floors), all below the tools neither
 # prints nor exits, and every tool and format has its pages and tests.
 
 setup() {
@@ -42,37 +42,68 @@ no_longer_than() {
 # Fails where the command succeeds; a plain ! would let the test go on.
 not() { ! "$@"; }
 
-@test "libcommon includes nothing of formats or cmd" {
-	none '^[[:space:]]*#[[:space:]]*include[[:space:]]+"(\.\./)*(formats|cmd)/' libcommon
+# A copy of the tree, so that it can be broken.
+copy_tree() {
+	cp -r cmd formats libcommon "$BATS_TEST_TMPDIR"
+	cd "$BATS_TEST_TMPDIR"
 }
 
-@test "formats include nothing of cmd" {
-	none '^[[:space:]]*#[[:space:]]*include[[:space:]]+"(\.\./)*cmd/' formats
+# breaks REASON: the map of this folder is broken, for this reason.
+breaks() {
+	run "$BATS_TEST_DIRNAME/map.sh" --check .
+	[ "$status" = 1 ]
+	[ "$output" = "$1" ] || { echo "$output"; return 1; }
 }
 
-@test "jobs include of cmd only jobs" {
-	none '^[[:space:]]*#[[:space:]]*include[[:space:]]+"(\.|cmd/([^j]|j[^o]|jo[^b]|job[^s]|jobs[^/]))' cmd/jobs
+@test "rooms include only what tests/floors has below them, and no two have files of one name" {
+	tests/map.sh --check
 }
 
-@test "only tools include cli" {
-	none '^[[:space:]]*#[[:space:]]*include[[:space:]]+"cli/' cmd/jobs formats $(rooms cli)
+@test "the map is broken by an include of a higher floor" {
+	copy_tree
+	echo '#include "train/step.h"' >>libcommon/field/fold.c
+	breaks 'libcommon/field/fold.c: includes "train/step.h", which is not on a lower floor'
 }
 
-@test "the rooms of libcommon include only base, and the rooms below them" {
-	# What each room may include besides itself.
-	declare -A below=([base]= [cli]=base [geom]=base [mask]=base [nn]=base [splat]='base|geom'
-		[lang]='base|nn' [ask]='base|geom|lang|refer|splat' [refer]='ask|base|geom|lang|mask|nn|splat' [synth]='base|geom|lang|mask|splat')
-	for dir in libcommon/*/; do
-		room=$(basename "$dir")
-		[ -n "${below[$room]+set}" ] || { echo "unknown room: $room"; return 1; }
-		if grep -rnE --include='*.[ch]' '^[[:space:]]*#[[:space:]]*include[[:space:]]+"' "$dir" |
-			grep -vE "include[[:space:]]+\"($room${below[$room]:+|${below[$room]}})/"; then
-			return 1
-		fi
-	done
+@test "the map is broken by a file in no room" {
+	copy_tree
+	mkdir libcommon/attic
+	touch libcommon/attic/old.c
+	breaks 'libcommon/attic/old.c: in no room of tests/floors'
 }
 
-@test "splat, nn, refer, mask, geom and synth know nothing of files" {
+@test "the map is broken by an include of no room" {
+	copy_tree
+	echo '#include "png.h"' >>libcommon/base/mem.c
+	breaks 'libcommon/base/mem.c: includes "png.h", which is in no room of tests/floors'
+}
+
+@test "the map is broken by two files of one name in different rooms" {
+	copy_tree
+	touch libcommon/mask/octree.h
+	breaks 'libcommon/mask/octree.h: the room field has a file of this name too'
+}
+
+@test "the map is broken by a floor that is above" {
+	mkdir "$BATS_TEST_TMPDIR/tests"
+	cp tests/map.sh "$BATS_TEST_TMPDIR/tests"
+	sed 's/^splat .*/& field/' tests/floors >"$BATS_TEST_TMPDIR/tests/floors"
+	run "$BATS_TEST_TMPDIR/tests/map.sh" --check .
+	[ "$status" = 1 ]
+	[ "$output" = 'tests/floors: splat may include field, which is on no lower floor' ]
+}
+
+@test "the map shows what files include" {
+	mkdir -p "$BATS_TEST_TMPDIR/libcommon/"{base,geom} "$BATS_TEST_TMPDIR/"{cmd,formats}
+	cd "$BATS_TEST_TMPDIR"
+	printf '#include "base/err.h"\n#include <math.h>\n#include "base/mem.h"\n' >libcommon/geom/box.c
+	echo >libcommon/base/err.h
+	"$BATS_TEST_DIRNAME/map.sh" . >map
+	grep -E '^geom +3 +75\.0% +2 +\. +\.$' map
+	grep -E '^base +1 +25\.0% +\.$' map
+}
+
+@test "the rooms of libcommon, but for base and cli, know nothing of files" {
 	none 'FILE \*|fopen|fread|fwrite|base/file\.h|cJSON|png\.h|jpeglib\.h' $(rooms base cli)
 }
 
@@ -82,13 +113,6 @@ not() { ! "$@"; }
 
 @test "stdout is named only where file outputs are made" {
 	none '^([^"/*]|\*[a-z])*\bstdout\b' cmd/jobs formats $(rooms cli base)
-}
-
-# boxes, lifted ... are a format and what it holds; the others wait for better names.
-@test "no two rooms have files of one base name, but for those known" {
-	local known='boxes lifted model readings relations scene sentences sight words' found
-	found=$(ls -d libcommon/*/*.[ch] formats/*.[ch] cmd/jobs/*.[ch] | sed 's,\.[ch]$,,' | sort -u | sed 's,.*/,,' | sort | uniq -d | xargs)
-	[ "$found" = "$known" ] || { echo "found: $found"; return 1; }
 }
 
 @test "no structure is hidden behind a typedef" {

@@ -5,7 +5,7 @@
 #include "base/err.h"
 #include "cmd/jobs/score_masks.h"
 #include "formats/sentences.h"
-#include "mask/score_answers.h"
+#include "score/score_answers.h"
 
 struct answer_scores {
 	struct answers answers;

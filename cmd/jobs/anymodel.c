@@ -88,28 +88,30 @@ static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from,
 	return bad;
 }
 
-static int answer_lifted(const struct lifted *l, const struct anymodel_ask *q, struct asked_of *of,
-	struct asked *a, struct err *e)
+static int answer_lifted(const struct lifted *l, const struct anymodel_ask *q, struct responses_question *of,
+	struct responses *a, struct err *e)
 {
 	struct viewpoint *from = mem_alloc(q->count, sizeof *from, "sentences", e);
 
 	of->from = from;
-	const int bad = !from || find_viewpoints(q, from, e) || asked_lifted(a, l, of, q->parts, q->least, e);
+	const int bad =
+		!from || find_viewpoints(q, from, e) || responses_lifted(a, l, of, q->parts, q->least, e);
 	free(from);
 	return bad ? -1 : 0;
 }
 
-int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, struct asked *a, struct err *e)
+int anymodel_answer(
+	const struct anymodel *m, const struct anymodel_ask *q, struct responses *a, struct err *e)
 {
 	const struct model *t = &m->trained;
 	const float *means = q->scene->splats.means;
 	const struct parser parser = {.weights = &m->weights, .encoder = q->text->encoder.hex};
-	struct asked_of of = {&q->scene->splats, &q->scene->cameras, q->text->offsets, q->text->words,
-		q->text->texts, q->text->pieces, NULL, &parser, q->which, q->count, q->text->refs,
-		file_name(q->model_path)};
+	struct responses_question of = {&q->scene->splats, &q->scene->cameras, q->text->offsets,
+		q->text->words, q->text->texts, q->text->pieces, NULL, &parser, q->which, q->count,
+		q->text->refs, file_name(q->model_path)};
 	struct rows rows = {0};
 
-	*a = (struct asked){0};
+	*a = (struct responses){0};
 	if (check_fit(m, q, e))
 		return -1;
 	if (m->is_lifted)
@@ -118,7 +120,7 @@ int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, stru
 		return -1;
 	const struct respond_model respond = {
 		&t->layout, t->similarity, &rows, t->features, t->parameters, means, t->low, t->high};
-	int bad = asked_trained(a, &respond, &of, q->wants_calibration, e);
+	int bad = responses_trained(a, &respond, &of, q->wants_calibration, e);
 	rows_free(&rows);
 	return bad;
 }

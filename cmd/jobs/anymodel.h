@@ -2,13 +2,13 @@
 #ifndef CMD_JOBS_ANYMODEL_H
 #define CMD_JOBS_ANYMODEL_H
 
+#include "answer/responses.h"
 #include "base/err.h"
 #include "formats/model.h"
 #include "formats/parser_weights.h"
 #include "formats/scene.h"
 #include "formats/text.h"
-#include "refer/asked.h"
-#include "refer/lifted.h"
+#include "lift/lifted_model.h"
 
 struct anymodel {
 	int is_lifted;
@@ -28,7 +28,8 @@ struct anymodel_ask {
 	const char *model_path, *scene_path, *text_path; /* for messages */
 	const size_t *which;				 /* (count) the sentences */
 	size_t count;
-	int wants_calibration; /* of trained models, and the next are of lifted ones: see refer/asked.h */
+	int wants_calibration; /* of trained models, and the next are of lifted ones: see answer/responses.h
+				*/
 	unsigned parts;
 	double least;
 	const struct viewpoint
@@ -37,6 +38,7 @@ struct anymodel_ask {
 
 /* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text
  * does not fit or is of another encoder. */
-int anymodel_answer(const struct anymodel *m, const struct anymodel_ask *q, struct asked *a, struct err *e);
+int anymodel_answer(
+	const struct anymodel *m, const struct anymodel_ask *q, struct responses *a, struct err *e);
 
 #endif

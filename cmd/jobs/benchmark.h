@@ -6,9 +6,9 @@
 #include "base/err.h"
 #include "base/report.h"
 #include "synth/candidates.h"
-#include "synth/scene.h"
-#include "synth/sentences.h"
 #include "synth/statistics.h"
+#include "synth/synth_scene.h"
+#include "synth/synth_sentences.h"
 #include "synth/unseen.h"
 
 #include <stdint.h>

@@ -4,7 +4,7 @@
 
 #include "base/err.h"
 #include "formats/boxes.h"
-#include "geom/box_score.h"
+#include "score/box_score.h"
 
 struct box_scores {
 	struct box_set truth;

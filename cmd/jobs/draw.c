@@ -1,9 +1,9 @@
 #include "cmd/jobs/draw.h"
 
+#include "answer/answer.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/masks.h"
-#include "refer/answer.h"
 
 #include <stdlib.h>
 
@@ -46,7 +46,7 @@ int draw_choose(struct drawing *d, const struct draw_options *options, struct re
 
 static void free_wholes(struct drawing *d)
 {
-	for (size_t k = 0; d->wholes && k < d->request->asked.answers; k++)
+	for (size_t k = 0; d->wholes && k < d->request->responses.answers; k++)
 		splats_free(&d->wholes[k]);
 	free(d->wholes);
 	d->wholes = NULL;
@@ -59,9 +59,9 @@ static int answer(struct drawing *d, const struct viewpoint *from, struct err *e
 
 	free_wholes(d);
 	int bad = request_answer(r, from, e) ||
-		  !(d->wholes = mem_zalloc(r->asked.answers, sizeof *d->wholes, "objects", e));
+		  !(d->wholes = mem_zalloc(r->responses.answers, sizeof *d->wholes, "objects", e));
 	if (!bad && d->options->is_amodal)
-		bad = asked_wholes(&r->asked, &r->scene.splats, &r->scene.cameras, d->wholes, e);
+		bad = responses_wholes(&r->responses, &r->scene.splats, &r->scene.cameras, d->wholes, e);
 	return bad ? -1 : 0;
 }
 
@@ -70,7 +70,7 @@ static int put_answer(void *data, const struct answer *a, struct err *e)
 {
 	const struct drawing *d = data;
 	const struct request *r = d->request;
-	struct drawing_mask *to = &d->shown[a->view * r->asked.answers + a->answer];
+	struct drawing_mask *to = &d->shown[a->view * r->responses.answers + a->answer];
 	const struct camera *c = a->camera;
 	int bad = rle_encode(&to->mask, a->mask, c->height, c->width, e);
 
@@ -79,7 +79,7 @@ static int put_answer(void *data, const struct answer *a, struct err *e)
 	for (size_t i = 0; i < r->count && !bad; i++) {
 		const struct picture picture = {
 			c->name, r->text.refs[r->refs[i]], c->height, c->width, a->image, a->mask, a->rgb};
-		if (r->asked.answer[i] == a->answer)
+		if (r->responses.answer[i] == a->answer)
 			bad = pictures_put(&d->options->pictures, &picture, e);
 	}
 	return bad;
@@ -89,20 +89,20 @@ static int put_view(void *data, size_t view, struct err *e)
 {
 	struct drawing *d = data;
 	const struct request *r = d->request;
-	struct drawing_mask *shown = d->shown + view * r->asked.answers;
+	struct drawing_mask *shown = d->shown + view * r->responses.answers;
 	int bad = 0;
 
 	for (size_t i = 0; i < r->count && !bad; i++) {
-		const struct drawing_mask *from = &shown[r->asked.answer[i]];
+		const struct drawing_mask *from = &shown[r->responses.answer[i]];
 		const size_t sentence = r->refs[i];
 		double score = from->score;
-		if (r->asked.sure)
-			score = rle_area(&from->mask) ? r->asked.sure[i] : 0;
+		if (r->responses.sure)
+			score = rle_area(&from->mask) ? r->responses.sure[i] : 0;
 		const struct mask_record record = {d->views[d->first + view].name, r->text.refs[sentence],
 			(char *)text_object(&r->text, sentence), score, from->mask, from->visible};
 		bad = masks_put(d->out, &record, e);
 	}
-	for (size_t k = 0; k < r->asked.answers; k++)
+	for (size_t k = 0; k < r->responses.answers; k++)
 		rle_free(&shown[k].mask);
 	report_step(d->to, (double)(d->first + view) + 1, NULL);
 	return bad;
@@ -112,10 +112,10 @@ static int put_view(void *data, size_t view, struct err *e)
 static int render(struct drawing *d, size_t views, struct err *e)
 {
 	const struct request *r = d->request;
-	const struct answer_question q = {&r->scene.splats, &r->asked,
+	const struct answer_question q = {&r->scene.splats, &r->responses,
 		d->options->is_amodal ? d->wholes : NULL, d->options->pictures.overlays != NULL};
 	const struct answer_calls calls = {d, put_answer, put_view};
-	size_t count = r->asked.answers;
+	size_t count = r->responses.answers;
 
 	if (mem_size(count, views, &count))
 		return err_set(e, ERR_SYSTEM, "masks do not fit in memory");

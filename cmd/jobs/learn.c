@@ -64,7 +64,7 @@ static int record(struct learning *l, const struct step_losses *last, struct err
 	if (trainlog_step(&l->log, t, e))
 		return -1;
 	if (t->best.values && (done % TRAINER_EVALUATE == 0 || done == o->iterations)) {
-		const struct held_score score = trainer_evaluate(&l->trainer);
+		const struct held_out_score score = trainer_evaluate(&l->trainer);
 		if (trainlog_put_held(&l->log, done, &score, e))
 			return -1;
 	}

@@ -9,8 +9,8 @@
 #include "formats/checkpoint.h"
 #include "formats/precision.h"
 #include "formats/trainlog.h"
-#include "refer/divergence.h"
-#include "refer/trainer.h"
+#include "train/divergence.h"
+#include "train/trainer.h"
 
 struct learning_options {
 	struct training_files from;

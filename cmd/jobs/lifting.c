@@ -1,9 +1,9 @@
 #include "cmd/jobs/lifting.h"
 
+#include "ask/disambiguate.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/weights.h"
-#include "refer/recognise.h"
 
 #include <stdlib.h>
 
@@ -159,7 +159,7 @@ int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struc
 	report_end(to);
 	if (bad || lifted_add_sentences(&l->model, &l->text, l->sentence_object, l->names, e) ||
 		(!is_as_masked &&
-			recognise(&l->model, &l->scene.splats, &l->scene.cameras, &parser, moved, e)))
+			disambiguate(&l->model, &l->scene.splats, &l->scene.cameras, &parser, moved, e)))
 		return -1;
 	return 0;
 }

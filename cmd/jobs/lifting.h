@@ -11,7 +11,7 @@
 #include "formats/parser_weights.h"
 #include "formats/scene.h"
 #include "formats/text.h"
-#include "refer/lift_objects.h"
+#include "lift/lift_objects.h"
 
 #include <stddef.h>
 

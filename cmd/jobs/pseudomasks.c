@@ -35,22 +35,22 @@ static int put_winners(const struct pseudomasks *w, const struct report *to, str
 
 static int lift_source(struct pseudomasks *w, size_t source, struct err *e)
 {
-	const size_t view = w->carry.sources[source].view;
+	const size_t view = w->propagation.sources[source].view;
 	struct weights weights;
 
 	if (weights_open(&weights, w->options->weights, &w->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
-	int bad = carry_lift(&w->carry, source, &blend, weights.height, weights.width, e);
+	int bad = propagate_lift(&w->propagation, source, &blend, weights.height, weights.width, e);
 	weights_close(&weights);
 	return bad;
 }
 
 static int lift_carried(struct pseudomasks *w, struct err *e)
 {
-	int bad = carry_init(&w->carry, &w->pool, w->views, &w->scene.cameras, e);
+	int bad = propagate_init(&w->propagation, &w->pool, w->views, &w->scene.cameras, e);
 
-	for (size_t s = 0; s < w->carry.source_count && !bad; s++)
+	for (size_t s = 0; s < w->propagation.source_count && !bad; s++)
 		bad = lift_source(w, s, e);
 	return bad;
 }
@@ -82,9 +82,9 @@ static int render(struct pseudomasks *w, size_t view, const struct weights *weig
 	if (w->options->method == PSEUDOMASK_SCENE)
 		return regions_render(&w->regions, view, &blend, weights->height, weights->width, masks,
 			scores, &w->rendered, e);
-	for (size_t i = 0; i < w->carry.count; i++)
-		scores[i] = w->carry.masks[i].score;
-	return carry_render(&w->carry, view, &blend, weights->height, weights->width, masks, e);
+	for (size_t i = 0; i < w->propagation.count; i++)
+		scores[i] = w->propagation.masks[i].score;
+	return propagate_render(&w->propagation, view, &blend, weights->height, weights->width, masks, e);
 }
 
 /* Writes all masks of a view but empty ones. */
@@ -92,7 +92,7 @@ static int put_view(void *data, size_t view, const struct weights *weights, stru
 {
 	struct pseudomasks *w = data;
 	const int is_scene = w->options->method == PSEUDOMASK_SCENE;
-	const size_t n = is_scene ? w->regions.object_count : w->carry.count;
+	const size_t n = is_scene ? w->regions.object_count : w->propagation.count;
 	struct rle *masks = mem_zalloc(n, sizeof *masks, "masks", e);
 	double *scores = mem_alloc(n, sizeof *scores, "masks", e);
 	int bad = !masks || !scores || render(w, view, weights, masks, scores, e);
@@ -100,7 +100,7 @@ static int put_view(void *data, size_t view, const struct weights *weights, stru
 	w->seen++;
 	for (size_t i = 0; i < n && masks; i++) {
 		struct mask_record r =
-			w->set.records[is_scene ? w->regions.objects[i] : w->carry.masks[i].record];
+			w->set.records[is_scene ? w->regions.objects[i] : w->propagation.masks[i].record];
 		if (!bad && rle_area(&masks[i])) {
 			r.view = w->scene.cameras.views[view].name;
 			r.visible = NAN; /* the record's is of its own view */
@@ -126,7 +126,7 @@ static int put_views(struct pseudomasks *w, const struct report *to, struct err 
 		masks_views(&w->set, w->lines, w->options->candidates, &w->scene.cameras, w->views, e) ||
 		(is_scene ? lift_regions(w, e) : lift_carried(w, e)))
 		return -1;
-	const size_t found = is_scene ? w->regions.region_count : w->carry.count;
+	const size_t found = is_scene ? w->regions.region_count : w->propagation.count;
 	if (!found && w->set.n)
 		report_warn(to, "%s: no candidate of a training view is above %g",
 			file_name(w->options->candidates), w->options->min_score);
@@ -139,7 +139,7 @@ static int put_views(struct pseudomasks *w, const struct report *to, struct err 
 			w->regions.object_count, found, w->masks, w->seen, w->rendered);
 	else
 		report_note(to, 1, "%zu objects, which begin in %zu views; %zu masks in %zu views", found,
-			w->carry.source_count, w->masks, w->seen);
+			w->propagation.source_count, w->masks, w->seen);
 	return 0;
 }
 
@@ -175,7 +175,7 @@ int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *op
 
 void pseudomasks_free(struct pseudomasks *w)
 {
-	carry_free(&w->carry);
+	propagate_free(&w->propagation);
 	regions_free(&w->regions);
 	free(w->views);
 	scene_free(&w->scene);

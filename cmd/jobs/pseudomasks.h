@@ -7,10 +7,10 @@
 #include "base/report.h"
 #include "formats/masks.h"
 #include "formats/scene.h"
+#include "lift/propagate.h"
+#include "lift/regions.h"
 #include "mask/pool.h"
 #include "mask/select.h"
-#include "refer/carry.h"
-#include "refer/regions.h"
 
 #include <stddef.h>
 #include <stdio.h>
@@ -33,9 +33,9 @@ struct pseudomasks {
 	long *lines; /* (set.n) of the file */
 	struct pool pool;
 	struct scene scene;
-	size_t *views;		/* (set.n) of the scene */
-	struct carry carry;	/* of PSEUDOMASK_FIRST */
-	struct regions regions; /* of PSEUDOMASK_SCENE */
+	size_t *views;			/* (set.n) of the scene */
+	struct propagation propagation; /* of PSEUDOMASK_FIRST */
+	struct regions regions;		/* of PSEUDOMASK_SCENE */
 };
 
 /* Reads the candidates, selects, and writes the masks to a file ("-": stdout). *w is zeroed before. Returns

@@ -47,8 +47,8 @@ int request_answer(struct request *r, const struct viewpoint *from, struct err *
 	const struct anymodel_ask ask = {&r->scene, &r->text, o->model, o->scene, o->text, r->refs, r->count,
 		!o->is_plain, r->parts, o->least, from};
 
-	asked_free(&r->asked);
-	return anymodel_answer(&r->model, &ask, &r->asked, e);
+	responses_free(&r->responses);
+	return anymodel_answer(&r->model, &ask, &r->responses, e);
 }
 
 void request_free(struct request *r)
@@ -56,6 +56,6 @@ void request_free(struct request *r)
 	scene_free(&r->scene);
 	text_free(&r->text);
 	anymodel_free(&r->model);
-	asked_free(&r->asked);
+	responses_free(&r->responses);
 	free(r->refs);
 }

@@ -3,13 +3,13 @@
 #ifndef CMD_JOBS_REQUEST_H
 #define CMD_JOBS_REQUEST_H
 
+#include "answer/responses.h"
 #include "ask/choose.h"
 #include "ask/viewpoint.h"
 #include "base/err.h"
 #include "cmd/jobs/anymodel.h"
 #include "formats/scene.h"
 #include "formats/text.h"
-#include "refer/asked.h"
 
 #include <stddef.h>
 
@@ -21,14 +21,14 @@ struct request_options {
 	int sentences;			  /* of which split; REQUEST_ALL */
 	const char *refs;		  /* NAME,...: these sentences instead; NULL: of the split */
 	int is_plain;			  /* trained models: responses as they are, not calibrated */
-	double least;			  /* lifted models: see refer/asked.h, */
+	double least;			  /* lifted models: see answer/responses.h, */
 	const char *without;		  /* and PART,... as choose_without takes it; may be NULL */
 	const char *viewpoint;		  /* VIEW or x,y,z; NULL: each sentence's own */
 };
 
 #define REQUEST_DEFAULTS                                                                                     \
 	{                                                                                                    \
-		.sentences = REQUEST_ALL, .least = ASKED_LEAST                                               \
+		.sentences = REQUEST_ALL, .least = RESPONSES_LEAST                                           \
 	}
 
 /* Rows of a tool's table of options (cli/cli.h), for a struct request_options o. */
@@ -54,7 +54,7 @@ struct request {
 	struct anymodel model;
 	size_t count, *refs; /* (count) the sentences, as indices in text */
 	unsigned parts;	     /* of choose() */
-	struct asked asked;
+	struct responses responses;
 };
 
 /* Reads the files. *r is zeroed before; options stay the caller's. All return 0, or -1 with *e set, ERR_USAGE

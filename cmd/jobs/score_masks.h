@@ -4,7 +4,7 @@
 #define CMD_JOBS_SCORE_MASKS_H
 
 #include "formats/masks.h"
-#include "mask/score.h"
+#include "score/score.h"
 
 struct score_masks {
 	const char *path; /* the caller's */

@@ -1,7 +1,7 @@
 #include "cmd/jobs/score_tables.h"
 
 #include "base/mem.h"
-#include "mask/score_groups.h"
+#include "score/score_groups.h"
 
 #include <stdlib.h>
 

@@ -7,7 +7,7 @@
 #include "cmd/jobs/score_masks.h"
 #include "formats/scores.h"
 #include "formats/sentences.h"
-#include "mask/score_rows.h"
+#include "score/score_rows.h"
 
 #include <stddef.h>
 

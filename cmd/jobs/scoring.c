@@ -4,8 +4,8 @@
 #include "cmd/jobs/answer_scores.h"
 #include "cmd/jobs/box_scores.h"
 #include "cmd/jobs/score_tables.h"
-#include "mask/score_choice.h"
-#include "mask/score_join.h"
+#include "score/score_choice.h"
+#include "score/score_join.h"
 
 int scoring_read(struct scoring *in, const struct scoring_files *p, int is_partial, struct err *e)
 {

@@ -1,14 +1,14 @@
 #include "cmd/jobs/synth_folder.h"
 
 #include "base/mem.h"
+#include "cmd/jobs/synth_unseen.h"
 #include "formats/boxes.h"
 #include "formats/colmap.h"
 #include "formats/masks.h"
 #include "formats/ply.h"
 #include "formats/png.h"
-#include "cmd/jobs/synth_unseen.h"
-#include "synth/boxes.h"
 #include "synth/outline.h"
+#include "synth/true_boxes.h"
 #include "synth/truth.h"
 
 #include <math.h>

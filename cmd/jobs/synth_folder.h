@@ -5,9 +5,9 @@
 #include "base/err.h"
 #include "base/file.h"
 #include "synth/candidates.h"
-#include "synth/scene.h"
-#include "synth/sentences.h"
 #include "synth/statistics.h"
+#include "synth/synth_scene.h"
+#include "synth/synth_sentences.h"
 #include "synth/unseen.h"
 
 /* What is written, nothing of it owned but the open outputs. */

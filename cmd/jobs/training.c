@@ -199,7 +199,7 @@ static int read_lifted(struct training *t, const struct training_files *from, st
 static int hold_out(
 	struct training *t, const struct training_files *from, double share, uint64_t seed, struct err *e)
 {
-	if (share > 0 && held_choose(t->views, t->view_count, t->objects, t->sentences, share, seed, e))
+	if (share > 0 && held_out_choose(t->views, t->view_count, t->objects, t->sentences, share, seed, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, file_name(from->masks)) : -1;
 	for (size_t v = 0; v < t->view_count; v++) {
 		t->pairs += (size_t)t->views[v].count;

@@ -9,8 +9,8 @@
 #include "formats/scene.h"
 #include "formats/text.h"
 #include "formats/weights.h"
-#include "refer/supervision.h"
-#include "refer/trainer.h"
+#include "train/supervision.h"
+#include "train/trainer.h"
 
 struct training {
 	struct scene scene;

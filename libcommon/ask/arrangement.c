@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "geom/up.h"
 #include "lang/colours.h"
-#include "refer/extent.h"
+#include "lift/extent.h"
 
 #include <math.h>
 #include <stdlib.h>

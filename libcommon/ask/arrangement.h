@@ -7,7 +7,7 @@
 #include "base/err.h"
 #include "geom/camera.h"
 #include "lang/colours.h"
-#include "refer/lifted.h"
+#include "lift/lifted_model.h"
 #include "splat/splats.h"
 
 struct arranged {
@@ -45,7 +45,7 @@ struct arrangement {
 };
 
 /* Of the objects of l in the scene that splats and cameras are of, which must outlive it, seen from the usual
- * viewpoint. Only Gaussians that hang together count (refer/extent.h), and none for much more than its
+ * viewpoint. Only Gaussians that hang together count (lift/extent.h), and none for much more than its
  * fellows do, so that strays and large ones do not decide where an object is. Returns 0, or -1 with *e set
  * and nothing to free.
  */

@@ -8,7 +8,8 @@
  * The sentence means nothing that was lifted with the probability 1 - P: P goes by how far the thing that
  * fits best is known to be what is said (its noun, its colours, its relations), how far the anchors are
  * there, and how many words say something that is said of nothing. Where that is little and the wording alone
- * is near to that of one object's training sentences (ask/wording.h), it means that object. All constants are in ask/constants.h. */
+ * is near to that of one object's training sentences (ask/wording.h), it means that object. All constants are
+ * in ask/constants.h. */
 #ifndef ASK_CHOOSE_H
 #define ASK_CHOOSE_H
 
@@ -17,7 +18,7 @@
 #include "base/list.h"
 #include "geom/camera.h"
 #include "lang/parser.h"
-#include "refer/lifted.h"
+#include "lift/lifted_model.h"
 #include "splat/splats.h"
 
 enum choose_part {

@@ -8,7 +8,7 @@
 #include "lang/parser.h"
 #include "lang/uses.h"
 #include "lang/wordnet.h"
-#include "refer/lifted.h"
+#include "lift/lifted_model.h"
 
 /* A sentence and what is known of it. */
 struct vocabulary_sentence {
@@ -77,8 +77,8 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
  * below 0, to -1, where it is said to be the opposite. */
 void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
-/* match (O): the best cosine of a word with one by which training sentences call or describe an object, but for
- * places, 0 where there is none, or WORDING_NAME where it is a word of the object's name. */
+/* match (O): the best cosine of a word with one by which training sentences call or describe an object, but
+ * for places, 0 where there is none, or WORDING_NAME where it is a word of the object's name. */
 void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* match (O) in [0,1]: that a training sentence has the object in a like relation to what word w names. */

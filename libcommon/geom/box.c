@@ -1,5 +1,7 @@
 #include "geom/box.h"
 
+#include "base/dot.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -9,11 +11,6 @@ struct polygon {
 	int n;
 	double points[CORNERS][3];
 };
-
-static double dot(const double a[3], const double b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 struct box box_between(const double low[3], const double high[3])
 {
@@ -44,7 +41,7 @@ double box_volume(const struct box *b)
 
 double box_diagonal(const struct box *b)
 {
-	return 2 * sqrt(dot(b->half, b->half));
+	return 2 * sqrt(dot(b->half, b->half, 3));
 }
 
 /* The face of b across axis k, on the side `sign`. */
@@ -69,7 +66,7 @@ static void cut(struct polygon *p, const double normal[3], double limit)
 
 	for (int i = 0; i < p->n; i++) {
 		const double *a = p->points[i], *b = p->points[(i + 1) % p->n];
-		double over_a = dot(normal, a) - limit, over_b = dot(normal, b) - limit;
+		double over_a = dot(normal, a, 3) - limit, over_b = dot(normal, b, 3) - limit;
 		if (over_a <= 0 && kept.n < CORNERS)
 			memcpy(kept.points[kept.n++], a, sizeof kept.points[0]);
 		if ((over_a <= 0) != (over_b <= 0) && kept.n < CORNERS) {
@@ -108,12 +105,12 @@ static double flux(const struct box *b, const struct box *a)
 		for (int side = -1; side <= 1; side += 2) {
 			struct polygon p = face_of(b, k, side);
 			for (int j = 0; j < 3; j++) {
-				const double at = dot(a->axes[j], a->centre);
+				const double at = dot(a->axes[j], a->centre, 3);
 				double other[3] = {-a->axes[j][0], -a->axes[j][1], -a->axes[j][2]};
 				cut(&p, a->axes[j], at + a->half[j]);
 				cut(&p, other, a->half[j] - at);
 			}
-			sum += area_of(&p, b->axes[k]) * (side * dot(b->axes[k], b->centre) + b->half[k]);
+			sum += area_of(&p, b->axes[k]) * (side * dot(b->axes[k], b->centre, 3) + b->half[k]);
 		}
 	return sum;
 }

@@ -42,6 +42,34 @@ void camera_scaled_size(const struct camera *c, double s, int *width, int *heigh
 	*height = (int)fmax(1, round(c->height * s));
 }
 
+static struct camera reduce(const struct camera *c, int side)
+{
+	const int longer = c->width > c->height ? c->width : c->height;
+	int width, height;
+
+	camera_scaled_size(c, fmin(1, (double)side / longer), &width, &height);
+	return camera_resize(c, width, height);
+}
+
+size_t cameras_spread(const struct cameras *c, size_t most, int side, struct camera *chosen)
+{
+	size_t all = 0, at = 0, n = 0;
+
+	for (size_t i = 0; i < c->n; i++)
+		all += c->views[i].split == SPLIT_TRAIN;
+	const int is_any = !all;
+	if (is_any)
+		all = c->n;
+	const size_t take = all < most ? all : most;
+	for (size_t i = 0; i < c->n && n < take; i++) {
+		if (!is_any && c->views[i].split != SPLIT_TRAIN)
+			continue;
+		if (at++ == n * all / take)
+			chosen[n++] = reduce(&c->views[i], side);
+	}
+	return n;
+}
+
 void camera_transform(const struct camera *c, const double world[3], double out[3])
 {
 	for (int r = 0; r < 3; r++) {

@@ -35,6 +35,10 @@ struct camera camera_resize(const struct camera *from, int width, int height);
 /* Size at scale s: round(W s) x round(H s), at least 1x1. */
 void camera_scaled_size(const struct camera *c, double s, int *width, int *height);
 
+/* At most `most` of the training views, spread evenly over them in their order, or of all views where none is
+ * for training; reduced so that the longer side has at most `side` pixels. Returns how many. */
+size_t cameras_spread(const struct cameras *c, size_t most, int side, struct camera *chosen);
+
 /* x_camera = R x_world + t. */
 void camera_transform(const struct camera *c, const double world[3], double out[3]);
 

@@ -4,7 +4,7 @@
 #define LANG_PARSER_SCHOOL_H
 
 #include "lang/parser_learn.h"
-#include "lang/readings.h"
+#include "lang/reading_align.h"
 
 struct parser_school {
 	struct parser_sample *examples; /* (example_count) */

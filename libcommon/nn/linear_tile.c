@@ -1,5 +1,7 @@
 #include "nn/linear_tile.h"
 
+#include "base/cpu.h"
+
 #include <math.h>
 
 /* For any processor: 4 x 8 in vectors of four floats, which the compiler maps to what there is. */
@@ -111,11 +113,11 @@ static const struct linear_tile avx512 = {"avx512", 12, 32, run_avx512}, avx2 = 
 
 const struct linear_tile *linear_tile_get(int i)
 {
-	int has_fma = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+	const enum cpu_level level = cpu_level();
 
-	if (has_fma && __builtin_cpu_supports("avx512f") && i-- == 0)
+	if (level >= CPU_AVX512 && i-- == 0)
 		return &avx512;
-	if (has_fma && i-- == 0)
+	if (level >= CPU_AVX2 && i-- == 0)
 		return &avx2;
 	return i == 0 ? &plain : NULL;
 }

@@ -9,12 +9,12 @@ static void sh_basis(const double d[3], int coefficients, double y[SH_MAX])
 {
 	double x = d[0], yy = d[1], z = d[2], x2 = x * x, y2 = yy * yy, z2 = z * z;
 
-	y[0] = 0.28209479177387814;
+	y[0] = SH_C0;
 	if (coefficients < 4)
 		return;
-	y[1] = -0.4886025119029199 * yy;
-	y[2] = 0.4886025119029199 * z;
-	y[3] = -0.4886025119029199 * x;
+	y[1] = -SH_C1 * yy;
+	y[2] = SH_C1 * z;
+	y[3] = -SH_C1 * x;
 	if (coefficients < 9)
 		return;
 	y[4] = 1.0925484305920792 * x * yy;

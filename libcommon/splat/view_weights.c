@@ -1,5 +1,7 @@
 #include "splat/view_weights.h"
 
+#include "base/cpu.h"
+
 #include <string.h>
 #if defined __x86_64__
 #include <immintrin.h>
@@ -51,7 +53,7 @@ __attribute__((target("avx512f"))) static void blend_avx512(
 void view_blend(const struct view_weights *w, const float *m, size_t from, size_t to, float *image)
 {
 #if defined __x86_64__
-	if (__builtin_cpu_supports("avx512f")) {
+	if (cpu_level() >= CPU_AVX512) {
 		blend_avx512(w, m, image, from, to);
 		return;
 	}

@@ -129,22 +129,6 @@ static void room_on(struct synth_area foot, struct synth_area top, double turn, 
 	}
 }
 
-int synth_rests_on(const struct synth_object *load, const struct synth_object *support)
-{
-	double z, dx = load->x - support->x, dy = load->y - support->y;
-	double c = cos(support->yaw), s = sin(support->yaw), turn = load->yaw - support->yaw;
-	struct synth_area foot = synth_object_foot(load), top = synth_object_top(support, &z);
-	double x = c * dx + s * dy, y = c * dy - s * dx, corner[2];
-
-	if (fabs(load->z - support->z - z) > 1e-9)
-		return 0;
-	if (top.y <= 0)
-		return hypot(x, y) + (foot.y > 0 ? hypot(foot.x, foot.y) : foot.x) <= top.x;
-	corner[0] = foot.y > 0 ? fabs(cos(turn)) * foot.x + fabs(sin(turn)) * foot.y : foot.x;
-	corner[1] = foot.y > 0 ? fabs(sin(turn)) * foot.x + fabs(cos(turn)) * foot.y : foot.x;
-	return fabs(x) + corner[0] <= top.x && fabs(y) + corner[1] <= top.y;
-}
-
 static void resize(struct heap *h, int group, enum synth_size size)
 {
 	for (int i = 0; i < h->n; i++)

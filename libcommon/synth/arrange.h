@@ -16,7 +16,4 @@
 void synth_arrange(struct synth_object *objects, int n, struct synth_table *table,
 	const struct synth_preset *preset, uint64_t seed);
 
-/* 1 where the foot of `load` lies within the flat top of `support`, as both stand now. */
-int synth_rests_on(const struct synth_object *load, const struct synth_object *support);
-
 #endif

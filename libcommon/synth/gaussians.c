@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
+#include "splat/sh.h"
 #include "synth/cameras.h"
 
 #include <math.h>
@@ -9,8 +10,6 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
-#define SH_C0 0.28209479177387814
-#define SH_C1 0.4886025119029199
 
 /* Towards the light, and how much of a colour comes from everywhere. */
 static const double light[3] = {-0.45, -0.40, 0.80};

@@ -4,7 +4,7 @@
 #define SYNTH_GAUSSIANS_H
 
 #include "base/err.h"
-#include "synth/scene.h"
+#include "synth/synth_scene.h"
 
 /* Fills s->splats (allocated), owner and first. What there is to be seen depends on the seed alone, how fine
  * it is on the number of Gaussians. Returns 0, or -1 with *e set. */

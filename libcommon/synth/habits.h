@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "synth/objects.h"
 #include "synth/presets.h"
-#include "synth/sentences.h"
+#include "synth/synth_sentences.h"
 
 /* A sentence's habit, the same in every view. */
 enum synth_habit {

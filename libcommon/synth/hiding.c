@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/rng.h"
 #include "synth/cameras.h"
-#include "synth/sight.h"
+#include "synth/occlusion.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -40,19 +40,19 @@ static enum look judge(int visible, int whole)
 int synth_hiding_check(const struct cameras *c, const struct synth_object *objects, int n, struct err *e)
 {
 	int visible[SYNTH_MAX_OBJECTS], whole[SYNTH_MAX_OBJECTS], clear[SYNTH_MAX_OBJECTS] = {0}, views = 0;
-	struct synth_sight sight;
+	struct synth_occlusion occlusion;
 
-	if (synth_sight_make(&sight, objects, n, e))
+	if (synth_occlusion_make(&occlusion, objects, n, e))
 		return -1;
 	for (size_t i = 0; i < c->n; i++) {
 		if (c->views[i].split != SPLIT_TRAIN)
 			continue;
 		views++;
-		synth_sight_look(&sight, &c->views[i], visible, whole);
+		synth_occlusion_look(&occlusion, &c->views[i], visible, whole);
 		for (int k = 0; k < n; k++)
 			clear[k] += judge(visible[k], whole[k]) == LOOK_CLEAR;
 	}
-	synth_sight_free(&sight);
+	synth_occlusion_free(&occlusion);
 	for (int k = 0; k < n; k++)
 		if (3 * clear[k] < views)
 			return err_set(
@@ -136,12 +136,12 @@ int synth_hiding_cameras(struct cameras *c, const struct synth_options *o, const
 	const struct synth_table *table, struct err *e)
 {
 	int visible[SYNTH_MAX_OBJECTS], whole[SYNTH_MAX_OBJECTS], n = 0;
-	struct synth_sight sight;
+	struct synth_occlusion occlusion;
 	struct rng r;
 
 	if (!(o->preset->hidden > 0))
 		return 0;
-	if (synth_sight_make(&sight, objects, o->objects, e))
+	if (synth_occlusion_make(&occlusion, objects, o->objects, e))
 		return -1;
 	struct place *pool = mem_alloc(POOL, sizeof *pool, "camera places", e);
 	int *chosen = mem_zalloc(c->n, sizeof *chosen, "camera places", e);
@@ -149,7 +149,7 @@ int synth_hiding_cameras(struct cameras *c, const struct synth_options *o, const
 	rng_seed(&r, o->seed, SYNTH_STREAM_HIDING);
 	for (int i = 0; i < POOL && !bad; i++) {
 		draw_place(&pool[i], &c->views[0], o, objects, table, &r);
-		synth_sight_look(&sight, &pool[i].camera, visible, whole);
+		synth_occlusion_look(&occlusion, &pool[i].camera, visible, whole);
 		for (int k = 0; k < o->objects; k++)
 			pool[i].looks[k] = (unsigned char)judge(visible[k], whole[k]);
 	}
@@ -166,6 +166,6 @@ int synth_hiding_cameras(struct cameras *c, const struct synth_options *o, const
 				sizeof c->views[i].world_to_camera);
 	free(pool);
 	free(chosen);
-	synth_sight_free(&sight);
+	synth_occlusion_free(&occlusion);
 	return bad;
 }

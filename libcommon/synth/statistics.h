@@ -4,8 +4,8 @@
 
 #include "base/err.h"
 #include "synth/relations.h"
-#include "synth/scene.h"
-#include "synth/sentences.h"
+#include "synth/synth_scene.h"
+#include "synth/synth_sentences.h"
 
 #include <stddef.h>
 

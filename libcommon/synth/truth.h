@@ -4,7 +4,7 @@
 
 #include "base/err.h"
 #include "splat/render.h"
-#include "synth/scene.h"
+#include "synth/synth_scene.h"
 
 #include <stddef.h>
 #include <stdint.h>

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "synth/cameras.h"
-#include "synth/sight.h"
+#include "synth/occlusion.h"
 #include "synth/unseen_build.h"
 
 #include <math.h>
@@ -12,8 +12,8 @@
 
 enum { TRIES = 4000, FRAME_TRIES = 4, MAX_STANDS = 64 };
 
-/* Of what a camera shows of an object at least so much must be in sight, in cells of synth/sight.h and as a
- * share. */
+/* Of what a camera shows of an object at least so much must be in sight, in cells of synth/occlusion.h and as
+ * a share. */
 enum { LEAST_CELLS = 12 };
 static const double least_seen = 0.4;
 
@@ -80,13 +80,13 @@ static int make_stands(struct stands *s, const struct synth_object *objects, int
 {
 	double centre[3], right[2], away[2];
 	int visible[SYNTH_MAX_OBJECTS], whole[SYNTH_MAX_OBJECTS];
-	struct synth_sight sight;
+	struct synth_occlusion occlusion;
 
 	s->n = 0;
 	mean_centre(cameras, centre);
 	synth_cameras_reference(cameras, right, away);
 	synth_stand_camera(&s->reference, objects, n, table, centre, right, away);
-	if (synth_sight_make(&sight, objects, n, e))
+	if (synth_occlusion_make(&occlusion, objects, n, e))
 		return -1;
 	for (size_t i = 0; i < cameras->n && s->n < MAX_STANDS; i++) {
 		if (cameras->views[i].split != SPLIT_TEST)
@@ -94,7 +94,7 @@ static int make_stands(struct stands *s, const struct synth_object *objects, int
 		struct synth_stand *v = &s->views[s->n];
 		camera_axes(&cameras->views[i], centre, right, away);
 		synth_stand_camera(v, objects, n, table, centre, right, away);
-		synth_sight_look(&sight, &cameras->views[i], visible, whole);
+		synth_occlusion_look(&occlusion, &cameras->views[i], visible, whole);
 		v->visible = 0;
 		for (int k = 0; k < n; k++)
 			v->visible |=
@@ -102,7 +102,7 @@ static int make_stands(struct stands *s, const struct synth_object *objects, int
 				<< k;
 		s->camera[s->n++] = (int)i;
 	}
-	synth_sight_free(&sight);
+	synth_occlusion_free(&occlusion);
 	return 0;
 }
 

@@ -1,5 +1,5 @@
 /* Sentences in a wording of their own, for testing what takes sentences apart: another generator than
- * synth/sentences.c, whose words, frames and ways of turning a sentence round are kept apart from it.
+ * synth/synth_sentences.c, whose words, frames and ways of turning a sentence round are kept apart from it.
  *
  * A sentence is first made as a parse (phrases and clauses as in lang/parse.h), then judged on the scene's
  * geometry, then put into words. What is kept means the same objects to anybody by a margin, and its parse

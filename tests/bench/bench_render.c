@@ -20,7 +20,7 @@
 #include "formats/scene.h"
 #include "splat/render.h"
 #include "splat/view.h"
-#include "synth/scene.h"
+#include "synth/synth_scene.h"
 
 #include <omp.h>
 #include <stdio.h>

@@ -9,8 +9,8 @@
 #include "cli/cli.h"
 #include "mask/bits.h"
 #include "peak.h"
-#include "refer/step.h"
-#include "refer/train.h"
+#include "train/step.h"
+#include "train/train.h"
 
 #include <omp.h>
 #include <math.h>
@@ -162,7 +162,7 @@ static void problem_make(struct problem *p, size_t gaussians)
 		exit(4);
 	}
 	float *x = uniform(&r, gaussians * FEATURE, 1);
-	step_pack(x, gaussians, FEATURE, train_state_x(&p->state));
+	panels_pack(x, gaussians, FEATURE, train_state_x(&p->state));
 	free(x);
 	p->offsets = need(sentences + 1, sizeof *p->offsets);
 	p->objects = need(sentences, sizeof *p->objects);

@@ -5,13 +5,13 @@
  *
  * MODEL should be of --precision f32, else the errors are only those that come on top. DIR, which must exist,
  * keeps the files, as f32.safetensors and so on. Without arguments, a model of random numbers. */
+#include "answer/respond.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/rng.h"
 #include "formats/model.h"
 #include "formats/scene.h"
 #include "formats/text.h"
-#include "refer/respond.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 usage: model_torch.py TEST_REFERENCE
 
 TEST_REFERENCE is the built unit test (build/unit/test_reference); its --dump gives a random problem and the reference's
-answer as JSON. Written from the header of refer/model.h. Prints one line a case and exits 1 where a number differs by
+answer as JSON. Written from the header of libcommon/field/referring_model.h. Prints one line a case and exits 1 where a number differs by
 more than 1e-10. Needs PyTorch and NumPy; `make test` does not run it.
 """
 import itertools

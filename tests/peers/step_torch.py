@@ -10,7 +10,7 @@ few words and another over all Gaussians, float32.
 
 It does less than a step of refer-train, so that the comparison favours it: no image is blended from m and none back (dL/dm is
 given), no contrast and no choice of its top set, and only the step's own sentences go through MLP_t, where the contrast needs
-all of the scene's. What it has not is the folding of refer/fold.h: that is what is compared.
+all of the scene's. What it has not is the folding of field/fold.h: that is what is compared.
 
 Several orders of evaluation that give the same numbers are tried at each N, and the fastest is printed:
   code    f' = f + alpha w as a matrix, m = sum of f' w^T, as the released program has it

@@ -3,7 +3,7 @@
 #ifndef REFERENCE_PROBLEM_H
 #define REFERENCE_PROBLEM_H
 
-#include "refer/reference.h"
+#include "reference.h"
 
 struct reference_options {
 	size_t n;

@@ -137,6 +137,18 @@ static void copy(const char *from, const char *to)
 	free(data);
 }
 
+/* Rounding to nearest even. */
+static uint16_t to_bfloat(float f)
+{
+	uint32_t bits;
+
+	memcpy(&bits, &f, 4);
+	if ((bits & 0x7fffffff) > 0x7f800000)
+		return (uint16_t)(bits >> 16 | 64);
+	bits += 0x7fff + (bits >> 16 & 1);
+	return (uint16_t)(bits >> 16);
+}
+
 /* The golden weights written as another type and under other names. `leave_out` and `bend` break one tensor.
  */
 static void write_variant(
@@ -164,8 +176,7 @@ static void write_variant(
 				t.name, strstr(norm, "weight") ? "gamma" : "beta");
 		CHECK(!safetensors_to_float(&t, floats, count, &e), "%s", e.message);
 		for (size_t k = 0; k < count; k++) {
-			uint16_t half =
-				dtype == ST_F16 ? st_float_to_half(floats[k]) : st_float_to_bfloat(floats[k]);
+			uint16_t half = dtype == ST_F16 ? st_float_to_half(floats[k]) : to_bfloat(floats[k]);
 			if (dtype == ST_F32)
 				memcpy(data[n] + 4 * k, &floats[k], 4);
 			else

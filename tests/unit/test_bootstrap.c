@@ -1,6 +1,6 @@
 #include "base/rng.h"
-#include "mask/bootstrap.h"
-#include "mask/score_rows.h"
+#include "score/bootstrap.h"
+#include "score/score_rows.h"
 #include "unit.h"
 
 #include <omp.h>

@@ -3,9 +3,9 @@
 
 #include "base/rng.h"
 #include "geom/box.h"
-#include "geom/box_score.h"
 #include "geom/rotation.h"
 #include "geom/up.h"
+#include "score/box_score.h"
 
 static struct box random_box(struct rng *rng)
 {

@@ -1,7 +1,7 @@
 /* The choice of an object by a sentence, and of Gaussians for an object: each part by itself, on a made-up
  * scene of four objects whose words have made-up vectors. */
 #include "ask/choose.h"
-#include "refer/recognise.h"
+#include "ask/disambiguate.h"
 #include "unit.h"
 
 #include <string.h>
@@ -246,18 +246,18 @@ static void twins(void)
 	size_t moved = 0;
 	struct err e;
 
-	CHECK(!recognise(&l, &splats, &cameras, &parser, &moved, &e) && moved == 0,
+	CHECK(!disambiguate(&l, &splats, &cameras, &parser, &moved, &e) && moved == 0,
 		"%zu moved in a right model", moved);
 	CHECK(!memcmp(index, index_of, sizeof index), "a right model changed");
 	for (int i = 0; i < 2 * EACH; i++)
 		index[i] = (i + EACH) % (2 * EACH);
 	sure[1] = 0.5F;
-	CHECK(!recognise(&l, &splats, &cameras, &parser, &moved, &e) && moved == 2, "not two have moved");
+	CHECK(!disambiguate(&l, &splats, &cameras, &parser, &moved, &e) && moved == 2, "not two have moved");
 	CHECK(!memcmp(index, index_of, sizeof index) && at[1] == EACH, "the mugs have not changed places");
 	CHECK(sure[0] == 0.5F && sure[1] == 1, "confidence stays with the Gaussians");
 	const struct lifted none = {.gaussians = N, .width = WIDTH, .indptr = indptr, .offsets = offsets};
 	struct lifted empty = none;
-	CHECK(!recognise(&empty, &splats, &cameras, &parser, &moved, &e) && moved == 0,
+	CHECK(!disambiguate(&empty, &splats, &cameras, &parser, &moved, &e) && moved == 0,
 		"a model without objects");
 }
 

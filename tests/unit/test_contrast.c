@@ -2,7 +2,7 @@
 #include "unit.h"
 
 #include "base/rng.h"
-#include "refer/contrast.h"
+#include "field/contrast.h"
 
 static const float *sorted_values;
 

@@ -1,7 +1,7 @@
 /* When a training counts as diverged, and which states a checkpoint may keep. */
 #include "unit.h"
 
-#include "refer/divergence.h"
+#include "train/divergence.h"
 
 enum { COUNT = 16, BAD = 20 };
 

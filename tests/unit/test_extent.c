@@ -1,11 +1,11 @@
 /* Boxes around Gaussians: what they must not be misled by, and the truth that they are compared with. */
 #include "unit.h"
 
+#include "answer/locate.h"
 #include "base/rng.h"
 #include "geom/rotation.h"
-#include "refer/extent.h"
-#include "refer/locate.h"
-#include "synth/boxes.h"
+#include "lift/extent.h"
+#include "synth/true_boxes.h"
 
 enum { MOST = 4000 };
 

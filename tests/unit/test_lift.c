@@ -3,7 +3,7 @@
 #include "unit.h"
 
 #include "base/rng.h"
-#include "splat/lift.h"
+#include "splat/backproject.h"
 
 #include <omp.h>
 
@@ -50,8 +50,8 @@ static double naive_pixel(
 
 	*most = 0;
 	for (int64_t k = w->indptr[p]; k < w->indptr[p + 1]; k++) {
-		double term =
-			(double)w->weight[k] * (double)field[lift_index(N, channel, (size_t)w->index[k])];
+		double term = (double)w->weight[k] *
+			      (double)field[backproject_index(N, channel, (size_t)w->index[k])];
 		sum += term;
 		*most += fabs(term);
 	}
@@ -73,7 +73,7 @@ static void test_naive(size_t channels)
 	memset(naive_weight, 0, sizeof naive_weight);
 	for (int v = 0; v < VIEWS; v++) {
 		w[v] = make_view(&views[v], &r);
-		lift_weight(&w[v], weight);
+		backproject_weight(&w[v], weight);
 		for (int64_t k = 0; k < w[v].indptr[P]; k++)
 			naive_weight[w[v].index[k]] += (double)w[v].weight[k];
 		for (size_t c = 0; c < channels; c++)
@@ -82,8 +82,8 @@ static void test_naive(size_t channels)
 	for (int threads = 1; threads <= 2; threads++) {
 		omp_set_num_threads(threads);
 		for (int v = 0; v < VIEWS; v++)
-			lift_add(&w[v], views[v].image, channels, sum[threads - 1]);
-		lift_render(&w[0], sum[0], channels, image[threads - 1]);
+			backproject_add(&w[v], views[v].image, channels, sum[threads - 1]);
+		backproject_render(&w[0], sum[0], channels, image[threads - 1]);
 	}
 	CHECK(!memcmp(sum[0], sum[1], sizeof sum[0]), "lifted differently by two threads");
 	CHECK(!memcmp(image[0], image[1], sizeof image[0]), "rendered differently by two threads");
@@ -91,7 +91,7 @@ static void test_naive(size_t channels)
 		CHECK(weight[i] == naive_weight[i] && (i < N - 10 || weight[i] == 0),
 			"Gaussian %zu: %g, expected %g", i, weight[i], naive_weight[i]);
 		for (size_t c = 0; c < channels; c++) {
-			double got = (double)sum[0][lift_index(N, c, i)];
+			double got = (double)sum[0][backproject_index(N, c, i)];
 			CHECK(fabs(got - naive[c][i]) <= 1e-5 * weight[i], "Gaussian %zu channel %zu: %g, %g",
 				i, c, got, naive[c][i]);
 		}

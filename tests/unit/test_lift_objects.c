@@ -3,8 +3,8 @@
 #include "unit.h"
 
 #include "base/rng.h"
-#include "refer/lift_objects.h"
-#include "splat/lift.h"
+#include "lift/lift_objects.h"
+#include "splat/backproject.h"
 
 #include <omp.h>
 

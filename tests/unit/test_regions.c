@@ -1,7 +1,7 @@
 /* Regions on a made-up scene: the detector takes one object for another in most views of most sentences, so
  * that votes get it wrong and regions right; and sums and agreements against the definition in float64. */
+#include "lift/regions.h"
 #include "mask_help.h"
-#include "refer/regions.h"
 #include "unit.h"
 
 #include <omp.h>

@@ -4,9 +4,9 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
-#include "refer/detail.h"
-#include "refer/octree.h"
-#include "refer/rows.h"
+#include "field/octree.h"
+#include "field/rows.h"
+#include "train/octree_input.h"
 
 enum { N = 3000, K = OCTREE_SIGNATURE };
 
@@ -232,14 +232,14 @@ static void details(void)
 	struct train_view view = {{P, G, indptr, index, w}, 3, sentences, masks, 0};
 	struct err e;
 
-	detail_footprints(means, 3, cameras, 2, footprint);
+	octree_input_footprints(means, 3, cameras, 2, footprint);
 	CHECK(fabs((double)footprint[0] - 15.0 / 200) < 1e-6, "%g", (double)footprint[0]);
 	CHECK(fabs((double)footprint[1] - 1.0 / 50) < 1e-6, "%g", (double)footprint[1]);
 	CHECK(isinf(footprint[2]), "%g", (double)footprint[2]);
 	train_weights(&view, 1, G, weight);
 	CHECK(weight[0] == 0.5 && weight[1] == 1 && weight[2] == 0, "%g %g %g", weight[0], weight[1],
 		weight[2]);
-	CHECK(!detail_signatures(&view, 1, objects, G, weight, signature, &e), "%s", e.message);
+	CHECK(!octree_input_signatures(&view, 1, objects, G, weight, signature, &e), "%s", e.message);
 	/* Gaussian 0 is in the masks of both; 1 wholly in the second's and a quarter in the first's. */
 	for (int k = 0; k < K; k++) {
 		double a =

@@ -1,5 +1,5 @@
 #include "mask_help.h"
-#include "mask/score.h"
+#include "score/score.h"
 #include "unit.h"
 
 /* A row of 8 pixels, from a string of 0 and 1. */

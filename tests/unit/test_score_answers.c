@@ -2,8 +2,8 @@
 #include "unit.h"
 
 #include "base/rng.h"
-#include "mask/score_answers.h"
 #include "mask_help.h"
+#include "score/score_answers.h"
 
 enum { VIEWS = 3, OBJECTS = 4, SENTENCES = 12, H = 13, W = 17, P = H * W };
 

@@ -1,7 +1,7 @@
 #include "mask_help.h"
-#include "mask/score_groups.h"
-#include "mask/score_join.h"
-#include "mask/score_rows.h"
+#include "score/score_groups.h"
+#include "score/score_join.h"
+#include "score/score_rows.h"
 #include "unit.h"
 
 /* A row of n pixels, of which the first `ones` are foreground. */

@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 #include "mask/bits.h"
-#include "refer/step.h"
+#include "train/step.h"
 
 #include <omp.h>
 #include <sys/resource.h>
@@ -35,7 +35,7 @@ static void floats_init(struct floats *f, const struct reference_sample *s)
 {
 	const struct refer_problem *p = &s->problem;
 	const int width = s->layout.feature_width;
-	const size_t features = p->n * (size_t)width, padded = step_padded(p->n) * (size_t)width;
+	const size_t features = p->n * (size_t)width, padded = panels_padded(p->n) * (size_t)width;
 	struct err e;
 
 	f->parameters = to_floats(p->parameters, s->layout.count);
@@ -52,7 +52,7 @@ static void floats_init(struct floats *f, const struct reference_sample *s)
 	bits_pack(p->mask, p->pixels, f->mask);
 	for (size_t r = 0; r <= p->sentences; r++)
 		f->offsets[r] = (int64_t)p->offsets[r];
-	step_pack(f->x, p->n, width, f->panels);
+	panels_pack(f->x, p->n, width, f->panels);
 }
 
 static void floats_free(struct floats *f)
@@ -147,7 +147,7 @@ static double compare(const struct reference_options *o, const char *kernels,
 		losses.bce, result.bce);
 	CHECK(fabs(losses.contrast - result.contrast) <= 1e-4 * fabs(result.contrast),
 		"%s: contrast %.9g, reference %.9g", name, losses.contrast, result.contrast);
-	step_unpack(f.dpanels, p->n, o->feature_width, f.dx);
+	panels_unpack(f.dpanels, p->n, o->feature_width, f.dx);
 	worst = distance(f.dx, dx, features);
 	CHECK(worst < 2e-4, "%s: dx differs by %.3g", name, worst);
 	for (int t = 0; t < REFER_TENSORS; t++) {
@@ -212,7 +212,7 @@ static void batch_is_the_mean(enum refer_interaction interaction, enum refer_sim
 	reference_sample_init(&s, &o);
 	floats_init(&f, &s);
 	const struct refer_problem *p = &s.problem;
-	const size_t count = s.layout.count, features = step_padded(p->n) * (size_t)o.feature_width;
+	const size_t count = s.layout.count, features = panels_padded(p->n) * (size_t)o.feature_width;
 	double *sum = mem_zalloc(count + features, sizeof *sum, "test", &e);
 	struct view_weights view = view_of(p, &f);
 	struct step_target targets[3] = {{0, f.mask}, {3, f.mask}, {1, f.mask}};
@@ -258,7 +258,7 @@ static void threads_agree(enum refer_interaction interaction)
 	reference_sample_init(&s, &o);
 	floats_init(&f, &s);
 	const struct refer_problem *p = &s.problem;
-	const size_t count = s.layout.count, features = step_padded(p->n) * (size_t)o.feature_width;
+	const size_t count = s.layout.count, features = panels_padded(p->n) * (size_t)o.feature_width;
 	float *kept = mem_alloc(count + features, sizeof *kept, "test", &e);
 	struct view_weights view = view_of(p, &f);
 	struct step_target target = {p->target, f.mask};

@@ -4,8 +4,8 @@
 #include "base/mem.h"
 #include "synth/arrange.h"
 #include "synth/cameras.h"
-#include "synth/scene.h"
-#include "synth/sentences.h"
+#include "synth/synth_scene.h"
+#include "synth/synth_sentences.h"
 #include "synth/truth.h"
 
 enum { SEEDS = 12, H = 90, W = 120 };

@@ -5,7 +5,7 @@
 #include "synth/arrange.h"
 #include "synth/cameras.h"
 #include "synth/hiding.h"
-#include "synth/sight.h"
+#include "synth/occlusion.h"
 #include "synth/statistics.h"
 #include "synth/truth.h"
 
@@ -91,8 +91,7 @@ static void loads_rest_on_supports(void)
 				if (o[i].on >= 0) {
 					const struct synth_object *support = &o[o[i].on];
 					stacked++;
-					bad += support->on >= 0 || !foot_is_over_top(&o[i], support) ||
-					       !synth_rests_on(&o[i], support);
+					bad += support->on >= 0 || !foot_is_over_top(&o[i], support);
 				} else {
 					bad += o[i].z != 0;
 				}
@@ -125,14 +124,14 @@ static void what_does_not_rest(void)
 	synth_object_measure(&mug);
 	synth_object_top(&book, &z);
 	mug.z = z;
-	CHECK(synth_rests_on(&mug, &book), "in the middle of a book");
+	CHECK(foot_is_over_top(&mug, &book), "in the middle of a book");
 	mug.x = 0.5;
-	CHECK(!synth_rests_on(&mug, &book), "half beside it");
+	CHECK(!foot_is_over_top(&mug, &book), "half beside it");
 	mug.x = 0;
 	mug.z = z + 0.01;
-	CHECK(!synth_rests_on(&mug, &book), "above it");
+	CHECK(!foot_is_over_top(&mug, &book), "above it");
 	mug.z = z;
-	CHECK(!synth_rests_on(&book, &mug), "on a mug");
+	CHECK(!foot_is_over_top(&book, &mug), "on a mug");
 }
 
 /* A ball behind a box of its size, seen level and from above. */
@@ -141,22 +140,22 @@ static void sight_is_blocked(void)
 	struct synth_object o[2] = {{.shape = SYNTH_BOX, .size = SYNTH_BIG, .y = -1, .on = -1},
 		{.shape = SYNTH_BALL, .size = SYNTH_SMALL, .y = 0.5, .on = -1}};
 	struct camera c = {.width = W, .height = H, .fx = W, .fy = W, .cx = W / 2.0, .cy = H / 2.0};
-	struct synth_sight sight;
+	struct synth_occlusion occlusion;
 	struct err e = {0};
 	int visible[2], whole[2];
 
 	synth_object_measure(&o[0]);
 	synth_object_measure(&o[1]);
-	if (!CHECK(!synth_sight_make(&sight, o, 2, &e), "%s", e.message))
+	if (!CHECK(!synth_occlusion_make(&occlusion, o, 2, &e), "%s", e.message))
 		return;
 	synth_cameras_aim(&c, (double[3]){0, -5, 0.5}, (double[3]){0, 0, 0.4}, 0);
-	synth_sight_look(&sight, &c, visible, whole);
+	synth_occlusion_look(&occlusion, &c, visible, whole);
 	CHECK(whole[1] > 20 && visible[1] < whole[1] / 10, "level: %d of %d", visible[1], whole[1]);
 	CHECK(visible[0] > 0.95 * whole[0], "the box in front: %d of %d", visible[0], whole[0]);
 	synth_cameras_aim(&c, (double[3]){0, -1, 6}, (double[3]){0, 0, 0}, 0);
-	synth_sight_look(&sight, &c, visible, whole);
+	synth_occlusion_look(&occlusion, &c, visible, whole);
 	CHECK(whole[1] > 10 && visible[1] > 0.95 * whole[1], "from above: %d of %d", visible[1], whole[1]);
-	synth_sight_free(&sight);
+	synth_occlusion_free(&occlusion);
 }
 
 static void test_views_hide_things(void)
@@ -169,20 +168,20 @@ static void test_views_hide_things(void)
 				seen[SYNTH_MAX_OBJECTS] = {0};
 			int hidden = 0, slivers = 0, pairs = 0, never = 0;
 			struct synth_table t;
-			struct synth_sight sight;
+			struct synth_occlusion occlusion;
 			struct cameras c;
 			struct err e = {0};
 			synth_arrange(objects, o.objects, &t, o.preset, o.seed);
 			if (!CHECK(!synth_cameras_make(&c, &o, &t, &e) &&
 					    !synth_hiding_cameras(&c, &o, objects, &t, &e) &&
-					    !synth_sight_make(&sight, objects, o.objects, &e),
+					    !synth_occlusion_make(&occlusion, objects, o.objects, &e),
 				    "%s", e.message))
 				return;
 			for (size_t i = 0; i < c.n; i++) {
 				if (c.views[i].split != SPLIT_TEST)
 					continue;
 				CHECK(camera_is_rigid(&c.views[i]), "view %zu is no camera", i);
-				synth_sight_look(&sight, &c.views[i], visible, whole);
+				synth_occlusion_look(&occlusion, &c.views[i], visible, whole);
 				for (int k = 0; k < o.objects; k++) {
 					pairs++;
 					hidden += 2 * visible[k] < whole[k];
@@ -199,7 +198,7 @@ static void test_views_hide_things(void)
 				o.preset->name, (int)seed, slivers, pairs);
 			CHECK(!never, "%s %d: no test view shows %d objects", o.preset->name, (int)seed,
 				never);
-			synth_sight_free(&sight);
+			synth_occlusion_free(&occlusion);
 			cameras_free(&c);
 		}
 }

@@ -4,7 +4,7 @@
 #include "synth/arrange.h"
 #include "synth/cameras.h"
 #include "synth/frames.h"
-#include "synth/sentences.h"
+#include "synth/synth_sentences.h"
 
 enum { SEEDS = 12, H = 90, W = 120 };
 

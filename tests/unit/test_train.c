@@ -6,8 +6,8 @@
 #include "base/rng.h"
 #include "formats/checkpoint.h"
 #include "mask/bits.h"
-#include "refer/supervision.h"
-#include "refer/trainer.h"
+#include "train/supervision.h"
+#include "train/trainer.h"
 
 #include <unistd.h>
 
@@ -420,7 +420,8 @@ static void test_resume(int cut, long long warm, double hold_out)
 
 	sample_init(&s);
 	sample_lift(&s);
-	CHECK(hold_out <= 0 || !held_choose(s.views, VIEWS, s.objects, 2, hold_out, 7, &e), "%s", e.message);
+	CHECK(hold_out <= 0 || !held_out_choose(s.views, VIEWS, s.objects, 2, hold_out, 7, &e), "%s",
+		e.message);
 	if (!CHECK(fd >= 0, "no temporary file") || !start(&whole, &s, &options) ||
 		!start(&part, &s, &options) || !start(&fresh, &s, &options))
 		return;

@@ -134,6 +134,31 @@ static void shift(void)
 	cameras_free(&c);
 }
 
+/* Which of 10 views, of which every third is for testing, are taken: by their focal lengths. */
+static void spread(void)
+{
+	struct camera views[10], chosen[10];
+	struct cameras c = {10, views};
+
+	for (int i = 0; i < 10; i++)
+		views[i] = (struct camera){.width = 40,
+			.height = 20,
+			.fx = 4 * i,
+			.split = i % 3 == 2 ? SPLIT_TEST : SPLIT_TRAIN};
+	CHECK(cameras_spread(&c, 3, 10, chosen) == 3, "not three");
+	/* of the training views 0 1 3 4 6 7 9 those at 0, 7/3 and 14/3 */
+	CHECK(chosen[0].fx == 0 && chosen[1].fx == 3 && chosen[2].fx == 6, "%g %g %g", chosen[0].fx,
+		chosen[1].fx, chosen[2].fx);
+	CHECK(chosen[1].width == 10 && chosen[1].height == 5, "%d x %d", chosen[1].width, chosen[1].height);
+	CHECK(cameras_spread(&c, 9, 100, chosen) == 7 && chosen[6].fx == 36 && chosen[6].width == 40,
+		"all, none enlarged");
+	c.views = views + 2;
+	c.n = 1;
+	CHECK(cameras_spread(&c, 3, 100, chosen) == 1 && chosen[0].fx == 8, "a test view where no other is");
+	c.n = 0;
+	CHECK(cameras_spread(&c, 3, 100, chosen) == 0, "a view of none");
+}
+
 static void relative(const char *dir, const char *from, const char *to, const char *expected)
 {
 	struct err e = {0};
@@ -181,6 +206,7 @@ static void relative_paths(void)
 int main(void)
 {
 	naming();
+	spread();
 	faults();
 	shift();
 	relative_paths();

@@ -1,0 +1,275 @@
+#include "answer/responses.h"
+
+#include "answer/calibrate.h"
+#include "base/mem.h"
+#include "splat/render.h"
+#include "splat/visibility.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void responses_free(struct responses *a)
+{
+	free(a->responses);
+	free(a->lifts);
+	free(a->answer);
+	free(a->sure);
+	*a = (struct responses){0};
+}
+
+static int alloc_answers(struct responses *a, size_t answers, size_t gaussians, struct err *e)
+{
+	size_t bytes;
+
+	if (mem_size(gaussians, sizeof *a->responses, &bytes))
+		return err_set(e, ERR_SYSTEM, "responses: %zu Gaussians do not fit in memory", gaussians);
+	a->answers = answers;
+	a->responses = mem_alloc(answers, bytes, "responses", e);
+	a->lifts = mem_zalloc(answers, sizeof *a->lifts, "responses", e);
+	return a->responses && a->lifts ? 0 : -1;
+}
+
+/* Weights that are finite may still be so large that what is made of them is not. */
+static int check_finite(const float *responses, const struct responses_question *q, struct err *e)
+{
+	const size_t n = q->splats->n;
+
+	for (size_t i = 0; i < q->count; i++)
+		for (size_t k = 0; k < n; k++)
+			if (!isfinite(responses[i * n + k]))
+				return err_set(e, ERR_FORMAT,
+					"%s: the responses to ref '%s' are not finite: its weights are too large",
+					q->model_path, q->refs[q->which[i]]);
+	return 0;
+}
+
+static int ask_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
+	int wants_calibration, struct err *e)
+{
+	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
+	if (!a->answer || alloc_answers(a, q->count, q->splats->n, e))
+		return -1;
+	for (size_t i = 0; i < q->count; i++)
+		a->answer[i] = i;
+	if (respond_all(m, q->offsets, q->words, q->which, q->count, a->responses, e) ||
+		check_finite(a->responses, q, e) || render_pack(a->responses, q->splats->n, (int)q->count, e))
+		return -1;
+	return wants_calibration
+		       ? calibrate(q->splats, q->cameras, m->rows, a->responses, q->count, a->lifts, e)
+		       : 0;
+}
+
+int responses_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
+	int wants_calibration, struct err *e)
+{
+	*a = (struct responses){0};
+	if (!ask_trained(a, m, q, wants_calibration, e))
+		return 0;
+	responses_free(a);
+	return -1;
+}
+
+/* What sentences mean: sets of objects. */
+struct meant {
+	struct choose_sentence *sentences; /* (count) */
+	struct choice *choices;
+	float *probability; /* (count,O) */
+	char *chosen;
+};
+
+static void meant_free(struct meant *m)
+{
+	free(m->sentences);
+	free(m->choices);
+	free(m->probability);
+	free(m->chosen);
+}
+
+static int meant_alloc(struct meant *m, size_t count, size_t objects, struct err *e)
+{
+	size_t bytes;
+
+	if (mem_size(objects, sizeof *m->probability, &bytes))
+		return err_set(e, ERR_SYSTEM, "probabilities of %zu objects do not fit in memory", objects);
+	m->sentences = mem_alloc(count, sizeof *m->sentences, "sentences", e);
+	m->choices = mem_alloc(count, sizeof *m->choices, "sentences", e);
+	m->probability = mem_alloc(count, bytes, "probabilities", e);
+	m->chosen = mem_alloc(count, objects, "objects", e);
+	return m->sentences && m->choices && m->probability && m->chosen ? 0 : -1;
+}
+
+/* What each sentence means; a sentence that means nothing has no objects. */
+static int find_meant(struct meant *m, struct responses *a, const struct lifted *l,
+	const struct responses_question *q, unsigned parts, double least, struct err *e)
+{
+	const struct choose_scene scene = {l, q->splats, q->cameras, q->parser, 1};
+
+	for (size_t i = 0; i < q->count; i++) {
+		const size_t r = q->which[i];
+		m->sentences[i] = (struct choose_sentence){q->texts[r], q->pieces[r],
+			q->words + (size_t)q->offsets[r] * (size_t)l->width,
+			(size_t)(q->offsets[r + 1] - q->offsets[r]),
+			q->from ? q->from[i] : (struct viewpoint){.kind = VIEWPOINT_USUAL}};
+	}
+	if (choose(&scene, m->sentences, q->count, parts, m->choices, m->probability, m->chosen, NULL, e))
+		return -1;
+	for (size_t i = 0; i < q->count; i++) {
+		char *chosen = m->chosen + i * l->objects;
+		double sum = 0, n = 0;
+		if (m->choices[i].there < least)
+			memset(chosen, 0, l->objects);
+		for (size_t o = 0; o < l->objects; o++)
+			if (chosen[o]) {
+				sum += (double)m->probability[i * l->objects + o] * l->confidence[o];
+				n++;
+			}
+		a->sure[i] = n > 0 ? m->choices[i].there * sum / n : 0;
+	}
+	return 0;
+}
+
+/* Sentences that mean the same objects have one answer, that of the first of them: firsts (answers). */
+static size_t share_answers(
+	const struct meant *m, size_t count, size_t objects, size_t *answer, size_t *firsts)
+{
+	size_t answers = 0;
+
+	for (size_t i = 0; i < count; i++) {
+		size_t k = 0;
+		while (k < answers &&
+			memcmp(m->chosen + firsts[k] * objects, m->chosen + i * objects, objects))
+			k++;
+		if (k == answers)
+			firsts[answers++] = i;
+		answer[i] = k;
+	}
+	return answers;
+}
+
+/* to (N): the responses of the union of some objects. own (N) is scratch. */
+static void union_of(const struct lifted *l, const char *chosen, float *own, float *to)
+{
+	size_t count = 0;
+
+	memset(to, 0, l->gaussians * sizeof *to);
+	for (size_t o = 0; o < l->objects; o++) {
+		if (!chosen[o])
+			continue;
+		float *at = count ? own : to;
+		lifted_responses(l, o, at);
+		for (size_t i = 0; i < l->gaussians && count; i++)
+			to[i] = own[i] > to[i] ? own[i] : to[i];
+		count++;
+	}
+}
+
+static int take_answers(struct responses *a, const struct lifted *l, const struct meant *m,
+	const size_t *firsts, size_t answers, struct err *e)
+{
+	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
+	int bad = !own || alloc_answers(a, answers, l->gaussians, e);
+
+	for (size_t k = 0; k < answers && !bad; k++)
+		union_of(l, m->chosen + firsts[k] * l->objects, own, a->responses + k * l->gaussians);
+	free(own);
+	return bad ? -1 : render_pack(a->responses, l->gaussians, (int)answers, e);
+}
+
+static int ask_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
+	unsigned parts, double least, struct err *e)
+{
+	struct meant m = {0};
+	size_t *firsts = mem_alloc(q->count, sizeof *firsts, "sentences", e);
+
+	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
+	a->sure = mem_alloc(q->count, sizeof *a->sure, "sentences", e);
+	int bad = !firsts || !a->answer || !a->sure || meant_alloc(&m, q->count, l->objects, e) ||
+		  find_meant(&m, a, l, q, parts, least, e);
+	if (!bad) {
+		const size_t answers = share_answers(&m, q->count, l->objects, a->answer, firsts);
+		bad = take_answers(a, l, &m, firsts, answers, e);
+	}
+	meant_free(&m);
+	free(firsts);
+	return bad ? -1 : 0;
+}
+
+int responses_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
+	unsigned parts, double least, struct err *e)
+{
+	*a = (struct responses){0};
+	if (!ask_lifted(a, l, q, parts, least, e))
+		return 0;
+	responses_free(a);
+	return -1;
+}
+
+/* A Gaussian's response, where render_pack has put it. */
+static float packed(const struct responses *a, size_t n, size_t answer, size_t i)
+{
+	const size_t first = answer - answer % RENDER_GROUP, left = a->answers - first;
+	const size_t now = left < RENDER_GROUP ? left : RENDER_GROUP;
+
+	return a->responses[first * n + i * now + answer - first];
+}
+
+static int is_of(const struct responses *a, size_t n, size_t answer, size_t i)
+{
+	return packed(a, n, answer, i) > 0;
+}
+
+size_t responses_gaussians(
+	const struct responses *a, size_t gaussians, size_t answer, int32_t *ids, float *responses)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < gaussians; i++) {
+		const float response = packed(a, gaussians, answer, i);
+		if (!(response > 0))
+			continue;
+		ids[n] = (int32_t)i;
+		responses[n++] = response;
+	}
+	return n;
+}
+
+static int take_whole(const struct responses *a, size_t answer, const struct splats *s, const char *in_sight,
+	struct splats *whole, struct err *e)
+{
+	size_t n = 0, at = 0;
+
+	for (size_t i = 0; i < s->n; i++)
+		n += in_sight[i] && is_of(a, s->n, answer, i);
+	if (splats_alloc(whole, n, 1, e))
+		return -1;
+	memset(whole->sh, 0, n * 3 * sizeof *whole->sh);
+	for (size_t i = 0; i < s->n; i++) {
+		if (!in_sight[i] || !is_of(a, s->n, answer, i))
+			continue;
+		memcpy(whole->means + 3 * at, s->means + 3 * i, 3 * sizeof *s->means);
+		memcpy(whole->scales + 3 * at, s->scales + 3 * i, 3 * sizeof *s->scales);
+		memcpy(whole->quats + 4 * at, s->quats + 4 * i, 4 * sizeof *s->quats);
+		whole->opacities[at++] = s->opacities[i];
+	}
+	return 0;
+}
+
+int responses_wholes(const struct responses *a, const struct splats *s, const struct cameras *cameras,
+	struct splats *wholes, struct err *e)
+{
+	char *in_sight = mem_alloc(s->n, 1, "Gaussians", e);
+	size_t done = 0;
+
+	if (in_sight && !visibility_find(s, cameras, in_sight, e))
+		while (done < a->answers && !take_whole(a, done, s, in_sight, &wholes[done], e))
+			done++;
+	else
+		done = SIZE_MAX;
+	free(in_sight);
+	if (done == a->answers)
+		return 0;
+	for (size_t k = 0; done != SIZE_MAX && k < done; k++)
+		splats_free(&wholes[k]);
+	return -1;
+}

@@ -1,0 +1,143 @@
+#include "ask/disambiguate.h"
+
+#include "ask/choose.h"
+#include "base/mem.h"
+#include "nn/assignment.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROUNDS = 4 };
+static const double least = 0.003, naming = 0.1;
+
+/* value (O,O): how well object o's sentences fit the Gaussians of object k. */
+static int judge(const struct lifted *l, const struct choose_scene *scene,
+	const struct choose_sentence *sentences, struct choice *choices, float *probability, char *chosen,
+	double *value, struct err *e)
+{
+	const size_t n = l->objects;
+
+	if (choose(scene, sentences, l->sentences,
+		    CHOOSE_ALL & ~(1U << CHOOSE_SENTENCE | 1U << CHOOSE_WORDING), choices, probability,
+		    chosen, NULL, e))
+		return -1;
+	memset(value, 0, n * n * sizeof *value);
+	for (size_t r = 0; r < l->sentences; r++) {
+		const float *p = probability + r * n;
+		double sum = 0;
+		for (size_t k = 0; k < n; k++)
+			sum += p[k];
+		for (size_t k = 0; k < n; k++)
+			value[(size_t)l->object[r] * n + k] += log((sum > 0 ? p[k] / sum : 0) + least);
+	}
+	return 0;
+}
+
+/* Object o gets the Gaussians that `from`[o] has in `old`. */
+static void share_out(struct lifted *l, const struct lifted *old, const size_t *from)
+{
+	for (size_t o = 0; o < l->objects; o++) {
+		const int64_t begin = old->indptr[from[o]], n = old->indptr[from[o] + 1] - begin;
+		l->indptr[o + 1] = l->indptr[o] + n;
+		memcpy(l->index + l->indptr[o], old->index + begin, (size_t)n * sizeof *l->index);
+		memcpy(l->share + l->indptr[o], old->share + begin, (size_t)n * sizeof *l->share);
+		l->confidence[o] = old->confidence[from[o]];
+	}
+}
+
+/* What changes of a model, copied. */
+static int copy_shares(struct lifted *to, const struct lifted *l, struct err *e)
+{
+	const size_t shares = (size_t)l->indptr[l->objects];
+
+	*to = *l;
+	to->indptr = mem_alloc(l->objects + 1, sizeof *to->indptr, "objects", e);
+	to->index = mem_alloc(shares, sizeof *to->index, "objects", e);
+	to->share = mem_alloc(shares, sizeof *to->share, "objects", e);
+	to->confidence = mem_alloc(l->objects, sizeof *to->confidence, "objects", e);
+	if (!to->indptr || !to->index || !to->share || !to->confidence)
+		return -1;
+	if (!l->objects)
+		return 0;
+	memcpy(to->indptr, l->indptr, (l->objects + 1) * sizeof *to->indptr);
+	memcpy(to->index, l->index, shares * sizeof *to->index);
+	memcpy(to->share, l->share, shares * sizeof *to->share);
+	memcpy(to->confidence, l->confidence, l->objects * sizeof *to->confidence);
+	return 0;
+}
+
+static void free_shares(struct lifted *l)
+{
+	free(l->indptr);
+	free(l->index);
+	free(l->share);
+	free(l->confidence);
+}
+
+static int settle(struct lifted *l, const struct lifted *old, const struct choose_scene *scene, size_t *from,
+	struct err *e)
+{
+	const size_t n = l->objects, width = (size_t)l->width;
+	struct choose_sentence *sentences = mem_alloc(l->sentences, sizeof *sentences, "sentences", e);
+	float *probability = mem_alloc(l->sentences, (n + 1) * sizeof *probability, "sentences", e);
+	struct choice *choices = mem_alloc(l->sentences, sizeof *choices, "sentences", e);
+	char *chosen = mem_alloc(l->sentences, n, "sentences", e);
+	double *value = mem_alloc(n * n, sizeof *value, "objects", e);
+	size_t *next = mem_alloc(n, sizeof *next, "objects", e),
+	       *now = mem_alloc(n, sizeof *now, "objects", e);
+	int bad = !sentences || !choices || !chosen || !probability || !value || !next || !now, changes = 1;
+
+	for (size_t r = 0; r < l->sentences && !bad; r++)
+		sentences[r] = (struct choose_sentence){l->texts[r], l->pieces[r],
+			l->words + (size_t)l->offsets[r] * width, (size_t)(l->offsets[r + 1] - l->offsets[r]),
+			{.kind = VIEWPOINT_USUAL}};
+	for (int round = 0; round < ROUNDS && changes && !bad; round++) {
+		bad = judge(l, scene, sentences, choices, probability, chosen, value, e) ||
+		      assignment_best(value, n, n, next, e);
+		changes = 0;
+		for (size_t o = 0; o < n && !bad; o++) {
+			changes |= next[o] != o;
+			now[o] = from[next[o]];
+		}
+		if (changes) {
+			memcpy(from, now, n * sizeof *from);
+			share_out(l, old, from);
+		}
+	}
+	free(sentences);
+	free(choices);
+	free(chosen);
+	free(probability);
+	free(value);
+	free(next);
+	free(now);
+	return bad ? -1 : 0;
+}
+
+int disambiguate(struct lifted *l, const struct splats *splats, const struct cameras *cameras,
+	const struct parser *parser, size_t *moved, struct err *e)
+{
+	const struct choose_scene scene = {l, splats, cameras, parser, naming};
+	size_t *from = mem_alloc(l->objects, sizeof *from, "objects", e);
+	struct lifted old = {0};
+
+	*moved = 0;
+	if (!from || copy_shares(&old, l, e)) {
+		free(from);
+		free_shares(&old);
+		return -1;
+	}
+	for (size_t o = 0; o < l->objects; o++)
+		from[o] = o;
+	int bad = settle(l, &old, &scene, from, e);
+	for (size_t o = 0; o < l->objects && bad; o++)
+		from[o] = o;
+	if (bad)
+		share_out(l, &old, from);
+	for (size_t o = 0; o < l->objects; o++)
+		*moved += from[o] != o;
+	free(from);
+	free_shares(&old);
+	return bad ? -1 : 0;
+}

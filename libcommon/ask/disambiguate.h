@@ -1,0 +1,21 @@
+/* Which lifted object is which: a detector that cannot tell two things that look the same gives each the
+ * other's masks as readily as its own, but the training sentences say where each is. */
+#ifndef ASK_DISAMBIGUATE_H
+#define ASK_DISAMBIGUATE_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+#include "lang/parser.h"
+#include "lift/lifted_model.h"
+#include "splat/splats.h"
+
+/* Gives each object the Gaussians that its training sentences mean: of all ways to share them out, the one
+ * with the largest sum over sentences of log(p + 0.003), p of ask/choose.h without its part `sentence`, at
+ * most one lot of Gaussians to an object; again, as anchors move with their objects, until nothing changes,
+ * four times at most. An object's own words fit its own Gaussians best, so that only things that look the
+ * same change places. *moved gets how many objects have others than before. Returns 0, or -1 with *e set and
+ * the model as it was. */
+int disambiguate(struct lifted *l, const struct splats *splats, const struct cameras *cameras,
+	const struct parser *parser, size_t *moved, struct err *e);
+
+#endif

@@ -1,0 +1,14 @@
+/* The inner product in float64, its terms added in order. */
+#ifndef BASE_DOT_H
+#define BASE_DOT_H
+
+static inline double dot(const double *a, const double *b, int n)
+{
+	double sum = 0;
+
+	for (int i = 0; i < n; i++)
+		sum += a[i] * b[i];
+	return sum;
+}
+
+#endif

@@ -1,0 +1,2 @@
+#define BLOCK_ISA plain
+#include "field/block_kernel.h"

@@ -1,0 +1,19 @@
+/* Arrays over Gaussians in panels, as the kernels of field/block.h read them: channel c of Gaussian i is at
+ * array[(i / 64) * channels * 64 + c * 64 + i % 64], and N is padded with zeros to whole blocks. */
+#ifndef FIELD_PANELS_H
+#define FIELD_PANELS_H
+
+#include <stddef.h>
+
+/* N padded. */
+size_t panels_padded(size_t gaussians);
+
+/* x (N,channels) row-major to panels of panels_padded(N), and back. */
+void panels_pack(const float *x, size_t gaussians, int channels, float *panels);
+void panels_unpack(const float *panels, size_t gaussians, int channels, float *x);
+
+/* One channel of panels of `padded` Gaussians: to `out`, or from `in` (padded). */
+void panels_get(const float *panels, size_t padded, int channels, int c, float *out);
+void panels_put(float *panels, size_t padded, int channels, int c, const float *in);
+
+#endif

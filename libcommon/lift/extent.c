@@ -1,0 +1,353 @@
+#include "lift/extent.h"
+
+#include "base/mem.h"
+#include "geom/rotation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+	TURNS = 45,	  /* of two degrees: the foot of a box is the same after ninety */
+	LOOKED_AT = 4096, /* Gaussians at most while turns are compared */
+	CELL_BITS = 21,	  /* of a cell's place along an axis */
+	NEIGHBOURS = 13	  /* of 26: the others have this cell as theirs */
+};
+
+static const double pi = 3.14159265358979323846;
+
+struct item {
+	double at, weight;
+};
+
+/* The object's Gaussians, and room for what is made of them. */
+struct cloud {
+	size_t n;
+	double *means;	/* (n,3) */
+	double *spread; /* (n,3,3) rows: the Gaussian's axes, as long as its standard deviations */
+	double *weight;
+	struct item *items;
+};
+
+static double middle_of(double a, double b, double c)
+{
+	return fmax(fmin(a, b), fmin(fmax(a, b), c));
+}
+
+/* Where `share` of the weight is passed, of n > 0 items, which change places: what is on the wrong side of a
+ * pivot is left aside, until the pivot is what is looked for (Hoare 1961). */
+static double quantile(struct item *items, size_t n, double share)
+{
+	double left = 0;
+
+	for (size_t i = 0; i < n; i++)
+		left += share * items[i].weight;
+	for (;;) {
+		const double pivot = middle_of(items[0].at, items[n / 2].at, items[n - 1].at);
+		double under = 0, here = 0;
+		size_t below = 0, to = 0, above = n;
+		while (to < above) {
+			const struct item x = items[to];
+			if (x.at < pivot) {
+				under += x.weight;
+				items[to++] = items[below];
+				items[below++] = x;
+			} else if (x.at > pivot) {
+				items[to] = items[--above];
+				items[above] = x;
+			} else {
+				here += x.weight;
+				to++;
+			}
+		}
+		if (left < under && below) {
+			n = below;
+		} else if (left < under + here || above == n) {
+			return pivot;
+		} else {
+			left -= under + here;
+			items += above;
+			n -= above;
+		}
+	}
+}
+
+/* One end of the cloud in direction d, of every `step`th Gaussian: the greatest that is not trimmed. */
+static double reach(const struct cloud *c, size_t step, const double d[3])
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < c->n; i += step) {
+		const double *m = c->means + 3 * i, *s = c->spread + 9 * i;
+		double variance = 0;
+		for (int k = 0; k < 3; k++) {
+			double along = s[3 * k] * d[0] + s[3 * k + 1] * d[1] + s[3 * k + 2] * d[2];
+			variance += along * along;
+		}
+		const double at = m[0] * d[0] + m[1] * d[1] + m[2] * d[2] + EXTENT_SIGMAS * sqrt(variance);
+		c->items[n++] = (struct item){-at, c->weight[i]};
+	}
+	return -quantile(c->items, n, EXTENT_TRIM);
+}
+
+/* The box along the first `count` of these axes. */
+static struct box box_along(const struct cloud *c, size_t step, const double axes[3][3], int count)
+{
+	struct box b = {0};
+
+	memcpy(b.axes, axes, sizeof b.axes);
+	for (int k = 0; k < count; k++) {
+		const double back[3] = {-axes[k][0], -axes[k][1], -axes[k][2]};
+		const double high = reach(c, step, axes[k]), low = -reach(c, step, back);
+		b.half[k] = fmax(high - low, 0) / 2;
+		for (int d = 0; d < 3; d++)
+			b.centre[d] += (high + low) / 2 * axes[k][d];
+	}
+	return b;
+}
+
+/* Axes with the third up and the first turned by `angle` from the world's axis that is the most level. */
+static void axes_at(const double up[3], double angle, double axes[3][3])
+{
+	double level[3] = {0}, other[3];
+	int k = fabs(up[1]) < fabs(up[0]) - 1e-9 ? 1 : 0;
+
+	k = fabs(up[2]) < fabs(up[k]) - 1e-9 ? 2 : k;
+	for (int d = 0; d < 3; d++)
+		level[d] = (d == k) - up[k] * up[d];
+	const double length = sqrt(level[0] * level[0] + level[1] * level[1] + level[2] * level[2]);
+	for (int d = 0; d < 3; d++)
+		level[d] /= length;
+	for (int d = 0; d < 3; d++)
+		other[d] = up[(d + 1) % 3] * level[(d + 2) % 3] - up[(d + 2) % 3] * level[(d + 1) % 3];
+	for (int d = 0; d < 3; d++) {
+		axes[0][d] = cos(angle) * level[d] + sin(angle) * other[d];
+		axes[1][d] = cos(angle) * other[d] - sin(angle) * level[d];
+		axes[2][d] = up[d];
+	}
+}
+
+static struct box turned_box(const struct cloud *c, const double up[3])
+{
+	const size_t step = 1 + (c->n - 1) / LOOKED_AT;
+	double axes[3][3], least = INFINITY, level = 0, angle = 0;
+
+	for (int i = 0; i < TURNS; i++) {
+		axes_at(up, i * pi / 2 / TURNS, axes);
+		const struct box b = box_along(c, step, axes, 2);
+		const double foot = b.half[0] * b.half[1];
+		if (!i)
+			level = foot;
+		if (foot < least) {
+			least = foot;
+			angle = i * pi / 2 / TURNS;
+		}
+	}
+	axes_at(up, least < (1 - EXTENT_GAIN) * level ? angle : 0, axes);
+	return box_along(c, 1, axes, 3);
+}
+
+struct cell {
+	uint64_t key;
+	size_t gaussian; /* in the cloud */
+};
+
+static int by_key(const void *a, const void *b)
+{
+	const struct cell *x = a, *y = b;
+
+	if (x->key != y->key)
+		return x->key < y->key ? -1 : 1;
+	return (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
+}
+
+static size_t root(size_t *parent, size_t i)
+{
+	while (parent[i] != i) {
+		parent[i] = parent[parent[i]];
+		i = parent[i];
+	}
+	return i;
+}
+
+/* The side of a cell: 0 where all Gaussians are in one place. */
+static double cell_side(const struct cloud *c, double low[3])
+{
+	double square = 0;
+
+	for (int k = 0; k < 3; k++) {
+		for (size_t i = 0; i < c->n; i++)
+			c->items[i] = (struct item){c->means[3 * i + (size_t)k], c->weight[i]};
+		const double from = quantile(c->items, c->n, 0.05), to = quantile(c->items, c->n, 0.95);
+		square += (to - from) * (to - from);
+		low[k] = from;
+	}
+	return EXTENT_SPACING * sqrt(square / (double)c->n);
+}
+
+/* Cells, sorted, with places along the axes that leave room for neighbours. */
+static void make_cells(const struct cloud *c, struct cell *cells, double side, const double low[3])
+{
+	const double most = (double)((uint64_t)1 << CELL_BITS) - 2, middle = floor(most / 2);
+
+	for (size_t i = 0; i < c->n; i++) {
+		cells[i] = (struct cell){0, i};
+		for (int k = 0; k < 3; k++) {
+			double at = floor((c->means[3 * i + (size_t)k] - low[k]) / side) + middle;
+			cells[i].key = cells[i].key << CELL_BITS | (uint64_t)fmin(fmax(at, 1), most);
+		}
+	}
+	qsort(cells, c->n, sizeof *cells, by_key);
+}
+
+/* The first of the cells with that key, or n. */
+static size_t find_cell(const struct cell *cells, size_t n, uint64_t key)
+{
+	size_t low = 0, high = n;
+
+	while (low < high) {
+		const size_t middle = low + (high - low) / 2;
+		if (cells[middle].key < key)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low < n && cells[low].key == key ? low : n;
+}
+
+/* Joins each cell's Gaussians, and those of cells that touch. parent (n) is by place in `cells`. */
+static void join_cells(const struct cell *cells, size_t n, size_t *parent)
+{
+	uint64_t steps[NEIGHBOURS];
+	int count = 0;
+
+	for (int x = -1; x <= 1; x++)
+		for (int y = -1; y <= 1; y++)
+			for (int z = -1; z <= 1; z++) {
+				const int64_t step = ((int64_t)x * ((int64_t)1 << CELL_BITS) + y) *
+							     ((int64_t)1 << CELL_BITS) +
+						     z;
+				if (step > 0)
+					steps[count++] = (uint64_t)step;
+			}
+	for (size_t i = 0; i < n; i++)
+		parent[i] = i && cells[i].key == cells[i - 1].key ? parent[i - 1] : i;
+	for (size_t i = 0; i < n; i++) {
+		if (i && cells[i].key == cells[i - 1].key)
+			continue;
+		for (int k = 0; k < count; k++) {
+			const size_t j = find_cell(cells, n, cells[i].key + steps[k]);
+			if (j == n)
+				continue;
+			const size_t a = root(parent, i), b = root(parent, j);
+			parent[a > b ? a : b] = a > b ? b : a;
+		}
+	}
+}
+
+/* kept (n) gets 1 for what is no stray. */
+static int find_strays(const struct cloud *c, char *kept, struct err *e)
+{
+	double low[3], best = 0;
+	const double side = cell_side(c, low);
+
+	memset(kept, 1, c->n);
+	if (!(side > 0))
+		return 0;
+	struct cell *cells = mem_alloc(c->n, sizeof *cells, "cells", e);
+	size_t *parent = mem_alloc(c->n, sizeof *parent, "cells", e);
+	double *sums = mem_zalloc(c->n, sizeof *sums, "cells", e);
+	int bad = !cells || !parent || !sums ? -1 : 0;
+	if (!bad) {
+		make_cells(c, cells, side, low);
+		join_cells(cells, c->n, parent);
+		for (size_t i = 0; i < c->n; i++) {
+			double *sum = &sums[root(parent, i)];
+			*sum += c->weight[cells[i].gaussian];
+			best = fmax(best, *sum);
+		}
+		for (size_t i = 0; i < c->n; i++)
+			kept[cells[i].gaussian] = sums[root(parent, i)] >= EXTENT_PART * best;
+	}
+	free(cells);
+	free(parent);
+	free(sums);
+	return bad;
+}
+
+/* Leaves out what is not kept, of the cloud and of the ids. */
+static void keep(struct cloud *c, int32_t *ids, const char *kept)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < c->n; i++) {
+		if (!kept[i])
+			continue;
+		memmove(c->means + 3 * n, c->means + 3 * i, 3 * sizeof *c->means);
+		memmove(c->spread + 9 * n, c->spread + 9 * i, 9 * sizeof *c->spread);
+		c->weight[n] = c->weight[i];
+		ids[n++] = ids[i];
+	}
+	c->n = n;
+}
+
+static void fill(struct cloud *c, const struct splats *s, const int32_t *ids, const float *responses)
+{
+	for (size_t i = 0; i < c->n; i++) {
+		const size_t g = (size_t)ids[i];
+		double q[4], m[3][3];
+		for (int k = 0; k < 4; k++)
+			q[k] = s->quats[4 * g + (size_t)k];
+		rotation_of_quat(q, m);
+		for (int k = 0; k < 3; k++) {
+			c->means[3 * i + (size_t)k] = s->means[3 * g + (size_t)k];
+			for (int d = 0; d < 3; d++)
+				c->spread[9 * i + (size_t)(3 * k + d)] =
+					m[d][k] * (double)s->scales[3 * g + (size_t)k];
+		}
+		c->items[i] = (struct item){responses[i], 1};
+	}
+	const double median = quantile(c->items, c->n, 0.5);
+	for (size_t i = 0; i < c->n; i++)
+		c->weight[i] = pow(fmin(responses[i] / median, 1), 4);
+}
+
+int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, const float *responses,
+	size_t n, const double up[3], struct err *e)
+{
+	static const double world[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+	const size_t room = n + 1; /* so that none has room too */
+	struct cloud c = {n, mem_alloc(room, 3 * sizeof(double), "object", e),
+		mem_alloc(room, 9 * sizeof(double), "object", e),
+		mem_alloc(room, sizeof(double), "object", e),
+		mem_alloc(room, sizeof(struct item), "object", e)};
+	char *kept = mem_alloc(room, 1, "object", e);
+
+	*x = (struct extent){.ids = mem_alloc(room, sizeof *ids, "object", e)};
+	int bad = !c.means || !c.spread || !c.weight || !c.items || !kept || !x->ids ? -1 : 0;
+	if (!bad && n) {
+		memcpy(x->ids, ids, n * sizeof *ids);
+		fill(&c, s, ids, responses);
+		bad = find_strays(&c, kept, e);
+	}
+	if (!bad && n) {
+		keep(&c, x->ids, kept);
+		x->n = c.n;
+		x->aligned = box_along(&c, 1, world, 3);
+		x->turned = turned_box(&c, up);
+	}
+	free(c.means);
+	free(c.spread);
+	free(c.weight);
+	free(c.items);
+	free(kept);
+	if (bad)
+		extent_free(x);
+	return bad;
+}
+
+void extent_free(struct extent *x)
+{
+	free(x->ids);
+	*x = (struct extent){0};
+}

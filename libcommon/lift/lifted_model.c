@@ -1,0 +1,33 @@
+#include "lift/lifted_model.h"
+
+#include <stdlib.h>
+
+static void strings_free(char **strings, size_t n)
+{
+	for (size_t i = 0; strings && i < n; i++)
+		free(strings[i]);
+	free(strings);
+}
+
+void lifted_free(struct lifted *l)
+{
+	strings_free(l->names, l->objects);
+	strings_free(l->texts, l->sentences);
+	strings_free(l->pieces, l->sentences);
+	free(l->confidence);
+	free(l->indptr);
+	free(l->index);
+	free(l->share);
+	free(l->object);
+	free(l->offsets);
+	free(l->words);
+	*l = (struct lifted){0};
+}
+
+void lifted_responses(const struct lifted *l, size_t object, float *responses)
+{
+	for (size_t i = 0; i < l->gaussians; i++)
+		responses[i] = -LIFTED_CUT;
+	for (int64_t k = l->indptr[object]; k < l->indptr[object + 1]; k++)
+		responses[l->index[k]] = l->share[k] - LIFTED_CUT;
+}

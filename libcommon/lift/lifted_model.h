@@ -1,0 +1,44 @@
+/* Objects lifted onto the Gaussians in closed form: geometry is frozen, so the share of a Gaussian's blend
+ * weight that falls inside an object's masks says whether it is of the object, and nothing is trained. With
+ * the sentences that named the objects, this is a model that answers as a trained one does. */
+#ifndef LIFT_LIFTED_MODEL_H
+#define LIFT_LIFTED_MODEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct lifted {
+	size_t gaussians; /* N of the scene */
+
+	size_t objects;	   /* O */
+	char **names;	   /* (O), different */
+	float *confidence; /* (O) in [0,1]: how well the object's masks agree with what was lifted of them */
+	/* The Gaussians of object o are index[indptr[o]..indptr[o+1]), rising; the others have the share 0.
+	 */
+	int64_t *indptr; /* (O+1) */
+	int32_t *index;	 /* (indptr[O]) */
+	float *share;	 /* (indptr[O]) in (0,1]: part of the Gaussian's weight inside the object's masks */
+
+	/* The training sentences: what other sentences are compared with. */
+	size_t sentences; /* R */
+	int width;	  /* D_text */
+	int32_t *object;  /* (R) the object that each names */
+	char **texts;	  /* (R) */
+	char **pieces;	  /* (R) its word pieces with single spaces between, as many as it has words here */
+	int64_t *offsets; /* (R+1) into words */
+	float *words;	  /* (offsets[R], width) */
+};
+
+/* All arrays are the struct's own; a zeroed one may be freed. */
+void lifted_free(struct lifted *l);
+
+/* An object's mask in a view is where sum_i w_pi (a_i - LIFTED_CUT) > 0: where more than this part of what is
+ * seen in the pixel is the object's. Of 0.35, 0.4, 0.45, 0.5 and 0.55, mean mIoU of
+ * two synthetic scenes (diner, seed 1; tea, seed 3; half size, ragged masks): 92.5, 93.5, 94.0, 94.1, 93.2.
+ */
+#define LIFTED_CUT 0.45f
+
+/* responses (N) = a_i - LIFTED_CUT, with the share a_i of each Gaussian in the object. */
+void lifted_responses(const struct lifted *l, size_t object, float *responses);
+
+#endif

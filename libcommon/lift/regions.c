@@ -1,0 +1,226 @@
+#include "lift/regions.h"
+
+#include "base/mem.h"
+#include "splat/backproject.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { BATCH = 4 * VIEW_GROUP }; /* masks that are images at a time: whole groups */
+
+/* A candidate on its way to its place. */
+struct item {
+	size_t view, object, record;
+	const char *ref; /* NULL where the mask is of the object, not of a sentence */
+	const struct candidate *candidate;
+	size_t sentence;
+};
+
+static int order_sizes(size_t a, size_t b)
+{
+	return (a > b) - (a < b);
+}
+
+static int order_sentences(const struct item *p, const struct item *q)
+{
+	int order = order_sizes(p->object, q->object);
+
+	if (order || !p->ref || !q->ref)
+		return order ? order : !!p->ref - !!q->ref;
+	return strcmp(p->ref, q->ref);
+}
+
+static int by_sentence(const void *a, const void *b)
+{
+	const struct item *p = a, *q = b;
+	int order = order_sentences(p, q);
+
+	return order ? order : order_sizes(p->record, q->record);
+}
+
+static int by_view(const void *a, const void *b)
+{
+	const struct item *p = a, *q = b;
+	int order = order_sizes(p->view, q->view);
+
+	if (!order)
+		order = order_sizes(p->object, q->object);
+	return order ? order : order_sizes(p->record, q->record);
+}
+
+static int by_size(const void *a, const void *b)
+{
+	return order_sizes(*(const size_t *)a, *(const size_t *)b);
+}
+
+/* Objects in the order in which they came. */
+static void number_objects(struct regions *r, const struct pool *p)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < p->group_count; i++)
+		r->objects[n++] = p->groups[i].object;
+	if (n)
+		qsort(r->objects, n, sizeof *r->objects, by_size);
+	for (size_t i = 0; i < n; i++)
+		if (!i || r->objects[i] != r->objects[i - 1])
+			r->objects[r->object_count++] = r->objects[i];
+}
+
+static size_t find_object(const struct regions *r, size_t record)
+{
+	const size_t *at = bsearch(&record, r->objects, r->object_count, sizeof *at, by_size);
+
+	return (size_t)(at - r->objects);
+}
+
+static void fill_candidates(struct regions *r, struct item *items)
+{
+	if (r->count)
+		qsort(items, r->count, sizeof *items, by_sentence);
+	for (size_t i = 0; i < r->count; i++) {
+		if (!i || order_sentences(&items[i], &items[i - 1]))
+			r->sentence_objects[r->sentence_count++] = items[i].object;
+		items[i].sentence = r->sentence_count - 1;
+	}
+	if (r->count)
+		qsort(items, r->count, sizeof *items, by_view);
+	for (size_t i = 0; i < r->count; i++)
+		r->candidates[i] = (struct regions_candidate){.view = items[i].view,
+			.object = items[i].object,
+			.sentence = items[i].sentence,
+			.score = items[i].candidate->score,
+			.mask = items[i].candidate->mask};
+}
+
+int regions_init(struct regions *r, const struct pool *p, const size_t *places, size_t views,
+	size_t gaussians, double min_score, struct err *e)
+{
+	*r = (struct regions){.views = views, .gaussians = gaussians};
+	struct item *items = mem_alloc(p->n, sizeof *items, "candidates", e);
+	r->candidates = mem_alloc(p->n, sizeof *r->candidates, "candidates", e);
+	r->objects = mem_alloc(p->n, sizeof *r->objects, "candidates", e);
+	r->sentence_objects = mem_alloc(p->n, sizeof *r->sentence_objects, "candidates", e);
+	r->weight = mem_zalloc(views, gaussians * sizeof *r->weight, "views", e);
+	if (!items || !r->candidates || !r->objects || !r->sentence_objects || !r->weight) {
+		free(items);
+		regions_free(r);
+		return -1;
+	}
+	number_objects(r, p);
+	for (size_t g = 0; g < p->group_count; g++) {
+		const struct pool_group *group = &p->groups[g];
+		const size_t object = find_object(r, group->object);
+		for (size_t k = group->begin; k < group->begin + group->n; k++)
+			if (p->candidates[k].score > min_score)
+				items[r->count++] = (struct item){places[p->places[k].index], object,
+					p->places[k].index, p->places[k].ref, &p->candidates[k], 0};
+	}
+	fill_candidates(r, items);
+	free(items);
+	return 0;
+}
+
+void regions_free(struct regions *r)
+{
+	for (size_t i = 0; i < r->region_count; i++) {
+		free(r->regions[i].members);
+		free(r->regions[i].agreement);
+		free(r->regions[i].chosen);
+	}
+	free(r->candidates);
+	free(r->objects);
+	free(r->sentence_objects);
+	free(r->weight);
+	free(r->index);
+	free(r->share);
+	free(r->regions);
+	free(r->served);
+	free(r->field);
+	*r = (struct regions){0};
+}
+
+/* Images (now,P) of 0 and 1 at the view's size. */
+static int fill_images(const struct regions_candidate *c, size_t now, int height, int width, uint8_t *pixels,
+	float *image, struct err *e)
+{
+	const size_t count = (size_t)height * (size_t)width;
+	int failed = 0;
+
+#pragma omp parallel for schedule(dynamic) reduction(| : failed)
+	for (size_t k = 0; k < now; k++) {
+		struct rle resized;
+		struct err mine;
+		if (rle_resize(&resized, c[k].mask, height, width, &mine)) {
+			failed = 1;
+#pragma omp critical
+			*e = mine;
+			continue;
+		}
+		rle_decode(&resized, pixels + k * count);
+		rle_free(&resized);
+		for (size_t p = 0; p < count; p++)
+			image[k * count + p] = pixels[k * count + p];
+	}
+	return failed ? -1 : 0;
+}
+
+/* Appends what a candidate has of each Gaussian: channel k of the sums. */
+static int keep_entries(
+	struct regions *r, struct regions_candidate *c, const float *sum, size_t k, struct err *e)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < r->gaussians; i++)
+		n += sum[backproject_index(r->gaussians, k, i)] > 0;
+	if (mem_grow((void **)&r->index, &r->index_capacity, r->entries + n, sizeof *r->index, "masks", e) ||
+		mem_grow(
+			(void **)&r->share, &r->share_capacity, r->entries + n, sizeof *r->share, "masks", e))
+		return -1;
+	c->begin = r->entries;
+	for (size_t i = 0; i < r->gaussians; i++) {
+		const float share = sum[backproject_index(r->gaussians, k, i)];
+		if (!(share > 0))
+			continue;
+		r->index[r->entries] = (int32_t)i;
+		r->share[r->entries++] = share;
+		c->mass += (double)share;
+	}
+	c->end = r->entries;
+	return 0;
+}
+
+int regions_lift(
+	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e)
+{
+	double *weight = mem_zalloc(r->gaussians, sizeof *weight, "masks", e);
+	float *sum = mem_alloc(r->gaussians, BATCH * sizeof *sum, "masks", e);
+	float *image = mem_alloc(w->pixels, BATCH * sizeof *image, "masks", e);
+	uint8_t *pixels = mem_alloc(w->pixels, BATCH, "masks", e);
+	int bad = !weight || !sum || !image || !pixels;
+	size_t begin = 0, end;
+
+	if (!bad) {
+		backproject_weight(w, weight);
+		for (size_t i = 0; i < r->gaussians; i++)
+			r->weight[view * r->gaussians + i] = (float)weight[i];
+	}
+	while (begin < r->count && r->candidates[begin].view < view)
+		begin++;
+	for (end = begin; end < r->count && r->candidates[end].view == view;)
+		end++;
+	for (size_t from = begin; from < end && !bad; from += BATCH) {
+		const size_t now = end - from < BATCH ? end - from : BATCH;
+		memset(sum, 0, backproject_groups(now) * VIEW_GROUP * r->gaussians * sizeof *sum);
+		bad = fill_images(&r->candidates[from], now, height, width, pixels, image, e);
+		if (!bad)
+			backproject_add(w, image, now, sum);
+		for (size_t k = 0; k < now && !bad; k++)
+			bad = keep_entries(r, &r->candidates[from + k], sum, k, e);
+	}
+	free(weight);
+	free(sum);
+	free(image);
+	free(pixels);
+	return bad ? -1 : 0;
+}

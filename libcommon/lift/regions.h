@@ -1,0 +1,94 @@
+/* Which region of the scene each object is, from candidate masks of all objects in all views, and the mask
+ * of it in each view.
+ *
+ * The paper picks a mask for each object and view alone, by the votes of the object's sentences there
+ * (mask/select.h). But a detector that misunderstands a sentence does so in every view alike, so that whole
+ * objects are confused; the other objects' masks tell. In three steps:
+ *
+ * 1. Candidates of whatever object agree on regions. A candidate k of view v is lifted: Gaussian i has
+ *    l_ki = sum of w_pi over the mask's pixels, out of W_vi = sum of w_pi over the view's. A region is a set
+ * R of Gaussians, and its agreement with a candidate the intersection over union in the view, sum_R l_ki /
+ * (sum_R W_vi + sum l_ki - sum_R l_ki). It grows from one candidate: R is what the view shows of it; in every
+ * view the candidate that agrees best joins; R is the Gaussians with more than half of their weight, over the
+ * views of those that joined, in their masks; and again, until they stay.
+ * 2. Each sentence is a witness to what its object is: q_s(R) is the share of its candidates, by confidence,
+ *    that agree with R more than with any other region. The value of R for an object is the sum of
+ *    log(q_s(R) + 1/50) over its sentences: the object's region is one that all of them find at least at
+ *    times, and what one sentence is sure of weighs little where another never sees it. Objects get distinct
+ *    regions with the largest sum of values; none where that is no better than to be found by no sentence.
+ * 3. The object's mask in a view is the candidate, of whatever object, that agrees with its region; where
+ *    none agrees nearly as well as they do in its other views, the region itself is rendered (lift.h).
+ *
+ * All of it is the same to the bit for any number of threads. */
+#ifndef LIFT_REGIONS_H
+#define LIFT_REGIONS_H
+
+#include "base/err.h"
+#include "mask/pool.h"
+#include "splat/view_weights.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define REGIONS_NONE SIZE_MAX
+
+struct regions_candidate {
+	size_t view, object, sentence;
+	double score;
+	const struct rle *mask;
+	size_t begin, end; /* its entries; none before its view is lifted */
+	double mass;	   /* sum of l_ki */
+};
+
+struct region {
+	size_t n;
+	int32_t *members; /* (n) Gaussians, in order */
+	float *agreement; /* (count) with each candidate */
+	size_t *chosen;	  /* (views) the candidate that agrees best and well, or REGIONS_NONE */
+	double typical;	  /* median of the agreements of those chosen */
+};
+
+struct regions {
+	size_t views, gaussians;
+	size_t count;
+	struct regions_candidate *candidates; /* (count) by view */
+	size_t object_count;
+	size_t *objects; /* (object_count) the first record of each, in the order in which they came */
+	size_t sentence_count;
+	size_t *sentence_objects; /* (sentence_count) */
+	float *weight;		  /* (views,N) W_vi */
+	size_t entries, index_capacity, share_capacity;
+	int32_t *index; /* (entries) Gaussians */
+	float *share;	/* (entries) l_ki */
+	size_t region_count, region_capacity;
+	struct region *regions;
+	size_t *served; /* (object_count) an object's region, or REGIONS_NONE */
+	float *field; /* a channel of lift.h for each object: its region's share of a Gaussian's weight, -1/2
+		       */
+};
+
+/* The candidates with score > min_score. places (pool's n) has the view of each record, below `views`; the
+ * pool's masks are referred to. */
+int regions_init(struct regions *r, const struct pool *p, const size_t *places, size_t views,
+	size_t gaussians, double min_score, struct err *e);
+void regions_free(struct regions *r);
+
+/* Lifts the candidates of a view, which has these weights and that size; masks of another size are reduced by
+ * area. Once a view; the candidates of views that are not lifted are left out of all. */
+int regions_lift(
+	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e);
+
+/* Grows the regions, after all views are lifted. */
+int regions_grow(struct regions *r, struct err *e);
+
+/* Gives each object its region, after regions_grow. */
+int regions_assign(struct regions *r, struct err *e);
+
+/* masks and scores (object_count) in a view, after regions_assign; rle_free each mask. They have the size of
+ * the view's candidates, or of its weights where it has none; empty where an object has no region or shows
+ * nothing of it. The score is the agreement of the candidate with the region, and the region's typical one
+ * where it is rendered: *rendered goes up by each such mask that is not empty. On failure there are none. */
+int regions_render(const struct regions *r, size_t view, const struct view_weights *w, int height, int width,
+	struct rle *masks, double *scores, size_t *rendered, struct err *e);
+
+#endif

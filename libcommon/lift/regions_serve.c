@@ -1,0 +1,173 @@
+#include "base/mem.h"
+#include "lift/regions.h"
+#include "lift/regions_private.h"
+#include "nn/assignment.h"
+#include "splat/backproject.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define CHANCE 0.02 /* share of a sentence's candidates that is found by accident */
+#define PEER 0.65   /* of the region's typical agreement, from which a candidate shows it */
+
+/* share (sentences,regions): of each sentence's candidates, by confidence, in each region. */
+static int find_shares(const struct regions *r, double *share, struct err *e)
+{
+	double *total = mem_zalloc(r->sentence_count, sizeof *total, "regions", e);
+
+	if (!total)
+		return -1;
+	for (size_t c = 0; c < r->count; c++) {
+		const struct regions_candidate *at = &r->candidates[c];
+		size_t best = REGIONS_NONE;
+		if (at->end == at->begin)
+			continue;
+		total[at->sentence] += at->score;
+		for (size_t i = 0; i < r->region_count; i++)
+			if ((double)r->regions[i].agreement[c] > PEER * r->regions[i].typical &&
+				(best == REGIONS_NONE ||
+					r->regions[i].agreement[c] > r->regions[best].agreement[c]))
+				best = i;
+		if (best != REGIONS_NONE)
+			share[at->sentence * r->region_count + best] += at->score;
+	}
+	for (size_t s = 0; s < r->sentence_count; s++)
+		for (size_t i = 0; i < r->region_count && total[s] > 0; i++)
+			share[s * r->region_count + i] /= total[s];
+	free(total);
+	return 0;
+}
+
+/* value (objects, regions and then one column for each object: no region) and which of them have support. */
+static void find_values(
+	const struct regions *r, const double *share, size_t columns, double *value, uint8_t *has_support)
+{
+	for (size_t s = 0; s < r->sentence_count; s++) {
+		const size_t row = r->sentence_objects[s] * columns;
+		for (size_t i = 0; i < columns; i++) {
+			const double q = i < r->region_count ? share[s * r->region_count + i] : 0;
+			value[row + i] += log(q + CHANCE);
+			has_support[row + i] |= q > 0;
+		}
+	}
+}
+
+/* What an assigned region is made of, as a channel. */
+static void fill_field(
+	const struct regions *r, size_t object, const struct region *region, float *sum, float *all)
+{
+	regions_sum(r, region->chosen, sum, all);
+	for (size_t i = 0; i < r->gaussians; i++)
+		r->field[backproject_index(r->gaussians, object, i)] =
+			all[i] > 0 ? sum[i] / all[i] - 0.5f : -0.5f;
+}
+
+int regions_assign(struct regions *r, struct err *e)
+{
+	const size_t columns = r->region_count + r->object_count, n = r->gaussians;
+	double *share = mem_zalloc(r->sentence_count, r->region_count * sizeof *share, "regions", e);
+	double *value = mem_zalloc(r->object_count, columns * sizeof *value, "regions", e);
+	uint8_t *has_support = mem_zalloc(r->object_count, columns, "regions", e);
+	float *sum = mem_alloc(n, sizeof *sum, "regions", e), *all = mem_alloc(n, sizeof *all, "regions", e);
+	r->served = mem_alloc(r->object_count, sizeof *r->served, "regions", e);
+	r->field = mem_zalloc(
+		backproject_groups(r->object_count) * VIEW_GROUP, n * sizeof *r->field, "regions", e);
+	int bad = !share || !value || !has_support || !sum || !all || !r->served || !r->field ||
+		  find_shares(r, share, e);
+
+	if (!bad) {
+		find_values(r, share, columns, value, has_support);
+		bad = assignment_best(value, r->object_count, columns, r->served, e);
+	}
+	for (size_t o = 0; o < r->object_count && !bad; o++) {
+		if (!has_support[o * columns + r->served[o]])
+			r->served[o] = REGIONS_NONE;
+		else
+			fill_field(r, o, &r->regions[r->served[o]], sum, all);
+	}
+	free(share);
+	free(value);
+	free(has_support);
+	free(sum);
+	free(all);
+	return bad ? -1 : 0;
+}
+
+/* The candidate that is an object's mask in a view, or REGIONS_NONE. Those of a small thing agree less in all
+ * views, so that only a comparison with the others tells. */
+static size_t find_candidate(const struct regions *r, const struct region *region, size_t view)
+{
+	size_t best = REGIONS_NONE;
+
+	for (size_t c = 0; c < r->count; c++)
+		if (r->candidates[c].view == view && (double)region->agreement[c] > PEER * region->typical &&
+			(best == REGIONS_NONE || region->agreement[c] > region->agreement[best]))
+			best = c;
+	return best;
+}
+
+static int cut(const float *image, uint8_t *pixels, int height, int width, const struct rle *like,
+	struct rle *mask, struct err *e)
+{
+	struct rle small;
+
+	for (size_t p = 0; p < (size_t)height * (size_t)width; p++)
+		pixels[p] = image[p] > 0;
+	if (rle_encode(&small, pixels, height, width, e))
+		return -1;
+	if (!like || (like->height == height && like->width == width)) {
+		*mask = small;
+		return 0;
+	}
+	int bad = rle_resize(mask, &small, like->height, like->width, e);
+	rle_free(&small);
+	return bad;
+}
+
+/* The first of a view's candidates, whose size the others have; NULL where there is none. */
+static const struct rle *find_size(const struct regions *r, size_t view)
+{
+	for (size_t c = 0; c < r->count; c++)
+		if (r->candidates[c].view == view)
+			return r->candidates[c].mask;
+	return NULL;
+}
+
+int regions_render(const struct regions *r, size_t view, const struct view_weights *w, int height, int width,
+	struct rle *masks, double *scores, size_t *rendered, struct err *e)
+{
+	float *image = mem_alloc(w->pixels, VIEW_GROUP * sizeof *image, "masks", e);
+	uint8_t *pixels = mem_alloc(w->pixels, 1, "masks", e);
+	const struct rle *like = find_size(r, view);
+	size_t there = REGIONS_NONE; /* the group that the image has */
+	int bad = !image || !pixels;
+
+	for (size_t o = 0; o < r->object_count; o++) {
+		masks[o] = (struct rle){0};
+		scores[o] = 0;
+	}
+	for (size_t o = 0; o < r->object_count && !bad; o++) {
+		if (r->served[o] == REGIONS_NONE)
+			continue;
+		const struct region *region = &r->regions[r->served[o]];
+		const size_t c = find_candidate(r, region, view), group = o / VIEW_GROUP;
+		if (c != REGIONS_NONE) {
+			const struct rle *mask = r->candidates[c].mask;
+			scores[o] = (double)region->agreement[c];
+			bad = rle_from_runs(&masks[o], mask->runs, mask->n, mask->height, mask->width, e);
+			continue;
+		}
+		if (group != there)
+			backproject_render(
+				w, r->field + group * VIEW_GROUP * r->gaussians, VIEW_GROUP, image);
+		there = group;
+		scores[o] = region->typical;
+		bad = cut(image + o % VIEW_GROUP * w->pixels, pixels, height, width, like, &masks[o], e);
+		*rendered += !bad && rle_area(&masks[o]) > 0;
+	}
+	for (size_t o = 0; o < r->object_count && bad; o++)
+		rle_free(&masks[o]);
+	free(image);
+	free(pixels);
+	return bad ? -1 : 0;
+}

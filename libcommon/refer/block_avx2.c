@@ -1,5 +1,0 @@
-#if defined __x86_64__
-#pragma GCC target("avx2,fma")
-#define BLOCK_ISA avx2
-#include "refer/block_kernel.h"
-#endif

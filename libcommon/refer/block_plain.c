@@ -1,2 +1,0 @@
-#define BLOCK_ISA plain
-#include "refer/block_kernel.h"

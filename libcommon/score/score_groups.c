@@ -1,0 +1,122 @@
+#include "score/score_groups.h"
+
+#include "base/mem.h"
+#include "score/score_lookup.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *const score_seen_name[SCORE_SEEN] = {"<0.15", "0.15-0.5", "0.5-0.85", ">=0.85", "(unknown)"};
+
+void score_saying_names(const char *names[SCORE_SAYINGS])
+{
+	for (int r = 0; r < RELATIONS; r++)
+		names[r] = relation_name[r];
+	names[SCORE_SAYS_NONE] = "(none)";
+	names[SCORE_SAYS_UNKNOWN] = "(unknown)";
+}
+
+/* A sentence's ref and its set. */
+struct saying {
+	const char *ref;
+	uint32_t set;
+};
+
+static int order_sayings(const void *a, const void *b)
+{
+	const struct saying *p = a, *q = b;
+
+	return strcmp(p->ref, q->ref);
+}
+
+int score_sayings(uint32_t *sets, const struct score_pair *pairs, size_t pair_n,
+	const struct score_sentence *sentences, size_t n, size_t *unknown, struct err *e)
+{
+	struct saying *list = mem_alloc(n, sizeof *list, "sentences", e);
+
+	*unknown = 0;
+	if (!list)
+		return -1;
+	for (size_t i = 0; i < n; i++) {
+		uint32_t set = relations_of(sentences[i].text);
+		list[i] = (struct saying){sentences[i].ref, set ? set : (uint32_t)1 << SCORE_SAYS_NONE};
+	}
+	qsort(list, n, sizeof *list, order_sayings);
+	for (size_t i = 0; i < pair_n; i++) {
+		const struct score_pair *p = &pairs[i];
+		const struct saying key = {p->ref ? p->ref : p->truth_ref, 0};
+		const struct saying *found = NULL;
+		sets[i] = 0;
+		if (p->is_empty)
+			continue;
+		if (key.ref)
+			found = bsearch(&key, list, n, sizeof *list, order_sayings);
+		sets[i] = found ? found->set : (uint32_t)1 << SCORE_SAYS_UNKNOWN;
+		*unknown += !found;
+	}
+	free(list);
+	return 0;
+}
+
+static int group_of(double seen)
+{
+	return seen < 0.15   ? SCORE_SEEN_LITTLE
+	       : seen < 0.5  ? SCORE_SEEN_PARTLY
+	       : seen < 0.85 ? SCORE_SEEN_MOSTLY
+			     : SCORE_SEEN_WELL;
+}
+
+/* The group of one truth that has something in it. */
+static int judge(int *group, const struct rle *truth, const struct rle *whole, struct err *e)
+{
+	struct rle resized = {0};
+
+	if (whole->height != truth->height || whole->width != truth->width) {
+		if (rle_resize(&resized, whole, truth->height, truth->width, e))
+			return -1;
+		whole = &resized;
+	}
+	const size_t area = rle_area(whole);
+	*group = area ? group_of((double)rle_area(truth) / (double)area) : SCORE_SEEN_UNKNOWN;
+	rle_free(&resized);
+	return 0;
+}
+
+/* The set of each truth (truth_n). */
+static int judge_all(uint32_t *seen, const struct score_mask *truth, size_t truth_n,
+	const struct score_mask *wholes, const struct score_lookup *lists, size_t *unknown, struct err *e)
+{
+	for (size_t t = 0; t < truth_n; t++) {
+		const struct score_mask *m = &truth[t];
+		int group = SCORE_SEEN_UNKNOWN;
+		size_t index;
+		seen[t] = 0;
+		if (!rle_area(m->mask))
+			continue;
+		if (score_lookup_best(lists, m->view, m->ref, m->object, &index) &&
+			judge(&group, m->mask, wholes[index].mask, e))
+			return -1;
+		*unknown += group == SCORE_SEEN_UNKNOWN;
+		seen[t] = (uint32_t)1 << group;
+	}
+	return 0;
+}
+
+int score_seen(uint32_t *sets, const struct score_pair *pairs, size_t pair_n, const struct score_mask *truth,
+	size_t truth_n, const struct score_mask *wholes, size_t n, size_t *unknown, struct err *e)
+{
+	struct score_lookup lists[SCORE_LOOKUPS] = {{0}};
+	uint32_t *seen = mem_alloc(truth_n, sizeof *seen, "masks", e);
+	int bad = !seen;
+
+	*unknown = 0;
+	for (int by = 0; by < SCORE_LOOKUPS && !bad; by++)
+		bad = score_lookup_make(&lists[by], wholes, n, (enum score_lookup_by)by, e);
+	bad = bad || judge_all(seen, truth, truth_n, wholes, lists, unknown, e);
+	for (size_t i = 0; i < pair_n && !bad; i++)
+		sets[i] = seen[pairs[i].truth_index];
+	for (int by = 0; by < SCORE_LOOKUPS; by++)
+		score_lookup_free(&lists[by]);
+	free(seen);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,40 @@
+#include "splat/visibility.h"
+
+#include "base/mem.h"
+#include "splat/render.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* most (N): the largest weight of each Gaussian at any pixel, so far. */
+static int look(struct render_view **v, struct render_weights *w, const struct splats *s,
+	const struct camera *c, float *most, struct err *e)
+{
+	if (*v ? render_again(*v, s, c, e) : !(*v = render_prepare(s, c, e)))
+		return -1;
+	if (render_weights_again(*v, w, e))
+		return -1;
+	for (int64_t k = 0, end = w->indptr[(size_t)c->width * (size_t)c->height]; k < end; k++)
+		most[w->index[k]] = fmaxf(most[w->index[k]], w->weight[k]);
+	return 0;
+}
+
+int visibility_find(const struct splats *s, const struct cameras *cameras, char *in_sight, struct err *e)
+{
+	struct render_view *v = NULL;
+	struct render_weights w = {0};
+	struct camera views[VISIBILITY_VIEWS];
+	const size_t n = cameras_spread(cameras, VISIBILITY_VIEWS, VISIBILITY_SIDE, views);
+	float *most = mem_zalloc(s->n, sizeof *most, "weights", e);
+	int bad = most ? 0 : -1;
+
+	for (size_t i = 0; i < n && !bad; i++)
+		bad = look(&v, &w, s, &views[i], most, e);
+	for (size_t i = 0; i < s->n && !bad; i++)
+		in_sight[i] = !n || (most[i] > 0 && most[i] >= VISIBILITY_LEAST * s->opacities[i]);
+	render_weights_free(&w);
+	render_free(v);
+	free(most);
+	return bad;
+}

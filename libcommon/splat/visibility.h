@@ -1,0 +1,20 @@
+/* Which Gaussians the training views show. Those under and inside things shine through a little, and so take
+ * part in an object's masks without being of it: a plate's outline must not have the table under it. */
+#ifndef SPLAT_VISIBILITY_H
+#define SPLAT_VISIBILITY_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+#include "splat/splats.h"
+
+enum {
+	VISIBILITY_VIEWS = 16, /* most views looked at, spread evenly over the training views */
+	VISIBILITY_SIDE = 320, /* their longer side in pixels at most */
+};
+#define VISIBILITY_LEAST 0.1f /* of its opacity a Gaussian in sight has as blend weight in some pixel */
+
+/* in_sight (s->n) gets 0 or 1. A scene without training views is looked at from all its views; without any,
+ * everything is in sight. */
+int visibility_find(const struct splats *s, const struct cameras *cameras, char *in_sight, struct err *e);
+
+#endif

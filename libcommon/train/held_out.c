@@ -1,0 +1,213 @@
+#include "train/held_out.h"
+
+#include "base/mem.h"
+#include "base/rng.h"
+#include "mask/bits.h"
+#include "nn/loss.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STREAM_HELD = 6 };
+
+/* Pairs of a view and an object, in the order of views and of sentences: *n of them; where out is not NULL,
+ * the numbers (views,sentences) get the pair of each of a view's sentences. seen (sentences). */
+static size_t number_pairs(const struct train_view *views, size_t view_count, const int *objects,
+	size_t sentences, uint32_t *seen, uint32_t *out)
+{
+	size_t n = 0;
+
+	for (size_t v = 0; v < view_count; v++) {
+		memset(seen, 0xff, sizeof *seen * sentences);
+		for (int k = 0; k < views[v].count; k++) {
+			uint32_t *own = &seen[objects[views[v].sentences[k]]];
+			if (*own == UINT32_MAX)
+				*own = (uint32_t)n++;
+			out[v * sentences + (size_t)k] = *own;
+		}
+	}
+	return n;
+}
+
+/* Moves the held-out sentences of a view behind the others; either keep their order. */
+static void part_view(struct train_view *v, const uint32_t *pairs, const char *is_held, int *sentences,
+	const uint8_t **masks)
+{
+	int to = 0;
+
+	for (int held = 0; held < 2; held++) {
+		for (int k = 0; k < v->count; k++)
+			if (is_held[pairs[k]] == held) {
+				sentences[to] = v->sentences[k];
+				masks[to++] = v->masks[k];
+			}
+		if (!held)
+			v->held = v->count - to;
+	}
+	memcpy(v->sentences, sentences, sizeof *sentences * (size_t)v->count);
+	memcpy(v->masks, masks, sizeof *masks * (size_t)v->count);
+	v->count -= v->held;
+}
+
+/* is_held (n) gets `count` random ones. */
+static int draw(char *is_held, size_t n, size_t count, uint64_t seed, struct err *e)
+{
+	uint32_t *order = mem_alloc(n, sizeof *order, "held-out pairs", e);
+	struct rng r;
+
+	if (!order)
+		return -1;
+	for (size_t k = 0; k < n; k++)
+		order[k] = (uint32_t)k;
+	rng_seed(&r, seed, STREAM_HELD);
+	rng_shuffle(&r, order, (uint32_t)n);
+	for (size_t k = 0; k < count; k++)
+		is_held[order[k]] = 1;
+	free(order);
+	return 0;
+}
+
+int held_out_choose(struct train_view *views, size_t view_count, const int *objects, size_t sentences,
+	double share, uint64_t seed, struct err *e)
+{
+	uint32_t *seen = mem_alloc(sentences, sizeof *seen, "held-out pairs", e);
+	uint32_t *pairs = mem_alloc(view_count, sentences * sizeof *pairs, "held-out pairs", e);
+	char *is_held = mem_zalloc(view_count, sentences, "held-out pairs", e);
+	int *kept = mem_alloc(sentences, sizeof *kept, "held-out pairs", e);
+	const uint8_t **masks = mem_alloc(sentences, sizeof *masks, "held-out pairs", e);
+	int bad = !seen || !pairs || !is_held || !kept || !masks;
+
+	if (!bad) {
+		const size_t n = number_pairs(views, view_count, objects, sentences, seen, pairs);
+		const double wanted = fmin(fmax(1, round(share * (double)n)), (double)n - 1);
+		bad = n < 2 ? err_set(e, ERR_FORMAT, "one pair of a view and an object, none to hold out")
+			    : draw(is_held, n, (size_t)wanted, seed, e);
+	}
+	for (size_t v = 0; v < view_count && !bad; v++)
+		part_view(&views[v], pairs + v * sentences, is_held, kept, masks);
+	free(seen);
+	free(pairs);
+	free(is_held);
+	free(kept);
+	free(masks);
+	return bad ? -1 : 0;
+}
+
+/* The sentences with held-out masks, by object, so that those of one object, which are held out in the same
+ * views, are blended together. */
+static void make_order(struct held_out *h, const int *objects, size_t sentences, char *is_held)
+{
+	for (size_t v = 0; v < h->view_count; v++) {
+		const struct train_view *view = &h->views[v];
+		for (int k = view->count; k < view->count + view->held; k++)
+			is_held[view->sentences[k]] = 1;
+		h->pairs += (size_t)view->held;
+		h->pixels = view->held && view->weights.pixels > h->pixels ? view->weights.pixels : h->pixels;
+	}
+	for (size_t first = 0; first < sentences; first++)
+		for (size_t r = first; r < sentences; r++)
+			if (is_held[r] && objects[r] == objects[first]) {
+				h->order[h->count++] = r;
+				is_held[r] = 0;
+			}
+}
+
+int held_out_init(struct held_out *h, const struct train_view *views, size_t view_count, const int *objects,
+	size_t sentences, size_t rows, struct err *e)
+{
+	char *is_held = mem_zalloc(sentences, 1, "held-out pairs", e);
+
+	*h = (struct held_out){
+		.views = views, .view_count = view_count, .rows = rows, .threads = omp_get_max_threads()};
+	h->order = mem_alloc(sentences, sizeof *h->order, "held-out pairs", e);
+	if (is_held && h->order) {
+		make_order(h, objects, sentences, is_held);
+		h->response = mem_alloc(rows, (1 + VIEW_GROUP) * sizeof(float), "held-out pairs", e);
+		h->images = mem_alloc(
+			h->pixels, (size_t)h->threads * VIEW_GROUP * sizeof(float), "held-out pairs", e);
+		h->masks = mem_alloc(h->pixels, (size_t)h->threads, "held-out pairs", e);
+		h->scores = mem_alloc(view_count, sizeof *h->scores, "held-out pairs", e);
+	}
+	free(is_held);
+	if (!h->response || !h->images || !h->masks || !h->scores) {
+		held_out_free(h);
+		return -1;
+	}
+	h->grouped = h->response + rows;
+	return 0;
+}
+
+void held_out_free(struct held_out *h)
+{
+	free(h->order);
+	free(h->response);
+	free(h->images);
+	free(h->masks);
+	free(h->scores);
+	*h = (struct held_out){0};
+}
+
+static struct held_out_score score_image(const float *image, const uint8_t *mask, size_t pixels)
+{
+	size_t both = 0, either = 0;
+
+	for (size_t p = 0; p < pixels; p++) {
+		both += mask[p] && image[p] > 0;
+		either += mask[p] || image[p] > 0;
+	}
+	return (struct held_out_score){
+		loss_bce(image, mask, pixels, 1, NULL), either ? (double)both / (double)either : 1};
+}
+
+/* The held-out pairs of one view with `count` sentences, whose responses are in grouped. */
+static struct held_out_score score_view(
+	const struct held_out *h, const struct train_view *v, const size_t *sentences, int count)
+{
+	const size_t thread = (size_t)omp_get_thread_num(), pixels = v->weights.pixels;
+	float *image = h->images + thread * VIEW_GROUP * h->pixels;
+	uint8_t *mask = h->masks + thread * h->pixels;
+	struct held_out_score sum = {0};
+	int is_blended = 0;
+
+	for (int g = 0; g < count; g++)
+		for (int k = v->count; k < v->count + v->held; k++) {
+			if ((size_t)v->sentences[k] != sentences[g])
+				continue;
+			if (!is_blended)
+				view_blend_group(
+					&v->weights, h->grouped, VIEW_GROUP, 0, pixels, image, h->pixels);
+			is_blended = 1;
+			bits_expand(v->masks[k], 0, pixels, mask);
+			const struct held_out_score one =
+				score_image(image + (size_t)g * h->pixels, mask, pixels);
+			sum.bce += one.bce;
+			sum.iou += one.iou;
+		}
+	return sum;
+}
+
+struct held_out_score held_out_evaluate(
+	struct held_out *h, struct step *s, const float *parameters, const float *x)
+{
+	struct held_out_score all = {0};
+
+	memset(h->grouped, 0, sizeof(float) * VIEW_GROUP * h->rows);
+	for (size_t first = 0; first < h->count; first += VIEW_GROUP) {
+		const int now = h->count - first < VIEW_GROUP ? (int)(h->count - first) : VIEW_GROUP;
+		for (int g = 0; g < now; g++) {
+			step_respond(s, parameters, x, h->order[first + (size_t)g], h->response);
+			for (size_t i = 0; i < h->rows; i++)
+				h->grouped[i * VIEW_GROUP + (size_t)g] = h->response[i];
+		}
+#pragma omp parallel for schedule(dynamic) num_threads(h->threads)
+		for (size_t v = 0; v < h->view_count; v++)
+			h->scores[v] = score_view(h, &h->views[v], h->order + first, now);
+		for (size_t v = 0; v < h->view_count; v++) {
+			all.bce += h->scores[v].bce / (double)h->pairs;
+			all.iou += h->scores[v].iou / (double)h->pairs;
+		}
+	}
+	return all;
+}

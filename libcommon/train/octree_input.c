@@ -1,0 +1,96 @@
+#include "train/octree_input.h"
+
+#include "base/mem.h"
+#include "base/rng.h"
+#include "splat/backproject.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { K = OCTREE_SIGNATURE, STREAM_SIGNATURE = 3 };
+
+void octree_input_footprints(
+	const float *means, size_t n, const struct camera *cameras, size_t count, float *footprint)
+{
+#pragma omp parallel for schedule(static)
+	for (size_t i = 0; i < n; i++) {
+		double least = INFINITY;
+		for (size_t v = 0; v < count; v++) {
+			const struct camera *c = &cameras[v];
+			const double mean[3] = {
+				(double)means[3 * i], (double)means[3 * i + 1], (double)means[3 * i + 2]};
+			double at[3];
+			camera_transform(c, mean, at);
+			if (!(at[2] > 0))
+				continue;
+			const double x = c->fx * at[0] / at[2] + c->cx, y = c->fy * at[1] / at[2] + c->cy;
+			if (x >= 0 && x <= c->width && y >= 0 && y <= c->height)
+				least = fmin(least, at[2] / fmax(c->fx, c->fy));
+		}
+		footprint[i] = (float)least;
+	}
+}
+
+/* The direction of an object. */
+static void direction(int object, float d[K])
+{
+	struct rng r;
+
+	rng_seed(&r, (uint64_t)object, STREAM_SIGNATURE);
+	for (int k = 0; k < K; k++)
+		d[k] = rng_below(&r, 2) ? 0.25f : -0.25f; /* 1/sqrt(K) */
+}
+
+/* The sum of a view's masks at each pixel: at (K,P). */
+static void sum_masks(const struct train_view *v, const int *objects, float *at)
+{
+	const size_t pixels = v->weights.pixels;
+
+	memset(at, 0, sizeof *at * K * pixels);
+	for (int i = 0; i < v->count; i++) {
+		const int object = objects[v->sentences[i]];
+		int same = 0;
+		float d[K];
+		for (int j = 0; j < v->count; j++)
+			same += objects[v->sentences[j]] == object;
+		direction(object, d);
+		for (int k = 0; k < K; k++)
+			d[k] /= (float)same;
+		for (size_t p = 0; p < pixels; p++) {
+			if (!(v->masks[i][p / 8] >> p % 8 & 1))
+				continue;
+			for (size_t k = 0; k < K; k++)
+				at[k * pixels + p] += d[k];
+		}
+	}
+}
+
+int octree_input_signatures(const struct train_view *views, size_t view_count, const int *objects,
+	size_t scene_gaussians, const double *weight, float *signature, struct err *e)
+{
+	size_t pixels = 0;
+
+	for (size_t v = 0; v < view_count; v++)
+		pixels = views[v].weights.pixels > pixels ? views[v].weights.pixels : pixels;
+	float *at = mem_alloc(pixels, K * sizeof *at, "signatures", e);
+	float *sum = mem_zalloc(
+		scene_gaussians, backproject_groups(K) * VIEW_GROUP * sizeof *sum, "signatures", e);
+	if (!at || !sum) {
+		free(at);
+		free(sum);
+		return -1;
+	}
+	for (size_t v = 0; v < view_count; v++) {
+		sum_masks(&views[v], objects, at);
+		backproject_add(&views[v].weights, at, K, sum);
+	}
+	for (size_t i = 0; i < scene_gaussians; i++)
+		for (size_t k = 0; k < K; k++)
+			signature[i * K + k] = weight[i] > 0 ? sum[backproject_index(scene_gaussians, k, i)] /
+								       (float)weight[i]
+							     : 0;
+	free(at);
+	free(sum);
+	return 0;
+}

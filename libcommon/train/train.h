@@ -1,0 +1,100 @@
+/* Training: what is learned from, the order in which it is seen, and the state that a checkpoint holds. */
+#ifndef TRAIN_TRAIN_H
+#define TRAIN_TRAIN_H
+
+#include "base/err.h"
+#include "splat/view_weights.h"
+#include "train/step.h"
+
+#include <stdint.h>
+
+/* A training view: its weights, and the sentences that have a mask in it. */
+struct train_view {
+	struct view_weights weights;
+	int count;
+	int *sentences;	       /* (count + held) indices of sentences */
+	const uint8_t **masks; /* (count + held) of weights.pixels each, as bits (mask/bits.h) */
+	int held;	       /* further sentences and masks that are not learned from (train/held_out.h) */
+};
+
+/* weight (scene_gaussians): each Gaussian's weight over all views. */
+void train_weights(const struct train_view *views, size_t view_count, size_t scene_gaussians, double *weight);
+
+/* Gaussians that can learn: those that carry all but `tolerance` of the weight (scene_gaussians); at 0, those
+ * with any. ids (scene_gaussians) gets *n rising indices. */
+int train_active_set(const double *weight, size_t scene_gaussians, double tolerance, int32_t *ids, size_t *n,
+	struct err *e);
+
+/* Robust bounds of the means (N,3) of the Gaussians ids (n): the 1st and 99th percentile of each axis,
+ * widened where they meet. */
+int train_bounds(
+	const float *means, const int32_t *ids, size_t n, double low[3], double high[3], struct err *e);
+
+/* The order of training: epochs, each a shuffle of every view's sentences into groups of at most `batch` and
+ * of those groups. It depends on seed, epoch and view alone, so that any iteration can be found again. */
+struct train_order {
+	const struct train_view *views;
+	size_t view_count;
+	int batch;
+	uint64_t seed;
+	size_t sentences, negatives; /* R; how many a step's contrast is with, 0: all */
+	size_t *others;		     /* (R) */
+	uint32_t groups;	     /* in an epoch */
+	long begin;		     /* the training's iteration where this order begins */
+	long epoch;		     /* that `order` holds, or -1 */
+	uint32_t *order;	     /* (groups) */
+	uint32_t *view, *first;	     /* (groups) the view, and the first of its shuffled sentences */
+	uint32_t *shuffled;	     /* every view's sentences, one after another */
+	uint32_t *start;	     /* (view_count+1) into shuffled */
+};
+
+int train_order_init(struct train_order *o, const struct train_view *views, size_t view_count, int batch,
+	size_t sentences, size_t negatives, uint64_t seed, struct err *e);
+void train_order_free(struct train_order *o);
+
+/* The view of an iteration (counted from 0), and which of its sentences: picks (batch) gets *count positions
+ * in the view's list. */
+size_t train_order_at(struct train_order *o, long iteration, uint32_t *picks, int *count);
+
+/* The sentences that an iteration's contrast is with: `negatives` of all, drawn evenly. NULL: all. */
+const size_t *train_order_others(struct train_order *o, long iteration);
+
+/* The best state so far by the masks that were held out. */
+struct train_best {
+	float *values;	/* (count) as train_state's; NULL where nothing is held out */
+	long iteration; /* steps that it had; 0: nothing was evaluated yet */
+	double score;	/* the higher the better */
+	long since;	/* evaluations since then */
+};
+
+/* Parameters and referring features in one slab with gradient and both Adam moments alike; a checkpoint is
+ * the slab, the iteration and the sum. */
+struct train_state {
+	size_t parameters, count;	  /* floats of the parameters (padded) and of the slab */
+	float *values, *gradient, *m, *v; /* (count): parameters, then x in panels */
+	long iteration;			  /* steps done */
+	struct step_losses sum;		  /* of the steps since the caller last set it to zero */
+	struct train_best best;
+};
+
+/* keeps_best: 0, or 1 for room for the best state. */
+int train_state_init(struct train_state *t, const struct refer_layout *l, size_t gaussians, int keeps_best,
+	uint64_t seed, struct err *e);
+void train_state_free(struct train_state *t);
+float *train_state_x(const struct train_state *t);
+
+struct train_rates {
+	double features, mlps; /* Adam's */
+};
+
+/* An evaluation of the state as it is: it becomes the best one where its score is higher than any before. */
+void train_evaluated(struct train_state *t, double score);
+
+/* Adam on all parameters with the gradient that is there; iteration + 1. */
+void train_adam(struct train_state *t, const struct train_rates *rates);
+
+/* One step: gradient, Adam, iteration + 1, losses added to sum. */
+struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o,
+	const struct train_rates *rates, size_t gaussians);
+
+#endif

@@ -1,0 +1,99 @@
+/* A training in progress: the Gaussians that learn, the step over them, the order of the views and the state.
+ */
+#ifndef TRAIN_TRAINER_H
+#define TRAIN_TRAINER_H
+
+#include "base/err.h"
+#include "field/octree.h"
+#include "field/rows.h"
+#include "geom/camera.h"
+#include "train/held_out.h"
+#include "train/train.h"
+#include "train/warm_start.h"
+
+struct trainer_options {
+	enum refer_interaction interaction;
+	enum refer_similarity similarity;
+	enum refer_contrast contrast;
+	long long feature_width;    /* d_r, 1 to REFER_MAX_X */
+	double temperature, lambda; /* of the contrast */
+	double tolerance;	    /* train_active_set's */
+	double share;	 /* octree_build's price, in pixels a view; 0: every Gaussian has its own feature */
+	long long batch; /* most sentences in a step */
+	long long negatives; /* train_order's */
+	long long warm;	     /* steps of a warm start; 0: none */
+	double hold_out;     /* share of the supervision that is held out, which is the source's to do */
+	struct train_rates rates;
+	long long seed;
+};
+
+/* pcmi, dot and the rest as refer-train has them where nothing is said. */
+#define TRAINER_DEFAULTS                                                                                     \
+	{                                                                                                    \
+		.interaction = REFER_PCMI, .contrast = REFER_CONTRAST_COSINE, .feature_width = 16,           \
+		.temperature = 0.1, .lambda = 0.02, .share = 0.04, .batch = 1, .negatives = 12, .rates = {   \
+			0.0025,                                                                              \
+			0.0001                                                                               \
+		}                                                                                            \
+	}
+
+/* What is learned from. Referred to, not copied. */
+struct trainer_source {
+	const float *means;	      /* (scene_gaussians,3) */
+	const struct camera *cameras; /* (view_count) of the views, at the size of their weights */
+	size_t scene_gaussians;	      /* N */
+	int text_width;
+	size_t sentences;	/* R */
+	const int64_t *offsets; /* (R+1) into words */
+	const float *words;	/* (offsets[R], text_width) */
+	const int *objects;	/* (R) */
+	const struct train_view *views;
+	size_t view_count, pixels;	 /* pixels of the largest view */
+	const struct lifted *lifted;	 /* what a warm start is fitted to; NULL without one */
+	const char *const *object_names; /* (R) for it */
+};
+
+struct trainer {
+	struct refer_layout layout;
+	struct train_rates rates;
+	size_t learning;      /* Gaussians that learn */
+	int32_t *ids;	      /* (learning) */
+	struct octree octree; /* no leaves: a row for each of ids */
+	struct rows rows;
+	double low[3], high[3];
+	float *position;	  /* (rows,3) */
+	struct train_view *views; /* the source's, over rows */
+	size_t view_count;
+	struct step *step;
+	struct train_order order;
+	struct train_state state;
+	long warm_steps; /* the first of all */
+	struct warm_start warm;
+	struct held_out held;
+};
+
+/* ERR_FORMAT, without a file name, where no Gaussian has weight. */
+int trainer_init(
+	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e);
+void trainer_free(struct trainer *t);
+
+/* Weights over rows that a pixel has on average. */
+double trainer_weights(const struct trainer *t);
+
+/* (rows.n, d_r) the features of a slab of trainer_result, row-major; free() them. NULL with *e when memory is
+ * out. */
+float *trainer_features(const struct trainer *t, const float *values, struct err *e);
+
+/* The next step, train_step's. */
+struct step_losses trainer_step(struct trainer *t);
+
+enum { TRAINER_EVALUATE = 250 }; /* steps from one evaluation to the next */
+
+/* Scores the held-out masks, and keeps the state where it is the best so far. */
+struct held_out_score trainer_evaluate(struct trainer *t);
+
+/* What is learned, as it is or, where masks are held out, as it was when they were answered best: the slab
+ * (train_state's values), and the steps that it had. */
+const float *trainer_result(const struct trainer *t, long *iteration);
+
+#endif
