@@ -15,7 +15,7 @@ row() {
 		"$(percent p50 "$2")" "$(percent p75 "$2")"
 }
 
-printf '%-42s %6s %6s %6s %6s %6s\n' "" mIoU oIoU P@25 P@50 P@75
+[ -z "$(find "$dir" -maxdepth 2 -name '*.score.json')" ] || printf '%-42s %6s %6s %6s %6s %6s\n' "" mIoU oIoU P@25 P@50 P@75
 row "selected masks, training views" "$dir/stage1/masks.score.json"
 for stage in 1 2; do
 	[ $stage = 1 ] || row "masks that teach stage 2, training views" "$dir/stage2/masks.score.json"

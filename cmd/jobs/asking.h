@@ -13,7 +13,7 @@
 #include "refer/extent.h"
 
 struct asking_options {
-	const char *run;	 /* the folder; NULL where all of the next are given */
+	const char *run;	 /* the folder */
 	struct run_folder given; /* files in place of the folder's */
 	const char *viewpoint;	 /* VIEW or x,y,z; NULL: the usual one */
 	const char *without;	 /* PART,... as choose_without takes it; may be NULL */

@@ -164,6 +164,24 @@ static const struct meaning_part *worst_part(const struct meaning *m, size_t o)
 	return worst;
 }
 
+/* A part as the sentence says it: a clause with its anchors, where they follow it. */
+static void add_said(
+	struct words *w, const struct meaning *m, const char *text, const struct meaning_part *part)
+{
+	const struct parse *p = m->sentence->parse;
+	const int is_clause = part->kind == MEANING_CLAUSE || part->kind == MEANING_SIZE;
+	const struct parse_clause *c = is_clause ? &p->clauses[part->index] : NULL;
+	int end = c ? c->span.end : 0;
+
+	for (int k = 0; c && k < c->anchors.n; k++)
+		if (p->phrases[c->anchors.item[k]].span.end > end)
+			end = p->phrases[c->anchors.item[k]].span.end;
+	if (c && c->span.begin < c->span.end)
+		add_bytes(w, text + c->span.begin, (size_t)(end - c->span.begin));
+	else
+		add_part(w, m, text, part);
+}
+
 void explain_refusal(const struct meaning *m, const char *text, char reason[EXPLAIN_REASON])
 {
 	const struct parse *p = m->sentence->parse;
@@ -184,7 +202,7 @@ void explain_refusal(const struct meaning *m, const char *text, char reason[EXPL
 	} else if (worst && worst->value[best] < 0.5 && worst->kind != MEANING_ORDINAL) {
 		add(&w, m->vocabulary->lifted->names[best]);
 		add(&w, " comes nearest, but '");
-		add_part(&w, m, text, worst);
+		add_said(&w, m, text, worst);
 		add(&w, worst->kind == MEANING_EXCEPT ? "' leaves it out" : "' does not fit it");
 	} else {
 		add(&w, m->vocabulary->lifted->names[best]);

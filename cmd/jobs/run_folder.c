@@ -15,8 +15,9 @@ static int check_there(const char *path, struct err *e)
 	return stat(path, &s) ? err_errno(e, "%s", path) : 0;
 }
 
-/* A part of the folder, or what was given in its place. */
-static char *find_part(const char *run, const char *given, const char *part, const char *what, struct err *e)
+/* A part of the folder, or what was given in its place by an option. */
+static char *find_part(
+	const char *run, const char *given, const char *part, const char *option, struct err *e)
 {
 	char *path = given ? mem_strdup(given, e) : file_join(run, part, "", e);
 
@@ -24,18 +25,18 @@ static char *find_part(const char *run, const char *given, const char *part, con
 		return path;
 	free(path);
 	err_set(e, ERR_SYSTEM,
-		"%s: has no %s, which is the %s: 'make -f pipelines/lift.mk SCENE=%s ...' makes it, %s names another",
-		run, part, what, run, *part == 's' ? "--scene" : "--model");
+		"%s: no %s in it: 'make -f pipelines/lift.mk SCENE=%s ...' makes one, %s names another", run,
+		part, run, option);
 	return NULL;
 }
 
 int run_folder_find(struct run_folder *f, const char *run, const struct run_folder *given, struct err *e)
 {
 	*f = (struct run_folder){0};
-	if (run && check_there(run, e))
+	if (check_there(run, e))
 		return -1;
-	if (!(f->scene = find_part(run, given->scene, "scene", "scene", e)) ||
-		!(f->model = find_part(run, given->model, "lifted/model.safetensors", "model", e)))
+	if (!(f->scene = find_part(run, given->scene, "scene", "--scene", e)) ||
+		!(f->model = find_part(run, given->model, "lifted/model.safetensors", "--model", e)))
 		return -1;
 	f->encoder = given->encoder ? mem_strdup(given->encoder, e) : encoder_default(e);
 	return f->encoder ? 0 : -1;

@@ -9,7 +9,7 @@ struct run_folder {
 };
 
 /* The scene, RUN/scene; the lifted model, RUN/lifted/model.safetensors; and the encoder, encoder_default's;
- * but for those of `given` that are not NULL. `run` may be NULL where all are given. Copies. ERR_SYSTEM where
+ * but for those of `given` that are not NULL. Copies. ERR_SYSTEM where
  * the folder or one of them is not there: the message says what makes it. Returns 0, or -1 with *e set;
  * run_folder_free after either. */
 int run_folder_find(struct run_folder *f, const char *run, const struct run_folder *given, struct err *e);
