@@ -95,7 +95,7 @@ static int put_page(void *data, const struct answer *a, struct err *e)
 	const struct page *page = data;
 	const int h = a->camera->height, w = a->camera->width, line = caption_height(w);
 	const size_t bytes = 3 * (size_t)h * (size_t)w;
-	uint8_t *rgb = mem_alloc((size_t)(h + 2 * line), 3 * (size_t)w, page->path, e);
+	uint8_t *rgb = mem_alloc((size_t)h + 2 * (size_t)line, 3 * (size_t)w, page->path, e);
 
 	if (!rgb)
 		return -1;

@@ -4,6 +4,7 @@
 #include "geom/up.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -212,8 +213,8 @@ int asking_ask(struct asking *a, const char *question, struct asking_answer *ans
 		  sentences_add(&x.sentences, "1", "?", question, e) || encode(&x, &a->encoder, to, e);
 
 	if (!bad)
-		strcpy(answer->reason,
-			x.text.offsets[1] ? "the model has no objects" : "the question has no words");
+		snprintf(answer->reason, sizeof answer->reason, "the %s",
+			x.text.offsets[1] ? "model has no objects" : "question has no words");
 	if (!bad)
 		bad = choose_answer(a, &x.text, &w, e);
 	if (!bad && w.is_out_of_memory)

@@ -27,16 +27,25 @@ static void draw_glyph(uint8_t *rgb, int width, int top, int left, uint32_t c)
 					255, 3);
 }
 
+static int count_characters(const char *text, size_t length)
+{
+	int n = 0;
+
+	for (size_t at = 0; at < length; n++)
+		utf8_next(text, length, &at);
+	return n;
+}
+
 void caption_draw(uint8_t *rgb, int width, int top, const char *text)
 {
 	const int scale = scale_of(width), step = CAPTION_WIDTH * scale, room = width / step - 1;
 	const size_t length = strlen(text);
+	const int is_cut = count_characters(text, length) > room;
 	size_t at = 0;
 
 	memset(rgb + 3 * (size_t)top * (size_t)width, 0, 3 * (size_t)width * (size_t)caption_height(width));
 	for (int n = 0; at < length && n < room; n++) {
 		const uint32_t c = utf8_next(text, length, &at);
-		const int is_last = n >= room - 2 && at < length;
-		draw_glyph(rgb, width, top + scale, step / 2 + n * step, is_last ? '.' : c);
+		draw_glyph(rgb, width, top + scale, step / 2 + n * step, is_cut && n >= room - 2 ? '.' : c);
 	}
 }
