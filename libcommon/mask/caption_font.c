@@ -1,4 +1,4 @@
-/* The font of captions: the characters 32 to 126 of "6x10", font-misc-misc 1.1 of the X Window System
+/* The font of captions: the characters 32 to 126 of "6x10", font-misc-misc of the X Window System
  * ("Public domain font. Share and enjoy."). Ten rows of six pixels for each; the leftmost is 32. */
 #include "mask/caption.h"
 
