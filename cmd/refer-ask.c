@@ -8,6 +8,7 @@
 #include "refer/asked.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 static struct {
@@ -110,6 +111,18 @@ static int run(const struct cli *c, struct asking *a, int *status, struct err *e
 	return c->operand_count > 1 ? answer(c, a, q.text, status, e) : answer_lines(c, a, status, e);
 }
 
+static void check(const struct cli *c)
+{
+	const char *model = options.asking.given.model;
+
+	if (options.picture && c->operand_count < 2)
+		cli_usage(c, "--picture needs a QUESTION");
+	if (options.picture && !strcmp(options.picture, "-"))
+		cli_usage(c, "--picture must name a file");
+	if (model && !strcmp(model, "-") && c->operand_count < 2)
+		cli_usage(c, "--model - needs a QUESTION, as questions come from stdin");
+}
+
 int main(int argc, char **argv)
 {
 	struct asking a = {0};
@@ -118,8 +131,7 @@ int main(int argc, char **argv)
 	int status = 0;
 
 	cli_parse(&c, &tool, argc, argv);
-	if (options.picture && c.operand_count < 2)
-		cli_usage(&c, "--picture needs a QUESTION");
+	check(&c);
 	cli_refuse_overwrite(&c, CLI_SCENE " model encoder:" BERT_MODEL_PARTS, "picture", NULL);
 	options.asking.run = c.operands[0];
 	const int bad = run(&c, &a, &status, &e);

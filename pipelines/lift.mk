@@ -6,7 +6,8 @@
 #
 # Or from one photograph whose things a person painted, without sentences; then `refer-ask work/desk "where is the kettle?"`:
 #
-#	make -f pipelines/lift.mk SCENE=work/desk SPLATS=point_cloud.ply CAMERAS=sparse/0 MASKS=masks.jsonl
+#	make -f pipelines/lift.mk SCENE=work/desk SPLATS=point_cloud.ply CAMERAS=sparse/0 \
+#		MASKS=input_0005.png NAMES=names.txt
 #
 # SCALE       size at which masks are looked at, as a share of the views'; default 0.3333
 # ASK         more sentences to answer, JSON Lines; optional

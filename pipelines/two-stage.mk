@@ -13,6 +13,8 @@
 # CANDIDATES  candidate masks, JSON Lines (required, but with MASKS)
 # MASKS       masks that a person drew, JSON Lines, in place of CANDIDATES; where SENTENCES is not given, the names of their
 #             objects are the sentences. A PNG that they name is not watched for changes
+# NAMES       what the colours of MASKS mean, as mask-import takes it: MASKS is then a painted photograph, a PNG with the name
+#             of its view, or a folder of such
 # TRUTH       true masks to score against; optional
 # BERT        folder of the language encoder; default: where `make encoder` puts it
 # SCALE       size at which training looks at the views, as a share of theirs; default 0.25
@@ -36,7 +38,7 @@ SEED ?= 1
 TEACH ?= lifted
 include $(here)common.mk
 $(call take,MASKS)
-$(call check,SCENE SPLATS $(if $(MASKS),,SENTENCES CANDIDATES),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS TRUTH,IMAGES TEST_VIEWS BERT SCALE \
+$(call check,SCENE SPLATS $(if $(MASKS),,SENTENCES CANDIDATES),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH,IMAGES TEST_VIEWS BERT SCALE \
 	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN,pipelines/two-stage.mk)
 $(if $(filter stage1 lifted,$(TEACH)),,$(error TEACH is stage1 or lifted))
 
@@ -46,9 +48,11 @@ cameras := $(if $(CAMERAS),$(if $(wildcard $(CAMERAS)/.),$(call camera_files,$(C
 scene := $(SCENE)/scene/cameras.json
 weights := $(SCENE)/weights/complete
 text := $(SCENE)/text.safetensors
-masks1 := $(or $(MASKS),$(SCENE)/stage1/masks.jsonl)
+painted := $(if $(and $(MASKS),$(NAMES)),$(or $(wildcard $(MASKS)/*.png),$(MASKS)))
+drawn := $(if $(painted),$(SCENE)/painted.jsonl,$(MASKS))
+masks1 := $(or $(drawn),$(SCENE)/stage1/masks.jsonl)
 masks2 := $(SCENE)/stage2/masks.jsonl
-masks3 := $(or $(MASKS),$(SCENE)/lifted/masks.jsonl)
+masks3 := $(or $(drawn),$(SCENE)/lifted/masks.jsonl)
 # Sentences that are names only train.
 splits := train $(if $(SENTENCES),test)
 model1 := $(SCENE)/stage1/model.safetensors
@@ -73,7 +77,8 @@ help:
 command.import = gs-import $(if $(CAMERAS),--cameras $(CAMERAS)) $(if $(IMAGES),--images $(call quoted,IMAGES)) \
 	$(if $(TEST_VIEWS),--test-views $(call quoted,TEST_VIEWS)) -o $(SCENE)/scene $(SPLATS)
 command.weigh = gs-weigh --scale $(call quoted,SCALE) $(call options,WEIGH) -o $(SCENE)/weights $(SCENE)/scene
-command.encode = text-encode --model $(call quoted,BERT) $(if $(SENTENCES),,--names) -o $(text) $(or $(SENTENCES),$(MASKS))
+command.encode = text-encode --model $(call quoted,BERT) $(if $(SENTENCES),,--names) -o $(text) $(or $(SENTENCES),$(drawn))
+command.paint = mask-import --names $(NAMES) -o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
 command.select = pseudomask-select $(call options,SELECT) -o $(masks1) $(CANDIDATES)
 train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks$(1)) \
 	--iterations $(call quoted,ITERATIONS) --seed $(call quoted,SEED) --resume --log $(SCENE)/stage$(1)/train.log \
@@ -89,7 +94,7 @@ $(foreach s,1 2,$(eval command.train$(s) = $$(call train,$(s))))
 $(foreach s,1 2,$(foreach t,train test,$(eval command.render$(s).$(t) = $$(call predict,$(s),$(t)))))
 $(foreach s,1 2,$(eval command.overlay$(s) = $$(call render,$(s)) --sentences $(lastword $(splits)) --overlay $(SCENE)/stage$(s)/overlays \
 	-o $(SCENE)/stage$(s)/overlays/masks.jsonl))
-$(call track,import weigh encode select select3d lift train1 train2 teach score overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
+$(call track,import weigh paint encode select select3d lift train1 train2 teach score overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
 
 $(SCENE)/log/%.command:
 	@mkdir -p $(@D) && printf %s $(call quote,$(command.$*)) >$@
@@ -101,8 +106,13 @@ $(weights): $(scene) $(SCENE)/log/weigh.command
 	$(call run,weigh)
 	@touch $@
 
-$(text): $(or $(SENTENCES),$(MASKS)) $(SCENE)/log/encode.command
+$(text): $(or $(SENTENCES),$(drawn)) $(SCENE)/log/encode.command
 	$(call run,encode)
+
+ifneq ($(painted),)
+$(drawn): $(NAMES) $(painted) $(SCENE)/log/paint.command
+	$(call run,paint)
+endif
 
 ifeq ($(MASKS),)
 # A way of selecting that looks at the scene has to wait for it.

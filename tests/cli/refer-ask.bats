@@ -199,6 +199,11 @@ refer-ask: stdin:5: has a NUL byte" ]
 	[ ! -e none.png ]
 	says 2 "refer-ask: --picture needs a QUESTION
 Try 'refer-ask --help'." ask -o none.png run
+	says 2 "refer-ask: --picture must name a file
+Try 'refer-ask --help'." ask -o - run cup
+	says 2 "refer-ask: --model - needs a QUESTION, as questions come from stdin
+Try 'refer-ask --help'." ask --model - run
+	ask --model - run "$thing" <run/lifted/model.safetensors | grep -q "^$thing: "
 	says 2 "refer-ask: --picture run/lifted/../lifted/model.safetensors would overwrite --model run/lifted/model.safetensors
 Try 'refer-ask --help'." ask --model run/lifted/model.safetensors -o run/lifted/../lifted/model.safetensors run cup
 	says 4 "refer-ask: no/x.png: No such file or directory" ask -o no/x.png run "$thing"

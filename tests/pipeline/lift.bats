@@ -99,3 +99,27 @@ not() { ! "$@"; }
 	[ "$status" = 2 ]
 	grep -qF "CANDIDATES not set" <<<"$output"
 }
+
+@test "painted photographs and what their colours mean, in one command" {
+	cd "$BATS_TEST_TMPDIR"
+	view=$(jq -r .view "$WORK/lifted/masks.jsonl" | head -n 1)
+	thing=$(jq -r --arg view "$view" 'select(.view == $view).object' "$WORK/lifted/masks.jsonl" | head -n 1)
+	ref=$(jq -r --arg thing "$thing" 'select(.object == $thing).ref' "$DATA/sentences.jsonl" | head -n 1)
+	"$BIN/refer-render" --scene "$WORK/scene" --text "$WORK/text.safetensors" --model "$WORK/lifted/model.safetensors" --views "$view" \
+		--refs "$ref" --png drawn -o drawn.jsonl
+	mkdir painted
+	cp "drawn/$view/$ref.png" "painted/$view.png"
+	echo "255 $thing" >names
+	for masks in "$PWD/painted/$view.png" "$PWD/painted"; do
+		rm -rf work
+		paint() { WORK=$PWD/work lift MASKS="$masks" NAMES="$PWD/names" SENTENCES= CANDIDATES= ASK= WHOLE= BOXES= TRUTH= TEST_VIEWS= "$@"; }
+		paint >log 2>&1
+		"$BIN/miou-score" --json --truth <(jq -c 'del(.ref, .score)' drawn.jsonl) work/painted.jsonl | jq -e '.miou == 1 and .pairs == 1'
+		"$BIN/refer-ask" --encoder "$ROOT/tests/golden/bert" work "where is the $thing?" | grep -q "^$thing: "
+		paint >again 2>&1
+		not grep -qE "$BIN/'" again
+	done
+	echo "255 other $thing" >names
+	touch -d '+2 seconds' names
+	paint -n | grep -q "'mask-import "
+}
