@@ -5,53 +5,66 @@
 #include "formats/bert_model.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
-static int run(const struct cli *c, const char *dir, int is_static, struct err *e)
+static struct {
+	const char *model;
+	int is_static, is_of_masks;
+} options;
+
+static const struct cli_option table[] = {
+	{"model", 0, CLI_STRING, &options.model, "DIR",
+		"the encoder's folder: config.json, a tokenizer and *.safetensors (default: where 'make encoder' puts it)",
+		0, 0},
+	{"words", 0, CLI_CHOICE, &options.is_static, "contextual|static",
+		"as the sentence makes them or the vocabulary has them (default contextual)", 0, 0},
+	{"names", 0, CLI_FLAG, &options.is_of_masks, NULL,
+		"the input is mask records: encode the names of their objects, as training sentences", 0, 0},
+	{0}};
+
+static const struct cli_tool tool = {.name = "text-encode",
+	.operands = "[SENTENCES]",
+	.summary =
+		"Turn sentences (JSON Lines, or one a line; stdin by default) into word vectors (text.safetensors).",
+	.options = table,
+	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT,
+	.max_operands = 1};
+
+static int run(const struct cli *c, struct encoding *x, struct encoder *with, struct err *e)
 {
-	struct encoding x = {0};
-	const struct text *t = &x.text;
+	const struct text *t = &x->text;
 	struct cli_report to;
-	char options[512];
+	char record[512];
 	int length;
-	const char *name = path_last(dir, &length); /* so that bytes do not depend on where a model is */
+	const char *name =
+		path_last(options.model, &length); /* so that bytes do not depend on where a model is */
 
-	snprintf(options, sizeof options, "--model %.*s%s", length, name, is_static ? " --words static" : "");
-	int bad = encode(&x, dir, c->operand_count ? c->operands[0] : "-", is_static, cli_report(&to, c), e);
-	if (!bad) {
-		cli_note(c, 1, "%zu sentences, %lld words of width %d", t->n, (long long)t->offsets[t->n],
-			t->width);
-		bad = text_write(t, c->output, options, e);
-	}
-	encoding_free(&x);
-	return bad ? -1 : 0;
+	snprintf(record, sizeof record, "--model %.*s%s", length, name,
+		options.is_static ? " --words static" : "");
+	if (encoding_read(x, c->operand_count ? c->operands[0] : "-", options.is_of_masks, e) ||
+		encoder_read(with, options.model, options.is_static, e) ||
+		encode(x, with, cli_report(&to, c), e))
+		return -1;
+	cli_note(c, 1, "%zu sentences, %lld words of width %d", t->n, (long long)t->offsets[t->n], t->width);
+	return text_write(t, c->output, record, e);
 }
 
 int main(int argc, char **argv)
 {
-	const char *model = NULL;
-	int is_static = 0;
-	const struct cli_option options[] = {
-		{"model", 0, CLI_STRING, &model, "DIR",
-			"the encoder's folder: config.json, a tokenizer and *.safetensors (required)", 0, 0},
-		{"words", 0, CLI_CHOICE, &is_static, "contextual|static",
-			"as the sentence makes them or the vocabulary has them (default contextual)", 0, 0},
-		{0}};
-	const struct cli_tool tool = {.name = "text-encode",
-		.operands = "[SENTENCES]",
-		.summary =
-			"Turn sentences (JSON Lines; stdin by default) into word vectors (text.safetensors).",
-		.options = options,
-		.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT,
-		.max_operands = 1};
+	struct encoding x = {0};
+	struct encoder with = {0};
+	char *usual = NULL;
 	struct err e = {0};
 	struct cli c;
 
 	cli_parse(&c, &tool, argc, argv);
-	if (!model)
-		cli_usage(&c, "--model DIR is required");
+	if (!options.model && !(options.model = usual = encoder_default(&e)))
+		return cli_fail(&c, &e);
 	cli_refuse_terminal(&c);
 	cli_refuse_overwrite(&c, "SENTENCES model:" BERT_MODEL_PARTS, "output", NULL);
-	if (run(&c, model, is_static, &e))
-		return cli_fail(&c, &e);
-	return cli_done(&c);
+	const int bad = run(&c, &x, &with, &e);
+	encoding_free(&x);
+	encoder_free(&with);
+	free(usual);
+	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -61,29 +61,48 @@ static ssize_t read_line(struct jsonl *j, struct err *e)
 	return (ssize_t)len;
 }
 
-int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
+/* The next line that is not blank: its length, 0 at the end, -1 with *e. */
+static ssize_t next_line(struct jsonl *j, struct err *e)
 {
 	for (;;) {
 		ssize_t len = read_line(j, e);
 		if (len <= 0)
-			return (int)len;
+			return len;
 		j->line_number++;
 		if ((size_t)len != strlen(j->line))
 			return jsonl_err(j, e, "a NUL byte at column %zu", strlen(j->line) + 1);
-		if (strspn(j->line, " \t\r\n") == (size_t)len)
-			continue;
-		const char *stop = NULL;
-		*object = cJSON_ParseWithOpts(j->line, &stop, 1);
-		if (!*object)
-			return jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);
-		const int is_cut = json_has_nul(j->line);
-		if (cJSON_IsObject(*object) && !is_cut)
-			return 1;
-		cJSON_Delete(*object);
-		*object = NULL;
-		return jsonl_err(
-			j, e, is_cut ? "a NUL character (\\u0000) in a string" : "not a JSON object");
+		if (strspn(j->line, " \t\r\n") < (size_t)len)
+			return len;
 	}
+}
+
+int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
+{
+	const char *stop = NULL;
+	ssize_t len = next_line(j, e);
+
+	if (len <= 0)
+		return (int)len;
+	*object = cJSON_ParseWithOpts(j->line, &stop, 1);
+	if (!*object)
+		return jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);
+	const int is_cut = json_has_nul(j->line);
+	if (cJSON_IsObject(*object) && !is_cut)
+		return 1;
+	cJSON_Delete(*object);
+	*object = NULL;
+	return jsonl_err(j, e, is_cut ? "a NUL character (\\u0000) in a string" : "not a JSON object");
+}
+
+int jsonl_text(struct jsonl *j, struct err *e)
+{
+	ssize_t len = next_line(j, e);
+
+	if (len <= 0)
+		return (int)len;
+	while (len && strchr("\r\n", j->line[len - 1]))
+		j->line[--len] = 0;
+	return 1;
 }
 
 int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, int need, const char **value,

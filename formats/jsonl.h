@@ -24,6 +24,10 @@ int jsonl_open(struct jsonl *j, const char *path, struct err *e);
 /* The next line's object: 1 and *object (the caller's, cJSON_Delete), 0 at the end, -1 with *e
  * ("path:LINE: reason"). Empty lines are skipped. */
 int jsonl_next(struct jsonl *j, cJSON **object, struct err *e);
+
+/* The next line that is not blank, in j->line without its end, of a file that is no JSON: 1, 0 at the end, -1
+ * with *e. */
+int jsonl_text(struct jsonl *j, struct err *e);
 void jsonl_close(struct jsonl *j);
 
 /* Sets ERR_FORMAT with "path:LINE: reason". Always returns -1. */

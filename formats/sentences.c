@@ -173,16 +173,71 @@ static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 	return got;
 }
 
-int sentences_read(struct sentences *s, const char *path, struct err *e)
+static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)
+{
+	size_t capacity = 0;
+	char ref[24];
+	int got;
+
+	while ((got = jsonl_text(j, e)) > 0) {
+		if (mem_grow((void **)&s->items, &capacity, s->n + 1, sizeof *s->items, j->path, e))
+			return -1;
+		struct sentence *one = &s->items[s->n++];
+		*one = (struct sentence){.split = SPLIT_TEST};
+		const size_t len = strlen(j->line), bad = utf8_check(j->line, len);
+		if (bad < len)
+			return jsonl_err(j, e, "not UTF-8 at byte %zu", bad + 1);
+		snprintf(ref, sizeof ref, "%ld", j->line_number);
+		if (!(one->ref = mem_strdup(ref, e)) || !(one->object = mem_strdup("?", e)) ||
+			!(one->text = mem_strdup(j->line, e)))
+			return -1;
+	}
+	return got;
+}
+
+/* Whether the file begins as JSON may, or with a byte order mark or a NUL. */
+static int is_json(FILE *in)
+{
+	const int first = getc(in);
+
+	ungetc(first, in);
+	return first == EOF || strchr(" \t\r\n{[\"\xEF", first);
+}
+
+static int read_file(struct sentences *s, const char *path, int is_any, struct err *e)
 {
 	struct jsonl j;
 
 	*s = (struct sentences){0};
 	if (jsonl_open(&j, path, e))
 		return -1;
-	int bad = read_all(s, &j, e);
+	int bad = is_any && !is_json(j.in) ? read_plain(s, &j, e) : read_all(s, &j, e);
 	jsonl_close(&j);
 	if (bad)
 		sentences_free(s);
 	return bad;
+}
+
+int sentences_read(struct sentences *s, const char *path, struct err *e)
+{
+	return read_file(s, path, 0, e);
+}
+
+int sentences_read_any(struct sentences *s, const char *path, struct err *e)
+{
+	return read_file(s, path, 1, e);
+}
+
+int sentences_add(struct sentences *s, const char *ref, const char *object, const char *text, struct err *e)
+{
+	size_t capacity = s->n;
+
+	if (mem_grow((void **)&s->items, &capacity, s->n + 1, sizeof *s->items, "sentences", e))
+		return -1;
+	struct sentence *one = &s->items[s->n++];
+	*one = (struct sentence){0};
+	one->ref = mem_strdup(ref, e);
+	one->object = one->ref ? mem_strdup(object, e) : NULL;
+	one->text = one->object ? mem_strdup(text, e) : NULL;
+	return one->text ? 0 : -1;
 }

@@ -28,6 +28,11 @@ struct sentences {
 
 /* "-" is stdin. Errors: "path:LINE: reason" (duplicate ref, missing key, bad split, bad UTF-8). */
 int sentences_read(struct sentences *s, const char *path, struct err *e);
+/* The same, or plain text: where the first byte begins no JSON, each line that is not blank is a test
+ * sentence, and its number is its ref. */
+int sentences_read_any(struct sentences *s, const char *path, struct err *e);
+/* Appends a training sentence; copies. 0, or -1 with *e. */
+int sentences_add(struct sentences *s, const char *ref, const char *object, const char *text, struct err *e);
 void sentences_free(struct sentences *s);
 
 #endif

@@ -4,6 +4,11 @@
 #	make -f pipelines/lift.mk SCENE=work/desk SPLATS=point_cloud.ply CAMERAS=sparse/0 SENTENCES=sentences.jsonl \
 #		CANDIDATES=candidates.jsonl TRUTH=truth.jsonl
 #
+# Or from one photograph whose things a person painted, without sentences; then `refer-ask work/desk "where is the kettle?"`:
+#
+#	make -f pipelines/lift.mk SCENE=work/desk SPLATS=point_cloud.ply CAMERAS=sparse/0 \
+#		MASKS=input_0005.png NAMES=names.txt
+#
 # SCALE       size at which masks are looked at, as a share of the views'; default 0.3333
 # ASK         more sentences to answer, JSON Lines; optional
 # WHOLE       true masks of whole objects, to score those of --amodal against; optional
@@ -11,7 +16,8 @@
 # The other variables, and the folder's layout, are those of two-stage.mk; both workflows may use one folder where SCALE and
 # WEIGH (here --precision u8 by default) are the same.
 #
-# Targets: lifted (predictions, overlays, boxes and, with TRUTH, scores), and those of two-stage.mk.
+# Targets: lifted (the model, boxes, and, where there are test views, predictions, overlays and, with TRUTH, scores), and those
+# of two-stage.mk.
 
 .DEFAULT_GOAL := lifted
 SCALE ?= 0.3333
@@ -20,14 +26,15 @@ include $(dir $(lastword $(MAKEFILE_LIST)))two-stage.mk
 $(call check,,ASK WHOLE BOXES,,pipelines/lift.mk)
 
 asked := $(if $(ASK),$(SCENE)/lifted/asked.jsonl)
-answers := $(foreach t,train test,$(SCENE)/lifted/predictions.$(t).jsonl) $(asked)
+answers := $(if $(TEST_VIEWS),$(foreach t,$(splits),$(SCENE)/lifted/predictions.$(t).jsonl) $(asked))
 whole := $(if $(WHOLE),$(SCENE)/lifted/whole.jsonl)
-lifted_scores := $(if $(TRUTH),$(SCENE)/lifted/masks.score.json $(answers:.jsonl=.score.json)) $(whole:.jsonl=.score.json) \
+lifted_scores := $(if $(TRUTH),$(if $(MASKS),,$(SCENE)/lifted/masks.score.json) $(answers:.jsonl=.score.json)) $(whole:.jsonl=.score.json) \
 	$(if $(BOXES),$(SCENE)/lifted/boxes.score.json)
 
 .PHONY: lifted
-lifted: $(answers) $(whole) $(SCENE)/lifted/boxes.jsonl $(SCENE)/lifted/overlays/complete $(lifted_scores)
+lifted: $(answers) $(whole) $(SCENE)/lifted/boxes.jsonl $(if $(TEST_VIEWS),$(SCENE)/lifted/overlays/complete) $(lifted_scores)
 	@$(here)report.sh $(SCENE)
+	@echo && echo "to ask it: $(if $(BIN),$(BIN)/)refer-ask$(if $(filter-out file,$(origin BERT)), --encoder $(BERT)) $(SCENE) 'where is the ...?'"
 
 # The steps.
 ask3 = refer-render --scene $(SCENE)/scene --text $(1) --model $(model3)
@@ -35,8 +42,9 @@ $(foreach t,train test,$(eval command.render3.$(t) = $$(call ask3,$$(text)) --se
 command.encode3 = text-encode --model $(call quoted,BERT) -o $(SCENE)/lifted/asked.safetensors $(ASK)
 command.render3.asked = $(call ask3,$(SCENE)/lifted/asked.safetensors) -o $(asked)
 command.render3.whole = $(call ask3,$(text)) --sentences test --amodal -o $(SCENE)/lifted/whole.jsonl
-command.locate = refer-locate --scene $(SCENE)/scene --text $(text) --model $(model3) --sentences test -o $(SCENE)/lifted/boxes.jsonl
-command.overlay3 = $(call ask3,$(text)) --sentences test --overlay $(SCENE)/lifted/overlays -o $(SCENE)/lifted/overlays/masks.jsonl
+command.locate = refer-locate --scene $(SCENE)/scene --text $(text) --model $(model3) --sentences $(lastword $(splits)) \
+	-o $(SCENE)/lifted/boxes.jsonl
+command.overlay3 = $(call ask3,$(text)) --sentences $(lastword $(splits)) --overlay $(SCENE)/lifted/overlays -o $(SCENE)/lifted/overlays/masks.jsonl
 command.score_whole = miou-score --json --quiet --predicted-views --truth $(WHOLE)
 command.score_boxes = miou-score --boxes --json --quiet --truth $(BOXES)
 $(call track,render3.train render3.test encode3 render3.asked render3.whole locate overlay3 score_whole score_boxes)

@@ -15,7 +15,7 @@ row() {
 		"$(percent p50 "$2")" "$(percent p75 "$2")"
 }
 
-printf '%-42s %6s %6s %6s %6s %6s\n' "" mIoU oIoU P@25 P@50 P@75
+[ -z "$(find "$dir" -maxdepth 2 -name '*.score.json')" ] || printf '%-42s %6s %6s %6s %6s %6s\n' "" mIoU oIoU P@25 P@50 P@75
 row "selected masks, training views" "$dir/stage1/masks.score.json"
 for stage in 1 2; do
 	[ $stage = 1 ] || row "masks that teach stage 2, training views" "$dir/stage2/masks.score.json"
@@ -29,7 +29,7 @@ row "lifted, test views, more sentences" "$dir/lifted/asked.score.json"
 row "lifted, whole objects, test sentences" "$dir/lifted/whole.score.json"
 echo
 printf '%-12s %10s %12s\n' step seconds "peak MiB"
-for step in import weigh encode select train1 teach train2 render1.train render1.test render2.train render2.test overlay1 overlay2 \
+for step in import weigh paint encode select train1 teach train2 render1.train render1.test render2.train render2.test overlay1 overlay2 \
 	select3d lift encode3 render3.train render3.test render3.asked render3.whole locate overlay3; do
 	[ -e "$dir/log/$step" ] || continue
 	sed -n 's/.*: \([0-9.]*\) s, peak memory \([0-9.]*\) MiB$/\1 \2/p' "$dir/log/$step" | tail -n 1 |

@@ -8,9 +8,13 @@
 # SPLATS      trained scene, a 3DGS .ply (required)
 # CAMERAS     COLMAP model, 3DGS cameras.json or transforms.json; default: what gs-import finds beside SPLATS
 # IMAGES      folder of the photographs; optional
-# TEST_VIEWS  test views as gs-import takes them: NAME,... or every:N; default every:8
-# SENTENCES   sentences, JSON Lines (required)
-# CANDIDATES  candidate masks, JSON Lines (required)
+# TEST_VIEWS  test views as gs-import takes them: NAME,... or every:N; default every:8, and none with MASKS
+# SENTENCES   sentences, JSON Lines (required, but with MASKS)
+# CANDIDATES  candidate masks, JSON Lines (required, but with MASKS)
+# MASKS       masks that a person drew, JSON Lines, in place of CANDIDATES; where SENTENCES is not given, the names of their
+#             objects are the sentences. A PNG that they name is not watched for changes
+# NAMES       what the colours of MASKS mean, as mask-import takes it: MASKS is then a painted photograph, a PNG with the name
+#             of its view, or a folder of such
 # TRUTH       true masks to score against; optional
 # BERT        folder of the language encoder; default: where `make encoder` puts it
 # SCALE       size at which training looks at the views, as a share of theirs; default 0.25
@@ -27,13 +31,14 @@
 # it starts anew. Names of files and folders may not have blanks or characters that make or the shell give a meaning.
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
-TEST_VIEWS ?= every:8
+TEST_VIEWS ?= $(if $(MASKS),,every:8)
 SCALE ?= 0.25
 ITERATIONS ?= 45000
 SEED ?= 1
 TEACH ?= lifted
 include $(here)common.mk
-$(call check,SCENE SPLATS SENTENCES CANDIDATES,SCENE SPLATS CAMERAS SENTENCES CANDIDATES TRUTH,IMAGES TEST_VIEWS BERT SCALE \
+$(call take,MASKS)
+$(call check,SCENE SPLATS $(if $(MASKS),,SENTENCES CANDIDATES),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH,IMAGES TEST_VIEWS BERT SCALE \
 	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN,pipelines/two-stage.mk)
 $(if $(filter stage1 lifted,$(TEACH)),,$(error TEACH is stage1 or lifted))
 
@@ -43,16 +48,20 @@ cameras := $(if $(CAMERAS),$(if $(wildcard $(CAMERAS)/.),$(call camera_files,$(C
 scene := $(SCENE)/scene/cameras.json
 weights := $(SCENE)/weights/complete
 text := $(SCENE)/text.safetensors
-masks1 := $(SCENE)/stage1/masks.jsonl
+painted := $(if $(and $(MASKS),$(NAMES)),$(or $(wildcard $(MASKS)/*.png),$(MASKS)))
+drawn := $(if $(painted),$(SCENE)/painted.jsonl,$(MASKS))
+masks1 := $(or $(drawn),$(SCENE)/stage1/masks.jsonl)
 masks2 := $(SCENE)/stage2/masks.jsonl
-masks3 := $(SCENE)/lifted/masks.jsonl
+masks3 := $(or $(drawn),$(SCENE)/lifted/masks.jsonl)
+# Sentences that are names only train.
+splits := train $(if $(SENTENCES),test)
 model1 := $(SCENE)/stage1/model.safetensors
 model2 := $(SCENE)/stage2/model.safetensors
 model3 := $(SCENE)/lifted/model.safetensors
 teacher := $(if $(filter lifted,$(TEACH)),3,1)
-predictions := $(foreach s,1 2,$(foreach t,train test,$(SCENE)/stage$(s)/predictions.$(t).jsonl))
+predictions := $(foreach s,1 2,$(foreach t,$(splits),$(SCENE)/stage$(s)/predictions.$(t).jsonl))
 overlays := $(SCENE)/stage1/overlays/complete $(SCENE)/stage2/overlays/complete
-scores := $(if $(TRUTH),$(predictions:$(SCENE)/%.jsonl=$(SCENE)/%.score.json) $(SCENE)/stage1/masks.score.json $(SCENE)/stage2/masks.score.json)
+scores := $(if $(TRUTH),$(predictions:$(SCENE)/%.jsonl=$(SCENE)/%.score.json) $(if $(MASKS),,$(SCENE)/stage1/masks.score.json) $(SCENE)/stage2/masks.score.json)
 
 .PHONY: all predictions overlays scores report
 all: predictions overlays scores
@@ -66,9 +75,10 @@ help:
 
 # The steps.
 command.import = gs-import $(if $(CAMERAS),--cameras $(CAMERAS)) $(if $(IMAGES),--images $(call quoted,IMAGES)) \
-	--test-views $(call quoted,TEST_VIEWS) -o $(SCENE)/scene $(SPLATS)
+	$(if $(TEST_VIEWS),--test-views $(call quoted,TEST_VIEWS)) -o $(SCENE)/scene $(SPLATS)
 command.weigh = gs-weigh --scale $(call quoted,SCALE) $(call options,WEIGH) -o $(SCENE)/weights $(SCENE)/scene
-command.encode = text-encode --model $(call quoted,BERT) -o $(text) $(SENTENCES)
+command.encode = text-encode --model $(call quoted,BERT) $(if $(SENTENCES),,--names) -o $(text) $(or $(SENTENCES),$(drawn))
+command.paint = mask-import --names $(NAMES) -o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
 command.select = pseudomask-select $(call options,SELECT) -o $(masks1) $(CANDIDATES)
 train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks$(1)) \
 	--iterations $(call quoted,ITERATIONS) --seed $(call quoted,SEED) --resume --log $(SCENE)/stage$(1)/train.log \
@@ -82,9 +92,9 @@ command.lift = refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --te
 command.score = miou-score --json --quiet --predicted-views --truth $(TRUTH)
 $(foreach s,1 2,$(eval command.train$(s) = $$(call train,$(s))))
 $(foreach s,1 2,$(foreach t,train test,$(eval command.render$(s).$(t) = $$(call predict,$(s),$(t)))))
-$(foreach s,1 2,$(eval command.overlay$(s) = $$(call render,$(s)) --sentences test --overlay $(SCENE)/stage$(s)/overlays \
+$(foreach s,1 2,$(eval command.overlay$(s) = $$(call render,$(s)) --sentences $(lastword $(splits)) --overlay $(SCENE)/stage$(s)/overlays \
 	-o $(SCENE)/stage$(s)/overlays/masks.jsonl))
-$(call track,import weigh encode select select3d lift train1 train2 teach score overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
+$(call track,import weigh paint encode select select3d lift train1 train2 teach score overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
 
 $(SCENE)/log/%.command:
 	@mkdir -p $(@D) && printf %s $(call quote,$(command.$*)) >$@
@@ -96,24 +106,35 @@ $(weights): $(scene) $(SCENE)/log/weigh.command
 	$(call run,weigh)
 	@touch $@
 
-$(text): $(SENTENCES) $(SCENE)/log/encode.command
+$(text): $(or $(SENTENCES),$(drawn)) $(SCENE)/log/encode.command
 	$(call run,encode)
 
+ifneq ($(painted),)
+$(drawn): $(NAMES) $(painted) $(SCENE)/log/paint.command
+	$(call run,paint)
+endif
+
+ifeq ($(MASKS),)
 # A way of selecting that looks at the scene has to wait for it.
 $(masks1): $(CANDIDATES) $(SCENE)/log/select.command $(if $(findstring --weights,$(SELECT)),$(weights))
 	@mkdir -p $(@D)
 	$(call run,select)
 
-# A checkpoint of a training that learned from something else is of no use.
-$(SCENE)/stage%/model.safetensors: $(SCENE)/stage%/masks.jsonl $(weights) $(text) $(SCENE)/log/train%.command
-	@[ ! -e $@.checkpoint ] || [ -z "$$(find $^ -newer $@.checkpoint)" ] || rm $@.checkpoint
-	$(call run,train$*)
-
 $(masks3): $(CANDIDATES) $(weights) $(SCENE)/log/select3d.command
 	@mkdir -p $(@D)
 	$(call run,select3d)
+endif
+
+# A checkpoint of a training that learned from something else is of no use.
+$(model1): $(masks1)
+$(model2): $(masks2)
+$(SCENE)/stage%/model.safetensors: $(weights) $(text) $(SCENE)/log/train%.command
+	@mkdir -p $(@D)
+	@[ ! -e $@.checkpoint ] || [ -z "$$(find $^ -newer $@.checkpoint)" ] || rm $@.checkpoint
+	$(call run,train$*)
 
 $(model3): $(masks3) $(weights) $(text) $(SCENE)/log/lift.command
+	@mkdir -p $(@D)
 	$(call run,lift)
 
 # What another model answers in the training views teaches stage 2.

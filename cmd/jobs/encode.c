@@ -1,7 +1,9 @@
 #include "cmd/jobs/encode.h"
 
+#include "base/file.h"
 #include "base/mem.h"
 #include "formats/bert_model.h"
+#include "formats/masks.h"
 #include "formats/vocab.h"
 
 #include <stdlib.h>
@@ -180,21 +182,90 @@ static int make_words(struct text *out, const struct bert *b, const struct encod
 	return bad || text_take_means(out, e) ? -1 : 0;
 }
 
-int encode(struct encoding *x, const char *dir, const char *path, int is_static, const struct report *to,
-	struct err *e)
+char *encoder_default(struct err *e)
 {
-	struct vocab *v = &x->vocab;
-	struct bert *b = &x->bert;
+	const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+	const int has_cache = cache && *cache;
+
+	if (!has_cache && !(home && *home)) {
+		err_set(e, ERR_USAGE, "no encoder is named, and HOME is not set");
+		return NULL;
+	}
+	char *dir = has_cache ? file_join(cache, "refersplat/encoder", "", e)
+			      : file_join(home, ".cache/refersplat/encoder", "", e);
+	if (!dir || file_is_dir(dir))
+		return dir;
+	err_set(e, ERR_SYSTEM, "%s: no encoder there: 'make encoder' fetches one", dir);
+	free(dir);
+	return NULL;
+}
+
+int encoder_read(struct encoder *x, const char *dir, int is_static, struct err *e)
+{
+	x->is_static = is_static;
+	if (vocab_read(&x->vocab, dir, e) || bert_model_read(&x->bert, dir, e) ||
+		check_vocab(&x->vocab, &x->bert, dir, e))
+		return -1;
+	x->fingerprint = fingerprint_encoder(&x->bert, &x->vocab, is_static);
+	return 0;
+}
+
+void encoder_free(struct encoder *x)
+{
+	bert_free(&x->bert);
+	vocab_free(&x->vocab);
+}
+
+static int has_sentence(const struct sentences *s, const char *ref)
+{
+	size_t i = 0;
+
+	while (i < s->n && strcmp(s->items[i].ref, ref))
+		i++;
+	return i < s->n;
+}
+
+/* The names of objects in mask records. */
+static int read_names(struct sentences *s, const char *path, struct err *e)
+{
+	struct mask_record one;
+	struct jsonl j;
+	int got;
+
+	if (jsonl_open(&j, path, e))
+		return -1;
+	while ((got = masks_next(&j, &one, e)) > 0) {
+		const char *name = one.object;
+		const int bad = name && !has_sentence(s, name) && sentences_add(s, name, name, name, e);
+		mask_record_free(&one);
+		if (bad) {
+			got = -1;
+			break;
+		}
+	}
+	if (!got && !s->n)
+		got = err_set(e, ERR_FORMAT, "%s: names no objects", j.path);
+	jsonl_close(&j);
+	return got;
+}
+
+int encoding_read(struct encoding *x, const char *path, int is_of_masks, struct err *e)
+{
+	return is_of_masks ? read_names(&x->sentences, path, e) : sentences_read_any(&x->sentences, path, e);
+}
+
+int encode(struct encoding *x, const struct encoder *with, const struct report *to, struct err *e)
+{
+	const struct vocab *v = &with->vocab;
+	const struct bert *b = &with->bert;
 	struct text *out = &x->text;
 
-	if (vocab_read(v, dir, e) || sentences_read(&x->sentences, path, e) || bert_model_read(b, dir, e) ||
-		check_vocab(v, b, dir, e) ||
-		tokenise(to, &x->tokens, &x->sentences, v, (size_t)b->positions, e) ||
+	if (tokenise(to, &x->tokens, &x->sentences, v, (size_t)b->positions, e) ||
 		alloc_text(out, &x->sentences, &x->tokens, b->width, e) ||
 		keep_pieces(out, &x->tokens, v, e) || text_take_more(out, &x->sentences, e) ||
-		make_words(out, b, &x->tokens, is_static, to, e))
+		make_words(out, b, &x->tokens, with->is_static, to, e))
 		return -1;
-	out->encoder = fingerprint_encoder(b, v, is_static);
+	out->encoder = with->fingerprint;
 	return 0;
 }
 
@@ -203,7 +274,5 @@ void encoding_free(struct encoding *x)
 	free_text(&x->text);
 	free(x->tokens.pieces.ids);
 	free(x->tokens.starts);
-	bert_free(&x->bert);
-	vocab_free(&x->vocab);
 	sentences_free(&x->sentences);
 }

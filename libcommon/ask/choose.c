@@ -336,8 +336,10 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	return 0;
 }
 
-static void chooser_free(struct chooser *c)
+void chooser_free(struct chooser *c)
 {
+	if (!c)
+		return;
 	arrangement_free(&c->arrangement);
 	if (c->vocabulary.lifted)
 		vocabulary_free(&c->vocabulary);
@@ -347,21 +349,40 @@ static void chooser_free(struct chooser *c)
 	free(c->score);
 	free(c->whole);
 	free(c->looks);
+	free(c);
+}
+
+struct chooser *chooser_make(const struct choose_scene *s, unsigned parts, struct err *e)
+{
+	struct chooser *c = mem_zalloc(1, sizeof *c, "choice", e);
+
+	if (!c || !chooser_init(c, s, parts, e))
+		return c;
+	chooser_free(c);
+	return NULL;
+}
+
+int choose_with(struct chooser *c, const struct choose_sentence *sentences, size_t n, struct choice *choices,
+	float *probability, char *chosen, const struct choose_watch *watch, struct err *e)
+{
+	const size_t objects = c->scene->lifted->objects;
+	double *row = mem_alloc(objects, sizeof *row, "choice", e);
+	int bad = !row;
+
+	for (size_t i = 0; i < n && !bad; i++)
+		bad = choose_one(c, &sentences[i], &choices[i], row, probability + i * objects,
+			chosen + i * objects, watch, i, e);
+	free(row);
+	return bad ? -1 : 0;
 }
 
 int choose(const struct choose_scene *s, const struct choose_sentence *sentences, size_t n, unsigned parts,
 	struct choice *choices, float *probability, char *chosen, const struct choose_watch *watch,
 	struct err *e)
 {
-	const size_t objects = s->lifted->objects;
-	double *row = mem_alloc(objects, sizeof *row, "choice", e);
-	struct chooser c = {0};
-	int bad = !row || chooser_init(&c, s, parts, e);
+	struct chooser *c = chooser_make(s, parts, e);
+	const int bad = !c || choose_with(c, sentences, n, choices, probability, chosen, watch, e);
 
-	for (size_t i = 0; i < n && !bad; i++)
-		bad = choose_one(&c, &sentences[i], &choices[i], row, probability + i * objects,
-			chosen + i * objects, watch, i, e);
-	chooser_free(&c);
-	free(row);
+	chooser_free(c);
 	return bad ? -1 : 0;
 }

@@ -77,4 +77,14 @@ int choose(const struct choose_scene *s, const struct choose_sentence *sentences
 	struct choice *choices, float *probability, char *chosen, const struct choose_watch *watch,
 	struct err *e);
 
+/* What all sentences about a scene share, kept for those that come one after the other. Refers to *s, which
+ * must outlive it. NULL with *e set; a NULL may be freed. */
+struct chooser;
+struct chooser *chooser_make(const struct choose_scene *s, unsigned parts, struct err *e);
+void chooser_free(struct chooser *c);
+
+/* choose() with what is kept. */
+int choose_with(struct chooser *c, const struct choose_sentence *sentences, size_t n, struct choice *choices,
+	float *probability, char *chosen, const struct choose_watch *watch, struct err *e);
+
 #endif

@@ -23,10 +23,12 @@ missing_input() {
 		text-parse -o out none
 		parse-train -o out none
 		pseudomask-select -o out none
+		mask-import --names none -o out none
 		refer-train --scene none --weights none --text none --masks none -o out
 		refer-lift --scene none --weights none --text none --masks none -o out
 		refer-render --scene none --text none --model none -o out
 		refer-locate --scene none --text none --model none -o out
+		refer-ask -o out none question
 		miou-score --truth none none
 		gs-synth --seed 1 -o /dev/null/none
 	END
@@ -157,7 +159,7 @@ capture() {
 		sed -n '/^\.Sh EXAMPLES/,/^\.Sh SEE/s/^\.Dl //p' "$MAN/$1.1" | sed 's/^" *\(.*\)"$/\1/; s/\\-/-/g; s/\\&//g; s/\\(aq/'\''/g; s/\\e/\\/g' >"$script"
 		[ -s "$script" ] || return 1
 		rm -rf here && cp -r "$BATS_FILE_TMPDIR/examples" here
-		(cd here && PATH=$BIN:$PATH bash -eu -o pipefail "$script" >../out 2>&1 </dev/null) || { cat "$script" out; return 1; }
+		(cd here && XDG_CACHE_HOME=$PWD/cache PATH=$BIN:$PATH bash -eu -o pipefail "$script" >../out 2>&1 </dev/null) || { cat "$script" out; return 1; }
 	}
 	each_tool examples
 }

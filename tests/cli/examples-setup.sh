@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Makes the folder in which the EXAMPLES of the manual pages run. usage: examples-setup.sh DIR BIN
 # It holds a small synthetic scene (formats/synth.md) and what each tool makes of it, under the names that the manual pages
-# use: scene, weights, text.safetensors, masks.jsonl, model.safetensors, pred.jsonl, whole.jsonl; and encoder, a tiny BERT.
+# use: scene, weights, text.safetensors, masks.jsonl, model.safetensors, pred.jsonl, whole.jsonl; kitchen, laid out as
+# pipelines/lift.mk does; view_001.png, a painted photograph; encoder, a tiny BERT, and cache, which has it where `make encoder` would put one.
 set -eu
 mkdir -p "$1"
 golden=$(cd "$(dirname "$0")/../golden" && pwd)
@@ -16,5 +17,14 @@ text-encode -q --model encoder -o text.safetensors sentences.jsonl
 pseudomask-select -q -o masks.jsonl candidates.jsonl
 refer-train -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 20 \
 	-o model.safetensors
+mkdir -p kitchen/lifted cache/refersplat
+cp -r scene kitchen/scene
+cp -r encoder cache/refersplat/encoder
+refer-lift -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl -o kitchen/lifted/model.safetensors
+# A painted photograph: the first sentence's object, white on black.
+refer-render -q --scene scene --text text.safetensors --model kitchen/lifted/model.safetensors --split all \
+	--refs "$(jq -r .ref sentences.jsonl | head -n 1)" --png painted -o /dev/null
+cp painted/view_001/*.png view_001.png
+rm -r painted
 # Perfect, so that examples that demand a score go on.
 cp truth.jsonl pred.jsonl

@@ -159,9 +159,56 @@ Try 'text-encode --help'." "$BIN/text-encode" --model model --words mean sentenc
 	grep -xE 'text-encode: [0-9.]+ s, peak memory [0-9.]+ MiB' err
 }
 
-@test "--model is required" {
-	says 2 "text-encode: --model DIR is required
-Try 'text-encode --help'." "$BIN/text-encode" sentences.jsonl
+@test "without --model, the encoder is where make encoder puts it, or is missed by name" {
+	encode -o expected sentences.jsonl
+	mkdir -p cache/refersplat home/.cache
+	says 4 "text-encode: $PWD/cache/refersplat/encoder: no encoder there: 'make encoder' fetches one" \
+		env XDG_CACHE_HOME="$PWD/cache" "$BIN/text-encode" -o text sentences.jsonl
+	says 4 "text-encode: $PWD/home/.cache/refersplat/encoder: no encoder there: 'make encoder' fetches one" \
+		env -u XDG_CACHE_HOME HOME="$PWD/home" "$BIN/text-encode" -o text sentences.jsonl
+	says 2 "text-encode: no encoder is named, and HOME is not set
+Try 'text-encode --help'." env -u XDG_CACHE_HOME -u HOME "$BIN/text-encode" -o text sentences.jsonl
+	[ ! -e text ]
+	mv model cache/refersplat/encoder
+	ln -s ../../cache/refersplat home/.cache/refersplat
+	XDG_CACHE_HOME=$PWD/cache "$BIN/text-encode" -q -o one sentences.jsonl
+	env -u XDG_CACHE_HOME HOME="$PWD/home" "$BIN/text-encode" -q -o two sentences.jsonl
+	cmp one two
+	cmp <(tensor one words x4 4) <(tensor expected words x4 4)
+}
+
+@test "plain text: a test sentence a line, its number for a ref" {
+	printf 'the red cup\n\n  \r\nthe big mug\r\ntasse à café' | encode -o text
+	[ "$(header text | jq -c '.__metadata__ | [.texts, .refs, .objects, .splits | fromjson]')" = \
+		'[["the red cup","the big mug","tasse à café"],["1","4","5"],["?","?","?"],["test","test","test"]]' ]
+	printf '{"ref":"%s","object":"?","text":"%s","split":"test"}\n' 1 "the red cup" 4 "the big mug" 5 "tasse à café" | encode -o json
+	cmp text json
+	printf 'the red cup\n\n  \r\nthe big mug\r\ntasse à café' >plain
+	encode plain | cmp - text
+	"$BIN/gs-check" text
+	printf 'cup\ncaf\xe9\n' >latin
+	says 3 'text-encode: latin:2: not UTF-8 at byte 4' "$BIN/text-encode" --model model -o none latin
+	printf 'cup\nc\0p\n' >nul
+	says 3 'text-encode: nul:2: a NUL byte at column 2' "$BIN/text-encode" --model model -o none nul
+	# what begins as JSON may is JSON
+	for first in '[' ' {' '"cup"' $'\xef\xbb\xbf{'; do
+		echo "$first" >odd
+		not "$BIN/text-encode" --model model -o none odd 2>err
+		grep -qE '^text-encode: odd:1: not (JSON|a JSON object)' err
+	done
+	[ ! -e none ]
+}
+
+@test "--names: a training sentence for each object that has a mask" {
+	for object in 'red cup' mug 'red cup' plate; do
+		printf '{"view":"v1","object":"%s","segmentation":{"size":[2,3],"counts":"221O"}}\n' "$object"
+	done >masks
+	encode --names -o text masks
+	printf '{"ref":"%s","object":"%s","text":"%s"}\n' 'red cup' 'red cup' 'red cup' mug mug mug plate plate plate | encode | cmp - text
+	echo '{"view":"v1","ref":"r","segmentation":{"size":[2,3],"counts":"221O"}}' >nameless
+	says 3 'text-encode: nameless: names no objects' "$BIN/text-encode" --names --model model -o none nameless
+	says 3 "text-encode: sentences.jsonl:1: key 'view' is missing" "$BIN/text-encode" --names --model model -o none sentences.jsonl
+	[ ! -e none ]
 }
 
 @test "a second operand is refused" {

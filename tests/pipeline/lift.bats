@@ -47,7 +47,7 @@ not() { ! "$@"; }
 @test "a second make does nothing but print the table" {
 	run lift
 	[ "$status" = 0 ]
-	not grep -qE "$BIN/" <<<"$output"
+	not grep -qE "$BIN/'" <<<"$output"
 }
 
 @test "nothing is asked, scored or trained that was not wanted" {
@@ -57,4 +57,69 @@ not() { ! "$@"; }
 	[ -e "$BATS_TEST_TMPDIR/plain/lifted/boxes.jsonl" ]
 	[ -z "$(find "$BATS_TEST_TMPDIR/plain" -name '*.score.json' -o -name 'stage*')" ]
 	cmp "$BATS_TEST_TMPDIR/plain/lifted/model.safetensors" "$WORK/lifted/model.safetensors"
+}
+
+@test "one photograph that a person painted: a model, boxes, and answers, from names alone" {
+	cd "$BATS_TEST_TMPDIR"
+	view=$(jq -r .view "$WORK/lifted/masks.jsonl" | sort | uniq -c | sort -rn | awk 'NR == 1 { print $2 }')
+	jq -c --arg view "$view" 'select(.view == $view) | del(.ref)' "$WORK/lifted/masks.jsonl" | sort -u >painted.jsonl
+	jq -r .object painted.jsonl | sort -u >things
+	[ -s things ]
+	painted() { WORK=$PWD/painted lift MASKS="$PWD/painted.jsonl" SENTENCES= CANDIDATES= ASK= WHOLE= BOXES= TRUTH= TEST_VIEWS= "$@"; }
+	painted >log 2>&1
+	"$BIN/gs-check" painted/lifted/model.safetensors painted/lifted/boxes.jsonl
+	[ "$(jq -r .object painted/lifted/boxes.jsonl | sort)" = "$(cat things)" ]
+	[ "$(ls painted/lifted)" = $'boxes.jsonl\nmodel.safetensors' ]
+	not grep -q mIoU log
+	# the command that the workflow ends with answers
+	tail -n 1 log | grep -qF "to ask it: $BIN/refer-ask --encoder $ROOT/tests/golden/bert $PWD/painted '"
+	while read -r thing; do
+		command=$(tail -n 1 log | sed 's/^to ask it: //')
+		[ "$(eval "${command/the .../the $thing}" | cut -d: -f1)" = "$thing" ]
+	done <things
+	# nothing is done twice, and another painting is lifted anew
+	painted >again 2>&1
+	not grep -qE "$BIN/'" again
+	head -n 1 painted.jsonl >fewer && mv fewer painted.jsonl && touch -d '+2 seconds' painted.jsonl
+	painted -n | grep -oE "'(text-encode|refer-lift|gs-weigh) " | sort -u >remade
+	[ "$(paste -sd, <remade)" = "'refer-lift ,'text-encode " ]
+	# with test views there are answers in them too
+	painted TEST_VIEWS="$(cat "$DATA/test-views")" >log 2>&1
+	[ "$(jq -s length painted/lifted/predictions.train.jsonl)" -ge 1 ]
+	[ ! -e painted/lifted/predictions.test.jsonl ]
+}
+
+@test "MASKS with sentences: in place of candidates" {
+	cd "$BATS_TEST_TMPDIR"
+	WORK=$PWD/masks lift MASKS="$WORK/lifted/masks.jsonl" CANDIDATES= >log 2>&1
+	cmp masks/lifted/model.safetensors "$WORK/lifted/model.safetensors"
+	cmp masks/lifted/predictions.test.jsonl "$WORK/lifted/predictions.test.jsonl"
+	not grep -q pseudomask-select log
+	run lift CANDIDATES=
+	[ "$status" = 2 ]
+	grep -qF "CANDIDATES not set" <<<"$output"
+}
+
+@test "painted photographs and what their colours mean, in one command" {
+	cd "$BATS_TEST_TMPDIR"
+	view=$(jq -r .view "$WORK/lifted/masks.jsonl" | head -n 1)
+	thing=$(jq -r --arg view "$view" 'select(.view == $view).object' "$WORK/lifted/masks.jsonl" | head -n 1)
+	ref=$(jq -r --arg thing "$thing" 'select(.object == $thing).ref' "$DATA/sentences.jsonl" | head -n 1)
+	"$BIN/refer-render" --scene "$WORK/scene" --text "$WORK/text.safetensors" --model "$WORK/lifted/model.safetensors" --views "$view" \
+		--refs "$ref" --png drawn -o drawn.jsonl
+	mkdir painted
+	cp "drawn/$view/$ref.png" "painted/$view.png"
+	echo "255 $thing" >names
+	for masks in "$PWD/painted/$view.png" "$PWD/painted"; do
+		rm -rf work
+		paint() { WORK=$PWD/work lift MASKS="$masks" NAMES="$PWD/names" SENTENCES= CANDIDATES= ASK= WHOLE= BOXES= TRUTH= TEST_VIEWS= "$@"; }
+		paint >log 2>&1
+		"$BIN/miou-score" --json --truth <(jq -c 'del(.ref, .score)' drawn.jsonl) work/painted.jsonl | jq -e '.miou == 1 and .pairs == 1'
+		"$BIN/refer-ask" --encoder "$ROOT/tests/golden/bert" work "where is the $thing?" | grep -q "^$thing: "
+		paint >again 2>&1
+		not grep -qE "$BIN/'" again
+	done
+	echo "255 other $thing" >names
+	touch -d '+2 seconds' names
+	paint -n | grep -q "'mask-import "
 }

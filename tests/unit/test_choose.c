@@ -218,6 +218,38 @@ static void many(void)
 	CHECK(!choose(&empty, s, 2, CHOOSE_ALL, two, both, of_both, NULL, &e), "a model without objects");
 }
 
+/* What is kept from one call to the next changes nothing, whatever was asked before and from where. */
+static void kept(void)
+{
+	static const char *const asked[] = {
+		"the red box", "the mug left of the crate", "", "the mugs", "the red box"};
+	static float vectors[MOST * WIDTH];
+	struct viewpoint from = {.kind = VIEWPOINT_POINT, .point = {0, 10, 1}};
+	float of_kept[OBJECTS], alone[OBJECTS];
+	char chosen_kept[OBJECTS], chosen_alone[OBJECTS];
+	struct choice with, without;
+	struct err e;
+	struct chooser *c = chooser_make(&scene, CHOOSE_ALL, &e);
+
+	if (!CHECK(c, "%s", e.message))
+		return;
+	for (int i = 0; i < 10; i++) {
+		const char *text = asked[i / 2];
+		from.kind = i % 2 ? VIEWPOINT_POINT : VIEWPOINT_USUAL;
+		const struct choose_sentence s = {text, text, vectors, encode(text, vectors), from};
+		CHECK(!choose_with(c, &s, 1, &with, of_kept, chosen_kept, NULL, &e) &&
+				!choose(&scene, &s, 1, CHOOSE_ALL, &without, alone, chosen_alone, NULL, &e),
+			"'%s': %s", text, e.message);
+		CHECK(!memcmp(of_kept, alone, sizeof alone) &&
+				!memcmp(chosen_kept, chosen_alone, sizeof chosen_alone) &&
+				!memcmp(&with.there, &without.there, sizeof with.there) &&
+				with.is_several == without.is_several,
+			"'%s' after %d others differs from it alone", text, i);
+	}
+	chooser_free(c);
+	chooser_free(NULL);
+}
+
 /* A copy whose shares can be moved. */
 static struct lifted copy(int64_t copied_indptr[OBJECTS + 1], int32_t copied_index[N], float copied_share[N],
 	float copied_confidence[OBJECTS])
@@ -271,5 +303,6 @@ int main(void)
 	viewpoints();
 	absent();
 	many();
+	kept();
 	return unit_end();
 }

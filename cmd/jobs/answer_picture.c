@@ -1,0 +1,131 @@
+#include "cmd/jobs/answer_picture.h"
+
+#include "base/mem.h"
+#include "formats/png.h"
+#include "mask/caption.h"
+#include "mask/overlay.h"
+#include "refer/answer.h"
+#include "splat/render.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Views are compared at this size of their longer side, in pixels. */
+enum { LOOK_SIDE = 200 };
+
+/* The things as one answer. */
+static int take_responses(
+	struct asked *to, const struct asking *a, const struct asking_answer *answer, struct err *e)
+{
+	const struct lifted *l = &a->model.lifted;
+	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
+
+	*to = (struct asked){.answers = 1};
+	to->responses = mem_alloc(l->gaussians, sizeof *to->responses, "responses", e);
+	to->lifts = mem_zalloc(1, sizeof *to->lifts, "responses", e);
+	int bad = !own || !to->responses || !to->lifts;
+	for (size_t k = 0; k < answer->count && !bad; k++) {
+		lifted_responses(l, answer->things[k], k ? own : to->responses);
+		for (size_t i = 0; i < l->gaussians && k; i++)
+			to->responses[i] = fmaxf(to->responses[i], own[i]);
+	}
+	free(own);
+	return bad || render_pack(to->responses, l->gaussians, 1, e) ? -1 : 0;
+}
+
+struct looks {
+	double *worth; /* of each view */
+};
+
+static int look(void *data, const struct answer *a, struct err *e)
+{
+	const struct looks *l = data;
+	const int h = a->camera->height, w = a->camera->width;
+	size_t covered = 0;
+	int is_cut = 0;
+
+	(void)e;
+	for (int y = 0; y < h; y++)
+		for (int x = 0; x < w; x++) {
+			const int on = a->mask[(size_t)y * (size_t)w + (size_t)x];
+			covered += (size_t)on;
+			is_cut |= on && (!y || !x || y == h - 1 || x == w - 1);
+		}
+	l->worth[a->view] = (double)covered / ((double)h * w) * (is_cut ? 0.5 : 1);
+	return 0;
+}
+
+static int ignore(void *data, size_t view, struct err *e)
+{
+	(void)data, (void)view, (void)e;
+	return 0;
+}
+
+static int best_view(const struct asking *a, const struct answer_question *q, size_t *best, struct err *e)
+{
+	const struct cameras *c = &a->scene.cameras;
+	struct looks l = {mem_zalloc(c->n, sizeof *l.worth, "views", e)};
+	struct camera *small = mem_alloc(c->n, sizeof *small, "views", e);
+	const struct answer_calls calls = {&l, look, ignore};
+
+	for (size_t v = 0; v < c->n && small; v++) {
+		const struct camera *from = &c->views[v];
+		const int longer = from->width > from->height ? from->width : from->height;
+		int width, height;
+		camera_scaled_size(
+			from, longer > LOOK_SIDE ? (double)LOOK_SIDE / longer : 1, &width, &height);
+		small[v] = camera_resize(from, width, height);
+	}
+	int bad = !l.worth || !small || answer_all(q, small, c->n, &calls, e);
+	*best = 0;
+	for (size_t v = 1; v < c->n && !bad; v++)
+		*best = l.worth[v] > l.worth[*best] ? v : *best;
+	free(l.worth);
+	free(small);
+	return bad ? -1 : 0;
+}
+
+struct page {
+	const char *const *words, *path;
+};
+
+static int put_page(void *data, const struct answer *a, struct err *e)
+{
+	const struct page *page = data;
+	const int h = a->camera->height, w = a->camera->width, line = caption_height(w);
+	const size_t bytes = 3 * (size_t)h * (size_t)w;
+	uint8_t *rgb = mem_alloc((size_t)h + 2 * (size_t)line, 3 * (size_t)w, page->path, e);
+
+	if (!rgb)
+		return -1;
+	for (size_t i = 0; i < bytes; i++)
+		rgb[i] = (uint8_t)lrintf(255 * a->rgb[i]);
+	overlay_draw(rgb, a->mask, h, w);
+	for (int k = 0; k < 2; k++)
+		caption_draw(rgb, w, h + k * line, page->words[k]);
+	const int bad = png_write(page->path, rgb, h + 2 * line, w, 3, e);
+	free(rgb);
+	return bad;
+}
+
+int answer_picture(const struct asking *a, const struct asking_answer *answer, const char *const words[2],
+	const char *path, const char **view, struct err *e)
+{
+	struct asked asked;
+	struct answer_question q = {&a->scene.splats, &asked, NULL, 0};
+	struct page page = {words, path};
+	const struct answer_calls calls = {&page, put_page, ignore};
+	size_t best = 0;
+
+	if (!a->scene.cameras.n)
+		return err_set(e, ERR_FORMAT, "%s: has no view to draw", a->files.scene);
+	int bad = take_responses(&asked, a, answer, e) || best_view(a, &q, &best, e);
+	if (!bad) {
+		q.wants_rgb = 1;
+		*view = a->scene.cameras.views[best].name;
+		bad = answer_all(&q, &a->scene.cameras.views[best], 1, &calls, e);
+	}
+	asked_free(&asked);
+	return bad ? -1 : 0;
+}

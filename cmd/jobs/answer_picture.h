@@ -1,0 +1,15 @@
+/* A picture of an answer: the scene in the view that shows it best, the things tinted and outlined, and words
+ * below. */
+#ifndef CMD_JOBS_ANSWER_PICTURE_H
+#define CMD_JOBS_ANSWER_PICTURE_H
+
+#include "base/err.h"
+#include "cmd/jobs/asking.h"
+
+/* Writes a PNG that appears whole, with two lines of words. The view is the one in which the things cover
+ * most, where things that the picture's edge cuts count half: *view, its name, the scene's. Returns 0, or -1
+ * with *e set. */
+int answer_picture(const struct asking *a, const struct asking_answer *answer, const char *const words[2],
+	const char *path, const char **view, struct err *e);
+
+#endif

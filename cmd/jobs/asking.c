@@ -1,0 +1,242 @@
+#include "cmd/jobs/asking.h"
+
+#include "base/mem.h"
+#include "geom/up.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int read_all(struct asking *a, struct err *e)
+{
+	const struct run_folder *f = &a->files;
+
+	if (run_folder_find(&a->files, a->options->run, &a->options->given, e) ||
+		scene_read(&a->scene, f->scene, e) || anymodel_read(&a->model, f->model, e))
+		return -1;
+	if (!a->model.is_lifted)
+		return err_set(
+			e, ERR_FORMAT, "%s: is a trained model; questions need one of refer-lift", f->model);
+	return encoder_read(&a->encoder, f->encoder, 0, e);
+}
+
+static int check_fit(const struct asking *a, struct err *e)
+{
+	const struct lifted *l = &a->model.lifted;
+	const struct origin *o = &a->model.origin;
+	const struct run_folder *f = &a->files;
+
+	if (l->gaussians != a->scene.splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", f->model,
+			l->gaussians, f->scene, a->scene.splats.n);
+	if (l->width != a->encoder.bert.width)
+		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, the encoder %s makes %d",
+			f->model, l->width, f->encoder, a->encoder.bert.width);
+	return fingerprint_check("scene", f->model, &o->scene, f->scene, &a->scene.fingerprint, e) ||
+			       fingerprint_check("encoder", f->model, &o->encoder, f->encoder,
+				       &a->encoder.fingerprint, e)
+		       ? -1
+		       : 0;
+}
+
+static int find_viewpoint(struct asking *a, struct err *e)
+{
+	const char *text = a->options->viewpoint;
+
+	a->from = (struct viewpoint){.kind = VIEWPOINT_USUAL};
+	if (text && viewpoint_read(&a->from, text, &a->scene.cameras, a->scene.offset))
+		return err_set(e, ERR_USAGE, "--viewpoint: '%s' is no view and no x,y,z", text);
+	return 0;
+}
+
+static int find_extent(struct asking *a, size_t object, const double up[3])
+{
+	const struct lifted *l = &a->model.lifted;
+	const size_t first = (size_t)l->indptr[object], n = (size_t)l->indptr[object + 1] - first;
+	struct err ignored;
+	int32_t *ids = mem_alloc(n, sizeof *ids, "object", &ignored);
+	float *responses = mem_alloc(n, sizeof *responses, "object", &ignored);
+	size_t count = 0;
+
+	for (size_t i = 0; i < n && ids && responses; i++) {
+		const float response = l->share[first + i] - LIFTED_CUT;
+		if (!(response > 0))
+			continue;
+		ids[count] = l->index[first + i];
+		responses[count++] = response;
+	}
+	int bad = !ids || !responses ||
+		  extent_find(&a->extents[object], &a->scene.splats, ids, responses, count, up, &ignored);
+	free(ids);
+	free(responses);
+	return bad;
+}
+
+static int find_extents(struct asking *a, struct err *e)
+{
+	const size_t n = a->model.lifted.objects;
+	double up[3];
+	int bad = 0;
+
+	a->extents = mem_zalloc(n, sizeof *a->extents, "objects", e);
+	if (!a->extents)
+		return -1;
+	cameras_up(&a->scene.cameras, up);
+#pragma omp parallel for schedule(dynamic) reduction(| : bad)
+	for (size_t o = 0; o < n; o++)
+		bad |= find_extent(a, o, up) != 0;
+	return bad ? err_set(e, ERR_SYSTEM, "objects: out of memory") : 0;
+}
+
+static int make_chooser(struct asking *a, struct err *e)
+{
+	struct list_name name;
+	unsigned parts;
+
+	if (choose_without(a->options->without, &parts, &name))
+		return err_set(e, ERR_USAGE, "--without: no part '%.*s'", (int)name.length, name.text);
+	a->parser = (struct parser){.weights = &a->model.weights, .encoder = a->encoder.fingerprint.hex};
+	a->of = (struct choose_scene){&a->model.lifted, &a->scene.splats, &a->scene.cameras, &a->parser, 1};
+	a->chooser = chooser_make(&a->of, parts, e);
+	return a->chooser ? 0 : -1;
+}
+
+int asking_open(struct asking *a, const struct asking_options *options, struct err *e)
+{
+	a->options = options;
+	return read_all(a, e) || check_fit(a, e) || find_viewpoint(a, e) || make_chooser(a, e) ||
+			       find_extents(a, e)
+		       ? -1
+		       : 0;
+}
+
+void asking_close(struct asking *a)
+{
+	for (size_t o = 0; a->extents && o < a->model.lifted.objects; o++)
+		extent_free(&a->extents[o]);
+	free(a->extents);
+	chooser_free(a->chooser);
+	encoder_free(&a->encoder);
+	anymodel_free(&a->model);
+	scene_free(&a->scene);
+	run_folder_free(&a->files);
+}
+
+/* What the choice's watch gets to. */
+struct watched {
+	struct asking_answer *answer;
+	const char *question;
+	int is_explained, is_out_of_memory;
+};
+
+static void watch(void *data, size_t i, const struct meaning *m)
+{
+	struct watched *w = data;
+
+	(void)i;
+	for (size_t o = 0; o < m->arrangement->n; o++)
+		memcpy(w->answer->centres[o], m->arrangement->objects[o].centre,
+			sizeof w->answer->centres[o]);
+	w->answer->has_centres = 1;
+	explain_refusal(m, w->question, w->answer->reason);
+	if (w->is_explained && !(w->answer->explained = explain_meaning(m, w->question)))
+		w->is_out_of_memory = 1;
+}
+
+static int answer_alloc(struct asking_answer *answer, size_t objects, struct err *e)
+{
+	*answer = (struct asking_answer){.runner_up = ASKING_NONE};
+	answer->things = mem_alloc(objects, sizeof *answer->things, "answer", e);
+	answer->probability = mem_zalloc(objects, sizeof *answer->probability, "answer", e);
+	answer->centres = mem_zalloc(objects, sizeof *answer->centres, "answer", e);
+	return answer->things && answer->probability && answer->centres ? 0 : -1;
+}
+
+void asking_answer_free(struct asking_answer *answer)
+{
+	free(answer->things);
+	free(answer->probability);
+	free(answer->centres);
+	cJSON_Delete(answer->explained);
+}
+
+/* The chosen objects, likeliest first, and the likeliest of the others. */
+static void sort_things(struct asking_answer *answer, const char *chosen, size_t objects)
+{
+	const double *p = answer->probability;
+
+	for (size_t o = 0; o < objects; o++) {
+		if (!chosen[o]) {
+			if (answer->runner_up == ASKING_NONE || p[o] > p[answer->runner_up])
+				answer->runner_up = o;
+			continue;
+		}
+		size_t k = answer->count++;
+		for (; k && p[answer->things[k - 1]] < p[o]; k--)
+			answer->things[k] = answer->things[k - 1];
+		answer->things[k] = o;
+	}
+}
+
+static int choose_answer(struct asking *a, const struct text *t, struct watched *w, struct err *e)
+{
+	const size_t objects = a->model.lifted.objects;
+	const struct choose_sentence sentence = {
+		t->texts[0], t->pieces[0], t->words, (size_t)t->offsets[1], a->from};
+	const struct choose_watch watching = {w, watch};
+	float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
+	char *chosen = mem_alloc(objects, 1, "answer", e);
+	struct choice choice;
+	int bad = !probability || !chosen ||
+		  choose_with(a->chooser, &sentence, 1, &choice, probability, chosen, &watching, e);
+
+	if (!bad) {
+		w->answer->there = choice.there;
+		for (size_t o = 0; o < objects; o++)
+			w->answer->probability[o] = choice.there * (double)probability[o];
+		if (choice.there < a->options->least)
+			memset(chosen, 0, objects);
+		sort_things(w->answer, chosen, objects);
+	}
+	free(probability);
+	free(chosen);
+	return bad ? -1 : 0;
+}
+
+int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
+	struct err *e)
+{
+	struct watched w = {answer, question, a->options->is_explained, 0};
+	struct encoding x = {0};
+	int bad = answer_alloc(answer, a->model.lifted.objects, e) ||
+		  sentences_add(&x.sentences, "1", "?", question, e) || encode(&x, &a->encoder, to, e);
+
+	if (!bad)
+		snprintf(answer->reason, sizeof answer->reason, "the %s",
+			x.text.offsets[1] ? "model has no objects" : "question has no words");
+	if (!bad)
+		bad = choose_answer(a, &x.text, &w, e);
+	if (!bad && w.is_out_of_memory)
+		bad = err_set(e, ERR_SYSTEM, "explanation: out of memory");
+	encoding_free(&x);
+	if (bad)
+		asking_answer_free(answer);
+	return bad ? -1 : 0;
+}
+
+size_t asking_nearest(const struct asking *a, size_t object, double *distance)
+{
+	size_t nearest = ASKING_NONE;
+
+	for (size_t o = 0; o < a->model.lifted.objects; o++) {
+		const double *x = a->extents[object].turned.centre, *y = a->extents[o].turned.centre;
+		const double d = hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
+		if (o == object || !a->extents[o].n || !a->extents[object].n ||
+			(nearest != ASKING_NONE && d >= *distance))
+			continue;
+		nearest = o;
+		*distance = d;
+	}
+	return nearest;
+}

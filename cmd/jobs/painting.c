@@ -1,0 +1,227 @@
+#include "cmd/jobs/painting.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/name.h"
+#include "base/path.h"
+#include "formats/jsonl.h"
+#include "formats/masks.h"
+#include "formats/png.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A warning where more of a picture than this is of a colour that is neither black nor white and has no name.
+ */
+static const double unnamed_share = 0.001;
+
+void painting_names_free(struct painting_names *names)
+{
+	for (size_t i = 0; i < names->n; i++)
+		free(names->items[i].name);
+	free(names->items);
+	*names = (struct painting_names){0};
+}
+
+/* "#rrggbb" or "0" to "255" at the beginning of a line: where it ends, or NULL. */
+static char *take_colour(char *text, uint32_t *colour)
+{
+	const int is_hex = *text == '#';
+	char *end, *digits = text + is_hex;
+	const size_t n = strspn(digits, is_hex ? "0123456789abcdefABCDEF" : "0123456789");
+	const unsigned long value = strtoul(digits, &end, is_hex ? 16 : 10);
+
+	if (end != digits + n || (is_hex ? n != 6 : !n || n > 3 || value > 255) || !strchr(" \t", *end))
+		return NULL;
+	*colour = (uint32_t)(is_hex ? value : value * 0x010101);
+	return end;
+}
+
+static const struct painting_name *find_colour(const struct painting_names *names, uint32_t colour)
+{
+	for (size_t i = 0; i < names->n; i++)
+		if (names->items[i].colour == colour)
+			return &names->items[i];
+	return NULL;
+}
+
+static int has_name(const struct painting_names *names, const char *name)
+{
+	for (size_t i = 0; i < names->n; i++)
+		if (!strcmp(names->items[i].name, name))
+			return 1;
+	return 0;
+}
+
+static int add_name(struct painting_names *names, const struct jsonl *j, struct err *e)
+{
+	char *text = j->line + strspn(j->line, " \t"), fault[NAME_FAULT];
+	uint32_t colour;
+	char *name = take_colour(text, &colour);
+
+	if (!name)
+		return jsonl_err(j, e, "does not begin with #rrggbb or 0 to 255, and a blank");
+	name += strspn(name, " \t");
+	for (size_t n = strlen(name); n && strchr(" \t", name[n - 1]); n--)
+		name[n - 1] = 0;
+	const char *reason = name_fault(name, NAME_DATA, fault);
+	if (reason)
+		return jsonl_err(j, e, "the name %s", reason);
+	if (find_colour(names, colour))
+		return jsonl_err(j, e, "colour #%06x has a name already", (unsigned)colour);
+	if (has_name(names, name))
+		return jsonl_err(j, e, "the name '%s' has a colour already", name);
+	if (mem_grow(
+		    (void **)&names->items, &names->capacity, names->n + 1, sizeof *names->items, j->path, e))
+		return -1;
+	names->items[names->n] = (struct painting_name){colour, mem_strdup(name, e), 0};
+	return names->items[names->n].name ? (int)(names->n++, 0) : -1;
+}
+
+int painting_names_read(struct painting_names *names, const char *path, struct err *e)
+{
+	struct jsonl j;
+	int got;
+
+	*names = (struct painting_names){0};
+	if (jsonl_open(&j, path, e))
+		return -1;
+	while ((got = jsonl_text(&j, e)) > 0)
+		if (add_name(names, &j, e)) {
+			got = -1;
+			break;
+		}
+	if (!got && !names->n)
+		got = err_set(e, ERR_FORMAT, "%s: holds no names", j.path);
+	jsonl_close(&j);
+	return got;
+}
+
+/* The view of a picture: its file name without the ending. */
+static char *view_of(const char *path, struct err *e)
+{
+	int length;
+	const char *last = path_last(path, &length);
+	char *stem = mem_strdup(last, e), *dot;
+
+	if (!stem)
+		return NULL;
+	stem[length] = 0;
+	dot = strrchr(stem, '.');
+	if (dot && dot > stem)
+		*dot = 0;
+	char *view = name_to_view(stem, e);
+	free(stem);
+	return view;
+}
+
+struct picture_read {
+	const char *path;
+	char *view;
+	int height, width;
+	uint8_t *rgb, *mask;
+};
+
+static uint32_t colour_at(const struct picture_read *p, size_t pixel)
+{
+	const uint8_t *c = p->rgb + 3 * pixel;
+
+	return (uint32_t)c[0] << 16 | (uint32_t)c[1] << 8 | c[2];
+}
+
+/* The mask of a colour, if any pixel has it: its record. */
+static int put_name(struct picture_read *p, struct painting_name *name, FILE *out, struct err *e)
+{
+	struct mask_record record = {.view = p->view, .object = name->name, .score = NAN, .visible = NAN};
+	const size_t pixels = (size_t)p->height * (size_t)p->width;
+	size_t covered = 0;
+
+	for (size_t at = 0; at < pixels; at++)
+		covered += p->mask[at] = colour_at(p, at) == name->colour;
+	if (!covered)
+		return 0;
+	name->is_seen = 1;
+	if (rle_encode(&record.mask, p->mask, p->height, p->width, e))
+		return -1;
+	const int bad = masks_put(out, &record, e);
+	rle_free(&record.mask);
+	return bad;
+}
+
+static int by_value(const void *a, const void *b)
+{
+	const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* Colours that cover much and have no name: a slip of the painter or of the file of names. */
+static int warn_unnamed(const struct picture_read *p, const struct painting_names *names,
+	const struct report *to, struct err *e)
+{
+	const size_t pixels = (size_t)p->height * (size_t)p->width;
+	uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
+
+	if (!sorted)
+		return -1;
+	for (size_t at = 0; at < pixels; at++)
+		sorted[at] = colour_at(p, at);
+	qsort(sorted, pixels, sizeof *sorted, by_value);
+	for (size_t first = 0, end; first < pixels; first = end) {
+		for (end = first; end < pixels && sorted[end] == sorted[first];)
+			end++;
+		const double share = (double)(end - first) / (double)pixels;
+		if (share > unnamed_share && sorted[first] && sorted[first] != 0xffffff &&
+			!find_colour(names, sorted[first]))
+			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path,
+				(unsigned)sorted[first], 100 * share);
+	}
+	free(sorted);
+	return 0;
+}
+
+static int put_picture(
+	struct painting_names *names, const char *path, FILE *out, const struct report *to, struct err *e)
+{
+	struct picture_read p = {.path = path};
+	int bad = image_read_rgb(path, &p.rgb, &p.height, &p.width, e) || !(p.view = view_of(path, e)) ||
+		  !(p.mask = mem_alloc((size_t)p.height, (size_t)p.width, path, e)) ||
+		  warn_unnamed(&p, names, to, e);
+
+	for (size_t i = 0; i < names->n && !bad; i++)
+		bad = put_name(&p, &names->items[i], out, e);
+	free(p.view);
+	free(p.rgb);
+	free(p.mask);
+	return bad ? -1 : 0;
+}
+
+static int put_all(struct painting_names *names, const char *const *pictures, size_t count, FILE *out,
+	const struct report *to, struct err *e)
+{
+	size_t seen = 0;
+
+	for (size_t i = 0; i < count; i++)
+		if (put_picture(names, pictures[i], out, to, e))
+			return -1;
+	for (size_t i = 0; i < names->n; i++)
+		seen += names->items[i].is_seen != 0;
+	for (size_t i = 0; i < names->n && seen; i++)
+		if (!names->items[i].is_seen)
+			report_warn(to, "'%s' is in no picture", names->items[i].name);
+	return seen ? 0 : err_set(e, ERR_FORMAT, "%s: has none of the colours that have names", pictures[0]);
+}
+
+int painting_write(struct painting_names *names, const char *const *pictures, size_t count, const char *path,
+	const struct report *to, struct err *e)
+{
+	struct file_out out;
+
+	if (file_out_open(&out, path, e))
+		return -1;
+	if (!put_all(names, pictures, count, out.stream, to, e))
+		return file_out_commit(&out, e);
+	file_out_abort(&out);
+	return -1;
+}

@@ -1,0 +1,50 @@
+/* mask-import: photographs that a person painted over, as mask records. */
+#include "cli/cli.h"
+#include "cmd/jobs/painting.h"
+
+#include <stdlib.h>
+
+static const char *names_path;
+
+static const struct cli_option table[] = {
+	{"names", 0, CLI_STRING, &names_path, "NAMES",
+		"text, a line for each thing: its colour, #rrggbb or a grey of 0 to 255, and its name (required)",
+		0, 0},
+	{0}};
+
+static const struct cli_tool tool = {.name = "mask-import",
+	.operands = "PICTURE...",
+	.summary = "Turn photographs that a person painted over, a colour for each thing, into masks.",
+	.options = table,
+	.common = CLI_VERBOSE | CLI_QUIET | CLI_OUTPUT,
+	.min_operands = 1,
+	.max_operands = -1};
+
+/* No picture and no file of names is written over. */
+static void check(const struct cli *c)
+{
+	struct cli_file *files = calloc((size_t)c->operand_count + 1, sizeof *files);
+
+	if (!names_path)
+		cli_usage(c, "--names NAMES is required");
+	for (int i = 0; files && i < c->operand_count; i++)
+		files[i] = (struct cli_file){"picture", c->operands[i], CLI_READS, NULL};
+	cli_refuse_overwrite(c, "names", "output", files);
+	free(files);
+}
+
+int main(int argc, char **argv)
+{
+	struct painting_names names = {0};
+	struct cli_report to;
+	struct cli c;
+	struct err e = {0};
+
+	cli_parse(&c, &tool, argc, argv);
+	check(&c);
+	const int bad = painting_names_read(&names, names_path, &e) ||
+			painting_write(&names, c.operands, (size_t)c.operand_count, c.output,
+				cli_report(&to, &c), &e);
+	painting_names_free(&names);
+	return bad ? cli_fail(&c, &e) : cli_done(&c);
+}

@@ -1,0 +1,140 @@
+/* refer-ask: what a question about a lifted scene means, in words. */
+#include "cli/cli.h"
+#include "cmd/jobs/answer_picture.h"
+#include "cmd/jobs/answer_words.h"
+#include "cmd/jobs/asking.h"
+#include "cmd/jobs/questions.h"
+#include "formats/bert_model.h"
+#include "refer/asked.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static struct {
+	struct asking_options asking;
+	const char *picture;
+} options = {.asking = {.least = ASKED_LEAST}};
+
+static const struct cli_option table[] = {{"scene", 0, CLI_STRING, &options.asking.given.scene, "SCENE",
+						  "scene folder (default: RUN/scene)", 0, 0},
+	{"model", 0, CLI_STRING, &options.asking.given.model, "MODEL",
+		"model of refer-lift (default: RUN/lifted/model.safetensors)", 0, 0},
+	{"encoder", 0, CLI_STRING, &options.asking.given.encoder, "DIR",
+		"the encoder's folder (default: where 'make encoder' puts it)", 0, 0},
+	{"viewpoint", 0, CLI_STRING, &options.asking.viewpoint, "VIEW|x,y,z",
+		"where questions are asked: left and right are as seen from there (default: between the training views)",
+		0, 0},
+	{"min-probability", 0, CLI_REAL, &options.asking.least, "P",
+		"a question less likely to mean anything that is here is refused (default 0.65)", 0, 1},
+	{"without", 0, CLI_STRING, &options.asking.without, "PART,...",
+		"choose without parts of the choice, as refer-render does", 0, 0},
+	{"explain", 0, CLI_FLAG, &options.asking.is_explained, NULL,
+		"say how the question was taken apart, and what each part gave each candidate", 0, 0},
+	{"picture", 'o', CLI_STRING, &options.picture, "FILE",
+		"draw the answer to QUESTION, in the view that shows it best, as a PNG", 0, 0},
+	{0}};
+
+static const struct cli_tool tool = {.name = "refer-ask",
+	.operands = "RUN [QUESTION]",
+	.summary = "Ask a lifted scene where things are: QUESTION, or each line of stdin.",
+	.options = table,
+	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_JSON,
+	.min_operands = 1,
+	.max_operands = 2};
+
+static int draw(struct answer_told *t, struct err *e)
+{
+	char caption[256];
+	const char *const words[] = {t->question, caption};
+
+	answer_caption(t, caption, sizeof caption);
+	t->picture = options.picture;
+	return answer_picture(t->asking, t->answer, words, t->picture, &t->view, e);
+}
+
+/* Answers one question at once. *refused becomes 1 where it means nothing here. */
+static int answer(const struct cli *c, struct asking *a, const char *question, int *refused, struct err *e)
+{
+	const double start = cli_seconds();
+	struct asking_answer found;
+	struct answer_told told = {a, question, &found, NULL, NULL};
+	struct cli_report to;
+
+	if (asking_ask(a, question, &found, cli_report(&to, c), e))
+		return -1;
+	*refused |= !found.count;
+	int bad = options.picture && found.count && draw(&told, e);
+	bad = bad || (c->json ? answer_put_json(&told, stdout, e) : answer_put_words(&told, stdout, e));
+	if (!bad && fflush(stdout))
+		bad = err_errno(e, "stdout");
+	asking_answer_free(&found);
+	cli_note(c, 1, "answered in %.3f s", cli_seconds() - start);
+	return bad ? -1 : 0;
+}
+
+static void prompt(void)
+{
+	if (isatty(STDIN_FILENO) && isatty(STDERR_FILENO))
+		fputs("> ", stderr);
+}
+
+/* Every line of stdin. *status becomes that of the worst line. */
+static int answer_lines(const struct cli *c, struct asking *a, int *status, struct err *e)
+{
+	struct question q = {0};
+	int got;
+
+	for (prompt(); (got = question_next(&q, stdin, e)) > 0; prompt()) {
+		int refused = 0;
+		if (q.fault) {
+			fprintf(stderr, "%s: stdin:%ld: %s\n", tool.name, q.line, q.fault);
+			*status = ERR_FORMAT;
+			continue;
+		}
+		if (answer(c, a, q.text, &refused, e))
+			return -1;
+		*status = *status ? *status : refused ? ERR_CHECK : ERR_NONE;
+	}
+	return got;
+}
+
+static int run(const struct cli *c, struct asking *a, int *status, struct err *e)
+{
+	struct question q = {0};
+
+	if (c->operand_count > 1 && !question_take(&q, c->operands[1]))
+		return err_set(e, ERR_FORMAT, "the question %s", q.fault);
+	if (asking_open(a, &options.asking, e))
+		return -1;
+	cli_note(c, 1, "%zu objects, loaded in %.3f s", a->model.lifted.objects, cli_seconds() - c->start);
+	return c->operand_count > 1 ? answer(c, a, q.text, status, e) : answer_lines(c, a, status, e);
+}
+
+static void check(const struct cli *c)
+{
+	const char *model = options.asking.given.model;
+
+	if (options.picture && c->operand_count < 2)
+		cli_usage(c, "--picture needs a QUESTION");
+	if (options.picture && !strcmp(options.picture, "-"))
+		cli_usage(c, "--picture must name a file");
+	if (model && !strcmp(model, "-") && c->operand_count < 2)
+		cli_usage(c, "--model - needs a QUESTION, as questions come from stdin");
+}
+
+int main(int argc, char **argv)
+{
+	struct asking a = {0};
+	struct cli c;
+	struct err e = {0};
+	int status = 0;
+
+	cli_parse(&c, &tool, argc, argv);
+	check(&c);
+	cli_refuse_overwrite(&c, CLI_SCENE " model encoder:" BERT_MODEL_PARTS, "picture", NULL);
+	options.asking.run = c.operands[0];
+	const int bad = run(&c, &a, &status, &e);
+	asking_close(&a);
+	return bad ? cli_fail(&c, &e) : (cli_done(&c), status);
+}

@@ -1,0 +1,105 @@
+#!/usr/bin/env bats
+# mask-import on pictures of a few pixels. Options that every tool has are in common.bats.
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load ../format/files
+	cd "$BATS_TEST_TMPDIR"
+	# 4 wide, 3 high: red at the left, blue in the middle, black and a pixel of white
+	picture view_1.png 'ff0000 0000ff 0000ff 000000' 'ff0000 0000ff 0000ff 000000' 'ff0000 ff0000 000000 ffffff'
+	printf '#ff0000 red cup\n#0000FF\t kettle \n\n' >names
+}
+
+# number N: four bytes, the highest first, in hexadecimal.
+number() { printf '%08x' "$1"; }
+
+# chunk TYPE HEX: a chunk of a PNG, in hexadecimal.
+chunk() {
+	local body
+	body=$(printf %s "$1" | xxd -p)$2
+	printf '%s%s%s' "$(number $((${#2} / 2)))" "$body" "$(printf %s "$body" | xxd -r -p | gzip -c | tail -c 8 | head -c 4 | xxd -p | fold -w2 | tac | tr -d '\n')"
+}
+
+# picture FILE ROW...: a colour PNG; a row is its pixels, rrggbb. The data are one stored block of deflate.
+picture() {
+	local file=$1 row data='' sum_a=1 sum_b=0 byte n
+	shift
+	for row; do data+=00${row// /}; done
+	for byte in $(fold -w2 <<<"$data"); do
+		sum_a=$(((sum_a + 16#$byte) % 65521)) sum_b=$(((sum_b + sum_a) % 65521))
+	done
+	n=$(printf '%04x' $((${#data} / 2)))
+	{
+		printf 89504e470d0a1a0a
+		row=${1// /}
+		chunk IHDR "$(number $((${#row} / 6)))$(number $#)0802000000"
+		chunk IDAT "780101${n:2}${n:0:2}$(printf '%04x' $((16#${n:2}${n:0:2} ^ 65535)))$data$(printf '%04x%04x' $sum_b $sum_a)"
+		chunk IEND ''
+	} | xxd -r -p >"$file"
+}
+
+@test "a mask for each colour that has a name, with the view's name" {
+	"$BIN/mask-import" --names names -o masks view_1.png
+	"$BIN/gs-check" masks
+	[ "$(jq -c '[.view, .object, .segmentation.size]' masks)" = '["view_1","red cup",[3,4]]
+["view_1","kettle",[3,4]]' ]
+	# down the columns: 3 red, blue blue red, blue blue black, black black white
+	printf '{"view":"view_1","object":"red cup","segmentation":{"size":[3,4],"counts":[0,3,2,1,6]}}
+{"view":"view_1","object":"kettle","segmentation":{"size":[3,4],"counts":[3,2,1,2,4]}}\n' >truth
+	"$BIN/miou-score" --json --truth truth masks | jq -e '.miou == 1 and .pairs == 2'
+}
+
+@test "several pictures in order, stdin, stdout, and greys" {
+	mkdir more
+	picture more/frame.a.png '030303 0000ff'
+	{ cat names; echo '3 plate'; } >all
+	"$BIN/mask-import" --names all -o masks view_1.png more/frame.a.png
+	[ "$(jq -r '.view + " " + .object' masks)" = "view_1 red cup
+view_1 kettle
+frame.a kettle
+frame.a plate" ]
+	"$BIN/mask-import" --names - view_1.png more/frame.a.png <all | cmp - masks
+}
+
+@test "what has no name, and a name that has no pixel, are told; -q is silent" {
+	echo '7 plate' >names
+	echo '#ff0000 cup' >>names
+	says 0 "mask-import: warning: view_1.png: #0000ff, 33.3% of it, has no name
+mask-import: warning: 'plate' is in no picture" "$BIN/mask-import" --names names -o masks view_1.png
+	says 0 '' "$BIN/mask-import" -q --names names -o masks view_1.png
+	[ "$(jq -r .object masks)" = cup ]
+}
+
+# refuses STATUS MESSAGE: so it ends, and nothing is left.
+refuses() {
+	says "$1" "mask-import: $2" "$BIN/mask-import" -q --names names -o none view_1.png && [ ! -e none ]
+}
+
+@test "names that are malformed: exact messages" {
+	names() { printf "$1" >names; }
+	names '#ff0000 cup\n#ff00 mug\n' && refuses 3 "names:2: does not begin with #rrggbb or 0 to 255, and a blank"
+	for bad in 'ff0000 cup' '256 cup' '-1 cup' '0003 cup' '#ff00001 cup' '3cup' '# cup' 'cup'; do
+		names "$bad" && refuses 3 "names:1: does not begin with #rrggbb or 0 to 255, and a blank"
+	done
+	names '3 \n' && refuses 3 "names:1: the name is empty"
+	names '3 caf\xe9\n' && refuses 3 "names:1: the name is not UTF-8 at byte 4"
+	names '3 cup\n#030303 mug\n' && refuses 3 "names:2: colour #030303 has a name already"
+	names '3 cup\n4 cup\n' && refuses 3 "names:2: the name 'cup' has a colour already"
+	names '\n' && refuses 3 "names: holds no names"
+	names '9 cup\n' && refuses 3 "view_1.png: has none of the colours that have names"
+}
+
+@test "pictures that are none, and outputs that are inputs" {
+	says 4 "mask-import: gone.png: No such file or directory" "$BIN/mask-import" --names names -o none gone.png
+	head -c 60 view_1.png >cut.png
+	run "$BIN/mask-import" --names names -o none view_1.png cut.png
+	[ "$status" = 3 ]
+	[[ $output == "mask-import: cut.png: PNG: "* ]]
+	[ ! -e none ]
+	says 2 "mask-import: --names NAMES is required
+Try 'mask-import --help'." "$BIN/mask-import" view_1.png
+	says 2 "mask-import: -o names would overwrite --names names
+Try 'mask-import --help'." "$BIN/mask-import" --names names -o names view_1.png
+	says 2 "mask-import: -o ./view_1.png would overwrite picture view_1.png
+Try 'mask-import --help'." "$BIN/mask-import" --names names -o ./view_1.png view_1.png
+}

@@ -1,0 +1,231 @@
+#!/usr/bin/env bats
+# refer-ask, on a small scene whose truth is known. Options that every tool has are in common.bats. The encoder is tiny and
+# knows nothing: answers go by the names of the things, the grammar and where the things are.
+
+setup_file() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	export OMP_WAIT_POLICY=passive
+	cd "$BATS_FILE_TMPDIR"
+	cp -r "$BATS_TEST_DIRNAME/../golden/bert" encoder
+	"$BIN/gs-synth" -q --objects 3 --views 6 --size 96x72 --gaussians 2000 -o .
+	mkdir -p run/lifted
+	"$BIN/gs-import" -q --images images --test-views "$(cat test-views)" -o run/scene point_cloud.ply
+	"$BIN/gs-weigh" -q -o weights run/scene
+	lift run sentences.jsonl truth.jsonl
+	# The same scene, where the first thing has a name in another alphabet.
+	first=$(jq -r .object sentences.jsonl | head -n 1)
+	mkdir -p cyrillic/lifted
+	ln -s ../run/scene cyrillic/scene
+	for file in sentences truth; do
+		jq -c --arg first "$first" 'if .object == $first then .object = "синяя чашка" | if .text then .text = "синяя чашка" else . end else . end' \
+			$file.jsonl >$file.cyrillic.jsonl
+	done
+	lift cyrillic sentences.cyrillic.jsonl truth.cyrillic.jsonl
+	jq -r .object sentences.jsonl | sort -u >things
+	sed 's/.*/where is the &?/' things >questions
+	printf '%s\n' 'is there a sofa?' 'what is behind the wardrobe?' 'all the things' 'the largest thing' >>questions
+	jq -r .text unseen.jsonl | head -n 13 >>questions
+}
+
+# lift RUN SENTENCES MASKS
+lift() {
+	"$BIN/text-encode" -q --model encoder -o text.safetensors "$2"
+	"$BIN/refer-lift" -q --names masks --scene "$1/scene" --weights weights --text text.safetensors --masks "$3" \
+		-o "$1/lifted/model.safetensors"
+}
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load ../format/files
+	export OMP_WAIT_POLICY=passive
+	cd "$BATS_FILE_TMPDIR"
+}
+
+ask() { "$BIN/refer-ask" --encoder encoder "$@"; }
+
+# Fails where the command succeeds; a plain ! would let the test go on.
+not() { ! "$@"; }
+
+@test "each thing is found by its name, where it is" {
+	while read -r thing; do
+		answer=$(ask --json run "where is the $thing?")
+		[ "$(jq -r '.things | map(.name) | join(",")' <<<"$answer")" = "$thing" ]
+		jq -e '.answered and .things[0].probability > 0.5 and .runner_up.probability < 0.3' <<<"$answer"
+		# the middle of the box is within a quarter of its length of the true one
+		jq -e --argjson truth "$(jq -c --arg thing "$thing" 'select(.object == $thing)' boxes.jsonl)" '.things[0] |
+			(([.centre, $truth.centre] | transpose | map(.[0] - .[1] | . * .) | add | sqrt) < ($truth.oriented.size | max) / 4)' <<<"$answer"
+		ask run "where is the $thing?" | grep -qE "^$thing: [0-9]+%, then .*; [0-9.]+ [a-z ]+ .*; centre .*, size .* high$"
+	done <things
+}
+
+@test "the nearest thing is the one whose centre is nearest, and its side is that of the viewpoint" {
+	view=$(jq -r '.[0].name' run/scene/cameras.json)
+	for thing in "$(head -n 1 things)" "$(tail -n 1 things)"; do
+		answer=$(ask --json run "$thing")
+		others=$(grep -vxF "$thing" things | while read -r other; do ask --json run "$other"; done | jq -sc 'map(.things[0])')
+		jq -e --argjson others "$others" '.things[0] as $t | $others |
+			map({name, d: ([.centre, $t.centre] | transpose | map(.[0] - .[1] | . * .) | add | sqrt)}) | min_by(.d) |
+			.name == $t.nearest.name and (.d - $t.nearest.distance | fabs) < 1e-4' <<<"$answer"
+		jq -r '.things[0].nearest.side' <<<"$answer" | grep -qxE 'to the (left|right) of|in front of|behind|above|below'
+	done
+	# two things that are nearest to each other are on opposite sides
+	sides=$(while read -r thing; do ask --json --viewpoint "$view" run "$thing"; done <things |
+		jq -sr 'map(.things[0]) | . as $all | .[] | . as $a | $all[] | select(.name == $a.nearest.name and .nearest.name == $a.name) |
+			[.nearest.side, $a.nearest.side] | sort | join("/")' | sort -u)
+	[ -n "$sides" ]
+	not grep -vxE 'to the left of/to the right of|behind/in front of|above/below' <<<"$sides"
+}
+
+@test "what is not here is refused, with the reason and status 1" {
+	says 1 "nothing here is that: nothing here is known as 'sofa'" ask run "is there a sofa?"
+	says 1 "nothing here is that: the question has no words" ask run '​'
+	thing=$(head -n 1 things)
+	says 1 "nothing here is that: $thing comes nearest, but 'blue' does not fit it" ask run "the blue ${thing##* }"
+	run ask --json run "the blue ${thing##* }"
+	[ "$status" = 1 ]
+	jq -e '(.answered | not) and .things == [] and .probability < 0.65 and (.reason | test("blue"))' <<<"$output"
+	# unless nothing is refused
+	ask --min-probability 0 run "is there a sofa?"
+}
+
+@test "several things are a line each" {
+	[ "$(ask run "all the things" | cut -d: -f1 | sort)" = "$(cat things)" ]
+	ask --json run "all the things" | jq -e '.things | length == 3 and (map(.probability) | . == (sort | reverse))'
+}
+
+@test "a pipe of twenty questions answers as twenty calls do, in words and in JSON, with blank lines between" {
+	[ "$(wc -l <questions)" = 20 ]
+	for json in "" --json; do
+		while read -r question; do ask $json run "$question" || [ $? = 1 ]; done <questions >one
+		sed 's/^/  /; a\\' questions | ask $json run >piped || [ $? = 1 ]
+		cmp one piped
+	done
+	[ "$(wc -l <piped)" = 20 ]
+	diff <(jq -r .question piped) questions
+}
+
+@test "each answer comes before the next question is read" {
+	mkfifo "$BATS_TEST_TMPDIR/to" "$BATS_TEST_TMPDIR/from"
+	ask --json run <"$BATS_TEST_TMPDIR/to" >"$BATS_TEST_TMPDIR/from" &
+	exec 8>"$BATS_TEST_TMPDIR/to" 9<"$BATS_TEST_TMPDIR/from"
+	while read -r thing; do
+		echo "$thing" >&8
+		read -r -t 20 answer <&9
+		[ "$(jq -r '.things[0].name' <<<"$answer")" = "$thing" ]
+	done <things
+	exec 8>&- 9<&-
+	wait
+}
+
+@test "1 and 7 threads say the same" {
+	ask --threads 1 --json --explain run <questions >one || [ $? = 1 ]
+	ask --threads 7 --json --explain run <questions >seven || [ $? = 1 ]
+	cmp one seven
+	ask --threads 1 -o one.png run "$(head -n 1 things)"
+	ask --threads 7 -o seven.png run "$(head -n 1 things)"
+	cmp one.png seven.png
+}
+
+@test "lines that are no questions: one line on stderr for each, the others are answered, status 3" {
+	thing=$(head -n 1 things)
+	long=$(printf 'cup%.0s' {1..700})
+	printf 'caf\xe9\n%s\n%s\n\n\0\n%s' "$thing" "$long" "$thing" >lines
+	status=0
+	ask run <lines >out 2>err || status=$?
+	[ $status = 3 ]
+	[ "$(cut -d: -f1 out)" = "$thing"$'\n'"$thing" ]
+	[ "$(cat err)" = "refer-ask: stdin:1: is not UTF-8
+refer-ask: stdin:3: is longer than 2000 bytes
+refer-ask: stdin:5: has a NUL byte" ]
+	says 3 "refer-ask: the question is not UTF-8" ask run $'caf\xe9'
+	says 3 "refer-ask: the question is longer than 2000 bytes" ask run "$long"
+	says 3 "refer-ask: the question is empty" ask run "  "
+	printf '%2000s\n' "$thing" | ask run
+}
+
+@test "nothing is asked, nothing is said" {
+	says 0 '' ask run
+	printf '\n \n' | ask run | cmp - /dev/null
+}
+
+@test "a name in another alphabet" {
+	answer=$(ask --json cyrillic "синяя чашка")
+	[ "$(jq -r '.things[0].name' <<<"$answer")" = "синяя чашка" ]
+	ask cyrillic "синяя чашка" | grep -q '^синяя чашка: '
+	ask -o cyrillic.png cyrillic "синяя чашка"
+	"$BIN/gs-check" cyrillic.png
+}
+
+@test "a folder that is not there, or lacks a part: what is missing and what makes it" {
+	cd "$BATS_TEST_TMPDIR"
+	ln -s "$BATS_FILE_TMPDIR/encoder" encoder
+	says 4 "refer-ask: none: No such file or directory" ask none cup
+	mkdir bare
+	says 4 "refer-ask: bare: no scene in it: 'make -f pipelines/lift.mk SCENE=bare ...' makes one, --scene names another" ask bare cup
+	ln -s "$BATS_FILE_TMPDIR/run/scene" bare/scene
+	says 4 "refer-ask: bare: no lifted/model.safetensors in it: 'make -f pipelines/lift.mk SCENE=bare ...' makes one, --model names another" \
+		ask bare cup
+	XDG_CACHE_HOME=$PWD says 4 "refer-ask: $PWD/refersplat/encoder: no encoder there: 'make encoder' fetches one" \
+		"$BIN/refer-ask" "$BATS_FILE_TMPDIR/run" cup
+	# with the parts named or in place, it works
+	thing=$(head -n 1 "$BATS_FILE_TMPDIR/things")
+	ask --model "$BATS_FILE_TMPDIR/run/lifted/model.safetensors" bare "$thing"
+	mkdir refersplat
+	ln -s "$BATS_FILE_TMPDIR/encoder" refersplat/encoder
+	XDG_CACHE_HOME=$PWD "$BIN/refer-ask" "$BATS_FILE_TMPDIR/run" "$thing"
+}
+
+@test "a model of another scene or encoder, or a trained one" {
+	"$BIN/gs-synth" -q --seed 2 --objects 3 --views 3 --size 32x24 --gaussians 1000 -o other
+	"$BIN/gs-import" -q -o other/scene other/point_cloud.ply
+	says 3 "refer-ask: run/lifted/model.safetensors: is of a scene of 2000 Gaussians, other/scene has 1000" ask --scene other/scene run cup
+	cp run/lifted/model.safetensors cut
+	truncate -s -1 cut
+	run ask --model cut run cup
+	[ "$status" = 3 ]
+	[[ $output == "refer-ask: cut: "* ]]
+	"$BIN/refer-train" -q --scene run/scene --weights weights --text text.safetensors --masks truth.jsonl --iterations 2 -o trained
+	says 3 "refer-ask: trained: is a trained model; questions need one of refer-lift" ask --model trained run cup
+}
+
+@test "a picture: one PNG of the view and two lines of words, none where nothing is meant" {
+	thing=$(head -n 1 things)
+	ask --json -o picture.png run "$thing" >said
+	[ "$(jq -r .picture said)" = picture.png ]
+	jq -r '.[].name' run/scene/cameras.json | grep -qxF "$(jq -r .view said)"
+	# 96 pixels wide, 72 and twice 12 high
+	[ "$(od -An -tx1 -j16 -N8 picture.png | tr -d ' ')" = 0000006000000060 ]
+	not ask -o none.png run "is there a sofa?"
+	[ ! -e none.png ]
+	says 2 "refer-ask: --picture needs a QUESTION
+Try 'refer-ask --help'." ask -o none.png run
+	says 2 "refer-ask: --picture must name a file
+Try 'refer-ask --help'." ask -o - run cup
+	says 2 "refer-ask: --model - needs a QUESTION, as questions come from stdin
+Try 'refer-ask --help'." ask --model - run
+	ask --model - run "$thing" <run/lifted/model.safetensors | grep -q "^$thing: "
+	says 2 "refer-ask: --picture run/lifted/../lifted/model.safetensors would overwrite --model run/lifted/model.safetensors
+Try 'refer-ask --help'." ask --model run/lifted/model.safetensors -o run/lifted/../lifted/model.safetensors run cup
+	says 4 "refer-ask: no/x.png: No such file or directory" ask -o no/x.png run "$thing"
+}
+
+@test "--explain says the parse, the candidates and the parts" {
+	thing=$(head -n 1 things)
+	noun=${thing##* }
+	ask --explain run "the $noun that is left of the $(tail -n 1 things)" >said || [ $? = 1 ]
+	grep -qE "^  parse \([01]\.[0-9]+\): $noun, left \(" said
+	grep -qE "^  fit [0-9.]+ $thing: noun $noun [01]\.[0-9]+; clause left \(.*\) [01]\.[0-9]+$" said
+	[ "$(grep -c '^  fit ' said)" = 3 ]
+	ask --explain --json run "the $noun" | jq -e --arg thing "$thing" '.explanation.candidates[0] | .name == $thing and
+		(.parts | map(.part) == ["noun"])'
+}
+
+@test "--viewpoint: a view, a point, or neither" {
+	view=$(jq -r '.[0].name' run/scene/cameras.json)
+	ask --viewpoint "$view" run "$(head -n 1 things)"
+	ask --viewpoint 1,2,3 run "$(head -n 1 things)"
+	says 2 "refer-ask: --viewpoint: 'nowhere' is no view and no x,y,z
+Try 'refer-ask --help'." ask --viewpoint nowhere run cup
+	says 2 "refer-ask: --without: no part 'magic'
+Try 'refer-ask --help'." ask --without magic run cup
+}
