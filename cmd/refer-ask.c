@@ -5,7 +5,7 @@
 #include "cmd/jobs/asking.h"
 #include "cmd/jobs/questions.h"
 #include "formats/bert_model.h"
-#include "refer/asked.h"
+#include "answer/responses.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 static struct {
 	struct asking_options asking;
 	const char *picture;
-} options = {.asking = {.least = ASKED_LEAST}};
+} options = {.asking = {.least = RESPONSES_LEAST}};
 
 static const struct cli_option table[] = {{"scene", 0, CLI_STRING, &options.asking.given.scene, "SCENE",
 						  "scene folder (default: RUN/scene)", 0, 0},

@@ -4,7 +4,7 @@
 #include "formats/png.h"
 #include "mask/caption.h"
 #include "mask/overlay.h"
-#include "refer/answer.h"
+#include "answer/answer.h"
 #include "splat/render.h"
 
 #include <math.h>
@@ -16,12 +16,12 @@ enum { LOOK_SIDE = 200 };
 
 /* The things as one answer. */
 static int take_responses(
-	struct asked *to, const struct asking *a, const struct asking_answer *answer, struct err *e)
+	struct responses *to, const struct asking *a, const struct asking_answer *answer, struct err *e)
 {
 	const struct lifted *l = &a->model.lifted;
 	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
 
-	*to = (struct asked){.answers = 1};
+	*to = (struct responses){.answers = 1};
 	to->responses = mem_alloc(l->gaussians, sizeof *to->responses, "responses", e);
 	to->lifts = mem_zalloc(1, sizeof *to->lifts, "responses", e);
 	int bad = !own || !to->responses || !to->lifts;
@@ -112,20 +112,20 @@ static int put_page(void *data, const struct answer *a, struct err *e)
 int answer_picture(const struct asking *a, const struct asking_answer *answer, const char *const words[2],
 	const char *path, const char **view, struct err *e)
 {
-	struct asked asked;
-	struct answer_question q = {&a->scene.splats, &asked, NULL, 0};
+	struct responses responses;
+	struct answer_question q = {&a->scene.splats, &responses, NULL, 0};
 	struct page page = {words, path};
 	const struct answer_calls calls = {&page, put_page, ignore};
 	size_t best = 0;
 
 	if (!a->scene.cameras.n)
 		return err_set(e, ERR_FORMAT, "%s: has no view to draw", a->files.scene);
-	int bad = take_responses(&asked, a, answer, e) || best_view(a, &q, &best, e);
+	int bad = take_responses(&responses, a, answer, e) || best_view(a, &q, &best, e);
 	if (!bad) {
 		q.wants_rgb = 1;
 		*view = a->scene.cameras.views[best].name;
 		bad = answer_all(&q, &a->scene.cameras.views[best], 1, &calls, e);
 	}
-	asked_free(&asked);
+	responses_free(&responses);
 	return bad ? -1 : 0;
 }

@@ -10,7 +10,7 @@
 #include "cmd/jobs/explain.h"
 #include "cmd/jobs/run_folder.h"
 #include "formats/scene.h"
-#include "refer/extent.h"
+#include "lift/extent.h"
 
 struct asking_options {
 	const char *run;	 /* the folder */
