@@ -1,6 +1,7 @@
 #include "ask/meaning.h"
 
 #include "ask/constants.h"
+#include "ask/meaning_private.h"
 #include "ask/relate.h"
 #include "base/mem.h"
 #include "lang/closed.h"
@@ -26,32 +27,8 @@ void meaning_free(struct meaning *m)
 	m->parts = NULL;
 }
 
-static size_t objects_of(const struct meaning *m)
-{
-	return m->arrangement->n;
-}
-
-static double *fit_of(const struct meaning *m, int phrase)
-{
-	return m->fit + (size_t)phrase * (objects_of(m) + 1);
-}
-
-static double *there_of(const struct meaning *m, int phrase)
-{
-	return m->there + (size_t)phrase * objects_of(m);
-}
-
-static double largest(const double *x, size_t n)
-{
-	double most = 0;
-
-	for (size_t i = 0; i < n; i++)
-		most = fmax(most, x[i]);
-	return most;
-}
-
 /* The next part's values (O). meaning_judge has made room. */
-static double *add_part(struct meaning *m, int phrase, enum meaning_kind kind, int index)
+double *meaning_add_part(struct meaning *m, int phrase, enum meaning_kind kind, int index)
 {
 	double *value = m->values + m->part_count * objects_of(m);
 
@@ -60,7 +37,7 @@ static double *add_part(struct meaning *m, int phrase, enum meaning_kind kind, i
 }
 
 /* The phrase's fit takes in a part's values. */
-static void take_part(struct meaning *m, const struct meaning_part *p)
+void meaning_take_part(struct meaning *m, const struct meaning_part *p)
 {
 	double *fit = fit_of(m, p->phrase);
 
@@ -69,208 +46,6 @@ static void take_part(struct meaning *m, const struct meaning_part *p)
 	const int names = p->kind == MEANING_NOUN || p->kind == MEANING_ATTRIBUTE;
 	for (size_t o = 0; o < objects_of(m); o++)
 		fit[o] *= names && m->naming != 1 ? pow(p->value[o], m->naming) : p->value[o];
-}
-
-/* Objects that look the same share what is said of them. */
-static void share_looks(const struct meaning *m, double *match)
-{
-	const size_t n = objects_of(m);
-	double *own = m->scratch;
-
-	memcpy(own, match, n * sizeof *own);
-	for (size_t o = 0; o < n && m->looks; o++)
-		for (size_t k = 0; k < n; k++)
-			if (match[o] >= 0)
-				match[o] = fmax(match[o], own[k] * m->looks[o * n + k]);
-}
-
-static int word_is(const struct parse_word *w, const char *const *list)
-{
-	for (; *list; list++)
-		if (!strcmp(w->text, *list) || !strcmp(w->lemma, *list))
-			return 1;
-	return 0;
-}
-
-static int is_verb_to_be(const struct parse_word *w)
-{
-	const int closed = closed_find(w->text);
-
-	return closed >= 0 && closed_words[closed].class == CLOSED_BE;
-}
-
-/* The word that names the kind of thing, or -1: "something", "the red one". */
-static int head_of(const struct parse *p, const struct parse_phrase *f)
-{
-	static const char *const generic[] = {"thing", "object", "item", "one", "something", "anything",
-		"everything", "stuff", "what", "whatever", "which", "thingy", "other", "another", "piece",
-		NULL};
-	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
-
-	return head >= 0 && (word_is(&p->words[head], generic) || is_verb_to_be(&p->words[head])) ? -1 : head;
-}
-
-static int has_word(const struct parse *p, const struct parse_phrase *f, const char *const *list)
-{
-	for (int w = 0; w < p->word_count; w++)
-		if (p->words[w].span.begin >= f->span.begin && p->words[w].span.end <= f->span.end &&
-			word_is(&p->words[w], list))
-			return 1;
-	return 0;
-}
-
-/* "the red one", "the other two": a thing of the kind that was spoken of. */
-static int is_elliptic(const struct parse *p, const struct parse_phrase *f)
-{
-	static const char *const again[] = {
-		"one", "ones", "other", "others", "another", "two", "three", "those", NULL};
-
-	return !f->noun.n && (f->span.begin == f->span.end || has_word(p, f, again));
-}
-
-/* "the other cups", "anything else". */
-static int is_other(const struct parse *p, const struct parse_phrase *f)
-{
-	static const char *const other[] = {"other", "others", "else", "rest", "remaining", NULL};
-
-	return has_word(p, f, other);
-}
-
-/* How far objects are of the colour of a word, and of those right after it that are colours too: "salmon
- * pink" and "black and white" are either. Nothing where the word before it has done so. */
-static void judge_colour(struct meaning *m, int phrase, int word)
-{
-	const struct parse *p = m->sentence->parse;
-	const size_t n = objects_of(m);
-	double *match = m->scratch + n;
-
-	if (word && colour_word(p->words[word - 1].lemma) >= 0)
-		return;
-	double *value = add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
-	memset(value, 0, n * sizeof *value);
-	for (; word < p->word_count && colour_word(p->words[word].lemma) >= 0; word++) {
-		vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);
-		for (size_t o = 0; o < n; o++)
-			value[o] = fmax(value[o], match[o]);
-	}
-	for (size_t o = 0; o < n; o++) {
-		value[o] = COLOUR_LEAST + (1 - COLOUR_LEAST) * value[o];
-		there[o] *= value[o];
-	}
-	take_part(m, &m->parts[m->part_count - 1]);
-}
-
-static void judge_noun(struct meaning *m, int phrase)
-{
-	const struct parse *p = m->sentence->parse;
-	const struct parse_phrase *f = &p->phrases[phrase];
-	const size_t n = objects_of(m);
-	int head = head_of(p, f);
-	double *value, *there = there_of(m, phrase), *match = m->scratch + n;
-
-	if (head < 0 && phrase && is_elliptic(p, f))
-		head = head_of(p, &p->phrases[0]);
-	for (size_t o = 0; o < n; o++)
-		there[o] = GENERIC_THERE;
-	m->known[phrase] = GENERIC_THERE;
-	if (head < 0)
-		return;
-	vocabulary_noun(m->vocabulary, m->sentence, head, match);
-	if (colour_word(p->words[head].lemma) >= 0 && largest(match, n) < 0.5) { /* "something orange" */
-		judge_colour(m, phrase, head);
-		return;
-	}
-	value = add_part(m, phrase, MEANING_NOUN, head);
-	const double best = largest(match, n), most = fmax(best, match[n]);
-	m->known[phrase] = best;
-	for (size_t o = 0; o < n; o++) {
-		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * match[o] * match[o] / fmax(most, 1e-9);
-		/* another thing that is called so speaks against it */
-		there[o] = match[o] * pow(match[o] / fmax(best, 1e-9), NOUN_ELSEWHERE) *
-			   (most > best ? best / most : 1);
-	}
-	take_part(m, &m->parts[m->part_count - 1]);
-}
-
-/* "bright", "dark" or "light" before a colour is of the colour. */
-static int is_shade(const struct parse *p, int word)
-{
-	static const char *const shades[] = {
-		"bright", "dark", "light", "pale", "deep", "vivid", "soft", "royal", "pure", "jet", NULL};
-
-	return word + 1 < p->word_count && word_is(&p->words[word], shades) &&
-	       colour_word(p->words[word + 1].lemma) >= 0;
-}
-
-static void judge_attribute(struct meaning *m, int phrase, int word, double least)
-{
-	const size_t n = objects_of(m);
-
-	if (is_shade(m->sentence->parse, word))
-		return;
-	if (colour_word(m->sentence->parse->words[word].lemma) >= 0) {
-		judge_colour(m, phrase, word);
-		return;
-	}
-	double *value = add_part(m, phrase, MEANING_ATTRIBUTE, word);
-	vocabulary_attribute(m->vocabulary, m->sentence, word, value);
-	share_looks(m, value);
-	const double most = largest(value, n);
-	m->unknown += most < 0.5;
-	for (size_t o = 0; o < n; o++)
-		value[o] = (value[o] < 0 ? least * (1 + (1 - OPPOSITE) * value[o])
-					 : least + (1 - least) * value[o]) /
-			   (least + (1 - least) * most);
-	take_part(m, &m->parts[m->part_count - 1]);
-}
-
-/* A part that is, or fits, no object, but that training sentences may tell of: "with a handle", "on the
- * shelf". */
-static void judge_said(struct meaning *m, const struct parse_clause *c, double *said)
-{
-	const struct parse *p = m->sentence->parse;
-	const size_t n = objects_of(m);
-	double *match = m->scratch + n;
-
-	memset(said, 0, n * sizeof *said);
-	for (int k = 0; k < c->anchors.n; k++) {
-		const int head = head_of(p, &p->phrases[c->anchors.item[k]]);
-		if (head < 0)
-			continue;
-		vocabulary_clause(m->vocabulary, m->sentence, head, c->relation, match);
-		for (size_t o = 0; o < n; o++)
-			said[o] = fmax(said[o], match[o]);
-	}
-}
-
-/* What a thing does, is for, or has: any word of it may be said of an object. */
-static void judge_predicate(struct meaning *m, const struct parse_clause *c, double *value)
-{
-	const struct parse *p = m->sentence->parse;
-	const size_t n = objects_of(m);
-	double *match = m->scratch + n, *use = m->scratch + 8 * n;
-	int words = 0;
-
-	for (size_t o = 0; o < n; o++)
-		value[o] = 0;
-	for (int k = 0; k < c->words.n + c->anchors.n; k++) {
-		const int word = k < c->words.n ? c->words.item[k]
-						: head_of(p, &p->phrases[c->anchors.item[k - c->words.n]]);
-		if (word < 0)
-			continue;
-		memset(use, 0, n * sizeof *use);
-		if (!vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match)) {
-			vocabulary_attribute(m->vocabulary, m->sentence, word, match);
-			vocabulary_use(m->vocabulary, m->sentence, word, use);
-		}
-		for (size_t o = 0; o < n; o++)
-			value[o] += fmax(fmax(match[o], USE_WORTH * use[o]), 0);
-		words++;
-	}
-	const double most = largest(value, n);
-	m->unknown += words && most < 0.5;
-	for (size_t o = 0; o < n; o++)
-		value[o] = words ? (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most) : 1;
 }
 
 /* "On the near side of" is before, and "on the far side of" or "on the other side of" behind. */
@@ -284,12 +59,12 @@ static enum parse_relation relation_of(const struct parse *p, const struct parse
 
 	for (int w = 1; is_distance && c->anchors.n && w < p->word_count; w++) {
 		const struct parse_word *word = &p->words[w];
-		if (!word_is(word, side) || word->span.end < c->span.begin ||
+		if (!meaning_word_is(word, side) || word->span.end < c->span.begin ||
 			word[-1].span.begin > c->span.end)
 			continue;
-		if (word_is(&word[-1], near))
+		if (meaning_word_is(&word[-1], near))
 			return PARSE_FRONT;
-		if (word_is(&word[-1], far))
+		if (meaning_word_is(&word[-1], far))
 			return PARSE_BEHIND;
 	}
 	return c->relation;
@@ -316,10 +91,10 @@ static int is_scene(const struct meaning *m, int phrase)
 	static const char *const places[] = {"table", "tabletop", "desk", "picture", "photo", "image",
 		"scene", "room", "shot", "frame", "view", "floor", "ground", "surface", NULL};
 	const struct parse *p = m->sentence->parse;
-	const int head = head_of(p, &p->phrases[phrase]);
+	const int head = meaning_head_of(p, &p->phrases[phrase]);
 
 	return p->phrases[phrase].scene ||
-	       (head >= 0 && m->known[phrase] < 0.5 && word_is(&p->words[head], places));
+	       (head >= 0 && m->known[phrase] < 0.5 && meaning_word_is(&p->words[head], places));
 }
 
 /* value (O) of a clause that has places in it; returns how far its anchors are known. */
@@ -344,8 +119,8 @@ static double judge_relation(
 		const int i = c->anchors.item[k];
 		const int is_many = p->phrases[i].count != PARSE_ONE &&
 				    (r.degree != PARSE_PLAIN || !(one_will_do >> c->relation & 1));
-		anchors[r.count] = (struct relate_anchor){
-			fit_of(m, i), is_scene(m, i), is_many && !c->negated, is_other(p, &p->phrases[i])};
+		anchors[r.count] = (struct relate_anchor){fit_of(m, i), is_scene(m, i),
+			is_many && !c->negated, meaning_is_other(p, &p->phrases[i])};
 		if (!p->phrases[i].viewer && !anchors[r.count].is_scene)
 			known = fmin(known, m->known[i]);
 		r.count++;
@@ -378,17 +153,17 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	const size_t n = objects_of(m);
 
 	if (c->relation == PARSE_OTHER || is_of_colour(m, c)) {
-		judge_predicate(m, c, value);
+		meaning_judge_predicate(m, c, value);
 		return;
 	}
 	const double known = judge_relation(m, phrase, c, fit, value);
 	if (c->relation == PARSE_WITH) {
-		judge_predicate(m, c, said);
+		meaning_judge_predicate(m, c, said);
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(said[o], known * value[o]);
 		return;
 	}
-	judge_said(m, c, said);
+	meaning_judge_said(m, c, said);
 	for (size_t o = 0; o < n; o++)
 		value[o] = fmax(known * value[o] + (1 - known) * UNKNOWN_RELATION,
 			(1 - known) * SAID_WORTH * said[o]);
@@ -410,7 +185,7 @@ static void judge_clause(struct meaning *m, int phrase, int clause, const double
 {
 	const struct parse_clause *c = &m->sentence->parse->clauses[clause];
 	const size_t n = objects_of(m);
-	double *value = add_part(m, phrase, is_size(c) ? MEANING_SIZE : MEANING_CLAUSE, clause);
+	double *value = meaning_add_part(m, phrase, is_size(c) ? MEANING_SIZE : MEANING_CLAUSE, clause);
 	double *there = there_of(m, phrase);
 	const double least = is_size(c) ? SIZE_LEAST : RELATION_LEAST;
 
@@ -420,7 +195,7 @@ static void judge_clause(struct meaning *m, int phrase, int clause, const double
 		value[o] = least + (1 - least) * x;
 		there[o] *= is_size(c) ? 1 : value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
 	}
-	take_part(m, &m->parts[m->part_count - 1]);
+	meaning_take_part(m, &m->parts[m->part_count - 1]);
 }
 
 static void judge_phrase(struct meaning *m, int phrase, int depth);
@@ -429,13 +204,13 @@ static void judge_except(struct meaning *m, int phrase, int except)
 {
 	const size_t n = objects_of(m);
 	const double *fit = fit_of(m, except), most = fmax(largest(fit, n), 1e-9);
-	double *value = add_part(m, phrase, MEANING_EXCEPT, except), *there = there_of(m, phrase);
+	double *value = meaning_add_part(m, phrase, MEANING_EXCEPT, except), *there = there_of(m, phrase);
 
 	for (size_t o = 0; o < n; o++) {
 		value[o] = 1 - (1 - EXCEPT_LEAST) * fit[o] / most;
 		there[o] *= value[o];
 	}
-	take_part(m, &m->parts[m->part_count - 1]);
+	meaning_take_part(m, &m->parts[m->part_count - 1]);
 }
 
 /* "of the two cups": only the best two are compared. */
@@ -461,7 +236,7 @@ static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
 {
 	const struct parse_phrase *f = &m->sentence->parse->phrases[phrase];
 	const size_t n = objects_of(m);
-	double *value = add_part(m, phrase, MEANING_ORDINAL, -1);
+	double *value = meaning_add_part(m, phrase, MEANING_ORDINAL, -1);
 
 	relate_rank(m->arrangement, f->from == PARSE_OTHER ? PARSE_LEFT : f->from, f->ordinal, fit,
 		m->scratch + 3 * n, value);
@@ -470,7 +245,7 @@ static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
 		/* "the second penguin" where there is but one */
 		there_of(m, phrase)[o] *= value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
 	}
-	take_part(m, &m->parts[m->part_count - 1]);
+	meaning_take_part(m, &m->parts[m->part_count - 1]);
 }
 
 /* "around", and nothing is there that it is around. */
@@ -539,14 +314,14 @@ static void judge_phrase(struct meaning *m, int phrase, int depth)
 	m->done[phrase] = 1;
 	for (size_t o = 0; o <= n; o++)
 		fit[o] = f->viewer ? o == n : o < n && m->arrangement->objects[o].is_there;
-	judge_noun(m, phrase);
+	meaning_judge_noun(m, phrase);
 	if (f->viewer || depth > DEPTH)
 		return;
 	judge_below(m, f, depth);
 	for (int k = 0; k + 1 < f->noun.n; k++)
-		judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);
+		meaning_judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);
 	for (int k = 0; k < f->attributes.n; k++)
-		judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
+		meaning_judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
 	judge_clauses(m, phrase, f, fit, 0, 0);
 	for (int k = 0; k < f->except.n; k++)
 		judge_except(m, phrase, f->except.item[k]);

@@ -1,0 +1,59 @@
+/* What the two halves of ask/meaning.h share: meaning.c has phrases and clauses, meaning_words.c their words.
+ */
+#ifndef ASK_MEANING_PRIVATE_H
+#define ASK_MEANING_PRIVATE_H
+
+#include "ask/meaning.h"
+
+#include <math.h>
+
+static inline size_t objects_of(const struct meaning *m)
+{
+	return m->arrangement->n;
+}
+
+static inline double *fit_of(const struct meaning *m, int phrase)
+{
+	return m->fit + (size_t)phrase * (objects_of(m) + 1);
+}
+
+static inline double *there_of(const struct meaning *m, int phrase)
+{
+	return m->there + (size_t)phrase * objects_of(m);
+}
+
+static inline double largest(const double *x, size_t n)
+{
+	double most = 0;
+
+	for (size_t i = 0; i < n; i++)
+		most = fmax(most, x[i]);
+	return most;
+}
+
+/* The next part's values (O). meaning_judge has made room. */
+double *meaning_add_part(struct meaning *m, int phrase, enum meaning_kind kind, int index);
+
+/* The phrase's fit takes in a part's values. */
+void meaning_take_part(struct meaning *m, const struct meaning_part *p);
+
+int meaning_word_is(const struct parse_word *w, const char *const *list);
+
+/* The word that names the kind of thing, or -1: "something", "the red one". */
+int meaning_head_of(const struct parse *p, const struct parse_phrase *f);
+
+/* "the other cups", "anything else". */
+int meaning_is_other(const struct parse *p, const struct parse_phrase *f);
+
+void meaning_judge_noun(struct meaning *m, int phrase);
+
+void meaning_judge_attribute(struct meaning *m, int phrase, int word, double least);
+
+/* A part that is, or fits, no object, but that training sentences may tell of: "with a handle", "on the
+ * shelf". */
+void meaning_judge_said(struct meaning *m, const struct parse_clause *c, double *said);
+
+/* What a thing does, is for, or has: any word of it may be said of an object. */
+void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, double *value);
+
+#endif

@@ -1,0 +1,213 @@
+/* What the words of a phrase say of each object: its noun, colours and attributes, and what it does or has.
+ */
+#include "ask/constants.h"
+#include "ask/meaning_private.h"
+#include "lang/closed.h"
+#include "lang/colours.h"
+
+#include <string.h>
+
+/* Objects that look the same share what is said of them. */
+static void share_looks(const struct meaning *m, double *match)
+{
+	const size_t n = objects_of(m);
+	double *own = m->scratch;
+
+	memcpy(own, match, n * sizeof *own);
+	for (size_t o = 0; o < n && m->looks; o++)
+		for (size_t k = 0; k < n; k++)
+			if (match[o] >= 0)
+				match[o] = fmax(match[o], own[k] * m->looks[o * n + k]);
+}
+
+int meaning_word_is(const struct parse_word *w, const char *const *list)
+{
+	for (; *list; list++)
+		if (!strcmp(w->text, *list) || !strcmp(w->lemma, *list))
+			return 1;
+	return 0;
+}
+
+static int is_verb_to_be(const struct parse_word *w)
+{
+	const int closed = closed_find(w->text);
+
+	return closed >= 0 && closed_words[closed].class == CLOSED_BE;
+}
+
+/* The word that names the kind of thing, or -1: "something", "the red one". */
+int meaning_head_of(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char *const generic[] = {"thing", "object", "item", "one", "something", "anything",
+		"everything", "stuff", "what", "whatever", "which", "thingy", "other", "another", "piece",
+		NULL};
+	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
+
+	return head >= 0 && (meaning_word_is(&p->words[head], generic) || is_verb_to_be(&p->words[head]))
+		       ? -1
+		       : head;
+}
+
+static int has_word(const struct parse *p, const struct parse_phrase *f, const char *const *list)
+{
+	for (int w = 0; w < p->word_count; w++)
+		if (p->words[w].span.begin >= f->span.begin && p->words[w].span.end <= f->span.end &&
+			meaning_word_is(&p->words[w], list))
+			return 1;
+	return 0;
+}
+
+/* "the red one", "the other two": a thing of the kind that was spoken of. */
+static int is_elliptic(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char *const again[] = {
+		"one", "ones", "other", "others", "another", "two", "three", "those", NULL};
+
+	return !f->noun.n && (f->span.begin == f->span.end || has_word(p, f, again));
+}
+
+/* "the other cups", "anything else". */
+int meaning_is_other(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char *const other[] = {"other", "others", "else", "rest", "remaining", NULL};
+
+	return has_word(p, f, other);
+}
+
+/* How far objects are of the colour of a word, and of those right after it that are colours too: "salmon
+ * pink" and "black and white" are either. Nothing where the word before it has done so. */
+static void judge_colour(struct meaning *m, int phrase, int word)
+{
+	const struct parse *p = m->sentence->parse;
+	const size_t n = objects_of(m);
+	double *match = m->scratch + n;
+
+	if (word && colour_word(p->words[word - 1].lemma) >= 0)
+		return;
+	double *value = meaning_add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
+	memset(value, 0, n * sizeof *value);
+	for (; word < p->word_count && colour_word(p->words[word].lemma) >= 0; word++) {
+		vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);
+		for (size_t o = 0; o < n; o++)
+			value[o] = fmax(value[o], match[o]);
+	}
+	for (size_t o = 0; o < n; o++) {
+		value[o] = COLOUR_LEAST + (1 - COLOUR_LEAST) * value[o];
+		there[o] *= value[o];
+	}
+	meaning_take_part(m, &m->parts[m->part_count - 1]);
+}
+
+void meaning_judge_noun(struct meaning *m, int phrase)
+{
+	const struct parse *p = m->sentence->parse;
+	const struct parse_phrase *f = &p->phrases[phrase];
+	const size_t n = objects_of(m);
+	int head = meaning_head_of(p, f);
+	double *value, *there = there_of(m, phrase), *match = m->scratch + n;
+
+	if (head < 0 && phrase && is_elliptic(p, f))
+		head = meaning_head_of(p, &p->phrases[0]);
+	for (size_t o = 0; o < n; o++)
+		there[o] = GENERIC_THERE;
+	m->known[phrase] = GENERIC_THERE;
+	if (head < 0)
+		return;
+	vocabulary_noun(m->vocabulary, m->sentence, head, match);
+	if (colour_word(p->words[head].lemma) >= 0 && largest(match, n) < 0.5) { /* "something orange" */
+		judge_colour(m, phrase, head);
+		return;
+	}
+	value = meaning_add_part(m, phrase, MEANING_NOUN, head);
+	const double best = largest(match, n), most = fmax(best, match[n]);
+	m->known[phrase] = best;
+	for (size_t o = 0; o < n; o++) {
+		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * match[o] * match[o] / fmax(most, 1e-9);
+		/* another thing that is called so speaks against it */
+		there[o] = match[o] * pow(match[o] / fmax(best, 1e-9), NOUN_ELSEWHERE) *
+			   (most > best ? best / most : 1);
+	}
+	meaning_take_part(m, &m->parts[m->part_count - 1]);
+}
+
+/* "bright", "dark" or "light" before a colour is of the colour. */
+static int is_shade(const struct parse *p, int word)
+{
+	static const char *const shades[] = {
+		"bright", "dark", "light", "pale", "deep", "vivid", "soft", "royal", "pure", "jet", NULL};
+
+	return word + 1 < p->word_count && meaning_word_is(&p->words[word], shades) &&
+	       colour_word(p->words[word + 1].lemma) >= 0;
+}
+
+void meaning_judge_attribute(struct meaning *m, int phrase, int word, double least)
+{
+	const size_t n = objects_of(m);
+
+	if (is_shade(m->sentence->parse, word))
+		return;
+	if (colour_word(m->sentence->parse->words[word].lemma) >= 0) {
+		judge_colour(m, phrase, word);
+		return;
+	}
+	double *value = meaning_add_part(m, phrase, MEANING_ATTRIBUTE, word);
+	vocabulary_attribute(m->vocabulary, m->sentence, word, value);
+	share_looks(m, value);
+	const double most = largest(value, n);
+	m->unknown += most < 0.5;
+	for (size_t o = 0; o < n; o++)
+		value[o] = (value[o] < 0 ? least * (1 + (1 - OPPOSITE) * value[o])
+					 : least + (1 - least) * value[o]) /
+			   (least + (1 - least) * most);
+	meaning_take_part(m, &m->parts[m->part_count - 1]);
+}
+
+/* A part that is, or fits, no object, but that training sentences may tell of: "with a handle", "on the
+ * shelf". */
+void meaning_judge_said(struct meaning *m, const struct parse_clause *c, double *said)
+{
+	const struct parse *p = m->sentence->parse;
+	const size_t n = objects_of(m);
+	double *match = m->scratch + n;
+
+	memset(said, 0, n * sizeof *said);
+	for (int k = 0; k < c->anchors.n; k++) {
+		const int head = meaning_head_of(p, &p->phrases[c->anchors.item[k]]);
+		if (head < 0)
+			continue;
+		vocabulary_clause(m->vocabulary, m->sentence, head, c->relation, match);
+		for (size_t o = 0; o < n; o++)
+			said[o] = fmax(said[o], match[o]);
+	}
+}
+
+/* What a thing does, is for, or has: any word of it may be said of an object. */
+void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, double *value)
+{
+	const struct parse *p = m->sentence->parse;
+	const size_t n = objects_of(m);
+	double *match = m->scratch + n, *use = m->scratch + 8 * n;
+	int words = 0;
+
+	for (size_t o = 0; o < n; o++)
+		value[o] = 0;
+	for (int k = 0; k < c->words.n + c->anchors.n; k++) {
+		const int word = k < c->words.n
+					 ? c->words.item[k]
+					 : meaning_head_of(p, &p->phrases[c->anchors.item[k - c->words.n]]);
+		if (word < 0)
+			continue;
+		memset(use, 0, n * sizeof *use);
+		if (!vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match)) {
+			vocabulary_attribute(m->vocabulary, m->sentence, word, match);
+			vocabulary_use(m->vocabulary, m->sentence, word, use);
+		}
+		for (size_t o = 0; o < n; o++)
+			value[o] += fmax(fmax(match[o], USE_WORTH * use[o]), 0);
+		words++;
+	}
+	const double most = largest(value, n);
+	m->unknown += words && most < 0.5;
+	for (size_t o = 0; o < n; o++)
+		value[o] = words ? (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most) : 1;
+}
