@@ -127,6 +127,7 @@ void asking_close(struct asking *a)
 struct watched {
 	struct asking_answer *answer;
 	const char *question;
+	struct parse parse;
 	int is_explained, is_out_of_memory;
 };
 
@@ -139,8 +140,9 @@ static void watch(void *data, size_t i, const struct meaning *m)
 		memcpy(w->answer->centres[o], m->arrangement->objects[o].centre,
 			sizeof w->answer->centres[o]);
 	w->answer->has_centres = 1;
-	explain_refusal(m, w->question, w->answer->reason);
-	if (w->is_explained && !(w->answer->explained = explain_meaning(m, w->question)))
+	const struct explained x = {m, &w->parse, w->question};
+	explain_refusal(&x, w->answer->reason);
+	if (w->is_explained && !(w->answer->explained = explain_meaning(&x)))
 		w->is_out_of_memory = 1;
 }
 
@@ -184,11 +186,13 @@ static int choose_answer(struct asking *a, const struct text *t, struct watched 
 	const size_t objects = a->model.lifted.objects;
 	const struct choose_sentence sentence = {
 		t->texts[0], t->pieces[0], t->words, (size_t)t->offsets[1], a->from};
+	const struct parser_vectors vectors = {t->pieces[0], t->words, (int)t->offsets[1], t->width};
 	const struct choose_watch watching = {w, watch};
 	float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
 	char *chosen = mem_alloc(objects, 1, "answer", e);
 	struct choice choice;
 	int bad = !probability || !chosen ||
+		  parse_sentence(&w->parse, &a->parser, t->texts[0], &vectors, e) ||
 		  choose_with(a->chooser, &sentence, 1, &choice, probability, chosen, &watching, e);
 
 	if (!bad) {
@@ -201,13 +205,14 @@ static int choose_answer(struct asking *a, const struct text *t, struct watched 
 	}
 	free(probability);
 	free(chosen);
+	parse_free(&w->parse);
 	return bad ? -1 : 0;
 }
 
 int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
 	struct err *e)
 {
-	struct watched w = {answer, question, a->options->is_explained, 0};
+	struct watched w = {.answer = answer, .question = question, .is_explained = a->options->is_explained};
 	struct encoding x = {0};
 	int bad = answer_alloc(answer, a->model.lifted.objects, e) ||
 		  sentences_add(&x.sentences, "1", "?", question, e) || encode(&x, &a->encoder, to, e);

@@ -94,10 +94,10 @@ static void add_noun(struct words *w, const struct parse *p, int phrase)
 }
 
 /* The words of a part of the sentence. */
-static void add_part(
-	struct words *w, const struct meaning *m, const char *text, const struct meaning_part *part)
+static void add_part(struct words *w, const struct explained *x, const struct meaning_part *part)
 {
-	const struct parse *p = m->sentence->parse;
+	const char *text = x->text;
+	const struct parse *p = x->parse;
 
 	switch (part->kind) {
 	case MEANING_NOUN:
@@ -129,9 +129,10 @@ static size_t best_of(const double *x, size_t n)
 }
 
 /* The first anchor of a phrase, or of one of its anchors, that is not here; -1: none. */
-static int absent_anchor(const struct meaning *m, int phrase, int depth)
+static int absent_anchor(const struct explained *x, int phrase, int depth)
 {
-	const struct parse *p = m->sentence->parse;
+	const struct meaning *m = x->meaning;
+	const struct parse *p = x->parse;
 	const struct parse_phrase *f = &p->phrases[phrase];
 	const size_t n = m->arrangement->n;
 
@@ -145,7 +146,7 @@ static int absent_anchor(const struct meaning *m, int phrase, int depth)
 				continue;
 			if (there[best_of(there, n)] < 0.5)
 				return a;
-			const int deeper = absent_anchor(m, a, depth + 1);
+			const int deeper = absent_anchor(x, a, depth + 1);
 			if (deeper >= 0)
 				return deeper;
 		}
@@ -165,10 +166,10 @@ static const struct meaning_part *worst_part(const struct meaning *m, size_t o)
 }
 
 /* A part as the sentence says it: a clause with its anchors, where they follow it. */
-static void add_said(
-	struct words *w, const struct meaning *m, const char *text, const struct meaning_part *part)
+static void add_said(struct words *w, const struct explained *x, const struct meaning_part *part)
 {
-	const struct parse *p = m->sentence->parse;
+	const char *text = x->text;
+	const struct parse *p = x->parse;
 	const int is_clause = part->kind == MEANING_CLAUSE || part->kind == MEANING_SIZE;
 	const struct parse_clause *c = is_clause ? &p->clauses[part->index] : NULL;
 	int end = c ? c->span.end : 0;
@@ -179,13 +180,15 @@ static void add_said(
 	if (c && c->span.begin < c->span.end)
 		add_bytes(w, text + c->span.begin, (size_t)(end - c->span.begin));
 	else
-		add_part(w, m, text, part);
+		add_part(w, x, part);
 }
 
-void explain_refusal(const struct meaning *m, const char *text, char reason[EXPLAIN_REASON])
+void explain_refusal(const struct explained *x, char reason[EXPLAIN_REASON])
 {
-	const struct parse *p = m->sentence->parse;
-	const int anchor = absent_anchor(m, 0, 0);
+	const struct meaning *m = x->meaning;
+	const char *text = x->text;
+	const struct parse *p = x->parse;
+	const int anchor = absent_anchor(x, 0, 0);
 	const size_t best = best_of(m->fit, m->arrangement->n);
 	const struct meaning_part *worst = worst_part(m, best);
 	struct words w = {reason, 0, EXPLAIN_REASON};
@@ -202,7 +205,7 @@ void explain_refusal(const struct meaning *m, const char *text, char reason[EXPL
 	} else if (worst && worst->value[best] < 0.5 && worst->kind != MEANING_ORDINAL) {
 		add(&w, m->vocabulary->lifted->names[best]);
 		add(&w, " comes nearest, but '");
-		add_said(&w, m, text, worst);
+		add_said(&w, x, worst);
 		add(&w, worst->kind == MEANING_EXCEPT ? "' leaves it out" : "' does not fit it");
 	} else {
 		add(&w, m->vocabulary->lifted->names[best]);
@@ -215,33 +218,35 @@ static int add_number(cJSON *to, const char *key, double x)
 	return cJSON_AddNumberToObject(to, key, round(x * 1e4) / 1e4) != NULL;
 }
 
-static int add_words_of(cJSON *to, const struct meaning *m, const char *text, const struct meaning_part *part)
+static int add_words_of(cJSON *to, const struct explained *x, const struct meaning_part *part)
 {
 	static const char *const kinds[MEANING_KINDS] = {
 		"noun", "attribute", "colour", "clause", "size", "except", "ordinal"};
 	char buffer[EXPLAIN_REASON] = "";
 	struct words w = {buffer, 0, sizeof buffer};
 
-	add_part(&w, m, text, part);
+	add_part(&w, x, part);
 	return cJSON_AddStringToObject(to, "part", kinds[part->kind]) &&
 	       (!*buffer || cJSON_AddStringToObject(to, "words", buffer));
 }
 
-static int add_parts(cJSON *list, const struct meaning *m, const char *text, size_t o)
+static int add_parts(cJSON *list, const struct explained *x, size_t o)
 {
+	const struct meaning *m = x->meaning;
 	for (size_t k = 0; k < m->part_count; k++) {
 		cJSON *one = m->parts[k].phrase ? NULL : cJSON_CreateObject();
 		if (m->parts[k].phrase)
 			continue;
-		if (!cJSON_AddItemToArray(list, one) || !add_words_of(one, m, text, &m->parts[k]) ||
+		if (!cJSON_AddItemToArray(list, one) || !add_words_of(one, x, &m->parts[k]) ||
 			!add_number(one, "value", m->parts[k].value[o]))
 			return 0;
 	}
 	return 1;
 }
 
-static int add_candidates(cJSON *list, const struct meaning *m, const char *text)
+static int add_candidates(cJSON *list, const struct explained *x)
 {
+	const struct meaning *m = x->meaning;
 	const size_t n = m->arrangement->n;
 	size_t shown[EXPLAIN_MOST], count = 0;
 
@@ -258,7 +263,7 @@ static int add_candidates(cJSON *list, const struct meaning *m, const char *text
 		if (!cJSON_AddItemToArray(list, one) ||
 			!cJSON_AddStringToObject(one, "name", m->vocabulary->lifted->names[next]) ||
 			!add_number(one, "fit", m->fit[next]) ||
-			!add_parts(cJSON_AddArrayToObject(one, "parts"), m, text, next))
+			!add_parts(cJSON_AddArrayToObject(one, "parts"), x, next))
 			return 0;
 		shown[count++] = next;
 	}
@@ -266,9 +271,11 @@ static int add_candidates(cJSON *list, const struct meaning *m, const char *text
 }
 
 /* Every phrase but the target and who looks: which object fits it best. */
-static int add_anchors(cJSON *list, const struct meaning *m, const char *text)
+static int add_anchors(cJSON *list, const struct explained *x)
 {
-	const struct parse *p = m->sentence->parse;
+	const struct meaning *m = x->meaning;
+	const char *text = x->text;
+	const struct parse *p = x->parse;
 	const size_t n = m->arrangement->n;
 
 	for (int a = 1; a < p->phrase_count; a++) {
@@ -296,9 +303,10 @@ static int add_unexplained(cJSON *list, const struct parse *p)
 	return fine;
 }
 
-cJSON *explain_meaning(const struct meaning *m, const char *text)
+cJSON *explain_meaning(const struct explained *x)
 {
-	const struct parse *p = m->sentence->parse;
+	const char *text = x->text;
+	const struct parse *p = x->parse;
 	char buffer[4 * EXPLAIN_REASON] = "";
 	struct words w = {buffer, 0, sizeof buffer};
 	cJSON *all = cJSON_CreateObject();
@@ -306,8 +314,8 @@ cJSON *explain_meaning(const struct meaning *m, const char *text)
 	add_tree(&w, p, text, 0, 0);
 	if (cJSON_AddStringToObject(all, "parse", buffer) && add_number(all, "confidence", p->confidence) &&
 		add_unexplained(cJSON_AddArrayToObject(all, "unexplained"), p) &&
-		add_candidates(cJSON_AddArrayToObject(all, "candidates"), m, text) &&
-		add_anchors(cJSON_AddArrayToObject(all, "anchors"), m, text))
+		add_candidates(cJSON_AddArrayToObject(all, "candidates"), x) &&
+		add_anchors(cJSON_AddArrayToObject(all, "anchors"), x))
 		return all;
 	cJSON_Delete(all);
 	return NULL;
