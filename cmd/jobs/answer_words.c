@@ -67,6 +67,9 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e)
 
 	if (a->explained)
 		explain_put(a->explained, out);
+	if (a->explained && a->is_by_wording)
+		fputs("  answered by the wording alone: its words are those of this thing's sentences\n",
+			out);
 	if (!a->count)
 		fprintf(out, "nothing here is that: %s\n", a->reason);
 	for (size_t k = 0; k < a->count; k++)
@@ -160,6 +163,8 @@ static int add_answer(cJSON *to, const struct answer_told *t)
 		if (!second || !add_name(second, t, a->runner_up))
 			return 0;
 	}
+	if (a->is_by_wording && !cJSON_AddStringToObject(to, "by", "wording"))
+		return 0;
 	if (!a->count && !cJSON_AddStringToObject(to, "reason", a->reason))
 		return 0;
 	if (t->view && !(cJSON_AddStringToObject(to, "picture", t->picture) &&

@@ -127,7 +127,6 @@ void asking_close(struct asking *a)
 struct watched {
 	struct asking_answer *answer;
 	const char *question;
-	struct parse parse;
 	int is_explained, is_out_of_memory;
 };
 
@@ -140,7 +139,7 @@ static void watch(void *data, size_t i, const struct meaning *m)
 		memcpy(w->answer->centres[o], m->arrangement->objects[o].centre,
 			sizeof w->answer->centres[o]);
 	w->answer->has_centres = 1;
-	const struct explained x = {m, &w->parse, w->question};
+	const struct explained x = {m, m->sentence->parse, w->question};
 	explain_refusal(&x, w->answer->reason);
 	if (w->is_explained && !(w->answer->explained = explain_meaning(&x)))
 		w->is_out_of_memory = 1;
@@ -186,17 +185,16 @@ static int choose_answer(struct asking *a, const struct text *t, struct watched 
 	const size_t objects = a->model.lifted.objects;
 	const struct choose_sentence sentence = {
 		t->texts[0], t->pieces[0], t->words, (size_t)t->offsets[1], a->from};
-	const struct parser_vectors vectors = {t->pieces[0], t->words, (int)t->offsets[1], t->width};
 	const struct choose_watch watching = {w, watch};
 	float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
 	char *chosen = mem_alloc(objects, 1, "answer", e);
 	struct choice choice;
 	int bad = !probability || !chosen ||
-		  parse_sentence(&w->parse, &a->parser, t->texts[0], &vectors, e) ||
 		  choose_with(a->chooser, &sentence, 1, &choice, probability, chosen, &watching, e);
 
 	if (!bad) {
 		w->answer->there = choice.there;
+		w->answer->is_by_wording = choice.is_by_wording;
 		for (size_t o = 0; o < objects; o++)
 			w->answer->probability[o] = choice.there * (double)probability[o];
 		if (choice.there < a->options->least)
@@ -205,7 +203,6 @@ static int choose_answer(struct asking *a, const struct text *t, struct watched 
 	}
 	free(probability);
 	free(chosen);
-	parse_free(&w->parse);
 	return bad ? -1 : 0;
 }
 

@@ -173,7 +173,8 @@ static void choose_whole(struct chooser *c, double *row, char *chosen)
 	chosen[best_of(row, n)] = 1;
 }
 
-/* What the clauses of the target leave to object o; is_so: nothing of its colour and place is contradicted. */
+/* What the clauses of the target leave to object o; is_so: nothing of its colour and place is contradicted.
+ */
 static double clauses_leave(const struct meaning *m, size_t o, int *is_so)
 {
 	double left = 1;
@@ -193,8 +194,8 @@ static double clauses_leave(const struct meaning *m, size_t o, int *is_so)
 /* A sentence that means one thing, and that its parse finds nothing for: the object that its wording is
  * nearest to, unless nothing or another thing is called nearly so, or what is said of its colour or place is
  * not so. */
-static void choose_wording(struct chooser *c, const struct vocabulary_sentence *s, struct choice *to, double *row,
-	char *chosen)
+static void choose_wording(
+	struct chooser *c, const struct vocabulary_sentence *s, struct choice *to, double *row, char *chosen)
 {
 	const size_t n = c->arrangement.n;
 	const double there = wording_judge(&c->wording, s, c->score);
@@ -214,26 +215,29 @@ static void choose_wording(struct chooser *c, const struct vocabulary_sentence *
 	memset(chosen, 0, n);
 	chosen[best] = 1;
 	to->there = there;
+	to->is_by_wording = 1;
 }
 
-static int choose_parsed(struct chooser *c, const struct choose_sentence *from, struct choice *to,
-	double *row, char *chosen, struct parse *p, struct err *e)
+/* s gets the sentence with its parse p. */
+static int choose_parsed(struct chooser *c, const struct choose_sentence *from, struct vocabulary_sentence *s,
+	struct choice *to, double *row, char *chosen, struct parse *p, struct err *e)
 {
 	const struct lifted *l = c->scene->lifted;
 	const struct parser_vectors vectors = {from->pieces, from->vectors, (int)from->words, l->width};
 
 	if (parse_sentence(p, &c->parser, from->text, &vectors, e))
 		return -1;
-	const struct vocabulary_sentence s = {p, from->vectors, from->words};
-	if (meaning_judge(&c->meaning, &s, e))
+	*s = (struct vocabulary_sentence){p, from->vectors, from->words};
+	if (meaning_judge(&c->meaning, s, e))
 		return -1;
 	memset(row, 0, l->objects * sizeof *row);
 	to->is_several = p->phrases[0].count != PARSE_ONE || p->phrases[0].also.n;
 	to->there = choose_phrase(c, p, 0, row, chosen);
 	for (int k = 0; k < p->phrases[0].also.n; k++)
 		to->there = fmax(to->there, choose_phrase(c, p, p->phrases[0].also.item[k], row, chosen));
-	if (has(c, CHOOSE_WORDING) && !to->is_several && !p->phrases[0].except.n && !p->phrases[0].ordinal && to->there < 0.65)
-		choose_wording(c, &s, to, row, chosen);
+	if (has(c, CHOOSE_WORDING) && !to->is_several && !p->phrases[0].except.n && !p->phrases[0].ordinal &&
+		to->there < PARSE_LEAST)
+		choose_wording(c, s, to, row, chosen);
 	return 0;
 }
 
@@ -243,6 +247,7 @@ static int choose_one(struct chooser *c, const struct choose_sentence *from, str
 {
 	const size_t n = c->scene->lifted->objects;
 	struct parse p = {0};
+	struct vocabulary_sentence s;
 	int bad = 0;
 
 	*to = (struct choice){0};
@@ -254,7 +259,7 @@ static int choose_one(struct chooser *c, const struct choose_sentence *from, str
 	const size_t same = vocabulary_whole(&c->vocabulary, has(c, CHOOSE_SENTENCE) ? from->text : NULL,
 		from->vectors, from->words, c->whole);
 	if (from->pieces) {
-		bad = choose_parsed(c, from, to, row, chosen, &p, e);
+		bad = choose_parsed(c, from, &s, to, row, chosen, &p, e);
 		if (!bad && watch)
 			watch->each(watch->data, i, &c->meaning);
 	} else {

@@ -59,8 +59,9 @@ struct choose_scene {
 };
 
 struct choice {
-	double there;	/* P that the sentence means anything that was lifted */
-	int is_several; /* it may mean more than one object */
+	double there;	   /* P that the sentence means anything that was lifted */
+	int is_several;	   /* it may mean more than one object */
+	int is_by_wording; /* the parse found nothing, and the wording alone told (CHOOSE_WORDING) */
 };
 
 /* What is known of a sentence once it is judged, for those who want to explain it; good until the call

@@ -76,8 +76,10 @@
 #define WORDING_HEAD 3.2
 #define WORDING_ALL 8.9
 #define WORDING_PLAIN 1.7
-#define WORDING_LEAST 0.88 /* it counts where the sentence fits as well as 0.35 of the training sentences, ... */
-#define WORDING_NOUN 0.3   /* ... and its noun is as known as this */
+#define PARSE_LEAST 0.65 /* below this P the parse has found nothing */
+#define WORDING_LEAST                                                                                        \
+	0.88 /* it counts where the sentence fits as well as 0.35 of the training sentences, ... */
+#define WORDING_NOUN 0.3      /* ... and its noun is as known as this */
 #define WORDING_COLOUR_SO 0.5 /* what a colour and a clause leave to that of which they are so */
 #define WORDING_CLAUSE 0.25
 #define COLOUR_FLOOR 0.05

@@ -422,8 +422,7 @@ void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s
 				     item->relation != PARSE_OTHER;
 		if (item->sentence == v->without || is_place)
 			continue;
-		match[item->object] =
-			fmax(match[item->object], dot(v->word, v->vectors + i * width, width));
+		match[item->object] = fmax(match[item->object], dot(v->word, v->vectors + i * width, width));
 	}
 	for (size_t o = 0; o < l->objects; o++) {
 		match[o] = match[o] < -0.999 ? 0 : match[o];

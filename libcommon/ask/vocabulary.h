@@ -85,7 +85,8 @@ void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s
 void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
 	enum parse_relation relation, double *match);
 
-/* match (O) in [0,1]: that what an object is called is for what word w says ("drink"), by WordNet's glosses. */
+/* match (O) in [0,1]: that what an object is called is for what word w says ("drink"), by WordNet's glosses.
+ */
 void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* fit (O): how far an object is of the colour of a word, in [0,1], by its Gaussians and by the colours that

@@ -98,7 +98,8 @@ static int fit_words(struct wording *w, const struct vocabulary_sentence *s, dou
 		for (size_t o = 0; o < n; o++)
 			score[o] += WORDING_SHARP * (w->match[o] - best);
 		sum += best;
-		if (!vocabulary_colour(w->vocabulary, w->arrangement, s->parse->words[t.word[i]].lemma, w->own))
+		if (!vocabulary_colour(
+			    w->vocabulary, w->arrangement, s->parse->words[t.word[i]].lemma, w->own))
 			continue;
 		const double fits = log(COLOUR_FLOOR + largest(w->own, n));
 		for (size_t o = 0; o < n; o++)
@@ -116,7 +117,8 @@ static int fit_words(struct wording *w, const struct vocabulary_sentence *s, dou
 			match_word(w, s, t.word[i], w->match);
 			*fit += WORDING_HEAD * w->match[o];
 		}
-		if (vocabulary_colour(w->vocabulary, w->arrangement, s->parse->words[t.word[i]].lemma, w->own))
+		if (vocabulary_colour(
+			    w->vocabulary, w->arrangement, s->parse->words[t.word[i]].lemma, w->own))
 			*fit += log((COLOUR_FLOOR + w->own[o]) / (COLOUR_FLOOR + COLOUR_USUAL));
 	}
 	return t.n;

@@ -45,8 +45,8 @@ void grammar_analyse(struct analysis *a, const struct tokens *t);
 /* Makes every head one that its role may have, without a circle; what then hangs on nothing hangs on ROOT. */
 void analysis_repair(struct analysis *a);
 
-/* What closed-class words settle whatever was made of them: sizes before a noun, who looks, "not the one", pairs of
- * anchors, parts of things. grammar: what grammar_analyse made. */
+/* What closed-class words settle whatever was made of them: sizes before a noun, who looks, "not the one",
+ * pairs of anchors, parts of things. grammar: what grammar_analyse made. */
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
 
 /* The parse that an analysis stands for; -1 only where memory is out. Degrees, counts, ordinals, groups and

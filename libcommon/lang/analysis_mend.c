@@ -181,7 +181,8 @@ static void mend_parts(struct analysis *a, const struct tokens *t)
 /* "the longest way from the cup" is farthest from it, whatever became of the words. */
 static void mend_ways(struct analysis *a, const struct tokens *t)
 {
-	static const char *const far[] = {"longest", "greatest", "largest", "biggest", "furthest", "farthest"};
+	static const char *const far[] = {
+		"longest", "greatest", "largest", "biggest", "furthest", "farthest"};
 	static const char *const near[] = {"shortest", "least", "smallest"};
 
 	for (int i = 0; i + 1 < t->n; i++) {
@@ -226,8 +227,8 @@ static int has_anchor(const struct analysis *a, int predicate)
 	return 0;
 }
 
-/* The predicate without an anchor right before a phrase that begins at `begin`, or after the phrase with "its"
- * before it; or -1. */
+/* The predicate without an anchor right before a phrase that begins at `begin`, or after the phrase with
+ * "its" before it; or -1. */
 static int predicate_for(const struct analysis *a, const struct tokens *t, int begin, int end)
 {
 	int i = begin - 1;

@@ -1,5 +1,5 @@
-/* What a parse still has wrong once it is built, and its own words tell: of what group one thing is meant, and
- * what the thing is compared with. */
+/* What a parse still has wrong once it is built, and its own words tell: of what group one thing is meant,
+ * and what the thing is compared with. */
 #include "lang/analysis.h"
 #include "lang/closed.h"
 
@@ -58,9 +58,9 @@ static void settle_comparison(struct parse *p, struct parse_phrase *f, struct pa
 	a = &p->phrases[c->anchors.item[0]];
 	const int at = c->words.item[0];
 	const int is_of = is(p, at + 1, "of") && (a->count != PARSE_ONE || a->group);
-	const int is_rest = c->degree == PARSE_MORE &&
-			    (is_before(p, at, a, "other") || is_before(p, at, a, "others") ||
-				    is_before(p, at, a, "rest"));
+	const int is_rest =
+		c->degree == PARSE_MORE && (is_before(p, at, a, "other") || is_before(p, at, a, "others") ||
+						   is_before(p, at, a, "rest"));
 	if ((!is_of && !is_rest) || a->clauses.n || a == f)
 		return;
 	if (!f->noun.n)

@@ -110,8 +110,8 @@ static void add_text(struct uses *to, const char *text, double worth)
 	}
 }
 
-/* What a synset says, and what it is a kind of: glosses, or its own words. Returns whether an artifact is above
- * it. */
+/* What a synset says, and what it is a kind of: glosses, or its own words. Returns whether an artifact is
+ * above it. */
 static int climb(struct uses *to, long synset, int pos, int is_gloss, int steps, double worth)
 {
 	static char none[] = "";

@@ -1,5 +1,5 @@
-/* What things are for, by WordNet's glosses: a cup is "used for drinking", and tea is a kind of drink. Without
- * WordNet nothing is known. Call from one thread at a time, as lang/wordnet.h. */
+/* What things are for, by WordNet's glosses: a cup is "used for drinking", and tea is a kind of drink.
+ * Without WordNet nothing is known. Call from one thread at a time, as lang/wordnet.h. */
 #ifndef LANG_USES_H
 #define LANG_USES_H
 
@@ -14,11 +14,12 @@ struct uses {
 	} of[USES_STEMS];
 };
 
-/* Fills `to` with the words of the glosses of a made thing's noun, and of what it is a kind of, two steps up. */
+/* Fills `to` with the words of the glosses of a made thing's noun, and of what it is a kind of, two steps up.
+ */
 void uses_of_thing(struct uses *to, const char *lemma);
 
-/* Fills `to` with a word and the words of what it is a kind of, as a noun or a verb: drink for tea and sip. Verbs
- * that say nothing of what a thing is for ("put", "have") have none. */
+/* Fills `to` with a word and the words of what it is a kind of, as a noun or a verb: drink for tea and sip.
+ * Verbs that say nothing of what a thing is for ("put", "have") have none. */
 void uses_of_word(struct uses *to, const char *lemma);
 
 /* How far a thing is for what a word says, in [0,1]. */
