@@ -109,18 +109,18 @@ lift.lift = full
 lift.lift-voted = voted
 lift.lift-relations = plain
 lift.lift-sizes = plain
-ask.lift-sizes = --without relations
+ask.lift-sizes = --without relations,except
 lift.lift-colours = plain
-ask.lift-colours = --without relations,sizes
+ask.lift-colours = --without relations,except,sizes
 lift.lift-alike = plain
-ask.lift-alike = --without relations,sizes,colours
+ask.lift-alike = --without relations,except,sizes,colours
 lift.lift-names = plain
-ask.lift-names = --without relations,sizes,colours,alike
+ask.lift-names = --without relations,except,sizes,colours,alike
 lift.lift-words = plain
-ask.lift-words = --without relations,sizes,colours,alike,names
+ask.lift-words = --without relations,except,sizes,colours,alike,names
 lift.lift-sentence = plain
-ask.lift-sentence = --without relations,sizes,colours,alike,names,words
-parts := words names alike colours sizes relations sentence
+ask.lift-sentence = --without relations,except,sizes,colours,alike,names,words,knowledge,wording
+parts := words names knowledge alike colours sizes relations except sentence wording
 $(foreach p,$(parts),$(eval lift.lift-but-$(p) = full)$(eval ask.lift-but-$(p) = --without $(p)))
 encoders := $(foreach b,$(BERTS),$(firstword $(subst =, ,$(b))))
 $(foreach b,$(BERTS),$(eval dir.$(firstword $(subst =, ,$(b))) := $(lastword $(subst =, ,$(b)))))

@@ -248,10 +248,11 @@ static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
 }
 
-/* "around", and nothing is there that it is around. */
+/* "around", and nothing is there that it is around; "in" of "what you boil water in". */
 static int says_nothing(const struct parse_clause *c)
 {
-	return c->relation == PARSE_NEAR && c->degree == PARSE_PLAIN && !c->anchors.n;
+	return (c->relation == PARSE_NEAR || c->relation == PARSE_SUPPORTS) && c->degree == PARSE_PLAIN &&
+	       !c->anchors.n && !c->negated;
 }
 
 /* The clauses that compare, or those that do not. Those of the place as a whole are the thing's: "everything
