@@ -3,6 +3,7 @@
 #include "formats/json.h"
 #include "lang/colours.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,10 +42,9 @@ static void add_noun(const struct writer *w, cJSON *o, const struct parse_list *
 	text = calloc(length, 1);
 	if (!text)
 		return;
-	for (int i = 0; i < noun->n; i++) {
-		strcat(text, i ? " " : "");
-		strcat(text, w->p->words[noun->item[i]].text);
-	}
+	for (int i = 0, at = 0; i < noun->n; i++)
+		at += snprintf(text + at, length - (size_t)at, "%s%s", i ? " " : "",
+			w->p->words[noun->item[i]].text);
 	cJSON_AddStringToObject(o, "noun", text);
 	free(text);
 }
