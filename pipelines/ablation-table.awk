@@ -11,6 +11,7 @@ BEGIN {
 	title["encoder"] = "Language encoder (table 6)"
 	title["contrast"] = "Contrast, with and without projections"
 	title["settings"] = "Settings of the training"
+	title["steps"] = "Steps of the training"
 	title["lifted"] = "Without training, and from there"
 }
 

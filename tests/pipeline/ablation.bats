@@ -105,6 +105,15 @@ report() {
 	grep -qE '^\| mine \| ( \| [0-9.]+){4} \|$' <<<"$output"
 }
 
+@test "the table of steps has half and twice the steps, with and without the modules" {
+	ablation steps >first.log 2>&1
+	[ "$(grep -cE '^\| [^|]+ \|[^|]*( \| [0-9.]+){4} \|$' out/quick/steps.md)" = 6 ]
+	for run in none-half:10 none:20 none-double:40 half:10 both:20 double:40; do
+		grep -q -- "--iterations ${run#*:} " "out/quick/diner-1/${run%:*}/options"
+	done
+	cut -d' ' -f5- out/quick/diner-1/none/options | cmp - <(cut -d' ' -f5- out/quick/diner-1/none-double/options)
+}
+
 @test "the cost table times a training and weighs its model" {
 	ablation scores RUNS="none both proj-both lift" >/dev/null 2>&1
 	run ablation cost RUNS="none both proj-both lift"
