@@ -47,6 +47,20 @@ report() {
 	grep -qF 'on test sentences cannot be told (+2.5 ± 7.5)' <<<"$output"
 }
 
+@test "a claim is silent about figures that one of its rows lacks" {
+	for cell in a-1 b-1 a-2 b-2; do
+		score $cell both 0.30 0.40
+		mkdir -p given/$cell/masks
+		echo '{"miou":0.5,"oiou":0.5}' >given/$cell/masks/ciou.quality.json
+		echo '{"miou":0.4,"oiou":0.5}' >given/$cell/masks/top1.quality.json
+	done
+	run report masks both
+	[ "$status" = 0 ]
+	grep -q '^- confidence-weighted IoU above top-1 (table 3): the masks themselves agrees (+10.0 ± 0.0)$' <<<"$output"
+	grep -qF '| top-1 | below | 40.0 ± 0.0 | - | - | - | - |' <<<"$output"
+	not grep -q 'above IoU' <<<"$output"
+}
+
 @test "groups are pooled by their number of pairs" {
 	for cell in a-1 b-1 a-2 b-2; do
 		mkdir -p given/$cell/both
