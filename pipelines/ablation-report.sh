@@ -31,6 +31,7 @@ values() {
 			*) continue ;;
 			esac
 			for run in $made; do
+				[ -e "$ROOT/$cell/${run#*=}.quality.json" ] || continue
 				printf '%s\t%s\t%s\tquality\t%s\n' "${run%=*}" "$cell" "$seed" "$(quality "$ROOT/$cell/${run#*=}.quality.json")"
 			done
 		done

@@ -11,6 +11,7 @@ BEGIN {
 	title["encoder"] = "Language encoder (table 6)"
 	title["contrast"] = "Contrast, with and without projections"
 	title["settings"] = "Settings of the training"
+	title["steps"] = "Steps of the training"
 	title["lifted"] = "Without training, and from there"
 }
 
@@ -48,11 +49,13 @@ function difference(a, b, kind,    i, d, s, s2) {
 	error_difference = sqrt(s2 > 0 ? s2 : 0)
 }
 
-function claim_line(i, kind, what,    verdict) {
+# What a claim is worth in one kind of figures, after a separator; nothing where either run has none of them.
+function claim_text(i, kind, what, separator,    verdict) {
+	if (!((better[i], kind) in pairs) || !((worse[i], kind) in pairs)) return ""
 	difference(better[i], worse[i], kind)
-	if (cells < 2) return sprintf("%s cannot be told from one scene (%+.1f)", what, mean_difference)
+	if (cells < 2) return sprintf("%s%s cannot be told from one scene (%+.1f)", separator, what, mean_difference)
 	verdict = mean_difference > 2 * error_difference ? "agrees" : mean_difference < -2 * error_difference ? "is the other way round" : "cannot be told"
-	return sprintf("%s %s (%+.1f ± %.1f)", what, verdict, mean_difference, error_difference)
+	return sprintf("%s%s %s (%+.1f ± %.1f)", separator, what, verdict, mean_difference, error_difference)
 }
 
 END {
@@ -66,9 +69,11 @@ END {
 				quality ? " " cell_text(row[i], "quality") " |" : "", cell_text(row[i], "test"), cell_text(row[i], "test-right"), cell_text(row[i], "train"), cell_text(row[i], "train-right")
 	if (claims) print "\nThe published order, as mean paired difference ± its standard error:\n"
 	for (i = 1; i <= claims; i++)
-		if ((better[i] in has) && (worse[i] in has))
-			printf "- %s above %s (%s): %s; %s%s\n", label[better[i]], label[worse[i]], source[i],
-				claim_line(i, "test", "on test sentences"), claim_line(i, "train", "on training sentences"),
-				quality ? "; " claim_line(i, "quality", "the masks themselves") : ""
+		if ((better[i] in has) && (worse[i] in has)) {
+			told = claim_text(i, "test", "on test sentences", "") claim_text(i, "train", "on training sentences", "; ") \
+				claim_text(i, "quality", "the masks themselves", "; ")
+			sub(/^; /, "", told)
+			printf "- %s above %s (%s): %s\n", label[better[i]], label[worse[i]], source[i], told
+		}
 	print ""
 }

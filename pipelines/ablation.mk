@@ -17,7 +17,7 @@
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 #
 # Targets: tables (all but the cost), cost (times its own trainings, so nothing else should run), all, and one for each
-# table: statistics (of the scenes) unseen (answers of the lifted model to sentences in a wording kept apart) modules second (what may teach a second stage) similarity masks interaction width encoder contrast settings sentences lifted (and,
+# table: statistics (of the scenes) unseen (answers of the lifted model to sentences in a wording kept apart) modules second (what may teach a second stage) similarity masks interaction width encoder contrast settings steps sentences lifted (and,
 # not in the paper, answers without training, and trainings that start from them) hard (the same by what makes a case hard)
 # space (its boxes and outlines of whole objects). Not among them: exact, the modules without the shortcuts of a training
 # step, several times as long. They print;
@@ -83,6 +83,10 @@ run.half = $(run.both)
 steps.half = $(shell expr $(ITERATIONS) / 2)
 run.double = $(run.both)
 steps.double = $(shell expr $(ITERATIONS) \* 2)
+run.none-half = $(run.none)
+steps.none-half = $(steps.half)
+run.none-double = $(run.none)
+steps.none-double = $(steps.double)
 run.onscene = $(run.both)
 masks.onscene = masks/scene
 # Other second stages: one mask chosen of stage 1's for each object; stage 1's and the detector's, chosen together in
@@ -134,7 +138,8 @@ interaction := none attention attention+fp add pcmi proj
 width := width1 width4 both width32
 encoder := both static $(encoders)
 contrast := pcmi dot both proj proj-dot proj-both
-settings := both cold warm lambda slow half double
+settings := both cold warm lambda slow
+steps := none-half none none-double half both double
 second := both two two-chosen two-pooled two-pooled3d onscene two-lifted
 exact := none none-exact pcmi pcmi-exact gtcl gtcl-exact both both-exact two two-exact two-lifted two-lifted-exact
 sentences := both two
@@ -142,7 +147,7 @@ lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike
 hard := two warmed lift-relations lift
 space := lift
 unseen := lift
-tables := statistics unseen modules second similarity masks interaction width encoder contrast settings sentences lifted hard space
+tables := statistics unseen modules second similarity masks interaction width encoder contrast settings steps sentences lifted hard space
 RUNS ?= $(sort $(foreach t,$(tables) exact,$($(t))))
 
 root := $(OUT)/$(SIZE)
