@@ -69,7 +69,8 @@ static void softmax(double *x, size_t n)
 static int is_same_view(const struct viewpoint *a, const struct viewpoint *b)
 {
 	return a->kind == b->kind && (a->kind != VIEWPOINT_CAMERA || a->camera == b->camera) &&
-	       (a->kind != VIEWPOINT_POINT || !memcmp(a->point, b->point, sizeof a->point));
+	       (a->kind != VIEWPOINT_POINT || (a->point[0] == b->point[0] && a->point[1] == b->point[1] &&
+						      a->point[2] == b->point[2]));
 }
 
 static void look_from(struct chooser *c, const struct viewpoint *from)
