@@ -1,6 +1,6 @@
 /* How near a sentence's words for its target are to the training sentences' words for each object, whatever
  * they say: for sentences whose parse does not tell, as "the small rounded container by the kettle" where
- * nobody knows that a case is a container.
+ * nobody knows that a basket is a tub.
  *
  * M_wo is the best cosine of target word w with a noun or attribute of object o's training sentences, or with
  * those of one that looks the same (less WORDING_UNLIKE times how unlike they are); a word of o's name counts

@@ -98,7 +98,7 @@ static void mend_colours(struct analysis *a, const struct tokens *t)
 			a->word[i] = (struct analysis_word){.role = ROLE_ATTRIBUTE, .head = ROOT};
 }
 
-/* The predicate of a place that "and" before a phrase joins it to, or -1: "above the kettle and the bag". */
+/* The predicate of a place that "and" before a phrase joins it to, or -1: "behind the lamp and the vase". */
 static int predicate_joined(const struct analysis *a, const struct tokens *t, int noun)
 {
 	static const unsigned takes_two = 1U << PARSE_LEFT | 1U << PARSE_RIGHT | 1U << PARSE_FRONT |
@@ -122,7 +122,7 @@ static int has_clause(const struct analysis *a, int noun)
 	return 0;
 }
 
-/* "the thing above the kettle and the bag" is above both. */
+/* "the thing behind the lamp and the vase" is above both. */
 static void mend_pairs(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
@@ -134,7 +134,7 @@ static void mend_pairs(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "the sheet with white sketches": where the learnt parser made nothing of "with", what the grammar makes. */
+/* "the rug with grey stripes": where the learnt parser made nothing of "with", what the grammar makes. */
 static void mend_with(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	int found = 0;
@@ -158,7 +158,7 @@ static void mend_with(struct analysis *a, const struct analysis *grammar, const 
 	}
 }
 
-/* "near the black base of the kettle": black is not the target, which comes before. */
+/* "under the oak top of the desk": oak is not the target, which comes before. */
 static void mend_parts(struct analysis *a, const struct tokens *t)
 {
 	int found = 0;
@@ -178,7 +178,7 @@ static void mend_parts(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "the longest way from the cup" is farthest from it, whatever became of the words. */
+/* "the greatest distance to the sofa" is farthest from it, whatever became of the words. */
 static void mend_ways(struct analysis *a, const struct tokens *t)
 {
 	static const char *const far[] = {
@@ -207,7 +207,7 @@ static void mend_ways(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "the cylinder that isn't orange": orange ones are left out. */
+/* "the door that isn't brown": brown ones are left out. */
 static void mend_isnt(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i + 1 < t->n; i++) {
@@ -243,7 +243,7 @@ static int predicate_for(const struct analysis *a, const struct tokens *t, int b
 	return -1;
 }
 
-/* "the can left of the red one": red is the anchor. */
+/* "the chair beside the grey one": grey is the anchor. */
 static void mend_ones(struct analysis *a, const struct tokens *t)
 {
 	int found = 0;

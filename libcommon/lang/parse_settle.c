@@ -18,7 +18,7 @@ static int class_of(const struct parse *p, int word)
 	return closed < 0 ? -1 : (int)closed_words[closed].class;
 }
 
-/* "the first two mugs" are two, but "there are two mugs, the second one" is one of two. */
+/* "the first two hooks" are two, but "of my two coats the second" is one of two. */
 static void settle_ordinal(const struct parse *p, struct parse_phrase *f)
 {
 	if (!f->ordinal || f->count == PARSE_ONE)
@@ -48,7 +48,7 @@ static void move_list(struct parse_list *to, struct parse_list *from)
 	*from = (struct parse_list){0};
 }
 
-/* "the nearer of the two blocks" is a block, and "bigger than all the other balls" a ball: the largest. */
+/* "the taller of those three vases" is a vase, and "wider than the rest of the shelves" a shelf: the widest. */
 static void settle_comparison(struct parse *p, struct parse_phrase *f, struct parse_clause *c)
 {
 	struct parse_phrase *a;
