@@ -1,5 +1,5 @@
 /* How near a sentence's words for its target are to the training sentences' words for each object, whatever
- * they say: for sentences whose parse does not tell, as "the small rounded container by the kettle" where
+ * they say: for sentences whose parse does not tell, as "the round tub at the door" where
  * nobody knows that a basket is a tub.
  *
  * M_wo is the best cosine of target word w with a noun or attribute of object o's training sentences, or with

@@ -48,7 +48,8 @@ static void move_list(struct parse_list *to, struct parse_list *from)
 	*from = (struct parse_list){0};
 }
 
-/* "the taller of those three vases" is a vase, and "wider than the rest of the shelves" a shelf: the widest. */
+/* "the taller of those three vases" is a vase, and "wider than the rest of the shelves" a shelf: the widest.
+ */
 static void settle_comparison(struct parse *p, struct parse_phrase *f, struct parse_clause *c)
 {
 	struct parse_phrase *a;
