@@ -122,7 +122,7 @@ static int has_clause(const struct analysis *a, int noun)
 	return 0;
 }
 
-/* "the thing behind the lamp and the vase" is above both. */
+/* "the thing behind the lamp and the vase" is behind both. */
 static void mend_pairs(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
@@ -270,10 +270,10 @@ static void mend_ones(struct analysis *a, const struct tokens *t)
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	mend_with(a, grammar, t);
+	mend_ones(a, t);
 	mend_parts(a, t);
 	mend_ways(a, t);
 	mend_isnt(a, t);
-	mend_ones(a, t);
 	mend_sizes(a, t);
 	mend_viewer(a, t);
 	mend_negation(a, t);

@@ -1,6 +1,8 @@
 /* lang/: colour words, what nouns share, and what WordNet knows, where it is there. */
 #include "lang/colours.h"
 #include "lang/kinds.h"
+#include "lang/spelling.h"
+#include "lang/uses.h"
 #include "lang/wordnet.h"
 #include "unit.h"
 
@@ -90,8 +92,63 @@ static void wordnet(void)
 	CHECK(is_so("wooden", "plastic") == 0, "neither");
 }
 
+static void repairs(const char *word, const char *expected)
+{
+	static const char *const known[] = {"trumpet", "harp"};
+	char right[SPELLING_LENGTH];
+	const int is_repaired = spelling_repair(word, known, 2, right);
+
+	CHECK(is_repaired == (expected != NULL) && (!expected || !strcmp(right, expected)), "%s: %s", word,
+		is_repaired ? right : "as it is");
+}
+
+static void spelling(void)
+{
+	CHECK(spelling_near("tub", "tubs") && spelling_near("tub", "tab") && spelling_near("tub", "tbu"),
+		"a slip");
+	CHECK(!spelling_near("tub", "tub") && !spelling_near("tub", "tables"), "no slip, and many");
+	repairs("trumpt", "trumpet");	  /* of the scene, */
+	repairs("trumpetts", "trumpets"); /* in its plural, */
+	repairs("ylelow", "yellow");	  /* a colour, */
+	repairs("tabel", "table");   /* an everyday noun, */
+	repairs("behnid", "behind"); /* or a word of grammar */
+	repairs("harp", NULL);
+	repairs("trumpet", NULL);
+	repairs("xq", NULL);
+	repairs("", NULL);
+	repairs("aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa", NULL);
+	/* what WordNet knows is no slip of a short word */
+	if (wordnet_is_there())
+		repairs("crates", NULL);
+}
+
+/* A kettle boils, one reads a book and sips from a cup, and not the other way round. */
+static void uses(void)
+{
+	static const char *const pairs[][3] = {
+		{"kettle", "boil", "book"}, {"book", "read", "kettle"}, {"cup", "sip", "book"}};
+
+	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+		struct uses thing, word, other;
+		uses_of_thing(&thing, pairs[i][0]);
+		uses_of_word(&word, pairs[i][1]);
+		uses_of_thing(&other, pairs[i][2]);
+		CHECK(uses_fit(&thing, &word) > uses_fit(&other, &word) || !wordnet_is_there(),
+			"%s, to %s: %g, %s %g", pairs[i][0], pairs[i][1], uses_fit(&thing, &word),
+			pairs[i][2], uses_fit(&other, &word));
+		CHECK(thing.n <= USES_STEMS && word.n <= USES_STEMS, "too many stems");
+	}
+	struct uses none;
+	uses_of_thing(&none, "");
+	CHECK(!none.n, "nothing is for nothing");
+	uses_of_word(&none, "put");
+	CHECK(!none.n, "to put says nothing of what a thing is for");
+}
+
 int main(void)
 {
+	spelling();
+	uses();
 	colours();
 	kinds();
 	wordnet();
