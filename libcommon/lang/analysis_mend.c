@@ -267,10 +267,70 @@ static void mend_ones(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* "the nails of the left wheel": the noun that "of" before a phrase hangs it on, as a part of it, or -1. */
+static int part_before(const struct analysis *a, const struct tokens *t, int noun)
+{
+	int i = noun - 1;
+
+	while (i > 0 && !is(t, i, "of") && !t->word[i + 1].before && !role_is_phrase(a->word[i].role))
+		i--;
+	return i > 0 && is(t, i, "of") && a->word[i - 1].role == ROLE_ANCHOR ? i - 1 : -1;
+}
+
+/* "by the hinge of the gate on the left of the barn": it is the gate that is by it, and on the left. */
+static void mend_part_of(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		const int part = a->word[i].role == ROLE_ANCHOR ? part_before(a, t, i) : -1;
+		if (part < 0 || a->word[i].head < i)
+			continue;
+		a->word[i].head = a->word[part].head;
+		a->word[part] = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
+		for (int j = 0; j < t->n; j++)
+			if (a->word[j].head == part)
+				a->word[j].head = i;
+	}
+}
+
+/* "near the gate, left of the barn": the gate is no anchor of what comes after it, where what comes before it has
+ * none. */
+static void mend_later(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 1; i < t->n; i++) {
+		int p = i - 1;
+		if (a->word[i].role != ROLE_ANCHOR || a->word[i].head < i)
+			continue;
+		while (p > 0 && !t->word[p + 1].before && a->word[p].role != ROLE_PREDICATE &&
+			!role_is_phrase(a->word[p].role))
+			p--;
+		if (a->word[p].role == ROLE_PREDICATE && class_of(t, p) == CLOSED_PLACE && !t->word[p + 1].before &&
+			!has_anchor(a, p) && a->word[p].relation != PARSE_SUPPORTS)
+			a->word[i].head = p;
+	}
+}
+
+/* "the jug plus the bowl by the door" are two. */
+static void mend_plus(struct analysis *a, const struct tokens *t)
+{
+	int found = 0;
+
+	for (int i = 0; i < t->n; i++) {
+		int begin = i;
+		while (begin > 0 && !role_is_phrase(a->word[begin - 1].role) && !is(t, begin - 1, "plus"))
+			begin--;
+		if (found && role_is_phrase(a->word[i].role) && begin > 0 && is(t, begin - 1, "plus"))
+			a->word[i] = (struct analysis_word){.role = ROLE_ALSO, .head = ROOT};
+		found |= a->word[i].role == ROLE_TARGET;
+	}
+}
+
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	mend_with(a, grammar, t);
 	mend_ones(a, t);
+	mend_part_of(a, t);
+	mend_later(a, t);
+	mend_plus(a, t);
 	mend_parts(a, t);
 	mend_ways(a, t);
 	mend_isnt(a, t);

@@ -385,7 +385,7 @@ static void count_phrase(struct build *b, int head, struct parse_phrase *f)
 		number = PARSE_ALL;
 	if (!number && names_kind(b, head) && is_plural(t, head))
 		number = PARSE_SEVERAL;
-	if (is(t, head, "ones"))
+	if (!number && is(t, head, "ones"))
 		number = PARSE_SEVERAL;
 	f->count = number ? number : PARSE_ONE;
 	/* "of the two cups", "which of the cups", unless all of them are meant */
