@@ -292,8 +292,8 @@ static void mend_part_of(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "near the gate, left of the barn": the gate is no anchor of what comes after it, where what comes before it has
- * none. */
+/* "near the gate, left of the barn": the gate is no anchor of what comes after it, where what comes before it
+ * has none. */
 static void mend_later(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 1; i < t->n; i++) {
@@ -303,8 +303,8 @@ static void mend_later(struct analysis *a, const struct tokens *t)
 		while (p > 0 && !t->word[p + 1].before && a->word[p].role != ROLE_PREDICATE &&
 			!role_is_phrase(a->word[p].role))
 			p--;
-		if (a->word[p].role == ROLE_PREDICATE && class_of(t, p) == CLOSED_PLACE && !t->word[p + 1].before &&
-			!has_anchor(a, p) && a->word[p].relation != PARSE_SUPPORTS)
+		if (a->word[p].role == ROLE_PREDICATE && class_of(t, p) == CLOSED_PLACE &&
+			!t->word[p + 1].before && !has_anchor(a, p) && a->word[p].relation != PARSE_SUPPORTS)
 			a->word[i].head = p;
 	}
 }

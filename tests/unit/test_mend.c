@@ -74,6 +74,34 @@ static void mends_all(void)
 	mends("the chair, the grey one", ". T . a .", 0, 3, ROLE_ATTRIBUTE, ROOT, 0);
 }
 
+/* What hangs on a part hangs on the thing; what comes before is not the anchor of what comes after. */
+static void mends_attachment(void)
+{
+	struct tokens t;
+	struct analysis a, grammar;
+
+	tokens_take(&t, "the pot by the hinge of the gate left of the barn", NULL, NULL, 0);
+	grammar_analyse(&grammar, &t);
+	a = made(&t, ". T P . A2 . . A8 P4 . . A8", PARSE_NEAR);
+	analysis_mend(&a, &grammar, &t);
+	CHECK(a.word[7].role == ROLE_ANCHOR && a.word[7].head == 2 && a.word[4].role == ROLE_NONE,
+		"the gate is anchor of %d", a.word[7].head);
+	CHECK(a.word[8].head == 7 && a.word[11].head == 8, "the gate is left of the barn: %d",
+		a.word[8].head);
+
+	tokens_take(&t, "the pot near the gate, left of the barn", NULL, NULL, 0);
+	grammar_analyse(&grammar, &t);
+	a = made(&t, ". T P . A5 P . . A5", PARSE_NEAR);
+	analysis_mend(&a, &grammar, &t);
+	CHECK(a.word[4].head == 2 && a.word[8].head == 5, "near the gate: %d", a.word[4].head);
+
+	tokens_take(&t, "the jug plus the bowl by the door", NULL, NULL, 0);
+	grammar_analyse(&grammar, &t);
+	a = made(&t, ". T P . A2 P . A5", PARSE_NEAR);
+	analysis_mend(&a, &grammar, &t);
+	CHECK(a.word[4].role == ROLE_ALSO, "the bowl too: role %d", a.word[4].role);
+}
+
 static struct parse parsed(const char *text)
 {
 	struct parse p;
@@ -117,6 +145,9 @@ static void settles(void)
 	p = parsed("the first two hooks from the left");
 	CHECK(p.phrases[0].count == 2, "two hooks: %d", p.phrases[0].count);
 	parse_free(&p);
+	p = parsed("the two grey ones");
+	CHECK(p.phrases[0].count == 2, "two ones: %d", p.phrases[0].count);
+	parse_free(&p);
 	p = parsed("taller than the lamp");
 	CHECK(p.clauses[0].degree == PARSE_MORE && p.clauses[0].anchors.n == 1, "a lamp is compared with");
 	parse_free(&p);
@@ -125,6 +156,7 @@ static void settles(void)
 int main(void)
 {
 	mends_all();
+	mends_attachment();
 	settles();
 	return unit_end();
 }
