@@ -62,7 +62,7 @@ static void add_near(struct wordnet_adjective *to, long synset, int distance)
 	if (to->n == WORDNET_NEAR)
 		return;
 	to->near[to->n].synset = synset;
-	to->near[to->n++].distance = (signed char)distance;
+	to->near[to->n++].distance = (short)distance;
 }
 
 /* Adds what is similar or opposite to the adjectives so far, from the i-th on. */

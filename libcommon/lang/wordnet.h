@@ -38,7 +38,7 @@ struct wordnet_adjective {
 	int n;
 	struct {
 		long synset;
-		signed char distance; /* 0 own, 1 similar, 2 similar to what is similar; -1 the opposite */
+		short distance; /* 0 own, 1 similar, 2 similar to what is similar; -1 the opposite */
 	} near[WORDNET_NEAR];
 };
 
