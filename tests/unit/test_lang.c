@@ -110,8 +110,8 @@ static void spelling(void)
 	repairs("trumpt", "trumpet");	  /* of the scene, */
 	repairs("trumpetts", "trumpets"); /* in its plural, */
 	repairs("ylelow", "yellow");	  /* a colour, */
-	repairs("tabel", "table");   /* an everyday noun, */
-	repairs("behnid", "behind"); /* or a word of grammar */
+	repairs("tabel", "table");	  /* an everyday noun, */
+	repairs("behnid", "behind");	  /* or a word of grammar */
 	repairs("harp", NULL);
 	repairs("trumpet", NULL);
 	repairs("xq", NULL);
