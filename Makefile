@@ -178,7 +178,7 @@ bench: packages ## measure speed, memory and accuracy, and plot them: BENCH="ste
 sanitize: packages ## every test again with address and undefined-behaviour sanitizers, in build-asan
 	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" \
 		tools units fuzzers
-	@tests/run.sh build-asan $(JOBS) "$(FILTER)"
+	@LIMIT=900 tests/run.sh build-asan $(JOBS) "$(FILTER)"
 
 lint: ## formatting, clang-tidy, man pages, and builds without a warning by gcc and clang
 	$(call need,$(NEED_BUILD) $(NEED_LINT))

@@ -14,7 +14,7 @@ export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 export ASAN_OPTIONS=${ASAN_OPTIONS:-allocator_may_return_null=1} UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
 # A make that a test starts is nobody's child.
 unset MAKEFLAGS MAKELEVEL MFLAGS
-limit=300 # seconds a test file may take
+limit=${LIMIT:-300} # seconds a test file may take
 export limit
 
 # Runs one test file; leaves "passed failed" in NAME.count and what to print in NAME.lines.
