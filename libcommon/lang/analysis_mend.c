@@ -398,6 +398,105 @@ static void mend_nor(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* "left of the red one": red is said of what comes right after it. */
+static void mend_attributes(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i + 1 < t->n; i++) {
+		const enum word_role next = a->word[i + 1].role;
+		if (a->word[i].role == ROLE_ATTRIBUTE && !t->word[i + 1].before && role_is_phrase(next) &&
+			class_of(t, i) != CLOSED_RELATIVE)
+			a->word[i].head = next == ROLE_TARGET ? ROOT : i + 1;
+	}
+}
+
+/* The last predicate between words i and j with nothing but words that say nothing after it, or -1. */
+static int last_predicate(const struct analysis *a, const struct tokens *t, int i, int j)
+{
+	while (--j > i && !t->word[j + 1].before && !role_is_phrase(a->word[j].role))
+		if (a->word[j].role == ROLE_PREDICATE)
+			return j;
+	return -1;
+}
+
+/* "over by the window" is by it. */
+static void mend_over_by(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		const int first = a->word[i].role == ROLE_ANCHOR ? a->word[i].head : i;
+		const int last = first < i ? last_predicate(a, t, first, i) : -1;
+		if (last < 0 || class_of(t, last) != CLOSED_PLACE || has_anchor(a, last) ||
+			a->word[last].head != a->word[first].head)
+			continue;
+		a->word[i].head = last;
+		if (!has_anchor(a, first) &&
+			(is(t, first, "over") || is(t, first, "up") || is(t, first, "down")))
+			give_up(&a->word[first]);
+	}
+}
+
+/* "the nearest one to me": "to" by itself places nothing. */
+static void mend_to(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 1; i < t->n; i++) {
+		int p = i - 1;
+		if (a->word[i].role != ROLE_PREDICATE || (!is(t, i, "to") && !is(t, i, "from")))
+			continue;
+		while (p > 0 &&
+			!(a->word[p].role == ROLE_PREDICATE &&
+				(a->word[p].relation == PARSE_NEAR || a->word[p].relation == PARSE_FAR)))
+			p--;
+		if (a->word[p].role != ROLE_PREDICATE || has_anchor(a, p) || p == i ||
+			a->word[p].head != a->word[i].head)
+			continue;
+		for (int j = i + 1; j < t->n; j++)
+			if (a->word[j].role == ROLE_ANCHOR && a->word[j].head == i)
+				a->word[j].head = p;
+		give_up(&a->word[i]);
+	}
+}
+
+/* "not the mug, the other cup": of two things that are left out, where none is meant, the second is meant. */
+static void mend_no_target(struct analysis *a, const struct tokens *t)
+{
+	int first = -1, last = -1;
+
+	for (int i = 0; i < t->n; i++) {
+		if (a->word[i].role == ROLE_TARGET)
+			return;
+		if (a->word[i].role == ROLE_EXCEPT) {
+			first = first < 0 ? i : first;
+			last = i;
+		}
+	}
+	int pause = last;
+	while (pause > first && !t->word[pause].before)
+		pause--;
+	if (last == first || pause == first)
+		return;
+	a->word[last] = (struct analysis_word){.role = ROLE_TARGET, .head = ROOT};
+	for (int i = 0; i < t->n; i++)
+		if (a->word[i].head == last)
+			a->word[i].head = ROOT;
+}
+
+static int ends_in(const char *w, const char *end)
+{
+	const size_t n = strlen(w), m = strlen(end);
+
+	return n > m + 2 && !strcmp(w + n - m, end);
+}
+
+/* "shinier than the rest" is no place. */
+static void mend_comparatives(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++)
+		if (a->word[i].role == ROLE_PREDICATE && t->word[i].closed < 0 &&
+			a->word[i].relation >= PARSE_LARGER && a->word[i].relation <= PARSE_WIDER &&
+			!has_anchor(a, i) &&
+			(ends_in(t->word[i].text, "er") || ends_in(t->word[i].text, "est")))
+			a->word[i].role = ROLE_ATTRIBUTE;
+}
+
 /* "behind the lamp there is a jar": the jar is meant, where nothing else is. */
 static void mend_there_is(struct analysis *a, const struct tokens *t)
 {
@@ -437,5 +536,10 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 	mend_both_sides(a, t);
 	mend_nor(a, t);
 	mend_there_is(a, t);
+	mend_attributes(a, t);
+	mend_over_by(a, t);
+	mend_to(a, t);
+	mend_no_target(a, t);
+	mend_comparatives(a, t);
 	analysis_repair(a);
 }

@@ -5,13 +5,13 @@
 
 #include <stdio.h>
 
-/* An analysis of a text: for each word '.' nothing, T target, A anchor, L also, a attribute, P predicate; the
- * number after A, a and P is the word that it hangs on, none for ROOT. */
+/* An analysis of a text: for each word '.' nothing, T target, A anchor, L also, a attribute, P predicate, E
+ * left out; the number after A, a and P is the word that it hangs on, none for ROOT. */
 static struct analysis made(const struct tokens *t, const char *roles, enum parse_relation relation)
 {
-	static const char letters[] = ".TALaP";
+	static const char letters[] = ".TALaPE";
 	static const enum word_role role[] = {
-		ROLE_NONE, ROLE_TARGET, ROLE_ANCHOR, ROLE_ALSO, ROLE_ATTRIBUTE, ROLE_PREDICATE};
+		ROLE_NONE, ROLE_TARGET, ROLE_ANCHOR, ROLE_ALSO, ROLE_ATTRIBUTE, ROLE_PREDICATE, ROLE_EXCEPT};
 	struct analysis a = {.n = t->n};
 	int i = 0;
 
@@ -123,6 +123,22 @@ static void mends_readings(void)
 		2, 0);
 }
 
+/* What a word is said of, which of two predicates an anchor is of, and what is meant where nothing seems to
+ * be. */
+static void mends_neighbours(void)
+{
+	mends("the lamp left of the grey one", ". T P . . a A2", PARSE_LEFT, 5, ROLE_ATTRIBUTE, 6, 0);
+	mends("the lamp over by the sink", ". T P P . A2", PARSE_NEAR, 5, ROLE_ANCHOR, 3, 0);
+	mends("the lamp over by the sink", ". T P P . A2", PARSE_NEAR, 2, ROLE_NONE, ROOT, 0);
+	mends("the lamp on the sink by the door", ". T P . A2 P . A5", PARSE_NEAR, 7, ROLE_ANCHOR, 5, 0);
+	mends("the nearest lamp to the sink", ". P T P . A3", PARSE_NEAR, 5, ROLE_ANCHOR, 1, 0);
+	mends("the nearest lamp to the sink", ". P T P . A3", PARSE_NEAR, 3, ROLE_NONE, ROOT, 0);
+	mends("not the jug, the other lamp", ". . E . . E", 0, 5, ROLE_TARGET, ROOT, 0);
+	mends("not the jug nor the other lamp", ". . E . . . E", 0, 6, ROLE_EXCEPT, ROOT, 0);
+	mends("brighter than the lamp", "P . . T", PARSE_LARGER, 0, ROLE_ATTRIBUTE, ROOT, 0);
+	mends("taller than the lamp", "P . . T", PARSE_TALLER, 0, ROLE_PREDICATE, ROOT, PARSE_TALLER);
+}
+
 /* What is neither here nor there is neither: the second is denied of the same thing as the first. */
 static void mends_nor(void)
 {
@@ -203,6 +219,7 @@ int main(void)
 	mends_attachment();
 	mends_readings();
 	mends_nor();
+	mends_neighbours();
 	settles();
 	return unit_end();
 }
