@@ -69,6 +69,9 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
 # The default weights of the parser are in the library.
 $(BUILD)/obj/formats/parser_weights.o: formats/parser_default.safetensors
 
+# So is the page of refer-report.
+$(BUILD)/obj/cmd/jobs/reporting.o: cmd/jobs/report_page.html
+
 $(LIBRARY): $(OBJECTS)
 	@rm -f $@
 	ar rcs $@ $^
