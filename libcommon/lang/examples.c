@@ -12,7 +12,7 @@ struct making {
 	const struct example_list *nouns;
 	struct rng *r;
 	int n, depth, has_noun, noun, is_plural;
-	int spoken_of; /* an anchor that waits for its predicate: "see the box ? T near it" */
+	int spoken_of[2], spoken; /* anchors that wait for their predicate: "see the box ? T near it" */
 	struct made {
 		char text[MADE_LENGTH];
 		enum word_role role;
@@ -77,7 +77,7 @@ static void mark(struct making *m, int from, int to, enum word_role role, int he
 
 static void clause(struct making *m, int figure, int forms, int denied);
 
-enum { FORM_PLACED = 1, FORM_HAVING = 2, FORM_TURNED = 4, FORM_HAS = 8 };
+enum { FORM_PLACED = 1, FORM_HAVING = 2, FORM_TURNED = 4, FORM_HAS = 8, FORM_WITH = 16 };
 
 static void make_plural(char *noun)
 {
@@ -318,7 +318,7 @@ static void clause(struct making *m, int figure, int forms, int denied)
 	int tries = 0;
 
 	do {
-		of = (forms & FORM_HAS)				? &m->w->having
+		of = (forms & (FORM_HAS | FORM_WITH))		? &m->w->having
 		     : (forms & FORM_HAVING) && chance(m, 0.3)	? &m->w->having
 		     : (forms & FORM_TURNED) && chance(m, 0.12) ? &m->w->turned
 								: &m->w->placed;
@@ -398,17 +398,22 @@ static void one_of_look(struct making *m, enum word_role role)
 		clause(m, role == ROLE_TARGET ? ROOT : last, FORM_PLACED | FORM_HAVING, 0);
 }
 
-/* "near it": of what was spoken of. */
-static void points_back(struct making *m)
+static const struct example_clause *pick_clause(struct making *m, const struct example_clauses *of)
 {
-	const struct example_clause *c = &m->w->back.item[rng_below(m->r, (uint32_t)m->w->back.n)];
+	return &of->item[rng_below(m->r, (uint32_t)of->n)];
+}
+
+/* "near it", "between them": of what was spoken of. */
+static void points_back(struct making *m, const struct example_clauses *of)
+{
+	const struct example_clause *c = pick_clause(m, of);
 	int at = m->n;
 
 	expand_clause(m, c, ROOT, 0, 0);
 	while (at < m->n && m->word[at].role != ROLE_PREDICATE)
 		at++;
-	if (at < m->n)
-		m->word[m->spoken_of].head = at;
+	for (int k = 0; k < m->spoken && at < m->n; k++)
+		m->word[m->spoken_of[k]].head = at;
 }
 
 /* 1 where the symbol was one. */
@@ -470,11 +475,23 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 	case 'V':
 		anchor(m, ROLE_VIEW, 1);
 		return 1;
-	case 'B':
-		m->spoken_of = anchor(m, ROLE_ANCHOR, 0);
+	case 'B': {
+		const int at = anchor(m, ROLE_ANCHOR, 0);
+		if (m->spoken < 2)
+			m->spoken_of[m->spoken++] = at;
 		return 1;
+	}
 	case 'D':
-		points_back(m);
+		points_back(m, &m->w->back);
+		return 1;
+	case 'P':
+		points_back(m, &m->w->back_to_two);
+		return 1;
+	case 'G':
+		expand_clause(m, pick_clause(m, &m->w->inverted), ROOT, 0, 0);
+		return 1;
+	case 'W':
+		clause(m, ROOT, FORM_WITH, 0);
 		return 1;
 	case 'X':
 		anchor(m, ROLE_EXCEPT, 1);

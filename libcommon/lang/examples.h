@@ -31,7 +31,8 @@ void example_make(struct example *x, enum examples_set set, const char *pieces, 
  * faced or stood at             X  what is left out S  a further target L   several of the target's noun U  a
  * target of no noun ("the one") with its clauses Q   "the red one" that is meant            O  a further one
  * q  a word of its look F   what a thing is for ("to write with"), all predicates of PARSE_OTHER       B   an
- * anchor that a later D points back to: "near it"    ,.? punctuation */
+ * anchor that a later D, or P for two of them, points back to: "near it", "between them" G   a question
+ * turned round after the noun: "is @ next to" W   one with "with"    ,.? punctuation */
 struct example_clause {
 	enum parse_relation relation;
 	int negated;
@@ -46,11 +47,13 @@ struct example_clauses {
 	const struct example_clause *item;
 };
 struct example_wordings {
-	struct example_clauses placed; /* after a noun, "that is" or "it is" */
-	struct example_clauses having; /* after $ in its place, or "has" */
-	struct example_clauses turned; /* after a noun as a relative clause: "that @ is on" */
-	struct example_clauses back;   /* of what was spoken of: "near it" */
-	struct example_clauses before; /* adjectives that place or size: "left", "smallest" */
+	struct example_clauses placed;	    /* after a noun, "that is" or "it is" */
+	struct example_clauses having;	    /* after $ in its place, or "has" */
+	struct example_clauses turned;	    /* after a noun as a relative clause: "that @ is on" */
+	struct example_clauses back;	    /* of what was spoken of: "near it" */
+	struct example_clauses back_to_two; /* of two things spoken of: "between them" */
+	struct example_clauses inverted;    /* after "which noun": "is @ standing next to" */
+	struct example_clauses before;	    /* adjectives that place or size: "left", "smallest" */
 	struct example_list sentences, functions;
 };
 extern const struct example_wordings example_wordings_train, example_wordings_test;
