@@ -14,6 +14,11 @@ static const struct cli_option table[] = {
 		"true masks (default: those that the pipeline scored against, if any)", 0, 0},
 	{"views", 0, CLI_INT, &options.views, "N", "show so many views at most (default 12)", 1, 1000},
 	{"width", 0, CLI_INT, &options.width, "N", "width of the pictures in pixels (default 480)", 16, 4096},
+	{"viewer", 0, CLI_STRING, &options.viewer, "DIR",
+		"folder of the viewer of splats (default: where 'make viewer' puts it)", 0, 0},
+	{"no-viewer", 0, CLI_FLAG, &options.is_plain, NULL, "leave the viewer out", 0, 0},
+	{"splats", 0, CLI_INT, &options.splats, "N",
+		"Gaussians in the viewer at most, those that cover most (default 200000)", 1, 10000000},
 	{"output", 'o', CLI_STRING, &output, "FILE", "where to write; - is stdout (default RUN/report.html)",
 		0, 0},
 	{0}};
@@ -50,6 +55,8 @@ int main(int argc, char **argv)
 	struct err e = {0};
 
 	cli_parse(&c, &tool, argc, argv);
+	if (options.viewer && options.is_plain)
+		cli_usage(&c, "--viewer and --no-viewer exclude each other");
 	options.run = c.operands[0];
 	return run(&c, &e) ? cli_fail(&c, &e) : cli_done(&c);
 }

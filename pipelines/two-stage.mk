@@ -96,7 +96,7 @@ $(foreach s,1 2,$(eval command.train$(s) = $$(call train,$(s))))
 $(foreach s,1 2,$(foreach t,train test,$(eval command.render$(s).$(t) = $$(call predict,$(s),$(t)))))
 $(foreach s,1 2,$(eval command.overlay$(s) = $$(call render,$(s)) --sentences $(lastword $(splits)) --overlay $(SCENE)/stage$(s)/overlays \
 	-o $(SCENE)/stage$(s)/overlays/masks.jsonl))
-$(call track,import weigh paint encode select select3d lift train1 train2 teach score page overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
+$(call track,import weigh paint encode select select3d lift train1 train2 teach score overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
 
 $(SCENE)/log/%.command:
 	@mkdir -p $(@D) && printf %s $(call quote,$(command.$*)) >$@

@@ -51,9 +51,11 @@ static int choose_all(struct choosing *c, struct err *e)
 		!(c->chosen = mem_alloc(t->n, l->objects, "sentences", e)))
 		return -1;
 	for (size_t i = 0; i < t->n; i++)
-		c->sentences[i] = (struct choose_sentence){t->texts[i], t->pieces ? t->pieces[i] : NULL,
-			t->words + (size_t)t->offsets[i] * (size_t)t->width,
-			(size_t)(t->offsets[i + 1] - t->offsets[i]), viewpoint_of(c, i)};
+		c->sentences[i] = (struct choose_sentence){.text = t->texts[i],
+			.pieces = t->pieces ? t->pieces[i] : NULL,
+			.vectors = t->words + (size_t)t->offsets[i] * (size_t)t->width,
+			.words = (size_t)(t->offsets[i + 1] - t->offsets[i]),
+			.from = viewpoint_of(c, i)};
 	return choose(
 		&of, c->sentences, t->n, CHOOSE_ALL, c->choices, c->probability, c->chosen, &watching, e);
 }

@@ -1,6 +1,7 @@
 #include "cmd/jobs/report_sentences.h"
 
 #include "base/mem.h"
+#include "cmd/jobs/report_json.h"
 #include "cmd/jobs/report_reasons.h"
 
 #include <math.h>
@@ -20,14 +21,6 @@ struct card {
 static cJSON *number(double x)
 {
 	return isfinite(x) ? cJSON_CreateNumber(round(x * 1e4) / 1e4) : cJSON_CreateNull();
-}
-
-static int add(cJSON *to, const char *key, cJSON *value)
-{
-	if (value && cJSON_AddItemToObject(to, key, value))
-		return 1;
-	cJSON_Delete(value);
-	return 0;
 }
 
 static int is_of(const struct card *c, const struct score_pair *p)
@@ -149,19 +142,21 @@ static int add_scores(cJSON *to, const struct card *c, const cJSON *meant)
 		if (m->masks[i].ref && !strcmp(m->masks[i].ref, c->ref))
 			sure = fmax(sure, m->set.records[i].score);
 	const int is = is_right(c, meant, pairs, right);
-	return add(to, "sure", number(sure)) && add(to, "iou", number(pairs ? sum / (double)pairs : NAN)) &&
-	       add(to, "pairs", cJSON_CreateNumber((double)pairs)) &&
-	       add(to, "right", is < 0 ? cJSON_CreateNull() : cJSON_CreateBool(is));
+	return report_add(to, "sure", number(sure)) &&
+	       report_add(to, "iou", number(pairs ? sum / (double)pairs : NAN)) &&
+	       report_add(to, "pairs", cJSON_CreateNumber((double)pairs)) &&
+	       report_add(to, "right", is < 0 ? cJSON_CreateNull() : cJSON_CreateBool(is));
 }
 
 static int add_reason(cJSON *to, const struct report_reason *r)
 {
-	return add(to, "answer", cJSON_Duplicate(r->answer, 1)) && add(to, "there", number(r->there)) &&
-	       add(to, "refusal", cJSON_CreateString(r->refusal)) &&
-	       add(to, "by_wording", cJSON_CreateBool(r->is_by_wording)) &&
-	       (!r->runner_up || (add(to, "runner_up", cJSON_CreateString(r->runner_up)) &&
-					 add(to, "runner_up_chance", number(r->runner_up_chance)))) &&
-	       (!r->explained || add(to, "explained", cJSON_Duplicate(r->explained, 1)));
+	return report_add(to, "answer", cJSON_Duplicate(r->answer, 1)) &&
+	       report_add(to, "there", number(r->there)) &&
+	       report_add(to, "refusal", cJSON_CreateString(r->refusal)) &&
+	       report_add(to, "by_wording", cJSON_CreateBool(r->is_by_wording)) &&
+	       (!r->runner_up || (report_add(to, "runner_up", cJSON_CreateString(r->runner_up)) &&
+					 report_add(to, "runner_up_chance", number(r->runner_up_chance)))) &&
+	       (!r->explained || report_add(to, "explained", cJSON_Duplicate(r->explained, 1)));
 }
 
 static int add_card(cJSON *list, const struct card *c, struct err *e)
@@ -172,15 +167,15 @@ static int add_card(cJSON *list, const struct card *c, struct err *e)
 
 	for (size_t v = 0; v < c->run->shown_count && !bad; v++)
 		bad = add_view(views, c, v, e);
-	if (!bad && !(add(one, "ref", cJSON_CreateString(c->ref)) &&
-			    add(one, "text", cJSON_CreateString(t->texts[c->sentence])) &&
+	if (!bad && !(report_add(one, "ref", cJSON_CreateString(c->ref)) &&
+			    report_add(one, "text", cJSON_CreateString(t->texts[c->sentence])) &&
 			    add_scores(one, c, meant) && (!c->reason || add_reason(one, c->reason)) &&
-			    (!meant || add(one, "said", cJSON_Duplicate(meant, 1)))))
+			    (!meant || report_add(one, "said", cJSON_Duplicate(meant, 1)))))
 		bad = err_set(e, ERR_SYSTEM, "page: out of memory");
 	cJSON_Delete(meant);
 	if (bad)
 		cJSON_Delete(views);
-	else if (add(one, "views", views) && cJSON_AddItemToArray(list, one))
+	else if (report_add(one, "views", views) && cJSON_AddItemToArray(list, one))
 		return 0;
 	cJSON_Delete(one);
 	return bad ? -1 : err_set(e, ERR_SYSTEM, "page: out of memory");
@@ -212,10 +207,10 @@ static int add_score(cJSON *to, const struct score *s)
 {
 	cJSON *one = cJSON_AddObjectToObject(to, "score");
 
-	return add(one, "miou", number(s->miou)) && add(one, "right", number(s->right)) &&
-	       add(one, "p50", number(s->precision[1])) &&
-	       add(one, "pairs", cJSON_CreateNumber((double)s->pairs)) &&
-	       add(one, "missing", cJSON_CreateNumber((double)s->missing));
+	return report_add(one, "miou", number(s->miou)) && report_add(one, "right", number(s->right)) &&
+	       report_add(one, "p50", number(s->precision[1])) &&
+	       report_add(one, "pairs", cJSON_CreateNumber((double)s->pairs)) &&
+	       report_add(one, "missing", cJSON_CreateNumber((double)s->missing));
 }
 
 static cJSON *set_of(
@@ -228,15 +223,15 @@ static cJSON *set_of(
 	int bad = !reasons || (is_lifted && report_reasons(r, s, reasons, e)) ||
 		  add_cards(list, &c, is_lifted ? reasons : NULL, e);
 
-	if (!bad && !(add(one, "way", cJSON_CreateString(s->way)) &&
-			    add(one, "name", cJSON_CreateString(s->name)) &&
+	if (!bad && !(report_add(one, "way", cJSON_CreateString(s->way)) &&
+			    report_add(one, "name", cJSON_CreateString(s->name)) &&
 			    (!s->sum.pairs || add_score(one, &s->sum))))
 		bad = err_set(e, ERR_SYSTEM, "page: out of memory");
 	report_reasons_free(reasons, s->text.n);
 	free(reasons);
 	if (bad)
 		cJSON_Delete(list);
-	else if (add(one, "sentences", list))
+	else if (report_add(one, "sentences", list))
 		return one;
 	cJSON_Delete(one);
 	return NULL;

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/path.h"
+#include "cmd/jobs/report_json.h"
 #include "cmd/jobs/report_logs.h"
 #include "cmd/jobs/report_outlines.h"
 #include "cmd/jobs/report_sentences.h"
@@ -22,14 +23,6 @@ extern const char report_page_begin[];
 
 /* Where the data and the viewer stand in the page. */
 static const char data_mark[] = "{{data}}", viewer_mark[] = "{{viewer}}";
-
-static int add(cJSON *page, const char *key, cJSON *value)
-{
-	if (value && cJSON_AddItemToObject(page, key, value))
-		return 1;
-	cJSON_Delete(value);
-	return 0;
-}
 
 static int add_scene(cJSON *page, const struct report_run *r)
 {
@@ -66,12 +59,13 @@ static cJSON *page_of(const struct report_run *r, const struct report *to, struc
 	cJSON *page = cJSON_CreateObject();
 
 	*e = (struct err){0};
-	const int fine =
-		add_name(page, run) && add_scene(page, r) && add(page, "views", report_views(r, to, e)) &&
-		add(page, "sets", report_sentences(r, &outlines, e)) &&
-		add(page, "outlines", report_outlines_list(&outlines)) &&
-		add(page, "losses", report_losses(run, e)) && add(page, "steps", report_steps(run, e)) &&
-		add(page, "settings", report_settings(run, e));
+	const int fine = add_name(page, run) && add_scene(page, r) &&
+			 report_add(page, "views", report_views(r, to, e)) &&
+			 report_add(page, "sets", report_sentences(r, &outlines, e)) &&
+			 report_add(page, "outlines", report_outlines_list(&outlines)) &&
+			 report_add(page, "losses", report_losses(run, e)) &&
+			 report_add(page, "steps", report_steps(run, e)) &&
+			 report_add(page, "settings", report_settings(run, e));
 	report_outlines_free(&outlines);
 	if (fine)
 		return page;
@@ -79,27 +73,6 @@ static cJSON *page_of(const struct report_run *r, const struct report *to, struc
 		err_set(e, ERR_SYSTEM, "page: out of memory");
 	cJSON_Delete(page);
 	return NULL;
-}
-
-/* JSON inside a script: what could end the script, or begin a comment, is escaped. */
-static void put_json(FILE *out, const char *json)
-{
-	for (; *json; json++)
-		if (*json == '<')
-			fputs("\\u003c", out);
-		else
-			fputc(*json, out);
-}
-
-static int put_data(FILE *out, const cJSON *page, struct err *e)
-{
-	char *json = cJSON_PrintUnformatted(page);
-
-	if (!json)
-		return err_set(e, ERR_SYSTEM, "page: out of memory");
-	put_json(out, json);
-	free(json);
-	return 0;
 }
 
 static int put_page(
@@ -111,7 +84,7 @@ static int put_page(
 	if (!data || !viewer || viewer < data)
 		return err_set(e, ERR_SYSTEM, "the page has no place for its data");
 	fwrite(report_page_begin, 1, (size_t)(data - report_page_begin), out);
-	if (put_data(out, page, e))
+	if (report_json_put(out, page, e))
 		return -1;
 	data += sizeof data_mark - 1;
 	fwrite(data, 1, (size_t)(viewer - data), out);
