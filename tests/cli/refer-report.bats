@@ -1,11 +1,16 @@
 #!/usr/bin/env bats
 # refer-report, on a small scene whose truth is known. Options that every tool has are in common.bats. The page's data are read
-# with jq; that a browser shows them is tested by tests/report.sh.
+# with jq; that a browser shows them is in refer-report-browser.bats.
 
 setup_file() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
-	export OMP_WAIT_POLICY=passive
+	# No viewer but the one that the tests make.
+	export OMP_WAIT_POLICY=passive XDG_CACHE_HOME=$BATS_FILE_TMPDIR/cache
 	cd "$BATS_FILE_TMPDIR"
+	mkdir viewer
+	for file in three.core.min.js three.module.min.js Pass.js OrbitControls.js spark.module.min.js LICENSE.spark LICENSE.three; do
+		echo "// $file </script>" >viewer/$file
+	done
 	cp -r "$BATS_TEST_DIRNAME/../golden/bert" encoder
 	"$BIN/gs-synth" -q --objects 3 --views 6 --size 96x72 --gaussians 2000 -o .
 	mkdir -p run/lifted run/log run/stage1
@@ -139,9 +144,48 @@ not() { ! "$@"; }
 	[ "$(jq '.sets[0].sentences | length' names.json)" = "$(wc -l <sentences.jsonl)" ]
 }
 
+# Bytes that were packed for the viewer: zlib's, which gzip takes with another head, and complains of the end.
+unpack() { { printf '\037\213\010\0\0\0\0\0\0\003'; base64 -d | tail -c +3; } | gzip -dc 2>/dev/null || true; }
+
+@test "the viewer has its modules, the splats by object, their boxes, and a camera" {
+	"$BIN/refer-report" -q --viewer viewer -o viewer.html run
+	sed -n 's,^<script type="text/plain" data-module="spark">\(.*\)</script>$,\1,p' viewer.html | unpack | cmp - viewer/spark.module.min.js
+	sed -n 's,^<script type="application/json" id="scene">\(.*\)</script>$,\1,p' viewer.html >scene.json
+	jq -e '(.groups | map(.count) | add) == .count and .count <= .all and .all == 2000 and .camera.name != null and
+		.licences == ["// LICENSE.spark </script>\n", "// LICENSE.three </script>\n"]' scene.json
+	diff <(jq -r '.groups[1:][].name' scene.json | sort) <(jq -r .object sentences.jsonl | sort -u)
+	n=$(jq .count scene.json)
+	sed -n 's,^<script type="text/plain" id="splats">\(.*\)</script>$,\1,p' viewer.html | unpack >splats
+	[ "$(wc -c <splats)" = $((32 * n)) ]
+	# the lowest bytes of the positions are 0; no opacity is below 0.03
+	[ "$(head -c $n splats | tr -d '\0' | wc -c)" = 0 ]
+	tail -c +$((27 * n + 1)) splats | head -c $n | od -An -v -tu1 -w1 | awk '$1 < 7 { exit 1 }'
+	# boxes are those of refer-locate
+	thing=$(jq -r '.groups[1].name' scene.json)
+	ref=$(jq -r --arg thing "$thing" '.sets[].sentences[] | select(.answer == [$thing]).ref' data.json | head -n 1)
+	"$BIN/refer-locate" -q --scene run/scene --text run/text.safetensors --model run/lifted/model.safetensors --refs "$ref" -o box.jsonl
+	jq -e --slurpfile box box.jsonl '.groups[1].box as $b | [$b.centre, $box[0].oriented.centre] | transpose | all(.[]; (.[0] - .[1] | fabs) < 1e-3)' scene.json
+}
+
+@test "--splats takes those that cover most, --no-viewer leaves all out" {
+	"$BIN/refer-report" -q --viewer viewer --splats 100 -o few.html run
+	sed -n 's,^<script type="application/json" id="scene">\(.*\)</script>$,\1,p' few.html | jq -e '.count == 100'
+	mkdir -p cache/refersplat
+	cp -r viewer cache/refersplat/viewer
+	"$BIN/refer-report" -q -o found.html run
+	cmp found.html <("$BIN/refer-report" -q --viewer viewer -o - run)
+	"$BIN/refer-report" -q --no-viewer -o - run | cmp - run/report.html
+	rm -r cache
+	says 2 "refer-report: --viewer and --no-viewer exclude each other
+Try 'refer-report --help'." "$BIN/refer-report" --viewer viewer --no-viewer run
+	mkdir nothing
+	says 4 "refer-report: nothing/three.core.min.js: No such file or directory" "$BIN/refer-report" --viewer nothing -o none.html run
+	[ ! -e none.html ]
+}
+
 @test "1, 2 and 7 threads make the same bytes" {
 	for run in run names; do
-		for threads in 1 2 7; do "$BIN/refer-report" -q --threads $threads -o threads.$threads.html $run; done
+		for threads in 1 2 7; do "$BIN/refer-report" -q --viewer viewer --threads $threads -o threads.$threads.html $run; done
 		cmp threads.1.html threads.2.html
 		cmp threads.1.html threads.7.html
 	done
