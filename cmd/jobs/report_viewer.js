@@ -118,6 +118,7 @@ window.scene_viewer = (() => {
 
 	async function load() {
 		start.hidden = true;
+		stage.classList.add('is-on');
 		hint.textContent = 'Unpacking the scene …';
 		await new Promise(done => setTimeout(done, 30));
 		three = await make_scene(await load_modules());
@@ -150,6 +151,7 @@ window.scene_viewer = (() => {
 	}
 
 	section.hidden = false;
+	stage.classList.add('view-0');
 	chosen.append(new Option('everything', ''), ...scene.groups.slice(1).map(g => new Option(g.name, g.name)));
 	chosen.addEventListener('input', () => set_lit(chosen.value ? [chosen.value] : [], chosen.value));
 	start.addEventListener('click', begin);
