@@ -145,6 +145,7 @@ static int put_scene(FILE *out, const struct report_run *r, const struct report_
 {
 	cJSON *scene = cJSON_CreateObject();
 	int bad = !cJSON_AddNumberToObject(scene, "count", (double)s->n) ||
+		  !cJSON_AddNumberToObject(scene, "most", (double)r->options->splats) ||
 		  !cJSON_AddNumberToObject(scene, "all", (double)r->scene.splats.n) ||
 		  !cJSON_AddNumberToObject(
 			  scene, "least_opacity", round(1e4 * (double)REPORT_LEAST_OPACITY) / 1e4) ||

@@ -157,8 +157,9 @@ window.scene_viewer = (() => {
 	start.addEventListener('click', begin);
 	section.querySelector('#home').addEventListener('click', () => three && home());
 	for (const id of ['#box', '#dim']) section.querySelector(id).addEventListener('input', () => three && light());
-	section.querySelector('#viewer-note').textContent = `${scene.count.toLocaleString('en')} of ${scene.all.toLocaleString('en')} Gaussians are here: ` +
-		`those of an opacity below ${scene.least_opacity} are left out${scene.all ? ', as are view-dependent colours' : ''}. ` +
+	section.querySelector('#viewer-note').textContent = `${scene.count.toLocaleString('en')} of ${scene.all.toLocaleString('en')} Gaussians are here. ` +
+		`Those of an opacity below ${scene.least_opacity} are left out${scene.count === scene.most ? ', and those that cover least' : ''}; ` +
+		'colours do not change with the direction. ' +
 		'Drawn by Spark and three.js.';
 	const licences = document.createElement('details'), title = document.createElement('summary');
 	title.textContent = 'Their licences';

@@ -1,3 +1,4 @@
+#define _XOPEN_SOURCE 700 /* realpath; NOLINT(bugprone-reserved-identifier) */
 #include "cmd/jobs/reporting.h"
 
 #include "base/file.h"
@@ -39,15 +40,18 @@ static int add_scene(cJSON *page, const struct report_run *r)
 		       cJSON_AddNumberToObject(scene, "objects", (double)r->lifted.lifted.objects));
 }
 
+/* The folder's own name, also where it is called "." */
 static int add_name(cJSON *page, const char *run)
 {
+	char *full = realpath(run, NULL);
 	int length;
-	const char *last = path_last(run, &length);
+	const char *last = path_last(full ? full : run, &length);
 	char *name = strndup(last, (size_t)length);
 	const int fine = name && cJSON_AddStringToObject(page, "name", name) &&
 			 cJSON_AddStringToObject(page, "version", VERSION);
 
 	free(name);
+	free(full);
 	return fine;
 }
 
