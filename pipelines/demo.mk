@@ -35,6 +35,8 @@ demo: $(data)/made-by
 	@echo "masks drawn over the test views, a picture for each test sentence: $(DEMO)/lifted/overlays (without training),"
 	@echo "             $(DEMO)/stage2/overlays (trained as in the paper)"
 	@echo "where the things are in space: $(DEMO)/lifted/boxes.jsonl"
+	@$(tool)refer-report --truth $(data)/truth.jsonl $(DEMO)
+	@echo "all of it on one page; open in a browser: file://$(abspath $(DEMO))/report.html"
 
 # The command that made the data, once they are whole. They stay as they are while it is the same.
 $(data)/made-by: $(if $(call same,$(file <$(data)/made-by),$(make_data)),,FORCE)

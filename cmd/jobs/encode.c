@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "cmd/jobs/cache_folder.h"
 #include "formats/bert_model.h"
 #include "formats/masks.h"
 #include "formats/vocab.h"
@@ -184,15 +185,8 @@ static int make_words(struct text *out, const struct bert *b, const struct encod
 
 char *encoder_default(struct err *e)
 {
-	const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-	const int has_cache = cache && *cache;
+	char *dir = cache_folder("encoder", e);
 
-	if (!has_cache && !(home && *home)) {
-		err_set(e, ERR_USAGE, "no encoder is named, and HOME is not set");
-		return NULL;
-	}
-	char *dir = has_cache ? file_join(cache, "refersplat/encoder", "", e)
-			      : file_join(home, ".cache/refersplat/encoder", "", e);
 	if (!dir || file_is_dir(dir))
 		return dir;
 	err_set(e, ERR_SYSTEM, "%s: no encoder there: 'make encoder' fetches one", dir);
