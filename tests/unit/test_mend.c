@@ -134,6 +134,10 @@ static void mends_neighbours(void)
 	mends("the nearest lamp to the sink", ". P T P . A3", PARSE_NEAR, 5, ROLE_ANCHOR, 1, 0);
 	mends("the nearest lamp to the sink", ". P T P . A3", PARSE_NEAR, 3, ROLE_NONE, ROOT, 0);
 	mends("not the jug, the other lamp", ". . E . . E", 0, 5, ROLE_TARGET, ROOT, 0);
+	mends("the goat on the rug", ". a P . A2", PARSE_ON, 1, ROLE_TARGET, ROOT, 0);
+	mends("the red on the rug", ". a P . A2", PARSE_ON, 1, ROLE_ATTRIBUTE, ROOT, 0);
+	mends("a jug in the middle between the lamp and the sink", ". T . . P P . A4 . . A5", PARSE_BETWEEN,
+		7, ROLE_ANCHOR, 5, 0);
 	mends("not the jug nor the other lamp", ". . E . . . E", 0, 6, ROLE_EXCEPT, ROOT, 0);
 	mends("brighter than the lamp", "P . . T", PARSE_LARGER, 0, ROLE_ATTRIBUTE, ROOT, 0);
 	mends("taller than the lamp", "P . . T", PARSE_TALLER, 0, ROLE_PREDICATE, ROOT, PARSE_TALLER);
