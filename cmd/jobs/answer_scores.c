@@ -52,8 +52,8 @@ int answer_scores_make(struct answer_scores *s, const struct sentences *sentence
 			.view_count = one->view_count,
 			.views = one->views};
 	}
-	int bad = answers_make(&s->answers, s->sentences, sentences->n, truth->masks, truth->n,
-		predictions->masks, predictions->n, e);
+	int bad = answers_make(&s->answers, s->sentences, sentences->n, truth->set.items, truth->n,
+		predictions->set.items, predictions->n, e);
 	if (!bad && !s->answers.n)
 		bad = err_set(e, ERR_FORMAT,
 			"%s: shows nothing that a sentence means: there is nothing to score",

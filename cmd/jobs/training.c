@@ -72,66 +72,88 @@ static int add_view(struct training *t, const char *weights, const struct camera
 	return 0;
 }
 
-/* One record: its view's weights are opened when it is the first of the view; names are those of the scene's
- * views, at[] is a scene view's training view or -1. */
-static int add_mask(struct training *t, const struct jsonl *j, const struct mask_record *r,
-	const char *weights, const struct names *names, long *at, struct err *e)
+/* What the masks are read with. */
+struct mask_reading {
+	const char *weights;
+	struct names names; /* of the scene's views */
+	long *view_of;	    /* (the scene's views) the training view, or -1 */
+	size_t capacity;
+	long *lines; /* of each mask that was kept */
+};
+
+/* One mask, taken over: its view's weights are opened when it is the first of the view. */
+static int add_mask(
+	struct training *t, const struct jsonl *j, struct mask *m, struct mask_reading *r, struct err *e)
 {
-	const size_t place = names_find(names, r->view);
+	const size_t place = names_find(&r->names, m->view), n = t->masks.masks.n;
 	const struct camera *c = t->scene.cameras.views + (place == NAMES_NONE ? 0 : place);
-	struct err reason;
+	int bad = 0;
 
 	if (place == NAMES_NONE)
-		return jsonl_err(j, e, "key 'view': the scene has no view '%s'", r->view);
-	if (c->split == SPLIT_TEST) {
+		bad = jsonl_err(j, e, "key 'view': the scene has no view '%s'", m->view);
+	else if (c->split == SPLIT_TEST)
 		t->test_masks++;
-		return 0;
+	if (bad || c->split == SPLIT_TEST) {
+		mask_free(m);
+		return bad;
 	}
-	long *view = &at[place];
+	long *view = &r->view_of[place];
 	if (*view < 0) {
 		*view = (long)t->view_count;
-		if (add_view(t, weights, c, e))
-			return -1;
+		bad = add_view(t, r->weights, c, e);
 	}
+	bad = bad || mem_grow((void **)&r->lines, &r->capacity, n + 1, sizeof *r->lines, "masks", e);
+	if (bad) {
+		mask_free(m);
+		return -1;
+	}
+	r->lines[n] = j->line_number;
 	const struct weights *w = &t->weights[*view];
-	if (supervision_add(
-		    &t->masks, (size_t)*view, w->width, w->height, r->ref, r->object, &r->mask, &reason))
-		return reason.code == ERR_FORMAT ? jsonl_err(j, e, "%s", reason.message)
-						 : err_set(e, reason.code, "%s", reason.message);
-	return 0;
+	return supervision_add(&t->masks, (size_t)*view, w->width, w->height, m, e);
+}
+
+static int add_masks(struct training *t, const char *path, struct mask_reading *r, struct err *e)
+{
+	struct err reason;
+	struct mask m;
+	struct jsonl j;
+	size_t later = 0;
+	int more;
+
+	if (jsonl_open(&j, path, e))
+		return -1;
+	while ((more = masks_next(&j, &m, e)) == 1)
+		if (add_mask(t, &j, &m, r, e)) {
+			more = -1;
+			break;
+		}
+	jsonl_close(&j);
+	if (more || !supervision_index(&t->masks, &later, &reason))
+		return more;
+	if (reason.code != ERR_FORMAT)
+		return err_set(e, reason.code, "%s", reason.message);
+	return err_set(e, ERR_FORMAT, "%s:%ld: %s", file_name(path), r->lines[later], reason.message);
 }
 
 static int read_masks(struct training *t, const char *weights, const char *path, struct err *e)
 {
 	const size_t count = t->scene.cameras.n;
-	long *at = mem_alloc(count, sizeof *at, "views", e);
-	struct names names = {0};
-	struct jsonl j = {0};
-	struct mask_record r;
-	int more = -1;
+	struct mask_reading r = {
+		.weights = weights, .view_of = mem_alloc(count, sizeof *r.view_of, "views", e)};
 
 	t->weights = mem_zalloc(count, sizeof *t->weights, "views", e);
 	t->views = mem_zalloc(count, sizeof *t->views, "views", e);
 	t->cameras = mem_zalloc(count, sizeof *t->cameras, "views", e);
-	if (at && t->weights && t->views && t->cameras &&
-		!names_make(&names, t->scene.cameras.views, sizeof *t->scene.cameras.views,
-			offsetof(struct camera, name), count, e) &&
-		!jsonl_open(&j, path, e)) {
-		for (size_t v = 0; v < count; v++)
-			at[v] = -1;
-		while ((more = masks_next(&j, &r, e)) == 1) {
-			int bad = add_mask(t, &j, &r, weights, &names, at, e);
-			mask_record_free(&r);
-			if (bad) {
-				more = -1;
-				break;
-			}
-		}
-		jsonl_close(&j);
-	}
-	names_free(&names);
-	free(at);
-	return more;
+	int bad = !r.view_of || !t->weights || !t->views || !t->cameras ||
+		  names_make(&r.names, t->scene.cameras.views, sizeof *t->scene.cameras.views,
+			  offsetof(struct camera, name), count, e);
+	for (size_t v = 0; v < count && !bad; v++)
+		r.view_of[v] = -1;
+	bad = bad || add_masks(t, path, &r, e);
+	names_free(&r.names);
+	free(r.view_of);
+	free(r.lines);
+	return bad ? -1 : 0;
 }
 
 static uint32_t add_checksum(uint32_t sum, const void *data, size_t bytes)

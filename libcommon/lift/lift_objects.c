@@ -104,7 +104,7 @@ static int fill_image(const struct lift_mask *masks, size_t n, int height, int w
 
 	for (size_t k = 0; k < n; k++) {
 		struct rle resized;
-		if (rle_resize(&resized, masks[k].mask, height, width, e))
+		if (rle_resize(&resized, &masks[k].mask->rle, height, width, e))
 			return -1;
 		rle_decode(&resized, pixels);
 		rle_free(&resized);
