@@ -184,7 +184,7 @@ static int choose_answer(struct asking *a, const struct text *t, struct watched 
 {
 	const size_t objects = a->model.lifted.objects;
 	const struct choose_sentence sentence = {
-		t->texts[0], t->pieces[0], t->words, (size_t)t->offsets[1], a->from};
+		t->texts[0], t->pieces[0], t->words, (size_t)t->offsets[1], a->from, NULL};
 	const struct choose_watch watching = {w, watch};
 	float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
 	char *chosen = mem_alloc(objects, 1, "answer", e);

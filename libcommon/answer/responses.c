@@ -110,7 +110,7 @@ static int find_meant(struct meant *m, struct responses *a, const struct lifted 
 		m->sentences[i] = (struct choose_sentence){q->texts[r], q->pieces[r],
 			q->words + (size_t)q->offsets[r] * (size_t)l->width,
 			(size_t)(q->offsets[r + 1] - q->offsets[r]),
-			q->from ? q->from[i] : (struct viewpoint){.kind = VIEWPOINT_USUAL}};
+			q->from ? q->from[i] : (struct viewpoint){.kind = VIEWPOINT_USUAL}, NULL};
 	}
 	if (choose(&scene, m->sentences, q->count, parts, m->choices, m->probability, m->chosen, NULL, e))
 		return -1;

@@ -219,14 +219,15 @@ static void choose_wording(
 	to->is_by_wording = 1;
 }
 
-/* s gets the sentence with its parse p. */
+/* s gets the sentence with its parse, which is `own` where the sentence has none. */
 static int choose_parsed(struct chooser *c, const struct choose_sentence *from, struct vocabulary_sentence *s,
-	struct choice *to, double *row, char *chosen, struct parse *p, struct err *e)
+	struct choice *to, double *row, char *chosen, struct parse *own, struct err *e)
 {
 	const struct lifted *l = c->scene->lifted;
 	const struct parser_vectors vectors = {from->pieces, from->vectors, (int)from->words, l->width};
+	const struct parse *p = from->parse ? from->parse : own;
 
-	if (parse_sentence(p, &c->parser, from->text, &vectors, e))
+	if (!from->parse && parse_sentence(own, &c->parser, from->text, &vectors, e))
 		return -1;
 	*s = (struct vocabulary_sentence){p, from->vectors, from->words};
 	if (meaning_judge(&c->meaning, s, e))

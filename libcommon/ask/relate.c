@@ -392,13 +392,13 @@ static void compare(const struct arrangement *a, const struct relation *r, size_
 		for (size_t o = 0; o < a->n; o++)
 			key[o] = (r->kind == PARSE_FAR || r->kind == PARSE_BEHIND ? -1 : 1) *
 				 level_distance(&a->objects[o], q) / a->spacing;
-		rank(a, key, fit, 1, BEST_SOFT, i, out);
+		rank(a, key, fit, r->place, BEST_SOFT, i, out);
 		return;
 	}
 	for (size_t o = 0; o < a->n; o++)
 		key[o] = key_of(a, r->kind, &a->objects[o]);
 	if (r->degree == PARSE_MOST && !is_size(r->kind))
-		rank(a, key, fit, 1, soft_of(r->kind), i, out);
+		rank(a, key, fit, r->place, soft_of(r->kind), i, out);
 	for (size_t o = 0; o < a->n; o++) {
 		const double more = step((key_of(a, r->kind, q) - key[o]) / soft_of(r->kind) - 1);
 		const double side = r->kind <= PARSE_BELOW ? pair(a, r->kind, 1, &a->objects[o], q) : more;
@@ -467,7 +467,7 @@ void relate(
 			r->kind == PARSE_CORNER)
 			by_itself(a, r, fit, key, out);
 		else
-			relate_rank(a, r->kind, 1, fit, key, out);
+			relate_rank(a, r->kind, r->place ? r->place : 1, fit, key, out);
 	} else if (r->kind == PARSE_BETWEEN ||
 		   (r->kind == PARSE_MIDDLE && (count > 1 || named[0]->is_every))) {
 		memset(out, 0, a->n * sizeof *out);

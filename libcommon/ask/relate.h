@@ -19,6 +19,7 @@ struct relation {
 	enum parse_relation kind;
 	enum parse_degree degree;
 	int is_loose; /* a half-plane rather than a direction: "everything left of the plate" */
+	int place;    /* with PARSE_MOST: 2 for "second nearest to"; 0 as 1 */
 	int count;
 	const struct relate_anchor *anchors; /* (count) */
 };

@@ -53,7 +53,8 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
  * views are told from the words themselves. */
 int parse_build(struct parse *p, const struct analysis *a, const struct tokens *t, struct err *e);
 
-/* What the words of a built parse tell besides: "the taller of those three vases" is a vase. */
-void parse_settle(struct parse *p);
+/* What the words of a built parse tell besides: "the taller of those three vases" is a vase. -1 only where
+ * memory is out. */
+int parse_settle(struct parse *p, struct err *e);
 
 #endif

@@ -324,6 +324,99 @@ static void mend_plus(struct analysis *a, const struct tokens *t)
 	}
 }
 
+static void give_up(struct analysis_word *w)
+{
+	*w = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
+}
+
+/* "any jar other than the white one": the white one is left out. */
+static void mend_other_than(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i + 2 < t->n; i++) {
+		if (!is(t, i, "other") || !is(t, i + 1, "than"))
+			continue;
+		for (int j = i + 2; j < t->n && j < i + 8; j++)
+			if (role_is_phrase(a->word[j].role)) {
+				if (a->word[j].role == ROLE_ALSO || a->word[j].role == ROLE_TARGET)
+					a->word[j] =
+						(struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
+				break;
+			}
+	}
+}
+
+/* Places that are verbs: "where I left it", "pass me over the jug". */
+static void mend_verbs(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 1; i + 1 < t->n; i++) {
+		const int before = class_of(t, i - 1);
+		if (a->word[i].role != ROLE_PREDICATE || has_anchor(a, i))
+			continue;
+		if (is(t, i, "left") && before == CLOSED_PRONOUN &&
+			(class_of(t, i + 1) == CLOSED_DETERMINER || class_of(t, i + 1) == CLOSED_PRONOUN))
+			give_up(&a->word[i]);
+		if (is(t, i, "over") &&
+			(before == CLOSED_REQUEST || is(t, i - 1, "me") || is(t, i - 1, "us")))
+			give_up(&a->word[i]);
+	}
+}
+
+/* "a lamp on its left and a clock on its right": the clock is on the right. */
+static void mend_both_sides(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 2; i < t->n; i++) {
+		int anchor = i - 1, other = 0;
+		if (a->word[i].role != ROLE_PREDICATE || a->word[i].head != ROOT || !is(t, i - 1, "its") ||
+			has_anchor(a, i))
+			continue;
+		while (anchor > 0 && !role_is_phrase(a->word[anchor].role) &&
+			a->word[anchor].role != ROLE_PREDICATE)
+			anchor--;
+		for (int j = 0; j < anchor; j++)
+			other |= a->word[j].role == ROLE_ANCHOR && a->word[j].head == a->word[anchor].head;
+		if (a->word[anchor].role == ROLE_ANCHOR && other && a->word[anchor].head < anchor)
+			a->word[anchor].head = i;
+	}
+}
+
+/* "neither on the shelf nor by the door": what comes after "nor" is said of the same thing. */
+static void mend_nor(struct analysis *a, const struct tokens *t)
+{
+	int first = -1;
+
+	for (int i = 0; i < t->n; i++) {
+		if (a->word[i].role == ROLE_PREDICATE && first < 0 && a->word[i].negated)
+			first = i;
+		if (!is(t, i, "nor") || first < 0)
+			continue;
+		for (int j = i + 1; j < t->n && j <= i + 4; j++)
+			if (a->word[j].role == ROLE_PREDICATE) {
+				a->word[j].head = a->word[first].head;
+				a->word[j].negated = 1;
+				break;
+			}
+	}
+}
+
+/* "behind the lamp there is a jar": the jar is meant, where nothing else is. */
+static void mend_there_is(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++)
+		if (a->word[i].role == ROLE_TARGET)
+			return;
+	for (int i = 1; i + 1 < t->n; i++) {
+		const int is_stated = class_of(t, i) == CLOSED_BE && is(t, i - 1, "there");
+		for (int j = i + 1; is_stated && j < t->n && !t->word[j].before; j++) {
+			if (a->word[j].role == ROLE_ANCHOR) {
+				a->word[j] = (struct analysis_word){.role = ROLE_TARGET, .head = ROOT};
+				return;
+			}
+			if (a->word[j].role == ROLE_PREDICATE)
+				break;
+		}
+	}
+}
+
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	mend_with(a, grammar, t);
@@ -339,5 +432,10 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 	mend_negation(a, t);
 	mend_colours(a, t);
 	mend_pairs(a, t);
+	mend_other_than(a, t);
+	mend_verbs(a, t);
+	mend_both_sides(a, t);
+	mend_nor(a, t);
+	mend_there_is(a, t);
 	analysis_repair(a);
 }

@@ -468,11 +468,15 @@ static void find_ordinals(struct build *b)
 					: 0;
 		if (!value)
 			continue;
-		for (int j = i + 1; j < t->n && j <= i + 4 && !t->word[j].before; j++)
-			if (b->phrase_of[j] >= 0) {
-				owner = b->phrase_of[j];
-				break;
-			}
+		for (int j = i + 1; j < t->n && j <= i + 4 && !t->word[j].before; j++) {
+			/* "second nearest to the door": the figure is counted */
+			const int is_predicate = b->a->word[j].role == ROLE_PREDICATE;
+			if (!is_predicate && b->phrase_of[j] < 0)
+				continue;
+			owner = is_predicate ? phrase_under(b, b->a->word[j].head) : b->phrase_of[j];
+			break;
+		}
+		owner = owner < 0 ? 0 : owner;
 		b->p->phrases[owner].ordinal = value;
 		b->p->phrases[owner].from = counted_from(b);
 	}
@@ -514,7 +518,10 @@ int parse_build(struct parse *p, const struct analysis *a, const struct tokens *
 		return -1;
 	}
 	find_view(&b);
-	parse_settle(p);
 	p->confidence = t->n ? 1 - (double)p->unexplained.n / t->n : 0;
+	if (parse_settle(p, e)) {
+		parse_free(p);
+		return -1;
+	}
 	return 0;
 }

@@ -102,6 +102,41 @@ static void mends_attachment(void)
 	CHECK(a.word[4].role == ROLE_ALSO, "the bowl too: role %d", a.word[4].role);
 }
 
+/* Words that look like places or further things and are none; two sides; what is stated to be there. */
+static void mends_readings(void)
+{
+	mends("any jug other than the grey one", ". T . . . a5 L", 0, 6, ROLE_EXCEPT, ROOT, 0);
+	mends("where I left my jug", ". . P . T", PARSE_LEFT, 2, ROLE_NONE, ROOT, 0);
+	mends("the jug left of my coat", ". T P . . A2", PARSE_LEFT, 2, ROLE_PREDICATE, ROOT, PARSE_LEFT);
+	mends("pass me over the jug", ". . P . T", PARSE_ABOVE, 2, ROLE_NONE, ROOT, 0);
+	mends("pass me the jug over the sink", ". . . T P . A4", PARSE_ABOVE, 4, ROLE_PREDICATE, ROOT,
+		PARSE_ABOVE);
+
+	const char *sides = "it has a coat on its left and a hat on its right";
+	mends(sides, ". . . A6 . . P . . A6 . . P", PARSE_RIGHT, 9, ROLE_ANCHOR, 12, 0);
+	mends(sides, ". . . A6 . . P . . A6 . . P", PARSE_RIGHT, 3, ROLE_ANCHOR, 6, 0);
+
+	const char *nor = "the jug neither on the shelf nor by the door";
+	mends(nor, ". T . P . A3 . P5 . A7", PARSE_NEAR, 7, ROLE_PREDICATE, 5, PARSE_NEAR);
+	mends("behind the coat there is a jug", "P . A0 . . . A0", PARSE_BEHIND, 6, ROLE_TARGET, ROOT, 0);
+	mends("the hat behind the coat there is a jug", ". T P . A2 . . . A2", PARSE_BEHIND, 8, ROLE_ANCHOR,
+		2, 0);
+}
+
+/* What is neither here nor there is neither: the second is denied of the same thing as the first. */
+static void mends_nor(void)
+{
+	struct tokens t;
+	struct analysis a, grammar;
+
+	tokens_take(&t, "the jug neither on the shelf nor by the door", NULL, NULL, 0);
+	grammar_analyse(&grammar, &t);
+	a = made(&t, ". T . P . A3 . P5 . A7", PARSE_NEAR);
+	a.word[3].negated = 1;
+	analysis_mend(&a, &grammar, &t);
+	CHECK(a.word[7].head == ROOT && a.word[7].negated, "by the door: of %d", a.word[7].head);
+}
+
 static struct parse parsed(const char *text)
 {
 	struct parse p;
@@ -148,6 +183,15 @@ static void settles(void)
 	p = parsed("the two grey ones");
 	CHECK(p.phrases[0].count == 2, "two ones: %d", p.phrases[0].count);
 	parse_free(&p);
+	p = parsed("of all the coats, the longest");
+	CHECK(p.phrases[0].count == PARSE_ONE, "one coat: %d", p.phrases[0].count);
+	parse_free(&p);
+	p = parsed("the jug second nearest to the door");
+	CHECK(p.phrases[0].ordinal == 2, "the second jug: %d", p.phrases[0].ordinal);
+	parse_free(&p);
+	p = parsed("the tallest lamp but two");
+	CHECK(p.phrases[0].ordinal == 3, "the third: %d", p.phrases[0].ordinal);
+	parse_free(&p);
 	p = parsed("taller than the lamp");
 	CHECK(p.clauses[0].degree == PARSE_MORE && p.clauses[0].anchors.n == 1, "a lamp is compared with");
 	parse_free(&p);
@@ -157,6 +201,8 @@ int main(void)
 {
 	mends_all();
 	mends_attachment();
+	mends_readings();
+	mends_nor();
 	settles();
 	return unit_end();
 }
