@@ -2,6 +2,7 @@
  * candidate's parts are those of the target that were judged, each with what it gave. */
 #include "cmd/jobs/explain.h"
 
+#include "base/largest.h"
 #include "base/utf8.h"
 
 #include <math.h>
@@ -117,15 +118,6 @@ static void add_part(struct words *w, const struct explained *x, const struct me
 	default:
 		break;
 	}
-}
-
-static size_t best_of(const double *x, size_t n)
-{
-	size_t best = 0;
-
-	for (size_t o = 1; o < n; o++)
-		best = x[o] > x[best] ? o : best;
-	return best;
 }
 
 /* The first anchor of a phrase, or of one of its anchors, that is not here; -1: none. */
