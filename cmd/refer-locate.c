@@ -103,10 +103,7 @@ static int write_boxes(const struct run *r, const struct cli *c, struct err *e)
 		return -1;
 	for (size_t i = 0; i < q->count && !bad; i++)
 		bad = put_sentence(r, i, out.stream, e);
-	if (!bad)
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+	return file_out_end(&out, bad, e);
 }
 
 static int write_scene(const struct run *r, struct err *e)

@@ -570,8 +570,5 @@ int safetensors_write(const char *path, const struct st_tensor *tensors, size_t 
 		bad = put(&out, tensors[order[k]].data, tensor_bytes(&tensors[order[k]]), e);
 	free(order);
 	free(header);
-	if (!bad)
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+	return file_out_end(&out, bad, e);
 }

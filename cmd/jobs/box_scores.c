@@ -111,10 +111,12 @@ static void text_figures(FILE *out, const char *name, const struct box_figures *
 	fprintf(out, "%-12s %6.2f %% %6.2f %% %6.2f %%\n", name, 100 * f->iou, 100 * f->p25, 100 * f->p50);
 }
 
-static void put_text(FILE *out, const struct box_scores *s)
+static int put_text(FILE *out, const void *scores, struct err *e)
 {
+	const struct box_scores *s = scores;
 	const struct box_score *all = &s->all;
 
+	(void)e;
 	fprintf(out, "%-12s %8s %8s %8s\n", "boxes", "mIoU", "@0.25", "@0.5");
 	text_figures(out, "aligned", &all->aligned);
 	text_figures(out, "oriented", &all->turned);
@@ -134,6 +136,7 @@ static void put_text(FILE *out, const struct box_scores *s)
 		else
 			fprintf(out, "%6.2f %%  %s\n", 100 * one.relative, s->pairs[i].name);
 	}
+	return 0;
 }
 
 static void json_figures(FILE *out, const char *key, const struct box_figures *f)
@@ -149,8 +152,9 @@ static void json_number(FILE *out, const char *before, double x)
 		fprintf(out, "%s%.6g", before, x);
 }
 
-static int put_json(FILE *out, const struct box_scores *s, struct err *e)
+static int put_json(FILE *out, const void *scores, struct err *e)
 {
+	const struct box_scores *s = scores;
 	const struct box_score *all = &s->all;
 
 	fputc('{', out);
@@ -178,15 +182,5 @@ static int put_json(FILE *out, const struct box_scores *s, struct err *e)
 
 int box_scores_write(const struct box_scores *s, const char *path, int is_json, struct err *e)
 {
-	struct file_out out;
-
-	if (file_out_open(&out, path, e))
-		return -1;
-	if (is_json && put_json(out.stream, s, e)) {
-		file_out_abort(&out);
-		return -1;
-	}
-	if (!is_json)
-		put_text(out.stream, s);
-	return file_out_commit(&out, e);
+	return file_out_put(path, is_json ? put_json : put_text, s, e);
 }

@@ -146,10 +146,7 @@ int draw(struct drawing *d, const struct viewpoint *from, const char *path, cons
 	report_start(to, "views", (double)d->view_count);
 	int bad = render_all(d, from, e);
 	report_end(to);
-	if (!bad)
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+	return file_out_end(&out, bad, e);
 }
 
 void drawing_free(struct drawing *d)

@@ -220,8 +220,5 @@ int painting_write(struct painting_names *names, const char *const *pictures, si
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	if (!put_all(names, pictures, count, out.stream, to, e))
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+	return file_out_end(&out, put_all(names, pictures, count, out.stream, to, e), e);
 }

@@ -166,11 +166,8 @@ int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *op
 	if (file_out_open(&out, path, e))
 		return -1;
 	w->out = out.stream;
-	if (method >= PSEUDOMASK_FIRST ? put_views(w, to, e) : put_winners(w, to, e)) {
-		file_out_abort(&out);
-		return -1;
-	}
-	return file_out_commit(&out, e);
+	return file_out_end(
+		&out, method >= PSEUDOMASK_FIRST ? put_views(w, to, e) : put_winners(w, to, e), e);
 }
 
 void pseudomasks_free(struct pseudomasks *w)
