@@ -187,6 +187,19 @@ static void put_boxes(FILE *out, const struct box_record *r)
 	fputc('}', out);
 }
 
+static int put_parts(FILE *out, const struct box_record *r, struct err *e)
+{
+	for (size_t k = 0; k < r->part_count; k++) {
+		fputs(k ? "," : ",\"parts\":[", out);
+		if (jsonl_put_string(out, "{\"object\":", r->parts[k].object, e))
+			return -1;
+		fprintf(out, ",\"score\":%.6g", r->parts[k].score);
+		put_boxes(out, &r->parts[k]);
+		fputs(k + 1 == r->part_count ? "}]" : "}", out);
+	}
+	return 0;
+}
+
 int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of, struct err *e)
 {
 	const char *open = "{";
@@ -206,6 +219,8 @@ int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians 
 	if (of)
 		fprintf(out, ",\"count\":%zu", of->n);
 	put_boxes(out, r);
+	if (put_parts(out, r, e))
+		return -1;
 	if (of) {
 		fputs(",\"gaussians\":[", out);
 		for (size_t i = 0; i < of->n; i++)

@@ -16,6 +16,8 @@ struct box_record {
 	int is_empty;	    /* there is nothing, and no box */
 	struct box aligned; /* along the world's axes */
 	struct box turned;
+	size_t part_count; /* of several things that are meant: each by itself, for writing */
+	const struct box_record *parts;
 };
 
 struct box_set {
@@ -37,7 +39,8 @@ struct box_gaussians {
 	const int32_t *ids;
 };
 
-/* One line. `of` may be NULL: the record then says nothing of Gaussians. */
+/* One line. `of` may be NULL: the record then says nothing of Gaussians. Its parts have an object, a score
+ * and boxes. */
 int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of, struct err *e);
 
 #endif

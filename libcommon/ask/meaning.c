@@ -126,6 +126,17 @@ static int is_scene(const struct meaning *m, int phrase)
 	       (head >= 0 && m->known[phrase] < 0.5 && meaning_word_is(&p->words[head], places));
 }
 
+static enum relate_width width_of(const struct parse *p, const struct parse_phrase *f)
+{
+	int directions = 0;
+
+	for (int k = 0; k < f->clauses.n; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		directions += c->relation <= PARSE_BEHIND && !c->negated ? c->anchors.n : 0;
+	}
+	return f->count != PARSE_ONE ? RELATE_HALF_PLANE : directions > 1 ? RELATE_WIDE : RELATE_NARROW;
+}
+
 /* value (O) of a clause that has places in it; returns how far its anchors are known. */
 static double judge_relation(
 	struct meaning *m, int phrase, const struct parse_clause *c, const double *fit, double *value)
@@ -136,7 +147,7 @@ static double judge_relation(
 	const struct parse *p = m->sentence->parse;
 	struct relate_anchor anchors[ANCHORS];
 	const struct parse_phrase *f = &p->phrases[phrase];
-	struct relation r = {relation_of(p, c), degree_of(c), f->count != PARSE_ONE, 0, 0, anchors};
+	struct relation r = {relation_of(p, c), degree_of(c), width_of(p, f), 0, 0, anchors};
 	double known = 1;
 
 	if (counted_by(p, f, counts_along) == c)

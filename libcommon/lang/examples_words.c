@@ -65,7 +65,6 @@ static const struct example_clause placed[] = {
 	{PARSE_BEHIND, 0, "peeking|peeping|sticking|looking out from *behind @"},
 	{PARSE_BEHIND, 0, "in the *back row|line"},
 	{PARSE_FRONT, 0, "in the *front row|line"},
-	{PARSE_FRONT, 0, "that *hides|covers|blocks|conceals @"},
 	{PARSE_ABOVE, 0, "~ *above @"},
 	{PARSE_ABOVE, 0, "hanging|mounted| *over @"},
 	{PARSE_ABOVE, 0, "*higher than @"},
@@ -251,15 +250,9 @@ static const struct example_clause turned[] = {
 	{PARSE_LEFT, 0, "that @ is *right of"},
 	{PARSE_RIGHT, 0, "that|which| @ is to the *left of"},
 	{PARSE_LEFT, 0, "that|which| @ is to the *right of"},
-	{PARSE_RIGHT, 0, "that|which| @ stands|lies|sits to the *left of"},
-	{PARSE_LEFT, 0, "that|which| @ stands|lies|sits to the *right of"},
 	{PARSE_NEAR, 0, "that|which| @ leans *against|on"},
 	{PARSE_NEAR, 0, "that|which| @ stands|lies|sits *by|beside|near|next_to"},
 	{PARSE_NEAR, 0, "@ is lying|standing|sitting *by|beside|near|next_to"},
-	{PARSE_BEHIND, 0, "that|which| @ *hides|covers|blocks"},
-	{PARSE_SUPPORTS, 0, "on which @ is *placed|put|resting|standing"},
-	{PARSE_ABOVE, 0, "*under|below|beneath which @ is|lies|stands|sits"},
-	{PARSE_FRONT, 0, "*behind which @ is|lies|stands|sits"},
 	{PARSE_FACING, 0, "that @ is *facing"},
 };
 
@@ -302,14 +295,8 @@ static const struct example_clause inverted[] = {
 	{PARSE_NEAR, 0, "does @ stand|sit|lie *nearest|closest|next to"},
 	{PARSE_FAR, 0, "is @ *farthest|furthest from"},
 	{PARSE_FAR, 0, "is @ *farthest|furthest away from"},
-	{PARSE_ABOVE, 0, "is @ ^ *under|below|beneath"},
-	{PARSE_BELOW, 0, "is @ *above|over"},
-	{PARSE_FRONT, 0, "is @ ^ *behind"},
-	{PARSE_BEHIND, 0, "is @ ^ in *front of"},
 	{PARSE_RIGHT, 0, "is @ ^ to the *left of"},
 	{PARSE_LEFT, 0, "is @ ^ to the *right of"},
-	{PARSE_RIGHT, 0, "is @ *left of"},
-	{PARSE_LEFT, 0, "is @ *right of"},
 };
 
 static const struct example_clause before[] = {
