@@ -88,12 +88,8 @@ void propagate_free(struct propagation *c)
 static int fill_image(
 	const struct rle *mask, int height, int width, uint8_t *pixels, float *image, struct err *e)
 {
-	struct rle resized;
-
-	if (rle_resize(&resized, mask, height, width, e))
+	if (rle_decode_at(mask, height, width, pixels, e))
 		return -1;
-	rle_decode(&resized, pixels);
-	rle_free(&resized);
 	for (size_t p = 0; p < (size_t)width * (size_t)height; p++)
 		image[p] = pixels[p];
 	return 0;

@@ -154,16 +154,13 @@ static int fill_images(const struct regions_candidate *c, size_t now, int height
 
 #pragma omp parallel for schedule(dynamic) reduction(| : failed)
 	for (size_t k = 0; k < now; k++) {
-		struct rle resized;
 		struct err mine;
-		if (rle_resize(&resized, &c[k].mask->rle, height, width, &mine)) {
+		if (rle_decode_at(&c[k].mask->rle, height, width, pixels + k * count, &mine)) {
 			failed = 1;
 #pragma omp critical
 			*e = mine;
 			continue;
 		}
-		rle_decode(&resized, pixels + k * count);
-		rle_free(&resized);
 		for (size_t p = 0; p < count; p++)
 			image[k * count + p] = pixels[k * count + p];
 	}

@@ -49,6 +49,9 @@ double rle_iou(const struct rle *a, const struct rle *b);
  * 0.5 too). The shares are exact: whole numbers of 1/(H*W) of a new pixel. */
 int rle_resize(struct rle *to, const struct rle *from, int height, int width, struct err *e);
 
+/* rle_decode of rle_resize: mask (height,width). */
+int rle_decode_at(const struct rle *r, int height, int width, uint8_t *mask, struct err *e);
+
 /* A mask at the size of what it is held against: resized where it must be, once for all of one size. */
 struct rle_fitted {
 	const struct rle *own;

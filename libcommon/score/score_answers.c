@@ -99,7 +99,7 @@ struct measure {
 	size_t shown[ANSWER_CUTS], hit[ANSWER_CUTS],
 		meant;		       /* objects: covered, those that are meant too, all meant */
 	double best_meant, best_other; /* IoU with a single object */
-	struct rle all;		       /* the union of the meant */
+	struct rle all;		       /* the union of the meant, at the size of the first */
 };
 
 static int add_object(
@@ -119,7 +119,11 @@ static int add_object(
 	if (!is_meant)
 		return 0;
 	m->meant++;
-	if (rle_unite(&more, m->all.n ? &m->all : o->mask, o->mask, e))
+	const struct rle *all = m->all.n ? &m->all : o->mask;
+	struct rle_fitted own = {.own = o->mask};
+	const int bad = rle_fit(&own, all, e) || rle_unite(&more, all, own.now, e);
+	rle_fitted_free(&own);
+	if (bad)
 		return -1;
 	rle_free(&m->all);
 	m->all = more;
@@ -156,6 +160,7 @@ static int measure(
 		const struct seen *o = &t->items[i];
 		bad = rle_fit(&f, o->mask, e) || add_object(&m, &f, o, means(a->sentence, o->object), e);
 	}
+	bad = bad || (m.all.n && rle_fit(&f, &m.all, e));
 	if (!bad)
 		judge(a, &m, &f);
 	rle_fitted_free(&f);

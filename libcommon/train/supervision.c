@@ -70,19 +70,16 @@ static int grow(struct supervision *s, struct err *e)
 static int fill_bits(struct supervision_bits *b, int width, int height, const struct rle *mask, struct err *e)
 {
 	const size_t pixels = (size_t)width * (size_t)height;
-	struct rle resized = {0};
 	uint8_t *bytes = mem_alloc((size_t)width, (size_t)height, "mask", e);
 	int bad = -1;
 
 	b->bytes = bits_bytes(pixels);
 	b->bits = mem_alloc(b->bytes, 1, "mask", e);
-	if (bytes && b->bits && !rle_resize(&resized, mask, height, width, e)) {
-		rle_decode(&resized, bytes);
+	if (bytes && b->bits && !rle_decode_at(mask, height, width, bytes, e)) {
 		bits_pack(bytes, pixels, b->bits);
 		b->hash = hash(b->view, b->bits, b->bytes);
 		bad = 0;
 	}
-	rle_free(&resized);
 	free(bytes);
 	return bad;
 }

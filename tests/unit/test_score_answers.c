@@ -234,6 +234,37 @@ static void predictions_of_another_size(void)
 	rle_free(&p);
 }
 
+/* A view whose true masks have several sizes: the prediction is held against each at its own. */
+static void truths_of_several_sizes(void)
+{
+	uint8_t small[4] = {1, 0, 0, 0}, large[16] = {0}, huge[64] = {0};
+	char *objects[] = {"a", "b"};
+	struct answer_sentence s[] = {{.ref = "r", .object_count = 1, .objects = objects},
+		{.ref = "r", .object_count = 2, .objects = objects}};
+	struct answers a;
+	struct err e;
+
+	for (int y = 0; y < 4; y++)
+		for (int x = 0; x < 4; x++) {
+			large[y * 4 + x] = y < 2 && x < 2;
+			huge[y * 8 + x] = 1;
+		}
+	huge[8 * 4] = 1; /* too little to count at a smaller size */
+	const struct mask truth[] = {{"v", NULL, "a", mask_rle(large, 4, 4), 1, NAN},
+		{"v", NULL, "b", mask_rle(small, 2, 2), 1, NAN},
+		{"v", NULL, "c", mask_rle(huge, 8, 8), 1, NAN}};
+	const struct mask prediction = {"v", "r", NULL, mask_rle(huge, 8, 8), 1, NAN};
+	if (CHECK(!answers_make(&a, s, 2, truth, 3, &prediction, 1, &e), "%s", e.message)) {
+		/* as c covers the same, the second shows more than is meant */
+		CHECK(a.n == 2 && a.items[0].is_right && !a.items[1].is_right, "%zu answers", a.n);
+		CHECK(a.items[0].iou == 1 && a.items[1].iou == 1, "%g %g", a.items[0].iou, a.items[1].iou);
+		answers_free(&a);
+	}
+	for (int i = 0; i < 3; i++)
+		rle_free(&(struct rle){.runs = truth[i].rle.runs});
+	rle_free(&(struct rle){.runs = prediction.rle.runs});
+}
+
 static void unknown_and_unmatched(void)
 {
 	uint8_t pixels[P] = {1};
@@ -293,6 +324,7 @@ int main(void)
 		world_free(&w);
 	}
 	predictions_of_another_size();
+	truths_of_several_sizes();
 	unknown_and_unmatched();
 	unions();
 	return unit_end();
