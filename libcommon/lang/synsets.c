@@ -10,9 +10,10 @@ int synsets_of(const char *lemma, int pos, long *synsets, int most)
 	char word[128]; /* libwordnet changes it */
 	int n = 0;
 
-	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
+	const size_t length = strlen(lemma);
+	if (!wordnet_is_there() || !length || length >= sizeof word)
 		return 0;
-	strcpy(word, lemma);
+	memcpy(word, lemma, length + 1);
 	IndexPtr index = index_lookup(word, pos);
 	for (; index && n < index->off_cnt && n < most; n++)
 		synsets[n] = (long)index->offset[n];
