@@ -70,10 +70,7 @@ static int write_boxes(const struct locating *r, const struct cli *c, struct err
 		return -1;
 	for (size_t i = 0; i < q->count && !bad; i++)
 		bad = locating_put(r, i, out.stream, e);
-	if (!bad)
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+	return file_out_end(&out, bad, e);
 }
 
 static int write_scene(const struct locating *r, struct err *e)

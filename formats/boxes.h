@@ -4,6 +4,7 @@
 
 #include "base/err.h"
 #include "geom/box.h"
+#include "mask/mask.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -27,6 +28,10 @@ struct box_set {
 /* "-" is stdin. Two records of one ref (or, without ref, of one object) are an error. */
 int boxes_read(struct box_set *s, const char *path, struct err *e);
 void boxes_free(struct box_set *s);
+
+/* Their refs and objects as those of masks without pixels in one view, "", so that mask/mask_index.h finds
+ * boxes too. NULL with *e set; free() it before the boxes. */
+struct mask *boxes_names(const struct box_set *s, struct err *e);
 
 /* The Gaussians that a box is of: ids (n). */
 struct box_gaussians {

@@ -222,7 +222,7 @@ static int has_sentence(const struct sentences *s, const char *ref)
 /* The names of objects in mask records. */
 static int read_names(struct sentences *s, const char *path, struct err *e)
 {
-	struct mask_record one;
+	struct mask one;
 	struct jsonl j;
 	int got;
 
@@ -231,7 +231,7 @@ static int read_names(struct sentences *s, const char *path, struct err *e)
 	while ((got = masks_next(&j, &one, e)) > 0) {
 		const char *name = one.object;
 		const int bad = name && !has_sentence(s, name) && sentences_add(s, name, name, name, e);
-		mask_record_free(&one);
+		mask_free(&one);
 		if (bad) {
 			got = -1;
 			break;

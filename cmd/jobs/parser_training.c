@@ -30,9 +30,7 @@ int parser_examples_write(const char *path, long long n, int is_test, long long 
 		bad = jsonl_put_string(out.stream, ",\"text\":", x.text, e);
 		fprintf(out.stream, ",\"split\":\"%s\"}\n", is_test ? "test" : "train");
 	}
-	if (bad)
-		file_out_abort(&out);
-	return bad ? -1 : file_out_commit(&out, e);
+	return file_out_end(&out, bad, e);
 }
 
 struct parser_training {
@@ -195,9 +193,7 @@ static int cross_validate(struct parser_training *s, struct parser_weights *w, s
 		bad = learn_readings(s, w, fold, e) || put_parses(s, w, fold, out.stream, e);
 	}
 	parser_weights_free(&begun);
-	if (bad)
-		file_out_abort(&out);
-	return bad ? -1 : file_out_commit(&out, e);
+	return file_out_end(&out, bad, e);
 }
 
 static int learn_weights(struct parser_training *s, struct err *e)

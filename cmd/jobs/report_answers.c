@@ -3,6 +3,7 @@
 #include "answer/answer.h"
 #include "base/mem.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum { MOST_VIEWS = 6 };
@@ -30,41 +31,35 @@ static int step(void *data, size_t view, struct err *e)
 	return 0;
 }
 
-static int put_record(struct report_set *s, size_t sentence, const char *view, const struct rle *mask,
+static int put_mask(struct report_set *s, size_t sentence, const char *view, const struct rle *mask,
 	double score, struct err *e)
 {
 	const char *object = text_object(&s->text, sentence);
-	struct mask_record *record = &s->masks.set.records[s->masks.n];
+	struct mask own = {.score = rle_area(mask) ? score : 0, .visible = NAN};
 
-	*record = (struct mask_record){.score = rle_area(mask) ? score : 0};
-	s->masks.set.n = s->masks.n + 1;
-	record->view = mem_strdup(view, e);
-	record->ref = mem_strdup(s->text.refs[sentence], e);
-	record->object = object ? mem_strdup(object, e) : NULL;
-	if (!record->view || !record->ref || (object && !record->object) ||
-		rle_from_runs(&record->mask, mask->runs, mask->n, mask->height, mask->width, e))
+	own.view = mem_strdup(view, e);
+	own.ref = mem_strdup(s->text.refs[sentence], e);
+	own.object = object ? mem_strdup(object, e) : NULL;
+	if (!own.view || !own.ref || (object && !own.object) ||
+		rle_from_runs(&own.rle, mask->runs, mask->n, mask->height, mask->width, e)) {
+		mask_free(&own);
 		return -1;
-	s->masks.masks[s->masks.n++] =
-		(struct score_mask){record->view, record->ref, record->object, &record->mask};
-	return 0;
+	}
+	return masks_add(&s->masks.set, &own, e);
 }
 
-static int put_records(struct report_set *s, const struct collecting *c, const struct camera *views,
+static int put_masks(struct report_set *s, const struct collecting *c, const struct camera *views,
 	size_t view_count, struct err *e)
 {
 	const struct responses *a = c->responses;
-	const size_t n = view_count * s->text.n;
-	int bad = 0;
 
-	s->masks.set.records = mem_zalloc(n, sizeof *s->masks.set.records, "masks", e);
-	s->masks.masks = mem_alloc(n, sizeof *s->masks.masks, "masks", e);
-	if (!s->masks.set.records || !s->masks.masks)
-		return -1;
 	for (size_t v = 0; v < view_count; v++)
-		for (size_t i = 0; i < s->text.n && !bad; i++)
-			bad = put_record(
-				s, i, views[v].name, &c->shown[v * a->answers + a->answer[i]], a->sure[i], e);
-	return bad ? -1 : 0;
+		for (size_t i = 0; i < s->text.n; i++)
+			if (put_mask(s, i, views[v].name, &c->shown[v * a->answers + a->answer[i]],
+				    a->sure[i], e))
+				return -1;
+	s->masks.n = s->masks.set.n;
+	return 0;
 }
 
 static int ask(const struct report_run *r, const struct text *t, struct responses *a, struct err *e)
@@ -103,7 +98,7 @@ int report_answer(const struct report_run *r, struct report_set *s, const struct
 		return -1;
 	report_start(to, "views", (double)n);
 	int bad = !(c.shown = mem_zalloc(n * a.answers, sizeof *c.shown, "masks", e)) ||
-		  answer_all(&q, views, n, &calls, e) || put_records(s, &c, views, n, e);
+		  answer_all(&q, views, n, &calls, e) || put_masks(s, &c, views, n, e);
 	report_end(to);
 	for (size_t k = 0; c.shown && k < n * a.answers; k++)
 		rle_free(&c.shown[k]);

@@ -92,9 +92,9 @@ static int score_set(const struct report_run *r, struct report_set *s, struct er
 	if (!s->truth)
 		return -1;
 	for (size_t i = 0; i < n; i++)
-		s->truth[i] = r->truth.masks[i];
-	if (score_keep_views(s->truth, &n, s->masks.masks, s->masks.n, NULL, 0, e) ||
-		score_match(&s->pairs, s->truth, n, s->masks.masks, s->masks.n, e) ||
+		s->truth[i] = r->truth.set.items[i];
+	if (score_keep_views(s->truth, &n, s->masks.set.items, s->masks.n, NULL, 0, e) ||
+		score_match(&s->pairs, s->truth, n, s->masks.set.items, s->masks.n, e) ||
 		score_measure_all(&s->pairs, e) || score_choices(&s->pairs, s->truth, n, e))
 		return -1;
 	score_sum(&s->sum, s->pairs.items, s->pairs.n);
@@ -150,7 +150,7 @@ static int worth(const struct report_run *r, const char *view)
 	for (size_t k = 0; k < r->set_count && best < 2; k++) {
 		const struct report_set *s = &r->sets[k];
 		for (size_t i = 0; i < s->masks.n && !best; i++)
-			best = !strcmp(s->masks.masks[i].view, view);
+			best = !strcmp(s->masks.set.items[i].view, view);
 		for (size_t i = 0; i < s->pairs.n && best < 2; i++)
 			if (!strcmp(s->truth[s->pairs.items[i].truth_index].view, view))
 				best = 2;

@@ -27,7 +27,7 @@ struct report_set {
 	const char *way, *name; /* "lifted", "stage1", "stage2"; "test", "train", "asked" */
 	struct text text;
 	struct score_masks masks; /* the predictions */
-	struct score_mask *truth; /* of the views that they are of; pairs have their index here */
+	struct mask *truth;	  /* of the views that they are of; pairs have their index here */
 	struct score_pairs pairs; /* none without truth */
 	struct score sum;	  /* of the pairs */
 };

@@ -25,7 +25,7 @@ static cJSON *number(double x)
 
 static int is_of(const struct card *c, const struct score_pair *p)
 {
-	const char *ref = p->ref ? p->ref : p->truth_ref;
+	const char *ref = p->ref || !p->truth ? p->ref : p->truth->ref;
 
 	return ref && !strcmp(ref, c->ref) && !p->is_empty;
 }
@@ -40,13 +40,14 @@ static const struct score_pair *find_pair(const struct card *c, const char *view
 	return NULL;
 }
 
-static const struct score_mask *find_mask(const struct card *c, const char *view)
+static const struct mask *find_mask(const struct card *c, const char *view)
 {
 	const struct score_masks *m = &c->set->masks;
 
 	for (size_t i = 0; i < m->n; i++)
-		if (m->masks[i].ref && !strcmp(m->masks[i].ref, c->ref) && !strcmp(m->masks[i].view, view))
-			return &m->masks[i];
+		if (m->set.items[i].ref && !strcmp(m->set.items[i].ref, c->ref) &&
+			!strcmp(m->set.items[i].view, view))
+			return &m->set.items[i];
 	return NULL;
 }
 
@@ -54,7 +55,7 @@ static int add_view(cJSON *list, const struct card *c, size_t v, struct err *e)
 {
 	const struct camera *view = &c->run->shown[v];
 	const struct score_pair *pair = find_pair(c, view->name);
-	const struct score_mask *mask = find_mask(c, view->name);
+	const struct mask *mask = find_mask(c, view->name);
 	cJSON *one = cJSON_CreateArray();
 	size_t own = 0, truth = 0;
 
@@ -62,8 +63,9 @@ static int add_view(cJSON *list, const struct card *c, size_t v, struct err *e)
 		cJSON_Delete(one);
 		return 0;
 	}
-	if ((mask && report_outline(c->outlines, mask->mask, view->height, view->width, &own, e)) ||
-		(pair && report_outline(c->outlines, pair->truth, view->height, view->width, &truth, e))) {
+	if ((mask && report_outline(c->outlines, &mask->rle, view->height, view->width, &own, e)) ||
+		(pair && report_outline(
+				 c->outlines, &pair->truth->rle, view->height, view->width, &truth, e))) {
 		cJSON_Delete(one);
 		return -1;
 	}
@@ -139,8 +141,8 @@ static int add_scores(cJSON *to, const struct card *c, const cJSON *meant)
 		pairs++;
 	}
 	for (size_t i = 0; i < m->n; i++)
-		if (m->masks[i].ref && !strcmp(m->masks[i].ref, c->ref))
-			sure = fmax(sure, m->set.records[i].score);
+		if (m->set.items[i].ref && !strcmp(m->set.items[i].ref, c->ref))
+			sure = fmax(sure, m->set.items[i].score);
 	const int is = is_right(c, meant, pairs, right);
 	return report_add(to, "sure", number(sure)) &&
 	       report_add(to, "iou", number(pairs ? sum / (double)pairs : NAN)) &&
@@ -184,7 +186,7 @@ static int add_card(cJSON *list, const struct card *c, struct err *e)
 static int is_answered(const struct report_set *s, const char *ref)
 {
 	for (size_t i = 0; i < s->masks.n; i++)
-		if (s->masks.masks[i].ref && !strcmp(s->masks.masks[i].ref, ref))
+		if (s->masks.set.items[i].ref && !strcmp(s->masks.set.items[i].ref, ref))
 			return 1;
 	return 0;
 }

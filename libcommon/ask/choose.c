@@ -2,6 +2,7 @@
 
 #include "ask/constants.h"
 #include "ask/wording.h"
+#include "base/largest.h"
 #include "base/mem.h"
 
 #include <math.h>
@@ -45,15 +46,6 @@ static int has(const struct chooser *c, enum choose_part p)
 	return c->parts >> p & 1;
 }
 
-static double largest(const double *x, size_t n)
-{
-	double most = -INFINITY;
-
-	for (size_t i = 0; i < n; i++)
-		most = fmax(most, x[i]);
-	return most;
-}
-
 /* x becomes its softmax. */
 static void softmax(double *x, size_t n)
 {
@@ -78,15 +70,6 @@ static void look_from(struct chooser *c, const struct viewpoint *from)
 	if (!is_same_view(&c->from, from))
 		arrangement_look(&c->arrangement, from);
 	c->from = *from;
-}
-
-static size_t best_of(const double *x, size_t n)
-{
-	size_t best = 0;
-
-	for (size_t o = 1; o < n; o++)
-		best = x[o] > x[best] ? o : best;
-	return best;
 }
 
 /* How far the anchors of a phrase are there: what is said to be on the green plate where no plate is green.

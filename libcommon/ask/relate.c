@@ -1,6 +1,7 @@
 #include "ask/relate.h"
 
 #include "ask/constants.h"
+#include "base/largest.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -177,15 +178,6 @@ static int is_size(enum parse_relation r)
 static double soft_of(enum parse_relation r)
 {
 	return is_size(r) ? BEST_SOFT_SIZE : BEST_SOFT;
-}
-
-static double largest(const double *x, size_t n)
-{
-	double most = 0;
-
-	for (size_t i = 0; i < n; i++)
-		most = fmax(most, x[i]);
-	return most;
 }
 
 /* out[o]: that exactly k - 1 of the others that fit have a smaller key. `but` counts for none. */

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "nn/linear.h"
+#include "nn/loss.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -310,18 +311,6 @@ void parser_arcs(
 		scores[j] /= members;
 }
 
-static double log_sum(const float *x, int n)
-{
-	float most = x[0];
-	double sum = 0;
-
-	for (int i = 1; i < n; i++)
-		most = x[i] > most ? x[i] : most;
-	for (int i = 0; i < n; i++)
-		sum += exp((double)(x[i] - most));
-	return most + log(sum);
-}
-
 static int best_of(const float *x, int n)
 {
 	int best = 0;
@@ -345,7 +334,7 @@ static double role_log(const struct parser_batch *b, int sentence, int i, enum w
 {
 	const float *out = b->out + (size_t)(b->start[sentence] + i) * NET_OUT;
 
-	return (double)out[r] - log_sum(out, ROLES);
+	return (double)out[r] - loss_log_sum_exp(out, ROLES);
 }
 
 static void make_predicate(const struct parser_batch *b, int sentence, struct analysis *a, int i)
@@ -389,7 +378,7 @@ static void hang_anchors(const struct parser_weights *w, const struct parser_bat
 		if (a->word[i].role != ROLE_ANCHOR)
 			continue;
 		parser_arcs(w, b, sentence, i, scores);
-		all = log_sum(scores, a->n + 1);
+		all = loss_log_sum_exp(scores, (size_t)a->n + 1);
 		for (int j = 0; j < a->n; j++) {
 			enum word_role r = a->word[j].role;
 			if (j == i || (r != ROLE_PREDICATE && r != ROLE_NONE))
@@ -456,7 +445,7 @@ void parser_decode(const struct parser_weights *w, const struct parser_batch *b,
 		const float *out = b->out + (size_t)(first + i) * NET_OUT;
 		a->word[i].role = (enum word_role)best_of(out, ROLES);
 		a->word[i].head = ROOT;
-		sum += exp((double)out[a->word[i].role] - log_sum(out, ROLES));
+		sum += exp((double)out[a->word[i].role] - loss_log_sum_exp(out, ROLES));
 		if (a->word[i].role == ROLE_PREDICATE)
 			make_predicate(b, sentence, a, i);
 	}
