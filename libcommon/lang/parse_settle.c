@@ -89,7 +89,7 @@ static void settle_superlative(const struct parse *p, struct parse_phrase *f)
 		for (int w = 0; w + 1 < c->words.item[0] && f->count == PARSE_ALL; w++)
 			if (is(p, w, "of") && is(p, w + 1, "all")) {
 				f->count = PARSE_ONE;
-				f->group = PARSE_ALL;
+				f->group = PARSE_SEVERAL;
 			}
 	}
 }
