@@ -93,7 +93,7 @@ static void mend_nor(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "left of the red one": red is said of what comes right after it. */
+/* "left of the grey one": grey is said of what comes right after it. */
 static void mend_attributes(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i + 1 < t->n; i++) {
@@ -113,7 +113,7 @@ static int last_predicate(const struct analysis *a, const struct tokens *t, int 
 	return -1;
 }
 
-/* "over by the window" is by it. */
+/* "over by the sink" is by it. */
 static void mend_over_by(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
@@ -130,7 +130,7 @@ static void mend_over_by(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "the nearest one to me": "to" by itself places nothing. */
+/* "the nearest lamp to the door": "to" by itself places nothing. */
 static void mend_to(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 1; i < t->n; i++) {
@@ -191,7 +191,7 @@ static int has_article(const struct analysis *a, const struct tokens *t, int i)
 	return i > 0 && !t->word[i].before && tokens_class(t, i - 1) == CLOSED_DETERMINER;
 }
 
-/* "the cat asleep": where nothing is meant, the noun that the grammar means, though it looked like an
+/* "the goat asleep": where nothing is meant, the noun that the grammar means, though it looked like an
  * adjective.
  */
 static void mend_no_target(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
@@ -230,7 +230,7 @@ static int ends_in(const char *w, const char *end)
 	return n > m + 2 && !strcmp(w + n - m, end);
 }
 
-/* "shinier than the rest" is no place. */
+/* "brighter than the rest" is no place. */
 static void mend_comparatives(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++)
