@@ -27,6 +27,46 @@ static void mend_other_than(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* Where what is left out begins: after "except", "apart from", "but the one"; 0 where it does not at word i.
+ */
+static int exception_at(const struct tokens *t, int i)
+{
+	if (tokens_is(t, i, "except") || tokens_is(t, i, "excluding") || tokens_is(t, i, "excepting"))
+		return i + 1 + tokens_is(t, i + 1, "for");
+	if ((tokens_is(t, i, "apart") || tokens_is(t, i, "aside")) && tokens_is(t, i + 1, "from"))
+		return i + 2;
+	if (tokens_is(t, i, "but") && tokens_is(t, i + 1, "the") &&
+		(tokens_is(t, i + 2, "one") || tokens_is(t, i + 2, "ones")))
+		return i + 1;
+	return 0;
+}
+
+/* "all lamps except the one that is nearest to the sink": the nearest one is left out. */
+static void mend_except(struct analysis *a, const struct tokens *t)
+{
+	int found = 0, from = 0, out;
+
+	for (int i = 0; i < t->n && !from; i++) {
+		from = found ? exception_at(t, i) : 0;
+		found |= a->word[i].role == ROLE_TARGET;
+	}
+	for (out = from; out < t->n && out < from + 6; out++)
+		if (role_is_phrase(a->word[out].role) || tokens_is(t, out, "one") ||
+			tokens_is(t, out, "ones"))
+			break;
+	if (!from || out >= t->n || out >= from + 6 || a->word[out].role == ROLE_ANCHOR)
+		return;
+	a->word[out] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
+	for (int i = from; i < t->n && t->word[i].before != PAUSE_STOP; i++) {
+		const int is_said =
+			a->word[i].role == ROLE_PREDICATE || (a->word[i].role == ROLE_ATTRIBUTE && i < out);
+		if (i == out || a->word[i].head != ROOT || !is_said)
+			continue;
+		a->word[i].head = out;
+		a->word[i].negated = 0;
+	}
+}
+
 /* Places that are verbs: "where I left it", "pass me over the jug". */
 static void mend_verbs(struct analysis *a, const struct tokens *t)
 {
@@ -263,6 +303,7 @@ static void mend_there_is(struct analysis *a, const struct tokens *t)
 void analysis_reread(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	mend_other_than(a, t);
+	mend_except(a, t);
 	mend_verbs(a, t);
 	mend_both_sides(a, t);
 	mend_nor(a, t);

@@ -74,6 +74,14 @@ static void settle_comparison(struct parse *p, struct parse_phrase *f, struct pa
 	c->anchors.n = 0;
 }
 
+/* "both the jar and the lamp" are two, not two jars and a lamp. */
+static void settle_both(const struct parse *p, struct parse_phrase *f)
+{
+	for (int w = 0; w < p->word_count && f->count == 2 && f->also.n == 1; w++)
+		if (is(p, w, "both") && f->noun.n && w < f->noun.item[0])
+			f->count = PARSE_ONE;
+}
+
 /* "the tallest but one" is the second tallest; "of all the jars the tallest" is one jar. */
 static void settle_superlative(const struct parse *p, struct parse_phrase *f)
 {
@@ -127,6 +135,7 @@ int parse_settle(struct parse *p, struct err *e)
 	struct parse_phrase *f = &p->phrases[0];
 
 	settle_ordinal(p, f);
+	settle_both(p, f);
 	for (int k = 0; k < f->clauses.n; k++)
 		settle_comparison(p, f, &p->clauses[f->clauses.item[k]]);
 	settle_superlative(p, f);

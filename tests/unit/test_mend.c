@@ -138,6 +138,11 @@ static void mends_neighbours(void)
 	mends("the red on the rug", ". a P . A2", PARSE_ON, 1, ROLE_ATTRIBUTE, ROOT, 0);
 	mends("a jug in the middle between the lamp and the sink", ". T . . P P . A4 . . A5", PARSE_BETWEEN,
 		7, ROLE_ANCHOR, 5, 0);
+	const char *lamps = "all lamps except the one nearest to the sink";
+	mends(lamps, ". T . . . P . . A5", PARSE_NEAR, 4, ROLE_EXCEPT, ROOT, 0);
+	mends(lamps, ". T . . . P . . A5", PARSE_NEAR, 5, ROLE_PREDICATE, 4, PARSE_NEAR);
+	mends("the lamp nearest to the sink", ". T P . . A2", PARSE_NEAR, 2, ROLE_PREDICATE, ROOT,
+		PARSE_NEAR);
 	mends("not the jug nor the other lamp", ". . E . . . E", 0, 6, ROLE_EXCEPT, ROOT, 0);
 	mends("brighter than the lamp", "P . . T", PARSE_LARGER, 0, ROLE_ATTRIBUTE, ROOT, 0);
 	mends("taller than the lamp", "P . . T", PARSE_TALLER, 0, ROLE_PREDICATE, ROOT, PARSE_TALLER);
@@ -208,6 +213,10 @@ static void settles(void)
 	parse_free(&p);
 	p = parsed("the jug second nearest to the door");
 	CHECK(p.phrases[0].ordinal == 2, "the second jug: %d", p.phrases[0].ordinal);
+	parse_free(&p);
+	p = parsed("both the jar and the lamp");
+	CHECK(p.phrases[0].count == PARSE_ONE && p.phrases[0].also.n == 1, "a jar and a lamp: %d",
+		p.phrases[0].count);
 	parse_free(&p);
 	p = parsed("the tallest lamp but two");
 	CHECK(p.phrases[0].ordinal == 3, "the third: %d", p.phrases[0].ordinal);
