@@ -36,12 +36,14 @@ check_line = $(if $(findstring $(newline),$($(1))),$(error $(1) has a newline))
 take = $(if $(filter command environment,$(firstword $(origin $(1)))),$(eval override $(1) := $$(value $(1))))
 
 # Takes the variables: names of files and folders, and others. Stops where one that is needed is not set, or one cannot be
-# used. To be called before any of them is looked at. $(call check,NEEDED,NAMES OF FILES,OTHERS,FILE)
+# used. To be called before any of them is looked at. The pipeline that is named is the one that was called, which may include
+# others. $(call check,NEEDED,NAMES OF FILES,OTHERS)
 define check
 $(foreach v,$(2) $(3),$(call take,$(v)))$(if $(filter help clean,$(MAKECMDGOALS)),,$(if $(call missing,$(1)),$(error \
-	$(call missing,$(1)) not set; see the head of $(4))))$(foreach v,$(2),$(call check_path,$(v)))$(foreach \
+	$(called): $(call missing,$(1)) not set; 'make -f $(called) help' says what they are)))$(foreach v,$(2),$(call check_path,$(v)))$(foreach \
 	v,$(3),$(call check_line,$(v)))
 endef
+called := $(firstword $(MAKEFILE_LIST))
 missing = $(strip $(foreach v,$(1),$(if $($(v)),,$(v))))
 
 tool = $(if $(BIN),$(call quote,$(BIN)/))

@@ -17,9 +17,12 @@ SCALE ?= 0.5
 include $(here)common.mk
 # The workflow gets what is said below, and nothing else.
 MAKEOVERRIDES :=
-$(call check,DEMO,DEMO,SEED SYNTH ITERATIONS SCALE TRAIN TEACH BERT BIN,pipelines/demo.mk)
+$(call check,DEMO,DEMO,SEED SYNTH ITERATIONS SCALE TRAIN TEACH BERT BIN)
 data := $(DEMO)/data
 make_data = gs-synth --seed $(call quoted,SEED) $(call options,SYNTH) -o $(data)
+
+help:
+	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(called)
 
 .PHONY: demo
 .DEFAULT_GOAL := demo

@@ -23,7 +23,7 @@
 SCALE ?= 0.3333
 WEIGH ?= --precision u8
 include $(dir $(lastword $(MAKEFILE_LIST)))two-stage.mk
-$(call check,,ASK WHOLE BOXES,,pipelines/lift.mk)
+$(call check,,ASK WHOLE BOXES,)
 
 asked := $(if $(ASK),$(SCENE)/lifted/asked.jsonl)
 answers := $(if $(TEST_VIEWS),$(foreach t,$(splits),$(SCENE)/lifted/predictions.$(t).jsonl) $(asked))

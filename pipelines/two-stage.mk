@@ -5,7 +5,7 @@
 #		CANDIDATES=candidates.jsonl TRUTH=truth.jsonl
 #
 # SCENE       folder for everything that is made (required)
-# SPLATS      trained scene, a 3DGS .ply (required)
+# SPLATS      trained scene, a 3DGS .ply or the folder that 3DGS wrote (required)
 # CAMERAS     COLMAP model, 3DGS cameras.json or transforms.json; default: what gs-import finds beside SPLATS
 # IMAGES      folder of the photographs; optional
 # TEST_VIEWS  test views as gs-import takes them: NAME,... or every:N; default every:8, and none with MASKS
@@ -39,12 +39,15 @@ TEACH ?= lifted
 include $(here)common.mk
 $(call take,MASKS)
 $(call check,SCENE SPLATS $(if $(MASKS),,SENTENCES CANDIDATES),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH,IMAGES TEST_VIEWS BERT SCALE \
-	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN,pipelines/two-stage.mk)
+	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN)
 $(if $(filter stage1 lifted,$(TEACH)),,$(error TEACH is stage1 or lifted))
 
-beside := $(patsubst %/,%,$(dir $(SPLATS)))
+# Of a folder of 3DGS the last iteration, as gs-import takes it.
+splats := $(if $(wildcard $(SPLATS)/.),$(or $(shell ls -d $(SPLATS)/point_cloud/iteration_*/point_cloud.ply $(SPLATS)/iteration_*/point_cloud.ply \
+	2>/dev/null | sort -V | tail -n 1),$(wildcard $(SPLATS)/point_cloud.ply),$(SPLATS)),$(SPLATS))
+beside := $(patsubst %/,%,$(dir $(splats)))
 cameras := $(if $(CAMERAS),$(if $(wildcard $(CAMERAS)/.),$(call camera_files,$(CAMERAS)),$(CAMERAS)),$(or $(call \
-	camera_files,$(beside)),$(if $(filter iteration_%,$(notdir $(beside))),$(call camera_files,$(beside)/../..))))
+	camera_files,$(beside)),$(if $(filter iteration_%,$(notdir $(beside))),$(call camera_files,$(beside)/../..)))) $(wildcard $(beside)/dataparser_transforms.json)
 scene := $(SCENE)/scene/cameras.json
 weights := $(SCENE)/weights/complete
 text := $(SCENE)/text.safetensors
@@ -75,7 +78,7 @@ help:
 
 # The steps.
 command.import = gs-import $(if $(CAMERAS),--cameras $(CAMERAS)) $(if $(IMAGES),--images $(call quoted,IMAGES)) \
-	$(if $(TEST_VIEWS),--test-views $(call quoted,TEST_VIEWS)) -o $(SCENE)/scene $(SPLATS)
+	$(if $(TEST_VIEWS),--test-views $(call quoted,TEST_VIEWS)) -o $(SCENE)/scene $(splats)
 command.weigh = gs-weigh --scale $(call quoted,SCALE) $(call options,WEIGH) -o $(SCENE)/weights $(SCENE)/scene
 command.encode = text-encode --model $(call quoted,BERT) $(if $(SENTENCES),,--names) -o $(text) $(or $(SENTENCES),$(drawn))
 command.paint = mask-import --names $(NAMES) -o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
@@ -99,7 +102,7 @@ $(call track,import weigh paint encode select select3d lift train1 train2 teach 
 $(SCENE)/log/%.command:
 	@mkdir -p $(@D) && printf %s $(call quote,$(command.$*)) >$@
 
-$(scene): $(SPLATS) $(cameras) $(SCENE)/log/import.command
+$(scene): $(splats) $(cameras) $(SCENE)/log/import.command
 	$(call run,import)
 
 $(weights): $(scene) $(SCENE)/log/weigh.command

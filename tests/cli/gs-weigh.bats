@@ -151,6 +151,17 @@ two_layers() {
 		"$BIN/gs-check" weights/v1.safetensors
 }
 
+@test "splats that no view sees are a mistake, and nothing is left; a view that sees none is fine" {
+	cameras "$(view)" "$(view name='"v2"' 'world_to_camera=[[1,0,0,0],[0,-1,0,0],[0,0,-1,0],[0,0,0,1]]')"
+	"$BIN/gs-weigh" -o weights scene
+	[ "$(ls weights)" = $'v1.safetensors\nv2.safetensors' ]
+	cameras "$(view 'world_to_camera=[[1,0,0,0],[0,-1,0,0],[0,0,-1,0],[0,0,0,1]]')"
+	rm -r weights
+	says 3 "gs-weigh: scene: its splats are seen in none of 1 views (in at most 0% of the pixels of one): the cameras are in another frame than the splats, or of another scene; import it with the cameras that it was trained with" \
+		"$BIN/gs-weigh" -o weights scene
+	[ -z "$(ls weights)" ]
+}
+
 @test "--threads 1, 2 and 3 give the same bytes" {
 	cameras "$(view width=150 height=70 cx=75 cy=35)" "$(view name='"v2"')"
 	for precision in f32 u8; do

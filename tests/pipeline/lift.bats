@@ -123,3 +123,29 @@ not() { ! "$@"; }
 	touch -d '+2 seconds' names
 	paint -n | grep -q "'mask-import "
 }
+
+@test "all missing variables are named at once, by the pipeline that was called, and its help says what they are" {
+	run make -f "$ROOT/pipelines/lift.mk"
+	[ "$status" = 2 ]
+	[[ $output == *"$ROOT/pipelines/lift.mk: SCENE SPLATS SENTENCES CANDIDATES not set; 'make -f $ROOT/pipelines/lift.mk help' says what they are."* ]]
+	make -f "$ROOT/pipelines/lift.mk" help | grep -q '^SCALE '
+	make -f "$ROOT/pipelines/desk.mk" help | grep -q '^DATA '
+	make -f "$ROOT/pipelines/demo.mk" help | grep -q '^DEMO '
+}
+
+@test "SPLATS is the folder that 3DGS wrote: its last iteration is imported, and watched" {
+	cd "$BATS_TEST_TMPDIR"
+	for n in 7000 30000; do
+		mkdir -p trained/point_cloud/iteration_$n
+		cp "$DATA/point_cloud.ply" trained/point_cloud/iteration_$n
+	done
+	cp -r "$DATA/sparse" trained
+	imported() { lift SCENE="$PWD/work" SPLATS="$PWD/trained" CAMERAS= IMAGES= "$PWD/work/scene/cameras.json" "$@"; }
+	imported >log 2>&1
+	grep -q "trained/point_cloud/iteration_30000/point_cloud.ply" work/log/import.command
+	cmp work/scene/splats.safetensors "$WORK/scene/splats.safetensors"
+	imported >again 2>&1
+	not grep -q "gs-import" again
+	touch -d '+2 seconds' trained/point_cloud/iteration_30000/point_cloud.ply
+	imported -n | grep -q "gs-import"
+}
