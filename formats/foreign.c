@@ -22,6 +22,8 @@ static const struct kind kinds[] = {
 		"a mask record needs the names of its view and object in place of their numbers"},
 	{0, {"transform", "scale", NULL}, "nerfstudio's dataparser_transforms.json",
 		"it goes beside the splats or the transforms.json, and is found there"},
+	{0, {"info", "objects", NULL}, "labels of ISAT",
+		"'mask-import -o masks.jsonl %s' makes mask records of them"},
 	{0, {"t_00", "t_23", "fx"}, "a camera of Polycam",
 		"'ns-process-data polycam' makes a transforms.json of the scan"},
 	{0, {"sfm_data_version", "views", NULL}, "cameras of OpenMVG or Meshroom",

@@ -11,8 +11,9 @@
 # TEST_VIEWS  test views as gs-import takes them: NAME,... or every:N; default every:8, and none with MASKS
 # SENTENCES   sentences, JSON Lines (required, but with MASKS)
 # CANDIDATES  candidate masks, JSON Lines (required, but with MASKS)
-# MASKS       masks that a person drew, JSON Lines, in place of CANDIDATES; where SENTENCES is not given, the names of their
-#             objects are the sentences. A PNG that they name is not watched for changes
+# MASKS       masks that a person drew, in place of CANDIDATES: JSON of LabelMe or COCO, or a folder of such; pictures, with NAMES;
+#             or mask records, JSON Lines. Where SENTENCES is not given, the names of the things are the sentences. A PNG that
+#             mask records name is not watched for changes
 # NAMES       what the colours of MASKS mean, as mask-import takes it: MASKS is then a painted photograph, a PNG with the name
 #             of its view, or a folder of such
 # TRUTH       true masks to score against; optional
@@ -51,7 +52,9 @@ cameras := $(if $(CAMERAS),$(if $(wildcard $(CAMERAS)/.),$(call camera_files,$(C
 scene := $(SCENE)/scene/cameras.json
 weights := $(SCENE)/weights/complete
 text := $(SCENE)/text.safetensors
-painted := $(if $(and $(MASKS),$(NAMES)),$(or $(wildcard $(MASKS)/*.png),$(MASKS)))
+# Photographs that a person painted, with NAMES, or labelled, as JSON.
+labelled := $(or $(wildcard $(MASKS)/*.json),$(filter %.json,$(MASKS)))
+painted := $(if $(MASKS),$(or $(labelled),$(if $(NAMES),$(or $(wildcard $(MASKS)/*.png),$(MASKS)))))
 drawn := $(if $(painted),$(SCENE)/painted.jsonl,$(MASKS))
 masks1 := $(or $(drawn),$(SCENE)/stage1/masks.jsonl)
 masks2 := $(SCENE)/stage2/masks.jsonl
@@ -81,7 +84,7 @@ command.import = gs-import $(if $(CAMERAS),--cameras $(CAMERAS)) $(if $(IMAGES),
 	$(if $(TEST_VIEWS),--test-views $(call quoted,TEST_VIEWS)) -o $(SCENE)/scene $(splats)
 command.weigh = gs-weigh --scale $(call quoted,SCALE) $(call options,WEIGH) -o $(SCENE)/weights $(SCENE)/scene
 command.encode = text-encode --model $(call quoted,BERT) $(if $(SENTENCES),,--names) -o $(text) $(or $(SENTENCES),$(drawn))
-command.paint = mask-import --names $(NAMES) -o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
+command.paint = mask-import $(if $(NAMES),--names $(NAMES)) -o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
 command.select = pseudomask-select $(call options,SELECT) -o $(masks1) $(CANDIDATES)
 train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks$(1)) \
 	--iterations $(call quoted,ITERATIONS) --seed $(call quoted,SEED) --resume --log $(SCENE)/stage$(1)/train.log \

@@ -149,3 +149,25 @@ not() { ! "$@"; }
 	touch -d '+2 seconds' trained/point_cloud/iteration_30000/point_cloud.ply
 	imported -n | grep -q "gs-import"
 }
+
+@test "photographs labelled with another program: names come from the labels" {
+	cd "$BATS_TEST_TMPDIR"
+	mkdir labels
+	view=$(jq -r .view "$WORK/lifted/masks.jsonl" | head -n 1)
+	jq -c --arg view "$view" 'select(.view == $view) | {view, object, segmentation}' "$WORK/lifted/masks.jsonl" | sort -u >masks.jsonl
+	jq -s '{images: [{id: 1, file_name: (.[0].view + ".png"), height: .[0].segmentation.size[0], width: .[0].segmentation.size[1]}],
+		categories: [to_entries[] | {id: .key, name: .value.object}],
+		annotations: [to_entries[] | {image_id: 1, category_id: .key, segmentation: .value.segmentation}]}' masks.jsonl >labels/coco.json
+	for masks in "$PWD/labels" "$PWD/labels/coco.json"; do
+		rm -rf work
+		label() { WORK=$PWD/work lift MASKS="$masks" SENTENCES= CANDIDATES= ASK= WHOLE= BOXES= TRUTH= TEST_VIEWS= "$@"; }
+		label >log 2>&1
+		"$BIN/miou-score" --json --truth masks.jsonl work/painted.jsonl | jq -e '.miou == 1 and .missing == 0'
+		thing=$(jq -r .object masks.jsonl | head -n 1)
+		"$BIN/refer-ask" --encoder "$ROOT/tests/golden/bert" work "where is the $thing?" | grep -q "^$thing: "
+		label >again 2>&1
+		not grep -qE "$BIN/'" again
+	done
+	touch -d '+2 seconds' labels/coco.json
+	label -n | grep -q "'mask-import "
+}
