@@ -14,14 +14,14 @@
 # WHOLE       true masks of whole objects, to score those of --amodal against; optional
 # BOXES       true boxes, to score those of refer-locate against; optional
 # The other variables, and the folder's layout, are those of two-stage.mk; both workflows may use one folder where SCALE and
-# WEIGH (here --precision u8 by default) are the same.
+# WEIGH (here --packed --tolerance 0.05 by default) are the same.
 #
 # Targets: lifted (the model, boxes, and, where there are test views, predictions, overlays and, with TRUTH, scores), and those
 # of two-stage.mk.
 
 .DEFAULT_GOAL := lifted
 SCALE ?= 0.3333
-WEIGH ?= --precision u8
+WEIGH ?= --packed --tolerance 0.05
 include $(dir $(lastword $(MAKEFILE_LIST)))two-stage.mk
 $(call check,,ASK WHOLE BOXES,)
 

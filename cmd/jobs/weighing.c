@@ -106,7 +106,8 @@ static int weigh_view(const struct report *to, const struct scene *s, const stru
 		.dropped = room->dropped,
 		.scene = s->fingerprint,
 		.camera = fingerprint_camera(&camera),
-		.precision = o->precision};
+		.precision = o->precision,
+		.is_packed = o->is_packed};
 	if (weights_write(&w, o->folder, full->name, room->options, e))
 		return -1;
 	room->covered = fmax(room->covered, cover(&room->rendered, (size_t)width * (size_t)height));
@@ -130,8 +131,8 @@ int weigh(const struct scene *s, const struct weighing_options *o, const struct 
 		return err_set(e, ERR_FORMAT, "%s: no view belongs to split '%s'", o->scene, names[o->split]);
 	if (file_make_dir(o->folder, e))
 		return -1;
-	snprintf(room.options, sizeof room.options, "--scale %.15g --tolerance %.15g --precision %s",
-		o->scale, o->tolerance, precision_name(o->precision));
+	snprintf(room.options, sizeof room.options, "--scale %.15g --tolerance %.15g --precision %s%s",
+		o->scale, o->tolerance, precision_name(o->precision), o->is_packed ? " --packed" : "");
 	report_start(to, "views", (double)views);
 	for (size_t i = 0; !bad && i < s->cameras.n; i++) {
 		const struct camera *view = &s->cameras.views[i];

@@ -13,6 +13,7 @@ struct weighing_options {
 	const char *scene, *folder; /* the scene's name for messages, and where to write to */
 	int split;		    /* the views: WEIGHING_... */
 	enum precision precision;
+	int is_packed;	  /* with PRECISION_U8 */
 	double scale;	  /* of the image, as a share of the view's */
 	double tolerance; /* the share of a pixel's weight that may be left out */
 };

@@ -222,3 +222,30 @@ Try 'gs-weigh --help'." "$BIN/gs-weigh" -o - scene
 	says 4 "gs-weigh: weights/v1.safetensors: Is a directory" "$BIN/gs-weigh" -o weights scene
 	[ "$(ls -A weights)" = v1.safetensors ]
 }
+
+@test "--packed: the weights of --precision u8 in fewer bytes; what is lifted from them is the same" {
+	"$BIN/gs-synth" -q --objects 3 --views 4 --size 90x70 --gaussians 3000 -o made
+	"$BIN/gs-import" -q -o made/scene made/point_cloud.ply
+	"$BIN/gs-weigh" --tolerance 0.05 --precision u8 -o plain made/scene
+	"$BIN/gs-weigh" --tolerance 0.05 --packed -o packed made/scene
+	view=$(basename "$(ls plain | head -n 1)")
+	[ "$(stat -c %s "packed/$view")" -lt "$(($(stat -c %s "plain/$view") / 3))" ]
+	[ "$("$BIN/gs-check" "packed/$view" | sed 's/packed/u8/g')" = "$("$BIN/gs-check" "plain/$view" | sed 's/plain/u8/g')" ]
+	[ "$(meta "packed/$view" options)" = "--scale 1 --tolerance 0.05 --precision u8 --packed" ]
+	"$BIN/text-encode" -q --model "$BATS_TEST_DIRNAME/../golden/bert" -o text.safetensors made/sentences.jsonl
+	for weights in plain packed; do
+		"$BIN/refer-lift" -q --scene made/scene --weights $weights --text text.safetensors --masks made/truth.jsonl -o $weights.model
+		"$BIN/refer-render" --scene made/scene --text text.safetensors --model $weights.model --split train -o $weights.jsonl
+	done
+	"$BIN/miou-score" --json --truth <(jq -c 'del(.score)' plain.jsonl) packed.jsonl | jq -e '.miou > 0.999'
+	# whatever the threads
+	"$BIN/gs-weigh" --threads 3 --tolerance 0.05 --packed -o again made/scene
+	diff -r packed again
+	# a bit of any stream
+	for at in 2000 3000 5000; do
+		cp "packed/$view" broken
+		printf '\xff\x00\xff' | dd of=broken bs=1 seek=$at conv=notrunc status=none
+		run "$BIN/gs-check" broken
+		[ "$status" = 1 ]
+	done
+}
