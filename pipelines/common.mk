@@ -54,8 +54,12 @@ same = $(if $(subst x$(1),,x$(2))$(subst x$(2),,x$(1)),,same)
 track = $(foreach s,$(1),$(if $(call same,$(file <$(SCENE)/log/$(s).command),$(command.$(s))),,$(eval \
 	$(SCENE)/log/$(s).command: FORCE)))
 
-# Does a step. -v makes its last line, time and memory, which is kept for the report. $(call run,STEP)
-run = mkdir -p $(SCENE)/log && $(tool)$(command.$(1)) -v 2>$(SCENE)/log/$(1) || { cat $(SCENE)/log/$(1) >&2; exit 1; }
+# Does a step, which says its name and time as it ends, and its warnings; with V=1 make prints its command too. On a terminal its
+# progress shows, while all else that it says goes to log/STEP: -v makes the last line there, time and memory, for the report.
+# $(call run,STEP)
+hide = $(if $(V),,@)
+run = $(hide)mkdir -p $(SCENE)/log && { REFERSPLAT_PROGRESS=3 $(tool)$(command.$(1)) -v 3>&2 2>$(SCENE)/log/$(1) || { cat $(SCENE)/log/$(1) >&2; exit 1; }; } && \
+	{ grep ': warning: ' $(SCENE)/log/$(1) >&2; sed -n '$$s/^\([^:]*\): \([0-9.]*\) s, peak memory.*/\1 ($(1)): \2 s/p' $(SCENE)/log/$(1); }
 
 # What gs-import may take for the cameras in a folder. $(call camera_files,FOLDER)
 camera_files = $(wildcard $(addprefix $(1)/,cameras.json transforms.json $(foreach d,./ sparse/ sparse/0/,$(foreach f,cameras \

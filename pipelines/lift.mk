@@ -63,13 +63,13 @@ $(SCENE)/lifted/whole.jsonl: $(model3) $(SCENE)/log/render3.whole.command
 	$(call run,render3.whole)
 
 $(SCENE)/lifted/whole.score.json: $(SCENE)/lifted/whole.jsonl $(WHOLE) $(SCENE)/log/score_whole.command
-	$(tool)$(command.score_whole) -o $@ $<
+	$(hide)$(tool)$(command.score_whole) -o $@ $<
 
 $(SCENE)/lifted/boxes.jsonl: $(model3) $(SCENE)/log/locate.command
 	$(call run,locate)
 
 $(SCENE)/lifted/boxes.score.json: $(SCENE)/lifted/boxes.jsonl $(BOXES) $(SCENE)/log/score_boxes.command
-	$(tool)$(command.score_boxes) -o $@ $<
+	$(hide)$(tool)$(command.score_boxes) -o $@ $<
 
 $(SCENE)/lifted/overlays/complete: $(model3) $(SCENE)/log/overlay3.command
 	@mkdir -p $(@D)

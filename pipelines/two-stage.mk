@@ -25,6 +25,7 @@
 #             are lifted from masks selected in 3D; default lifted, which pipelines/ablation.md shows to be better
 # SELECT, WEIGH, LIFT, TRAIN   more options for pseudomask-select, gs-weigh, refer-lift, refer-train, with blanks between them
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
+# V           1 prints the commands too
 #
 # Targets: all (predictions, overlays and, with TRUTH, scores), predictions, overlays, scores, report.
 # Every file is made under its own name, so that a second make does nothing, and a changed input or variable remakes what
@@ -160,7 +161,7 @@ $(SCENE)/stage%/overlays/complete: $(SCENE)/stage%/model.safetensors $(SCENE)/lo
 	@touch $@
 
 $(SCENE)/%.score.json: $(SCENE)/%.jsonl $(TRUTH) $(SCENE)/log/score.command
-	$(tool)$(command.score) -o $@ $<
+	$(hide)$(tool)$(command.score) -o $@ $<
 
 report: $(scores)
 	@$(here)report.sh $(SCENE)

@@ -14,7 +14,7 @@ setup_file() {
 
 # lift ARGUMENT...: the workflow on the scene, all outputs under WORK.
 lift() {
-	make -f "$ROOT/pipelines/lift.mk" SCENE="$WORK" SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" \
+	make -f "$ROOT/pipelines/lift.mk" V=1 SCENE="$WORK" SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" \
 		IMAGES="$DATA/images" TEST_VIEWS="$(cat "$DATA/test-views")" SENTENCES="$DATA/sentences.jsonl" \
 		CANDIDATES="$DATA/candidates.jsonl" TRUTH="$DATA/truth.jsonl" BERT="$ROOT/tests/golden/bert" BIN="$BIN" SCALE=1 \
 		ASK="$BATS_FILE_TMPDIR/more.jsonl" WHOLE="$DATA/whole.jsonl" BOXES="$DATA/boxes.jsonl" "$@"
