@@ -9,7 +9,7 @@
 #include <string.h>
 #include <zlib.h>
 
-enum { IDS, MAPS, LEVELS, PIXELS = WEIGHTS_TILE * WEIGHTS_TILE, EFFORT = 4 };
+enum { IDS, MAPS, LEVELS, PIXELS = WEIGHTS_TILE * WEIGHTS_TILE, EFFORT = 1 };
 
 static int put_byte(struct weights_pack *p, int stream, unsigned byte, struct err *e)
 {
@@ -168,22 +168,63 @@ static int deflate_all(struct weights_pack *p, struct err *e)
 	return 0;
 }
 
+/* A row of tiles, as streams that are not deflated yet. */
+static int pack_row(struct weights_pack *p, struct tile *t, const struct picture *v, int row, struct err *e)
+{
+	for (int x = 0; x < v->width; x += WEIGHTS_TILE) {
+		take_tile(t, v, x, row * WEIGHTS_TILE);
+		if (put_tile(p, t, e))
+			return -1;
+	}
+	return 0;
+}
+
+static int append(struct weights_pack *p, const struct weights_pack *row, struct err *e)
+{
+	for (int s = 0; s < WEIGHTS_STREAMS; s++) {
+		if (mem_grow((void **)&p->data[s], &p->room[s], p->bytes[s] + row->bytes[s], 1, "weights", e))
+			return -1;
+		if (row->bytes[s])
+			memcpy(p->data[s] + p->bytes[s], row->data[s], row->bytes[s]);
+		p->bytes[s] += row->bytes[s];
+	}
+	return 0;
+}
+
+/* The rows by many threads, each into streams of its own. */
+static int pack_rows(struct weights_pack *rows, int count, const struct picture *v, struct err *e)
+{
+	int bad = 0;
+
+#pragma omp parallel reduction(| : bad)
+	{
+		struct tile t = {0};
+		struct err own;
+		bad = tile_make(&t, v, &own);
+#pragma omp for schedule(dynamic)
+		for (int row = 0; row < count; row++)
+			bad |= bad ? -1 : pack_row(&rows[row], &t, v, row, &own);
+		free(t.ids);
+		free(t.levels);
+		free(t.slot);
+	}
+	return bad ? err_set(e, ERR_SYSTEM, "weights: out of memory") : 0;
+}
+
 int weights_pack(struct weights_pack *p, int width, int height, const int64_t *indptr, const int32_t *index,
 	const uint8_t *level, struct err *e)
 {
 	const struct picture v = {width, height, indptr, index, level};
-	struct tile t = {0};
-	int bad = tile_make(&t, &v, e);
+	const int count = (height + WEIGHTS_TILE - 1) / WEIGHTS_TILE;
+	struct weights_pack *rows = mem_zalloc((size_t)count, sizeof *rows, "weights", e);
+	int bad = !rows || pack_rows(rows, count, &v, e);
 
 	*p = (struct weights_pack){0};
-	for (int y = 0; y < height && !bad; y += WEIGHTS_TILE)
-		for (int x = 0; x < width && !bad; x += WEIGHTS_TILE) {
-			take_tile(&t, &v, x, y);
-			bad = put_tile(p, &t, e);
-		}
-	free(t.ids);
-	free(t.levels);
-	free(t.slot);
+	for (int row = 0; row < count && rows; row++) {
+		bad = bad || append(p, &rows[row], e);
+		weights_pack_free(&rows[row]);
+	}
+	free(rows);
 	return bad || deflate_all(p, e) ? -1 : 0;
 }
 

@@ -27,17 +27,11 @@ help:
 .PHONY: demo
 .DEFAULT_GOAL := demo
 demo: $(data)/made-by
-	@$(MAKE) --no-print-directory -f $(here)lift.mk predictions overlays scores lifted SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply \
+	@$(MAKE) --no-print-directory -f $(here)lift.mk predictions overlays scores lifted WORDS=1 SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply \
 		CAMERAS=$(data)/sparse/0 IMAGES=$(data)/images TEST_VIEWS="$$(cat $(data)/test-views)" SENTENCES=$(data)/sentences.jsonl \
 		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl WHOLE=$(data)/whole.jsonl BOXES=$(data)/boxes.jsonl \
 		SCALE=$(call quoted,SCALE) ITERATIONS=$(call quoted,ITERATIONS) SEED=$(call quoted,SEED) \
 		$(if $(TRAIN),TRAIN=$(call quoted,TRAIN)) $(if $(TEACH),TEACH=$(call quoted,TEACH)) BIN=$(call quoted,BIN) BERT=$(call quoted,BERT)
-	@echo
-	@echo "photographs: $(data)/images"
-	@echo "sentences:   $(data)/sentences.jsonl"
-	@echo "masks drawn over the test views, a picture for each test sentence: $(DEMO)/lifted/overlays (without training),"
-	@echo "             $(DEMO)/stage2/overlays (trained as in the paper)"
-	@echo "where the things are in space: $(DEMO)/lifted/boxes.jsonl"
 
 # The command that made the data, once they are whole. They stay as they are while it is the same.
 $(data)/made-by: $(if $(call same,$(file <$(data)/made-by),$(make_data)),,FORCE)

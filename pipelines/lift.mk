@@ -13,6 +13,7 @@
 # ASK         more sentences to answer, JSON Lines; optional
 # WHOLE       true masks of whole objects, to score those of --amodal against; optional
 # BOXES       true boxes, to score those of refer-locate against; optional
+# WORDS       1: ends in words, a line for each way, in place of a table
 # The other variables, and the folder's layout, are those of two-stage.mk; both workflows may use one folder where SCALE and
 # WEIGH (here --packed --tolerance 0.05 by default) are the same.
 #
@@ -33,8 +34,8 @@ lifted_scores := $(if $(TRUTH),$(if $(MASKS),,$(SCENE)/lifted/masks.score.json) 
 
 .PHONY: lifted
 lifted: $(answers) $(whole) $(SCENE)/lifted/boxes.jsonl $(if $(TEST_VIEWS),$(SCENE)/lifted/overlays/complete) $(lifted_scores)
-	@$(here)report.sh $(SCENE)
-	@echo && echo "to ask it: $(if $(BIN),$(BIN)/)refer-ask$(if $(filter-out file,$(origin BERT)), --encoder $(BERT)) $(SCENE) 'where is the ...?'"
+	@$(here)report.sh $(if $(WORDS),--words) $(SCENE)
+	@$(if $(WORDS),,echo && )echo "to ask it: $(if $(BIN),$(BIN)/)refer-ask$(if $(filter-out file,$(origin BERT)), --encoder $(BERT)) $(SCENE) 'where is the ...?'$(if $(WORDS), (all figures: $(here)report.sh $(SCENE)))"
 
 # The steps.
 ask3 = refer-render --scene $(SCENE)/scene --text $(1) --model $(model3)

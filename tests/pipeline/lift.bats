@@ -171,3 +171,22 @@ not() { ! "$@"; }
 	touch -d '+2 seconds' labels/coco.json
 	label -n | grep -q "'mask-import "
 }
+
+@test "WORDS: a line for each way, the best first, and how to ask; the figures are those of the scores" {
+	lift WORDS=1 | grep -v "^'" >said
+	[ "$(wc -l <said)" = 2 ]
+	percent() { jq -r "100 * .$1" "$WORK/lifted/predictions.test.score.json" | xargs printf %.1f; }
+	grep -qxE "Without training: $(percent p50)% of the masks of test sentences are right by half or more, mIoU $(percent miou), in [0-9]+ s\. Pictures: $WORK/lifted/overlays" said
+	grep -q "^to ask it: .*(all figures: .*report.sh $WORK)" said
+}
+
+@test "a step says its name and its time as it ends, and its warnings; V=1 its command" {
+	rm -rf "$BATS_TEST_TMPDIR/w"
+	imported() { lift SCENE="$BATS_TEST_TMPDIR/w" "$BATS_TEST_TMPDIR/w/scene/cameras.json" "$@"; }
+	mkdir "$BATS_TEST_TMPDIR/none"
+	imported V= IMAGES="$BATS_TEST_TMPDIR/none" >out 2>err
+	[ "$(wc -l <out)" = 1 ]
+	grep -qxE 'gs-import \(import\): [0-9]+\.[0-9]+ s' out
+	grep -q "^gs-import: warning: .*no photograph for 6 of 6 views" err
+	imported V=1 | grep -q "'gs-import --cameras"
+}
