@@ -156,7 +156,7 @@ capture() {
 @test "the examples of the manual pages run" {
 	examples() {
 		local script=$BATS_TEST_TMPDIR/$1.sh
-		sed -n '/^\.Sh EXAMPLES/,/^\.Sh SEE/s/^\.Dl //p' "$MAN/$1.1" | sed 's/^" *\(.*\)"$/\1/; s/\\-/-/g; s/\\&//g; s/\\(aq/'\''/g; s/\\e/\\/g' >"$script"
+		sed -n '/^\.Sh EXAMPLES/,/^\.Sh SEE/s/^\.Dl //p' "$MAN/$1.1" | sed 's/^" *\(.*\)"$/\1/; s/\\-/-/g; s/\\&//g; s/\\(aq/'\''/g; s/\\(dq/"/g; s/\\e/\\/g' >"$script"
 		[ -s "$script" ] || return 1
 		rm -rf here && cp -r "$BATS_FILE_TMPDIR/examples" here
 		(cd here && XDG_CACHE_HOME=$PWD/cache PATH=$BIN:$PATH bash -eu -o pipefail "$script" >../out 2>&1 </dev/null) || { cat "$script" out; return 1; }

@@ -148,7 +148,7 @@ refer-ask: stdin:5: has a NUL byte" ]
 	ln -s "$BATS_FILE_TMPDIR/run/scene" bare/scene
 	says 4 "refer-ask: bare: no lifted/model.safetensors in it: 'make -f pipelines/lift.mk SCENE=bare ...' makes one, --model names another" \
 		ask bare cup
-	XDG_CACHE_HOME=$PWD says 4 "refer-ask: $PWD/refersplat/encoder: no encoder there: 'make encoder' fetches one" \
+	XDG_CACHE_HOME=$PWD says 4 "refer-ask: $PWD/refersplat/encoder: no encoder there: 'refersplat-encoder' fetches one, in a checkout 'make encoder'" \
 		"$BIN/refer-ask" "$BATS_FILE_TMPDIR/run" cup
 	# with the parts named or in place, it works
 	thing=$(head -n 1 "$BATS_FILE_TMPDIR/things")
