@@ -152,6 +152,13 @@ capture() {
 	each_tool sections
 }
 
+@test "the examples of the manual pages can be pasted: no line is wider than a terminal" {
+	narrow() {
+		sed -n '/^\.Sh EXAMPLES/,/^\.Sh SEE/s/^\.Dl //p' "$MAN/$1.1" | sed 's/\\(..\|\\[-e&]/x/g' | awk 'length > 74 { print; bad = 1 } END { exit bad }'
+	}
+	each_tool narrow
+}
+
 # The .Dl lines of EXAMPLES are shell commands; each page's run in order in one folder, which has a file of each kind.
 @test "the examples of the manual pages run" {
 	examples() {
