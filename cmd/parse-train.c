@@ -6,7 +6,7 @@
 int main(int argc, char **argv)
 {
 	struct parser_training_options o = {
-		.epochs = 5, .rounds = 2, .source = "the example sentences of refersplat"};
+		.epochs = 5, .rounds = 2, .members = 2, .source = "the example sentences of refersplat"};
 	long long write = 0;
 	int is_test = 0;
 	const struct cli_option options[] = {
@@ -19,6 +19,8 @@ int main(int argc, char **argv)
 		{"readings-text", 0, CLI_STRING, &o.readings_text, "TEXT", "their encoded sentences", 0, 0},
 		{"epochs", 0, CLI_INT, &o.epochs, "N", "passes over the examples (default 5)", 1, 1000},
 		{"rounds", 0, CLI_INT, &o.rounds, "N", "rounds with the readings (default 2)", 0, 100},
+		{"members", 0, CLI_INT, &o.members, "N",
+			"networks that learn from other starts; their scores are averaged (default 2)", 1, 8},
 		{"folds", 0, CLI_INT, &o.folds, "N",
 			"cross-validate: write parses of the readings' sentences, each by weights that saw no sentence of its room",
 			0, 100},

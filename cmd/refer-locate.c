@@ -1,15 +1,10 @@
 /* refer-locate: where in space the object of a sentence is, and the scene with it for a viewer. */
-#include "answer/locate.h"
 #include "base/file.h"
-#include "base/mem.h"
 #include "cli/cli.h"
-#include "cmd/jobs/request.h"
-#include "formats/boxes.h"
+#include "cmd/jobs/locating.h"
 #include "formats/ply.h"
 #include "formats/splat.h"
-#include "geom/up.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static struct {
@@ -35,11 +30,6 @@ static const struct cli_tool tool = {.name = "refer-locate",
 	.options = table,
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT};
 
-struct run {
-	struct request request;
-	struct located *located; /* (answers) */
-};
-
 static int choose_sentences(struct request *q, const struct cli *c, struct err *e)
 {
 	if (request_choose(q, e))
@@ -53,7 +43,7 @@ static int choose_sentences(struct request *q, const struct cli *c, struct err *
 	return 0;
 }
 
-static int locate(struct run *r, const struct cli *c, struct err *e)
+static int locate(struct locating *r, const struct cli *c, struct err *e)
 {
 	const int has_viewpoint = options.request.viewpoint != NULL;
 	struct request *q = &r->request;
@@ -64,36 +54,13 @@ static int locate(struct run *r, const struct cli *c, struct err *e)
 		(has_viewpoint && request_viewpoint(q, &from, e)) ||
 		request_answer(q, has_viewpoint ? &from : NULL, e))
 		return -1;
-	r->located = mem_zalloc(q->responses.answers, sizeof *r->located, "objects", e);
-	if (!r->located)
+	if (locating_find(r, up, e))
 		return -1;
-	cameras_up(&q->scene.cameras, up);
 	cli_note(c, 1, "up is %.3f %.3f %.3f", up[0], up[1], up[2]);
-	return locate_all(r->located, &q->responses, &q->scene.splats, up, e);
+	return 0;
 }
 
-static void move(struct box *b, const double by[3])
-{
-	for (int k = 0; k < 3; k++)
-		b->centre[k] += by[k];
-}
-
-static int put_sentence(const struct run *r, size_t i, FILE *out, struct err *e)
-{
-	const struct request *q = &r->request;
-	const struct located *l = &r->located[q->responses.answer[i]];
-	const struct extent *x = &l->extent;
-	const struct box_gaussians of = {x->n, x->ids};
-	double sure = q->responses.sure ? q->responses.sure[i] : l->sure;
-	struct box_record record = {q->text.refs[q->refs[i]], (char *)text_object(&q->text, q->refs[i]),
-		x->n ? sure : 0, !x->n, x->aligned, x->turned};
-
-	move(&record.aligned, q->scene.offset);
-	move(&record.turned, q->scene.offset);
-	return boxes_put(out, &record, &of, e);
-}
-
-static int write_boxes(const struct run *r, const struct cli *c, struct err *e)
+static int write_boxes(const struct locating *r, const struct cli *c, struct err *e)
 {
 	const struct request *q = &r->request;
 	struct file_out out;
@@ -102,17 +69,14 @@ static int write_boxes(const struct run *r, const struct cli *c, struct err *e)
 	if (file_out_open(&out, c->output, e))
 		return -1;
 	for (size_t i = 0; i < q->count && !bad; i++)
-		bad = put_sentence(r, i, out.stream, e);
-	if (!bad)
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+		bad = locating_put(r, i, out.stream, e);
+	return file_out_end(&out, bad, e);
 }
 
-static int write_scene(const struct run *r, struct err *e)
+static int write_scene(const struct locating *r, struct err *e)
 {
 	const struct request *q = &r->request;
-	const struct extent *x = &r->located[q->responses.answer[0]].extent;
+	const struct extent *x = &r->answers[q->responses.answer[0]].extent;
 	struct splats shown;
 
 	if (locate_show(&shown, &q->scene.splats, x, (enum locate_show)options.show, e))
@@ -137,7 +101,7 @@ static void check(const struct cli *c)
 
 int main(int argc, char **argv)
 {
-	struct run r = {0};
+	struct locating r = {0};
 	struct cli c;
 	struct err e = {0};
 
@@ -146,9 +110,6 @@ int main(int argc, char **argv)
 	cli_refuse_overwrite(&c, CLI_SCENE " text model", "output ply splat", NULL);
 	int bad = locate(&r, &c, &e) || ((options.ply || options.splat) && write_scene(&r, &e)) ||
 		  write_boxes(&r, &c, &e);
-	for (size_t k = 0; r.located && k < r.request.responses.answers; k++)
-		extent_free(&r.located[k].extent);
-	free(r.located);
-	request_free(&r.request);
+	locating_free(&r);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -53,11 +53,8 @@ static int run(const struct cli *c, const char *weights, enum method method, str
 	if (parser.weights && (!t.pieces || t.width != w.width || is_other))
 		cli_warn(c, "%s: %s: by grammar alone", file_name(c->operand_count ? c->operands[0] : "-"),
 			t.pieces ? "of another encoder than the parser's weights" : "has no word pieces");
-	bad = file_out_open(&out, c->output, e) || put_parses(&parser, &t, out.stream, e);
-	if (!bad)
-		bad = file_out_commit(&out, e);
-	else
-		file_out_abort(&out);
+	bad = file_out_open(&out, c->output, e) ||
+	      file_out_end(&out, put_parses(&parser, &t, out.stream, e), e);
 	text_free(&t);
 	parser_weights_free(&w);
 	return bad;

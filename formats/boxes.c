@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "formats/json.h"
 #include "formats/jsonl.h"
+#include "mask/mask_index.h"
 #include "geom/rotation.h"
 
 #include <math.h>
@@ -87,46 +88,33 @@ static int read_record(const struct jsonl *j, const cJSON *object, struct box_re
 	return read_boxes(j, object, r, e);
 }
 
-/* What no two records may share. */
-struct name {
-	const char *ref, *object;
-	long line;
-};
-
-static int by_name(const void *a, const void *b)
+struct mask *boxes_names(const struct box_set *s, struct err *e)
 {
-	const struct name *x = a, *y = b;
-	int order = !x->ref - !y->ref;
+	struct mask *names = mem_alloc(s->n, sizeof *names, "boxes", e);
 
-	if (!order)
-		order = x->ref ? strcmp(x->ref, y->ref) : strcmp(x->object, y->object);
-	return order ? order : (x->line > y->line) - (x->line < y->line);
+	for (size_t i = 0; names && i < s->n; i++)
+		names[i] =
+			(struct mask){.view = "", .ref = s->records[i].ref, .object = s->records[i].object};
+	return names;
 }
 
 static int check_unique(const struct box_set *s, const long *lines, const char *path, struct err *e)
 {
-	struct name *names = mem_alloc(s->n, sizeof *names, path, e);
-	const struct name *found = NULL;
-	int bad = !names ? -1 : 0;
+	struct mask *names = boxes_names(s, e);
+	struct mask_index x;
+	size_t earlier, later;
+	int bad = !names || mask_index_make(&x, names, s->n, MASK_BY_REF, e);
 
-	for (size_t i = 0; names && i < s->n; i++)
-		names[i] = (struct name){s->records[i].ref, s->records[i].object, lines[i]};
-	if (names && s->n)
-		qsort(names, s->n, sizeof *names, by_name);
-	for (size_t i = 1; names && i < s->n; i++) {
-		const struct name *a = &names[i - 1], *b = &names[i];
-		int same = a->ref && b->ref	? !strcmp(a->ref, b->ref)
-			   : !a->ref && !b->ref ? !strcmp(a->object, b->object)
-						: 0;
-		if (same && (!found || b->line < found->line))
-			found = b;
+	if (!bad) {
+		const int found = mask_index_twice(&x, &earlier, &later);
+		mask_index_free(&x);
+		if (found)
+			bad = err_set(e, ERR_FORMAT, "%s:%ld: %s '%s' is already on line %ld", path,
+				lines[later], names[later].ref ? "ref" : "object",
+				names[later].ref ? names[later].ref : names[later].object, lines[earlier]);
 	}
-	if (found)
-		bad = err_set(e, ERR_FORMAT, "%s:%ld: %s '%s' is already on line %ld", path, found->line,
-			found->ref ? "ref" : "object", found->ref ? found->ref : found->object,
-			found[-1].line);
 	free(names);
-	return bad;
+	return bad ? -1 : 0;
 }
 
 int boxes_read(struct box_set *s, const char *path, struct err *e)
@@ -199,6 +187,19 @@ static void put_boxes(FILE *out, const struct box_record *r)
 	fputc('}', out);
 }
 
+static int put_parts(FILE *out, const struct box_record *r, struct err *e)
+{
+	for (size_t k = 0; k < r->part_count; k++) {
+		fputs(k ? "," : ",\"parts\":[", out);
+		if (jsonl_put_string(out, "{\"object\":", r->parts[k].object, e))
+			return -1;
+		fprintf(out, ",\"score\":%.6g", r->parts[k].score);
+		put_boxes(out, &r->parts[k]);
+		fputs(k + 1 == r->part_count ? "}]" : "}", out);
+	}
+	return 0;
+}
+
 int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of, struct err *e)
 {
 	const char *open = "{";
@@ -218,6 +219,8 @@ int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians 
 	if (of)
 		fprintf(out, ",\"count\":%zu", of->n);
 	put_boxes(out, r);
+	if (put_parts(out, r, e))
+		return -1;
 	if (of) {
 		fputs(",\"gaussians\":[", out);
 		for (size_t i = 0; i < of->n; i++)

@@ -4,6 +4,7 @@
 
 #include "base/err.h"
 #include "geom/box.h"
+#include "mask/mask.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,6 +16,8 @@ struct box_record {
 	int is_empty;	    /* there is nothing, and no box */
 	struct box aligned; /* along the world's axes */
 	struct box turned;
+	size_t part_count; /* of several things that are meant: each by itself, for writing */
+	const struct box_record *parts;
 };
 
 struct box_set {
@@ -26,13 +29,18 @@ struct box_set {
 int boxes_read(struct box_set *s, const char *path, struct err *e);
 void boxes_free(struct box_set *s);
 
+/* Their refs and objects as those of masks without pixels in one view, "", so that mask/mask_index.h finds
+ * boxes too. NULL with *e set; free() it before the boxes. */
+struct mask *boxes_names(const struct box_set *s, struct err *e);
+
 /* The Gaussians that a box is of: ids (n). */
 struct box_gaussians {
 	size_t n;
 	const int32_t *ids;
 };
 
-/* One line. `of` may be NULL: the record then says nothing of Gaussians. */
+/* One line. `of` may be NULL: the record then says nothing of Gaussians. Its parts have an object, a score
+ * and boxes. */
 int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of, struct err *e);
 
 #endif

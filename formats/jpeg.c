@@ -18,6 +18,9 @@ struct jpeg_job {
 	struct err *e;
 	struct jpeg_decompress_struct jpeg;
 	uint8_t *rgb;
+	struct jpeg_compress_struct writer;
+	unsigned char *bytes; /* libjpeg's, by malloc */
+	unsigned long count;
 };
 
 static _Noreturn void on_error(j_common_ptr jpeg)
@@ -82,5 +85,47 @@ int jpeg_read_rgb(const char *name, FILE *in, uint8_t **rgb, int *height, int *w
 		free(job.rgb);
 	else
 		*rgb = job.rgb;
+	return bad;
+}
+
+static int encode(struct jpeg_job *job, const uint8_t *rgb, int height, int width, int quality)
+{
+	struct jpeg_compress_struct *jpeg = &job->writer;
+
+	if (setjmp(job->jump))
+		return -1;
+	jpeg_create_compress(jpeg);
+	jpeg_mem_dest(jpeg, &job->bytes, &job->count);
+	jpeg->image_width = (JDIMENSION)width;
+	jpeg->image_height = (JDIMENSION)height;
+	jpeg->input_components = 3;
+	jpeg->in_color_space = JCS_RGB;
+	jpeg_set_defaults(jpeg);
+	jpeg_set_quality(jpeg, quality, TRUE);
+	jpeg->dct_method = JDCT_ISLOW;
+	jpeg->optimize_coding = TRUE;
+	jpeg_start_compress(jpeg, TRUE);
+	while (jpeg->next_scanline < jpeg->image_height) {
+		JSAMPROW row = (JSAMPROW)(rgb + 3 * (size_t)width * jpeg->next_scanline);
+		jpeg_write_scanlines(jpeg, &row, 1);
+	}
+	jpeg_finish_compress(jpeg);
+	return 0;
+}
+
+int jpeg_encode(const char *name, const uint8_t *rgb, int height, int width, int quality, uint8_t **bytes,
+	size_t *count, struct err *e)
+{
+	struct jpeg_job job = {.name = name, .e = e};
+
+	job.writer.err = jpeg_std_error(&job.manager);
+	job.manager.error_exit = on_error;
+	job.manager.emit_message = on_message;
+	int bad = encode(&job, rgb, height, width, quality);
+	jpeg_destroy_compress(&job.writer);
+	if (bad)
+		free(job.bytes);
+	*bytes = bad ? NULL : job.bytes;
+	*count = (size_t)job.count;
 	return bad;
 }

@@ -11,15 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void mask_record_free(struct mask_record *r)
-{
-	free(r->view);
-	free(r->ref);
-	free(r->object);
-	rle_free(&r->mask);
-	*r = (struct mask_record){0};
-}
-
 /* Gives a key's error its file and line. */
 static int key_err(const struct jsonl *j, struct err *e, const char *key)
 {
@@ -108,17 +99,28 @@ static int read_image(const struct jsonl *j, const char *name, struct rle *mask,
 	return bad;
 }
 
-static int read_record(const struct jsonl *j, const cJSON *object, struct mask_record *r, struct err *e)
+static int read_names(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
+{
+	char *names[3] = {NULL, NULL, NULL};
+	const int bad = jsonl_name(j, object, "view", NAME_VIEW, 1, &names[0], e) ||
+			jsonl_name(j, object, "ref", NAME_DATA, 0, &names[1], e) ||
+			jsonl_name(j, object, "object", NAME_DATA, 0, &names[2], e);
+
+	m->view = names[0];
+	m->ref = names[1];
+	m->object = names[2];
+	return bad;
+}
+
+static int read_record(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
 {
 	const cJSON *segmentation = cJSON_GetObjectItemCaseSensitive(object, "segmentation");
 	const char *path = NULL;
 
-	if (jsonl_name(j, object, "view", NAME_VIEW, 1, &r->view, e) ||
-		jsonl_name(j, object, "ref", NAME_DATA, 0, &r->ref, e) ||
-		jsonl_name(j, object, "object", NAME_DATA, 0, &r->object, e) ||
-		jsonl_number(j, object, "score", &r->score, e) || read_visible(j, object, &r->visible, e))
+	if (read_names(j, object, m, e) || jsonl_number(j, object, "score", &m->score, e) ||
+		read_visible(j, object, &m->visible, e))
 		return -1;
-	if (!r->ref && !r->object)
+	if (!m->ref && !m->object)
 		return jsonl_err(j, e, "neither key 'ref' nor key 'object'");
 	if (jsonl_string(j, object, "path", 0, &path, e) < 0)
 		return -1;
@@ -127,62 +129,57 @@ static int read_record(const struct jsonl *j, const cJSON *object, struct mask_r
 	if (segmentation && path)
 		return jsonl_err(j, e, "both key 'segmentation' and key 'path'");
 	if (path)
-		return read_image(j, path, &r->mask, e);
+		return read_image(j, path, &m->rle, e);
 	if (!segmentation)
 		return jsonl_err(j, e, "neither key 'segmentation' nor key 'path'");
-	return read_segmentation(j, segmentation, &r->mask, e);
+	return read_segmentation(j, segmentation, &m->rle, e);
 }
 
-int masks_next(struct jsonl *j, struct mask_record *r, struct err *e)
+int masks_next(struct jsonl *j, struct mask *m, struct err *e)
 {
 	cJSON *object;
 
-	*r = (struct mask_record){0};
+	*m = (struct mask){0};
 	int got = jsonl_next(j, &object, e);
 	if (got <= 0)
 		return got;
-	int bad = read_record(j, object, r, e);
+	int bad = read_record(j, object, m, e);
 	cJSON_Delete(object);
 	if (!bad)
 		return 1;
-	mask_record_free(r);
+	mask_free(m);
 	return -1;
 }
 
-int masks_read_lines(struct mask_set *set, long **lines, const char *path, struct err *e)
+int masks_read_lines(struct masks *set, long **lines, const char *path, struct err *e)
 {
 	struct jsonl j;
-	struct mask_record r;
-	void *records = NULL, *numbers = NULL;
+	struct mask m;
 	size_t capacity = 0;
 	int got;
 
-	*set = (struct mask_set){0};
+	*set = (struct masks){0};
 	*lines = NULL;
 	if (jsonl_open(&j, path, e))
 		return -1;
-	while ((got = masks_next(&j, &r, e)) > 0) {
-		if (mem_grow(&records, &set->capacity, set->n + 1, sizeof r, j.path, e) ||
-			mem_grow(&numbers, &capacity, set->n + 1, sizeof **lines, j.path, e)) {
-			mask_record_free(&r);
+	while ((got = masks_next(&j, &m, e)) > 0) {
+		if (masks_add(set, &m, e) ||
+			mem_grow((void **)lines, &capacity, set->n, sizeof **lines, j.path, e)) {
 			got = -1;
 			break;
 		}
-		((struct mask_record *)records)[set->n] = r;
-		((long *)numbers)[set->n++] = j.line_number;
+		(*lines)[set->n - 1] = j.line_number;
 	}
 	jsonl_close(&j);
-	set->records = records;
-	if (got < 0) {
-		masks_free(set);
-		free(numbers);
-		return -1;
-	}
-	*lines = numbers;
-	return 0;
+	if (!got)
+		return 0;
+	masks_free(set);
+	free(*lines);
+	*lines = NULL;
+	return -1;
 }
 
-int masks_read(struct mask_set *set, const char *path, struct err *e)
+int masks_read(struct masks *set, const char *path, struct err *e)
 {
 	long *lines;
 	int bad = masks_read_lines(set, &lines, path, e);
@@ -191,50 +188,33 @@ int masks_read(struct mask_set *set, const char *path, struct err *e)
 	return bad;
 }
 
-void masks_free(struct mask_set *set)
-{
-	for (size_t i = 0; i < set->n; i++)
-		mask_record_free(&set->records[i]);
-	free(set->records);
-	*set = (struct mask_set){0};
-}
-
-int masks_pool(struct pool *p, const struct mask_set *set, const long *lines, const char *path, struct err *e)
+int masks_pool(struct pool *p, const struct masks *set, const long *lines, const char *path, struct err *e)
 {
 	size_t bad, first;
-	struct pool_record *records = mem_alloc(set->n, sizeof *records, "masks", e);
 
-	*p = (struct pool){0};
-	if (!records)
+	if (pool_make(p, set->items, set->n, e))
 		return -1;
-	for (size_t i = 0; i < set->n; i++) {
-		const struct mask_record *r = &set->records[i];
-		records[i] = (struct pool_record){
-			r->view, r->ref, r->object, &r->mask, isnan(r->score) ? 1 : r->score};
-	}
-	int failed = pool_make(p, records, set->n, e);
-	free(records);
-	if (failed || !pool_check_sizes(p, &bad, &first))
-		return failed;
+	if (!pool_check_sizes(p, &bad, &first))
+		return 0;
 	pool_free(p);
-	const struct mask_record *a = &set->records[bad], *b = &set->records[first];
+	const struct mask *a = &set->items[bad], *b = &set->items[first];
 	return err_set(e, ERR_FORMAT, "%s:%ld: a mask of %dx%d, but view '%s' has %dx%d on line %ld",
-		file_name(path), lines[bad], a->mask.width, a->mask.height, a->view, b->mask.width,
-		b->mask.height, lines[first]);
+		file_name(path), lines[bad], a->rle.width, a->rle.height, a->view, b->rle.width,
+		b->rle.height, lines[first]);
 }
 
-int masks_views(const struct mask_set *set, const long *lines, const char *path,
-	const struct cameras *cameras, size_t *views, struct err *e)
+int masks_views(const struct masks *set, const long *lines, const char *path, const struct cameras *cameras,
+	size_t *views, struct err *e)
 {
 	struct names names;
 	int bad = names_make(
 		&names, cameras->views, sizeof *cameras->views, offsetof(struct camera, name), cameras->n, e);
 
 	for (size_t i = 0; i < set->n && !bad; i++) {
-		views[i] = names_find(&names, set->records[i].view);
+		views[i] = names_find(&names, set->items[i].view);
 		if (views[i] == NAMES_NONE)
 			bad = err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%s'",
-				file_name(path), lines[i], set->records[i].view);
+				file_name(path), lines[i], set->items[i].view);
 	}
 	names_free(&names);
 	return bad;
@@ -247,22 +227,22 @@ static void put_number(FILE *out, const char *before, double x)
 	fprintf(out, "%s%s", before, number_text(text, x));
 }
 
-int masks_put(FILE *out, const struct mask_record *r, struct err *e)
+int masks_put(FILE *out, const struct mask *m, struct err *e)
 {
-	char *counts = rle_to_string(&r->mask, e);
+	char *counts = rle_to_string(&m->rle, e);
 	int bad = -1;
 
 	if (!counts)
 		return -1;
-	if (jsonl_put_string(out, "{\"view\":", r->view, e) ||
-		(r->ref && jsonl_put_string(out, ",\"ref\":", r->ref, e)) ||
-		(r->object && jsonl_put_string(out, ",\"object\":", r->object, e)))
+	if (jsonl_put_string(out, "{\"view\":", m->view, e) ||
+		(m->ref && jsonl_put_string(out, ",\"ref\":", m->ref, e)) ||
+		(m->object && jsonl_put_string(out, ",\"object\":", m->object, e)))
 		goto done;
-	if (!isnan(r->score))
-		put_number(out, ",\"score\":", r->score);
-	if (!isnan(r->visible))
-		put_number(out, ",\"visible\":", r->visible);
-	fprintf(out, ",\"segmentation\":{\"size\":[%d,%d],\"counts\":", r->mask.height, r->mask.width);
+	if (!isnan(m->score))
+		put_number(out, ",\"score\":", m->score);
+	if (!isnan(m->visible))
+		put_number(out, ",\"visible\":", m->visible);
+	fprintf(out, ",\"segmentation\":{\"size\":[%d,%d],\"counts\":", m->rle.height, m->rle.width);
 	if (jsonl_put_string(out, "", counts, e))
 		goto done;
 	fputs("}}\n", out);

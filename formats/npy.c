@@ -225,10 +225,6 @@ int npy_write(const char *path, const float *values, const size_t *shape, int di
 	if (file_out_open(&out, path, e))
 		return -1;
 	fwrite(header, 1, (size_t)used, out.stream);
-	if (fwrite(values, sizeof *values, count, out.stream) != count) {
-		err_errno(e, "%s", path);
-		file_out_abort(&out);
-		return -1;
-	}
-	return file_out_commit(&out, e);
+	const int bad = fwrite(values, sizeof *values, count, out.stream) != count;
+	return file_out_end(&out, bad ? err_errno(e, "%s", path) : 0, e);
 }

@@ -1,4 +1,4 @@
-/* PNG images through libpng (formats/png.md), JPEG through libjpeg (read only, formats/jpeg.md). Errors name
+/* PNG images through libpng (formats/png.md), JPEG through libjpeg (formats/jpeg.md). Errors name
  * the file. */
 #ifndef FORMATS_PNG_H
 #define FORMATS_PNG_H

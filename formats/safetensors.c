@@ -158,13 +158,29 @@ static int check_layout(
 	return 0;
 }
 
+/* The key of a tensor's checksum; free() it. */
+static char *crc_key(const char *tensor, struct err *e)
+{
+	static const char prefix[] = "crc32.";
+	const size_t length = strlen(tensor);
+	char *key = mem_alloc(sizeof prefix + length, 1, "tensor name", e);
+
+	if (key) {
+		memcpy(key, prefix, sizeof prefix - 1);
+		memcpy(key + sizeof prefix - 1, tensor, length + 1);
+	}
+	return key;
+}
+
 static int check_crcs(const struct safetensors *st, struct err *e)
 {
 	for (size_t i = 0; i < st->n; i++) {
 		const struct st_tensor *t = &st->tensors[i];
-		char key[512], actual[16];
-		snprintf(key, sizeof key, "crc32.%s", t->name);
+		char actual[16], *key = crc_key(t->name, e);
+		if (!key)
+			return -1;
 		const char *expected = safetensors_meta(st, key);
+		free(key);
 		if (!expected)
 			continue;
 		snprintf(actual, sizeof actual, "%08x", checksum(t->data, t->bytes));
@@ -474,9 +490,9 @@ static size_t tensor_bytes(const struct st_tensor *t)
 	return bytes;
 }
 
-/* The header with the tensors in the order `order`; NULL when memory is out. */
+/* The header with the tensors in the order `order`; NULL with *e set when memory is out. */
 static char *make_header(const struct st_tensor *tensors, const size_t *order, size_t n,
-	const struct st_meta *meta, size_t meta_count)
+	const struct st_meta *meta, size_t meta_count, struct err *e)
 {
 	cJSON *root = cJSON_CreateObject(), *m = cJSON_AddObjectToObject(root, "__metadata__");
 	size_t at = 0;
@@ -487,10 +503,14 @@ static char *make_header(const struct st_tensor *tensors, const size_t *order, s
 	for (size_t k = 0; k < n; k++) {
 		const struct st_tensor *t = &tensors[order[k]];
 		size_t bytes = tensor_bytes(t);
-		char key[512], value[16];
-		snprintf(key, sizeof key, "crc32.%s", t->name);
+		char value[16], *key = crc_key(t->name, e);
+		if (!key) {
+			cJSON_Delete(root);
+			return NULL;
+		}
 		snprintf(value, sizeof value, "%08x", checksum(t->data, bytes));
 		cJSON_AddStringToObject(m, key, value);
+		free(key);
 		cJSON *item = cJSON_AddObjectToObject(root, t->name);
 		cJSON_AddStringToObject(item, "dtype", dtypes[t->dtype].name);
 		cJSON *shape = cJSON_AddArrayToObject(item, "shape");
@@ -503,6 +523,8 @@ static char *make_header(const struct st_tensor *tensors, const size_t *order, s
 	}
 	char *text = cJSON_PrintUnformatted(root);
 	cJSON_Delete(root);
+	if (!text)
+		err_set(e, ERR_SYSTEM, "out of memory for the header");
 	return text;
 }
 
@@ -528,10 +550,10 @@ int safetensors_write(const char *path, const struct st_tensor *tensors, size_t 
 		for (size_t i = 0; i < n; i++)
 			if (dtypes[tensors[i].dtype].size == size)
 				order[k++] = i;
-	char *header = make_header(tensors, order, n, meta, meta_count);
+	char *header = make_header(tensors, order, n, meta, meta_count, e);
 	if (!header) {
 		free(order);
-		return err_set(e, ERR_SYSTEM, "%s: out of memory for the header", path);
+		return err_prefix(e, path);
 	}
 	if (file_out_open(&out, path, e)) {
 		free(order);
@@ -548,8 +570,5 @@ int safetensors_write(const char *path, const struct st_tensor *tensors, size_t 
 		bad = put(&out, tensors[order[k]].data, tensor_bytes(&tensors[order[k]]), e);
 	free(order);
 	free(header);
-	if (!bad)
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+	return file_out_end(&out, bad, e);
 }

@@ -339,9 +339,5 @@ int scores_write(const struct scores *s, const char *path, enum scores_form form
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	if (scores_put(out.stream, s, form, e)) {
-		file_out_abort(&out);
-		return -1;
-	}
-	return file_out_commit(&out, e);
+	return file_out_end(&out, scores_put(out.stream, s, form, e), e);
 }

@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RECORD = 32 };
-
 struct place {
 	double size; /* volume times opacity */
 	size_t gaussian;
@@ -40,8 +38,9 @@ static unsigned char to_byte(double x)
 	return (unsigned char)lrint(fmin(fmax(x, 0), 255));
 }
 
-static void put_record(unsigned char *p, const struct splats *s, size_t i)
+void splat_pack(unsigned char bytes[SPLAT_BYTES], const struct splats *s, size_t i)
 {
+	unsigned char *p = bytes;
 	const float *sh = s->sh + 3 * (size_t)s->sh_coefficients * i, *q = s->quats + 4 * i;
 	const double w = q[0], x = q[1], y = q[2], z = q[3], length = sqrt(w * w + x * x + y * y + z * z);
 
@@ -71,8 +70,8 @@ int splat_write(const struct splats *s, const char *path, struct err *e)
 	qsort(places, s->n, sizeof *places, largest_first);
 	int bad = file_out_open(&out, path, e);
 	for (size_t i = 0; i < s->n && !bad; i++) {
-		unsigned char record[RECORD];
-		put_record(record, s, places[i].gaussian);
+		unsigned char record[SPLAT_BYTES];
+		splat_pack(record, s, places[i].gaussian);
 		fwrite(record, 1, sizeof record, out.stream);
 	}
 	free(places);

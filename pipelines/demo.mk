@@ -32,6 +32,8 @@ demo: $(data)/made-by
 		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl WHOLE=$(data)/whole.jsonl BOXES=$(data)/boxes.jsonl \
 		SCALE=$(call quoted,SCALE) ITERATIONS=$(call quoted,ITERATIONS) SEED=$(call quoted,SEED) \
 		$(if $(TRAIN),TRAIN=$(call quoted,TRAIN)) $(if $(TEACH),TEACH=$(call quoted,TEACH)) BIN=$(call quoted,BIN) BERT=$(call quoted,BERT)
+	@$(tool)refer-report --truth $(data)/truth.jsonl $(DEMO)
+	@echo "all of it on one page; open in a browser: file://$(abspath $(DEMO))/report.html"
 
 # The command that made the data, once they are whole. They stay as they are while it is the same.
 $(data)/made-by: $(if $(call same,$(file <$(data)/made-by),$(make_data)),,FORCE)

@@ -17,8 +17,8 @@
 # The other variables, and the folder's layout, are those of two-stage.mk; both workflows may use one folder where SCALE and
 # WEIGH (here --packed --tolerance 0.05 by default) are the same.
 #
-# Targets: lifted (the model, boxes, and, where there are test views, predictions, overlays and, with TRUTH, scores), and those
-# of two-stage.mk.
+# Targets: lifted (the model, boxes, and, where there are test views, predictions, overlays and, with TRUTH, scores), report (the
+# same, and the page SCENE/report.html for a browser), and those of two-stage.mk.
 
 .DEFAULT_GOAL := lifted
 SCALE ?= 0.3333

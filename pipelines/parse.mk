@@ -5,15 +5,16 @@
 # makes $(OUT)/parser.safetensors. `make -f pipelines/parse.mk folds` makes $(OUT)/folds.jsonl, parses of the readings'
 # sentences by weights that saw no sentence of their room (FOLDS, 3), and $(OUT)/folds-blind.jsonl, the same without the grammar.
 #
-# EXAMPLES (12000) sentences, SEED (1), EPOCHS (4), SOURCE what the weights say that they were learnt from, BERT the encoder's folder.
+# EXAMPLES (12000) sentences, SEED (1), EPOCHS (4), MEMBERS (2) networks, SOURCE what the weights say that they were learnt from, BERT the encoder's folder.
 OUT ?= work/parse
 EXAMPLES ?= 12000
 SEED ?= 1
 EPOCHS ?= 4
+MEMBERS ?= 2
 FOLDS ?= 3
 SOURCE ?= the example sentences of refersplat
 BERT ?= $(HOME)/.cache/refersplat/encoder
-LEARN = parse-train --seed $(SEED) --epochs $(EPOCHS) $(if $(READINGS),--readings $(READINGS) --readings-text $(OUT)/readings.safetensors)
+LEARN = parse-train --seed $(SEED) --epochs $(EPOCHS) --members $(MEMBERS) $(if $(READINGS),--readings $(READINGS) --readings-text $(OUT)/readings.safetensors)
 NEEDS = $(OUT)/examples.safetensors $(if $(READINGS),$(OUT)/readings.safetensors)
 
 .DELETE_ON_ERROR:

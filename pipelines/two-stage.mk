@@ -27,7 +27,8 @@
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 # V           1 prints the commands too
 #
-# Targets: all (predictions, overlays and, with TRUTH, scores), predictions, overlays, scores, report.
+# Targets: all (predictions, overlays and, with TRUTH, scores), predictions, overlays, scores, report (scores and times, and the
+# page SCENE/report.html of what is there, for a browser).
 # Every file is made under its own name, so that a second make does nothing, and a changed input or variable remakes what
 # depends on it. A training that was cut off goes on from its checkpoint, unless something that it learns from changed: then
 # it starts anew. Names of files and folders may not have blanks or characters that make or the shell give a meaning.
@@ -96,6 +97,7 @@ command.teach = $(call render,$(teacher)) --split train --sentences train --scal
 command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights -o $(masks3) $(CANDIDATES)
 command.lift = refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks3) $(call options,LIFT) \
 	-o $(model3)
+command.page = refer-report $(if $(TRUTH),--truth $(TRUTH)) $(SCENE)
 command.score = miou-score --json --quiet --predicted-views --truth $(TRUTH)
 $(foreach s,1 2,$(eval command.train$(s) = $$(call train,$(s))))
 $(foreach s,1 2,$(foreach t,train test,$(eval command.render$(s).$(t) = $$(call predict,$(s),$(t)))))
@@ -163,5 +165,8 @@ $(SCENE)/stage%/overlays/complete: $(SCENE)/stage%/model.safetensors $(SCENE)/lo
 $(SCENE)/%.score.json: $(SCENE)/%.jsonl $(TRUTH) $(SCENE)/log/score.command
 	$(hide)$(tool)$(command.score) -o $@ $<
 
-report: $(scores)
-	@$(here)report.sh $(SCENE)
+# Of lift.mk, what it makes.
+report: $(if $(filter lifted,$(.DEFAULT_GOAL)),lifted,predictions scores)
+	@$(if $(filter lifted,$^),,$(here)report.sh $(SCENE))
+	@$(call run,page)
+	@echo "open in a browser: file://$(abspath $(SCENE))/report.html"

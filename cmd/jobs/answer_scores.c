@@ -52,8 +52,8 @@ int answer_scores_make(struct answer_scores *s, const struct sentences *sentence
 			.view_count = one->view_count,
 			.views = one->views};
 	}
-	int bad = answers_make(&s->answers, s->sentences, sentences->n, truth->masks, truth->n,
-		predictions->masks, predictions->n, e);
+	int bad = answers_make(&s->answers, s->sentences, sentences->n, truth->set.items, truth->n,
+		predictions->set.items, predictions->n, e);
 	if (!bad && !s->answers.n)
 		bad = err_set(e, ERR_FORMAT,
 			"%s: shows nothing that a sentence means: there is nothing to score",
@@ -85,11 +85,13 @@ static void text_row(FILE *out, const struct answer_score *s, const char *name)
 	fprintf(out, "  %s\n", name);
 }
 
-static void put_text(FILE *out, const struct answer_scores *s)
+static int put_text(FILE *out, const void *scores, struct err *e)
 {
+	const struct answer_scores *s = scores;
 	static const char *const head = "pairs %9s %9s %9s %9s %9s  %s\n";
 	struct answer_score row;
 
+	(void)e;
 	fprintf(out, head, "right", "mIoU", "refused", "F1@0.25", "F1@0.5", "means");
 	for (int i = 0; i < ANSWER_TARGETS; i++) {
 		answer_score_sum(&row, &s->answers, (enum answer_targets)i, NULL);
@@ -103,6 +105,7 @@ static void put_text(FILE *out, const struct answer_scores *s)
 	}
 	answer_score_sum(&row, &s->answers, ANSWER_ANY, NULL);
 	fprintf(out, "\nmissing      %6zu\nout of sight %6zu\n", row.missing, s->answers.out_of_sight);
+	return 0;
 }
 
 static void json_number(FILE *out, const char *key, double x, int is_there)
@@ -127,8 +130,9 @@ static int json_row(
 	return 0;
 }
 
-static int put_json(FILE *out, const struct answer_scores *s, struct err *e)
+static int put_json(FILE *out, const void *scores, struct err *e)
 {
+	const struct answer_scores *s = scores;
 	struct answer_score row;
 
 	for (int i = 0; i < ANSWER_TARGETS; i++) {
@@ -148,15 +152,5 @@ static int put_json(FILE *out, const struct answer_scores *s, struct err *e)
 
 int answer_scores_write(const struct answer_scores *s, const char *path, int is_json, struct err *e)
 {
-	struct file_out out;
-
-	if (file_out_open(&out, path, e))
-		return -1;
-	if (is_json && put_json(out.stream, s, e)) {
-		file_out_abort(&out);
-		return -1;
-	}
-	if (!is_json)
-		put_text(out.stream, s);
-	return file_out_commit(&out, e);
+	return file_out_put(path, is_json ? put_json : put_text, s, e);
 }

@@ -2,8 +2,8 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "cmd/jobs/object_extents.h"
 #include "formats/camerafile.h"
-#include "geom/up.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -70,43 +70,10 @@ static int find_viewpoint(struct asking *a, struct err *e)
 	return 0;
 }
 
-static int find_extent(struct asking *a, size_t object, const double up[3])
-{
-	const struct lifted *l = &a->model.lifted;
-	const size_t first = (size_t)l->indptr[object], n = (size_t)l->indptr[object + 1] - first;
-	struct err ignored;
-	int32_t *ids = mem_alloc(n, sizeof *ids, "object", &ignored);
-	float *responses = mem_alloc(n, sizeof *responses, "object", &ignored);
-	size_t count = 0;
-
-	for (size_t i = 0; i < n && ids && responses; i++) {
-		const float response = l->share[first + i] - LIFTED_CUT;
-		if (!(response > 0))
-			continue;
-		ids[count] = l->index[first + i];
-		responses[count++] = response;
-	}
-	int bad = !ids || !responses ||
-		  extent_find(&a->extents[object], &a->scene.splats, ids, responses, count, up, &ignored);
-	free(ids);
-	free(responses);
-	return bad;
-}
-
 static int find_extents(struct asking *a, struct err *e)
 {
-	const size_t n = a->model.lifted.objects;
-	double up[3];
-	int bad = 0;
-
-	a->extents = mem_zalloc(n, sizeof *a->extents, "objects", e);
-	if (!a->extents)
-		return -1;
-	cameras_up(&a->scene.cameras, up);
-#pragma omp parallel for schedule(dynamic) reduction(| : bad)
-	for (size_t o = 0; o < n; o++)
-		bad |= find_extent(a, o, up) != 0;
-	return bad ? err_set(e, ERR_SYSTEM, "objects: out of memory") : 0;
+	a->extents = object_extents(&a->model.lifted, &a->scene.splats, &a->scene.cameras, e);
+	return a->extents ? 0 : -1;
 }
 
 static int make_chooser(struct asking *a, struct err *e)
@@ -133,9 +100,7 @@ int asking_open(struct asking *a, const struct asking_options *options, struct e
 
 void asking_close(struct asking *a)
 {
-	for (size_t o = 0; a->extents && o < a->model.lifted.objects; o++)
-		extent_free(&a->extents[o]);
-	free(a->extents);
+	object_extents_free(a->extents, a->model.lifted.objects);
 	chooser_free(a->chooser);
 	encoder_free(&a->encoder);
 	anymodel_free(&a->model);
@@ -205,7 +170,7 @@ static int choose_answer(struct asking *a, const struct text *t, struct watched 
 {
 	const size_t objects = a->model.lifted.objects;
 	const struct choose_sentence sentence = {
-		t->texts[0], t->pieces[0], t->words, (size_t)t->offsets[1], a->from};
+		t->texts[0], t->pieces[0], t->words, (size_t)t->offsets[1], a->from, NULL};
 	const struct choose_watch watching = {w, watch};
 	float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
 	char *chosen = mem_alloc(objects, 1, "answer", e);

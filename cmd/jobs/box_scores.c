@@ -3,64 +3,17 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/jsonl.h"
+#include "mask/mask_index.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A name of a record of the truth. */
-struct entry {
-	const char *name;
-	int has_ref; /* of an object's name: records without ref come first */
-	size_t record;
-};
-
-static int by_name(const void *a, const void *b)
-{
-	const struct entry *x = a, *y = b;
-	int order = strcmp(x->name, y->name);
-
-	if (!order)
-		order = x->has_ref - y->has_ref;
-	return order ? order : (x->record > y->record) - (x->record < y->record);
-}
-
-/* The first of the entries with that name; NULL where there is none. */
-static const struct entry *find(const struct entry *entries, size_t n, const char *name)
-{
-	size_t low = 0, high = n;
-
-	while (name && low < high) {
-		const size_t middle = low + (high - low) / 2;
-		if (strcmp(entries[middle].name, name) < 0)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	return name && low < n && !strcmp(entries[low].name, name) ? &entries[low] : NULL;
-}
 
 static int by_object(const void *a, const void *b)
 {
 	const struct box_pair *x = a, *y = b;
 
 	return strcmp(x->name, y->name);
-}
-
-/* The truth's names; refs and objects (each with room for all) and how many. */
-static void list_names(const struct box_set *truth, struct entry *refs, size_t *ref_count,
-	struct entry *objects, size_t *object_count)
-{
-	*ref_count = *object_count = 0;
-	for (size_t i = 0; i < truth->n; i++) {
-		const struct box_record *r = &truth->records[i];
-		if (r->ref)
-			refs[(*ref_count)++] = (struct entry){r->ref, 1, i};
-		if (r->object)
-			objects[(*object_count)++] = (struct entry){r->object, r->ref != NULL, i};
-	}
-	qsort(refs, *ref_count, sizeof *refs, by_name);
-	qsort(objects, *object_count, sizeof *objects, by_name);
 }
 
 /* Pairs a prediction, NULL where there is none, with a truth that has a box. */
@@ -80,23 +33,18 @@ static void add(struct box_scores *s, const struct box_record *truth, const stru
 }
 
 static void pair_up(struct box_scores *s, const struct box_set *truth, const struct box_set *predictions,
-	struct entry *refs, struct entry *objects, char *is_met)
+	const struct mask_lookup *of, char *is_met)
 {
-	size_t ref_count, object_count;
-
-	list_names(truth, refs, &ref_count, objects, &object_count);
 	for (size_t i = 0; i < predictions->n; i++) {
 		const struct box_record *p = &predictions->records[i];
-		const struct entry *of = find(refs, ref_count, p->ref);
-		if (!of)
-			of = find(objects, object_count, p->object);
-		if (!of) {
+		size_t at;
+		if (mask_lookup_find(of, "", p->ref, p->object, &at) == MASK_NONE) {
 			s->unmatched++;
 			continue;
 		}
-		is_met[of->record] = 1;
-		if (!truth->records[of->record].is_empty)
-			add(s, &truth->records[of->record], p);
+		is_met[at] = 1;
+		if (!truth->records[at].is_empty)
+			add(s, &truth->records[at], p);
 	}
 	for (size_t i = 0; i < truth->n; i++) {
 		s->empty_truth += truth->records[i].is_empty != 0;
@@ -109,22 +57,22 @@ static int make(
 	struct box_scores *s, const struct box_set *predictions, const char *truth_path, struct err *e)
 {
 	const size_t n = s->truth.n;
-	struct entry *refs = mem_alloc(n, sizeof *refs, "boxes", e);
-	struct entry *objects = mem_alloc(n, sizeof *objects, "boxes", e);
+	struct mask_lookup of = {0};
+	struct mask *names = boxes_names(&s->truth, e);
 	char *is_met = mem_zalloc(n, 1, "boxes", e);
 	int bad = -1;
 
 	s->pairs = mem_alloc(n + predictions->n, sizeof *s->pairs, "boxes", e);
-	if (refs && objects && is_met && s->pairs) {
-		pair_up(s, &s->truth, predictions, refs, objects, is_met);
+	if (names && is_met && s->pairs && !mask_lookup_make(&of, names, n, e)) {
+		pair_up(s, &s->truth, predictions, &of, is_met);
 		box_score_sum(&s->all, s->pairs, s->n);
 		qsort(s->pairs, s->n, sizeof *s->pairs, by_object);
 		bad = s->n ? 0
 			   : err_set(e, ERR_FORMAT, "%s: no box at all: there is nothing to score",
 				     file_name(truth_path));
 	}
-	free(refs);
-	free(objects);
+	mask_lookup_free(&of);
+	free(names);
 	free(is_met);
 	return bad;
 }
@@ -163,10 +111,12 @@ static void text_figures(FILE *out, const char *name, const struct box_figures *
 	fprintf(out, "%-12s %6.2f %% %6.2f %% %6.2f %%\n", name, 100 * f->iou, 100 * f->p25, 100 * f->p50);
 }
 
-static void put_text(FILE *out, const struct box_scores *s)
+static int put_text(FILE *out, const void *scores, struct err *e)
 {
+	const struct box_scores *s = scores;
 	const struct box_score *all = &s->all;
 
+	(void)e;
 	fprintf(out, "%-12s %8s %8s %8s\n", "boxes", "mIoU", "@0.25", "@0.5");
 	text_figures(out, "aligned", &all->aligned);
 	text_figures(out, "oriented", &all->turned);
@@ -186,6 +136,7 @@ static void put_text(FILE *out, const struct box_scores *s)
 		else
 			fprintf(out, "%6.2f %%  %s\n", 100 * one.relative, s->pairs[i].name);
 	}
+	return 0;
 }
 
 static void json_figures(FILE *out, const char *key, const struct box_figures *f)
@@ -201,8 +152,9 @@ static void json_number(FILE *out, const char *before, double x)
 		fprintf(out, "%s%.6g", before, x);
 }
 
-static int put_json(FILE *out, const struct box_scores *s, struct err *e)
+static int put_json(FILE *out, const void *scores, struct err *e)
 {
+	const struct box_scores *s = scores;
 	const struct box_score *all = &s->all;
 
 	fputc('{', out);
@@ -230,15 +182,5 @@ static int put_json(FILE *out, const struct box_scores *s, struct err *e)
 
 int box_scores_write(const struct box_scores *s, const char *path, int is_json, struct err *e)
 {
-	struct file_out out;
-
-	if (file_out_open(&out, path, e))
-		return -1;
-	if (is_json && put_json(out.stream, s, e)) {
-		file_out_abort(&out);
-		return -1;
-	}
-	if (!is_json)
-		put_text(out.stream, s);
-	return file_out_commit(&out, e);
+	return file_out_put(path, is_json ? put_json : put_text, s, e);
 }

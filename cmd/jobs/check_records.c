@@ -85,26 +85,22 @@ int check_sentences(struct check *c, const char *path, struct err *e)
 
 int check_masks(struct check *c, const char *path, struct err *e)
 {
-	struct mask_set set;
+	struct masks set;
 	size_t same = 0;
 
 	if (masks_read(&set, path, e))
 		return -1;
-	for (size_t i = 0; i < set.n; i++) {
-		const struct mask_record *r = &set.records[i];
-		same += r->mask.width == set.records[0].mask.width &&
-			r->mask.height == set.records[0].mask.height;
-	}
+	for (size_t i = 0; i < set.n; i++)
+		same += (size_t)rle_same_size(&set.items[i].rle, &set.items[0].rle);
 	c->kind = "masks";
 	if (set.n && same == set.n) {
-		c->width = set.records[0].mask.width;
-		c->height = set.records[0].mask.height;
+		c->width = set.items[0].rle.width;
+		c->height = set.items[0].rle.height;
 	}
 	check_add(c, "masks", (long long)set.n);
-	const size_t stride = sizeof *set.records;
-	int bad =
-		add_names(c, "views", set.records, stride, offsetof(struct mask_record, view), set.n, e) ||
-		add_names(c, "objects", set.records, stride, offsetof(struct mask_record, object), set.n, e);
+	const size_t stride = sizeof *set.items;
+	int bad = add_names(c, "views", set.items, stride, offsetof(struct mask, view), set.n, e) ||
+		  add_names(c, "objects", set.items, stride, offsetof(struct mask, object), set.n, e);
 	masks_free(&set);
 	return bad ? -1 : 0;
 }

@@ -7,12 +7,6 @@
 
 #include <stdlib.h>
 
-/* What a view shows of an answer, until the views before it are written. */
-struct drawing_mask {
-	struct rle mask;
-	double score, visible;
-};
-
 static int add_view(struct drawing *d, const struct camera *view, struct err *e)
 {
 	const struct draw_options *o = d->options;
@@ -70,9 +64,9 @@ static int put_answer(void *data, const struct answer *a, struct err *e)
 {
 	const struct drawing *d = data;
 	const struct request *r = d->request;
-	struct drawing_mask *to = &d->shown[a->view * r->responses.answers + a->answer];
+	struct mask *to = &d->shown[a->view * r->responses.answers + a->answer];
 	const struct camera *c = a->camera;
-	int bad = rle_encode(&to->mask, a->mask, c->height, c->width, e);
+	int bad = rle_encode(&to->rle, a->mask, c->height, c->width, e);
 
 	to->score = a->score;
 	to->visible = a->visible;
@@ -89,21 +83,20 @@ static int put_view(void *data, size_t view, struct err *e)
 {
 	struct drawing *d = data;
 	const struct request *r = d->request;
-	struct drawing_mask *shown = d->shown + view * r->responses.answers;
+	struct mask *shown = d->shown + view * r->responses.answers;
 	int bad = 0;
 
 	for (size_t i = 0; i < r->count && !bad; i++) {
-		const struct drawing_mask *from = &shown[r->responses.answer[i]];
-		const size_t sentence = r->refs[i];
-		double score = from->score;
+		struct mask m = shown[r->responses.answer[i]];
+		m.view = d->views[d->first + view].name;
+		m.ref = r->text.refs[r->refs[i]];
+		m.object = text_object(&r->text, r->refs[i]);
 		if (r->responses.sure)
-			score = rle_area(&from->mask) ? r->responses.sure[i] : 0;
-		const struct mask_record record = {d->views[d->first + view].name, r->text.refs[sentence],
-			(char *)text_object(&r->text, sentence), score, from->mask, from->visible};
-		bad = masks_put(d->out, &record, e);
+			m.score = rle_area(&m.rle) ? r->responses.sure[i] : 0;
+		bad = masks_put(d->out, &m, e);
 	}
 	for (size_t k = 0; k < r->responses.answers; k++)
-		rle_free(&shown[k].mask);
+		rle_free(&shown[k].rle);
 	report_step(d->to, (double)(d->first + view) + 1, NULL);
 	return bad;
 }
@@ -122,7 +115,7 @@ static int render(struct drawing *d, size_t views, struct err *e)
 	d->shown = mem_zalloc(count, sizeof *d->shown, "masks", e);
 	int bad = !d->shown || answer_all(&q, d->views + d->first, views, &calls, e) ? -1 : 0;
 	for (size_t i = 0; d->shown && i < count; i++)
-		rle_free(&d->shown[i].mask);
+		rle_free(&d->shown[i].rle);
 	free(d->shown);
 	d->shown = NULL;
 	return bad;
@@ -153,10 +146,7 @@ int draw(struct drawing *d, const struct viewpoint *from, const char *path, cons
 	report_start(to, "views", (double)d->view_count);
 	int bad = render_all(d, from, e);
 	report_end(to);
-	if (!bad)
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+	return file_out_end(&out, bad, e);
 }
 
 void drawing_free(struct drawing *d)

@@ -8,6 +8,7 @@
 #include "cmd/jobs/pictures.h"
 #include "cmd/jobs/request.h"
 #include "geom/camera.h"
+#include "mask/mask.h"
 
 #include <stddef.h>
 #include <stdio.h>
@@ -30,9 +31,9 @@ struct drawing {
 	/* While it goes on: */
 	const struct report *to;
 	FILE *out;
-	size_t first;		    /* of the views: the first that is rendered now */
-	struct splats *wholes;	    /* (answers) for outlines, else without Gaussians */
-	struct drawing_mask *shown; /* (views that are rendered now, answers) */
+	size_t first;	       /* of the views: the first that is rendered now */
+	struct splats *wholes; /* (answers) for outlines, else without Gaussians */
+	struct mask *shown;    /* (views that are rendered now, answers) unnamed, until they are written */
 };
 
 /* Chooses the views of a request that has been read: d->views; there may be none. *d is zeroed before, and

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "cmd/jobs/cache_folder.h"
 #include "formats/bert_model.h"
 #include "formats/masks.h"
 #include "formats/vocab.h"
@@ -184,15 +185,8 @@ static int make_words(struct text *out, const struct bert *b, const struct encod
 
 char *encoder_default(struct err *e)
 {
-	const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-	const int has_cache = cache && *cache;
+	char *dir = cache_folder("encoder", e);
 
-	if (!has_cache && !(home && *home)) {
-		err_set(e, ERR_USAGE, "no encoder is named, and HOME is not set");
-		return NULL;
-	}
-	char *dir = has_cache ? file_join(cache, "refersplat/encoder", "", e)
-			      : file_join(home, ".cache/refersplat/encoder", "", e);
 	if (!dir || file_is_dir(dir))
 		return dir;
 	err_set(e, ERR_SYSTEM,
@@ -229,7 +223,7 @@ static int has_sentence(const struct sentences *s, const char *ref)
 /* The names of objects in mask records. */
 static int read_names(struct sentences *s, const char *path, struct err *e)
 {
-	struct mask_record one;
+	struct mask one;
 	struct jsonl j;
 	int got;
 
@@ -238,7 +232,7 @@ static int read_names(struct sentences *s, const char *path, struct err *e)
 	while ((got = masks_next(&j, &one, e)) > 0) {
 		const char *name = one.object;
 		const int bad = name && !has_sentence(s, name) && sentences_add(s, name, name, name, e);
-		mask_record_free(&one);
+		mask_free(&one);
 		if (bad) {
 			got = -1;
 			break;

@@ -1,131 +1,36 @@
-/* The parse is written as its own words: a phrase, then its clauses with their anchors in brackets. A
- * candidate's parts are those of the target that were judged, each with what it gave. */
+/* A candidate's parts are those of the target that were judged, each with what it gave. */
 #include "cmd/jobs/explain.h"
 
-#include "base/utf8.h"
+#include "base/largest.h"
+#include "cmd/jobs/parse_words.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Text of a limited length; what has no room is left out, at a character's end. */
-struct words {
-	char *to;
-	size_t n, room;
-};
-
-static void add_bytes(struct words *w, const char *from, size_t n)
-{
-	while (n && w->n + n + 1 > w->room)
-		n--;
-	while (n && utf8_check(from, n) < n)
-		n--;
-	memcpy(w->to + w->n, from, n);
-	w->to[w->n += n] = 0;
-}
-
-static void add(struct words *w, const char *text)
-{
-	add_bytes(w, text, strlen(text));
-}
-
-static void add_phrase(struct words *w, const struct parse *p, const char *text, int phrase)
-{
-	const struct parse_span *s = &p->phrases[phrase].span;
-
-	if (p->phrases[phrase].viewer)
-		add(w, "you");
-	else if (s->begin < s->end)
-		add_bytes(w, text + s->begin, (size_t)(s->end - s->begin));
-	else
-		add(w, "one");
-}
-
-static void add_clause(struct words *w, const struct parse *p, const char *text, const struct parse_clause *c)
-{
-	static const char *const degrees[] = {"", "more ", "most "};
-
-	add(w, c->negated ? "not " : "");
-	add(w, degrees[c->degree]);
-	if (c->relation == PARSE_OTHER && c->span.begin < c->span.end)
-		add_bytes(w, text + c->span.begin, (size_t)(c->span.end - c->span.begin));
-	else
-		add(w, parse_relation_name(c->relation));
-	for (int k = 0; k < c->anchors.n; k++) {
-		add(w, k ? " and " : " (");
-		add_phrase(w, p, text, c->anchors.item[k]);
-	}
-	add(w, c->anchors.n ? ")" : "");
-}
-
-static void add_tree(struct words *w, const struct parse *p, const char *text, int phrase, int depth)
-{
-	const struct parse_phrase *f = &p->phrases[phrase];
-
-	add_phrase(w, p, text, phrase);
-	for (int k = 0; k < f->clauses.n && depth < 4; k++) {
-		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
-		add(w, ", ");
-		add_clause(w, p, text, c);
-		for (int j = 0; j < c->anchors.n; j++)
-			if (p->phrases[c->anchors.item[j]].clauses.n) {
-				add(w, " [");
-				add_tree(w, p, text, c->anchors.item[j], depth + 1);
-				add(w, "]");
-			}
-	}
-	for (int k = 0; k < f->except.n && depth < 4; k++) {
-		add(w, ", but not ");
-		add_tree(w, p, text, f->except.item[k], depth + 1);
-	}
-	for (int k = 0; k < f->also.n && depth < 4; k++) {
-		add(w, "; and ");
-		add_tree(w, p, text, f->also.item[k], depth + 1);
-	}
-}
-
-static void add_noun(struct words *w, const struct parse *p, int phrase)
-{
-	const struct parse_list *noun = &p->phrases[phrase].noun;
-
-	for (int k = 0; k < noun->n; k++) {
-		add(w, k ? " " : "");
-		add(w, p->words[noun->item[k]].text);
-	}
-}
-
 /* The words of a part of the sentence. */
-static void add_part(struct words *w, const struct explained *x, const struct meaning_part *part)
+static void add_part(struct parse_words *w, const struct explained *x, const struct meaning_part *part)
 {
 	const char *text = x->text;
 	const struct parse *p = x->parse;
 
 	switch (part->kind) {
 	case MEANING_NOUN:
-		add_noun(w, p, part->phrase);
+		parse_words_noun(w, p, part->phrase);
 		break;
 	case MEANING_ATTRIBUTE:
 	case MEANING_COLOUR:
-		add(w, p->words[part->index].text);
+		parse_words_add(w, p->words[part->index].text);
 		break;
 	case MEANING_CLAUSE:
 	case MEANING_SIZE:
-		add_clause(w, p, text, &p->clauses[part->index]);
+		parse_words_clause(w, p, text, &p->clauses[part->index]);
 		break;
 	case MEANING_EXCEPT:
-		add_phrase(w, p, text, part->index);
+		parse_words_phrase(w, p, text, part->index);
 		break;
 	default:
 		break;
 	}
-}
-
-static size_t best_of(const double *x, size_t n)
-{
-	size_t best = 0;
-
-	for (size_t o = 1; o < n; o++)
-		best = x[o] > x[best] ? o : best;
-	return best;
 }
 
 /* The first anchor of a phrase, or of one of its anchors, that is not here; -1: none. */
@@ -166,7 +71,7 @@ static const struct meaning_part *worst_part(const struct meaning *m, size_t o)
 }
 
 /* A part as the sentence says it: a clause with its anchors, where they follow it. */
-static void add_said(struct words *w, const struct explained *x, const struct meaning_part *part)
+static void add_said(struct parse_words *w, const struct explained *x, const struct meaning_part *part)
 {
 	const char *text = x->text;
 	const struct parse *p = x->parse;
@@ -178,7 +83,7 @@ static void add_said(struct words *w, const struct explained *x, const struct me
 		if (p->phrases[c->anchors.item[k]].span.end > end)
 			end = p->phrases[c->anchors.item[k]].span.end;
 	if (c && c->span.begin < c->span.end)
-		add_bytes(w, text + c->span.begin, (size_t)(end - c->span.begin));
+		parse_words_bytes(w, text + c->span.begin, (size_t)(end - c->span.begin));
 	else
 		add_part(w, x, part);
 }
@@ -191,25 +96,25 @@ void explain_refusal(const struct explained *x, char reason[EXPLAIN_REASON])
 	const int anchor = absent_anchor(x, 0, 0);
 	const size_t best = best_of(m->fit, m->arrangement->n);
 	const struct meaning_part *worst = worst_part(m, best);
-	struct words w = {reason, 0, EXPLAIN_REASON};
+	struct parse_words w = {reason, 0, EXPLAIN_REASON};
 
 	*reason = 0;
 	if (p->phrases[0].noun.n && m->known[0] < 0.5) {
-		add(&w, "nothing here is known as '");
-		add_noun(&w, p, 0);
-		add(&w, "'");
+		parse_words_add(&w, "nothing here is known as '");
+		parse_words_noun(&w, p, 0);
+		parse_words_add(&w, "'");
 	} else if (anchor >= 0) {
-		add(&w, "there is no '");
-		add_phrase(&w, p, text, anchor);
-		add(&w, "' here to go by");
+		parse_words_add(&w, "there is no '");
+		parse_words_phrase(&w, p, text, anchor);
+		parse_words_add(&w, "' here to go by");
 	} else if (worst && worst->value[best] < 0.5 && worst->kind != MEANING_ORDINAL) {
-		add(&w, m->vocabulary->lifted->names[best]);
-		add(&w, " comes nearest, but '");
+		parse_words_add(&w, m->vocabulary->lifted->names[best]);
+		parse_words_add(&w, " comes nearest, but '");
 		add_said(&w, x, worst);
-		add(&w, worst->kind == MEANING_EXCEPT ? "' leaves it out" : "' does not fit it");
+		parse_words_add(&w, worst->kind == MEANING_EXCEPT ? "' leaves it out" : "' does not fit it");
 	} else {
-		add(&w, m->vocabulary->lifted->names[best]);
-		add(&w, " comes nearest, but not near enough");
+		parse_words_add(&w, m->vocabulary->lifted->names[best]);
+		parse_words_add(&w, " comes nearest, but not near enough");
 	}
 }
 
@@ -223,7 +128,7 @@ static int add_words_of(cJSON *to, const struct explained *x, const struct meani
 	static const char *const kinds[MEANING_KINDS] = {
 		"noun", "attribute", "colour", "clause", "size", "except", "ordinal"};
 	char buffer[EXPLAIN_REASON] = "";
-	struct words w = {buffer, 0, sizeof buffer};
+	struct parse_words w = {buffer, 0, sizeof buffer};
 
 	add_part(&w, x, part);
 	return cJSON_AddStringToObject(to, "part", kinds[part->kind]) &&
@@ -280,12 +185,12 @@ static int add_anchors(cJSON *list, const struct explained *x)
 
 	for (int a = 1; a < p->phrase_count; a++) {
 		char buffer[EXPLAIN_REASON] = "";
-		struct words w = {buffer, 0, sizeof buffer};
+		struct parse_words w = {buffer, 0, sizeof buffer};
 		if (!m->done[a] || p->phrases[a].viewer || p->phrases[a].scene)
 			continue;
 		const size_t best = best_of(m->fit + (size_t)a * (n + 1), n);
 		cJSON *one = cJSON_CreateObject();
-		add_phrase(&w, p, text, a);
+		parse_words_phrase(&w, p, text, a);
 		if (!cJSON_AddItemToArray(list, one) || !cJSON_AddStringToObject(one, "words", buffer) ||
 			!cJSON_AddStringToObject(one, "name", m->vocabulary->lifted->names[best]) ||
 			!add_number(one, "there", m->there[(size_t)a * n + best]))
@@ -308,10 +213,10 @@ cJSON *explain_meaning(const struct explained *x)
 	const char *text = x->text;
 	const struct parse *p = x->parse;
 	char buffer[4 * EXPLAIN_REASON] = "";
-	struct words w = {buffer, 0, sizeof buffer};
+	struct parse_words w = {buffer, 0, sizeof buffer};
 	cJSON *all = cJSON_CreateObject();
 
-	add_tree(&w, p, text, 0, 0);
+	parse_words_tree(&w, p, text, 0, 0);
 	if (cJSON_AddStringToObject(all, "parse", buffer) && add_number(all, "confidence", p->confidence) &&
 		add_unexplained(cJSON_AddArrayToObject(all, "unexplained"), p) &&
 		add_candidates(cJSON_AddArrayToObject(all, "candidates"), x) &&

@@ -25,7 +25,8 @@ static int load(struct lifting *l, struct err *e)
 	if (!l->views || !l->mask_object || !l->sentence_object || !l->names || !l->trained || !l->is_shown ||
 		!l->is_there)
 		return -1;
-	return masks_views(&l->set, l->lines, l->files->masks, &l->scene.cameras, l->views, e);
+	return mask_index_make(&l->index, l->set.items, l->set.n, MASK_BY_OBJECT, e) ||
+	       masks_views(&l->set, l->lines, l->files->masks, &l->scene.cameras, l->views, e);
 }
 
 /* Which training views can be looked at. */
@@ -45,7 +46,7 @@ static int find_views(struct lifting *l, const struct report *to, struct err *e)
  * sentences, and of views without weights, are not looked at. NAMES_NONE where the mask does not count. */
 static size_t sentence_of_mask(const struct lifting *l, size_t mask)
 {
-	const struct mask_record *m = &l->set.records[mask];
+	const struct mask *m = &l->set.items[mask];
 	const size_t ref = m->ref ? names_find(&l->refs, m->ref) : NAMES_NONE;
 	const char *name = ref == NAMES_NONE ? m->object : l->trained[ref];
 
@@ -105,11 +106,14 @@ static int by_object(const void *a, const void *b)
 static int lift_view(struct lifting *l, size_t view, struct lift_mask *masks, struct err *e)
 {
 	struct weights weights;
-	size_t n = 0;
+	size_t n = 0, begin, end;
 
-	for (size_t i = 0; i < l->set.n; i++)
-		if (l->views[i] == view && l->mask_object[i] != LIFTED_NONE)
-			masks[n++] = (struct lift_mask){l->mask_object[i], &l->set.records[i].mask};
+	mask_index_view(&l->index, l->scene.cameras.views[view].name, &begin, &end);
+	for (size_t k = begin; k < end; k++) {
+		const size_t i = l->index.keys[k].at;
+		if (l->mask_object[i] != LIFTED_NONE)
+			masks[n++] = (struct lift_mask){&l->set.items[i], l->mask_object[i]};
+	}
 	if (!n)
 		return 0;
 	qsort(masks, n, sizeof *masks, by_object);
@@ -169,6 +173,7 @@ void lifting_free(struct lifting *l)
 	scene_free(&l->scene);
 	text_free(&l->text);
 	masks_free(&l->set);
+	mask_index_free(&l->index);
 	free(l->lines);
 	free(l->views);
 	free(l->sentence_object);

@@ -12,6 +12,7 @@
 #include "formats/scene.h"
 #include "formats/text.h"
 #include "lift/lift_objects.h"
+#include "mask/mask_index.h"
 
 #include <stddef.h>
 
@@ -23,7 +24,8 @@ struct lifting {
 	const struct lifting_files *files;
 	struct scene scene;
 	struct text text;
-	struct mask_set set;
+	struct masks set;
+	struct mask_index index;	       /* by object */
 	long *lines;			       /* (set.n) */
 	size_t *views;			       /* (set.n) of each mask */
 	size_t *sentence_object, *mask_object; /* (text.n), (set.n) in names; LIFTED_NONE: does not count */

@@ -135,7 +135,7 @@ static uint32_t colour_at(const struct picture_read *p, size_t pixel)
 /* The mask of a colour, if any pixel has it: its record. */
 static int put_name(struct picture_read *p, struct painting_name *name, FILE *out, struct err *e)
 {
-	struct mask_record record = {.view = p->view, .object = name->name, .score = NAN, .visible = NAN};
+	struct mask mask = {.view = p->view, .object = name->name, .score = NAN, .visible = NAN};
 	const size_t pixels = (size_t)p->height * (size_t)p->width;
 	size_t covered = 0;
 
@@ -144,10 +144,10 @@ static int put_name(struct picture_read *p, struct painting_name *name, FILE *ou
 	if (!covered)
 		return 0;
 	name->is_seen = 1;
-	if (rle_encode(&record.mask, p->mask, p->height, p->width, e))
+	if (rle_encode(&mask.rle, p->mask, p->height, p->width, e))
 		return -1;
-	const int bad = masks_put(out, &record, e);
-	rle_free(&record.mask);
+	const int bad = masks_put(out, &mask, e);
+	rle_free(&mask.rle);
 	return bad;
 }
 
@@ -207,15 +207,14 @@ static int put_labels(
 		report_warn(to, "%s: %zu shapes without an area are left out", file_name(path), a->left_out);
 	for (size_t i = 0; i < a->n; i++) {
 		const struct annotation *one = &a->items[i];
-		struct mask_record record = {
-			.view = one->view, .object = one->name, .score = NAN, .visible = NAN};
+		struct mask mask = {.view = one->view, .object = one->name, .score = NAN, .visible = NAN};
 		if (one->shapes > 1)
 			report_warn(to, "%s: %zu shapes are '%s' in view %s, and are taken as one thing",
 				file_name(path), one->shapes, one->name, one->view);
-		if (rle_encode(&record.mask, one->mask, one->height, one->width, e))
+		if (rle_encode(&mask.rle, one->mask, one->height, one->width, e))
 			return -1;
-		const int bad = rle_area(&record.mask) ? masks_put(out, &record, e) : 0;
-		rle_free(&record.mask);
+		const int bad = rle_area(&mask.rle) ? masks_put(out, &mask, e) : 0;
+		rle_free(&mask.rle);
 		if (bad)
 			return -1;
 	}
@@ -268,8 +267,5 @@ int painting_write(struct painting_names *names, const char *const *pictures, si
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	if (!put_all(names, pictures, count, out.stream, to, e))
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+	return file_out_end(&out, put_all(names, pictures, count, out.stream, to, e), e);
 }

@@ -30,9 +30,7 @@ int parser_examples_write(const char *path, long long n, int is_test, long long 
 		bad = jsonl_put_string(out.stream, ",\"text\":", x.text, e);
 		fprintf(out.stream, ",\"split\":\"%s\"}\n", is_test ? "test" : "train");
 	}
-	if (bad)
-		file_out_abort(&out);
-	return bad ? -1 : file_out_commit(&out, e);
+	return file_out_end(&out, bad, e);
 }
 
 struct parser_training {
@@ -135,38 +133,79 @@ static int put_parses(
 	return 0;
 }
 
+static void set_member(struct parser_training *s, int member)
+{
+	s->school.seed = (unsigned long long)s->options->seed + (unsigned long long)member * 1000;
+}
+
+/* The members, one after the other, by the examples alone. */
+static int learn_examples(struct parser_training *s, struct parser_weights *w, struct err *e)
+{
+	for (int member = 0;; member++) {
+		set_member(s, member);
+		if (parser_weights_make(w, s->examples.width, e) || parser_school_examples(&s->school, w, e))
+			return -1;
+		if (member + 1 == s->options->members)
+			return 0;
+		w->next = mem_zalloc(1, sizeof *w->next, "parser's weights", e);
+		if (!w->next)
+			return -1;
+		w = w->next;
+	}
+}
+
+/* All but one fold's readings, or all. */
+static int learn_readings(struct parser_training *s, struct parser_weights *w, int without, struct err *e)
+{
+	for (int member = 0; w; w = w->next, member++) {
+		struct parser_weights *next = w->next;
+		set_member(s, member);
+		w->next = NULL; /* the readings are aligned by this member alone */
+		const int bad = parser_school_readings(&s->school, w, without, e);
+		w->next = next;
+		if (bad)
+			return -1;
+	}
+	return 0;
+}
+
+static void copy_members(struct parser_weights *to, const struct parser_weights *from)
+{
+	for (; to && from; to = to->next, from = from->next)
+		memcpy(to->slab, from->slab, sizeof(float) * to->count);
+}
+
+/* w: learnt from the examples. */
 static int cross_validate(struct parser_training *s, struct parser_weights *w, struct err *e)
 {
 	struct file_out out = {0};
-	struct parser_weights begun = {0};
-	int bad = file_out_open(&out, s->options->output, e);
+	struct parser_weights begun = {0}, *last = &begun;
+	int bad = file_out_open(&out, s->options->output, e) || parser_weights_make(&begun, w->width, e);
 
+	for (const struct parser_weights *m = w->next; m && !bad; m = m->next, last = last->next) {
+		last->next = mem_zalloc(1, sizeof *last->next, "parser's weights", e);
+		bad = !last->next || parser_weights_make(last->next, w->width, e);
+	}
 	if (!bad)
-		bad = parser_school_examples(&s->school, w, e) || parser_weights_make(&begun, w->width, e);
+		copy_members(&begun, w);
 	for (int fold = 0; fold < s->options->folds && !bad; fold++) {
-		if (fold)
-			memcpy(w->slab, begun.slab, sizeof(float) * w->count);
-		else
-			memcpy(begun.slab, w->slab, sizeof(float) * w->count);
-		bad = parser_school_readings(&s->school, w, fold, e) || put_parses(s, w, fold, out.stream, e);
+		copy_members(w, &begun);
+		bad = learn_readings(s, w, fold, e) || put_parses(s, w, fold, out.stream, e);
 	}
 	parser_weights_free(&begun);
-	if (bad)
-		file_out_abort(&out);
-	return bad ? -1 : file_out_commit(&out, e);
+	return file_out_end(&out, bad, e);
 }
 
 static int learn_weights(struct parser_training *s, struct err *e)
 {
 	const struct parser_training_options *o = s->options;
 	struct parser_weights w = {0};
-	int bad = parser_weights_make(&w, s->examples.width, e);
+	int bad = learn_examples(s, &w, e);
 
 	if (!bad) {
 		memcpy(w.encoder, s->examples.encoder.hex, sizeof w.encoder);
 		bad = o->folds ? cross_validate(s, &w, e)
-			       : parser_school_examples(&s->school, &w, e) ||
-					 parser_school_readings(&s->school, &w, -1, e) ||
+			       : learn_readings(s, &w, -1, e) ||
 					 parser_weights_write(&w, o->output, o->readings ? "--readings" : "",
 						 o->seed, o->source, e);
 	}
@@ -179,7 +218,6 @@ int parser_train(const struct parser_training_options *o, const struct report *t
 	struct parser_training s = {.options = o,
 		.school = {.epochs = (int)o->epochs,
 			.rounds = (int)o->rounds,
-			.seed = (unsigned long long)o->seed,
 			.progress = say,
 			.context = (void *)to}};
 	int bad = text_read(&s.examples, o->examples, e) || take_examples(&s, e);

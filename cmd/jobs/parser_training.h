@@ -13,6 +13,7 @@ struct parser_training_options {
 	const char *output;		/* weights, or parses where there are folds; "-" is stdout */
 	const char *source;		/* what the weights say that they were learnt from */
 	long long epochs, rounds, seed; /* the seed is that of the examples, too */
+	long long members;		/* networks, whose scores are averaged */
 	long long folds;		/* 0, or cross-validate in so many parts */
 	int is_blind;			/* the network is not told what the grammar says */
 };

@@ -8,13 +8,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-static int put_mask(FILE *out, struct mask_record r, double score, struct err *e)
+static int put_mask(FILE *out, struct mask m, double score, struct err *e)
 {
 	/* a mask without a sentence serves all of its object's */
-	if (r.object)
-		r.ref = NULL;
-	r.score = score;
-	return masks_put(out, &r, e);
+	if (m.object)
+		m.ref = NULL;
+	m.score = score;
+	return masks_put(out, &m, e);
 }
 
 static int put_winners(const struct pseudomasks *w, const struct report *to, struct err *e)
@@ -25,7 +25,7 @@ static int put_winners(const struct pseudomasks *w, const struct report *to, str
 		const struct pool_group *g = &w->pool.groups[i];
 		if (g->winner < 0)
 			without++;
-		else if (put_mask(w->out, w->set.records[g->winner], g->vote, e))
+		else if (put_mask(w->out, w->set.items[g->winner], g->vote, e))
 			return -1;
 	}
 	report_note(to, 1, "%zu masks; %zu views of an object without one", w->pool.group_count - without,
@@ -83,7 +83,7 @@ static int render(struct pseudomasks *w, size_t view, const struct weights *weig
 		return regions_render(&w->regions, view, &blend, weights->height, weights->width, masks,
 			scores, &w->rendered, e);
 	for (size_t i = 0; i < w->propagation.count; i++)
-		scores[i] = w->propagation.masks[i].score;
+		scores[i] = w->propagation.starts[i].vote;
 	return propagate_render(&w->propagation, view, &blend, weights->height, weights->width, masks, e);
 }
 
@@ -99,14 +99,14 @@ static int put_view(void *data, size_t view, const struct weights *weights, stru
 
 	w->seen++;
 	for (size_t i = 0; i < n && masks; i++) {
-		struct mask_record r =
-			w->set.records[is_scene ? w->regions.objects[i] : w->propagation.masks[i].record];
+		struct mask m =
+			is_scene ? w->set.items[w->regions.objects[i]] : *w->propagation.starts[i].mask;
 		if (!bad && rle_area(&masks[i])) {
-			r.view = w->scene.cameras.views[view].name;
-			r.visible = NAN; /* the record's is of its own view */
-			r.mask = masks[i];
+			m.view = w->scene.cameras.views[view].name;
+			m.visible = NAN; /* the candidate's is of its own view */
+			m.rle = masks[i];
 			w->masks++;
-			bad = put_mask(w->out, r, scores[i], e);
+			bad = put_mask(w->out, m, scores[i], e);
 		}
 		rle_free(&masks[i]);
 	}
@@ -161,16 +161,13 @@ int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *op
 			w->options->min_score, e))
 		return -1;
 	for (size_t i = 0; i < w->set.n; i++)
-		weak += !(w->pool.candidates[i].score > w->options->min_score);
+		weak += !(mask_confidence(&w->set.items[i]) > w->options->min_score);
 	report_note(to, 1, "%zu candidates, %zu of them not above %g", w->set.n, weak, w->options->min_score);
 	if (file_out_open(&out, path, e))
 		return -1;
 	w->out = out.stream;
-	if (method >= PSEUDOMASK_FIRST ? put_views(w, to, e) : put_winners(w, to, e)) {
-		file_out_abort(&out);
-		return -1;
-	}
-	return file_out_commit(&out, e);
+	return file_out_end(
+		&out, method >= PSEUDOMASK_FIRST ? put_views(w, to, e) : put_winners(w, to, e), e);
 }
 
 void pseudomasks_free(struct pseudomasks *w)

@@ -29,7 +29,7 @@ struct pseudomasks {
 	const struct pseudomask_options *options;
 	FILE *out;
 	size_t seen, left_out, masks, rendered; /* views, and masks in them */
-	struct mask_set set;
+	struct masks set;
 	long *lines; /* (set.n) of the file */
 	struct pool pool;
 	struct scene scene;

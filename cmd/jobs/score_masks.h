@@ -4,13 +4,11 @@
 #define CMD_JOBS_SCORE_MASKS_H
 
 #include "formats/masks.h"
-#include "score/score.h"
 
 struct score_masks {
 	const char *path; /* the caller's */
-	struct mask_set set;
-	size_t n;		  /* of masks; may be lowered by who leaves some out */
-	struct score_mask *masks; /* pointing into set; owned */
+	struct masks set;
+	size_t n; /* how many masks of the set, from the first on, count */
 };
 
 /* As masks_read; two records of the same view and ref (or, without ref, of the same view and object) are an

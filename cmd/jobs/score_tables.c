@@ -29,8 +29,8 @@ int score_visibility(struct scores *s, const struct score_sample *sample, const 
 	const uint32_t always = ((uint32_t)1 << SCORE_SEEN_UNKNOWN) - 1;
 	uint32_t *sets = mem_alloc(sample->n, sizeof *sets, "pairs", e);
 	int bad = !sets ||
-		  score_seen(sets, sample->pairs, sample->n, truth->masks, truth->n, whole->masks, whole->n,
-			  unknown, e) ||
+		  score_seen(sets, sample->pairs, sample->n, truth->set.items, truth->n, whole->set.items,
+			  whole->n, unknown, e) ||
 		  score_table_groups(&s->visibility, sample, sets, score_seen_name, SCORE_SEEN, always, e);
 
 	free(sets);

@@ -15,9 +15,9 @@ int scoring_read(struct scoring *in, const struct scoring_files *p, int is_parti
 			       (p->other && score_masks_read(&in->other, p->other, e)) ||
 			       (p->whole && score_masks_read(&in->whole, p->whole, e)) ||
 			       (p->sentences && sentences_read(&in->sentences, p->sentences, e)) ||
-			       (is_partial &&
-				       score_keep_views(in->truth.masks, &in->truth.n, in->predictions.masks,
-					       in->predictions.n, in->other.masks, in->other.n, e))
+			       (is_partial && score_keep_views(in->truth.set.items, &in->truth.n,
+						      in->predictions.set.items, in->predictions.n,
+						      in->other.set.items, in->other.n, e))
 		       ? -1
 		       : 0;
 }
@@ -49,12 +49,13 @@ static int pair_up(const struct report *to, const struct scoring *in, int is_com
 {
 	const struct score_masks *t = &in->truth;
 
-	if (score_match(pairs, t->masks, t->n, in->predictions.masks, in->predictions.n, e) ||
-		(is_compared && (score_match(others, t->masks, t->n, in->other.masks, in->other.n, e) ||
-					score_join(pairs, others, e))) ||
+	if (score_match(pairs, t->set.items, t->n, in->predictions.set.items, in->predictions.n, e) ||
+		(is_compared &&
+			(score_match(others, t->set.items, t->n, in->other.set.items, in->other.n, e) ||
+				score_join(pairs, others, e))) ||
 		score_measure_all(pairs, e) || score_measure_all(others, e) ||
-		score_choices(pairs, in->truth.masks, in->truth.n, e) ||
-		score_choices(others, in->truth.masks, in->truth.n, e))
+		score_choices(pairs, in->truth.set.items, in->truth.n, e) ||
+		score_choices(others, in->truth.set.items, in->truth.n, e))
 		return -1;
 	score_sum(sum, pairs->items, pairs->n);
 	score_sum(other_sum, others->items, others->n);

@@ -149,11 +149,11 @@ static int put_masks(
 	int bad = 0;
 
 	for (int i = 0; i < f->scene->object_count && !bad; i++) {
-		struct mask_record r = {
+		struct mask m = {
 			.view = c->name, .object = f->scene->objects[i].name, .score = NAN, .visible = NAN};
-		bad = rle_encode(&r.mask, masks + (size_t)i * pixels, c->height, c->width, e) ||
-		      masks_put(to, &r, e);
-		rle_free(&r.mask);
+		bad = rle_encode(&m.rle, masks + (size_t)i * pixels, c->height, c->width, e) ||
+		      masks_put(to, &m, e);
+		rle_free(&m.rle);
 	}
 	return bad ? -1 : 0;
 }
@@ -161,21 +161,12 @@ static int put_masks(
 static int put_candidates(
 	struct synth_folder *f, int number, const struct camera *c, const uint8_t *masks, struct err *e)
 {
-	struct synth_candidates found = {0};
-	int bad = synth_detect(&found, f->detector, number, masks, c->height, c->width, e);
+	struct masks found = {0};
+	int bad = synth_detect(&found, f->detector, number, c->name, masks, c->height, c->width, e);
 
-	for (size_t i = 0; i < found.n && !bad; i++) {
-		const struct synth_candidate *m = &found.items[i];
-		const struct synth_sentence *s = &f->sentences[m->object * SYNTH_SENTENCES + m->sentence];
-		struct mask_record r = {.view = c->name,
-			.ref = (char *)s->ref,
-			.object = f->scene->objects[m->object].name,
-			.score = m->score,
-			.mask = m->mask,
-			.visible = NAN};
-		bad = masks_put(f->candidates.stream, &r, e);
-	}
-	synth_candidates_free(&found);
+	for (size_t i = 0; i < found.n && !bad; i++)
+		bad = masks_put(f->candidates.stream, &found.items[i], e);
+	masks_free(&found);
 	return bad;
 }
 

@@ -3,8 +3,8 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
+#include "cmd/jobs/training_masks.h"
 #include "formats/lifted.h"
-#include "formats/masks.h"
 #include "formats/model.h"
 #include "mask/bits.h"
 
@@ -56,82 +56,6 @@ static int pack_sentences(struct training *t, struct err *e)
 		t->offsets[k + 1] = t->offsets[k] + count;
 	}
 	return number_objects(t, e);
-}
-
-/* Opens a view's weights and makes it the next training view. */
-static int add_view(struct training *t, const char *weights, const struct camera *c, struct err *e)
-{
-	struct weights *w = &t->weights[t->view_count];
-
-	if (weights_open(w, weights, &t->scene, (size_t)(c - t->scene.cameras.views), e))
-		return -1;
-	const struct view_weights view = weights_view(w);
-	t->cameras[t->view_count] = camera_resize(c, w->width, w->height);
-	t->views[t->view_count++].weights = view;
-	t->pixels = view.pixels > t->pixels ? view.pixels : t->pixels;
-	return 0;
-}
-
-/* One record: its view's weights are opened when it is the first of the view; names are those of the scene's
- * views, at[] is a scene view's training view or -1. */
-static int add_mask(struct training *t, const struct jsonl *j, const struct mask_record *r,
-	const char *weights, const struct names *names, long *at, struct err *e)
-{
-	const size_t place = names_find(names, r->view);
-	const struct camera *c = t->scene.cameras.views + (place == NAMES_NONE ? 0 : place);
-	struct err reason;
-
-	if (place == NAMES_NONE)
-		return jsonl_err(j, e, "key 'view': the scene has no view '%s'", r->view);
-	if (c->split == SPLIT_TEST) {
-		t->test_masks++;
-		return 0;
-	}
-	long *view = &at[place];
-	if (*view < 0) {
-		*view = (long)t->view_count;
-		if (add_view(t, weights, c, e))
-			return -1;
-	}
-	const struct weights *w = &t->weights[*view];
-	if (supervision_add(
-		    &t->masks, (size_t)*view, w->width, w->height, r->ref, r->object, &r->mask, &reason))
-		return reason.code == ERR_FORMAT ? jsonl_err(j, e, "%s", reason.message)
-						 : err_set(e, reason.code, "%s", reason.message);
-	return 0;
-}
-
-static int read_masks(struct training *t, const char *weights, const char *path, struct err *e)
-{
-	const size_t count = t->scene.cameras.n;
-	long *at = mem_alloc(count, sizeof *at, "views", e);
-	struct names names = {0};
-	struct jsonl j = {0};
-	struct mask_record r;
-	int more = -1;
-
-	t->weights = mem_zalloc(count, sizeof *t->weights, "views", e);
-	t->views = mem_zalloc(count, sizeof *t->views, "views", e);
-	t->cameras = mem_zalloc(count, sizeof *t->cameras, "views", e);
-	if (at && t->weights && t->views && t->cameras &&
-		!names_make(&names, t->scene.cameras.views, sizeof *t->scene.cameras.views,
-			offsetof(struct camera, name), count, e) &&
-		!jsonl_open(&j, path, e)) {
-		for (size_t v = 0; v < count; v++)
-			at[v] = -1;
-		while ((more = masks_next(&j, &r, e)) == 1) {
-			int bad = add_mask(t, &j, &r, weights, &names, at, e);
-			mask_record_free(&r);
-			if (bad) {
-				more = -1;
-				break;
-			}
-		}
-		jsonl_close(&j);
-	}
-	names_free(&names);
-	free(at);
-	return more;
 }
 
 static uint32_t add_checksum(uint32_t sum, const void *data, size_t bytes)
@@ -218,7 +142,7 @@ static int read_all(
 		return -1;
 	if (!t->sentences)
 		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(from->text));
-	if (read_masks(t, from->weights, from->masks, e) ||
+	if (training_read_masks(t, from->weights, from->masks, e) ||
 		supervision_link(
 			&t->masks, t->refs, t->object_names, t->sentences, t->views, t->view_count, e))
 		return -1;

@@ -15,6 +15,8 @@ void responses_free(struct responses *a)
 	free(a->lifts);
 	free(a->answer);
 	free(a->sure);
+	free(a->begin);
+	free(a->objects);
 	*a = (struct responses){0};
 }
 
@@ -110,7 +112,7 @@ static int find_meant(struct meant *m, struct responses *a, const struct lifted 
 		m->sentences[i] = (struct choose_sentence){q->texts[r], q->pieces[r],
 			q->words + (size_t)q->offsets[r] * (size_t)l->width,
 			(size_t)(q->offsets[r + 1] - q->offsets[r]),
-			q->from ? q->from[i] : (struct viewpoint){.kind = VIEWPOINT_USUAL}};
+			q->from ? q->from[i] : (struct viewpoint){.kind = VIEWPOINT_USUAL}, NULL};
 	}
 	if (choose(&scene, m->sentences, q->count, parts, m->choices, m->probability, m->chosen, NULL, e))
 		return -1;
@@ -170,8 +172,17 @@ static int take_answers(struct responses *a, const struct lifted *l, const struc
 	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
 	int bad = !own || alloc_answers(a, answers, l->gaussians, e);
 
-	for (size_t k = 0; k < answers && !bad; k++)
-		union_of(l, m->chosen + firsts[k] * l->objects, own, a->responses + k * l->gaussians);
+	a->begin = mem_zalloc(answers + 1, sizeof *a->begin, "answers", e);
+	a->objects = mem_alloc(answers, l->objects * sizeof *a->objects, "answers", e);
+	bad = bad || !a->begin || !a->objects;
+	for (size_t k = 0; k < answers && !bad; k++) {
+		const char *chosen = m->chosen + firsts[k] * l->objects;
+		union_of(l, chosen, own, a->responses + k * l->gaussians);
+		a->begin[k + 1] = a->begin[k];
+		for (size_t o = 0; o < l->objects; o++)
+			if (chosen[o])
+				a->objects[a->begin[k + 1]++] = o;
+	}
 	free(own);
 	return bad ? -1 : render_pack(a->responses, l->gaussians, (int)answers, e);
 }

@@ -35,6 +35,9 @@ struct responses {
 	double *lifts;	  /* (answers) what calibration added to them */
 	size_t *answer;	  /* (count) of each sentence */
 	double *sure;	  /* (count) in [0,1], or NULL: a trained model says so in each view (respond_mask) */
+	/* Of a lifted model: answer k is the union of objects[begin[k]] to objects[begin[k + 1] - 1]. */
+	size_t *begin; /* (answers + 1), or NULL */
+	size_t *objects;
 };
 
 /* An answer for each sentence, calibrated or as trained. ERR_FORMAT where one is not finite. Returns 0, or -1

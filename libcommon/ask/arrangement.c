@@ -107,25 +107,6 @@ static void look(const struct cameras *c, const struct viewpoint *from, const do
 	level_axes(up, away, axes);
 }
 
-static int by_place(const void *a, const void *b)
-{
-	const struct arranged_along *x = a, *y = b;
-
-	return (x->at > y->at) - (x->at < y->at);
-}
-
-static double quantile(const struct arranged_along *w, size_t n, double weight)
-{
-	double sum = 0;
-
-	for (size_t i = 0; i < n; i++) {
-		sum += w[i].weight;
-		if (sum >= weight)
-			return w[i].at;
-	}
-	return w[n - 1].at;
-}
-
 /* How much of the object a Gaussian makes up: what it covers, seen from anywhere. */
 static double size_of(const struct splats *s, size_t g)
 {
@@ -229,15 +210,12 @@ static void take_box(struct arrangement *a, size_t o, double axes[3][3])
 	struct arranged *to = &a->objects[o];
 
 	for (int k = 0; k < 3 && n; k++) {
-		double total = 0;
 		for (size_t i = 0; i < n; i++) {
 			const struct arranged_point *p = &a->points[a->begin[o] + i];
-			a->along[i] = (struct arranged_along){dot(axes[k], p->at), p->weight};
-			total += p->weight;
+			a->along[i] = (struct quantile_item){dot(axes[k], p->at), p->weight};
 		}
-		qsort(a->along, n, sizeof *a->along, by_place);
-		const double low = quantile(a->along, n, trimmed * total);
-		const double high = quantile(a->along, n, (1 - trimmed) * total);
+		const double low = quantile_weighted(a->along, n, trimmed);
+		const double high = quantile_weighted(a->along, n, 1 - trimmed);
 		to->low[k] = low - longer * (high - low);
 		to->high[k] = high + longer * (high - low);
 		to->centre[k] = (low + high) / 2;
@@ -304,12 +282,11 @@ static void find_spacing(struct arrangement *a)
 		for (size_t k = 0; k < i; k++) {
 			const struct arranged *p = &a->objects[i], *q = &a->objects[k];
 			if (p->is_there && q->is_there)
-				a->along[n++].at =
-					hypot(p->centre[0] - q->centre[0], p->centre[1] - q->centre[1]);
+				a->along[n++] = (struct quantile_item){
+					hypot(p->centre[0] - q->centre[0], p->centre[1] - q->centre[1]), 1};
 		}
-	if (n)
-		qsort(a->along, n, sizeof *a->along, by_place);
-	a->spacing = n && a->along[n / 2].at > 0 ? a->along[n / 2].at : 1;
+	const double median = n ? quantile_weighted(a->along, n, 0.5) : 0;
+	a->spacing = median > 0 ? median : 1;
 }
 
 void arrangement_look(struct arrangement *a, const struct viewpoint *from)

@@ -5,6 +5,7 @@
 
 #include "ask/viewpoint.h"
 #include "base/err.h"
+#include "base/quantile.h"
 #include "geom/camera.h"
 #include "lang/colours.h"
 #include "lift/lifted_model.h"
@@ -28,10 +29,6 @@ struct arranged_point {
 	double at[3], weight;
 };
 
-struct arranged_along {
-	double at, weight;
-};
-
 struct arrangement {
 	size_t n;
 	struct arranged *objects; /* (n) */
@@ -41,7 +38,7 @@ struct arrangement {
 	const struct cameras *cameras;
 	size_t *begin;		       /* (n+1) points begin[o] to begin[o+1] are of object o */
 	struct arranged_point *points; /* (begin[n]) */
-	struct arranged_along *along;  /* scratch */
+	struct quantile_item *along;   /* scratch */
 };
 
 /* Of the objects of l in the scene that splats and cameras are of, which must outlive it, seen from the usual

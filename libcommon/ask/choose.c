@@ -2,6 +2,7 @@
 
 #include "ask/constants.h"
 #include "ask/wording.h"
+#include "base/largest.h"
 #include "base/mem.h"
 
 #include <math.h>
@@ -45,15 +46,6 @@ static int has(const struct chooser *c, enum choose_part p)
 	return c->parts >> p & 1;
 }
 
-static double largest(const double *x, size_t n)
-{
-	double most = -INFINITY;
-
-	for (size_t i = 0; i < n; i++)
-		most = fmax(most, x[i]);
-	return most;
-}
-
 /* x becomes its softmax. */
 static void softmax(double *x, size_t n)
 {
@@ -78,15 +70,6 @@ static void look_from(struct chooser *c, const struct viewpoint *from)
 	if (!is_same_view(&c->from, from))
 		arrangement_look(&c->arrangement, from);
 	c->from = *from;
-}
-
-static size_t best_of(const double *x, size_t n)
-{
-	size_t best = 0;
-
-	for (size_t o = 1; o < n; o++)
-		best = x[o] > x[best] ? o : best;
-	return best;
 }
 
 /* How far the anchors of a phrase are there: what is said to be on the green plate where no plate is green.
@@ -219,14 +202,15 @@ static void choose_wording(
 	to->is_by_wording = 1;
 }
 
-/* s gets the sentence with its parse p. */
+/* s gets the sentence with its parse, which is `own` where the sentence has none. */
 static int choose_parsed(struct chooser *c, const struct choose_sentence *from, struct vocabulary_sentence *s,
-	struct choice *to, double *row, char *chosen, struct parse *p, struct err *e)
+	struct choice *to, double *row, char *chosen, struct parse *own, struct err *e)
 {
 	const struct lifted *l = c->scene->lifted;
 	const struct parser_vectors vectors = {from->pieces, from->vectors, (int)from->words, l->width};
+	const struct parse *p = from->parse ? from->parse : own;
 
-	if (parse_sentence(p, &c->parser, from->text, &vectors, e))
+	if (!from->parse && parse_sentence(own, &c->parser, from->text, &vectors, e))
 		return -1;
 	*s = (struct vocabulary_sentence){p, from->vectors, from->words};
 	if (meaning_judge(&c->meaning, s, e))

@@ -9,7 +9,7 @@
  * fits best is known to be what is said (its noun, its colours, its relations), how far the anchors are
  * there, and how many words say something that is said of nothing. Where that is little and the wording alone
  * is near to that of one object's training sentences (ask/wording.h), it means that object. All constants are
- * in ask/constants.h. */
+ * in ask/constants.def. */
 #ifndef ASK_CHOOSE_H
 #define ASK_CHOOSE_H
 
@@ -47,6 +47,7 @@ struct choose_sentence {
 	const float *vectors; /* (words, the model's width) */
 	size_t words;
 	struct viewpoint from;
+	const struct parse *parse; /* NULL: not known, the text is parsed */
 };
 
 struct choose_scene {

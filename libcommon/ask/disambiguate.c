@@ -91,7 +91,7 @@ static int settle(struct lifted *l, const struct lifted *old, const struct choos
 	for (size_t r = 0; r < l->sentences && !bad; r++)
 		sentences[r] = (struct choose_sentence){l->texts[r], l->pieces[r],
 			l->words + (size_t)l->offsets[r] * width, (size_t)(l->offsets[r + 1] - l->offsets[r]),
-			{.kind = VIEWPOINT_USUAL}};
+			{.kind = VIEWPOINT_USUAL}, NULL};
 	for (int round = 0; round < ROUNDS && changes && !bad; round++) {
 		bad = judge(l, scene, sentences, choices, probability, chosen, value, e) ||
 		      assignment_best(value, n, n, next, e);

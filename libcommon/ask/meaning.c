@@ -85,6 +85,35 @@ static int is_late(const struct parse_clause *c)
 	return degree_of(c) != PARSE_PLAIN || !c->anchors.n || c->relation == PARSE_MIDDLE;
 }
 
+/* Whether an ordinal counts along a clause: "the second tallest"; or from its anchor: "the first one left of
+ * the lamp"; or from the end that it names: "the second on the right". */
+static int counts_along(const struct parse_clause *c)
+{
+	return degree_of(c) == PARSE_MOST;
+}
+
+static int counts_away_from(const struct parse_clause *c)
+{
+	return c->anchors.n == 1 && (c->relation <= PARSE_BEHIND || c->relation == PARSE_NEAR);
+}
+
+static int names_end(const struct parse_clause *c)
+{
+	return !c->anchors.n && c->relation <= PARSE_BELOW;
+}
+
+/* The clause of a phrase for which that is so, where its ordinal counts from no end by itself; or NULL. */
+static const struct parse_clause *counted_by(
+	const struct parse *p, const struct parse_phrase *f, int (*is_so)(const struct parse_clause *))
+{
+	for (int k = 0; k < f->clauses.n && f->ordinal && f->from == PARSE_OTHER; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		if (!c->negated && is_so(c))
+			return c;
+	}
+	return NULL;
+}
+
 /* The place as a whole, unless something is called so. */
 static int is_scene(const struct meaning *m, int phrase)
 {
@@ -97,6 +126,17 @@ static int is_scene(const struct meaning *m, int phrase)
 	       (head >= 0 && m->known[phrase] < 0.5 && meaning_word_is(&p->words[head], places));
 }
 
+static enum relate_width width_of(const struct parse *p, const struct parse_phrase *f)
+{
+	int directions = 0;
+
+	for (int k = 0; k < f->clauses.n; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		directions += c->relation <= PARSE_BEHIND && !c->negated ? c->anchors.n : 0;
+	}
+	return f->count != PARSE_ONE ? RELATE_HALF_PLANE : directions > 1 ? RELATE_WIDE : RELATE_NARROW;
+}
+
 /* value (O) of a clause that has places in it; returns how far its anchors are known. */
 static double judge_relation(
 	struct meaning *m, int phrase, const struct parse_clause *c, const double *fit, double *value)
@@ -106,10 +146,12 @@ static double judge_relation(
 				     1U << PARSE_ABOVE;
 	const struct parse *p = m->sentence->parse;
 	struct relate_anchor anchors[ANCHORS];
-	struct relation r = {
-		relation_of(p, c), degree_of(c), p->phrases[phrase].count != PARSE_ONE, 0, anchors};
+	const struct parse_phrase *f = &p->phrases[phrase];
+	struct relation r = {relation_of(p, c), degree_of(c), width_of(p, f), 0, 0, anchors};
 	double known = 1;
 
+	if (counted_by(p, f, counts_along) == c)
+		r.place = f->ordinal;
 	if (!c->anchors.n && (c->relation == PARSE_SUPPORTS || c->relation == PARSE_INSIDE)) {
 		for (size_t o = 0; o <= objects_of(m); o++) /* "with nothing on it" */
 			m->scratch[o] = o < objects_of(m);
@@ -232,14 +274,36 @@ static void keep_group(const struct parse_phrase *f, double *fit, size_t n, doub
 		fit[o] *= fit[o] < limit ? GROUP_ELSE : 1;
 }
 
+static void rank_away_from(struct meaning *m, const struct parse_clause *c, const double *fit, double *value)
+{
+	const struct parse *p = m->sentence->parse;
+	const int i = c->anchors.item[0];
+	const struct relate_anchor anchor = {fit_of(m, i), is_scene(m, i), 0, 0};
+	const struct relation r = {PARSE_NEAR, PARSE_MOST, 0,
+		p->phrases[m->parts[m->part_count - 1].phrase].ordinal, 1, &anchor};
+
+	relate(m->arrangement, &r, fit, m->scratch + 3 * objects_of(m), value);
+}
+
 static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
 {
-	const struct parse_phrase *f = &m->sentence->parse->phrases[phrase];
+	const struct parse *p = m->sentence->parse;
+	const struct parse_phrase *f = &p->phrases[phrase];
+	const struct parse_clause *from = counted_by(p, f, counts_away_from),
+				  *end = counted_by(p, f, names_end);
 	const size_t n = objects_of(m);
-	double *value = meaning_add_part(m, phrase, MEANING_ORDINAL, -1);
 
-	relate_rank(m->arrangement, f->from == PARSE_OTHER ? PARSE_LEFT : f->from, f->ordinal, fit,
-		m->scratch + 3 * n, value);
+	if (counted_by(p, f, counts_along)) /* judge_relation has counted */
+		return;
+	double *value = meaning_add_part(m, phrase, MEANING_ORDINAL, -1);
+	if (from && f->ordinal > 0)
+		rank_away_from(m, from, fit, value);
+	else /* "the last on the right" is the rightmost */
+		relate_rank(m->arrangement,
+			end			 ? end->relation
+			: f->from == PARSE_OTHER ? PARSE_LEFT
+						 : f->from,
+			end && f->ordinal < 0 ? 1 : f->ordinal, fit, m->scratch + 3 * n, value);
 	for (size_t o = 0; o < n; o++) {
 		value[o] = RELATION_LEAST + (1 - RELATION_LEAST) * value[o];
 		/* "the second penguin" where there is but one */
@@ -264,7 +328,7 @@ static void judge_clauses(
 
 	for (int k = 0; k < f->clauses.n && depth < 2; k++) {
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
-		if (is_late(c) == late && !says_nothing(c))
+		if (is_late(c) == late && !says_nothing(c) && c != counted_by(p, f, names_end))
 			judge_clause(m, phrase, f->clauses.item[k], fit);
 		for (int j = 0; j < c->anchors.n; j++)
 			if (is_scene(m, c->anchors.item[j]))

@@ -5,6 +5,8 @@
 
 #include "ask/meaning.h"
 
+#include "base/largest.h"
+
 #include <math.h>
 
 static inline size_t objects_of(const struct meaning *m)
@@ -20,15 +22,6 @@ static inline double *fit_of(const struct meaning *m, int phrase)
 static inline double *there_of(const struct meaning *m, int phrase)
 {
 	return m->there + (size_t)phrase * objects_of(m);
-}
-
-static inline double largest(const double *x, size_t n)
-{
-	double most = 0;
-
-	for (size_t i = 0; i < n; i++)
-		most = fmax(most, x[i]);
-	return most;
 }
 
 /* The next part's values (O). meaning_judge has made room. */

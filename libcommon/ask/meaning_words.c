@@ -119,7 +119,7 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 		return;
 	}
 	value = meaning_add_part(m, phrase, MEANING_NOUN, head);
-	const double best = largest(match, n), most = fmax(best, match[n]);
+	const double best = fmax(0, largest(match, n)), most = fmax(best, match[n]);
 	m->known[phrase] = best;
 	for (size_t o = 0; o < n; o++) {
 		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * match[o] * match[o] / fmax(most, 1e-9);
@@ -153,7 +153,7 @@ void meaning_judge_attribute(struct meaning *m, int phrase, int word, double lea
 	double *value = meaning_add_part(m, phrase, MEANING_ATTRIBUTE, word);
 	vocabulary_attribute(m->vocabulary, m->sentence, word, value);
 	share_looks(m, value);
-	const double most = largest(value, n);
+	const double most = fmax(0, largest(value, n));
 	m->unknown += most < 0.5;
 	for (size_t o = 0; o < n; o++)
 		value[o] = (value[o] < 0 ? least * (1 + (1 - OPPOSITE) * value[o])
@@ -206,7 +206,7 @@ void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, do
 			value[o] += fmax(fmax(match[o], USE_WORTH * use[o]), 0);
 		words++;
 	}
-	const double most = largest(value, n);
+	const double most = fmax(0, largest(value, n));
 	m->unknown += words && most < 0.5;
 	for (size_t o = 0; o < n; o++)
 		value[o] = words ? (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most) : 1;

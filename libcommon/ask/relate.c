@@ -1,6 +1,7 @@
 #include "ask/relate.h"
 
 #include "ask/constants.h"
+#include "base/largest.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -56,18 +57,18 @@ static double level_distance(const struct arranged *p, const struct arranged *q)
 
 /* p is on the way `main` of q, and not too far aside. */
 static double on_side(const struct arrangement *a, const struct arranged *p, const struct arranged *q,
-	double main, double aside, int is_loose)
+	double main, double aside, enum relate_width width)
 {
 	const double there = step((main / a->spacing - APART_LEAST) / APART_SOFT);
 	const double along = main / (hypot(main, aside) + 1e-9), up = p->centre[2] - q->centre[2];
 	const double distance = hypot(level_distance(p, q), up);
 
-	if (is_loose)
+	if (width == RELATE_HALF_PLANE)
 		return there;
 	const double straight = step((along - SIDEWAYS_LEAST) / SIDEWAYS_SOFT);
-	return there * (SIDEWAYS_ELSE + (1 - SIDEWAYS_ELSE) * straight) *
-	       exp(-NEARBY * distance / a->spacing) * (1 - relate_stands_on(a, p, q)) *
-	       (1 - relate_stands_on(a, q, p));
+	const double aslant = width == RELATE_WIDE ? SIDEWAYS_WIDE : SIDEWAYS_ELSE;
+	return there * (aslant + (1 - aslant) * straight) * exp(-NEARBY * distance / a->spacing) *
+	       (1 - relate_stands_on(a, p, q)) * (1 - relate_stands_on(a, q, p));
 }
 
 static double near(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
@@ -84,7 +85,7 @@ static double inside(const struct arrangement *a, const struct arranged *p, cons
 	       step((arranged_bulk(q) - arranged_bulk(p)) / 0.1);
 }
 
-static double pair(const struct arrangement *a, enum parse_relation relation, int is_loose,
+static double pair(const struct arrangement *a, enum parse_relation relation, enum relate_width width,
 	const struct arranged *p, const struct arranged *q)
 {
 	const double s = a->spacing, right = p->side - q->side;
@@ -93,13 +94,13 @@ static double pair(const struct arrangement *a, enum parse_relation relation, in
 
 	switch (relation) {
 	case PARSE_LEFT:
-		return on_side(a, p, q, -right, away, is_loose);
+		return on_side(a, p, q, -right, away, width);
 	case PARSE_RIGHT:
-		return on_side(a, p, q, right, away, is_loose);
+		return on_side(a, p, q, right, away, width);
 	case PARSE_FRONT:
-		return on_side(a, p, q, -away, right, is_loose);
+		return on_side(a, p, q, -away, right, width);
 	case PARSE_BEHIND:
-		return on_side(a, p, q, away, right, is_loose);
+		return on_side(a, p, q, away, right, width);
 	case PARSE_NEAR:
 	case PARSE_WITH:
 		return near(a, p, q);
@@ -177,15 +178,6 @@ static int is_size(enum parse_relation r)
 static double soft_of(enum parse_relation r)
 {
 	return is_size(r) ? BEST_SOFT_SIZE : BEST_SOFT;
-}
-
-static double largest(const double *x, size_t n)
-{
-	double most = 0;
-
-	for (size_t i = 0; i < n; i++)
-		most = fmax(most, x[i]);
-	return most;
 }
 
 /* out[o]: that exactly k - 1 of the others that fit have a smaller key. `but` counts for none. */
@@ -342,7 +334,7 @@ static void by_itself(
 	const int is_ordered = r->kind <= PARSE_BELOW || r->kind == PARSE_NEAR || r->kind == PARSE_FAR;
 	for (size_t o = 0; o < a->n; o++) {
 		const double side = alone(a, r->kind, fit, o);
-		out[o] = is_ordered && !r->is_loose ? 0.4 * out[o] + 0.6 * side : side;
+		out[o] = is_ordered && r->width != RELATE_HALF_PLANE ? 0.4 * out[o] + 0.6 * side : side;
 	}
 }
 
@@ -392,16 +384,18 @@ static void compare(const struct arrangement *a, const struct relation *r, size_
 		for (size_t o = 0; o < a->n; o++)
 			key[o] = (r->kind == PARSE_FAR || r->kind == PARSE_BEHIND ? -1 : 1) *
 				 level_distance(&a->objects[o], q) / a->spacing;
-		rank(a, key, fit, 1, BEST_SOFT, i, out);
+		rank(a, key, fit, r->place, BEST_SOFT, i, out);
 		return;
 	}
 	for (size_t o = 0; o < a->n; o++)
 		key[o] = key_of(a, r->kind, &a->objects[o]);
 	if (r->degree == PARSE_MOST && !is_size(r->kind))
-		rank(a, key, fit, 1, soft_of(r->kind), i, out);
+		rank(a, key, fit, r->place, soft_of(r->kind), i, out);
 	for (size_t o = 0; o < a->n; o++) {
 		const double more = step((key_of(a, r->kind, q) - key[o]) / soft_of(r->kind) - 1);
-		const double side = r->kind <= PARSE_BELOW ? pair(a, r->kind, 1, &a->objects[o], q) : more;
+		const double side = r->kind <= PARSE_BELOW
+					    ? pair(a, r->kind, RELATE_HALF_PLANE, &a->objects[o], q)
+					    : more;
 		out[o] = r->degree == PARSE_MOST && !is_size(r->kind) ? out[o] * side : side;
 	}
 }
@@ -425,7 +419,7 @@ static void to_anchor(const struct arrangement *a, const struct relation *r,
 			}
 			const double x = r->degree != PARSE_PLAIN
 						 ? one[o]
-						 : pair(a, r->kind, r->is_loose, &a->objects[o], at(a, i));
+						 : pair(a, r->kind, r->width, &a->objects[o], at(a, i));
 			out[o] = anchor->is_every ? out[o] * (1 - w + w * x) : fmax(out[o], w * x);
 		}
 	}
@@ -467,7 +461,7 @@ void relate(
 			r->kind == PARSE_CORNER)
 			by_itself(a, r, fit, key, out);
 		else
-			relate_rank(a, r->kind, 1, fit, key, out);
+			relate_rank(a, r->kind, r->place ? r->place : 1, fit, key, out);
 	} else if (r->kind == PARSE_BETWEEN ||
 		   (r->kind == PARSE_MIDDLE && (count > 1 || named[0]->is_every))) {
 		memset(out, 0, a->n * sizeof *out);

@@ -15,10 +15,15 @@ struct relate_anchor {
 	int is_other;	 /* the thing itself is one of those that fit: "than the other cups" */
 };
 
+/* How much of the plane is left of, behind ... a thing: what lies near that direction; more of it, where two
+ * such relations together tell; or half of it ("everything left of the plate"), however far away. */
+enum relate_width { RELATE_NARROW, RELATE_WIDE, RELATE_HALF_PLANE };
+
 struct relation {
 	enum parse_relation kind;
 	enum parse_degree degree;
-	int is_loose; /* a half-plane rather than a direction: "everything left of the plate" */
+	enum relate_width width;
+	int place; /* with PARSE_MOST: 2 for "second nearest to"; 0 as 1 */
 	int count;
 	const struct relate_anchor *anchors; /* (count) */
 };

@@ -1,6 +1,7 @@
 #include "ask/vocabulary.h"
 
 #include "ask/constants.h"
+#include "base/dot.h"
 #include "base/mem.h"
 #include "lang/colours.h"
 #include "lang/kinds.h"
@@ -293,15 +294,6 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	return 0;
 }
 
-static double dot(const float *a, const float *b, size_t n)
-{
-	double sum = 0;
-
-	for (size_t i = 0; i < n; i++)
-		sum += (double)a[i] * b[i];
-	return sum;
-}
-
 static double step(double x)
 {
 	return 1 / (1 + exp(-fmin(fmax(x, -40), 40)));
@@ -367,7 +359,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 			continue;
 		double x = !strcmp(word->lemma, item->lemma) ? 1 : 0;
 		if (x < 1) {
-			x = worth(dot(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
+			x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
 			x = fmax(
 				x, knowledge(v, word->lemma, &noun, &v->kinds[item->kind], item->is_general));
 		}
@@ -398,8 +390,8 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 			    ? wordnet_adjectives_fit(&adjective, &v->kinds[item->kind].adjective)
 			    : 0;
 		if (x == 0)
-			x = worth(
-				dot(v->word, v->vectors + i * width, width), ATTRIBUTE_HALF, ATTRIBUTE_SOFT);
+			x = worth(dot_float(v->word, v->vectors + i * width, width), ATTRIBUTE_HALF,
+				ATTRIBUTE_SOFT);
 		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
 		/* what is said to be so once is so, whatever else is said */
 		if (x > 0 ? x > *to && x > -*to : -x > fabs(*to))
@@ -422,7 +414,8 @@ void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s
 				     item->relation != PARSE_OTHER;
 		if (item->sentence == v->without || is_place)
 			continue;
-		match[item->object] = fmax(match[item->object], dot(v->word, v->vectors + i * width, width));
+		match[item->object] =
+			fmax(match[item->object], dot_float(v->word, v->vectors + i * width, width));
 	}
 	for (size_t o = 0; o < l->objects; o++) {
 		match[o] = match[o] < -0.999 ? 0 : match[o];
@@ -456,7 +449,7 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
 		if (item->sentence == v->without || item->role != VOCABULARY_ANCHOR ||
 			!is_like(item->relation, relation))
 			continue;
-		double x = worth(dot(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
+		double x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
 		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
 		match[item->object] = fmax(match[item->object], x);
 	}
@@ -547,7 +540,7 @@ size_t vocabulary_whole(
 		const size_t o = (size_t)l->object[r];
 		if (r == v->without)
 			continue;
-		match[o] = fmax(match[o], dot(v->word, v->sentences + r * width, width));
+		match[o] = fmax(match[o], dot_float(v->word, v->sentences + r * width, width));
 		if (text && same == l->objects && !strcmp(text, l->texts[r]))
 			same = o;
 	}

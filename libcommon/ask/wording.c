@@ -1,6 +1,7 @@
 #include "ask/wording.h"
 
 #include "ask/constants.h"
+#include "base/largest.h"
 #include "base/mem.h"
 
 #include <math.h>
@@ -15,24 +16,6 @@ void wording_free(struct wording *w)
 	free(w->match);
 	free(w->own);
 	*w = (struct wording){0};
-}
-
-static double largest(const double *x, size_t n)
-{
-	double most = -INFINITY;
-
-	for (size_t i = 0; i < n; i++)
-		most = fmax(most, x[i]);
-	return most;
-}
-
-static size_t best_of(const double *x, size_t n)
-{
-	size_t best = 0;
-
-	for (size_t o = 1; o < n; o++)
-		best = x[o] > x[best] ? o : best;
-	return best;
 }
 
 /* match (O): M of a word. */

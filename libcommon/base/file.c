@@ -228,6 +228,24 @@ void file_out_abort(struct file_out *out)
 	*out = (struct file_out){0};
 }
 
+int file_out_end(struct file_out *out, int bad, struct err *e)
+{
+	if (!bad)
+		return file_out_commit(out, e);
+	file_out_abort(out);
+	return -1;
+}
+
+int file_out_put(const char *path, int (*put)(FILE *out, const void *what, struct err *e), const void *what,
+	struct err *e)
+{
+	struct file_out out;
+
+	if (file_out_open(&out, path, e))
+		return -1;
+	return file_out_end(&out, put(out.stream, what, e), e);
+}
+
 int file_out_probe(const char *path, struct err *e)
 {
 	struct file_out out;

@@ -41,6 +41,13 @@ int file_out_open(struct file_out *out, const char *path, struct err *e);
 int file_out_commit(struct file_out *out, struct err *e); /* closes in any case */
 void file_out_abort(struct file_out *out);		  /* harmless after commit, and on a zeroed struct */
 
+/* Commits, or where writing was bad (*e says why) aborts. Returns 0, or -1 with *e set. */
+int file_out_end(struct file_out *out, int bad, struct err *e);
+
+/* Opens, writes by `put`, which returns 0 or -1 with *e, and ends. */
+int file_out_put(const char *path, int (*put)(FILE *out, const void *what, struct err *e), const void *what,
+	struct err *e);
+
 /* Removes the temporary files of all outputs that are open: for a signal's handler, after which the process
  * ends. Threads that then open or end an output wait for that. */
 void file_out_remove_all(void);

@@ -49,11 +49,17 @@ void analysis_repair(struct analysis *a);
  * pairs of anchors, parts of things. grammar: what grammar_analyse made. */
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
 
+/* A part of analysis_mend: words that were taken for something else. */
+void analysis_reread(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
+/* Whether a word is the predicate of an anchor. */
+int analysis_has_anchor(const struct analysis *a, int predicate);
+
 /* The parse that an analysis stands for; -1 only where memory is out. Degrees, counts, ordinals, groups and
  * views are told from the words themselves. */
 int parse_build(struct parse *p, const struct analysis *a, const struct tokens *t, struct err *e);
 
-/* What the words of a built parse tell besides: "the taller of those three vases" is a vase. */
-void parse_settle(struct parse *p);
+/* What the words of a built parse tell besides: "the taller of those three vases" is a vase. -1 only where
+ * memory is out. */
+int parse_settle(struct parse *p, struct err *e);
 
 #endif

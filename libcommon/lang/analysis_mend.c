@@ -6,16 +6,6 @@
 
 #include <string.h>
 
-static int class_of(const struct tokens *t, int i)
-{
-	return i < 0 || i >= t->n || t->word[i].closed < 0 ? -1 : (int)closed_words[t->word[i].closed].class;
-}
-
-static int is(const struct tokens *t, int i, const char *word)
-{
-	return i >= 0 && i < t->n && !strcmp(t->word[i].text, word);
-}
-
 /* The noun that the words from i on stand before as adjectives do, or -1. */
 static int noun_after(const struct analysis *a, const struct tokens *t, int i)
 {
@@ -23,8 +13,8 @@ static int noun_after(const struct analysis *a, const struct tokens *t, int i)
 		enum word_role r = a->word[j].role;
 		if (role_is_phrase(r))
 			return j;
-		if (r != ROLE_ATTRIBUTE && r != ROLE_NAME && class_of(t, j) != CLOSED_SIZE &&
-			class_of(t, j) != CLOSED_ATTRIBUTE)
+		if (r != ROLE_ATTRIBUTE && r != ROLE_NAME && tokens_class(t, j) != CLOSED_SIZE &&
+			tokens_class(t, j) != CLOSED_ATTRIBUTE)
 			return -1;
 	}
 	return -1;
@@ -35,7 +25,7 @@ static void mend_sizes(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
 		int noun;
-		if (a->word[i].role != ROLE_NONE || class_of(t, i) != CLOSED_SIZE ||
+		if (a->word[i].role != ROLE_NONE || tokens_class(t, i) != CLOSED_SIZE ||
 			(noun = noun_after(a, t, i)) < 0)
 			continue;
 		a->word[i] = (struct analysis_word){ROLE_PREDICATE,
@@ -46,8 +36,8 @@ static void mend_sizes(struct analysis *a, const struct tokens *t)
 
 static int is_viewer(const struct tokens *t, int i)
 {
-	return (class_of(t, i) == CLOSED_PRONOUN && closed_words[t->word[i].closed].value == 1) ||
-	       is(t, i, "you");
+	return (tokens_class(t, i) == CLOSED_PRONOUN && closed_words[t->word[i].closed].value == 1) ||
+	       tokens_is(t, i, "you");
 }
 
 /* "the one closest to us". */
@@ -55,8 +45,9 @@ static void mend_viewer(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
 		if (a->word[i].role != ROLE_NONE || !is_viewer(t, i) ||
-			!(is(t, i - 1, "to") || is(t, i - 1, "from") || is(t, i - 1, "between") ||
-				is(t, i - 1, "near") || is(t, i - 1, "nearest")))
+			!(tokens_is(t, i - 1, "to") || tokens_is(t, i - 1, "from") ||
+				tokens_is(t, i - 1, "between") || tokens_is(t, i - 1, "near") ||
+				tokens_is(t, i - 1, "nearest")))
 			continue;
 		for (int j = i - 1; j >= 0 && j >= i - 3 && !t->word[j + 1].before; j--)
 			if (a->word[j].role == ROLE_PREDICATE &&
@@ -73,8 +64,8 @@ static void mend_viewer(struct analysis *a, const struct tokens *t)
 static void mend_negation(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i + 2 < t->n; i++) {
-		if (!is(t, i, "not") || !is(t, i + 1, "the") ||
-			!(is(t, i + 2, "one") || is(t, i + 2, "ones")))
+		if (!tokens_is(t, i, "not") || !tokens_is(t, i + 1, "the") ||
+			!(tokens_is(t, i + 2, "one") || tokens_is(t, i + 2, "ones")))
 			continue;
 		int left_out = a->word[i + 2].role == ROLE_EXCEPT;
 		for (int j = i + 3; j < t->n && t->word[j].before != PAUSE_STOP; j++) {
@@ -94,7 +85,7 @@ static void mend_colours(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++)
 		if (a->word[i].role == ROLE_TARGET && colour_word(t->word[i].text) >= 0 && i > 0 &&
-			(class_of(t, i - 1) == CLOSED_BE || class_of(t, i - 1) == CLOSED_GENERIC))
+			(tokens_class(t, i - 1) == CLOSED_BE || tokens_class(t, i - 1) == CLOSED_GENERIC))
 			a->word[i] = (struct analysis_word){.role = ROLE_ATTRIBUTE, .head = ROOT};
 }
 
@@ -106,9 +97,9 @@ static int predicate_joined(const struct analysis *a, const struct tokens *t, in
 					  1U << PARSE_NEAR | 1U << PARSE_FAR | 1U << PARSE_BETWEEN;
 	int i = noun - 1;
 
-	while (i > 0 && !is(t, i, "and") && !t->word[i + 1].before && !role_is_phrase(a->word[i].role))
+	while (i > 0 && !tokens_is(t, i, "and") && !t->word[i + 1].before && !role_is_phrase(a->word[i].role))
 		i--;
-	if (i < 1 || !is(t, i, "and") || t->word[i].before || a->word[i - 1].role != ROLE_ANCHOR)
+	if (i < 1 || !tokens_is(t, i, "and") || t->word[i].before || a->word[i - 1].role != ROLE_ANCHOR)
 		return -1;
 	const int p = a->word[i - 1].head;
 	return p >= 0 && a->word[p].head == ROOT && takes_two >> a->word[p].relation & 1 ? p : -1;
@@ -166,14 +157,14 @@ static void mend_parts(struct analysis *a, const struct tokens *t)
 	for (int i = 0; i < t->n; i++) {
 		found |= a->word[i].role == ROLE_TARGET;
 		if (!found || a->word[i].role != ROLE_ATTRIBUTE || a->word[i].head != ROOT ||
-			class_of(t, i - 1) != CLOSED_DETERMINER || i < 2 ||
+			tokens_class(t, i - 1) != CLOSED_DETERMINER || i < 2 ||
 			a->word[i - 2].role != ROLE_PREDICATE)
 			continue;
 		int anchor = i + 1;
-		while (anchor < t->n && !is(t, anchor, "of") && a->word[anchor].head != i - 2)
+		while (anchor < t->n && !tokens_is(t, anchor, "of") && a->word[anchor].head != i - 2)
 			anchor++;
 		a->word[i].head = anchor;
-		if (anchor >= t->n || is(t, anchor, "of"))
+		if (anchor >= t->n || tokens_is(t, anchor, "of"))
 			a->word[i] = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
 	}
 }
@@ -187,12 +178,12 @@ static void mend_ways(struct analysis *a, const struct tokens *t)
 
 	for (int i = 0; i + 1 < t->n; i++) {
 		int r = -1, at = -1;
-		if (!is(t, i + 1, "way") && !is(t, i + 1, "distance"))
+		if (!tokens_is(t, i + 1, "way") && !tokens_is(t, i + 1, "distance"))
 			continue;
 		for (size_t k = 0; k < sizeof far / sizeof *far; k++)
-			r = is(t, i, far[k]) ? PARSE_FAR : r;
+			r = tokens_is(t, i, far[k]) ? PARSE_FAR : r;
 		for (size_t k = 0; k < sizeof near / sizeof *near; k++)
-			r = is(t, i, near[k]) ? PARSE_NEAR : r;
+			r = tokens_is(t, i, near[k]) ? PARSE_NEAR : r;
 		for (int j = i + 4; j >= i; j--)
 			at = r >= 0 && j < t->n && a->word[j].role == ROLE_PREDICATE ? j : at;
 		if (at < 0)
@@ -211,15 +202,16 @@ static void mend_ways(struct analysis *a, const struct tokens *t)
 static void mend_isnt(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i + 1 < t->n; i++) {
-		const int next = class_of(t, i + 1) == CLOSED_ADVERB ? i + 2 : i + 1;
-		if (class_of(t, i) == CLOSED_NEGATION && !is(t, i, "no") && !is(t, i, "without") &&
-			next < t->n && !t->word[next].before && a->word[next].role == ROLE_ATTRIBUTE &&
-			a->word[next].head == ROOT && noun_after(a, t, next) < 0)
+		const int next = tokens_class(t, i + 1) == CLOSED_ADVERB ? i + 2 : i + 1;
+		if (tokens_class(t, i) == CLOSED_NEGATION && !tokens_is(t, i, "no") &&
+			!tokens_is(t, i, "without") && next < t->n && !t->word[next].before &&
+			a->word[next].role == ROLE_ATTRIBUTE && a->word[next].head == ROOT &&
+			noun_after(a, t, next) < 0)
 			a->word[next] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
 	}
 }
 
-static int has_anchor(const struct analysis *a, int predicate)
+int analysis_has_anchor(const struct analysis *a, int predicate)
 {
 	for (int i = 0; i < a->n; i++)
 		if (a->word[i].role == ROLE_ANCHOR && a->word[i].head == predicate)
@@ -233,13 +225,16 @@ static int predicate_for(const struct analysis *a, const struct tokens *t, int b
 {
 	int i = begin - 1;
 
-	while (is(t, i, "of") || is(t, i, "to") || is(t, i, "from") || is(t, i, "than"))
+	while (tokens_is(t, i, "of") || tokens_is(t, i, "to") || tokens_is(t, i, "from") ||
+		tokens_is(t, i, "than"))
 		i--;
-	if (i >= 0 && a->word[i].role == ROLE_PREDICATE && a->word[i].head == ROOT && !has_anchor(a, i))
+	if (i >= 0 && a->word[i].role == ROLE_PREDICATE && a->word[i].head == ROOT &&
+		!analysis_has_anchor(a, i))
 		return i;
 	for (i = end + 1; i < t->n && i <= end + 5 && !t->word[i].before; i++)
-		if (a->word[i].role == ROLE_PREDICATE && a->word[i].head == ROOT && is(t, i - 1, "its"))
-			return has_anchor(a, i) ? -1 : i;
+		if (a->word[i].role == ROLE_PREDICATE && a->word[i].head == ROOT &&
+			tokens_is(t, i - 1, "its"))
+			return analysis_has_anchor(a, i) ? -1 : i;
 	return -1;
 }
 
@@ -251,11 +246,11 @@ static void mend_ones(struct analysis *a, const struct tokens *t)
 	for (int i = 0; i < t->n; i++) {
 		const int is_free = a->word[i].role == ROLE_NONE || (found && a->word[i].role == ROLE_TARGET);
 		int begin = i;
-		if (is(t, i, "one") && found && is_free) {
+		if (tokens_is(t, i, "one") && found && is_free) {
 			while (begin > 0 && a->word[begin - 1].role == ROLE_ATTRIBUTE &&
 				a->word[begin - 1].head == ROOT)
 				begin--;
-			if (is(t, begin - 1, "the") && begin < i) {
+			if (tokens_is(t, begin - 1, "the") && begin < i) {
 				const int p = predicate_for(a, t, begin - 1, i);
 				for (int j = begin; j < i && p >= 0; j++)
 					a->word[j].head = i;
@@ -272,9 +267,9 @@ static int part_before(const struct analysis *a, const struct tokens *t, int nou
 {
 	int i = noun - 1;
 
-	while (i > 0 && !is(t, i, "of") && !t->word[i + 1].before && !role_is_phrase(a->word[i].role))
+	while (i > 0 && !tokens_is(t, i, "of") && !t->word[i + 1].before && !role_is_phrase(a->word[i].role))
 		i--;
-	return i > 0 && is(t, i, "of") && a->word[i - 1].role == ROLE_ANCHOR ? i - 1 : -1;
+	return i > 0 && tokens_is(t, i, "of") && a->word[i - 1].role == ROLE_ANCHOR ? i - 1 : -1;
 }
 
 /* "by the hinge of the gate on the left of the barn": it is the gate that is by it, and on the left. */
@@ -303,8 +298,9 @@ static void mend_later(struct analysis *a, const struct tokens *t)
 		while (p > 0 && !t->word[p + 1].before && a->word[p].role != ROLE_PREDICATE &&
 			!role_is_phrase(a->word[p].role))
 			p--;
-		if (a->word[p].role == ROLE_PREDICATE && class_of(t, p) == CLOSED_PLACE &&
-			!t->word[p + 1].before && !has_anchor(a, p) && a->word[p].relation != PARSE_SUPPORTS)
+		if (a->word[p].role == ROLE_PREDICATE && tokens_class(t, p) == CLOSED_PLACE &&
+			!t->word[p + 1].before && !analysis_has_anchor(a, p) &&
+			a->word[p].relation != PARSE_SUPPORTS)
 			a->word[i].head = p;
 	}
 }
@@ -316,9 +312,10 @@ static void mend_plus(struct analysis *a, const struct tokens *t)
 
 	for (int i = 0; i < t->n; i++) {
 		int begin = i;
-		while (begin > 0 && !role_is_phrase(a->word[begin - 1].role) && !is(t, begin - 1, "plus"))
+		while (begin > 0 && !role_is_phrase(a->word[begin - 1].role) &&
+			!tokens_is(t, begin - 1, "plus"))
 			begin--;
-		if (found && role_is_phrase(a->word[i].role) && begin > 0 && is(t, begin - 1, "plus"))
+		if (found && role_is_phrase(a->word[i].role) && begin > 0 && tokens_is(t, begin - 1, "plus"))
 			a->word[i] = (struct analysis_word){.role = ROLE_ALSO, .head = ROOT};
 		found |= a->word[i].role == ROLE_TARGET;
 	}
@@ -339,5 +336,6 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 	mend_negation(a, t);
 	mend_colours(a, t);
 	mend_pairs(a, t);
+	analysis_reread(a, grammar, t);
 	analysis_repair(a);
 }

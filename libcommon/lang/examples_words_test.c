@@ -84,6 +84,11 @@ static const char *const sentences_test[] = {
 	"what would i use F ?",
 	"which one of the L is C ?",
 	"the A of these L",
+	"which N G ?",
+	"over there you find B . hand me T D",
+	"mind B and B . T P",
+	"W you can see the N",
+	"seen from above C : the N",
 };
 static const char *const functions_test[] = {
 	"one *sweeps|mops with",
@@ -97,11 +102,25 @@ static const struct example_clause back_test[] = {
 	{PARSE_BEHIND, 0, "at the *back of it"},
 };
 
+static const struct example_clause back_to_two_test[] = {
+	{PARSE_BETWEEN, 0, "with one on *either side"},
+	{PARSE_BEHIND, 0, "further *back than the pair"},
+};
+
+static const struct example_clause inverted_test[] = {
+	{PARSE_SUPPORTS, 0, "has @ been put *on"},
+	{PARSE_NEAR, 0, "can @ be found *closest to"},
+	{PARSE_FRONT, 0, "does @ hide *behind"},
+};
+
 #define CLAUSES(a)                                                                                           \
 	{                                                                                                    \
 		COUNT(a), a                                                                                  \
 	}
 
+static const struct example_list list_of_sentences = CLAUSES(sentences_test),
+				 list_of_functions = CLAUSES(functions_test);
+
 const struct example_wordings example_wordings_test = {CLAUSES(placed_test), CLAUSES(having_test),
-	CLAUSES(turned_test), CLAUSES(back_test), CLAUSES(before_test), CLAUSES(sentences_test),
-	CLAUSES(functions_test)};
+	CLAUSES(turned_test), CLAUSES(back_test), CLAUSES(back_to_two_test), CLAUSES(inverted_test),
+	CLAUSES(before_test), &list_of_sentences, &list_of_functions};

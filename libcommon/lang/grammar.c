@@ -18,16 +18,6 @@ struct state {
 	int except, view, also;
 };
 
-static int class_of(const struct tokens *t, int i)
-{
-	return i < 0 || i >= t->n || t->word[i].closed < 0 ? -1 : (int)closed_words[t->word[i].closed].class;
-}
-
-static int is(const struct tokens *t, int i, const char *word)
-{
-	return i >= 0 && i < t->n && !strcmp(t->word[i].text, word);
-}
-
 static int ends_in(const char *w, const char *tail)
 {
 	size_t n = strlen(w), m = strlen(tail);
@@ -38,7 +28,7 @@ static int ends_in(const char *w, const char *tail)
 /* An open word that may be a noun. */
 static int is_open(const struct tokens *t, int i)
 {
-	return i < t->n && class_of(t, i) < 0 && strcmp(t->word[i].text, "'s");
+	return i < t->n && tokens_class(t, i) < 0 && strcmp(t->word[i].text, "'s");
 }
 
 /* A verb after its subject: "chair facing", "cat asleep on". */
@@ -47,13 +37,13 @@ static int is_verb(const struct tokens *t, int i)
 	const char *w = t->word[i].text;
 
 	return (ends_in(w, "ing") || ends_in(w, "ed")) && i + 1 < t->n &&
-	       (class_of(t, i + 1) == CLOSED_PLACE || class_of(t, i + 1) == CLOSED_DETERMINER ||
-		       class_of(t, i + 1) == CLOSED_PREPOSITION || class_of(t, i + 1) == CLOSED_WITH);
+	       (tokens_class(t, i + 1) == CLOSED_PLACE || tokens_class(t, i + 1) == CLOSED_DETERMINER ||
+		       tokens_class(t, i + 1) == CLOSED_PREPOSITION || tokens_class(t, i + 1) == CLOSED_WITH);
 }
 
 static int is_noun_start(const struct tokens *t, int i)
 {
-	return i < t->n && (is_open(t, i) || class_of(t, i) == CLOSED_GENERIC);
+	return i < t->n && (is_open(t, i) || tokens_class(t, i) == CLOSED_GENERIC);
 }
 
 static int relation_of(const struct tokens *t, int i)
@@ -63,10 +53,10 @@ static int relation_of(const struct tokens *t, int i)
 
 static int is_weak(const struct tokens *t, int i)
 {
-	int r = class_of(t, i) == CLOSED_PLACE ? relation_of(t, i) : -1;
+	int r = tokens_class(t, i) == CLOSED_PLACE ? relation_of(t, i) : -1;
 
-	return r == PARSE_ON || r == PARSE_INSIDE || is(t, i, "at") || is(t, i, "by") ||
-	       is(t, i, "against") || is(t, i, "over");
+	return r == PARSE_ON || r == PARSE_INSIDE || tokens_is(t, i, "at") || tokens_is(t, i, "by") ||
+	       tokens_is(t, i, "against") || tokens_is(t, i, "over");
 }
 
 /* A place word that stands before a noun as an adjective does: "the left chair", "the middle one". */
@@ -74,15 +64,16 @@ static int is_adjective_place(const struct tokens *t, int i)
 {
 	int r;
 
-	if (class_of(t, i) == CLOSED_SIZE)
+	if (tokens_class(t, i) == CLOSED_SIZE)
 		return 1;
-	if (class_of(t, i) != CLOSED_PLACE)
+	if (tokens_class(t, i) != CLOSED_PLACE)
 		return 0;
 	r = relation_of(t, i);
 	if (r == PARSE_ON || r == PARSE_INSIDE || r == PARSE_BETWEEN || r == PARSE_WALL || r == PARSE_FLOOR ||
-		r == PARSE_ACROSS || is(t, i, "by") || is(t, i, "at") || is(t, i, "against") ||
-		is(t, i, "beside") || is(t, i, "near") || is(t, i, "under") || is(t, i, "below") ||
-		is(t, i, "above") || is(t, i, "behind"))
+		r == PARSE_ACROSS || tokens_is(t, i, "by") || tokens_is(t, i, "at") ||
+		tokens_is(t, i, "against") || tokens_is(t, i, "beside") || tokens_is(t, i, "near") ||
+		tokens_is(t, i, "under") || tokens_is(t, i, "below") || tokens_is(t, i, "above") ||
+		tokens_is(t, i, "behind"))
 		return 0;
 	return 1;
 }
@@ -108,7 +99,7 @@ static int phrase_at(const struct state *s, int i, int *end)
 	int head = -1, j;
 
 	for (j = i; j < t->n; j++) {
-		int c = class_of(t, j);
+		int c = tokens_class(t, j);
 		if (j > i && t->word[j].before && head >= 0)
 			break;
 		if (is_open(t, j)) {
@@ -122,21 +113,22 @@ static int phrase_at(const struct state *s, int i, int *end)
 		} else if (c == CLOSED_ATTRIBUTE || c == CLOSED_SIZE) {
 			if (head >= 0 && c == CLOSED_SIZE)
 				break;
-		} else if (is(t, j, "wall") || is(t, j, "floor") || is(t, j, "ground") ||
-			   is(t, j, "corner")) {
+		} else if (tokens_is(t, j, "wall") || tokens_is(t, j, "floor") || tokens_is(t, j, "ground") ||
+			   tokens_is(t, j, "corner")) {
 			if (!is_noun_start(t, j + 1))
 				head = j;
 		} else if ((head < 0 && (c == CLOSED_DETERMINER || c == CLOSED_NUMBER ||
 						c == CLOSED_ORDINAL || c == CLOSED_ADVERB)) ||
-			   (head >= 0 && is(t, j, "'s") && is_open(t, j + 1) && !is_verb(t, j + 1))) {
+			   (head >= 0 && tokens_is(t, j, "'s") && is_open(t, j + 1) && !is_verb(t, j + 1))) {
 			continue;
 		} else if (head < 0 && is_adjective_place(t, j)) {
 			/* an adjective only where a noun follows at once */
 			int k = j + 1;
-			while (k < t->n && (is_adjective_place(t, k) || class_of(t, k) == CLOSED_ATTRIBUTE ||
-						   class_of(t, k) == CLOSED_NUMBER))
+			while (k < t->n &&
+				(is_adjective_place(t, k) || tokens_class(t, k) == CLOSED_ATTRIBUTE ||
+					tokens_class(t, k) == CLOSED_NUMBER))
 				k++;
-			if (!is_noun_start(t, k) || t->word[k].before || is(t, j + 1, "of"))
+			if (!is_noun_start(t, k) || t->word[k].before || tokens_is(t, j + 1, "of"))
 				break;
 		} else {
 			break;
@@ -170,7 +162,7 @@ static enum word_role role_of_phrase(struct state *s, int *hang)
 
 static int is_generic(const struct tokens *t, int i)
 {
-	return class_of(t, i) == CLOSED_GENERIC;
+	return tokens_class(t, i) == CLOSED_GENERIC;
 }
 
 /* The phrase from i to end with its head; returns end. */
@@ -182,16 +174,16 @@ static int take_phrase(struct state *s, int i, int head, int end)
 
 	/* "the one", once the target is known, is the target again */
 	if (role == ROLE_TARGET && s->found && !is_generic(t, head) && s->with < 0 && !t->word[i].before &&
-		i > 0 && class_of(t, i - 1) != CLOSED_BE)
+		i > 0 && tokens_class(t, i - 1) != CLOSED_BE)
 		role = ROLE_NONE;
 	set(s, head, role, hang);
 	of = role == ROLE_TARGET ? ROOT : head;
 	for (int j = i; j < end; j++) {
 		if (j == head)
 			continue;
-		if (class_of(t, j) == CLOSED_SIZE || class_of(t, j) == CLOSED_PLACE)
+		if (tokens_class(t, j) == CLOSED_SIZE || tokens_class(t, j) == CLOSED_PLACE)
 			set_predicate(s, j, of, (enum parse_relation)relation_of(t, j));
-		else if (class_of(t, j) == CLOSED_ATTRIBUTE)
+		else if (tokens_class(t, j) == CLOSED_ATTRIBUTE)
 			set(s, j, ROLE_ATTRIBUTE, of);
 		else if (is_open(t, j))
 			set(s, j,
@@ -208,7 +200,7 @@ static int take_phrase(struct state *s, int i, int head, int end)
 		s->has = head;
 	/* "the desk and the chair": another anchor of the same */
 	if (!(role == ROLE_ANCHOR && end < t->n &&
-		    (class_of(t, end) == CLOSED_CONJUNCTION || t->word[end].before) &&
+		    (tokens_class(t, end) == CLOSED_CONJUNCTION || t->word[end].before) &&
 		    s->a->word[s->predicate].relation == PARSE_BETWEEN))
 		s->predicate = -1;
 	return end;
@@ -221,22 +213,25 @@ static int place_at(const struct state *s, int i, int *end)
 	int best = -1, j;
 
 	for (j = i; j < t->n; j++) {
-		int c = class_of(t, j);
+		int c = tokens_class(t, j);
 		if (j > i && t->word[j].before)
 			break;
 		if (c == CLOSED_PLACE || (c == CLOSED_SIZE && best < 0)) {
-			if (best < 0 || is_weak(t, best) || is(t, best, "right") || is(t, best, "far") ||
-				is(t, best, "away") || is(t, best, "close"))
+			if (best < 0 || is_weak(t, best) || tokens_is(t, best, "right") ||
+				tokens_is(t, best, "far") || tokens_is(t, best, "away") ||
+				tokens_is(t, best, "close"))
 				best = j;
-		} else if (!(c == CLOSED_ADVERB || c == CLOSED_PREPOSITION || is(t, j, "the") ||
-				   is(t, j, "its") || is(t, j, "hand") || is(t, j, "side") ||
-				   is(t, j, "end") || is(t, j, "it"))) {
+		} else if (!(c == CLOSED_ADVERB || c == CLOSED_PREPOSITION || tokens_is(t, j, "the") ||
+				   tokens_is(t, j, "its") || tokens_is(t, j, "hand") ||
+				   tokens_is(t, j, "side") || tokens_is(t, j, "end") ||
+				   tokens_is(t, j, "it"))) {
 			break;
 		}
-		if (best >= 0 && is_weak(t, best) && (is(t, j + 1, "the") || is(t, j + 1, "its")) &&
-			!(class_of(t, j + 2) == CLOSED_PLACE &&
-				(!is_noun_start(t, j + 3) || is(t, j + 3, "hand") || is(t, j + 3, "side") ||
-					is(t, j + 3, "end")))) {
+		if (best >= 0 && is_weak(t, best) &&
+			(tokens_is(t, j + 1, "the") || tokens_is(t, j + 1, "its")) &&
+			!(tokens_class(t, j + 2) == CLOSED_PLACE &&
+				(!is_noun_start(t, j + 3) || tokens_is(t, j + 3, "hand") ||
+					tokens_is(t, j + 3, "side") || tokens_is(t, j + 3, "end")))) {
 			j++;
 			break;
 		}
@@ -250,9 +245,10 @@ static int place_at(const struct state *s, int i, int *end)
 static int points_back(const struct tokens *t, int i, int end)
 {
 	for (int j = i; j < end; j++)
-		if (is(t, j, "its") || is(t, j, "it") || is(t, j, "them") || is(t, j, "their"))
+		if (tokens_is(t, j, "its") || tokens_is(t, j, "it") || tokens_is(t, j, "them") ||
+			tokens_is(t, j, "their"))
 			return 1;
-	if (is(t, end, "it") || is(t, end, "them"))
+	if (tokens_is(t, end, "it") || tokens_is(t, end, "them"))
 		return 1;
 	return end >= t->n || t->word[end].before;
 }
@@ -263,7 +259,7 @@ static int take_place(struct state *s, int i)
 	int end, main = place_at(s, i, &end);
 	enum parse_relation r = (enum parse_relation)relation_of(t, main);
 
-	if (is(t, main, "top") && is_weak(t, main - 1))
+	if (tokens_is(t, main, "top") && is_weak(t, main - 1))
 		r = PARSE_ON;
 	if (s->has >= 0 && points_back(t, i, end)) {
 		/* "with the ball on its left": the figure is right of the ball */
@@ -280,10 +276,11 @@ static int take_place(struct state *s, int i)
 	s->predicate = main;
 	/* "the larger of the two cups": the noun to come is the target's */
 	if (end >= t->n || t->word[end].before ||
-		(!s->found && is(t, main + 1, "of") && closed_words[t->word[main].closed].value))
+		(!s->found && tokens_is(t, main + 1, "of") && closed_words[t->word[main].closed].value))
 		s->predicate = -1;
 	if ((r == PARSE_INSIDE || r == PARSE_ON) && end < t->n && s->predicate >= 0 &&
-		(is(t, end, "wall") || is(t, end, "floor") || is(t, end, "ground") || is(t, end, "corner"))) {
+		(tokens_is(t, end, "wall") || tokens_is(t, end, "floor") || tokens_is(t, end, "ground") ||
+			tokens_is(t, end, "corner"))) {
 		set(s, main, ROLE_NONE, ROOT);
 		set_predicate(s, end, s->figure, (enum parse_relation)relation_of(t, end));
 		s->predicate = -1;
@@ -305,16 +302,16 @@ static void take_with(struct state *s, int i, int negated)
 static int step(struct state *s, int i)
 {
 	const struct tokens *t = s->t;
-	int c = class_of(t, i), end, head;
+	int c = tokens_class(t, i), end, head;
 
 	if (t->word[i].before == PAUSE_STOP) {
 		s->figure = ROOT;
 		s->predicate = s->has = -1;
 	}
 	if (c == CLOSED_NEGATION) {
-		if (is(t, i, "without"))
+		if (tokens_is(t, i, "without"))
 			return take_with(s, i, 1), i + 1;
-		if (is(t, i, "no") && s->with >= 0 && s->predicate == s->with)
+		if (tokens_is(t, i, "no") && s->with >= 0 && s->predicate == s->with)
 			s->a->word[s->with].negated = 1;
 		else
 			s->negated = 1;
@@ -324,13 +321,14 @@ static int step(struct state *s, int i)
 		return s->except = 1, i + 1;
 	if (c == CLOSED_WITH || (c == CLOSED_HAVE && (s->found || s->figure != ROOT)))
 		return take_with(s, i, 0), i + 1;
-	if (c == CLOSED_VIEW && (is(t, i, "facing") || is(t, i, "looking")) && !(i && is(t, i - 1, "is")) &&
-		(i == 0 || t->word[i].before || is(t, i - 1, "when"))) {
+	if (c == CLOSED_VIEW && (tokens_is(t, i, "facing") || tokens_is(t, i, "looking")) &&
+		!(i && tokens_is(t, i - 1, "is")) &&
+		(i == 0 || t->word[i].before || tokens_is(t, i - 1, "when"))) {
 		s->view = 1;
 		return i + 1;
 	}
 	if (c == CLOSED_CONJUNCTION && s->figure == ROOT && s->found)
-		s->also = !(class_of(t, i + 1) == CLOSED_PLACE || class_of(t, i + 1) == CLOSED_BE);
+		s->also = !(tokens_class(t, i + 1) == CLOSED_PLACE || tokens_class(t, i + 1) == CLOSED_BE);
 	head = phrase_at(s, i, &end);
 	if (head >= 0)
 		return take_phrase(s, i, head, end);

@@ -18,25 +18,15 @@ struct build {
 	int from;		    /* the place word that an ordinal counts from, or -1 */
 };
 
-static int class_of(const struct tokens *t, int i)
-{
-	return i < 0 || i >= t->n || t->word[i].closed < 0 ? -1 : (int)closed_words[t->word[i].closed].class;
-}
-
 static int value_of(const struct tokens *t, int i)
 {
 	return closed_words[t->word[i].closed].value;
 }
 
-static int is(const struct tokens *t, int i, const char *word)
-{
-	return i >= 0 && i < t->n && !strcmp(t->word[i].text, word);
-}
-
 static int is_any(const struct tokens *t, int i, const char *const *words)
 {
 	for (; *words; words++)
-		if (is(t, i, *words))
+		if (tokens_is(t, i, *words))
 			return 1;
 	return 0;
 }
@@ -50,8 +40,8 @@ static int tail(const char *w, const char *end)
 
 static int is_plural(const struct tokens *t, int i)
 {
-	return strcmp(t->word[i].text, t->word[i].lemma) != 0 && !is(t, i, "glasses") &&
-	       !is(t, i, "scissors");
+	return strcmp(t->word[i].text, t->word[i].lemma) != 0 && !tokens_is(t, i, "glasses") &&
+	       !tokens_is(t, i, "scissors");
 }
 
 static int add_words(struct build *b)
@@ -84,7 +74,7 @@ static int add_phrases(struct build *b)
 		b->phrase_of[i] = r == ROLE_TARGET ? 0 : role_is_phrase(r) ? n++ : -1;
 		/* the first noun that names a kind is the target's */
 		if (r == ROLE_TARGET &&
-			(b->noun < 0 || (class_of(b->t, b->noun) >= 0 && class_of(b->t, i) < 0)))
+			(b->noun < 0 || (tokens_class(b->t, b->noun) >= 0 && tokens_class(b->t, i) < 0)))
 			b->noun = i;
 	}
 	p->phrases = mem_zalloc((size_t)n, sizeof *p->phrases, "phrases", b->e);
@@ -104,8 +94,8 @@ static int phrase_under(const struct build *b, int head)
 /* A head that names no kind of thing is none. */
 static int names_kind(const struct build *b, int i)
 {
-	return class_of(b->t, i) != CLOSED_GENERIC && class_of(b->t, i) != CLOSED_NUMBER &&
-	       class_of(b->t, i) != CLOSED_RELATIVE && class_of(b->t, i) != CLOSED_DETERMINER;
+	return tokens_class(b->t, i) != CLOSED_GENERIC && tokens_class(b->t, i) != CLOSED_NUMBER &&
+	       tokens_class(b->t, i) != CLOSED_RELATIVE && tokens_class(b->t, i) != CLOSED_DETERMINER;
 }
 
 /* Words that only lead to one that says something: "of red colour", "a piece of fruit", "mid-sized"; but
@@ -115,8 +105,8 @@ static int says_nothing(const struct tokens *t, int i)
 	static const char *const words[] = {
 		"'s", "side", "hand", "end", "colour", "color", "piece", "sized", NULL};
 
-	return is_any(t, i, words) ||
-	       ((is(t, i, "coloured") || is(t, i, "colored")) && i && colour_word(t->word[i - 1].text) >= 0);
+	return is_any(t, i, words) || ((tokens_is(t, i, "coloured") || tokens_is(t, i, "colored")) && i &&
+					      colour_word(t->word[i - 1].text) >= 0);
 }
 
 static void widen(struct parse_span *s, struct parse_span by)
@@ -162,8 +152,9 @@ static int name_ones(struct build *b)
 
 	for (int i = 0; i < b->t->n; i++) {
 		if (b->phrase_of[i] <= 0 ||
-			!(is(b->t, i, "one") || is(b->t, i, "ones") || is(b->t, i, "twin") ||
-				is(b->t, i, "others") || class_of(b->t, i) == CLOSED_NUMBER))
+			!(tokens_is(b->t, i, "one") || tokens_is(b->t, i, "ones") ||
+				tokens_is(b->t, i, "twin") || tokens_is(b->t, i, "others") ||
+				tokens_class(b->t, i) == CLOSED_NUMBER))
 			continue;
 		for (int k = 0; k < noun->n; k++)
 			if (parse_list_add(&b->p->phrases[b->phrase_of[i]].noun, noun->item[k], b->e))
@@ -188,9 +179,9 @@ static int fill_phrases(struct build *b)
 		if (add_noun(b, i, f))
 			return -1;
 		f->viewer = b->phrase_of[i] && is_any(b->t, i, viewers);
-		f->scene = is(b->t, i, "room") || is(b->t, i, "scene") ||
-			   (b->phrase_of[i] && is_any(b->t, i, places) && is(b->t, i - 1, "the") &&
-				   is(b->t, i - 2, "of"));
+		f->scene = tokens_is(b->t, i, "room") || tokens_is(b->t, i, "scene") ||
+			   (b->phrase_of[i] && is_any(b->t, i, places) && tokens_is(b->t, i - 1, "the") &&
+				   tokens_is(b->t, i - 2, "of"));
 	}
 	for (int i = 0; i < b->t->n; i++) {
 		enum word_role r = b->a->word[i].role;
@@ -216,7 +207,7 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	static const char *const more[] = {"more", "further", "farther", NULL};
 	const struct tokens *t = b->t;
 	const char *w = t->word[i].text;
-	int c = class_of(t, i);
+	int c = tokens_class(t, i);
 	enum parse_relation r = b->a->word[i].relation;
 
 	/* "on top of it" compares nothing */
@@ -229,7 +220,7 @@ static enum parse_degree degree_of(const struct build *b, int i)
 			return (enum parse_degree)value_of(t, i);
 	} else if (tail(w, "est") || tail(w, "most")) {
 		return PARSE_MOST;
-	} else if (tail(w, "er") && is(t, i + 1, "than")) {
+	} else if (tail(w, "er") && tokens_is(t, i + 1, "than")) {
 		return PARSE_MORE;
 	}
 	for (int j = i - 1; j >= 0 && j >= i - 3; j--) {
@@ -240,14 +231,14 @@ static enum parse_degree degree_of(const struct build *b, int i)
 		if (is_any(t, j, more))
 			return PARSE_MORE;
 	}
-	if (is(t, i + 1, "most"))
+	if (tokens_is(t, i + 1, "most"))
 		return PARSE_MOST;
 	return PARSE_PLAIN;
 }
 
 static int is_filler(const struct build *b, int i)
 {
-	int c = class_of(b->t, i);
+	int c = tokens_class(b->t, i);
 
 	return i >= 0 && i < b->t->n && b->a->word[i].role == ROLE_NONE &&
 	       (c == CLOSED_ADVERB || c == CLOSED_PREPOSITION || c == CLOSED_PLACE);
@@ -258,7 +249,7 @@ static struct parse_span predicate_span(const struct build *b, int i)
 	int first = i, last = i;
 
 	while (!b->t->word[first].before &&
-		(is_filler(b, first - 1) || (is(b->t, first - 1, "the") && is_filler(b, first - 2))))
+		(is_filler(b, first - 1) || (tokens_is(b->t, first - 1, "the") && is_filler(b, first - 2))))
 		first--;
 	while (is_filler(b, last + 1) && !b->t->word[last + 1].before)
 		last++;
@@ -267,7 +258,7 @@ static struct parse_span predicate_span(const struct build *b, int i)
 
 static int is_nothing(const struct tokens *t, int i)
 {
-	return is(t, i, "nothing") || is(t, i, "nobody") || is(t, i, "none");
+	return tokens_is(t, i, "nothing") || tokens_is(t, i, "nobody") || tokens_is(t, i, "none");
 }
 
 /* The clause of predicate i with the anchors `from` to `end` of those that it has; all where end is -1. */
@@ -359,14 +350,15 @@ static int phrase_start(const struct build *b, int head)
 	int i = head;
 
 	while (i > 0 && !b->t->word[i].before) {
-		int c = class_of(b->t, i - 1);
+		int c = tokens_class(b->t, i - 1);
 		enum word_role r = b->a->word[i - 1].role;
 		if (!(r == ROLE_NAME || r == ROLE_ATTRIBUTE || c == CLOSED_DETERMINER || c == CLOSED_NUMBER ||
 			    c == CLOSED_ORDINAL || c == CLOSED_SIZE || c == CLOSED_ATTRIBUTE ||
 			    c == CLOSED_ADVERB ||
 			    (c == CLOSED_PLACE && r == ROLE_PREDICATE &&
 				    b->a->word[i - 1].head == b->a->word[head].head) ||
-			    (is(b->t, i - 1, "of") && i > 1 && class_of(b->t, i - 2) == CLOSED_NUMBER)))
+			    (tokens_is(b->t, i - 1, "of") && i > 1 &&
+				    tokens_class(b->t, i - 2) == CLOSED_NUMBER)))
 			break;
 		i--;
 	}
@@ -379,19 +371,19 @@ static void count_phrase(struct build *b, int head, struct parse_phrase *f)
 	int start = phrase_start(b, head), number = 0, of;
 
 	for (int i = start; i <= head; i++)
-		if (class_of(t, i) == CLOSED_NUMBER && (!number || value_of(t, i) > 0))
+		if (tokens_class(t, i) == CLOSED_NUMBER && (!number || value_of(t, i) > 0))
 			number = value_of(t, i);
-	if (is(t, head, "everything") || is(t, head, "anything"))
+	if (tokens_is(t, head, "everything") || tokens_is(t, head, "anything"))
 		number = PARSE_ALL;
 	if (!number && names_kind(b, head) && is_plural(t, head))
 		number = PARSE_SEVERAL;
-	if (!number && is(t, head, "ones"))
+	if (!number && tokens_is(t, head, "ones"))
 		number = PARSE_SEVERAL;
 	f->count = number ? number : PARSE_ONE;
 	/* "of the two cups", "which of the cups", unless all of them are meant */
 	of = start - 1;
-	if (of >= 0 && (is(t, of, "of") || is(t, of, "between")) && is(t, of, "of") &&
-		f->count != PARSE_ONE && class_of(t, of - 1) != CLOSED_NUMBER && f == &b->p->phrases[0]) {
+	if (of >= 0 && (tokens_is(t, of, "of") || tokens_is(t, of, "between")) && tokens_is(t, of, "of") &&
+		f->count != PARSE_ONE && tokens_class(t, of - 1) != CLOSED_NUMBER && f == &b->p->phrases[0]) {
 		f->group = number;
 		f->count = PARSE_ONE;
 	}
@@ -405,8 +397,9 @@ static void find_group(struct build *b)
 	if (f->count == PARSE_ONE || f->count == PARSE_ALL || b->noun < 0)
 		return;
 	for (int i = b->noun + 1; i < b->t->n; i++)
-		if ((b->a->word[i].role == ROLE_TARGET && !is(b->t, i, "ones") && !is_plural(b->t, i)) ||
-			(is(b->t, i, "one") && b->a->word[i].role == ROLE_NONE)) {
+		if ((b->a->word[i].role == ROLE_TARGET && !tokens_is(b->t, i, "ones") &&
+			    !is_plural(b->t, i)) ||
+			(tokens_is(b->t, i, "one") && b->a->word[i].role == ROLE_NONE)) {
 			f->group = f->count;
 			f->count = PARSE_ONE;
 			return;
@@ -427,7 +420,7 @@ static enum parse_relation end_of(const struct tokens *t, int i)
 {
 	enum parse_relation r = PARSE_OTHER;
 
-	if (class_of(t, i) == CLOSED_PLACE)
+	if (tokens_class(t, i) == CLOSED_PLACE)
 		r = (enum parse_relation)closed_words[t->word[i].closed].relation;
 	return r <= PARSE_BELOW ? r : PARSE_OTHER;
 }
@@ -438,14 +431,15 @@ static enum parse_relation counted_from(struct build *b)
 	const struct tokens *t = b->t;
 
 	for (int i = 0; i < t->n; i++) {
-		if (end_of(t, i) != PARSE_OTHER && is(t, i + 1, "to") && end_of(t, i + 2) != PARSE_OTHER)
+		if (end_of(t, i) != PARSE_OTHER && tokens_is(t, i + 1, "to") &&
+			end_of(t, i + 2) != PARSE_OTHER)
 			return end_of(t, i);
-		if (!is(t, i, "from") && !is(t, i, "at"))
+		if (!tokens_is(t, i, "from") && !tokens_is(t, i, "at"))
 			continue;
 		int j = i + 1;
-		while (is(t, j, "the") || is(t, j, "very") || is(t, j, "far"))
+		while (tokens_is(t, j, "the") || tokens_is(t, j, "very") || tokens_is(t, j, "far"))
 			j++;
-		if (end_of(t, j) != PARSE_OTHER && !is(t, j + 1, "of")) {
+		if (end_of(t, j) != PARSE_OTHER && !tokens_is(t, j + 1, "of")) {
 			b->from = b->a->word[j].role == ROLE_PREDICATE ? j : b->from;
 			return end_of(t, j);
 		}
@@ -459,20 +453,24 @@ static void find_ordinals(struct build *b)
 
 	for (int i = 0; i < t->n; i++) {
 		int value = 0, owner = 0;
-		if (class_of(t, i) == CLOSED_ORDINAL)
+		if (tokens_class(t, i) == CLOSED_ORDINAL)
 			value = value_of(t, i);
-		else if (is(t, i, "number") && i + 1 < t->n)
-			value = is(t, i + 1, "one") ? 1
-				: class_of(t, i + 1) == CLOSED_NUMBER && value_of(t, i + 1) > 0
+		else if (tokens_is(t, i, "number") && i + 1 < t->n)
+			value = tokens_is(t, i + 1, "one") ? 1
+				: tokens_class(t, i + 1) == CLOSED_NUMBER && value_of(t, i + 1) > 0
 					? value_of(t, i + 1)
 					: 0;
 		if (!value)
 			continue;
-		for (int j = i + 1; j < t->n && j <= i + 4 && !t->word[j].before; j++)
-			if (b->phrase_of[j] >= 0) {
-				owner = b->phrase_of[j];
-				break;
-			}
+		for (int j = i + 1; j < t->n && j <= i + 4 && !t->word[j].before; j++) {
+			/* "second nearest to the door": the figure is counted */
+			const int is_predicate = b->a->word[j].role == ROLE_PREDICATE;
+			if (!is_predicate && b->phrase_of[j] < 0)
+				continue;
+			owner = is_predicate ? phrase_under(b, b->a->word[j].head) : b->phrase_of[j];
+			break;
+		}
+		owner = owner < 0 ? 0 : owner;
 		b->p->phrases[owner].ordinal = value;
 		b->p->phrases[owner].from = counted_from(b);
 	}
@@ -487,11 +485,12 @@ static void find_view(struct build *b)
 		b->p->view_phrase = b->phrase_of[i];
 		b->p->view = PARSE_VIEW_FACING;
 		for (int j = i - 1; j >= 0 && j >= i - 5 && !b->t->word[j + 1].before; j--) {
-			if (is(b->t, j, "facing") || is(b->t, j, "face") || is(b->t, j, "towards") ||
-				is(b->t, j, "toward"))
+			if (tokens_is(b->t, j, "facing") || tokens_is(b->t, j, "face") ||
+				tokens_is(b->t, j, "towards") || tokens_is(b->t, j, "toward"))
 				break;
-			if (is(b->t, j, "from") || is(b->t, j, "through") || is(b->t, j, "entering") ||
-				is(b->t, j, "enter") || is(b->t, j, "standing") || is(b->t, j, "in"))
+			if (tokens_is(b->t, j, "from") || tokens_is(b->t, j, "through") ||
+				tokens_is(b->t, j, "entering") || tokens_is(b->t, j, "enter") ||
+				tokens_is(b->t, j, "standing") || tokens_is(b->t, j, "in"))
 				b->p->view = PARSE_VIEW_FROM;
 		}
 		return;
@@ -514,7 +513,10 @@ int parse_build(struct parse *p, const struct analysis *a, const struct tokens *
 		return -1;
 	}
 	find_view(&b);
-	parse_settle(p);
 	p->confidence = t->n ? 1 - (double)p->unexplained.n / t->n : 0;
+	if (parse_settle(p, e)) {
+		parse_free(p);
+		return -1;
+	}
 	return 0;
 }

@@ -1,5 +1,5 @@
 /* What a parse still has wrong once it is built, and its own words tell: of what group one thing is meant,
- * and what the thing is compared with. */
+ * what the thing is compared with, and from where one counts. */
 #include "lang/analysis.h"
 #include "lang/closed.h"
 
@@ -74,11 +74,61 @@ static void settle_comparison(struct parse *p, struct parse_phrase *f, struct pa
 	c->anchors.n = 0;
 }
 
-void parse_settle(struct parse *p)
+/* "the tallest but one" is the second tallest; "of all the jars the tallest" is one jar. */
+static void settle_superlative(const struct parse *p, struct parse_phrase *f)
+{
+	for (int k = 0; k < f->clauses.n; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		if (c->degree != PARSE_MOST || c->words.n < 1)
+			continue;
+		for (int w = c->words.item[0] + 1; w + 1 < p->word_count; w++)
+			if (is(p, w, "but") && class_of(p, w + 1) == CLOSED_NUMBER)
+				f->ordinal = 1 + closed_words[closed_find(p->words[w + 1].text)].value;
+			else if (is(p, w, "but") && is(p, w + 1, "one"))
+				f->ordinal = 2;
+		for (int w = 0; w + 1 < c->words.item[0] && f->count == PARSE_ALL; w++)
+			if (is(p, w, "of") && is(p, w + 1, "all")) {
+				f->count = PARSE_ONE;
+				f->group = PARSE_SEVERAL;
+			}
+	}
+}
+
+/* "from the lamp, the farthest jar" is farthest from the lamp, and "starting from the lamp, the second jar"
+ * second nearest to it. */
+static int settle_view(struct parse *p, struct parse_phrase *f, struct err *e)
+{
+	struct parse_clause *grown, nearest = {.relation = PARSE_NEAR, .degree = PARSE_MOST};
+
+	if (p->view != PARSE_VIEW_FROM || p->view_phrase < 1)
+		return 0;
+	for (int k = 0; k < f->clauses.n; k++) {
+		struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		if ((c->relation == PARSE_NEAR || c->relation == PARSE_FAR) && c->degree != PARSE_PLAIN &&
+			!c->anchors.n)
+			return parse_list_add(&c->anchors, p->view_phrase, e);
+	}
+	if (!f->ordinal || f->from != PARSE_OTHER)
+		return 0;
+	grown = realloc(p->clauses, sizeof *grown * (size_t)(p->clause_count + 1));
+	if (!grown)
+		return err_set(e, ERR_SYSTEM, "parse: out of memory");
+	p->clauses = grown;
+	nearest.span = p->phrases[p->view_phrase].span;
+	p->clauses[p->clause_count++] = nearest;
+	return parse_list_add(&f->clauses, p->clause_count - 1, e) ||
+			       parse_list_add(&p->clauses[p->clause_count - 1].anchors, p->view_phrase, e)
+		       ? -1
+		       : 0;
+}
+
+int parse_settle(struct parse *p, struct err *e)
 {
 	struct parse_phrase *f = &p->phrases[0];
 
 	settle_ordinal(p, f);
 	for (int k = 0; k < f->clauses.n; k++)
 		settle_comparison(p, f, &p->clauses[f->clauses.item[k]]);
+	settle_superlative(p, f);
+	return settle_view(p, f, e);
 }

@@ -14,7 +14,7 @@ static int learnt_analyse(struct analysis *a, const struct tokens *t, const stru
 	struct parser_features features[TOKENS_MOST];
 	float *vectors;
 
-	if (parser_batch_make(&b, t->n, 1, w->width, e))
+	if (parser_batch_make(&b, t->n, 1, w, e))
 		return -1;
 	vectors = mem_alloc((size_t)t->n, sizeof *vectors * (size_t)w->width, "word vectors", e);
 	if (vectors) {

@@ -52,8 +52,8 @@ static int state_make(struct course_state *s, int width, size_t count, size_t n,
 	s->order = mem_alloc(n, sizeof *s->order, "order", e);
 	s->lessons = mem_alloc((size_t)batch, sizeof *s->lessons, "lessons", e);
 	if (!s->moments || !s->order || !s->lessons || parser_weights_make(&s->gradient, width, e) ||
-		parser_batch_make(&s->batch, batch * TOKENS_MOST, batch, width, e) ||
-		parser_batch_make(&s->scratch, batch * TOKENS_MOST, batch, width, e))
+		parser_batch_make(&s->batch, batch * TOKENS_MOST, batch, &s->gradient, e) ||
+		parser_batch_make(&s->scratch, batch * TOKENS_MOST, batch, &s->gradient, e))
 		return -1;
 	s->batch.keep = mem_alloc((size_t)batch * TOKENS_MOST * NET_HIDDEN, sizeof(float), "dropout", e);
 	return s->batch.keep ? 0 : -1;

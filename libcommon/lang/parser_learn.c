@@ -1,6 +1,7 @@
 #include "lang/parser_learn.h"
 
 #include "nn/linear.h"
+#include "nn/loss.h"
 
 #include <math.h>
 #include <string.h>
@@ -28,13 +29,9 @@ void parser_weights_begin(struct parser_weights *w, struct rng *r)
 /* Cross-entropy of n logits against `right`; d gets its gradient times `scale`. */
 static double entropy(const float *x, int n, int right, float *d, double scale)
 {
-	float most = x[0];
-	double sum = 0;
+	float most;
+	const double sum = loss_exp_sum(x, (size_t)n, &most);
 
-	for (int i = 1; i < n; i++)
-		most = x[i] > most ? x[i] : most;
-	for (int i = 0; i < n; i++)
-		sum += exp((double)(x[i] - most));
 	for (int i = 0; i < n; i++)
 		d[i] += (float)(scale * (exp((double)(x[i] - most)) / sum - (i == right)));
 	return scale * (most + log(sum) - x[right]);

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "nn/linear.h"
+#include "nn/loss.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -74,24 +75,32 @@ int parser_weights_make(struct parser_weights *w, int width, struct err *e)
 
 void parser_weights_free(struct parser_weights *w)
 {
+	if (w->next)
+		parser_weights_free(w->next);
+	free(w->next);
 	free(w->slab);
 	*w = (struct parser_weights){0};
 }
 
-int parser_batch_make(struct parser_batch *b, int capacity, int sentences, int width, struct err *e)
+int parser_batch_make(
+	struct parser_batch *b, int capacity, int sentences, const struct parser_weights *w, struct err *e)
 {
-	size_t n = (size_t)capacity;
+	size_t n = (size_t)capacity, members = 0;
 	int bad = 0;
+
+	for (const struct parser_weights *m = w; m; m = m->next)
+		members++;
 
 	*b = (struct parser_batch){.capacity = capacity};
 	struct {
 		float **at;
 		size_t columns;
-	} floats[] = {{&b->x, (size_t)width}, {&b->h[0], NET_HIDDEN}, {&b->h[1], NET_HIDDEN},
+	} floats[] = {{&b->x, (size_t)w->width}, {&b->h[0], NET_HIDDEN}, {&b->h[1], NET_HIDDEN},
 		{&b->h[2], NET_HIDDEN}, {&b->h[3], NET_HIDDEN}, {&b->gathered[0], NET_BLOCKS * NET_HIDDEN},
 		{&b->gathered[1], NET_BLOCKS * NET_HIDDEN}, {&b->gathered[2], NET_BLOCKS * NET_HIDDEN},
 		{&b->grown[0], NET_HIDDEN}, {&b->grown[1], NET_HIDDEN}, {&b->grown[2], NET_HIDDEN},
-		{&b->out, NET_OUT}, {&b->dependent, NET_ARC}, {&b->head, NET_ARC}};
+		{&b->out, NET_OUT}, {&b->own, NET_OUT}, {&b->dependent, members * NET_ARC},
+		{&b->head, members * NET_ARC}};
 	for (size_t i = 0; i < sizeof floats / sizeof *floats && !bad; i++)
 		bad = !(*floats[i].at = mem_zalloc(n, floats[i].columns * sizeof(float), "parser", e));
 	if (!bad)
@@ -113,6 +122,7 @@ void parser_batch_free(struct parser_batch *b)
 		free(b->h[l]);
 	free(b->x);
 	free(b->out);
+	free(b->own);
 	free(b->dependent);
 	free(b->head);
 	free(b->features);
@@ -221,12 +231,11 @@ static void gather(const struct parser_batch *b, int layer)
 	}
 }
 
-void parser_forward(const struct parser_weights *w, struct parser_batch *b)
+/* One member: out (rows), and the arcs of that member. */
+static void forward(const struct parser_weights *w, struct parser_batch *b, size_t member, float *out)
 {
-	size_t rows = (size_t)b->rows;
+	const size_t rows = (size_t)b->rows, at = member * (size_t)b->capacity * NET_ARC;
 
-	if (!rows)
-		return;
 	embed(w, b);
 	for (int l = 0; l < NET_LAYERS; l++) {
 		gather(b, l);
@@ -236,9 +245,26 @@ void parser_forward(const struct parser_weights *w, struct parser_batch *b)
 			b->h[l + 1][i] = b->h[l][i] + (b->grown[l][i] > 0 ? b->grown[l][i] : 0);
 	}
 	const float *h = b->h[NET_LAYERS];
-	linear_forward(b->out, h, w->out, w->out_bias, rows, NET_HIDDEN, NET_OUT);
-	linear_forward(b->dependent, h, w->dependent, w->dependent_bias, rows, NET_HIDDEN, NET_ARC);
-	linear_forward(b->head, h, w->head, w->head_bias, rows, NET_HIDDEN, NET_ARC);
+	linear_forward(out, h, w->out, w->out_bias, rows, NET_HIDDEN, NET_OUT);
+	linear_forward(b->dependent + at, h, w->dependent, w->dependent_bias, rows, NET_HIDDEN, NET_ARC);
+	linear_forward(b->head + at, h, w->head, w->head_bias, rows, NET_HIDDEN, NET_ARC);
+}
+
+void parser_forward(const struct parser_weights *w, struct parser_batch *b)
+{
+	const size_t n = (size_t)b->rows * NET_OUT;
+	size_t members = 1;
+
+	if (!n)
+		return;
+	forward(w, b, 0, b->out);
+	for (w = w->next; w; w = w->next, members++) {
+		forward(w, b, members, b->own);
+		for (size_t i = 0; i < n; i++)
+			b->out[i] += b->own[i];
+	}
+	for (size_t i = 0; i < n && members > 1; i++)
+		b->out[i] /= (float)members;
 }
 
 int parser_distance(int from, int to)
@@ -249,16 +275,18 @@ int parser_distance(int from, int to)
 	return d + most;
 }
 
-void parser_arcs(
-	const struct parser_weights *w, const struct parser_batch *b, int sentence, int i, float *scores)
+/* Adds a member's scores, but begins with the first one's. */
+static void score_arcs(const struct parser_weights *w, const struct parser_batch *b, size_t member,
+	int sentence, int i, float *scores)
 {
-	int first = b->start[sentence], n = b->start[sentence + 1] - first,
-	    grammar = b->features[first + i].head;
-	const float *dependent = b->dependent + (size_t)(first + i) * NET_ARC;
+	const size_t at = member * (size_t)b->capacity * NET_ARC;
+	const int first = b->start[sentence], n = b->start[sentence + 1] - first,
+		  grammar = b->features[first + i].head;
+	const float *dependent = b->dependent + at + (size_t)(first + i) * NET_ARC;
 	const float scale = 1 / sqrtf(NET_ARC);
 
 	for (int j = -1; j < n; j++) {
-		const float *head = j < 0 ? w->root : b->head + (size_t)(first + j) * NET_ARC;
+		const float *head = j < 0 ? w->root : b->head + at + (size_t)(first + j) * NET_ARC;
 		float sum = 0;
 		for (int k = 0; k < NET_ARC; k++)
 			sum += dependent[k] * head[k];
@@ -266,20 +294,21 @@ void parser_arcs(
 		sum += j < 0 ? w->root[NET_ARC] : w->distance[parser_distance(i, j)];
 		if (grammar == j)
 			sum += w->agree[j < 0];
-		scores[j + 1] = sum;
+		scores[j + 1] = member ? scores[j + 1] + sum : sum;
 	}
 }
 
-static double log_sum(const float *x, int n)
+void parser_arcs(
+	const struct parser_weights *w, const struct parser_batch *b, int sentence, int i, float *scores)
 {
-	float most = x[0];
-	double sum = 0;
+	const int n = b->start[sentence + 1] - b->start[sentence];
+	float members = 1;
 
-	for (int i = 1; i < n; i++)
-		most = x[i] > most ? x[i] : most;
-	for (int i = 0; i < n; i++)
-		sum += exp((double)(x[i] - most));
-	return most + log(sum);
+	score_arcs(w, b, 0, sentence, i, scores);
+	for (w = w->next; w; w = w->next, members++)
+		score_arcs(w, b, (size_t)members, sentence, i, scores);
+	for (int j = 0; j <= n && members > 1; j++)
+		scores[j] /= members;
 }
 
 static int best_of(const float *x, int n)
@@ -305,7 +334,7 @@ static double role_log(const struct parser_batch *b, int sentence, int i, enum w
 {
 	const float *out = b->out + (size_t)(b->start[sentence] + i) * NET_OUT;
 
-	return (double)out[r] - log_sum(out, ROLES);
+	return (double)out[r] - loss_log_sum_exp(out, ROLES);
 }
 
 static void make_predicate(const struct parser_batch *b, int sentence, struct analysis *a, int i)
@@ -349,7 +378,7 @@ static void hang_anchors(const struct parser_weights *w, const struct parser_bat
 		if (a->word[i].role != ROLE_ANCHOR)
 			continue;
 		parser_arcs(w, b, sentence, i, scores);
-		all = log_sum(scores, a->n + 1);
+		all = loss_log_sum_exp(scores, (size_t)a->n + 1);
 		for (int j = 0; j < a->n; j++) {
 			enum word_role r = a->word[j].role;
 			if (j == i || (r != ROLE_PREDICATE && r != ROLE_NONE))
@@ -416,7 +445,7 @@ void parser_decode(const struct parser_weights *w, const struct parser_batch *b,
 		const float *out = b->out + (size_t)(first + i) * NET_OUT;
 		a->word[i].role = (enum word_role)best_of(out, ROLES);
 		a->word[i].head = ROOT;
-		sum += exp((double)out[a->word[i].role] - log_sum(out, ROLES));
+		sum += exp((double)out[a->word[i].role] - loss_log_sum_exp(out, ROLES));
 		if (a->word[i].role == ROLE_PREDICATE)
 			make_predicate(b, sentence, a, i);
 	}

@@ -40,6 +40,8 @@ struct parser_weights {
 	float *root;			   /* (K) and a bias */
 	float *distance;		   /* (NET_DISTANCES) */
 	float *agree;			   /* (2): with the grammar's head; and where that is ROOT */
+	struct parser_weights *next;	   /* another member, learnt from another start: their scores are
+					      averaged; NULL; owned */
 };
 
 /* Names and shapes of the parts, in order; columns 0: a vector. */
@@ -69,13 +71,15 @@ struct parser_batch {
 	float *keep;			  /* (rows,H): factors of dropout; NULL: none */
 	float *h[NET_LAYERS + 1], *gathered[NET_LAYERS],
 		*grown[NET_LAYERS]; /* (rows,H), (rows,4H), (rows,H) */
-	float *out;		    /* (rows, ROLES + PARSE_RELATIONS + 1) */
-	float *dependent, *head;    /* (rows,K) */
+	float *out;		    /* (rows, ROLES + PARSE_RELATIONS + 1), the mean of the members' */
+	float *own;		    /* the same of one member */
+	float *dependent, *head;    /* (members,capacity,K) */
 };
 
 enum { NET_OUT = ROLES + PARSE_RELATIONS + 1 };
 
-int parser_batch_make(struct parser_batch *b, int capacity, int sentences, int width, struct err *e);
+int parser_batch_make(
+	struct parser_batch *b, int capacity, int sentences, const struct parser_weights *w, struct err *e);
 void parser_batch_free(struct parser_batch *b);
 void parser_batch_clear(struct parser_batch *b);
 /* Adds a sentence of n words: their features and vectors (n, width), means of pieces. */

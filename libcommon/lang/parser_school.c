@@ -43,7 +43,7 @@ static int align(const struct parser_school *s, const struct parser_weights *w, 
 	struct parser_batch b;
 	struct tokens *t = mem_alloc(1, sizeof *t, "words", e);
 	struct analysis a;
-	int bad = !t || parser_batch_make(&b, TOKENS_MOST, 1, w->width, e);
+	int bad = !t || parser_batch_make(&b, TOKENS_MOST, 1, w, e);
 
 	for (size_t i = 0; i < s->read_count && !bad; i++) {
 		struct parser_sample *x = &s->read[i];

@@ -1,5 +1,7 @@
 #include "lang/reading_align.h"
 
+#include "nn/loss.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -41,15 +43,11 @@ struct aligning {
 
 static void log_softmax(const float *x, int n, float *out)
 {
-	float most = x[0];
-	double sum = 0;
+	float most;
+	const double all = log(loss_exp_sum(x, (size_t)n, &most));
 
-	for (int i = 1; i < n; i++)
-		most = x[i] > most ? x[i] : most;
 	for (int i = 0; i < n; i++)
-		sum += exp((double)(x[i] - most));
-	for (int i = 0; i < n; i++)
-		out[i] = (float)((double)(x[i] - most) - log(sum));
+		out[i] = (float)((double)(x[i] - most) - all);
 }
 
 static void take_scores(struct aligning *s)

@@ -250,3 +250,13 @@ void tokens_take(
 			put(w->lemma, w->text, TOKEN_LENGTH);
 	}
 }
+
+int tokens_class(const struct tokens *t, int i)
+{
+	return i < 0 || i >= t->n || t->word[i].closed < 0 ? -1 : (int)closed_words[t->word[i].closed].class;
+}
+
+int tokens_is(const struct tokens *t, int i, const char *text)
+{
+	return i >= 0 && i < t->n && !strcmp(t->word[i].text, text);
+}

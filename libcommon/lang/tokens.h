@@ -36,6 +36,10 @@ struct tokens {
 void tokens_take(
 	struct tokens *t, const char *text, const char *pieces, const char *const *known, int known_count);
 
+/* The enum closed_class of a word, -1 where it has none or is none (i out of range); whether it is `text`. */
+int tokens_class(const struct tokens *t, int i);
+int tokens_is(const struct tokens *t, int i, const char *text);
+
 /* Singular of a noun ("boxes", "shelves", "mice"); others as they are. out holds TOKEN_LENGTH bytes. */
 void token_lemma(const char *word, char *out);
 

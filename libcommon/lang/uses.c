@@ -1,5 +1,6 @@
 #include "lang/uses.h"
 
+#include "lang/synsets.h"
 #include "lang/wordnet.h"
 
 #include <ctype.h>
@@ -20,7 +21,6 @@ double uses_fit(const struct uses *thing, const struct uses *word)
 }
 
 #ifdef HAVE_WORDNET
-#include <wn.h>
 
 enum { SENSES = 8, STEPS_OF_THING = 2, STEPS_OF_WORD = 4, LONGEST = 24 };
 static const double per_step = 0.9, per_sense = 0.93;
@@ -114,9 +114,9 @@ static void add_text(struct uses *to, const char *text, double worth)
  * above it. */
 static int climb(struct uses *to, long synset, int pos, int is_gloss, int steps, double worth)
 {
-	static char none[] = "";
-	int is_made = 0;
-	SynsetPtr s = read_synset(pos, synset, none);
+	int is_made = 0, at = 0;
+	long up;
+	SynsetPtr s = synsets_read(pos, synset);
 
 	if (!s)
 		return 0;
@@ -126,48 +126,39 @@ static int climb(struct uses *to, long synset, int pos, int is_gloss, int steps,
 		add_text(to, s->defn, worth);
 	for (int i = 0; i < s->wcount && steps >= 0 && !is_gloss; i++)
 		add(to, s->words[i], strlen(s->words[i]), worth);
-	for (int i = 0; i < s->ptrcount && (is_gloss || steps > 0) && steps > -12; i++)
-		if (s->ptrtyp[i] == HYPERPTR && s->ppos[i] == pos)
-			is_made |= climb(to, s->ptroff[i], pos, is_gloss, steps - 1, worth * per_step);
+	while ((is_gloss || steps > 0) && steps > -12 && synsets_next_up(s, pos, &at, &up))
+		is_made |= climb(to, up, pos, is_gloss, steps - 1, worth * per_step);
 	free_synset(s);
 	return is_made;
 }
 
 void uses_of_thing(struct uses *to, const char *lemma)
 {
-	char word[128];
+	long senses[SENSES];
+	const int n = synsets_of(lemma, NOUN, senses, SENSES);
 
 	to->n = 0;
-	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
-		return;
-	strcpy(word, lemma);
-	IndexPtr index = index_lookup(word, NOUN);
-	for (int i = 0; index && i < index->off_cnt && i < SENSES; i++) {
+	for (int i = 0; i < n; i++) {
 		struct uses own = *to;
-		if (climb(&own, (long)index->offset[i], NOUN, 1, STEPS_OF_THING, pow(per_sense, i)))
+		if (climb(&own, senses[i], NOUN, 1, STEPS_OF_THING, pow(per_sense, i)))
 			*to = own;
 	}
-	if (index)
-		free_index(index);
 }
 
 void uses_of_word(struct uses *to, const char *lemma)
 {
 	static const int pos[] = {NOUN, VERB};
-	char word[128];
+	long senses[3];
 
 	to->n = 0;
-	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
+	if (!wordnet_is_there())
 		return;
-	strcpy(word, lemma);
-	add(to, word, strlen(word), 1);
+	add(to, lemma, strlen(lemma), 1);
 	for (int k = 0; k < 2 && to->n; k++) {
-		IndexPtr index = index_lookup(word, pos[k]);
-		for (int i = 0; index && i < index->off_cnt && i < 3; i++)
-			climb(to, (long)index->offset[i], pos[k], 0, pos[k] == VERB ? 1 : STEPS_OF_WORD,
+		const int n = synsets_of(lemma, pos[k], senses, 3);
+		for (int i = 0; i < n; i++)
+			climb(to, senses[i], pos[k], 0, pos[k] == VERB ? 1 : STEPS_OF_WORD,
 				pow(per_sense, i));
-		if (index)
-			free_index(index);
 	}
 }
 #else

@@ -1,5 +1,7 @@
 #include "lang/wordnet.h"
 
+#include "lang/synsets.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,35 +27,31 @@ int wordnet_is_there(void)
 /* Adds a synset and what it is a kind of. */
 static void climb(struct wordnet_noun *to, long synset, int depth, int sense)
 {
-	static char none[] = "";
+	int at = 0;
+	long up;
 
 	if (to->n == WORDNET_UP || depth > DEEPEST)
 		return;
 	to->up[to->n].synset = synset;
 	to->up[to->n].depth = (short)depth;
 	to->up[to->n++].sense = (short)sense;
-	SynsetPtr s = read_synset(NOUN, synset, none);
-	for (int i = 0; s && i < s->ptrcount; i++)
-		if (s->ptrtyp[i] == HYPERPTR && s->ppos[i] == NOUN)
-			climb(to, s->ptroff[i], depth + 1, sense);
+	SynsetPtr s = synsets_read(NOUN, synset);
+	while (s && synsets_next_up(s, NOUN, &at, &up))
+		climb(to, up, depth + 1, sense);
 	if (s)
 		free_synset(s);
 }
 
 void wordnet_find(struct wordnet_noun *to, const char *lemma)
 {
-	char word[128];
+	long senses[WORDNET_SENSES];
+	const int n = synsets_of(lemma, NOUN, senses, WORDNET_SENSES);
 
 	to->n = 0;
-	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
-		return;
-	strcpy(word, lemma);
-	IndexPtr index = index_lookup(word, NOUN);
-	for (int i = 0; index && i < index->off_cnt && i < WORDNET_SENSES; i++)
-		climb(to, (long)index->offset[i], 0, i);
-	if (index)
-		free_index(index);
+	for (int i = 0; i < n; i++)
+		climb(to, senses[i], 0, i);
 }
+
 static void add_near(struct wordnet_adjective *to, long synset, int distance)
 {
 	for (int i = 0; i < to->n; i++)
@@ -68,8 +66,7 @@ static void add_near(struct wordnet_adjective *to, long synset, int distance)
 /* Adds what is similar or opposite to the adjectives so far, from the i-th on. */
 static void add_around(struct wordnet_adjective *to, int i, int distance)
 {
-	static char none[] = "";
-	SynsetPtr s = read_synset(ADJ, to->near[i].synset, none);
+	SynsetPtr s = synsets_read(ADJ, to->near[i].synset);
 
 	for (int k = 0; s && k < s->ptrcount; k++) {
 		if (s->ptrtyp[k] == SIMPTR)
@@ -83,19 +80,14 @@ static void add_around(struct wordnet_adjective *to, int i, int distance)
 
 void wordnet_find_adjective(struct wordnet_adjective *to, const char *lemma)
 {
-	char word[128];
+	long senses[ADJECTIVE_SENSES];
+	const int n = synsets_of(lemma, ADJ, senses, ADJECTIVE_SENSES);
 
 	to->n = 0;
-	if (!wordnet_is_there() || !*lemma || strlen(lemma) >= sizeof word)
-		return;
-	strcpy(word, lemma);
-	IndexPtr index = index_lookup(word, ADJ);
-	for (int i = 0; index && i < index->off_cnt && i < ADJECTIVE_SENSES; i++)
-		add_near(to, (long)index->offset[i], 0);
-	if (index)
-		free_index(index);
+	for (int i = 0; i < n; i++)
+		add_near(to, senses[i], 0);
 	for (int distance = 1, done = 0; distance <= 2; distance++)
-		for (const int n = to->n; done < n; done++)
+		for (const int before = to->n; done < before; done++)
 			if (to->near[done].distance >= 0)
 				add_around(to, done, distance);
 }

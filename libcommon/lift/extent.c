@@ -1,6 +1,7 @@
 #include "lift/extent.h"
 
 #include "base/mem.h"
+#include "base/quantile.h"
 #include "geom/rotation.h"
 
 #include <math.h>
@@ -16,61 +17,14 @@ enum {
 
 static const double pi = 3.14159265358979323846;
 
-struct item {
-	double at, weight;
-};
-
 /* The object's Gaussians, and room for what is made of them. */
 struct cloud {
 	size_t n;
 	double *means;	/* (n,3) */
 	double *spread; /* (n,3,3) rows: the Gaussian's axes, as long as its standard deviations */
 	double *weight;
-	struct item *items;
+	struct quantile_item *items;
 };
-
-static double middle_of(double a, double b, double c)
-{
-	return fmax(fmin(a, b), fmin(fmax(a, b), c));
-}
-
-/* Where `share` of the weight is passed, of n > 0 items, which change places: what is on the wrong side of a
- * pivot is left aside, until the pivot is what is looked for (Hoare 1961). */
-static double quantile(struct item *items, size_t n, double share)
-{
-	double left = 0;
-
-	for (size_t i = 0; i < n; i++)
-		left += share * items[i].weight;
-	for (;;) {
-		const double pivot = middle_of(items[0].at, items[n / 2].at, items[n - 1].at);
-		double under = 0, here = 0;
-		size_t below = 0, to = 0, above = n;
-		while (to < above) {
-			const struct item x = items[to];
-			if (x.at < pivot) {
-				under += x.weight;
-				items[to++] = items[below];
-				items[below++] = x;
-			} else if (x.at > pivot) {
-				items[to] = items[--above];
-				items[above] = x;
-			} else {
-				here += x.weight;
-				to++;
-			}
-		}
-		if (left < under && below) {
-			n = below;
-		} else if (left < under + here || above == n) {
-			return pivot;
-		} else {
-			left -= under + here;
-			items += above;
-			n -= above;
-		}
-	}
-}
 
 /* One end of the cloud in direction d, of every `step`th Gaussian: the greatest that is not trimmed. */
 static double reach(const struct cloud *c, size_t step, const double d[3])
@@ -85,9 +39,9 @@ static double reach(const struct cloud *c, size_t step, const double d[3])
 			variance += along * along;
 		}
 		const double at = m[0] * d[0] + m[1] * d[1] + m[2] * d[2] + EXTENT_SIGMAS * sqrt(variance);
-		c->items[n++] = (struct item){-at, c->weight[i]};
+		c->items[n++] = (struct quantile_item){-at, c->weight[i]};
 	}
-	return -quantile(c->items, n, EXTENT_TRIM);
+	return -quantile_weighted(c->items, n, EXTENT_TRIM);
 }
 
 /* The box along the first `count` of these axes. */
@@ -177,8 +131,9 @@ static double cell_side(const struct cloud *c, double low[3])
 
 	for (int k = 0; k < 3; k++) {
 		for (size_t i = 0; i < c->n; i++)
-			c->items[i] = (struct item){c->means[3 * i + (size_t)k], c->weight[i]};
-		const double from = quantile(c->items, c->n, 0.05), to = quantile(c->items, c->n, 0.95);
+			c->items[i] = (struct quantile_item){c->means[3 * i + (size_t)k], c->weight[i]};
+		const double from = quantile_weighted(c->items, c->n, 0.05),
+			     to = quantile_weighted(c->items, c->n, 0.95);
 		square += (to - from) * (to - from);
 		low[k] = from;
 	}
@@ -305,9 +260,9 @@ static void fill(struct cloud *c, const struct splats *s, const int32_t *ids, co
 				c->spread[9 * i + (size_t)(3 * k + d)] =
 					m[d][k] * (double)s->scales[3 * g + (size_t)k];
 		}
-		c->items[i] = (struct item){responses[i], 1};
+		c->items[i] = (struct quantile_item){responses[i], 1};
 	}
-	const double median = quantile(c->items, c->n, 0.5);
+	const double median = quantile_weighted(c->items, c->n, 0.5);
 	for (size_t i = 0; i < c->n; i++)
 		c->weight[i] = pow(fmin(responses[i] / median, 1), 4);
 }
@@ -320,7 +275,7 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 	struct cloud c = {n, mem_alloc(room, 3 * sizeof(double), "object", e),
 		mem_alloc(room, 9 * sizeof(double), "object", e),
 		mem_alloc(room, sizeof(double), "object", e),
-		mem_alloc(room, sizeof(struct item), "object", e)};
+		mem_alloc(room, sizeof(struct quantile_item), "object", e)};
 	char *kept = mem_alloc(room, 1, "object", e);
 
 	*x = (struct extent){.ids = mem_alloc(room, sizeof *ids, "object", e)};

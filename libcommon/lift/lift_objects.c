@@ -103,11 +103,8 @@ static int fill_image(const struct lift_mask *masks, size_t n, int height, int w
 	const size_t count = (size_t)height * (size_t)width;
 
 	for (size_t k = 0; k < n; k++) {
-		struct rle resized;
-		if (rle_resize(&resized, masks[k].mask, height, width, e))
+		if (rle_decode_at(&masks[k].mask->rle, height, width, pixels, e))
 			return -1;
-		rle_decode(&resized, pixels);
-		rle_free(&resized);
 		for (size_t p = 0; p < count; p++)
 			image[p] += (float)pixels[p];
 	}

@@ -22,16 +22,17 @@
 
 #include "base/err.h"
 #include "lift/lifted_model.h"
-#include "mask/rle.h"
+#include "mask/mask.h"
 #include "splat/view_weights.h"
 
 #include <stddef.h>
 
 enum { LIFT_ROUNDS = 3 };
 
+/* A mask and the number of the object that it is of. */
 struct lift_mask {
+	const struct mask *mask; /* of any size: reduced to the weights' by area and cut at one half */
 	size_t object;
-	const struct rle *mask; /* of any size: reduced to the weights' by area and cut at one half */
 };
 
 struct lift_objects {

@@ -33,9 +33,8 @@ struct lifted {
 void lifted_free(struct lifted *l);
 
 /* An object's mask in a view is where sum_i w_pi (a_i - LIFTED_CUT) > 0: where more than this part of what is
- * seen in the pixel is the object's. Of 0.35, 0.4, 0.45, 0.5 and 0.55, mean mIoU of
- * two synthetic scenes (diner, seed 1; tea, seed 3; half size, ragged masks): 92.5, 93.5, 94.0, 94.1, 93.2.
- */
+ * seen in the pixel is the object's. Of 0.35, 0.4, 0.45, 0.5 and 0.55, mean mIoU of two synthetic scenes
+ * (diner, seed 1; tea, seed 3; half size, ragged masks): 92.5, 93.5, 94.0, 94.1, 93.2. */
 #define LIFTED_CUT 0.45f
 
 /* responses (N) = a_i - LIFTED_CUT, with the share a_i of each Gaussian in the object. */

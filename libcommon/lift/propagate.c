@@ -27,40 +27,40 @@ static int order_places(const void *a, const void *b)
 	return (p->index > q->index) - (p->index < q->index);
 }
 
-/* Where each object begins: one mask for each that begins anywhere. */
-static void find_masks(
+/* Where each object begins: one start for each that begins anywhere. */
+static void find_starts(
 	struct propagation *c, const struct pool *p, const size_t *views, const struct cameras *cameras)
 {
 	for (size_t i = 0; i < p->n; i++)
-		c->masks[i].view = cameras->n;
+		c->starts[i].view = cameras->n;
 	for (size_t i = 0; i < p->group_count; i++) {
 		const struct pool_group *g = &p->groups[i];
-		struct propagate_mask *m = &c->masks[g->object];
+		struct propagate_start *s = &c->starts[g->object];
 		const size_t view = views[g->first];
-		if (g->winner >= 0 && cameras->views[view].split == SPLIT_TRAIN && view < m->view)
-			*m = (struct propagate_mask){view, (size_t)g->winner, g->vote, g->mask};
+		if (g->winner >= 0 && cameras->views[view].split == SPLIT_TRAIN && view < s->view)
+			*s = (struct propagate_start){view, &p->candidates[g->winner], g->vote};
 	}
 	for (size_t i = 0; i < p->n; i++)
-		if (c->masks[i].view < cameras->n)
-			c->masks[c->count++] = c->masks[i];
+		if (c->starts[i].view < cameras->n)
+			c->starts[c->count++] = c->starts[i];
 }
 
 int propagate_init(struct propagation *c, const struct pool *p, const size_t *views,
 	const struct cameras *cameras, struct err *e)
 {
 	*c = (struct propagation){0};
-	c->masks = mem_alloc(p->n, sizeof *c->masks, "masks", e);
+	c->starts = mem_alloc(p->n, sizeof *c->starts, "masks", e);
 	c->order = mem_alloc(p->n, sizeof *c->order, "masks", e);
 	c->sources = mem_alloc(p->n, sizeof *c->sources, "masks", e);
 	struct place *places = mem_alloc(p->n, sizeof *places, "masks", e);
-	if (!c->masks || !c->order || !c->sources || !places) {
+	if (!c->starts || !c->order || !c->sources || !places) {
 		free(places);
 		propagate_free(c);
 		return -1;
 	}
-	find_masks(c, p, views, cameras);
+	find_starts(c, p, views, cameras);
 	for (size_t i = 0; i < c->count; i++)
-		places[i] = (struct place){c->masks[i].view, i};
+		places[i] = (struct place){c->starts[i].view, i};
 	if (c->count)
 		qsort(places, c->count, sizeof *places, order_places);
 	for (size_t i = 0; i < c->count; i++) {
@@ -78,7 +78,7 @@ void propagate_free(struct propagation *c)
 {
 	for (size_t s = 0; s < c->source_count; s++)
 		free(c->sources[s].field);
-	free(c->masks);
+	free(c->starts);
 	free(c->order);
 	free(c->sources);
 	*c = (struct propagation){0};
@@ -88,12 +88,8 @@ void propagate_free(struct propagation *c)
 static int fill_image(
 	const struct rle *mask, int height, int width, uint8_t *pixels, float *image, struct err *e)
 {
-	struct rle resized;
-
-	if (rle_resize(&resized, mask, height, width, e))
+	if (rle_decode_at(mask, height, width, pixels, e))
 		return -1;
-	rle_decode(&resized, pixels);
-	rle_free(&resized);
 	for (size_t p = 0; p < (size_t)width * (size_t)height; p++)
 		image[p] = pixels[p];
 	return 0;
@@ -131,7 +127,7 @@ int propagate_lift(struct propagation *c, size_t source, const struct view_weigh
 		const size_t now = least(channels - from, BATCH);
 		memset(image, 0, now * w->pixels * sizeof *image);
 		for (size_t k = from ? 0 : 1; k < now; k++)
-			if (fill_image(c->masks[c->order[s->begin + from + k - 1]].mask, height, width,
+			if (fill_image(&c->starts[c->order[s->begin + from + k - 1]].mask->rle, height, width,
 				    pixels, image + k * w->pixels, e))
 				goto done;
 		backproject_add(w, image, now, s->field + from * n);
@@ -207,7 +203,7 @@ int propagate_render(const struct propagation *c, size_t view, const struct view
 			bad = render_source(c, s, &room, w, height, width, masks, e);
 		for (size_t k = 0; k < s->count && !bad && s->view == view; k++) {
 			const size_t at = c->order[s->begin + k];
-			bad = rle_resize(&masks[at], c->masks[at].mask, height, width, e);
+			bad = rle_resize(&masks[at], &c->starts[at].mask->rle, height, width, e);
 		}
 	}
 	for (size_t i = 0; i < c->count && bad; i++)

@@ -16,11 +16,11 @@
 
 #include <stddef.h>
 
-struct propagate_mask {
-	size_t view;   /* of the scene, where it begins */
-	size_t record; /* of the pool */
-	double score;  /* its vote */
-	const struct rle *mask;
+/* Where an object begins. */
+struct propagate_start {
+	size_t view;		 /* of the scene */
+	const struct mask *mask; /* the winner there */
+	double vote;
 };
 
 /* The masks that begin in one view, lifted. */
@@ -34,14 +34,15 @@ struct propagate_source {
 
 struct propagation {
 	size_t count;
-	struct propagate_mask *masks; /* (count) one of each object, in the order in which the objects came */
-	size_t *order;		      /* (count) masks by view */
+	struct propagate_start
+		*starts; /* (count) one of each object, in the order in which the objects came */
+	size_t *order;	 /* (count) starts by view */
 	size_t source_count;
 	struct propagate_source *sources; /* by view */
 };
 
 /* An object begins in the first training view, in the order of the cameras, where it has a winner in the
- * pool. views (pool's n) has the camera of each record. Masks are referred to. */
+ * pool. views (pool's n) has the camera of each candidate. Masks are referred to. */
 int propagate_init(struct propagation *c, const struct pool *p, const size_t *views,
 	const struct cameras *cameras, struct err *e);
 void propagate_free(struct propagation *c);

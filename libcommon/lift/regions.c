@@ -10,10 +10,8 @@ enum { BATCH = 4 * VIEW_GROUP }; /* masks that are images at a time: whole group
 
 /* A candidate on its way to its place. */
 struct item {
-	size_t view, object, record;
-	const char *ref; /* NULL where the mask is of the object, not of a sentence */
-	const struct candidate *candidate;
-	size_t sentence;
+	const struct mask *mask;
+	size_t view, object, sentence;
 };
 
 static int order_sizes(size_t a, size_t b)
@@ -21,13 +19,19 @@ static int order_sizes(size_t a, size_t b)
 	return (a > b) - (a < b);
 }
 
+/* Of masks of one array: as they came. */
+static int order_masks(const struct item *p, const struct item *q)
+{
+	return (p->mask > q->mask) - (p->mask < q->mask);
+}
+
 static int order_sentences(const struct item *p, const struct item *q)
 {
 	int order = order_sizes(p->object, q->object);
 
-	if (order || !p->ref || !q->ref)
-		return order ? order : !!p->ref - !!q->ref;
-	return strcmp(p->ref, q->ref);
+	if (order || !p->mask->ref || !q->mask->ref)
+		return order ? order : !!p->mask->ref - !!q->mask->ref;
+	return strcmp(p->mask->ref, q->mask->ref);
 }
 
 static int by_sentence(const void *a, const void *b)
@@ -35,7 +39,7 @@ static int by_sentence(const void *a, const void *b)
 	const struct item *p = a, *q = b;
 	int order = order_sentences(p, q);
 
-	return order ? order : order_sizes(p->record, q->record);
+	return order ? order : order_masks(p, q);
 }
 
 static int by_view(const void *a, const void *b)
@@ -45,7 +49,7 @@ static int by_view(const void *a, const void *b)
 
 	if (!order)
 		order = order_sizes(p->object, q->object);
-	return order ? order : order_sizes(p->record, q->record);
+	return order ? order : order_masks(p, q);
 }
 
 static int by_size(const void *a, const void *b)
@@ -67,9 +71,9 @@ static void number_objects(struct regions *r, const struct pool *p)
 			r->objects[r->object_count++] = r->objects[i];
 }
 
-static size_t find_object(const struct regions *r, size_t record)
+static size_t find_object(const struct regions *r, size_t first)
 {
-	const size_t *at = bsearch(&record, r->objects, r->object_count, sizeof *at, by_size);
+	const size_t *at = bsearch(&first, r->objects, r->object_count, sizeof *at, by_size);
 
 	return (size_t)(at - r->objects);
 }
@@ -86,11 +90,10 @@ static void fill_candidates(struct regions *r, struct item *items)
 	if (r->count)
 		qsort(items, r->count, sizeof *items, by_view);
 	for (size_t i = 0; i < r->count; i++)
-		r->candidates[i] = (struct regions_candidate){.view = items[i].view,
+		r->candidates[i] = (struct regions_candidate){.mask = items[i].mask,
+			.view = items[i].view,
 			.object = items[i].object,
-			.sentence = items[i].sentence,
-			.score = items[i].candidate->score,
-			.mask = items[i].candidate->mask};
+			.sentence = items[i].sentence};
 }
 
 int regions_init(struct regions *r, const struct pool *p, const size_t *places, size_t views,
@@ -111,10 +114,12 @@ int regions_init(struct regions *r, const struct pool *p, const size_t *places, 
 	for (size_t g = 0; g < p->group_count; g++) {
 		const struct pool_group *group = &p->groups[g];
 		const size_t object = find_object(r, group->object);
-		for (size_t k = group->begin; k < group->begin + group->n; k++)
-			if (p->candidates[k].score > min_score)
-				items[r->count++] = (struct item){places[p->places[k].index], object,
-					p->places[k].index, p->places[k].ref, &p->candidates[k], 0};
+		for (size_t k = group->begin; k < group->begin + group->n; k++) {
+			const size_t at = p->index.keys[k].at;
+			const struct mask *mask = &p->candidates[at];
+			if (mask_confidence(mask) > min_score)
+				items[r->count++] = (struct item){mask, places[at], object, 0};
+		}
 	}
 	fill_candidates(r, items);
 	free(items);
@@ -149,16 +154,13 @@ static int fill_images(const struct regions_candidate *c, size_t now, int height
 
 #pragma omp parallel for schedule(dynamic) reduction(| : failed)
 	for (size_t k = 0; k < now; k++) {
-		struct rle resized;
 		struct err mine;
-		if (rle_resize(&resized, c[k].mask, height, width, &mine)) {
+		if (rle_decode_at(&c[k].mask->rle, height, width, pixels + k * count, &mine)) {
 			failed = 1;
 #pragma omp critical
 			*e = mine;
 			continue;
 		}
-		rle_decode(&resized, pixels + k * count);
-		rle_free(&resized);
 		for (size_t p = 0; p < count; p++)
 			image[k * count + p] = pixels[k * count + p];
 	}

@@ -32,10 +32,10 @@
 
 #define REGIONS_NONE SIZE_MAX
 
+/* A mask, numbered and lifted. */
 struct regions_candidate {
+	const struct mask *mask;
 	size_t view, object, sentence;
-	double score;
-	const struct rle *mask;
 	size_t begin, end; /* its entries; none before its view is lifted */
 	double mass;	   /* sum of l_ki */
 };
@@ -53,7 +53,7 @@ struct regions {
 	size_t count;
 	struct regions_candidate *candidates; /* (count) by view */
 	size_t object_count;
-	size_t *objects; /* (object_count) the first record of each, in the order in which they came */
+	size_t *objects; /* (object_count) the first candidate of each, in the order in which they came */
 	size_t sentence_count;
 	size_t *sentence_objects; /* (sentence_count) */
 	float *weight;		  /* (views,N) W_vi */
@@ -67,7 +67,7 @@ struct regions {
 		       */
 };
 
-/* The candidates with score > min_score. places (pool's n) has the view of each record, below `views`; the
+/* The candidates with score > min_score. places (pool's n) has the view of each, below `views`; the
  * pool's masks are referred to. */
 int regions_init(struct regions *r, const struct pool *p, const size_t *places, size_t views,
 	size_t gaussians, double min_score, struct err *e);

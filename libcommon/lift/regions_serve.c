@@ -22,14 +22,15 @@ static int find_shares(const struct regions *r, double *share, struct err *e)
 		size_t best = REGIONS_NONE;
 		if (at->end == at->begin)
 			continue;
-		total[at->sentence] += at->score;
+		const double score = mask_confidence(at->mask);
+		total[at->sentence] += score;
 		for (size_t i = 0; i < r->region_count; i++)
 			if ((double)r->regions[i].agreement[c] > PEER * r->regions[i].typical &&
 				(best == REGIONS_NONE ||
 					r->regions[i].agreement[c] > r->regions[best].agreement[c]))
 				best = i;
 		if (best != REGIONS_NONE)
-			share[at->sentence * r->region_count + best] += at->score;
+			share[at->sentence * r->region_count + best] += score;
 	}
 	for (size_t s = 0; s < r->sentence_count; s++)
 		for (size_t i = 0; i < r->region_count && total[s] > 0; i++)
@@ -115,7 +116,7 @@ static int cut(const float *image, uint8_t *pixels, int height, int width, const
 		pixels[p] = image[p] > 0;
 	if (rle_encode(&small, pixels, height, width, e))
 		return -1;
-	if (!like || (like->height == height && like->width == width)) {
+	if (!like || rle_same_size(like, &small)) {
 		*mask = small;
 		return 0;
 	}
@@ -129,7 +130,7 @@ static const struct rle *find_size(const struct regions *r, size_t view)
 {
 	for (size_t c = 0; c < r->count; c++)
 		if (r->candidates[c].view == view)
-			return r->candidates[c].mask;
+			return &r->candidates[c].mask->rle;
 	return NULL;
 }
 
@@ -152,7 +153,7 @@ int regions_render(const struct regions *r, size_t view, const struct view_weigh
 		const struct region *region = &r->regions[r->served[o]];
 		const size_t c = find_candidate(r, region, view), group = o / VIEW_GROUP;
 		if (c != REGIONS_NONE) {
-			const struct rle *mask = r->candidates[c].mask;
+			const struct rle *mask = &r->candidates[c].mask->rle;
 			scores[o] = (double)region->agreement[c];
 			bad = rle_from_runs(&masks[o], mask->runs, mask->n, mask->height, mask->width, e);
 			continue;

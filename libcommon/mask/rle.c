@@ -253,54 +253,63 @@ size_t rle_area(const struct rle *r)
 	return area;
 }
 
-size_t rle_intersection(const struct rle *a, const struct rle *b)
-{
-	size_t i = 0, j = 0, both = 0;
-	uint64_t end_a = 0, end_b = 0, at = 0; /* where runs i-1 and j-1 end */
+/* Two masks of one size, walked together. */
+struct walk {
+	const struct rle *a, *b;
+	size_t i, j;		   /* runs that were begun: run k-1 is foreground for even k */
+	uint64_t end_a, end_b, at; /* where these end, and how far the walk is */
+};
 
-	while (i < a->n || j < b->n) {
-		if (end_a <= end_b && i < a->n)
-			end_a += a->runs[i++];
-		else if (j < b->n)
-			end_b += b->runs[j++];
+/* The next stretch on which neither changes: its length, or 0 at the end. Whether the masks are foreground
+ * there is what is_in says. */
+static inline uint64_t walk_on(struct walk *w)
+{
+	while (w->i < w->a->n || w->j < w->b->n) {
+		if (w->end_a <= w->end_b && w->i < w->a->n)
+			w->end_a += w->a->runs[w->i++];
+		else if (w->j < w->b->n)
+			w->end_b += w->b->runs[w->j++];
 		else
 			break;
-		/* up to the nearer end both masks are what their last runs say: run k-1 is foreground for
-		 * even k */
-		uint64_t end = end_a < end_b ? end_a : end_b;
-		if (end > at) {
-			if (!(i % 2) && !(j % 2))
-				both += end - at;
-			at = end;
+		/* up to the nearer end both masks are what their last runs say */
+		const uint64_t end = w->end_a < w->end_b ? w->end_a : w->end_b;
+		if (end > w->at) {
+			const uint64_t length = end - w->at;
+			w->at = end;
+			return length;
 		}
 	}
+	return 0;
+}
+
+static inline int is_in(size_t begun)
+{
+	return !(begun % 2);
+}
+
+size_t rle_intersection(const struct rle *a, const struct rle *b)
+{
+	struct walk w = {.a = a, .b = b};
+	size_t both = 0;
+
+	for (uint64_t length; (length = walk_on(&w));)
+		if (is_in(w.i) && is_in(w.j))
+			both += length;
 	return both;
 }
 
 int rle_unite(struct rle *to, const struct rle *a, const struct rle *b, struct err *e)
 {
-	size_t i = 0, j = 0;
-	uint64_t end_a = 0, end_b = 0, at = 0;
+	struct walk w = {.a = a, .b = b};
 
 	if (alloc_runs(to, a->n + b->n + 1, a->height, a->width, e))
 		return -1;
 	to->n = 1;
 	to->runs[0] = 0;
-	while (i < a->n || j < b->n) {
-		if (end_a <= end_b && i < a->n)
-			end_a += a->runs[i++];
-		else if (j < b->n)
-			end_b += b->runs[j++];
-		else
-			break;
-		uint64_t end = end_a < end_b ? end_a : end_b;
-		if (end <= at)
-			continue;
-		/* A run is foreground where their number is even. */
-		if ((!(i % 2) || !(j % 2)) != !(to->n % 2))
+	for (uint64_t length; (length = walk_on(&w));) {
+		if ((is_in(w.i) || is_in(w.j)) != is_in(to->n))
 			to->runs[to->n++] = 0;
-		to->runs[to->n - 1] += (uint32_t)(end - at);
-		at = end;
+		to->runs[to->n - 1] += (uint32_t)length;
 	}
 	return 0;
 }
@@ -310,4 +319,38 @@ double rle_iou(const struct rle *a, const struct rle *b)
 	size_t both = rle_intersection(a, b), either = rle_area(a) + rle_area(b) - both;
 
 	return either ? (double)both / (double)either : 1;
+}
+
+int rle_same_size(const struct rle *a, const struct rle *b)
+{
+	return a->height == b->height && a->width == b->width;
+}
+
+int rle_fit(struct rle_fitted *f, const struct rle *like, struct err *e)
+{
+	if (f->now && rle_same_size(f->now, like))
+		return 0;
+	rle_free(&f->resized);
+	f->now = NULL;
+	if (!rle_same_size(f->own, like) && rle_resize(&f->resized, f->own, like->height, like->width, e))
+		return -1;
+	f->now = f->resized.runs ? &f->resized : f->own;
+	f->area = rle_area(f->now);
+	return 0;
+}
+
+int rle_decode_at(const struct rle *r, int height, int width, uint8_t *mask, struct err *e)
+{
+	struct rle_fitted f = {.own = r};
+	const int bad = rle_fit(&f, &(struct rle){.height = height, .width = width}, e);
+
+	if (!bad)
+		rle_decode(f.now, mask);
+	rle_fitted_free(&f);
+	return bad;
+}
+
+void rle_fitted_free(struct rle_fitted *f)
+{
+	rle_free(&f->resized);
 }

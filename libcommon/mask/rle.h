@@ -41,11 +41,28 @@ size_t rle_area(const struct rle *r);
 size_t rle_intersection(const struct rle *a, const struct rle *b);
 /* a or b, of the same size. `to` is neither of them. */
 int rle_unite(struct rle *to, const struct rle *a, const struct rle *b, struct err *e);
+int rle_same_size(const struct rle *a, const struct rle *b);
 /* Intersection over union; two empty masks give 1. */
 double rle_iou(const struct rle *a, const struct rle *b);
 
 /* Another size: each new pixel's share of foreground by area, cut at one half (> 0.5 is foreground, exactly
  * 0.5 too). The shares are exact: whole numbers of 1/(H*W) of a new pixel. */
 int rle_resize(struct rle *to, const struct rle *from, int height, int width, struct err *e);
+
+/* rle_decode of rle_resize: mask (height,width). */
+int rle_decode_at(const struct rle *r, int height, int width, uint8_t *mask, struct err *e);
+
+/* A mask at the size of what it is held against: resized where it must be, once for all of one size. */
+struct rle_fitted {
+	const struct rle *own;
+	const struct rle *now; /* own or resized; NULL before the first rle_fit */
+	size_t area;	       /* of now */
+	struct rle resized;
+};
+
+/* Brings f->now to that size. Of a struct zeroed but for own. Returns 0, or -1 with *e set; after either
+ * rle_fitted_free is in order. */
+int rle_fit(struct rle_fitted *f, const struct rle *like, struct err *e);
+void rle_fitted_free(struct rle_fitted *f);
 
 #endif

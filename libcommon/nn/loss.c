@@ -48,3 +48,23 @@ double loss_bce(const float *logits, const uint8_t *mask, size_t n, float scale,
 		sum += partial[b];
 	return sum / (double)n;
 }
+
+double loss_exp_sum(const float *x, size_t n, float *most)
+{
+	double sum = 0;
+
+	*most = x[0];
+	for (size_t i = 1; i < n; i++)
+		*most = x[i] > *most ? x[i] : *most;
+	for (size_t i = 0; i < n; i++)
+		sum += exp((double)(x[i] - *most));
+	return sum;
+}
+
+double loss_log_sum_exp(const float *x, size_t n)
+{
+	float most;
+	const double sum = loss_exp_sum(x, n, &most);
+
+	return most + log(sum);
+}

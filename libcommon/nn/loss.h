@@ -13,4 +13,9 @@
  * threads. */
 double loss_bce(const float *logits, const uint8_t *mask, size_t n, float scale, float *dlogits);
 
+/* log sum_i exp(x_i) of n > 0 numbers, without overflow. */
+double loss_log_sum_exp(const float *x, size_t n);
+/* Its two parts: sum_i exp(x_i - *most), *most being the largest. */
+double loss_exp_sum(const float *x, size_t n, float *most);
+
 #endif

@@ -1,6 +1,7 @@
 #include "score/bootstrap.h"
 
 #include "base/mem.h"
+#include "base/quantile.h"
 #include "base/rng.h"
 
 #include <math.h>
@@ -34,16 +35,6 @@ static int order_numbers(const void *a, const void *b)
 	return (*p > *q) - (*p < *q);
 }
 
-static double quantile(const double *sorted, size_t n, double share)
-{
-	double place = share * (double)(n - 1);
-	size_t below = (size_t)place;
-
-	if (below + 1 >= n || sorted[below] == sorted[below + 1])
-		return sorted[below];
-	return sorted[below] + (place - (double)below) * (sorted[below + 1] - sorted[below]);
-}
-
 static void draw(double *ratios, size_t stride, const double *sums, size_t n, size_t k, struct rng *r)
 {
 	double total[2 * BOOTSTRAP_MAX_RATIOS] = {0};
@@ -75,8 +66,8 @@ int bootstrap_ratios(struct interval *intervals, const double *sums, size_t n, s
 	for (size_t j = 0; j < k; j++) {
 		double *one = ratios + j * how->resamples;
 		qsort(one, how->resamples, sizeof *one, order_numbers);
-		intervals[j].low = quantile(one, how->resamples, (1 - how->confidence) / 2);
-		intervals[j].high = quantile(one, how->resamples, (1 + how->confidence) / 2);
+		intervals[j].low = quantile_sorted(one, how->resamples, (1 - how->confidence) / 2);
+		intervals[j].high = quantile_sorted(one, how->resamples, (1 + how->confidence) / 2);
 	}
 	free(ratios);
 	return 0;

@@ -2,22 +2,15 @@
 #ifndef SCORE_SCORE_H
 #define SCORE_SCORE_H
 
-#include "mask/rle.h"
+#include "mask/mask.h"
 
 #include <stddef.h>
 
-/* One record of predictions or truth. Strings are the caller's; ref or object may be NULL, not both. */
-struct score_mask {
-	const char *view, *ref, *object;
-	const struct rle *mask;
-};
-
 struct score_pair {
-	const char *object;	      /* of the truth, else of the prediction, else the truth's ref */
-	const char *ref;	      /* of the prediction; NULL where it has none */
-	const char *truth_ref;	      /* of the truth; NULL where it has none */
-	const struct rle *prediction; /* NULL: no prediction for this truth */
-	const struct rle *truth;
+	const char *object;	       /* of the truth, else of the prediction, else the truth's ref */
+	const char *ref;	       /* of the prediction; NULL where it has none */
+	const struct mask *prediction; /* NULL: no prediction for this truth */
+	const struct mask *truth;
 	size_t truth_index; /* among the truth that was matched */
 	size_t place;	    /* in the order of matching */
 	/* filled by score_measure */
@@ -46,10 +39,6 @@ struct score {
 };
 extern const double score_cut[3]; /* 0.25, 0.5, 0.75 */
 
-/* Two records of the same view and ref (or, without ref, of the same view and object): 1 and their indices,
- * the later one the first such in the list; 0 none; -1 with *e. */
-int score_duplicate(const struct score_mask *masks, size_t n, size_t *earlier, size_t *later, struct err *e);
-
 /* Pairs predictions with truth (neither with duplicates):
  *  - a prediction with a ref: the truth of that view and ref; else that of the view and object, one without
  * ref first;
@@ -57,17 +46,18 @@ int score_duplicate(const struct score_mask *masks, size_t n, size_t *earlier, s
  * names;
  *  - a truth that no prediction met: a pair without a prediction.
  * In that order, and each in the order given. Release with score_pairs_free. */
-int score_match(struct score_pairs *pairs, const struct score_mask *truth, size_t truth_n,
-	const struct score_mask *predictions, size_t prediction_n, struct err *e);
+int score_match(struct score_pairs *pairs, const struct mask *truth, size_t truth_n,
+	const struct mask *predictions, size_t prediction_n, struct err *e);
 void score_pairs_free(struct score_pairs *pairs);
 
 /* Fills a pair's numbers. A prediction of another size is brought to the truth's by rle_resize. */
 int score_measure(struct score_pair *pair, struct err *e);
 int score_measure_all(struct score_pairs *pairs, struct err *e);
 
-/* Drops truth of views that neither list has a record of; *n becomes the number of those left, in order. */
-int score_keep_views(struct score_mask *truth, size_t *n, const struct score_mask *predictions,
-	size_t prediction_n, const struct score_mask *others, size_t other_n, struct err *e);
+/* Leaves out truth of views that neither list has a mask of: it comes behind the others, and *n becomes the
+ * number of those, in order. */
+int score_keep_views(struct mask *truth, size_t *n, const struct mask *predictions, size_t prediction_n,
+	const struct mask *others, size_t other_n, struct err *e);
 
 /* By object name, then by place: the pairs of an object then lie side by side. */
 void score_sort(struct score_pair *pairs, size_t n);

@@ -1,7 +1,7 @@
 #include "score/score_answers.h"
 
 #include "base/mem.h"
-#include "score/score_lookup.h"
+#include "mask/mask_index.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,36 +39,39 @@ static int order_strings(const void *a, const void *b)
 	return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Of several records of one object in a view the one without ref, else the first. */
-static void list_objects(struct truth *t, const struct score_mask *truth, const struct score_lookup *l)
+/* Of several masks of one object in a view the one without ref, else the first. */
+static void list_objects(struct truth *t, const struct mask *truth, const struct mask_index *x)
 {
-	for (size_t i = 0, next; i < l->n; i = next) {
-		size_t chosen = l->items[i].index;
-		for (next = i; next < l->n && !score_name_order(&l->items[i], &l->items[next]); next++)
-			if (truth[chosen].ref && !truth[l->items[next].index].ref)
-				chosen = l->items[next].index;
-		t->names[t->name_count++] = l->items[i].name;
-		if (!t->view_count || strcmp(t->views[t->view_count - 1].name, l->items[i].view))
-			t->views[t->view_count++] = (struct view){l->items[i].view, t->n, t->n};
-		if (rle_area(truth[chosen].mask))
-			t->items[t->n++] = (struct seen){l->items[i].name, truth[chosen].mask};
+	for (size_t i = 0, next; i < x->n; i = next) {
+		const struct mask_key *key = &x->keys[i];
+		size_t chosen = key->at;
+		for (next = i; next < x->n && !mask_key_order(key, &x->keys[next]); next++)
+			if (truth[chosen].ref && !truth[x->keys[next].at].ref)
+				chosen = x->keys[next].at;
+		if (key->is_ref)
+			continue;
+		t->names[t->name_count++] = key->name;
+		if (!t->view_count || strcmp(t->views[t->view_count - 1].name, key->view))
+			t->views[t->view_count++] = (struct view){key->view, t->n, t->n};
+		if (rle_area(&truth[chosen].rle))
+			t->items[t->n++] = (struct seen){key->name, &truth[chosen].rle};
 		t->views[t->view_count - 1].end = t->n;
 	}
 	if (t->name_count)
 		qsort(t->names, t->name_count, sizeof *t->names, order_strings);
 }
 
-static int truth_make(struct truth *t, const struct score_mask *truth, size_t n, struct err *e)
+static int truth_make(struct truth *t, const struct mask *truth, size_t n, struct err *e)
 {
-	struct score_lookup l = {0};
+	struct mask_index x;
 
 	*t = (struct truth){.views = mem_alloc(n, sizeof *t->views, "views", e),
 		.items = mem_alloc(n, sizeof *t->items, "masks", e),
 		.names = mem_alloc(n, sizeof *t->names, "objects", e)};
-	if (!t->views || !t->items || !t->names || score_lookup_make(&l, truth, n, SCORE_BY_OBJECT, e))
+	if (!t->views || !t->items || !t->names || mask_index_make(&x, truth, n, MASK_BY_OBJECT, e))
 		return -1;
-	list_objects(t, truth, &l);
-	score_lookup_free(&l);
+	list_objects(t, truth, &x);
+	mask_index_free(&x);
 	return 0;
 }
 
@@ -93,18 +96,17 @@ static int is_asked(const struct answer_sentence *s, const char *view)
 
 /* One prediction against the objects of its view. */
 struct measure {
-	size_t area; /* of the prediction */
 	size_t shown[ANSWER_CUTS], hit[ANSWER_CUTS],
 		meant;		       /* objects: covered, those that are meant too, all meant */
 	double best_meant, best_other; /* IoU with a single object */
-	struct rle all;		       /* the union of the meant */
+	struct rle all;		       /* the union of the meant, at the size of the first */
 };
 
 static int add_object(
-	struct measure *m, const struct rle *p, const struct seen *o, int is_meant, struct err *e)
+	struct measure *m, const struct rle_fitted *p, const struct seen *o, int is_meant, struct err *e)
 {
-	size_t both = rle_intersection(p, o->mask), area = rle_area(o->mask);
-	double iou = (double)both / (double)(m->area + area - both);
+	size_t both = rle_intersection(p->now, o->mask), area = rle_area(o->mask);
+	double iou = (double)both / (double)(p->area + area - both);
 	double *best = is_meant ? &m->best_meant : &m->best_other;
 	struct rle more;
 
@@ -117,16 +119,20 @@ static int add_object(
 	if (!is_meant)
 		return 0;
 	m->meant++;
-	if (rle_unite(&more, m->all.n ? &m->all : o->mask, o->mask, e))
+	const struct rle *all = m->all.n ? &m->all : o->mask;
+	struct rle_fitted own = {.own = o->mask};
+	const int bad = rle_fit(&own, all, e) || rle_unite(&more, all, own.now, e);
+	rle_fitted_free(&own);
+	if (bad)
 		return -1;
 	rle_free(&m->all);
 	m->all = more;
 	return 0;
 }
 
-static void judge(struct answer *a, const struct measure *m, const struct rle *p)
+static void judge(struct answer *a, const struct measure *m, const struct rle_fitted *p)
 {
-	a->is_refused = !m->area;
+	a->is_refused = !p->area;
 	for (int k = 0; k < ANSWER_CUTS; k++)
 		a->f1[k] = m->shown[k] + m->meant ? 2.0 * (double)m->hit[k] / (double)(m->shown[k] + m->meant)
 						  : a->is_refused;
@@ -136,7 +142,7 @@ static void judge(struct answer *a, const struct measure *m, const struct rle *p
 		a->iou = a->f1[0] = a->f1[1] = a->is_refused;
 		return;
 	}
-	a->iou = rle_iou(p, &m->all);
+	a->iou = rle_iou(p->now, &m->all);
 	if (a->sentence->object_count == 1)
 		a->is_right = m->best_meant > 0 && m->best_meant >= m->best_other;
 	else
@@ -147,24 +153,17 @@ static int measure(
 	struct answer *a, const struct truth *t, const struct view *v, const struct rle *p, struct err *e)
 {
 	struct measure m = {0};
-	struct rle fitted = {0};
-	int bad = 0;
+	struct rle_fitted f = {.own = p};
+	int bad = v->begin == v->end && rle_fit(&f, p, e);
 
 	for (size_t i = v->begin; i < v->end && !bad; i++) {
-		const struct rle *mask = t->items[i].mask;
-		if (p->height != mask->height || p->width != mask->width) {
-			rle_free(&fitted);
-			bad = rle_resize(&fitted, p, mask->height, mask->width, e);
-			p = bad ? p : &fitted;
-		}
-		m.area = rle_area(p);
-		bad = bad || add_object(&m, p, &t->items[i], means(a->sentence, t->items[i].object), e);
+		const struct seen *o = &t->items[i];
+		bad = rle_fit(&f, o->mask, e) || add_object(&m, &f, o, means(a->sentence, o->object), e);
 	}
-	if (v->begin == v->end)
-		m.area = rle_area(p);
+	bad = bad || (m.all.n && rle_fit(&f, &m.all, e));
 	if (!bad)
-		judge(a, &m, p);
-	rle_free(&fitted);
+		judge(a, &m, &f);
+	rle_fitted_free(&f);
 	rle_free(&m.all);
 	return bad ? -1 : 0;
 }
@@ -179,7 +178,7 @@ static int sees(const struct truth *t, const struct view *v, const struct answer
 
 /* The answers to one sentence. */
 static int answer_one(struct answers *a, const struct truth *t, const struct answer_sentence *s,
-	const struct score_mask *predictions, const struct score_lookup *refs, struct err *e)
+	const struct mask *predictions, const struct mask_index *refs, struct err *e)
 {
 	for (size_t i = 0; i < t->view_count; i++) {
 		const struct view *v = &t->views[i];
@@ -191,9 +190,9 @@ static int answer_one(struct answers *a, const struct truth *t, const struct ans
 			continue;
 		}
 		struct answer one = {.sentence = s, .view = v->name};
-		score_lookup_find(refs, v->name, s->ref, &begin, &end);
+		mask_index_ref(refs, v->name, s->ref, &begin, &end);
 		one.is_missing = begin == end;
-		if ((!one.is_missing && measure(&one, t, v, predictions[refs->items[begin].index].mask, e)) ||
+		if ((!one.is_missing && measure(&one, t, v, &predictions[refs->keys[begin].at].rle, e)) ||
 			mem_grow((void **)&a->items, &a->capacity, a->n + 1, sizeof *a->items, "answers", e))
 			return -1;
 		a->items[a->n++] = one;
@@ -216,7 +215,7 @@ static void count_unknown(
 }
 
 static int count_unmatched(struct answers *a, const struct answer_sentence *sentences, size_t n,
-	const struct score_mask *predictions, size_t prediction_n, struct err *e)
+	const struct mask *predictions, size_t prediction_n, struct err *e)
 {
 	const char **refs = mem_alloc(n, sizeof *refs, "sentences", e);
 
@@ -234,21 +233,21 @@ static int count_unmatched(struct answers *a, const struct answer_sentence *sent
 }
 
 int answers_make(struct answers *a, const struct answer_sentence *sentences, size_t n,
-	const struct score_mask *truth, size_t truth_n, const struct score_mask *predictions,
-	size_t prediction_n, struct err *e)
+	const struct mask *truth, size_t truth_n, const struct mask *predictions, size_t prediction_n,
+	struct err *e)
 {
-	struct score_lookup refs = {0};
+	struct mask_index refs = {0};
 	struct truth t = {0};
 
 	*a = (struct answers){0};
 	int bad = truth_make(&t, truth, truth_n, e) ||
-		  score_lookup_make(&refs, predictions, prediction_n, SCORE_BY_REF, e) ||
+		  mask_index_make(&refs, predictions, prediction_n, MASK_BY_REF, e) ||
 		  count_unmatched(a, sentences, n, predictions, prediction_n, e);
 	for (size_t i = 0; i < n && !bad; i++)
 		bad = answer_one(a, &t, &sentences[i], predictions, &refs, e);
 	if (!bad)
 		count_unknown(a, &t, sentences, n);
-	score_lookup_free(&refs);
+	mask_index_free(&refs);
 	truth_free(&t);
 	if (bad)
 		answers_free(a);

@@ -42,8 +42,8 @@ struct answers {
 /* Truth and predictions are without duplicates; a truth's object is what it goes by, its ref does not count.
  * A prediction is found by its ref. Sizes may differ, as for score_measure. Release with answers_free. */
 int answers_make(struct answers *a, const struct answer_sentence *sentences, size_t n,
-	const struct score_mask *truth, size_t truth_n, const struct score_mask *predictions,
-	size_t prediction_n, struct err *e);
+	const struct mask *truth, size_t truth_n, const struct mask *predictions, size_t prediction_n,
+	struct err *e);
 void answers_free(struct answers *a);
 
 /* Of some answers. The figures are means over them; 0 where there are none. */

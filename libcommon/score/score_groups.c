@@ -1,7 +1,7 @@
 #include "score/score_groups.h"
 
 #include "base/mem.h"
-#include "score/score_lookup.h"
+#include "mask/mask_index.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +44,7 @@ int score_sayings(uint32_t *sets, const struct score_pair *pairs, size_t pair_n,
 	qsort(list, n, sizeof *list, order_sayings);
 	for (size_t i = 0; i < pair_n; i++) {
 		const struct score_pair *p = &pairs[i];
-		const struct saying key = {p->ref ? p->ref : p->truth_ref, 0};
+		const struct saying key = {p->ref ? p->ref : p->truth->ref, 0};
 		const struct saying *found = NULL;
 		sets[i] = 0;
 		if (p->is_empty)
@@ -69,32 +69,28 @@ static int group_of(double seen)
 /* The group of one truth that has something in it. */
 static int judge(int *group, const struct rle *truth, const struct rle *whole, struct err *e)
 {
-	struct rle resized = {0};
+	struct rle_fitted f = {.own = whole};
 
-	if (whole->height != truth->height || whole->width != truth->width) {
-		if (rle_resize(&resized, whole, truth->height, truth->width, e))
-			return -1;
-		whole = &resized;
-	}
-	const size_t area = rle_area(whole);
-	*group = area ? group_of((double)rle_area(truth) / (double)area) : SCORE_SEEN_UNKNOWN;
-	rle_free(&resized);
+	if (rle_fit(&f, truth, e))
+		return -1;
+	*group = f.area ? group_of((double)rle_area(truth) / (double)f.area) : SCORE_SEEN_UNKNOWN;
+	rle_fitted_free(&f);
 	return 0;
 }
 
 /* The set of each truth (truth_n). */
-static int judge_all(uint32_t *seen, const struct score_mask *truth, size_t truth_n,
-	const struct score_mask *wholes, const struct score_lookup *lists, size_t *unknown, struct err *e)
+static int judge_all(uint32_t *seen, const struct mask *truth, size_t truth_n, const struct mask *wholes,
+	const struct mask_lookup *lookup, size_t *unknown, struct err *e)
 {
 	for (size_t t = 0; t < truth_n; t++) {
-		const struct score_mask *m = &truth[t];
+		const struct mask *m = &truth[t];
 		int group = SCORE_SEEN_UNKNOWN;
-		size_t index;
+		size_t at;
 		seen[t] = 0;
-		if (!rle_area(m->mask))
+		if (!rle_area(&m->rle))
 			continue;
-		if (score_lookup_best(lists, m->view, m->ref, m->object, &index) &&
-			judge(&group, m->mask, wholes[index].mask, e))
+		if (mask_lookup_find(lookup, m->view, m->ref, m->object, &at) != MASK_NONE &&
+			judge(&group, &m->rle, &wholes[at].rle, e))
 			return -1;
 		*unknown += group == SCORE_SEEN_UNKNOWN;
 		seen[t] = (uint32_t)1 << group;
@@ -102,21 +98,19 @@ static int judge_all(uint32_t *seen, const struct score_mask *truth, size_t trut
 	return 0;
 }
 
-int score_seen(uint32_t *sets, const struct score_pair *pairs, size_t pair_n, const struct score_mask *truth,
-	size_t truth_n, const struct score_mask *wholes, size_t n, size_t *unknown, struct err *e)
+int score_seen(uint32_t *sets, const struct score_pair *pairs, size_t pair_n, const struct mask *truth,
+	size_t truth_n, const struct mask *wholes, size_t n, size_t *unknown, struct err *e)
 {
-	struct score_lookup lists[SCORE_LOOKUPS] = {{0}};
-	uint32_t *seen = mem_alloc(truth_n, sizeof *seen, "masks", e);
-	int bad = !seen;
+	struct mask_lookup lookup;
 
 	*unknown = 0;
-	for (int by = 0; by < SCORE_LOOKUPS && !bad; by++)
-		bad = score_lookup_make(&lists[by], wholes, n, (enum score_lookup_by)by, e);
-	bad = bad || judge_all(seen, truth, truth_n, wholes, lists, unknown, e);
+	if (mask_lookup_make(&lookup, wholes, n, e))
+		return -1;
+	uint32_t *seen = mem_alloc(truth_n, sizeof *seen, "masks", e);
+	const int bad = !seen || judge_all(seen, truth, truth_n, wholes, &lookup, unknown, e);
 	for (size_t i = 0; i < pair_n && !bad; i++)
 		sets[i] = seen[pairs[i].truth_index];
-	for (int by = 0; by < SCORE_LOOKUPS; by++)
-		score_lookup_free(&lists[by]);
+	mask_lookup_free(&lookup);
 	free(seen);
 	return bad ? -1 : 0;
 }

@@ -38,7 +38,7 @@ extern const char *const score_seen_name[SCORE_SEEN];
  * ref, else of its view and object, one without ref first; another size is brought to the truth's by
  * rle_resize. `truth` (truth_n) is what was matched; *unknown counts the records in it that have something in
  * them, but no whole. */
-int score_seen(uint32_t *sets, const struct score_pair *pairs, size_t pair_n, const struct score_mask *truth,
-	size_t truth_n, const struct score_mask *wholes, size_t n, size_t *unknown, struct err *e);
+int score_seen(uint32_t *sets, const struct score_pair *pairs, size_t pair_n, const struct mask *truth,
+	size_t truth_n, const struct mask *wholes, size_t n, size_t *unknown, struct err *e);
 
 #endif

@@ -65,7 +65,8 @@ void synth_detector_make(struct synth_detector *d, const struct synth_object *ob
 {
 	struct rng r;
 
-	*d = (struct synth_detector){.seed = seed, .severity = severity, .n = n, .objects = objects};
+	*d = (struct synth_detector){
+		.seed = seed, .severity = severity, .n = n, .objects = objects, .sentences = sentences};
 	rng_seed(&r, seed, SYNTH_STREAM_FAULTS);
 	synth_noise_make(&d->noise, &r);
 	synth_habits_make(&d->habits, objects, n, sentences, severity, &r);
@@ -84,6 +85,7 @@ static enum fault choose_fault(const struct synth_detector *d, enum synth_habit 
 /* One view at work. */
 struct detection {
 	const struct synth_detector *d;
+	const char *view;
 	const uint8_t *truth;
 	uint8_t *mask; /* (height,width) of the candidate in the making */
 	int height, width;
@@ -164,17 +166,18 @@ static double choose_score(struct detection *v, int object, enum fault f, enum s
 	return round(1000 * fmin(0.95, fmax(0.2, score))) / 1000;
 }
 
-static int put(struct synth_candidates *out, struct detection *v, int object, int sentence, double score,
-	struct err *e)
+static int put(struct masks *out, struct detection *v, int object, int sentence, double score, struct err *e)
 {
-	if (mem_grow((void **)&out->items, &out->capacity, out->n + 1, sizeof *out->items, "candidates", e))
-		return -1;
-	struct synth_candidate *c = &out->items[out->n];
-	*c = (struct synth_candidate){.object = object, .sentence = sentence, .score = score};
-	if (rle_encode(&c->mask, v->mask, v->height, v->width, e))
-		return -1;
-	out->n++;
-	return 0;
+	const struct synth_detector *d = v->d;
+	struct mask m = {.score = score, .visible = NAN};
+
+	if ((m.view = mem_strdup(v->view, e)) &&
+		(m.ref = mem_strdup(d->sentences[object * SYNTH_SENTENCES + sentence].ref, e)) &&
+		(m.object = mem_strdup(d->objects[object].name, e)) &&
+		!rle_encode(&m.rle, v->mask, v->height, v->width, e))
+		return masks_add(out, &m, e);
+	mask_free(&m);
+	return -1;
 }
 
 /* What goes wrong this time. A hidden object is not found, but at times something else is; a small or mostly
@@ -194,8 +197,7 @@ static enum fault meet_fault(
 	return rng_uniform(r) < 0.6 * faintness(v, object) ? FAULT_MISSING : f;
 }
 
-static int detect_sentence(
-	struct synth_candidates *out, struct detection *v, int object, int sentence, struct err *e)
+static int detect_sentence(struct masks *out, struct detection *v, int object, int sentence, struct err *e)
 {
 	enum synth_habit habit = v->d->habits.of[object][sentence];
 	int other = v->d->habits.mistaken[object][sentence];
@@ -219,28 +221,20 @@ static int detect_sentence(
 	return 0;
 }
 
-int synth_detect(struct synth_candidates *out, const struct synth_detector *d, int view, const uint8_t *truth,
-	int height, int width, struct err *e)
+int synth_detect(struct masks *out, const struct synth_detector *d, int number, const char *view,
+	const uint8_t *truth, int height, int width, struct err *e)
 {
-	struct detection v = {.d = d, .truth = truth, .height = height, .width = width};
+	struct detection v = {.d = d, .view = view, .truth = truth, .height = height, .width = width};
 
 	v.pixels = (size_t)height * (size_t)width;
 	v.mask = mem_alloc(v.pixels, 1, "candidate mask", e);
 	if (!v.mask)
 		return -1;
-	rng_seed(&v.rng, d->seed, SYNTH_STREAM_VIEWS + (uint64_t)view);
+	rng_seed(&v.rng, d->seed, SYNTH_STREAM_VIEWS + (uint64_t)number);
 	int bad = 0;
 	for (int i = 0; i < d->n && !bad; i++)
 		for (int k = 0; k < SYNTH_TRAIN_SENTENCES && !bad; k++)
 			bad = detect_sentence(out, &v, i, k, e);
 	free(v.mask);
 	return bad;
-}
-
-void synth_candidates_free(struct synth_candidates *c)
-{
-	for (size_t i = 0; i < c->n; i++)
-		rle_free(&c->items[i].mask);
-	free(c->items);
-	*c = (struct synth_candidates){0};
 }

@@ -4,7 +4,7 @@
 #define SYNTH_CANDIDATES_H
 
 #include "base/err.h"
-#include "mask/rle.h"
+#include "mask/mask.h"
 #include "synth/habits.h"
 #include "synth/noise.h"
 
@@ -16,29 +16,19 @@ struct synth_detector {
 	enum synth_severity severity;
 	int n; /* objects */
 	const struct synth_object *objects;
+	const struct synth_sentence *sentences;
 	struct synth_habits habits;
 	struct synth_noise noise;
 };
 
-/* sentences: (n objects, SYNTH_SENTENCES); not kept. */
+/* sentences: (n objects, SYNTH_SENTENCES). Both are the caller's and must outlive the detector. */
 void synth_detector_make(struct synth_detector *d, const struct synth_object *objects, int n,
 	const struct synth_sentence *sentences, enum synth_severity severity, uint64_t seed);
 
-struct synth_candidate {
-	int object, sentence; /* sentence 0 to SYNTH_TRAIN_SENTENCES-1 of that object */
-	double score;	      /* 0.2 to 0.95, three decimals */
-	struct rle mask;      /* owned */
-};
-
-struct synth_candidates {
-	size_t n, capacity;
-	struct synth_candidate *items;
-};
-
-/* Appends what the detector finds in view number `view` for every training sentence. `truth` (n,height,width)
- * is what the objects show there. Depends on the seed and the view alone, not on the order of calls. */
-int synth_detect(struct synth_candidates *out, const struct synth_detector *d, int view, const uint8_t *truth,
-	int height, int width, struct err *e);
-void synth_candidates_free(struct synth_candidates *c);
+/* Appends what the detector finds in view number `number` for every training sentence, with scores of 0.2 to
+ * 0.95, of three decimals. `truth` (n,height,width) is what the objects show there. Depends on the seed and
+ * the view alone, not on the order of calls. */
+int synth_detect(struct masks *out, const struct synth_detector *d, int number, const char *view,
+	const uint8_t *truth, int height, int width, struct err *e);
 
 #endif

@@ -23,170 +23,154 @@ static uint64_t hash(uint64_t h, const void *data, size_t bytes)
 	return h;
 }
 
-/* A mask answers to its ref, or without one to its object. */
-static uint64_t hash_name(size_t view, const char *ref, const char *object)
+static const struct supervision_bits *find_equal(
+	const struct supervision *s, const struct supervision_bits *like)
 {
-	const char *name = ref ? ref : object ? object : "";
-
-	return hash(0xcbf29ce484222325 + 2 * view + !ref, name, strlen(name));
-}
-
-static int same(const char *a, const char *b)
-{
-	return a && b && !strcmp(a, b);
-}
-
-static const struct supervision_mask *find(
-	const struct supervision *s, size_t view, const char *ref, const char *object)
-{
-	const uint64_t h = hash_name(view, ref, object);
-
-	if (!s->slots)
-		return NULL;
-	for (size_t at = h % s->slots; s->by_name[at]; at = (at + 1) % s->slots) {
-		const struct supervision_mask *m = &s->masks[s->by_name[at] - 1];
-		if (m->name_hash == h && m->view == view &&
-			(ref ? same(m->ref, ref) : !m->ref && same(m->object, object)))
-			return m;
+	for (size_t at = like->hash % s->slots; s->by_bits[at]; at = (at + 1) % s->slots) {
+		const struct supervision_bits *b = &s->bits[s->by_bits[at] - 1];
+		if (b->hash == like->hash && b->view == like->view && b->bytes == like->bytes &&
+			!memcmp(b->bits, like->bits, b->bytes))
+			return b;
 	}
 	return NULL;
 }
 
-static const struct supervision_mask *find_equal(
-	const struct supervision *s, const struct supervision_mask *like)
+static void put(struct supervision *s, size_t mask)
 {
-	for (size_t at = like->bits_hash % s->slots; s->by_bits[at]; at = (at + 1) % s->slots) {
-		const struct supervision_mask *m = &s->masks[s->by_bits[at] - 1];
-		if (m->bits_hash == like->bits_hash && m->view == like->view && m->bytes == like->bytes &&
-			!memcmp(m->bits, like->bits, m->bytes))
-			return m;
-	}
-	return NULL;
-}
+	size_t at = s->bits[mask].hash % s->slots;
 
-static void put(size_t *table, size_t slots, uint64_t h, size_t mask)
-{
-	size_t at = h % slots;
-
-	while (table[at])
-		at = (at + 1) % slots;
-	table[at] = mask + 1;
-}
-
-static void put_mask(struct supervision *s, size_t mask)
-{
-	const struct supervision_mask *m = &s->masks[mask];
-
-	put(s->by_name, s->slots, m->name_hash, mask);
-	if (!m->is_shared)
-		put(s->by_bits, s->slots, m->bits_hash, mask);
+	while (s->by_bits[at])
+		at = (at + 1) % s->slots;
+	s->by_bits[at] = mask + 1;
 }
 
 /* Room for one more mask, with half of the slots free. */
 static int grow(struct supervision *s, struct err *e)
 {
-	void *block = s->masks;
+	const size_t n = s->masks.n;
 
-	if (mem_grow(&block, &s->capacity, s->n + 1, sizeof *s->masks, "masks", e))
+	if (mem_grow((void **)&s->bits, &s->capacity, n + 1, sizeof *s->bits, "masks", e))
 		return -1;
-	s->masks = block;
-	if (2 * (s->n + 1) <= s->slots)
+	if (2 * (n + 1) <= s->slots)
 		return 0;
 	const size_t slots = s->slots ? 2 * s->slots : FIRST_SLOTS;
-	size_t *tables = mem_zalloc(slots, 2 * sizeof *tables, "masks", e);
-	if (!tables)
+	size_t *table = mem_zalloc(slots, sizeof *table, "masks", e);
+	if (!table)
 		return -1;
-	free(s->by_name);
+	free(s->by_bits);
 	s->slots = slots;
-	s->by_name = tables;
-	s->by_bits = tables + slots;
-	for (size_t i = 0; i < s->n; i++)
-		put_mask(s, i);
+	s->by_bits = table;
+	for (size_t i = 0; i < n; i++)
+		if (!s->bits[i].is_shared)
+			put(s, i);
 	return 0;
 }
 
-static void free_mask(struct supervision_mask *m)
-{
-	free(m->ref);
-	free(m->object);
-	if (!m->is_shared)
-		free(m->bits);
-}
-
 /* The mask's bits, at the size of the view. */
-static int fill_bits(struct supervision_mask *m, int width, int height, const struct rle *mask, struct err *e)
+static int fill_bits(struct supervision_bits *b, int width, int height, const struct rle *mask, struct err *e)
 {
 	const size_t pixels = (size_t)width * (size_t)height;
-	struct rle resized = {0};
 	uint8_t *bytes = mem_alloc((size_t)width, (size_t)height, "mask", e);
 	int bad = -1;
 
-	m->bytes = bits_bytes(pixels);
-	m->bits = mem_alloc(m->bytes, 1, "mask", e);
-	if (bytes && m->bits && !rle_resize(&resized, mask, height, width, e)) {
-		rle_decode(&resized, bytes);
-		bits_pack(bytes, pixels, m->bits);
-		m->bits_hash = hash(m->view, m->bits, m->bytes);
+	b->bytes = bits_bytes(pixels);
+	b->bits = mem_alloc(b->bytes, 1, "mask", e);
+	if (bytes && b->bits && !rle_decode_at(mask, height, width, bytes, e)) {
+		bits_pack(bytes, pixels, b->bits);
+		b->hash = hash(b->view, b->bits, b->bytes);
 		bad = 0;
 	}
-	rle_free(&resized);
 	free(bytes);
 	return bad;
 }
 
-int supervision_add(struct supervision *s, size_t view, int width, int height, const char *ref,
-	const char *object, const struct rle *mask, struct err *e)
+int supervision_add(
+	struct supervision *s, size_t view, int width, int height, struct mask *mask, struct err *e)
 {
-	struct supervision_mask m = {.view = view, .name_hash = hash_name(view, ref, object)};
+	struct supervision_bits b = {.view = view};
+	const size_t at = s->masks.n;
 
-	if (find(s, view, ref, object))
-		return err_set(e, ERR_FORMAT, "a second mask of %s '%s' in the same view",
-			ref ? "ref" : "object", ref ? ref : object);
-	if ((ref && !(m.ref = mem_strdup(ref, e))) || (object && !(m.object = mem_strdup(object, e))) ||
-		fill_bits(&m, width, height, mask, e) || grow(s, e)) {
-		free_mask(&m);
+	if (fill_bits(&b, width, height, &mask->rle, e) || grow(s, e)) {
+		free(b.bits);
+		mask_free(mask);
 		return -1;
 	}
-	const struct supervision_mask *equal = find_equal(s, &m);
-	if (equal) {
-		free(m.bits);
-		m.bits = equal->bits;
-		m.is_shared = 1;
+	rle_free(&mask->rle);
+	if (masks_add(&s->masks, mask, e)) {
+		free(b.bits);
+		return -1;
 	}
-	s->masks[s->n] = m;
-	put_mask(s, s->n++);
+	const struct supervision_bits *equal = find_equal(s, &b);
+	if (equal) {
+		free(b.bits);
+		b.bits = equal->bits;
+		b.is_shared = 1;
+	}
+	s->bits[at] = b;
+	if (!equal)
+		put(s, at);
 	return 0;
+}
+
+int supervision_index(struct supervision *s, size_t *later, struct err *e)
+{
+	size_t earlier;
+
+	if (mask_index_make(&s->index, s->masks.items, s->masks.n, MASK_BY_REF, e))
+		return -1;
+	if (!mask_index_twice(&s->index, &earlier, later))
+		return 0;
+	const struct mask *m = &s->masks.items[*later];
+	return err_set(e, ERR_FORMAT, "a second mask of %s '%s' in the same view", m->ref ? "ref" : "object",
+		m->ref ? m->ref : m->object);
 }
 
 void supervision_free(struct supervision *s)
 {
-	for (size_t i = 0; i < s->n; i++)
-		free_mask(&s->masks[i]);
-	free(s->masks);
-	free(s->by_name);
+	for (size_t i = 0; i < s->masks.n; i++)
+		if (!s->bits[i].is_shared)
+			free(s->bits[i].bits);
+	masks_free(&s->masks);
+	mask_index_free(&s->index);
+	free(s->bits);
+	free(s->by_bits);
 	*s = (struct supervision){0};
+}
+
+/* The pairs of one view, whose name its masks have; NULL where it has no mask. */
+static int link_view(const struct supervision *s, const char *const *refs, const char *const *objects,
+	size_t sentences, const char *name, struct train_view *view, struct err *e)
+{
+	view->count = 0;
+	view->sentences = mem_alloc(sentences, sizeof *view->sentences, "sentences", e);
+	view->masks = mem_alloc(sentences, sizeof *view->masks, "masks", e);
+	if (!view->sentences || !view->masks)
+		return -1;
+	for (size_t r = 0; r < sentences && name; r++) {
+		size_t begin, end;
+		mask_index_ref(&s->index, name, refs[r], &begin, &end);
+		if (begin == end)
+			mask_index_object(&s->index, name, objects[r], &begin, &end);
+		if (begin == end)
+			continue;
+		view->sentences[view->count] = (int)r;
+		view->masks[view->count++] = s->bits[s->index.keys[begin].at].bits;
+	}
+	return 0;
 }
 
 int supervision_link(const struct supervision *s, const char *const *refs, const char *const *objects,
 	size_t sentences, struct train_view *views, size_t view_count, struct err *e)
 {
-	for (size_t v = 0; v < view_count; v++) {
-		views[v].count = 0;
-		views[v].sentences = mem_alloc(sentences, sizeof *views[v].sentences, "sentences", e);
-		views[v].masks = mem_alloc(sentences, sizeof *views[v].masks, "masks", e);
-		if (!views[v].sentences || !views[v].masks)
-			return -1;
-		for (size_t r = 0; r < sentences; r++) {
-			const struct supervision_mask *m = find(s, v, refs[r], NULL);
-			if (!m)
-				m = find(s, v, NULL, objects[r]);
-			if (!m)
-				continue;
-			views[v].sentences[views[v].count] = (int)r;
-			views[v].masks[views[v].count++] = m->bits;
-		}
-	}
-	return 0;
+	const char **names = mem_zalloc(view_count, sizeof *names, "views", e);
+	int bad = !names;
+
+	for (size_t i = 0; i < s->masks.n && !bad; i++)
+		names[s->bits[i].view] = s->masks.items[i].view;
+	for (size_t v = 0; v < view_count && !bad; v++)
+		bad = link_view(s, refs, objects, sentences, names[v], &views[v], e);
+	free(names);
+	return bad ? -1 : 0;
 }
 
 void supervision_unlink(struct train_view *views, size_t view_count)

@@ -3,38 +3,43 @@
 #define TRAIN_SUPERVISION_H
 
 #include "base/err.h"
-#include "mask/rle.h"
+#include "mask/mask_index.h"
 #include "train/train.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
-struct supervision_mask {
+/* What a mask covers at the size of its view's weights. */
+struct supervision_bits {
 	size_t view;
-	char *ref, *object; /* NULL where the record had none */
-	uint8_t *bits;	    /* of the view's weights' pixels, mask/bits.h */
+	uint8_t *bits; /* mask/bits.h */
 	size_t bytes;
-	int is_shared; /* the bits are those of an earlier mask of the view, which is equal */
-	uint64_t name_hash, bits_hash;
+	int is_shared; /* they are those of an earlier mask of the view, which is equal */
+	uint64_t hash;
 };
 
 struct supervision {
-	size_t n, capacity;
-	struct supervision_mask *masks;
-	/* Two hash tables of mask numbers + 1, 0 where free: all masks by view and name, those with bits of
-	 * their own by view and bits. */
-	size_t slots, *by_name, *by_bits;
+	struct masks masks; /* without their runs */
+	size_t capacity;
+	struct supervision_bits *bits; /* (masks.n) */
+	struct mask_index index;       /* of supervision_index */
+	/* A hash table of mask numbers + 1, 0 where free: those with bits of their own by view and bits. */
+	size_t slots, *by_bits;
 };
 
-/* Takes a copy of a mask, at the size of the view's weights: another size is reduced by area and cut at one
- * half. ERR_FORMAT (without a file name) where the view already has a mask of that ref, or of that object
- * without ref. */
-int supervision_add(struct supervision *s, size_t view, int width, int height, const char *ref,
-	const char *object, const struct rle *mask, struct err *e);
+/* Takes a mask over, at the size of its view's weights: another size is reduced by area and cut at one half.
+ * Returns 0, or -1 with *e set; the mask is taken over also then. */
+int supervision_add(
+	struct supervision *s, size_t view, int width, int height, struct mask *mask, struct err *e);
+
+/* After all were added. ERR_FORMAT (without a file name) and *later where mask number *later has the view and
+ * ref, or without ref the view and object, of an earlier one. */
+int supervision_index(struct supervision *s, size_t *later, struct err *e);
 void supervision_free(struct supervision *s);
 
-/* Fills count, sentences and masks of every view: a sentence is taught by the mask of its ref, else by that
- * of its object without ref. The views' weights are left alone. Free with supervision_unlink. */
+/* Fills count, sentences and masks of every view, after supervision_index: a sentence is taught by the mask
+ * of its ref, else by that of its object without ref. The views' weights are left alone. Free with
+ * supervision_unlink. */
 int supervision_link(const struct supervision *s, const char *const *refs, const char *const *objects,
 	size_t sentences, struct train_view *views, size_t view_count, struct err *e);
 void supervision_unlink(struct train_view *views, size_t view_count);

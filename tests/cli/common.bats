@@ -29,6 +29,7 @@ missing_input() {
 		refer-render --scene none --text none --model none -o out
 		refer-locate --scene none --text none --model none -o out
 		refer-ask -o out none question
+		refer-report -o out none
 		miou-score --truth none none
 		gs-synth --seed 1 -o /dev/null/none
 	END

@@ -19,6 +19,7 @@ refer-train -q --scene scene --weights weights --text text.safetensors --masks m
 	-o model.safetensors
 mkdir -p kitchen/lifted cache/refersplat
 cp -r scene kitchen/scene
+cp text.safetensors kitchen/text.safetensors
 cp -r encoder cache/refersplat/encoder
 refer-lift -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl -o kitchen/lifted/model.safetensors
 # A painted photograph: the first sentence's object, white on black.

@@ -39,6 +39,12 @@ not() { ! "$@"; }
 	cmp weights1 weights2
 	cmp weights1 weights7
 	"$BIN/gs-check" weights1
+	# two members, unless one is wanted: the first is the same
+	"$BIN/parse-train" --members 1 --epochs 2 examples -o single
+	[ "$(head -c 10000 weights1 | grep -a -c '"1.closed"')" = 1 ]
+	[ "$(head -c 10000 single | grep -a -c '"1.closed"')" = 0 ]
+	crc() { head -c 10000 "$1" | grep -a -o '"crc32.closed":"[0-9a-f]*"'; }
+	[ "$(crc weights1)" = "$(crc single)" ]
 	"$BIN/text-parse" --parser weights1 examples >out
 	[ "$(wc -l <out)" = 60 ]
 	"$BIN/gs-check" out

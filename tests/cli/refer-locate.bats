@@ -84,6 +84,20 @@ silent nothing" ]
 	jq -se 'all(.[]; .score > 0 and .score <= 1)' boxes.jsonl
 }
 
+@test "of several things each has boxes of its own" {
+	"$BIN/refer-lift" -q --scene scene --weights "$made/weights" --text "$made/all.safetensors" --masks "$made/lift-masks.jsonl" \
+		-o lifted.safetensors
+	printf '%s\n' 'the brown box and the yellow bowl' 'the brown box' 'the yellow bowl' >asked.txt
+	"$BIN/text-encode" -q --model "$made/encoder" -o asked.safetensors asked.txt
+	"$BIN/refer-locate" --scene scene --text asked.safetensors --model lifted.safetensors -o boxes.jsonl
+	"$BIN/gs-check" boxes.jsonl
+	[ "$(jq -c '[.parts[]?.object]' boxes.jsonl | head -n 1)" = '["brown box","yellow bowl"]' ]
+	[ "$(jq -c 'has("parts")' boxes.jsonl | tr '\n' ' ')" = "true false false " ]
+	jq -se '.[0].parts as $p | . as $all | all(range(2); . as $k | all("min", "max", "oriented"; $p[$k][.] == $all[$k + 1][.]))' \
+		boxes.jsonl
+	jq -se '.[0] as $r | all($r.parts[]; . as $p | all(range(3); $r.min[.] <= $p.max[.] and $p.min[.] <= $r.max[.]))' boxes.jsonl
+}
+
 @test "a sentence without words is nowhere" {
 	says 0 '{"ref":"silent","object":"nothing","score":0,"count":0,"centre":null,"min":null,"max":null,"oriented":null,"gaussians":[]}' \
 		locate --refs silent

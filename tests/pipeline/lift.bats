@@ -50,6 +50,17 @@ not() { ! "$@"; }
 	not grep -qE "$BIN/'" <<<"$output"
 }
 
+@test "report makes the page of it, trains nothing, and says where it is" {
+	run lift report
+	[ "$status" = 0 ]
+	[ "${lines[-1]}" = "open in a browser: file://$WORK/report.html" ]
+	page=$(sed -n 's,^<script type="application/json" id="data">\(.*\)</script>$,\1,p' "$WORK/report.html")
+	[ "$(jq -r '[.sets[].name] | join(",")' <<<"$page")" = test,asked,train ]
+	jq -e '.steps | map(select(.step == "lift")) | .[0].seconds > 0 and (.[0].command | startswith("refer-lift "))' <<<"$page"
+	[ ! -e "$WORK/stage1" ]
+	rm "$WORK/report.html"
+}
+
 @test "nothing is asked, scored or trained that was not wanted" {
 	WORK=$BATS_TEST_TMPDIR/plain lift ASK= WHOLE= BOXES= TRUTH= >log 2>&1
 	[ ! -e "$BATS_TEST_TMPDIR/plain/lifted/asked.jsonl" ]

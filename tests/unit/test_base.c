@@ -1,5 +1,6 @@
 #include "unit.h"
 
+#include "base/base64.h"
 #include "base/hash.h"
 #include "base/mem.h"
 #include "base/rng.h"
@@ -34,6 +35,22 @@ static void hash_known_answers(void)
 	}
 }
 
+/* The examples of RFC 4648, section 10, and bytes that need every bit. */
+static void base64_known_answers(void)
+{
+	static const struct {
+		const char *bytes, *text;
+	} known[] = {{"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foob", "Zm9vYg=="},
+		{"fooba", "Zm9vYmE="}, {"foobar", "Zm9vYmFy"}, {"\xff\xfe\xfd\xfc", "//79/A=="}};
+
+	for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+		struct err e;
+		char *text = base64_text("data:", known[i].bytes, strlen(known[i].bytes), &e);
+		CHECK(text && !strncmp(text, "data:", 5) && !strcmp(text + 5, known[i].text), "%s", text);
+		free(text);
+	}
+}
+
 static void half_round_trip(void)
 {
 	int wrong = 0;
@@ -61,6 +78,7 @@ int main(void)
 {
 	rng_known_answers();
 	hash_known_answers();
+	base64_known_answers();
 	half_round_trip();
 	sizes_overflow();
 	return unit_end();

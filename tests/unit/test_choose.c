@@ -88,7 +88,7 @@ static struct choice choice;
 static int ask_from(const char *text, unsigned parts, struct viewpoint from)
 {
 	static float vectors[MOST * WIDTH];
-	const struct choose_sentence s = {text, text, vectors, encode(text, vectors), from};
+	const struct choose_sentence s = {text, text, vectors, encode(text, vectors), from, NULL};
 	struct err e;
 	int best = 0;
 
@@ -168,6 +168,16 @@ static void sets(void)
 	CHECK(set_of("all mugs except the left one") == 2, "%x", set_of("all mugs except the left one"));
 	CHECK(set_of("the second mug from the left") == 2, "%x", set_of("the second mug from the left"));
 	CHECK(set_of("the second mug from the right") == 1, "%x", set_of("the second mug from the right"));
+	/* what an ordinal counts along: an end that is named, a superlative, the way from an anchor */
+	static const struct {
+		const char *text;
+		unsigned meant;
+	} counted[] = {{"the second mug on the left", 2}, {"the last mug on the left", 1},
+		{"the first thing behind the tin", 1 | 2}, {"the third thing behind the tin", 4},
+		{"the second largest thing", 1 | 2 | 8}, {"the largest thing but one", 1 | 2 | 8}};
+	for (size_t i = 0; i < sizeof counted / sizeof *counted; i++)
+		CHECK(set_of(counted[i].text) & counted[i].meant, "'%s': %x", counted[i].text,
+			set_of(counted[i].text));
 }
 
 /* From behind, left is right. */
@@ -200,8 +210,9 @@ static void absent(void)
 static void many(void)
 {
 	static float a[MOST * WIDTH], b[MOST * WIDTH];
-	const struct choose_sentence s[] = {{"the red box", "the red box", a, encode("the red box", a), {0}},
-		{"another", NULL, b, encode("the dull can", b), {0}}};
+	const struct choose_sentence s[] = {
+		{"the red box", "the red box", a, encode("the red box", a), {0}, NULL},
+		{"another", NULL, b, encode("the dull can", b), {0}, NULL}};
 	float both[2 * OBJECTS];
 	char of_both[2 * OBJECTS];
 	struct choice two[2];
@@ -236,7 +247,7 @@ static void kept(void)
 	for (int i = 0; i < 10; i++) {
 		const char *text = asked[i / 2];
 		from.kind = i % 2 ? VIEWPOINT_POINT : VIEWPOINT_USUAL;
-		const struct choose_sentence s = {text, text, vectors, encode(text, vectors), from};
+		const struct choose_sentence s = {text, text, vectors, encode(text, vectors), from, NULL};
 		CHECK(!choose_with(c, &s, 1, &with, of_kept, chosen_kept, NULL, &e) &&
 				!choose(&scene, &s, 1, CHOOSE_ALL, &without, alone, chosen_alone, NULL, &e),
 			"'%s': %s", text, e.message);

@@ -32,8 +32,8 @@ struct problem {
 	struct view_weights weights[VIEWS];
 	size_t count[VIEWS];
 	struct lift_mask masks[VIEWS][2 * O];
-	struct rle rles[MOST];
-	size_t rle_count;
+	struct mask shown[MOST];
+	size_t shown_count;
 };
 
 static struct view_weights make_view(struct random_view *v, struct rng *r)
@@ -57,21 +57,21 @@ static void add_mask(struct problem *q, int view, size_t object, int from, int t
 {
 	const int h = H * times, w = W * times;
 	uint8_t *pixels = malloc((size_t)h * (size_t)w);
-	struct rle *rle = &q->rles[q->rle_count++];
+	struct mask *mask = &q->shown[q->shown_count++];
 	struct err e;
 
 	for (int y = 0; y < h; y++)
 		for (int x = 0; x < w; x++)
 			pixels[y * w + x] = x >= from * times && x < to * times;
-	CHECK(!rle_encode(rle, pixels, h, w, &e), "%s", e.message);
+	CHECK(!rle_encode(&mask->rle, pixels, h, w, &e), "%s", e.message);
 	free(pixels);
-	q->masks[view][q->count[view]++] = (struct lift_mask){object, rle};
+	q->masks[view][q->count[view]++] = (struct lift_mask){mask, object};
 }
 
 static void problem_free(struct problem *q)
 {
-	for (size_t i = 0; i < q->rle_count; i++)
-		rle_free(&q->rles[i]);
+	for (size_t i = 0; i < q->shown_count; i++)
+		rle_free(&q->shown[i].rle);
 	free(q);
 }
 
@@ -121,7 +121,7 @@ static int naive_mask(const struct problem *q, int v, size_t o, double *mask)
 		if (q->masks[v][k].object == o) {
 			struct rle r;
 			struct err e;
-			CHECK(!rle_resize(&r, q->masks[v][k].mask, H, W, &e), "%s", e.message);
+			CHECK(!rle_resize(&r, &q->masks[v][k].mask->rle, H, W, &e), "%s", e.message);
 			rle_decode(&r, pixels);
 			rle_free(&r);
 			for (int p = 0; p < P; p++)

@@ -4,7 +4,7 @@
 #include "unit.h"
 
 /* One record of a text: masks_next's value. */
-static int parse(const char *text, size_t len, struct mask_record *r, struct err *e)
+static int parse(const char *text, size_t len, struct mask *r, struct err *e)
 {
 	struct jsonl j = {.in = fmemopen((void *)(size_t)text, len, "rb"), .path = "mem"};
 	int got = j.in ? masks_next(&j, r, e) : -1;
@@ -13,7 +13,7 @@ static int parse(const char *text, size_t len, struct mask_record *r, struct err
 	return got;
 }
 
-static char *print(const struct mask_record *r)
+static char *print(const struct mask *r)
 {
 	char *text = NULL;
 	size_t len;
@@ -35,11 +35,11 @@ static void test_round_trips(void)
 	for (int round = 0; round < 100; round++) {
 		int h = 1 + (int)rng_below(&rng, 30), w = 1 + (int)rng_below(&rng, 30);
 		uint8_t *pixels = mask_random(&rng, h, w, round % 5);
-		char view[] = "view \"1\"", ref[] = "r\\1/%", object[] = "r\xc3\xa4t";
-		struct mask_record r = {view, round % 3 ? ref : NULL, round % 3 == 1 ? NULL : object,
-			round % 4 ? rng_uniform(&rng) : NAN, mask_rle(pixels, h, w),
+		const char *view = "view \"1\"", *ref = "r\\1/%", *object = "r\xc3\xa4t";
+		struct mask r = {view, round % 3 ? ref : NULL, round % 3 == 1 ? NULL : object,
+			mask_rle(pixels, h, w), round % 4 ? rng_uniform(&rng) : NAN,
 			round % 7 ? NAN : rng_uniform(&rng)};
-		struct mask_record back;
+		struct mask back;
 		char *text = print(&r);
 		if (CHECK(parse(text, strlen(text), &back, &e) == 1, "round %d: %s", round, e.message)) {
 			char *again = print(&back);
@@ -51,10 +51,10 @@ static void test_round_trips(void)
 			CHECK(isnan(r.visible) ? isnan(back.visible) : back.visible == r.visible, "%.17g",
 				back.visible);
 			free(again);
-			mask_record_free(&back);
+			mask_free(&back);
 		}
 		free(text);
-		rle_free(&r.mask);
+		rle_free(&r.rle);
 		free(pixels);
 	}
 }
@@ -66,7 +66,7 @@ static const char record[] =
  * end. */
 static void test_cuts(void)
 {
-	struct mask_record r;
+	struct mask r;
 	struct err e;
 
 	for (size_t len = 1; len < strlen(record); len++) {
@@ -76,7 +76,7 @@ static void test_cuts(void)
 			"cut at %zu: %s", len, e.message);
 	}
 	CHECK(parse(record, strlen(record), &r, &e) == 1, "%s", e.message);
-	mask_record_free(&r);
+	mask_free(&r);
 	CHECK(parse("\n", 1, &r, &e) == 0, "an empty line");
 }
 
@@ -89,7 +89,7 @@ static void test_changes(void)
 	rng_seed(&rng, 6, 1);
 	for (int round = 0; round < 20000; round++) {
 		char text[sizeof record];
-		struct mask_record r;
+		struct mask r;
 		struct err e = {0};
 		memcpy(text, record, sizeof record);
 		for (uint32_t i = 0; i <= rng_below(&rng, 3); i++)
@@ -97,7 +97,7 @@ static void test_changes(void)
 		int got = parse(text, strlen(record), &r, &e);
 		if (got == 1) {
 			good++;
-			mask_record_free(&r);
+			mask_free(&r);
 		} else if (got < 0) {
 			bad++;
 			if (e.code != ERR_FORMAT || strncmp(e.message, "mem:", 4))

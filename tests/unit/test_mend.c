@@ -5,13 +5,13 @@
 
 #include <stdio.h>
 
-/* An analysis of a text: for each word '.' nothing, T target, A anchor, L also, a attribute, P predicate; the
- * number after A, a and P is the word that it hangs on, none for ROOT. */
+/* An analysis of a text: for each word '.' nothing, T target, A anchor, L also, a attribute, P predicate, E
+ * left out; the number after A, a and P is the word that it hangs on, none for ROOT. */
 static struct analysis made(const struct tokens *t, const char *roles, enum parse_relation relation)
 {
-	static const char letters[] = ".TALaP";
+	static const char letters[] = ".TALaPE";
 	static const enum word_role role[] = {
-		ROLE_NONE, ROLE_TARGET, ROLE_ANCHOR, ROLE_ALSO, ROLE_ATTRIBUTE, ROLE_PREDICATE};
+		ROLE_NONE, ROLE_TARGET, ROLE_ANCHOR, ROLE_ALSO, ROLE_ATTRIBUTE, ROLE_PREDICATE, ROLE_EXCEPT};
 	struct analysis a = {.n = t->n};
 	int i = 0;
 
@@ -102,6 +102,61 @@ static void mends_attachment(void)
 	CHECK(a.word[4].role == ROLE_ALSO, "the bowl too: role %d", a.word[4].role);
 }
 
+/* Words that look like places or further things and are none; two sides; what is stated to be there. */
+static void mends_readings(void)
+{
+	mends("any jug other than the grey one", ". T . . . a5 L", 0, 6, ROLE_EXCEPT, ROOT, 0);
+	mends("where I left my jug", ". . P . T", PARSE_LEFT, 2, ROLE_NONE, ROOT, 0);
+	mends("the jug left of my coat", ". T P . . A2", PARSE_LEFT, 2, ROLE_PREDICATE, ROOT, PARSE_LEFT);
+	mends("pass me over the jug", ". . P . T", PARSE_ABOVE, 2, ROLE_NONE, ROOT, 0);
+	mends("pass me the jug over the sink", ". . . T P . A4", PARSE_ABOVE, 4, ROLE_PREDICATE, ROOT,
+		PARSE_ABOVE);
+
+	const char *sides = "it has a coat on its left and a hat on its right";
+	mends(sides, ". . . A6 . . P . . A6 . . P", PARSE_RIGHT, 9, ROLE_ANCHOR, 12, 0);
+	mends(sides, ". . . A6 . . P . . A6 . . P", PARSE_RIGHT, 3, ROLE_ANCHOR, 6, 0);
+
+	const char *nor = "the jug neither on the shelf nor by the door";
+	mends(nor, ". T . P . A3 . P5 . A7", PARSE_NEAR, 7, ROLE_PREDICATE, 5, PARSE_NEAR);
+	mends("behind the coat there is a jug", "P . A0 . . . A0", PARSE_BEHIND, 6, ROLE_TARGET, ROOT, 0);
+	mends("the hat behind the coat there is a jug", ". T P . A2 . . . A2", PARSE_BEHIND, 8, ROLE_ANCHOR,
+		2, 0);
+}
+
+/* What a word is said of, which of two predicates an anchor is of, and what is meant where nothing seems to
+ * be. */
+static void mends_neighbours(void)
+{
+	mends("the lamp left of the grey one", ". T P . . a A2", PARSE_LEFT, 5, ROLE_ATTRIBUTE, 6, 0);
+	mends("the lamp over by the sink", ". T P P . A2", PARSE_NEAR, 5, ROLE_ANCHOR, 3, 0);
+	mends("the lamp over by the sink", ". T P P . A2", PARSE_NEAR, 2, ROLE_NONE, ROOT, 0);
+	mends("the lamp on the sink by the door", ". T P . A2 P . A5", PARSE_NEAR, 7, ROLE_ANCHOR, 5, 0);
+	mends("the nearest lamp to the sink", ". P T P . A3", PARSE_NEAR, 5, ROLE_ANCHOR, 1, 0);
+	mends("the nearest lamp to the sink", ". P T P . A3", PARSE_NEAR, 3, ROLE_NONE, ROOT, 0);
+	mends("not the jug, the other lamp", ". . E . . E", 0, 5, ROLE_TARGET, ROOT, 0);
+	mends("the goat on the rug", ". a P . A2", PARSE_ON, 1, ROLE_TARGET, ROOT, 0);
+	mends("the red on the rug", ". a P . A2", PARSE_ON, 1, ROLE_ATTRIBUTE, ROOT, 0);
+	mends("a jug in the middle between the lamp and the sink", ". T . . P P . A4 . . A5", PARSE_BETWEEN,
+		7, ROLE_ANCHOR, 5, 0);
+	mends("not the jug nor the other lamp", ". . E . . . E", 0, 6, ROLE_EXCEPT, ROOT, 0);
+	mends("brighter than the lamp", "P . . T", PARSE_LARGER, 0, ROLE_ATTRIBUTE, ROOT, 0);
+	mends("taller than the lamp", "P . . T", PARSE_TALLER, 0, ROLE_PREDICATE, ROOT, PARSE_TALLER);
+}
+
+/* What is neither here nor there is neither: the second is denied of the same thing as the first. */
+static void mends_nor(void)
+{
+	struct tokens t;
+	struct analysis a, grammar;
+
+	tokens_take(&t, "the jug neither on the shelf nor by the door", NULL, NULL, 0);
+	grammar_analyse(&grammar, &t);
+	a = made(&t, ". T . P . A3 . P5 . A7", PARSE_NEAR);
+	a.word[3].negated = 1;
+	analysis_mend(&a, &grammar, &t);
+	CHECK(a.word[7].head == ROOT && a.word[7].negated, "by the door: of %d", a.word[7].head);
+}
+
 static struct parse parsed(const char *text)
 {
 	struct parse p;
@@ -148,6 +203,15 @@ static void settles(void)
 	p = parsed("the two grey ones");
 	CHECK(p.phrases[0].count == 2, "two ones: %d", p.phrases[0].count);
 	parse_free(&p);
+	p = parsed("of all the coats, the longest");
+	CHECK(p.phrases[0].count == PARSE_ONE, "one coat: %d", p.phrases[0].count);
+	parse_free(&p);
+	p = parsed("the jug second nearest to the door");
+	CHECK(p.phrases[0].ordinal == 2, "the second jug: %d", p.phrases[0].ordinal);
+	parse_free(&p);
+	p = parsed("the tallest lamp but two");
+	CHECK(p.phrases[0].ordinal == 3, "the third: %d", p.phrases[0].ordinal);
+	parse_free(&p);
 	p = parsed("taller than the lamp");
 	CHECK(p.clauses[0].degree == PARSE_MORE && p.clauses[0].anchors.n == 1, "a lamp is compared with");
 	parse_free(&p);
@@ -157,6 +221,9 @@ int main(void)
 {
 	mends_all();
 	mends_attachment();
+	mends_readings();
+	mends_nor();
+	mends_neighbours();
 	settles();
 	return unit_end();
 }

@@ -279,6 +279,56 @@ static double loss_of(const struct parser_weights *w, struct parser_weights *dw,
 	return parser_backward(w, to, b, lessons, scratch);
 }
 
+/* A member that is the same as the first changes nothing; another one does, and the order of the two does not
+ * matter much. */
+static void members_are_averaged(void)
+{
+	struct parser_weights w[2];
+	struct parser_batch one, two;
+	struct parser_features features[2][5] = {{{0}}};
+	float vectors[5 * WIDTH];
+	struct err e = {0};
+	struct rng r;
+	double same = 0, other = 0, swapped = 0;
+
+	rng_seed(&r, 3, 1);
+	for (int i = 0; i < 5 * WIDTH; i++)
+		vectors[i] = (float)rng_normal(&r);
+	for (int k = 0; k < 2; k++) {
+		CHECK(!parser_weights_make(&w[k], WIDTH, &e), "%s", e.message);
+		parser_weights_begin(&w[k], &r);
+	}
+	struct parser_weights again = w[0], joined = w[0], turned = w[1];
+	again.next = &w[0];
+	joined.next = &w[1];
+	turned.next = &w[0];
+	CHECK(!parser_batch_make(&one, 5, 1, &w[0], &e) && !parser_batch_make(&two, 5, 1, &joined, &e), "%s",
+		e.message);
+	parser_batch_add(&one, features[0], vectors, 5, WIDTH);
+	parser_batch_add(&two, features[1], vectors, 5, WIDTH);
+	parser_forward(&w[0], &one);
+	const struct parser_weights *const pair[3] = {&again, &joined, &turned};
+	double *const far[3] = {&same, &other, &swapped};
+	float first[6], scores[3][6];
+	parser_arcs(&w[0], &one, 0, 2, first);
+	for (int k = 0; k < 3; k++) {
+		parser_forward(pair[k], &two);
+		for (int i = 0; i < 5 * NET_OUT; i++)
+			*far[k] = fmax(*far[k], fabs((double)(two.out[i] - one.out[i])));
+		parser_arcs(pair[k], &two, 0, 2, scores[k]);
+	}
+	CHECK(same == 0 && other > 0.01 && fabs(other - swapped) < 1e-5, "%g %g %g", same, other, swapped);
+	for (int j = 0; j < 6; j++) {
+		CHECK(scores[0][j] == first[j], "arc %d: %g", j, (double)(scores[0][j] - first[j]));
+		CHECK(fabs((double)(scores[1][j] - scores[2][j])) < 1e-5, "arc %d, turned: %g", j,
+			(double)(scores[1][j] - scores[2][j]));
+	}
+	parser_batch_free(&one);
+	parser_batch_free(&two);
+	for (int k = 0; k < 2; k++)
+		parser_weights_free(&w[k]);
+}
+
 /* Central differences at random parameters, in single precision: the largest wrong share of the gradient's
  * size. */
 static void gradient_is_right(void)
@@ -294,9 +344,8 @@ static void gradient_is_right(void)
 
 	rng_seed(&r, 5, 2);
 	CHECK(!parser_weights_make(&w, WIDTH, &e) && !parser_weights_make(&dw, WIDTH, &e) &&
-			!parser_weights_make(&spare, WIDTH, &e) &&
-			!parser_batch_make(&b, 200, 3, WIDTH, &e) &&
-			!parser_batch_make(&scratch, 200, 3, WIDTH, &e),
+			!parser_weights_make(&spare, WIDTH, &e) && !parser_batch_make(&b, 200, 3, &w, &e) &&
+			!parser_batch_make(&scratch, 200, 3, &w, &e),
 		"%s", e.message);
 	parser_weights_begin(&w, &r);
 	for (int k = 0; k < 3; k++) {
@@ -395,6 +444,7 @@ int main(void)
 	indifferent_to_dress();
 	turned_round();
 	counts_and_orders();
+	members_are_averaged();
 	gradient_is_right();
 	examples_are_whole();
 	return unit_end();

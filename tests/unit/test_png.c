@@ -1,5 +1,6 @@
 /* PNG and JPEG: what we write comes back, other people's kinds are read, broken ones are refused. */
 #include "base/rng.h"
+#include "formats/jpeg.h"
 #include "formats/png.h"
 #include "unit.h"
 
@@ -289,6 +290,33 @@ static void put_be(char *to, uint32_t x, int bytes)
 }
 
 /* A picture that says it is large takes no memory, however short its file is. */
+/* What is written reads back as nearly the same colours, and a picture that is too large is an error. */
+static void test_write_jpeg(void)
+{
+	enum { H = 21, W = 34 };
+	static uint8_t rgb[3 * H * W];
+	uint8_t *bytes, *back;
+	size_t n;
+	int h, w, off = 0;
+	struct err e = {0};
+
+	for (int p = 0; p < H * W; p++) {
+		rgb[3 * p] = (uint8_t)(10 * (p / W));
+		rgb[3 * p + 1] = (uint8_t)(6 * (p % W));
+		rgb[3 * p + 2] = 120;
+	}
+	CHECK(!jpeg_encode("p", rgb, H, W, 95, &bytes, &n, &e), "%s", e.message);
+	put((char *)bytes, n);
+	CHECK(!image_read_rgb(path, &back, &h, &w, &e) && h == H && w == W, "%s", e.message);
+	for (int i = 0; i < 3 * H * W; i++)
+		off = abs(back[i] - rgb[i]) > off ? abs(back[i] - rgb[i]) : off;
+	CHECK(off < 16, "a colour is off by %d", off);
+	free(back);
+	free(bytes);
+	CHECK(jpeg_encode("p", rgb, 1, 70000, 95, &bytes, &n, &e) && strstr(e.message, "p: JPEG: "), "%s",
+		e.message);
+}
+
 static void test_size(void)
 {
 	static const uint8_t rows[2 * 9];
@@ -327,6 +355,7 @@ int main(void)
 	test_write();
 	test_broken_png();
 	test_jpeg();
+	test_write_jpeg();
 	test_size();
 	unlink(path);
 	return unit_end();

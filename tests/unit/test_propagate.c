@@ -65,8 +65,8 @@ static int naive_pixel(const struct scene *s, int from, const uint8_t *mask, int
 	return yes > known / 2 && known >= all / 2;
 }
 
-static void check_view(const struct scene *s, const struct propagation *c, uint8_t *const *pixels, int view,
-	int *in, int *out)
+static void check_view(const struct scene *s, const struct propagation *c, const struct mask *candidates,
+	uint8_t *const *pixels, int view, int *in, int *out)
 {
 	struct rle masks[2][OBJECTS];
 	uint8_t got[P];
@@ -79,14 +79,14 @@ static void check_view(const struct scene *s, const struct propagation *c, uint8
 	}
 	for (size_t k = 0; k < c->count; k++) {
 		const struct rle *m = &masks[0][k], *other = &masks[1][k];
-		const uint8_t *mask = pixels[c->masks[k].record];
+		const uint8_t *mask = pixels[c->starts[k].mask - candidates];
 		CHECK(m->n == other->n && !memcmp(m->runs, other->runs, m->n * sizeof *m->runs),
 			"view %d mask %zu: threads differ", view, k);
 		rle_decode(m, got);
 		for (int p = 0; p < P; p++) {
-			int expected = (int)c->masks[k].view == view
+			int expected = (int)c->starts[k].view == view
 					       ? mask[p]
-					       : naive_pixel(s, (int)c->masks[k].view, mask, view, p);
+					       : naive_pixel(s, (int)c->starts[k].view, mask, view, p);
 			if (expected < 0)
 				continue;
 			CHECK(got[p] == expected, "view %d mask %zu pixel %d", view, k, p);
@@ -104,8 +104,7 @@ static void test_propagation(void)
 {
 	static struct scene s;
 	static char names[OBJECTS][16];
-	struct pool_record records[MOST];
-	struct rle masks[MOST];
+	struct mask masks[MOST];
 	uint8_t *pixels[MOST];
 	size_t views[MOST], n = 0, count = 0;
 	int in = 0, out = 0;
@@ -122,32 +121,31 @@ static void test_propagation(void)
 			const double score = o == 3 ? 0.3 : o < 3 && view == 0 ? 0.1 : 0.9 - 0.1 * k;
 			snprintf(names[o], sizeof names[o], "o%d", o);
 			pixels[n] = mask_random(&r, H, W, 1);
-			masks[n] = mask_rle(pixels[n], H, W);
 			views[n] = (size_t)view;
-			records[n] =
-				(struct pool_record){s.views[view].name, NULL, names[o], &masks[n], score};
+			masks[n] = (struct mask){
+				s.views[view].name, NULL, names[o], mask_rle(pixels[n], H, W), score, NAN};
 			n++;
 		}
-	CHECK(!pool_make(&pool, records, n, &e) && !pool_select(&pool, SELECT_TOP1, 0.3, &e), "%s",
-		e.message);
+	CHECK(!pool_make(&pool, masks, n, &e) && !pool_select(&pool, SELECT_TOP1, 0.3, &e), "%s", e.message);
 	CHECK(!propagate_init(&c, &pool, views, &s.cameras, &e), "%s", e.message);
 	CHECK(c.count == OBJECTS - 1 && c.source_count == 2, "%zu in %zu views", c.count, c.source_count);
 	for (int o = 0; o < OBJECTS; o++) {
 		if (o == 3)
 			continue;
-		CHECK(c.masks[count].record == (size_t)(3 * o) && c.masks[count].view == (o < 3 ? 2 : 0),
-			"object %d: record %zu, view %zu", o, c.masks[count].record, c.masks[count].view);
+		const struct propagate_start *at = &c.starts[count];
+		CHECK(at->mask == &masks[3 * o] && at->view == (o < 3 ? 2 : 0),
+			"object %d: mask %td, view %zu", o, at->mask - masks, at->view);
 		count++;
 	}
 	for (size_t i = 0; i < c.source_count; i++)
 		CHECK(!propagate_lift(&c, i, &s.weights[c.sources[i].view], H, W, &e), "%s", e.message);
 	for (int v = 0; v < VIEWS; v++)
-		check_view(&s, &c, pixels, v, &in, &out);
+		check_view(&s, &c, masks, pixels, v, &in, &out);
 	CHECK(in > P && out > P, "%d pixels in masks, %d not", in, out);
 	propagate_free(&c);
 	pool_free(&pool);
 	for (size_t i = 0; i < n; i++) {
-		rle_free(&masks[i]);
+		rle_free(&masks[i].rle);
 		free(pixels[i]);
 	}
 }
@@ -156,13 +154,13 @@ static void test_pool(void)
 {
 	const uint8_t wide[6] = {0, 1}, tall[6] = {1};
 	struct rle m[2] = {mask_rle(wide, 2, 3), mask_rle(tall, 3, 2)};
-	struct pool_record records[] = {
-		{"b", "cup-1", "cup", &m[0], 0.5},
-		{"a", "cup", NULL, &m[0], 0.5}, /* a sentence's name is no object's */
-		{"a", "cup-1", "cup", &m[0], 0.2},
-		{"b", "jar-1", "jar", &m[0], 0.5},
-		{"a", "cup-2", "cup", &m[0], 0.6},
-		{"b", "cup-2", "cup", &m[0], 0.7},
+	struct mask records[] = {
+		{"b", "cup-1", "cup", m[0], 0.5, NAN},
+		{"a", "cup", NULL, m[0], 0.5, NAN}, /* a sentence's name is no object's */
+		{"a", "cup-1", "cup", m[0], 0.2, NAN},
+		{"b", "jar-1", "jar", m[0], 0.5, NAN},
+		{"a", "cup-2", "cup", m[0], 0.6, NAN},
+		{"b", "cup-2", "cup", m[0], 0.7, NAN},
 	};
 	const size_t first[] = {0, 1, 2, 3}, object[] = {0, 1, 0, 3}, sizes[] = {2, 1, 2, 1};
 	const long winner[] = {5, 1, 4, 3};
@@ -180,7 +178,7 @@ static void test_pool(void)
 			g->winner);
 	}
 	pool_free(&p);
-	records[4].mask = &m[1];
+	records[4].rle = m[1];
 	CHECK(!pool_make(&p, records, 6, &e) && pool_check_sizes(&p, &bad, &other) && bad == 4 && other == 1,
 		"%zu differs from %zu", bad, other);
 	pool_free(&p);

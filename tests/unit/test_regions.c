@@ -18,8 +18,7 @@ struct scene {
 	float weight[VIEWS][2 * P];
 	struct view_weights weights[VIEWS];
 	size_t n, views[MOST];
-	struct pool_record records[MOST];
-	struct rle masks[MOST];
+	struct mask masks[MOST];
 };
 
 static const char *const objects[OBJECTS] = {"box", "bag", "can", "jar"};
@@ -58,7 +57,7 @@ static void add(struct scene *s, int object, const char *ref, int view, int show
 	struct err e;
 
 	draw(pixels, shown, view, cut);
-	struct rle *mask = &s->masks[s->n], small = mask_rle(pixels, H, W);
+	struct rle *mask = &s->masks[s->n].rle, small = mask_rle(pixels, H, W);
 	/* one view has larger pictures */
 	if (view == 2) {
 		CHECK(!rle_resize(mask, &small, 2 * H, 2 * W, &e), "%s", e.message);
@@ -67,7 +66,7 @@ static void add(struct scene *s, int object, const char *ref, int view, int show
 		*mask = small;
 	}
 	s->views[s->n] = (size_t)view;
-	s->records[s->n++] = (struct pool_record){names[view], ref, objects[object], mask, score};
+	s->masks[s->n++] = (struct mask){names[view], ref, objects[object], *mask, score, NAN};
 }
 
 /* Three of the bag's four sentences show the box, surely, in all views but one; the fourth knows it.
@@ -130,7 +129,7 @@ static void check_sums(const struct scene *s, const struct regions *r)
 			CHECK(at->begin == at->end, "candidate %zu has no weights", c);
 			continue;
 		}
-		CHECK(!rle_resize(&same, at->mask, H, W, &e), "%s", e.message);
+		CHECK(!rle_resize(&same, &at->mask->rle, H, W, &e), "%s", e.message);
 		rle_decode(&same, pixels);
 		rle_free(&same);
 		for (int i = 0; i < N; i++)
@@ -210,11 +209,12 @@ static void test_confusion(void)
 	rng_seed(&r, 21, 1);
 	make_weights(&s, &r);
 	make_candidates(&s);
-	CHECK(!pool_make(&pool, s.records, s.n, &e) && !pool_select(&pool, SELECT_CIOU, 0.3, &e), "%s",
+	CHECK(!pool_make(&pool, s.masks, s.n, &e) && !pool_select(&pool, SELECT_CIOU, 0.3, &e), "%s",
 		e.message);
 	for (size_t g = 0; g < pool.group_count; g++)
-		if (!strcmp(s.records[pool.groups[g].first].object, "bag"))
-			wrong += iou(pool.groups[g].mask, BAG, (int)s.views[pool.groups[g].first]) < 0.1;
+		if (!strcmp(s.masks[pool.groups[g].first].object, "bag"))
+			wrong += iou(&s.masks[pool.groups[g].winner].rle, BAG,
+					 (int)s.views[pool.groups[g].first]) < 0.1;
 	CHECK(wrong == 4, "votes err in %zu views", wrong);
 	for (int threads = 1; threads <= 2; threads++) {
 		omp_set_num_threads(threads);
@@ -232,7 +232,7 @@ static void test_confusion(void)
 		}
 	pool_free(&pool);
 	for (size_t i = 0; i < s.n; i++)
-		rle_free(&s.masks[i]);
+		rle_free(&s.masks[i].rle);
 }
 
 static void test_none(void)

@@ -44,7 +44,7 @@ static int winner(enum parse_relation kind, enum parse_degree degree, int first,
 {
 	double p[2][OBJECTS + 1] = {{0}};
 	const struct relate_anchor anchors[] = {{.p = p[0]}, {.p = p[1]}};
-	const struct relation r = {kind, degree, 0, (first >= 0) + (second >= 0), anchors};
+	const struct relation r = {kind, degree, RELATE_NARROW, 0, (first >= 0) + (second >= 0), anchors};
 	int best = 0;
 
 	if (first >= 0)
@@ -155,7 +155,7 @@ static void every_anchor(void)
 {
 	double p[OBJECTS + 1] = {0};
 	struct relate_anchor anchor = {.p = p, .is_every = 1};
-	const struct relation r = {PARSE_TALLER, PARSE_MORE, 0, 1, &anchor};
+	const struct relation r = {PARSE_TALLER, PARSE_MORE, RELATE_NARROW, 0, 1, &anchor};
 
 	p[TALL] = p[LEFT] = 1;
 	relate(&table, &r, fit, key, out);

@@ -150,6 +150,42 @@ static void test_halves(void)
 	rle_free(&from);
 }
 
+/* Brought to one size after another, and back: each time from the mask itself. */
+static void test_fit(void)
+{
+	static const int sizes[][2] = {{20, 30}, {7, 11}, {7, 11}, {41, 13}, {20, 30}, {20, 31}};
+	struct rng rng;
+	struct err e = {0};
+
+	rng_seed(&rng, 8, 1);
+	for (int round = 0; round < 20; round++) {
+		uint8_t *pixels = mask_random(&rng, 20, 30, round % 5), got[64 * 64], expected[64 * 64];
+		struct rle r = mask_rle(pixels, 20, 30);
+		struct rle_fitted f = {.own = &r};
+		for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+			const int h = sizes[k][0], w = sizes[k][1];
+			const size_t count = (size_t)h * (size_t)w;
+			struct rle resized;
+			CHECK(!rle_resize(&resized, &r, h, w, &e) && !rle_fit(&f, &resized, &e), "%s",
+				e.message);
+			CHECK(rle_same_size(f.now, &resized) && f.area == rle_area(&resized) &&
+					(f.now == &r) == rle_same_size(&r, &resized),
+				"round %d, %dx%d", round, w, h);
+			rle_decode(&resized, expected);
+			rle_decode(f.now, got);
+			CHECK(!memcmp(got, expected, count), "round %d: fitted to %dx%d", round, w, h);
+			CHECK(!rle_decode_at(&r, h, w, got, &e) && !memcmp(got, expected, count),
+				"round %d: decoded at %dx%d", round, w, h);
+			rle_free(&resized);
+		}
+		rle_fitted_free(&f);
+		rle_free(&r);
+		free(pixels);
+	}
+	CHECK(rle_decode_at(&(struct rle){1, 1, 1, (uint32_t[]){1}}, 0, 3, NULL, &e) && e.code == ERR_FORMAT,
+		"no size");
+}
+
 static void expect_string_error(const char *text, int h, int w, const char *message)
 {
 	struct rle r;
@@ -224,6 +260,7 @@ int main(void)
 {
 	test_golden();
 	test_random();
+	test_fit();
 	test_resize();
 	test_halves();
 	test_errors();

@@ -131,9 +131,35 @@ static void conversions(void)
 		"doubles %g %g", out[0], out[1]);
 }
 
+/* Two tensors whose long names differ at the end only: each has a checksum of its own. */
+static void long_names(void)
+{
+	enum { LONG = 700 };
+	static char names[2][LONG + 1];
+	char path[] = "/tmp/refersplat-test-XXXXXX";
+	struct st_tensor two[2];
+	struct safetensors st;
+	struct err e = {0};
+
+	for (int i = 0; i < 2; i++) {
+		memset(names[i], 'a', LONG - 1);
+		names[i][LONG - 1] = (char)('0' + i);
+		two[i] = tensors[i];
+		two[i].name = names[i];
+	}
+	close(mkstemp(path));
+	if (CHECK(!safetensors_write(path, two, 2, NULL, 0, &e) && !safetensors_open(&st, path, &e), "%s",
+		    e.message)) {
+		CHECK(st.n == 2 && st.meta_count == 2, "%zu tensors, %zu keys", st.n, st.meta_count);
+		safetensors_close(&st);
+	}
+	unlink(path);
+}
+
 int main(void)
 {
 	written_bytes();
+	long_names();
 	read_back();
 	needs();
 	conversions();

@@ -1,3 +1,4 @@
+#include "mask/mask_index.h"
 #include "mask_help.h"
 #include "score/score.h"
 #include "unit.h"
@@ -26,19 +27,19 @@ static void test_by_hand(void)
 {
 	struct rle four = row("11110000"), two = row("11000000"), other = row("00001100"),
 		   none = row("00000000");
-	const struct score_mask truth[] = {
-		{"v1", NULL, "cup", &four},
-		{"v1", NULL, "plate", &none},
-		{"v1", "spoon-1", "spoon", &two},
-		{"v2", NULL, "cup", &four},
+	const struct mask truth[] = {
+		{"v1", NULL, "cup", four, 1, NAN},
+		{"v1", NULL, "plate", none, 1, NAN},
+		{"v1", "spoon-1", "spoon", two, 1, NAN},
+		{"v2", NULL, "cup", four, 1, NAN},
 	};
-	const struct score_mask predictions[] = {
-		{"v1", "cup-1", "cup", &four},	   /* 4/4 */
-		{"v1", "cup-2", "cup", &two},	   /* 2/4 */
-		{"v1", "plate-1", "plate", &four}, /* empty truth */
-		{"v1", "spoon-1", NULL, &other},   /* 0/4 */
-		{"v1", "fork-1", "fork", &four},   /* no such truth */
-		{"v9", "cup-1", "cup", &four},	   /* no such view */
+	const struct mask predictions[] = {
+		{"v1", "cup-1", "cup", four, 1, NAN},	  /* 4/4 */
+		{"v1", "cup-2", "cup", two, 1, NAN},	  /* 2/4 */
+		{"v1", "plate-1", "plate", four, 1, NAN}, /* empty truth */
+		{"v1", "spoon-1", NULL, other, 1, NAN},	  /* 0/4 */
+		{"v1", "fork-1", "fork", four, 1, NAN},	  /* no such truth */
+		{"v9", "cup-1", "cup", four, 1, NAN},	  /* no such view */
 	};
 	struct score_pairs p;
 	struct score s;
@@ -76,28 +77,29 @@ static void test_by_hand(void)
 static void test_refs(void)
 {
 	struct rle a = row("11110000"), b = row("00001111"), c = row("11111111");
-	const struct score_mask truth[] = {
-		{"v", "r1", "cup", &a},
-		{"v", "r2", "cup", &b},
-		{"v", NULL, "cup", &c},
+	const struct mask truth[] = {
+		{"v", "r1", "cup", a, 1, NAN},
+		{"v", "r2", "cup", b, 1, NAN},
+		{"v", NULL, "cup", c, 1, NAN},
 	};
-	const struct score_mask by_ref[] = {
-		{"v", "r2", "cup", &b}, {"v", "r7", "cup", &c}, {"v", NULL, "cup", &a}};
+	const struct mask by_ref[] = {
+		{"v", "r2", "cup", b, 1, NAN}, {"v", "r7", "cup", c, 1, NAN}, {"v", NULL, "cup", a, 1, NAN}};
 	struct score_pairs p;
 	struct err e = {0};
 
 	CHECK(!score_match(&p, truth, 3, by_ref, 3, &e) && p.n == 4, "%zu", p.n);
 	measure(&p);
-	CHECK(p.items[0].truth == &b && p.items[0].iou == 1, "r2 has a truth of its own");
-	CHECK(p.items[1].truth == &c && p.items[1].iou == 1, "r7 has not: the object's, the one without ref");
-	CHECK(p.items[2].truth == &a && p.items[2].iou == 1, "without ref: r1, which no ref named");
-	CHECK(p.items[3].truth == &c && p.items[3].iou == 0.5, "without ref: and the object's");
+	CHECK(p.items[0].truth == &truth[1] && p.items[0].iou == 1, "r2 has a truth of its own");
+	CHECK(p.items[1].truth == &truth[2] && p.items[1].iou == 1,
+		"r7 has not: the object's, the one without ref");
+	CHECK(p.items[2].truth == &truth[0] && p.items[2].iou == 1, "without ref: r1, which no ref named");
+	CHECK(p.items[3].truth == &truth[2] && p.items[3].iou == 0.5, "without ref: and the object's");
 	score_pairs_free(&p);
 
 	/* no truth without ref: the first of the object; the rest are missing */
 	CHECK(!score_match(&p, truth, 2, by_ref + 1, 1, &e) && p.n == 2, "%zu", p.n);
-	CHECK(p.items[0].truth == &a && p.items[0].prediction == &c && p.items[1].truth == &b &&
-			!p.items[1].prediction,
+	CHECK(p.items[0].truth == &truth[0] && p.items[0].prediction == &by_ref[1] &&
+			p.items[1].truth == &truth[1] && !p.items[1].prediction,
 		"r7 meets r1's, r2 is missing");
 	score_pairs_free(&p);
 
@@ -112,26 +114,35 @@ static void test_refs(void)
 	rle_free(&c);
 }
 
+static int twice(const struct mask *m, size_t n, size_t *earlier, size_t *later)
+{
+	struct mask_index x;
+	struct err e;
+
+	if (mask_index_make(&x, m, n, MASK_BY_REF, &e))
+		abort();
+	const int found = mask_index_twice(&x, earlier, later);
+	mask_index_free(&x);
+	return found;
+}
+
 static void test_duplicates(void)
 {
 	struct rle a = row("11110000");
-	struct score_mask m[] = {
-		{"v", "r1", "cup", &a},
-		{"v", "r2", "cup", &a},
-		{"w", "r1", "cup", &a},
-		{"v", NULL, "cup", &a},
-		{"v", NULL, "pan", &a},
-		{"v", "r2", NULL, &a},
+	struct mask m[] = {
+		{"v", "r1", "cup", a, 1, NAN},
+		{"v", "r2", "cup", a, 1, NAN},
+		{"w", "r1", "cup", a, 1, NAN},
+		{"v", NULL, "cup", a, 1, NAN},
+		{"v", NULL, "pan", a, 1, NAN},
+		{"v", "r2", NULL, a, 1, NAN},
 	};
 	size_t earlier = 9, later = 9;
-	struct err e;
 
-	CHECK(!score_duplicate(m, 5, &earlier, &later, &e), "%zu %zu", earlier, later);
-	CHECK(score_duplicate(m, 6, &earlier, &later, &e) == 1 && earlier == 1 && later == 5, "%zu %zu",
-		earlier, later);
+	CHECK(!twice(m, 5, &earlier, &later), "%zu %zu", earlier, later);
+	CHECK(twice(m, 6, &earlier, &later) && earlier == 1 && later == 5, "%zu %zu", earlier, later);
 	m[4].object = "cup";
-	CHECK(score_duplicate(m, 6, &earlier, &later, &e) == 1 && earlier == 3 && later == 4, "%zu %zu",
-		earlier, later);
+	CHECK(twice(m, 6, &earlier, &later) && earlier == 3 && later == 4, "%zu %zu", earlier, later);
 	rle_free(&a);
 }
 
@@ -139,7 +150,7 @@ static void test_duplicates(void)
 static void test_sizes(void)
 {
 	const uint8_t big[16] = {1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0}, small[4] = {1, 0, 0, 0};
-	struct rle truth = mask_rle(big, 4, 4), prediction = mask_rle(small, 2, 2);
+	struct mask truth = {.rle = mask_rle(big, 4, 4)}, prediction = {.rle = mask_rle(small, 2, 2)};
 	struct score_pair p = {.object = "o", .truth = &truth, .prediction = &prediction};
 	struct err e;
 
@@ -149,8 +160,8 @@ static void test_sizes(void)
 	p.prediction = &truth;
 	CHECK(!score_measure(&p, &e) && p.intersection == 1 && p.either == 1, "%zu %zu", p.intersection,
 		p.either);
-	rle_free(&truth);
-	rle_free(&prediction);
+	rle_free(&truth.rle);
+	rle_free(&prediction.rle);
 }
 
 int main(void)

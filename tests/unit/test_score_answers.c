@@ -17,7 +17,7 @@ struct world {
 	char refs[SENTENCES][8];
 	char *meant[SENTENCES][OBJECTS];
 	struct answer_sentence sentences[SENTENCES];
-	struct score_mask truths[VIEWS * OBJECTS], predictions[VIEWS * SENTENCES];
+	struct mask truths[VIEWS * OBJECTS], predictions[VIEWS * SENTENCES];
 	size_t truth_n, prediction_n;
 };
 
@@ -43,8 +43,8 @@ static void world_make(struct world *w, uint64_t seed)
 			memcpy(w->truth[v][o], m, P);
 			free(m);
 			w->truth_rle[v][o] = mask_rle(w->truth[v][o], H, W);
-			w->truths[w->truth_n++] = (struct score_mask){
-				view_names[v], NULL, object_names[o], &w->truth_rle[v][o]};
+			w->truths[w->truth_n++] = (struct mask){
+				view_names[v], NULL, object_names[o], w->truth_rle[v][o], 1, NAN};
 		}
 		for (int s = 0; s < SENTENCES; s++) {
 			uint8_t *m = mask_random(&r, H, W, rng_below(&r, 3) ? 1 : 2);
@@ -57,8 +57,8 @@ static void world_make(struct world *w, uint64_t seed)
 			free(m);
 			w->said_rle[v][s] = mask_rle(w->said[v][s], H, W);
 			if (rng_below(&r, 8))
-				w->predictions[w->prediction_n++] = (struct score_mask){
-					view_names[v], w->refs[s], NULL, &w->said_rle[v][s]};
+				w->predictions[w->prediction_n++] = (struct mask){
+					view_names[v], w->refs[s], NULL, w->said_rle[v][s], 1, NAN};
 		}
 	}
 }
@@ -184,7 +184,7 @@ static void against_pixels(const struct world *w)
 /* Records in another order: the same answers. */
 static void order_does_not_matter(const struct world *w)
 {
-	struct score_mask truths[VIEWS * OBJECTS], predictions[VIEWS * SENTENCES];
+	struct mask truths[VIEWS * OBJECTS], predictions[VIEWS * SENTENCES];
 	struct answers a, b;
 	struct err e;
 
@@ -224,7 +224,7 @@ static void predictions_of_another_size(void)
 		for (int x = 0; x < 2 * W; x++)
 			large[y * 2 * W + x] = small[y / 2 * W + x / 2];
 	struct rle t = mask_rle(small, H, W), p = mask_rle(large, 2 * H, 2 * W);
-	struct score_mask truth = {"v", NULL, "cup", &t}, prediction = {"v", "r", NULL, &p};
+	struct mask truth = {"v", NULL, "cup", t, 1, NAN}, prediction = {"v", "r", NULL, p, 1, NAN};
 	if (CHECK(!answers_make(&a, &s, 1, &truth, 1, &prediction, 1, &e), "%s", e.message)) {
 		CHECK(a.n == 1 && a.items[0].is_right && a.items[0].iou > 0.999 && a.items[0].f1[1] > 0.999,
 			"iou %g", a.items[0].iou);
@@ -234,14 +234,45 @@ static void predictions_of_another_size(void)
 	rle_free(&p);
 }
 
+/* A view whose true masks have several sizes: the prediction is held against each at its own. */
+static void truths_of_several_sizes(void)
+{
+	uint8_t small[4] = {1, 0, 0, 0}, large[16] = {0}, huge[64] = {0};
+	char *objects[] = {"a", "b"};
+	struct answer_sentence s[] = {{.ref = "r", .object_count = 1, .objects = objects},
+		{.ref = "r", .object_count = 2, .objects = objects}};
+	struct answers a;
+	struct err e;
+
+	for (int y = 0; y < 4; y++)
+		for (int x = 0; x < 4; x++) {
+			large[y * 4 + x] = y < 2 && x < 2;
+			huge[y * 8 + x] = 1;
+		}
+	huge[8 * 4] = 1; /* too little to count at a smaller size */
+	const struct mask truth[] = {{"v", NULL, "a", mask_rle(large, 4, 4), 1, NAN},
+		{"v", NULL, "b", mask_rle(small, 2, 2), 1, NAN},
+		{"v", NULL, "c", mask_rle(huge, 8, 8), 1, NAN}};
+	const struct mask prediction = {"v", "r", NULL, mask_rle(huge, 8, 8), 1, NAN};
+	if (CHECK(!answers_make(&a, s, 2, truth, 3, &prediction, 1, &e), "%s", e.message)) {
+		/* as c covers the same, the second shows more than is meant */
+		CHECK(a.n == 2 && a.items[0].is_right && !a.items[1].is_right, "%zu answers", a.n);
+		CHECK(a.items[0].iou == 1 && a.items[1].iou == 1, "%g %g", a.items[0].iou, a.items[1].iou);
+		answers_free(&a);
+	}
+	for (int i = 0; i < 3; i++)
+		rle_free(&(struct rle){.runs = truth[i].rle.runs});
+	rle_free(&(struct rle){.runs = prediction.rle.runs});
+}
+
 static void unknown_and_unmatched(void)
 {
 	uint8_t pixels[P] = {1};
 	char *objects[] = {object_names[0], object_names[1]};
 	struct answer_sentence s[2] = {{.ref = "r", .object_count = 2, .objects = objects}, {.ref = "none"}};
 	struct rle m = mask_rle(pixels, H, W);
-	struct score_mask truth = {"v", NULL, "cup", &m};
-	struct score_mask predictions[2] = {{"v", "other", NULL, &m}, {"v", NULL, "cup", &m}};
+	struct mask truth = {"v", NULL, "cup", m, 1, NAN};
+	struct mask predictions[2] = {{"v", "other", NULL, m, 1, NAN}, {"v", NULL, "cup", m, 1, NAN}};
 	struct answers a;
 	struct err e;
 
@@ -293,6 +324,7 @@ int main(void)
 		world_free(&w);
 	}
 	predictions_of_another_size();
+	truths_of_several_sizes();
 	unknown_and_unmatched();
 	unions();
 	return unit_end();

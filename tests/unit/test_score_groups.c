@@ -17,8 +17,8 @@ static struct rle row(int n, int ones)
 enum { MASKS = 9 };
 static struct rle mask[MASKS]; /* mask[i] has i of 8 pixels */
 
-static void join(struct score_pairs *a, struct score_pairs *b, const struct score_mask *truth, size_t n,
-	const struct score_mask *own, size_t own_n, const struct score_mask *other, size_t other_n)
+static void join(struct score_pairs *a, struct score_pairs *b, const struct mask *truth, size_t n,
+	const struct mask *own, size_t own_n, const struct mask *other, size_t other_n)
 {
 	struct err e;
 
@@ -37,10 +37,10 @@ static const char *shown(char text[64], const struct score_pairs *a, const struc
 {
 	*text = 0;
 	for (size_t i = 0; i < a->n; i++) {
-		const struct rle *sides[2] = {a->items[i].prediction, b->items[i].prediction};
+		const struct mask *sides[2] = {a->items[i].prediction, b->items[i].prediction};
 		char *end = text + strlen(text);
 		for (int s = 0; s < 2; s++)
-			*end++ = sides[s] ? (char)('0' + rle_area(sides[s])) : '-';
+			*end++ = sides[s] ? (char)('0' + rle_area(&sides[s]->rle)) : '-';
 		*end = 0;
 		strcat(text, " ");
 	}
@@ -49,13 +49,15 @@ static const char *shown(char text[64], const struct score_pairs *a, const struc
 
 static void test_join(void)
 {
-	const struct score_mask truth[] = {
-		{"v", NULL, "pan", &mask[8]}, {"v", NULL, "cup", &mask[4]}, {"w", "r1", "cup", &mask[3]}};
-	const struct score_mask both[] = {
-		{"v", "r2", "cup", &mask[2]}, {"v", "r1", "cup", &mask[1]}, {"w", "r1", "cup", &mask[5]}};
-	const struct score_mask later[] = {{"v", "r3", "cup", &mask[7]}, {"v", "r2", "cup", &mask[6]}};
-	const struct score_mask bare[] = {{"v", NULL, "cup", &mask[3]}, {"w", NULL, "cup", &mask[2]}};
-	const struct score_mask mixed[] = {{"v", NULL, "cup", &mask[3]}, {"v", "r1", "cup", &mask[4]}};
+	const struct mask truth[] = {{"v", NULL, "pan", mask[8], 1, NAN}, {"v", NULL, "cup", mask[4], 1, NAN},
+		{"w", "r1", "cup", mask[3], 1, NAN}};
+	const struct mask both[] = {{"v", "r2", "cup", mask[2], 1, NAN}, {"v", "r1", "cup", mask[1], 1, NAN},
+		{"w", "r1", "cup", mask[5], 1, NAN}};
+	const struct mask later[] = {
+		{"v", "r3", "cup", mask[7], 1, NAN}, {"v", "r2", "cup", mask[6], 1, NAN}};
+	const struct mask bare[] = {{"v", NULL, "cup", mask[3], 1, NAN}, {"w", NULL, "cup", mask[2], 1, NAN}};
+	const struct mask mixed[] = {
+		{"v", NULL, "cup", mask[3], 1, NAN}, {"v", "r1", "cup", mask[4], 1, NAN}};
 	struct score_pairs a, b;
 	char text[64];
 
@@ -95,7 +97,7 @@ static void test_join(void)
 	score_pairs_free(&a);
 	score_pairs_free(&b);
 
-	const struct score_mask nameless = {"v", "r1", NULL, &mask[8]};
+	const struct mask nameless = {"v", "r1", NULL, mask[8], 1, NAN};
 	join(&a, &b, &nameless, 1, NULL, 0, both, 3);
 	CHECK(!strcmp(a.items[0].object, "cup"), "the only prediction's: %s", a.items[0].object);
 	score_pairs_free(&a);
@@ -110,12 +112,12 @@ static void test_join(void)
 static void test_compare(void)
 {
 	const struct bootstrap how = {2000, 0.95, 1};
-	const struct score_mask truth[] = {{"v", NULL, "a", &mask[4]}, {"v", NULL, "b", &mask[4]},
-		{"v", NULL, "c", &mask[4]}, {"v", NULL, "d", &mask[0]}};
-	const struct score_mask own[] = {{"v", NULL, "a", &mask[4]}, {"v", NULL, "b", &mask[2]},
-		{"v", NULL, "c", &mask[2]}, {"v", NULL, "d", &mask[1]}};
-	const struct score_mask other[] = {{"v", NULL, "a", &mask[2]}, {"v", NULL, "b", &mask[3]},
-		{"v", NULL, "c", &mask[2]}, {"v", NULL, "d", &mask[0]}};
+	const struct mask truth[] = {{"v", NULL, "a", mask[4], 1, NAN}, {"v", NULL, "b", mask[4], 1, NAN},
+		{"v", NULL, "c", mask[4], 1, NAN}, {"v", NULL, "d", mask[0], 1, NAN}};
+	const struct mask own[] = {{"v", NULL, "a", mask[4], 1, NAN}, {"v", NULL, "b", mask[2], 1, NAN},
+		{"v", NULL, "c", mask[2], 1, NAN}, {"v", NULL, "d", mask[1], 1, NAN}};
+	const struct mask other[] = {{"v", NULL, "a", mask[2], 1, NAN}, {"v", NULL, "b", mask[3], 1, NAN},
+		{"v", NULL, "c", mask[2], 1, NAN}, {"v", NULL, "d", mask[0], 1, NAN}};
 	struct score_pairs a, b;
 	struct score_row r = {0};
 	struct err e;
@@ -193,8 +195,10 @@ static void test_sayings(void)
 {
 	const struct score_sentence sentences[] = {
 		{"r3", "red"}, {"r1", "left of it"}, {"r2", "between the two, on the table"}};
-	const struct score_pair pairs[] = {{.ref = "r1", .truth_ref = "r3"}, {.truth_ref = "r2"},
-		{.ref = "r3"}, {.ref = "r4"}, {.ref = NULL}, {.ref = "r5", .is_empty = 1}};
+	const struct mask bare = {.object = "o"}, truth_2 = {.ref = "r2"}, truth_3 = {.ref = "r3"};
+	const struct score_pair pairs[] = {{.ref = "r1", .truth = &truth_3}, {.truth = &truth_2},
+		{.ref = "r3", .truth = &bare}, {.ref = "r4", .truth = &bare}, {.truth = &bare},
+		{.ref = "r5", .truth = &bare, .is_empty = 1}};
 	uint32_t sets[6];
 	const char *names[SCORE_SAYINGS];
 	size_t unknown = 0;
@@ -218,7 +222,7 @@ static void test_seen(void)
 	static const int expected[8] = {SCORE_SEEN_LITTLE, SCORE_SEEN_PARTLY, SCORE_SEEN_PARTLY,
 		SCORE_SEEN_MOSTLY, SCORE_SEEN_MOSTLY, SCORE_SEEN_WELL, SCORE_SEEN_WELL, -1};
 	static const char *const views[8] = {"0", "1", "2", "3", "4", "5", "6", "7"};
-	struct score_mask truth[8], wholes[8];
+	struct mask truth[8], wholes[8];
 	struct score_pair pairs[8];
 	uint32_t sets[8];
 	size_t unknown = 0;
@@ -226,9 +230,9 @@ static void test_seen(void)
 
 	for (size_t i = 0; i < 8; i++) {
 		truths[i] = row(20, ones[i]);
-		truth[i] = (struct score_mask){views[i], NULL, "o", &truths[i]};
-		wholes[i] = (struct score_mask){views[i], NULL, "o", i % 2 ? &whole : &half};
-		pairs[i] = (struct score_pair){.truth_index = i, .truth = &truths[i]};
+		truth[i] = (struct mask){views[i], NULL, "o", truths[i], 1, NAN};
+		wholes[i] = (struct mask){views[i], NULL, "o", i % 2 ? whole : half, 1, NAN};
+		pairs[i] = (struct score_pair){.truth_index = i, .truth = &truth[i]};
 	}
 	CHECK(!score_seen(sets, pairs, 8, truth, 8, wholes, 8, &unknown, &e) && !unknown, "%zu", unknown);
 	for (int i = 0; i < 8; i++)
@@ -237,9 +241,9 @@ static void test_seen(void)
 
 	/* three wholes are gone, of which one is of an empty truth; one has nothing in it; one is too small
 	 */
-	const struct score_mask few[] = {{"0", "r", "o", &whole}, {"3", NULL, "o", &mask[0]},
-		{"4", NULL, "o", &truths[0]}, {"5", "r", "o", &truths[3]}, {"5", NULL, "o", &whole},
-		{"6", NULL, "p", &whole}};
+	const struct mask few[] = {{"0", "r", "o", whole, 1, NAN}, {"3", NULL, "o", mask[0], 1, NAN},
+		{"4", NULL, "o", truths[0], 1, NAN}, {"5", "r", "o", truths[3], 1, NAN},
+		{"5", NULL, "o", whole, 1, NAN}, {"6", NULL, "p", whole, 1, NAN}};
 	truth[5].ref = "r";
 	CHECK(!score_seen(sets, pairs, 8, truth, 8, few, 6, &unknown, &e) && unknown == 4, "%zu", unknown);
 	CHECK(sets[0] == 1u << SCORE_SEEN_LITTLE, "one with a ref serves where there is none without");
@@ -254,9 +258,9 @@ static void test_seen(void)
 
 static void test_views(void)
 {
-	struct score_mask truth[] = {{"u", NULL, "1", NULL}, {"v", NULL, "2", NULL}, {"u", NULL, "3", NULL},
-		{"w", NULL, "4", NULL}};
-	const struct score_mask own[] = {{"w", NULL, "x", NULL}}, other[] = {{"u", NULL, "x", NULL}};
+	struct mask truth[] = {{"u", NULL, "1", {0}, 1, NAN}, {"v", NULL, "2", {0}, 1, NAN},
+		{"u", NULL, "3", {0}, 1, NAN}, {"w", NULL, "4", {0}, 1, NAN}};
+	const struct mask own[] = {{"w", NULL, "x", {0}, 1, NAN}}, other[] = {{"u", NULL, "x", {0}, 1, NAN}};
 	size_t n = 4;
 	struct err e;
 

@@ -58,13 +58,16 @@ static void detector_depends_on_the_view_alone(void)
 	enum { N = 5 };
 	static uint8_t truth[N * H * W];
 	static struct synth_detector d;
+	static struct synth_sentence sentences[N * SYNTH_SENTENCES];
 	struct synth_object o[N];
 	struct synth_table t;
 	struct err e = {0};
 	int confused = 0, out_of_range = 0, hidden = 0;
 
 	synth_arrange(o, N, &t, synth_preset(0), 9);
-	synth_detector_make(&d, o, N, NULL, SYNTH_MILD, 9);
+	for (int i = 0; i < N * SYNTH_SENTENCES; i++)
+		snprintf(sentences[i].ref, sizeof sentences[i].ref, "r%d", i);
+	synth_detector_make(&d, o, N, sentences, SYNTH_MILD, 9);
 	for (int i = 0; i + 1 < N; i++) /* the last one is hidden */
 		draw_disc(truth + (size_t)i * H * W, 15 + 28 * i, 45, 12);
 	for (int i = 0; i < N; i++) {
@@ -75,22 +78,23 @@ static void detector_depends_on_the_view_alone(void)
 	}
 	CHECK(confused > 0 && confused < N * SYNTH_TRAIN_SENTENCES / 2, "%d confused sentences", confused);
 	for (int view = 0; view < 6; view++) {
-		struct synth_candidates a = {0}, b = {0};
-		CHECK(!synth_detect(&a, &d, view, truth, H, W, &e), "%s", e.message);
-		synth_detect(&b, &d, view + 1, truth, H, W, &e);
+		struct masks a = {0}, b = {0};
+		CHECK(!synth_detect(&a, &d, view, "v", truth, H, W, &e), "%s", e.message);
+		synth_detect(&b, &d, view + 1, "w", truth, H, W, &e);
 		size_t other_view = b.n;
-		synth_detect(&b, &d, view, truth, H, W, &e);
+		synth_detect(&b, &d, view, "v", truth, H, W, &e);
 		int same = b.n - other_view == a.n;
 		for (size_t i = 0; i < a.n && same; i++) {
-			const struct synth_candidate *x = &a.items[i], *y = &b.items[other_view + i];
-			same = x->score == y->score && x->object == y->object && x->sentence == y->sentence &&
-			       rle_iou(&x->mask, &y->mask) == 1;
+			const struct mask *x = &a.items[i], *y = &b.items[other_view + i];
+			same = x->score == y->score && !strcmp(x->view, "v") &&
+			       !strcmp(x->object, y->object) && !strcmp(x->ref, y->ref) &&
+			       rle_iou(&x->rle, &y->rle) == 1;
 			out_of_range += !(x->score >= 0.2 && x->score <= 0.95);
-			hidden += x->object == N - 1;
+			hidden += !strcmp(x->object, o[N - 1].name);
 		}
 		CHECK(same, "view %d: the same candidates after another view", view);
-		synth_candidates_free(&a);
-		synth_candidates_free(&b);
+		masks_free(&a);
+		masks_free(&b);
 	}
 	CHECK(!out_of_range, "%d scores out of range", out_of_range);
 	CHECK(hidden < 6 * 4, "a hidden object is mostly not found, %d times", hidden);
@@ -213,11 +217,11 @@ static void paint(const struct made *m, const struct camera *c, uint8_t *truth)
 
 /* The IoU of what each method selects for an object, summed over those that the view shows; returns their
  * number. */
-static int select_all(
-	const struct made *m, const struct synth_candidates *found, const uint8_t *truth, double sums[3])
+static int select_all(const struct made *m, const struct masks *found, const uint8_t *truth, double sums[3])
 {
 	static const enum select_method methods[3] = {SELECT_TOP1, SELECT_IOU, SELECT_CIOU};
-	struct candidate pool[4 * SYNTH_TRAIN_SENTENCES];
+	const struct mask *pool[4 * SYNTH_TRAIN_SENTENCES];
+	size_t areas[4 * SYNTH_TRAIN_SENTENCES];
 	double votes[4 * SYNTH_TRAIN_SENTENCES];
 	struct err e = {0};
 	int pairs = 0;
@@ -228,13 +232,14 @@ static int select_all(
 		if (rle_encode(&whole, truth + k * H * W, H, W, &e))
 			return pairs;
 		for (size_t i = 0; i < found->n; i++)
-			if (found->items[i].object == k)
-				pool[n++] = (struct candidate){&found->items[i].mask,
-					rle_area(&found->items[i].mask), found->items[i].score};
+			if (!strcmp(found->items[i].object, m->objects[k].name)) {
+				areas[n] = rle_area(&found->items[i].rle);
+				pool[n++] = &found->items[i];
+			}
 		pairs += rle_area(&whole) > 0;
 		for (int q = 0; q < 3 && rle_area(&whole); q++) {
-			long winner = select_winner(pool, n, methods[q], 0.3, votes);
-			sums[q] += winner < 0 ? 0 : rle_iou(pool[winner].mask, &whole);
+			long winner = select_winner(pool, areas, n, methods[q], 0.3, votes);
+			sums[q] += winner < 0 ? 0 : rle_iou(&pool[winner]->rle, &whole);
 		}
 		rle_free(&whole);
 	}
@@ -256,12 +261,12 @@ static void selection_gains_as_in_the_paper(void)
 			if (make(&m, number, seed))
 				return;
 			for (int view = 0; view < (int)m.cameras.n; view++) {
-				struct synth_candidates found = {0};
+				struct masks found = {0};
 				paint(&m, &m.cameras.views[view], truth);
-				if (CHECK(!synth_detect(&found, &m.detector, view, truth, H, W, &e), "%s",
-					    e.message))
+				if (CHECK(!synth_detect(&found, &m.detector, view, "v", truth, H, W, &e),
+					    "%s", e.message))
 					pairs += select_all(&m, &found, truth, sums);
-				synth_candidates_free(&found);
+				masks_free(&found);
 			}
 			cameras_free(&m.cameras);
 		}

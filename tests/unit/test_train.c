@@ -6,7 +6,6 @@
 #include "base/rng.h"
 #include "formats/checkpoint.h"
 #include "mask/bits.h"
-#include "train/supervision.h"
 #include "train/trainer.h"
 
 #include <unistd.h>
@@ -185,123 +184,6 @@ static void test_order(void)
 		train_order_free(&o);
 		train_order_free(&other);
 	}
-}
-
-/* A mask of `side` squared pixels, all of one value. */
-static void add(struct supervision *s, size_t view, const char *ref, const char *object, int side,
-	uint8_t value, int bad)
-{
-	uint8_t pixels[16];
-	struct rle mask;
-	struct err e = {0};
-
-	memset(pixels, value, sizeof pixels);
-	CHECK(!rle_encode(&mask, pixels, side, side, &e), "%s", e.message);
-	int got = supervision_add(s, view, 2, 2, ref, object, &mask, &e);
-	CHECK(!got == !bad && (!bad || e.code == ERR_FORMAT), "%s %s: %d %s", ref ? ref : "-",
-		object ? object : "-", got, e.message);
-	rle_free(&mask);
-}
-
-static void test_supervision(void)
-{
-	const char *const refs[] = {"r1", "r2", "r3", "r4"}, *const objects[] = {"cup", "cup", "pan", "jar"};
-	struct train_view views[2] = {{.count = 0}, {.count = 0}};
-	struct supervision s = {0};
-	struct err e;
-
-	add(&s, 0, NULL, "cup", 2, 0, 0);
-	add(&s, 0, "r2", "cup", 4, 1, 0); /* reduced to 2x2 */
-	add(&s, 0, "r3", NULL, 1, 1, 0);  /* enlarged */
-	add(&s, 0, "r9", "jar", 2, 1, 0); /* of no sentence: a mask of a ref does not serve its object */
-	add(&s, 1, NULL, "jar", 2, 1, 0);
-	add(&s, 0, NULL, "cup", 2, 1, 1);
-	add(&s, 0, "r2", "pan", 2, 1, 1);
-	add(&s, 1, "r2", "pan", 2, 1, 0); /* another view; and the ref goes before the object */
-	CHECK(!supervision_link(&s, refs, objects, 4, views, 2, &e), "%s", e.message);
-	CHECK(views[0].count == 3 && views[1].count == 2, "%d and %d pairs", views[0].count, views[1].count);
-	const int sentences[2][3] = {{0, 1, 2}, {1, 3}}, values[2][3] = {{0, 1, 1}, {1, 1}};
-	for (int v = 0; v < 2; v++)
-		for (int k = 0; k < views[v].count; k++) {
-			CHECK(views[v].sentences[k] == sentences[v][k], "pair %d of view %d is of %d", k, v,
-				views[v].sentences[k]);
-			for (int p = 0; p < 4; p++)
-				CHECK((views[v].masks[k][0] >> p & 1) == values[v][k],
-					"pixel %d of pair %d of view %d", p, k, v);
-		}
-	supervision_unlink(views, 2);
-	supervision_free(&s);
-}
-
-/* Equal masks of a view are one; a view's own stay apart, as do those that differ in one pixel. */
-static void test_shared_masks(void)
-{
-	const char *const refs[] = {"a", "b", "c"}, *const objects[] = {"cup", "pan", "jar"};
-	struct train_view views[2] = {{.count = 0}, {.count = 0}};
-	struct supervision s = {0};
-	struct err e;
-
-	for (size_t v = 0; v < 2; v++) {
-		add(&s, v, "a", NULL, 2, 1, 0);
-		add(&s, v, NULL, "pan", 4, 1, 0);
-		add(&s, v, "c", NULL, 2, 0, 0);
-	}
-	CHECK(!supervision_link(&s, refs, objects, 3, views, 2, &e), "%s", e.message);
-	CHECK(views[0].count == 3 && views[1].count == 3, "%d and %d pairs", views[0].count, views[1].count);
-	CHECK(views[0].masks[0] == views[0].masks[1] && views[1].masks[0] == views[1].masks[1],
-		"equal masks are stored twice");
-	CHECK(views[0].masks[0] != views[1].masks[0], "two views share a mask");
-	CHECK(views[0].masks[0] != views[0].masks[2] && views[0].masks[2][0] == 0, "other masks are shared");
-	supervision_unlink(views, 2);
-	supervision_free(&s);
-}
-
-/* As many masks as a scene may have, each with pixels of its own: found again, all of them, and refused a
- * second time. */
-static void test_many_masks(void)
-{
-	enum { MANY_VIEWS = 60, REFS = 60, W = 19, H = 11 };
-	static char names[REFS][8];
-	const char *refs[REFS], *objects[REFS];
-	static struct train_view views[MANY_VIEWS];
-	struct supervision s = {0};
-	struct err e;
-	int wrong = 0;
-
-	for (int r = 0; r < REFS; r++) {
-		snprintf(names[r], sizeof names[r], "r%d", r);
-		refs[r] = names[r];
-		objects[r] = r % 2 ? names[r] : "none";
-	}
-	for (int round = 0; round < 2; round++)
-		for (int k = 0; k < MANY_VIEWS * REFS; k++) {
-			const int v = k % MANY_VIEWS, r = k / MANY_VIEWS;
-			uint8_t pixels[W * H] = {0};
-			struct rle mask;
-			pixels[r] = pixels[REFS + v] = 1;
-			CHECK(!rle_encode(&mask, pixels, H, W, &e), "%s", e.message);
-			/* odd ones by their object, which is named as the ref of an even one might be */
-			int bad = supervision_add(&s, (size_t)v, W, H, r % 2 ? NULL : refs[r],
-				r % 2 ? refs[r] : "pot", &mask, &e);
-			wrong += round ? !bad || e.code != ERR_FORMAT : bad;
-			rle_free(&mask);
-		}
-	CHECK(!wrong && s.n == MANY_VIEWS * REFS, "%d wrong, %zu masks", wrong, s.n);
-	CHECK(!supervision_link(&s, refs, objects, REFS, views, MANY_VIEWS, &e), "%s", e.message);
-	for (int v = 0; v < MANY_VIEWS; v++) {
-		wrong += views[v].count != REFS;
-		for (int r = 0; r < views[v].count; r++) {
-			uint8_t pixels[W * H];
-			int area = 0;
-			bits_expand(views[v].masks[r], 0, W * H, pixels);
-			for (int p = 0; p < W * H; p++)
-				area += pixels[p];
-			wrong += views[v].sentences[r] != r || !pixels[r] || !pixels[REFS + v] || area != 2;
-		}
-	}
-	CHECK(!wrong, "%d masks are wrong", wrong);
-	supervision_unlink(views, MANY_VIEWS);
-	supervision_free(&s);
 }
 
 /* A training of two sentences over the random views. */
@@ -577,9 +459,6 @@ int main(void)
 	test_active_set();
 	test_bounds();
 	test_order();
-	test_supervision();
-	test_shared_masks();
-	test_many_masks();
 	test_resume(11, 0, 0);
 	test_resume(11, 17, 0); /* within the warm start, and after it */
 	test_resume(11, 6, 0);

@@ -1,0 +1,109 @@
+#include "cmd/jobs/locating.h"
+
+#include "base/mem.h"
+#include "formats/boxes.h"
+#include "geom/up.h"
+
+#include <stdlib.h>
+
+void locating_free(struct locating *r)
+{
+	for (size_t k = 0; r->answers && k < r->request.responses.answers; k++)
+		extent_free(&r->answers[k].extent);
+	for (size_t o = 0; r->objects && r->request.responses.begin && o < r->request.model.lifted.objects;
+		o++)
+		extent_free(&r->objects[o].extent);
+	free(r->answers);
+	free(r->objects);
+	request_free(&r->request);
+}
+
+static size_t parts_of(const struct responses *a, size_t answer)
+{
+	const size_t n = a->begin ? a->begin[answer + 1] - a->begin[answer] : 0;
+
+	return n > 1 ? n : 0;
+}
+
+/* Each object of the answers that are of several. */
+static int locate_parts(struct locating *r, const double up[3], struct err *e)
+{
+	const struct request *q = &r->request;
+	const struct responses *a = &q->responses;
+	const struct lifted *l = &q->model.lifted;
+
+	r->objects = mem_zalloc(a->begin ? l->objects : 0, sizeof *r->objects, "objects", e);
+	if (!r->objects)
+		return -1;
+	for (size_t k = 0; k < a->answers; k++)
+		for (size_t i = 0; i < parts_of(a, k); i++) {
+			const size_t o = a->objects[a->begin[k] + i];
+			if (!r->objects[o].extent.n &&
+				locate_object(&r->objects[o], l, o, &q->scene.splats, up, e))
+				return -1;
+		}
+	return 0;
+}
+
+int locating_find(struct locating *r, double up[3], struct err *e)
+{
+	struct request *q = &r->request;
+
+	r->answers = mem_zalloc(q->responses.answers, sizeof *r->answers, "objects", e);
+	if (!r->answers)
+		return -1;
+	cameras_up(&q->scene.cameras, up);
+	return locate_all(r->answers, &q->responses, &q->scene.splats, up, e) || locate_parts(r, up, e);
+}
+
+static void move(struct box *b, const double by[3])
+{
+	for (int k = 0; k < 3; k++)
+		b->centre[k] += by[k];
+}
+
+static struct box_record record_of(const struct locating *r, const struct extent *x, double sure)
+{
+	struct box_record record = {
+		.score = x->n ? sure : 0, .is_empty = !x->n, .aligned = x->aligned, .turned = x->turned};
+
+	move(&record.aligned, r->request.scene.offset);
+	move(&record.turned, r->request.scene.offset);
+	return record;
+}
+
+/* parts gets the objects of an answer that is of several; to be freed. */
+static int make_parts(const struct locating *r, size_t answer, struct box_record **parts, struct err *e)
+{
+	const struct responses *a = &r->request.responses;
+	const size_t n = parts_of(a, answer);
+
+	*parts = mem_zalloc(n, sizeof **parts, "objects", e);
+	for (size_t i = 0; i < n && *parts; i++) {
+		const size_t o = a->objects[a->begin[answer] + i];
+		(*parts)[i] = record_of(r, &r->objects[o].extent, r->objects[o].sure);
+		(*parts)[i].object = r->request.model.lifted.names[o];
+	}
+	return *parts ? 0 : -1;
+}
+
+int locating_put(const struct locating *r, size_t i, FILE *out, struct err *e)
+{
+	const struct request *q = &r->request;
+	const size_t answer = q->responses.answer[i];
+	const struct located *l = &r->answers[answer];
+	const struct extent *x = &l->extent;
+	const struct box_gaussians of = {x->n, x->ids};
+	struct box_record *parts, record;
+
+	if (make_parts(r, answer, &parts, e))
+		return -1;
+	record = record_of(r, x, q->responses.sure ? q->responses.sure[i] : l->sure);
+	record.ref = q->text.refs[q->refs[i]];
+	record.object = (char *)text_object(&q->text, q->refs[i]);
+	record.parts = parts;
+	record.part_count = parts_of(&q->responses, answer);
+	const int bad = boxes_put(out, &record, &of, e);
+	free(parts);
+	return bad;
+}

@@ -1,0 +1,26 @@
+/* Where the answers to sentences are, and of several things each by itself. */
+#ifndef CMD_JOBS_LOCATING_H
+#define CMD_JOBS_LOCATING_H
+
+#include "answer/locate.h"
+#include "cmd/jobs/request.h"
+
+#include <stdio.h>
+
+struct locating {
+	struct request request;	 /* answered by the caller */
+	struct located *answers; /* (answers) */
+	struct located *objects; /* of a lifted model, (O): those that are one of several */
+};
+
+/* up gets the direction that was taken for it. Returns 0, or -1 with *e set; locating_free is then in order.
+ */
+int locating_find(struct locating *r, double up[3], struct err *e);
+
+/* The line of the request's sentence i, formats/boxes.md. */
+int locating_put(const struct locating *r, size_t i, FILE *out, struct err *e);
+
+/* With its request. */
+void locating_free(struct locating *r);
+
+#endif

@@ -1,0 +1,16 @@
+/* Where each lifted object of a scene is. */
+#ifndef CMD_JOBS_OBJECT_EXTENTS_H
+#define CMD_JOBS_OBJECT_EXTENTS_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+#include "lift/extent.h"
+#include "lift/lifted_model.h"
+#include "splat/splats.h"
+
+/* (objects), in the frame of the splats. Release with object_extents_free. NULL with *e set. */
+struct extent *object_extents(
+	const struct lifted *l, const struct splats *s, const struct cameras *c, struct err *e);
+void object_extents_free(struct extent *extents, size_t objects);
+
+#endif

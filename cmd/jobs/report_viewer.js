@@ -1,0 +1,173 @@
+'use strict';
+// The scene as splats: unpacked and shown when it is first asked for. window.scene_viewer.show(sentence) lights up what a
+// sentence of the page means.
+window.scene_viewer = (() => {
+	const scene = JSON.parse(document.getElementById('scene').textContent);
+	const section = document.getElementById('viewer'), stage = section.querySelector('.stage'), canvas = section.querySelector('canvas');
+	const hint = section.querySelector('.hint'), chosen = section.querySelector('select'), start = section.querySelector('.start');
+	const record = 32;
+	let three, lit = [], loading = null, words = '';
+
+	async function unpack(element) {
+		const bytes = Uint8Array.from(atob(element.textContent), c => c.charCodeAt(0));
+		element.textContent = '';
+		return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
+	}
+
+	// Modules import each other by name; here each name is the address of a blob.
+	async function load_modules() {
+		const address = {}, loaded = {};
+		for (const element of document.querySelectorAll('script[data-module]')) {
+			const text = new TextDecoder().decode(await unpack(element));
+			const linked = text.replace(/(\bfrom\s*)(["'])([^"']+)\2/g, (all, from, quote, name) => address[name] ? `${from}"${address[name]}"` : all);
+			address[element.dataset.module] = URL.createObjectURL(new Blob([linked], {type: 'text/javascript'}));
+		}
+		for (const name of ['three', 'spark', 'orbit']) loaded[name] = await import(address[name]);
+		return {THREE: loaded.three, SPARK: loaded.spark, OrbitControls: loaded.orbit.OrbitControls};
+	}
+
+	// Plane by plane, as packed, to splat by splat.
+	async function load_splats() {
+		const planes = new Uint8Array(await unpack(document.getElementById('splats'))), n = scene.count, bytes = new Uint8Array(record * n);
+		for (let k = 0; k < record; k++)
+			for (let i = 0; i < n; i++) bytes[record * i + k] = planes[k * n + i];
+		return bytes;
+	}
+
+	function box_of(THREE, b) {
+		const [x, y, z] = b.axes.map(a => new THREE.Vector3(...a));
+		const lines = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxGeometry(...b.half.map(h => 2 * h))),
+			new THREE.LineBasicMaterial({color: 0x10c8ff, depthTest: false, transparent: true}));
+		lines.applyMatrix4(new THREE.Matrix4().makeBasis(x, y, z).setPosition(...b.centre));
+		lines.renderOrder = 10;
+		lines.visible = false;
+		return lines;
+	}
+
+	async function make_scene({THREE, SPARK, OrbitControls}) {
+		const renderer = new THREE.WebGLRenderer({canvas, antialias: false});
+		const world = new THREE.Scene(), camera = new THREE.PerspectiveCamera(50, 1, .01, 1000);
+		world.background = new THREE.Color(0x22252a);
+		world.add(new SPARK.SparkRenderer({renderer}));
+		const bytes = await load_splats(), groups = [];
+		let at = 0;
+		for (const g of scene.groups) {
+			const mesh = g.count ? new SPARK.SplatMesh({fileBytes: bytes.slice(record * at, record * (at + g.count)), fileType: 'splat'}) : null;
+			at += g.count;
+			if (mesh) { await mesh.initialized; world.add(mesh); }
+			const box = g.box ? box_of(THREE, g.box) : null;
+			if (box) world.add(box);
+			groups.push({name: g.name, mesh, box, centre: g.box ? g.box.centre : null});
+		}
+		camera.up.set(...scene.up);
+		const controls = new OrbitControls(camera, canvas);
+		controls.zoomSpeed = .6;
+		controls.rotateSpeed = .5;
+		return {THREE, renderer, world, camera, controls, groups, until: 0};
+	}
+
+	// Frames are drawn while something moves, and a little longer, as the splats are sorted meanwhile.
+	function wake() { three.until = performance.now() + 1500; }
+
+	function draw() {
+		const {renderer, world, camera, controls} = three;
+		if (controls.update()) wake();
+		if (performance.now() > three.until) return;
+		renderer.render(world, camera);
+		stage.dataset.frames = 1 + Number(stage.dataset.frames || 0);
+	}
+
+	function resize() {
+		const {renderer, camera} = three, w = stage.clientWidth, h = stage.clientHeight, from = scene.camera;
+		renderer.setPixelRatio(Math.min(window.devicePixelRatio, 1.5));
+		renderer.setSize(w, h, false);
+		camera.aspect = w / h;
+		const tan = Math.max(from.tan_y || .5, (from.tan_x || .5) * h / w);
+		camera.fov = 360 / Math.PI * Math.atan(tan);
+		camera.updateProjectionMatrix();
+		wake();
+	}
+
+	// Looks as the first view's camera did, at the middle of the things.
+	function home() {
+		const {THREE, camera, controls, groups} = three, from = scene.camera;
+		if (!from.centre) return;
+		const centre = new THREE.Vector3(...from.centre), forward = new THREE.Vector3(...from.forward);
+		const depths = groups.filter(g => g.centre).map(g => new THREE.Vector3(...g.centre).sub(centre).dot(forward)).filter(d => d > 0);
+		const depth = depths.length ? depths.reduce((a, b) => a + b) / depths.length : 3;
+		camera.position.copy(centre);
+		controls.target.copy(centre).addScaledVector(forward, depth);
+		controls.update();
+		wake();
+	}
+
+	function light() {
+		const is_dim = section.querySelector('#dim').checked && lit.length, is_boxed = section.querySelector('#box').checked;
+		for (const g of three.groups) {
+			const is_lit = g.name !== undefined && lit.includes(g.name);
+			if (g.mesh) {
+				if (is_lit) g.mesh.recolor.setRGB(1.5, .75, .5);
+				else g.mesh.recolor.setScalar(is_dim ? .45 : 1);
+				g.mesh.needsUpdate = true;
+			}
+			if (g.box) g.box.visible = is_lit && is_boxed;
+		}
+		hint.textContent = words;
+		wake();
+	}
+
+	async function load() {
+		start.hidden = true;
+		stage.classList.add('is-on');
+		hint.textContent = 'Unpacking the scene …';
+		await new Promise(done => setTimeout(done, 30));
+		three = await make_scene(await load_modules());
+		resize();
+		home();
+		light();
+		new ResizeObserver(resize).observe(stage);
+		three.controls.addEventListener('change', wake);
+		three.renderer.setAnimationLoop(draw);
+		if (!words) hint.textContent = 'Drag to turn, scroll or pinch to come nearer, right button or two fingers to move.';
+	}
+
+	function begin() {
+		loading ||= load().catch(e => { hint.textContent = 'The scene cannot be shown here: ' + e.message; three = null; });
+		return loading;
+	}
+
+	async function set_lit(names, text) {
+		lit = names;
+		words = text;
+		chosen.value = names.length === 1 ? names[0] : '';
+		await begin();
+		if (three) light();
+	}
+
+	async function show(sentence) {
+		for (const card of document.querySelectorAll('.card')) card.classList.toggle('is-shown', card.dataset.ref === sentence.ref);
+		section.scrollIntoView({behavior: 'smooth'});
+		await set_lit(sentence.answer, `“${sentence.text}”: ${sentence.answer.join(', ')}`);
+	}
+
+	section.hidden = false;
+	stage.classList.add('view-0');
+	chosen.append(new Option('everything', ''), ...scene.groups.slice(1).map(g => new Option(g.name, g.name)));
+	chosen.addEventListener('input', () => set_lit(chosen.value ? [chosen.value] : [], chosen.value));
+	start.addEventListener('click', begin);
+	section.querySelector('#home').addEventListener('click', () => three && home());
+	for (const id of ['#box', '#dim']) section.querySelector(id).addEventListener('input', () => three && light());
+	section.querySelector('#viewer-note').textContent = `${scene.count.toLocaleString('en')} of ${scene.all.toLocaleString('en')} Gaussians are here. ` +
+		`Those of an opacity below ${scene.least_opacity} are left out${scene.count === scene.most ? ', and those that cover least' : ''}; ` +
+		'colours do not change with the direction. ' +
+		'Drawn by Spark and three.js.';
+	const licences = document.createElement('details'), title = document.createElement('summary');
+	title.textContent = 'Their licences';
+	licences.append(title, ...scene.licences.map(text => {
+		const e = document.createElement('pre');
+		e.textContent = text;
+		return e;
+	}));
+	section.append(licences);
+	return {show};
+})();

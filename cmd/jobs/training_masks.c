@@ -1,0 +1,107 @@
+#include "cmd/jobs/training_masks.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/names.h"
+#include "formats/masks.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+
+/* Opens a view's weights and makes it the next training view. */
+static int add_view(struct training *t, const char *weights, const struct camera *c, struct err *e)
+{
+	struct weights *w = &t->weights[t->view_count];
+
+	if (weights_open(w, weights, &t->scene, (size_t)(c - t->scene.cameras.views), e))
+		return -1;
+	const struct view_weights view = weights_view(w);
+	t->cameras[t->view_count] = camera_resize(c, w->width, w->height);
+	t->views[t->view_count++].weights = view;
+	t->pixels = view.pixels > t->pixels ? view.pixels : t->pixels;
+	return 0;
+}
+
+/* What the masks are read with. */
+struct mask_reading {
+	const char *weights;
+	struct names names; /* of the scene's views */
+	long *view_of;	    /* (the scene's views) the training view, or -1 */
+	size_t capacity;
+	long *lines; /* of each mask that was kept */
+};
+
+/* One mask, taken over: its view's weights are opened when it is the first of the view. */
+static int add_mask(
+	struct training *t, const struct jsonl *j, struct mask *m, struct mask_reading *r, struct err *e)
+{
+	const size_t place = names_find(&r->names, m->view), n = t->masks.masks.n;
+	const struct camera *c = t->scene.cameras.views + (place == NAMES_NONE ? 0 : place);
+	int bad = 0;
+
+	if (place == NAMES_NONE)
+		bad = jsonl_err(j, e, "key 'view': the scene has no view '%s'", m->view);
+	else if (c->split == SPLIT_TEST)
+		t->test_masks++;
+	if (bad || c->split == SPLIT_TEST) {
+		mask_free(m);
+		return bad;
+	}
+	long *view = &r->view_of[place];
+	if (*view < 0) {
+		*view = (long)t->view_count;
+		bad = add_view(t, r->weights, c, e);
+	}
+	bad = bad || mem_grow((void **)&r->lines, &r->capacity, n + 1, sizeof *r->lines, "masks", e);
+	if (bad) {
+		mask_free(m);
+		return -1;
+	}
+	r->lines[n] = j->line_number;
+	const struct weights *w = &t->weights[*view];
+	return supervision_add(&t->masks, (size_t)*view, w->width, w->height, m, e);
+}
+
+static int add_masks(struct training *t, const char *path, struct mask_reading *r, struct err *e)
+{
+	struct err reason;
+	struct mask m;
+	struct jsonl j;
+	size_t later = 0;
+	int more;
+
+	if (jsonl_open(&j, path, e))
+		return -1;
+	while ((more = masks_next(&j, &m, e)) == 1)
+		if (add_mask(t, &j, &m, r, e)) {
+			more = -1;
+			break;
+		}
+	jsonl_close(&j);
+	if (more || !supervision_index(&t->masks, &later, &reason))
+		return more;
+	if (reason.code != ERR_FORMAT)
+		return err_set(e, reason.code, "%s", reason.message);
+	return err_set(e, ERR_FORMAT, "%s:%ld: %s", file_name(path), r->lines[later], reason.message);
+}
+
+int training_read_masks(struct training *t, const char *weights, const char *path, struct err *e)
+{
+	const size_t count = t->scene.cameras.n;
+	struct mask_reading r = {
+		.weights = weights, .view_of = mem_alloc(count, sizeof *r.view_of, "views", e)};
+
+	t->weights = mem_zalloc(count, sizeof *t->weights, "views", e);
+	t->views = mem_zalloc(count, sizeof *t->views, "views", e);
+	t->cameras = mem_zalloc(count, sizeof *t->cameras, "views", e);
+	int bad = !r.view_of || !t->weights || !t->views || !t->cameras ||
+		  names_make(&r.names, t->scene.cameras.views, sizeof *t->scene.cameras.views,
+			  offsetof(struct camera, name), count, e);
+	for (size_t v = 0; v < count && !bad; v++)
+		r.view_of[v] = -1;
+	bad = bad || add_masks(t, path, &r, e);
+	names_free(&r.names);
+	free(r.view_of);
+	free(r.lines);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,62 @@
+/* refer-report: what a pipeline made of a scene, as one page of HTML. */
+#include "base/file.h"
+#include "base/mem.h"
+#include "cli/cli.h"
+#include "cmd/jobs/reporting.h"
+
+#include <stdlib.h>
+
+static const char *output;
+static struct report_options options = {.views = 12, .width = 480, .splats = 200000};
+
+static const struct cli_option table[] = {
+	{"truth", 0, CLI_STRING, &options.truth, "TRUTH",
+		"true masks (default: those that the pipeline scored against, if any)", 0, 0},
+	{"views", 0, CLI_INT, &options.views, "N", "show so many views at most (default 12)", 1, 1000},
+	{"width", 0, CLI_INT, &options.width, "N", "width of the pictures in pixels (default 480)", 16, 4096},
+	{"viewer", 0, CLI_STRING, &options.viewer, "DIR",
+		"folder of the viewer of splats (default: where 'make viewer' puts it)", 0, 0},
+	{"no-viewer", 0, CLI_FLAG, &options.is_plain, NULL, "leave the viewer out", 0, 0},
+	{"splats", 0, CLI_INT, &options.splats, "N",
+		"Gaussians in the viewer at most, those that cover most (default 200000)", 1, 10000000},
+	{"output", 'o', CLI_STRING, &output, "FILE", "where to write; - is stdout (default RUN/report.html)",
+		0, 0},
+	{0}};
+
+static const struct cli_tool tool = {.name = "refer-report",
+	.operands = "RUN",
+	.summary =
+		"Make one page of HTML of a run folder: each sentence with its answers, scores and reasons.",
+	.options = table,
+	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS,
+	.min_operands = 1,
+	.max_operands = 1};
+
+static int run(const struct cli *c, struct err *e)
+{
+	struct cli_report to;
+	char *path = output ? mem_strdup(output, e) : file_join(options.run, "report.html", "", e);
+
+	if (!path)
+		return -1;
+	const struct cli_file files[] = {{"the page", path, CLI_WRITES, NULL},
+		{"RUN", options.run, CLI_READS, "scene|lifted|stage1|stage2|log|*.safetensors|*.jsonl"}, {0}};
+	cli_refuse_overwrite(c, "truth", "", files);
+	const int bad = reporting_write(&options, path, cli_report(&to, c), e);
+	if (!bad && !output)
+		cli_note(c, 1, "made %s", path);
+	free(path);
+	return bad;
+}
+
+int main(int argc, char **argv)
+{
+	struct cli c;
+	struct err e = {0};
+
+	cli_parse(&c, &tool, argc, argv);
+	if (options.viewer && options.is_plain)
+		cli_usage(&c, "--viewer and --no-viewer exclude each other");
+	options.run = c.operands[0];
+	return run(&c, &e) ? cli_fail(&c, &e) : cli_done(&c);
+}

@@ -1,0 +1,12 @@
+/* Bytes as text: base64 of RFC 4648, padded, without line ends. */
+#ifndef BASE_BASE64_H
+#define BASE_BASE64_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+/* `before`, then the bytes as base64, as one string: free() it. NULL with *e set when memory is out. */
+char *base64_text(const char *before, const void *bytes, size_t n, struct err *e);
+
+#endif

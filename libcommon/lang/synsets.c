@@ -1,0 +1,43 @@
+#include "lang/synsets.h"
+
+#ifdef HAVE_WORDNET
+#include "lang/wordnet.h"
+
+#include <string.h>
+
+int synsets_of(const char *lemma, int pos, long *synsets, int most)
+{
+	char word[128]; /* libwordnet changes it */
+	int n = 0;
+
+	const size_t length = strlen(lemma);
+	if (!wordnet_is_there() || !length || length >= sizeof word)
+		return 0;
+	memcpy(word, lemma, length + 1);
+	IndexPtr index = index_lookup(word, pos);
+	for (; index && n < index->off_cnt && n < most; n++)
+		synsets[n] = (long)index->offset[n];
+	if (index)
+		free_index(index);
+	return n;
+}
+
+SynsetPtr synsets_read(int pos, long synset)
+{
+	static char none[] = "";
+
+	return read_synset(pos, synset, none);
+}
+
+int synsets_next_up(const Synset *s, int pos, int *at, long *up)
+{
+	while (*at < s->ptrcount) {
+		const int i = (*at)++;
+		if (s->ptrtyp[i] == HYPERPTR && s->ppos[i] == pos) {
+			*up = s->ptroff[i];
+			return 1;
+		}
+	}
+	return 0;
+}
+#endif

@@ -1,0 +1,43 @@
+#include "mask/mask.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+double mask_confidence(const struct mask *m)
+{
+	return isnan(m->score) ? 1 : m->score;
+}
+
+const char *mask_object(const struct mask *m)
+{
+	return m->object ? m->object : m->ref;
+}
+
+void mask_free(struct mask *m)
+{
+	free((char *)m->view);
+	free((char *)m->ref);
+	free((char *)m->object);
+	rle_free(&m->rle);
+	*m = (struct mask){0};
+}
+
+int masks_add(struct masks *to, struct mask *m, struct err *e)
+{
+	if (mem_grow((void **)&to->items, &to->capacity, to->n + 1, sizeof *to->items, "masks", e)) {
+		mask_free(m);
+		return -1;
+	}
+	to->items[to->n++] = *m;
+	return 0;
+}
+
+void masks_free(struct masks *masks)
+{
+	for (size_t i = 0; i < masks->n; i++)
+		mask_free(&masks->items[i]);
+	free(masks->items);
+	*masks = (struct masks){0};
+}

@@ -1,0 +1,41 @@
+/* A mask of an object in a view: what detectors find, what is selected, what teaches and is lifted, what is
+ * predicted, and the truth. */
+#ifndef MASK_MASK_H
+#define MASK_MASK_H
+
+#include "base/err.h"
+#include "mask/rle.h"
+
+#include <stddef.h>
+
+/* Who makes one says whether its strings and runs are its own; those of `struct masks` are. */
+struct mask {
+	const char *view;
+	const char *ref;    /* of the sentence; NULL where the mask is of the object whatever the sentence */
+	const char *object; /* may be NULL where there is a ref */
+	struct rle rle;
+	double score;	/* confidence; NaN where nothing is known */
+	double visible; /* of the outline of a whole object, the share in [0,1] that is in sight; NaN where
+			   nothing is known */
+};
+
+/* The score, or 1 where there is none. */
+double mask_confidence(const struct mask *m);
+
+/* What a mask goes by where there is one of each object: its object, else its ref. */
+const char *mask_object(const struct mask *m);
+
+/* Of a mask that owns its strings and runs. */
+void mask_free(struct mask *m);
+
+struct masks {
+	size_t n, capacity;
+	struct mask *items; /* owned, with their strings and runs */
+};
+
+/* Appends a mask, which is the list's from then on, also where it fails: then it is freed. Returns 0, or -1
+ * with *e set. */
+int masks_add(struct masks *to, struct mask *m, struct err *e);
+void masks_free(struct masks *masks);
+
+#endif
