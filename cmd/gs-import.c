@@ -23,7 +23,7 @@ static const struct cli_option options[] = {
 static const struct cli_tool tool = {
 	.name = "gs-import",
 	.operands = "SPLATS",
-	.summary = "Make a scene folder from a trained 3DGS .ply and its cameras.",
+	.summary = "Make a scene folder from a trained 3DGS scene and its cameras.",
 	.options = options,
 	.common = CLI_OUTPUT | CLI_VERBOSE | CLI_QUIET,
 	.min_operands = 1,
@@ -58,30 +58,38 @@ static void note_splats(
 		cli_note(cli, i < 20 ? 1 : 2, "%s: left out Gaussian %zu", file_name(splats), r->dropped[i]);
 }
 
-static void note_cameras(const struct cli *cli, const struct cameras *c, const char *path, size_t missing)
+static void note_cameras(
+	const struct cli *cli, const struct cameras *c, const char *path, const struct import_found *found)
 {
+	const struct resemblance *r = &found->resemblance;
 	size_t test = 0;
 
 	for (size_t i = 0; i < c->n; i++)
 		test += c->views[i].split == SPLIT_TEST;
 	cli_note(cli, 1, "%s: %zu views, %zu of them for testing", file_name(path), c->n, test);
-	if (files.images && missing)
-		cli_warn(cli, "%s: no photograph for %zu of %zu views", files.images, missing, c->n);
+	if (files.images && found->missing)
+		cli_warn(cli, "%s: no photograph for %zu of %zu views", files.images, found->missing, c->n);
+	if (r->views && r->typical < RESEMBLANCE_LEAST)
+		cli_warn(cli,
+			"%s: the scene does not look like its photographs (by %.2f in the middle of %zu views, at least %.2g is right): "
+			"are %s the cameras that it was trained with, and in its frame?",
+			files.images, r->typical, r->views, RESEMBLANCE_LEAST, file_name(path));
 }
 
 static int run(
 	const struct cli *cli, struct scene *s, struct ply_report *report, char **cameras, struct err *e)
 {
-	size_t missing;
+	struct import_found found;
+	struct cli_report to;
 
 	*cameras = import_find_cameras(&files, e);
 	if (!*cameras)
 		return -1;
 	refuse_overwrite(cli, *cameras);
-	if (import_scene(s, report, &files, *cameras, cli->output, &missing, e))
+	if (import_scene(s, report, &files, *cameras, cli->output, &found, cli_report(&to, cli), e))
 		return -1;
 	note_splats(cli, s, report, files.splats);
-	note_cameras(cli, &s->cameras, *cameras, missing);
+	note_cameras(cli, &s->cameras, *cameras, &found);
 	return 0;
 }
 
@@ -100,10 +108,14 @@ int main(int argc, char **argv)
 		cli_usage(&cli, "--cameras is required where SPLATS is stdin");
 	if (files.cameras && !strcmp(files.cameras, "-") && !strcmp(cli.operands[0], "-"))
 		cli_usage(&cli, "--cameras and SPLATS cannot both be stdin");
-	files.splats = cli.operands[0];
+	char *splats = import_find_splats(cli.operands[0], &e);
+	if (!splats)
+		return cli_fail(&cli, &e);
+	files.splats = cli.operands[0] = splats;
 	int bad = run(&cli, &s, &report, &cameras, &e);
 	scene_free(&s);
 	free(report.dropped);
 	free(cameras);
+	free(splats);
 	return bad ? cli_fail(&cli, &e) : cli_done(&cli);
 }

@@ -1,4 +1,4 @@
-/* mask-import: photographs that a person painted over, as mask records. */
+/* mask-import: photographs that a person painted over or labelled, as mask records. */
 #include "cli/cli.h"
 #include "cmd/jobs/painting.h"
 
@@ -8,13 +8,14 @@ static const char *names_path;
 
 static const struct cli_option table[] = {
 	{"names", 0, CLI_STRING, &names_path, "NAMES",
-		"text, a line for each thing: its colour, #rrggbb or a grey of 0 to 255, and its name (required)",
+		"text, a line for each thing: its colour, #rrggbb or a grey of 0 to 255, and its name (needed for pictures)",
 		0, 0},
 	{0}};
 
 static const struct cli_tool tool = {.name = "mask-import",
-	.operands = "PICTURE...",
-	.summary = "Turn photographs that a person painted over, a colour for each thing, into masks.",
+	.operands = "PICTURE|LABELS...",
+	.summary =
+		"Turn photographs that a person painted over, or labelled with LabelMe or for COCO, into masks.",
 	.options = table,
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_OUTPUT,
 	.min_operands = 1,
@@ -25,8 +26,9 @@ static void check(const struct cli *c)
 {
 	struct cli_file *files = calloc((size_t)c->operand_count + 1, sizeof *files);
 
-	if (!names_path)
-		cli_usage(c, "--names NAMES is required");
+	for (int i = 0; i < c->operand_count && !names_path; i++)
+		if (!painting_is_labelled(c->operands[i]))
+			cli_usage(c, "--names NAMES is required for pictures, which %s is", c->operands[i]);
 	for (int i = 0; files && i < c->operand_count; i++)
 		files[i] = (struct cli_file){"picture", c->operands[i], CLI_READS, NULL};
 	cli_refuse_overwrite(c, "names", "output", files);
@@ -42,7 +44,7 @@ int main(int argc, char **argv)
 
 	cli_parse(&c, &tool, argc, argv);
 	check(&c);
-	const int bad = painting_names_read(&names, names_path, &e) ||
+	const int bad = (names_path && painting_names_read(&names, names_path, &e)) ||
 			painting_write(&names, c.operands, (size_t)c.operand_count, c.output,
 				cli_report(&to, &c), &e);
 	painting_names_free(&names);

@@ -1,9 +1,9 @@
 /* refer-ask: what a question about a lifted scene means, in words. */
 #include "cli/cli.h"
-#include "cmd/jobs/answer_picture.h"
 #include "cmd/jobs/answer_words.h"
 #include "cmd/jobs/asking.h"
 #include "cmd/jobs/questions.h"
+#include "cmd/jobs/reply.h"
 #include "formats/bert_model.h"
 #include "answer/responses.h"
 
@@ -13,7 +13,7 @@
 
 static struct {
 	struct asking_options asking;
-	const char *picture;
+	struct reply_options reply;
 } options = {.asking = {.least = RESPONSES_LEAST}};
 
 static const struct cli_option table[] = {{"scene", 0, CLI_STRING, &options.asking.given.scene, "SCENE",
@@ -22,6 +22,13 @@ static const struct cli_option table[] = {{"scene", 0, CLI_STRING, &options.aski
 		"model of refer-lift (default: RUN/lifted/model.safetensors)", 0, 0},
 	{"encoder", 0, CLI_STRING, &options.asking.given.encoder, "DIR",
 		"the encoder's folder (default: where 'make encoder' puts it)", 0, 0},
+	{"camera", 0, CLI_STRING, &options.asking.camera, "FILE",
+		"a camera that is not in the scene: a file of one, as gs-import takes them; questions are asked from there, and it is what --picture draws",
+		0, 0},
+	{"point", 0, CLI_STRING, &options.reply.point, "VIEW:x,y",
+		"instead of a QUESTION: the thing under a pixel of a view, and how it could be called", 0, 0},
+	{"box", 0, CLI_STRING, &options.reply.box, "VIEW:x0,y0,x1,y1",
+		"likewise the thing in a box, such as a detector draws", 0, 0},
 	{"viewpoint", 0, CLI_STRING, &options.asking.viewpoint, "VIEW|x,y,z",
 		"where questions are asked: left and right are as seen from there (default: between the training views)",
 		0, 0},
@@ -31,8 +38,8 @@ static const struct cli_option table[] = {{"scene", 0, CLI_STRING, &options.aski
 		"choose without parts of the choice, as refer-render does", 0, 0},
 	{"explain", 0, CLI_FLAG, &options.asking.is_explained, NULL,
 		"say how the question was taken apart, and what each part gave each candidate", 0, 0},
-	{"picture", 'o', CLI_STRING, &options.picture, "FILE",
-		"draw the answer to QUESTION, in the view that shows it best, as a PNG", 0, 0},
+	{"picture", 'o', CLI_STRING, &options.reply.picture, "FILE",
+		"draw the answer, in the view that shows it best, as a PNG", 0, 0},
 	{0}};
 
 static const struct cli_tool tool = {.name = "refer-ask",
@@ -43,29 +50,19 @@ static const struct cli_tool tool = {.name = "refer-ask",
 	.min_operands = 1,
 	.max_operands = 2};
 
-static int draw(struct answer_told *t, struct err *e)
-{
-	char caption[256];
-	const char *const words[] = {t->question, caption};
-
-	answer_caption(t, caption, sizeof caption);
-	t->picture = options.picture;
-	return answer_picture(t->asking, t->answer, words, t->picture, &t->view, e);
-}
-
-/* Answers one question at once. *refused becomes 1 where it means nothing here. */
+/* Answers one question, or what --point or --box name, at once. *refused becomes 1 where it means nothing
+ * here. */
 static int answer(const struct cli *c, struct asking *a, const char *question, int *refused, struct err *e)
 {
 	const double start = cli_seconds();
 	struct asking_answer found;
-	struct answer_told told = {a, question, &found, NULL, NULL};
+	struct answer_told told;
 	struct cli_report to;
 
-	if (asking_ask(a, question, &found, cli_report(&to, c), e))
+	if (reply_make(&told, &found, a, question, &options.reply, cli_report(&to, c), e))
 		return -1;
 	*refused |= !found.count;
-	int bad = options.picture && found.count && draw(&told, e);
-	bad = bad || (c->json ? answer_put_json(&told, stdout, e) : answer_put_words(&told, stdout, e));
+	int bad = c->json ? answer_put_json(&told, stdout, e) : answer_put_words(&told, stdout, e);
 	if (!bad && fflush(stdout))
 		bad = err_errno(e, "stdout");
 	asking_answer_free(&found);
@@ -108,19 +105,26 @@ static int run(const struct cli *c, struct asking *a, int *status, struct err *e
 	if (asking_open(a, &options.asking, e))
 		return -1;
 	cli_note(c, 1, "%zu objects, loaded in %.3f s", a->model.lifted.objects, cli_seconds() - c->start);
-	return c->operand_count > 1 ? answer(c, a, q.text, status, e) : answer_lines(c, a, status, e);
+	const int is_one = c->operand_count > 1 || options.reply.point || options.reply.box;
+	return is_one ? answer(c, a, q.text, status, e) : answer_lines(c, a, status, e);
 }
 
 static void check(const struct cli *c)
 {
-	const char *model = options.asking.given.model;
+	const char *model = options.asking.given.model, *camera = options.asking.camera;
+	const int has_place = options.reply.point || options.reply.box,
+		  is_one = has_place || c->operand_count > 1;
 
-	if (options.picture && c->operand_count < 2)
+	if ((options.reply.point && options.reply.box) || (has_place && c->operand_count > 1))
+		cli_usage(c, "--point, --box and QUESTION do not go together");
+	if (options.reply.picture && !is_one)
 		cli_usage(c, "--picture needs a QUESTION");
-	if (options.picture && !strcmp(options.picture, "-"))
+	if (options.reply.picture && !strcmp(options.reply.picture, "-"))
 		cli_usage(c, "--picture must name a file");
-	if (model && !strcmp(model, "-") && c->operand_count < 2)
+	if (model && !strcmp(model, "-") && !is_one)
 		cli_usage(c, "--model - needs a QUESTION, as questions come from stdin");
+	if (camera && !strcmp(camera, "-") && (!is_one || (model && !strcmp(model, "-"))))
+		cli_usage(c, "--camera - and %s cannot both be stdin", is_one ? "--model" : "the questions");
 }
 
 int main(int argc, char **argv)
@@ -132,7 +136,7 @@ int main(int argc, char **argv)
 
 	cli_parse(&c, &tool, argc, argv);
 	check(&c);
-	cli_refuse_overwrite(&c, CLI_SCENE " model encoder:" BERT_MODEL_PARTS, "picture", NULL);
+	cli_refuse_overwrite(&c, CLI_SCENE " model camera encoder:" BERT_MODEL_PARTS, "picture", NULL);
 	options.asking.run = c.operands[0];
 	const int bad = run(&c, &a, &status, &e);
 	asking_close(&a);

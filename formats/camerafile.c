@@ -6,6 +6,7 @@
 #include "base/utf8.h"
 #include "formats/cameras3dgs.h"
 #include "formats/colmap.h"
+#include "formats/foreign.h"
 #include "formats/json.h"
 #include "formats/transforms.h"
 #include "geom/views.h"
@@ -44,7 +45,11 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e)
 		bad = colmap_read(c, path, e);
 	} else {
 		root = json_read(path, e);
-		if (cJSON_IsArray(root))
+		const cJSON *frames = cJSON_GetObjectItemCaseSensitive(root, "frames"),
+			    *image = cJSON_GetObjectItemCaseSensitive(root ? root->child : NULL, "img_name");
+		if (root && !frames && !image && foreign_json(root, name, e))
+			bad = -1;
+		else if (cJSON_IsArray(root))
 			bad = cameras3dgs_parse(c, root, name, e);
 		else if (cJSON_IsObject(root))
 			bad = transforms_parse(c, root, name, e);

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
+#include "formats/foreign.h"
 #include "formats/json.h"
 
 #include <math.h>
@@ -76,6 +77,17 @@ static ssize_t next_line(struct jsonl *j, struct err *e)
 	}
 }
 
+/* A file of another program, which is one JSON value over many lines, or on the first. */
+static int check_foreign(const struct jsonl *j, const cJSON *first, struct err *e)
+{
+	struct err ignored;
+	cJSON *whole = first ? NULL : json_read(j->path, &ignored);
+	const int bad = foreign_json(first ? first : whole, j->path, e);
+
+	cJSON_Delete(whole);
+	return bad;
+}
+
 int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 {
 	const char *stop = NULL;
@@ -83,7 +95,13 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 
 	if (len <= 0)
 		return (int)len;
+	const int is_first = !j->records++;
 	*object = cJSON_ParseWithOpts(j->line, &stop, 1);
+	if (is_first && check_foreign(j, *object, e)) {
+		cJSON_Delete(*object);
+		*object = NULL;
+		return -1;
+	}
 	if (!*object)
 		return jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);
 	const int is_cut = json_has_nul(j->line);

@@ -16,6 +16,7 @@ struct jsonl {
 	char *line;
 	size_t capacity;
 	long line_number; /* of the line last returned, from 1 */
+	long records;	  /* objects that were asked for */
 };
 
 /* "-" is stdin. `path` must outlive the reader. */

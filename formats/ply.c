@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/foreign.h"
 #include "formats/plyfile.h"
 #include "formats/plypacked.h"
 
@@ -256,6 +257,9 @@ static int read_elements(
 			chunks = f->at;
 		if (el == vertex) {
 			struct source in;
+			bad = foreign_vertices(f, vertex, e) ? -1 : 0;
+			if (bad)
+				break;
 			bad = open_source(&in, f, vertex, chunks, e) ||
 			      read_vertices(s, offset, report, &in, e);
 			close_source(&in);

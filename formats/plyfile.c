@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/names.h"
+#include "formats/foreign.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -127,6 +128,8 @@ static int read_line(struct plyfile *f, char *line, int number, struct err *e)
 			return err_set(e, ERR_FORMAT, "%s:2: the second line is not 'format'", f->path);
 		return read_format(f, line, number, e);
 	}
+	if (!strcmp(word, "comment") && !strncmp(line + strspn(line, " \t"), "SplatRenderMode:", 16))
+		f->is_mip |= strstr(line, "mip") != NULL;
 	if (!*word || !strcmp(word, "comment") || !strcmp(word, "obj_info"))
 		return 0;
 	if (!strcmp(word, "element"))
@@ -179,6 +182,8 @@ static int read_header(struct plyfile *f, struct err *e)
 	const char *data = (const char *)f->map.data;
 	size_t len = f->map.len < HEADER_LIMIT ? f->map.len : HEADER_LIMIT, at = 0;
 
+	if ((len < 3 || memcmp(data, "ply", 3)) && foreign_splats(f->path, f->map.data, f->map.len, e))
+		return -1;
 	if (len < 4 || memcmp(data, "ply", 3) ||
 		(data[3] != '\n' && memcmp(data, "ply\r\n", len < 5 ? len : 5)))
 		return err_set(e, ERR_FORMAT, "%s: not a PLY file: the first line is not 'ply'", f->path);

@@ -211,6 +211,16 @@ int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, str
 	return bad;
 }
 
+/* Colour pictures are for a person to look at, and many are drawn: a fifth of the time for a third more
+ * bytes. */
+static void set_effort(const struct png_job *job)
+{
+	if (job->channels != 3)
+		return;
+	png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+	png_set_compression_level(job->png, 1);
+}
+
 static int encode(struct png_job *job, FILE *out)
 {
 	int colour = job->channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY;
@@ -221,6 +231,7 @@ static int encode(struct png_job *job, FILE *out)
 	png_set_user_limits(job->png, MAX_SIDE, MAX_SIDE);
 	png_set_IHDR(job->png, job->info, (png_uint_32)job->width, (png_uint_32)job->height, job->depth,
 		colour, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+	set_effort(job);
 	png_write_info(job->png, job->info);
 	const uint16_t one = 1;
 	if (job->depth == 16 && *(const uint8_t *)&one)

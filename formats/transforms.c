@@ -77,6 +77,13 @@ static int read_focal(const cJSON *frame, const cJSON *root, const char *focal, 
 	return got;
 }
 
+/* Whether there are focal lengths in pixels, which Blender's files do not have. */
+static int has_focal(const cJSON *frame, const cJSON *root)
+{
+	return cJSON_GetObjectItemCaseSensitive(frame, "fl_x") ||
+	       cJSON_GetObjectItemCaseSensitive(root, "fl_x");
+}
+
 static int read_intrinsics(
 	struct camera *c, const cJSON *frame, const cJSON *root, const char *where, struct err *e)
 {
@@ -86,6 +93,10 @@ static int read_intrinsics(
 	if (check_lens(frame, root, where, e) || either_number(frame, root, "w", &width, where, e) < 0 ||
 		either_number(frame, root, "h", &height, where, e) < 0)
 		return -1;
+	if ((width == 0 || height == 0) && !has_focal(frame, root))
+		return err_set(e, ERR_FORMAT,
+			"%s: key '%s' is missing, as in Blender's transforms: jq '. + {w: 800, h: 800}' adds the size of the photographs",
+			where, width == 0 ? "w" : "h");
 	if (width == 0 || height == 0)
 		return err_set(e, ERR_FORMAT, "%s: key '%s' is missing", where, width == 0 ? "w" : "h");
 	if (view_set_size(c, width, height))

@@ -1,13 +1,16 @@
 #include "formats/weights.h"
 
 #include "base/mem.h"
+#include "formats/weights_pack.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { VERSION_READ = 1, MAX_SIDE = 65536, LEVELS = 255 };
+enum { VERSION_READ = 2, MAX_SIDE = 65536, LEVELS = 255, RATIO = 1100 /* deflate makes nothing smaller */ };
+
+static const char *const stream_names[WEIGHTS_STREAMS] = {"ids", "maps", "levels"};
 
 static int check_indptr(const struct weights *w, int64_t pixels, int64_t nnz, struct err *e)
 {
@@ -104,6 +107,45 @@ static int read_weight(struct weights *w, int64_t nnz, struct err *e)
 	return 0;
 }
 
+/* Packed weights become arrays of our own. */
+static int read_packed(struct weights *w, int64_t pixels, struct err *e)
+{
+	const int64_t any = -1, streams = WEIGHTS_STREAMS;
+	const struct st_tensor *sizes = safetensors_need(&w->file, "sizes", ST_I64, 1, &streams, e),
+			       *dropped = sizes ? safetensors_need(&w->file, "dropped", ST_U8, 1, &pixels, e)
+						: NULL;
+	struct weights_pack pack = {0};
+
+	for (int s = 0; s < WEIGHTS_STREAMS && dropped; s++) {
+		const struct st_tensor *t = safetensors_need(&w->file, stream_names[s], ST_U8, 1, &any, e);
+		const int64_t bytes = ((const int64_t *)sizes->data)[s];
+		if (!t)
+			return -1;
+		if (bytes < 0 || bytes / RATIO > (int64_t)t->bytes)
+			return err_set(e, ERR_FORMAT, "%s: tensor 'sizes': %lld bytes cannot be in '%s'",
+				w->file.path, (long long)bytes, stream_names[s]);
+		pack.bytes[s] = (size_t)bytes;
+		pack.packed[s] = t->bytes;
+		pack.data[s] = (uint8_t *)(size_t)t->data;
+	}
+	w->precision = PRECISION_U8;
+	w->is_packed = 1;
+	w->owned_indptr =
+		dropped ? mem_alloc((size_t)pixels + 1, sizeof *w->owned_indptr, w->file.path, e) : NULL;
+	w->owned_dropped =
+		w->owned_indptr ? mem_alloc((size_t)pixels, sizeof *w->owned_dropped, w->file.path, e) : NULL;
+	if (!w->owned_dropped || weights_unpack(&pack, w->width, w->height, w->gaussians, w->file.path,
+					 w->owned_indptr, &w->owned_index, &w->owned, e))
+		return -1;
+	for (int64_t p = 0; p < pixels; p++)
+		w->owned_dropped[p] = (float)((const uint8_t *)dropped->data)[p] / LEVELS;
+	w->indptr = w->owned_indptr;
+	w->index = w->owned_index;
+	w->weight = w->owned;
+	w->dropped = w->owned_dropped;
+	return 0;
+}
+
 static int read_all(struct weights *w, struct err *e)
 {
 	const struct safetensors *st = &w->file;
@@ -121,6 +163,8 @@ static int read_all(struct weights *w, struct err *e)
 	if (fingerprint_read(&w->scene, st, "scene", e) || fingerprint_read(&w->camera, st, "camera", e))
 		return -1;
 	int64_t pixels = width * height, any = -1, ends = pixels + 1;
+	if (safetensors_find(st, "maps"))
+		return read_packed(w, pixels, e);
 	if (!(indptr = safetensors_need(st, "indptr", ST_I64, 1, &ends, e)) ||
 		!(index = safetensors_need(st, "index", ST_I32, 1, &any, e)) ||
 		!(dropped = safetensors_need(st, "dropped", ST_F32, 1, &pixels, e)) ||
@@ -185,6 +229,9 @@ void weights_close(struct weights *w)
 {
 	safetensors_close(&w->file);
 	free(w->owned);
+	free(w->owned_indptr);
+	free(w->owned_index);
+	free(w->owned_dropped);
 	*w = (struct weights){0};
 }
 
@@ -209,40 +256,74 @@ static const void *convert(const struct weights *w, int64_t nnz, void **owned, s
 	return *owned;
 }
 
+/* The file's tensors: the weights as they are, or packed. Data that are made are its own. */
+struct written {
+	struct st_tensor tensors[5];
+	size_t n;
+	struct weights_pack pack;
+	int64_t sizes[WEIGHTS_STREAMS];
+	void *converted;
+	uint8_t *dropped;
+};
+
+static void put(struct written *t, const char *name, enum st_dtype dtype, int64_t length, const void *data)
+{
+	t->tensors[t->n++] =
+		(struct st_tensor){.name = name, .dtype = dtype, .dims = 1, .shape = {length}, .data = data};
+}
+
+static int put_plain(struct written *t, const struct weights *w, int64_t pixels, int64_t nnz, struct err *e)
+{
+	const void *data = convert(w, nnz, &t->converted, e);
+
+	if (!data)
+		return -1;
+	put(t, "indptr", ST_I64, pixels + 1, w->indptr);
+	put(t, "index", ST_I32, nnz, w->index);
+	put(t, "dropped", ST_F32, pixels, w->dropped);
+	put(t, "weight", precision_dtype(w->precision), nnz, data);
+	return 0;
+}
+
+static int put_packed(struct written *t, const struct weights *w, int64_t pixels, int64_t nnz, struct err *e)
+{
+	const uint8_t *levels = convert(w, nnz, &t->converted, e);
+
+	t->dropped = levels ? mem_alloc((size_t)pixels, 1, "weights", e) : NULL;
+	if (!t->dropped || weights_pack(&t->pack, w->width, w->height, w->indptr, w->index, levels, e))
+		return -1;
+	for (int64_t p = 0; p < pixels; p++)
+		t->dropped[p] = (uint8_t)(w->dropped[p] * LEVELS + 0.5f);
+	for (int s = 0; s < WEIGHTS_STREAMS; s++)
+		t->sizes[s] = (int64_t)t->pack.bytes[s];
+	put(t, "sizes", ST_I64, WEIGHTS_STREAMS, t->sizes);
+	for (int s = 0; s < WEIGHTS_STREAMS; s++)
+		put(t, stream_names[s], ST_U8, (int64_t)t->pack.packed[s], t->pack.data[s]);
+	put(t, "dropped", ST_U8, pixels, t->dropped);
+	return 0;
+}
+
 int weights_write(
 	const struct weights *w, const char *dir, const char *view, const char *options, struct err *e)
 {
-	int64_t pixels = (int64_t)w->width * w->height, nnz = w->indptr[pixels];
+	const int64_t pixels = (int64_t)w->width * w->height, nnz = w->indptr[pixels];
 	char *path = file_join(dir, view, ".safetensors", e), width[16], height[16], gaussians[24];
-	void *owned = NULL;
-	const void *data = path ? convert(w, nnz, &owned, e) : NULL;
-	int bad = -1;
+	struct written t = {0};
+	int bad = !path || (w->is_packed ? put_packed : put_plain)(&t, w, pixels, nnz, e);
 
-	if (!data)
-		goto done;
 	snprintf(width, sizeof width, "%d", w->width);
 	snprintf(height, sizeof height, "%d", w->height);
 	snprintf(gaussians, sizeof gaussians, "%lld", (long long)w->gaussians);
-	struct st_tensor tensors[] = {
-		{.name = "indptr", .dtype = ST_I64, .dims = 1, .shape = {pixels + 1}, .data = w->indptr},
-		{.name = "index", .dtype = ST_I32, .dims = 1, .shape = {nnz}, .data = w->index},
-		{.name = "dropped", .dtype = ST_F32, .dims = 1, .shape = {pixels}, .data = w->dropped},
-		{.name = "weight",
-			.dtype = precision_dtype(w->precision),
-			.dims = 1,
-			.shape = {nnz},
-			.data = data},
-	};
-	struct st_meta meta[] = {{"format", "refer.weights"}, {"version", "1"}, {"tool", "gs-weigh"},
-		{"options", options}, {"seed", "0"}, {"view", view}, {"width", width}, {"height", height},
-		{"gaussians", gaussians}, {"scene", fingerprint_text(&w->scene)},
+	struct st_meta meta[] = {{"format", "refer.weights"}, {"version", w->is_packed ? "2" : "1"},
+		{"tool", "gs-weigh"}, {"options", options}, {"seed", "0"}, {"view", view}, {"width", width},
+		{"height", height}, {"gaussians", gaussians}, {"scene", fingerprint_text(&w->scene)},
 		{"camera", fingerprint_text(&w->camera)}};
-	bad = safetensors_write(
-		path, tensors, sizeof tensors / sizeof *tensors, meta, sizeof meta / sizeof *meta, e);
-done:
+	bad = bad || safetensors_write(path, t.tensors, t.n, meta, sizeof meta / sizeof *meta, e);
 	free(path);
-	free(owned);
-	return bad;
+	free(t.converted);
+	free(t.dropped);
+	weights_pack_free(&t.pack);
+	return bad ? -1 : 0;
 }
 
 int weights_mark(const char *dir, const struct cameras *cameras, char *there, size_t *missing, struct err *e)

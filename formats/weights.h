@@ -15,13 +15,17 @@ struct weights {
 	int width, height;     /* of the rendered size: P = width*height pixels, row-major */
 	int64_t gaussians;     /* N of the scene it belongs to */
 	const int64_t *indptr; /* (P+1) */
-	const int32_t *index;  /* (nnz) Gaussian ids, front to back within a pixel */
+	const int32_t *index;  /* (nnz) Gaussian ids, front to back within a pixel; packed: rising */
 	const float *weight;   /* (nnz) a_i prod_{k<i} (1-a_k); from f32 in place, else converted */
 	const float *dropped;  /* (P) weight left out by --tolerance */
 	struct fingerprint scene, camera; /* of what it was made from; camera: at the rendered size */
 	struct safetensors file;	  /* keeps the map alive */
 	float *owned;			  /* the converted copy of f16 and u8 weights, else NULL */
-	enum precision precision;	  /* of the weights in the file */
+	int is_packed;			  /* in the file: u8, and in few bytes */
+	int64_t *owned_indptr;		  /* what packed weights become, else NULL */
+	int32_t *owned_index;
+	float *owned_dropped;
+	enum precision precision; /* of the weights in the file */
 };
 
 /* Weights below half of 1/255 round to 0 as u8: prune_below leaves them out, so that they count as dropped.

@@ -31,7 +31,7 @@ SIZE ?= quick
 SCENES ?= diner toys tea kitchen
 THREADS ?= 1
 TRAIN ?= --feature-rate 0.01 --mlp-rate 0.0004
-$(call check,,OUT BIN BERT,SIZE SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS,pipelines/ablation.mk)
+$(call check,,OUT BIN BERT,SIZE SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS)
 ifeq ($(SIZE),full)
 SEEDS ?= 21 22
 ITERATIONS ?= 5000

@@ -36,12 +36,14 @@ check_line = $(if $(findstring $(newline),$($(1))),$(error $(1) has a newline))
 take = $(if $(filter command environment,$(firstword $(origin $(1)))),$(eval override $(1) := $$(value $(1))))
 
 # Takes the variables: names of files and folders, and others. Stops where one that is needed is not set, or one cannot be
-# used. To be called before any of them is looked at. $(call check,NEEDED,NAMES OF FILES,OTHERS,FILE)
+# used. To be called before any of them is looked at. The pipeline that is named is the one that was called, which may include
+# others. $(call check,NEEDED,NAMES OF FILES,OTHERS)
 define check
 $(foreach v,$(2) $(3),$(call take,$(v)))$(if $(filter help clean,$(MAKECMDGOALS)),,$(if $(call missing,$(1)),$(error \
-	$(call missing,$(1)) not set; see the head of $(4))))$(foreach v,$(2),$(call check_path,$(v)))$(foreach \
+	$(called): $(call missing,$(1)) not set; 'make -f $(called) help' says what they are)))$(foreach v,$(2),$(call check_path,$(v)))$(foreach \
 	v,$(3),$(call check_line,$(v)))
 endef
+called := $(firstword $(MAKEFILE_LIST))
 missing = $(strip $(foreach v,$(1),$(if $($(v)),,$(v))))
 
 tool = $(if $(BIN),$(call quote,$(BIN)/))
@@ -52,8 +54,12 @@ same = $(if $(subst x$(1),,x$(2))$(subst x$(2),,x$(1)),,same)
 track = $(foreach s,$(1),$(if $(call same,$(file <$(SCENE)/log/$(s).command),$(command.$(s))),,$(eval \
 	$(SCENE)/log/$(s).command: FORCE)))
 
-# Does a step. -v makes its last line, time and memory, which is kept for the report. $(call run,STEP)
-run = mkdir -p $(SCENE)/log && $(tool)$(command.$(1)) -v 2>$(SCENE)/log/$(1) || { cat $(SCENE)/log/$(1) >&2; exit 1; }
+# Does a step, which says its name and time as it ends, and its warnings; with V=1 make prints its command too. On a terminal its
+# progress shows, while all else that it says goes to log/STEP: -v makes the last line there, time and memory, for the report.
+# $(call run,STEP)
+hide = $(if $(V),,@)
+run = $(hide)mkdir -p $(SCENE)/log && { REFERSPLAT_PROGRESS=3 $(tool)$(command.$(1)) -v 3>&2 2>$(SCENE)/log/$(1) || { cat $(SCENE)/log/$(1) >&2; exit 1; }; } && \
+	{ grep ': warning: ' $(SCENE)/log/$(1) >&2; sed -n '$$s/^\([^:]*\): \([0-9.]*\) s, peak memory.*/\1 ($(1)): \2 s/p' $(SCENE)/log/$(1); }
 
 # What gs-import may take for the cameras in a folder. $(call camera_files,FOLDER)
 camera_files = $(wildcard $(addprefix $(1)/,cameras.json transforms.json $(foreach d,./ sparse/ sparse/0/,$(foreach f,cameras \

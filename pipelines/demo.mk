@@ -17,24 +17,21 @@ SCALE ?= 0.5
 include $(here)common.mk
 # The workflow gets what is said below, and nothing else.
 MAKEOVERRIDES :=
-$(call check,DEMO,DEMO,SEED SYNTH ITERATIONS SCALE TRAIN TEACH BERT BIN,pipelines/demo.mk)
+$(call check,DEMO,DEMO,SEED SYNTH ITERATIONS SCALE TRAIN TEACH BERT BIN)
 data := $(DEMO)/data
 make_data = gs-synth --seed $(call quoted,SEED) $(call options,SYNTH) -o $(data)
+
+help:
+	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(called)
 
 .PHONY: demo
 .DEFAULT_GOAL := demo
 demo: $(data)/made-by
-	@$(MAKE) --no-print-directory -f $(here)lift.mk predictions overlays scores lifted SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply \
+	@$(MAKE) --no-print-directory -f $(here)lift.mk predictions overlays scores lifted WORDS=1 SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply \
 		CAMERAS=$(data)/sparse/0 IMAGES=$(data)/images TEST_VIEWS="$$(cat $(data)/test-views)" SENTENCES=$(data)/sentences.jsonl \
 		CANDIDATES=$(data)/candidates.jsonl TRUTH=$(data)/truth.jsonl WHOLE=$(data)/whole.jsonl BOXES=$(data)/boxes.jsonl \
 		SCALE=$(call quoted,SCALE) ITERATIONS=$(call quoted,ITERATIONS) SEED=$(call quoted,SEED) \
 		$(if $(TRAIN),TRAIN=$(call quoted,TRAIN)) $(if $(TEACH),TEACH=$(call quoted,TEACH)) BIN=$(call quoted,BIN) BERT=$(call quoted,BERT)
-	@echo
-	@echo "photographs: $(data)/images"
-	@echo "sentences:   $(data)/sentences.jsonl"
-	@echo "masks drawn over the test views, a picture for each test sentence: $(DEMO)/lifted/overlays (without training),"
-	@echo "             $(DEMO)/stage2/overlays (trained as in the paper)"
-	@echo "where the things are in space: $(DEMO)/lifted/boxes.jsonl"
 	@$(tool)refer-report --truth $(data)/truth.jsonl $(DEMO)
 	@echo "all of it on one page; open in a browser: file://$(abspath $(DEMO))/report.html"
 

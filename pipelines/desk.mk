@@ -18,7 +18,10 @@ TRAIN ?= --tolerance 0.01
 include $(here)common.mk
 # The workflow gets what is said below, and nothing else.
 MAKEOVERRIDES :=
-$(call check,DATA,DATA OUT ASK,TEST_VIEWS SCALE ITERATIONS TRAIN SEED TEACH BERT BIN,pipelines/desk.mk)
+$(call check,DATA,DATA OUT ASK,TEST_VIEWS SCALE ITERATIONS TRAIN SEED TEACH BERT BIN)
+
+help:
+	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(called)
 
 .PHONY: desk lift
 .DEFAULT_GOAL := desk

@@ -13,17 +13,18 @@
 # ASK         more sentences to answer, JSON Lines; optional
 # WHOLE       true masks of whole objects, to score those of --amodal against; optional
 # BOXES       true boxes, to score those of refer-locate against; optional
+# WORDS       1: ends in words, a line for each way, in place of a table
 # The other variables, and the folder's layout, are those of two-stage.mk; both workflows may use one folder where SCALE and
-# WEIGH (here --precision u8 by default) are the same.
+# WEIGH (here --packed --tolerance 0.05 by default) are the same.
 #
 # Targets: lifted (the model, boxes, and, where there are test views, predictions, overlays and, with TRUTH, scores), report (the
 # same, and the page SCENE/report.html for a browser), and those of two-stage.mk.
 
 .DEFAULT_GOAL := lifted
 SCALE ?= 0.3333
-WEIGH ?= --precision u8
+WEIGH ?= --packed --tolerance 0.05
 include $(dir $(lastword $(MAKEFILE_LIST)))two-stage.mk
-$(call check,,ASK WHOLE BOXES,,pipelines/lift.mk)
+$(call check,,ASK WHOLE BOXES,)
 
 asked := $(if $(ASK),$(SCENE)/lifted/asked.jsonl)
 answers := $(if $(TEST_VIEWS),$(foreach t,$(splits),$(SCENE)/lifted/predictions.$(t).jsonl) $(asked))
@@ -33,8 +34,8 @@ lifted_scores := $(if $(TRUTH),$(if $(MASKS),,$(SCENE)/lifted/masks.score.json) 
 
 .PHONY: lifted
 lifted: $(answers) $(whole) $(SCENE)/lifted/boxes.jsonl $(if $(TEST_VIEWS),$(SCENE)/lifted/overlays/complete) $(lifted_scores)
-	@$(here)report.sh $(SCENE)
-	@echo && echo "to ask it: $(if $(BIN),$(BIN)/)refer-ask$(if $(filter-out file,$(origin BERT)), --encoder $(BERT)) $(SCENE) 'where is the ...?'"
+	@$(here)report.sh $(if $(WORDS),--words) $(SCENE)
+	@$(if $(WORDS),,echo && )echo "to ask it: $(if $(BIN),$(BIN)/)refer-ask$(if $(filter-out file,$(origin BERT)), --encoder $(BERT)) $(SCENE) 'where is the ...?'$(if $(WORDS), (all figures: $(here)report.sh $(SCENE)))"
 
 # The steps.
 ask3 = refer-render --scene $(SCENE)/scene --text $(1) --model $(model3)
@@ -63,13 +64,13 @@ $(SCENE)/lifted/whole.jsonl: $(model3) $(SCENE)/log/render3.whole.command
 	$(call run,render3.whole)
 
 $(SCENE)/lifted/whole.score.json: $(SCENE)/lifted/whole.jsonl $(WHOLE) $(SCENE)/log/score_whole.command
-	$(tool)$(command.score_whole) -o $@ $<
+	$(hide)$(tool)$(command.score_whole) -o $@ $<
 
 $(SCENE)/lifted/boxes.jsonl: $(model3) $(SCENE)/log/locate.command
 	$(call run,locate)
 
 $(SCENE)/lifted/boxes.score.json: $(SCENE)/lifted/boxes.jsonl $(BOXES) $(SCENE)/log/score_boxes.command
-	$(tool)$(command.score_boxes) -o $@ $<
+	$(hide)$(tool)$(command.score_boxes) -o $@ $<
 
 $(SCENE)/lifted/overlays/complete: $(model3) $(SCENE)/log/overlay3.command
 	@mkdir -p $(@D)

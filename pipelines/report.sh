@@ -1,6 +1,9 @@
 #!/bin/sh
-# Prints what two-stage.mk and lift.mk made in a folder: scores, times and memory. usage: report.sh SCENE
+# Prints what two-stage.mk and lift.mk made in a folder: scores, times and memory; with --words in a line for each way, the best first.
+# usage: report.sh [--words] SCENE
 set -eu
+words=
+[ "$1" != --words ] || { words=1; shift; }
 dir=$1
 
 # The number at a key of a score file, as a percentage; the objects' own come after the scene's.
@@ -14,6 +17,26 @@ row() {
 	printf '%-42s %s %s %s %s %s\n' "$1" "$(percent miou "$2")" "$(percent oiou "$2")" "$(percent p25 "$2")" \
 		"$(percent p50 "$2")" "$(percent p75 "$2")"
 }
+
+# Seconds of steps together.
+seconds() {
+	for step; do
+		[ ! -e "$dir/log/$step" ] || sed -n '$s/.*: \([0-9.]*\) s, peak memory.*/\1/p' "$dir/log/$step"
+	done | awk '{ sum += $1 } END { printf "%.0f", sum }'
+}
+
+# answers HOW FILE SECONDS PICTURES: a line of words.
+answers() {
+	[ ! -e "$2" ] || echo "$1: $(percent p50 "$2" | tr -d ' ')% of the masks of test sentences are right by half or more, mIoU $(percent miou "$2" |
+		tr -d ' '), in $3 s. Pictures: $4"
+}
+
+if [ "$words" ]; then
+	answers "Without training" "$dir/lifted/predictions.test.score.json" "$(seconds weigh encode select3d lift render3.test)" "$dir/lifted/overlays"
+	answers "Trained as in the paper" "$dir/stage2/predictions.test.score.json" \
+		"$(seconds weigh encode select train1 teach train2 render2.test)" "$dir/stage2/overlays"
+	exit
+fi
 
 [ -z "$(find "$dir" -maxdepth 2 -name '*.score.json')" ] || printf '%-42s %6s %6s %6s %6s %6s\n' "" mIoU oIoU P@25 P@50 P@75
 row "selected masks, training views" "$dir/stage1/masks.score.json"

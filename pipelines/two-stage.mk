@@ -5,14 +5,15 @@
 #		CANDIDATES=candidates.jsonl TRUTH=truth.jsonl
 #
 # SCENE       folder for everything that is made (required)
-# SPLATS      trained scene, a 3DGS .ply (required)
+# SPLATS      trained scene, a 3DGS .ply or the folder that 3DGS wrote (required)
 # CAMERAS     COLMAP model, 3DGS cameras.json or transforms.json; default: what gs-import finds beside SPLATS
 # IMAGES      folder of the photographs; optional
 # TEST_VIEWS  test views as gs-import takes them: NAME,... or every:N; default every:8, and none with MASKS
 # SENTENCES   sentences, JSON Lines (required, but with MASKS)
 # CANDIDATES  candidate masks, JSON Lines (required, but with MASKS)
-# MASKS       masks that a person drew, JSON Lines, in place of CANDIDATES; where SENTENCES is not given, the names of their
-#             objects are the sentences. A PNG that they name is not watched for changes
+# MASKS       masks that a person drew, in place of CANDIDATES: JSON of LabelMe or COCO, or a folder of such; pictures, with NAMES;
+#             or mask records, JSON Lines. Where SENTENCES is not given, the names of the things are the sentences. A PNG that
+#             mask records name is not watched for changes
 # NAMES       what the colours of MASKS mean, as mask-import takes it: MASKS is then a painted photograph, a PNG with the name
 #             of its view, or a folder of such
 # TRUTH       true masks to score against; optional
@@ -24,6 +25,7 @@
 #             are lifted from masks selected in 3D; default lifted, which pipelines/ablation.md shows to be better
 # SELECT, WEIGH, LIFT, TRAIN   more options for pseudomask-select, gs-weigh, refer-lift, refer-train, with blanks between them
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
+# V           1 prints the commands too
 #
 # Targets: all (predictions, overlays and, with TRUTH, scores), predictions, overlays, scores, report (scores and times, and the
 # page SCENE/report.html of what is there, for a browser).
@@ -40,16 +42,21 @@ TEACH ?= lifted
 include $(here)common.mk
 $(call take,MASKS)
 $(call check,SCENE SPLATS $(if $(MASKS),,SENTENCES CANDIDATES),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH,IMAGES TEST_VIEWS BERT SCALE \
-	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN,pipelines/two-stage.mk)
+	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN)
 $(if $(filter stage1 lifted,$(TEACH)),,$(error TEACH is stage1 or lifted))
 
-beside := $(patsubst %/,%,$(dir $(SPLATS)))
+# Of a folder of 3DGS the last iteration, as gs-import takes it.
+splats := $(if $(wildcard $(SPLATS)/.),$(or $(shell ls -d $(SPLATS)/point_cloud/iteration_*/point_cloud.ply $(SPLATS)/iteration_*/point_cloud.ply \
+	2>/dev/null | sort -V | tail -n 1),$(wildcard $(SPLATS)/point_cloud.ply),$(SPLATS)),$(SPLATS))
+beside := $(patsubst %/,%,$(dir $(splats)))
 cameras := $(if $(CAMERAS),$(if $(wildcard $(CAMERAS)/.),$(call camera_files,$(CAMERAS)),$(CAMERAS)),$(or $(call \
-	camera_files,$(beside)),$(if $(filter iteration_%,$(notdir $(beside))),$(call camera_files,$(beside)/../..))))
+	camera_files,$(beside)),$(if $(filter iteration_%,$(notdir $(beside))),$(call camera_files,$(beside)/../..)))) $(wildcard $(beside)/dataparser_transforms.json)
 scene := $(SCENE)/scene/cameras.json
 weights := $(SCENE)/weights/complete
 text := $(SCENE)/text.safetensors
-painted := $(if $(and $(MASKS),$(NAMES)),$(or $(wildcard $(MASKS)/*.png),$(MASKS)))
+# Photographs that a person painted, with NAMES, or labelled, as JSON.
+labelled := $(or $(wildcard $(MASKS)/*.json),$(filter %.json,$(MASKS)))
+painted := $(if $(MASKS),$(or $(labelled),$(if $(NAMES),$(or $(wildcard $(MASKS)/*.png),$(MASKS)))))
 drawn := $(if $(painted),$(SCENE)/painted.jsonl,$(MASKS))
 masks1 := $(or $(drawn),$(SCENE)/stage1/masks.jsonl)
 masks2 := $(SCENE)/stage2/masks.jsonl
@@ -76,10 +83,10 @@ help:
 
 # The steps.
 command.import = gs-import $(if $(CAMERAS),--cameras $(CAMERAS)) $(if $(IMAGES),--images $(call quoted,IMAGES)) \
-	$(if $(TEST_VIEWS),--test-views $(call quoted,TEST_VIEWS)) -o $(SCENE)/scene $(SPLATS)
+	$(if $(TEST_VIEWS),--test-views $(call quoted,TEST_VIEWS)) -o $(SCENE)/scene $(splats)
 command.weigh = gs-weigh --scale $(call quoted,SCALE) $(call options,WEIGH) -o $(SCENE)/weights $(SCENE)/scene
 command.encode = text-encode --model $(call quoted,BERT) $(if $(SENTENCES),,--names) -o $(text) $(or $(SENTENCES),$(drawn))
-command.paint = mask-import --names $(NAMES) -o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
+command.paint = mask-import $(if $(NAMES),--names $(NAMES)) -o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
 command.select = pseudomask-select $(call options,SELECT) -o $(masks1) $(CANDIDATES)
 train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks$(1)) \
 	--iterations $(call quoted,ITERATIONS) --seed $(call quoted,SEED) --resume --log $(SCENE)/stage$(1)/train.log \
@@ -101,7 +108,7 @@ $(call track,import weigh paint encode select select3d lift train1 train2 teach 
 $(SCENE)/log/%.command:
 	@mkdir -p $(@D) && printf %s $(call quote,$(command.$*)) >$@
 
-$(scene): $(SPLATS) $(cameras) $(SCENE)/log/import.command
+$(scene): $(splats) $(cameras) $(SCENE)/log/import.command
 	$(call run,import)
 
 $(weights): $(scene) $(SCENE)/log/weigh.command
@@ -156,7 +163,7 @@ $(SCENE)/stage%/overlays/complete: $(SCENE)/stage%/model.safetensors $(SCENE)/lo
 	@touch $@
 
 $(SCENE)/%.score.json: $(SCENE)/%.jsonl $(TRUTH) $(SCENE)/log/score.command
-	$(tool)$(command.score) -o $@ $<
+	$(hide)$(tool)$(command.score) -o $@ $<
 
 # Of lift.mk, what it makes.
 report: $(if $(filter lifted,$(.DEFAULT_GOAL)),lifted,predictions scores)

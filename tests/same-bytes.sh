@@ -72,6 +72,7 @@ synthetic() {
 	run import gs-import -q --images images --test-views "$(cat test-views)" -o scene point_cloud.ply
 	run weigh gs-weigh -q --scale 0.5 -o weights scene
 	run weigh-u8 gs-weigh -q --scale 0.3 --tolerance 0.02 --precision u8 --split all -o weights-u8 scene
+	run weigh-packed gs-weigh -q --scale 0.3 --tolerance 0.02 --packed --split all -o weights-packed scene
 	run encode text-encode -q --model "$bert" -o text sentences
 	run parse text-parse -q -o parses.jsonl text
 	run grammar text-parse -q --method grammar -o grammar.jsonl text

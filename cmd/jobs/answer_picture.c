@@ -62,7 +62,8 @@ static int ignore(void *data, size_t view, struct err *e)
 	return 0;
 }
 
-static int best_view(const struct asking *a, const struct answer_question *q, size_t *best, struct err *e)
+static int best_view(
+	const struct asking *a, const struct answer_question *q, const struct camera **view, struct err *e)
 {
 	const struct cameras *c = &a->scene.cameras;
 	struct looks l = {mem_zalloc(c->n, sizeof *l.worth, "views", e)};
@@ -78,9 +79,10 @@ static int best_view(const struct asking *a, const struct answer_question *q, si
 		small[v] = camera_resize(from, width, height);
 	}
 	int bad = !l.worth || !small || answer_all(q, small, c->n, &calls, e);
-	*best = 0;
+	size_t best = 0;
 	for (size_t v = 1; v < c->n && !bad; v++)
-		*best = l.worth[v] > l.worth[*best] ? v : *best;
+		best = l.worth[v] > l.worth[best] ? v : best;
+	*view = &c->views[best];
 	free(l.worth);
 	free(small);
 	return bad ? -1 : 0;
@@ -88,7 +90,27 @@ static int best_view(const struct asking *a, const struct answer_question *q, si
 
 struct page {
 	const char *const *words, *path;
+	struct answer_drawn *drawn;
 };
+
+/* The rectangle around the mask. */
+static void bound(const struct answer *a, struct answer_drawn *drawn)
+{
+	const int h = a->camera->height, w = a->camera->width;
+
+	drawn->low[0] = w;
+	drawn->low[1] = h;
+	drawn->high[0] = drawn->high[1] = 0;
+	for (int y = 0; y < h; y++)
+		for (int x = 0; x < w; x++) {
+			if (!a->mask[(size_t)y * (size_t)w + (size_t)x])
+				continue;
+			drawn->low[0] = x < drawn->low[0] ? x : drawn->low[0];
+			drawn->low[1] = y < drawn->low[1] ? y : drawn->low[1];
+			drawn->high[0] = x >= drawn->high[0] ? x + 1 : drawn->high[0];
+			drawn->high[1] = y + 1;
+		}
+}
 
 static int put_page(void *data, const struct answer *a, struct err *e)
 {
@@ -102,6 +124,7 @@ static int put_page(void *data, const struct answer *a, struct err *e)
 	for (size_t i = 0; i < bytes; i++)
 		rgb[i] = (uint8_t)lrintf(255 * a->rgb[i]);
 	overlay_draw(rgb, a->mask, h, w);
+	bound(a, page->drawn);
 	for (int k = 0; k < 2; k++)
 		caption_draw(rgb, w, h + k * line, page->words[k]);
 	const int bad = png_write(page->path, rgb, h + 2 * line, w, 3, e);
@@ -110,21 +133,20 @@ static int put_page(void *data, const struct answer *a, struct err *e)
 }
 
 int answer_picture(const struct asking *a, const struct asking_answer *answer, const char *const words[2],
-	const char *path, const char **view, struct err *e)
+	const char *path, struct answer_drawn *drawn, struct err *e)
 {
 	struct responses responses;
 	struct answer_question q = {&a->scene.splats, &responses, NULL, 0};
-	struct page page = {words, path};
+	struct page page = {words, path, drawn};
 	const struct answer_calls calls = {&page, put_page, ignore};
-	size_t best = 0;
 
-	if (!a->scene.cameras.n)
+	if (!drawn->view && !a->scene.cameras.n)
 		return err_set(e, ERR_FORMAT, "%s: has no view to draw", a->files.scene);
-	int bad = take_responses(&responses, a, answer, e) || best_view(a, &q, &best, e);
+	int bad = take_responses(&responses, a, answer, e) ||
+		  (!drawn->view && best_view(a, &q, &drawn->view, e));
 	if (!bad) {
 		q.wants_rgb = 1;
-		*view = a->scene.cameras.views[best].name;
-		bad = answer_all(&q, &a->scene.cameras.views[best], 1, &calls, e);
+		bad = answer_all(&q, drawn->view, 1, &calls, e);
 	}
 	responses_free(&responses);
 	return bad ? -1 : 0;

@@ -6,10 +6,15 @@
 #include "base/err.h"
 #include "cmd/jobs/asking.h"
 
-/* Writes a PNG that appears whole, with two lines of words. The view is the one in which the things cover
- * most, where things that the picture's edge cuts count half: *view, its name, the scene's. Returns 0, or -1
- * with *e set. */
+struct answer_drawn {
+	const struct camera *view; /* which to draw; NULL: it is found */
+	int low[2], high[2]; /* column and row: the rectangle around the things, where high > low; high is
+				outside */
+};
+
+/* Writes a PNG that appears whole, with two lines of words. The view that is found is the one in which the
+ * things cover most, where things that the picture's edge cuts count half. Returns 0, or -1 with *e set. */
 int answer_picture(const struct asking *a, const struct asking_answer *answer, const char *const words[2],
-	const char *path, const char **view, struct err *e);
+	const char *path, struct answer_drawn *drawn, struct err *e);
 
 #endif

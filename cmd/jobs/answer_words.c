@@ -31,6 +31,28 @@ static void put_percent(FILE *out, double p)
 		fprintf(out, "%.0f%%", percent > 99 && percent < 100 ? 99 : percent);
 }
 
+static void put_view(const struct answer_told *t, FILE *out)
+{
+	const struct answer_drawn *d = &t->drawn;
+
+	if (!t->picture)
+		return;
+	fprintf(out, "; drawn in view %s", d->view->name);
+	if (d->high[0] <= d->low[0])
+		fputs(", where it is not in sight", out);
+}
+
+/* How it could be called. */
+static void put_calling(const struct answer_told *t, FILE *out)
+{
+	if (!*t->calling.text) {
+		fputs("; no description finds it", out);
+		return;
+	}
+	fprintf(out, "; call it '%s' ", t->calling.text);
+	put_percent(out, t->calling.probability);
+}
+
 static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 {
 	const struct asking *a = t->asking;
@@ -51,8 +73,28 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 		fprintf(out, "; centre %.3g %.3g %.3g, size %.3g x %.3g x %.3g high",
 			b->centre[0] + a->scene.offset[0], b->centre[1] + a->scene.offset[1],
 			b->centre[2] + a->scene.offset[2], 2 * b->half[0], 2 * b->half[1], 2 * b->half[2]);
-	if (t->view)
-		fprintf(out, "; drawn in view %s", t->view);
+	if (t->is_picked)
+		put_calling(t, out);
+	put_view(t, out);
+	fputc('\n', out);
+}
+
+/* "0.31 apart", and what is between the centres. */
+static void put_distance(const struct answer_told *t, FILE *out)
+{
+	const size_t *ends = t->answer->things;
+	char **names = t->asking->model.lifted.names;
+
+	for (int k = 0; k < 2; k++) {
+		fprintf(out, k ? " to %s " : "%s ", names[ends[k]]);
+		put_percent(out, t->answer->probability[ends[k]]);
+	}
+	if (t->distance.gap > 0)
+		fprintf(out, ": %.3g between their boxes", t->distance.gap);
+	else
+		fputs(": their boxes touch", out);
+	fprintf(out, ", %.3g between their centres", t->distance.centres);
+	put_view(t, out);
 	fputc('\n', out);
 }
 
@@ -72,7 +114,9 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e)
 			out);
 	if (!a->count)
 		fprintf(out, "nothing here is that: %s\n", a->reason);
-	for (size_t k = 0; k < a->count; k++)
+	if (t->distance.is_asked && a->count)
+		put_distance(t, out);
+	for (size_t k = 0; k < a->count && !t->distance.is_asked; k++)
 		put_thing(t, a->things[k], out);
 	return check_stream(out, e);
 }
@@ -150,11 +194,44 @@ static int add_things(cJSON *to, const struct answer_told *t)
 	return list != NULL;
 }
 
+static int add_distance(cJSON *to, const struct answer_told *t)
+{
+	if (!t->distance.is_asked || !t->answer->count)
+		return 1;
+	cJSON *distance = cJSON_AddObjectToObject(to, "distance");
+	return distance && add(distance, "gap", length(t->distance.gap)) &&
+	       add(distance, "centres", length(t->distance.centres));
+}
+
+static int add_calling(cJSON *to, const struct answer_told *t)
+{
+	if (!t->is_picked || !*t->calling.text)
+		return 1;
+	cJSON *called = cJSON_AddObjectToObject(to, "called");
+	return called && cJSON_AddStringToObject(called, "text", t->calling.text) &&
+	       add(called, "probability", number(t->calling.probability));
+}
+
+/* The picture, and where in it the things are. */
+static int add_picture(cJSON *to, const struct answer_told *t)
+{
+	const int *low = t->drawn.low, *high = t->drawn.high;
+
+	if (!t->picture)
+		return 1;
+	if (!cJSON_AddStringToObject(to, "picture", t->picture) ||
+		!cJSON_AddStringToObject(to, "view", t->drawn.view->name))
+		return 0;
+	if (high[0] <= low[0])
+		return 1;
+	return add(to, "pixels", cJSON_CreateIntArray((int[]){low[0], low[1], high[0], high[1]}, 4));
+}
+
 static int add_answer(cJSON *to, const struct answer_told *t)
 {
 	const struct asking_answer *a = t->answer;
 
-	if (!cJSON_AddStringToObject(to, "question", t->question) ||
+	if (!cJSON_AddStringToObject(to, t->is_picked ? "picked" : "question", t->question) ||
 		!cJSON_AddBoolToObject(to, "answered", a->count > 0) ||
 		!add(to, "probability", number(a->there)) || !add_things(to, t))
 		return 0;
@@ -167,8 +244,7 @@ static int add_answer(cJSON *to, const struct answer_told *t)
 		return 0;
 	if (!a->count && !cJSON_AddStringToObject(to, "reason", a->reason))
 		return 0;
-	if (t->view && !(cJSON_AddStringToObject(to, "picture", t->picture) &&
-			       cJSON_AddStringToObject(to, "view", t->view)))
+	if (!add_distance(to, t) || !add_calling(to, t) || !add_picture(to, t))
 		return 0;
 	return !a->explained || cJSON_AddItemReferenceToObject(to, "explanation", a->explained);
 }

@@ -3,18 +3,26 @@
 #define CMD_JOBS_ANSWER_WORDS_H
 
 #include "base/err.h"
+#include "cmd/jobs/answer_picture.h"
 #include "cmd/jobs/asking.h"
+#include "cmd/jobs/calling.h"
+#include "cmd/jobs/distance.h"
 
 #include <stdio.h>
 
 struct answer_told {
 	const struct asking *asking;
-	const char *question;
+	const char *question; /* or the place in a view where a thing was picked */
 	const struct asking_answer *answer;
-	const char *picture, *view; /* the picture that was made of it, and in which view; NULL: none */
+	int is_picked;
+	struct calling calling;	   /* of what was picked */
+	struct distance distance;  /* where one was asked */
+	const char *picture;	   /* that was made of it; NULL: none */
+	struct answer_drawn drawn; /* what is in the picture */
 };
 
-/* A line for each thing, or one that says why there is none; after the explanation, where there is one. */
+/* A line for each thing, or for a distance, or one that says why there is none; after the explanation, where
+ * there is one. */
 int answer_put_words(const struct answer_told *t, FILE *out, struct err *e);
 
 /* A JSON object on one line. refer-ask(1) lists its keys. Both return 0, or -1 with *e. */

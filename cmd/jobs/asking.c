@@ -1,7 +1,9 @@
 #include "cmd/jobs/asking.h"
 
+#include "base/file.h"
 #include "base/mem.h"
 #include "cmd/jobs/object_extents.h"
+#include "formats/camerafile.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -40,11 +42,29 @@ static int check_fit(const struct asking *a, struct err *e)
 		       : 0;
 }
 
+/* The camera that is not in the scene, brought into its frame. */
+static int read_camera(struct asking *a, struct err *e)
+{
+	const char *path = a->options->camera;
+
+	if (!path)
+		return 0;
+	if (camerafile_read(&a->given, path, e))
+		return -1;
+	if (a->given.n > 1)
+		return err_set(
+			e, ERR_FORMAT, "%s: has %zu views; --camera takes one", file_name(path), a->given.n);
+	cameras_shift(&a->given, a->scene.offset);
+	return 0;
+}
+
 static int find_viewpoint(struct asking *a, struct err *e)
 {
 	const char *text = a->options->viewpoint;
 
 	a->from = (struct viewpoint){.kind = VIEWPOINT_USUAL};
+	if (!text && a->given.n)
+		a->from = (struct viewpoint){.kind = VIEWPOINT_CAMERA, .camera = a->given.views};
 	if (text && viewpoint_read(&a->from, text, &a->scene.cameras, a->scene.offset))
 		return err_set(e, ERR_USAGE, "--viewpoint: '%s' is no view and no x,y,z", text);
 	return 0;
@@ -72,8 +92,8 @@ static int make_chooser(struct asking *a, struct err *e)
 int asking_open(struct asking *a, const struct asking_options *options, struct err *e)
 {
 	a->options = options;
-	return read_all(a, e) || check_fit(a, e) || find_viewpoint(a, e) || make_chooser(a, e) ||
-			       find_extents(a, e)
+	return read_all(a, e) || check_fit(a, e) || read_camera(a, e) || find_viewpoint(a, e) ||
+			       make_chooser(a, e) || find_extents(a, e)
 		       ? -1
 		       : 0;
 }
@@ -84,6 +104,7 @@ void asking_close(struct asking *a)
 	chooser_free(a->chooser);
 	encoder_free(&a->encoder);
 	anymodel_free(&a->model);
+	cameras_free(&a->given);
 	scene_free(&a->scene);
 	run_folder_free(&a->files);
 }
@@ -110,7 +131,7 @@ static void watch(void *data, size_t i, const struct meaning *m)
 		w->is_out_of_memory = 1;
 }
 
-static int answer_alloc(struct asking_answer *answer, size_t objects, struct err *e)
+int asking_answer_make(struct asking_answer *answer, size_t objects, struct err *e)
 {
 	*answer = (struct asking_answer){.runner_up = ASKING_NONE};
 	answer->things = mem_alloc(objects, sizeof *answer->things, "answer", e);
@@ -176,7 +197,7 @@ int asking_ask(struct asking *a, const char *question, struct asking_answer *ans
 {
 	struct watched w = {.answer = answer, .question = question, .is_explained = a->options->is_explained};
 	struct encoding x = {0};
-	int bad = answer_alloc(answer, a->model.lifted.objects, e) ||
+	int bad = asking_answer_make(answer, a->model.lifted.objects, e) ||
 		  sentences_add(&x.sentences, "1", "?", question, e) || encode(&x, &a->encoder, to, e);
 
 	if (!bad)
@@ -206,4 +227,12 @@ size_t asking_nearest(const struct asking *a, size_t object, double *distance)
 		*distance = d;
 	}
 	return nearest;
+}
+
+const struct camera *asking_view(const struct asking *a, const char *name)
+{
+	for (size_t v = 0; v < a->scene.cameras.n; v++)
+		if (!strcmp(a->scene.cameras.views[v].name, name))
+			return &a->scene.cameras.views[v];
+	return a->given.n && !strcmp(a->given.views[0].name, name) ? a->given.views : NULL;
 }

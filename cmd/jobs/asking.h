@@ -16,6 +16,7 @@ struct asking_options {
 	const char *run;	 /* the folder */
 	struct run_folder given; /* files in place of the folder's */
 	const char *viewpoint;	 /* VIEW or x,y,z; NULL: the usual one */
+	const char *camera;	 /* a file of one camera that is not in the scene; NULL: none */
 	const char *without;	 /* PART,... as choose_without takes it; may be NULL */
 	double least;		 /* a question less likely to mean anything is refused */
 	int is_explained;
@@ -31,6 +32,7 @@ struct asking {
 	struct choose_scene of;
 	struct chooser *chooser;
 	struct viewpoint from;
+	struct cameras given;	/* the one of options->camera; else none */
 	struct extent *extents; /* (objects) where each is, without the scene's offset */
 };
 
@@ -56,10 +58,15 @@ struct asking_answer {
 /* Answers a question; warns where it is too long for the encoder. asking_answer_free after success. */
 int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
 	struct err *e);
+/* An answer of nothing, as asking_ask begins with: 0, or -1 with *e set. asking_answer_free after either. */
+int asking_answer_make(struct asking_answer *answer, size_t objects, struct err *e);
 void asking_answer_free(struct asking_answer *answer);
 
 /* The object whose box is nearest to that of an object, by their centres, and how far away that is;
  * ASKING_NONE where there is no other. */
 size_t asking_nearest(const struct asking *a, size_t object, double *distance);
+
+/* The view of that name, the given camera among them; NULL where there is none. */
+const struct camera *asking_view(const struct asking *a, const char *name);
 
 #endif

@@ -66,7 +66,7 @@ int check_weights(struct check *c, const char *path, struct err *e)
 
 	if (weights_open_file(&w, path, e))
 		return -1;
-	c->precision = precision_name(w.precision);
+	c->precision = w.is_packed ? "packed" : precision_name(w.precision);
 	c->width = w.width;
 	c->height = w.height;
 	c->scene = w.scene;

@@ -189,7 +189,8 @@ char *encoder_default(struct err *e)
 
 	if (!dir || file_is_dir(dir))
 		return dir;
-	err_set(e, ERR_SYSTEM, "%s: no encoder there: 'make encoder' fetches one", dir);
+	err_set(e, ERR_SYSTEM,
+		"%s: no encoder there: 'refersplat-encoder' fetches one, in a checkout 'make encoder'", dir);
 	free(dir);
 	return NULL;
 }

@@ -3,7 +3,9 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/camerafile.h"
+#include "formats/dataparser.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -62,6 +64,49 @@ static int check_images(const char *images_path, struct err *e)
 	return err_errno(e, "%s", images_path);
 }
 
+/* The trained splats in a folder of 3DGS: those of the last iteration. */
+static char *find_in_folder(const char *folder, struct err *e)
+{
+	char *inner = file_join(folder, "point_cloud", "", e), *found = NULL;
+	const char *const places[] = {inner, folder};
+	long most = -1;
+
+	for (int i = 0; i < 2 && inner && !found; i++) {
+		DIR *dir = opendir(places[i]);
+		for (struct dirent *d = dir ? readdir(dir) : NULL; d; d = readdir(dir)) {
+			const long n = strncmp(d->d_name, "iteration_", 10) ? -1 : atol(d->d_name + 10);
+			if (n <= most)
+				continue;
+			most = n;
+			free(found);
+			char *parent = file_join(places[i], d->d_name, "", e);
+			found = parent ? file_join(parent, "point_cloud.ply", "", e) : NULL;
+			free(parent);
+		}
+		if (dir)
+			closedir(dir);
+	}
+	if (inner && !found)
+		found = file_join(folder, "point_cloud.ply", "", e);
+	free(inner);
+	return found;
+}
+
+char *import_find_splats(const char *path, struct err *e)
+{
+	if (!strcmp(path, "-") || !file_is_dir(path))
+		return mem_strdup(path, e);
+	char *found = find_in_folder(path, e);
+	if (found && !file_exists(found)) {
+		err_set(e, ERR_FORMAT,
+			"%s: no trained splats in this folder: no point_cloud/iteration_N/point_cloud.ply, as 3DGS writes them, and no point_cloud.ply",
+			path);
+		free(found);
+		return NULL;
+	}
+	return found;
+}
+
 /* So that a file that is missing is said to be so before cameras are looked for beside it. */
 static int check_splats(const char *path, struct err *e)
 {
@@ -90,6 +135,22 @@ static int split(struct cameras *c, const char *test_views, struct err *e)
 							 : split_every(c, test_views, e);
 }
 
+/* Into the frame that nerfstudio trained in, where it says how. */
+static int move(
+	struct scene *s, const char *splats, const char *cameras, const struct report *to, struct err *e)
+{
+	e->code = ERR_NONE;
+	char *path = dataparser_find(splats, cameras, e);
+	int bad = !path && e->code != ERR_NONE;
+
+	if (path) {
+		report_note(to, 1, "%s: cameras are moved by it", path);
+		bad = dataparser_move(&s->cameras, path, cameras, e);
+	}
+	free(path);
+	return bad ? -1 : 0;
+}
+
 /* For the scene's metadata. No paths: a scene's bytes do not depend on where its sources were. */
 static char *describe_options(const char *test_views, struct err *e)
 {
@@ -103,15 +164,19 @@ static char *describe_options(const char *test_views, struct err *e)
 }
 
 int import_scene(struct scene *s, struct ply_report *report, const struct import_options *o,
-	const char *cameras, const char *folder, size_t *missing, struct err *e)
+	const char *cameras, const char *folder, struct import_found *found, const struct report *to,
+	struct err *e)
 {
+	*found = (struct import_found){0};
 	if (ply_read(&s->splats, s->offset, report, o->splats, e) ||
-		camerafile_read(&s->cameras, cameras, e) || split(&s->cameras, o->test_views, e))
+		camerafile_read(&s->cameras, cameras, e) || move(s, o->splats, cameras, to, e) ||
+		split(&s->cameras, o->test_views, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
 	char *metadata = describe_options(o->test_views, e);
 	int bad = !metadata || file_make_dir(folder, e) ||
-		  camerafile_images(&s->cameras, o->images, folder, missing, e) ||
+		  camerafile_images(&s->cameras, o->images, folder, &found->missing, e) ||
+		  (o->images && resemblance_find(&found->resemblance, s, folder, to, e)) ||
 		  scene_write(s, folder, metadata, e);
 	free(metadata);
 	return bad ? -1 : 0;

@@ -4,6 +4,8 @@
 #define CMD_JOBS_IMPORT_H
 
 #include "base/err.h"
+#include "base/report.h"
+#include "cmd/jobs/resemblance.h"
 #include "formats/ply.h"
 #include "formats/scene.h"
 
@@ -19,10 +21,20 @@ struct import_options {
 /* The camera file; free() it. NULL with *e set, ERR_USAGE where none was named or found. */
 char *import_find_cameras(const struct import_options *o, struct err *e);
 
-/* Reads splats and cameras, splits the views and writes the folder. *s and *report are zeroed before and the
- * caller's to free in any case. *missing gets how many views have no photograph. Returns 0, or -1 with *e
- * set. */
+struct import_found {
+	size_t missing; /* views without a photograph */
+	struct resemblance resemblance;
+};
+
+/* The splats in a folder that 3DGS wrote, point_cloud/iteration_N/point_cloud.ply of the last N; a file is
+ * itself. free() it. NULL with *e set. */
+char *import_find_splats(const char *path, struct err *e);
+
+/* Reads splats and cameras, splits the views, compares the scene with its photographs where there are any,
+ * and writes the folder. *s and *report are zeroed before and the caller's to free in any case. Returns 0, or
+ * -1 with *e set. */
 int import_scene(struct scene *s, struct ply_report *report, const struct import_options *o,
-	const char *cameras, const char *folder, size_t *missing, struct err *e);
+	const char *cameras, const char *folder, struct import_found *found, const struct report *to,
+	struct err *e);
 
 #endif

@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/path.h"
+#include "formats/annotations.h"
 #include "formats/jsonl.h"
 #include "formats/masks.h"
 #include "formats/png.h"
@@ -11,6 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* A warning where more of a picture than this is of a colour that is neither black nor white and has no name.
  */
@@ -197,20 +199,65 @@ static int put_picture(
 	return bad ? -1 : 0;
 }
 
+/* A mask record for each label of each picture that a JSON file is of. */
+static int put_labels(
+	const struct annotations *a, const char *path, FILE *out, const struct report *to, struct err *e)
+{
+	if (a->left_out)
+		report_warn(to, "%s: %zu shapes without an area are left out", file_name(path), a->left_out);
+	for (size_t i = 0; i < a->n; i++) {
+		const struct annotation *one = &a->items[i];
+		struct mask mask = {.view = one->view, .object = one->name, .score = NAN, .visible = NAN};
+		if (one->shapes > 1)
+			report_warn(to, "%s: %zu shapes are '%s' in view %s, and are taken as one thing",
+				file_name(path), one->shapes, one->name, one->view);
+		if (rle_encode(&mask.rle, one->mask, one->height, one->width, e))
+			return -1;
+		const int bad = rle_area(&mask.rle) ? masks_put(out, &mask, e) : 0;
+		rle_free(&mask.rle);
+		if (bad)
+			return -1;
+	}
+	return 0;
+}
+
+/* *count grows by the labels. */
+static int put_labelled(const char *path, FILE *out, size_t *count, const struct report *to, struct err *e)
+{
+	struct annotations a;
+	const int bad = annotations_read(&a, path, e) || put_labels(&a, path, out, to, e);
+
+	*count += a.n;
+	annotations_free(&a);
+	return bad ? -1 : 0;
+}
+
+int painting_is_labelled(const char *path)
+{
+	const size_t n = strlen(path);
+
+	return n > 5 && !strcasecmp(path + n - 5, ".json");
+}
+
 static int put_all(struct painting_names *names, const char *const *pictures, size_t count, FILE *out,
 	const struct report *to, struct err *e)
 {
-	size_t seen = 0;
+	size_t seen = 0, labels = 0;
 
 	for (size_t i = 0; i < count; i++)
-		if (put_picture(names, pictures[i], out, to, e))
+		if (painting_is_labelled(pictures[i]) ? put_labelled(pictures[i], out, &labels, to, e)
+						      : put_picture(names, pictures[i], out, to, e))
 			return -1;
 	for (size_t i = 0; i < names->n; i++)
 		seen += names->items[i].is_seen != 0;
 	for (size_t i = 0; i < names->n && seen; i++)
 		if (!names->items[i].is_seen)
 			report_warn(to, "'%s' is in no picture", names->items[i].name);
-	return seen ? 0 : err_set(e, ERR_FORMAT, "%s: has none of the colours that have names", pictures[0]);
+	if (seen || labels)
+		return 0;
+	return err_set(e, ERR_FORMAT,
+		names->n ? "%s: has none of the colours that have names" : "%s: has no label with an area",
+		pictures[0]);
 }
 
 int painting_write(struct painting_names *names, const char *const *pictures, size_t count, const char *path,

@@ -1,4 +1,5 @@
-/* Photographs that a person painted over, a colour for each thing, as mask records: mask-import. */
+/* Photographs that a person painted over, a colour for each thing, or labelled, as mask records: mask-import.
+ */
 #ifndef CMD_JOBS_PAINTING_H
 #define CMD_JOBS_PAINTING_H
 
@@ -25,9 +26,14 @@ struct painting_names {
 int painting_names_read(struct painting_names *names, const char *path, struct err *e);
 void painting_names_free(struct painting_names *names);
 
-/* A mask record for each picture and name that has a pixel in it, pictures in their order, names in the
- * file's. The view is the picture's file name without its ending. Other colours are of nothing; warns of
- * those that cover much, and of names that no picture has. ERR_FORMAT where none has any. Writes to a file
+/* Whether a file is JSON of LabelMe or COCO (formats/annotations.md), by its ending: it has names of its own.
+ */
+int painting_is_labelled(const char *path);
+
+/* A mask record for each label of a JSON file, and for each picture and name that has a pixel in it, pictures
+ * in their order, names in the file's. The view is the picture's file name without its ending. Other colours
+ * are of nothing; warns of those that cover much, and of names that no picture has. ERR_FORMAT where none has
+ * any. Writes to a file
  * ("-": stdout). Returns 0, or -1 with *e set. */
 int painting_write(struct painting_names *names, const char *const *pictures, size_t count, const char *path,
 	const struct report *to, struct err *e);

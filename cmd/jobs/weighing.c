@@ -7,6 +7,7 @@
 #include "splat/prune.h"
 #include "splat/render.h"
 
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,6 +24,7 @@ struct room {
 	struct render_weights rendered;
 	float *dropped;
 	size_t dropped_room;
+	double covered;	   /* the largest part of a view whose pixels are more scene than background */
 	char options[128]; /* as the files record them */
 };
 
@@ -53,6 +55,37 @@ static int render(struct room *room, const struct splats *s, const struct camera
 	return 0;
 }
 
+/* The part of the pixels that are more scene than background. */
+static double cover(const struct render_weights *w, size_t pixels)
+{
+	size_t covered = 0;
+
+	for (size_t p = 0; p < pixels; p++)
+		covered += w->transmittance[p] < 0.5F;
+	return (double)covered / (double)pixels;
+}
+
+/* Views that show nothing are right where a camera looks away; all of them are a mistake, and their weights
+ * go.
+ */
+static int check_covered(
+	const struct scene *s, const struct weighing_options *o, size_t views, double covered, struct err *e)
+{
+	if (covered >= WEIGHING_COVERED || !s->splats.n)
+		return 0;
+	for (size_t i = 0; i < s->cameras.n; i++) {
+		char *path = in_split(&s->cameras.views[i], o->split)
+				     ? file_join(o->folder, s->cameras.views[i].name, ".safetensors", e)
+				     : NULL;
+		if (path)
+			remove(path);
+		free(path);
+	}
+	return err_set(e, ERR_FORMAT,
+		"%s: its splats are seen in none of %zu views (in at most %.2g%% of the pixels of one): the cameras are in another frame than the splats, or of another scene; import it with the cameras that it was trained with",
+		o->scene, views, 100 * covered);
+}
+
 static int weigh_view(const struct report *to, const struct scene *s, const struct camera *full,
 	const struct weighing_options *o, struct room *room, struct err *e)
 {
@@ -73,9 +106,11 @@ static int weigh_view(const struct report *to, const struct scene *s, const stru
 		.dropped = room->dropped,
 		.scene = s->fingerprint,
 		.camera = fingerprint_camera(&camera),
-		.precision = o->precision};
+		.precision = o->precision,
+		.is_packed = o->is_packed};
 	if (weights_write(&w, o->folder, full->name, room->options, e))
 		return -1;
+	room->covered = fmax(room->covered, cover(&room->rendered, (size_t)width * (size_t)height));
 	size_t pixels = (size_t)width * (size_t)height;
 	double nnz = (double)w.indptr[pixels];
 	report_note(to, 1, "%s: %dx%d, %.0f weights, %.1f a pixel, %.1f ms", full->name, width, height, nnz,
@@ -96,8 +131,8 @@ int weigh(const struct scene *s, const struct weighing_options *o, const struct 
 		return err_set(e, ERR_FORMAT, "%s: no view belongs to split '%s'", o->scene, names[o->split]);
 	if (file_make_dir(o->folder, e))
 		return -1;
-	snprintf(room.options, sizeof room.options, "--scale %.15g --tolerance %.15g --precision %s",
-		o->scale, o->tolerance, precision_name(o->precision));
+	snprintf(room.options, sizeof room.options, "--scale %.15g --tolerance %.15g --precision %s%s",
+		o->scale, o->tolerance, precision_name(o->precision), o->is_packed ? " --packed" : "");
 	report_start(to, "views", (double)views);
 	for (size_t i = 0; !bad && i < s->cameras.n; i++) {
 		const struct camera *view = &s->cameras.views[i];
@@ -107,6 +142,7 @@ int weigh(const struct scene *s, const struct weighing_options *o, const struct 
 		report_step(to, (double)++done, view->name);
 	}
 	report_end(to);
+	bad = bad || check_covered(s, o, views, room.covered, e);
 	room_free(&room);
-	return bad;
+	return bad ? -1 : 0;
 }

@@ -393,16 +393,24 @@ void cli_progress_start(struct cli_progress *p, const struct cli *c, const char 
 	*p = (struct cli_progress){.c = c, .what = what, .total = total, .start = now, .last = now};
 }
 
+/* Where progress goes: standard error, or the descriptor that a script which keeps standard error names. */
+static int progress_fd(void)
+{
+	const char *other = getenv("REFERSPLAT_PROGRESS");
+
+	return other && *other >= '3' && *other <= '9' && !other[1] ? *other - '0' : STDERR_FILENO;
+}
+
 void cli_progress_step(struct cli_progress *p, double done, const char *note)
 {
 	double now = cli_seconds();
 
-	if (p->c->quiet || now - p->start < 1 || now - p->last < 0.2 || !isatty(STDERR_FILENO))
+	if (p->c->quiet || now - p->start < 1 || now - p->last < 0.2 || !isatty(progress_fd()))
 		return;
 	p->last = now;
 	double rate = done / (now - p->start);
 	double left = rate > 0 ? (p->total - done) / rate : 0;
-	fprintf(stderr, "\r%s: %.0f/%.0f %s, %.3g/s, %d:%02d left%s%s\033[K", p->c->tool->name, done,
+	dprintf(progress_fd(), "\r%s: %.0f/%.0f %s, %.3g/s, %d:%02d left%s%s\033[K", p->c->tool->name, done,
 		p->total, p->what, rate, (int)left / 60, (int)left % 60, note ? ", " : "", note ? note : "");
 	p->is_shown = 1;
 }
@@ -410,7 +418,7 @@ void cli_progress_step(struct cli_progress *p, double done, const char *note)
 void cli_progress_end(struct cli_progress *p)
 {
 	if (p->is_shown)
-		fprintf(stderr, "\r\033[K");
+		dprintf(progress_fd(), "\r\033[K");
 	p->is_shown = 0;
 }
 

@@ -82,8 +82,8 @@ void cli_refuse_terminal(const struct cli *c);
 /* With -v the closing line of wall time and peak memory. Returns 0, for `return cli_done(&c)`. */
 int cli_done(const struct cli *c);
 
-/* Progress on stderr: only on a terminal, not with -q, not in the first second, and at most five times a
- * second. */
+/* Progress on stderr (or the descriptor, 3 to 9, in REFERSPLAT_PROGRESS): only on a terminal, not with -q,
+ * not in the first second, and at most five times a second. */
 struct cli_progress {
 	const struct cli *c;
 	const char *what; /* "views", "iterations" */

@@ -23,4 +23,7 @@ double box_diagonal(const struct box *b);
  * box's: clipped faces, and the divergence theorem. 0 where neither has a volume. */
 double box_iou(const struct box *a, const struct box *b);
 
+/* How far the nearest points of two boxes are apart, 0 where they touch. */
+double box_gap(const struct box *a, const struct box *b);
+
 #endif

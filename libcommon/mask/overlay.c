@@ -26,10 +26,10 @@ void overlay_draw(uint8_t *rgb, const uint8_t *mask, int height, int width)
 	for (int row = 0; row < height; row++)
 		for (int column = 0; column < width; column++) {
 			const size_t at = (size_t)row * (size_t)width + (size_t)column;
-			const int is_edge = !is_inner(mask, height, width, row, column, reach);
+			const int is_edge = mask[at] && !is_inner(mask, height, width, row, column, reach);
 			for (int c = 0; c < 3; c++) {
 				uint8_t *p = &rgb[3 * at + (size_t)c];
-				if (mask[at] && is_edge)
+				if (is_edge)
 					*p = (uint8_t)line[c];
 				else if (mask[at])
 					*p = (uint8_t)((*p * 6 + tint[c] * 4) / 10);

@@ -153,11 +153,18 @@ capture() {
 	each_tool sections
 }
 
+@test "the examples of the manual pages can be pasted: no line is wider than a terminal" {
+	narrow() {
+		sed -n '/^\.Sh EXAMPLES/,/^\.Sh SEE/s/^\.Dl //p' "$MAN/$1.1" | sed 's/^"\(.*\)"$/\1/; s/\\(..\|\\[-e&]/x/g' | awk 'length > 69 { print; bad = 1 } END { exit bad }'
+	}
+	each_tool narrow
+}
+
 # The .Dl lines of EXAMPLES are shell commands; each page's run in order in one folder, which has a file of each kind.
 @test "the examples of the manual pages run" {
 	examples() {
 		local script=$BATS_TEST_TMPDIR/$1.sh
-		sed -n '/^\.Sh EXAMPLES/,/^\.Sh SEE/s/^\.Dl //p' "$MAN/$1.1" | sed 's/^" *\(.*\)"$/\1/; s/\\-/-/g; s/\\&//g; s/\\(aq/'\''/g; s/\\e/\\/g' >"$script"
+		sed -n '/^\.Sh EXAMPLES/,/^\.Sh SEE/s/^\.Dl //p' "$MAN/$1.1" | sed 's/^" *\(.*\)"$/\1/; s/\\-/-/g; s/\\&//g; s/\\(aq/'\''/g; s/\\(dq/"/g; s/\\e/\\/g' >"$script"
 		[ -s "$script" ] || return 1
 		rm -rf here && cp -r "$BATS_FILE_TMPDIR/examples" here
 		(cd here && XDG_CACHE_HOME=$PWD/cache PATH=$BIN:$PATH bash -eu -o pipefail "$script" >../out 2>&1 </dev/null) || { cat "$script" out; return 1; }

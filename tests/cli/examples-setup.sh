@@ -2,7 +2,7 @@
 # Makes the folder in which the EXAMPLES of the manual pages run. usage: examples-setup.sh DIR BIN
 # It holds a small synthetic scene (formats/synth.md) and what each tool makes of it, under the names that the manual pages
 # use: scene, weights, text.safetensors, masks.jsonl, model.safetensors, pred.jsonl, whole.jsonl; kitchen, laid out as
-# pipelines/lift.mk does; view_001.png, a painted photograph; encoder, a tiny BERT, and cache, which has it where `make encoder` would put one.
+# pipelines/lift.mk does; view_001.png, a painted photograph; new-camera.json, a camera of its own; labels.json; encoder, a tiny BERT, and cache, which has it where `make encoder` would put one.
 set -eu
 mkdir -p "$1"
 golden=$(cd "$(dirname "$0")/../golden" && pwd)
@@ -27,5 +27,11 @@ refer-render -q --scene scene --text text.safetensors --model kitchen/lifted/mod
 	--refs "$(jq -r .ref sentences.jsonl | head -n 1)" --png painted -o /dev/null
 cp painted/view_001/*.png view_001.png
 rm -r painted
+# A photograph that was labelled with LabelMe.
+printf '{"imagePath":"view_001.png","imageHeight":48,"imageWidth":64,"shapes":[{"label":"brown box","points":[[5,15],[15,15],[15,25]]}]}\n' >labels.json
+# A camera that is not in the scene, as 3DGS writes them: the first view's, moved aside.
+jq '.[0] | .world_to_camera as $m | [{img_name: "new", width, height, fx, fy,
+	rotation: [range(3) as $i | [range(3) as $k | $m[$k][$i]]],
+	position: [range(3) as $i | 0.05 - ([range(3) as $k | $m[$k][$i] * $m[$k][3]] | add)]}]' scene/cameras.json >new-camera.json
 # Perfect, so that examples that demand a score go on.
 cp truth.jsonl pred.jsonl

@@ -255,3 +255,78 @@ Try 'gs-import --help'." "$BIN/gs-import" -o "../$(basename "$PWD")" s.ply
 	not "$BIN/gs-import" --cameras model -o scene s.ply 2>err
 	not grep tmp <(ls scene)
 }
+
+@test "the folder that 3DGS wrote: the last iteration, with its cameras; a folder without is none" {
+	mkdir -p trained/point_cloud/iteration_7000 trained/point_cloud/iteration_30000
+	splats_ply trained/point_cloud/iteration_7000/point_cloud.ply
+	cp s.ply trained/point_cloud/iteration_30000/point_cloud.ply
+	splats_ply trained/point_cloud/iteration_7000/point_cloud.ply '0 0 2 1 0.5 0 0 -3 -3 -3 1 0 0 0'
+	printf 'ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n' >trained/input.ply
+	echo "Namespace(sh_degree=3)" >trained/cfg_args
+	printf '[%s]' "$(camera3dgs)" >trained/cameras.json
+	"$BIN/gs-import" -o scene trained
+	"$BIN/gs-import" -o same trained/point_cloud/iteration_30000/point_cloud.ply
+	diff -r scene same
+	for part in point_cloud point_cloud/iteration_30000; do
+		"$BIN/gs-import" -o part "trained/$part" --cameras trained
+		diff -r scene part
+	done
+	mkdir empty
+	says 3 "gs-import: empty: no trained splats in this folder: no point_cloud/iteration_N/point_cloud.ply, as 3DGS writes them, and no point_cloud.ply" \
+		"$BIN/gs-import" --cameras model -o none empty
+	[ ! -e none ]
+}
+
+@test "dataparser_transforms.json beside the splats or the cameras: cameras are moved into nerfstudio's frame" {
+	mkdir -p export capture
+	cp s.ply export/splat.ply
+	transforms >capture/transforms.json
+	# a quarter turn about z, then a shift, then a half: (1,2,3) becomes ((-2,1,3) + (1,1,1)) / 2
+	echo '{"transform": [[0,-1,0,1],[1,0,0,1],[0,0,1,1]], "scale": 0.5}' >dataparser_transforms.json
+	centre() { jq -c '.[0].world_to_camera as $m | [range(3) as $i | -([range(3) as $k | $m[$k][$i] * $m[$k][3]] | add) | . * 1e6 | round / 1e6]' scene/cameras.json; }
+	"$BIN/gs-import" --cameras capture -o scene export/splat.ply
+	[ "$(centre)" = "[1,2,3]" ]
+	for beside in export capture; do
+		cp dataparser_transforms.json "$beside"
+		"$BIN/gs-import" -v --cameras capture -o scene export/splat.ply 2>err
+		grep -qF "$beside/dataparser_transforms.json: cameras are moved by it" err
+		[ "$(centre)" = "[-0.5,1,2]" ]
+		# camera x, which was the world's x, is now its y
+		[ "$(jq -c '.[0].world_to_camera[0][:3]' scene/cameras.json)" = "[0,1,0]" ]
+		rm "$beside/dataparser_transforms.json"
+	done
+	# what nerfstudio had applied before it wrote the transforms.json is in both files, and is done once
+	cp dataparser_transforms.json capture
+	transforms | jq '.applied_transform = [[0,-1,0,1],[1,0,0,1],[0,0,1,1]] | .applied_scale = 0.5' >capture/transforms.json
+	"$BIN/gs-import" --cameras capture -o scene export/splat.ply
+	[ "$(centre)" = "[1,2,3]" ]
+	# 3DGS's own cameras are in the frame of its splats; a COLMAP model is where nerfstudio began
+	printf '[%s]' "$(camera3dgs)" >capture/cameras.json
+	"$BIN/gs-import" --cameras capture/cameras.json -o scene export/splat.ply
+	[ "$(centre)" = "[1,2,3]" ]
+	echo '{"transform": [[0,-1,0,1],[1,0,0,1],[0,0,2,1]], "scale": 0.5}' >capture/dataparser_transforms.json
+	says 3 "gs-import: capture/dataparser_transforms.json: key 'transform' is not a rotation and a shift" \
+		"$BIN/gs-import" --cameras capture/transforms.json -o none export/splat.ply
+	echo '{"transform": [[0,-1,0,1],[1,0,0,1],[0,0,1,1]], "scale": 0}' >capture/dataparser_transforms.json
+	says 3 "gs-import: capture/dataparser_transforms.json: key 'scale' is not positive" \
+		"$BIN/gs-import" --cameras capture/transforms.json -o none export/splat.ply
+	[ ! -e none ]
+}
+
+@test "a scene that does not look like its photographs: a warning; one that does: none" {
+	"$BIN/gs-synth" -q --objects 3 --views 5 --size 96x72 --gaussians 2000 -o made
+	"$BIN/gs-import" --cameras made/sparse/0 --images made/images -o scene made/point_cloud.ply 2>err
+	[ ! -s err ]
+	# the same photographs under the next names
+	mkdir other
+	for i in 0 1 2 3 4; do cp "made/images/view_00$(((i + 1) % 5)).png" "other/view_00$i.png"; done
+	"$BIN/gs-import" --cameras made/sparse/0 --images other -o scene made/point_cloud.ply 2>err
+	[ "$(wc -l <err)" = 1 ]
+	grep -qE '^gs-import: warning: other: the scene does not look like its photographs \(by -?0\.[0-3][0-9] in the middle of 5 views, at least 0\.4 is right\): are made/sparse/0 the cameras that it was trained with, and in its frame\?$' err
+	"$BIN/gs-import" -q --cameras made/sparse/0 --images other -o scene made/point_cloud.ply 2>err
+	[ ! -s err ]
+	# what cannot be read is not compared
+	for i in 0 1 2 3 4; do echo none >"other/view_00$i.png"; done
+	"$BIN/gs-import" --cameras made/sparse/0 --images other -o scene made/point_cloud.ply 2>err
+	[ ! -s err ]
+}

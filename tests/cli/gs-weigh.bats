@@ -151,6 +151,17 @@ two_layers() {
 		"$BIN/gs-check" weights/v1.safetensors
 }
 
+@test "splats that no view sees are a mistake, and nothing is left; a view that sees none is fine" {
+	cameras "$(view)" "$(view name='"v2"' 'world_to_camera=[[1,0,0,0],[0,-1,0,0],[0,0,-1,0],[0,0,0,1]]')"
+	"$BIN/gs-weigh" -o weights scene
+	[ "$(ls weights)" = $'v1.safetensors\nv2.safetensors' ]
+	cameras "$(view 'world_to_camera=[[1,0,0,0],[0,-1,0,0],[0,0,-1,0],[0,0,0,1]]')"
+	rm -r weights
+	says 3 "gs-weigh: scene: its splats are seen in none of 1 views (in at most 0% of the pixels of one): the cameras are in another frame than the splats, or of another scene; import it with the cameras that it was trained with" \
+		"$BIN/gs-weigh" -o weights scene
+	[ -z "$(ls weights)" ]
+}
+
 @test "--threads 1, 2 and 3 give the same bytes" {
 	cameras "$(view width=150 height=70 cx=75 cy=35)" "$(view name='"v2"')"
 	for precision in f32 u8; do
@@ -210,4 +221,31 @@ Try 'gs-weigh --help'." "$BIN/gs-weigh" -o - scene
 	mkdir -p weights/v1.safetensors
 	says 4 "gs-weigh: weights/v1.safetensors: Is a directory" "$BIN/gs-weigh" -o weights scene
 	[ "$(ls -A weights)" = v1.safetensors ]
+}
+
+@test "--packed: the weights of --precision u8 in fewer bytes; what is lifted from them is the same" {
+	"$BIN/gs-synth" -q --objects 3 --views 4 --size 90x70 --gaussians 3000 -o made
+	"$BIN/gs-import" -q -o made/scene made/point_cloud.ply
+	"$BIN/gs-weigh" --tolerance 0.05 --precision u8 -o plain made/scene
+	"$BIN/gs-weigh" --tolerance 0.05 --packed -o packed made/scene
+	view=$(basename "$(ls plain | head -n 1)")
+	[ "$(stat -c %s "packed/$view")" -lt "$(($(stat -c %s "plain/$view") / 3))" ]
+	[ "$("$BIN/gs-check" "packed/$view" | sed 's/packed/u8/g')" = "$("$BIN/gs-check" "plain/$view" | sed 's/plain/u8/g')" ]
+	[ "$(meta "packed/$view" options)" = "--scale 1 --tolerance 0.05 --precision u8 --packed" ]
+	"$BIN/text-encode" -q --model "$BATS_TEST_DIRNAME/../golden/bert" -o text.safetensors made/sentences.jsonl
+	for weights in plain packed; do
+		"$BIN/refer-lift" -q --scene made/scene --weights $weights --text text.safetensors --masks made/truth.jsonl -o $weights.model
+		"$BIN/refer-render" --scene made/scene --text text.safetensors --model $weights.model --split train -o $weights.jsonl
+	done
+	"$BIN/miou-score" --json --truth <(jq -c 'del(.score)' plain.jsonl) packed.jsonl | jq -e '.miou > 0.999'
+	# whatever the threads
+	"$BIN/gs-weigh" --threads 3 --tolerance 0.05 --packed -o again made/scene
+	diff -r packed again
+	# a bit of any stream
+	for at in 2000 3000 5000; do
+		cp "packed/$view" broken
+		printf '\xff\x00\xff' | dd of=broken bs=1 seek=$at conv=notrunc status=none
+		run "$BIN/gs-check" broken
+		[ "$status" = 1 ]
+	done
 }

@@ -96,10 +96,91 @@ refuses() {
 	[ "$status" = 3 ]
 	[[ $output == "mask-import: cut.png: PNG: "* ]]
 	[ ! -e none ]
-	says 2 "mask-import: --names NAMES is required
+	says 2 "mask-import: --names NAMES is required for pictures, which view_1.png is
 Try 'mask-import --help'." "$BIN/mask-import" view_1.png
 	says 2 "mask-import: -o names would overwrite --names names
 Try 'mask-import --help'." "$BIN/mask-import" --names names -o names view_1.png
 	says 2 "mask-import: -o ./view_1.png would overwrite picture view_1.png
 Try 'mask-import --help'." "$BIN/mask-import" --names names -o ./view_1.png view_1.png
+}
+
+# labelme SHAPE...: a LabelMe file of 6 by 4 pixels on stdout.
+labelme() {
+	local IFS=,
+	printf '{"version":"5.5.0","flags":{},"shapes":[%s],"imagePath":"..\\\\photos\\\\view_1.jpg","imageData":null,"imageHeight":4,"imageWidth":6}\n' "$*"
+}
+
+# made FILE...: the records of labels, a line each: view, object, and the mask's rows.
+made() {
+	"$BIN/mask-import" -o made.jsonl "$@" 2>err
+	"$BIN/gs-check" made.jsonl >/dev/null
+	"$BIN/miou-score" --json --truth truth.jsonl made.jsonl | jq -e '.miou == 1 and .missing == 0' >/dev/null
+}
+
+@test "LabelMe: polygons, rectangles and circles, shapes of one label together" {
+	labelme '{"label":"cup","points":[[1,1],[3,1],[3,3],[1,3]],"shape_type":"polygon","group_id":null}' \
+		'{"label":"box","points":[[6,4],[4,2]],"shape_type":"rectangle"}' '{"label":"cup","points":[[4.4,0],[6,0],[6,1]]}' >a.json
+	# cup: columns 1 and 2, rows 1 and 2; and the two pixels at the upper right whose middles are inside. box: the lower right.
+	printf '%s\n' '{"view":"view_1","object":"cup","segmentation":{"size":[4,6],"counts":[5,2,2,2,9,1,3]}}' \
+		'{"view":"view_1","object":"box","segmentation":{"size":[4,6],"counts":[18,2,2,2]}}' >truth.jsonl
+	made a.json
+	[ "$(jq -r '[.view, .object] | join(" ")' made.jsonl)" = $'view_1 cup\nview_1 box' ]
+	[ "$(cat err)" = "mask-import: warning: a.json: 2 shapes are 'cup' in view view_1, and are taken as one thing" ]
+	labelme '{"label":"dot","points":[[3,2],[3,3.1]],"shape_type":"circle"}' '{"label":"line","points":[[0,0],[1,1]],"shape_type":"line"}' >b.json
+	echo '{"view":"view_1","object":"dot","segmentation":{"size":[4,6],"counts":[9,2,2,2,9]}}' >truth.jsonl
+	made b.json
+	[ "$(cat err)" = "mask-import: warning: b.json: 1 shapes without an area are left out" ]
+}
+
+@test "COCO: polygons, compressed and plain run lengths, of several pictures" {
+	jq -n '{images: [{id: 5, file_name: "a/view_1.png", height: 3, width: 4}, {id: 6, file_name: "view_2.png", height: 3, width: 4}],
+		categories: [{id: 1, name: "red cup"}, {id: 2, name: "kettle"}], annotations: [
+		{image_id: 5, category_id: 1, segmentation: [[0, 0, 1, 0, 1, 3, 0, 3], [1, 2, 2, 2, 2, 3, 1, 3]]},
+		{image_id: 5, category_id: 2, iscrowd: 1, segmentation: {size: [3, 4], counts: [3, 2, 1, 2, 4]}},
+		{image_id: 6, category_id: 2, segmentation: {size: [3, 4], counts: "REPLACED"}}, {image_id: 6, category_id: 1, segmentation: []}]}' >coco.json
+	printf '%s\n' '{"view":"view_1","object":"red cup","segmentation":{"size":[3,4],"counts":[0,3,2,1,6]}}' \
+		'{"view":"view_1","object":"kettle","segmentation":{"size":[3,4],"counts":[3,2,1,2,4]}}' >truth.jsonl
+	jq '.annotations |= .[:2]' coco.json >first.json
+	made first.json
+	[ ! -s err ]
+	# the string that we write ourselves, which the format's own tests hold against pycocotools
+	sed -i "s/REPLACED/$(jq -r 'select(.object == "kettle").segmentation.counts' made.jsonl)/" coco.json
+	echo '{"view":"view_2","object":"kettle","segmentation":{"size":[3,4],"counts":[3,2,1,2,4]}}' >>truth.jsonl
+	made coco.json
+	[ "$(cat err)" = "mask-import: warning: coco.json: 1 shapes without an area are left out" ]
+	# a picture and labels together
+	"$BIN/mask-import" --names names -o both view_1.png first.json
+	[ "$(jq -s length both)" = 4 ]
+}
+
+@test "labels that are wrong: exit 3, where, and nothing is written" {
+	bad() {
+		says 3 "mask-import: bad.json: $1" "$BIN/mask-import" -o none bad.json
+		[ ! -e none ]
+	}
+	labelme '{"label":"cup","points":[[1,1],[3,"x"],[3,3]]}' >bad.json && bad "shape 0: a point is not two numbers"
+	labelme '{"label":"cup","points":[[1,1],[3],[3,3]]}' >bad.json && bad "shape 0: a point is not two numbers"
+	labelme '{"points":[]}' >bad.json && bad "shape 0: key 'label' is missing"
+	labelme '{"label":"","points":[[1,1],[3,1],[3,3]]}' >bad.json && bad "shape 0: the label is empty"
+	labelme '{"label":"cup","points":[[1,1],[3,1]],"shape_type":"mask"}' >bad.json && bad "shape 0: a shape of type 'mask'; polygons, rectangles and circles are read"
+	labelme | sed 's/"imageHeight":4/"imageHeight":0.5/' >bad.json && bad "imageHeight and imageWidth are no size of a picture"
+	labelme | jq 'del(.imageWidth)' >bad.json && bad "key 'imageWidth' is missing"
+	labelme >bad.json && bad "has no label with an area"
+	jq -n '{images: [], categories: [], annotations: [{image_id: 1, category_id: 2}]}' >bad.json && bad "annotation 0: no image has its 'image_id'"
+	jq -n '{images: [{id: 1, file_name: "a.png", height: 2, width: 2}], categories: [{id: 2, name: "a"}],
+		annotations: [{image_id: 1, category_id: 2, segmentation: {size: [2, 2], counts: [1, 2]}}]}' >bad.json
+	says_like 3 "mask-import: bad.json: annotation 0: " "$BIN/mask-import" -o none bad.json
+	jq '.annotations[0].segmentation = {a: 1}' bad.json >worse.json && mv worse.json bad.json
+	bad "annotation 0: key 'segmentation' is neither polygons nor run lengths"
+	echo '{}' >bad.json && bad "no labels: neither LabelMe's JSON (shapes) nor COCO's (annotations) nor ISAT's (objects)"
+	echo '{' >bad.json && bad "not JSON at offset 2"
+	echo '{"frames":[]}' >bad.json && bad "cameras, a transforms.json: gs-import --cameras reads it"
+}
+
+# says_like STATUS BEGINNING COMMAND...
+says_like() {
+	local status=$1 beginning=$2
+	shift 2
+	run "$@"
+	[ "$status" = 3 ] && [[ $output == "$beginning"* ]]
 }

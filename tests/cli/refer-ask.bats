@@ -1,17 +1,12 @@
 #!/usr/bin/env bats
-# refer-ask, on a small scene whose truth is known. Options that every tool has are in common.bats. The encoder is tiny and
-# knows nothing: answers go by the names of the things, the grammar and where the things are.
+# refer-ask: questions, on a small scene whose truth is known. Options that every tool has are in common.bats, places and
+# distances in refer-ask-places.bats.
 
 setup_file() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
 	export OMP_WAIT_POLICY=passive
-	cd "$BATS_FILE_TMPDIR"
-	cp -r "$BATS_TEST_DIRNAME/../golden/bert" encoder
-	"$BIN/gs-synth" -q --objects 3 --views 6 --size 96x72 --gaussians 2000 -o .
-	mkdir -p run/lifted
-	"$BIN/gs-import" -q --images images --test-views "$(cat test-views)" -o run/scene point_cloud.ply
-	"$BIN/gs-weigh" -q -o weights run/scene
-	lift run sentences.jsonl truth.jsonl
+	load refer-ask
+	make_run
 	# The same scene, where the first thing has a name in another alphabet.
 	first=$(jq -r .object sentences.jsonl | head -n 1)
 	mkdir -p cyrillic/lifted
@@ -21,30 +16,18 @@ setup_file() {
 			$file.jsonl >$file.cyrillic.jsonl
 	done
 	lift cyrillic sentences.cyrillic.jsonl truth.cyrillic.jsonl
-	jq -r .object sentences.jsonl | sort -u >things
 	sed 's/.*/where is the &?/' things >questions
 	printf '%s\n' 'is there a sofa?' 'what is behind the wardrobe?' 'all the things' 'the largest thing' >>questions
 	jq -r .text unseen.jsonl | head -n 13 >>questions
 }
 
-# lift RUN SENTENCES MASKS
-lift() {
-	"$BIN/text-encode" -q --model encoder -o text.safetensors "$2"
-	"$BIN/refer-lift" -q --names masks --scene "$1/scene" --weights weights --text text.safetensors --masks "$3" \
-		-o "$1/lifted/model.safetensors"
-}
-
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
 	load ../format/files
+	load refer-ask
 	export OMP_WAIT_POLICY=passive
 	cd "$BATS_FILE_TMPDIR"
 }
-
-ask() { "$BIN/refer-ask" --encoder encoder "$@"; }
-
-# Fails where the command succeeds; a plain ! would let the test go on.
-not() { ! "$@"; }
 
 @test "each thing is found by its name, where it is" {
 	while read -r thing; do
@@ -165,7 +148,7 @@ refer-ask: stdin:5: has a NUL byte" ]
 	ln -s "$BATS_FILE_TMPDIR/run/scene" bare/scene
 	says 4 "refer-ask: bare: no lifted/model.safetensors in it: 'make -f pipelines/lift.mk SCENE=bare ...' makes one, --model names another" \
 		ask bare cup
-	XDG_CACHE_HOME=$PWD says 4 "refer-ask: $PWD/refersplat/encoder: no encoder there: 'make encoder' fetches one" \
+	XDG_CACHE_HOME=$PWD says 4 "refer-ask: $PWD/refersplat/encoder: no encoder there: 'refersplat-encoder' fetches one, in a checkout 'make encoder'" \
 		"$BIN/refer-ask" "$BATS_FILE_TMPDIR/run" cup
 	# with the parts named or in place, it works
 	thing=$(head -n 1 "$BATS_FILE_TMPDIR/things")

@@ -189,7 +189,7 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 	jq -c '.view = "elsewhere"' masks.jsonl | head -n 1 >away
 	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'" --masks away
 	refuses 3 "scene/splats.safetensors: format is 'refer.splats', expected 'refer.text'" --text scene/splats.safetensors
-	refuses 3 "scene/cameras.json:1: not JSON at column 3" --masks scene/cameras.json
+	refuses 3 "scene/cameras.json: the cameras of a scene folder: name the folder in its place where a scene is wanted" --masks scene/cameras.json
 }
 
 @test "missing, empty and truncated files" {

@@ -162,9 +162,9 @@ Try 'text-encode --help'." "$BIN/text-encode" --model model --words mean sentenc
 @test "without --model, the encoder is where make encoder puts it, or is missed by name" {
 	encode -o expected sentences.jsonl
 	mkdir -p cache/refersplat home/.cache
-	says 4 "text-encode: $PWD/cache/refersplat/encoder: no encoder there: 'make encoder' fetches one" \
+	says 4 "text-encode: $PWD/cache/refersplat/encoder: no encoder there: 'refersplat-encoder' fetches one, in a checkout 'make encoder'" \
 		env XDG_CACHE_HOME="$PWD/cache" "$BIN/text-encode" -o text sentences.jsonl
-	says 4 "text-encode: $PWD/home/.cache/refersplat/encoder: no encoder there: 'make encoder' fetches one" \
+	says 4 "text-encode: $PWD/home/.cache/refersplat/encoder: no encoder there: 'refersplat-encoder' fetches one, in a checkout 'make encoder'" \
 		env -u XDG_CACHE_HOME HOME="$PWD/home" "$BIN/text-encode" -o text sentences.jsonl
 	says 2 "text-encode: no encoder is named, and HOME is not set
 Try 'text-encode --help'." env -u XDG_CACHE_HOME -u HOME "$BIN/text-encode" -o text sentences.jsonl

@@ -136,3 +136,19 @@ bad() {
 	[ "$status" = 1 ]
 	[[ $output == "out/v1.safetensors: tensor 'weight': crc32 is "*", the header says "* ]]
 }
+
+@test "packed: tensors that are missing or of another type, and sizes that cannot be" {
+	mkdir made
+	scene made
+	"$BIN/gs-weigh" -q --packed -o w made
+	file=$(ls w/*.safetensors)
+	"$BIN/gs-check" "$file" | grep -q ': ok: refer.weights, packed, '
+	# the header with one thing changed, of the same length, without the checksums of data, which stay
+	for change in 's/"levels":/"levelx":/;tensor .levels. is missing' 's/"sizes":{"dtype":"I64"/"sizes":{"dtype":"F64"/;tensor .sizes.: is F64' \
+		's/"version":"2"/"version":"3"/;version 3 is newer than this program reads' 's/"ids":{"dtype":"U8"/"ids":{"dtype":"I8"/;tensor .ids.: is I8'; do
+		sed "${change%%;*}" "$file" >broken
+		run "$BIN/gs-check" broken
+		[ "$status" = 1 ]
+		grep -qE "${change#*;}" <<<"$output" || { echo "$output"; false; }
+	done
+}

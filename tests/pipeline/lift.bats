@@ -14,7 +14,7 @@ setup_file() {
 
 # lift ARGUMENT...: the workflow on the scene, all outputs under WORK.
 lift() {
-	make -f "$ROOT/pipelines/lift.mk" SCENE="$WORK" SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" \
+	make -f "$ROOT/pipelines/lift.mk" V=1 SCENE="$WORK" SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" \
 		IMAGES="$DATA/images" TEST_VIEWS="$(cat "$DATA/test-views")" SENTENCES="$DATA/sentences.jsonl" \
 		CANDIDATES="$DATA/candidates.jsonl" TRUTH="$DATA/truth.jsonl" BERT="$ROOT/tests/golden/bert" BIN="$BIN" SCALE=1 \
 		ASK="$BATS_FILE_TMPDIR/more.jsonl" WHOLE="$DATA/whole.jsonl" BOXES="$DATA/boxes.jsonl" "$@"
@@ -133,4 +133,71 @@ not() { ! "$@"; }
 	echo "255 other $thing" >names
 	touch -d '+2 seconds' names
 	paint -n | grep -q "'mask-import "
+}
+
+@test "all missing variables are named at once, by the pipeline that was called, and its help says what they are" {
+	run make -f "$ROOT/pipelines/lift.mk"
+	[ "$status" = 2 ]
+	[[ $output == *"$ROOT/pipelines/lift.mk: SCENE SPLATS SENTENCES CANDIDATES not set; 'make -f $ROOT/pipelines/lift.mk help' says what they are."* ]]
+	make -f "$ROOT/pipelines/lift.mk" help | grep -q '^SCALE '
+	make -f "$ROOT/pipelines/desk.mk" help | grep -q '^DATA '
+	make -f "$ROOT/pipelines/demo.mk" help | grep -q '^DEMO '
+}
+
+@test "SPLATS is the folder that 3DGS wrote: its last iteration is imported, and watched" {
+	cd "$BATS_TEST_TMPDIR"
+	for n in 7000 30000; do
+		mkdir -p trained/point_cloud/iteration_$n
+		cp "$DATA/point_cloud.ply" trained/point_cloud/iteration_$n
+	done
+	cp -r "$DATA/sparse" trained
+	imported() { lift SCENE="$PWD/work" SPLATS="$PWD/trained" CAMERAS= IMAGES= "$PWD/work/scene/cameras.json" "$@"; }
+	imported >log 2>&1
+	grep -q "trained/point_cloud/iteration_30000/point_cloud.ply" work/log/import.command
+	cmp work/scene/splats.safetensors "$WORK/scene/splats.safetensors"
+	imported >again 2>&1
+	not grep -q "gs-import" again
+	touch -d '+2 seconds' trained/point_cloud/iteration_30000/point_cloud.ply
+	imported -n | grep -q "gs-import"
+}
+
+@test "photographs labelled with another program: names come from the labels" {
+	cd "$BATS_TEST_TMPDIR"
+	mkdir labels
+	view=$(jq -r .view "$WORK/lifted/masks.jsonl" | head -n 1)
+	jq -c --arg view "$view" 'select(.view == $view) | {view, object, segmentation}' "$WORK/lifted/masks.jsonl" | sort -u >masks.jsonl
+	jq -s '{images: [{id: 1, file_name: (.[0].view + ".png"), height: .[0].segmentation.size[0], width: .[0].segmentation.size[1]}],
+		categories: [to_entries[] | {id: .key, name: .value.object}],
+		annotations: [to_entries[] | {image_id: 1, category_id: .key, segmentation: .value.segmentation}]}' masks.jsonl >labels/coco.json
+	for masks in "$PWD/labels" "$PWD/labels/coco.json"; do
+		rm -rf work
+		label() { WORK=$PWD/work lift MASKS="$masks" SENTENCES= CANDIDATES= ASK= WHOLE= BOXES= TRUTH= TEST_VIEWS= "$@"; }
+		label >log 2>&1
+		"$BIN/miou-score" --json --truth masks.jsonl work/painted.jsonl | jq -e '.miou == 1 and .missing == 0'
+		thing=$(jq -r .object masks.jsonl | head -n 1)
+		"$BIN/refer-ask" --encoder "$ROOT/tests/golden/bert" work "where is the $thing?" | grep -q "^$thing: "
+		label >again 2>&1
+		not grep -qE "$BIN/'" again
+	done
+	touch -d '+2 seconds' labels/coco.json
+	label -n | grep -q "'mask-import "
+}
+
+@test "WORDS: a line for each way, the best first, and how to ask; the figures are those of the scores" {
+	lift WORDS=1 | grep -v "^'" >said
+	[ "$(wc -l <said)" = 2 ]
+	percent() { jq -r "100 * .$1" "$WORK/lifted/predictions.test.score.json" | xargs printf %.1f; }
+	grep -qxE "Without training: $(percent p50)% of the masks of test sentences are right by half or more, mIoU $(percent miou), in [0-9]+ s\. Pictures: $WORK/lifted/overlays" said
+	grep -q "^to ask it: .*(all figures: .*report.sh $WORK)" said
+}
+
+@test "a step says its name and its time as it ends, and its warnings; V=1 its command" {
+	rm -rf "$BATS_TEST_TMPDIR/w"
+	imported() { lift SCENE="$BATS_TEST_TMPDIR/w" "$BATS_TEST_TMPDIR/w/scene/cameras.json" "$@"; }
+	mkdir "$BATS_TEST_TMPDIR/none"
+	imported V= IMAGES="$BATS_TEST_TMPDIR/none" >out 2>err
+	[ "$(wc -l <out)" = 1 ]
+	grep -qxE 'gs-import \(import\): [0-9]+\.[0-9]+ s' out
+	grep -q "^gs-import: warning: .*no photograph for 6 of 6 views" err
+	imported V=1 | grep -q "'gs-import --cameras"
 }

@@ -12,7 +12,7 @@ setup_file() {
 
 # two_stage ARGUMENT...: the workflow on the scene, all outputs under WORK.
 two_stage() {
-	make -f "$ROOT/pipelines/two-stage.mk" SCENE="$WORK" SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" \
+	make -f "$ROOT/pipelines/two-stage.mk" V=1 SCENE="$WORK" SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" \
 		IMAGES="$DATA/images" TEST_VIEWS="$(cat "$DATA/test-views")" SENTENCES="$DATA/sentences.jsonl" \
 		CANDIDATES="$DATA/candidates.jsonl" TRUTH="$DATA/truth.jsonl" BERT="$ROOT/tests/golden/bert" BIN="$BIN" SCALE=0.5 \
 		ITERATIONS=60 "$@"

@@ -103,6 +103,73 @@ static void iou_of_known_boxes(void)
 		box_iou(&far_a, &far_turned));
 }
 
+/* The point of a box that is nearest to p. */
+static void nearest_in(const struct box *b, const double p[3], double out[3])
+{
+	double from[3];
+
+	for (int d = 0; d < 3; d++) {
+		from[d] = p[d] - b->centre[d];
+		out[d] = b->centre[d];
+	}
+	for (int k = 0; k < 3; k++) {
+		double at = 0;
+		for (int d = 0; d < 3; d++)
+			at += from[d] * b->axes[k][d];
+		at = fmax(-b->half[k], fmin(b->half[k], at));
+		for (int d = 0; d < 3; d++)
+			out[d] += at * b->axes[k][d];
+	}
+}
+
+/* By projecting a point onto the one and the other in turn. */
+static double projected_gap(const struct box *a, const struct box *b)
+{
+	double p[3], q[3], square = 0;
+
+	memcpy(q, b->centre, sizeof q);
+	for (int i = 0; i < 20000; i++) {
+		nearest_in(a, q, p);
+		nearest_in(b, p, q);
+	}
+	for (int d = 0; d < 3; d++)
+		square += (p[d] - q[d]) * (p[d] - q[d]);
+	return sqrt(square);
+}
+
+static void gap_agrees_with_projections(void)
+{
+	struct rng rng;
+	int touching = 0;
+
+	rng_seed(&rng, 8, 1);
+	for (int i = 0; i < 200; i++) {
+		struct box a = random_box(&rng), b = random_box(&rng);
+		for (int k = 0; k < 3; k++)
+			b.centre[k] += 3 * (rng_uniform(&rng) - 0.5);
+		const double gap = box_gap(&a, &b), twin = projected_gap(&a, &b);
+		CHECK(fabs(gap - twin) < 1e-3, "pair %d: %g, projected %g", i, gap, twin);
+		CHECK(fabs(gap - box_gap(&b, &a)) < 1e-9, "pair %d", i);
+		touching += gap == 0;
+	}
+	CHECK(touching > 20 && touching < 180, "%d of 200 touch", touching);
+}
+
+static void gap_of_known_boxes(void)
+{
+	const double zero[3] = {0}, one[3] = {1, 1, 1};
+	const struct box a = box_between(zero, one);
+	struct box b = box_between((double[3]){3, 0.2, 0.2}, (double[3]){4, 0.4, 0.4});
+
+	CHECK(fabs(box_gap(&a, &b) - 2) < 1e-12, "face to face: %g", box_gap(&a, &b));
+	b = box_between((double[3]){4, 5, 0}, (double[3]){6, 6, 1});
+	CHECK(fabs(box_gap(&a, &b) - 5) < 1e-12, "edge to edge: %g", box_gap(&a, &b));
+	b = box_between((double[3]){0.4, 0.4, -1}, (double[3]){0.6, 0.6, 2});
+	CHECK(box_gap(&a, &b) == 0, "a stick through it: %g", box_gap(&a, &b));
+	b = box_between((double[3]){0.4, 0.4, 0.4}, (double[3]){0.6, 0.6, 0.6});
+	CHECK(box_gap(&a, &b) == 0, "inside: %g", box_gap(&a, &b));
+}
+
 static void rotations_come_back(void)
 {
 	struct rng rng;
@@ -177,6 +244,8 @@ int main(void)
 {
 	iou_agrees_with_counting();
 	iou_of_known_boxes();
+	gap_agrees_with_projections();
+	gap_of_known_boxes();
 	rotations_come_back();
 	up_is_what_level_cameras_agree_in();
 	scores_are_means();

@@ -1,0 +1,26 @@
+/* Whether a scene looks as its photographs do, through its cameras: gs-import. */
+#ifndef CMD_JOBS_RESEMBLANCE_H
+#define CMD_JOBS_RESEMBLANCE_H
+
+#include "base/err.h"
+#include "base/report.h"
+#include "formats/scene.h"
+
+#include <stddef.h>
+
+/* Splats and cameras of one frame give renders that look like the photographs. Of a view, small and grey,
+ * what is left of render and photograph without their blurred selves is correlated; the middle value over
+ * some views counts. gs-import(1) has what was measured. */
+#define RESEMBLANCE_LEAST 0.4
+
+struct resemblance {
+	size_t views;	/* that were compared; of others the photograph cannot be read */
+	double typical; /* the middle correlation, -1 to 1 */
+};
+
+/* Compares views that are spread over the scene, whose photographs lie relative to the folder. Returns 0, or
+ * -1 with *e set. */
+int resemblance_find(struct resemblance *r, const struct scene *s, const char *folder,
+	const struct report *to, struct err *e);
+
+#endif

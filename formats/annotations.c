@@ -1,0 +1,379 @@
+#include "formats/annotations.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/name.h"
+#include "formats/foreign.h"
+#include "formats/json.h"
+#include "geom/views.h"
+#include "mask/polygon.h"
+#include "mask/rle.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CIRCLE = 64 /* corners that stand for a circle */, WHERE = 512 };
+
+/* A file that is read; the last picture's size and memory to draw in. */
+struct reading {
+	struct annotations *to;
+	const char *path;
+	char where[WHERE]; /* "path: shape 3", for messages */
+	int height, width;
+	uint8_t *flips;
+	double *points;
+	size_t flips_room, points_room;
+};
+
+void annotations_free(struct annotations *a)
+{
+	for (size_t i = 0; i < a->n; i++) {
+		free(a->items[i].view);
+		free(a->items[i].name);
+		free(a->items[i].mask);
+	}
+	free(a->items);
+	*a = (struct annotations){0};
+}
+
+/* A picture's name as a view: without folders of either kind of slash, and without the ending. */
+static char *view_of(const char *image, struct err *e)
+{
+	const char *base = strrchr(image, '\\');
+	char *stem = mem_strdup(view_base(base ? base + 1 : image), e);
+
+	if (!stem)
+		return NULL;
+	stem[view_stem(stem)] = 0;
+	char *view = name_to_view(stem, e);
+	free(stem);
+	return view;
+}
+
+static int set_size(
+	struct reading *r, const cJSON *object, const char *height, const char *width, struct err *e)
+{
+	double h, w;
+
+	if (json_number(object, height, 1, &h, r->where, e) < 0 ||
+		json_number(object, width, 1, &w, r->where, e) < 0)
+		return -1;
+	if (h != floor(h) || w != floor(w) || fabs(h) > RLE_MAX_SIDE || fabs(w) > RLE_MAX_SIDE ||
+		rle_check_size((int64_t)h, (int64_t)w, e))
+		return err_set(
+			e, ERR_FORMAT, "%s: %s and %s are no size of a picture", r->where, height, width);
+	r->height = (int)h;
+	r->width = (int)w;
+	if (mem_room((void **)&r->flips, &r->flips_room, (size_t)h, (size_t)w, "mask", e))
+		return -1;
+	memset(r->flips, 0, (size_t)h * (size_t)w);
+	return 0;
+}
+
+/* The annotation of a view and name: an earlier one, or a new one of the reading's size. NULL with *e. */
+static struct annotation *find(struct reading *r, const char *view, const char *name, struct err *e)
+{
+	struct annotations *a = r->to;
+	char fault[NAME_FAULT];
+	const char *reason = name_fault(name, NAME_DATA, fault);
+
+	for (size_t i = 0; i < a->n; i++)
+		if (!strcmp(a->items[i].view, view) && !strcmp(a->items[i].name, name) &&
+			a->items[i].height == r->height && a->items[i].width == r->width)
+			return &a->items[i];
+	if (reason) {
+		err_set(e, ERR_FORMAT, "%s: the label %s", r->where, reason);
+		return NULL;
+	}
+	if (mem_grow((void **)&a->items, &a->capacity, a->n + 1, sizeof *a->items, "annotations", e))
+		return NULL;
+	struct annotation *one = &a->items[a->n++];
+	*one = (struct annotation){mem_strdup(view, e), mem_strdup(name, e), r->height, r->width,
+		mem_zalloc((size_t)r->height, (size_t)r->width, "mask", e), 0};
+	return one->view && one->name && one->mask ? one : NULL;
+}
+
+/* A list of numbers, or of pairs of numbers: *count points. */
+static int take_points(struct reading *r, const cJSON *list, size_t *count, struct err *e)
+{
+	const size_t n = (size_t)cJSON_GetArraySize(list);
+	const int is_flat = cJSON_IsArray(list) && cJSON_IsNumber(list->child);
+	const cJSON *item;
+	size_t at = 0;
+
+	if (mem_room((void **)&r->points, &r->points_room, 2 * n, sizeof *r->points, "points", e))
+		return -1;
+	cJSON_ArrayForEach(item, list)
+	{
+		const cJSON *pair[2] = {is_flat ? item : item->child, is_flat	    ? NULL
+								      : item->child ? item->child->next
+										    : NULL};
+		for (int k = 0; k < 2 - is_flat; k++) {
+			if (!cJSON_IsNumber(pair[k]) || !(fabs(pair[k]->valuedouble) < 1e6))
+				return err_set(e, ERR_FORMAT, "%s: a point is not two numbers", r->where);
+			r->points[at++] = pair[k]->valuedouble;
+		}
+	}
+	*count = at / 2;
+	return at % 2 ? err_set(e, ERR_FORMAT, "%s: a point is not two numbers", r->where) : 0;
+}
+
+/* The corners of a rectangle, or of what stands for a circle by its middle and a point on it, in place of two
+ * points. */
+static int round_out(struct reading *r, int is_circle, size_t *count, struct err *e)
+{
+	const double x = r->points[0], y = r->points[1], u = r->points[2], v = r->points[3];
+	const double corners[8] = {x, y, u, y, u, v, x, v}, radius = hypot(u - x, v - y);
+
+	*count = is_circle ? CIRCLE : 4;
+	if (mem_room((void **)&r->points, &r->points_room, 2 * *count, sizeof *r->points, "points", e))
+		return -1;
+	for (size_t i = 0; i < *count; i++) {
+		const double turn = 2 * acos(-1) * (double)i / CIRCLE;
+		r->points[2 * i] = is_circle ? x + radius * cos(turn) : corners[2 * i];
+		r->points[2 * i + 1] = is_circle ? y + radius * sin(turn) : corners[2 * i + 1];
+	}
+	return 0;
+}
+
+static void draw(struct reading *r, struct annotation *on, size_t count)
+{
+	polygon_fill(on->mask, r->flips, r->height, r->width, r->points, count);
+	on->shapes++;
+}
+
+static int read_shape(struct reading *r, const cJSON *shape, const char *view, struct err *e)
+{
+	const cJSON *points = cJSON_GetObjectItemCaseSensitive(shape, "points");
+	const char *label, *type = "polygon";
+	size_t count;
+
+	if (json_string(shape, "label", 1, &label, r->where, e) < 0 ||
+		json_string(shape, "shape_type", 0, &type, r->where, e) < 0 ||
+		take_points(r, points, &count, e))
+		return -1;
+	const int is_circle = !strcmp(type, "circle"), is_box = !strcmp(type, "rectangle");
+	if (!strcmp(type, "mask"))
+		return err_set(e, ERR_FORMAT,
+			"%s: a shape of type 'mask'; polygons, rectangles and circles are read", r->where);
+	if ((is_circle || is_box) && count == 2 && round_out(r, is_circle, &count, e))
+		return -1;
+	if (count < 3 || (strcmp(type, "polygon") && !is_circle && !is_box)) {
+		r->to->left_out++;
+		return 0;
+	}
+	struct annotation *on = find(r, view, label, e);
+	if (on)
+		draw(r, on, count);
+	return on ? 0 : -1;
+}
+
+static int read_labelme(struct reading *r, const cJSON *root, struct err *e)
+{
+	const cJSON *shapes = cJSON_GetObjectItemCaseSensitive(root, "shapes"), *shape;
+	const char *image;
+	size_t i = 0;
+
+	if (json_string(root, "imagePath", 1, &image, r->where, e) < 0 ||
+		set_size(r, root, "imageHeight", "imageWidth", e))
+		return -1;
+	char *view = view_of(image, e);
+	int bad = !view;
+	cJSON_ArrayForEach(shape, shapes)
+	{
+		snprintf(r->where, WHERE, "%s: shape %zu", r->path, i++);
+		bad = bad || read_shape(r, shape, view, e);
+	}
+	free(view);
+	return bad ? -1 : 0;
+}
+
+/* ISAT's, as LERF-OVS has it: a polygon of each object. */
+static int read_object(struct reading *r, const cJSON *object, const char *view, struct err *e)
+{
+	const char *name;
+	size_t count;
+
+	if (json_string(object, "category", 1, &name, r->where, e) < 0 ||
+		take_points(r, cJSON_GetObjectItemCaseSensitive(object, "segmentation"), &count, e))
+		return -1;
+	if (count < 3) {
+		r->to->left_out++;
+		return 0;
+	}
+	struct annotation *on = find(r, view, name, e);
+	if (on)
+		draw(r, on, count);
+	return on ? 0 : -1;
+}
+
+static int read_isat(struct reading *r, const cJSON *root, struct err *e)
+{
+	const cJSON *info = cJSON_GetObjectItemCaseSensitive(root, "info"), *object;
+	const char *image;
+	size_t i = 0;
+
+	if (json_string(info, "name", 1, &image, r->where, e) < 0 || set_size(r, info, "height", "width", e))
+		return -1;
+	char *view = view_of(image, e);
+	int bad = !view;
+	cJSON_ArrayForEach(object, cJSON_GetObjectItemCaseSensitive(root, "objects"))
+	{
+		snprintf(r->where, WHERE, "%s: object %zu", r->path, i++);
+		bad = bad || read_object(r, object, view, e);
+	}
+	free(view);
+	return bad ? -1 : 0;
+}
+
+/* The item of a list whose "id" is that number, or NULL. */
+static const cJSON *with_id(const cJSON *list, const cJSON *id)
+{
+	const cJSON *item;
+
+	cJSON_ArrayForEach(item, list)
+	{
+		const cJSON *own = cJSON_GetObjectItemCaseSensitive(item, "id");
+		if (cJSON_IsNumber(own) && cJSON_IsNumber(id) && own->valuedouble == id->valuedouble)
+			return item;
+	}
+	return NULL;
+}
+
+static int take_runs(struct rle *rle, const cJSON *counts, int height, int width, struct err *e)
+{
+	const cJSON *item;
+	size_t n = 0;
+
+	if (cJSON_IsString(counts))
+		return rle_from_string(rle, counts->valuestring, height, width, e);
+	uint32_t *runs = mem_alloc((size_t)cJSON_GetArraySize(counts), sizeof *runs, "mask", e);
+	if (!runs)
+		return -1;
+	cJSON_ArrayForEach(item, counts) runs[n++] =
+		cJSON_IsNumber(item) && item->valuedouble >= 0 && item->valuedouble <= UINT32_MAX
+			? (uint32_t)item->valuedouble
+			: UINT32_MAX;
+	const int bad = rle_from_runs(rle, runs, n, height, width, e);
+	free(runs);
+	return bad;
+}
+
+static int draw_runs(struct reading *r, struct annotation *on, const cJSON *counts, struct err *e)
+{
+	const size_t pixels = (size_t)r->height * (size_t)r->width;
+	struct rle rle;
+
+	if (take_runs(&rle, counts, r->height, r->width, e)) {
+		const struct err inner = *e;
+		return inner.code == ERR_FORMAT
+			       ? err_set(e, ERR_FORMAT, "%s: %.300s", r->where, inner.message)
+			       : -1;
+	}
+	rle_decode(&rle, r->flips);
+	for (size_t i = 0; i < pixels; i++)
+		on->mask[i] |= r->flips[i];
+	memset(r->flips, 0, pixels);
+	rle_free(&rle);
+	on->shapes++;
+	return 0;
+}
+
+/* Polygons, of which all are parts of the thing, or run lengths. */
+static int read_segmentation(
+	struct reading *r, const cJSON *item, const char *view, const char *name, struct err *e)
+{
+	const cJSON *segmentation = cJSON_GetObjectItemCaseSensitive(item, "segmentation"), *polygon;
+	const cJSON *counts = cJSON_GetObjectItemCaseSensitive(segmentation, "counts");
+	struct annotation *on = NULL;
+	size_t count, before;
+
+	if (!cJSON_GetArraySize(segmentation)) {
+		r->to->left_out++;
+		return 0;
+	}
+	if (!(on = find(r, view, name, e)))
+		return -1;
+	if (counts)
+		return draw_runs(r, on, counts, e);
+	before = on->shapes;
+	cJSON_ArrayForEach(polygon, segmentation)
+	{
+		if (!cJSON_IsArray(polygon))
+			return err_set(e, ERR_FORMAT,
+				"%s: key 'segmentation' is neither polygons nor run lengths", r->where);
+		if (take_points(r, polygon, &count, e))
+			return -1;
+		draw(r, on, count);
+	}
+	on->shapes = before + 1;
+	return 0;
+}
+
+static int read_annotation(struct reading *r, const cJSON *root, const cJSON *item, struct err *e)
+{
+	const cJSON *image = with_id(cJSON_GetObjectItemCaseSensitive(root, "images"),
+		cJSON_GetObjectItemCaseSensitive(item, "image_id"));
+	const cJSON *category = with_id(cJSON_GetObjectItemCaseSensitive(root, "categories"),
+		cJSON_GetObjectItemCaseSensitive(item, "category_id"));
+	const char *file, *name;
+
+	if (!image || !category)
+		return err_set(e, ERR_FORMAT, "%s: no %s has its '%s'", r->where,
+			image ? "category" : "image", image ? "category_id" : "image_id");
+	if (json_string(image, "file_name", 1, &file, r->where, e) < 0 ||
+		json_string(category, "name", 1, &name, r->where, e) < 0 ||
+		set_size(r, image, "height", "width", e))
+		return -1;
+	char *view = view_of(file, e);
+	const int bad = !view || read_segmentation(r, item, view, name, e);
+	free(view);
+	return bad ? -1 : 0;
+}
+
+static int read_coco(struct reading *r, const cJSON *root, struct err *e)
+{
+	const cJSON *item;
+	size_t i = 0;
+
+	cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "annotations"))
+	{
+		snprintf(r->where, WHERE, "%s: annotation %zu", r->path, i++);
+		if (read_annotation(r, root, item, e))
+			return -1;
+	}
+	return 0;
+}
+
+static int read_either(struct reading *r, const cJSON *root, struct err *e)
+{
+	const int is_labelme = cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "shapes"));
+
+	snprintf(r->where, WHERE, "%s", r->path);
+	if (is_labelme)
+		return read_labelme(r, root, e);
+	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "annotations")))
+		return read_coco(r, root, e);
+	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "objects")))
+		return read_isat(r, root, e);
+	return foreign_json(root, r->path, e)
+		       ? -1
+		       : err_set(e, ERR_FORMAT,
+				 "%s: no labels: neither LabelMe's JSON (shapes) nor COCO's (annotations) nor ISAT's (objects)",
+				 r->path);
+}
+
+int annotations_read(struct annotations *a, const char *path, struct err *e)
+{
+	struct reading r = {.to = a, .path = file_name(path)};
+	cJSON *root = json_read(path, e);
+
+	*a = (struct annotations){0};
+	const int bad = !root || read_either(&r, root, e);
+	cJSON_Delete(root);
+	free(r.flips);
+	free(r.points);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,28 @@
+/* Annotations of other programs as masks: JSON of LabelMe, COCO and ISAT. formats/annotations.md. */
+#ifndef FORMATS_ANNOTATIONS_H
+#define FORMATS_ANNOTATIONS_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* What a picture has of one label. */
+struct annotation {
+	char *view, *name;
+	int height, width;
+	uint8_t *mask; /* (height,width) 0 or 1: all shapes of the label */
+	size_t shapes;
+};
+
+struct annotations {
+	size_t n, capacity;
+	struct annotation *items; /* in the order of the file */
+	size_t left_out;	  /* shapes that have no area: points, lines, empty ones */
+};
+
+/* Reads any of them ("-" is stdin). Returns 0, or -1 with *e ("path: shape 3: ..."); free after either. */
+int annotations_read(struct annotations *a, const char *path, struct err *e);
+void annotations_free(struct annotations *a);
+
+#endif

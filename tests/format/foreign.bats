@@ -1,0 +1,93 @@
+#!/usr/bin/env bats
+# Files of other programs, as formats/foreign.md has them: each is named for what it is, with the way out.
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load files
+	load foreign
+	cd "$BATS_TEST_TMPDIR"
+	colmap model
+}
+
+# no_splats FILE REASON: gs-import refuses it.
+no_splats() {
+	says 3 "gs-import: $1: $2" "$BIN/gs-import" --cameras model -o scene "$1"
+	[ ! -e scene ]
+}
+
+# json TEXT REASON: what reads mask records and what reads cameras refuses it, on one line or several.
+json() {
+	printf '%s\n' "$1" >f.json
+	refused "$2"
+	jq . f.json >several.json
+	mv several.json f.json
+	refused "$2"
+}
+
+refused() {
+	splats_ply s.ply
+	says 3 "gs-import: f.json: $1" "$BIN/gs-import" --cameras f.json -o scene s.ply
+	says 3 "pseudomask-select: f.json: $1" "$BIN/pseudomask-select" -o out f.json
+	says 3 "miou-score: f.json: $1" "$BIN/miou-score" --truth f.json f.json
+	[ ! -e out ] && [ ! -e scene ]
+}
+
+@test "splats in other containers: the command that converts them" {
+	for kind in spz splat ksplat sog; do
+		printf 'NGSPxxxxxxxxxxxx' >"a.b.$kind"
+	no_splats "a.b.$kind" "a .$kind file, not a .ply: 'npx @playcanvas/splat-transform a.b.$kind a.b.ply' converts it"
+	done
+	printf '\x1f\x8b\x08xxxx' >packed
+	no_splats packed "a .spz file, not a .ply: 'npx @playcanvas/splat-transform packed packed.ply' converts it"
+	echo x >step.ckpt
+	no_splats step.ckpt "a checkpoint, not a .ply: nerfstudio writes one by 'ns-export gaussian-splat', 3DGS into point_cloud/iteration_N"
+	echo x >points3D.bin
+	no_splats points3D.bin "not a .ply: points3D of COLMAP are no trained scene; 3DGS trains one from them"
+	echo x >other
+	no_splats other "not a PLY file: the first line is not 'ply'"
+}
+
+@test "a .ply of points, a mesh, and scenes that are to be rendered in another way" {
+	{ ply_header 1 'x y z red green blue'; echo 0 0 0 1 1 1; } >points.ply
+	no_splats points.ply "a point cloud, not a trained scene: it has points without scale and opacity; 3D Gaussian Splatting trains a scene from them, point_cloud/iteration_N/point_cloud.ply"
+	{ ply_header 1 'x y z' | sed 's/end_header/element face 1\nproperty list uchar int vertex_indices\nend_header/'; echo 0 0 0; echo 3 0 0 0; } >mesh.ply
+	no_splats mesh.ply "a mesh, not a trained scene: it has points without scale and opacity; 3D Gaussian Splatting trains a scene from them, point_cloud/iteration_N/point_cloud.ply"
+	{ ply_header 1 "$ply_names filter_3D"; echo 0 0 2 1 0.5 0 0 -3 -3 -3 1 0 0 0 0.1; } >mip.ply
+	no_splats mip.ply "a scene of Mip-Splatting (property 'filter_3D'), which 3DGS's rendering gets wrong: its 'python create_fused_ply.py -m MODEL --output_ply fused.ply' makes one that is right"
+	splats_ply s.ply
+	sed 's/^element vertex/comment SplatRenderMode: mip\n&/' s.ply >mode.ply
+	no_splats mode.ply "trained for another way of rendering ('SplatRenderMode: mip'), which would be wrong here: train it without that mode"
+	sed 's/^element vertex/comment SplatRenderMode: default\n&/' s.ply >mode.ply
+	"$BIN/gs-import" --cameras model -o scene mode.ply
+}
+
+@test "JSON of other programs, in place of mask records and of cameras" {
+	json '{"images":[],"annotations":[],"categories":[]}' "COCO annotations: 'mask-import -o masks.jsonl f.json' makes mask records of them"
+	json '{"version":"5","shapes":[],"imagePath":"a.jpg"}' "a LabelMe file: 'mask-import -o masks.jsonl f.json' makes mask records of it"
+	json '[{"image_id":1,"category_id":2,"segmentation":{}}]' "COCO results: a mask record needs the names of its view and object in place of their numbers"
+	json '{"transform":[[1,0,0,0]],"scale":1}' "nerfstudio's dataparser_transforms.json: it goes beside the splats or the transforms.json, and is found there"
+	json '{"t_00":1,"t_23":2,"fx":3}' "a camera of Polycam: 'ns-process-data polycam' makes a transforms.json of the scan"
+	json '{"sfm_data_version":"0.3","views":[]}' "cameras of OpenMVG or Meshroom: export them as a COLMAP model"
+	json '[{"name":"a","world_to_camera":[],"split":"train"}]' "the cameras of a scene folder: name the folder in its place where a scene is wanted"
+}
+
+@test "cameras in place of mask records" {
+	transforms >f.json
+	says 3 "pseudomask-select: f.json: cameras, a transforms.json: gs-import --cameras reads it" "$BIN/pseudomask-select" -o out f.json
+	printf '[%s]' "$(camera3dgs)" >f.json
+	says 3 "pseudomask-select: f.json: cameras of 3DGS: gs-import --cameras reads them" "$BIN/pseudomask-select" -o out f.json
+	# of JSON that nobody knows, what is wrong with it
+	echo '[1]' >f.json
+	says 3 "pseudomask-select: f.json:1: not a JSON object" "$BIN/pseudomask-select" -o out f.json
+	printf '{\n"a": 1}\n' >f.json
+	says 3 "pseudomask-select: f.json:1: not JSON at column 3" "$BIN/pseudomask-select" -o out f.json
+}
+
+@test "Blender's transforms do not have the size of the photographs" {
+	splats_ply s.ply
+	echo '{"camera_angle_x":0.69,"frames":[{"file_path":"./train/r_0","transform_matrix":[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]}]}' >f.json
+	says 3 "gs-import: f.json: frame 0: key 'w' is missing, as in Blender's transforms: jq '. + {w: 800, h: 800}' adds the size of the photographs" \
+		"$BIN/gs-import" --cameras f.json -o scene s.ply
+	jq '. + {w: 800, h: 800}' f.json >sized.json
+	"$BIN/gs-import" --cameras sized.json -o scene s.ply
+}

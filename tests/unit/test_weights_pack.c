@@ -1,0 +1,170 @@
+/* Packed weights: what comes back is what went in, in the order of the Gaussians, and broken streams are
+ * found. */
+#include "unit.h"
+
+#include "base/rng.h"
+#include "formats/weights_pack.h"
+
+enum { MOST = 60, GAUSSIANS = 5000 };
+
+struct matrix {
+	int width, height;
+	int64_t *indptr;
+	int32_t *index;
+	uint8_t *level;
+};
+
+/* A random picture: none to MOST weights a pixel, of few or many Gaussians, each once. */
+static struct matrix random_matrix(struct rng *rng, int width, int height, int gaussians)
+{
+	const int pixels = width * height;
+	struct matrix m = {width, height, malloc((size_t)(pixels + 1) * 8), malloc((size_t)pixels * MOST * 4),
+		malloc((size_t)pixels * MOST)};
+	int64_t n = 0;
+
+	m.indptr[0] = 0;
+	for (int p = 0; p < pixels; p++) {
+		const int count = (int)(rng_uniform(rng) * (gaussians < MOST ? gaussians : MOST));
+		int id = gaussians - 1 - (int)(rng_uniform(rng) * 3);
+		for (int k = 0; k < count && id >= 0; k++, n++) {
+			m.index[n] = id; /* falling: not the order of what comes back */
+			m.level[n] = (uint8_t)(1 + (int)(rng_uniform(rng) * 255));
+			id -= 1 + (int)(rng_uniform(rng) * gaussians / MOST);
+		}
+		m.indptr[p + 1] = n;
+	}
+	return m;
+}
+
+static void matrix_free(struct matrix *m)
+{
+	free(m->indptr);
+	free(m->index);
+	free(m->level);
+}
+
+/* The places where the unpacked rows are not those of m, turned round. */
+static long count_wrong(
+	const struct matrix *m, const int64_t *indptr, const int32_t *index, const float *weight)
+{
+	const int pixels = m->width * m->height;
+	long wrong = 0;
+
+	for (int p = 0; p <= pixels; p++)
+		wrong += indptr[p] != m->indptr[p];
+	for (int p = 0; p < pixels && !wrong; p++)
+		for (int64_t k = indptr[p]; k < indptr[p + 1]; k++) {
+			const int64_t from = m->indptr[p] + m->indptr[p + 1] - 1 - k;
+			wrong += index[k] != m->index[from] || weight[k] != (float)m->level[from] / 255;
+		}
+	return wrong;
+}
+
+static void check_round_trip(struct rng *rng, int width, int height, int gaussians)
+{
+	struct matrix m = random_matrix(rng, width, height, gaussians);
+	int64_t *indptr = malloc((size_t)(width * height + 1) * 8);
+	struct weights_pack pack;
+	struct err e;
+	int32_t *index;
+	float *weight;
+
+	CHECK(!weights_pack(&pack, width, height, m.indptr, m.index, m.level, &e), "%s", e.message);
+	if (CHECK(!weights_unpack(&pack, width, height, gaussians, "w", indptr, &index, &weight, &e), "%s",
+		    e.message)) {
+		CHECK(count_wrong(&m, indptr, index, weight) == 0, "%dx%d of %d: %ld differ", width, height,
+			gaussians, count_wrong(&m, indptr, index, weight));
+		free(index);
+		free(weight);
+	}
+	weights_pack_free(&pack);
+	free(indptr);
+	matrix_free(&m);
+}
+
+static void weights_come_back(void)
+{
+	struct rng rng;
+
+	rng_seed(&rng, 3, 1);
+	for (int i = 0; i < 20; i++)
+		check_round_trip(&rng, 1 + i, 1 + (int)(rng_uniform(&rng) * 30),
+			1 + (int)(rng_uniform(&rng) * GAUSSIANS));
+	check_round_trip(&rng, 123, 45, GAUSSIANS);
+	check_round_trip(&rng, 8, 8, 1);
+}
+
+static void nothing_is_packed(void)
+{
+	const int64_t none[13] = {0};
+	int64_t indptr[13];
+	struct weights_pack pack;
+	struct err e;
+	int32_t *index;
+	float *weight;
+
+	CHECK(!weights_pack(&pack, 4, 3, none, NULL, NULL, &e), "%s", e.message);
+	CHECK(!weights_unpack(&pack, 4, 3, 0, "w", indptr, &index, &weight, &e), "%s", e.message);
+	CHECK(indptr[12] == 0, "%d", (int)indptr[12]);
+	free(index);
+	free(weight);
+	weights_pack_free(&pack);
+}
+
+static int unpacks(const struct weights_pack *pack, int width, int height, int gaussians)
+{
+	int64_t *indptr = malloc((size_t)(width * height + 1) * 8);
+	struct err e = {0};
+	int32_t *index;
+	float *weight;
+	const int bad = weights_unpack(pack, width, height, gaussians, "w", indptr, &index, &weight, &e);
+
+	if (!bad) {
+		free(index);
+		free(weight);
+	} else {
+		CHECK(e.code == ERR_FORMAT &&
+				!strncmp(e.message, "w: packed weights are broken, after byte ", 41),
+			"%s", e.message);
+	}
+	free(indptr);
+	return !bad;
+}
+
+static void broken_streams_are_found(void)
+{
+	struct rng rng;
+	struct weights_pack pack;
+	struct err e;
+
+	rng_seed(&rng, 4, 1);
+	struct matrix m = random_matrix(&rng, 20, 13, 300);
+	CHECK(!weights_pack(&pack, 20, 13, m.indptr, m.index, m.level, &e), "%s", e.message);
+	CHECK(unpacks(&pack, 20, 13, 300), "as it is");
+	CHECK(!unpacks(&pack, 20, 13, 299), "of a smaller scene");
+	CHECK(!unpacks(&pack, 12, 13, 300), "of a narrower picture");
+	CHECK(!unpacks(&pack, 20, 21, 300), "of a higher picture");
+	for (int s = 0; s < WEIGHTS_STREAMS; s++) {
+		pack.bytes[s]--;
+		CHECK(!unpacks(&pack, 20, 13, 300), "stream %d: fewer bytes", s);
+		pack.bytes[s] += 2;
+		CHECK(!unpacks(&pack, 20, 13, 300), "stream %d: more bytes", s);
+		pack.bytes[s]--;
+		pack.packed[s]--;
+		CHECK(!unpacks(&pack, 20, 13, 300), "stream %d: cut", s);
+		pack.packed[s]++;
+		pack.data[s][pack.packed[s] / 2] ^= 1;
+		CHECK(!unpacks(&pack, 20, 13, 300), "stream %d: another bit", s);
+		pack.data[s][pack.packed[s] / 2] ^= 1;
+	}
+	weights_pack_free(&pack);
+	matrix_free(&m);
+}
+
+int main(void)
+{
+	weights_come_back();
+	nothing_is_packed();
+	broken_streams_are_found();
+	return unit_end();
+}
