@@ -60,7 +60,7 @@ static void mend_except(struct analysis *a, const struct tokens *t)
 	for (int i = from; i < t->n && t->word[i].before != PAUSE_STOP; i++) {
 		const int is_said =
 			a->word[i].role == ROLE_PREDICATE || (a->word[i].role == ROLE_ATTRIBUTE && i < out);
-		if (i == out || a->word[i].head != ROOT || !is_said)
+		if (i == out || !is_said || (a->word[i].head != ROOT && a->word[i].head != out))
 			continue;
 		a->word[i].head = out;
 		a->word[i].negated = 0;
@@ -111,6 +111,31 @@ static void mend_both_sides(struct analysis *a, const struct tokens *t)
 			a->word[i].relation = closed_inverse(r);
 		is_turned |= analysis_has_anchor(a, i) && a->word[i].relation == closed_inverse(r) &&
 			     r != closed_inverse(r);
+	}
+}
+
+/* Whether the words from a predicate to its anchor say that it is there: "on its left is the jar". */
+static int is_stated(const struct tokens *t, int predicate, int anchor)
+{
+	for (int i = predicate; i < anchor; i++)
+		if (tokens_class(t, i) == CLOSED_BE || tokens_class(t, i) == CLOSED_RELATIVE)
+			return 1;
+	return tokens_is(t, predicate - 1, "its");
+}
+
+/* "right of the lamp" is right of it: no anchor that comes after is meant the other way round. */
+static void mend_direction(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		int is_direct = analysis_has_anchor(a, i);
+		if (a->word[i].role != ROLE_PREDICATE || tokens_class(t, i) != CLOSED_PLACE)
+			continue;
+		for (int j = 0; j < t->n; j++)
+			if (a->word[j].role == ROLE_ANCHOR && a->word[j].head == i)
+				is_direct &= j > i && !is_stated(t, i, j);
+		const enum parse_relation r = (enum parse_relation)closed_words[t->word[i].closed].relation;
+		if (is_direct && r <= PARSE_BELOW && a->word[i].relation == closed_inverse(r))
+			a->word[i].relation = r;
 	}
 }
 
@@ -306,6 +331,7 @@ void analysis_reread(struct analysis *a, const struct analysis *grammar, const s
 	mend_except(a, t);
 	mend_verbs(a, t);
 	mend_both_sides(a, t);
+	mend_direction(a, t);
 	mend_nor(a, t);
 	mend_there_is(a, t);
 	mend_attributes(a, t);

@@ -138,6 +138,9 @@ static void mends_neighbours(void)
 	mends("the red on the rug", ". a P . A2", PARSE_ON, 1, ROLE_ATTRIBUTE, ROOT, 0);
 	mends("a jug in the middle between the lamp and the sink", ". T . . P P . A4 . . A5", PARSE_BETWEEN,
 		7, ROLE_ANCHOR, 5, 0);
+	mends("the lamp right of the sink", ". T P . . A2", PARSE_LEFT, 2, ROLE_PREDICATE, ROOT, PARSE_RIGHT);
+	mends("the lamp with the sink right of it", ". T . . A5 P . .", PARSE_LEFT, 5, ROLE_PREDICATE, ROOT,
+		PARSE_LEFT);
 	const char *lamps = "all lamps except the one nearest to the sink";
 	mends(lamps, ". T . . . P . . A5", PARSE_NEAR, 4, ROLE_EXCEPT, ROOT, 0);
 	mends(lamps, ". T . . . P . . A5", PARSE_NEAR, 5, ROLE_PREDICATE, 4, PARSE_NEAR);
