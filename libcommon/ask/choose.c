@@ -108,6 +108,13 @@ static double presence(const struct chooser *c, const struct parse *p, int phras
 	return 1 / (1 + exp(-x));
 }
 
+/* How sure differences of fit make: as is found by likelihood, but plainly where it is in doubt which object
+ * has which name. */
+static double sharpness(const struct chooser *c)
+{
+	return c->scene->naming == 1 ? SCORE_WEIGHT : 1;
+}
+
 /* One of the phrases of the target: its own objects are added to chosen. Returns P that it means anything. */
 static double choose_phrase(struct chooser *c, const struct parse *p, int phrase, double *row, char *chosen)
 {
@@ -122,7 +129,7 @@ static double choose_phrase(struct chooser *c, const struct parse *p, int phrase
 	const double top = fit[best], there = presence(c, p, phrase, best);
 	if (f->count == PARSE_ONE) {
 		for (size_t o = 0; o < n; o++)
-			c->score[o] *= SCORE_WEIGHT;
+			c->score[o] *= sharpness(c);
 		softmax(c->score, n);
 		chosen[best] = 1;
 	} else {
@@ -136,7 +143,8 @@ static double choose_phrase(struct chooser *c, const struct parse *p, int phrase
 				chosen[next] = 1;
 		}
 		for (size_t o = 0; o < n; o++) {
-			c->score[o] = fit[o] / (fit[o] + SEVERAL_SHARE * fmax(top, 1e-12));
+			const double odds = fit[o] / (SEVERAL_SHARE * fmax(top, 1e-12));
+			c->score[o] = 1 - 1 / (1 + pow(odds, sharpness(c)));
 			if (f->count < 0 && c->score[o] >= 0.5)
 				chosen[o] = 1;
 		}
@@ -152,7 +160,7 @@ static void choose_whole(struct chooser *c, double *row, char *chosen)
 	const size_t n = c->arrangement.n;
 
 	for (size_t o = 0; o < n; o++)
-		row[o] = SCORE_WEIGHT * SENTENCE_WEIGHT * c->whole[o];
+		row[o] = sharpness(c) * SENTENCE_WEIGHT * c->whole[o];
 	softmax(row, n);
 	chosen[best_of(row, n)] = 1;
 }

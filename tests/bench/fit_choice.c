@@ -151,11 +151,15 @@ static double likelihood(const struct cell *c, size_t i)
 static double believed(const struct cell *c, size_t i, int is_refused)
 {
 	const size_t objects = c->model.objects;
-	double p = c->choices[i].there;
+	const double there = c->choices[i].there;
+	double sum = 0, n = 0;
 
-	for (size_t o = 0; o < objects && !is_refused; o++)
-		p *= c->chosen[i * objects + o] ? (double)c->probability[i * objects + o] : 1;
-	return is_refused ? 1 - p : p;
+	for (size_t o = 0; o < objects; o++)
+		if (c->chosen[i * objects + o]) {
+			sum += (double)c->probability[i * objects + o];
+			n++;
+		}
+	return is_refused ? 1 - there : there * sum / fmax(n, 1);
 }
 
 static void count(const struct cell *c, size_t i, struct tally *t)
