@@ -5,6 +5,7 @@
 #include "lang/closed.h"
 #include "lang/colours.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Objects that look the same share what is said of them. */
@@ -181,6 +182,20 @@ void meaning_judge_said(struct meaning *m, const struct parse_clause *c, double 
 	}
 }
 
+/* What a thing is for says what it is about: "the one you boil water in". */
+static void judge_about(struct meaning *m, double *value)
+{
+	const size_t n = objects_of(m);
+	double *about = m->scratch + n;
+
+	vocabulary_about(m->vocabulary, m->sentence, about);
+	for (size_t o = 0; o < n; o++)
+		value[o] *= exp(ABOUT_WORTH * about[o]);
+	const double most = fmax(largest(value, n), 1e-12);
+	for (size_t o = 0; o < n; o++)
+		value[o] /= most;
+}
+
 /* What a thing does, is for, or has: any word of it may be said of an object. */
 void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, double *value)
 {
@@ -210,4 +225,6 @@ void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, do
 	m->unknown += words && most < 0.5;
 	for (size_t o = 0; o < n; o++)
 		value[o] = words ? (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most) : 1;
+	if (words && c->relation == PARSE_OTHER)
+		judge_about(m, value);
 }

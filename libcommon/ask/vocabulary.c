@@ -61,8 +61,9 @@ static void word_vector(struct vocabulary *v, const struct parse_word *w, const 
 	take_direction(sum, width, out);
 }
 
-/* out (width) of length 1: the mean of pieces, less sentence_mean. */
-static void sentence_vector(struct vocabulary *v, const float *vectors, size_t pieces, float *out)
+/* out (width) of length 1: the mean of pieces, less one of v's means. */
+static void sentence_vector(
+	struct vocabulary *v, const float *vectors, size_t pieces, const double *less, float *out)
 {
 	const int width = v->lifted->width;
 	double *sum = v->scratch;
@@ -71,7 +72,7 @@ static void sentence_vector(struct vocabulary *v, const float *vectors, size_t p
 		sum[d] = 0;
 		for (size_t w = 0; w < pieces; w++)
 			sum[d] += vectors[w * (size_t)width + (size_t)d];
-		sum[d] = sum[d] / (double)(pieces ? pieces : 1) - v->sentence_mean[d];
+		sum[d] = sum[d] / (double)(pieces ? pieces : 1) - less[d];
 	}
 	take_direction(sum, width, out);
 }
@@ -290,7 +291,7 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	mark_general(v);
 	for (size_t r = 0; r < l->sentences; r++)
 		sentence_vector(v, vectors_of(l, r), (size_t)(l->offsets[r + 1] - l->offsets[r]),
-			v->sentences + r * width);
+			v->sentence_mean, v->sentences + r * width);
 	return 0;
 }
 
@@ -483,6 +484,25 @@ void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, i
 	}
 }
 
+void vocabulary_about(struct vocabulary *v, const struct vocabulary_sentence *s, double *match)
+{
+	const size_t width = (size_t)v->lifted->width, objects = v->lifted->objects;
+	double *nouns = v->other;
+
+	memset(match, 0, objects * sizeof *match);
+	memset(nouns, 0, objects * sizeof *nouns);
+	sentence_vector(v, s->vectors, s->pieces, v->mean, v->word);
+	for (size_t i = 0; i < v->n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->role != VOCABULARY_NOUN || item->sentence == v->without)
+			continue;
+		match[item->object] += dot_float(v->word, v->vectors + i * width, width);
+		nouns[item->object]++;
+	}
+	for (size_t o = 0; o < objects; o++)
+		match[o] /= fmax(nouns[o], 1);
+}
+
 /* fit (O): how many of the training sentences that say a colour of an object say one like this: one of them
  * may have been misread. What is said of a part of it counts less. other (O): how many say another one. */
 static void said_colours(const struct vocabulary *v, int colour, double *fit, double *other)
@@ -533,7 +553,7 @@ size_t vocabulary_whole(
 	const size_t width = (size_t)l->width;
 	size_t same = l->objects;
 
-	sentence_vector(v, vectors, pieces, v->word);
+	sentence_vector(v, vectors, pieces, v->sentence_mean, v->word);
 	for (size_t o = 0; o < l->objects; o++)
 		match[o] = -1;
 	for (size_t r = 0; r < l->sentences; r++) {

@@ -89,6 +89,10 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
  */
 void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
+/* match (O): the mean cosine of the mean of a sentence's pieces with the nouns that training sentences call
+ * an object by, 0 where there is none: what the sentence is about, whatever its words are. */
+void vocabulary_about(struct vocabulary *v, const struct vocabulary_sentence *s, double *match);
+
 /* fit (O): how far an object is of the colour of a word, in [0,1], by its Gaussians and by the colours that
  * training sentences say it has. Returns 0 where it is no colour word. */
 int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit);

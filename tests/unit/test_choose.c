@@ -1,9 +1,11 @@
 /* The choice of an object by a sentence, and of Gaussians for an object: each part by itself, on a made-up
  * scene of four objects whose words have made-up vectors. */
 #include "ask/choose.h"
+#include "ask/vocabulary.h"
 #include "ask/disambiguate.h"
 #include "unit.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { OBJECTS = 4, EACH = 30, N = OBJECTS * EACH, WIDTH = 96, MOST = 64 };
@@ -304,6 +306,31 @@ static void twins(void)
 		"a model without objects");
 }
 
+/* A sentence of the vectors of a noun is about what is called so, and one without words about nothing. */
+static void is_about(void)
+{
+	static float vectors[MOST * WIDTH];
+	static const char *const said[3] = {"cup", "mug", "box"};
+	struct vocabulary v;
+	struct err e;
+	double match[OBJECTS];
+
+	CHECK(!vocabulary_make(&v, &lifted, &parser, &e), "%s", e.message);
+	for (int o = 0; o < 3; o++) {
+		const struct vocabulary_sentence s = {NULL, vectors, encode(said[o], vectors)};
+		int best = 0;
+		vocabulary_about(&v, &s, match);
+		for (int k = 0; k < OBJECTS; k++)
+			best = match[k] > match[best] ? k : best;
+		CHECK(best == o, "'%s' is about %s", said[o], names[best]);
+	}
+	const struct vocabulary_sentence none = {NULL, vectors, 0};
+	vocabulary_about(&v, &none, match);
+	for (int k = 0; k < OBJECTS; k++)
+		CHECK(isfinite(match[k]), "%s: %g", names[k], match[k]);
+	vocabulary_free(&v);
+}
+
 int main(void)
 {
 	make_scene();
@@ -315,5 +342,6 @@ int main(void)
 	absent();
 	many();
 	kept();
+	is_about();
 	return unit_end();
 }
