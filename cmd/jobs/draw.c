@@ -3,6 +3,7 @@
 #include "answer/answer.h"
 #include "base/file.h"
 #include "base/mem.h"
+#include "cmd/jobs/overlay_words.h"
 #include "formats/masks.h"
 
 #include <stdlib.h>
@@ -71,10 +72,13 @@ static int put_answer(void *data, const struct answer *a, struct err *e)
 	to->score = a->score;
 	to->visible = a->visible;
 	for (size_t i = 0; i < r->count && !bad; i++) {
-		const struct picture picture = {
-			c->name, r->text.refs[r->refs[i]], c->height, c->width, a->image, a->mask, a->rgb};
-		if (r->responses.answer[i] == a->answer)
-			bad = pictures_put(&d->options->pictures, &picture, e);
+		char words[200];
+		const struct picture picture = {c->name, r->text.refs[r->refs[i]], c->height, c->width,
+			a->image, a->mask, a->rgb, {r->text.texts[r->refs[i]], words}};
+		if (r->responses.answer[i] != a->answer)
+			continue;
+		overlay_words(r, i, a->score, words, sizeof words);
+		bad = pictures_put(&d->options->pictures, &picture, e);
 	}
 	return bad;
 }

@@ -5,6 +5,7 @@
 #include "base/name.h"
 #include "formats/npy.h"
 #include "formats/png.h"
+#include "mask/caption.h"
 #include "mask/overlay.h"
 
 #include <math.h>
@@ -60,14 +61,17 @@ static int put_sigmoid(const char *path, const struct picture *one, struct err *
 static int put_overlay(const char *path, const struct picture *one, struct err *e)
 {
 	const size_t bytes = 3 * (size_t)one->width * (size_t)one->height;
-	uint8_t *copy = mem_alloc(bytes, 1, path, e);
+	const int line = caption_height(one->width), height = one->height + 2 * line;
+	uint8_t *copy = mem_alloc((size_t)height, 3 * (size_t)one->width, path, e);
 
 	if (!copy)
 		return -1;
 	for (size_t i = 0; i < bytes; i++)
 		copy[i] = (uint8_t)lrintf(255 * one->rgb[i]);
 	overlay_draw(copy, one->mask, one->height, one->width);
-	int bad = png_write(path, copy, one->height, one->width, 3, e);
+	for (int k = 0; k < 2; k++)
+		caption_draw(copy, one->width, one->height + k * line, one->words[k]);
+	int bad = png_write(path, copy, height, one->width, 3, e);
 	free(copy);
 	return bad;
 }

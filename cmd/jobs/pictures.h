@@ -20,7 +20,8 @@ struct picture {
 	int height, width;
 	const float *image;
 	const uint8_t *mask;
-	const float *rgb; /* in [0,1] */
+	const float *rgb;     /* in [0,1] */
+	const char *words[2]; /* that stand under an overlay, a line each */
 };
 
 /* Writes DIR/VIEW/REF.png (.npy) of each kind, each appearing whole; makes the folders. */

@@ -185,9 +185,24 @@ png/$test_view/yellow-bowl-1.png " ]
 
 @test "--overlay draws over the scene's colours" {
 	render --overlay o --refs brown-box-1,silent -o pred.jsonl
-	[ "$(picture o/$test_view/silent.png)" = "64 48 8 2" ]
+	# two lines of words stand below the picture
+	[ "$(picture o/$test_view/silent.png)" = "64 72 8 2" ]
 	not cmp -s o/$test_view/silent.png o/$test_view/brown-box-1.png
 	"$BIN/gs-check" o/$test_view/brown-box-1.png
+}
+
+@test "an overlay says what was asked, what was answered, and whether that is right" {
+	"$BIN/refer-lift" -q --scene scene --weights "$made/weights" --text "$made/text.safetensors" --masks "$made/masks.jsonl" -o lifted
+	# the same sentence and answer, but the record means another thing, or one that the model does not know
+	for object in "brown box" "yellow bowl" "zeppelin"; do
+		printf '{"ref":"%s","object":"%s","text":"the brown box"}\n' "${object/ /-}" "$object"
+	done >three.jsonl
+	"$BIN/text-encode" -q --model "$made/encoder" -o three three.jsonl
+	"$BIN/refer-render" -q --scene scene --text three --model lifted --sentences all --views "$test_view" --size 640x480 \
+		--overlay o -o three.masks
+	not cmp -s o/$test_view/brown-box.png o/$test_view/yellow-bowl.png
+	not cmp -s o/$test_view/brown-box.png o/$test_view/zeppelin.png
+	not cmp -s o/$test_view/yellow-bowl.png o/$test_view/zeppelin.png
 }
 
 @test "refs that differ only in a slash or percent have pictures of their own" {
@@ -313,7 +328,7 @@ png/$test_view/yellow-bowl-1.png " ]
 @test "--min-probability: what means nothing that was lifted has an empty mask and score 0" {
 	lifted
 	# A sentence that no training sentence says is a match.
-	ask --min-probability 0.95 --refs any,first -o pred.jsonl
+	ask --min-probability 0.98 --refs any,first -o pred.jsonl
 	[ "$(areas <pred.jsonl | awk '{ print ($1 > 0) }' | tr -d '\n')" = 10 ]
 	[ "$(jq 'select(.ref == "any").score' pred.jsonl)" = 0 ]
 	# A trained model has no such probabilities.
