@@ -1,6 +1,7 @@
 #include "cmd/jobs/locating.h"
 
 #include "base/mem.h"
+#include "cmd/jobs/object_extents.h"
 #include "formats/boxes.h"
 #include "geom/up.h"
 
@@ -10,11 +11,9 @@ void locating_free(struct locating *r)
 {
 	for (size_t k = 0; r->answers && k < r->request.responses.answers; k++)
 		extent_free(&r->answers[k].extent);
-	for (size_t o = 0; r->objects && r->request.responses.begin && o < r->request.model.lifted.objects;
-		o++)
-		extent_free(&r->objects[o].extent);
+	if (r->objects)
+		object_extents_free(r->objects, r->request.model.lifted.objects);
 	free(r->answers);
-	free(r->objects);
 	request_free(&r->request);
 }
 
@@ -25,24 +24,18 @@ static size_t parts_of(const struct responses *a, size_t answer)
 	return n > 1 ? n : 0;
 }
 
-/* Each object of the answers that are of several. */
-static int locate_parts(struct locating *r, const double up[3], struct err *e)
+/* The objects, where an answer is of several. */
+static int find_objects(struct locating *r, struct err *e)
 {
 	const struct request *q = &r->request;
-	const struct responses *a = &q->responses;
-	const struct lifted *l = &q->model.lifted;
+	int has_several = 0;
 
-	r->objects = mem_zalloc(a->begin ? l->objects : 0, sizeof *r->objects, "objects", e);
-	if (!r->objects)
-		return -1;
-	for (size_t k = 0; k < a->answers; k++)
-		for (size_t i = 0; i < parts_of(a, k); i++) {
-			const size_t o = a->objects[a->begin[k] + i];
-			if (!r->objects[o].extent.n &&
-				locate_object(&r->objects[o], l, o, &q->scene.splats, up, e))
-				return -1;
-		}
-	return 0;
+	for (size_t k = 0; k < q->responses.answers; k++)
+		has_several |= parts_of(&q->responses, k) > 0;
+	if (!has_several)
+		return 0;
+	r->objects = object_extents(&q->model.lifted, &q->scene.splats, &q->scene.cameras, e);
+	return r->objects ? 0 : -1;
 }
 
 int locating_find(struct locating *r, double up[3], struct err *e)
@@ -53,7 +46,7 @@ int locating_find(struct locating *r, double up[3], struct err *e)
 	if (!r->answers)
 		return -1;
 	cameras_up(&q->scene.cameras, up);
-	return locate_all(r->answers, &q->responses, &q->scene.splats, up, e) || locate_parts(r, up, e);
+	return locate_all(r->answers, &q->responses, &q->scene.splats, up, e) || find_objects(r, e);
 }
 
 static void move(struct box *b, const double by[3])
@@ -81,7 +74,7 @@ static int make_parts(const struct locating *r, size_t answer, struct box_record
 	*parts = mem_zalloc(n, sizeof **parts, "objects", e);
 	for (size_t i = 0; i < n && *parts; i++) {
 		const size_t o = a->objects[a->begin[answer] + i];
-		(*parts)[i] = record_of(r, &r->objects[o].extent, r->objects[o].sure);
+		(*parts)[i] = record_of(r, &r->objects[o], r->request.model.lifted.confidence[o]);
 		(*parts)[i].object = r->request.model.lifted.names[o];
 	}
 	return *parts ? 0 : -1;

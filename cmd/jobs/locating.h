@@ -10,7 +10,7 @@
 struct locating {
 	struct request request;	 /* answered by the caller */
 	struct located *answers; /* (answers) */
-	struct located *objects; /* of a lifted model, (O): those that are one of several */
+	struct extent *objects;	 /* of a lifted model, (O); NULL where no answer is of several */
 };
 
 /* up gets the direction that was taken for it. Returns 0, or -1 with *e set; locating_free is then in order.

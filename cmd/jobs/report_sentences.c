@@ -1,6 +1,7 @@
 #include "cmd/jobs/report_sentences.h"
 
 #include "base/mem.h"
+#include "cmd/jobs/meant.h"
 #include "cmd/jobs/report_json.h"
 #include "cmd/jobs/report_reasons.h"
 
@@ -77,53 +78,13 @@ static int add_view(cJSON *list, const struct card *c, size_t v, struct err *e)
 	return err_set(e, ERR_SYSTEM, "page: out of memory");
 }
 
-/* The objects that the sentence itself says it means; NULL where it says nothing. */
-static cJSON *said(const struct text *t, size_t i)
-{
-	const char *list = t->object_lists ? t->object_lists[i] : "", *object = text_object(t, i);
-
-	if (*list)
-		return cJSON_Parse(list);
-	return object ? cJSON_CreateStringArray(&object, 1) : NULL;
-}
-
-static int has_name(const cJSON *list, const char *name)
-{
-	const cJSON *one;
-
-	cJSON_ArrayForEach(one, list) if (!strcmp(cJSON_GetStringValue(one), name)) return 1;
-	return 0;
-}
-
-/* Whether the model has all objects of these names. */
-static int are_known(const struct report_run *r, const cJSON *names)
-{
-	const struct lifted *l = &r->lifted.lifted;
-	const cJSON *one;
-
-	cJSON_ArrayForEach(one, names)
-	{
-		size_t o = 0;
-		while (o < l->objects && strcmp(l->names[o], cJSON_GetStringValue(one)))
-			o++;
-		if (o == l->objects)
-			return 0;
-	}
-	return 1;
-}
-
 /* A lifted answer is right where it names what the sentence means and nothing else; a trained one where its
  * masks show that thing more than any other. -1: not known. */
 static int is_right(const struct card *c, const cJSON *meant, size_t pairs, size_t right)
 {
-	const cJSON *one;
+	const int is = c->reason ? meant_is(meant, &c->run->lifted.lifted, c->reason->answer) : -1;
 
-	if (!c->reason || !meant || !are_known(c->run, meant))
-		return pairs ? right == pairs : -1;
-	if (cJSON_GetArraySize(meant) != cJSON_GetArraySize(c->reason->answer))
-		return 0;
-	cJSON_ArrayForEach(one, meant) if (!has_name(c->reason->answer, cJSON_GetStringValue(one))) return 0;
-	return 1;
+	return is >= 0 ? is : pairs ? right == pairs : -1;
 }
 
 static int add_scores(cJSON *to, const struct card *c, const cJSON *meant)
@@ -164,7 +125,7 @@ static int add_reason(cJSON *to, const struct report_reason *r)
 static int add_card(cJSON *list, const struct card *c, struct err *e)
 {
 	const struct text *t = &c->set->text;
-	cJSON *one = cJSON_CreateObject(), *meant = said(t, c->sentence), *views = cJSON_CreateArray();
+	cJSON *one = cJSON_CreateObject(), *meant = meant_names(t, c->sentence), *views = cJSON_CreateArray();
 	int bad = 0;
 
 	for (size_t v = 0; v < c->run->shown_count && !bad; v++)

@@ -43,29 +43,6 @@ int locate_all(struct located *all, const struct responses *a, const struct spla
 	return bad ? err_set(e, ERR_SYSTEM, "objects: out of memory") : 0;
 }
 
-int locate_object(struct located *to, const struct lifted *l, size_t object, const struct splats *s,
-	const double up[3], struct err *e)
-{
-	int32_t *ids = mem_alloc(s->n, sizeof *ids, "object", e);
-	float *responses = mem_alloc(s->n, sizeof *responses, "object", e);
-	size_t n = 0;
-	int bad = -1;
-
-	if (ids && responses) {
-		lifted_responses(l, object, responses);
-		for (size_t i = 0; i < s->n; i++)
-			if (responses[i] > 0) {
-				ids[n] = (int32_t)i;
-				responses[n++] = responses[i];
-			}
-		to->sure = l->confidence[object];
-		bad = extent_find(&to->extent, s, ids, responses, n, up, e);
-	}
-	free(ids);
-	free(responses);
-	return bad;
-}
-
 /* Mixes the paint into the colour, and takes as much out of what changes with the direction. */
 static void paint_one(float *sh, int coefficients)
 {

@@ -17,10 +17,6 @@ struct located {
 int locate_all(struct located *all, const struct responses *a, const struct splats *s, const double up[3],
 	struct err *e);
 
-/* One object of a lifted model by itself. *to is zeroed before; extent_free it, also after a failure. */
-int locate_object(struct located *to, const struct lifted *l, size_t object, const struct splats *s,
-	const double up[3], struct err *e);
-
 /* Which Gaussians a viewer shows of an answer, and in which colour. */
 enum locate_show { LOCATE_COLOURED, LOCATE_ISOLATED, LOCATE_REMOVED };
 
