@@ -6,7 +6,7 @@ BUILD ?= build
 CC ?= cc
 CFLAGS ?= -O3 -g
 WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith
-LDLIBS := -lcjson -lpng -ljpeg -lutf8proc -lz -lm
+LDLIBS := -lcjson -lpng -ljpeg -lwebp -lutf8proc -lminizip -lzstd -lz -lm
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 
 # WordNet is used where its library is; without it words are known by the encoder alone.
@@ -35,7 +35,7 @@ MAN_PAGES := $(wildcard man/*.[17])
 
 # What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
 NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev \
-	utf8proc.h=libutf8proc-dev $(CC)=gcc ar=binutils
+	utf8proc.h=libutf8proc-dev webp/decode.h=libwebp-dev zstd.h=libzstd-dev minizip/unzip.h=libminizip-dev $(CC)=gcc ar=binutils
 NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd
 NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
 
@@ -114,7 +114,7 @@ $(BUILD)/flags: FORCE
 # One line in place of a wall of errors where a library's header is not there.
 $(BUILD)/headers:
 	@mkdir -p $(@D)
-	@for header in png.h jpeglib.h cjson/cJSON.h zlib.h utf8proc.h; do \
+	@for header in png.h jpeglib.h webp/decode.h cjson/cJSON.h zlib.h zstd.h minizip/unzip.h utf8proc.h; do \
 		printf '#include <stdio.h>\n#include <%s>\n' $$header | $(COMPILE) -E -x c - >/dev/null 2>&1 || \
 			{ echo "$$header is not installed: run 'make deps'" >&2; exit 1; }; \
 	done

@@ -41,7 +41,7 @@ static void refuse_overwrite(const struct cli *cli, const char *cameras)
 }
 
 static void note_splats(
-	const struct cli *cli, const struct scene *s, const struct ply_report *r, const char *splats)
+	const struct cli *cli, const struct scene *s, const struct rows_report *r, const char *splats)
 {
 	size_t dropped = r->not_finite + r->zero_quat;
 	int degree = 0;
@@ -77,7 +77,7 @@ static void note_cameras(
 }
 
 static int run(
-	const struct cli *cli, struct scene *s, struct ply_report *report, char **cameras, struct err *e)
+	const struct cli *cli, struct scene *s, struct rows_report *report, char **cameras, struct err *e)
 {
 	struct import_found found;
 	struct cli_report to;
@@ -96,7 +96,7 @@ static int run(
 int main(int argc, char **argv)
 {
 	struct scene s = {0};
-	struct ply_report report = {0};
+	struct rows_report report = {0};
 	struct err e = {0};
 	struct cli cli;
 	char *cameras = NULL;

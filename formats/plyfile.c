@@ -214,10 +214,11 @@ static int read_header(struct plyfile *f, struct err *e)
 	return check_unique(f, e);
 }
 
-int plyfile_open(struct plyfile *f, const char *path, struct err *e)
+int plyfile_open(struct plyfile *f, const char *name, struct file_map *map, struct err *e)
 {
-	*f = (struct plyfile){.path = file_name(path)};
-	if (!file_map(path, &f->map, e) && !read_header(f, e))
+	*f = (struct plyfile){.path = name, .map = *map};
+	*map = (struct file_map){0};
+	if (!read_header(f, e))
 		return 0;
 	plyfile_close(f);
 	return -1;

@@ -40,9 +40,10 @@ struct plyfile {
 	size_t at; /* offset of the next row */
 };
 
-/* Maps path ("-" is stdin) and reads the header. `path` must outlive f. Returns 0, or -1 with *e
- * ("path:LINE: reason" for a fault in the header). */
-int plyfile_open(struct plyfile *f, const char *path, struct err *e);
+/* Reads the header of a file that is in memory, which is f's from then on, and released on failure. `name`,
+ * which must outlive f, is what messages say. Returns 0, or -1 with *e ("name:LINE: reason" for a fault in
+ * the header). */
+int plyfile_open(struct plyfile *f, const char *name, struct file_map *map, struct err *e);
 void plyfile_close(struct plyfile *f);
 
 /* The element / property of that name, or NULL / -1. */

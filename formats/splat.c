@@ -1,13 +1,12 @@
 #include "formats/splat.h"
 
 #include "base/file.h"
+#include "base/little.h"
 #include "base/mem.h"
 #include "splat/sh.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 struct place {
 	double size; /* volume times opacity */
@@ -23,16 +22,6 @@ static int largest_first(const void *a, const void *b)
 	return (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
 }
 
-static unsigned char *put_float(unsigned char *p, float value)
-{
-	uint32_t bits;
-
-	memcpy(&bits, &value, 4);
-	for (int i = 0; i < 4; i++)
-		*p++ = (unsigned char)(bits >> 8 * i);
-	return p;
-}
-
 static unsigned char to_byte(double x)
 {
 	return (unsigned char)lrint(fmin(fmax(x, 0), 255));
@@ -45,9 +34,9 @@ void splat_pack(unsigned char bytes[SPLAT_BYTES], const struct splats *s, size_t
 	const double w = q[0], x = q[1], y = q[2], z = q[3], length = sqrt(w * w + x * x + y * y + z * z);
 
 	for (size_t k = 0; k < 3; k++)
-		p = put_float(p, s->means[3 * i + k]);
+		p = little_put_f32(p, s->means[3 * i + k]);
 	for (size_t k = 0; k < 3; k++)
-		p = put_float(p, s->scales[3 * i + k]);
+		p = little_put_f32(p, s->scales[3 * i + k]);
 	for (int c = 0; c < 3; c++)
 		*p++ = to_byte(255 * (0.5 + SH_C0 * (double)sh[c]));
 	*p++ = to_byte(255 * (double)s->opacities[i]);

@@ -130,7 +130,7 @@ int check_lifted(struct check *c, const char *path, struct err *e)
 int check_ply(struct check *c, const char *path, struct err *e)
 {
 	struct splats s;
-	struct ply_report report;
+	struct rows_report report;
 	double offset[3];
 
 	if (ply_read(&s, offset, &report, path, e))

@@ -163,7 +163,7 @@ static char *describe_options(const char *test_views, struct err *e)
 	return text;
 }
 
-int import_scene(struct scene *s, struct ply_report *report, const struct import_options *o,
+int import_scene(struct scene *s, struct rows_report *report, const struct import_options *o,
 	const char *cameras, const char *folder, struct import_found *found, const struct report *to,
 	struct err *e)
 {

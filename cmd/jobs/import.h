@@ -33,7 +33,7 @@ char *import_find_splats(const char *path, struct err *e);
 /* Reads splats and cameras, splits the views, compares the scene with its photographs where there are any,
  * and writes the folder. *s and *report are zeroed before and the caller's to free in any case. Returns 0, or
  * -1 with *e set. */
-int import_scene(struct scene *s, struct ply_report *report, const struct import_options *o,
+int import_scene(struct scene *s, struct rows_report *report, const struct import_options *o,
 	const char *cameras, const char *folder, struct import_found *found, const struct report *to,
 	struct err *e);
 

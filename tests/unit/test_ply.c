@@ -182,7 +182,7 @@ static void broken(int encoding)
 	CHECK(wrong_code == 0, "encoding %d: %d cut files gave another error", encoding, wrong_code);
 	for (size_t at = 0; at < b.len; at++) {
 		struct err e = {0};
-		struct ply_report report;
+		struct rows_report report;
 		b.data[at] ^= 0xff;
 		save(b.data, b.len);
 		if (!ply_read(&s, offset, &report, path, &e)) {
@@ -280,7 +280,7 @@ static void left_out(void)
 	static struct bytes b;
 	double rows[24][14];
 	struct splats s;
-	struct ply_report report;
+	struct rows_report report;
 	struct err e = {0};
 	double offset[3] = {0};
 
