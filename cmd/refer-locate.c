@@ -82,7 +82,7 @@ static int write_scene(const struct locating *r, struct err *e)
 	if (locate_show(&shown, &q->scene.splats, x, (enum locate_show)options.show, e))
 		return -1;
 	int bad = (options.ply && ply_write(&shown, q->scene.offset, options.ply, e)) ||
-		  (options.splat && splat_write(&shown, options.splat, e));
+		  (options.splat && splat_write(&shown, (double[3]){0}, options.splat, e));
 	splats_free(&shown);
 	return bad ? -1 : 0;
 }

@@ -1,8 +1,9 @@
 #include "formats/foreign.h"
 
+#include "base/path.h"
+
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 enum { MEMBERS = 3 };
 
@@ -66,33 +67,24 @@ int foreign_json(const cJSON *root, const char *name, struct err *e)
 	return 0;
 }
 
-static int ends(const char *name, const char *tail)
+int foreign_splats(const char *name, struct err *e)
 {
-	const size_t n = strlen(name), m = strlen(tail);
-
-	return n > m && !strcasecmp(name + n - m, tail);
-}
-
-int foreign_splats(const char *name, const unsigned char *data, size_t length, struct err *e)
-{
-	static const char *const converted[] = {".spz", ".splat", ".ksplat", ".sog", ".lcc"};
+	static const char *const converted[] = {".ksplat", ".sog", ".lcc", ".lcc2"};
 	const char *kind = NULL;
 	const size_t n = strlen(name);
 
 	for (size_t i = 0; i < sizeof converted / sizeof *converted; i++)
-		if (ends(name, converted[i]))
+		if (path_ends(name, converted[i]))
 			kind = converted[i];
-	if (!kind && length > 2 && data[0] == 0x1f && data[1] == 0x8b)
-		kind = ".spz";
 	if (kind)
 		return err_set(e, ERR_FORMAT,
 			"%s: a %s file, not a .ply: 'npx @playcanvas/splat-transform %s %.*s.ply' converts it",
-			name, kind, name, (int)(ends(name, kind) ? n - strlen(kind) : n), name);
-	if (ends(name, ".ckpt") || ends(name, ".pth") || ends(name, ".pt"))
+			name, kind, name, (int)(path_ends(name, kind) ? n - strlen(kind) : n), name);
+	if (path_ends(name, ".ckpt") || path_ends(name, ".pth") || path_ends(name, ".pt"))
 		return err_set(e, ERR_FORMAT,
 			"%s: a checkpoint, not a .ply: nerfstudio writes one by 'ns-export gaussian-splat', 3DGS into point_cloud/iteration_N",
 			name);
-	if (ends(name, ".bin") || ends(name, ".txt"))
+	if (path_ends(name, ".bin") || path_ends(name, ".txt"))
 		return err_set(e, ERR_FORMAT,
 			"%s: not a .ply: points3D of COLMAP are no trained scene; 3DGS trains one from them",
 			name);

@@ -8,13 +8,12 @@
 #include "formats/plyfile.h"
 
 #include <cjson/cJSON.h>
-#include <stddef.h>
 
 /* JSON that is not what was wanted; name is the file's, for the message. */
 int foreign_json(const cJSON *root, const char *name, struct err *e);
 
-/* A file that does not begin as a .ply does, by its first bytes and its name. */
-int foreign_splats(const char *name, const unsigned char *data, size_t length, struct err *e);
+/* A file that does not begin as a .ply does, by its name. */
+int foreign_splats(const char *name, struct err *e);
 
 /* A .ply whose rows are not those of a 3DGS scene that can be rendered. */
 int foreign_vertices(const struct plyfile *f, const struct plyfile_element *vertex, struct err *e);

@@ -182,7 +182,7 @@ static int read_header(struct plyfile *f, struct err *e)
 	const char *data = (const char *)f->map.data;
 	size_t len = f->map.len < HEADER_LIMIT ? f->map.len : HEADER_LIMIT, at = 0;
 
-	if ((len < 3 || memcmp(data, "ply", 3)) && foreign_splats(f->path, f->map.data, f->map.len, e))
+	if ((len < 3 || memcmp(data, "ply", 3)) && foreign_splats(f->path, e))
 		return -1;
 	if (len < 4 || memcmp(data, "ply", 3) ||
 		(data[3] != '\n' && memcmp(data, "ply\r\n", len < 5 ? len : 5)))

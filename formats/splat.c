@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "splat/sh.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -27,6 +28,41 @@ static unsigned char to_byte(double x)
 	return (unsigned char)lrint(fmin(fmax(x, 0), 255));
 }
 
+static int next_row(void *reader, size_t row, double *values, struct err *e)
+{
+	const struct file_map *map = reader;
+	const unsigned char *p = map->data + SPLAT_BYTES * row;
+
+	(void)e;
+	for (int k = 0; k < 3; k++) {
+		const double scale = little_get_f32(p + 12 + 4 * k);
+		values[ROW_MEAN + k] = little_get_f32(p + 4 * k);
+		/* The logarithm of 0 is not finite; the smallest float's stands for it. */
+		values[ROW_SCALE + k] = scale == 0 ? log(FLT_TRUE_MIN) : log(scale);
+		values[ROW_DC + k] = (p[24 + k] / 255.0 - 0.5) / SH_C0;
+	}
+	values[ROW_OPACITY] = gaussian_logit(p[27] / 255.0);
+	for (int k = 0; k < 4; k++)
+		values[ROW_ROT + k] = (p[28 + k] - 128) / 128.0;
+	return 0;
+}
+
+int splat_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
+	struct file_map *map, struct err *e)
+{
+	const struct gaussian_rows rows = {name, map->len / SPLAT_BYTES, 0, next_row, map};
+	int bad = map->len % SPLAT_BYTES != 0;
+
+	*s = (struct splats){0};
+	if (bad)
+		err_set(e, ERR_FORMAT, "%s: %zu bytes are not a whole number of Gaussians of %d", name,
+			map->len, SPLAT_BYTES);
+	else
+		bad = gaussian_rows_read(s, offset, report, &rows, e);
+	file_unmap(map);
+	return bad ? -1 : 0;
+}
+
 void splat_pack(unsigned char bytes[SPLAT_BYTES], const struct splats *s, size_t i)
 {
 	unsigned char *p = bytes;
@@ -44,7 +80,7 @@ void splat_pack(unsigned char bytes[SPLAT_BYTES], const struct splats *s, size_t
 		*p++ = to_byte(128 + 128 * (double)q[k] / length);
 }
 
-int splat_write(const struct splats *s, const char *path, struct err *e)
+int splat_write(const struct splats *s, const double offset[3], const char *path, struct err *e)
 {
 	struct place *places = mem_alloc(s->n, sizeof *places, "splats", e);
 	struct file_out out;
@@ -61,6 +97,9 @@ int splat_write(const struct splats *s, const char *path, struct err *e)
 	for (size_t i = 0; i < s->n && !bad; i++) {
 		unsigned char record[SPLAT_BYTES];
 		splat_pack(record, s, places[i].gaussian);
+		for (size_t k = 0; k < 3; k++)
+			little_put_f32(
+				record + 4 * k, (double)s->means[3 * places[i].gaussian + k] + offset[k]);
 		fwrite(record, 1, sizeof record, out.stream);
 	}
 	free(places);

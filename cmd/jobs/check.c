@@ -1,6 +1,7 @@
 #include "cmd/jobs/check.h"
 
 #include "base/file.h"
+#include "base/path.h"
 #include "cmd/jobs/check_arrays.h"
 #include "cmd/jobs/check_folder.h"
 #include "cmd/jobs/check_records.h"
@@ -146,12 +147,16 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 		return -1;
 	if (!h.len)
 		return err_set(e, ERR_FORMAT, "%s: empty", file_name(path));
+	if (path_ends(path, ".splat"))
+		return check_anysplats(c, path, "splat", e);
 	if (is_safetensors(&h))
 		return check_safetensors(c, path, e);
 	if (begins(&h, "\x89PN") || begins(&h, "\xff\xd8\xff"))
 		return check_image(c, path, e);
 	if (begins(&h, "ply\n") || begins(&h, "ply\r"))
-		return check_ply(c, path, e);
+		return check_anysplats(c, path, "3DGS ply", e);
+	if (begins(&h, "NGSP") || begins(&h, "\x1f\x8b"))
+		return check_anysplats(c, path, "spz", e);
 	if (begins(&h, "\x93NUMPY"))
 		return check_npy(c, path, e);
 	if (is_json(&h, '['))

@@ -1,12 +1,12 @@
 #include "cmd/jobs/check_arrays.h"
 
 #include "cmd/jobs/check_records.h"
+#include "formats/anysplats.h"
 #include "formats/camerafile.h"
 #include "formats/lifted.h"
 #include "formats/model.h"
 #include "formats/npy.h"
 #include "formats/parser_weights.h"
-#include "formats/ply.h"
 #include "formats/png.h"
 #include "formats/text.h"
 #include "formats/weights.h"
@@ -127,15 +127,15 @@ int check_lifted(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
-int check_ply(struct check *c, const char *path, struct err *e)
+int check_anysplats(struct check *c, const char *path, const char *kind, struct err *e)
 {
 	struct splats s;
 	struct rows_report report;
 	double offset[3];
 
-	if (ply_read(&s, offset, &report, path, e))
+	if (anysplats_read(&s, offset, &report, path, e))
 		return -1;
-	c->kind = "3DGS ply";
+	c->kind = kind;
 	check_add_splats(c, &s);
 	if (report.read > s.n)
 		check_add(c, "unusable gaussians", (long long)(report.read - s.n));

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/anysplats.h"
 #include "formats/camerafile.h"
 #include "formats/dataparser.h"
 
@@ -168,7 +169,7 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	struct err *e)
 {
 	*found = (struct import_found){0};
-	if (ply_read(&s->splats, s->offset, report, o->splats, e) ||
+	if (anysplats_read(&s->splats, s->offset, report, o->splats, e) ||
 		camerafile_read(&s->cameras, cameras, e) || move(s, o->splats, cameras, to, e) ||
 		split(&s->cameras, o->test_views, e))
 		return -1;

@@ -6,7 +6,7 @@
 #include "base/err.h"
 #include "base/report.h"
 #include "cmd/jobs/resemblance.h"
-#include "formats/ply.h"
+#include "formats/gaussian_rows.h"
 #include "formats/scene.h"
 
 #include <stddef.h>

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -187,4 +188,11 @@ int path_is_same(const char *a, const char *b, struct err *e)
 	free(x.path);
 	free(y.path);
 	return is_same;
+}
+
+int path_ends(const char *name, const char *tail)
+{
+	const size_t n = strlen(name), m = strlen(tail);
+
+	return n > m && !strcasecmp(name + n - m, tail);
 }

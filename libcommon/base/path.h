@@ -11,6 +11,9 @@ char *path_relative(const char *dir, const char *target, struct err *e);
 /* The last part of a path, which may end in slashes: where it begins, and its length without them. */
 const char *path_last(const char *path, int *length);
 
+/* Whether a name ends so, whatever the case of its letters, and has something before it. */
+int path_ends(const char *name, const char *tail);
+
 /* Where a chain of symbolic links leads, of which the last may be dangling: what a file of that name that is
  * made or replaced really is. The path itself where it is no link. free() it; NULL with *e set (links in a
  * circle, say). */

@@ -24,6 +24,32 @@ static void fill(struct splats *s)
 	}
 }
 
+/* What was written is read: means and scales as they were, in the file's order, the rest to a byte. */
+static void test_read(unsigned char *bytes, size_t len)
+{
+	struct splats s;
+	struct err e;
+	double offset[3];
+	struct file_map map = {malloc(len), len, 0}, cut = {malloc(len - 1), len - 1, 0};
+
+	memcpy((void *)(size_t)map.data, bytes, len);
+	memcpy((void *)(size_t)cut.data, bytes, len - 1);
+	if (!CHECK(!splat_read_map(&s, offset, NULL, "f", &map, &e) && s.n == N && s.sh_coefficients == 1,
+		    "%s", e.message))
+		return;
+	CHECK(s.means[0] == 1 && s.means[1] == 2 && s.means[2] == 3, "%g %g %g", s.means[0], s.means[1],
+		s.means[2]);
+	CHECK(fabsf(s.scales[1] - 0.25f) < 1e-6f && s.opacities[0] == 1, "%g, %g", s.scales[1],
+		s.opacities[0]);
+	CHECK(fabsf(s.sh[0]) < 1 / 143.0f && s.quats[0] > 0.99f, "%g, %g", s.sh[0], s.quats[0]);
+	CHECK(fabsf(s.quats[8] - 0.5f) < 1e-6f && fabsf(s.opacities[1] - 0.5f) < 1 / 509.0f, "%g",
+		s.quats[8]);
+	splats_free(&s);
+	CHECK(splat_read_map(&s, offset, NULL, "f", &cut, &e) && e.code == ERR_FORMAT &&
+			!strcmp(e.message, "f: 95 bytes are not a whole number of Gaussians of 32"),
+		"%s", e.message);
+}
+
 int main(void)
 {
 	/* The page's example is the largest, as faint things come late however large they are. */
@@ -33,6 +59,7 @@ int main(void)
 	/* Colours are cut to a byte, a quaternion is made one, and what is -1 fits. */
 	static const unsigned char second[8] = {255, 0, 199, 128, 128, 128, 0, 128};
 	static const unsigned char third[4] = {192, 192, 192, 192};
+	static const double origin[3];
 	char path[] = "/tmp/test_splat.XXXXXX";
 	unsigned char bytes[N * RECORD + 1] = {0};
 	struct splats s;
@@ -42,7 +69,7 @@ int main(void)
 	if (temporary < 0 || splats_alloc(&s, N, 4, &e))
 		return 1;
 	fill(&s);
-	CHECK(!splat_write(&s, path, &e), "%s", e.message);
+	CHECK(!splat_write(&s, origin, path, &e), "%s", e.message);
 	FILE *in = fopen(path, "rb");
 	size_t got = in ? fread(bytes, 1, sizeof bytes, in) : 0;
 	if (in)
@@ -52,7 +79,8 @@ int main(void)
 	CHECK(!memcmp(bytes + RECORD + 24, second, 8), "%d %d %d, %d, %d %d %d %d", bytes[56], bytes[57],
 		bytes[58], bytes[59], bytes[60], bytes[61], bytes[62], bytes[63]);
 	CHECK(!memcmp(bytes + 2 * RECORD + 28, third, 4), "%d", bytes[92]);
-	CHECK(splat_write(&s, "/nowhere/x.splat", &e) && e.code == ERR_SYSTEM, "no folder");
+	test_read(bytes, got);
+	CHECK(splat_write(&s, origin, "/nowhere/x.splat", &e) && e.code == ERR_SYSTEM, "no folder");
 	close(temporary);
 	unlink(path);
 	splats_free(&s);

@@ -1,0 +1,28 @@
+#include "formats/anysplats.h"
+
+#include "base/file.h"
+#include "base/path.h"
+#include "formats/ply.h"
+#include "formats/splat.h"
+#include "formats/spz.h"
+
+#include <string.h>
+
+int anysplats_read(
+	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e)
+{
+	const char *name = file_name(path);
+	struct file_map map;
+
+	*s = (struct splats){0};
+	if (report)
+		*report = (struct rows_report){0};
+	if (file_map(path, &map, e))
+		return -1;
+	const int is_ply = map.len >= 4 && (!memcmp(map.data, "ply\n", 4) || !memcmp(map.data, "ply\r", 4));
+	if (!is_ply && (spz_is(&map) || path_ends(name, ".spz")))
+		return spz_read_map(s, offset, report, name, &map, e);
+	if (!is_ply && path_ends(name, ".splat"))
+		return splat_read_map(s, offset, report, name, &map, e);
+	return ply_read_map(s, offset, report, name, &map, e);
+}
