@@ -3,10 +3,18 @@
 #include "base/file.h"
 #include "base/path.h"
 #include "formats/ply.h"
+#include "formats/sog.h"
 #include "formats/splat.h"
 #include "formats/spz.h"
 
 #include <string.h>
+
+static int is_meta(const char *path)
+{
+	int length;
+
+	return !strcmp(path_last(path, &length), "meta.json");
+}
 
 int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e)
@@ -17,6 +25,8 @@ int anysplats_read(
 	*s = (struct splats){0};
 	if (report)
 		*report = (struct rows_report){0};
+	if (is_meta(path))
+		return sog_read_meta(s, offset, report, path, e);
 	if (file_map(path, &map, e))
 		return -1;
 	const int is_ply = map.len >= 4 && (!memcmp(map.data, "ply\n", 4) || !memcmp(map.data, "ply\r", 4));
@@ -24,5 +34,7 @@ int anysplats_read(
 		return spz_read_map(s, offset, report, name, &map, e);
 	if (!is_ply && path_ends(name, ".splat"))
 		return splat_read_map(s, offset, report, name, &map, e);
+	if (!is_ply && (sog_is(&map) || path_ends(name, ".sog")))
+		return sog_read_map(s, offset, report, name, &map, e);
 	return ply_read_map(s, offset, report, name, &map, e);
 }

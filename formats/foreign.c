@@ -69,7 +69,7 @@ int foreign_json(const cJSON *root, const char *name, struct err *e)
 
 int foreign_splats(const char *name, struct err *e)
 {
-	static const char *const converted[] = {".ksplat", ".sog", ".lcc", ".lcc2"};
+	static const char *const converted[] = {".ksplat", ".lcc", ".lcc2"};
 	const char *kind = NULL;
 	const size_t n = strlen(name);
 

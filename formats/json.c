@@ -6,15 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-cJSON *json_read(const char *path, struct err *e)
+cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e)
 {
-	const char *stop = NULL, *name = file_name(path);
+	const char *stop = NULL;
 	cJSON *value = NULL;
-	char *text;
-	size_t len;
 
-	if (file_read(path, &text, &len, e))
-		return NULL;
 	if (strlen(text) != len)
 		err_set(e, ERR_FORMAT, "%s: not JSON: a NUL byte at offset %zu", name, strlen(text));
 	else if (!(value = cJSON_ParseWithOpts(text, &stop, 1)))
@@ -24,6 +20,17 @@ cJSON *json_read(const char *path, struct err *e)
 		value = NULL;
 		err_set(e, ERR_FORMAT, "%s: a NUL character (\\u0000) in a string", name);
 	}
+	return value;
+}
+
+cJSON *json_read(const char *path, struct err *e)
+{
+	char *text;
+	size_t len;
+
+	if (file_read(path, &text, &len, e))
+		return NULL;
+	cJSON *value = json_parse(text, len, file_name(path), e);
 	free(text);
 	return value;
 }

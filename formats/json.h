@@ -5,9 +5,13 @@
 #include "base/err.h"
 
 #include <cjson/cJSON.h>
+#include <stddef.h>
 
 /* The value in a file ("-" is stdin): cJSON_Delete it. NULL with *e set ("path: not JSON at offset N"). */
 cJSON *json_read(const char *path, struct err *e);
+
+/* The same of `len` bytes in memory and a NUL after them; name is for messages. */
+cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e);
 
 /* 1 where a string in JSON that was parsed has the escape \u0000, at which cJSON silently ends the string. */
 int json_has_nul(const char *json);

@@ -97,7 +97,11 @@ char *import_find_splats(const char *path, struct err *e)
 {
 	if (!strcmp(path, "-") || !file_is_dir(path))
 		return mem_strdup(path, e);
-	char *found = find_in_folder(path, e);
+	char *found = file_join(path, "meta.json", "", e); /* of SOG */
+	if (!found || file_exists(found))
+		return found;
+	free(found);
+	found = find_in_folder(path, e);
 	if (found && !file_exists(found)) {
 		err_set(e, ERR_FORMAT,
 			"%s: no trained splats in this folder: no point_cloud/iteration_N/point_cloud.ply, as 3DGS writes them, and no point_cloud.ply",

@@ -26,8 +26,8 @@ struct import_found {
 	struct resemblance resemblance;
 };
 
-/* The splats in a folder that 3DGS wrote, point_cloud/iteration_N/point_cloud.ply of the last N; a file is
- * itself. free() it. NULL with *e set. */
+/* The splats in a folder: SOG's meta.json, or point_cloud/iteration_N/point_cloud.ply of the last N that 3DGS
+ * wrote; a file is itself. free() it. NULL with *e set. */
 char *import_find_splats(const char *path, struct err *e);
 
 /* Reads splats and cameras, splits the views, compares the scene with its photographs where there are any,

@@ -1,0 +1,20 @@
+/* Lossless WebP: what SOG keeps its numbers in. formats/sog.md. */
+#ifndef FORMATS_WEBP_H
+#define FORMATS_WEBP_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+struct webp {
+	int width, height;
+	unsigned char *rgba; /* (height, width, 4) */
+};
+
+/* Decodes `len` bytes, where they are an image of at most `pixels`; messages name the archive and the file in
+ * it. Returns 0, or -1 with *e set. */
+int webp_decode(struct webp *to, const char *data, size_t len, size_t pixels, const char *name,
+	const char *file, struct err *e);
+void webp_free(struct webp *w);
+
+#endif
