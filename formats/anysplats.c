@@ -38,3 +38,27 @@ int anysplats_read(
 		return sog_read_map(s, offset, report, name, &map, e);
 	return ply_read_map(s, offset, report, name, &map, e);
 }
+
+int anysplats_format_of(const char *path)
+{
+	static const char *const tails[] = {
+		[ANYSPLATS_PLY] = ".ply", [ANYSPLATS_SPLAT] = ".splat", [ANYSPLATS_SPZ] = ".spz"};
+
+	for (int i = 0; i < 3; i++)
+		if (path_ends(path, tails[i]))
+			return i;
+	return -1;
+}
+
+int anysplats_write(const struct splats *s, const double offset[3], enum anysplats_format format,
+	int spz_version, const char *path, struct err *e)
+{
+	switch (format) {
+	case ANYSPLATS_SPLAT:
+		return splat_write(s, offset, path, e);
+	case ANYSPLATS_SPZ:
+		return spz_write(s, offset, spz_version, path, e);
+	default:
+		return ply_write(s, offset, path, e);
+	}
+}

@@ -11,4 +11,14 @@
 int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e);
 
+/* What can be written. */
+enum anysplats_format { ANYSPLATS_PLY, ANYSPLATS_SPLAT, ANYSPLATS_SPZ };
+
+/* The format that a name ends with; -1 where it is none. */
+int anysplats_format_of(const char *path);
+
+/* Writes means + offset; spz_version is 2 to 4. "-" is stdout. Returns 0, or -1 with *e set. */
+int anysplats_write(const struct splats *s, const double offset[3], enum anysplats_format format,
+	int spz_version, const char *path, struct err *e);
+
 #endif

@@ -2,10 +2,7 @@
 
 #include <math.h>
 
-enum { SH_MAX = 16 };
-
-/* Y_0 ... Y_15 at the unit vector d, as far as `coefficients`. */
-static void sh_basis(const double d[3], int coefficients, double y[SH_MAX])
+void sh_basis(const double d[3], int coefficients, double y[SH_MAX])
 {
 	double x = d[0], yy = d[1], z = d[2], x2 = x * x, y2 = yy * yy, z2 = z * z;
 

@@ -1,0 +1,85 @@
+/* gs-transform: splats from one format into another, cut and moved. */
+#include "cli/cli.h"
+#include "cmd/jobs/transforming.h"
+#include "formats/anysplats.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct transforming options = {.scale = 1};
+static int format;
+static long long spz_version = 3;
+
+static const struct cli_option table[] = {
+	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz", "what to write (default: as FILE is called)",
+		0, 0},
+	{"spz-version", 0, CLI_INT, &spz_version, "N", "version of .spz to write, 2 to 4 (default 3)", 2, 4},
+	{"crop", 0, CLI_STRING, &options.crop, "BOX", "keep what is within X0,Y0,Z0,X1,Y1,Z1", 0, 0},
+	{"drop-strays", 0, CLI_FLAG, &options.drop_strays, NULL,
+		"leave out Gaussians that are far from all others", 0, 0},
+	{"scale", 0, CLI_REAL, &options.scale, "S", "make everything S times as large, about the origin",
+		1e-9, 1e9},
+	{"rotate", 0, CLI_STRING, &options.rotate, "TURN",
+		"turn about the origin: a quaternion W,X,Y,Z, or an axis and an angle X,Y,Z:DEGREES", 0, 0},
+	{"translate", 0, CLI_STRING, &options.translate, "X,Y,Z", "shift by so much", 0, 0},
+	{0},
+};
+
+static const struct cli_tool tool = {
+	.name = "gs-transform",
+	.operands = "SPLATS",
+	.summary = "Write splats in another format, cut, scaled, turned and shifted.",
+	.options = table,
+	.common = CLI_OUTPUT | CLI_THREADS | CLI_VERBOSE | CLI_QUIET,
+	.min_operands = 1,
+	.max_operands = 1,
+	.needs_output = 1,
+};
+
+static enum anysplats_format choose_format(const struct cli *cli)
+{
+	const int found = format ? format - 1 : anysplats_format_of(cli->output);
+
+	if (found < 0)
+		cli_usage(cli, "-o %s: neither .ply nor .splat nor .spz, and --format is not given",
+			cli->output);
+	return (enum anysplats_format)found;
+}
+
+static void note(const struct cli *cli, const struct splats *s, const struct rows_report *r,
+	const struct transforming_count *left_out)
+{
+	if (r->read > s->n + left_out->outside + left_out->strays)
+		cli_warn(cli, "%s: left out %zu of %zu Gaussians: %zu not finite, %zu with a zero quaternion",
+			cli->operands[0], r->not_finite + r->zero_quat, r->read, r->not_finite, r->zero_quat);
+	if (options.crop)
+		cli_note(cli, 1, "%zu Gaussians are outside the box", left_out->outside);
+	if (options.drop_strays)
+		cli_note(cli, 1, "%zu Gaussians are strays", left_out->strays);
+	cli_note(cli, 1, "%zu Gaussians are written", s->n);
+}
+
+int main(int argc, char **argv)
+{
+	struct splats s = {0};
+	struct rows_report report = {0};
+	struct transforming_count left_out;
+	struct err e = {0};
+	struct cli cli;
+	double offset[3];
+
+	cli_parse(&cli, &tool, argc, argv);
+	const enum anysplats_format to = choose_format(&cli);
+	if (transforming_check(&options, &e))
+		cli_usage(&cli, "%s", e.message);
+	cli_refuse_terminal(&cli);
+	cli_refuse_overwrite(&cli, "SPLATS", "output", NULL);
+	int bad = anysplats_read(&s, offset, &report, cli.operands[0], &e) ||
+		  transforming_do(&s, offset, &options, &left_out, &e) ||
+		  anysplats_write(&s, offset, to, (int)spz_version, cli.output, &e);
+	if (!bad)
+		note(&cli, &s, &report, &left_out);
+	splats_free(&s);
+	free(report.dropped);
+	return bad ? cli_fail(&cli, &e) : cli_done(&cli);
+}

@@ -1,0 +1,15 @@
+/* How far a point's neighbours are. */
+#ifndef GEOM_NEIGHBOURS_H
+#define GEOM_NEIGHBOURS_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+enum { NEIGHBOURS_MOST = 16 };
+
+/* distance[i] is that from point i to its k-th nearest other one, INFINITY where there are fewer. points
+ * (n,3), k from 1 to NEIGHBOURS_MOST. Returns 0, or -1 with *e set. */
+int neighbours_find(const float *points, size_t n, int k, float *distance, struct err *e);
+
+#endif
