@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BATCH = 4 * VIEW_GROUP }; /* masks that are images at a time: whole groups */
+enum { BATCH = 16 }; /* masks that are images at a time */
 
 /* A candidate on its way to its place. */
 struct item {
@@ -133,12 +133,12 @@ void regions_free(struct regions *r)
 		free(r->regions[i].agreement);
 		free(r->regions[i].chosen);
 	}
+	for (size_t c = 0; c < r->count; c++)
+		shares_free(&r->candidates[c].shares);
 	free(r->candidates);
 	free(r->objects);
 	free(r->sentence_objects);
 	free(r->weight);
-	free(r->index);
-	free(r->share);
 	free(r->regions);
 	free(r->served);
 	free(r->field);
@@ -167,28 +167,18 @@ static int fill_images(const struct regions_candidate *c, size_t now, int height
 	return failed ? -1 : 0;
 }
 
-/* Appends what a candidate has of each Gaussian: channel k of the sums. */
-static int keep_entries(
-	struct regions *r, struct regions_candidate *c, const float *sum, size_t k, struct err *e)
+static int lift_candidates(struct regions_candidate *c, size_t now, const struct view_weights *w,
+	const float *image, struct err *e)
 {
-	size_t n = 0;
+	struct shares rows[BATCH];
 
-	for (size_t i = 0; i < r->gaussians; i++)
-		n += sum[backproject_index(r->gaussians, k, i)] > 0;
-	if (mem_grow((void **)&r->index, &r->index_capacity, r->entries + n, sizeof *r->index, "masks", e) ||
-		mem_grow(
-			(void **)&r->share, &r->share_capacity, r->entries + n, sizeof *r->share, "masks", e))
+	if (shares_make(rows, w, image, now, e))
 		return -1;
-	c->begin = r->entries;
-	for (size_t i = 0; i < r->gaussians; i++) {
-		const float share = sum[backproject_index(r->gaussians, k, i)];
-		if (!(share > 0))
-			continue;
-		r->index[r->entries] = (int32_t)i;
-		r->share[r->entries++] = share;
-		c->mass += (double)share;
+	for (size_t k = 0; k < now; k++) {
+		c[k].shares = rows[k];
+		for (size_t i = 0; i < rows[k].n; i++)
+			c[k].mass += (double)rows[k].share[i];
 	}
-	c->end = r->entries;
 	return 0;
 }
 
@@ -196,10 +186,9 @@ int regions_lift(
 	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e)
 {
 	double *weight = mem_zalloc(r->gaussians, sizeof *weight, "masks", e);
-	float *sum = mem_alloc(r->gaussians, BATCH * sizeof *sum, "masks", e);
 	float *image = mem_alloc(w->pixels, BATCH * sizeof *image, "masks", e);
 	uint8_t *pixels = mem_alloc(w->pixels, BATCH, "masks", e);
-	int bad = !weight || !sum || !image || !pixels;
+	int bad = !weight || !image || !pixels;
 	size_t begin = 0, end;
 
 	if (!bad) {
@@ -213,15 +202,10 @@ int regions_lift(
 		end++;
 	for (size_t from = begin; from < end && !bad; from += BATCH) {
 		const size_t now = end - from < BATCH ? end - from : BATCH;
-		memset(sum, 0, backproject_groups(now) * VIEW_GROUP * r->gaussians * sizeof *sum);
-		bad = fill_images(&r->candidates[from], now, height, width, pixels, image, e);
-		if (!bad)
-			backproject_add(w, image, now, sum);
-		for (size_t k = 0; k < now && !bad; k++)
-			bad = keep_entries(r, &r->candidates[from + k], sum, k, e);
+		bad = fill_images(&r->candidates[from], now, height, width, pixels, image, e) ||
+		      lift_candidates(&r->candidates[from], now, w, image, e);
 	}
 	free(weight);
-	free(sum);
 	free(image);
 	free(pixels);
 	return bad ? -1 : 0;

@@ -24,6 +24,7 @@
 #define LIFT_REGIONS_H
 
 #include "base/err.h"
+#include "lift/shares.h"
 #include "mask/pool.h"
 #include "splat/view_weights.h"
 
@@ -36,8 +37,8 @@
 struct regions_candidate {
 	const struct mask *mask;
 	size_t view, object, sentence;
-	size_t begin, end; /* its entries; none before its view is lifted */
-	double mass;	   /* sum of l_ki */
+	struct shares shares; /* l_ki; none before its view is lifted */
+	double mass;	      /* their sum */
 };
 
 struct region {
@@ -57,9 +58,6 @@ struct regions {
 	size_t sentence_count;
 	size_t *sentence_objects; /* (sentence_count) */
 	float *weight;		  /* (views,N) W_vi */
-	size_t entries, index_capacity, share_capacity;
-	int32_t *index; /* (entries) Gaussians */
-	float *share;	/* (entries) l_ki */
 	size_t region_count, region_capacity;
 	struct region *regions;
 	size_t *served; /* (object_count) an object's region, or REGIONS_NONE */

@@ -6,7 +6,6 @@
 #include <string.h>
 
 /* Chosen on one real and three synthetic scenes, and not searched over. */
-#define JOINS 0.4		    /* agreement from which a candidate joins a region */
 #define SEEN 0.05		    /* pixels of weight from which a view says what a Gaussian is */
 #define EXPLAINED 0.6		    /* agreement from which a candidate is of a region that there is */
 #define SAME 0.75		    /* overlap from which two regions are one */
@@ -14,22 +13,23 @@ enum { STEPS = 3, SEED_VIEWS = 4 }; /* of each object, spread over its views */
 
 /* A region in the making. */
 struct growth {
-	uint8_t *is_in;	  /* (N) */
-	uint8_t *is_seen; /* (N) */
-	float *sum, *all; /* (N) of the weight in the masks that joined, and of all in their views */
-	double *area;	  /* (views) the region's */
-	size_t *before;	  /* (views) */
+	uint8_t *is_in; /* (N) */
+	struct regions_sums sums;
+	double *area;	/* (views) the region's */
+	size_t *before; /* (views) */
+	/* of the view that the last seed is of, or REGIONS_NONE */
+	size_t seen_view;
+	double *seen_mass; /* (count) of each candidate, over the Gaussians that the view sees */
 	struct region region;
 };
 
 static void growth_free(struct growth *g)
 {
 	free(g->is_in);
-	free(g->is_seen);
-	free(g->sum);
-	free(g->all);
+	regions_sums_free(&g->sums);
 	free(g->area);
 	free(g->before);
+	free(g->seen_mass);
 	free(g->region.members);
 	free(g->region.agreement);
 	free(g->region.chosen);
@@ -39,31 +39,68 @@ static int growth_make(struct growth *g, const struct regions *r, struct err *e)
 {
 	const size_t n = r->gaussians;
 
-	*g = (struct growth){mem_alloc(n, 1, "regions", e), mem_alloc(n, 1, "regions", e),
-		mem_alloc(n, sizeof *g->sum, "regions", e), mem_alloc(n, sizeof *g->all, "regions", e),
-		mem_alloc(r->views, sizeof *g->area, "regions", e),
-		mem_alloc(r->views, sizeof *g->before, "regions", e),
-		{.members = mem_alloc(n, sizeof *g->region.members, "regions", e),
+	*g = (struct growth){.is_in = mem_zalloc(n, 1, "regions", e),
+		.area = mem_alloc(r->views, sizeof *g->area, "regions", e),
+		.before = mem_alloc(r->views, sizeof *g->before, "regions", e),
+		.seen_view = REGIONS_NONE,
+		.seen_mass = mem_alloc(r->count, sizeof *g->seen_mass, "regions", e),
+		.region = {.members = mem_alloc(n, sizeof *g->region.members, "regions", e),
 			.agreement = mem_alloc(r->count, sizeof *g->region.agreement, "regions", e),
 			.chosen = mem_alloc(r->views, sizeof *g->region.chosen, "regions", e)}};
-	if (g->is_in && g->is_seen && g->sum && g->all && g->area && g->before && g->region.members &&
-		g->region.agreement && g->region.chosen)
+	if (g->is_in && g->area && g->before && g->seen_mass && g->region.members && g->region.agreement &&
+		g->region.chosen && !regions_sums_make(&g->sums, n, e))
 		return 0;
 	growth_free(g);
 	return -1;
 }
 
-static void list_members(struct growth *g, const struct regions *r)
+static void clear(struct growth *g)
 {
+	for (size_t k = 0; k < g->region.n; k++)
+		g->is_in[g->region.members[k]] = 0;
 	g->region.n = 0;
-	for (size_t i = 0; i < r->gaussians; i++)
-		if (g->is_in[i])
-			g->region.members[g->region.n++] = (int32_t)i;
+}
+
+static void add(struct growth *g, int32_t gaussian)
+{
+	g->is_in[gaussian] = 1;
+	g->region.members[g->region.n++] = gaussian;
+}
+
+static void find_seen_mass(struct growth *g, const struct regions *r, size_t view)
+{
+	const float *weight = r->weight + view * r->gaussians;
+
+	if (g->seen_view == view)
+		return;
+	g->seen_view = view;
+#pragma omp parallel for schedule(dynamic, 16)
+	for (size_t c = 0; c < r->count; c++) {
+		const struct shares *s = &r->candidates[c].shares;
+		double mass = 0;
+		for (size_t k = 0; k < s->n; k++)
+			mass += weight[s->index[k]] > (float)SEEN ? (double)s->share[k] : 0;
+		g->seen_mass[c] = mass;
+	}
+}
+
+/* Of a candidate with a region of that area, by the mass that counts. Sizes alone may keep it below what
+ * matters. */
+static float agree(const struct growth *g, const struct regions_candidate *c, double area, double mass)
+{
+	const double most = area < mass ? area : mass, least = area < mass ? mass : area;
+	double both = 0;
+
+	if (mass < c->mass / 2 || most < REGIONS_MATTERS * least)
+		return 0;
+	for (size_t k = 0; k < c->shares.n; k++)
+		both += g->is_in[c->shares.index[k]] ? (double)c->shares.share[k] : 0;
+	return both > 0 ? (float)(both / (area + mass - both)) : 0;
 }
 
 /* Of the region with every candidate. By a view that has not seen all, only what it saw counts, and only
- * where that is at least half of the candidate. */
-static void find_agreement(struct growth *g, const struct regions *r, const uint8_t *is_seen)
+ * where that is at least half of the candidate: seen_mass, or NULL. */
+static void find_agreement(struct growth *g, const struct regions *r, const double *seen_mass)
 {
 #pragma omp parallel for schedule(static)
 	for (size_t v = 0; v < r->views; v++) {
@@ -73,16 +110,10 @@ static void find_agreement(struct growth *g, const struct regions *r, const uint
 			area += (double)weight[g->region.members[k]];
 		g->area[v] = area;
 	}
-#pragma omp parallel for schedule(static, 16)
+#pragma omp parallel for schedule(dynamic, 16)
 	for (size_t c = 0; c < r->count; c++) {
 		const struct regions_candidate *at = &r->candidates[c];
-		double both = 0, mass = is_seen ? 0 : at->mass;
-		for (size_t k = at->begin; k < at->end; k++)
-			both += g->is_in[r->index[k]] ? (double)r->share[k] : 0;
-		for (size_t k = at->begin; k < at->end && is_seen; k++)
-			mass += is_seen[r->index[k]] ? (double)r->share[k] : 0;
-		const int is_told = both > 0 && mass >= at->mass / 2;
-		g->region.agreement[c] = is_told ? (float)(both / (g->area[at->view] + mass - both)) : 0;
+		g->region.agreement[c] = agree(g, at, g->area[at->view], seen_mass ? seen_mass[c] : at->mass);
 	}
 }
 
@@ -95,25 +126,9 @@ static void choose(struct growth *g, const struct regions *r)
 		chosen[v] = REGIONS_NONE;
 	for (size_t c = 0; c < r->count; c++) {
 		size_t *best = &chosen[r->candidates[c].view];
-		if (agreement[c] > (float)JOINS && (*best == REGIONS_NONE || agreement[c] > agreement[*best]))
+		if (agreement[c] > (float)REGIONS_JOINS &&
+			(*best == REGIONS_NONE || agreement[c] > agreement[*best]))
 			*best = c;
-	}
-}
-
-void regions_sum(const struct regions *r, const size_t *chosen, float *sum, float *all)
-{
-	memset(sum, 0, r->gaussians * sizeof *sum);
-	memset(all, 0, r->gaussians * sizeof *all);
-	for (size_t v = 0; v < r->views; v++) {
-		const float *weight = r->weight + v * r->gaussians;
-		if (chosen[v] == REGIONS_NONE)
-			continue;
-		const struct regions_candidate *c = &r->candidates[chosen[v]];
-		for (size_t k = c->begin; k < c->end; k++)
-			sum[r->index[k]] += r->share[k];
-#pragma omp parallel for schedule(static)
-		for (size_t i = 0; i < r->gaussians; i++)
-			all[i] += weight[i];
 	}
 }
 
@@ -123,15 +138,14 @@ static void begin(struct growth *g, const struct regions *r, size_t seed)
 	const struct regions_candidate *c = &r->candidates[seed];
 	const float *weight = r->weight + c->view * r->gaussians;
 
-	memset(g->is_in, 0, r->gaussians);
-	for (size_t i = 0; i < r->gaussians; i++)
-		g->is_seen[i] = weight[i] > (float)SEEN;
-	for (size_t k = c->begin; k < c->end; k++) {
-		const int32_t i = r->index[k];
-		g->is_in[i] = g->is_seen[i] && r->share[k] > weight[i] / 2;
+	clear(g);
+	for (size_t k = 0; k < c->shares.n; k++) {
+		const int32_t i = c->shares.index[k];
+		if (weight[i] > (float)SEEN && c->shares.share[k] > weight[i] / 2)
+			add(g, i);
 	}
-	list_members(g, r);
-	find_agreement(g, r, g->is_seen);
+	find_seen_mass(g, r, c->view);
+	find_agreement(g, r, g->seen_mass);
 	choose(g, r);
 	g->region.chosen[c->view] = seed;
 }
@@ -151,10 +165,11 @@ static int grow(struct growth *g, const struct regions *r, size_t seed)
 	begin(g, r, seed);
 	for (int step = 0; step < STEPS && g->region.n; step++) {
 		memcpy(g->before, g->region.chosen, r->views * sizeof *g->before);
-		regions_sum(r, g->region.chosen, g->sum, g->all);
-		for (size_t i = 0; i < r->gaussians; i++)
-			g->is_in[i] = g->sum[i] > g->all[i] / 2;
-		list_members(g, r);
+		regions_sum(&g->sums, r, g->region.chosen);
+		clear(g);
+		for (size_t k = 0; k < g->sums.n; k++)
+			if (g->sums.sum[k] > g->sums.all[k] / 2)
+				add(g, g->sums.index[k]);
 		find_agreement(g, r, NULL);
 		choose(g, r);
 		if (!memcmp(g->before, g->region.chosen, r->views * sizeof *g->before))
@@ -223,14 +238,14 @@ static void mark_seeds(const struct regions *r, size_t object, size_t *views, ui
 
 	for (size_t c = 0; c < r->count; c++) {
 		const struct regions_candidate *at = &r->candidates[c];
-		if (at->object == object && at->end > at->begin && (!n || views[n - 1] != at->view))
+		if (at->object == object && at->shares.n && (!n || views[n - 1] != at->view))
 			views[n++] = at->view;
 	}
 	for (size_t k = 0; k < SEED_VIEWS && n; k++) {
 		const size_t view = views[k * (n - 1) / (SEED_VIEWS - 1)];
 		for (size_t c = 0; c < r->count; c++)
 			if (r->candidates[c].object == object && r->candidates[c].view == view &&
-				r->candidates[c].end > r->candidates[c].begin)
+				r->candidates[c].shares.n)
 				is_seed[c] = 1;
 	}
 }

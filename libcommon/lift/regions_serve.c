@@ -8,7 +8,6 @@
 #include <stdlib.h>
 
 #define CHANCE 0.02 /* share of a sentence's candidates that is found by accident */
-#define PEER 0.65   /* of the region's typical agreement, from which a candidate shows it */
 
 /* share (sentences,regions): of each sentence's candidates, by confidence, in each region. */
 static int find_shares(const struct regions *r, double *share, struct err *e)
@@ -20,12 +19,12 @@ static int find_shares(const struct regions *r, double *share, struct err *e)
 	for (size_t c = 0; c < r->count; c++) {
 		const struct regions_candidate *at = &r->candidates[c];
 		size_t best = REGIONS_NONE;
-		if (at->end == at->begin)
+		if (!at->shares.n)
 			continue;
 		const double score = mask_confidence(at->mask);
 		total[at->sentence] += score;
 		for (size_t i = 0; i < r->region_count; i++)
-			if ((double)r->regions[i].agreement[c] > PEER * r->regions[i].typical &&
+			if ((double)r->regions[i].agreement[c] > REGIONS_PEER * r->regions[i].typical &&
 				(best == REGIONS_NONE ||
 					r->regions[i].agreement[c] > r->regions[best].agreement[c]))
 				best = i;
@@ -55,12 +54,15 @@ static void find_values(
 
 /* What an assigned region is made of, as a channel. */
 static void fill_field(
-	const struct regions *r, size_t object, const struct region *region, float *sum, float *all)
+	const struct regions *r, size_t object, const struct region *region, struct regions_sums *sums)
 {
-	regions_sum(r, region->chosen, sum, all);
+	regions_sum(sums, r, region->chosen);
 	for (size_t i = 0; i < r->gaussians; i++)
-		r->field[backproject_index(r->gaussians, object, i)] =
-			all[i] > 0 ? sum[i] / all[i] - 0.5f : -0.5f;
+		r->field[backproject_index(r->gaussians, object, i)] = -0.5f;
+	for (size_t k = 0; k < sums->n; k++)
+		if (sums->all[k] > 0)
+			r->field[backproject_index(r->gaussians, object, (size_t)sums->index[k])] =
+				sums->sum[k] / sums->all[k] - 0.5f;
 }
 
 int regions_assign(struct regions *r, struct err *e)
@@ -69,12 +71,12 @@ int regions_assign(struct regions *r, struct err *e)
 	double *share = mem_zalloc(r->sentence_count, r->region_count * sizeof *share, "regions", e);
 	double *value = mem_zalloc(r->object_count, columns * sizeof *value, "regions", e);
 	uint8_t *has_support = mem_zalloc(r->object_count, columns, "regions", e);
-	float *sum = mem_alloc(n, sizeof *sum, "regions", e), *all = mem_alloc(n, sizeof *all, "regions", e);
+	struct regions_sums sums;
 	r->served = mem_alloc(r->object_count, sizeof *r->served, "regions", e);
 	r->field = mem_zalloc(
 		backproject_groups(r->object_count) * VIEW_GROUP, n * sizeof *r->field, "regions", e);
-	int bad = !share || !value || !has_support || !sum || !all || !r->served || !r->field ||
-		  find_shares(r, share, e);
+	int bad = regions_sums_make(&sums, n, e) || !share || !value || !has_support || !r->served ||
+		  !r->field || find_shares(r, share, e);
 
 	if (!bad) {
 		find_values(r, share, columns, value, has_support);
@@ -84,13 +86,12 @@ int regions_assign(struct regions *r, struct err *e)
 		if (!has_support[o * columns + r->served[o]])
 			r->served[o] = REGIONS_NONE;
 		else
-			fill_field(r, o, &r->regions[r->served[o]], sum, all);
+			fill_field(r, o, &r->regions[r->served[o]], &sums);
 	}
 	free(share);
 	free(value);
 	free(has_support);
-	free(sum);
-	free(all);
+	regions_sums_free(&sums);
 	return bad ? -1 : 0;
 }
 
@@ -101,7 +102,8 @@ static size_t find_candidate(const struct regions *r, const struct region *regio
 	size_t best = REGIONS_NONE;
 
 	for (size_t c = 0; c < r->count; c++)
-		if (r->candidates[c].view == view && (double)region->agreement[c] > PEER * region->typical &&
+		if (r->candidates[c].view == view &&
+			(double)region->agreement[c] > REGIONS_PEER * region->typical &&
 			(best == REGIONS_NONE || region->agreement[c] > region->agreement[best]))
 			best = c;
 	return best;
