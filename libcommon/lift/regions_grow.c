@@ -14,19 +14,24 @@ enum { STEPS = 3, SEED_VIEWS = 4 }; /* of each object, spread over its views */
 /* A region in the making. */
 struct growth {
 	uint8_t *is_in; /* (N) */
+	struct regions_shown shown;
 	struct regions_sums sums;
+	double *both;	/* (count) what candidates have of the region */
 	double *area;	/* (views) the region's */
 	size_t *before; /* (views) */
 	/* of the view that the last seed is of, or REGIONS_NONE */
 	size_t seen_view;
-	double *seen_mass; /* (count) of each candidate, over the Gaussians that the view sees */
+	double *seen_mass; /* (count) of candidates, over the Gaussians that the view sees; -1 where it was
+			      not asked for */
 	struct region region;
 };
 
 static void growth_free(struct growth *g)
 {
 	free(g->is_in);
+	regions_shown_free(&g->shown);
 	regions_sums_free(&g->sums);
+	free(g->both);
 	free(g->area);
 	free(g->before);
 	free(g->seen_mass);
@@ -40,6 +45,7 @@ static int growth_make(struct growth *g, const struct regions *r, struct err *e)
 	const size_t n = r->gaussians;
 
 	*g = (struct growth){.is_in = mem_zalloc(n, 1, "regions", e),
+		.both = mem_alloc(r->count, sizeof *g->both, "regions", e),
 		.area = mem_alloc(r->views, sizeof *g->area, "regions", e),
 		.before = mem_alloc(r->views, sizeof *g->before, "regions", e),
 		.seen_view = REGIONS_NONE,
@@ -47,8 +53,9 @@ static int growth_make(struct growth *g, const struct regions *r, struct err *e)
 		.region = {.members = mem_alloc(n, sizeof *g->region.members, "regions", e),
 			.agreement = mem_alloc(r->count, sizeof *g->region.agreement, "regions", e),
 			.chosen = mem_alloc(r->views, sizeof *g->region.chosen, "regions", e)}};
-	if (g->is_in && g->area && g->before && g->seen_mass && g->region.members && g->region.agreement &&
-		g->region.chosen && !regions_sums_make(&g->sums, n, e))
+	if (g->is_in && g->both && g->area && g->before && g->seen_mass && g->region.members &&
+		g->region.agreement && g->region.chosen && !regions_sums_make(&g->sums, n, e) &&
+		!regions_shown_make(&g->shown, r, e))
 		return 0;
 	growth_free(g);
 	return -1;
@@ -67,40 +74,44 @@ static void add(struct growth *g, int32_t gaussian)
 	g->region.members[g->region.n++] = gaussian;
 }
 
-static void find_seen_mass(struct growth *g, const struct regions *r, size_t view)
+/* Of a candidate, what a view sees. */
+static double seen_mass(const struct regions *r, size_t view, const struct shares *s)
 {
 	const float *weight = r->weight + view * r->gaussians;
+	double mass = 0;
 
-	if (g->seen_view == view)
-		return;
-	g->seen_view = view;
-#pragma omp parallel for schedule(dynamic, 16)
-	for (size_t c = 0; c < r->count; c++) {
-		const struct shares *s = &r->candidates[c].shares;
-		double mass = 0;
-		for (size_t k = 0; k < s->n; k++)
-			mass += weight[s->index[k]] > (float)SEEN ? (double)s->share[k] : 0;
-		g->seen_mass[c] = mass;
-	}
+	for (size_t k = 0; k < s->n; k++)
+		mass += weight[s->index[k]] > (float)SEEN ? (double)s->share[k] : 0;
+	return mass;
 }
 
-/* Of a candidate with a region of that area, by the mass that counts. Sizes alone may keep it below what
- * matters. */
-static float agree(const struct growth *g, const struct regions_candidate *c, double area, double mass)
+static void look_from(struct growth *g, const struct regions *r, size_t view)
 {
-	const double most = area < mass ? area : mass, least = area < mass ? mass : area;
-	double both = 0;
+	for (size_t c = 0; c < r->count && g->seen_view != view; c++)
+		g->seen_mass[c] = -1;
+	g->seen_view = view;
+}
 
-	if (mass < c->mass / 2 || most < REGIONS_MATTERS * least)
+/* Of a candidate with the region. Sizes alone may keep it below what matters. */
+static float agree(const struct growth *g, const struct regions *r, size_t c, int is_partly_seen)
+{
+	const struct regions_candidate *at = &r->candidates[c];
+	const double area = g->area[at->view], both = g->both[c];
+	double mass = at->mass;
+
+	if (!(both > 0) || both < REGIONS_MATTERS * area)
 		return 0;
-	for (size_t k = 0; k < c->shares.n; k++)
-		both += g->is_in[c->shares.index[k]] ? (double)c->shares.share[k] : 0;
-	return both > 0 ? (float)(both / (area + mass - both)) : 0;
+	if (is_partly_seen) {
+		if (g->seen_mass[c] < 0)
+			g->seen_mass[c] = seen_mass(r, g->seen_view, &at->shares);
+		mass = g->seen_mass[c];
+	}
+	return mass >= at->mass / 2 ? (float)(both / (area + mass - both)) : 0;
 }
 
 /* Of the region with every candidate. By a view that has not seen all, only what it saw counts, and only
- * where that is at least half of the candidate: seen_mass, or NULL. */
-static void find_agreement(struct growth *g, const struct regions *r, const double *seen_mass)
+ * where that is at least half of the candidate. */
+static void find_agreement(struct growth *g, const struct regions *r, int is_partly_seen)
 {
 #pragma omp parallel for schedule(static)
 	for (size_t v = 0; v < r->views; v++) {
@@ -110,11 +121,10 @@ static void find_agreement(struct growth *g, const struct regions *r, const doub
 			area += (double)weight[g->region.members[k]];
 		g->area[v] = area;
 	}
-#pragma omp parallel for schedule(dynamic, 16)
-	for (size_t c = 0; c < r->count; c++) {
-		const struct regions_candidate *at = &r->candidates[c];
-		g->region.agreement[c] = agree(g, at, g->area[at->view], seen_mass ? seen_mass[c] : at->mass);
-	}
+	regions_overlap(&g->shown, r->count, g->region.members, g->region.n, g->both);
+#pragma omp parallel for schedule(dynamic, 64)
+	for (size_t c = 0; c < r->count; c++)
+		g->region.agreement[c] = agree(g, r, c, is_partly_seen);
 }
 
 static void choose(struct growth *g, const struct regions *r)
@@ -144,8 +154,8 @@ static void begin(struct growth *g, const struct regions *r, size_t seed)
 		if (weight[i] > (float)SEEN && c->shares.share[k] > weight[i] / 2)
 			add(g, i);
 	}
-	find_seen_mass(g, r, c->view);
-	find_agreement(g, r, g->seen_mass);
+	look_from(g, r, c->view);
+	find_agreement(g, r, 1);
 	choose(g, r);
 	g->region.chosen[c->view] = seed;
 }
@@ -170,7 +180,7 @@ static int grow(struct growth *g, const struct regions *r, size_t seed)
 		for (size_t k = 0; k < g->sums.n; k++)
 			if (g->sums.sum[k] > g->sums.all[k] / 2)
 				add(g, g->sums.index[k]);
-		find_agreement(g, r, NULL);
+		find_agreement(g, r, 0);
 		choose(g, r);
 		if (!memcmp(g->before, g->region.chosen, r->views * sizeof *g->before))
 			break;

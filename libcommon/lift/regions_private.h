@@ -9,6 +9,21 @@
 /* No agreement below this is ever looked at, as typical ones are above REGIONS_JOINS. */
 #define REGIONS_MATTERS (REGIONS_JOINS * REGIONS_PEER)
 
+/* The candidates' shares by Gaussian. */
+struct regions_shown {
+	size_t *begin;	    /* (N+1) */
+	int32_t *candidate; /* (entries) rising for each Gaussian */
+	float *share;	    /* (entries) l_ki */
+	double *slabs;	    /* (REGIONS_SLABS,count) sums on their way */
+};
+enum { REGIONS_SLABS = 8 };
+
+int regions_shown_make(struct regions_shown *s, const struct regions *r, struct err *e);
+void regions_shown_free(struct regions_shown *s);
+
+/* both (count): what each candidate has of the n members. */
+void regions_overlap(struct regions_shown *s, size_t count, const int32_t *members, size_t n, double *both);
+
 /* Of the Gaussians that candidates show: the weight in them, and all weight in their views. */
 struct regions_sums {
 	size_t n;
