@@ -33,11 +33,18 @@
 
 #define REGIONS_NONE SIZE_MAX
 
-/* A mask, numbered and lifted. */
-struct regions_candidate {
+/* A mask as it came, numbered. */
+struct regions_witness {
 	const struct mask *mask;
 	size_t view, object, sentence;
-	struct shares shares; /* l_ki; none before its view is lifted */
+	size_t candidate; /* the one it stands for, or REGIONS_NONE before its view is lifted */
+};
+
+/* A mask that is lifted: the surest of those that look alike in a view. */
+struct regions_candidate {
+	const struct mask *mask;
+	size_t view;
+	struct shares shares; /* l_ki */
 	double mass;	      /* their sum */
 };
 
@@ -51,8 +58,10 @@ struct region {
 
 struct regions {
 	size_t views, gaussians;
+	size_t witness_count;
+	struct regions_witness *witnesses; /* (witness_count) by view, the surest first */
 	size_t count;
-	struct regions_candidate *candidates; /* (count) by view */
+	struct regions_candidate *candidates; /* (count of witness_count) in the order in which views came */
 	size_t object_count;
 	size_t *objects; /* (object_count) the first candidate of each, in the order in which they came */
 	size_t sentence_count;
@@ -65,14 +74,14 @@ struct regions {
 		       */
 };
 
-/* The candidates with score > min_score. places (pool's n) has the view of each, below `views`; the
+/* The masks with score > min_score. places (pool's n) has the view of each, below `views`; the
  * pool's masks are referred to. */
 int regions_init(struct regions *r, const struct pool *p, const size_t *places, size_t views,
 	size_t gaussians, double min_score, struct err *e);
 void regions_free(struct regions *r);
 
 /* Lifts the candidates of a view, which has these weights and that size; masks of another size are reduced by
- * area. Once a view; the candidates of views that are not lifted are left out of all. */
+ * area. Once a view; the masks of views that are not lifted are left out of all. */
 int regions_lift(
 	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e);
 

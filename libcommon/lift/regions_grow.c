@@ -16,9 +16,10 @@ struct growth {
 	uint8_t *is_in; /* (N) */
 	struct regions_shown shown;
 	struct regions_sums sums;
-	double *both;	/* (count) what candidates have of the region */
-	double *area;	/* (views) the region's */
-	size_t *before; /* (views) */
+	double *both;	   /* (count) what candidates have of the region */
+	double *area;	   /* (views) the region's */
+	size_t *before;	   /* (views) */
+	uint8_t *is_tried; /* (count) candidates that regions grew from */
 	/* of the view that the last seed is of, or REGIONS_NONE */
 	size_t seen_view;
 	double *seen_mass; /* (count) of candidates, over the Gaussians that the view sees; -1 where it was
@@ -34,6 +35,7 @@ static void growth_free(struct growth *g)
 	free(g->both);
 	free(g->area);
 	free(g->before);
+	free(g->is_tried);
 	free(g->seen_mass);
 	free(g->region.members);
 	free(g->region.agreement);
@@ -48,12 +50,13 @@ static int growth_make(struct growth *g, const struct regions *r, struct err *e)
 		.both = mem_alloc(r->count, sizeof *g->both, "regions", e),
 		.area = mem_alloc(r->views, sizeof *g->area, "regions", e),
 		.before = mem_alloc(r->views, sizeof *g->before, "regions", e),
+		.is_tried = mem_zalloc(r->count, 1, "regions", e),
 		.seen_view = REGIONS_NONE,
 		.seen_mass = mem_alloc(r->count, sizeof *g->seen_mass, "regions", e),
 		.region = {.members = mem_alloc(n, sizeof *g->region.members, "regions", e),
 			.agreement = mem_alloc(r->count, sizeof *g->region.agreement, "regions", e),
 			.chosen = mem_alloc(r->views, sizeof *g->region.chosen, "regions", e)}};
-	if (g->is_in && g->both && g->area && g->before && g->seen_mass && g->region.members &&
+	if (g->is_in && g->both && g->area && g->before && g->is_tried && g->seen_mass && g->region.members &&
 		g->region.agreement && g->region.chosen && !regions_sums_make(&g->sums, n, e) &&
 		!regions_shown_make(&g->shown, r, e))
 		return 0;
@@ -241,35 +244,45 @@ static int keep(struct regions *r, const struct region *from, float *explained, 
 	return to->members && to->agreement && to->chosen ? 0 : -1;
 }
 
-/* Views of an object that its regions are grown from: is_seed (count) gets 1 for its candidates there. */
-static void mark_seeds(const struct regions *r, size_t object, size_t *views, uint8_t *is_seed)
+static int is_seed(const struct regions *r, size_t witness, size_t object)
 {
-	size_t n = 0;
+	const struct regions_witness *w = &r->witnesses[witness];
 
-	for (size_t c = 0; c < r->count; c++) {
-		const struct regions_candidate *at = &r->candidates[c];
-		if (at->object == object && at->shares.n && (!n || views[n - 1] != at->view))
-			views[n++] = at->view;
-	}
-	for (size_t k = 0; k < SEED_VIEWS && n; k++) {
-		const size_t view = views[k * (n - 1) / (SEED_VIEWS - 1)];
-		for (size_t c = 0; c < r->count; c++)
-			if (r->candidates[c].object == object && r->candidates[c].view == view &&
-				r->candidates[c].shares.n)
-				is_seed[c] = 1;
-	}
+	return w->object == object && w->candidate != REGIONS_NONE && r->candidates[w->candidate].shares.n;
 }
 
-static int grow_all(struct regions *r, struct growth *g, float *explained, uint8_t *is_seed,
+/* The views that an object's regions are grown from. Returns how many: views (SEED_VIEWS). */
+static size_t find_views(const struct regions *r, size_t object, size_t *all, size_t *views)
+{
+	size_t n = 0, found = 0;
+
+	for (size_t i = 0; i < r->witness_count; i++)
+		if (is_seed(r, i, object) && (!n || all[n - 1] != r->witnesses[i].view))
+			all[n++] = r->witnesses[i].view;
+	for (size_t k = 0; k < SEED_VIEWS && n; k++) {
+		const size_t view = all[k * (n - 1) / (SEED_VIEWS - 1)];
+		if (!found || views[found - 1] != view)
+			views[found++] = view;
+	}
+	return found;
+}
+
+static int grow_object(struct regions *r, struct growth *g, size_t object, float *explained,
 	const double *total, struct err *e)
 {
-	for (size_t object = 0; object < r->object_count; object++) {
-		memset(is_seed, 0, r->count);
-		mark_seeds(r, object, g->before, is_seed);
-		for (size_t c = 0; c < r->count; c++)
-			if (is_seed[c] && explained[c] < (float)EXPLAINED && grow(g, r, c) &&
-				!is_known(g, r, total) && keep(r, &g->region, explained, e))
-				return -1;
+	size_t views[SEED_VIEWS];
+	const size_t n = find_views(r, object, g->before, views);
+
+	for (size_t i = 0, at = 0; i < r->witness_count && at < n; i++) {
+		const struct regions_witness *w = &r->witnesses[i];
+		while (at < n && views[at] < w->view)
+			at++;
+		if (at == n || views[at] != w->view || !is_seed(r, i, object) || g->is_tried[w->candidate] ||
+			explained[w->candidate] >= (float)EXPLAINED)
+			continue;
+		g->is_tried[w->candidate] = 1;
+		if (grow(g, r, w->candidate) && !is_known(g, r, total) && keep(r, &g->region, explained, e))
+			return -1;
 	}
 	return 0;
 }
@@ -278,19 +291,18 @@ int regions_grow(struct regions *r, struct err *e)
 {
 	struct growth g;
 	float *explained = mem_zalloc(r->count, sizeof *explained, "regions", e);
-	uint8_t *is_seed = mem_alloc(r->count, 1, "regions", e);
 	double *total = mem_zalloc(r->gaussians, sizeof *total, "regions", e);
-	int bad = !explained || !is_seed || !total || growth_make(&g, r, e);
+	int bad = !explained || !total || growth_make(&g, r, e);
 
 	for (size_t v = 0; v < r->views && !bad; v++)
 		for (size_t i = 0; i < r->gaussians; i++)
 			total[i] += (double)r->weight[v * r->gaussians + i];
 	if (!bad) {
-		bad = grow_all(r, &g, explained, is_seed, total, e);
+		for (size_t object = 0; object < r->object_count && !bad; object++)
+			bad = grow_object(r, &g, object, explained, total, e);
 		growth_free(&g);
 	}
 	free(explained);
-	free(is_seed);
 	free(total);
 	return bad ? -1 : 0;
 }

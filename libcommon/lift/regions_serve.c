@@ -9,6 +9,20 @@
 
 #define CHANCE 0.02 /* share of a sentence's candidates that is found by accident */
 
+/* The region that a candidate shows, or REGIONS_NONE. */
+static size_t find_region(const struct regions *r, size_t candidate)
+{
+	size_t best = REGIONS_NONE;
+
+	for (size_t i = 0; i < r->region_count; i++) {
+		const float agreement = r->regions[i].agreement[candidate];
+		if ((double)agreement > REGIONS_PEER * r->regions[i].typical &&
+			(best == REGIONS_NONE || agreement > r->regions[best].agreement[candidate]))
+			best = i;
+	}
+	return best;
+}
+
 /* share (sentences,regions): of each sentence's candidates, by confidence, in each region. */
 static int find_shares(const struct regions *r, double *share, struct err *e)
 {
@@ -16,18 +30,13 @@ static int find_shares(const struct regions *r, double *share, struct err *e)
 
 	if (!total)
 		return -1;
-	for (size_t c = 0; c < r->count; c++) {
-		const struct regions_candidate *at = &r->candidates[c];
-		size_t best = REGIONS_NONE;
-		if (!at->shares.n)
+	for (size_t i = 0; i < r->witness_count; i++) {
+		const struct regions_witness *at = &r->witnesses[i];
+		if (at->candidate == REGIONS_NONE || !r->candidates[at->candidate].shares.n)
 			continue;
 		const double score = mask_confidence(at->mask);
+		const size_t best = find_region(r, at->candidate);
 		total[at->sentence] += score;
-		for (size_t i = 0; i < r->region_count; i++)
-			if ((double)r->regions[i].agreement[c] > REGIONS_PEER * r->regions[i].typical &&
-				(best == REGIONS_NONE ||
-					r->regions[i].agreement[c] > r->regions[best].agreement[c]))
-				best = i;
 		if (best != REGIONS_NONE)
 			share[at->sentence * r->region_count + best] += score;
 	}
