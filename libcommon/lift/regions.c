@@ -99,7 +99,9 @@ int regions_init(struct regions *r, const struct pool *p, const size_t *places, 
 	r->objects = mem_alloc(p->n, sizeof *r->objects, "candidates", e);
 	r->sentence_objects = mem_alloc(p->n, sizeof *r->sentence_objects, "candidates", e);
 	r->weight = mem_zalloc(views, gaussians * sizeof *r->weight, "views", e);
-	if (!r->witnesses || !r->candidates || !r->objects || !r->sentence_objects || !r->weight) {
+	r->ranges = mem_zalloc(views, sizeof *r->ranges, "views", e);
+	if (!r->witnesses || !r->candidates || !r->ranges || !r->objects || !r->sentence_objects ||
+		!r->weight) {
 		regions_free(r);
 		return -1;
 	}
@@ -132,6 +134,7 @@ void regions_free(struct regions *r)
 		shares_free(&r->candidates[c].shares);
 	free(r->witnesses);
 	free(r->candidates);
+	free(r->ranges);
 	free(r->objects);
 	free(r->sentence_objects);
 	free(r->weight);
@@ -315,9 +318,11 @@ int regions_lift(
 		begin++;
 	for (end = begin; end < r->witness_count && r->witnesses[end].view == view;)
 		end++;
+	r->ranges[view] = (struct regions_range){r->count, r->count};
 	int bad = add_weight(r, view, w, e) ||
 		  shapes_make(&s, r->witnesses + begin, end - begin, height, width, e) ||
 		  lift_masks(r, w, &s, r->witnesses + begin, e);
+	r->ranges[view].end = r->count;
 	shapes_free(&s);
 	return bad ? -1 : 0;
 }

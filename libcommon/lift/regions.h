@@ -48,6 +48,10 @@ struct regions_candidate {
 	double mass;	      /* their sum */
 };
 
+struct regions_range {
+	size_t begin, end;
+};
+
 struct region {
 	size_t n;
 	int32_t *members; /* (n) Gaussians, in order */
@@ -62,6 +66,7 @@ struct regions {
 	struct regions_witness *witnesses; /* (witness_count) by view, the surest first */
 	size_t count;
 	struct regions_candidate *candidates; /* (count of witness_count) in the order in which views came */
+	struct regions_range *ranges;	      /* (views) each view's candidates */
 	size_t object_count;
 	size_t *objects; /* (object_count) the first candidate of each, in the order in which they came */
 	size_t sentence_count;
@@ -91,10 +96,14 @@ int regions_grow(struct regions *r, struct err *e);
 /* Gives each object its region, after regions_grow. */
 int regions_assign(struct regions *r, struct err *e);
 
-/* masks and scores (object_count) in a view, after regions_assign; rle_free each mask. They have the size of
- * the view's candidates, or of its weights where it has none; empty where an object has no region or shows
- * nothing of it. The score is the agreement of the candidate with the region, and the region's typical one
- * where it is rendered: *rendered goes up by each such mask that is not empty. On failure there are none. */
+/* Whether some object's region has to be rendered in a view. */
+int regions_need_weights(const struct regions *r, size_t view);
+
+/* masks and scores (object_count) in a view, after regions_assign; rle_free each mask. w may be NULL where
+ * no weights are needed. They have the size of the view's candidates, or of its weights where it has none;
+ * empty where an object has no region or shows nothing of it. The score is the agreement of the candidate
+ * with the region, and the region's typical one where it is rendered: *rendered goes up by each such mask
+ * that is not empty. On failure there are none. */
 int regions_render(const struct regions *r, size_t view, const struct view_weights *w, int height, int width,
 	struct rle *masks, double *scores, size_t *rendered, struct err *e);
 
