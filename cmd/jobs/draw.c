@@ -109,8 +109,12 @@ static int put_view(void *data, size_t view, struct err *e)
 static int render(struct drawing *d, size_t views, struct err *e)
 {
 	const struct request *r = d->request;
-	const struct answer_question q = {&r->scene.splats, &r->responses,
-		d->options->is_amodal ? d->wholes : NULL, d->options->pictures.overlays != NULL};
+	const struct pictures *pictures = &d->options->pictures;
+	const struct answer_question q = {.splats = &r->scene.splats,
+		.responses = &r->responses,
+		.wholes = d->options->is_amodal ? d->wholes : NULL,
+		.wants_rgb = pictures->overlays != NULL,
+		.wants_images = pictures->responses != NULL};
 	const struct answer_calls calls = {d, put_answer, put_view};
 	size_t count = r->responses.answers;
 
