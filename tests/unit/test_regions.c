@@ -199,6 +199,27 @@ static void solve(const struct scene *s, const struct pool *p, struct result *to
 	regions_free(&r);
 }
 
+static void result_free(struct result *r)
+{
+	for (int v = 0; v < UNLIT; v++)
+		for (int o = 0; o < OBJECTS; o++)
+			rle_free(&r->masks[v][o]);
+}
+
+/* Frees b. */
+static void compare(const struct result *a, struct result *b, const char *what)
+{
+	for (int v = 0; v < UNLIT; v++)
+		for (int o = 0; o < OBJECTS; o++) {
+			const struct rle *m = &a->masks[v][o], *other = &b->masks[v][o];
+			CHECK(m->n == other->n &&
+					(!m->n || !memcmp(m->runs, other->runs, m->n * sizeof *m->runs)) &&
+					a->scores[v][o] == b->scores[v][o],
+				"view %d, %s: %s differ", v, objects[o], what);
+		}
+	result_free(b);
+}
+
 static void test_confusion(void)
 {
 	static struct scene s;
@@ -211,6 +232,7 @@ static void test_confusion(void)
 	rng_seed(&r, 21, 1);
 	make_weights(&s, &r);
 	make_candidates(&s);
+	const size_t once = s.n;
 	CHECK(!pool_make(&pool, s.masks, s.n, &e) && !pool_select(&pool, SELECT_CIOU, 0.3, &e), "%s",
 		e.message);
 	for (size_t g = 0; g < pool.group_count; g++)
@@ -222,18 +244,19 @@ static void test_confusion(void)
 		omp_set_num_threads(threads);
 		solve(&s, &pool, &results[threads - 1]);
 	}
-	for (int v = 0; v < UNLIT; v++)
-		for (int o = 0; o < OBJECTS; o++) {
-			struct rle *m = &results[0].masks[v][o], *other = &results[1].masks[v][o];
-			CHECK(m->n == other->n &&
-					(!m->n || !memcmp(m->runs, other->runs, m->n * sizeof *m->runs)) &&
-					results[0].scores[v][o] == results[1].scores[v][o],
-				"view %d, %s: threads differ", v, objects[o]);
-			rle_free(m);
-			rle_free(other);
-		}
+	compare(&results[0], &results[1], "threads");
 	pool_free(&pool);
-	for (size_t i = 0; i < s.n; i++)
+	/* every record twice */
+	for (size_t i = 0; i < once; i++, s.n++) {
+		s.masks[s.n] = s.masks[i];
+		s.views[s.n] = s.views[i];
+	}
+	CHECK(!pool_make(&pool, s.masks, s.n, &e), "%s", e.message);
+	solve(&s, &pool, &results[1]);
+	compare(&results[0], &results[1], "doubled records");
+	pool_free(&pool);
+	result_free(&results[0]);
+	for (size_t i = 0; i < once; i++)
 		rle_free(&s.masks[i].rle);
 }
 
