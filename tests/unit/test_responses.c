@@ -42,7 +42,7 @@ static char *pieces[] = {"box", "ball", "box", "", "zeppelin", ""};
 static const size_t which[] = {0, 1, 2, 3, 4, 5};
 static const struct parser parser = {0};
 static const struct responses_question of = {&splats, &cameras, asked_offsets, asked_words, pieces, pieces,
-	NULL, &parser, which, SENTENCES, pieces, "model"};
+	NULL, &parser, which, SENTENCES, pieces, "model", 0};
 
 static float at(const struct responses *a, size_t answer, size_t gaussian)
 {
