@@ -227,27 +227,41 @@ static void put_number(FILE *out, const char *before, double x)
 	fprintf(out, "%s%s", before, number_text(text, x));
 }
 
-int masks_put(FILE *out, const struct mask *m, struct err *e)
+/* What is known of a mask but whose it is. */
+static int put_shape(FILE *out, const struct mask *m, struct err *e)
 {
 	char *counts = rle_to_string(&m->rle, e);
-	int bad = -1;
 
 	if (!counts)
 		return -1;
-	if (jsonl_put_string(out, "{\"view\":", m->view, e) ||
-		(m->ref && jsonl_put_string(out, ",\"ref\":", m->ref, e)) ||
-		(m->object && jsonl_put_string(out, ",\"object\":", m->object, e)))
-		goto done;
 	if (!isnan(m->score))
 		put_number(out, ",\"score\":", m->score);
 	if (!isnan(m->visible))
 		put_number(out, ",\"visible\":", m->visible);
 	fprintf(out, ",\"segmentation\":{\"size\":[%d,%d],\"counts\":", m->rle.height, m->rle.width);
-	if (jsonl_put_string(out, "", counts, e))
-		goto done;
-	fputs("}}\n", out);
-	bad = ferror(out) ? err_errno(e, "write") : 0;
-done:
+	const int bad = jsonl_put_string(out, "", counts, e);
+	fputc('}', out);
 	free(counts);
 	return bad;
+}
+
+int masks_put_parts(FILE *out, const struct mask *m, const struct mask *parts, size_t n, struct err *e)
+{
+	if (jsonl_put_string(out, "{\"view\":", m->view, e) ||
+		(m->ref && jsonl_put_string(out, ",\"ref\":", m->ref, e)) ||
+		(m->object && jsonl_put_string(out, ",\"object\":", m->object, e)) || put_shape(out, m, e))
+		return -1;
+	for (size_t k = 0; k < n; k++) {
+		if (jsonl_put_string(
+			    out, k ? "},{\"object\":" : ",\"parts\":[{\"object\":", parts[k].object, e) ||
+			put_shape(out, &parts[k], e))
+			return -1;
+	}
+	fputs(n ? "}]}\n" : "}\n", out);
+	return ferror(out) ? err_errno(e, "write") : 0;
+}
+
+int masks_put(FILE *out, const struct mask *m, struct err *e)
+{
+	return masks_put_parts(out, m, NULL, 0, e);
 }

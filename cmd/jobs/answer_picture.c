@@ -136,7 +136,7 @@ int answer_picture(const struct asking *a, const struct asking_answer *answer, c
 	const char *path, struct answer_drawn *drawn, struct err *e)
 {
 	struct responses responses;
-	struct answer_question q = {&a->scene.splats, &responses, NULL, 0};
+	struct answer_question q = {.splats = &a->scene.splats, .responses = &responses};
 	struct page page = {words, path, drawn};
 	const struct answer_calls calls = {&page, put_page, ignore};
 

@@ -108,7 +108,7 @@ int anymodel_answer(
 	const struct parser parser = {.weights = &m->weights, .encoder = q->text->encoder.hex};
 	struct responses_question of = {&q->scene->splats, &q->scene->cameras, q->text->offsets,
 		q->text->words, q->text->texts, q->text->pieces, NULL, &parser, q->which, q->count,
-		q->text->refs, file_name(q->model_path)};
+		q->text->refs, file_name(q->model_path), q->wants_parts};
 	struct rows rows = {0};
 
 	*a = (struct responses){0};

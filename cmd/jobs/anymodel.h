@@ -32,6 +32,7 @@ struct anymodel_ask {
 				*/
 	unsigned parts;
 	double least;
+	int wants_parts;
 	const struct viewpoint
 		*from; /* where all sentences are said; NULL: each of the view that it names, if any */
 };

@@ -83,24 +83,49 @@ static int put_answer(void *data, const struct answer *a, struct err *e)
 	return bad;
 }
 
+/* The objects of an answer that is of several: parts (objects of the model). Returns how many. */
+static size_t list_parts(const struct request *r, const struct mask *shown, size_t answer, struct mask *parts)
+{
+	const struct responses *a = &r->responses;
+	const size_t n = a->alone ? a->begin[answer + 1] - a->begin[answer] : 0;
+
+	for (size_t k = 0; k < n; k++) {
+		const size_t at = a->begin[answer] + k, o = a->objects[at];
+		parts[k] = shown[a->alone[at]];
+		parts[k].object = r->model.lifted.names[o];
+		parts[k].score = rle_area(&parts[k].rle) ? (double)r->model.lifted.confidence[o] : 0;
+	}
+	return n > 1 ? n : 0;
+}
+
+static int put_sentence(const struct drawing *d, size_t i, size_t view, const struct mask *shown,
+	struct mask *parts, struct err *e)
+{
+	const struct request *r = d->request;
+	const size_t answer = r->responses.answer[i];
+	struct mask m = shown[answer];
+
+	m.view = d->views[d->first + view].name;
+	m.ref = r->text.refs[r->refs[i]];
+	m.object = text_object(&r->text, r->refs[i]);
+	if (r->responses.sure)
+		m.score = rle_area(&m.rle) ? r->responses.sure[i] : 0;
+	return masks_put_parts(d->out, &m, parts, list_parts(r, shown, answer, parts), e);
+}
+
 static int put_view(void *data, size_t view, struct err *e)
 {
 	struct drawing *d = data;
 	const struct request *r = d->request;
 	struct mask *shown = d->shown + view * r->responses.answers;
-	int bad = 0;
+	struct mask *parts = mem_alloc(r->model.lifted.objects, sizeof *parts, "masks", e);
+	int bad = !parts;
 
-	for (size_t i = 0; i < r->count && !bad; i++) {
-		struct mask m = shown[r->responses.answer[i]];
-		m.view = d->views[d->first + view].name;
-		m.ref = r->text.refs[r->refs[i]];
-		m.object = text_object(&r->text, r->refs[i]);
-		if (r->responses.sure)
-			m.score = rle_area(&m.rle) ? r->responses.sure[i] : 0;
-		bad = masks_put(d->out, &m, e);
-	}
+	for (size_t i = 0; i < r->count && !bad; i++)
+		bad = put_sentence(d, i, view, shown, parts, e);
 	for (size_t k = 0; k < r->responses.answers; k++)
 		rle_free(&shown[k].rle);
+	free(parts);
 	report_step(d->to, (double)(d->first + view) + 1, NULL);
 	return bad;
 }
@@ -109,8 +134,12 @@ static int put_view(void *data, size_t view, struct err *e)
 static int render(struct drawing *d, size_t views, struct err *e)
 {
 	const struct request *r = d->request;
-	const struct answer_question q = {&r->scene.splats, &r->responses,
-		d->options->is_amodal ? d->wholes : NULL, d->options->pictures.overlays != NULL};
+	const struct pictures *pictures = &d->options->pictures;
+	const struct answer_question q = {.splats = &r->scene.splats,
+		.responses = &r->responses,
+		.wholes = d->options->is_amodal ? d->wholes : NULL,
+		.wants_rgb = pictures->overlays != NULL,
+		.wants_images = pictures->responses != NULL};
 	const struct answer_calls calls = {d, put_answer, put_view};
 	size_t count = r->responses.answers;
 

@@ -136,8 +136,7 @@ static int lift(struct lifting *l, const struct report *to, struct err *e)
 			bad = lift_view(l, v, masks, e);
 			report_step(to, (double)((size_t)round * n + v + 1), NULL);
 		}
-		if (!bad)
-			lift_objects_settle(&l->lift);
+		bad = bad || lift_objects_settle(&l->lift, e);
 	}
 	free(masks);
 	return bad || lift_objects_finish(&l->lift, &l->model, e) ? -1 : 0;

@@ -91,7 +91,7 @@ int report_answer(const struct report_run *r, struct report_set *s, const struct
 	const size_t n = cameras_spread(&r->scene.cameras, most, (int)r->options->width, views);
 	struct responses a = {0};
 	struct collecting c = {to, &a, NULL};
-	const struct answer_question q = {&r->scene.splats, &a, NULL, 0};
+	const struct answer_question q = {.splats = &r->scene.splats, .responses = &a};
 	const struct answer_calls calls = {&c, keep_mask, step};
 
 	if (ask(r, &s->text, &a, e))

@@ -45,7 +45,7 @@ int request_answer(struct request *r, const struct viewpoint *from, struct err *
 {
 	const struct request_options *o = r->options;
 	const struct anymodel_ask ask = {&r->scene, &r->text, o->model, o->scene, o->text, r->refs, r->count,
-		!o->is_plain, r->parts, o->least, from};
+		!o->is_plain, r->parts, o->least, o->wants_parts, from};
 
 	responses_free(&r->responses);
 	return anymodel_answer(&r->model, &ask, &r->responses, e);

@@ -23,6 +23,7 @@ struct request_options {
 	int is_plain;			  /* trained models: responses as they are, not calibrated */
 	double least;			  /* lifted models: see answer/responses.h, */
 	const char *without;		  /* and PART,... as choose_without takes it; may be NULL */
+	int wants_parts;		  /* and answer/responses.h */
 	const char *viewpoint;		  /* VIEW or x,y,z; NULL: each sentence's own */
 };
 

@@ -46,11 +46,12 @@ static double room_bytes(const struct answer_question *q, double pixels)
 	return pixels * images + (double)render_bytes(q->splats->n) * (q->wholes ? 2 : 1);
 }
 
-static int prepare(struct render_view **view, const struct splats *s, const struct camera *c, struct err *e)
+static int prepare(struct render_view **view, const struct splats *s, const struct camera *c,
+	const uint8_t *is_wanted, struct err *e)
 {
 	if (*view)
-		return render_again(*view, s, c, e);
-	*view = render_prepare(s, c, e);
+		return render_again_where(*view, s, c, is_wanted, e);
+	*view = render_prepare_where(s, c, is_wanted, e);
 	return *view ? 0 : -1;
 }
 
@@ -61,7 +62,7 @@ static int take_outline(struct room *room, const struct splats *whole, struct an
 	const size_t pixels = (size_t)a->camera->width * (size_t)a->camera->height;
 	size_t covered = 0, seen = 0;
 
-	if (prepare(&room->alone, whole, a->camera, e) ||
+	if (prepare(&room->alone, whole, a->camera, NULL, e) ||
 		mem_room((void **)&room->ones, &room->ones_room, whole->n, sizeof(float), "values", e))
 		return -1;
 	for (size_t i = 0; i < whole->n; i++)
@@ -77,8 +78,8 @@ static int take_outline(struct room *room, const struct splats *whole, struct an
 	return 0;
 }
 
-static int answer_view(struct room *room, const struct answer_question *q, const struct camera *c,
-	size_t view, const struct answer_calls *calls, struct err *e)
+static int answer_view(struct room *room, const struct answer_question *q, const uint8_t *is_wanted,
+	const struct camera *c, size_t view, const struct answer_calls *calls, struct err *e)
 {
 	const struct responses *responses = q->responses;
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
@@ -91,7 +92,7 @@ static int answer_view(struct room *room, const struct answer_question *q, const
 		mem_room((void **)&room->mask, &room->mask_room, pixels, 1, "mask", e) ||
 		(q->wants_rgb && mem_room((void **)&room->rgb, &room->rgb_room, pixels, 3 * sizeof(float),
 					 "colours", e)) ||
-		prepare(&room->view, q->splats, c, e) ||
+		prepare(&room->view, q->splats, c, is_wanted, e) ||
 		(q->wants_rgb && render_colors(room->view, q->splats, c, (const float[3]){0}, room->rgb, e)))
 		return -1;
 	for (size_t first = 0; first < responses->answers; first += RENDER_GROUP) {
@@ -143,8 +144,8 @@ static void queue_put(struct queue *q, size_t i, int bad, const struct err *why)
 }
 
 /* Views begin to end - 1, by so many threads. */
-static void answer_some(struct queue *queue, const struct answer_question *q, const struct camera *cameras,
-	size_t begin, size_t end, int threads)
+static void answer_some(struct queue *queue, const struct answer_question *q, const uint8_t *is_wanted,
+	const struct camera *cameras, size_t begin, size_t end, int threads)
 {
 #pragma omp parallel num_threads(threads) if (threads > 1)
 	{
@@ -157,7 +158,7 @@ static void answer_some(struct queue *queue, const struct answer_question *q, co
 			failed = queue->failed;
 			if (failed < i)
 				continue;
-			int bad = answer_view(&room, q, &cameras[i], i, queue->calls, &e);
+			int bad = answer_view(&room, q, is_wanted, &cameras[i], i, queue->calls, &e);
 #pragma omp critical(answer_queue)
 			queue_put(queue, i, bad, &e);
 		}
@@ -165,21 +166,43 @@ static void answer_some(struct queue *queue, const struct answer_question *q, co
 	}
 }
 
+/* Gaussians with a response above 0 to some sentence: without them a pixel is in no mask. */
+static uint8_t *find_wanted(const struct answer_question *q, struct err *e)
+{
+	const size_t n = q->splats->n;
+	uint8_t *is_wanted = mem_zalloc(n, 1, "Gaussians", e);
+
+	for (size_t first = 0; first < q->responses->answers && is_wanted; first += RENDER_GROUP) {
+		const size_t now = group_size(q, first);
+		const float *responses = q->responses->responses + first * n;
+		for (size_t i = 0; i < n; i++)
+			for (size_t k = 0; k < now; k++)
+				is_wanted[i] |= responses[i * now + k] > 0;
+	}
+	return is_wanted;
+}
+
 int answer_all(const struct answer_question *q, const struct camera *cameras, size_t n,
 	const struct answer_calls *calls, struct err *e)
 {
 	const int threads = threads_available();
 	struct queue queue = {.calls = calls, .ready = mem_zalloc(n, 1, "views", e), .failed = n, .e = e};
+	const int is_all = q->wants_rgb || q->wants_images;
+	uint8_t *is_wanted = is_all ? NULL : find_wanted(q, e);
 	double most = 0;
 
-	if (!queue.ready)
+	if (!queue.ready || (!is_all && !is_wanted)) {
+		free(queue.ready);
+		free(is_wanted);
 		return -1;
+	}
 	for (size_t i = 0; i < n; i++)
 		most = fmax(most, room_bytes(q, (double)cameras[i].width * cameras[i].height));
 	/* the last ones, too few for all threads, one after the other */
 	size_t together = most * threads <= SIDE_BY_SIDE_BYTES ? n - n % (size_t)threads : 0;
-	answer_some(&queue, q, cameras, 0, together, threads);
-	answer_some(&queue, q, cameras, together, n, 1);
+	answer_some(&queue, q, is_wanted, cameras, 0, together, threads);
+	answer_some(&queue, q, is_wanted, cameras, together, n, 1);
 	free(queue.ready);
+	free(is_wanted);
 	return queue.failed < n ? -1 : 0;
 }

@@ -17,13 +17,15 @@ struct answer_question {
 	const struct responses *responses;
 	const struct splats *wholes; /* (answers) of responses_wholes, for outlines; NULL: what is in sight */
 	int wants_rgb;
+	int wants_images; /* as they are, not only where they are above 0 */
 };
 
 /* One answer, row-major; good until the callback returns. */
 struct answer {
 	const struct camera *camera;
 	size_t view, answer;
-	/* (P) M; of an outline how much of the whole object's opacity is above ANSWER_OUTLINE */
+	/* (P) M, where images are wanted, else it or 0 where it is not above 0; of an outline how much of the
+	 * whole object's opacity is above ANSWER_OUTLINE */
 	const float *image;
 	const uint8_t *mask; /* (P) image > 0 */
 	const float *rgb;    /* (P,3) the scene's colours on black, where they are wanted */

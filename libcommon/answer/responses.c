@@ -17,6 +17,7 @@ void responses_free(struct responses *a)
 	free(a->sure);
 	free(a->begin);
 	free(a->objects);
+	free(a->alone);
 	*a = (struct responses){0};
 }
 
@@ -131,22 +132,49 @@ static int find_meant(struct meant *m, struct responses *a, const struct lifted 
 	return 0;
 }
 
-/* Sentences that mean the same objects have one answer, that of the first of them: firsts (answers). */
-static size_t share_answers(
-	const struct meant *m, size_t count, size_t objects, size_t *answer, size_t *firsts)
-{
-	size_t answers = 0;
+/* Different sets of objects. */
+struct sets {
+	size_t n, objects;
+	char *chosen; /* (n,objects) */
+};
 
-	for (size_t i = 0; i < count; i++) {
-		size_t k = 0;
-		while (k < answers &&
-			memcmp(m->chosen + firsts[k] * objects, m->chosen + i * objects, objects))
-			k++;
-		if (k == answers)
-			firsts[answers++] = i;
-		answer[i] = k;
+/* The place of a set, which is added where it is new. */
+static size_t find_set(struct sets *s, const char *chosen)
+{
+	size_t k = 0;
+
+	while (k < s->n && memcmp(s->chosen + k * s->objects, chosen, s->objects) != 0)
+		k++;
+	if (k == s->n)
+		memcpy(s->chosen + s->n++ * s->objects, chosen, s->objects);
+	return k;
+}
+
+/* a->begin and a->objects of the sets; where parts are wanted the sets of one object, and a->alone. */
+static int list_objects(struct responses *a, struct sets *s, int wants_parts, struct err *e)
+{
+	const size_t most = s->n + (wants_parts ? s->objects : 0), meant = s->n;
+	char *one = mem_zalloc(s->objects, 1, "answers", e);
+
+	a->begin = mem_zalloc(most + 1, sizeof *a->begin, "answers", e);
+	a->objects = mem_alloc(most, s->objects * sizeof *a->objects, "answers", e);
+	a->alone = wants_parts ? mem_alloc(most, s->objects * sizeof *a->alone, "answers", e) : NULL;
+	int bad = !one || !a->begin || !a->objects || (wants_parts && !a->alone);
+	for (size_t k = 0; k < s->n && !bad; k++) {
+		size_t at = a->begin[k];
+		for (size_t o = 0; o < s->objects; o++) {
+			if (!s->chosen[k * s->objects + o])
+				continue;
+			one[o] = 1;
+			if (wants_parts)
+				a->alone[at] = k < meant ? find_set(s, one) : k;
+			one[o] = 0;
+			a->objects[at++] = o;
+		}
+		a->begin[k + 1] = at;
 	}
-	return answers;
+	free(one);
+	return bad ? -1 : 0;
 }
 
 /* to (N): the responses of the union of some objects. own (N) is scratch. */
@@ -166,43 +194,33 @@ static void union_of(const struct lifted *l, const char *chosen, float *own, flo
 	}
 }
 
-static int take_answers(struct responses *a, const struct lifted *l, const struct meant *m,
-	const size_t *firsts, size_t answers, struct err *e)
+static int take_answers(struct responses *a, const struct lifted *l, const struct sets *s, struct err *e)
 {
 	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
-	int bad = !own || alloc_answers(a, answers, l->gaussians, e);
+	int bad = !own || alloc_answers(a, s->n, l->gaussians, e);
 
-	a->begin = mem_zalloc(answers + 1, sizeof *a->begin, "answers", e);
-	a->objects = mem_alloc(answers, l->objects * sizeof *a->objects, "answers", e);
-	bad = bad || !a->begin || !a->objects;
-	for (size_t k = 0; k < answers && !bad; k++) {
-		const char *chosen = m->chosen + firsts[k] * l->objects;
-		union_of(l, chosen, own, a->responses + k * l->gaussians);
-		a->begin[k + 1] = a->begin[k];
-		for (size_t o = 0; o < l->objects; o++)
-			if (chosen[o])
-				a->objects[a->begin[k + 1]++] = o;
-	}
+	for (size_t k = 0; k < s->n && !bad; k++)
+		union_of(l, s->chosen + k * s->objects, own, a->responses + k * l->gaussians);
 	free(own);
-	return bad ? -1 : render_pack(a->responses, l->gaussians, (int)answers, e);
+	return bad ? -1 : render_pack(a->responses, l->gaussians, (int)s->n, e);
 }
 
 static int ask_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
 	unsigned parts, double least, struct err *e)
 {
 	struct meant m = {0};
-	size_t *firsts = mem_alloc(q->count, sizeof *firsts, "sentences", e);
+	struct sets sets = {
+		.objects = l->objects, .chosen = mem_alloc(q->count + l->objects, l->objects, "answers", e)};
 
 	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
 	a->sure = mem_alloc(q->count, sizeof *a->sure, "sentences", e);
-	int bad = !firsts || !a->answer || !a->sure || meant_alloc(&m, q->count, l->objects, e) ||
+	int bad = !sets.chosen || !a->answer || !a->sure || meant_alloc(&m, q->count, l->objects, e) ||
 		  find_meant(&m, a, l, q, parts, least, e);
-	if (!bad) {
-		const size_t answers = share_answers(&m, q->count, l->objects, a->answer, firsts);
-		bad = take_answers(a, l, &m, firsts, answers, e);
-	}
+	for (size_t i = 0; i < q->count && !bad; i++)
+		a->answer[i] = find_set(&sets, m.chosen + i * l->objects);
+	bad = bad || list_objects(a, &sets, q->wants_parts, e) || take_answers(a, l, &sets, e);
 	meant_free(&m);
-	free(firsts);
+	free(sets.chosen);
 	return bad ? -1 : 0;
 }
 

@@ -27,6 +27,8 @@ struct responses_question {
 	size_t count;
 	char *const *refs; /* of each sentence, and the model's file: for messages */
 	const char *model_path;
+	int wants_parts; /* of a lifted model: an answer too for each object of several that a sentence means
+			  */
 };
 
 struct responses {
@@ -38,6 +40,7 @@ struct responses {
 	/* Of a lifted model: answer k is the union of objects[begin[k]] to objects[begin[k + 1] - 1]. */
 	size_t *begin; /* (answers + 1), or NULL */
 	size_t *objects;
+	size_t *alone; /* the answer that is each of `objects` alone, where parts are wanted, else NULL */
 };
 
 /* An answer for each sentence, calibrated or as trained. ERR_FORMAT where one is not finite. Returns 0, or -1
@@ -45,11 +48,11 @@ struct responses {
 int responses_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
 	int wants_calibration, struct err *e);
 
-/* An answer for each set of objects that a sentence means: their union. A sentence that is less likely than
- * `least` to mean anything, or that has no words, means nothing that was lifted: its responses are 0. How
- * sure an answer is: the probability that anything is meant, times the mean over its objects of the
- * probability of each to be meant times its confidence, which is about what its masks' IoU is worth. parts:
- * choose()'s. */
+/* An answer for each set of objects that a sentence means: their union; and for each alone where parts are
+ * wanted. A sentence that is less likely than `least` to mean anything, or that has no words, means nothing
+ * that was lifted: its responses are 0. How sure an answer is: the probability that anything is meant, times
+ * the mean over its objects of the probability of each to be meant times its confidence, which is about what
+ * its masks' IoU is worth. parts: choose()'s. */
 #define RESPONSES_LEAST 0.65
 int responses_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
 	unsigned parts, double least, struct err *e);

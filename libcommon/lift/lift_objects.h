@@ -22,6 +22,7 @@
 
 #include "base/err.h"
 #include "lift/lifted_model.h"
+#include "lift/shares.h"
 #include "mask/mask.h"
 #include "splat/view_weights.h"
 
@@ -35,29 +36,46 @@ struct lift_mask {
 	size_t object;
 };
 
+/* What a view's masks show, kept from the first round on. */
+struct lift_view {
+	size_t n;
+	size_t *objects;     /* (n) that have a mask, rising */
+	struct shares *rows; /* (n) of the mean of each one's masks */
+	float *vote;	     /* (n) of this round */
+	float *weight;	     /* (N) of each Gaussian */
+};
+
+/* The object that a Gaussian is of while votes are found, LIFT_NOBODY for none, and its share in it. */
+struct lift_claim {
+	int32_t object;
+	float share;
+};
+enum { LIFT_NOBODY = -1 };
+
 struct lift_objects {
 	size_t gaussians, objects;
 	int round;
-	float *sum;    /* a field of splat/backproject.h: sum of votes times weights inside the masks */
-	float *weight; /* (O,N) sum of votes times weights */
-	float *share;  /* a field: what the round before made of them */
-	double *level; /* (O) what the inside of an object has */
+	size_t view_count, view_capacity, next; /* next: of this round */
+	struct lift_view *views;
+	struct shares *shares;	   /* (O) of Gaussians, from the round before */
+	struct lift_claim *claims; /* (N) */
 	/* of this round's masks, by object */
 	double *agreement; /* (O) sum; after the last round the mean */
 	size_t *masks;	   /* (O) */
 };
 
-/* Memory for three numbers a Gaussian and object. Returns 0, or -1 with *e set and nothing to free. */
+/* Returns 0, or -1 with *e set and nothing to free. */
 int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, struct err *e);
 void lift_objects_free(struct lift_objects *l);
 
-/* A view's masks, in the order of their objects; several of one object are averaged. Returns 0, or -1 with *e
- * set for want of memory. */
+/* A view's masks, in the order of their objects; several of one object are averaged. Every round has the same
+ * views in the same order. Memory for a number of each Gaussian a view, and two of each that a mask shows.
+ * Returns 0, or -1 with *e set for want of memory. */
 int lift_objects_view(struct lift_objects *l, const struct view_weights *w, int height, int width,
 	const struct lift_mask *masks, size_t n, struct err *e);
 
-/* Ends a round. */
-void lift_objects_settle(struct lift_objects *l);
+/* Ends a round. Returns 0, or -1 with *e set for want of memory. */
+int lift_objects_settle(struct lift_objects *l, struct err *e);
 
 /* After the last round: gaussians, objects, confidence, indptr, index and share of a zeroed model, whose
  * names and sentences are the caller's to fill. Returns 0, or -1 with *e set and *to as it can be freed. */

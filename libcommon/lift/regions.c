@@ -1,18 +1,14 @@
 #include "lift/regions.h"
 
 #include "base/mem.h"
+#include "mask/bits.h"
 #include "splat/backproject.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { BATCH = 4 * VIEW_GROUP }; /* masks that are images at a time: whole groups */
-
-/* A candidate on its way to its place. */
-struct item {
-	const struct mask *mask;
-	size_t view, object, sentence;
-};
+enum { BATCH = 16 }; /* masks that are images at a time */
+#define ALIKE 0.95   /* intersection over union from which masks of a view are one candidate */
 
 static int order_sizes(size_t a, size_t b)
 {
@@ -20,12 +16,12 @@ static int order_sizes(size_t a, size_t b)
 }
 
 /* Of masks of one array: as they came. */
-static int order_masks(const struct item *p, const struct item *q)
+static int order_masks(const struct regions_witness *p, const struct regions_witness *q)
 {
 	return (p->mask > q->mask) - (p->mask < q->mask);
 }
 
-static int order_sentences(const struct item *p, const struct item *q)
+static int order_sentences(const struct regions_witness *p, const struct regions_witness *q)
 {
 	int order = order_sizes(p->object, q->object);
 
@@ -36,7 +32,7 @@ static int order_sentences(const struct item *p, const struct item *q)
 
 static int by_sentence(const void *a, const void *b)
 {
-	const struct item *p = a, *q = b;
+	const struct regions_witness *p = a, *q = b;
 	int order = order_sentences(p, q);
 
 	return order ? order : order_masks(p, q);
@@ -44,9 +40,12 @@ static int by_sentence(const void *a, const void *b)
 
 static int by_view(const void *a, const void *b)
 {
-	const struct item *p = a, *q = b;
+	const struct regions_witness *p = a, *q = b;
+	const double mine = mask_confidence(p->mask), other = mask_confidence(q->mask);
 	int order = order_sizes(p->view, q->view);
 
+	if (!order)
+		order = (mine < other) - (mine > other);
 	if (!order)
 		order = order_sizes(p->object, q->object);
 	return order ? order : order_masks(p, q);
@@ -78,35 +77,31 @@ static size_t find_object(const struct regions *r, size_t first)
 	return (size_t)(at - r->objects);
 }
 
-static void fill_candidates(struct regions *r, struct item *items)
+static void number_sentences(struct regions *r)
 {
-	if (r->count)
-		qsort(items, r->count, sizeof *items, by_sentence);
-	for (size_t i = 0; i < r->count; i++) {
-		if (!i || order_sentences(&items[i], &items[i - 1]))
-			r->sentence_objects[r->sentence_count++] = items[i].object;
-		items[i].sentence = r->sentence_count - 1;
+	struct regions_witness *w = r->witnesses;
+
+	if (r->witness_count)
+		qsort(w, r->witness_count, sizeof *w, by_sentence);
+	for (size_t i = 0; i < r->witness_count; i++) {
+		if (!i || order_sentences(&w[i], &w[i - 1]))
+			r->sentence_objects[r->sentence_count++] = w[i].object;
+		w[i].sentence = r->sentence_count - 1;
 	}
-	if (r->count)
-		qsort(items, r->count, sizeof *items, by_view);
-	for (size_t i = 0; i < r->count; i++)
-		r->candidates[i] = (struct regions_candidate){.mask = items[i].mask,
-			.view = items[i].view,
-			.object = items[i].object,
-			.sentence = items[i].sentence};
 }
 
 int regions_init(struct regions *r, const struct pool *p, const size_t *places, size_t views,
 	size_t gaussians, double min_score, struct err *e)
 {
 	*r = (struct regions){.views = views, .gaussians = gaussians};
-	struct item *items = mem_alloc(p->n, sizeof *items, "candidates", e);
+	r->witnesses = mem_alloc(p->n, sizeof *r->witnesses, "candidates", e);
 	r->candidates = mem_alloc(p->n, sizeof *r->candidates, "candidates", e);
 	r->objects = mem_alloc(p->n, sizeof *r->objects, "candidates", e);
 	r->sentence_objects = mem_alloc(p->n, sizeof *r->sentence_objects, "candidates", e);
 	r->weight = mem_zalloc(views, gaussians * sizeof *r->weight, "views", e);
-	if (!items || !r->candidates || !r->objects || !r->sentence_objects || !r->weight) {
-		free(items);
+	r->ranges = mem_zalloc(views, sizeof *r->ranges, "views", e);
+	if (!r->witnesses || !r->candidates || !r->ranges || !r->objects || !r->sentence_objects ||
+		!r->weight) {
 		regions_free(r);
 		return -1;
 	}
@@ -118,11 +113,13 @@ int regions_init(struct regions *r, const struct pool *p, const size_t *places, 
 			const size_t at = p->index.keys[k].at;
 			const struct mask *mask = &p->candidates[at];
 			if (mask_confidence(mask) > min_score)
-				items[r->count++] = (struct item){mask, places[at], object, 0};
+				r->witnesses[r->witness_count++] =
+					(struct regions_witness){mask, places[at], object, 0, REGIONS_NONE};
 		}
 	}
-	fill_candidates(r, items);
-	free(items);
+	number_sentences(r);
+	if (r->witness_count)
+		qsort(r->witnesses, r->witness_count, sizeof *r->witnesses, by_view);
 	return 0;
 }
 
@@ -133,96 +130,199 @@ void regions_free(struct regions *r)
 		free(r->regions[i].agreement);
 		free(r->regions[i].chosen);
 	}
+	for (size_t c = 0; c < r->count; c++)
+		shares_free(&r->candidates[c].shares);
+	free(r->witnesses);
 	free(r->candidates);
+	free(r->ranges);
 	free(r->objects);
 	free(r->sentence_objects);
 	free(r->weight);
-	free(r->index);
-	free(r->share);
 	free(r->regions);
 	free(r->served);
 	free(r->field);
 	*r = (struct regions){0};
 }
 
-/* Images (now,P) of 0 and 1 at the view's size. */
-static int fill_images(const struct regions_candidate *c, size_t now, int height, int width, uint8_t *pixels,
-	float *image, struct err *e)
+/* Masks of one view as bits at its size. */
+struct shapes {
+	size_t n, bytes;
+	uint8_t *bits; /* (n,bytes) */
+	size_t *area;  /* (n) */
+};
+
+static void shapes_free(struct shapes *s)
 {
-	const size_t count = (size_t)height * (size_t)width;
+	free(s->bits);
+	free(s->area);
+}
+
+static int fill_shape(
+	struct shapes *s, size_t k, const struct rle *mask, int height, int width, struct err *e)
+{
+	const size_t pixels = (size_t)height * (size_t)width;
+	uint8_t *mine = mem_alloc(pixels, 1, "masks", e), *bits = s->bits + k * s->bytes;
+	int bad = !mine || rle_decode_at(mask, height, width, mine, e);
+
+	if (!bad) {
+		bits_pack(mine, pixels, bits);
+		s->area[k] = bits_common(bits, bits, s->bytes);
+	}
+	free(mine);
+	return bad;
+}
+
+static int shapes_make(
+	struct shapes *s, const struct regions_witness *w, size_t n, int height, int width, struct err *e)
+{
 	int failed = 0;
 
+	*s = (struct shapes){.n = n, .bytes = bits_bytes((size_t)height * (size_t)width)};
+	s->bits = mem_alloc(n, s->bytes, "masks", e);
+	s->area = mem_alloc(n, sizeof *s->area, "masks", e);
+	if (!s->bits || !s->area)
+		return -1;
 #pragma omp parallel for schedule(dynamic) reduction(| : failed)
-	for (size_t k = 0; k < now; k++) {
+	for (size_t k = 0; k < n; k++) {
 		struct err mine;
-		if (rle_decode_at(&c[k].mask->rle, height, width, pixels + k * count, &mine)) {
+		if (fill_shape(s, k, &w[k].mask->rle, height, width, &mine)) {
 			failed = 1;
 #pragma omp critical
 			*e = mine;
-			continue;
 		}
-		for (size_t p = 0; p < count; p++)
-			image[k * count + p] = pixels[k * count + p];
 	}
 	return failed ? -1 : 0;
 }
 
-/* Appends what a candidate has of each Gaussian: channel k of the sums. */
-static int keep_entries(
-	struct regions *r, struct regions_candidate *c, const float *sum, size_t k, struct err *e)
+/* Intersection over union; two empty ones agree. */
+static double agreement(const struct shapes *s, size_t a, size_t b)
+{
+	const size_t all = s->area[a] + s->area[b];
+	const size_t both = bits_common(s->bits + a * s->bytes, s->bits + b * s->bytes, s->bytes);
+
+	return all ? (double)both / (double)(all - both) : 1;
+}
+
+static int is_alike(const struct shapes *s, size_t a, size_t b)
+{
+	const size_t x = s->area[a], y = s->area[b];
+
+	return (double)(x < y ? x : y) >= ALIKE * (double)(x < y ? y : x) && agreement(s, a, b) >= ALIKE;
+}
+
+/* Gives each mask of a view its candidate: that of the first mask like it. Returns how many there are. */
+static size_t group(struct regions_witness *w, const struct shapes *s, size_t first, size_t *from)
 {
 	size_t n = 0;
 
-	for (size_t i = 0; i < r->gaussians; i++)
-		n += sum[backproject_index(r->gaussians, k, i)] > 0;
-	if (mem_grow((void **)&r->index, &r->index_capacity, r->entries + n, sizeof *r->index, "masks", e) ||
-		mem_grow(
-			(void **)&r->share, &r->share_capacity, r->entries + n, sizeof *r->share, "masks", e))
-		return -1;
-	c->begin = r->entries;
-	for (size_t i = 0; i < r->gaussians; i++) {
-		const float share = sum[backproject_index(r->gaussians, k, i)];
-		if (!(share > 0))
-			continue;
-		r->index[r->entries] = (int32_t)i;
-		r->share[r->entries++] = share;
-		c->mass += (double)share;
+	for (size_t k = 0; k < s->n; k++) {
+		size_t c = 0;
+		while (c < n && !is_alike(s, from[c], k))
+			c++;
+		w[k].candidate = first + c;
+		if (c == n)
+			from[n++] = k;
 	}
-	c->end = r->entries;
+	return n;
+}
+
+/* The mask of a candidate: of those that it stands for, the one that the others agree with best, by their
+ * confidence. from[] has the first of each. */
+static void choose_masks(
+	const struct regions_witness *w, const struct shapes *s, size_t first, size_t n, size_t *from)
+{
+#pragma omp parallel for schedule(dynamic)
+	for (size_t c = 0; c < n; c++) {
+		double most = 0;
+		for (size_t k = from[c], begin = k; k < s->n; k++) {
+			double sum = 0;
+			for (size_t i = begin; i < s->n && w[k].candidate == first + c; i++)
+				if (i != k && w[i].candidate == first + c)
+					sum += mask_confidence(w[i].mask) * agreement(s, k, i);
+			if (sum > most) {
+				most = sum;
+				from[c] = k;
+			}
+		}
+	}
+}
+
+static void add_candidates(struct regions *r, struct regions_witness *w, const struct shapes *s, size_t *from)
+{
+	const size_t first = r->count, n = group(w, s, first, from);
+
+	choose_masks(w, s, first, n, from);
+	for (size_t c = 0; c < n; c++)
+		r->candidates[r->count++] =
+			(struct regions_candidate){.mask = w[from[c]].mask, .view = w[from[c]].view};
+}
+
+/* The shares of `now` candidates. */
+static int lift(struct regions_candidate *c, size_t now, const struct view_weights *w, const struct shapes *s,
+	const size_t *from, float *image, struct err *e)
+{
+	struct shares rows[BATCH];
+
+	memset(image, 0, now * w->pixels * sizeof *image);
+#pragma omp parallel for schedule(dynamic)
+	for (size_t k = 0; k < now; k++)
+		bits_place(s->bits + from[k] * s->bytes, w->pixels, image + k * w->pixels);
+	if (shares_make(rows, w, image, now, e))
+		return -1;
+	for (size_t k = 0; k < now; k++) {
+		c[k].shares = rows[k];
+		for (size_t i = 0; i < rows[k].n; i++)
+			c[k].mass += (double)rows[k].share[i];
+	}
+	return 0;
+}
+
+static int lift_masks(struct regions *r, const struct view_weights *w, const struct shapes *s,
+	struct regions_witness *witnesses, struct err *e)
+{
+	const size_t first = r->count;
+	size_t *from = mem_alloc(s->n, sizeof *from, "masks", e);
+	float *image = mem_alloc(w->pixels, BATCH * sizeof *image, "masks", e);
+	int bad = !from || !image;
+
+	if (!bad)
+		add_candidates(r, witnesses, s, from);
+	for (size_t at = first; at < r->count && !bad; at += BATCH)
+		bad = lift(&r->candidates[at], r->count - at < BATCH ? r->count - at : BATCH, w, s,
+			from + (at - first), image, e);
+	free(from);
+	free(image);
+	return bad ? -1 : 0;
+}
+
+static int add_weight(struct regions *r, size_t view, const struct view_weights *w, struct err *e)
+{
+	double *weight = mem_zalloc(r->gaussians, sizeof *weight, "masks", e);
+
+	if (!weight)
+		return -1;
+	backproject_weight(w, weight);
+	for (size_t i = 0; i < r->gaussians; i++)
+		r->weight[view * r->gaussians + i] = (float)weight[i];
+	free(weight);
 	return 0;
 }
 
 int regions_lift(
 	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e)
 {
-	double *weight = mem_zalloc(r->gaussians, sizeof *weight, "masks", e);
-	float *sum = mem_alloc(r->gaussians, BATCH * sizeof *sum, "masks", e);
-	float *image = mem_alloc(w->pixels, BATCH * sizeof *image, "masks", e);
-	uint8_t *pixels = mem_alloc(w->pixels, BATCH, "masks", e);
-	int bad = !weight || !sum || !image || !pixels;
+	struct shapes s = {0};
 	size_t begin = 0, end;
 
-	if (!bad) {
-		backproject_weight(w, weight);
-		for (size_t i = 0; i < r->gaussians; i++)
-			r->weight[view * r->gaussians + i] = (float)weight[i];
-	}
-	while (begin < r->count && r->candidates[begin].view < view)
+	while (begin < r->witness_count && r->witnesses[begin].view < view)
 		begin++;
-	for (end = begin; end < r->count && r->candidates[end].view == view;)
+	for (end = begin; end < r->witness_count && r->witnesses[end].view == view;)
 		end++;
-	for (size_t from = begin; from < end && !bad; from += BATCH) {
-		const size_t now = end - from < BATCH ? end - from : BATCH;
-		memset(sum, 0, backproject_groups(now) * VIEW_GROUP * r->gaussians * sizeof *sum);
-		bad = fill_images(&r->candidates[from], now, height, width, pixels, image, e);
-		if (!bad)
-			backproject_add(w, image, now, sum);
-		for (size_t k = 0; k < now && !bad; k++)
-			bad = keep_entries(r, &r->candidates[from + k], sum, k, e);
-	}
-	free(weight);
-	free(sum);
-	free(image);
-	free(pixels);
+	r->ranges[view] = (struct regions_range){r->count, r->count};
+	int bad = add_weight(r, view, w, e) ||
+		  shapes_make(&s, r->witnesses + begin, end - begin, height, width, e) ||
+		  lift_masks(r, w, &s, r->witnesses + begin, e);
+	r->ranges[view].end = r->count;
+	shapes_free(&s);
 	return bad ? -1 : 0;
 }

@@ -24,6 +24,7 @@
 #define LIFT_REGIONS_H
 
 #include "base/err.h"
+#include "lift/shares.h"
 #include "mask/pool.h"
 #include "splat/view_weights.h"
 
@@ -32,12 +33,23 @@
 
 #define REGIONS_NONE SIZE_MAX
 
-/* A mask, numbered and lifted. */
-struct regions_candidate {
+/* A mask as it came, numbered. */
+struct regions_witness {
 	const struct mask *mask;
 	size_t view, object, sentence;
-	size_t begin, end; /* its entries; none before its view is lifted */
-	double mass;	   /* sum of l_ki */
+	size_t candidate; /* the one it stands for, or REGIONS_NONE before its view is lifted */
+};
+
+/* A mask that is lifted: the surest of those that look alike in a view. */
+struct regions_candidate {
+	const struct mask *mask;
+	size_t view;
+	struct shares shares; /* l_ki */
+	double mass;	      /* their sum */
+};
+
+struct regions_range {
+	size_t begin, end;
 };
 
 struct region {
@@ -50,16 +62,16 @@ struct region {
 
 struct regions {
 	size_t views, gaussians;
+	size_t witness_count;
+	struct regions_witness *witnesses; /* (witness_count) by view, the surest first */
 	size_t count;
-	struct regions_candidate *candidates; /* (count) by view */
+	struct regions_candidate *candidates; /* (count of witness_count) in the order in which views came */
+	struct regions_range *ranges;	      /* (views) each view's candidates */
 	size_t object_count;
 	size_t *objects; /* (object_count) the first candidate of each, in the order in which they came */
 	size_t sentence_count;
 	size_t *sentence_objects; /* (sentence_count) */
 	float *weight;		  /* (views,N) W_vi */
-	size_t entries, index_capacity, share_capacity;
-	int32_t *index; /* (entries) Gaussians */
-	float *share;	/* (entries) l_ki */
 	size_t region_count, region_capacity;
 	struct region *regions;
 	size_t *served; /* (object_count) an object's region, or REGIONS_NONE */
@@ -67,14 +79,14 @@ struct regions {
 		       */
 };
 
-/* The candidates with score > min_score. places (pool's n) has the view of each, below `views`; the
+/* The masks with score > min_score. places (pool's n) has the view of each, below `views`; the
  * pool's masks are referred to. */
 int regions_init(struct regions *r, const struct pool *p, const size_t *places, size_t views,
 	size_t gaussians, double min_score, struct err *e);
 void regions_free(struct regions *r);
 
 /* Lifts the candidates of a view, which has these weights and that size; masks of another size are reduced by
- * area. Once a view; the candidates of views that are not lifted are left out of all. */
+ * area. Once a view; the masks of views that are not lifted are left out of all. */
 int regions_lift(
 	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e);
 
@@ -84,10 +96,14 @@ int regions_grow(struct regions *r, struct err *e);
 /* Gives each object its region, after regions_grow. */
 int regions_assign(struct regions *r, struct err *e);
 
-/* masks and scores (object_count) in a view, after regions_assign; rle_free each mask. They have the size of
- * the view's candidates, or of its weights where it has none; empty where an object has no region or shows
- * nothing of it. The score is the agreement of the candidate with the region, and the region's typical one
- * where it is rendered: *rendered goes up by each such mask that is not empty. On failure there are none. */
+/* Whether some object's region has to be rendered in a view. */
+int regions_need_weights(const struct regions *r, size_t view);
+
+/* masks and scores (object_count) in a view, after regions_assign; rle_free each mask. w may be NULL where
+ * no weights are needed. They have the size of the view's candidates, or of its weights where it has none;
+ * empty where an object has no region or shows nothing of it. The score is the agreement of the candidate
+ * with the region, and the region's typical one where it is rendered: *rendered goes up by each such mask
+ * that is not empty. On failure there are none. */
 int regions_render(const struct regions *r, size_t view, const struct view_weights *w, int height, int width,
 	struct rle *masks, double *scores, size_t *rendered, struct err *e);
 

@@ -6,7 +6,6 @@
 #include <string.h>
 
 /* Chosen on one real and three synthetic scenes, and not searched over. */
-#define JOINS 0.4		    /* agreement from which a candidate joins a region */
 #define SEEN 0.05		    /* pixels of weight from which a view says what a Gaussian is */
 #define EXPLAINED 0.6		    /* agreement from which a candidate is of a region that there is */
 #define SAME 0.75		    /* overlap from which two regions are one */
@@ -14,22 +13,30 @@ enum { STEPS = 3, SEED_VIEWS = 4 }; /* of each object, spread over its views */
 
 /* A region in the making. */
 struct growth {
-	uint8_t *is_in;	  /* (N) */
-	uint8_t *is_seen; /* (N) */
-	float *sum, *all; /* (N) of the weight in the masks that joined, and of all in their views */
-	double *area;	  /* (views) the region's */
-	size_t *before;	  /* (views) */
+	uint8_t *is_in; /* (N) */
+	struct regions_shown shown;
+	struct regions_sums sums;
+	double *both;	   /* (count) what candidates have of the region */
+	double *area;	   /* (views) the region's */
+	size_t *before;	   /* (views) */
+	uint8_t *is_tried; /* (count) candidates that regions grew from */
+	/* of the view that the last seed is of, or REGIONS_NONE */
+	size_t seen_view;
+	double *seen_mass; /* (count) of candidates, over the Gaussians that the view sees; -1 where it was
+			      not asked for */
 	struct region region;
 };
 
 static void growth_free(struct growth *g)
 {
 	free(g->is_in);
-	free(g->is_seen);
-	free(g->sum);
-	free(g->all);
+	regions_shown_free(&g->shown);
+	regions_sums_free(&g->sums);
+	free(g->both);
 	free(g->area);
 	free(g->before);
+	free(g->is_tried);
+	free(g->seen_mass);
 	free(g->region.members);
 	free(g->region.agreement);
 	free(g->region.chosen);
@@ -39,31 +46,75 @@ static int growth_make(struct growth *g, const struct regions *r, struct err *e)
 {
 	const size_t n = r->gaussians;
 
-	*g = (struct growth){mem_alloc(n, 1, "regions", e), mem_alloc(n, 1, "regions", e),
-		mem_alloc(n, sizeof *g->sum, "regions", e), mem_alloc(n, sizeof *g->all, "regions", e),
-		mem_alloc(r->views, sizeof *g->area, "regions", e),
-		mem_alloc(r->views, sizeof *g->before, "regions", e),
-		{.members = mem_alloc(n, sizeof *g->region.members, "regions", e),
+	*g = (struct growth){.is_in = mem_zalloc(n, 1, "regions", e),
+		.both = mem_alloc(r->count, sizeof *g->both, "regions", e),
+		.area = mem_alloc(r->views, sizeof *g->area, "regions", e),
+		.before = mem_alloc(r->views, sizeof *g->before, "regions", e),
+		.is_tried = mem_zalloc(r->count, 1, "regions", e),
+		.seen_view = REGIONS_NONE,
+		.seen_mass = mem_alloc(r->count, sizeof *g->seen_mass, "regions", e),
+		.region = {.members = mem_alloc(n, sizeof *g->region.members, "regions", e),
 			.agreement = mem_alloc(r->count, sizeof *g->region.agreement, "regions", e),
 			.chosen = mem_alloc(r->views, sizeof *g->region.chosen, "regions", e)}};
-	if (g->is_in && g->is_seen && g->sum && g->all && g->area && g->before && g->region.members &&
-		g->region.agreement && g->region.chosen)
+	if (g->is_in && g->both && g->area && g->before && g->is_tried && g->seen_mass && g->region.members &&
+		g->region.agreement && g->region.chosen && !regions_sums_make(&g->sums, n, e) &&
+		!regions_shown_make(&g->shown, r, e))
 		return 0;
 	growth_free(g);
 	return -1;
 }
 
-static void list_members(struct growth *g, const struct regions *r)
+static void clear(struct growth *g)
 {
+	for (size_t k = 0; k < g->region.n; k++)
+		g->is_in[g->region.members[k]] = 0;
 	g->region.n = 0;
-	for (size_t i = 0; i < r->gaussians; i++)
-		if (g->is_in[i])
-			g->region.members[g->region.n++] = (int32_t)i;
+}
+
+static void add(struct growth *g, int32_t gaussian)
+{
+	g->is_in[gaussian] = 1;
+	g->region.members[g->region.n++] = gaussian;
+}
+
+/* Of a candidate, what a view sees. */
+static double seen_mass(const struct regions *r, size_t view, const struct shares *s)
+{
+	const float *weight = r->weight + view * r->gaussians;
+	double mass = 0;
+
+	for (size_t k = 0; k < s->n; k++)
+		mass += weight[s->index[k]] > (float)SEEN ? (double)s->share[k] : 0;
+	return mass;
+}
+
+static void look_from(struct growth *g, const struct regions *r, size_t view)
+{
+	for (size_t c = 0; c < r->count && g->seen_view != view; c++)
+		g->seen_mass[c] = -1;
+	g->seen_view = view;
+}
+
+/* Of a candidate with the region. Sizes alone may keep it below what matters. */
+static float agree(const struct growth *g, const struct regions *r, size_t c, int is_partly_seen)
+{
+	const struct regions_candidate *at = &r->candidates[c];
+	const double area = g->area[at->view], both = g->both[c];
+	double mass = at->mass;
+
+	if (!(both > 0) || both < REGIONS_MATTERS * area)
+		return 0;
+	if (is_partly_seen) {
+		if (g->seen_mass[c] < 0)
+			g->seen_mass[c] = seen_mass(r, g->seen_view, &at->shares);
+		mass = g->seen_mass[c];
+	}
+	return mass >= at->mass / 2 ? (float)(both / (area + mass - both)) : 0;
 }
 
 /* Of the region with every candidate. By a view that has not seen all, only what it saw counts, and only
  * where that is at least half of the candidate. */
-static void find_agreement(struct growth *g, const struct regions *r, const uint8_t *is_seen)
+static void find_agreement(struct growth *g, const struct regions *r, int is_partly_seen)
 {
 #pragma omp parallel for schedule(static)
 	for (size_t v = 0; v < r->views; v++) {
@@ -73,17 +124,10 @@ static void find_agreement(struct growth *g, const struct regions *r, const uint
 			area += (double)weight[g->region.members[k]];
 		g->area[v] = area;
 	}
-#pragma omp parallel for schedule(static, 16)
-	for (size_t c = 0; c < r->count; c++) {
-		const struct regions_candidate *at = &r->candidates[c];
-		double both = 0, mass = is_seen ? 0 : at->mass;
-		for (size_t k = at->begin; k < at->end; k++)
-			both += g->is_in[r->index[k]] ? (double)r->share[k] : 0;
-		for (size_t k = at->begin; k < at->end && is_seen; k++)
-			mass += is_seen[r->index[k]] ? (double)r->share[k] : 0;
-		const int is_told = both > 0 && mass >= at->mass / 2;
-		g->region.agreement[c] = is_told ? (float)(both / (g->area[at->view] + mass - both)) : 0;
-	}
+	regions_overlap(&g->shown, r->count, g->region.members, g->region.n, g->both);
+#pragma omp parallel for schedule(dynamic, 64)
+	for (size_t c = 0; c < r->count; c++)
+		g->region.agreement[c] = agree(g, r, c, is_partly_seen);
 }
 
 static void choose(struct growth *g, const struct regions *r)
@@ -95,25 +139,9 @@ static void choose(struct growth *g, const struct regions *r)
 		chosen[v] = REGIONS_NONE;
 	for (size_t c = 0; c < r->count; c++) {
 		size_t *best = &chosen[r->candidates[c].view];
-		if (agreement[c] > (float)JOINS && (*best == REGIONS_NONE || agreement[c] > agreement[*best]))
+		if (agreement[c] > (float)REGIONS_JOINS &&
+			(*best == REGIONS_NONE || agreement[c] > agreement[*best]))
 			*best = c;
-	}
-}
-
-void regions_sum(const struct regions *r, const size_t *chosen, float *sum, float *all)
-{
-	memset(sum, 0, r->gaussians * sizeof *sum);
-	memset(all, 0, r->gaussians * sizeof *all);
-	for (size_t v = 0; v < r->views; v++) {
-		const float *weight = r->weight + v * r->gaussians;
-		if (chosen[v] == REGIONS_NONE)
-			continue;
-		const struct regions_candidate *c = &r->candidates[chosen[v]];
-		for (size_t k = c->begin; k < c->end; k++)
-			sum[r->index[k]] += r->share[k];
-#pragma omp parallel for schedule(static)
-		for (size_t i = 0; i < r->gaussians; i++)
-			all[i] += weight[i];
 	}
 }
 
@@ -123,15 +151,14 @@ static void begin(struct growth *g, const struct regions *r, size_t seed)
 	const struct regions_candidate *c = &r->candidates[seed];
 	const float *weight = r->weight + c->view * r->gaussians;
 
-	memset(g->is_in, 0, r->gaussians);
-	for (size_t i = 0; i < r->gaussians; i++)
-		g->is_seen[i] = weight[i] > (float)SEEN;
-	for (size_t k = c->begin; k < c->end; k++) {
-		const int32_t i = r->index[k];
-		g->is_in[i] = g->is_seen[i] && r->share[k] > weight[i] / 2;
+	clear(g);
+	for (size_t k = 0; k < c->shares.n; k++) {
+		const int32_t i = c->shares.index[k];
+		if (weight[i] > (float)SEEN && c->shares.share[k] > weight[i] / 2)
+			add(g, i);
 	}
-	list_members(g, r);
-	find_agreement(g, r, g->is_seen);
+	look_from(g, r, c->view);
+	find_agreement(g, r, 1);
 	choose(g, r);
 	g->region.chosen[c->view] = seed;
 }
@@ -151,11 +178,12 @@ static int grow(struct growth *g, const struct regions *r, size_t seed)
 	begin(g, r, seed);
 	for (int step = 0; step < STEPS && g->region.n; step++) {
 		memcpy(g->before, g->region.chosen, r->views * sizeof *g->before);
-		regions_sum(r, g->region.chosen, g->sum, g->all);
-		for (size_t i = 0; i < r->gaussians; i++)
-			g->is_in[i] = g->sum[i] > g->all[i] / 2;
-		list_members(g, r);
-		find_agreement(g, r, NULL);
+		regions_sum(&g->sums, r, g->region.chosen);
+		clear(g);
+		for (size_t k = 0; k < g->sums.n; k++)
+			if (g->sums.sum[k] > g->sums.all[k] / 2)
+				add(g, g->sums.index[k]);
+		find_agreement(g, r, 0);
 		choose(g, r);
 		if (!memcmp(g->before, g->region.chosen, r->views * sizeof *g->before))
 			break;
@@ -216,35 +244,45 @@ static int keep(struct regions *r, const struct region *from, float *explained, 
 	return to->members && to->agreement && to->chosen ? 0 : -1;
 }
 
-/* Views of an object that its regions are grown from: is_seed (count) gets 1 for its candidates there. */
-static void mark_seeds(const struct regions *r, size_t object, size_t *views, uint8_t *is_seed)
+static int is_seed(const struct regions *r, size_t witness, size_t object)
 {
-	size_t n = 0;
+	const struct regions_witness *w = &r->witnesses[witness];
 
-	for (size_t c = 0; c < r->count; c++) {
-		const struct regions_candidate *at = &r->candidates[c];
-		if (at->object == object && at->end > at->begin && (!n || views[n - 1] != at->view))
-			views[n++] = at->view;
-	}
-	for (size_t k = 0; k < SEED_VIEWS && n; k++) {
-		const size_t view = views[k * (n - 1) / (SEED_VIEWS - 1)];
-		for (size_t c = 0; c < r->count; c++)
-			if (r->candidates[c].object == object && r->candidates[c].view == view &&
-				r->candidates[c].end > r->candidates[c].begin)
-				is_seed[c] = 1;
-	}
+	return w->object == object && w->candidate != REGIONS_NONE && r->candidates[w->candidate].shares.n;
 }
 
-static int grow_all(struct regions *r, struct growth *g, float *explained, uint8_t *is_seed,
+/* The views that an object's regions are grown from. Returns how many: views (SEED_VIEWS). */
+static size_t find_views(const struct regions *r, size_t object, size_t *all, size_t *views)
+{
+	size_t n = 0, found = 0;
+
+	for (size_t i = 0; i < r->witness_count; i++)
+		if (is_seed(r, i, object) && (!n || all[n - 1] != r->witnesses[i].view))
+			all[n++] = r->witnesses[i].view;
+	for (size_t k = 0; k < SEED_VIEWS && n; k++) {
+		const size_t view = all[k * (n - 1) / (SEED_VIEWS - 1)];
+		if (!found || views[found - 1] != view)
+			views[found++] = view;
+	}
+	return found;
+}
+
+static int grow_object(struct regions *r, struct growth *g, size_t object, float *explained,
 	const double *total, struct err *e)
 {
-	for (size_t object = 0; object < r->object_count; object++) {
-		memset(is_seed, 0, r->count);
-		mark_seeds(r, object, g->before, is_seed);
-		for (size_t c = 0; c < r->count; c++)
-			if (is_seed[c] && explained[c] < (float)EXPLAINED && grow(g, r, c) &&
-				!is_known(g, r, total) && keep(r, &g->region, explained, e))
-				return -1;
+	size_t views[SEED_VIEWS];
+	const size_t n = find_views(r, object, g->before, views);
+
+	for (size_t i = 0, at = 0; i < r->witness_count && at < n; i++) {
+		const struct regions_witness *w = &r->witnesses[i];
+		while (at < n && views[at] < w->view)
+			at++;
+		if (at == n || views[at] != w->view || !is_seed(r, i, object) || g->is_tried[w->candidate] ||
+			explained[w->candidate] >= (float)EXPLAINED)
+			continue;
+		g->is_tried[w->candidate] = 1;
+		if (grow(g, r, w->candidate) && !is_known(g, r, total) && keep(r, &g->region, explained, e))
+			return -1;
 	}
 	return 0;
 }
@@ -253,19 +291,18 @@ int regions_grow(struct regions *r, struct err *e)
 {
 	struct growth g;
 	float *explained = mem_zalloc(r->count, sizeof *explained, "regions", e);
-	uint8_t *is_seed = mem_alloc(r->count, 1, "regions", e);
 	double *total = mem_zalloc(r->gaussians, sizeof *total, "regions", e);
-	int bad = !explained || !is_seed || !total || growth_make(&g, r, e);
+	int bad = !explained || !total || growth_make(&g, r, e);
 
 	for (size_t v = 0; v < r->views && !bad; v++)
 		for (size_t i = 0; i < r->gaussians; i++)
 			total[i] += (double)r->weight[v * r->gaussians + i];
 	if (!bad) {
-		bad = grow_all(r, &g, explained, is_seed, total, e);
+		for (size_t object = 0; object < r->object_count && !bad; object++)
+			bad = grow_object(r, &g, object, explained, total, e);
 		growth_free(&g);
 	}
 	free(explained);
-	free(is_seed);
 	free(total);
 	return bad ? -1 : 0;
 }

@@ -8,7 +8,20 @@
 #include <stdlib.h>
 
 #define CHANCE 0.02 /* share of a sentence's candidates that is found by accident */
-#define PEER 0.65   /* of the region's typical agreement, from which a candidate shows it */
+
+/* The region that a candidate shows, or REGIONS_NONE. */
+static size_t find_region(const struct regions *r, size_t candidate)
+{
+	size_t best = REGIONS_NONE;
+
+	for (size_t i = 0; i < r->region_count; i++) {
+		const float agreement = r->regions[i].agreement[candidate];
+		if ((double)agreement > REGIONS_PEER * r->regions[i].typical &&
+			(best == REGIONS_NONE || agreement > r->regions[best].agreement[candidate]))
+			best = i;
+	}
+	return best;
+}
 
 /* share (sentences,regions): of each sentence's candidates, by confidence, in each region. */
 static int find_shares(const struct regions *r, double *share, struct err *e)
@@ -17,18 +30,13 @@ static int find_shares(const struct regions *r, double *share, struct err *e)
 
 	if (!total)
 		return -1;
-	for (size_t c = 0; c < r->count; c++) {
-		const struct regions_candidate *at = &r->candidates[c];
-		size_t best = REGIONS_NONE;
-		if (at->end == at->begin)
+	for (size_t i = 0; i < r->witness_count; i++) {
+		const struct regions_witness *at = &r->witnesses[i];
+		if (at->candidate == REGIONS_NONE || !r->candidates[at->candidate].shares.n)
 			continue;
 		const double score = mask_confidence(at->mask);
+		const size_t best = find_region(r, at->candidate);
 		total[at->sentence] += score;
-		for (size_t i = 0; i < r->region_count; i++)
-			if ((double)r->regions[i].agreement[c] > PEER * r->regions[i].typical &&
-				(best == REGIONS_NONE ||
-					r->regions[i].agreement[c] > r->regions[best].agreement[c]))
-				best = i;
 		if (best != REGIONS_NONE)
 			share[at->sentence * r->region_count + best] += score;
 	}
@@ -55,12 +63,15 @@ static void find_values(
 
 /* What an assigned region is made of, as a channel. */
 static void fill_field(
-	const struct regions *r, size_t object, const struct region *region, float *sum, float *all)
+	const struct regions *r, size_t object, const struct region *region, struct regions_sums *sums)
 {
-	regions_sum(r, region->chosen, sum, all);
+	regions_sum(sums, r, region->chosen);
 	for (size_t i = 0; i < r->gaussians; i++)
-		r->field[backproject_index(r->gaussians, object, i)] =
-			all[i] > 0 ? sum[i] / all[i] - 0.5f : -0.5f;
+		r->field[backproject_index(r->gaussians, object, i)] = -0.5f;
+	for (size_t k = 0; k < sums->n; k++)
+		if (sums->all[k] > 0)
+			r->field[backproject_index(r->gaussians, object, (size_t)sums->index[k])] =
+				sums->sum[k] / sums->all[k] - 0.5f;
 }
 
 int regions_assign(struct regions *r, struct err *e)
@@ -69,12 +80,12 @@ int regions_assign(struct regions *r, struct err *e)
 	double *share = mem_zalloc(r->sentence_count, r->region_count * sizeof *share, "regions", e);
 	double *value = mem_zalloc(r->object_count, columns * sizeof *value, "regions", e);
 	uint8_t *has_support = mem_zalloc(r->object_count, columns, "regions", e);
-	float *sum = mem_alloc(n, sizeof *sum, "regions", e), *all = mem_alloc(n, sizeof *all, "regions", e);
+	struct regions_sums sums;
 	r->served = mem_alloc(r->object_count, sizeof *r->served, "regions", e);
 	r->field = mem_zalloc(
 		backproject_groups(r->object_count) * VIEW_GROUP, n * sizeof *r->field, "regions", e);
-	int bad = !share || !value || !has_support || !sum || !all || !r->served || !r->field ||
-		  find_shares(r, share, e);
+	int bad = regions_sums_make(&sums, n, e) || !share || !value || !has_support || !r->served ||
+		  !r->field || find_shares(r, share, e);
 
 	if (!bad) {
 		find_values(r, share, columns, value, has_support);
@@ -84,13 +95,12 @@ int regions_assign(struct regions *r, struct err *e)
 		if (!has_support[o * columns + r->served[o]])
 			r->served[o] = REGIONS_NONE;
 		else
-			fill_field(r, o, &r->regions[r->served[o]], sum, all);
+			fill_field(r, o, &r->regions[r->served[o]], &sums);
 	}
 	free(share);
 	free(value);
 	free(has_support);
-	free(sum);
-	free(all);
+	regions_sums_free(&sums);
 	return bad ? -1 : 0;
 }
 
@@ -100,75 +110,105 @@ static size_t find_candidate(const struct regions *r, const struct region *regio
 {
 	size_t best = REGIONS_NONE;
 
-	for (size_t c = 0; c < r->count; c++)
-		if (r->candidates[c].view == view && (double)region->agreement[c] > PEER * region->typical &&
+	for (size_t c = r->ranges[view].begin; c < r->ranges[view].end; c++)
+		if ((double)region->agreement[c] > REGIONS_PEER * region->typical &&
 			(best == REGIONS_NONE || region->agreement[c] > region->agreement[best]))
 			best = c;
 	return best;
 }
 
-static int cut(const float *image, uint8_t *pixels, int height, int width, const struct rle *like,
-	struct rle *mask, struct err *e)
+int regions_need_weights(const struct regions *r, size_t view)
 {
+	for (size_t o = 0; o < r->object_count; o++)
+		if (r->served[o] != REGIONS_NONE &&
+			find_candidate(r, &r->regions[r->served[o]], view) == REGIONS_NONE)
+			return 1;
+	return 0;
+}
+
+/* Memory to render the objects of a view: a group of them at a time. */
+struct painter {
+	const struct regions *r;
+	const struct view_weights *w;
+	int height, width;
+	const struct rle *like; /* whose size the masks get, or NULL */
+	float *image;		/* (VIEW_GROUP,P) */
+	uint8_t *pixels;	/* (P) */
+	size_t group;		/* the one that the image has */
+};
+
+static int painter_make(struct painter *t, const struct view_weights *w, struct err *e)
+{
+	t->w = w;
+	t->group = REGIONS_NONE;
+	t->image = mem_alloc(w->pixels, VIEW_GROUP * sizeof *t->image, "masks", e);
+	t->pixels = mem_alloc(w->pixels, 1, "masks", e);
+	return t->image && t->pixels ? 0 : -1;
+}
+
+static int paint(struct painter *t, size_t object, struct rle *mask, struct err *e)
+{
+	const size_t group = object / VIEW_GROUP, pixels = t->w->pixels;
+	const float *image = t->image + object % VIEW_GROUP * pixels;
 	struct rle small;
 
-	for (size_t p = 0; p < (size_t)height * (size_t)width; p++)
-		pixels[p] = image[p] > 0;
-	if (rle_encode(&small, pixels, height, width, e))
+	if (group != t->group)
+		backproject_render(
+			t->w, t->r->field + group * VIEW_GROUP * t->r->gaussians, VIEW_GROUP, t->image);
+	t->group = group;
+	for (size_t p = 0; p < pixels; p++)
+		t->pixels[p] = image[p] > 0;
+	if (rle_encode(&small, t->pixels, t->height, t->width, e))
 		return -1;
-	if (!like || rle_same_size(like, &small)) {
+	if (!t->like || rle_same_size(t->like, &small)) {
 		*mask = small;
 		return 0;
 	}
-	int bad = rle_resize(mask, &small, like->height, like->width, e);
+	int bad = rle_resize(mask, &small, t->like->height, t->like->width, e);
 	rle_free(&small);
 	return bad;
 }
 
-/* The first of a view's candidates, whose size the others have; NULL where there is none. */
-static const struct rle *find_size(const struct regions *r, size_t view)
+static int put_mask(struct painter *t, size_t object, size_t view, struct rle *mask, double *score,
+	size_t *rendered, struct err *e)
 {
-	for (size_t c = 0; c < r->count; c++)
-		if (r->candidates[c].view == view)
-			return &r->candidates[c].mask->rle;
-	return NULL;
+	const struct regions *r = t->r;
+
+	if (r->served[object] == REGIONS_NONE)
+		return 0;
+	const struct region *region = &r->regions[r->served[object]];
+	const size_t c = find_candidate(r, region, view);
+	if (c != REGIONS_NONE) {
+		const struct rle *chosen = &r->candidates[c].mask->rle;
+		*score = (double)region->agreement[c];
+		return rle_from_runs(mask, chosen->runs, chosen->n, chosen->height, chosen->width, e);
+	}
+	*score = region->typical;
+	if (paint(t, object, mask, e))
+		return -1;
+	*rendered += rle_area(mask) > 0;
+	return 0;
 }
 
 int regions_render(const struct regions *r, size_t view, const struct view_weights *w, int height, int width,
 	struct rle *masks, double *scores, size_t *rendered, struct err *e)
 {
-	float *image = mem_alloc(w->pixels, VIEW_GROUP * sizeof *image, "masks", e);
-	uint8_t *pixels = mem_alloc(w->pixels, 1, "masks", e);
-	const struct rle *like = find_size(r, view);
-	size_t there = REGIONS_NONE; /* the group that the image has */
-	int bad = !image || !pixels;
+	const struct regions_range range = r->ranges[view];
+	struct painter t = {.r = r,
+		.height = height,
+		.width = width,
+		.like = range.end > range.begin ? &r->candidates[range.begin].mask->rle : NULL};
+	int bad = w && painter_make(&t, w, e);
 
 	for (size_t o = 0; o < r->object_count; o++) {
 		masks[o] = (struct rle){0};
 		scores[o] = 0;
 	}
-	for (size_t o = 0; o < r->object_count && !bad; o++) {
-		if (r->served[o] == REGIONS_NONE)
-			continue;
-		const struct region *region = &r->regions[r->served[o]];
-		const size_t c = find_candidate(r, region, view), group = o / VIEW_GROUP;
-		if (c != REGIONS_NONE) {
-			const struct rle *mask = &r->candidates[c].mask->rle;
-			scores[o] = (double)region->agreement[c];
-			bad = rle_from_runs(&masks[o], mask->runs, mask->n, mask->height, mask->width, e);
-			continue;
-		}
-		if (group != there)
-			backproject_render(
-				w, r->field + group * VIEW_GROUP * r->gaussians, VIEW_GROUP, image);
-		there = group;
-		scores[o] = region->typical;
-		bad = cut(image + o % VIEW_GROUP * w->pixels, pixels, height, width, like, &masks[o], e);
-		*rendered += !bad && rle_area(&masks[o]) > 0;
-	}
+	for (size_t o = 0; o < r->object_count && !bad; o++)
+		bad = put_mask(&t, o, view, &masks[o], &scores[o], rendered, e);
 	for (size_t o = 0; o < r->object_count && bad; o++)
 		rle_free(&masks[o]);
-	free(image);
-	free(pixels);
+	free(t.image);
+	free(t.pixels);
 	return bad ? -1 : 0;
 }

@@ -29,3 +29,25 @@ void bits_expand(const uint8_t *bits, size_t from, size_t to, uint8_t *mask)
 	for (size_t p = from; p < to; p++)
 		mask[p - from] = bits[p / 8] >> p % 8 & 1;
 }
+
+size_t bits_common(const uint8_t *a, const uint8_t *b, size_t bytes)
+{
+	size_t n = 0, at = 0;
+
+	for (; at + 8 <= bytes; at += 8) {
+		uint64_t x, y;
+		memcpy(&x, a + at, 8);
+		memcpy(&y, b + at, 8);
+		n += (size_t)__builtin_popcountll(x & y);
+	}
+	for (; at < bytes; at++)
+		n += (size_t)__builtin_popcount(a[at] & b[at]);
+	return n;
+}
+
+void bits_place(const uint8_t *bits, size_t n, float *image)
+{
+	for (size_t byte = 0; byte < bits_bytes(n); byte++)
+		for (unsigned left = bits[byte]; left; left &= left - 1)
+			image[byte * 8 + (size_t)__builtin_ctz(left)] = 1;
+}

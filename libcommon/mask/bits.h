@@ -15,4 +15,10 @@ void bits_pack(const uint8_t *mask, size_t n, uint8_t *bits);
 /* Pixels [from,to) of the bits: mask (to-from) gets 0 or 1. */
 void bits_expand(const uint8_t *bits, size_t from, size_t to, uint8_t *mask);
 
+/* How many bits two of that many bytes have in common. */
+size_t bits_common(const uint8_t *a, const uint8_t *b, size_t bytes);
+
+/* image (n) gets 1 where there is a bit; the rest stays. */
+void bits_place(const uint8_t *bits, size_t n, float *image);
+
 #endif

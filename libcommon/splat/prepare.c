@@ -60,22 +60,14 @@ static int project_block(struct render_view *v, const struct splats *s, const st
 	v->spans[block].n = 0;
 	for (size_t i = begin; i < end;) {
 		int lanes = 0;
-		/* a lane for each that is not too faint; lanes left over compute what is not looked at */
-		for (; i < end && lanes < PROJECT_LANES; i++) {
-			if (!(255 * (double)s->opacities[i] >= 1))
-				continue;
-			for (size_t k = 0; k < 3; k++) {
-				b.mean[k][lanes] = s->means[3 * i + k];
-				b.scale[k][lanes] = s->scales[3 * i + k];
-			}
-			for (size_t k = 0; k < 4; k++)
-				b.quat[k][lanes] = s->quats[4 * i + k];
-			b.opacity[lanes] = s->opacities[i];
-			number[lanes++] = i;
-		}
+		/* lanes left over compute what is not looked at */
+		for (; i < end && lanes < PROJECT_LANES; i++)
+			if ((v->wanted.is_all || wanted_reach(&v->wanted, &v->grid, s, lens, i)) &&
+				project_take(&b, s, i, lanes))
+				number[lanes++] = i;
 		kernels->project(lens, &b, lanes);
 		for (int l = 0; l < lanes; l++) {
-			if (!b.seen[l])
+			if (!b.seen[l] || !wanted_lane(&v->wanted, &v->grid, &b, l))
 				continue;
 			v->projected[number[l]] = (struct projected){b.x[l], b.y[l], b.l11[l], b.l21[l],
 				b.l22[l], b.z[l], {(float)b.l11[l], (float)b.l21[l], (float)b.l22[l]},
@@ -90,19 +82,17 @@ static int project_block(struct render_view *v, const struct splats *s, const st
 }
 
 /* All blocks; items (N) gets the keys of the visible ones, block by block. */
-static int project_all(struct render_view *v, const struct splats *s, const struct camera *c,
+static int project_all(struct render_view *v, const struct splats *s, const struct project_lens *lens,
 	struct order_item *items, int threads, struct err *e)
 {
 	const size_t blocks = count_blocks(s->n), tallies = tile_tallies(&v->grid);
-	struct project_lens lens;
 	int failed = 0;
 
-	project_lens_make(&lens, c);
 	memset(v->tallies, 0, (size_t)threads * tallies * sizeof *v->tallies);
 #pragma omp parallel for schedule(dynamic) num_threads(threads) reduction(| : failed)
 	for (size_t b = 0; b < blocks; b++) {
 		struct err mine;
-		if (!failed && project_block(v, s, &lens, b, items,
+		if (!failed && project_block(v, s, lens, b, items,
 				       v->tallies + (size_t)omp_get_thread_num() * tallies, &mine)) {
 			failed = 1;
 #pragma omp critical
@@ -127,9 +117,11 @@ size_t render_bytes(size_t gaussians)
 	return gaussians * (sizeof(struct projected) + 2 * sizeof(struct order_item) + sizeof(uint32_t));
 }
 
-int render_again(struct render_view *v, const struct splats *s, const struct camera *c, struct err *e)
+int render_again_where(struct render_view *v, const struct splats *s, const struct camera *c,
+	const uint8_t *is_wanted, struct err *e)
 {
 	const int threads = threads_available();
+	struct project_lens lens;
 	size_t tallies;
 
 	if (s->n > INT32_MAX)
@@ -144,7 +136,9 @@ int render_again(struct render_view *v, const struct splats *s, const struct cam
 		mem_room((void **)&v->tallies, &v->tally_room, tallies, sizeof *v->tallies, "tile lists", e))
 		return -1;
 	struct order_item *items = v->order, *spare = v->order + s->n;
-	if (project_all(v, s, c, spare, threads, e))
+	project_lens_make(&lens, c);
+	if (wanted_find(&v->wanted, &v->grid, s, &lens, kernels_of(v->level), is_wanted, e) ||
+		project_all(v, s, &lens, spare, threads, e))
 		return -1;
 	gather_items(v, spare, items);
 	v->sorted = order_sort(items, spare, v->visible, v->projected, e);
@@ -154,17 +148,28 @@ int render_again(struct render_view *v, const struct splats *s, const struct cam
 		&v->tiles, &v->grid, v->sorted, v->visible, v->covers, v->spans, v->tallies, threads, e);
 }
 
-struct render_view *render_prepare(const struct splats *s, const struct camera *c, struct err *e)
+int render_again(struct render_view *v, const struct splats *s, const struct camera *c, struct err *e)
+{
+	return render_again_where(v, s, c, NULL, e);
+}
+
+struct render_view *render_prepare_where(
+	const struct splats *s, const struct camera *c, const uint8_t *is_wanted, struct err *e)
 {
 	struct render_view *v = mem_zalloc(1, sizeof *v, "view", e);
 
 	if (!v)
 		return NULL;
 	v->level = cpu_level();
-	if (!render_again(v, s, c, e))
+	if (!render_again_where(v, s, c, is_wanted, e))
 		return v;
 	render_free(v);
 	return NULL;
+}
+
+struct render_view *render_prepare(const struct splats *s, const struct camera *c, struct err *e)
+{
+	return render_prepare_where(s, c, NULL, e);
 }
 
 void render_free(struct render_view *v)
@@ -172,6 +177,7 @@ void render_free(struct render_view *v)
 	if (!v)
 		return;
 	tile_free(&v->tiles);
+	wanted_free(&v->wanted);
 	free(v->projected);
 	free(v->order);
 	free(v->covers);

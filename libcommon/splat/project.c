@@ -26,3 +26,17 @@ void project_lens_make(struct project_lens *lens, const struct camera *c)
 	lens->low[1] = -c->cy / c->fy - 0.3 * half_y;
 	lens->high[1] = (c->height - c->cy) / c->fy + 0.3 * half_y;
 }
+
+int project_take(struct project_batch *b, const struct splats *s, size_t i, int lane)
+{
+	if (!(255 * (double)s->opacities[i] >= 1))
+		return 0;
+	for (size_t k = 0; k < 3; k++) {
+		b->mean[k][lane] = s->means[3 * i + k];
+		b->scale[k][lane] = s->scales[3 * i + k];
+	}
+	for (size_t k = 0; k < 4; k++)
+		b->quat[k][lane] = s->quats[4 * i + k];
+	b->opacity[lane] = s->opacities[i];
+	return 1;
+}

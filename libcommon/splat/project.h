@@ -4,6 +4,7 @@
 #define SPLAT_PROJECT_H
 
 #include "geom/camera.h"
+#include "splat/splats.h"
 
 #include <stdint.h>
 
@@ -46,5 +47,8 @@ struct project_batch {
 	/* first and last of the pixels whose centres the ellipse's bounding box holds */
 	int32_t columns[2][PROJECT_LANES], rows[2][PROJECT_LANES];
 };
+
+/* Gaussian i as lane `lane`. Returns 0, and leaves the lane, where it is too faint for any pixel. */
+int project_take(struct project_batch *b, const struct splats *s, size_t i, int lane);
 
 #endif

@@ -20,7 +20,8 @@ static void blend_planes(
 #pragma omp parallel for schedule(dynamic)
 	for (size_t k = 0; k < tiles; k++) {
 		struct place at = place_of_tile(&v->grid, k);
-		size_t begin = v->tiles.start[k], n = v->tiles.start[k + 1] - begin;
+		const size_t begin = v->tiles.start[k],
+			     n = wanted_tile(&v->wanted, &v->grid, k) ? v->tiles.start[k + 1] - begin : 0;
 		struct blend_tile t __attribute__((aligned(64)));
 		for (int c = 0; c < channels; c++)
 			place_fetch(&v->grid, at, out + (size_t)c * pixels);

@@ -32,6 +32,14 @@ void render_free(struct render_view *v);
  */
 int render_again(struct render_view *v, const struct splats *s, const struct camera *c, struct err *e);
 
+/* Only those tiles where Gaussians with is_wanted[i] (N) may show: values blended there are the same to the
+ * bit, and 0 in all others, so that a response that only these Gaussians have above 0 has the same mask. Not
+ * for weights, colours or transmittance. NULL wants all. */
+struct render_view *render_prepare_where(
+	const struct splats *s, const struct camera *c, const uint8_t *is_wanted, struct err *e);
+int render_again_where(struct render_view *v, const struct splats *s, const struct camera *c,
+	const uint8_t *is_wanted, struct err *e);
+
 /* Bytes that a view of so many Gaussians takes, without its tile lists: those are as long as the Gaussians
  * are large. */
 size_t render_bytes(size_t gaussians);

@@ -6,6 +6,7 @@
 #include "splat/order.h"
 #include "splat/project.h"
 #include "splat/tile.h"
+#include "splat/wanted.h"
 
 #include <stddef.h>
 
@@ -14,6 +15,7 @@ struct render_view {
 	size_t gaussians;     /* N of the scene */
 	size_t visible;
 	struct tile_grid grid;
+	struct wanted wanted;		 /* tiles; the lists of others may lack Gaussians */
 	struct projected *projected;	 /* (N), those that are visible */
 	const struct order_item *sorted; /* (visible) front to back */
 	struct tile_lists tiles;

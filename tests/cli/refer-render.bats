@@ -205,6 +205,23 @@ png/$test_view/yellow-bowl-1.png " ]
 	not cmp -s o/$test_view/yellow-bowl.png o/$test_view/zeppelin.png
 }
 
+@test "--parts: of several things each has a mask of its own, and all else stays" {
+	"$BIN/refer-lift" -q --scene scene --weights "$made/weights" --text "$made/text.safetensors" --masks "$made/masks.jsonl" -o lifted
+	for text in "the brown box and the yellow bowl" "the brown box" "the yellow bowl" "the zeppelin"; do
+		printf '{"ref":"%s","object":"any","text":"%s"}\n' "${text// /-}" "$text"
+	done >some.jsonl
+	"$BIN/text-encode" -q --model "$made/encoder" -o some some.jsonl
+	"$BIN/refer-render" -q --scene scene --text some --model lifted --sentences all -o whole.jsonl
+	"$BIN/refer-render" -q --scene scene --text some --model lifted --sentences all --parts -o parts.jsonl
+	"$BIN/gs-check" parts.jsonl
+	jq -c 'del(.parts)' parts.jsonl | cmp - <(jq -c . whole.jsonl)
+	[ "$(jq -c '[.parts[]?.object]' parts.jsonl | head -n 4 | tr '\n' ' ')" = '["brown box","yellow bowl"] [] [] [] ' ]
+	# a part is what a sentence about it alone gets, in every view
+	jq -se 'group_by(.view) | length > 0 and all(.[]; (.[0].parts | map(.segmentation)) == [.[1].segmentation, .[2].segmentation])' \
+		parts.jsonl
+	jq -se 'all(.[]; all(.parts[]?; .score >= 0 and .score <= 1))' parts.jsonl
+}
+
 @test "refs that differ only in a slash or percent have pictures of their own" {
 	printf '{"ref":"%s","object":"cup","text":"the cup"}\n' a/b a%2Fb a_b ../x >refs.jsonl
 	"$BIN/text-encode" --model "$made/encoder" -o text.safetensors refs.jsonl

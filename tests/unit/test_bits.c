@@ -33,5 +33,22 @@ int main(void)
 			wrong += memcmp(part, mask + from, to - from) || part[to - from] != 9;
 		}
 	CHECK(!wrong, "%d parts are wrong", wrong);
+	for (size_t n = 0; n <= N; n++) {
+		uint8_t other[N], twin[N / 8 + 1];
+		float image[N + 1] = {0};
+		size_t both = 0;
+		for (size_t p = 0; p < n; p++) {
+			other[p] = (uint8_t)rng_below(&r, 2);
+			both += other[p] && mask[p];
+		}
+		bits_pack(mask, n, bits);
+		bits_pack(other, n, twin);
+		wrong += bits_common(bits, twin, bits_bytes(n)) != both;
+		bits_place(twin, n, image);
+		for (size_t p = 0; p <= N; p++)
+			over += image[p] != (float)(p < n && other[p]);
+	}
+	CHECK(!wrong, "%d counts of common bits are wrong", wrong);
+	CHECK(!over, "%d pixels are wrong", over);
 	return unit_end();
 }

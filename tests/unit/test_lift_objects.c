@@ -105,7 +105,7 @@ static int lift(const struct problem *q, size_t objects, struct lifted *to, stru
 		for (int v = 0; v < VIEWS; v++)
 			CHECK(!lift_objects_view(l, &q->weights[v], H, W, q->masks[v], q->count[v], &e), "%s",
 				e.message);
-		lift_objects_settle(l);
+		CHECK(!lift_objects_settle(l, &e), "%s", e.message);
 	}
 	return CHECK(!lift_objects_finish(l, to, &e), "%s", e.message) ? 0 : -1;
 }

@@ -42,7 +42,7 @@ static char *pieces[] = {"box", "ball", "box", "", "zeppelin", ""};
 static const size_t which[] = {0, 1, 2, 3, 4, 5};
 static const struct parser parser = {0};
 static const struct responses_question of = {&splats, &cameras, asked_offsets, asked_words, pieces, pieces,
-	NULL, &parser, which, SENTENCES, pieces, "model"};
+	NULL, &parser, which, SENTENCES, pieces, "model", 0};
 
 static float at(const struct responses *a, size_t answer, size_t gaussian)
 {
@@ -132,16 +132,21 @@ static void test_outlines(void)
 {
 	struct responses a;
 	struct splats wholes[MOST];
-	struct seen seen = {0}, whole = {0};
+	struct seen seen = {0}, whole = {0}, full = {0};
 	struct err e = {0};
 
 	if (!CHECK(!responses_lifted(&a, &lifted, &of, CHOOSE_ALL, 0.95, &e) &&
 			    !responses_wholes(&a, &splats, &cameras, wholes, &e),
 		    "%s", e.message))
 		return;
-	const struct answer_question visible = {&splats, &a, NULL, 0}, amodal = {&splats, &a, wholes, 0};
+	const struct answer_question visible = {.splats = &splats, .responses = &a},
+				     images = {.splats = &splats, .responses = &a, .wants_images = 1},
+				     amodal = {.splats = &splats, .responses = &a, .wholes = wholes};
 	CHECK(!answer_all(&visible, &camera, 1, &(struct answer_calls){&seen, each, done}, &e), "%s",
 		e.message);
+	CHECK(!answer_all(&images, &camera, 1, &(struct answer_calls){&full, each, done}, &e), "%s",
+		e.message);
+	CHECK(!memcmp(&full, &seen, sizeof seen), "masks differ where whole images are wanted");
 	CHECK(!answer_all(&amodal, &camera, 1, &(struct answer_calls){&whole, each, done}, &e), "%s",
 		e.message);
 	const size_t large = a.answer[0], small = a.answer[1], nothing = a.answer[3];

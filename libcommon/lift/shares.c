@@ -1,0 +1,102 @@
+#include "lift/shares.h"
+
+#include "base/mem.h"
+
+#include <stdlib.h>
+
+enum { WORD = 64 };
+
+/* One thread's: sums of all Gaussians, and which of them are above 0. All 0 between images. */
+struct sums {
+	float *sum;	/* (N) */
+	uint64_t *bits; /* (N) */
+};
+
+static size_t words(size_t gaussians)
+{
+	return gaussians / WORD + 1;
+}
+
+/* Pixels in their order. Returns how many sums are above 0. */
+static size_t add_image(struct sums *s, const struct view_weights *w, const float *image)
+{
+	size_t n = 0;
+
+	for (size_t p = 0; p < w->pixels; p++) {
+		if (!(image[p] > 0))
+			continue;
+		for (int64_t k = w->indptr[p]; k < w->indptr[p + 1]; k++) {
+			const size_t i = (size_t)w->index[k];
+			const float before = s->sum[i];
+			s->sum[i] += w->weight[k] * image[p];
+			if (before > 0 || !(s->sum[i] > 0))
+				continue;
+			s->bits[i / WORD] |= (uint64_t)1 << i % WORD;
+			n++;
+		}
+	}
+	return n;
+}
+
+/* Moves the sums into a row, in the order of the Gaussians. */
+static void take(struct sums *s, size_t gaussians, struct shares *row)
+{
+	row->n = 0;
+	for (size_t word = 0; word < words(gaussians); word++) {
+		for (uint64_t left = s->bits[word]; left; left &= left - 1) {
+			const size_t i = word * WORD + (size_t)__builtin_ctzll(left);
+			row->index[row->n] = (int32_t)i;
+			row->share[row->n++] = s->sum[i];
+			s->sum[i] = 0;
+		}
+		s->bits[word] = 0;
+	}
+}
+
+static int make_row(
+	struct shares *row, struct sums *s, const struct view_weights *w, const float *image, struct err *e)
+{
+	const size_t n = add_image(s, w, image);
+
+	*row = (struct shares){.index = mem_alloc(n, sizeof *row->index, "masks", e),
+		.share = mem_alloc(n, sizeof *row->share, "masks", e)};
+	if (!row->index || !row->share)
+		return -1;
+	take(s, w->gaussians, row);
+	return 0;
+}
+
+int shares_make(
+	struct shares *rows, const struct view_weights *w, const float *images, size_t count, struct err *e)
+{
+	int failed = 0;
+
+	for (size_t k = 0; k < count; k++)
+		rows[k] = (struct shares){0};
+#pragma omp parallel reduction(| : failed) if (count > 1)
+	{
+		struct err mine;
+		struct sums s = {mem_zalloc(w->gaussians, sizeof *s.sum, "masks", &mine),
+			mem_zalloc(words(w->gaussians), sizeof *s.bits, "masks", &mine)};
+		failed = !s.sum || !s.bits;
+#pragma omp for schedule(dynamic)
+		for (size_t k = 0; k < count; k++)
+			failed = failed || make_row(&rows[k], &s, w, images + k * w->pixels, &mine);
+		if (failed) {
+#pragma omp critical
+			*e = mine;
+		}
+		free(s.sum);
+		free(s.bits);
+	}
+	for (size_t k = 0; k < count && failed; k++)
+		shares_free(&rows[k]);
+	return failed ? -1 : 0;
+}
+
+void shares_free(struct shares *row)
+{
+	free(row->index);
+	free(row->share);
+	*row = (struct shares){0};
+}
