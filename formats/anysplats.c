@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-static int is_meta(const char *path)
+int anysplats_is_meta(const char *path)
 {
 	int length;
 
@@ -25,7 +25,7 @@ int anysplats_read(
 	*s = (struct splats){0};
 	if (report)
 		*report = (struct rows_report){0};
-	if (is_meta(path))
+	if (anysplats_is_meta(path))
 		return sog_read_meta(s, offset, report, path, e);
 	if (file_map(path, &map, e))
 		return -1;

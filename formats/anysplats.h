@@ -11,6 +11,9 @@
 int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e);
 
+/* Whether a file is SOG's meta.json, by its name. */
+int anysplats_is_meta(const char *path);
+
 /* What can be written. */
 enum anysplats_format { ANYSPLATS_PLY, ANYSPLATS_SPLAT, ANYSPLATS_SPZ };
 

@@ -5,6 +5,7 @@
 #include "cmd/jobs/check_arrays.h"
 #include "cmd/jobs/check_folder.h"
 #include "cmd/jobs/check_records.h"
+#include "formats/anysplats.h"
 #include "formats/json.h"
 #include "formats/jsonl.h"
 
@@ -148,6 +149,8 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 	if (!h.len)
 		return err_set(e, ERR_FORMAT, "%s: empty", file_name(path));
 	if (begins(&h, "PK\3\4"))
+		return check_anysplats(c, path, "sog", e);
+	if (anysplats_is_meta(path))
 		return check_anysplats(c, path, "sog", e);
 	if (path_ends(path, ".splat"))
 		return check_anysplats(c, path, "splat", e);

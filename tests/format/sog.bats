@@ -24,6 +24,7 @@ refused() {
 	cp scene/splats.safetensors first
 	import s/meta.json
 	cmp first scene/splats.safetensors
+	says 0 "s/meta.json: ok: sog, 8 gaussians, 4 harmonics" "$BIN/gs-check" s/meta.json
 	says 0 "scene: ok: scene, 40x30, 8 gaussians, 4 harmonics, 3 training views, 0 test views, scene $(
 		grep -ao '"scene":"[0-9a-f]*"' first | cut -d'"' -f4)" "$BIN/gs-check" scene
 }
