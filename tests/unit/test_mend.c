@@ -245,7 +245,6 @@ static void mends_lists(void)
 	mends("the coat by the door, the rug and the jug", ". T P . A2 . A2 . . A2", PARSE_NEAR, 6,
 		ROLE_ANCHOR, 2, 0);
 }
-}
 
 int main(void)
 {
