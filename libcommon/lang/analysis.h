@@ -51,6 +51,8 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 
 /* A part of analysis_mend: words that were taken for something else. */
 void analysis_reread(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
+/* Another: each thing of a list with commas is meant. */
+void analysis_lists(struct analysis *a, const struct tokens *t);
 /* Whether a word is the predicate of an anchor. */
 int analysis_has_anchor(const struct analysis *a, int predicate);
 

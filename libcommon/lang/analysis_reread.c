@@ -341,4 +341,5 @@ void analysis_reread(struct analysis *a, const struct analysis *grammar, const s
 	mend_no_target(a, grammar, t);
 	mend_between(a, t);
 	mend_comparatives(a, t);
+	analysis_lists(a, t);
 }

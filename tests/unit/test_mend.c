@@ -229,6 +229,23 @@ static void settles(void)
 	parse_free(&p);
 }
 
+/* Each thing of a list is meant; commas between adjectives, and lists of anchors, are no such list. */
+static void mends_lists(void)
+{
+	const char *three = "the coat, the grey rug and the jug";
+	mends(three, ". T . a a . . L", 0, 1, ROLE_TARGET, ROOT, 0);
+	mends(three, ". T . a a . . L", 0, 3, ROLE_ATTRIBUTE, 4, 0);
+	mends(three, ". T . a a . . L", 0, 4, ROLE_ALSO, ROOT, 0);
+	mends(three, ". T . a a . . L", 0, 7, ROLE_ALSO, ROOT, 0);
+	const char *bare = "my coat, rug, and jug";
+	mends(bare, ". T L . L", 0, 2, ROLE_ALSO, ROOT, 0);
+	mends(bare, ". L T . L", 0, 1, ROLE_TARGET, ROOT, 0);
+	mends(bare, ". L T . L", 0, 2, ROLE_ALSO, ROOT, 0);
+	mends("the long, grey coat and the rug", ". a a T . . L", 0, 1, ROLE_ATTRIBUTE, ROOT, 0);
+	mends("the coat by the door, the rug and the jug", ". T P . A2 . A2 . . A2", PARSE_NEAR, 6,
+		ROLE_ANCHOR, 2, 0);
+}
+
 int main(void)
 {
 	mends_all();
@@ -236,6 +253,7 @@ int main(void)
 	mends_readings();
 	mends_nor();
 	mends_neighbours();
+	mends_lists();
 	settles();
 	return unit_end();
 }
