@@ -8,7 +8,10 @@
 #include <string.h>
 
 enum { BATCH = 16 }; /* masks that are images at a time */
-#define ALIKE 0.95   /* intersection over union from which masks of a view are one candidate */
+/* Intersection over union from which masks of a view are one candidate. Of 0.9, 0.95 and every mask by
+ * itself, the mIoU of the masks that come of it in training views, mean of the eight scenes of
+ * pipelines/ablation.md: 66.5, 66.7, 66.8. */
+#define ALIKE 0.95
 
 static int order_sizes(size_t a, size_t b)
 {

@@ -1,6 +1,6 @@
 /* The speed of the rasteriser, as JSON Lines.
  *
- *	bench_render [-n GAUSSIANS,...] [-s WxH,...] [-r REPEATS] [SCENE VIEW]
+ *	bench_render [-n GAUSSIANS,...] [-s WxH,...] [-r REPEATS] [-l PART] [SCENE VIEW]
  *
  * SCENE is a folder of gs-import and VIEW a view of it; without them scenes of -n Gaussians (default
  * 100000,500000) are made as gs-synth makes them. Sizes default to 493x364,986x728, and to the view's own.
@@ -8,14 +8,16 @@
  *
  *	{"bench":"render","mode":"within","gaussians":N,"width":W,"height":H,"threads":T,"channels":C,
  *	 "prepare_ms":...,"blend_ms":...,"frame_ms":...,"fps":...,"prepare_median_ms":...,
- *	 "blend_median_ms":...,"frame_median_ms":...,"cpu_ms":...,"pairs":...}
+ *	 "blend_median_ms":...,"frame_median_ms":...,"cpu_ms":...,"pairs":...,"part":...}
  *
  * Mode "within": all threads share a frame. "beside" (more than one thread): each has frames of its own;
  * prepare_ms and blend_ms are then the threads' mean divided by their number, and frame_ms is the wall time
  * over the frames of all. fps = 1000 / frame_ms. Times are the least and the median of the repeats, in the
  * process's own time where one thread runs, so that a busy machine disturbs them little. cpu_ms is what all
  * processors together spend on a frame, at least: divided by the threads, what a free machine would take at
- * best. pairs counts Gaussians in tiles. Values are in memory as refer-render has them. */
+ * best. pairs counts Gaussians in tiles. Values are in memory as refer-render has them. With -l only those
+ * tiles are rendered where a part of the Gaussians may show, as for an object of a lifted model: those
+ *nearest to one of them. */
 #include "base/mem.h"
 #include "formats/scene.h"
 #include "splat/render.h"
@@ -29,11 +31,12 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MOST_REPEATS = 1000, BESIDE_FRAMES = 3, MOST_CHANNELS = 16 };
+enum { MOST_REPEATS = 1000, BESIDE_FRAMES = 3, MOST_CHANNELS = 16, MOST_ATTEMPTS = 20 };
 
 struct options {
 	const char *gaussians, *sizes;
 	int repeats;
+	double part;
 };
 
 /* One repeat's times in ms: prepare, blend, both, and the processors' for both. */
@@ -44,6 +47,8 @@ struct job {
 	struct camera camera;
 	int threads, channels, repeats;
 	const float *values; /* (N,channels) */
+	double part;
+	const uint8_t *is_wanted; /* (N), or NULL */
 	size_t pairs;
 };
 
@@ -80,7 +85,7 @@ struct room {
 static struct room make_room(const struct job *j)
 {
 	struct err e;
-	struct room room = {render_prepare(j->splats, &j->camera, &e),
+	struct room room = {render_prepare_where(j->splats, &j->camera, j->is_wanted, &e),
 		need((size_t)j->camera.width * (size_t)j->camera.height,
 			(size_t)j->channels * sizeof(float))};
 
@@ -100,7 +105,7 @@ static void render_frame(const struct job *j, struct room *room, clockid_t clock
 	struct err e;
 	const double start = now(clock);
 
-	if (render_again(room->view, j->splats, &j->camera, &e))
+	if (render_again_where(room->view, j->splats, &j->camera, j->is_wanted, &e))
 		fail(e.message);
 	const double middle = now(clock);
 	render_packed(room->view, j->values, j->channels, room->image, NULL);
@@ -181,10 +186,10 @@ static void print_line(const struct job *j, const char *mode, double (*times)[TI
 	free(sorted);
 	printf("{\"bench\":\"render\",\"mode\":\"%s\",\"gaussians\":%zu,\"width\":%d,\"height\":%d,\"threads\":%d,"
 	       "\"channels\":%d,\"prepare_ms\":%.3f,\"blend_ms\":%.3f,\"frame_ms\":%.3f,\"fps\":%.2f,"
-	       "\"prepare_median_ms\":%.3f,\"blend_median_ms\":%.3f,\"frame_median_ms\":%.3f,\"cpu_ms\":%.3f,\"pairs\":%zu}\n",
+	       "\"prepare_median_ms\":%.3f,\"blend_median_ms\":%.3f,\"frame_median_ms\":%.3f,\"cpu_ms\":%.3f,\"pairs\":%zu,\"part\":%g}\n",
 		mode, j->splats->n, j->camera.width, j->camera.height, j->threads, j->channels,
 		least[PREPARE], least[BLEND], least[FRAME], 1e3 / least[FRAME], median[PREPARE],
-		median[BLEND], median[FRAME], least[CPU], j->pairs);
+		median[BLEND], median[FRAME], least[CPU], j->pairs, j->part);
 	fflush(stdout);
 }
 
@@ -211,11 +216,35 @@ static void measure(struct job *j)
 	omp_set_num_threads(most);
 }
 
+/* The part of the Gaussians that are nearest to the first of high opacity: to be freed, NULL for all. */
+static uint8_t *nearest(const struct splats *s, double part)
+{
+	uint8_t *is_near = need(s->n, 1);
+	double *squares = need(s->n, sizeof *squares), *sorted = need(s->n, sizeof *sorted);
+	size_t first = 0;
+
+	while (first + 1 < s->n && s->opacities[first] < 0.9F)
+		first++;
+	for (size_t i = 0; i < s->n; i++)
+		for (size_t k = 0; k < 3; k++) {
+			const double d = (double)s->means[3 * i + k] - (double)s->means[3 * first + k];
+			squares[i] += d * d;
+		}
+	memcpy(sorted, squares, s->n * sizeof *sorted);
+	qsort(sorted, s->n, sizeof *sorted, by_value);
+	for (size_t i = 0; i < s->n; i++)
+		is_near[i] = squares[i] <= sorted[(size_t)(part * (double)(s->n - 1))];
+	free(squares);
+	free(sorted);
+	return is_near;
+}
+
 /* Sizes of the list, or the view's own. */
 static void measure_sizes(const struct splats *s, const struct camera *view, const struct options *o)
 {
 	static const int channels[] = {1, 4, MOST_CHANNELS};
 	float *values = need(s->n, MOST_CHANNELS * sizeof *values);
+	uint8_t *is_wanted = o->part < 1 ? nearest(s, o->part) : NULL;
 	const char *at = o->sizes;
 
 	for (size_t i = 0; i < s->n * MOST_CHANNELS; i++)
@@ -230,12 +259,15 @@ static void measure_sizes(const struct splats *s, const struct camera *view, con
 				.camera = camera_resize(view, width, height),
 				.channels = channels[k],
 				.repeats = o->repeats,
+				.part = o->part,
+				.is_wanted = is_wanted,
 				.values = values};
 			measure(&j);
 		}
 		at = at ? strchr(at, ',') : NULL;
 	} while (at && *++at);
 	free(values);
+	free(is_wanted);
 }
 
 static void measure_scene(const char *dir, const char *name, const struct options *o)
@@ -254,6 +286,25 @@ static void measure_scene(const char *dir, const char *name, const struct option
 	scene_free(&scene);
 }
 
+/* As gs-synth: the next layout where one cannot be. */
+static void make_scene(struct synth_scene *scene, size_t gaussians)
+{
+	struct synth_options options = {.preset = synth_preset(0),
+		.objects = 8,
+		.views = SYNTH_MIN_VIEWS,
+		.width = 986,
+		.height = 728,
+		.gaussians = gaussians};
+	struct err e;
+	int attempt = 0;
+
+	do
+		options.seed = synth_preset_seed(0, 1, attempt);
+	while (synth_scene_make(scene, &options, &e) && ++attempt < MOST_ATTEMPTS);
+	if (attempt == MOST_ATTEMPTS)
+		fail(e.message);
+}
+
 static void measure_made(struct options *o)
 {
 	if (!o->sizes)
@@ -261,18 +312,10 @@ static void measure_made(struct options *o)
 	for (const char *at = o->gaussians; at; at = strchr(at, ',')) {
 		at += *at == ',';
 		const long n = strtol(at, NULL, 10);
-		const struct synth_options options = {.seed = 1,
-			.objects = 8,
-			.views = SYNTH_MIN_VIEWS,
-			.width = 986,
-			.height = 728,
-			.gaussians = (size_t)n};
 		struct synth_scene scene;
-		struct err e;
 		if (n < 1000 || n > 10000000)
 			fail("-n: not numbers from 1000 to 10000000");
-		if (synth_scene_make(&scene, &options, &e))
-			fail(e.message);
+		make_scene(&scene, (size_t)n);
 		measure_sizes(&scene.splats, &scene.cameras.views[0], o);
 		synth_scene_free(&scene);
 	}
@@ -280,20 +323,23 @@ static void measure_made(struct options *o)
 
 int main(int argc, char **argv)
 {
-	struct options o = {.gaussians = "100000,500000", .repeats = 7};
+	struct options o = {.gaussians = "100000,500000", .repeats = 7, .part = 1};
 
-	for (int c; (c = getopt(argc, argv, "n:s:r:")) != -1;)
+	for (int c; (c = getopt(argc, argv, "n:s:r:l:")) != -1;)
 		if (c == 'n')
 			o.gaussians = optarg;
 		else if (c == 's')
 			o.sizes = optarg;
 		else if (c == 'r')
 			o.repeats = atoi(optarg);
+		else if (c == 'l')
+			o.part = atof(optarg);
 		else
 			optind = argc + 1;
-	if ((argc != optind && argc != optind + 2) || o.repeats < 1 || o.repeats > MOST_REPEATS) {
+	if ((argc != optind && argc != optind + 2) || o.repeats < 1 || o.repeats > MOST_REPEATS ||
+		!(o.part >= 0 && o.part <= 1)) {
 		fprintf(stderr,
-			"usage: bench_render [-n GAUSSIANS,...] [-s WxH,...] [-r REPEATS] [SCENE VIEW]\n");
+			"usage: bench_render [-n GAUSSIANS,...] [-s WxH,...] [-r REPEATS] [-l PART] [SCENE VIEW]\n");
 		return 2;
 	}
 	if (argc == optind)

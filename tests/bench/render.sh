@@ -7,7 +7,8 @@ results=$out/render.jsonl gaussians=25000,50000,100000,200000,500000 sizes=493x3
 
 measure() {
 	"$bench/bench_render" -r $repeats -n $gaussians -s 986x728 | sed 's/^{/{"sweep":"gaussians",/' >"$results" &&
-		"$bench/bench_render" -r $repeats -n 100000 -s $sizes | sed 's/^{/{"sweep":"size",/' >>"$results"
+		"$bench/bench_render" -r $repeats -n 100000 -s $sizes | sed 's/^{/{"sweep":"size",/' >>"$results" &&
+		"$bench/bench_render" -r $repeats -n $gaussians -s 986x728 -l 0.02 | sed 's/^{/{"sweep":"lifted",/' >>"$results"
 }
 
 # Reference values, not measured here: other machines, other scenes.
@@ -22,9 +23,9 @@ rows() {
 }
 
 report() {
-	echo "Medians; a channel is a sentence. within: all threads share a frame; beside: each has its own, times are a frame's share."
-	jq -rs '("Gaussians\tsize\tthreads\tmode\tchannels\tprepare, ms\tblend, ms\tframe, ms\tms a channel\tframes a second\tpairs"),
-		(.[] | select(.channels != 4) | [.gaussians, "\(.width)x\(.height)", .threads, .mode, .channels, .prepare_median_ms, .blend_median_ms, .frame_median_ms,
+	echo "Medians; a channel is a sentence. part: of the Gaussians that the answers are of; below 1 only their tiles are rendered. within: all threads share a frame; beside: each has its own, times are a frame's share."
+	jq -rs '("Gaussians\tpart\tsize\tthreads\tmode\tchannels\tprepare, ms\tblend, ms\tframe, ms\tms a channel\tframes a second\tpairs"),
+		(.[] | select(.channels != 4) | [.gaussians, .part, "\(.width)x\(.height)", .threads, .mode, .channels, .prepare_median_ms, .blend_median_ms, .frame_median_ms,
 		(.frame_median_ms / .channels * 1000 | round / 1000), (100000 / .frame_median_ms | round / 100), .pairs] | @tsv)' "$results" | table
 	printf '\nReference values, not measured here\n'
 	{
@@ -36,6 +37,7 @@ report() {
 		fit_head
 		rows gaussians 1 '[.gaussians, .frame_median_ms]' | fit "a frame / Gaussians"
 		rows gaussians 1 '[.gaussians, .prepare_median_ms]' | fit "preparing / Gaussians"
+		rows lifted 1 '[.gaussians, .frame_median_ms]' | fit "a frame of a lifted answer / Gaussians"
 		rows gaussians 1 '[.pairs, .blend_median_ms]' | fit "blending / pairs"
 		rows size 1 '[.width * .height, .frame_median_ms]' | fit "a frame / pixels"
 	} | table

@@ -2,8 +2,19 @@
 # What make bench draws and fits with.
 
 setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
 	bench=$BATS_TEST_DIRNAME/../bench
 	tab=$'\t'
+}
+
+@test "frames of made scenes are timed, and of a part of one" {
+	bench_render=$BIN/../bench/bench_render
+	[ -x "$bench_render" ] || skip "make benches was not run"
+	cd "$BATS_TEST_TMPDIR"
+	"$bench_render" -n 2000,3000 -s 64x48 -r 1 >all.jsonl
+	"$bench_render" -n 2000 -s 64x48 -r 1 -l 0.05 >part.jsonl
+	jq -se 'map(.gaussians) | unique == [2000, 3000]' all.jsonl
+	[ "$(jq -s '.[0].pairs' part.jsonl)" -lt "$(jq -s '.[0].pairs' all.jsonl)" ]
 }
 
 @test "a power law is fitted" {
