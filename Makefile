@@ -61,10 +61,10 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
+.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check stability sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
-units: $(UNITS)
+units: $(UNITS) $(BUILD)/stability
 fuzzers: $(FUZZERS)
 benches: $(BENCHES)
 objects: $(OBJECTS) $(TOOLS:%=$(BUILD)/obj/cmd/%.o)
@@ -198,6 +198,10 @@ bench: packages ## measure speed, memory and accuracy, and plot them: BENCH="ste
 	-@$(MAKE) --no-print-directory encoder
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools benches
 	@BERT="$(BERT)" FULL="$(FULL)" DATA="$(DATA)" tests/bench/run.sh "$(BUILD)" $(BENCH)
+
+stability: ## the error of the fast paths in hard cases, and what the tools say of hard input: two tables
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools $(BUILD)/stability
+	@$(BUILD)/stability; status=$$?; echo; tests/stability/tools.sh $(BUILD)/bin && exit $$status
 
 sanitize: packages ## every test again with address and undefined-behaviour sanitizers, in build-asan
 	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" \

@@ -11,6 +11,7 @@ static int start(struct learning *l, const struct report *to, struct err *e)
 	const struct training *d = &l->data;
 	const struct trainer_source source = training_source(d);
 
+	l->divergence.layout = &l->trainer.layout;
 	l->of = training_identity(d, &o->from, &o->trainer);
 	if (trainer_init(&l->trainer, &source, &o->trainer, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, o->from.weights) : -1;

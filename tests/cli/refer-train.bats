@@ -400,6 +400,24 @@ cut_short() {
 	[ -z "$(ls -A out)" ]
 }
 
+@test "a training that diverges leaves the last good checkpoint as it is" {
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 100000 \
+		--checkpoint 5 -o m 3>&- &
+	for _ in $(seq 600); do [ -e m.checkpoint ] && break || sleep 0.1; done
+	kill -9 $!
+	wait $! || true
+	cp m.checkpoint good
+	for rates in "--mlp-rate 1 --feature-rate 10" "--mlp-rate 10 --feature-rate 10"; do
+		status=0
+		train -q --iterations 250 $rates --interaction none --checkpoint 100 -o m 2>line || status=$?
+		[ $status = 1 ]
+		grep -q 'training diverged after step [0-9]*: ' line
+		cmp good m.checkpoint
+		[ ! -e m ]
+	done
+	"$BIN/gs-check" m.checkpoint
+}
+
 @test "trainings that end well are no false alarm, however short" {
 	for interaction in none pcmi pcmi-proj; do
 		train --iterations 1 --interaction $interaction -o m

@@ -74,6 +74,5 @@ void mask_cases(void)
 	for (int v = 0; v < VIEWS; v++)
 		for (int p = 0; p < P; p++)
 			q->views[v].weight[p] = 1e-38f;
-	lift_row("lifting with weights of 1e-38", q,
-		"an object without Gaussians: too little is seen of them");
+	lift_row("lifting with weights of 1e-38", q, "an object without Gaussians");
 }

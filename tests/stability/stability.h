@@ -10,9 +10,9 @@ void row(const char *name, const char *compared, double error, double bound, con
 /* What the second column says where it depends on the case; good until the eighth next call. */
 const char *compared(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* The rows, by part. */
-void splat_cases(void);
-void model_cases(void);
+/* The rows, by part; is_quick leaves out those that take long or much memory. */
+void splat_cases(int is_quick);
+void model_cases(int is_quick);
 void mask_cases(void);
 
 #endif
