@@ -130,7 +130,7 @@ static void few_cases(void)
 
 static void size_cases(int is_quick)
 {
-	struct splats s = random_splats(9, 300, 0.05, 0.7);
+	struct splats s = random_splats(9, 60, 0.03, 0.5);
 	struct camera c = camera_at_origin(1, 1, 1);
 
 	view_row("a view of 1x1", &s, &c, "blends");
