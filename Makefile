@@ -5,6 +5,7 @@ PREFIX ?= /usr/local
 BUILD ?= build
 CC ?= cc
 CFLAGS ?= -O3 -g
+OPENMP ?= -fopenmp
 WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith
 LDLIBS := -lcjson -lpng -ljpeg -lutf8proc -lz -lm
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
@@ -17,8 +18,8 @@ endif
 
 # A change of any of these rebuilds everything (see $(BUILD)/flags).
 COMPILE = $(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L -DVERSION='"$(VERSION)"' -Ilibcommon -I. \
-	$(CFLAGS) -std=c11 -fopenmp -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
-LINK = $(CC) $(CFLAGS) -fopenmp $(LDFLAGS)
+	$(CFLAGS) -std=c11 $(OPENMP) -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
+LINK = $(CC) $(CFLAGS) $(OPENMP) $(LDFLAGS)
 
 TOOLS := $(patsubst cmd/%.c,%,$(wildcard cmd/*.c))
 SOURCES := $(wildcard libcommon/*/*.c formats/*.c cmd/jobs/*.c)
@@ -61,7 +62,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check stability sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
+.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check stability fuzz readers sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
 units: $(UNITS) $(BUILD)/stability
@@ -203,6 +204,27 @@ stability: ## the error of the fast paths in hard cases, and what the tools say 
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools $(BUILD)/stability
 	@$(BUILD)/stability; status=$$?; echo; tests/stability/tools.sh $(BUILD)/bin && exit $$status
 
+# Names of the targets of tests/fuzz/reader.c.
+READERS := $(shell sed -n 's/^	{"\([a-z-]*\)", try_.*/\1/p' tests/fuzz/reader.c)
+FUZZ := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+SECONDS ?= 60
+
+fuzz: packages ## feed broken files to every reader, each for SECONDS=60; TARGETS="ply text" for some (clang's libFuzzer)
+	$(call need,clang=clang)
+	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-fuzz CC=clang CFLAGS="-O1 -g -fno-omit-frame-pointer $(FUZZ)" OPENMP= \
+		CPPFLAGS="-idirafter $$(gcc -print-file-name=include)" WARNINGS=-Wno-unknown-pragmas LDLIBS="$(LDLIBS) -lgomp" \
+		LDFLAGS=-L$$(dirname $$(gcc -print-file-name=libgomp.so)) tools readers
+	@tests/fuzz/run.sh build-fuzz $(SECONDS) $(TARGETS)
+
+readers: $(READERS:%=$(BUILD)/fuzz/reader-%)
+
+$(BUILD)/fuzz/reader: $(BUILD)/obj/tests/fuzz/reader.o $(LIBRARY)
+	@mkdir -p $(@D)
+	$(LINK) -fsanitize=fuzzer -o $@ $^ $(LDLIBS)
+
+$(BUILD)/fuzz/reader-%: $(BUILD)/fuzz/reader
+	@ln -f $< $@
+
 sanitize: packages ## every test again with address and undefined-behaviour sanitizers, in build-asan
 	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" \
 		tools units fuzzers
@@ -250,7 +272,7 @@ uninstall: ## remove what install put there
 	rm -rf "$(DESTDIR)$(PREFIX)/share/refersplat" "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
 
 clean: ## remove what was built; the cached encoder and demo data stay
-	rm -rf $(BUILD) build-asan build-lint
+	rm -rf $(BUILD) build-asan build-fuzz build-lint
 
 map: ## print what the rooms of the tree include of each other, and their lines
 	@tests/map.sh
