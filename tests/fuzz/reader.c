@@ -48,7 +48,6 @@ static struct err e;
 			release(&it);                                                                        \
 	}
 
-SIMPLE(annotations, struct annotations, annotations_read, annotations_free)
 SIMPLE(boxes, struct box_set, boxes_read, boxes_free)
 SIMPLE(camerafile, struct cameras, camerafile_read, cameras_free)
 SIMPLE(check, struct check, check_file, check_free)
@@ -66,6 +65,14 @@ SIMPLE(weights, struct weights, weights_open_file, weights_close)
 SIMPLE(colmap, struct cameras, colmap_read, cameras_free)
 SIMPLE(vocab, struct vocab, vocab_read, vocab_free)
 SIMPLE(bert, struct bert, bert_model_read, bert_free)
+
+static void try_annotations(const char *path)
+{
+	struct annotations a = {0};
+
+	(void)annotations_read(&a, path, &e);
+	annotations_free(&a);
+}
 
 static void try_lifted(const char *path)
 {

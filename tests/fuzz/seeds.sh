@@ -4,6 +4,7 @@
 set -eu
 here=$(cd "$(dirname "$0")/../.." && pwd)
 bin=$(cd "$2" && pwd)
+writer=$(cd "$(dirname "$3")" && pwd)/$(basename "$3")
 mkdir -p "$1"
 dir=$(cd "$1" && pwd)
 PATH=$bin:$PATH
@@ -36,11 +37,17 @@ folder() {
 }
 
 first() { head -n "$1" "$2" >"$3"; }
-gs-synth -q --objects 2 --views 2 --size 16x12 --gaussians 60 -o small
+gs-synth -q --objects 2 --views 2 --size 24x16 --gaussians 1000 -o small
 gs-import -q --cameras small/sparse/0 -o small/scene small/point_cloud.ply
 gs-weigh -q --split all -o small/weights small/scene
 gs-weigh -q --split all --packed --tolerance 0.02 -o small/packed small/scene
 gs-weigh -q --split all --precision f16 -o small/f16 small/scene
+# 40 of its Gaussians
+{
+	sed '/^end_header/q; s/^element vertex .*/element vertex 40/' small/point_cloud.ply
+	tail -c 104000 small/point_cloud.ply | head -c 4160
+} >few.ply
+gs-import -q --cameras small/sparse/0 -o few few.ply
 first 3 sentences.jsonl some.jsonl
 first 3 masks.jsonl some-masks.jsonl
 first 3 boxes.jsonl some-boxes.jsonl
@@ -74,7 +81,7 @@ folder bert encoder/config.json encoder/model.safetensors
 seed boxes some-boxes.jsonl located.jsonl
 seed camerafile cameras3dgs.json transforms.json
 seed cameras small/scene/cameras.json
-REFERSPLAT_FUZZ_SEED=$work/checkpoint "$3"
+REFERSPLAT_FUZZ_SEED=$work/checkpoint "$writer"
 seed checkpoint checkpoint
 folder colmap-text small/sparse/0/cameras.txt small/sparse/0/images.txt
 printf '\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0\0\0\24\100\0\0\0\0\0\0\24\100\0\0\0\0\0\0\0\100\0\0\0\0\0\0\370\77' >cameras.bin
@@ -88,11 +95,11 @@ seed model some-model.safetensors
 seed npy response/*/*.npy response/*.npy
 seed parser "$here/formats/parser_default.safetensors"
 seed parses some-parses.jsonl
-seed ply small/point_cloud.ply packed.ply
+seed ply few.ply packed.ply
 seed readings some-readings.jsonl
 seed safetensors some.safetensors small/weights/view_000.safetensors "$here/tests/golden/good/small.safetensors"
 seed sentences some.jsonl
-seed splats small/scene/splats.safetensors
+seed splats few/splats.safetensors
 seed text some.safetensors
 seed vocab-json encoder/tokenizer.json
 : >empty
