@@ -62,7 +62,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check stability fuzz readers sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
+.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check stability determinism fuzz readers sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
 units: $(UNITS) $(BUILD)/stability
@@ -203,6 +203,10 @@ bench: packages ## measure speed, memory and accuracy, and plot them: BENCH="ste
 stability: ## the error of the fast paths in hard cases, and what the tools say of hard input: two tables
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools $(BUILD)/stability
 	@$(BUILD)/stability; status=$$?; echo; tests/stability/tools.sh $(BUILD)/bin && exit $$status
+
+determinism: ## which bytes depend on threads and on the processor's vector width: two tables
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools
+	@tests/determinism.sh $(BUILD)/bin
 
 # Names of the targets of tests/fuzz/reader.c.
 READERS := $(shell sed -n 's/^	{"\([a-z-]*\)", try_.*/\1/p' tests/fuzz/reader.c)

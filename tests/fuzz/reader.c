@@ -54,6 +54,7 @@ SIMPLE(check, struct check, check_file, check_free)
 SIMPLE(masks, struct masks, masks_read, masks_free)
 SIMPLE(model, struct model, model_read, model_free)
 SIMPLE(npy, struct npy, npy_read, npy_free)
+SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
 SIMPLE(parses, struct parse_set, parses_read, parses_free)
 SIMPLE(readings, struct reading_set, readings_read, readings_free)
 SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
@@ -81,15 +82,6 @@ static void try_lifted(const char *path)
 
 	if (!lifted_read(&l, &origin, path, &e))
 		lifted_free(&l);
-}
-
-static void try_parser(const char *path)
-{
-	struct parser_weights *w = calloc(1, sizeof *w);
-
-	if (w)
-		(void)parser_weights_read(w, path, &e);
-	free(w);
 }
 
 static void try_ply(const char *path)

@@ -1,0 +1,11 @@
+#!/usr/bin/env bats
+# make determinism, on a smaller scene.
+
+@test "bytes do not depend on the number of threads, and kernels are as close as is promised" {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	cd "$BATS_TEST_TMPDIR"
+	"$BATS_TEST_DIRNAME/../determinism.sh" "$BIN" quick >out 2>err || { cat out err; false; }
+	[ ! -s err ]
+	[ "$(grep -c 'equal | equal | equal | equal |$' out)" = 10 ]
+	grep -q '^| plain | ' out
+}
