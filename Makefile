@@ -106,7 +106,7 @@ $(BUILD)/bench/fit_choice: tests/bench/fit_choice.c $(ASK) $(wildcard libcommon/
 	@mkdir -p $(@D)
 	$(COMPILE) -DASK_CONSTANTS_VARY -o $@ $< $(ASK) $(LIBRARY) $(LDLIBS)
 
-$(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(BUILD)/obj/tests/fuzz/driver.o $(LIBRARY)
+$(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(BUILD)/obj/tests/fuzz/driver.o $(BUILD)/obj/tests/fuzz/mutate.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(LINK) -o $@ $^ $(LDLIBS)
 
@@ -217,21 +217,24 @@ fuzz: packages ## feed broken files to every reader, each for SECONDS=60; TARGET
 	$(call need,clang=clang)
 	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-fuzz CC=clang CFLAGS="-O1 -g -fno-omit-frame-pointer $(FUZZ)" OPENMP= \
 		CPPFLAGS="-idirafter $$(gcc -print-file-name=include)" WARNINGS=-Wno-unknown-pragmas LDLIBS="$(LDLIBS) -lgomp" \
-		LDFLAGS=-L$$(dirname $$(gcc -print-file-name=libgomp.so)) tools readers
+		LDFLAGS=-L$$(dirname $$(gcc -print-file-name=libgomp.so)) LIBFUZZER=-fsanitize=fuzzer tools readers
 	@tests/fuzz/run.sh build-fuzz $(SECONDS) $(TARGETS)
 
 readers: $(READERS:%=$(BUILD)/fuzz/reader-%)
 
-$(BUILD)/fuzz/reader: $(BUILD)/obj/tests/fuzz/reader.o $(LIBRARY)
+# With a plain loop in place of libFuzzer, unless that is linked.
+LIBFUZZER :=
+FUZZ_MAIN := $(if $(LIBFUZZER),,plain mutate)
+$(BUILD)/fuzz/reader: $(BUILD)/obj/tests/fuzz/reader.o $(FUZZ_MAIN:%=$(BUILD)/obj/tests/fuzz/%.o) $(LIBRARY)
 	@mkdir -p $(@D)
-	$(LINK) -fsanitize=fuzzer -o $@ $^ $(LDLIBS)
+	$(LINK) $(LIBFUZZER) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/fuzz/reader-%: $(BUILD)/fuzz/reader
 	@ln -f $< $@
 
 sanitize: packages ## every test again with address and undefined-behaviour sanitizers, in build-asan
 	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" \
-		tools units fuzzers
+		tools units fuzzers readers
 	@LIMIT=900 tests/run.sh build-asan $(JOBS) "$(FILTER)"
 
 lint: ## formatting, clang-tidy, man pages, and builds without a warning by gcc and clang
