@@ -88,14 +88,13 @@ echo "| kernels, beside the widest | outputs that are equal | lifted: responses 
 echo "|---|---|---|---|---|"
 for level in avx2 plain; do
 	REFERSPLAT_CPU=$level run $level --threads 3
-	equal=0 all=0
+	equal=
 	while read -r name command; do
-		all=$((all + 1))
-		diff -rq "1/$name" "$level/$name" >/dev/null && equal=$((equal + 1))
+		diff -rq "1/$name" "$level/$name" >/dev/null && equal+="${equal:+, }$name"
 	done < <(commands)
 	read -r lifted of_lifted ok <<<"$(apart 1/refer-render-lifted $level/refer-render-lifted)"
 	read -r trained of_trained ok2 <<<"$(apart 1/refer-render-trained $level/refer-render-trained)"
 	[ "$ok $ok2" = "ok ok" ] || { failed=1; level="FAILED: $level"; }
-	echo "| $level | $equal of $all | $lifted of $of_lifted | $trained of $of_trained | $(masks 1/refer-render-lifted/predictions "${level#FAILED: }/refer-render-lifted/predictions") lifted, $(masks 1/refer-render-trained/predictions "${level#FAILED: }/refer-render-trained/predictions") trained |"
+	echo "| $level | ${equal:-none} | $lifted of $of_lifted | $trained of $of_trained | $(masks 1/refer-render-lifted/predictions "${level#FAILED: }/refer-render-lifted/predictions") lifted, $(masks 1/refer-render-trained/predictions "${level#FAILED: }/refer-render-trained/predictions") trained |"
 done
 exit $failed

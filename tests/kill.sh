@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Kills tools amid their work, runs the same command again, and compares all that it leaves with what an undisturbed run leaves.
 # usage: tests/kill.sh BIN COUNT [TOOL...]: COUNT kills of each tool (default: import weigh select lift train render pipeline), each
-# at a random moment of the time that an undisturbed run takes. SEED picks the moments, KEEP is a folder for what was made.
-# Prints for each tool how many kills hit it while it ran and how many second runs left the same bytes; at last "N passed, N failed".
+# at a random moment of the time that an undisturbed run takes, at most of its first second. SEED picks the moments, KEEP is a folder for what was made.
+# Prints for each tool how many kills there were and after how many the second run left the same bytes; at last "N passed, N failed".
 set -u
 here=$(cd "$(dirname "$0")/.." && pwd)
 bin=$(cd "$1" && pwd) count=$2
@@ -48,18 +48,22 @@ passed=0 failed=0
 for tool; do
 	command=$(command_of "$tool") || exit 2
 	rm -rf "$tool" && mkdir -p "$tool/out" && cd "$tool" || exit 1
+	$command >said 2>&1 || { cat said; exit 1; }
+	mv out whole
+	mkdir out
 	begin=$(date +%s%N)
 	$command >said 2>&1 || { cat said; exit 1; }
-	took=$((($(date +%s%N) - begin) / 1000000))
-	mv out whole
+	took=$((($(date +%s%N) - begin) / 1000))
 	hit=0 good=0
-	for ((i = 0; i < count; i++)); do
+	# One that ended before it was killed does not count.
+	for ((tries = 0; tries < 20 * count && hit < count; tries++)); do
 		rm -rf out && mkdir out
-		setsid $command >said 2>&1 &
-		pid=$!
-		sleep "$(awk -v ms=$((RANDOM % (took + 1))) 'BEGIN { print ms / 1000 }')"
-		kill -KILL -- -$pid 2>/dev/null && hit=$((hit + 1))
-		wait $pid 2>/dev/null
+		# A pipeline's tools are killed with it, and may take a moment to go; until then their files are a living run's.
+		[ "$tool" = pipeline ] && group= || group=--foreground
+		timeout $group -s KILL "$(printf '0.%06d' $(((RANDOM * 32768 + RANDOM) % (took < 999999 ? took : 999999) + 1)))" $command >said 2>&1
+		[ $? = 137 ] || continue
+		hit=$((hit + 1))
+		[ "$tool" != pipeline ] || sleep 0.5
 		if $command >said 2>&1 && same whole out; then
 			good=$((good + 1))
 		else
@@ -67,8 +71,8 @@ for tool; do
 		fi
 	done
 	cd ..
-	printf '%-10s %4d kills while it ran, %4d of %d second runs left the same bytes\n' "$tool" $hit $good "$count"
-	[ $good = "$count" ] && [ $hit != 0 ] && passed=$((passed + 1)) || failed=$((failed + 1))
+	printf '%-10s %4d kills, after %4d of which the second run left the same bytes\n' "$tool" $hit $good
+	[ $good = $hit ] && [ $hit != 0 ] && passed=$((passed + 1)) || failed=$((failed + 1))
 done 2> >(grep -v ' Killed ' >&2)
 echo "$passed passed, $failed failed"
 [ $failed = 0 ] && [ $passed != 0 ]
