@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Kills tools amid their work, runs the same command again, and compares all that it leaves with what an undisturbed run leaves.
 # usage: tests/kill.sh BIN COUNT [TOOL...]: COUNT kills of each tool (default: import weigh select lift train render pipeline), each
-# at a random moment of the time that an undisturbed run takes, at most of its first second. SEED picks the moments, KEEP is a folder for what was made.
+# at a random moment of the time that an undisturbed run takes. SEED picks the moments, KEEP is a folder for what was made.
 # Prints for each tool how many kills there were and after how many the second run left the same bytes; at last "N passed, N failed".
 set -u
 here=$(cd "$(dirname "$0")/.." && pwd)
@@ -60,7 +60,7 @@ for tool; do
 		rm -rf out && mkdir out
 		# A pipeline's tools are killed with it, and may take a moment to go; until then their files are a living run's.
 		[ "$tool" = pipeline ] && group= || group=--foreground
-		timeout $group -s KILL "$(printf '0.%06d' $(((RANDOM * 32768 + RANDOM) % (took < 999999 ? took : 999999) + 1)))" $command >said 2>&1
+		timeout $group -s KILL "$(awk -v us=$(((RANDOM * 32768 + RANDOM) % took + 1)) 'BEGIN { printf "%.6f", us / 1e6 }')" $command >said 2>&1
 		[ $? = 137 ] || continue
 		hit=$((hit + 1))
 		[ "$tool" != pipeline ] || sleep 0.5

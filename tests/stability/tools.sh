@@ -5,8 +5,8 @@
 set -u
 here=$(cd "$(dirname "$0")/.." && pwd)
 bin=$(cd "$1" && pwd)
-largest=8192x8192
-[ "${2:-}" != quick ] || largest=512x512
+largest=8192x8192 steps=100
+[ "${2:-}" != quick ] || largest=512x512 steps=10
 PATH=$bin:$PATH
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -42,7 +42,7 @@ train_row() {
 	local want=$1 name=$2
 	shift 2
 	row "$want" "$name" out refer-train --scene scene --weights weights --text text.safetensors --masks masks.jsonl \
-		--iterations 100 -o out "$@"
+		--iterations $steps -o out "$@"
 }
 
 # float OFFSET BYTES: writes them over the number at this offset of the first Gaussian of point_cloud.ply.
