@@ -5,6 +5,7 @@ PREFIX ?= /usr/local
 BUILD ?= build
 CC ?= cc
 CFLAGS ?= -O3 -g
+OPENMP ?= -fopenmp
 WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith
 LDLIBS := -lcjson -lpng -ljpeg -lwebp -lutf8proc -lminizip -lzstd -lz -lm
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
@@ -17,8 +18,8 @@ endif
 
 # A change of any of these rebuilds everything (see $(BUILD)/flags).
 COMPILE = $(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L -DVERSION='"$(VERSION)"' -Ilibcommon -I. \
-	$(CFLAGS) -std=c11 -fopenmp -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
-LINK = $(CC) $(CFLAGS) -fopenmp $(LDFLAGS)
+	$(CFLAGS) -std=c11 $(OPENMP) -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
+LINK = $(CC) $(CFLAGS) $(OPENMP) $(LDFLAGS)
 
 TOOLS := $(patsubst cmd/%.c,%,$(wildcard cmd/*.c))
 SOURCES := $(wildcard libcommon/*/*.c formats/*.c cmd/jobs/*.c)
@@ -28,9 +29,10 @@ BINARIES := $(TOOLS:%=$(BUILD)/bin/%)
 UNITS := $(patsubst tests/unit/%.c,$(BUILD)/unit/%,$(wildcard tests/unit/test_*.c))
 UNIT_HELPERS := $(filter-out tests/unit/test_%,$(wildcard tests/unit/*.c))
 UNIT_OBJECTS := $(UNIT_HELPERS:%.c=$(BUILD)/obj/%.o)
+STABILITY := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard tests/stability/*.c))
 BENCHES := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/bench_*.c tests/bench/fit_*.c))
 FUZZERS := $(patsubst tests/fuzz/%.c,$(BUILD)/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
-C_FILES = $(wildcard cmd/*.c cmd/jobs/*.[ch] libcommon/*/*.[ch] formats/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch] tests/bench/*.[ch])
+C_FILES = $(wildcard cmd/*.c cmd/jobs/*.[ch] libcommon/*/*.[ch] formats/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch] tests/bench/*.[ch] tests/stability/*.[ch])
 MAN_PAGES := $(wildcard man/*.[17])
 
 # What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
@@ -60,10 +62,10 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
+.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check stability determinism fuzz readers sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
 all: tools ## build the tools into build/bin
 tools: $(BINARIES)
-units: $(UNITS)
+units: $(UNITS) $(BUILD)/stability
 fuzzers: $(FUZZERS)
 benches: $(BENCHES)
 objects: $(OBJECTS) $(TOOLS:%=$(BUILD)/obj/cmd/%.o)
@@ -91,6 +93,9 @@ $(BUILD)/unit/%: $(BUILD)/obj/tests/unit/%.o $(UNIT_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(LINK) -o $@ $^ $(LDLIBS)
 
+$(BUILD)/stability: $(STABILITY) $(UNIT_OBJECTS) $(LIBRARY)
+	$(LINK) -o $@ $^ $(LDLIBS)
+
 $(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(LINK) -o $@ $^ $(LDLIBS)
@@ -101,7 +106,7 @@ $(BUILD)/bench/fit_choice: tests/bench/fit_choice.c $(ASK) $(wildcard libcommon/
 	@mkdir -p $(@D)
 	$(COMPILE) -DASK_CONSTANTS_VARY -o $@ $< $(ASK) $(LIBRARY) $(LDLIBS)
 
-$(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(BUILD)/obj/tests/fuzz/driver.o $(LIBRARY)
+$(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(BUILD)/obj/tests/fuzz/driver.o $(BUILD)/obj/tests/fuzz/mutate.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(LINK) -o $@ $^ $(LDLIBS)
 
@@ -181,7 +186,7 @@ test: packages ## set up, build, run every test; FILTER=text picks test files by
 	@$(MAKE) --no-print-directory check
 
 check: # the tests without installing anything
-	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units $(BUILD)/bench/bench_render
 	@tests/run.sh $(BUILD) $(JOBS) "$(FILTER)"
 
 test-real: packages ## the whole method on real scenes: make test-real DATA=DIR
@@ -195,9 +200,47 @@ bench: packages ## measure speed, memory and accuracy, and plot them: BENCH="ste
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools benches
 	@BERT="$(BERT)" FULL="$(FULL)" DATA="$(DATA)" tests/bench/run.sh "$(BUILD)" $(BENCH)
 
+stability: ## the error of the fast paths in hard cases, and what the tools say of hard input: two tables
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools $(BUILD)/stability
+	@$(BUILD)/stability; status=$$?; echo; tests/stability/tools.sh $(BUILD)/bin && exit $$status
+
+determinism: ## which bytes depend on threads and on the processor's vector width: two tables
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools
+	@tests/determinism.sh $(BUILD)/bin
+
+# Names of the targets of tests/fuzz/reader.c.
+READERS := $(shell sed -n 's/^	{"\([a-z-]*\)", try_.*/\1/p' tests/fuzz/reader.c)
+FUZZ := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+SECONDS ?= 60
+
+fuzz: packages ## feed broken files to every reader, each for SECONDS=60; TARGETS="ply text" for some (clang's libFuzzer, else a plain loop)
+	-$(call need,clang=clang)
+	@if echo 'int LLVMFuzzerTestOneInput(const char *, long); int LLVMFuzzerTestOneInput(const char *d, long n) { return !d && !n; }' | \
+		clang -fsanitize=fuzzer,address -x c -o /dev/null - 2>/dev/null; then \
+		$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-fuzz CC=clang CFLAGS="-O1 -g -fno-omit-frame-pointer $(FUZZ)" OPENMP= \
+			CPPFLAGS="-idirafter $$(gcc -print-file-name=include)" WARNINGS=-Wno-unknown-pragmas LDLIBS="$(LDLIBS) -lgomp" \
+			LDFLAGS=-L$$(dirname $$(gcc -print-file-name=libgomp.so)) LIBFUZZER=-fsanitize=fuzzer tools readers && \
+			tests/fuzz/run.sh build-fuzz $(SECONDS) $(TARGETS); \
+	else \
+		$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" tools readers && \
+			tests/fuzz/run.sh build-asan $(SECONDS) $(TARGETS); \
+	fi
+
+readers: $(READERS:%=$(BUILD)/fuzz/reader-%)
+
+# With a plain loop in place of libFuzzer, unless that is linked.
+LIBFUZZER :=
+FUZZ_MAIN := $(if $(LIBFUZZER),,plain mutate)
+$(BUILD)/fuzz/reader: $(BUILD)/obj/tests/fuzz/reader.o $(FUZZ_MAIN:%=$(BUILD)/obj/tests/fuzz/%.o) $(LIBRARY)
+	@mkdir -p $(@D)
+	$(LINK) $(LIBFUZZER) -o $@ $^ $(LDLIBS)
+
+$(BUILD)/fuzz/reader-%: $(BUILD)/fuzz/reader
+	@ln -f $< $@
+
 sanitize: packages ## every test again with address and undefined-behaviour sanitizers, in build-asan
 	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" \
-		tools units fuzzers
+		tools units fuzzers readers
 	@LIMIT=900 tests/run.sh build-asan $(JOBS) "$(FILTER)"
 
 lint: ## formatting, clang-tidy, man pages, and builds without a warning by gcc and clang
@@ -211,7 +254,7 @@ lint-man:
 	@$(if $(MAN_PAGES),mandoc -T lint -W warning $(MAN_PAGES))
 
 lint-gcc:
-	@$(MAKE) --no-print-directory -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers benches
+	@$(MAKE) --no-print-directory -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers readers benches
 
 lint-clang:
 	@$(MAKE) --no-print-directory -s BUILD=build-lint/clang CC=clang CFLAGS="-O1 $(CLANG_FLAGS)" \
@@ -242,7 +285,7 @@ uninstall: ## remove what install put there
 	rm -rf "$(DESTDIR)$(PREFIX)/share/refersplat" "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
 
 clean: ## remove what was built; the cached encoder and demo data stay
-	rm -rf $(BUILD) build-asan build-lint
+	rm -rf $(BUILD) build-asan build-fuzz build-lint
 
 map: ## print what the rooms of the tree include of each other, and their lines
 	@tests/map.sh

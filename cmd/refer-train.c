@@ -1,5 +1,6 @@
 /* refer-train: learns the referring model of a scene from masks (one stage of the method). */
 #include "cli/cli.h"
+#include "cli/stop.h"
 #include "cmd/jobs/learn.h"
 #include "formats/checkpoint.h"
 
@@ -108,8 +109,12 @@ int main(int argc, char **argv)
 	cli_refuse_overwrite(&c, CLI_SCENE " " CLI_WEIGHTS " text masks init", "output log",
 		(const struct cli_file[]){{"checkpoint", path, CLI_WRITES, NULL}, {0}});
 	options.checkpoint_path = path;
+	options.stop = cli_stop_catch();
 	int bad = learn(&l, &options, cli_report(&to, &c), &e);
 	learning_free(&l);
 	free(path);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	bad = bad ? cli_fail(&c, &e) : cli_done(&c);
+	if (l.is_stopped)
+		cli_stop_end();
+	return bad;
 }

@@ -11,6 +11,7 @@ static int start(struct learning *l, const struct report *to, struct err *e)
 	const struct training *d = &l->data;
 	const struct trainer_source source = training_source(d);
 
+	l->divergence.layout = &l->trainer.layout;
 	l->of = training_identity(d, &o->from, &o->trainer);
 	if (trainer_init(&l->trainer, &source, &o->trainer, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, o->from.weights) : -1;
@@ -75,14 +76,33 @@ static int record(struct learning *l, const struct step_losses *last, struct err
 	return bad;
 }
 
+/* Leaves what --resume goes on from. Always -1. */
+static int stop(struct learning *l, struct err *e)
+{
+	const struct learning_options *o = l->options;
+	const struct train_state *t = &l->trainer.state;
+	const int is_kept = o->checkpoint && t->iteration && divergence_is_good(&l->divergence, t);
+
+	if (is_kept && checkpoint_write(t, o->checkpoint_path, &l->of, e))
+		return -1;
+	l->is_stopped = 1;
+	return err_set(e, ERR_SYSTEM, "stopped after step %ld%s%s", t->iteration,
+		is_kept ? "; --resume goes on from " : "", is_kept ? o->checkpoint_path : "");
+}
+
 static int take_steps(struct learning *l, const struct report *to, struct err *e)
 {
+	const struct learning_options *o = l->options;
 	struct train_state *t = &l->trainer.state;
 	const long begin = t->iteration;
 	int bad = 0;
 
-	report_start(to, "steps", (double)(l->options->iterations - begin));
+	report_start(to, "steps", (double)(o->iterations - begin));
 	while (!is_over(l) && !bad) {
+		if (o->stop && *o->stop) {
+			bad = stop(l, e);
+			break;
+		}
 		struct step_losses last = trainer_step(&l->trainer);
 		bad = record(l, &last, e);
 		report_step(to, (double)(t->iteration - begin), *l->note ? l->note : NULL);

@@ -12,16 +12,19 @@
 #include "train/divergence.h"
 #include "train/trainer.h"
 
+#include <signal.h>
+
 struct learning_options {
 	struct training_files from;
-	const char *output;	     /* the model; "-" is stdout */
-	const char *log;	     /* NULL: none */
-	const char *checkpoint_path; /* NULL: none */
-	int is_resumed;		     /* go on from the checkpoint, if there is one */
-	enum precision precision;    /* of the model */
-	long long iterations;	     /* steps */
-	long long checkpoint;	     /* one every so many steps; 0: never */
-	long long patience;	     /* evaluations that were no better, until it stops */
+	const char *output;		   /* the model; "-" is stdout */
+	const char *log;		   /* NULL: none */
+	const char *checkpoint_path;	   /* NULL: none */
+	int is_resumed;			   /* go on from the checkpoint, if there is one */
+	enum precision precision;	   /* of the model */
+	long long iterations;		   /* steps */
+	long long checkpoint;		   /* one every so many steps; 0: never */
+	const volatile sig_atomic_t *stop; /* not 0: to be left after this step, with a checkpoint */
+	long long patience;		   /* evaluations that were no better, until it stops */
 	struct trainer_options trainer;
 };
 
@@ -32,12 +35,14 @@ struct learning {
 	struct trainlog log;
 	struct divergence divergence;
 	struct checkpoint_of of;
-	int is_own;    /* the checkpoint is of this training */
-	char note[64]; /* the latest losses */
+	int is_stopped; /* by options->stop: *e of learn says after which step */
+	int is_own;	/* the checkpoint is of this training */
+	char note[64];	/* the latest losses */
 };
 
 /* *l is zeroed before. Returns 0, or -1 with *e set; after either learning_free is in order. The checkpoint
- * goes when the model is written. */
+ * goes when the model is written. Where it is stopped it ends with -1 and a checkpoint, unless none is wanted
+ * or the loss is too high for one. */
 int learn(struct learning *l, const struct learning_options *options, const struct report *to, struct err *e);
 void learning_free(struct learning *l);
 

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static int in_split(const struct camera *c, int split)
 {
@@ -121,6 +122,7 @@ static int weigh_view(const struct report *to, const struct scene *s, const stru
 int weigh(const struct scene *s, const struct weighing_options *o, const struct report *to, struct err *e)
 {
 	static const char *const names[] = {"train", "test", "all"};
+	const int was_there = file_exists(o->folder);
 	size_t views = 0, done = 0;
 	struct room room = {0};
 	int bad = 0;
@@ -144,5 +146,7 @@ int weigh(const struct scene *s, const struct weighing_options *o, const struct 
 	report_end(to);
 	bad = bad || check_covered(s, o, views, room.covered, e);
 	room_free(&room);
+	if (bad && !was_there)
+		rmdir(o->folder); /* where it is empty */
 	return bad ? -1 : 0;
 }

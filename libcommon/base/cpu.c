@@ -1,6 +1,9 @@
 #include "base/cpu.h"
 
-enum cpu_level cpu_level(void)
+#include <stdlib.h>
+#include <string.h>
+
+static enum cpu_level of_machine(void)
 {
 #if defined __x86_64__
 	if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") ||
@@ -13,4 +16,27 @@ enum cpu_level cpu_level(void)
 #else
 	return CPU_PLAIN;
 #endif
+}
+
+/* No more than what the environment asks for. */
+static enum cpu_level find_level(void)
+{
+	const char *wanted = getenv("REFERSPLAT_CPU");
+	const enum cpu_level most = of_machine();
+
+	if (wanted && !strcmp(wanted, "plain"))
+		return CPU_PLAIN;
+	return wanted && !strcmp(wanted, "avx2") && most > CPU_AVX2 ? CPU_AVX2 : most;
+}
+
+enum cpu_level cpu_level(void)
+{
+	static int known = -1; /* by atomic operations only */
+	int level = __atomic_load_n(&known, __ATOMIC_RELAXED);
+
+	if (level < 0) {
+		level = (int)find_level();
+		__atomic_store_n(&known, level, __ATOMIC_RELAXED);
+	}
+	return (enum cpu_level)level;
 }

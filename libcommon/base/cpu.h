@@ -9,6 +9,8 @@ enum cpu_level {
 	CPU_LEVELS
 };
 
+/* The most that this machine has or, with REFERSPLAT_CPU=plain or =avx2 in the environment of the process, no
+ * more than that: to compare the kernels. */
 enum cpu_level cpu_level(void);
 
 #endif

@@ -124,13 +124,23 @@ static void normalised_back(const struct block_model *b, const struct block_arra
 		sums->dm0 + s, 1, panel_of(a->dm, b->sentences, first) + s * L, b->sentences, BLOCK_PANELS);
 }
 
-/* Through the softmax over words: ds = alpha (dalpha - alpha.dalpha), in place of alpha. */
-static void softmax_back(float *alpha, const float *dalpha, int words)
+/* Through the softmax over words: ds = alpha (dalpha - alpha.dalpha), in place of alpha; dalpha is
+ * overwritten. That of the word with the largest alpha is taken out first: where alpha is nearly 1, what is
+ * left after the subtraction would else be rounding. */
+static void softmax_back(float *alpha, float *dalpha, int words)
 {
 	for (int v = 0; v < L; v += VEC_LANES) {
-		vecn dot = vec_splat(0);
-		for (int j = 0; j < words; j++)
-			dot += vec_load(alpha + j * L + v) * vec_load(dalpha + j * L + v);
+		vecn most = vec_load(alpha + v), of_most = vec_load(dalpha + v), dot = vec_splat(0);
+		for (int j = 1; j < words; j++) {
+			const vecn own = vec_load(alpha + j * L + v);
+			of_most = vec_choose(vec_lt(most, own), vec_load(dalpha + j * L + v), of_most);
+			most = vec_max(own, most);
+		}
+		for (int j = 0; j < words; j++) {
+			const vecn left = vec_load(dalpha + j * L + v) - of_most;
+			vec_store(dalpha + j * L + v, left);
+			dot += vec_load(alpha + j * L + v) * left;
+		}
 		for (int j = 0; j < words; j++)
 			vec_store(alpha + j * L + v,
 				vec_load(alpha + j * L + v) * (vec_load(dalpha + j * L + v) - dot));

@@ -19,12 +19,14 @@ enum {
 #define DIVERGENCE_LIMIT 14.0
 
 struct divergence {
+	const struct refer_layout *layout; /* names the array at fault; NULL: it is not named */
 	int windows; /* bad ones in a row, the latest included; those cut short by the end do not count */
 	long begin;  /* steps before the first of these */
 };
 
 /* To be called after every step, while train_state.sum still has its window. 0, or -1 with *e, ERR_CHECK
- * without a file name: the training has diverged, with the step. */
+ * without a file name: the training has diverged, with the step, and
+ * the array that is not finite or, where only the loss is not, the one with the largest value. */
 int divergence_check(struct divergence *d, const struct train_state *t, const struct step_losses *last,
 	int is_end, struct err *e);
 

@@ -251,6 +251,9 @@ struct step_losses train_step(struct train_state *t, struct step *s, struct trai
 	t->sum.bce += losses.bce;
 	t->sum.contrast += losses.contrast;
 	t->sum.total += losses.total;
-	train_adam(t, rates);
+	if (isfinite(losses.total))
+		train_adam(t, rates);
+	else
+		t->iteration++;
 	return losses;
 }

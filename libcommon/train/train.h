@@ -93,7 +93,8 @@ void train_evaluated(struct train_state *t, double score);
 /* Adam on all parameters with the gradient that is there; iteration + 1. */
 void train_adam(struct train_state *t, const struct train_rates *rates);
 
-/* One step: gradient, Adam, iteration + 1, losses added to sum. */
+/* One step: gradient, Adam, iteration + 1, losses added to sum. Where the loss is not finite the values stay
+ * as they are, so that they show why (train/divergence.h). */
 struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o,
 	const struct train_rates *rates, size_t gaussians);
 

@@ -400,6 +400,44 @@ cut_short() {
 	[ -z "$(ls -A out)" ]
 }
 
+@test "a training that is interrupted leaves a checkpoint, its own exit status, and goes on to the same model" {
+	local files=(--scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 3000)
+	local way=(--interaction none --contrast none)
+	"$BIN/refer-train" "${files[@]}" "${way[@]}" -o whole
+	for signal in INT TERM; do
+		env --default-signal "$BIN/refer-train" "${files[@]}" "${way[@]}" --log log -o m 2>said 3>&- &
+		sleep 0.3
+		kill -$signal $!
+		status=0
+		wait $! || status=$?
+		[ $status = $((128 + $(kill -l $signal))) ]
+		grep -qE '^refer-train: stopped after step [0-9]+(; --resume goes on from m.checkpoint)?$' said
+		[ ! -e m ]
+		[ -z "$(ls ./*.tmp.refersplat* 2>/dev/null)" ]
+	done
+	"$BIN/gs-check" m.checkpoint
+	"$BIN/refer-train" "${files[@]}" "${way[@]}" --resume -o m
+	cmp m whole
+}
+
+@test "a training that diverges leaves the last good checkpoint as it is" {
+	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 100000 \
+		--checkpoint 5 -o m 3>&- &
+	for _ in $(seq 600); do [ -e m.checkpoint ] && break || sleep 0.1; done
+	kill -9 $!
+	wait $! || true
+	cp m.checkpoint good
+	for rates in "--mlp-rate 1 --feature-rate 10" "--mlp-rate 10 --feature-rate 10"; do
+		status=0
+		train -q --iterations 250 $rates --interaction none --checkpoint 100 -o m 2>line || status=$?
+		[ $status = 1 ]
+		grep -q 'training diverged after step [0-9]*: ' line
+		cmp good m.checkpoint
+		[ ! -e m ]
+	done
+	"$BIN/gs-check" m.checkpoint
+}
+
 @test "trainings that end well are no false alarm, however short" {
 	for interaction in none pcmi pcmi-proj; do
 		train --iterations 1 --interaction $interaction -o m

@@ -40,6 +40,34 @@ static void ends(long good, long bad, int is_end, const char *expected)
 		good, bad, e.message);
 }
 
+/* The array at fault is named: in place of it stands the largest value where all are finite. */
+static void names_the_array(void)
+{
+	static float all[200000];
+	struct refer_layout layout;
+	const struct step_losses bad = {.total = NAN};
+	struct err e;
+
+	refer_layout_init(&layout, REFER_PCMI, 24, 16);
+	struct divergence d = {.layout = &layout};
+	struct train_state t = {
+		.parameters = layout.count, .count = layout.count + 64, .values = all, .iteration = 7};
+	all[layout.tensors[FEATURE_1_WEIGHT].offset + 3] = -3e20f;
+	CHECK(divergence_check(&d, &t, &bad, 0, &e) &&
+			strstr(e.message,
+				"after step 6: the loss is not finite, the largest value is -3e+20, in "
+				"feature.1.weight; lower"),
+		"'%s'", e.message);
+	all[layout.tensors[TEXT_0_BIAS].offset] = INFINITY;
+	CHECK(divergence_check(&d, &t, &bad, 0, &e) &&
+			strstr(e.message, "after step 6: text.0.bias is not finite"),
+		"'%s'", e.message);
+	all[layout.count + 5] = NAN;
+	CHECK(divergence_check(&d, &t, &bad, 0, &e) &&
+			strstr(e.message, "after step 6: features are not finite"),
+		"'%s'", e.message);
+}
+
 int main(void)
 {
 	struct divergence d = {0};
@@ -75,7 +103,8 @@ int main(void)
 		e.message);
 	values[3] = 0;
 	t = start();
-	CHECK(steps(&d, &t, 7, INFINITY, 0, &e) && strstr(e.message, "after step 0: the loss is not finite"),
+	CHECK(steps(&d, &t, 7, INFINITY, 0, &e) && strstr(e.message, "after step 0: the loss is not finite,"),
 		"'%s'", e.message);
+	names_the_array();
 	return unit_end();
 }

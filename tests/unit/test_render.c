@@ -1,9 +1,8 @@
 #include "unit.h"
 
 #include "base/cpu.h"
-#include "base/rng.h"
 #include "formats/scene.h"
-#include "render_twin.h"
+#include "render_compare.h"
 #include "splat/render.h"
 #include "splat/sh.h"
 #include "splat/view.h"
@@ -12,133 +11,13 @@
 
 static const char *const level_names[CPU_LEVELS] = {"plain", "avx2", "avx512"};
 
-/* What a comparison with the twin found. */
-struct report {
-	long pixels, cuts; /* cuts: pixels whose list of Gaussians differs */
-	double weight;	   /* the largest difference of a weight, in pixels of equal lists */
-	double cut_margin; /* the largest margin of a pixel whose list differs: how far from a cut it was */
-	double sum;	   /* the largest |sum of weights + transmittance - 1| */
-	double nnz;
-};
-
-static struct camera camera_at_origin(int width, int height, double focal)
-{
-	struct camera c = {.width = width,
-		.height = height,
-		.fx = focal,
-		.fy = focal,
-		.cx = 0.5 * width,
-		.cy = 0.5 * height};
-
-	for (int i = 0; i < 4; i++)
-		c.world_to_camera[i][i] = 1;
-	return c;
-}
-
-static struct splats make_splats(size_t n)
-{
-	struct splats s;
-	struct err e;
-
-	if (splats_alloc(&s, n, 1, &e))
-		abort();
-	return s;
-}
-
-static void set_splat(struct splats *s, size_t i, const double mean[3], const double scale[3], double opacity)
-{
-	for (int k = 0; k < 3; k++) {
-		s->means[3 * i + (size_t)k] = (float)mean[k];
-		s->scales[3 * i + (size_t)k] = (float)scale[k];
-		s->sh[3 * i + (size_t)k] = 0.1f * (float)k;
-	}
-	memcpy(s->quats + 4 * i, (float[4]){1, 0, 0, 0}, 4 * sizeof(float));
-	s->opacities[i] = (float)opacity;
-}
-
-/* n Gaussians scattered before a camera at the origin; scales are size times e^(spread normal). */
-static struct splats random_splats(uint64_t seed, size_t n, double size, double spread)
-{
-	struct splats s = make_splats(n);
-	struct rng r;
-
-	rng_seed(&r, seed, 1);
-	for (size_t i = 0; i < n; i++) {
-		double z = rng_range(&r, -0.5, 6), mean[3], scale[3];
-		mean[0] = z * rng_range(&r, -0.9, 0.9);
-		mean[1] = z * rng_range(&r, -0.9, 0.9);
-		mean[2] = z;
-		for (int k = 0; k < 3; k++)
-			scale[k] = size * exp(spread * rng_normal(&r));
-		set_splat(&s, i, mean, scale, rng_uniform(&r));
-		for (size_t k = 0; k < 4; k++)
-			s.quats[4 * i + k] = (float)(3 * rng_normal(&r));
-	}
-	return s;
-}
-
-static void compare_pixel(
-	const struct render_weights *w, size_t p, const struct twin_pixel *truth, struct report *report)
-{
-	int64_t begin = w->indptr[p];
-	size_t n = (size_t)(w->indptr[p + 1] - begin);
-	double sum = w->transmittance[p], worst = fabs((double)w->transmittance[p] - truth->transmittance);
-	int is_same = n == truth->n;
-
-	for (size_t k = 0; k < n; k++)
-		sum += w->weight[begin + (int64_t)k];
-	for (size_t k = 0; is_same && k < n; k++) {
-		is_same = w->index[begin + (int64_t)k] == truth->index[k];
-		worst = fmax(worst, fabs((double)w->weight[begin + (int64_t)k] - truth->weight[k]));
-	}
-	report->pixels++;
-	report->nnz += (double)n;
-	report->sum = fmax(report->sum, fabs(sum - 1));
-	if (is_same) {
-		report->weight = fmax(report->weight, worst);
-	} else {
-		report->cuts++;
-		report->cut_margin = fmax(report->cut_margin, truth->margin);
-	}
-}
-
-/* Every stride-th pixel of the view, rendered at the given level, against the twin. */
-static struct report compare(
-	const struct splats *s, const struct camera *c, enum cpu_level level, size_t stride)
-{
-	struct err e = {0};
-	struct render_weights w;
-	struct report report = {0};
-	struct twin twin;
-
-	struct render_view *v = render_prepare(s, c, &e);
-	if (!CHECK(v, "%s", e.message))
-		return report;
-	v->level = level;
-	if (CHECK(!render_weights(v, &w, &e), "%s", e.message)) {
-		twin_prepare(&twin, s, c);
-		struct twin_pixel truth = {.index = malloc((twin.n + 1) * sizeof *truth.index),
-			.weight = malloc((twin.n + 1) * sizeof *truth.weight)};
-		for (size_t p = 0; p < (size_t)c->width * (size_t)c->height; p += stride) {
-			twin_blend(&twin, (int)(p % (size_t)c->width), (int)(p / (size_t)c->width), &truth);
-			compare_pixel(&w, p, &truth, &report);
-		}
-		free(truth.index);
-		free(truth.weight);
-		twin_free(&twin);
-		render_weights_free(&w);
-	}
-	render_free(v);
-	return report;
-}
-
 /* The agreement that is promised, at every level this machine has. Returns the weights seen. */
 static double check_view(const char *what, const struct splats *s, const struct camera *c)
 {
 	double nnz = 0;
 
 	for (enum cpu_level level = CPU_PLAIN; level <= cpu_level(); level++) {
-		struct report r = compare(s, c, level, 1);
+		struct render_report r = render_compare(s, c, level, 1);
 		CHECK(r.pixels == (long)c->width * c->height, "%s: %ld pixels", what, r.pixels);
 		CHECK(r.weight <= 1e-5, "%s, %s: a weight is off by %g", what, level_names[level], r.weight);
 		CHECK(r.sum <= 1e-6, "%s, %s: weights and transmittance miss 1 by %g", what,
@@ -183,25 +62,11 @@ static void odd_sizes(void)
 	splats_free(&s);
 }
 
-/* Aspect 1e6 at every angle, near and far, some through the camera plane's neighbourhood. */
 static void needles(void)
 {
 	struct camera c = camera_at_origin(50, 50, 40);
-	struct splats s = make_splats(400);
-	struct rng r;
+	struct splats s = needle_splats();
 
-	rng_seed(&r, 3, 1);
-	for (size_t i = 0; i < s.n; i++) {
-		double length = exp(rng_range(&r, -3, 7)), z = rng_range(&r, 0.3, 5);
-		set_splat(&s, i, (double[3]){rng_range(&r, -1, 1) * z, rng_range(&r, -1, 1) * z, z},
-			(double[3]){length, length * 1e-6, length * 1e-6}, rng_range(&r, 0.01, 0.3));
-		double turn = rng_range(&r, 0, 3.14159265);
-		memcpy(s.quats + 4 * i, (float[4]){(float)cos(turn / 2), 0, 0, (float)sin(turn / 2)},
-			4 * sizeof(float));
-		if (i % 2)
-			for (size_t k = 0; k < 4; k++)
-				s.quats[4 * i + k] = (float)rng_normal(&r);
-	}
 	CHECK(check_view("needles", &s, &c) > 1000, "there is something to see");
 	splats_free(&s);
 }
@@ -209,14 +74,9 @@ static void needles(void)
 static void zero_and_huge_scales(void)
 {
 	struct camera c = camera_at_origin(40, 24, 30);
-	struct splats s = make_splats(5);
+	struct splats s = odd_scale_splats();
 	struct err e;
 
-	set_splat(&s, 0, (double[3]){0, 0, 2}, (double[3]){0, 0, 0}, 0.9);
-	set_splat(&s, 1, (double[3]){0.3, 0.1, 3}, (double[3]){1e8, 1e8, 1e8}, 0.5);
-	set_splat(&s, 2, (double[3]){0.3, 0.1, 4}, (double[3]){1e8, 0, 0}, 0.7);
-	set_splat(&s, 3, (double[3]){-0.3, 0.1, 5}, (double[3]){0.2, 0, 1e4}, 0.7);
-	set_splat(&s, 4, (double[3]){-0.3, 0.1, 6}, (double[3]){1e30, 1e30, 0}, 0.6);
 	CHECK(check_view("zero and huge scales", &s, &c) > 2 * 960, "the huge ones cover all");
 	/* beyond double: left out, not NaN */
 	for (int k = 0; k < 3; k++)
@@ -300,19 +160,11 @@ static void ties_break_by_index(void)
 	splats_free(&s);
 }
 
-/* Depths that differ in the last bits only, over a range that the sort's keys cannot resolve. */
 static void close_depths(void)
 {
 	struct camera c = camera_at_origin(8, 8, 8);
-	struct splats s = make_splats(202);
-	struct rng r;
+	struct splats s = close_splats(&c);
 
-	rng_seed(&r, 6, 1);
-	memcpy(c.world_to_camera[2], (double[4]){1e-9, 0, 1, 0}, sizeof c.world_to_camera[2]);
-	for (size_t i = 0; i < 200; i++)
-		set_splat(&s, i, (double[3]){rng_range(&r, -0.1, 0.1), 0, 2}, (double[3]){1, 1, 1}, 0.01);
-	set_splat(&s, 200, (double[3]){0, 0, 0.3}, (double[3]){0.1, 0.1, 0.1}, 0.01);
-	set_splat(&s, 201, (double[3]){0, 0, 1e30}, (double[3]){1e30, 1e30, 1e30}, 0.01);
 	CHECK(check_view("close depths", &s, &c) > 0, "there is something to see");
 	splats_free(&s);
 }
@@ -320,11 +172,8 @@ static void close_depths(void)
 static void ten_thousand_layers(void)
 {
 	struct camera c = camera_at_origin(5, 5, 5);
-	struct splats s = make_splats(10000);
+	struct splats s = layer_splats(10000);
 
-	for (size_t i = 0; i < s.n; i++)
-		set_splat(
-			&s, i, (double[3]){0, 0, 10 - 5e-4 * (double)i}, (double[3]){900, 900, 900}, 0.0041);
 	double nnz = check_view("10,000 layers", &s, &c);
 	CHECK(nnz > 25 * 2000 && nnz < 25 * 2500, "%g weights: all pixels end before the last layer", nnz);
 	splats_free(&s);
@@ -528,7 +377,8 @@ static void trained_scene(void)
 		int width, height;
 		camera_scaled_size(full, 1.0 / part, &width, &height);
 		struct camera c = camera_resize(full, width, height);
-		struct report r = compare(&scene.splats, &c, cpu_level(), stride ? (size_t)atol(stride) : 37);
+		struct render_report r =
+			render_compare(&scene.splats, &c, cpu_level(), stride ? (size_t)atol(stride) : 37);
 		printf("%s, 1/%d, %s: %ld pixels, %.1f weights each; largest weight error %.2g, |sum + T - 1| %.2g; %ld "
 		       "pixels cut elsewhere, at most %.2g from a cut\n",
 			full->name, part, level_names[cpu_level()], r.pixels, r.nnz / (double)r.pixels,

@@ -1,0 +1,262 @@
+/* libFuzzer targets, one for each reader of formats/: the program is built once, and the part of its name
+ * after "reader-" says which reader it feeds. The input is a file in memory, which readers open by its path;
+ * those of folders find it there under the names that they look for. Built by `make fuzz`;
+ * REFERSPLAT_FUZZ_SEED=FILE has the checkpoint's target write a seed first. */
+#include "base/file.h"
+#include "cmd/jobs/check.h"
+#include "formats/annotations.h"
+#include "formats/bert_model.h"
+#include "formats/boxes.h"
+#include "formats/camerafile.h"
+#include "formats/checkpoint.h"
+#include "formats/colmap.h"
+#include "formats/dataparser.h"
+#include "formats/lifted.h"
+#include "formats/masks.h"
+#include "formats/model.h"
+#include "formats/npy.h"
+#include "formats/parser_weights.h"
+#include "formats/parses.h"
+#include "formats/ply.h"
+#include "formats/png.h"
+#include "formats/readings.h"
+#include "formats/safetensors.h"
+#include "formats/scene.h"
+#include "formats/sentences.h"
+#include "formats/text.h"
+#include "formats/vocab.h"
+#include "formats/weights.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+int LLVMFuzzerInitialize(int *argc, char ***argv);
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static struct err e;
+
+/* NAME reads and frees; what a reader says of the input does not matter, only that it says it. */
+#define SIMPLE(name, type, read, release)                                                                    \
+	static void try_##name(const char *path)                                                             \
+	{                                                                                                    \
+		type it = {0};                                                                               \
+		if (!read(&it, path, &e))                                                                    \
+			release(&it);                                                                        \
+	}
+
+SIMPLE(boxes, struct box_set, boxes_read, boxes_free)
+SIMPLE(camerafile, struct cameras, camerafile_read, cameras_free)
+SIMPLE(check, struct check, check_file, check_free)
+SIMPLE(masks, struct masks, masks_read, masks_free)
+SIMPLE(model, struct model, model_read, model_free)
+SIMPLE(npy, struct npy, npy_read, npy_free)
+SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
+SIMPLE(parses, struct parse_set, parses_read, parses_free)
+SIMPLE(readings, struct reading_set, readings_read, readings_free)
+SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
+SIMPLE(cameras, struct cameras, scene_read_cameras_file, cameras_free)
+SIMPLE(splats, struct scene, scene_read_splats, scene_free)
+SIMPLE(sentences, struct sentences, sentences_read_any, sentences_free)
+SIMPLE(text, struct text, text_read, text_free)
+SIMPLE(weights, struct weights, weights_open_file, weights_close)
+SIMPLE(colmap, struct cameras, colmap_read, cameras_free)
+SIMPLE(vocab, struct vocab, vocab_read, vocab_free)
+SIMPLE(bert, struct bert, bert_model_read, bert_free)
+
+static void try_annotations(const char *path)
+{
+	struct annotations a = {0};
+
+	(void)annotations_read(&a, path, &e);
+	annotations_free(&a);
+}
+
+static void try_lifted(const char *path)
+{
+	struct lifted l = {0};
+	struct origin origin;
+
+	if (!lifted_read(&l, &origin, path, &e))
+		lifted_free(&l);
+}
+
+static void try_ply(const char *path)
+{
+	struct splats s = {0};
+	struct ply_report report = {0};
+	double offset[3];
+
+	if (ply_read(&s, offset, &report, path, &e))
+		return;
+	splats_free(&s);
+	free(report.dropped);
+}
+
+static void try_image(const char *path)
+{
+	uint8_t *rgb = NULL, *mask = NULL;
+	int height, width;
+
+	if (!image_read_rgb(path, &rgb, &height, &width, &e))
+		free(rgb);
+	if (!png_read_mask(path, &mask, &height, &width, &e))
+		free(mask);
+}
+
+static void try_dataparser(const char *path)
+{
+	struct camera view = {.width = 4, .height = 3, .fx = 5, .fy = 5};
+	struct cameras c = {1, &view};
+
+	for (int i = 0; i < 4; i++)
+		view.world_to_camera[i][i] = 1;
+	(void)dataparser_move(&c, path, "cameras", &e);
+}
+
+enum { VALUES = 24 };
+static float values[5][VALUES];
+static const struct checkpoint_of of = {.identity = "a training", .scene_path = "scene", .text_path = "text"};
+
+static struct train_state small_state(void)
+{
+	return (struct train_state){.parameters = 16,
+		.count = VALUES,
+		.values = values[0],
+		.gradient = values[1],
+		.m = values[2],
+		.v = values[3],
+		.best = {.values = values[4]}};
+}
+
+static void try_checkpoint(const char *path)
+{
+	struct train_state t = small_state();
+
+	(void)checkpoint_resume(&t, path, &of, 1000, &e);
+}
+
+static const struct target {
+	const char *name;
+	void (*run)(const char *path);
+	/* Readers of folders: the files that the input is cut into, at the lengths that it begins with. */
+	const char *files[3];
+} targets[] = {
+	{"annotations", try_annotations, {0}},
+	{"bert", try_bert, {"config.json", "model.safetensors"}},
+	{"boxes", try_boxes, {0}},
+	{"camerafile", try_camerafile, {0}},
+	{"cameras", try_cameras, {0}},
+	{"check", try_check, {0}},
+	{"checkpoint", try_checkpoint, {0}},
+	{"colmap-binary", try_colmap, {"cameras.bin", "images.bin"}},
+	{"colmap-text", try_colmap, {"cameras.txt", "images.txt"}},
+	{"dataparser", try_dataparser, {0}},
+	{"image", try_image, {0}},
+	{"lifted", try_lifted, {0}},
+	{"masks", try_masks, {0}},
+	{"model", try_model, {0}},
+	{"npy", try_npy, {0}},
+	{"parser", try_parser, {0}},
+	{"parses", try_parses, {0}},
+	{"ply", try_ply, {0}},
+	{"readings", try_readings, {0}},
+	{"safetensors", try_safetensors, {0}},
+	{"sentences", try_sentences, {0}},
+	{"splats", try_splats, {0}},
+	{"text", try_text, {0}},
+	{"vocab-json", try_vocab, {"tokenizer.json"}},
+	{"vocab-text", try_vocab, {"vocab.txt", "tokenizer_config.json"}},
+	{"weights", try_weights, {0}},
+};
+
+enum {
+	TARGETS = sizeof targets / sizeof *targets,
+	CUT = 4 /* bytes, little-endian, of the first file's length */
+};
+static const struct target *target;
+static int fds[2];
+static char paths[2][64], folder[64];
+
+static void remove_folder(void)
+{
+	char name[128];
+
+	for (int i = 0; i < 2 && target->files[i]; i++) {
+		snprintf(name, sizeof name, "%s/%s", folder, target->files[i]);
+		unlink(name);
+	}
+	rmdir(folder);
+}
+
+static void make_files(void)
+{
+	char name[128];
+
+	for (int i = 0; i < 2; i++) {
+		snprintf(name, sizeof name, "/dev/shm/refersplat-fuzz-XXXXXX");
+		fds[i] = mkstemp(name);
+		unlink(name);
+		snprintf(paths[i], sizeof paths[i], "/proc/%ld/fd/%d", (long)getpid(), fds[i]);
+	}
+	if (!target->files[0])
+		return;
+	snprintf(folder, sizeof folder, "/dev/shm/refersplat-fuzz-XXXXXX");
+	if (!mkdtemp(folder))
+		abort();
+	atexit(remove_folder);
+	for (int i = 0; i < 2 && target->files[i]; i++) {
+		snprintf(name, sizeof name, "%s/%s", folder, target->files[i]);
+		if (symlink(paths[i], name))
+			abort();
+	}
+}
+
+int LLVMFuzzerInitialize(int *argc, char ***argv)
+{
+	const char *name = strstr((*argv)[0], "reader-"), *seed = getenv("REFERSPLAT_FUZZ_SEED");
+
+	(void)argc;
+	for (int i = 0; name && i < TARGETS; i++)
+		if (!strcmp(name + strlen("reader-"), targets[i].name))
+			target = &targets[i];
+	if (!target) {
+		fprintf(stderr, "the program's name is not that of a target: reader-NAME, where NAME is\n");
+		for (int i = 0; i < TARGETS; i++)
+			printf("%s\n", targets[i].name);
+		exit(2);
+	}
+	if (seed && target->run == try_checkpoint) {
+		const struct train_state t = small_state();
+		exit(checkpoint_write(&t, seed, &of, &e) ? 1 : 0);
+	}
+	make_files();
+	return 0;
+}
+
+static void put(int fd, const uint8_t *data, size_t size)
+{
+	if (pwrite(fd, data, size, 0) != (ssize_t)size || ftruncate(fd, (off_t)size))
+		abort();
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+	if (!target->files[1]) {
+		put(fds[0], data, size);
+	} else {
+		size_t cut = 0;
+		if (size < CUT)
+			return 0;
+		for (int i = 0; i < CUT; i++)
+			cut |= (size_t)data[i] << 8 * i;
+		cut = cut < size - CUT ? cut : size - CUT;
+		put(fds[0], data + CUT, cut);
+		put(fds[1], data + CUT + cut, size - CUT - cut);
+	}
+	target->run(target->files[0] ? folder : paths[0]);
+	return 0;
+}
