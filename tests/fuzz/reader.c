@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "cmd/jobs/check.h"
 #include "formats/annotations.h"
+#include "formats/anysplats.h"
 #include "formats/bert_model.h"
 #include "formats/boxes.h"
 #include "formats/camerafile.h"
@@ -17,7 +18,6 @@
 #include "formats/npy.h"
 #include "formats/parser_weights.h"
 #include "formats/parses.h"
-#include "formats/ply.h"
 #include "formats/png.h"
 #include "formats/readings.h"
 #include "formats/safetensors.h"
@@ -84,13 +84,13 @@ static void try_lifted(const char *path)
 		lifted_free(&l);
 }
 
-static void try_ply(const char *path)
+static void try_scene(const char *path)
 {
 	struct splats s = {0};
-	struct ply_report report = {0};
+	struct rows_report report = {0};
 	double offset[3];
 
-	if (ply_read(&s, offset, &report, path, &e))
+	if (anysplats_read(&s, offset, &report, path, &e))
 		return;
 	splats_free(&s);
 	free(report.dropped);
@@ -162,11 +162,12 @@ static const struct target {
 	{"npy", try_npy, {0}},
 	{"parser", try_parser, {0}},
 	{"parses", try_parses, {0}},
-	{"ply", try_ply, {0}},
+	{"ply", try_scene, {0}},
 	{"readings", try_readings, {0}},
 	{"safetensors", try_safetensors, {0}},
 	{"sentences", try_sentences, {0}},
 	{"splats", try_splats, {0}},
+	{"spz", try_scene, {0}},
 	{"text", try_text, {0}},
 	{"vocab-json", try_vocab, {"tokenizer.json"}},
 	{"vocab-text", try_vocab, {"vocab.txt", "tokenizer_config.json"}},

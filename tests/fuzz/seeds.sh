@@ -100,6 +100,10 @@ seed readings some-readings.jsonl
 seed safetensors some.safetensors small/weights/view_000.safetensors "$here/tests/golden/good/small.safetensors"
 seed sentences some.jsonl
 seed splats few/splats.safetensors
+for version in 2 3 4; do
+	gs-transform -q --spz-version $version -o few$version.spz few.ply
+done
+seed spz few2.spz few3.spz few4.spz
 seed text some.safetensors
 seed vocab-json encoder/tokenizer.json
 : >empty
@@ -120,6 +124,7 @@ for target in "$dir"/*/; do
 	parser) set -- parser_weights.c ;;
 	parses) set -- parses_read.c ;;
 	ply) set -- ply.c plyfile.c plypacked.c ;;
+	spz) set -- spz.c spz_container.c ;;
 	weights) set -- weights.c weights_pack.c ;;
 	check) set -- scene.c weights.c text.c lifted.c masks.c boxes.c sentences.c ;;
 	*) set -- "${target%-*}.c" ;;
