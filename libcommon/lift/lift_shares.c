@@ -1,23 +1,17 @@
 #include "base/mem.h"
 #include "lift/lift_private.h"
+#include "lift/marks.h"
 
 #include <stdlib.h>
 
 /* Keeps the share of a Gaussian that hardly any pixel shows near 0. */
 static const double LEAST_WEIGHT = 0.01;
 
-enum { WORD = 64 };
-
 /* One thread's, of all Gaussians: 0 between objects. */
 struct sums {
-	double *inside; /* (N) votes times weights inside the masks */
-	uint64_t *bits; /* (N) what a mask shows */
+	double *inside;	 /* (N) votes times weights inside the masks */
+	uint64_t *marks; /* what a mask shows */
 };
-
-static size_t words(size_t gaussians)
-{
-	return gaussians / WORD + 1;
-}
 
 /* Where a view has an object's mask: its row, or v->n. */
 static size_t find_row(const struct lift_view *v, size_t object)
@@ -37,21 +31,9 @@ static void sum_inside(const struct lift_objects *l, size_t object, struct sums 
 		for (size_t j = 0; k < v->n && j < v->rows[k].n; j++) {
 			const size_t i = (size_t)v->rows[k].index[j];
 			s->inside[i] += (double)v->vote[k] * (double)v->rows[k].share[j];
-			s->bits[i / WORD] |= (uint64_t)1 << i % WORD;
+			marks_add(s->marks, i);
 		}
 	}
-}
-
-static size_t list(struct sums *s, size_t gaussians, int32_t *index)
-{
-	size_t n = 0;
-
-	for (size_t word = 0; word < words(gaussians); word++) {
-		for (uint64_t left = s->bits[word]; left; left &= left - 1)
-			index[n++] = (int32_t)(word * WORD + (size_t)__builtin_ctzll(left));
-		s->bits[word] = 0;
-	}
-	return n;
 }
 
 /* weight (n of index): votes times weights in the views that have a mask of the object. */
@@ -81,15 +63,6 @@ static double find_level(const struct shares *row, const double *weight)
 	return sum > 0 ? squares / sum : 1;
 }
 
-static size_t count_bits(const uint64_t *bits, size_t gaussians)
-{
-	size_t n = 0;
-
-	for (size_t word = 0; word < words(gaussians); word++)
-		n += (size_t)__builtin_popcountll(bits[word]);
-	return n;
-}
-
 /* An object's shares, and its level. */
 static int make_row(struct lift_objects *l, size_t object, struct sums *s, double *level, struct err *e)
 {
@@ -97,7 +70,7 @@ static int make_row(struct lift_objects *l, size_t object, struct sums *s, doubl
 
 	shares_free(row);
 	sum_inside(l, object, s);
-	const size_t n = count_bits(s->bits, l->gaussians);
+	const size_t n = marks_count(s->marks, l->gaussians);
 	double *weight = mem_zalloc(n, sizeof *weight, "shares", e);
 	*row = (struct shares){.index = mem_alloc(n, sizeof *row->index, "shares", e),
 		.share = mem_alloc(n, sizeof *row->share, "shares", e)};
@@ -105,7 +78,7 @@ static int make_row(struct lift_objects *l, size_t object, struct sums *s, doubl
 		free(weight);
 		return -1;
 	}
-	row->n = list(s, l->gaussians, row->index);
+	row->n = marks_take(s->marks, l->gaussians, row->index);
 	sum_weight(l, object, row->index, n, weight);
 	for (size_t k = 0; k < n; k++) {
 		double *inside = &s->inside[row->index[k]];
@@ -125,9 +98,8 @@ static int make_rows(struct lift_objects *l, double *levels, struct err *e)
 #pragma omp parallel reduction(| : failed)
 	{
 		struct err mine;
-		struct sums s = {mem_zalloc(n, sizeof *s.inside, "shares", &mine),
-			mem_zalloc(words(n), sizeof *s.bits, "shares", &mine)};
-		failed = !s.inside || !s.bits;
+		struct sums s = {mem_zalloc(n, sizeof *s.inside, "shares", &mine), marks_make(n, &mine)};
+		failed = !s.inside || !s.marks;
 #pragma omp for schedule(dynamic)
 		for (size_t o = 0; o < l->objects; o++)
 			failed = failed || make_row(l, o, &s, &levels[o], &mine);
@@ -136,7 +108,7 @@ static int make_rows(struct lift_objects *l, double *levels, struct err *e)
 			*e = mine;
 		}
 		free(s.inside);
-		free(s.bits);
+		free(s.marks);
 	}
 	return failed ? -1 : 0;
 }

@@ -19,10 +19,10 @@
  * 3. The object's mask in a view is the candidate, of whatever object, that agrees with its region; where
  *    none agrees nearly as well as they do in its other views, the region itself is rendered (lift.h).
  *
- * Masks of a view that look alike (regions.c) are one candidate, so that time and memory go by the different
- * ones. What a mask shows is kept by mask and by Gaussian (shares.h): two numbers each. A region then asks
- * its Gaussians which candidates show them. What an agreement below JOINS * PEER is (regions_private.h) is
- * never looked at, and given as 0.
+ * Masks of a view that look alike (regions_lift.c) are one candidate, so that time and memory go by the
+ * different ones. What a mask shows is kept by mask and by Gaussian (shares.h): two numbers each. A region
+ * then asks its Gaussians which candidates show them. What an agreement below JOINS * PEER is
+ * (regions_private.h) is never looked at, and given as 0.
  *
  * All of it is the same to the bit for any number of threads. */
 #ifndef LIFT_REGIONS_H

@@ -30,8 +30,8 @@ struct regions_sums {
 	int32_t *index;	  /* (n of N) rising */
 	float *sum, *all; /* (n of N) */
 	/* of all Gaussians, 0 between uses */
-	float *shown;	/* (N) */
-	uint64_t *bits; /* (N/64+1) */
+	float *shown; /* (N) */
+	uint64_t *marks;
 };
 
 int regions_sums_make(struct regions_sums *s, size_t gaussians, struct err *e);

@@ -1,21 +1,15 @@
 #include "lift/shares.h"
 
 #include "base/mem.h"
+#include "lift/marks.h"
 
 #include <stdlib.h>
 
-enum { WORD = 64 };
-
 /* One thread's: sums of all Gaussians, and which of them are above 0. All 0 between images. */
 struct sums {
-	float *sum;	/* (N) */
-	uint64_t *bits; /* (N) */
+	float *sum; /* (N) */
+	uint64_t *marks;
 };
-
-static size_t words(size_t gaussians)
-{
-	return gaussians / WORD + 1;
-}
 
 /* Pixels in their order. Returns how many sums are above 0. */
 static size_t add_image(struct sums *s, const struct view_weights *w, const float *image)
@@ -31,7 +25,7 @@ static size_t add_image(struct sums *s, const struct view_weights *w, const floa
 			s->sum[i] += w->weight[k] * image[p];
 			if (before > 0 || !(s->sum[i] > 0))
 				continue;
-			s->bits[i / WORD] |= (uint64_t)1 << i % WORD;
+			marks_add(s->marks, i);
 			n++;
 		}
 	}
@@ -41,15 +35,10 @@ static size_t add_image(struct sums *s, const struct view_weights *w, const floa
 /* Moves the sums into a row, in the order of the Gaussians. */
 static void take(struct sums *s, size_t gaussians, struct shares *row)
 {
-	row->n = 0;
-	for (size_t word = 0; word < words(gaussians); word++) {
-		for (uint64_t left = s->bits[word]; left; left &= left - 1) {
-			const size_t i = word * WORD + (size_t)__builtin_ctzll(left);
-			row->index[row->n] = (int32_t)i;
-			row->share[row->n++] = s->sum[i];
-			s->sum[i] = 0;
-		}
-		s->bits[word] = 0;
+	row->n = marks_take(s->marks, gaussians, row->index);
+	for (size_t k = 0; k < row->n; k++) {
+		row->share[k] = s->sum[row->index[k]];
+		s->sum[row->index[k]] = 0;
 	}
 }
 
@@ -77,8 +66,8 @@ int shares_make(
 	{
 		struct err mine;
 		struct sums s = {mem_zalloc(w->gaussians, sizeof *s.sum, "masks", &mine),
-			mem_zalloc(words(w->gaussians), sizeof *s.bits, "masks", &mine)};
-		failed = !s.sum || !s.bits;
+			marks_make(w->gaussians, &mine)};
+		failed = !s.sum || !s.marks;
 #pragma omp for schedule(dynamic)
 		for (size_t k = 0; k < count; k++)
 			failed = failed || make_row(&rows[k], &s, w, images + k * w->pixels, &mine);
@@ -87,7 +76,7 @@ int shares_make(
 			*e = mine;
 		}
 		free(s.sum);
-		free(s.bits);
+		free(s.marks);
 	}
 	for (size_t k = 0; k < count && failed; k++)
 		shares_free(&rows[k]);
