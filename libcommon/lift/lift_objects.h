@@ -69,7 +69,8 @@ int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, 
 void lift_objects_free(struct lift_objects *l);
 
 /* A view's masks, in the order of their objects; several of one object are averaged. Every round has the same
- * views in the same order. Memory for a number of each Gaussian a view, and two of each that a mask shows.
+ * views in the same order. Memory for a number of each Gaussian a view, and two of each that a mask shows;
+ * while it lasts for an image of each object that has a mask.
  * Returns 0, or -1 with *e set for want of memory. */
 int lift_objects_view(struct lift_objects *l, const struct view_weights *w, int height, int width,
 	const struct lift_mask *masks, size_t n, struct err *e);
