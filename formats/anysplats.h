@@ -6,8 +6,8 @@
 #include "formats/gaussian_rows.h"
 #include "splat/splats.h"
 
-/* Reads a .ply, .spz or .splat ("-" is stdin): by how the file begins, and .splat, which begins with a
- * Gaussian, by its name. As ply_read. */
+/* Reads a .ply, .spz, SOG or .splat ("-" is stdin): by how the file begins; .splat, which begins with a
+ * Gaussian, and SOG's meta.json by their names. As ply_read. */
 int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e);
 

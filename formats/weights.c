@@ -342,23 +342,24 @@ int weights_mark(const char *dir, const struct cameras *cameras, char *there, si
 	return 0;
 }
 
-int weights_each(const char *dir, const struct scene *scene,
+int weights_each(const char *dir, const struct scene *scene, int (*needs)(const void *context, size_t view),
 	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
 	size_t *missing, struct err *e)
 {
 	*missing = 0;
 	for (size_t v = 0; v < scene->cameras.n; v++) {
 		const struct camera *camera = &scene->cameras.views[v];
-		struct weights w;
+		struct weights w = {0};
 		if (camera->split != SPLIT_TRAIN)
 			continue;
-		int found = weights_exist(dir, camera->name, e);
-		if (found < 0 || (found && weights_open(&w, dir, scene, v, e)))
+		const int found = weights_exist(dir, camera->name, e);
+		const int is_needed = !needs || needs(context, v);
+		if (found < 0 || (found && is_needed && weights_open(&w, dir, scene, v, e)))
 			return -1;
 		*missing += !found;
 		if (!found)
 			continue;
-		int bad = visit(context, v, &w, e);
+		const int bad = visit(context, v, is_needed ? &w : NULL, e);
 		weights_close(&w);
 		if (bad)
 			return -1;

@@ -148,9 +148,7 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 		return -1;
 	if (!h.len)
 		return err_set(e, ERR_FORMAT, "%s: empty", file_name(path));
-	if (begins(&h, "PK\3\4"))
-		return check_anysplats(c, path, "sog", e);
-	if (anysplats_is_meta(path))
+	if (begins(&h, "PK\3\4") || anysplats_is_meta(path))
 		return check_anysplats(c, path, "sog", e);
 	if (path_ends(path, ".splat"))
 		return check_anysplats(c, path, "splat", e);

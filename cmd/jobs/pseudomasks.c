@@ -69,7 +69,7 @@ static int lift_regions(struct pseudomasks *w, struct err *e)
 	struct regions *r = &w->regions;
 
 	if (regions_init(r, &w->pool, w->views, cameras->n, n, w->options->min_score, e) ||
-		weights_each(w->options->weights, &w->scene, lift_view, r, &w->left_out, e))
+		weights_each(w->options->weights, &w->scene, NULL, lift_view, r, &w->left_out, e))
 		return -1;
 	return regions_grow(r, e) || regions_assign(r, e) ? -1 : 0;
 }
@@ -77,12 +77,14 @@ static int lift_regions(struct pseudomasks *w, struct err *e)
 static int render(struct pseudomasks *w, size_t view, const struct weights *weights, struct rle *masks,
 	double *scores, struct err *e)
 {
-	const struct view_weights blend = weights ? weights_view(weights) : (struct view_weights){0};
+	struct regions *r = &w->regions;
 
+	if (!weights)
+		return regions_render(r, view, NULL, 0, 0, masks, scores, &w->rendered, e);
+	const struct view_weights blend = weights_view(weights);
 	if (w->options->method == PSEUDOMASK_SCENE)
-		return regions_render(&w->regions, view, weights ? &blend : NULL,
-			weights ? weights->height : 0, weights ? weights->width : 0, masks, scores,
-			&w->rendered, e);
+		return regions_render(
+			r, view, &blend, weights->height, weights->width, masks, scores, &w->rendered, e);
 	for (size_t i = 0; i < w->propagation.count; i++)
 		scores[i] = w->propagation.starts[i].vote;
 	return propagate_render(&w->propagation, view, &blend, weights->height, weights->width, masks, e);
@@ -117,28 +119,11 @@ static int put_view(void *data, size_t view, const struct weights *weights, stru
 }
 
 /* Weights are read only where a region has to be rendered. */
-static int put_regions(struct pseudomasks *w, struct err *e)
+static int needs_weights(const void *data, size_t view)
 {
-	const struct cameras *cameras = &w->scene.cameras;
-	char *is_there = mem_alloc(cameras->n, 1, "views", e);
-	int bad = !is_there || weights_mark(w->options->weights, cameras, is_there, &w->left_out, e);
+	const struct pseudomasks *w = data;
 
-	for (size_t v = 0; v < cameras->n && !bad; v++) {
-		struct weights weights;
-		if (!is_there[v])
-			continue;
-		if (!regions_need_weights(&w->regions, v)) {
-			bad = put_view(w, v, NULL, e);
-			continue;
-		}
-		bad = weights_open(&weights, w->options->weights, &w->scene, v, e);
-		if (!bad) {
-			bad = put_view(w, v, &weights, e);
-			weights_close(&weights);
-		}
-	}
-	free(is_there);
-	return bad ? -1 : 0;
+	return w->options->method != PSEUDOMASK_SCENE || regions_need_weights(&w->regions, view);
 }
 
 /* The masks of all views that have weights, those of one view in memory at a time. */
@@ -156,8 +141,7 @@ static int put_views(struct pseudomasks *w, const struct report *to, struct err 
 	if (!found && w->set.n)
 		report_warn(to, "%s: no candidate of a training view is above %g",
 			file_name(w->options->candidates), w->options->min_score);
-	if (found &&
-		(is_scene ? put_regions(w, e) : weights_each(dir, &w->scene, put_view, w, &w->left_out, e)))
+	if (found && weights_each(dir, &w->scene, needs_weights, put_view, w, &w->left_out, e))
 		return -1;
 	if (w->left_out)
 		report_warn(to, "%s: %zu training views have no weights, and get no masks", dir, w->left_out);

@@ -2,7 +2,6 @@
 
 #include "base/mem.h"
 #include "lift/lift_private.h"
-#include "splat/backproject.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -69,33 +68,35 @@ static int fill_image(
 	return bad ? -1 : 0;
 }
 
-/* How many objects the masks are of. */
-static size_t count_objects(const struct lift_mask *masks, size_t n)
-{
-	size_t count = 0;
+/* A view's masks by object: those of the k-th are masks[starts[k]] to masks[starts[k + 1] - 1]. */
+struct groups {
+	const struct lift_mask *masks;
+	size_t n, *starts; /* (n+1) */
+};
 
+static int groups_make(struct groups *g, const struct lift_mask *masks, size_t n, struct err *e)
+{
+	*g = (struct groups){masks, 0, mem_alloc(n + 1, sizeof *g->starts, "masks", e)};
+	if (!g->starts)
+		return -1;
 	for (size_t k = 0; k < n; k++)
-		count += !k || masks[k].object != masks[k - 1].object;
-	return count;
+		if (!k || masks[k].object != masks[k - 1].object)
+			g->starts[g->n++] = k;
+	g->starts[g->n] = n;
+	return 0;
 }
 
-/* images (count_objects,P) */
-static int fill_images(
-	const struct lift_mask *masks, size_t n, int height, int width, float *images, struct err *e)
+/* images (g->n,P) */
+static int fill_images(const struct groups *g, int height, int width, float *images, struct err *e)
 {
 	const size_t count = (size_t)height * (size_t)width;
 	int failed = 0;
 
 #pragma omp parallel for schedule(dynamic) reduction(| : failed)
-	for (size_t k = 0; k < n; k++) {
+	for (size_t k = 0; k < g->n; k++) {
 		struct err mine;
-		size_t end = k + 1;
-		if (k && masks[k].object == masks[k - 1].object)
-			continue;
-		while (end < n && masks[end].object == masks[k].object)
-			end++;
-		if (fill_image(masks + k, end - k, height, width,
-			    images + (count_objects(masks, k + 1) - 1) * count, &mine)) {
+		if (fill_image(g->masks + g->starts[k], g->starts[k + 1] - g->starts[k], height, width,
+			    images + k * count, &mine)) {
 			failed = 1;
 #pragma omp critical
 			*e = mine;
@@ -104,39 +105,26 @@ static int fill_images(
 	return failed ? -1 : 0;
 }
 
-static int find_weight(struct lift_view *v, const struct view_weights *w, struct err *e)
-{
-	double *weight = mem_zalloc(w->gaussians, sizeof *weight, "masks", e);
-
-	v->weight = weight ? mem_alloc(w->gaussians, sizeof *v->weight, "masks", e) : NULL;
-	if (v->weight) {
-		backproject_weight(w, weight);
-		for (size_t i = 0; i < w->gaussians; i++)
-			v->weight[i] = (float)weight[i];
-	}
-	free(weight);
-	return v->weight ? 0 : -1;
-}
-
 /* The first round: what the view's masks show. */
-static int add_view(struct lift_objects *l, const struct view_weights *w, const struct lift_mask *masks,
-	size_t n, const float *images, struct err *e)
+static int add_view(struct lift_objects *l, const struct view_weights *w, const struct groups *g,
+	const float *images, struct err *e)
 {
 	if (mem_grow((void **)&l->views, &l->view_capacity, l->view_count + 1, sizeof *l->views, "views", e))
 		return -1;
 	struct lift_view *v = &l->views[l->view_count++];
-	*v = (struct lift_view){.n = count_objects(masks, n)};
+	*v = (struct lift_view){.n = g->n};
 	v->objects = mem_alloc(v->n, sizeof *v->objects, "views", e);
 	v->rows = mem_zalloc(v->n, sizeof *v->rows, "views", e);
 	v->vote = mem_alloc(v->n, sizeof *v->vote, "views", e);
-	if (!v->objects || !v->rows || !v->vote || find_weight(v, w, e) ||
+	v->weight = mem_alloc(w->gaussians, sizeof *v->weight, "views", e);
+	if (!v->objects || !v->rows || !v->vote || !v->weight || shares_of_view(v->weight, w, e) ||
 		shares_make(v->rows, w, images, v->n, e))
 		return -1;
-	for (size_t k = 0, at = 0; k < n; k++)
-		if (!k || masks[k].object != masks[k - 1].object) {
-			v->objects[at] = masks[k].object;
-			v->vote[at++] = 1;
-		}
+	for (size_t k = 0; k < v->n; k++) {
+		v->objects[k] = g->masks[g->starts[k]].object;
+		v->vote[k] = 1;
+		l->masks[v->objects[k]]++;
+	}
 	return 0;
 }
 
@@ -162,17 +150,15 @@ static int vote(struct lift_objects *l, struct lift_view *v, const struct view_w
 int lift_objects_view(struct lift_objects *l, const struct view_weights *w, int height, int width,
 	const struct lift_mask *masks, size_t n, struct err *e)
 {
-	const size_t count = count_objects(masks, n);
-	float *images = mem_alloc(count, w->pixels * sizeof *images, "masks", e);
-	int bad = !images || fill_images(masks, n, height, width, images, e);
+	struct groups g;
+	float *images = NULL;
+	int bad = groups_make(&g, masks, n, e) ||
+		  !(images = mem_alloc(g.n, w->pixels * sizeof *images, "masks", e)) ||
+		  fill_images(&g, height, width, images, e) ||
+		  (l->round ? vote(l, &l->views[l->next], w, images, e) : add_view(l, w, &g, images, e));
 
-	if (!bad && !l->round)
-		bad = add_view(l, w, masks, n, images, e);
-	else if (!bad)
-		bad = vote(l, &l->views[l->next], w, images, e);
 	l->next++;
-	for (size_t k = 0; k < n && !bad; k++)
-		l->masks[masks[k].object] += !k || masks[k].object != masks[k - 1].object;
+	free(g.starts);
 	free(images);
 	return bad ? -1 : 0;
 }
@@ -189,7 +175,6 @@ int lift_objects_settle(struct lift_objects *l, struct err *e)
 			l->agreement[o] /= (double)l->masks[o];
 		} else if (!is_last) {
 			l->agreement[o] = 0;
-			l->masks[o] = 0;
 		}
 	return 0;
 }

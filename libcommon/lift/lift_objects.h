@@ -59,9 +59,9 @@ struct lift_objects {
 	struct lift_view *views;
 	struct shares *shares;	   /* (O) of Gaussians, from the round before */
 	struct lift_claim *claims; /* (N) */
-	/* of this round's masks, by object */
-	double *agreement; /* (O) sum; after the last round the mean */
-	size_t *masks;	   /* (O) */
+	/* of the views' masks, by object */
+	double *agreement; /* (O) sum of this round; after the last round the mean */
+	size_t *masks;	   /* (O) views that have one */
 };
 
 /* Returns 0, or -1 with *e set and nothing to free. */

@@ -95,7 +95,7 @@ static void look_from(struct growth *g, const struct regions *r, size_t view)
 	g->seen_view = view;
 }
 
-/* Of a candidate with the region. Sizes alone may keep it below what matters. */
+/* Of a candidate with the region. Its part of the region alone may keep it below what matters. */
 static float agree(const struct growth *g, const struct regions *r, size_t c, int is_partly_seen)
 {
 	const struct regions_candidate *at = &r->candidates[c];

@@ -2,7 +2,6 @@
 
 #include "base/mem.h"
 #include "mask/bits.h"
-#include "splat/backproject.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -164,19 +163,6 @@ static int lift_masks(struct regions *r, const struct view_weights *w, const str
 	return bad ? -1 : 0;
 }
 
-static int add_weight(struct regions *r, size_t view, const struct view_weights *w, struct err *e)
-{
-	double *weight = mem_zalloc(r->gaussians, sizeof *weight, "masks", e);
-
-	if (!weight)
-		return -1;
-	backproject_weight(w, weight);
-	for (size_t i = 0; i < r->gaussians; i++)
-		r->weight[view * r->gaussians + i] = (float)weight[i];
-	free(weight);
-	return 0;
-}
-
 int regions_lift(
 	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e)
 {
@@ -188,7 +174,7 @@ int regions_lift(
 	for (end = begin; end < r->witness_count && r->witnesses[end].view == view;)
 		end++;
 	r->ranges[view] = (struct regions_range){r->count, r->count};
-	int bad = add_weight(r, view, w, e) ||
+	int bad = shares_of_view(r->weight + view * r->gaussians, w, e) ||
 		  shapes_make(&s, r->witnesses + begin, end - begin, height, width, e) ||
 		  lift_masks(r, w, &s, r->witnesses + begin, e);
 	r->ranges[view].end = r->count;

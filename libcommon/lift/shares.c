@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "lift/marks.h"
+#include "splat/backproject.h"
 
 #include <stdlib.h>
 
@@ -88,4 +89,17 @@ void shares_free(struct shares *row)
 	free(row->index);
 	free(row->share);
 	*row = (struct shares){0};
+}
+
+int shares_of_view(float *weight, const struct view_weights *w, struct err *e)
+{
+	double *sum = mem_zalloc(w->gaussians, sizeof *sum, "masks", e);
+
+	if (!sum)
+		return -1;
+	backproject_weight(w, sum);
+	for (size_t i = 0; i < w->gaussians; i++)
+		weight[i] = (float)sum[i];
+	free(sum);
+	return 0;
 }

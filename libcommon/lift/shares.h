@@ -22,4 +22,7 @@ int shares_make(
 	struct shares *rows, const struct view_weights *w, const float *images, size_t count, struct err *e);
 void shares_free(struct shares *row);
 
+/* What all of a view has of each Gaussian: weight (N). Returns 0, or -1 with *e set for want of memory. */
+int shares_of_view(float *weight, const struct view_weights *w, struct err *e);
+
 #endif

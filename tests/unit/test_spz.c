@@ -104,23 +104,35 @@ static void test_round_trip(int version, int coefficients, double reach, const d
 	splats_free(&b);
 }
 
+/* A file of four Gaussians; *r goes on after them. */
+static char *make_file(int version, int coefficients, struct rng *r, size_t *len)
+{
+	struct splats a;
+	struct err e;
+	double zero[3] = {0};
+	char *bytes;
+
+	rng_seed(r, 7, 0);
+	if (splats_alloc(&a, 4, coefficients, &e))
+		exit(1);
+	fill(&a, r, 10);
+	if (spz_write(&a, zero, version, path, &e) || file_read(path, &bytes, len, &e))
+		exit(1);
+	splats_free(&a);
+	return bytes;
+}
+
 /* Every shorter file is refused, with one reason. */
 static void test_cuts(int version)
 {
 	struct rng r;
-	struct splats a, b;
+	struct splats b;
 	struct err e;
 	double zero[3] = {0};
-	char *bytes;
 	size_t len;
+	char *bytes = make_file(version, 4, &r, &len);
 	int kept = 0;
 
-	rng_seed(&r, 7, 0);
-	if (splats_alloc(&a, 4, 4, &e))
-		exit(1);
-	fill(&a, &r, 10);
-	if (spz_write(&a, zero, version, path, &e) || file_read(path, &bytes, &len, &e))
-		exit(1);
 	for (size_t cut = 4; cut < len; cut++) {
 		unsigned char *part = malloc(cut);
 		struct file_map map = {part, cut, 0};
@@ -131,26 +143,19 @@ static void test_cuts(int version)
 	}
 	CHECK(!kept, "version %d: %d cuts are read", version, kept);
 	free(bytes);
-	splats_free(&a);
 }
 
 /* A changed byte is refused or makes other Gaussians, but never more than the file has room for. */
 static void test_changes(int version)
 {
 	struct rng r;
-	struct splats a, b;
+	struct splats b;
 	struct err e;
 	double zero[3] = {0};
-	char *bytes;
 	size_t len;
+	char *bytes = make_file(version, 9, &r, &len);
 	int refused = 0;
 
-	rng_seed(&r, 8, 0);
-	if (splats_alloc(&a, 4, 9, &e))
-		exit(1);
-	fill(&a, &r, 10);
-	if (spz_write(&a, zero, version, path, &e) || file_read(path, &bytes, &len, &e))
-		exit(1);
 	for (size_t at = 0; at < len; at++) {
 		unsigned char *changed = malloc(len);
 		struct file_map map = {changed, len, 0};
@@ -163,7 +168,6 @@ static void test_changes(int version)
 	}
 	CHECK(refused > (int)len / 4, "version %d: %d of %zu refused", version, refused, len);
 	free(bytes);
-	splats_free(&a);
 }
 
 static void test_far(void)

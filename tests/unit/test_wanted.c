@@ -2,12 +2,13 @@
 #include "unit.h"
 
 #include "base/rng.h"
+#include "render_compare.h"
 #include "splat/render.h"
 #include "splat/view.h"
 
 /* Gaussians around a camera that looks along z, few of them wanted: sizes from needles to larger than the
  * view. */
-static struct splats make_splats(size_t n, struct rng *r)
+static struct splats scattered(size_t n, struct rng *r)
 {
 	struct splats s;
 	struct err e;
@@ -72,7 +73,7 @@ static void check(uint64_t seed, size_t n, int width, int height, double part)
 	struct err e;
 
 	rng_seed(&r, seed, 1);
-	struct splats s = make_splats(n, &r);
+	struct splats s = scattered(n, &r);
 	const struct camera c = make_camera(&r, width, height);
 	fill(&r, n, CHANNELS, part, values, is_wanted);
 	struct render_view *all = render_prepare(&s, &c, &e),
@@ -106,20 +107,14 @@ static void check(uint64_t seed, size_t n, int width, int height, double part)
 /* A small thing in a corner leaves most Gaussians out. */
 static void most_are_left_out(void)
 {
-	const struct camera c = {.width = 320,
-		.height = 240,
-		.fx = 300,
-		.fy = 300,
-		.cx = 160,
-		.cy = 120,
-		.world_to_camera = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+	const struct camera c = camera_at_origin(320, 240, 300);
 	enum { N = 4000 };
 	uint8_t is_wanted[N] = {1};
 	struct rng r;
 	struct err e;
 
 	rng_seed(&r, 5, 1);
-	struct splats s = make_splats(N, &r);
+	struct splats s = scattered(N, &r);
 	memcpy(s.means, (float[]){-0.9f, -0.6f, 2}, 3 * sizeof(float));
 	memcpy(s.scales, (float[]){0.01f, 0.01f, 0.01f}, 3 * sizeof(float));
 	s.opacities[0] = 0.9f;
