@@ -123,8 +123,8 @@ ask.lift-names = --without relations,except,sizes,colours,alike
 lift.lift-words = plain
 ask.lift-words = --without relations,except,sizes,colours,alike,names
 lift.lift-sentence = plain
-ask.lift-sentence = --without relations,except,sizes,colours,alike,names,words,knowledge,wording
-parts := words names knowledge alike colours sizes relations except sentence wording
+ask.lift-sentence = --without relations,except,sizes,colours,alike,names,words,knowledge,wording,purpose
+parts := words names knowledge alike colours sizes relations except sentence wording purpose
 $(foreach p,$(parts),$(eval lift.lift-but-$(p) = full)$(eval ask.lift-but-$(p) = --without $(p)))
 encoders := $(foreach b,$(BERTS),$(firstword $(subst =, ,$(b))))
 $(foreach b,$(BERTS),$(eval dir.$(firstword $(subst =, ,$(b))) := $(lastword $(subst =, ,$(b)))))

@@ -112,6 +112,8 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e)
 	if (a->explained && a->is_by_wording)
 		fputs("  answered by the wording alone: its words are those of this thing's sentences\n",
 			out);
+	if (a->explained && a->is_by_purpose)
+		fputs("  answered by what the thing is for\n", out);
 	if (!a->count)
 		fprintf(out, "nothing here is that: %s\n", a->reason);
 	if (t->distance.is_asked && a->count)
@@ -240,7 +242,8 @@ static int add_answer(cJSON *to, const struct answer_told *t)
 		if (!second || !add_name(second, t, a->runner_up))
 			return 0;
 	}
-	if (a->is_by_wording && !cJSON_AddStringToObject(to, "by", "wording"))
+	if ((a->is_by_wording || a->is_by_purpose) &&
+		!cJSON_AddStringToObject(to, "by", a->is_by_wording ? "wording" : "purpose"))
 		return 0;
 	if (!a->count && !cJSON_AddStringToObject(to, "reason", a->reason))
 		return 0;

@@ -47,6 +47,7 @@ struct asking_answer {
 	size_t count, *things;	     /* the objects that are meant, likeliest first; 0: refused */
 	size_t runner_up;	     /* the likeliest other object; ASKING_NONE */
 	double there;		     /* P that the question means anything that is here */
+	int is_by_purpose;	     /* what the thing is for told */
 	int is_by_wording;	     /* the parse told nothing, the wording alone did */
 	double *probability;	     /* (objects) that each is meant, or one of those meant */
 	char reason[EXPLAIN_REASON]; /* of a refusal */

@@ -1,6 +1,7 @@
 #include "ask/choose.h"
 
 #include "ask/constants.h"
+#include "ask/purposes.h"
 #include "ask/wording.h"
 #include "base/largest.h"
 #include "base/mem.h"
@@ -12,7 +13,7 @@
 int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
 {
 	static const char *const names[CHOOSE_PARTS] = {"words", "names", "knowledge", "alike", "colours",
-		"sizes", "relations", "except", "sentence", "wording"};
+		"sizes", "relations", "except", "sentence", "wording", "purpose"};
 
 	*parts = CHOOSE_ALL;
 	while (list_next(&list, unknown)) {
@@ -38,6 +39,7 @@ struct chooser {
 	struct meaning meaning;
 	struct wording wording;
 	double *score, *whole; /* (O) */
+	double *purpose;       /* (2 O) scratch */
 	double *looks;	       /* (O,O) */
 };
 
@@ -210,6 +212,23 @@ static void choose_wording(
 	to->is_by_wording = 1;
 }
 
+/* A sentence that says what a thing is for: the object of which that is most likely. */
+static void choose_purpose(struct chooser *c, struct choice *to, double *row, char *chosen)
+{
+	const size_t n = c->arrangement.n;
+	const double there = purposes_judge(&c->meaning, c->score, c->purpose);
+
+	if (there <= 0)
+		return;
+	memcpy(row, c->score, n * sizeof *row);
+	softmax(row, n);
+	memset(chosen, 0, n);
+	chosen[best_of(row, n)] = 1;
+	to->there = there;
+	to->is_by_purpose = 1;
+	to->is_several = 0;
+}
+
 /* s gets the sentence with its parse, which is `own` where the sentence has none. */
 static int choose_parsed(struct chooser *c, const struct choose_sentence *from, struct vocabulary_sentence *s,
 	struct choice *to, double *row, char *chosen, struct parse *own, struct err *e)
@@ -228,6 +247,11 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 	to->there = choose_phrase(c, p, 0, row, chosen);
 	for (int k = 0; k < p->phrases[0].also.n; k++)
 		to->there = fmax(to->there, choose_phrase(c, p, p->phrases[0].also.item[k], row, chosen));
+	const struct parse_phrase *target = &p->phrases[0];
+	if (has(c, CHOOSE_PURPOSE) && (to->there < PARSE_LEAST || !target->noun.n) && !target->also.n &&
+		!target->except.n && !target->ordinal &&
+		(target->count == PARSE_ONE || target->count == PARSE_SEVERAL))
+		choose_purpose(c, to, row, chosen);
 	if (has(c, CHOOSE_WORDING) && !to->is_several && !p->phrases[0].except.n && !p->phrases[0].ordinal &&
 		to->there < PARSE_LEAST)
 		choose_wording(c, s, to, row, chosen);
@@ -306,8 +330,9 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	*c = (struct chooser){.scene = s, .parts = parts, .from = {.kind = VIEWPOINT_USUAL}};
 	c->score = mem_alloc(objects, sizeof *c->score, "choice", e);
 	c->whole = mem_alloc(objects, sizeof *c->whole, "choice", e);
+	c->purpose = mem_alloc(objects, 2 * sizeof *c->purpose, "choice", e);
 	c->looks = mem_alloc(objects, objects * sizeof *c->looks, "choice", e);
-	if (!c->score || !c->whole || !c->looks ||
+	if (!c->score || !c->whole || !c->purpose || !c->looks ||
 		arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
 		vocabulary_make(&c->vocabulary, s->lifted, s->parser, e) || know_words(c, e))
 		return -1;
@@ -346,6 +371,7 @@ void chooser_free(struct chooser *c)
 	free(c->words);
 	free(c->score);
 	free(c->whole);
+	free(c->purpose);
 	free(c->looks);
 	free(c);
 }

@@ -32,6 +32,7 @@ enum choose_part {
 	CHOOSE_EXCEPT,	  /* "but not the red one" */
 	CHOOSE_SENTENCE,
 	CHOOSE_WORDING, /* what the wording alone is nearest to, where the parse finds nothing */
+	CHOOSE_PURPOSE, /* what a thing is for, of sentences that say that */
 	CHOOSE_PARTS
 };
 enum { CHOOSE_ALL = (1 << CHOOSE_PARTS) - 1 };
@@ -63,6 +64,7 @@ struct choice {
 	double there;	   /* P that the sentence means anything that was lifted */
 	int is_several;	   /* it may mean more than one object */
 	int is_by_wording; /* the parse found nothing, and the wording alone told (CHOOSE_WORDING) */
+	int is_by_purpose; /* what the thing is for told (CHOOSE_PURPOSE) */
 };
 
 /* What is known of a sentence once it is judged, for those who want to explain it; good until the call

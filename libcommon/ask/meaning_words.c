@@ -4,6 +4,8 @@
 #include "ask/meaning_private.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
+#include "lang/purpose.h"
+#include "lang/tokens.h"
 
 #include <math.h>
 #include <string.h>
@@ -185,10 +187,14 @@ void meaning_judge_said(struct meaning *m, const struct parse_clause *c, double 
 /* What a thing is for says what it is about: "the one you boil water in". */
 static void judge_about(struct meaning *m, double *value)
 {
+	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
 	double *about = m->scratch + n;
+	char counts[TOKENS_MOST];
 
-	vocabulary_about(m->vocabulary, m->sentence, about);
+	for (int w = 0; w < p->word_count; w++)
+		counts[w] = (char)purpose_is_content(p, w);
+	vocabulary_about(m->vocabulary, m->sentence, counts, about);
 	for (size_t o = 0; o < n; o++)
 		value[o] *= exp(ABOUT_WORTH * about[o]);
 	const double most = fmax(largest(value, n), 1e-12);

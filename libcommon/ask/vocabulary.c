@@ -26,6 +26,7 @@ void vocabulary_free(struct vocabulary *v)
 	free(v->heads);
 	free(v->head_kinds);
 	free(v->scratch);
+	free(v->about);
 	free(v->word);
 	free(v->other);
 	*v = (struct vocabulary){0};
@@ -75,6 +76,26 @@ static void sentence_vector(
 		sum[d] = sum[d] / (double)(pieces ? pieces : 1) - less[d];
 	}
 	take_direction(sum, width, out);
+}
+
+/* out (width) of length 1: the mean of the pieces of the words that count, less the mean. */
+static void words_vector(
+	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, float *out)
+{
+	const size_t width = (size_t)v->lifted->width;
+	double *sum = v->scratch, pieces = 0;
+
+	memset(sum, 0, width * sizeof *sum);
+	for (int w = 0; w < s->parse->word_count; w++)
+		for (int p = s->parse->words[w].piece;
+			counts[w] && p < s->parse->words[w].piece + s->parse->words[w].pieces; p++) {
+			for (size_t d = 0; d < width; d++)
+				sum[d] += s->vectors[(size_t)p * width + d];
+			pieces++;
+		}
+	for (size_t d = 0; d < width; d++)
+		sum[d] = pieces ? sum[d] / pieces - v->mean[d] : 0;
+	take_direction(sum, v->lifted->width, out);
 }
 
 /* Both means, of length not 1. */
@@ -128,7 +149,7 @@ static int add_item(struct vocabulary *v, size_t r, int word, enum vocabulary_ro
 			"vocabulary", e))
 		return -1;
 	struct vocabulary_item *item = &v->items[v->n];
-	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0, 0};
+	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0, 0, 0};
 	if (add_kind(v, w->lemma, &item->kind, e))
 		return -1;
 	word_vector(v, w, vectors_of(l, r), v->vectors + width * v->n++);
@@ -141,8 +162,10 @@ static int add_phrase(struct vocabulary *v, size_t r, const struct parse_phrase 
 {
 	int bad = 0;
 
-	for (int i = 0; i < f->noun.n && !bad; i++)
+	for (int i = 0; i < f->noun.n && !bad; i++) {
 		bad = add_item(v, r, f->noun.item[i], i + 1 == f->noun.n ? head : other, relation, e);
+		v->items[v->n - 1].is_of_name = !bad && head == VOCABULARY_NOUN;
+	}
 	for (int i = 0; i < f->attributes.n && !bad; i++)
 		bad = add_item(v, r, f->attributes.item[i], other, relation, e);
 	return bad;
@@ -278,12 +301,13 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	v->sentence_mean = mem_zalloc(width, sizeof *v->sentence_mean, "vocabulary", e);
 	v->sentences = mem_alloc(l->sentences, width * sizeof *v->sentences, "vocabulary", e);
 	v->scratch = mem_alloc(width, sizeof *v->scratch, "vocabulary", e);
+	v->about = mem_alloc(2 * width, sizeof *v->about, "vocabulary", e);
 	v->word = mem_alloc(width, sizeof *v->word, "vocabulary", e);
 	v->heads = mem_zalloc(l->objects, sizeof *v->heads, "vocabulary", e);
 	v->head_kinds = mem_alloc(l->objects, sizeof *v->head_kinds, "vocabulary", e);
 	v->other = mem_alloc(l->objects, sizeof *v->other, "vocabulary", e);
 	if (!v->heads || !v->head_kinds || !v->other || !v->parses || !v->mean || !v->sentence_mean ||
-		!v->sentences || !v->scratch || !v->word)
+		!v->sentences || !v->scratch || !v->about || !v->word)
 		return -1;
 	find_means(v);
 	if (read_names(v, e) || read_sentences(v, parser, e))
@@ -484,23 +508,50 @@ void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, i
 	}
 }
 
-void vocabulary_about(struct vocabulary *v, const struct vocabulary_sentence *s, double *match)
+/* out (width), of length not 1: the mean of the words of a kind, as all sentences have it. */
+static void kind_vector(const struct vocabulary *v, size_t kind, double *out)
 {
-	const size_t width = (size_t)v->lifted->width, objects = v->lifted->objects;
-	double *nouns = v->other;
+	const size_t width = (size_t)v->lifted->width;
+	double n = 0;
 
-	memset(match, 0, objects * sizeof *match);
-	memset(nouns, 0, objects * sizeof *nouns);
-	sentence_vector(v, s->vectors, s->pieces, v->mean, v->word);
+	memset(out, 0, width * sizeof *out);
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
-		if (item->role != VOCABULARY_NOUN || item->sentence == v->without)
+		if (item->kind != kind || (item->role != VOCABULARY_NOUN && !item->is_of_name))
 			continue;
-		match[item->object] += dot_float(v->word, v->vectors + i * width, width);
-		nouns[item->object]++;
+		for (size_t d = 0; d < width; d++)
+			out[d] += v->vectors[i * width + d];
+		n++;
 	}
-	for (size_t o = 0; o < objects; o++)
-		match[o] /= fmax(nouns[o], 1);
+	for (size_t d = 0; d < width; d++)
+		out[d] /= fmax(n, 1);
+}
+
+void vocabulary_about(
+	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, double *match)
+{
+	const size_t width = (size_t)v->lifted->width;
+	double *kind = v->about, *all = v->about + width;
+
+	words_vector(v, s, counts, v->word);
+	for (size_t o = 0; o < v->lifted->objects; o++) {
+		double sum = 0, square = 0;
+		memset(all, 0, width * sizeof *all);
+		for (size_t i = 0; i < v->n; i++) {
+			const struct vocabulary_item *item = &v->items[i];
+			if (item->object != o || (item->role != VOCABULARY_NOUN && !item->is_of_name) ||
+				item->is_general)
+				continue;
+			kind_vector(v, item->kind, kind);
+			for (size_t d = 0; d < width; d++)
+				all[d] += kind[d];
+		}
+		for (size_t d = 0; d < width; d++) {
+			sum += all[d] * v->word[d];
+			square += all[d] * all[d];
+		}
+		match[o] = square > 0 ? sum / sqrt(square) : 0;
+	}
 }
 
 /* fit (O): how many of the training sentences that say a colour of an object say one like this: one of them

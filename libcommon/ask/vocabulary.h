@@ -30,6 +30,7 @@ struct vocabulary_item {
 	const char *lemma;
 	enum parse_relation relation; /* of VOCABULARY_ANCHOR: the clause's */
 	size_t kind;		      /* into kinds */
+	int is_of_name;		      /* of the object's noun: "earbud" and "case" */
 	int is_general; /* a noun that is above another one of the same object: "container" of a bowl */
 };
 
@@ -60,6 +61,7 @@ struct vocabulary {
 			    likewise */
 	size_t without;	 /* the training sentence whose words do not count, for the caller to set; R: none */
 	double *scratch; /* (width) */
+	double *about;	 /* (2,width) scratch */
 	float *word;	 /* (width) */
 	double *other;	 /* (O) */
 };
@@ -89,9 +91,11 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
  */
 void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
-/* match (O): the mean cosine of the mean of a sentence's pieces with the nouns that training sentences call
- * an object by, 0 where there is none: what the sentence is about, whatever its words are. */
-void vocabulary_about(struct vocabulary *v, const struct vocabulary_sentence *s, double *match);
+/* match (O): the cosine of the mean of a sentence's words that count (a char of each word) with the nouns
+ * that training sentences call an object by, 0 where there is none: what the sentence is about, whatever it
+ * says of that. */
+void vocabulary_about(
+	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, double *match);
 
 /* fit (O): how far an object is of the colour of a word, in [0,1], by its Gaussians and by the colours that
  * training sentences say it has. Returns 0 where it is no colour word. */

@@ -317,15 +317,18 @@ static void is_about(void)
 
 	CHECK(!vocabulary_make(&v, &lifted, &parser, &e), "%s", e.message);
 	for (int o = 0; o < 3; o++) {
-		const struct vocabulary_sentence s = {NULL, vectors, encode(said[o], vectors)};
+		struct parse_word word = {.pieces = (int)encode(said[o], vectors)};
+		const struct parse parse = {.word_count = 1, .words = &word};
+		const struct vocabulary_sentence s = {&parse, vectors, (size_t)word.pieces};
 		int best = 0;
-		vocabulary_about(&v, &s, match);
+		vocabulary_about(&v, &s, "\1", match);
 		for (int k = 0; k < OBJECTS; k++)
 			best = match[k] > match[best] ? k : best;
 		CHECK(best == o, "'%s' is about %s", said[o], names[best]);
 	}
-	const struct vocabulary_sentence none = {NULL, vectors, 0};
-	vocabulary_about(&v, &none, match);
+	const struct parse empty = {0};
+	const struct vocabulary_sentence none = {&empty, vectors, 0};
+	vocabulary_about(&v, &none, "", match);
 	for (int k = 0; k < OBJECTS; k++)
 		CHECK(isfinite(match[k]), "%s: %g", names[k], match[k]);
 	vocabulary_free(&v);

@@ -6,6 +6,7 @@
 #include "lang/examples.h"
 #include "lang/parser.h"
 #include "lang/parser_learn.h"
+#include "lang/purpose.h"
 
 static void words(const char *text, const char *expected)
 {
@@ -433,8 +434,33 @@ static void examples_are_whole(void)
 		predicates, anchors, negated);
 }
 
+/* Whether a sentence says what a thing is for, by its form. */
+static void purposes_are_told(void)
+{
+	static const char *const yes[] = {"what you slice bread with", "something to sew with",
+		"for digging holes", "the one used for fishing", "how would I shave?", "where the eggs go",
+		"dig the garden with it", "keeps the wind off", "I need to saw this plank",
+		"people sail across the lake on it", "the thing for soup"};
+	static const char *const no[] = {"the saw", "a saw left of the plank", "where is the saw?",
+		"could you lift it", "what stands by the wall", "I mean the saw", "where did I leave it",
+		"the saw with a plank on it", "the plank is under it", "it has a plank on it", "", "it"};
+	const struct parser parser = {0};
+	struct parse p = {0};
+	struct err e;
+
+	for (size_t i = 0; i < sizeof yes / sizeof *yes; i++) {
+		CHECK(!parse_sentence(&p, &parser, yes[i], NULL, &e) && purpose_is_said(&p), "%s", yes[i]);
+		parse_free(&p);
+	}
+	for (size_t i = 0; i < sizeof no / sizeof *no; i++) {
+		CHECK(!parse_sentence(&p, &parser, no[i], NULL, &e) && !purpose_is_said(&p), "%s", no[i]);
+		parse_free(&p);
+	}
+}
+
 int main(void)
 {
+	purposes_are_told();
 	tokenises();
 	closed_table_fits();
 	lemmas();

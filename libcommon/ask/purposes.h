@@ -1,0 +1,14 @@
+/* What each object is worth as what a sentence says the use of (lang/purpose.h), whatever its parse makes of
+ * it: by what the sentence is about, its mean cosine with the nouns of the object; by its words, in the
+ * glosses of those nouns and in what training sentences say; and by the colours and places that its parse
+ * has. */
+#ifndef ASK_PURPOSES_H
+#define ASK_PURPOSES_H
+
+#include "ask/meaning.h"
+
+/* score (O): logarithms of what fits, for a softmax; scratch (2 O). Returns P that the best of them is meant,
+ * 0 where no use is said. m: the sentence is judged. */
+double purposes_judge(const struct meaning *m, double *score, double *scratch);
+
+#endif

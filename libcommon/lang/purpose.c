@@ -1,0 +1,163 @@
+#include "lang/purpose.h"
+
+#include "lang/closed.h"
+#include "lang/colours.h"
+
+#include <string.h>
+
+static int is(const struct parse *p, int i, const char *const *list)
+{
+	for (; i >= 0 && i < p->word_count && *list; list++)
+		if (!strcmp(p->words[i].text, *list))
+			return 1;
+	return 0;
+}
+
+/* The class of a word, CLOSED_CLASSES of one of the open classes, -1 where there is no word. */
+static int class_of(const struct parse *p, int i)
+{
+	if (i < 0 || i >= p->word_count)
+		return -1;
+	const int closed = closed_find(p->words[i].text);
+	return closed < 0 ? CLOSED_CLASSES : (int)closed_words[closed].class;
+}
+
+static int is_open(const struct parse *p, int i)
+{
+	return class_of(p, i) == CLOSED_CLASSES;
+}
+
+static int ends_in(const char *word, const char *tail)
+{
+	const size_t n = strlen(word), m = strlen(tail);
+
+	return n > m + 1 && !strcmp(word + n - m, tail);
+}
+
+static const char *const asks[] = {"what", "whatever", "where", "which", "how", NULL};
+
+static int asks_before(const struct parse *p, int word)
+{
+	for (int i = 0; i < word; i++)
+		if (is(p, i, asks))
+			return 1;
+	return 0;
+}
+
+/* "you could", "I need to", "would I", "people": what somebody does begins after it; i where nobody is spoken
+ * of. What "I" did is no purpose. */
+static int after_doer(const struct parse *p, int i)
+{
+	static const char *const doers[] = {"you", "they", "people", "somebody", "someone", "anybody", NULL},
+				 *const self[] = {"i", "we", NULL}, *const to[] = {"to", NULL},
+				 *const did[] = {"did", NULL};
+	const int is_self = is(p, i, self);
+	int verb = i + 1;
+
+	if (class_of(p, i - 1) == CLOSED_AUXILIARY && !asks_before(p, i)) /* "could you lift it" */
+		return i;
+	if (is(p, i - 1, did) || (!is_self && !is(p, i, doers)))
+		return i;
+	while (class_of(p, verb) == CLOSED_AUXILIARY || class_of(p, verb) == CLOSED_HAVE ||
+		class_of(p, verb) == CLOSED_ADVERB ||
+		(class_of(p, verb) == CLOSED_REQUEST && is(p, verb + 1, to)) || is(p, verb, to))
+		verb++;
+	return is_self && verb == i + 1 && class_of(p, i - 1) != CLOSED_AUXILIARY ? i : verb;
+}
+
+static int says_doing(const struct parse *p)
+{
+	for (int i = 0; i < p->word_count; i++) {
+		const int verb = after_doer(p, i);
+		if (verb > i && is_open(p, verb) && closed_find(p->words[verb].lemma) < 0)
+			return 1;
+	}
+	return 0;
+}
+
+/* "for cutting", "used to cut", "something to cut with". */
+static int says_for(const struct parse *p)
+{
+	static const char *const purposes[] = {"for", NULL}, *const used[] = {"used", "use", NULL},
+				 *const to[] = {"to", "for", "it", NULL};
+
+	for (int i = 0; i < p->word_count; i++) {
+		if (is(p, i, purposes) && is_open(p, i + 1) && ends_in(p->words[i + 1].text, "ing"))
+			return 1;
+		if (is(p, i, purposes) && is_open(p, i + 1) && class_of(p, i - 1) == CLOSED_GENERIC)
+			return 1;
+		if (is(p, i, used) && is(p, i + 1, to))
+			return 1;
+		if (is(p, i, to) && is_open(p, i + 1) && (!i || class_of(p, i - 1) == CLOSED_GENERIC))
+			return 1;
+	}
+	return 0;
+}
+
+static int first_word(const struct parse *p)
+{
+	int i = 0;
+
+	while (class_of(p, i) == CLOSED_REQUEST || class_of(p, i) == CLOSED_CONJUNCTION ||
+		class_of(p, i) == CLOSED_ADVERB)
+		i++;
+	return i;
+}
+
+/* "where the flowers go", "what rings", but not "where is the vase" or "what stands by the wall". */
+static int asks_for(const struct parse *p)
+{
+	static const char *const which[] = {"which", "whatever", NULL};
+	const int i = first_word(p), next = class_of(p, i + 1);
+
+	if (next == CLOSED_AUXILIARY && after_doer(p, i + 2) == i + 2 && class_of(p, i + 2) == CLOSED_PRONOUN)
+		return 0;
+	if (next == CLOSED_AUXILIARY && after_doer(p, i + 2) > i + 2)
+		return says_doing(p);
+	return is(p, i, asks) && !is(p, i, which) && next != CLOSED_BE && next != CLOSED_POSE &&
+	       next != CLOSED_PLACE && next != CLOSED_HAVE && next != -1;
+}
+
+/* "sweep the floor with it". */
+static int ends_in_it(const struct parse *p)
+{
+	static const char *const it[] = {"it", "them", "this", "that", NULL};
+	static const char *const ways[] = {
+		"with", "in", "on", "from", "into", "of", "to", "by", "through", "off", NULL};
+	const int n = p->word_count;
+
+	if (!is(p, n - 1, it) || !is(p, n - 2, ways))
+		return 0;
+	for (int i = 0; i < n - 2; i++)
+		if (class_of(p, i) == CLOSED_HAVE || class_of(p, i) == CLOSED_WITH ||
+			class_of(p, i) == CLOSED_NEGATION)
+			return 0;
+	return 1;
+}
+
+/* "keeps the rain off". */
+static int begins_with_verb(const struct parse *p)
+{
+	static const char *const it[] = {"it", "that", "which", NULL};
+	int i = first_word(p);
+
+	while (is(p, i, it) || class_of(p, i) == CLOSED_GENERIC)
+		i++;
+	const int next = class_of(p, i + 1);
+	return is_open(p, i) && ends_in(p->words[i].text, "s") && !ends_in(p->words[i].text, "ss") &&
+	       strcmp(p->words[i].lemma, p->words[i].text) != 0 &&
+	       (next == CLOSED_DETERMINER || next == CLOSED_PRONOUN || next == CLOSED_CLASSES);
+}
+
+int purpose_is_said(const struct parse *p)
+{
+	return says_doing(p) || says_for(p) || asks_for(p) || ends_in_it(p) || begins_with_verb(p);
+}
+
+int purpose_is_content(const struct parse *p, int word)
+{
+	static const char *const empty[] = {"used", "use", "using", "go", "goes", "come", "comes", "make",
+		"makes", "put", "keep", "keeps", "let", "lets", "want", "wants", "somebody", "people", NULL};
+
+	return is_open(p, word) && !is(p, word, empty) && colour_word(p->words[word].lemma) < 0;
+}
