@@ -33,6 +33,7 @@ commands() {
 		text-encode text-encode -q --model $here/tests/golden/bert -o text ../from/sentences.jsonl
 		pseudomask-select pseudomask-select -q --scene ../from/scene --weights ../from/weights -o selected ../from/candidates.jsonl
 		refer-lift refer-lift -q $files -o lifted
+		feature-lift feature-lift -q --scene ../from/scene --weights ../from/weights --masks ../from/masks --text ../from/text -o features
 		refer-train refer-train -q $files --iterations 40 -o trained
 		refer-train-exact refer-train -q $files --iterations 8 --share 0 --negatives 0 --batch 3 --precision f32 -o exact
 		refer-render-lifted refer-render -q --scene ../from/scene --text ../from/text --model ../from/lifted --split all --response response --response-type npy -o predictions
