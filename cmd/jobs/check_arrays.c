@@ -9,6 +9,7 @@
 #include "formats/npy.h"
 #include "formats/parser_weights.h"
 #include "formats/png.h"
+#include "formats/selection.h"
 #include "formats/text.h"
 #include "formats/weights.h"
 
@@ -149,6 +150,20 @@ int check_features(struct check *c, const char *path, struct err *e)
 	if (f.labels)
 		check_add(c, "labels", (long long)labels);
 	features_close(&f);
+	return 0;
+}
+
+int check_selection(struct check *c, const char *path, struct err *e)
+{
+	struct selection s;
+
+	if (selection_read(&s, path, e))
+		return -1;
+	c->scene = s.scene;
+	check_add(c, "sentences", (long long)s.n);
+	check_add(c, "items", (long long)s.indptr[s.n]);
+	check_add(c, "gaussians of the scene", (long long)s.gaussians);
+	selection_free(&s);
 	return 0;
 }
 

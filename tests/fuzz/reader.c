@@ -23,6 +23,7 @@
 #include "formats/readings.h"
 #include "formats/safetensors.h"
 #include "formats/scene.h"
+#include "formats/selection.h"
 #include "formats/sentences.h"
 #include "formats/text.h"
 #include "formats/vocab.h"
@@ -60,6 +61,7 @@ SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
 SIMPLE(parses, struct parse_set, parses_read, parses_free)
 SIMPLE(readings, struct reading_set, readings_read, readings_free)
 SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
+SIMPLE(selection, struct selection, selection_read, selection_free)
 SIMPLE(cameras, struct cameras, scene_read_cameras_file, cameras_free)
 SIMPLE(splats, struct scene, scene_read_splats, scene_free)
 SIMPLE(sentences, struct sentences, sentences_read_any, sentences_free)
@@ -171,6 +173,7 @@ static const struct target {
 	{"ply", try_scene, {0}},
 	{"readings", try_readings, {0}},
 	{"safetensors", try_safetensors, {0}},
+	{"selection", try_selection, {0}},
 	{"sentences", try_sentences, {0}},
 	{"splats", try_splats, {0}},
 	{"spz", try_scene, {0}},
