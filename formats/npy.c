@@ -1,7 +1,8 @@
 #include "formats/npy.h"
 
-#include "base/file.h"
+#include "base/little.h"
 #include "base/mem.h"
+#include "formats/safetensors.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -21,10 +22,25 @@ void npy_free(struct npy *a)
 	*a = (struct npy){0};
 }
 
+static const struct {
+	char descr[4];
+	size_t size;
+} types[NPY_TYPES] = {[NPY_F16] = {"<f2", 2},
+	[NPY_F32] = {"<f4", 4},
+	[NPY_F64] = {"<f8", 8},
+	[NPY_U8] = {"|u1", 1},
+	[NPY_I8] = {"|i1", 1},
+	[NPY_U16] = {"<u2", 2},
+	[NPY_I16] = {"<i2", 2},
+	[NPY_U32] = {"<u4", 4},
+	[NPY_I32] = {"<i4", 4},
+	[NPY_I64] = {"<i8", 8}};
+
 /* A walk through the header's Python dict. `at` is an offset in the file. */
 struct walk {
 	const char *path, *data;
 	size_t at, end;
+	int is_f32_alone; /* no other type will do */
 	struct err *e;
 };
 
@@ -81,7 +97,7 @@ static int take_word(struct walk *w, const char *word)
 	return 1;
 }
 
-static int take_shape(struct walk *w, struct npy *a)
+static int take_shape(struct walk *w, struct npy_file *a)
 {
 	a->dims = 0;
 	a->count = 1;
@@ -108,7 +124,33 @@ static int take_shape(struct walk *w, struct npy *a)
 	return 0;
 }
 
-static int read_header(struct walk *w, struct npy *a)
+/* -1 where it is none of ours. */
+static int find_type(const char *text, size_t len)
+{
+	for (int t = 0; t < NPY_TYPES; t++)
+		if (is_text(text, len, types[t].descr))
+			return t;
+	return -1;
+}
+
+static int take_type(struct walk *w, struct npy_file *a)
+{
+	size_t len = 0;
+
+	skip_blank(w);
+	const size_t begin = w->at;
+	const char *text = take_string(w, &len);
+	const int type = find_type(text, len);
+	if (type >= 0 && (type == NPY_F32 || !w->is_f32_alone)) {
+		a->type = (enum npy_type)type;
+		return 0;
+	}
+	w->at = begin;
+	return walk_err(w, w->is_f32_alone ? "'descr' is not '<f4' (float32, little-endian)"
+					   : "'descr' is no float or whole number, little-endian");
+}
+
+static int read_header(struct walk *w, struct npy_file *a)
 {
 	enum { HAVE_TYPE = 1, HAVE_ORDER = 2, HAVE_SHAPE = 4, HAVE_ALL = 7 };
 	int have = 0;
@@ -116,18 +158,13 @@ static int read_header(struct walk *w, struct npy *a)
 	if (!take(w, '{'))
 		return walk_err(w, "not a dict");
 	while (!take(w, '}')) {
-		size_t len = 0, type_len = 0;
+		size_t len = 0;
 		const char *key = take_string(w, &len);
 		if (!key || !take(w, ':'))
 			return walk_err(w, "not a key and a colon");
 		if (is_text(key, len, "descr")) {
-			skip_blank(w);
-			size_t begin = w->at;
-			const char *type = take_string(w, &type_len);
-			if (!is_text(type, type_len, "<f4")) {
-				w->at = begin;
-				return walk_err(w, "'descr' is not '<f4' (float32, little-endian)");
-			}
+			if (take_type(w, a))
+				return -1;
 			have |= HAVE_TYPE;
 		} else if (is_text(key, len, "fortran_order")) {
 			if (!take_word(w, "False"))
@@ -152,7 +189,8 @@ static int read_header(struct walk *w, struct npy *a)
 	return 0;
 }
 
-static int read_bytes(struct npy *a, const char *data, size_t len, const char *path, struct err *e)
+static int read_bytes(
+	struct npy_file *a, const char *data, size_t len, const char *path, int is_f32_alone, struct err *e)
 {
 	const unsigned char *u = (const unsigned char *)data;
 	size_t begin = FIXED_BYTES, bytes;
@@ -172,31 +210,100 @@ static int read_bytes(struct npy *a, const char *data, size_t len, const char *p
 	}
 	if (len - begin < header)
 		return err_set(e, ERR_FORMAT, "%s: offset %zu: the file ends inside the header", path, len);
-	struct walk w = {path, data, begin, begin + header, e};
+	struct walk w = {path, data, begin, begin + header, is_f32_alone, e};
 	if (read_header(&w, a))
 		return -1;
-	size_t have = len - begin - header;
-	if (mem_size(a->count, sizeof *a->values, &bytes) || bytes != have)
+	const size_t have = len - begin - header, size = types[a->type].size;
+	if (mem_size(a->count, size, &bytes) || bytes != have)
 		return err_set(e, ERR_FORMAT,
-			"%s: offset %zu: %zu bytes of data, the shape has %zu values of 4", path,
-			begin + header, have, a->count);
-	a->values = mem_alloc(a->count, sizeof *a->values, path, e);
-	if (!a->values)
-		return -1;
-	memcpy(a->values, data + begin + header, bytes);
+			"%s: offset %zu: %zu bytes of data, the shape has %zu values of %zu", path,
+			begin + header, have, a->count, size);
+	a->data = u + begin + header;
 	return 0;
+}
+
+static int open_file(struct npy_file *a, const char *path, int is_f32_alone, struct err *e)
+{
+	*a = (struct npy_file){0};
+	if (file_map(path, &a->map, e))
+		return -1;
+	if (!read_bytes(a, (const char *)a->map.data, a->map.len, file_name(path), is_f32_alone, e))
+		return 0;
+	npy_close(a);
+	return -1;
+}
+
+int npy_open(struct npy_file *a, const char *path, struct err *e)
+{
+	return open_file(a, path, 0, e);
+}
+
+void npy_close(struct npy_file *a)
+{
+	file_unmap(&a->map);
+	*a = (struct npy_file){0};
+}
+
+int npy_is_whole(const struct npy_file *a)
+{
+	return a->type > NPY_F64;
+}
+
+/* A number of `size` bytes with a sign. */
+static double whole(const unsigned char *at, int size)
+{
+	const uint64_t bits = little_get(at, size), sign = (uint64_t)1 << (8 * size - 1);
+
+	return (double)(int64_t)((bits ^ sign) - sign);
+}
+
+double npy_value(const struct npy_file *a, size_t i)
+{
+	const int size = (int)types[a->type].size;
+	const unsigned char *at = a->data + i * (size_t)size;
+	double value;
+
+	switch (a->type) {
+	case NPY_F16:
+		return (double)st_half_to_float((uint16_t)little_get(at, size));
+	case NPY_F32:
+		return (double)little_get_f32(at);
+	case NPY_F64:
+		memcpy(&value, at, sizeof value);
+		return value;
+	case NPY_U8:
+	case NPY_U16:
+	case NPY_U32:
+		return (double)little_get(at, size);
+	default:
+		return whole(at, size);
+	}
+}
+
+void npy_floats(const struct npy_file *a, size_t first, size_t n, float *out)
+{
+	if (a->type == NPY_F32)
+		memcpy(out, a->data + first * sizeof *out, n * sizeof *out);
+	else
+		for (size_t i = 0; i < n; i++)
+			out[i] = (float)npy_value(a, first + i);
 }
 
 int npy_read(struct npy *a, const char *path, struct err *e)
 {
-	struct file_map map;
+	struct npy_file file;
 
 	*a = (struct npy){0};
-	if (file_map(path, &map, e))
+	if (open_file(&file, path, 1, e))
 		return -1;
-	int bad = read_bytes(a, (const char *)map.data, map.len, file_name(path), e);
-	file_unmap(&map);
-	return bad;
+	a->dims = file.dims;
+	memcpy(a->shape, file.shape, sizeof a->shape);
+	a->count = file.count;
+	a->values = mem_alloc(a->count, sizeof *a->values, file_name(path), e);
+	if (a->values)
+		npy_floats(&file, 0, a->count, a->values);
+	npy_close(&file);
+	return a->values ? 0 : -1;
 }
 
 int npy_write(const char *path, const float *values, const size_t *shape, int dims, struct err *e)

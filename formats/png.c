@@ -21,7 +21,8 @@ struct png_job {
 	png_bytep *rows;
 	size_t row_bytes;
 	int height, width, channels, depth;
-	int is_8bit; /* 16 bit samples are read as their high byte */
+	int is_8bit;   /* 16 bit samples are read as their high byte */
+	int is_labels; /* a palette's numbers are kept, and colours are an error */
 };
 
 int picture_check_size(const char *path, const char *kind, size_t width, size_t height, struct err *e)
@@ -96,7 +97,12 @@ static int decode(struct png_job *job, FILE *in)
 	if (picture_check_size(job->path, "PNG", png_get_image_width(job->png, job->info),
 		    png_get_image_height(job->png, job->info), job->e))
 		return -1;
-	if (png_get_color_type(job->png, job->info) == PNG_COLOR_TYPE_PALETTE)
+	const int type = png_get_color_type(job->png, job->info);
+	if (job->is_labels && type != PNG_COLOR_TYPE_PALETTE && type & PNG_COLOR_MASK_COLOR)
+		return err_set(job->e, ERR_FORMAT, "%s: PNG: has colours, not numbers of labels", job->path);
+	if (job->is_labels)
+		png_set_packing(job->png);
+	else if (type == PNG_COLOR_TYPE_PALETTE)
 		png_set_palette_to_rgb(job->png);
 	else if (png_get_bit_depth(job->png, job->info) < 8)
 		png_set_expand_gray_1_2_4_to_8(job->png);
@@ -161,6 +167,29 @@ int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, s
 	}
 	release(&job);
 	return mask ? 0 : -1;
+}
+
+int png_read_labels(const char *path, uint16_t **labels, int *height, int *width, struct err *e)
+{
+	struct png_job job = {.path = file_name(path), .e = e, .is_labels = 1};
+	FILE *in = file_open(path, e);
+	uint16_t *out = NULL;
+
+	if (!in)
+		return -1;
+	if (!read_raw(&job, in))
+		out = mem_alloc((size_t)job.height * (size_t)job.width, sizeof *out, job.path, e);
+	file_close(in);
+	for (size_t i = 0, n = (size_t)job.height * (size_t)job.width; out && i < n; i++) {
+		const uint8_t *row = job.rows[i / (size_t)job.width];
+		const size_t x = i % (size_t)job.width;
+		out[i] = job.depth == 16 ? (uint16_t)(row[2 * x] << 8 | row[2 * x + 1]) : row[x];
+	}
+	*labels = out;
+	*height = job.height;
+	*width = job.width;
+	release(&job);
+	return out ? 0 : -1;
 }
 
 static int read_png_rgb(const char *path, FILE *in, uint8_t **rgb, int *height, int *width, struct err *e)

@@ -18,6 +18,10 @@ int picture_check_size(const char *path, const char *kind, size_t width, size_t 
  * it. */
 int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e);
 
+/* A PNG of numbers: grey levels of up to 16 bits as they are in the file, or the places in a palette; alpha
+ * is ignored, other colours are an error. labels (height,width); free() it. */
+int png_read_labels(const char *path, uint16_t **labels, int *height, int *width, struct err *e);
+
 /* A PNG or JPEG (by content) as RGB, (height,width,3). free() it. */
 int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, struct err *e);
 

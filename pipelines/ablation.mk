@@ -45,9 +45,8 @@ else
 $(error SIZE is full or quick)
 endif
 
-# The rules of a scene and a training are made from these, so no character that the shell gives a meaning may be in them.
-shell_characters := ; & ' " ` $$ \ * ? [ ] { } < > | ! ~ $(hash) $(open) $(close)
-$(foreach v,SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS,$(foreach c,$(shell_characters),$(if $(findstring $(c),$($(v))),$(error $(v) has a $(c)))))
+# The rules of a scene and a training are made from these.
+$(call check_plain,SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS)
 
 # The trainings: options; the masks and the word vectors that they learn from, where these are not the usual ones.
 run.none = --interaction none --contrast none
@@ -161,15 +160,7 @@ all: tables
 	@$(MAKE) --no-print-directory -f $(firstword $(MAKEFILE_LIST)) cost
 tables: $(tables)
 help:
-	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(lastword $(MAKEFILE_LIST))
-
-# What is asked of a file that nothing but a command line makes: it holds that line, and is as old as the line.
-define keep
-@mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
-endef
-
-# $(call log,FILE,COMMAND): the last line of -v, time and memory, stays beside the result.
-log = mkdir -p $(dir $(1)) && $(tool)$(2) -v 2>$(1) || { cat $(1) >&2; exit 1; }
+	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(called)
 
 # $(call data_rules,FOLDER,SCENE,SEED)
 define data_rules

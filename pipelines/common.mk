@@ -54,6 +54,18 @@ same = $(if $(subst x$(1),,x$(2))$(subst x$(2),,x$(1)),,same)
 track = $(foreach s,$(1),$(if $(call same,$(file <$(SCENE)/log/$(s).command),$(command.$(s))),,$(eval \
 	$(SCENE)/log/$(s).command: FORCE)))
 
+# Variables that rules are made from: no character that the shell gives a meaning may be in them. $(call check_plain,VARIABLES)
+shell_characters := ; & ' " ` $$ \ * ? [ ] { } < > | ! ~ $(hash) $(open) $(close)
+check_plain = $(foreach v,$(1),$(foreach c,$(shell_characters),$(if $(findstring $(c),$($(v))),$(error $(v) has a $(c)))))
+
+# What is asked of a file that nothing but a command line makes: it holds that line, and is as old as the line.
+define keep
+@mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
+endef
+
+# $(call log,FILE,COMMAND): the last line of -v, time and memory, stays beside the result.
+log = mkdir -p $(dir $(1)) && $(tool)$(2) -v 2>$(1) || { cat $(1) >&2; exit 1; }
+
 # Does a step, which says its name and time as it ends, and its warnings; with V=1 make prints its command too. On a terminal its
 # progress shows, while all else that it says goes to log/STEP: -v makes the last line there, time and memory, for the report.
 # $(call run,STEP)

@@ -22,6 +22,7 @@ text-encode -q --model "$here/tests/golden/bert" -o text sentences.jsonl
 pseudomask-select -q -o masks candidates.jsonl
 files='--scene ../from/scene --weights ../from/weights --text ../from/text --masks ../from/masks'
 refer-lift -q ${files//..\/from\//} -o lifted
+feature-lift -q --scene scene --weights weights --masks masks --text text -o features
 refer-train -q ${files//..\/from\//} --iterations 40 -o trained || exit 1
 cd ..
 
@@ -33,6 +34,8 @@ commands() {
 		text-encode text-encode -q --model $here/tests/golden/bert -o text ../from/sentences.jsonl
 		pseudomask-select pseudomask-select -q --scene ../from/scene --weights ../from/weights -o selected ../from/candidates.jsonl
 		refer-lift refer-lift -q $files -o lifted
+		feature-lift feature-lift -q --scene ../from/scene --weights ../from/weights --masks ../from/masks --text ../from/text -o features
+		feature-query feature-query -q --rule hyperplane --positives ../from/lifted --text ../from/text -o selection ../from/features
 		refer-train refer-train -q $files --iterations 40 -o trained
 		refer-train-exact refer-train -q $files --iterations 8 --share 0 --negatives 0 --batch 3 --precision f32 -o exact
 		refer-render-lifted refer-render -q --scene ../from/scene --text ../from/text --model ../from/lifted --split all --response response --response-type npy -o predictions

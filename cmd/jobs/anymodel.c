@@ -20,14 +20,20 @@ int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 		return -1;
 	const char *format = safetensors_meta(&st, "format");
 	m->is_lifted = format && !strcmp(format, "refer.lifted");
-	if (m->is_lifted)
+	m->is_selection = format && !strcmp(format, "refer.selection");
+	if (m->is_selection)
+		bad = selection_take(&m->selection, &st, e);
+	else if (m->is_lifted)
 		bad = lifted_take(&m->lifted, &m->origin, &st, e) || parser_weights_default(&m->weights, e);
 	else if (!format || strcmp(format, "refer.model"))
-		bad = err_set(e, ERR_FORMAT, "%s: format is '%s', expected 'refer.model' or 'refer.lifted'",
+		bad = err_set(e, ERR_FORMAT,
+			"%s: format is '%s', expected 'refer.model', 'refer.lifted' or 'refer.selection'",
 			st.path, format ? format : "");
 	else
 		bad = model_take(&m->trained, &st, e);
-	if (!bad && !m->is_lifted)
+	if (!bad && m->is_selection)
+		m->origin.scene = m->selection.scene;
+	else if (!bad && !m->is_lifted)
 		m->origin = m->trained.origin;
 	safetensors_close(&st);
 	return bad ? -1 : 0;
@@ -37,6 +43,7 @@ void anymodel_free(struct anymodel *m)
 {
 	model_free(&m->trained);
 	lifted_free(&m->lifted);
+	selection_free(&m->selection);
 	parser_weights_free(&m->weights);
 	*m = (struct anymodel){0};
 }
@@ -44,13 +51,15 @@ void anymodel_free(struct anymodel *m)
 static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, struct err *e)
 {
 	const char *model = file_name(q->model_path), *text = file_name(q->text_path);
-	const size_t gaussians = m->is_lifted ? m->lifted.gaussians : m->trained.scene_gaussians;
+	const size_t gaussians = m->is_selection ? m->selection.gaussians
+				 : m->is_lifted	 ? m->lifted.gaussians
+						 : m->trained.scene_gaussians;
 	const int width = m->is_lifted ? m->lifted.width : m->trained.layout.text_width;
 
 	if (gaussians != q->scene->splats.n)
 		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", model,
 			gaussians, q->scene_path, q->scene->splats.n);
-	if (width != q->text->width)
+	if (!m->is_selection && width != q->text->width)
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, %s has %d", model, width,
 			text, q->text->width);
 	if (fingerprint_check("scene", model, &m->origin.scene, q->scene_path, &q->scene->fingerprint, e) ||
@@ -100,6 +109,28 @@ static int answer_lifted(const struct lifted *l, const struct anymodel_ask *q, s
 	return bad ? -1 : 0;
 }
 
+/* The sentences' rows of a selection, by ref. */
+static int answer_selected(
+	const struct selection *s, const struct anymodel_ask *q, struct responses *a, struct err *e)
+{
+	const struct responses_selection of = {s->gaussians, s->indptr, s->index};
+	size_t *row = mem_alloc(q->count, sizeof *row, "sentences", e);
+	struct names refs = {0};
+	int bad = !row || names_make(&refs, s->refs, sizeof *s->refs, 0, s->n, e);
+
+	for (size_t i = 0; i < q->count && !bad; i++) {
+		const char *ref = q->text->refs[q->which[i]];
+		row[i] = names_find(&refs, ref);
+		if (row[i] == NAMES_NONE)
+			bad = err_set(e, ERR_FORMAT, "%s: has nothing for ref '%s' of %s",
+				file_name(q->model_path), ref, file_name(q->text_path));
+	}
+	bad = bad || responses_selected(a, &of, row, q->count, e);
+	names_free(&refs);
+	free(row);
+	return bad ? -1 : 0;
+}
+
 int anymodel_answer(
 	const struct anymodel *m, const struct anymodel_ask *q, struct responses *a, struct err *e)
 {
@@ -114,6 +145,8 @@ int anymodel_answer(
 	*a = (struct responses){0};
 	if (check_fit(m, q, e))
 		return -1;
+	if (m->is_selection)
+		return answer_selected(&m->selection, q, a, e);
 	if (m->is_lifted)
 		return answer_lifted(&m->lifted, q, &of, a, e);
 	if (model_rows(t, means, &rows, e))

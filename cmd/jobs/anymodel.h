@@ -1,4 +1,5 @@
-/* A model of either kind, told by the file: trained (formats/model.md) or lifted (formats/lifted.md). */
+/* A model of any kind, told by the file: trained (formats/model.md), lifted (formats/lifted.md), or what was
+ * selected for each sentence (formats/selection.md). */
 #ifndef CMD_JOBS_ANYMODEL_H
 #define CMD_JOBS_ANYMODEL_H
 
@@ -7,13 +8,15 @@
 #include "formats/model.h"
 #include "formats/parser_weights.h"
 #include "formats/scene.h"
+#include "formats/selection.h"
 #include "formats/text.h"
 #include "lift/lifted_model.h"
 
 struct anymodel {
-	int is_lifted;
+	int is_lifted, is_selection; /* neither: trained */
 	struct model trained;
 	struct lifted lifted;
+	struct selection selection;
 	struct origin origin;	       /* the scene and the encoder that it was made with */
 	struct parser_weights weights; /* of the sentences' parser, for a lifted model: the default ones */
 };
@@ -37,8 +40,8 @@ struct anymodel_ask {
 		*from; /* where all sentences are said; NULL: each of the view that it names, if any */
 };
 
-/* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text
- * does not fit or is of another encoder. */
+/* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text does not fit or
+ * is of another encoder, or a selection has none of a sentence. */
 int anymodel_answer(
 	const struct anymodel *m, const struct anymodel_ask *q, struct responses *a, struct err *e);
 

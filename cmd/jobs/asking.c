@@ -18,8 +18,8 @@ static int read_all(struct asking *a, struct err *e)
 		scene_read(&a->scene, f->scene, e) || anymodel_read(&a->model, f->model, e))
 		return -1;
 	if (!a->model.is_lifted)
-		return err_set(
-			e, ERR_FORMAT, "%s: is a trained model; questions need one of refer-lift", f->model);
+		return err_set(e, ERR_FORMAT, "%s: is a %s; questions need one of refer-lift", f->model,
+			a->model.is_selection ? "selection" : "trained model");
 	return encoder_read(&a->encoder, f->encoder, 0, e);
 }
 

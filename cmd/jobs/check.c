@@ -34,6 +34,8 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 		{"refer.weights", check_weights},
 		{"refer.model", check_model},
 		{"refer.lifted", check_lifted},
+		{"refer.features", check_features},
+		{"refer.selection", check_selection},
 		{"refer.parser", check_parser},
 	};
 

@@ -3,11 +3,13 @@
 #include "cmd/jobs/check_records.h"
 #include "formats/anysplats.h"
 #include "formats/camerafile.h"
+#include "formats/features.h"
 #include "formats/lifted.h"
 #include "formats/model.h"
 #include "formats/npy.h"
 #include "formats/parser_weights.h"
 #include "formats/png.h"
+#include "formats/selection.h"
 #include "formats/text.h"
 #include "formats/weights.h"
 
@@ -127,6 +129,44 @@ int check_lifted(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
+int check_features(struct check *c, const char *path, struct err *e)
+{
+	struct features f;
+
+	if (features_open(&f, path, e))
+		return -1;
+	if (!f.labels)
+		c->precision = f.is_half ? "f16" : "f32";
+	c->scene = f.scene;
+	check_add(c, "gaussians", (long long)f.gaussians);
+	if (!f.labels)
+		check_add(c, "channels", (long long)f.channels);
+	size_t seen = 0, labels = 0;
+	for (size_t i = 0; i < f.gaussians; i++) {
+		seen += f.weight[i] > 0;
+		labels += f.labels && f.labels[i] >= 0;
+	}
+	check_add(c, "seen", (long long)seen);
+	if (f.labels)
+		check_add(c, "labels", (long long)labels);
+	features_close(&f);
+	return 0;
+}
+
+int check_selection(struct check *c, const char *path, struct err *e)
+{
+	struct selection s;
+
+	if (selection_read(&s, path, e))
+		return -1;
+	c->scene = s.scene;
+	check_add(c, "sentences", (long long)s.n);
+	check_add(c, "items", (long long)s.indptr[s.n]);
+	check_add(c, "gaussians of the scene", (long long)s.gaussians);
+	selection_free(&s);
+	return 0;
+}
+
 int check_anysplats(struct check *c, const char *path, const char *kind, struct err *e)
 {
 	struct splats s;
@@ -146,14 +186,14 @@ int check_anysplats(struct check *c, const char *path, const char *kind, struct 
 
 int check_npy(struct check *c, const char *path, struct err *e)
 {
-	struct npy a;
+	struct npy_file a;
 
-	if (npy_read(&a, path, e))
+	if (npy_open(&a, path, e))
 		return -1;
 	c->kind = "npy";
 	check_add(c, "dimensions", a.dims);
 	check_add(c, "values", (long long)a.count);
-	npy_free(&a);
+	npy_close(&a);
 	return 0;
 }
 

@@ -12,6 +12,8 @@ int check_text(struct check *c, const char *path, struct err *e);
 int check_weights(struct check *c, const char *path, struct err *e);
 int check_model(struct check *c, const char *path, struct err *e);
 int check_lifted(struct check *c, const char *path, struct err *e);
+int check_features(struct check *c, const char *path, struct err *e);
+int check_selection(struct check *c, const char *path, struct err *e);
 int check_parser(struct check *c, const char *path, struct err *e);
 
 /* The others. */

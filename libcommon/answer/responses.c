@@ -73,6 +73,33 @@ int responses_trained(struct responses *a, const struct respond_model *m, const 
 	return -1;
 }
 
+static int take_selected(struct responses *a, const struct responses_selection *s, const size_t *row,
+	size_t count, struct err *e)
+{
+	a->answer = mem_alloc(count, sizeof *a->answer, "sentences", e);
+	if (!a->answer || alloc_answers(a, count, s->gaussians, e))
+		return -1;
+	for (size_t i = 0; i < count; i++) {
+		float *to = a->responses + i * s->gaussians;
+		a->answer[i] = i;
+		for (size_t k = 0; k < s->gaussians; k++)
+			to[k] = -RESPONSES_SELECTED;
+		for (int64_t k = s->indptr[row[i]]; k < s->indptr[row[i] + 1]; k++)
+			to[s->index[k]] = 1 - RESPONSES_SELECTED;
+	}
+	return render_pack(a->responses, s->gaussians, (int)count, e);
+}
+
+int responses_selected(struct responses *a, const struct responses_selection *s, const size_t *row,
+	size_t count, struct err *e)
+{
+	*a = (struct responses){0};
+	if (!take_selected(a, s, row, count, e))
+		return 0;
+	responses_free(a);
+	return -1;
+}
+
 /* What sentences mean: sets of objects. */
 struct meant {
 	struct choose_sentence *sentences; /* (count) */

@@ -1,4 +1,4 @@
-/* What a model of either kind answers to sentences before any view is rendered: responses of the Gaussians.
+/* What a model of any kind answers to sentences before any view is rendered: responses of the Gaussians.
  * Sentences that get the same answer share it, so that it is blended once. */
 #ifndef ANSWER_RESPONSES_H
 #define ANSWER_RESPONSES_H
@@ -56,6 +56,19 @@ int responses_trained(struct responses *a, const struct respond_model *m, const 
 #define RESPONSES_LEAST 0.65
 int responses_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
 	unsigned parts, double least, struct err *e);
+
+/* Gaussians that were selected for each of some rows: index[indptr[r]] to index[indptr[r+1] - 1]. */
+struct responses_selection {
+	size_t gaussians;
+	const int64_t *indptr;
+	const int32_t *index;
+};
+
+/* An answer for each of `count` sentences, from its row: the pixels that selected Gaussians have more than
+ * RESPONSES_SELECTED of the weight of. Returns 0, or -1 with *e set and nothing to free. */
+#define RESPONSES_SELECTED 0.5f
+int responses_selected(struct responses *a, const struct responses_selection *s, const size_t *row,
+	size_t count, struct err *e);
 void responses_free(struct responses *a);
 
 /* The Gaussians of an answer, those with responses above 0: ids, and these responses (both with room for all

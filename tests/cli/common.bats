@@ -27,6 +27,8 @@ missing_input() {
 		mask-import --names none -o out none
 		refer-train --scene none --weights none --text none --masks none -o out
 		refer-lift --scene none --weights none --text none --masks none -o out
+		feature-lift --scene none --weights none -o out none
+		feature-query --text none -o out none
 		refer-render --scene none --text none --model none -o out
 		refer-locate --scene none --text none --model none -o out
 		refer-ask -o out none question

@@ -206,7 +206,7 @@ Try 'refer-locate --help'." --show all
 	head -c 1000 model.safetensors >cut
 	run locate --model cut -o out.jsonl
 	[ "$status" = 3 ] && [ ! -e out.jsonl ]
-	refuses 3 "text.safetensors: format is 'refer.text', expected 'refer.model' or 'refer.lifted'" --model text.safetensors
+	refuses 3 "text.safetensors: format is 'refer.text', expected 'refer.model', 'refer.lifted' or 'refer.selection'" --model text.safetensors
 }
 
 @test "files that do not belong together" {

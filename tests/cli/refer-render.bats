@@ -298,7 +298,7 @@ png/$test_view/yellow-bowl-1.png " ]
 	: >empty
 	refuses 3 "empty: 0 bytes, too short for a safetensors file" --text empty
 	refuses 3 "empty: 0 bytes, too short for a safetensors file" --model empty
-	refuses 3 "text.safetensors: format is 'refer.text', expected 'refer.model' or 'refer.lifted'" --model text.safetensors
+	refuses 3 "text.safetensors: format is 'refer.text', expected 'refer.model', 'refer.lifted' or 'refer.selection'" --model text.safetensors
 	refuses 3 "model.safetensors: format is 'refer.model', expected 'refer.text'" --text model.safetensors
 	truncate -s -1 model.safetensors
 	run render -o pred.jsonl

@@ -12,6 +12,7 @@
 #include "formats/checkpoint.h"
 #include "formats/colmap.h"
 #include "formats/dataparser.h"
+#include "formats/features.h"
 #include "formats/lifted.h"
 #include "formats/masks.h"
 #include "formats/model.h"
@@ -22,6 +23,7 @@
 #include "formats/readings.h"
 #include "formats/safetensors.h"
 #include "formats/scene.h"
+#include "formats/selection.h"
 #include "formats/sentences.h"
 #include "formats/text.h"
 #include "formats/vocab.h"
@@ -51,13 +53,15 @@ static struct err e;
 SIMPLE(boxes, struct box_set, boxes_read, boxes_free)
 SIMPLE(camerafile, struct cameras, camerafile_read, cameras_free)
 SIMPLE(check, struct check, check_file, check_free)
+SIMPLE(features, struct features, features_open, features_close)
 SIMPLE(masks, struct masks, masks_read, masks_free)
 SIMPLE(model, struct model, model_read, model_free)
-SIMPLE(npy, struct npy, npy_read, npy_free)
+SIMPLE(npy, struct npy_file, npy_open, npy_close)
 SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
 SIMPLE(parses, struct parse_set, parses_read, parses_free)
 SIMPLE(readings, struct reading_set, readings_read, readings_free)
 SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
+SIMPLE(selection, struct selection, selection_read, selection_free)
 SIMPLE(cameras, struct cameras, scene_read_cameras_file, cameras_free)
 SIMPLE(splats, struct scene, scene_read_splats, scene_free)
 SIMPLE(sentences, struct sentences, sentences_read_any, sentences_free)
@@ -99,12 +103,15 @@ static void try_scene(const char *path)
 static void try_image(const char *path)
 {
 	uint8_t *rgb = NULL, *mask = NULL;
+	uint16_t *labels = NULL;
 	int height, width;
 
 	if (!image_read_rgb(path, &rgb, &height, &width, &e))
 		free(rgb);
 	if (!png_read_mask(path, &mask, &height, &width, &e))
 		free(mask);
+	if (!png_read_labels(path, &labels, &height, &width, &e))
+		free(labels);
 }
 
 static void try_dataparser(const char *path)
@@ -155,6 +162,7 @@ static const struct target {
 	{"colmap-binary", try_colmap, {"cameras.bin", "images.bin"}},
 	{"colmap-text", try_colmap, {"cameras.txt", "images.txt"}},
 	{"dataparser", try_dataparser, {0}},
+	{"features", try_features, {0}},
 	{"image", try_image, {0}},
 	{"lifted", try_lifted, {0}},
 	{"masks", try_masks, {0}},
@@ -165,6 +173,7 @@ static const struct target {
 	{"ply", try_scene, {0}},
 	{"readings", try_readings, {0}},
 	{"safetensors", try_safetensors, {0}},
+	{"selection", try_selection, {0}},
 	{"sentences", try_sentences, {0}},
 	{"splats", try_splats, {0}},
 	{"spz", try_scene, {0}},

@@ -55,6 +55,9 @@ text-encode -q --model encoder -o some.safetensors some.jsonl
 text-parse -q -o some-parses.jsonl some.safetensors
 parse-train -q --write 5 -o some-readings.jsonl
 refer-lift -q --scene scene --weights weights --text some.safetensors --masks masks.jsonl -o some-lifted.safetensors
+feature-lift -q --scene scene --weights weights --masks masks.jsonl --text some.safetensors -o some-features.safetensors
+feature-lift -q --scene scene --weights weights --masks masks.jsonl -o some-labels.safetensors
+feature-query -q --text some.safetensors -o some-selection.safetensors some-features.safetensors
 refer-train -q --scene scene --weights weights --text some.safetensors --masks masks.jsonl --iterations 1 -o some-model.safetensors
 refer-locate -q --scene scene --text some.safetensors --model some-lifted.safetensors --ply shown.ply -o located.jsonl --refs "$(head -n 1 some.jsonl | jq -r .ref)"
 refer-render -q --scene scene --text some.safetensors --model some-lifted.safetensors --size 8x6 --response response --response-type npy \
@@ -88,6 +91,7 @@ printf '\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0
 { printf '\1\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0\0\0\360\77'; head -c 48 /dev/zero; printf '\1\0\0\0a.png\0'; head -c 8 /dev/zero; } >images.bin
 folder colmap-binary cameras.bin images.bin
 seed dataparser dataparser.json
+seed features some-features.safetensors some-labels.safetensors
 seed image png/*/*.png overlay/*/*.* overlay/*.* small/images/*
 seed lifted some-lifted.safetensors
 seed masks some-masks.jsonl
@@ -98,6 +102,7 @@ seed parses some-parses.jsonl
 seed ply few.ply packed.ply
 seed readings some-readings.jsonl
 seed safetensors some.safetensors small/weights/view_000.safetensors "$here/tests/golden/good/small.safetensors"
+seed selection some-selection.safetensors
 seed sentences some.jsonl
 seed splats few/splats.safetensors
 for version in 2 3 4; do
@@ -109,7 +114,7 @@ seed vocab-json encoder/tokenizer.json
 : >empty
 folder vocab-text encoder/vocab.txt empty
 seed weights small/weights/view_000.safetensors small/packed/view_000.safetensors small/f16/view_000.safetensors
-for target in lifted masks boxes sentences text weights splats ply image npy cameras; do
+for target in lifted features selection masks boxes sentences text weights splats ply image npy cameras; do
 	mkdir -p "$dir/check" && for file in "$dir/$target"/*; do cp "$file" "$dir/check/$target-${file##*/}"; done
 done
 
@@ -126,7 +131,7 @@ for target in "$dir"/*/; do
 	ply) set -- ply.c plyfile.c plypacked.c ;;
 	spz) set -- spz.c spz_container.c ;;
 	weights) set -- weights.c weights_pack.c ;;
-	check) set -- scene.c weights.c text.c lifted.c masks.c boxes.c sentences.c ;;
+	check) set -- scene.c weights.c text.c lifted.c features.c selection.c masks.c boxes.c sentences.c ;;
 	*) set -- "${target%-*}.c" ;;
 	esac
 	{

@@ -119,6 +119,58 @@ static void test_errors(void)
 	npy_free(&a);
 }
 
+/* One value of a type, as numpy.save writes it. */
+static void check_type(const char *descr, const char *data, size_t size, double value, int is_whole)
+{
+	char bytes[DATA + 8], header[DATA];
+	struct npy_file a;
+	struct err e = {0};
+	float single;
+
+	memset(bytes, ' ', DATA);
+	memcpy(bytes, matrix, 10);
+	const int used = snprintf(
+		header, sizeof header, "{'descr': '%s', 'fortran_order': False, 'shape': (1, 1), }", descr);
+	memcpy(bytes + 10, header, (size_t)used);
+	memcpy(bytes + DATA, data, size);
+	put(bytes, DATA + size);
+	if (!CHECK(!npy_open(&a, path, &e), "%s: %s", descr, e.message))
+		return;
+	npy_floats(&a, 0, 1, &single);
+	CHECK(a.dims == 2 && a.count == 1 && fabs(npy_value(&a, 0) - value) <= 0 &&
+			npy_is_whole(&a) == is_whole && fabs((double)single - value) <= fabs(value) * 1e-7,
+		"%s: %g, not %g", descr, npy_value(&a, 0), value);
+	npy_close(&a);
+}
+
+static void test_types(void)
+{
+	struct npy_file a;
+	struct err e = {0};
+
+	check_type("<f2", "\x00\xbe", 2, -1.5, 0);
+	check_type("<f4", "\x00\x00\xc0\xbf", 4, -1.5, 0);
+	check_type("<f8", "\x00\x00\x00\x00\x00\x00\xf8\xbf", 8, -1.5, 0);
+	check_type("|u1", "\xfe", 1, 254, 1);
+	check_type("|i1", "\xfe", 1, -2, 1);
+	check_type("<u2", "\xfe\xff", 2, 65534, 1);
+	check_type("<i2", "\xfe\xff", 2, -2, 1);
+	check_type("<u4", "\xfe\xff\xff\xff", 4, 4294967294, 1);
+	check_type("<i4", "\xfe\xff\xff\xff", 4, -2, 1);
+	check_type("<i8", "\xfe\xff\xff\xff\xff\xff\xff\xff", 8, -2, 1);
+	for (int k = 0; k < 3; k++) {
+		static const char *const others[] = {"<c8", ">f4", "|b1"};
+		char bytes[MATRIX_BYTES];
+		memcpy(bytes, matrix, MATRIX_BYTES);
+		memcpy(strstr(bytes + 10, "<f4"), others[k], 3);
+		put(bytes, MATRIX_BYTES);
+		CHECK(npy_open(&a, path, &e) && e.code == ERR_FORMAT &&
+				strstr(e.message,
+					"header, offset 20: 'descr' is no float or whole number, little-endian"),
+			"%s: %s", others[k], e.message);
+	}
+}
+
 int main(void)
 {
 	int fd = mkstemp(path);
@@ -128,6 +180,7 @@ int main(void)
 	close(fd);
 	test_round_trip();
 	test_errors();
+	test_types();
 	unlink(path);
 	return unit_end();
 }

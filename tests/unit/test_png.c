@@ -344,6 +344,45 @@ static void test_size(void)
 		"the limit");
 }
 
+static void expect_labels(const char *what, const uint16_t expected[6])
+{
+	uint16_t *labels;
+	int h = 0, w = 0;
+	struct err e = {0};
+
+	if (!CHECK(!png_read_labels(path, &labels, &h, &w, &e), "%s: %s", what, e.message))
+		return;
+	CHECK(h == 2 && w == 3 && !memcmp(labels, expected, 6 * sizeof *labels), "%s: %dx%d, %d %d %d", what,
+		w, h, labels[0], labels[1], labels[5]);
+	free(labels);
+}
+
+static void test_labels(void)
+{
+	struct err e = {0};
+	uint16_t *labels;
+	int h, w;
+
+	put_png(8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, (const uint8_t *)"\0\1\2\375\376\377", 3);
+	expect_labels("8 bits", (const uint16_t[]){0, 1, 2, 253, 254, 255});
+	put_png(16, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_ADAM7, (const uint8_t *)"\0\0\0\1\1\0\377\377\0\7\1\1",
+		6);
+	expect_labels("16 bits", (const uint16_t[]){0, 1, 256, 65535, 7, 257});
+	put_png(2, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, (const uint8_t *)"\x18\xe4", 1);
+	expect_labels("2 bits", (const uint16_t[]){0, 1, 2, 3, 2, 1});
+	put_png(8, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_NONE, (const uint8_t *)"\0\1\2\3\2\1", 3);
+	expect_labels("a palette", (const uint16_t[]){0, 1, 2, 3, 2, 1});
+	put_png(2, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_NONE, (const uint8_t *)"\x18\xe4", 1);
+	expect_labels("a palette of 2 bits", (const uint16_t[]){0, 1, 2, 3, 2, 1});
+	put_png(8, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_INTERLACE_NONE,
+		(const uint8_t *)"\5\0\6\1\7\2\10\377\11\0\12\0", 6);
+	expect_labels("alpha", (const uint16_t[]){5, 6, 7, 8, 9, 10});
+	put_png(8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, (const uint8_t *)"123456789123456789", 9);
+	CHECK(png_read_labels(path, &labels, &h, &w, &e) && e.code == ERR_FORMAT &&
+			strstr(e.message, ": PNG: has colours, not numbers of labels"),
+		"%s", e.message);
+}
+
 int main(void)
 {
 	int fd = mkstemp(path);
@@ -357,6 +396,7 @@ int main(void)
 	test_jpeg();
 	test_write_jpeg();
 	test_size();
+	test_labels();
 	unlink(path);
 	return unit_end();
 }

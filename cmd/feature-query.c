@@ -1,0 +1,84 @@
+/* feature-query: which Gaussians sentences select, by lifted features or labels. */
+#include "cli/cli.h"
+#include "cmd/jobs/feature_query.h"
+
+#include <math.h>
+
+static struct feature_query_options options = {.sentences = QUERY_ALL, .threshold = NAN};
+static const char *files[QUERY_MAX_LEVELS];
+
+static const struct cli_option table[] = {
+	{"text", 0, CLI_STRING, &options.text, "TEXT", "sentences encoded by text-encode (required)", 0, 0},
+	{"rule", 0, CLI_CHOICE, &options.rule, "cosine|relevancy|hyperplane|identity",
+		"what a sentence selects (default cosine)", 0, 0},
+	{"sentences", 0, CLI_CHOICE, &options.sentences, "train|test|all", "which sentences (default all)", 0,
+		0},
+	{"vectors", 0, CLI_STRING, &options.vectors, "FILE",
+		"cosine, relevancy: the vector of each sentence (default: that of TEXT)", 0, 0},
+	{"against", 0, CLI_STRING, &options.against, "FILE",
+		"cosine: vectors of more texts that a sentence is held against", 0, 0},
+	{"canonical", 0, CLI_STRING, &options.canonical, "FILE",
+		"relevancy: vectors of the canonical phrases (required)", 0, 0},
+	{"positives", 0, CLI_STRING, &options.positives, "LIFTED",
+		"hyperplane, identity: the objects that sentences are about, of refer-lift (required)", 0, 0},
+	{"threshold", 0, CLI_REAL, &options.threshold, "T",
+		"relevancy (default 0.5; with --relative 0.4), identity (default 0.7)", -1, 1},
+	{"relative", 0, CLI_FLAG, &options.is_relative, NULL,
+		"relevancy: the threshold is on the range of a sentence's relevancies, brought to -1 to 1", 0,
+		0},
+	{0}};
+
+static const struct cli_tool tool = {.name = "feature-query",
+	.operands = "--text TEXT FEATURES...",
+	.summary = "Select the Gaussians that sentences mean, by lifted features or labels.",
+	.options = table,
+	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT,
+	.min_operands = 1,
+	.max_operands = QUERY_MAX_LEVELS,
+	.output_arg = "SELECTION"};
+
+static void check(const struct cli *c)
+{
+	const int by_examples = options.rule == RULE_HYPERPLANE || options.rule == RULE_IDENTITY;
+
+	if (!options.text)
+		cli_usage(c, "--text is required");
+	if (options.rule == RULE_RELEVANCY && !options.canonical)
+		cli_usage(c, "--rule relevancy needs --canonical");
+	if (by_examples && !options.positives)
+		cli_usage(c, "--rule hyperplane and --rule identity need --positives");
+	if (c->operand_count > 1 && options.rule != RULE_RELEVANCY)
+		cli_usage(c, "several FEATURES need --rule relevancy");
+	struct cli_file features[QUERY_MAX_LEVELS + 1] = {{0}};
+	for (int k = 0; k < c->operand_count; k++) {
+		files[k] = c->operands[k];
+		features[k] = (struct cli_file){"FEATURES", files[k], CLI_READS, NULL};
+	}
+	options.features = files;
+	options.levels = (size_t)c->operand_count;
+	cli_refuse_overwrite(c, "text vectors against canonical positives", "output", features);
+	cli_refuse_terminal(c);
+}
+
+static int run(struct feature_query *q, const struct cli *c, struct err *e)
+{
+	struct cli_report to;
+
+	if (feature_query_make(q, &options, cli_report(&to, c), e))
+		return -1;
+	cli_note(c, 1, "%zu sentences", q->count);
+	return feature_query_write(q, c->output, e);
+}
+
+int main(int argc, char **argv)
+{
+	struct feature_query q = {0};
+	struct cli c;
+	struct err e = {0};
+
+	cli_parse(&c, &tool, argc, argv);
+	check(&c);
+	const int bad = run(&q, &c, &e);
+	feature_query_free(&q);
+	return bad ? cli_fail(&c, &e) : cli_done(&c);
+}

@@ -1,0 +1,81 @@
+# The benchmarks of the field, from their folders as they unpack: Ref-LERF's referring sentences, and LERF-OVS's names.
+#
+#	make -f pipelines/lerf.mk ref-lerf DATA=ref-lerf/ramen SPLATS=output/ramen TEST_VIEWS=frame_00006,frame_00024
+#	make -f pipelines/lerf.mk lerf-ovs DATA=lerf_ovs/ramen LABELS=lerf_ovs/label/ramen SPLATS=output/ramen \
+#		CANDIDATES=candidates.jsonl
+#
+# DATA        the scene's folder: sparse/0 and images; of Ref-LERF also json/VIEW.json and gt_mask (required)
+# SPLATS      the scene that 3DGS has trained: its folder or a .ply (required)
+# LABELS      of LERF-OVS: the folder with the labels VIEW.json of the scene's test views (required there)
+# CANDIDATES  masks of a detector in the training views, JSON Lines; their objects are categories. Required for LERF-OVS. Ref-LERF's
+#             default: the masks that it has of training views
+# TEST_VIEWS  of Ref-LERF: names of the test views. Default for a DATA that ends in waldo_kitchen: those of the paper's program.
+#             LERF-OVS's are those with labels
+# OUT         folder for everything that is made; default build/lerf/ and the target and the scene's name
+# SCALE, BERT, BIN   as in lift.mk
+#
+# Each runs lift.mk, scores its answers in OUT/score.json, and prints mIoU and the published figures of the benchmark, for all of its scenes together.
+# Ref-LERF: mIoU over the test views' own sentences, empty truths left out; a sentence's mask is its own, and no sentence of a test
+# view is learnt from unless a training view has it too. LERF-OVS: mIoU over the labels of all test views, shapes of one
+# category together; a query is the category's name. Not here: LERF's localisation, which is of a map and not of a mask.
+
+here := $(dir $(lastword $(MAKEFILE_LIST)))
+include $(here)common.mk
+# The workflow gets what is said below, and nothing else.
+MAKEOVERRIDES :=
+benchmark := $(or $(filter ref-lerf lerf-ovs,$(MAKECMDGOALS)),ref-lerf)
+$(call check,DATA SPLATS $(if $(filter lerf-ovs,$(benchmark)),LABELS CANDIDATES),DATA SPLATS LABELS CANDIDATES OUT,TEST_VIEWS SCALE BERT BIN)
+name := $(notdir $(patsubst %/,%,$(DATA)))
+OUT ?= build/lerf/$(benchmark)/$(name)
+kitchen := frame_00019,frame_00035,frame_00067,frame_00105,frame_00162
+TEST_VIEWS ?= $(if $(filter waldo_kitchen,$(name)),$(kitchen))
+labels := $(wildcard $(LABELS)/*.json)
+said := $(wildcard $(DATA)/json/*.json)
+$(if $(filter help clean,$(MAKECMDGOALS)),,$(if $(filter lerf-ovs,$(benchmark)),$(if $(labels),,$(error $(LABELS) has no labels VIEW.json)),$(if \
+	$(said),,$(error $(DATA) has no json/VIEW.json))$(if $(TEST_VIEWS),,$(error $(called): TEST_VIEWS not set; 'make -f $(called) help' says what they are))))
+made := $(OUT)/benchmark
+
+.DEFAULT_GOAL := help
+.PHONY: ref-lerf lerf-ovs
+help:
+	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(called)
+
+# $(call flow,TEST VIEWS,MASKS)
+flow = @$(MAKE) --no-print-directory -f $(here)lift.mk SCENE=$(OUT) SPLATS=$(SPLATS) CAMERAS=$(DATA)/sparse/0 IMAGES=$(DATA)/images \
+	TEST_VIEWS=$(1) SENTENCES=$(made)/sentences.jsonl $(2) $(if $(SCALE),SCALE=$(call \
+	quoted,SCALE)) BERT=$(call quoted,BERT) BIN=$(call quoted,BIN)
+# Truth is of the test views alone, so only what is answered there is scored.
+score = @$(tool)miou-score --json --quiet --predicted-views --truth $(made)/truth.jsonl -o $(OUT)/score.json $(OUT)/lifted/predictions.test.jsonl && \
+	printf '\n%s: mIoU %.1f in test views (%s/score.json)\n' '$(name)' "$$(jq '100 * .miou' $(OUT)/score.json)" '$(OUT)'
+published = @printf '\nPublished mIoU on %s, mean over its scenes:\n' $(1) && awk -F '\t' '$$1 == "row" && $$2 == "$(2)" { printf "  %-28s %s\n", $$4, $$5 }' \
+	$(here)published.tsv
+
+ref-lerf: $(made)/sentences.jsonl $(made)/masks.jsonl $(made)/truth.jsonl
+	$(call flow,$(call quoted,TEST_VIEWS),$(if $(CANDIDATES),CANDIDATES=$(CANDIDATES),MASKS=$(made)/masks.jsonl))
+	$(score)
+	$(call published,Ref-LERF,ref-lerf)
+
+command.views = $(TEST_VIEWS)
+SCENE := $(OUT)
+$(call track,views)
+ifeq ($(benchmark),ref-lerf)
+$(OUT)/log/views.command: FORCE
+	@mkdir -p $(@D) && printf '%s' $(call quoted,command.views) | cmp -s - $@ || printf '%s' $(call quoted,command.views) >$@
+$(foreach w,sentences masks truth,$(made)/$(w).jsonl): $(made)/%.jsonl: $(said) $(OUT)/log/views.command $(here)ref-lerf.jq
+	@mkdir -p $(@D)
+	@jq -n -c --arg what $* --arg test $(call quoted,TEST_VIEWS) --arg masks '$(abspath $(DATA))/gt_mask' -f $(here)ref-lerf.jq $(said) >$@
+else
+$(made)/truth.jsonl: $(labels)
+	@mkdir -p $(@D)
+	$(tool)mask-import --quiet -o $@ $(labels)
+# Each category trains, as the name of its candidates, and is asked for.
+$(made)/sentences.jsonl: $(made)/truth.jsonl
+	@jq -s -c 'map(.object) | unique[] | {ref: "\(.) name", object: ., text: ., split: "train"}, {ref: "\(.) query", object: ., text: ., split: "test"}' $< >$@
+$(made)/test-views: $(made)/truth.jsonl
+	@jq -s -r 'map(.view) | unique | join(",")' $< >$@
+endif
+
+lerf-ovs: $(made)/sentences.jsonl $(made)/truth.jsonl $(made)/test-views
+	$(call flow,"$$(cat $(made)/test-views)",CANDIDATES=$(CANDIDATES))
+	$(score)
+	$(call published,LERF-OVS,lerf-ovs)

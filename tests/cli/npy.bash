@@ -1,0 +1,29 @@
+# Helpers of the tests of features: .npy files and numbers in safetensors.
+
+# npy FILE DESCR SHAPE HEX: an array as numpy.save writes it, but for the padding.
+npy() {
+	local header="{'descr': '$2', 'fortran_order': False, 'shape': ($3), }"
+	{
+		printf '\x93NUMPY\x01\x00\x76\x00%-117s\n' "$header"
+		printf '%s' "$4" | xxd -r -p
+	} >"$1"
+}
+
+# times N TEXT: the text so often.
+times() {
+	local k
+	for ((k = 0; k < $1; k++)); do printf '%s' "$2"; done
+}
+
+# tensor FILE NAME TYPE: a tensor's numbers on one line; TYPE as od has it (d4, f4, u2).
+tensor() {
+	local length begin end
+	length=$(od -An -t d8 -N 8 "$1" | tr -d ' ')
+	read -r begin end < <(head -c $((8 + length)) "$1" | tail -c +9 | jq -r ".[\"$2\"].data_offsets | @tsv")
+	tail -c +$((9 + length + begin)) "$1" | head -c $((end - begin)) | od -An -v -t "$3" | tr -s ' \n' ' ' | sed 's/^ //; s/ $//'
+}
+
+# meta FILE KEY
+meta() {
+	head -c $((8 + $(od -An -t d8 -N 8 "$1"))) "$1" | tail -c +9 | jq -r ".__metadata__[\"$2\"]"
+}

@@ -1,0 +1,125 @@
+#!/usr/bin/env bats
+# pipelines/lerf.mk on miniatures in the layouts of Ref-LERF and LERF-OVS, made from a small synthetic scene.
+
+setup_file() {
+	export BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	BIN=$(cd "$BIN" && pwd)
+	export ROOT=$BATS_TEST_DIRNAME/../..
+	cd "$BATS_FILE_TMPDIR"
+	"$BIN/gs-synth" -q --objects 3 --views 6 --size 64x48 --gaussians 1500 -o made
+	made_truth
+	ref_lerf made/mini
+	lerf_ovs
+}
+
+# Masks as pictures: those of the objects that are lifted from the true ones, with the name of the object as ref.
+made_truth() {
+	cd made
+	"$BIN/gs-import" -q --images images --test-views "$(cat test-views)" -o scene point_cloud.ply
+	"$BIN/gs-weigh" -q -o weights scene
+	jq -c '{ref: .object, object, text: .object, split: "train"}' sentences.jsonl | sort -u >names.jsonl
+	"$BIN/text-encode" -q --model "$ROOT/tests/golden/bert" -o names.safetensors names.jsonl
+	"$BIN/feature-lift" -q --scene scene --weights weights --masks truth.jsonl -o labels.safetensors
+	"$BIN/refer-lift" -q --names masks --scene scene --weights weights --text names.safetensors --masks truth.jsonl -o lifted.safetensors
+	"$BIN/feature-query" -q --rule identity --threshold 0.5 --positives lifted.safetensors --text names.safetensors -o selection labels.safetensors
+	"$BIN/refer-render" -q --scene scene --text names.safetensors --model selection --split all --png png -o shown.jsonl
+	cd ..
+}
+
+# ref_lerf DIR: json/VIEW.json has all objects, their masks in gt_mask, and their sentences of the view's split.
+ref_lerf() {
+	local view object split
+	mkdir -p "$1/json" "$1/gt_mask" "$1/sparse"
+	cp -r made/sparse/0 "$1/sparse/0"
+	cp -r made/images "$1/images"
+	for view in made/png/*/; do
+		view=$(basename "$view")
+		split=train
+		[[ ,$(cat made/test-views), != *,$view,* ]] || split=test
+		while read -r object; do
+			cp "made/png/$view/$object.png" "$1/gt_mask/${object}_$view.png"
+		done < <(jq -r .ref made/names.jsonl)
+		jq -s --arg view "$view" --arg split "$split" '{info: {name: "\($view).jpg", width: 64, height: 48},
+			object: (group_by(.object) | map({segmentation: "\(.[0].object)_\($view).png",
+				sentence: map(select(.split == $split).text), category: .[0].object}))}' made/sentences.jsonl >"$1/json/$view.json"
+	done
+}
+
+# Two labelled views; a category of two shapes.
+lerf_ovs() {
+	local view
+	mkdir -p label/mini
+	for view in $(tr , ' ' <made/test-views); do
+		jq -n --arg view "$view" --arg a "$(jq -r .ref made/names.jsonl | sed -n 1p)" --arg b "$(jq -r .ref made/names.jsonl | sed -n 2p)" '
+			{info: {name: "\($view).jpg", width: 64, height: 48, depth: 3, note: ""}, objects: [
+			{category: $a, group: 1, segmentation: [[2, 2], [12, 2], [12, 12], [2, 12]], bbox: [2, 2, 12, 12]},
+			{category: $a, group: 1, segmentation: [[20, 2], [30, 2], [30, 12], [20, 12]], bbox: [20, 2, 30, 12]},
+			{category: $b, group: 2, segmentation: [[40, 20], [60, 20], [60, 40], [40, 40]], bbox: [40, 20, 60, 40]}]}' >"label/mini/$view.json"
+	done
+}
+
+setup() {
+	cd "$BATS_FILE_TMPDIR"
+	load ../format/files
+	test_views=$(cat made/test-views)
+}
+
+lerf() {
+	make -s -f "$ROOT/pipelines/lerf.mk" BIN="$BIN" BERT="$ROOT/tests/golden/bert" SPLATS=made/point_cloud.ply SCALE=1 "$@" 2>&1
+}
+
+@test "Ref-LERF: sentences, masks and truth of the folder" {
+	lerf ref-lerf DATA=made/mini TEST_VIEWS="$test_views" OUT=ref >ref.out || { cat ref.out; false; }
+	# each training sentence once, each test sentence once, with refs of their own
+	[ "$(jq -r 'select(.split == "train").text' ref/benchmark/sentences.jsonl | sort)" = \
+		"$(jq -r 'select(.split == "train").text' made/sentences.jsonl | sort -u)" ]
+	[ "$(jq -r 'select(.split == "test") | [.object, .text] | @tsv' ref/benchmark/sentences.jsonl | sort)" = \
+		"$(jq -r 'select(.split == "test") | [.object, .text] | @tsv' made/sentences.jsonl | sort)" ]
+	[ "$(jq -r .ref ref/benchmark/sentences.jsonl | sort | uniq -d | wc -l)" = 0 ]
+	# the truth is of test views and by sentence, the masks are of the others and by object
+	views=$(tr , '\n' <made/test-views | wc -l)
+	[ "$(wc -l <ref/benchmark/truth.jsonl)" = $((3 * views)) ]
+	jq -e 'has("ref") and (has("object") | not)' ref/benchmark/truth.jsonl >/dev/null
+	[ "$(jq -r .view ref/benchmark/truth.jsonl | sort -u | paste -sd,)" = "$test_views" ]
+	[ "$(wc -l <ref/benchmark/masks.jsonl)" = $((3 * (6 - views))) ]
+	"$BIN/gs-check" ref/benchmark/*.jsonl
+}
+
+@test "Ref-LERF: scores of test sentences, and the published figures" {
+	lerf ref-lerf DATA=made/mini TEST_VIEWS="$test_views" OUT=ref >again
+	jq -e '.pairs > 0 and .missing == 0 and .miou >= 0' ref/score.json
+	grep -qx "mini: mIoU $(printf %.1f "$(jq '100 * .miou' ref/score.json)") in test views (ref/score.json)" again
+	grep -q '^Published mIoU on Ref-LERF' again
+	grep -qE '^  ReferSplat +29.2$' again
+	# another split makes other files
+	first=$(cut -d, -f1 made/test-views)
+	[ "$first" = "$test_views" ] || lerf ref-lerf DATA=made/mini TEST_VIEWS="$first" OUT=ref >/dev/null
+	[ "$(jq -r .view ref/benchmark/truth.jsonl | sort -u)" = "$first" ]
+}
+
+@test "LERF-OVS: labels are the truth of their views, names the sentences" {
+	lerf lerf-ovs DATA=made/mini LABELS=label/mini CANDIDATES=made/candidates.jsonl OUT=ovs >ovs.out || { cat ovs.out; false; }
+	views=$(tr , '\n' <made/test-views | wc -l)
+	[ "$(wc -l <ovs/benchmark/truth.jsonl)" = $((2 * views)) ]
+	[ "$(jq -r .text ovs/benchmark/sentences.jsonl | sort | uniq -c | awk '{ print $1 }' | sort -u)" = 2 ]
+	[ "$(jq -r '.[] | select(.split == "test").name' ovs/scene/cameras.json | paste -sd,)" = "$test_views" ]
+	jq -e --argjson n $((2 * views)) '.pairs == $n and .missing == 0' ovs/score.json
+	grep -q '^Published mIoU on LERF-OVS' ovs.out
+	grep -qE '^  LangSplat +51.4$' ovs.out
+}
+
+@test "what is not given, or not there" {
+	run lerf ref-lerf DATA=made/mini
+	[ "$status" = 2 ]
+	[[ $output == *"lerf.mk: TEST_VIEWS not set; "* ]]
+	run lerf lerf-ovs DATA=made/mini LABELS=label/mini
+	[ "$status" = 2 ]
+	[[ $output == *"lerf.mk: CANDIDATES not set; "* ]]
+	run lerf ref-lerf DATA=made TEST_VIEWS=a
+	[ "$status" = 2 ]
+	[[ $output == *"made has no json/VIEW.json"* ]]
+	run lerf lerf-ovs DATA=made/mini LABELS=made/images CANDIDATES=made/candidates.jsonl
+	[ "$status" = 2 ]
+	[[ $output == *"made/images has no labels VIEW.json"* ]]
+	make -f "$ROOT/pipelines/lerf.mk" help | grep -q '^LABELS '
+}

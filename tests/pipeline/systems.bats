@@ -1,0 +1,54 @@
+#!/usr/bin/env bats
+# The table of systems, on the smallest scene there is.
+
+setup_file() {
+	export BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	BIN=$(cd "$BIN" && pwd)
+	export ROOT=$BATS_TEST_DIRNAME/../.. OUT=$BATS_FILE_TMPDIR/out
+	systems >"$BATS_FILE_TMPDIR/table" 2>"$BATS_FILE_TMPDIR/err"
+}
+
+# systems ARGUMENT...: the pipeline on one tiny scene.
+systems() {
+	make -f "$ROOT/pipelines/systems.mk" OUT="$OUT" SCENES=diner SEEDS=1 BIN="$BIN" BERT="$ROOT/tests/golden/bert" \
+		SYNTH="--objects 3 --views 6 --size 64x48 --gaussians 1500" TRAIN="--iterations 20" "$@"
+}
+
+setup() { cd "$BATS_TEST_TMPDIR"; }
+
+not() { ! "$@"; }
+
+@test "a row for each system and stand-in, with all figures" {
+	cd "$OUT"
+	sed -n '/^### /,$p' "$BATS_FILE_TMPDIR/table" | cmp systems.md
+	[ "$(grep -c '^| .* | [0-9.]* | [0-9.]* | [0-9.]* | [0-9]* | [0-9]* |$' systems.md)" = 11 ]
+	[ "$(grep -c '| stand-in: ' systems.md)" = 8 ]
+	grep -qF '| Grounded SAM: masks of each view alone | 15.8 | the detector is not run in test views | - |' systems.md
+	grep -qE '^\| LangSplat: relevancy \| 13.9 \| stand-in: names of true masks \| ' systems.md
+}
+
+@test "the figures are those of the files" {
+	cd "$OUT/diner-1"
+	miou=$(jq '.miou * 100' answers/truth-hyperplane.test.score.json)
+	bytes=$(($(wc -c <truth/features.safetensors) / 1500))
+	grep -F 'GOI: hyperplane | 20.5 | stand-in: names of true masks' ../systems.md |
+		grep -qE "\| $(printf %.1f "$miou") \|.* $bytes \|$"
+	"$BIN/gs-check" selected/truth-cosine.test.safetensors | grep -q 'refer.selection, 3 sentences'
+	not grep -q '2"' text/names.jsonl
+	[ "$(jq -r .text text/canonical.jsonl | paste -sd' ')" = "object things stuff texture" ]
+}
+
+@test "a second run makes nothing, and another option what depends on it" {
+	touch stamp
+	systems >again
+	cmp again "$OUT/systems.md"
+	[ -z "$(find "$OUT" -name '*.safetensors' -newer stamp)" ]
+	systems PRUNE=0.25 >other
+	made=$(cd "$OUT/diner-1" && find . -name '*.safetensors' -newer "$OLDPWD/stamp" | LC_ALL=C sort)
+	[ "$(grep -c selected <<<"$made")" = 12 ] || { echo "$made"; false; }
+	[ "$(grep -v selected <<<"$made" | paste -sd' ')" = "./detector/features.safetensors ./truth/features.safetensors" ]
+	run make -f "$ROOT/pipelines/systems.mk" OUT="$OUT" SCENES='a;b'
+	[ "$status" = 2 ]
+	[[ $output == *"SCENES has a ;"* ]]
+	make -f "$ROOT/pipelines/systems.mk" help | grep -q '^PRUNE '
+}
