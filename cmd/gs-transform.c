@@ -11,16 +11,16 @@ static int format;
 static long long spz_version = 3;
 
 static const struct cli_option table[] = {
-	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz", "what to write (default: as FILE is called)",
-		0, 0},
+	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz",
+		"what to write (default: as FILE is called)", 0, 0},
 	{"spz-version", 0, CLI_INT, &spz_version, "N", "version of .spz to write, 2 to 4 (default 3)", 2, 4},
-	{"crop", 0, CLI_STRING, &options.crop, "BOX", "keep what is within X0,Y0,Z0,X1,Y1,Z1", 0, 0},
+	{"crop", 0, CLI_STRING, &options.crop, "X0,Y0,Z0,X1,Y1,Z1", "keep what is within this box", 0, 0},
 	{"drop-strays", 0, CLI_FLAG, &options.drop_strays, NULL,
 		"leave out Gaussians that are far from all others", 0, 0},
 	{"scale", 0, CLI_REAL, &options.scale, "S", "make everything S times as large, about the origin",
 		1e-9, 1e9},
-	{"rotate", 0, CLI_STRING, &options.rotate, "TURN",
-		"turn about the origin: a quaternion W,X,Y,Z, or an axis and an angle X,Y,Z:DEGREES", 0, 0},
+	{"rotate", 0, CLI_STRING, &options.rotate, "W,X,Y,Z|X,Y,Z:DEGREES",
+		"turn about the origin: a quaternion, or an axis and an angle", 0, 0},
 	{"translate", 0, CLI_STRING, &options.translate, "X,Y,Z", "shift by so much", 0, 0},
 	{0},
 };
@@ -41,8 +41,8 @@ static enum anysplats_format choose_format(const struct cli *cli)
 	const int found = format ? format - 1 : anysplats_format_of(cli->output);
 
 	if (found < 0)
-		cli_usage(cli, "-o %s: neither .ply nor .splat nor .spz, and --format is not given",
-			cli->output);
+		cli_usage(
+			cli, "-o %s: neither .ply nor .splat nor .spz, and --format is not given", cli->output);
 	return (enum anysplats_format)found;
 }
 
