@@ -11,7 +11,7 @@ static int format;
 static long long spz_version = 3;
 
 static const struct cli_option table[] = {
-	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz",
+	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz|glb",
 		"what to write (default: as FILE is called)", 0, 0},
 	{"spz-version", 0, CLI_INT, &spz_version, "N", "version of .spz to write, 2 to 4 (default 3)", 2, 4},
 	{"crop", 0, CLI_STRING, &options.crop, "X0,Y0,Z0,X1,Y1,Z1", "keep what is within this box", 0, 0},
@@ -42,7 +42,7 @@ static enum anysplats_format choose_format(const struct cli *cli)
 
 	if (found < 0)
 		cli_usage(
-			cli, "-o %s: neither .ply nor .splat nor .spz, and --format is not given", cli->output);
+			cli, "-o %s: not .ply, .splat, .spz or .glb, and --format is not given", cli->output);
 	return (enum anysplats_format)found;
 }
 

@@ -157,6 +157,7 @@ static const struct target {
 	{"dataparser", try_dataparser, {0}},
 	{"image", try_image, {0}},
 	{"lifted", try_lifted, {0}},
+	{"glb", try_scene, {0}},
 	{"masks", try_masks, {0}},
 	{"model", try_model, {0}},
 	{"npy", try_npy, {0}},
