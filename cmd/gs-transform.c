@@ -11,7 +11,7 @@ static int format;
 static long long spz_version = 3;
 
 static const struct cli_option table[] = {
-	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz|glb",
+	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz|glb|sog",
 		"what to write (default: as FILE is called)", 0, 0},
 	{"spz-version", 0, CLI_INT, &spz_version, "N", "version of .spz to write, 2 to 4 (default 3)", 2, 4},
 	{"crop", 0, CLI_STRING, &options.crop, "X0,Y0,Z0,X1,Y1,Z1", "keep what is within this box", 0, 0},
@@ -41,8 +41,8 @@ static enum anysplats_format choose_format(const struct cli *cli)
 	const int found = format ? format - 1 : anysplats_format_of(cli->output);
 
 	if (found < 0)
-		cli_usage(
-			cli, "-o %s: not .ply, .splat, .spz or .glb, and --format is not given", cli->output);
+		cli_usage(cli, "-o %s: not .ply, .splat, .spz, .glb or .sog, and --format is not given",
+			cli->output);
 	return (enum anysplats_format)found;
 }
 

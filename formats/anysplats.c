@@ -47,7 +47,8 @@ int anysplats_format_of(const char *path)
 	static const char *const tails[] = {[ANYSPLATS_PLY] = ".ply",
 		[ANYSPLATS_SPLAT] = ".splat",
 		[ANYSPLATS_SPZ] = ".spz",
-		[ANYSPLATS_GLB] = ".glb"};
+		[ANYSPLATS_GLB] = ".glb",
+		[ANYSPLATS_SOG] = ".sog"};
 
 	for (int i = 0; i < ANYSPLATS_FORMATS; i++)
 		if (path_ends(path, tails[i]))
@@ -63,6 +64,8 @@ int anysplats_write(const struct splats *s, const double offset[3], enum anyspla
 		return splat_write(s, offset, path, e);
 	case ANYSPLATS_SPZ:
 		return spz_write(s, offset, spz_version, path, e);
+	case ANYSPLATS_SOG:
+		return sog_write(s, offset, path, e);
 	case ANYSPLATS_GLB:
 		return glb_write(s, offset, path, e);
 	default:

@@ -15,7 +15,14 @@ int anysplats_read(
 int anysplats_is_meta(const char *path);
 
 /* What can be written. */
-enum anysplats_format { ANYSPLATS_PLY, ANYSPLATS_SPLAT, ANYSPLATS_SPZ, ANYSPLATS_GLB, ANYSPLATS_FORMATS };
+enum anysplats_format {
+	ANYSPLATS_PLY,
+	ANYSPLATS_SPLAT,
+	ANYSPLATS_SPZ,
+	ANYSPLATS_GLB,
+	ANYSPLATS_SOG,
+	ANYSPLATS_FORMATS
+};
 
 /* The format that a name ends with; -1 where it is none. */
 int anysplats_format_of(const char *path);

@@ -44,7 +44,7 @@ Try 'gs-transform --help'." "$BIN/gs-transform" -o out.ply "$@" s.ply && [ ! -e 
 }
 
 @test "through every format and back: means stay, to the format's step" {
-	for file in a.splat a.spz b.spz c.spz a.glb; do
+	for file in a.splat a.spz b.spz c.spz a.glb a.sog; do
 		case $file in a.spz) v=2 ;; b.spz) v=3 ;; *) v=4 ;; esac
 		try --spz-version $v -o $file s.ply
 		try -o out.ply $file
@@ -59,9 +59,9 @@ Try 'gs-transform --help'." "$BIN/gs-transform" -o out.ply "$@" s.ply && [ ! -e 
 	try -o a.spz s.ply
 	cmp a.bin a.spz
 	try --format spz -o - - <s.ply | cmp - a.spz
-	says 2 "gs-transform: -o a.bin: not .ply, .splat, .spz or .glb, and --format is not given
+	says 2 "gs-transform: -o a.bin: not .ply, .splat, .spz, .glb or .sog, and --format is not given
 Try 'gs-transform --help'." "$BIN/gs-transform" -o a.bin s.ply
-	says 2 "gs-transform: -o -: not .ply, .splat, .spz or .glb, and --format is not given
+	says 2 "gs-transform: -o -: not .ply, .splat, .spz, .glb or .sog, and --format is not given
 Try 'gs-transform --help'." "$BIN/gs-transform" -o - s.ply
 }
 

@@ -82,6 +82,22 @@ within() {
 	within out.ply s.sog 1e-5 1e-5 1e-3 2e-6 1e-5
 }
 
+@test "our SOG, read there, and as near to the scene as its own" {
+	"$BIN/gs-transform" -o our.sog s.ply
+	"$BIN/gs-transform" -o out.ply our.sog
+	within out.ply our.sog 1e-5 1e-5 1e-3 2e-6 1e-5
+	# means of 16 bits; codes as near as 256 can be
+	within our.sog s.ply 2.3e-4 0.05 0.02 0.0021 0.02
+	peer -g cpu s.ply its.sog
+	for names in 'scale_0 scale_1 scale_2' 'f_dc_0 f_dc_1 f_dc_2'; do
+		peer its.sog b.csv
+		peer s.ply a.csv
+		theirs=$(largest a.csv b.csv "$names")
+		peer our.sog b.csv
+		awk -v ours="$(largest a.csv b.csv "$names")" -v theirs="$theirs" 'BEGIN { exit !(ours <= 1.5 * theirs) }' || { echo "$names: $theirs"; false; }
+	done
+}
+
 @test "its .glb, read here" {
 	peer s.ply s.glb
 	"$BIN/gs-transform" -o out.ply s.glb
