@@ -137,7 +137,7 @@ static int find_bytes(
 		return err_set(e, ERR_FORMAT,
 			"%s: %s: %zu bytes from offset %zu do not fit a binary chunk of %zu", f->name, name,
 			length, begin, f->bin_length);
-	if (v->stride < item || from > length ||
+	if (!item || v->stride < item || from > length ||
 		(v->n && (length - from < item || (length - from - item) / v->stride < v->n - 1)))
 		return err_set(e, ERR_FORMAT, "%s: %s: %zu items of %zu bytes do not fit %zu", f->name, name,
 			v->n, v->stride, length - (from > length ? length : from));
