@@ -19,6 +19,11 @@ static const struct cli_option table[] = {
 		"leave out Gaussians that are far from all others", 0, 0},
 	{"scale", 0, CLI_REAL, &options.scale, "S", "make everything S times as large, about the origin",
 		1e-9, 1e9},
+	{"known", 0, CLI_STRING, &options.known, "X0,Y0,Z0,X1,Y1,Z1=LENGTH",
+		"in place of --scale: two points, and how far they are apart when all is done", 0, 0},
+	{"up-from", 0, CLI_STRING, &options.up_from, "CAMERAS",
+		"level the scene: what is up for these cameras, which people hold level, becomes -y, as viewers have it",
+		0, 0},
 	{"rotate", 0, CLI_STRING, &options.rotate, "W,X,Y,Z|X,Y,Z:DEGREES",
 		"turn about the origin: a quaternion, or an axis and an angle", 0, 0},
 	{"translate", 0, CLI_STRING, &options.translate, "X,Y,Z", "shift by so much", 0, 0},
@@ -56,6 +61,10 @@ static void note(const struct cli *cli, const struct splats *s, const struct row
 		cli_note(cli, 1, "%zu Gaussians are outside the box", left_out->outside);
 	if (options.drop_strays)
 		cli_note(cli, 1, "%zu Gaussians are strays", left_out->strays);
+	if (options.up_from)
+		cli_note(cli, 1, "up was %.3f %.3f %.3f", left_out->up[0], left_out->up[1], left_out->up[2]);
+	if (options.known)
+		cli_note(cli, 1, "everything is %.6g times as large", left_out->scale);
 	cli_note(cli, 1, "%zu Gaussians are written", s->n);
 }
 
@@ -70,10 +79,12 @@ int main(int argc, char **argv)
 
 	cli_parse(&cli, &tool, argc, argv);
 	const enum anysplats_format to = choose_format(&cli);
+	if (options.known && options.scale != 1)
+		cli_usage(&cli, "--known and --scale do not go together");
 	if (transforming_check(&options, &e))
 		cli_usage(&cli, "%s", e.message);
 	cli_refuse_terminal(&cli);
-	cli_refuse_overwrite(&cli, "SPLATS", "output", NULL);
+	cli_refuse_overwrite(&cli, "SPLATS up-from", "output", NULL);
 	int bad = anysplats_read(&s, offset, &report, cli.operands[0], &e) ||
 		  transforming_do(&s, offset, &options, &left_out, &e) ||
 		  anysplats_write(&s, offset, to, (int)spz_version, cli.output, &e);
