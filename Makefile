@@ -2,6 +2,7 @@
 
 VERSION := 0.1.0
 PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
 BUILD ?= build
 CC ?= cc
 CFLAGS ?= -O3 -g
@@ -16,9 +17,12 @@ CPPFLAGS += -DHAVE_WORDNET
 LDLIBS += -lwordnet
 endif
 
+# Position-independent, with nothing but the functions of refersplat.h for other programs: the library is shared too.
+PIC := -fPIC -fvisibility=hidden
+
 # A change of any of these rebuilds everything (see $(BUILD)/flags).
 COMPILE = $(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L -DVERSION='"$(VERSION)"' -Ilibcommon -I. \
-	$(CFLAGS) -std=c11 $(OPENMP) -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
+	$(CFLAGS) -std=c11 $(PIC) $(OPENMP) -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
 LINK = $(CC) $(CFLAGS) $(OPENMP) $(LDFLAGS)
 
 TOOLS := $(patsubst cmd/%.c,%,$(wildcard cmd/*.c))
@@ -26,6 +30,12 @@ SOURCES := $(wildcard libcommon/*/*.c formats/*.c cmd/jobs/*.c)
 OBJECTS := $(SOURCES:%.c=$(BUILD)/obj/%.o)
 LIBRARY := $(BUILD)/librefersplat.a
 BINARIES := $(TOOLS:%=$(BUILD)/bin/%)
+COMPLETIONS := $(TOOLS:%=$(BUILD)/completion/bash/%) $(TOOLS:%=$(BUILD)/completion/zsh/_%)
+# librefersplat, as other programs link it: $(LIBRARY) has all that the tools use.
+PUBLIC := $(BUILD)/obj/cmd/jobs/refersplat.o
+SONAME := librefersplat.so.0
+SHARED := $(BUILD)/lib/librefersplat.so.$(VERSION)
+STATIC := $(BUILD)/lib/librefersplat.a
 UNITS := $(patsubst tests/unit/%.c,$(BUILD)/unit/%,$(wildcard tests/unit/test_*.c))
 UNIT_HELPERS := $(filter-out tests/unit/test_%,$(wildcard tests/unit/*.c))
 UNIT_OBJECTS := $(UNIT_HELPERS:%.c=$(BUILD)/obj/%.o)
@@ -33,12 +43,12 @@ STABILITY := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard tests/stability/*.c))
 BENCHES := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/bench_*.c tests/bench/fit_*.c))
 FUZZERS := $(patsubst tests/fuzz/%.c,$(BUILD)/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
 C_FILES = $(wildcard cmd/*.c cmd/jobs/*.[ch] libcommon/*/*.[ch] formats/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch] tests/bench/*.[ch] tests/stability/*.[ch])
-MAN_PAGES := $(wildcard man/*.[17])
+MAN_PAGES := $(wildcard man/*.[137])
 
 # What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
 NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev \
 	utf8proc.h=libutf8proc-dev webp/decode.h=libwebp-dev zstd.h=libzstd-dev minizip/unzip.h=libminizip-dev $(CC)=gcc ar=binutils
-NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd
+NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd pkg-config=pkg-config
 NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
 
 # The language encoder, all-MiniLM-L6-v2 (Apache-2.0, 45 MB): fetched once into a cache that `make clean` leaves alone.
@@ -62,9 +72,10 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools units fuzzers objects packages encoder viewer deps demo test test-real check stability determinism fuzz readers sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall clean map help FORCE
-all: tools ## build the tools into build/bin
-tools: $(BINARIES)
+.PHONY: all bench benches tools library units fuzzers objects packages encoder viewer deps demo test test-real check stability determinism fuzz readers sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall deb clean map help FORCE
+all: tools library ## build the tools into build/bin, and librefersplat into build/lib
+tools: $(BINARIES) $(COMPLETIONS)
+library: $(SHARED) $(STATIC)
 units: $(UNITS) $(BUILD)/stability
 fuzzers: $(FUZZERS)
 benches: $(BENCHES)
@@ -85,9 +96,32 @@ $(LIBRARY): $(OBJECTS)
 	@rm -f $@
 	ar rcs $@ $^
 
+$(SHARED): $(PUBLIC) $(LIBRARY)
+	@mkdir -p $(@D)
+	$(LINK) -shared -Wl,-soname,$(SONAME) -Wl,-z,defs -o $@ $^ $(LDLIBS)
+	@ln -sf $(@F) $(@D)/$(SONAME)
+	@ln -sf $(SONAME) $(@D)/librefersplat.so
+
+# One object of all that its functions need, in which the rest has no names to clash with a program's own.
+$(STATIC): $(PUBLIC) $(LIBRARY)
+	@mkdir -p $(@D)
+	$(CC) -r -nostdlib -o $(@:.a=.o) $^
+	objcopy --localize-hidden $(@:.a=.o)
+	@rm -f $@
+	ar rcs $@ $(@:.a=.o)
+
 $(BUILD)/bin/%: $(BUILD)/obj/cmd/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(LINK) -o $@ $^ $(LDLIBS)
+
+# How bash and zsh complete a tool's command line: made of its own table of options.
+$(BUILD)/completion/bash/%: $(BUILD)/bin/%
+	@mkdir -p $(@D)
+	@$< --completion=bash >$@.new && mv $@.new $@
+
+$(BUILD)/completion/zsh/_%: $(BUILD)/bin/%
+	@mkdir -p $(@D)
+	@$< --completion=zsh >$@.new && mv $@.new $@
 
 $(BUILD)/unit/%: $(BUILD)/obj/tests/unit/%.o $(UNIT_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
@@ -126,6 +160,8 @@ $(BUILD)/headers:
 	@touch $@
 
 .SECONDARY:
+
+comma := ,
 
 # $(call need,LIST): installs the packages of LIST whose probe fails; says which, where it cannot.
 define need
@@ -186,7 +222,7 @@ test: packages ## set up, build, run every test; FILTER=text picks test files by
 	@$(MAKE) --no-print-directory check
 
 check: # the tests without installing anything
-	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units $(BUILD)/bench/bench_render
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools library units $(BUILD)/bench/bench_render
 	@tests/run.sh $(BUILD) $(JOBS) "$(FILTER)"
 
 test-real: packages ## the whole method on real scenes: make test-real DATA=DIR
@@ -269,7 +305,19 @@ format: ## bring every C file into the house's form
 install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 	install -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(PREFIX)/share/man/man1" "$(DESTDIR)$(PREFIX)/share/man/man7" \
 		"$(DESTDIR)$(PREFIX)/share/refersplat/pipelines" "$(DESTDIR)$(PREFIX)/share/doc/refersplat/formats"
+	install -d "$(DESTDIR)$(PREFIX)/share/bash-completion/completions" "$(DESTDIR)$(PREFIX)/share/zsh/site-functions"
 	install -m 755 $(BINARIES) "$(DESTDIR)$(PREFIX)/bin"
+	install -m 644 $(TOOLS:%=$(BUILD)/completion/bash/%) "$(DESTDIR)$(PREFIX)/share/bash-completion/completions"
+	install -m 644 $(TOOLS:%=$(BUILD)/completion/zsh/_%) "$(DESTDIR)$(PREFIX)/share/zsh/site-functions"
+	install -d "$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(PREFIX)/include" "$(DESTDIR)$(PREFIX)/share/man/man3"
+	install -m 644 cmd/jobs/refersplat.h "$(DESTDIR)$(PREFIX)/include"
+	install -m 644 $(STATIC) $(SHARED) "$(DESTDIR)$(LIBDIR)"
+	ln -sf $(notdir $(SHARED)) "$(DESTDIR)$(LIBDIR)/$(SONAME)"
+	ln -sf $(SONAME) "$(DESTDIR)$(LIBDIR)/librefersplat.so"
+	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' 'Name: refersplat' \
+		'Description: Ask a lifted 3D Gaussian Splatting scene in which things are' 'Version: $(VERSION)' \
+		'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lrefersplat' 'Libs.private: $(LDLIBS) $(OPENMP)' \
+		>"$(DESTDIR)$(LIBDIR)/pkgconfig/refersplat.pc"
 	install -m 755 pipelines/encoder.sh "$(DESTDIR)$(PREFIX)/bin/refersplat-encoder"
 	install -m 644 README.md "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
 	install -m 644 $(wildcard formats/*.md) "$(DESTDIR)$(PREFIX)/share/doc/refersplat/formats"
@@ -279,10 +327,42 @@ install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 		install -m $$mode $$file "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines" || exit; done
 
 uninstall: ## remove what install put there
-	rm -f $(TOOLS:%="$(DESTDIR)$(PREFIX)/bin/%")
+	rm -f $(TOOLS:%="$(DESTDIR)$(PREFIX)/bin/%") $(TOOLS:%="$(DESTDIR)$(PREFIX)/share/bash-completion/completions/%") \
+		$(TOOLS:%="$(DESTDIR)$(PREFIX)/share/zsh/site-functions/_%")
+	rm -f "$(DESTDIR)$(PREFIX)/include/refersplat.h" "$(DESTDIR)$(LIBDIR)/pkgconfig/refersplat.pc" \
+		$(addprefix "$(DESTDIR)$(LIBDIR)"/,$(notdir $(STATIC) $(SHARED)) $(SONAME) librefersplat.so)
 	for page in $(notdir $(MAN_PAGES)); do rm -f "$(DESTDIR)$(PREFIX)/share/man/man$${page##*.}/$$page"; done
 	rm -f "$(DESTDIR)$(PREFIX)/bin/refersplat-encoder"
 	rm -rf "$(DESTDIR)$(PREFIX)/share/refersplat" "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
+
+# A Debian package of what install puts under /usr, in build/. The libraries that it depends on, and from which version on, are those that
+# dpkg-shlibdeps finds in the programs. WordNet's words are files that no program links.
+DEB := $(BUILD)/deb
+DEB_ARCH = $(shell dpkg --print-architecture)
+DEB_FILE = $(BUILD)/refersplat_$(VERSION)_$(DEB_ARCH).deb
+MAINTAINER ?= refersplat <refersplat@localhost>
+
+deb: all ## make a Debian package, build/refersplat_VERSION_ARCH.deb
+	$(call need,dpkg-deb=dpkg dpkg-shlibdeps=dpkg-dev strip=binutils)
+	@rm -rf $(DEB)
+	@$(MAKE) --no-print-directory -s install DESTDIR="$(abspath $(DEB))/root" PREFIX=/usr LIBDIR=/usr/lib/$$(dpkg-architecture -qDEB_HOST_MULTIARCH)
+	@strip --strip-unneeded $(TOOLS:%=$(DEB)/root/usr/bin/%) $(DEB)/root/usr/lib/*/$(notdir $(SHARED))
+	@strip --strip-debug $(DEB)/root/usr/lib/*/$(notdir $(STATIC))
+	@gzip -9n $(DEB)/root/usr/share/man/man*/*
+	@mkdir $(DEB)/debian $(DEB)/root/DEBIAN
+	@printf 'Source: refersplat\n\nPackage: refersplat\nArchitecture: any\n' >$(DEB)/debian/control
+	@cd $(DEB) && dpkg-shlibdeps -O $(TOOLS:%=-eroot/usr/bin/%) -e"$$(echo root/usr/lib/*/$(notdir $(SHARED)))" >depends 2>shlibdeps.log || \
+		{ cat shlibdeps.log >&2; exit 1; }
+	@cd $(DEB)/root && find usr -type f | LC_ALL=C sort | xargs -d '\n' md5sum >DEBIAN/md5sums
+	@printf '%s\n' 'Package: refersplat' 'Version: $(VERSION)' 'Architecture: $(DEB_ARCH)' 'Maintainer: $(MAINTAINER)' 'Section: graphics' \
+		'Priority: optional' "Installed-Size: $$(du -k -s $(DEB)/root/usr | cut -f 1)" \
+		"Depends: $$(sed -n 's/^shlibs:Depends=//p' $(DEB)/depends)$(if $(filter -lwordnet,$(LDLIBS)),$(comma) wordnet-base)" \
+		'Recommends: make, jq, npm' 'Suggests: libcjson-dev, pkg-config' \
+		'Description: find what a sentence means in a 3D Gaussian Splatting scene' \
+		' Given a trained scene, posed photographs and sentences, these programs find the' \
+		' Gaussians of the object that each sentence means, draw its mask for any camera,' \
+		' and say where it is in space. They run on the processor alone.' >$(DEB)/root/DEBIAN/control
+	@SOURCE_DATE_EPOCH=$${SOURCE_DATE_EPOCH:-$$(git log -1 --format=%ct 2>/dev/null || date +%s)} dpkg-deb --root-owner-group -b $(DEB)/root $(DEB_FILE)
 
 clean: ## remove what was built; the cached encoder and demo data stay
 	rm -rf $(BUILD) build-asan build-fuzz build-lint

@@ -11,16 +11,21 @@ static int format;
 static long long spz_version = 3;
 
 static const struct cli_option table[] = {
-	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz", "what to write (default: as FILE is called)",
-		0, 0},
+	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz|glb|sog",
+		"what to write (default: as FILE is called)", 0, 0},
 	{"spz-version", 0, CLI_INT, &spz_version, "N", "version of .spz to write, 2 to 4 (default 3)", 2, 4},
-	{"crop", 0, CLI_STRING, &options.crop, "BOX", "keep what is within X0,Y0,Z0,X1,Y1,Z1", 0, 0},
+	{"crop", 0, CLI_STRING, &options.crop, "X0,Y0,Z0,X1,Y1,Z1", "keep what is within this box", 0, 0},
 	{"drop-strays", 0, CLI_FLAG, &options.drop_strays, NULL,
 		"leave out Gaussians that are far from all others", 0, 0},
 	{"scale", 0, CLI_REAL, &options.scale, "S", "make everything S times as large, about the origin",
 		1e-9, 1e9},
-	{"rotate", 0, CLI_STRING, &options.rotate, "TURN",
-		"turn about the origin: a quaternion W,X,Y,Z, or an axis and an angle X,Y,Z:DEGREES", 0, 0},
+	{"known", 0, CLI_STRING, &options.known, "X0,Y0,Z0,X1,Y1,Z1=LENGTH",
+		"in place of --scale: two points, and how far they are apart when all is done", 0, 0},
+	{"up-from", 0, CLI_STRING, &options.up_from, "CAMERAS",
+		"level the scene: what is up for these cameras, which people hold level, becomes -y, as viewers have it",
+		0, 0},
+	{"rotate", 0, CLI_STRING, &options.rotate, "W,X,Y,Z|X,Y,Z:DEGREES",
+		"turn about the origin: a quaternion, or an axis and an angle", 0, 0},
 	{"translate", 0, CLI_STRING, &options.translate, "X,Y,Z", "shift by so much", 0, 0},
 	{0},
 };
@@ -41,7 +46,7 @@ static enum anysplats_format choose_format(const struct cli *cli)
 	const int found = format ? format - 1 : anysplats_format_of(cli->output);
 
 	if (found < 0)
-		cli_usage(cli, "-o %s: neither .ply nor .splat nor .spz, and --format is not given",
+		cli_usage(cli, "-o %s: not .ply, .splat, .spz, .glb or .sog, and --format is not given",
 			cli->output);
 	return (enum anysplats_format)found;
 }
@@ -56,6 +61,10 @@ static void note(const struct cli *cli, const struct splats *s, const struct row
 		cli_note(cli, 1, "%zu Gaussians are outside the box", left_out->outside);
 	if (options.drop_strays)
 		cli_note(cli, 1, "%zu Gaussians are strays", left_out->strays);
+	if (options.up_from)
+		cli_note(cli, 1, "up was %.3f %.3f %.3f", left_out->up[0], left_out->up[1], left_out->up[2]);
+	if (options.known)
+		cli_note(cli, 1, "everything is %.6g times as large", left_out->scale);
 	cli_note(cli, 1, "%zu Gaussians are written", s->n);
 }
 
@@ -70,10 +79,12 @@ int main(int argc, char **argv)
 
 	cli_parse(&cli, &tool, argc, argv);
 	const enum anysplats_format to = choose_format(&cli);
+	if (options.known && options.scale != 1)
+		cli_usage(&cli, "--known and --scale do not go together");
 	if (transforming_check(&options, &e))
 		cli_usage(&cli, "%s", e.message);
 	cli_refuse_terminal(&cli);
-	cli_refuse_overwrite(&cli, "SPLATS", "output", NULL);
+	cli_refuse_overwrite(&cli, "SPLATS up-from", "output", NULL);
 	int bad = anysplats_read(&s, offset, &report, cli.operands[0], &e) ||
 		  transforming_do(&s, offset, &options, &left_out, &e) ||
 		  anysplats_write(&s, offset, to, (int)spz_version, cli.output, &e);

@@ -1,6 +1,8 @@
-/* refer-locate: where in space the object of a sentence is, and the scene with it for a viewer. */
+/* refer-locate: where in space the objects of sentences, or all objects, are, and the scene with them for
+ * other programs. */
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cmd/jobs/labelling.h"
 #include "cmd/jobs/locating.h"
 #include "formats/ply.h"
 #include "formats/splat.h"
@@ -9,11 +11,15 @@
 
 static struct {
 	struct request_options request;
-	const char *ply, *splat;
-	int show;
+	const char *ply, *splat, *each;
+	int show, is_all;
 } options = {.request = REQUEST_DEFAULTS};
 
 static const struct cli_option table[] = {REQUEST_FILES(options.request), REQUEST_SENTENCES(options.request),
+	{"all", 0, CLI_FLAG, &options.is_all, NULL,
+		"lifted models: every object, without --text; --ply then has a label for each Gaussian", 0,
+		0},
+	{"each", 0, CLI_STRING, &options.each, "DIR", "with --all: a .ply of each object alone", 0, 0},
 	{"viewpoint", 0, CLI_STRING, &options.request.viewpoint, "VIEW|x,y,z",
 		"lifted models: where sentences are said (default: the view that a sentence names, else between the training views)",
 		0, 0},
@@ -25,7 +31,7 @@ static const struct cli_option table[] = {REQUEST_FILES(options.request), REQUES
 	{0}};
 
 static const struct cli_tool tool = {.name = "refer-locate",
-	.operands = "--scene SCENE --text TEXT --model MODEL",
+	.operands = "--scene SCENE --model MODEL (--text TEXT | --all)",
 	.summary = "Say where in space the objects of sentences are.",
 	.options = table,
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT};
@@ -87,29 +93,67 @@ static int write_scene(const struct locating *r, struct err *e)
 	return bad ? -1 : 0;
 }
 
+static int write_labels(const struct labelling *r, const struct cli *c, struct err *e)
+{
+	struct file_out out;
+
+	return file_out_open(&out, c->output, e) || file_out_end(&out, labelling_put(r, out.stream, e), e);
+}
+
+/* Every object, without sentences. */
+static int label(const struct cli *c, struct err *e)
+{
+	struct labelling r = {0};
+	const int bad = labelling_open(&r, options.request.scene, options.request.model, e) ||
+			(options.each && labelling_write_each(&r, options.each, e)) ||
+			(options.ply && labelling_write_scene(&r, options.ply, e)) || write_labels(&r, c, e);
+
+	labelling_free(&r);
+	return bad ? -1 : 0;
+}
+
+static void check_all(const struct cli *c)
+{
+	const struct request_options *o = &options.request;
+
+	if (!options.is_all && options.each)
+		cli_usage(c, "--each is for --all");
+	if (options.is_all && (o->text || o->refs || o->viewpoint || o->sentences != REQUEST_ALL ||
+				      options.splat || options.show))
+		cli_usage(
+			c, "--all goes with --scene, --model, --ply and --each only: it needs no sentences");
+}
+
 static void check(const struct cli *c)
 {
 	const struct request_options *o = &options.request;
 
-	if (!o->scene || !o->text || !o->model)
-		cli_usage(c, "--scene, --text and --model are required");
+	if (!o->scene || !o->model || (!o->text && !options.is_all))
+		cli_usage(c, "--scene, --model and --text (or --all) are required");
+	check_all(c);
 	if ((options.ply && !strcmp(options.ply, "-")) || (options.splat && !strcmp(options.splat, "-")))
 		cli_usage(c, "--ply and --splat must name a file");
 	if (options.show && !options.ply && !options.splat)
 		cli_usage(c, "--show is for --ply and --splat");
 }
 
-int main(int argc, char **argv)
+static int answer(const struct cli *c, struct err *e)
 {
 	struct locating r = {0};
+	const int bad = locate(&r, c, e) || ((options.ply || options.splat) && write_scene(&r, e)) ||
+			write_boxes(&r, c, e);
+
+	locating_free(&r);
+	return bad ? -1 : 0;
+}
+
+int main(int argc, char **argv)
+{
 	struct cli c;
 	struct err e = {0};
 
 	cli_parse(&c, &tool, argc, argv);
 	check(&c);
-	cli_refuse_overwrite(&c, CLI_SCENE " text model", "output ply splat", NULL);
-	int bad = locate(&r, &c, &e) || ((options.ply || options.splat) && write_scene(&r, &e)) ||
-		  write_boxes(&r, &c, &e);
-	locating_free(&r);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	cli_refuse_overwrite(&c, CLI_SCENE " text model", "output ply splat each:*.ply", NULL);
+	return (options.is_all ? label(&c, &e) : answer(&c, &e)) ? cli_fail(&c, &e) : cli_done(&c);
 }

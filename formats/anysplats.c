@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/path.h"
+#include "formats/glb.h"
 #include "formats/ply.h"
 #include "formats/sog.h"
 #include "formats/splat.h"
@@ -36,15 +37,20 @@ int anysplats_read(
 		return splat_read_map(s, offset, report, name, &map, e);
 	if (!is_ply && (sog_is(&map) || path_ends(name, ".sog")))
 		return sog_read_map(s, offset, report, name, &map, e);
+	if (!is_ply && (glb_is(&map) || path_ends(name, ".glb")))
+		return glb_read_map(s, offset, report, name, &map, e);
 	return ply_read_map(s, offset, report, name, &map, e);
 }
 
 int anysplats_format_of(const char *path)
 {
-	static const char *const tails[] = {
-		[ANYSPLATS_PLY] = ".ply", [ANYSPLATS_SPLAT] = ".splat", [ANYSPLATS_SPZ] = ".spz"};
+	static const char *const tails[] = {[ANYSPLATS_PLY] = ".ply",
+		[ANYSPLATS_SPLAT] = ".splat",
+		[ANYSPLATS_SPZ] = ".spz",
+		[ANYSPLATS_GLB] = ".glb",
+		[ANYSPLATS_SOG] = ".sog"};
 
-	for (int i = 0; i < 3; i++)
+	for (int i = 0; i < ANYSPLATS_FORMATS; i++)
 		if (path_ends(path, tails[i]))
 			return i;
 	return -1;
@@ -58,6 +64,10 @@ int anysplats_write(const struct splats *s, const double offset[3], enum anyspla
 		return splat_write(s, offset, path, e);
 	case ANYSPLATS_SPZ:
 		return spz_write(s, offset, spz_version, path, e);
+	case ANYSPLATS_SOG:
+		return sog_write(s, offset, path, e);
+	case ANYSPLATS_GLB:
+		return glb_write(s, offset, path, e);
 	default:
 		return ply_write(s, offset, path, e);
 	}

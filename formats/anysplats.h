@@ -6,7 +6,7 @@
 #include "formats/gaussian_rows.h"
 #include "splat/splats.h"
 
-/* Reads a .ply, .spz, SOG or .splat ("-" is stdin): by how the file begins; .splat, which begins with a
+/* Reads a .ply, .spz, SOG, .glb or .splat ("-" is stdin): by how the file begins; .splat, which begins with a
  * Gaussian, and SOG's meta.json by their names. As ply_read. */
 int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e);
@@ -15,7 +15,14 @@ int anysplats_read(
 int anysplats_is_meta(const char *path);
 
 /* What can be written. */
-enum anysplats_format { ANYSPLATS_PLY, ANYSPLATS_SPLAT, ANYSPLATS_SPZ };
+enum anysplats_format {
+	ANYSPLATS_PLY,
+	ANYSPLATS_SPLAT,
+	ANYSPLATS_SPZ,
+	ANYSPLATS_GLB,
+	ANYSPLATS_SOG,
+	ANYSPLATS_FORMATS
+};
 
 /* The format that a name ends with; -1 where it is none. */
 int anysplats_format_of(const char *path);

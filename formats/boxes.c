@@ -214,6 +214,9 @@ int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians 
 		if (jsonl_put_string(out, "\"object\":", r->object, e))
 			return -1;
 	}
+	if (r->label)
+		fprintf(out, ",\"label\":%d,\"colour\":[%d,%d,%d]", r->label, r->colour[0], r->colour[1],
+			r->colour[2]);
 	if (!isnan(r->score))
 		fprintf(out, ",\"score\":%.6g", r->score);
 	if (of)

@@ -16,6 +16,8 @@ struct box_record {
 	int is_empty;	    /* there is nothing, and no box */
 	struct box aligned; /* along the world's axes */
 	struct box turned;
+	int label; /* above 0: of the Gaussians of a labelled scene, with its colour; 0: none */
+	uint8_t colour[3];
 	size_t part_count; /* of several things that are meant: each by itself, for writing */
 	const struct box_record *parts;
 };

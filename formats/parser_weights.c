@@ -14,9 +14,9 @@
 #define EMBED(name, file)                                                                                    \
 	__asm__(".section .rodata\n"                                                                         \
 		".balign 64\n"                                                                               \
-		".globl " #name "_begin\n" #name "_begin:\n"                                                 \
+		".globl " #name "_begin\n.hidden " #name "_begin\n" #name "_begin:\n"                        \
 		".incbin \"" file "\"\n"                                                                     \
-		".globl " #name "_end\n" #name "_end:\n"                                                     \
+		".globl " #name "_end\n.hidden " #name "_end\n" #name "_end:\n"                              \
 		".byte 0\n"                                                                                  \
 		".previous\n")
 EMBED(parser_default, "formats/parser_default.safetensors");

@@ -166,7 +166,7 @@ int ply_read(struct splats *s, double offset[3], struct rows_report *report, con
 	return file_map(path, &map, e) ? -1 : ply_read_map(s, offset, report, file_name(path), &map, e);
 }
 
-static void put_header(FILE *out, const struct splats *s, const char *mean_type)
+static void put_header(FILE *out, const struct splats *s, const char *mean_type, int has_labels)
 {
 	int rest = 3 * (s->sh_coefficients - 1);
 
@@ -180,12 +180,18 @@ static void put_header(FILE *out, const struct splats *s, const char *mean_type)
 		fprintf(out, "property float f_rest_%d\n", k);
 	for (int k = ROW_OPACITY; k < ROW_REST; k++)
 		fprintf(out, "property float %s\n", fixed_names[k]);
-	fputs("end_header\n", out);
+	fputs(has_labels ? "property int label\nend_header\n" : "end_header\n", out);
 }
 
 int ply_write(const struct splats *s, const double offset[3], const char *path, struct err *e)
 {
-	unsigned char bytes[3 * 8 + (3 + ROW_MAX) * 4];
+	return ply_write_labelled(s, offset, NULL, path, e);
+}
+
+int ply_write_labelled(const struct splats *s, const double offset[3], const int32_t *labels,
+	const char *path, struct err *e)
+{
+	unsigned char bytes[3 * 8 + (3 + ROW_MAX + 1) * 4];
 	double row[ROW_MAX];
 	const int rest = 3 * (s->sh_coefficients - 1);
 	int is_far = offset[0] != 0 || offset[1] != 0 || offset[2] != 0;
@@ -193,7 +199,7 @@ int ply_write(const struct splats *s, const double offset[3], const char *path, 
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	put_header(out.stream, s, is_far ? "double" : "float");
+	put_header(out.stream, s, is_far ? "double" : "float", labels != NULL);
 	for (size_t i = 0; i < s->n; i++) {
 		unsigned char *p = bytes;
 		gaussian_row_of(s, i, row);
@@ -208,6 +214,8 @@ int ply_write(const struct splats *s, const double offset[3], const char *path, 
 			p = little_put_f32(p, row[ROW_REST + k]);
 		for (int k = ROW_OPACITY; k < ROW_REST; k++)
 			p = little_put_f32(p, row[k]);
+		if (labels)
+			p = little_put(p, (uint32_t)labels[i], 4);
 		fwrite(bytes, 1, (size_t)(p - bytes), out.stream);
 	}
 	return file_out_commit(&out, e);

@@ -7,6 +7,8 @@
 #include "formats/gaussian_rows.h"
 #include "splat/splats.h"
 
+#include <stdint.h>
+
 /* Reads a 3DGS .ply ("-" is stdin; binary of either byte order, or ascii; or PlayCanvas's packed form):
  * activations applied (scales exp, opacity sigmoid), means minus `offset`, which is chosen here by the rule
  * in ply.md (0 for scenes near the origin) and returned. Quaternions keep their length unless it is extreme
@@ -20,5 +22,9 @@ int ply_read_map(struct splats *s, double offset[3], struct rows_report *report,
 /* Writes the usual 3DGS layout (x y z nx ny nz f_dc f_rest opacity scale rot), binary little-endian, with
  * activations undone. x y z are float, or double where offset is not 0. "-" is stdout. */
 int ply_write(const struct splats *s, const double offset[3], const char *path, struct err *e);
+
+/* The same with a last property, int label, of each Gaussian: labels (N). */
+int ply_write_labelled(const struct splats *s, const double offset[3], const int32_t *labels,
+	const char *path, struct err *e);
 
 #endif

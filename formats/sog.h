@@ -18,4 +18,7 @@ int sog_read_map(struct splats *s, double offset[3], struct rows_report *report,
 int sog_read_meta(
 	struct splats *s, double offset[3], struct rows_report *report, const char *meta, struct err *e);
 
+/* Writes a zip. Means are s->means + offset. "-" is stdout. Returns 0, or -1 with *e set. */
+int sog_write(const struct splats *s, const double offset[3], const char *path, struct err *e);
+
 #endif

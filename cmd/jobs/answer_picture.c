@@ -14,19 +14,17 @@
 /* Views are compared at this size of their longer side, in pixels. */
 enum { LOOK_SIDE = 200 };
 
-/* The things as one answer. */
-static int take_responses(
-	struct responses *to, const struct asking *a, const struct asking_answer *answer, struct err *e)
+int answer_responses(
+	struct responses *to, const struct lifted *l, const size_t *things, size_t count, struct err *e)
 {
-	const struct lifted *l = &a->model.lifted;
 	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
 
 	*to = (struct responses){.answers = 1};
 	to->responses = mem_alloc(l->gaussians, sizeof *to->responses, "responses", e);
 	to->lifts = mem_zalloc(1, sizeof *to->lifts, "responses", e);
 	int bad = !own || !to->responses || !to->lifts;
-	for (size_t k = 0; k < answer->count && !bad; k++) {
-		lifted_responses(l, answer->things[k], k ? own : to->responses);
+	for (size_t k = 0; k < count && !bad; k++) {
+		lifted_responses(l, things[k], k ? own : to->responses);
 		for (size_t i = 0; i < l->gaussians && k; i++)
 			to->responses[i] = fmaxf(to->responses[i], own[i]);
 	}
@@ -142,7 +140,7 @@ int answer_picture(const struct asking *a, const struct asking_answer *answer, c
 
 	if (!drawn->view && !a->scene.cameras.n)
 		return err_set(e, ERR_FORMAT, "%s: has no view to draw", a->files.scene);
-	int bad = take_responses(&responses, a, answer, e) ||
+	int bad = answer_responses(&responses, &a->model.lifted, answer->things, answer->count, e) ||
 		  (!drawn->view && best_view(a, &q, &drawn->view, e));
 	if (!bad) {
 		q.wants_rgb = 1;

@@ -6,6 +6,11 @@
 #include "base/err.h"
 #include "cmd/jobs/asking.h"
 
+/* The things, at least one, as one answer: where the response of any of them is above 0. Returns 0, or -1
+ * with *e set; responses_free after either. */
+int answer_responses(
+	struct responses *to, const struct lifted *l, const size_t *things, size_t count, struct err *e);
+
 struct answer_drawn {
 	const struct camera *view; /* which to draw; NULL: it is found */
 	int low[2], high[2]; /* column and row: the rectangle around the things, where high > low; high is

@@ -48,22 +48,30 @@ void anymodel_free(struct anymodel *m)
 	*m = (struct anymodel){0};
 }
 
-static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, struct err *e)
+int anymodel_check_scene(const struct anymodel *m, const char *model, const struct scene *scene,
+	const char *scene_path, struct err *e)
 {
-	const char *model = file_name(q->model_path), *text = file_name(q->text_path);
 	const size_t gaussians = m->is_selection ? m->selection.gaussians
 				 : m->is_lifted	 ? m->lifted.gaussians
 						 : m->trained.scene_gaussians;
+
+	if (gaussians != scene->splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", model,
+			gaussians, scene_path, scene->splats.n);
+	return fingerprint_check("scene", model, &m->origin.scene, scene_path, &scene->fingerprint, e);
+}
+
+static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, struct err *e)
+{
+	const char *model = file_name(q->model_path), *text = file_name(q->text_path);
 	const int width = m->is_lifted ? m->lifted.width : m->trained.layout.text_width;
 
-	if (gaussians != q->scene->splats.n)
-		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", model,
-			gaussians, q->scene_path, q->scene->splats.n);
+	if (anymodel_check_scene(m, model, q->scene, q->scene_path, e))
+		return -1;
 	if (!m->is_selection && width != q->text->width)
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, %s has %d", model, width,
 			text, q->text->width);
-	if (fingerprint_check("scene", model, &m->origin.scene, q->scene_path, &q->scene->fingerprint, e) ||
-		fingerprint_check("encoder", text, &q->text->encoder, model, &m->origin.encoder, e))
+	if (fingerprint_check("encoder", text, &q->text->encoder, model, &m->origin.encoder, e))
 		return -1;
 	if (m->is_lifted && !q->text->pieces)
 		return err_set(e, ERR_FORMAT,

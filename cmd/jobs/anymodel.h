@@ -25,6 +25,10 @@ struct anymodel {
 int anymodel_read(struct anymodel *m, const char *path, struct err *e);
 void anymodel_free(struct anymodel *m);
 
+/* ERR_FORMAT where it is not of this scene; the names are for messages. */
+int anymodel_check_scene(const struct anymodel *m, const char *model, const struct scene *scene,
+	const char *scene_path, struct err *e);
+
 struct anymodel_ask {
 	const struct scene *scene;
 	const struct text *text;

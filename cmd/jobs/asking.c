@@ -29,32 +29,28 @@ static int check_fit(const struct asking *a, struct err *e)
 	const struct origin *o = &a->model.origin;
 	const struct run_folder *f = &a->files;
 
-	if (l->gaussians != a->scene.splats.n)
-		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", f->model,
-			l->gaussians, f->scene, a->scene.splats.n);
+	if (anymodel_check_scene(&a->model, f->model, &a->scene, f->scene, e))
+		return -1;
 	if (l->width != a->encoder.bert.width)
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, the encoder %s makes %d",
 			f->model, l->width, f->encoder, a->encoder.bert.width);
-	return fingerprint_check("scene", f->model, &o->scene, f->scene, &a->scene.fingerprint, e) ||
-			       fingerprint_check("encoder", f->model, &o->encoder, f->encoder,
-				       &a->encoder.fingerprint, e)
-		       ? -1
-		       : 0;
+	return fingerprint_check("encoder", f->model, &o->encoder, f->encoder, &a->encoder.fingerprint, e);
 }
 
-/* The camera that is not in the scene, brought into its frame. */
-static int read_camera(struct asking *a, struct err *e)
+int asking_read_camera(struct asking *a, const char *path, struct err *e)
 {
-	const char *path = a->options->camera;
+	struct cameras read;
 
-	if (!path)
-		return 0;
-	if (camerafile_read(&a->given, path, e))
+	if (camerafile_read(&read, path, e))
 		return -1;
-	if (a->given.n > 1)
-		return err_set(
-			e, ERR_FORMAT, "%s: has %zu views; --camera takes one", file_name(path), a->given.n);
-	cameras_shift(&a->given, a->scene.offset);
+	if (read.n > 1) {
+		err_set(e, ERR_FORMAT, "%s: has %zu views; --camera takes one", file_name(path), read.n);
+		cameras_free(&read);
+		return -1;
+	}
+	cameras_shift(&read, a->scene.offset);
+	cameras_free(&a->given);
+	a->given = read;
 	return 0;
 }
 
@@ -92,8 +88,9 @@ static int make_chooser(struct asking *a, struct err *e)
 int asking_open(struct asking *a, const struct asking_options *options, struct err *e)
 {
 	a->options = options;
-	return read_all(a, e) || check_fit(a, e) || read_camera(a, e) || find_viewpoint(a, e) ||
-			       make_chooser(a, e) || find_extents(a, e)
+	return read_all(a, e) || check_fit(a, e) ||
+			       (options->camera && asking_read_camera(a, options->camera, e)) ||
+			       find_viewpoint(a, e) || make_chooser(a, e) || find_extents(a, e)
 		       ? -1
 		       : 0;
 }

@@ -41,6 +41,10 @@ struct asking {
 int asking_open(struct asking *a, const struct asking_options *options, struct err *e);
 void asking_close(struct asking *a);
 
+/* A file of one camera that is not in the scene, brought into its frame: a->given, in place of an earlier
+ * one. Returns 0, or -1 with *e set and a->given as it was. */
+int asking_read_camera(struct asking *a, const char *path, struct err *e);
+
 #define ASKING_NONE ((size_t)-1)
 
 struct asking_answer {

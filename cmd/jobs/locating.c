@@ -49,22 +49,6 @@ int locating_find(struct locating *r, double up[3], struct err *e)
 	return locate_all(r->answers, &q->responses, &q->scene.splats, up, e) || find_objects(r, e);
 }
 
-static void move(struct box *b, const double by[3])
-{
-	for (int k = 0; k < 3; k++)
-		b->centre[k] += by[k];
-}
-
-static struct box_record record_of(const struct locating *r, const struct extent *x, double sure)
-{
-	struct box_record record = {
-		.score = x->n ? sure : 0, .is_empty = !x->n, .aligned = x->aligned, .turned = x->turned};
-
-	move(&record.aligned, r->request.scene.offset);
-	move(&record.turned, r->request.scene.offset);
-	return record;
-}
-
 /* parts gets the objects of an answer that is of several; to be freed. */
 static int make_parts(const struct locating *r, size_t answer, struct box_record **parts, struct err *e)
 {
@@ -74,7 +58,8 @@ static int make_parts(const struct locating *r, size_t answer, struct box_record
 	*parts = mem_zalloc(n, sizeof **parts, "objects", e);
 	for (size_t i = 0; i < n && *parts; i++) {
 		const size_t o = a->objects[a->begin[answer] + i];
-		(*parts)[i] = record_of(r, &r->objects[o], r->request.model.lifted.confidence[o]);
+		(*parts)[i] = object_extents_record(
+			&r->objects[o], r->request.scene.offset, r->request.model.lifted.confidence[o]);
 		(*parts)[i].object = r->request.model.lifted.names[o];
 	}
 	return *parts ? 0 : -1;
@@ -91,7 +76,8 @@ int locating_put(const struct locating *r, size_t i, FILE *out, struct err *e)
 
 	if (make_parts(r, answer, &parts, e))
 		return -1;
-	record = record_of(r, x, q->responses.sure ? q->responses.sure[i] : l->sure);
+	record =
+		object_extents_record(x, q->scene.offset, q->responses.sure ? q->responses.sure[i] : l->sure);
 	record.ref = q->text.refs[q->refs[i]];
 	record.object = (char *)text_object(&q->text, q->refs[i]);
 	record.parts = parts;

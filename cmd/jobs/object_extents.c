@@ -47,6 +47,22 @@ struct extent *object_extents(
 	return NULL;
 }
 
+static void move(struct box *b, const double by[3])
+{
+	for (int k = 0; k < 3; k++)
+		b->centre[k] += by[k];
+}
+
+struct box_record object_extents_record(const struct extent *x, const double offset[3], double sure)
+{
+	struct box_record record = {
+		.score = x->n ? sure : 0, .is_empty = !x->n, .aligned = x->aligned, .turned = x->turned};
+
+	move(&record.aligned, offset);
+	move(&record.turned, offset);
+	return record;
+}
+
 void object_extents_free(struct extent *extents, size_t objects)
 {
 	for (size_t o = 0; extents && o < objects; o++)

@@ -1,7 +1,9 @@
 #include "cmd/jobs/transforming.h"
 
 #include "base/mem.h"
+#include "formats/camerafile.h"
 #include "geom/neighbours.h"
+#include "geom/up.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -65,9 +67,63 @@ static int read_rotation(const char *text, double quat[4], struct err *e)
 				 text);
 }
 
+/* The scale at which two points are as far apart as is known. */
+static int read_known(const char *text, double *scale, struct err *e)
+{
+	const char *equals = strchr(text, '=');
+	double points[6], length = 0, distance = 0;
+
+	if (equals && read_numbers(text, equals, 6, points) == 6 &&
+		read_numbers(equals + 1, text + strlen(text), 1, &length) == 1)
+		distance = hypot(hypot(points[0] - points[3], points[1] - points[4]), points[2] - points[5]);
+	*scale = distance > 0 ? length / distance : 0;
+	return *scale > 0 && isfinite(*scale)
+		       ? 0
+		       : err_set(e, ERR_USAGE,
+				 "--known: '%s' is not X0,Y0,Z0,X1,Y1,Z1=LENGTH, two points and a length",
+				 text);
+}
+
+/* q = by q. */
+static void turn_by(double q[4], const double by[4])
+{
+	const double w = q[0], x = q[1], y = q[2], z = q[3];
+
+	q[0] = by[0] * w - by[1] * x - by[2] * y - by[3] * z;
+	q[1] = by[0] * x + by[1] * w + by[2] * z - by[3] * y;
+	q[2] = by[0] * y - by[1] * z + by[2] * w + by[3] * x;
+	q[3] = by[0] * z + by[1] * y - by[2] * x + by[3] * w;
+}
+
+/* The least turn that brings a unit vector to -y, which is up where y is down, as for a .ply. */
+static void level(const double up[3], double quat[4])
+{
+	quat[0] = 1 - up[1];
+	quat[1] = up[2];
+	quat[2] = 0;
+	quat[3] = -up[0];
+	if (quat[0] < 1e-12) { /* upside down: half a turn about x */
+		quat[0] = quat[3] = 0;
+		quat[1] = 1;
+	}
+}
+
+static int find_up(const struct transforming *o, double up[3], struct err *e)
+{
+	struct cameras cameras;
+
+	if (camerafile_read(&cameras, o->up_from, e))
+		return -1;
+	cameras_up(&cameras, up);
+	cameras_free(&cameras);
+	return 0;
+}
+
 static int read_move(const struct transforming *o, struct move *m, struct err *e)
 {
 	*m = (struct move){.scale = o->scale, .quat = {1, 0, 0, 0}};
+	if (o->known && read_known(o->known, &m->scale, e))
+		return -1;
 	if (o->rotate && read_rotation(o->rotate, m->quat, e))
 		return -1;
 	if (o->translate && read_numbers(o->translate, o->translate + strlen(o->translate), 3, m->shift) != 3)
@@ -144,13 +200,21 @@ int transforming_do(struct splats *s, double offset[3], const struct transformin
 	double box[6];
 
 	*left_out = (struct transforming_count){0};
-	if (read_move(o, &m, e) || (o->crop && (read_crop(o->crop, box, e) || crop(s, offset, box, e))))
+	if (read_move(o, &m, e) || (o->up_from && find_up(o, left_out->up, e)) ||
+		(o->crop && (read_crop(o->crop, box, e) || crop(s, offset, box, e))))
 		return -1;
 	left_out->outside = all - s->n;
 	if (o->drop_strays && drop_strays(s, e))
 		return -1;
 	left_out->strays = all - left_out->outside - s->n;
-	if (o->rotate || o->translate || o->scale != 1)
+	left_out->scale = m.scale;
+	if (o->up_from) {
+		double quat[4];
+		level(left_out->up, quat);
+		turn_by(quat, m.quat);
+		memcpy(m.quat, quat, sizeof quat);
+	}
+	if (o->rotate || o->translate || o->up_from || m.scale != 1)
 		splats_move(s, offset, &m);
 	return 0;
 }

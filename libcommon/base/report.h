@@ -13,6 +13,9 @@ struct report {
 	void (*end)(void *to);
 };
 
+/* For a caller that wants to hear nothing. */
+extern const struct report report_silent;
+
 /* A line for who wants to know more (level 1) or much more (2). */
 void report_note(const struct report *r, int level, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));

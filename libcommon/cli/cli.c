@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 
 #include "base/file.h"
+#include "cli/completion.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -18,7 +19,7 @@
 #define VERSION "unknown"
 #endif
 
-enum { COMMON_COUNT = 8, HELP_COLUMN = 32 };
+enum { COMMON_COUNT = 8, MOST_ROWS = 64, HELP_COLUMN = 32 };
 
 /* The shared options that this tool honours, as rows of the same kind as its own. */
 static int common_rows(struct cli *c, struct cli_option rows[COMMON_COUNT])
@@ -77,18 +78,48 @@ static void print_row(const struct cli_option *o)
 	print_wrapped(o->help, HELP_COLUMN);
 }
 
+/* Every option of the tool, in the order of --help; returns how many. */
+static size_t all_rows(
+	const struct cli *c, const struct cli_option *common, int n, const struct cli_option *rows[MOST_ROWS])
+{
+	static const struct cli_option last[] = {{"help", 'h', CLI_FLAG, NULL, NULL, "print this help", 0, 0},
+		{"version", 'V', CLI_FLAG, NULL, NULL, "print the version", 0, 0}};
+	size_t count = 0;
+
+	for (const struct cli_option *o = c->tool->options; o && o->name && count + COMMON_COUNT < MOST_ROWS;
+		o++)
+		rows[count++] = o;
+	for (int i = 0; i < n; i++)
+		rows[count++] = &common[i];
+	rows[count++] = &last[0];
+	rows[count++] = &last[1];
+	return count;
+}
+
 static void print_help(struct cli *c)
 {
-	struct cli_option rows[COMMON_COUNT];
-	int n = common_rows(c, rows);
+	struct cli_option common[COMMON_COUNT];
+	const struct cli_option *rows[MOST_ROWS];
+	const size_t n = all_rows(c, common, common_rows(c, common), rows);
 
 	printf("Usage: %s [OPTION]... %s\n%s\n\n", c->tool->name, c->tool->operands, c->tool->summary);
-	for (const struct cli_option *o = c->tool->options; o && o->name; o++)
-		print_row(o);
-	for (int i = 0; i < n; i++)
-		print_row(&rows[i]);
-	print_row(&(struct cli_option){"help", 'h', CLI_FLAG, NULL, NULL, "print this help", 0, 0});
-	print_row(&(struct cli_option){"version", 'V', CLI_FLAG, NULL, NULL, "print the version", 0, 0});
+	for (size_t i = 0; i < n; i++)
+		print_row(rows[i]);
+}
+
+/* For the build: see cli/completion.h. */
+static void print_completion(struct cli *c, const char *shell)
+{
+	struct cli_option common[COMMON_COUNT];
+	const struct cli_option *rows[MOST_ROWS];
+	const size_t n = all_rows(c, common, common_rows(c, common), rows);
+
+	if (!strcmp(shell, "bash"))
+		completion_bash(c->tool, rows, n);
+	else if (!strcmp(shell, "zsh"))
+		completion_zsh(c->tool, rows, n);
+	else
+		cli_usage(c, "--completion: '%s' is not one of bash|zsh", shell);
 }
 
 _Noreturn void cli_usage(const struct cli *c, const char *format, ...)
@@ -206,10 +237,12 @@ static const struct cli_option *find_row(const struct cli_tool *tool, const stru
 	return NULL;
 }
 
-static void check_help(struct cli *c, int is_help, int is_version)
+static void check_help(struct cli *c, int is_help, int is_version, const char *completion)
 {
 	if (is_help)
 		print_help(c);
+	else if (completion)
+		print_completion(c, completion);
 	else if (is_version)
 		printf("%s (refersplat) %s\n", c->tool->name, VERSION);
 	else
@@ -225,7 +258,8 @@ static void parse_long(struct cli *c, const struct cli_option *rows, int n, char
 	const char *name = argv[*i] + 2, *equals = strchr(name, '=');
 	size_t len = equals ? (size_t)(equals - name) : strlen(name);
 
-	check_help(c, !strcmp(name, "help"), !strcmp(name, "version"));
+	check_help(c, !strcmp(name, "help"), !strcmp(name, "version"),
+		equals && !strncmp(name, "completion=", 11) ? equals + 1 : NULL);
 	const struct cli_option *o = find_row(c->tool, rows, n, name, len, 0);
 	if (!o)
 		cli_usage(c, "unknown option '--%.*s'", (int)len, name);
@@ -245,7 +279,7 @@ static void parse_long(struct cli *c, const struct cli_option *rows, int n, char
 static void parse_short(struct cli *c, const struct cli_option *rows, int n, char **argv, int argc, int *i)
 {
 	for (const char *p = argv[*i] + 1; *p; p++) {
-		check_help(c, *p == 'h', *p == 'V');
+		check_help(c, *p == 'h', *p == 'V', NULL);
 		const struct cli_option *o = find_row(c->tool, rows, n, "", 0, *p);
 		if (!o)
 			cli_usage(c, "unknown option '-%c'", *p);

@@ -16,7 +16,7 @@ fi
 cp "$ply" "$work/a.ply"
 
 for v in 2 3 4; do "$bin/gs-transform" --spz-version $v -o "$work/version$v.spz" "$work/a.ply" || die "gs-transform failed"; done
-"$bin/gs-transform" -o "$work/a.splat" "$work/a.ply" || die "gs-transform failed"
+for file in a.splat a.glb a.sog; do "$bin/gs-transform" -o "$work/$file" "$work/a.ply" || die "gs-transform failed"; done
 if [ -n "${SPLAT_TRANSFORM:-}" ]; then
 	peer -q "$work/a.ply" "$work/a.compressed.ply"
 	peer -q "$work/a.ply" "$work/its.spz"
@@ -45,7 +45,7 @@ row() {
 heading "formats: $("$bin/gs-check" "$work/a.ply" | sed 's/.*: //')"
 {
 	printf 'file\tMB\tdB, mean\tdB, least\ts to read\tMiB\tits s\n'
-	for file in a.ply a.compressed.ply version2.spz version3.spz version4.spz its.spz a.splat; do
+	for file in a.ply a.compressed.ply version2.spz version3.spz version4.spz its.spz a.glb a.sog a.splat; do
 		[ ! -e "$work/$file" ] || row "$file" a.ply
 	done
 	[ ! -e "$work/degree0.sog" ] || { row degree0.ply degree0.ply; row degree0.sog degree0.ply; }

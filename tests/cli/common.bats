@@ -25,6 +25,7 @@ missing_input() {
 		parse-train -o out none
 		pseudomask-select -o out none
 		mask-import --names none -o out none
+		mask-export -o out none
 		refer-train --scene none --weights none --text none --masks none -o out
 		refer-lift --scene none --weights none --text none --masks none -o out
 		feature-lift --scene none --weights none -o out none

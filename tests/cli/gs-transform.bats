@@ -44,7 +44,7 @@ Try 'gs-transform --help'." "$BIN/gs-transform" -o out.ply "$@" s.ply && [ ! -e 
 }
 
 @test "through every format and back: means stay, to the format's step" {
-	for file in a.splat a.spz b.spz c.spz; do
+	for file in a.splat a.spz b.spz c.spz a.glb a.sog; do
 		case $file in a.spz) v=2 ;; b.spz) v=3 ;; *) v=4 ;; esac
 		try --spz-version $v -o $file s.ply
 		try -o out.ply $file
@@ -59,9 +59,9 @@ Try 'gs-transform --help'." "$BIN/gs-transform" -o out.ply "$@" s.ply && [ ! -e 
 	try -o a.spz s.ply
 	cmp a.bin a.spz
 	try --format spz -o - - <s.ply | cmp - a.spz
-	says 2 "gs-transform: -o a.bin: neither .ply nor .splat nor .spz, and --format is not given
+	says 2 "gs-transform: -o a.bin: not .ply, .splat, .spz, .glb or .sog, and --format is not given
 Try 'gs-transform --help'." "$BIN/gs-transform" -o a.bin s.ply
-	says 2 "gs-transform: -o -: neither .ply nor .splat nor .spz, and --format is not given
+	says 2 "gs-transform: -o -: not .ply, .splat, .spz, .glb or .sog, and --format is not given
 Try 'gs-transform --help'." "$BIN/gs-transform" -o - s.ply
 }
 
@@ -93,6 +93,44 @@ Try 'gs-transform --help'." "$BIN/gs-transform" -o - s.ply
 	[ "$(rows same.ply 1 17)" = "$(rows out.ply 1 17)" ]
 }
 
+@test "--known: two points become as far apart as is known" {
+	# 2 units apart, now 5: (1, 0, 3) becomes (2.5, 0, 7.5)
+	try -v --known 0,0,1,0,0,3=5 -o out.ply s.ply 2>err
+	[ "$(rows out.ply)" = "$(printf '0 0 5\n2.5 0 7.5')" ]
+	grep -qx "gs-transform: everything is 2.5 times as large" err
+	try --scale 2.5 -o same.ply s.ply
+	cmp same.ply out.ply
+}
+
+# Cameras that look along x and down a little, whose x axes are level where z is up.
+@test "--up-from: what is up for cameras becomes -y, then --rotate" {
+	mkdir cameras
+	printf '1 PINHOLE 40 30 50 51 20 15\n' >cameras/cameras.txt
+	# camera axes in the world: x (0,-1,0), y (0,0,-1), z (1,0,0), and another turned about z
+	printf '1 0.5 0.5 -0.5 0.5 0 0 0 1 a.jpg\n\n2 0 -0.707107 0 -0.707107 0 0 0 1 b.jpg\n\n' >cameras/images.txt
+	try -v --up-from cameras -o out.ply s.ply 2>err
+	up=$(sed -n 's/^gs-transform: up was //p' err)
+	[ -n "$up" ]
+	# its own up, turned likewise, is -y: a Gaussian there is
+	splats_ply up.ply "$up 1 0.5 0 0 -3 -3 -3 1 0 0 0"
+	try --up-from cameras -o out.ply up.ply
+	[ "$(rows out.ply)" = "0 -1 0" ]
+	try --up-from cameras --rotate 1,0,0:-90 -o out.ply up.ply
+	[ "$(rows out.ply)" = "0 0 1" ]
+	# distances stay
+	try --up-from cameras -o out.ply s.ply
+	rows out.ply | awk '{ d = $1 ^ 2 + $2 ^ 2 + $3 ^ 2; if (NR == 1 && (d < 3.99 || d > 4.01) || NR == 2 && (d < 9.98 || d > 10.02)) exit 1 }'
+	says 4 "gs-transform: none: No such file or directory" "$BIN/gs-transform" --up-from none -o no.ply s.ply
+	[ ! -e no.ply ]
+}
+
+@test "--up-from of a synthetic scene: its table is level" {
+	"$BIN/gs-synth" -q --objects 3 --views 5 --size 32x24 --gaussians 1000 -o made
+	try -v --up-from made/sparse/0 -o out.ply made/point_cloud.ply 2>err
+	# up is z there
+	awk '/up was/ { found = 1; exit !($6 > 0.99) } END { exit !found }' err
+}
+
 @test "there and back" {
 	try --rotate 1,2,3:77 -o there.ply s.ply
 	try --rotate 1,2,3:-77 -o back.ply there.ply
@@ -116,6 +154,10 @@ Try 'gs-transform --help'." "$BIN/gs-transform" -o - s.ply
 	for text in 1,2,3 0,0,0,0 0,0,0:90 1,2,3: :90 1,2:3 1,2,3:x 1,2,3,4,5; do
 		mistake "--rotate: '$text' is not W,X,Y,Z or X,Y,Z:DEGREES, of a length" --rotate "$text"
 	done
+	for text in 1,2,3,4,5,6 1,2,3,4,5=6 1,2,3,1,2,3=1 0,0,0,1,1,1=0 0,0,0,1,1,1=-1 0,0,0,1,1,1= 0,0,0,1,1,1=x =1; do
+		mistake "--known: '$text' is not X0,Y0,Z0,X1,Y1,Z1=LENGTH, two points and a length" --known "$text"
+	done
+	mistake "--known and --scale do not go together" --known 0,0,0,1,1,1=2 --scale 3
 	for text in 1 1,2 1,2,3,4 x; do
 		mistake "--translate: '$text' is not X,Y,Z" --translate "$text"
 	done

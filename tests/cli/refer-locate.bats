@@ -199,6 +199,86 @@ Try 'refer-locate --help'." --show all
 	[ -e x.splat ] && [ ! -s x.splat ]
 }
 
+# last_property FILE: each Gaussian's value of the last property, an int.
+last_property() {
+	local bytes
+	bytes=$(LC_ALL=C sed -n '/^property/s/property \(double\|float\|int\) .*/\1/p; /^end_header/q' "$1" |
+		awk '{ n += $1 == "double" ? 8 : 4 } END { print n }')
+	tail -c $(($(vertices "$1") * bytes)) "$1" | od -An -v -w"$bytes" -t d4 | awk '{ print $NF }'
+}
+
+@test "--all: a line and a .ply for each object, and the scene with its labels" {
+	"$BIN/refer-lift" -q --scene scene --weights "$made/weights" --text "$made/all.safetensors" --masks "$made/lift-masks.jsonl" \
+		-o lifted.safetensors
+	all() { "$BIN/refer-locate" --all --scene scene --model lifted.safetensors "$@"; }
+	all --ply labelled.ply --each objects -o labels.jsonl >printed 2>&1
+	[ ! -s printed ]
+	"$BIN/gs-check" labels.jsonl
+	[ "$(jq -c '[.object, .label]' labels.jsonl)" = '["brown box",1]
+["pink cone",2]
+["yellow bowl",3]' ]
+	[ "$(jq -r 'keys_unsorted | join(" ")' labels.jsonl | sort -u)" = \
+		"object label colour score count centre min max oriented gaussians" ]
+	jq -se '(map(.colour) | unique | length) == 3 and all(.[].colour[]; . >= 0 and . <= 255)' labels.jsonl
+	# as good as by sentences
+	"$BIN/miou-score" --json --boxes --truth "$made/boxes.jsonl" labels.jsonl >score.json
+	jq -e '.pairs == 3 and .missing == 0 and .aligned.miou > 0.6' score.json
+	# each label is that of an object that has the Gaussian, and 0 is of none
+	last_property labelled.ply >labels
+	[ "$(wc -l <labels)" = 1000 ]
+	jq -se --rawfile labels labels '($labels | split("\n") | map(select(. != "") | tonumber)) as $of | . as $objects |
+		(map(.gaussians[]) | unique) as $any |
+		all(range(1000); . as $i | if $of[$i] == 0 then ($any | bsearch($i)) < 0 else ($objects[$of[$i] - 1].gaussians | bsearch($i)) >= 0 end)' \
+		labels.jsonl
+	[ "$(sort -n labels | uniq | tr '\n' ' ')" = "0 1 2 3 " ]
+	# a scene as any other, with everything where it was
+	"$BIN/gs-import" -q --cameras "$made/sparse/0" --images "$made/images" -o again labelled.ply
+	means again/splats.safetensors 1000 | cmp - <(means scene/splats.safetensors 1000)
+	# each object alone, as by a sentence
+	[ "$(ls objects)" = "brown box.ply
+pink cone.ply
+yellow bowl.ply" ]
+	for n in 1 2 3; do
+		[ "$(vertices "objects/$(jq -r "select(.label == $n).object" labels.jsonl).ply")" = "$(jq "select(.label == $n).count" labels.jsonl)" ]
+	done
+	"$BIN/refer-locate" --scene scene --text "$made/all.safetensors" --model lifted.safetensors --refs brown-box-1 \
+		--show isolated --ply alone.ply -o /dev/null
+	cmp alone.ply "objects/brown box.ply"
+	all --threads 1 --ply 1.ply | cmp - labels.jsonl
+	cmp 1.ply labelled.ply
+	all --model - <lifted.safetensors | cmp - labels.jsonl
+}
+
+@test "the page's lines for Python read the labels" {
+	local python
+	for python in python3 /usr/bin/python3 ""; do "$python" -c 'import numpy' 2>/dev/null && break; done
+	[ -n "$python" ] || skip "no python3 with NumPy"
+	"$BIN/refer-locate" --all --scene scene --model "$made/kitchen/lifted/model.safetensors" --ply labelled.ply -o /dev/null
+	{
+		sed -n '/^    import numpy/,/^$/s/^    //p' "$BATS_TEST_DIRNAME/../../formats/ply.md"
+		echo 'print(len(scene), " ".join(str(x) for x in scene["label"]))'
+	} >read.py
+	[ "$("$python" read.py)" = "1000 $(last_property labelled.ply | tr '\n' ' ' | sed 's/ $//')" ]
+}
+
+@test "--all: what does not go with it" {
+	refuses 2 "--each is for --all
+Try 'refer-locate --help'." --each out/dir
+	for option in "--text text.safetensors" "--refs silent" "--sentences train" "--viewpoint 0,0,0" "--splat out/x --ply out/y" "--ply out/x --show removed"; do
+		rm -rf out
+		mkdir out
+		says 2 "refer-locate: --all goes with --scene, --model, --ply and --each only: it needs no sentences
+Try 'refer-locate --help'." "$BIN/refer-locate" --all --scene scene --model "$made/kitchen/lifted/model.safetensors" $option
+		[ -z "$(ls -A out)" ]
+	done
+	says 3 "refer-locate: model.safetensors: is a trained model; --all needs one of refer-lift" \
+		"$BIN/refer-locate" --all --scene scene --model model.safetensors --each each
+	[ ! -e each ]
+	says 4 "refer-locate: model.safetensors: Not a directory" "$BIN/refer-locate" --all --scene scene \
+		--model "$made/kitchen/lifted/model.safetensors" --each model.safetensors/each -o none
+	[ ! -e none ]
+}
+
 @test "missing, empty, truncated and other files" {
 	refuses 4 "none: No such file or directory" --model none
 	: >empty
@@ -223,7 +303,7 @@ Try 'refer-locate --help'." --show all
 }
 
 @test "required options" {
-	says 2 "refer-locate: --scene, --text and --model are required
+	says 2 "refer-locate: --scene, --model and --text (or --all) are required
 Try 'refer-locate --help'." "$BIN/refer-locate" --scene scene
 	refuses 2 "--text and --model cannot both be stdin
 Try 'refer-locate --help'." --text - --model -

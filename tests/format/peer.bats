@@ -82,6 +82,65 @@ within() {
 	within out.ply s.sog 1e-5 1e-5 1e-3 2e-6 1e-5
 }
 
+@test "our SOG, read there, and as near to the scene as its own" {
+	"$BIN/gs-transform" -o our.sog s.ply
+	"$BIN/gs-transform" -o out.ply our.sog
+	within out.ply our.sog 1e-5 1e-5 1e-3 2e-6 1e-5
+	# means of 16 bits; codes as near as 256 can be
+	within our.sog s.ply 2.3e-4 0.05 0.02 0.0021 0.02
+	peer -g cpu s.ply its.sog
+	for names in 'scale_0 scale_1 scale_2' 'f_dc_0 f_dc_1 f_dc_2'; do
+		peer its.sog b.csv
+		peer s.ply a.csv
+		theirs=$(largest a.csv b.csv "$names")
+		peer our.sog b.csv
+		awk -v ours="$(largest a.csv b.csv "$names")" -v theirs="$theirs" 'BEGIN { exit !(ours <= 1.5 * theirs) }' || { echo "$names: $theirs"; false; }
+	done
+}
+
+@test "its .glb, read here" {
+	peer s.ply s.glb
+	"$BIN/gs-transform" -o out.ply s.glb
+	order=same
+	within out.ply s.ply 1e-6 1e-5 1e-3 1e-6 1e-6
+	rest=$(head -n 1 a.csv | tr , '\n' | grep f_rest | tr '\n' ' ')
+	[ -n "$rest" ]
+	awk -v a="$(largest a.csv b.csv "${rest% }")" 'BEGIN { exit !(a < 1e-6) }'
+}
+
+# It writes .glb and does not read it: ours is compared with its own, attribute by attribute.
+@test "our .glb has the numbers of its own" {
+	peer s.ply its.glb
+	"$BIN/gs-transform" -o our.glb s.ply
+	node -e '
+		const fs = require("fs");
+		const read = (file) => {
+			const bytes = fs.readFileSync(file), length = bytes.readUInt32LE(12);
+			const json = JSON.parse(bytes.toString("utf8", 20, 20 + length)), bin = 20 + length + 8;
+			const primitive = json.meshes[0].primitives[0];
+			return { extension: primitive.extensions.KHR_gaussian_splatting, mode: primitive.mode, of: (name) => {
+				const a = json.accessors[primitive.attributes[name]], v = json.bufferViews[a.bufferView];
+				const from = bin + v.byteOffset + (a.byteOffset || 0), values = [];
+				for (let k = 0; k < a.count * { SCALAR: 1, VEC3: 3, VEC4: 4 }[a.type]; k++)
+					values.push(bytes.readFloatLE(from + 4 * k));
+				return values;
+			}, names: Object.keys(primitive.attributes).filter((name) => name !== "COLOR_0").sort() };
+		};
+		const [a, b] = ["its.glb", "our.glb"].map(read), assert = require("assert");
+		assert.deepStrictEqual([a.extension, a.mode, a.names], [b.extension, b.mode, b.names]);
+		for (const name of a.names) {
+			const [x, y] = [a.of(name), b.of(name)];
+			assert.strictEqual(x.length, y.length);
+			// a rotation q is -q too
+			const same = name.endsWith("ROTATION") ? (k) => {
+				const [p, q] = [x, y].map((v) => v.slice(k - k % 4, k - k % 4 + 4));
+				return Math.abs(Math.abs(p.reduce((s, v, i) => s + v * q[i], 0)) - 1) < 1e-6;
+			} : (k) => Math.abs(x[k] - y[k]) <= 1e-6 * (1 + Math.abs(x[k]));
+			x.forEach((_, k) => assert(same(k), `${name} ${k}: ${x[k]} ${y[k]}`));
+		}
+	'
+}
+
 @test "our .splat, read there" {
 	"$BIN/gs-transform" -o s.splat s.ply
 	"$BIN/gs-transform" -o out.ply s.splat

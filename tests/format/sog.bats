@@ -85,3 +85,40 @@ refused() {
 
 # Fails where the command succeeds.
 not() { ! "$@"; }
+
+@test "what is written is read: few Gaussians are as they were, but for means, rotations and opacities" {
+	local golden=$BATS_TEST_DIRNAME/../golden/sog
+	"$BIN/gs-transform" -o out.sog "$golden/eight.ply"
+	says 0 "out.sog: ok: sog, 8 gaussians, 4 harmonics" "$BIN/gs-check" out.sog
+	"$BIN/gs-transform" --format sog -o - - <"$golden/eight.ply" | cmp - out.sog
+	"$BIN/gs-transform" -o out.ply out.sog
+	# a line of numbers for each Gaussian, sorted by x; of means a step is 3e-5 of their size
+	numbers() {
+		"$BIN/gs-transform" --format ply -o - "$1" | LC_ALL=C sed '1,/^end_header/d' | od -An -v -w104 -tf4 | sort -g
+	}
+	paste -d ' ' <(numbers "$golden/eight.ply") <(numbers out.sog) | awk '{
+		for (k = 1; k <= 26; k++) {
+			d = $k - $(k + 26)
+			# x y z, and opacity as its logit; rotations are compared elsewhere
+			most = k <= 3 ? 3e-4 : k == 19 ? 0.2 : k > 22 ? 9 : 1e-6
+			if (d > most || d < -most) { print k, $k, $(k + 26); bad = 1 }
+		}
+	} END { exit bad || NR != 8 }'
+	if command -v unzip >/dev/null; then unzip -tqq out.sog; fi
+	rm -rf opened && mkdir opened
+	if command -v python3 >/dev/null; then
+		python3 -m zipfile -e out.sog opened
+		[ "$(ls opened | tr '\n' ' ')" = "means_l.webp means_u.webp meta.json quats.webp scales.webp sh0.webp shN_centroids.webp shN_labels.webp " ]
+		"$BIN/gs-transform" -o opened.ply opened/meta.json
+		cmp opened.ply out.ply
+	fi
+}
+
+@test "no Gaussians, and no harmonics" {
+	load foreign
+	splats_ply one.ply '0 0 2 1 0.5 0 0 -3 -3 -3 1 0 0 0'
+	"$BIN/gs-transform" --crop 9,9,9,10,10,10 -o none.sog one.ply
+	says 0 "none.sog: ok: sog, 0 gaussians, 1 harmonics" "$BIN/gs-check" none.sog
+	"$BIN/gs-transform" -o one.sog one.ply
+	says 0 "one.sog: ok: sog, 1 gaussians, 1 harmonics" "$BIN/gs-check" one.sog
+}

@@ -165,6 +165,7 @@ static const struct target {
 	{"features", try_features, {0}},
 	{"image", try_image, {0}},
 	{"lifted", try_lifted, {0}},
+	{"glb", try_scene, {0}},
 	{"masks", try_masks, {0}},
 	{"model", try_model, {0}},
 	{"npy", try_npy, {0}},

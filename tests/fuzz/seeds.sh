@@ -96,6 +96,8 @@ seed image png/*/*.png overlay/*/*.* overlay/*.* small/images/*
 seed lifted some-lifted.safetensors
 seed masks some-masks.jsonl
 seed model some-model.safetensors
+gs-transform -q -o few.glb few.ply
+seed glb few.glb "$here/tests/golden/glb/eight.glb"
 seed npy response/*/*.npy response/*.npy
 seed parser "$here/formats/parser_default.safetensors"
 seed parses some-parses.jsonl
@@ -129,6 +131,7 @@ for target in "$dir"/*/; do
 	parser) set -- parser_weights.c ;;
 	parses) set -- parses_read.c ;;
 	ply) set -- ply.c plyfile.c plypacked.c ;;
+	glb) set -- glb.c glb_container.c ;;
 	spz) set -- spz.c spz_container.c ;;
 	weights) set -- weights.c weights_pack.c ;;
 	check) set -- scene.c weights.c text.c lifted.c features.c selection.c masks.c boxes.c sentences.c ;;

@@ -30,13 +30,15 @@ fetch() { PATH=$PWD/bin:$PATH XDG_CACHE_HOME=$PWD/cache "$@"; }
 	[ -e "$to/share/man/man1/refer-ask.1" ] && [ -e "$to/share/man/man7/refersplat.7" ]
 	for page in "$ROOT"/formats/*.md; do cmp "$page" "$to/share/doc/refersplat/formats/$(basename "$page")"; done
 	[ -x "$to/share/refersplat/pipelines/report.sh" ]
+	[ -e "$to/share/man/man3/librefersplat.3" ] && [ -e "$to/share/bash-completion/completions/gs-import" ]
+	cmp "$ROOT/cmd/jobs/refersplat.h" "$to/include/refersplat.h"
 	make -f "$to/share/refersplat/pipelines/lift.mk" help | grep -q '^SCALE '
 }
 
 @test "make uninstall takes all of it away" {
 	cp -r "$BATS_FILE_TMPDIR/to" copy
 	make -C "$ROOT" -s DESTDIR="$PWD/copy" PREFIX=/usr uninstall
-	[ -z "$(find copy -type f)" ] || { find copy -type f; false; }
+	[ -z "$(find copy ! -type d)" ] || { find copy ! -type d; false; }
 }
 
 @test "refersplat-encoder: what is not the package is not kept" {

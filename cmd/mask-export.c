@@ -1,0 +1,42 @@
+/* mask-export: mask records as COCO's JSON, and as pictures. */
+#include "base/file.h"
+#include "cli/cli.h"
+#include "cmd/jobs/exporting.h"
+
+static const char *scene, *png;
+
+static const struct cli_option table[] = {
+	{"scene", 0, CLI_STRING, &scene, "SCENE",
+		"scene folder, whose photographs' names the JSON gets (default: VIEW.png)", 0, 0},
+	{"png", 0, CLI_STRING, &png, "DIR", "also write each mask as DIR/VIEW/NAME.png, white on black", 0,
+		0},
+	{0}};
+
+static const struct cli_tool tool = {.name = "mask-export",
+	.operands = "[MASKS]",
+	.summary = "Write masks (JSON Lines; stdin by default) as COCO's JSON, and as pictures.",
+	.options = table,
+	.common = CLI_VERBOSE | CLI_QUIET | CLI_OUTPUT,
+	.max_operands = 1};
+
+static int run(const struct cli *c, struct err *e)
+{
+	struct exporting x = {0};
+	struct file_out out;
+	const int bad = exporting_read(&x, c->operand_count ? c->operands[0] : "-", scene, e) ||
+			(png && exporting_write_pngs(&x, png, e)) || file_out_open(&out, c->output, e) ||
+			file_out_end(&out, exporting_put_coco(&x, out.stream, e), e);
+
+	exporting_free(&x);
+	return bad ? -1 : 0;
+}
+
+int main(int argc, char **argv)
+{
+	struct cli c;
+	struct err e = {0};
+
+	cli_parse(&c, &tool, argc, argv);
+	cli_refuse_overwrite(&c, "MASKS scene:cameras.json", "output png:*.png", NULL);
+	return run(&c, &e) ? cli_fail(&c, &e) : cli_done(&c);
+}
