@@ -248,9 +248,10 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 	for (int k = 0; k < p->phrases[0].also.n; k++)
 		to->there = fmax(to->there, choose_phrase(c, p, p->phrases[0].also.item[k], row, chosen));
 	const struct parse_phrase *target = &p->phrases[0];
-	if (has(c, CHOOSE_PURPOSE) && (to->there < PARSE_LEAST || !target->noun.n) && !target->also.n &&
-		!target->except.n && !target->ordinal &&
-		(target->count == PARSE_ONE || target->count == PARSE_SEVERAL))
+	const int may_be_purpose =
+		to->there < PARSE_LEAST || (!target->noun.n && !purposes_says_more(&c->meaning));
+	if (has(c, CHOOSE_PURPOSE) && may_be_purpose && !target->also.n && !target->except.n &&
+		!target->ordinal && (target->count == PARSE_ONE || target->count == PARSE_SEVERAL))
 		choose_purpose(c, to, row, chosen);
 	if (has(c, CHOOSE_WORDING) && !to->is_several && !p->phrases[0].except.n && !p->phrases[0].ordinal &&
 		to->there < PARSE_LEAST)

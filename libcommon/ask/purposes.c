@@ -87,6 +87,14 @@ static void add_words(const struct meaning *m, const char *counts, double *words
 	}
 }
 
+int purposes_says_more(const struct meaning *m)
+{
+	for (size_t k = 0; k < m->part_count; k++)
+		if (is_kept(m, &m->parts[k]))
+			return 1;
+	return 0;
+}
+
 double purposes_judge(const struct meaning *m, double *score, double *scratch)
 {
 	const struct parse *p = m->sentence->parse;

@@ -11,4 +11,7 @@
  * 0 where no use is said. m: the sentence is judged. */
 double purposes_judge(const struct meaning *m, double *score, double *scratch);
 
+/* Whether the parse tells of colours or places besides: "the red thing you drink from". */
+int purposes_says_more(const struct meaning *m);
+
 #endif
