@@ -64,4 +64,7 @@ int parse_build(struct parse *p, const struct analysis *a, const struct tokens *
  * memory is out. */
 int parse_settle(struct parse *p, struct err *e);
 
+/* A part of parse_settle: "the tray and what is on it" are two. Likewise. */
+int parse_carried(struct parse *p, struct err *e);
+
 #endif

@@ -515,6 +515,8 @@ const struct closed_word closed_words[] = {
 	{"nobody", CLOSED_GENERIC, -1, 0},
 	{"anywhere", CLOSED_ADVERB, -1, 0},
 	{"twin", CLOSED_GENERIC, -1, 0},
+	{"flatter", CLOSED_SIZE, PARSE_SHORTER, 1},
+	{"flattest", CLOSED_SIZE, PARSE_SHORTER, 2},
 };
 const int closed_count = sizeof closed_words / sizeof *closed_words;
 

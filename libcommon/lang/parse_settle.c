@@ -74,6 +74,42 @@ static void settle_comparison(struct parse *p, struct parse_phrase *f, struct pa
 	c->anchors.n = 0;
 }
 
+static void drop_words(struct parse_list *l, int from)
+{
+	int n = 0;
+
+	for (int i = 0; i < l->n; i++)
+		if (l->item[i] < from)
+			l->item[n++] = l->item[i];
+	l->n = n;
+}
+
+/* "rounder than anything else on the shelf" is the one thing that is round, "rounder than any other jar" a
+ * jar: -1 only where memory is out. */
+static int settle_than(struct parse *p, struct parse_phrase *f, struct err *e)
+{
+	static const char *const any[] = {"anything", "everything", "any", "all", "every", NULL};
+	int than = 1, is_any = 0;
+
+	while (than + 1 < p->word_count && !is(p, than, "than"))
+		than++;
+	for (int i = 0; any[i]; i++)
+		is_any |= is(p, than + 1, any[i]);
+	const char *word = p->words[than > 1 ? than - 1 : 0].text;
+	const size_t length = strlen(word);
+	if (!is_any || length < 4 || strcmp(word + length - 2, "er") != 0 || closed_find(word) >= 0)
+		return 0;
+	const int is_noun = f->noun.n && f->noun.item[f->noun.n - 1] == than - 1;
+	f->count = PARSE_ONE;
+	drop_words(&f->noun, than - is_noun);
+	drop_words(&f->attributes, than - 1);
+	drop_words(&p->unexplained, than - 1);
+	if (f->except.n && !f->noun.n)
+		move_list(&f->noun, &p->phrases[f->except.item[0]].noun);
+	f->except.n = 0;
+	return parse_list_add(&f->attributes, than - 1, e);
+}
+
 /* "both the jar and the lamp" are two, not two jars and a lamp. */
 static void settle_both(const struct parse *p, struct parse_phrase *f)
 {
@@ -139,5 +175,5 @@ int parse_settle(struct parse *p, struct err *e)
 	for (int k = 0; k < f->clauses.n; k++)
 		settle_comparison(p, f, &p->clauses[f->clauses.item[k]]);
 	settle_superlative(p, f);
-	return settle_view(p, f, e);
+	return settle_than(p, f, e) || settle_view(p, f, e) || parse_carried(p, e) ? -1 : 0;
 }

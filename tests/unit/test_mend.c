@@ -246,8 +246,61 @@ static void mends_lists(void)
 		ROLE_ANCHOR, 2, 0);
 }
 
+/* The sentence means a second thing, one or all, that has a relation to the first. */
+static void carries(const char *text, int count, enum parse_relation r, const char *noun)
+{
+	const struct parser parser = {0};
+	struct parse p = {0};
+	struct err e;
+
+	if (!CHECK(!parse_sentence(&p, &parser, text, NULL, &e), "%s", e.message))
+		return;
+	CHECK(p.phrases[0].also.n == (noun != NULL), "'%s': %d things more", text, p.phrases[0].also.n);
+	if (noun && p.phrases[0].also.n) {
+		const struct parse_phrase *f = &p.phrases[p.phrases[0].also.item[0]];
+		const struct parse_clause *c = &p.clauses[f->clauses.item[0]];
+		const struct parse_phrase *a = &p.phrases[c->anchors.item[0]];
+		CHECK(f->count == count && c->relation == r, "'%s': %d, %s", text, f->count,
+			parse_relation_name(c->relation));
+		CHECK(a != &p.phrases[0] && a->noun.n && !strcmp(p.words[a->noun.item[0]].lemma, noun),
+			"'%s': by what", text);
+	}
+	parse_free(&p);
+}
+
+static void carried_things(void)
+{
+	carries("the sled and whatever is on it", PARSE_ALL, PARSE_ON, "sled");
+	carries("the sled and all the things behind it", PARSE_ALL, PARSE_BEHIND, "sled");
+	carries("the sled and what it stands on", PARSE_ONE, PARSE_SUPPORTS, "sled");
+	carries("both sleds and everything under them", PARSE_ALL, PARSE_BELOW, "sled");
+	carries("the sled and the thing in it", PARSE_ONE, PARSE_INSIDE, "sled");
+	carries("whatever is on the sled", 0, PARSE_ON, NULL);
+}
+
+/* One thing is meant, by an attribute. */
+static void compared_with_all(void)
+{
+	static const char *const all[] = {"rounder than anything else on the shelf",
+		"the sled that is rounder than any other sled", "rounder than all the others"};
+	const struct parser parser = {0};
+	struct parse p = {0};
+	struct err e;
+
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+		CHECK(!parse_sentence(&p, &parser, all[i], NULL, &e), "%s", e.message);
+		const struct parse_phrase *f = &p.phrases[0];
+		CHECK(f->count == PARSE_ONE && !f->except.n && f->attributes.n == 1 &&
+				!strcmp(p.words[f->attributes.item[0]].text, "rounder"),
+			"'%s'", all[i]);
+		parse_free(&p);
+	}
+}
+
 int main(void)
 {
+	carried_things();
+	compared_with_all();
 	mends_all();
 	mends_attachment();
 	mends_readings();
