@@ -61,7 +61,7 @@ struct vocabulary {
 			    likewise */
 	size_t without;	 /* the training sentence whose words do not count, for the caller to set; R: none */
 	double *scratch; /* (width) */
-	double *about;	 /* (2,width) scratch */
+	float *about;	 /* (O,width) of length 1: of each object's nouns */
 	float *word;	 /* (width) */
 	double *other;	 /* (O) */
 };

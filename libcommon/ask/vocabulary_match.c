@@ -1,0 +1,272 @@
+/* How words match what objects are called and said to be. */
+#include "ask/constants.h"
+#include "ask/vocabulary_private.h"
+#include "base/dot.h"
+#include "lang/colours.h"
+#include "lang/kinds.h"
+
+#include <math.h>
+#include <string.h>
+
+static double step(double x)
+{
+	return 1 / (1 + exp(-fmin(fmax(x, -40), 40)));
+}
+
+/* Whether a word is a word of a name: 2 the last one that is no number, 1 another. */
+static int is_in_name(const char *word, const char *name)
+{
+	const size_t length = strlen(word);
+	int is = 0;
+
+	for (const char *p = name; *p; p += strspn(p, " -_")) {
+		size_t n = strcspn(p, " -_"), same = 0;
+		while (same < n && same < length && vocabulary_lower(p[same]) == word[same])
+			same++;
+		if (n && same == n && length == n)
+			is = 2;
+		else if (n && (*p < '0' || *p > '9'))
+			is = is ? 1 : 0;
+		p += n;
+	}
+	return is;
+}
+
+/* What the cosine of two words of a role is worth. */
+static double worth(double cosine, double half, double soft)
+{
+	return step((cosine - half) / soft);
+}
+
+/* What is known besides of a noun and the one of this kind that a thing is called by. */
+static double knowledge(const struct vocabulary *v, const char *lemma, const struct wordnet_noun *noun,
+	const struct vocabulary_kind *kind, int is_general)
+{
+	const double x = WORDNET_WORTH * wordnet_fits(noun, &kind->noun, is_general);
+
+	return v->has_knowledge && !is_general && kinds_share(lemma, kind->lemma) ? fmax(x, KINDS_WORTH) : x;
+}
+
+void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
+{
+	const struct lifted *l = v->lifted;
+	const struct parse_word *word = &s->parse->words[w];
+	const size_t width = (size_t)l->width, objects = l->objects;
+	struct wordnet_noun noun;
+
+	vocabulary_word_vector(v, word, s->vectors, v->word);
+	noun.n = 0;
+	if (v->has_knowledge)
+		wordnet_find(&noun, word->lemma);
+	for (size_t o = 0; o < objects; o++) {
+		const int named = v->has_names ? is_in_name(word->lemma, l->names[o]) : 0;
+		match[o] = named == 2 ? 1 : named ? NAME_PART : 0;
+		if (v->has_names && named < 2)
+			match[o] = fmax(
+				match[o], knowledge(v, word->lemma, &noun, &v->kinds[v->head_kinds[o]], 0));
+	}
+	match[objects] = 0;
+	for (size_t i = 0; i < v->n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->sentence == v->without ||
+			(item->role != VOCABULARY_NOUN && item->role != VOCABULARY_ANCHOR))
+			continue;
+		double x = !strcmp(word->lemma, item->lemma) ? 1 : 0;
+		if (x < 1) {
+			x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
+			x = fmax(
+				x, knowledge(v, word->lemma, &noun, &v->kinds[item->kind], item->is_general));
+		}
+		double *to = &match[item->role == VOCABULARY_NOUN ? item->object : objects];
+		*to = fmax(*to, x);
+	}
+}
+
+void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
+{
+	const struct lifted *l = v->lifted;
+	const struct parse_word *word = &s->parse->words[w];
+	const size_t width = (size_t)l->width;
+	struct wordnet_adjective adjective;
+
+	vocabulary_word_vector(v, word, s->vectors, v->word);
+	adjective.n = 0;
+	if (v->has_knowledge)
+		wordnet_find_adjective(&adjective, word->lemma);
+	for (size_t o = 0; o < l->objects; o++)
+		match[o] = v->has_names && is_in_name(word->lemma, l->names[o]) ? 1 : 0;
+	for (size_t i = 0; i < v->n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		double *to = &match[item->object], x;
+		if (item->sentence == v->without)
+			continue;
+		x = item->role == VOCABULARY_ATTRIBUTE
+			    ? wordnet_adjectives_fit(&adjective, &v->kinds[item->kind].adjective)
+			    : 0;
+		if (x == 0)
+			x = worth(dot_float(v->word, v->vectors + i * width, width), ATTRIBUTE_HALF,
+				ATTRIBUTE_SOFT);
+		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
+		/* what is said to be so once is so, whatever else is said */
+		if (x > 0 ? x > *to && x > -*to : -x > fabs(*to))
+			*to = x;
+	}
+}
+
+void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
+{
+	const struct lifted *l = v->lifted;
+	const struct parse_word *word = &s->parse->words[w];
+	const size_t width = (size_t)l->width;
+
+	vocabulary_word_vector(v, word, s->vectors, v->word);
+	for (size_t o = 0; o < l->objects; o++)
+		match[o] = -1;
+	for (size_t i = 0; i < v->n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		const int is_place = item->role > VOCABULARY_ATTRIBUTE && item->relation != PARSE_WITH &&
+				     item->relation != PARSE_OTHER;
+		if (item->sentence == v->without || is_place)
+			continue;
+		match[item->object] =
+			fmax(match[item->object], dot_float(v->word, v->vectors + i * width, width));
+	}
+	for (size_t o = 0; o < l->objects; o++) {
+		match[o] = match[o] < -0.999 ? 0 : match[o];
+		if (v->has_names && is_in_name(word->lemma, l->names[o]))
+			match[o] = fmax(match[o], WORDING_NAME);
+	}
+}
+
+/* What a training sentence's relation says of another: on a shelf is above it. */
+static int is_like(enum parse_relation said, enum parse_relation meant)
+{
+	static const unsigned on = 1U << PARSE_ON | 1U << PARSE_ABOVE | 1U << PARSE_INSIDE;
+	static const unsigned near = 1U << PARSE_NEAR | 1U << PARSE_WITH;
+
+	return said == meant || ((on >> said & 1) && (on >> meant & 1)) ||
+	       ((near >> said & 1) && (near >> meant & 1)) ||
+	       ((1U << PARSE_NEAR | 1U << PARSE_OTHER) >> meant & 1);
+}
+
+void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
+	enum parse_relation relation, double *match)
+{
+	const struct lifted *l = v->lifted;
+	const struct parse_word *word = &s->parse->words[w];
+	const size_t width = (size_t)l->width;
+
+	vocabulary_word_vector(v, word, s->vectors, v->word);
+	memset(match, 0, l->objects * sizeof *match);
+	for (size_t i = 0; i < v->n && v->has_said; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->sentence == v->without || item->role != VOCABULARY_ANCHOR ||
+			!is_like(item->relation, relation))
+			continue;
+		double x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
+		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
+		match[item->object] = fmax(match[item->object], x);
+	}
+}
+
+/* How far things of a kind are for what a word says. */
+static double kind_fits(struct vocabulary *v, size_t kind, const struct uses *word)
+{
+	struct vocabulary_kind *k = &v->kinds[kind];
+
+	if (k->uses.n < 0)
+		uses_of_thing(&k->uses, k->lemma);
+	return uses_fit(&k->uses, word);
+}
+
+void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
+{
+	const struct lifted *l = v->lifted;
+	struct uses word;
+
+	memset(match, 0, l->objects * sizeof *match);
+	if (!v->has_knowledge)
+		return;
+	uses_of_word(&word, s->parse->words[w].lemma);
+	for (size_t o = 0; o < l->objects && word.n && v->has_names; o++)
+		match[o] = kind_fits(v, v->head_kinds[o], &word);
+	for (size_t i = 0; i < v->n && word.n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->role == VOCABULARY_NOUN && item->sentence != v->without && !item->is_general)
+			match[item->object] = fmax(match[item->object], kind_fits(v, item->kind, &word));
+	}
+}
+
+void vocabulary_about(
+	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, double *match)
+{
+	const size_t width = (size_t)v->lifted->width;
+
+	vocabulary_words_vector(v, s, counts, v->word);
+	for (size_t o = 0; o < v->lifted->objects; o++)
+		match[o] = dot_float(v->word, v->about + o * width, width);
+}
+
+/* fit (O): how many of the training sentences that say a colour of an object say one like this: one of them
+ * may have been misread. What is said of a part of it counts less. other (O): how many say another one. */
+static void said_colours(const struct vocabulary *v, int colour, double *fit, double *other)
+{
+	const struct lifted *l = v->lifted;
+
+	for (size_t o = 0; o < l->objects; o++) {
+		double like = 0, all = 0, part = 0;
+		for (size_t i = 0; i < v->n && v->has_said; i++) {
+			const struct vocabulary_item *item = &v->items[i];
+			const int said = item->object == o && item->sentence != v->without
+						 ? colour_word(item->lemma)
+						 : -1;
+			if (said < 0)
+				continue;
+			const double alike = colour_words_alike(said, colour);
+			if (item->role == VOCABULARY_ATTRIBUTE) {
+				like += alike;
+				all++;
+			} else {
+				part = fmax(part, PART_COLOUR * alike);
+			}
+		}
+		fit[o] = fmax(all > 0 ? like / all : 0, part);
+		other[o] = all > 0 ? 1 - like / all : 0;
+	}
+}
+
+int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit)
+{
+	const int colour = colour_word(word);
+
+	if (colour < 0)
+		return 0;
+	said_colours(v, colour, fit, v->other);
+	for (size_t o = 0; o < a->n; o++) {
+		const double share = a->objects[o].colours[colour];
+		const double looks = share / (share + COLOUR_SHARE);
+		fit[o] = fmax(fit[o], looks * (1 - OTHER_COLOUR * v->other[o]));
+	}
+	return 1;
+}
+
+size_t vocabulary_whole(
+	struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match)
+{
+	const struct lifted *l = v->lifted;
+	const size_t width = (size_t)l->width;
+	size_t same = l->objects;
+
+	vocabulary_sentence_vector(v, vectors, pieces, v->sentence_mean, v->word);
+	for (size_t o = 0; o < l->objects; o++)
+		match[o] = -1;
+	for (size_t r = 0; r < l->sentences; r++) {
+		const size_t o = (size_t)l->object[r];
+		if (r == v->without)
+			continue;
+		match[o] = fmax(match[o], dot_float(v->word, v->sentences + r * width, width));
+		if (text && same == l->objects && !strcmp(text, l->texts[r]))
+			same = o;
+	}
+	return same;
+}

@@ -1,0 +1,24 @@
+/* What the two halves of ask/vocabulary.h share: vocabulary.c makes it, vocabulary_match.c asks it. */
+#ifndef ASK_VOCABULARY_PRIVATE_H
+#define ASK_VOCABULARY_PRIVATE_H
+
+#include "ask/vocabulary.h"
+
+/* out (width) of length 1: the mean direction of a word's pieces, less the scene's mean. */
+void vocabulary_word_vector(
+	struct vocabulary *v, const struct parse_word *w, const float *vectors, float *out);
+
+/* out (width) of length 1: the mean of pieces, less one of v's means. */
+void vocabulary_sentence_vector(
+	struct vocabulary *v, const float *vectors, size_t pieces, const double *less, float *out);
+
+/* out (width) of length 1: the mean of the pieces of the words that count, less the scene's mean. */
+void vocabulary_words_vector(
+	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, float *out);
+
+static inline char vocabulary_lower(char c)
+{
+	return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+#endif
