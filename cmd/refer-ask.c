@@ -33,7 +33,7 @@ static const struct cli_option table[] = {{"scene", 0, CLI_STRING, &options.aski
 		"where questions are asked: left and right are as seen from there (default: between the training views)",
 		0, 0},
 	{"min-probability", 0, CLI_REAL, &options.asking.least, "P",
-		"a question less likely to mean anything that is here is refused (default 0.65)", 0, 1},
+		"a question less likely to mean anything that is here is refused (default 0.5)", 0, 1},
 	{"without", 0, CLI_STRING, &options.asking.without, "PART,...",
 		"choose without parts of the choice, as refer-render does", 0, 0},
 	{"explain", 0, CLI_FLAG, &options.asking.is_explained, NULL,

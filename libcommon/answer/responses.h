@@ -53,7 +53,7 @@ int responses_trained(struct responses *a, const struct respond_model *m, const 
  * that was lifted: its responses are 0. How sure an answer is: the probability that anything is meant, times
  * the mean over its objects of the probability of each to be meant times its confidence, which is about what
  * its masks' IoU is worth. parts: choose()'s. */
-#define RESPONSES_LEAST 0.65
+#define RESPONSES_LEAST 0.5
 int responses_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
 	unsigned parts, double least, struct err *e);
 

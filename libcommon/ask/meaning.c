@@ -164,7 +164,8 @@ static double judge_relation(
 		anchors[r.count] = (struct relate_anchor){fit_of(m, i), is_scene(m, i),
 			is_many && !c->negated, meaning_is_other(p, &p->phrases[i])};
 		if (!p->phrases[i].viewer && !anchors[r.count].is_scene)
-			known = fmin(known, fmin(m->known[i], largest(there_of(m, i), objects_of(m)) / GENERIC_THERE));
+			known = fmin(known,
+				fmin(m->known[i], largest(there_of(m, i), objects_of(m)) / GENERIC_THERE));
 		r.count++;
 	}
 	relate(m->arrangement, &r, fit, m->scratch + 3 * objects_of(m), value);

@@ -7,6 +7,7 @@
  *makes the sentences' true answers likelier, less a penalty for leaving the value that it had. Prints the
  *constants that moved, and for the sentences fitted and held out what was gained and how far probabilities
  *can be believed. It is compiled with the room ask, whose constants then vary. */
+#include "answer/responses.h"
 #include "ask/choose.h"
 #include "base/mem.h"
 #include "cli/cli.h"
@@ -166,7 +167,7 @@ static void count(const struct cell *c, size_t i, struct tally *t)
 {
 	const size_t objects = c->model.objects;
 	const char *chosen = c->chosen + i * objects, *meant = c->is_meant + i * objects;
-	const int is_refused = c->choices[i].there < 0.65;
+	const int is_refused = c->choices[i].there < RESPONSES_LEAST;
 	const double p = believed(c, i, is_refused);
 	const size_t bin = (size_t)fmin(p * BINS, BINS - 1);
 	int right = 1;
