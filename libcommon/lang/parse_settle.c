@@ -95,9 +95,11 @@ static int settle_than(struct parse *p, struct parse_phrase *f, struct err *e)
 		than++;
 	for (int i = 0; any[i]; i++)
 		is_any |= is(p, than + 1, any[i]);
-	const char *word = p->words[than > 1 ? than - 1 : 0].text;
+	if (!is_any)
+		return 0;
+	const char *word = p->words[than - 1].text;
 	const size_t length = strlen(word);
-	if (!is_any || length < 4 || strcmp(word + length - 2, "er") != 0 || closed_find(word) >= 0)
+	if (length < 4 || strcmp(word + length - 2, "er") != 0 || closed_find(word) >= 0)
 		return 0;
 	const int is_noun = f->noun.n && f->noun.item[f->noun.n - 1] == than - 1;
 	f->count = PARSE_ONE;
