@@ -210,6 +210,7 @@ static void choose_wording(
 	chosen[best] = 1;
 	to->there = there;
 	to->is_by_wording = 1;
+	to->is_by_purpose = 0;
 }
 
 /* A sentence that says what a thing is for: the object of which that is most likely. */

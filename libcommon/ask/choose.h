@@ -8,8 +8,9 @@
  * The sentence means nothing that was lifted with the probability 1 - P: P goes by how far the thing that
  * fits best is known to be what is said (its noun, its colours, its relations), how far the anchors are
  * there, and how many words say something that is said of nothing. Where that is little and the wording alone
- * is near to that of one object's training sentences (ask/wording.h), it means that object. All constants are
- * in ask/constants.def. */
+ * is near to that of one object's training sentences (ask/wording.h), it means that object. A sentence
+ * that says only what the thing is for means the one that ask/purposes.h finds. All constants are in
+ * ask/constants.def. */
 #ifndef ASK_CHOOSE_H
 #define ASK_CHOOSE_H
 
@@ -37,7 +38,7 @@ enum choose_part {
 };
 enum { CHOOSE_ALL = (1 << CHOOSE_PARTS) - 1 };
 
-/* All parts but those in a comma-separated list of "words" ... "sentence" (NULL: all). 0, or -1 and *unknown
+/* All parts but those in a comma-separated list of "words" ... "purpose" (NULL: all). 0, or -1 and *unknown
  * the first name that is no part's. */
 int choose_without(const char *list, unsigned *parts, struct list_name *unknown);
 

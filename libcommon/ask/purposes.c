@@ -8,6 +8,8 @@
 
 #include <string.h>
 
+static const double not_there = -100; /* the score of what has no Gaussians */
+
 /* "the shiny thing": what is said of a thing of no name. */
 static int is_before_generic(const struct parse *p, int word)
 {
@@ -107,14 +109,16 @@ double purposes_judge(const struct meaning *m, double *score, double *scratch)
 	mark_words(m, counts);
 	add_words(m, counts, words, score);
 	vocabulary_about(m->vocabulary, m->sentence, counts, about);
-	for (size_t o = 0; o < n; o++) {
-		score[o] = PURPOSE_ABOUT * about[o] + PURPOSE_WORDS * words[o];
-		if (!m->arrangement->objects[o].is_there)
-			score[o] = -100;
-	}
-	for (size_t k = 0; k < m->part_count; k++)
-		for (size_t o = 0; o < n && is_kept(m, &m->parts[k]); o++)
+	for (size_t o = 0; o < n; o++)
+		score[o] = m->arrangement->objects[o].is_there
+				   ? PURPOSE_ABOUT * about[o] + PURPOSE_WORDS * words[o]
+				   : not_there;
+	for (size_t k = 0; k < m->part_count; k++) {
+		if (!is_kept(m, &m->parts[k]))
+			continue;
+		for (size_t o = 0; o < n; o++)
 			score[o] += PURPOSE_PARTS * log(fmax(m->parts[k].value[o], 1e-6));
+	}
 	const double best = largest(score, n);
 	return 1 / (1 + exp(-(PURPOSE_THERE * best + PURPOSE_BASE)));
 }

@@ -1,7 +1,6 @@
 /* What each object is worth as what a sentence says the use of (lang/purpose.h), whatever its parse makes of
- * it: by what the sentence is about, its mean cosine with the nouns of the object; by its words, in the
- * glosses of those nouns and in what training sentences say; and by the colours and places that its parse
- * has. */
+ * it: by what the sentence is about, the cosine of its words with the nouns of the object; by its words in
+ * the glosses of those nouns; and by the colours and places that its parse has. */
 #ifndef ASK_PURPOSES_H
 #define ASK_PURPOSES_H
 

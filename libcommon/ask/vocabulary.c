@@ -162,7 +162,8 @@ static int add_phrase(struct vocabulary *v, size_t r, const struct parse_phrase 
 
 	for (int i = 0; i < f->noun.n && !bad; i++) {
 		bad = add_item(v, r, f->noun.item[i], i + 1 == f->noun.n ? head : other, relation, e);
-		v->items[v->n - 1].is_of_name = !bad && head == VOCABULARY_NOUN;
+		if (!bad)
+			v->items[v->n - 1].is_of_name = head == VOCABULARY_NOUN;
 	}
 	for (int i = 0; i < f->attributes.n && !bad; i++)
 		bad = add_item(v, r, f->attributes.item[i], other, relation, e);

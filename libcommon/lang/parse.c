@@ -55,3 +55,21 @@ int parse_list_add(struct parse_list *list, int item, struct err *e)
 	list->item[list->n++] = item;
 	return 0;
 }
+
+void parse_list_cut(struct parse_list *list, int end)
+{
+	int n = 0;
+
+	for (int i = 0; i < list->n; i++)
+		if (list->item[i] < end)
+			list->item[n++] = list->item[i];
+	list->n = n;
+}
+
+int parse_word_is(const struct parse *p, int word, const char *const *list)
+{
+	for (; word >= 0 && word < p->word_count && *list; list++)
+		if (!strcmp(p->words[word].text, *list))
+			return 1;
+	return 0;
+}

@@ -115,4 +115,10 @@ int parse_relation_find(const char *name);
 /* Appends to a list; -1 only where memory is out. */
 int parse_list_add(struct parse_list *list, int item, struct err *e);
 
+/* Only the items below `end` stay. */
+void parse_list_cut(struct parse_list *list, int end);
+
+/* Whether there is such a word and its text is in a list that ends in NULL. */
+int parse_word_is(const struct parse *p, int word, const char *const *list);
+
 #endif

@@ -12,14 +12,6 @@ struct carried {
 	int from, place, is_round;
 };
 
-static int is_one_of(const struct parse *p, int word, const char *const *list)
-{
-	for (; word >= 0 && word < p->word_count && *list; list++)
-		if (!strcmp(p->words[word].text, *list))
-			return 1;
-	return 0;
-}
-
 static int relation_of(const struct parse *p, int word)
 {
 	const int closed = word >= 0 && word < p->word_count ? closed_find(p->words[word].text) : -1;
@@ -38,19 +30,19 @@ static int find_carried(const struct parse *p, struct carried *c)
 	int head;
 
 	for (int w = 1; w < last; w++) {
-		if (!is_one_of(p, w, and))
+		if (!parse_word_is(p, w, and))
 			continue;
-		for (head = w + 1; is_one_of(p, head, the);)
+		for (head = w + 1; parse_word_is(p, head, the);)
 			head++;
-		if (!is_one_of(p, head, things))
+		if (!parse_word_is(p, head, things))
 			continue;
 		for (int i = head + 1; i < last; i++)
-			if (relation_of(p, i) >= 0 && is_one_of(p, i + 1, it)) {
+			if (relation_of(p, i) >= 0 && parse_word_is(p, i + 1, it)) {
 				*c = (struct carried){w + 1, i, 0};
 				return 1;
 			}
 		if (relation_of(p, last) >= 0 &&
-			(is_one_of(p, head + 1, they) || is_one_of(p, head + 2, they))) {
+			(parse_word_is(p, head + 1, they) || parse_word_is(p, head + 2, they))) {
 			*c = (struct carried){w + 1, last, 1};
 			return 1;
 		}
@@ -58,17 +50,7 @@ static int find_carried(const struct parse *p, struct carried *c)
 	return 0;
 }
 
-/* The items of a list that are before word or clause `from` of the text. */
-static void keep_words(struct parse_list *l, int from)
-{
-	int n = 0;
-
-	for (int i = 0; i < l->n; i++)
-		if (l->item[i] < from)
-			l->item[n++] = l->item[i];
-	l->n = n;
-}
-
+/* The clauses of a list that begin before word `from`. */
 static void keep_clauses(const struct parse *p, struct parse_list *l, int from)
 {
 	int n = 0;
@@ -117,20 +99,20 @@ int parse_carried(struct parse *p, struct err *e)
 	if (!find_carried(p, &c) || f->also.n > 1 ||
 		(f->also.n && p->phrases[f->also.item[0]].noun.n && f->noun.n))
 		return 0;
-	keep_words(&f->noun, c.from - 1);
-	keep_words(&f->attributes, c.from - 1);
+	parse_list_cut(&f->noun, c.from - 1);
+	parse_list_cut(&f->attributes, c.from - 1);
 	if (!f->noun.n) { /* "whatever" was taken for what is meant */
 		if (closed_find(p->words[c.from - 2].text) >= 0)
 			return 0;
-		keep_words(&f->attributes, c.from - 2);
+		parse_list_cut(&f->attributes, c.from - 2);
 		if (parse_list_add(&f->noun, c.from - 2, e))
 			return -1;
 	}
 	is_one = c.is_round;
 	for (int w = c.from; w < c.place; w++)
-		is_one |= is_one_of(p, w, one);
+		is_one |= parse_word_is(p, w, one);
 	keep_clauses(p, &f->clauses, c.from);
-	keep_words(&p->unexplained, c.from);
+	parse_list_cut(&p->unexplained, c.from);
 	if (make_room(p, e))
 		return -1;
 	f = &p->phrases[0];

@@ -74,28 +74,16 @@ static void settle_comparison(struct parse *p, struct parse_phrase *f, struct pa
 	c->anchors.n = 0;
 }
 
-static void drop_words(struct parse_list *l, int from)
-{
-	int n = 0;
-
-	for (int i = 0; i < l->n; i++)
-		if (l->item[i] < from)
-			l->item[n++] = l->item[i];
-	l->n = n;
-}
-
 /* "rounder than anything else on the shelf" is the one thing that is round, "rounder than any other jar" a
  * jar: -1 only where memory is out. */
 static int settle_than(struct parse *p, struct parse_phrase *f, struct err *e)
 {
 	static const char *const any[] = {"anything", "everything", "any", "all", "every", NULL};
-	int than = 1, is_any = 0;
+	int than = 1;
 
 	while (than + 1 < p->word_count && !is(p, than, "than"))
 		than++;
-	for (int i = 0; any[i]; i++)
-		is_any |= is(p, than + 1, any[i]);
-	if (!is_any)
+	if (!parse_word_is(p, than + 1, any))
 		return 0;
 	const char *word = p->words[than - 1].text;
 	const size_t length = strlen(word);
@@ -103,9 +91,9 @@ static int settle_than(struct parse *p, struct parse_phrase *f, struct err *e)
 		return 0;
 	const int is_noun = f->noun.n && f->noun.item[f->noun.n - 1] == than - 1;
 	f->count = PARSE_ONE;
-	drop_words(&f->noun, than - is_noun);
-	drop_words(&f->attributes, than - 1);
-	drop_words(&p->unexplained, than - 1);
+	parse_list_cut(&f->noun, than - is_noun);
+	parse_list_cut(&f->attributes, than - 1);
+	parse_list_cut(&p->unexplained, than - 1);
 	if (f->except.n && !f->noun.n)
 		move_list(&f->noun, &p->phrases[f->except.item[0]].noun);
 	f->except.n = 0;

@@ -5,14 +5,6 @@
 
 #include <string.h>
 
-static int is(const struct parse *p, int i, const char *const *list)
-{
-	for (; i >= 0 && i < p->word_count && *list; list++)
-		if (!strcmp(p->words[i].text, *list))
-			return 1;
-	return 0;
-}
-
 /* The class of a word, CLOSED_CLASSES of one of the open classes, -1 where there is no word. */
 static int class_of(const struct parse *p, int i)
 {
@@ -34,12 +26,12 @@ static int ends_in(const char *word, const char *tail)
 	return n > m + 1 && !strcmp(word + n - m, tail);
 }
 
-static const char *const asks[] = {"what", "whatever", "where", "which", "how", NULL};
-
 static int asks_before(const struct parse *p, int word)
 {
+	static const char *const asks[] = {"what", "whatever", "where", "which", "how", NULL};
+
 	for (int i = 0; i < word; i++)
-		if (is(p, i, asks))
+		if (parse_word_is(p, i, asks))
 			return 1;
 	return 0;
 }
@@ -51,16 +43,17 @@ static int after_doer(const struct parse *p, int i)
 	static const char *const doers[] = {"you", "they", "people", "somebody", "someone", "anybody", NULL},
 				 *const self[] = {"i", "we", NULL}, *const to[] = {"to", NULL},
 				 *const did[] = {"did", NULL};
-	const int is_self = is(p, i, self);
+	const int is_self = parse_word_is(p, i, self);
 	int verb = i + 1;
 
 	if (class_of(p, i - 1) == CLOSED_AUXILIARY && !asks_before(p, i)) /* "could you lift it" */
 		return i;
-	if (is(p, i - 1, did) || (!is_self && !is(p, i, doers)))
+	if (parse_word_is(p, i - 1, did) || (!is_self && !parse_word_is(p, i, doers)))
 		return i;
 	while (class_of(p, verb) == CLOSED_AUXILIARY || class_of(p, verb) == CLOSED_HAVE ||
 		class_of(p, verb) == CLOSED_ADVERB ||
-		(class_of(p, verb) == CLOSED_REQUEST && is(p, verb + 1, to)) || is(p, verb, to))
+		(class_of(p, verb) == CLOSED_REQUEST && parse_word_is(p, verb + 1, to)) ||
+		parse_word_is(p, verb, to))
 		verb++;
 	return is_self && verb == i + 1 && class_of(p, i - 1) != CLOSED_AUXILIARY ? i : verb;
 }
@@ -82,13 +75,16 @@ static int says_for(const struct parse *p)
 				 *const to[] = {"to", "for", "it", NULL};
 
 	for (int i = 0; i < p->word_count; i++) {
-		if (is(p, i, purposes) && is_open(p, i + 1) && ends_in(p->words[i + 1].text, "ing"))
+		if (parse_word_is(p, i, purposes) && is_open(p, i + 1) &&
+			ends_in(p->words[i + 1].text, "ing"))
 			return 1;
-		if (is(p, i, purposes) && is_open(p, i + 1) && class_of(p, i - 1) == CLOSED_GENERIC)
+		if (parse_word_is(p, i, purposes) && is_open(p, i + 1) &&
+			class_of(p, i - 1) == CLOSED_GENERIC)
 			return 1;
-		if (is(p, i, used) && is(p, i + 1, to))
+		if (parse_word_is(p, i, used) && parse_word_is(p, i + 1, to))
 			return 1;
-		if (is(p, i, to) && is_open(p, i + 1) && (!i || class_of(p, i - 1) == CLOSED_GENERIC))
+		if (parse_word_is(p, i, to) && is_open(p, i + 1) &&
+			(!i || class_of(p, i - 1) == CLOSED_GENERIC))
 			return 1;
 	}
 	return 0;
@@ -107,14 +103,12 @@ static int first_word(const struct parse *p)
 /* "where the flowers go", "what rings", but not "where is the vase" or "what stands by the wall". */
 static int asks_for(const struct parse *p)
 {
-	static const char *const which[] = {"which", "whatever", NULL};
+	static const char *const begins[] = {"what", "where", "how", NULL};
 	const int i = first_word(p), next = class_of(p, i + 1);
+	const int asks_who = next == CLOSED_AUXILIARY &&
+			     (class_of(p, i + 2) == CLOSED_PRONOUN || after_doer(p, i + 2) > i + 2);
 
-	if (next == CLOSED_AUXILIARY && after_doer(p, i + 2) == i + 2 && class_of(p, i + 2) == CLOSED_PRONOUN)
-		return 0;
-	if (next == CLOSED_AUXILIARY && after_doer(p, i + 2) > i + 2)
-		return says_doing(p);
-	return is(p, i, asks) && !is(p, i, which) && next != CLOSED_BE && next != CLOSED_POSE &&
+	return parse_word_is(p, i, begins) && !asks_who && next != CLOSED_BE && next != CLOSED_POSE &&
 	       next != CLOSED_PLACE && next != CLOSED_HAVE && next != -1;
 }
 
@@ -126,7 +120,7 @@ static int ends_in_it(const struct parse *p)
 		"with", "in", "on", "from", "into", "of", "to", "by", "through", "off", NULL};
 	const int n = p->word_count;
 
-	if (!is(p, n - 1, it) || !is(p, n - 2, ways))
+	if (!parse_word_is(p, n - 1, it) || !parse_word_is(p, n - 2, ways))
 		return 0;
 	for (int i = 0; i < n - 2; i++)
 		if (class_of(p, i) == CLOSED_HAVE || class_of(p, i) == CLOSED_WITH ||
@@ -141,7 +135,7 @@ static int begins_with_verb(const struct parse *p)
 	static const char *const it[] = {"it", "that", "which", NULL};
 	int i = first_word(p);
 
-	while (is(p, i, it) || class_of(p, i) == CLOSED_GENERIC)
+	while (parse_word_is(p, i, it) || class_of(p, i) == CLOSED_GENERIC)
 		i++;
 	const int next = class_of(p, i + 1);
 	return is_open(p, i) && ends_in(p->words[i].text, "s") && !ends_in(p->words[i].text, "ss") &&
@@ -159,5 +153,5 @@ int purpose_is_content(const struct parse *p, int word)
 	static const char *const empty[] = {"used", "use", "using", "go", "goes", "come", "comes", "make",
 		"makes", "put", "keep", "keeps", "let", "lets", "want", "wants", "somebody", "people", NULL};
 
-	return is_open(p, word) && !is(p, word, empty) && colour_word(p->words[word].lemma) < 0;
+	return is_open(p, word) && !parse_word_is(p, word, empty) && colour_word(p->words[word].lemma) < 0;
 }
