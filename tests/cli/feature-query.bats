@@ -5,13 +5,9 @@
 setup_file() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
 	export OMP_WAIT_POLICY=passive
+	load npy
 	cd "$BATS_FILE_TMPDIR"
-	cp -r "$BATS_TEST_DIRNAME/../golden/bert" encoder
-	"$BIN/gs-synth" -q --objects 3 --views 5 --size 64x48 --gaussians 2000 -o .
-	"$BIN/gs-import" -q --images images --test-views "$(cat test-views)" -o scene point_cloud.ply
-	"$BIN/gs-weigh" -q -o weights scene
-	"$BIN/text-encode" -q --model encoder -o text.safetensors sentences.jsonl
-	jq -c --arg test "$(cat test-views)" 'select(.view as $v | $test | split(",") | index($v) | not)' truth.jsonl >masks.jsonl
+	weighed_scene
 	# each object's pixels have the vector of its name as their feature
 	jq -c '.object as $o | {ref: $o, object: $o, text: $o, split: "train"}' sentences.jsonl | sort -u >names.jsonl
 	"$BIN/text-encode" -q --model encoder -o names.safetensors names.jsonl

@@ -5,6 +5,7 @@
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
 	load ../format/files
+	load npy
 	cd "$BATS_TEST_TMPDIR"
 	scene scene
 }
@@ -13,19 +14,6 @@ setup() {
 cameras() {
 	local IFS=,
 	printf '[%s]\n' "$*" >scene/cameras.json
-}
-
-# tensor FILE NAME TYPE: a tensor's numbers on one line; TYPE as od has it (d8, d4, f4).
-tensor() {
-	local length begin end
-	length=$(od -An -t d8 -N 8 "$1" | tr -d ' ')
-	read -r begin end < <(head -c $((8 + length)) "$1" | tail -c +9 | jq -r ".[\"$2\"].data_offsets | @tsv")
-	tail -c +$((9 + length + begin)) "$1" | head -c $((end - begin)) | od -An -v -t "$3" | tr -s ' \n' ' ' | sed 's/^ //; s/ $//'
-}
-
-# meta FILE KEY
-meta() {
-	head -c $((8 + $(od -An -t d8 -N 8 "$1"))) "$1" | tail -c +9 | jq -r ".__metadata__[\"$2\"]"
 }
 
 @test "a file for each training view" {

@@ -1,4 +1,14 @@
-# Helpers of the tests of features: .npy files and numbers in safetensors.
+# Helpers of the tests of weights and features: a small weighed scene, .npy files and numbers in safetensors.
+
+# weighed_scene: in the current folder, a synthetic scene with weights, encoded sentences and masks of its training views.
+weighed_scene() {
+	cp -r "$BATS_TEST_DIRNAME/../golden/bert" encoder
+	"$BIN/gs-synth" -q --objects 3 --views 5 --size 64x48 --gaussians 2000 -o .
+	"$BIN/gs-import" -q --images images --test-views "$(cat test-views)" -o scene point_cloud.ply
+	"$BIN/gs-weigh" -q -o weights scene
+	"$BIN/text-encode" -q --model encoder -o text.safetensors sentences.jsonl
+	jq -c --arg test "$(cat test-views)" 'select(.view as $v | $test | split(",") | index($v) | not)' truth.jsonl >masks.jsonl
+}
 
 # npy FILE DESCR SHAPE HEX: an array as numpy.save writes it, but for the padding.
 npy() {
@@ -15,7 +25,7 @@ times() {
 	for ((k = 0; k < $1; k++)); do printf '%s' "$2"; done
 }
 
-# tensor FILE NAME TYPE: a tensor's numbers on one line; TYPE as od has it (d4, f4, u2).
+# tensor FILE NAME TYPE: a tensor's numbers on one line; TYPE as od has it (d4, d8, f4, u2).
 tensor() {
 	local length begin end
 	length=$(od -An -t d8 -N 8 "$1" | tr -d ' ')
