@@ -3,6 +3,7 @@
 #include "ask/constants.h"
 #include "base/dot.h"
 #include "base/mem.h"
+#include "lang/closed.h"
 #include "lang/colours.h"
 #include "lang/kinds.h"
 
@@ -27,6 +28,7 @@ void vocabulary_free(struct vocabulary *v)
 	free(v->head_kinds);
 	free(v->scratch);
 	free(v->about);
+	free(v->kin);
 	free(v->word);
 	free(v->other);
 	*v = (struct vocabulary){0};
@@ -202,21 +204,35 @@ static int read_sentences(struct vocabulary *v, const struct parser *parser, str
 	return bad ? -1 : 0;
 }
 
-int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
+static int share_noun(const struct vocabulary *v, size_t a, size_t b, int may_be_general)
 {
 	for (size_t i = 0; i < v->n; i++)
 		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN;
 			k++)
 			if (v->items[k].object == b && v->items[k].role == VOCABULARY_NOUN &&
-				v->items[k].kind == v->items[i].kind)
+				v->items[k].kind == v->items[i].kind &&
+				(may_be_general || !(v->items[i].is_general || v->items[k].is_general)))
 				return 1;
 	return 0;
+}
+
+int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
+{
+	return share_noun(v, a, b, 1);
 }
 
 static int are_akin(const struct vocabulary_kind *a, const struct vocabulary_kind *b)
 {
 	return a == b || wordnet_fits(&a->noun, &b->noun, 0) > 0 || wordnet_fits(&b->noun, &a->noun, 0) > 0 ||
 	       kinds_share(a->lemma, b->lemma);
+}
+
+/* "thing", "object". */
+static int is_generic(const char *lemma)
+{
+	const int closed = closed_find(lemma);
+
+	return closed >= 0 && closed_words[closed].class == CLOSED_GENERIC;
 }
 
 /* Whether two objects were called by other nouns than this one, and none of them are akin. */
@@ -229,7 +245,7 @@ static int differ_but_for(const struct vocabulary *v, size_t a, size_t b, size_t
 			k++) {
 			const struct vocabulary_item *p = &v->items[i], *q = &v->items[k];
 			if (q->object != b || q->role != VOCABULARY_NOUN || p->kind == kind ||
-				q->kind == kind)
+				q->kind == kind || is_generic(p->lemma) || is_generic(q->lemma))
 				continue;
 			if (are_akin(&v->kinds[p->kind], &v->kinds[q->kind]))
 				return 0;
@@ -239,12 +255,13 @@ static int differ_but_for(const struct vocabulary *v, size_t a, size_t b, size_t
 }
 
 /* What kinds of a general noun there are says nothing of a thing that is called so. A noun is general that is
- * above another one of the same thing, or that is all that two things have in common: "crockery" of a plate
- * and a bowl. */
+ * "thing", that is above another one of the same thing, or that is all that two things have in common:
+ * "crockery" of a plate and a bowl. */
 static void mark_general(struct vocabulary *v)
 {
 	for (size_t i = 0; i < v->n; i++) {
 		struct vocabulary_item *a = &v->items[i];
+		a->is_general = a->role == VOCABULARY_NOUN && is_generic(a->lemma);
 		for (size_t k = 0; k < v->n && a->role == VOCABULARY_NOUN && !a->is_general; k++) {
 			const struct vocabulary_item *b = &v->items[k];
 			if (b->role != VOCABULARY_NOUN)
@@ -256,6 +273,21 @@ static void mark_general(struct vocabulary *v)
 				a->is_general = differ_but_for(v, a->object, b->object, a->kind);
 		}
 	}
+}
+
+/* Which objects are of one kind: 2 called by one noun that is not general, 1 their names end alike. */
+static int find_kin(struct vocabulary *v, struct err *e)
+{
+	const size_t n = v->lifted->objects;
+
+	v->kin = mem_alloc(n, n * sizeof *v->kin, "vocabulary", e);
+	for (size_t o = 0; o < n && v->kin; o++)
+		for (size_t k = 0; k < n; k++)
+			v->kin[o * n + k] =
+				(char)(share_noun(v, o, k, 0)
+						? 2
+						: *v->heads[o] && v->head_kinds[o] == v->head_kinds[k]);
+	return v->kin ? 0 : -1;
 }
 
 static int is_called(const struct vocabulary_item *i)
@@ -343,7 +375,7 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	if (read_names(v, e) || read_sentences(v, parser, e))
 		return -1;
 	mark_general(v);
-	if (find_about(v, e))
+	if (find_about(v, e) || find_kin(v, e))
 		return -1;
 	for (size_t r = 0; r < l->sentences; r++)
 		vocabulary_sentence_vector(v, vectors_of(l, r), (size_t)(l->offsets[r + 1] - l->offsets[r]),

@@ -63,7 +63,8 @@ struct vocabulary {
 	double *scratch; /* (width) */
 	float *about;	 /* (O,width) of length 1: of each object's nouns */
 	float *word;	 /* (width) */
-	double *other;	 /* (O) */
+	char *kin; /* (O,O) what makes two objects one kind: 2 a noun that is not general, 1 their names */
+	double *other; /* (O) */
 };
 
 /* Refers to l, which must outlive it. Returns 0, or -1 with *e set; vocabulary_free after either. */
@@ -71,8 +72,9 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 void vocabulary_free(struct vocabulary *v);
 
 /* match (O + 1): how likely an object is called by word w of a sentence, in [0,1]: 1 where its name or a
- * training sentence calls it so; what WordNet thinks of the two nouns; or what the cosine of their vectors is
- * worth. The last is of the best thing that training sentences name and that is no object: "on the shelf". */
+ * training sentence calls it so; what WordNet thinks of the two nouns; what the cosine of their vectors is
+ * worth; or GENERAL_WORTH of what a general noun fits another object of its kind. The last is of the best
+ * thing that training sentences name and that is no object: "on the shelf". */
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* match (O): how far an object is said to be what a word says, as an attribute or in any other way, in [0,1];

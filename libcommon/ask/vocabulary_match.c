@@ -47,6 +47,17 @@ static double knowledge(const struct vocabulary *v, const char *lemma, const str
 	return v->has_knowledge && !is_general && kinds_share(lemma, kind->lemma) ? fmax(x, KINDS_WORTH) : x;
 }
 
+/* "toy" of one cylinder may be said of another one. general (O): what general nouns of each object fit. */
+static void share_general(const struct vocabulary *v, const double *general, double *match)
+{
+	const size_t n = v->lifted->objects;
+
+	for (size_t o = 0; o < n; o++)
+		for (size_t k = 0; k < n && general[o] > 0; k++)
+			if (v->kin[o * n + k] > !v->has_names)
+				match[k] = fmax(match[k], GENERAL_WORTH * general[o]);
+}
+
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
 {
 	const struct lifted *l = v->lifted;
@@ -66,6 +77,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 				match[o], knowledge(v, word->lemma, &noun, &v->kinds[v->head_kinds[o]], 0));
 	}
 	match[objects] = 0;
+	memset(v->other, 0, objects * sizeof *v->other);
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
 		if (item->sentence == v->without ||
@@ -79,7 +91,10 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		}
 		double *to = &match[item->role == VOCABULARY_NOUN ? item->object : objects];
 		*to = fmax(*to, x);
+		if (item->is_general)
+			v->other[item->object] = fmax(v->other[item->object], x);
 	}
+	share_general(v, v->other, match);
 }
 
 void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
@@ -113,6 +128,12 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 	}
 }
 
+static int says_place(const struct vocabulary_item *item)
+{
+	return item->role > VOCABULARY_ATTRIBUTE && item->relation != PARSE_WITH &&
+	       item->relation != PARSE_OTHER;
+}
+
 void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
 {
 	const struct lifted *l = v->lifted;
@@ -124,9 +145,7 @@ void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s
 		match[o] = -1;
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
-		const int is_place = item->role > VOCABULARY_ATTRIBUTE && item->relation != PARSE_WITH &&
-				     item->relation != PARSE_OTHER;
-		if (item->sentence == v->without || is_place)
+		if (item->sentence == v->without || says_place(item))
 			continue;
 		match[item->object] =
 			fmax(match[item->object], dot_float(v->word, v->vectors + i * width, width));
@@ -217,9 +236,10 @@ static void said_colours(const struct vocabulary *v, int colour, double *fit, do
 		double like = 0, all = 0, part = 0;
 		for (size_t i = 0; i < v->n && v->has_said; i++) {
 			const struct vocabulary_item *item = &v->items[i];
-			const int said = item->object == o && item->sentence != v->without
-						 ? colour_word(item->lemma)
-						 : -1;
+			const int said =
+				item->object == o && item->sentence != v->without && !says_place(item)
+					? colour_word(item->lemma)
+					: -1;
 			if (said < 0)
 				continue;
 			const double alike = colour_words_alike(said, colour);

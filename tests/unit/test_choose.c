@@ -334,6 +334,68 @@ static void is_about(void)
 	vocabulary_free(&v);
 }
 
+/* A vocabulary of the scene's objects and other sentences, for vocabulary_free; said and about hold n. */
+static struct lifted other_said(char **said, int32_t *about, size_t n, int64_t *at, float *vectors)
+{
+	struct lifted l = lifted;
+
+	at[0] = 0;
+	for (size_t r = 0; r < n; r++)
+		at[r + 1] = at[r] + (int64_t)encode(said[r], vectors + (size_t)at[r] * WIDTH);
+	l.sentences = n;
+	l.object = about;
+	l.texts = l.pieces = said;
+	l.offsets = at;
+	l.words = vectors;
+	return l;
+}
+
+/* "toy" is said of a mug and of a box: it is general, and fits the other mug, but not the tin. */
+static void general_nouns(void)
+{
+	static char *said[] = {"the toy", "the mug", "the toy", "the box", "the mug", "the can"};
+	static int32_t about[] = {0, 0, 2, 2, 1, 3};
+	static float vectors[6 * 4 * WIDTH], word_vector[WIDTH];
+	int64_t at[7];
+	const struct lifted l = other_said(said, about, 6, at, vectors);
+	struct parse_word word = {.text = "toy", .lemma = "toy", .pieces = (int)encode("toy", word_vector)};
+	const struct parse parse = {.word_count = 1, .words = &word};
+	const struct vocabulary_sentence s = {&parse, word_vector, 1};
+	struct vocabulary v;
+	struct err e;
+	double match[OBJECTS + 1];
+
+	CHECK(!vocabulary_make(&v, &l, &parser, &e), "%s", e.message);
+	for (v.has_names = 0; v.has_names < 2; v.has_names++) {
+		vocabulary_noun(&v, &s, 0, match);
+		CHECK(match[0] == 1 && match[2] == 1, "toys: %g, %g", match[0], match[2]);
+		CHECK(match[1] > 0.5 && match[1] < 1, "the other mug: %g", match[1]);
+		CHECK(match[3] < 0.5, "the tin: %g", match[3]);
+	}
+	vocabulary_free(&v);
+}
+
+/* The colour of a part is a little the thing's, that of what it is near is not. */
+static void colours_of_parts(void)
+{
+	static char *said[] = {"the mug with a green handle", "the tin on the green mat", "the green box"};
+	static int32_t about[] = {0, 3, 2};
+	static float vectors[3 * 8 * WIDTH];
+	int64_t at[4];
+	const struct lifted l = other_said(said, about, 3, at, vectors);
+	struct arranged objects[OBJECTS] = {0};
+	const struct arrangement a = {.n = OBJECTS, .objects = objects};
+	struct vocabulary v;
+	struct err e;
+	double fit[OBJECTS];
+
+	CHECK(!vocabulary_make(&v, &l, &parser, &e), "%s", e.message);
+	CHECK(vocabulary_colour(&v, &a, "green", fit), "green is no colour");
+	CHECK(fit[2] == 1 && fit[0] > 0 && fit[0] < 0.5 && fit[1] == 0 && fit[3] == 0,
+		"green: mugs %g and %g, crate %g, tin %g", fit[0], fit[1], fit[2], fit[3]);
+	vocabulary_free(&v);
+}
+
 int main(void)
 {
 	make_scene();
@@ -346,5 +408,7 @@ int main(void)
 	many();
 	kept();
 	is_about();
+	general_nouns();
+	colours_of_parts();
 	return unit_end();
 }
