@@ -205,6 +205,10 @@ static void absent(void)
 	CHECK(choice.there < 0.65, "a relation that is not so: %g", choice.there);
 	ask("the second crate from the left", CHOOSE_ALL);
 	CHECK(choice.there < 0.65, "there is but one crate: %g", choice.there);
+	CHECK(set_of("all things") == 15 && choice.there > 0.8, "all things: %x, %g", set_of("all things"),
+		choice.there);
+	ask("all things on the zeppelin", CHOOSE_ALL);
+	CHECK(choice.there < 0.5, "what is on something unknown: %g", choice.there);
 	CHECK(set_of("") == 0 && choice.there == 0, "no words mean nothing");
 }
 
