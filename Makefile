@@ -8,7 +8,7 @@ CC ?= cc
 CFLAGS ?= -O3 -g
 OPENMP ?= -fopenmp
 WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith
-LDLIBS := -lcjson -lpng -ljpeg -lwebp -lutf8proc -lminizip -lzstd -lz -lm
+LDLIBS := -lcjson -lpng -ljpeg -lwebp -lutf8proc -lminizip -lzstd -ldeflate -lz -lm
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 
 # WordNet is used where its library is; without it words are known by the encoder alone.
@@ -46,7 +46,7 @@ C_FILES = $(wildcard cmd/*.c cmd/jobs/*.[ch] libcommon/*/*.[ch] formats/*.[ch] t
 MAN_PAGES := $(wildcard man/*.[137])
 
 # What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
-NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev \
+NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev libdeflate.h=libdeflate-dev \
 	utf8proc.h=libutf8proc-dev webp/decode.h=libwebp-dev zstd.h=libzstd-dev minizip/unzip.h=libminizip-dev $(CC)=gcc ar=binutils
 NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd pkg-config=pkg-config
 NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
@@ -153,7 +153,7 @@ $(BUILD)/flags: FORCE
 # One line in place of a wall of errors where a library's header is not there.
 $(BUILD)/headers:
 	@mkdir -p $(@D)
-	@for header in png.h jpeglib.h webp/decode.h cjson/cJSON.h zlib.h zstd.h minizip/unzip.h utf8proc.h; do \
+	@for header in png.h jpeglib.h webp/decode.h cjson/cJSON.h zlib.h libdeflate.h zstd.h minizip/unzip.h utf8proc.h; do \
 		printf '#include <stdio.h>\n#include <%s>\n' $$header | $(COMPILE) -E -x c - >/dev/null 2>&1 || \
 			{ echo "$$header is not installed: run 'make deps'" >&2; exit 1; }; \
 	done

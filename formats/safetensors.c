@@ -4,11 +4,11 @@
 
 #include <cjson/cJSON.h>
 #include <errno.h>
+#include <libdeflate.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 static const struct {
 	const char *name;
@@ -29,16 +29,7 @@ const char *st_dtype_name(enum st_dtype t)
 
 static uint32_t checksum(const void *data, size_t len)
 {
-	const unsigned char *p = data;
-	uLong crc = crc32(0, NULL, 0);
-
-	while (len) {
-		uInt part = len > (1u << 30) ? 1u << 30 : (uInt)len;
-		crc = crc32(crc, p, part);
-		p += part;
-		len -= part;
-	}
-	return (uint32_t)crc;
+	return libdeflate_crc32(0, data, len);
 }
 
 /* One entry of the header; `data` is the file's data section. */

@@ -5,9 +5,9 @@
 
 #include "base/mem.h"
 
+#include <libdeflate.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 enum { IDS, MAPS, LEVELS, PIXELS = WEIGHTS_TILE * WEIGHTS_TILE, EFFORT = 1 };
 
@@ -51,16 +51,36 @@ static int put_gaussian(struct weights_pack *p, const uint8_t levels[PIXELS], st
 /* The Gaussians of one tile. */
 struct tile {
 	size_t n;
-	int32_t *ids;		   /* (n), as they are met or rising */
+	int32_t *ids, *spare;	   /* (n), as they are met or rising; and room for as many */
+	int32_t last;		   /* the largest id of the picture */
 	uint8_t (*levels)[PIXELS]; /* (n) as they are met */
 	int32_t *slot;		   /* (N) where each is met, -1 */
 };
 
-static int by_value(const void *a, const void *b)
+/* Sorts by the bits from `shift` on, stably: one pass of a radix sort. */
+static void sort_pass(const int32_t *from, int32_t *to, size_t n, int shift)
 {
-	const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+	size_t place[256] = {0}, sum = 0;
 
-	return (x > y) - (x < y);
+	for (size_t i = 0; i < n; i++)
+		place[from[i] >> shift & 255]++;
+	for (int k = 0; k < 256; k++) {
+		const size_t count = place[k];
+		place[k] = sum;
+		sum += count;
+	}
+	for (size_t i = 0; i < n; i++)
+		to[place[from[i] >> shift & 255]++] = from[i];
+}
+
+static void sort_ids(struct tile *t)
+{
+	for (int shift = 0; shift < 32 && t->last >> shift; shift += 8) {
+		int32_t *sorted = t->spare;
+		sort_pass(t->ids, sorted, t->n, shift);
+		t->spare = t->ids;
+		t->ids = sorted;
+	}
 }
 
 static int put_tile(struct weights_pack *p, struct tile *t, struct err *e)
@@ -68,7 +88,7 @@ static int put_tile(struct weights_pack *p, struct tile *t, struct err *e)
 	int32_t before = 0;
 	int bad = put_number(p, (uint32_t)t->n, e);
 
-	qsort(t->ids, t->n, sizeof *t->ids, by_value);
+	sort_ids(t);
 	for (size_t i = 0; i < t->n && !bad; i++) {
 		bad = put_number(p, (uint32_t)(t->ids[i] - before), e) ||
 		      put_gaussian(p, t->levels[t->slot[t->ids[i]]], e);
@@ -115,7 +135,6 @@ static void take_tile(struct tile *t, const struct picture *v, int x, int y)
 static int tile_make(struct tile *t, const struct picture *v, struct err *e)
 {
 	const int64_t pixels = (int64_t)v->width * v->height;
-	int32_t last = 0;
 	size_t most = 0;
 
 	for (int64_t p = 0; p < pixels; p++) {
@@ -123,33 +142,34 @@ static int tile_make(struct tile *t, const struct picture *v, struct err *e)
 		most = n > most ? n : most;
 	}
 	for (int64_t k = 0; k < v->indptr[pixels]; k++)
-		last = v->index[k] > last ? v->index[k] : last;
+		t->last = v->index[k] > t->last ? v->index[k] : t->last;
 	most *= PIXELS;
 	t->ids = mem_alloc(most, sizeof *t->ids, "weights", e);
+	t->spare = mem_alloc(most, sizeof *t->spare, "weights", e);
 	t->levels = mem_alloc(most, sizeof *t->levels, "weights", e);
-	t->slot = mem_alloc((size_t)last + 1, sizeof *t->slot, "weights", e);
-	if (!t->ids || !t->levels || !t->slot)
+	t->slot = mem_alloc((size_t)t->last + 1, sizeof *t->slot, "weights", e);
+	if (!t->ids || !t->spare || !t->levels || !t->slot)
 		return -1;
-	memset(t->slot, -1, ((size_t)last + 1) * sizeof *t->slot);
+	memset(t->slot, -1, ((size_t)t->last + 1) * sizeof *t->slot);
 	return 0;
 }
 
 static int deflate_stream(struct weights_pack *p, int stream, struct err *e)
 {
-	uLongf room = compressBound(p->bytes[stream]);
-	uint8_t *out = mem_alloc(room, 1, "weights", e);
+	struct libdeflate_compressor *by = libdeflate_alloc_compressor(EFFORT);
 
-	if (!out)
-		return -1;
-	if (compress2(out, &room, p->data[stream] ? p->data[stream] : out, p->bytes[stream], EFFORT) !=
-		Z_OK) {
-		free(out);
-		return err_set(e, ERR_SYSTEM, "weights: they cannot be packed");
+	if (!by)
+		return err_set(e, ERR_SYSTEM, "weights: out of memory");
+	const size_t room = libdeflate_zlib_compress_bound(by, p->bytes[stream]);
+	uint8_t *out = mem_alloc(room, 1, "weights", e);
+	if (out) {
+		p->packed[stream] = libdeflate_zlib_compress(
+			by, p->data[stream] ? p->data[stream] : out, p->bytes[stream], out, room);
+		free(p->data[stream]);
+		p->data[stream] = out;
 	}
-	free(p->data[stream]);
-	p->data[stream] = out;
-	p->packed[stream] = room;
-	return 0;
+	libdeflate_free_compressor(by);
+	return out ? 0 : -1;
 }
 
 static int deflate_all(struct weights_pack *p, struct err *e)
@@ -205,6 +225,7 @@ static int pack_rows(struct weights_pack *rows, int count, const struct picture 
 		for (int row = 0; row < count; row++)
 			bad |= bad ? -1 : pack_row(&rows[row], &t, v, row, &own);
 		free(t.ids);
+		free(t.spare);
 		free(t.levels);
 		free(t.slot);
 	}
@@ -255,6 +276,16 @@ static int broken(const struct unpacking *u, struct err *e)
 		u->path, u->at);
 }
 
+static int inflate_stream(struct unpacking *u, const struct weights_pack *p, int s)
+{
+	struct libdeflate_decompressor *by = libdeflate_alloc_decompressor();
+	const int bad = !by || libdeflate_zlib_decompress(by, p->data[s], p->packed[s], u->data[s],
+				       p->bytes[s], NULL) != LIBDEFLATE_SUCCESS;
+
+	libdeflate_free_decompressor(by);
+	return bad;
+}
+
 static int inflate_all(struct unpacking *u, const struct weights_pack *p, struct err *e)
 {
 	int bad[WEIGHTS_STREAMS];
@@ -266,11 +297,8 @@ static int inflate_all(struct unpacking *u, const struct weights_pack *p, struct
 			return -1;
 	}
 #pragma omp parallel for schedule(dynamic)
-	for (int s = WEIGHTS_STREAMS - 1; s >= 0; s--) {
-		uLongf bytes = p->bytes[s];
-		bad[s] = uncompress(u->data[s], &bytes, p->data[s], p->packed[s]) != Z_OK ||
-			 bytes != p->bytes[s];
-	}
+	for (int s = WEIGHTS_STREAMS - 1; s >= 0; s--)
+		bad[s] = inflate_stream(u, p, s);
 	for (int s = 0; s < WEIGHTS_STREAMS; s++)
 		if (bad[s])
 			return broken(u, e);

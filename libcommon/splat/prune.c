@@ -28,18 +28,26 @@ static void sift_down(uint64_t *heap, size_t n, size_t at)
 	}
 }
 
-/* Marks what is to go from a row of n weights by -1; returns its sum. `heap` has room for n keys. */
+/* Marks what is to go from a row of n weights by -1; returns its sum. `heap` has room for n keys. Weights so
+ * small that n of them may go need no order. */
 static double mark_row(float *weight, size_t n, double tolerance, uint64_t *heap)
 {
 	double sum = 0, out = 0;
-	size_t left = n;
+	size_t left = 0;
 
+	for (size_t i = 0; i < n; i++)
+		sum += (double)weight[i];
+	const double small = n ? tolerance * sum / (double)n : 0;
 	for (size_t i = 0; i < n; i++) {
-		sum += weight[i];
-		heap[i] = make_key(weight[i], (uint32_t)(n - 1 - i));
+		if ((double)weight[i] < small) {
+			out += (double)weight[i];
+			weight[i] = -1;
+		} else {
+			heap[left++] = make_key(weight[i], (uint32_t)(n - 1 - i));
+		}
 	}
-	for (size_t i = n / 2; i-- > 0;)
-		sift_down(heap, n, i);
+	for (size_t i = left / 2; i-- > 0;)
+		sift_down(heap, left, i);
 	while (left) {
 		size_t i = n - 1 - (uint32_t)heap[0];
 		if (out + weight[i] > tolerance * sum)
