@@ -1,11 +1,15 @@
 #include "cmd/jobs/lifting.h"
 
 #include "ask/disambiguate.h"
+#include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/weights.h"
 
 #include <stdlib.h>
+
+/* Views at a time: each takes memory for its weights, and for an image of each of its objects. */
+enum { WORKERS_MOST = 8 };
 
 static int load(struct lifting *l, struct err *e)
 {
@@ -103,9 +107,9 @@ static int by_object(const void *a, const void *b)
 	return (x->object > y->object) - (x->object < y->object);
 }
 
-static int lift_view(struct lifting *l, size_t view, struct lift_mask *masks, struct err *e)
+/* The masks of a view that count, in the order of their objects. */
+static size_t masks_of_view(const struct lifting *l, size_t view, struct lift_mask *masks)
 {
-	struct weights weights;
 	size_t n = 0, begin, end;
 
 	mask_index_view(&l->index, l->scene.cameras.views[view].name, &begin, &end);
@@ -114,31 +118,53 @@ static int lift_view(struct lifting *l, size_t view, struct lift_mask *masks, st
 		if (l->mask_object[i] != LIFTED_NONE)
 			masks[n++] = (struct lift_mask){&l->set.items[i], l->mask_object[i]};
 	}
+	qsort(masks, n, sizeof *masks, by_object);
+	return n;
+}
+
+struct lift_round {
+	struct lifting *l;
+	const struct report *to;
+	int round;
+	struct lift_mask *masks; /* (workers, set.n) */
+};
+
+static int lift_view(void *context, int worker, size_t view, struct err *e)
+{
+	const struct lift_round *r = context;
+	struct lifting *l = r->l;
+	struct lift_mask *masks = r->masks + (size_t)worker * l->set.n;
+	const size_t n = masks_of_view(l, view, masks);
+	struct weights weights;
+
 	if (!n)
 		return 0;
-	qsort(masks, n, sizeof *masks, by_object);
 	if (weights_open(&weights, l->files->weights, &l->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
-	int bad = lift_objects_view(&l->lift, &blend, weights.height, weights.width, masks, n, e);
+	const int bad = lift_objects_view(&l->lift, view, &blend, weights.height, weights.width, masks, n, e);
 	weights_close(&weights);
 	return bad;
+}
+
+static void step(void *context, size_t view)
+{
+	const struct lift_round *r = context;
+
+	report_step(r->to, (double)((size_t)r->round * r->l->scene.cameras.n + view + 1), NULL);
 }
 
 static int lift(struct lifting *l, const struct report *to, struct err *e)
 {
 	const size_t n = l->scene.cameras.n;
-	struct lift_mask *masks = mem_alloc(l->set.n, sizeof *masks, "masks", e);
-	int bad = !masks || lift_objects_init(&l->lift, l->scene.splats.n, l->objects, e);
+	struct lift_round r = {.l = l, .to = to};
+	const struct each by = {&r, each_workers(n, WORKERS_MOST), lift_view, step};
 
-	for (int round = 0; round < LIFT_ROUNDS && !bad; round++) {
-		for (size_t v = 0; v < n && !bad; v++) {
-			bad = lift_view(l, v, masks, e);
-			report_step(to, (double)((size_t)round * n + v + 1), NULL);
-		}
-		bad = bad || lift_objects_settle(&l->lift, e);
-	}
-	free(masks);
+	r.masks = mem_alloc((size_t)by.workers, l->set.n * sizeof *r.masks, "masks", e);
+	int bad = !r.masks || lift_objects_init(&l->lift, l->scene.splats.n, l->objects, n, e);
+	for (; r.round < LIFT_ROUNDS && !bad; r.round++)
+		bad = each_run(&by, n, e) || lift_objects_settle(&l->lift, e);
+	free(r.masks);
 	return bad || lift_objects_finish(&l->lift, &l->model, e) ? -1 : 0;
 }
 

@@ -1,8 +1,8 @@
 #include "cmd/jobs/weighing.h"
 
+#include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "base/threads.h"
 #include "formats/precision.h"
 #include "formats/weights.h"
 #include "splat/prune.h"
@@ -90,40 +90,47 @@ static int check_covered(
 		o->scene, views, 100 * covered);
 }
 
-struct weighing {
-	const struct scene *scene;
-	const struct weighing_options *options;
-	char text[128]; /* the options as the files record them */
-};
-
 /* What is reported of a view. */
 struct weighed {
 	int width, height;
 	double weights, ms;
 };
 
-static int weigh_view(const struct weighing *of, const struct camera *full, struct room *room,
-	struct weighed *done, struct err *e)
+struct weighing {
+	const struct scene *scene;
+	const struct weighing_options *options;
+	const struct report *to;
+	char text[128]; /* the options as the files record them */
+	size_t n;
+	const struct camera **views; /* (n) */
+	struct weighed *done;	     /* (n) */
+	struct room *rooms;	     /* of the workers */
+};
+
+static int weigh_view(void *context, int worker, size_t at, struct err *e)
 {
-	const struct scene *s = of->scene;
+	const struct weighing *of = context;
 	const struct weighing_options *o = of->options;
+	const struct camera *full = of->views[at];
+	struct weighed *done = &of->done[at];
+	struct room *room = &of->rooms[worker];
 	const double start = omp_get_wtime();
 
 	camera_scaled_size(full, o->scale, &done->width, &done->height);
 	const size_t pixels = (size_t)done->width * (size_t)done->height;
 	const struct camera camera = camera_resize(full, done->width, done->height);
-	if (render(room, &s->splats, &camera, o, e))
+	if (render(room, &of->scene->splats, &camera, o, e))
 		return -1;
 	done->ms = 1e3 * (omp_get_wtime() - start);
 	done->weights = (double)room->rendered.indptr[pixels];
 	const struct weights w = {.width = done->width,
 		.height = done->height,
-		.gaussians = (int64_t)s->splats.n,
+		.gaussians = (int64_t)of->scene->splats.n,
 		.indptr = room->rendered.indptr,
 		.index = room->rendered.index,
 		.weight = room->rendered.weight,
 		.dropped = room->dropped,
-		.scene = s->fingerprint,
+		.scene = of->scene->fingerprint,
 		.camera = fingerprint_camera(&camera),
 		.precision = o->precision,
 		.is_packed = o->is_packed};
@@ -131,87 +138,62 @@ static int weigh_view(const struct weighing *of, const struct camera *full, stru
 	return weights_write(&w, o->folder, full->name, of->text, e);
 }
 
-static void report_view(const struct report *to, const char *name, const struct weighed *w, size_t done)
+static void report_view(void *context, size_t at)
 {
-	report_note(to, 1, "%s: %dx%d, %.0f weights, %.1f a pixel, %.1f ms", name, w->width, w->height,
-		w->weights, w->weights / ((double)w->width * (double)w->height), w->ms);
-	report_step(to, (double)done, name);
+	const struct weighing *of = context;
+	const struct weighed *w = &of->done[at];
+
+	report_note(of->to, 1, "%s: %dx%d, %.0f weights, %.1f a pixel, %.1f ms", of->views[at]->name,
+		w->width, w->height, w->weights, w->weights / ((double)w->width * (double)w->height), w->ms);
+	report_step(of->to, (double)(at + 1), of->views[at]->name);
 }
 
-/* The views side by side, each with room of its own and one part of the threads; they are reported in their
- * order. The error is that of the first view that has one. covered: as check_covered takes it. */
-static int weigh_views(const struct weighing *of, const size_t *views, size_t n, const struct report *to,
-	double *covered, struct err *e)
+/* The views side by side, each with room of its own. */
+static int weigh_views(struct weighing *of, struct err *e)
 {
-	const int threads = threads_available();
-	const int workers = threads < WORKERS_MOST ? threads : WORKERS_MOST;
-	const int levels = omp_get_max_active_levels();
-	size_t failed = n;
-	double most = 0;
+	const struct each by = {of, each_workers(of->n, WORKERS_MOST), weigh_view, report_view};
+	double covered = 0;
 
-	omp_set_max_active_levels(threads > workers ? 2 : levels);
-#pragma omp parallel num_threads(workers) reduction(max : most)
-	{
-		struct room room = {0};
-		omp_set_num_threads(threads / workers);
-#pragma omp for schedule(dynamic) ordered
-		for (size_t i = 0; i < n; i++) {
-			const struct camera *view = &of->scene->cameras.views[views[i]];
-			struct weighed done = {0};
-			struct err own;
-			size_t end;
-#pragma omp atomic read
-			end = failed;
-			const int bad = i < end && weigh_view(of, view, &room, &done, &own);
-#pragma omp ordered
-			{
-				if (bad && failed == n) {
-					*e = own;
-#pragma omp atomic write
-					failed = i;
-				}
-				if (failed == n)
-					report_view(to, view->name, &done, i + 1);
-			}
-		}
-		most = fmax(most, room.covered);
-		room_free(&room);
+	of->done = mem_alloc(of->n, sizeof *of->done, "views", e);
+	of->rooms = mem_zalloc((size_t)by.workers, sizeof *of->rooms, "views", e);
+	report_start(of->to, "views", (double)of->n);
+	const int bad = !of->done || !of->rooms || each_run(&by, of->n, e);
+	report_end(of->to);
+	for (int k = 0; k < by.workers && of->rooms; k++) {
+		covered = fmax(covered, of->rooms[k].covered);
+		room_free(&of->rooms[k]);
 	}
-	omp_set_max_active_levels(levels);
-	*covered = most;
-	return failed < n ? -1 : 0;
+	free(of->done);
+	free(of->rooms);
+	return bad || check_covered(of->scene, of->options, of->n, covered, e) ? -1 : 0;
+}
+
+static int find_views(struct weighing *of, struct err *e)
+{
+	static const char *const names[] = {"train", "test", "all"};
+	const struct cameras *all = &of->scene->cameras;
+	const int split = of->options->split;
+
+	of->views = mem_alloc(all->n, sizeof *of->views, "views", e);
+	for (size_t i = 0; i < all->n && of->views; i++)
+		if (in_split(&all->views[i], split))
+			of->views[of->n++] = &all->views[i];
+	if (!of->views || of->n)
+		return of->views ? 0 : -1;
+	return err_set(e, ERR_FORMAT, "%s: no view belongs to split '%s'", of->options->scene, names[split]);
 }
 
 int weigh(const struct scene *s, const struct weighing_options *o, const struct report *to, struct err *e)
 {
-	static const char *const names[] = {"train", "test", "all"};
 	const int was_there = file_exists(o->folder);
-	struct weighing of = {s, o, ""};
-	double covered;
-	size_t n = 0;
+	struct weighing of = {.scene = s, .options = o, .to = to};
 
-	for (size_t i = 0; i < s->cameras.n; i++)
-		n += (size_t)in_split(&s->cameras.views[i], o->split);
-	if (!n)
-		return err_set(e, ERR_FORMAT, "%s: no view belongs to split '%s'", o->scene, names[o->split]);
-	size_t *views = mem_alloc(n, sizeof *views, "views", e);
-	if (!views || file_make_dir(o->folder, e)) {
-		free(views);
-		return -1;
-	}
-	n = 0;
-	for (size_t i = 0; i < s->cameras.n; i++)
-		if (in_split(&s->cameras.views[i], o->split))
-			views[n++] = i;
 	snprintf(of.text, sizeof of.text, "--scale %.15g --tolerance %.15g --precision %s%s", o->scale,
 		o->tolerance, precision_name(o->precision), o->is_packed ? " --packed" : "");
-	report_start(to, "views", (double)n);
-	const int bad = weigh_views(&of, views, n, to, &covered, e);
-	report_end(to);
-	free(views);
-	if (!bad && !check_covered(s, o, n, covered, e))
-		return 0;
-	if (!was_there)
+	const int cannot = find_views(&of, e) || file_make_dir(o->folder, e);
+	const int bad = cannot || weigh_views(&of, e);
+	free(of.views);
+	if (bad && !cannot && !was_there)
 		rmdir(o->folder); /* where it is empty */
-	return -1;
+	return bad ? -1 : 0;
 }

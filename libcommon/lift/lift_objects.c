@@ -11,14 +11,16 @@ static const float LEAST_VOTE = 0.01f;
 /* What rounds to nothing in a file, formats/lifted.md. */
 static const float LEAST_SHARE = 0.5f / 255;
 
-int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, struct err *e)
+int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, size_t views, struct err *e)
 {
 	*l = (struct lift_objects){.gaussians = gaussians, .objects = objects};
+	l->views = mem_zalloc(views, sizeof *l->views, "views", e);
+	l->view_count = l->views ? views : 0;
 	l->shares = mem_zalloc(objects, sizeof *l->shares, "shares", e);
 	l->claims = mem_alloc(gaussians, sizeof *l->claims, "shares", e);
 	l->agreement = mem_zalloc(objects, sizeof *l->agreement, "shares", e);
 	l->masks = mem_zalloc(objects, sizeof *l->masks, "shares", e);
-	if (l->shares && l->claims && l->agreement && l->masks)
+	if (l->views && l->shares && l->claims && l->agreement && l->masks)
 		return 0;
 	lift_objects_free(l);
 	return -1;
@@ -31,6 +33,7 @@ static void view_free(struct lift_view *v)
 	free(v->objects);
 	free(v->rows);
 	free(v->vote);
+	free(v->agreement);
 	free(v->weight);
 }
 
@@ -106,76 +109,75 @@ static int fill_images(const struct groups *g, int height, int width, float *ima
 }
 
 /* The first round: what the view's masks show. */
-static int add_view(struct lift_objects *l, const struct view_weights *w, const struct groups *g,
+static int add_view(struct lift_view *v, const struct view_weights *w, const struct groups *g,
 	const float *images, struct err *e)
 {
-	if (mem_grow((void **)&l->views, &l->view_capacity, l->view_count + 1, sizeof *l->views, "views", e))
-		return -1;
-	struct lift_view *v = &l->views[l->view_count++];
 	*v = (struct lift_view){.n = g->n};
 	v->objects = mem_alloc(v->n, sizeof *v->objects, "views", e);
 	v->rows = mem_zalloc(v->n, sizeof *v->rows, "views", e);
 	v->vote = mem_alloc(v->n, sizeof *v->vote, "views", e);
+	v->agreement = mem_zalloc(v->n, sizeof *v->agreement, "views", e);
 	v->weight = mem_alloc(w->gaussians, sizeof *v->weight, "views", e);
-	if (!v->objects || !v->rows || !v->vote || !v->weight || shares_of_view(v->weight, w, e) ||
-		shares_make(v->rows, w, images, v->n, e))
+	if (!v->objects || !v->rows || !v->vote || !v->agreement || !v->weight ||
+		shares_of_view(v->weight, w, e) || shares_make(v->rows, w, images, v->n, e))
 		return -1;
 	for (size_t k = 0; k < v->n; k++) {
 		v->objects[k] = g->masks[g->starts[k]].object;
 		v->vote[k] = 1;
-		l->masks[v->objects[k]]++;
 	}
 	return 0;
 }
 
 /* Later rounds: the votes of a view's masks, by how well they agree with what was lifted. */
-static int vote(struct lift_objects *l, struct lift_view *v, const struct view_weights *w,
+static int vote(const struct lift_objects *l, struct lift_view *v, const struct view_weights *w,
 	const float *images, struct err *e)
 {
-	double *agreement = mem_alloc(v->n, sizeof *agreement, "masks", e);
-
-	if (!agreement || lift_agreement(l, v, w, images, agreement, e)) {
-		free(agreement);
+	if (lift_agreement(l, v, w, images, v->agreement, e))
 		return -1;
-	}
 	for (size_t k = 0; k < v->n; k++) {
-		const float squared = (float)(agreement[k] * agreement[k]);
-		l->agreement[v->objects[k]] += agreement[k];
+		const float squared = (float)(v->agreement[k] * v->agreement[k]);
 		v->vote[k] = squared > LEAST_VOTE ? squared : LEAST_VOTE;
 	}
-	free(agreement);
 	return 0;
 }
 
-int lift_objects_view(struct lift_objects *l, const struct view_weights *w, int height, int width,
+int lift_objects_view(struct lift_objects *l, size_t at, const struct view_weights *w, int height, int width,
 	const struct lift_mask *masks, size_t n, struct err *e)
 {
+	struct lift_view *v = &l->views[at];
 	struct groups g;
 	float *images = NULL;
 	int bad = groups_make(&g, masks, n, e) ||
 		  !(images = mem_alloc(g.n, w->pixels * sizeof *images, "masks", e)) ||
 		  fill_images(&g, height, width, images, e) ||
-		  (l->round ? vote(l, &l->views[l->next], w, images, e) : add_view(l, w, &g, images, e));
+		  (l->round ? vote(l, v, w, images, e) : add_view(v, w, &g, images, e));
 
-	l->next++;
 	free(g.starts);
 	free(images);
 	return bad ? -1 : 0;
+}
+
+/* The mean of the last round, over an object's views. */
+static void average_agreement(struct lift_objects *l)
+{
+	for (size_t at = 0; at < l->view_count; at++)
+		for (size_t k = 0; k < l->views[at].n; k++) {
+			l->agreement[l->views[at].objects[k]] += l->views[at].agreement[k];
+			l->masks[l->views[at].objects[k]]++;
+		}
+	for (size_t o = 0; o < l->objects; o++)
+		if (l->masks[o])
+			l->agreement[o] /= (double)l->masks[o];
 }
 
 int lift_objects_settle(struct lift_objects *l, struct err *e)
 {
 	const int is_last = ++l->round == LIFT_ROUNDS;
 
-	l->next = 0;
 	if (lift_shares(l, is_last, e))
 		return -1;
-	for (size_t o = 0; o < l->objects; o++)
-		if (is_last && l->masks[o]) {
-			l->agreement[o] /= (double)l->masks[o];
-		} else if (!is_last) {
-			l->agreement[o] = 0;
-		}
+	if (is_last)
+		average_agreement(l);
 	return 0;
 }
 

@@ -14,9 +14,9 @@
  * desk (11 objects, two test views, weights at a third, the cut of lifted.h): the mean alone 70.9 mIoU, with
  * all of it 88.0.
  *
- * Views come one at a time, each once in each round:
- *     for each of LIFT_ROUNDS rounds { lift_objects_view for each view; lift_objects_settle; }
- * Results are the same to the bit for any number of threads, not for another order of views. */
+ *     for each of LIFT_ROUNDS rounds { lift_objects_view for each view, once; lift_objects_settle; }
+ * Within a round the views may come in any order, and from many threads at once. Results are the same to the
+ * bit for any number of threads, not where views have other numbers. */
 #ifndef LIFT_LIFT_OBJECTS_H
 #define LIFT_LIFT_OBJECTS_H
 
@@ -42,6 +42,7 @@ struct lift_view {
 	size_t *objects;     /* (n) that have a mask, rising */
 	struct shares *rows; /* (n) of the mean of each one's masks */
 	float *vote;	     /* (n) of this round */
+	double *agreement;   /* (n) of this round */
 	float *weight;	     /* (N) of each Gaussian */
 };
 
@@ -55,24 +56,24 @@ enum { LIFT_NOBODY = -1 };
 struct lift_objects {
 	size_t gaussians, objects;
 	int round;
-	size_t view_count, view_capacity, next; /* next: of this round */
-	struct lift_view *views;
+	size_t view_count;
+	struct lift_view *views;   /* (view_count) */
 	struct shares *shares;	   /* (O) of Gaussians, from the round before */
 	struct lift_claim *claims; /* (N) */
 	/* of the views' masks, by object */
-	double *agreement; /* (O) sum of this round; after the last round the mean */
+	double *agreement; /* (O) after the last round the mean */
 	size_t *masks;	   /* (O) views that have one */
 };
 
-/* Returns 0, or -1 with *e set and nothing to free. */
-int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, struct err *e);
+/* For views of the numbers 0 to views - 1. Returns 0, or -1 with *e set and nothing to free. */
+int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, size_t views, struct err *e);
 void lift_objects_free(struct lift_objects *l);
 
-/* A view's masks, in the order of their objects; several of one object are averaged. Every round has the same
- * views in the same order. Memory for a number of each Gaussian a view, and two of each that a mask shows;
- * while it lasts for an image of each object that has a mask.
- * Returns 0, or -1 with *e set for want of memory. */
-int lift_objects_view(struct lift_objects *l, const struct view_weights *w, int height, int width,
+/* The masks of view `at`, in the order of their objects; several of one object are averaged. Every round has
+ * the same. A view without masks need not come. Memory for a number of each Gaussian a view, and two of each
+ * that a mask shows; while it lasts for an image of each object that has a mask. Returns 0, or -1 with *e set
+ * for want of memory. */
+int lift_objects_view(struct lift_objects *l, size_t at, const struct view_weights *w, int height, int width,
 	const struct lift_mask *masks, size_t n, struct err *e);
 
 /* Ends a round. Returns 0, or -1 with *e set for want of memory. */

@@ -186,11 +186,14 @@ int lift_problem(const struct lift_problem *q, size_t objects, struct lifted *to
 	int bad = 0;
 
 	*to = (struct lifted){0};
-	if (lift_objects_init(l, N, objects, &e))
+	if (lift_objects_init(l, N, objects, VIEWS, &e))
 		return -1;
 	for (int round = 0; round < LIFT_ROUNDS; round++) {
-		for (int v = 0; v < VIEWS; v++)
-			bad |= lift_objects_view(l, &q->weights[v], H, W, q->masks[v], q->count[v], &e);
+		for (int k = 0; k < VIEWS; k++) {
+			const int v = round % 2 ? VIEWS - 1 - k : k; /* any order */
+			bad |= lift_objects_view(
+				l, (size_t)v, &q->weights[v], H, W, q->masks[v], q->count[v], &e);
+		}
 		bad |= lift_objects_settle(l, &e);
 	}
 	return bad || lift_objects_finish(l, to, &e) ? -1 : 0;

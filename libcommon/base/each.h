@@ -1,0 +1,24 @@
+/* Items side by side, each by one of a few workers that have a part of the threads each: for work on views,
+ * of which much does not divide among threads, and where each takes much memory. */
+#ifndef BASE_EACH_H
+#define BASE_EACH_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+/* How many workers n items may have here: no more than `most`, nor than threads or items, and 1 at least. */
+int each_workers(size_t n, int most);
+
+struct each {
+	void *context;
+	int workers; /* each_workers; work gets the number of its own, 0 to workers - 1 */
+	int (*work)(void *context, int worker, size_t item, struct err *e);
+	void (*done)(void *context, size_t item); /* in the order of the items; NULL: nothing is to be done */
+};
+
+/* Works on the items 0 to n - 1. Where some fail: -1 and *e of the first of them; no item is begun after
+ * that is known, and none after it is `done`. Else 0. */
+int each_run(const struct each *by, size_t n, struct err *e);
+
+#endif
