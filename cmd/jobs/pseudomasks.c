@@ -1,5 +1,6 @@
 #include "cmd/jobs/pseudomasks.h"
 
+#include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/weights.h"
@@ -7,6 +8,9 @@
 
 #include <math.h>
 #include <stdlib.h>
+
+/* Views at a time: each takes memory for its weights, and for images of its masks. */
+enum { WORKERS_MOST = 8 };
 
 static int put_mask(FILE *out, struct mask m, double score, struct err *e)
 {
@@ -55,23 +59,42 @@ static int lift_carried(struct pseudomasks *w, struct err *e)
 	return bad;
 }
 
-static int lift_view(void *regions, size_t view, const struct weights *weights, struct err *e)
-{
-	const struct view_weights blend = weights_view(weights);
+struct lifting_views {
+	struct pseudomasks *w;
+	const char *is_there; /* (views) whether there are weights */
+};
 
-	return regions_lift(regions, view, &blend, weights->height, weights->width, e);
+static int lift_view(void *context, int worker, size_t view, struct err *e)
+{
+	const struct lifting_views *l = context;
+	const struct pseudomasks *w = l->w;
+	struct weights weights;
+	(void)worker;
+
+	if (!l->is_there[view])
+		return 0;
+	if (weights_open(&weights, w->options->weights, &w->scene, view, e))
+		return -1;
+	const struct view_weights blend = weights_view(&weights);
+	const int bad = regions_lift(&l->w->regions, view, &blend, weights.height, weights.width, e);
+	weights_close(&weights);
+	return bad;
 }
 
 static int lift_regions(struct pseudomasks *w, struct err *e)
 {
 	const struct cameras *cameras = &w->scene.cameras;
-	const size_t n = w->scene.splats.n;
+	char *is_there = mem_alloc(cameras->n, 1, "views", e);
+	struct lifting_views l = {w, is_there};
+	const struct each by = {&l, each_workers(cameras->n, WORKERS_MOST), lift_view, NULL};
 	struct regions *r = &w->regions;
+	const int bad = !is_there || weights_mark(w->options->weights, cameras, is_there, &w->left_out, e) ||
+			regions_init(r, &w->pool, w->views, cameras->n, w->scene.splats.n,
+				w->options->min_score, e) ||
+			each_run(&by, cameras->n, e) || regions_grow(r, e) || regions_assign(r, e);
 
-	if (regions_init(r, &w->pool, w->views, cameras->n, n, w->options->min_score, e) ||
-		weights_each(w->options->weights, &w->scene, NULL, lift_view, r, &w->left_out, e))
-		return -1;
-	return regions_grow(r, e) || regions_assign(r, e) ? -1 : 0;
+	free(is_there);
+	return bad ? -1 : 0;
 }
 
 static int render(struct pseudomasks *w, size_t view, const struct weights *weights, struct rle *masks,

@@ -90,7 +90,7 @@ int regions_init(struct regions *r, const struct pool *p, const size_t *places, 
 {
 	*r = (struct regions){.views = views, .gaussians = gaussians};
 	r->witnesses = mem_alloc(p->n, sizeof *r->witnesses, "candidates", e);
-	r->candidates = mem_alloc(p->n, sizeof *r->candidates, "candidates", e);
+	r->candidates = mem_zalloc(p->n, sizeof *r->candidates, "candidates", e);
 	r->objects = mem_alloc(p->n, sizeof *r->objects, "candidates", e);
 	r->sentence_objects = mem_alloc(p->n, sizeof *r->sentence_objects, "candidates", e);
 	r->weight = mem_zalloc(views, gaussians * sizeof *r->weight, "views", e);
@@ -125,8 +125,9 @@ void regions_free(struct regions *r)
 		free(r->regions[i].agreement);
 		free(r->regions[i].chosen);
 	}
-	for (size_t c = 0; c < r->count; c++)
-		shares_free(&r->candidates[c].shares);
+	for (size_t v = 0; v < r->views && r->ranges; v++)
+		for (size_t c = r->ranges[v].begin; c < r->ranges[v].end; c++)
+			shares_free(&r->candidates[c].shares);
 	free(r->witnesses);
 	free(r->candidates);
 	free(r->ranges);

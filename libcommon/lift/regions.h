@@ -68,9 +68,9 @@ struct region {
 struct regions {
 	size_t views, gaussians;
 	size_t witness_count;
-	struct regions_witness *witnesses; /* (witness_count) by view, the surest first */
-	size_t count;
-	struct regions_candidate *candidates; /* (count of witness_count) in the order in which views came */
+	struct regions_witness *witnesses;    /* (witness_count) by view, the surest first */
+	size_t count;			      /* 0 before regions_grow */
+	struct regions_candidate *candidates; /* (count of witness_count) in the order of the views */
 	struct regions_range *ranges;	      /* (views) each view's candidates */
 	size_t object_count;
 	size_t *objects; /* (object_count) the first candidate of each, in the order in which they came */
@@ -91,7 +91,8 @@ int regions_init(struct regions *r, const struct pool *p, const size_t *places, 
 void regions_free(struct regions *r);
 
 /* Lifts the candidates of a view, which has these weights and that size; masks of another size are reduced by
- * area. Once a view; the masks of views that are not lifted are left out of all. */
+ * area. Once a view, in any order, and from many threads at once; the masks of views that are not lifted are
+ * left out of all. */
 int regions_lift(
 	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e);
 

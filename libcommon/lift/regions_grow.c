@@ -290,6 +290,8 @@ static int grow_object(struct regions *r, struct growth *g, size_t object, float
 int regions_grow(struct regions *r, struct err *e)
 {
 	struct growth g;
+
+	regions_settle(r);
 	float *explained = mem_zalloc(r->count, sizeof *explained, "regions", e);
 	double *total = mem_zalloc(r->gaussians, sizeof *total, "regions", e);
 	int bad = !explained || !total || growth_make(&g, r, e);

@@ -1,4 +1,4 @@
-#include "lift/regions.h"
+#include "lift/regions_private.h"
 
 #include "base/mem.h"
 #include "mask/bits.h"
@@ -115,14 +115,17 @@ static void choose_masks(
 	}
 }
 
-static void add_candidates(struct regions *r, struct regions_witness *w, const struct shapes *s, size_t *from)
+/* The view's candidates begin in the place of its first witness. Returns how many there are. */
+static size_t add_candidates(
+	struct regions *r, size_t first, struct regions_witness *w, const struct shapes *s, size_t *from)
 {
-	const size_t first = r->count, n = group(w, s, first, from);
+	const size_t n = group(w, s, first, from);
 
 	choose_masks(w, s, first, n, from);
 	for (size_t c = 0; c < n; c++)
-		r->candidates[r->count++] =
+		r->candidates[first + c] =
 			(struct regions_candidate){.mask = w[from[c]].mask, .view = w[from[c]].view};
+	return n;
 }
 
 /* The shares of `now` candidates. */
@@ -145,19 +148,17 @@ static int lift(struct regions_candidate *c, size_t now, const struct view_weigh
 	return 0;
 }
 
-static int lift_masks(struct regions *r, const struct view_weights *w, const struct shapes *s,
-	struct regions_witness *witnesses, struct err *e)
+static int lift_masks(struct regions *r, const struct view_weights *w, const struct shapes *s, size_t first,
+	size_t *n, struct err *e)
 {
-	const size_t first = r->count;
 	size_t *from = mem_alloc(s->n, sizeof *from, "masks", e);
 	float *image = mem_alloc(w->pixels, BATCH * sizeof *image, "masks", e);
 	int bad = !from || !image;
 
-	if (!bad)
-		add_candidates(r, witnesses, s, from);
-	for (size_t at = first; at < r->count && !bad; at += BATCH)
-		bad = lift(&r->candidates[at], r->count - at < BATCH ? r->count - at : BATCH, w, s,
-			from + (at - first), image, e);
+	*n = bad ? 0 : add_candidates(r, first, r->witnesses + first, s, from);
+	for (size_t at = 0; at < *n && !bad; at += BATCH)
+		bad = lift(&r->candidates[first + at], *n - at < BATCH ? *n - at : BATCH, w, s, from + at,
+			image, e);
 	free(from);
 	free(image);
 	return bad ? -1 : 0;
@@ -167,17 +168,35 @@ int regions_lift(
 	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e)
 {
 	struct shapes s = {0};
-	size_t begin = 0, end;
+	size_t begin = 0, end, n = 0;
 
 	while (begin < r->witness_count && r->witnesses[begin].view < view)
 		begin++;
 	for (end = begin; end < r->witness_count && r->witnesses[end].view == view;)
 		end++;
-	r->ranges[view] = (struct regions_range){r->count, r->count};
 	int bad = shares_of_view(r->weight + view * r->gaussians, w, e) ||
 		  shapes_make(&s, r->witnesses + begin, end - begin, height, width, e) ||
-		  lift_masks(r, w, &s, r->witnesses + begin, e);
-	r->ranges[view].end = r->count;
+		  lift_masks(r, w, &s, begin, &n, e);
+	r->ranges[view] = (struct regions_range){begin, begin + n};
 	shapes_free(&s);
 	return bad ? -1 : 0;
+}
+
+void regions_settle(struct regions *r)
+{
+	size_t w = 0;
+
+	r->count = 0;
+	for (size_t view = 0; view < r->views; view++) {
+		const struct regions_range at = r->ranges[view];
+		const size_t n = at.end - at.begin;
+		while (w < r->witness_count && r->witnesses[w].view < view)
+			w++;
+		for (; w < r->witness_count && r->witnesses[w].view == view; w++)
+			if (r->witnesses[w].candidate != REGIONS_NONE)
+				r->witnesses[w].candidate -= at.begin - r->count;
+		memmove(r->candidates + r->count, r->candidates + at.begin, n * sizeof *r->candidates);
+		r->ranges[view] = (struct regions_range){r->count, r->count + n};
+		r->count += n;
+	}
 }

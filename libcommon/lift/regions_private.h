@@ -9,6 +9,9 @@
 /* No agreement below this is ever looked at, as typical ones are above REGIONS_JOINS. */
 #define REGIONS_MATTERS (REGIONS_JOINS * REGIONS_PEER)
 
+/* Moves the candidates that are lifted together, in the order of their views. */
+void regions_settle(struct regions *r);
+
 /* The candidates' shares by Gaussian. */
 struct regions_shown {
 	size_t *begin;	    /* (N+1) */
