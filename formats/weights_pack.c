@@ -402,7 +402,40 @@ static int take_all(struct unpacking *u, struct err *e)
 	return u->levels[u->down] != u->bytes[LEVELS] ? broken(u, e) : 0;
 }
 
-/* A row of tiles: where index is NULL, its weights are counted in ends (P); else they are put there. */
+/* How many weights each pixel of a tile has, whose corner is the first of the counts (P). The maps are summed
+ * as columns of bits: plane b has bit b of all sums. */
+static void count_tile(const struct unpacking *u, size_t tile, int64_t *corner)
+{
+	uint64_t planes[64] = {0}, any = 0;
+
+	for (size_t i = u->tiles[tile]; i < u->tiles[tile + 1]; i++) {
+		uint64_t carry = map_at(u, i);
+		any |= carry;
+		for (int b = 0; carry; b++) {
+			const uint64_t both = planes[b] & carry;
+			planes[b] ^= carry;
+			carry = both;
+		}
+	}
+	const uint64_t most = u->tiles[tile + 1] - u->tiles[tile];
+	for (; any; any &= any - 1) {
+		const int bit = __builtin_ctzll(any);
+		int64_t n = 0;
+		for (int b = 0; most >> b; b++)
+			n |= (int64_t)(planes[b] >> bit & 1) << b;
+		corner[(int64_t)(bit / WEIGHTS_TILE) * u->width + bit % WEIGHTS_TILE] = n;
+	}
+}
+
+/* The counts of a row of tiles, which are 0 before. */
+static void count_row(const struct unpacking *u, int row, int64_t *counts)
+{
+	for (int column = 0; column < u->across; column++)
+		count_tile(u, (size_t)row * (size_t)u->across + (size_t)column,
+			counts + (int64_t)row * WEIGHTS_TILE * u->width + column * WEIGHTS_TILE);
+}
+
+/* The weights of a row of tiles, each to where its pixel's next one goes: ends (P). */
 static void put_row(const struct unpacking *u, int row, int64_t *ends, int32_t *index, float *weight)
 {
 	const uint8_t *more = u->data[LEVELS] + u->levels[row];
@@ -416,8 +449,6 @@ static void put_row(const struct unpacking *u, int row, int64_t *ends, int32_t *
 				const int bit = __builtin_ctzll(left);
 				const int64_t place = corner[(int64_t)(bit / WEIGHTS_TILE) * u->width +
 							     bit % WEIGHTS_TILE]++;
-				if (!index)
-					continue;
 				level = (uint8_t)(level + *more++);
 				index[place] = u->ids[i];
 				weight[place] = (float)level / 255;
@@ -440,7 +471,7 @@ static int fill(struct unpacking *u, int64_t *indptr, int32_t **index, float **w
 		return -1;
 #pragma omp parallel for schedule(dynamic)
 	for (int row = 0; row < u->down; row++)
-		put_row(u, row, indptr + 1, NULL, NULL);
+		count_row(u, row, indptr + 1);
 	for (int64_t p = 0; p < pixels; p++) {
 		const int64_t n = indptr[p + 1];
 		indptr[p + 1] = sum;

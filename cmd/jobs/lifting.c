@@ -147,11 +147,13 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 	return bad;
 }
 
-static void step(void *context, size_t view)
+static int step(void *context, size_t view, struct err *e)
 {
 	const struct lift_round *r = context;
+	(void)e;
 
 	report_step(r->to, (double)((size_t)r->round * r->l->scene.cameras.n + view + 1), NULL);
+	return 0;
 }
 
 static int lift(struct lifting *l, const struct report *to, struct err *e)

@@ -59,122 +59,178 @@ static int lift_carried(struct pseudomasks *w, struct err *e)
 	return bad;
 }
 
-struct lifting_views {
+/* What the workers share, and the masks of the views that wait for their turn to be written. */
+struct by_views {
 	struct pseudomasks *w;
-	const char *is_there; /* (views) whether there are weights */
+	char *is_there;	     /* (views) whether there are weights */
+	struct shown *shown; /* (views) */
+};
+
+/* All masks of a view: (count) of put_views. */
+struct shown {
+	struct rle *masks;
+	double *scores;
+	size_t rendered;
 };
 
 static int lift_view(void *context, int worker, size_t view, struct err *e)
 {
-	const struct lifting_views *l = context;
-	const struct pseudomasks *w = l->w;
+	const struct by_views *b = context;
+	const struct pseudomasks *w = b->w;
 	struct weights weights;
 	(void)worker;
 
-	if (!l->is_there[view])
+	if (!b->is_there[view])
 		return 0;
 	if (weights_open(&weights, w->options->weights, &w->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
-	const int bad = regions_lift(&l->w->regions, view, &blend, weights.height, weights.width, e);
+	const int bad = regions_lift(&b->w->regions, view, &blend, weights.height, weights.width, e);
 	weights_close(&weights);
 	return bad;
 }
 
-static int lift_regions(struct pseudomasks *w, struct err *e)
+static int lift_regions(struct by_views *b, struct err *e)
 {
-	const struct cameras *cameras = &w->scene.cameras;
-	char *is_there = mem_alloc(cameras->n, 1, "views", e);
-	struct lifting_views l = {w, is_there};
-	const struct each by = {&l, each_workers(cameras->n, WORKERS_MOST), lift_view, NULL};
+	struct pseudomasks *w = b->w;
+	const size_t views = w->scene.cameras.n;
+	const struct each by = {b, each_workers(views, WORKERS_MOST), lift_view, NULL};
 	struct regions *r = &w->regions;
-	const int bad = !is_there || weights_mark(w->options->weights, cameras, is_there, &w->left_out, e) ||
-			regions_init(r, &w->pool, w->views, cameras->n, w->scene.splats.n,
-				w->options->min_score, e) ||
-			each_run(&by, cameras->n, e) || regions_grow(r, e) || regions_assign(r, e);
 
-	free(is_there);
-	return bad ? -1 : 0;
+	return regions_init(r, &w->pool, w->views, views, w->scene.splats.n, w->options->min_score, e) ||
+			       each_run(&by, views, e) || regions_grow(r, e) || regions_assign(r, e)
+		       ? -1
+		       : 0;
 }
 
-static int render(struct pseudomasks *w, size_t view, const struct weights *weights, struct rle *masks,
-	double *scores, struct err *e)
+/* weights: NULL where regions do not need them. */
+static int render(const struct pseudomasks *w, size_t view, const struct weights *weights, struct shown *to,
+	struct err *e)
 {
-	struct regions *r = &w->regions;
+	const struct view_weights blend = weights ? weights_view(weights) : (struct view_weights){0};
+	const int height = weights ? weights->height : 0, width = weights ? weights->width : 0;
 
-	if (!weights)
-		return regions_render(r, view, NULL, 0, 0, masks, scores, &w->rendered, e);
-	const struct view_weights blend = weights_view(weights);
 	if (w->options->method == PSEUDOMASK_SCENE)
-		return regions_render(
-			r, view, &blend, weights->height, weights->width, masks, scores, &w->rendered, e);
+		return regions_render(&w->regions, view, weights ? &blend : NULL, height, width, to->masks,
+			to->scores, &to->rendered, e);
 	for (size_t i = 0; i < w->propagation.count; i++)
-		scores[i] = w->propagation.starts[i].vote;
-	return propagate_render(&w->propagation, view, &blend, weights->height, weights->width, masks, e);
+		to->scores[i] = w->propagation.starts[i].vote;
+	return propagate_render(&w->propagation, view, &blend, height, width, to->masks, e);
 }
 
-/* Writes all masks of a view but empty ones; weights may be NULL where regions do not need them. */
-static int put_view(void *data, size_t view, const struct weights *weights, struct err *e)
+/* How many masks a view may have. */
+static size_t shown_count(const struct pseudomasks *w)
 {
-	struct pseudomasks *w = data;
-	const int is_scene = w->options->method == PSEUDOMASK_SCENE;
-	const size_t n = is_scene ? w->regions.object_count : w->propagation.count;
-	struct rle *masks = mem_zalloc(n, sizeof *masks, "masks", e);
-	double *scores = mem_alloc(n, sizeof *scores, "masks", e);
-	int bad = !masks || !scores || render(w, view, weights, masks, scores, e);
+	return w->options->method == PSEUDOMASK_SCENE ? w->regions.object_count : w->propagation.count;
+}
 
-	w->seen++;
-	for (size_t i = 0; i < n && masks; i++) {
-		struct mask m =
-			is_scene ? w->set.items[w->regions.objects[i]] : *w->propagation.starts[i].mask;
-		if (!bad && rle_area(&masks[i])) {
-			m.view = w->scene.cameras.views[view].name;
-			m.visible = NAN; /* the candidate's is of its own view */
-			m.rle = masks[i];
-			w->masks++;
-			bad = put_mask(w->out, m, scores[i], e);
-		}
-		rle_free(&masks[i]);
-	}
-	free(masks);
-	free(scores);
+static void shown_free(struct shown *s, size_t n)
+{
+	for (size_t i = 0; i < n && s->masks; i++)
+		rle_free(&s->masks[i]);
+	free(s->masks);
+	free(s->scores);
+	*s = (struct shown){0};
+}
+
+/* Weights are read only where something has to be rendered. */
+static int show_view(void *context, int worker, size_t view, struct err *e)
+{
+	const struct by_views *b = context;
+	const struct pseudomasks *w = b->w;
+	const int needs = w->options->method != PSEUDOMASK_SCENE || regions_need_weights(&w->regions, view);
+	struct shown *to = &b->shown[view];
+	struct weights weights = {0};
+	(void)worker;
+
+	if (!b->is_there[view])
+		return 0;
+	to->masks = mem_zalloc(shown_count(w), sizeof *to->masks, "masks", e);
+	to->scores = mem_alloc(shown_count(w), sizeof *to->scores, "masks", e);
+	const int bad = !to->masks || !to->scores ||
+			(needs && weights_open(&weights, w->options->weights, &w->scene, view, e)) ||
+			render(w, view, needs ? &weights : NULL, to, e);
+	weights_close(&weights);
 	return bad ? -1 : 0;
 }
 
-/* Weights are read only where a region has to be rendered. */
-static int needs_weights(const void *data, size_t view)
+/* Writes all masks of a view but empty ones. */
+static int put_view(void *context, size_t view, struct err *e)
 {
-	const struct pseudomasks *w = data;
+	const struct by_views *b = context;
+	struct pseudomasks *w = b->w;
+	struct shown *s = &b->shown[view];
+	int bad = 0;
 
-	return w->options->method != PSEUDOMASK_SCENE || regions_need_weights(&w->regions, view);
+	w->seen += s->masks != NULL;
+	w->rendered += s->rendered;
+	for (size_t i = 0; i < shown_count(w) && s->masks && !bad; i++) {
+		if (!rle_area(&s->masks[i]))
+			continue;
+		struct mask m = w->options->method == PSEUDOMASK_SCENE ? w->set.items[w->regions.objects[i]]
+								       : *w->propagation.starts[i].mask;
+		m.view = w->scene.cameras.views[view].name;
+		m.visible = NAN; /* the candidate's is of its own view */
+		m.rle = s->masks[i];
+		w->masks++;
+		bad = put_mask(w->out, m, s->scores[i], e);
+	}
+	shown_free(s, shown_count(w));
+	return bad;
 }
 
-/* The masks of all views that have weights, those of one view in memory at a time. */
-static int put_views(struct pseudomasks *w, const struct report *to, struct err *e)
+static void warn_views(const struct pseudomasks *w, size_t found, const struct report *to)
 {
-	const int is_scene = w->options->method == PSEUDOMASK_SCENE;
-	const char *dir = w->options->weights;
-
-	w->views = mem_alloc(w->set.n, sizeof *w->views, "views", e);
-	if (!w->views || scene_read(&w->scene, w->options->scene, e) ||
-		masks_views(&w->set, w->lines, w->options->candidates, &w->scene.cameras, w->views, e) ||
-		(is_scene ? lift_regions(w, e) : lift_carried(w, e)))
-		return -1;
-	const size_t found = is_scene ? w->regions.region_count : w->propagation.count;
 	if (!found && w->set.n)
 		report_warn(to, "%s: no candidate of a training view is above %g",
 			file_name(w->options->candidates), w->options->min_score);
-	if (found && weights_each(dir, &w->scene, needs_weights, put_view, w, &w->left_out, e))
-		return -1;
 	if (w->left_out)
-		report_warn(to, "%s: %zu training views have no weights, and get no masks", dir, w->left_out);
-	if (is_scene)
+		report_warn(to, "%s: %zu training views have no weights, and get no masks",
+			w->options->weights, w->left_out);
+	if (w->options->method == PSEUDOMASK_SCENE)
 		report_note(to, 1, "%zu objects, %zu regions; %zu masks in %zu views, %zu of them rendered",
 			w->regions.object_count, found, w->masks, w->seen, w->rendered);
 	else
 		report_note(to, 1, "%zu objects, which begin in %zu views; %zu masks in %zu views", found,
 			w->propagation.source_count, w->masks, w->seen);
+}
+
+/* The masks of all views that have weights. */
+static int put_all(struct by_views *b, const struct report *to, struct err *e)
+{
+	struct pseudomasks *w = b->w;
+	const size_t views = w->scene.cameras.n;
+	const struct each by = {b, each_workers(views, WORKERS_MOST), show_view, put_view};
+	const int is_scene = w->options->method == PSEUDOMASK_SCENE;
+
+	if (is_scene ? lift_regions(b, e) : lift_carried(w, e))
+		return -1;
+	const size_t found = is_scene ? w->regions.region_count : w->propagation.count;
+	if (found && each_run(&by, views, e))
+		return -1;
+	warn_views(w, found, to);
 	return 0;
+}
+
+static int put_views(struct pseudomasks *w, const struct report *to, struct err *e)
+{
+	struct by_views b = {.w = w};
+
+	w->views = mem_alloc(w->set.n, sizeof *w->views, "views", e);
+	if (!w->views || scene_read(&w->scene, w->options->scene, e) ||
+		masks_views(&w->set, w->lines, w->options->candidates, &w->scene.cameras, w->views, e))
+		return -1;
+	const size_t views = w->scene.cameras.n;
+	b.is_there = mem_alloc(views, 1, "views", e);
+	b.shown = mem_zalloc(views, sizeof *b.shown, "views", e);
+	const int bad = !b.is_there || !b.shown ||
+			weights_mark(w->options->weights, &w->scene.cameras, b.is_there, &w->left_out, e) ||
+			put_all(&b, to, e);
+	for (size_t v = 0; v < views && b.shown; v++)
+		shown_free(&b.shown[v], shown_count(w));
+	free(b.is_there);
+	free(b.shown);
+	return bad ? -1 : 0;
 }
 
 int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *options, const char *path,

@@ -138,14 +138,16 @@ static int weigh_view(void *context, int worker, size_t at, struct err *e)
 	return weights_write(&w, o->folder, full->name, of->text, e);
 }
 
-static void report_view(void *context, size_t at)
+static int report_view(void *context, size_t at, struct err *e)
 {
 	const struct weighing *of = context;
 	const struct weighed *w = &of->done[at];
+	(void)e;
 
 	report_note(of->to, 1, "%s: %dx%d, %.0f weights, %.1f a pixel, %.1f ms", of->views[at]->name,
 		w->width, w->height, w->weights, w->weights / ((double)w->width * (double)w->height), w->ms);
 	report_step(of->to, (double)(at + 1), of->views[at]->name);
+	return 0;
 }
 
 /* The views side by side, each with room of its own. */

@@ -11,6 +11,11 @@ int each_workers(size_t n, int most)
 	return n < (size_t)fit ? (n ? (int)n : 1) : fit;
 }
 
+static int finish(const struct each *by, size_t item, struct err *e)
+{
+	return by->done ? by->done(by->context, item, e) : 0;
+}
+
 int each_run(const struct each *by, size_t n, struct err *e)
 {
 	const int threads = threads_available(), levels = omp_get_max_active_levels();
@@ -31,12 +36,10 @@ int each_run(const struct each *by, size_t n, struct err *e)
 			end = failed;
 			const int bad = i < end && by->work(by->context, omp_get_thread_num(), i, &own);
 #pragma omp ordered
-			if (failed == n && bad) {
+			if (failed == n && (bad || finish(by, i, &own))) {
 				*e = own;
 #pragma omp atomic write
 				failed = i;
-			} else if (failed == n && by->done) {
-				by->done(by->context, i);
 			}
 		}
 	}

@@ -14,11 +14,12 @@ struct each {
 	void *context;
 	int workers; /* each_workers; work gets the number of its own, 0 to workers - 1 */
 	int (*work)(void *context, int worker, size_t item, struct err *e);
-	void (*done)(void *context, size_t item); /* in the order of the items; NULL: nothing is to be done */
+	/* in the order of the items, one at a time; NULL: nothing is to be done */
+	int (*done)(void *context, size_t item, struct err *e);
 };
 
-/* Works on the items 0 to n - 1. Where some fail: -1 and *e of the first of them; no item is begun after
- * that is known, and none after it is `done`. Else 0. */
+/* Works on the items 0 to n - 1; both functions return 0, or -1 with *e set. Where some fail: -1 and *e of
+ * the first of them; no item is begun after that is known, and none after it is `done`. Else 0. */
 int each_run(const struct each *by, size_t n, struct err *e);
 
 #endif

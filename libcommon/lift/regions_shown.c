@@ -4,14 +4,60 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The Gaussians are cut into parts, which do not meet. */
+enum { PARTS = 32 };
+
+/* The first entry of a row of Gaussian i or a later one. */
+static size_t find_entry(const struct shares *row, size_t i)
+{
+	size_t begin = 0, end = row->n;
+
+	while (begin < end) {
+		const size_t middle = begin + (end - begin) / 2;
+		if ((size_t)row->index[middle] < i)
+			begin = middle + 1;
+		else
+			end = middle;
+	}
+	return begin;
+}
+
+static void fill_part(struct regions_shown *s, const struct regions *r, size_t from, size_t to)
+{
+	for (size_t c = 0; c < r->count; c++) {
+		const struct shares *row = &r->candidates[c].shares;
+		for (size_t k = find_entry(row, from); k < row->n && (size_t)row->index[k] < to; k++) {
+			const size_t at = s->begin[row->index[k]]++;
+			s->candidate[at] = (int32_t)c;
+			s->share[at] = row->share[k];
+		}
+	}
+}
+
+static void count_part(struct regions_shown *s, const struct regions *r, size_t from, size_t to)
+{
+	for (size_t c = 0; c < r->count; c++) {
+		const struct shares *row = &r->candidates[c].shares;
+		for (size_t k = find_entry(row, from); k < row->n && (size_t)row->index[k] < to; k++)
+			s->begin[row->index[k] + 1]++;
+	}
+}
+
 static void fill(struct regions_shown *s, const struct regions *r)
 {
-	for (size_t c = 0; c < r->count; c++)
-		for (size_t k = 0; k < r->candidates[c].shares.n; k++) {
-			const size_t at = s->begin[r->candidates[c].shares.index[k]]++;
-			s->candidate[at] = (int32_t)c;
-			s->share[at] = r->candidates[c].shares.share[k];
-		}
+	const size_t n = r->gaussians;
+
+#pragma omp parallel for schedule(dynamic)
+	for (size_t p = 0; p < PARTS; p++)
+		count_part(s, r, n * p / PARTS, n * (p + 1) / PARTS);
+	for (size_t i = 0; i < n; i++)
+		s->begin[i + 1] += s->begin[i];
+#pragma omp parallel for schedule(dynamic)
+	for (size_t p = 0; p < PARTS; p++)
+		fill_part(s, r, n * p / PARTS, n * (p + 1) / PARTS);
+	/* each is now where the next one began */
+	memmove(s->begin + 1, s->begin, n * sizeof *s->begin);
+	s->begin[0] = 0;
 }
 
 int regions_shown_make(struct regions_shown *s, const struct regions *r, struct err *e)
@@ -28,15 +74,7 @@ int regions_shown_make(struct regions_shown *s, const struct regions *r, struct 
 		regions_shown_free(s);
 		return -1;
 	}
-	for (size_t c = 0; c < r->count; c++)
-		for (size_t k = 0; k < r->candidates[c].shares.n; k++)
-			s->begin[r->candidates[c].shares.index[k] + 1]++;
-	for (size_t i = 0; i < r->gaussians; i++)
-		s->begin[i + 1] += s->begin[i];
 	fill(s, r);
-	/* each is now where the next one began */
-	memmove(s->begin + 1, s->begin, r->gaussians * sizeof *s->begin);
-	s->begin[0] = 0;
 	return 0;
 }
 
