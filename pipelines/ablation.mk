@@ -20,7 +20,7 @@
 # table: statistics (of the scenes) unseen (answers of the lifted model to sentences in a wording kept apart) modules second (what may teach a second stage) similarity masks interaction width encoder contrast settings steps sentences lifted (and,
 # not in the paper, answers without training, and trainings that start from them) hard (the same by what makes a case hard)
 # space (its boxes and outlines of whole objects). Not among them: exact, the modules without the shortcuts of a training
-# step, several times as long. They print;
+# step, several times as long; and cells, which prints the scenes and seeds, for many machines: ablation.sbatch. They print;
 # OUT/SIZE/NAME.md keeps what was printed. Every cell is the mean over the seeds, each the mean over the scenes, with the spread between seeds.
 # Every file is made under its own name: what is there is not made again, unless what it is made of changed, or its command.
 
@@ -154,7 +154,7 @@ cells := $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(root)/$(s)-$(n)))
 
 export OMP_NUM_THREADS := $(THREADS)
 
-.PHONY: all tables cost scores $(tables) exact
+.PHONY: all tables cost scores cells $(tables) exact
 .DEFAULT_GOAL := all
 all: tables
 	@$(MAKE) --no-print-directory -f $(firstword $(MAKEFILE_LIST)) cost
@@ -290,6 +290,8 @@ $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(foreach r,$(filter-out lift%,$(RUNS
 
 scores_of = $(foreach c,$(cells),$(foreach r,$(filter $(RUNS),$(1)),$(c)/$(r)/test.csv $(c)/$(r)/train.csv))
 scores: $(call scores_of,$(RUNS))
+cells:
+	@printf '%s\n' $(foreach s,$(SCENES),$(foreach n,$(SEEDS),'$(s) $(n)'))
 define table_rules
 $(1): $(call scores_of,$($(1)))
 	@ROOT='$(root)' SCENES='$(SCENES)' SEEDS='$(SEEDS)' RUNS='$(filter $(RUNS),$($(1)))' $(here)ablation-report.sh $(1) | tee $(root)/$(1).md
