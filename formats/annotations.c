@@ -66,7 +66,7 @@ static int set_size(
 			e, ERR_FORMAT, "%s: %s and %s are no size of a picture", r->where, height, width);
 	r->height = (int)h;
 	r->width = (int)w;
-	if (mem_room((void **)&r->flips, &r->flips_room, (size_t)h, (size_t)w, "mask", e))
+	if (mem_room((void **)&r->flips, &r->flips_room, (size_t)h * (size_t)w, 1, "mask", e))
 		return -1;
 	memset(r->flips, 0, (size_t)h * (size_t)w);
 	return 0;
