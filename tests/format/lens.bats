@@ -5,48 +5,15 @@ setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
 	load files
 	load foreign
+	load lens
 	cd "$BATS_TEST_TMPDIR"
 }
-
-# made SIZE: a synthetic scene of that size, and its import, plain.
-made() {
-	"$BIN/gs-synth" -q --seed 3 --objects 3 --views 10 --size "$1" --gaussians 1500 -o made
-	"$BIN/gs-import" -q -o plain made/point_cloud.ply
-}
-
-# bent MODEL PARAMETER...: the scene's COLMAP model, its one camera replaced by this, and what --undistort makes of it: flat.
-bent() {
-	local width height
-	mkdir -p bent
-	cp made/sparse/0/images.txt bent
-	read -r width height < <(awk '!/^#/ { print $3, $4 }' made/sparse/0/cameras.txt)
-	echo "1 $1 $width $height ${*:2}" >bent/cameras.txt
-	rm -rf flat
-	"$BIN/gs-import" --undistort --cameras bent -o flat made/point_cloud.ply
-}
-
-# twin: a scene whose views are those of plain, and their photographs those of bent.
-twin() {
-	mkdir -p twin
-	jq --slurpfile flat flat/cameras.json 'map(. as $v | .lens = ($flat[0][] | select(.name == $v.name).lens))' plain/cameras.json >twin/cameras.json
-}
-
-# drawn MASKS: these masks of plain's views as masks of bent's photographs.
-drawn() {
-	"$BIN/mask-export" --distort --scene twin -o coco.json "$1"
-	jq -c -n --slurpfile records "$1" --slurpfile coco coco.json \
-		'$records | to_entries[] | .value + {segmentation: $coco[0].annotations[.key].segmentation}'
-}
-
-# iou TRUTH MASKS LEAST: every mask has its like, and IoU is at least that in the mean.
-iou() { "$BIN/miou-score" --json --quiet --truth "$1" "$2" | jq -e --argjson least "$3" '.missing == 0 and .pairs > 0 and .miou >= $least'; }
 
 @test "the pinhole of each lens, the lens beside it, and the scene again" {
 	made 64x48
 	while read -r parameters; do
 		bent $parameters
-		says 0 "flat: ok: scene, 1500 gaussians, 4 harmonics, 10 training views, 0 test views, scene $("$BIN/gs-check" plain | sed 's/.*scene //')" "$BIN/gs-check" flat ||
-			"$BIN/gs-check" flat | grep -q ': ok: scene, '
+		"$BIN/gs-check" flat | grep -q '^flat: ok: scene, 1500 gaussians, '
 		[ "$(jq -r '.[3].lens | [.model, .parameters[]] | join(" ")' flat/cameras.json)" = "$parameters" ]
 		jq -e --slurpfile plain plain/cameras.json 'map(.world_to_camera) == ($plain[0] | map(.world_to_camera))' flat/cameras.json
 		jq -e 'all(.lens.width == 64 and .lens.height == 48 and .fx == .lens.parameters[0])' flat/cameras.json
