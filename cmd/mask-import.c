@@ -16,7 +16,7 @@ static const struct cli_option table[] = {
 	{0}};
 
 static const struct cli_tool tool = {.name = "mask-import",
-	.operands = "PICTURE|LABELS|MASKS...",
+	.operands = "PICTURE|LABELS|MASKS|FOLDER...",
 	.summary =
 		"Turn photographs that a person painted over, or labelled with LabelMe or for COCO, into masks.",
 	.options = table,
@@ -30,7 +30,7 @@ static void check(const struct cli *c)
 	struct cli_file *files = calloc((size_t)c->operand_count + 1, sizeof *files);
 
 	for (int i = 0; i < c->operand_count && !names_path; i++)
-		if (!painting_is_labelled(c->operands[i]) && !painting_is_records(c->operands[i]))
+		if (painting_needs_names(c->operands[i]))
 			cli_usage(c, "--names NAMES is required for pictures, which %s is", c->operands[i]);
 	for (int i = 0; files && i < c->operand_count; i++)
 		files[i] = (struct cli_file){"picture", c->operands[i], CLI_READS, NULL};

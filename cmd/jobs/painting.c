@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/path.h"
+#include "cmd/jobs/mask_tree.h"
 #include "formats/annotations.h"
 #include "formats/jsonl.h"
 #include "formats/masks.h"
@@ -280,23 +281,63 @@ static int has_ending(const char *path, const char *ending)
 	return n > m && !strcasecmp(path + n - m, ending);
 }
 
-int painting_is_labelled(const char *path)
+static int is_labelled(const char *path)
 {
 	return has_ending(path, ".json");
 }
 
-int painting_is_records(const char *path)
+static int is_records(const char *path)
 {
 	return has_ending(path, ".jsonl");
+}
+
+int painting_needs_names(const char *path)
+{
+	return !is_labelled(path) && !is_records(path) && !file_is_dir(path);
+}
+
+struct tree {
+	struct warping *w;
+	FILE *out;
+	size_t *count;
+};
+
+static int put_tree_mask(void *to, const char *path, const char *view, const char *name, struct err *e)
+{
+	struct tree *t = to;
+	struct mask mask = {.view = view, .object = name, .score = NAN, .visible = NAN};
+	char fault[NAME_FAULT];
+	const char *reason = name_fault(name, NAME_DATA, fault);
+	uint8_t *pixels;
+	int height, width;
+
+	if (reason)
+		return err_set(e, ERR_FORMAT, "%s: the name %s", path, reason);
+	if (png_read_mask(path, &pixels, &height, &width, e))
+		return -1;
+	int bad = rle_encode(&mask.rle, pixels, height, width, e);
+	free(pixels);
+	if (bad)
+		return -1;
+	if (!rle_area(&mask.rle)) {
+		rle_free(&mask.rle);
+		return 0;
+	}
+	++*t->count;
+	return put_mask(&mask, t->w, path, t->out, e);
 }
 
 static int put_any(struct painting_names *names, const char *path, struct warping *w, FILE *out,
 	size_t *count, const struct report *to, struct err *e)
 {
-	if (painting_is_labelled(path))
+	struct tree tree = {w, out, count};
+
+	if (is_labelled(path))
 		return put_labelled(path, w, out, count, to, e);
-	if (painting_is_records(path))
+	if (is_records(path))
 		return put_records(path, w, out, count, e);
+	if (file_is_dir(path))
+		return mask_tree_each(path, put_tree_mask, &tree, e);
 	return put_picture(names, path, w, out, to, e);
 }
 
