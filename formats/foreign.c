@@ -25,6 +25,8 @@ static const struct kind kinds[] = {
 		"it goes beside the splats or the transforms.json, and is found there"},
 	{0, {"info", "objects", NULL}, "labels of ISAT",
 		"'mask-import -o masks.jsonl %s' makes mask records of them"},
+	{0, {"info", "object", NULL}, "labels of Ref-LERF",
+		"'mask-import -o masks.jsonl %s' makes mask records of their pictures in gt_mask"},
 	{0, {"t_00", "t_23", "fx"}, "a camera of Polycam",
 		"'ns-process-data polycam' makes a transforms.json of the scan"},
 	{0, {"sfm_data_version", "views", NULL}, "cameras of OpenMVG or Meshroom",

@@ -53,6 +53,29 @@ cup() {
 		"$desk/point_cloud.ply" && [ "$(jq length "$out/cup/cameras.json")" = 77 ]
 }
 
+# The truth through another layout: IoU with ours, in the mean, at least LEAST. layout LEAST OPERAND...
+layout() {
+	local least=$1
+	shift
+	"$bin/mask-import" -q -o "$out/layout.jsonl" "$@" || return 1
+	within "$("$bin/miou-score" --json --quiet --truth "$desk/truth.jsonl" "$out/layout.jsonl" |
+		jq 'if .missing == 0 and .pairs == 66 then .miou else 0 end')" "$least" 1
+}
+
+layouts() {
+	rm -rf "$out/tree"
+	"$bin/mask-export" --png "$out/tree" -o "$out/coco.json" "$desk/truth.jsonl"
+}
+
+# As if the photographs had been taken through a lens: the truth drawn on them, and undistorted again.
+lens() {
+	mkdir -p "$out/bent"
+	jq 'map(.lens = {model: "OPENCV", width, height, parameters: [.fx, .fy, .cx, .cy, -0.2, 0.05, 0.002, -0.001]})' \
+		"$out/scene/cameras.json" >"$out/bent/cameras.json"
+	"$bin/mask-export" --distort --scene "$out/bent" -o "$out/bent.json" "$desk/truth.jsonl" &&
+		layout 0.98 --undistort "$out/bent" "$out/bent.json"
+}
+
 mkdir -p "$out"
 check "the whole workflow, $iterations steps a stage" make --no-print-directory -f pipelines/desk.mk DATA="$desk" OUT="$out" \
 	ITERATIONS="$iterations" BERT="$encoder" BIN="$bin"
@@ -60,6 +83,12 @@ check "confidence-weighted IoU selects as known (72 +- 2)" selected ciou 70 74
 check "IoU selects as known (66 +- 2)" selected iou 64 68
 check "top-1 selects as known (44 +- 2)" selected top1 42 46
 check "COLMAP and cameras.json give the same cameras" same_cameras
+check "the truth as COCO's JSON and as pictures" layouts
+check "COCO's JSON has the same truth" layout 1 "$out/coco.json"
+check "a folder of pictures has the same truth" layout 1 "$out/tree"
+check "Ref-LERF's layout has the same truth" layout 1 "$desk"/ref-lerf/json/*.json
+check "LERF-OVS's layout has the same truth, as polygons (IoU over 0.97)" layout 0.97 "$desk"/lerf-ovs/*.json
+check "masks drawn through a lens are the pinhole's (IoU over 0.98)" lens
 check "77 views of a COLMAP model with SIMPLE_PINHOLE cameras" cup
 check "weights agree with the float64 twin on the desk" env REFER_SCENE="$out/scene" "$build/unit/test_render"
 check "the encoder agrees with the published vector" env REFER_BERT="$encoder" "$build/unit/test_bert"

@@ -32,6 +32,10 @@ refused() {
 	[ ! -e out ] && [ ! -e scene ]
 }
 
+@test "Ref-LERF's labels" {
+	json '{"info":{"name":"a.jpg"},"object":[{"category":"cup"}]}' "labels of Ref-LERF: 'mask-import -o masks.jsonl f.json' makes mask records of their pictures in gt_mask"
+}
+
 @test "splats in other containers: the command that converts them" {
 	for kind in ksplat lcc lcc2; do
 		printf 'xxxxxxxxxxxxxxxx' >"a.b.$kind"
