@@ -82,10 +82,6 @@ int foreign_splats(const char *name, struct err *e)
 		return err_set(e, ERR_FORMAT,
 			"%s: a %s file, not a .ply: 'npx @playcanvas/splat-transform %s %.*s.ply' converts it",
 			name, kind, name, (int)(path_ends(name, kind) ? n - strlen(kind) : n), name);
-	if (path_ends(name, ".gltf"))
-		return err_set(e, ERR_FORMAT,
-			"%s: glTF in several files, which is not read: export it as a .glb where it was made",
-			name);
 	if (path_ends(name, ".ckpt") || path_ends(name, ".pth") || path_ends(name, ".pt"))
 		return err_set(e, ERR_FORMAT,
 			"%s: a checkpoint, not a .ply: nerfstudio writes one by 'ns-export gaussian-splat', 3DGS into point_cloud/iteration_N",

@@ -41,8 +41,6 @@ refused() {
 		printf 'xxxxxxxxxxxxxxxx' >"a.b.$kind"
 		no_splats "a.b.$kind" "a .$kind file, not a .ply: 'npx @playcanvas/splat-transform a.b.$kind a.b.ply' converts it"
 	done
-	echo '{"asset":{"version":"2.0"}}' >a.gltf
-	no_splats a.gltf "glTF in several files, which is not read: export it as a .glb where it was made"
 	echo x >step.ckpt
 	no_splats step.ckpt "a checkpoint, not a .ply: nerfstudio writes one by 'ns-export gaussian-splat', 3DGS into point_cloud/iteration_N"
 	echo x >points3D.bin
