@@ -64,10 +64,9 @@ static int make_map(struct warping *w, const struct camera *c, int rows, int col
 	const size_t height = (size_t)(is_back ? c->lens.height : c->height),
 		     width = (size_t)(is_back ? c->lens.width : c->width);
 
-	if (w->of && w->rows == rows && w->columns == columns &&
-		!memcmp(&w->of->lens, &c->lens, sizeof c->lens) && w->of->width == c->width &&
-		w->of->height == c->height && w->of->fx == c->fx && w->of->fy == c->fy &&
-		w->of->cx == c->cx && w->of->cy == c->cy)
+	if (w->of && w->rows == rows && w->columns == columns && lens_is_same(&w->of->lens, &c->lens) &&
+		w->of->width == c->width && w->of->height == c->height && w->of->fx == c->fx &&
+		w->of->fy == c->fy && w->of->cx == c->cx && w->of->cy == c->cy)
 		return 0;
 	w->of = NULL;
 	if (mem_room((void **)&w->map, &w->map_room, height * width, sizeof *w->map, "masks", e) ||

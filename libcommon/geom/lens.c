@@ -223,6 +223,15 @@ int lens_is_distorted(const struct lens *l)
 	return !is_zero;
 }
 
+int lens_is_same(const struct lens *a, const struct lens *b)
+{
+	int is_same = a->model == b->model && a->width == b->width && a->height == b->height;
+
+	for (int i = 0; i < LENS_PARAMETERS; i++)
+		is_same &= a->parameters[i] == b->parameters[i];
+	return is_same;
+}
+
 /* (u, v) on the plane as a pixel, and back. */
 static void to_pixel(const struct lens *l, const double plane[2], double pixel[2])
 {
@@ -368,7 +377,7 @@ void cameras_undistort(struct cameras *c)
 		struct camera *v = &c->views[i], *before = i ? v - 1 : NULL;
 		if (!v->lens.model)
 			continue;
-		if (!before || memcmp(&before->lens, &v->lens, sizeof v->lens)) {
+		if (!before || !lens_is_same(&before->lens, &v->lens)) {
 			lens_pinhole(&v->lens, v);
 			continue;
 		}

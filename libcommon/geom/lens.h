@@ -21,6 +21,8 @@ int lens_model_focals(const struct lens_model *m);
 /* 1 where the model is no pinhole with these parameters. */
 int lens_is_distorted(const struct lens *l);
 
+int lens_is_same(const struct lens *a, const struct lens *b);
+
 /* The pixel in which a ray is seen. Returns 0, or -1 where it is seen in none: the model's formula is
  * followed only where it is one to one. */
 int lens_project(const struct lens *l, const double ray[2], double pixel[2]);
