@@ -50,6 +50,9 @@ static int check_shape(const struct warping *w, const struct camera *c, const st
 	const int is_other = mask->height == height[!is_back] && mask->width == width[!is_back] &&
 			     (mask->height != height[is_back] || mask->width != width[is_back]);
 
+	if ((int64_t)mask->height * mask->width > INT32_MAX)
+		return err_set(e, ERR_FORMAT, "view '%s': a mask of %dx%d has more than %d pixels", c->name,
+			mask->width, mask->height, INT32_MAX);
 	if (!is_other && has_shape(mask->height, mask->width, height[is_back], width[is_back]))
 		return 0;
 	return err_set(e, ERR_FORMAT, "view '%s': a mask of %dx%d, but its %s is %dx%d%s", c->name,
