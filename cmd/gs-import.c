@@ -17,6 +17,9 @@ static const struct cli_option options[] = {
 		0, 0},
 	{"test-views", 0, CLI_STRING, &files.test_views, "NAMES",
 		"views kept for testing: NAME,... or every:N (default: the camera file's, else none)", 0, 0},
+	{"undistort", 0, CLI_FLAG, &files.undistort, NULL,
+		"where a camera distorts, make the view the pinhole of the same view, and keep the lens beside it",
+		0, 0},
 	{0},
 };
 

@@ -4,10 +4,14 @@
 #include "cmd/jobs/exporting.h"
 
 static const char *scene, *png;
+static int distort;
 
 static const struct cli_option table[] = {
 	{"scene", 0, CLI_STRING, &scene, "SCENE",
 		"scene folder, whose photographs' names the JSON gets (default: VIEW.png)", 0, 0},
+	{"distort", 0, CLI_FLAG, &distort, NULL,
+		"make masks of views whose photographs' lens distorts masks of the photographs (needs --scene)",
+		0, 0},
 	{"png", 0, CLI_STRING, &png, "DIR", "also write each mask as DIR/VIEW/NAME.png, white on black", 0,
 		0},
 	{0}};
@@ -23,7 +27,7 @@ static int run(const struct cli *c, struct err *e)
 {
 	struct exporting x = {0};
 	struct file_out out;
-	const int bad = exporting_read(&x, c->operand_count ? c->operands[0] : "-", scene, e) ||
+	const int bad = exporting_read(&x, c->operand_count ? c->operands[0] : "-", scene, distort, e) ||
 			(png && exporting_write_pngs(&x, png, e)) || file_out_open(&out, c->output, e) ||
 			file_out_end(&out, exporting_put_coco(&x, out.stream, e), e);
 
@@ -37,6 +41,8 @@ int main(int argc, char **argv)
 	struct err e = {0};
 
 	cli_parse(&c, &tool, argc, argv);
+	if (distort && !scene)
+		cli_usage(&c, "--distort needs --scene SCENE");
 	cli_refuse_overwrite(&c, "MASKS scene:cameras.json", "output png:*.png", NULL);
 	return run(&c, &e) ? cli_fail(&c, &e) : cli_done(&c);
 }

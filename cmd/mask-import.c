@@ -4,16 +4,19 @@
 
 #include <stdlib.h>
 
-static const char *names_path;
+static const char *names_path, *undistort;
 
 static const struct cli_option table[] = {
 	{"names", 0, CLI_STRING, &names_path, "NAMES",
 		"text, a line for each thing: its colour, #rrggbb or a grey of 0 to 255, and its name (needed for pictures)",
 		0, 0},
+	{"undistort", 0, CLI_STRING, &undistort, "SCENE",
+		"make masks of photographs whose lens distorts masks of the views of SCENE, of gs-import --undistort",
+		0, 0},
 	{0}};
 
 static const struct cli_tool tool = {.name = "mask-import",
-	.operands = "PICTURE|LABELS...",
+	.operands = "PICTURE|LABELS|MASKS|FOLDER...",
 	.summary =
 		"Turn photographs that a person painted over, or labelled with LabelMe or for COCO, into masks.",
 	.options = table,
@@ -27,17 +30,18 @@ static void check(const struct cli *c)
 	struct cli_file *files = calloc((size_t)c->operand_count + 1, sizeof *files);
 
 	for (int i = 0; i < c->operand_count && !names_path; i++)
-		if (!painting_is_labelled(c->operands[i]))
+		if (painting_needs_names(c->operands[i]))
 			cli_usage(c, "--names NAMES is required for pictures, which %s is", c->operands[i]);
 	for (int i = 0; files && i < c->operand_count; i++)
 		files[i] = (struct cli_file){"picture", c->operands[i], CLI_READS, NULL};
-	cli_refuse_overwrite(c, "names", "output", files);
+	cli_refuse_overwrite(c, "names undistort:cameras.json", "output", files);
 	free(files);
 }
 
 int main(int argc, char **argv)
 {
 	struct painting_names names = {0};
+	struct warping warping = {0};
 	struct cli_report to;
 	struct cli c;
 	struct err e = {0};
@@ -45,8 +49,10 @@ int main(int argc, char **argv)
 	cli_parse(&c, &tool, argc, argv);
 	check(&c);
 	const int bad = (names_path && painting_names_read(&names, names_path, &e)) ||
-			painting_write(&names, c.operands, (size_t)c.operand_count, c.output,
+			warping_open(&warping, undistort ? WARP_TO_VIEW : WARP_NONE, undistort, &e) ||
+			painting_write(&names, c.operands, (size_t)c.operand_count, &warping, c.output,
 				cli_report(&to, &c), &e);
+	warping_free(&warping);
 	painting_names_free(&names);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

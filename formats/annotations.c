@@ -5,6 +5,7 @@
 #include "base/name.h"
 #include "formats/foreign.h"
 #include "formats/json.h"
+#include "formats/png.h"
 #include "geom/views.h"
 #include "mask/polygon.h"
 #include "mask/rle.h"
@@ -66,7 +67,7 @@ static int set_size(
 			e, ERR_FORMAT, "%s: %s and %s are no size of a picture", r->where, height, width);
 	r->height = (int)h;
 	r->width = (int)w;
-	if (mem_room((void **)&r->flips, &r->flips_room, (size_t)h, (size_t)w, "mask", e))
+	if (mem_room((void **)&r->flips, &r->flips_room, (size_t)h * (size_t)w, 1, "mask", e))
 		return -1;
 	memset(r->flips, 0, (size_t)h * (size_t)w);
 	return 0;
@@ -228,6 +229,62 @@ static int read_isat(struct reading *r, const cJSON *root, struct err *e)
 	return bad ? -1 : 0;
 }
 
+/* Draws a PNG's mask of a name: Ref-LERF has it in the folder gt_mask beside that of the labels. */
+static int read_mask_picture(struct reading *r, const char *folder, const char *picture, const char *view,
+	const char *name, struct err *e)
+{
+	char *path = file_join(folder, picture, "", e);
+	uint8_t *mask = NULL;
+	const int bad = !path || png_read_mask(path, &mask, &r->height, &r->width, e);
+	struct annotation *on = bad ? NULL : find(r, view, name, e);
+
+	for (size_t i = 0; on && i < (size_t)r->height * (size_t)r->width; i++)
+		on->mask[i] |= mask[i];
+	if (on)
+		on->shapes++;
+	free(path);
+	free(mask);
+	return on ? 0 : -1;
+}
+
+static int read_ref_lerf(
+	struct reading *r, const cJSON *root, const cJSON *objects, const char *json, struct err *e)
+{
+	const cJSON *object;
+	const char *image, *name, *picture;
+	size_t i = 0;
+
+	if (json_string(cJSON_GetObjectItemCaseSensitive(root, "info"), "name", 1, &image, r->where, e) < 0)
+		return -1;
+	char *view = view_of(image, e), *folder = file_dir(json, e),
+	     *masks = folder ? file_join(folder, "../gt_mask", "", e) : NULL;
+	int bad = !view || !masks;
+	cJSON_ArrayForEach(object, objects)
+	{
+		snprintf(r->where, WHERE, "%s: object %zu", r->path, i++);
+		bad = bad || json_string(object, "category", 1, &name, r->where, e) < 0 ||
+		      json_string(object, "segmentation", 1, &picture, r->where, e) < 0 ||
+		      read_mask_picture(r, masks, picture, view, name, e);
+	}
+	free(view);
+	free(folder);
+	free(masks);
+	return bad ? -1 : 0;
+}
+
+/* Ref-LERF's objects, whose outlines are pictures; NULL where the file is none of its. */
+static const cJSON *ref_lerf_objects(const cJSON *root)
+{
+	const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, "object");
+
+	if (!list)
+		list = cJSON_GetObjectItemCaseSensitive(root, "objects");
+	return cJSON_IsArray(list) &&
+			       cJSON_IsString(cJSON_GetObjectItemCaseSensitive(list->child, "segmentation"))
+		       ? list
+		       : NULL;
+}
+
 /* The item of a list whose "id" is that number, or NULL. */
 static const cJSON *with_id(const cJSON *list, const cJSON *id)
 {
@@ -347,8 +404,9 @@ static int read_coco(struct reading *r, const cJSON *root, struct err *e)
 	return 0;
 }
 
-static int read_either(struct reading *r, const cJSON *root, struct err *e)
+static int read_any(struct reading *r, const cJSON *root, const char *path, struct err *e)
 {
+	const cJSON *pictures = ref_lerf_objects(root);
 	const int is_labelme = cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "shapes"));
 
 	snprintf(r->where, WHERE, "%s", r->path);
@@ -356,12 +414,14 @@ static int read_either(struct reading *r, const cJSON *root, struct err *e)
 		return read_labelme(r, root, e);
 	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "annotations")))
 		return read_coco(r, root, e);
+	if (pictures)
+		return read_ref_lerf(r, root, pictures, path, e);
 	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "objects")))
 		return read_isat(r, root, e);
 	return foreign_json(root, r->path, e)
 		       ? -1
 		       : err_set(e, ERR_FORMAT,
-				 "%s: no labels: neither LabelMe's JSON (shapes) nor COCO's (annotations) nor ISAT's (objects)",
+				 "%s: no labels: neither LabelMe's JSON (shapes) nor COCO's (annotations) nor ISAT's or Ref-LERF's (objects)",
 				 r->path);
 }
 
@@ -371,7 +431,7 @@ int annotations_read(struct annotations *a, const char *path, struct err *e)
 	cJSON *root = json_read(path, e);
 
 	*a = (struct annotations){0};
-	const int bad = !root || read_either(&r, root, e);
+	const int bad = !root || read_any(&r, root, path, e);
 	cJSON_Delete(root);
 	free(r.flips);
 	free(r.points);

@@ -9,6 +9,7 @@
 #include "formats/foreign.h"
 #include "formats/json.h"
 #include "formats/transforms.h"
+#include "geom/lens.h"
 #include "geom/views.h"
 
 #include <stdlib.h>
@@ -63,6 +64,25 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e)
 	if (bad)
 		cameras_free(c);
 	return bad;
+}
+
+int camerafile_need_pinholes(const struct cameras *c, const char *path, const char *images, struct err *e)
+{
+	size_t i = 0;
+
+	while (i < c->n && !c->views[i].lens.model)
+		i++;
+	if (i == c->n)
+		return 0;
+	const struct camera *v = &c->views[i];
+	const char *model = lens_model_name(v->lens.model);
+	if (!file_is_dir(path))
+		return err_set(e, ERR_FORMAT,
+			"%s: view '%s': camera model %s distorts: gs-import --undistort takes the pinhole of the same view",
+			file_name(path), v->name, model);
+	return err_set(e, ERR_FORMAT,
+		"%s: view '%s': camera model %s distorts: gs-import --undistort takes the pinhole of the same view, and so does 'colmap image_undistorter --image_path %s --input_path %s --output_path undistorted'",
+		file_name(path), v->name, model, images ? images : "IMAGES", path);
 }
 
 /* The path of a file that exists, or NULL. *e is set only when memory is out. */

@@ -11,8 +11,13 @@
 char *camerafile_find(const char *dir, struct err *e);
 
 /* Reads a COLMAP folder, or a JSON file ("-" is stdin): a list is a 3DGS cameras.json, an object a
- * transforms.json. There is at least one view. Returns 0, or -1 with *e and *c zeroed. */
+ * transforms.json. There is at least one view. Cameras that distort have their lens, and the photograph's
+ * size and intrinsics. Returns 0, or -1 with *e and *c zeroed. */
 int camerafile_read(struct cameras *c, const char *path, struct err *e);
+
+/* Refuses cameras that distort (ERR_FORMAT), and says the ways out; images is the folder of their
+ * photographs, or NULL. Returns 0, or -1 with *e. */
+int camerafile_need_pinholes(const struct cameras *c, const char *path, const char *images, struct err *e);
 
 /* Turns each view's `image` from the foreign file's into a path relative to the folder `scene` (which must
  * exist), of the photograph in the folder `images`: under the foreign path or, failing that, under its file

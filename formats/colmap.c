@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "geom/lens.h"
 #include "geom/rotation.h"
 #include "geom/views.h"
 
@@ -11,37 +12,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PARAMS_MAX = 16 };
-
-/* Of each model: the number of parameters, how many of the first are focal lengths (then cx, cy, then
- * distortion), and whether it is a pinhole once all its distortion is 0. The index is COLMAP's model id. */
-static const struct model {
-	const char *name;
-	int params, focals, is_pinhole_at_zero;
-} models[] = {
-	{"SIMPLE_PINHOLE", 3, 1, 1},
-	{"PINHOLE", 4, 2, 1},
-	{"SIMPLE_RADIAL", 4, 1, 1},
-	{"RADIAL", 5, 1, 1},
-	{"OPENCV", 8, 2, 1},
-	{"OPENCV_FISHEYE", 8, 2, 0},
-	{"FULL_OPENCV", 12, 2, 1},
-	{"FOV", 5, 2, 1},
-	{"SIMPLE_RADIAL_FISHEYE", 4, 1, 0},
-	{"RADIAL_FISHEYE", 5, 1, 0},
-	{"THIN_PRISM_FISHEYE", 12, 2, 0},
-	{"RAD_TAN_THIN_PRISM_FISHEYE", 16, 2, 0},
-};
-enum { MODELS = sizeof models / sizeof *models };
-
-struct lens {
+struct entry {
 	uint32_t id;
-	struct camera lens; /* size and intrinsics only */
+	struct camera camera; /* size, intrinsics and lens only */
 };
 
-struct lenses {
+struct entries {
 	size_t n, capacity;
-	struct lens *items;
+	struct entry *items;
 };
 
 /* A place in a binary file. */
@@ -57,50 +35,51 @@ struct lines {
 	long number;
 };
 
-static int set_lens(struct lens *l, const struct model *m, double width, double height, const double *params,
-	const char *path, struct err *e)
+/* Where the model distorts, the pinhole is of its focal lengths and principal point until lens_pinhole finds
+ * it. */
+static int set_camera(struct entry *c, const struct lens_model *m, double width, double height,
+	const double *params, const char *path, struct err *e)
 {
-	int is_distorted = !m->is_pinhole_at_zero;
+	const int n = lens_model_parameters(m), focals = lens_model_focals(m);
+	struct lens lens = {.model = m};
 
-	for (int i = 0; i < m->params; i++)
-		if (!isfinite(params[i]))
+	for (int i = 0; i < n; i++)
+		if (!isfinite(lens.parameters[i] = params[i]))
 			return err_set(e, ERR_FORMAT, "%s: camera %lu: parameter %d is not finite", path,
-				(unsigned long)l->id, i);
-	for (int i = m->focals + 2; i < m->params; i++)
-		is_distorted |= params[i] != 0;
-	if (is_distorted)
-		return err_set(e, ERR_FORMAT,
-			"%s: camera %lu: model %s has lens distortion; undistort the images first (colmap image_undistorter)",
-			path, (unsigned long)l->id, m->name);
-	if (view_set_size(&l->lens, width, height))
+				(unsigned long)c->id, i);
+	if (view_set_size(&c->camera, width, height))
 		return err_set(e, ERR_FORMAT, "%s: camera %lu: size %gx%g is not whole numbers in 1 to 65536",
-			path, (unsigned long)l->id, width, height);
-	l->lens.fx = params[0];
-	l->lens.fy = params[m->focals - 1];
-	l->lens.cx = params[m->focals];
-	l->lens.cy = params[m->focals + 1];
+			path, (unsigned long)c->id, width, height);
+	lens.width = c->camera.width;
+	lens.height = c->camera.height;
+	c->camera.fx = params[0];
+	c->camera.fy = params[focals - 1];
+	c->camera.cx = params[focals];
+	c->camera.cy = params[focals + 1];
+	if (lens_is_distorted(&lens))
+		c->camera.lens = lens;
 	return 0;
 }
 
-static int add_lens(struct lenses *all, const struct lens *l, const char *path, struct err *e)
+static int add_entry(struct entries *all, const struct entry *c, const char *path, struct err *e)
 {
 	void *block = all->items;
 
-	if (mem_grow(&block, &all->capacity, all->n + 1, sizeof *l, path, e))
+	if (mem_grow(&block, &all->capacity, all->n + 1, sizeof *c, path, e))
 		return -1;
 	all->items = block;
-	all->items[all->n++] = *l;
+	all->items[all->n++] = *c;
 	return 0;
 }
 
 static int by_id(const void *a, const void *b)
 {
-	const struct lens *x = a, *y = b;
+	const struct entry *x = a, *y = b;
 
 	return (x->id > y->id) - (x->id < y->id);
 }
 
-static int sort_lenses(struct lenses *all, const char *path, struct err *e)
+static int sort_entries(struct entries *all, const char *path, struct err *e)
 {
 	if (all->n)
 		qsort(all->items, all->n, sizeof *all->items, by_id);
@@ -112,18 +91,18 @@ static int sort_lenses(struct lenses *all, const char *path, struct err *e)
 }
 
 /* Adds a view: pose is qw qx qy qz tx ty tz, world to camera. */
-static int add_view(struct cameras *c, size_t *capacity, const struct lenses *all, const double pose[7],
-	uint32_t lens, const char *image, const char *path, struct err *e)
+static int add_view(struct cameras *c, size_t *capacity, const struct entries *all, const double pose[7],
+	uint32_t camera, const char *image, const char *path, struct err *e)
 {
 	void *block = c->views;
 	struct camera v;
 	double length = sqrt(pose[0] * pose[0] + pose[1] * pose[1] + pose[2] * pose[2] + pose[3] * pose[3]);
-	struct lens key = {.id = lens};
-	const struct lens *l = all->n ? bsearch(&key, all->items, all->n, sizeof key, by_id) : NULL;
+	struct entry key = {.id = camera};
+	const struct entry *l = all->n ? bsearch(&key, all->items, all->n, sizeof key, by_id) : NULL;
 
 	if (!l)
 		return err_set(e, ERR_FORMAT, "%s: image '%.200s': no camera %lu in the model", path, image,
-			(unsigned long)lens);
+			(unsigned long)camera);
 	if (!isfinite(length) || length < 1e-12)
 		return err_set(
 			e, ERR_FORMAT, "%s: image '%.200s': its rotation is zero or not finite", path, image);
@@ -134,7 +113,7 @@ static int add_view(struct cameras *c, size_t *capacity, const struct lenses *al
 		{2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), pose[6]},
 		{0, 0, 0, 1},
 	};
-	v = l->lens;
+	v = l->camera;
 	memcpy(v.world_to_camera, m, sizeof m);
 	v.image = mem_strdup(image, e);
 	if (!v.image)
@@ -204,7 +183,7 @@ static int check_end(const struct cursor *in, struct err *e)
 		in->map.len - in->at, in->at);
 }
 
-static int read_lenses_binary(struct lenses *all, struct cursor *in, const char *path, struct err *e)
+static int read_cameras_binary(struct entries *all, struct cursor *in, const char *path, struct err *e)
 {
 	uint64_t count = 0;
 
@@ -212,29 +191,29 @@ static int read_lenses_binary(struct lenses *all, struct cursor *in, const char 
 		return -1;
 	for (uint64_t i = 0; i < count; i++) {
 		const unsigned char *p = take(in, 24, "camera entry", i, e);
-		double params[PARAMS_MAX] = {0};
+		double params[LENS_PARAMETERS] = {0};
 		if (!p)
 			return -1;
-		struct lens l = {.id = (uint32_t)get_bits(p, 4)};
-		uint32_t model = (uint32_t)get_bits(p + 4, 4);
+		struct entry l = {.id = (uint32_t)get_bits(p, 4)};
+		const uint32_t id = (uint32_t)get_bits(p + 4, 4);
+		const struct lens_model *model = lens_model_numbered(id);
 		double width = (double)get_bits(p + 8, 8), height = (double)get_bits(p + 16, 8);
-		if (model >= MODELS)
+		if (!model)
 			return err_set(e, ERR_FORMAT, "%s: camera %lu: model id %ld at offset %zu is unknown",
-				path, (unsigned long)l.id, (long)(int32_t)model, in->at - 20);
-		p = take(in, 8 * (size_t)models[model].params, "camera entry", i, e);
+				path, (unsigned long)l.id, (long)(int32_t)id, in->at - 20);
+		p = take(in, 8 * (size_t)lens_model_parameters(model), "camera entry", i, e);
 		if (!p)
 			return -1;
-		for (int k = 0; k < models[model].params; k++)
+		for (int k = 0; k < lens_model_parameters(model); k++)
 			params[k] = get_double(p + 8 * k);
-		if (set_lens(&l, &models[model], width, height, params, path, e) ||
-			add_lens(all, &l, path, e))
+		if (set_camera(&l, model, width, height, params, path, e) || add_entry(all, &l, path, e))
 			return -1;
 	}
 	return check_end(in, e);
 }
 
 static int read_images_binary(
-	struct cameras *c, const struct lenses *all, struct cursor *in, const char *path, struct err *e)
+	struct cameras *c, const struct entries *all, struct cursor *in, const char *path, struct err *e)
 {
 	uint64_t count = 0;
 	size_t capacity = 0;
@@ -248,7 +227,7 @@ static int read_images_binary(
 			return -1;
 		for (int k = 0; k < 7; k++)
 			pose[k] = get_double(p + 4 + 8 * k);
-		uint32_t lens = (uint32_t)get_bits(p + 60, 4);
+		uint32_t camera = (uint32_t)get_bits(p + 60, 4);
 		const char *name = (const char *)in->map.data + in->at;
 		end = memchr(name, 0, in->map.len - in->at);
 		if (!take(in, end ? (size_t)((const char *)end - name) + 1 : SIZE_MAX, "image entry", i, e) ||
@@ -257,7 +236,7 @@ static int read_images_binary(
 		uint64_t points = get_bits(p, 8);
 		/* Each point is x, y (f64) and the id of its 3D point (i64). */
 		if (!take(in, points > SIZE_MAX / 24 ? SIZE_MAX : (size_t)points * 24, "image entry", i, e) ||
-			add_view(c, &capacity, all, pose, lens, name, path, e))
+			add_view(c, &capacity, all, pose, camera, name, path, e))
 			return -1;
 	}
 	return check_end(in, e);
@@ -325,51 +304,48 @@ static int open_text(struct lines *in, const char *path, struct err *e)
 	return 0;
 }
 
-static int read_lens_text(struct lenses *all, struct lines *in, char *line, const char *path, struct err *e)
+static int read_camera_text(
+	struct entries *all, struct lines *in, char *line, const char *path, struct err *e)
 {
-	double size[2], params[PARAMS_MAX] = {0};
-	struct lens l = {0};
-	int known;
+	double size[2], params[LENS_PARAMETERS] = {0};
+	struct entry l = {0};
 
 	if (next_id(&line, &l.id))
 		return err_set(e, ERR_FORMAT, "%s:%ld: does not begin with a camera id", path, in->number);
 	line += strspn(line, " \t");
 	size_t len = strcspn(line, " \t");
-	for (known = 0; known < MODELS; known++)
-		if (strlen(models[known].name) == len && !strncmp(models[known].name, line, len))
-			break;
-	if (known == MODELS)
+	const struct lens_model *model = lens_model_named(line, len);
+	if (!model)
 		return err_set(e, ERR_FORMAT, "%s:%ld: camera model '%.*s' is unknown", path, in->number,
 			len < 60 ? (int)len : 60, line);
+	const int n = lens_model_parameters(model);
 	line += len;
 	if (next_number(&line, &size[0]) || next_number(&line, &size[1]))
 		return err_set(e, ERR_FORMAT, "%s:%ld: no width and height", path, in->number);
-	for (int i = 0; i < models[known].params; i++)
+	for (int i = 0; i < n; i++)
 		if (next_number(&line, &params[i]))
 			return err_set(e, ERR_FORMAT, "%s:%ld: model %s needs %d parameters, has %d", path,
-				in->number, models[known].name, models[known].params, i);
+				in->number, lens_model_name(model), n, i);
 	if (line[strspn(line, " \t")])
-		return err_set(e, ERR_FORMAT, "%s:%ld: more than %d parameters", path, in->number,
-			models[known].params);
-	return set_lens(&l, &models[known], size[0], size[1], params, path, e) || add_lens(all, &l, path, e)
-		       ? -1
-		       : 0;
+		return err_set(e, ERR_FORMAT, "%s:%ld: more than %d parameters", path, in->number, n);
+	return set_camera(&l, model, size[0], size[1], params, path, e) || add_entry(all, &l, path, e) ? -1
+												       : 0;
 }
 
-static int read_lenses_text(struct lenses *all, struct lines *in, const char *path, struct err *e)
+static int read_cameras_text(struct entries *all, struct lines *in, const char *path, struct err *e)
 {
 	char *line;
 
 	if (open_text(in, path, e))
 		return -1;
 	while ((line = next_entry(in)))
-		if (read_lens_text(all, in, line, path, e))
+		if (read_camera_text(all, in, line, path, e))
 			return -1;
 	return 0;
 }
 
 static int read_images_text(
-	struct cameras *c, const struct lenses *all, struct lines *in, const char *path, struct err *e)
+	struct cameras *c, const struct entries *all, struct lines *in, const char *path, struct err *e)
 {
 	size_t capacity = 0;
 	char *line;
@@ -377,12 +353,12 @@ static int read_images_text(
 	if (open_text(in, path, e))
 		return -1;
 	while ((line = next_entry(in))) {
-		uint32_t id, lens;
+		uint32_t id, camera;
 		double pose[7];
 		int bad = next_id(&line, &id);
 		for (int k = 0; !bad && k < 7; k++)
 			bad = next_number(&line, &pose[k]);
-		if (bad || next_id(&line, &lens))
+		if (bad || next_id(&line, &camera))
 			return err_set(e, ERR_FORMAT, "%s:%ld: not 'ID QW QX QY QZ TX TY TZ CAMERA_ID NAME'",
 				path, in->number);
 		line += strspn(line, " \t");
@@ -391,7 +367,7 @@ static int read_images_text(
 			line[--len] = 0;
 		if (!len)
 			return err_set(e, ERR_FORMAT, "%s:%ld: image without a name", path, in->number);
-		if (add_view(c, &capacity, all, pose, lens, line, path, e))
+		if (add_view(c, &capacity, all, pose, camera, line, path, e))
 			return -1;
 		next_line(in); /* the image's points, perhaps none */
 	}
@@ -416,10 +392,10 @@ int colmap_is_model(const char *dir)
 }
 
 static int read_binary(
-	struct cameras *c, struct lenses *all, const char *cameras, const char *images, struct err *e)
+	struct cameras *c, struct entries *all, const char *cameras, const char *images, struct err *e)
 {
 	struct cursor first = {0}, second = {0};
-	int bad = read_lenses_binary(all, &first, cameras, e) || sort_lenses(all, cameras, e) ||
+	int bad = read_cameras_binary(all, &first, cameras, e) || sort_entries(all, cameras, e) ||
 		  read_images_binary(c, all, &second, images, e);
 
 	file_unmap(&first.map);
@@ -428,10 +404,10 @@ static int read_binary(
 }
 
 static int read_text(
-	struct cameras *c, struct lenses *all, const char *cameras, const char *images, struct err *e)
+	struct cameras *c, struct entries *all, const char *cameras, const char *images, struct err *e)
 {
 	struct lines first = {0}, second = {0};
-	int bad = read_lenses_text(all, &first, cameras, e) || sort_lenses(all, cameras, e) ||
+	int bad = read_cameras_text(all, &first, cameras, e) || sort_entries(all, cameras, e) ||
 		  read_images_text(c, all, &second, images, e);
 
 	free(first.text);
@@ -443,7 +419,7 @@ int colmap_read(struct cameras *c, const char *dir, struct err *e)
 {
 	const char *suffix = is_pair(dir, ".bin") ? ".bin" : ".txt";
 	char *cameras = file_join(dir, "cameras", suffix, e), *images = file_join(dir, "images", suffix, e);
-	struct lenses all = {0};
+	struct entries all = {0};
 	int bad = -1;
 
 	*c = (struct cameras){0};
@@ -461,7 +437,7 @@ int colmap_read(struct cameras *c, const char *dir, struct err *e)
 }
 
 /* The first view with the intrinsics of view i: its number, from 1, is the camera's id. */
-static size_t lens_of(const struct cameras *c, size_t i)
+static size_t camera_of(const struct cameras *c, size_t i)
 {
 	const struct camera *v = &c->views[i];
 	size_t k = 0;
@@ -475,12 +451,12 @@ static size_t lens_of(const struct cameras *c, size_t i)
 	return k + 1;
 }
 
-static void put_lenses(FILE *out, const struct cameras *c)
+static void put_cameras(FILE *out, const struct cameras *c)
 {
 	fputs("# Cameras: CAMERA_ID MODEL WIDTH HEIGHT FX FY CX CY\n", out);
 	for (size_t i = 0; i < c->n; i++) {
 		const struct camera *v = &c->views[i];
-		if (lens_of(c, i) == i + 1)
+		if (camera_of(c, i) == i + 1)
 			fprintf(out, "%zu PINHOLE %d %d %.17g %.17g %.17g %.17g\n", i + 1, v->width,
 				v->height, v->fx, v->fy, v->cx, v->cy);
 	}
@@ -501,7 +477,7 @@ static void put_images(FILE *out, const struct cameras *c)
 			fprintf(out, " %.17g", q[k]);
 		for (int k = 0; k < 3; k++)
 			fprintf(out, " %.17g", v->world_to_camera[k][3]);
-		fprintf(out, " %zu %s\n\n", lens_of(c, i), v->image ? view_base(v->image) : v->name);
+		fprintf(out, " %zu %s\n\n", camera_of(c, i), v->image ? view_base(v->image) : v->name);
 	}
 }
 
@@ -530,7 +506,7 @@ int colmap_write_text(const struct cameras *c, const char *dir, struct err *e)
 {
 	if (file_make_dir(dir, e))
 		return -1;
-	return write_part(c, dir, "cameras", put_lenses, e) || write_part(c, dir, "images", put_images, e) ||
+	return write_part(c, dir, "cameras", put_cameras, e) || write_part(c, dir, "images", put_images, e) ||
 			       write_part(c, dir, "points3D", put_points, e)
 		       ? -1
 		       : 0;

@@ -12,8 +12,9 @@
 int colmap_is_model(const char *dir);
 
 /* Reads the model in dir (binary where both are there). Views are checked, named and sorted by views_finish;
- * `image` is the model's image name, all are SPLIT_TRAIN. Models with lens distortion are refused unless it
- * is 0. Returns 0, or -1 with *e and *c zeroed. */
+ * `image` is the model's image name, all are SPLIT_TRAIN. A camera that distorts has its lens, and the
+ * photograph's size and intrinsics: cameras_undistort makes it a pinhole. Returns 0, or -1 with *e and *c
+ * zeroed. */
 int colmap_read(struct cameras *c, const char *dir, struct err *e);
 
 /* Makes dir and writes cameras.txt (PINHOLE; views with the same intrinsics share a camera), images.txt

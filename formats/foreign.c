@@ -25,6 +25,8 @@ static const struct kind kinds[] = {
 		"it goes beside the splats or the transforms.json, and is found there"},
 	{0, {"info", "objects", NULL}, "labels of ISAT",
 		"'mask-import -o masks.jsonl %s' makes mask records of them"},
+	{0, {"info", "object", NULL}, "labels of Ref-LERF",
+		"'mask-import -o masks.jsonl %s' makes mask records of their pictures in gt_mask"},
 	{0, {"t_00", "t_23", "fx"}, "a camera of Polycam",
 		"'ns-process-data polycam' makes a transforms.json of the scan"},
 	{0, {"sfm_data_version", "views", NULL}, "cameras of OpenMVG or Meshroom",
@@ -80,10 +82,6 @@ int foreign_splats(const char *name, struct err *e)
 		return err_set(e, ERR_FORMAT,
 			"%s: a %s file, not a .ply: 'npx @playcanvas/splat-transform %s %.*s.ply' converts it",
 			name, kind, name, (int)(path_ends(name, kind) ? n - strlen(kind) : n), name);
-	if (path_ends(name, ".gltf"))
-		return err_set(e, ERR_FORMAT,
-			"%s: glTF in several files, which is not read: export it as a .glb where it was made",
-			name);
 	if (path_ends(name, ".ckpt") || path_ends(name, ".pth") || path_ends(name, ".pt"))
 		return err_set(e, ERR_FORMAT,
 			"%s: a checkpoint, not a .ply: nerfstudio writes one by 'ns-export gaussian-splat', 3DGS into point_cloud/iteration_N",

@@ -6,6 +6,8 @@
 #include "base/names.h"
 #include "formats/json.h"
 #include "formats/safetensors.h"
+#include "geom/lens.h"
+#include "geom/views.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
@@ -171,6 +173,37 @@ static int read_name(struct camera *c, const cJSON *view, const char *path, int 
 	return c->name ? 0 : -1;
 }
 
+/* The photograph's camera, where it is not the view's pinhole. */
+static int read_lens(struct lens *l, const cJSON *view, const char *path, int index, struct err *e)
+{
+	const cJSON *lens = cJSON_GetObjectItemCaseSensitive(view, "lens");
+	const char *model;
+	double width, height;
+	char where[512];
+
+	if (!lens || cJSON_IsNull(lens))
+		return 0;
+	snprintf(where, sizeof where, "%s: view %d: key 'lens'", path, index);
+	if (json_string(lens, "model", 1, &model, where, e) < 0 ||
+		json_number(lens, "width", 1, &width, where, e) < 0 ||
+		json_number(lens, "height", 1, &height, where, e) < 0)
+		return -1;
+	if (!(l->model = lens_model_named(model, strlen(model))))
+		return err_set(e, ERR_FORMAT, "%s: camera model '%.60s' is unknown", where, model);
+	struct camera size;
+	if (view_set_size(&size, width, height))
+		return err_set(e, ERR_FORMAT, "%s: size %gx%g is not whole numbers in 1 to 65536", where,
+			width, height);
+	l->width = size.width;
+	l->height = size.height;
+	if (json_matrix(lens, "parameters", lens_model_parameters(l->model), 0, l->parameters, where, e))
+		return -1;
+	for (int i = 0; i < lens_model_focals(l->model); i++)
+		if (!(l->parameters[i] > 0))
+			return err_set(e, ERR_FORMAT, "%s: focal length is not positive", where);
+	return 0;
+}
+
 static int read_view(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
 {
 	const cJSON *split = cJSON_GetObjectItemCaseSensitive(view, "split");
@@ -182,7 +215,8 @@ static int read_view(struct camera *c, const cJSON *view, const char *path, int 
 		view_number(view, "fx", path, index, &c->fx, e) ||
 		view_number(view, "fy", path, index, &c->fy, e) ||
 		view_number(view, "cx", path, index, &c->cx, e) ||
-		view_number(view, "cy", path, index, &c->cy, e) || read_pose(c, view, path, index, e))
+		view_number(view, "cy", path, index, &c->cy, e) || read_pose(c, view, path, index, e) ||
+		read_lens(&c->lens, view, path, index, e))
 		return -1;
 	if (!(width >= 1 && width <= 65536 && width == floor(width) && height >= 1 && height <= 65536 &&
 		    height == floor(height)))
@@ -293,6 +327,15 @@ static int put_string(FILE *out, const char *text)
 	return -bad;
 }
 
+static void put_lens(FILE *out, const struct lens *l)
+{
+	fprintf(out, ",\n  \"lens\":{\"model\":\"%s\",\"width\":%d,\"height\":%d,\"parameters\":",
+		lens_model_name(l->model), l->width, l->height);
+	for (int i = 0; i < lens_model_parameters(l->model); i++)
+		fprintf(out, "%c%.17g", i ? ',' : '[', l->parameters[i]);
+	fputs("]}", out);
+}
+
 static int put_view(FILE *out, const struct camera *c)
 {
 	fputs("{\"name\":", out);
@@ -308,6 +351,8 @@ static int put_view(FILE *out, const struct camera *c)
 	}
 	fprintf(out, "],\n  \"split\":\"%s\",\"image\":", c->split == SPLIT_TEST ? "test" : "train");
 	int bad = put_string(out, c->image);
+	if (c->lens.model)
+		put_lens(out, &c->lens);
 	fputs("}", out);
 	return bad;
 }

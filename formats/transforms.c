@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "formats/json.h"
+#include "geom/lens.h"
 #include "geom/views.h"
 
 #include <math.h>
@@ -24,14 +25,55 @@ static int either_number(const cJSON *frame, const cJSON *root, const char *key,
 	return got ? got : json_number(root, key, 0, value, where, e);
 }
 
-/* The model must be a perspective without distortion. */
-static int check_lens(const cJSON *frame, const cJSON *root, const char *where, struct err *e)
+/* The number of a distortion parameter, 0 where it is absent. */
+static int read_coefficient(const cJSON *frame, const cJSON *root, const char *key, double *value,
+	const char *where, struct err *e)
+{
+	*value = 0;
+	return either_number(frame, root, key, value, where, e) < 0 ? -1 : 0;
+}
+
+/* nerfstudio's k4 of a perspective is no parameter of COLMAP's, and its k5 and k6 are only where FULL_OPENCV
+ * is said. */
+static int check_coefficients(int is_full, const double *k, const char *where, struct err *e)
+{
+	for (int i = 3; i < 6 && !is_full; i++)
+		if (k[i] != 0)
+			return err_set(e, ERR_FORMAT,
+				"%s: key 'k%d': %g, which is read with camera_model FULL_OPENCV only", where,
+				i + 1, k[i]);
+	return 0;
+}
+
+/* Of the distortion in the files' keys, after fx, fy, cx and cy. */
+static int read_distortion(struct lens *l, const cJSON *frame, const cJSON *root, int is_fisheye, int is_full,
+	const char *where, struct err *e)
+{
+	static const char *const keys[] = {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"};
+	double k[8], *to = l->parameters + 4;
+
+	for (int i = 0; i < 8; i++)
+		if (read_coefficient(frame, root, keys[i], &k[i], where, e))
+			return -1;
+	if (is_fisheye) {
+		memcpy(to, k, 4 * sizeof *k);
+		l->model = lens_model_named("OPENCV_FISHEYE", 14);
+		return 0;
+	}
+	const double ordered[8] = {k[0], k[1], k[6], k[7], k[2], k[3], k[4], k[5]};
+	memcpy(to, ordered, sizeof ordered);
+	l->model = is_full || k[2] != 0 ? lens_model_named("FULL_OPENCV", 11) : lens_model_named("OPENCV", 6);
+	return check_coefficients(is_full, k, where, e);
+}
+
+/* What distorts, into c's lens; nothing where that is a pinhole. */
+static int read_lens(
+	struct camera *c, const cJSON *frame, const cJSON *root, const char *where, struct err *e)
 {
 	static const char *const perspective[] = {"OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL",
-		"RADIAL", "FULL_OPENCV", "PERSPECTIVE"};
-	static const char *const coefficients[] = {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"};
+		"RADIAL", "FULL_OPENCV", "PERSPECTIVE", "OPENCV_FISHEYE"};
+	struct lens l = {.width = c->width, .height = c->height, .parameters = {c->fx, c->fy, c->cx, c->cy}};
 	const char *model = NULL;
-	double value;
 	size_t i;
 
 	if (json_string(frame, "camera_model", 0, &model, where, e) < 0 ||
@@ -43,17 +85,12 @@ static int check_lens(const cJSON *frame, const cJSON *root, const char *where, 
 	if (model && i == sizeof perspective / sizeof *perspective)
 		return err_set(e, ERR_FORMAT, "%s: key 'camera_model': '%.40s' is not a perspective camera",
 			where, model);
-	if (cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(root, "is_fisheye")))
-		return err_set(e, ERR_FORMAT, "%s: key 'is_fisheye': not a perspective camera", where);
-	for (i = 0; i < sizeof coefficients / sizeof *coefficients; i++) {
-		value = 0;
-		if (either_number(frame, root, coefficients[i], &value, where, e) < 0)
-			return -1;
-		if (value != 0)
-			return err_set(e, ERR_FORMAT,
-				"%s: key '%s': lens distortion %g; undistort the images first (colmap image_undistorter)",
-				where, coefficients[i], value);
-	}
+	const int is_fisheye = (model && !strcmp(model, "OPENCV_FISHEYE")) ||
+			       cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(root, "is_fisheye"));
+	if (read_distortion(&l, frame, root, is_fisheye, model && !strcmp(model, "FULL_OPENCV"), where, e))
+		return -1;
+	if (lens_is_distorted(&l))
+		c->lens = l;
 	return 0;
 }
 
@@ -90,7 +127,7 @@ static int read_intrinsics(
 	double width = 0, height = 0;
 	int got;
 
-	if (check_lens(frame, root, where, e) || either_number(frame, root, "w", &width, where, e) < 0 ||
+	if (either_number(frame, root, "w", &width, where, e) < 0 ||
 		either_number(frame, root, "h", &height, where, e) < 0)
 		return -1;
 	if ((width == 0 || height == 0) && !has_focal(frame, root))
@@ -112,7 +149,7 @@ static int read_intrinsics(
 		either_number(frame, root, "cx", &c->cx, where, e) < 0 ||
 		either_number(frame, root, "cy", &c->cy, where, e) < 0)
 		return -1;
-	return 0;
+	return read_lens(c, frame, root, where, e);
 }
 
 static int read_frame(

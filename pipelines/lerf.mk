@@ -1,42 +1,47 @@
-# The benchmarks of the field, from their folders as they unpack: Ref-LERF's referring sentences, and LERF-OVS's names.
+# The benchmarks of the field, from their folders as they unpack: Ref-LERF's referring sentences, and the names of LERF-OVS and 3D-OVS.
 #
 #	make -f pipelines/lerf.mk ref-lerf DATA=ref-lerf/ramen SPLATS=output/ramen TEST_VIEWS=frame_00006,frame_00024
 #	make -f pipelines/lerf.mk lerf-ovs DATA=lerf_ovs/ramen LABELS=lerf_ovs/label/ramen SPLATS=output/ramen \
 #		CANDIDATES=candidates.jsonl
+#	make -f pipelines/lerf.mk 3d-ovs DATA=3d_ovs/sofa SPLATS=output/sofa CANDIDATES=candidates.jsonl
 #
-# DATA        the scene's folder: sparse/0 and images; of Ref-LERF also json/VIEW.json and gt_mask (required)
+# DATA        the scene's folder: sparse/0 and images; of Ref-LERF also json/VIEW.json and gt_mask, of
+#             3D-OVS segmentations with classes.txt and VIEW/CLASS.png (required)
 # SPLATS      the scene that 3DGS has trained: its folder or a .ply (required)
 # LABELS      of LERF-OVS: the folder with the labels VIEW.json of the scene's test views (required there)
-# CANDIDATES  masks of a detector in the training views, JSON Lines; their objects are categories. Required for LERF-OVS. Ref-LERF's
-#             default: the masks that it has of training views
+# CANDIDATES  masks of a detector in the training views, JSON Lines; their objects are categories or classes. Required but for Ref-LERF, whose
+#             default is the masks that it has of training views
 # TEST_VIEWS  of Ref-LERF: names of the test views. Default for a DATA that ends in waldo_kitchen: those of the paper's program.
-#             LERF-OVS's are those with labels
+#             The others' are those with labels
 # OUT         folder for everything that is made; default build/lerf/ and the target and the scene's name
 # SCALE, BERT, BIN   as in lift.mk
 #
 # Each runs lift.mk, scores its answers in OUT/score.json, and prints mIoU and the published figures of the benchmark, for all of its scenes together.
 # Ref-LERF: mIoU over the test views' own sentences, empty truths left out; a sentence's mask is its own, and no sentence of a test
 # view is learnt from unless a training view has it too. LERF-OVS: mIoU over the labels of all test views, shapes of one
-# category together; a query is the category's name. Not here: LERF's localisation, which is of a map and not of a mask.
+# category together; a query is the category's name. 3D-OVS: the same of its
+# classes, each by itself: no class is told from the others in a pixel. Not here: LERF's localisation, which is of a map and not of a mask.
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
 include $(here)common.mk
 # The workflow gets what is said below, and nothing else.
 MAKEOVERRIDES :=
-benchmark := $(or $(filter ref-lerf lerf-ovs,$(MAKECMDGOALS)),ref-lerf)
-$(call check,DATA SPLATS $(if $(filter lerf-ovs,$(benchmark)),LABELS CANDIDATES),DATA SPLATS LABELS CANDIDATES OUT,TEST_VIEWS SCALE BERT BIN)
+benchmark := $(or $(filter ref-lerf lerf-ovs 3d-ovs,$(MAKECMDGOALS)),ref-lerf)
+$(call check,DATA SPLATS $(if $(filter lerf-ovs,$(benchmark)),LABELS) $(if $(filter ref-lerf,$(benchmark)),,CANDIDATES),DATA SPLATS LABELS CANDIDATES OUT,TEST_VIEWS SCALE BERT BIN)
 name := $(notdir $(patsubst %/,%,$(DATA)))
 OUT ?= build/lerf/$(benchmark)/$(name)
 kitchen := frame_00019,frame_00035,frame_00067,frame_00105,frame_00162
 TEST_VIEWS ?= $(if $(filter waldo_kitchen,$(name)),$(kitchen))
-labels := $(wildcard $(LABELS)/*.json)
+segmentations := $(patsubst %/,%,$(DATA))/segmentations
+labels := $(if $(filter 3d-ovs,$(benchmark)),$(if $(wildcard $(segmentations)/classes.txt),$(segmentations)),$(wildcard $(LABELS)/*.json))
 said := $(wildcard $(DATA)/json/*.json)
-$(if $(filter help clean,$(MAKECMDGOALS)),,$(if $(filter lerf-ovs,$(benchmark)),$(if $(labels),,$(error $(LABELS) has no labels VIEW.json)),$(if \
+$(if $(filter help clean,$(MAKECMDGOALS)),,$(if $(filter lerf-ovs 3d-ovs,$(benchmark)),$(if $(labels),,$(error $(if $(filter \
+	3d-ovs,$(benchmark)),$(segmentations) has no classes.txt,$(LABELS) has no labels VIEW.json))),$(if \
 	$(said),,$(error $(DATA) has no json/VIEW.json))$(if $(TEST_VIEWS),,$(error $(called): TEST_VIEWS not set; 'make -f $(called) help' says what they are))))
 made := $(OUT)/benchmark
 
 .DEFAULT_GOAL := help
-.PHONY: ref-lerf lerf-ovs
+.PHONY: ref-lerf lerf-ovs 3d-ovs
 help:
 	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(called)
 
@@ -65,7 +70,10 @@ $(foreach w,sentences masks truth,$(made)/$(w).jsonl): $(made)/%.jsonl: $(said) 
 	@mkdir -p $(@D)
 	@jq -n -c --arg what $* --arg test $(call quoted,TEST_VIEWS) --arg masks '$(abspath $(DATA))/gt_mask' -f $(here)ref-lerf.jq $(said) >$@
 else
-$(made)/truth.jsonl: $(labels)
+# Names of classes have blanks, so of 3D-OVS's pictures a list of their times is watched.
+$(made)/segmentations: FORCE
+	@mkdir -p $(@D) && find $(segmentations)/ -type f -printf '%p %T@\n' | LC_ALL=C sort >$@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+$(made)/truth.jsonl: $(if $(filter 3d-ovs,$(benchmark)),$(made)/segmentations,$(labels))
 	@mkdir -p $(@D)
 	$(tool)mask-import --quiet -o $@ $(labels)
 # Each category trains, as the name of its candidates, and is asked for.
@@ -75,7 +83,7 @@ $(made)/test-views: $(made)/truth.jsonl
 	@jq -s -r 'map(.view) | unique | join(",")' $< >$@
 endif
 
-lerf-ovs: $(made)/sentences.jsonl $(made)/truth.jsonl $(made)/test-views
+lerf-ovs 3d-ovs: $(made)/sentences.jsonl $(made)/truth.jsonl $(made)/test-views
 	$(call flow,"$$(cat $(made)/test-views)",CANDIDATES=$(CANDIDATES))
 	$(score)
-	$(call published,LERF-OVS,lerf-ovs)
+	$(call published,$(if $(filter lerf-ovs,$@),LERF-OVS,3D-OVS),$@)

@@ -28,6 +28,8 @@ $(call check,,ASK WHOLE BOXES,)
 
 asked := $(if $(ASK),$(SCENE)/lifted/asked.jsonl)
 answers := $(if $(TEST_VIEWS),$(foreach t,$(splits),$(SCENE)/lifted/predictions.$(t).jsonl) $(asked))
+outlines := $(call flat,WHOLE,whole)
+$(if $(and $(UNDISTORT),$(WHOLE)),$(eval $(call flatten,WHOLE,whole)))
 whole := $(if $(WHOLE),$(SCENE)/lifted/whole.jsonl)
 lifted_scores := $(if $(TRUTH),$(if $(MASKS),,$(SCENE)/lifted/masks.score.json) $(answers:.jsonl=.score.json)) $(whole:.jsonl=.score.json) \
 	$(if $(BOXES),$(SCENE)/lifted/boxes.score.json)
@@ -46,7 +48,7 @@ command.render3.whole = $(call ask3,$(text)) --sentences test --amodal -o $(SCEN
 command.locate = refer-locate --scene $(SCENE)/scene --text $(text) --model $(model3) --sentences $(lastword $(splits)) \
 	-o $(SCENE)/lifted/boxes.jsonl
 command.overlay3 = $(call ask3,$(text)) --sentences $(lastword $(splits)) --overlay $(SCENE)/lifted/overlays -o $(SCENE)/lifted/overlays/masks.jsonl
-command.score_whole = miou-score --json --quiet --predicted-views --truth $(WHOLE)
+command.score_whole = miou-score --json --quiet --predicted-views --truth $(outlines)
 command.score_boxes = miou-score --boxes --json --quiet --truth $(BOXES)
 $(call track,render3.train render3.test encode3 render3.asked render3.whole locate overlay3 score_whole score_boxes)
 
@@ -63,7 +65,7 @@ $(SCENE)/lifted/asked.jsonl: $(SCENE)/lifted/asked.safetensors $(model3) $(SCENE
 $(SCENE)/lifted/whole.jsonl: $(model3) $(SCENE)/log/render3.whole.command
 	$(call run,render3.whole)
 
-$(SCENE)/lifted/whole.score.json: $(SCENE)/lifted/whole.jsonl $(WHOLE) $(SCENE)/log/score_whole.command
+$(SCENE)/lifted/whole.score.json: $(SCENE)/lifted/whole.jsonl $(outlines) $(SCENE)/log/score_whole.command
 	$(hide)$(tool)$(command.score_whole) -o $@ $<
 
 $(SCENE)/lifted/boxes.jsonl: $(model3) $(SCENE)/log/locate.command

@@ -8,6 +8,8 @@
 # SPLATS      trained scene, a 3DGS .ply or the folder that 3DGS wrote (required)
 # CAMERAS     COLMAP model, 3DGS cameras.json or transforms.json; default: what gs-import finds beside SPLATS
 # IMAGES      folder of the photographs; optional
+# UNDISTORT   1 where the photographs' lenses distort, and CANDIDATES, MASKS and TRUTH are drawn on the photographs: the views are
+#             pinholes, as gs-import --undistort makes them, and so are all masks. Mask records then end in .jsonl
 # TEST_VIEWS  test views as gs-import takes them: NAME,... or every:N; default every:8, and none with MASKS
 # SENTENCES   sentences, JSON Lines (required, but with MASKS)
 # CANDIDATES  candidate masks, JSON Lines (required, but with MASKS)
@@ -42,7 +44,7 @@ TEACH ?= lifted
 include $(here)common.mk
 $(call take,MASKS)
 $(call check,SCENE SPLATS $(if $(MASKS),,SENTENCES CANDIDATES),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH,IMAGES TEST_VIEWS BERT SCALE \
-	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN)
+	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN UNDISTORT)
 $(if $(filter stage1 lifted,$(TEACH)),,$(error TEACH is stage1 or lifted))
 
 # Of a folder of 3DGS the last iteration, as gs-import takes it.
@@ -53,10 +55,14 @@ cameras := $(if $(CAMERAS),$(if $(wildcard $(CAMERAS)/.),$(call camera_files,$(C
 	camera_files,$(beside)),$(if $(filter iteration_%,$(notdir $(beside))),$(call camera_files,$(beside)/../..)))) $(wildcard $(beside)/dataparser_transforms.json)
 scene := $(SCENE)/scene/cameras.json
 weights := $(SCENE)/weights/complete
+# Mask records of a variable as the views see them. $(call flat,VARIABLE,NAME)
+flat = $(if $($(1)),$(if $(UNDISTORT),$(SCENE)/undistorted/$(2).jsonl,$($(1))))
+candidates := $(call flat,CANDIDATES,candidates)
+truth := $(call flat,TRUTH,truth)
 text := $(SCENE)/text.safetensors
 # Photographs that a person painted, with NAMES, or labelled, as JSON.
 labelled := $(or $(wildcard $(MASKS)/*.json),$(filter %.json,$(MASKS)))
-painted := $(if $(MASKS),$(or $(labelled),$(if $(NAMES),$(or $(wildcard $(MASKS)/*.png),$(MASKS)))))
+painted := $(if $(MASKS),$(or $(labelled),$(if $(NAMES),$(or $(wildcard $(MASKS)/*.png),$(MASKS))),$(if $(UNDISTORT),$(MASKS))))
 drawn := $(if $(painted),$(SCENE)/painted.jsonl,$(MASKS))
 masks1 := $(or $(drawn),$(SCENE)/stage1/masks.jsonl)
 masks2 := $(SCENE)/stage2/masks.jsonl
@@ -82,23 +88,25 @@ help:
 	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(firstword $(MAKEFILE_LIST))
 
 # The steps.
+undistort_flag := $(if $(UNDISTORT),--undistort )
+undistort := $(if $(UNDISTORT),--undistort $(SCENE)/scene )
 command.import = gs-import $(if $(CAMERAS),--cameras $(CAMERAS)) $(if $(IMAGES),--images $(call quoted,IMAGES)) \
-	$(if $(TEST_VIEWS),--test-views $(call quoted,TEST_VIEWS)) -o $(SCENE)/scene $(splats)
+	$(if $(TEST_VIEWS),--test-views $(call quoted,TEST_VIEWS)) $(undistort_flag)-o $(SCENE)/scene $(splats)
 command.weigh = gs-weigh --scale $(call quoted,SCALE) $(call options,WEIGH) -o $(SCENE)/weights $(SCENE)/scene
 command.encode = text-encode --model $(call quoted,BERT) $(if $(SENTENCES),,--names) -o $(text) $(or $(SENTENCES),$(drawn))
-command.paint = mask-import $(if $(NAMES),--names $(NAMES)) -o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
-command.select = pseudomask-select $(call options,SELECT) -o $(masks1) $(CANDIDATES)
+command.paint = mask-import $(if $(NAMES),--names $(NAMES)) $(undistort)-o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
+command.select = pseudomask-select $(call options,SELECT) -o $(masks1) $(candidates)
 train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks$(1)) \
 	--iterations $(call quoted,ITERATIONS) --seed $(call quoted,SEED) --resume --log $(SCENE)/stage$(1)/train.log \
 	$(call options,TRAIN) -o $(model$(1))
 render = refer-render --scene $(SCENE)/scene --text $(text) --model $(model$(1))
 predict = $(call render,$(1)) --sentences $(2) -o $(SCENE)/stage$(1)/predictions.$(2).jsonl
 command.teach = $(call render,$(teacher)) --split train --sentences train --scale $(call quoted,SCALE) -o $(masks2)
-command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights -o $(masks3) $(CANDIDATES)
+command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights -o $(masks3) $(candidates)
 command.lift = refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks3) $(call options,LIFT) \
 	-o $(model3)
-command.page = refer-report $(if $(TRUTH),--truth $(TRUTH)) $(SCENE)
-command.score = miou-score --json --quiet --predicted-views --truth $(TRUTH)
+command.page = refer-report $(if $(TRUTH),--truth $(truth)) $(SCENE)
+command.score = miou-score --json --quiet --predicted-views --truth $(truth)
 $(foreach s,1 2,$(eval command.train$(s) = $$(call train,$(s))))
 $(foreach s,1 2,$(foreach t,train test,$(eval command.render$(s).$(t) = $$(call predict,$(s),$(t)))))
 $(foreach s,1 2,$(eval command.overlay$(s) = $$(call render,$(s)) --sentences $(lastword $(splits)) --overlay $(SCENE)/stage$(s)/overlays \
@@ -119,17 +127,27 @@ $(text): $(or $(SENTENCES),$(drawn)) $(SCENE)/log/encode.command
 	$(call run,encode)
 
 ifneq ($(painted),)
-$(drawn): $(NAMES) $(painted) $(SCENE)/log/paint.command
+$(drawn): $(NAMES) $(painted) $(if $(UNDISTORT),$(scene)) $(SCENE)/log/paint.command
 	$(call run,paint)
 endif
 
+# Masks that were drawn on photographs of lenses that distort. $(call flatten,VARIABLE,NAME)
+define flatten
+command.undistort.$(2) = mask-import $$(undistort)-o $(SCENE)/undistorted/$(2).jsonl $($(1))
+$(SCENE)/undistorted/$(2).jsonl: $($(1)) $(scene) $(SCENE)/log/undistort.$(2).command
+	@mkdir -p $$(@D)
+	$$(call run,undistort.$(2))
+$$(call track,undistort.$(2))
+endef
+$(if $(UNDISTORT),$(foreach v,CANDIDATES TRUTH,$(if $($(v)),$(eval $(call flatten,$(v),$(if $(filter TRUTH,$(v)),truth,candidates))))))
+
 ifeq ($(MASKS),)
 # A way of selecting that looks at the scene has to wait for it.
-$(masks1): $(CANDIDATES) $(SCENE)/log/select.command $(if $(findstring --weights,$(SELECT)),$(weights))
+$(masks1): $(candidates) $(SCENE)/log/select.command $(if $(findstring --weights,$(SELECT)),$(weights))
 	@mkdir -p $(@D)
 	$(call run,select)
 
-$(masks3): $(CANDIDATES) $(weights) $(SCENE)/log/select3d.command
+$(masks3): $(candidates) $(weights) $(SCENE)/log/select3d.command
 	@mkdir -p $(@D)
 	$(call run,select3d)
 endif
@@ -162,7 +180,7 @@ $(SCENE)/stage%/overlays/complete: $(SCENE)/stage%/model.safetensors $(SCENE)/lo
 	$(call run,overlay$*)
 	@touch $@
 
-$(SCENE)/%.score.json: $(SCENE)/%.jsonl $(TRUTH) $(SCENE)/log/score.command
+$(SCENE)/%.score.json: $(SCENE)/%.jsonl $(truth) $(SCENE)/log/score.command
 	$(hide)$(tool)$(command.score) -o $@ $<
 
 # Of lift.mk, what it makes.

@@ -43,6 +43,10 @@ int asking_read_camera(struct asking *a, const char *path, struct err *e)
 
 	if (camerafile_read(&read, path, e))
 		return -1;
+	if (camerafile_need_pinholes(&read, path, NULL, e)) {
+		cameras_free(&read);
+		return -1;
+	}
 	if (read.n > 1) {
 		err_set(e, ERR_FORMAT, "%s: has %zu views; --camera takes one", file_name(path), read.n);
 		cameras_free(&read);

@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/path.h"
 #include "cmd/jobs/pictures.h"
+#include "cmd/jobs/warping.h"
 #include "formats/jsonl.h"
 #include "formats/masks.h"
 #include "formats/scene.h"
@@ -73,10 +74,25 @@ static int read_cameras(struct exporting *x, const char *scene, struct err *e)
 	return bad ? -1 : 0;
 }
 
-int exporting_read(struct exporting *x, const char *masks, const char *scene, struct err *e)
+static int distort_masks(struct exporting *x, const char *scene, struct err *e)
+{
+	struct warping w;
+	int bad = warping_open(&w, WARP_TO_PHOTOGRAPH, scene, e);
+
+	for (size_t i = 0; i < x->masks.n && !bad; i++) {
+		bad = warping_mask(&w, x->masks.items[i].view, &x->masks.items[i].rle, e);
+		if (bad && e->code == ERR_FORMAT)
+			err_prefix(e, x->path);
+	}
+	warping_free(&w);
+	return bad;
+}
+
+int exporting_read(struct exporting *x, const char *masks, const char *scene, int distort, struct err *e)
 {
 	x->path = file_name(masks);
-	if (masks_read(&x->masks, masks, e) || (scene && read_cameras(x, scene, e)))
+	if (masks_read(&x->masks, masks, e) || (scene && read_cameras(x, scene, e)) ||
+		(distort && distort_masks(x, scene, e)))
 		return -1;
 	const size_t n = x->masks.n;
 	x->view_of = mem_alloc(n, sizeof *x->view_of, x->path, e);

@@ -19,9 +19,10 @@ struct exporting {
 	const struct mask **first_of_object; /* (objects) */
 };
 
-/* Reads masks ("-" is stdin) and, where scene is not NULL, its cameras; *x is zeroed before. ERR_FORMAT where
- * masks of one view differ in size. Returns 0, or -1 with *e set; exporting_free after either. */
-int exporting_read(struct exporting *x, const char *masks, const char *scene, struct err *e);
+/* Reads masks ("-" is stdin) and, where scene is not NULL, its cameras; *x is zeroed before. With `distort`
+ * masks of views become those of their photographs. ERR_FORMAT where masks of one view differ in size.
+ * Returns 0, or -1 with *e set; exporting_free after either. */
+int exporting_read(struct exporting *x, const char *masks, const char *scene, int distort, struct err *e);
 void exporting_free(struct exporting *x);
 
 /* Both return 0, or -1 with *e set. The JSON, on one line. */

@@ -5,6 +5,8 @@
 #include "formats/anysplats.h"
 #include "formats/camerafile.h"
 #include "formats/dataparser.h"
+#include "geom/lens.h"
+#include "geom/views.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -140,6 +142,22 @@ static int split(struct cameras *c, const char *test_views, struct err *e)
 							 : split_every(c, test_views, e);
 }
 
+/* Pinholes, whatever the photographs' lenses. */
+static int read_cameras(struct cameras *c, const struct import_options *o, const char *cameras, struct err *e)
+{
+	if (camerafile_read(c, cameras, e) ||
+		(!o->undistort && camerafile_need_pinholes(c, cameras, o->images, e)))
+		return -1;
+	cameras_undistort(c);
+	for (size_t i = 0; i < c->n; i++) {
+		const char *fault = view_fault(&c->views[i]);
+		if (fault)
+			return err_set(e, ERR_FORMAT, "%s: view '%s', undistorted: %s", file_name(cameras),
+				c->views[i].name, fault);
+	}
+	return 0;
+}
+
 /* Into the frame that nerfstudio trained in, where it says how. */
 static int move(
 	struct scene *s, const char *splats, const char *cameras, const struct report *to, struct err *e)
@@ -174,7 +192,7 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 {
 	*found = (struct import_found){0};
 	if (anysplats_read(&s->splats, s->offset, report, o->splats, e) ||
-		camerafile_read(&s->cameras, cameras, e) || move(s, o->splats, cameras, to, e) ||
+		read_cameras(&s->cameras, o, cameras, e) || move(s, o->splats, cameras, to, e) ||
 		split(&s->cameras, o->test_views, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);

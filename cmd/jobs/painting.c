@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/path.h"
+#include "cmd/jobs/mask_tree.h"
 #include "formats/annotations.h"
 #include "formats/jsonl.h"
 #include "formats/masks.h"
@@ -132,8 +133,25 @@ static uint32_t colour_at(const struct picture_read *p, size_t pixel)
 	return (uint32_t)c[0] << 16 | (uint32_t)c[1] << 8 | c[2];
 }
 
+/* The record of a mask, which is freed. Where it goes: the lens's photograph to the view. */
+static int put_mask(struct mask *mask, struct warping *w, const char *path, FILE *out, struct err *e)
+{
+	int bad = 0;
+
+	if (warping_mask(w, mask->view, &mask->rle, e)) {
+		if (e->code == ERR_FORMAT)
+			err_prefix(e, file_name(path));
+		bad = -1;
+	} else {
+		bad = masks_put(out, mask, e);
+	}
+	rle_free(&mask->rle);
+	return bad;
+}
+
 /* The mask of a colour, if any pixel has it: its record. */
-static int put_name(struct picture_read *p, struct painting_name *name, FILE *out, struct err *e)
+static int put_name(
+	struct picture_read *p, struct painting_name *name, struct warping *w, FILE *out, struct err *e)
 {
 	struct mask mask = {.view = p->view, .object = name->name, .score = NAN, .visible = NAN};
 	const size_t pixels = (size_t)p->height * (size_t)p->width;
@@ -146,9 +164,7 @@ static int put_name(struct picture_read *p, struct painting_name *name, FILE *ou
 	name->is_seen = 1;
 	if (rle_encode(&mask.rle, p->mask, p->height, p->width, e))
 		return -1;
-	const int bad = masks_put(out, &mask, e);
-	rle_free(&mask.rle);
-	return bad;
+	return put_mask(&mask, w, p->path, out, e);
 }
 
 static int by_value(const void *a, const void *b)
@@ -183,8 +199,8 @@ static int warn_unnamed(const struct picture_read *p, const struct painting_name
 	return 0;
 }
 
-static int put_picture(
-	struct painting_names *names, const char *path, FILE *out, const struct report *to, struct err *e)
+static int put_picture(struct painting_names *names, const char *path, struct warping *w, FILE *out,
+	const struct report *to, struct err *e)
 {
 	struct picture_read p = {.path = path};
 	int bad = image_read_rgb(path, &p.rgb, &p.height, &p.width, e) || !(p.view = view_of(path, e)) ||
@@ -192,7 +208,7 @@ static int put_picture(
 		  warn_unnamed(&p, names, to, e);
 
 	for (size_t i = 0; i < names->n && !bad; i++)
-		bad = put_name(&p, &names->items[i], out, e);
+		bad = put_name(&p, &names->items[i], w, out, e);
 	free(p.view);
 	free(p.rgb);
 	free(p.mask);
@@ -200,8 +216,8 @@ static int put_picture(
 }
 
 /* A mask record for each label of each picture that a JSON file is of. */
-static int put_labels(
-	const struct annotations *a, const char *path, FILE *out, const struct report *to, struct err *e)
+static int put_labels(const struct annotations *a, const char *path, struct warping *w, FILE *out,
+	const struct report *to, struct err *e)
 {
 	if (a->left_out)
 		report_warn(to, "%s: %zu shapes without an area are left out", file_name(path), a->left_out);
@@ -213,40 +229,125 @@ static int put_labels(
 				file_name(path), one->shapes, one->name, one->view);
 		if (rle_encode(&mask.rle, one->mask, one->height, one->width, e))
 			return -1;
-		const int bad = rle_area(&mask.rle) ? masks_put(out, &mask, e) : 0;
-		rle_free(&mask.rle);
-		if (bad)
+		if (!rle_area(&mask.rle))
+			rle_free(&mask.rle);
+		else if (put_mask(&mask, w, path, out, e))
 			return -1;
 	}
 	return 0;
 }
 
 /* *count grows by the labels. */
-static int put_labelled(const char *path, FILE *out, size_t *count, const struct report *to, struct err *e)
+static int put_labelled(
+	const char *path, struct warping *w, FILE *out, size_t *count, const struct report *to, struct err *e)
 {
 	struct annotations a;
-	const int bad = annotations_read(&a, path, e) || put_labels(&a, path, out, to, e);
+	const int bad = annotations_read(&a, path, e) || put_labels(&a, path, w, out, to, e);
 
 	*count += a.n;
 	annotations_free(&a);
 	return bad ? -1 : 0;
 }
 
-int painting_is_labelled(const char *path)
+/* *count grows by the records. */
+static int put_records(const char *path, struct warping *w, FILE *out, size_t *count, struct err *e)
 {
-	const size_t n = strlen(path);
+	struct mask mask;
+	struct jsonl j;
+	int got;
 
-	return n > 5 && !strcasecmp(path + n - 5, ".json");
+	if (jsonl_open(&j, path, e))
+		return -1;
+	while ((got = masks_next(&j, &mask, e)) > 0) {
+		const int bad = warping_mask(w, mask.view, &mask.rle, e);
+		if (bad && e->code == ERR_FORMAT) {
+			const struct err inner = *e;
+			jsonl_err(&j, e, "%s", inner.message);
+		}
+		got = bad || masks_put(out, &mask, e) ? -1 : 1;
+		mask_free(&mask);
+		if (got < 0)
+			break;
+		++*count;
+	}
+	jsonl_close(&j);
+	return got;
 }
 
-static int put_all(struct painting_names *names, const char *const *pictures, size_t count, FILE *out,
-	const struct report *to, struct err *e)
+static int has_ending(const char *path, const char *ending)
+{
+	const size_t n = strlen(path), m = strlen(ending);
+
+	return n > m && !strcasecmp(path + n - m, ending);
+}
+
+static int is_labelled(const char *path)
+{
+	return has_ending(path, ".json");
+}
+
+static int is_records(const char *path)
+{
+	return has_ending(path, ".jsonl");
+}
+
+int painting_needs_names(const char *path)
+{
+	return !is_labelled(path) && !is_records(path) && !file_is_dir(path);
+}
+
+struct tree {
+	struct warping *w;
+	FILE *out;
+	size_t *count;
+};
+
+static int put_tree_mask(void *to, const char *path, const char *view, const char *name, struct err *e)
+{
+	struct tree *t = to;
+	struct mask mask = {.view = view, .object = name, .score = NAN, .visible = NAN};
+	char fault[NAME_FAULT];
+	const char *reason = name_fault(name, NAME_DATA, fault);
+	uint8_t *pixels;
+	int height, width;
+
+	if (reason)
+		return err_set(e, ERR_FORMAT, "%s: the name %s", path, reason);
+	if (png_read_mask(path, &pixels, &height, &width, e))
+		return -1;
+	int bad = rle_encode(&mask.rle, pixels, height, width, e);
+	free(pixels);
+	if (bad)
+		return -1;
+	if (!rle_area(&mask.rle)) {
+		rle_free(&mask.rle);
+		return 0;
+	}
+	++*t->count;
+	return put_mask(&mask, t->w, path, t->out, e);
+}
+
+static int put_any(struct painting_names *names, const char *path, struct warping *w, FILE *out,
+	size_t *count, const struct report *to, struct err *e)
+{
+	struct tree tree = {w, out, count};
+
+	if (is_labelled(path))
+		return put_labelled(path, w, out, count, to, e);
+	if (is_records(path))
+		return put_records(path, w, out, count, e);
+	if (file_is_dir(path))
+		return mask_tree_each(path, put_tree_mask, &tree, e);
+	return put_picture(names, path, w, out, to, e);
+}
+
+static int put_all(struct painting_names *names, const char *const *pictures, size_t count, struct warping *w,
+	FILE *out, const struct report *to, struct err *e)
 {
 	size_t seen = 0, labels = 0;
 
 	for (size_t i = 0; i < count; i++)
-		if (painting_is_labelled(pictures[i]) ? put_labelled(pictures[i], out, &labels, to, e)
-						      : put_picture(names, pictures[i], out, to, e))
+		if (put_any(names, pictures[i], w, out, &labels, to, e))
 			return -1;
 	for (size_t i = 0; i < names->n; i++)
 		seen += names->items[i].is_seen != 0;
@@ -260,12 +361,12 @@ static int put_all(struct painting_names *names, const char *const *pictures, si
 		pictures[0]);
 }
 
-int painting_write(struct painting_names *names, const char *const *pictures, size_t count, const char *path,
-	const struct report *to, struct err *e)
+int painting_write(struct painting_names *names, const char *const *pictures, size_t count, struct warping *w,
+	const char *path, const struct report *to, struct err *e)
 {
 	struct file_out out;
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	return file_out_end(&out, put_all(names, pictures, count, out.stream, to, e), e);
+	return file_out_end(&out, put_all(names, pictures, count, w, out.stream, to, e), e);
 }

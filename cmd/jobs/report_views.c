@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/jpeg.h"
+#include "cmd/jobs/warping.h"
 #include "formats/png.h"
 #include "splat/render.h"
 
@@ -61,7 +62,7 @@ static int read_photograph(const struct report_run *r, const struct camera *c, s
 	int found = 0;
 
 	if (path && file_exists(path)) {
-		found = !image_read_rgb(path, &p->rgb, &p->height, &p->width, e);
+		found = !warping_read_photograph(c, r->scene.path, &p->rgb, &p->height, &p->width, e);
 		if (!found)
 			report_warn(to, "%s; the view is rendered instead", e->message);
 	}

@@ -1,8 +1,7 @@
 #include "cmd/jobs/resemblance.h"
 
-#include "base/file.h"
 #include "base/mem.h"
-#include "formats/png.h"
+#include "cmd/jobs/warping.h"
 #include "splat/render.h"
 
 #include <math.h>
@@ -96,19 +95,14 @@ static int compare(const struct scene *s, const struct camera *full, const uint8
 static int compare_file(const struct scene *s, const struct camera *c, const char *folder,
 	double *correlation, const struct report *to, struct err *e)
 {
-	char *path = file_join(folder, c->image, "", e);
 	uint8_t *rgb = NULL;
 	int height, width;
 	struct err why;
 
-	if (!path)
-		return -1;
-	if (image_read_rgb(path, &rgb, &height, &width, &why)) {
+	if (warping_read_photograph(c, folder, &rgb, &height, &width, &why)) {
 		report_note(to, 1, "%s: not compared: %s", c->name, why.message);
-		free(path);
 		return 1;
 	}
-	free(path);
 	const int bad = compare(s, c, rgb, height, width, correlation, e);
 	free(rgb);
 	if (!bad)

@@ -76,3 +76,28 @@ char *name_to_view(const char *text, struct err *e)
 			*p = '_';
 	return name;
 }
+
+/* A capital hexadecimal digit's value, or -1. */
+static int digit_value(char digit)
+{
+	static const char digits[] = "0123456789ABCDEF";
+	const char *at = digit ? strchr(digits, digit) : NULL;
+
+	return at ? (int)(at - digits) : -1;
+}
+
+char *name_from_file(const char *file, struct err *e)
+{
+	char *text = mem_strdup(file, e), *to = text;
+
+	for (const char *from = text; from && *from; from++) {
+		const int high = *from == '%' ? digit_value(from[1]) : -1,
+			  low = high >= 0 ? digit_value(from[2]) : -1;
+		const int is_escaped = low >= 0 && (high || low);
+		*to++ = (char)(is_escaped ? 16 * high + low : *from);
+		from += 2 * is_escaped;
+	}
+	if (text)
+		*to = 0;
+	return text;
+}

@@ -23,6 +23,10 @@ const char *name_fault(const char *name, enum name_kind kind, char fault[NAME_FA
  * digits for each byte. free() it; NULL with *e set when memory is out. */
 char *name_to_file(const char *text, struct err *e);
 
+/* The text of which name_to_file made a file name; what it would not have written stays. free() it; NULL with
+ * *e set when memory is out. */
+char *name_from_file(const char *file, struct err *e);
+
 /* A view's name from a part of a photograph's path: '/' becomes '_'; what a view's name cannot have, and ',',
  * which separates names in options, is written as above, but '%' stays. Different texts may have one name.
  * free() it; NULL with *e set when memory is out. */

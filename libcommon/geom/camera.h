@@ -8,6 +8,15 @@
 
 enum camera_split { SPLIT_TRAIN, SPLIT_TEST };
 
+/* The camera of a photograph that is not the pinhole's, in one of COLMAP's models: geom/lens.h. */
+struct lens_model;
+enum { LENS_PARAMETERS = 16 };
+struct lens {
+	const struct lens_model *model;	    /* NULL: the photograph is as the pinhole sees it */
+	int width, height;		    /* of the photograph */
+	double parameters[LENS_PARAMETERS]; /* fx, perhaps fy, cx, cy in its pixels, and what distorts */
+};
+
 struct camera {
 	char *name;  /* unique in a scene; owned */
 	char *image; /* path of the photograph as the scene's cameras.json has it, or NULL; owned */
@@ -15,6 +24,7 @@ struct camera {
 	double fx, fy, cx, cy;	      /* pixels; the centre of pixel (column i, row j) is (i+0.5, j+0.5) */
 	double world_to_camera[4][4]; /* row-major, rigid: x_camera = R x_world + t */
 	enum camera_split split;
+	struct lens lens;
 };
 
 struct cameras {

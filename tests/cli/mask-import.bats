@@ -172,9 +172,80 @@ made() {
 	says_like 3 "mask-import: bad.json: annotation 0: " "$BIN/mask-import" -o none bad.json
 	jq '.annotations[0].segmentation = {a: 1}' bad.json >worse.json && mv worse.json bad.json
 	bad "annotation 0: key 'segmentation' is neither polygons nor run lengths"
-	echo '{}' >bad.json && bad "no labels: neither LabelMe's JSON (shapes) nor COCO's (annotations) nor ISAT's (objects)"
+	echo '{}' >bad.json && bad "no labels: neither LabelMe's JSON (shapes) nor COCO's (annotations) nor ISAT's or Ref-LERF's (objects)"
 	echo '{' >bad.json && bad "not JSON at offset 2"
 	echo '{"frames":[]}' >bad.json && bad "cameras, a transforms.json: gs-import --cameras reads it"
+}
+
+@test "Ref-LERF: the pictures that its labels name, those of one category together" {
+	mkdir json gt_mask
+	picture gt_mask/a.png 'ffffff 000000 000000 000000' 'ffffff 000000 000000 000000' '000000 000000 000000 000000'
+	picture gt_mask/b.png '000000 000000 000000 000000' '000000 000000 000000 000000' '000000 000000 000000 010000'
+	for key in object objects; do
+		jq -n --arg key $key '{info: {name: "view_7.jpg", width: 9, height: 9}, ($key): [{category: "cup", segmentation: "a.png", sentence: ["x"]},
+			{category: "pen", segmentation: "b.png"}, {category: "cup", segmentation: "b.png"}]}' >json/view_7.json
+		printf '%s\n' '{"view":"view_7","object":"cup","segmentation":{"size":[3,4],"counts":[0,2,9,1]}}' \
+			'{"view":"view_7","object":"pen","segmentation":{"size":[3,4],"counts":[11,1]}}' >truth.jsonl
+		made json/view_7.json
+		[ "$(cat err)" = "mask-import: warning: json/view_7.json: 2 shapes are 'cup' in view view_7, and are taken as one thing" ]
+	done
+	rm gt_mask/b.png
+	says 4 "mask-import: json/../gt_mask/b.png: No such file or directory" "$BIN/mask-import" -o none json/view_7.json
+	jq 'del(.objects[1].category)' json/view_7.json >json/bad.json
+	says 3 "mask-import: json/bad.json: object 1: key 'category' is missing" "$BIN/mask-import" -o none json/bad.json
+}
+
+@test "a folder of masks: views, names, and classes.txt" {
+	mkdir -p tree/v2 tree/v1 tree/v1/deep
+	picture tree/v1/cup.png 'ffffff 000000' '000000 000000'
+	picture "tree/v1/a%2Fb%.png" '000000 010101' '000000 000000'
+	picture tree/v2/cup.png '000000 000000' '000000 808080'
+	picture tree/v2/black.png '000000 000000' '000000 000000'
+	cp tree/v1/cup.png tree/v1/.hidden.png
+	cp tree/v1/cup.png tree/stray.png
+	echo text >tree/v1/notes.txt
+	"$BIN/mask-import" -o masks tree
+	[ "$(jq -c '[.view, .object]' masks)" = '["v1","a/b%"]
+["v1","cup"]
+["v2","cup"]' ]
+	printf '%s\n' '{"view":"v1","object":"a/b%","segmentation":{"size":[2,2],"counts":[2,1,1]}}' '{"view":"v1","object":"cup","segmentation":{"size":[2,2],"counts":[0,1,3]}}' \
+		'{"view":"v2","object":"cup","segmentation":{"size":[2,2],"counts":[3,1]}}' >truth.jsonl
+	"$BIN/miou-score" --json --truth truth.jsonl masks | jq -e '.miou == 1 and .missing == 0 and .pairs == 3'
+	# what mask-export writes is read back
+	"$BIN/mask-export" --png again -o /dev/null masks
+	"$BIN/mask-import" again | cmp - masks
+	printf ' cup \r\nother\n' >tree/classes.txt
+	"$BIN/mask-import" tree | jq -r .object | sort -u >names
+	[ "$(cat names)" = cup ]
+	echo plate >tree/classes.txt
+	says 3 "mask-import: tree: has no masks VIEW/NAME.png of the names in classes.txt" "$BIN/mask-import" -o none tree
+	mkdir empty
+	says 3 "mask-import: empty: has no masks VIEW/NAME.png" "$BIN/mask-import" -o none empty
+	rm tree/classes.txt
+	echo broken >tree/v2/cup.png
+	says_like 3 "mask-import: tree/v2/cup.png: " "$BIN/mask-import" -o none tree
+	[ ! -e none ]
+}
+
+@test "mask records are written again" {
+	cp view_1.png black.png
+	printf '%s\n' '{"view":"v","ref":"r","object":"o","score":0.5,"visible":0.25,"segmentation":{"size":[3,4],"counts":[0,3,9]}}' '{"view":"v","object":"p","path":"black.png"}' >m.jsonl
+	"$BIN/mask-import" -o again.jsonl m.jsonl
+	[ "$(jq -c 'del(.segmentation)' again.jsonl)" = '{"view":"v","ref":"r","object":"o","score":0.5,"visible":0.25}
+{"view":"v","object":"p"}' ]
+	[ "$(jq -c .segmentation.size again.jsonl | sort -u)" = '[3,4]' ]
+	echo '{"view":"v"}' >m.jsonl
+	says_like 3 "mask-import: m.jsonl:1: " "$BIN/mask-import" -o none m.jsonl
+	[ ! -e none ]
+}
+
+# pictures of two shapes, the second wider and lower: one buffer is for both
+@test "COCO: pictures of several shapes" {
+	jq -n '{images: [{id: 1, file_name: "a.png", height: 40, width: 3}, {id: 2, file_name: "b.png", height: 3, width: 4000}], categories: [{id: 1, name: "o"}],
+		annotations: [1, 2 | {image_id: ., category_id: 1, segmentation: [[0, 0, 3, 0, 3, 3, 0, 3]]}]}' >coco.json
+	"$BIN/mask-import" -o masks coco.json
+	[ "$(jq -c .segmentation.size masks)" = '[40,3]
+[3,4000]' ]
 }
 
 # says_like STATUS BEGINNING COMMAND...

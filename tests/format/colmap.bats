@@ -11,7 +11,7 @@ setup() {
 }
 
 import() {
-	"$BIN/gs-import" --cameras model -o scene s.ply
+	"$BIN/gs-import" --cameras model -o scene "$@" s.ply
 }
 
 # bad_camera REASON LINE: as the first camera of the model; it is line 2.
@@ -86,12 +86,18 @@ bad_image() {
 	says 3 "gs-import: model/cameras.txt: camera 1 appears twice" import
 }
 
-@test "lens distortion" {
-	printf '1 SIMPLE_RADIAL 40 30 50 20 15 0.01\n' >model/cameras.txt
-	says 3 "gs-import: model/cameras.txt: camera 1: model SIMPLE_RADIAL has lens distortion; undistort the images first (colmap image_undistorter)" import
+@test "lens distortion: what it is, and the two ways out" {
+	printf '1 SIMPLE_RADIAL 40 30 50 20 15 0.01\n2 PINHOLE 40 30 50 50 20 15\n' >model/cameras.txt
+	ways="gs-import --undistort takes the pinhole of the same view, and so does 'colmap image_undistorter --image_path"
+	says 3 "gs-import: model: view 'b': camera model SIMPLE_RADIAL distorts: $ways IMAGES --input_path model --output_path undistorted'" import
+	mkdir photographs
+	says 3 "gs-import: model: view 'b': camera model SIMPLE_RADIAL distorts: $ways photographs --input_path model --output_path undistorted'" import --images photographs
+	[ ! -e scene ]
 	printf '1 SIMPLE_RADIAL 40 30 50 20 15 0\n2 FULL_OPENCV 40 30 50 51 20 15 0 0 0 0 0 0 0 0\n' >model/cameras.txt
 	import
 	[ "$(imported fy | tr -d '\n')" = '[51][50][50]' ]
+	import --undistort -o same
+	cmp scene/cameras.json same/cameras.json
 }
 
 @test "image lines" {
@@ -120,7 +126,7 @@ bad_image() {
 	says 3 "gs-import: model/cameras.bin: 7 bytes, too short for a COLMAP file" import
 	printf '\377\377\377\377\377\377\377\377' >model/cameras.bin
 	says 3 "gs-import: model/cameras.bin: 18446744073709551615 entries at offset 0 do not fit a file of 8 bytes" import
-	# One camera of model 12, which this program does not know the length of.
-	{ printf '\1\0\0\0\0\0\0\0\5\0\0\0\14\0\0\0'; head -c 64 /dev/zero; } >model/cameras.bin
-	says 3 "gs-import: model/cameras.bin: camera 5: model id 12 at offset 12 is unknown" import
+	# One camera of model 17, which this program does not know the length of.
+	{ printf '\1\0\0\0\0\0\0\0\5\0\0\0\21\0\0\0'; head -c 64 /dev/zero; } >model/cameras.bin
+	says 3 "gs-import: model/cameras.bin: camera 5: model id 17 at offset 12 is unknown" import
 }

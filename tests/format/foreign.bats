@@ -32,13 +32,15 @@ refused() {
 	[ ! -e out ] && [ ! -e scene ]
 }
 
+@test "Ref-LERF's labels" {
+	json '{"info":{"name":"a.jpg"},"object":[{"category":"cup"}]}' "labels of Ref-LERF: 'mask-import -o masks.jsonl f.json' makes mask records of their pictures in gt_mask"
+}
+
 @test "splats in other containers: the command that converts them" {
 	for kind in ksplat lcc lcc2; do
 		printf 'xxxxxxxxxxxxxxxx' >"a.b.$kind"
 		no_splats "a.b.$kind" "a .$kind file, not a .ply: 'npx @playcanvas/splat-transform a.b.$kind a.b.ply' converts it"
 	done
-	echo '{"asset":{"version":"2.0"}}' >a.gltf
-	no_splats a.gltf "glTF in several files, which is not read: export it as a .glb where it was made"
 	echo x >step.ckpt
 	no_splats step.ckpt "a checkpoint, not a .ply: nerfstudio writes one by 'ns-export gaussian-splat', 3DGS into point_cloud/iteration_N"
 	echo x >points3D.bin

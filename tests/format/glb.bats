@@ -212,3 +212,36 @@ values() {
 		"$BIN/gs-transform" -o none.glb s.glb
 	says 0 "none.glb: ok: glb, 0 gaussians, 1 harmonics" "$BIN/gs-check" none.glb
 }
+
+@test ".gltf: the JSON, and a file of numbers beside it" {
+	glb
+	import s.glb
+	cp scene/splats.safetensors first
+	mkdir -p "folder/my data"
+	gltf() { jq "$1" <<<"$json" >folder/s.gltf; }
+	xxd -r -p <<<"$numbers" >"folder/my data/n.bin"
+	gltf '.buffers[0].uri = "my%20data/n%2ebin"'
+	import folder/s.gltf
+	cmp first scene/splats.safetensors
+	says 0 "folder/s.gltf: ok: glb, 1 gaussians, 1 harmonics" "$BIN/gs-check" folder/s.gltf
+	(cd folder && "$BIN/gs-transform" -q -o ../back.glb s.gltf)
+	import back.glb
+	cmp first scene/splats.safetensors
+	rm -r scene
+	wrong() { says "$1" "gs-import: folder/$2" import folder/s.gltf && [ ! -e scene ]; }
+	gltf .
+	wrong 3 "s.gltf: buffer 0 has no file: key 'uri' is missing"
+	gltf 'del(.buffers)'
+	wrong 3 "s.gltf: buffer 0 has no file: key 'uri' is missing"
+	gltf '.buffers[0].uri = "data:application/octet-stream;base64,AAAA"'
+	wrong 3 "s.gltf: buffer 0 is 'data:application/oct...', not a file beside this one"
+	gltf '.buffers[0].uri = "https://example.org/n.bin"'
+	wrong 3 "s.gltf: buffer 0 is 'https://example.org/...', not a file beside this one"
+	gltf '.buffers[0].uri = "none.bin"'
+	wrong 4 "none.bin: No such file or directory"
+	head -c 55 "folder/my data/n.bin" >folder/n.bin
+	gltf '.buffers[0].uri = "n.bin"'
+	wrong 3 "s.gltf: KHR_gaussian_splatting:SH_DEGREE_0_COEF_0: 12 bytes from offset 44 do not fit a binary chunk of 55"
+	echo '{"asset"' >folder/s.gltf
+	wrong 3 "s.gltf: not JSON at offset 9"
+}

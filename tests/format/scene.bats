@@ -168,3 +168,17 @@ not() { ! "$@"; }
 	[ "$(grep -cE '^(cut|end)\.[0-9]+/(splats.safetensors|cameras.json): ' out)" = ${#folders[@]} ]
 	not grep ': ok: ' out
 }
+
+@test "a photograph's lens: read, kept, and each of its rules broken" {
+	lens() { entry 'model width height parameters' 'model="RADIAL"' width=6 height=5 'parameters=[5,2,1.5,0.1,-0.5]' "$@"; }
+	load foreign
+	printf '[%s]' "$(view "lens=$(lens)")" >scene/cameras.json
+	says 0 "scene/cameras.json: ok: scene cameras, 4x3, 1 training views, 0 test views" "$BIN/gs-check" scene/cameras.json
+	bad_view "key 'lens': key 'model' is missing" "lens=$(lens model=)"
+	bad_view "key 'lens': camera model 'RADIALS' is unknown" "lens=$(lens 'model="RADIALS"')"
+	bad_view "key 'lens': key 'width' is not a number" "lens=$(lens 'width="6"')"
+	bad_view "key 'lens': size 6.5x5 is not whole numbers in 1 to 65536" "lens=$(lens width=6.5)"
+	bad_view "key 'lens': key 'parameters' is not 5 numbers" "lens=$(lens 'parameters=[5,2,1.5,0.1]')"
+	bad_view "key 'lens': focal length is not positive" "lens=$(lens 'parameters=[0,2,1.5,0.1,0]')"
+	bad_view "key 'lens': key 'model' is missing" lens=5
+}

@@ -116,14 +116,31 @@ lens() {
 	says 3 "gs-import: transforms.json: view 'images/b.png': its focal length is not positive" import
 }
 
-@test "lenses that are not pinholes" {
-	for key in k1 k2 k3 k4 k5 k6 p1 p2; do
-		refused "key '$key': lens distortion -0.5; undistort the images first (colmap image_undistorter)" $key=-0.5
+@test "lenses that are not pinholes: refused, or their pinhole with --undistort" {
+	for key in k1 k2 k3 p1 p2; do
+		transforms $key=-0.05 >transforms.json
+		model=OPENCV
+		[ $key != k3 ] || model=FULL_OPENCV
+		says 3 "gs-import: transforms.json: view 'b': camera model $model distorts: gs-import --undistort takes the pinhole of the same view" import
 	done
-	bad_frame "key 'k1': lens distortion 0.25; undistort the images first (colmap image_undistorter)" k1=0.25
-	refused "key 'camera_model': 'OPENCV_FISHEYE' is not a perspective camera" 'camera_model="OPENCV_FISHEYE"'
+	for key in k4 k5 k6; do
+		refused "key '$key': -0.5, which is read with camera_model FULL_OPENCV only" $key=-0.5
+	done
+	refused "key 'k4' is not a number" k4='"x"'
 	bad_frame "key 'camera_model': 'EQUIRECTANGULAR' is not a perspective camera" 'camera_model="EQUIRECTANGULAR"'
-	refused "key 'is_fisheye': not a perspective camera" is_fisheye=true
 	transforms 'camera_model="OPENCV"' is_fisheye=false k1=0 k2=0 p1=0 p2=0.0 >transforms.json
 	import
+	jq -e '.[0].lens == null' scene/cameras.json
+	# of each key, as COLMAP orders them
+	undistorted() { rm -rf scene; "$BIN/gs-import" --undistort --cameras transforms.json -o scene s.ply && jq -c '.[0].lens | [.model, .width, .height, .parameters[]]' scene/cameras.json; }
+	transforms k1=0.5 k2=0.25 p1=0.125 p2=0.0625 >transforms.json
+	[ "$(undistorted)" = '["OPENCV",40,30,50,51,19,14,0.5,0.25,0.125,0.0625]' ]
+	transforms "frames=[$(frame k1=0.5 k2=0.25 k3=0.03125 p1=0.125 p2=0.0625)]" >transforms.json
+	[ "$(undistorted)" = '["FULL_OPENCV",40,30,50,51,19,14,0.5,0.25,0.125,0.0625,0.03125,0,0,0]' ]
+	transforms 'camera_model="FULL_OPENCV"' k1=0.5 k4=0.25 k5=0.125 k6=0.0625 >transforms.json
+	[ "$(undistorted)" = '["FULL_OPENCV",40,30,50,51,19,14,0.5,0,0,0,0,0.25,0.125,0.0625]' ]
+	transforms 'camera_model="OPENCV_FISHEYE"' k1=0.5 k2=0.25 k3=0.125 k4=0.0625 >transforms.json
+	[ "$(undistorted)" = '["OPENCV_FISHEYE",40,30,50,51,19,14,0.5,0.25,0.125,0.0625]' ]
+	transforms is_fisheye=true k1=0.5 >transforms.json
+	[ "$(undistorted)" = '["OPENCV_FISHEYE",40,30,50,51,19,14,0.5,0,0,0]' ]
 }

@@ -28,6 +28,7 @@
 #include "formats/text.h"
 #include "formats/vocab.h"
 #include "formats/weights.h"
+#include "geom/lens.h"
 
 #include <fcntl.h>
 #include <stdio.h>
@@ -51,7 +52,6 @@ static struct err e;
 	}
 
 SIMPLE(boxes, struct box_set, boxes_read, boxes_free)
-SIMPLE(camerafile, struct cameras, camerafile_read, cameras_free)
 SIMPLE(check, struct check, check_file, check_free)
 SIMPLE(features, struct features, features_open, features_close)
 SIMPLE(masks, struct masks, masks_read, masks_free)
@@ -112,6 +112,34 @@ static void try_image(const char *path)
 		free(mask);
 	if (!png_read_labels(path, &labels, &height, &width, &e))
 		free(labels);
+}
+
+/* The pinholes of lenses, and what they show, of pictures that do not take long. */
+static void try_lenses(struct cameras *c)
+{
+	enum { SIDE = 24 };
+	static int32_t map[4 * SIDE * SIDE];
+
+	for (size_t i = 0; i < c->n && i < 4; i++) {
+		struct lens *l = &c->views[i].lens;
+		l->width = l->width < SIDE ? l->width : SIDE;
+		l->height = l->height < SIDE ? l->height : SIDE;
+		if (!l->model)
+			continue;
+		lens_pinhole(l, &c->views[i]);
+		lens_map_to_view(l, &c->views[i], SIDE, SIDE, map);
+		lens_map_to_photograph(l, &c->views[i], SIDE, SIDE, map);
+	}
+}
+
+static void try_camerafile(const char *path)
+{
+	struct cameras c;
+
+	if (camerafile_read(&c, path, &e))
+		return;
+	try_lenses(&c);
+	cameras_free(&c);
 }
 
 static void try_dataparser(const char *path)

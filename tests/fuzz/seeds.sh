@@ -66,6 +66,11 @@ printf '{"images":[{"id":1,"file_name":"a.png","width":8,"height":6}],"categorie
 printf '{"info":{"name":"a.png","width":8,"height":6},"objects":[{"category":"cup","group":1,"layer":1,"segmentation":[[1,1],[5,1],[5,4]]}]}' >isat.json
 printf '[{"id":0,"img_name":"a","width":4,"height":3,"position":[0,0,0],"rotation":[[1,0,0],[0,1,0],[0,0,1]],"fx":5,"fy":5}]' >cameras3dgs.json
 printf '{"fl_x":5,"fl_y":5,"cx":2,"cy":1.5,"w":4,"h":3,"k1":0,"test_filenames":["a.png"],"frames":[{"file_path":"a.png","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]}' >transforms.json
+sed 's/"k1":0/"k1":0.1,"k2":-0.02,"p1":0.001/' transforms.json >lens.json
+sed 's/"k1":0/"k1":0.1,"k4":0.01,"camera_model":"FULL_OPENCV"/' transforms.json >rational.json
+sed 's/"k1":0/"k1":0.1,"is_fisheye":true/' transforms.json >fisheye.json
+jq -c 'map(.lens = {model: "RADIAL", width: 24, height: 16, parameters: [20, 12, 8, 0.1, -0.01]})' small/scene/cameras.json >lenses.json
+printf '{"info":{"name":"a.png","width":8,"height":6},"object":[{"category":"cup","segmentation":"a.png"}]}' >ref-lerf.json
 printf '{"transform":[[1,0,0,0],[0,1,0,0],[0,0,1,0]],"scale":0.5}' >dataparser.json
 {
 	printf 'ply\nformat binary_little_endian 1.0\nelement chunk 1\n'
@@ -79,11 +84,11 @@ printf '{"transform":[[1,0,0,0],[0,1,0,0],[0,0,1,0]],"scale":0.5}' >dataparser.j
 	printf '\1\2\3\4\1\2\3\200\1\2\3\4\1\2\3\4\5\6\7\10\5\6\7\10\5\6\7\10\5\6\7\10'
 } >packed.ply
 
-seed annotations labels.json coco.json isat.json
+seed annotations labels.json coco.json isat.json ref-lerf.json
 folder bert encoder/config.json encoder/model.safetensors
 seed boxes some-boxes.jsonl located.jsonl
-seed camerafile cameras3dgs.json transforms.json
-seed cameras small/scene/cameras.json
+seed camerafile cameras3dgs.json transforms.json lens.json rational.json fisheye.json
+seed cameras small/scene/cameras.json lenses.json
 REFERSPLAT_FUZZ_SEED=$work/checkpoint "$writer"
 seed checkpoint checkpoint
 folder colmap-text small/sparse/0/cameras.txt small/sparse/0/images.txt

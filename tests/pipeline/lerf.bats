@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# pipelines/lerf.mk on miniatures in the layouts of Ref-LERF and LERF-OVS, made from a small synthetic scene.
+# pipelines/lerf.mk on miniatures in the layouts of Ref-LERF, LERF-OVS and 3D-OVS, made from a small synthetic scene.
 
 setup_file() {
 	export BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
@@ -10,6 +10,7 @@ setup_file() {
 	made_truth
 	ref_lerf made/mini
 	lerf_ovs
+	threed_ovs
 }
 
 # Masks as pictures: those of the objects that are lifted from the true ones, with the name of the object as ref.
@@ -55,6 +56,22 @@ lerf_ovs() {
 			{category: $a, group: 1, segmentation: [[2, 2], [12, 2], [12, 12], [2, 12]], bbox: [2, 2, 12, 12]},
 			{category: $a, group: 1, segmentation: [[20, 2], [30, 2], [30, 12], [20, 12]], bbox: [20, 2, 30, 12]},
 			{category: $b, group: 2, segmentation: [[40, 20], [60, 20], [60, 40], [40, 40]], bbox: [40, 20, 60, 40]}]}' >"label/mini/$view.json"
+	done
+}
+
+# The test views' true masks, by classes with blanks around them; and a picture of a class that is in no list.
+threed_ovs() {
+	local view object
+	mkdir -p ovs3d/mini/segmentations ovs3d/mini/sparse
+	cp -r made/sparse/0 ovs3d/mini/sparse/0
+	cp -r made/images ovs3d/mini/images
+	jq -r '" \(.ref)\t"' made/names.jsonl | sed 's/$/\r/' >ovs3d/mini/segmentations/classes.txt
+	for view in $(tr , ' ' <made/test-views); do
+		mkdir -p "ovs3d/mini/segmentations/$view"
+		while read -r object; do
+			cp "made/png/$view/$object.png" "ovs3d/mini/segmentations/$view/$object.png"
+		done < <(jq -r .ref made/names.jsonl)
+		cp "made/png/$view/$(jq -r .ref made/names.jsonl | sed -n 1p).png" "ovs3d/mini/segmentations/$view/nothing.png"
 	done
 }
 
@@ -108,7 +125,36 @@ lerf() {
 	grep -qE '^  LangSplat +51.4$' ovs.out
 }
 
+@test "3D-OVS: pictures of classes are the truth of their views, classes the sentences" {
+	lerf 3d-ovs DATA=ovs3d/mini CANDIDATES=made/candidates.jsonl OUT=ovs3d/out >3d.out || { cat 3d.out; false; }
+	views=$(tr , '\n' <made/test-views | wc -l)
+	[ "$(jq -r .view ovs3d/out/benchmark/truth.jsonl | sort -u | paste -sd,)" = "$test_views" ]
+	[ "$(jq -r .object ovs3d/out/benchmark/truth.jsonl | sort -u)" = "$(jq -r .ref made/names.jsonl | sort -u)" ]
+	[ "$(jq -r .text ovs3d/out/benchmark/sentences.jsonl | sort | uniq -c | awk '{ print $1 }' | sort -u)" = 2 ]
+	# the same truth as of Ref-LERF's pictures, which are the same
+	"$BIN/mask-import" -q -o again.jsonl made/mini/json/*.json
+	"$BIN/miou-score" --json --quiet --truth ovs3d/out/benchmark/truth.jsonl again.jsonl | jq -e '.miou == 1 and .missing == 0'
+	jq -e '.pairs > 0 and .missing == 0 and .miou > 0.3' ovs3d/out/score.json
+	grep -qx "mini: mIoU $(printf %.1f "$(jq '100 * .miou' ovs3d/out/score.json)") in test views (ovs3d/out/score.json)" 3d.out
+	grep -q '^Published mIoU on 3D-OVS' 3d.out
+	grep -qE '^  LangSplat +93.4$' 3d.out
+	# a changed picture makes the truth again
+	again() { lerf 3d-ovs DATA=ovs3d/mini CANDIDATES=made/candidates.jsonl OUT=ovs3d/out >/dev/null; }
+	touch stamp
+	again
+	[ ! ovs3d/out/benchmark/truth.jsonl -nt stamp ]
+	touch -d '+2 seconds' ovs3d/mini/segmentations/*/nothing.png
+	again
+	[ ovs3d/out/benchmark/truth.jsonl -nt stamp ]
+}
+
 @test "what is not given, or not there" {
+	run lerf 3d-ovs DATA=made/mini CANDIDATES=made/candidates.jsonl
+	[ "$status" = 2 ]
+	[[ $output == *"made/mini/segmentations has no classes.txt"* ]]
+	run lerf 3d-ovs DATA=ovs3d/mini
+	[ "$status" = 2 ]
+	[[ $output == *"lerf.mk: CANDIDATES not set; "* ]]
 	run lerf ref-lerf DATA=made/mini
 	[ "$status" = 2 ]
 	[[ $output == *"lerf.mk: TEST_VIEWS not set; "* ]]
