@@ -207,15 +207,15 @@ static int put_labels(
 		report_warn(to, "%s: %zu shapes without an area are left out", file_name(path), a->left_out);
 	for (size_t i = 0; i < a->n; i++) {
 		const struct annotation *one = &a->items[i];
-		struct mask mask = {.view = one->view, .object = one->name, .score = NAN, .visible = NAN};
+		const struct mask mask = {.view = one->view,
+			.object = one->name,
+			.score = NAN,
+			.visible = NAN,
+			.rle = one->mask};
 		if (one->shapes > 1)
 			report_warn(to, "%s: %zu shapes are '%s' in view %s, and are taken as one thing",
 				file_name(path), one->shapes, one->name, one->view);
-		if (rle_encode(&mask.rle, one->mask, one->height, one->width, e))
-			return -1;
-		const int bad = rle_area(&mask.rle) ? masks_put(out, &mask, e) : 0;
-		rle_free(&mask.rle);
-		if (bad)
+		if (rle_area(&one->mask) && masks_put(out, &mask, e))
 			return -1;
 	}
 	return 0;
