@@ -52,7 +52,7 @@ folders() {
 	cat <<-END
 		gs-import -o out point_cloud.ply
 		gs-weigh -o out scene
-		gs-synth --objects 2 --views 3 --size 32x24 --gaussians 100 -o out
+		gs-synth --objects 2 --views 3 --size 32x24 --gaussians 1000 -o out
 		mask-export --png out -o /dev/null truth.jsonl
 		refer-render --scene scene --text text.safetensors --model model.safetensors --png out -o /dev/null
 		refer-locate --scene scene --model lifted.safetensors --all --each out -o /dev/null
@@ -123,7 +123,7 @@ maps() { commands | grep -vE '^(parse-train|pseudomask-select|mask-import|mask-e
 	cd "$BATS_FILE_TMPDIR/in"
 	err=$BATS_TEST_TMPDIR/err
 	while read -r tool args; do
-		args=${args/-o out/-o -}
+		[ "$tool" = refer-ask ] && args=${args/-o out/} || args=${args/-o out/-o -}
 		# The reader ends before anything is written.
 		(sleep 0.1; "$BIN/$tool" $args 2>"$err") | true
 		status=${PIPESTATUS[0]}
