@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
+#include "base/names.h"
 #include "base/path.h"
 #include "formats/annotations.h"
 #include "formats/jsonl.h"
@@ -239,11 +240,36 @@ int painting_is_labelled(const char *path)
 	return n > 5 && !strcasecmp(path + n - 5, ".json");
 }
 
+/* Pictures that are called the same in different folders are of one view. */
+static int warn_shared(const char *const *pictures, size_t count, const struct report *to, struct err *e)
+{
+	char **views = mem_zalloc(count, sizeof *views, "views", e);
+	struct names names = {0};
+	size_t earlier;
+	int bad = !views;
+
+	for (size_t i = 0; i < count && !bad; i++)
+		if (!painting_is_labelled(pictures[i]))
+			bad = !(views[i] = view_of(pictures[i], e));
+	bad = bad || names_make(&names, views, sizeof *views, 0, count, e);
+	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
+	if (twice != NAMES_NONE)
+		report_warn(to, "%s and %s are both of view '%s'", pictures[earlier], pictures[twice],
+			views[twice]);
+	names_free(&names);
+	for (size_t i = 0; views && i < count; i++)
+		free(views[i]);
+	free(views);
+	return bad ? -1 : 0;
+}
+
 static int put_all(struct painting_names *names, const char *const *pictures, size_t count, FILE *out,
 	const struct report *to, struct err *e)
 {
 	size_t seen = 0, labels = 0;
 
+	if (warn_shared(pictures, count, to, e))
+		return -1;
 	for (size_t i = 0; i < count; i++)
 		if (painting_is_labelled(pictures[i]) ? put_labelled(pictures[i], out, &labels, to, e)
 						      : put_picture(names, pictures[i], out, to, e))
