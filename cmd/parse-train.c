@@ -51,6 +51,7 @@ int main(int argc, char **argv)
 		cli_usage(&c, "--no-grammar needs --folds");
 	if (!write && !o.folds)
 		cli_refuse_terminal(&c);
+	cli_refuse_overwrite(&c, write ? "" : "TEXT readings readings-text", "output", NULL);
 	o.examples = c.operand_count ? c.operands[0] : "-";
 	o.output = c.output;
 	o.seed = c.seed;

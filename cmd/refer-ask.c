@@ -136,7 +136,9 @@ int main(int argc, char **argv)
 
 	cli_parse(&c, &tool, argc, argv);
 	check(&c);
-	cli_refuse_overwrite(&c, CLI_SCENE " model camera encoder:" BERT_MODEL_PARTS, "picture", NULL);
+	cli_refuse_overwrite(&c,
+		CLI_SCENE " model camera encoder:" BERT_MODEL_PARTS " RUN:scene|lifted|*.safetensors",
+		"picture", NULL);
 	options.asking.run = c.operands[0];
 	const int bad = run(&c, &a, &status, &e);
 	asking_close(&a);

@@ -84,6 +84,7 @@ int main(int argc, char **argv)
 	struct cli c;
 
 	cli_parse(&c, &tool, argc, argv);
+	cli_refuse_overwrite(&c, "TEXT parser", "output", NULL);
 	/* a sentence is too little to share among threads */
 	omp_set_num_threads(1);
 	return run(&c, weights, (enum method)method, &e) ? cli_fail(&c, &e) : cli_done(&c);

@@ -8,7 +8,6 @@
 #include "formats/png.h"
 #include "geom/views.h"
 #include "mask/polygon.h"
-#include "mask/rle.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,9 +22,9 @@ struct reading {
 	const char *path;
 	char where[WHERE]; /* "path: shape 3", for messages */
 	int height, width;
-	uint8_t *flips;
+	uint8_t *flips, *mask;
 	double *points;
-	size_t flips_room, points_room;
+	size_t flips_room, mask_room, points_room;
 };
 
 void annotations_free(struct annotations *a)
@@ -33,7 +32,7 @@ void annotations_free(struct annotations *a)
 	for (size_t i = 0; i < a->n; i++) {
 		free(a->items[i].view);
 		free(a->items[i].name);
-		free(a->items[i].mask);
+		rle_free(&a->items[i].mask);
 	}
 	free(a->items);
 	*a = (struct annotations){0};
@@ -65,9 +64,12 @@ static int set_size(
 		rle_check_size((int64_t)h, (int64_t)w, e))
 		return err_set(
 			e, ERR_FORMAT, "%s: %s and %s are no size of a picture", r->where, height, width);
+	if (picture_check_size(r->where, "the picture", (size_t)w, (size_t)h, e))
+		return -1;
 	r->height = (int)h;
 	r->width = (int)w;
-	if (mem_room((void **)&r->flips, &r->flips_room, (size_t)h * (size_t)w, 1, "mask", e))
+	if (mem_room((void **)&r->flips, &r->flips_room, (size_t)h * (size_t)w, 1, "mask", e) ||
+		mem_room((void **)&r->mask, &r->mask_room, (size_t)h * (size_t)w, 1, "mask", e))
 		return -1;
 	memset(r->flips, 0, (size_t)h * (size_t)w);
 	return 0;
@@ -82,7 +84,7 @@ static struct annotation *find(struct reading *r, const char *view, const char *
 
 	for (size_t i = 0; i < a->n; i++)
 		if (!strcmp(a->items[i].view, view) && !strcmp(a->items[i].name, name) &&
-			a->items[i].height == r->height && a->items[i].width == r->width)
+			a->items[i].mask.height == r->height && a->items[i].mask.width == r->width)
 			return &a->items[i];
 	if (reason) {
 		err_set(e, ERR_FORMAT, "%s: the label %s", r->where, reason);
@@ -91,9 +93,10 @@ static struct annotation *find(struct reading *r, const char *view, const char *
 	if (mem_grow((void **)&a->items, &a->capacity, a->n + 1, sizeof *a->items, "annotations", e))
 		return NULL;
 	struct annotation *one = &a->items[a->n++];
-	*one = (struct annotation){mem_strdup(view, e), mem_strdup(name, e), r->height, r->width,
-		mem_zalloc((size_t)r->height, (size_t)r->width, "mask", e), 0};
-	return one->view && one->name && one->mask ? one : NULL;
+	*one = (struct annotation){.view = mem_strdup(view, e), .name = mem_strdup(name, e)};
+	const uint32_t none[] = {(uint32_t)(r->height * r->width)};
+	return one->view && one->name && !rle_from_runs(&one->mask, none, 1, r->height, r->width, e) ? one
+												     : NULL;
 }
 
 /* A list of numbers, or of pairs of numbers: *count points. */
@@ -139,10 +142,30 @@ static int round_out(struct reading *r, int is_circle, size_t *count, struct err
 	return 0;
 }
 
-static void draw(struct reading *r, struct annotation *on, size_t count)
+/* Adds a mask of the picture's size to the annotation's. */
+static int unite(struct annotation *on, const struct rle *mask, struct err *e)
 {
-	polygon_fill(on->mask, r->flips, r->height, r->width, r->points, count);
+	struct rle both;
+
+	if (rle_unite(&both, &on->mask, mask, e))
+		return -1;
+	rle_free(&on->mask);
+	on->mask = both;
 	on->shapes++;
+	return 0;
+}
+
+static int draw(struct reading *r, struct annotation *on, size_t count, struct err *e)
+{
+	struct rle mask;
+
+	memset(r->mask, 0, (size_t)r->height * (size_t)r->width);
+	polygon_fill(r->mask, r->flips, r->height, r->width, r->points, count);
+	if (rle_encode(&mask, r->mask, r->height, r->width, e))
+		return -1;
+	const int bad = unite(on, &mask, e);
+	rle_free(&mask);
+	return bad;
 }
 
 static int read_shape(struct reading *r, const cJSON *shape, const char *view, struct err *e)
@@ -166,9 +189,7 @@ static int read_shape(struct reading *r, const cJSON *shape, const char *view, s
 		return 0;
 	}
 	struct annotation *on = find(r, view, label, e);
-	if (on)
-		draw(r, on, count);
-	return on ? 0 : -1;
+	return on && !draw(r, on, count, e) ? 0 : -1;
 }
 
 static int read_labelme(struct reading *r, const cJSON *root, struct err *e)
@@ -205,9 +226,7 @@ static int read_object(struct reading *r, const cJSON *object, const char *view,
 		return 0;
 	}
 	struct annotation *on = find(r, view, name, e);
-	if (on)
-		draw(r, on, count);
-	return on ? 0 : -1;
+	return on && !draw(r, on, count, e) ? 0 : -1;
 }
 
 static int read_isat(struct reading *r, const cJSON *root, struct err *e)
@@ -234,17 +253,19 @@ static int read_mask_picture(struct reading *r, const char *folder, const char *
 	const char *name, struct err *e)
 {
 	char *path = file_join(folder, picture, "", e);
-	uint8_t *mask = NULL;
-	const int bad = !path || png_read_mask(path, &mask, &r->height, &r->width, e);
+	uint8_t *pixels = NULL;
+	struct rle mask = {0};
+	int bad = !path || png_read_mask(path, &pixels, &r->height, &r->width, e) ||
+		  rle_encode(&mask, pixels, r->height, r->width, e);
 	struct annotation *on = bad ? NULL : find(r, view, name, e);
 
-	for (size_t i = 0; on && i < (size_t)r->height * (size_t)r->width; i++)
-		on->mask[i] |= mask[i];
+	bad = !on || unite(on, &mask, e);
 	if (on)
 		on->shapes++;
 	free(path);
-	free(mask);
-	return on ? 0 : -1;
+	free(pixels);
+	rle_free(&mask);
+	return bad ? -1 : 0;
 }
 
 static int read_ref_lerf(
@@ -320,7 +341,6 @@ static int take_runs(struct rle *rle, const cJSON *counts, int height, int width
 
 static int draw_runs(struct reading *r, struct annotation *on, const cJSON *counts, struct err *e)
 {
-	const size_t pixels = (size_t)r->height * (size_t)r->width;
 	struct rle rle;
 
 	if (take_runs(&rle, counts, r->height, r->width, e)) {
@@ -329,13 +349,9 @@ static int draw_runs(struct reading *r, struct annotation *on, const cJSON *coun
 			       ? err_set(e, ERR_FORMAT, "%s: %.300s", r->where, inner.message)
 			       : -1;
 	}
-	rle_decode(&rle, r->flips);
-	for (size_t i = 0; i < pixels; i++)
-		on->mask[i] |= r->flips[i];
-	memset(r->flips, 0, pixels);
+	const int bad = unite(on, &rle, e);
 	rle_free(&rle);
-	on->shapes++;
-	return 0;
+	return bad;
 }
 
 /* Polygons, of which all are parts of the thing, or run lengths. */
@@ -361,9 +377,8 @@ static int read_segmentation(
 		if (!cJSON_IsArray(polygon))
 			return err_set(e, ERR_FORMAT,
 				"%s: key 'segmentation' is neither polygons nor run lengths", r->where);
-		if (take_points(r, polygon, &count, e))
+		if (take_points(r, polygon, &count, e) || draw(r, on, count, e))
 			return -1;
-		draw(r, on, count);
 	}
 	on->shapes = before + 1;
 	return 0;
@@ -434,6 +449,7 @@ int annotations_read(struct annotations *a, const char *path, struct err *e)
 	const int bad = !root || read_any(&r, root, path, e);
 	cJSON_Delete(root);
 	free(r.flips);
+	free(r.mask);
 	free(r.points);
 	return bad ? -1 : 0;
 }

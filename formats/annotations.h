@@ -3,15 +3,14 @@
 #define FORMATS_ANNOTATIONS_H
 
 #include "base/err.h"
+#include "mask/rle.h"
 
 #include <stddef.h>
-#include <stdint.h>
 
 /* What a picture has of one label. */
 struct annotation {
 	char *view, *name;
-	int height, width;
-	uint8_t *mask; /* (height,width) 0 or 1: all shapes of the label */
+	struct rle mask; /* all shapes of the label */
 	size_t shapes;
 };
 

@@ -138,6 +138,7 @@ struct source {
 	struct safetensors st;
 	const char *prefix;	   /* "bert." or "" */
 	const char *scale, *shift; /* "weight" and "bias"; "gamma" and "beta" in old checkpoints */
+	int is_trial;		   /* tensors are looked for, and nothing is read */
 	struct err *e;
 };
 
@@ -160,8 +161,10 @@ static int load(struct source *s, const char *name, const char *part, float *out
 	const struct st_tensor *t = need(s, name, part, rows, columns);
 	size_t count = (size_t)columns * (rows ? (size_t)rows : 1);
 
-	if (!t || safetensors_to_float(t, out, count, s->e))
+	if (!t || (!s->is_trial && safetensors_to_float(t, out, count, s->e)))
 		return -1;
+	if (s->is_trial)
+		return 0;
 	for (size_t i = 0; i < count; i++)
 		if (!isfinite(out[i]))
 			return err_set(s->e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite",
@@ -190,7 +193,8 @@ static int load_norm(
 
 static int load_layer(struct source *s, const struct bert *b, int i)
 {
-	const struct bert_layer *l = &b->layers[i];
+	static const struct bert_layer none;
+	const struct bert_layer *l = s->is_trial ? &none : &b->layers[i];
 	int width = b->width;
 	char at[64];
 
@@ -217,12 +221,8 @@ static void find_names(struct source *s)
 	}
 }
 
-static int load_all(struct source *s, struct bert *b)
+static int load_tensors(struct source *s, const struct bert *b)
 {
-	/* Before memory is taken for sizes that the file may not have. */
-	find_names(s);
-	if (!need(s, "embeddings.word_embeddings", "weight", b->words, b->width) || bert_alloc(b, s->e))
-		return -1;
 	if (load(s, "embeddings.word_embeddings", "weight", b->word, b->words, b->width) ||
 		load(s, "embeddings.position_embeddings", "weight", b->position, b->positions, b->width) ||
 		load(s, "embeddings.token_type_embeddings", "weight", b->type, b->types, b->width) ||
@@ -232,6 +232,17 @@ static int load_all(struct source *s, struct bert *b)
 		if (load_layer(s, b, i))
 			return -1;
 	return 0;
+}
+
+/* That the file has all tensors is known before memory is taken for them. */
+static int load_all(struct source *s, struct bert *b)
+{
+	find_names(s);
+	s->is_trial = 1;
+	if (load_tensors(s, b) || bert_alloc(b, s->e))
+		return -1;
+	s->is_trial = 0;
+	return load_tensors(s, b);
 }
 
 int bert_model_read(struct bert *b, const char *dir, struct err *e)

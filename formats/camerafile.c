@@ -96,14 +96,16 @@ static char *try_file(const char *dir, const char *name, const char *suffix, str
 	return NULL;
 }
 
+/* The folder is the user's, the name another program's: it cannot lead out of the folder. */
 static char *find_image(const char *dir, const char *image, struct err *e)
 {
+	const int leaves = path_leaves(image);
 	static const char *const suffixes[] = {"", ".jpg", ".JPG", ".jpeg", ".JPEG", ".png", ".PNG"};
 	size_t tries = image[view_stem(image)] ? 1 : sizeof suffixes / sizeof *suffixes;
 	char *path = NULL;
 
 	for (size_t i = 0; !path && i < tries; i++) {
-		path = try_file(dir, image, suffixes[i], e);
+		path = leaves ? NULL : try_file(dir, image, suffixes[i], e);
 		if (!path)
 			path = try_file(dir, view_base(image), suffixes[i], e);
 	}

@@ -20,6 +20,9 @@ static int check_numbers(const struct features *f, struct err *e)
 		if (f->labels && f->labels[i] < -1)
 			return err_set(e, ERR_FORMAT, "%s: tensor 'labels': item %zu is %d, below -1", path,
 				i, (int)f->labels[i]);
+		if (f->labels && f->labels[i] > FEATURES_MAX_LABEL)
+			return err_set(e, ERR_FORMAT, "%s: tensor 'labels': item %zu is %d, above %d", path,
+				i, (int)f->labels[i], FEATURES_MAX_LABEL);
 	}
 	return 0;
 }

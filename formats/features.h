@@ -10,7 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { FEATURES_MAX_CHANNELS = 65536 };
+/* Memory is taken for as many labels as the largest one says. */
+enum { FEATURES_MAX_CHANNELS = 65536, FEATURES_MAX_LABEL = (1 << 24) - 1 };
 
 struct features {
 	size_t gaussians, channels; /* channels: 0 where there are labels in place of features */

@@ -10,6 +10,10 @@
 #include <jpeglib.h>
 #include <jerror.h>
 
+/* Huffman codes take at least a bit for each block of 64 samples, of which one of the colours has a quarter
+ * of the pixels or more: a byte for 2048. Twice that is refused; arithmetic coding knows no such limit. */
+enum { PIXELS_A_BYTE = 4096 };
+
 /* libjpeg's error manager, the place to jump to, and what was allocated by then. */
 struct jpeg_job {
 	struct jpeg_error_mgr manager; /* first: libjpeg hands back a pointer to it */
@@ -52,6 +56,10 @@ static int decode(struct jpeg_job *job, FILE *in)
 	jpeg_stdio_src(jpeg, in);
 	jpeg_read_header(jpeg, TRUE);
 	if (picture_check_size(job->name, "JPEG", jpeg->image_width, jpeg->image_height, job->e))
+		return -1;
+	const uint64_t pixels = (uint64_t)jpeg->image_width * jpeg->image_height;
+	if (!jpeg->arith_code && picture_check_bytes(job->name, "JPEG", jpeg->image_width, jpeg->image_height,
+					 pixels / PIXELS_A_BYTE, in, job->e))
 		return -1;
 	if (jpeg->jpeg_color_space == JCS_CMYK || jpeg->jpeg_color_space == JCS_YCCK)
 		return err_set(job->e, ERR_FORMAT, "%s: JPEG: CMYK colours are not supported", job->name);

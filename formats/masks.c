@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/names.h"
 #include "base/number.h"
+#include "base/path.h"
 #include "formats/png.h"
 
 #include <math.h>
@@ -85,6 +86,9 @@ static int read_image(const struct jsonl *j, const char *name, struct rle *mask,
 {
 	uint8_t *pixels;
 	int height, width, bad = -1;
+
+	if (j->in != stdin && path_leaves(name))
+		return jsonl_err(j, e, "key 'path': '%.200s' is not in the folder of this file", name);
 	char *dir = file_dir(j->path, e);
 	char *path = dir ? file_join(dir, name, "", e) : NULL;
 

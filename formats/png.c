@@ -8,8 +8,9 @@
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
-enum { MAX_SIDE = 65536 };
+enum { MAX_SIDE = 65536, DEFLATE_RATIO = 1032 /* what a byte of deflate can become at most */ };
 
 /* What libpng reports, and what must be released when it jumps out. */
 struct png_job {
@@ -31,6 +32,17 @@ int picture_check_size(const char *path, const char *kind, size_t width, size_t 
 		return 0;
 	return err_set(e, ERR_FORMAT, "%s: %s: %zux%zu pixels, more than %d altogether", path, kind, width,
 		height, PICTURE_PIXELS_MAX);
+}
+
+int picture_check_bytes(const char *path, const char *kind, size_t width, size_t height, uint64_t least,
+	FILE *in, struct err *e)
+{
+	struct stat st;
+
+	if (fstat(fileno(in), &st) || !S_ISREG(st.st_mode) || least <= (uint64_t)st.st_size)
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: %s: %zux%zu pixels do not fit a file of %lld bytes", path, kind,
+		width, height, (long long)st.st_size);
 }
 
 static _Noreturn void on_error(png_structp png, png_const_charp message)
@@ -94,8 +106,11 @@ static int decode(struct png_job *job, FILE *in)
 	png_set_read_fn(job->png, in, read_bytes);
 	png_set_user_limits(job->png, MAX_SIDE, MAX_SIDE);
 	png_read_info(job->png, job->info);
-	if (picture_check_size(job->path, "PNG", png_get_image_width(job->png, job->info),
-		    png_get_image_height(job->png, job->info), job->e))
+	const size_t width = png_get_image_width(job->png, job->info),
+		     height = png_get_image_height(job->png, job->info);
+	const uint64_t packed = (uint64_t)png_get_rowbytes(job->png, job->info) * height / DEFLATE_RATIO;
+	if (picture_check_size(job->path, "PNG", width, height, job->e) ||
+		picture_check_bytes(job->path, "PNG", width, height, packed, in, job->e))
 		return -1;
 	const int type = png_get_color_type(job->png, job->info);
 	if (job->is_labels && type != PNG_COLOR_TYPE_PALETTE && type & PNG_COLOR_MASK_COLOR)

@@ -7,12 +7,18 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 /* A picture of more pixels is refused before memory is taken for it: 2^28, those of 16384 x 16384. */
 enum { PICTURE_PIXELS_MAX = 1 << 28 };
 
 /* 0 where the size is within that limit, else -1 with *e (ERR_FORMAT); `kind` is PNG or JPEG. */
 int picture_check_size(const char *path, const char *kind, size_t width, size_t height, struct err *e);
+
+/* 0 where a picture that takes at least so many bytes can be in the file: what is read from a pipe can. Else
+ * -1 with *e (ERR_FORMAT). */
+int picture_check_bytes(const char *path, const char *kind, size_t width, size_t height, uint64_t least,
+	FILE *in, struct err *e);
 
 /* A PNG as a mask: pixels (height,width) get 1 where any colour channel is nonzero (alpha ignored). free()
  * it. */

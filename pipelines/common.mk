@@ -29,7 +29,8 @@ unsafe := : ; & ' " ` $$ \ * ? [ ] { } < > | ! ~ % = $(hash) $(open) $(close)
 found_in = $(if $(findstring $(newline),$(1)),newline,$(if $(findstring $(space),$(1))$(findstring $(tab),$(1)),blank,$(firstword \
 	$(foreach c,$(unsafe),$(if $(findstring $(c),$(1)),$(c))))))
 refuse = $(error $(1) has a $(2), which file names cannot have here; use a symbolic link with another name)
-check_path = $(if $(call found_in,$($(1))),$(call refuse,$(1),$(call found_in,$($(1)))))
+check_path = $(if $(call found_in,$($(1))),$(call refuse,$(1),$(call found_in,$($(1)))))$(if $(filter -%,$($(1))),$(error \
+	$(1) begins with a dash; write ./$($(1))))
 check_line = $(if $(findstring $(newline),$($(1))),$(error $(1) has a newline))
 
 # What the user gives is taken as it is: no $ in it stands for anything, here or where make exports it. $(call take,VARIABLE)

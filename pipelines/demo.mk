@@ -26,6 +26,7 @@ help:
 
 .PHONY: demo
 .DEFAULT_GOAL := demo
+page = all of it on one page; open in a browser: file://$(abspath $(DEMO))/report.html
 demo: $(data)/made-by
 	@$(MAKE) --no-print-directory -f $(here)lift.mk predictions overlays scores lifted WORDS=1 SCENE=$(DEMO) SPLATS=$(data)/point_cloud.ply \
 		CAMERAS=$(data)/sparse/0 IMAGES=$(data)/images TEST_VIEWS="$$(cat $(data)/test-views)" SENTENCES=$(data)/sentences.jsonl \
@@ -33,7 +34,7 @@ demo: $(data)/made-by
 		SCALE=$(call quoted,SCALE) ITERATIONS=$(call quoted,ITERATIONS) SEED=$(call quoted,SEED) \
 		$(if $(TRAIN),TRAIN=$(call quoted,TRAIN)) $(if $(TEACH),TEACH=$(call quoted,TEACH)) BIN=$(call quoted,BIN) BERT=$(call quoted,BERT)
 	@$(tool)refer-report --truth $(data)/truth.jsonl $(DEMO)
-	@echo "all of it on one page; open in a browser: file://$(abspath $(DEMO))/report.html"
+	@printf '%s\n' $(call quoted,page)
 
 # The command that made the data, once they are whole. They stay as they are while it is the same.
 $(data)/made-by: $(if $(call same,$(file <$(data)/made-by),$(make_data)),,FORCE)

@@ -66,9 +66,11 @@ $(call track,views)
 ifeq ($(benchmark),ref-lerf)
 $(OUT)/log/views.command: FORCE
 	@mkdir -p $(@D) && printf '%s' $(call quoted,command.views) | cmp -s - $@ || printf '%s' $(call quoted,command.views) >$@
+# Records name masks in their own folder: a link there leads to the data's.
+gt_mask = $(abspath $(DATA))/gt_mask
 $(foreach w,sentences masks truth,$(made)/$(w).jsonl): $(made)/%.jsonl: $(said) $(OUT)/log/views.command $(here)ref-lerf.jq
-	@mkdir -p $(@D)
-	@jq -n -c --arg what $* --arg test $(call quoted,TEST_VIEWS) --arg masks '$(abspath $(DATA))/gt_mask' -f $(here)ref-lerf.jq $(said) >$@
+	@mkdir -p $(@D) && ln -sfn $(call quoted,gt_mask) $(@D)/gt_mask
+	@jq -n -c --arg what $* --arg test $(call quoted,TEST_VIEWS) --arg masks gt_mask -f $(here)ref-lerf.jq $(said) >$@
 else
 # Names of classes have blanks, so of 3D-OVS's pictures a list of their times is watched.
 $(made)/segmentations: FORCE

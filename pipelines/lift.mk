@@ -34,10 +34,15 @@ whole := $(if $(WHOLE),$(SCENE)/lifted/whole.jsonl)
 lifted_scores := $(if $(TRUTH),$(if $(MASKS),,$(SCENE)/lifted/masks.score.json) $(answers:.jsonl=.score.json)) $(whole:.jsonl=.score.json) \
 	$(if $(BOXES),$(SCENE)/lifted/boxes.score.json)
 
+# What is typed to ask, for a shell, whatever is in the names.
+typed = $(if $(call found_in,$(1)),$(call quote,$(1)),$(1))
+typed_encoder := $(if $(filter-out file,$(origin BERT)), --encoder $(call typed,$(BERT)))
+to_ask = to ask it: $(call typed,$(if $(BIN),$(BIN)/)refer-ask)$(typed_encoder) $(SCENE) 'where is the ...?'$(if $(WORDS), (all figures: $(here)report.sh $(SCENE)))
+
 .PHONY: lifted
 lifted: $(answers) $(whole) $(SCENE)/lifted/boxes.jsonl $(if $(TEST_VIEWS),$(SCENE)/lifted/overlays/complete) $(lifted_scores)
 	@$(here)report.sh $(if $(WORDS),--words) $(SCENE)
-	@$(if $(WORDS),,echo && )echo "to ask it: $(if $(BIN),$(BIN)/)refer-ask$(if $(filter-out file,$(origin BERT)), --encoder $(BERT)) $(SCENE) 'where is the ...?'$(if $(WORDS), (all figures: $(here)report.sh $(SCENE)))"
+	@$(if $(WORDS),,echo && )printf '%s\n' $(call quoted,to_ask)
 
 # The steps.
 ask3 = refer-render --scene $(SCENE)/scene --text $(1) --model $(model3)

@@ -184,7 +184,8 @@ $(SCENE)/%.score.json: $(SCENE)/%.jsonl $(truth) $(SCENE)/log/score.command
 	$(hide)$(tool)$(command.score) -o $@ $<
 
 # Of lift.mk, what it makes.
+page = open in a browser: file://$(abspath $(SCENE))/report.html
 report: $(if $(filter lifted,$(.DEFAULT_GOAL)),lifted,predictions scores)
 	@$(if $(filter lifted,$^),,$(here)report.sh $(SCENE))
 	@$(call run,page)
-	@echo "open in a browser: file://$(abspath $(SCENE))/report.html"
+	@printf '%s\n' $(call quoted,page)

@@ -4,7 +4,7 @@
 set -eu
 count=$1 truth=$2 sentences=$3 predictions=$4
 tool=${BIN:+$BIN/}
-jq -r '.ref' "$predictions" | sort -u | while read -r ref; do
+jq -r '.ref' "$predictions" | sort -u | while IFS= read -r ref; do
 	jq -c --arg ref "$ref" 'select(.ref == $ref)' "$predictions" |
 		"${tool}miou-score" --json --quiet --predicted-views --truth "$truth" - |
 		jq -r --arg ref "$ref" --slurpfile sentences "$sentences" \

@@ -7,6 +7,7 @@
 #include "cmd/jobs/warping.h"
 #include "formats/jsonl.h"
 #include "formats/masks.h"
+#include "formats/png.h"
 #include "formats/scene.h"
 
 #include <math.h>
@@ -253,6 +254,8 @@ int exporting_write_pngs(const struct exporting *x, const char *dir, struct err 
 
 	for (size_t i = 0; i < x->masks.n && !bad; i++) {
 		const struct mask *m = &x->masks.items[i];
+		if (picture_check_size(x->path, png_name(m), (size_t)m->rle.width, (size_t)m->rle.height, e))
+			return -1;
 		uint8_t *pixels = mem_alloc((size_t)m->rle.height, (size_t)m->rle.width, x->path, e);
 		const struct picture one = {.view = m->view,
 			.ref = png_name(m),

@@ -126,9 +126,9 @@ static int learn_from(struct learning *l, const struct report *to, struct err *e
 			d->left_out);
 	if (d->test_masks)
 		report_note(to, 1, "%zu masks of test views are not used", d->test_masks);
-	if (file_out_probe(o->output, e) || (o->checkpoint_path && file_out_probe(o->checkpoint_path, e)) ||
-		start(l, to, e) || resume(l, to, e) ||
-		trainlog_open(&l->log, o->log, l->trainer.state.iteration, e))
+	if (file_out_claim(&l->claim, o->output, e) ||
+		(o->checkpoint_path && file_out_probe(o->checkpoint_path, e)) || start(l, to, e) ||
+		resume(l, to, e) || trainlog_open(&l->log, o->log, l->trainer.state.iteration, e))
 		return -1;
 	if (take_steps(l, to, e) || training_write(d, &l->trainer, o->trainer.similarity, o->precision,
 					    o->output, l->of.identity, o->trainer.seed, e))
@@ -144,6 +144,7 @@ int learn(struct learning *l, const struct learning_options *options, const stru
 
 	l->options = options;
 	int bad = learn_from(l, to, e);
+	file_out_abort(&l->claim);
 	if (trainlog_close(&l->log, &late) && !bad) {
 		*e = late;
 		bad = -1;

@@ -4,6 +4,7 @@
 #define CMD_JOBS_LEARN_H
 
 #include "base/err.h"
+#include "base/file.h"
 #include "base/report.h"
 #include "cmd/jobs/training.h"
 #include "formats/checkpoint.h"
@@ -32,6 +33,7 @@ struct learning {
 	const struct learning_options *options;
 	struct training data;
 	struct trainer trainer;
+	struct file_out claim; /* of the model, as long as it is learnt */
 	struct trainlog log;
 	struct divergence divergence;
 	struct checkpoint_of of;

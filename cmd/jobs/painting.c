@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
+#include "base/names.h"
 #include "base/path.h"
 #include "cmd/jobs/mask_tree.h"
 #include "formats/annotations.h"
@@ -227,11 +228,11 @@ static int put_labels(const struct annotations *a, const char *path, struct warp
 		if (one->shapes > 1)
 			report_warn(to, "%s: %zu shapes are '%s' in view %s, and are taken as one thing",
 				file_name(path), one->shapes, one->name, one->view);
-		if (rle_encode(&mask.rle, one->mask, one->height, one->width, e))
-			return -1;
-		if (!rle_area(&mask.rle))
-			rle_free(&mask.rle);
-		else if (put_mask(&mask, w, path, out, e))
+		const struct rle *shown = &one->mask;
+		if (!rle_area(shown))
+			continue;
+		if (rle_from_runs(&mask.rle, shown->runs, shown->n, shown->height, shown->width, e) ||
+			put_mask(&mask, w, path, out, e))
 			return -1;
 	}
 	return 0;
@@ -341,11 +342,36 @@ static int put_any(struct painting_names *names, const char *path, struct warpin
 	return put_picture(names, path, w, out, to, e);
 }
 
+/* Pictures that are called the same in different folders are of one view. */
+static int warn_shared(const char *const *pictures, size_t count, const struct report *to, struct err *e)
+{
+	char **views = mem_zalloc(count, sizeof *views, "views", e);
+	struct names names = {0};
+	size_t earlier;
+	int bad = !views;
+
+	for (size_t i = 0; i < count && !bad; i++)
+		if (painting_needs_names(pictures[i]))
+			bad = !(views[i] = view_of(pictures[i], e));
+	bad = bad || names_make(&names, views, sizeof *views, 0, count, e);
+	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
+	if (twice != NAMES_NONE)
+		report_warn(to, "%s and %s are both of view '%s'", pictures[earlier], pictures[twice],
+			views[twice]);
+	names_free(&names);
+	for (size_t i = 0; views && i < count; i++)
+		free(views[i]);
+	free(views);
+	return bad ? -1 : 0;
+}
+
 static int put_all(struct painting_names *names, const char *const *pictures, size_t count, struct warping *w,
 	FILE *out, const struct report *to, struct err *e)
 {
 	size_t seen = 0, labels = 0;
 
+	if (warn_shared(pictures, count, to, e))
+		return -1;
 	for (size_t i = 0; i < count; i++)
 		if (put_any(names, pictures[i], w, out, &labels, to, e))
 			return -1;

@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -77,6 +78,54 @@ fail:
 	return -1;
 }
 
+/* What is mapped now, for file_at: entries are taken and given back by atomic operations on their state. */
+enum { MAPS = 64, MAP_NAME = 1024, MAP_FREE = 0, MAP_BUSY, MAP_KNOWN };
+
+static struct known_map {
+	int state;
+	const unsigned char *data;
+	size_t len;
+	char name[MAP_NAME];
+} known_maps[MAPS];
+
+static void know(const struct file_map *map, const char *path)
+{
+	for (int i = 0; i < MAPS; i++) {
+		struct known_map *k = &known_maps[i];
+		int is_free = MAP_FREE;
+		if (!__atomic_compare_exchange_n(
+			    &k->state, &is_free, MAP_BUSY, 0, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+			continue;
+		k->data = map->data;
+		k->len = map->len;
+		snprintf(k->name, sizeof k->name, "%s", path);
+		__atomic_store_n(&k->state, MAP_KNOWN, __ATOMIC_SEQ_CST);
+		return;
+	}
+}
+
+static void forget(const struct file_map *map)
+{
+	for (int i = 0; i < MAPS; i++)
+		if (__atomic_load_n(&known_maps[i].state, __ATOMIC_SEQ_CST) == MAP_KNOWN &&
+			known_maps[i].data == map->data)
+			__atomic_store_n(&known_maps[i].state, MAP_FREE, __ATOMIC_SEQ_CST);
+}
+
+const char *file_at(const void *address)
+{
+	const uintptr_t at = (uintptr_t)address;
+
+	for (int i = 0; i < MAPS; i++) {
+		const struct known_map *k = &known_maps[i];
+		const uintptr_t begin = (uintptr_t)k->data;
+		if (__atomic_load_n(&k->state, __ATOMIC_SEQ_CST) == MAP_KNOWN && at >= begin &&
+			at - begin < k->len)
+			return k->name;
+	}
+	return NULL;
+}
+
 int file_map(const char *path, struct file_map *map, struct err *e)
 {
 	struct stat st;
@@ -109,15 +158,18 @@ int file_map(const char *path, struct file_map *map, struct err *e)
 	map->data = mapped;
 	map->len = (size_t)st.st_size;
 	map->is_mapped = 1;
+	know(map, path);
 	return 0;
 }
 
 void file_unmap(struct file_map *map)
 {
-	if (map->is_mapped)
+	if (map->is_mapped) {
+		forget(map);
 		munmap((void *)(size_t)map->data, map->len);
-	else
+	} else {
 		free((void *)(size_t)map->data);
+	}
 	*map = (struct file_map){0};
 }
 
@@ -194,6 +246,18 @@ fail:
 	return -1;
 }
 
+/* errno of a failed write: of the last one, or where that is forgotten, of another try. */
+static void find_why(const struct file_out *out)
+{
+	if (!errno && ferror(out->stream)) {
+		clearerr(out->stream);
+		if (putc(0, out->stream) != EOF)
+			fflush(out->stream);
+	}
+	if (!errno)
+		errno = EIO;
+}
+
 int file_out_commit(struct file_out *out, struct err *e)
 {
 	const char *name = is_standard(out->path) ? "stdout" : out->path;
@@ -201,8 +265,7 @@ int file_out_commit(struct file_out *out, struct err *e)
 
 	errno = 0;
 	if (fflush(out->stream) || ferror(out->stream) || (out->temporary && fsync(fileno(out->stream)))) {
-		if (!errno) /* an earlier write failed, and why is forgotten */
-			errno = EIO;
+		find_why(out);
 		bad = err_errno(e, "%s", name);
 	}
 	/* Before it is closed: its lock, without which another run takes it for a leftover, ends with that.
@@ -230,7 +293,7 @@ void file_out_abort(struct file_out *out)
 
 int file_out_end(struct file_out *out, int bad, struct err *e)
 {
-	if (!bad)
+	if (!bad || (out->stream && ferror(out->stream)))
 		return file_out_commit(out, e);
 	file_out_abort(out);
 	return -1;
@@ -246,18 +309,37 @@ int file_out_put(const char *path, int (*put)(FILE *out, const void *what, struc
 	return file_out_end(&out, put(out.stream, what, e), e);
 }
 
+/* A pipe that is opened and closed again would end for its reader. */
+static int is_no_file(const char *path)
+{
+	struct stat st;
+
+	return is_standard(path) || (!stat(path, &st) && !S_ISREG(st.st_mode) && !S_ISDIR(st.st_mode));
+}
+
 int file_out_probe(const char *path, struct err *e)
 {
 	struct file_out out;
-	struct stat st;
 
-	/* A pipe that is opened and closed again would end for its reader. */
-	if (is_standard(path) || (!stat(path, &st) && !S_ISREG(st.st_mode) && !S_ISDIR(st.st_mode)))
+	if (is_no_file(path))
 		return 0;
 	if (file_out_open(&out, path, e))
 		return -1;
 	file_out_abort(&out);
 	return 0;
+}
+
+int file_out_claim(struct file_out *out, const char *path, struct err *e)
+{
+	*out = (struct file_out){0};
+	if (is_no_file(path))
+		return 0;
+	if (file_out_open(out, path, e))
+		return -1;
+	if (!out->temporary || !temporary_is_shared(out->temporary))
+		return 0;
+	file_out_abort(out);
+	return err_set(e, ERR_SYSTEM, "%s: another run is writing it", path);
 }
 
 int file_make_dir(const char *path, struct err *e)

@@ -20,6 +20,10 @@ struct file_map {
 int file_map(const char *path, struct file_map *map, struct err *e);
 void file_unmap(struct file_map *map);
 
+/* The path of the mapped file that has this address, or NULL. For the handler of SIGBUS, which comes where a
+ * page cannot be read or the file was cut short meanwhile. Of many maps at a time only some are known. */
+const char *file_at(const void *address);
+
 /* An input stream for path; "-" gives stdin. NULL with *e set. Close with file_close. */
 FILE *file_open(const char *path, struct err *e);
 void file_close(FILE *in);
@@ -41,7 +45,8 @@ int file_out_open(struct file_out *out, const char *path, struct err *e);
 int file_out_commit(struct file_out *out, struct err *e); /* closes in any case */
 void file_out_abort(struct file_out *out);		  /* harmless after commit, and on a zeroed struct */
 
-/* Commits, or where writing was bad (*e says why) aborts. Returns 0, or -1 with *e set. */
+/* Commits, or where writing was bad (*e says why, but that the device failed is said here) aborts. Returns 0,
+ * or -1 with *e set. */
 int file_out_end(struct file_out *out, int bad, struct err *e);
 
 /* Opens, writes by `put`, which returns 0 or -1 with *e, and ends. */
@@ -55,6 +60,10 @@ void file_out_remove_all(void);
 /* Fails where an output of that name could not be opened: to be found out before long work. Leaves nothing
  * behind. */
 int file_out_probe(const char *path, struct err *e);
+
+/* The same for the time that long work takes: what is left of it is file_out_abort's. A second run into one
+ * regular file fails: "path: another run is writing it". */
+int file_out_claim(struct file_out *out, const char *path, struct err *e);
 
 /* Makes a directory and its parents. An existing directory is fine. */
 int file_make_dir(const char *path, struct err *e);

@@ -190,6 +190,18 @@ int path_is_same(const char *a, const char *b, struct err *e)
 	return is_same;
 }
 
+int path_leaves(const char *path)
+{
+	long depth = 0;
+	size_t length;
+
+	if (*path == '/')
+		return 1;
+	for (path = next_part(path, &length); length && depth >= 0; path = next_part(path + length, &length))
+		depth += length == 2 && !strncmp(path, "..", 2) ? -1 : 1;
+	return depth < 0;
+}
+
 int path_ends(const char *name, const char *tail)
 {
 	const size_t n = strlen(name), m = strlen(tail);

@@ -11,6 +11,10 @@ char *path_relative(const char *dir, const char *target, struct err *e);
 /* The last part of a path, which may end in slashes: where it begins, and its length without them. */
 const char *path_last(const char *path, int *length);
 
+/* 1 where a path, as text, is not of something in the folder that it begins in: an absolute one, or one whose
+ * ".." lead above it. Symbolic links are not looked at. */
+int path_leaves(const char *path);
+
 /* Whether a name ends so, whatever the case of its letters, and has something before it. */
 int path_ends(const char *name, const char *tail);
 

@@ -29,6 +29,7 @@ enum {
 struct temporary {
 	struct temporary *next;
 	int state; /* by atomic operations only */
+	int is_shared;
 	char name[PATH_MAX];
 };
 
@@ -97,23 +98,28 @@ static int is_at(int fd, const char *name)
 	       own.st_ino == named.st_ino;
 }
 
-/* Removes a file that no run has locked: 1 where it is gone, 0 where it stays, -1 where there was none. */
-static int remove_leftover(const char *name)
+/* Removes a file that no run has locked: 1 where it is gone, 0 where it stays, -1 where there was none.
+ * *is_locked gets 1 where a run has. */
+static int remove_leftover(const char *name, int *is_locked)
 {
 	int fd = open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC), is_gone = 0;
 	struct stat st;
 
 	if (fd < 0)
 		return errno == ENOENT ? -1 : 0;
-	if (!fstat(fd, &st) && S_ISREG(st.st_mode) && !flock(fd, LOCK_EX | LOCK_NB))
-		is_gone = !is_at(fd, name) || !unlink(name);
+	if (!fstat(fd, &st) && S_ISREG(st.st_mode)) {
+		if (!flock(fd, LOCK_EX | LOCK_NB))
+			is_gone = !is_at(fd, name) || !unlink(name);
+		else
+			*is_locked |= errno == EWOULDBLOCK;
+	}
 	close(fd);
 	return is_gone;
 }
 
 /* Makes and locks the file of that name, or -1 with errno: EEXIST where it is a living run's. A file system
  * without locks makes no difference but that leftovers stay. */
-static int make_locked(const char *name)
+static int make_locked(const char *name, int *is_shared)
 {
 	for (;;) {
 		int fd = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
@@ -124,7 +130,7 @@ static int make_locked(const char *name)
 			close(fd); /* another run took it for a leftover before it was locked */
 		} else if (errno != EEXIST) {
 			return -1;
-		} else if (!remove_leftover(name)) {
+		} else if (!remove_leftover(name, is_shared)) {
 			errno = EEXIST;
 			return -1;
 		}
@@ -139,21 +145,23 @@ static int set_name(char name[PATH_MAX], const char *path, int number)
 static void remove_leftovers(const char *path, int from)
 {
 	char name[PATH_MAX];
+	int is_locked = 0;
 
 	for (int i = from, end = from + GAP; i < end && !set_name(name, path, i); i++)
-		if (remove_leftover(name) >= 0)
+		if (remove_leftover(name, &is_locked) >= 0)
 			end = i + 1 + GAP;
 }
 
 /* The descriptor, or -1 with errno. */
 static int make_numbered(struct temporary *t, const char *path)
 {
+	t->is_shared = 0;
 	for (int i = 0; i < NUMBERS; i++) {
 		if (set_name(t->name, path, i)) {
 			errno = ENAMETOOLONG;
 			return -1;
 		}
-		int fd = make_locked(t->name);
+		int fd = make_locked(t->name, &t->is_shared);
 		if (fd >= 0)
 			remove_leftovers(path, i + 1);
 		if (fd >= 0 || errno != EEXIST)
@@ -177,6 +185,11 @@ int temporary_make(struct temporary **t, const char *path, const char *called, s
 	*t = NULL;
 	errno = why;
 	return err_errno(e, "%s", called);
+}
+
+int temporary_is_shared(const struct temporary *t)
+{
+	return t->is_shared;
 }
 
 int temporary_rename(struct temporary *t, const char *path)

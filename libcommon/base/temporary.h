@@ -13,6 +13,10 @@ struct temporary;
  * names `called`. */
 int temporary_make(struct temporary **t, const char *path, const char *called, struct err *e);
 
+/* 1 where a living run had one of its own beside the same path when this was made. Where the file system has
+ * no locks that is not known. */
+int temporary_is_shared(const struct temporary *t);
+
 /* Puts it in the place of path: 0, or -1 with errno. It is still there then. Close its descriptor afterwards:
  * the lock ends with it. */
 int temporary_rename(struct temporary *t, const char *path);

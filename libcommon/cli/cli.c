@@ -2,12 +2,12 @@
 
 #include "base/file.h"
 #include "cli/completion.h"
+#include "cli/signals.h"
 
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -298,28 +298,6 @@ static void parse_short(struct cli *c, const struct cli_option *rows, int n, cha
 	}
 }
 
-/* The signal's own action is in place again, and ends the process with the status that belongs to it. */
-static void end_by_signal(int number)
-{
-	file_out_remove_all();
-	raise(number);
-}
-
-/* A tool that a signal ends leaves no temporary file. What is ignored, by nohup say, stays so. At the limit
- * of a file's size writes fail, as on a full disk, and the tool says so. */
-static void catch_signals(void)
-{
-	static const int numbers[] = {SIGABRT, SIGALRM, SIGBUS, SIGFPE, SIGHUP, SIGILL, SIGINT, SIGPIPE,
-		SIGPROF, SIGQUIT, SIGSEGV, SIGSYS, SIGTERM, SIGTRAP, SIGUSR1, SIGUSR2, SIGVTALRM, SIGXCPU};
-	struct sigaction was, own = {.sa_handler = end_by_signal, .sa_flags = SA_RESETHAND | SA_NODEFER};
-
-	sigemptyset(&own.sa_mask);
-	for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-		if (!sigaction(numbers[i], NULL, &was) && was.sa_handler == SIG_DFL)
-			sigaction(numbers[i], &own, NULL);
-	signal(SIGXFSZ, SIG_IGN);
-}
-
 void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv)
 {
 	struct cli_option rows[COMMON_COUNT];
@@ -327,7 +305,7 @@ void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv
 
 	*c = (struct cli){
 		.tool = tool, .seed = 1, .output = tool->needs_output ? NULL : "-", .start = cli_seconds()};
-	catch_signals();
+	signals_catch(tool->name);
 	c->operands = (const char **)(argv + 1);
 	n = common_rows(c, rows);
 	for (int i = 1; i < argc; i++) {

@@ -82,6 +82,22 @@ static int is_listed(const struct cli *c, const char *file, const struct cli_fil
 	return found;
 }
 
+/* Whether a file is there in a folder that is one of the folder's parts. */
+static int is_below(const struct cli *c, const char *target, const struct cli_file *folder)
+{
+	struct err e;
+	char *dir = file_dir(target, &e), *above = dir ? file_dir(dir, &e) : NULL;
+	int length;
+
+	if (!above)
+		fail(c, &e);
+	const int found =
+		parts_meet(path_last(dir, &length), folder->parts) && is_same(c, above, folder->path);
+	free(dir);
+	free(above);
+	return found;
+}
+
 /* Whether a file is one of the folder's parts, or will be once it is made. */
 static int is_within(const struct cli *c, const char *file, const struct cli_file *folder)
 {
@@ -93,7 +109,7 @@ static int is_within(const struct cli *c, const char *file, const struct cli_fil
 		fail(c, &e);
 	const char *name = path_last(target, &length);
 	int found = (parts_meet(name, folder->parts) && is_same(c, dir, folder->path)) ||
-		    (file_exists(file) && is_listed(c, file, folder));
+		    (file_exists(file) && (is_below(c, target, folder) || is_listed(c, file, folder)));
 	free(target);
 	free(dir);
 	return found;

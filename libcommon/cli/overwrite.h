@@ -12,8 +12,8 @@ struct cli_file {
 	const char *name; /* as messages call it; NULL ends a list */
 	const char *path; /* "-" is stdin or stdout; NULL: not given */
 	enum cli_use use;
-	const char
-		*parts; /* NULL: a file. The files of a folder that are used: "cameras.json|*.safetensors" */
+	const char *parts; /* NULL: a file. The files of a folder that are used: "cameras.json|*.safetensors".
+			    * A part that is a folder stands for the files that it has */
 };
 
 /* The folders that several tools read, as words of cli_refuse_overwrite's lists. */

@@ -155,6 +155,17 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 	says 4 "gs-import: s.ply: Not a directory" "$BIN/gs-import" --cameras c.json --images s.ply -o scene s.ply
 }
 
+@test "a photograph's path does not lead out of --images" {
+	mkdir photos
+	: >away.png
+	for path in ../away.png "$PWD/away.png" deep/../../away.png; do
+		printf '1 PINHOLE 8 6 5 5 4 3\n' >model/cameras.txt
+		printf '1 1 0 0 0 0 0 2 1 %s\n\n' "$path" >model/images.txt
+		"$BIN/gs-import" -q --cameras model --images photos -o scene s.ply
+		[ "$(jq -r '.[0].image' scene/cameras.json)" = null ]
+	done
+}
+
 @test "without --images no photograph is named" {
 	: >a.jpg
 	"$BIN/gs-import" --cameras model -o scene s.ply

@@ -75,6 +75,13 @@ refuses() {
 	says "$1" "mask-import: $2" "$BIN/mask-import" -q --names names -o none view_1.png && [ ! -e none ]
 }
 
+@test "pictures of one name in two folders are told" {
+	mkdir a b
+	cp view_1.png a && cp view_1.png b
+	says 0 "mask-import: warning: a/view_1.png and b/view_1.png are both of view 'view_1'" \
+		"$BIN/mask-import" --names names -o masks a/view_1.png b/view_1.png
+}
+
 @test "names that are malformed: exact messages" {
 	names() { printf "$1" >names; }
 	names '#ff0000 cup\n#ff00 mug\n' && refuses 3 "names:2: does not begin with #rrggbb or 0 to 255, and a blank"
@@ -164,6 +171,8 @@ made() {
 	labelme '{"label":"","points":[[1,1],[3,1],[3,3]]}' >bad.json && bad "shape 0: the label is empty"
 	labelme '{"label":"cup","points":[[1,1],[3,1]],"shape_type":"mask"}' >bad.json && bad "shape 0: a shape of type 'mask'; polygons, rectangles and circles are read"
 	labelme | sed 's/"imageHeight":4/"imageHeight":0.5/' >bad.json && bad "imageHeight and imageWidth are no size of a picture"
+	labelme | sed 's/"imageHeight":4/"imageHeight":65536/; s/"imageWidth":[0-9]*/"imageWidth":65535/' >bad.json
+	bad "the picture: 65535x65536 pixels, more than 268435456 altogether"
 	labelme | jq 'del(.imageWidth)' >bad.json && bad "key 'imageWidth' is missing"
 	labelme >bad.json && bad "has no label with an area"
 	jq -n '{images: [], categories: [], annotations: [{image_id: 1, category_id: 2}]}' >bad.json && bad "annotation 0: no image has its 'image_id'"

@@ -94,6 +94,28 @@ locate() { refuses "$1" refer-locate --scene scene --text text.safetensors --mod
 	refuses "-o pred.jsonl would overwrite PREDICTIONS pred.jsonl" miou-score --truth truth.jsonl -o pred.jsonl pred.jsonl
 }
 
+@test "text-parse, parse-train, refer-ask, mask-import, mask-export, gs-transform, feature-lift, feature-query, refer-report" {
+	refuses "-o text.safetensors would overwrite TEXT text.safetensors" text-parse -o text.safetensors text.safetensors
+	refuses "-o encoder/vocab.txt would overwrite --parser encoder/vocab.txt" text-parse --parser encoder/vocab.txt \
+		-o encoder/vocab.txt text.safetensors
+	refuses "-o text.safetensors would overwrite TEXT text.safetensors" parse-train -o text.safetensors text.safetensors
+	refuses "-o sentences.jsonl would overwrite --readings sentences.jsonl" parse-train --readings sentences.jsonl \
+		--readings-text text.safetensors -o sentences.jsonl lifted.safetensors
+	refuses "-o text.safetensors would overwrite --readings-text text.safetensors" parse-train --readings sentences.jsonl \
+		--readings-text text.safetensors -o text.safetensors lifted.safetensors
+	for file in text.safetensors scene/splats.safetensors lifted/model.safetensors; do
+		refuses "--picture kitchen/$file would be among the files of RUN kitchen" refer-ask --encoder encoder -o kitchen/$file kitchen box
+	done
+	refuses "-o labels.json would overwrite picture labels.json" mask-import -o labels.json labels.json
+	refuses "-o truth.jsonl would overwrite MASKS truth.jsonl" mask-export -o truth.jsonl truth.jsonl
+	refuses "-o point_cloud.ply would overwrite SPLATS point_cloud.ply" gs-transform --format ply -o point_cloud.ply point_cloud.ply
+	refuses "-o masks.jsonl would overwrite --masks masks.jsonl" feature-lift --scene scene --weights weights --masks masks.jsonl -o masks.jsonl
+	refuses "-o lifted.safetensors would overwrite --positives lifted.safetensors" feature-query --text text.safetensors \
+		--rule identity --positives lifted.safetensors -o lifted.safetensors model.safetensors
+	refuses "the page kitchen/scene/cameras.json would be among the files of RUN kitchen" refer-report -o kitchen/scene/cameras.json kitchen
+	refuses "the page kitchen/text.safetensors would be among the files of RUN kitchen" refer-report -o kitchen/text.safetensors kitchen
+}
+
 @test "what is on stdin or stdout" {
 	status=0
 	"$BIN/text-encode" --model encoder -o sentences.jsonl <sentences.jsonl 2>../err || status=$?

@@ -76,4 +76,5 @@ refuses() {
 	refuses "tensor 'weight': item 0 is not a number from 0" weight=$finf$f0
 	refuses "tensor 'weight': item 1 is not a number from 0" weight=$f1$fminus
 	refuses "tensor 'labels': item 0 is -2, below -1" features=none labels=feffffffffffffff
+	refuses "tensor 'labels': item 1 is 16777216, above 16777215" features=none labels=ffffff0000000001
 }

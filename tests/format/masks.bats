@@ -47,6 +47,21 @@ reads() {
 	echo "{\"view\":\"v\",\"object\":\"o\",\"path\":\"$PWD/sub/m.png\"}" | "$BIN/pseudomask-select" | grep -q '"counts":"222"'
 }
 
+@test "path: what is not in the folder of the file is refused, unless a link there or standard input allows it" {
+	mkdir -p sub/in
+	for name in /etc/x.png ../x.png in/../../x.png; do
+		echo "{\"view\":\"v\",\"object\":\"o\",\"path\":\"$name\"}" >sub/x.jsonl
+		says 3 "pseudomask-select: sub/x.jsonl:1: key 'path': '$name' is not in the folder of this file" "$BIN/pseudomask-select" sub/x.jsonl
+	done
+	ln -s ../.. sub/in/link
+	echo '{"view":"v","object":"o","path":"in/link/x.png"}' >sub/x.jsonl
+	says 4 "pseudomask-select: sub/in/link/x.png: No such file or directory" "$BIN/pseudomask-select" sub/x.jsonl
+	cd sub
+	echo '{"view":"v","object":"o","path":"../x.png"}' >x.jsonl
+	! "$BIN/pseudomask-select" <x.jsonl 2>err || false
+	grep -qx "pseudomask-select: ./../x.png: No such file or directory" err
+}
+
 @test "path: a missing, cut or foreign image is named" {
 	echo '{"view":"v","object":"o","path":"m.png"}' >x.jsonl
 	says 4 "pseudomask-select: ./m.png: No such file or directory" "$BIN/pseudomask-select" x.jsonl

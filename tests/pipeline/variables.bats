@@ -143,6 +143,43 @@ cut_off() {
 	WORK=$PWD/work two_stage BERT="$PWD/it's a model; # (of words)" "$PWD/work/text.safetensors"
 }
 
+@test "names that begin with a dash are not taken for options" {
+	cd "$BATS_TEST_TMPDIR"
+	for variable in SCENE SPLATS CAMERAS SENTENCES CANDIDATES TRUTH; do
+		run two_stage "$variable=-name"
+		[ "$status" = 2 ]
+		grep -qF "*** $variable begins with a dash; write ./-name" <<<"$output"
+	done
+}
+
+# A folder of any name to work in, with names of things and sentences that are the shell's, make's, HTML's and paths.
+@test "names of folders, encoders, objects and sentences are done nowhere, and lead nowhere" {
+	name='$(touch done); `touch done` '"'"'" <b>&amp; ../../é -n'
+	folder=$BATS_TEST_TMPDIR/up/'$(touch done);`touch done` "it'"'"'s" #'
+	mkdir -p "$folder"
+	cd "$folder"
+	cp -r "$DATA" in
+	cp -r "$ROOT/tests/golden/bert" '$(touch done)'
+	object=$(jq -r .object in/sentences.jsonl | head -n 1)
+	for file in sentences candidates truth; do
+		jq -c --arg object "$object" --arg name "$name" 'if .object == $object then .object = $name else . end |
+			if .ref then .ref = $name + .ref else . end' "$DATA/$file.jsonl" >in/$file.jsonl
+	done
+	make -s -f "$ROOT/pipelines/lift.mk" SCENE=work SPLATS=in/point_cloud.ply CAMERAS=in/sparse/0 IMAGES=in/images \
+		SENTENCES=in/sentences.jsonl CANDIDATES=in/candidates.jsonl TRUTH=in/truth.jsonl BERT='$(touch done)' BIN="$BIN" \
+		TEST_VIEWS="$(cat in/test-views)" lifted report >../said
+	grep -qF -- "refer-ask --encoder '\$(touch done)' work 'where is the ...?'" ../said
+	"$BIN/refer-locate" -q --scene work/scene --model work/lifted/model.safetensors --all --each each -o boxes.jsonl
+	"$BIN/mask-export" -q --png masks in/truth.jsonl -o coco.json
+	[ "$(ls each | wc -l)" = "$(jq -r .object in/sentences.jsonl | sort -u | wc -l)" ]
+	[ "$(find masks -name '*.png' | wc -l)" = "$(wc -l <in/truth.jsonl)" ]
+	BIN=$BIN "$ROOT/pipelines/worst.sh" 9 in/truth.jsonl in/sentences.jsonl work/lifted/predictions.test.jsonl >worst
+	[ "$(wc -l <worst)" = "$(jq -r .ref work/lifted/predictions.test.jsonl | sort -u | wc -l)" ]
+	[ -z "$(find "$BATS_TEST_TMPDIR" -name done)" ]
+	[ "$(ls .. | wc -l)" = 2 ]
+	not grep -qF '<b>' work/report.html
+}
+
 @test "the demo's and the desk's values are not done either" {
 	cd "$BATS_TEST_TMPDIR"
 	run make -f "$ROOT/pipelines/demo.mk" DEMO=demo BIN="$BIN" SEED='1; touch done'

@@ -377,6 +377,19 @@ static void same_files(void)
 	rmdir(in_dir("sub"));
 }
 
+static void paths_that_leave(void)
+{
+	static const char *const inside[] = {
+		"a", "a/b", "./a", "a/..", "a/../b", "a/./../b", "..a", "...", ""};
+	static const char *const outside[] = {
+		"/", "/a", "..", "../a", "./../a", "a/../..", "a/..//../a", "a/../../a"};
+
+	for (size_t i = 0; i < sizeof inside / sizeof *inside; i++)
+		CHECK(!path_leaves(inside[i]), "'%s' stays", inside[i]);
+	for (size_t i = 0; i < sizeof outside / sizeof *outside; i++)
+		CHECK(path_leaves(outside[i]), "'%s' leaves", outside[i]);
+}
+
 static void devices_are_not_replaced(void)
 {
 	struct file_out out;
@@ -513,6 +526,7 @@ int main(void)
 	output_appears_on_commit();
 	abort_leaves_what_was();
 	failed_write_leaves_what_was();
+	paths_that_leave();
 	devices_are_not_replaced();
 	folders();
 	reading();
