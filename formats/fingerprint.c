@@ -31,8 +31,8 @@ struct fingerprint fingerprint_camera(const struct camera *c)
 
 struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab *v, int is_static)
 {
-	const int64_t sizes[] = {b->words, b->positions, b->types, b->width, b->heads, b->inner,
-		b->layer_count, (int64_t)b->activation, is_static};
+	const int64_t sizes[] = {b->words, b->positions, b->types, b->body.width, b->body.heads,
+		b->body.inner, b->body.layer_count, (int64_t)b->body.activation, is_static};
 	uint64_t vocabulary = 0;
 
 	/* A sum, as the order in which a file lists its tokens means nothing. */
@@ -40,7 +40,7 @@ struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab 
 		vocabulary +=
 			hash64(v->entries[i].token, strlen(v->entries[i].token), (uint64_t)v->entries[i].id);
 	uint64_t hash = hash64(sizes, sizeof sizes, 0);
-	hash = hash64(&b->eps, sizeof b->eps, hash);
+	hash = hash64(&b->body.eps, sizeof b->body.eps, hash);
 	hash = bert_hash(b, hash);
 	return fingerprint_of(hash64(&vocabulary, sizeof vocabulary, hash));
 }

@@ -155,7 +155,7 @@ static void find_sizes(const struct encoding_tokens *t, size_t n, size_t *most, 
 static int make_words(struct text *out, const struct bert *b, const struct encoding_tokens *t, int is_static,
 	const struct report *to, struct err *e)
 {
-	size_t width = (size_t)b->width, most, longest, floats;
+	size_t width = (size_t)b->body.width, most, longest, floats;
 	float *scratch = NULL, *vectors = NULL;
 	int bad = 0;
 
@@ -256,7 +256,7 @@ int encode(struct encoding *x, const struct encoder *with, const struct report *
 	struct text *out = &x->text;
 
 	if (tokenise(to, &x->tokens, &x->sentences, v, (size_t)b->positions, e) ||
-		alloc_text(out, &x->sentences, &x->tokens, b->width, e) ||
+		alloc_text(out, &x->sentences, &x->tokens, b->body.width, e) ||
 		keep_pieces(out, &x->tokens, v, e) || text_take_more(out, &x->sentences, e) ||
 		make_words(out, b, &x->tokens, with->is_static, to, e))
 		return -1;

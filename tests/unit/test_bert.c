@@ -39,7 +39,8 @@ static float *encode(
 	ids->n = *n = keep + 2;
 	free(words.ids);
 	CHECK(!bert_scratch(b, *n, *n, &floats), "scratch");
-	float *scratch = malloc(floats * sizeof *scratch), *out = malloc(*n * (size_t)b->width * sizeof *out);
+	float *scratch = malloc(floats * sizeof *scratch),
+	      *out = malloc(*n * (size_t)b->body.width * sizeof *out);
 	bert_forward(b, ids->ids, (size_t[]){0, *n}, 1, out, scratch);
 	free(scratch);
 	return out;
@@ -50,7 +51,7 @@ static void golden_sentences(const struct bert *b, const struct vocab *v)
 	struct sentences s;
 	struct safetensors expected;
 	struct err e = {0};
-	size_t width = (size_t)b->width;
+	size_t width = (size_t)b->body.width;
 	double worst = 0;
 
 	if (!CHECK(!sentences_read(&s, GOLDEN "/sentences.jsonl", &e), "%s", e.message) ||
@@ -93,7 +94,7 @@ static void side_by_side(const struct bert *b)
 {
 	enum { N = 4, TOKENS = 60 };
 	int32_t ids[TOKENS];
-	size_t starts[N + 1] = {5, 7, 20, 20, TOKENS}, width = (size_t)b->width, floats;
+	size_t starts[N + 1] = {5, 7, 20, 20, TOKENS}, width = (size_t)b->body.width, floats;
 	float *all = malloc(TOKENS * width * sizeof *all), *one = malloc(TOKENS * width * sizeof *one);
 	int threads = omp_get_max_threads();
 
@@ -209,11 +210,12 @@ static void stored_otherwise(const struct bert *golden)
 		write_variant(variants[i].dtype, variants[i].prefix, variants[i].is_old, NULL, NULL);
 		if (!CHECK(!bert_model_read(&b, work, &e), "variant %zu: %s", i, e.message))
 			continue;
-		size_t words = (size_t)b.words * (size_t)b.width, last = (size_t)b.width;
+		size_t words = (size_t)b.words * (size_t)b.body.width, last = (size_t)b.body.width;
 		CHECK(same_bytes(b.word, golden->word, words * 4), "variant %zu: words", i);
-		CHECK(same_bytes(b.layers[1].norm.shift, golden->layers[1].norm.shift, last * 4),
+		CHECK(same_bytes(b.body.layers[1].norm.shift, golden->body.layers[1].norm.shift, last * 4),
 			"variant %zu: shift", i);
-		CHECK(same_bytes(b.layers[0].outer.weight, golden->layers[0].outer.weight, 24 * 40 * 4),
+		CHECK(same_bytes(b.body.layers[0].outer.weight, golden->body.layers[0].outer.weight,
+			      24 * 40 * 4),
 			"variant %zu: outer", i);
 		bert_free(&b);
 	}
@@ -265,7 +267,7 @@ static void published_figures(void)
 	if (!CHECK(!bert_model_read(&b, dir, &e), "%s", e.message) ||
 		!CHECK(!vocab_read(&v, dir, &e), "%s", e.message))
 		return;
-	if (CHECK(b.width == 384, "width %d", b.width)) {
+	if (CHECK(b.body.width == 384, "width %d", b.body.width)) {
 		struct wordpieces ids;
 		size_t n;
 		float *x = encode(&b, &v, "This is an example sentence", &ids, &n);
