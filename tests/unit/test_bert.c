@@ -1,8 +1,8 @@
 /* The encoder on a tiny random BERT, against float64 (tests/peers/bert.py), and on all-MiniLM-L6-v2 where the
  * environment's REFER_BERT names its folder. Run from the repository's root. */
+#include "encoder_files.h"
 #include "unit.h"
 
-#include "base/file.h"
 #include "formats/bert_model.h"
 #include "formats/safetensors.h"
 #include "formats/sentences.h"
@@ -12,12 +12,6 @@
 #include <unistd.h>
 
 #define GOLDEN "tests/golden/bert"
-
-/* Through void, as floats are meant to be compared to the bit here. */
-static int same_bytes(const void *a, const void *b, size_t n)
-{
-	return !memcmp(a, b, n);
-}
 
 static char work[] = "/tmp/test_bert.XXXXXX";
 
@@ -125,31 +119,6 @@ static char *in_work(const char *name)
 	return path;
 }
 
-static void copy(const char *from, const char *to)
-{
-	struct err e = {0};
-	char *data;
-	size_t len;
-
-	if (!CHECK(!file_read(from, &data, &len, &e), "%s", e.message))
-		return;
-	FILE *out = fopen(to, "wb");
-	CHECK(out && fwrite(data, 1, len, out) == len && !fclose(out), "%s", to);
-	free(data);
-}
-
-/* Rounding to nearest even. */
-static uint16_t to_bfloat(float f)
-{
-	uint32_t bits;
-
-	memcpy(&bits, &f, 4);
-	if ((bits & 0x7fffffff) > 0x7f800000)
-		return (uint16_t)(bits >> 16 | 64);
-	bits += 0x7fff + (bits >> 16 & 1);
-	return (uint16_t)(bits >> 16);
-}
-
 /* The golden weights written as another type and under other names. `leave_out` and `bend` break one tensor.
  */
 static void write_variant(
@@ -166,8 +135,6 @@ static void write_variant(
 		return;
 	for (size_t i = 0; i < st.n; i++) {
 		struct st_tensor t = st.tensors[i];
-		static float floats[8192];
-		size_t count = t.bytes / 2;
 		char *norm = strstr(t.name, "LayerNorm.");
 		if (leave_out && !strcmp(leave_out, t.name))
 			continue;
@@ -175,19 +142,10 @@ static void write_variant(
 		if (is_old && norm)
 			snprintf(names[n], sizeof names[n], "%s%.*s%s", prefix, (int)(norm + 10 - t.name),
 				t.name, strstr(norm, "weight") ? "gamma" : "beta");
-		CHECK(!safetensors_to_float(&t, floats, count, &e), "%s", e.message);
-		for (size_t k = 0; k < count; k++) {
-			uint16_t half = dtype == ST_F16 ? st_float_to_half(floats[k]) : to_bfloat(floats[k]);
-			if (dtype == ST_F32)
-				memcpy(data[n] + 4 * k, &floats[k], 4);
-			else
-				memcpy(data[n] + 2 * k, &half, 2);
-		}
+		CHECK(!store_as(&t, dtype, data[n]), "%s", st.path);
 		if (bend && !strcmp(bend, t.name))
 			t.shape[t.dims - 1] -= 1;
 		t.name = names[n];
-		t.dtype = dtype;
-		t.data = data[n];
 		tensors[n++] = t;
 	}
 	CHECK(!safetensors_write(in_work("weights.safetensors"), tensors, n, NULL, 0, &e), "%s", e.message);
@@ -239,7 +197,7 @@ static void vocab_txt(const struct vocab *json)
 	struct err e = {0};
 	size_t wrong = 0;
 
-	copy(GOLDEN "/vocab.txt", in_work("vocab.txt"));
+	CHECK(!copy_file(GOLDEN "/vocab.txt", in_work("vocab.txt")), "copy");
 	if (!CHECK(!vocab_read(&list, work, &e), "%s", e.message))
 		return;
 	for (size_t i = 0; i < json->n; i++)
@@ -298,7 +256,7 @@ int main(void)
 		return unit_end();
 	golden_sentences(&b, &v);
 	side_by_side(&b);
-	copy(GOLDEN "/config.json", in_work("config.json"));
+	CHECK(!copy_file(GOLDEN "/config.json", in_work("config.json")), "copy");
 	stored_otherwise(&b);
 	refused("encoder.layer.1.output.dense.weight", NULL,
 		"tensor 'encoder.layer.1.output.dense.weight' is missing");
