@@ -85,25 +85,36 @@ static int read_file(struct list *l, size_t most, struct err *e)
 	return file_read(l->path, &l->text, &len, e) || list_lines(l, len, most, e) ? -1 : 0;
 }
 
+/* All that an open gzip stream has, and a NUL after it; *len of it. */
+static int inflate_text(struct list *l, gzFile in, size_t *len, struct err *e)
+{
+	enum { STEP = 1 << 16 };
+	size_t capacity = 0;
+	int got;
+
+	do {
+		if (*len >= MOST_TEXT)
+			return err_set(e, ERR_FORMAT, "%s: more than %d bytes of merges", l->path, MOST_TEXT);
+		if (mem_grow((void **)&l->text, &capacity, *len + STEP + 1, 1, l->path, e))
+			return -1;
+		got = gzread(in, l->text + *len, STEP);
+		*len += got > 0 ? (size_t)got : 0;
+	} while (got > 0);
+	l->text[*len] = 0;
+	return got < 0 ? err_set(e, ERR_FORMAT, "%s: the gzip stream is damaged", l->path) : 0;
+}
+
 static int read_gzip(struct list *l, size_t most, struct err *e)
 {
 	gzFile in = gzopen(l->path, "rb");
-	int got = -1;
+	size_t len = 0;
 
 	if (!in)
 		return err_errno(e, "%s", l->path);
-	l->text = mem_alloc(MOST_TEXT, 1, l->path, e);
-	if (l->text)
-		got = gzread(in, l->text, MOST_TEXT - 1);
-	const int is_whole = gzeof(in), status = gzclose(in);
-	if (!l->text)
-		return -1;
-	if (got < 0 || status == Z_BUF_ERROR)
+	const int bad = inflate_text(l, in, &len, e);
+	if (gzclose(in) == Z_BUF_ERROR && !bad)
 		return err_set(e, ERR_FORMAT, "%s: the gzip stream is damaged", l->path);
-	if (!is_whole)
-		return err_set(e, ERR_FORMAT, "%s: more than %d bytes of merges", l->path, MOST_TEXT - 1);
-	l->text[got] = 0;
-	return list_lines(l, (size_t)got, most, e);
+	return bad || list_lines(l, len, most, e) ? -1 : 0;
 }
 
 /* "left right" or ["left","right"]: cJSON's own strings, cut in two. */
@@ -141,7 +152,7 @@ static int add_merges(struct bpe *b, const struct list *l, struct err *e)
 
 static int finish(struct bpe *b, const char *vocabulary, const struct list *l, struct err *e)
 {
-	char missing[24];
+	char missing[BPE_MISSING];
 
 	if (bpe_finish(b, missing))
 		return err_set(e, ERR_FORMAT, "%s: token '%s' is missing", vocabulary, missing);

@@ -33,11 +33,11 @@ static int find_token(const struct bpe *b, const char *token, int32_t *id, char 
 {
 	*id = vocab_find(&b->vocab, token, strlen(token));
 	if (*id < 0)
-		strcpy(missing, token);
+		snprintf(missing, BPE_MISSING, "%s", token);
 	return *id < 0 ? -1 : 0;
 }
 
-int bpe_finish(struct bpe *b, char *missing)
+int bpe_finish(struct bpe *b, char missing[BPE_MISSING])
 {
 	char letter[BPE_LETTER_MAX], token[BPE_LETTER_MAX + sizeof BPE_LAST];
 	unsigned char byte;

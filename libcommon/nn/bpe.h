@@ -37,8 +37,9 @@ struct bpe {
 void bpe_letter(size_t i, unsigned char *byte, char letter[BPE_LETTER_MAX]);
 
 /* To be called when the vocabulary is there: sorts it, and finds the symbols of all bytes and the two special
- * tokens. 0, or -1 with the name of one that is missing in `missing` (24 bytes). */
-int bpe_finish(struct bpe *b, char *missing);
+ * tokens. 0, or -1 with the name of one that is missing in `missing`. */
+enum { BPE_MISSING = 24 };
+int bpe_finish(struct bpe *b, char missing[BPE_MISSING]);
 
 /* Adds the next merge, after bpe_finish. 0; 1: there is one of these symbols already; 2: the vocabulary lacks
  * one of them, or what they become; -1 with *e set when memory is out. */

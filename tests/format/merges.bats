@@ -131,7 +131,7 @@ added() {
 	{ head -c 100 whole; printf 'xxxxxxxxxxxx'; tail -c +113 whole; } >$list
 	refuses 3 "$list: the gzip stream is damaged" o
 	head -c 70000000 /dev/zero | tr '\0' a | gzip -1 >$list
-	refuses 3 "$list: more than 67108863 bytes of merges" o
+	refuses 3 "$list: more than 67108864 bytes of merges" o
 	cp good.txt $list
 	"$BIN/text-encode" --model o -o out s
 }
