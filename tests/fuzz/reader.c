@@ -19,6 +19,7 @@
 #include "formats/merges.h"
 #include "formats/model.h"
 #include "formats/npy.h"
+#include "formats/npz.h"
 #include "formats/parser_weights.h"
 #include "formats/parses.h"
 #include "formats/png.h"
@@ -165,6 +166,27 @@ static void try_checkpoint(const char *path)
 	(void)checkpoint_resume(&t, path, &of, 1000, &e);
 }
 
+static void try_npz(const char *path)
+{
+	struct npz z;
+	struct npy_file a;
+
+	if (npz_open(&z, path, &e))
+		return;
+	for (size_t i = 0; i < z.n; i++) {
+		const size_t len = strlen(z.entries[i].name);
+		if (len < sizeof ".npy")
+			continue;
+		z.entries[i].name[len - 4] = 0;
+		char *name = strdup(z.entries[i].name);
+		z.entries[i].name[len - 4] = '.';
+		if (name && !npz_array(&z, name, "", &a, NULL, &e))
+			npy_close(&a);
+		free(name);
+	}
+	npz_close(&z);
+}
+
 static const struct target {
 	const char *name;
 	void (*run)(const char *path);
@@ -193,6 +215,7 @@ static const struct target {
 	{"merges-text", try_merges, {"vocab.json", "merges.txt"}},
 	{"model", try_model, {0}},
 	{"npy", try_npy, {0}},
+	{"npz", try_npz, {0}},
 	{"parser", try_parser, {0}},
 	{"parses", try_parses, {0}},
 	{"ply", try_scene, {0}},

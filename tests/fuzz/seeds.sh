@@ -108,6 +108,7 @@ seed model some-model.safetensors
 gs-transform -q -o few.glb few.ply
 seed glb few.glb "$here/tests/golden/glb/eight.glb"
 seed npy response/*/*.npy response/*.npy
+seed npz "$golden"/npz/*.npz
 seed parser "$here/formats/parser_default.safetensors"
 seed parses some-parses.jsonl
 seed ply few.ply packed.ply
@@ -139,6 +140,7 @@ for target in "$dir"/*/; do
 	bert) set -- bert_model.c pretrained.c ;;
 	clip) set -- clip_model.c pretrained.c ;;
 	merges) set -- merges.c vocab.c ;;
+	npz) set -- npz.c npy.c ;;
 	parser) set -- parser_weights.c ;;
 	parses) set -- parses_read.c ;;
 	ply) set -- ply.c plyfile.c plypacked.c ;;
