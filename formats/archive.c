@@ -166,8 +166,11 @@ int archive_list(struct archive *a, struct archive_entry **entries, size_t *n, s
 		bad = add_entry(a, entries, &capacity, n, e);
 	if (!bad && at != UNZ_END_OF_LIST_OF_FILE)
 		bad = err_set(e, ERR_FORMAT, "%s: the zip's directory is damaged", a->name);
-	if (bad)
+	if (bad) {
 		archive_free_entries(*entries, *n);
+		*entries = NULL;
+		*n = 0;
+	}
 	return bad ? -1 : 0;
 }
 

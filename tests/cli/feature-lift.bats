@@ -234,6 +234,11 @@ not() { ! "$@"; }
 	npy other.npy '<f4' '1' $left
 	npz other.npz other.npy
 	refuses 3 'other.npz: has no VIEW.npy or VIEW_s.npy of a training view' other.npz
+	# the second record of the directory, which is as long as the first
+	record=$((46 + ${#view} + 4))
+	begin=$(($(wc -c <all.npz) - 22 - record * ${#views[@]}))
+	{ head -c $((begin + record)) all.npz; printf XX; tail -c +$((begin + record + 3)) all.npz; } >lost.npz
+	refuses 3 "lost.npz: the zip's directory is damaged" lost.npz
 	# a byte of the first array's numbers
 	{ head -c $((30 + ${#view} + 4 + 130)) all.npz; printf '\xff'; tail -c +$((30 + ${#view} + 4 + 132)) all.npz; } >damaged.npz
 	refuses 3 "damaged.npz: file '$view.npy' in the zip is damaged" damaged.npz
