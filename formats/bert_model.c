@@ -151,7 +151,7 @@ int bert_model_read(struct bert *b, const char *dir, struct err *e)
 	*b = (struct bert){0};
 	if (read_config(b, dir, e))
 		return -1;
-	if (!pretrained_open(&s.st, dir, e)) {
+	if (!pretrained_open(&s.st, dir, NULL, e)) {
 		bad = load_all(&s, b);
 		safetensors_close(&s.st);
 	}

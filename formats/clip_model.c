@@ -29,25 +29,41 @@ static int is_of_clip(const cJSON *config)
 	return is_text(type, "clip") || is_text(type, "clip_text_model");
 }
 
-/* DIR/config.json or, without it, DIR/open_clip_config.json; *is_open says which. NULL with *e set. */
+/* Whether a file is a configuration of a CLIP as HuggingFace writes it. */
+static int is_config(const char *path)
+{
+	struct err e = {0};
+	cJSON *config = file_exists(path) ? json_read(path, &e) : NULL;
+	const int is = is_of_clip(config);
+
+	cJSON_Delete(config);
+	return is;
+}
+
+/* DIR/config.json, where it is of a CLIP, or DIR/open_clip_config.json, where there is one; *is_open says
+ * which. NULL with *e set where there is neither. */
 static char *find_config(const char *dir, int *is_open, struct err *e)
 {
-	char *usual = file_join(dir, "config.json", "", e), *open = file_join(dir, OPEN_CLIP, "", e);
+	char *usual = file_join(dir, "config.json", "", e), *other = file_join(dir, OPEN_CLIP, "", e);
+	const int is_usual = usual && is_config(usual);
 
-	*is_open = usual && open && !file_exists(usual) && file_exists(open);
-	free(*is_open ? usual : open);
-	return *is_open ? open : usual;
+	*is_open = !is_usual && usual && other && file_exists(other);
+	if (usual && other && !is_usual && !*is_open)
+		err_set(e, ERR_FORMAT, "%s: key 'model_type' is not \"clip\" or \"clip_text_model\"", usual);
+	free(is_usual ? other : usual);
+	if (is_usual || *is_open)
+		return is_usual ? usual : other;
+	free(other);
+	return NULL;
 }
 
 int clip_model_is(const char *dir)
 {
 	struct err e = {0};
-	int is_open = 0;
+	int is_open;
 	char *path = find_config(dir, &is_open, &e);
-	cJSON *config = path && !is_open ? json_read(path, &e) : NULL;
-	const int is = is_open || is_of_clip(config);
+	const int is = path != NULL;
 
-	cJSON_Delete(config);
 	free(path);
 	return is;
 }
@@ -56,6 +72,7 @@ int clip_model_is(const char *dir)
 struct kind {
 	int is_projected; /* the weights must have a projection */
 	int width;	  /* of it */
+	int is_open;	  /* the configuration is OpenCLIP's */
 };
 
 static int read_activation(struct clip *c, const cJSON *config, const char *path, struct err *e)
@@ -128,15 +145,15 @@ static int read_open_keys(
 
 static int read_config(struct clip *c, struct kind *kind, const char *dir, struct err *e)
 {
-	int is_open, bad = -1;
-	char *path = find_config(dir, &is_open, e);
+	int bad = -1;
+	char *path = find_config(dir, &kind->is_open, e);
 	cJSON *config = path ? json_read(path, e) : NULL;
 
 	if (config && !cJSON_IsObject(config))
 		err_set(e, ERR_FORMAT, "%s: not a JSON object", path);
 	else if (config)
-		bad = is_open ? read_open_keys(c, kind, config, path, e)
-			      : read_keys(c, kind, config, path, e);
+		bad = kind->is_open ? read_open_keys(c, kind, config, path, e)
+				    : read_keys(c, kind, config, path, e);
 	cJSON_Delete(config);
 	free(path);
 	return bad;
@@ -316,7 +333,7 @@ int clip_model_read(struct clip *c, const char *dir, struct err *e)
 	*c = (struct clip){.body = {.is_causal = 1, .is_norm_first = 1}};
 	if (read_config(c, &kind, dir, e))
 		return -1;
-	if (!pretrained_open(&s.st, dir, e)) {
+	if (!pretrained_open(&s.st, dir, kind.is_open ? "open_clip_model.safetensors" : NULL, e)) {
 		bad = load_all(&s, c, &kind);
 		safetensors_close(&s.st);
 	}

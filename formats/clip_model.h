@@ -9,8 +9,7 @@
 /* What is read of the folder beside what a BERT has (BERT_MODEL_PARTS), the tokenizer's files with it. */
 #define CLIP_MODEL_PARTS "open_clip_config.json|vocab.json|merges.txt|*.txt.gz"
 
-/* Whether the folder's config.json is of a CLIP, or it has an open_clip_config.json alone. What cannot be
- * read is of none. */
+/* Whether the folder's config.json is of a CLIP, or it has an open_clip_config.json. */
 int clip_model_is(const char *dir);
 
 /* Reads the configuration, and the weights as bert_model_read. Release with clip_free. */

@@ -103,9 +103,14 @@ static char *find_weights(const char *dir, struct err *e)
 	return NULL;
 }
 
-int pretrained_open(struct safetensors *st, const char *dir, struct err *e)
+int pretrained_open(struct safetensors *st, const char *dir, const char *first, struct err *e)
 {
-	char *path = find_weights(dir, e);
+	char *path = first ? file_join(dir, first, "", e) : NULL;
+
+	if (!path || !file_exists(path)) {
+		free(path);
+		path = find_weights(dir, e);
+	}
 	const int bad = !path || safetensors_open(st, path, e);
 
 	free(path);

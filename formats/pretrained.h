@@ -33,9 +33,10 @@ int pretrained_eps(const cJSON *config, double usual, double *out, const char *p
 int pretrained_sizes(const struct transformer *t, int positions, const char *const names[3], const char *path,
 	struct err *e);
 
-/* The weights of the folder `dir`: model.safetensors or the only *.safetensors. Close with
- * safetensors_close. */
-int pretrained_open(struct safetensors *st, const char *dir, struct err *e);
+/* The weights of the folder `dir`: `first`, unless it is NULL or not there, else model.safetensors or the
+ * only
+ * *.safetensors. Close with safetensors_close. */
+int pretrained_open(struct safetensors *st, const char *dir, const char *first, struct err *e);
 
 /* The tensor, of floats of any size: (rows,columns), or (columns) where rows is 0. NULL with *e. */
 const struct st_tensor *pretrained_need(

@@ -52,6 +52,11 @@ tensor_at() {
 	mkdir x && mv o x/m
 	"$BIN/text-encode" --model x/m -o c s
 	cmp a c
+	# a config.json of another program, and weights of HuggingFace's, are beside OpenCLIP's
+	echo '{"architecture": "vit_base_patch32"}' >x/m/config.json
+	cp "$BATS_TEST_DIRNAME/../golden/bert/model.safetensors" x/m
+	"$BIN/text-encode" --model x/m -o d s
+	cmp a d
 }
 
 @test "no JSON, no object" {
