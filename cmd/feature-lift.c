@@ -1,4 +1,5 @@
 /* feature-lift: what 2D models say of a scene's views, lifted onto its Gaussians. */
+#include "base/path.h"
 #include "cli/cli.h"
 #include "cmd/jobs/feature_lifting.h"
 
@@ -54,7 +55,9 @@ static void check(const struct cli *c)
 		cli_usage(c, "either MAPS or --masks is required");
 	if (options.maps.text && !options.maps.masks)
 		cli_usage(c, "--text needs --masks");
-	const struct cli_file maps[] = {{"MAPS", options.maps.folder, CLI_READS, "*.npy|*.png"}, {0}};
+	const int is_file = options.maps.folder && path_ends(options.maps.folder, ".npz");
+	const struct cli_file maps[] = {
+		{"MAPS", options.maps.folder, CLI_READS, is_file ? NULL : "*.npy|*.npz|*.png"}, {0}};
 	cli_refuse_overwrite(c, CLI_SCENE " " CLI_WEIGHTS " masks text", "output", maps);
 	cli_refuse_terminal(c);
 }

@@ -4,7 +4,6 @@
 #include "cmd/jobs/asking.h"
 #include "cmd/jobs/questions.h"
 #include "cmd/jobs/reply.h"
-#include "formats/bert_model.h"
 #include "answer/responses.h"
 
 #include <stdio.h>
@@ -137,8 +136,8 @@ int main(int argc, char **argv)
 	cli_parse(&c, &tool, argc, argv);
 	check(&c);
 	cli_refuse_overwrite(&c,
-		CLI_SCENE " model camera encoder:" BERT_MODEL_PARTS " RUN:scene|lifted|*.safetensors",
-		"picture", NULL);
+		CLI_SCENE " model camera encoder:" ENCODER_PARTS " RUN:scene|lifted|*.safetensors", "picture",
+		NULL);
 	options.asking.run = c.operands[0];
 	const int bad = run(&c, &a, &status, &e);
 	asking_close(&a);

@@ -1,8 +1,7 @@
-/* Sentences to word vectors, by a BERT encoder. */
+/* Sentences to word vectors, by a BERT or CLIP's text tower. */
 #include "base/path.h"
 #include "cli/cli.h"
 #include "cmd/jobs/encode.h"
-#include "formats/bert_model.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,7 +60,7 @@ int main(int argc, char **argv)
 	if (!options.model && !(options.model = usual = encoder_default(&e)))
 		return cli_fail(&c, &e);
 	cli_refuse_terminal(&c);
-	cli_refuse_overwrite(&c, "SENTENCES model:" BERT_MODEL_PARTS, "output", NULL);
+	cli_refuse_overwrite(&c, "SENTENCES model:" ENCODER_PARTS, "output", NULL);
 	const int bad = run(&c, &x, &with, &e);
 	encoding_free(&x);
 	encoder_free(&with);

@@ -134,3 +134,60 @@ int archive_read(struct archive *a, const char *file, char **data, size_t *len, 
 		return err_set(e, ERR_FORMAT, "%s: no file '%.80s' in the zip", a->name, file);
 	return read_current(a, file, data, len, e);
 }
+
+enum { NAME_ROOM = 4096 }; /* longer names are of no file of ours */
+
+static int add_entry(
+	struct archive *a, struct archive_entry **entries, size_t *capacity, size_t *n, struct err *e)
+{
+	unz_file_info64 info;
+	unz64_file_pos at;
+	char name[NAME_ROOM + 1] = "";
+
+	if (unzGetCurrentFileInfo64(a->zip, &info, name, NAME_ROOM, NULL, 0, NULL, 0) != UNZ_OK ||
+		unzGetFilePos64(a->zip, &at) != UNZ_OK)
+		return err_set(e, ERR_FORMAT, "%s: the zip's directory is damaged", a->name);
+	if (mem_grow((void **)entries, capacity, *n + 1, sizeof **entries, a->name, e))
+		return -1;
+	char *copy = mem_strdup(name, e);
+	if (!copy)
+		return -1;
+	(*entries)[(*n)++] = (struct archive_entry){copy, at.pos_in_zip_directory, at.num_of_file};
+	return 0;
+}
+
+int archive_list(struct archive *a, struct archive_entry **entries, size_t *n, struct err *e)
+{
+	size_t capacity = 0;
+	int at = unzGoToFirstFile(a->zip), bad = 0;
+
+	*entries = NULL;
+	for (*n = 0; at == UNZ_OK && !bad; at = unzGoToNextFile(a->zip))
+		bad = add_entry(a, entries, &capacity, n, e);
+	if (!bad && at != UNZ_END_OF_LIST_OF_FILE)
+		bad = err_set(e, ERR_FORMAT, "%s: the zip's directory is damaged", a->name);
+	if (bad) {
+		archive_free_entries(*entries, *n);
+		*entries = NULL;
+		*n = 0;
+	}
+	return bad ? -1 : 0;
+}
+
+void archive_free_entries(struct archive_entry *entries, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		free(entries[i].name);
+	free(entries);
+}
+
+int archive_read_entry(
+	struct archive *a, const struct archive_entry *entry, char **data, size_t *len, struct err *e)
+{
+	unz64_file_pos at = {entry->place, entry->number};
+
+	*data = NULL;
+	if (unzGoToFilePos64(a->zip, &at) != UNZ_OK)
+		return err_set(e, ERR_FORMAT, "%s: the zip's directory is damaged", a->name);
+	return read_current(a, entry->name, data, len, e);
+}

@@ -1,4 +1,4 @@
-/* Files that lie together, in a zip or in a folder: formats/sog.md. */
+/* Files that lie together, in a zip or in a folder: formats/sog.md, formats/npy.md. */
 #ifndef FORMATS_ARCHIVE_H
 #define FORMATS_ARCHIVE_H
 
@@ -27,5 +27,19 @@ void archive_close(struct archive *a);
  * with *e.
  */
 int archive_read(struct archive *a, const char *file, char **data, size_t *len, struct err *e);
+
+/* A file of a zip, and where the zip's directory has it. */
+struct archive_entry {
+	char *name;
+	unsigned long long place, number;
+};
+
+/* All files of a zip, in its order; archive_free_entries. Returns 0, or -1 with *e. */
+int archive_list(struct archive *a, struct archive_entry **entries, size_t *n, struct err *e);
+void archive_free_entries(struct archive_entry *entries, size_t n);
+
+/* As archive_read. */
+int archive_read_entry(
+	struct archive *a, const struct archive_entry *entry, char **data, size_t *len, struct err *e);
 
 #endif

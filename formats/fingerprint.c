@@ -29,20 +29,54 @@ struct fingerprint fingerprint_camera(const struct camera *c)
 	return fingerprint_of(hash64(numbers, sizeof numbers, 0));
 }
 
+/* A sum, as the order in which a file lists its tokens means nothing. */
+static uint64_t hash_vocabulary(const struct vocab *v)
+{
+	uint64_t sum = 0;
+
+	for (size_t i = 0; i < v->n; i++)
+		sum += hash64(v->entries[i].token, strlen(v->entries[i].token), (uint64_t)v->entries[i].id);
+	return sum;
+}
+
 struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab *v, int is_static)
 {
-	const int64_t sizes[] = {b->words, b->positions, b->types, b->width, b->heads, b->inner,
-		b->layer_count, (int64_t)b->activation, is_static};
-	uint64_t vocabulary = 0;
+	const struct transformer *t = &b->body;
+	const int64_t sizes[] = {b->words, b->positions, b->types, t->width, t->heads, t->inner,
+		t->layer_count, (int64_t)t->activation, is_static};
+	const uint64_t vocabulary = hash_vocabulary(v);
 
-	/* A sum, as the order in which a file lists its tokens means nothing. */
-	for (size_t i = 0; i < v->n; i++)
-		vocabulary +=
-			hash64(v->entries[i].token, strlen(v->entries[i].token), (uint64_t)v->entries[i].id);
 	uint64_t hash = hash64(sizes, sizeof sizes, 0);
-	hash = hash64(&b->eps, sizeof b->eps, hash);
+	hash = hash64(&t->eps, sizeof t->eps, hash);
 	hash = bert_hash(b, hash);
 	return fingerprint_of(hash64(&vocabulary, sizeof vocabulary, hash));
+}
+
+/* The same of merges, wherever the table has them. */
+static uint64_t hash_merges(const struct bpe *b)
+{
+	uint64_t sum = 0;
+
+	for (size_t i = 0; i < b->slots; i++)
+		if (b->table[i].left >= 0) {
+			const struct bpe_merge *m = &b->table[i];
+			const int64_t merge[] = {m->left, m->right, m->id, m->rank};
+			sum += hash64(merge, sizeof merge, 0);
+		}
+	return sum;
+}
+
+struct fingerprint fingerprint_clip(const struct clip *c, const struct bpe *b, int is_static)
+{
+	const struct transformer *t = &c->body;
+	const int64_t sizes[] = {c->words, c->positions, c->projected, t->width, t->heads, t->inner,
+		t->layer_count, (int64_t)t->activation, is_static};
+	const uint64_t vocabulary[] = {hash_vocabulary(&b->vocab), hash_merges(b)};
+
+	uint64_t hash = hash64(sizes, sizeof sizes, 0);
+	hash = hash64(&t->eps, sizeof t->eps, hash);
+	hash = clip_hash(c, hash);
+	return fingerprint_of(hash64(vocabulary, sizeof vocabulary, hash));
 }
 
 int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const char *key, struct err *e)

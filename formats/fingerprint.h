@@ -7,6 +7,8 @@
 #include "formats/safetensors.h"
 #include "geom/camera.h"
 #include "nn/bert.h"
+#include "nn/bpe.h"
+#include "nn/clip.h"
 #include "nn/wordpiece.h"
 
 #include <stddef.h>
@@ -25,9 +27,10 @@ struct origin {
 struct fingerprint fingerprint_scene(const float *means, size_t n);
 /* Of a view: image size, intrinsics and pose. */
 struct fingerprint fingerprint_camera(const struct camera *c);
-/* Of an encoder: its sizes, weights and vocabulary, and whether words are taken from the vocabulary as they
- * are. */
+/* Of an encoder: its sizes, weights, vocabulary and merges, and whether words are taken from the vocabulary
+ * as they are. */
 struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab *v, int is_static);
+struct fingerprint fingerprint_clip(const struct clip *c, const struct bpe *b, int is_static);
 
 /* The metadata value `key`. ERR_FORMAT where there is one that is not 16 lower-case hexadecimal digits. */
 int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const char *key, struct err *e);

@@ -238,6 +238,15 @@ int npy_open(struct npy_file *a, const char *path, struct err *e)
 	return open_file(a, path, 0, e);
 }
 
+int npy_open_bytes(struct npy_file *a, char *data, size_t len, const char *name, struct err *e)
+{
+	*a = (struct npy_file){.map = {(const unsigned char *)data, len, 0}};
+	if (!read_bytes(a, data, len, name, 0, e))
+		return 0;
+	npy_close(a);
+	return -1;
+}
+
 void npy_close(struct npy_file *a)
 {
 	file_unmap(&a->map);

@@ -47,6 +47,8 @@ struct npy_file {
 
 /* C order, little-endian. Returns 0, or -1 with *e set and nothing to close. */
 int npy_open(struct npy_file *a, const char *path, struct err *e);
+/* The same of bytes in memory, which are a's from then on, also on failure; messages call them `name`. */
+int npy_open_bytes(struct npy_file *a, char *data, size_t len, const char *name, struct err *e);
 void npy_close(struct npy_file *a);
 
 /* Whether its type has whole numbers only. */

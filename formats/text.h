@@ -14,8 +14,8 @@ struct text {
 	size_t n;	  /* R sentences */
 	int width;	  /* D_text */
 	int64_t *offsets; /* (n+1): sentence r has words offsets[r] to offsets[r+1] */
-	float *words;	  /* (offsets[n], width), [CLS] and [SEP] left out */
-	float *sentences; /* (n, width), mean of the words; zero for a sentence without words */
+	float *words;	  /* (offsets[n], width), tokens that begin and end a sentence left out */
+	float *sentences; /* (n, width), mean of the words, zero for a sentence without words; or CLIP's */
 	char **refs, **objects, **texts; /* objects: "" where several are meant, or none */
 	char **pieces; /* (n) word pieces with a space between, one for each word; NULL where the file has
 			  none */

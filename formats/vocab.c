@@ -68,19 +68,27 @@ static int add_token(struct vocab *v, const char *token, double id, const char *
 	return added > 0 ? err_set(e, ERR_FORMAT, "%s: token '%s' appears twice", path, token) : added;
 }
 
+int vocab_add_all(struct vocab *v, const cJSON *tokens, const char *path, struct err *e)
+{
+	const cJSON *entry;
+	int bad = 0;
+
+	for (entry = tokens->child; entry && !bad; entry = entry->next)
+		bad = add_token(v, entry->string, cJSON_IsNumber(entry) ? entry->valuedouble : -1, path, e);
+	return bad;
+}
+
 static int read_tokenizer(struct vocab *v, const char *path, struct err *e)
 {
 	cJSON *root = json_read(path, e);
 	int bad = root ? check_kind(root, path, e) : -1;
 
 	if (!bad) {
-		const cJSON *model = cJSON_GetObjectItemCaseSensitive(root, "model"), *entry;
+		const cJSON *model = cJSON_GetObjectItemCaseSensitive(root, "model");
 		const cJSON *tokens = cJSON_GetObjectItemCaseSensitive(model, "vocab");
-		if (!cJSON_IsObject(tokens))
-			bad = err_set(e, ERR_FORMAT, "%s: model: 'vocab' is not an object", path);
-		for (entry = tokens ? tokens->child : NULL; entry && !bad; entry = entry->next)
-			bad = add_token(
-				v, entry->string, cJSON_IsNumber(entry) ? entry->valuedouble : -1, path, e);
+		bad = cJSON_IsObject(tokens)
+			      ? vocab_add_all(v, tokens, path, e)
+			      : err_set(e, ERR_FORMAT, "%s: model: 'vocab' is not an object", path);
 	}
 	cJSON_Delete(root);
 	return bad;

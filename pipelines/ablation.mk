@@ -11,7 +11,7 @@
 # SCALE       size at which training looks at the views; default 0.5 (full), 1 (quick)
 # TRAIN       options of every training, before its own; default: rates four times the paper's, for few steps
 # RUNS        trainings to do, of those below; default all. A new one: RUNS="both mine" run.mine="--lambda 0.1"
-# BERTS       more language encoders for the encoder table, as NAME=DIR ...
+# BERTS       more language encoders for the encoder table, as NAME=DIR ...: any folders that text-encode reads, such as clip=DIR of a CLIP
 # BERT        folder of the language encoder; default: where `make encoder` puts it
 # THREADS     of each tool; default 1, because -j has several of them at work
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there

@@ -21,7 +21,7 @@ case $dir in
 	exit 0
 	;;
 esac
-if [ -f "$dir/config.json" ] && { [ -f "$dir/tokenizer.json" ] || [ -f "$dir/vocab.txt" ]; } && ls "$dir"/*.safetensors >/dev/null 2>&1; then
+if [ -f "$dir/config.json" ] && { [ -f "$dir/tokenizer.json" ] || [ -f "$dir/vocab.txt" ] || [ -f "$dir/merges.txt" ]; } && ls "$dir"/*.safetensors >/dev/null 2>&1; then
 	exit 0
 fi
 [ "$dir" = "$cache" ] || give_up "$dir lacks config.json, a tokenizer or *.safetensors"

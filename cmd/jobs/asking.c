@@ -31,9 +31,9 @@ static int check_fit(const struct asking *a, struct err *e)
 
 	if (anymodel_check_scene(&a->model, f->model, &a->scene, f->scene, e))
 		return -1;
-	if (l->width != a->encoder.bert.width)
+	if (l->width != encoder_width(&a->encoder))
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, the encoder %s makes %d",
-			f->model, l->width, f->encoder, a->encoder.bert.width);
+			f->model, l->width, f->encoder, encoder_width(&a->encoder));
 	return fingerprint_check("encoder", f->model, &o->encoder, f->encoder, &a->encoder.fingerprint, e);
 }
 

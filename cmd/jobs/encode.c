@@ -1,39 +1,37 @@
 #include "cmd/jobs/encode.h"
 
-#include "base/file.h"
 #include "base/mem.h"
-#include "cmd/jobs/cache_folder.h"
-#include "formats/bert_model.h"
 #include "formats/masks.h"
-#include "formats/vocab.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Tokens in one forward pass: enough to keep the products busy, little memory. */
 enum { ROWS_AT_ONCE = 1024 };
 
-static int add_special(
-	struct encoding_tokens *t, const struct vocab *v, enum wordpiece_special which, struct err *e)
+static int add_token(struct encoding_tokens *t, int32_t id, struct err *e)
 {
 	struct wordpieces *p = &t->pieces;
 
 	if (mem_grow((void **)&p->ids, &p->capacity, p->n + 1, sizeof *p->ids, "word pieces", e))
 		return -1;
-	p->ids[p->n++] = v->special[which];
+	p->ids[p->n++] = id;
 	return 0;
 }
 
 static int tokenise(const struct report *to, struct encoding_tokens *t, const struct sentences *s,
-	const struct vocab *v, size_t positions, struct err *e)
+	const struct encoder *with, struct err *e)
 {
+	const size_t positions = encoder_positions(with);
+
 	t->starts = mem_alloc(s->n + 1, sizeof *t->starts, "sentences", e);
 	if (!t->starts)
 		return -1;
 	for (size_t i = 0; i < s->n; i++) {
 		t->starts[i] = t->pieces.n;
-		if (add_special(t, v, WORDPIECE_CLS, e) ||
-			wordpiece_encode(v, s->items[i].text, &t->pieces, e))
+		if (add_token(t, encoder_first(with), e) ||
+			encoder_cut(with, s->items[i].text, &t->pieces, e))
 			return -1;
 		size_t words = t->pieces.n - t->starts[i] - 1;
 		if (words > positions - 2) {
@@ -41,20 +39,10 @@ static int tokenise(const struct report *to, struct encoding_tokens *t, const st
 				s->items[i].ref, words, positions - 2);
 			t->pieces.n = t->starts[i] + positions - 1;
 		}
-		if (add_special(t, v, WORDPIECE_SEP, e))
+		if (add_token(t, encoder_last(with), e))
 			return -1;
 	}
 	t->starts[s->n] = t->pieces.n;
-	return 0;
-}
-
-/* Ids index the embedding, so none may lie past it. */
-static int check_vocab(const struct vocab *v, const struct bert *b, const char *dir, struct err *e)
-{
-	for (size_t i = 0; i < v->n; i++)
-		if (v->entries[i].id >= b->words)
-			return err_set(e, ERR_FORMAT, "%s: token '%s' has id %d, but vocab_size is %d", dir,
-				v->entries[i].token, v->entries[i].id, b->words);
 	return 0;
 }
 
@@ -86,14 +74,14 @@ static int alloc_text(struct text *out, const struct sentences *s, const struct 
 }
 
 static int keep_pieces(
-	struct text *out, const struct encoding_tokens *t, const struct vocab *v, struct err *e)
+	struct text *out, const struct encoding_tokens *t, const struct encoder *with, struct err *e)
 {
 	out->pieces = mem_zalloc(out->n, sizeof *out->pieces, "pieces", e);
 	if (!out->pieces)
 		return -1;
 	for (size_t i = 0; i < out->n; i++) {
-		out->pieces[i] = vocab_print(
-			v, t->pieces.ids + t->starts[i] + 1, t->starts[i + 1] - t->starts[i] - 2, e);
+		out->pieces[i] = encoder_print(
+			with, t->pieces.ids + t->starts[i] + 1, t->starts[i + 1] - t->starts[i] - 2, e);
 		if (!out->pieces[i])
 			return -1;
 	}
@@ -126,13 +114,38 @@ static size_t pass_end(const size_t *starts, size_t first, size_t n)
 	return end;
 }
 
-/* Leaves [CLS] and [SEP] out. */
-static void keep_words(struct text *out, size_t sentence, const float *rows)
+/* Leaves the tokens that begin and end the sentence out of its words. */
+static void keep_sentence(struct text *out, const struct encoder *with, const struct encoding_tokens *t,
+	size_t sentence, const float *rows)
 {
-	size_t width = (size_t)out->width, first = (size_t)out->offsets[sentence];
+	const size_t width = (size_t)out->width, first = (size_t)out->offsets[sentence];
+	const int32_t *ids = t->pieces.ids + t->starts[sentence];
+	size_t last = 0;
 
 	memcpy(out->words + first * width, rows + width,
 		((size_t)out->offsets[sentence + 1] - first) * width * sizeof *rows);
+	if (!encoder_pools(with))
+		return;
+	while (ids[last] != encoder_last(with))
+		last++;
+	memcpy(out->sentences + sentence * width, rows + last * width, width * sizeof *rows);
+}
+
+static int check_finite(const struct text *t, struct err *e)
+{
+	const size_t width = (size_t)t->width;
+
+	for (size_t r = 0; r < t->n; r++) {
+		int bad = 0;
+		for (size_t i = (size_t)t->offsets[r] * width; i < (size_t)t->offsets[r + 1] * width; i++)
+			bad |= !isfinite(t->words[i]);
+		for (size_t i = r * width; i < (r + 1) * width; i++)
+			bad |= !isfinite(t->sentences[i]);
+		if (bad)
+			return err_set(
+				e, ERR_FORMAT, "ref '%s': the encoder's output is not finite", t->refs[r]);
+	}
+	return 0;
 }
 
 /* The most tokens of a pass, and the longest sentence's. */
@@ -152,15 +165,15 @@ static void find_sizes(const struct encoding_tokens *t, size_t n, size_t *most, 
 	}
 }
 
-static int make_words(struct text *out, const struct bert *b, const struct encoding_tokens *t, int is_static,
+static int make_words(struct text *out, const struct encoder *with, const struct encoding_tokens *t,
 	const struct report *to, struct err *e)
 {
-	size_t width = (size_t)b->width, most, longest, floats;
+	size_t width = (size_t)out->width, most, longest, floats;
 	float *scratch = NULL, *vectors = NULL;
 	int bad = 0;
 
 	find_sizes(t, out->n, &most, &longest);
-	if (bert_scratch(b, most, longest, &floats))
+	if (encoder_scratch(with, most, longest, &floats))
 		return err_set(e, ERR_SYSTEM, "encoder: its scratch does not fit in memory");
 	scratch = mem_alloc(floats, sizeof *scratch, "encoder's scratch", e);
 	vectors = mem_alloc(most, sizeof *vectors * width, "encoder's output", e);
@@ -168,47 +181,15 @@ static int make_words(struct text *out, const struct bert *b, const struct encod
 	report_start(to, "sentences", (double)out->n);
 	for (size_t first = 0, end; first < out->n && !bad; first = end) {
 		end = pass_end(t->starts, first, out->n);
-		if (is_static)
-			bert_static(b, t->pieces.ids + t->starts[first], t->starts[end] - t->starts[first],
-				vectors);
-		else
-			bert_forward(b, t->pieces.ids, t->starts + first, end - first, vectors, scratch);
+		encoder_forward(with, t->pieces.ids, t->starts + first, end - first, vectors, scratch);
 		for (size_t i = first; i < end; i++)
-			keep_words(out, i, vectors + (t->starts[i] - t->starts[first]) * width);
+			keep_sentence(out, with, t, i, vectors + (t->starts[i] - t->starts[first]) * width);
 		report_step(to, (double)end, NULL);
 	}
 	report_end(to);
 	free(scratch);
 	free(vectors);
-	return bad || text_take_means(out, e) ? -1 : 0;
-}
-
-char *encoder_default(struct err *e)
-{
-	char *dir = cache_folder("encoder", e);
-
-	if (!dir || file_is_dir(dir))
-		return dir;
-	err_set(e, ERR_SYSTEM,
-		"%s: no encoder there: 'refersplat-encoder' fetches one, in a checkout 'make encoder'", dir);
-	free(dir);
-	return NULL;
-}
-
-int encoder_read(struct encoder *x, const char *dir, int is_static, struct err *e)
-{
-	x->is_static = is_static;
-	if (vocab_read(&x->vocab, dir, e) || bert_model_read(&x->bert, dir, e) ||
-		check_vocab(&x->vocab, &x->bert, dir, e))
-		return -1;
-	x->fingerprint = fingerprint_encoder(&x->bert, &x->vocab, is_static);
-	return 0;
-}
-
-void encoder_free(struct encoder *x)
-{
-	bert_free(&x->bert);
-	vocab_free(&x->vocab);
+	return bad || (encoder_pools(with) ? check_finite(out, e) : text_take_means(out, e)) ? -1 : 0;
 }
 
 static int has_sentence(const struct sentences *s, const char *ref)
@@ -251,14 +232,12 @@ int encoding_read(struct encoding *x, const char *path, int is_of_masks, struct 
 
 int encode(struct encoding *x, const struct encoder *with, const struct report *to, struct err *e)
 {
-	const struct vocab *v = &with->vocab;
-	const struct bert *b = &with->bert;
 	struct text *out = &x->text;
 
-	if (tokenise(to, &x->tokens, &x->sentences, v, (size_t)b->positions, e) ||
-		alloc_text(out, &x->sentences, &x->tokens, b->width, e) ||
-		keep_pieces(out, &x->tokens, v, e) || text_take_more(out, &x->sentences, e) ||
-		make_words(out, b, &x->tokens, with->is_static, to, e))
+	if (tokenise(to, &x->tokens, &x->sentences, with, e) ||
+		alloc_text(out, &x->sentences, &x->tokens, encoder_width(with), e) ||
+		keep_pieces(out, &x->tokens, with, e) || text_take_more(out, &x->sentences, e) ||
+		make_words(out, with, &x->tokens, to, e))
 		return -1;
 	out->encoder = with->fingerprint;
 	return 0;

@@ -1,37 +1,20 @@
-/* Sentences to word vectors by a BERT encoder: text-encode. formats/text.md. */
+/* Sentences to word vectors by a language encoder: text-encode. formats/text.md. */
 #ifndef CMD_JOBS_ENCODE_H
 #define CMD_JOBS_ENCODE_H
 
 #include "base/err.h"
 #include "base/report.h"
+#include "cmd/jobs/encoder.h"
 #include "formats/sentences.h"
 #include "formats/text.h"
-#include "nn/bert.h"
 #include "nn/wordpiece.h"
 
 #include <stddef.h>
 
-/* A BERT and its vocabulary. */
-struct encoder {
-	struct vocab vocab;
-	struct bert bert;
-	int is_static; /* vectors as the vocabulary has them, not as the sentence makes them */
-	struct fingerprint fingerprint; /* of all of it */
-};
-
-/* Where `make encoder` puts an encoder: refersplat/encoder in $XDG_CACHE_HOME or ~/.cache. free() it; NULL
- * with *e set, also where there is none. */
-char *encoder_default(struct err *e);
-
-/* Reads the encoder in the folder `dir`; *x is zeroed before. Returns 0, or -1 with *e set; encoder_free
- * after either. */
-int encoder_read(struct encoder *x, const char *dir, int is_static, struct err *e);
-void encoder_free(struct encoder *x);
-
 /* Sentences, and what is made of them. */
 struct encoding {
 	struct sentences sentences;
-	struct encoding_tokens { /* all sentences as token ids, [CLS] and [SEP] included */
+	struct encoding_tokens { /* all sentences as token ids, those that begin and end one included */
 		struct wordpieces pieces;
 		size_t *starts; /* (sentences.n + 1) */
 	} tokens;

@@ -2,37 +2,71 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/path.h"
 #include "cmd/jobs/feature_tables.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* 1 where DIR/VIEW and the suffix is there, 0 where it is not, -1 with *e. */
-static int has_file(const char *dir, const char *view, const char *suffix, struct err *e)
+/* 1 where the folder has VIEW and the suffix, or the .npz has it, 0 where not, -1 with *e. */
+static int has_file(
+	const struct feature_maps *m, const char *view, const char *suffix, const char *ending, struct err *e)
 {
-	char *path = file_join(dir, view, suffix, e);
-	const int found = path ? file_exists(path) : -1;
+	char name[16];
 
+	if (m->npz)
+		return strcmp(ending, ".npy") ? 0 : npz_has(m->npz, view, suffix, e);
+	snprintf(name, sizeof name, "%s%s", suffix, ending);
+	char *path = file_join(m->options->folder, view, name, e);
+	const int found = path ? file_exists(path) : -1;
 	free(path);
 	return found;
 }
 
 /* The kind of files that a view has: 0, or -1 with *e. */
-static int find_kind(const char *dir, const char *view, enum feature_maps_kind *kind, struct err *e)
+static int find_kind(
+	const struct feature_maps *m, const char *view, enum feature_maps_kind *kind, struct err *e)
 {
 	static const struct {
-		const char *suffix;
+		const char *suffix, *ending;
 		enum feature_maps_kind kind;
-	} files[] = {{".npy", MAPS_CELLS}, {"_s.npy", MAPS_SEGMENTS}, {".png", MAPS_LABELS}};
+	} files[] = {{"", ".npy", MAPS_CELLS}, {"", ".npz", MAPS_CELLS}, {"_s", ".npy", MAPS_SEGMENTS},
+		{"", ".png", MAPS_LABELS}};
 
 	*kind = MAPS_NONE;
 	for (size_t k = 0; k < sizeof files / sizeof *files && *kind == MAPS_NONE; k++) {
-		const int found = has_file(dir, view, files[k].suffix, e);
+		const int found = has_file(m, view, files[k].suffix, files[k].ending, e);
 		if (found < 0)
 			return -1;
 		*kind = found ? files[k].kind : MAPS_NONE;
 	}
 	return 0;
+}
+
+static int open_npz(struct feature_maps *m, struct err *e)
+{
+	if (!path_ends(m->options->folder, ".npz") || file_is_dir(m->options->folder))
+		return 0;
+	m->npz = mem_alloc(1, sizeof *m->npz, "arrays", e);
+	if (m->npz && !npz_open(m->npz, m->options->folder, e))
+		return 0;
+	free(m->npz);
+	m->npz = NULL;
+	return -1;
+}
+
+/* What is said where no training view has anything. */
+static int find_nothing(const struct feature_maps *m, struct err *e)
+{
+	const char *dir = m->options->folder;
+
+	if (m->npz)
+		return err_set(e, ERR_FORMAT, "%s: has no VIEW.npy or VIEW_s.npy of a training view", dir);
+	if (!file_is_dir(dir))
+		return err_set(e, ERR_SYSTEM, "%s: no such folder", dir);
+	return err_set(e, ERR_FORMAT,
+		"%s: has no VIEW.npy, VIEW.npz, VIEW_s.npy or VIEW.png of a training view", dir);
 }
 
 static int find_files(struct feature_maps *m, const struct report *to, struct err *e)
@@ -41,11 +75,13 @@ static int find_files(struct feature_maps *m, const struct report *to, struct er
 	const char *dir = m->options->folder;
 	size_t missing = 0;
 
+	if (open_npz(m, e))
+		return -1;
 	for (size_t v = 0; v < c->n; v++) {
 		enum feature_maps_kind kind;
 		if (c->views[v].split != SPLIT_TRAIN)
 			continue;
-		if (find_kind(dir, c->views[v].name, &kind, e))
+		if (find_kind(m, c->views[v].name, &kind, e))
 			return -1;
 		if (m->kind == MAPS_NONE)
 			m->kind = kind;
@@ -53,10 +89,7 @@ static int find_files(struct feature_maps *m, const struct report *to, struct er
 		missing += !m->is_there[v];
 	}
 	if (m->kind == MAPS_NONE)
-		return err_set(e, file_is_dir(dir) ? ERR_FORMAT : ERR_SYSTEM,
-			file_is_dir(dir) ? "%s: has no VIEW.npy, VIEW_s.npy or VIEW.png of a training view"
-					 : "%s: no such folder",
-			dir);
+		return find_nothing(m, e);
 	if (missing)
 		report_warn(to, "%s: %zu training views have no features", dir, missing);
 	return 0;
@@ -133,6 +166,9 @@ int feature_maps_find(struct feature_maps *m, const struct feature_maps_options 
 
 void feature_maps_free(struct feature_maps *m)
 {
+	if (m->npz)
+		npz_close(m->npz);
+	free(m->npz);
 	free(m->is_there);
 	masks_free(&m->set);
 	mask_index_free(&m->index);

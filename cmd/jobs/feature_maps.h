@@ -8,6 +8,7 @@
 #include "base/report.h"
 #include "formats/masks.h"
 #include "formats/npy.h"
+#include "formats/npz.h"
 #include "formats/scene.h"
 #include "formats/text.h"
 #include "mask/mask_index.h"
@@ -16,7 +17,8 @@
 #include <stdint.h>
 
 struct feature_maps_options {
-	const char *folder;	  /* VIEW.npy, VIEW_f.npy and VIEW_s.npy, or VIEW.png; NULL: masks */
+	const char *folder;	  /* VIEW.npy or .npz, VIEW_f.npy and VIEW_s.npy, or VIEW.png, or an .npz of
+				     such arrays; NULL: masks */
 	const char *masks, *text; /* text NULL: the masks' objects are labels */
 	long long level;	  /* of segments */
 	int is_zero;		  /* pixels without a feature count as zero, else not at all */
@@ -30,6 +32,7 @@ struct feature_maps {
 	enum feature_maps_kind kind;
 	char *is_there;	 /* (views) the view has files of this kind, or masks */
 	size_t channels; /* 0: labels */
+	struct npz *npz; /* of all views; NULL: there is a folder */
 	/* of masks */
 	struct masks set;
 	struct mask_index index;

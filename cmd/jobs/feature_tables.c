@@ -6,6 +6,7 @@
 #include "lift/source_weights.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,18 +36,58 @@ static int check_table(const struct npy_file *t, int dims, const char *path, str
 	return 0;
 }
 
+/* VIEW.npz: its array `features`, or the one that numpy.savez gives no name. */
+static int open_packed(const char *file, struct npy_file *t, char **called, struct err *e)
+{
+	static const char *const names[] = {"features", "arr_0"};
+	struct npz z;
+
+	if (npz_open(&z, file, e))
+		return -1;
+	const char *name = npz_main(&z, names, 2, e);
+	const int bad = !name || npz_array(&z, name, "", t, called, e);
+	npz_close(&z);
+	return bad ? -1 : 0;
+}
+
+/* The view's array with this suffix, and how messages name it. */
+static int open_array(const struct feature_maps *m, size_t view, const char *suffix, struct npy_file *t,
+	char **called, struct err *e)
+{
+	char ending[16];
+
+	*called = NULL;
+	if (m->npz)
+		return npz_array(m->npz, m->scene->cameras.views[view].name, suffix, t, called, e);
+	snprintf(ending, sizeof ending, "%s.npy", suffix);
+	char *path = view_path(m, view, ending, e), *packed = view_path(m, view, ".npz", e);
+	if (path && packed && !*suffix && !file_exists(path) && file_exists(packed)) {
+		const int bad = open_packed(packed, t, called, e);
+		free(path);
+		free(packed);
+		return bad;
+	}
+	const int bad = !path || !packed || npy_open(t, path, e);
+	free(packed);
+	if (bad)
+		free(path);
+	else
+		*called = path;
+	return bad ? -1 : 0;
+}
+
 static int open_table(
 	const struct feature_maps *m, size_t view, struct npy_file *t, size_t *channels, struct err *e)
 {
 	const int is_map = m->kind == MAPS_CELLS;
-	char *path = view_path(m, view, is_map ? ".npy" : "_f.npy", e);
-	int bad = !path || npy_open(t, path, e);
+	char *called;
+	int bad = open_array(m, view, is_map ? "" : "_f", t, &called, e);
 
-	if (!bad && (bad = check_table(t, is_map ? 3 : 2, path, e)))
+	if (!bad && (bad = check_table(t, is_map ? 3 : 2, called, e)))
 		npy_close(t);
 	if (!bad)
 		*channels = t->shape[t->dims - 1];
-	free(path);
+	free(called);
 	return bad ? -1 : 0;
 }
 
@@ -95,15 +136,15 @@ static int read_ids(const struct feature_maps *m, const struct npy_file *ids, co
 static int open_segments(const struct feature_maps *m, size_t view, int height, int width,
 	struct feature_sources *s, struct err *e)
 {
-	char *path = view_path(m, view, "_s.npy", e);
 	struct npy_file ids;
-	int bad = !path || npy_open(&ids, path, e);
+	char *called;
+	int bad = open_array(m, view, "_s", &ids, &called, e);
 
 	if (!bad) {
-		bad = read_ids(m, &ids, path, height, width, s, e);
+		bad = read_ids(m, &ids, called, height, width, s, e);
 		npy_close(&ids);
 	}
-	free(path);
+	free(called);
 	return bad ? -1 : 0;
 }
 

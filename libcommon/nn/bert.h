@@ -1,52 +1,26 @@
 /* BERT's encoder (Devlin et al. 2019), forward only: token ids in, a vector for each token out.
  *
- *   x      = LayerNorm(word[id] + position[k] + type[0])
- *   each layer:
- *   q,k,v  = Linear(x), split into heads of d = width/heads columns
- *   c      = softmax(q k^T / sqrt d) v, heads side by side
- *   x      = LayerNorm(x + Linear(c))
- *   x      = LayerNorm(x + Linear(act(Linear(x))))
+ *   x = LayerNorm(word[id] + position[k] + type[0]), through the layers of nn/transformer.h
  */
 #ifndef NN_BERT_H
 #define NN_BERT_H
 
 #include "base/err.h"
+#include "nn/transformer.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
-enum bert_activation {
-	BERT_GELU,	/* x Phi(x), by erf */
-	BERT_GELU_TANH, /* its approximation by tanh: "gelu_new", "gelu_pytorch_tanh" */
-	BERT_RELU,
-};
-
-struct bert_linear {
-	float *weight, *bias; /* (out,in) row-major, (out) */
-};
-
-struct bert_norm {
-	float *scale, *shift; /* (width) */
-};
-
-struct bert_layer {
-	struct bert_linear query, key, value, attention_out, inner, outer;
-	struct bert_norm attention_norm, norm;
-};
-
 struct bert {
 	int words, positions, types; /* rows of the three embeddings */
-	int width, heads, inner, layer_count;
-	enum bert_activation activation;
-	double eps; /* of every LayerNorm */
-
+	struct transformer body;
 	float *word, *position, *type; /* (words,width), (positions,width), (types,width) */
-	struct bert_norm norm;
-	struct bert_layer *layers;
+	struct transformer_norm norm;
 	float *slab; /* all of the above lie in it */
 };
 
-/* Given the sizes (words to layer_count), allocates the slab, not initialised, and points the arrays into it.
+/* Given the sizes (words to types, and body's), allocates the slab, not initialised, and points the arrays
+ * into it.
  */
 int bert_alloc(struct bert *b, struct err *e);
 void bert_free(struct bert *b);

@@ -1,5 +1,10 @@
 #include "nn/unicode.h"
 
+#include "base/mem.h"
+#include "base/utf8.h"
+
+#include <stdlib.h>
+#include <string.h>
 #include <utf8proc.h>
 
 static utf8proc_category_t category(uint32_t c)
@@ -58,4 +63,52 @@ size_t unicode_fold(uint32_t c, uint32_t out[UNICODE_FOLD_MAX])
 		if (category((uint32_t)parts[i]) != UTF8PROC_CATEGORY_MN)
 			out[kept++] = (uint32_t)utf8proc_tolower(parts[i]);
 	return kept;
+}
+
+int unicode_is_letter(uint32_t c)
+{
+	const utf8proc_category_t is = category(c);
+
+	return is >= UTF8PROC_CATEGORY_LU && is <= UTF8PROC_CATEGORY_LO;
+}
+
+int unicode_is_number(uint32_t c)
+{
+	const utf8proc_category_t is = category(c);
+
+	return is >= UTF8PROC_CATEGORY_ND && is <= UTF8PROC_CATEGORY_NO;
+}
+
+size_t unicode_lower(uint32_t c, uint32_t out[2])
+{
+	if (c == 0x130) { /* the only one that becomes two: a dotted capital I */
+		out[0] = 'i';
+		out[1] = 0x307;
+		return 2;
+	}
+	out[0] = (uint32_t)utf8proc_tolower((utf8proc_int32_t)c);
+	return 1;
+}
+
+char *unicode_compose(const char *text, size_t *length, struct err *e)
+{
+	const size_t len = strlen(text);
+	size_t at = 0, kept = 0;
+	utf8proc_uint8_t *out = NULL;
+	char *well = mem_alloc(len + 1, 1, "text", e);
+
+	while (well && at < len) {
+		const size_t begin = at;
+		const uint32_t c = utf8_next(text, len, &at);
+		if (c != 0xfffd || at - begin == 3)
+			kept += utf8_put(well + kept, c);
+	}
+	const utf8proc_ssize_t n = well ? utf8proc_map((const utf8proc_uint8_t *)well, (utf8proc_ssize_t)kept,
+						  &out, UTF8PROC_STABLE | UTF8PROC_COMPOSE)
+					: 0;
+	if (well && n < 0)
+		err_set(e, ERR_SYSTEM, "text: %s", utf8proc_errmsg(n));
+	free(well);
+	*length = n > 0 ? (size_t)n : 0;
+	return n < 0 ? NULL : (char *)out;
 }

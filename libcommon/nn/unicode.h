@@ -1,7 +1,9 @@
-/* What BERT's uncased normalisation needs of Unicode: which characters it drops, splits at and replaces. What
- * Unicode says of a character is utf8proc's to know. */
+/* What BERT's uncased normalisation and CLIP's need of Unicode: which characters they drop, split at and
+ * replace. What Unicode says of a character is utf8proc's to know. */
 #ifndef NN_UNICODE_H
 #define NN_UNICODE_H
+
+#include "base/err.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -25,5 +27,16 @@ int unicode_is_ideograph(uint32_t c);
  * final sigma is not treated apart. Returns how many characters go to out, 0 for a mark. Marks that are kept
  * (Mc) are left in their order: no vocabulary tells the orders apart. */
 size_t unicode_fold(uint32_t c, uint32_t out[UNICODE_FOLD_MAX]);
+
+/* Categories L* and N*. */
+int unicode_is_letter(uint32_t c);
+int unicode_is_number(uint32_t c);
+
+/* The character in lower case by itself; returns how many characters go to out, 1 or 2. */
+size_t unicode_lower(uint32_t c, uint32_t out[2]);
+
+/* Canonical composition (NFC) of UTF-8, without bytes that are malformed; *length of it. free() it; NULL with
+ * *e set when memory is out. */
+char *unicode_compose(const char *text, size_t *length, struct err *e);
 
 #endif

@@ -101,13 +101,18 @@ const char *vocab_token(const struct vocab *v, int32_t id)
 	return v->entries[low].token;
 }
 
-const char *vocab_finish(struct vocab *v)
+void vocab_sort(struct vocab *v)
 {
 	if (v->n) {
 		qsort(v->entries, v->n, sizeof *v->entries, by_id);
 		memset(v->table, 0, v->slots * sizeof *v->table);
 		fill_table(v);
 	}
+}
+
+const char *vocab_finish(struct vocab *v)
+{
+	vocab_sort(v);
 	for (int i = 0; i < WORDPIECE_SPECIALS; i++) {
 		v->special[i] = vocab_find(v, special_tokens[i], strlen(special_tokens[i]));
 		if (v->special[i] < 0 && i >= WORDPIECE_UNK && i <= WORDPIECE_SEP)

@@ -38,7 +38,10 @@ struct vocab {
  */
 int vocab_add(struct vocab *v, const char *token, int32_t id, struct err *e);
 
-/* To be called when all tokens are there: sorts the entries by id and finds the special ones. [UNK], [CLS]
+/* Sorts the entries by id. */
+void vocab_sort(struct vocab *v);
+
+/* To be called when all tokens of a BERT are there: sorts them, and finds the special ones. [UNK], [CLS]
  * and [SEP] are needed: the name of one that is missing, else NULL. */
 const char *vocab_finish(struct vocab *v);
 
@@ -47,7 +50,7 @@ void vocab_free(struct vocab *v);
 /* The id of the `len` bytes at token, or -1. */
 int32_t vocab_find(const struct vocab *v, const char *token, size_t len);
 
-/* The token with an id that vocab_find gave, after vocab_finish. */
+/* The token with an id that vocab_find gave, after vocab_sort. */
 const char *vocab_token(const struct vocab *v, int32_t id);
 
 /* A growing list of ids. */

@@ -2,7 +2,7 @@
 # Makes the folder in which the EXAMPLES of the manual pages run. usage: examples-setup.sh DIR BIN
 # It holds a small synthetic scene (formats/synth.md) and what each tool makes of it, under the names that the manual pages
 # use: scene, weights, text.safetensors, masks.jsonl, model.safetensors, pred.jsonl, whole.jsonl; kitchen, laid out as
-# pipelines/lift.mk does; view_001.png, a painted photograph; new-camera.json, a camera of its own; labels.json; encoder, a tiny BERT, and cache, which has it where `make encoder` would put one.
+# pipelines/lift.mk does; view_001.png, a painted photograph; new-camera.json, a camera of its own; labels.json; encoder, a tiny BERT, clip, a tiny CLIP, clip-features.safetensors, features of its width, and cache, which has it where `make encoder` would put one.
 set -eu
 mkdir -p "$1"
 golden=$(cd "$(dirname "$0")/../golden" && pwd)
@@ -10,10 +10,14 @@ PATH=$(cd "$2" && pwd):$PATH
 cd "$1"
 
 cp -r "$golden/bert" encoder
+cp -r "$golden/clip" clip
 gs-synth -q --objects 3 --views 5 --size 64x48 --gaussians 1000 -o .
 gs-import -q --images images --test-views "$(cat test-views)" -o scene point_cloud.ply
 gs-weigh -q -o weights scene
 text-encode -q --model encoder -o text.safetensors sentences.jsonl
+text-encode -q --model clip -o clip-text.safetensors sentences.jsonl
+feature-lift -q --scene scene --weights weights --masks candidates.jsonl --text clip-text.safetensors -o clip-features.safetensors
+rm clip-text.safetensors
 pseudomask-select -q -o masks.jsonl candidates.jsonl
 refer-train -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 20 \
 	-o model.safetensors

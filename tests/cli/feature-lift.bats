@@ -174,6 +174,91 @@ not() { ! "$@"; }
 	[ "$(tensor over labels d4 | tr ' ' '\n' | sort -nu | paste -sd' ')" = "-1 2" ]
 }
 
+@test "arrays in .npz: one for each view, or one of all views, stored or deflated" {
+	halves
+	lift -o expected maps
+	mkdir packed
+	for view in "${views[@]}"; do
+		cp "maps/$view.npy" features.npy
+		npy other.npy '<f4' '1' $left
+		npz "packed/$view.npz" other.npy features.npy
+	done
+	lift -o each packed
+	cmp each expected
+	for view in "${views[@]}"; do
+		cp "maps/$view.npy" arr_0.npy
+		npz "packed/$view.npz" arr_0.npy
+	done
+	lift -o unnamed packed
+	cmp unnamed expected
+	# a .npy comes before a .npz, view by view
+	cp "maps/${views[0]}.npy" packed
+	echo broken >"packed/${views[0]}.npz"
+	lift -o mixed packed
+	cmp mixed expected
+	npz all.npz other.npy maps/*.npy
+	lift -o all all.npz
+	cmp all expected
+	# as NumPy 1.24 writes them: savez, savez_compressed
+	for saved in stored deflated; do
+		lift -o $saved "$BATS_TEST_DIRNAME/../golden/npz/$saved.npz"
+		cmp $saved expected
+	done
+}
+
+@test "segments in an .npz" {
+	for view in "${views[@]}"; do
+		npy "maps/${view}_f.npy" '<f4' '2, 2' $left$right
+		npy "maps/${view}_s.npy" '<i4' '1, 2' 0000000001000000
+	done
+	lift -o expected maps
+	npz all.npz maps/*.npy
+	lift -o all all.npz
+	cmp all expected
+	rm "maps/${views[0]}_f.npy"
+	npz all.npz maps/*.npy
+	refuses 3 "all.npz: ${views[0]}_f.npy: is not there" all.npz
+}
+
+@test "archives that are malformed" {
+	halves
+	view=${views[0]}
+	npz all.npz maps/*.npy
+	refuses 4 'gone.npz: No such file or directory' gone.npz
+	head -c $(($(wc -c <all.npz) - 30)) all.npz >cut.npz
+	refuses 3 'cut.npz: not a zip, or its end is missing' cut.npz
+	npy other.npy '<f4' '1' $left
+	npz other.npz other.npy
+	refuses 3 'other.npz: has no VIEW.npy or VIEW_s.npy of a training view' other.npz
+	# the second record of the directory, which is as long as the first
+	record=$((46 + ${#view} + 4))
+	begin=$(($(wc -c <all.npz) - 22 - record * ${#views[@]}))
+	{ head -c $((begin + record)) all.npz; printf XX; tail -c +$((begin + record + 3)) all.npz; } >lost.npz
+	refuses 3 "lost.npz: the zip's directory is damaged" lost.npz
+	# a byte of the first array's numbers
+	{ head -c $((30 + ${#view} + 4 + 130)) all.npz; printf '\xff'; tail -c +$((30 + ${#view} + 4 + 132)) all.npz; } >damaged.npz
+	refuses 3 "damaged.npz: file '$view.npy' in the zip is damaged" damaged.npz
+	npy "maps/$view.npy" '<f4' '2, 2' $left$right
+	npz all.npz maps/*.npy
+	refuses 3 "all.npz: $view.npy: has 2 dimensions, not 3: height, width and channels" all.npz
+	echo text >"maps/$view.npy"
+	npz all.npz maps/*.npy
+	refuses 3 "all.npz: $view.npy: not a .npy file: it does not begin with \\x93NUMPY" all.npz
+	rm "maps/$view.npy"
+	npz "maps/$view.npz" other.npy
+	refuses 3 "maps/$view.npz: has no array 'features' or 'arr_0'" maps
+	says 2 "feature-lift: -o all.npz would overwrite MAPS all.npz
+Try 'feature-lift --help'." lift -o all.npz all.npz
+	# cut short anywhere: one line
+	npz small.npz maps/*.npy
+	for ((n = 0; n < $(wc -c <small.npz); n += 97)); do
+		head -c $n small.npz >short.npz
+		status=0
+		lift -o none short.npz 2>err || status=$?
+		[ $status = 3 ] && [ "$(wc -l <err)" = 1 ] && [ ! -e none ]
+	done
+}
+
 @test "maps that are malformed" {
 	view=${views[0]}
 	halves
@@ -190,7 +275,7 @@ not() { ! "$@"; }
 	halves
 	npy "maps/${views[1]}.npy" '<f4' '1, 1, 3' $left$f1
 	refuses 3 "maps: view '${views[1]}' has 3 channels, the views before it have 2" maps
-	refuses 3 "${made}/weights: has no VIEW.npy, VIEW_s.npy or VIEW.png of a training view" "$made/weights"
+	refuses 3 "${made}/weights: has no VIEW.npy, VIEW.npz, VIEW_s.npy or VIEW.png of a training view" "$made/weights"
 	refuses 4 "gone: no such folder" gone
 }
 

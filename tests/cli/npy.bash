@@ -19,6 +19,54 @@ npy() {
 	} >"$1"
 }
 
+# number BYTES N...: each number in so many bytes, the lowest first.
+number() {
+	local n k bytes=$1
+	shift
+	for n; do
+		for ((k = 0; k < bytes; k++)); do printf "\\x$(printf %02x $((n >> 8 * k & 255)))"; done
+	done
+}
+
+# npz FILE MEMBER...: a zip of files as they are, under their last names, as numpy.savez writes it.
+npz() {
+	local out=$1 list=$1.list file name crc size begin
+	shift
+	: >"$out"
+	: >"$list"
+	for file; do
+		name=${file##*/}
+		crc=$(gzip -c "$file" | tail -c 8 | head -c 4 | od -An -t u4 | tr -d ' ')
+		size=$(wc -c <"$file")
+		begin=$(wc -c <"$out")
+		{
+			number 4 0x04034b50
+			number 2 20 0 0 0 33
+			number 4 "$crc" "$size" "$size"
+			number 2 ${#name} 0
+			printf '%s' "$name"
+			cat "$file"
+		} >>"$out"
+		{
+			number 4 0x02014b50
+			number 2 20 20 0 0 0 33
+			number 4 "$crc" "$size" "$size"
+			number 2 ${#name} 0 0 0 0
+			number 4 0 "$begin"
+			printf '%s' "$name"
+		} >>"$list"
+	done
+	begin=$(wc -c <"$out")
+	cat "$list" >>"$out"
+	{
+		number 4 0x06054b50
+		number 2 0 0 $# $#
+		number 4 "$(wc -c <"$list")" "$begin"
+		number 2 0
+	} >>"$out"
+	rm "$list"
+}
+
 # times N TEXT: the text so often.
 times() {
 	local k

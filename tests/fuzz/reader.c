@@ -10,13 +10,16 @@
 #include "formats/boxes.h"
 #include "formats/camerafile.h"
 #include "formats/checkpoint.h"
+#include "formats/clip_model.h"
 #include "formats/colmap.h"
 #include "formats/dataparser.h"
 #include "formats/features.h"
 #include "formats/lifted.h"
 #include "formats/masks.h"
+#include "formats/merges.h"
 #include "formats/model.h"
 #include "formats/npy.h"
+#include "formats/npz.h"
 #include "formats/parser_weights.h"
 #include "formats/parses.h"
 #include "formats/png.h"
@@ -70,6 +73,23 @@ SIMPLE(weights, struct weights, weights_open_file, weights_close)
 SIMPLE(colmap, struct cameras, colmap_read, cameras_free)
 SIMPLE(vocab, struct vocab, vocab_read, vocab_free)
 SIMPLE(bert, struct bert, bert_model_read, bert_free)
+SIMPLE(clip, struct clip, clip_model_read, clip_free)
+
+/* The text is cut by whatever merges were read. */
+static void try_merges(const char *path)
+{
+	struct bpe b = {0};
+	struct wordpieces out = {0};
+	char *pieces = NULL;
+
+	if (merges_read(&b, path, 634, &e))
+		return;
+	if (!bpe_encode(&b, "The red cup's 10 plates, caf\xc3\xa9!", &out, &e))
+		pieces = merges_print(&b, out.ids, out.n, &e);
+	free(pieces);
+	free(out.ids);
+	bpe_free(&b);
+}
 
 static void try_annotations(const char *path)
 {
@@ -174,6 +194,27 @@ static void try_checkpoint(const char *path)
 	(void)checkpoint_resume(&t, path, &of, 1000, &e);
 }
 
+static void try_npz(const char *path)
+{
+	struct npz z;
+	struct npy_file a;
+
+	if (npz_open(&z, path, &e))
+		return;
+	for (size_t i = 0; i < z.n; i++) {
+		const size_t len = strlen(z.entries[i].name);
+		if (len < sizeof ".npy")
+			continue;
+		z.entries[i].name[len - 4] = 0;
+		char *name = strdup(z.entries[i].name);
+		z.entries[i].name[len - 4] = '.';
+		if (name && !npz_array(&z, name, "", &a, NULL, &e))
+			npy_close(&a);
+		free(name);
+	}
+	npz_close(&z);
+}
+
 static const struct target {
 	const char *name;
 	void (*run)(const char *path);
@@ -187,6 +228,8 @@ static const struct target {
 	{"cameras", try_cameras, {0}},
 	{"check", try_check, {0}},
 	{"checkpoint", try_checkpoint, {0}},
+	{"clip", try_clip, {"config.json", "model.safetensors"}},
+	{"clip-open", try_clip, {"open_clip_config.json", "open_clip_model.safetensors"}},
 	{"colmap-binary", try_colmap, {"cameras.bin", "images.bin"}},
 	{"colmap-text", try_colmap, {"cameras.txt", "images.txt"}},
 	{"dataparser", try_dataparser, {0}},
@@ -195,8 +238,12 @@ static const struct target {
 	{"lifted", try_lifted, {0}},
 	{"glb", try_scene, {0}},
 	{"masks", try_masks, {0}},
+	{"merges-gzip", try_merges, {"bpe_simple_vocab_16e6.txt.gz"}},
+	{"merges-json", try_merges, {"tokenizer.json"}},
+	{"merges-text", try_merges, {"vocab.json", "merges.txt"}},
 	{"model", try_model, {0}},
 	{"npy", try_npy, {0}},
+	{"npz", try_npz, {0}},
 	{"parser", try_parser, {0}},
 	{"parses", try_parses, {0}},
 	{"ply", try_scene, {0}},

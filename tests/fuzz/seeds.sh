@@ -95,6 +95,15 @@ folder colmap-text small/sparse/0/cameras.txt small/sparse/0/images.txt
 printf '\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0\0\0\24\100\0\0\0\0\0\0\24\100\0\0\0\0\0\0\0\100\0\0\0\0\0\0\370\77' >cameras.bin
 { printf '\1\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0\0\0\360\77'; head -c 48 /dev/zero; printf '\1\0\0\0a.png\0'; head -c 8 /dev/zero; } >images.bin
 folder colmap-binary cameras.bin images.bin
+golden=$here/tests/golden
+cp -r "$golden/clip" "$golden/open-clip" .
+folder clip clip/config.json clip/model.safetensors
+folder clip-open open-clip/open_clip_config.json open-clip/open_clip_model.safetensors
+folder merges-text clip/vocab.json clip/merges.txt
+seed merges-gzip open-clip/bpe_simple_vocab_16e6.txt.gz
+jq -Rs --slurpfile vocab clip/vocab.json '{normalizer: {type: "Sequence", normalizers: [{type: "NFC"}, {type: "Lowercase"}]},
+	model: {type: "BPE", end_of_word_suffix: "</w>", vocab: $vocab[0], merges: (split("\n")[1:-1] | .[0] |= split(" "))}}' clip/merges.txt >merges.json
+seed merges-json merges.json
 seed dataparser dataparser.json
 seed features some-features.safetensors some-labels.safetensors
 seed image png/*/*.png overlay/*/*.* overlay/*.* small/images/*
@@ -104,6 +113,7 @@ seed model some-model.safetensors
 gs-transform -q -o few.glb few.ply
 seed glb few.glb "$here/tests/golden/glb/eight.glb"
 seed npy response/*/*.npy response/*.npy
+seed npz "$golden"/npz/*.npz
 seed parser "$here/formats/parser_default.safetensors"
 seed parses some-parses.jsonl
 seed ply few.ply packed.ply
@@ -132,7 +142,10 @@ for target in "$dir"/*/; do
 	image) set -- png.c jpeg.c ;;
 	camerafile) set -- camerafile.c cameras3dgs.c transforms.c ;;
 	cameras | splats) set -- scene.c ;;
-	bert) set -- bert_model.c ;;
+	bert) set -- bert_model.c pretrained.c ;;
+	clip) set -- clip_model.c pretrained.c ;;
+	merges) set -- merges.c vocab.c ;;
+	npz) set -- npz.c npy.c ;;
 	parser) set -- parser_weights.c ;;
 	parses) set -- parses_read.c ;;
 	ply) set -- ply.c plyfile.c plypacked.c ;;

@@ -105,6 +105,12 @@ report() {
 	[ out/quick/diner-1/both-exact/teach.jsonl -nt out/quick/diner-1/both-exact/model.safetensors ]
 }
 
+@test "a CLIP of the user's is a row of the encoders' table" {
+	ablation -j2 encoder BERTS="clip=$ROOT/tests/golden/clip" >first.log 2>&1
+	grep -qE '^\| clip \| +\| [0-9.]+( \| [0-9.]+){3} \|$' out/quick/encoder.md
+	[ "$(grep -cE '\| [0-9.]+( \| [0-9.]+){3} \|$' out/quick/encoder.md)" = 3 ]
+}
+
 @test "a training with other options is made again, and no other" {
 	ablation scores RUNS="none both" >/dev/null 2>&1
 	run ablation scores RUNS="none both" run.none="--interaction add --contrast none"

@@ -1,8 +1,8 @@
 /* The encoder on a tiny random BERT, against float64 (tests/peers/bert.py), and on all-MiniLM-L6-v2 where the
  * environment's REFER_BERT names its folder. Run from the repository's root. */
+#include "encoder_files.h"
 #include "unit.h"
 
-#include "base/file.h"
 #include "formats/bert_model.h"
 #include "formats/safetensors.h"
 #include "formats/sentences.h"
@@ -12,12 +12,6 @@
 #include <unistd.h>
 
 #define GOLDEN "tests/golden/bert"
-
-/* Through void, as floats are meant to be compared to the bit here. */
-static int same_bytes(const void *a, const void *b, size_t n)
-{
-	return !memcmp(a, b, n);
-}
 
 static char work[] = "/tmp/test_bert.XXXXXX";
 
@@ -39,7 +33,8 @@ static float *encode(
 	ids->n = *n = keep + 2;
 	free(words.ids);
 	CHECK(!bert_scratch(b, *n, *n, &floats), "scratch");
-	float *scratch = malloc(floats * sizeof *scratch), *out = malloc(*n * (size_t)b->width * sizeof *out);
+	float *scratch = malloc(floats * sizeof *scratch),
+	      *out = malloc(*n * (size_t)b->body.width * sizeof *out);
 	bert_forward(b, ids->ids, (size_t[]){0, *n}, 1, out, scratch);
 	free(scratch);
 	return out;
@@ -50,7 +45,7 @@ static void golden_sentences(const struct bert *b, const struct vocab *v)
 	struct sentences s;
 	struct safetensors expected;
 	struct err e = {0};
-	size_t width = (size_t)b->width;
+	size_t width = (size_t)b->body.width;
 	double worst = 0;
 
 	if (!CHECK(!sentences_read(&s, GOLDEN "/sentences.jsonl", &e), "%s", e.message) ||
@@ -93,7 +88,7 @@ static void side_by_side(const struct bert *b)
 {
 	enum { N = 4, TOKENS = 60 };
 	int32_t ids[TOKENS];
-	size_t starts[N + 1] = {5, 7, 20, 20, TOKENS}, width = (size_t)b->width, floats;
+	size_t starts[N + 1] = {5, 7, 20, 20, TOKENS}, width = (size_t)b->body.width, floats;
 	float *all = malloc(TOKENS * width * sizeof *all), *one = malloc(TOKENS * width * sizeof *one);
 	int threads = omp_get_max_threads();
 
@@ -124,31 +119,6 @@ static char *in_work(const char *name)
 	return path;
 }
 
-static void copy(const char *from, const char *to)
-{
-	struct err e = {0};
-	char *data;
-	size_t len;
-
-	if (!CHECK(!file_read(from, &data, &len, &e), "%s", e.message))
-		return;
-	FILE *out = fopen(to, "wb");
-	CHECK(out && fwrite(data, 1, len, out) == len && !fclose(out), "%s", to);
-	free(data);
-}
-
-/* Rounding to nearest even. */
-static uint16_t to_bfloat(float f)
-{
-	uint32_t bits;
-
-	memcpy(&bits, &f, 4);
-	if ((bits & 0x7fffffff) > 0x7f800000)
-		return (uint16_t)(bits >> 16 | 64);
-	bits += 0x7fff + (bits >> 16 & 1);
-	return (uint16_t)(bits >> 16);
-}
-
 /* The golden weights written as another type and under other names. `leave_out` and `bend` break one tensor.
  */
 static void write_variant(
@@ -165,8 +135,6 @@ static void write_variant(
 		return;
 	for (size_t i = 0; i < st.n; i++) {
 		struct st_tensor t = st.tensors[i];
-		static float floats[8192];
-		size_t count = t.bytes / 2;
 		char *norm = strstr(t.name, "LayerNorm.");
 		if (leave_out && !strcmp(leave_out, t.name))
 			continue;
@@ -174,19 +142,10 @@ static void write_variant(
 		if (is_old && norm)
 			snprintf(names[n], sizeof names[n], "%s%.*s%s", prefix, (int)(norm + 10 - t.name),
 				t.name, strstr(norm, "weight") ? "gamma" : "beta");
-		CHECK(!safetensors_to_float(&t, floats, count, &e), "%s", e.message);
-		for (size_t k = 0; k < count; k++) {
-			uint16_t half = dtype == ST_F16 ? st_float_to_half(floats[k]) : to_bfloat(floats[k]);
-			if (dtype == ST_F32)
-				memcpy(data[n] + 4 * k, &floats[k], 4);
-			else
-				memcpy(data[n] + 2 * k, &half, 2);
-		}
+		CHECK(!store_as(&t, dtype, data[n]), "%s", st.path);
 		if (bend && !strcmp(bend, t.name))
 			t.shape[t.dims - 1] -= 1;
 		t.name = names[n];
-		t.dtype = dtype;
-		t.data = data[n];
 		tensors[n++] = t;
 	}
 	CHECK(!safetensors_write(in_work("weights.safetensors"), tensors, n, NULL, 0, &e), "%s", e.message);
@@ -209,11 +168,12 @@ static void stored_otherwise(const struct bert *golden)
 		write_variant(variants[i].dtype, variants[i].prefix, variants[i].is_old, NULL, NULL);
 		if (!CHECK(!bert_model_read(&b, work, &e), "variant %zu: %s", i, e.message))
 			continue;
-		size_t words = (size_t)b.words * (size_t)b.width, last = (size_t)b.width;
+		size_t words = (size_t)b.words * (size_t)b.body.width, last = (size_t)b.body.width;
 		CHECK(same_bytes(b.word, golden->word, words * 4), "variant %zu: words", i);
-		CHECK(same_bytes(b.layers[1].norm.shift, golden->layers[1].norm.shift, last * 4),
+		CHECK(same_bytes(b.body.layers[1].norm.shift, golden->body.layers[1].norm.shift, last * 4),
 			"variant %zu: shift", i);
-		CHECK(same_bytes(b.layers[0].outer.weight, golden->layers[0].outer.weight, 24 * 40 * 4),
+		CHECK(same_bytes(b.body.layers[0].outer.weight, golden->body.layers[0].outer.weight,
+			      24 * 40 * 4),
 			"variant %zu: outer", i);
 		bert_free(&b);
 	}
@@ -237,7 +197,7 @@ static void vocab_txt(const struct vocab *json)
 	struct err e = {0};
 	size_t wrong = 0;
 
-	copy(GOLDEN "/vocab.txt", in_work("vocab.txt"));
+	CHECK(!copy_file(GOLDEN "/vocab.txt", in_work("vocab.txt")), "copy");
 	if (!CHECK(!vocab_read(&list, work, &e), "%s", e.message))
 		return;
 	for (size_t i = 0; i < json->n; i++)
@@ -265,7 +225,7 @@ static void published_figures(void)
 	if (!CHECK(!bert_model_read(&b, dir, &e), "%s", e.message) ||
 		!CHECK(!vocab_read(&v, dir, &e), "%s", e.message))
 		return;
-	if (CHECK(b.width == 384, "width %d", b.width)) {
+	if (CHECK(b.body.width == 384, "width %d", b.body.width)) {
 		struct wordpieces ids;
 		size_t n;
 		float *x = encode(&b, &v, "This is an example sentence", &ids, &n);
@@ -296,7 +256,7 @@ int main(void)
 		return unit_end();
 	golden_sentences(&b, &v);
 	side_by_side(&b);
-	copy(GOLDEN "/config.json", in_work("config.json"));
+	CHECK(!copy_file(GOLDEN "/config.json", in_work("config.json")), "copy");
 	stored_otherwise(&b);
 	refused("encoder.layer.1.output.dense.weight", NULL,
 		"tensor 'encoder.layer.1.output.dense.weight' is missing");
