@@ -32,13 +32,13 @@ int each_run(const struct each *by, size_t n, struct err *e)
 		for (size_t i = 0; i < n; i++) {
 			struct err own;
 			size_t end;
-#pragma omp atomic read
+#pragma omp critical(each_failed)
 			end = failed;
 			const int bad = i < end && by->work(by->context, omp_get_thread_num(), i, &own);
 #pragma omp ordered
 			if (failed == n && (bad || finish(by, i, &own))) {
 				*e = own;
-#pragma omp atomic write
+#pragma omp critical(each_failed)
 				failed = i;
 			}
 		}
