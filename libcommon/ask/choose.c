@@ -99,13 +99,14 @@ static double anchors_there(const struct meaning *m, const struct parse *p, int 
 }
 
 /* Whether a phrase says nothing that tells objects apart: "anything with a battery", where of none is known
- * whether it has one. anchors: how far its anchors are there. */
-static int tells_nothing(const struct meaning *m, int phrase, double anchors)
+ * whether it has one. Of "the thing with a battery" what comes nearest is as good a guess as any. anchors:
+ * how far its anchors are there. */
+static int tells_nothing(const struct meaning *m, const struct parse *p, int phrase, double anchors)
 {
 	const size_t n = m->arrangement->n;
 	const double *fit = m->fit + (size_t)phrase * (n + 1), most = largest(fit, n);
 
-	if (!m->unknown && anchors == 1)
+	if (anchors == 1 && (p->phrases[phrase].count == PARSE_ONE || !m->unknown))
 		return 0;
 	for (size_t o = 0; o < n; o++)
 		if (fit[o] < SAME_FIT * most)
@@ -121,7 +122,7 @@ static double presence(const struct chooser *c, const struct parse *p, int phras
 	const double anchors = anchors_there(m, p, phrase, 0);
 	const double x = PRESENCE_BASE + PRESENCE_OWN * log(fmax(own, 1e-6)) +
 			 PRESENCE_ANCHORS * log(fmax(anchors, 1e-6)) - PRESENCE_UNKNOWN * (double)m->unknown -
-			 (tells_nothing(m, phrase, anchors) ? PRESENCE_NOTHING : 0);
+			 (tells_nothing(m, p, phrase, anchors) ? PRESENCE_NOTHING : 0);
 
 	return 1 / (1 + exp(-x));
 }
