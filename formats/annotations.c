@@ -22,6 +22,7 @@ struct reading {
 	const char *path;
 	char where[WHERE]; /* "path: shape 3", for messages */
 	int height, width;
+	double score; /* of the detector's annotation that is read, or NAN */
 	uint8_t *flips, *mask;
 	double *points;
 	size_t flips_room, mask_room, points_room;
@@ -32,6 +33,7 @@ void annotations_free(struct annotations *a)
 	for (size_t i = 0; i < a->n; i++) {
 		free(a->items[i].view);
 		free(a->items[i].name);
+		free(a->items[i].ref);
 		rle_free(&a->items[i].mask);
 	}
 	free(a->items);
@@ -75,16 +77,18 @@ static int set_size(
 	return 0;
 }
 
-/* The annotation of a view and name: an earlier one, or a new one of the reading's size. NULL with *e. */
+/* The annotation of a view and name: an earlier one, or a new one of the reading's size; a new one for each
+ * thing that a detector found. NULL with *e. */
 static struct annotation *find(struct reading *r, const char *view, const char *name, struct err *e)
 {
 	struct annotations *a = r->to;
 	char fault[NAME_FAULT];
 	const char *reason = name_fault(name, NAME_DATA, fault);
 
-	for (size_t i = 0; i < a->n; i++)
-		if (!strcmp(a->items[i].view, view) && !strcmp(a->items[i].name, name) &&
-			a->items[i].mask.height == r->height && a->items[i].mask.width == r->width)
+	for (size_t i = 0; i < a->n && isnan(r->score); i++)
+		if (isnan(a->items[i].score) && !strcmp(a->items[i].view, view) &&
+			!strcmp(a->items[i].name, name) && a->items[i].mask.height == r->height &&
+			a->items[i].mask.width == r->width)
 			return &a->items[i];
 	if (reason) {
 		err_set(e, ERR_FORMAT, "%s: the label %s", r->where, reason);
@@ -93,7 +97,8 @@ static struct annotation *find(struct reading *r, const char *view, const char *
 	if (mem_grow((void **)&a->items, &a->capacity, a->n + 1, sizeof *a->items, "annotations", e))
 		return NULL;
 	struct annotation *one = &a->items[a->n++];
-	*one = (struct annotation){.view = mem_strdup(view, e), .name = mem_strdup(name, e)};
+	*one = (struct annotation){
+		.view = mem_strdup(view, e), .name = mem_strdup(name, e), .score = r->score};
 	const uint32_t none[] = {(uint32_t)(r->height * r->width)};
 	return one->view && one->name && !rle_from_runs(&one->mask, none, 1, r->height, r->width, e) ? one
 												     : NULL;
@@ -260,8 +265,6 @@ static int read_mask_picture(struct reading *r, const char *folder, const char *
 	struct annotation *on = bad ? NULL : find(r, view, name, e);
 
 	bad = !on || unite(on, &mask, e);
-	if (on)
-		on->shapes++;
 	free(path);
 	free(pixels);
 	rle_free(&mask);
@@ -384,6 +387,51 @@ static int read_segmentation(
 	return 0;
 }
 
+/* "score": a number, or a list with one, as Grounded-SAM-2 writes it. */
+static int read_score(struct reading *r, const cJSON *item, struct err *e)
+{
+	const cJSON *score = cJSON_GetObjectItemCaseSensitive(item, "score");
+
+	if (cJSON_GetArraySize(score) == 1)
+		score = score->child;
+	r->score = NAN;
+	if (!score || cJSON_IsNull(score))
+		return 0;
+	if (!cJSON_IsNumber(score) || !isfinite(score->valuedouble))
+		return err_set(e, ERR_FORMAT, "%s: key 'score' is not a finite number", r->where);
+	r->score = score->valuedouble;
+	return 0;
+}
+
+/* The annotation that was read last gets the sentence that the detector was given, where the file says it. */
+static int read_ref(struct reading *r, const cJSON *item, size_t before, struct err *e)
+{
+	struct annotations *a = r->to;
+	const char *ref = NULL;
+	char fault[NAME_FAULT];
+
+	if (isnan(r->score) || a->n == before)
+		return 0;
+	if (json_string(item, "ref", 0, &ref, r->where, e) < 0)
+		return -1;
+	const char *reason = ref ? name_fault(ref, NAME_DATA, fault) : NULL;
+	if (reason)
+		return err_set(e, ERR_FORMAT, "%s: key 'ref' %s", r->where, reason);
+	return ref && !(a->items[a->n - 1].ref = mem_strdup(ref, e)) ? -1 : 0;
+}
+
+static int read_mask(struct reading *r, const cJSON *item, const char *file, const char *name, struct err *e)
+{
+	const size_t before = r->to->n;
+	char *view = view_of(file, e);
+	const int bad = !view || read_score(r, item, e) || read_segmentation(r, item, view, name, e) ||
+			read_ref(r, item, before, e);
+
+	free(view);
+	r->score = NAN;
+	return bad ? -1 : 0;
+}
+
 static int read_annotation(struct reading *r, const cJSON *root, const cJSON *item, struct err *e)
 {
 	const cJSON *image = with_id(cJSON_GetObjectItemCaseSensitive(root, "images"),
@@ -395,25 +443,37 @@ static int read_annotation(struct reading *r, const cJSON *root, const cJSON *it
 	if (!image || !category)
 		return err_set(e, ERR_FORMAT, "%s: no %s has its '%s'", r->where,
 			image ? "category" : "image", image ? "category_id" : "image_id");
-	if (json_string(image, "file_name", 1, &file, r->where, e) < 0 ||
-		json_string(category, "name", 1, &name, r->where, e) < 0 ||
-		set_size(r, image, "height", "width", e))
-		return -1;
-	char *view = view_of(file, e);
-	const int bad = !view || read_segmentation(r, item, view, name, e);
-	free(view);
-	return bad ? -1 : 0;
+	return json_string(image, "file_name", 1, &file, r->where, e) < 0 ||
+			       json_string(category, "name", 1, &name, r->where, e) < 0 ||
+			       set_size(r, image, "height", "width", e) || read_mask(r, item, file, name, e)
+		       ? -1
+		       : 0;
 }
 
-static int read_coco(struct reading *r, const cJSON *root, struct err *e)
+/* Grounded-SAM-2's: one picture, and what was found in it. */
+static int read_found(struct reading *r, const cJSON *root, const cJSON *item, struct err *e)
 {
+	const char *file, *name;
+
+	return json_string(root, "image_path", 1, &file, r->where, e) < 0 ||
+			       json_string(item, "class_name", 1, &name, r->where, e) < 0 ||
+			       set_size(r, root, "img_height", "img_width", e) ||
+			       read_mask(r, item, file, name, e)
+		       ? -1
+		       : 0;
+}
+
+/* COCO's, or Grounded-SAM-2's. */
+static int read_annotations(struct reading *r, const cJSON *root, struct err *e)
+{
+	const int is_found = cJSON_GetObjectItemCaseSensitive(root, "image_path") != NULL;
 	const cJSON *item;
 	size_t i = 0;
 
 	cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "annotations"))
 	{
 		snprintf(r->where, WHERE, "%s: annotation %zu", r->path, i++);
-		if (read_annotation(r, root, item, e))
+		if (is_found ? read_found(r, root, item, e) : read_annotation(r, root, item, e))
 			return -1;
 	}
 	return 0;
@@ -428,7 +488,7 @@ static int read_any(struct reading *r, const cJSON *root, const char *path, stru
 	if (is_labelme)
 		return read_labelme(r, root, e);
 	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "annotations")))
-		return read_coco(r, root, e);
+		return read_annotations(r, root, e);
 	if (pictures)
 		return read_ref_lerf(r, root, pictures, path, e);
 	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "objects")))
@@ -442,7 +502,7 @@ static int read_any(struct reading *r, const cJSON *root, const char *path, stru
 
 int annotations_read(struct annotations *a, const char *path, struct err *e)
 {
-	struct reading r = {.to = a, .path = file_name(path)};
+	struct reading r = {.to = a, .path = file_name(path), .score = NAN};
 	cJSON *root = json_read(path, e);
 
 	*a = (struct annotations){0};

@@ -1,4 +1,5 @@
-/* Annotations of other programs as masks: JSON of LabelMe, COCO and ISAT. formats/annotations.md. */
+/* Annotations of other programs as masks: JSON of LabelMe, COCO, ISAT, Ref-LERF and Grounded-SAM-2.
+ * formats/annotations.md. */
 #ifndef FORMATS_ANNOTATIONS_H
 #define FORMATS_ANNOTATIONS_H
 
@@ -7,9 +8,11 @@
 
 #include <stddef.h>
 
-/* What a picture has of one label. */
+/* What a picture has of one label, or one of the things that a detector has found in it. */
 struct annotation {
 	char *view, *name;
+	char *ref;	 /* the sentence that the detector was given, or NULL */
+	double score;	 /* of a detector, or NAN */
 	struct rle mask; /* all shapes of the label */
 	size_t shapes;
 };

@@ -224,7 +224,11 @@ static int put_labels(const struct annotations *a, const char *path, struct warp
 		report_warn(to, "%s: %zu shapes without an area are left out", file_name(path), a->left_out);
 	for (size_t i = 0; i < a->n; i++) {
 		const struct annotation *one = &a->items[i];
-		struct mask mask = {.view = one->view, .object = one->name, .score = NAN, .visible = NAN};
+		struct mask mask = {.view = one->view,
+			.ref = one->ref,
+			.object = one->name,
+			.score = one->score,
+			.visible = NAN};
 		if (one->shapes > 1)
 			report_warn(to, "%s: %zu shapes are '%s' in view %s, and are taken as one thing",
 				file_name(path), one->shapes, one->name, one->view);

@@ -160,6 +160,26 @@ made() {
 	[ "$(jq -s length both)" = 4 ]
 }
 
+@test "a detector's: each thing that it found by itself, with its score; COCO's with its sentence" {
+	jq -n '{image_path: "photos/view_1.jpg", img_height: 3, img_width: 4, box_format: "xyxy", annotations: [
+		{class_name: "red cup", bbox: [0, 0, 1, 3], segmentation: {size: [3, 4], counts: [0, 3, 9]}, score: [0.75]},
+		{class_name: "red cup", bbox: [3, 0, 4, 3], segmentation: {size: [3, 4], counts: [9, 3]}, score: 0.5},
+		{class_name: "box", bbox: [1, 1, 2, 2], segmentation: {size: [3, 4], counts: [4, 1, 7]}, score: [0.25]}]}' >found.json
+	"$BIN/mask-import" -o made.jsonl found.json 2>err
+	[ ! -s err ]
+	"$BIN/gs-check" made.jsonl
+	[ "$(jq -c '[.view, .ref, .object, .score]' made.jsonl)" = '["view_1",null,"red cup",0.75]
+["view_1",null,"red cup",0.5]
+["view_1",null,"box",0.25]' ]
+	# what mask-export made of a detector's records comes back as they were
+	jq -c '.ref = "r" + (.score | tostring)' made.jsonl >refs.jsonl
+	"$BIN/mask-export" -o coco.json refs.jsonl
+	"$BIN/mask-import" coco.json | jq -cS . | cmp - <(jq -cS . refs.jsonl)
+	# labels and finds of one name stay apart
+	jq 'del(.annotations[1].score)' found.json >mixed.json
+	"$BIN/mask-import" mixed.json | jq -s -e 'map(.score) == [0.75, null, 0.25]'
+}
+
 @test "labels that are wrong: exit 3, where, and nothing is written" {
 	bad() {
 		says 3 "mask-import: bad.json: $1" "$BIN/mask-import" -o none bad.json
@@ -181,6 +201,12 @@ made() {
 	says_like 3 "mask-import: bad.json: annotation 0: " "$BIN/mask-import" -o none bad.json
 	jq '.annotations[0].segmentation = {a: 1}' bad.json >worse.json && mv worse.json bad.json
 	bad "annotation 0: key 'segmentation' is neither polygons nor run lengths"
+	jq -n '{image_path: "a.png", img_height: 2, img_width: 2, annotations: [{class_name: "a", score: "high", segmentation: {size: [2, 2], counts: [1, 3]}}]}' >bad.json
+	bad "annotation 0: key 'score' is not a finite number"
+	jq -n '{image_path: "a.png", img_height: 2, img_width: 2, annotations: [{class_name: "a", score: 1, ref: "", segmentation: {size: [2, 2], counts: [1, 3]}}]}' >bad.json
+	bad "annotation 0: key 'ref' is empty"
+	jq -n '{image_path: "a.png", img_height: 2, annotations: [{class_name: "a", score: 1}]}' >bad.json && bad "annotation 0: key 'img_width' is missing"
+	jq -n '{image_path: "a.png", annotations: [{score: 1}]}' >bad.json && bad "annotation 0: key 'class_name' is missing"
 	echo '{}' >bad.json && bad "no labels: neither LabelMe's JSON (shapes) nor COCO's (annotations) nor ISAT's or Ref-LERF's (objects)"
 	echo '{' >bad.json && bad "not JSON at offset 2"
 	echo '{"frames":[]}' >bad.json && bad "cameras, a transforms.json: gs-import --cameras reads it"
