@@ -8,9 +8,6 @@
 
 #include <stdlib.h>
 
-/* Views at a time: each takes memory for its weights, and for an image of each of its objects. */
-enum { WORKERS_MOST = 8 };
-
 static int load(struct lifting *l, struct err *e)
 {
 	if (scene_read(&l->scene, l->files->scene, e) || text_read(&l->text, l->files->text, e) ||
@@ -160,7 +157,7 @@ static int lift(struct lifting *l, const struct report *to, struct err *e)
 {
 	const size_t n = l->scene.cameras.n;
 	struct lift_round r = {.l = l, .to = to};
-	const struct each by = {&r, each_workers(n, WORKERS_MOST), lift_view, step};
+	const struct each by = {&r, each_workers(n), lift_view, step};
 
 	r.masks = mem_alloc((size_t)by.workers, l->set.n * sizeof *r.masks, "masks", e);
 	int bad = !r.masks || lift_objects_init(&l->lift, l->scene.splats.n, l->objects, n, e);

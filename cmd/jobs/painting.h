@@ -5,27 +5,10 @@
 
 #include "base/err.h"
 #include "base/report.h"
+#include "cmd/jobs/painting_names.h"
 #include "cmd/jobs/warping.h"
 
 #include <stddef.h>
-#include <stdint.h>
-
-/* One line of the file of names: "#c81e1e kettle", or "3 kettle" for the grey of that value. */
-struct painting_name {
-	uint32_t colour; /* 0xrrggbb */
-	char *name;
-	int is_seen; /* in a picture */
-};
-
-struct painting_names {
-	size_t n, capacity;
-	struct painting_name *items;
-};
-
-/* Errors: "path:LINE: reason". No colour and no name twice. Returns 0, or -1 with *e; free after
- * either. */
-int painting_names_read(struct painting_names *names, const char *path, struct err *e);
-void painting_names_free(struct painting_names *names);
 
 /* Whether what is read is a painted picture, whose colours need names: neither labels nor records, by their
  * endings, nor a folder (formats/annotations.md). */
@@ -35,8 +18,7 @@ int painting_needs_names(const char *path);
  * folder of masks, and for each picture and name that has a pixel in it, pictures in their order, names in
  * the file's. The view is the picture's file name without its ending. Other colours are of nothing; warns of
  * those that cover much, and of names that no picture has. ERR_FORMAT where none has any. Masks are warped as
- * *w says. Writes to a file
- * ("-": stdout). Returns 0, or -1 with *e set. */
+ * *w says. Writes to a file ("-": stdout). Returns 0, or -1 with *e set. */
 int painting_write(struct painting_names *names, const char *const *pictures, size_t count, struct warping *w,
 	const char *path, const struct report *to, struct err *e);
 

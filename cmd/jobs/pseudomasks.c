@@ -9,9 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Views at a time: each takes memory for its weights, and for images of its masks. */
-enum { WORKERS_MOST = 8 };
-
 static int put_mask(FILE *out, struct mask m, double score, struct err *e)
 {
 	/* a mask without a sentence serves all of its object's */
@@ -94,7 +91,7 @@ static int lift_regions(struct by_views *b, struct err *e)
 {
 	struct pseudomasks *w = b->w;
 	const size_t views = w->scene.cameras.n;
-	const struct each by = {b, each_workers(views, WORKERS_MOST), lift_view, NULL};
+	const struct each by = {b, each_workers(views), lift_view, NULL};
 	struct regions *r = &w->regions;
 
 	return regions_init(r, &w->pool, w->views, views, w->scene.splats.n, w->options->min_score, e) ||
@@ -200,7 +197,7 @@ static int put_all(struct by_views *b, const struct report *to, struct err *e)
 {
 	struct pseudomasks *w = b->w;
 	const size_t views = w->scene.cameras.n;
-	const struct each by = {b, each_workers(views, WORKERS_MOST), show_view, put_view};
+	const struct each by = {b, each_workers(views), show_view, put_view};
 	const int is_scene = w->options->method == PSEUDOMASK_SCENE;
 
 	if (is_scene ? lift_regions(b, e) : lift_carried(w, e))

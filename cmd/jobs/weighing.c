@@ -20,9 +20,6 @@ static int in_split(const struct camera *c, int split)
 	return split == WEIGHING_ALL || c->split == (split == WEIGHING_TEST ? SPLIT_TEST : SPLIT_TRAIN);
 }
 
-/* Views at a time: a view's weights may take a hundred megabytes. */
-enum { WORKERS_MOST = 8 };
-
 /* Memory that one view after the other uses. */
 struct room {
 	struct render_view *view;
@@ -153,7 +150,7 @@ static int report_view(void *context, size_t at, struct err *e)
 /* The views side by side, each with room of its own. */
 static int weigh_views(struct weighing *of, struct err *e)
 {
-	const struct each by = {of, each_workers(of->n, WORKERS_MOST), weigh_view, report_view};
+	const struct each by = {of, each_workers(of->n), weigh_view, report_view};
 	double covered = 0;
 
 	of->done = mem_alloc(of->n, sizeof *of->done, "views", e);

@@ -31,13 +31,6 @@ int meaning_word_is(const struct parse_word *w, const char *const *list)
 	return 0;
 }
 
-static int is_verb_to_be(const struct parse_word *w)
-{
-	const int closed = closed_find(w->text);
-
-	return closed >= 0 && closed_words[closed].class == CLOSED_BE;
-}
-
 /* The word that names the kind of thing, or -1: "something", "the red one". */
 int meaning_head_of(const struct parse *p, const struct parse_phrase *f)
 {
@@ -46,7 +39,8 @@ int meaning_head_of(const struct parse *p, const struct parse_phrase *f)
 		NULL};
 	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
 
-	return head >= 0 && (meaning_word_is(&p->words[head], generic) || is_verb_to_be(&p->words[head]))
+	return head >= 0 && (meaning_word_is(&p->words[head], generic) ||
+				    closed_is(p->words[head].text, CLOSED_BE))
 		       ? -1
 		       : head;
 }

@@ -227,14 +227,6 @@ static int are_akin(const struct vocabulary_kind *a, const struct vocabulary_kin
 	       kinds_share(a->lemma, b->lemma);
 }
 
-/* "thing", "object". */
-static int is_generic(const char *lemma)
-{
-	const int closed = closed_find(lemma);
-
-	return closed >= 0 && closed_words[closed].class == CLOSED_GENERIC;
-}
-
 /* Whether two objects were called by other nouns than this one, and none of them are akin. */
 static int differ_but_for(const struct vocabulary *v, size_t a, size_t b, size_t kind)
 {
@@ -245,7 +237,8 @@ static int differ_but_for(const struct vocabulary *v, size_t a, size_t b, size_t
 			k++) {
 			const struct vocabulary_item *p = &v->items[i], *q = &v->items[k];
 			if (q->object != b || q->role != VOCABULARY_NOUN || p->kind == kind ||
-				q->kind == kind || is_generic(p->lemma) || is_generic(q->lemma))
+				q->kind == kind || closed_is(p->lemma, CLOSED_GENERIC) ||
+				closed_is(q->lemma, CLOSED_GENERIC))
 				continue;
 			if (are_akin(&v->kinds[p->kind], &v->kinds[q->kind]))
 				return 0;
@@ -261,7 +254,7 @@ static void mark_general(struct vocabulary *v)
 {
 	for (size_t i = 0; i < v->n; i++) {
 		struct vocabulary_item *a = &v->items[i];
-		a->is_general = a->role == VOCABULARY_NOUN && is_generic(a->lemma);
+		a->is_general = a->role == VOCABULARY_NOUN && closed_is(a->lemma, CLOSED_GENERIC);
 		for (size_t k = 0; k < v->n && a->role == VOCABULARY_NOUN && !a->is_general; k++) {
 			const struct vocabulary_item *b = &v->items[k];
 			if (b->role != VOCABULARY_NOUN)

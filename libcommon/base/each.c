@@ -4,9 +4,9 @@
 
 #include <omp.h>
 
-int each_workers(size_t n, int most)
+int each_workers(size_t n)
 {
-	const int threads = threads_available(), fit = threads < most ? threads : most;
+	const int threads = threads_available(), fit = threads < EACH_WORKERS ? threads : EACH_WORKERS;
 
 	return n < (size_t)fit ? (n ? (int)n : 1) : fit;
 }

@@ -7,8 +7,11 @@
 
 #include <stddef.h>
 
-/* How many workers n items may have here: no more than `most`, nor than threads or items, and 1 at least. */
-int each_workers(size_t n, int most);
+/* No more work at a time than this: each takes memory of its own. */
+enum { EACH_WORKERS = 8 };
+
+/* How many workers n items may have here: no more than that, nor than threads or items, and 1 at least. */
+int each_workers(size_t n);
 
 struct each {
 	void *context;

@@ -528,6 +528,13 @@ int closed_find(const char *text)
 	return -1;
 }
 
+int closed_is(const char *text, enum closed_class class)
+{
+	const int closed = closed_find(text);
+
+	return closed >= 0 && closed_words[closed].class == class;
+}
+
 enum parse_relation closed_inverse(enum parse_relation r)
 {
 	static const enum parse_relation pairs[][2] = {{PARSE_LEFT, PARSE_RIGHT}, {PARSE_FRONT, PARSE_BEHIND},

@@ -42,6 +42,8 @@ enum { CLOSED_MOST = 576 };
 
 /* Its index or -1. */
 int closed_find(const char *text);
+/* Whether it is a word of the class. */
+int closed_is(const char *text, enum closed_class class);
 
 /* The relation the other way round: left for right, supports for on. */
 enum parse_relation closed_inverse(enum parse_relation r);
