@@ -9,7 +9,6 @@
 import json
 import math
 import pathlib
-import struct
 import subprocess
 import sys
 import tempfile
@@ -17,6 +16,8 @@ import time
 import unicodedata
 
 import numpy as np
+
+from encoder_files import read_safetensors, write_safetensors, write_sentences
 
 SENTENCES = [
     "This is an example sentence", "Each sentence is converted", "the red cup to the left of the plate",
@@ -84,35 +85,6 @@ def word_pieces(word, ids):
         pieces.append(piece)
         start = end
     return pieces
-
-
-def read_safetensors(path):
-    data = pathlib.Path(path).read_bytes()
-    size = struct.unpack("<Q", data[:8])[0]
-    header = json.loads(data[8:8 + size])
-    out = {}
-    for name, t in header.items():
-        if name == "__metadata__":
-            continue
-        begin, end = (8 + size + o for o in t["data_offsets"])
-        raw = data[begin:end]
-        if t["dtype"] == "BF16":
-            array = (np.frombuffer(raw, "<u2").astype(np.uint32) << 16).view(np.float32)
-        else:
-            array = np.frombuffer(raw, {"F16": "<f2", "F32": "<f4", "F64": "<f8", "I64": "<i8", "I32": "<i4"}[t["dtype"]])
-        out[name] = array.reshape(t["shape"])
-    return out, header.get("__metadata__", {})
-
-
-def write_safetensors(path, arrays):
-    header, data = {}, b""
-    for name, a in arrays.items():
-        kind = {"float16": "F16", "float32": "F32", "int32": "I32", "int64": "I64"}[a.dtype.name]
-        header[name] = {"dtype": kind, "shape": list(a.shape), "data_offsets": [len(data), len(data) + a.nbytes]}
-        data += a.tobytes()
-    text = json.dumps(header, separators=(",", ":")).encode()
-    text += b" " * (1 - len(text) % 2)  # data at an odd offset, as in files of others
-    pathlib.Path(path).write_bytes(struct.pack("<Q", len(text)) + text + data)
 
 
 erf = np.vectorize(math.erf)
@@ -217,15 +189,8 @@ def make(folder):
     (folder / "tokenizer.json").write_text(json.dumps(tokenizer, indent=1, ensure_ascii=False) + "\n")
     (folder / "vocab.txt").write_text("\n".join(tokens) + "\n")
     write_safetensors(folder / "model.safetensors", arrays)
-    write_sentences(folder / "sentences.jsonl")
+    write_sentences(folder / "sentences.jsonl", SENTENCES)
     write_expected(Bert(folder), folder.with_name("bert-expected.safetensors"))
-
-
-def write_sentences(path):
-    with open(path, "w") as out:
-        for i, text in enumerate(SENTENCES):
-            line = {"ref": f"s{i:02}", "object": f"o{i % 7}", "text": text, "split": "test" if i % 5 == 4 else "train"}
-            out.write(json.dumps(line, ensure_ascii=i % 2 == 0) + "\n")
 
 
 def write_expected(bert, path):
@@ -242,7 +207,7 @@ def write_expected(bert, path):
 def compare(folder):
     bert = Bert(folder)
     with tempfile.TemporaryDirectory() as work:
-        write_sentences(work + "/sentences.jsonl")
+        write_sentences(work + "/sentences.jsonl", SENTENCES)
         begin = time.monotonic()
         subprocess.run(["build/bin/text-encode", "-q", "--model", folder, "-o", work + "/text.safetensors",
                         work + "/sentences.jsonl"], check=True)

@@ -11,7 +11,6 @@ import gzip
 import json
 import math
 import pathlib
-import struct
 import subprocess
 import sys
 import tempfile
@@ -19,6 +18,8 @@ import time
 import unicodedata
 
 import numpy as np
+
+from encoder_files import read_safetensors, write_safetensors, write_sentences
 
 START, END, LAST = "<|startoftext|>", "<|endoftext|>", "</w>"
 SENTENCES = [
@@ -95,33 +96,6 @@ def tokenise(text, ids, ranks):
     for word in split_words(text):
         out += [ids[s] for s in ([word] if word in (START, END) else merge_word(symbols_of(word), ranks))]
     return out
-
-
-def read_safetensors(path):
-    raw = pathlib.Path(path).read_bytes()
-    length = struct.unpack("<Q", raw[:8])[0]
-    header, out = json.loads(raw[8:8 + length]), {}
-    meta = header.pop("__metadata__", {})
-    for name, t in header.items():
-        a, b = (8 + length + o for o in t["data_offsets"])
-        if t["dtype"] == "BF16":
-            array = (np.frombuffer(raw[a:b], "<u2").astype(np.uint32) << 16).view(np.float32)
-        else:
-            array = np.frombuffer(raw[a:b], {"F16": "<f2", "F32": "<f4", "F64": "<f8", "I64": "<i8", "I32": "<i4"}[t["dtype"]])
-        out[name] = array.reshape(t["shape"])
-    return out, meta
-
-
-def write_safetensors(path, arrays):
-    header, data = {}, b""
-    for name, a in arrays.items():
-        a = np.ascontiguousarray(a)
-        kind_of = {"float16": "F16", "float32": "F32", "int32": "I32", "int64": "I64"}[a.dtype.name]
-        header[name] = {"dtype": kind_of, "shape": list(a.shape), "data_offsets": [len(data), len(data) + a.nbytes]}
-        data += a.tobytes()
-    text = json.dumps(header, separators=(",", ":")).encode()
-    text += b" " * (1 - len(text) % 2)  # data at an odd offset, as in files of others
-    pathlib.Path(path).write_bytes(struct.pack("<Q", len(text)) + text + data)
 
 
 class Clip:
@@ -263,15 +237,8 @@ def make(folder):
     listed = '"bpe_simple_vocab_16e6.txt#version: 0.2\n' + lines + "not used\nalso not\n"
     (other / "bpe_simple_vocab_16e6.txt.gz").write_bytes(gzip.compress(listed.encode(), mtime=0))
     write_safetensors(other / "open_clip_model.safetensors", open_clip_names(arrays, layers))
-    write_sentences(folder / "sentences.jsonl")
+    write_sentences(folder / "sentences.jsonl", SENTENCES)
     write_expected(Clip(folder), folder.with_name("clip-expected.safetensors"))
-
-
-def write_sentences(path):
-    with open(path, "w") as out:
-        for i, text in enumerate(SENTENCES):
-            line = {"ref": f"s{i:02}", "object": f"o{i % 7}", "text": text, "split": "test" if i % 5 == 4 else "train"}
-            out.write(json.dumps(line, ensure_ascii=i % 2 == 0) + "\n")
 
 
 def write_expected(clip, path):
@@ -289,7 +256,7 @@ def write_expected(clip, path):
 def compare(folder):
     clip = Clip(folder)
     with tempfile.TemporaryDirectory() as work:
-        write_sentences(work + "/sentences.jsonl")
+        write_sentences(work + "/sentences.jsonl", SENTENCES)
         begin = time.monotonic()
         subprocess.run(["build/bin/text-encode", "-q", "--model", folder, "-o", work + "/text.safetensors",
                         work + "/sentences.jsonl"], check=True)

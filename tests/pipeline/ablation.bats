@@ -181,3 +181,41 @@ report() {
 	grep -qF "*** OUT has a blank" <<<"$output"
 	[ ! -e done ]
 }
+
+# A stand-in for Slurm's: runs each job of an array, and then what it wraps, at once and here.
+slurm() {
+	mkdir bin
+	cat >bin/sbatch <<-'END'
+		#!/usr/bin/env bash
+		set -e
+		printf '%s\n' "$*" >>sbatch.log
+		export SLURM_SUBMIT_DIR=$PWD
+		while [[ ${1:-} == --* ]]; do
+			case $1 in
+			--array=1-*) last=${1#--array=1-} ;;
+			--wrap) wrap=$2; shift ;;
+			esac
+			shift
+		done
+		[ -z "${wrap:-}" ] || bash -c "$wrap" >wrap.log
+		for ((k = 1; k <= ${last:-0}; k++)); do SLURM_ARRAY_TASK_ID=$k "$@" >"cell$k.log"; done
+		echo "${last:-7}"
+	END
+	chmod +x bin/sbatch
+	PATH=$PWD/bin:$PATH
+}
+
+@test "on Slurm: a job for each scene and seed, and the table after them, the same as without" {
+	slurm
+	words=(SCENES="diner tea" SEEDS="1 2" RUNS=lift SCALE=1 BIN="$BIN" SYNTH="--objects 3 --views 6 --size 64x48 --gaussians 1500"
+		BERT="$ROOT/tests/golden/bert")
+	SBATCH_OPTIONS=--partition=long "$ROOT/pipelines/ablation.sbatch" THREADS=2 OUT="$PWD/out" "${words[@]}" unseen >said
+	[ "$(cat said)" = "cells: job 4; tables: job 7" ]
+	[ "$(grep -c -- '--partition=long --parsable --cpus-per-task=2' sbatch.log)" = 2 ]
+	grep -q -- '--dependency=afterok:4' sbatch.log
+	for cell in diner-1 diner-2 tea-1 tea-2; do [ -s "out/quick/$cell/lift/test.csv" ]; done
+	# each cell's job made its own alone
+	not grep -q 'tea-' cell1.log
+	make -s -f "$ROOT/pipelines/ablation.mk" THREADS=2 OUT="$PWD/here" "${words[@]}" unseen >/dev/null
+	cmp out/quick/unseen.md here/quick/unseen.md
+}
