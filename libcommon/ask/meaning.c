@@ -137,6 +137,13 @@ static enum relate_width width_of(const struct parse *p, const struct parse_phra
 	return f->count != PARSE_ONE ? RELATE_HALF_PLANE : directions > 1 ? RELATE_WIDE : RELATE_NARROW;
 }
 
+/* "with nothing on it", "by itself". */
+static int is_of_anything(const struct parse_clause *c)
+{
+	return c->relation == PARSE_SUPPORTS || c->relation == PARSE_INSIDE ||
+	       (c->relation == PARSE_NEAR && c->negated && c->degree == PARSE_PLAIN);
+}
+
 /* value (O) of a clause that has places in it; returns how far its anchors are known. */
 static double judge_relation(
 	struct meaning *m, int phrase, const struct parse_clause *c, const double *fit, double *value)
@@ -152,8 +159,8 @@ static double judge_relation(
 
 	if (counted_by(p, f, counts_along) == c)
 		r.place = f->ordinal;
-	if (!c->anchors.n && (c->relation == PARSE_SUPPORTS || c->relation == PARSE_INSIDE)) {
-		for (size_t o = 0; o <= objects_of(m); o++) /* "with nothing on it" */
+	if (!c->anchors.n && is_of_anything(c)) {
+		for (size_t o = 0; o <= objects_of(m); o++)
 			m->scratch[o] = o < objects_of(m);
 		anchors[r.count++] = (struct relate_anchor){.p = m->scratch};
 	}

@@ -53,6 +53,8 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 void analysis_reread(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
 /* Another: each thing of a list with commas is meant. */
 void analysis_lists(struct analysis *a, const struct tokens *t);
+/* Another: places that are said twice, and what "it" is. */
+void analysis_places(struct analysis *a, const struct tokens *t);
 /* Whether a word is the predicate of an anchor. */
 int analysis_has_anchor(const struct analysis *a, int predicate);
 

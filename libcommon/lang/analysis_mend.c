@@ -337,5 +337,6 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 	mend_colours(a, t);
 	mend_pairs(a, t);
 	analysis_reread(a, grammar, t);
+	analysis_places(a, t);
 	analysis_repair(a);
 }

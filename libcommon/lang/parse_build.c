@@ -213,6 +213,10 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	/* "on top of it" compares nothing */
 	if (r == PARSE_ON || r == PARSE_SUPPORTS || r == PARSE_INSIDE || r == PARSE_WITH)
 		return PARSE_PLAIN;
+	/* "farthest from everything" is near nothing */
+	if (r == PARSE_NEAR && b->a->word[i].negated && c == CLOSED_PLACE &&
+		closed_words[t->word[i].closed].relation == PARSE_FAR)
+		return PARSE_PLAIN;
 	if (is_any(t, i, most))
 		return PARSE_MOST;
 	if (c == CLOSED_PLACE || c == CLOSED_SIZE) {

@@ -156,6 +156,33 @@ static int settle_view(struct parse *p, struct parse_phrase *f, struct err *e)
 		       : 0;
 }
 
+static int copy_list(struct parse_list *to, const struct parse_list *from, struct err *e)
+{
+	to->n = 0;
+	for (int i = 0; i < from->n; i++)
+		if (parse_list_add(to, from->item[i], e))
+			return -1;
+	return 0;
+}
+
+/* "near the sink but not over it": an anchor "it" is the phrase before it, which is an anchor too. */
+static int settle_it(struct parse *p, struct err *e)
+{
+	static const char *const it[] = {"it", "them", NULL};
+
+	for (int k = 2; k < p->phrase_count; k++) {
+		struct parse_phrase *f = &p->phrases[k];
+		const struct parse_phrase *earlier = f - 1;
+		if (f->noun.n != 1 || f->clauses.n || !parse_word_is(p, f->noun.item[0], it))
+			continue;
+		f->count = earlier->count;
+		if (copy_list(&f->noun, &earlier->noun, e) ||
+			copy_list(&f->attributes, &earlier->attributes, e))
+			return -1;
+	}
+	return 0;
+}
+
 int parse_settle(struct parse *p, struct err *e)
 {
 	struct parse_phrase *f = &p->phrases[0];
@@ -165,5 +192,6 @@ int parse_settle(struct parse *p, struct err *e)
 	for (int k = 0; k < f->clauses.n; k++)
 		settle_comparison(p, f, &p->clauses[f->clauses.item[k]]);
 	settle_superlative(p, f);
-	return settle_than(p, f, e) || settle_view(p, f, e) || parse_carried(p, e) ? -1 : 0;
+	return settle_it(p, e) || settle_than(p, f, e) || settle_view(p, f, e) || parse_carried(p, e) ? -1
+												      : 0;
 }

@@ -18,6 +18,8 @@
 #define NET_CLOSE 4
 #define NET_CLOSE_BONUS 1.5f
 #define NET_PARTED_COST 1.5f
+/* How likely "with" or "has" must be another relation than that. */
+#define NET_WITH_MOST 0.5
 
 static const int reach[NET_LAYERS] = {1, 2, 4};
 
@@ -337,12 +339,25 @@ static double role_log(const struct parser_batch *b, int sentence, int i, enum w
 	return (double)out[r] - loss_log_sum_exp(out, ROLES);
 }
 
-static void make_predicate(const struct parser_batch *b, int sentence, struct analysis *a, int i)
+/* "the desk with the lamp" may carry it, or have it as a part: where neither is likely, it says no more than
+ * that. */
+static enum parse_relation relation_of(const float *scores, const struct tokens *t, int i)
+{
+	const int class = tokens_class(t, i), best = best_of(scores, PARSE_RELATIONS);
+	const double p = exp((double)scores[best] - loss_log_sum_exp(scores, PARSE_RELATIONS));
+
+	return (class == CLOSED_WITH || class == CLOSED_HAVE) && p < NET_WITH_MOST
+		       ? PARSE_WITH
+		       : (enum parse_relation)best;
+}
+
+static void make_predicate(
+	const struct parser_batch *b, int sentence, const struct tokens *t, struct analysis *a, int i)
 {
 	const float *out = b->out + (size_t)(b->start[sentence] + i) * NET_OUT;
 
 	a->word[i].role = ROLE_PREDICATE;
-	a->word[i].relation = (enum parse_relation)best_of(out + ROLES, PARSE_RELATIONS);
+	a->word[i].relation = relation_of(out + ROLES, t, i);
 	a->word[i].negated = out[ROLES + PARSE_RELATIONS] > 0;
 }
 
@@ -396,7 +411,7 @@ static void hang_anchors(const struct parser_weights *w, const struct parser_bat
 		}
 		a->word[i].head = best;
 		if (best != ROOT && a->word[best].role != ROLE_PREDICATE)
-			make_predicate(b, sentence, a, best);
+			make_predicate(b, sentence, t, a, best);
 	}
 }
 
@@ -447,7 +462,7 @@ void parser_decode(const struct parser_weights *w, const struct parser_batch *b,
 		a->word[i].head = ROOT;
 		sum += exp((double)out[a->word[i].role] - loss_log_sum_exp(out, ROLES));
 		if (a->word[i].role == ROLE_PREDICATE)
-			make_predicate(b, sentence, a, i);
+			make_predicate(b, sentence, t, a, i);
 	}
 	hang_anchors(w, b, sentence, t, a);
 	hang(w, b, sentence, t, a, 1 << ROLE_PREDICATE);

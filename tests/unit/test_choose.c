@@ -129,6 +129,32 @@ enum {
 	SENTENCE = 1 << CHOOSE_SENTENCE
 };
 
+/* Puts the tin beside mug `beside` (0 or 1), or back. */
+static void move_tin(int beside, int back)
+{
+	const double by[2] = {beside ? 1.2 : -1.2, 3};
+
+	for (int i = 3 * EACH; i < 4 * EACH; i++)
+		for (int d = 0; d < 2; d++)
+			means[3 * i + d] += (float)(back ? -by[d] : by[d]);
+}
+
+/* The mug that has nothing near it is the other one than that beside the tin. */
+static void by_itself(void)
+{
+	static const char *const texts[] = {
+		"the mug by itself", "the isolated mug", "the mug away from everything"};
+
+	for (int beside = 0; beside < 2; beside++) {
+		move_tin(beside, 0);
+		for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+			const int best = ask(texts[i], CHOOSE_ALL);
+			CHECK(best == !beside, "'%s', the tin by mug %d: %d", texts[i], beside, best);
+		}
+		move_tin(beside, 1);
+	}
+}
+
 static void parts(void)
 {
 	CHECK(ask("the wooden thing", WORDS) == 2 && probability[2] > 0.4, "words");
@@ -405,6 +431,7 @@ int main(void)
 	make_scene();
 	twins();
 	parts();
+	by_itself();
 	anchors();
 	sets();
 	viewpoints();

@@ -165,6 +165,49 @@ static void mends_nor(void)
 	CHECK(a.word[7].head == ROOT && a.word[7].negated, "by the door: of %d", a.word[7].head);
 }
 
+/* Whether a predicate is denied once it is mended. */
+static void denies(const char *text, const char *roles, enum parse_relation relation, int word, int negated)
+{
+	struct tokens t;
+	struct analysis a, grammar;
+
+	tokens_take(&t, text, NULL, NULL, 0);
+	grammar_analyse(&grammar, &t);
+	a = made(&t, roles, relation);
+	analysis_mend(&a, &grammar, &t);
+	CHECK(a.word[word].role == ROLE_PREDICATE && a.word[word].relation == PARSE_NEAR &&
+			a.word[word].negated == negated && !analysis_has_anchor(&a, word),
+		"'%s': role %d, %s, %d", text, a.word[word].role, parse_relation_name(a.word[word].relation),
+		a.word[word].negated);
+}
+
+/* Places that are said twice; what stands by itself; what "it" is. */
+static void mends_places(void)
+{
+	const char *top = "the jug on the very top";
+	mends(top, ". T P . . P", PARSE_ABOVE, 2, ROLE_NONE, ROOT, 0);
+	mends(top, ". T P . . P", PARSE_ABOVE, 5, ROLE_PREDICATE, ROOT, PARSE_ABOVE);
+	mends("the jug right by the door", ". T P P . A3", PARSE_NEAR, 2, ROLE_NONE, ROOT, 0);
+	mends("the jug by the door, near me", ". T P . A2 P A5", PARSE_NEAR, 5, ROLE_PREDICATE, ROOT,
+		PARSE_NEAR);
+	mends("the jug by the lamp by the door", ". T P . A2 P . A5", PARSE_NEAR, 2, ROLE_PREDICATE, ROOT,
+		PARSE_NEAR);
+
+	denies("the jug all by itself", ". T . . P", PARSE_NEAR, 4, 1);
+	denies("the jug that is not by itself", ". T . . . . P", PARSE_NEAR, 6, 0);
+	denies("the isolated jug", ". a T", PARSE_NEAR, 1, 1);
+	denies("the jug away from everything else", ". T P . A2 .", PARSE_FAR, 2, 1);
+	mends("the jug away from the door", ". T P . . A2", PARSE_FAR, 2, ROLE_PREDICATE, ROOT, PARSE_FAR);
+
+	const char *poster = "the shelf on the wall with a poster beside it";
+	mends(poster, ". T P . . . . A2 P .", PARSE_NEAR, 7, ROLE_ANCHOR, 8, 0);
+	const char *sink = "the jug near the sink, not over it";
+	mends(sink, ". T P . A2 . P .", PARSE_ABOVE, 7, ROLE_ANCHOR, 6, 0);
+	mends("the jug near the sink with a lid over it", ". T P . A2 . . A8 P .", PARSE_SUPPORTS, 9,
+		ROLE_NONE, ROOT, 0);
+	mends("the jug left of it", ". T P . .", PARSE_LEFT, 4, ROLE_NONE, ROOT, 0);
+}
+
 static struct parse parsed(const char *text)
 {
 	struct parse p;
@@ -223,6 +266,17 @@ static void settles(void)
 	parse_free(&p);
 	p = parsed("the tallest lamp but two");
 	CHECK(p.phrases[0].ordinal == 3, "the third: %d", p.phrases[0].ordinal);
+	parse_free(&p);
+	p = parsed("the jug near the grey sink, left of it");
+	const struct parse_phrase *it = &p.phrases[p.phrase_count - 1];
+	CHECK(p.phrase_count == 3 && it->noun.n == 1 && it->attributes.n == 1 &&
+			!strcmp(p.words[it->noun.item[0]].text, "sink"),
+		"it is the grey sink: %d phrases", p.phrase_count);
+	parse_free(&p);
+	p = parsed("the jug farthest from everything");
+	CHECK(p.clause_count == 1 && p.clauses[0].relation == PARSE_NEAR && p.clauses[0].negated &&
+			p.clauses[0].degree == PARSE_PLAIN,
+		"near nothing: %d clauses", p.clause_count);
 	parse_free(&p);
 	p = parsed("taller than the lamp");
 	CHECK(p.clauses[0].degree == PARSE_MORE && p.clauses[0].anchors.n == 1, "a lamp is compared with");
@@ -305,6 +359,7 @@ int main(void)
 	mends_attachment();
 	mends_readings();
 	mends_nor();
+	mends_places();
 	mends_neighbours();
 	mends_lists();
 	settles();

@@ -1,0 +1,189 @@
+/* Another part of what closed-class words settle (analysis_mend.c): places that are said twice, what stands
+ * by itself, and what "it" is. */
+#include "lang/analysis.h"
+#include "lang/closed.h"
+
+/* Words between two predicates of one place. */
+enum { PLACE_REACH = 4 };
+
+static void give_up(struct analysis_word *w)
+{
+	*w = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
+}
+
+static int is_predicate(const struct analysis *a, int i)
+{
+	return i >= 0 && i < a->n && a->word[i].role == ROLE_PREDICATE;
+}
+
+/* The next predicate that is said of the same thing, with no phrase, pause or "and" before it; or -1. */
+static int next_place(const struct analysis *a, const struct tokens *t, int i)
+{
+	for (int j = i + 1; j < t->n && j <= i + PLACE_REACH && !t->word[j].before; j++) {
+		if (is_predicate(a, j))
+			return a->word[j].head == a->word[i].head && a->word[j].negated == a->word[i].negated
+				       ? j
+				       : -1;
+		if (role_is_phrase(a->word[j].role) || tokens_class(t, j) == CLOSED_CONJUNCTION)
+			return -1;
+	}
+	return -1;
+}
+
+static enum parse_relation without_contact(enum parse_relation r)
+{
+	return r == PARSE_ON ? PARSE_ABOVE : r == PARSE_SUPPORTS ? PARSE_BELOW : r;
+}
+
+/* Relations to the room itself. */
+static int is_of_room(enum parse_relation r)
+{
+	return r == PARSE_CORNER || r == PARSE_WALL || r == PARSE_FLOOR || r == PARSE_MIDDLE;
+}
+
+/* "on the very top" is one place, as are "right next to" and "closest to the corner". */
+static void mend_doubled(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		const int j = is_predicate(a, i) ? next_place(a, t, i) : -1;
+		if (j < 0)
+			continue;
+		const enum parse_relation first = without_contact(a->word[i].relation),
+					  second = without_contact(a->word[j].relation);
+		const int has_first = analysis_has_anchor(a, i), has_second = analysis_has_anchor(a, j);
+		if (first == second && !has_first)
+			give_up(&a->word[i]);
+		else if (first == second && !has_second)
+			give_up(&a->word[j]);
+		else if (first == PARSE_NEAR && !has_first && is_of_room(second))
+			give_up(&a->word[i]);
+	}
+}
+
+static int is_any_of(const struct tokens *t, int i, const char *const *words)
+{
+	for (; *words; words++)
+		if (tokens_is(t, i, *words))
+			return 1;
+	return 0;
+}
+
+/* "everything" after "from", as in "away from everything else"; or -1. */
+static int everything_after(const struct tokens *t, int predicate)
+{
+	static const char *const all[] = {"everything", "anything", NULL};
+
+	for (int i = predicate + 1; i < predicate + 3; i++)
+		if (tokens_is(t, i, "from") && is_any_of(t, i + 1, all))
+			return i + 1;
+	return -1;
+}
+
+/* 1 where a predicate is "near" nothing or "far" from everything, but for the words that turn it round. */
+static int is_alone(const struct analysis *a, const struct tokens *t, int i)
+{
+	static const char *const by[] = {"itself", "themselves", "alone", NULL};
+	const int all = everything_after(t, i);
+
+	if (a->word[i].relation == PARSE_FAR && all >= 0)
+		return !analysis_has_anchor(a, i) || a->word[all].head == i;
+	return a->word[i].relation == PARSE_NEAR && !analysis_has_anchor(a, i) &&
+	       (is_any_of(t, i, by) || is_any_of(t, i + 1, by));
+}
+
+/* "by itself", "all alone", "isolated", "far from everything else": near nothing. */
+static void mend_alone(struct analysis *a, const struct tokens *t)
+{
+	static const char *const lone[] = {"isolated", "solitary", "secluded", NULL};
+
+	for (int i = 0; i < t->n; i++) {
+		struct analysis_word *w = &a->word[i];
+		int negated = 1;
+		if ((w->role == ROLE_ATTRIBUTE || w->role == ROLE_NAME) && is_any_of(t, i, lone)) {
+			*w = (struct analysis_word){ROLE_PREDICATE, w->head, PARSE_NEAR, 1};
+			continue;
+		}
+		if (!is_predicate(a, i) || !is_alone(a, t, i))
+			continue;
+		for (int j = i - 1; j >= 0 && j >= i - 3 && !t->word[j + 1].before; j--)
+			negated &= tokens_class(t, j) != CLOSED_NEGATION;
+		if (analysis_has_anchor(a, i))
+			give_up(&a->word[everything_after(t, i)]);
+		w->relation = PARSE_NEAR;
+		w->negated = negated;
+	}
+}
+
+/* "it" after a place without an anchor: "to the side of it"; or -1. */
+static int it_after(const struct analysis *a, const struct tokens *t, int predicate)
+{
+	for (int i = predicate + 1; i < t->n && i <= predicate + PLACE_REACH && !t->word[i].before; i++) {
+		if (tokens_is(t, i, "it") || tokens_is(t, i, "them"))
+			return a->word[i].role == ROLE_NONE ? i : -1;
+		if (a->word[i].role != ROLE_NONE || tokens_class(t, i) == CLOSED_BE ||
+			tokens_class(t, i) == CLOSED_VIEW)
+			return -1;
+	}
+	return -1;
+}
+
+static int is_having(const struct tokens *t, int i)
+{
+	const int class = tokens_class(t, i);
+
+	return class == CLOSED_WITH || class == CLOSED_HAVE || tokens_is(t, i, "without") ||
+	       tokens_is(t, i, "there");
+}
+
+/* "with two chairs near it", "has a poster beside it": the phrase is the anchor of the place after it,
+ * whatever it was taken for an anchor of. */
+static void mend_it(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 1; i < t->n; i++) {
+		int noun = i - 1, with;
+		if (!is_predicate(a, i) || analysis_has_anchor(a, i) || it_after(a, t, i) < 0)
+			continue;
+		while (noun > 0 && !role_is_phrase(a->word[noun].role) && !t->word[noun + 1].before &&
+			!is_predicate(a, noun) && !is_having(t, noun))
+			noun--;
+		for (with = noun; with > 0 && !is_having(t, with) && !t->word[with].before &&
+				  (with == noun || !role_is_phrase(a->word[with].role));)
+			with--;
+		if (a->word[noun].role != ROLE_ANCHOR || t->word[noun + 1].before || !is_having(t, with))
+			continue;
+		const int before = a->word[noun].head;
+		a->word[noun].head = i;
+		a->word[i].negated |= before == with && a->word[with].negated;
+		if (before == with && !analysis_has_anchor(a, with))
+			give_up(&a->word[with]);
+		if (before >= 0 && a->word[before].role != ROLE_NONE && a->word[i].head == noun)
+			a->word[i].head = a->word[before].head;
+	}
+}
+
+/* "near the sink but not over it": the sink, unless what comes between has something, which would be what
+ * "it" is. parse_settle finds the sink's words. */
+static void mend_it_again(struct analysis *a, const struct tokens *t)
+{
+	int earlier = 0, has = 0;
+
+	for (int i = 0; i < t->n; i++) {
+		has = t->word[i].before ? 0 : has;
+		if (earlier && !has && is_predicate(a, i) && tokens_class(t, i) == CLOSED_PLACE &&
+			!analysis_has_anchor(a, i) && a->word[i].relation != PARSE_SUPPORTS) {
+			const int it = it_after(a, t, i);
+			if (it >= 0 && tokens_class(t, it + 1) != CLOSED_BE)
+				a->word[it] = (struct analysis_word){.role = ROLE_ANCHOR, .head = i};
+		}
+		earlier |= a->word[i].role == ROLE_ANCHOR;
+		has |= is_having(t, i);
+	}
+}
+
+void analysis_places(struct analysis *a, const struct tokens *t)
+{
+	mend_it(a, t);
+	mend_it_again(a, t);
+	mend_alone(a, t);
+	mend_doubled(a, t);
+}
