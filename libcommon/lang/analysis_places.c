@@ -180,10 +180,39 @@ static void mend_it_again(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* Whether a noun is all that its predicate is about, and nothing but what describes it hangs on it. */
+static int is_plain(const struct analysis *a, int noun)
+{
+	for (int i = 0; i < a->n; i++) {
+		const struct analysis_word *w = &a->word[i];
+		if ((w->role == ROLE_PREDICATE && w->head == noun) ||
+			(w->role == ROLE_ANCHOR && w->head == a->word[noun].head && i != noun))
+			return 0;
+	}
+	return 1;
+}
+
+/* "on the white wall" is by the wall, as "on the wall" is: no thing that carries another. */
+static void mend_wall(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		const int p = a->word[i].role == ROLE_ANCHOR ? a->word[i].head : -1;
+		if (!tokens_is(t, i, "wall") || !is_predicate(a, p) || a->word[p].relation != PARSE_ON ||
+			!is_plain(a, i))
+			continue;
+		a->word[p].relation = PARSE_WALL;
+		give_up(&a->word[i]);
+		for (int j = 0; j < t->n; j++)
+			if (a->word[j].head == i)
+				give_up(&a->word[j]);
+	}
+}
+
 void analysis_places(struct analysis *a, const struct tokens *t)
 {
 	mend_it(a, t);
 	mend_it_again(a, t);
 	mend_alone(a, t);
+	mend_wall(a, t);
 	mend_doubled(a, t);
 }

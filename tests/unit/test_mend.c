@@ -193,6 +193,12 @@ static void mends_places(void)
 	mends("the jug by the lamp by the door", ". T P . A2 P . A5", PARSE_NEAR, 2, ROLE_PREDICATE, ROOT,
 		PARSE_NEAR);
 
+	mends("the clock on the white wall", ". T P . a A2", PARSE_ON, 2, ROLE_PREDICATE, ROOT, PARSE_WALL);
+	mends("the clock on the white wall", ". T P . a A2", PARSE_ON, 5, ROLE_NONE, ROOT, 0);
+	mends("the clock on the white box", ". T P . a A2", PARSE_ON, 2, ROLE_PREDICATE, ROOT, PARSE_ON);
+	mends("the clock on the wall by the door", ". T P . A2 P4 . A5", PARSE_ON, 2, ROLE_PREDICATE, ROOT,
+		PARSE_ON);
+
 	denies("the jug all by itself", ". T . . P", PARSE_NEAR, 4, 1);
 	denies("the jug that is not by itself", ". T . . . . P", PARSE_NEAR, 6, 0);
 	denies("the isolated jug", ". a T", PARSE_NEAR, 1, 1);
