@@ -135,7 +135,7 @@ static int is_having(const struct tokens *t, int i)
 	       tokens_is(t, i, "there");
 }
 
-/* "with two chairs near it", "has a poster beside it": the phrase is the anchor of the place after it,
+/* "with two stools near it", "has a lamp beside it": the phrase is the anchor of the place after it,
  * whatever it was taken for an anchor of. */
 static void mend_it(struct analysis *a, const struct tokens *t)
 {
