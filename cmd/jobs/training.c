@@ -136,8 +136,10 @@ static int read_all(
 {
 	size_t pairs = 0;
 
-	if (scene_read(&t->scene, from->scene, e) || text_read(&t->text, from->text, e) ||
-		pack_sentences(t, e))
+	if (scene_read(&t->scene, from->scene, e))
+		return -1;
+	splats_keep_means(&t->scene.splats);
+	if (text_read(&t->text, from->text, e) || pack_sentences(t, e))
 		return -1;
 	if (!t->sentences)
 		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(from->text));

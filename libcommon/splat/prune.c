@@ -35,10 +35,10 @@ static int bin_of(float weight)
 	return bin < 0 ? 0 : bin < BINS ? bin : BINS - 1;
 }
 
-/* Of the least float of a bin. */
+/* Of the least float of a bin; the first and the last have all that is beyond. */
 static int32_t bin_begin(int bin)
 {
-	return bin ? (bin + FIRST_BIN) << SHIFT : 0;
+	return bin == BINS ? INT32_MAX : bin ? (bin + FIRST_BIN) << SHIFT : 0;
 }
 
 static int64_t whole(float weight)
@@ -85,11 +85,12 @@ static int64_t mark_share(float *row, size_t n, double tolerance, uint32_t *list
 	const int64_t most = (int64_t)(tolerance * (double)sum);
 	while (last < BINS - 1 && out + bins[last] <= most)
 		out += bins[last++];
+	*begin = bin_begin(last);
+	const int32_t end = bin_begin(last + 1);
 	for (size_t i = 0; i < n; i++) {
 		list[count] = (uint32_t)i;
-		count += bin_of(row[i]) == last;
+		count += (bits_of(row[i]) >= *begin) & (bits_of(row[i]) < end);
 	}
-	*begin = bin_begin(last);
 	return mark_listed(row, list, count, out, most);
 }
 
