@@ -9,7 +9,7 @@
 /* weight (n): of all Gaussians. */
 static int pack(struct seen *s, const float *weight, size_t n, struct err *e)
 {
-	uint32_t count = 0;
+	uint32_t count = 1;
 
 	s->marks = marks_make(n, e);
 	s->before = mem_alloc(n / 64 + 1, sizeof *s->before, "views", e);
@@ -26,7 +26,8 @@ static int pack(struct seen *s, const float *weight, size_t n, struct err *e)
 	s->weight = mem_alloc(count, sizeof *s->weight, "views", e);
 	if (!s->weight)
 		return -1;
-	count = 0;
+	s->weight[0] = 0;
+	count = 1;
 	for (size_t i = 0; i < n; i++)
 		if (weight[i] > 0)
 			s->weight[count++] = weight[i];
@@ -53,7 +54,7 @@ void seen_free(struct seen *s)
 
 void seen_add(const struct seen *s, size_t gaussians, double *sum)
 {
-	const float *next = s->weight;
+	const float *next = s->weight + 1;
 
 	for (size_t word = 0; s->marks && word <= gaussians / 64; word++)
 		for (uint64_t left = s->marks[word]; left; left &= left - 1)

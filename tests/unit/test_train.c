@@ -400,46 +400,6 @@ static void test_no_weight(void)
 	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
 }
 
-/* Reading the views from a file, or some of them, changes nothing. */
-static void test_room(void)
-{
-	static const struct trainer_options options = {.batch = 1,
-		.hold_out = 0.3,
-		.feature_width = 5,
-		.interaction = REFER_PCMI,
-		.contrast = REFER_CONTRAST_COSINE,
-		.rates = {0.01, 0.001},
-		.temperature = 0.1,
-		.lambda = 0.02};
-	const size_t view = (PIXELS + 1) * sizeof(int64_t) + PIXELS * ENTRIES * 8;
-	const struct {
-		size_t bytes, filed;
-	} cases[] = {{0, VIEWS}, {1, VIEWS}, {2 * view, VIEWS - 1}, {SIZE_MAX, 0}};
-	struct trainer t, whole;
-	struct sample s;
-	struct err e;
-
-	sample_init(&s);
-	CHECK(!held_out_choose(s.views, VIEWS, s.objects, 2, options.hold_out, 3, &e), "%s", e.message);
-	if (!start(&whole, &s, &options))
-		return;
-	steps(&whole, 0, 12);
-	for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-		struct trainer_source source = source_of(&s);
-		source.room = (struct row_views_room){cases[c].bytes, "/tmp/test_train"};
-		if (!CHECK(!trainer_init(&t, &source, &options, &e), "%s", e.message))
-			return;
-		CHECK(t.views.filed == cases[c].filed, "room of %zu bytes: %zu views in the file",
-			cases[c].bytes, t.views.filed);
-		CHECK(trainer_weights(&t) == trainer_weights(&whole), "%g weights a pixel",
-			trainer_weights(&t));
-		steps(&t, 0, 12);
-		CHECK(same_state(&t.state, &whole.state), "room of %zu bytes: another state", cases[c].bytes);
-		trainer_free(&t);
-	}
-	trainer_free(&whole);
-}
-
 /* A Gaussian that no view sees, put first, changes nothing that is learned. */
 static void test_unseen_first(void)
 {
@@ -541,7 +501,6 @@ int main(void)
 	test_resume(13, 17, 0.4);
 	test_no_weight();
 	test_unseen_first();
-	test_room();
 	test_others();
 	return unit_end();
 }
