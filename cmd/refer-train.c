@@ -8,7 +8,7 @@
 #include <string.h>
 
 static struct learning_options options = {
-	.iterations = 45000, .checkpoint = 1000, .trainer = TRAINER_DEFAULTS};
+	.iterations = 45000, .checkpoint = 1000, .memory = 1024, .trainer = TRAINER_DEFAULTS};
 
 /* In the order of their choices. */
 static int interaction = REFER_PCMI, similarity = REFER_DOT, contrast = REFER_CONTRAST_COSINE,
@@ -52,6 +52,9 @@ static const struct cli_option table[] = {
 		"pixels a feature must save; 0: one each (default 0.04)", 0, 1e6},
 	{"precision", 0, CLI_CHOICE, &precision, PRECISION_CHOICES,
 		"how features and weights are stored (default u8)", 0, 0},
+	{"memory", 0, CLI_INT, &options.memory, "MIB",
+		"memory for the views' weights; what has no room is read for each step (default 1024)", 0,
+		16777216},
 	{"log", 0, CLI_STRING, &options.log, "FILE",
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{"checkpoint", 0, CLI_INT, &options.checkpoint, "N",

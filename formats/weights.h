@@ -28,7 +28,7 @@ struct weights {
 	enum precision precision; /* of the weights in the file */
 };
 
-/* Weights below half of 1/255 round to 0 as u8: prune_below leaves them out, so that they count as dropped.
+/* Weights below half of 1/255 round to 0 as u8: prune_weights leaves them out, so that they count as dropped.
  */
 #define WEIGHTS_U8_LEAST (0.5 / 255)
 

@@ -1,24 +1,52 @@
 #include "cmd/jobs/learn.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
+
+enum { MEBIBYTE = 1 << 20 };
+
+/* Beside the model, where its checkpoints go too; for stdout in the folder for temporary files. */
+static char *scratch_path(const char *output, struct err *e)
+{
+	const char *folder = getenv("TMPDIR"), *name = strcmp(output, "-") ? output : "refer-train";
+
+	if (name == output)
+		folder = "";
+	else if (!folder || !*folder)
+		folder = "/tmp";
+	const size_t bytes = strlen(folder) + strlen(name) + sizeof "/.weights";
+	char *path = mem_alloc(bytes, 1, "path", e);
+	if (path)
+		snprintf(path, bytes, "%s%s%s.weights", folder, *folder ? "/" : "", name);
+	return path;
+}
 
 static int start(struct learning *l, const struct report *to, struct err *e)
 {
 	const struct learning_options *o = l->options;
-	const struct training *d = &l->data;
-	const struct trainer_source source = training_source(d);
+	struct training *d = &l->data;
 
+	l->scratch = scratch_path(o->output, e);
+	if (!l->scratch)
+		return -1;
+	const struct row_views_room room = {(size_t)o->memory * MEBIBYTE, l->scratch};
+	const struct trainer_source source = training_source(d, &room);
 	l->divergence.layout = &l->trainer.layout;
 	l->of = training_identity(d, &o->from, &o->trainer);
 	if (trainer_init(&l->trainer, &source, &o->trainer, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, o->from.weights) : -1;
 	report_note(to, 1, "%zu of %zu Gaussians share %zu features, %.1f a pixel", l->trainer.learning,
 		d->scene.splats.n, l->trainer.rows.n, trainer_weights(&l->trainer));
-	report_note(to, 1, "%zu views, %zu sentences, %zu pairs, %zu more held out", d->view_count,
-		d->sentences, d->pairs, d->held);
+	report_note(to, 1, "%zu views, %zu sentences, %zu pairs, %zu more held out", d->views.n, d->sentences,
+		d->pairs, d->held);
+	if (l->trainer.views.filed)
+		report_note(to, 1, "the weights of %zu views are in a file, %.0f MiB", l->trainer.views.filed,
+			(double)l->trainer.views.file.end / MEBIBYTE);
 	return 0;
 }
 
@@ -65,8 +93,8 @@ static int record(struct learning *l, const struct step_losses *last, struct err
 	if (trainlog_step(&l->log, t, e))
 		return -1;
 	if (t->best.values && (done % TRAINER_EVALUATE == 0 || done == o->iterations)) {
-		const struct held_out_score score = trainer_evaluate(&l->trainer);
-		if (trainlog_put_held(&l->log, done, &score, e))
+		struct held_out_score score;
+		if (trainer_evaluate(&l->trainer, &score, e) || trainlog_put_held(&l->log, done, &score, e))
 			return -1;
 	}
 	if (!o->checkpoint || done % o->checkpoint || is_over(l) || !divergence_is_good(&l->divergence, t))
@@ -103,8 +131,8 @@ static int take_steps(struct learning *l, const struct report *to, struct err *e
 			bad = stop(l, e);
 			break;
 		}
-		struct step_losses last = trainer_step(&l->trainer);
-		bad = record(l, &last, e);
+		struct step_losses last;
+		bad = trainer_step(&l->trainer, &last, e) || record(l, &last, e);
 		report_step(to, (double)(t->iteration - begin), *l->note ? l->note : NULL);
 	}
 	report_end(to);
@@ -155,5 +183,6 @@ int learn(struct learning *l, const struct learning_options *options, const stru
 void learning_free(struct learning *l)
 {
 	trainer_free(&l->trainer);
+	free(l->scratch);
 	training_free(&l->data);
 }

@@ -25,6 +25,7 @@ struct learning_options {
 	long long iterations;		   /* steps */
 	long long checkpoint;		   /* one every so many steps; 0: never */
 	const volatile sig_atomic_t *stop; /* not 0: to be left after this step, with a checkpoint */
+	long long memory;		   /* MiB for the views' weights */
 	long long patience;		   /* evaluations that were no better, until it stops */
 	struct trainer_options trainer;
 };
@@ -34,6 +35,7 @@ struct learning {
 	struct training data;
 	struct trainer trainer;
 	struct file_out claim; /* of the model, as long as it is learnt */
+	char *scratch;	       /* where weights go that memory has no room for: row_views_room's path */
 	struct trainlog log;
 	struct divergence divergence;
 	struct checkpoint_of of;

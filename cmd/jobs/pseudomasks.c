@@ -217,6 +217,7 @@ static int put_views(struct pseudomasks *w, const struct report *to, struct err 
 	if (!w->views || scene_read(&w->scene, w->options->scene, e) ||
 		masks_views(&w->set, w->lines, w->options->candidates, &w->scene.cameras, w->views, e))
 		return -1;
+	splats_keep_means(&w->scene.splats);
 	const size_t views = w->scene.cameras.n;
 	b.is_there = mem_alloc(views, 1, "views", e);
 	b.shown = mem_zalloc(views, sizeof *b.shown, "views", e);

@@ -72,15 +72,13 @@ static void make_checksum(struct training *t)
 		sum, t->words, sizeof(float) * (size_t)t->offsets[t->sentences] * (size_t)t->text.width);
 	sum = add_checksum(sum, t->offsets, sizeof *t->offsets * (t->sentences + 1));
 	sum = add_checksum(sum, t->objects, sizeof *t->objects * t->sentences);
-	for (size_t v = 0; v < t->view_count; v++) {
-		const struct train_view *view = &t->views[v];
-		const size_t pixels = view->weights.pixels, nnz = (size_t)view->weights.indptr[pixels];
-		sum = add_checksum(sum, view->weights.indptr, sizeof(int64_t) * (pixels + 1));
-		sum = add_checksum(sum, view->weights.index, sizeof(int32_t) * nnz);
-		sum = add_checksum(sum, view->weights.weight, sizeof(float) * nnz);
+	for (size_t v = 0; v < t->views.n; v++) {
+		const struct train_view *view = &t->views.views[v];
+		const struct training_view *read = &t->views.read[v];
+		sum = (uint32_t)crc32_combine(sum, read->sum, (z_off_t)read->bytes);
 		sum = add_checksum(sum, view->sentences, sizeof(int) * (size_t)view->count);
 		for (int i = 0; i < view->count; i++)
-			sum = add_checksum(sum, view->masks[i], bits_bytes(pixels));
+			sum = add_checksum(sum, view->masks[i], bits_bytes(view->weights.pixels));
 	}
 	for (size_t o = 0; o < t->lifted.objects; o++) /* all of them with the 0 that ends them */
 		sum = add_checksum(sum, t->lifted.names[o], strlen(t->lifted.names[o]) + 1);
@@ -123,11 +121,12 @@ static int read_lifted(struct training *t, const struct training_files *from, st
 static int hold_out(
 	struct training *t, const struct training_files *from, double share, uint64_t seed, struct err *e)
 {
-	if (share > 0 && held_out_choose(t->views, t->view_count, t->objects, t->sentences, share, seed, e))
+	if (share > 0 &&
+		held_out_choose(t->views.views, t->views.n, t->objects, t->sentences, share, seed, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, file_name(from->masks)) : -1;
-	for (size_t v = 0; v < t->view_count; v++) {
-		t->pairs += (size_t)t->views[v].count;
-		t->held += (size_t)t->views[v].held;
+	for (size_t v = 0; v < t->views.n; v++) {
+		t->pairs += (size_t)t->views.views[v].count;
+		t->held += (size_t)t->views.views[v].held;
 	}
 	return 0;
 }
@@ -137,17 +136,19 @@ static int read_all(
 {
 	size_t pairs = 0;
 
-	if (scene_read(&t->scene, from->scene, e) || text_read(&t->text, from->text, e) ||
-		pack_sentences(t, e))
+	if (scene_read(&t->scene, from->scene, e))
+		return -1;
+	splats_keep_means(&t->scene.splats);
+	if (text_read(&t->text, from->text, e) || pack_sentences(t, e))
 		return -1;
 	if (!t->sentences)
 		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(from->text));
 	if (training_read_masks(t, from->weights, from->masks, e) ||
 		supervision_link(
-			&t->masks, t->refs, t->object_names, t->sentences, t->views, t->view_count, e))
+			&t->masks, t->refs, t->object_names, t->sentences, t->views.views, t->views.n, e))
 		return -1;
-	for (size_t v = 0; v < t->view_count; v++)
-		pairs += (size_t)t->views[v].count;
+	for (size_t v = 0; v < t->views.n; v++)
+		pairs += (size_t)t->views.views[v].count;
 	if (!pairs)
 		return err_set(e, ERR_FORMAT,
 			"%s: no mask of a training view is of a training sentence of %s",
@@ -168,19 +169,20 @@ int training_read(
 	return bad;
 }
 
-struct trainer_source training_source(const struct training *t)
+struct trainer_source training_source(struct training *t, const struct row_views_room *room)
 {
 	return (struct trainer_source){.means = t->scene.splats.means,
-		.cameras = t->cameras,
+		.cameras = t->views.cameras,
 		.scene_gaussians = t->scene.splats.n,
 		.text_width = t->text.width,
 		.sentences = t->sentences,
 		.offsets = t->offsets,
 		.words = t->words,
 		.objects = t->objects,
-		.views = t->views,
-		.view_count = t->view_count,
-		.pixels = t->pixels,
+		.views = training_views_source(&t->views),
+		.pixels = t->views.pixels,
+		.weight = t->views.weight,
+		.room = *room,
 		.lifted = t->lifted.objects ? &t->lifted : NULL,
 		.object_names = t->object_names};
 }
@@ -233,10 +235,9 @@ int training_write(const struct training *t, const struct trainer *learned, enum
 
 void training_free(struct training *t)
 {
-	if (t->views)
-		supervision_unlink(t->views, t->view_count);
-	for (size_t v = 0; v < t->view_count; v++)
-		weights_close(&t->weights[v]);
+	if (t->views.views)
+		supervision_unlink(t->views.views, t->views.n);
+	training_views_free(&t->views);
 	supervision_free(&t->masks);
 	lifted_free(&t->lifted);
 	scene_free(&t->scene);
@@ -246,8 +247,5 @@ void training_free(struct training *t)
 	free(t->objects);
 	free(t->refs);
 	free(t->object_names);
-	free(t->weights);
-	free(t->views);
-	free(t->cameras);
 	*t = (struct training){0};
 }

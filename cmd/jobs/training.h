@@ -4,11 +4,11 @@
 #define CMD_JOBS_TRAINING_H
 
 #include "base/err.h"
+#include "cmd/jobs/training_views.h"
 #include "formats/checkpoint.h"
 #include "formats/precision.h"
 #include "formats/scene.h"
 #include "formats/text.h"
-#include "formats/weights.h"
 #include "train/supervision.h"
 #include "train/trainer.h"
 
@@ -21,16 +21,12 @@ struct training {
 	float *words;			   /* (offsets[R], text.width) */
 	int *objects;			   /* (R) numbers of the objects */
 	const char **refs, **object_names; /* (R) owned by text */
-	size_t view_count;		   /* training views that have masks */
-	struct weights *weights;
-	struct train_view *views;
-	struct camera *cameras; /* of the views, at the size of their weights; names belong to scene */
+	struct training_views views;	   /* training views that have masks */
 	struct supervision masks;
 	size_t test_masks;    /* masks of test views, not used */
 	size_t pairs;	      /* (view, sentence) pairs to learn from */
 	size_t held;	      /* those that are held out */
 	struct lifted lifted; /* for a warm start; else empty */
-	size_t pixels;	      /* of the largest view */
 	uint32_t checksum;    /* of everything that training depends on but its options */
 };
 
@@ -46,7 +42,7 @@ int training_read(
 struct checkpoint_of training_identity(
 	const struct training *t, const struct training_files *from, const struct trainer_options *o);
 /* What a trainer learns from; referred to. */
-struct trainer_source training_source(const struct training *t);
+struct trainer_source training_source(struct training *t, const struct row_views_room *room);
 void training_free(struct training *t);
 
 /* Writes the model that was learned. *options: how, but for the number of steps and the precision. */

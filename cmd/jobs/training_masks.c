@@ -8,30 +8,15 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-/* Opens a view's weights and makes it the next training view. */
-static int add_view(struct training *t, const char *weights, const struct camera *c, struct err *e)
-{
-	struct weights *w = &t->weights[t->view_count];
-
-	if (weights_open(w, weights, &t->scene, (size_t)(c - t->scene.cameras.views), e))
-		return -1;
-	const struct view_weights view = weights_view(w);
-	t->cameras[t->view_count] = camera_resize(c, w->width, w->height);
-	t->views[t->view_count++].weights = view;
-	t->pixels = view.pixels > t->pixels ? view.pixels : t->pixels;
-	return 0;
-}
-
 /* What the masks are read with. */
 struct mask_reading {
-	const char *weights;
 	struct names names; /* of the scene's views */
 	long *view_of;	    /* (the scene's views) the training view, or -1 */
 	size_t capacity;
 	long *lines; /* of each mask that was kept */
 };
 
-/* One mask, taken over: its view's weights are opened when it is the first of the view. */
+/* One mask, taken over: its view's weights are read when it is the first of the view. */
 static int add_mask(
 	struct training *t, const struct jsonl *j, struct mask *m, struct mask_reading *r, struct err *e)
 {
@@ -49,8 +34,8 @@ static int add_mask(
 	}
 	long *view = &r->view_of[place];
 	if (*view < 0) {
-		*view = (long)t->view_count;
-		bad = add_view(t, r->weights, c, e);
+		*view = (long)t->views.n;
+		bad = training_views_add(&t->views, place, e);
 	}
 	bad = bad || mem_grow((void **)&r->lines, &r->capacity, n + 1, sizeof *r->lines, "masks", e);
 	if (bad) {
@@ -58,8 +43,8 @@ static int add_mask(
 		return -1;
 	}
 	r->lines[n] = j->line_number;
-	const struct weights *w = &t->weights[*view];
-	return supervision_add(&t->masks, (size_t)*view, w->width, w->height, m, e);
+	const struct camera *sized = &t->views.cameras[*view];
+	return supervision_add(&t->masks, (size_t)*view, sized->width, sized->height, m, e);
 }
 
 static int add_masks(struct training *t, const char *path, struct mask_reading *r, struct err *e)
@@ -88,13 +73,9 @@ static int add_masks(struct training *t, const char *path, struct mask_reading *
 int training_read_masks(struct training *t, const char *weights, const char *path, struct err *e)
 {
 	const size_t count = t->scene.cameras.n;
-	struct mask_reading r = {
-		.weights = weights, .view_of = mem_alloc(count, sizeof *r.view_of, "views", e)};
+	struct mask_reading r = {.view_of = mem_alloc(count, sizeof *r.view_of, "views", e)};
 
-	t->weights = mem_zalloc(count, sizeof *t->weights, "views", e);
-	t->views = mem_zalloc(count, sizeof *t->views, "views", e);
-	t->cameras = mem_zalloc(count, sizeof *t->cameras, "views", e);
-	int bad = !r.view_of || !t->weights || !t->views || !t->cameras ||
+	int bad = !r.view_of || training_views_init(&t->views, &t->scene, weights, e) ||
 		  names_make(&r.names, t->scene.cameras.views, sizeof *t->scene.cameras.views,
 			  offsetof(struct camera, name), count, e);
 	for (size_t v = 0; v < count && !bad; v++)

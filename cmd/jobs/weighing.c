@@ -49,11 +49,10 @@ static int render(struct room *room, const struct splats *s, const struct camera
 		return -1;
 	if (render_weights_again(room->view, &room->rendered, e))
 		return -1;
-	if (o->tolerance > 0 && prune_weights(&room->rendered, pixels, o->tolerance, room->dropped, e))
-		return -1;
-	if (o->precision == PRECISION_U8)
-		prune_below(&room->rendered, pixels, WEIGHTS_U8_LEAST, room->dropped);
-	return 0;
+	const double least = o->precision == PRECISION_U8 ? WEIGHTS_U8_LEAST : 0;
+	if (o->tolerance <= 0 && least <= 0)
+		return 0;
+	return prune_weights(&room->rendered, pixels, o->tolerance, least, room->dropped, e);
 }
 
 /* The part of the pixels that are more scene than background. */

@@ -126,6 +126,18 @@ const char *file_at(const void *address)
 	return NULL;
 }
 
+int file_map_part(int fd, const char *name, size_t at, size_t len, struct file_map *map, struct err *e)
+{
+	void *mapped = mmap(NULL, len, PROT_READ, MAP_PRIVATE, fd, (off_t)at);
+
+	*map = (struct file_map){0};
+	if (mapped == MAP_FAILED)
+		return err_errno(e, "%s", name);
+	*map = (struct file_map){mapped, len, 1};
+	know(map, name);
+	return 0;
+}
+
 int file_map(const char *path, struct file_map *map, struct err *e)
 {
 	struct stat st;
@@ -148,18 +160,9 @@ int file_map(const char *path, struct file_map *map, struct err *e)
 		close(fd);
 		return -1;
 	}
-	void *mapped = mmap(NULL, (size_t)st.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
-	if (mapped == MAP_FAILED) {
-		err_errno(e, "%s", path);
-		close(fd);
-		return -1;
-	}
+	const int bad = file_map_part(fd, path, 0, (size_t)st.st_size, map, e);
 	close(fd);
-	map->data = mapped;
-	map->len = (size_t)st.st_size;
-	map->is_mapped = 1;
-	know(map, path);
-	return 0;
+	return bad;
 }
 
 void file_unmap(struct file_map *map)

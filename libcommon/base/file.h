@@ -18,6 +18,8 @@ struct file_map {
 	int is_mapped; /* else data was read */
 };
 int file_map(const char *path, struct file_map *map, struct err *e);
+/* The same of a part of an open file that begins with a page of memory; `name` is what file_at gives. */
+int file_map_part(int fd, const char *name, size_t at, size_t len, struct file_map *map, struct err *e);
 void file_unmap(struct file_map *map);
 
 /* The path of the mapped file that has this address, or NULL. For the handler of SIGBUS, which comes where a

@@ -93,10 +93,10 @@ int regions_init(struct regions *r, const struct pool *p, const size_t *places, 
 	r->candidates = mem_zalloc(p->n, sizeof *r->candidates, "candidates", e);
 	r->objects = mem_alloc(p->n, sizeof *r->objects, "candidates", e);
 	r->sentence_objects = mem_alloc(p->n, sizeof *r->sentence_objects, "candidates", e);
-	r->weight = mem_zalloc(views, gaussians * sizeof *r->weight, "views", e);
+	r->seen = mem_zalloc(views, sizeof *r->seen, "views", e);
 	r->ranges = mem_zalloc(views, sizeof *r->ranges, "views", e);
 	if (!r->witnesses || !r->candidates || !r->ranges || !r->objects || !r->sentence_objects ||
-		!r->weight) {
+		!r->seen) {
 		regions_free(r);
 		return -1;
 	}
@@ -133,7 +133,9 @@ void regions_free(struct regions *r)
 	free(r->ranges);
 	free(r->objects);
 	free(r->sentence_objects);
-	free(r->weight);
+	for (size_t v = 0; v < r->views && r->seen; v++)
+		seen_free(&r->seen[v]);
+	free(r->seen);
 	free(r->regions);
 	free(r->served);
 	free(r->field);

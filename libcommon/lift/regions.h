@@ -29,6 +29,7 @@
 #define LIFT_REGIONS_H
 
 #include "base/err.h"
+#include "lift/seen.h"
 #include "lift/shares.h"
 #include "mask/pool.h"
 #include "splat/view_weights.h"
@@ -76,7 +77,7 @@ struct regions {
 	size_t *objects; /* (object_count) the first candidate of each, in the order in which they came */
 	size_t sentence_count;
 	size_t *sentence_objects; /* (sentence_count) */
-	float *weight;		  /* (views,N) W_vi */
+	struct seen *seen;	  /* (views) W_vi */
 	size_t region_count, region_capacity;
 	struct region *regions;
 	size_t *served; /* (object_count) an object's region, or REGIONS_NONE */

@@ -80,11 +80,11 @@ static void add(struct growth *g, int32_t gaussian)
 /* Of a candidate, what a view sees. */
 static double seen_mass(const struct regions *r, size_t view, const struct shares *s)
 {
-	const float *weight = r->weight + view * r->gaussians;
+	const struct seen *seen = &r->seen[view];
 	double mass = 0;
 
 	for (size_t k = 0; k < s->n; k++)
-		mass += weight[s->index[k]] > (float)SEEN ? (double)s->share[k] : 0;
+		mass += seen_weight(seen, (size_t)s->index[k]) > (float)SEEN ? (double)s->share[k] : 0;
 	return mass;
 }
 
@@ -118,10 +118,10 @@ static void find_agreement(struct growth *g, const struct regions *r, int is_par
 {
 #pragma omp parallel for schedule(static)
 	for (size_t v = 0; v < r->views; v++) {
-		const float *weight = r->weight + v * r->gaussians;
+		const struct seen *seen = &r->seen[v];
 		double area = 0;
-		for (size_t k = 0; k < g->region.n; k++)
-			area += (double)weight[g->region.members[k]];
+		for (size_t k = 0; k < g->region.n && seen->marks; k++)
+			area += (double)seen_weight(seen, (size_t)g->region.members[k]);
 		g->area[v] = area;
 	}
 	regions_overlap(&g->shown, r->count, g->region.members, g->region.n, g->both);
@@ -149,12 +149,13 @@ static void choose(struct growth *g, const struct regions *r)
 static void begin(struct growth *g, const struct regions *r, size_t seed)
 {
 	const struct regions_candidate *c = &r->candidates[seed];
-	const float *weight = r->weight + c->view * r->gaussians;
+	const struct seen *seen = &r->seen[c->view];
 
 	clear(g);
 	for (size_t k = 0; k < c->shares.n; k++) {
 		const int32_t i = c->shares.index[k];
-		if (weight[i] > (float)SEEN && c->shares.share[k] > weight[i] / 2)
+		const float weight = seen_weight(seen, (size_t)i);
+		if (weight > (float)SEEN && c->shares.share[k] > weight / 2)
 			add(g, i);
 	}
 	look_from(g, r, c->view);
@@ -297,8 +298,7 @@ int regions_grow(struct regions *r, struct err *e)
 	int bad = !explained || !total || growth_make(&g, r, e);
 
 	for (size_t v = 0; v < r->views && !bad; v++)
-		for (size_t i = 0; i < r->gaussians; i++)
-			total[i] += (double)r->weight[v * r->gaussians + i];
+		seen_add(&r->seen[v], r->gaussians, total);
 	if (!bad) {
 		for (size_t object = 0; object < r->object_count && !bad; object++)
 			bad = grow_object(r, &g, object, explained, total, e);

@@ -174,7 +174,7 @@ int regions_lift(
 		begin++;
 	for (end = begin; end < r->witness_count && r->witnesses[end].view == view;)
 		end++;
-	int bad = shares_of_view(r->weight + view * r->gaussians, w, e) ||
+	int bad = seen_make(&r->seen[view], w, e) ||
 		  shapes_make(&s, r->witnesses + begin, end - begin, height, width, e) ||
 		  lift_masks(r, w, &s, begin, &n, e);
 	r->ranges[view] = (struct regions_range){begin, begin + n};

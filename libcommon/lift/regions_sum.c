@@ -53,8 +53,8 @@ void regions_sum(struct regions_sums *s, const struct regions *r, const size_t *
 			add(s, &r->candidates[chosen[v]].shares);
 	list(s, r->gaussians);
 	for (size_t v = 0; v < r->views; v++) {
-		const float *weight = r->weight + v * r->gaussians;
+		const struct seen *seen = &r->seen[v];
 		for (size_t k = 0; k < s->n && chosen[v] != REGIONS_NONE; k++)
-			s->all[k] += weight[s->index[k]];
+			s->all[k] += seen_weight(seen, (size_t)s->index[k]);
 	}
 }

@@ -29,6 +29,15 @@ void splats_free(struct splats *s)
 	*s = (struct splats){0};
 }
 
+void splats_keep_means(struct splats *s)
+{
+	free(s->scales);
+	free(s->quats);
+	free(s->opacities);
+	free(s->sh);
+	*s = (struct splats){.n = s->n, .means = s->means};
+}
+
 int splats_keep(struct splats *to, const struct splats *from, const char *kept, struct err *e)
 {
 	const size_t colours = 3 * (size_t)from->sh_coefficients;

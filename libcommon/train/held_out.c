@@ -99,8 +99,8 @@ int held_out_choose(struct train_view *views, size_t view_count, const int *obje
  * views, are blended together. */
 static void make_order(struct held_out *h, const int *objects, size_t sentences, char *is_held)
 {
-	for (size_t v = 0; v < h->view_count; v++) {
-		const struct train_view *view = &h->views[v];
+	for (size_t v = 0; v < h->views.n; v++) {
+		const struct train_view *view = &h->views.views[v];
 		for (int k = view->count; k < view->count + view->held; k++)
 			is_held[view->sentences[k]] = 1;
 		h->pairs += (size_t)view->held;
@@ -114,13 +114,12 @@ static void make_order(struct held_out *h, const int *objects, size_t sentences,
 			}
 }
 
-int held_out_init(struct held_out *h, const struct train_view *views, size_t view_count, const int *objects,
-	size_t sentences, size_t rows, struct err *e)
+int held_out_init(struct held_out *h, const struct view_source *views, const int *objects, size_t sentences,
+	size_t rows, struct err *e)
 {
 	char *is_held = mem_zalloc(sentences, 1, "held-out pairs", e);
 
-	*h = (struct held_out){
-		.views = views, .view_count = view_count, .rows = rows, .threads = omp_get_max_threads()};
+	*h = (struct held_out){.views = *views, .rows = rows, .threads = omp_get_max_threads()};
 	h->order = mem_alloc(sentences, sizeof *h->order, "held-out pairs", e);
 	if (is_held && h->order) {
 		make_order(h, objects, sentences, is_held);
@@ -128,7 +127,7 @@ int held_out_init(struct held_out *h, const struct train_view *views, size_t vie
 		h->images = mem_alloc(
 			h->pixels, (size_t)h->threads * VIEW_GROUP * sizeof(float), "held-out pairs", e);
 		h->masks = mem_alloc(h->pixels, (size_t)h->threads, "held-out pairs", e);
-		h->scores = mem_alloc(view_count, sizeof *h->scores, "held-out pairs", e);
+		h->scores = mem_alloc(views->n, sizeof *h->scores, "held-out pairs", e);
 	}
 	free(is_held);
 	if (!h->response || !h->images || !h->masks || !h->scores) {
@@ -161,24 +160,30 @@ static struct held_out_score score_image(const float *image, const uint8_t *mask
 		loss_bce(image, mask, pixels, 1, NULL), either ? (double)both / (double)either : 1};
 }
 
-/* The held-out pairs of one view with `count` sentences, whose responses are in grouped. */
-static struct held_out_score score_view(
-	const struct held_out *h, const struct train_view *v, const size_t *sentences, int count)
+/* Whether one of `count` sentences is held out in a view. */
+static int has_any(const struct train_view *v, const size_t *sentences, int count)
 {
-	const size_t thread = (size_t)omp_get_thread_num(), pixels = v->weights.pixels;
+	for (int g = 0; g < count; g++)
+		for (int k = v->count; k < v->count + v->held; k++)
+			if ((size_t)v->sentences[k] == sentences[g])
+				return 1;
+	return 0;
+}
+
+/* The held-out pairs of one view with `count` sentences, whose responses are in grouped. */
+static struct held_out_score score_pairs(const struct held_out *h, const struct train_view *v,
+	const struct view_weights *w, const size_t *sentences, int count)
+{
+	const size_t thread = (size_t)omp_get_thread_num(), pixels = w->pixels;
 	float *image = h->images + thread * VIEW_GROUP * h->pixels;
 	uint8_t *mask = h->masks + thread * h->pixels;
 	struct held_out_score sum = {0};
-	int is_blended = 0;
 
+	view_blend_group(w, h->grouped, VIEW_GROUP, 0, pixels, image, h->pixels);
 	for (int g = 0; g < count; g++)
 		for (int k = v->count; k < v->count + v->held; k++) {
 			if ((size_t)v->sentences[k] != sentences[g])
 				continue;
-			if (!is_blended)
-				view_blend_group(
-					&v->weights, h->grouped, VIEW_GROUP, 0, pixels, image, h->pixels);
-			is_blended = 1;
 			bits_expand(v->masks[k], 0, pixels, mask);
 			const struct held_out_score one =
 				score_image(image + (size_t)g * h->pixels, mask, pixels);
@@ -188,11 +193,42 @@ static struct held_out_score score_view(
 	return sum;
 }
 
-struct held_out_score held_out_evaluate(
-	struct held_out *h, struct step *s, const float *parameters, const float *x)
+static int score_view(struct held_out *h, size_t view, const size_t *sentences, int count, struct err *e)
 {
-	struct held_out_score all = {0};
+	const struct train_view *v = &h->views.views[view];
+	struct view_weights w;
 
+	h->scores[view] = (struct held_out_score){0};
+	if (!has_any(v, sentences, count))
+		return 0;
+	if (view_source_open(&h->views, view, &w, e))
+		return -1;
+	h->scores[view] = score_pairs(h, v, &w, sentences, count);
+	view_source_close(&h->views, view);
+	return 0;
+}
+
+/* Scores the views with `count` sentences. */
+static int score_views(struct held_out *h, const size_t *sentences, int count, struct err *e)
+{
+	int bad = 0;
+
+#pragma omp parallel for schedule(dynamic) num_threads(h->threads) reduction(| : bad)
+	for (size_t v = 0; v < h->views.n; v++) {
+		struct err own;
+		if (!score_view(h, v, sentences, count, &own))
+			continue;
+		bad = 1;
+#pragma omp critical(held_out_failed)
+		*e = own;
+	}
+	return bad ? -1 : 0;
+}
+
+int held_out_evaluate(struct held_out *h, struct step *s, const float *parameters, const float *x,
+	struct held_out_score *score, struct err *e)
+{
+	*score = (struct held_out_score){0};
 	memset(h->grouped, 0, sizeof(float) * VIEW_GROUP * h->rows);
 	for (size_t first = 0; first < h->count; first += VIEW_GROUP) {
 		const int now = h->count - first < VIEW_GROUP ? (int)(h->count - first) : VIEW_GROUP;
@@ -201,13 +237,12 @@ struct held_out_score held_out_evaluate(
 			for (size_t i = 0; i < h->rows; i++)
 				h->grouped[i * VIEW_GROUP + (size_t)g] = h->response[i];
 		}
-#pragma omp parallel for schedule(dynamic) num_threads(h->threads)
-		for (size_t v = 0; v < h->view_count; v++)
-			h->scores[v] = score_view(h, &h->views[v], h->order + first, now);
-		for (size_t v = 0; v < h->view_count; v++) {
-			all.bce += h->scores[v].bce / (double)h->pairs;
-			all.iou += h->scores[v].iou / (double)h->pairs;
+		if (score_views(h, h->order + first, now, e))
+			return -1;
+		for (size_t v = 0; v < h->views.n; v++) {
+			score->bce += h->scores[v].bce / (double)h->pairs;
+			score->iou += h->scores[v].iou / (double)h->pairs;
 		}
 	}
-	return all;
+	return 0;
 }

@@ -6,6 +6,7 @@
 #include "base/err.h"
 #include "train/step.h"
 #include "train/train.h"
+#include "train/view_source.h"
 
 /* Holds out a share of all pairs of a view and an object, at least one and not all: `seed` decides which. In
  * each view their sentences and masks move behind those that are learned from (train_view's held).
@@ -20,25 +21,26 @@ struct held_out_score {
 	double iou; /* of the mask and where the response is above 0; 1 where neither has a pixel */
 };
 
-/* Room for scoring. Views are referred to, with weights over rows. */
+/* Room for scoring. What the views' source refers to stays, with weights over rows. */
 struct held_out {
-	const struct train_view *views;
-	size_t view_count, rows, pairs;
+	struct view_source views;
+	size_t rows, pairs;
 	size_t *order, count;	   /* sentences that have held-out masks, those of an object together */
 	float *response, *grouped; /* (rows), (rows,VIEW_GROUP) */
 	size_t pixels;
 	int threads;
 	float *images;		       /* (threads,VIEW_GROUP,pixels) */
 	uint8_t *masks;		       /* (threads,pixels) */
-	struct held_out_score *scores; /* (view_count) sums of a view's pairs */
+	struct held_out_score *scores; /* (views.n) sums of a view's pairs */
 };
 
-int held_out_init(struct held_out *h, const struct train_view *views, size_t view_count, const int *objects,
-	size_t sentences, size_t rows, struct err *e);
+int held_out_init(struct held_out *h, const struct view_source *views, const int *objects, size_t sentences,
+	size_t rows, struct err *e);
 void held_out_free(struct held_out *h);
 
-/* Scores what the step answers with these parameters and features. */
-struct held_out_score held_out_evaluate(
-	struct held_out *h, struct step *s, const float *parameters, const float *x);
+/* Scores what the step answers with these parameters and features. Returns 0, or -1 with *e set where a view
+ * cannot be read. */
+int held_out_evaluate(struct held_out *h, struct step *s, const float *parameters, const float *x,
+	struct held_out_score *score, struct err *e);
 
 #endif

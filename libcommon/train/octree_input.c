@@ -66,31 +66,39 @@ static void sum_masks(const struct train_view *v, const int *objects, float *at)
 	}
 }
 
-int octree_input_signatures(const struct train_view *views, size_t view_count, const int *objects,
-	size_t scene_gaussians, const double *weight, float *signature, struct err *e)
+/* sum: what all views have, each of them at a time in memory. at: room for the largest. */
+static int add_views(
+	const struct view_source *views, const int *objects, float *at, float *sum, struct err *e)
+{
+	struct view_weights w;
+
+	for (size_t v = 0; v < views->n; v++) {
+		sum_masks(&views->views[v], objects, at);
+		if (view_source_open(views, v, &w, e))
+			return -1;
+		backproject_add(&w, at, K, sum);
+		view_source_close(views, v);
+	}
+	return 0;
+}
+
+int octree_input_signatures(const struct view_source *views, const int *objects, size_t scene_gaussians,
+	const double *weight, float *signature, struct err *e)
 {
 	size_t pixels = 0;
 
-	for (size_t v = 0; v < view_count; v++)
-		pixels = views[v].weights.pixels > pixels ? views[v].weights.pixels : pixels;
+	for (size_t v = 0; v < views->n; v++)
+		pixels = views->views[v].weights.pixels > pixels ? views->views[v].weights.pixels : pixels;
 	float *at = mem_alloc(pixels, K * sizeof *at, "signatures", e);
 	float *sum = mem_zalloc(
 		scene_gaussians, backproject_groups(K) * VIEW_GROUP * sizeof *sum, "signatures", e);
-	if (!at || !sum) {
-		free(at);
-		free(sum);
-		return -1;
-	}
-	for (size_t v = 0; v < view_count; v++) {
-		sum_masks(&views[v], objects, at);
-		backproject_add(&views[v].weights, at, K, sum);
-	}
-	for (size_t i = 0; i < scene_gaussians; i++)
+	const int bad = !at || !sum || add_views(views, objects, at, sum, e);
+	for (size_t i = 0; i < scene_gaussians && !bad; i++)
 		for (size_t k = 0; k < K; k++)
 			signature[i * K + k] = weight[i] > 0 ? sum[backproject_index(scene_gaussians, k, i)] /
 								       (float)weight[i]
 							     : 0;
 	free(at);
 	free(sum);
-	return 0;
+	return bad ? -1 : 0;
 }

@@ -6,7 +6,7 @@
 #include "base/err.h"
 #include "field/octree.h"
 #include "geom/camera.h"
-#include "train/train.h"
+#include "train/view_source.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -18,8 +18,8 @@ void octree_input_footprints(
 
 /* signature (scene_gaussians, OCTREE_SIGNATURE): the weighted mean over a Gaussian's pixels of the sum of the
  * masks there, every object with a random direction of length 1 (a mask counts by its share of the object's
- * masks in the view). weight (scene_gaussians) is train_weights's. */
-int octree_input_signatures(const struct train_view *views, size_t view_count, const int *objects,
-	size_t scene_gaussians, const double *weight, float *signature, struct err *e);
+ * masks in the view). weight (scene_gaussians): over all views. Returns 0, or -1 with *e set. */
+int octree_input_signatures(const struct view_source *views, const int *objects, size_t scene_gaussians,
+	const double *weight, float *signature, struct err *e);
 
 #endif

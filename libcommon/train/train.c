@@ -3,7 +3,6 @@
 #include "base/mem.h"
 #include "base/rng.h"
 #include "nn/adam.h"
-#include "splat/backproject.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,13 +16,6 @@ static int by_weight(const void *a, const void *b)
 	const double *x = a, *y = b;
 
 	return x[0] != y[0] ? (x[0] > y[0]) - (x[0] < y[0]) : (x[1] > y[1]) - (x[1] < y[1]);
-}
-
-void train_weights(const struct train_view *views, size_t view_count, size_t scene_gaussians, double *weight)
-{
-	memset(weight, 0, sizeof *weight * scene_gaussians);
-	for (size_t v = 0; v < view_count; v++)
-		backproject_weight(&views[v].weights, weight);
 }
 
 int train_active_set(const double *weight, size_t scene_gaussians, double tolerance, int32_t *ids, size_t *n,
@@ -164,6 +156,28 @@ size_t train_order_at(struct train_order *o, long iteration, uint32_t *picks, in
 	return view;
 }
 
+/* Of one of its own iterations, in the epoch that `order` holds. */
+static size_t view_at(const struct train_order *o, long iteration)
+{
+	return o->view[o->order[iteration % (long)o->groups]];
+}
+
+size_t train_order_view(struct train_order *o, long iteration)
+{
+	const long own = iteration - o->begin, epoch = own / (long)o->groups;
+
+	if (epoch != o->epoch)
+		shuffle_epoch(o, epoch);
+	return view_at(o, own);
+}
+
+size_t train_order_next(struct train_order *o, long iteration)
+{
+	const long next = iteration - o->begin + 1;
+
+	return next / (long)o->groups == o->epoch ? view_at(o, next) : SIZE_MAX;
+}
+
 const size_t *train_order_others(struct train_order *o, long iteration)
 {
 	struct rng r;
@@ -235,7 +249,7 @@ void train_adam(struct train_state *t, const struct train_rates *rates)
 }
 
 struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o,
-	const struct train_rates *rates, size_t gaussians)
+	const struct train_rates *rates, const struct view_weights *weights)
 {
 	uint32_t picks[BLOCK_WORDS];
 	struct step_target targets[BLOCK_WORDS];
@@ -245,9 +259,9 @@ struct step_losses train_step(struct train_state *t, struct step *s, struct trai
 	for (int i = 0; i < count; i++)
 		targets[i] = (struct step_target){(size_t)view->sentences[picks[i]], view->masks[picks[i]]};
 	const struct step_others others = {train_order_others(o, t->iteration), o->negatives};
-	struct step_losses losses = step_run(s, t->values, train_state_x(t), &view->weights, targets, count,
-		contrast_top_count(t->iteration, gaussians), others.list ? &others : NULL, t->gradient,
-		t->gradient + t->parameters);
+	struct step_losses losses = step_run(s, t->values, train_state_x(t), weights, targets, count,
+		contrast_top_count(t->iteration, weights->gaussians), others.list ? &others : NULL,
+		t->gradient, t->gradient + t->parameters);
 	t->sum.bce += losses.bce;
 	t->sum.contrast += losses.contrast;
 	t->sum.total += losses.total;

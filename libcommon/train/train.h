@@ -17,11 +17,8 @@ struct train_view {
 	int held;	       /* further sentences and masks that are not learned from (train/held_out.h) */
 };
 
-/* weight (scene_gaussians): each Gaussian's weight over all views. */
-void train_weights(const struct train_view *views, size_t view_count, size_t scene_gaussians, double *weight);
-
-/* Gaussians that can learn: those that carry all but `tolerance` of the weight (scene_gaussians); at 0, those
- * with any. ids (scene_gaussians) gets *n rising indices. */
+/* Gaussians that can learn: those that carry all but `tolerance` of the weight (scene_gaussians) that they
+ * have over all views; at 0, those with any. ids (scene_gaussians) gets *n rising indices. */
 int train_active_set(const double *weight, size_t scene_gaussians, double tolerance, int32_t *ids, size_t *n,
 	struct err *e);
 
@@ -55,6 +52,11 @@ void train_order_free(struct train_order *o);
 /* The view of an iteration (counted from 0), and which of its sentences: picks (batch) gets *count positions
  * in the view's list. */
 size_t train_order_at(struct train_order *o, long iteration, uint32_t *picks, int *count);
+
+/* The view of a training's iteration, and then of the one after it: SIZE_MAX where that is of another epoch.
+ */
+size_t train_order_view(struct train_order *o, long iteration);
+size_t train_order_next(struct train_order *o, long iteration);
 
 /* The sentences that an iteration's contrast is with: `negatives` of all, drawn evenly. NULL: all. */
 const size_t *train_order_others(struct train_order *o, long iteration);
@@ -93,9 +95,10 @@ void train_evaluated(struct train_state *t, double score);
 /* Adam on all parameters with the gradient that is there; iteration + 1. */
 void train_adam(struct train_state *t, const struct train_rates *rates);
 
-/* One step: gradient, Adam, iteration + 1, losses added to sum. Where the loss is not finite the values stay
- * as they are, so that they show why (train/divergence.h). */
+/* One step, with the weights over rows of train_order_view: gradient, Adam, iteration + 1, losses added to
+ * sum. Where the loss is not finite the values stay as they are, so that they show why (train/divergence.h).
+ */
 struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o,
-	const struct train_rates *rates, size_t gaussians);
+	const struct train_rates *rates, const struct view_weights *weights);
 
 #endif

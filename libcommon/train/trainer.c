@@ -6,21 +6,20 @@
 #include <stdlib.h>
 
 /* The octree whose leaves share a feature. */
-static int build_octree(struct trainer *t, const struct trainer_source *from, const struct trainer_options *o,
-	const double *weight, struct err *e)
+static int build_octree(
+	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
 	const size_t n = from->scene_gaussians, k = OCTREE_SIGNATURE;
 	float *finest = mem_alloc(n, sizeof *finest, "octree", e);
 	float *signature = mem_alloc(n, k * sizeof *signature, "octree", e);
 	int bad = !finest || !signature ||
-		  octree_input_signatures(
-			  from->views, from->view_count, from->objects, n, weight, signature, e);
+		  octree_input_signatures(&from->views, from->objects, n, from->weight, signature, e);
 
 	if (!bad) {
-		octree_input_footprints(from->means, n, from->cameras, from->view_count, finest);
+		octree_input_footprints(from->means, n, from->cameras, from->views.n, finest);
 		const struct octree_points points = {
-			t->learning, from->means, t->ids, finest, weight, signature};
-		bad = octree_build(&t->octree, &points, o->share * (double)from->view_count, e);
+			t->learning, from->means, t->ids, finest, from->weight, signature};
+		bad = octree_build(&t->octree, &points, o->share * (double)from->views.n, e);
 	}
 	free(finest);
 	free(signature);
@@ -28,17 +27,17 @@ static int build_octree(struct trainer *t, const struct trainer_source *from, co
 }
 
 /* The Gaussians that learn, the rows that they share, and the rows' positions. */
-static int choose_rows(struct trainer *t, const struct trainer_source *from, const struct trainer_options *o,
-	const double *weight, struct err *e)
+static int choose_rows(
+	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
 	const size_t n = from->scene_gaussians;
 
 	t->ids = mem_alloc(n, sizeof *t->ids, "ids", e);
-	if (!t->ids || train_active_set(weight, n, o->tolerance, t->ids, &t->learning, e))
+	if (!t->ids || train_active_set(from->weight, n, o->tolerance, t->ids, &t->learning, e))
 		return -1;
 	if (!t->learning)
 		return err_set(e, ERR_FORMAT, "no Gaussian has weight in a view with masks");
-	if (o->share > 0 && build_octree(t, from, o, weight, e))
+	if (o->share > 0 && build_octree(t, from, o, e))
 		return -1;
 	if (o->share > 0 ? rows_of_leaves(&t->rows, &t->octree, from->means, n, t->ids, t->learning, e)
 			 : rows_of_ids(&t->rows, t->ids, t->learning, n, e))
@@ -50,43 +49,18 @@ static int choose_rows(struct trainer *t, const struct trainer_source *from, con
 		       : 0;
 }
 
-/* The views with weights over rows. */
-static int make_views(struct trainer *t, const struct trainer_source *from, struct err *e)
-{
-	t->views = mem_zalloc(from->view_count, sizeof *t->views, "views", e);
-	if (!t->views)
-		return -1;
-	t->view_count = from->view_count;
-	int failed = 0;
-#pragma omp parallel for schedule(dynamic) reduction(| : failed)
-	for (size_t v = 0; v < from->view_count; v++) {
-		struct err mine;
-		t->views[v] = from->views[v];
-		if (rows_view(&t->rows, &from->views[v].weights, &t->views[v].weights, &mine)) {
-			failed = 1;
-#pragma omp critical
-			*e = mine;
-		}
-	}
-	return failed ? -1 : 0;
-}
-
-/* The rows; what a warm start fits them to. */
+/* The rows; what a warm start fits them to; the views over them. */
 static int make_rows(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
-	double *weight = mem_alloc(from->scene_gaussians, sizeof *weight, "weight", e);
 	const struct warm_start_source source = {
-		from->lifted, &t->rows, weight, from->sentences, from->object_names};
+		from->lifted, &t->rows, from->weight, from->sentences, from->object_names};
 
-	if (!weight)
+	if (choose_rows(t, from, o, e) ||
+		(t->warm_steps &&
+			warm_start_init(&t->warm, &source, (size_t)o->negatives, (uint64_t)o->seed, e)))
 		return -1;
-	train_weights(from->views, from->view_count, from->scene_gaussians, weight);
-	int bad = choose_rows(t, from, o, weight, e) ||
-		  (t->warm_steps &&
-			  warm_start_init(&t->warm, &source, (size_t)o->negatives, (uint64_t)o->seed, e));
-	free(weight);
-	return bad ? -1 : 0;
+	return row_views_make(&t->views, &t->rows, &from->views, &from->room, e);
 }
 
 /* The features that a warm start begins with. */
@@ -130,16 +104,17 @@ static int init(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
 	const uint64_t seed = (uint64_t)o->seed;
+	struct view_source views;
 
-	if (make_rows(t, from, o, e) || make_views(t, from, e) || init_step(t, from, o, e) ||
-		train_order_init(&t->order, t->views, t->view_count, (int)o->batch, from->sentences,
+	if (make_rows(t, from, o, e) || init_step(t, from, o, e) ||
+		train_order_init(&t->order, t->views.views, t->views.n, (int)o->batch, from->sentences,
 			(size_t)o->negatives, seed, e) ||
 		train_state_init(&t->state, &t->layout, t->rows.n, o->hold_out > 0, seed, e) ||
 		(t->warm_steps && init_features(t, seed, e)))
 		return -1;
 	t->order.begin = t->warm_steps;
-	return o->hold_out > 0 ? held_out_init(&t->held, t->views, t->view_count, from->objects,
-					 from->sentences, t->rows.n, e)
+	views = row_views_source(&t->views);
+	return o->hold_out > 0 ? held_out_init(&t->held, &views, from->objects, from->sentences, t->rows.n, e)
 			       : 0;
 }
 
@@ -156,9 +131,7 @@ int trainer_init(
 
 void trainer_free(struct trainer *t)
 {
-	for (size_t v = 0; v < t->view_count; v++)
-		rows_view_free(&t->views[v].weights);
-	free(t->views);
+	row_views_free(&t->views);
 	step_free(t->step);
 	train_order_free(&t->order);
 	train_state_free(&t->state);
@@ -173,14 +146,11 @@ void trainer_free(struct trainer *t)
 
 double trainer_weights(const struct trainer *t)
 {
-	double weights = 0, pixels = 0;
+	double pixels = 0;
 
-	for (size_t v = 0; v < t->view_count; v++) {
-		const struct view_weights *w = &t->views[v].weights;
-		weights += (double)w->indptr[w->pixels];
-		pixels += (double)w->pixels;
-	}
-	return pixels > 0 ? weights / pixels : 0;
+	for (size_t v = 0; v < t->views.n; v++)
+		pixels += (double)t->views.views[v].weights.pixels;
+	return pixels > 0 ? t->views.weights / pixels : 0;
 }
 
 float *trainer_features(const struct trainer *t, const float *values, struct err *e)
@@ -193,22 +163,39 @@ float *trainer_features(const struct trainer *t, const float *values, struct err
 	return x;
 }
 
-struct step_losses trainer_step(struct trainer *t)
+/* A step of the views, while the system reads the next one's. */
+static int step_of_views(struct trainer *t, struct step_losses *losses, struct err *e)
+{
+	const struct view_source views = row_views_source(&t->views);
+	const size_t view = train_order_view(&t->order, t->state.iteration);
+	const size_t next = train_order_next(&t->order, t->state.iteration);
+	struct view_weights w;
+
+	if (next < views.n)
+		row_views_ahead(&t->views, next);
+	if (view_source_open(&views, view, &w, e))
+		return -1;
+	*losses = train_step(&t->state, t->step, &t->order, &t->rates, &w);
+	view_source_close(&views, view);
+	return 0;
+}
+
+int trainer_step(struct trainer *t, struct step_losses *losses, struct err *e)
 {
 	const struct train_rates rates = {t->rates.features, WARM_START_MLP_RATE * t->rates.mlps};
 
-	if (t->state.iteration < t->warm_steps)
-		return train_step(&t->state, t->step, &t->warm.order, &rates, t->rows.n);
-	return train_step(&t->state, t->step, &t->order, &t->rates, t->rows.n);
+	if (t->state.iteration >= t->warm_steps)
+		return step_of_views(t, losses, e);
+	*losses = train_step(&t->state, t->step, &t->warm.order, &rates, &t->warm.view.weights);
+	return 0;
 }
 
-struct held_out_score trainer_evaluate(struct trainer *t)
+int trainer_evaluate(struct trainer *t, struct held_out_score *score, struct err *e)
 {
-	const struct held_out_score score =
-		held_out_evaluate(&t->held, t->step, t->state.values, train_state_x(&t->state));
-
-	train_evaluated(&t->state, score.iou);
-	return score;
+	if (held_out_evaluate(&t->held, t->step, t->state.values, train_state_x(&t->state), score, e))
+		return -1;
+	train_evaluated(&t->state, score->iou);
+	return 0;
 }
 
 const float *trainer_result(const struct trainer *t, long *iteration)

@@ -8,6 +8,7 @@
 #include "field/rows.h"
 #include "geom/camera.h"
 #include "train/held_out.h"
+#include "train/row_views.h"
 #include "train/train.h"
 #include "train/warm_start.h"
 
@@ -47,8 +48,10 @@ struct trainer_source {
 	const int64_t *offsets; /* (R+1) into words */
 	const float *words;	/* (offsets[R], text_width) */
 	const int *objects;	/* (R) */
-	const struct train_view *views;
-	size_t view_count, pixels;	 /* pixels of the largest view */
+	struct view_source views;
+	size_t pixels;			 /* of the largest view */
+	const double *weight;		 /* (scene_gaussians) over all views */
+	struct row_views_room room;	 /* for the views' weights over rows */
 	const struct lifted *lifted;	 /* what a warm start is fitted to; NULL without one */
 	const char *const *object_names; /* (R) for it */
 };
@@ -61,9 +64,8 @@ struct trainer {
 	struct octree octree; /* no leaves: a row for each of ids */
 	struct rows rows;
 	double low[3], high[3];
-	float *position;	  /* (rows,3) */
-	struct train_view *views; /* the source's, over rows */
-	size_t view_count;
+	float *position;	/* (rows,3) */
+	struct row_views views; /* the source's */
 	struct step *step;
 	struct train_order order;
 	struct train_state state;
@@ -84,13 +86,13 @@ double trainer_weights(const struct trainer *t);
  * out. */
 float *trainer_features(const struct trainer *t, const float *values, struct err *e);
 
-/* The next step, train_step's. */
-struct step_losses trainer_step(struct trainer *t);
+/* The next step, train_step's. Returns 0, or -1 with *e set where a view cannot be read. */
+int trainer_step(struct trainer *t, struct step_losses *losses, struct err *e);
 
 enum { TRAINER_EVALUATE = 250 }; /* steps from one evaluation to the next */
 
-/* Scores the held-out masks, and keeps the state where it is the best so far. */
-struct held_out_score trainer_evaluate(struct trainer *t);
+/* Scores the held-out masks, and keeps the state where it is the best so far. Returns as trainer_step. */
+int trainer_evaluate(struct trainer *t, struct held_out_score *score, struct err *e);
 
 /* What is learned, as it is or, where masks are held out, as it was when they were answered best: the slab
  * (train_state's values), and the steps that it had. */

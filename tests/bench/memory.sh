@@ -32,7 +32,7 @@ for n in $sizes; do measure "$n" || die "a tool failed at $n Gaussians"; done
 jq -rs --arg tools "$tools" '($tools | split(" ")) as $tools | (map(.gaussians) | unique) as $sizes | . as $all
 	| (["peak MiB at Gaussians:"] + $sizes + ["bytes a Gaussian"] | @tsv), ($tools[] as $t | [$all[] | select(.tool == $t)] | sort_by(.gaussians)
 	| [$t] + map(.mib) + [((.[-1].mib - .[0].mib) * 1048576 / (.[-1].gaussians - .[0].gaussians) | round)] | @tsv)' "$results" | table
-echo "bytes a Gaussian: between the smallest and the largest scene. refer-train holds the weights of all its views."
+echo "bytes a Gaussian: between the smallest and the largest scene. refer-train holds the weights of its views, as far as --memory has room."
 {
 	plot_head "Peak memory of the tools" "synthetic scenes, 4 training views of 320x240 and 1 test view, 40 sentences" "Gaussians of the scene" \
 		"peak memory, MiB" xlog ylog

@@ -37,6 +37,7 @@ commands() {
 		mask-export -o out truth.jsonl
 		refer-lift --scene scene --weights weights --text text.safetensors --masks masks.jsonl -o out
 		refer-train --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 5 -o out
+		refer-train --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 5 --memory 0 -o out
 		feature-lift --scene scene --weights weights --masks masks.jsonl -o out
 		feature-query --text text.safetensors --rule identity --positives lifted.safetensors -o out labels.safetensors
 		refer-render --scene scene --text text.safetensors --model model.safetensors -o out

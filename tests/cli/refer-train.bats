@@ -21,6 +21,37 @@ load refer-train
 	cmp log1 log2
 }
 
+@test "--memory: views that are read from a file give the same bytes, with held-out masks too, and nothing is left" {
+	for more in "--batch 2" "--hold-out 0.4 --iterations 260" "--share 0 --tolerance 0.1"; do
+		train $more --interaction none --log log -o m
+		train -v --memory 0 --threads 3 $more --interaction none --log read.log -o read 2>said
+		grep -qE '^refer-train: the weights of 4 views are in a file, [0-9]+ MiB$' said
+		cmp m read
+		cmp log read.log
+	done
+	train -v -o m 2>said
+	not grep -q 'in a file' said
+	train --memory 0 -o - >piped
+	cmp m piped
+	[ "$(ls | tr '\n' ' ')" = "log m masks.jsonl piped read read.log said scene text.safetensors weights " ]
+}
+
+@test "--memory: a training goes on from a checkpoint whatever it was" {
+	cut_short
+	train --interaction none --iterations 60 -o whole
+	train --interaction none --iterations 60 --memory 0 --resume -o m
+	cmp m whole
+}
+
+@test "--memory: no room for the file" {
+	small() { (trap '' XFSZ; ulimit -f 100; train -q --memory 0 --share 0 -o out/m); }
+	mkdir out
+	says 4 "refer-train: out/m.weights: File too large" small
+	[ -z "$(ls -A out)" ]
+	says 4 "refer-train: none/refer-train.weights: No such file or directory" env TMPDIR=none "$BIN/refer-train" --scene scene --weights weights \
+		--text text.safetensors --masks masks.jsonl --memory 0 -o -
+}
+
 @test "the same seed gives the same bytes, another seed others" {
 	train -o a
 	train -o b --seed 1

@@ -155,9 +155,9 @@ static void test_evaluate(void)
 	for (int threads = 1; threads <= 3; threads++) {
 		omp_set_num_threads(threads);
 		struct step *step = step_new(&setup, &e);
-		CHECK(step && !held_out_init(&h, s.views, VIEWS, s.objects, SENTENCES, ROWS, &e), "%s",
-			e.message);
-		got[threads - 1] = held_out_evaluate(&h, step, parameters, x);
+		const struct view_source views = {.views = s.views, .n = VIEWS};
+		CHECK(step && !held_out_init(&h, &views, s.objects, SENTENCES, ROWS, &e), "%s", e.message);
+		CHECK(!held_out_evaluate(&h, step, parameters, x, &got[threads - 1], &e), "%s", e.message);
 		for (int v = 0; v < VIEWS && threads == 1; v++)
 			for (int k = s.views[v].count; k < s.views[v].count + s.views[v].held; k++) {
 				const int r = s.views[v].sentences[k];

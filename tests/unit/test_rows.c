@@ -6,6 +6,7 @@
 #include "base/rng.h"
 #include "field/octree.h"
 #include "field/rows.h"
+#include "splat/backproject.h"
 #include "train/octree_input.h"
 
 enum { N = 3000, K = OCTREE_SIGNATURE };
@@ -236,10 +237,12 @@ static void details(void)
 	CHECK(fabs((double)footprint[0] - 15.0 / 200) < 1e-6, "%g", (double)footprint[0]);
 	CHECK(fabs((double)footprint[1] - 1.0 / 50) < 1e-6, "%g", (double)footprint[1]);
 	CHECK(isinf(footprint[2]), "%g", (double)footprint[2]);
-	train_weights(&view, 1, G, weight);
+	const struct view_source views = {.views = &view, .n = 1};
+	memset(weight, 0, sizeof weight);
+	backproject_weight(&view.weights, weight);
 	CHECK(weight[0] == 0.5 && weight[1] == 1 && weight[2] == 0, "%g %g %g", weight[0], weight[1],
 		weight[2]);
-	CHECK(!octree_input_signatures(&view, 1, objects, G, weight, signature, &e), "%s", e.message);
+	CHECK(!octree_input_signatures(&views, objects, G, weight, signature, &e), "%s", e.message);
 	/* Gaussian 0 is in the masks of both; 1 wholly in the second's and a quarter in the first's. */
 	for (int k = 0; k < K; k++) {
 		double a =

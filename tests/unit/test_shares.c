@@ -2,6 +2,7 @@
 #include "unit.h"
 
 #include "base/rng.h"
+#include "lift/seen.h"
 #include "lift/shares.h"
 
 #include <omp.h>
@@ -51,6 +52,28 @@ static void check_row(const struct view_weights *w, const float *image, const st
 	CHECK(n == row->n, "%zu Gaussians, expected %zu", row->n, n);
 }
 
+/* A view's weights that are kept where they are above 0 are all of them. */
+static void test_seen(const struct view_weights *w)
+{
+	double sum[N] = {0};
+	float weight[N];
+	struct seen seen, none = {0};
+	struct err e;
+	int unseen = 0;
+
+	CHECK(!shares_of_view(weight, w, &e) && !seen_make(&seen, w, &e), "%s", e.message);
+	seen_add(&none, N, sum);
+	seen_add(&seen, N, sum);
+	for (size_t i = 0; i < N; i++) {
+		CHECK(seen_weight(&seen, i) == weight[i] && (float)sum[i] == weight[i],
+			"Gaussian %zu has %g, in the sum %g, expected %g", i, (double)seen_weight(&seen, i),
+			sum[i], (double)weight[i]);
+		unseen += weight[i] == 0;
+	}
+	CHECK(unseen >= 9 && unseen < N / 2, "%d are not seen", unseen);
+	seen_free(&seen);
+}
+
 int main(void)
 {
 	static float images[IMAGES][P]; /* the first one empty, the second full */
@@ -79,5 +102,6 @@ int main(void)
 		shares_free(&again[k]);
 	}
 	CHECK(!shares_make(rows, &w, images[0], 0, &e), "no image");
+	test_seen(&w);
 	return unit_end();
 }

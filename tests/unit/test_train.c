@@ -6,6 +6,7 @@
 #include "base/rng.h"
 #include "formats/checkpoint.h"
 #include "mask/bits.h"
+#include "splat/backproject.h"
 #include "train/trainer.h"
 
 #include <unistd.h>
@@ -37,6 +38,14 @@ static void random_views(struct random_view *r, struct train_view *views, uint64
 	}
 }
 
+/* weight (GAUSSIANS) over all views. */
+static void sum_weights(const struct train_view *views, double *weight)
+{
+	memset(weight, 0, sizeof *weight * GAUSSIANS);
+	for (int v = 0; v < VIEWS; v++)
+		backproject_weight(&views[v].weights, weight);
+}
+
 static void test_active_set(void)
 {
 	struct random_view random[VIEWS];
@@ -46,7 +55,7 @@ static void test_active_set(void)
 
 	random_views(random, views, 3);
 	double total[GAUSSIANS] = {0}, all = 0, weight[GAUSSIANS];
-	train_weights(views, VIEWS, GAUSSIANS, weight);
+	sum_weights(views, weight);
 	for (int v = 0; v < VIEWS; v++)
 		for (int k = 0; k < PIXELS * ENTRIES; k++) {
 			total[random[v].index[k]] += (double)random[v].weight[k];
@@ -78,7 +87,7 @@ static void test_active_set(void)
 		memset(random[v].weight, 0, sizeof random[v].weight);
 	int32_t ids[GAUSSIANS];
 	size_t n = 1;
-	train_weights(views, VIEWS, GAUSSIANS, weight);
+	sum_weights(views, weight);
 	CHECK(!train_active_set(weight, GAUSSIANS, 0, ids, &n, &e) && n == 0, "%zu Gaussians without weight",
 		n);
 }
@@ -201,6 +210,7 @@ struct sample {
 	int64_t shares[2];
 	int32_t share_index[GAUSSIANS];
 	float share[GAUSSIANS];
+	double weight[GAUSSIANS + 1];
 };
 
 static void sample_init(struct sample *s)
@@ -209,6 +219,7 @@ static void sample_init(struct sample *s)
 
 	*s = (struct sample){.offsets = {0, 2, 5}, .objects = {0, 1}, .sentences = {0, 1}};
 	random_views(s->random, s->views, 11);
+	sum_weights(s->views, s->weight);
 	rng_seed(&rng, 12, 1);
 	for (int i = 0; i < GAUSSIANS * 3; i++)
 		s->means[i] = (float)rng_normal(&rng);
@@ -248,12 +259,29 @@ static void sample_lift(struct sample *s)
 		.share = s->share};
 }
 
+static struct trainer_source source_of(const struct sample *s)
+{
+	return (struct trainer_source){.means = s->means,
+		.scene_gaussians = GAUSSIANS,
+		.text_width = 8,
+		.sentences = 2,
+		.offsets = s->offsets,
+		.words = s->words,
+		.objects = s->objects,
+		.views = {.views = s->views, .n = VIEWS},
+		.pixels = PIXELS,
+		.weight = s->weight,
+		.room = {.bytes = SIZE_MAX},
+		.object_names = s->object_names};
+}
+
 /* A warm start and what is held out where the options say so. */
 static int start(struct trainer *t, const struct sample *s, const struct trainer_options *o)
 {
-	const struct trainer_source source = {s->means, NULL, GAUSSIANS, 8, 2, s->offsets, s->words,
-		s->objects, s->views, VIEWS, PIXELS, o->warm ? &s->lifted : NULL, s->object_names};
+	struct trainer_source source = source_of(s);
 	struct err e;
+
+	source.lifted = o->warm ? &s->lifted : NULL;
 
 	return CHECK(!trainer_init(t, &source, o, &e), "%s", e.message);
 }
@@ -273,10 +301,14 @@ static int same_state(const struct train_state *a, const struct train_state *b)
 /* Steps [from,to), with an evaluation after every fourth where there is something to evaluate. */
 static void steps(struct trainer *t, int from, int to)
 {
+	struct step_losses losses;
+	struct held_out_score score;
+	struct err e;
+
 	for (int i = from; i < to; i++) {
-		trainer_step(t);
+		CHECK(!trainer_step(t, &losses, &e), "%s", e.message);
 		if (t->state.best.values && i % 4 == 3)
-			trainer_evaluate(t);
+			CHECK(!trainer_evaluate(t, &score, &e), "%s", e.message);
 	}
 }
 
@@ -363,8 +395,8 @@ static void test_no_weight(void)
 	sample_init(&s);
 	for (int v = 0; v < VIEWS; v++)
 		memset(s.random[v].weight, 0, sizeof s.random[v].weight);
-	const struct trainer_source source = {s.means, NULL, GAUSSIANS, 8, 2, s.offsets, s.words, s.objects,
-		s.views, VIEWS, PIXELS, NULL, NULL};
+	sum_weights(s.views, s.weight);
+	const struct trainer_source source = source_of(&s);
 	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
 }
 
@@ -399,10 +431,12 @@ static void test_unseen_first(void)
 			index[k]++;
 		more.views[v].weights.gaussians++;
 	}
-	const struct trainer_source with = {means, cameras, GAUSSIANS + 1, 8, 2, more.offsets, more.words,
-		more.objects, more.views, VIEWS, PIXELS, NULL, NULL};
-	const struct trainer_source without = {s.means, cameras, GAUSSIANS, 8, 2, s.offsets, s.words,
-		s.objects, s.views, VIEWS, PIXELS, NULL, NULL};
+	memcpy(more.weight + 1, s.weight, sizeof(double) * GAUSSIANS);
+	more.weight[0] = 0;
+	struct trainer_source with = source_of(&more), without = source_of(&s);
+	with.means = means;
+	with.scene_gaussians = GAUSSIANS + 1;
+	with.cameras = without.cameras = cameras;
 	if (!CHECK(!trainer_init(&t, &without, &options, &e), "%s", e.message) ||
 		!CHECK(!trainer_init(&u, &with, &options, &e), "%s", e.message))
 		return;

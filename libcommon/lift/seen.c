@@ -1,0 +1,62 @@
+#include "lift/seen.h"
+
+#include "base/mem.h"
+#include "lift/marks.h"
+#include "lift/shares.h"
+
+#include <stdlib.h>
+
+/* weight (n): of all Gaussians. */
+static int pack(struct seen *s, const float *weight, size_t n, struct err *e)
+{
+	uint32_t count = 1;
+
+	s->marks = marks_make(n, e);
+	s->before = mem_alloc(n / 64 + 1, sizeof *s->before, "views", e);
+	if (!s->marks || !s->before)
+		return -1;
+	for (size_t i = 0; i < n; i++) {
+		if (i % 64 == 0)
+			s->before[i / 64] = count;
+		if (!(weight[i] > 0))
+			continue;
+		marks_add(s->marks, i);
+		count++;
+	}
+	s->weight = mem_alloc(count, sizeof *s->weight, "views", e);
+	if (!s->weight)
+		return -1;
+	s->weight[0] = 0;
+	count = 1;
+	for (size_t i = 0; i < n; i++)
+		if (weight[i] > 0)
+			s->weight[count++] = weight[i];
+	return 0;
+}
+
+int seen_make(struct seen *s, const struct view_weights *w, struct err *e)
+{
+	float *weight = mem_alloc(w->gaussians, sizeof *weight, "views", e);
+
+	*s = (struct seen){0};
+	const int bad = !weight || shares_of_view(weight, w, e) || pack(s, weight, w->gaussians, e);
+	free(weight);
+	return bad ? -1 : 0;
+}
+
+void seen_free(struct seen *s)
+{
+	free(s->marks);
+	free(s->before);
+	free(s->weight);
+	*s = (struct seen){0};
+}
+
+void seen_add(const struct seen *s, size_t gaussians, double *sum)
+{
+	const float *next = s->weight + 1;
+
+	for (size_t word = 0; s->marks && word <= gaussians / 64; word++)
+		for (uint64_t left = s->marks[word]; left; left &= left - 1)
+			sum[word * 64 + (size_t)__builtin_ctzll(left)] += (double)*next++;
+}
