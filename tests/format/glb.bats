@@ -241,7 +241,7 @@ values() {
 		cp "folder/my data/n.bin" n.bin
 		gltf ".buffers[0].uri = \"$path\""
 		path=${path//%20/ }
-		wrong 3 "s.gltf: buffer 0 is '${path/%2e%2E/..}', not in the folder of this file"
+		wrong 3 "s.gltf: buffer 0 is '${path//%2[eE]/.}', not in the folder of this file"
 	done
 	gltf '.buffers[0].uri = "my%20data/../my%20data/n.bin"'
 	import folder/s.gltf
