@@ -9,8 +9,8 @@
  *	#pragma GCC target("avx2,fma")
  *
  * or nothing; cpu_level() (base/cpu.h) chooses among them at run time. All functions are inlined, so that no
- * vector crosses a call. Results are the same on every machine of one level; levels differ in the last bits,
- * as plain has no fma. */
+ * vector crosses a call. Results are the same on every machine, with AVX-512 and with AVX2, to the bit, as
+ * long as sums over lanes are added in one order; plain ones differ in the last bits, as plain has no fma. */
 #ifndef BASE_VECMATH_H
 #define BASE_VECMATH_H
 
@@ -212,7 +212,7 @@ VEC_INLINE vecn vec_exp(vecn x)
 	return p * (vecn)((half + 127) << 23) * (vecn)((whole - half + 127) << 23);
 }
 
-/* 2^x for |x| <= 126: within 2.2 ulp, and cheaper than vec_exp, as no range is checked: some float beyond it.
+/* 2^x for -126 < x <= 126: within 2.2 ulp, and cheaper than vec_exp, as no range is checked: some float beyond it.
  */
 VEC_INLINE vecn vec_exp2(vecn x)
 {
