@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
+#include "base/path.h"
 #include "formats/foreign.h"
 #include "formats/json.h"
 #include "formats/png.h"
@@ -257,6 +258,9 @@ static int read_isat(struct reading *r, const cJSON *root, struct err *e)
 static int read_mask_picture(struct reading *r, const char *folder, const char *picture, const char *view,
 	const char *name, struct err *e)
 {
+	if (path_leaves(picture))
+		return err_set(e, ERR_FORMAT, "%s: key 'segmentation': '%.200s' is not in the folder gt_mask",
+			r->where, picture);
 	char *path = file_join(folder, picture, "", e);
 	uint8_t *pixels = NULL;
 	struct rle mask = {0};

@@ -86,8 +86,12 @@ static int open_numbers(struct glb *f, struct err *e)
 	char *name = mem_strdup(uri, e), *folder = file_dir(f->name, e);
 	if (name)
 		decode_uri(name);
-	char *path = name && folder ? file_join(folder, name, "", e) : NULL;
+	const int leaves = name && path_leaves(name);
+	char *path = name && folder && !leaves ? file_join(folder, name, "", e) : NULL;
 	const int bad = !path || file_map(path, &f->numbers, e);
+	if (leaves)
+		err_set(e, ERR_FORMAT, "%s: buffer 0 is '%.200s', not in the folder of this file", f->name,
+			name);
 	free(name);
 	free(folder);
 	free(path);

@@ -326,32 +326,46 @@ int weights_write(
 	return bad ? -1 : 0;
 }
 
+/* Where no training view has weights, the folder is another one than was meant. */
+static int check_missing(const char *dir, size_t missing, size_t training, struct err *e)
+{
+	return training && missing == training
+		       ? err_set(e, ERR_SYSTEM, "%s: has no weights of a training view", dir)
+		       : 0;
+}
+
 int weights_mark(const char *dir, const struct cameras *cameras, char *there, size_t *missing, struct err *e)
 {
+	size_t training = 0;
+
 	*missing = 0;
 	for (size_t v = 0; v < cameras->n; v++) {
 		there[v] = 0;
 		if (cameras->views[v].split != SPLIT_TRAIN)
 			continue;
+		training++;
 		int found = weights_exist(dir, cameras->views[v].name, e);
 		if (found < 0)
 			return -1;
 		there[v] = (char)found;
 		*missing += !found;
 	}
-	return 0;
+	return check_missing(dir, *missing, training, e);
 }
 
 int weights_each(const char *dir, const struct scene *scene, int (*needs)(const void *context, size_t view),
 	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
 	size_t *missing, struct err *e)
 {
+	size_t training = 0;
+
 	*missing = 0;
 	for (size_t v = 0; v < scene->cameras.n; v++) {
 		const struct camera *camera = &scene->cameras.views[v];
 		struct weights w = {0};
 		if (camera->split != SPLIT_TRAIN)
 			continue;
+		training++;
 		const int found = weights_exist(dir, camera->name, e);
 		const int is_needed = !needs || needs(context, v);
 		if (found < 0 || (found && is_needed && weights_open(&w, dir, scene, v, e)))
@@ -364,5 +378,5 @@ int weights_each(const char *dir, const struct scene *scene, int (*needs)(const 
 		if (bad)
 			return -1;
 	}
-	return 0;
+	return check_missing(dir, *missing, training, e);
 }

@@ -42,11 +42,11 @@ int weights_exist(const char *dir, const char *view, struct err *e);
 void weights_close(struct weights *w);
 
 /* there (cameras->n): 1 for the training views that have weights. *missing gets the number of those without.
- */
+ * -1 with *e where there is no other. */
 int weights_mark(const char *dir, const struct cameras *cameras, char *there, size_t *missing, struct err *e);
 /* Visits the training views that have weights, in the order of the cameras, each open only meanwhile, and
  * where `needs` is given and gives 0 not at all: w is NULL then. A visit that does not give 0 ends it.
- * *missing gets the number of training views without. -1 with *e. */
+ * *missing gets the number of training views without. -1 with *e, also where there is no other. */
 int weights_each(const char *dir, const struct scene *scene, int (*needs)(const void *context, size_t view),
 	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
 	size_t *missing, struct err *e);

@@ -176,6 +176,9 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 int check_file(struct check *c, const char *path, struct err *e)
 {
 	*c = (struct check){0};
+	if (file_is_pipe(path))
+		return err_set(e, ERR_SYSTEM,
+			"%s: a pipe, which cannot be read twice: '-' reads one from standard input", path);
 	if (!(file_is_dir(path) ? check_folder(c, path, e) : check_stream(c, path, e)))
 		return 0;
 	check_free(c);

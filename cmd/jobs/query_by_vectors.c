@@ -58,7 +58,8 @@ static int read_vectors(struct feature_query *q, struct err *e)
 	const char *path = o->vectors ? o->vectors : o->text;
 	struct query_vectors all = {0}, rivals = {0};
 
-	int bad = query_vectors_read(&all, path, channels, e) ||
+	int bad = (o->vectors ? query_vectors_read(&all, path, channels, e)
+			      : query_vectors_of_text(&all, &q->text, path, channels, e)) ||
 		  (all.n != q->text.n && err_set(e, ERR_FORMAT, "%s: has %zu vectors, %s has %zu sentences",
 						 file_name(path), all.n, file_name(o->text), q->text.n)) ||
 		  (more && query_vectors_read(&rivals, more, channels, e)) ||

@@ -74,20 +74,36 @@ static int read_safetensors(struct query_vectors *v, const char *path, size_t ch
 	return bad ? -1 : 0;
 }
 
-int query_vectors_read(struct query_vectors *v, const char *path, size_t channels, struct err *e)
+/* Checks and scales what was read; frees it where that was bad, or is not finite. */
+static int finish(struct query_vectors *v, int bad, const char *path, struct err *e)
 {
-	*v = (struct query_vectors){0};
-	int bad = path_ends(path, ".npy") ? read_npy(v, path, channels, e)
-					  : read_safetensors(v, path, channels, e);
-	for (size_t i = 0; !bad && i < v->n * channels; i++)
+	for (size_t i = 0; !bad && i < v->n * v->channels; i++)
 		if (!isfinite(v->values[i]))
-			bad = err_set(
-				e, ERR_FORMAT, "%s: vector %zu is not finite", file_name(path), i / channels);
+			bad = err_set(e, ERR_FORMAT, "%s: vector %zu is not finite", file_name(path),
+				i / v->channels);
 	if (!bad)
-		query_unit(v->values, v->n, channels);
+		query_unit(v->values, v->n, v->channels);
 	else
 		query_vectors_free(v);
 	return bad ? -1 : 0;
+}
+
+int query_vectors_read(struct query_vectors *v, const char *path, size_t channels, struct err *e)
+{
+	*v = (struct query_vectors){0};
+	const int bad = path_ends(path, ".npy") ? read_npy(v, path, channels, e)
+						: read_safetensors(v, path, channels, e);
+	return finish(v, bad, path, e);
+}
+
+int query_vectors_of_text(
+	struct query_vectors *v, const struct text *text, const char *path, size_t channels, struct err *e)
+{
+	*v = (struct query_vectors){0};
+	const int bad = take_shape(v, text->n, (size_t)text->width, channels, file_name(path), e);
+	if (!bad)
+		memcpy(v->values, text->sentences, text->n * channels * sizeof *v->values);
+	return finish(v, bad, path, e);
 }
 
 void query_vectors_free(struct query_vectors *v)

@@ -3,6 +3,7 @@
 #define CMD_JOBS_QUERY_VECTORS_H
 
 #include "base/err.h"
+#include "formats/text.h"
 
 #include <stddef.h>
 
@@ -15,6 +16,9 @@ struct query_vectors {
  * a safetensors file, or those of a .npy file. ERR_FORMAT where there are other than `channels` of them for
  * each. Returns 0, or -1 with *e set and nothing to free. */
 int query_vectors_read(struct query_vectors *v, const char *path, size_t channels, struct err *e);
+/* The same of the sentences of a text that was read from a path. */
+int query_vectors_of_text(
+	struct query_vectors *v, const struct text *text, const char *path, size_t channels, struct err *e);
 void query_vectors_free(struct query_vectors *v);
 
 #endif

@@ -388,6 +388,13 @@ int file_is_dir(const char *path)
 	return !stat(path, &st) && S_ISDIR(st.st_mode);
 }
 
+int file_is_pipe(const char *path)
+{
+	struct stat st;
+
+	return !is_standard(path) && !stat(path, &st) && S_ISFIFO(st.st_mode);
+}
+
 char *file_join(const char *dir, const char *name, const char *suffix, struct err *e)
 {
 	size_t bytes = strlen(dir) + strlen(name) + strlen(suffix) + 2;

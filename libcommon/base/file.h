@@ -74,6 +74,10 @@ int file_make_dir(const char *path, struct err *e);
 int file_exists(const char *path);
 int file_is_dir(const char *path);
 
+/* 1 where a path is a pipe, which cannot be read twice: a named one, or one of a shell's <(...). "-" is none.
+ */
+int file_is_pipe(const char *path);
+
 /* dir + "/" + name (+ suffix); name itself where it is absolute. NULL with *e set when memory is out. */
 char *file_join(const char *dir, const char *name, const char *suffix, struct err *e);
 

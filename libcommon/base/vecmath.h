@@ -9,8 +9,8 @@
  *	#pragma GCC target("avx2,fma")
  *
  * or nothing; cpu_level() (base/cpu.h) chooses among them at run time. All functions are inlined, so that no
- * vector crosses a call. Results are the same on every machine of one level; levels differ in the last bits,
- * as plain has no fma. */
+ * vector crosses a call. Results are the same on every machine, with AVX-512 and with AVX2, to the bit, as
+ * long as sums over lanes are added in one order; plain ones differ in the last bits, as plain has no fma. */
 #ifndef BASE_VECMATH_H
 #define BASE_VECMATH_H
 
@@ -137,6 +137,8 @@ VEC_INLINE vecn vec_choose(vecm mask, vecn a, vecn b)
 {
 #if VEC_LANES == 16
 	return (vecn)_mm512_mask_blend_ps(mask, (__m512)b, (__m512)a);
+#elif VEC_LANES == 8
+	return (vecn)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)mask);
 #else
 	return (vecn)((mask & (vecni)a) | (~mask & (vecni)b));
 #endif
@@ -210,13 +212,20 @@ VEC_INLINE vecn vec_exp(vecn x)
 	return p * (vecn)((half + 127) << 23) * (vecn)((whole - half + 127) << 23);
 }
 
-/* 2^x for |x| <= 126: within 2.2 ulp, and cheaper than vec_exp, as no range is checked: some float beyond it.
+/* 2^x for -126 < x <= 126: within 2.2 ulp, and cheaper than vec_exp, as no range is checked: some float
+ * beyond it.
  */
 VEC_INLINE vecn vec_exp2(vecn x)
 {
+#if VEC_LANES >= 8
+	/* r = x - floor(x), rounded down, and floor(x) goes to the exponent */
 #if VEC_LANES == 16
-	/* the instructions agree on floor(x): r = x - floor(x), and floor(x) goes to the exponent */
 	vecn r = (vecn)_mm512_reduce_ps((__m512)x, _MM_FROUND_TO_NEG_INF);
+#else
+	/* only above -1 is it not exact: it was rounded up where what is taken back from x is more than x */
+	vecn whole = (vecn)_mm256_floor_ps((__m256)x), r = x - whole;
+	r = (vecn)((vecni)r + (x < r + whole));
+#endif
 	/* minimax in relative error on 0 <= r <= 1: 7.6e-08 */
 	vecn p = vec_splat(0.00187556923f);
 	p = vec_fma(p, r, vec_splat(0.00899467524f));
@@ -224,7 +233,11 @@ VEC_INLINE vecn vec_exp2(vecn x)
 	p = vec_fma(p, r, vec_splat(0.240155727f));
 	p = vec_fma(p, r, vec_splat(0.693152726f));
 	p = vec_fma(p, r, vec_splat(0.99999994f));
+#if VEC_LANES == 16
 	return (vecn)_mm512_scalef_ps((__m512)p, (__m512)x);
+#else
+	return (vecn)((vecni)p + ((vecni)_mm256_cvtps_epi32((__m256)whole) << 23));
+#endif
 #else
 	/* the sum holds round(x) in its low bits, from where it goes to the exponent */
 	vecn shifted = x + 12582912.0f, r = x - (shifted - 12582912.0f);

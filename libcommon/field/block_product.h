@@ -171,8 +171,19 @@ static void product_relu(float *out, const float *w, int rows, int columns, cons
 	product(out, rows, &term, 1, bias, FROM_BIAS, 1, (const float *const[AHEAD]){ahead});
 }
 
-/* The sums over the lanes of four vectors. */
-VEC_INLINE void sum_lanes_4(float out[4], vecn a, vecn b, vecn c, vecn d)
+/* A sum over the lanes of panels is one of 16 partial sums, added in the order that AVX-512 has. AVX2 makes
+ * eight of them in one pass over the panels and eight in another, and gives the same bits. */
+enum { PASSES = VEC_LANES == 8 ? 2 : 1 };
+
+/* Four such sums, each in two parts (plain: one). */
+#if VEC_LANES == 4
+typedef vecn vecq;
+#else
+typedef float vecq __attribute__((vector_size(32)));
+#endif
+
+/* What one pass gives of them; the passes' are added. */
+VEC_INLINE vecq sum_lanes_4(vecn a, vecn b, vecn c, vecn d)
 {
 #if VEC_LANES == 16
 	__m512 ab = _mm512_add_ps(
@@ -180,20 +191,26 @@ VEC_INLINE void sum_lanes_4(float out[4], vecn a, vecn b, vecn c, vecn d)
 	__m512 cd = _mm512_add_ps(
 		_mm512_unpacklo_ps((__m512)c, (__m512)d), _mm512_unpackhi_ps((__m512)c, (__m512)d));
 	__m512 all = _mm512_add_ps(_mm512_shuffle_ps(ab, cd, 0x44), _mm512_shuffle_ps(ab, cd, 0xee));
-	__m256 half = _mm256_add_ps(_mm512_castps512_ps256(all), _mm512_extractf32x8_ps(all, 1));
-	_mm_storeu_ps(out, _mm_add_ps(_mm256_castps256_ps128(half), _mm256_extractf128_ps(half, 1)));
+	return (vecq)_mm256_add_ps(_mm512_castps512_ps256(all), _mm512_extractf32x8_ps(all, 1));
 #elif VEC_LANES == 8
 	__m256 ab = _mm256_add_ps(
 		_mm256_unpacklo_ps((__m256)a, (__m256)b), _mm256_unpackhi_ps((__m256)a, (__m256)b));
 	__m256 cd = _mm256_add_ps(
 		_mm256_unpacklo_ps((__m256)c, (__m256)d), _mm256_unpackhi_ps((__m256)c, (__m256)d));
-	__m256 all = _mm256_add_ps(_mm256_shuffle_ps(ab, cd, 0x44), _mm256_shuffle_ps(ab, cd, 0xee));
-	_mm_storeu_ps(out, _mm_add_ps(_mm256_castps256_ps128(all), _mm256_extractf128_ps(all, 1)));
+	return (vecq)_mm256_add_ps(_mm256_shuffle_ps(ab, cd, 0x44), _mm256_shuffle_ps(ab, cd, 0xee));
 #else
-	out[0] = (a[0] + a[2]) + (a[1] + a[3]);
-	out[1] = (b[0] + b[2]) + (b[1] + b[3]);
-	out[2] = (c[0] + c[2]) + (c[1] + c[3]);
-	out[3] = (d[0] + d[2]) + (d[1] + d[3]);
+	return (vecq){(a[0] + a[2]) + (a[1] + a[3]), (b[0] + b[2]) + (b[1] + b[3]),
+		(c[0] + c[2]) + (c[1] + c[3]), (d[0] + d[2]) + (d[1] + d[3])};
+#endif
+}
+
+VEC_INLINE void store_sums_4(float out[4], vecq sums)
+{
+#if VEC_LANES == 4
+	vec_store(out, sums);
+#else
+	_mm_storeu_ps(out,
+		_mm_add_ps(_mm256_castps256_ps128((__m256)sums), _mm256_extractf128_ps((__m256)sums, 1)));
 #endif
 }
 
@@ -206,20 +223,19 @@ VEC_INLINE vecn in_register(vecn x)
 	return x;
 }
 
-/* Sums of products over the lanes of every panel: out[r][c] += sum a_r b_c. */
-VEC_INLINE void outer_tile(const int rows, const int columns, float *out, int stride, const float *a,
-	int a_panel, const float *b, int b_panel, int panels)
+/* sum[r * columns + c]: the products of a_r and b_c over every panel, of the lanes of one pass. */
+VEC_INLINE void outer_pass(const int rows, const int columns, vecn *sum, const float *a, int a_panel,
+	const float *b, int b_panel, int panels, int first)
 {
 	enum { MOST = OUTER_ROWS * OUTER_COLUMNS };
-	vecn sum[MOST + 3];
-	float total[MOST + 3];
 
 #pragma GCC unroll 27
 	for (int i = 0; i < MOST + 3; i++)
 		sum[i] = vec_splat(0);
 	for (int p = 0; p < panels; p++, a += a_panel, b += b_panel) {
 #pragma GCC unroll 1
-		for (int v = 0; v < L; v += VEC_LANES) { /* unrolled, the sums would move between registers */
+		for (int v = first; v < L; v += PASSES * VEC_LANES) { /* unrolled, the sums would move between
+									 registers */
 			vecn y[OUTER_COLUMNS];
 #pragma GCC unroll 3
 			for (int c = 0; c < columns; c++)
@@ -233,9 +249,30 @@ VEC_INLINE void outer_tile(const int rows, const int columns, float *out, int st
 			}
 		}
 	}
+}
+
+/* Sums of products over the lanes of every panel: out[r][c] += sum a_r b_c. */
+VEC_INLINE void outer_tile(const int rows, const int columns, float *out, int stride, const float *a,
+	int a_panel, const float *b, int b_panel, int panels)
+{
+	enum { MOST = OUTER_ROWS * OUTER_COLUMNS, QUADS = (MOST + 3) / 4 };
+	vecq quads[QUADS];
+	float total[4 * QUADS];
+
+#pragma GCC unroll 2
+	for (int pass = 0; pass < PASSES; pass++) {
+		vecn sum[MOST + 3];
+		outer_pass(rows, columns, sum, a, a_panel, b, b_panel, panels, pass * VEC_LANES);
 #pragma GCC unroll 8
-	for (int i = 0; i < (rows * columns + 3) / 4 * 4; i += 4)
-		sum_lanes_4(total + i, sum[i], sum[i + 1], sum[i + 2], sum[i + 3]);
+		for (int i = 0; i < (rows * columns + 3) / 4; i++) {
+			const vecq quad =
+				sum_lanes_4(sum[4 * i], sum[4 * i + 1], sum[4 * i + 2], sum[4 * i + 3]);
+			quads[i] = pass ? quads[i] + quad : quad;
+		}
+	}
+#pragma GCC unroll 8
+	for (int i = 0; i < (rows * columns + 3) / 4; i++)
+		store_sums_4(total + 4 * i, quads[i]);
 #pragma GCC unroll 8
 	for (int r = 0; r < rows; r++)
 #pragma GCC unroll 3
@@ -324,12 +361,13 @@ static void outer_lower(float *out, int rows, int columns, int stride, const flo
 	outer_any(out, rows, columns, stride, a, a_channels, b, b_channels, panels, 1);
 }
 
-VEC_INLINE vecn channel_sum(const float *row, int panel, int panels)
+/* The lanes of one pass. */
+VEC_INLINE vecn channel_sum(const float *row, int panel, int panels, int first)
 {
 	vecn sum = vec_splat(0);
 
 	for (int p = 0; p < panels; p++, row += panel)
-		for (int v = 0; v < L; v += VEC_LANES)
+		for (int v = first; v < L; v += PASSES * VEC_LANES)
 			sum += vec_load(row + v);
 	return sum;
 }
@@ -339,11 +377,18 @@ static void sum_channels(float *out, int rows, const float *a, int channels, int
 {
 	for (int r = 0; r < rows; r += 4) {
 		const int left = rows - r < 4 ? rows - r : 4;
-		vecn sum[4];
+		vecq quad = {0};
 		float total[4];
-		for (int i = 0; i < 4; i++)
-			sum[i] = i < left ? channel_sum(a + (r + i) * L, channels * L, panels) : vec_splat(0);
-		sum_lanes_4(total, sum[0], sum[1], sum[2], sum[3]);
+		for (int pass = 0; pass < PASSES; pass++) {
+			vecn sum[4];
+			for (int i = 0; i < 4; i++)
+				sum[i] = i < left ? channel_sum(a + (r + i) * L, channels * L, panels,
+							    pass * VEC_LANES)
+						  : vec_splat(0);
+			const vecq own = sum_lanes_4(sum[0], sum[1], sum[2], sum[3]);
+			quad = pass ? quad + own : own;
+		}
+		store_sums_4(total, quad);
 		for (int i = 0; i < left; i++)
 			out[r + i] += total[i];
 	}

@@ -11,6 +11,14 @@ enum { AHEAD = 512 }; /* weights to fetch before their use: the processor's own 
 
 enum { LANES = 16 }; /* partial sums of a pixel: lane k takes every 16th weight */
 
+static inline float fold_lanes(float sums[LANES])
+{
+	for (int half = LANES / 2; half; half /= 2)
+		for (int i = 0; i < half; i++)
+			sums[i] += sums[i + half];
+	return sums[0];
+}
+
 static void blend_plain(const struct view_weights *w, const float *m, float *image, size_t from, size_t to)
 {
 	for (size_t p = from; p < to; p++) {
@@ -18,10 +26,7 @@ static void blend_plain(const struct view_weights *w, const float *m, float *ima
 		int64_t begin = w->indptr[p], end = w->indptr[p + 1];
 		for (int64_t k = begin; k < end; k++)
 			sums[(k - begin) % LANES] += w->weight[k] * m[w->index[k]];
-		for (int half = LANES / 2; half; half /= 2)
-			for (int i = 0; i < half; i++)
-				sums[i] += sums[i + half];
-		image[p] = sums[0];
+		image[p] = fold_lanes(sums);
 	}
 }
 
@@ -42,10 +47,36 @@ __attribute__((target("avx512f"))) static void blend_avx512(
 		}
 		float sums[LANES];
 		_mm512_storeu_ps(sums, sum);
-		for (int half = LANES / 2; half; half /= 2)
-			for (int i = 0; i < half; i++)
-				sums[i] += sums[i + half];
-		image[p] = sums[0];
+		image[p] = fold_lanes(sums);
+	}
+}
+
+/* Lanes 0 to 7 and 8 to 15 of the same, to the bit. */
+__attribute__((target("avx2,fma"))) static void blend_avx2(
+	const struct view_weights *w, const float *m, float *image, size_t from, size_t to)
+{
+	const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+
+	for (size_t p = from; p < to; p++) {
+		__m256 half[2] = {_mm256_setzero_ps(), _mm256_setzero_ps()};
+		for (int64_t k = w->indptr[p], end = w->indptr[p + 1]; k < end; k += LANES) {
+			_mm_prefetch((const char *)(w->index + k + AHEAD), _MM_HINT_T0);
+			_mm_prefetch((const char *)(w->weight + k + AHEAD), _MM_HINT_T0);
+			for (int h = 0; h < 2 && k + h * LANES / 2 < end; h++) {
+				const int64_t at = k + h * LANES / 2, left = end - at;
+				const __m256i mask = _mm256_cmpgt_epi32(
+					_mm256_set1_epi32(left < LANES ? (int)left : LANES), lanes);
+				const __m256i index = _mm256_maskload_epi32(w->index + at, mask);
+				const __m256 value = _mm256_mask_i32gather_ps(
+					_mm256_setzero_ps(), m, index, _mm256_castsi256_ps(mask), 4);
+				half[h] = _mm256_fmadd_ps(
+					_mm256_maskload_ps(w->weight + at, mask), value, half[h]);
+			}
+		}
+		float sums[LANES];
+		_mm256_storeu_ps(sums, half[0]);
+		_mm256_storeu_ps(sums + LANES / 2, half[1]);
+		image[p] = fold_lanes(sums);
 	}
 }
 #endif
@@ -55,6 +86,10 @@ void view_blend(const struct view_weights *w, const float *m, size_t from, size_
 #if defined __x86_64__
 	if (cpu_level() >= CPU_AVX512) {
 		blend_avx512(w, m, image, from, to);
+		return;
+	}
+	if (cpu_level() >= CPU_AVX2) {
+		blend_avx2(w, m, image, from, to);
 		return;
 	}
 #endif

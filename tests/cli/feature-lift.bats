@@ -303,6 +303,11 @@ Try 'feature-lift --help'." lift -o all.npz all.npz
 	refuses 4 "maps/${view}_f.npy: No such file or directory" maps
 }
 
+@test "a folder without weights" {
+	mkdir none
+	refuses 4 "none: has no weights of a training view" --weights none --masks masks.jsonl
+}
+
 @test "options that do not go together, and outputs that are inputs" {
 	halves
 	local try="

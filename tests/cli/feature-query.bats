@@ -55,6 +55,12 @@ refuses() {
 # Fails where the command succeeds; a plain ! would let the test go on.
 not() { ! "$@"; }
 
+@test "a text through a pipe gives its vectors too" {
+	query -o expected features.safetensors
+	cat plain.safetensors | "$BIN/feature-query" --text - -o piped features.safetensors
+	cmp expected piped
+}
+
 @test "cosine: names select their objects" {
 	query -o selection features.safetensors >printed 2>&1
 	[ ! -s printed ]

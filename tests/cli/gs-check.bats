@@ -85,6 +85,14 @@ says_in() {
 	[ $status = "$1" ] && [ "$printed" = "$2" ] || { echo "$status: $printed"; return 1; }
 }
 
+@test "a pipe with a name, which cannot be read twice, is refused" {
+	mkfifo pipe
+	says 4 "gs-check: pipe: a pipe, which cannot be read twice: '-' reads one from standard input" timeout 9 "$BIN/gs-check" pipe
+	# but not read as what is left of it: "ok, 0 masks"
+	says 4 "gs-check: /dev/stdin: a pipe, which cannot be read twice: '-' reads one from standard input" \
+		bash -c 'cat masks.jsonl | "$1" /dev/stdin' _ "$BIN/gs-check"
+}
+
 @test "files as large as no buffer come through a pipe whole" {
 	for ((i = 0; i < 3000; i++)); do echo "{\"ref\":\"r$i\",\"object\":\"cup\",\"text\":\"the red cup $i\"}"; done >many
 	cat many | says_in 0 "stdin: ok: sentences, 3000 training sentences, 0 test sentences, 1 objects"

@@ -224,6 +224,13 @@ made() {
 		made json/view_7.json
 		[ "$(cat err)" = "mask-import: warning: json/view_7.json: 2 shapes are 'cup' in view view_7, and are taken as one thing" ]
 	done
+	for path in ../secret.png a/../../secret.png "$PWD/gt_mask/b.png"; do
+		cp gt_mask/b.png secret.png
+		jq --arg path "$path" '(.object[0] // .objects[0]).segmentation = $path' json/view_7.json >json/out.json
+		says 3 "mask-import: json/out.json: object 0: key 'segmentation': '$path' is not in the folder gt_mask" \
+			"$BIN/mask-import" -o none json/out.json
+		[ ! -e none ]
+	done
 	rm gt_mask/b.png
 	says 4 "mask-import: json/../gt_mask/b.png: No such file or directory" "$BIN/mask-import" -o none json/view_7.json
 	jq 'del(.objects[1].category)' json/view_7.json >json/bad.json

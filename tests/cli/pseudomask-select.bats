@@ -308,6 +308,10 @@ truth_of() { jq -c "select(.view == \"$1\") | .score = 0.9" "$BATS_FILE_TMPDIR/t
 	[ "$stderr" = "pseudomask-select: warning: some: 1 training views have no weights, and get no masks" ]
 	first -o whole true.jsonl
 	jq -c 'select(.view != "view_002")' whole | cmp - <(jq -c . out)
+	mkdir empty
+	run --separate-stderr first --weights empty -o none true.jsonl
+	[ "$status" -eq 4 ] && [ ! -e none ]
+	[ "$stderr" = "pseudomask-select: empty: has no weights of a training view" ]
 	# the masks of a view cannot be lifted without
 	rm some/view_000.safetensors
 	run first --weights some -o out2 true.jsonl
@@ -339,7 +343,7 @@ truth_of() { jq -c "select(.view == \"$1\") | .score = 0.9" "$BATS_FILE_TMPDIR/t
 			{ echo "$status: $output"; ls; return 1; }
 	}
 	refuses 4 "nowhere/splats.safetensors: No such file or directory" --scene nowhere ../true.jsonl
-	refuses 4 "nowhere/view_000.safetensors: No such file or directory" --weights nowhere ../true.jsonl
+	refuses 4 "nowhere: has no weights of a training view" --weights nowhere ../true.jsonl
 	jq -c '.view = "view_999"' ../true.jsonl | head -n 1 | cat ../true.jsonl - > ../other.jsonl
 	refuses 3 "../other.jsonl:9: key 'view': the scene has no view 'view_999'" ../other.jsonl
 	"$BIN/gs-synth" -q --gaussians 3001 --views 6 --size 96x72 -o ../other

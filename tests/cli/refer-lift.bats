@@ -161,6 +161,9 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 	says 0 "refer-lift: warning: some: 1 training views have no weights, and their masks do not count" \
 		lift --weights some -o model
 	cmp expected model
+	mkdir none
+	says 4 "refer-lift: none: has no weights of a training view" lift --weights none -o no-model
+	[ ! -e no-model ]
 	jq -c --arg v "$(head -n 1 "$made/test-views" | cut -d, -f1)" '.view = $v' masks.jsonl >test
 	[ "$(lift --masks test -o model 2>&1 | grep -c "has no mask in a training view")" = 3 ]
 }

@@ -237,6 +237,16 @@ values() {
 	wrong 3 "s.gltf: buffer 0 is 'data:application/oct...', not a file beside this one"
 	gltf '.buffers[0].uri = "https://example.org/n.bin"'
 	wrong 3 "s.gltf: buffer 0 is 'https://example.org/...', not a file beside this one"
+	for path in ../n.bin "my%20data/../../n.bin" %2e%2E/n.bin "$PWD/folder/my data/n.bin"; do
+		cp "folder/my data/n.bin" n.bin
+		gltf ".buffers[0].uri = \"$path\""
+		path=${path//%20/ }
+		wrong 3 "s.gltf: buffer 0 is '${path//%2[eE]/.}', not in the folder of this file"
+	done
+	gltf '.buffers[0].uri = "my%20data/../my%20data/n.bin"'
+	import folder/s.gltf
+	cmp first scene/splats.safetensors
+	rm -r scene
 	gltf '.buffers[0].uri = "none.bin"'
 	wrong 4 "none.bin: No such file or directory"
 	head -c 55 "folder/my data/n.bin" >folder/n.bin

@@ -1,6 +1,7 @@
 /* libFuzzer targets, one for each reader of formats/: the program is built once, and the part of its name
  * after "reader-" says which reader it feeds. The input is a file in memory, which readers open by its path;
- * those of folders find it there under the names that they look for. Built by `make fuzz`;
+ * those of folders find it there under the names that they look for. Where readers demand much data, its end
+ * is zeros that are not in the input, so that inputs stay small. Built by `make fuzz`;
  * REFERSPLAT_FUZZ_SEED=FILE has the checkpoint's target write a seed first. */
 #include "base/file.h"
 #include "cmd/jobs/check.h"
@@ -71,9 +72,26 @@ SIMPLE(sentences, struct sentences, sentences_read_any, sentences_free)
 SIMPLE(text, struct text, text_read, text_free)
 SIMPLE(weights, struct weights, weights_open_file, weights_close)
 SIMPLE(colmap, struct cameras, colmap_read, cameras_free)
-SIMPLE(vocab, struct vocab, vocab_read, vocab_free)
+SIMPLE(folder, struct scene, scene_read, scene_free)
 SIMPLE(bert, struct bert, bert_model_read, bert_free)
 SIMPLE(clip, struct clip, clip_model_read, clip_free)
+
+static const char text_to_cut[] = "The red cup's 10 plates, caf\xc3\xa9!";
+
+static void try_vocab(const char *path)
+{
+	struct vocab v = {0};
+	struct wordpieces out = {0};
+	char *pieces = NULL;
+
+	if (vocab_read(&v, path, &e))
+		return;
+	if (!wordpiece_encode(&v, text_to_cut, &out, &e))
+		pieces = vocab_print(&v, out.ids, out.n, &e);
+	free(pieces);
+	free(out.ids);
+	vocab_free(&v);
+}
 
 /* The text is cut by whatever merges were read. */
 static void try_merges(const char *path)
@@ -84,7 +102,7 @@ static void try_merges(const char *path)
 
 	if (merges_read(&b, path, 634, &e))
 		return;
-	if (!bpe_encode(&b, "The red cup's 10 plates, caf\xc3\xa9!", &out, &e))
+	if (!bpe_encode(&b, text_to_cut, &out, &e))
 		pieces = merges_print(&b, out.ids, out.n, &e);
 	free(pieces);
 	free(out.ids);
@@ -118,6 +136,30 @@ static void try_scene(const char *path)
 		return;
 	splats_free(&s);
 	free(report.dropped);
+}
+
+/* Those whose format goes by the name. */
+static void try_named(const char *folder, const char *name)
+{
+	char path[128];
+
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	try_scene(path);
+}
+
+static void try_gltf(const char *path)
+{
+	try_named(path, "scene.gltf");
+}
+
+static void try_sog(const char *path)
+{
+	try_named(path, "meta.json");
+}
+
+static void try_splat(const char *path)
+{
+	try_named(path, "scene.splat");
 }
 
 static void try_image(const char *path)
@@ -215,63 +257,76 @@ static void try_npz(const char *path)
 	npz_close(&z);
 }
 
+enum { FILES_MOST = 8 };
+
 static const struct target {
 	const char *name;
 	void (*run)(const char *path);
 	/* Readers of folders: the files that the input is cut into, at the lengths that it begins with. */
-	const char *files[3];
+	const char *files[FILES_MOST + 1];
+	int grows; /* so many zeros as the input begins with follow it, or its last file */
 } targets[] = {
-	{"annotations", try_annotations, {0}},
-	{"bert", try_bert, {"config.json", "model.safetensors"}},
-	{"boxes", try_boxes, {0}},
-	{"camerafile", try_camerafile, {0}},
-	{"cameras", try_cameras, {0}},
-	{"check", try_check, {0}},
-	{"checkpoint", try_checkpoint, {0}},
-	{"clip", try_clip, {"config.json", "model.safetensors"}},
-	{"clip-open", try_clip, {"open_clip_config.json", "open_clip_model.safetensors"}},
-	{"colmap-binary", try_colmap, {"cameras.bin", "images.bin"}},
-	{"colmap-text", try_colmap, {"cameras.txt", "images.txt"}},
-	{"dataparser", try_dataparser, {0}},
-	{"features", try_features, {0}},
-	{"image", try_image, {0}},
-	{"lifted", try_lifted, {0}},
-	{"glb", try_scene, {0}},
-	{"masks", try_masks, {0}},
-	{"merges-gzip", try_merges, {"bpe_simple_vocab_16e6.txt.gz"}},
-	{"merges-json", try_merges, {"tokenizer.json"}},
-	{"merges-text", try_merges, {"vocab.json", "merges.txt"}},
-	{"model", try_model, {0}},
-	{"npy", try_npy, {0}},
-	{"npz", try_npz, {0}},
-	{"parser", try_parser, {0}},
-	{"parses", try_parses, {0}},
-	{"ply", try_scene, {0}},
-	{"readings", try_readings, {0}},
-	{"safetensors", try_safetensors, {0}},
-	{"selection", try_selection, {0}},
-	{"sentences", try_sentences, {0}},
-	{"splats", try_splats, {0}},
-	{"spz", try_scene, {0}},
-	{"text", try_text, {0}},
-	{"vocab-json", try_vocab, {"tokenizer.json"}},
-	{"vocab-text", try_vocab, {"vocab.txt", "tokenizer_config.json"}},
-	{"weights", try_weights, {0}},
+	{"annotations", try_annotations, {0}, 0},
+	{"bert", try_bert, {"config.json", "model.safetensors"}, 1},
+	{"boxes", try_boxes, {0}, 0},
+	{"camerafile", try_camerafile, {0}, 0},
+	{"cameras", try_cameras, {0}, 0},
+	{"check", try_check, {0}, 0},
+	{"checkpoint", try_checkpoint, {0}, 0},
+	{"clip", try_clip, {"config.json", "model.safetensors"}, 1},
+	{"clip-open", try_clip, {"open_clip_config.json", "open_clip_model.safetensors"}, 1},
+	{"colmap-binary", try_colmap, {"cameras.bin", "images.bin"}, 0},
+	{"colmap-text", try_colmap, {"cameras.txt", "images.txt"}, 0},
+	{"dataparser", try_dataparser, {0}, 0},
+	{"features", try_features, {0}, 0},
+	{"glb", try_scene, {0}, 0},
+	{"gltf", try_gltf, {"scene.gltf", "numbers.bin"}, 0},
+	{"image", try_image, {0}, 0},
+	{"lifted", try_lifted, {0}, 0},
+	{"masks", try_masks, {0}, 0},
+	{"merges-gzip", try_merges, {"bpe_simple_vocab_16e6.txt.gz"}, 0},
+	{"merges-json", try_merges, {"tokenizer.json"}, 0},
+	{"merges-text", try_merges, {"vocab.json", "merges.txt"}, 0},
+	{"model", try_model, {0}, 1},
+	{"npy", try_npy, {0}, 0},
+	{"npz", try_npz, {0}, 0},
+	{"parser", try_parser, {0}, 1},
+	{"parses", try_parses, {0}, 0},
+	{"ply", try_scene, {0}, 0},
+	{"readings", try_readings, {0}, 0},
+	{"safetensors", try_safetensors, {0}, 0},
+	{"scene", try_folder, {"cameras.json", "splats.safetensors"}, 0},
+	{"selection", try_selection, {0}, 0},
+	{"sentences", try_sentences, {0}, 0},
+	{"sog", try_sog,
+		{"meta.json", "means_l.webp", "means_u.webp", "quats.webp", "scales.webp", "sh0.webp",
+			"shN_centroids.webp", "shN_labels.webp"},
+		0},
+	{"sog-zip", try_scene, {0}, 0},
+	{"splat", try_splat, {"scene.splat"}, 0},
+	{"splats", try_splats, {0}, 0},
+	{"spz", try_scene, {0}, 0},
+	{"text", try_text, {0}, 0},
+	{"vocab-json", try_vocab, {"tokenizer.json"}, 0},
+	{"vocab-text", try_vocab, {"vocab.txt", "tokenizer_config.json"}, 0},
+	{"weights", try_weights, {0}, 0},
 };
 
 enum {
 	TARGETS = sizeof targets / sizeof *targets,
-	CUT = 4 /* bytes, little-endian, of the first file's length */
+	CUT = 4,	     /* bytes, little-endian, of a file's length, or of how many zeros there are */
+	ZEROS_MOST = 1 << 20 /* more are as many */
 };
 static const struct target *target;
-static int fds[2];
-static char paths[2][64], folder[64];
+static int files; /* that the target's reader opens */
+static int fds[FILES_MOST];
+static char paths[FILES_MOST][64], folder[64];
 
 static void remove_folder(void)
 {
 	char name[128];
 
-	for (int i = 0; i < 2 && target->files[i]; i++) {
+	for (int i = 0; i < files; i++) {
 		snprintf(name, sizeof name, "%s/%s", folder, target->files[i]);
 		unlink(name);
 	}
@@ -282,19 +337,21 @@ static void make_files(void)
 {
 	char name[128];
 
-	for (int i = 0; i < 2; i++) {
+	while (target->files[files])
+		files++;
+	for (int i = 0; i < (files ? files : 1); i++) {
 		snprintf(name, sizeof name, "/dev/shm/refersplat-fuzz-XXXXXX");
 		fds[i] = mkstemp(name);
 		unlink(name);
 		snprintf(paths[i], sizeof paths[i], "/proc/%ld/fd/%d", (long)getpid(), fds[i]);
 	}
-	if (!target->files[0])
+	if (!files)
 		return;
 	snprintf(folder, sizeof folder, "/dev/shm/refersplat-fuzz-XXXXXX");
 	if (!mkdtemp(folder))
 		abort();
 	atexit(remove_folder);
-	for (int i = 0; i < 2 && target->files[i]; i++) {
+	for (int i = 0; i < files; i++) {
 		snprintf(name, sizeof name, "%s/%s", folder, target->files[i]);
 		if (symlink(paths[i], name))
 			abort();
@@ -323,26 +380,43 @@ int LLVMFuzzerInitialize(int *argc, char ***argv)
 	return 0;
 }
 
-static void put(int fd, const uint8_t *data, size_t size)
+static void put(int fd, const uint8_t *data, size_t size, size_t zeros)
 {
-	if (pwrite(fd, data, size, 0) != (ssize_t)size || ftruncate(fd, (off_t)size))
+	if (pwrite(fd, data, size, 0) != (ssize_t)size || ftruncate(fd, (off_t)size) ||
+		ftruncate(fd, (off_t)(size + zeros)))
 		abort();
+}
+
+/* The number that an input begins with, at most `most`; the rest of the input. */
+static size_t take_number(const uint8_t **data, size_t *size, size_t most)
+{
+	size_t number = 0;
+
+	for (int i = 0; i < CUT; i++)
+		number |= (size_t)(*data)[i] << 8 * i;
+	*data += CUT;
+	*size -= CUT;
+	return number < most ? number : most;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-	if (!target->files[1]) {
-		put(fds[0], data, size);
-	} else {
-		size_t cut = 0;
-		if (size < CUT)
-			return 0;
-		for (int i = 0; i < CUT; i++)
-			cut |= (size_t)data[i] << 8 * i;
-		cut = cut < size - CUT ? cut : size - CUT;
-		put(fds[0], data + CUT, cut);
-		put(fds[1], data + CUT + cut, size - CUT - cut);
+	const int last = files ? files - 1 : 0;
+	size_t zeros = 0, lengths[FILES_MOST] = {0};
+
+	if (size < CUT * (size_t)(last + target->grows))
+		return 0;
+	if (target->grows)
+		zeros = take_number(&data, &size, ZEROS_MOST);
+	for (int i = 0; i < last; i++)
+		lengths[i] = take_number(&data, &size, SIZE_MAX);
+	for (int i = 0; i < last; i++) {
+		lengths[i] = lengths[i] < size ? lengths[i] : size;
+		put(fds[i], data, lengths[i], 0);
+		data += lengths[i];
+		size -= lengths[i];
 	}
-	target->run(target->files[0] ? folder : paths[0]);
+	put(fds[last], data, size, zeros);
+	target->run(files ? folder : paths[0]);
 	return 0;
 }

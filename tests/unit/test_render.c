@@ -271,6 +271,44 @@ static void values_are_the_product(void)
 	splats_free(&s);
 }
 
+/* AVX2 gives the bits of AVX-512, for values and for weights. */
+static void fused_levels_are_equal(void)
+{
+	enum { CHANNELS = 3 };
+	struct camera c = camera_at_origin(53, 37, 30);
+	struct splats s = random_splats(11, 3000, 0.05, 0.8);
+	const size_t pixels = (size_t)c.width * (size_t)c.height;
+	float *values = malloc(CHANNELS * s.n * sizeof *values), *out[2], *left[2];
+	struct render_weights w[2] = {{0}};
+	struct err e;
+
+	for (size_t i = 0; i < CHANNELS * s.n; i++)
+		values[i] = (float)(i * 7 % 13) / 3;
+	struct render_view *v = render_prepare(&s, &c, &e);
+	for (int i = 0; i < 2; i++) {
+		out[i] = calloc(CHANNELS * pixels, sizeof *out[i]);
+		left[i] = calloc(pixels, sizeof *left[i]);
+		v->level = i ? CPU_AVX512 : CPU_AVX2;
+		CHECK(!render_values(v, values, CHANNELS, out[i], left[i], &e) &&
+				!render_weights(v, &w[i], &e),
+			"renders");
+	}
+	CHECK(!memcmp(out[0], out[1], CHANNELS * pixels * sizeof *out[0]), "values");
+	CHECK(!memcmp(left[0], left[1], pixels * sizeof *left[0]), "transmittances");
+	const int64_t n = w[0].indptr[pixels];
+	CHECK(n > 1000 && n == w[1].indptr[pixels] &&
+			!memcmp(w[0].weight, w[1].weight, (size_t)n * sizeof *w[0].weight),
+		"weights");
+	for (int i = 0; i < 2; i++) {
+		free(out[i]);
+		free(left[i]);
+		render_weights_free(&w[i]);
+	}
+	render_free(v);
+	free(values);
+	splats_free(&s);
+}
+
 static void threads_do_not_matter(void)
 {
 	struct camera c = camera_at_origin(90, 70, 60);
@@ -406,6 +444,8 @@ int main(void)
 	opacity_at_the_ends();
 	one_and_none();
 	values_are_the_product();
+	if (cpu_level() >= CPU_AVX512)
+		fused_levels_are_equal();
 	threads_do_not_matter();
 	colors();
 	harmonics_are_orthonormal();

@@ -96,6 +96,39 @@ static void against_reference(const char *kernels)
 		}
 }
 
+/* AVX2 gives the bits of AVX-512. */
+static void fused_kernels_are_equal(enum refer_interaction interaction)
+{
+	struct reference_options o = reference_defaults(5, interaction, REFER_DOT, REFER_CONTRAST_COSINE);
+	struct reference_sample s;
+	struct floats f;
+	struct err e;
+
+	o.n = 700;
+	o.feature_width = widths[interaction % 4];
+	reference_sample_init(&s, &o);
+	floats_init(&f, &s);
+	const size_t count = s.layout.count, features = panels_padded(s.problem.n) * (size_t)o.feature_width;
+	float *kept = mem_zalloc(count + features, sizeof *kept, "test", &e);
+	struct view_weights view = view_of(&s.problem, &f);
+	const struct step_target target = {s.problem.target, f.mask};
+	for (int i = 0; i < 2; i++) {
+		struct step *step = make_step(&s, &f, 1, i ? "avx512" : "avx2");
+		step_run(step, f.parameters, f.panels, &view, &target, 1, top_count(&s.problem), NULL,
+			f.gradient, f.dpanels);
+		step_free(step);
+		if (i)
+			CHECK(!memcmp(kept, f.gradient, sizeof *kept * count) &&
+					!memcmp(kept + count, f.dpanels, sizeof *kept * features),
+				"%s: other gradients", refer_interaction_name(interaction));
+		memcpy(kept, f.gradient, sizeof *kept * count);
+		memcpy(kept + count, f.dpanels, sizeof *kept * features);
+	}
+	free(kept);
+	floats_free(&f);
+	reference_sample_free(&s);
+}
+
 /* Several sentences in one step: the mean of their single steps. */
 static void batch_is_the_mean(enum refer_interaction interaction, enum refer_similarity similarity)
 {
@@ -213,6 +246,8 @@ int main(void)
 		if (i != REFER_PCMI_PROJ)
 			batch_is_the_mean((enum refer_interaction)i, REFER_COSINE);
 		threads_agree((enum refer_interaction)i);
+		if (block_select("avx512"))
+			fused_kernels_are_equal((enum refer_interaction)i);
 	}
 	batches_fit_in_memory();
 	against_reference("plain");
