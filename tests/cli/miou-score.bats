@@ -94,6 +94,25 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 	[ "$(right)" = "[0.4,5,0.4]" ]
 }
 
+@test "peaks: the share in a box of the truth, and in its mask" {
+	# rows of 8 pixels: in the mask; in the box alone; in the second of two boxes; nowhere; no peak; no prediction
+	hole='{"size":[1,8],"counts":[0,2,2,2,2]}'
+	for v in 1 2 3 4 5 6; do echo "{\"view\":\"v$v\",\"object\":\"o\",\"segmentation\":$hole}"; done |
+		jq -c 'if .view == "v3" then .boxes = [[7, 0, 7, 0], [6, -1, 6.5, 1]] else . end' >truth.jsonl
+	for at in 1:4 2:3 3:6 4:6; do echo "{\"view\":\"v${at%:*}\",\"object\":\"o\",\"peak\":[${at#*:},0],\"segmentation\":$four}"; done >pred.jsonl
+	echo "{\"view\":\"v5\",\"object\":\"o\",\"segmentation\":$four}" >>pred.jsonl
+	"$BIN/miou-score" --json --truth truth.jsonl pred.jsonl | jq -e '[.peak_in_box, .peak_in_mask] | map(. * 6 | round) == [3, 1]'
+	"$BIN/miou-score" --truth truth.jsonl pred.jsonl >table
+	grep -qx 'peak in box   50.00 %' table
+	grep -qx 'peak in mask  16.67 %' table
+	# of a prediction of another size, the point too
+	jq -c '.segmentation = {size: [2, 16], counts: [32]} | if .peak then .peak = [2 * .peak[0] + 1, 1] else . end' pred.jsonl >large.jsonl
+	"$BIN/miou-score" --json --truth truth.jsonl large.jsonl | jq -e '[.peak_in_box, .peak_in_mask] | map(. * 6 | round) == [3, 1]'
+	# without peaks nothing is said of them
+	jq -c 'del(.peak)' pred.jsonl | "$BIN/miou-score" --truth truth.jsonl - >table
+	! grep peak table
+}
+
 @test "--fail-under: exit 1 below, 0 at it, and the scores all the same" {
 	run --separate-stderr "$BIN/miou-score" --fail-under 0.626 --truth truth.jsonl pred.jsonl
 	[ "$status" -eq 1 ]
