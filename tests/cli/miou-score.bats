@@ -485,22 +485,29 @@ answers() {
 	[ -z "$stderr" ]
 	# "both" in v1: 5 of 8 pixels, the cup covered, a quarter of the plate, which is not more than that
 	diff - <(echo "$output") <<-END
-	pairs     right      mIoU   refused   F1@0.25    F1@0.5  means
-	    6   50.00 %   60.42 %   16.67 %   61.11 %   61.11 %  all
-	    2   50.00 %   50.00 %    0.00 %   50.00 %   50.00 %  one
-	    2   50.00 %   81.25 %    0.00 %   83.33 %   83.33 %  several
-	    2   50.00 %   50.00 %   50.00 %   50.00 %   50.00 %  none
+	pairs     right      mIoU      oIoU   refused   F1@0.25    F1@0.5  means
+	    6   50.00 %   60.42 %   59.09 %   16.67 %   61.11 %   61.11 %  all
+	    2   50.00 %   50.00 %   50.00 %    0.00 %   50.00 %   50.00 %  one
+	    2   50.00 %   81.25 %   75.00 %    0.00 %   83.33 %   83.33 %  several
+	    2   50.00 %   50.00 %    0.00 %   50.00 %   50.00 %   50.00 %  none
 
-	pairs     right      mIoU   refused   F1@0.25    F1@0.5  kind
-	    1  100.00 %  100.00 %    0.00 %  100.00 %  100.00 %  (unknown)
-	    2   50.00 %   50.00 %   50.00 %   50.00 %   50.00 %  absent
-	    2   50.00 %   81.25 %    0.00 %   83.33 %   83.33 %  several
-	    1    0.00 %    0.00 %    0.00 %    0.00 %    0.00 %  view
+	pairs     right      mIoU      oIoU   refused   F1@0.25    F1@0.5  kind
+	    1  100.00 %  100.00 %  100.00 %    0.00 %  100.00 %  100.00 %  (unknown)
+	    2   50.00 %   50.00 %    0.00 %   50.00 %   50.00 %   50.00 %  absent
+	    2   50.00 %   81.25 %   75.00 %    0.00 %   83.33 %   83.33 %  several
+	    1    0.00 %    0.00 %    0.00 %    0.00 %    0.00 %    0.00 %  view
 
+	N-acc         50.00 %
+	T-acc         75.00 %
 	missing           1
 	out of sight      1
 	END
-	[ "$("$BIN/miou-score" --answers --json --sentences as.jsonl --truth at.jsonl ap.jsonl | jq -c '[.all.pairs,.none.refused,.several.miou,.kinds.view.missing,.out_of_sight]')" = '[6,0.5,0.8125,1,1]' ]
+	[ "$("$BIN/miou-score" --answers --json --sentences as.jsonl --truth at.jsonl ap.jsonl | jq -c '[.all.pairs,.none.refused,.several.miou,.kinds.view.missing,.out_of_sight,.several.oiou,.n_acc,.t_acc]')" = '[6,0.5,0.8125,1,1,0.75,0.5,0.75]' ]
+	# 13 of 22 pixels
+	"$BIN/miou-score" --answers --json --sentences as.jsonl --truth at.jsonl ap.jsonl | jq -e '.all.oiou * 22 - 13 | fabs < 1e-12'
+	# without sentences that mean nothing there is no accuracy of them
+	"$BIN/miou-score" --answers --json --sentences <(grep -v fork as.jsonl) --truth at.jsonl <(grep -v fork ap.jsonl) | jq -e '.n_acc == null and .t_acc == 0.75'
+	"$BIN/miou-score" --answers --sentences <(grep -v fork as.jsonl) --truth at.jsonl <(grep -v fork ap.jsonl) | grep -qx 'N-acc             -'
 }
 
 @test "--answers: the order of the files does not matter, nor threads or names in another alphabet" {

@@ -136,8 +136,18 @@ static void check_one(const struct world *w, const struct answer *a)
 		for (int p = 0; p < P && of; p++)
 			all[p] |= w->truth[v][o][p];
 	}
-	if (a->is_missing)
+	int both = 0, either = 0;
+	for (int p = 0; p < P; p++) {
+		both += !a->is_missing && said[p] && all[p];
+		either += (!a->is_missing && said[p]) || all[p];
+	}
+	CHECK((int)a->intersection == both && (int)a->either == either, "sentence %d, view %d: %d of %d", s,
+		v, both, either);
+	if (a->is_missing) {
+		CHECK(!a->is_refused && !a->is_right && a->iou <= 0 && a->f1[0] <= 0 && a->f1[1] <= 0,
+			"what is missing is wrong");
 		return;
+	}
 	int none = !a->sentence->object_count, blank = is_blank(said);
 	double f1 = none ? blank : 2.0 * hit / (shown + meant);
 	int right = none			     ? blank
@@ -148,6 +158,25 @@ static void check_one(const struct world *w, const struct answer *a)
 	CHECK(fabs(a->iou - (none ? blank : iou(said, all))) < 1e-12, "sentence %d, view %d: %g", s, v,
 		a->iou);
 	CHECK(a->is_right == right, "sentence %d, view %d: right %d", s, v, right);
+}
+
+/* The figures of GRES, from the answers one by one. */
+static void check_totals(
+	const struct answers *a, const struct answer_score *all, const struct answer_score *none)
+{
+	double both = 0, either = 0, answered = 0, targets = 0, n_acc, t_acc;
+
+	for (size_t i = 0; i < a->n; i++) {
+		const struct answer *one = &a->items[i];
+		both += (double)one->intersection;
+		either += (double)one->either;
+		targets += one->sentence->object_count > 0;
+		answered += one->sentence->object_count > 0 && !one->is_refused && !one->is_missing;
+	}
+	answer_target_accuracy(&n_acc, &t_acc, a);
+	CHECK(fabs(all->oiou - both / either) < 1e-12, "%g of %g", both, either);
+	CHECK(fabs(t_acc - answered / targets) < 1e-12, "T-acc %g", t_acc);
+	CHECK(none->pairs ? fabs(n_acc - none->refused) < 1e-12 : isnan(n_acc), "N-acc %g", n_acc);
 }
 
 static void against_pixels(const struct world *w)
@@ -175,6 +204,7 @@ static void against_pixels(const struct world *w)
 	for (int k = 0; k < 3; k++)
 		answer_score_sum(&parts[k], &a, (enum answer_targets)(ANSWER_ONE + k), NULL);
 	CHECK(parts[0].pairs + parts[1].pairs + parts[2].pairs == a.n, "targets do not sum");
+	check_totals(&a, &all, &parts[2]);
 	answer_score_sum(&parts[0], &a, ANSWER_ANY, "a");
 	answer_score_sum(&parts[1], &a, ANSWER_ANY, "");
 	CHECK(parts[0].pairs + parts[1].pairs == a.n, "kinds do not sum");
