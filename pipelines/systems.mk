@@ -6,6 +6,7 @@
 # queries (feature-query). The 2D models cannot run here. Stand-ins for what they say of each training view are:
 #	truth      true masks; the feature is the language encoder's vector of the object's name, the label its number
 #	detector   the synthetic detector's candidates in their place, which show the wrong object more often than not
+# Grounded SAM's row has what the synthetic detector finds in the test views themselves, which no other row sees.
 # A name is as a class has it: look-alikes share it. Queries are the sentences, by the same encoder.
 #
 # OUT         folder for everything that is made; default systems
@@ -34,8 +35,9 @@ cells := $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(OUT)/$(s)-$(n)))
 kinds := truth detector
 by_features := cosine relevancy hyperplane
 
-# The rows: NAME, where the steps that a system needs are logged, and the file that is its field.
-rows := carried-first $(foreach k,$(kinds),$(addprefix $(k)-,$(by_features) identity)) $(if $(TRAIN),ours-trained) ours-lifted
+# The rows: NAME, where the steps that a system needs are logged, and the file that is its field; none of both where no scene is looked at.
+rendered := carried-first $(foreach k,$(kinds),$(addprefix $(k)-,$(by_features) identity)) $(if $(TRAIN),ours-trained) ours-lifted
+rows := views-sam $(rendered)
 positives := select.top1 lift.top1
 $(foreach k,$(kinds),$(foreach r,$(by_features),$(eval steps.$(k)-$(r) = $(k).features $(k)-$(r))$(eval field.$(k)-$(r) = $(k)/features)))
 $(foreach k,$(kinds),$(eval steps.$(k)-hyperplane += $(positives))$(eval steps.$(k)-identity = $(k).labels $(k)-identity \
@@ -124,13 +126,17 @@ $(1)/selected/ours-trained.safetensors: $(1)/masks/ciou.jsonl $(1)/weights/compl
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/train,refer-train --scene $(1)/scene --weights $(1)/weights --text $(1)/text/sentences.safetensors \
 		--masks $$< --seed $(3) $(TRAIN) --checkpoint 0 -o $$@)
-$(foreach r,$(rows),$(foreach t,test train,$(1)/answers/$(r).$(t).jsonl)): $(1)/answers/%.jsonl:
+$(foreach t,test train,$(1)/answers/views-sam.$(t).jsonl): $(1)/answers/views-sam.%.jsonl: $(1)/data/made-by $(here)best-candidates.jq
+	@mkdir -p $$(@D)
+	@jq -n -c --arg views "$$$$(cat $(1)/data/test-views)" --arg split $$* --slurpfile sentences $(1)/data/sentences.jsonl \
+		-f $(here)best-candidates.jq $(1)/data/candidates.test.jsonl >$$@
+$(foreach r,$(rendered),$(foreach t,test train,$(1)/answers/$(r).$(t).jsonl)): $(1)/answers/%.jsonl:
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/render.$$*,refer-render --scene $(1)/scene --text $(1)/text/sentences.safetensors --model $$< \
 		--sentences $$(patsubst .%,%,$$(suffix $$*)) -o $$@)
 $(1)/answers/%.score.json: $(1)/answers/%.jsonl
 	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/truth.jsonl -o $$@ $$<
-$(foreach r,$(rows),$(foreach t,test train,$(eval $(1)/answers/$(r).$(t).jsonl: $(1)/selected/$(r)$(if $(filter ours%,$(r)),,$(if \
+$(foreach r,$(rendered),$(foreach t,test train,$(eval $(1)/answers/$(r).$(t).jsonl: $(1)/selected/$(r)$(if $(filter ours%,$(r)),,$(if \
 	$(filter carried%,$(r)),,.$(t))).safetensors)))
 endef
 
