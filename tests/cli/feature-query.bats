@@ -137,6 +137,23 @@ not() { ! "$@"; }
 	hex=$(tail -c +$((9 + length + begin)) plain.safetensors | head -c $((end - begin)) | xxd -p | tr -d '\n')
 	npy vectors.npy '<f4' '15, 24' "$hex"
 	query --vectors vectors.npy features.safetensors | cmp expected
+	npy more.npy '<f4' '1' $f1
+	for name in vectors arr_0; do
+		mkdir $name
+		cp vectors.npy $name/$name.npy
+		npz vectors.npz more.npy $name/$name.npy
+		query --vectors vectors.npz features.safetensors | cmp expected
+	done
+	# vectors comes before arr_0
+	cp more.npy arr_0.npy
+	npz vectors.npz arr_0.npy vectors/vectors.npy
+	query --vectors vectors.npz features.safetensors | cmp expected
+	npz vectors.npz arr_0.npy
+	refuses 3 "vectors.npz: arr_0.npy: has 1 dimensions, not 2: texts and channels" --vectors vectors.npz features.safetensors
+	npz vectors.npz more.npy
+	refuses 3 "vectors.npz: has no array 'vectors' or 'arr_0'" --vectors vectors.npz features.safetensors
+	echo text >vectors.npz
+	refuses 3 "vectors.npz: not a zip, or its end is missing" --vectors vectors.npz features.safetensors
 	st other.safetensors "{\"clip\":{\"dtype\":\"F32\",\"shape\":[15,24],\"data_offsets\":[0,1440]}}" "$hex"
 	query --vectors other.safetensors features.safetensors | cmp expected
 	npy vectors.npy '<f4' '14, 24' "${hex:192}"
