@@ -303,6 +303,34 @@ Try 'feature-lift --help'." lift -o all.npz all.npz
 	refuses 4 "maps/${view}_f.npy: No such file or directory" maps
 }
 
+@test "means and reliabilities as NumPy has them in float64, of maps of another size" {
+	for python in /usr/bin/python3 python3 ""; do
+		[ -z "$python" ] || ! "$python" -c 'import numpy' 2>/dev/null || break
+	done
+	[ -n "$python" ] || skip "python3 with NumPy is not here"
+	export PYTHONDONTWRITEBYTECODE=1
+	peer=$BATS_TEST_DIRNAME/../peers/feature_lift.py
+	"$python" - "${views[@]}" <<-'END'
+		import sys
+		import numpy as np
+		r = np.random.default_rng(7)
+		for view in sys.argv[1:]:
+		    map = r.standard_normal((20, 30, 7)).astype(np.float32)
+		    map[3, 4] = 0
+		    np.save("maps/" + view + ".npy", map)
+	END
+	for precision in f32 f16; do
+		lift --precision $precision -o features maps
+		"$python" "$peer" compare "$made/weights" maps features
+	done
+	# and not, where a map is another
+	rm "maps/${views[0]}.npy"
+	cp "maps/${views[1]}.npy" "maps/${views[0]}.npy"
+	run "$python" "$peer" compare "$made/weights" maps features
+	[ "$status" = 1 ]
+	"$python" "$peer" time "$made/weights" maps out.npy | jq -e '.seconds >= 0 and .views > 1'
+}
+
 @test "options that do not go together, and outputs that are inputs" {
 	halves
 	local try="
