@@ -14,6 +14,7 @@
 # SEEDS       of the scenes; default 21
 # SYNTH       more options for gs-synth; default --size 246x182 --gaussians 15000
 # PRUNE       reliability under which a Gaussian has no feature; default 0.5
+# COMPONENTS  principal components that features are told by; default: none, features are as they are
 # TRAIN       options of refer-train; default --iterations 2000 and rates four times the paper's; empty: without this row
 # BERT        folder of the language encoder; default: where `make encoder` puts it
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
@@ -28,8 +29,9 @@ SEEDS ?= 21
 SYNTH ?= --size 246x182 --gaussians 15000
 PRUNE ?= 0.5
 TRAIN ?= --iterations 2000 --feature-rate 0.01 --mlp-rate 0.0004
-$(call check,,OUT BIN BERT,SCENES SEEDS SYNTH PRUNE TRAIN)
-$(call check_plain,SCENES SEEDS SYNTH PRUNE TRAIN)
+$(call check,,OUT BIN BERT,SCENES SEEDS SYNTH PRUNE COMPONENTS TRAIN)
+$(call check_plain,SCENES SEEDS SYNTH PRUNE COMPONENTS TRAIN)
+lift_options := --prune $(PRUNE) $(if $(COMPONENTS),--components $(COMPONENTS))
 
 cells := $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(OUT)/$(s)-$(n)))
 kinds := truth detector
@@ -65,7 +67,7 @@ $(1)/data/made-by: FORCE
 	@want='gs-synth --scene $(2) --seed $(3) $(SYNTH)'; [ "$$$$(cat $$@ 2>/dev/null)" = "$$$$want" ] || { rm -f $$@ && \
 		$(tool)$$$$want -q -o $(1)/data && printf '%s\n' "$$$$want" >$$@; }
 $(1)/options/encoder $(1)/options/lift $(1)/options/train: FORCE
-	$$(call keep,$$(if $$(findstring encoder,$$@),$(BERT),$$(if $$(findstring lift,$$@),--prune $(PRUNE),$(TRAIN))))
+	$$(call keep,$$(if $$(findstring encoder,$$@),$(BERT),$$(if $$(findstring lift,$$@),$(lift_options),$(TRAIN))))
 $(1)/scene/cameras.json: $(1)/data/made-by
 	$$(call log,$(1)/log/import,gs-import --cameras $(1)/data/sparse/0 --images $(1)/data/images \
 		--test-views $$$$(cat $(1)/data/test-views) -o $(1)/scene $(1)/data/point_cloud.ply)
@@ -107,7 +109,7 @@ $(foreach k,$(kinds),$(1)/$(k)/features.safetensors): $(1)/%/features.safetensor
 		$(1)/weights/complete $(1)/options/lift
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/$$*.features,feature-lift --scene $(1)/scene --weights $(1)/weights --masks $$< \
-		--text $(1)/text/names.safetensors --uncovered zero --prune $(PRUNE) -o $$@)
+		--text $(1)/text/names.safetensors --uncovered zero $(lift_options) -o $$@)
 $(foreach k,$(kinds),$(1)/$(k)/labels.safetensors): $(1)/%/labels.safetensors: $(1)/masks/%.jsonl $(1)/weights/complete
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/$$*.labels,feature-lift --scene $(1)/scene --weights $(1)/weights --masks $$< -o $$@)
