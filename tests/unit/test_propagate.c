@@ -122,8 +122,8 @@ static void test_propagation(void)
 			snprintf(names[o], sizeof names[o], "o%d", o);
 			pixels[n] = mask_random(&r, H, W, 1);
 			views[n] = (size_t)view;
-			masks[n] = (struct mask){
-				s.views[view].name, NULL, names[o], mask_rle(pixels[n], H, W), score, NAN};
+			masks[n] = (struct mask){s.views[view].name, NULL, names[o],
+				mask_rle(pixels[n], H, W), score, NAN, NULL};
 			n++;
 		}
 	CHECK(!pool_make(&pool, masks, n, &e) && !pool_select(&pool, SELECT_TOP1, 0.3, &e), "%s", e.message);

@@ -234,8 +234,8 @@ static void test_seen(void)
 
 	for (size_t i = 0; i < 8; i++) {
 		truths[i] = row(20, ones[i]);
-		truth[i] = (struct mask){views[i], NULL, "o", truths[i], 1, NAN};
-		wholes[i] = (struct mask){views[i], NULL, "o", i % 2 ? whole : half, 1, NAN};
+		truth[i] = (struct mask){views[i], NULL, "o", truths[i], 1, NAN, NULL};
+		wholes[i] = (struct mask){views[i], NULL, "o", i % 2 ? whole : half, 1, NAN, NULL};
 		pairs[i] = (struct score_pair){.truth_index = i, .truth = &truth[i]};
 	}
 	CHECK(!score_seen(sets, pairs, 8, truth, 8, wholes, 8, &unknown, &e) && !unknown, "%zu", unknown);
@@ -263,9 +263,10 @@ static void test_seen(void)
 
 static void test_views(void)
 {
-	struct mask truth[] = {{"u", NULL, "1", {0}, 1, NAN}, {"v", NULL, "2", {0}, 1, NAN},
-		{"u", NULL, "3", {0}, 1, NAN}, {"w", NULL, "4", {0}, 1, NAN}};
-	const struct mask own[] = {{"w", NULL, "x", {0}, 1, NAN}}, other[] = {{"u", NULL, "x", {0}, 1, NAN}};
+	struct mask truth[] = {{"u", NULL, "1", {0}, 1, NAN, NULL}, {"v", NULL, "2", {0}, 1, NAN, NULL},
+		{"u", NULL, "3", {0}, 1, NAN, NULL}, {"w", NULL, "4", {0}, 1, NAN, NULL}};
+	const struct mask own[] = {{"w", NULL, "x", {0}, 1, NAN, NULL}},
+			  other[] = {{"u", NULL, "x", {0}, 1, NAN, NULL}};
 	size_t n = 4;
 	struct err e;
 
