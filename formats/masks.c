@@ -282,10 +282,14 @@ static void put_number(FILE *out, const char *before, double x)
 	fprintf(out, "%s%s", before, number_text(text, x));
 }
 
+/* Whole numbers without an exponent, as pixels are counted. */
 static void put_numbers(FILE *out, const char *before, const double *x, int n)
 {
 	for (int i = 0; i < n; i++)
-		put_number(out, i ? "," : before, x[i]);
+		if (x[i] == floor(x[i]) && fabs(x[i]) < 1e9)
+			fprintf(out, "%s%.0f", i ? "," : before, x[i] + 0.0);
+		else
+			put_number(out, i ? "," : before, x[i]);
 	fputc(']', out);
 }
 

@@ -86,7 +86,8 @@ $(foreach w,sentences masks truth,$(made)/$(w).jsonl): $(made)/%.jsonl: $(said) 
 # Masks of objects whatever the sentence, for questions.
 $(made)/objects.jsonl: $(said) $(OUT)/log/views.command
 	@mkdir -p $(@D)
-	$(tool)mask-import --quiet $(said) | jq -c --arg test $(call quoted,TEST_VIEWS) 'select(.view as $$v | $$test | split(",") | index($$v))' >$@
+	$(tool)mask-import --quiet -o $@.all $(said) && \
+		jq -c --arg test $(call quoted,TEST_VIEWS) 'select(.view as $$v | $$test | split(",") | index($$v))' $@.all >$@ && rm $@.all
 else
 # Names of classes have blanks, so of 3D-OVS's pictures a list of their times is watched.
 $(made)/segmentations: FORCE

@@ -38,10 +38,11 @@ kinds := truth detector
 by_features := cosine relevancy hyperplane
 
 # The rows: NAME, where the steps that a system needs are logged, and the file that is its field; none of both where no scene is looked at.
+by_pixels := cosine2d relevancy2d
 rendered := carried-first $(foreach k,$(kinds),$(addprefix $(k)-,$(by_features) identity)) $(if $(TRAIN),ours-trained) ours-lifted
-rows := views-sam $(rendered)
+rows := views-sam carried-first $(foreach k,$(kinds),$(addprefix $(k)-,$(by_pixels) $(by_features) identity)) $(filter ours%,$(rendered))
 positives := select.top1 lift.top1
-$(foreach k,$(kinds),$(foreach r,$(by_features),$(eval steps.$(k)-$(r) = $(k).features $(k)-$(r))$(eval field.$(k)-$(r) = $(k)/features)))
+$(foreach k,$(kinds),$(foreach r,$(by_features) $(by_pixels),$(eval steps.$(k)-$(r) = $(k).features $(k)-$(r))$(eval field.$(k)-$(r) = $(k)/features)))
 $(foreach k,$(kinds),$(eval steps.$(k)-hyperplane += $(positives))$(eval steps.$(k)-identity = $(k).labels $(k)-identity \
 	$(positives))$(eval field.$(k)-identity = $(k)/labels))
 steps.carried-first = select.first lift.first carried.labels carried-first
@@ -53,6 +54,8 @@ field.ours-lifted = selected/ours-lifted
 
 rule.cosine = --rule cosine
 rule.relevancy = --rule relevancy --relative
+rule.cosine2d = --rule cosine
+rule.relevancy2d = --rule relevancy --relative
 rule.hyperplane = --rule hyperplane
 rule.identity = --rule identity
 
@@ -152,8 +155,17 @@ $(1)/selected/$(2)-$(3).$(4).safetensors: $(1)/$(field.$(2)-$(3)).safetensors $(
 		$(if $(filter hyperplane identity,$(3)),--positives $(1)/lifted/top1.safetensors) -o $$@ $$<)
 endef
 
+# The same for pixels of rendered features: its masks are the answers. $(call pixel_rules,FOLDER,KIND,RULE,SPLIT)
+define pixel_rules
+$(1)/answers/$(2)-$(3).$(4).jsonl: $(1)/$(field.$(2)-$(3)).safetensors $(1)/text/sentences.safetensors $(if $(filter relevancy2d,$(3)),$(1)/text/canonical.safetensors)
+	@mkdir -p $$(@D)
+	$$(call log,$(1)/log/$(2)-$(3)$(if $(filter train,$(4)),.train),feature-query $(rule.$(3)) --pixels $(1)/scene --least $(PRUNE) \
+		--text $(1)/text/sentences.safetensors --sentences $(4) $(if $(filter relevancy2d,$(3)),--canonical $(1)/text/canonical.safetensors) -o $$@ $$<)
+endef
+
 $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(eval $(call cell_rules,$(OUT)/$(s)-$(n),$(s),$(n)))))
 $(foreach c,$(cells),$(foreach k,$(kinds),$(foreach r,$(by_features) identity,$(foreach t,test train,$(eval $(call rule_rules,$(c),$(k),$(r),$(t)))))))
+$(foreach c,$(cells),$(foreach k,$(kinds),$(foreach r,$(by_pixels),$(foreach t,test train,$(eval $(call pixel_rules,$(c),$(k),$(r),$(t)))))))
 
 systems: $(foreach c,$(cells),$(foreach r,$(rows),$(foreach t,test train,$(c)/answers/$(r).$(t).score.json)))
 	@{ $(foreach r,$(rows),printf '%s\t%s\t%s\n' $(r) '$(field.$(r))' '$(steps.$(r))';) } | CELLS='$(cells)' PUBLISHED=$(here)published.tsv \

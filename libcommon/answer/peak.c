@@ -30,10 +30,31 @@ static void sum_line(const double *from, double *to, size_t step, int n, int win
 	}
 }
 
+/* The sums of all windows of sums, in place. */
+static void sum_windows(double *sums, double *rows, int height, int width, int window)
+{
+	for (int r = 0; r < height; r++)
+		sum_line(
+			sums + (size_t)r * (size_t)width, rows + (size_t)r * (size_t)width, 1, width, window);
+	for (int c = 0; c < width; c++)
+		sum_line(rows + c, sums + c, (size_t)width, height, window);
+}
+
+void peak_mean(const float *image, int height, int width, int window, double *room, double *to)
+{
+	const size_t pixels = (size_t)height * (size_t)width;
+
+	for (size_t p = 0; p < pixels; p++)
+		to[p] = (double)image[p];
+	sum_windows(to, room, height, width, window);
+	for (size_t p = 0; p < pixels; p++)
+		to[p] /= (double)window * window;
+}
+
 int peak_find(const float *image, int height, int width, int window, int *x, int *y, struct err *e)
 {
 	const size_t pixels = (size_t)height * (size_t)width;
-	double *sums = mem_alloc(2 * pixels, sizeof *sums, "peak", e), *rows = sums + pixels;
+	double *sums = mem_alloc(2 * pixels, sizeof *sums, "peak", e);
 	size_t best = 0;
 	int is_any = 0;
 
@@ -43,11 +64,8 @@ int peak_find(const float *image, int height, int width, int window, int *x, int
 		sums[p] = image[p] > 0 ? (double)image[p] : 0;
 		is_any |= image[p] > 0;
 	}
-	for (int r = 0; r < height && is_any; r++)
-		sum_line(
-			sums + (size_t)r * (size_t)width, rows + (size_t)r * (size_t)width, 1, width, window);
-	for (int c = 0; c < width && is_any; c++)
-		sum_line(rows + c, sums + c, (size_t)width, height, window);
+	if (is_any)
+		sum_windows(sums, sums + pixels, height, width, window);
 	for (size_t p = 1; p < pixels && is_any; p++)
 		best = sums[p] > sums[best] ? p : best;
 	free(sums);

@@ -14,4 +14,7 @@ enum { PEAK_MAX_WINDOW = 1024 };
  * with *e set. */
 int peak_find(const float *image, int height, int width, int window, int *x, int *y, struct err *e);
 
+/* to (height,width): the mean around each pixel, of numbers of any sign; `room` (height,width) is scratch. */
+void peak_mean(const float *image, int height, int width, int window, double *room, double *to);
+
 #endif

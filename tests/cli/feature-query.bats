@@ -178,6 +178,45 @@ not() { ! "$@"; }
 	done
 }
 
+@test "--pixels: masks and peaks of the test views" {
+	query --pixels scene --least 0.5 --sentences test -o pixels.jsonl features.safetensors
+	"$BIN/gs-check" pixels.jsonl
+	[ "$(jq -r .view pixels.jsonl | sort -u | paste -sd,)" = "$(cat "$made/test-views")" ]
+	[ "$(jq -r .ref pixels.jsonl)" = "$(for v in $(tr , ' ' <"$made/test-views"); do jq -r 'select(.split == "test").ref' "$made/sentences.jsonl"; done)" ]
+	jq -se 'all(.[]; has("peak") and .score <= 1)' pixels.jsonl
+	# the names find their objects, and point at them
+	"$BIN/miou-score" --json -q --predicted-views --truth "$made/truth.jsonl" pixels.jsonl | jq -e '.miou > 0.7 and .peak_in_box == 1'
+	relevancy="--rule relevancy --relative --canonical canonical.safetensors --pixels scene --least 0.5 --sentences test"
+	query $relevancy -o relevant.jsonl features.safetensors
+	# of two levels that which says more: the other has nothing
+	"$BIN/feature-lift" --scene scene --weights "$made/weights" --masks "$made/masks.jsonl" --text names.safetensors --uncovered zero \
+		--prune 1 -o nothing.safetensors
+	query $relevancy nothing.safetensors features.safetensors | cmp - relevant.jsonl
+	query $relevancy features.safetensors nothing.safetensors | cmp - relevant.jsonl
+	for n in 1 7; do query --threads $n $relevancy features.safetensors | cmp - relevant.jsonl; done
+}
+
+@test "--pixels: as NumPy has them in float64" {
+	for python in /usr/bin/python3 python3 ""; do
+		[ -z "$python" ] || ! "$python" -c 'import numpy' 2>/dev/null || break
+	done
+	[ -n "$python" ] || skip "python3 with NumPy is not here"
+	export PYTHONDONTWRITEBYTECODE=1
+	peer=$BATS_TEST_DIRNAME/../peers/query_pixels.py
+	"$BIN/gs-weigh" -q --split test -o weights scene
+	view=$(cut -d, -f1 "$made/test-views")
+	"$BIN/feature-lift" --scene scene --weights "$made/weights" --masks "$made/masks.jsonl" --text names.safetensors --precision f32 -o single.safetensors
+	query --pixels scene --least 0.3 --smooth 4 -o masks.jsonl single.safetensors
+	"$python" "$peer" "weights/$view.safetensors" single.safetensors plain.safetensors all - 0.3 4 masks.jsonl
+	for smooth in 1 9; do
+		query --rule relevancy --relative --canonical canonical.safetensors --pixels scene --smooth $smooth --sentences test -o masks.jsonl single.safetensors
+		"$python" "$peer" "weights/$view.safetensors" single.safetensors plain.safetensors test canonical.safetensors 0 $smooth masks.jsonl
+	done
+	# and not with another window
+	run "$python" "$peer" "weights/$view.safetensors" single.safetensors plain.safetensors test canonical.safetensors 0 3 masks.jsonl
+	[ "$status" = 1 ]
+}
+
 @test "files that do not belong together" {
 	refuses 3 "labels.safetensors: has labels, the rule needs features" labels.safetensors
 	refuses 3 "features.safetensors: has features, the rule needs labels" --rule identity --positives lifted.safetensors features.safetensors
@@ -208,6 +247,17 @@ not() { ! "$@"; }
 	mkdir -p run/lifted && cp -r "$made/scene" run/scene && cp selection run/lifted/model.safetensors && cp "$made/text.safetensors" run
 	says 3 "refer-ask: run/lifted/model.safetensors: is a selection; questions need one of refer-lift" \
 		"$BIN/refer-ask" --encoder "$made/encoder" run "where is it?"
+}
+
+@test "--pixels: what does not go with it" {
+	local try=$'\n'"Try 'feature-query --help'."
+	says 2 "feature-query: --pixels is for --rule cosine and relevancy$try" query --rule hyperplane --positives lifted.safetensors --pixels scene features.safetensors
+	says 2 "feature-query: --smooth needs --pixels$try" query --smooth 3 features.safetensors
+	says 2 "feature-query: --least needs --pixels$try" query --least 0.5 features.safetensors
+	refuses 4 "none/splats.safetensors: No such file or directory" --pixels none features.safetensors
+	"$BIN/gs-synth" -q --objects 2 --views 2 --size 32x24 --gaussians 1000 -o other
+	"$BIN/gs-import" -q -o other/scene other/point_cloud.ply
+	refuses 3 "features.safetensors: is of a scene of 2000 Gaussians, other/scene has 1000" --pixels other/scene features.safetensors
 }
 
 @test "options that do not go together, and outputs that are inputs" {

@@ -31,7 +31,7 @@ reads() {
 }
 
 @test "a peak and boxes come back, corners in order" {
-	printf '%s\n' "{\"view\":\"v\",\"object\":\"o\",\"peak\":[1.5,0],\"boxes\":[[3,0,1,2],[0,1,0.25,4]],$mask}" \
+	printf '%s\n' "{\"view\":\"v\",\"object\":\"o\",\"peak\":[1.5,30],\"boxes\":[[3,0,1,2],[0,1,0.25,4]],$mask}" \
 		"{\"view\":\"w\",\"object\":\"o\",\"peak\":null,\"boxes\":null,$mask}" "{\"view\":\"x\",\"object\":\"o\",\"boxes\":[],$mask}" >x.jsonl
 	"$BIN/mask-import" -o y.jsonl x.jsonl
 	sed 's/\[3,0,1,2\]/[1,0,3,2]/; s/"peak":null,"boxes":null,//; s/"boxes":\[\],//' x.jsonl | cmp - y.jsonl

@@ -21,11 +21,11 @@ not() { ! "$@"; }
 @test "a row for each system and stand-in, with all figures" {
 	cd "$OUT"
 	sed -n '/^### /,$p' "$BATS_FILE_TMPDIR/table" | cmp systems.md
-	[ "$(grep -c '^| .* | [0-9.]* | [0-9.]* | [0-9.]* | [0-9]* | [0-9]* |$' systems.md)" = 11 ]
+	[ "$(grep -c '^| .* | [0-9.]* | [0-9.]* | [0-9.]* | [0-9]* | [0-9]* |$' systems.md)" = 15 ]
 	[ "$(grep -c '^| .* | [0-9.]* | [0-9.]* | - | - | - |$' systems.md)" = 1 ]
-	[ "$(grep -c '| stand-in: ' systems.md)" = 9 ]
+	[ "$(grep -c '| stand-in: ' systems.md)" = 13 ]
 	grep -qE "^\| Grounded SAM: masks of each view alone \| 15.8 \| stand-in: a synthetic detector's masks of the test view itself \| [0-9]" systems.md
-	grep -qE '^\| LangSplat: relevancy \| 13.9 \| stand-in: names of true masks \| ' systems.md
+	grep -qE '^\| LangSplat: relevancy, pixels \| 13.9 \| stand-in: names of true masks \| ' systems.md
 }
 
 @test "the figures are those of the files" {
@@ -34,6 +34,8 @@ not() { ! "$@"; }
 	bytes=$(($(wc -c <truth/features.safetensors) / 1500))
 	grep -F 'GOI: hyperplane | 20.5 | stand-in: names of true masks' ../systems.md |
 		grep -qE "\| $(printf %.1f "$miou") \|.* $bytes \|$"
+	"$BIN/gs-check" answers/truth-relevancy2d.test.jsonl
+	jq -se 'length > 0 and all(.[]; has("peak"))' answers/truth-cosine2d.test.jsonl
 	"$BIN/gs-check" selected/truth-cosine.test.safetensors | grep -q 'refer.selection, 3 sentences'
 	not grep -q '2"' text/names.jsonl
 	[ "$(jq -r .text text/canonical.jsonl | paste -sd' ')" = "object things stuff texture" ]
