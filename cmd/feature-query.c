@@ -1,10 +1,11 @@
 /* feature-query: which Gaussians sentences select, by lifted features or labels. */
+#include "answer/peak.h"
 #include "cli/cli.h"
 #include "cmd/jobs/feature_query.h"
 
 #include <math.h>
 
-static struct feature_query_options options = {.sentences = QUERY_ALL, .threshold = NAN};
+static struct feature_query_options options = {.sentences = QUERY_ALL, .threshold = NAN, .smooth = 1};
 static const char *files[QUERY_MAX_LEVELS];
 
 static const struct cli_option table[] = {
@@ -26,6 +27,14 @@ static const struct cli_option table[] = {
 	{"relative", 0, CLI_FLAG, &options.is_relative, NULL,
 		"relevancy: the threshold is on the range of a sentence's relevancies, brought to -1 to 1", 0,
 		0},
+	{"pixels", 0, CLI_STRING, &options.pixels, "SCENE",
+		"cosine, relevancy: for the pixels of the features rendered in the test views of SCENE: masks instead of a selection",
+		0, 0},
+	{"least", 0, CLI_REAL, &options.least, "L",
+		"with --pixels: a pixel whose feature is shorter has none (default 0)", 0, 1},
+	{"smooth", 0, CLI_INT, &options.smooth, "N",
+		"with --pixels: means over N x N pixels (LERF, the default: 1; LangSplat: 30)", 1,
+		PEAK_MAX_WINDOW},
 	{0}};
 
 static const struct cli_tool tool = {.name = "feature-query",
@@ -47,6 +56,10 @@ static void check(const struct cli *c)
 		cli_usage(c, "--rule relevancy needs --canonical");
 	if (by_examples && !options.positives)
 		cli_usage(c, "--rule hyperplane and --rule identity need --positives");
+	if (options.pixels && by_examples)
+		cli_usage(c, "--pixels is for --rule cosine and relevancy");
+	if ((options.smooth > 1 || options.least > 0) && !options.pixels)
+		cli_usage(c, "%s needs --pixels", options.smooth > 1 ? "--smooth" : "--least");
 	if (c->operand_count > 1 && options.rule != RULE_RELEVANCY)
 		cli_usage(c, "several FEATURES need --rule relevancy");
 	struct cli_file features[QUERY_MAX_LEVELS + 1] = {{0}};
@@ -56,7 +69,8 @@ static void check(const struct cli *c)
 	}
 	options.features = files;
 	options.levels = (size_t)c->operand_count;
-	cli_refuse_overwrite(c, "text vectors against canonical positives", "output", features);
+	cli_refuse_overwrite(
+		c, "text vectors against canonical positives pixels:" CLI_SCENE_PARTS, "output", features);
 	cli_refuse_terminal(c);
 }
 

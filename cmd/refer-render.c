@@ -1,4 +1,5 @@
 /* refer-render: the masks of sentences in any view, from a model. */
+#include "answer/peak.h"
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cmd/jobs/draw.h"
@@ -31,6 +32,9 @@ static const struct cli_option table[] = {REQUEST_FILES(options.request),
 		0, 0},
 	{"amodal", 0, CLI_FLAG, &options.draw.is_amodal, NULL,
 		"outlines of whole objects as if nothing hid them, and the share in sight", 0, 0},
+	{"peak", 0, CLI_INT, &options.draw.peak, "N",
+		"the pixel where the mean response of N x N pixels is largest too, in the key peak (LERF: 1, LangSplat: 30)",
+		1, PEAK_MAX_WINDOW},
 	{"size", 0, CLI_SIZE, &options.draw.size, "WxH", "size of the masks (default: the view's)", 1, 65536},
 	{"scale", 0, CLI_REAL, &options.draw.scale, "S",
 		"size of the masks as a share of the view's (default 1)", 1e-4, 16},
@@ -77,6 +81,8 @@ static void check(const struct cli *c)
 		c, CLI_SCENE " text model", "output png:*.png response:*.png overlay:*.png", NULL);
 	if (options.draw.size[0] && options.draw.scale)
 		cli_usage(c, "--size and --scale do not go together");
+	if (options.draw.peak && options.draw.is_amodal)
+		cli_usage(c, "--peak and --amodal do not go together");
 	options.draw.is_each = o->viewpoint && !strcmp(o->viewpoint, "each");
 }
 

@@ -36,6 +36,7 @@ void annotations_free(struct annotations *a)
 		free(a->items[i].name);
 		free(a->items[i].ref);
 		rle_free(&a->items[i].mask);
+		mask_place_free(a->items[i].boxes);
 	}
 	free(a->items);
 	*a = (struct annotations){0};
@@ -218,6 +219,23 @@ static int read_labelme(struct reading *r, const cJSON *root, struct err *e)
 	return bad ? -1 : 0;
 }
 
+/* The "bbox" of an object, [left, top, right, bottom], where it has one. */
+static int take_box(struct reading *r, const cJSON *object, struct annotation *on, struct err *e)
+{
+	const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, "bbox");
+	size_t count;
+
+	if (!cJSON_IsArray(list))
+		return 0;
+	if (take_points(r, list, &count, e))
+		return -1;
+	if (count != 2)
+		return err_set(e, ERR_FORMAT, "%s: key 'bbox' is not two corners", r->where);
+	if (!on->boxes && !(on->boxes = mask_place_new(e)))
+		return -1;
+	return mask_place_add_box(on->boxes, r->points, e);
+}
+
 /* ISAT's, as LERF-OVS has it: a polygon of each object. */
 static int read_object(struct reading *r, const cJSON *object, const char *view, struct err *e)
 {
@@ -232,7 +250,7 @@ static int read_object(struct reading *r, const cJSON *object, const char *view,
 		return 0;
 	}
 	struct annotation *on = find(r, view, name, e);
-	return on && !draw(r, on, count, e) ? 0 : -1;
+	return on && !draw(r, on, count, e) ? take_box(r, object, on, e) : -1;
 }
 
 static int read_isat(struct reading *r, const cJSON *root, struct err *e)

@@ -4,6 +4,7 @@
 #define FORMATS_ANNOTATIONS_H
 
 #include "base/err.h"
+#include "mask/mask_place.h"
 #include "mask/rle.h"
 
 #include <stddef.h>
@@ -11,9 +12,10 @@
 /* What a picture has of one label, or one of the things that a detector has found in it. */
 struct annotation {
 	char *view, *name;
-	char *ref;	 /* the sentence that the detector was given, or NULL */
-	double score;	 /* of a detector, or NAN */
-	struct rle mask; /* all shapes of the label */
+	char *ref;		  /* the sentence that the detector was given, or NULL */
+	double score;		  /* of a detector, or NAN */
+	struct rle mask;	  /* all shapes of the label */
+	struct mask_place *boxes; /* of ISAT and LERF-OVS, a box for each shape that has one; else NULL */
 	size_t shapes;
 };
 

@@ -31,6 +31,57 @@ static int read_visible(const struct jsonl *j, const cJSON *object, double *visi
 	return 0;
 }
 
+/* A list of so many finite numbers. */
+static int read_list_of(const cJSON *list, double *values, int n)
+{
+	const cJSON *item = list ? list->child : NULL;
+
+	if (!cJSON_IsArray(list) || cJSON_GetArraySize(list) != n)
+		return -1;
+	for (int i = 0; i < n; i++, item = item->next) {
+		if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
+			return -1;
+		values[i] = item->valuedouble;
+	}
+	return 0;
+}
+
+static int read_boxes(const struct jsonl *j, const cJSON *boxes, struct mask_place *place, struct err *e)
+{
+	const cJSON *item;
+	double box[4];
+	size_t i = 0;
+
+	if (!cJSON_IsArray(boxes))
+		return jsonl_err(j, e, "key 'boxes' is not a list");
+	cJSON_ArrayForEach(item, boxes)
+	{
+		if (read_list_of(item, box, 4))
+			return jsonl_err(j, e, "key 'boxes': item %zu is not [left,top,right,bottom]", i);
+		if (mask_place_add_box(place, box, e))
+			return -1;
+		i++;
+	}
+	return 0;
+}
+
+static int read_place(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
+{
+	const cJSON *peak = cJSON_GetObjectItemCaseSensitive(object, "peak"),
+		    *boxes = cJSON_GetObjectItemCaseSensitive(object, "boxes");
+
+	if ((!peak || cJSON_IsNull(peak)) && (!boxes || cJSON_IsNull(boxes)))
+		return 0;
+	if (!(m->place = mask_place_new(e)))
+		return -1;
+	if (peak && !cJSON_IsNull(peak)) {
+		if (read_list_of(peak, m->place->peak, 2))
+			return jsonl_err(j, e, "key 'peak' is not [column,row]");
+		m->place->has_peak = 1;
+	}
+	return boxes && !cJSON_IsNull(boxes) ? read_boxes(j, boxes, m->place, e) : 0;
+}
+
 /* COCO's uncompressed list of lengths. */
 static int read_list(
 	const struct jsonl *j, const cJSON *list, struct rle *mask, int height, int width, struct err *e)
@@ -122,7 +173,7 @@ static int read_record(const struct jsonl *j, const cJSON *object, struct mask *
 	const char *path = NULL;
 
 	if (read_names(j, object, m, e) || jsonl_number(j, object, "score", &m->score, e) ||
-		read_visible(j, object, &m->visible, e))
+		read_visible(j, object, &m->visible, e) || read_place(j, object, m, e))
 		return -1;
 	if (!m->ref && !m->object)
 		return jsonl_err(j, e, "neither key 'ref' nor key 'object'");
@@ -231,6 +282,27 @@ static void put_number(FILE *out, const char *before, double x)
 	fprintf(out, "%s%s", before, number_text(text, x));
 }
 
+/* Whole numbers without an exponent, as pixels are counted. */
+static void put_numbers(FILE *out, const char *before, const double *x, int n)
+{
+	for (int i = 0; i < n; i++)
+		if (x[i] == floor(x[i]) && fabs(x[i]) < 1e9)
+			fprintf(out, "%s%.0f", i ? "," : before, x[i] + 0.0);
+		else
+			put_number(out, i ? "," : before, x[i]);
+	fputc(']', out);
+}
+
+static void put_place(FILE *out, const struct mask_place *p)
+{
+	if (p->has_peak)
+		put_numbers(out, ",\"peak\":[", p->peak, 2);
+	for (size_t i = 0; i < p->box_count; i++)
+		put_numbers(out, i ? ",[" : ",\"boxes\":[[", p->boxes[i], 4);
+	if (p->box_count)
+		fputc(']', out);
+}
+
 /* What is known of a mask but whose it is. */
 static int put_shape(FILE *out, const struct mask *m, struct err *e)
 {
@@ -242,6 +314,8 @@ static int put_shape(FILE *out, const struct mask *m, struct err *e)
 		put_number(out, ",\"score\":", m->score);
 	if (!isnan(m->visible))
 		put_number(out, ",\"visible\":", m->visible);
+	if (m->place)
+		put_place(out, m->place);
 	fprintf(out, ",\"segmentation\":{\"size\":[%d,%d],\"counts\":", m->rle.height, m->rle.width);
 	const int bad = jsonl_put_string(out, "", counts, e);
 	fputc('}', out);

@@ -25,7 +25,8 @@ int masks_pool(struct pool *p, const struct masks *set, const long *lines, const
 int masks_views(const struct masks *set, const long *lines, const char *path, const struct cameras *cameras,
 	size_t *views, struct err *e);
 
-/* One line. Keys in the order view, ref, object, score, visible, segmentation; absent ones left out. */
+/* One line. Keys in the order view, ref, object, score, visible, peak, boxes, segmentation; absent ones left
+ * out. */
 int masks_put(FILE *out, const struct mask *m, struct err *e);
 /* The same with a key "parts": objects of the parts' object, score, visible and segmentation. */
 int masks_put_parts(FILE *out, const struct mask *m, const struct mask *parts, size_t n, struct err *e);

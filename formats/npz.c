@@ -65,16 +65,41 @@ int npz_has(const struct npz *z, const char *name, const char *suffix, struct er
 	return find(z, name, suffix, &place, e) ? -1 : place != NAMES_NONE;
 }
 
+/* Messages call it `full`. */
+static int read_entry(struct npz *z, size_t place, struct npy_file *a, const char *full, struct err *e)
+{
+	char *data = NULL;
+	size_t len = 0;
+
+	return archive_read_entry(&z->zip, &z->entries[place], &data, &len, e) ||
+			       npy_open_bytes(a, data, len, full, e)
+		       ? -1
+		       : 0;
+}
+
+int npz_entry(struct npz *z, size_t place, struct npy_file *a, struct err *e)
+{
+	const char *file = z->entries[place].name;
+	const size_t room = strlen(z->path) + strlen(file) + sizeof ": ";
+	char *full = mem_alloc(room, 1, "array", e);
+
+	if (!full)
+		return -1;
+	snprintf(full, room, "%s: %s", z->path, file);
+	const int bad = read_entry(z, place, a, full, e);
+	free(full);
+	return bad;
+}
+
 int npz_array(
 	struct npz *z, const char *name, const char *suffix, struct npy_file *a, char **called, struct err *e)
 {
-	char *full = join(z->path, name, suffix, e), *data = NULL;
-	size_t place = 0, len = 0;
+	char *full = join(z->path, name, suffix, e);
+	size_t place = 0;
 	int bad = !full || find(z, name, suffix, &place, e);
 	if (!bad && place == NAMES_NONE)
 		bad = err_set(e, ERR_FORMAT, "%s: is not there", full);
-	bad = bad || archive_read_entry(&z->zip, &z->entries[place], &data, &len, e) ||
-	      npy_open_bytes(a, data, len, full, e);
+	bad = bad || read_entry(z, place, a, full, e);
 	if (bad || !called)
 		free(full);
 	else

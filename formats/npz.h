@@ -26,6 +26,9 @@ int npz_has(const struct npz *z, const char *name, const char *suffix, struct er
 int npz_array(struct npz *z, const char *name, const char *suffix, struct npy_file *a, char **called,
 	struct err *e);
 
+/* Opens the array of that place among the entries, as npz_array does. */
+int npz_entry(struct npz *z, size_t place, struct npy_file *a, struct err *e);
+
 /* The first of these names that an array has; NULL with *e where none has. */
 const char *npz_main(const struct npz *z, const char *const *names, size_t n, struct err *e);
 

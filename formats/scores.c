@@ -125,6 +125,10 @@ static void put_text(FILE *out, const struct scores *s)
 	for (int k = 0; k < 3; k++)
 		fprintf(out, "P@%-10g %6.2f %%\n", score_cut[k], 100 * all->precision[k]);
 	fprintf(out, "right object %6.2f %%\n", 100 * all->right);
+	if (all->peaks) {
+		fprintf(out, "peak in box  %6.2f %%\n", 100 * all->in_box);
+		fprintf(out, "peak in mask %6.2f %%\n", 100 * all->in_mask);
+	}
 	fprintf(out, "pairs        %6zu\nmissing      %6zu\nempty truth  %6zu\n", all->pairs, all->missing,
 		all->empty_truth);
 	if (s->how)
@@ -214,7 +218,10 @@ static int add_all(cJSON *root, const struct scores *s)
 	struct section sections[SECTIONS];
 	const int n = sections_of(sections, s);
 	int is_whole = add_number(root, "miou", all->miou) && add_number(root, "oiou", all->oiou) &&
-		       add_precisions(root, all, &s->all) && add_number(root, "pairs", (double)all->pairs) &&
+		       add_precisions(root, all, &s->all) &&
+		       (!all->peaks || (add_number(root, "peak_in_box", all->in_box) &&
+					       add_number(root, "peak_in_mask", all->in_mask))) &&
+		       add_number(root, "pairs", (double)all->pairs) &&
 		       add_number(root, "empty_truth", (double)all->empty_truth) &&
 		       add_number(root, "missing", (double)all->missing);
 

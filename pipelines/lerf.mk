@@ -13,22 +13,28 @@
 #             default is the masks that it has of training views
 # TEST_VIEWS  of Ref-LERF: names of the test views. Default for a DATA that ends in waldo_kitchen: those of the paper's program.
 #             The others' are those with labels
+# QUESTIONS   more sentences, JSON Lines, which may mean one thing, several or none: key objects, names as the labels have them; optional
+# PEAK        of LERF-OVS: pixels of a side of the window in which localisation averages; default 30, as LangSplat has it, for pictures of 988x731; LERF: 1
 # OUT         folder for everything that is made; default build/lerf/ and the target and the scene's name
 # SCALE, BERT, BIN   as in lift.mk
 #
 # Each runs lift.mk, scores its answers in OUT/score.json, and prints mIoU and the published figures of the benchmark, for all of its scenes together.
 # Ref-LERF: mIoU over the test views' own sentences, empty truths left out; a sentence's mask is its own, and no sentence of a test
 # view is learnt from unless a training view has it too. LERF-OVS: mIoU over the labels of all test views, shapes of one
-# category together; a query is the category's name. 3D-OVS: the same of its
-# classes, each by itself: no class is told from the others in a pixel. Not here: LERF's localisation, which is of a map and not of a mask.
+# category together; a query is the category's name. Published figures there are of two kinds: a threshold on the relevancy of each pixel (2D), or
+# Gaussians selected and rendered (3D), which is what these tools do. Localisation is of the pixel around which the rendered responses
+# of PEAK x PEAK pixels are largest, in a box of the labels or in their mask. 3D-OVS: mIoU of its
+# classes, each by itself: no class is told from the others in a pixel.
+# QUESTIONS are scored in OUT/questions.json as Multi3DRefer and GRES score them (miou-score --answers), against the true masks of objects.
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
 include $(here)common.mk
 # The workflow gets what is said below, and nothing else.
 MAKEOVERRIDES :=
 benchmark := $(or $(filter ref-lerf lerf-ovs 3d-ovs,$(MAKECMDGOALS)),ref-lerf)
-$(call check,DATA SPLATS $(if $(filter lerf-ovs,$(benchmark)),LABELS) $(if $(filter ref-lerf,$(benchmark)),,CANDIDATES),DATA SPLATS LABELS CANDIDATES OUT,TEST_VIEWS SCALE BERT BIN)
+$(call check,DATA SPLATS $(if $(filter lerf-ovs,$(benchmark)),LABELS) $(if $(filter ref-lerf,$(benchmark)),,CANDIDATES),DATA SPLATS LABELS CANDIDATES QUESTIONS OUT,PEAK TEST_VIEWS SCALE BERT BIN)
 name := $(notdir $(patsubst %/,%,$(DATA)))
+PEAK ?= 30
 OUT ?= build/lerf/$(benchmark)/$(name)
 kitchen := frame_00019,frame_00035,frame_00067,frame_00105,frame_00162
 TEST_VIEWS ?= $(if $(filter waldo_kitchen,$(name)),$(kitchen))
@@ -47,18 +53,24 @@ help:
 
 # $(call flow,TEST VIEWS,MASKS)
 flow = @$(MAKE) --no-print-directory -f $(here)lift.mk SCENE=$(OUT) SPLATS=$(SPLATS) CAMERAS=$(DATA)/sparse/0 IMAGES=$(DATA)/images \
-	TEST_VIEWS=$(1) SENTENCES=$(made)/sentences.jsonl $(2) $(if $(SCALE),SCALE=$(call \
+	TEST_VIEWS=$(1) SENTENCES=$(made)/sentences.jsonl $(2) $(if $(QUESTIONS),ASK=$(QUESTIONS)) $(if $(filter lerf-ovs,$(benchmark)),RENDER=$(call quote,--peak $(PEAK))) $(if $(SCALE),SCALE=$(call \
 	quoted,SCALE)) BERT=$(call quoted,BERT) BIN=$(call quoted,BIN)
 # Truth is of the test views alone, so only what is answered there is scored.
 score = @$(tool)miou-score --json --quiet --predicted-views --truth $(made)/truth.jsonl -o $(OUT)/score.json $(OUT)/lifted/predictions.test.jsonl && \
-	printf '\n%s: mIoU %.1f in test views (%s/score.json)\n' '$(name)' "$$(jq '100 * .miou' $(OUT)/score.json)" '$(OUT)'
-published = @printf '\nPublished mIoU on %s, mean over its scenes:\n' $(1) && awk -F '\t' '$$1 == "row" && $$2 == "$(2)" { printf "  %-28s %s\n", $$4, $$5 }' \
+	printf '\n%s: mIoU %.1f in test views (%s/score.json)\n' '$(name)' "$$(jq '100 * .miou' $(OUT)/score.json)" '$(OUT)'$(if $(filter lerf-ovs,$(1)),$(localisation))
+localisation = && jq -r '"localisation: in a box \(.peak_in_box // 0 | 1000 * . | round / 10), in the mask \(.peak_in_mask // 0 | 1000 * . | round / 10)"' $(OUT)/score.json
+# One, several or none of the objects: the table of miou-score, but for kinds, with the names that GRES has for its figures.
+questions = $(if $(QUESTIONS),@$(tool)miou-score --answers --quiet --json --predicted-views --sentences $(QUESTIONS) --truth $(1) -o $(OUT)/questions.json \
+	$(OUT)/lifted/asked.jsonl && echo && jq -r -f $(here)lerf-questions.jq $(OUT)/questions.json)
+# $(call published,WHAT IT IS,TABLE)
+published = @printf '\nPublished %s, mean over its scenes:\n' '$(1)' && awk -F '\t' '$$1 == "row" && $$2 == "$(2)" { printf "  %-28s %s\n", $$4, $$5 }' \
 	$(here)published.tsv
 
-ref-lerf: $(made)/sentences.jsonl $(made)/masks.jsonl $(made)/truth.jsonl
+ref-lerf: $(made)/sentences.jsonl $(made)/masks.jsonl $(made)/truth.jsonl $(if $(QUESTIONS),$(made)/objects.jsonl)
 	$(call flow,$(call quoted,TEST_VIEWS),$(if $(CANDIDATES),CANDIDATES=$(CANDIDATES),MASKS=$(made)/masks.jsonl))
-	$(score)
-	$(call published,Ref-LERF,ref-lerf)
+	$(call score,ref-lerf)
+	$(call questions,$(made)/objects.jsonl)
+	$(call published,mIoU on Ref-LERF,ref-lerf)
 
 command.views = $(TEST_VIEWS)
 SCENE := $(OUT)
@@ -71,6 +83,11 @@ gt_mask = $(abspath $(DATA))/gt_mask
 $(foreach w,sentences masks truth,$(made)/$(w).jsonl): $(made)/%.jsonl: $(said) $(OUT)/log/views.command $(here)ref-lerf.jq
 	@mkdir -p $(@D) && ln -sfn $(call quoted,gt_mask) $(@D)/gt_mask
 	@jq -n -c --arg what $* --arg test $(call quoted,TEST_VIEWS) --arg masks gt_mask -f $(here)ref-lerf.jq $(said) >$@
+# Masks of objects whatever the sentence, for questions.
+$(made)/objects.jsonl: $(said) $(OUT)/log/views.command
+	@mkdir -p $(@D)
+	$(tool)mask-import --quiet -o $@.all $(said) && \
+		jq -c --arg test $(call quoted,TEST_VIEWS) 'select(.view as $$v | $$test | split(",") | index($$v))' $@.all >$@ && rm $@.all
 else
 # Names of classes have blanks, so of 3D-OVS's pictures a list of their times is watched.
 $(made)/segmentations: FORCE
@@ -87,5 +104,8 @@ endif
 
 lerf-ovs 3d-ovs: $(made)/sentences.jsonl $(made)/truth.jsonl $(made)/test-views
 	$(call flow,"$$(cat $(made)/test-views)",CANDIDATES=$(CANDIDATES))
-	$(score)
-	$(call published,$(if $(filter lerf-ovs,$@),LERF-OVS,3D-OVS),$@)
+	$(call score,$@)
+	$(call questions,$(made)/truth.jsonl)
+	$(if $(filter lerf-ovs,$@),$(call published,mIoU on LERF-OVS (2D: a threshold in each pixel),lerf-ovs),$(call published,mIoU on 3D-OVS,3d-ovs))
+	$(if $(filter lerf-ovs,$@),$(call published,mIoU on LERF-OVS (3D: Gaussians are selected and rendered),lerf-ovs-3d))
+	$(if $(filter lerf-ovs,$@),$(call published,localisation accuracy on LERF-OVS,lerf-ovs-loc))

@@ -13,6 +13,7 @@
 # ASK         more sentences to answer, JSON Lines; optional
 # WHOLE       true masks of whole objects, to score those of --amodal against; optional
 # BOXES       true boxes, to score those of refer-locate against; optional
+# RENDER      more options for refer-render, of the predictions and of what is in ASK, with blanks between them
 # WORDS       1: ends in words, a line for each way, in place of a table
 # The other variables, and the folder's layout, are those of two-stage.mk; both workflows may use one folder where SCALE and
 # WEIGH (here --packed --tolerance 0.05 by default) are the same.
@@ -24,7 +25,7 @@
 SCALE ?= 0.3333
 WEIGH ?= --packed --tolerance 0.05
 include $(dir $(lastword $(MAKEFILE_LIST)))two-stage.mk
-$(call check,,ASK WHOLE BOXES,)
+$(call check,,ASK WHOLE BOXES,RENDER)
 
 asked := $(if $(ASK),$(SCENE)/lifted/asked.jsonl)
 answers := $(if $(TEST_VIEWS),$(foreach t,$(splits),$(SCENE)/lifted/predictions.$(t).jsonl) $(asked))
@@ -46,9 +47,9 @@ lifted: $(answers) $(whole) $(SCENE)/lifted/boxes.jsonl $(if $(TEST_VIEWS),$(SCE
 
 # The steps.
 ask3 = refer-render --scene $(SCENE)/scene --text $(1) --model $(model3)
-$(foreach t,train test,$(eval command.render3.$(t) = $$(call ask3,$$(text)) --sentences $(t) -o $(SCENE)/lifted/predictions.$(t).jsonl))
+$(foreach t,train test,$(eval command.render3.$(t) = $$(call ask3,$$(text)) --sentences $(t) $$(call options,RENDER) -o $(SCENE)/lifted/predictions.$(t).jsonl))
 command.encode3 = text-encode --model $(call quoted,BERT) -o $(SCENE)/lifted/asked.safetensors $(ASK)
-command.render3.asked = $(call ask3,$(SCENE)/lifted/asked.safetensors) -o $(asked)
+command.render3.asked = $(call ask3,$(SCENE)/lifted/asked.safetensors) $(call options,RENDER) -o $(asked)
 command.render3.whole = $(call ask3,$(text)) --sentences test --amodal -o $(SCENE)/lifted/whole.jsonl
 command.locate = refer-locate --scene $(SCENE)/scene --text $(text) --model $(model3) --sentences $(lastword $(splits)) \
 	-o $(SCENE)/lifted/boxes.jsonl

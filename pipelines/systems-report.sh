@@ -1,6 +1,6 @@
 #!/bin/sh
 # Prints the table of systems.mk as Markdown. usage: CELLS="DIR..." PUBLISHED=FILE [BIN=DIR/] systems-report.sh <ROWS
-# A row is NAME, the file of its field in a cell, and the steps in a cell's log that it needs, with tabs between.
+# A row is NAME, the file of its field in a cell, and the steps in a cell's log that it needs, with tabs between; both are empty where there is no field.
 set -eu
 bin=${BIN:-}
 # shellcheck disable=SC2086 # folders
@@ -26,6 +26,7 @@ stand_in() {
 	detector-identity) echo "stand-in: numbers of a detector's masks" ;;
 	truth-*) echo "stand-in: names of true masks" ;;
 	detector-*) echo "stand-in: names of a detector's masks" ;;
+	views-*) echo "stand-in: a synthetic detector's masks of the test view itself" ;;
 	carried-*) echo "a detector's masks of the first view" ;;
 	*) echo "a detector's masks" ;;
 	esac
@@ -35,13 +36,15 @@ printf '### The systems that the paper compares with\n\n'
 printf '%s scenes (%s), on one machine (%s processors).\n\n' "$#" "$(cat "$1/data/made-by")$([ $# = 1 ] || echo ' and so on')" "$(nproc)"
 printf '| system | published, Ref-LERF | what it sees | test sentences | training sentences | seconds | peak MiB | bytes a Gaussian |\n'
 printf '|---|---|---|---|---|---|---|---|\n'
-printf '| %s | %s | %s | - | - | - | - | - |\n' "$(label sam)" "$(published sam)" "the detector is not run in test views"
 while IFS='	' read -r row field steps; do
-	# shellcheck disable=SC2086 # steps
-	time=$(for cell in $CELLS; do seconds "$cell" $steps; done | mean %.2f)
-	# shellcheck disable=SC2086
-	most=$(for cell in $CELLS; do memory "$cell" $steps; done | mean %.0f)
-	bytes=$(for cell in $CELLS; do echo $(($(wc -c <"$cell/$field.safetensors") / $(gaussians "$cell"))); done | mean %.0f)
+	time=- most=- bytes=-
+	if [ -n "$steps" ]; then
+		# shellcheck disable=SC2086 # steps
+		time=$(for cell in $CELLS; do seconds "$cell" $steps; done | mean %.2f)
+		# shellcheck disable=SC2086
+		most=$(for cell in $CELLS; do memory "$cell" $steps; done | mean %.0f)
+		bytes=$(for cell in $CELLS; do echo $(($(wc -c <"$cell/$field.safetensors") / $(gaussians "$cell"))); done | mean %.0f)
+	fi
 	printf '| %s | %s | %s | %s | %s | %s | %s | %s |\n' "$(label "${row#*-}")" "$(published "${row#*-}")" "$(stand_in "$row")" \
 		"$(score "$row" test)" "$(score "$row" train)" "$time" "$most" "$bytes"
 done

@@ -5,6 +5,7 @@
 #include "base/number.h"
 #include "formats/jsonl.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,7 +75,7 @@ void answer_scores_free(struct answer_scores *s)
 
 static void text_row(FILE *out, const struct answer_score *s, const char *name)
 {
-	const double figures[] = {s->right, s->miou, s->refused, s->f1[0], s->f1[1]};
+	const double figures[] = {s->right, s->miou, s->oiou, s->refused, s->f1[0], s->f1[1]};
 
 	fprintf(out, "%5zu", s->pairs);
 	for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
@@ -85,26 +86,39 @@ static void text_row(FILE *out, const struct answer_score *s, const char *name)
 	fprintf(out, "  %s\n", name);
 }
 
+static void text_accuracy(FILE *out, const char *name, double x)
+{
+	if (isnan(x))
+		fprintf(out, "%-12s %6s\n", name, "-");
+	else
+		fprintf(out, "%-12s %6.2f %%\n", name, 100 * x);
+}
+
 static int put_text(FILE *out, const void *scores, struct err *e)
 {
 	const struct answer_scores *s = scores;
-	static const char *const head = "pairs %9s %9s %9s %9s %9s  %s\n";
+	static const char *const head = "pairs %9s %9s %9s %9s %9s %9s  %s\n";
 	struct answer_score row;
+	double none, some;
 
 	(void)e;
-	fprintf(out, head, "right", "mIoU", "refused", "F1@0.25", "F1@0.5", "means");
+	answer_target_accuracy(&none, &some, &s->answers);
+	fprintf(out, head, "right", "mIoU", "oIoU", "refused", "F1@0.25", "F1@0.5", "means");
 	for (int i = 0; i < ANSWER_TARGETS; i++) {
 		answer_score_sum(&row, &s->answers, (enum answer_targets)i, NULL);
 		text_row(out, &row, target_names[i]);
 	}
 	fputc('\n', out);
-	fprintf(out, head, "right", "mIoU", "refused", "F1@0.25", "F1@0.5", "kind");
+	fprintf(out, head, "right", "mIoU", "oIoU", "refused", "F1@0.25", "F1@0.5", "kind");
 	for (size_t i = 0; i < s->kind_count; i++) {
 		answer_score_sum(&row, &s->answers, ANSWER_ANY, s->kinds[i]);
 		text_row(out, &row, *s->kinds[i] ? s->kinds[i] : no_kind);
 	}
 	answer_score_sum(&row, &s->answers, ANSWER_ANY, NULL);
-	fprintf(out, "\nmissing      %6zu\nout of sight %6zu\n", row.missing, s->answers.out_of_sight);
+	fputc('\n', out);
+	text_accuracy(out, "N-acc", none);
+	text_accuracy(out, "T-acc", some);
+	fprintf(out, "missing      %6zu\nout of sight %6zu\n", row.missing, s->answers.out_of_sight);
 	return 0;
 }
 
@@ -123,6 +137,7 @@ static int json_row(
 	fprintf(out, ":{\"pairs\":%zu", s->pairs);
 	json_number(out, "right", s->right, s->pairs > 0);
 	json_number(out, "miou", s->miou, s->pairs > 0);
+	json_number(out, "oiou", s->oiou, s->pairs > 0);
 	json_number(out, "refused", s->refused, s->pairs > 0);
 	json_number(out, "f1_25", s->f1[0], s->pairs > 0);
 	json_number(out, "f1_50", s->f1[1], s->pairs > 0);
@@ -134,12 +149,16 @@ static int put_json(FILE *out, const void *scores, struct err *e)
 {
 	const struct answer_scores *s = scores;
 	struct answer_score row;
+	double none, some;
 
 	for (int i = 0; i < ANSWER_TARGETS; i++) {
 		answer_score_sum(&row, &s->answers, (enum answer_targets)i, NULL);
 		if (json_row(out, i ? "," : "{", &row, target_names[i], e))
 			return -1;
 	}
+	answer_target_accuracy(&none, &some, &s->answers);
+	json_number(out, "n_acc", none, !isnan(none));
+	json_number(out, "t_acc", some, !isnan(some));
 	fprintf(out, ",\"out_of_sight\":%zu,\"kinds\":", s->answers.out_of_sight);
 	for (size_t i = 0; i < s->kind_count; i++) {
 		answer_score_sum(&row, &s->answers, ANSWER_ANY, s->kinds[i]);

@@ -136,6 +136,16 @@ static int is_safetensors(const struct head *h)
 	return h->len >= 8 && !b[5] && !b[6] && !b[7] && (h->len == 8 || b[8] == '{');
 }
 
+/* A zip whose first file is NAME.npy: the local header has the length of its name at 26, and the name at 30.
+ */
+static int is_npz(const struct head *h)
+{
+	const size_t name = h->len >= 30 ? (size_t)h->bytes[26] + 256 * (size_t)h->bytes[27] : 0;
+
+	return begins(h, "PK\3\4") && name >= 4 && 30 + name <= h->len &&
+	       !memcmp(h->bytes + 30 + name - 4, ".npy", 4);
+}
+
 static int check_stream(struct check *c, const char *path, struct err *e)
 {
 	struct head h;
@@ -150,6 +160,8 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 		return -1;
 	if (!h.len)
 		return err_set(e, ERR_FORMAT, "%s: empty", file_name(path));
+	if (is_npz(&h))
+		return check_npz(c, path, e);
 	if (begins(&h, "PK\3\4") || anysplats_is_meta(path))
 		return check_anysplats(c, path, "sog", e);
 	if (path_ends(path, ".splat"))

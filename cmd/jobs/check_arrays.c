@@ -6,7 +6,7 @@
 #include "formats/features.h"
 #include "formats/lifted.h"
 #include "formats/model.h"
-#include "formats/npy.h"
+#include "formats/npz.h"
 #include "formats/parser_weights.h"
 #include "formats/png.h"
 #include "formats/selection.h"
@@ -141,6 +141,8 @@ int check_features(struct check *c, const char *path, struct err *e)
 	check_add(c, "gaussians", (long long)f.gaussians);
 	if (!f.labels)
 		check_add(c, "channels", (long long)f.channels);
+	if (f.components)
+		check_add(c, "components", (long long)f.components);
 	size_t seen = 0, labels = 0;
 	for (size_t i = 0; i < f.gaussians; i++) {
 		seen += f.weight[i] > 0;
@@ -195,6 +197,28 @@ int check_npy(struct check *c, const char *path, struct err *e)
 	check_add(c, "values", (long long)a.count);
 	npy_close(&a);
 	return 0;
+}
+
+int check_npz(struct check *c, const char *path, struct err *e)
+{
+	struct npz z;
+	long long values = 0;
+	int bad = 0;
+
+	if (npz_open(&z, path, e))
+		return -1;
+	for (size_t i = 0; i < z.n && !bad; i++) {
+		struct npy_file a;
+		if (!(bad = npz_entry(&z, i, &a, e))) {
+			values += (long long)a.count;
+			npy_close(&a);
+		}
+	}
+	c->kind = "npz";
+	check_add(c, "arrays", (long long)z.n);
+	check_add(c, "values", values);
+	npz_close(&z);
+	return bad;
 }
 
 int check_parser(struct check *c, const char *path, struct err *e)

@@ -19,6 +19,7 @@ int check_parser(struct check *c, const char *path, struct err *e);
 /* The others. */
 int check_anysplats(struct check *c, const char *path, const char *kind, struct err *e);
 int check_npy(struct check *c, const char *path, struct err *e);
+int check_npz(struct check *c, const char *path, struct err *e);
 int check_image(struct check *c, const char *path, struct err *e);
 int check_scene_cameras(struct check *c, const char *path, struct err *e);
 int check_cameras(struct check *c, const char *path, const char *kind, struct err *e);

@@ -1,6 +1,7 @@
 #include "cmd/jobs/draw.h"
 
 #include "answer/answer.h"
+#include "answer/peak.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "cmd/jobs/overlay_words.h"
@@ -60,6 +61,23 @@ static int answer(struct drawing *d, const struct viewpoint *from, struct err *e
 	return bad ? -1 : 0;
 }
 
+/* The point where the answer's responses are largest, if there are any above 0. */
+static int find_peak(const struct drawing *d, const struct answer *a, struct mask *to, struct err *e)
+{
+	const struct camera *c = a->camera;
+	int x, y;
+	const int found = peak_find(a->image, c->height, c->width, (int)d->options->peak, &x, &y, e);
+
+	if (found <= 0)
+		return found;
+	if (!(to->place = mask_place_new(e)))
+		return -1;
+	to->place->has_peak = 1;
+	to->place->peak[0] = x;
+	to->place->peak[1] = y;
+	return 0;
+}
+
 /* One answer: its mask, and the pictures of all sentences that it is the answer to. */
 static int put_answer(void *data, const struct answer *a, struct err *e)
 {
@@ -71,6 +89,7 @@ static int put_answer(void *data, const struct answer *a, struct err *e)
 
 	to->score = a->score;
 	to->visible = a->visible;
+	bad = bad || (d->options->peak && find_peak(d, a, to, e));
 	for (size_t i = 0; i < r->count && !bad; i++) {
 		char words[200];
 		const struct picture picture = {c->name, r->text.refs[r->refs[i]], c->height, c->width,
@@ -124,7 +143,7 @@ static int put_view(void *data, size_t view, struct err *e)
 	for (size_t i = 0; i < r->count && !bad; i++)
 		bad = put_sentence(d, i, view, shown, parts, e);
 	for (size_t k = 0; k < r->responses.answers; k++)
-		rle_free(&shown[k].rle);
+		mask_free(&shown[k]);
 	free(parts);
 	report_step(d->to, (double)(d->first + view) + 1, NULL);
 	return bad;
@@ -148,7 +167,7 @@ static int render(struct drawing *d, size_t views, struct err *e)
 	d->shown = mem_zalloc(count, sizeof *d->shown, "masks", e);
 	int bad = !d->shown || answer_all(&q, d->views + d->first, views, &calls, e) ? -1 : 0;
 	for (size_t i = 0; d->shown && i < count; i++)
-		rle_free(&d->shown[i].rle);
+		mask_free(&d->shown[i]);
 	free(d->shown);
 	d->shown = NULL;
 	return bad;

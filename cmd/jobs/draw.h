@@ -18,8 +18,9 @@ struct draw_options {
 	const char *views; /* NAME,...: these views instead; NULL: of the split */
 	int size[2];	   /* of the masks: width and height; 0: the view's times scale (0: 1) */
 	double scale;
-	int is_amodal; /* outlines of whole objects */
-	int is_each;   /* all sentences are said in the view that is drawn */
+	int is_amodal;	/* outlines of whole objects */
+	long long peak; /* the window of answer/peak.h where records have peaks; 0: they have none */
+	int is_each;	/* all sentences are said in the view that is drawn */
 	struct pictures pictures;
 };
 
@@ -33,7 +34,8 @@ struct drawing {
 	FILE *out;
 	size_t first;	       /* of the views: the first that is rendered now */
 	struct splats *wholes; /* (answers) for outlines, else without Gaussians */
-	struct mask *shown;    /* (views that are rendered now, answers) unnamed, until they are written */
+	struct mask *shown;    /* (views that are rendered now, answers) unnamed, until they are written; each
+				  with its place */
 };
 
 /* Chooses the views of a request that has been read: d->views; there may be none. *d is zeroed before, and

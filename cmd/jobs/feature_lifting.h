@@ -4,6 +4,7 @@
 
 #include "base/err.h"
 #include "base/report.h"
+#include "cmd/jobs/feature_components.h"
 #include "cmd/jobs/feature_maps.h"
 #include "formats/scene.h"
 #include "lift/lift_features.h"
@@ -12,9 +13,10 @@
 struct feature_lifting_options {
 	const char *scene, *weights;
 	struct feature_maps_options maps;
-	int is_single;	  /* float32, else half floats */
-	long long memory; /* MiB that sums of features may take */
-	double prune;	  /* Gaussians of less reliability become unseen */
+	int is_single;	      /* float32, else half floats */
+	long long memory;     /* MiB that sums of features may take */
+	double prune;	      /* Gaussians of less reliability become unseen */
+	long long components; /* that features are told by; 0: they are written as they are */
 };
 
 struct feature_lifting {
@@ -26,6 +28,7 @@ struct feature_lifting {
 	int32_t *labels;
 	float *reliability, *weight;
 	size_t seen, pruned; /* Gaussians */
+	struct feature_components components;
 	/* While it goes on. */
 	const struct report *to;
 	struct feature_sources sources;

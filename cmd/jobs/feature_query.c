@@ -77,6 +77,8 @@ int feature_query_make(struct feature_query *q, const struct feature_query_optio
 		return -1;
 	if (!q->count)
 		report_warn(to, "%s: no sentence in this split", file_name(options->text));
+	if (options->pixels)
+		return query_by_pixels(q, to, e);
 	return is_by_vectors(q) ? query_by_vectors(q, e) : query_by_examples(q, to, e);
 }
 
@@ -91,7 +93,7 @@ static void print_options(const struct feature_query *q, char *to, size_t size)
 			o->is_relative ? " --relative" : "");
 }
 
-int feature_query_write(const struct feature_query *q, const char *path, struct err *e)
+static int write_selection(const struct feature_query *q, const char *path, struct err *e)
 {
 	const size_t n = q->features[0].gaussians;
 	struct selection s = {.gaussians = n, .n = q->count, .scene = q->features[0].scene};
@@ -116,6 +118,11 @@ int feature_query_write(const struct feature_query *q, const char *path, struct 
 	return bad ? -1 : 0;
 }
 
+int feature_query_write(const struct feature_query *q, const char *path, struct err *e)
+{
+	return q->options->pixels ? file_out_put(path, query_put_masks, q, e) : write_selection(q, path, e);
+}
+
 void feature_query_free(struct feature_query *q)
 {
 	for (size_t k = 0; k < q->levels; k++)
@@ -130,4 +137,9 @@ void feature_query_free(struct feature_query *q)
 	free(q->group);
 	free(q->level);
 	free(q->object);
+	for (size_t k = 0; q->shown && k < q->view_count * q->count; k++)
+		mask_free(&q->shown[k]);
+	free(q->shown);
+	free(q->views);
+	scene_free(&q->scene);
 }

@@ -8,8 +8,10 @@
 #include "cmd/jobs/query_vectors.h"
 #include "formats/features.h"
 #include "formats/lifted.h"
+#include "formats/scene.h"
 #include "formats/selection.h"
 #include "formats/text.h"
+#include "mask/mask.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -35,6 +37,10 @@ struct feature_query_options {
 	int rule;
 	double threshold; /* NaN: as published */
 	int is_relative;  /* the threshold is on LangSplat's scale */
+	const char
+		*pixels;  /* a scene, in whose test views the rule is for pixels; NULL: it is for Gaussians */
+	double least;	  /* pixels whose feature is shorter have none */
+	long long smooth; /* window of the mean of relevancies in pixels; 1: as they are */
 };
 
 struct feature_query {
@@ -52,12 +58,17 @@ struct feature_query {
 	/* of rules by examples */
 	struct lifted lifted;
 	size_t *object; /* (count) of lifted */
+	/* of rules for pixels: the scene, and what each of its test views shows of each sentence */
+	struct scene scene;
+	size_t view_count, *views; /* (view_count) of scene.cameras */
+	struct mask *shown;	   /* (view_count,count) without names */
 };
 
 /* Reads the files, and selects. *q is zeroed before; *options stays the caller's. Returns 0, or -1 with *e
  * set; feature_query_free in any case. */
 int feature_query_make(struct feature_query *q, const struct feature_query_options *options,
 	const struct report *to, struct err *e);
+/* The selection, or the masks. */
 int feature_query_write(const struct feature_query *q, const char *path, struct err *e);
 void feature_query_free(struct feature_query *q);
 

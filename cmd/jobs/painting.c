@@ -134,6 +134,12 @@ static int put_picture(struct painting_names *names, const char *path, struct wa
 	return bad ? -1 : 0;
 }
 
+/* Whether each shape has a box, in the picture that the mask is of. */
+static int has_boxes(const struct annotation *a, const struct warping *w)
+{
+	return a->boxes && a->boxes->box_count == a->shapes && w->way == WARP_NONE;
+}
+
 /* A mask record for each label of each picture that a JSON file is of. */
 static int put_labels(const struct annotations *a, const char *path, struct warping *w, FILE *out,
 	const struct report *to, struct err *e)
@@ -146,7 +152,8 @@ static int put_labels(const struct annotations *a, const char *path, struct warp
 			.ref = one->ref,
 			.object = one->name,
 			.score = one->score,
-			.visible = NAN};
+			.visible = NAN,
+			.place = has_boxes(one, w) ? one->boxes : NULL};
 		if (one->shapes > 1)
 			report_warn(to, "%s: %zu shapes are '%s' in view %s, and are taken as one thing",
 				file_name(path), one->shapes, one->name, one->view);
@@ -186,6 +193,10 @@ static int put_records(const char *path, struct warping *w, FILE *out, size_t *c
 		if (bad && e->code == ERR_FORMAT) {
 			const struct err inner = *e;
 			jsonl_err(&j, e, "%s", inner.message);
+		}
+		if (w->way != WARP_NONE) {
+			mask_place_free(mask.place);
+			mask.place = NULL;
 		}
 		got = bad || masks_put(out, &mask, e) ? -1 : 1;
 		mask_free(&mask);

@@ -50,7 +50,7 @@ static int find_groups(struct feature_query *q, struct err *e)
 	return bad ? -1 : 0;
 }
 
-static int read_vectors(struct feature_query *q, struct err *e)
+int query_read_vectors(struct feature_query *q, struct err *e)
 {
 	const struct feature_query_options *o = q->options;
 	const size_t channels = q->features[0].channels;
@@ -221,7 +221,7 @@ int query_by_vectors(struct feature_query *q, struct err *e)
 {
 	struct pass p = {.q = q, .use = take_cosine};
 
-	if (read_vectors(q, e))
+	if (query_read_vectors(q, e))
 		return -1;
 	return q->options->rule == RULE_COSINE ? run(&p, e) : by_relevancy(q, e);
 }

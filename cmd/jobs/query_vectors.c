@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/path.h"
-#include "formats/npy.h"
+#include "formats/npz.h"
 #include "formats/safetensors.h"
 #include "lift/query_rules.h"
 
@@ -25,19 +25,42 @@ static int take_shape(
 	return v->values ? 0 : -1;
 }
 
+/* An array, which is closed; messages call it `name`. */
+static int take_array(
+	struct query_vectors *v, struct npy_file *a, const char *name, size_t channels, struct err *e)
+{
+	int bad = a->dims == 2 ? take_shape(v, a->shape[0], a->shape[1], channels, name, e)
+			       : err_set(e, ERR_FORMAT, "%s: has %d dimensions, not 2: texts and channels",
+					 name, a->dims);
+
+	if (!bad)
+		npy_floats(a, 0, a->count, v->values);
+	npy_close(a);
+	return bad;
+}
+
 static int read_npy(struct query_vectors *v, const char *path, size_t channels, struct err *e)
 {
 	struct npy_file a;
 
-	if (npy_open(&a, path, e))
+	return npy_open(&a, path, e) || take_array(v, &a, path, channels, e) ? -1 : 0;
+}
+
+static int read_npz(struct query_vectors *v, const char *path, size_t channels, struct err *e)
+{
+	static const char *const names[] = {"vectors", "arr_0"};
+	struct npz z;
+	struct npy_file a;
+	char *called = NULL;
+
+	if (npz_open(&z, path, e))
 		return -1;
-	int bad = a.dims == 2 ? take_shape(v, a.shape[0], a.shape[1], channels, path, e)
-			      : err_set(e, ERR_FORMAT, "%s: has %d dimensions, not 2: texts and channels",
-					path, a.dims);
-	if (!bad)
-		npy_floats(&a, 0, a.count, v->values);
-	npy_close(&a);
-	return bad;
+	const char *name = npz_main(&z, names, sizeof names / sizeof *names, e);
+	const int bad =
+		!name || npz_array(&z, name, "", &a, &called, e) || take_array(v, &a, called, channels, e);
+	free(called);
+	npz_close(&z);
+	return bad ? -1 : 0;
 }
 
 /* The tensor that has the vectors; NULL with *e. */
@@ -91,8 +114,9 @@ static int finish(struct query_vectors *v, int bad, const char *path, struct err
 int query_vectors_read(struct query_vectors *v, const char *path, size_t channels, struct err *e)
 {
 	*v = (struct query_vectors){0};
-	const int bad = path_ends(path, ".npy") ? read_npy(v, path, channels, e)
-						: read_safetensors(v, path, channels, e);
+	const int bad = path_ends(path, ".npy")	  ? read_npy(v, path, channels, e)
+			: path_ends(path, ".npz") ? read_npz(v, path, channels, e)
+						  : read_safetensors(v, path, channels, e);
 	return finish(v, bad, path, e);
 }
 

@@ -117,6 +117,7 @@ int synth_folder_begin(struct synth_folder *f, struct err *e)
 				       f->dir, f->unseen, f->scene->objects, &f->scene->cameras, e) ||
 			       write_test_views(f, e) || write_boxes(f, e) ||
 			       open_in(&f->candidates, f->dir, "candidates.jsonl", e) ||
+			       open_in(&f->test_candidates, f->dir, "candidates.test.jsonl", e) ||
 			       open_in(&f->truth, f->dir, "truth.jsonl", e) ||
 			       open_in(&f->whole, f->dir, "whole.jsonl", e)
 		       ? -1
@@ -158,14 +159,18 @@ static int put_masks(
 	return bad ? -1 : 0;
 }
 
+/* What the detector finds: for the training sentences in a training view, for all in a test view. */
 static int put_candidates(
 	struct synth_folder *f, int number, const struct camera *c, const uint8_t *masks, struct err *e)
 {
 	struct masks found = {0};
-	int bad = synth_detect(&found, f->detector, number, c->name, masks, c->height, c->width, e);
+	const int is_test = c->split == SPLIT_TEST;
+	FILE *to = is_test ? f->test_candidates.stream : f->candidates.stream;
+	int bad = synth_detect(&found, f->detector, number, c->name,
+		is_test ? SYNTH_SENTENCES : SYNTH_TRAIN_SENTENCES, masks, c->height, c->width, e);
 
 	for (size_t i = 0; i < found.n && !bad; i++)
-		bad = masks_put(f->candidates.stream, &found.items[i], e);
+		bad = masks_put(to, &found.items[i], e);
 	masks_free(&found);
 	return bad;
 }
@@ -190,8 +195,7 @@ int synth_folder_view(struct synth_folder *f, int number, struct err *e)
 	int bad = !view || write_photograph(f, c, view, e) ||
 		  synth_truth_visible(f->scene, view, pixels, visible, e) ||
 		  synth_truth_whole(f->scene, c, whole, e) || put_masks(f, f->truth.stream, c, visible, e) ||
-		  put_masks(f, f->whole.stream, c, whole, e) ||
-		  (c->split == SPLIT_TRAIN && put_candidates(f, number, c, visible, e));
+		  put_masks(f, f->whole.stream, c, whole, e) || put_candidates(f, number, c, visible, e);
 
 	if (!bad)
 		count_visible(f, c, visible, whole);
@@ -255,8 +259,9 @@ static int write_statistics(const struct synth_folder *f, struct err *e)
 
 int synth_folder_end(struct synth_folder *f, struct err *e)
 {
-	return file_out_commit(&f->candidates, e) || file_out_commit(&f->truth, e) ||
-			       file_out_commit(&f->whole, e) || write_statistics(f, e)
+	return file_out_commit(&f->candidates, e) || file_out_commit(&f->test_candidates, e) ||
+			       file_out_commit(&f->truth, e) || file_out_commit(&f->whole, e) ||
+			       write_statistics(f, e)
 		       ? -1
 		       : 0;
 }
@@ -264,6 +269,7 @@ int synth_folder_end(struct synth_folder *f, struct err *e)
 void synth_folder_abort(struct synth_folder *f)
 {
 	file_out_abort(&f->candidates);
+	file_out_abort(&f->test_candidates);
 	file_out_abort(&f->truth);
 	file_out_abort(&f->whole);
 }

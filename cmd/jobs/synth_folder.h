@@ -18,7 +18,7 @@ struct synth_folder {
 	const struct synth_unseen_list *unseen;
 	const struct synth_detector *detector;
 	struct synth_statistics *statistics; /* each view adds to its visibility */
-	struct file_out candidates, truth, whole;
+	struct file_out candidates, test_candidates, truth, whole;
 };
 
 /* Makes the folder, writes what is not of single views, and opens the rest. Returns 0, or -1 with *e set;

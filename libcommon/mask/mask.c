@@ -21,6 +21,7 @@ void mask_free(struct mask *m)
 	free((char *)m->ref);
 	free((char *)m->object);
 	rle_free(&m->rle);
+	mask_place_free(m->place);
 	*m = (struct mask){0};
 }
 

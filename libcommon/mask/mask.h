@@ -4,11 +4,12 @@
 #define MASK_MASK_H
 
 #include "base/err.h"
+#include "mask/mask_place.h"
 #include "mask/rle.h"
 
 #include <stddef.h>
 
-/* Who makes one says whether its strings and runs are its own; those of `struct masks` are. */
+/* Who makes one says whether its strings, runs and place are its own; those of `struct masks` are. */
 struct mask {
 	const char *view;
 	const char *ref;    /* of the sentence; NULL where the mask is of the object whatever the sentence */
@@ -17,6 +18,7 @@ struct mask {
 	double score;	/* confidence; NaN where nothing is known */
 	double visible; /* of the outline of a whole object, the share in [0,1] that is in sight; NaN where
 			   nothing is known */
+	struct mask_place *place; /* NULL where nothing is known */
 };
 
 /* The score, or 1 where there is none. */
@@ -25,12 +27,12 @@ double mask_confidence(const struct mask *m);
 /* What a mask goes by where there is one of each object: its object, else its ref. */
 const char *mask_object(const struct mask *m);
 
-/* Of a mask that owns its strings and runs. */
+/* Of a mask that owns its strings, runs and place. */
 void mask_free(struct mask *m);
 
 struct masks {
 	size_t n, capacity;
-	struct mask *items; /* owned, with their strings and runs */
+	struct mask *items; /* owned, with their strings, runs and places */
 };
 
 /* Appends a mask, which is the list's from then on, also where it fails: then it is freed. Returns 0, or -1

@@ -114,6 +114,18 @@ int score_match(struct score_pairs *pairs, const struct mask *truth, size_t trut
 	return bad ? -1 : 0;
 }
 
+static void measure_peak(struct score_pair *pair)
+{
+	const struct mask *p = pair->prediction, *truth = pair->truth;
+
+	pair->is_in_box = pair->is_in_mask = 0;
+	if (!p || !p->place || !p->place->has_peak)
+		return;
+	const double *peak = p->place->peak;
+	pair->is_in_box = mask_place_in_box(peak, p->rle.height, p->rle.width, &truth->rle, truth->place);
+	pair->is_in_mask = mask_place_in_mask(peak, p->rle.height, p->rle.width, &truth->rle);
+}
+
 int score_measure(struct score_pair *pair, struct err *e)
 {
 	const struct rle *truth = &pair->truth->rle;
@@ -127,6 +139,7 @@ int score_measure(struct score_pair *pair, struct err *e)
 			return -1;
 		pair->intersection = rle_intersection(f.now, truth);
 	}
+	measure_peak(pair);
 	pair->is_empty = !truth_area;
 	pair->either = f.area + truth_area - pair->intersection;
 	pair->iou = pair->either ? (double)pair->intersection / (double)pair->either : 1;
@@ -194,7 +207,7 @@ void score_sort(struct score_pair *pairs, size_t n)
 
 void score_sum(struct score *s, const struct score_pair *pairs, size_t n)
 {
-	size_t intersection = 0, either = 0, right = 0, hits[3] = {0};
+	size_t intersection = 0, either = 0, right = 0, in_box = 0, in_mask = 0, hits[3] = {0};
 
 	*s = (struct score){0};
 	for (size_t i = 0; i < n; i++) {
@@ -209,6 +222,9 @@ void score_sum(struct score *s, const struct score_pair *pairs, size_t n)
 		intersection += p->intersection;
 		either += p->either;
 		right += p->is_right != 0;
+		s->peaks += p->prediction && p->prediction->place && p->prediction->place->has_peak;
+		in_box += p->is_in_box != 0;
+		in_mask += p->is_in_mask != 0;
 		for (int k = 0; k < 3; k++)
 			hits[k] += p->iou >= score_cut[k];
 	}
@@ -217,6 +233,8 @@ void score_sum(struct score *s, const struct score_pair *pairs, size_t n)
 	s->miou /= (double)s->pairs;
 	s->oiou = (double)intersection / (double)either;
 	s->right = (double)right / (double)s->pairs;
+	s->in_box = (double)in_box / (double)s->pairs;
+	s->in_mask = (double)in_mask / (double)s->pairs;
 	for (int k = 0; k < 3; k++)
 		s->precision[k] = (double)hits[k] / (double)s->pairs;
 }

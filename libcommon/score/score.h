@@ -16,7 +16,8 @@ struct score_pair {
 	/* filled by score_measure */
 	size_t intersection, either; /* |prediction and truth|, |prediction or truth| */
 	double iou;
-	int is_empty; /* nothing in the truth */
+	int is_empty;		   /* nothing in the truth */
+	int is_in_box, is_in_mask; /* the prediction's peak is in the truth's; 0 where it has none */
 	/* filled by score_choices (score/score_choice.h) */
 	int is_right; /* it shows its own object more than any other */
 };
@@ -36,6 +37,10 @@ struct score {
 	double oiou;	     /* sum of intersections / sum of unions */
 	double precision[3]; /* share of pairs with IoU >= score_cut[i] */
 	double right;	     /* share of pairs that show the right object */
+	/* Localisation accuracy: the share of pairs whose peak is in a box of the truth, and in its mask. Of
+	 * use where predictions have peaks at all. */
+	size_t peaks; /* pairs that have one */
+	double in_box, in_mask;
 };
 extern const double score_cut[3]; /* 0.25, 0.5, 0.75 */
 

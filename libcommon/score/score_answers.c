@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "mask/mask_index.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -133,6 +134,7 @@ static int add_object(
 static void judge(struct answer *a, const struct measure *m, const struct rle_fitted *p)
 {
 	a->is_refused = !p->area;
+	a->either = p->area;
 	for (int k = 0; k < ANSWER_CUTS; k++)
 		a->f1[k] = m->shown[k] + m->meant ? 2.0 * (double)m->hit[k] / (double)(m->shown[k] + m->meant)
 						  : a->is_refused;
@@ -143,6 +145,8 @@ static void judge(struct answer *a, const struct measure *m, const struct rle_fi
 		return;
 	}
 	a->iou = rle_iou(p->now, &m->all);
+	a->intersection = rle_intersection(p->now, &m->all);
+	a->either = p->area + rle_area(&m->all) - a->intersection;
 	if (a->sentence->object_count == 1)
 		a->is_right = m->best_meant > 0 && m->best_meant >= m->best_other;
 	else
@@ -168,6 +172,20 @@ static int measure(
 	return bad ? -1 : 0;
 }
 
+/* What is not there covers nothing, and is wrong whatever is meant. */
+static int measure_missing(struct answer *a, const struct truth *t, const struct view *v, struct err *e)
+{
+	uint32_t run = 1;
+	const struct rle none = {.height = 1, .width = 1, .n = 1, .runs = &run};
+
+	if (measure(a, t, v, &none, e))
+		return -1;
+	a->is_missing = 1;
+	a->is_refused = a->is_right = 0;
+	a->iou = a->f1[0] = a->f1[1] = 0;
+	return 0;
+}
+
 static int sees(const struct truth *t, const struct view *v, const struct answer_sentence *s)
 {
 	for (size_t i = v->begin; i < v->end; i++)
@@ -191,8 +209,8 @@ static int answer_one(struct answers *a, const struct truth *t, const struct ans
 		}
 		struct answer one = {.sentence = s, .view = v->name};
 		mask_index_ref(refs, v->name, s->ref, &begin, &end);
-		one.is_missing = begin == end;
-		if ((!one.is_missing && measure(&one, t, v, &predictions[refs->keys[begin].at].rle, e)) ||
+		if ((begin == end ? measure_missing(&one, t, v, e)
+				  : measure(&one, t, v, &predictions[refs->keys[begin].at].rle, e)) ||
 			mem_grow((void **)&a->items, &a->capacity, a->n + 1, sizeof *a->items, "answers", e))
 			return -1;
 		a->items[a->n++] = one;
@@ -263,6 +281,8 @@ void answers_free(struct answers *a)
 void answer_score_sum(
 	struct answer_score *s, const struct answers *a, enum answer_targets targets, const char *kind)
 {
+	size_t intersection = 0, either = 0;
+
 	*s = (struct answer_score){0};
 	for (size_t i = 0; i < a->n; i++) {
 		const struct answer *one = &a->items[i];
@@ -276,6 +296,8 @@ void answer_score_sum(
 		s->right += one->is_right;
 		s->refused += one->is_refused;
 		s->miou += one->iou;
+		intersection += one->intersection;
+		either += one->either;
 		for (int k = 0; k < ANSWER_CUTS; k++)
 			s->f1[k] += one->f1[k];
 	}
@@ -285,4 +307,19 @@ void answer_score_sum(
 	s->miou *= per;
 	for (int k = 0; k < ANSWER_CUTS; k++)
 		s->f1[k] *= per;
+	s->oiou = either ? (double)intersection / (double)either : s->pairs > 0;
+}
+
+void answer_target_accuracy(double *none, double *some, const struct answers *a)
+{
+	size_t pairs[2] = {0, 0}, hits[2] = {0, 0};
+
+	for (size_t i = 0; i < a->n; i++) {
+		const struct answer *one = &a->items[i];
+		const int is_some = one->sentence->object_count > 0;
+		pairs[is_some]++;
+		hits[is_some] += (size_t)(is_some ? !one->is_refused && !one->is_missing : one->is_refused);
+	}
+	*none = pairs[0] ? (double)hits[0] / (double)pairs[0] : (double)NAN;
+	*some = pairs[1] ? (double)hits[1] / (double)pairs[1] : (double)NAN;
 }

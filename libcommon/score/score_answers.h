@@ -1,6 +1,6 @@
 /* Scoring answers to sentences that may mean one object, several or none: which objects a mask shows, as F1,
  * and whether nothing is answered where nothing is meant. As Multi3DRefer scores (Zhang, Gong, Chang, ICCV
- * 2023), but for masks in views. formats/scores.md. */
+ * 2023), but for masks in views; and the figures of GRES (Liu, Ding, Jiang, CVPR 2023). formats/scores.md. */
 #ifndef SCORE_SCORE_ANSWERS_H
 #define SCORE_SCORE_ANSWERS_H
 
@@ -28,6 +28,8 @@ struct answer {
 	int is_right;	/* one: its IoU with the object's mask is above 0 and no less than with another's;
 			   several:   those it shows are those that are meant; none: refused */
 	double iou;	/* with the union of the meant objects' masks; 1 for a refused none, else 0 */
+	size_t intersection,
+		either; /* |prediction and union|, |prediction or union|; of a none 0 and |prediction| */
 	double f1[ANSWER_CUTS]; /* of the objects of which it covers more than the share */
 };
 
@@ -50,6 +52,7 @@ void answers_free(struct answers *a);
 struct answer_score {
 	size_t pairs, missing;
 	double right, miou, refused, f1[ANSWER_CUTS];
+	double oiou; /* sum of intersections / sum of unions; 1 where all are empty */
 };
 
 enum answer_targets { ANSWER_ANY, ANSWER_ONE, ANSWER_SEVERAL, ANSWER_NONE, ANSWER_TARGETS };
@@ -57,5 +60,9 @@ enum answer_targets { ANSWER_ANY, ANSWER_ONE, ANSWER_SEVERAL, ANSWER_NONE, ANSWE
 /* Those that mean so many objects and, where kind is not NULL, are of that kind (NULL kinds go as ""). */
 void answer_score_sum(
 	struct answer_score *s, const struct answers *a, enum answer_targets targets, const char *kind);
+
+/* The figures that GRES has for targets: of the sentences that mean nothing the share that is refused
+ * (N-acc), and of all others the share that is answered at all (T-acc). Each is NAN where there are none. */
+void answer_target_accuracy(double *none, double *some, const struct answers *a);
 
 #endif

@@ -70,6 +70,8 @@ void synth_detector_make(struct synth_detector *d, const struct synth_object *ob
 	rng_seed(&r, seed, SYNTH_STREAM_FAULTS);
 	synth_noise_make(&d->noise, &r);
 	synth_habits_make(&d->habits, objects, n, sentences, severity, &r);
+	rng_seed(&r, seed, SYNTH_STREAM_TEST_HABITS);
+	synth_habits_test(&d->habits, n, &r);
 }
 
 static enum fault choose_fault(const struct synth_detector *d, enum synth_habit habit, struct rng *r)
@@ -221,7 +223,7 @@ static int detect_sentence(struct masks *out, struct detection *v, int object, i
 	return 0;
 }
 
-int synth_detect(struct masks *out, const struct synth_detector *d, int number, const char *view,
+int synth_detect(struct masks *out, const struct synth_detector *d, int number, const char *view, int count,
 	const uint8_t *truth, int height, int width, struct err *e)
 {
 	struct detection v = {.d = d, .view = view, .truth = truth, .height = height, .width = width};
@@ -233,7 +235,7 @@ int synth_detect(struct masks *out, const struct synth_detector *d, int number, 
 	rng_seed(&v.rng, d->seed, SYNTH_STREAM_VIEWS + (uint64_t)number);
 	int bad = 0;
 	for (int i = 0; i < d->n && !bad; i++)
-		for (int k = 0; k < SYNTH_TRAIN_SENTENCES && !bad; k++)
+		for (int k = 0; k < count && !bad; k++)
 			bad = detect_sentence(out, &v, i, k, e);
 	free(v.mask);
 	return bad;

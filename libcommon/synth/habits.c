@@ -159,6 +159,16 @@ static void choose_severe(struct synth_habits *h, const struct synth_object *obj
 	}
 }
 
+void synth_habits_test(struct synth_habits *h, int n, struct rng *r)
+{
+	for (int i = 0; i < n; i++)
+		for (int k = SYNTH_TRAIN_SENTENCES; k < SYNTH_SENTENCES; k++) {
+			const uint32_t like = rng_below(r, SYNTH_TRAIN_SENTENCES);
+			h->of[i][k] = h->of[i][like];
+			h->mistaken[i][k] = h->mistaken[i][like];
+		}
+}
+
 void synth_habits_make(struct synth_habits *h, const struct synth_object *objects, int n,
 	const struct synth_sentence *sentences, enum synth_severity severity, struct rng *r)
 {

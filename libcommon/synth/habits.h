@@ -20,15 +20,20 @@ enum synth_habit {
 };
 
 struct synth_habits {
-	enum synth_habit of[SYNTH_MAX_OBJECTS][SYNTH_TRAIN_SENTENCES];
-	int mistaken[SYNTH_MAX_OBJECTS][SYNTH_TRAIN_SENTENCES]; /* what a confused sentence finds */
+	enum synth_habit of[SYNTH_MAX_OBJECTS][SYNTH_SENTENCES];
+	int mistaken[SYNTH_MAX_OBJECTS][SYNTH_SENTENCES]; /* what a confused sentence finds */
 	int neighbours[SYNTH_MAX_OBJECTS]; /* what it stands on or carries, else the nearest on the table */
 };
 
 /* sentences (n objects, SYNTH_SENTENCES). A severe detector takes the objects that a sentence names beside
- * its own, and those that fit its noun phrase, for what it means. */
+ * its own, and those that fit its noun phrase, for what it means. Only the training sentences get a habit. */
 void synth_habits_make(struct synth_habits *h, const struct synth_object *objects, int n,
 	const struct synth_sentence *sentences, enum synth_severity severity, struct rng *r);
+
+/* Each test sentence gets the habit of one of its object's training sentences, and what that one is mistaken
+ * for.
+ */
+void synth_habits_test(struct synth_habits *h, int n, struct rng *r);
 
 /* 1 where b has a's shape and colour. */
 int synth_look_alike(const struct synth_object *a, const struct synth_object *b);

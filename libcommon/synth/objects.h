@@ -25,6 +25,7 @@ enum synth_stream {
 	SYNTH_STREAM_SENTENCES,
 	SYNTH_STREAM_FAULTS,
 	SYNTH_STREAM_HIDING,
+	SYNTH_STREAM_TEST_HABITS,
 	SYNTH_STREAM_UNSEEN = 512, /* one a kind of sentence */
 	SYNTH_STREAM_VIEWS = 1024, /* candidates: one stream a view */
 };

@@ -143,6 +143,23 @@ not() { ! "$@"; }
 	hex=$(tail -c +$((9 + length + begin)) plain.safetensors | head -c $((end - begin)) | xxd -p | tr -d '\n')
 	npy vectors.npy '<f4' '15, 24' "$hex"
 	query --vectors vectors.npy features.safetensors | cmp expected
+	npy more.npy '<f4' '1' $f1
+	for name in vectors arr_0; do
+		mkdir $name
+		cp vectors.npy $name/$name.npy
+		npz vectors.npz more.npy $name/$name.npy
+		query --vectors vectors.npz features.safetensors | cmp expected
+	done
+	# vectors comes before arr_0
+	cp more.npy arr_0.npy
+	npz vectors.npz arr_0.npy vectors/vectors.npy
+	query --vectors vectors.npz features.safetensors | cmp expected
+	npz vectors.npz arr_0.npy
+	refuses 3 "vectors.npz: arr_0.npy: has 1 dimensions, not 2: texts and channels" --vectors vectors.npz features.safetensors
+	npz vectors.npz more.npy
+	refuses 3 "vectors.npz: has no array 'vectors' or 'arr_0'" --vectors vectors.npz features.safetensors
+	echo text >vectors.npz
+	refuses 3 "vectors.npz: not a zip, or its end is missing" --vectors vectors.npz features.safetensors
 	st other.safetensors "{\"clip\":{\"dtype\":\"F32\",\"shape\":[15,24],\"data_offsets\":[0,1440]}}" "$hex"
 	query --vectors other.safetensors features.safetensors | cmp expected
 	npy vectors.npy '<f4' '14, 24' "${hex:192}"
@@ -154,6 +171,56 @@ not() { ! "$@"; }
 	npy vectors.npy '<f4' '15, 24' "${hex:8}$fnan"
 	refuses 3 "vectors.npy: vector 14 is not finite" --vectors vectors.npy features.safetensors
 	refuses 3 "labels.safetensors: has 0 tensors of two dimensions, not 1" --vectors labels.safetensors features.safetensors
+}
+
+@test "features that are told by components select nearly the same" {
+	"$BIN/feature-lift" -q --scene scene --weights "$made/weights" --masks "$made/masks.jsonl" --text names.safetensors --uncovered zero \
+		--prune 0.5 --components 4 -o few
+	for args in "--rule cosine" "--rule relevancy --canonical canonical.safetensors --relative" "--rule hyperplane --positives lifted.safetensors"; do
+		query $args -o whole features.safetensors
+		query $args -o told few
+		[ "$(tensor told index d4 | tr ' ' '\n' | wc -l)" -gt 100 ]
+		awk -v a="$(scores whole)" -v b="$(scores told)" 'BEGIN { exit !(a - b <= 1 && b - a <= 1) }'
+	done
+}
+
+@test "--pixels: masks and peaks of the test views" {
+	query --pixels scene --least 0.5 --sentences test -o pixels.jsonl features.safetensors
+	"$BIN/gs-check" pixels.jsonl
+	[ "$(jq -r .view pixels.jsonl | sort -u | paste -sd,)" = "$(cat "$made/test-views")" ]
+	[ "$(jq -r .ref pixels.jsonl)" = "$(for v in $(tr , ' ' <"$made/test-views"); do jq -r 'select(.split == "test").ref' "$made/sentences.jsonl"; done)" ]
+	jq -se 'all(.[]; has("peak") and .score <= 1)' pixels.jsonl
+	# the names find their objects, and point at them
+	"$BIN/miou-score" --json -q --predicted-views --truth "$made/truth.jsonl" pixels.jsonl | jq -e '.miou > 0.7 and .peak_in_box == 1'
+	relevancy="--rule relevancy --relative --canonical canonical.safetensors --pixels scene --least 0.5 --sentences test"
+	query $relevancy -o relevant.jsonl features.safetensors
+	# of two levels that which says more: the other has nothing
+	"$BIN/feature-lift" --scene scene --weights "$made/weights" --masks "$made/masks.jsonl" --text names.safetensors --uncovered zero \
+		--prune 1 -o nothing.safetensors
+	query $relevancy nothing.safetensors features.safetensors | cmp - relevant.jsonl
+	query $relevancy features.safetensors nothing.safetensors | cmp - relevant.jsonl
+	for n in 1 7; do query --threads $n $relevancy features.safetensors | cmp - relevant.jsonl; done
+}
+
+@test "--pixels: as NumPy has them in float64" {
+	for python in /usr/bin/python3 python3 ""; do
+		[ -z "$python" ] || ! "$python" -c 'import numpy' 2>/dev/null || break
+	done
+	[ -n "$python" ] || skip "python3 with NumPy is not here"
+	export PYTHONDONTWRITEBYTECODE=1
+	peer=$BATS_TEST_DIRNAME/../peers/query_pixels.py
+	"$BIN/gs-weigh" -q --split test -o weights scene
+	view=$(cut -d, -f1 "$made/test-views")
+	"$BIN/feature-lift" --scene scene --weights "$made/weights" --masks "$made/masks.jsonl" --text names.safetensors --precision f32 -o single.safetensors
+	query --pixels scene --least 0.3 --smooth 4 -o masks.jsonl single.safetensors
+	"$python" "$peer" "weights/$view.safetensors" single.safetensors plain.safetensors all - 0.3 4 masks.jsonl
+	for smooth in 1 9; do
+		query --rule relevancy --relative --canonical canonical.safetensors --pixels scene --smooth $smooth --sentences test -o masks.jsonl single.safetensors
+		"$python" "$peer" "weights/$view.safetensors" single.safetensors plain.safetensors test canonical.safetensors 0 $smooth masks.jsonl
+	done
+	# and not with another window
+	run "$python" "$peer" "weights/$view.safetensors" single.safetensors plain.safetensors test canonical.safetensors 0 3 masks.jsonl
+	[ "$status" = 1 ]
 }
 
 @test "files that do not belong together" {
@@ -186,6 +253,17 @@ not() { ! "$@"; }
 	mkdir -p run/lifted && cp -r "$made/scene" run/scene && cp selection run/lifted/model.safetensors && cp "$made/text.safetensors" run
 	says 3 "refer-ask: run/lifted/model.safetensors: is a selection; questions need one of refer-lift" \
 		"$BIN/refer-ask" --encoder "$made/encoder" run "where is it?"
+}
+
+@test "--pixels: what does not go with it" {
+	local try=$'\n'"Try 'feature-query --help'."
+	says 2 "feature-query: --pixels is for --rule cosine and relevancy$try" query --rule hyperplane --positives lifted.safetensors --pixels scene features.safetensors
+	says 2 "feature-query: --smooth needs --pixels$try" query --smooth 3 features.safetensors
+	says 2 "feature-query: --least needs --pixels$try" query --least 0.5 features.safetensors
+	refuses 4 "none/splats.safetensors: No such file or directory" --pixels none features.safetensors
+	"$BIN/gs-synth" -q --objects 2 --views 2 --size 32x24 --gaussians 1000 -o other
+	"$BIN/gs-import" -q -o other/scene other/point_cloud.ply
+	refuses 3 "features.safetensors: is of a scene of 2000 Gaussians, other/scene has 1000" --pixels other/scene features.safetensors
 }
 
 @test "options that do not go together, and outputs that are inputs" {

@@ -38,6 +38,31 @@ foreign.safetensors: ok: safetensors, 1 tensors
 	says 0 "x.png: ok: sentences, 1 training sentences, 0 test sentences, 1 objects" "$BIN/gs-check" x.png
 }
 
+@test "arrays in a zip, by its content" {
+	load npy
+	golden=$BATS_TEST_DIRNAME/../golden/npz
+	for saved in stored deflated; do
+		said=$("$BIN/gs-check" "$golden/$saved.npz")
+		[[ $said == *": ok: npz, "[1-9]*" arrays, "[1-9]*" values" ]]
+		cp "$golden/$saved.npz" another
+		[ "$("$BIN/gs-check" another)" = "another: ok: ${said##*: ok: }" ]
+		[ "$(cat another | "$BIN/gs-check" -)" = "stdin: ok: ${said##*: ok: }" ]
+	done
+	npy a.npy '<f4' '2, 3' $(printf '%048d' 0)
+	npy b.npy '|u1' '4' 01020304
+	npz all.npz a.npy b.npy
+	[ "$("$BIN/gs-check" all.npz)" = "all.npz: ok: npz, 2 arrays, 10 values" ]
+	npy b.npy '|u1' '5' 01020304
+	npz all.npz a.npy b.npy
+	run "$BIN/gs-check" all.npz
+	[ "$status" = 1 ]
+	[[ $output == "all.npz: b.npy: offset 128: 4 bytes of data, the shape has 5 values of 1" ]] || { echo "$output"; false; }
+	head -c 200 "$golden/stored.npz" >cut
+	run "$BIN/gs-check" cut
+	[ "$status" = 1 ]
+	[[ $output == *"cut: not a zip, or its end is missing" ]]
+}
+
 @test "json: one object a line, the same facts" {
 	"$BIN/gs-check" --json sentences.jsonl scene foreign.safetensors >out
 	cat >expected <<-'END'

@@ -73,7 +73,7 @@ differ() {
 	[ -z "$(find . -name '*.tmp.*')" ]
 }
 
-# interrupted SIGNAL [OPTION OF env]...: sends the signal when three outputs are half written; sets status.
+# interrupted SIGNAL [OPTION OF env]...: sends the signal when four outputs are half written; sets status.
 interrupted() {
 	local signal=$1 pid i
 	shift
@@ -82,7 +82,7 @@ interrupted() {
 	ASAN_OPTIONS=${ASAN_OPTIONS-}:handle_segv=0 env "$@" "$BIN/gs-synth" --views 25 --size 400x300 --gaussians 1000 --objects 2 -o out >printed 2>&1 &
 	pid=$!
 	for ((i = 0; i < 1000; i++)); do
-		[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = 3 ] && break
+		[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = 4 ] && break
 		sleep 0.01
 	done
 	[ $i -lt 1000 ]
@@ -106,7 +106,7 @@ interrupted() {
 		"$BIN/gs-synth" --views 25 --size 400x300 --gaussians 1000 --objects 2 -o out >printed 2>&1 &
 		pids+=($!)
 		for ((i = 0; i < 1000; i++)); do
-			[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = $((3 * ${#pids[@]})) ] && break
+			[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = $((4 * ${#pids[@]})) ] && break
 			sleep 0.01
 		done
 		[ $i -lt 1000 ]
@@ -115,7 +115,7 @@ interrupted() {
 	wait ${pids[0]} || true
 	small -o out
 	# Those of the second, which is alive, are still there.
-	[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = 3 ]
+	[ "$(find . -name '*.jsonl.tmp.*' | wc -l)" = 4 ]
 	wait ${pids[1]}
 	[ -z "$(find . -name '*.tmp.*')" ]
 }
@@ -137,7 +137,7 @@ interrupted() {
 
 @test "the folder holds what formats/synth.md says" {
 	small -o out
-	[ "$(cd out && find . -type f | LC_ALL=C sort | tr '\n' ' ')" = "./boxes.jsonl ./candidates.jsonl ./images/view_000.png \
+	[ "$(cd out && find . -type f | LC_ALL=C sort | tr '\n' ' ')" = "./boxes.jsonl ./candidates.jsonl ./candidates.test.jsonl ./images/view_000.png \
 ./images/view_001.png ./images/view_002.png ./images/view_003.png ./images/view_004.png ./parses.unseen.jsonl \
 ./point_cloud.ply ./sentences.jsonl ./sparse/0/cameras.txt ./sparse/0/images.txt ./sparse/0/points3D.txt ./statistics.json ./test-views \
 ./truth.jsonl ./unseen.jsonl ./whole.jsonl " ]
@@ -159,7 +159,15 @@ interrupted() {
 	jq -r .ref out/candidates.jsonl | sort -u >pointed
 	[ -s pointed ]
 	[ -z "$(comm -13 train pointed)" ]
-	jq -se 'all(.[]; .score >= 0.2 and .score <= 0.95)' out/candidates.jsonl >/dev/null
+	jq -se 'all(.[]; .score >= 0.2 and .score <= 0.95)' out/candidates.jsonl out/candidates.test.jsonl >/dev/null
+	# of all sentences in test views
+	[ "$(jq -r .view out/candidates.test.jsonl | sort -u)" = view_004 ]
+	jq -r .ref out/candidates.test.jsonl | sort -u >shown
+	jq -r 'select(.split == "test").ref' out/sentences.jsonl | sort >test
+	[ -n "$(comm -12 test shown)" ]
+	[ -n "$(comm -12 train shown)" ]
+	[ -z "$(comm -13 <(sort test train) shown)" ]
+	[ "$(jq -c .segmentation.size out/candidates.test.jsonl | sort -u)" = "[60,80]" ]
 }
 
 @test "a box for every object, which scores 100 against itself" {
@@ -235,7 +243,7 @@ interrupted() {
 @test "another seed gives another scene" {
 	small --seed 7 -o one
 	small --seed 8 -o two
-	for file in point_cloud.ply sparse/0/images.txt sentences.jsonl unseen.jsonl parses.unseen.jsonl truth.jsonl whole.jsonl candidates.jsonl statistics.json \
+	for file in point_cloud.ply sparse/0/images.txt sentences.jsonl unseen.jsonl parses.unseen.jsonl truth.jsonl whole.jsonl candidates.jsonl candidates.test.jsonl statistics.json \
 		images/view_000.png; do
 		differ one/$file two/$file
 	done

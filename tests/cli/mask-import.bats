@@ -237,6 +237,25 @@ made() {
 	says 3 "mask-import: json/bad.json: object 1: key 'category' is missing" "$BIN/mask-import" -o none json/bad.json
 }
 
+@test "boxes of LERF-OVS's labels, a box for each shape of a category" {
+	jq -n '{info: {name: "a.jpg", width: 9, height: 9}, objects: [
+		{category: "cup", segmentation: [[1, 1], [3, 1], [3, 3]], bbox: [1, 1, 3, 3.5]},
+		{category: "cup", segmentation: [[5, 5], [8, 5], [8, 8]], bbox: [8, 8, 5, 5]},
+		{category: "pan", segmentation: [[1, 5], [3, 5], [3, 8]]}]}' >a.json
+	"$BIN/mask-import" -q -o a.jsonl a.json
+	[ "$(jq -c '[.object, .boxes]' a.jsonl | tr '\n' ' ')" = '["cup",[[1,1,3,3.5],[5,5,8,8]]] ["pan",null] ' ]
+	# not where one of several shapes has none
+	jq '.objects[1] |= del(.bbox)' a.json >b.json
+	"$BIN/mask-import" -q b.json | jq -se 'all(.[]; has("boxes") | not)'
+	jq '.objects[1].bbox = [1, 2, 3]' a.json >b.json
+	run "$BIN/mask-import" -q b.json
+	[ "$status" = 3 ]
+	[[ $output == "mask-import: b.json: object 1: a point is not two numbers" ]]
+	jq '.objects[1].bbox = [1, 2]' a.json >b.json
+	run "$BIN/mask-import" -q b.json
+	[[ $output == "mask-import: b.json: object 1: key 'bbox' is not two corners" ]]
+}
+
 @test "a folder of masks: views, names, and classes.txt" {
 	mkdir -p tree/v2 tree/v1 tree/v1/deep
 	picture tree/v1/cup.png 'ffffff 000000' '000000 000000'

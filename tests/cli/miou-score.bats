@@ -94,6 +94,25 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 	[ "$(right)" = "[0.4,5,0.4]" ]
 }
 
+@test "peaks: the share in a box of the truth, and in its mask" {
+	# rows of 8 pixels: in the mask; in the box alone; in the second of two boxes; nowhere; no peak; no prediction
+	hole='{"size":[1,8],"counts":[0,2,2,2,2]}'
+	for v in 1 2 3 4 5 6; do echo "{\"view\":\"v$v\",\"object\":\"o\",\"segmentation\":$hole}"; done |
+		jq -c 'if .view == "v3" then .boxes = [[7, 0, 7, 0], [6, -1, 6.5, 1]] else . end' >truth.jsonl
+	for at in 1:4 2:3 3:6 4:6; do echo "{\"view\":\"v${at%:*}\",\"object\":\"o\",\"peak\":[${at#*:},0],\"segmentation\":$four}"; done >pred.jsonl
+	echo "{\"view\":\"v5\",\"object\":\"o\",\"segmentation\":$four}" >>pred.jsonl
+	"$BIN/miou-score" --json --truth truth.jsonl pred.jsonl | jq -e '[.peak_in_box, .peak_in_mask] | map(. * 6 | round) == [3, 1]'
+	"$BIN/miou-score" --truth truth.jsonl pred.jsonl >table
+	grep -qx 'peak in box   50.00 %' table
+	grep -qx 'peak in mask  16.67 %' table
+	# of a prediction of another size, the point too
+	jq -c '.segmentation = {size: [2, 16], counts: [32]} | if .peak then .peak = [2 * .peak[0] + 1, 1] else . end' pred.jsonl >large.jsonl
+	"$BIN/miou-score" --json --truth truth.jsonl large.jsonl | jq -e '[.peak_in_box, .peak_in_mask] | map(. * 6 | round) == [3, 1]'
+	# without peaks nothing is said of them
+	jq -c 'del(.peak)' pred.jsonl | "$BIN/miou-score" --truth truth.jsonl - >table
+	! grep peak table
+}
+
 @test "--fail-under: exit 1 below, 0 at it, and the scores all the same" {
 	run --separate-stderr "$BIN/miou-score" --fail-under 0.626 --truth truth.jsonl pred.jsonl
 	[ "$status" -eq 1 ]
@@ -466,22 +485,29 @@ answers() {
 	[ -z "$stderr" ]
 	# "both" in v1: 5 of 8 pixels, the cup covered, a quarter of the plate, which is not more than that
 	diff - <(echo "$output") <<-END
-	pairs     right      mIoU   refused   F1@0.25    F1@0.5  means
-	    6   50.00 %   60.42 %   16.67 %   61.11 %   61.11 %  all
-	    2   50.00 %   50.00 %    0.00 %   50.00 %   50.00 %  one
-	    2   50.00 %   81.25 %    0.00 %   83.33 %   83.33 %  several
-	    2   50.00 %   50.00 %   50.00 %   50.00 %   50.00 %  none
+	pairs     right      mIoU      oIoU   refused   F1@0.25    F1@0.5  means
+	    6   50.00 %   60.42 %   59.09 %   16.67 %   61.11 %   61.11 %  all
+	    2   50.00 %   50.00 %   50.00 %    0.00 %   50.00 %   50.00 %  one
+	    2   50.00 %   81.25 %   75.00 %    0.00 %   83.33 %   83.33 %  several
+	    2   50.00 %   50.00 %    0.00 %   50.00 %   50.00 %   50.00 %  none
 
-	pairs     right      mIoU   refused   F1@0.25    F1@0.5  kind
-	    1  100.00 %  100.00 %    0.00 %  100.00 %  100.00 %  (unknown)
-	    2   50.00 %   50.00 %   50.00 %   50.00 %   50.00 %  absent
-	    2   50.00 %   81.25 %    0.00 %   83.33 %   83.33 %  several
-	    1    0.00 %    0.00 %    0.00 %    0.00 %    0.00 %  view
+	pairs     right      mIoU      oIoU   refused   F1@0.25    F1@0.5  kind
+	    1  100.00 %  100.00 %  100.00 %    0.00 %  100.00 %  100.00 %  (unknown)
+	    2   50.00 %   50.00 %    0.00 %   50.00 %   50.00 %   50.00 %  absent
+	    2   50.00 %   81.25 %   75.00 %    0.00 %   83.33 %   83.33 %  several
+	    1    0.00 %    0.00 %    0.00 %    0.00 %    0.00 %    0.00 %  view
 
+	N-acc         50.00 %
+	T-acc         75.00 %
 	missing           1
 	out of sight      1
 	END
-	[ "$("$BIN/miou-score" --answers --json --sentences as.jsonl --truth at.jsonl ap.jsonl | jq -c '[.all.pairs,.none.refused,.several.miou,.kinds.view.missing,.out_of_sight]')" = '[6,0.5,0.8125,1,1]' ]
+	[ "$("$BIN/miou-score" --answers --json --sentences as.jsonl --truth at.jsonl ap.jsonl | jq -c '[.all.pairs,.none.refused,.several.miou,.kinds.view.missing,.out_of_sight,.several.oiou,.n_acc,.t_acc]')" = '[6,0.5,0.8125,1,1,0.75,0.5,0.75]' ]
+	# 13 of 22 pixels
+	"$BIN/miou-score" --answers --json --sentences as.jsonl --truth at.jsonl ap.jsonl | jq -e '.all.oiou * 22 - 13 | fabs < 1e-12'
+	# without sentences that mean nothing there is no accuracy of them
+	"$BIN/miou-score" --answers --json --sentences <(grep -v fork as.jsonl) --truth at.jsonl <(grep -v fork ap.jsonl) | jq -e '.n_acc == null and .t_acc == 0.75'
+	"$BIN/miou-score" --answers --sentences <(grep -v fork as.jsonl) --truth at.jsonl <(grep -v fork ap.jsonl) | grep -qx 'N-acc             -'
 }
 
 @test "--answers: the order of the files does not matter, nor threads or names in another alphabet" {

@@ -222,6 +222,25 @@ png/$test_view/yellow-bowl-1.png " ]
 	jq -se 'all(.[]; all(.parts[]?; .score >= 0 and .score <= 1))' parts.jsonl
 }
 
+@test "--peak: the pixel with the largest response, or mean around it, and all else stays" {
+	lifted
+	ask --response r --response-type npy -o whole.jsonl
+	ask --peak 1 -o one.jsonl
+	ask --peak 30 -o wide.jsonl
+	"$BIN/gs-check" one.jsonl wide.jsonl
+	for file in one wide; do jq -c 'del(.peak)' $file.jsonl | cmp - <(jq -c . whole.jsonl); done
+	for ref in first second again any; do
+		largest=$(tail -c $((64 * 48 * 4)) r/$test_view/$ref.npy | od -An -v -t f4 -w4 |
+			awk '$1 > most { most = $1; at = NR - 1 } END { print "[" at % 64 "," int(at / 64) "]" }')
+		[ "$(jq -c "select(.ref == \"$ref\").peak" one.jsonl)" = "$largest" ]
+	done
+	# the mean is elsewhere, but in the mask's box; an empty mask has none
+	not cmp -s one.jsonl wide.jsonl
+	"$BIN/miou-score" --json -q --truth whole.jsonl wide.jsonl | jq -e '.peak_in_box == 1'
+	[ "$(jq -c 'select(.ref == "none") | has("peak")' wide.jsonl)" = false ]
+	ask --threads 1 --peak 30 | cmp - wide.jsonl
+}
+
 @test "refs that differ only in a slash or percent have pictures of their own" {
 	printf '{"ref":"%s","object":"cup","text":"the cup"}\n' a/b a%2Fb a_b ../x >refs.jsonl
 	"$BIN/text-encode" --model "$made/encoder" -o text.safetensors refs.jsonl
@@ -421,6 +440,8 @@ Try 'refer-render --help'." ask --without words,word
 	try=$'\n'"Try 'refer-render --help'."
 	says 2 "refer-render: --scene, --text and --model are required$try" "$BIN/refer-render" --scene scene
 	says 2 "refer-render: --text and --model cannot both be stdin$try" render --text - --model -
+	says 2 "refer-render: --peak and --amodal do not go together$try" render --peak 1 --amodal
+	says 2 "refer-render: --peak: '0' is not a whole number from 1 to 1024$try" render --peak 0
 	says 2 "refer-render: --size and --scale do not go together$try" render --size 4x3 --scale 1
 	says 2 "refer-render: --size: '0x3' is not WIDTHxHEIGHT with both from 1 to 65536$try" render --size 0x3
 	says 2 "refer-render: --scale: '0' is not a number from 0.0001 to 16$try" render --scale 0

@@ -30,6 +30,24 @@ reads() {
 	"$BIN/pseudomask-select" --method top1 x.jsonl | cmp x.jsonl -
 }
 
+@test "a peak and boxes come back, corners in order" {
+	printf '%s\n' "{\"view\":\"v\",\"object\":\"o\",\"peak\":[1.5,30],\"boxes\":[[3,0,1,2],[0,1,0.25,4]],$mask}" \
+		"{\"view\":\"w\",\"object\":\"o\",\"peak\":null,\"boxes\":null,$mask}" "{\"view\":\"x\",\"object\":\"o\",\"boxes\":[],$mask}" >x.jsonl
+	"$BIN/mask-import" -o y.jsonl x.jsonl
+	sed 's/\[3,0,1,2\]/[1,0,3,2]/; s/"peak":null,"boxes":null,//; s/"boxes":\[\],//' x.jsonl | cmp - y.jsonl
+	"$BIN/mask-import" -o - y.jsonl | cmp y.jsonl -
+}
+
+@test "a peak and boxes that are none" {
+	for peak in 1 '[1]' '[1,2,3]' '[1,"2"]' '[1,1e999]' '{"x":1,"y":2}'; do
+		refuses "key 'peak' is not [column,row]" "{\"view\":\"v\",\"object\":\"p\",\"peak\":$peak,$mask}"
+	done
+	refuses "key 'boxes' is not a list" "{\"view\":\"v\",\"object\":\"p\",\"boxes\":3,$mask}"
+	for box in 1 '[1,2,3]' '[1,2,3,null]' '[1,2,3,4,5]'; do
+		refuses "key 'boxes': item 1 is not [left,top,right,bottom]" "{\"view\":\"v\",\"object\":\"p\",\"boxes\":[[1,2,3,4],$box],$mask}"
+	done
+}
+
 @test "counts as COCO's list, and keys of COCO that we do not need" {
 	reads '{"size":[2,3],"counts":"132"}' '"segmentation":{"size":[2,3],"counts":[1,3,2]},"area":3,"bbox":[0,0,1,1]'
 	reads '{"size":[2,3],"counts":"06"}' '"segmentation":{"counts":[0,6],"size":[2,3]},"path":null,"score":null'

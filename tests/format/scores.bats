@@ -32,7 +32,7 @@ keys() { sed -n "/^| $1 |/,/^\$/p" "$PAGE" | sed -n 's/^| \(`.*`\) | .*/\1/p' | 
 
 @test "JSON has the keys of the page, in its order" {
 	"$BIN/miou-score" -q --json --bootstrap 10 --compare other.jsonl --sentences sentences.jsonl --whole whole.jsonl \
-		--truth truth.jsonl pred.jsonl >all.json
+		--truth truth.jsonl <(sed 's/"segmentation"/"peak":[0,0],&/' pred.jsonl) >all.json
 	diff <(keys key) <(jq -r 'keys_unsorted[]' all.json)
 	[ "$(jq -r '.objects["cup, red"] | keys_unsorted[]' all.json | xargs)" = "pairs miou miou_low miou_high resampled units compare" ]
 	[ "$(jq -r '.relations.left | keys_unsorted[]' all.json | xargs)" = \

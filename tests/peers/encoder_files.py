@@ -16,7 +16,7 @@ def read_safetensors(path):
         if t["dtype"] == "BF16":
             array = (np.frombuffer(raw[a:b], "<u2").astype(np.uint32) << 16).view(np.float32)
         else:
-            array = np.frombuffer(raw[a:b], {"F16": "<f2", "F32": "<f4", "F64": "<f8", "I64": "<i8", "I32": "<i4"}[t["dtype"]])
+            array = np.frombuffer(raw[a:b], {"F16": "<f2", "F32": "<f4", "F64": "<f8", "I64": "<i8", "I32": "<i4", "U8": "u1"}[t["dtype"]])
         out[name] = array.reshape(t["shape"])
     return out, meta
 

@@ -46,16 +46,20 @@ ref_lerf() {
 	done
 }
 
-# Two labelled views; a category of two shapes.
+# Labels of the test views: the boxes around two objects, that of the first in two halves, which are two shapes of one category.
 lerf_ovs() {
 	local view
 	mkdir -p label/mini
+	"$BIN/mask-export" -q -o made/coco.json made/truth.jsonl
 	for view in $(tr , ' ' <made/test-views); do
-		jq -n --arg view "$view" --arg a "$(jq -r .ref made/names.jsonl | sed -n 1p)" --arg b "$(jq -r .ref made/names.jsonl | sed -n 2p)" '
-			{info: {name: "\($view).jpg", width: 64, height: 48, depth: 3, note: ""}, objects: [
-			{category: $a, group: 1, segmentation: [[2, 2], [12, 2], [12, 12], [2, 12]], bbox: [2, 2, 12, 12]},
-			{category: $a, group: 1, segmentation: [[20, 2], [30, 2], [30, 12], [20, 12]], bbox: [20, 2, 30, 12]},
-			{category: $b, group: 2, segmentation: [[40, 20], [60, 20], [60, 40], [40, 40]], bbox: [40, 20, 60, 40]}]}' >"label/mini/$view.json"
+		jq --arg view "$view" '
+			def shape($name; $l; $t; $r; $b): {category: $name, group: 1, segmentation: [[$l, $t], [$r, $t], [$r, $b], [$l, $b]], bbox: [$l, $t, $r, $b]};
+			([.images[] | select(.file_name == "\($view).png").id][0]) as $image | .categories as $names
+			| [.annotations[] | select(.image_id == $image) | .category_id as $id | {name: ($names[] | select(.id == $id).name), bbox}][:2]
+			| {info: {name: "\($view).jpg", width: 64, height: 48, depth: 3, note: ""}, objects: [to_entries[] | .key as $k | .value
+				| .name as $name | .bbox as [$x, $y, $w, $h]
+				| if $k == 0 then shape($name; $x; $y; $x + $w / 2; $y + $h), shape($name; $x + $w / 2; $y; $x + $w; $y + $h)
+					else shape($name; $x; $y; $x + $w; $y + $h) end]}' made/coco.json >"label/mini/$view.json"
 	done
 }
 
@@ -80,6 +84,8 @@ setup() {
 	load ../format/files
 	test_views=$(cat made/test-views)
 }
+
+not() { ! "$@"; }
 
 lerf() {
 	make -s -f "$ROOT/pipelines/lerf.mk" BIN="$BIN" BERT="$ROOT/tests/golden/bert" SPLATS=made/point_cloud.ply SCALE=1 "$@" 2>&1
@@ -115,7 +121,7 @@ lerf() {
 }
 
 @test "LERF-OVS: labels are the truth of their views, names the sentences" {
-	lerf lerf-ovs DATA=made/mini LABELS=label/mini CANDIDATES=made/candidates.jsonl OUT=ovs >ovs.out || { cat ovs.out; false; }
+	lerf lerf-ovs DATA=made/mini LABELS=label/mini CANDIDATES=made/candidates.jsonl PEAK=3 OUT=ovs >ovs.out || { cat ovs.out; false; }
 	views=$(tr , '\n' <made/test-views | wc -l)
 	[ "$(wc -l <ovs/benchmark/truth.jsonl)" = $((2 * views)) ]
 	[ "$(jq -r .text ovs/benchmark/sentences.jsonl | sort | uniq -c | awk '{ print $1 }' | sort -u)" = 2 ]
@@ -123,6 +129,44 @@ lerf() {
 	jq -e --argjson n $((2 * views)) '.pairs == $n and .missing == 0' ovs/score.json
 	grep -q '^Published mIoU on LERF-OVS' ovs.out
 	grep -qE '^  LangSplat +51.4$' ovs.out
+	grep -q '^Published mIoU on LERF-OVS (3D' ovs.out
+	grep -qE '^  LangSplat +9.7$' ovs.out
+	grep -qE '^  LangSplat +84.3$' ovs.out
+	# localisation: of every label, in the boxes that it has
+	jq -se 'all(.[]; .boxes | length > 0)' ovs/benchmark/truth.jsonl
+	jq -se 'any(.[]; has("peak")) and all(.[]; has("peak") == (.score > 0))' ovs/lifted/predictions.test.jsonl
+	jq -se '[.[].boxes | length] | max == 2' ovs/benchmark/truth.jsonl
+	jq -e '.miou > 0.3 and .peak_in_box == 1 and .peak_in_mask == 1' ovs/score.json
+	grep -qx "localisation: in a box 100, in the mask 100" ovs.out
+	not grep -q questions ovs.out
+	jq -Rr . ovs/log/render3.test.command | grep -q -- "'--peak' '3'"
+}
+
+# asked NAME...: questions that mean all of them, the first, and none.
+asked() {
+	jq -n -c --args '{ref: "all", objects: $ARGS.positional, text: "the \($ARGS.positional | join(" and the "))", split: "test"},
+		{ref: "one", objects: $ARGS.positional[:1], text: "the \($ARGS.positional[0])", split: "test"},
+		{ref: "none", objects: [], text: "the green zeppelin above the lighthouse", split: "test"}' "$@"
+}
+
+@test "questions of one, several and no objects" {
+	asked $(jq -r .ref made/names.jsonl | head -n 2 | sed 's/ /_/g') | sed 's/_/ /g' >questions.jsonl
+	lerf 3d-ovs DATA=ovs3d/mini CANDIDATES=made/candidates.jsonl OUT=asked/ovs QUESTIONS=questions.jsonl >asked.out || { cat asked.out; false; }
+	views=$(tr , '\n' <made/test-views | wc -l)
+	jq -e --argjson n "$views" '.none.pairs == $n and .all.missing == 0 and .out_of_sight + .all.pairs == 3 * $n' asked/ovs/questions.json
+	jq -e '.one.right > 0 and .several.miou > 0.3' asked/ovs/questions.json
+	# the figures are those of the file
+	row() { sed -n "s/^  $1  *//p" asked.out | tr -s ' '; }
+	for means in one several none; do
+		[ "$(row $means | awk '{ print $1, $3 }')" = "$(jq -r --arg of $means '.[$of] | "\(.pairs) \(.miou * 1000 | round / 10)"' asked/ovs/questions.json |
+			awk '{ printf "%d %.1f", $1, $2 }')" ]
+	done
+	grep -qE "^  gIoU [0-9.]+, cIoU [0-9.]+, N-acc $(jq '.n_acc * 100' asked/ovs/questions.json | xargs printf %.1f), T-acc [0-9.]+$" asked.out
+	# of Ref-LERF, against the masks of objects
+	lerf ref-lerf DATA=made/mini TEST_VIEWS="$test_views" OUT=ref QUESTIONS=questions.jsonl >asked.ref || { cat asked.ref; false; }
+	[ "$(jq -r .view ref/benchmark/objects.jsonl | sort -u | paste -sd,)" = "$test_views" ]
+	jq -e --argjson n "$views" '.none.pairs == $n and .all.missing == 0 and .one.right > 0' ref/questions.json
+	grep -q '^  gIoU ' asked.ref
 }
 
 @test "3D-OVS: pictures of classes are the truth of their views, classes the sentences" {

@@ -21,10 +21,11 @@ not() { ! "$@"; }
 @test "a row for each system and stand-in, with all figures" {
 	cd "$OUT"
 	sed -n '/^### /,$p' "$BATS_FILE_TMPDIR/table" | cmp systems.md
-	[ "$(grep -c '^| .* | [0-9.]* | [0-9.]* | [0-9.]* | [0-9]* | [0-9]* |$' systems.md)" = 11 ]
-	[ "$(grep -c '| stand-in: ' systems.md)" = 8 ]
-	grep -qF '| Grounded SAM: masks of each view alone | 15.8 | the detector is not run in test views | - |' systems.md
-	grep -qE '^\| LangSplat: relevancy \| 13.9 \| stand-in: names of true masks \| ' systems.md
+	[ "$(grep -c '^| .* | [0-9.]* | [0-9.]* | [0-9.]* | [0-9]* | [0-9]* |$' systems.md)" = 15 ]
+	[ "$(grep -c '^| .* | [0-9.]* | [0-9.]* | - | - | - |$' systems.md)" = 1 ]
+	[ "$(grep -c '| stand-in: ' systems.md)" = 13 ]
+	grep -qE "^\| Grounded SAM: masks of each view alone \| 15.8 \| stand-in: a synthetic detector's masks of the test view itself \| [0-9]" systems.md
+	grep -qE '^\| LangSplat: relevancy, pixels \| 13.9 \| stand-in: names of true masks \| ' systems.md
 }
 
 @test "the figures are those of the files" {
@@ -33,9 +34,27 @@ not() { ! "$@"; }
 	bytes=$(($(wc -c <truth/features.safetensors) / 1500))
 	grep -F 'GOI: hyperplane | 20.5 | stand-in: names of true masks' ../systems.md |
 		grep -qE "\| $(printf %.1f "$miou") \|.* $bytes \|$"
+	"$BIN/gs-check" answers/truth-relevancy2d.test.jsonl
+	jq -se 'length > 0 and all(.[]; has("peak"))' answers/truth-cosine2d.test.jsonl
 	"$BIN/gs-check" selected/truth-cosine.test.safetensors | grep -q 'refer.selection, 3 sentences'
 	not grep -q '2"' text/names.jsonl
 	[ "$(jq -r .text text/canonical.jsonl | paste -sd' ')" = "object things stuff texture" ]
+}
+
+@test "Grounded SAM's row: the most confident mask of each view and sentence, or none" {
+	cd "$OUT/diner-1"
+	for split in test train; do
+		jq -r --arg split $split 'select(.split == $split).ref' data/sentences.jsonl | sort >"$BATS_TEST_TMPDIR/refs"
+		[ "$(jq -r .view answers/views-sam.$split.jsonl | sort -u)" = "$(tr , '\n' <data/test-views | sort)" ]
+		for view in $(tr , ' ' <data/test-views); do
+			jq -r --arg v "$view" 'select(.view == $v).ref' answers/views-sam.$split.jsonl | sort | cmp - "$BATS_TEST_TMPDIR/refs"
+		done
+		while IFS=$'\t' read -r view ref score; do
+			most=$(jq -r --arg v "$view" --arg r "$ref" 'select(.view == $v and .ref == $r).score' data/candidates.test.jsonl | sort -g | tail -n 1)
+			[ "$score" = "${most:-0}" ]
+		done < <(jq -r '[.view, .ref, .score] | @tsv' answers/views-sam.$split.jsonl)
+	done
+	jq -e '.missing == 0 and .pairs > 0' answers/views-sam.test.score.json
 }
 
 @test "a second run makes nothing, and another option what depends on it" {
@@ -47,6 +66,8 @@ not() { ! "$@"; }
 	made=$(cd "$OUT/diner-1" && find . -name '*.safetensors' -newer "$OLDPWD/stamp" | LC_ALL=C sort)
 	[ "$(grep -c selected <<<"$made")" = 12 ] || { echo "$made"; false; }
 	[ "$(grep -v selected <<<"$made" | paste -sd' ')" = "./detector/features.safetensors ./truth/features.safetensors" ]
+	systems PRUNE=0.25 COMPONENTS=2 >few
+	"$BIN/gs-check" "$OUT/diner-1/truth/features.safetensors" | grep -q ', 2 components, '
 	run make -f "$ROOT/pipelines/systems.mk" OUT="$OUT" SCENES='a;b'
 	[ "$status" = 2 ]
 	[[ $output == *"SCENES has a ;"* ]]

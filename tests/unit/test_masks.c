@@ -38,7 +38,7 @@ static void test_round_trips(void)
 		const char *view = "view \"1\"", *ref = "r\\1/%", *object = "r\xc3\xa4t";
 		struct mask r = {view, round % 3 ? ref : NULL, round % 3 == 1 ? NULL : object,
 			mask_rle(pixels, h, w), round % 4 ? rng_uniform(&rng) : NAN,
-			round % 7 ? NAN : rng_uniform(&rng)};
+			round % 7 ? NAN : rng_uniform(&rng), NULL};
 		struct mask back;
 		char *text = print(&r);
 		if (CHECK(parse(text, strlen(text), &back, &e) == 1, "round %d: %s", round, e.message)) {

@@ -122,8 +122,8 @@ static void test_propagation(void)
 			snprintf(names[o], sizeof names[o], "o%d", o);
 			pixels[n] = mask_random(&r, H, W, 1);
 			views[n] = (size_t)view;
-			masks[n] = (struct mask){
-				s.views[view].name, NULL, names[o], mask_rle(pixels[n], H, W), score, NAN};
+			masks[n] = (struct mask){s.views[view].name, NULL, names[o],
+				mask_rle(pixels[n], H, W), score, NAN, NULL};
 			n++;
 		}
 	CHECK(!pool_make(&pool, masks, n, &e) && !pool_select(&pool, SELECT_TOP1, 0.3, &e), "%s", e.message);
@@ -155,12 +155,12 @@ static void test_pool(void)
 	const uint8_t wide[6] = {0, 1}, tall[6] = {1};
 	struct rle m[2] = {mask_rle(wide, 2, 3), mask_rle(tall, 3, 2)};
 	struct mask records[] = {
-		{"b", "cup-1", "cup", m[0], 0.5, NAN},
-		{"a", "cup", NULL, m[0], 0.5, NAN}, /* a sentence's name is no object's */
-		{"a", "cup-1", "cup", m[0], 0.2, NAN},
-		{"b", "jar-1", "jar", m[0], 0.5, NAN},
-		{"a", "cup-2", "cup", m[0], 0.6, NAN},
-		{"b", "cup-2", "cup", m[0], 0.7, NAN},
+		{"b", "cup-1", "cup", m[0], 0.5, NAN, NULL},
+		{"a", "cup", NULL, m[0], 0.5, NAN, NULL}, /* a sentence's name is no object's */
+		{"a", "cup-1", "cup", m[0], 0.2, NAN, NULL},
+		{"b", "jar-1", "jar", m[0], 0.5, NAN, NULL},
+		{"a", "cup-2", "cup", m[0], 0.6, NAN, NULL},
+		{"b", "cup-2", "cup", m[0], 0.7, NAN, NULL},
 	};
 	const size_t first[] = {0, 1, 2, 3}, object[] = {0, 1, 0, 3}, sizes[] = {2, 1, 2, 1};
 	const long winner[] = {5, 1, 4, 3};

@@ -66,7 +66,7 @@ static void add(struct scene *s, int object, const char *ref, int view, int show
 		*mask = small;
 	}
 	s->views[s->n] = (size_t)view;
-	s->masks[s->n++] = (struct mask){names[view], ref, objects[object], *mask, score, NAN};
+	s->masks[s->n++] = (struct mask){names[view], ref, objects[object], *mask, score, NAN, NULL};
 }
 
 /* Three of the bag's four sentences show the box, surely, in all views but one; the fourth knows it.

@@ -28,18 +28,18 @@ static void test_by_hand(void)
 	struct rle four = row("11110000"), two = row("11000000"), other = row("00001100"),
 		   none = row("00000000");
 	const struct mask truth[] = {
-		{"v1", NULL, "cup", four, 1, NAN},
-		{"v1", NULL, "plate", none, 1, NAN},
-		{"v1", "spoon-1", "spoon", two, 1, NAN},
-		{"v2", NULL, "cup", four, 1, NAN},
+		{"v1", NULL, "cup", four, 1, NAN, NULL},
+		{"v1", NULL, "plate", none, 1, NAN, NULL},
+		{"v1", "spoon-1", "spoon", two, 1, NAN, NULL},
+		{"v2", NULL, "cup", four, 1, NAN, NULL},
 	};
 	const struct mask predictions[] = {
-		{"v1", "cup-1", "cup", four, 1, NAN},	  /* 4/4 */
-		{"v1", "cup-2", "cup", two, 1, NAN},	  /* 2/4 */
-		{"v1", "plate-1", "plate", four, 1, NAN}, /* empty truth */
-		{"v1", "spoon-1", NULL, other, 1, NAN},	  /* 0/4 */
-		{"v1", "fork-1", "fork", four, 1, NAN},	  /* no such truth */
-		{"v9", "cup-1", "cup", four, 1, NAN},	  /* no such view */
+		{"v1", "cup-1", "cup", four, 1, NAN, NULL},	/* 4/4 */
+		{"v1", "cup-2", "cup", two, 1, NAN, NULL},	/* 2/4 */
+		{"v1", "plate-1", "plate", four, 1, NAN, NULL}, /* empty truth */
+		{"v1", "spoon-1", NULL, other, 1, NAN, NULL},	/* 0/4 */
+		{"v1", "fork-1", "fork", four, 1, NAN, NULL},	/* no such truth */
+		{"v9", "cup-1", "cup", four, 1, NAN, NULL},	/* no such view */
 	};
 	struct score_pairs p;
 	struct score s;
@@ -78,12 +78,12 @@ static void test_refs(void)
 {
 	struct rle a = row("11110000"), b = row("00001111"), c = row("11111111");
 	const struct mask truth[] = {
-		{"v", "r1", "cup", a, 1, NAN},
-		{"v", "r2", "cup", b, 1, NAN},
-		{"v", NULL, "cup", c, 1, NAN},
+		{"v", "r1", "cup", a, 1, NAN, NULL},
+		{"v", "r2", "cup", b, 1, NAN, NULL},
+		{"v", NULL, "cup", c, 1, NAN, NULL},
 	};
-	const struct mask by_ref[] = {
-		{"v", "r2", "cup", b, 1, NAN}, {"v", "r7", "cup", c, 1, NAN}, {"v", NULL, "cup", a, 1, NAN}};
+	const struct mask by_ref[] = {{"v", "r2", "cup", b, 1, NAN, NULL},
+		{"v", "r7", "cup", c, 1, NAN, NULL}, {"v", NULL, "cup", a, 1, NAN, NULL}};
 	struct score_pairs p;
 	struct err e = {0};
 
@@ -130,12 +130,12 @@ static void test_duplicates(void)
 {
 	struct rle a = row("11110000");
 	struct mask m[] = {
-		{"v", "r1", "cup", a, 1, NAN},
-		{"v", "r2", "cup", a, 1, NAN},
-		{"w", "r1", "cup", a, 1, NAN},
-		{"v", NULL, "cup", a, 1, NAN},
-		{"v", NULL, "pan", a, 1, NAN},
-		{"v", "r2", NULL, a, 1, NAN},
+		{"v", "r1", "cup", a, 1, NAN, NULL},
+		{"v", "r2", "cup", a, 1, NAN, NULL},
+		{"w", "r1", "cup", a, 1, NAN, NULL},
+		{"v", NULL, "cup", a, 1, NAN, NULL},
+		{"v", NULL, "pan", a, 1, NAN, NULL},
+		{"v", "r2", NULL, a, 1, NAN, NULL},
 	};
 	size_t earlier = 9, later = 9;
 
@@ -164,8 +164,56 @@ static void test_sizes(void)
 	rle_free(&prediction.rle);
 }
 
+/* Whether a point is in the truth's box and mask. */
+static void test_peaks(void)
+{
+	/* Columns of 3: the foreground is column 1 but for its top, and the top of column 2. */
+	uint8_t pixels[3 * 4] = {0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0};
+	struct mask truth = {.view = "v", .object = "o", .rle = mask_rle(pixels, 3, 4)}, p = truth;
+	struct mask_place point = {.has_peak = 1}, boxes = {0};
+	const double far[4] = {3, 0.5, 2.5, 0}, near[4] = {0, 0, 0.5, 9};
+	struct score_pair pair = {.prediction = &p, .truth = &truth, .object = "o"};
+	struct score s;
+	struct err e;
+
+	p.place = &point;
+	for (int at = 0; at < 12; at++) {
+		point.peak[0] = at % 4;
+		point.peak[1] = at / 4;
+		CHECK(!score_measure(&pair, &e) && pair.is_in_mask == pixels[at], "%d", at);
+		CHECK(pair.is_in_box == (at % 4 == 1 || at % 4 == 2), "box of the mask: %d", at);
+	}
+	CHECK(!mask_place_add_box(&boxes, far, &e) && !mask_place_add_box(&boxes, near, &e), "%s", e.message);
+	truth.place = &boxes;
+	for (int at = 0; at < 12; at++) {
+		point.peak[0] = at % 4;
+		point.peak[1] = at / 4;
+		CHECK(!score_measure(&pair, &e) && pair.is_in_box == (at == 3 || at % 4 == 0), "boxes: %d",
+			at);
+	}
+	point.peak[0] = point.peak[1] = 0;
+	CHECK(!score_measure(&pair, &e), "%s", e.message);
+	score_sum(&s, &pair, 1);
+	CHECK(s.peaks == 1 && s.in_box == 1 && s.in_mask == 0, "%zu %g %g", s.peaks, s.in_box, s.in_mask);
+	/* At twice the size (1,1) is the four pixels from (2,2). */
+	p.rle = (struct rle){0};
+	CHECK(!rle_resize(&p.rle, &truth.rle, 6, 8, &e), "%s", e.message);
+	for (int at = 0; at < 48; at++) {
+		point.peak[0] = at % 8;
+		point.peak[1] = at / 8;
+		CHECK(!score_measure(&pair, &e) && pair.is_in_mask == pixels[at / 8 / 2 * 4 + at % 8 / 2],
+			"%d", at);
+	}
+	point.has_peak = 0;
+	CHECK(!score_measure(&pair, &e) && !pair.is_in_mask && !pair.is_in_box, "no peak");
+	rle_free(&p.rle);
+	rle_free(&truth.rle);
+	free(boxes.boxes);
+}
+
 int main(void)
 {
+	test_peaks();
 	test_by_hand();
 	test_refs();
 	test_duplicates();

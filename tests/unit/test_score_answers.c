@@ -44,7 +44,7 @@ static void world_make(struct world *w, uint64_t seed)
 			free(m);
 			w->truth_rle[v][o] = mask_rle(w->truth[v][o], H, W);
 			w->truths[w->truth_n++] = (struct mask){
-				view_names[v], NULL, object_names[o], w->truth_rle[v][o], 1, NAN};
+				view_names[v], NULL, object_names[o], w->truth_rle[v][o], 1, NAN, NULL};
 		}
 		for (int s = 0; s < SENTENCES; s++) {
 			uint8_t *m = mask_random(&r, H, W, rng_below(&r, 3) ? 1 : 2);
@@ -58,7 +58,7 @@ static void world_make(struct world *w, uint64_t seed)
 			w->said_rle[v][s] = mask_rle(w->said[v][s], H, W);
 			if (rng_below(&r, 8))
 				w->predictions[w->prediction_n++] = (struct mask){
-					view_names[v], w->refs[s], NULL, w->said_rle[v][s], 1, NAN};
+					view_names[v], w->refs[s], NULL, w->said_rle[v][s], 1, NAN, NULL};
 		}
 	}
 }
@@ -136,8 +136,18 @@ static void check_one(const struct world *w, const struct answer *a)
 		for (int p = 0; p < P && of; p++)
 			all[p] |= w->truth[v][o][p];
 	}
-	if (a->is_missing)
+	int both = 0, either = 0;
+	for (int p = 0; p < P; p++) {
+		both += !a->is_missing && said[p] && all[p];
+		either += (!a->is_missing && said[p]) || all[p];
+	}
+	CHECK((int)a->intersection == both && (int)a->either == either, "sentence %d, view %d: %d of %d", s,
+		v, both, either);
+	if (a->is_missing) {
+		CHECK(!a->is_refused && !a->is_right && a->iou <= 0 && a->f1[0] <= 0 && a->f1[1] <= 0,
+			"what is missing is wrong");
 		return;
+	}
 	int none = !a->sentence->object_count, blank = is_blank(said);
 	double f1 = none ? blank : 2.0 * hit / (shown + meant);
 	int right = none			     ? blank
@@ -148,6 +158,25 @@ static void check_one(const struct world *w, const struct answer *a)
 	CHECK(fabs(a->iou - (none ? blank : iou(said, all))) < 1e-12, "sentence %d, view %d: %g", s, v,
 		a->iou);
 	CHECK(a->is_right == right, "sentence %d, view %d: right %d", s, v, right);
+}
+
+/* The figures of GRES, from the answers one by one. */
+static void check_totals(
+	const struct answers *a, const struct answer_score *all, const struct answer_score *none)
+{
+	double both = 0, either = 0, answered = 0, targets = 0, n_acc, t_acc;
+
+	for (size_t i = 0; i < a->n; i++) {
+		const struct answer *one = &a->items[i];
+		both += (double)one->intersection;
+		either += (double)one->either;
+		targets += one->sentence->object_count > 0;
+		answered += one->sentence->object_count > 0 && !one->is_refused && !one->is_missing;
+	}
+	answer_target_accuracy(&n_acc, &t_acc, a);
+	CHECK(fabs(all->oiou - both / either) < 1e-12, "%g of %g", both, either);
+	CHECK(fabs(t_acc - answered / targets) < 1e-12, "T-acc %g", t_acc);
+	CHECK(none->pairs ? fabs(n_acc - none->refused) < 1e-12 : isnan(n_acc), "N-acc %g", n_acc);
 }
 
 static void against_pixels(const struct world *w)
@@ -175,6 +204,7 @@ static void against_pixels(const struct world *w)
 	for (int k = 0; k < 3; k++)
 		answer_score_sum(&parts[k], &a, (enum answer_targets)(ANSWER_ONE + k), NULL);
 	CHECK(parts[0].pairs + parts[1].pairs + parts[2].pairs == a.n, "targets do not sum");
+	check_totals(&a, &all, &parts[2]);
 	answer_score_sum(&parts[0], &a, ANSWER_ANY, "a");
 	answer_score_sum(&parts[1], &a, ANSWER_ANY, "");
 	CHECK(parts[0].pairs + parts[1].pairs == a.n, "kinds do not sum");
@@ -224,7 +254,8 @@ static void predictions_of_another_size(void)
 		for (int x = 0; x < 2 * W; x++)
 			large[y * 2 * W + x] = small[y / 2 * W + x / 2];
 	struct rle t = mask_rle(small, H, W), p = mask_rle(large, 2 * H, 2 * W);
-	struct mask truth = {"v", NULL, "cup", t, 1, NAN}, prediction = {"v", "r", NULL, p, 1, NAN};
+	struct mask truth = {"v", NULL, "cup", t, 1, NAN, NULL},
+		    prediction = {"v", "r", NULL, p, 1, NAN, NULL};
 	if (CHECK(!answers_make(&a, &s, 1, &truth, 1, &prediction, 1, &e), "%s", e.message)) {
 		CHECK(a.n == 1 && a.items[0].is_right && a.items[0].iou > 0.999 && a.items[0].f1[1] > 0.999,
 			"iou %g", a.items[0].iou);
@@ -250,10 +281,10 @@ static void truths_of_several_sizes(void)
 			huge[y * 8 + x] = 1;
 		}
 	huge[8 * 4] = 1; /* too little to count at a smaller size */
-	const struct mask truth[] = {{"v", NULL, "a", mask_rle(large, 4, 4), 1, NAN},
-		{"v", NULL, "b", mask_rle(small, 2, 2), 1, NAN},
-		{"v", NULL, "c", mask_rle(huge, 8, 8), 1, NAN}};
-	const struct mask prediction = {"v", "r", NULL, mask_rle(huge, 8, 8), 1, NAN};
+	const struct mask truth[] = {{"v", NULL, "a", mask_rle(large, 4, 4), 1, NAN, NULL},
+		{"v", NULL, "b", mask_rle(small, 2, 2), 1, NAN, NULL},
+		{"v", NULL, "c", mask_rle(huge, 8, 8), 1, NAN, NULL}};
+	const struct mask prediction = {"v", "r", NULL, mask_rle(huge, 8, 8), 1, NAN, NULL};
 	if (CHECK(!answers_make(&a, s, 2, truth, 3, &prediction, 1, &e), "%s", e.message)) {
 		/* as c covers the same, the second shows more than is meant */
 		CHECK(a.n == 2 && a.items[0].is_right && !a.items[1].is_right, "%zu answers", a.n);
@@ -271,8 +302,9 @@ static void unknown_and_unmatched(void)
 	char *objects[] = {object_names[0], object_names[1]};
 	struct answer_sentence s[2] = {{.ref = "r", .object_count = 2, .objects = objects}, {.ref = "none"}};
 	struct rle m = mask_rle(pixels, H, W);
-	struct mask truth = {"v", NULL, "cup", m, 1, NAN};
-	struct mask predictions[2] = {{"v", "other", NULL, m, 1, NAN}, {"v", NULL, "cup", m, 1, NAN}};
+	struct mask truth = {"v", NULL, "cup", m, 1, NAN, NULL};
+	struct mask predictions[2] = {
+		{"v", "other", NULL, m, 1, NAN, NULL}, {"v", NULL, "cup", m, 1, NAN, NULL}};
 	struct answers a;
 	struct err e;
 

@@ -49,15 +49,16 @@ static const char *shown(char text[64], const struct score_pairs *a, const struc
 
 static void test_join(void)
 {
-	const struct mask truth[] = {{"v", NULL, "pan", mask[8], 1, NAN}, {"v", NULL, "cup", mask[4], 1, NAN},
-		{"w", "r1", "cup", mask[3], 1, NAN}};
-	const struct mask both[] = {{"v", "r2", "cup", mask[2], 1, NAN}, {"v", "r1", "cup", mask[1], 1, NAN},
-		{"w", "r1", "cup", mask[5], 1, NAN}};
+	const struct mask truth[] = {{"v", NULL, "pan", mask[8], 1, NAN, NULL},
+		{"v", NULL, "cup", mask[4], 1, NAN, NULL}, {"w", "r1", "cup", mask[3], 1, NAN, NULL}};
+	const struct mask both[] = {{"v", "r2", "cup", mask[2], 1, NAN, NULL},
+		{"v", "r1", "cup", mask[1], 1, NAN, NULL}, {"w", "r1", "cup", mask[5], 1, NAN, NULL}};
 	const struct mask later[] = {
-		{"v", "r3", "cup", mask[7], 1, NAN}, {"v", "r2", "cup", mask[6], 1, NAN}};
-	const struct mask bare[] = {{"v", NULL, "cup", mask[3], 1, NAN}, {"w", NULL, "cup", mask[2], 1, NAN}};
+		{"v", "r3", "cup", mask[7], 1, NAN, NULL}, {"v", "r2", "cup", mask[6], 1, NAN, NULL}};
+	const struct mask bare[] = {
+		{"v", NULL, "cup", mask[3], 1, NAN, NULL}, {"w", NULL, "cup", mask[2], 1, NAN, NULL}};
 	const struct mask mixed[] = {
-		{"v", NULL, "cup", mask[3], 1, NAN}, {"v", "r1", "cup", mask[4], 1, NAN}};
+		{"v", NULL, "cup", mask[3], 1, NAN, NULL}, {"v", "r1", "cup", mask[4], 1, NAN, NULL}};
 	struct score_pairs a, b;
 	char text[64];
 
@@ -97,7 +98,7 @@ static void test_join(void)
 	score_pairs_free(&a);
 	score_pairs_free(&b);
 
-	const struct mask nameless = {"v", "r1", NULL, mask[8], 1, NAN};
+	const struct mask nameless = {"v", "r1", NULL, mask[8], 1, NAN, NULL};
 	join(&a, &b, &nameless, 1, NULL, 0, both, 3);
 	CHECK(!strcmp(a.items[0].object, "cup"), "the only prediction's: %s", a.items[0].object);
 	score_pairs_free(&a);
@@ -112,12 +113,15 @@ static void test_join(void)
 static void test_compare(void)
 {
 	const struct bootstrap how = {2000, 0.95, 1};
-	const struct mask truth[] = {{"v", NULL, "a", mask[4], 1, NAN}, {"v", NULL, "b", mask[4], 1, NAN},
-		{"v", NULL, "c", mask[4], 1, NAN}, {"v", NULL, "d", mask[0], 1, NAN}};
-	const struct mask own[] = {{"v", NULL, "a", mask[4], 1, NAN}, {"v", NULL, "b", mask[2], 1, NAN},
-		{"v", NULL, "c", mask[2], 1, NAN}, {"v", NULL, "d", mask[1], 1, NAN}};
-	const struct mask other[] = {{"v", NULL, "a", mask[2], 1, NAN}, {"v", NULL, "b", mask[3], 1, NAN},
-		{"v", NULL, "c", mask[2], 1, NAN}, {"v", NULL, "d", mask[0], 1, NAN}};
+	const struct mask truth[] = {{"v", NULL, "a", mask[4], 1, NAN, NULL},
+		{"v", NULL, "b", mask[4], 1, NAN, NULL}, {"v", NULL, "c", mask[4], 1, NAN, NULL},
+		{"v", NULL, "d", mask[0], 1, NAN, NULL}};
+	const struct mask own[] = {{"v", NULL, "a", mask[4], 1, NAN, NULL},
+		{"v", NULL, "b", mask[2], 1, NAN, NULL}, {"v", NULL, "c", mask[2], 1, NAN, NULL},
+		{"v", NULL, "d", mask[1], 1, NAN, NULL}};
+	const struct mask other[] = {{"v", NULL, "a", mask[2], 1, NAN, NULL},
+		{"v", NULL, "b", mask[3], 1, NAN, NULL}, {"v", NULL, "c", mask[2], 1, NAN, NULL},
+		{"v", NULL, "d", mask[0], 1, NAN, NULL}};
 	struct score_pairs a, b;
 	struct score_row r = {0};
 	struct err e;
@@ -230,8 +234,8 @@ static void test_seen(void)
 
 	for (size_t i = 0; i < 8; i++) {
 		truths[i] = row(20, ones[i]);
-		truth[i] = (struct mask){views[i], NULL, "o", truths[i], 1, NAN};
-		wholes[i] = (struct mask){views[i], NULL, "o", i % 2 ? whole : half, 1, NAN};
+		truth[i] = (struct mask){views[i], NULL, "o", truths[i], 1, NAN, NULL};
+		wholes[i] = (struct mask){views[i], NULL, "o", i % 2 ? whole : half, 1, NAN, NULL};
 		pairs[i] = (struct score_pair){.truth_index = i, .truth = &truth[i]};
 	}
 	CHECK(!score_seen(sets, pairs, 8, truth, 8, wholes, 8, &unknown, &e) && !unknown, "%zu", unknown);
@@ -241,9 +245,10 @@ static void test_seen(void)
 
 	/* three wholes are gone, of which one is of an empty truth; one has nothing in it; one is too small
 	 */
-	const struct mask few[] = {{"0", "r", "o", whole, 1, NAN}, {"3", NULL, "o", mask[0], 1, NAN},
-		{"4", NULL, "o", truths[0], 1, NAN}, {"5", "r", "o", truths[3], 1, NAN},
-		{"5", NULL, "o", whole, 1, NAN}, {"6", NULL, "p", whole, 1, NAN}};
+	const struct mask few[] = {{"0", "r", "o", whole, 1, NAN, NULL},
+		{"3", NULL, "o", mask[0], 1, NAN, NULL}, {"4", NULL, "o", truths[0], 1, NAN, NULL},
+		{"5", "r", "o", truths[3], 1, NAN, NULL}, {"5", NULL, "o", whole, 1, NAN, NULL},
+		{"6", NULL, "p", whole, 1, NAN, NULL}};
 	truth[5].ref = "r";
 	CHECK(!score_seen(sets, pairs, 8, truth, 8, few, 6, &unknown, &e) && unknown == 4, "%zu", unknown);
 	CHECK(sets[0] == 1u << SCORE_SEEN_LITTLE, "one with a ref serves where there is none without");
@@ -258,9 +263,10 @@ static void test_seen(void)
 
 static void test_views(void)
 {
-	struct mask truth[] = {{"u", NULL, "1", {0}, 1, NAN}, {"v", NULL, "2", {0}, 1, NAN},
-		{"u", NULL, "3", {0}, 1, NAN}, {"w", NULL, "4", {0}, 1, NAN}};
-	const struct mask own[] = {{"w", NULL, "x", {0}, 1, NAN}}, other[] = {{"u", NULL, "x", {0}, 1, NAN}};
+	struct mask truth[] = {{"u", NULL, "1", {0}, 1, NAN, NULL}, {"v", NULL, "2", {0}, 1, NAN, NULL},
+		{"u", NULL, "3", {0}, 1, NAN, NULL}, {"w", NULL, "4", {0}, 1, NAN, NULL}};
+	const struct mask own[] = {{"w", NULL, "x", {0}, 1, NAN, NULL}},
+			  other[] = {{"u", NULL, "x", {0}, 1, NAN, NULL}};
 	size_t n = 4;
 	struct err e;
 

@@ -79,10 +79,11 @@ static void detector_depends_on_the_view_alone(void)
 	CHECK(confused > 0 && confused < N * SYNTH_TRAIN_SENTENCES / 2, "%d confused sentences", confused);
 	for (int view = 0; view < 6; view++) {
 		struct masks a = {0}, b = {0};
-		CHECK(!synth_detect(&a, &d, view, "v", truth, H, W, &e), "%s", e.message);
-		synth_detect(&b, &d, view + 1, "w", truth, H, W, &e);
+		CHECK(!synth_detect(&a, &d, view, "v", SYNTH_TRAIN_SENTENCES, truth, H, W, &e), "%s",
+			e.message);
+		synth_detect(&b, &d, view + 1, "w", SYNTH_TRAIN_SENTENCES, truth, H, W, &e);
 		size_t other_view = b.n;
-		synth_detect(&b, &d, view, "v", truth, H, W, &e);
+		synth_detect(&b, &d, view, "v", SYNTH_TRAIN_SENTENCES, truth, H, W, &e);
 		int same = b.n - other_view == a.n;
 		for (size_t i = 0; i < a.n && same; i++) {
 			const struct mask *x = &a.items[i], *y = &b.items[other_view + i];
@@ -190,6 +191,29 @@ static void a_severe_detector_is_misled(void)
 	cameras_free(&m.cameras);
 }
 
+/* A test sentence is understood as one of its object's training sentences is, not always the same one. */
+static void test_sentences_have_habits(void)
+{
+	static struct made m;
+	int places[SYNTH_TRAIN_SENTENCES] = {0};
+
+	if (make(&m, 2, 5))
+		return;
+	const struct synth_habits *h = &m.detector.habits;
+	for (int i = 0; i < m.n; i++) {
+		int found = 0;
+		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
+			const int same = h->of[i][4] == h->of[i][k] && h->mistaken[i][4] == h->mistaken[i][k];
+			found += same;
+			places[k] += same;
+		}
+		CHECK(found > 0, "object %d's test sentence is like none", i);
+	}
+	for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
+		CHECK(places[k] > 0 && places[k] < m.n, "%d of %d are as sentence %d", places[k], m.n, k);
+	cameras_free(&m.cameras);
+}
+
 /* What a view shows of balls in the things' places, the near ones over the far. */
 static void paint(const struct made *m, const struct camera *c, uint8_t *truth)
 {
@@ -263,7 +287,8 @@ static void selection_gains_as_in_the_paper(void)
 			for (int view = 0; view < (int)m.cameras.n; view++) {
 				struct masks found = {0};
 				paint(&m, &m.cameras.views[view], truth);
-				if (CHECK(!synth_detect(&found, &m.detector, view, "v", truth, H, W, &e),
+				if (CHECK(!synth_detect(&found, &m.detector, view, "v", SYNTH_TRAIN_SENTENCES,
+						  truth, H, W, &e),
 					    "%s", e.message))
 					pairs += select_all(&m, &found, truth, sums);
 				masks_free(&found);
@@ -282,6 +307,7 @@ int main(void)
 	outlines_change_as_asked();
 	detector_depends_on_the_view_alone();
 	a_severe_detector_is_misled();
+	test_sentences_have_habits();
 	selection_gains_as_in_the_paper();
 	return unit_end();
 }

@@ -1,0 +1,34 @@
+/* Where a mask is, beside its pixels: the point that a prediction points at, and the boxes that a label has.
+ * Localisation accuracy (Kerr et al. 2023, LERF) asks whether the one lies in the other. */
+#ifndef MASK_MASK_PLACE_H
+#define MASK_MASK_PLACE_H
+
+#include "base/err.h"
+#include "mask/rle.h"
+
+#include <stddef.h>
+
+struct mask_place {
+	int has_peak;
+	double peak[2]; /* column and row of a pixel, of the mask's size; the first pixel is 0,0 */
+	size_t box_count, box_room;
+	double (*boxes)[4]; /* left, top, right, bottom, in the same units; owned */
+};
+
+/* A zeroed one; NULL with *e set. */
+struct mask_place *mask_place_new(struct err *e);
+void mask_place_free(struct mask_place *p);
+
+/* Appends a box, whose corners may be in any order. */
+int mask_place_add_box(struct mask_place *p, const double box[4], struct err *e);
+
+/* Whether a point, in pixels of a mask of height x width, lies in a box of the truth, its edges counting; the
+ * box around the truth's mask where `boxes` has none (NULL: none). The point is brought to the truth's size.
+ */
+int mask_place_in_box(
+	const double peak[2], int height, int width, const struct rle *truth, const struct mask_place *boxes);
+
+/* Whether the pixel of the truth's mask at that point is foreground. */
+int mask_place_in_mask(const double peak[2], int height, int width, const struct rle *truth);
+
+#endif
