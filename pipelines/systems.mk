@@ -6,6 +6,7 @@
 # queries (feature-query). The 2D models cannot run here. Stand-ins for what they say of each training view are:
 #	truth      true masks; the feature is the language encoder's vector of the object's name, the label its number
 #	detector   the synthetic detector's candidates in their place, which show the wrong object more often than not
+# Cosine and relevancy have two rows each: for the pixels of rendered features, as they are published, and for Gaussians.
 # Grounded SAM's row has what the synthetic detector finds in the test views themselves, which no other row sees.
 # A name is as a class has it: look-alikes share it. Queries are the sentences, by the same encoder.
 #
