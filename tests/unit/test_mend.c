@@ -26,9 +26,7 @@ static struct analysis made(const struct tokens *t, const char *roles, enum pars
 	return a;
 }
 
-/* Mends; the word's role and head are then so. */
-static void mends(const char *text, const char *roles, enum parse_relation relation, int word,
-	enum word_role role, int head, enum parse_relation now)
+static struct analysis mended(const char *text, const char *roles, enum parse_relation relation)
 {
 	struct tokens t;
 	struct analysis a, grammar;
@@ -37,6 +35,15 @@ static void mends(const char *text, const char *roles, enum parse_relation relat
 	grammar_analyse(&grammar, &t);
 	a = made(&t, roles, relation);
 	analysis_mend(&a, &grammar, &t);
+	return a;
+}
+
+/* The word's role and head are so once it is mended. */
+static void mends(const char *text, const char *roles, enum parse_relation relation, int word,
+	enum word_role role, int head, enum parse_relation now)
+{
+	const struct analysis a = mended(text, roles, relation);
+
 	CHECK(a.word[word].role == role && a.word[word].head == head, "'%s': word %d has role %d of %d", text,
 		word, a.word[word].role, a.word[word].head);
 	CHECK(role != ROLE_PREDICATE || a.word[word].relation == now, "'%s': relation %s", text,
@@ -168,13 +175,8 @@ static void mends_nor(void)
 /* Whether a predicate is denied once it is mended. */
 static void denies(const char *text, const char *roles, enum parse_relation relation, int word, int negated)
 {
-	struct tokens t;
-	struct analysis a, grammar;
+	const struct analysis a = mended(text, roles, relation);
 
-	tokens_take(&t, text, NULL, NULL, 0);
-	grammar_analyse(&grammar, &t);
-	a = made(&t, roles, relation);
-	analysis_mend(&a, &grammar, &t);
 	CHECK(a.word[word].role == ROLE_PREDICATE && a.word[word].relation == PARSE_NEAR &&
 			a.word[word].negated == negated && !analysis_has_anchor(&a, word),
 		"'%s': role %d, %s, %d", text, a.word[word].role, parse_relation_name(a.word[word].relation),
