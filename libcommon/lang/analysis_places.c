@@ -50,13 +50,11 @@ static void mend_doubled(struct analysis *a, const struct tokens *t)
 			continue;
 		const enum parse_relation first = without_contact(a->word[i].relation),
 					  second = without_contact(a->word[j].relation);
-		const int has_first = analysis_has_anchor(a, i), has_second = analysis_has_anchor(a, j);
-		if (first == second && !has_first)
+		const int is_of_both = first == second || (first == PARSE_NEAR && is_of_room(second));
+		if (is_of_both && !analysis_has_anchor(a, i))
 			give_up(&a->word[i]);
-		else if (first == second && !has_second)
+		else if (first == second && !analysis_has_anchor(a, j))
 			give_up(&a->word[j]);
-		else if (first == PARSE_NEAR && !has_first && is_of_room(second))
-			give_up(&a->word[i]);
 	}
 }
 

@@ -89,7 +89,7 @@ static int64_t mark_share(float *row, size_t n, double tolerance, uint32_t *list
 	const int32_t end = bin_begin(last + 1);
 	for (size_t i = 0; i < n; i++) {
 		list[count] = (uint32_t)i;
-		count += (bits_of(row[i]) >= *begin) & (bits_of(row[i]) < end);
+		count += (uint32_t)(bits_of(row[i]) - *begin) < (uint32_t)(end - *begin);
 	}
 	return mark_listed(row, list, count, out, most);
 }
