@@ -144,6 +144,21 @@ static int is_of_anything(const struct parse_clause *c)
 	       (c->relation == PARSE_NEAR && c->negated && c->degree == PARSE_PLAIN);
 }
 
+/* "the two leftmost": the second as well as the first. */
+static void rank_more(
+	struct meaning *m, const struct relation *first, int count, const double *fit, double *value)
+{
+	const size_t n = objects_of(m);
+	struct relation r = *first;
+	double *next = m->scratch + 6 * n;
+
+	for (r.place = 2; r.place <= count && !first->place; r.place++) {
+		relate(m->arrangement, &r, fit, m->scratch + 3 * n, next);
+		for (size_t o = 0; o < n; o++)
+			value[o] = fmax(value[o], next[o]);
+	}
+}
+
 /* value (O) of a clause that has places in it; returns how far its anchors are known. */
 static double judge_relation(
 	struct meaning *m, int phrase, const struct parse_clause *c, const double *fit, double *value)
@@ -176,6 +191,8 @@ static double judge_relation(
 		r.count++;
 	}
 	relate(m->arrangement, &r, fit, m->scratch + 3 * objects_of(m), value);
+	if (r.degree == PARSE_MOST)
+		rank_more(m, &r, f->count, fit, value);
 	return known;
 }
 

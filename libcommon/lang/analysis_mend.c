@@ -169,23 +169,45 @@ static void mend_parts(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* The predicate of words i to i + 4, or -1. */
+static int predicate_from(const struct analysis *a, int i)
+{
+	for (int j = i; j < a->n && j <= i + 4; j++)
+		if (a->word[j].role == ROLE_PREDICATE)
+			return j;
+	return -1;
+}
+
+/* Takes over a predicate of the grammar's, with its anchors and what describes them. */
+static void take_predicate(struct analysis *a, const struct analysis *grammar, int predicate)
+{
+	a->word[predicate] = grammar->word[predicate];
+	for (int i = predicate + 1; i < a->n; i++) {
+		const struct analysis_word *w = &grammar->word[i];
+		if (w->head == predicate || (w->head > predicate && w->role != ROLE_PREDICATE &&
+						    grammar->word[w->head].head == predicate))
+			a->word[i] = *w;
+	}
+}
+
 /* "the greatest distance to the sofa" is farthest from it, whatever became of the words. */
-static void mend_ways(struct analysis *a, const struct tokens *t)
+static void mend_ways(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	static const char *const far[] = {
 		"longest", "greatest", "largest", "biggest", "furthest", "farthest"};
 	static const char *const near[] = {"shortest", "least", "smallest"};
 
 	for (int i = 0; i + 1 < t->n; i++) {
-		int r = -1, at = -1;
+		int r = -1, at;
 		if (!tokens_is(t, i + 1, "way") && !tokens_is(t, i + 1, "distance"))
 			continue;
 		for (size_t k = 0; k < sizeof far / sizeof *far; k++)
 			r = tokens_is(t, i, far[k]) ? PARSE_FAR : r;
 		for (size_t k = 0; k < sizeof near / sizeof *near; k++)
 			r = tokens_is(t, i, near[k]) ? PARSE_NEAR : r;
-		for (int j = i + 4; j >= i; j--)
-			at = r >= 0 && j < t->n && a->word[j].role == ROLE_PREDICATE ? j : at;
+		if (r >= 0 && predicate_from(a, i) < 0 && (at = predicate_from(grammar, i)) >= 0)
+			take_predicate(a, grammar, at);
+		at = r >= 0 ? predicate_from(a, i) : -1;
 		if (at < 0)
 			continue;
 		const struct analysis_word predicate = a->word[at];
@@ -329,7 +351,7 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 	mend_later(a, t);
 	mend_plus(a, t);
 	mend_parts(a, t);
-	mend_ways(a, t);
+	mend_ways(a, grammar, t);
 	mend_isnt(a, t);
 	mend_sizes(a, t);
 	mend_viewer(a, t);

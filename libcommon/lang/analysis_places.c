@@ -178,6 +178,45 @@ static void mend_it_again(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* Whether a word of the class is among from..to-1. */
+static int has_class(const struct tokens *t, int from, int to, enum closed_class class)
+{
+	for (int i = from; i < to; i++)
+		if (tokens_class(t, i) == (int)class)
+			return 1;
+	return 0;
+}
+
+/* The last phrase before word i, or -1. */
+static int phrase_before(const struct analysis *a, int i)
+{
+	for (i--; i >= 0; i--)
+		if (role_is_phrase(a->word[i].role))
+			return i;
+	return -1;
+}
+
+/* Whether a place ends a clause that says where its anchor is: "that the box is under". */
+static int is_stranded(const struct analysis *a, const struct tokens *t, int predicate)
+{
+	const int noun = phrase_before(a, predicate);
+
+	return tokens_class(t, predicate) == CLOSED_PLACE && a->word[predicate].head == ROOT &&
+	       (predicate + 1 >= t->n || t->word[predicate + 1].before) && noun >= 0 &&
+	       a->word[noun].role == ROLE_ANCHOR && a->word[noun].head == predicate &&
+	       has_class(t, noun, predicate, CLOSED_BE) &&
+	       has_class(t, phrase_before(a, noun) + 1, noun, CLOSED_RELATIVE);
+}
+
+/* "the mug that the box is under" is above the box. */
+static void mend_stranded(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++)
+		if (is_predicate(a, i) && is_stranded(a, t, i))
+			a->word[i].relation =
+				closed_inverse((enum parse_relation)closed_words[t->word[i].closed].relation);
+}
+
 /* Whether a noun is all that its predicate is about, and nothing but what describes it hangs on it. */
 static int is_plain(const struct analysis *a, int noun)
 {
@@ -212,5 +251,6 @@ void analysis_places(struct analysis *a, const struct tokens *t)
 	mend_it_again(a, t);
 	mend_alone(a, t);
 	mend_wall(a, t);
+	mend_stranded(a, t);
 	mend_doubled(a, t);
 }

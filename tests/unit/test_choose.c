@@ -155,6 +155,19 @@ static void by_itself(void)
 	}
 }
 
+/* As many of an end as are counted. */
+static void counted(void)
+{
+	for (int beside = 0; beside < 2; beside++) {
+		move_tin(beside, 0);
+		const unsigned two = set_of("the two leftmost things"),
+			       three = set_of("the three leftmost things");
+		CHECK(two == (beside ? 5U : 9U), "the tin by mug %d, two: %u", beside, two);
+		CHECK(three == 13, "the tin by mug %d, three: %u", beside, three);
+		move_tin(beside, 1);
+	}
+}
+
 static void parts(void)
 {
 	CHECK(ask("the wooden thing", WORDS) == 2 && probability[2] > 0.4, "words");
@@ -432,6 +445,7 @@ int main(void)
 	twins();
 	parts();
 	by_itself();
+	counted();
 	anchors();
 	sets();
 	viewpoints();

@@ -72,6 +72,11 @@ static void mends_all(void)
 	mends("the chair the least way from the sofa", ". T . . P . . A4", PARSE_FAR, 3, ROLE_PREDICATE, ROOT,
 		PARSE_NEAR);
 
+	const char *way = "the chair the longest way from the grey sofa";
+	mends(way, ". T . . . . . a .", 0, 3, ROLE_PREDICATE, ROOT, PARSE_FAR);
+	mends(way, ". T . . . . . a .", 0, 8, ROLE_ANCHOR, 3, 0);
+	mends(way, ". T . . . . . a .", 0, 7, ROLE_ATTRIBUTE, 8, 0);
+
 	mends("the door that isn't brown", ". T . . . a", 0, 5, ROLE_EXCEPT, ROOT, 0);
 	mends("the door that is brown", ". T . . a", 0, 4, ROLE_ATTRIBUTE, ROOT, 0);
 
@@ -195,6 +200,11 @@ static void mends_places(void)
 	mends("the jug by the lamp by the door", ". T P . A2 P . A5", PARSE_NEAR, 2, ROLE_PREDICATE, ROOT,
 		PARSE_NEAR);
 
+	const char *under = "the jug that the box is under";
+	mends(under, ". T . . A6 . P", PARSE_BELOW, 6, ROLE_PREDICATE, ROOT, PARSE_ABOVE);
+	mends(under, ". T . . A6 . P", PARSE_ABOVE, 6, ROLE_PREDICATE, ROOT, PARSE_ABOVE);
+	mends("the jug that is under the box", ". T . . P . A4", PARSE_BELOW, 4, ROLE_PREDICATE, ROOT,
+		PARSE_BELOW);
 	mends("the clock on the white wall", ". T P . a A2", PARSE_ON, 2, ROLE_PREDICATE, ROOT, PARSE_WALL);
 	mends("the clock on the white wall", ". T P . a A2", PARSE_ON, 5, ROLE_NONE, ROOT, 0);
 	mends("the clock on the white box", ". T P . a A2", PARSE_ON, 2, ROLE_PREDICATE, ROOT, PARSE_ON);
