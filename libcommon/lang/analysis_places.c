@@ -35,6 +35,26 @@ static enum parse_relation without_contact(enum parse_relation r)
 	return r == PARSE_ON ? PARSE_ABOVE : r == PARSE_SUPPORTS ? PARSE_BELOW : r;
 }
 
+/* "left of the rightmost one": rightmost is said of the one, which is the anchor of left. */
+static void mend_superlative(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 2; i + 1 < t->n; i++) {
+		int noun = i + 1, place = i - 1;
+		if (!is_predicate(a, i) || tokens_class(t, i - 1) != CLOSED_DETERMINER ||
+			t->word[i].closed < 0 || closed_words[t->word[i].closed].value != PARSE_MOST)
+			continue;
+		while (noun + 1 < t->n && !t->word[noun].before && a->word[noun].role == ROLE_ATTRIBUTE)
+			noun++;
+		while (place > 0 && !t->word[place + 1].before && a->word[place].role == ROLE_NONE)
+			place--;
+		if (a->word[noun].role != ROLE_ANCHOR || a->word[noun].head != i || t->word[noun].before ||
+			!is_predicate(a, place) || t->word[place + 1].before || analysis_has_anchor(a, place))
+			continue;
+		a->word[noun].head = place;
+		a->word[i].head = noun;
+	}
+}
+
 /* Relations to the room itself. */
 static int is_of_room(enum parse_relation r)
 {
@@ -247,6 +267,7 @@ static void mend_wall(struct analysis *a, const struct tokens *t)
 
 void analysis_places(struct analysis *a, const struct tokens *t)
 {
+	mend_superlative(a, t);
 	mend_it(a, t);
 	mend_it_again(a, t);
 	mend_alone(a, t);

@@ -200,6 +200,10 @@ static void mends_places(void)
 	mends("the jug by the lamp by the door", ". T P . A2 P . A5", PARSE_NEAR, 2, ROLE_PREDICATE, ROOT,
 		PARSE_NEAR);
 
+	const char *one = "the jug left of the rightmost grey one";
+	mends(one, ". T P . . P a A5", PARSE_LEFT, 7, ROLE_ANCHOR, 2, 0);
+	mends(one, ". T P . . P a A5", PARSE_LEFT, 5, ROLE_PREDICATE, 7, PARSE_RIGHT);
+	mends("the jug rightmost of the grey ones", ". T P . . a A2", PARSE_RIGHT, 6, ROLE_ANCHOR, 2, 0);
 	const char *under = "the jug that the box is under";
 	mends(under, ". T . . A6 . P", PARSE_BELOW, 6, ROLE_PREDICATE, ROOT, PARSE_ABOVE);
 	mends(under, ". T . . A6 . P", PARSE_ABOVE, 6, ROLE_PREDICATE, ROOT, PARSE_ABOVE);
