@@ -353,7 +353,9 @@ static void judge_clauses(
 
 	for (int k = 0; k < f->clauses.n && depth < 2; k++) {
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
-		if (is_late(c) == late && !says_nothing(c) && c != counted_by(p, f, names_end))
+		const int is_mutual = !phrase && !c->anchors.n && meaning_is_mutual(p) &&
+				      (c->relation == PARSE_NEAR || c->relation == PARSE_FAR);
+		if (is_late(c) == late && !says_nothing(c) && !is_mutual && c != counted_by(p, f, names_end))
 			judge_clause(m, phrase, f->clauses.item[k], fit);
 		for (int j = 0; j < c->anchors.n; j++)
 			if (is_scene(m, c->anchors.item[j]))
@@ -417,6 +419,8 @@ static void judge_phrase(struct meaning *m, int phrase, int depth)
 		judge_except(m, phrase, f->except.item[k]);
 	keep_group(f, fit, n, m->scratch);
 	judge_order(m, phrase);
+	if (!phrase)
+		meaning_keep_mutual(m, fit, m->scratch);
 	for (size_t o = 0; o < n; o++)
 		fit[o] *= m->arrangement->objects[o].in_sight ? 1 : OUT_OF_SIGHT;
 }

@@ -1,4 +1,5 @@
-/* What the two halves of ask/meaning.h share: meaning.c has phrases and clauses, meaning_words.c their words.
+/* What the two halves of ask/meaning.h share: meaning.c has phrases and clauses, meaning_words.c their words,
+ * mutual.c what stands to each other.
  */
 #ifndef ASK_MEANING_PRIVATE_H
 #define ASK_MEANING_PRIVATE_H
@@ -48,5 +49,11 @@ void meaning_judge_said(struct meaning *m, const struct parse_clause *c, double 
 
 /* What a thing does, is for, or has: any word of it may be said of an object. */
 void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, double *value);
+
+/* Whether several are meant that stand to each other somehow. */
+int meaning_is_mutual(const struct parse *p);
+
+/* The target's fit: those that are nearest to each other stay, if that is said. marked (O) is scratch. */
+void meaning_keep_mutual(struct meaning *m, double *fit, double *marked);
 
 #endif

@@ -39,7 +39,7 @@ double relate_stands_on(const struct arrangement *a, const struct arranged *p, c
 	       exp(-fmax(0, (p->low[2] - q->high[2]) / a->spacing - TOUCHING) / 0.1);
 }
 
-static double gap(const struct arranged *p, const struct arranged *q)
+double relate_gap(const struct arranged *p, const struct arranged *q)
 {
 	double sum = 0;
 
@@ -73,7 +73,7 @@ static double on_side(const struct arrangement *a, const struct arranged *p, con
 
 static double near(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
 {
-	const double x = gap(p, q) / (NEXT_TO * a->spacing);
+	const double x = relate_gap(p, q) / (NEXT_TO * a->spacing);
 
 	return 1 / (1 + x * x);
 }

@@ -42,4 +42,7 @@ void relate_rank(const struct arrangement *a, enum parse_relation from, int k, c
 /* p stands on q, in [0,1]. */
 double relate_stands_on(const struct arrangement *a, const struct arranged *p, const struct arranged *q);
 
+/* Between their boxes: 0 where they touch. */
+double relate_gap(const struct arranged *p, const struct arranged *q);
+
 #endif

@@ -155,6 +155,24 @@ static void by_itself(void)
 	}
 }
 
+/* The tin and the mug beside it stand side by side. */
+static void mutual(void)
+{
+	static const char *const texts[] = {"the two things next to each other",
+		"the two things that are closest to one another", "all the things beside each other"};
+
+	for (int beside = 0; beside < 2; beside++) {
+		move_tin(beside, 0);
+		for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+			const unsigned set = set_of(texts[i]);
+			CHECK(set == (8U | 1U << beside), "'%s', the tin by mug %d: %u", texts[i], beside,
+				set);
+		}
+		move_tin(beside, 1);
+	}
+	CHECK(set_of("the two mugs next to each other") == 3, "both mugs");
+}
+
 /* As many of an end as are counted. */
 static void counted(void)
 {
@@ -446,6 +464,7 @@ int main(void)
 	parts();
 	by_itself();
 	counted();
+	mutual();
 	anchors();
 	sets();
 	viewpoints();
