@@ -193,7 +193,9 @@ static void mend_it_again(struct analysis *a, const struct tokens *t)
 			if (it >= 0 && tokens_class(t, it + 1) != CLOSED_BE)
 				a->word[it] = (struct analysis_word){.role = ROLE_ANCHOR, .head = i};
 		}
-		earlier |= a->word[i].role == ROLE_ANCHOR;
+		/* "the jug I want is over it" may speak of another */
+		earlier = a->word[i].role == ROLE_ANCHOR ||
+			  (earlier && t->word[i].closed >= 0 && tokens_class(t, i) != CLOSED_GENERIC);
 		has |= is_having(t, i);
 	}
 }
