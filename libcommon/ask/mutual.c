@@ -64,6 +64,19 @@ static double mark_pair(const struct arrangement *a, const double *fit, double l
 	return found;
 }
 
+/* What is as near to one of them stands with them. */
+static void mark_more(
+	const struct arrangement *a, const double *fit, double least, double found, double *marked)
+{
+	for (int grown = 1; grown;) {
+		grown = 0;
+		for (size_t i = 0; i < a->n; i++)
+			for (size_t k = 0; k < a->n && !marked[i] && fit[i] > least; k++)
+				if (marked[k] && apart(a, i, k) <= found + TOUCHING)
+					grown = marked[i] = 1;
+	}
+}
+
 void meaning_keep_mutual(struct meaning *m, double *fit, double *marked)
 {
 	const struct arrangement *a = m->arrangement;
@@ -75,11 +88,8 @@ void meaning_keep_mutual(struct meaning *m, double *fit, double *marked)
 		return;
 	memset(marked, 0, a->n * sizeof *marked);
 	const double found = mark_pair(a, fit, least, far, marked);
-	/* what is as near to one of them stands with them */
-	for (size_t i = 0, grown = 0; i < a->n && p->phrases[0].count != 2 && !far; i = grown ? 0 : i + 1)
-		for (size_t k = grown = 0; k < a->n && !grown; k++)
-			if (!marked[i] && marked[k] && fit[i] > least && apart(a, i, k) <= found + TOUCHING)
-				marked[i] = grown = 1;
+	if (p->phrases[0].count != 2 && !far)
+		mark_more(a, fit, least, found, marked);
 	for (size_t o = 0; o < a->n; o++)
 		fit[o] *= marked[o] ? 1 : GROUP_ELSE;
 }

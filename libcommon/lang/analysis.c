@@ -5,6 +5,11 @@ int role_is_phrase(enum word_role r)
 	return r == ROLE_TARGET || r == ROLE_ANCHOR || r == ROLE_ALSO || r == ROLE_EXCEPT || r == ROLE_VIEW;
 }
 
+void analysis_give_up(struct analysis_word *w)
+{
+	*w = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
+}
+
 static int may_hang(const struct analysis *a, int i)
 {
 	int h = a->word[i].head;

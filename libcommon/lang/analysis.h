@@ -39,6 +39,9 @@ struct analysis {
 /* 1 for the roles of nouns that head a phrase. */
 int role_is_phrase(enum word_role r);
 
+/* The word says nothing. */
+void analysis_give_up(struct analysis_word *w);
+
 /* By closed-class words and the order of words alone. */
 void grammar_analyse(struct analysis *a, const struct tokens *t);
 

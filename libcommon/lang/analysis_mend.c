@@ -165,7 +165,7 @@ static void mend_parts(struct analysis *a, const struct tokens *t)
 			anchor++;
 		a->word[i].head = anchor;
 		if (anchor >= t->n || tokens_is(t, anchor, "of"))
-			a->word[i] = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
+			analysis_give_up(&a->word[i]);
 	}
 }
 
@@ -211,7 +211,7 @@ static void mend_ways(struct analysis *a, const struct analysis *grammar, const 
 		if (at < 0)
 			continue;
 		const struct analysis_word predicate = a->word[at];
-		a->word[at] = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
+		analysis_give_up(&a->word[at]);
 		a->word[i] = predicate;
 		a->word[i].relation = (enum parse_relation)r;
 		for (int j = 0; j < t->n; j++)
@@ -302,7 +302,7 @@ static void mend_part_of(struct analysis *a, const struct tokens *t)
 		if (part < 0 || a->word[i].head < i)
 			continue;
 		a->word[i].head = a->word[part].head;
-		a->word[part] = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
+		analysis_give_up(&a->word[part]);
 		for (int j = 0; j < t->n; j++)
 			if (a->word[j].head == part)
 				a->word[j].head = i;

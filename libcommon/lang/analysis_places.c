@@ -6,11 +6,6 @@
 /* Words between two predicates of one place. */
 enum { PLACE_REACH = 4 };
 
-static void give_up(struct analysis_word *w)
-{
-	*w = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
-}
-
 static int is_predicate(const struct analysis *a, int i)
 {
 	return i >= 0 && i < a->n && a->word[i].role == ROLE_PREDICATE;
@@ -72,18 +67,10 @@ static void mend_doubled(struct analysis *a, const struct tokens *t)
 					  second = without_contact(a->word[j].relation);
 		const int is_of_both = first == second || (first == PARSE_NEAR && is_of_room(second));
 		if (is_of_both && !analysis_has_anchor(a, i))
-			give_up(&a->word[i]);
+			analysis_give_up(&a->word[i]);
 		else if (first == second && !analysis_has_anchor(a, j))
-			give_up(&a->word[j]);
+			analysis_give_up(&a->word[j]);
 	}
-}
-
-static int is_any_of(const struct tokens *t, int i, const char *const *words)
-{
-	for (; *words; words++)
-		if (tokens_is(t, i, *words))
-			return 1;
-	return 0;
 }
 
 /* "everything" after "from", as in "away from everything else"; or -1. */
@@ -92,7 +79,7 @@ static int everything_after(const struct tokens *t, int predicate)
 	static const char *const all[] = {"everything", "anything", NULL};
 
 	for (int i = predicate + 1; i < predicate + 3; i++)
-		if (tokens_is(t, i, "from") && is_any_of(t, i + 1, all))
+		if (tokens_is(t, i, "from") && tokens_is_any(t, i + 1, all))
 			return i + 1;
 	return -1;
 }
@@ -106,7 +93,7 @@ static int is_alone(const struct analysis *a, const struct tokens *t, int i)
 	if (a->word[i].relation == PARSE_FAR && all >= 0)
 		return !analysis_has_anchor(a, i) || a->word[all].head == i;
 	return a->word[i].relation == PARSE_NEAR && !analysis_has_anchor(a, i) &&
-	       (is_any_of(t, i, by) || is_any_of(t, i + 1, by));
+	       (tokens_is_any(t, i, by) || tokens_is_any(t, i + 1, by));
 }
 
 /* "by itself", "all alone", "isolated", "far from everything else": near nothing. */
@@ -117,7 +104,7 @@ static void mend_alone(struct analysis *a, const struct tokens *t)
 	for (int i = 0; i < t->n; i++) {
 		struct analysis_word *w = &a->word[i];
 		int negated = 1;
-		if ((w->role == ROLE_ATTRIBUTE || w->role == ROLE_NAME) && is_any_of(t, i, lone)) {
+		if ((w->role == ROLE_ATTRIBUTE || w->role == ROLE_NAME) && tokens_is_any(t, i, lone)) {
 			*w = (struct analysis_word){ROLE_PREDICATE, w->head, PARSE_NEAR, 1};
 			continue;
 		}
@@ -126,7 +113,7 @@ static void mend_alone(struct analysis *a, const struct tokens *t)
 		for (int j = i - 1; j >= 0 && j >= i - 3 && !t->word[j + 1].before; j--)
 			negated &= tokens_class(t, j) != CLOSED_NEGATION;
 		if (analysis_has_anchor(a, i))
-			give_up(&a->word[everything_after(t, i)]);
+			analysis_give_up(&a->word[everything_after(t, i)]);
 		w->relation = PARSE_NEAR;
 		w->negated = negated;
 	}
@@ -173,7 +160,7 @@ static void mend_it(struct analysis *a, const struct tokens *t)
 		a->word[noun].head = i;
 		a->word[i].negated |= before == with && a->word[with].negated;
 		if (before == with && !analysis_has_anchor(a, with))
-			give_up(&a->word[with]);
+			analysis_give_up(&a->word[with]);
 		if (before >= 0 && a->word[before].role != ROLE_NONE && a->word[i].head == noun)
 			a->word[i].head = a->word[before].head;
 	}
@@ -260,10 +247,10 @@ static void mend_wall(struct analysis *a, const struct tokens *t)
 			!is_plain(a, i))
 			continue;
 		a->word[p].relation = PARSE_WALL;
-		give_up(&a->word[i]);
+		analysis_give_up(&a->word[i]);
 		for (int j = 0; j < t->n; j++)
 			if (a->word[j].head == i)
-				give_up(&a->word[j]);
+				analysis_give_up(&a->word[j]);
 	}
 }
 

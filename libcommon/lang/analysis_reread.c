@@ -6,11 +6,6 @@
 
 #include <string.h>
 
-static void give_up(struct analysis_word *w)
-{
-	*w = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
-}
-
 /* "any jar other than the white one": the white one is left out. */
 static void mend_other_than(struct analysis *a, const struct tokens *t)
 {
@@ -77,10 +72,10 @@ static void mend_verbs(struct analysis *a, const struct tokens *t)
 		if (tokens_is(t, i, "left") && before == CLOSED_PRONOUN &&
 			(tokens_class(t, i + 1) == CLOSED_DETERMINER ||
 				tokens_class(t, i + 1) == CLOSED_PRONOUN))
-			give_up(&a->word[i]);
+			analysis_give_up(&a->word[i]);
 		if (tokens_is(t, i, "over") &&
 			(before == CLOSED_REQUEST || tokens_is(t, i - 1, "me") || tokens_is(t, i - 1, "us")))
-			give_up(&a->word[i]);
+			analysis_give_up(&a->word[i]);
 	}
 }
 
@@ -191,7 +186,7 @@ static void mend_over_by(struct analysis *a, const struct tokens *t)
 		if (!analysis_has_anchor(a, first) &&
 			(tokens_is(t, first, "over") || tokens_is(t, first, "up") ||
 				tokens_is(t, first, "down")))
-			give_up(&a->word[first]);
+			analysis_give_up(&a->word[first]);
 	}
 }
 
@@ -212,7 +207,7 @@ static void mend_to(struct analysis *a, const struct tokens *t)
 		for (int j = i + 1; j < t->n; j++)
 			if (a->word[j].role == ROLE_ANCHOR && a->word[j].head == i)
 				a->word[j].head = p;
-		give_up(&a->word[i]);
+		analysis_give_up(&a->word[i]);
 	}
 }
 
@@ -244,7 +239,7 @@ static void mend_left_out(struct analysis *a, const struct tokens *t)
 		return;
 	for (int i = 0; i < t->n; i++)
 		if (a->word[i].role == ROLE_TARGET)
-			give_up(&a->word[i]);
+			analysis_give_up(&a->word[i]);
 	mean(a, last);
 }
 

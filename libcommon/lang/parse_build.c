@@ -23,14 +23,6 @@ static int value_of(const struct tokens *t, int i)
 	return closed_words[t->word[i].closed].value;
 }
 
-static int is_any(const struct tokens *t, int i, const char *const *words)
-{
-	for (; *words; words++)
-		if (tokens_is(t, i, *words))
-			return 1;
-	return 0;
-}
-
 static int tail(const char *w, const char *end)
 {
 	size_t n = strlen(w), m = strlen(end);
@@ -105,8 +97,8 @@ static int says_nothing(const struct tokens *t, int i)
 	static const char *const words[] = {
 		"'s", "side", "hand", "end", "colour", "color", "piece", "sized", NULL};
 
-	return is_any(t, i, words) || ((tokens_is(t, i, "coloured") || tokens_is(t, i, "colored")) && i &&
-					      colour_word(t->word[i - 1].text) >= 0);
+	return tokens_is_any(t, i, words) || ((tokens_is(t, i, "coloured") || tokens_is(t, i, "colored")) &&
+						     i && colour_word(t->word[i - 1].text) >= 0);
 }
 
 static void widen(struct parse_span *s, struct parse_span by)
@@ -178,10 +170,10 @@ static int fill_phrases(struct build *b)
 			continue;
 		if (add_noun(b, i, f))
 			return -1;
-		f->viewer = b->phrase_of[i] && is_any(b->t, i, viewers);
+		f->viewer = b->phrase_of[i] && tokens_is_any(b->t, i, viewers);
 		f->scene = tokens_is(b->t, i, "room") || tokens_is(b->t, i, "scene") ||
-			   (b->phrase_of[i] && is_any(b->t, i, places) && tokens_is(b->t, i - 1, "the") &&
-				   tokens_is(b->t, i - 2, "of"));
+			   (b->phrase_of[i] && tokens_is_any(b->t, i, places) &&
+				   tokens_is(b->t, i - 1, "the") && tokens_is(b->t, i - 2, "of"));
 	}
 	for (int i = 0; i < b->t->n; i++) {
 		enum word_role r = b->a->word[i].role;
@@ -217,7 +209,7 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	if (r == PARSE_NEAR && b->a->word[i].negated && c == CLOSED_PLACE &&
 		closed_words[t->word[i].closed].relation == PARSE_FAR)
 		return PARSE_PLAIN;
-	if (is_any(t, i, most))
+	if (tokens_is_any(t, i, most))
 		return PARSE_MOST;
 	if (c == CLOSED_PLACE || c == CLOSED_SIZE) {
 		if (value_of(t, i))
@@ -230,9 +222,9 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	for (int j = i - 1; j >= 0 && j >= i - 3; j--) {
 		if (b->a->word[j].role != ROLE_NONE || t->word[j + 1].before)
 			break;
-		if (is_any(t, j, most))
+		if (tokens_is_any(t, j, most))
 			return PARSE_MOST;
-		if (is_any(t, j, more))
+		if (tokens_is_any(t, j, more))
 			return PARSE_MORE;
 	}
 	if (tokens_is(t, i + 1, "most"))

@@ -260,3 +260,11 @@ int tokens_is(const struct tokens *t, int i, const char *text)
 {
 	return i >= 0 && i < t->n && !strcmp(t->word[i].text, text);
 }
+
+int tokens_is_any(const struct tokens *t, int i, const char *const *words)
+{
+	for (; *words; words++)
+		if (tokens_is(t, i, *words))
+			return 1;
+	return 0;
+}

@@ -39,6 +39,8 @@ void tokens_take(
 /* The enum closed_class of a word, -1 where it has none or is none (i out of range); whether it is `text`. */
 int tokens_class(const struct tokens *t, int i);
 int tokens_is(const struct tokens *t, int i, const char *text);
+/* Whether it is one of the words, of which NULL is the last. */
+int tokens_is_any(const struct tokens *t, int i, const char *const *words);
 
 /* Singular of a noun ("boxes", "shelves", "mice"); others as they are. out holds TOKEN_LENGTH bytes. */
 void token_lemma(const char *word, char *out);
