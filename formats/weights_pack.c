@@ -435,25 +435,48 @@ static void count_row(const struct unpacking *u, int row, int64_t *counts)
 			counts + (int64_t)row * WEIGHTS_TILE * u->width + column * WEIGHTS_TILE);
 }
 
-/* The weights of a row of tiles, each to where its pixel's next one goes: ends (P). */
-static void put_row(const struct unpacking *u, int row, int64_t *ends, int32_t *index, float *weight)
+/* What each level is, and where each pixel of a tile is from its corner: looked up, as a division costs more
+ * than all else that a weight takes. */
+struct lookup {
+	float weight[256];
+	int64_t pixel[PIXELS];
+};
+
+static void lookup_make(struct lookup *l, int width)
+{
+	for (int k = 0; k < 256; k++)
+		l->weight[k] = (float)k / 255;
+	for (int i = 0; i < PIXELS; i++)
+		l->pixel[i] = (int64_t)(i / WEIGHTS_TILE) * width + i % WEIGHTS_TILE;
+}
+
+/* One Gaussian's weights in a tile, each to where its pixel's next one goes: corner is the tile's first
+ * pixel. Returns where the levels of the next begin. By itself, so that all of it stays in registers. */
+__attribute__((noinline)) static const uint8_t *put_gaussian_back(const struct lookup *of, uint64_t map,
+	int32_t id, const uint8_t *more, int64_t *corner, int32_t *index, float *weight)
+{
+	uint8_t level = 0;
+
+	for (; map; map &= map - 1) {
+		const int64_t place = corner[of->pixel[__builtin_ctzll(map)]]++;
+		level = (uint8_t)(level + *more++);
+		index[place] = id;
+		weight[place] = of->weight[level];
+	}
+	return more;
+}
+
+/* The weights of a row of tiles: ends (P). */
+static void put_row(const struct unpacking *u, const struct lookup *of, int row, int64_t *ends,
+	int32_t *index, float *weight)
 {
 	const uint8_t *more = u->data[LEVELS] + u->levels[row];
 
 	for (int column = 0; column < u->across; column++) {
 		const size_t tile = (size_t)row * (size_t)u->across + (size_t)column;
 		int64_t *corner = ends + (int64_t)row * WEIGHTS_TILE * u->width + column * WEIGHTS_TILE;
-		for (size_t i = u->tiles[tile]; i < u->tiles[tile + 1]; i++) {
-			uint8_t level = 0;
-			for (uint64_t left = map_at(u, i); left; left &= left - 1) {
-				const int bit = __builtin_ctzll(left);
-				const int64_t place = corner[(int64_t)(bit / WEIGHTS_TILE) * u->width +
-							     bit % WEIGHTS_TILE]++;
-				level = (uint8_t)(level + *more++);
-				index[place] = u->ids[i];
-				weight[place] = (float)level / 255;
-			}
-		}
+		for (size_t i = u->tiles[tile]; i < u->tiles[tile + 1]; i++)
+			more = put_gaussian_back(of, map_at(u, i), u->ids[i], more, corner, index, weight);
 	}
 }
 
@@ -462,8 +485,10 @@ static void put_row(const struct unpacking *u, int row, int64_t *ends, int32_t *
 static int fill(struct unpacking *u, int64_t *indptr, int32_t **index, float **weight, struct err *e)
 {
 	const int64_t pixels = (int64_t)u->width * u->height;
+	struct lookup of;
 	int64_t sum = 0;
 
+	lookup_make(&of, u->width);
 	memset(indptr, 0, ((size_t)pixels + 1) * sizeof *indptr);
 	*index = mem_alloc(u->bytes[LEVELS], sizeof **index, u->path, e);
 	*weight = mem_alloc(u->bytes[LEVELS], sizeof **weight, u->path, e);
@@ -479,7 +504,7 @@ static int fill(struct unpacking *u, int64_t *indptr, int32_t **index, float **w
 	}
 #pragma omp parallel for schedule(dynamic)
 	for (int row = 0; row < u->down; row++)
-		put_row(u, row, indptr + 1, *index, *weight);
+		put_row(u, &of, row, indptr + 1, *index, *weight);
 	return 0;
 }
 
