@@ -107,8 +107,21 @@ static int read_weight(struct weights *w, int64_t nnz, struct err *e)
 	return 0;
 }
 
+/* Packed weights as rows of pixels. */
+static int unpack_rows(struct weights *w, const struct weights_pack *pack, int64_t pixels, struct err *e)
+{
+	w->owned_indptr = mem_alloc((size_t)pixels + 1, sizeof *w->owned_indptr, w->file.path, e);
+	if (!w->owned_indptr || weights_unpack(pack, w->width, w->height, w->gaussians, w->file.path,
+					w->owned_indptr, &w->owned_index, &w->owned, e))
+		return -1;
+	w->indptr = w->owned_indptr;
+	w->index = w->owned_index;
+	w->weight = w->owned;
+	return 0;
+}
+
 /* Packed weights become arrays of our own. */
-static int read_packed(struct weights *w, int64_t pixels, struct err *e)
+static int read_packed(struct weights *w, int64_t pixels, int as_tiles, struct err *e)
 {
 	const int64_t any = -1, streams = WEIGHTS_STREAMS;
 	const struct st_tensor *sizes = safetensors_need(&w->file, "sizes", ST_I64, 1, &streams, e),
@@ -130,23 +143,19 @@ static int read_packed(struct weights *w, int64_t pixels, struct err *e)
 	}
 	w->precision = PRECISION_U8;
 	w->is_packed = 1;
-	w->owned_indptr =
-		dropped ? mem_alloc((size_t)pixels + 1, sizeof *w->owned_indptr, w->file.path, e) : NULL;
 	w->owned_dropped =
-		w->owned_indptr ? mem_alloc((size_t)pixels, sizeof *w->owned_dropped, w->file.path, e) : NULL;
-	if (!w->owned_dropped || weights_unpack(&pack, w->width, w->height, w->gaussians, w->file.path,
-					 w->owned_indptr, &w->owned_index, &w->owned, e))
+		dropped ? mem_alloc((size_t)pixels, sizeof *w->owned_dropped, w->file.path, e) : NULL;
+	if (!w->owned_dropped || (as_tiles ? weights_unpack_tiles(&pack, w->width, w->height, w->gaussians,
+						     w->file.path, &w->tiles, e)
+					   : unpack_rows(w, &pack, pixels, e)))
 		return -1;
 	for (int64_t p = 0; p < pixels; p++)
 		w->owned_dropped[p] = (float)((const uint8_t *)dropped->data)[p] / LEVELS;
-	w->indptr = w->owned_indptr;
-	w->index = w->owned_index;
-	w->weight = w->owned;
 	w->dropped = w->owned_dropped;
 	return 0;
 }
 
-static int read_all(struct weights *w, struct err *e)
+static int read_all(struct weights *w, int as_tiles, struct err *e)
 {
 	const struct safetensors *st = &w->file;
 	const struct st_tensor *indptr, *index, *dropped;
@@ -164,7 +173,7 @@ static int read_all(struct weights *w, struct err *e)
 		return -1;
 	int64_t pixels = width * height, any = -1, ends = pixels + 1;
 	if (safetensors_find(st, "maps"))
-		return read_packed(w, pixels, e);
+		return read_packed(w, pixels, as_tiles, e);
 	if (!(indptr = safetensors_need(st, "indptr", ST_I64, 1, &ends, e)) ||
 		!(index = safetensors_need(st, "index", ST_I32, 1, &any, e)) ||
 		!(dropped = safetensors_need(st, "dropped", ST_F32, 1, &pixels, e)) ||
@@ -177,13 +186,18 @@ static int read_all(struct weights *w, struct err *e)
 													  : 0;
 }
 
-int weights_open_file(struct weights *w, const char *path, struct err *e)
+static int open_file(struct weights *w, const char *path, int as_tiles, struct err *e)
 {
 	*w = (struct weights){0};
-	if (!safetensors_open(&w->file, path, e) && !read_all(w, e))
+	if (!safetensors_open(&w->file, path, e) && !read_all(w, as_tiles, e))
 		return 0;
 	weights_close(w);
 	return -1;
+}
+
+int weights_open_file(struct weights *w, const char *path, struct err *e)
+{
+	return open_file(w, path, 0, e);
 }
 
 /* That they are of this scene, and of this camera at the size that they have. */
@@ -204,16 +218,28 @@ static int check_origin(const struct weights *w, const struct scene *scene, size
 	return bad ? -1 : 0;
 }
 
-int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e)
+static int open_view(struct weights *w, const char *dir, const struct scene *scene, size_t view, int as_tiles,
+	struct err *e)
 {
 	char *path = file_join(dir, scene->cameras.views[view].name, ".safetensors", e);
 
 	*w = (struct weights){0};
-	int bad = path ? weights_open_file(w, path, e) : -1;
+	int bad = path ? open_file(w, path, as_tiles, e) : -1;
 	if (!bad && (bad = check_origin(w, scene, view, e)))
 		weights_close(w);
 	free(path);
 	return bad;
+}
+
+int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e)
+{
+	return open_view(w, dir, scene, view, 0, e);
+}
+
+int weights_open_tiles(
+	struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e)
+{
+	return open_view(w, dir, scene, view, 1, e);
 }
 
 int weights_exist(const char *dir, const char *view, struct err *e)
@@ -232,6 +258,7 @@ void weights_close(struct weights *w)
 	free(w->owned_indptr);
 	free(w->owned_index);
 	free(w->owned_dropped);
+	view_tiles_free(&w->tiles);
 	*w = (struct weights){0};
 }
 

@@ -7,6 +7,7 @@
 #include "formats/precision.h"
 #include "formats/safetensors.h"
 #include "formats/scene.h"
+#include "splat/view_tiles.h"
 #include "splat/view_weights.h"
 
 #include <stdint.h>
@@ -25,6 +26,7 @@ struct weights {
 	int64_t *owned_indptr;		  /* what packed weights become, else NULL */
 	int32_t *owned_index;
 	float *owned_dropped;
+	struct view_tiles tiles;  /* of weights_open_tiles, else zeroed */
 	enum precision precision; /* of the weights in the file */
 };
 
@@ -35,7 +37,11 @@ struct weights {
 /* Maps and checks DIR/VIEW.safetensors: indptr rises from 0 to nnz, ids in [0,gaussians), weights finite in
  * [0,1]. VIEW is a view of the scene; weights of another scene, or of another camera, are an error. */
 int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e);
-/* The same by its path and of any scene; "-" is stdin. */
+/* The same, but that packed weights become tiles, and indptr, index and weight are NULL; w->tiles.begin is
+ * NULL where weights are not packed. */
+int weights_open_tiles(
+	struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e);
+/* weights_open by its path and of any scene; "-" is stdin. */
 int weights_open_file(struct weights *w, const char *path, struct err *e);
 /* 1 where DIR/VIEW.safetensors is there, 0 where it is not, -1 with *e. */
 int weights_exist(const char *dir, const char *view, struct err *e);

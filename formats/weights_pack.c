@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { IDS, MAPS, LEVELS, PIXELS = WEIGHTS_TILE * WEIGHTS_TILE, EFFORT = 1 };
+enum { IDS, MAPS, LEVELS, PIXELS = VIEW_TILE_PIXELS, EFFORT = 1 };
 
 static int put_byte(struct weights_pack *p, int stream, unsigned byte, struct err *e)
 {
@@ -121,7 +121,7 @@ static void take_tile(struct tile *t, const struct picture *v, int x, int y)
 {
 	t->n = 0;
 	for (int i = 0; i < PIXELS; i++) {
-		const int column = x + i % WEIGHTS_TILE, row = y + i / WEIGHTS_TILE;
+		const int column = x + i % VIEW_TILE, row = y + i / VIEW_TILE;
 		if (column >= v->width || row >= v->height)
 			continue;
 		const int64_t at = (int64_t)row * v->width + column;
@@ -191,8 +191,8 @@ static int deflate_all(struct weights_pack *p, struct err *e)
 /* A row of tiles, as streams that are not deflated yet. */
 static int pack_row(struct weights_pack *p, struct tile *t, const struct picture *v, int row, struct err *e)
 {
-	for (int x = 0; x < v->width; x += WEIGHTS_TILE) {
-		take_tile(t, v, x, row * WEIGHTS_TILE);
+	for (int x = 0; x < v->width; x += VIEW_TILE) {
+		take_tile(t, v, x, row * VIEW_TILE);
 		if (put_tile(p, t, e))
 			return -1;
 	}
@@ -236,7 +236,7 @@ int weights_pack(struct weights_pack *p, int width, int height, const int64_t *i
 	const uint8_t *level, struct err *e)
 {
 	const struct picture v = {width, height, indptr, index, level};
-	const int count = (height + WEIGHTS_TILE - 1) / WEIGHTS_TILE;
+	const int count = (height + VIEW_TILE - 1) / VIEW_TILE;
 	struct weights_pack *rows = mem_zalloc((size_t)count, sizeof *rows, "weights", e);
 	int bad = !rows || pack_rows(rows, count, &v, e);
 
@@ -254,283 +254,4 @@ void weights_pack_free(struct weights_pack *p)
 	for (int s = 0; s < WEIGHTS_STREAMS; s++)
 		free(p->data[s]);
 	*p = (struct weights_pack){0};
-}
-
-/* The streams again, and what the first two say. */
-struct unpacking {
-	const char *path;
-	int width, height, across, down; /* of the picture, and in tiles */
-	int64_t gaussians;
-	uint8_t *data[WEIGHTS_STREAMS];
-	size_t bytes[WEIGHTS_STREAMS];
-	size_t at;	/* in the first stream */
-	size_t entries; /* Gaussians of tiles */
-	int32_t *ids;	/* (entries) */
-	size_t *tiles;	/* (tiles + 1) where the entries of each begin */
-	size_t *levels; /* (rows of tiles + 1) where their levels begin */
-};
-
-static int broken(const struct unpacking *u, struct err *e)
-{
-	return err_set(e, ERR_FORMAT, "%s: packed weights are broken, after byte %zu of their Gaussians",
-		u->path, u->at);
-}
-
-static int inflate_stream(struct unpacking *u, const struct weights_pack *p, int s)
-{
-	struct libdeflate_decompressor *by = libdeflate_alloc_decompressor();
-	const int bad = !by || libdeflate_zlib_decompress(by, p->data[s], p->packed[s], u->data[s],
-				       p->bytes[s], NULL) != LIBDEFLATE_SUCCESS;
-
-	libdeflate_free_decompressor(by);
-	return bad;
-}
-
-static int inflate_all(struct unpacking *u, const struct weights_pack *p, struct err *e)
-{
-	int bad[WEIGHTS_STREAMS];
-
-	for (int s = 0; s < WEIGHTS_STREAMS; s++) {
-		u->bytes[s] = p->bytes[s];
-		u->data[s] = mem_alloc(p->bytes[s] + 1, 1, u->path, e);
-		if (!u->data[s])
-			return -1;
-	}
-#pragma omp parallel for schedule(dynamic)
-	for (int s = WEIGHTS_STREAMS - 1; s >= 0; s--)
-		bad[s] = inflate_stream(u, p, s);
-	for (int s = 0; s < WEIGHTS_STREAMS; s++)
-		if (bad[s])
-			return broken(u, e);
-	return 0;
-}
-
-static int take_number(struct unpacking *u, uint32_t *x, struct err *e)
-{
-	*x = 0;
-	for (int shift = 0; shift < 35; shift += 7) {
-		if (u->at == u->bytes[IDS])
-			return broken(u, e);
-		const uint8_t byte = u->data[IDS][u->at++];
-		*x |= (uint32_t)(byte & 127) << shift;
-		if (byte < 128)
-			return 0;
-	}
-	return broken(u, e);
-}
-
-/* A tile's Gaussians, which rise. */
-static int take_ids(struct unpacking *u, size_t tile, struct err *e)
-{
-	const size_t first = u->tiles[tile];
-	uint32_t count, more;
-	int64_t id = 0;
-
-	if (take_number(u, &count, e))
-		return -1;
-	if (count > u->entries - first)
-		return broken(u, e);
-	for (uint32_t g = 0; g < count; g++) {
-		if (take_number(u, &more, e))
-			return -1;
-		id += more;
-		if (id >= u->gaussians || (g && !more))
-			return broken(u, e);
-		u->ids[first + g] = (int32_t)id;
-	}
-	u->tiles[tile + 1] = first + count;
-	return 0;
-}
-
-static uint64_t map_at(const struct unpacking *u, size_t entry)
-{
-	const uint8_t *byte = u->data[MAPS] + 8 * entry;
-	uint64_t map = 0;
-
-	for (int k = 0; k < 8; k++)
-		map |= (uint64_t)byte[k] << 8 * k;
-	return map;
-}
-
-/* The pixels of a tile that are in the picture. */
-static uint64_t inside_of(const struct unpacking *u, int x, int y)
-{
-	uint64_t inside = 0;
-
-	for (int i = 0; i < PIXELS; i++)
-		inside |= (uint64_t)(x + i % WEIGHTS_TILE < u->width && y + i / WEIGHTS_TILE < u->height)
-			  << i;
-	return inside;
-}
-
-/* How many levels a row of tiles has. */
-static int take_maps(struct unpacking *u, int row, struct err *e)
-{
-	u->levels[row + 1] = u->levels[row];
-	for (int column = 0; column < u->across; column++) {
-		const size_t tile = (size_t)row * (size_t)u->across + (size_t)column;
-		const uint64_t inside = inside_of(u, column * WEIGHTS_TILE, row * WEIGHTS_TILE);
-		for (size_t i = u->tiles[tile]; i < u->tiles[tile + 1]; i++) {
-			const uint64_t map = map_at(u, i);
-			if (!map || map & ~inside)
-				return broken(u, e);
-			u->levels[row + 1] += (size_t)__builtin_popcountll(map);
-		}
-	}
-	return 0;
-}
-
-/* Reads and checks all but the levels, of which any are right. */
-static int take_all(struct unpacking *u, struct err *e)
-{
-	const size_t tiles = (size_t)u->across * (size_t)u->down;
-
-	u->entries = u->bytes[MAPS] / 8;
-	u->ids = mem_alloc(u->entries, sizeof *u->ids, u->path, e);
-	u->tiles = mem_zalloc(tiles + 1, sizeof *u->tiles, u->path, e);
-	u->levels = mem_zalloc((size_t)u->down + 1, sizeof *u->levels, u->path, e);
-	if (!u->ids || !u->tiles || !u->levels)
-		return -1;
-	for (size_t t = 0; t < tiles; t++)
-		if (take_ids(u, t, e))
-			return -1;
-	if (u->at != u->bytes[IDS] || 8 * u->tiles[tiles] != u->bytes[MAPS])
-		return broken(u, e);
-	for (int row = 0; row < u->down; row++)
-		if (take_maps(u, row, e))
-			return -1;
-	return u->levels[u->down] != u->bytes[LEVELS] ? broken(u, e) : 0;
-}
-
-/* How many weights each pixel of a tile has, whose corner is the first of the counts (P). The maps are summed
- * as columns of bits: plane b has bit b of all sums. */
-static void count_tile(const struct unpacking *u, size_t tile, int64_t *corner)
-{
-	uint64_t planes[64] = {0}, any = 0;
-
-	for (size_t i = u->tiles[tile]; i < u->tiles[tile + 1]; i++) {
-		uint64_t carry = map_at(u, i);
-		any |= carry;
-		for (int b = 0; carry; b++) {
-			const uint64_t both = planes[b] & carry;
-			planes[b] ^= carry;
-			carry = both;
-		}
-	}
-	const uint64_t most = u->tiles[tile + 1] - u->tiles[tile];
-	for (; any; any &= any - 1) {
-		const int bit = __builtin_ctzll(any);
-		int64_t n = 0;
-		for (int b = 0; most >> b; b++)
-			n |= (int64_t)(planes[b] >> bit & 1) << b;
-		corner[(int64_t)(bit / WEIGHTS_TILE) * u->width + bit % WEIGHTS_TILE] = n;
-	}
-}
-
-/* The counts of a row of tiles, which are 0 before. */
-static void count_row(const struct unpacking *u, int row, int64_t *counts)
-{
-	for (int column = 0; column < u->across; column++)
-		count_tile(u, (size_t)row * (size_t)u->across + (size_t)column,
-			counts + (int64_t)row * WEIGHTS_TILE * u->width + column * WEIGHTS_TILE);
-}
-
-/* What each level is, and where each pixel of a tile is from its corner: looked up, as a division costs more
- * than all else that a weight takes. */
-struct lookup {
-	float weight[256];
-	int64_t pixel[PIXELS];
-};
-
-static void lookup_make(struct lookup *l, int width)
-{
-	for (int k = 0; k < 256; k++)
-		l->weight[k] = (float)k / 255;
-	for (int i = 0; i < PIXELS; i++)
-		l->pixel[i] = (int64_t)(i / WEIGHTS_TILE) * width + i % WEIGHTS_TILE;
-}
-
-/* One Gaussian's weights in a tile, each to where its pixel's next one goes: corner is the tile's first
- * pixel. Returns where the levels of the next begin. By itself, so that all of it stays in registers. */
-__attribute__((noinline)) static const uint8_t *put_gaussian_back(const struct lookup *of, uint64_t map,
-	int32_t id, const uint8_t *more, int64_t *corner, int32_t *index, float *weight)
-{
-	uint8_t level = 0;
-
-	for (; map; map &= map - 1) {
-		const int64_t place = corner[of->pixel[__builtin_ctzll(map)]]++;
-		level = (uint8_t)(level + *more++);
-		index[place] = id;
-		weight[place] = of->weight[level];
-	}
-	return more;
-}
-
-/* The weights of a row of tiles: ends (P). */
-static void put_row(const struct unpacking *u, const struct lookup *of, int row, int64_t *ends,
-	int32_t *index, float *weight)
-{
-	const uint8_t *more = u->data[LEVELS] + u->levels[row];
-
-	for (int column = 0; column < u->across; column++) {
-		const size_t tile = (size_t)row * (size_t)u->across + (size_t)column;
-		int64_t *corner = ends + (int64_t)row * WEIGHTS_TILE * u->width + column * WEIGHTS_TILE;
-		for (size_t i = u->tiles[tile]; i < u->tiles[tile + 1]; i++)
-			more = put_gaussian_back(of, map_at(u, i), u->ids[i], more, corner, index, weight);
-	}
-}
-
-/* Counted in place p + 1, a pixel's weights end where those of the next begin: sums give both, and when they
- * are put, each place moves from its pixel's beginning to its end, where the next begins. */
-static int fill(struct unpacking *u, int64_t *indptr, int32_t **index, float **weight, struct err *e)
-{
-	const int64_t pixels = (int64_t)u->width * u->height;
-	struct lookup of;
-	int64_t sum = 0;
-
-	lookup_make(&of, u->width);
-	memset(indptr, 0, ((size_t)pixels + 1) * sizeof *indptr);
-	*index = mem_alloc(u->bytes[LEVELS], sizeof **index, u->path, e);
-	*weight = mem_alloc(u->bytes[LEVELS], sizeof **weight, u->path, e);
-	if (!*index || !*weight)
-		return -1;
-#pragma omp parallel for schedule(dynamic)
-	for (int row = 0; row < u->down; row++)
-		count_row(u, row, indptr + 1);
-	for (int64_t p = 0; p < pixels; p++) {
-		const int64_t n = indptr[p + 1];
-		indptr[p + 1] = sum;
-		sum += n;
-	}
-#pragma omp parallel for schedule(dynamic)
-	for (int row = 0; row < u->down; row++)
-		put_row(u, &of, row, indptr + 1, *index, *weight);
-	return 0;
-}
-
-int weights_unpack(const struct weights_pack *p, int width, int height, int64_t gaussians, const char *path,
-	int64_t *indptr, int32_t **index, float **weight, struct err *e)
-{
-	struct unpacking u = {.path = path,
-		.width = width,
-		.height = height,
-		.across = (width + WEIGHTS_TILE - 1) / WEIGHTS_TILE,
-		.down = (height + WEIGHTS_TILE - 1) / WEIGHTS_TILE,
-		.gaussians = gaussians};
-
-	*index = NULL;
-	*weight = NULL;
-	const int bad = inflate_all(&u, p, e) || take_all(&u, e) || fill(&u, indptr, index, weight, e);
-	for (int s = 0; s < WEIGHTS_STREAMS; s++)
-		free(u.data[s]);
-	free(u.ids);
-	free(u.tiles);
-	free(u.levels);
-	if (!bad)
-		return 0;
-	free(*index);
-	free(*weight);
-	*index = NULL;
-	*weight = NULL;
-	return -1;
 }

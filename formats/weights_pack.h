@@ -3,11 +3,12 @@
 #define FORMATS_WEIGHTS_PACK_H
 
 #include "base/err.h"
+#include "splat/view_tiles.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
-enum { WEIGHTS_TILE = 8, WEIGHTS_STREAMS = 3 };
+enum { WEIGHTS_STREAMS = 3 };
 
 /* Streams of bytes, deflated: the Gaussians of each tile, which of its pixels each is in, and by how much. */
 struct weights_pack {
@@ -26,5 +27,9 @@ void weights_pack_free(struct weights_pack *p);
  * of a scene of so many Gaussians. */
 int weights_unpack(const struct weights_pack *p, int width, int height, int64_t gaussians, const char *path,
 	int64_t *indptr, int32_t **index, float **weight, struct err *e);
+
+/* They as tiles; view_tiles_free. ERR_FORMAT as above, and then there is nothing to free. */
+int weights_unpack_tiles(const struct weights_pack *p, int width, int height, int64_t gaussians,
+	const char *path, struct view_tiles *to, struct err *e);
 
 #endif

@@ -136,10 +136,13 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 
 	if (!n)
 		return 0;
-	if (weights_open(&weights, l->files->weights, &l->scene, view, e))
+	/* the first round needs rows of pixels */
+	if ((r->round ? weights_open_tiles : weights_open)(&weights, l->files->weights, &l->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
-	const int bad = lift_objects_view(&l->lift, view, &blend, weights.height, weights.width, masks, n, e);
+	const int bad = weights.tiles.begin ? lift_objects_again(&l->lift, view, &weights.tiles, masks, n, e)
+					    : lift_objects_view(&l->lift, view, &blend, weights.height,
+						      weights.width, masks, n, e);
 	weights_close(&weights);
 	return bad;
 }

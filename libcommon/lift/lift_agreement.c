@@ -1,3 +1,5 @@
+/* What is claimed for each object is rendered first, whether the weights come as rows of pixels or as tiles,
+ * and then compared with the masks, pixel after pixel in their order. */
 #include "base/mem.h"
 #include "lift/lift_private.h"
 
@@ -12,44 +14,108 @@ struct overlap {
 
 struct work {
 	const struct lift_objects *l;
-	const struct view_weights *w;
-	const float *images; /* (n,P) */
-	size_t n;
+	const struct lift_weights *of;
+	size_t pixels;
 	int32_t *slots;		  /* (O) where the view has an object's mask, or LIFT_NOBODY */
-	float *rendered;	  /* (blocks,n) of a pixel, 0 between pixels */
-	int32_t *met;		  /* (blocks,n) the objects that are rendered in a pixel */
+	float *rendered;	  /* (n,P) of each mask's object: weights times shares */
+	float *total;		  /* (P) all weights */
 	struct overlap *overlaps; /* (blocks,n), less what the masks alone have */
 };
 
-/* One pixel: what is rendered, and how it changes the overlaps of the masks alone. */
-static void add_pixel(const struct work *work, size_t pixel, size_t block)
+/* Which mask's object has claimed a Gaussian, if any, and its share. */
+static int32_t claimed(const struct work *work, int32_t gaussian, float *share)
 {
-	const struct view_weights *w = work->w;
-	const size_t at = block * work->n;
-	float *rendered = work->rendered + at;
-	int32_t *met = work->met + at;
-	size_t n = 0;
+	const struct lift_claim claim = work->l->claims[gaussian];
+
+	*share = claim.share;
+	return claim.object == LIFT_NOBODY ? LIFT_NOBODY : work->slots[claim.object];
+}
+
+static void render_pixel(const struct work *work, const struct view_weights *w, size_t pixel)
+{
 	double total = 0;
 
 	for (int64_t k = w->indptr[pixel]; k < w->indptr[pixel + 1]; k++) {
-		const struct lift_claim claim = work->l->claims[w->index[k]];
-		const int32_t slot = claim.object == LIFT_NOBODY ? LIFT_NOBODY : work->slots[claim.object];
-		const float part = w->weight[k] * claim.share;
+		float share;
+		const int32_t slot = claimed(work, w->index[k], &share);
 		total += (double)w->weight[k];
-		if (slot == LIFT_NOBODY || !(part > 0))
+		if (slot != LIFT_NOBODY)
+			work->rendered[(size_t)slot * w->pixels + pixel] += w->weight[k] * share;
+	}
+	work->total[pixel] = (float)total;
+}
+
+/* One entry of a tile, by itself so that all of it stays in registers; corner: the tile's first pixel of what
+ * is rendered. Returns where the levels of the next begin. */
+__attribute__((noinline)) static const uint8_t *add_entry(const struct view_tiles_lookup *of, uint64_t map,
+	const uint8_t *more, double *total, float share, float *corner)
+{
+	uint8_t level = 0;
+
+	for (; map; map &= map - 1) {
+		const int pixel = __builtin_ctzll(map);
+		level = (uint8_t)(level + *more++);
+		total[pixel] += (double)of->weight[level];
+		if (corner)
+			corner[of->pixel[pixel]] += of->weight[level] * share;
+	}
+	return more;
+}
+
+static void render_row(
+	const struct work *work, const struct view_tiles *t, const struct view_tiles_lookup *of, int row)
+{
+	const uint8_t *more = t->levels + t->level_begin[row];
+
+	for (int column = 0; column < t->across; column++) {
+		const size_t tile = (size_t)row * (size_t)t->across + (size_t)column;
+		const int x = column * VIEW_TILE, y = row * VIEW_TILE;
+		const size_t first = (size_t)y * (size_t)t->width + (size_t)x;
+		double total[VIEW_TILE_PIXELS] = {0};
+		for (size_t i = t->begin[tile]; i < t->begin[tile + 1]; i++) {
+			float share;
+			const int32_t slot = claimed(work, t->ids[i], &share);
+			more = add_entry(of, view_tiles_map(t, i), more, total, share,
+				slot == LIFT_NOBODY ? NULL
+						    : work->rendered + (size_t)slot * work->pixels + first);
+		}
+		for (int i = 0; i < VIEW_TILE_PIXELS; i++)
+			if (x + i % VIEW_TILE < t->width && y + i / VIEW_TILE < t->height)
+				work->total[first + (size_t)of->pixel[i]] = (float)total[i];
+	}
+}
+
+static void render(const struct work *work)
+{
+	const struct view_tiles *t = work->of->tiles;
+
+	if (!t) {
+#pragma omp parallel for schedule(dynamic, BLOCK)
+		for (size_t p = 0; p < work->pixels; p++)
+			render_pixel(work, work->of->rows, p);
+		return;
+	}
+	struct view_tiles_lookup of;
+	view_tiles_lookup_make(&of, t);
+#pragma omp parallel for schedule(dynamic)
+	for (int row = 0; row < t->down; row++)
+		render_row(work, t, &of, row);
+}
+
+/* How what is rendered of object k changes the overlap of its mask alone, in the pixels [from,to). */
+static struct overlap compare(const struct work *work, const float *images, size_t k, size_t from, size_t to)
+{
+	const float *image = images + k * work->pixels, *rendered = work->rendered + k * work->pixels;
+	struct overlap sum = {0, 0};
+
+	for (size_t p = from; p < to; p++) {
+		if (!(rendered[p] > 0))
 			continue;
-		if (!(rendered[slot] > 0))
-			met[n++] = slot;
-		rendered[slot] += part;
+		const double mask = (double)image[p], a = (double)(rendered[p] / work->total[p]);
+		sum.both += a < mask ? a : mask;
+		sum.either += a > mask ? a - mask : 0;
 	}
-	for (size_t k = 0; k < n; k++) {
-		struct overlap *to = &work->overlaps[at + (size_t)met[k]];
-		const double mask = (double)work->images[(size_t)met[k] * w->pixels + pixel];
-		const double a = (double)(rendered[met[k]] / (float)total);
-		to->both += a < mask ? a : mask;
-		to->either += a > mask ? a - mask : 0;
-		rendered[met[k]] = 0;
-	}
+	return sum;
 }
 
 static double sum_image(const float *image, size_t pixels)
@@ -57,44 +123,48 @@ static double sum_image(const float *image, size_t pixels)
 	double sum = 0;
 
 	for (size_t p = 0; p < pixels; p++)
-		sum += (double)image[p];
+		if (image[p] > 0)
+			sum += (double)image[p];
 	return sum;
 }
 
-static double agreement_of(const struct work *work, size_t blocks, size_t k)
+static double agreement_of(const struct work *work, const float *images, size_t blocks, size_t n, size_t k)
 {
-	double both = 0, either = sum_image(work->images + k * work->w->pixels, work->w->pixels);
+	double both = 0, either = sum_image(images + k * work->pixels, work->pixels);
 
 	for (size_t b = 0; b < blocks; b++) {
-		both += work->overlaps[b * work->n + k].both;
-		either += work->overlaps[b * work->n + k].either;
+		both += work->overlaps[b * n + k].both;
+		either += work->overlaps[b * n + k].either;
 	}
 	return either > 0 ? both / either : 1;
 }
 
-int lift_agreement(const struct lift_objects *l, const struct lift_view *v, const struct view_weights *w,
+int lift_agreement(const struct lift_objects *l, const struct lift_view *v, const struct lift_weights *of,
 	const float *images, double *agreement, struct err *e)
 {
-	const size_t blocks = (w->pixels + BLOCK - 1) / BLOCK;
-	struct work work = {l, w, images, v->n, mem_alloc(l->objects, sizeof *work.slots, "masks", e),
-		mem_zalloc(blocks, v->n * sizeof *work.rendered, "masks", e),
-		mem_alloc(blocks, v->n * sizeof *work.met, "masks", e),
-		mem_zalloc(blocks, v->n * sizeof *work.overlaps, "masks", e)};
-	const int bad = !work.slots || !work.rendered || !work.met || !work.overlaps;
+	const size_t pixels = lift_weights_pixels(of), blocks = (pixels + BLOCK - 1) / BLOCK, n = v->n;
+	struct work work = {l, of, pixels, mem_alloc(l->objects, sizeof *work.slots, "masks", e),
+		mem_zalloc(n, pixels * sizeof *work.rendered, "masks", e),
+		mem_alloc(pixels, sizeof *work.total, "masks", e),
+		mem_alloc(blocks, n * sizeof *work.overlaps, "masks", e)};
+	const int bad = !work.slots || !work.rendered || !work.total || !work.overlaps;
 
 	for (size_t o = 0; o < l->objects && !bad; o++)
 		work.slots[o] = LIFT_NOBODY;
-	for (size_t k = 0; k < v->n && !bad; k++)
+	for (size_t k = 0; k < n && !bad; k++)
 		work.slots[v->objects[k]] = (int32_t)k;
+	if (!bad)
+		render(&work);
 #pragma omp parallel for schedule(dynamic) if (!bad)
 	for (size_t b = 0; b < (bad ? 0 : blocks); b++)
-		for (size_t p = b * BLOCK; p < (b + 1) * BLOCK && p < w->pixels; p++)
-			add_pixel(&work, p, b);
-	for (size_t k = 0; k < v->n && !bad; k++)
-		agreement[k] = agreement_of(&work, blocks, k);
+		for (size_t k = 0; k < n; k++)
+			work.overlaps[b * n + k] = compare(&work, images, k, b * BLOCK,
+				(b + 1) * BLOCK < pixels ? (b + 1) * BLOCK : pixels);
+	for (size_t k = 0; k < n && !bad; k++)
+		agreement[k] = agreement_of(&work, images, blocks, n, k);
 	free(work.slots);
 	free(work.rendered);
-	free(work.met);
+	free(work.total);
 	free(work.overlaps);
 	return bad ? -1 : 0;
 }

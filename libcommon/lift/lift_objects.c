@@ -129,7 +129,7 @@ static int add_view(struct lift_view *v, const struct view_weights *w, const str
 }
 
 /* Later rounds: the votes of a view's masks, by how well they agree with what was lifted. */
-static int vote(const struct lift_objects *l, struct lift_view *v, const struct view_weights *w,
+static int vote(const struct lift_objects *l, struct lift_view *v, const struct lift_weights *w,
 	const float *images, struct err *e)
 {
 	if (lift_agreement(l, v, w, images, v->agreement, e))
@@ -141,20 +141,36 @@ static int vote(const struct lift_objects *l, struct lift_view *v, const struct 
 	return 0;
 }
 
-int lift_objects_view(struct lift_objects *l, size_t at, const struct view_weights *w, int height, int width,
+static int take_view(struct lift_objects *l, size_t at, const struct lift_weights *w, int height, int width,
 	const struct lift_mask *masks, size_t n, struct err *e)
 {
 	struct lift_view *v = &l->views[at];
 	struct groups g;
 	float *images = NULL;
 	int bad = groups_make(&g, masks, n, e) ||
-		  !(images = mem_alloc(g.n, w->pixels * sizeof *images, "masks", e)) ||
+		  !(images = mem_alloc(g.n, lift_weights_pixels(w) * sizeof *images, "masks", e)) ||
 		  fill_images(&g, height, width, images, e) ||
-		  (l->round ? vote(l, v, w, images, e) : add_view(v, w, &g, images, e));
+		  (l->round ? vote(l, v, w, images, e) : add_view(v, w->rows, &g, images, e));
 
 	free(g.starts);
 	free(images);
 	return bad ? -1 : 0;
+}
+
+int lift_objects_view(struct lift_objects *l, size_t at, const struct view_weights *w, int height, int width,
+	const struct lift_mask *masks, size_t n, struct err *e)
+{
+	const struct lift_weights rows = {w, NULL};
+
+	return take_view(l, at, &rows, height, width, masks, n, e);
+}
+
+int lift_objects_again(struct lift_objects *l, size_t at, const struct view_tiles *t,
+	const struct lift_mask *masks, size_t n, struct err *e)
+{
+	const struct lift_weights tiles = {NULL, t};
+
+	return take_view(l, at, &tiles, t->height, t->width, masks, n, e);
 }
 
 /* The mean of the last round, over an object's views. */

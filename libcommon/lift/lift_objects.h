@@ -24,6 +24,7 @@
 #include "lift/lifted_model.h"
 #include "lift/shares.h"
 #include "mask/mask.h"
+#include "splat/view_tiles.h"
 #include "splat/view_weights.h"
 
 #include <stddef.h>
@@ -74,6 +75,11 @@ void lift_objects_free(struct lift_objects *l);
  * that a mask shows; while it lasts for an image of each object that has a mask. Returns 0, or -1 with *e set
  * for want of memory. */
 int lift_objects_view(struct lift_objects *l, size_t at, const struct view_weights *w, int height, int width,
+	const struct lift_mask *masks, size_t n, struct err *e);
+
+/* The same in a round after the first, from the weights as tiles, with the same results as from rows in which
+ * each pixel's weights are in the order of the Gaussians. */
+int lift_objects_again(struct lift_objects *l, size_t at, const struct view_tiles *t,
 	const struct lift_mask *masks, size_t n, struct err *e);
 
 /* Ends a round. Returns 0, or -1 with *e set for want of memory. */
