@@ -1,7 +1,8 @@
 /* Objects lifted from masks: against plain float64 by the definitions, for hard cases, and whatever the
- * number of threads. */
+ * number of threads; from tiles as from rows of pixels. */
 #include "unit.h"
 
+#include "formats/weights_pack.h"
 #include "lift_twin.h"
 
 #include <omp.h>
@@ -52,6 +53,84 @@ static void test_threads(void)
 		lifted_free(&got[k]);
 		lift_objects_free(&l[k]);
 	}
+	lift_problem_free(q);
+}
+
+/* A problem's weights as those of a packed file: rows of pixels, and tiles. */
+struct packed_view {
+	int64_t indptr[P + 1];
+	int32_t *index;
+	float *weight;
+	struct view_tiles tiles;
+};
+
+static int pack_view(const struct view_weights *w, struct packed_view *to)
+{
+	struct weights_pack pack;
+	uint8_t levels[P * ENTRIES];
+	struct err e;
+
+	for (int64_t k = 0; k < w->indptr[P]; k++)
+		levels[k] = (uint8_t)(1 + w->weight[k] * 254);
+	const int bad = weights_pack(&pack, W, H, w->indptr, w->index, levels, &e) ||
+			weights_unpack(&pack, W, H, N, "w", to->indptr, &to->index, &to->weight, &e) ||
+			weights_unpack_tiles(&pack, W, H, N, "w", &to->tiles, &e);
+	weights_pack_free(&pack);
+	return bad;
+}
+
+/* Lifts with tiles in the later rounds, or with rows alone. */
+static int lift_packed(const struct lift_problem *q, const struct packed_view *views, int with_tiles,
+	struct lift_objects *l, struct lifted *to)
+{
+	struct err e;
+	int bad = lift_objects_init(l, N, O, VIEWS, &e);
+
+	*to = (struct lifted){0};
+	for (int round = 0; round < LIFT_ROUNDS && !bad; round++) {
+		for (size_t v = 0; v < VIEWS && !bad; v++) {
+			const struct view_weights rows = {
+				P, N, views[v].indptr, views[v].index, views[v].weight};
+			bad = round && with_tiles
+				      ? lift_objects_again(
+						l, v, &views[v].tiles, q->masks[v], q->count[v], &e)
+				      : lift_objects_view(l, v, &rows, H, W, q->masks[v], q->count[v], &e);
+		}
+		bad = bad || lift_objects_settle(l, &e);
+	}
+	return bad || lift_objects_finish(l, to, &e);
+}
+
+static void test_tiles(uint64_t seed)
+{
+	struct lift_problem *q = lift_random(seed);
+	struct packed_view *views = calloc(VIEWS, sizeof *views);
+	struct lift_objects l[2] = {{0}};
+	struct lifted got[2] = {{0}};
+	int bad = 0;
+
+	for (int v = 0; v < VIEWS; v++)
+		bad |= pack_view(&q->weights[v], &views[v]);
+	for (int k = 0; k < 2; k++)
+		bad = bad || lift_packed(q, views, k, &l[k], &got[k]);
+	if (CHECK(!bad, "lifts packed weights")) {
+		const size_t n = (size_t)got[0].indptr[O] * sizeof(float);
+		CHECK(n && !memcmp(got[0].indptr, got[1].indptr, (O + 1) * sizeof *got[0].indptr) &&
+				!memcmp(got[0].share, got[1].share, n) &&
+				!memcmp(got[0].index, got[1].index, n) &&
+				!memcmp(got[0].confidence, got[1].confidence, O * sizeof(float)),
+			"tiles differ from rows");
+	}
+	for (int k = 0; k < 2; k++) {
+		lifted_free(&got[k]);
+		lift_objects_free(&l[k]);
+	}
+	for (int v = 0; v < VIEWS; v++) {
+		free(views[v].index);
+		free(views[v].weight);
+		view_tiles_free(&views[v].tiles);
+	}
+	free(views);
 	lift_problem_free(q);
 }
 
@@ -122,6 +201,8 @@ int main(void)
 {
 	for (uint64_t seed = 1; seed <= 3; seed++)
 		test_naive(seed);
+	for (uint64_t seed = 11; seed <= 13; seed++)
+		test_tiles(seed);
 	test_threads();
 	test_wrong_masks();
 	test_few_masks();
