@@ -287,7 +287,6 @@ static const void *convert(const struct weights *w, int64_t nnz, void **owned, s
 struct written {
 	struct st_tensor tensors[5];
 	size_t n;
-	struct weights_pack pack;
 	int64_t sizes[WEIGHTS_STREAMS];
 	void *converted;
 	uint8_t *dropped;
@@ -299,8 +298,9 @@ static void put(struct written *t, const char *name, enum st_dtype dtype, int64_
 		(struct st_tensor){.name = name, .dtype = dtype, .dims = 1, .shape = {length}, .data = data};
 }
 
-static int put_plain(struct written *t, const struct weights *w, int64_t pixels, int64_t nnz, struct err *e)
+static int put_plain(struct written *t, const struct weights *w, int64_t pixels, struct err *e)
 {
+	const int64_t nnz = w->indptr[pixels];
 	const void *data = convert(w, nnz, &t->converted, e);
 
 	if (!data)
@@ -312,20 +312,18 @@ static int put_plain(struct written *t, const struct weights *w, int64_t pixels,
 	return 0;
 }
 
-static int put_packed(struct written *t, const struct weights *w, int64_t pixels, int64_t nnz, struct err *e)
+static int put_packed(struct written *t, const struct weights *w, int64_t pixels, struct err *e)
 {
-	const uint8_t *levels = convert(w, nnz, &t->converted, e);
-
-	t->dropped = levels ? mem_alloc((size_t)pixels, 1, "weights", e) : NULL;
-	if (!t->dropped || weights_pack(&t->pack, w->width, w->height, w->indptr, w->index, levels, e))
+	t->dropped = mem_alloc((size_t)pixels, 1, "weights", e);
+	if (!t->dropped)
 		return -1;
 	for (int64_t p = 0; p < pixels; p++)
 		t->dropped[p] = (uint8_t)(w->dropped[p] * LEVELS + 0.5f);
 	for (int s = 0; s < WEIGHTS_STREAMS; s++)
-		t->sizes[s] = (int64_t)t->pack.bytes[s];
+		t->sizes[s] = (int64_t)w->pack->bytes[s];
 	put(t, "sizes", ST_I64, WEIGHTS_STREAMS, t->sizes);
 	for (int s = 0; s < WEIGHTS_STREAMS; s++)
-		put(t, stream_names[s], ST_U8, (int64_t)t->pack.packed[s], t->pack.data[s]);
+		put(t, stream_names[s], ST_U8, (int64_t)w->pack->packed[s], w->pack->data[s]);
 	put(t, "dropped", ST_U8, pixels, t->dropped);
 	return 0;
 }
@@ -333,15 +331,15 @@ static int put_packed(struct written *t, const struct weights *w, int64_t pixels
 int weights_write(
 	const struct weights *w, const char *dir, const char *view, const char *options, struct err *e)
 {
-	const int64_t pixels = (int64_t)w->width * w->height, nnz = w->indptr[pixels];
+	const int64_t pixels = (int64_t)w->width * w->height;
 	char *path = file_join(dir, view, ".safetensors", e), width[16], height[16], gaussians[24];
 	struct written t = {0};
-	int bad = !path || (w->is_packed ? put_packed : put_plain)(&t, w, pixels, nnz, e);
+	int bad = !path || (w->pack ? put_packed : put_plain)(&t, w, pixels, e);
 
 	snprintf(width, sizeof width, "%d", w->width);
 	snprintf(height, sizeof height, "%d", w->height);
 	snprintf(gaussians, sizeof gaussians, "%lld", (long long)w->gaussians);
-	struct st_meta meta[] = {{"format", "refer.weights"}, {"version", w->is_packed ? "2" : "1"},
+	struct st_meta meta[] = {{"format", "refer.weights"}, {"version", w->pack ? "2" : "1"},
 		{"tool", "gs-weigh"}, {"options", options}, {"seed", "0"}, {"view", view}, {"width", width},
 		{"height", height}, {"gaussians", gaussians}, {"scene", fingerprint_text(&w->scene)},
 		{"camera", fingerprint_text(&w->camera)}};
@@ -349,7 +347,6 @@ int weights_write(
 	free(path);
 	free(t.converted);
 	free(t.dropped);
-	weights_pack_free(&t.pack);
 	return bad ? -1 : 0;
 }
 

@@ -12,6 +12,8 @@
 
 #include <stdint.h>
 
+struct weights_pack;
+
 struct weights {
 	int width, height;     /* of the rendered size: P = width*height pixels, row-major */
 	int64_t gaussians;     /* N of the scene it belongs to */
@@ -26,8 +28,10 @@ struct weights {
 	int64_t *owned_indptr;		  /* what packed weights become, else NULL */
 	int32_t *owned_index;
 	float *owned_dropped;
-	struct view_tiles tiles;  /* of weights_open_tiles, else zeroed */
-	enum precision precision; /* of the weights in the file */
+	struct view_tiles tiles;	 /* of weights_open_tiles, else zeroed */
+	enum precision precision;	 /* of the weights in the file */
+	const struct weights_pack *pack; /* for weights_write: packed weights, in place of indptr, index and
+					    weight; else NULL */
 };
 
 /* Weights below half of 1/255 round to 0 as u8: prune_weights leaves them out, so that they count as dropped.
@@ -60,7 +64,8 @@ int weights_each(const char *dir, const struct scene *scene, int (*needs)(const 
 /* What the library blends with; referred to. */
 struct view_weights weights_view(const struct weights *w);
 
-/* Writes DIR/VIEW.safetensors, with the weights in w's precision; u8 has whole numbers of 1/255. */
+/* Writes DIR/VIEW.safetensors, with the weights in w's precision; u8 has whole numbers of 1/255; or as
+ * they are packed. */
 int weights_write(
 	const struct weights *w, const char *dir, const char *view, const char *options, struct err *e);
 

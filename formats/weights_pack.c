@@ -11,51 +11,84 @@
 
 enum { IDS, MAPS, LEVELS, PIXELS = VIEW_TILE_PIXELS, EFFORT = 1 };
 
-static int put_byte(struct weights_pack *p, int stream, unsigned byte, struct err *e)
+/* Room for `more` bytes of a stream; NULL with *e. */
+static uint8_t *more_room(struct weights_pack *p, int stream, size_t more, struct err *e)
 {
-	if (p->bytes[stream] == p->room[stream] &&
-		mem_grow((void **)&p->data[stream], &p->room[stream], p->bytes[stream] + 1, 1, "weights", e))
-		return -1;
-	p->data[stream][p->bytes[stream]++] = (uint8_t)byte;
-	return 0;
+	if (p->room[stream] - p->bytes[stream] < more && mem_grow((void **)&p->data[stream], &p->room[stream],
+								 p->bytes[stream] + more, 1, "weights", e))
+		return NULL;
+	return p->data[stream] + p->bytes[stream];
 }
 
 /* Seven bits a byte, the lowest first; the last has its highest bit clear. */
 static int put_number(struct weights_pack *p, uint32_t x, struct err *e)
 {
+	uint8_t *to = more_room(p, IDS, 5, e), *end = to;
+
+	if (!to)
+		return -1;
 	for (; x > 127; x >>= 7)
-		if (put_byte(p, IDS, (x & 127) | 128, e))
-			return -1;
-	return put_byte(p, IDS, x, e);
+		*end++ = (uint8_t)((x & 127) | 128);
+	*end++ = (uint8_t)x;
+	p->bytes[IDS] += (size_t)(end - to);
+	return 0;
+}
+
+/* Bit i: byte i is not 0. */
+static uint64_t find_set(const uint8_t levels[PIXELS])
+{
+	const uint64_t low = 0x7f7f7f7f7f7f7f7f;
+	uint64_t map = 0;
+
+	for (int k = 0; k < 8; k++) {
+		uint64_t bytes = 0;
+		for (int i = 0; i < 8; i++)
+			bytes |= (uint64_t)levels[8 * k + i] << 8 * i;
+		bytes = ((((bytes & low) + low) | bytes) & ~low) >> 7;
+		/* the lowest bits of the bytes, side by side */
+		map |= (bytes * 0x0102040810204080) >> 56 << 8 * k;
+	}
+	return map;
 }
 
 static int put_gaussian(struct weights_pack *p, const uint8_t levels[PIXELS], struct err *e)
 {
-	uint64_t map = 0;
+	const uint64_t map = find_set(levels);
+	uint8_t *maps = more_room(p, MAPS, 8, e), *to = more_room(p, LEVELS, PIXELS, e);
 	unsigned before = 0;
 
-	for (int i = 0; i < PIXELS; i++) {
-		if (!levels[i])
-			continue;
-		map |= (uint64_t)1 << i;
-		if (put_byte(p, LEVELS, (levels[i] - before) & 255, e))
-			return -1;
-		before = levels[i];
-	}
+	if (!maps || !to)
+		return -1;
 	for (int k = 0; k < 8; k++)
-		if (put_byte(p, MAPS, map >> 8 * k & 255, e))
-			return -1;
+		maps[k] = (uint8_t)(map >> 8 * k);
+	for (uint64_t left = map; left; left &= left - 1) {
+		const unsigned level = levels[__builtin_ctzll(left)];
+		*to++ = (uint8_t)(level - before);
+		before = level;
+	}
+	p->bytes[MAPS] += 8;
+	p->bytes[LEVELS] += (size_t)__builtin_popcountll(map);
 	return 0;
 }
 
-/* The Gaussians of one tile. */
-struct tile {
-	size_t n;
-	int32_t *ids, *spare;	   /* (n), as they are met or rising; and room for as many */
-	int32_t last;		   /* the largest id of the picture */
-	uint8_t (*levels)[PIXELS]; /* (n) as they are met */
-	int32_t *slot;		   /* (N) where each is met, -1 */
-};
+int weights_packer_make(struct weights_packer *t, size_t gaussians, struct err *e)
+{
+	*t = (struct weights_packer){
+		.gaussians = gaussians, .slot = mem_alloc(gaussians, sizeof *t->slot, "weights", e)};
+	if (!t->slot)
+		return -1;
+	memset(t->slot, -1, gaussians * sizeof *t->slot);
+	return 0;
+}
+
+void weights_packer_free(struct weights_packer *t)
+{
+	free(t->ids);
+	free(t->spare);
+	free(t->levels);
+	free(t->slot);
+	*t = (struct weights_packer){0};
+}
 
 /* Sorts by the bits from `shift` on, stably: one pass of a radix sort. */
 static void sort_pass(const int32_t *from, int32_t *to, size_t n, int shift)
@@ -73,9 +106,9 @@ static void sort_pass(const int32_t *from, int32_t *to, size_t n, int shift)
 		to[place[from[i] >> shift & 255]++] = from[i];
 }
 
-static void sort_ids(struct tile *t)
+static void sort_ids(struct weights_packer *t)
 {
-	for (int shift = 0; shift < 32 && t->last >> shift; shift += 8) {
+	for (int shift = 0; shift < 32 && (t->gaussians - 1) >> shift; shift += 8) {
 		int32_t *sorted = t->spare;
 		sort_pass(t->ids, sorted, t->n, shift);
 		t->spare = t->ids;
@@ -83,12 +116,13 @@ static void sort_ids(struct tile *t)
 	}
 }
 
-static int put_tile(struct weights_pack *p, struct tile *t, struct err *e)
+static int put_tile(struct weights_pack *p, struct weights_packer *t, struct err *e)
 {
 	int32_t before = 0;
 	int bad = put_number(p, (uint32_t)t->n, e);
 
-	sort_ids(t);
+	if (t->n)
+		sort_ids(t);
 	for (size_t i = 0; i < t->n && !bad; i++) {
 		bad = put_number(p, (uint32_t)(t->ids[i] - before), e) ||
 		      put_gaussian(p, t->levels[t->slot[t->ids[i]]], e);
@@ -99,14 +133,15 @@ static int put_tile(struct weights_pack *p, struct tile *t, struct err *e)
 	return bad ? -1 : 0;
 }
 
-struct picture {
-	int width, height;
-	const int64_t *indptr;
-	const int32_t *index;
-	const uint8_t *level;
-};
+/* Room for a tile with so many weights. */
+static int make_room(struct weights_packer *t, size_t weights, struct err *e)
+{
+	return mem_room((void **)&t->ids, &t->room[0], weights, sizeof *t->ids, "weights", e) ||
+	       mem_room((void **)&t->spare, &t->room[1], weights, sizeof *t->spare, "weights", e) ||
+	       mem_room((void **)&t->levels, &t->room[2], weights, sizeof *t->levels, "weights", e);
+}
 
-static void meet(struct tile *t, int32_t id, int pixel, uint8_t level)
+static void meet(struct weights_packer *t, int32_t id, int pixel, uint8_t level)
 {
 	if (t->slot[id] < 0) {
 		memset(t->levels[t->n], 0, PIXELS);
@@ -117,40 +152,37 @@ static void meet(struct tile *t, int32_t id, int pixel, uint8_t level)
 }
 
 /* The tile whose corner is at column x and row y. */
-static void take_tile(struct tile *t, const struct picture *v, int x, int y)
+static int take_tile(struct weights_packer *t, const struct weights_picture *v, int x, int y, struct err *e)
 {
+	const int right = x + VIEW_TILE < v->width ? x + VIEW_TILE : v->width,
+		  bottom = y + VIEW_TILE < v->height ? y + VIEW_TILE : v->height;
+	int64_t weights = 0;
+
+	for (int row = y; row < bottom; row++)
+		weights +=
+			v->indptr[(int64_t)row * v->width + right] - v->indptr[(int64_t)row * v->width + x];
 	t->n = 0;
-	for (int i = 0; i < PIXELS; i++) {
-		const int column = x + i % VIEW_TILE, row = y + i / VIEW_TILE;
-		if (column >= v->width || row >= v->height)
-			continue;
-		const int64_t at = (int64_t)row * v->width + column;
-		for (int64_t k = v->indptr[at]; k < v->indptr[at + 1]; k++)
-			if (v->level[k])
-				meet(t, v->index[k], i, v->level[k]);
-	}
+	if (make_room(t, (size_t)weights, e))
+		return -1;
+	for (int row = y; row < bottom; row++)
+		for (int column = x; column < right; column++) {
+			const int64_t at = (int64_t)row * v->width + column;
+			for (int64_t k = v->indptr[at]; k < v->indptr[at + 1]; k++) {
+				const uint8_t level = (uint8_t)(v->weight[k] * 255 + 0.5f);
+				if (level)
+					meet(t, v->index[k], (row - y) * VIEW_TILE + column - x, level);
+			}
+		}
+	return 0;
 }
 
-/* Room for the largest tile. */
-static int tile_make(struct tile *t, const struct picture *v, struct err *e)
+int weights_pack_part(
+	struct weights_pack *rows, struct weights_packer *t, const struct weights_picture *v, struct err *e)
 {
-	const int64_t pixels = (int64_t)v->width * v->height;
-	size_t most = 0;
-
-	for (int64_t p = 0; p < pixels; p++) {
-		const size_t n = (size_t)(v->indptr[p + 1] - v->indptr[p]);
-		most = n > most ? n : most;
-	}
-	for (int64_t k = 0; k < v->indptr[pixels]; k++)
-		t->last = v->index[k] > t->last ? v->index[k] : t->last;
-	most *= PIXELS;
-	t->ids = mem_alloc(most, sizeof *t->ids, "weights", e);
-	t->spare = mem_alloc(most, sizeof *t->spare, "weights", e);
-	t->levels = mem_alloc(most, sizeof *t->levels, "weights", e);
-	t->slot = mem_alloc((size_t)t->last + 1, sizeof *t->slot, "weights", e);
-	if (!t->ids || !t->spare || !t->levels || !t->slot)
-		return -1;
-	memset(t->slot, -1, ((size_t)t->last + 1) * sizeof *t->slot);
+	for (int y = 0; y < v->height; y += VIEW_TILE)
+		for (int x = 0; x < v->width; x += VIEW_TILE)
+			if (take_tile(t, v, x, y, e) || put_tile(&rows[y / VIEW_TILE], t, e))
+				return -1;
 	return 0;
 }
 
@@ -188,64 +220,34 @@ static int deflate_all(struct weights_pack *p, struct err *e)
 	return 0;
 }
 
-/* A row of tiles, as streams that are not deflated yet. */
-static int pack_row(struct weights_pack *p, struct tile *t, const struct picture *v, int row, struct err *e)
+/* The streams of all rows one after another. */
+static int join_stream(
+	struct weights_pack *p, const struct weights_pack *rows, int count, int stream, struct err *e)
 {
-	for (int x = 0; x < v->width; x += VIEW_TILE) {
-		take_tile(t, v, x, row * VIEW_TILE);
-		if (put_tile(p, t, e))
-			return -1;
+	size_t all = 0;
+
+	for (int row = 0; row < count; row++)
+		all += rows[row].bytes[stream];
+	p->data[stream] = mem_alloc(all, 1, "weights", e);
+	p->room[stream] = all;
+	for (int row = 0; row < count && p->data[stream]; row++) {
+		if (rows[row].bytes[stream])
+			memcpy(p->data[stream] + p->bytes[stream], rows[row].data[stream],
+				rows[row].bytes[stream]);
+		p->bytes[stream] += rows[row].bytes[stream];
 	}
-	return 0;
+	return p->data[stream] ? 0 : -1;
 }
 
-static int append(struct weights_pack *p, const struct weights_pack *row, struct err *e)
-{
-	for (int s = 0; s < WEIGHTS_STREAMS; s++) {
-		if (mem_grow((void **)&p->data[s], &p->room[s], p->bytes[s] + row->bytes[s], 1, "weights", e))
-			return -1;
-		if (row->bytes[s])
-			memcpy(p->data[s] + p->bytes[s], row->data[s], row->bytes[s]);
-		p->bytes[s] += row->bytes[s];
-	}
-	return 0;
-}
-
-/* The rows by many threads, each into streams of its own. */
-static int pack_rows(struct weights_pack *rows, int count, const struct picture *v, struct err *e)
+int weights_pack_join(struct weights_pack *p, struct weights_pack *rows, int count, struct err *e)
 {
 	int bad = 0;
 
-#pragma omp parallel reduction(| : bad)
-	{
-		struct tile t = {0};
-		struct err own;
-		bad = tile_make(&t, v, &own);
-#pragma omp for schedule(dynamic)
-		for (int row = 0; row < count; row++)
-			bad |= bad ? -1 : pack_row(&rows[row], &t, v, row, &own);
-		free(t.ids);
-		free(t.spare);
-		free(t.levels);
-		free(t.slot);
-	}
-	return bad ? err_set(e, ERR_SYSTEM, "weights: out of memory") : 0;
-}
-
-int weights_pack(struct weights_pack *p, int width, int height, const int64_t *indptr, const int32_t *index,
-	const uint8_t *level, struct err *e)
-{
-	const struct picture v = {width, height, indptr, index, level};
-	const int count = (height + VIEW_TILE - 1) / VIEW_TILE;
-	struct weights_pack *rows = mem_zalloc((size_t)count, sizeof *rows, "weights", e);
-	int bad = !rows || pack_rows(rows, count, &v, e);
-
 	*p = (struct weights_pack){0};
-	for (int row = 0; row < count && rows; row++) {
-		bad = bad || append(p, &rows[row], e);
+	for (int s = 0; s < WEIGHTS_STREAMS; s++)
+		bad = bad || join_stream(p, rows, count, s, e);
+	for (int row = 0; row < count; row++)
 		weights_pack_free(&rows[row]);
-	}
-	free(rows);
 	return bad || deflate_all(p, e) ? -1 : 0;
 }
 

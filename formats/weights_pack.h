@@ -16,10 +16,36 @@ struct weights_pack {
 	uint8_t *data[WEIGHTS_STREAMS];
 };
 
-/* Packs weights of 0 to 255 (of 1/255), CSR over the pixels of a picture. Entries of level 0 are left out,
- * and of two of one Gaussian in a pixel the later one. Free after either. */
-int weights_pack(struct weights_pack *p, int width, int height, const int64_t *indptr, const int32_t *index,
-	const uint8_t *level, struct err *e);
+/* Weights of 0 to 1, CSR over the pixels of a picture or of a part of it. They are rounded to 1/255; those of
+ * 0 are left out, and of two of one Gaussian in a pixel the later one. */
+struct weights_picture {
+	int width, height;
+	const int64_t *indptr; /* (P+1) */
+	const int32_t *index;
+	const float *weight;
+};
+
+/* Memory for packing a scene's weights, one thread's. */
+struct weights_packer {
+	size_t gaussians, n;		     /* of the scene, and of a tile */
+	int32_t *ids, *spare;		     /* (n), as they are met or rising; and room for as many */
+	uint8_t (*levels)[VIEW_TILE_PIXELS]; /* (n) as they are met */
+	int32_t *slot;			     /* (gaussians) where each is met, -1 */
+	size_t room[3];			     /* of ids, spare and levels */
+};
+
+/* Returns 0, or -1 with *e set; free after either. */
+int weights_packer_make(struct weights_packer *t, size_t gaussians, struct err *e);
+void weights_packer_free(struct weights_packer *t);
+
+/* Packs the next part of some rows of tiles, which go on in rows (height/8, rounded up), zeroed before the
+ * first. Parts are whole tiles but at the picture's edge. Returns 0, or -1 with *e set; free the rows after
+ * either. */
+int weights_pack_part(
+	struct weights_pack *rows, struct weights_packer *t, const struct weights_picture *v, struct err *e);
+
+/* All rows of tiles, deflated; they are freed. Returns 0, or -1 with *e set; free *p after either. */
+int weights_pack_join(struct weights_pack *p, struct weights_pack *rows, int count, struct err *e);
 void weights_pack_free(struct weights_pack *p);
 
 /* The other way: indptr (P+1) is the caller's; *index and *weight, which are level / 255, are allocated, in

@@ -1,5 +1,7 @@
 #include "cmd/jobs/weighing.h"
 
+#include "cmd/jobs/weighing_packed.h"
+
 #include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
@@ -36,8 +38,7 @@ static void room_free(struct room *room)
 	free(room->dropped);
 }
 
-static int render(struct room *room, const struct splats *s, const struct camera *c,
-	const struct weighing_options *o, struct err *e)
+static int prepare(struct room *room, const struct splats *s, const struct camera *c, struct err *e)
 {
 	size_t pixels = (size_t)c->width * (size_t)c->height;
 
@@ -45,24 +46,26 @@ static int render(struct room *room, const struct splats *s, const struct camera
 		    e))
 		return -1;
 	memset(room->dropped, 0, pixels * sizeof *room->dropped);
-	if (room->view ? render_again(room->view, s, c, e) : !(room->view = render_prepare(s, c, e)))
-		return -1;
+	if (room->view)
+		return render_again(room->view, s, c, e);
+	room->view = render_prepare(s, c, e);
+	return room->view ? 0 : -1;
+}
+
+static double least_weight(const struct weighing_options *o)
+{
+	return o->precision == PRECISION_U8 ? WEIGHTS_U8_LEAST : 0;
+}
+
+static int render(struct room *room, size_t pixels, const struct weighing_options *o, struct err *e)
+{
+	const double least = least_weight(o);
+
 	if (render_weights_again(room->view, &room->rendered, e))
 		return -1;
-	const double least = o->precision == PRECISION_U8 ? WEIGHTS_U8_LEAST : 0;
 	if (o->tolerance <= 0 && least <= 0)
 		return 0;
 	return prune_weights(&room->rendered, pixels, o->tolerance, least, room->dropped, e);
-}
-
-/* The part of the pixels that are more scene than background. */
-static double cover(const struct render_weights *w, size_t pixels)
-{
-	size_t covered = 0;
-
-	for (size_t p = 0; p < pixels; p++)
-		covered += w->transmittance[p] < 0.5F;
-	return (double)covered / (double)pixels;
 }
 
 /* Views that show nothing are right where a camera looks away; all of them are a mistake, and their weights
@@ -115,23 +118,33 @@ static int weigh_view(void *context, int worker, size_t at, struct err *e)
 	camera_scaled_size(full, o->scale, &done->width, &done->height);
 	const size_t pixels = (size_t)done->width * (size_t)done->height;
 	const struct camera camera = camera_resize(full, done->width, done->height);
-	if (render(room, &of->scene->splats, &camera, o, e))
-		return -1;
+	struct weighed_packed packed = {0};
+	const struct render_weights *rendered = &room->rendered;
+	int bad = prepare(room, &of->scene->splats, &camera, e) ||
+		  (o->is_packed ? weigh_packed(&packed, room->view, &camera, of->scene->splats.n,
+					  o->tolerance, room->dropped, e)
+				: render(room, pixels, o, e));
 	done->ms = 1e3 * (omp_get_wtime() - start);
-	done->weights = (double)room->rendered.indptr[pixels];
 	const struct weights w = {.width = done->width,
 		.height = done->height,
 		.gaussians = (int64_t)of->scene->splats.n,
-		.indptr = room->rendered.indptr,
-		.index = room->rendered.index,
-		.weight = room->rendered.weight,
+		.indptr = rendered->indptr,
+		.index = rendered->index,
+		.weight = rendered->weight,
 		.dropped = room->dropped,
 		.scene = of->scene->fingerprint,
 		.camera = fingerprint_camera(&camera),
 		.precision = o->precision,
-		.is_packed = o->is_packed};
-	room->covered = fmax(room->covered, cover(&room->rendered, pixels));
-	return weights_write(&w, o->folder, full->name, of->text, e);
+		.pack = o->is_packed ? &packed.pack : NULL};
+	if (!bad) {
+		done->weights = o->is_packed ? (double)packed.weights : (double)rendered->indptr[pixels];
+		const size_t covered =
+			o->is_packed ? packed.covered : weighing_cover(rendered->transmittance, pixels);
+		room->covered = fmax(room->covered, (double)covered / (double)pixels);
+		bad = weights_write(&w, o->folder, full->name, of->text, e);
+	}
+	weights_pack_free(&packed.pack);
+	return bad;
 }
 
 static int report_view(void *context, size_t at, struct err *e)

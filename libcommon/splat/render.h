@@ -58,6 +58,15 @@ int render_weights(const struct render_view *v, struct render_weights *w, struct
 /* The same in the arrays that *w has from another view, or in new ones where it is zeroed. On failure they
  * are freed. */
 int render_weights_again(const struct render_view *v, struct render_weights *w, struct err *e);
+/* The same of a part of the view's pixels alone, which then are the rows of the matrix: as large as the
+ * processor's cache holds, all that is done with it costs less. x and y are multiples of RENDER_PART; so are
+ * width and height, but at the view's edge. */
+enum { RENDER_PART = 16 };
+struct render_part {
+	int x, y, width, height; /* pixels */
+};
+int render_weights_part(
+	const struct render_view *v, const struct render_part *part, struct render_weights *w, struct err *e);
 void render_weights_free(struct render_weights *w);
 
 /* Blends `channels` values per Gaussian: out (channels,P) = sum_i w_i values[c][i], values (channels,N)

@@ -12,6 +12,22 @@
  * are blended. Blending twice, first for the lengths, is cheaper than keeping all records: they are half as
  * large as the matrix again. */
 
+/* What the matrix is of: pixels from (x, y) on, all of the picture or a part of it. */
+struct frame {
+	int x, y;
+	struct tile_grid grid; /* as if the part were a picture */
+};
+
+/* Tile k of the frame: where it is in it, and of the picture. */
+static struct place place_in(const struct render_view *v, const struct frame *f, size_t k, size_t *tile)
+{
+	const struct place at = place_of_tile(&f->grid, k);
+
+	*tile = (size_t)((f->y + at.y) / TILE_SIZE) * (size_t)v->grid.columns +
+		(size_t)((f->x + at.x) / TILE_SIZE);
+	return at;
+}
+
 static const uint32_t *tile_list(const struct render_view *v, size_t k, size_t *n)
 {
 	*n = v->tiles.start[k + 1] - v->tiles.start[k];
@@ -19,20 +35,20 @@ static const uint32_t *tile_list(const struct render_view *v, size_t k, size_t *
 }
 
 /* For each pixel of a tile how many weights it has (in indptr, one place on) and what is left. */
-static void count_tile(const struct render_view *v, size_t k, struct render_weights *w)
+static void count_tile(const struct render_view *v, const struct frame *f, size_t k, struct render_weights *w)
 {
-	struct place at = place_of_tile(&v->grid, k);
 	struct blend_tile t __attribute__((aligned(64)));
-	size_t n;
-	const uint32_t *list = tile_list(v, k, &n);
+	size_t n, tile;
+	const struct place at = place_in(v, f, k, &tile);
+	const uint32_t *list = tile_list(v, tile, &n);
 
-	place_fetch(&v->grid, at, w->transmittance);
-	blend_start(&t, at.x, at.y, at.columns, at.rows, 0);
+	place_fetch(&f->grid, at, w->transmittance);
+	blend_start(&t, f->x + at.x, f->y + at.y, at.columns, at.rows, 0);
 	kernels_of(v->level)->counts(&t, v->projected, list, n);
-	place_plane(&v->grid, at, t.transmittance, w->transmittance);
+	place_plane(&f->grid, at, t.transmittance, w->transmittance);
 	for (int y = 0; y < at.rows; y++)
 		for (int x = 0; x < at.columns; x++)
-			w->indptr[place_pixel(&v->grid, at, x, y) + 1] = t.count[blend_place(x, y)];
+			w->indptr[place_pixel(&f->grid, at, x, y) + 1] = t.count[blend_place(x, y)];
 }
 
 /* Distributes records over the rows of the matrix; next is where each pixel's goes on. */
@@ -53,19 +69,19 @@ static void scatter(struct blend_records *records, int64_t *next, struct render_
 }
 
 /* `records` has room for RECORD_CHUNKS chunks. */
-static void weigh_tile(
-	const struct render_view *v, size_t k, struct blend_records *records, struct render_weights *w)
+static void weigh_tile(const struct render_view *v, const struct frame *f, size_t k,
+	struct blend_records *records, struct render_weights *w)
 {
-	struct place at = place_of_tile(&v->grid, k);
 	struct blend_tile t __attribute__((aligned(64)));
 	int64_t next[TILE_PIXELS];
-	size_t n, done = 0;
-	const uint32_t *list = tile_list(v, k, &n);
+	size_t n, tile, done = 0;
+	const struct place at = place_in(v, f, k, &tile);
+	const uint32_t *list = tile_list(v, tile, &n);
 
 	for (int y = 0; y < at.rows; y++)
 		for (int x = 0; x < at.columns; x++)
-			next[blend_place(x, y)] = w->indptr[place_pixel(&v->grid, at, x, y)];
-	blend_start(&t, at.x, at.y, at.columns, at.rows, 0);
+			next[blend_place(x, y)] = w->indptr[place_pixel(&f->grid, at, x, y)];
+	blend_start(&t, f->x + at.x, f->y + at.y, at.columns, at.rows, 0);
 	while (done < n) {
 		done += kernels_of(v->level)->weights(&t, v->projected, list + done, n - done, records);
 		scatter(records, next, w);
@@ -102,10 +118,11 @@ static struct blend_records *records_make(int threads, struct err *e)
 	return records;
 }
 
-int render_weights_again(const struct render_view *v, struct render_weights *w, struct err *e)
+static int weigh_frame(
+	const struct render_view *v, const struct frame *f, struct render_weights *w, struct err *e)
 {
-	const size_t pixels = (size_t)v->grid.width * (size_t)v->grid.height,
-		     tiles = (size_t)v->grid.columns * (size_t)v->grid.rows;
+	const size_t pixels = (size_t)f->grid.width * (size_t)f->grid.height,
+		     tiles = (size_t)f->grid.columns * (size_t)f->grid.rows;
 	const int threads = threads_available();
 	struct blend_records *records = records_make(threads, e);
 
@@ -116,7 +133,7 @@ int render_weights_again(const struct render_view *v, struct render_weights *w, 
 		goto fail;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
 	for (size_t k = 0; k < tiles; k++)
-		count_tile(v, k, w);
+		count_tile(v, f, k, w);
 	w->indptr[0] = 0;
 	for (size_t p = 0; p < pixels; p++)
 		w->indptr[p + 1] += w->indptr[p];
@@ -126,13 +143,28 @@ int render_weights_again(const struct render_view *v, struct render_weights *w, 
 		goto fail;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
 	for (size_t k = 0; k < tiles; k++)
-		weigh_tile(v, k, &records[omp_get_thread_num()], w);
+		weigh_tile(v, f, k, &records[omp_get_thread_num()], w);
 	records_free(records, threads);
 	return 0;
 fail:
 	records_free(records, threads);
 	render_weights_free(w);
 	return -1;
+}
+
+int render_weights_again(const struct render_view *v, struct render_weights *w, struct err *e)
+{
+	const struct frame all = {0, 0, v->grid};
+
+	return weigh_frame(v, &all, w, e);
+}
+
+int render_weights_part(
+	const struct render_view *v, const struct render_part *part, struct render_weights *w, struct err *e)
+{
+	const struct frame f = {part->x, part->y, tile_grid(part->width, part->height)};
+
+	return weigh_frame(v, &f, w, e);
 }
 
 int render_weights(const struct render_view *v, struct render_weights *w, struct err *e)

@@ -2,8 +2,8 @@
  * number of threads; from tiles as from rows of pixels. */
 #include "unit.h"
 
-#include "formats/weights_pack.h"
 #include "lift_twin.h"
+#include "pack_whole.h"
 
 #include <omp.h>
 
@@ -67,12 +67,9 @@ struct packed_view {
 static int pack_view(const struct view_weights *w, struct packed_view *to)
 {
 	struct weights_pack pack;
-	uint8_t levels[P * ENTRIES];
 	struct err e;
 
-	for (int64_t k = 0; k < w->indptr[P]; k++)
-		levels[k] = (uint8_t)(1 + w->weight[k] * 254);
-	const int bad = weights_pack(&pack, W, H, w->indptr, w->index, levels, &e) ||
+	const int bad = pack_whole(&pack, W, H, N, w->indptr, w->index, w->weight, &e) ||
 			weights_unpack(&pack, W, H, N, "w", to->indptr, &to->index, &to->weight, &e) ||
 			weights_unpack_tiles(&pack, W, H, N, "w", &to->tiles, &e);
 	weights_pack_free(&pack);

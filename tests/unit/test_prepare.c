@@ -160,6 +160,35 @@ static void check_same(const char *what, const struct render_view *fresh, const 
 		"%s: the same weights", what);
 }
 
+/* The weights of parts are those of their pixels in all. */
+static void check_parts(const char *what, const struct render_view *v, const struct render_weights *all)
+{
+	const int width = v->grid.width, height = v->grid.height, across = 3 * RENDER_PART;
+	struct render_weights w = {0};
+	struct err e;
+	long wrong = 0;
+
+	for (int y = 0; y < height; y += RENDER_PART)
+		for (int x = 0; x < width; x += across) {
+			const struct render_part part = {x, y, width - x < across ? width - x : across,
+				height - y < RENDER_PART ? height - y : RENDER_PART};
+			if (render_weights_part(v, &part, &w, &e))
+				abort();
+			for (int i = 0; i < part.width * part.height; i++) {
+				const int p = (y + i / part.width) * width + x + i % part.width;
+				const size_t n = (size_t)(w.indptr[i + 1] - w.indptr[i]) * 4;
+				wrong += w.indptr[i + 1] - w.indptr[i] !=
+						 all->indptr[p + 1] - all->indptr[p] ||
+					 memcmp(w.index + w.indptr[i], all->index + all->indptr[p], n) != 0 ||
+					 memcmp(w.weight + w.indptr[i], all->weight + all->indptr[p], n) !=
+						 0 ||
+					 w.transmittance[i] != all->transmittance[p];
+			}
+		}
+	render_weights_free(&w);
+	CHECK(!wrong, "%s: %ld pixels of parts differ", what, wrong);
+}
+
 /* A view and weights that go from one camera and scene to another give the bytes of fresh ones, whatever the
  * number of threads. */
 static void used_again(void)
@@ -185,6 +214,7 @@ static void used_again(void)
 		if (!fresh || render_weights(fresh, &one, &e) || render_weights_again(again, &kept, &e))
 			abort();
 		check_same(what, fresh, again, &one, &kept);
+		check_parts(what, again, &one);
 		render_weights_free(&one);
 		render_free(fresh);
 	}

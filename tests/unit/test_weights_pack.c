@@ -3,7 +3,7 @@
 #include "unit.h"
 
 #include "base/rng.h"
-#include "formats/weights_pack.h"
+#include "pack_whole.h"
 
 enum { MOST = 60, GAUSSIANS = 5000 };
 
@@ -11,7 +11,7 @@ struct matrix {
 	int width, height;
 	int64_t *indptr;
 	int32_t *index;
-	uint8_t *level;
+	float *weight;
 };
 
 /* A random picture: none to MOST weights a pixel, of few or many Gaussians, each once. */
@@ -19,7 +19,7 @@ static struct matrix random_matrix(struct rng *rng, int width, int height, int g
 {
 	const int pixels = width * height;
 	struct matrix m = {width, height, malloc((size_t)(pixels + 1) * 8), malloc((size_t)pixels * MOST * 4),
-		malloc((size_t)pixels * MOST)};
+		malloc((size_t)pixels * MOST * 4)};
 	int64_t n = 0;
 
 	m.indptr[0] = 0;
@@ -28,7 +28,7 @@ static struct matrix random_matrix(struct rng *rng, int width, int height, int g
 		int id = gaussians - 1 - (int)(rng_uniform(rng) * 3);
 		for (int k = 0; k < count && id >= 0; k++, n++) {
 			m.index[n] = id; /* falling: not the order of what comes back */
-			m.level[n] = (uint8_t)(1 + (int)(rng_uniform(rng) * 255));
+			m.weight[n] = (float)(1 + (int)(rng_uniform(rng) * 255)) / 255;
 			id -= 1 + (int)(rng_uniform(rng) * gaussians / MOST);
 		}
 		m.indptr[p + 1] = n;
@@ -40,7 +40,7 @@ static void matrix_free(struct matrix *m)
 {
 	free(m->indptr);
 	free(m->index);
-	free(m->level);
+	free(m->weight);
 }
 
 /* The places where the unpacked rows are not those of m, turned round. */
@@ -55,7 +55,7 @@ static long count_wrong(
 	for (int p = 0; p < pixels && !wrong; p++)
 		for (int64_t k = indptr[p]; k < indptr[p + 1]; k++) {
 			const int64_t from = m->indptr[p] + m->indptr[p + 1] - 1 - k;
-			wrong += index[k] != m->index[from] || weight[k] != (float)m->level[from] / 255;
+			wrong += index[k] != m->index[from] || weight[k] != m->weight[from];
 		}
 	return wrong;
 }
@@ -69,7 +69,8 @@ static void check_round_trip(struct rng *rng, int width, int height, int gaussia
 	int32_t *index;
 	float *weight;
 
-	CHECK(!weights_pack(&pack, width, height, m.indptr, m.index, m.level, &e), "%s", e.message);
+	CHECK(!pack_whole(&pack, width, height, (size_t)gaussians, m.indptr, m.index, m.weight, &e), "%s",
+		e.message);
 	if (CHECK(!weights_unpack(&pack, width, height, gaussians, "w", indptr, &index, &weight, &e), "%s",
 		    e.message)) {
 		CHECK(count_wrong(&m, indptr, index, weight) == 0, "%dx%d of %d: %ld differ", width, height,
@@ -103,7 +104,7 @@ static void nothing_is_packed(void)
 	int32_t *index;
 	float *weight;
 
-	CHECK(!weights_pack(&pack, 4, 3, none, NULL, NULL, &e), "%s", e.message);
+	CHECK(!pack_whole(&pack, 4, 3, 0, none, NULL, NULL, &e), "%s", e.message);
 	CHECK(!weights_unpack(&pack, 4, 3, 0, "w", indptr, &index, &weight, &e), "%s", e.message);
 	CHECK(indptr[12] == 0, "%d", (int)indptr[12]);
 	free(index);
@@ -139,7 +140,7 @@ static void broken_streams_are_found(void)
 
 	rng_seed(&rng, 4, 1);
 	struct matrix m = random_matrix(&rng, 20, 13, 300);
-	CHECK(!weights_pack(&pack, 20, 13, m.indptr, m.index, m.level, &e), "%s", e.message);
+	CHECK(!pack_whole(&pack, 20, 13, 300, m.indptr, m.index, m.weight, &e), "%s", e.message);
 	CHECK(unpacks(&pack, 20, 13, 300), "as it is");
 	CHECK(!unpacks(&pack, 20, 13, 299), "of a smaller scene");
 	CHECK(!unpacks(&pack, 12, 13, 300), "of a narrower picture");

@@ -1,0 +1,137 @@
+#include "cmd/jobs/weighing_packed.h"
+
+#include "base/mem.h"
+#include "base/threads.h"
+#include "formats/weights.h"
+#include "splat/prune.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+	PART_WIDTH = 4 * RENDER_PART, /* pixels: their weights take half a megabyte */
+	TILE_ROWS = RENDER_PART / VIEW_TILE,
+};
+
+/* One thread's. */
+struct room {
+	struct render_weights rendered;
+	struct weights_packer packer;
+	float dropped[PART_WIDTH * RENDER_PART];
+};
+
+size_t weighing_cover(const float *transmittance, size_t pixels)
+{
+	size_t covered = 0;
+
+	for (size_t p = 0; p < pixels; p++)
+		covered += transmittance[p] < 0.5F;
+	return covered;
+}
+
+/* What all parts have in common. */
+struct packing {
+	const struct render_view *view;
+	int width, height;
+	double tolerance;
+	float *dropped;		   /* (P) */
+	struct weights_pack *rows; /* of tiles */
+};
+
+static int pack_part(const struct packing *p, struct room *r, const struct render_part *part, size_t *weights,
+	size_t *covered, struct err *e)
+{
+	const size_t width = (size_t)part->width, height = (size_t)part->height, pixels = width * height;
+	struct render_weights *w = &r->rendered;
+
+	if (render_weights_part(p->view, part, w, e) ||
+		prune_weights(w, pixels, p->tolerance, WEIGHTS_U8_LEAST, r->dropped, e))
+		return -1;
+	for (size_t y = 0; y < height; y++)
+		memcpy(p->dropped + ((size_t)part->y + y) * (size_t)p->width + (size_t)part->x,
+			r->dropped + y * width, width * sizeof *r->dropped);
+	*weights += (size_t)w->indptr[pixels];
+	*covered += weighing_cover(w->transmittance, pixels);
+	const struct weights_picture picture = {part->width, part->height, w->indptr, w->index, w->weight};
+	return weights_pack_part(p->rows + part->y / VIEW_TILE, &r->packer, &picture, e);
+}
+
+static int smaller(int a, int b)
+{
+	return a < b ? a : b;
+}
+
+/* The parts from row y of the pixels on. */
+static int pack_row(
+	const struct packing *p, struct room *r, int y, size_t *weights, size_t *covered, struct err *e)
+{
+	for (int x = 0; x < p->width; x += PART_WIDTH) {
+		const struct render_part part = {
+			x, y, smaller(PART_WIDTH, p->width - x), smaller(RENDER_PART, p->height - y)};
+		if (pack_part(p, r, &part, weights, covered, e))
+			return -1;
+	}
+	return 0;
+}
+
+static struct room *room_make(size_t gaussians, struct err *e)
+{
+	struct room *r = mem_zalloc(1, sizeof *r, "weights", e);
+
+	if (!r || !weights_packer_make(&r->packer, gaussians, e))
+		return r;
+	weights_packer_free(&r->packer);
+	free(r);
+	return NULL;
+}
+
+static void room_free(struct room *r)
+{
+	if (!r)
+		return;
+	render_weights_free(&r->rendered);
+	weights_packer_free(&r->packer);
+	free(r);
+}
+
+static int pack_rows(const struct packing *p, size_t gaussians, struct weighed_packed *to, struct err *e)
+{
+	size_t weights = 0, covered = 0;
+	int failed = 0;
+
+#pragma omp parallel num_threads(threads_available()) reduction(| : failed) reduction(+ : weights, covered)
+	{
+		struct err mine;
+		struct room *r = room_make(gaussians, &mine);
+		failed = !r;
+#pragma omp for schedule(dynamic)
+		for (int y = 0; y < p->height; y += RENDER_PART)
+			failed = failed || pack_row(p, r, y, &weights, &covered, &mine);
+		if (failed) {
+#pragma omp critical
+			*e = mine;
+		}
+		room_free(r);
+	}
+	to->weights = weights;
+	to->covered = covered;
+	return failed ? -1 : 0;
+}
+
+int weigh_packed(struct weighed_packed *to, const struct render_view *v, const struct camera *c,
+	size_t gaussians, double tolerance, float *dropped, struct err *e)
+{
+	const int count = (c->height + VIEW_TILE - 1) / VIEW_TILE;
+	struct packing p = {v, c->width, c->height, tolerance, dropped,
+		mem_zalloc((size_t)count, sizeof *p.rows, "weights", e)};
+
+	*to = (struct weighed_packed){0};
+	if (!p.rows)
+		return -1;
+	const int bad = pack_rows(&p, gaussians, to, e);
+	for (int k = 0; k < count && bad; k++)
+		weights_pack_free(&p.rows[k]);
+	const int cannot = bad || weights_pack_join(&to->pack, p.rows, count, e);
+	free(p.rows);
+	return cannot ? -1 : 0;
+}
