@@ -169,13 +169,21 @@ VEC_INLINE void blend_block_values(struct blend_tile *t, const struct blend_chun
 	blend_store(&block, t, b);
 }
 
-/* What the next chunk looks up is asked for while this one is blended. */
+/* Brings a number into the cache by reading it: to prefetch it does nothing where the address of its page is
+ * not at hand, as it seldom is with so many Gaussians. */
+VEC_INLINE void blend_touch(const void *p)
+{
+	(void)*(const volatile char *)p;
+}
+
+/* What the next chunk looks up is read while this one is blended; values may be NULL. */
 VEC_INLINE void blend_fetch(
 	const struct projected *p, const uint32_t *list, size_t n, const float *values, int channels)
 {
 	for (size_t k = 0; k < n; k++) {
-		__builtin_prefetch(&p[list[k]]);
-		__builtin_prefetch(values + (size_t)list[k] * (size_t)channels);
+		blend_touch(&p[list[k]]);
+		if (values)
+			blend_touch(values + (size_t)list[k] * (size_t)channels);
 	}
 }
 
@@ -189,6 +197,7 @@ VEC_INLINE void blend_channels(struct blend_tile *t, const struct projected *p, 
 {
 	struct blend_chunk chunk;
 
+	blend_fetch(p, list, blend_chunk_size(n), values, channels);
 	for (size_t at = 0; at < n && t->live; at += BLEND_CHUNK) {
 		size_t now = blend_chunk_size(n - at), next = at + now;
 		blend_fetch(p, list + next, blend_chunk_size(n - next), values, channels);
@@ -262,13 +271,13 @@ VEC_INLINE size_t blend_each(struct blend_tile *t, const struct projected *p, co
 {
 	struct blend_chunk chunk;
 
+	blend_fetch(p, list, blend_chunk_size(n), NULL, 0);
 	for (size_t at = 0; at < n && t->live; at += BLEND_CHUNK) {
 		size_t now = blend_chunk_size(n - at), next = at + now;
 		if (records && (records->capacity - records->count < BLEND_RECORD_ROOM ||
 				       records->weight_capacity - records->weight_count < BLEND_WEIGHT_ROOM))
 			return at;
-		for (size_t k = next; k < n && k < next + BLEND_CHUNK; k++)
-			__builtin_prefetch(&p[list[k]]);
+		blend_fetch(p, list + next, blend_chunk_size(n - next), NULL, 0);
 		blend_chunk_make(&chunk, t, p, list + at, now);
 		for (uint32_t live = t->live; live; live &= live - 1) {
 			int b = __builtin_ctz(live);
