@@ -121,6 +121,57 @@ static int settle_run(struct order_item *items, size_t n, const struct projected
 	return 0;
 }
 
+static uint32_t run_key(const struct order_item *item, struct digits d)
+{
+	return (item->key - d.low) >> d.shift;
+}
+
+/* Where the first run begins that begins at `at` or later. */
+static size_t next_run(const struct order_item *items, size_t n, struct digits d, size_t at)
+{
+	while (at && at < n && run_key(&items[at], d) == run_key(&items[at - 1], d))
+		at++;
+	return at;
+}
+
+/* Settles the runs of equal digits that begin in [begin,end). */
+static int settle_some(struct order_item *items, size_t begin, size_t end, struct digits d,
+	const struct projected *p, struct err *e)
+{
+	for (size_t i = begin, next; i < end; i = next) {
+		const uint32_t key = run_key(&items[i], d);
+		for (next = i + 1; next < end && run_key(&items[next], d) == key; next++)
+			;
+		if (next > i + 1 && settle_run(items + i, next - i, p, e))
+			return -1;
+	}
+	return 0;
+}
+
+/* Runs of equal digits stand by index still: each thread settles those of its own stretch. */
+static int settle(struct order_item *items, size_t n, struct digits d, const struct projected *p, int threads,
+	struct err *e)
+{
+	int failed = 0;
+
+#pragma omp parallel num_threads(threads) reduction(| : failed)
+	{
+		const size_t mine = (size_t)omp_get_thread_num(), all = (size_t)omp_get_num_threads();
+		const size_t begin = next_run(items, n, d, n * mine / all),
+			     end = next_run(items, n, d, n * (mine + 1) / all);
+		struct err own;
+		/* before items are moved */
+#pragma omp barrier
+		failed = settle_some(items, begin, end, d, p, &own) != 0;
+		if (failed) {
+			failed = 1;
+#pragma omp critical
+			*e = own;
+		}
+	}
+	return failed ? -1 : 0;
+}
+
 struct order_item *order_sort(struct order_item *items, struct order_item *spare, size_t n,
 	const struct projected *p, struct err *e)
 {
@@ -137,13 +188,7 @@ struct order_item *order_sort(struct order_item *items, struct order_item *spare
 		spare = swap;
 	}
 	free(counts);
-	/* Runs of equal digits stand by index still. */
-	for (size_t i = 0, end; i < n; i = end) {
-		const uint32_t key = (items[i].key - d.low) >> d.shift;
-		for (end = i + 1; end < n && (items[end].key - d.low) >> d.shift == key; end++)
-			;
-		if (end > i + 1 && settle_run(items + i, end - i, p, e))
-			return NULL;
-	}
+	if (settle(items, n, d, p, threads, e))
+		return NULL;
 	return items;
 }
