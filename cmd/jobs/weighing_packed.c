@@ -29,6 +29,11 @@ size_t weighing_cover(const float *transmittance, size_t pixels)
 	return covered;
 }
 
+/* Of a row of parts. */
+struct counted {
+	size_t weights, covered;
+};
+
 /* What all parts have in common. */
 struct packing {
 	const struct render_view *view;
@@ -36,10 +41,10 @@ struct packing {
 	double tolerance;
 	float *dropped;		   /* (P) */
 	struct weights_pack *rows; /* of tiles */
+	struct counted *counted;   /* (rows of parts) */
 };
 
-static int pack_part(const struct packing *p, struct room *r, const struct render_part *part, size_t *weights,
-	size_t *covered, struct err *e)
+static int pack_part(const struct packing *p, struct room *r, const struct render_part *part, struct err *e)
 {
 	const size_t width = (size_t)part->width, height = (size_t)part->height, pixels = width * height;
 	struct render_weights *w = &r->rendered;
@@ -50,8 +55,9 @@ static int pack_part(const struct packing *p, struct room *r, const struct rende
 	for (size_t y = 0; y < height; y++)
 		memcpy(p->dropped + ((size_t)part->y + y) * (size_t)p->width + (size_t)part->x,
 			r->dropped + y * width, width * sizeof *r->dropped);
-	*weights += (size_t)w->indptr[pixels];
-	*covered += weighing_cover(w->transmittance, pixels);
+	struct counted *counted = &p->counted[part->y / RENDER_PART];
+	counted->weights += (size_t)w->indptr[pixels];
+	counted->covered += weighing_cover(w->transmittance, pixels);
 	const struct weights_picture picture = {part->width, part->height, w->indptr, w->index, w->weight};
 	return weights_pack_part(p->rows + part->y / VIEW_TILE, &r->packer, &picture, e);
 }
@@ -62,13 +68,12 @@ static int smaller(int a, int b)
 }
 
 /* The parts from row y of the pixels on. */
-static int pack_row(
-	const struct packing *p, struct room *r, int y, size_t *weights, size_t *covered, struct err *e)
+static int pack_row(const struct packing *p, struct room *r, int y, struct err *e)
 {
 	for (int x = 0; x < p->width; x += PART_WIDTH) {
 		const struct render_part part = {
 			x, y, smaller(PART_WIDTH, p->width - x), smaller(RENDER_PART, p->height - y)};
-		if (pack_part(p, r, &part, weights, covered, e))
+		if (pack_part(p, r, &part, e))
 			return -1;
 	}
 	return 0;
@@ -94,44 +99,46 @@ static void room_free(struct room *r)
 	free(r);
 }
 
-static int pack_rows(const struct packing *p, size_t gaussians, struct weighed_packed *to, struct err *e)
+static int pack_rows(const struct packing *p, size_t gaussians, struct err *e)
 {
-	size_t weights = 0, covered = 0;
 	int failed = 0;
 
-#pragma omp parallel num_threads(threads_available()) reduction(| : failed) reduction(+ : weights, covered)
+#pragma omp parallel num_threads(threads_available()) reduction(| : failed)
 	{
 		struct err mine;
 		struct room *r = room_make(gaussians, &mine);
 		failed = !r;
 #pragma omp for schedule(dynamic)
 		for (int y = 0; y < p->height; y += RENDER_PART)
-			failed = failed || pack_row(p, r, y, &weights, &covered, &mine);
+			failed = failed || pack_row(p, r, y, &mine);
 		if (failed) {
 #pragma omp critical
 			*e = mine;
 		}
 		room_free(r);
 	}
-	to->weights = weights;
-	to->covered = covered;
 	return failed ? -1 : 0;
 }
 
 int weigh_packed(struct weighed_packed *to, const struct render_view *v, const struct camera *c,
 	size_t gaussians, double tolerance, float *dropped, struct err *e)
 {
-	const int count = (c->height + VIEW_TILE - 1) / VIEW_TILE;
+	const int count = (c->height + VIEW_TILE - 1) / VIEW_TILE,
+		  parts = (count + TILE_ROWS - 1) / TILE_ROWS;
 	struct packing p = {v, c->width, c->height, tolerance, dropped,
-		mem_zalloc((size_t)count, sizeof *p.rows, "weights", e)};
+		mem_zalloc((size_t)count, sizeof *p.rows, "weights", e),
+		mem_zalloc((size_t)parts, sizeof *p.counted, "weights", e)};
 
 	*to = (struct weighed_packed){0};
-	if (!p.rows)
-		return -1;
-	const int bad = pack_rows(&p, gaussians, to, e);
-	for (int k = 0; k < count && bad; k++)
+	int bad = !p.rows || !p.counted || pack_rows(&p, gaussians, e);
+	for (int k = 0; k < parts && !bad; k++) {
+		to->weights += p.counted[k].weights;
+		to->covered += p.counted[k].covered;
+	}
+	for (int k = 0; k < count && bad && p.rows; k++)
 		weights_pack_free(&p.rows[k]);
-	const int cannot = bad || weights_pack_join(&to->pack, p.rows, count, e);
+	bad = bad || weights_pack_join(&to->pack, p.rows, count, e);
 	free(p.rows);
-	return cannot ? -1 : 0;
+	free(p.counted);
+	return bad ? -1 : 0;
 }

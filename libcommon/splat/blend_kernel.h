@@ -169,14 +169,13 @@ VEC_INLINE void blend_block_values(struct blend_tile *t, const struct blend_chun
 	blend_store(&block, t, b);
 }
 
-/* Brings a number into the cache by reading it: to prefetch it does nothing where the address of its page is
- * not at hand, as it seldom is with so many Gaussians. */
+/* Brings p into the cache by a read: a prefetch does nothing where the page's address is not at hand. */
 VEC_INLINE void blend_touch(const void *p)
 {
 	(void)*(const volatile char *)p;
 }
 
-/* What the next chunk looks up is read while this one is blended; values may be NULL. */
+/* What the next chunk looks up is read while this one is blended. values may be NULL. */
 VEC_INLINE void blend_fetch(
 	const struct projected *p, const uint32_t *list, size_t n, const float *values, int channels)
 {
