@@ -276,7 +276,7 @@ $(BUILD)/fuzz/reader-%: $(BUILD)/fuzz/reader
 
 # Pipelines run the same tools on more files, or need other builds than this one.
 sanitize: packages ## the tests again with address and undefined-behaviour sanitizers, in build-asan; of pipelines two-stage and lift
-	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" \
+	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O2 -g -fno-omit-frame-pointer $(SANITIZE)" \
 		tools units fuzzers readers
 	@LIMIT=900 SKIP='pipeline/(ablation|bench|deb|determinism|fuzz|install|kill|lerf|lesson|library|stability|systems|undistort|variables)' \
 		tests/run.sh build-asan $(JOBS) "$(FILTER)"
