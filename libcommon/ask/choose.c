@@ -184,20 +184,22 @@ static void choose_whole(struct chooser *c, double *row, char *chosen)
 	chosen[best_of(row, n)] = 1;
 }
 
-/* What the clauses of the target leave to object o; is_so: nothing of its colour and place is contradicted.
- */
+/* What the clauses of the target leave to object o; is_so: nothing of its noun, colour and place is
+ * contradicted. A noun is where another thing is called so. */
 static double clauses_leave(const struct meaning *m, size_t o, int *is_so)
 {
+	const double least[MEANING_KINDS] = {[MEANING_NOUN] = m->known[0] > GENERIC_THERE ? WORDING_NOUN : 0,
+		[MEANING_COLOUR] = WORDING_COLOUR_SO,
+		[MEANING_CLAUSE] = WORDING_CLAUSE};
 	double left = 1;
 
 	*is_so = 1;
 	for (size_t k = 0; k < m->part_count; k++) {
 		const struct meaning_part *part = &m->parts[k];
-		if (part->phrase || (part->kind != MEANING_CLAUSE && part->kind != MEANING_COLOUR))
+		if (part->phrase)
 			continue;
-		const int is_clause = part->kind == MEANING_CLAUSE;
-		left *= is_clause ? part->value[o] : 1;
-		*is_so &= part->value[o] >= (is_clause ? WORDING_CLAUSE : WORDING_COLOUR_SO);
+		left *= part->kind == MEANING_CLAUSE ? part->value[o] : 1;
+		*is_so &= part->value[o] >= least[part->kind];
 	}
 	return left;
 }
@@ -230,8 +232,9 @@ static void choose_wording(
 	to->is_by_purpose = 0;
 }
 
-/* A sentence that says what a thing is for: the object of which that is most likely. */
-static void choose_purpose(struct chooser *c, struct choice *to, double *row, char *chosen)
+/* A sentence that says what a thing is for: the object of which that is most likely; several: and what
+ * is of its kind or nearly as likely. */
+static void choose_purpose(struct chooser *c, int several, struct choice *to, double *row, char *chosen)
 {
 	const size_t n = c->arrangement.n;
 	const double there = purposes_judge(&c->meaning, c->score, c->purpose);
@@ -241,10 +244,13 @@ static void choose_purpose(struct chooser *c, struct choice *to, double *row, ch
 	memcpy(row, c->score, n * sizeof *row);
 	softmax(row, n);
 	memset(chosen, 0, n);
-	chosen[best_of(row, n)] = 1;
+	const size_t best = best_of(row, n);
+	for (size_t o = 0; o < n; o++)
+		chosen[o] = o == best || (several && (c->vocabulary.kin[best * n + o] ||
+							     c->score[o] > c->score[best] - PURPOSE_SEVERAL));
 	to->there = there;
 	to->is_by_purpose = 1;
-	to->is_several = 0;
+	to->is_several = several;
 }
 
 /* s gets the sentence with its parse, which is `own` where the sentence has none. */
@@ -269,8 +275,8 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 	const int may_be_purpose =
 		to->there < PARSE_LEAST || (!target->noun.n && !purposes_says_more(&c->meaning));
 	if (has(c, CHOOSE_PURPOSE) && may_be_purpose && !target->also.n && !target->except.n &&
-		!target->ordinal && (target->count == PARSE_ONE || target->count == PARSE_SEVERAL))
-		choose_purpose(c, to, row, chosen);
+		!target->ordinal && target->count <= PARSE_ONE)
+		choose_purpose(c, target->count == PARSE_ALL, to, row, chosen);
 	if (has(c, CHOOSE_WORDING) && !to->is_several && !p->phrases[0].except.n && !p->phrases[0].ordinal &&
 		to->there < PARSE_LEAST)
 		choose_wording(c, s, to, row, chosen);

@@ -82,7 +82,9 @@ static enum parse_degree degree_of(const struct parse_clause *c)
 /* Whether a clause compares with what else fits, and so has to wait for it. */
 static int is_late(const struct parse_clause *c)
 {
-	return degree_of(c) != PARSE_PLAIN || !c->anchors.n || c->relation == PARSE_MIDDLE;
+	const int is_place = c->relation != PARSE_OTHER && c->relation != PARSE_WITH;
+
+	return degree_of(c) != PARSE_PLAIN || (is_place && !c->anchors.n) || c->relation == PARSE_MIDDLE;
 }
 
 /* Whether an ordinal counts along a clause: "the second tallest"; or from its anchor: "the first one left of
@@ -117,8 +119,9 @@ static const struct parse_clause *counted_by(
 /* The place as a whole, unless something is called so. */
 static int is_scene(const struct meaning *m, int phrase)
 {
-	static const char *const places[] = {"table", "tabletop", "desk", "picture", "photo", "image",
-		"scene", "room", "shot", "frame", "view", "floor", "ground", "surface", NULL};
+	static const char *const places[] = {"table", "tabletop", "desk", "desktop", "countertop", "picture",
+		"photo", "image", "scene", "room", "shot", "frame", "view", "floor", "ground", "surface",
+		NULL};
 	const struct parse *p = m->sentence->parse;
 	const int head = meaning_head_of(p, &p->phrases[phrase]);
 
@@ -183,8 +186,11 @@ static double judge_relation(
 		const int i = c->anchors.item[k];
 		const int is_many = p->phrases[i].count != PARSE_ONE &&
 				    (r.degree != PARSE_PLAIN || !(one_will_do >> c->relation & 1));
-		anchors[r.count] = (struct relate_anchor){fit_of(m, i), is_scene(m, i),
-			is_many && !c->negated, meaning_is_other(p, &p->phrases[i])};
+		/* "the one near us": of all that is there */
+		const int is_of_all = is_scene(m, i) || (p->phrases[i].viewer && c->relation == PARSE_NEAR &&
+								r.degree == PARSE_PLAIN);
+		anchors[r.count] = (struct relate_anchor){
+			fit_of(m, i), is_of_all, is_many && !c->negated, meaning_is_other(p, &p->phrases[i])};
 		if (!p->phrases[i].viewer && !anchors[r.count].is_scene)
 			known = fmin(known,
 				fmin(m->known[i], largest(there_of(m, i), objects_of(m)) / GENERIC_THERE));
@@ -236,16 +242,35 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 			(1 - known) * SAID_WORTH * said[o]);
 }
 
+/* "no other bowl", or no bowl of a bowl: another one than the thing itself. */
+static int is_another(const struct parse *p, int phrase, int anchor)
+{
+	const struct parse_phrase *f = &p->phrases[phrase], *a = &p->phrases[anchor];
+
+	return meaning_is_other(p, a) || (f->noun.n && a->noun.n && a->count != PARSE_ALL &&
+						 !strcmp(p->words[f->noun.item[f->noun.n - 1]].lemma,
+							 p->words[a->noun.item[a->noun.n - 1]].lemma));
+}
+
 /* How far an object is itself an anchor of a clause: "not beside the mug" is not said of the mug. */
-static double is_anchor(const struct meaning *m, const struct parse_clause *c, size_t o)
+static double is_anchor(const struct meaning *m, int phrase, const struct parse_clause *c, size_t o)
 {
 	double is = 0;
 
 	for (int j = 0; j < c->anchors.n; j++) {
-		const double *fit = fit_of(m, c->anchors.item[j]);
-		is = fmax(is, fit[o] / fmax(largest(fit, objects_of(m)), 1e-9));
+		const int i = c->anchors.item[j];
+		const double *fit = fit_of(m, i);
+		if (!is_scene(m, i) && !is_another(m->sentence->parse, phrase, i))
+			is = fmax(is, m->known[i] * fit[o] / fmax(largest(fit, objects_of(m)), 1e-9));
 	}
 	return is;
+}
+
+/* Whether a clause says that two things touch. */
+static int is_contact(const struct parse_clause *c)
+{
+	return c->anchors.n && !c->negated &&
+	       (c->relation == PARSE_ON || c->relation == PARSE_INSIDE || c->relation == PARSE_SUPPORTS);
 }
 
 static void judge_clause(struct meaning *m, int phrase, int clause, const double *fit)
@@ -255,12 +280,13 @@ static void judge_clause(struct meaning *m, int phrase, int clause, const double
 	double *value = meaning_add_part(m, phrase, is_size(c) ? MEANING_SIZE : MEANING_CLAUSE, clause);
 	double *there = there_of(m, phrase);
 	const double least = is_size(c) ? SIZE_LEAST : RELATION_LEAST;
+	const double soft = is_contact(c) ? CONTACT_THERE : RELATION_THERE;
 
 	judge_predication(m, phrase, c, fit, m->scratch + 7 * n, value);
 	for (size_t o = 0; o < n; o++) {
-		const double x = c->negated ? (1 - value[o]) * (1 - is_anchor(m, c, o)) : value[o];
+		const double x = c->negated ? (1 - value[o]) * (1 - is_anchor(m, phrase, c, o)) : value[o];
 		value[o] = least + (1 - least) * x;
-		there[o] *= is_size(c) ? 1 : value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
+		there[o] *= is_size(c) ? 1 : value[o] / (value[o] + soft) * (1 + soft);
 	}
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
 }
@@ -273,8 +299,13 @@ static void judge_except(struct meaning *m, int phrase, int except)
 	const double *fit = fit_of(m, except), most = fmax(largest(fit, n), 1e-9);
 	double *value = meaning_add_part(m, phrase, MEANING_EXCEPT, except), *there = there_of(m, phrase);
 
+	/* "not the red one" leaves out all that are red, but "not the one by the door" only one */
+	const int is_kind = !m->sentence->parse->phrases[except].clauses.n;
 	for (size_t o = 0; o < n; o++) {
-		value[o] = 1 - (1 - EXCEPT_LEAST) * fit[o] / most;
+		const double x = m->known[except] * fit[o] / most;
+		value[o] =
+			1 - (1 - EXCEPT_LEAST) *
+				    (is_kind ? fmax(x, 1 / (1 + exp((EXCEPT_HALF - x) / EXCEPT_SOFT))) : x);
 		there[o] *= value[o];
 	}
 	meaning_take_part(m, &m->parts[m->part_count - 1]);

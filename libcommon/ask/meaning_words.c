@@ -71,6 +71,36 @@ int meaning_is_other(const struct parse *p, const struct parse_phrase *f)
 	return has_word(p, f, other);
 }
 
+/* The colour that a colour goes on with, as "black and white" and "salmon pink" do, or -1; and the one
+ * before. */
+static int colour_after(const struct parse *p, int word)
+{
+	static const char *const and[] = {"and", NULL};
+	const int next = parse_word_is(p, word + 1, and) ? word + 2 : word + 1;
+
+	return next < p->word_count && colour_word(p->words[next].lemma) >= 0 ? next : -1;
+}
+
+static int colour_before(const struct parse *p, int word)
+{
+	for (int i = word - 2 > 0 ? word - 2 : 0; i < word; i++)
+		if (colour_word(p->words[i].lemma) >= 0 && colour_after(p, i) == word)
+			return i;
+	return -1;
+}
+
+/* "blue-green" is teal. */
+static int is_blue_green(const struct parse *p, int word)
+{
+	static const char *const blue[] = {"blue", "bluish", NULL}, *const green[] = {
+									    "green", "greenish", NULL};
+
+	return word + 1 < p->word_count &&
+	       ((meaning_word_is(&p->words[word], blue) && meaning_word_is(&p->words[word + 1], green)) ||
+		       (meaning_word_is(&p->words[word], green) &&
+			       meaning_word_is(&p->words[word + 1], blue)));
+}
+
 /* How far objects are of the colour of a word, and of those right after it that are colours too: "salmon
  * pink" and "black and white" are either. Nothing where the word before it has done so. */
 static void judge_colour(struct meaning *m, int phrase, int word)
@@ -79,11 +109,15 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 	const size_t n = objects_of(m);
 	double *match = m->scratch + n;
 
-	if (word && colour_word(p->words[word - 1].lemma) >= 0)
+	if (colour_before(p, word) >= 0)
 		return;
 	double *value = meaning_add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
 	memset(value, 0, n * sizeof *value);
-	for (; word < p->word_count && colour_word(p->words[word].lemma) >= 0; word++) {
+	if (is_blue_green(p, word)) {
+		vocabulary_colour(m->vocabulary, m->arrangement, "teal", match);
+		memcpy(value, match, n * sizeof *value);
+	}
+	for (; word >= 0; word = colour_after(p, word)) {
 		vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(value[o], match[o]);
@@ -119,7 +153,9 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	const double best = fmax(0, largest(match, n)), most = fmax(best, match[n]);
 	m->known[phrase] = best;
 	for (size_t o = 0; o < n; o++) {
-		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * match[o] * match[o] / fmax(most, 1e-9);
+		/* of several things each has to be called so as well as another is */
+		const double x = f->count == PARSE_ONE ? match[o] : match[o] * match[o] / fmax(most, 1e-9);
+		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * x * x / fmax(most, 1e-9);
 		/* another thing that is called so speaks against it */
 		there[o] = match[o] * pow(match[o] / fmax(best, 1e-9), NOUN_ELSEWHERE) *
 			   (most > best ? best / most : 1);
@@ -223,8 +259,10 @@ void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, do
 	}
 	const double most = fmax(0, largest(value, n));
 	m->unknown += words && most < 0.5;
-	for (size_t o = 0; o < n; o++)
-		value[o] = words ? (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most) : 1;
+	for (size_t o = 0; o < n; o++) /* of what is denied nothing has to be so */
+		value[o] = !words	? 1
+			   : c->negated ? fmin(value[o], 1)
+					: (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most);
 	if (words && c->relation == PARSE_OTHER)
 		judge_about(m, value);
 }

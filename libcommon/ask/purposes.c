@@ -104,7 +104,12 @@ double purposes_judge(const struct meaning *m, double *score, double *scratch)
 	double *about = scratch, *words = scratch + n;
 	char counts[TOKENS_MOST];
 
-	if ((meaning_head_of(p, &p->phrases[0]) >= 0 && m->known[0] >= PURPOSE_NOUN) || !purpose_is_said(p))
+	static const char *const there[] = {"there", "is", "'s", NULL};
+	const int head = meaning_head_of(p, &p->phrases[0]);
+	/* "is there a spoon?" asks for a spoon */
+	const int is_named = head > 1 && closed_is(p->words[head - 1].text, CLOSED_DETERMINER) &&
+			     parse_word_is(p, head - 2, there);
+	if ((head >= 0 && (is_named || m->known[0] >= PURPOSE_NOUN)) || !purpose_is_said(p))
 		return 0;
 	mark_words(m, counts);
 	add_words(m, counts, words, score);

@@ -58,6 +58,12 @@ void analysis_reread(struct analysis *a, const struct analysis *grammar, const s
 void analysis_lists(struct analysis *a, const struct tokens *t);
 /* Another: places that are said twice, and what "it" is. */
 void analysis_places(struct analysis *a, const struct tokens *t);
+/* Another: compounds, what "with" has, poses, what is denied. */
+void analysis_talk(struct analysis *a, const struct tokens *t);
+/* Another: what a sentence introduces for the next one. */
+void analysis_sentences(struct analysis *a, const struct tokens *t);
+/* "it" after a place without an anchor: "to the side of it"; or -1. */
+int analysis_it_after(const struct analysis *a, const struct tokens *t, int predicate);
 /* Whether a word is the predicate of an anchor. */
 int analysis_has_anchor(const struct analysis *a, int predicate);
 

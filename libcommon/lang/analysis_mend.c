@@ -71,9 +71,10 @@ static void mend_negation(struct analysis *a, const struct tokens *t)
 		for (int j = i + 3; j < t->n && t->word[j].before != PAUSE_STOP; j++) {
 			if (a->word[j].role != ROLE_PREDICATE)
 				continue;
-			if (left_out && a->word[j].head == i + 2)
+			if (left_out && (a->word[j].head == i + 2 || a->word[j].head == ROOT)) {
+				a->word[j].head = i + 2;
 				a->word[j].negated = 0;
-			else if (!left_out && a->word[j].head == ROOT)
+			} else if (!left_out && a->word[j].head == ROOT)
 				a->word[j].negated = 1;
 			break;
 		}
@@ -227,9 +228,9 @@ static void mend_isnt(struct analysis *a, const struct tokens *t)
 		const int next = tokens_class(t, i + 1) == CLOSED_ADVERB ? i + 2 : i + 1;
 		if (tokens_class(t, i) == CLOSED_NEGATION && !tokens_is(t, i, "no") &&
 			!tokens_is(t, i, "without") && next < t->n && !t->word[next].before &&
-			a->word[next].role == ROLE_ATTRIBUTE && a->word[next].head == ROOT &&
+			a->word[next].role == ROLE_ATTRIBUTE && a->word[next].head < next &&
 			noun_after(a, t, next) < 0)
-			a->word[next] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
+			a->word[next].role = ROLE_EXCEPT;
 	}
 }
 
@@ -360,5 +361,7 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 	mend_pairs(a, t);
 	analysis_reread(a, grammar, t);
 	analysis_places(a, t);
+	analysis_talk(a, t);
+	analysis_sentences(a, t);
 	analysis_repair(a);
 }

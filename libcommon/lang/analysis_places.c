@@ -119,8 +119,7 @@ static void mend_alone(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "it" after a place without an anchor: "to the side of it"; or -1. */
-static int it_after(const struct analysis *a, const struct tokens *t, int predicate)
+int analysis_it_after(const struct analysis *a, const struct tokens *t, int predicate)
 {
 	for (int i = predicate + 1; i < t->n && i <= predicate + PLACE_REACH && !t->word[i].before; i++) {
 		if (tokens_is(t, i, "it") || tokens_is(t, i, "them"))
@@ -146,7 +145,7 @@ static void mend_it(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 1; i < t->n; i++) {
 		int noun = i - 1, with;
-		if (!is_predicate(a, i) || analysis_has_anchor(a, i) || it_after(a, t, i) < 0)
+		if (!is_predicate(a, i) || analysis_has_anchor(a, i) || analysis_it_after(a, t, i) < 0)
 			continue;
 		while (noun > 0 && !role_is_phrase(a->word[noun].role) && !t->word[noun + 1].before &&
 			!is_predicate(a, noun) && !is_having(t, noun))
@@ -176,7 +175,7 @@ static void mend_it_again(struct analysis *a, const struct tokens *t)
 		has = t->word[i].before ? 0 : has;
 		if (earlier && !has && is_predicate(a, i) && tokens_class(t, i) == CLOSED_PLACE &&
 			!analysis_has_anchor(a, i) && a->word[i].relation != PARSE_SUPPORTS) {
-			const int it = it_after(a, t, i);
+			const int it = analysis_it_after(a, t, i);
 			if (it >= 0 && tokens_class(t, it + 1) != CLOSED_BE)
 				a->word[it] = (struct analysis_word){.role = ROLE_ANCHOR, .head = i};
 		}
@@ -254,8 +253,41 @@ static void mend_wall(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* The way that a word before "corner" says, or -1: the far corner is at the back. */
+static int way_to_corner(const struct tokens *t, int i)
+{
+	static const char *const back[] = {"far", "back", "rear", "upper", NULL}, *const front[] = {"near",
+											  "front", "nearest",
+											  "closest", "lower",
+											  NULL};
+
+	return tokens_is_any(t, i, back)    ? PARSE_BEHIND
+	       : tokens_is_any(t, i, front) ? PARSE_FRONT
+	       : tokens_is(t, i, "left")    ? PARSE_LEFT
+	       : tokens_is(t, i, "right")   ? PARSE_RIGHT
+					    : -1;
+}
+
+/* "in the back right corner" is at the back, on the right and in a corner. */
+static void mend_corner(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 1; i < t->n; i++) {
+		const int is_plain =
+			is_predicate(a, i) && a->word[i].relation == PARSE_CORNER && !a->word[i].negated;
+		for (int j = i - 1; is_plain && j >= 0 && !t->word[j + 1].before; j--) {
+			const int way = way_to_corner(t, j);
+			if (way < 0 && !tokens_is(t, j, "hand") && !tokens_is(t, j, "most"))
+				break;
+			if (way >= 0 && !analysis_has_anchor(a, j))
+				a->word[j] = (struct analysis_word){
+					ROLE_PREDICATE, a->word[i].head, (enum parse_relation)way, 0};
+		}
+	}
+}
+
 void analysis_places(struct analysis *a, const struct tokens *t)
 {
+	mend_corner(a, t);
 	mend_superlative(a, t);
 	mend_it(a, t);
 	mend_it_again(a, t);

@@ -22,12 +22,18 @@ static void mend_other_than(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* Where what is left out begins: after "except", "apart from", "but the one"; 0 where it does not at word i.
+/* Where what is left out begins: after "except", "apart from", "just leave", "but the one"; 0 where it does
+ * not at word i.
  */
 static int exception_at(const struct tokens *t, int i)
 {
+	static const char *const leave[] = {"leave", "leaving", "minus", NULL};
+
 	if (tokens_is(t, i, "except") || tokens_is(t, i, "excluding") || tokens_is(t, i, "excepting"))
 		return i + 1 + tokens_is(t, i + 1, "for");
+	if (tokens_is_any(t, i, leave) &&
+		(t->word[i].before || tokens_is(t, i - 1, "just") || tokens_is(t, i - 1, "only")))
+		return i + 1;
 	if ((tokens_is(t, i, "apart") || tokens_is(t, i, "aside")) && tokens_is(t, i + 1, "from"))
 		return i + 2;
 	if (tokens_is(t, i, "but") && tokens_is(t, i + 1, "the") &&
@@ -52,6 +58,8 @@ static void mend_except(struct analysis *a, const struct tokens *t)
 	if (!from || out >= t->n || out >= from + 6 || a->word[out].role == ROLE_ANCHOR)
 		return;
 	a->word[out] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
+	if (tokens_is(t, from - 1, "from")) /* "apart" is no place then */
+		analysis_give_up(&a->word[from - 2]);
 	for (int i = from; i < t->n && t->word[i].before != PAUSE_STOP; i++) {
 		const int is_said =
 			a->word[i].role == ROLE_PREDICATE || (a->word[i].role == ROLE_ATTRIBUTE && i < out);
@@ -268,18 +276,23 @@ static void mend_no_target(struct analysis *a, const struct analysis *grammar, c
 		}
 }
 
-/* "in the middle between the jug and the bowl" is between the two. */
+/* "in the middle between the jug and the bowl", "in the middle, between them": is between the two. */
 static void mend_between(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 1; i < t->n; i++) {
-		const int p = i - 1;
+		int p = i - 1;
 		if (a->word[i].role != ROLE_PREDICATE || a->word[i].relation != PARSE_BETWEEN ||
-			a->word[p].role != ROLE_PREDICATE || a->word[p].head != a->word[i].head ||
 			!analysis_has_anchor(a, i))
 			continue;
-		for (int j = i + 1; j < t->n; j++)
+		while (p > 0 && a->word[p].role == ROLE_NONE)
+			p--;
+		if (a->word[p].role != ROLE_PREDICATE || a->word[p].head != a->word[i].head)
+			continue;
+		for (int j = i + 1; j < t->n && p == i - 1; j++)
 			if (a->word[j].role == ROLE_ANCHOR && a->word[j].head == p)
 				a->word[j].head = i;
+		if (a->word[p].relation == PARSE_MIDDLE && !analysis_has_anchor(a, p))
+			analysis_give_up(&a->word[p]);
 	}
 }
 

@@ -4,6 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/* The share of sentences that have talk around them. */
+#define TALK 0.25
+
 static const char *target_noun(struct making *m)
 {
 	return m->nouns->item[m->noun];
@@ -35,13 +38,6 @@ static void target_one(struct making *m)
 	last = making_put_any(m, "one|one|one|thing|object");
 	if (!m->has_noun)
 		m->word[last].role = ROLE_TARGET;
-}
-
-static void function(struct making *m)
-{
-	struct example_clause c = {PARSE_OTHER, 0, making_pick(m, m->w->functions)};
-
-	making_expand(m, &c, ROOT, 0, 0);
 }
 
 static void adjective(struct making *m)
@@ -140,13 +136,13 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 		return 1;
 	}
 	case 'F':
-		function(m);
+		making_function(m, ROOT);
 		return 1;
 	case 'V':
 		making_anchor(m, ROLE_VIEW, 1);
 		return 1;
 	case 'B': {
-		const int at = making_anchor(m, ROLE_ANCHOR, 0);
+		const int at = making_anchor(m, ROLE_ANCHOR, making_chance(m, 0.4));
 		if (m->spoken < 2)
 			m->spoken_of[m->spoken++] = at;
 		return 1;
@@ -156,6 +152,9 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 		return 1;
 	case 'P':
 		points_back(m, &m->w->back_to_two);
+		return 1;
+	case 'R':
+		points_back(m, &m->w->travelled);
 		return 1;
 	case 'G':
 		making_expand(m, pick_clause(m, &m->w->inverted), ROOT, 0, 0);
@@ -174,27 +173,102 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 	}
 }
 
+/* Words that stand for the target where a sentence has no noun of it. */
+static int stands_for_target(const char *word)
+{
+	static const char *const words[] = {"thing", "things", "everything", "object", "objects", "item",
+		"items", "stuff", "something", "anything", "whatever", NULL};
+
+	for (int i = 0; words[i]; i++)
+		if (!strcmp(word, words[i]))
+			return 1;
+	return 0;
+}
+
 static void sentence(struct making *m, const char *text)
 {
-	/* the target's noun may stand after "the one", which is the target only where none does */
-	m->has_noun = strpbrk(text, "NL") != NULL || strchr(text, 'n') == text;
 	for (const char *p = text; *p;) {
 		size_t length = strcspn(p, " ");
 		if (!symbol(m, p, length, making_follows_article(m))) {
 			int first = m->n;
 			making_put_choice(m, p, length);
 			for (int i = first; i < m->n; i++)
-				if (!m->has_noun && (!strcmp(m->word[i].text, "thing") ||
-							    !strncmp(m->word[i].text, "everything", 10) ||
-							    !strcmp(m->word[i].text, "object") ||
-							    !strcmp(m->word[i].text, "something") ||
-							    !strcmp(m->word[i].text, "anything") ||
-							    !strcmp(m->word[i].text, "whatever")))
+				if (!m->has_noun && stands_for_target(m->word[i].text))
 					m->word[i].role = ROLE_TARGET;
 		}
 		p += length;
 		p += *p == ' ';
 	}
+}
+
+/* A sentence with its target. */
+static void whole(struct making *m, const char *text)
+{
+	/* the target's noun may stand after "the one", which is the target only where none does */
+	m->has_noun = strpbrk(text, "NL") != NULL || strchr(text, 'n') == text;
+	sentence(m, text);
+}
+
+/* Words that mean nothing of what is there. */
+static void chatter(struct making *m, const struct example_list *list)
+{
+	m->has_noun = 1;
+	sentence(m, making_pick(m, list));
+}
+
+/* What a story is about is nothing that is meant. */
+static void story_thing(struct making *m)
+{
+	int first = m->n;
+
+	making_noun_phrase(m, ROLE_ANCHOR, ROOT, making_pick(m, m->nouns), making_chance(m, 0.3), 0);
+	making_mark(m, first, m->n, ROLE_NONE, ROOT);
+}
+
+static void tell(struct making *m, const struct example_list *list)
+{
+	const char *text = making_pick(m, list);
+
+	for (const char *p = text; *p;) {
+		size_t length = strcspn(p, " ");
+		int first = m->n;
+		making_put_choice(m, p, length);
+		if (m->n == first + 1 && !strcmp(m->word[first].text, "0")) {
+			m->n = first;
+			story_thing(m);
+		}
+		p += length;
+		p += *p == ' ';
+	}
+}
+
+/* "my sister painted a cup once . now , bring me" */
+static void story(struct making *m)
+{
+	const struct example_talk *t = m->w->talk;
+
+	for (int k = making_chance(m, 0.3) ? 2 : 1; k; k--) {
+		tell(m, &t->subjects);
+		tell(m, &t->deeds);
+		tell(m, &t->tails);
+		if (k > 1)
+			making_put_any(m, ",|and|.|and_then|because");
+	}
+	tell(m, &t->links);
+	tell(m, &t->requests);
+}
+
+static void talk(struct making *m)
+{
+	const int has_before = making_chance(m, 0.8);
+
+	if (has_before && making_chance(m, 0.3))
+		story(m);
+	else if (has_before)
+		chatter(m, &m->w->talk->before);
+	whole(m, making_pick(m, &m->w->talk->core));
+	if (!has_before || making_chance(m, 0.3))
+		chatter(m, &m->w->talk->after);
 }
 
 /* A slip of the fingers. */
@@ -275,7 +349,10 @@ void example_make(struct example *x, enum examples_set set, const char *pieces, 
 		.r = r};
 
 	m.noun = (int)rng_below(r, (uint32_t)m.nouns->n);
-	sentence(&m, making_pick(&m, m.w->sentences));
+	if (m.w->talk && making_chance(&m, TALK))
+		talk(&m);
+	else
+		whole(&m, making_pick(&m, m.w->sentences));
 	write_text(&m, x);
 	analyse(&m, x, pieces);
 }

@@ -22,17 +22,18 @@ struct example {
 /* `pieces` of the sentence that will come out, where the encoder was asked before; NULL. */
 void example_make(struct example *x, enum examples_set set, const char *pieces, struct rng *r);
 
-/* The wordings, in examples_words.c, examples_sentences.c and examples_words_test.c. A template is words with
- * a blank between; "a|b" is a choice, "_" a blank within one. *w  the main word of the predicate        @  a
- * phrase that it has as anchor    $  "with", "that has" ^   "sitting", "placed" or nothing        ~  "just",
- * "directly" or nothing 0   an anchor without clauses and in whole sentences T   the target with its clauses
- * N without                           n  its noun again, or "one" C   a clause as after "is"                H
- * one with "has"                    A  a size or place adjective C2  a clause that is denied V   what is
- * faced or stood at             X  what is left out S  a further target L   several of the target's noun U  a
- * target of no noun ("the one") with its clauses Q   "the red one" that is meant            O  a further one
- * q  a word of its look F   what a thing is for ("to write with"), all predicates of PARSE_OTHER       B   an
- * anchor that a later D, or P for two of them, points back to: "near it", "between them" G   a question
- * turned round after the noun: "is @ next to" W   one with "with"    ,.? punctuation */
+/* The wordings, in examples_words.c, examples_sentences.c, examples_talk.c and examples_words_test.c. A
+ * template is words with a blank between; "a|b" is a choice, "_" a blank within one. *w  the main word of the
+ * predicate        @  a phrase that it has as anchor    %  one of the target's noun    $  "with", "that has"
+ * ^   "sitting", "placed" or nothing        ~  "just", "directly" or nothing 0   an anchor without clauses
+ * and in whole sentences T   the target with its clauses N without                           n  its noun
+ * again, or "one" C   a clause as after "is"                H one with "has"                    A  a size or
+ * place adjective C2  a clause that is denied V   what is faced or stood at             X  what is left out S
+ * a further target L   several of the target's noun U  a target of no noun ("the one") with its clauses Q
+ * "the red one" that is meant            O  a further one q  a word of its look F   what a thing is for ("to
+ * write with"), all predicates of PARSE_OTHER       B   an anchor that a later D, or P for two of them,
+ * points back to: "near it", "between them" R   where one goes from a B: "start at the box, go left"  G   a
+ * question turned round after the noun: "is @ next to" W   one with "with"    ,.? punctuation */
 struct example_clause {
 	enum parse_relation relation;
 	int negated;
@@ -46,20 +47,29 @@ struct example_clauses {
 	int n;
 	const struct example_clause *item;
 };
+/* What is said around a target: "computer , find" T ", you ca n't miss it". */
+struct example_talk {
+	struct example_list before, after, core;
+	struct example_list subjects, deeds, tails, links, requests; /* of a story that comes first */
+};
 struct example_wordings {
 	struct example_clauses placed;	    /* after a noun, "that is" or "it is" */
 	struct example_clauses having;	    /* after $ in its place, or "has" */
 	struct example_clauses turned;	    /* after a noun as a relative clause: "that @ is on" */
 	struct example_clauses back;	    /* of what was spoken of: "near it" */
 	struct example_clauses back_to_two; /* of two things spoken of: "between them" */
+	struct example_clauses travelled;   /* on the way from what was spoken of: "go left" */
 	struct example_clauses inverted;    /* after "which noun": "is @ standing next to" */
 	struct example_clauses before;	    /* adjectives that place or size: "left", "smallest" */
 	const struct example_list *sentences, *functions;
+	const struct example_talk *talk; /* NULL: none */
 };
 extern const struct example_wordings example_wordings_train, example_wordings_test;
 
 /* In examples_sentences.c. */
 extern const struct example_list example_sentences, example_functions;
+/* In examples_talk.c. */
+extern const struct example_talk example_talk;
 /* In examples_nouns.c. */
 extern const struct example_list example_nouns[2], example_attributes, example_hues, example_stuffs;
 

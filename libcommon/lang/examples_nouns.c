@@ -45,6 +45,8 @@ static const char *const nouns[] = {
 	"table", "chair", "bed", "round_table", "dining_chair", "exit_sign", "projector", "copier",
 	"vending_machine", "washing_machine",
 	"table_top", "desk_top", "orb", "carton", "package", "basin", "volume", "hardback", "vessel",
+	"stripe", "spot", "swirl", "dot", "pattern", "letter",
+	"button", "flap", "hood", "belt", "beak", "tail", "wing", "eye", "badge", "logo", "gadget", "appliance", "rag", "bird", "pack",
 	"piece_of_crockery", "piece_of_fruit", "piece_of_cutlery", "traffic_cone", "party_hat",
 	"soup_bowl", "dinner_plate", "drinking_glass", "toy", "sketch", "base", "foot", "item",
 };

@@ -188,6 +188,13 @@ int making_follows_article(const struct making *m)
 	return 0;
 }
 
+void making_function(struct making *m, int figure)
+{
+	struct example_clause c = {PARSE_OTHER, 0, making_pick(m, m->w->functions)};
+
+	making_expand(m, &c, figure, 0, 0);
+}
+
 int making_anchor(struct making *m, enum word_role role, int may_nest)
 {
 	int head, first = m->n;
@@ -201,6 +208,13 @@ int making_anchor(struct making *m, enum word_role role, int may_nest)
 		making_mark(m, head, head + 1, role, ROOT);
 		if (head - first == 2 && strcmp(m->word[head - 1].text, "other"))
 			making_mark(m, head - 1, head, ROLE_ATTRIBUTE, head);
+	} else if (making_chance(m, 0.04)) { /* "the thing that boils water" */
+		making_put_any(m, "the|the|a|that");
+		head = making_put_any(m, "thing|thing|one|object|item");
+		making_mark(m, head, head + 1, role, ROOT);
+		making_function(m, head);
+		m->depth--;
+		return head;
 	} else {
 		head = making_noun_phrase(m, role, ROOT, making_pick(m, m->nouns), making_chance(m, 0.15),
 			m->n && making_follows_article(m));
@@ -248,6 +262,10 @@ void making_expand(struct making *m, const struct example_clause *c, int figure,
 				making_put(m, "and", 3);
 				anchors[n++] = making_anchor(m, ROLE_ANCHOR, 0);
 			}
+		} else if (*p == '%' && length == 1) {
+			if (n < 4)
+				anchors[n++] = making_noun_phrase(m, ROLE_ANCHOR, ROOT,
+					m->nouns->item[m->noun], making_chance(m, 0.2), 1);
 		} else if (*p == '$' && length == 1) {
 			int first = m->n;
 			put_having(m, has, denied);

@@ -42,6 +42,8 @@ void making_put_before(struct making *m, int *list, int *count);
  * index. */
 int making_noun_phrase(
 	struct making *m, enum word_role role, int head, const char *noun, int is_plural, int plain);
+/* What a thing is for or does, said of the word figure or ROOT. */
+void making_function(struct making *m, int figure);
 /* The same of any noun, with clauses of its own where it may. */
 int making_anchor(struct making *m, enum word_role role, int may_nest);
 

@@ -11,6 +11,11 @@ static const struct example_clause placed[] = {
 	{PARSE_LEFT, 0, "on the *left"},
 	{PARSE_LEFT, 0, "on|to the far|very|extreme| *left"},
 	{PARSE_LEFT, 0, "farthest|furthest to the *left"},
+	{PARSE_LEFT, 0, "farthest|furthest|most *left"},
+	{PARSE_RIGHT, 0, "farthest|furthest|most *right"},
+	{PARSE_BEHIND, 0, "over| in the far|back part|end|region of the *table|room|desk"},
+	{PARSE_FRONT, 0, "over| in the front|near part|end|region of the *table|room|desk"},
+	{PARSE_FRONT, 0, "*nearer|closer to us|me|you than @"},
 	{PARSE_LEFT, 0, "at the *left end|edge of @"},
 	{PARSE_LEFT, 0, "further *left than @"},
 	{PARSE_LEFT, 0, "in|on the *left half|part|third of 0"},
@@ -149,6 +154,9 @@ static const struct example_clause placed[] = {
 	{PARSE_CORNER, 0, "in the *corner of the room"},
 	{PARSE_CORNER, 0, "in a|the *corner"},
 	{PARSE_CORNER, 0, "in the far|back|front|other *corner"},
+	{PARSE_CORNER, 0, "in|at the far|back|front|near|rear left|right *corner"},
+	{PARSE_CORNER, 0, "in|at the left|right|upper|lower *corner"},
+	{PARSE_NEAR, 0, "*around|about @"},
 	{PARSE_WALL, 0, "on the *wall"},
 	{PARSE_WALL, 0, "against the *wall"},
 	{PARSE_WALL, 0, "along the *wall"},
@@ -185,6 +193,10 @@ static const struct example_clause having[] = {
 	{PARSE_RIGHT, 0, "$ @ to the *left of it"},
 	{PARSE_RIGHT, 0, "$ @ over|off|way_off|far_off|out on|to its *left"},
 	{PARSE_RIGHT, 0, "$ @ on its *left hand side"},
+	{PARSE_RIGHT, 0, "$ @ close|right by on its *left"},
+	{PARSE_LEFT, 0, "$ @ close|right by on its *right"},
+	{PARSE_BEHIND, 0, "$ @ close_by|just|right in *front of it"},
+	{PARSE_FRONT, 0, "$ @ close_by|just|right| *behind it"},
 	{PARSE_LEFT, 0, "$ @ on|to its *right"},
 	{PARSE_LEFT, 0, "$ @ to the *right of it"},
 	{PARSE_LEFT, 0, "$ @ over|off|way_over|far_off|out on|to its *right"},
@@ -216,6 +228,18 @@ static const struct example_clause having[] = {
 	{PARSE_WITH, 0, "*holding 0"},
 	{PARSE_SUPPORTS, 0, "*holding|carrying|supporting @"},
 	{PARSE_SUPPORTS, 0, "*containing @"},
+	{PARSE_RIGHT, 1,
+		"with_no|without_any|that_has_no|has_no|does_n't_have_any|which_has_no other|| % on|to its *left"},
+	{PARSE_LEFT, 1,
+		"with_no|without_any|that_has_no|has_no|does_n't_have_any|which_has_no other|| % on|to its *right"},
+	{PARSE_RIGHT, 1,
+		"with_no|without_any|that_has_no|has_no|does_n't_have_any|which_has_no other|| % to the *left of it"},
+	{PARSE_LEFT, 1,
+		"with_no|without_any|that_has_no|has_no|does_n't_have_any|which_has_no other|| % to the *right of it"},
+	{PARSE_FRONT, 1,
+		"with_no|without_any|that_has_no|has_no|does_n't_have_any|which_has_no other|| % *behind it"},
+	{PARSE_BEHIND, 1,
+		"with_no|without_any|that_has_no|has_no|does_n't_have_any|which_has_no other|| % in *front of it"},
 	{PARSE_SUPPORTS, 1, "with nothing *on it"},
 	{PARSE_SUPPORTS, 1, "with nothing on *top of_it|"},
 	{PARSE_SUPPORTS, 1, "without 0 *on|in it"},
@@ -284,6 +308,19 @@ static const struct example_clause back_to_two[] = {
 	{PARSE_RIGHT, 0, "to the *right of both|them|the_two|both_of_them"},
 };
 
+static const struct example_clause travelled[] = {
+	{PARSE_LEFT, 0, "straight|further| *left"},
+	{PARSE_LEFT, 0, "to the *left"},
+	{PARSE_RIGHT, 0, "straight|further| *right"},
+	{PARSE_RIGHT, 0, "to the *right"},
+	{PARSE_FRONT, 0, "straight| *toward|towards|to me|us|you"},
+	{PARSE_FRONT, 0, "*forward|forwards"},
+	{PARSE_FRONT, 0, "to the *front"},
+	{PARSE_BEHIND, 0, "straight| *away from me|us|you"},
+	{PARSE_BEHIND, 0, "straight|further| *back|backwards"},
+	{PARSE_BEHIND, 0, "to the *back"},
+};
+
 static const struct example_clause inverted[] = {
 	{PARSE_SUPPORTS, 0, "is @ ^ *on|upon"},
 	{PARSE_SUPPORTS, 0, "does @ stand|sit|lie|rest *on"},
@@ -332,5 +369,5 @@ static const struct example_clause before[] = {
 	}
 
 const struct example_wordings example_wordings_train = {CLAUSES(placed), CLAUSES(having), CLAUSES(turned),
-	CLAUSES(back), CLAUSES(back_to_two), CLAUSES(inverted), CLAUSES(before), &example_sentences,
-	&example_functions};
+	CLAUSES(back), CLAUSES(back_to_two), CLAUSES(travelled), CLAUSES(inverted), CLAUSES(before),
+	&example_sentences, &example_functions, &example_talk};

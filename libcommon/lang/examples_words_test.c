@@ -122,5 +122,5 @@ static const struct example_list list_of_sentences = CLAUSES(sentences_test),
 				 list_of_functions = CLAUSES(functions_test);
 
 const struct example_wordings example_wordings_test = {CLAUSES(placed_test), CLAUSES(having_test),
-	CLAUSES(turned_test), CLAUSES(back_test), CLAUSES(back_to_two_test), CLAUSES(inverted_test),
-	CLAUSES(before_test), &list_of_sentences, &list_of_functions};
+	CLAUSES(turned_test), CLAUSES(back_test), CLAUSES(back_to_two_test), {0, NULL},
+	CLAUSES(inverted_test), CLAUSES(before_test), &list_of_sentences, &list_of_functions, NULL};

@@ -178,7 +178,8 @@ static int fill_phrases(struct build *b)
 	for (int i = 0; i < b->t->n; i++) {
 		enum word_role r = b->a->word[i].role;
 		int owner = phrase_under(b, b->a->word[i].head);
-		if ((r != ROLE_ATTRIBUTE && r != ROLE_NAME) || owner < 0 || says_nothing(b->t, i))
+		if ((r != ROLE_ATTRIBUTE && r != ROLE_NAME) || owner < 0 || says_nothing(b->t, i) ||
+			tokens_class(b->t, i) == CLOSED_CONJUNCTION)
 			continue;
 		struct parse_phrase *f = &b->p->phrases[owner];
 		if (is_in(&f->noun, i))
@@ -227,7 +228,8 @@ static enum parse_degree degree_of(const struct build *b, int i)
 		if (tokens_is_any(t, j, more))
 			return PARSE_MORE;
 	}
-	if (tokens_is(t, i + 1, "most"))
+	const int is_end = tokens_is(t, i + 1, "hand") ? i + 2 : i + 1;
+	if (tokens_is(t, i + 1, "most") || (r <= PARSE_RIGHT && tokens_is(t, is_end, "end")))
 		return PARSE_MOST;
 	return PARSE_PLAIN;
 }
@@ -363,17 +365,19 @@ static int phrase_start(const struct build *b, int head)
 
 static void count_phrase(struct build *b, int head, struct parse_phrase *f)
 {
+	static const char *const several[] = {"ones", "things", "objects", "items", "stuff", NULL};
 	const struct tokens *t = b->t;
 	int start = phrase_start(b, head), number = 0, of;
 
 	for (int i = start; i <= head; i++)
 		if (tokens_class(t, i) == CLOSED_NUMBER && (!number || value_of(t, i) > 0))
 			number = value_of(t, i);
-	if (tokens_is(t, head, "everything") || tokens_is(t, head, "anything"))
+	if (tokens_is(t, head, "everything") || tokens_is(t, head, "anything") ||
+		tokens_is(t, head, "whatever"))
 		number = PARSE_ALL;
 	if (!number && names_kind(b, head) && is_plural(t, head))
 		number = PARSE_SEVERAL;
-	if (!number && tokens_is(t, head, "ones"))
+	if (!number && tokens_is_any(t, head, several))
 		number = PARSE_SEVERAL;
 	f->count = number ? number : PARSE_ONE;
 	/* "of the two cups", "which of the cups", unless all of them are meant */
@@ -383,6 +387,21 @@ static void count_phrase(struct build *b, int head, struct parse_phrase *f)
 		f->group = number;
 		f->count = PARSE_ONE;
 	}
+}
+
+/* "Two mugs stand there. I want the smaller." */
+static int compares_later(const struct build *b, int i)
+{
+	const struct tokens *t = b->t;
+	const int is_end = i + 1 >= t->n || t->word[i + 1].before;
+
+	if (b->a->word[i].role != ROLE_PREDICATE || b->a->word[i].head != ROOT ||
+		!tokens_is(t, i - 1, "the") || !is_end)
+		return 0;
+	for (int j = b->noun + 1; j <= i; j++)
+		if (t->word[j].before == PAUSE_STOP)
+			return 1;
+	return 0;
 }
 
 /* "Two red chairs. Which one is ...": a later word of the target that means one of them. */
@@ -395,11 +414,31 @@ static void find_group(struct build *b)
 	for (int i = b->noun + 1; i < b->t->n; i++)
 		if ((b->a->word[i].role == ROLE_TARGET && !tokens_is(b->t, i, "ones") &&
 			    !is_plural(b->t, i)) ||
-			(tokens_is(b->t, i, "one") && b->a->word[i].role == ROLE_NONE)) {
+			tokens_is(b->t, i, "whichever") || compares_later(b, i) ||
+			(tokens_is(b->t, i, "one") && b->a->word[i].role == ROLE_NONE &&
+				!(tokens_is(b->t, i - 1, "the") &&
+					tokens_class(b->t, i - 2) == CLOSED_NEGATION))) {
 			f->group = f->count;
 			f->count = PARSE_ONE;
 			return;
 		}
+}
+
+/* "What is on the plates? I need both." */
+static void count_again(struct build *b)
+{
+	struct parse_phrase *f = &b->p->phrases[0];
+	int begin = 0;
+
+	for (int i = 1; i < b->t->n; i++)
+		begin = b->t->word[i].before == PAUSE_STOP ? i : begin;
+	for (int i = begin; i < b->t->n && begin && f->count == PARSE_ONE && !f->group; i++) {
+		const int is_last = i + 1 == b->t->n || tokens_class(b->t, i + 1) == CLOSED_PREPOSITION;
+		if (is_last && tokens_is(b->t, i, "both"))
+			f->count = 2;
+		else if (is_last && tokens_is(b->t, i, "all"))
+			f->count = PARSE_ALL;
+	}
 }
 
 static void count_phrases(struct build *b)
@@ -410,6 +449,7 @@ static void count_phrases(struct build *b)
 		if (b->phrase_of[i] > 0 || (b->phrase_of[i] == 0 && i == b->noun))
 			count_phrase(b, i, &b->p->phrases[b->phrase_of[i]]);
 	find_group(b);
+	count_again(b);
 }
 
 static enum parse_relation end_of(const struct tokens *t, int i)
@@ -443,13 +483,21 @@ static enum parse_relation counted_from(struct build *b)
 	return PARSE_OTHER;
 }
 
+/* "first find the box", "first, you": it tells the order of what is done. */
+static int tells_step(const struct tokens *t, int i)
+{
+	return tokens_is(t, i, "first") && i + 1 < t->n &&
+	       (t->word[i + 1].before || tokens_class(t, i + 1) == CLOSED_REQUEST ||
+		       tokens_class(t, i + 1) == CLOSED_PRONOUN);
+}
+
 static void find_ordinals(struct build *b)
 {
 	const struct tokens *t = b->t;
 
 	for (int i = 0; i < t->n; i++) {
 		int value = 0, owner = 0;
-		if (tokens_class(t, i) == CLOSED_ORDINAL)
+		if (tokens_class(t, i) == CLOSED_ORDINAL && !tells_step(t, i))
 			value = value_of(t, i);
 		else if (tokens_is(t, i, "number") && i + 1 < t->n)
 			value = tokens_is(t, i + 1, "one") ? 1

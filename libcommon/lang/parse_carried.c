@@ -1,15 +1,15 @@
-/* "The tray and whatever is on it", "the jar and what it stands on": the second thing has no name, but its
- * place by the first, which is the target. */
+/* "The tray and whatever is on it", "the jar together with what it stands on": the second thing has no name,
+ * but its place by the first, which is the target. */
 #include "lang/analysis.h"
 #include "lang/closed.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Where such a thing is spoken of: its first word after "and", the word of its place, and whether it is said
- * the other way round ("what it stands on"). */
+/* Where such a thing is spoken of: "and" and the first word after it, the word of its place, and whether it
+ * is said the other way round ("what it stands on"). */
 struct carried {
-	int from, place, is_round;
+	int and, from, place, is_round;
 };
 
 static int relation_of(const struct parse *p, int word)
@@ -19,9 +19,24 @@ static int relation_of(const struct parse *p, int word)
 	return closed >= 0 && closed_words[closed].class == CLOSED_PLACE ? closed_words[closed].relation : -1;
 }
 
+/* The first word of "and", "together with" or "as well as" that ends before word i; or -1. */
+static int and_before(const struct parse *p, int i)
+{
+	static const char *const and[] = {"and", "plus", NULL}, *const with[] = {"with", NULL},
+				 *const along[] = {"together", "along", NULL}, *const as[] = {"as", NULL},
+				 *const well[] = {"well", NULL};
+
+	if (parse_word_is(p, i - 1, and))
+		return i - 1;
+	if (parse_word_is(p, i - 1, with) && parse_word_is(p, i - 2, along))
+		return i - 2;
+	return parse_word_is(p, i - 1, as) && parse_word_is(p, i - 2, well) && parse_word_is(p, i - 3, as)
+		       ? i - 3
+		       : -1;
+}
+
 static int find_carried(const struct parse *p, struct carried *c)
 {
-	static const char *const and[] = {"and", "plus", NULL};
 	static const char *const the[] = {"the", "all", "also", NULL}, *const it[] = {"it", "them", NULL},
 				 *const they[] = {"it", "they", NULL};
 	static const char *const things[] = {
@@ -30,7 +45,8 @@ static int find_carried(const struct parse *p, struct carried *c)
 	int head;
 
 	for (int w = 1; w < last; w++) {
-		if (!parse_word_is(p, w, and))
+		const int and = and_before(p, w + 1);
+		if (and < 1)
 			continue;
 		for (head = w + 1; parse_word_is(p, head, the);)
 			head++;
@@ -38,12 +54,12 @@ static int find_carried(const struct parse *p, struct carried *c)
 			continue;
 		for (int i = head + 1; i < last; i++)
 			if (relation_of(p, i) >= 0 && parse_word_is(p, i + 1, it)) {
-				*c = (struct carried){w + 1, i, 0};
+				*c = (struct carried){and, w + 1, i, 0};
 				return 1;
 			}
 		if (relation_of(p, last) >= 0 &&
 			(parse_word_is(p, head + 1, they) || parse_word_is(p, head + 2, they))) {
-			*c = (struct carried){w + 1, last, 1};
+			*c = (struct carried){and, w + 1, last, 1};
 			return 1;
 		}
 	}
@@ -99,20 +115,20 @@ int parse_carried(struct parse *p, struct err *e)
 	if (!find_carried(p, &c) || f->also.n > 1 ||
 		(f->also.n && p->phrases[f->also.item[0]].noun.n && f->noun.n))
 		return 0;
-	parse_list_cut(&f->noun, c.from - 1);
-	parse_list_cut(&f->attributes, c.from - 1);
+	parse_list_cut(&f->noun, c.and);
+	parse_list_cut(&f->attributes, c.and);
 	if (!f->noun.n) { /* "whatever" was taken for what is meant */
-		if (closed_find(p->words[c.from - 2].text) >= 0)
+		if (closed_find(p->words[c.and -1].text) >= 0)
 			return 0;
-		parse_list_cut(&f->attributes, c.from - 2);
-		if (parse_list_add(&f->noun, c.from - 2, e))
+		parse_list_cut(&f->attributes, c.and -1);
+		if (parse_list_add(&f->noun, c.and -1, e))
 			return -1;
 	}
 	is_one = c.is_round;
 	for (int w = c.from; w < c.place; w++)
 		is_one |= parse_word_is(p, w, one);
-	keep_clauses(p, &f->clauses, c.from);
-	parse_list_cut(&p->unexplained, c.from);
+	keep_clauses(p, &f->clauses, c.and);
+	parse_list_cut(&p->unexplained, c.and);
 	if (make_room(p, e))
 		return -1;
 	f = &p->phrases[0];

@@ -103,6 +103,10 @@ static int settle_than(struct parse *p, struct parse_phrase *f, struct err *e)
 /* "both the jar and the lamp" are two, not two jars and a lamp. */
 static void settle_both(const struct parse *p, struct parse_phrase *f)
 {
+	const struct parse_word *noun = f->noun.n ? &p->words[f->noun.item[f->noun.n - 1]] : NULL;
+
+	if (noun && strcmp(noun->text, noun->lemma) != 0) /* "both plates and the jug" are three */
+		return;
 	for (int w = 0; w < p->word_count && f->count == 2 && f->also.n == 1; w++)
 		if (is(p, w, "both") && f->noun.n && w < f->noun.item[0])
 			f->count = PARSE_ONE;

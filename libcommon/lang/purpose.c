@@ -42,13 +42,16 @@ static int after_doer(const struct parse *p, int i)
 {
 	static const char *const doers[] = {"you", "they", "people", "somebody", "someone", "anybody", NULL},
 				 *const self[] = {"i", "we", NULL}, *const to[] = {"to", NULL},
-				 *const did[] = {"did", NULL};
+				 *const one[] = {"one", NULL}, *const let[] = {"let", NULL},
+				 *const us[] = {"us", "'s", NULL}, *const did[] = {"did", NULL};
 	const int is_self = parse_word_is(p, i, self);
 	int verb = i + 1;
 
 	if (class_of(p, i - 1) == CLOSED_AUXILIARY && !asks_before(p, i)) /* "could you lift it" */
 		return i;
-	if (parse_word_is(p, i - 1, did) || (!is_self && !parse_word_is(p, i, doers)))
+	const int is_one = (parse_word_is(p, i, one) && class_of(p, i + 1) == CLOSED_AUXILIARY) ||
+			   (parse_word_is(p, i - 1, let) && parse_word_is(p, i, us));
+	if (parse_word_is(p, i - 1, did) || (!is_self && !is_one && !parse_word_is(p, i, doers)))
 		return i;
 	while (class_of(p, verb) == CLOSED_AUXILIARY || class_of(p, verb) == CLOSED_HAVE ||
 		class_of(p, verb) == CLOSED_ADVERB ||
@@ -72,7 +75,8 @@ static int says_doing(const struct parse *p)
 static int says_for(const struct parse *p)
 {
 	static const char *const purposes[] = {"for", NULL}, *const used[] = {"used", "use", NULL},
-				 *const to[] = {"to", "for", "it", NULL};
+				 *const to[] = {"to", "for", "it", NULL},
+				 *const any[] = {"anything", "everything", NULL};
 
 	for (int i = 0; i < p->word_count; i++) {
 		if (parse_word_is(p, i, purposes) && is_open(p, i + 1) &&
@@ -84,7 +88,7 @@ static int says_for(const struct parse *p)
 		if (parse_word_is(p, i, used) && parse_word_is(p, i + 1, to))
 			return 1;
 		if (parse_word_is(p, i, to) && is_open(p, i + 1) &&
-			(!i || class_of(p, i - 1) == CLOSED_GENERIC))
+			(!i || class_of(p, i - 1) == CLOSED_GENERIC || parse_word_is(p, i - 1, any)))
 			return 1;
 	}
 	return 0;

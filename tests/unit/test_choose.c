@@ -227,6 +227,13 @@ static void sets(void)
 	CHECK(set_of("all mugs except the left one") == 2, "%x", set_of("all mugs except the left one"));
 	CHECK(set_of("the second mug from the left") == 2, "%x", set_of("the second mug from the left"));
 	CHECK(set_of("the second mug from the right") == 1, "%x", set_of("the second mug from the right"));
+	/* what is left out is all of its kind, unless it is told which; what is unknown is nothing */
+	CHECK(set_of("all things except the mug") == (4 | 8), "%x", set_of("all things except the mug"));
+	CHECK(set_of("all things except the zeppelin") == 15, "%x", set_of("all things except the zeppelin"));
+	CHECK(set_of("all mugs that are not on the table") == 0 || choice.there < 0.5, "%x, %g",
+		set_of("all mugs that are not on the table"), choice.there);
+	CHECK(set_of("whatever is behind the tin") == (1 | 2 | 4), "%x",
+		set_of("whatever is behind the tin"));
 	/* what an ordinal counts along: an end that is named, a superlative, the way from an anchor */
 	static const struct {
 		const char *text;

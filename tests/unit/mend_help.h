@@ -1,0 +1,57 @@
+/* Analyses that were made wrong by hand, and what they become (lang/analysis_mend.c). Checks are counted by
+ * the test that includes this. */
+#ifndef MEND_HELP_H
+#define MEND_HELP_H
+
+#include "lang/analysis.h"
+#include "unit.h"
+
+/* An analysis of a text: for each word '.' nothing, T target, A anchor, L also, a attribute, P predicate, E
+ * left out; the digit after A, a and P is the word that it hangs on, none for ROOT. All predicates are of the
+ * relation.
+ */
+static inline struct analysis made(const struct tokens *t, const char *roles, enum parse_relation relation)
+{
+	static const char letters[] = ".TALaPE";
+	static const enum word_role role[] = {
+		ROLE_NONE, ROLE_TARGET, ROLE_ANCHOR, ROLE_ALSO, ROLE_ATTRIBUTE, ROLE_PREDICATE, ROLE_EXCEPT};
+	struct analysis a = {.n = t->n};
+	int i = 0;
+
+	for (const char *p = roles; *p && i < t->n; i++) {
+		a.word[i].role = role[strchr(letters, *p++) - letters];
+		a.word[i].head = *p >= '0' && *p <= '9' ? *p++ - '0' : ROOT;
+		a.word[i].relation = a.word[i].role == ROLE_PREDICATE ? relation : (enum parse_relation)0;
+		while (*p == ' ')
+			p++;
+	}
+	CHECK(i == t->n, "%d roles for %d words", i, t->n);
+	return a;
+}
+
+/* That analysis once it is mended. */
+static inline struct analysis mended(const char *text, const char *roles, enum parse_relation relation)
+{
+	struct tokens t;
+	struct analysis a, grammar;
+
+	tokens_take(&t, text, NULL, NULL, 0);
+	grammar_analyse(&grammar, &t);
+	a = made(&t, roles, relation);
+	analysis_mend(&a, &grammar, &t);
+	return a;
+}
+
+/* A word's role and head are so then, and its relation where it is a predicate. */
+static inline void mends(const char *text, const char *roles, enum parse_relation relation, int word,
+	enum word_role role, int head, enum parse_relation now)
+{
+	const struct analysis a = mended(text, roles, relation);
+
+	CHECK(a.word[word].role == role && a.word[word].head == head, "'%s': word %d has role %d of %d", text,
+		word, a.word[word].role, a.word[word].head);
+	CHECK(role != ROLE_PREDICATE || a.word[word].relation == now, "'%s': relation %s", text,
+		parse_relation_name(a.word[word].relation));
+}
+
+#endif
