@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# Usage: [BIN=build/bin] [BERT=DIR] [DATA=DIR/desk] tests/bench/said.sh SET
+#
+# Asks the sentences of tests/bench/said/SET: of scenes of gs-synth that are made and lifted here (SCENE-SEED.jsonl) and, with
+# DATA, of a desk in the layout of pipelines/desk.mk (desk.jsonl). They were written from the pictures and a table of the
+# objects' places, without knowledge of the program. Those of `looked-at` its authors have read and worked on; those of
+# `kept-back` nobody has who works on the program: please keep it so, and read only the figures.
+#
+# Prints, for each file and in all, how many were answered with exactly the meant objects: of those that mean one thing (plain and
+# chatty rewordings, new ones), several, and nothing that is there.
+set -euo pipefail
+export LC_ALL=C
+here=$(cd "$(dirname "$0")" && pwd)
+BIN=$(cd "${BIN:-build/bin}" && pwd)
+BERT=${BERT:-${XDG_CACHE_HOME:-$HOME/.cache}/refersplat/encoder}
+[ $# = 1 ] && [ -d "$here/said/$1" ] || { sed -n 's/^# Usage: //p' "$0" >&2; exit 2; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# make_scene NAME: $work/NAME, lifted
+make_scene() {
+	local raw=$work/raw.$1
+	"$BIN/gs-synth" -q --scene "${1%-*}" --seed "${1#*-}" -o "$raw"
+	make -s -f "$here/../../pipelines/lift.mk" BIN="$BIN" BERT="$BERT" SCENE="$work/$1" SPLATS="$raw/point_cloud.ply" CAMERAS="$raw/sparse/0" \
+		IMAGES="$raw/images" SENTENCES="$raw/sentences.jsonl" CANDIDATES="$raw/candidates.jsonl" TEST_VIEWS="$(cat "$raw/test-views")" \
+		"$work/$1/lifted/model.safetensors" >/dev/null
+	rm -rf "$raw"
+}
+
+# count FILE...: a row of right/asked from records with `got`
+count() {
+	jq -rs 'def n(f): map(select(f)) | "\(map(select(.right)) | length)/\(length)";
+		def one: .objects | length == 1;
+		[n(one and .style == "plain"), n(one and .style == "chatty"), n(one and .style == "new"), n(one),
+		 n(.objects | length > 1), n(.objects == [])] | join("\t")' "$@"
+}
+
+printf 'file\tplain\tchatty\tnew\tone thing\tseveral\tnothing there\n'
+for file in "$here/said/$1"/*.jsonl; do
+	name=$(basename "$file" .jsonl)
+	if [ "$name" != desk ]; then
+		make_scene "$name"
+	elif [ -n "${DATA:-}" ]; then
+		make -s -f "$here/../../pipelines/desk.mk" lift BIN="$BIN" BERT="$BERT" DATA="$DATA" OUT="$work/desk" >/dev/null
+	else
+		continue
+	fi
+	jq -r .text "$file" >"$work/questions"
+	# 1: one of them has no answer
+	"$BIN/refer-ask" -q --json --encoder "$BERT" "$work/$name" <"$work/questions" >"$work/replies" || [ $? = 1 ]
+	jq -c --slurpfile replies "$work/replies" --slurpfile asked "$file" -n '
+		range($asked | length) as $i | $asked[$i] + ($replies[$i] | {got: (if .answered then [.things[].name] | sort else [] end)})
+		| .right = (.got == (.objects | sort))' >"$work/$name.answers"
+	printf '%s\t%s\n' "$name" "$(count "$work/$name.answers")"
+	rm -rf "${work:?}/$name"
+done
+printf 'all\t%s\n' "$(count "$work"/*.answers)"
