@@ -10,6 +10,11 @@ void analysis_give_up(struct analysis_word *w)
 	*w = (struct analysis_word){.role = ROLE_NONE, .head = ROOT};
 }
 
+int analysis_is_predicate(const struct analysis *a, int i)
+{
+	return i >= 0 && i < a->n && a->word[i].role == ROLE_PREDICATE;
+}
+
 static int may_hang(const struct analysis *a, int i)
 {
 	int h = a->word[i].head;

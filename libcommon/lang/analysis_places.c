@@ -6,16 +6,11 @@
 /* Words between two predicates of one place. */
 enum { PLACE_REACH = 4 };
 
-static int is_predicate(const struct analysis *a, int i)
-{
-	return i >= 0 && i < a->n && a->word[i].role == ROLE_PREDICATE;
-}
-
 /* The next predicate that is said of the same thing, with no phrase, pause or "and" before it; or -1. */
 static int next_place(const struct analysis *a, const struct tokens *t, int i)
 {
 	for (int j = i + 1; j < t->n && j <= i + PLACE_REACH && !t->word[j].before; j++) {
-		if (is_predicate(a, j))
+		if (analysis_is_predicate(a, j))
 			return a->word[j].head == a->word[i].head && a->word[j].negated == a->word[i].negated
 				       ? j
 				       : -1;
@@ -35,7 +30,7 @@ static void mend_superlative(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 2; i + 1 < t->n; i++) {
 		int noun = i + 1, place = i - 1;
-		if (!is_predicate(a, i) || tokens_class(t, i - 1) != CLOSED_DETERMINER ||
+		if (!analysis_is_predicate(a, i) || tokens_class(t, i - 1) != CLOSED_DETERMINER ||
 			t->word[i].closed < 0 || closed_words[t->word[i].closed].value != PARSE_MOST)
 			continue;
 		while (noun + 1 < t->n && !t->word[noun].before && a->word[noun].role == ROLE_ATTRIBUTE)
@@ -43,7 +38,8 @@ static void mend_superlative(struct analysis *a, const struct tokens *t)
 		while (place > 0 && !t->word[place + 1].before && a->word[place].role == ROLE_NONE)
 			place--;
 		if (a->word[noun].role != ROLE_ANCHOR || a->word[noun].head != i || t->word[noun].before ||
-			!is_predicate(a, place) || t->word[place + 1].before || analysis_has_anchor(a, place))
+			!analysis_is_predicate(a, place) || t->word[place + 1].before ||
+			analysis_has_anchor(a, place))
 			continue;
 		a->word[noun].head = place;
 		a->word[i].head = noun;
@@ -60,7 +56,7 @@ static int is_of_room(enum parse_relation r)
 static void mend_doubled(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
-		const int j = is_predicate(a, i) ? next_place(a, t, i) : -1;
+		const int j = analysis_is_predicate(a, i) ? next_place(a, t, i) : -1;
 		if (j < 0)
 			continue;
 		const enum parse_relation first = without_contact(a->word[i].relation),
@@ -108,7 +104,7 @@ static void mend_alone(struct analysis *a, const struct tokens *t)
 			*w = (struct analysis_word){ROLE_PREDICATE, w->head, PARSE_NEAR, 1};
 			continue;
 		}
-		if (!is_predicate(a, i) || !is_alone(a, t, i))
+		if (!analysis_is_predicate(a, i) || !is_alone(a, t, i))
 			continue;
 		for (int j = i - 1; j >= 0 && j >= i - 3 && !t->word[j + 1].before; j--)
 			negated &= tokens_class(t, j) != CLOSED_NEGATION;
@@ -145,10 +141,11 @@ static void mend_it(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 1; i < t->n; i++) {
 		int noun = i - 1, with;
-		if (!is_predicate(a, i) || analysis_has_anchor(a, i) || analysis_it_after(a, t, i) < 0)
+		if (!analysis_is_predicate(a, i) || analysis_has_anchor(a, i) ||
+			analysis_it_after(a, t, i) < 0)
 			continue;
 		while (noun > 0 && !role_is_phrase(a->word[noun].role) && !t->word[noun + 1].before &&
-			!is_predicate(a, noun) && !is_having(t, noun))
+			!analysis_is_predicate(a, noun) && !is_having(t, noun))
 			noun--;
 		for (with = noun; with > 0 && !is_having(t, with) && !t->word[with].before &&
 				  (with == noun || !role_is_phrase(a->word[with].role));)
@@ -173,7 +170,7 @@ static void mend_it_again(struct analysis *a, const struct tokens *t)
 
 	for (int i = 0; i < t->n; i++) {
 		has = t->word[i].before ? 0 : has;
-		if (earlier && !has && is_predicate(a, i) && tokens_class(t, i) == CLOSED_PLACE &&
+		if (earlier && !has && analysis_is_predicate(a, i) && tokens_class(t, i) == CLOSED_PLACE &&
 			!analysis_has_anchor(a, i) && a->word[i].relation != PARSE_SUPPORTS) {
 			const int it = analysis_it_after(a, t, i);
 			if (it >= 0 && tokens_class(t, it + 1) != CLOSED_BE)
@@ -220,7 +217,7 @@ static int is_stranded(const struct analysis *a, const struct tokens *t, int pre
 static void mend_stranded(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++)
-		if (is_predicate(a, i) && is_stranded(a, t, i))
+		if (analysis_is_predicate(a, i) && is_stranded(a, t, i))
 			a->word[i].relation =
 				closed_inverse((enum parse_relation)closed_words[t->word[i].closed].relation);
 }
@@ -242,8 +239,8 @@ static void mend_wall(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
 		const int p = a->word[i].role == ROLE_ANCHOR ? a->word[i].head : -1;
-		if (!tokens_is(t, i, "wall") || !is_predicate(a, p) || a->word[p].relation != PARSE_ON ||
-			!is_plain(a, i))
+		if (!tokens_is(t, i, "wall") || !analysis_is_predicate(a, p) ||
+			a->word[p].relation != PARSE_ON || !is_plain(a, i))
 			continue;
 		a->word[p].relation = PARSE_WALL;
 		analysis_give_up(&a->word[i]);
@@ -272,8 +269,8 @@ static int way_to_corner(const struct tokens *t, int i)
 static void mend_corner(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 1; i < t->n; i++) {
-		const int is_plain =
-			is_predicate(a, i) && a->word[i].relation == PARSE_CORNER && !a->word[i].negated;
+		const int is_plain = analysis_is_predicate(a, i) && a->word[i].relation == PARSE_CORNER &&
+				     !a->word[i].negated;
 		for (int j = i - 1; is_plain && j >= 0 && !t->word[j + 1].before; j--) {
 			const int way = way_to_corner(t, j);
 			if (way < 0 && !tokens_is(t, j, "hand") && !tokens_is(t, j, "most"))

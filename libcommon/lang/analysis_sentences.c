@@ -5,11 +5,6 @@
 
 #include <string.h>
 
-static int is_predicate(const struct analysis *a, int i)
-{
-	return i >= 0 && i < a->n && a->word[i].role == ROLE_PREDICATE;
-}
-
 /* What the words before `end` say of what is meant is said of word noun, which is an anchor of word place. */
 static void make_anchor(struct analysis *a, int noun, int end, int place)
 {
@@ -55,7 +50,7 @@ static void mend_introduced(struct analysis *a, const struct tokens *t)
 		if (role_is_phrase(a->word[i].role) && !tokens_is_any(t, i, things) && !tokens_is(t, i, "it"))
 			return;
 		thing = thing < 0 && tokens_is_any(t, i, things) ? i : thing;
-		place = is_predicate(a, i) && thing >= 0 ? i : place;
+		place = analysis_is_predicate(a, i) && thing >= 0 ? i : place;
 	}
 	if (noun < 0 || place < 0 || !tokens_is(t, t->n - 1, "it") || analysis_has_anchor(a, place))
 		return;
@@ -85,7 +80,8 @@ static int place_of_it(const struct analysis *a, const struct tokens *t, int i)
 	int found = -1;
 
 	for (; i < t->n; i++)
-		if (is_predicate(a, i) && !analysis_has_anchor(a, i) && analysis_it_after(a, t, i) >= 0)
+		if (analysis_is_predicate(a, i) && !analysis_has_anchor(a, i) &&
+			analysis_it_after(a, t, i) >= 0)
 			found = i;
 	return found;
 }

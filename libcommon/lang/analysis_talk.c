@@ -4,11 +4,6 @@
 #include "lang/closed.h"
 #include "lang/colours.h"
 
-static int is_predicate(const struct analysis *a, int i)
-{
-	return i >= 0 && i < a->n && a->word[i].role == ROLE_PREDICATE;
-}
-
 /* The last of the words from i on that stand together as a noun and what describes it, or -1. */
 static int noun_of_run(const struct analysis *a, const struct tokens *t, int i)
 {
@@ -69,12 +64,12 @@ static void mend_with_before_pause(struct analysis *a, const struct tokens *t)
 		for (int j = i + 1; j <= a->word[i].head; j++)
 			is_parted |= t->word[j].before != PAUSE_NONE;
 		while (with > 0 && !t->word[with + 1].before && tokens_class(t, with) != CLOSED_WITH &&
-			!role_is_phrase(a->word[with].role) && !is_predicate(a, with))
+			!role_is_phrase(a->word[with].role) && !analysis_is_predicate(a, with))
 			with--;
 		if (!is_parted || t->word[with + 1].before || tokens_class(t, with) != CLOSED_WITH ||
 			analysis_has_anchor(a, with))
 			continue;
-		if (!is_predicate(a, with))
+		if (!analysis_is_predicate(a, with))
 			a->word[with] = (struct analysis_word){ROLE_PREDICATE, ROOT, PARSE_WITH, 0};
 		a->word[i].head = with;
 	}
@@ -100,7 +95,8 @@ static void mend_has_it(struct analysis *a, const struct tokens *t)
 		int has = i, anchor = -1;
 		const int is_of_it = tokens_is(t, i - 1, "its") || tokens_is(t, i + 1, "it") ||
 				     (tokens_is(t, i + 1, "of") && tokens_is(t, i + 2, "it"));
-		if (!is_predicate(a, i) || said > PARSE_ON || a->word[i].relation != said || !is_of_it)
+		if (!analysis_is_predicate(a, i) || said > PARSE_ON || a->word[i].relation != said ||
+			!is_of_it)
 			continue;
 		for (int j = 0; j < i; j++)
 			anchor = a->word[j].role == ROLE_ANCHOR && a->word[j].head == i ? j : anchor;
@@ -118,7 +114,7 @@ static void mend_after_pause(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
 		int is_parted = 0;
-		if (!is_predicate(a, i) || tokens_class(t, i) != CLOSED_PLACE ||
+		if (!analysis_is_predicate(a, i) || tokens_class(t, i) != CLOSED_PLACE ||
 			a->word[i].relation > PARSE_BELOW || a->word[i].head == ROOT || a->word[i].head > i ||
 			analysis_has_anchor(a, i))
 			continue;
@@ -154,8 +150,9 @@ static void mend_verbs_of_pose(struct analysis *a, const struct tokens *t)
 		NULL};
 
 	for (int i = 0; i < t->n; i++) {
-		if (is_predicate(a, i) && a->word[i].relation == PARSE_OTHER && tokens_is_any(t, i, poses) &&
-			!analysis_has_anchor(a, i) && tokens_class(t, i + 1) != -1)
+		if (analysis_is_predicate(a, i) && a->word[i].relation == PARSE_OTHER &&
+			tokens_is_any(t, i, poses) && !analysis_has_anchor(a, i) &&
+			tokens_class(t, i + 1) != -1)
 			analysis_give_up(&a->word[i]);
 		if (tokens_is(t, i, "can") && tokens_class(t, i + 1) == CLOSED_PRONOUN)
 			analysis_give_up(&a->word[i]);
@@ -196,10 +193,10 @@ static void mend_denied(struct analysis *a, const struct tokens *t)
 
 	for (int i = 1; i < t->n; i++) {
 		int j = i + 1;
-		if (a->word[i].role == ROLE_ANCHOR && has_no(a, t, i) && is_predicate(a, a->word[i].head) &&
-			a->word[i].head > i)
+		if (a->word[i].role == ROLE_ANCHOR && has_no(a, t, i) &&
+			analysis_is_predicate(a, a->word[i].head) && a->word[i].head > i)
 			a->word[a->word[i].head].negated = 1;
-		denied |= is_predicate(a, i) && a->word[i].negated;
+		denied |= analysis_is_predicate(a, i) && a->word[i].negated;
 		if (denied && a->word[i].role == ROLE_EXCEPT && tokens_is_any(t, i, any))
 			analysis_give_up(&a->word[i]);
 		if (tokens_class(t, i) != CLOSED_NEGATION || tokens_class(t, i - 1) != CLOSED_BE)
@@ -207,7 +204,7 @@ static void mend_denied(struct analysis *a, const struct tokens *t)
 		while (j < i + 5 && j < t->n && a->word[j].role == ROLE_NONE && t->word[j].closed >= 0 &&
 			!t->word[j].before)
 			j++;
-		if (is_predicate(a, j) && !t->word[j].before && tokens_class(t, j) == CLOSED_PLACE &&
+		if (analysis_is_predicate(a, j) && !t->word[j].before && tokens_class(t, j) == CLOSED_PLACE &&
 			a->word[j].relation <= PARSE_INSIDE &&
 			a->word[j].relation == (enum parse_relation)closed_words[t->word[j].closed].relation)
 			a->word[j].negated = 1;
