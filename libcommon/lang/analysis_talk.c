@@ -92,7 +92,7 @@ static void mend_has_it(struct analysis *a, const struct tokens *t)
 			tokens_class(t, i) == CLOSED_PLACE
 				? (enum parse_relation)closed_words[t->word[i].closed].relation
 				: PARSE_OTHER;
-		int has = i, anchor = -1;
+		int has, anchor = -1;
 		const int is_of_it = tokens_is(t, i - 1, "its") || tokens_is(t, i + 1, "it") ||
 				     (tokens_is(t, i + 1, "of") && tokens_is(t, i + 2, "it"));
 		if (!analysis_is_predicate(a, i) || said > PARSE_ON || a->word[i].relation != said ||
