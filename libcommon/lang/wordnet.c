@@ -111,7 +111,7 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma)
 #endif
 
 /* A step up or down, and a rarer sense, each make it so much less likely. */
-static const double per_step_up = 0.96, per_step_down = 0.93, per_sense = 0.85;
+static const double per_step_up = 0.96, per_step_down = 0.93, per_sense = 0.9;
 enum { STEPS_UP = 9, STEPS_DOWN = 4 };
 
 double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known, int is_general)
