@@ -64,6 +64,8 @@ void analysis_talk(struct analysis *a, const struct tokens *t);
 void analysis_sentences(struct analysis *a, const struct tokens *t);
 /* "it" after a place without an anchor: "to the side of it"; or -1. */
 int analysis_it_after(const struct analysis *a, const struct tokens *t, int predicate);
+/* Whether a word says that something has something: "has", "with", "without". */
+int analysis_has(const struct tokens *t, int i);
 /* Whether there is such a word and it is a predicate. */
 int analysis_is_predicate(const struct analysis *a, int i);
 /* Whether a word is the predicate of an anchor. */

@@ -127,12 +127,17 @@ int analysis_it_after(const struct analysis *a, const struct tokens *t, int pred
 	return -1;
 }
 
-static int is_having(const struct tokens *t, int i)
+int analysis_has(const struct tokens *t, int i)
 {
 	const int class = tokens_class(t, i);
 
-	return class == CLOSED_WITH || class == CLOSED_HAVE || tokens_is(t, i, "without") ||
-	       tokens_is(t, i, "there");
+	return class == CLOSED_WITH || class == CLOSED_HAVE || tokens_is(t, i, "without");
+}
+
+/* "there is a lamp beside it" too. */
+static int is_having(const struct tokens *t, int i)
+{
+	return analysis_has(t, i) || tokens_is(t, i, "there");
 }
 
 /* "with two stools near it", "has a lamp beside it": the phrase is the anchor of the place after it,
@@ -253,10 +258,8 @@ static void mend_wall(struct analysis *a, const struct tokens *t)
 /* The way that a word before "corner" says, or -1: the far corner is at the back. */
 static int way_to_corner(const struct tokens *t, int i)
 {
-	static const char *const back[] = {"far", "back", "rear", "upper", NULL}, *const front[] = {"near",
-											  "front", "nearest",
-											  "closest", "lower",
-											  NULL};
+	static const char *const back[] = {"far", "back", "rear", "upper", NULL};
+	static const char *const front[] = {"near", "front", "nearest", "closest", "lower", NULL};
 
 	return tokens_is_any(t, i, back)    ? PARSE_BEHIND
 	       : tokens_is_any(t, i, front) ? PARSE_FRONT

@@ -75,13 +75,10 @@ static void mend_with_before_pause(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "has", "with", "no plate under it". */
+/* "no plate under it" too. */
 static int is_having(const struct tokens *t, int i)
 {
-	const int class = tokens_class(t, i);
-
-	return class == CLOSED_HAVE || class == CLOSED_WITH || tokens_is(t, i, "no") ||
-	       tokens_is(t, i, "without");
+	return analysis_has(t, i) || tokens_is(t, i, "no");
 }
 
 /* "which ball has a book just behind it and a cup on its left?" is in front of the book, right of the cup. */

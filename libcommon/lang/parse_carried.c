@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where such a thing is spoken of: "and" and the first word after it, the word of its place, and whether it
- * is said the other way round ("what it stands on"). */
+/* Where such a thing is spoken of: the first word of "and" and the first one after it, the word of its place,
+ * and whether it is said the other way round ("what it stands on"). */
 struct carried {
-	int and, from, place, is_round;
+	int joint, from, place, is_round;
 };
 
 static int relation_of(const struct parse *p, int word)
@@ -20,13 +20,13 @@ static int relation_of(const struct parse *p, int word)
 }
 
 /* The first word of "and", "together with" or "as well as" that ends before word i; or -1. */
-static int and_before(const struct parse *p, int i)
+static int joint_before(const struct parse *p, int i)
 {
-	static const char *const and[] = {"and", "plus", NULL}, *const with[] = {"with", NULL},
+	static const char *const plus[] = {"and", "plus", NULL}, *const with[] = {"with", NULL},
 				 *const along[] = {"together", "along", NULL}, *const as[] = {"as", NULL},
 				 *const well[] = {"well", NULL};
 
-	if (parse_word_is(p, i - 1, and))
+	if (parse_word_is(p, i - 1, plus))
 		return i - 1;
 	if (parse_word_is(p, i - 1, with) && parse_word_is(p, i - 2, along))
 		return i - 2;
@@ -45,8 +45,8 @@ static int find_carried(const struct parse *p, struct carried *c)
 	int head;
 
 	for (int w = 1; w < last; w++) {
-		const int and = and_before(p, w + 1);
-		if (and < 1)
+		const int joint = joint_before(p, w + 1);
+		if (joint < 1)
 			continue;
 		for (head = w + 1; parse_word_is(p, head, the);)
 			head++;
@@ -54,12 +54,12 @@ static int find_carried(const struct parse *p, struct carried *c)
 			continue;
 		for (int i = head + 1; i < last; i++)
 			if (relation_of(p, i) >= 0 && parse_word_is(p, i + 1, it)) {
-				*c = (struct carried){and, w + 1, i, 0};
+				*c = (struct carried){joint, w + 1, i, 0};
 				return 1;
 			}
 		if (relation_of(p, last) >= 0 &&
 			(parse_word_is(p, head + 1, they) || parse_word_is(p, head + 2, they))) {
-			*c = (struct carried){and, w + 1, last, 1};
+			*c = (struct carried){joint, w + 1, last, 1};
 			return 1;
 		}
 	}
@@ -115,20 +115,20 @@ int parse_carried(struct parse *p, struct err *e)
 	if (!find_carried(p, &c) || f->also.n > 1 ||
 		(f->also.n && p->phrases[f->also.item[0]].noun.n && f->noun.n))
 		return 0;
-	parse_list_cut(&f->noun, c.and);
-	parse_list_cut(&f->attributes, c.and);
+	parse_list_cut(&f->noun, c.joint);
+	parse_list_cut(&f->attributes, c.joint);
 	if (!f->noun.n) { /* "whatever" was taken for what is meant */
-		if (closed_find(p->words[c.and -1].text) >= 0)
+		if (closed_find(p->words[c.joint - 1].text) >= 0)
 			return 0;
-		parse_list_cut(&f->attributes, c.and -1);
-		if (parse_list_add(&f->noun, c.and -1, e))
+		parse_list_cut(&f->attributes, c.joint - 1);
+		if (parse_list_add(&f->noun, c.joint - 1, e))
 			return -1;
 	}
 	is_one = c.is_round;
 	for (int w = c.from; w < c.place; w++)
 		is_one |= parse_word_is(p, w, one);
-	keep_clauses(p, &f->clauses, c.and);
-	parse_list_cut(&p->unexplained, c.and);
+	keep_clauses(p, &f->clauses, c.joint);
+	parse_list_cut(&p->unexplained, c.joint);
 	if (make_room(p, e))
 		return -1;
 	f = &p->phrases[0];

@@ -45,8 +45,8 @@ static int are_mine(const struct parser *parser, const struct parser_vectors *v)
 /* Where what is said begins anew after "no, wait" or "scratch that" that ends before word i; else 0. */
 static int corrected_at(const struct tokens *t, int i)
 {
-	static const char *const sorry[] = {"sorry", "correction", "oops", NULL}, *const no[] = {
-											  "no", "nope", NULL};
+	static const char *const sorry[] = {"sorry", "correction", "oops", NULL};
+	static const char *const no[] = {"no", "nope", NULL};
 	const int is_wait = (tokens_is_any(t, i - 2, no) && tokens_is(t, i - 1, "wait")) ||
 			    (tokens_is(t, i - 2, "wait") && tokens_is_any(t, i - 1, no));
 
