@@ -7,7 +7,7 @@
 # `kept-back` nobody has who works on the program: please keep it so, and read only the figures.
 #
 # Prints, for each file and in all, how many were answered with exactly the meant objects: of those that mean one thing (plain and
-# chatty rewordings, new ones), several, and nothing that is there.
+# chatty rewordings, new ones), several, and nothing that is there. At last what was believed of the answers to those that mean one thing.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
@@ -49,9 +49,12 @@ for file in "$here/said/$1"/*.jsonl; do
 	# 1: one of them has no answer
 	"$BIN/refer-ask" -q --json --encoder "$BERT" "$work/$name" <"$work/questions" >"$work/replies" || [ $? = 1 ]
 	jq -c --slurpfile replies "$work/replies" --slurpfile asked "$file" -n '
-		range($asked | length) as $i | $asked[$i] + ($replies[$i] | {got: (if .answered then [.things[].name] | sort else [] end)})
+		range($asked | length) as $i | $asked[$i] + ($replies[$i] | {got: (if .answered then [.things[].name] | sort else [] end), belief: .things[0].probability})
 		| .right = (.got == (.objects | sort))' >"$work/$name.answers"
 	printf '%s\t%s\n' "$name" "$(count "$work/$name.answers")"
 	rm -rf "${work:?}/$name"
 done
 printf 'all\t%s\n' "$(count "$work"/*.answers)"
+jq -rs 'map(select((.objects | length == 1) and .got != [])) | def percent: . * 1000 | round / 10;
+	"of one thing: \(length) answered, mean belief \(map(.belief) | add / length | percent)%, right \((map(select(.right)) | length) / length | percent)%"' \
+	"$work"/*.answers
