@@ -75,8 +75,8 @@ int meaning_is_other(const struct parse *p, const struct parse_phrase *f)
  * before. */
 static int colour_after(const struct parse *p, int word)
 {
-	static const char *const and[] = {"and", NULL};
-	const int next = parse_word_is(p, word + 1, and) ? word + 2 : word + 1;
+	static const char *const plus[] = {"and", NULL};
+	const int next = parse_word_is(p, word + 1, plus) ? word + 2 : word + 1;
 
 	return next < p->word_count && colour_word(p->words[next].lemma) >= 0 ? next : -1;
 }
@@ -92,8 +92,8 @@ static int colour_before(const struct parse *p, int word)
 /* "blue-green" is teal. */
 static int is_blue_green(const struct parse *p, int word)
 {
-	static const char *const blue[] = {"blue", "bluish", NULL}, *const green[] = {
-									    "green", "greenish", NULL};
+	static const char *const blue[] = {"blue", "bluish", NULL};
+	static const char *const green[] = {"green", "greenish", NULL};
 
 	return word + 1 < p->word_count &&
 	       ((meaning_word_is(&p->words[word], blue) && meaning_word_is(&p->words[word + 1], green)) ||

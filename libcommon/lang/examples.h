@@ -22,18 +22,28 @@ struct example {
 /* `pieces` of the sentence that will come out, where the encoder was asked before; NULL. */
 void example_make(struct example *x, enum examples_set set, const char *pieces, struct rng *r);
 
-/* The wordings, in examples_words.c, examples_sentences.c, examples_talk.c and examples_words_test.c. A
- * template is words with a blank between; "a|b" is a choice, "_" a blank within one. *w  the main word of the
- * predicate        @  a phrase that it has as anchor    %  one of the target's noun    $  "with", "that has"
- * ^   "sitting", "placed" or nothing        ~  "just", "directly" or nothing 0   an anchor without clauses
- * and in whole sentences T   the target with its clauses N without                           n  its noun
- * again, or "one" C   a clause as after "is"                H one with "has"                    A  a size or
- * place adjective C2  a clause that is denied V   what is faced or stood at             X  what is left out S
- * a further target L   several of the target's noun U  a target of no noun ("the one") with its clauses Q
- * "the red one" that is meant            O  a further one q  a word of its look F   what a thing is for ("to
- * write with"), all predicates of PARSE_OTHER       B   an anchor that a later D, or P for two of them,
- * points back to: "near it", "between them" R   where one goes from a B: "start at the box, go left"  G   a
- * question turned round after the noun: "is @ next to" W   one with "with"    ,.? punctuation */
+/* clang-format off */
+/* The wordings, in examples_words.c, examples_sentences.c, examples_talk.c and examples_words_test.c. A template is
+ * words with a blank between; "a|b" is a choice, "_" a blank within one.
+ *
+ * In clauses:
+ *   *w  the main word of the predicate
+ *   @   a phrase that it has as anchor; 0 one without clauses; % one of the target's noun
+ *   $   "with", "that has"
+ *   ^   "sitting", "placed" or nothing; ~ "just", "directly" or nothing
+ *
+ * In whole sentences:
+ *   T   the target with its clauses; N without; n its noun again, or "one"; L several of its noun
+ *   U   a target of no noun ("the one") with its clauses; Q "the red one" that is meant
+ *   S   a further target; O a further "red one"; X what is left out; V what is faced or stood at
+ *   C   a clause as after "is"; C2 one that is denied; H one with "has"; W one with "with"
+ *   A   a size or place adjective; q a word of its look
+ *   F   what a thing is for ("to write with"), all predicates of PARSE_OTHER
+ *   G   a question turned round after the noun: "is @ next to"
+ *   B   an anchor that a later word points back to: D "near it", P "between them" for two, R where one goes from it
+ *       ("start at the box, go left")
+ *   ,.? punctuation */
+/* clang-format on */
 struct example_clause {
 	enum parse_relation relation;
 	int negated;
