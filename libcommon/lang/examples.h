@@ -23,7 +23,7 @@ struct example {
 void example_make(struct example *x, enum examples_set set, const char *pieces, struct rng *r);
 
 /* clang-format off */
-/* The wordings, in examples_words.c, examples_sentences.c, examples_talk.c and examples_words_test.c. A template is
+/* The wordings, in examples_words.c, examples_words_test.c and where their lists are declared below. A template is
  * words with a blank between; "a|b" is a choice, "_" a blank within one.
  *
  * In clauses:
@@ -35,11 +35,14 @@ void example_make(struct example *x, enum examples_set set, const char *pieces, 
  * In whole sentences:
  *   T   the target with its clauses; N without; n its noun again, or "one"; L several of its noun
  *   U   a target of no noun ("the one") with its clauses; Q "the red one" that is meant
- *   S   a further target; O a further "red one"; X what is left out; V what is faced or stood at
+ *   S   a further target; O a further "red one"; V what is faced or stood at
+ *   X   what is left out; X2 what is of the target's kind: "the red one", "the cup on the left"
+ *   0   a thing that is not meant and says nothing of what is
  *   C   a clause as after "is"; C2 one that is denied; H one with "has"; W one with "with"
  *   A   a size or place adjective; q a word of its look
- *   F   what a thing is for ("to write with"), all predicates of PARSE_OTHER
- *   G   a question turned round after the noun: "is @ next to"
+ *   F   what a thing is for ("to write with"), all predicates of PARSE_OTHER; f without "to"
+ *   G   a question turned round after the noun: "is @ next to"; K no question: "@ stands on"
+ *   *supports:on  the word of a predicate and its relation; of the B before it, else of those after it
  *   B   an anchor that a later word points back to: D "near it", P "between them" for two, R where one goes from it
  *       ("start at the box, go left")
  *   ,.? punctuation */
@@ -78,6 +81,8 @@ extern const struct example_wordings example_wordings_train, example_wordings_te
 
 /* In examples_sentences.c. */
 extern const struct example_list example_sentences, example_functions;
+/* More sentences to learn from, by kind, in examples_questions.c, examples_sets.c, examples_told.c. */
+extern const struct example_list example_questions, example_sets, example_told;
 /* In examples_talk.c. */
 extern const struct example_talk example_talk;
 /* In examples_nouns.c. */

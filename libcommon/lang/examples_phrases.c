@@ -180,7 +180,9 @@ int making_noun_phrase(
 int making_follows_article(const struct making *m)
 {
 	static const char *const words[] = {"the", "a", "this", "that", "all", "every", "each", "other",
-		"same", "correct", "which", "first", "second", "third", "fourth", "last", "any", "2nd", "no"};
+		"same", "correct", "which", "whichever", "first", "second", "third", "fourth", "fifth",
+		"last", "any", "2nd", "3rd", "4th", "no", "an", "my", "our", "your", "some", "another",
+		"only", "sole", "single", "remaining"};
 
 	for (size_t i = 0; m->n && i < sizeof words / sizeof *words; i++)
 		if (!strcmp(m->word[m->n - 1].text, words[i]))
