@@ -148,16 +148,16 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 		return 1;
 	}
 	case 'D':
-		points_back(m, &m->w->back);
+		points_back(m, m->w->back);
 		return 1;
 	case 'P':
-		points_back(m, &m->w->back_to_two);
+		points_back(m, m->w->back_to_two);
 		return 1;
 	case 'R':
-		points_back(m, &m->w->travelled);
+		points_back(m, m->w->travelled);
 		return 1;
 	case 'G':
-		making_expand(m, pick_clause(m, &m->w->inverted), ROOT, 0, 0);
+		making_expand(m, pick_clause(m, m->w->inverted), ROOT, 0, 0);
 		return 1;
 	case 'W':
 		making_clause(m, ROOT, FORM_WITH, 0);
