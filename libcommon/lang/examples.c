@@ -99,7 +99,7 @@ static void points_back(struct making *m, const struct example_clauses *of)
 /* "@ stands on", of a clause that is turned round: "that @ stands on". */
 static void turned_round(struct making *m)
 {
-	struct example_clause c = *pick_clause(m, &m->w->turned);
+	struct example_clause c = *pick_clause(m, m->w->turned);
 
 	if (!strncmp(c.text, "that", 4))
 		c.text = strchr(c.text, ' ') + 1;
@@ -221,16 +221,16 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 		return 1;
 	}
 	case 'D':
-		points_back(m, &m->w->back);
+		points_back(m, m->w->back);
 		return 1;
 	case 'P':
-		points_back(m, &m->w->back_to_two);
+		points_back(m, m->w->back_to_two);
 		return 1;
 	case 'R':
-		points_back(m, &m->w->travelled);
+		points_back(m, m->w->travelled);
 		return 1;
 	case 'G':
-		making_expand(m, pick_clause(m, &m->w->inverted), ROOT, 0, 0);
+		making_expand(m, pick_clause(m, m->w->inverted), ROOT, 0, 0);
 		return 1;
 	case 'K':
 		turned_round(m);

@@ -66,23 +66,28 @@ struct example_talk {
 	struct example_list subjects, deeds, tails, links, requests; /* of a story that comes first */
 };
 struct example_wordings {
-	struct example_clauses placed;	    /* after a noun, "that is" or "it is" */
-	struct example_clauses having;	    /* after $ in its place, or "has" */
-	struct example_clauses turned;	    /* after a noun as a relative clause: "that @ is on" */
-	struct example_clauses back;	    /* of what was spoken of: "near it" */
-	struct example_clauses back_to_two; /* of two things spoken of: "between them" */
-	struct example_clauses travelled;   /* on the way from what was spoken of: "go left" */
-	struct example_clauses inverted;    /* after "which noun": "is @ standing next to" */
-	struct example_clauses before;	    /* adjectives that place or size: "left", "smallest" */
+	const struct example_clauses *placed;	   /* after a noun, "that is" or "it is" */
+	const struct example_clauses *having;	   /* after $ in its place, or "has" */
+	const struct example_clauses *turned;	   /* after a noun as a relative clause: "that @ is on" */
+	const struct example_clauses *back;	   /* of what was spoken of: "near it" */
+	const struct example_clauses *back_to_two; /* of two things spoken of: "between them" */
+	const struct example_clauses *travelled;   /* on the way from what was spoken of: "go left" */
+	const struct example_clauses *inverted;	   /* after "which noun": "is @ standing next to" */
+	const struct example_clauses *before;	   /* adjectives that place or size: "left", "smallest" */
 	const struct example_list *sentences, *functions;
 	const struct example_talk *talk; /* NULL: none */
 };
 extern const struct example_wordings example_wordings_train, example_wordings_test;
 
+/* In examples_clauses.c. */
+extern const struct example_clauses example_having, example_turned, example_back, example_back_to_two,
+	example_travelled, example_inverted, example_before;
 /* In examples_sentences.c. */
-extern const struct example_list example_sentences, example_functions;
+extern const struct example_list example_sentences;
 /* More sentences to learn from, by kind, in examples_questions.c, examples_sets.c, examples_told.c. */
 extern const struct example_list example_questions, example_sets, example_told;
+/* In examples_functions.c. */
+extern const struct example_list example_functions;
 /* In examples_talk.c. */
 extern const struct example_talk example_talk;
 /* In examples_nouns.c. */

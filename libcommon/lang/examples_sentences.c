@@ -415,36 +415,4 @@ static const char *const sentences[] = {
 	"a|the N , any size|kind|sort|one will_do|please",
 };
 
-static const char *const functions[] = {
-	"to *write|draw|sew|cook|paint with",
-	"you *type|sit|sleep|lean|step on",
-	"you *drink|eat|pour from|out_of",
-	"you *open|close|lock|lift",
-	"for *cutting|measuring|cleaning|heating|storing 0",
-	"that *cuts|heats|cools|holds|prints|plays 0",
-	"i could|can|would *sit|sleep|read|write on",
-	"to *wash|dry|wipe|wear",
-	"for *reading|washing|drying|sleeping|resting",
-	"people *use|read|wear|watch",
-	"that *rings|lights|glows|ticks|hums",
-	"to *put|keep|store 0 in",
-	"with which you *cut|clean|dig",
-	"someone|you would *read|wear|throw|kick",
-	"to *eat|drink|drink_from|cook|mix 0 with|in|",
-	"that|which *shines|rolls|floats|burns|moves|bounces|squeaks",
-	"to *look|see|talk|listen through|with|to",
-	"i|you can|could *play|count|dig|write with|on",
-	"you would|'d *put on your head",
-	"when|for when i *spill|drop|lose 0",
-	"that *keeps 0 cold|dry|safe",
-	"made for *pouring|stirring|chopping",
-	"you *look at yourself in",
-	"to *hang 0 on",
-	"to *rest your feet|head on",
-	"that *opens|closes|starts 0",
-	"that *tells|shows the time|way",
-	"for *keeping 0 warm|cold",
-	"used to *hold|carry|hang 0",
-};
-
-const struct example_list example_sentences = LIST(sentences), example_functions = LIST(functions);
+const struct example_list example_sentences = LIST(sentences);
