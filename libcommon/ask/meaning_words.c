@@ -129,6 +129,32 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
 }
 
+/* "Not the orange plate, the other one": the word of the kind that was spoken of before, or -1. */
+static int kind_before(const struct meaning *m, const struct parse_phrase *target)
+{
+	const struct parse *p = m->sentence->parse;
+
+	for (int k = 0; k < target->except.n; k++) {
+		const struct parse_phrase *f = &p->phrases[target->except.item[k]];
+		if (f->span.begin < target->span.begin)
+			return meaning_head_of(p, f);
+	}
+	return -1;
+}
+
+/* Whether a word that nothing is called by is said of something: "striped" of "neither purple nor striped".
+ */
+static int is_said_of_something(struct meaning *m, int word, double *match)
+{
+	struct wordnet_adjective adjective;
+
+	wordnet_find_adjective(&adjective, m->sentence->parse->words[word].lemma);
+	if (!adjective.n)
+		return 0;
+	vocabulary_attribute(m->vocabulary, m->sentence, word, match);
+	return largest(match, objects_of(m)) > ATTRIBUTE_SAID;
+}
+
 void meaning_judge_noun(struct meaning *m, int phrase)
 {
 	const struct parse *p = m->sentence->parse;
@@ -137,8 +163,8 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	int head = meaning_head_of(p, f);
 	double *value, *there = there_of(m, phrase), *match = m->scratch + n;
 
-	if (head < 0 && phrase && is_elliptic(p, f))
-		head = meaning_head_of(p, &p->phrases[0]);
+	if (head < 0 && is_elliptic(p, f))
+		head = phrase ? meaning_head_of(p, &p->phrases[0]) : kind_before(m, f);
 	for (size_t o = 0; o < n; o++)
 		there[o] = GENERIC_THERE;
 	m->known[phrase] = GENERIC_THERE;
@@ -147,6 +173,10 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	vocabulary_noun(m->vocabulary, m->sentence, head, match);
 	if (colour_word(p->words[head].lemma) >= 0 && largest(match, n) < 0.5) { /* "something orange" */
 		judge_colour(m, phrase, head);
+		return;
+	}
+	if (largest(match, n) < 0.5 && is_said_of_something(m, head, m->scratch + 8 * n)) {
+		meaning_judge_attribute(m, phrase, head, ATTRIBUTE_LEAST);
 		return;
 	}
 	value = meaning_add_part(m, phrase, MEANING_NOUN, head);

@@ -2,6 +2,7 @@
 #include "ask/constants.h"
 #include "ask/vocabulary_private.h"
 #include "base/dot.h"
+#include "base/largest.h"
 #include "lang/colours.h"
 #include "lang/kinds.h"
 
@@ -226,6 +227,22 @@ void vocabulary_about(
 		match[o] = dot_float(v->word, v->about + o * width, width);
 }
 
+/* A colour that an object's name begins with, as "red bag" does, is said as often as NAME_COLOUR sentences
+ * say it. Returns how often a colour is said so, and adds to *like how often one like this. */
+static double name_says(const char *name, int colour, double *like)
+{
+	char word[32];
+	const size_t n = strcspn(name, " -_");
+
+	if (n >= sizeof word || !name[n])
+		return 0;
+	for (size_t i = 0; i <= n; i++)
+		word[i] = i < n ? vocabulary_lower(name[i]) : 0;
+	const int said = colour_word(word);
+	*like += said < 0 ? 0 : NAME_COLOUR * colour_words_alike(said, colour);
+	return said < 0 ? 0 : NAME_COLOUR;
+}
+
 /* fit (O): how many of the training sentences that say a colour of an object say one like this: one of them
  * may have been misread. What is said of a part of it counts less. other (O): how many say another one. */
 static void said_colours(const struct vocabulary *v, int colour, double *fit, double *other)
@@ -233,7 +250,8 @@ static void said_colours(const struct vocabulary *v, int colour, double *fit, do
 	const struct lifted *l = v->lifted;
 
 	for (size_t o = 0; o < l->objects; o++) {
-		double like = 0, all = 0, part = 0;
+		double like = 0, part = 0;
+		double all = v->has_names && v->has_said ? name_says(l->names[o], colour, &like) : 0;
 		for (size_t i = 0; i < v->n && v->has_said; i++) {
 			const struct vocabulary_item *item = &v->items[i];
 			const int said =
@@ -262,10 +280,12 @@ int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, c
 	if (colour < 0)
 		return 0;
 	said_colours(v, colour, fit, v->other);
+	/* where another thing is called so, what it is called itself counts more */
+	const double less = largest(fit, a->n) > COLOUR_SAID ? OTHER_COLOUR_THERE : OTHER_COLOUR;
 	for (size_t o = 0; o < a->n; o++) {
 		const double share = a->objects[o].colours[colour];
 		const double looks = share / (share + COLOUR_SHARE);
-		fit[o] = fmax(fit[o], looks * (1 - OTHER_COLOUR * v->other[o]));
+		fit[o] = fmax(fit[o], looks * (1 - less * v->other[o]));
 	}
 	return 1;
 }

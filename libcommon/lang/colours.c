@@ -63,8 +63,19 @@ const char *colour_name(int word)
 	return colours[word].word;
 }
 
+/* Other words, and the one of colours[] that looks the same. */
+static const char *const others[][2] = {{"reddish", "red"}, {"bluish", "blue"}, {"blueish", "blue"},
+	{"greenish", "green"}, {"yellowish", "yellow"}, {"orangey", "orange"}, {"pinkish", "pink"},
+	{"purplish", "purple"}, {"brownish", "brown"}, {"greyish", "grey"}, {"grayish", "grey"},
+	{"whitish", "white"}, {"blackish", "black"}, {"silvery", "silver"}, {"rosy", "rose"},
+	{"ebony", "black"}, {"ivory", "cream"}, {"khaki", "olive"}, {"mauve", "lilac"},
+	{"fuchsia", "magenta"}, {"indigo", "navy"}};
+
 int colour_word(const char *word)
 {
+	for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+		if (!strcmp(word, others[i][0]))
+			word = others[i][1];
 	for (int i = 0; i < COLOUR_WORDS; i++)
 		if (!strcmp(word, colours[i].word))
 			return i;

@@ -50,6 +50,16 @@ void token_lemma(const char *word, char *out)
 		out[n - 1] = 0;
 }
 
+/* What is written short, written out. */
+static void write_out(char *word)
+{
+	static const char *const shorts[][2] = {{"w/", "with"}, {"w/o", "without"}, {"pls", "please"}};
+
+	for (size_t i = 0; i < sizeof shorts / sizeof *shorts; i++)
+		if (!strcmp(word, shorts[i][0]))
+			put(word, shorts[i][1], TOKEN_LENGTH);
+}
+
 static int push(struct tokens *t, const char *text, int begin, int end, enum token_pause before)
 {
 	struct token *w = &t->word[t->n];
@@ -67,6 +77,7 @@ static int push(struct tokens *t, const char *text, int begin, int end, enum tok
 			w->text[n++] = (char)tolower((unsigned char)text[i]);
 		}
 	}
+	write_out(w->text);
 	w->closed = closed_find(w->text);
 	t->n++;
 	return 1;
@@ -231,6 +242,8 @@ void tokens_take(
 		if (at - begin == 1 && text[at] == '-' && isalpha((unsigned char)text[at + 1]))
 			for (at++; text[at] && !parting(text + at, &(enum token_pause){PAUSE_NONE});)
 				at++;
+		if (at - begin == 1 && tolower((unsigned char)text[begin]) == 'w' && text[at] == '/')
+			at += text[at + 1] == 'o' && !isalnum((unsigned char)text[at + 2]) ? 2 : 1;
 		int before = t->n;
 		take_word(t, text, begin, at, pause);
 		if (t->n > before)

@@ -3,6 +3,7 @@
 #include "ask/choose.h"
 #include "ask/vocabulary.h"
 #include "ask/disambiguate.h"
+#include "lang/wordnet.h"
 #include "unit.h"
 
 #include <math.h>
@@ -205,6 +206,33 @@ static void parts(void)
 	for (int o = 0; o < OBJECTS; o++)
 		sum += probability[o];
 	CHECK(fabsf(sum - 1) < 1e-5F, "one thing is meant, with %g in all", (double)sum);
+}
+
+/* A colour in a name is said of its thing, whichever of two that look the same it is. */
+static void named_colours(void)
+{
+	static const char *const asked[] = {"the teal mug", "the plum mug", "the plum cup"};
+	static char *const named[2][2] = {{"Teal mug", "plum-mug 2"}, {"plum_mug", "teal mug 2"}};
+	char *const old[2] = {names[0], names[1]};
+
+	for (int k = 0; k < 2; k++) {
+		memcpy(names, named[k], sizeof named[k]);
+		for (int i = 0; i < 3; i++)
+			CHECK(ask(asked[i], CHOOSE_ALL) == (k ^ (i > 0)), "'%s', %s", asked[i], named[k][0]);
+		CHECK(set_of("all teal mugs") == 1U << k, "%x", set_of("all teal mugs"));
+	}
+	memcpy(names, old, sizeof old);
+}
+
+/* What is left out may be an attribute alone; "the other one" is of the kind that was spoken of. */
+static void left_out(void)
+{
+	CHECK(!wordnet_is_there() || set_of("all things that are not wooden") == (1 | 2 | 8), "%x",
+		set_of("all things that are not wooden"));
+	CHECK(set_of("not the left mug , the other one") == 2, "%x",
+		set_of("not the left mug , the other one"));
+	CHECK(set_of("not the right mug , the other one") == 1, "%x",
+		set_of("not the right mug , the other one"));
 }
 
 /* Anchors never count for the target; what is said of something that is no object says nothing. */
@@ -472,6 +500,8 @@ int main(void)
 	by_itself();
 	counted();
 	mutual();
+	named_colours();
+	left_out();
 	anchors();
 	sets();
 	viewpoints();

@@ -24,6 +24,8 @@ static void colours(void)
 	CHECK(fabs(lab[0] - 53.24) < 0.05, "what is outside is cut");
 	CHECK(colour_word("mug") == -1 && colour_word("crimson") >= 0 && colour_word("") == -1,
 		"colour words");
+	CHECK(colour_word("reddish") == colour_word("red") && colour_word("rosy") == colour_word("rose"),
+		"words for the same colour");
 	for (int i = 0; i < COLOUR_WORDS; i++) {
 		CHECK(colour_words_alike(i, i) > 1 - 1e-9, "colour %d is not like itself", i);
 		for (int k = 0; k < COLOUR_WORDS; k++)

@@ -28,6 +28,7 @@ static void tokenises(void)
 	words("wheres the one that isnt green", "where 's the one that is n't green");
 	words("it isn\xe2\x80\x99t here", "it is n't here");
 	words("left-hand T-shirt", "left hand t-shirt");
+	words("the mug w/ dots w/o a lid, w/out w w/", "the mug with dots without a lid with out w with");
 	words("teh box behnid it", "the box behind it");
 	words("", "");
 	words(" ,.;- ", "");
