@@ -161,6 +161,25 @@ static void mend_nor(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* "neither red nor green": red is left out too. */
+static void mend_neither(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		int nor = i + 1, out, is_bare = 1;
+		while (nor < t->n && nor < i + 5 && !tokens_is(t, nor, "nor"))
+			nor++;
+		for (out = nor + 1; out < t->n && out < nor + 4 && a->word[out].role != ROLE_EXCEPT;)
+			out++;
+		if (!tokens_is(t, i, "neither") || !tokens_is(t, nor, "nor") || nor < i + 2 || out >= t->n ||
+			a->word[out].role != ROLE_EXCEPT)
+			continue;
+		for (int j = i + 1; j < nor; j++)
+			is_bare &= a->word[j].role == ROLE_NONE || a->word[j].role == ROLE_ATTRIBUTE;
+		if (is_bare)
+			a->word[nor - 1] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
+	}
+}
+
 /* "left of the grey one": grey is said of what comes right after it. */
 static void mend_attributes(struct analysis *a, const struct tokens *t)
 {
@@ -341,6 +360,7 @@ void analysis_reread(struct analysis *a, const struct analysis *grammar, const s
 	mend_both_sides(a, t);
 	mend_direction(a, t);
 	mend_nor(a, t);
+	mend_neither(a, t);
 	mend_there_is(a, t);
 	mend_attributes(a, t);
 	mend_over_by(a, t);

@@ -3,6 +3,7 @@
 #include "lang/analysis.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
+#include "lang/wordnet.h"
 
 /* The last of the words from i on that stand together as a noun and what describes it, or -1. */
 static int noun_of_run(const struct analysis *a, const struct tokens *t, int i)
@@ -208,6 +209,35 @@ static void mend_denied(struct analysis *a, const struct tokens *t)
 	}
 }
 
+static int is_noun(const struct tokens *t, int i)
+{
+	struct wordnet_noun noun;
+
+	if (i >= t->n || t->word[i].closed >= 0 || colour_word(t->word[i].text) >= 0)
+		return 0;
+	wordnet_find(&noun, t->word[i].lemma);
+	return noun.n > 0;
+}
+
+/* "The wizard's hat" is a hat, and what is over the laptop's screen is over the laptop. */
+static void mend_possessive(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 1; i + 1 < t->n; i++) {
+		const struct analysis_word owner = a->word[i - 1];
+		if (!tokens_is(t, i, "'s") || t->word[i + 1].before)
+			continue;
+		if (owner.role == ROLE_ANCHOR && a->word[i + 1].role == ROLE_ANCHOR &&
+			a->word[i + 1].head == owner.head && is_noun(t, i + 1)) {
+			analysis_give_up(&a->word[i + 1]);
+		} else if (owner.role == ROLE_TARGET &&
+			   (a->word[i + 1].role == ROLE_NONE || a->word[i + 1].role == ROLE_NAME) &&
+			   is_noun(t, i - 1) && is_noun(t, i + 1)) {
+			move_role(a, i - 1, i + 1);
+			a->word[i - 1] = (struct analysis_word){.role = ROLE_NAME, .head = ROOT};
+		}
+	}
+}
+
 void analysis_talk(struct analysis *a, const struct tokens *t)
 {
 	mend_after_pause(a, t);
@@ -216,6 +246,7 @@ void analysis_talk(struct analysis *a, const struct tokens *t)
 	mend_empty(a, t);
 	mend_denied(a, t);
 	mend_compounds(a, t);
+	mend_possessive(a, t);
 	mend_with_before_pause(a, t);
 	mend_has_it(a, t);
 }

@@ -1,6 +1,7 @@
 /* What is made of how people talk: lang/analysis_talk.c, analysis_sentences.c, corners of analysis_places.c,
  * and what lang/parser.c and lang/parse_build.c take from several sentences. */
 #include "lang/parser.h"
+#include "lang/wordnet.h"
 #include "mend_help.h"
 #include "unit.h"
 
@@ -43,8 +44,22 @@ static void words(void)
 		PARSE_WITH);
 }
 
+static void owners(void)
+{
+	mends("the rug over the lamp's shade", ". T P . A2 . A2", PARSE_ABOVE, 6, ROLE_NONE, ROOT, 0);
+	mends("the rug over the lamp's shade", ". T P . A2 . A2", PARSE_ABOVE, 4, ROLE_ANCHOR, 2, 0);
+	if (!wordnet_is_there())
+		return;
+	mends("the wizard's hat", ". T . .", 0, 3, ROLE_TARGET, ROOT, 0);
+	/* what is no noun is what it is */
+	mends("the lamp's bright", ". T . .", 0, 1, ROLE_TARGET, ROOT, 0);
+	mends("the lamp's red", ". T . .", 0, 1, ROLE_TARGET, ROOT, 0);
+}
+
 static void negations(void)
 {
+	mends("the vase, neither red nor green", ". T . . . E", 0, 3, ROLE_EXCEPT, ROOT, 0);
+	mends("the vase, either red or green", ". T . . . E", 0, 3, ROLE_NONE, ROOT, 0);
 	denies("the empty vase", ". a T", 0, 1);
 	denies("the stool that isn't over to the left of the lamp", ". T . . . . . . P . . A8", PARSE_LEFT,
 		8);
@@ -122,6 +137,7 @@ int main(void)
 {
 	places();
 	words();
+	owners();
 	negations();
 	sentences();
 	numbers();
