@@ -20,6 +20,8 @@ int main(int argc, char **argv)
 		{"scene", 0, CLI_STRING, &o->scene, "SCENE", "for scene and first: the scene's folder", 0, 0},
 		{"weights", 0, CLI_STRING, &o->weights, "WEIGHTS",
 			"for scene and first: the folder of its training views' blend weights", 0, 0},
+		{"spare", 0, CLI_STRING, &o->spare, "FILE",
+			"for scene: also write masks of regions that are of no object, for refer-lift", 0, 0},
 		{0},
 	};
 	const struct cli_tool tool = {
@@ -44,7 +46,9 @@ int main(int argc, char **argv)
 			o->method == PSEUDOMASK_FIRST ? "first" : "scene");
 	if (o->method < PSEUDOMASK_FIRST && (o->scene || o->weights))
 		cli_usage(&c, "%s is for --method scene and first", o->scene ? "--scene" : "--weights");
-	cli_refuse_overwrite(&c, "CANDIDATES " CLI_SCENE " " CLI_WEIGHTS, "output", NULL);
+	if (o->method != PSEUDOMASK_SCENE && o->spare)
+		cli_usage(&c, "--spare is for --method scene");
+	cli_refuse_overwrite(&c, "CANDIDATES " CLI_SCENE " " CLI_WEIGHTS, "output spare", NULL);
 	int bad = pseudomasks_write(&w, o, c.output, cli_report(&to, &c), &e);
 	pseudomasks_free(&w);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);

@@ -15,6 +15,9 @@ static const struct cli_option table[] = {
 		0},
 	{"masks", 0, CLI_STRING, &options.files.masks, "MASKS", "masks of pseudomask-select (required)", 0,
 		0},
+	{"spare", 0, CLI_STRING, &options.files.spare, "FILE",
+		"masks of regions that an object may have instead, of pseudomask-select --spare; not looked at with --names masks",
+		0, 0},
 	{"names", 0, CLI_CHOICE, &options.is_as_masked, "sentences|masks",
 		"which of several alike an object is: as sentences say (default), or as masks do", 0, 0},
 	{0}};
@@ -56,8 +59,10 @@ int main(int argc, char **argv)
 	cli_parse(&c, &tool, argc, argv);
 	if (!f->scene || !f->weights || !f->text || !f->masks)
 		cli_usage(&c, "--scene, --weights, --text and --masks are required");
-	cli_refuse_overwrite(&c, CLI_SCENE " " CLI_WEIGHTS " text masks", "output", NULL);
+	cli_refuse_overwrite(&c, CLI_SCENE " " CLI_WEIGHTS " text masks spare", "output", NULL);
 	cli_refuse_terminal(&c);
+	if (options.is_as_masked)
+		options.files.spare = NULL;
 	int bad = run(&l, &c, &e);
 	lifting_free(&l);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);

@@ -248,7 +248,7 @@ int lifted_write(const struct lifted *l, const struct origin *origin, const char
 }
 
 int lifted_add_sentences(
-	struct lifted *l, const struct text *t, const size_t *object, char *const *names, struct err *e)
+	struct lifted *l, const struct text *t, const size_t *object, const char *const *names, struct err *e)
 {
 	const size_t width = (size_t)t->width, words = (size_t)t->offsets[t->n];
 

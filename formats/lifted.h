@@ -20,7 +20,7 @@ int lifted_write(const struct lifted *l, const struct origin *origin, const char
 
 /* Gives lifted objects their names, and the sentences of a text with pieces: object (t->n) has the one that
  * each names, or LIFTED_NONE where it stays out. Copies. 0, or -1 with *e and *l as it can be freed. */
-int lifted_add_sentences(
-	struct lifted *l, const struct text *t, const size_t *object, char *const *names, struct err *e);
+int lifted_add_sentences(struct lifted *l, const struct text *t, const size_t *object,
+	const char *const *names, struct err *e);
 
 #endif

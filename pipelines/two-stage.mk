@@ -67,6 +67,8 @@ drawn := $(if $(painted),$(SCENE)/painted.jsonl,$(MASKS))
 masks1 := $(or $(drawn),$(SCENE)/stage1/masks.jsonl)
 masks2 := $(SCENE)/stage2/masks.jsonl
 masks3 := $(or $(drawn),$(SCENE)/lifted/masks.jsonl)
+# Made with masks3.
+spare3 := $(if $(MASKS),,$(SCENE)/lifted/spare.jsonl)
 # Sentences that are names only train.
 splits := train $(if $(SENTENCES),test)
 model1 := $(SCENE)/stage1/model.safetensors
@@ -102,8 +104,9 @@ train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(t
 render = refer-render --scene $(SCENE)/scene --text $(text) --model $(model$(1))
 predict = $(call render,$(1)) --sentences $(2) -o $(SCENE)/stage$(1)/predictions.$(2).jsonl
 command.teach = $(call render,$(teacher)) --split train --sentences train --scale $(call quoted,SCALE) -o $(masks2)
-command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights -o $(masks3) $(candidates)
-command.lift = refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks3) $(call options,LIFT) \
+command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights --spare $(spare3) -o $(masks3) $(candidates)
+command.lift = refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks3) \
+	$(if $(spare3),--spare $(spare3)) $(call options,LIFT) \
 	-o $(model3)
 command.page = refer-report $(if $(TRUTH),--truth $(truth)) $(SCENE)
 command.score = miou-score --json --quiet --predicted-views --truth $(truth)

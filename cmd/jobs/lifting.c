@@ -6,28 +6,51 @@
 #include "base/mem.h"
 #include "formats/weights.h"
 
+#include <stddef.h>
 #include <stdlib.h>
+
+/* The masks of a file, and the view of each, after those that there are. */
+static int add_masks(struct lifting *l, const char *path, struct err *e)
+{
+	struct masks set;
+	long *lines;
+	size_t taken = 0;
+
+	if (masks_read_lines(&set, &lines, path, e))
+		return -1;
+	int bad = mem_grow((void **)&l->views, &l->view_capacity, l->set.n + set.n, sizeof *l->views, "masks",
+			  e) ||
+		  masks_views(&set, lines, path, &l->scene.cameras, l->views + l->set.n, e);
+	while (taken < set.n && !bad)
+		bad = masks_add(&l->set, &set.items[taken++], e);
+	while (taken < set.n)
+		mask_free(&set.items[taken++]);
+	free(set.items);
+	free(lines);
+	return bad ? -1 : 0;
+}
 
 static int load(struct lifting *l, struct err *e)
 {
 	if (scene_read(&l->scene, l->files->scene, e) || text_read(&l->text, l->files->text, e) ||
-		masks_read_lines(&l->set, &l->lines, l->files->masks, e))
+		add_masks(l, l->files->masks, e))
+		return -1;
+	l->own = l->set.n;
+	if (l->files->spare && add_masks(l, l->files->spare, e))
 		return -1;
 	if (!l->text.pieces)
 		return err_set(e, ERR_FORMAT, "%s: has no word pieces: encode the sentences anew",
 			file_name(l->files->text));
-	l->views = mem_alloc(l->set.n, sizeof *l->views, "masks", e);
 	l->mask_object = mem_alloc(l->set.n, sizeof *l->mask_object, "masks", e);
 	l->sentence_object = mem_alloc(l->text.n, sizeof *l->sentence_object, "sentences", e);
-	l->names = mem_alloc(l->text.n, sizeof *l->names, "objects", e);
+	l->names = mem_alloc(l->text.n + l->set.n - l->own, sizeof *l->names, "objects", e);
 	l->trained = mem_alloc(l->text.n, sizeof *l->trained, "sentences", e);
 	l->is_shown = mem_zalloc(l->text.n, 1, "sentences", e);
 	l->is_there = mem_zalloc(l->scene.cameras.n, 1, "views", e);
-	if (!l->views || !l->mask_object || !l->sentence_object || !l->names || !l->trained || !l->is_shown ||
+	if (!l->mask_object || !l->sentence_object || !l->names || !l->trained || !l->is_shown ||
 		!l->is_there)
 		return -1;
-	return mask_index_make(&l->index, l->set.items, l->set.n, MASK_BY_OBJECT, e) ||
-	       masks_views(&l->set, l->lines, l->files->masks, &l->scene.cameras, l->views, e);
+	return mask_index_make(&l->index, l->set.items, l->set.n, MASK_BY_OBJECT, e);
 }
 
 /* Which training views can be looked at. */
@@ -63,7 +86,7 @@ static int find_sentences(struct lifting *l, struct err *e)
 	if (names_make(&l->refs, l->text.refs, sizeof(char *), 0, n, e) ||
 		names_make(&l->objects_of, l->trained, sizeof(char *), 0, n, e))
 		return -1;
-	for (size_t i = 0; i < l->set.n; i++) {
+	for (size_t i = 0; i < l->own; i++) {
 		l->mask_object[i] = sentence_of_mask(l, i);
 		if (l->mask_object[i] != NAMES_NONE)
 			l->is_shown[l->mask_object[i]] = 1;
@@ -87,7 +110,7 @@ static void find_objects(struct lifting *l, const struct report *to)
 			report_warn(to, "%s: '%s' has no mask in a training view, and is left out",
 				file_name(l->files->masks), l->trained[i]);
 	}
-	for (size_t i = 0; i < l->set.n; i++) {
+	for (size_t i = 0; i < l->own; i++) {
 		const size_t first = l->mask_object[i];
 		l->mask_object[i] = first == NAMES_NONE ? LIFTED_NONE : l->sentence_object[first];
 		unknown += l->is_there[l->views[i]] && l->mask_object[i] == LIFTED_NONE;
@@ -95,6 +118,31 @@ static void find_objects(struct lifting *l, const struct report *to)
 	if (unknown)
 		report_warn(to, "%s: %zu masks are of no training sentence's object",
 			file_name(l->files->masks), unknown);
+}
+
+/* Spare regions are objects without a name, after the others, in the order in which they first come. */
+static int find_spare(struct lifting *l, struct err *e)
+{
+	const size_t n = l->set.n - l->own;
+	const struct mask *masks = l->set.items + l->own;
+	size_t *number = l->mask_object + l->own;
+	struct names regions;
+
+	if (names_make(&regions, masks, sizeof *masks, offsetof(struct mask, object), n, e))
+		return -1;
+	for (size_t i = 0; i < n; i++) {
+		const size_t first = masks[i].object ? names_find(&regions, masks[i].object) : NAMES_NONE;
+		if (first == i)
+			l->names[l->objects + l->spare] = "";
+		number[i] = first == NAMES_NONE ? LIFTED_NONE
+			    : first < i		? number[first]
+						: l->objects + l->spare++;
+	}
+	for (size_t i = 0; i < n; i++)
+		if (!l->is_there[l->views[l->own + i]])
+			number[i] = LIFTED_NONE;
+	names_free(&regions);
+	return 0;
 }
 
 static int by_object(const void *a, const void *b)
@@ -163,7 +211,7 @@ static int lift(struct lifting *l, const struct report *to, struct err *e)
 	const struct each by = {&r, each_workers(n), lift_view, step};
 
 	r.masks = mem_alloc((size_t)by.workers, l->set.n * sizeof *r.masks, "masks", e);
-	int bad = !r.masks || lift_objects_init(&l->lift, l->scene.splats.n, l->objects, n, e);
+	int bad = !r.masks || lift_objects_init(&l->lift, l->scene.splats.n, l->objects + l->spare, n, e);
 	for (; r.round < LIFT_ROUNDS && !bad; r.round++)
 		bad = each_run(&by, n, e) || lift_objects_settle(&l->lift, e);
 	free(r.masks);
@@ -177,7 +225,7 @@ int lifting_read(struct lifting *l, const struct lifting_files *files, const str
 		find_sentences(l, e))
 		return -1;
 	find_objects(l, to);
-	return 0;
+	return find_spare(l, e);
 }
 
 int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struct report *to, struct err *e)
@@ -189,9 +237,10 @@ int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struc
 	int bad = lift(l, to, e);
 	report_end(to);
 	if (bad || lifted_add_sentences(&l->model, &l->text, l->sentence_object, l->names, e) ||
-		(!is_as_masked &&
-			disambiguate(&l->model, &l->scene.splats, &l->scene.cameras, &parser, moved, e)))
+		(!is_as_masked && disambiguate(&l->model, l->objects, &l->scene.splats, &l->scene.cameras,
+					  &parser, moved, e)))
 		return -1;
+	lifted_cut(&l->model, l->objects);
 	return 0;
 }
 
@@ -201,7 +250,6 @@ void lifting_free(struct lifting *l)
 	text_free(&l->text);
 	masks_free(&l->set);
 	mask_index_free(&l->index);
-	free(l->lines);
 	free(l->views);
 	free(l->sentence_object);
 	free(l->mask_object);

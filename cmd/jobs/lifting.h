@@ -18,6 +18,7 @@
 
 struct lifting_files {
 	const char *scene, *weights, *text, *masks;
+	const char *spare; /* masks of regions that an object may have in place of its own; NULL: none */
 };
 
 struct lifting {
@@ -25,15 +26,17 @@ struct lifting {
 	struct scene scene;
 	struct text text;
 	struct masks set;
+	size_t own;			       /* the first of them; the others are of spare regions */
 	struct mask_index index;	       /* by object */
-	long *lines;			       /* (set.n) */
-	size_t *views;			       /* (set.n) of each mask */
+	size_t *views, view_capacity;	       /* (set.n) of each mask */
 	size_t *sentence_object, *mask_object; /* (text.n), (set.n) in names; LIFTED_NONE: does not count */
 	struct names refs, objects_of;	       /* of the sentences; of `trained` */
 	const char **trained;		       /* (text.n) objects of the training sentences, else NULL */
-	char *is_shown; /* (text.n) by a mask, at the first training sentence of an object */
-	size_t objects;
-	char **names; /* (objects) of the sentences, in the order in which these first name them; not owned */
+	char *is_shown;	       /* (text.n) by a mask, at the first training sentence of an object */
+	size_t objects, spare; /* spare regions are the objects after the others */
+	/* (objects + spare) of the sentences, in the order in which these first name them, then ""; not owned
+	 */
+	const char **names;
 	char *is_there; /* (scene.cameras.n) the view has weights */
 	struct lift_objects lift;
 	struct lifted model; /* what comes of it */

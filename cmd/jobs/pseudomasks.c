@@ -151,6 +151,26 @@ static int show_view(void *context, int worker, size_t view, struct err *e)
 	return bad ? -1 : 0;
 }
 
+/* Writes what candidates show of the spare regions. */
+static int put_spare(const struct pseudomasks *w, size_t view, struct err *e)
+{
+	struct mask m = {.view = w->scene.cameras.views[view].name, .visible = NAN};
+	char name[32];
+	double score;
+	int bad = 0;
+
+	m.object = name;
+	for (size_t k = 0; k < w->regions.spare_count && !bad; k++) {
+		const struct mask *from = regions_spare(&w->regions, k, view, &score);
+		if (!from)
+			continue;
+		snprintf(name, sizeof name, "region-%zu", k + 1);
+		m.rle = from->rle;
+		bad = put_mask(w->spare, m, score, e);
+	}
+	return bad;
+}
+
 /* Writes all masks of a view but empty ones. */
 static int put_view(void *context, size_t view, struct err *e)
 {
@@ -173,7 +193,7 @@ static int put_view(void *context, size_t view, struct err *e)
 		bad = put_mask(w->out, m, s->scores[i], e);
 	}
 	shown_free(s, shown_count(w));
-	return bad;
+	return bad || (w->spare && put_spare(w, view, e)) ? -1 : 0;
 }
 
 static void warn_views(const struct pseudomasks *w, size_t found, const struct report *to)
@@ -184,6 +204,8 @@ static void warn_views(const struct pseudomasks *w, size_t found, const struct r
 	if (w->left_out)
 		report_warn(to, "%s: %zu training views have no weights, and get no masks",
 			w->options->weights, w->left_out);
+	if (w->spare)
+		report_note(to, 1, "%zu spare regions", w->regions.spare_count);
 	if (w->options->method == PSEUDOMASK_SCENE)
 		report_note(to, 1, "%zu objects, %zu regions; %zu masks in %zu views, %zu of them rendered",
 			w->regions.object_count, found, w->masks, w->seen, w->rendered);
@@ -236,7 +258,7 @@ int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *op
 {
 	const int method = options->method;
 	size_t weak = 0;
-	struct file_out out;
+	struct file_out out, spare;
 
 	w->options = options;
 	if (masks_read_lines(&w->set, &w->lines, w->options->candidates, e) ||
@@ -254,8 +276,13 @@ int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *op
 	if (file_out_open(&out, path, e))
 		return -1;
 	w->out = out.stream;
-	return file_out_end(
-		&out, method >= PSEUDOMASK_FIRST ? put_views(w, to, e) : put_winners(w, to, e), e);
+	if (options->spare && file_out_open(&spare, options->spare, e))
+		return file_out_end(&out, -1, e);
+	w->spare = options->spare ? spare.stream : NULL;
+	int bad = method >= PSEUDOMASK_FIRST ? put_views(w, to, e) : put_winners(w, to, e);
+	if (options->spare)
+		bad = file_out_end(&spare, bad, e);
+	return file_out_end(&out, bad, e);
 }
 
 void pseudomasks_free(struct pseudomasks *w)

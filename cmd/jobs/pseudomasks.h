@@ -23,11 +23,12 @@ struct pseudomask_options {
 	double min_score;	     /* candidates with no more are left out */
 	const char *candidates;	     /* file of masks; "-" is stdin */
 	const char *scene, *weights; /* for PSEUDOMASK_FIRST and _SCENE */
+	const char *spare;	     /* of PSEUDOMASK_SCENE: file for the spare regions; NULL: none */
 };
 
 struct pseudomasks {
 	const struct pseudomask_options *options;
-	FILE *out;
+	FILE *out, *spare;
 	size_t seen, left_out, masks, rendered; /* views, and masks in them */
 	struct masks set;
 	long *lines; /* (set.n) of the file */

@@ -10,9 +10,12 @@
 
 enum { ROUNDS = 4 };
 static const double least = 0.003, naming = 0.1;
+/* How much it counts, for which regions are left over, that masks agree with what was lifted. Of 0, 0.1,
+ * 0.25, 0.5 and 1, on the 23 scenes that it was chosen on: an object more is wrong with 0, and with 1. */
+static const double agreement_worth = 0.25, least_agreement = 0.02;
 
-/* value (O,O): how well object o's sentences fit the Gaussians of object k. */
-static int judge(const struct lifted *l, const struct choose_scene *scene,
+/* value (O,O): how well object o's sentences fit the Gaussians of object k; 0 where o is none of `named`. */
+static int judge(const struct lifted *l, size_t named, const struct choose_scene *scene,
 	const struct choose_sentence *sentences, struct choice *choices, float *probability, char *chosen,
 	double *value, struct err *e)
 {
@@ -31,6 +34,9 @@ static int judge(const struct lifted *l, const struct choose_scene *scene,
 		for (size_t k = 0; k < n; k++)
 			value[(size_t)l->object[r] * n + k] += log((sum > 0 ? p[k] / sum : 0) + least);
 	}
+	for (size_t o = 0; o < named; o++)
+		for (size_t k = 0; k < n; k++)
+			value[o * n + k] += agreement_worth * log((double)l->confidence[k] + least_agreement);
 	return 0;
 }
 
@@ -75,8 +81,8 @@ static void free_shares(struct lifted *l)
 	free(l->confidence);
 }
 
-static int settle(struct lifted *l, const struct lifted *old, const struct choose_scene *scene, size_t *from,
-	struct err *e)
+static int settle(struct lifted *l, size_t named, const struct lifted *old, const struct choose_scene *scene,
+	size_t *from, struct err *e)
 {
 	const size_t n = l->objects, width = (size_t)l->width;
 	struct choose_sentence *sentences = mem_alloc(l->sentences, sizeof *sentences, "sentences", e);
@@ -93,11 +99,11 @@ static int settle(struct lifted *l, const struct lifted *old, const struct choos
 			l->words + (size_t)l->offsets[r] * width, (size_t)(l->offsets[r + 1] - l->offsets[r]),
 			{.kind = VIEWPOINT_USUAL}, NULL};
 	for (int round = 0; round < ROUNDS && changes && !bad; round++) {
-		bad = judge(l, scene, sentences, choices, probability, chosen, value, e) ||
+		bad = judge(l, named, scene, sentences, choices, probability, chosen, value, e) ||
 		      assignment_best(value, n, n, next, e);
 		changes = 0;
 		for (size_t o = 0; o < n && !bad; o++) {
-			changes |= next[o] != o;
+			changes |= o < named && next[o] != o;
 			now[o] = from[next[o]];
 		}
 		if (changes) {
@@ -115,7 +121,7 @@ static int settle(struct lifted *l, const struct lifted *old, const struct choos
 	return bad ? -1 : 0;
 }
 
-int disambiguate(struct lifted *l, const struct splats *splats, const struct cameras *cameras,
+int disambiguate(struct lifted *l, size_t named, const struct splats *splats, const struct cameras *cameras,
 	const struct parser *parser, size_t *moved, struct err *e)
 {
 	const struct choose_scene scene = {l, splats, cameras, parser, naming};
@@ -130,12 +136,12 @@ int disambiguate(struct lifted *l, const struct splats *splats, const struct cam
 	}
 	for (size_t o = 0; o < l->objects; o++)
 		from[o] = o;
-	int bad = settle(l, &old, &scene, from, e);
+	int bad = settle(l, named, &old, &scene, from, e);
 	for (size_t o = 0; o < l->objects && bad; o++)
 		from[o] = o;
 	if (bad)
 		share_out(l, &old, from);
-	for (size_t o = 0; o < l->objects; o++)
+	for (size_t o = 0; o < named; o++)
 		*moved += from[o] != o;
 	free(from);
 	free_shares(&old);

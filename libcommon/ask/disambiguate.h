@@ -13,9 +13,17 @@
  * with the largest sum over sentences of log(p + 0.003), p of ask/choose.h without its part `sentence`, at
  * most one lot of Gaussians to an object; again, as anchors move with their objects, until nothing changes,
  * four times at most. An object's own words fit its own Gaussians best, so that only things that look the
- * same change places. *moved gets how many objects have others than before. Returns 0, or -1 with *e set and
- * the model as it was. */
-int disambiguate(struct lifted *l, const struct splats *splats, const struct cameras *cameras,
+ * same change places.
+ *
+ * Only the first `named` objects are. The others, which have the name "" and no sentences, are regions that a
+ * detector took for no object, or for one that has another: lots that an object may have in place of its own,
+ * whereupon the one that nobody has is theirs. What is known of a lot besides, that its masks agree, counts
+ * with 0.25 log(confidence + 0.02) for the object that has it; this says which are left over, and nothing
+ * where none are.
+ *
+ * *moved gets how many of the named have others than before. Returns 0, or -1 with *e set and the model as it
+ * was. */
+int disambiguate(struct lifted *l, size_t named, const struct splats *splats, const struct cameras *cameras,
 	const struct parser *parser, size_t *moved, struct err *e);
 
 #endif

@@ -24,6 +24,12 @@ void lifted_free(struct lifted *l)
 	*l = (struct lifted){0};
 }
 
+void lifted_cut(struct lifted *l, size_t objects)
+{
+	for (; l->objects > objects; l->objects--)
+		free(l->names[l->objects - 1]);
+}
+
 void lifted_responses(const struct lifted *l, size_t object, float *responses)
 {
 	for (size_t i = 0; i < l->gaussians; i++)

@@ -32,6 +32,9 @@ struct lifted {
 /* All arrays are the struct's own; a zeroed one may be freed. */
 void lifted_free(struct lifted *l);
 
+/* Only the first objects stay, without the others, which no sentence names. */
+void lifted_cut(struct lifted *l, size_t objects);
+
 /* An object's mask in a view is where sum_i w_pi (a_i - LIFTED_CUT) > 0: where more than this part of what is
  * seen in the pixel is the object's. Of 0.35, 0.4, 0.45, 0.5 and 0.55, mean mIoU of two synthetic scenes
  * (diner, seed 1; tea, seed 3; half size, ragged masks): 92.5, 93.5, 94.0, 94.1, 93.2. */

@@ -138,6 +138,7 @@ void regions_free(struct regions *r)
 	free(r->seen);
 	free(r->regions);
 	free(r->served);
+	free(r->spare);
 	free(r->field);
 	*r = (struct regions){0};
 }

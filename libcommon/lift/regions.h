@@ -3,7 +3,7 @@
  *
  * The paper picks a mask for each object and view alone, by the votes of the object's sentences there
  * (mask/select.h). But a detector that misunderstands a sentence does so in every view alike, so that whole
- * objects are confused; the other objects' masks tell. In three steps:
+ * objects are confused; the other objects' masks tell. In steps:
  *
  * 1. Candidates of whatever object agree on regions. A candidate k of view v is lifted: Gaussian i has
  *    l_ki = sum of w_pi over the mask's pixels, out of W_vi = sum of w_pi over the view's. A region is a set
@@ -18,6 +18,10 @@
  *    regions with the largest sum of values; none where that is no better than to be found by no sentence.
  * 3. The object's mask in a view is the candidate, of whatever object, that agrees with its region; where
  *    none agrees nearly as well as they do in its other views, the region itself is rendered (lift.h).
+ * 4. Regions that are left over may still be an object: one that the detector takes for another in all of its
+ *    sentences. Spare are those that candidates show in a quarter of the views, of whose weight less than
+ * half is in the regions of objects or in that of a spare one with more support, the sum of q_s(R) over all
+ *    sentences. Which object it is, if any, only the sentences tell (ask/disambiguate.h).
  *
  * Masks of a view that look alike (regions_lift.c) are one candidate, so that time and memory go by the
  * different ones. What a mask shows is kept by mask and by Gaussian (shares.h): two numbers each. A region
@@ -81,8 +85,10 @@ struct regions {
 	size_t region_count, region_capacity;
 	struct region *regions;
 	size_t *served; /* (object_count) an object's region, or REGIONS_NONE */
-	float *field; /* a channel of lift.h for each object: its region's share of a Gaussian's weight, -1/2
-		       */
+	size_t spare_count;
+	size_t *spare; /* (spare_count) regions that are of no object, the best supported first */
+	float *field;  /* a channel of lift.h for each object: its region's share of a Gaussian's weight, -1/2
+			*/
 };
 
 /* The masks with score > min_score. places (pool's n) has the view of each, below `views`; the
@@ -100,8 +106,12 @@ int regions_lift(
 /* Grows the regions, after all views are lifted. */
 int regions_grow(struct regions *r, struct err *e);
 
-/* Gives each object its region, after regions_grow. */
+/* Gives each object its region, and finds the spare ones, after regions_grow. */
 int regions_assign(struct regions *r, struct err *e);
+
+/* The candidate that shows spare region k in a view, after regions_assign, or NULL; *score is its agreement.
+ */
+const struct mask *regions_spare(const struct regions *r, size_t k, size_t view, double *score);
 
 /* Whether some object's region has to be rendered in a view. */
 int regions_need_weights(const struct regions *r, size_t view);

@@ -43,4 +43,10 @@ void regions_sums_free(struct regions_sums *s);
 /* chosen (views) has a candidate or REGIONS_NONE. */
 void regions_sum(struct regions_sums *s, const struct regions *r, const size_t *chosen);
 
+/* share (sentences,regions): q_s(R). Fills spare, once the objects have theirs. */
+int regions_find_spare(struct regions *r, const double *share, struct err *e);
+
+/* The candidate that is a region's mask in a view, or REGIONS_NONE. */
+size_t regions_find_candidate(const struct regions *r, const struct region *region, size_t view);
+
 #endif

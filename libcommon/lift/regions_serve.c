@@ -97,6 +97,7 @@ int regions_assign(struct regions *r, struct err *e)
 		else
 			fill_field(r, o, &r->regions[r->served[o]], &sums);
 	}
+	bad = bad || regions_find_spare(r, share, e);
 	free(share);
 	free(value);
 	free(has_support);
@@ -104,9 +105,8 @@ int regions_assign(struct regions *r, struct err *e)
 	return bad ? -1 : 0;
 }
 
-/* The candidate that is an object's mask in a view, or REGIONS_NONE. Those of a small thing agree less in all
- * views, so that only a comparison with the others tells. */
-static size_t find_candidate(const struct regions *r, const struct region *region, size_t view)
+/* Those of a small thing agree less in all views, so that only a comparison with the others tells. */
+size_t regions_find_candidate(const struct regions *r, const struct region *region, size_t view)
 {
 	size_t best = REGIONS_NONE;
 
@@ -121,7 +121,7 @@ int regions_need_weights(const struct regions *r, size_t view)
 {
 	for (size_t o = 0; o < r->object_count; o++)
 		if (r->served[o] != REGIONS_NONE &&
-			find_candidate(r, &r->regions[r->served[o]], view) == REGIONS_NONE)
+			regions_find_candidate(r, &r->regions[r->served[o]], view) == REGIONS_NONE)
 			return 1;
 	return 0;
 }
@@ -177,7 +177,7 @@ static int put_mask(struct painter *t, size_t object, size_t view, struct rle *m
 	if (r->served[object] == REGIONS_NONE)
 		return 0;
 	const struct region *region = &r->regions[r->served[object]];
-	const size_t c = find_candidate(r, region, view);
+	const size_t c = regions_find_candidate(r, region, view);
 	if (c != REGIONS_NONE) {
 		const struct rle *chosen = &r->candidates[c].mask->rle;
 		*score = (double)region->agreement[c];

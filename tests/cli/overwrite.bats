@@ -79,9 +79,13 @@ locate() { refuses "$1" refer-locate --scene scene --text text.safetensors --mod
 @test "refer-lift, pseudomask-select, text-encode, miou-score" {
 	refuses "-o masks.jsonl would overwrite --masks masks.jsonl" refer-lift --scene scene --weights weights \
 		--text text.safetensors --masks masks.jsonl -o masks.jsonl
+	refuses "-o spare.jsonl would overwrite --spare spare.jsonl" refer-lift --scene scene --weights weights \
+		--text text.safetensors --masks masks.jsonl --spare spare.jsonl -o spare.jsonl
 	refuses "-o candidates.jsonl would overwrite CANDIDATES candidates.jsonl" pseudomask-select -o candidates.jsonl candidates.jsonl
 	refuses "-o scene/cameras.json would be among the files of --scene scene" pseudomask-select --scene scene \
 		--weights weights -o scene/cameras.json candidates.jsonl
+	refuses "--spare candidates.jsonl would overwrite CANDIDATES candidates.jsonl" pseudomask-select --scene scene \
+		--weights weights --spare candidates.jsonl -o masks candidates.jsonl
 	refuses "-o sentences.jsonl would overwrite SENTENCES sentences.jsonl" text-encode --model encoder -o sentences.jsonl sentences.jsonl
 	refuses "-o encoder/vocab.txt would be among the files of --model encoder" text-encode --model encoder -o encoder/vocab.txt sentences.jsonl
 	for option in --truth --compare --sentences --whole; do

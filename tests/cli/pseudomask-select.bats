@@ -416,6 +416,50 @@ scene() {
 	"$BIN/miou-score" --truth synth/truth.jsonl --predicted-views --fail-under 0.4 half.jsonl
 }
 
+@test "scene: spare regions are what one sentence means and no object is, and change nothing else" {
+	# a third thing that four training views see; a sentence of the first object means it
+	third=$(jq -r .object "$BATS_FILE_TMPDIR/truth.jsonl" | sort | uniq -c | sed -n 's/^ *[456] //p' | grep -Fxv -f "$BATS_FILE_TMPDIR/objects" | head -n 1)
+	first=$(head -n 1 "$BATS_FILE_TMPDIR/objects")
+	grep -v view_004 "$BATS_FILE_TMPDIR/truth.jsonl" > truth.jsonl
+	of_both < truth.jsonl | jq -c '.ref = .object + " 1" | ., .ref = .object + " 2" | .score = 0.8' > two
+	jq -c --arg t "$third" --arg f "$first" 'select(.object == $t) | .object = $f | .ref = "odd" | .score = 0.9' truth.jsonl | cat two - > three
+	scene two > expected
+	scene --spare none two | cmp - expected
+	[ -f none ] && [ ! -s none ]
+	scene three > expected
+	run --separate-stderr scene -v -o masks --spare spare three
+	[ "$status" -eq 0 ]
+	[[ "$stderr" == *"pseudomask-select: 1 spare regions"* ]]
+	cmp masks expected
+	cmp <(jq -c '[.view, .object, .segmentation]' spare) \
+		<(jq -c --arg t "$third" 'select(.object == $t) | [.view, "region-1", .segmentation]' truth.jsonl)
+	jq -e -s 'all(has("ref") | not) and all(.score > 0.4 and .score <= 1)' spare
+	for threads in 1 2 7; do
+		scene --threads $threads -o masks --spare - three | cmp - spare
+		cmp masks expected
+	done
+}
+
+@test "scene: --spare is for it alone, and is there whole or not at all" {
+	of_both < "$BATS_FILE_TMPDIR/truth.jsonl" > two
+	run first --spare spare two
+	[ "$status" -eq 2 ]
+	[ "${lines[0]}" = "pseudomask-select: --spare is for --method scene" ]
+	run "$BIN/pseudomask-select" --spare spare two
+	[ "$status" -eq 2 ]
+	run scene -o masks --spare ./masks two
+	[ "$status" -eq 2 ]
+	[ "${lines[0]}" = "pseudomask-select: -o masks and --spare ./masks are the same" ]
+	run scene -o masks --spare nowhere/spare two
+	[ "$status" -eq 4 ]
+	[ "${lines[0]}" = "pseudomask-select: nowhere/spare: No such file or directory" ]
+	echo before > spare
+	run scene -o masks --spare spare --weights nowhere two
+	[ "$status" -eq 4 ]
+	[ "$(cat spare)" = before ]
+	[ ! -e masks ]
+}
+
 @test "scene: - and a pipe are the file, the order of objects decides theirs alone, and threads do not change a byte" {
 	cp "$BATS_FILE_TMPDIR/candidates.jsonl" many.jsonl
 	scene --threads 1 -o one many.jsonl

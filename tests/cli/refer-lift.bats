@@ -151,6 +151,45 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 		meta scene/splats.safetensors scene), encoder $(meta text.safetensors encoder)" "$BIN/gs-check" model
 }
 
+@test "an object that has another's masks gets its own, which are spare" {
+	other=$(sed -n 2p "$made/objects")
+	jq -c --arg a "$object" 'select(.object == $a) | .object = "a region"' masks.jsonl >spare
+	jq -c --arg a "$object" --arg b "$other" 'if .object == $a then empty else . end
+		| ., select(.object == $b) + {object: $a}' masks.jsonl >wrong
+	"$BIN/refer-lift" -v --scene scene --weights "$made/weights" --text text.safetensors --masks wrong --spare spare -o model 2>said
+	grep -q "3 objects, .*; [12] changed places" said
+	[ "$(meta model names | jq -r '.[]' | sort)" = "$(cat "$made/objects")" ]
+	# one of the two has the Gaussians of the right model
+	lift -o right
+	of() {
+		local at begin end
+		at=$(($(meta "$1" names | jq --arg a "$2" 'index($a)') + 1))
+		read -r begin end < <(tensor "$1" indptr d8 | cut -d' ' -f "$at,$((at + 1))")
+		tensor "$1" index d4 | tr ' ' '\n' | sed -n "$((begin + 1)),${end}p" | sort
+	}
+	of right "$object" >own
+	for name in "$object" "$other"; do of model "$name" | comm -12 - own | wc -l; done | sort -n | tail -n 1 >most
+	[ $(($(cat most) * 5)) -gt $(($(wc -l <own) * 4)) ]
+	# whatever it is called, in any order, and by any number of threads
+	jq -c --arg b "$other" '.object = $b' spare | tac >called
+	lift --masks wrong --spare called | cmp model
+	for threads in 1 2 7; do lift --masks wrong --spare - --threads $threads <spare | cmp model; done
+	# where masks say which object is which they are not looked at
+	lift --names masks --masks wrong -o as-masked
+	lift --names masks --masks wrong --spare none | cmp as-masked
+}
+
+@test "without a spare region, or with one that no view with weights shows, nothing changes" {
+	lift -o expected
+	: >none
+	lift --spare none | cmp expected
+	jq -c --arg v "$(cut -d, -f1 "$made/test-views")" 'select(.view == $v)' "$made/truth.jsonl" >unseen
+	[ -s unseen ]
+	lift --spare unseen | cmp expected
+	jq -c 'del(.object) | .ref = "a sentence"' masks.jsonl >nobody
+	lift --spare nobody | cmp expected
+}
+
 @test "views without weights do not count, nor test views" {
 	mkdir some
 	view=$(jq -r .view masks.jsonl | sort -u | head -n 1)
@@ -191,6 +230,8 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 @test "input that does not belong together, or is of another kind" {
 	jq -c '.view = "elsewhere"' masks.jsonl | head -n 1 >away
 	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'" --masks away
+	cat masks.jsonl away >later
+	refuses 3 "later:$(wc -l <later): key 'view': the scene has no view 'elsewhere'" --spare later
 	refuses 3 "scene/splats.safetensors: format is 'refer.splats', expected 'refer.text'" --text scene/splats.safetensors
 	refuses 3 "scene/cameras.json: the cameras of a scene folder: name the folder in its place where a scene is wanted" --masks scene/cameras.json
 }
@@ -198,6 +239,7 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 @test "missing, empty and truncated files" {
 	refuses 4 "none: No such file or directory" --text none
 	refuses 4 "none: No such file or directory" --masks none
+	refuses 4 "none: No such file or directory" --spare none
 	refuses 4 "none/splats.safetensors: No such file or directory" --scene none
 	refuses 3 "empty: 0 bytes, too short for a safetensors file" --text empty 3<>empty
 	head -c 2000 text.safetensors >cut
@@ -218,6 +260,9 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 	run lift --text - --masks -
 	[ "$status" = 2 ]
 	[ "${lines[0]}" = "refer-lift: --text and --masks cannot both be stdin" ]
+	run lift --masks - --spare -
+	[ "$status" = 2 ]
+	[ "${lines[0]}" = "refer-lift: --masks and --spare cannot both be stdin" ]
 }
 
 @test "an output that cannot be written leaves what was there" {

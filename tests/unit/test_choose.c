@@ -387,19 +387,62 @@ static void twins(void)
 	size_t moved = 0;
 	struct err e;
 
-	CHECK(!disambiguate(&l, &splats, &cameras, &parser, &moved, &e) && moved == 0,
+	CHECK(!disambiguate(&l, OBJECTS, &splats, &cameras, &parser, &moved, &e) && moved == 0,
 		"%zu moved in a right model", moved);
 	CHECK(!memcmp(index, index_of, sizeof index), "a right model changed");
 	for (int i = 0; i < 2 * EACH; i++)
 		index[i] = (i + EACH) % (2 * EACH);
 	sure[1] = 0.5F;
-	CHECK(!disambiguate(&l, &splats, &cameras, &parser, &moved, &e) && moved == 2, "not two have moved");
+	CHECK(!disambiguate(&l, OBJECTS, &splats, &cameras, &parser, &moved, &e) && moved == 2,
+		"not two have moved");
 	CHECK(!memcmp(index, index_of, sizeof index) && at[1] == EACH, "the mugs have not changed places");
 	CHECK(sure[0] == 0.5F && sure[1] == 1, "confidence stays with the Gaussians");
 	const struct lifted none = {.gaussians = N, .width = WIDTH, .indptr = indptr, .offsets = offsets};
 	struct lifted empty = none;
-	CHECK(!disambiguate(&empty, &splats, &cameras, &parser, &moved, &e) && moved == 0,
+	CHECK(!disambiguate(&empty, 0, &splats, &cameras, &parser, &moved, &e) && moved == 0,
 		"a model without objects");
+}
+
+/* A mug that is where the tin is gets its own Gaussians, which no sentence names; what is as it should be
+ * stays, whatever is spare. Of two lots at one place it gets the one whose masks agree. */
+static void spare(void)
+{
+	static char *nameless[] = {"mug", "mug 2", "crate", ""},
+		    *said[] = {"the white one to the left of the crate", "the leftmost white one",
+			    "the one to the right of the crate", "the wooden crate"};
+	static float said_words[4 * 16 * WIDTH];
+	int64_t said_offsets[5] = {0};
+	int64_t at[OBJECTS + 1];
+	int32_t index[N];
+	float shares[N], sure[OBJECTS];
+	struct lifted l = copy(at, index, shares, sure);
+	size_t moved = 0;
+	struct err e;
+
+	for (int r = 0; r < 4; r++)
+		said_offsets[r + 1] =
+			said_offsets[r] + (int64_t)encode(said[r], said_words + said_offsets[r] * WIDTH);
+	l.names = nameless;
+	l.texts = l.pieces = said;
+	l.offsets = said_offsets;
+	l.words = said_words;
+	l.sentences = 4;
+	CHECK(!disambiguate(&l, 3, &splats, &cameras, &parser, &moved, &e) && moved == 0,
+		"%zu moved in a right model", moved);
+	CHECK(!memcmp(index, index_of, sizeof index), "a right model changed");
+	for (int i = 0; i < EACH; i++) {
+		index[i] = i + 3 * EACH;
+		index[i + 3 * EACH] = i;
+	}
+	sure[3] = 0.5F;
+	CHECK(!disambiguate(&l, 3, &splats, &cameras, &parser, &moved, &e) && moved == 1, "%zu moved", moved);
+	CHECK(!memcmp(index, index_of, sizeof index), "the mug has not its own Gaussians");
+	CHECK(sure[0] == 0.5F && sure[3] == 1, "confidence stays with the Gaussians");
+	for (int i = 0; i < EACH; i++)
+		index[i + 3 * EACH] = i;
+	sure[0] = 0.01F;
+	CHECK(!disambiguate(&l, 3, &splats, &cameras, &parser, &moved, &e) && sure[0] == 1 && sure[1] == 1,
+		"masks that do not agree");
 }
 
 /* A sentence of the vectors of a noun is about what is called so, and one without words about nothing. */
@@ -496,6 +539,7 @@ int main(void)
 {
 	make_scene();
 	twins();
+	spare();
 	parts();
 	by_itself();
 	counted();

@@ -267,6 +267,52 @@ static void test_confusion(void)
 		rle_free(&s.masks[i].rle);
 }
 
+/* A thing that one of the box's sentences means, and no object is, is spare; not so the part of the box that
+ * another one means, and what is found in one view only. */
+static void test_spare(void)
+{
+	static const char *const box[] = {"box-1", "box-2", "box-3", "box-4", "box-5"};
+	static struct scene s;
+	double score, before = 0;
+	struct regions r;
+	struct pool pool;
+	struct rng rng;
+	struct err e;
+
+	rng_seed(&rng, 22, 1);
+	make_weights(&s, &rng);
+	for (int v = 0; v < BARE; v++) {
+		for (int k = 0; k < 5; k++)
+			add(&s, BOX, box[k], v, k == 3 ? CAN : BOX, k == 4 ? 4 : 0, 0.6);
+		add(&s, BAG, "bag-1", v, BAG, 0, 0.6);
+		if (v == 3)
+			add(&s, BAG, "bag-2", v, JAR, 0, 0.9);
+	}
+	CHECK(!pool_make(&pool, s.masks, s.n, &e), "%s", e.message);
+	for (int threads = 1; threads <= 2; threads++) {
+		omp_set_num_threads(threads);
+		CHECK(!regions_init(&r, &pool, s.views, VIEWS, N, 0.3, &e), "%s", e.message);
+		for (size_t v = 0; v < UNLIT; v++)
+			CHECK(!regions_lift(&r, v, &s.weights[v], H, W, &e), "%s", e.message);
+		CHECK(!regions_grow(&r, &e) && !regions_assign(&r, &e), "%s", e.message);
+		CHECK(r.region_count > 3 && r.spare_count == 1, "%zu of %zu regions are spare", r.spare_count,
+			r.region_count);
+		double sum = 0;
+		for (size_t v = 0; v < BARE && r.spare_count; v++) {
+			const struct mask *m = regions_spare(&r, 0, v, &score);
+			CHECK(m && iou(&m->rle, CAN, (int)v) > 0.99 && score > 0.5, "view %zu: %g", v, score);
+			sum += score;
+		}
+		CHECK(!r.spare_count || !regions_spare(&r, 0, BARE, &score), "a mask in a view without any");
+		CHECK(threads == 1 || sum == before, "%d threads: %g, not %g", threads, sum, before);
+		before = sum;
+		regions_free(&r);
+	}
+	pool_free(&pool);
+	for (size_t i = 0; i < s.n; i++)
+		rle_free(&s.masks[i].rle);
+}
+
 static void test_none(void)
 {
 	const size_t none[1] = {0};
@@ -275,7 +321,7 @@ static void test_none(void)
 	struct err e;
 
 	CHECK(!pool_make(&p, NULL, 0, &e) && !regions_init(&r, &p, none, 2, 5, 0.3, &e), "%s", e.message);
-	CHECK(!regions_grow(&r, &e) && !regions_assign(&r, &e) && !r.region_count, "none");
+	CHECK(!regions_grow(&r, &e) && !regions_assign(&r, &e) && !r.region_count && !r.spare_count, "none");
 	regions_free(&r);
 	pool_free(&p);
 }
@@ -283,6 +329,7 @@ static void test_none(void)
 int main(void)
 {
 	test_confusion();
+	test_spare();
 	test_none();
 	return unit_end();
 }
