@@ -106,6 +106,30 @@ static void mend_has_it(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* "See the cup? I want the thing just right of it": what is meant is right of it, whatever was spoken of. */
+static void mend_of_it(struct analysis *a, const struct tokens *t)
+{
+	static const char *const what[] = {"what", "whatever", NULL};
+
+	for (int i = 1; i < t->n; i++) {
+		const int it = tokens_is(t, i + 1, "of") ? i + 2 : i + 1;
+		int before = i - 1;
+		if (!analysis_is_predicate(a, i) || tokens_class(t, i) != CLOSED_PLACE ||
+			!tokens_is(t, it, "it"))
+			continue;
+		while (before > 0 && !role_is_phrase(a->word[before].role) && !is_having(t, before) &&
+			!tokens_is(t, before, "it") && !tokens_is_any(t, before, what) &&
+			!t->word[before].before)
+			before--;
+		const enum parse_relation said =
+			(enum parse_relation)closed_words[t->word[i].closed].relation;
+		if ((a->word[before].role == ROLE_TARGET || tokens_is_any(t, before, what)) &&
+			a->word[i].head == ROOT && said <= PARSE_ON &&
+			a->word[i].relation == closed_inverse(said))
+			a->word[i].relation = said;
+	}
+}
+
 /* "not the one on the box, over on the right": what comes after the pause and names nothing is said of what
  * is meant. */
 static void mend_after_pause(struct analysis *a, const struct tokens *t)
@@ -249,4 +273,5 @@ void analysis_talk(struct analysis *a, const struct tokens *t)
 	mend_possessive(a, t);
 	mend_with_before_pause(a, t);
 	mend_has_it(a, t);
+	mend_of_it(a, t);
 }

@@ -75,6 +75,12 @@ static void sentences(void)
 	mends(rug, roles, PARSE_ON, 6, ROLE_TARGET, ROOT, 0);
 	mends("see the lamp? which vase is nearest to it", ". . T . T . P . .", PARSE_NEAR, 2, ROLE_ANCHOR, 6,
 		0);
+	mends("see the lamp? what lies on it", ". . T . . P .", PARSE_SUPPORTS, 5, ROLE_PREDICATE, ROOT,
+		PARSE_ON);
+	mends("see the lamp? what it lies on", ". . T . . . P", PARSE_SUPPORTS, 6, ROLE_PREDICATE, ROOT,
+		PARSE_SUPPORTS);
+	mends("see the lamp? the vase right of it", ". . . . T P . .", PARSE_LEFT, 5, ROLE_PREDICATE, ROOT,
+		PARSE_RIGHT);
 	/* the same kind of thing, spoken of twice */
 	mends("see the vase? which vase is nearest to it", ". . T . T . P . .", PARSE_NEAR, 2, ROLE_TARGET,
 		ROOT, 0);
