@@ -441,21 +441,19 @@ static void analyse(const struct making *m, struct example *x, const char *piece
 	analysis_repair(&x->analysis);
 }
 
-/* The wordings that teach have their sentences in several lists, by kind. */
+/* Each sentence of all kinds is as likely. */
 static const char *pick_sentence(struct making *m)
 {
-	static const struct example_list *const kinds[] = {
-		&example_sentences, &example_questions, &example_sets, &example_told};
-	int n = 0, k;
+	const struct example_list *const *kinds = m->w->sentences;
+	const int most = (int)(sizeof m->w->sentences / sizeof *m->w->sentences);
+	int n = 0, i = 0;
 
-	if (m->w->sentences != &example_sentences)
-		return making_pick(m, m->w->sentences);
-	for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-		n += kinds[i]->n;
-	k = (int)rng_below(m->r, (uint32_t)n);
-	for (size_t i = 0;; k -= kinds[i++]->n)
-		if (k < kinds[i]->n)
-			return kinds[i]->item[k];
+	for (int k = 0; k < most && kinds[k]; k++)
+		n += kinds[k]->n;
+	int pick = (int)rng_below(m->r, (uint32_t)n);
+	while (pick >= kinds[i]->n)
+		pick -= kinds[i++]->n;
+	return kinds[i]->item[pick];
 }
 
 void example_make(struct example *x, enum examples_set set, const char *pieces, struct rng *r)

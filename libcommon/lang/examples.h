@@ -74,7 +74,8 @@ struct example_wordings {
 	const struct example_clauses *travelled;   /* on the way from what was spoken of: "go left" */
 	const struct example_clauses *inverted;	   /* after "which noun": "is @ standing next to" */
 	const struct example_clauses *before;	   /* adjectives that place or size: "left", "smallest" */
-	const struct example_list *sentences, *functions;
+	const struct example_list *sentences[4];   /* by kind; NULL where there are no more */
+	const struct example_list *functions;
 	const struct example_talk *talk; /* NULL: none */
 };
 extern const struct example_wordings example_wordings_train, example_wordings_test;

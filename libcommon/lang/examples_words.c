@@ -408,4 +408,5 @@ static const struct example_clauses list_of_placed = LIST(placed);
 
 const struct example_wordings example_wordings_train = {&list_of_placed, &example_having, &example_turned,
 	&example_back, &example_back_to_two, &example_travelled, &example_inverted, &example_before,
-	&example_sentences, &example_functions, &example_talk};
+	{&example_sentences, &example_questions, &example_sets, &example_told}, &example_functions,
+	&example_talk};

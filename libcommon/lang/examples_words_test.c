@@ -124,4 +124,4 @@ static const struct example_list list_of_sentences = LIST(sentences_test),
 
 const struct example_wordings example_wordings_test = {CLAUSES(placed_test), CLAUSES(having_test),
 	CLAUSES(turned_test), CLAUSES(back_test), CLAUSES(back_to_two_test), NULL, CLAUSES(inverted_test),
-	CLAUSES(before_test), &list_of_sentences, &list_of_functions, NULL};
+	CLAUSES(before_test), {&list_of_sentences}, &list_of_functions, NULL};
