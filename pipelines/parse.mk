@@ -5,12 +5,12 @@
 # makes $(OUT)/parser.safetensors. `make -f pipelines/parse.mk folds` makes $(OUT)/folds.jsonl, parses of the readings'
 # sentences by weights that saw no sentence of their room (FOLDS, 3), and $(OUT)/folds-blind.jsonl, the same without the grammar.
 #
-# EXAMPLES (32000) sentences, SEED (1), EPOCHS (8), MEMBERS (4) networks, SOURCE what the weights say that they were learnt from, BERT the encoder's folder.
+# EXAMPLES (20000) sentences, SEED (1), EPOCHS (4), MEMBERS (2) networks, SOURCE what the weights say that they were learnt from, BERT the encoder's folder.
 OUT ?= work/parse
-EXAMPLES ?= 32000
+EXAMPLES ?= 20000
 SEED ?= 1
-EPOCHS ?= 8
-MEMBERS ?= 4
+EPOCHS ?= 4
+MEMBERS ?= 2
 FOLDS ?= 3
 SOURCE ?= the example sentences of refersplat
 BERT ?= $(HOME)/.cache/refersplat/encoder

@@ -113,6 +113,7 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 		return;
 	double *value = meaning_add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
 	memset(value, 0, n * sizeof *value);
+	m->vocabulary->of_several = p->phrases[phrase].count != PARSE_ONE;
 	if (is_blue_green(p, word)) {
 		vocabulary_colour(m->vocabulary, m->arrangement, "teal", match);
 		memcpy(value, match, n * sizeof *value);
@@ -122,6 +123,7 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(value[o], match[o]);
 	}
+	m->vocabulary->of_several = 0;
 	for (size_t o = 0; o < n; o++) {
 		value[o] = COLOUR_LEAST + (1 - COLOUR_LEAST) * value[o];
 		there[o] *= value[o];

@@ -59,6 +59,7 @@ struct vocabulary {
 					 caller to set */
 	int has_said;	 /* whether colours and relations that training sentences give an object count: 1,
 			    likewise */
+	int of_several;	 /* whether a colour is asked of each of several things: 0, for the caller to set */
 	size_t without;	 /* the training sentence whose words do not count, for the caller to set; R: none */
 	double *scratch; /* (width) */
 	float *about;	 /* (O,width) of length 1: of each object's nouns */

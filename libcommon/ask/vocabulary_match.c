@@ -280,8 +280,9 @@ int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, c
 	if (colour < 0)
 		return 0;
 	said_colours(v, colour, fit, v->other);
-	/* where another thing is called so, what it is called itself counts more */
-	const double less = largest(fit, a->n) > COLOUR_SAID ? OTHER_COLOUR_THERE : OTHER_COLOUR;
+	/* of several, where another thing is called so, what it is called itself counts more */
+	const double less =
+		v->of_several && largest(fit, a->n) > COLOUR_SAID ? OTHER_COLOUR_THERE : OTHER_COLOUR;
 	for (size_t o = 0; o < a->n; o++) {
 		const double share = a->objects[o].colours[colour];
 		const double looks = share / (share + COLOUR_SHARE);

@@ -4,9 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The share of sentences that have talk around them, and of those in which one stops to think. */
+/* The share of sentences that have talk around them. */
 #define TALK 0.25
-#define HESITATION 0.05
 
 static const char *target_noun(struct making *m)
 {
@@ -64,20 +63,6 @@ static void one_of_look(struct making *m, enum word_role role)
 		making_clause(m, role == ROLE_TARGET ? ROOT : last, FORM_PLACED | FORM_HAVING, 0);
 }
 
-/* One of the target's kind that is left out: "the red one", "the cup on the left". */
-static void one_left_out(struct making *m)
-{
-	int at;
-
-	if (making_chance(m, 0.5)) {
-		one_of_look(m, ROLE_EXCEPT);
-		return;
-	}
-	at = making_noun_phrase(m, ROLE_EXCEPT, ROOT, target_noun(m), 0, making_follows_article(m));
-	if (making_chance(m, 0.7))
-		making_clause(m, at, FORM_PLACED | FORM_HAVING, 0);
-}
-
 static const struct example_clause *pick_clause(struct making *m, const struct example_clauses *of)
 {
 	return &of->item[rng_below(m->r, (uint32_t)of->n)];
@@ -96,67 +81,11 @@ static void points_back(struct making *m, const struct example_clauses *of)
 		m->word[m->spoken_of[k]].head = at;
 }
 
-/* "@ stands on", of a clause that is turned round: "that @ stands on". */
-static void turned_round(struct making *m)
-{
-	struct example_clause c = *pick_clause(m, m->w->turned);
-
-	if (!strncmp(c.text, "that", 4))
-		c.text = strchr(c.text, ' ') + 1;
-	making_expand(m, &c, ROOT, 0, 0);
-}
-
-/* "write with", of what a thing is for: "to write with". */
-static void use(struct making *m)
-{
-	struct example_clause c = {PARSE_OTHER, 0, ""};
-
-	for (int tries = 0; strncmp(c.text, "to ", 3) != 0 && tries < 200; tries++)
-		c.text = making_pick(m, m->w->functions);
-	if (!strncmp(c.text, "to ", 3))
-		c.text += 3;
-	making_expand(m, &c, ROOT, 0, 0);
-}
-
-/* "*supports:on": a predicate of the target. The anchors that wait are its own; where none does, the next
- * ones are. */
-static void predicate(struct making *m, const char *p, size_t length)
-{
-	const size_t colon = strcspn(p, ":");
-	char name[MADE_LENGTH];
-	int at;
-
-	snprintf(name, sizeof name, "%.*s", (int)colon - 1, p + 1);
-	at = making_put_choice(m, p + colon + 1, length - colon - 1);
-	m->word[at].role = ROLE_PREDICATE;
-	m->word[at].relation = (enum parse_relation)parse_relation_find(name);
-	for (int k = 0; k < m->spoken; k++)
-		m->word[m->spoken_of[k]].head = at;
-	m->spoken_for = m->spoken ? 0 : at + 1;
-}
-
-/* What a story is about is nothing that is meant. */
-static void story_thing(struct making *m, int is_plural)
-{
-	int first = m->n;
-
-	making_noun_phrase(m, ROLE_ANCHOR, ROOT, making_pick(m, m->nouns), is_plural, 0);
-	making_mark(m, first, m->n, ROLE_NONE, ROOT);
-}
-
 /* 1 where the symbol was one. */
 static int symbol(struct making *m, const char *p, size_t length, int before_sure)
 {
 	if (length == 2 && p[0] == 'C' && p[1] == '2') {
 		making_clause(m, ROOT, FORM_PLACED, 1);
-		return 1;
-	}
-	if (length == 2 && p[0] == 'X' && p[1] == '2') {
-		one_left_out(m);
-		return 1;
-	}
-	if (*p == '*') {
-		predicate(m, p, length);
 		return 1;
 	}
 	if (length != 1)
@@ -214,32 +143,21 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 		return 1;
 	case 'B': {
 		const int at = making_anchor(m, ROLE_ANCHOR, making_chance(m, 0.4));
-		if (m->spoken_for)
-			m->word[at].head = m->spoken_for - 1;
-		else if (m->spoken < 2)
+		if (m->spoken < 2)
 			m->spoken_of[m->spoken++] = at;
 		return 1;
 	}
 	case 'D':
-		points_back(m, m->w->back);
+		points_back(m, &m->w->back);
 		return 1;
 	case 'P':
-		points_back(m, m->w->back_to_two);
+		points_back(m, &m->w->back_to_two);
 		return 1;
 	case 'R':
-		points_back(m, m->w->travelled);
+		points_back(m, &m->w->travelled);
 		return 1;
 	case 'G':
-		making_expand(m, pick_clause(m, m->w->inverted), ROOT, 0, 0);
-		return 1;
-	case 'K':
-		turned_round(m);
-		return 1;
-	case 'f':
-		use(m);
-		return 1;
-	case '0':
-		story_thing(m, 0);
+		making_expand(m, pick_clause(m, &m->w->inverted), ROOT, 0, 0);
 		return 1;
 	case 'W':
 		making_clause(m, ROOT, FORM_WITH, 0);
@@ -259,7 +177,7 @@ static int symbol(struct making *m, const char *p, size_t length, int before_sur
 static int stands_for_target(const char *word)
 {
 	static const char *const words[] = {"thing", "things", "everything", "object", "objects", "item",
-		"items", "stuff", "something", "anything", "whatever", "thingy", NULL};
+		"items", "stuff", "something", "anything", "whatever", NULL};
 
 	for (int i = 0; words[i]; i++)
 		if (!strcmp(word, words[i]))
@@ -269,15 +187,9 @@ static int stands_for_target(const char *word)
 
 static void sentence(struct making *m, const char *text)
 {
-	char before = 0;
-
 	for (const char *p = text; *p;) {
 		size_t length = strcspn(p, " ");
-		/* "the red" has its article, and "what" is one before a noun */
-		const int is_begun = before == 'q' || before == 'A' || making_follows_article(m) ||
-				     (m->n && !strcmp(m->word[m->n - 1].text, "what"));
-		before = length == 1 ? *p : 0;
-		if (!symbol(m, p, length, is_begun)) {
+		if (!symbol(m, p, length, making_follows_article(m))) {
 			int first = m->n;
 			making_put_choice(m, p, length);
 			for (int i = first; i < m->n; i++)
@@ -293,7 +205,7 @@ static void sentence(struct making *m, const char *text)
 static void whole(struct making *m, const char *text)
 {
 	/* the target's noun may stand after "the one", which is the target only where none does */
-	m->has_noun = strpbrk(text, "NL") != NULL || !strncmp(text, "n ", 2);
+	m->has_noun = strpbrk(text, "NL") != NULL || strchr(text, 'n') == text;
 	sentence(m, text);
 }
 
@@ -302,6 +214,15 @@ static void chatter(struct making *m, const struct example_list *list)
 {
 	m->has_noun = 1;
 	sentence(m, making_pick(m, list));
+}
+
+/* What a story is about is nothing that is meant. */
+static void story_thing(struct making *m)
+{
+	int first = m->n;
+
+	making_noun_phrase(m, ROLE_ANCHOR, ROOT, making_pick(m, m->nouns), making_chance(m, 0.3), 0);
+	making_mark(m, first, m->n, ROLE_NONE, ROOT);
 }
 
 static void tell(struct making *m, const struct example_list *list)
@@ -314,7 +235,7 @@ static void tell(struct making *m, const struct example_list *list)
 		making_put_choice(m, p, length);
 		if (m->n == first + 1 && !strcmp(m->word[first].text, "0")) {
 			m->n = first;
-			story_thing(m, making_chance(m, 0.3));
+			story_thing(m);
 		}
 		p += length;
 		p += *p == ' ';
@@ -368,31 +289,14 @@ static void misspell(struct making *m, char *w)
 	}
 }
 
-/* Before which word one stops to think, or -1. */
-static int hesitation(struct making *m)
-{
-	if (m->n < 2 || !making_chance(m, HESITATION))
-		return -1;
-	const int i = 1 + (int)rng_below(m->r, (uint32_t)m->n - 1);
-	const struct made *before = &m->word[i - 1], *w = &m->word[i];
-
-	return isalpha((unsigned char)w->text[0]) && isalpha((unsigned char)before->text[0]) &&
-			       before->role != ROLE_NAME && strcmp(w->text, "n't") != 0
-		       ? i
-		       : -1;
-}
-
 static void write_text(struct making *m, struct example *x)
 {
-	static const char *const thinking[] = {"um", "uh", "er,", "erm", "hmm,", "eh", "you know,", "like,",
-		"well,", "i mean", "let me think,", "how do you say,", "what's it called,"};
-	const int stopping = hesitation(m);
 	int at = 0, capital = making_chance(m, 0.6), stops = making_chance(m, 0.75),
 	    slips = making_chance(m, 0.08);
 
 	for (int i = 0; i < m->n; i++) {
 		struct made *w = &m->word[i];
-		int is_pause = strlen(w->text) == 1 && strchr(",.?!;:", w->text[0]);
+		int is_pause = !strcmp(w->text, ",") || !strcmp(w->text, ".") || !strcmp(w->text, "?");
 		if (slips && making_chance(m, 0.2))
 			misspell(m, w->text);
 		if (is_pause && !stops)
@@ -401,11 +305,8 @@ static void write_text(struct making *m, struct example *x)
 			w->begin = -1;
 			continue;
 		}
-		if (at + 2 * MADE_LENGTH + 2 > EXAMPLE_LENGTH)
+		if (at + MADE_LENGTH + 2 > EXAMPLE_LENGTH)
 			break;
-		if (i == stopping)
-			at += sprintf(x->text + at, stops ? ", %s" : " %s",
-				thinking[rng_below(m->r, sizeof thinking / sizeof *thinking)]);
 		if (at && !is_pause && w->text[0] != '\'' && strcmp(w->text, "n't") != 0)
 			x->text[at++] = ' ';
 		w->begin = at;
@@ -441,21 +342,6 @@ static void analyse(const struct making *m, struct example *x, const char *piece
 	analysis_repair(&x->analysis);
 }
 
-/* Each sentence of all kinds is as likely. */
-static const char *pick_sentence(struct making *m)
-{
-	const struct example_list *const *kinds = m->w->sentences;
-	const int most = (int)(sizeof m->w->sentences / sizeof *m->w->sentences);
-	int n = 0, i = 0;
-
-	for (int k = 0; k < most && kinds[k]; k++)
-		n += kinds[k]->n;
-	int pick = (int)rng_below(m->r, (uint32_t)n);
-	while (pick >= kinds[i]->n)
-		pick -= kinds[i++]->n;
-	return kinds[i]->item[pick];
-}
-
 void example_make(struct example *x, enum examples_set set, const char *pieces, struct rng *r)
 {
 	struct making m = {.w = set == EXAMPLES_TEST ? &example_wordings_test : &example_wordings_train,
@@ -466,7 +352,7 @@ void example_make(struct example *x, enum examples_set set, const char *pieces, 
 	if (m.w->talk && making_chance(&m, TALK))
 		talk(&m);
 	else
-		whole(&m, pick_sentence(&m));
+		whole(&m, making_pick(&m, m.w->sentences));
 	write_text(&m, x);
 	analyse(&m, x, pieces);
 }

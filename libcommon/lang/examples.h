@@ -23,7 +23,7 @@ struct example {
 void example_make(struct example *x, enum examples_set set, const char *pieces, struct rng *r);
 
 /* clang-format off */
-/* The wordings, in examples_words.c, examples_words_test.c and where their lists are declared below. A template is
+/* The wordings, in examples_words.c, examples_sentences.c, examples_talk.c and examples_words_test.c. A template is
  * words with a blank between; "a|b" is a choice, "_" a blank within one.
  *
  * In clauses:
@@ -35,14 +35,11 @@ void example_make(struct example *x, enum examples_set set, const char *pieces, 
  * In whole sentences:
  *   T   the target with its clauses; N without; n its noun again, or "one"; L several of its noun
  *   U   a target of no noun ("the one") with its clauses; Q "the red one" that is meant
- *   S   a further target; O a further "red one"; V what is faced or stood at
- *   X   what is left out; X2 what is of the target's kind: "the red one", "the cup on the left"
- *   0   a thing that is not meant and says nothing of what is
+ *   S   a further target; O a further "red one"; X what is left out; V what is faced or stood at
  *   C   a clause as after "is"; C2 one that is denied; H one with "has"; W one with "with"
  *   A   a size or place adjective; q a word of its look
- *   F   what a thing is for ("to write with"), all predicates of PARSE_OTHER; f without "to"
- *   G   a question turned round after the noun: "is @ next to"; K no question: "@ stands on"
- *   *supports:on  the word of a predicate and its relation; of the B before it, else of those after it
+ *   F   what a thing is for ("to write with"), all predicates of PARSE_OTHER
+ *   G   a question turned round after the noun: "is @ next to"
  *   B   an anchor that a later word points back to: D "near it", P "between them" for two, R where one goes from it
  *       ("start at the box, go left")
  *   ,.? punctuation */
@@ -66,29 +63,21 @@ struct example_talk {
 	struct example_list subjects, deeds, tails, links, requests; /* of a story that comes first */
 };
 struct example_wordings {
-	const struct example_clauses *placed;	   /* after a noun, "that is" or "it is" */
-	const struct example_clauses *having;	   /* after $ in its place, or "has" */
-	const struct example_clauses *turned;	   /* after a noun as a relative clause: "that @ is on" */
-	const struct example_clauses *back;	   /* of what was spoken of: "near it" */
-	const struct example_clauses *back_to_two; /* of two things spoken of: "between them" */
-	const struct example_clauses *travelled;   /* on the way from what was spoken of: "go left" */
-	const struct example_clauses *inverted;	   /* after "which noun": "is @ standing next to" */
-	const struct example_clauses *before;	   /* adjectives that place or size: "left", "smallest" */
-	const struct example_list *sentences[4];   /* by kind; NULL where there are no more */
-	const struct example_list *functions;
+	struct example_clauses placed;	    /* after a noun, "that is" or "it is" */
+	struct example_clauses having;	    /* after $ in its place, or "has" */
+	struct example_clauses turned;	    /* after a noun as a relative clause: "that @ is on" */
+	struct example_clauses back;	    /* of what was spoken of: "near it" */
+	struct example_clauses back_to_two; /* of two things spoken of: "between them" */
+	struct example_clauses travelled;   /* on the way from what was spoken of: "go left" */
+	struct example_clauses inverted;    /* after "which noun": "is @ standing next to" */
+	struct example_clauses before;	    /* adjectives that place or size: "left", "smallest" */
+	const struct example_list *sentences, *functions;
 	const struct example_talk *talk; /* NULL: none */
 };
 extern const struct example_wordings example_wordings_train, example_wordings_test;
 
-/* In examples_clauses.c. */
-extern const struct example_clauses example_having, example_turned, example_back, example_back_to_two,
-	example_travelled, example_inverted, example_before;
 /* In examples_sentences.c. */
-extern const struct example_list example_sentences;
-/* More sentences to learn from, by kind, in examples_questions.c, examples_sets.c, examples_told.c. */
-extern const struct example_list example_questions, example_sets, example_told;
-/* In examples_functions.c. */
-extern const struct example_list example_functions;
+extern const struct example_list example_sentences, example_functions;
 /* In examples_talk.c. */
 extern const struct example_talk example_talk;
 /* In examples_nouns.c. */

@@ -76,7 +76,7 @@ static void make_plural(char *noun)
 
 void making_put_before(struct making *m, int *list, int *count)
 {
-	const struct example_clause *c = &m->w->before->item[rng_below(m->r, (uint32_t)m->w->before->n)];
+	const struct example_clause *c = &m->w->before.item[rng_below(m->r, (uint32_t)m->w->before.n)];
 	const char *star = strchr(c->text, '*');
 	size_t length = strcspn(star + 1, " ");
 	int i;
@@ -180,9 +180,7 @@ int making_noun_phrase(
 int making_follows_article(const struct making *m)
 {
 	static const char *const words[] = {"the", "a", "this", "that", "all", "every", "each", "other",
-		"same", "correct", "which", "whichever", "first", "second", "third", "fourth", "fifth",
-		"last", "any", "2nd", "3rd", "4th", "no", "an", "my", "our", "your", "some", "another",
-		"only", "sole", "single", "remaining", "their"};
+		"same", "correct", "which", "first", "second", "third", "fourth", "last", "any", "2nd", "no"};
 
 	for (size_t i = 0; m->n && i < sizeof words / sizeof *words; i++)
 		if (!strcmp(m->word[m->n - 1].text, words[i]))
@@ -199,13 +197,10 @@ void making_function(struct making *m, int figure)
 
 int making_anchor(struct making *m, enum word_role role, int may_nest)
 {
-	const int of_two = m->n && !strcmp(m->word[m->n - 1].text, "two"); /* "between the two chairs" */
 	int head, first = m->n;
 
 	m->depth++;
-	if (of_two) {
-		head = making_noun_phrase(m, role, ROOT, making_pick(m, m->nouns), 1, 1);
-	} else if (making_chance(m, 0.05)) { /* "the red one", "it" names nothing */
+	if (making_chance(m, 0.05)) { /* "the red one", "it" names nothing */
 		making_put_any(m, "the|the|that|another");
 		if (making_chance(m, 0.6))
 			making_put_any(m, making_pick(m, &example_attributes));
@@ -313,22 +308,6 @@ static void put_pose(struct making *m, int is_relative)
 			: "standing|lying|resting|placed|located|positioned|found|set_down|put|kept|seen");
 }
 
-static int starts_with(const char *text, const char *beginning)
-{
-	return !strncmp(text, beginning, strlen(beginning));
-}
-
-/* Whether "standing" may come before a clause: not before "not on it", "the largest", "perched on it". */
-static int may_be_posed(const char *text)
-{
-	const size_t n = strcspn(text, "| ");
-
-	if (strchr("*^", text[0]) || starts_with(text, "not ") || starts_with(text, "the ") ||
-		starts_with(text, "that "))
-		return 0;
-	return n < 5 || (strncmp(text + n - 2, "ed", 2) != 0 && strncmp(text + n - 3, "ing", 3) != 0);
-}
-
 void making_clause(struct making *m, int figure, int forms, int denied)
 {
 	const struct example_clauses *of;
@@ -336,20 +315,21 @@ void making_clause(struct making *m, int figure, int forms, int denied)
 	int tries = 0;
 
 	do {
-		of = (forms & (FORM_HAS | FORM_WITH))		       ? m->w->having
-		     : (forms & FORM_HAVING) && making_chance(m, 0.3)  ? m->w->having
-		     : (forms & FORM_TURNED) && making_chance(m, 0.12) ? m->w->turned
-								       : m->w->placed;
+		of = (forms & (FORM_HAS | FORM_WITH))		       ? &m->w->having
+		     : (forms & FORM_HAVING) && making_chance(m, 0.3)  ? &m->w->having
+		     : (forms & FORM_TURNED) && making_chance(m, 0.12) ? &m->w->turned
+								       : &m->w->placed;
 		c = &of->item[rng_below(m->r, (uint32_t)of->n)];
 	} while (((c->negated && (denied || making_chance(m, 0.5))) ||
-			 (denied && starts_with(c->text, "not ")) ||
 			 ((forms & FORM_HAS) && c->text[0] != '$')) &&
 		 ++tries < 50);
 	if (c->text[0] == '$' && !denied && !c->negated)
 		denied = making_chance(m, 0.18);
-	if (of == m->w->placed && (forms & FORM_TURNED) && making_chance(m, 0.25))
+	if (of == &m->w->placed && (forms & FORM_TURNED) && making_chance(m, 0.25))
 		making_put_any(m, ",|that_is|that_'s|which_is|it_is|that_sits");
-	else if (of == m->w->placed && may_be_posed(c->text) && making_chance(m, 0.2))
+	else if (of == &m->w->placed && !strchr("*^", c->text[0]) && strncmp(c->text, "not ", 4) != 0 &&
+		 strncmp(c->text, "the ", 4) != 0 && strncmp(c->text, "that ", 5) != 0 &&
+		 making_chance(m, 0.2))
 		put_pose(m, forms & FORM_TURNED);
 	making_expand(m, c, figure, denied, forms & FORM_HAS);
 }

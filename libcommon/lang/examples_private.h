@@ -16,7 +16,6 @@ struct making {
 	struct rng *r;
 	int n, depth, has_noun, noun, is_plural;
 	int spoken_of[2], spoken; /* anchors that wait for their predicate: "see the box ? T near it" */
-	int spoken_for;		  /* a predicate that waits for its anchors, plus 1: "on what is the box ?" */
 	struct made {
 		char text[MADE_LENGTH];
 		enum word_role role;

@@ -113,15 +113,14 @@ static const struct example_clause inverted_test[] = {
 	{PARSE_FRONT, 0, "does @ hide *behind"},
 };
 
-#define LIST(a)                                                                                              \
+#define CLAUSES(a)                                                                                           \
 	{                                                                                                    \
 		COUNT(a), a                                                                                  \
 	}
-#define CLAUSES(a) (&(const struct example_clauses)LIST(a))
 
-static const struct example_list list_of_sentences = LIST(sentences_test),
-				 list_of_functions = LIST(functions_test);
+static const struct example_list list_of_sentences = CLAUSES(sentences_test),
+				 list_of_functions = CLAUSES(functions_test);
 
 const struct example_wordings example_wordings_test = {CLAUSES(placed_test), CLAUSES(having_test),
-	CLAUSES(turned_test), CLAUSES(back_test), CLAUSES(back_to_two_test), NULL, CLAUSES(inverted_test),
-	CLAUSES(before_test), {&list_of_sentences}, &list_of_functions, NULL};
+	CLAUSES(turned_test), CLAUSES(back_test), CLAUSES(back_to_two_test), {0, NULL},
+	CLAUSES(inverted_test), CLAUSES(before_test), &list_of_sentences, &list_of_functions, NULL};
