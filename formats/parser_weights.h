@@ -8,7 +8,8 @@
 int parser_weights_read(struct parser_weights *w, const char *path, struct err *e);
 /* Those that come with the program, of all-MiniLM-L6-v2. */
 int parser_weights_default(struct parser_weights *w, struct err *e);
-/* Stored as half floats. `source`: what they were learnt from. */
+/* Matrices are rounded to 127 steps of a row's largest number, vectors to half floats. `source`: what they
+ * were learnt from. */
 int parser_weights_write(const struct parser_weights *w, const char *path, const char *options,
 	long long seed, const char *source, struct err *e);
 

@@ -1,33 +1,60 @@
-# The weights of text-parse, from example sentences and, if given, from other people's readings.
+# The weights of text-parse, from example sentences, marked ones (formats/marked.md) and, if given, from other people's readings.
 #
 #   make -f pipelines/parse.mk [READINGS=readings.jsonl READINGS_SENTENCES=sentences.jsonl] [OUT=work/parse]
 #
-# makes $(OUT)/parser.safetensors. `make -f pipelines/parse.mk folds` makes $(OUT)/folds.jsonl, parses of the readings'
-# sentences by weights that saw no sentence of their room (FOLDS, 3), and $(OUT)/folds-blind.jsonl, the same without the grammar.
+# makes $(OUT)/parser.safetensors. `make -f pipelines/parse.mk test` prints the shares of the marked sentences kept for testing that
+# are taken apart rightly, by PARSER=weights or text-parse's own. `make -f pipelines/parse.mk folds` makes $(OUT)/folds.jsonl, parses of
+# the readings' sentences by weights that saw no sentence of their room (FOLDS, 3), and $(OUT)/folds-blind.jsonl, the same without the grammar.
 #
-# EXAMPLES (20000) sentences, SEED (1), EPOCHS (4), MEMBERS (2) networks, SOURCE what the weights say that they were learnt from, BERT the encoder's folder.
+# EXAMPLES (20000) sentences, SEED (1), EPOCHS (4), MEMBERS (2) networks, MARKED and TESTS (pipelines/marked/learn/*.txt, .../test/*.txt), SOURCE
+# what the weights say that they were learnt from, BERT the encoder's folder.
+here := $(dir $(lastword $(MAKEFILE_LIST)))
 OUT ?= work/parse
 EXAMPLES ?= 20000
 SEED ?= 1
 EPOCHS ?= 4
 MEMBERS ?= 2
 FOLDS ?= 3
-SOURCE ?= the example sentences of refersplat
+MARKED ?= $(wildcard $(here)marked/learn/*.txt)
+TESTS ?= $(wildcard $(here)marked/test/*.txt)
+SOURCE ?= the example and marked sentences of refersplat
 BERT ?= $(HOME)/.cache/refersplat/encoder
-LEARN = parse-train --seed $(SEED) --epochs $(EPOCHS) --members $(MEMBERS) $(if $(READINGS),--readings $(READINGS) --readings-text $(OUT)/readings.safetensors)
-NEEDS = $(OUT)/examples.safetensors $(if $(READINGS),$(OUT)/readings.safetensors)
+LEARN = parse-train --seed $(SEED) --epochs $(EPOCHS) --members $(MEMBERS) --marked $(OUT)/marked.txt --marked-text $(OUT)/marked.safetensors \
+	$(if $(READINGS),--readings $(READINGS) --readings-text $(OUT)/readings.safetensors)
+NEEDS = $(OUT)/examples.safetensors $(OUT)/marked.safetensors $(if $(READINGS),$(OUT)/readings.safetensors)
 
 .DELETE_ON_ERROR:
-.PHONY: all folds
+.SECONDARY:
+.PHONY: all folds test
 all: $(OUT)/parser.safetensors
 folds: $(OUT)/folds.jsonl $(OUT)/folds-blind.jsonl
+
+test: $(OUT)/tests.parses.jsonl $(OUT)/tests.gold.jsonl
+	jq -rn --slurpfile gold $(OUT)/tests.gold.jsonl --slurpfile parses $(OUT)/tests.parses.jsonl -f $(here)parse-score.jq
+
+$(OUT)/marked.txt: $(MARKED)
+	@mkdir -p $(@D)
+	cat $^ >$@
+
+$(OUT)/tests.txt: $(TESTS)
+	@mkdir -p $(@D)
+	cat $^ >$@
+
+$(OUT)/%.jsonl: $(OUT)/%.txt
+	parse-train --marked $< --sentences -o $@
+
+$(OUT)/%.safetensors: $(OUT)/%.jsonl
+	text-encode --model $(BERT) -o $@ $<
+
+$(OUT)/tests.gold.jsonl: $(OUT)/tests.txt $(OUT)/tests.safetensors
+	parse-train --marked $< --marked-text $(OUT)/tests.safetensors --parses -o $@
+
+$(OUT)/tests.parses.jsonl: $(OUT)/tests.safetensors $(PARSER)
+	text-parse $(if $(PARSER),--parser $(PARSER)) -o $@ $<
 
 $(OUT)/examples.jsonl:
 	@mkdir -p $(@D)
 	parse-train --seed $(SEED) --write $(EXAMPLES) -o $@
-
-$(OUT)/examples.safetensors: $(OUT)/examples.jsonl
-	text-encode --model $(BERT) -o $@ $<
 
 $(OUT)/readings.safetensors: $(READINGS_SENTENCES)
 	@mkdir -p $(@D)

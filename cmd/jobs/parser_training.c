@@ -2,13 +2,11 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "base/rng.h"
-#include "formats/jsonl.h"
+#include "cmd/jobs/parser_lessons.h"
 #include "formats/parser_weights.h"
 #include "formats/parses.h"
 #include "formats/readings.h"
 #include "formats/text.h"
-#include "lang/examples.h"
 #include "lang/parser.h"
 #include "lang/parser_school.h"
 
@@ -16,61 +14,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-int parser_examples_write(const char *path, long long n, int is_test, long long seed, struct err *e)
-{
-	struct file_out out = {0};
-	struct rng r;
-	int bad = file_out_open(&out, path, e);
-	static struct example x;
-
-	rng_seed(&r, (uint64_t)seed, (uint64_t)is_test);
-	for (long long i = 0; i < n && !bad; i++) {
-		example_make(&x, is_test ? EXAMPLES_TEST : EXAMPLES_TRAIN, NULL, &r);
-		fprintf(out.stream, "{\"ref\":\"e%lld\",\"object\":\"example\"", i);
-		bad = jsonl_put_string(out.stream, ",\"text\":", x.text, e);
-		fprintf(out.stream, ",\"split\":\"%s\"}\n", is_test ? "test" : "train");
-	}
-	return file_out_end(&out, bad, e);
-}
-
 struct parser_training {
 	const struct parser_training_options *options;
-	struct text examples, others;
+	struct text examples, marked, others;
 	struct reading_set readings;
 	struct parser_school school;
 };
 
-/* The vectors of sentence r. */
-static const float *vectors_of(const struct text *t, size_t r, int *count)
+static int check_encoding(
+	const struct parser_training *s, const struct text *t, const char *path, struct err *e)
 {
-	*count = (int)(t->offsets[r + 1] - t->offsets[r]);
-	return t->words + (size_t)t->offsets[r] * (size_t)t->width;
-}
-
-/* Makes the examples again, to have their analyses. */
-static int take_examples(struct parser_training *s, struct err *e)
-{
-	static struct example x;
-	struct rng r;
-
-	rng_seed(&r, (uint64_t)s->options->seed, 0);
-	s->school.examples = mem_zalloc(s->examples.n, sizeof *s->school.examples, "samples", e);
-	if (!s->school.examples)
-		return -1;
-	s->school.example_count = s->examples.n;
-	for (size_t i = 0; i < s->examples.n; i++) {
-		int count;
-		const float *v = vectors_of(&s->examples, i, &count);
-		example_make(&x, EXAMPLES_TRAIN, s->examples.pieces ? s->examples.pieces[i] : NULL, &r);
-		if (!s->examples.pieces || strcmp(x.text, s->examples.texts[i]) != 0)
-			return err_set(e, ERR_FORMAT,
-				"%s: ref '%s': not what parse-train --write makes with --seed %lld",
-				s->options->examples, s->examples.refs[i], s->options->seed);
-		if (parser_sample_make(
-			    &s->school.examples[i], &x.tokens, &x.analysis, v, count, s->examples.width, e))
-			return -1;
-	}
-	return 0;
+	if (t->pieces && t->width == s->examples.width)
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: not encoded as the examples are", path);
 }
 
 static int take_readings(struct parser_training *s, struct err *e)
@@ -84,16 +40,13 @@ static int take_readings(struct parser_training *s, struct err *e)
 	c->fold = mem_zalloc(n, sizeof *c->fold, "samples", e);
 	if (!c->read || !c->readings || !c->fold)
 		return -1;
-	if (!s->others.pieces || s->others.width != s->examples.width)
-		return err_set(
-			e, ERR_FORMAT, "%s: not encoded as the examples are", s->options->readings_text);
 	c->read_count = n;
 	c->texts = s->others.texts;
 	c->pieces = s->others.pieces;
 	for (size_t i = 0; i < n; i++) {
 		const struct reading_record *r = readings_find(&s->readings, s->others.refs[i]);
 		int count;
-		const float *v = vectors_of(&s->others, i, &count);
+		const float *v = lesson_vectors(&s->others, i, &count);
 		if (!r)
 			return err_set(e, ERR_FORMAT, "%s: no reading of ref '%s'", s->options->readings,
 				s->others.refs[i]);
@@ -122,7 +75,7 @@ static int put_parses(
 		struct parser_vectors v = {.pieces = s->others.pieces[i], .width = s->others.width};
 		if (s->school.fold[i] != fold)
 			continue;
-		v.vectors = vectors_of(&s->others, i, &v.count);
+		v.vectors = lesson_vectors(&s->others, i, &v.count);
 		if (parse_sentence(&p, &parser, s->others.texts[i], &v, e))
 			return -1;
 		int bad = parses_put(out, s->others.refs[i], s->others.texts[i], &p, e);
@@ -220,16 +173,23 @@ int parser_train(const struct parser_training_options *o, const struct report *t
 			.rounds = (int)o->rounds,
 			.progress = say,
 			.context = (void *)to}};
-	int bad = text_read(&s.examples, o->examples, e) || take_examples(&s, e);
+	int bad = text_read(&s.examples, o->examples, e) ||
+		  parser_examples_take(&s.school, &s.examples, o->examples, o->seed, e);
 
+	if (!bad && o->marked)
+		bad = text_read(&s.marked, o->marked_text, e) ||
+		      check_encoding(&s, &s.marked, o->marked_text, e) ||
+		      parser_marked_take(&s.school, o->marked, &s.marked, o->marked_text, e);
 	if (!bad && o->readings)
 		bad = readings_read(&s.readings, o->readings, e) ||
-		      text_read(&s.others, o->readings_text, e) || take_readings(&s, e);
+		      text_read(&s.others, o->readings_text, e) ||
+		      check_encoding(&s, &s.others, o->readings_text, e) || take_readings(&s, e);
 	if (!bad && o->is_blind)
 		parser_school_blind(&s.school);
 	bad = bad || learn_weights(&s, e);
 	parser_school_free(&s.school);
 	text_free(&s.examples);
+	text_free(&s.marked);
 	text_free(&s.others);
 	readings_free(&s.readings);
 	return bad ? -1 : 0;

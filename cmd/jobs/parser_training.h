@@ -8,6 +8,8 @@
 
 struct parser_training_options {
 	const char *examples;		/* the encoded example sentences */
+	const char *marked;		/* people's sentences with marks; NULL: none */
+	const char *marked_text;	/* their encoded sentences */
 	const char *readings;		/* learn from these too; NULL: none */
 	const char *readings_text;	/* their encoded sentences */
 	const char *output;		/* weights, or parses where there are folds; "-" is stdout */
@@ -17,10 +19,6 @@ struct parser_training_options {
 	long long folds;		/* 0, or cross-validate in so many parts */
 	int is_blind;			/* the network is not told what the grammar says */
 };
-
-/* Writes n example sentences (JSON Lines), of the wordings for training or for testing. Returns 0, or -1 with
- * *e set. */
-int parser_examples_write(const char *path, long long n, int is_test, long long seed, struct err *e);
 
 /* Learns, and writes the weights; with folds the parses of the readings' sentences instead, each by weights
  * that saw no sentence of its part. Returns 0, or -1 with *e set. */

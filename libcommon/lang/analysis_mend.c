@@ -126,30 +126,6 @@ static void mend_pairs(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "the rug with grey stripes": where the learnt parser made nothing of "with", what the grammar makes. */
-static void mend_with(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
-{
-	int found = 0;
-
-	for (int i = 0; i < t->n; i++) {
-		found |= a->word[i].role == ROLE_TARGET;
-		if (grammar->word[i].role != ROLE_PREDICATE || grammar->word[i].relation != PARSE_WITH ||
-			a->word[i].role != ROLE_NONE)
-			continue;
-		for (int j = i + 1; j < t->n; j++) {
-			const int head = grammar->word[j].head;
-			const enum word_role r = a->word[j].role;
-			if (role_is_phrase(r) && r != ROLE_ALSO && !(found && r == ROLE_TARGET))
-				break;
-			if (head == i || (head > i && grammar->word[head].head == i &&
-						 grammar->word[j].role != ROLE_PREDICATE)) {
-				a->word[i] = grammar->word[i];
-				a->word[j] = grammar->word[j];
-			}
-		}
-	}
-}
-
 /* "under the oak top of the desk": oak is not the target, which comes before. */
 static void mend_parts(struct analysis *a, const struct tokens *t)
 {
@@ -346,7 +322,6 @@ static void mend_plus(struct analysis *a, const struct tokens *t)
 
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
-	mend_with(a, grammar, t);
 	mend_ones(a, t);
 	mend_part_of(a, t);
 	mend_later(a, t);

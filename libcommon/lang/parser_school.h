@@ -1,5 +1,5 @@
-/* The whole course of a parser: first examples whose analyses are known, then readings whose words are found
- * by the weights learnt so far. */
+/* The whole course of a parser: first examples and marked sentences, whose analyses are known, then readings
+ * whose words are found by the weights learnt so far. */
 #ifndef LANG_PARSER_SCHOOL_H
 #define LANG_PARSER_SCHOOL_H
 
@@ -9,6 +9,8 @@
 struct parser_school {
 	struct parser_sample *examples; /* (example_count) */
 	size_t example_count;
+	struct parser_sample *marked; /* (marked_count): people's sentences with marks */
+	size_t marked_count;
 	struct parser_sample *read; /* (read_count): sentences with readings; `right` is found */
 	const struct reading **readings;
 	char **texts, **pieces; /* (read_count) of these */
@@ -21,7 +23,8 @@ struct parser_school {
 };
 
 int parser_school_examples(const struct parser_school *s, struct parser_weights *w, struct err *e);
-/* Goes on from there with the readings but those of fold `without` (-1: with all), and as many examples. */
+/* Goes on from there with the readings but those of fold `without` (-1: with all), the marked sentences, and
+ * some of the examples. */
 int parser_school_readings(
 	const struct parser_school *s, struct parser_weights *w, int without, struct err *e);
 /* Takes away what the grammar says of every sentence. */

@@ -69,3 +69,50 @@ not() { ! "$@"; }
 	says 3 "parse-train: text: ref 'r0': not what parse-train --write makes with --seed 1" "$BIN/parse-train" text -o weights
 	[ ! -e weights ]
 }
+
+@test "marked sentences: their texts, their parses, and weights that learnt from them" {
+	"$BIN/parse-train" --write 60 | "$BIN/text-encode" -q --model encoder -o examples
+	printf '%s\n' '# two of them' 'the wug/T on/P1:on the dax/A1, not the red/a@X fep/X' '' 'both daxes/T' >marked
+	"$BIN/parse-train" --marked marked --sentences -o sentences
+	[ "$(jq -r '.ref + " " + .text' sentences)" = $'m0 the wug on the dax, not the red fep\nm1 both daxes' ]
+	"$BIN/gs-check" sentences
+	"$BIN/text-encode" -q --model encoder -o text sentences
+	"$BIN/parse-train" --marked marked --marked-text text --parses -o parses
+	"$BIN/gs-check" parses
+	[ "$(jq -c '[.ref, .target.noun, .clauses[]?.anchors[0].noun, .except[]?.words[0]]' parses)" = $'["m0","wug","dax","red"]\n["m1","daxes"]' ]
+	"$BIN/parse-train" --epochs 1 --members 1 examples -o without
+	for n in 1 7; do
+		"$BIN/parse-train" --threads "$n" --epochs 1 --members 1 --marked marked --marked-text text examples -o "weights$n"
+	done
+	cmp weights1 weights7
+	not cmp -s without weights1
+	# a remark, a blank line or the end of the last line changes nothing
+	printf '%s\n\n%s' 'the wug/T on/P1:on the dax/A1, not the red/a@X fep/X' 'both daxes/T' >bare
+	"$BIN/parse-train" --epochs 1 --members 1 --marked bare --marked-text text examples -o same
+	cmp weights1 same
+}
+
+@test "marked sentences: what is wrong is said, with its line" {
+	"$BIN/parse-train" --write 20 | "$BIN/text-encode" -q --model encoder -o examples
+	printf '%s\n' '# none' 'the wug/T' 'the dax/Q' >marked
+	says 3 "parse-train: marked:3: '/Q' is no mark" "$BIN/parse-train" --marked marked --sentences -o out
+	[ ! -e out ]
+	printf '%s\n' 'the wug/T' 'near/P1:near@2 dax/A1 by/P2:near@1 fep/A2' >marked
+	says 3 "parse-train: marked:2: 'near' hangs on itself, or on what has no mark" "$BIN/parse-train" --marked marked --parses -o out
+	printf '%s\n' 'the wug/T' 'the dax/T' >marked
+	encode "the wug" "the fep"
+	says 3 "parse-train: marked:2: not the sentence that was encoded at its place" \
+		"$BIN/parse-train" --marked marked --marked-text text examples -o out
+	encode "the wug"
+	says 3 "parse-train: marked:2: not the sentence that was encoded at its place" \
+		"$BIN/parse-train" --marked marked --marked-text text examples -o out
+	encode "the wug" "the dax" "the fep"
+	says 3 "parse-train: text: ref 'r2': not in marked" "$BIN/parse-train" --marked marked --marked-text text examples -o out
+	run "$BIN/parse-train" --marked marked examples -o out
+	[ "$status" = 2 ]
+	[ "${lines[0]}" = "parse-train: --marked and --marked-text go together" ]
+	run "$BIN/parse-train" --sentences examples -o out
+	[ "$status" = 2 ]
+	[ "${lines[0]}" = "parse-train: --sentences and --parses go with --marked alone" ]
+	[ ! -e out ]
+}

@@ -13,11 +13,6 @@ static void mends_all(void)
 	/* what nobody is at two of at once stays */
 	mends("the stool on the rug and the vase", ". T P . A2 . . L", PARSE_ON, 7, ROLE_ALSO, ROOT, 0);
 
-	const char *rug = "the rug with grey flowers";
-	mends(rug, ". T . a T", 0, 2, ROLE_PREDICATE, ROOT, PARSE_WITH);
-	mends(rug, ". T . a T", 0, 4, ROLE_ANCHOR, 2, 0);
-	mends(rug, ". T . a T", 0, 3, ROLE_ATTRIBUTE, 4, 0);
-
 	mends("a lamp under the oak top of the desk", ". T P . a . . . A2", PARSE_BELOW, 4, ROLE_NONE, ROOT,
 		0);
 	mends("a lamp under the oak desk", ". T P . a A2", PARSE_BELOW, 4, ROLE_ATTRIBUTE, 5, 0);
