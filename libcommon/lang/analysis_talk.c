@@ -233,6 +233,33 @@ static void mend_denied(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* Whether a word says how a thing looks, and no noun comes after it of which it says so. */
+static int is_look_alone(const struct analysis *a, const struct tokens *t, int i)
+{
+	const int is_look = i < t->n && !t->word[i].before &&
+			    (colour_word(t->word[i].text) >= 0 || tokens_class(t, i) == CLOSED_ATTRIBUTE);
+
+	return is_look && (i + 1 == t->n || t->word[i + 1].before || a->word[i + 1].role == ROLE_NONE);
+}
+
+/* "the can that isn't orange or red": what is orange is left out, and what is red. */
+static void mend_denied_looks(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		int j = i + 1;
+		while (tokens_class(t, j) == CLOSED_ADVERB)
+			j++;
+		if (tokens_class(t, i) != CLOSED_NEGATION || !is_look_alone(a, t, j))
+			continue;
+		if (a->word[j].role == ROLE_NONE)
+			a->word[j] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
+		if (a->word[j].role == ROLE_EXCEPT &&
+			(tokens_is(t, j + 1, "or") || tokens_is(t, j + 1, "nor")) &&
+			is_look_alone(a, t, j + 2))
+			a->word[j + 2] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
+	}
+}
+
 static int is_noun(const struct tokens *t, int i)
 {
 	struct wordnet_noun noun;
@@ -269,6 +296,7 @@ void analysis_talk(struct analysis *a, const struct tokens *t)
 	mend_verbs_of_pose(a, t);
 	mend_empty(a, t);
 	mend_denied(a, t);
+	mend_denied_looks(a, t);
 	mend_compounds(a, t);
 	mend_possessive(a, t);
 	mend_with_before_pause(a, t);

@@ -64,6 +64,15 @@ static void negations(void)
 	denies("the stool that isn't over to the left of the lamp", ". T . . . . . . P . . A8", PARSE_LEFT,
 		8);
 	denies("the stool with no lamp on it", ". T . . A5 P .", PARSE_SUPPORTS, 5);
+	const char *can = "the can that isn't orange or red";
+	mends(can, ". T . . . . . .", 0, 5, ROLE_EXCEPT, ROOT, 0);
+	mends(can, ". T . . . . . a", 0, 7, ROLE_EXCEPT, ROOT, 0);
+	mends("not very orange, the can", ". . . . T", 0, 2, ROLE_EXCEPT, ROOT, 0);
+	/* what is said of a noun stays */
+	mends("the can, not the orange box", ". T . . a5 E", 0, 4, ROLE_ATTRIBUTE, 5, 0);
+	mends("the can that is not by an orange box", ". T . . . P . a8 A5", PARSE_NEAR, 7, ROLE_ATTRIBUTE, 8,
+		0);
+	mends("the orange can", ". a T", 0, 1, ROLE_ATTRIBUTE, ROOT, 0);
 	const struct analysis a = mended("the stool with a lamp on it", ". T . . A5 P .", PARSE_SUPPORTS);
 	CHECK(!a.word[5].negated, "a lamp is on it");
 }
