@@ -324,9 +324,12 @@ install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 	install -m 644 README.md "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
 	install -m 644 $(wildcard formats/*.md) "$(DESTDIR)$(PREFIX)/share/doc/refersplat/formats"
 	for page in $(MAN_PAGES); do install -m 644 $$page "$(DESTDIR)$(PREFIX)/share/man/man$${page##*.}" || exit; done
-	for file in $(wildcard pipelines/*); do \
+	for file in $(filter-out pipelines/marked,$(wildcard pipelines/*)); do \
 		mode=644; [ ! -x $$file ] || mode=755; \
 		install -m $$mode $$file "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines" || exit; done
+	for part in learn test; do \
+		install -d "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines/marked/$$part" && \
+		install -m 644 pipelines/marked/$$part/*.txt "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines/marked/$$part" || exit; done
 
 uninstall: ## remove what install put there
 	rm -f $(TOOLS:%="$(DESTDIR)$(PREFIX)/bin/%") $(TOOLS:%="$(DESTDIR)$(PREFIX)/share/bash-completion/completions/%") \
