@@ -142,6 +142,21 @@ static void mend_direction(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* "in the background" is at the back, and "in the foreground" in front. */
+static void mend_grounds(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		struct analysis_word *w = &a->word[i];
+		const int is_back = tokens_is(t, i, "background");
+		if ((!is_back && !tokens_is(t, i, "foreground")) ||
+			(w->role != ROLE_NONE && w->role != ROLE_PREDICATE))
+			continue;
+		if (w->role == ROLE_NONE)
+			*w = (struct analysis_word){.role = ROLE_PREDICATE, .head = ROOT};
+		w->relation = is_back ? PARSE_BEHIND : PARSE_FRONT;
+	}
+}
+
 /* "neither on the shelf nor by the door": what comes after "nor" is said of the same thing. */
 static void mend_nor(struct analysis *a, const struct tokens *t)
 {
@@ -359,6 +374,7 @@ void analysis_reread(struct analysis *a, const struct analysis *grammar, const s
 	mend_verbs(a, t);
 	mend_both_sides(a, t);
 	mend_direction(a, t);
+	mend_grounds(a, t);
 	mend_nor(a, t);
 	mend_neither(a, t);
 	mend_there_is(a, t);

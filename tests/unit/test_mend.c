@@ -17,6 +17,12 @@ static void mends_all(void)
 		0);
 	mends("a lamp under the oak desk", ". T P . a A2", PARSE_BELOW, 4, ROLE_ATTRIBUTE, 5, 0);
 
+	mends("a plate in the background", ". T . . P", PARSE_FRONT, 4, ROLE_PREDICATE, ROOT, PARSE_BEHIND);
+	mends("a plate in the background", ". T . . .", 0, 4, ROLE_PREDICATE, ROOT, PARSE_BEHIND);
+	mends("a plate by the cup in the foreground", ". T P . A2 . . P4", PARSE_BEHIND, 7, ROLE_PREDICATE, 4,
+		PARSE_FRONT);
+	mends("a plate with a red background", ". T P . a5 A2", PARSE_WITH, 5, ROLE_ANCHOR, 2, 0);
+
 	const char *sofa = "the chair at the greatest distance from the sofa";
 	mends(sofa, ". T . . . P . . A5", PARSE_NEAR, 4, ROLE_PREDICATE, ROOT, PARSE_FAR);
 	mends(sofa, ". T . . . P . . A5", PARSE_NEAR, 8, ROLE_ANCHOR, 4, 0);
