@@ -12,6 +12,16 @@
 #include <stdio.h>
 #include <string.h>
 
+/* A sentence to encode. */
+static int put_record(
+	FILE *out, char kind, long long number, const char *text, const char *split, struct err *e)
+{
+	fprintf(out, "{\"ref\":\"%c%lld\",\"object\":\"example\"", kind, number);
+	int bad = jsonl_put_string(out, ",\"text\":", text, e);
+	fprintf(out, ",\"split\":\"%s\"}\n", split);
+	return bad;
+}
+
 int parser_examples_write(const char *path, long long n, int is_test, long long seed, struct err *e)
 {
 	struct file_out out = {0};
@@ -22,9 +32,7 @@ int parser_examples_write(const char *path, long long n, int is_test, long long 
 	rng_seed(&r, (uint64_t)seed, (uint64_t)is_test);
 	for (long long i = 0; i < n && !bad; i++) {
 		example_make(&x, is_test ? EXAMPLES_TEST : EXAMPLES_TRAIN, NULL, &r);
-		fprintf(out.stream, "{\"ref\":\"e%lld\",\"object\":\"example\"", i);
-		bad = jsonl_put_string(out.stream, ",\"text\":", x.text, e);
-		fprintf(out.stream, ",\"split\":\"%s\"}\n", is_test ? "test" : "train");
+		bad = put_record(out.stream, 'e', i, x.text, is_test ? "test" : "train", e);
 	}
 	return file_out_end(&out, bad, e);
 }
@@ -104,10 +112,7 @@ static int put_sentence(void *out, const struct marked *m, const struct tokens *
 	size_t i, struct err *e)
 {
 	(void)t, (void)a;
-	fprintf(out, "{\"ref\":\"m%zu\",\"object\":\"example\"", i);
-	int bad = jsonl_put_string(out, ",\"text\":", m->text, e);
-	fprintf(out, ",\"split\":\"train\"}\n");
-	return bad;
+	return put_record(out, 'm', (long long)i, m->text, "train", e);
 }
 
 static int put_parse(void *out, const struct marked *m, const struct tokens *t, const struct analysis *a,

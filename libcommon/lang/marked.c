@@ -24,6 +24,8 @@ static const char *read_name(const char *s, struct mark_name *name)
 	for (size_t i = 0; i < sizeof letters / sizeof *letters; i++)
 		if (*s == letters[i].letter) {
 			name->role = letters[i].role;
+			if (name->role == ROLE_TARGET) /* there is one */
+				return s + 1;
 			name->number = (int)strtol(s + 1, &end, 10);
 			return end;
 		}

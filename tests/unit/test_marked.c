@@ -112,6 +112,8 @@ static void test_errors(void)
 	fails("mug/Q", "'/Q' is no mark");
 	fails("mug/", "'/' is no mark");
 	fails("mug/T1x", "'/T1x' is no mark");
+	fails("mug/T cup/T2", "'/T2' is no mark");
+	fails("mug/T red/a@T2", "'/a@T2' is no mark");
 	fails("mug/T near/P1:nearby", "'/P1:nearby' is no mark");
 	fails("mug/T near/P1", "'/P1' is no mark");
 	fails("mug/T cup/T", "mark '/T' appears twice");
