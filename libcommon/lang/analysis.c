@@ -72,3 +72,11 @@ void analysis_repair(struct analysis *a)
 			}
 	}
 }
+
+int analysis_has_anchor(const struct analysis *a, int predicate)
+{
+	for (int i = 0; i < a->n; i++)
+		if (a->word[i].role == ROLE_ANCHOR && a->word[i].head == predicate)
+			return 1;
+	return 0;
+}

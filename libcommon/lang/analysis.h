@@ -48,24 +48,16 @@ void grammar_analyse(struct analysis *a, const struct tokens *t);
 /* Makes every head one that its role may have, without a circle; what then hangs on nothing hangs on ROOT. */
 void analysis_repair(struct analysis *a);
 
-/* What closed-class words settle whatever was made of them: sizes before a noun, who looks, "not the one",
- * pairs of anchors, parts of things. grammar: what grammar_analyse made. */
+/* What closed-class words settle whatever was made of them: what is denied of looks, what a look is said of,
+ * and places. grammar: what grammar_analyse made. */
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
 
-/* A part of analysis_mend: words that were taken for something else. */
-void analysis_reread(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
-/* Another: each thing of a list with commas is meant. */
-void analysis_lists(struct analysis *a, const struct tokens *t);
-/* Another: places that are said twice, and what "it" is. */
-void analysis_places(struct analysis *a, const struct tokens *t);
-/* Another: compounds, what "with" has, poses, what is denied. */
-void analysis_talk(struct analysis *a, const struct tokens *t);
-/* Another: what a sentence introduces for the next one. */
-void analysis_sentences(struct analysis *a, const struct tokens *t);
-/* "it" after a place without an anchor: "to the side of it"; or -1. */
-int analysis_it_after(const struct analysis *a, const struct tokens *t, int predicate);
-/* Whether a word says that something has something: "has", "with", "without". */
-int analysis_has(const struct tokens *t, int i);
+/* A part of analysis_mend: who looks, corners, places that are said twice. */
+void analysis_places(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
+
+/* Another: what "it" is, what stands by itself, "a book behind it". */
+void analysis_it(struct analysis *a, const struct tokens *t);
+
 /* Whether there is such a word and it is a predicate. */
 int analysis_is_predicate(const struct analysis *a, int i);
 /* Whether a word is the predicate of an anchor. */
