@@ -101,15 +101,13 @@ int spelling_repair(const char *word, const char *const *known, int known_count,
 {
 	char lemma[TOKEN_LENGTH];
 	struct suspect s = {word, 6, right};
-	struct wordnet_noun sense;
 
 	if (strlen(word) < 3 || strlen(word) > SPELLING_LENGTH - 3 || isdigit((unsigned char)word[0]))
 		return 0;
 	token_lemma(word, lemma);
 	if (is_known(word, lemma, known, known_count))
 		return 0;
-	wordnet_find(&sense, lemma);
-	if (wordnet_is_there() && !sense.n)
+	if (wordnet_is_there() && !wordnet_is_noun(lemma))
 		s.least = 5;
 	for (int i = 0; i < known_count; i++)
 		if (is_slip_of_noun(&s, known[i]))

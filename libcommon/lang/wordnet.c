@@ -52,6 +52,13 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma)
 		climb(to, senses[i], 0, i);
 }
 
+int wordnet_is_noun(const char *lemma)
+{
+	long sense;
+
+	return synsets_of(lemma, NOUN, &sense, 1) > 0;
+}
+
 static void add_near(struct wordnet_adjective *to, long synset, int distance)
 {
 	for (int i = 0; i < to->n; i++)
@@ -107,6 +114,12 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma)
 {
 	(void)lemma;
 	to->n = 0;
+}
+
+int wordnet_is_noun(const char *lemma)
+{
+	(void)lemma;
+	return 0;
 }
 #endif
 

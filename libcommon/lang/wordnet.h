@@ -23,6 +23,9 @@ int wordnet_is_there(void);
 /* Fills `to`, with n = 0 where the lemma is no noun that is known. Words are joined by '_'. */
 void wordnet_find(struct wordnet_noun *to, const char *lemma);
 
+/* Whether the lemma is a noun that is known: wordnet_find without what it is a kind of. */
+int wordnet_is_noun(const char *lemma);
+
 /* Whether a thing called `known` may be called `word`, in [0,1]: 1 for the same sense, less for what it is a
  * kind of ("vessel" for a mug) or what is a kind of it ("hardback" for a book), the less the more steps away
  * and the rarer the sense; 0 otherwise. Where `known` is general, its kinds do not count. */
