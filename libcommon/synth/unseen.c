@@ -98,7 +98,7 @@ static int make_stands(struct stands *s, const struct synth_object *objects, int
 		v->visible = 0;
 		for (int k = 0; k < n; k++)
 			v->visible |=
-				(uint32_t)(visible[k] >= LEAST_CELLS && visible[k] >= least_seen * whole[k])
+				(uint64_t)(visible[k] >= LEAST_CELLS && visible[k] >= least_seen * whole[k])
 				<< k;
 		s->camera[s->n++] = (int)i;
 	}
@@ -145,7 +145,7 @@ static int add(struct maker *m, const struct synth_unseen *x, struct err *e)
 static int is_idle(const struct synth_stand *s, const struct synth_unseen *x)
 {
 	struct synth_unseen bare = *x;
-	uint32_t set;
+	uint64_t set;
 
 	bare.phrases[0].clause_count = 0;
 	return x->phrases[0].clause_count && !synth_unseen_resolve(s, &bare, 0, 0, &set);
@@ -228,7 +228,7 @@ static int make_kind(struct maker *m, enum synth_unseen_kind kind, struct err *e
 }
 
 /* The first view in which the same words plainly mean something else that is to be seen; -1. */
-static int other_view(const struct maker *m, const struct synth_unseen *x, uint32_t *objects)
+static int other_view(const struct maker *m, const struct synth_unseen *x, uint64_t *objects)
 {
 	for (int i = 0; i < m->stands->n; i++)
 		if (m->stands->camera[i] != x->view &&
@@ -257,7 +257,7 @@ static int make_views(struct maker *m, struct err *e)
 
 	for (int i = 0, made = 0; made < m->wanted && i < TRIES && s->n; i++) {
 		int at = (int)rng_below(&m->rng, (uint32_t)s->n);
-		uint32_t other;
+		uint64_t other;
 		if (draft(m, SYNTH_UNSEEN_VIEW, &s->views[at], i % s->views[at].n, &d))
 			continue;
 		d.x.view = s->camera[at];

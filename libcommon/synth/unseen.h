@@ -69,7 +69,7 @@ struct synth_unseen_clause {
 struct synth_unseen {
 	enum synth_unseen_kind kind;
 	int view;	  /* the camera whose picture it is said of; -1: the reference viewpoint */
-	uint32_t objects; /* those that it means, a bit each */
+	uint64_t objects; /* those that it means, a bit each */
 	char ref[32];
 	char text[SYNTH_UNSEEN_TEXT];
 	int phrase_count, clause_count;

@@ -71,13 +71,13 @@ static void describe(struct synth_unseen_draft *d, int phrase, int object, int c
 static int name_anchor(struct synth_unseen_draft *d, int object)
 {
 	int phrase = new_phrase(d);
-	uint32_t set;
+	uint64_t set;
 
 	for (int i = 0; i < 6 && phrase >= 0; i++) {
 		d->x.phrases[phrase] = (struct synth_unseen_phrase){
 			.noun = "", .plural = "", .count = PARSE_ONE, .sense = anything};
 		describe(d, phrase, object, 30 * i + 20, 15 * i, 0);
-		if (!synth_unseen_resolve(d->stand, &d->x, phrase, 0, &set) && set == BIT(object))
+		if (!synth_unseen_resolve(d->stand, &d->x, phrase, 0, &set) && set == (uint64_t)1 << object)
 			return phrase;
 	}
 	return -1;

@@ -12,7 +12,7 @@ void synth_stand_camera(struct synth_stand *s, const struct synth_object *object
 	double cu = right[0] * centre[0] + right[1] * centre[1];
 	double cv = away[0] * centre[0] + away[1] * centre[1];
 
-	*s = (struct synth_stand){.n = n, .objects = objects, .visible = ~(uint32_t)0};
+	*s = (struct synth_stand){.n = n, .objects = objects, .visible = ~(uint64_t)0};
 	for (int i = 0; i < n; i++) {
 		s->u[i] = right[0] * objects[i].x + right[1] * objects[i].y;
 		s->v[i] = away[0] * objects[i].x + away[1] * objects[i].y;
@@ -201,7 +201,7 @@ static int find_anchors(const struct synth_stand *s, const struct synth_unseen *
 
 	found[0] = found[1] = -1;
 	for (int k = 0; k < c->anchor_count; k++) {
-		uint32_t set;
+		uint64_t set;
 		if (x->phrases[c->anchors[k]].viewer)
 			continue;
 		if (synth_unseen_resolve(s, x, c->anchors[k], 0, &set) || (set & ~s->visible))
@@ -300,7 +300,7 @@ static void judge_phrase(const struct synth_stand *s, const struct synth_unseen 
 					least(values[i], synth_unseen_judge(s, x, p->clauses[k], i, NULL));
 	}
 	for (int k = 0; k < p->except_count; k++) {
-		uint32_t out;
+		uint64_t out;
 		int bad = synth_unseen_resolve(s, x, p->except[k], 0, &out);
 		for (int i = 0; i < s->n; i++)
 			values[i] = bad ? least(values[i], 0) : out >> i & 1 ? -1 : values[i];
@@ -362,7 +362,7 @@ static void rank(const struct synth_stand *s, const struct synth_unseen *x, int 
 }
 
 int synth_unseen_resolve(
-	const struct synth_stand *s, const struct synth_unseen *x, int p, int may_be_none, uint32_t *objects)
+	const struct synth_stand *s, const struct synth_unseen *x, int p, int may_be_none, uint64_t *objects)
 {
 	const struct synth_unseen_phrase *phrase = &x->phrases[p];
 	int values[SYNTH_MAX_OBJECTS], n = 0, wanted = phrase->count;
@@ -374,10 +374,10 @@ int synth_unseen_resolve(
 		if (!values[i])
 			return -1;
 		n += values[i] > 0;
-		*objects |= (uint32_t)(values[i] > 0) << i;
+		*objects |= (uint64_t)(values[i] > 0) << i;
 	}
 	for (int k = 0; k < phrase->also_count; k++) {
-		uint32_t more;
+		uint64_t more;
 		if (synth_unseen_resolve(s, x, phrase->also[k], 0, &more) || (more & *objects))
 			return -1;
 		*objects |= more;

@@ -14,7 +14,7 @@ struct synth_stand {
 	double bearing[SYNTH_MAX_OBJECTS]; /* to the right of the line of sight, radians */
 	double range[SYNTH_MAX_OBJECTS];   /* from who looks, along the table */
 	double half_u, half_v;		   /* of the table */
-	uint32_t visible;		   /* objects that are plainly to be seen */
+	uint64_t visible;		   /* objects that are plainly to be seen */
 };
 
 /* As seen by a camera; `all` 1: everything counts as visible. */
@@ -24,7 +24,7 @@ void synth_stand_camera(struct synth_stand *s, const struct synth_object *object
 /* The objects that phrase p of the sentence means: 0, or -1 where that could be argued. The number of objects
  * is what the phrase's count says; `may_be_none` 1: none is fine too. */
 int synth_unseen_resolve(
-	const struct synth_stand *s, const struct synth_unseen *x, int p, int may_be_none, uint32_t *objects);
+	const struct synth_stand *s, const struct synth_unseen *x, int p, int may_be_none, uint64_t *objects);
 
 /* The verdict of a clause alone about object i; for superlatives among the objects of `among`. */
 int synth_unseen_judge(

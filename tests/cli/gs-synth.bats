@@ -41,7 +41,7 @@ differ() {
 @test "numbers out of range: exit 2, and nothing is made" {
 	run small --objects 1 -o out
 	[ "$status" = 2 ]
-	[ "${lines[0]}" = "gs-synth: --objects: '1' is not a whole number from 2 to 24" ]
+	[ "${lines[0]}" = "gs-synth: --objects: '1' is not a whole number from 2 to 64" ]
 	run small --views 1001 -o out
 	[ "${lines[0]}" = "gs-synth: --views: '1001' is not a whole number from 2 to 1000" ]
 	run small --gaussians 999 -o out
@@ -262,9 +262,9 @@ interrupted() {
 	small --objects 2 --views 2 --size 16x40 -o few
 	[ "$(wc -l <few/sentences.jsonl)" = 10 ]
 	[ "$(cat few/test-views)" = view_001 ]
-	small --objects 24 --gaussians 1000 -o many
-	[ "$(wc -l <many/sentences.jsonl)" = 120 ]
-	[ "$(jq -r .ref many/sentences.jsonl | sort -u | wc -l)" = 120 ]
+	small --objects 64 --size 200x150 -o many
+	[ "$(wc -l <many/sentences.jsonl)" = 320 ]
+	[ "$(jq -r .ref many/sentences.jsonl | sort -u | wc -l)" = 320 ]
 	"$BIN/gs-check" few/truth.jsonl many/truth.jsonl many/candidates.jsonl many/sentences.jsonl
 }
 

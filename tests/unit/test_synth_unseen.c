@@ -8,6 +8,8 @@
 #include "synth/unseen_frames.h"
 #include "synth/unseen_judge.h"
 
+#include <inttypes.h>
+
 enum { SEEDS = 6 };
 
 /* A scene with its sentences. */
@@ -51,7 +53,7 @@ static double along(const double d[2], const struct synth_object *o)
 	return d[0] * o->x + d[1] * o->y;
 }
 
-static uint32_t naive_phrase(const struct naive *v, int phrase);
+static uint64_t naive_phrase(const struct naive *v, int phrase);
 
 static double distance(const struct synth_object *a, const struct synth_object *b)
 {
@@ -154,7 +156,7 @@ static int find_anchors(const struct naive *v, const struct synth_unseen_clause 
 	int n = 0;
 
 	for (int k = 0; k < c->anchor_count; k++) {
-		uint32_t set = v->x->phrases[c->anchors[k]].viewer ? 0 : naive_phrase(v, c->anchors[k]);
+		uint64_t set = v->x->phrases[c->anchors[k]].viewer ? 0 : naive_phrase(v, c->anchors[k]);
 		for (int i = 0; i < v->w->n && n < 2; i++)
 			if (set >> i & 1)
 				found[n++] = i;
@@ -184,7 +186,7 @@ static int naive_clause(const struct naive *v, const struct synth_unseen_clause 
 	return is_true != c->negated;
 }
 
-static uint32_t naive_rank(const struct naive *v, const struct synth_unseen_clause *c, uint32_t set)
+static uint64_t naive_rank(const struct naive *v, const struct synth_unseen_clause *c, uint64_t set)
 {
 	const struct synth_object *o = v->w->objects;
 	int found[2] = {-1, -1}, best = -1, others[3], n = 0;
@@ -202,10 +204,10 @@ static uint32_t naive_rank(const struct naive *v, const struct synth_unseen_clau
 	for (int k = 0; c->relation == PARSE_MIDDLE && k < n; k++)
 		if (is_between(v, &o[others[k]], &o[others[(k + 1) % 3]], &o[others[(k + 2) % 3]]))
 			best = others[k];
-	return best < 0 ? 0 : (uint32_t)1 << best;
+	return best < 0 ? 0 : (uint64_t)1 << best;
 }
 
-static uint32_t naive_ordinal(const struct naive *v, const struct synth_unseen_phrase *p, uint32_t set)
+static uint64_t naive_ordinal(const struct naive *v, const struct synth_unseen_phrase *p, uint64_t set)
 {
 	for (int i = 0; i < v->w->n; i++) {
 		int before = 0;
@@ -213,15 +215,15 @@ static uint32_t naive_ordinal(const struct naive *v, const struct synth_unseen_p
 			before += (set >> k & 1) && amount(v, p->from, &v->w->objects[k], NULL) >
 							    amount(v, p->from, &v->w->objects[i], NULL);
 		if ((set >> i & 1) && before == p->ordinal - 1)
-			return (uint32_t)1 << i;
+			return (uint64_t)1 << i;
 	}
 	return 0;
 }
 
-static uint32_t naive_phrase(const struct naive *v, int phrase)
+static uint64_t naive_phrase(const struct naive *v, int phrase)
 {
 	const struct synth_unseen_phrase *p = &v->x->phrases[phrase];
-	uint32_t set = 0;
+	uint64_t set = 0;
 
 	for (int i = 0; i < v->w->n; i++) {
 		const struct synth_object *o = &v->w->objects[i];
@@ -230,13 +232,13 @@ static uint32_t naive_phrase(const struct naive *v, int phrase)
 		for (int k = 0; k < p->clause_count && fits; k++)
 			if (!is_rank(p, &v->x->clauses[p->clauses[k]]))
 				fits = naive_clause(v, &v->x->clauses[p->clauses[k]], i);
-		set |= (uint32_t)fits << i;
+		set |= (uint64_t)fits << i;
 	}
 	for (int k = 0; k < p->except_count; k++)
 		set &= ~naive_phrase(v, p->except[k]);
 	if (p->ordinal)
 		set = naive_ordinal(v, p, set);
-	uint32_t ranked = set;
+	uint64_t ranked = set;
 	for (int k = 0; k < p->clause_count; k++)
 		if (is_rank(p, &v->x->clauses[p->clauses[k]]))
 			ranked &= naive_rank(v, &v->x->clauses[p->clauses[k]], set);
@@ -255,7 +257,7 @@ static void camera_directions(const struct camera *c, double right[2], double aw
 	right[1] = -away[0];
 }
 
-static int size_of(uint32_t set)
+static int size_of(uint64_t set)
 {
 	int n = 0;
 
@@ -275,8 +277,9 @@ static void means_the_same_to_everybody(const struct world *w)
 				synth_cameras_reference(&w->cameras, v.right, v.away);
 			else
 				camera_directions(&w->cameras.views[x->view], v.right, v.away);
-			uint32_t set = naive_phrase(&v, 0);
-			CHECK(set == x->objects, "'%s' at %g: %x, not %x", x->text, v.slack, set, x->objects);
+			uint64_t set = naive_phrase(&v, 0);
+			CHECK(set == x->objects, "'%s' at %g: %" PRIx64 ", not %" PRIx64, x->text, v.slack,
+				set, x->objects);
 		}
 	}
 }
@@ -300,8 +303,9 @@ static void little_moves_do_not_matter(const struct world *w)
 			synth_cameras_reference(&w->cameras, v.right, v.away);
 		else
 			camera_directions(&w->cameras.views[x->view], v.right, v.away);
-		uint32_t set = naive_phrase(&v, 0);
-		CHECK(set == x->objects, "'%s' of things that moved: %x, not %x", x->text, set, x->objects);
+		uint64_t set = naive_phrase(&v, 0);
+		CHECK(set == x->objects, "'%s' of things that moved: %" PRIx64 ", not %" PRIx64, x->text, set,
+			x->objects);
 	}
 }
 
@@ -341,14 +345,14 @@ static void order_does_not_matter(const struct world *w)
 	synth_cameras_reference(&w->cameras, right, away);
 	for (int i = 0; i < w->list.n; i++) {
 		const struct synth_unseen *x = &w->list.items[i];
-		uint32_t one, two, turned = 0;
+		uint64_t one, two, turned = 0;
 		synth_stand_camera(&stand, w->objects, w->n, &w->table, centre, right, away);
 		int bad = synth_unseen_resolve(&stand, x, 0, 1, &one);
 		synth_stand_camera(&stand, other.objects, w->n, &w->table, centre, right, away);
 		CHECK(bad == synth_unseen_resolve(&stand, x, 0, 1, &two), "'%s'", x->text);
 		for (int k = 0; k < w->n; k++)
 			turned |= (one >> k & 1) << (w->n - 1 - k);
-		CHECK(bad || turned == two, "'%s': %x, %x", x->text, turned, two);
+		CHECK(bad || turned == two, "'%s': %" PRIx64 ", %" PRIx64, x->text, turned, two);
 	}
 }
 
@@ -365,7 +369,7 @@ static void mirror_exchanges_left_and_right(const struct world *w)
 	synth_stand_camera(&mirrored, other.objects, w->n, &w->table, centre, right, away);
 	for (int i = 0; i < w->list.n; i++) {
 		struct synth_unseen x = w->list.items[i];
-		uint32_t one, two;
+		uint64_t one, two;
 		int bad = synth_unseen_resolve(&stand, &x, 0, 1, &one);
 		for (int k = 0; k < x.clause_count; k++)
 			if (x.clauses[k].relation <= PARSE_RIGHT)
@@ -374,7 +378,7 @@ static void mirror_exchanges_left_and_right(const struct world *w)
 			if (x.phrases[k].ordinal && x.phrases[k].from <= PARSE_RIGHT)
 				x.phrases[k].from = PARSE_LEFT + PARSE_RIGHT - x.phrases[k].from;
 		CHECK(bad == synth_unseen_resolve(&mirrored, &x, 0, 1, &two) && (bad || one == two),
-			"'%s': %x, %x", x.text, one, two);
+			"'%s': %" PRIx64 ", %" PRIx64, x.text, one, two);
 	}
 }
 
