@@ -107,6 +107,25 @@ static void mend_except(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* Whether a negation is among words from..to-1. */
+static int is_denied(const struct tokens *t, int from, int to)
+{
+	for (int i = from; i < to; i++)
+		if (tokens_class(t, i) == CLOSED_NEGATION)
+			return 1;
+	return 0;
+}
+
+/* "not the one under the shelf": the one that is under it is left out, and nothing more is denied. */
+static void mend_negation(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		const int out = a->word[i].role == ROLE_PREDICATE ? a->word[i].head : -1;
+		if (out >= 0 && a->word[out].role == ROLE_EXCEPT && !is_denied(t, out + 1, i))
+			a->word[i].negated = 0;
+	}
+}
+
 /* "neither red nor green": red is left out too. */
 static void mend_neither(struct analysis *a, const struct tokens *t)
 {
@@ -222,6 +241,7 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 {
 	mend_isnt(a, t);
 	mend_except(a, t);
+	mend_negation(a, t);
 	mend_neither(a, t);
 	mend_attributes(a, t);
 	analysis_places(a, grammar, t);

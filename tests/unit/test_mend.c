@@ -75,6 +75,30 @@ static void mends_places(void)
 	mends("the lamp you gave to us", ". T . . . .", 0, 5, ROLE_NONE, ROOT, 0);
 }
 
+/* Whether a predicate that was read as denied still is. */
+static int stays_denied(const char *text, const char *roles, int word)
+{
+	struct tokens t;
+	struct analysis a, grammar;
+
+	tokens_take(&t, text, NULL, NULL, 0);
+	grammar_analyse(&grammar, &t);
+	a = made(&t, roles, PARSE_ON);
+	a.word[word].negated = 1;
+	analysis_mend(&a, &grammar, &t);
+	return a.word[word].role == ROLE_PREDICATE && a.word[word].negated;
+}
+
+/* Who leaves out "the one on the box" does not deny that it is on it. */
+static void mends_negations(void)
+{
+	CHECK(!stays_denied("the lids, not the one on the box", ". T . . E P4 . A5", 5), "on the box");
+	CHECK(!stays_denied("the lids, not the upper one", ". T . . P5 E", 4), "the upper one");
+	CHECK(stays_denied("the lids, not the one that is not on the box", ". T . . E . . . P4 . A8", 8),
+		"not on the box");
+	CHECK(stays_denied("the lids not on the box", ". T . P . A3", 3), "lids that are not on the box");
+}
+
 static struct parse parsed(const char *text)
 {
 	struct parse p;
@@ -207,6 +231,7 @@ int main(void)
 	compared_with_all();
 	mends_looks();
 	mends_places();
+	mends_negations();
 	settles();
 	return unit_end();
 }
