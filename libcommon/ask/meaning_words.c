@@ -101,6 +101,29 @@ static int is_blue_green(const struct parse *p, int word)
 			       meaning_word_is(&p->words[word + 1], blue)));
 }
 
+static int is_in(const struct parse_list *list, int word)
+{
+	for (int i = 0; i < list->n; i++)
+		if (list->item[i] == word)
+			return 1;
+	return 0;
+}
+
+/* Whether a phrase has a colour before word `word`, with other words between than its looks: "the brown cup
+ * with white stripes". Of that colour are parts at most. */
+static int is_of_part(const struct parse *p, const struct parse_phrase *f, int word)
+{
+	int has_other = 0;
+
+	for (int i = word - 1; i >= 0; i--) {
+		if (!is_in(&f->attributes, i))
+			has_other = 1;
+		else if (has_other && colour_word(p->words[i].lemma) >= 0)
+			return 1;
+	}
+	return 0;
+}
+
 /* How far objects are of the colour of a word, and of those right after it that are colours too: "salmon
  * pink" and "black and white" are either. Nothing where the word before it has done so. */
 static void judge_colour(struct meaning *m, int phrase, int word)
@@ -111,6 +134,7 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 
 	if (colour_before(p, word) >= 0)
 		return;
+	const double least = is_of_part(p, &p->phrases[phrase], word) ? PART_COLOUR_LEAST : COLOUR_LEAST;
 	double *value = meaning_add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
 	memset(value, 0, n * sizeof *value);
 	m->vocabulary->of_several = p->phrases[phrase].count != PARSE_ONE;
@@ -125,7 +149,7 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 	}
 	m->vocabulary->of_several = 0;
 	for (size_t o = 0; o < n; o++) {
-		value[o] = COLOUR_LEAST + (1 - COLOUR_LEAST) * value[o];
+		value[o] = least + (1 - least) * value[o];
 		there[o] *= value[o];
 	}
 	meaning_take_part(m, &m->parts[m->part_count - 1]);

@@ -16,7 +16,7 @@
 
 enum {
 	NET_HIDDEN = 160,
-	NET_ARC = 64,
+	NET_ARC = 48,
 	NET_LAYERS = 3,
 	NET_BLOCKS = 4,	    /* that a layer looks at: before, here, after, mean */
 	NET_DISTANCES = 17, /* -8 or less ... 8 or more */

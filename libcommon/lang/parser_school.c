@@ -6,9 +6,9 @@
 #include <string.h>
 
 /* Sentences in a step and the rates of both parts: first guesses, not searched. How many examples there are
- * for each reading, how often each marked sentence is learnt from in a pass, and the share of units dropped:
- * of few tried values those that took the most of other writers' marked sentences apart rightly. */
-enum { SCHOOL_BATCH = 16, SHARE = 3, MARKED_SHARE = 3 };
+ * for each reading, and the share of units dropped: of few tried values those that took the most of other
+ * writers' marked sentences apart rightly. */
+enum { SCHOOL_BATCH = 16, SHARE = 3 };
 static const double examples_rate = 0.002, readings_rate = 0.001, dropout = 0.4;
 /* passes of a round, and of the last */
 enum { ROUND_EPOCHS = 4, LAST_EPOCHS = 6 };
@@ -18,13 +18,12 @@ static struct parser_course course_of(const struct parser_school *s, int epochs,
 	return (struct parser_course){epochs, SCHOOL_BATCH, rate, dropout, s->progress, s->context};
 }
 
-/* Each marked sentence, MARKED_SHARE times. Returns how many samples the set has then. */
+/* Adds the marked sentences. Returns how many samples the set has then. */
 static size_t add_marked(const struct parser_school *s, const struct parser_sample **set, size_t n)
 {
-	for (int k = 0; k < MARKED_SHARE; k++)
-		for (size_t i = 0; i < s->marked_count; i++)
-			if (s->marked[i].n)
-				set[n++] = &s->marked[i];
+	for (size_t i = 0; i < s->marked_count; i++)
+		if (s->marked[i].n)
+			set[n++] = &s->marked[i];
 	return n;
 }
 
@@ -32,7 +31,7 @@ int parser_school_examples(const struct parser_school *s, struct parser_weights 
 {
 	struct parser_course course = course_of(s, s->epochs, examples_rate);
 	const struct parser_sample **set =
-		mem_alloc(s->example_count + MARKED_SHARE * s->marked_count, sizeof *set, "samples", e);
+		mem_alloc(s->example_count + s->marked_count, sizeof *set, "samples", e);
 	struct rng r;
 	size_t n = 0;
 	int bad;
@@ -78,8 +77,8 @@ static int align(const struct parser_school *s, const struct parser_weights *w, 
 int parser_school_readings(
 	const struct parser_school *s, struct parser_weights *w, int without, struct err *e)
 {
-	const struct parser_sample **set = mem_alloc(
-		s->example_count + s->read_count + MARKED_SHARE * s->marked_count, sizeof *set, "samples", e);
+	const struct parser_sample **set =
+		mem_alloc(s->example_count + s->read_count + s->marked_count, sizeof *set, "samples", e);
 	struct rng r;
 	int bad = !set;
 

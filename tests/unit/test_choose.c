@@ -220,6 +220,11 @@ static void named_colours(void)
 		for (int i = 0; i < 3; i++)
 			CHECK(ask(asked[i], CHOOSE_ALL) == (k ^ (i > 0)), "'%s', %s", asked[i], named[k][0]);
 		CHECK(set_of("all teal mugs") == 1U << k, "%x", set_of("all teal mugs"));
+		/* the first colour is the thing's, the second may be of its rim */
+		ask("the teal mug that is red", CHOOSE_ALL);
+		CHECK(choice.there > 0.5, "a part of it is red: %g", choice.there);
+		ask("the red mug that is teal", CHOOSE_ALL);
+		CHECK(choice.there < 0.1, "a part of it is teal: %g", choice.there);
 	}
 	memcpy(names, old, sizeof old);
 }
