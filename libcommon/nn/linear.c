@@ -3,6 +3,7 @@
 #include "nn/linear_tile.h"
 
 #include <omp.h>
+#include <string.h>
 
 enum {
 	ROWS = 384, /* of a that share one packing of b, unless that leaves too few parts for the threads */
@@ -12,6 +13,41 @@ enum {
 };
 
 static const float zeros[LINEAR_TILE_COLUMNS];
+
+/* GCC has this from version 12 on. */
+#ifdef __has_builtin
+#if __has_builtin(__builtin_shufflevector)
+#define HAS_SHUFFLE
+#endif
+#endif
+
+/* Four floats of each of four columns, `column` apart, to four rows, `width` apart. */
+static void turn(float *out, size_t width, const float *from, size_t column)
+{
+#ifdef HAS_SHUFFLE
+	typedef float four __attribute__((vector_size(16)));
+	four a, b, c, d, rows[4];
+
+	memcpy(&a, from, sizeof a);
+	memcpy(&b, from + column, sizeof b);
+	memcpy(&c, from + 2 * column, sizeof c);
+	memcpy(&d, from + 3 * column, sizeof d);
+	const four low_ab = __builtin_shufflevector(a, b, 0, 4, 1, 5),
+		   low_cd = __builtin_shufflevector(c, d, 0, 4, 1, 5),
+		   high_ab = __builtin_shufflevector(a, b, 2, 6, 3, 7),
+		   high_cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+	rows[0] = __builtin_shufflevector(low_ab, low_cd, 0, 1, 4, 5);
+	rows[1] = __builtin_shufflevector(low_ab, low_cd, 2, 3, 6, 7);
+	rows[2] = __builtin_shufflevector(high_ab, high_cd, 0, 1, 4, 5);
+	rows[3] = __builtin_shufflevector(high_ab, high_cd, 2, 3, 6, 7);
+	for (int k = 0; k < 4; k++)
+		memcpy(out + (size_t)k * width, &rows[k], sizeof rows[k]);
+#else
+	for (size_t k = 0; k < 4; k++)
+		for (size_t j = 0; j < 4; j++)
+			out[k * width + j] = from[j * column + k];
+#endif
+}
 
 /* `terms` rows of b from `first` on, columns column to column+count, as (terms,width) with zeros past count.
  */
@@ -24,6 +60,10 @@ static void pack(float *out, struct linear_matrix b, size_t first, size_t terms,
 		for (size_t t = 0; t < terms; t++)
 			for (size_t j = 0; j < count; j++)
 				out[t * width + j] = from[t * b.row + j];
+	} else if (b.row == 1 && terms % 4 == 0 && count % 4 == 0) {
+		for (size_t t = 0; t < terms; t += 4)
+			for (size_t j = 0; j < count; j += 4)
+				turn(out + t * width + j, width, from + t + j * b.column, b.column);
 	} else {
 		for (size_t j = 0; j < count; j++)
 			for (size_t t = 0; t < terms; t++)
