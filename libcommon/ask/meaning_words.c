@@ -101,14 +101,6 @@ static int is_blue_green(const struct parse *p, int word)
 			       meaning_word_is(&p->words[word + 1], blue)));
 }
 
-static int is_in(const struct parse_list *list, int word)
-{
-	for (int i = 0; i < list->n; i++)
-		if (list->item[i] == word)
-			return 1;
-	return 0;
-}
-
 /* Whether a phrase has a colour before word `word`, with other words between than its looks: "the brown cup
  * with white stripes". Of that colour are parts at most. */
 static int is_of_part(const struct parse *p, const struct parse_phrase *f, int word)
@@ -116,7 +108,7 @@ static int is_of_part(const struct parse *p, const struct parse_phrase *f, int w
 	int has_other = 0;
 
 	for (int i = word - 1; i >= 0; i--) {
-		if (!is_in(&f->attributes, i))
+		if (!parse_list_has(&f->attributes, i))
 			has_other = 1;
 		else if (has_other && colour_word(p->words[i].lemma) >= 0)
 			return 1;

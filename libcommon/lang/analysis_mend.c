@@ -103,7 +103,6 @@ static void mend_except(struct analysis *a, const struct tokens *t)
 		if (i == out || !is_said || (a->word[i].head != ROOT && a->word[i].head != out))
 			continue;
 		a->word[i].head = out;
-		a->word[i].negated = 0;
 	}
 }
 

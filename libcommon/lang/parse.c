@@ -56,6 +56,14 @@ int parse_list_add(struct parse_list *list, int item, struct err *e)
 	return 0;
 }
 
+int parse_list_has(const struct parse_list *list, int item)
+{
+	for (int i = 0; i < list->n; i++)
+		if (list->item[i] == item)
+			return 1;
+	return 0;
+}
+
 void parse_list_cut(struct parse_list *list, int end)
 {
 	int n = 0;

@@ -129,14 +129,6 @@ static int add_noun(struct build *b, int head, struct parse_phrase *f)
 	return 0;
 }
 
-static int is_in(const struct parse_list *list, int item)
-{
-	for (int i = 0; i < list->n; i++)
-		if (list->item[i] == item)
-			return 1;
-	return 0;
-}
-
 /* "the cup next to the red one": a red cup. */
 static int name_ones(struct build *b)
 {
@@ -182,7 +174,7 @@ static int fill_phrases(struct build *b)
 			tokens_class(b->t, i) == CLOSED_CONJUNCTION)
 			continue;
 		struct parse_phrase *f = &b->p->phrases[owner];
-		if (is_in(&f->noun, i))
+		if (parse_list_has(&f->noun, i))
 			continue;
 		if (!f->span.end || b->t->word[i].span.end > f->span.begin - 20)
 			widen(&f->span, b->t->word[i].span);
