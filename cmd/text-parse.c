@@ -16,8 +16,7 @@ static int put_parses(const struct parser *parser, const struct text *t, FILE *o
 		struct parser_vectors v = {.width = t->width};
 		struct parse p;
 		if (t->pieces)
-			v = (struct parser_vectors){t->pieces[r],
-				t->words + (size_t)t->offsets[r] * (size_t)t->width,
+			v = (struct parser_vectors){t->pieces[r], text_middle(t, r),
 				(int)(t->offsets[r + 1] - t->offsets[r]), t->width};
 		if (parse_sentence(&p, parser, t->texts[r], &v, e))
 			return -1;
@@ -50,9 +49,11 @@ static int run(const struct cli *c, const char *weights, enum method method, str
 	}
 	parser.encoder = t.encoder.hex;
 	const int is_other = *w.encoder && *t.encoder.hex && strcmp(w.encoder, t.encoder.hex);
-	if (parser.weights && (!t.pieces || t.width != w.width || is_other))
+	if (parser.weights && (!t.pieces || !t.middle || t.width != w.width || is_other))
 		cli_warn(c, "%s: %s: by grammar alone", file_name(c->operand_count ? c->operands[0] : "-"),
-			t.pieces ? "of another encoder than the parser's weights" : "has no word pieces");
+			!t.pieces   ? "has no word pieces"
+			: !t.middle ? "has no tensor 'middle'"
+				    : "of another encoder than the parser's weights");
 	bad = file_out_open(&out, c->output, e) ||
 	      file_out_end(&out, put_parses(&parser, &t, out.stream, e), e);
 	text_free(&t);

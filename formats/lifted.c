@@ -102,6 +102,18 @@ static int read_objects(struct lifted *l, const struct safetensors *st, struct e
 		       : 0;
 }
 
+static int read_middle(struct lifted *l, const struct safetensors *st, size_t rows, struct err *e)
+{
+	const int64_t shape[] = {(int64_t)rows, l->width};
+
+	if (!safetensors_need(st, "middle", ST_F16, 2, shape, e))
+		return -1;
+	l->middle = mem_alloc(rows, (size_t)l->width * sizeof *l->middle, st->path, e);
+	return !l->middle ? -1
+			  : precision_get(st, "middle", PRECISION_F16, PRECISION_ROWS, rows, (size_t)l->width,
+				    l->middle, e);
+}
+
 static int read_words(struct lifted *l, const struct safetensors *st, struct err *e)
 {
 	const struct st_tensor *words = safetensors_need(st, "words", ST_F16, 2, (int64_t[]){-1, -1}, e);
@@ -114,13 +126,13 @@ static int read_words(struct lifted *l, const struct safetensors *st, struct err
 	const size_t rows = (size_t)words->shape[0];
 	l->width = (int)words->shape[1];
 	l->words = mem_alloc(rows, (size_t)l->width * sizeof *l->words, st->path, e);
-	return !l->words ||
-			       precision_get(st, "words", PRECISION_F16, PRECISION_ROWS, rows,
-				       (size_t)l->width, l->words, e) ||
-			       metalist_check_offsets("offsets", l->offsets, l->sentences, (int64_t)rows,
-				       "words", st->path, e)
-		       ? -1
-		       : 0;
+	if (!l->words ||
+		precision_get(
+			st, "words", PRECISION_F16, PRECISION_ROWS, rows, (size_t)l->width, l->words, e) ||
+		metalist_check_offsets(
+			"offsets", l->offsets, l->sentences, (int64_t)rows, "words", st->path, e))
+		return -1;
+	return safetensors_find(st, "middle") ? read_middle(l, st, rows, e) : 0;
 }
 
 static int read_sentences(struct lifted *l, const struct safetensors *st, struct err *e)
@@ -195,11 +207,12 @@ static uint8_t *pack_shares(const struct lifted *l, const char *path, struct err
 }
 
 static int write_all(const struct lifted *l, const struct origin *origin, const uint8_t *share,
-	const struct precision_matrix *words, const char *path, const char *options, struct err *e)
+	const struct precision_matrix *words, const struct precision_matrix *middle, const char *path,
+	const char *options, struct err *e)
 {
 	const int64_t objects = (int64_t)l->objects, sentences = (int64_t)l->sentences;
 	const int64_t count = l->indptr[objects];
-	const struct st_tensor tensors[] = {
+	struct st_tensor tensors[8] = {
 		{.name = "indptr", .dtype = ST_I64, .dims = 1, .shape = {objects + 1}, .data = l->indptr},
 		{.name = "offsets", .dtype = ST_I64, .dims = 1, .shape = {sentences + 1}, .data = l->offsets},
 		{.name = "index", .dtype = ST_I32, .dims = 1, .shape = {count}, .data = l->index},
@@ -208,10 +221,13 @@ static int write_all(const struct lifted *l, const struct origin *origin, const 
 		words->tensors[0],
 		{.name = "share", .dtype = ST_U8, .dims = 1, .shape = {count}, .data = share},
 	};
+	const size_t used = l->middle ? 8 : 7;
 	char *names = metalist_print(l->names, l->objects), *texts = metalist_print(l->texts, l->sentences);
 	char *pieces = metalist_print(l->pieces, l->sentences), gaussians[32];
 	int bad;
 
+	if (l->middle)
+		tensors[7] = middle->tensors[0];
 	snprintf(gaussians, sizeof gaussians, "%zu", l->gaussians);
 	if (names && texts && pieces) {
 		const struct st_meta meta[] = {{"format", "refer.lifted"}, {"version", "1"},
@@ -219,8 +235,7 @@ static int write_all(const struct lifted *l, const struct origin *origin, const 
 			{"scene", fingerprint_text(&origin->scene)},
 			{"encoder", fingerprint_text(&origin->encoder)}, {"names", names}, {"texts", texts},
 			{"pieces", pieces}};
-		bad = safetensors_write(
-			path, tensors, sizeof tensors / sizeof *tensors, meta, sizeof meta / sizeof *meta, e);
+		bad = safetensors_write(path, tensors, used, meta, sizeof meta / sizeof *meta, e);
 	} else {
 		bad = err_set(e, ERR_SYSTEM, "%s: out of memory", path);
 	}
@@ -233,16 +248,20 @@ static int write_all(const struct lifted *l, const struct origin *origin, const 
 int lifted_write(const struct lifted *l, const struct origin *origin, const char *path, const char *options,
 	struct err *e)
 {
-	struct precision_matrix words = {0};
+	struct precision_matrix words = {0}, middle = {0};
 	uint8_t *share = NULL;
 	int bad = check_parts(l->confidence, l->objects, 1, "confidence", path, e) ||
 		  check_parts(l->share, (size_t)l->indptr[l->objects], 0, "share", path, e) ||
 		  !(share = pack_shares(l, path, e)) ||
 		  precision_put(&words, "words", PRECISION_F16, PRECISION_ROWS,
 			  (size_t)l->offsets[l->sentences], (size_t)l->width, l->words, path, e) ||
-		  write_all(l, origin, share, &words, path, options, e);
+		  (l->middle &&
+			  precision_put(&middle, "middle", PRECISION_F16, PRECISION_ROWS,
+				  (size_t)l->offsets[l->sentences], (size_t)l->width, l->middle, path, e)) ||
+		  write_all(l, origin, share, &words, &middle, path, options, e);
 
 	precision_free(&words);
+	precision_free(&middle);
 	free(share);
 	return bad ? -1 : 0;
 }
@@ -259,7 +278,10 @@ int lifted_add_sentences(
 	l->pieces = mem_zalloc(t->n, sizeof *l->pieces, "sentences", e);
 	l->offsets = mem_zalloc(t->n + 1, sizeof *l->offsets, "sentences", e);
 	l->words = mem_alloc(words, width * sizeof *l->words, "sentences", e);
-	if (!l->names || !l->object || !l->texts || !l->pieces || !l->offsets || !l->words)
+	if (t->middle)
+		l->middle = mem_alloc(words, width * sizeof *l->middle, "sentences", e);
+	if (!l->names || !l->object || !l->texts || !l->pieces || !l->offsets || !l->words ||
+		(t->middle && !l->middle))
 		return -1;
 	for (size_t o = 0; o < l->objects; o++)
 		if (!(l->names[o] = mem_strdup(names[o], e)))
@@ -271,6 +293,9 @@ int lifted_add_sentences(
 		const size_t count = (size_t)t->offsets[i + 1] - from, at = (size_t)l->offsets[to];
 		l->object[to] = (int32_t)object[i];
 		memcpy(l->words + at * width, t->words + from * width, count * width * sizeof *l->words);
+		if (t->middle)
+			memcpy(l->middle + at * width, t->middle + from * width,
+				count * width * sizeof *l->middle);
 		l->offsets[to + 1] = (int64_t)(at + count);
 		if (!(l->texts[to] = mem_strdup(t->texts[i], e)) ||
 			!(l->pieces[to] = mem_strdup(t->pieces[i], e)))

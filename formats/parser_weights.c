@@ -105,13 +105,28 @@ static int take_member(struct parser_weights *w, int member, const struct safete
 	return 0;
 }
 
+/* Older ones were learnt on the encoder's last layer, or written otherwise. */
+static int need_version(const struct safetensors *st, struct err *e)
+{
+	const char *version;
+
+	if (safetensors_need_format(st, "refer.parser", 3, e))
+		return -1;
+	version = safetensors_meta(st, "version");
+	return !strcmp(version, "3")
+		       ? 0
+		       : err_set(e, ERR_FORMAT,
+				 "%s: refer.parser version %s is older than this program reads (3)", st->path,
+				 version);
+}
+
 static int take_tensors(struct parser_weights *w, const struct safetensors *st, struct err *e)
 {
 	const struct st_tensor *t;
 	struct fingerprint encoder;
 	char name[NAME_LENGTH];
 
-	if (safetensors_need_format(st, "refer.parser", 2, e) ||
+	if (need_version(st, e) ||
 		!(t = safetensors_need(st, "vector.weight", ST_I8, 2, (int64_t[]){NET_HIDDEN, -1}, e)))
 		return -1;
 	if (t->shape[1] < 1 || t->shape[1] > 65536)
@@ -234,7 +249,7 @@ int parser_weights_write(const struct parser_weights *w, const char *path, const
 	for (const struct parser_weights *k = w; k && members < MEMBERS_MOST && !bad; k = k->next)
 		bad = put_member(k, members++, &m, e);
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
-	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "2"}, {"tool", "parse-train"},
+	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "3"}, {"tool", "parse-train"},
 		{"options", options}, {"seed", seed_text}, {"source", source},
 		{"encoder", w->encoder[0] ? w->encoder : NULL}};
 	if (!bad)
@@ -245,4 +260,14 @@ int parser_weights_write(const struct parser_weights *w, const char *path, const
 		free(m.factor[k]);
 	}
 	return bad ? -1 : 0;
+}
+
+int parser_weights_need_middle(const struct parser_weights *w, const char *path, const float *middle,
+	const struct fingerprint *encoder, struct err *e)
+{
+	if (middle || strcmp(w->encoder, encoder->hex) != 0)
+		return 0;
+	return err_set(e, ERR_FORMAT,
+		"%s: tensor 'middle' is missing, by which sentences are taken apart: make the file anew",
+		path);
 }

@@ -60,6 +60,7 @@ void text_free(struct text *t)
 	text_free_more(t);
 	free(t->offsets);
 	free(t->words);
+	free(t->middle);
 	free(t->sentences);
 	free(t->splits);
 	*t = (struct text){0};
@@ -87,6 +88,11 @@ int text_take_means(struct text *t, struct err *e)
 int text_mark(const struct text *t, const char *list, const char *option, char *chosen, struct err *e)
 {
 	return names_mark(t->refs, sizeof *t->refs, 0, t->n, list, option, "sentence", chosen, e);
+}
+
+const float *text_middle(const struct text *t, size_t sentence)
+{
+	return t->middle ? t->middle + (size_t)t->offsets[sentence] * (size_t)t->width : NULL;
 }
 
 const char *text_object(const struct text *t, size_t sentence)
@@ -136,6 +142,15 @@ fail:
 	return NULL;
 }
 
+/* Of the shape of the words. */
+static int read_middle(struct text *t, const struct safetensors *st, const int64_t shape[2], struct err *e)
+{
+	const struct st_tensor *middle = safetensors_need(st, "middle", ST_F32, 2, shape, e);
+
+	t->middle = middle ? copy_floats(st, middle, e) : NULL;
+	return t->middle ? 0 : -1;
+}
+
 static int read_tensors(struct text *t, const struct safetensors *st, struct err *e)
 {
 	const struct st_tensor *offsets = safetensors_need(st, "offsets", ST_I64, 1, (int64_t[]){-1}, e);
@@ -159,6 +174,8 @@ static int read_tensors(struct text *t, const struct safetensors *st, struct err
 	if (!t->offsets)
 		return -1;
 	memcpy(t->offsets, offsets->data, offsets->bytes);
+	if (safetensors_find(st, "middle") && read_middle(t, st, words->shape, e))
+		return -1;
 	t->words = copy_floats(st, words, e);
 	t->sentences = t->words ? copy_floats(st, sentences, e) : NULL;
 	return t->sentences ? metalist_check_offsets(
@@ -254,6 +271,11 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 			.dims = 2,
 			.shape = {n, t->width},
 			.data = t->sentences},
+		{.name = "middle",
+			.dtype = ST_F32,
+			.dims = 2,
+			.shape = {t->offsets[n], t->width},
+			.data = t->middle},
 	};
 	/* In the order of formats/text.md; those that are NULL are left out. */
 	char **const lists[] = {
@@ -275,7 +297,7 @@ int text_write(const struct text *t, const char *path, const char *options, stru
 			bad = err_set(e, ERR_SYSTEM, "%s: out of memory", path);
 		meta[used++] = (struct st_meta){keys[i], printed[i]};
 	}
-	bad = bad || safetensors_write(path, tensors, 3, meta, (size_t)used, e);
+	bad = bad || safetensors_write(path, tensors, t->middle ? 4 : 3, meta, (size_t)used, e);
 	for (int i = 0; i < LISTS; i++)
 		free(printed[i]);
 	return bad ? -1 : 0;

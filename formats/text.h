@@ -15,6 +15,8 @@ struct text {
 	int width;	  /* D_text */
 	int64_t *offsets; /* (n+1): sentence r has words offsets[r] to offsets[r+1] */
 	float *words;	  /* (offsets[n], width), tokens that begin and end a sentence left out */
+	float *middle;	  /* of the shape of words: of the encoder's middle layer, which a sentence is taken
+			     apart    by; NULL where the file has none */
 	float *sentences; /* (n, width), mean of the words, zero for a sentence without words; or CLIP's */
 	char **refs, **objects, **texts; /* objects: "" where several are meant, or none */
 	char **pieces; /* (n) word pieces with a space between, one for each word; NULL where the file has
@@ -37,6 +39,9 @@ int text_take_means(struct text *t, struct err *e);
 int text_take_more(struct text *t, const struct sentences *s, struct err *e);
 void text_free_more(struct text *t);
 void text_free(struct text *t);
+
+/* The words of a sentence by the middle layer; NULL where the file has none. */
+const float *text_middle(const struct text *t, size_t sentence);
 
 /* The name that a sentence's masks and boxes go by; NULL where it means several objects or none. */
 const char *text_object(const struct text *t, size_t sentence);

@@ -76,7 +76,9 @@ static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, str
 	if (m->is_lifted && !q->text->pieces)
 		return err_set(e, ERR_FORMAT,
 			"%s: no word pieces, which %s asks for: encode its sentences again", text, model);
-	return 0;
+	return m->is_lifted &&
+	       (parser_weights_need_middle(&m->weights, model, m->lifted.middle, &m->origin.encoder, e) ||
+		       parser_weights_need_middle(&m->weights, text, q->text->middle, &q->text->encoder, e));
 }
 
 /* Where each sentence is said: from (q->count). */
@@ -146,8 +148,8 @@ int anymodel_answer(
 	const float *means = q->scene->splats.means;
 	const struct parser parser = {.weights = &m->weights, .encoder = q->text->encoder.hex};
 	struct responses_question of = {&q->scene->splats, &q->scene->cameras, q->text->offsets,
-		q->text->words, q->text->texts, q->text->pieces, NULL, &parser, q->which, q->count,
-		q->text->refs, file_name(q->model_path), q->wants_parts};
+		q->text->words, q->text->middle, q->text->texts, q->text->pieces, NULL, &parser, q->which,
+		q->count, q->text->refs, file_name(q->model_path), q->wants_parts};
 	struct rows rows = {0};
 
 	*a = (struct responses){0};

@@ -34,7 +34,8 @@ static int check_fit(const struct asking *a, struct err *e)
 	if (l->width != encoder_width(&a->encoder))
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, the encoder %s makes %d",
 			f->model, l->width, f->encoder, encoder_width(&a->encoder));
-	return fingerprint_check("encoder", f->model, &o->encoder, f->encoder, &a->encoder.fingerprint, e);
+	return parser_weights_need_middle(&a->model.weights, f->model, l->middle, &o->encoder, e) ||
+	       fingerprint_check("encoder", f->model, &o->encoder, f->encoder, &a->encoder.fingerprint, e);
 }
 
 int asking_read_camera(struct asking *a, const char *path, struct err *e)
@@ -171,7 +172,7 @@ static int choose_answer(struct asking *a, const struct text *t, struct watched 
 {
 	const size_t objects = a->model.lifted.objects;
 	const struct choose_sentence sentence = {
-		t->texts[0], t->pieces[0], t->words, (size_t)t->offsets[1], a->from, NULL};
+		t->texts[0], t->pieces[0], t->words, t->middle, (size_t)t->offsets[1], a->from, NULL};
 	const struct choose_watch watching = {w, watch};
 	float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
 	char *chosen = mem_alloc(objects, 1, "answer", e);

@@ -47,12 +47,12 @@ static int tokenise(const struct report *to, struct encoding_tokens *t, const st
 }
 
 /* Room for everything but the sentences' names, which are borrowed. */
-static int alloc_text(struct text *out, const struct sentences *s, const struct encoding_tokens *t, int width,
-	struct err *e)
+static int alloc_text(
+	struct text *out, const struct sentences *s, const struct encoding_tokens *t, struct err *e)
 {
 	size_t n = s->n;
 
-	*out = (struct text){.n = n, .width = width};
+	out->n = n;
 	out->offsets = mem_alloc(n + 1, sizeof *out->offsets, "offsets", e);
 	out->refs = mem_alloc(n, sizeof *out->refs, "refs", e);
 	out->objects = mem_alloc(n, sizeof *out->objects, "objects", e);
@@ -68,8 +68,19 @@ static int alloc_text(struct text *out, const struct sentences *s, const struct 
 		out->texts[i] = s->items[i].text;
 		out->splits[i] = s->items[i].split;
 	}
-	out->words = mem_alloc((size_t)out->offsets[n], sizeof *out->words * (size_t)width, "words", e);
-	out->sentences = mem_zalloc(n, sizeof *out->sentences * (size_t)width, "sentence vectors", e);
+	return 0;
+}
+
+static int alloc_vectors(struct text *out, const struct encoder *with, struct err *e)
+{
+	const size_t words = (size_t)out->offsets[out->n],
+		     row = sizeof *out->words * (size_t)encoder_width(with);
+
+	out->width = encoder_width(with);
+	out->words = mem_alloc(words, row, "words", e);
+	out->sentences = mem_zalloc(out->n, row, "sentence vectors", e);
+	if (encoder_has_middle(with) && !(out->middle = mem_alloc(words, row, "words", e)))
+		return -1;
 	return out->words && out->sentences ? 0 : -1;
 }
 
@@ -100,6 +111,7 @@ static void free_text(struct text *out)
 	free(out->texts);
 	free(out->splits);
 	free(out->words);
+	free(out->middle);
 	free(out->sentences);
 }
 
@@ -114,16 +126,18 @@ static size_t pass_end(const size_t *starts, size_t first, size_t n)
 	return end;
 }
 
-/* Leaves the tokens that begin and end the sentence out of its words. */
+/* Leaves the tokens that begin and end the sentence out of its words. rows and middle: its first ones. */
 static void keep_sentence(struct text *out, const struct encoder *with, const struct encoding_tokens *t,
-	size_t sentence, const float *rows)
+	size_t sentence, const float *rows, const float *middle)
 {
-	const size_t width = (size_t)out->width, first = (size_t)out->offsets[sentence];
+	const size_t width = (size_t)out->width, first = (size_t)out->offsets[sentence],
+		     floats = ((size_t)out->offsets[sentence + 1] - first) * width;
 	const int32_t *ids = t->pieces.ids + t->starts[sentence];
 	size_t last = 0;
 
-	memcpy(out->words + first * width, rows + width,
-		((size_t)out->offsets[sentence + 1] - first) * width * sizeof *rows);
+	memcpy(out->words + first * width, rows + width, floats * sizeof *rows);
+	if (middle)
+		memcpy(out->middle + first * width, middle + width, floats * sizeof *middle);
 	if (!encoder_pools(with))
 		return;
 	while (ids[last] != encoder_last(with))
@@ -169,7 +183,7 @@ static int make_words(struct text *out, const struct encoder *with, const struct
 	const struct report *to, struct err *e)
 {
 	size_t width = (size_t)out->width, most, longest, floats;
-	float *scratch = NULL, *vectors = NULL;
+	float *scratch = NULL, *vectors = NULL, *middle = NULL;
 	int bad = 0;
 
 	find_sizes(t, out->n, &most, &longest);
@@ -177,18 +191,24 @@ static int make_words(struct text *out, const struct encoder *with, const struct
 		return err_set(e, ERR_SYSTEM, "encoder: its scratch does not fit in memory");
 	scratch = mem_alloc(floats, sizeof *scratch, "encoder's scratch", e);
 	vectors = mem_alloc(most, sizeof *vectors * width, "encoder's output", e);
-	bad = !scratch || !vectors;
+	if (out->middle)
+		middle = mem_alloc(most, sizeof *middle * width, "encoder's output", e);
+	bad = !scratch || !vectors || (out->middle && !middle);
 	report_start(to, "sentences", (double)out->n);
 	for (size_t first = 0, end; first < out->n && !bad; first = end) {
 		end = pass_end(t->starts, first, out->n);
-		encoder_forward(with, t->pieces.ids, t->starts + first, end - first, vectors, scratch);
-		for (size_t i = first; i < end; i++)
-			keep_sentence(out, with, t, i, vectors + (t->starts[i] - t->starts[first]) * width);
+		encoder_forward(
+			with, t->pieces.ids, t->starts + first, end - first, vectors, middle, scratch);
+		for (size_t i = first; i < end; i++) {
+			const size_t at = (t->starts[i] - t->starts[first]) * width;
+			keep_sentence(out, with, t, i, vectors + at, middle ? middle + at : NULL);
+		}
 		report_step(to, (double)end, NULL);
 	}
 	report_end(to);
 	free(scratch);
 	free(vectors);
+	free(middle);
 	return bad || (encoder_pools(with) ? check_finite(out, e) : text_take_means(out, e)) ? -1 : 0;
 }
 
@@ -235,7 +255,7 @@ int encode(struct encoding *x, const struct encoder *with, const struct report *
 	struct text *out = &x->text;
 
 	if (tokenise(to, &x->tokens, &x->sentences, with, e) ||
-		alloc_text(out, &x->sentences, &x->tokens, encoder_width(with), e) ||
+		alloc_text(out, &x->sentences, &x->tokens, e) || alloc_vectors(out, with, e) ||
 		keep_pieces(out, &x->tokens, with, e) || text_take_more(out, &x->sentences, e) ||
 		make_words(out, with, &x->tokens, to, e))
 		return -1;

@@ -99,6 +99,11 @@ char *encoder_print(const struct encoder *x, const int32_t *ids, size_t n, struc
 	return x->is_clip ? merges_print(&x->bpe, ids, n, e) : vocab_print(&x->vocab, ids, n, e);
 }
 
+int encoder_has_middle(const struct encoder *x)
+{
+	return !x->is_clip && !x->is_static;
+}
+
 int encoder_scratch(const struct encoder *x, size_t rows, size_t longest, size_t *floats)
 {
 	return x->is_clip ? clip_scratch(&x->clip, rows, longest, floats)
@@ -106,7 +111,7 @@ int encoder_scratch(const struct encoder *x, size_t rows, size_t longest, size_t
 }
 
 void encoder_forward(const struct encoder *x, const int32_t *ids, const size_t *starts, size_t n, float *out,
-	float *scratch)
+	float *middle, float *scratch)
 {
 	if (x->is_static && x->is_clip)
 		clip_static(&x->clip, ids + starts[0], starts[n] - starts[0], out);
@@ -115,5 +120,5 @@ void encoder_forward(const struct encoder *x, const int32_t *ids, const size_t *
 	else if (x->is_clip)
 		clip_forward(&x->clip, ids, starts, n, out, scratch);
 	else
-		bert_forward(&x->bert, ids, starts, n, out, scratch);
+		bert_forward(&x->bert, ids, starts, n, out, middle, scratch);
 }

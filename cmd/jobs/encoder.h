@@ -50,9 +50,14 @@ int encoder_cut(const struct encoder *x, const char *text, struct wordpieces *ou
 /* n tokens written out, with a space between; free() it. NULL with *e set. */
 char *encoder_print(const struct encoder *x, const int32_t *ids, size_t n, struct err *e);
 
-/* As bert_scratch and bert_forward, or what the vocabulary has where x->is_static. */
+/* Whether it says what its middle layer makes of a word, which is what sentences are taken apart by: a BERT
+ * does. */
+int encoder_has_middle(const struct encoder *x);
+
+/* As bert_scratch and bert_forward, or what the vocabulary has where x->is_static. middle is NULL where it is
+ * not wanted, or where there is none. */
 int encoder_scratch(const struct encoder *x, size_t rows, size_t longest, size_t *floats);
 void encoder_forward(const struct encoder *x, const int32_t *ids, const size_t *starts, size_t n, float *out,
-	float *scratch);
+	float *middle, float *scratch);
 
 #endif

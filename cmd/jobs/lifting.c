@@ -221,8 +221,10 @@ static int lift(struct lifting *l, const struct report *to, struct err *e)
 int lifting_read(struct lifting *l, const struct lifting_files *files, const struct report *to, struct err *e)
 {
 	l->files = files;
-	if (load(l, e) || parser_weights_default(&l->weights, e) || find_views(l, to, e) ||
-		find_sentences(l, e))
+	if (load(l, e) || parser_weights_default(&l->weights, e) ||
+		parser_weights_need_middle(
+			&l->weights, file_name(files->text), l->text.middle, &l->text.encoder, e) ||
+		find_views(l, to, e) || find_sentences(l, e))
 		return -1;
 	find_objects(l, to);
 	return find_spare(l, e);

@@ -40,7 +40,7 @@ int parser_examples_write(const char *path, long long n, int is_test, long long 
 const float *lesson_vectors(const struct text *t, size_t r, int *count)
 {
 	*count = (int)(t->offsets[r + 1] - t->offsets[r]);
-	return t->words + (size_t)t->offsets[r] * (size_t)t->width;
+	return text_middle(t, r);
 }
 
 /* The sentence at this place was encoded from that text. */

@@ -24,6 +24,8 @@ struct parser_training {
 static int check_encoding(
 	const struct parser_training *s, const struct text *t, const char *path, struct err *e)
 {
+	if (!t->middle)
+		return err_set(e, ERR_FORMAT, "%s: tensor 'middle' is missing", path);
 	if (t->pieces && t->width == s->examples.width)
 		return 0;
 	return err_set(e, ERR_FORMAT, "%s: not encoded as the examples are", path);
@@ -173,7 +175,7 @@ int parser_train(const struct parser_training_options *o, const struct report *t
 			.rounds = (int)o->rounds,
 			.progress = say,
 			.context = (void *)to}};
-	int bad = text_read(&s.examples, o->examples, e) ||
+	int bad = text_read(&s.examples, o->examples, e) || check_encoding(&s, &s.examples, o->examples, e) ||
 		  parser_examples_take(&s.school, &s.examples, o->examples, o->seed, e);
 
 	if (!bad && o->marked)

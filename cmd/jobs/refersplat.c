@@ -181,7 +181,7 @@ static int print_parse(char **line, const struct text *t, const struct parse *p,
 static int parse_text(char **line, const struct asking *a, const struct text *t, struct err *e)
 {
 	const struct parser_vectors v = {
-		t->pieces ? t->pieces[0] : NULL, t->words, (int)t->offsets[1], t->width};
+		t->pieces ? t->pieces[0] : NULL, t->middle, (int)t->offsets[1], t->width};
 	struct parse p;
 
 	if (parse_sentence(&p, &a->parser, t->texts[0], &v, e))

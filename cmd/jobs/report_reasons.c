@@ -54,6 +54,7 @@ static int choose_all(struct choosing *c, struct err *e)
 		c->sentences[i] = (struct choose_sentence){.text = t->texts[i],
 			.pieces = t->pieces ? t->pieces[i] : NULL,
 			.vectors = t->words + (size_t)t->offsets[i] * (size_t)t->width,
+			.middle = text_middle(t, i),
 			.words = (size_t)(t->offsets[i + 1] - t->offsets[i]),
 			.from = viewpoint_of(c, i)};
 	return choose(

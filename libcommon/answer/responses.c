@@ -136,10 +136,9 @@ static int find_meant(struct meant *m, struct responses *a, const struct lifted 
 	const struct choose_scene scene = {l, q->splats, q->cameras, q->parser, 1};
 
 	for (size_t i = 0; i < q->count; i++) {
-		const size_t r = q->which[i];
-		m->sentences[i] = (struct choose_sentence){q->texts[r], q->pieces[r],
-			q->words + (size_t)q->offsets[r] * (size_t)l->width,
-			(size_t)(q->offsets[r + 1] - q->offsets[r]),
+		const size_t r = q->which[i], at = (size_t)q->offsets[r] * (size_t)l->width;
+		m->sentences[i] = (struct choose_sentence){q->texts[r], q->pieces[r], q->words + at,
+			q->middle ? q->middle + at : NULL, (size_t)(q->offsets[r + 1] - q->offsets[r]),
 			q->from ? q->from[i] : (struct viewpoint){.kind = VIEWPOINT_USUAL}, NULL};
 	}
 	if (choose(&scene, m->sentences, q->count, parts, m->choices, m->probability, m->chosen, NULL, e))

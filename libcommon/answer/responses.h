@@ -17,9 +17,9 @@
 struct responses_question {
 	const struct splats *splats;
 	const struct cameras *cameras;
-	const int64_t *offsets; /* sentence r has words offsets[r] to offsets[r+1] */
-	const float *words;
-	char **texts, **pieces; /* of each sentence; trained models need none */
+	const int64_t *offsets;	     /* sentence r has words offsets[r] to offsets[r+1] */
+	const float *words, *middle; /* by the encoder's last and middle layer; middle may be NULL */
+	char **texts, **pieces;	     /* of each sentence; trained models need none */
 	const struct viewpoint
 		*from; /* (count) where each of `which` is said; NULL: from the usual viewpoint */
 	const struct parser *parser;

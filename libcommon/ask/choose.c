@@ -258,7 +258,7 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 	struct choice *to, double *row, char *chosen, struct parse *own, struct err *e)
 {
 	const struct lifted *l = c->scene->lifted;
-	const struct parser_vectors vectors = {from->pieces, from->vectors, (int)from->words, l->width};
+	const struct parser_vectors vectors = {from->pieces, from->middle, (int)from->words, l->width};
 	const struct parse *p = from->parse ? from->parse : own;
 
 	if (!from->parse && parse_sentence(own, &c->parser, from->text, &vectors, e))

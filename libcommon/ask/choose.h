@@ -47,6 +47,7 @@ struct choose_sentence {
 	const char *pieces;   /* word pieces with single spaces between; NULL: not known, and only the part
 				 `sentence` counts */
 	const float *vectors; /* (words, the model's width) */
+	const float *middle;  /* the same of the encoder's middle layer; NULL: not known */
 	size_t words;
 	struct viewpoint from;
 	const struct parse *parse; /* NULL: not known, the text is parsed */

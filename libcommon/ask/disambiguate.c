@@ -96,8 +96,8 @@ static int settle(struct lifted *l, size_t named, const struct lifted *old, cons
 
 	for (size_t r = 0; r < l->sentences && !bad; r++)
 		sentences[r] = (struct choose_sentence){l->texts[r], l->pieces[r],
-			l->words + (size_t)l->offsets[r] * width, (size_t)(l->offsets[r + 1] - l->offsets[r]),
-			{.kind = VIEWPOINT_USUAL}, NULL};
+			l->words + (size_t)l->offsets[r] * width, lifted_middle(l, r),
+			(size_t)(l->offsets[r + 1] - l->offsets[r]), {.kind = VIEWPOINT_USUAL}, NULL};
 	for (int round = 0; round < ROUNDS && changes && !bad; round++) {
 		bad = judge(l, named, scene, sentences, choices, probability, chosen, value, e) ||
 		      assignment_best(value, n, n, next, e);

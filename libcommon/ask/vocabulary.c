@@ -196,8 +196,8 @@ static int read_sentences(struct vocabulary *v, const struct parser *parser, str
 	int bad = 0;
 
 	for (size_t r = 0; r < l->sentences && !bad; r++) {
-		const struct parser_vectors vectors = {
-			l->pieces[r], vectors_of(l, r), (int)(l->offsets[r + 1] - l->offsets[r]), l->width};
+		const struct parser_vectors vectors = {l->pieces[r], lifted_middle(l, r),
+			(int)(l->offsets[r + 1] - l->offsets[r]), l->width};
 		bad = parse_sentence(&v->parses[r], parser, l->texts[r], &vectors, e) ||
 		      add_sentence(v, r, e);
 	}

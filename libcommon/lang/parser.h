@@ -14,10 +14,11 @@ struct parser {
 	int is_blind;	     /* the network is not told what the grammar says: for a comparison */
 };
 
-/* What the encoder made of the sentence; zeroed where there is none. */
+/* What the encoder's middle layer made of the sentence; zeroed where there is none. What a word is to its
+ * neighbours is told in the middle of an encoder, what a sentence means at its end: pipelines/parse.md. */
 struct parser_vectors {
 	const char *pieces;   /* its word pieces with a space between */
-	const float *vectors; /* (count, width) */
+	const float *vectors; /* (count, width); NULL: none */
 	int count, width;
 };
 

@@ -21,7 +21,13 @@ void lifted_free(struct lifted *l)
 	free(l->object);
 	free(l->offsets);
 	free(l->words);
+	free(l->middle);
 	*l = (struct lifted){0};
+}
+
+const float *lifted_middle(const struct lifted *l, size_t sentence)
+{
+	return l->middle ? l->middle + (size_t)l->offsets[sentence] * (size_t)l->width : NULL;
 }
 
 void lifted_cut(struct lifted *l, size_t objects)

@@ -27,10 +27,15 @@ struct lifted {
 	char **pieces;	  /* (R) its word pieces with single spaces between, as many as it has words here */
 	int64_t *offsets; /* (R+1) into words */
 	float *words;	  /* (offsets[R], width) */
+	float *middle;	  /* the same of the encoder's middle layer, which sentences are taken apart by; NULL:
+			     none */
 };
 
 /* All arrays are the struct's own; a zeroed one may be freed. */
 void lifted_free(struct lifted *l);
+
+/* The words of a sentence by the middle layer; NULL where there are none. */
+const float *lifted_middle(const struct lifted *l, size_t sentence);
 
 /* Only the first objects stay, without the others, which no sentence names. */
 void lifted_cut(struct lifted *l, size_t objects);

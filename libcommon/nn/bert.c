@@ -67,11 +67,11 @@ int bert_scratch(const struct bert *b, size_t rows, size_t longest, size_t *floa
 	return transformer_scratch(&b->body, rows, longest, floats);
 }
 
-void bert_forward(
-	const struct bert *b, const int32_t *ids, const size_t *starts, size_t n, float *out, float *scratch)
+void bert_forward(const struct bert *b, const int32_t *ids, const size_t *starts, size_t n, float *out,
+	float *middle, float *scratch)
 {
 	embed(b, ids, starts, n, out);
-	transformer_forward(&b->body, starts, n, out, scratch);
+	transformer_forward(&b->body, starts, n, out, middle, scratch);
 }
 
 void bert_static(const struct bert *b, const int32_t *ids, size_t n, float *out)

@@ -34,9 +34,10 @@ int bert_scratch(const struct bert *b, size_t rows, size_t longest, size_t *floa
 
 /* n sequences side by side: sequence s has the tokens ids[starts[s]] to ids[starts[s+1]], at most `positions`
  * of them, [CLS] and [SEP] included; ids are below `words`. out (starts[n]-starts[0],width): one row a token.
+ * middle, of the shape of out: the same after half of the layers (transformer_middle); NULL: not wanted.
  * Kernel: cannot fail. */
-void bert_forward(
-	const struct bert *b, const int32_t *ids, const size_t *starts, size_t n, float *out, float *scratch);
+void bert_forward(const struct bert *b, const int32_t *ids, const size_t *starts, size_t n, float *out,
+	float *middle, float *scratch);
 
 /* What a token is before its sentence is read: out (n,width) = word[ids[k]], nothing added and not
  * normalised. Kernel: cannot fail. */

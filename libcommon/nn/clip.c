@@ -92,7 +92,7 @@ void clip_forward(
 	float *x = c->projected ? scratch : out;
 
 	embed(c, ids, starts, n, x);
-	transformer_forward(&c->body, starts, n, x, scratch + take_rows(c, rows, &(struct slab){0}));
+	transformer_forward(&c->body, starts, n, x, NULL, scratch + take_rows(c, rows, &(struct slab){0}));
 #pragma omp parallel for schedule(static)
 	for (size_t r = 0; r < rows; r++)
 		transformer_normalise(&c->body, x + r * width, &c->norm);

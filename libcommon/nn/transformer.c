@@ -222,8 +222,13 @@ static void run_layer_norm_first(const struct transformer *t, const struct trans
 	add(x, w->query, w->rows * (size_t)t->width);
 }
 
+int transformer_middle(const struct transformer *t)
+{
+	return t->layer_count / 2;
+}
+
 void transformer_forward(
-	const struct transformer *t, const size_t *starts, size_t n, float *x, float *scratch)
+	const struct transformer *t, const size_t *starts, size_t n, float *x, float *middle, float *scratch)
 {
 	struct work w = {.rows = starts[n] - starts[0]};
 	struct slab place = {.at = scratch};
@@ -231,9 +236,12 @@ void transformer_forward(
 	for (size_t s = 0; s < n; s++)
 		w.longest = starts[s + 1] - starts[s] > w.longest ? starts[s + 1] - starts[s] : w.longest;
 	lay_out_work(t, &w, &place);
-	for (int i = 0; i < t->layer_count; i++)
+	for (int i = 0; i < t->layer_count; i++) {
+		if (middle && i == transformer_middle(t))
+			memcpy(middle, x, w.rows * (size_t)t->width * sizeof *x);
 		if (t->is_norm_first)
 			run_layer_norm_first(t, &t->layers[i], &w, starts, n, x);
 		else
 			run_layer(t, &t->layers[i], &w, starts, n, x);
+	}
 }

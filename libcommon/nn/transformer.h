@@ -55,9 +55,13 @@ void transformer_normalise(const struct transformer *t, float *x, const struct t
  * their number does not fit. */
 int transformer_scratch(const struct transformer *t, size_t rows, size_t longest, size_t *floats);
 
+/* The layers after which a token's row is its middle one: half of them, 3 of 6. */
+int transformer_middle(const struct transformer *t);
+
 /* x (starts[n]-starts[0],width), one row a token, through all layers, in place. Sequence s has the rows from
- * starts[s]-starts[0] on, to that of the next. Kernel: cannot fail. */
+ * starts[s]-starts[0] on, to that of the next. middle, of the shape of x, gets the rows after
+ * transformer_middle layers; NULL: not wanted. Kernel: cannot fail. */
 void transformer_forward(
-	const struct transformer *t, const size_t *starts, size_t n, float *x, float *scratch);
+	const struct transformer *t, const size_t *starts, size_t n, float *x, float *middle, float *scratch);
 
 #endif

@@ -120,11 +120,11 @@ static int read_cell(struct cell *c, const struct parser *parser, struct err *e)
 		const struct text *t = &c->text;
 		const float *vectors = t->words + (size_t)t->offsets[i] * (size_t)t->width;
 		const int words = (int)(t->offsets[i + 1] - t->offsets[i]);
-		const struct parser_vectors v = {t->pieces[i], vectors, words, t->width};
+		const struct parser_vectors v = {t->pieces[i], text_middle(t, i), words, t->width};
 		if (parse_sentence(&c->parses[i], parser, t->texts[i], &v, e))
 			return -1;
-		c->sentences[i] = (struct choose_sentence){
-			t->texts[i], t->pieces[i], vectors, (size_t)words, viewpoint_of(c, i), &c->parses[i]};
+		c->sentences[i] = (struct choose_sentence){t->texts[i], t->pieces[i], vectors, NULL,
+			(size_t)words, viewpoint_of(c, i), &c->parses[i]};
 		mark_meant(c, i);
 	}
 	return 0;

@@ -55,6 +55,14 @@ refuses() {
 # Fails where the command succeeds; a plain ! would let the test go on.
 not() { ! "$@"; }
 
+@test "sentences of the parser's own encoder without its middle layer are refused" {
+	own=$(meta "$BATS_TEST_DIRNAME/../../formats/parser_default.safetensors" encoder)
+	"$BIN/text-encode" -q --words static --model "$made/encoder" -o text.safetensors "$made/sentences.jsonl"
+	lift -o model # another encoder's may lack it
+	sed -i "s/$(meta text.safetensors encoder)/$own/" text.safetensors
+	refuses 3 "text.safetensors: tensor 'middle' is missing, by which sentences are taken apart: make the file anew"
+}
+
 @test "the option that changes the model is recorded in it" {
 	lift -o model
 	[ "$(meta model options)" = "--names sentences" ]

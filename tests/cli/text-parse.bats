@@ -55,6 +55,19 @@ not() { ! "$@"; }
 	[ "$("$BIN/text-parse" -q text 2>&1 >/dev/null)" = "" ]
 }
 
+@test "words without a middle layer: by grammar alone, and it says so" {
+	jq -cn '{ref:"r",object:"x",text:"the wug on the dax"}' | "$BIN/text-encode" -q --words static --model encoder -o text
+	"$BIN/text-parse" text >a 2>err
+	grep -qx "text-parse: warning: text: has no tensor 'middle': by grammar alone" err
+	"$BIN/text-parse" --method grammar text | cmp - a
+}
+
+@test "weights of an older version are refused, as they were learnt on other vectors" {
+	encode "the wug on the dax"
+	sed 's/"version":"3"/"version":"2"/' "$BATS_TEST_DIRNAME/../../formats/parser_default.safetensors" >old
+	says 3 'text-parse: old: refer.parser version 2 is older than this program reads (3)' "$BIN/text-parse" --parser old text
+}
+
 @test "spans are characters, not bytes" {
 	[ "$(grammar 'die kühle Tasse on the wug' '.clauses[0].anchors[0].span')" = '[23,26]' ]
 	[ "$(grammar 'die kuhle Tasse on the wug' '.clauses[0].anchors[0].span')" = '[23,26]' ]

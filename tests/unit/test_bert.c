@@ -35,7 +35,7 @@ static float *encode(
 	CHECK(!bert_scratch(b, *n, *n, &floats), "scratch");
 	float *scratch = malloc(floats * sizeof *scratch),
 	      *out = malloc(*n * (size_t)b->body.width * sizeof *out);
-	bert_forward(b, ids->ids, (size_t[]){0, *n}, 1, out, scratch);
+	bert_forward(b, ids->ids, (size_t[]){0, *n}, 1, out, NULL, scratch);
 	free(scratch);
 	return out;
 }
@@ -90,6 +90,9 @@ static void side_by_side(const struct bert *b)
 	int32_t ids[TOKENS];
 	size_t starts[N + 1] = {5, 7, 20, 20, TOKENS}, width = (size_t)b->body.width, floats;
 	float *all = malloc(TOKENS * width * sizeof *all), *one = malloc(TOKENS * width * sizeof *one);
+	float *middle = malloc(TOKENS * width * sizeof *middle),
+	      *half = malloc(TOKENS * width * sizeof *half);
+	struct bert first = *b; /* the first half of the layers alone */
 	int threads = omp_get_max_threads();
 
 	for (int i = 0; i < TOKENS; i++)
@@ -97,17 +100,27 @@ static void side_by_side(const struct bert *b)
 	bert_scratch(b, TOKENS, TOKENS, &floats);
 	float *scratch = malloc(floats * sizeof *scratch);
 	omp_set_num_threads(3);
-	bert_forward(b, ids, starts, N, all, scratch);
+	bert_forward(b, ids, starts, N, all, middle, scratch);
 	omp_set_num_threads(1);
 	for (int s = 0; s < N; s++) {
 		size_t n = starts[s + 1] - starts[s];
-		bert_forward(b, ids, starts + s, 1, one, scratch);
-		CHECK(same_bytes(one, all + (starts[s] - starts[0]) * width, n * width * sizeof *one),
-			"sequence %d", s);
+		size_t at = (starts[s] - starts[0]) * width;
+		bert_forward(b, ids, starts + s, 1, one, half, scratch);
+		CHECK(same_bytes(one, all + at, n * width * sizeof *one), "sequence %d", s);
+		CHECK(same_bytes(half, middle + at, n * width * sizeof *one), "sequence %d, middle", s);
+		bert_forward(b, ids, starts + s, 1, one, NULL, scratch);
+		CHECK(same_bytes(one, all + at, n * width * sizeof *one), "sequence %d without its middle",
+			s);
 	}
+	first.body.layer_count = transformer_middle(&b->body);
+	CHECK(first.body.layer_count > 0, "no layers before the middle");
+	bert_forward(&first, ids, starts, N, one, NULL, scratch);
+	CHECK(same_bytes(one, middle, (starts[N] - starts[0]) * width * sizeof *one), "half of the layers");
 	omp_set_num_threads(threads);
 	free(all);
 	free(one);
+	free(middle);
+	free(half);
 	free(scratch);
 }
 

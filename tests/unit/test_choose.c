@@ -50,7 +50,7 @@ static int64_t indptr[OBJECTS + 1];
 static float confidence[OBJECTS] = {1, 1, 1, 1};
 static struct splats splats = {N, 1, means, scales, quats, opacities, sh};
 static struct lifted lifted = {N, OBJECTS, names, confidence, indptr, index_of, share, 6, WIDTH, object,
-	pieces, pieces, offsets, words};
+	pieces, pieces, offsets, words, NULL};
 static struct camera view;
 static struct cameras cameras = {1, &view};
 
@@ -91,7 +91,7 @@ static struct choice choice;
 static int ask_from(const char *text, unsigned parts, struct viewpoint from)
 {
 	static float vectors[MOST * WIDTH];
-	const struct choose_sentence s = {text, text, vectors, encode(text, vectors), from, NULL};
+	const struct choose_sentence s = {text, text, vectors, NULL, encode(text, vectors), from, NULL};
 	struct err e;
 	int best = 0;
 
@@ -314,8 +314,8 @@ static void many(void)
 {
 	static float a[MOST * WIDTH], b[MOST * WIDTH];
 	const struct choose_sentence s[] = {
-		{"the red box", "the red box", a, encode("the red box", a), {0}, NULL},
-		{"another", NULL, b, encode("the dull can", b), {0}, NULL}};
+		{"the red box", "the red box", a, NULL, encode("the red box", a), {0}, NULL},
+		{"another", NULL, b, NULL, encode("the dull can", b), {0}, NULL}};
 	float both[2 * OBJECTS];
 	char of_both[2 * OBJECTS];
 	struct choice two[2];
@@ -350,7 +350,8 @@ static void kept(void)
 	for (int i = 0; i < 10; i++) {
 		const char *text = asked[i / 2];
 		from.kind = i % 2 ? VIEWPOINT_POINT : VIEWPOINT_USUAL;
-		const struct choose_sentence s = {text, text, vectors, encode(text, vectors), from, NULL};
+		const struct choose_sentence s = {
+			text, text, vectors, NULL, encode(text, vectors), from, NULL};
 		CHECK(!choose_with(c, &s, 1, &with, of_kept, chosen_kept, NULL, &e) &&
 				!choose(&scene, &s, 1, CHOOSE_ALL, &without, alone, chosen_alone, NULL, &e),
 			"'%s': %s", text, e.message);

@@ -9,7 +9,7 @@ static char path[] = "/tmp/test_lifted.XXXXXX";
 static int64_t indptr[] = {0, 2, 2, 5}, offsets[] = {0, 2, 2, 3};
 static int32_t index_of[] = {1, 4, 0, 1, 6}, object[] = {2, 0, 2};
 static float share[] = {1, 0.4f, 0.001f, 51.f / 255, 1.f / 255}, confidence[] = {0.75f, 0, 1};
-static float words[] = {1, 2, 3, 0.1f, -65504, 0};
+static float words[] = {1, 2, 3, 0.1f, -65504, 0}, middle[] = {-1, 0.25f, 7, 0.5f, 8, 9};
 static char *names[] = {"red cup", "\"pan\"", "\xe7\x93\xb6"};
 static char *texts[] = {"a bottle", "", "bottle"}, *pieces[] = {"a bottle", "", "bottle"};
 
@@ -17,7 +17,7 @@ static char *texts[] = {"a bottle", "", "bottle"}, *pieces[] = {"a bottle", "", 
 static struct lifted example(void)
 {
 	return (struct lifted){7, 3, names, confidence, indptr, index_of, share, 3, 2, object, texts, pieces,
-		offsets, words};
+		offsets, words, middle};
 }
 
 static void round_trip(void)
@@ -48,6 +48,22 @@ static void round_trip(void)
 	for (int k = 0; k < 6; k++)
 		CHECK(fabsf(out.words[k] - words[k]) <= 0x1p-11f * fabsf(words[k]), "word %d is %g", k,
 			(double)out.words[k]);
+	CHECK(!memcmp(out.middle, middle, sizeof middle) && lifted_middle(&out, 2) == out.middle + 4,
+		"the middle layer's differ");
+	lifted_free(&out);
+}
+
+/* A model of sentences that another program encoded may have no middle layer. */
+static void without_middle(void)
+{
+	struct lifted in = example(), out;
+	struct origin of;
+	struct err e = {0};
+
+	in.middle = NULL;
+	CHECK(!lifted_write(&in, &(struct origin){0}, path, "", &e) && !lifted_read(&out, &of, path, &e),
+		"%s", e.message);
+	CHECK(!out.middle && !lifted_middle(&out, 2), "a middle layer out of nothing");
 	lifted_free(&out);
 }
 
@@ -89,8 +105,10 @@ int main(void)
 		return unit_end();
 	close(file);
 	round_trip();
+	without_middle();
 	responses_are_shares_above_the_cut();
 	refuses_to_write(&words[3], NAN, ": tensor 'words': item 3 is not finite");
+	refuses_to_write(&middle[1], NAN, ": tensor 'middle': item 1 is not finite");
 	refuses_to_write(&words[3], 70000, ": tensor 'words': item 3 is 70000, too large for this precision");
 	refuses_to_write(&share[1], 0, ": tensor 'share': item 1 is 0");
 	refuses_to_write(&share[1], 1.5f, ": tensor 'share': item 1 is 1.5");

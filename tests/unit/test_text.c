@@ -77,7 +77,8 @@ static void check_object_lists(const struct text *t, struct err *e)
 static void text_round_trip(void)
 {
 	int64_t offsets[] = {0, 2, 2, 3};
-	float words[] = {1, 2, 3, 3, 4, 5, -1, 0.5f, 0.25f}, means[] = {2, 3, 4, 0, 0, 0, -1, 0.5f, 0.25f};
+	float words[] = {1, 2, 3, 3, 4, 5, -1, 0.5f, 0.25f}, middle[] = {9, 8, 7, 6, 5, 4, 3, 2, -0.125f},
+	      means[] = {2, 3, 4, 0, 0, 0, -1, 0.5f, 0.25f};
 	char *refs[] = {"r1", "r2", "r3"}, *objects[] = {"cup", "cup", "\xe7\x93\xb6"};
 	char *texts[] = {"a \"red\" cup\n", "", "bottle"};
 	char *pieces[] = {"a ##b", "", "bottle"};
@@ -88,6 +89,7 @@ static void text_round_trip(void)
 		.width = 3,
 		.offsets = offsets,
 		.words = words,
+		.middle = middle,
 		.sentences = means,
 		.refs = refs,
 		.objects = objects,
@@ -108,6 +110,8 @@ static void text_round_trip(void)
 	CHECK(out.n == 3 && out.width == 3, "n %zu width %d", out.n, out.width);
 	CHECK(same_bytes(out.offsets, offsets, sizeof offsets), "offsets differ");
 	CHECK(same_bytes(out.words, words, sizeof words), "words differ");
+	CHECK(same_bytes(out.middle, middle, sizeof middle) && text_middle(&out, 2) == out.middle + 6,
+		"the middle layer's differ");
 	CHECK(same_bytes(out.sentences, means, sizeof means), "sentences differ");
 	CHECK(same_bytes(out.splits, splits, sizeof splits), "splits differ");
 	for (int i = 0; i < 3; i++)
