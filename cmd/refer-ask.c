@@ -10,6 +10,10 @@
 #include <string.h>
 #include <unistd.h>
 
+/* Questions that wait together are encoded together: 200 of them take 5.3 s one by one, 3.5 by four, 3.0 by
+ * 16 or 64 (one thread, 0.6 s of it loading). */
+enum { AT_ONCE = 16 };
+
 static struct {
 	struct asking_options asking;
 	struct reply_options reply;
@@ -75,24 +79,61 @@ static void prompt(void)
 		fputs("> ", stderr);
 }
 
-/* Every line of stdin. *status becomes that of the worst line. */
+/* The next question of stdin, and those that wait behind it. Returns their number, 0 at the end, -1 with *e.
+ */
+static int take_questions(struct question to[AT_ONCE], struct questions *from, struct err *e)
+{
+	int n = 0, got;
+
+	do {
+		got = question_next(&to[n], from, e);
+		n += got > 0;
+	} while (got > 0 && n < AT_ONCE && question_waits(from));
+	return got < 0 ? got : n;
+}
+
+static void expect(struct asking *a, const struct question *q, int n)
+{
+	const char *texts[AT_ONCE];
+	size_t count = 0;
+
+	for (int i = 0; i < n; i++)
+		if (!q[i].fault)
+			texts[count++] = q[i].text;
+	asking_expect(a, texts, n > 1 ? count : 0);
+}
+
+/* *status becomes that of the worst. */
+static int answer_line(
+	const struct cli *c, struct asking *a, const struct question *q, int *status, struct err *e)
+{
+	int refused = 0;
+
+	if (q->fault) {
+		fprintf(stderr, "%s: stdin:%ld: %s\n", tool.name, q->line, q->fault);
+		*status = ERR_FORMAT;
+		return 0;
+	}
+	if (answer(c, a, q->text, &refused, e))
+		return -1;
+	*status = *status ? *status : refused ? ERR_CHECK : ERR_NONE;
+	return 0;
+}
+
+/* Every line of stdin. */
 static int answer_lines(const struct cli *c, struct asking *a, int *status, struct err *e)
 {
-	struct question q = {0};
-	int got;
+	static struct question q[AT_ONCE];
+	static struct questions from = {.fd = STDIN_FILENO};
+	int n;
 
-	for (prompt(); (got = question_next(&q, stdin, e)) > 0; prompt()) {
-		int refused = 0;
-		if (q.fault) {
-			fprintf(stderr, "%s: stdin:%ld: %s\n", tool.name, q.line, q.fault);
-			*status = ERR_FORMAT;
-			continue;
-		}
-		if (answer(c, a, q.text, &refused, e))
-			return -1;
-		*status = *status ? *status : refused ? ERR_CHECK : ERR_NONE;
+	for (prompt(); (n = take_questions(q, &from, e)) > 0; prompt()) {
+		expect(a, q, n);
+		for (int i = 0; i < n; i++)
+			if (answer_line(c, a, &q[i], status, e))
+				return -1;
 	}
-	return got;
+	return n;
 }
 
 static int run(const struct cli *c, struct asking *a, int *status, struct err *e)

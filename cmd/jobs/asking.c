@@ -104,6 +104,7 @@ void asking_close(struct asking *a)
 {
 	object_extents_free(a->extents, a->model.lifted.objects);
 	chooser_free(a->chooser);
+	encoding_free(&a->ahead);
 	encoder_free(&a->encoder);
 	anymodel_free(&a->model);
 	cameras_free(&a->given);
@@ -168,11 +169,13 @@ static void sort_things(struct asking_answer *answer, const char *chosen, size_t
 	}
 }
 
-static int choose_answer(struct asking *a, const struct text *t, struct watched *w, struct err *e)
+/* By sentence r of the text. */
+static int choose_answer(struct asking *a, const struct text *t, size_t r, struct watched *w, struct err *e)
 {
 	const size_t objects = a->model.lifted.objects;
-	const struct choose_sentence sentence = {
-		t->texts[0], t->pieces[0], t->words, t->middle, (size_t)t->offsets[1], a->from, NULL};
+	const struct choose_sentence sentence = {t->texts[r], t->pieces[r],
+		t->words + (size_t)t->offsets[r] * (size_t)t->width, text_middle(t, r),
+		(size_t)(t->offsets[r + 1] - t->offsets[r]), a->from, NULL};
 	const struct choose_watch watching = {w, watch};
 	float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
 	char *chosen = mem_alloc(objects, 1, "answer", e);
@@ -195,22 +198,62 @@ static int choose_answer(struct asking *a, const struct text *t, struct watched 
 	return bad ? -1 : 0;
 }
 
+void asking_expect(struct asking *a, const char *const *questions, size_t n)
+{
+	struct err e;
+	char ref[32];
+	int bad = 0;
+
+	encoding_free(&a->ahead);
+	a->ahead = (struct encoding){0};
+	for (size_t i = 0; i < n && !bad; i++) {
+		snprintf(ref, sizeof ref, "%zu", i);
+		bad = sentences_add(&a->ahead.sentences, ref, "?", questions[i], &e);
+	}
+	if (!n || (!bad && !encode(&a->ahead, &a->encoder, &report_silent, &e)))
+		return;
+	encoding_free(&a->ahead);
+	a->ahead = (struct encoding){0};
+}
+
+/* The sentence of a->ahead that the question is; their number where there is none, or where the encoder may
+ * have cut it, which is said when it is encoded alone. */
+static size_t find_ahead(const struct asking *a, const char *question)
+{
+	const struct text *t = &a->ahead.text;
+	size_t r = 0;
+
+	while (r < t->n && strcmp(t->texts[r], question) != 0)
+		r++;
+	if (r < t->n && (size_t)(t->offsets[r + 1] - t->offsets[r]) + 2 >= encoder_positions(&a->encoder))
+		return t->n;
+	return r;
+}
+
 int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
 	struct err *e)
 {
 	struct watched w = {.answer = answer, .question = question, .is_explained = a->options->is_explained};
-	struct encoding x = {0};
-	int bad = asking_answer_make(answer, a->model.lifted.objects, e) ||
-		  sentences_add(&x.sentences, "1", "?", question, e) || encode(&x, &a->encoder, to, e);
+	struct encoding alone = {0};
+	const struct text *text = &a->ahead.text;
+	size_t r = find_ahead(a, question);
+	int bad = asking_answer_make(answer, a->model.lifted.objects, e);
 
+	if (!bad && r == text->n) {
+		text = &alone.text;
+		r = 0;
+		bad = sentences_add(&alone.sentences, "1", "?", question, e) ||
+		      encode(&alone, &a->encoder, to, e);
+	}
 	if (!bad)
 		snprintf(answer->reason, sizeof answer->reason, "the %s",
-			x.text.offsets[1] ? "model has no objects" : "question has no words");
+			text->offsets[r + 1] > text->offsets[r] ? "model has no objects"
+								: "question has no words");
 	if (!bad)
-		bad = choose_answer(a, &x.text, &w, e);
+		bad = choose_answer(a, text, r, &w, e);
 	if (!bad && w.is_out_of_memory)
 		bad = err_set(e, ERR_SYSTEM, "explanation: out of memory");
-	encoding_free(&x);
+	encoding_free(&alone);
 	if (bad)
 		asking_answer_free(answer);
 	return bad ? -1 : 0;

@@ -33,6 +33,7 @@ struct asking {
 	struct chooser *chooser;
 	struct viewpoint from;
 	struct cameras given;	/* the one of options->camera; else none */
+	struct encoding ahead;	/* questions that were encoded before they are asked; asking_expect */
 	struct extent *extents; /* (objects) where each is, without the scene's offset */
 };
 
@@ -59,6 +60,10 @@ struct asking_answer {
 	int has_centres;
 	cJSON *explained; /* of explain_meaning; NULL where it was not asked for */
 };
+
+/* Encodes questions that are about to be asked all at once, which takes a quarter of the time that it takes
+ * one by one. No answer changes, and nothing is said: what goes wrong is said when the question is asked. */
+void asking_expect(struct asking *a, const char *const *questions, size_t n);
 
 /* Answers a question; warns where it is too long for the encoder. asking_answer_free after success. */
 int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
