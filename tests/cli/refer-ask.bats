@@ -100,6 +100,20 @@ setup() {
 	wait
 }
 
+@test "questions that wait together are answered, and warned of, as each alone" {
+	thing=$(head -n 1 things)
+	long="$thing $(printf 'cup %.0s' {1..90})"
+	for question in "$thing" "$long" "$thing"; do ask run "$question" || [ $? = 1 ]; done >alone 2>said
+	grep -q 'word pieces, cut to the' said
+	printf '%s\n' "$thing" "$long" "$thing" | ask run >piped 2>warned || [ $? = 1 ]
+	cmp alone piped
+	cmp said warned
+	# the last line without its end, and one that no read takes whole
+	printf '%s\n%70000s\n%s' "$thing" "$thing" "$thing" | ask run >padded 2>err || [ $? = 3 ]
+	[ "$(cat err)" = "refer-ask: stdin:2: is longer than 2000 bytes" ]
+	[ "$(cat padded)" = "$(sed 2d alone)" ]
+}
+
 @test "1 and 7 threads say the same" {
 	ask --threads 1 --json --explain run <questions >one || [ $? = 1 ]
 	ask --threads 7 --json --explain run <questions >seven || [ $? = 1 ]
