@@ -237,7 +237,7 @@ cut_short() {
 	cut text.safetensors
 	run train -o m
 	[ "$status" = 3 ]
-	[[ $output == "refer-train: text.safetensors: tensor 'sentences': ends at data offset "* ]]
+	[[ $output == "refer-train: text.safetensors: tensor 'middle': ends at data offset "* ]]
 	cp "$made/text.safetensors" .
 	cut weights/view_000.safetensors
 	run train -o m
