@@ -280,10 +280,10 @@ int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, c
 	if (colour < 0)
 		return 0;
 	said_colours(v, colour, fit, v->other);
-	/* where another thing is called so, one that is like it but not called so is meant less; of several,
-	 * what it is called itself counts more */
-	const int is_there = largest(fit, a->n) > COLOUR_SAID;
-	const double less = v->of_several && is_there ? OTHER_COLOUR_THERE : OTHER_COLOUR;
+	/* of several, where another thing is called so, what it is called itself counts more, and what is
+	 * only like the colour is meant less */
+	const int is_there = v->of_several && largest(fit, a->n) > COLOUR_SAID;
+	const double less = is_there ? OTHER_COLOUR_THERE : OTHER_COLOUR;
 	for (size_t o = 0; o < a->n; o++) {
 		const double share = a->objects[o].colours[colour];
 		const double looks = share / (share + COLOUR_SHARE);
