@@ -146,6 +146,8 @@ static double choose_phrase(struct chooser *c, const struct parse *p, int phrase
 			      (has(c, CHOOSE_SENTENCE) ? SENTENCE_WEIGHT * c->whole[o] : 0);
 	const size_t best = best_of(c->score, n);
 	const double top = fit[best], there = presence(c, p, phrase, best);
+	if (p->phrases[0].also.n && f->count < 0 && there < PART_THERE) /* "and all the airpods" */
+		return there;
 	if (f->count == PARSE_ONE) {
 		for (size_t o = 0; o < n; o++)
 			c->score[o] *= sharpness(c);

@@ -173,6 +173,16 @@ static int is_said_of_something(struct meaning *m, int word, double *match)
 	return largest(match, objects_of(m)) > ATTRIBUTE_SAID;
 }
 
+/* "The white gadget": a thing whose name is not said, and few of what is called so somewhere is called so
+ * here. */
+static int is_vague(const struct parse_word *w)
+{
+	static const char *const vague[] = {"gadget", "gizmo", "contraption", "widget", "doodad", "doohickey",
+		"thingamajig", "thingamabob", "whatsit", NULL};
+
+	return meaning_word_is(w, vague);
+}
+
 void meaning_judge_noun(struct meaning *m, int phrase)
 {
 	const struct parse *p = m->sentence->parse;
@@ -189,6 +199,8 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	if (head < 0)
 		return;
 	vocabulary_noun(m->vocabulary, m->sentence, head, match);
+	for (size_t o = 0; o < n && is_vague(&p->words[head]); o++)
+		match[o] = fmax(match[o], VAGUE_LEAST);
 	if (colour_word(p->words[head].lemma) >= 0 && largest(match, n) < 0.5) { /* "something orange" */
 		judge_colour(m, phrase, head);
 		return;

@@ -59,6 +59,18 @@ static void share_general(const struct vocabulary *v, const double *general, dou
 				match[k] = fmax(match[k], GENERAL_WORTH * general[o]);
 }
 
+/* What one mug is called, another may be called too. match (O) in and out; own (O) is scratch. */
+static void share_kin(const struct vocabulary *v, double *own, double *match)
+{
+	const size_t n = v->lifted->objects;
+
+	memcpy(own, match, n * sizeof *own);
+	for (size_t o = 0; o < n; o++)
+		for (size_t k = 0; k < n && own[o] > KIN_LEAST; k++)
+			if (v->kin[o * n + k] > !v->has_names)
+				match[k] = fmax(match[k], KIN_WORTH * own[o]);
+}
+
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
 {
 	const struct lifted *l = v->lifted;
@@ -96,6 +108,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 			v->other[item->object] = fmax(v->other[item->object], x);
 	}
 	share_general(v, v->other, match);
+	share_kin(v, v->other, match);
 }
 
 void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
