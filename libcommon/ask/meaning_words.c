@@ -211,10 +211,11 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	}
 	value = meaning_add_part(m, phrase, MEANING_NOUN, head);
 	const double best = fmax(0, largest(match, n)), most = fmax(best, match[n]);
+	/* of several things each has to be called so as well as another is */
+	const double power = f->count == PARSE_ONE || is_vague(&p->words[head]) ? 0 : NOUN_SEVERAL;
 	m->known[phrase] = best;
 	for (size_t o = 0; o < n; o++) {
-		/* of several things each has to be called so as well as another is */
-		const double x = f->count == PARSE_ONE ? match[o] : match[o] * match[o] / fmax(most, 1e-9);
+		const double x = match[o] * pow(match[o] / fmax(most, 1e-9), power);
 		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * x * x / fmax(most, 1e-9);
 		/* another thing that is called so speaks against it */
 		there[o] = match[o] * pow(match[o] / fmax(best, 1e-9), NOUN_ELSEWHERE) *
