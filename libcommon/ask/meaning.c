@@ -230,7 +230,8 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 		return;
 	}
 	const double known = judge_relation(m, phrase, c, fit, value);
-	if (c->relation == PARSE_WITH) {
+	/* what carries or holds something that is nothing here has it: "the one with its screen on" */
+	if (c->relation == PARSE_WITH || (c->relation == PARSE_SUPPORTS && c->anchors.n && !c->negated && known < 0.5)) {
 		meaning_judge_predicate(m, c, said);
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(said[o], known * value[o]);
@@ -411,6 +412,25 @@ static void judge_order(struct meaning *m, int phrase)
 		judge_ordinal(m, phrase, before);
 }
 
+/* What is no thing here, but a part of one, is where that is: "in front of the screen". */
+static void take_whole(struct meaning *m, int phrase)
+{
+	const struct parse *p = m->sentence->parse;
+	const int head = meaning_head_of(p, &p->phrases[phrase]);
+	const size_t n = objects_of(m);
+	double *has = m->scratch + n;
+
+	if (head < 0 || m->known[phrase] >= 0.5 || p->phrases[phrase].viewer || is_scene(m, phrase))
+		return;
+	vocabulary_has(m->vocabulary, m->sentence, head, has);
+	if (largest(has, n) < 0.5)
+		return;
+	m->known[phrase] = PART_WORTH * largest(has, n);
+	for (size_t o = 0; o < n; o++)
+		there_of(m, phrase)[o] = fit_of(m, phrase)[o] =
+			m->arrangement->objects[o].is_there ? PART_WORTH * has[o] : 0;
+}
+
 /* The phrases that a phrase needs, before it. */
 static void judge_below(struct meaning *m, const struct parse_phrase *f, int depth)
 {
@@ -418,8 +438,11 @@ static void judge_below(struct meaning *m, const struct parse_phrase *f, int dep
 
 	for (int k = 0; k < f->clauses.n; k++) {
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
-		for (int j = 0; j < c->anchors.n; j++)
+		for (int j = 0; j < c->anchors.n; j++) {
 			judge_phrase(m, c->anchors.item[j], depth + 1);
+			if (c->relation < PARSE_SUPPORTS)
+				take_whole(m, c->anchors.item[j]);
+		}
 	}
 	for (int k = 0; k < f->except.n; k++)
 		judge_phrase(m, f->except.item[k], depth + 1);

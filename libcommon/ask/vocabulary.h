@@ -86,6 +86,10 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
  * for places, 0 where there is none, or WORDING_NAME where it is a word of the object's name. */
 void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
+/* match (O) in [0,1]: that a training sentence says that the object has what word w names: a screen of the
+ * laptop. */
+void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
+
 /* match (O) in [0,1]: that a training sentence has the object in a like relation to what word w names. */
 void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
 	enum parse_relation relation, double *match);

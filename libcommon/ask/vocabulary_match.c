@@ -202,6 +202,23 @@ void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s
 	}
 }
 
+void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
+{
+	const struct parse_word *word = &s->parse->words[w];
+	const size_t width = (size_t)v->lifted->width;
+
+	vocabulary_word_vector(v, word, s->vectors, v->word);
+	memset(match, 0, v->lifted->objects * sizeof *match);
+	for (size_t i = 0; i < v->n && v->has_said; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->sentence == v->without || item->role != VOCABULARY_ANCHOR || says_place(item))
+			continue;
+		double x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
+		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
+		match[item->object] = fmax(match[item->object], x);
+	}
+}
+
 /* How far things of a kind are for what a word says. */
 static double kind_fits(struct vocabulary *v, size_t kind, const struct uses *word)
 {
