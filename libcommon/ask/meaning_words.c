@@ -147,17 +147,46 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
 }
 
+/* Whether a phrase, or a word like "one" where the phrase has no words, comes after some words. */
+static int is_after(const struct parse *p, const struct parse_phrase *f, struct parse_span words)
+{
+	static const char *const again[] = {"one", "ones", "other", "others", "another", NULL};
+
+	for (int w = 0; w < p->word_count && f->span.begin == f->span.end; w++)
+		if (p->words[w].span.begin >= words.end && meaning_word_is(&p->words[w], again))
+			return 1;
+	return words.begin < f->span.begin;
+}
+
+/* "Two plates there ... the one that is near": the word of several things that were spoken of before and found
+ * no place, where something is called so; or -1. */
+static int kind_left_over(struct meaning *m, const struct parse_phrase *target)
+{
+	const struct parse *p = m->sentence->parse;
+	double *match = m->scratch + objects_of(m);
+
+	for (int k = p->unexplained.n - 1; k >= 0; k--) {
+		const struct parse_word *w = &p->words[p->unexplained.item[k]];
+		if (!is_after(p, target, w->span) || !strcmp(w->text, w->lemma))
+			continue;
+		vocabulary_noun(m->vocabulary, m->sentence, p->unexplained.item[k], match);
+		if (largest(match, objects_of(m)) >= KIND_SPOKEN_OF)
+			return p->unexplained.item[k];
+	}
+	return -1;
+}
+
 /* "Not the orange plate, the other one": the word of the kind that was spoken of before, or -1. */
-static int kind_before(const struct meaning *m, const struct parse_phrase *target)
+static int kind_before(struct meaning *m, const struct parse_phrase *target)
 {
 	const struct parse *p = m->sentence->parse;
 
 	for (int k = 0; k < target->except.n; k++) {
 		const struct parse_phrase *f = &p->phrases[target->except.item[k]];
-		if (f->span.begin < target->span.begin)
+		if (is_after(p, target, f->span))
 			return meaning_head_of(p, f);
 	}
-	return -1;
+	return kind_left_over(m, target);
 }
 
 /* Whether a word that nothing is called by is said of something: "striped" of "neither purple nor striped".
@@ -193,6 +222,7 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 
 	if (head < 0 && is_elliptic(p, f))
 		head = phrase ? meaning_head_of(p, &p->phrases[0]) : kind_before(m, f);
+	const int is_left_over = head > 0 && parse_list_has(&p->unexplained, head);
 	for (size_t o = 0; o < n; o++)
 		there[o] = GENERIC_THERE;
 	m->known[phrase] = GENERIC_THERE;
@@ -222,6 +252,8 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 			   (most > best ? best / most : 1);
 	}
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
+	if (is_left_over && colour_word(p->words[head - 1].lemma) >= 0)
+		judge_colour(m, phrase, head - 1);
 }
 
 /* "bright", "dark" or "light" before a colour is of the colour. */
