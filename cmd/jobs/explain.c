@@ -15,7 +15,10 @@ static void add_part(struct parse_words *w, const struct explained *x, const str
 
 	switch (part->kind) {
 	case MEANING_NOUN:
-		parse_words_noun(w, p, part->phrase);
+		if (p->phrases[part->phrase].noun.n)
+			parse_words_noun(w, p, part->phrase);
+		else /* of "the other one": what was spoken of before */
+			parse_words_add(w, p->words[part->index].text);
 		break;
 	case MEANING_ATTRIBUTE:
 	case MEANING_COLOUR:

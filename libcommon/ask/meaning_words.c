@@ -60,6 +60,9 @@ static int is_elliptic(const struct parse *p, const struct parse_phrase *f)
 	static const char *const again[] = {
 		"one", "ones", "other", "others", "another", "two", "three", "those", NULL};
 
+	for (int w = 1; w < p->word_count && !f->noun.n; w++) /* "the striped one" */
+		if (p->words[w - 1].span.end == f->span.end && meaning_word_is(&p->words[w], again))
+			return 1;
 	return !f->noun.n && (f->span.begin == f->span.end || has_word(p, f, again));
 }
 
@@ -176,15 +179,19 @@ static int kind_left_over(struct meaning *m, const struct parse_phrase *target)
 	return -1;
 }
 
-/* "Not the orange plate, the other one": the word of the kind that was spoken of before, or -1. */
-static int kind_before(struct meaning *m, const struct parse_phrase *target)
+/* "Not the orange plate, the other one": the word of the kind that was spoken of before, or -1. is_alike: it is of
+ * that colour too, as in "not the left orange plate, the other one". */
+static int kind_before(struct meaning *m, const struct parse_phrase *target, int *is_alike)
 {
 	const struct parse *p = m->sentence->parse;
 
+	*is_alike = 1;
 	for (int k = 0; k < target->except.n; k++) {
 		const struct parse_phrase *f = &p->phrases[target->except.item[k]];
-		if (is_after(p, target, f->span))
-			return meaning_head_of(p, f);
+		if (!is_after(p, target, f->span))
+			continue;
+		*is_alike = f->clauses.n > 0;
+		return meaning_head_of(p, f);
 	}
 	return kind_left_over(m, target);
 }
@@ -217,12 +224,11 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	const struct parse *p = m->sentence->parse;
 	const struct parse_phrase *f = &p->phrases[phrase];
 	const size_t n = objects_of(m);
-	int head = meaning_head_of(p, f);
+	int head = meaning_head_of(p, f), is_alike = 0;
 	double *value, *there = there_of(m, phrase), *match = m->scratch + n;
 
 	if (head < 0 && is_elliptic(p, f))
-		head = phrase ? meaning_head_of(p, &p->phrases[0]) : kind_before(m, f);
-	const int is_left_over = head > 0 && parse_list_has(&p->unexplained, head);
+		head = phrase ? meaning_head_of(p, &p->phrases[0]) : kind_before(m, f, &is_alike);
 	for (size_t o = 0; o < n; o++)
 		there[o] = GENERIC_THERE;
 	m->known[phrase] = GENERIC_THERE;
@@ -252,7 +258,7 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 			   (most > best ? best / most : 1);
 	}
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
-	if (is_left_over && colour_word(p->words[head - 1].lemma) >= 0)
+	if (is_alike && head > 0 && colour_word(p->words[head - 1].lemma) >= 0)
 		judge_colour(m, phrase, head - 1);
 }
 
