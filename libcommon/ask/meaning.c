@@ -231,7 +231,8 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	}
 	const double known = judge_relation(m, phrase, c, fit, value);
 	/* what carries or holds something that is nothing here has it: "the one with its screen on" */
-	if (c->relation == PARSE_WITH || (c->relation == PARSE_SUPPORTS && c->anchors.n && !c->negated && known < 0.5)) {
+	if (c->relation == PARSE_WITH ||
+		(c->relation == PARSE_SUPPORTS && c->anchors.n && !c->negated && known < 0.5)) {
 		meaning_judge_predicate(m, c, said);
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(said[o], known * value[o]);
@@ -405,8 +406,9 @@ static void judge_order(struct meaning *m, int phrase)
 	double *before = m->scratch + 2 * n;
 
 	memcpy(before, fit_of(m, phrase), n * sizeof *before);
-	for (size_t o = 0; o < n; o++) /* what fits half as well is hardly one of them */
-		before[o] *= before[o] * m->arrangement->objects[o].in_sight;
+	for (size_t o = 0; o < n;
+		o++) /* what fits half as well is hardly one of them: "the littlest grey thing" */
+		before[o] *= before[o] * before[o] * m->arrangement->objects[o].in_sight;
 	judge_clauses(m, phrase, f, before, 1, 0);
 	if (f->ordinal)
 		judge_ordinal(m, phrase, before);

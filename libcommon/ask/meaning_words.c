@@ -161,8 +161,8 @@ static int is_after(const struct parse *p, const struct parse_phrase *f, struct 
 	return words.begin < f->span.begin;
 }
 
-/* "Two plates there ... the one that is near": the word of several things that were spoken of before and found
- * no place, where something is called so; or -1. */
+/* "Two plates there ... the one that is near": the word of several things that were spoken of before and
+ * found no place, where something is called so; or -1. */
 static int kind_left_over(struct meaning *m, const struct parse_phrase *target)
 {
 	const struct parse *p = m->sentence->parse;
@@ -179,8 +179,8 @@ static int kind_left_over(struct meaning *m, const struct parse_phrase *target)
 	return -1;
 }
 
-/* "Not the orange plate, the other one": the word of the kind that was spoken of before, or -1. is_alike: it is of
- * that colour too, as in "not the left orange plate, the other one". */
+/* "Not the orange plate, the other one": the word of the kind that was spoken of before, or -1. is_alike: it
+ * is of that colour too, as in "not the left orange plate, the other one". */
 static int kind_before(struct meaning *m, const struct parse_phrase *target, int *is_alike)
 {
 	const struct parse *p = m->sentence->parse;
