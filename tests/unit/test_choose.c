@@ -541,6 +541,38 @@ static void colours_of_parts(void)
 	vocabulary_free(&v);
 }
 
+/* What a word means that was not said of the thing itself. */
+static void words_of_others(void)
+{
+	static char *said[] = {"the shiny cup", "the mug with a handle", "the red box", "the can"};
+	static int32_t about[] = {0, 1, 2, 3};
+	static float vectors[4 * 8 * WIDTH], asked[MOST * WIDTH];
+	int64_t at[5];
+	const struct lifted l = other_said(said, about, 4, at, vectors);
+	const struct choose_scene s = {&l, &splats, &cameras, &parser, 1};
+	static const struct {
+		const char *text, *why;
+		int means;
+	} asks[] = {
+		{"the cup on the right", "what one mug is called, the other may be called", 1},
+		{"the red gadget", "anything may be a gadget", 2},
+		{"the mug left of the handle", "a part stands for its thing", 0},
+		{"not the mug on the left , the other one", "the other one is a mug", 1},
+	};
+	struct err e;
+
+	for (size_t i = 0; i < sizeof asks / sizeof *asks; i++) {
+		const struct choose_sentence q = {asks[i].text, asks[i].text, asked, NULL,
+			encode(asks[i].text, asked), {.kind = VIEWPOINT_USUAL}, NULL};
+		CHECK(!choose(&s, &q, 1, CHOOSE_ALL, &choice, probability, chosen, NULL, &e), "%s",
+			e.message);
+		for (int o = 0; o < OBJECTS; o++)
+			CHECK(chosen[o] == (o == asks[i].means), "'%s', %s: object %d is %d", asks[i].text,
+				asks[i].why, o, chosen[o]);
+		CHECK(choice.there > 0.5, "'%s': %g there", asks[i].text, choice.there);
+	}
+}
+
 int main(void)
 {
 	make_scene();
@@ -561,5 +593,6 @@ int main(void)
 	is_about();
 	general_nouns();
 	colours_of_parts();
+	words_of_others();
 	return unit_end();
 }
