@@ -89,6 +89,14 @@ refuses() {
 	refuses "tensor 'words': width 0 is not in 1 to 65536" words= words_shape='[2,0]'
 }
 
+@test "middle: of the shape of words, and finite" {
+	local order="indptr offsets index object confidence words middle share"
+	lifted x "order=$order" middle=003c0040004200c4 middle_type=F16 middle_shape='[2,2]'
+	says 0 'x: ok: refer.lifted, 2 objects, 3 shares, 2 sentences, 2 words, 2 columns, 5 gaussians of the scene' "$BIN/gs-check" x
+	refuses "tensor 'middle': is F16[1,2], expected F16[2,2]" "order=$order" middle=003c0040 middle_type=F16 middle_shape='[1,2]'
+	refuses "tensor 'middle': item 1 is not finite" "order=$order" middle=003c007e004200c4 middle_type=F16 middle_shape='[2,2]'
+}
+
 @test "indptr and offsets" {
 	refuses "tensor 'indptr': begins with 1, expected 0" indptr=$(i64 1 2 3)
 	refuses "tensor 'indptr': falls from 2 to 1 at entry 2" indptr=$(i64 0 2 1)

@@ -48,6 +48,15 @@ with() {
 		'"offsets":{"dtype":"I64","shape":[1],"data_offsets":[0,8]},"words":{"dtype":"F32","shape":[2,0],"data_offsets":[8,8]}' 0000000000000000
 }
 
+@test "middle: of the shape of words, and finite" {
+	local middle='"middle":{"dtype":"F32","shape":[2,2],"data_offsets":[56,72]}'
+	text "$META" "$TENSORS,$middle" $OFFSETS$REST${REST:0:32}
+	says 0 'x: ok: refer.text, 2 sentences, 2 words, 2 columns' "$BIN/gs-check" x
+	refuses "tensor 'middle': item 2 is not finite" "$META" "$TENSORS,$middle" $OFFSETS${REST}0000803f000000400000807f000080c0
+	refuses "tensor 'middle': is F32[1,2], expected F32[2,2]" "$META" \
+		"$TENSORS,$(with "$(with "$middle" '[2,2]' '[1,2]')" 72 64)" $OFFSETS${REST}${REST:0:16}
+}
+
 @test "numbers that are not finite" {
 	refuses "tensor 'words': item 1 is not finite" "$META" "$TENSORS" ${OFFSETS}${REST/00000040/0000807f}
 	refuses "tensor 'sentences': item 3 is not finite" "$META" "$TENSORS" ${OFFSETS}${REST/%00000000/0000c07f}
