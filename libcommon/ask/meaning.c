@@ -79,12 +79,16 @@ static enum parse_degree degree_of(const struct parse_clause *c)
 	return plain >> c->relation & 1 ? PARSE_PLAIN : c->degree;
 }
 
-/* Whether a clause compares with what else fits, and so has to wait for it. */
-static int is_late(const struct parse_clause *c)
+/* When a clause is judged: what compares with all else that fits has to wait for it. */
+enum turn { AT_ONCE, BY_PLACE, BY_DEGREE };
+
+static enum turn turn_of(const struct parse_clause *c)
 {
 	const int is_place = c->relation != PARSE_OTHER && c->relation != PARSE_WITH;
 
-	return degree_of(c) != PARSE_PLAIN || (is_place && !c->anchors.n) || c->relation == PARSE_MIDDLE;
+	if (degree_of(c) != PARSE_PLAIN)
+		return BY_DEGREE;
+	return (is_place && !c->anchors.n) || c->relation == PARSE_MIDDLE ? BY_PLACE : AT_ONCE;
 }
 
 /* Whether an ordinal counts along a clause: "the second tallest"; or from its anchor: "the first one left of
@@ -379,8 +383,8 @@ static int says_nothing(const struct parse_clause *c)
 
 /* The clauses that compare, or those that do not. Those of the place as a whole are the thing's: "everything
  * on the shelf that is left of the lamp". */
-static void judge_clauses(
-	struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit, int late, int depth)
+static void judge_clauses(struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit,
+	enum turn turn, int depth)
 {
 	const struct parse *p = m->sentence->parse;
 
@@ -388,12 +392,12 @@ static void judge_clauses(
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
 		const int is_mutual = !phrase && !c->anchors.n && meaning_is_mutual(p) &&
 				      (c->relation == PARSE_NEAR || c->relation == PARSE_FAR);
-		if (is_late(c) == late && !says_nothing(c) && !is_mutual && c != counted_by(p, f, names_end))
+		if (turn_of(c) == turn && !says_nothing(c) && !is_mutual && c != counted_by(p, f, names_end))
 			judge_clause(m, phrase, f->clauses.item[k], fit);
 		for (int j = 0; j < c->anchors.n; j++)
 			if (is_scene(m, c->anchors.item[j]))
 				judge_clauses(
-					m, phrase, &p->phrases[c->anchors.item[j]], fit, late, depth + 1);
+					m, phrase, &p->phrases[c->anchors.item[j]], fit, turn, depth + 1);
 	}
 }
 
@@ -403,13 +407,16 @@ static void judge_order(struct meaning *m, int phrase)
 	const struct parse *p = m->sentence->parse;
 	const struct parse_phrase *f = &p->phrases[phrase];
 	const size_t n = objects_of(m);
+	const double *fit = fit_of(m, phrase);
 	double *before = m->scratch + 2 * n;
 
-	memcpy(before, fit_of(m, phrase), n * sizeof *before);
-	for (size_t o = 0; o < n;
-		o++) /* what fits half as well is hardly one of them: "the littlest grey thing" */
-		before[o] *= before[o] * before[o] * m->arrangement->objects[o].in_sight;
-	judge_clauses(m, phrase, f, before, 1, 0);
+	for (size_t o = 0; o < n; o++)
+		before[o] = fit[o] * fit[o] * m->arrangement->objects[o].in_sight;
+	judge_clauses(m, phrase, f, before, BY_PLACE, 0);
+	/* what fits half as well is hardly one of them: "the littlest grey thing" */
+	for (size_t o = 0; o < n; o++)
+		before[o] *= sqrt(before[o]);
+	judge_clauses(m, phrase, f, before, BY_DEGREE, 0);
 	if (f->ordinal)
 		judge_ordinal(m, phrase, before);
 }
@@ -470,7 +477,7 @@ static void judge_phrase(struct meaning *m, int phrase, int depth)
 		meaning_judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);
 	for (int k = 0; k < f->attributes.n; k++)
 		meaning_judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
-	judge_clauses(m, phrase, f, fit, 0, 0);
+	judge_clauses(m, phrase, f, fit, AT_ONCE, 0);
 	for (int k = 0; k < f->except.n; k++)
 		judge_except(m, phrase, f->except.item[k]);
 	keep_group(f, fit, n, m->scratch);
