@@ -88,6 +88,9 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
 # The default weights of the parser are in the library.
 $(BUILD)/obj/formats/parser_weights.o: formats/parser_default.safetensors
 
+# So is what is known of everyday things.
+$(BUILD)/obj/libcommon/lang/things.o: libcommon/lang/things.tsv
+
 # So are the page of refer-report and its viewer.
 $(BUILD)/obj/cmd/jobs/reporting.o: cmd/jobs/report_page.html
 $(BUILD)/obj/cmd/jobs/report_viewer.o: cmd/jobs/report_viewer.js

@@ -1,5 +1,6 @@
 #include "formats/parser_weights.h"
 
+#include "base/embed.h"
 #include "base/mem.h"
 #include "formats/fingerprint.h"
 #include "formats/safetensors.h"
@@ -11,14 +12,6 @@
 
 /* The default weights are part of the program, so that every tool has them:
  * formats/parser_default.safetensors. */
-#define EMBED(name, file)                                                                                    \
-	__asm__(".section .rodata\n"                                                                         \
-		".balign 64\n"                                                                               \
-		".globl " #name "_begin\n.hidden " #name "_begin\n" #name "_begin:\n"                        \
-		".incbin \"" file "\"\n"                                                                     \
-		".globl " #name "_end\n.hidden " #name "_end\n" #name "_end:\n"                              \
-		".byte 0\n"                                                                                  \
-		".previous\n")
 EMBED(parser_default, "formats/parser_default.safetensors");
 extern const unsigned char parser_default_begin[], parser_default_end[];
 

@@ -97,6 +97,12 @@ int purposes_says_more(const struct meaning *m)
 	return 0;
 }
 
+/* By its form, or as its noun is of nothing that one could point at: "where the countries are". */
+static int is_purpose(const struct parse *p, int head)
+{
+	return purpose_is_said(p) || (head >= 0 && !uses_names_thing(p->words[head].lemma));
+}
+
 double purposes_judge(const struct meaning *m, double *score, double *scratch)
 {
 	const struct parse *p = m->sentence->parse;
@@ -109,7 +115,7 @@ double purposes_judge(const struct meaning *m, double *score, double *scratch)
 	/* "is there a spoon?" asks for a spoon */
 	const int is_named = head > 1 && closed_is(p->words[head - 1].text, CLOSED_DETERMINER) &&
 			     parse_word_is(p, head - 2, there);
-	if ((head >= 0 && (is_named || m->known[0] >= PURPOSE_NOUN)) || !purpose_is_said(p))
+	if ((head >= 0 && (is_named || m->known[0] >= PURPOSE_NOUN)) || !is_purpose(p, head))
 		return 0;
 	mark_words(m, counts);
 	add_words(m, counts, words, score);

@@ -130,9 +130,10 @@ static int add_kind(struct vocabulary *v, const char *lemma, size_t *kind, struc
 		return -1;
 	struct vocabulary_kind *to = &v->kinds[v->kind_count++];
 	to->lemma = lemma;
-	to->uses.n = -1;
+	to->uses.n = to->parts.n = -1;
 	wordnet_find(&to->noun, lemma);
 	wordnet_find_adjective(&to->adjective, lemma);
+	things_find(&to->things, lemma);
 	return 0;
 }
 
@@ -224,7 +225,7 @@ int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
 static int are_akin(const struct vocabulary_kind *a, const struct vocabulary_kind *b)
 {
 	return a == b || wordnet_fits(&a->noun, &b->noun, 0) > 0 || wordnet_fits(&b->noun, &a->noun, 0) > 0 ||
-	       kinds_share(a->lemma, b->lemma);
+	       kinds_share(a->lemma, b->lemma) || things_share(&a->things, &b->things);
 }
 
 /* Whether two objects were called by other nouns than this one, and none of them are akin. */

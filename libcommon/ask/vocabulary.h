@@ -6,6 +6,7 @@
 #include "ask/arrangement.h"
 #include "base/err.h"
 #include "lang/parser.h"
+#include "lang/things.h"
 #include "lang/uses.h"
 #include "lang/wordnet.h"
 #include "lift/lifted_model.h"
@@ -34,12 +35,13 @@ struct vocabulary_item {
 	int is_general; /* a noun that is above another one of the same object: "container" of a bowl */
 };
 
-/* What WordNet knows of a lemma. */
+/* What is known of a lemma. */
 struct vocabulary_kind {
 	const char *lemma;
 	struct wordnet_noun noun;
 	struct wordnet_adjective adjective;
-	struct uses uses; /* found when they are first asked for; n < 0 before */
+	struct things_rows things;
+	struct uses uses, parts; /* found when they are first asked for; n < 0 before */
 };
 
 struct vocabulary {
@@ -55,8 +57,8 @@ struct vocabulary {
 	struct vocabulary_kind *kinds; /* of different lemmas */
 	char **heads;	    /* (O) the last word of an object's name that is no number, lower case */
 	size_t *head_kinds; /* (O) into kinds */
-	int has_names, has_knowledge; /* whether names, and WordNet with lang/kinds.h, count: 1, for the
-					 caller to set */
+	int has_names, has_knowledge; /* whether names, and WordNet with lang/kinds.h and things.h, count: 1,
+					 for the caller to set */
 	int has_said;	 /* whether colours and relations that training sentences give an object count: 1,
 			    likewise */
 	int of_several;	 /* whether a colour is asked of each of several things: 0, for the caller to set */

@@ -40,12 +40,15 @@ static double worth(double cosine, double half, double soft)
 }
 
 /* What is known besides of a noun and the one of this kind that a thing is called by. */
-static double knowledge(const struct vocabulary *v, const char *lemma, const struct wordnet_noun *noun,
+static double knowledge(const struct vocabulary *v, const struct vocabulary_kind *word,
 	const struct vocabulary_kind *kind, int is_general)
 {
-	const double x = WORDNET_WORTH * wordnet_fits(noun, &kind->noun, is_general);
+	const double x = WORDNET_WORTH * wordnet_fits(&word->noun, &kind->noun, is_general);
+	const int is_same =
+		v->has_knowledge && !is_general &&
+		(kinds_share(word->lemma, kind->lemma) || things_share(&word->things, &kind->things));
 
-	return v->has_knowledge && !is_general && kinds_share(lemma, kind->lemma) ? fmax(x, KINDS_WORTH) : x;
+	return is_same ? fmax(x, KINDS_WORTH) : x;
 }
 
 /* "toy" of one cylinder may be said of another one. general (O): what general nouns of each object fit. */
@@ -76,18 +79,18 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 	const struct lifted *l = v->lifted;
 	const struct parse_word *word = &s->parse->words[w];
 	const size_t width = (size_t)l->width, objects = l->objects;
-	struct wordnet_noun noun;
+	struct vocabulary_kind known = {.lemma = word->lemma};
 
 	vocabulary_word_vector(v, word, s->vectors, v->word);
-	noun.n = 0;
-	if (v->has_knowledge)
-		wordnet_find(&noun, word->lemma);
+	if (v->has_knowledge) {
+		wordnet_find(&known.noun, word->lemma);
+		things_find(&known.things, word->lemma);
+	}
 	for (size_t o = 0; o < objects; o++) {
 		const int named = v->has_names ? is_in_name(word->lemma, l->names[o]) : 0;
 		match[o] = named == 2 ? 1 : named ? NAME_PART : 0;
 		if (v->has_names && named < 2)
-			match[o] = fmax(
-				match[o], knowledge(v, word->lemma, &noun, &v->kinds[v->head_kinds[o]], 0));
+			match[o] = fmax(match[o], knowledge(v, &known, &v->kinds[v->head_kinds[o]], 0));
 	}
 	match[objects] = 0;
 	memset(v->other, 0, objects * sizeof *v->other);
@@ -99,8 +102,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		double x = !strcmp(word->lemma, item->lemma) ? 1 : 0;
 		if (x < 1) {
 			x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
-			x = fmax(
-				x, knowledge(v, word->lemma, &noun, &v->kinds[item->kind], item->is_general));
+			x = fmax(x, knowledge(v, &known, &v->kinds[item->kind], item->is_general));
 		}
 		double *to = &match[item->role == VOCABULARY_NOUN ? item->object : objects];
 		*to = fmax(*to, x);
@@ -109,6 +111,27 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 	}
 	share_general(v, v->other, match);
 	share_kin(v, v->other, match);
+}
+
+/* What is known to be usual of things that are called so: a laptop has a battery. */
+static void add_usual(struct vocabulary *v, const char *lemma, double *match)
+{
+	struct uses word;
+
+	if (!v->has_knowledge)
+		return;
+	uses_word(&word, lemma);
+	for (size_t i = 0; i < v->n && word.n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		struct vocabulary_kind *k = &v->kinds[item->kind];
+		if (item->role != VOCABULARY_NOUN || item->sentence == v->without || item->is_general)
+			continue;
+		if (k->parts.n < 0)
+			uses_parts(&k->parts, k->lemma);
+		if (match[item->object] >= 0)
+			match[item->object] =
+				fmax(match[item->object], USUAL_WORTH * uses_fit(&k->parts, &word));
+	}
 }
 
 void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
@@ -140,6 +163,7 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 		if (x > 0 ? x > *to && x > -*to : -x > fabs(*to))
 			*to = x;
 	}
+	add_usual(v, word->lemma, match);
 }
 
 static int says_place(const struct vocabulary_item *item)
@@ -217,6 +241,7 @@ void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, i
 		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
 		match[item->object] = fmax(match[item->object], x);
 	}
+	add_usual(v, word->lemma, match);
 }
 
 /* How far things of a kind are for what a word says. */

@@ -187,9 +187,31 @@ static int settle_it(struct parse *p, struct err *e)
 	return 0;
 }
 
+/* A jar of tea is a jar: what fills it only says which. */
+static void settle_content(const struct parse *p, struct parse_phrase *f)
+{
+	static const char *const containers[] = {"bag", "basket", "bottle", "bowl", "box", "bucket", "can",
+		"carton", "case", "crate", "cup", "glass", "jar", "jug", "mug", "pack", "packet", "pot",
+		"sack", "tin", "tray", "tub", "tube", "vase", NULL};
+	const int content = f->noun.n ? f->noun.item[f->noun.n - 1] : 0;
+
+	for (int k = 0; k < f->attributes.n && is(p, content - 1, "of"); k++) {
+		int *const word = &f->attributes.item[k];
+		for (int i = 0; *word == content - 2 && containers[i]; i++)
+			if (!strcmp(p->words[*word].lemma, containers[i])) {
+				f->noun.item[f->noun.n - 1] = *word;
+				*word = content;
+				return;
+			}
+	}
+}
+
 int parse_settle(struct parse *p, struct err *e)
 {
 	struct parse_phrase *f = &p->phrases[0];
+
+	for (int i = 0; i < p->phrase_count; i++)
+		settle_content(p, &p->phrases[i]);
 
 	settle_ordinal(p, f);
 	settle_both(p, f);

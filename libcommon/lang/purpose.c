@@ -44,13 +44,13 @@ static int after_doer(const struct parse *p, int i)
 				 *const self[] = {"i", "we", NULL}, *const to[] = {"to", NULL},
 				 *const one[] = {"one", NULL}, *const let[] = {"let", NULL},
 				 *const us[] = {"us", "'s", NULL}, *const did[] = {"did", NULL};
-	const int is_self = parse_word_is(p, i, self);
+	const int is_self = parse_word_is(p, i, self),
+		  is_us = parse_word_is(p, i - 1, let) && parse_word_is(p, i, us);
 	int verb = i + 1;
 
-	if (class_of(p, i - 1) == CLOSED_AUXILIARY && !asks_before(p, i)) /* "could you lift it" */
+	if (class_of(p, i - 1) == CLOSED_AUXILIARY && !is_us && !asks_before(p, i)) /* "could you lift it" */
 		return i;
-	const int is_one = (parse_word_is(p, i, one) && class_of(p, i + 1) == CLOSED_AUXILIARY) ||
-			   (parse_word_is(p, i - 1, let) && parse_word_is(p, i, us));
+	const int is_one = is_us || (parse_word_is(p, i, one) && class_of(p, i + 1) == CLOSED_AUXILIARY);
 	if (parse_word_is(p, i - 1, did) || (!is_self && !is_one && !parse_word_is(p, i, doers)))
 		return i;
 	while (class_of(p, verb) == CLOSED_AUXILIARY || class_of(p, verb) == CLOSED_HAVE ||
@@ -156,6 +156,8 @@ int purpose_is_content(const struct parse *p, int word)
 {
 	static const char *const empty[] = {"used", "use", "using", "go", "goes", "come", "comes", "make",
 		"makes", "put", "keep", "keeps", "let", "lets", "want", "wants", "somebody", "people", NULL};
+	static const char *const poses[] = {"sit", "sits", "lie", "hang", "hangs", "lean", NULL};
 
-	return is_open(p, word) && !parse_word_is(p, word, empty) && colour_word(p->words[word].lemma) < 0;
+	return (is_open(p, word) || parse_word_is(p, word, poses)) && !parse_word_is(p, word, empty) &&
+	       colour_word(p->words[word].lemma) < 0;
 }

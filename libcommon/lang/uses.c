@@ -1,6 +1,8 @@
 #include "lang/uses.h"
 
+#include "lang/kinds.h"
 #include "lang/synsets.h"
+#include "lang/things.h"
 #include "lang/wordnet.h"
 
 #include <ctype.h>
@@ -20,10 +22,7 @@ double uses_fit(const struct uses *thing, const struct uses *word)
 	return best;
 }
 
-#ifdef HAVE_WORDNET
-
-enum { SENSES = 8, STEPS_OF_THING = 2, STEPS_OF_WORD = 4, LONGEST = 24 };
-static const double per_step = 0.9, per_sense = 0.93;
+enum { LONGEST = 24 };
 
 static int ends(const char *w, size_t n, const char *tail)
 {
@@ -98,17 +97,44 @@ static void add(struct uses *to, const char *word, size_t length, double worth)
 	to->of[to->n++].worth = (float)worth;
 }
 
-static void add_text(struct uses *to, const char *text, double worth)
+static void add_text(struct uses *to, const char *text, size_t length, double worth)
 {
-	for (const char *p = text; *p;) {
-		size_t n = 0;
-		while (isalpha((unsigned char)p[n]))
+	for (size_t i = 0, n; i < length; i += n ? n : 1) {
+		for (n = 0; i + n < length && isalpha((unsigned char)text[i + n]);)
 			n++;
 		if (n)
-			add(to, p, n, worth);
-		p += n ? n : 1;
+			add(to, text + i, n, worth);
 	}
 }
+
+static void add_known(struct uses *to, const char *lemma, enum things_field field)
+{
+	struct things_rows rows;
+	size_t length;
+
+	things_find(&rows, lemma);
+	for (int i = 0; i < rows.n; i++) {
+		const char *text = things_text(rows.row[i], field, &length);
+		add_text(to, text, length, 1);
+	}
+}
+
+void uses_parts(struct uses *to, const char *lemma)
+{
+	to->n = 0;
+	add_known(to, lemma, THINGS_HAS);
+}
+
+void uses_word(struct uses *to, const char *lemma)
+{
+	to->n = 0;
+	add(to, lemma, strlen(lemma), 1);
+}
+
+#ifdef HAVE_WORDNET
+
+enum { SENSES = 8, STEPS_OF_THING = 2, STEPS_OF_WORD = 4, COMMON_SENSES = 4, STEPS_TO_TOP = 12 };
+static const double per_step = 0.9, per_sense = 0.93;
 
 /* What a synset says, and what it is a kind of: glosses, or its own words. Returns whether an artifact is
  * above it. */
@@ -123,7 +149,7 @@ static int climb(struct uses *to, long synset, int pos, int is_gloss, int steps,
 	for (int i = 0; i < s->wcount; i++)
 		is_made |= !strcmp(s->words[i], "artifact");
 	if (steps >= 0 && is_gloss && s->defn)
-		add_text(to, s->defn, worth);
+		add_text(to, s->defn, strlen(s->defn), worth);
 	for (int i = 0; i < s->wcount && steps >= 0 && !is_gloss; i++)
 		add(to, s->words[i], strlen(s->words[i]), worth);
 	while ((is_gloss || steps > 0) && steps > -12 && synsets_next_up(s, pos, &at, &up))
@@ -132,12 +158,42 @@ static int climb(struct uses *to, long synset, int pos, int is_gloss, int steps,
 	return is_made;
 }
 
+/* Whether a synset is of what can be touched. */
+static int is_touched(long synset, int steps)
+{
+	static const char *const kinds[] = {"artifact", "animal", "plant", "food"};
+	int is = 0, at = 0;
+	long up;
+	SynsetPtr s = synsets_read(NOUN, synset);
+
+	for (int i = 0; s && i < s->wcount; i++)
+		for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+			is |= !strcmp(s->words[i], kinds[k]);
+	while (s && !is && steps && synsets_next_up(s, NOUN, &at, &up))
+		is = is_touched(up, steps - 1);
+	if (s)
+		free_synset(s);
+	return is;
+}
+
+static int is_touchable(const char *lemma)
+{
+	long senses[COMMON_SENSES];
+	int is = 0;
+	const int n = synsets_of(lemma, NOUN, senses, COMMON_SENSES);
+
+	for (int i = 0; i < n && !is; i++)
+		is = is_touched(senses[i], STEPS_TO_TOP);
+	return is;
+}
+
 void uses_of_thing(struct uses *to, const char *lemma)
 {
 	long senses[SENSES];
 	const int n = synsets_of(lemma, NOUN, senses, SENSES);
 
 	to->n = 0;
+	add_known(to, lemma, THINGS_USES);
 	for (int i = 0; i < n; i++) {
 		struct uses own = *to;
 		if (climb(&own, senses[i], NOUN, 1, STEPS_OF_THING, pow(per_sense, i)))
@@ -151,9 +207,9 @@ void uses_of_word(struct uses *to, const char *lemma)
 	long senses[3];
 
 	to->n = 0;
+	add(to, lemma, strlen(lemma), 1);
 	if (!wordnet_is_there())
 		return;
-	add(to, lemma, strlen(lemma), 1);
 	for (int k = 0; k < 2 && to->n; k++) {
 		const int n = synsets_of(lemma, pos[k], senses, 3);
 		for (int i = 0; i < n; i++)
@@ -162,15 +218,29 @@ void uses_of_word(struct uses *to, const char *lemma)
 	}
 }
 #else
-void uses_of_thing(struct uses *to, const char *lemma)
+static int is_touchable(const char *lemma)
 {
 	(void)lemma;
+	return 1;
+}
+
+void uses_of_thing(struct uses *to, const char *lemma)
+{
 	to->n = 0;
+	add_known(to, lemma, THINGS_USES);
 }
 
 void uses_of_word(struct uses *to, const char *lemma)
 {
-	(void)lemma;
 	to->n = 0;
+	add(to, lemma, strlen(lemma), 1);
 }
 #endif
+
+int uses_names_thing(const char *lemma)
+{
+	struct things_rows rows;
+
+	things_find(&rows, lemma);
+	return rows.n || kinds_have(lemma) || !wordnet_is_there() || is_touchable(lemma);
+}

@@ -18,9 +18,19 @@ struct uses {
  */
 void uses_of_thing(struct uses *to, const char *lemma);
 
+/* Fills `to` with the words of what a thing called so usually is made of, and has. */
+void uses_parts(struct uses *to, const char *lemma);
+
+/* Fills `to` with the word alone. */
+void uses_word(struct uses *to, const char *lemma);
+
 /* Fills `to` with a word and the words of what it is a kind of, as a noun or a verb: drink for tea and sip.
  * Verbs that say nothing of what a thing is for ("put", "have") have none. */
 void uses_of_word(struct uses *to, const char *lemma);
+
+/* Whether a noun is one that things are called by, and not only who uses one or what is done to: a cup, not
+ * a referee or the weather. */
+int uses_names_thing(const char *lemma);
 
 /* How far a thing is for what a word says, in [0,1]. */
 double uses_fit(const struct uses *thing, const struct uses *word);

@@ -2,6 +2,7 @@
 #include "lang/colours.h"
 #include "lang/kinds.h"
 #include "lang/spelling.h"
+#include "lang/things.h"
 #include "lang/uses.h"
 #include "lang/wordnet.h"
 #include "unit.h"
@@ -50,6 +51,67 @@ static void kinds(void)
 		"kinds");
 	CHECK(!kinds_share("", "box") && !kinds_share("ox", "box") && !kinds_share("box block", "box"),
 		"whole words");
+}
+
+static int name_one_thing(const char *a, const char *b)
+{
+	struct things_rows first, second;
+
+	things_find(&first, a);
+	things_find(&second, b);
+	return things_share(&first, &second);
+}
+
+/* A field of a line of the table: items of small letters, with one space or hyphen between words. */
+static int is_well_formed(const char *text, size_t length, char between)
+{
+	for (size_t i = 0; i < length; i++) {
+		const int is_letter = text[i] >= 'a' && text[i] <= 'z', is_last = i + 1 == length;
+		if (text[i] == between && (is_last || text[i + 1] != ' '))
+			return 0;
+		if (!is_letter && (!i || is_last || (text[i] != between && text[i] != ' ' && text[i] != '-')))
+			return 0;
+	}
+	return length > 0;
+}
+
+static void things(void)
+{
+	static const char between[] = {',', ';', ','};
+	const char *text;
+	size_t length;
+	int row = 0;
+
+	for (; things_text(row, THINGS_NAMES, &length); row++)
+		for (int field = 0; field < 3; field++) {
+			text = things_text(row, (enum things_field)field, &length);
+			CHECK(text && is_well_formed(text, length, between[field]), "line %d, field %d: %.*s",
+				row + 1, field + 1, (int)length, text);
+		}
+	CHECK(row > 1000, "%d things", row);
+	CHECK(name_one_thing("laptop", "chromebook") && name_one_thing("chromebook", "laptop") &&
+			!name_one_thing("laptop", "kettle"),
+		"names of a laptop");
+	CHECK(name_one_thing("scissor", "scissors"), "a plural");
+	CHECK(!name_one_thing("", "") && !name_one_thing("lapto", "laptop") &&
+			!name_one_thing("laptop,", "laptop") && !name_one_thing("aptop", "laptop"),
+		"whole names");
+}
+
+static void parts_of_things(void)
+{
+	struct uses laptop, mug, word;
+
+	uses_parts(&laptop, "laptop");
+	uses_parts(&mug, "mug");
+	uses_word(&word, "battery");
+	CHECK(uses_fit(&laptop, &word) == 1 && uses_fit(&mug, &word) == 0, "a battery");
+	uses_parts(&mug, "nothing of the kind");
+	CHECK(mug.n == 0, "nothing is known of it");
+	CHECK(uses_names_thing("mug") && uses_names_thing("chromebook") && uses_names_thing("racket"),
+		"things");
+	CHECK(!wordnet_is_there() || (!uses_names_thing("weather") && !uses_names_thing("referee")),
+		"no things");
 }
 
 static double fits(const char *word, const char *known)
@@ -153,6 +215,8 @@ int main(void)
 	uses();
 	colours();
 	kinds();
+	things();
+	parts_of_things();
 	wordnet();
 	return unit_end();
 }

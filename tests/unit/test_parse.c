@@ -1,6 +1,7 @@
 #include "unit.h"
 
 #include "base/rng.h"
+#include "lang/analysis.h"
 #include "lang/closed.h"
 #include "formats/parser_weights.h"
 #include "lang/examples.h"
@@ -440,8 +441,8 @@ static void purposes_are_told(void)
 {
 	static const char *const yes[] = {"what you slice bread with", "something to sew with",
 		"for digging holes", "the one used for fishing", "how would I shave?", "where the eggs go",
-		"dig the garden with it", "keeps the wind off", "I need to saw this plank",
-		"people sail across the lake on it", "the thing for soup"};
+		"dig the garden with it", "let's cook some rice", "keeps the wind off",
+		"I need to saw this plank", "people sail across the lake on it", "the thing for soup"};
 	static const char *const no[] = {"the saw", "a saw left of the plank", "where is the saw?",
 		"could you lift it", "what stands by the wall", "I mean the saw", "where did I leave it",
 		"the saw with a plank on it", "the plank is under it", "it has a plank on it", "", "it"};
@@ -459,8 +460,35 @@ static void purposes_are_told(void)
 	}
 }
 
+/* A jar of tea is a jar, whatever the networks take for its head; a roof of a house is left as it is. */
+static void content_says_which(void)
+{
+	static const char *const cases[][2] = {
+		{"the jar of tea", "jar"}, {"the cans of soup", "can"}, {"the roof of house", "house"}};
+	const struct parser parser = {0};
+	struct parse p = {0};
+	struct err e;
+
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		if (!CHECK(!parse_sentence(&p, &parser, cases[i][0], NULL, &e), "%s", e.message))
+			continue;
+		int head[] = {3}, said[] = {1};
+		struct parse_phrase *f = &p.phrases[0];
+		const struct parse_phrase kept = *f;
+		f->noun = (struct parse_list){1, head};
+		f->attributes = (struct parse_list){1, said};
+		f->clauses.n = f->except.n = 0;
+		CHECK(!parse_settle(&p, &e) && !strcmp(p.words[head[0]].lemma, cases[i][1]), "%s: %s",
+			cases[i][0], p.words[head[0]].lemma);
+		CHECK(head[0] + said[0] == 4, "both words are kept");
+		*f = kept;
+		parse_free(&p);
+	}
+}
+
 int main(void)
 {
+	content_says_which();
 	purposes_are_told();
 	tokenises();
 	closed_table_fits();
