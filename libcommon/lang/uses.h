@@ -1,5 +1,5 @@
-/* What things are for, by WordNet's glosses: a cup is "used for drinking", and tea is a kind of drink.
- * Without WordNet nothing is known. Call from one thread at a time, as lang/wordnet.h. */
+/* What things are for, by lang/things.h and by WordNet's glosses: a cup is "used for drinking", and tea is a
+ * kind of drink. Without WordNet less is known. Call from one thread at a time, as lang/wordnet.h. */
 #ifndef LANG_USES_H
 #define LANG_USES_H
 
@@ -14,8 +14,8 @@ struct uses {
 	} of[USES_STEMS];
 };
 
-/* Fills `to` with the words of the glosses of a made thing's noun, and of what it is a kind of, two steps up.
- */
+/* Fills `to` with the words of the uses that lang/things.h has of a noun, and of the glosses of a made thing
+ * called so and of what it is a kind of, two steps up. */
 void uses_of_thing(struct uses *to, const char *lemma);
 
 /* Fills `to` with the words of what a thing called so usually is made of, and has. */
@@ -28,8 +28,8 @@ void uses_word(struct uses *to, const char *lemma);
  * Verbs that say nothing of what a thing is for ("put", "have") have none. */
 void uses_of_word(struct uses *to, const char *lemma);
 
-/* Whether a noun is one that things are called by, and not only who uses one or what is done to: a cup, not
- * a referee or the weather. */
+/* Whether a noun is one that things are called by, and not only who uses one or what is done to it: a cup,
+ * not a referee or the weather. Without WordNet any may be. */
 int uses_names_thing(const char *lemma);
 
 /* How far a thing is for what a word says, in [0,1]. */
