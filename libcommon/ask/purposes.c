@@ -74,7 +74,7 @@ static void mark_words(const struct meaning *m, char *counts)
 			(char)(purpose_is_content(p, w) && !is_of_place(m, w) && !is_before_generic(p, w));
 }
 
-/* words (O): what the words that count give, summed. */
+/* words (O): what the words that count give, summed; the less the more things here a word is of. */
 static void add_words(const struct meaning *m, const char *counts, double *words, double *match)
 {
 	const size_t n = objects_of(m);
@@ -84,8 +84,11 @@ static void add_words(const struct meaning *m, const char *counts, double *words
 		if (!counts[w])
 			continue;
 		vocabulary_use(m->vocabulary, m->sentence, w, match);
+		double all = 0;
 		for (size_t o = 0; o < n; o++)
-			words[o] += match[o];
+			all += match[o];
+		for (size_t o = 0; o < n; o++)
+			words[o] += match[o] / sqrt(fmax(1, all));
 	}
 }
 

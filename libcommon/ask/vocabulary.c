@@ -131,7 +131,7 @@ static int add_kind(struct vocabulary *v, const char *lemma, size_t *kind, struc
 	struct vocabulary_kind *to = &v->kinds[v->kind_count++];
 	to->lemma = lemma;
 	to->uses.n = to->parts.n = -1;
-	wordnet_find(&to->noun, lemma);
+	wordnet_find_thing(&to->noun, lemma);
 	wordnet_find_adjective(&to->adjective, lemma);
 	things_find(&to->things, lemma);
 	return 0;

@@ -52,6 +52,31 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma)
 		climb(to, senses[i], 0, i);
 }
 
+/* Whether a sense of a noun is a kind of a synset. */
+static int is_kind_of(const struct wordnet_noun *noun, int sense, long synset)
+{
+	for (int i = 0; i < noun->n; i++)
+		if (noun->up[i].sense == sense && noun->up[i].synset == synset)
+			return 1;
+	return 0;
+}
+
+void wordnet_find_thing(struct wordnet_noun *to, const char *lemma)
+{
+	long made, food;
+	int kept = 0;
+
+	wordnet_find(to, lemma);
+	if (!synsets_of("artifact", NOUN, &made, 1) || !synsets_of("food", NOUN, &food, 1) ||
+		!is_kind_of(to, 0, made))
+		return;
+	const struct wordnet_noun all = *to;
+	for (int i = 0; i < all.n; i++)
+		if (!is_kind_of(&all, all.up[i].sense, food))
+			to->up[kept++] = all.up[i];
+	to->n = kept;
+}
+
 int wordnet_is_noun(const char *lemma)
 {
 	long sense;
@@ -114,6 +139,11 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma)
 {
 	(void)lemma;
 	to->n = 0;
+}
+
+void wordnet_find_thing(struct wordnet_noun *to, const char *lemma)
+{
+	wordnet_find(to, lemma);
 }
 
 int wordnet_is_noun(const char *lemma)

@@ -23,6 +23,9 @@ int wordnet_is_there(void);
 /* Fills `to`, with n = 0 where the lemma is no noun that is known. Words are joined by '_'. */
 void wordnet_find(struct wordnet_noun *to, const char *lemma);
 
+/* The same of what a thing is called: a plate that is called a dish is no food. */
+void wordnet_find_thing(struct wordnet_noun *to, const char *lemma);
+
 /* Whether the lemma is a noun that is known: wordnet_find without what it is a kind of. */
 int wordnet_is_noun(const char *lemma);
 

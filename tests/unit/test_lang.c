@@ -123,6 +123,16 @@ static double fits(const char *word, const char *known)
 	return wordnet_fits(&a, &b, 0);
 }
 
+/* The same of a thing that is called by a noun. */
+static double fits_thing(const char *word, const char *called)
+{
+	struct wordnet_noun a, b;
+
+	wordnet_find(&a, word);
+	wordnet_find_thing(&b, called);
+	return wordnet_fits(&a, &b, 0);
+}
+
 static double is_so(const char *word, const char *known)
 {
 	struct wordnet_adjective a, b;
@@ -146,6 +156,10 @@ static void wordnet(void)
 		return;
 	}
 	CHECK(fits("book", "book") == 1, "a book is a book");
+	CHECK(fits("soup", "dish") > 0.5 && fits_thing("soup", "dish") < 0.3, "a dish of a scene is no food");
+	CHECK(fits_thing("vessel", "dish") == fits("vessel", "dish") &&
+			fits_thing("food", "soup") == fits("food", "soup"),
+		"what is made fits as before, and what is only eaten");
 	CHECK(fits("paperback", "book") > 0.6 && fits("vessel", "bottle") > 0.5 &&
 			fits("bird", "penguin") > 0.5,
 		"kinds of things: %g, %g, %g", fits("paperback", "book"), fits("vessel", "bottle"),
