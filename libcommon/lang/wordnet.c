@@ -7,10 +7,21 @@
 #include <string.h>
 
 #ifdef HAVE_WORDNET
+#include "base/mapped_stream.h"
+
 #include <unistd.h>
 #include <wn.h>
 
 enum { DEEPEST = 10, ADJECTIVE_SENSES = 4 };
+
+/* A question about a scene looks up thousands of words, each by some twenty seeks. */
+static void map_files(void)
+{
+	for (int pos = 1; pos <= NUMPARTS; pos++) {
+		mapped_stream_take(&indexfps[pos]);
+		mapped_stream_take(&datafps[pos]);
+	}
+}
 
 int wordnet_is_there(void)
 {
@@ -20,6 +31,8 @@ int wordnet_is_there(void)
 		const char *folder = getenv("WNSEARCHDIR");
 		/* libwordnet complains aloud of what is not there */
 		is_open = !access(folder ? folder : "/usr/share/wordnet", R_OK) && !wninit();
+		if (is_open)
+			map_files();
 	}
 	return is_open;
 }
