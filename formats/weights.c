@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VERSION_READ = 2, MAX_SIDE = 65536, LEVELS = 255, RATIO = 1100 /* deflate makes nothing smaller */ };
+/* A zstd block of 4 bytes may repeat one 131,072 times. */
+enum { VERSION_READ = 3, MAX_SIDE = 65536, LEVELS = 255, RATIO = 32768 };
 
 static const char *const stream_names[WEIGHTS_STREAMS] = {"ids", "maps", "levels"};
 
@@ -127,8 +128,13 @@ static int read_packed(struct weights *w, int64_t pixels, int as_tiles, struct e
 	const struct st_tensor *sizes = safetensors_need(&w->file, "sizes", ST_I64, 1, &streams, e),
 			       *dropped = sizes ? safetensors_need(&w->file, "dropped", ST_U8, 1, &pixels, e)
 						: NULL;
+	const char *version = safetensors_meta(&w->file, "version");
 	struct weights_pack pack = {0};
 
+	if (strcmp(version, "3"))
+		return err_set(e, ERR_FORMAT,
+			"%s: refer.weights, packed, version %s is older than this program reads (3)",
+			w->file.path, version);
 	for (int s = 0; s < WEIGHTS_STREAMS && dropped; s++) {
 		const struct st_tensor *t = safetensors_need(&w->file, stream_names[s], ST_U8, 1, &any, e);
 		const int64_t bytes = ((const int64_t *)sizes->data)[s];
@@ -339,7 +345,7 @@ int weights_write(
 	snprintf(width, sizeof width, "%d", w->width);
 	snprintf(height, sizeof height, "%d", w->height);
 	snprintf(gaussians, sizeof gaussians, "%lld", (long long)w->gaussians);
-	struct st_meta meta[] = {{"format", "refer.weights"}, {"version", w->pack ? "2" : "1"},
+	struct st_meta meta[] = {{"format", "refer.weights"}, {"version", w->pack ? "3" : "1"},
 		{"tool", "gs-weigh"}, {"options", options}, {"seed", "0"}, {"view", view}, {"width", width},
 		{"height", height}, {"gaussians", gaussians}, {"scene", fingerprint_text(&w->scene)},
 		{"camera", fingerprint_text(&w->camera)}};

@@ -1,13 +1,13 @@
 /* Neighbouring pixels see the same Gaussians, by weights that differ little. So a tile of 8 by 8 pixels has a
  * list of its Gaussians once, for each a bit for every pixel, and along a Gaussian's pixels the differences
- * of its weights, which deflate makes small. */
+ * of its weights, which zstd makes small. */
 #include "formats/weights_pack.h"
 
 #include "base/mem.h"
 
-#include <libdeflate.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zstd.h>
 
 enum { IDS, MAPS, LEVELS, PIXELS = VIEW_TILE_PIXELS, EFFORT = 1 };
 
@@ -186,32 +186,37 @@ int weights_pack_part(
 	return 0;
 }
 
-static int deflate_stream(struct weights_pack *p, int stream, struct err *e)
+static int compress_stream(struct weights_pack *p, int stream, struct err *e)
 {
-	struct libdeflate_compressor *by = libdeflate_alloc_compressor(EFFORT);
-
-	if (!by)
-		return err_set(e, ERR_SYSTEM, "weights: out of memory");
-	const size_t room = libdeflate_zlib_compress_bound(by, p->bytes[stream]);
+	const size_t room = ZSTD_compressBound(p->bytes[stream]);
 	uint8_t *out = mem_alloc(room, 1, "weights", e);
-	if (out) {
-		p->packed[stream] = libdeflate_zlib_compress(
-			by, p->data[stream] ? p->data[stream] : out, p->bytes[stream], out, room);
-		free(p->data[stream]);
-		p->data[stream] = out;
+	ZSTD_CCtx *by = out ? ZSTD_createCCtx() : NULL;
+
+	if (!by) {
+		free(out);
+		return err_set(e, ERR_SYSTEM, "weights: out of memory");
 	}
-	libdeflate_free_compressor(by);
-	return out ? 0 : -1;
+	ZSTD_CCtx_setParameter(by, ZSTD_c_compressionLevel, EFFORT);
+	ZSTD_CCtx_setParameter(by, ZSTD_c_checksumFlag, 1);
+	const size_t packed =
+		ZSTD_compress2(by, out, room, p->data[stream] ? p->data[stream] : out, p->bytes[stream]);
+	ZSTD_freeCCtx(by);
+	free(p->data[stream]);
+	p->data[stream] = out;
+	if (ZSTD_isError(packed))
+		return err_set(e, ERR_SYSTEM, "weights: %s", ZSTD_getErrorName(packed));
+	p->packed[stream] = packed;
+	return 0;
 }
 
-static int deflate_all(struct weights_pack *p, struct err *e)
+static int compress_all(struct weights_pack *p, struct err *e)
 {
 	struct err errors[WEIGHTS_STREAMS];
 	int bad[WEIGHTS_STREAMS];
 
 #pragma omp parallel for schedule(dynamic)
 	for (int s = 0; s < WEIGHTS_STREAMS; s++)
-		bad[s] = deflate_stream(p, s, &errors[s]);
+		bad[s] = compress_stream(p, s, &errors[s]);
 	for (int s = 0; s < WEIGHTS_STREAMS; s++)
 		if (bad[s]) {
 			*e = errors[s];
@@ -248,7 +253,7 @@ int weights_pack_join(struct weights_pack *p, struct weights_pack *rows, int cou
 		bad = bad || join_stream(p, rows, count, s, e);
 	for (int row = 0; row < count; row++)
 		weights_pack_free(&rows[row]);
-	return bad || deflate_all(p, e) ? -1 : 0;
+	return bad || compress_all(p, e) ? -1 : 0;
 }
 
 void weights_pack_free(struct weights_pack *p)

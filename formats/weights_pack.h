@@ -10,7 +10,7 @@
 
 enum { WEIGHTS_STREAMS = 3 };
 
-/* Streams of bytes, deflated: the Gaussians of each tile, which of its pixels each is in, and by how much. */
+/* Streams of bytes, compressed by zstd: the Gaussians of each tile, which of its pixels each is in, and by how much. */
 struct weights_pack {
 	size_t bytes[WEIGHTS_STREAMS], packed[WEIGHTS_STREAMS], room[WEIGHTS_STREAMS]; /* before and after */
 	uint8_t *data[WEIGHTS_STREAMS];
@@ -44,7 +44,7 @@ void weights_packer_free(struct weights_packer *t);
 int weights_pack_part(
 	struct weights_pack *rows, struct weights_packer *t, const struct weights_picture *v, struct err *e);
 
-/* All rows of tiles, deflated; they are freed. Returns 0, or -1 with *e set; free *p after either. */
+/* All rows of tiles, compressed; they are freed. Returns 0, or -1 with *e set; free *p after either. */
 int weights_pack_join(struct weights_pack *p, struct weights_pack *rows, int count, struct err *e);
 void weights_pack_free(struct weights_pack *p);
 

@@ -1,11 +1,12 @@
-/* The other way: the streams are inflated and checked, and become tiles; these then become rows of pixels. */
+/* The other way: the streams are decompressed and checked, and become tiles; these then become rows of
+ * pixels. */
 #include "formats/weights_pack.h"
 
 #include "base/mem.h"
 
-#include <libdeflate.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zstd.h>
 
 enum { IDS, MAPS, LEVELS, PIXELS = VIEW_TILE_PIXELS };
 
@@ -26,17 +27,7 @@ static int broken(const struct unpacking *u, struct err *e)
 		u->path, u->at);
 }
 
-static int inflate_stream(struct unpacking *u, const struct weights_pack *p, int s)
-{
-	struct libdeflate_decompressor *by = libdeflate_alloc_decompressor();
-	const int bad = !by || libdeflate_zlib_decompress(by, p->data[s], p->packed[s], u->data[s],
-				       p->bytes[s], NULL) != LIBDEFLATE_SUCCESS;
-
-	libdeflate_free_decompressor(by);
-	return bad;
-}
-
-static int inflate_all(struct unpacking *u, const struct weights_pack *p, struct err *e)
+static int decompress_all(struct unpacking *u, const struct weights_pack *p, struct err *e)
 {
 	int bad[WEIGHTS_STREAMS];
 
@@ -48,7 +39,7 @@ static int inflate_all(struct unpacking *u, const struct weights_pack *p, struct
 	}
 #pragma omp parallel for schedule(dynamic)
 	for (int s = WEIGHTS_STREAMS - 1; s >= 0; s--)
-		bad[s] = inflate_stream(u, p, s);
+		bad[s] = ZSTD_decompress(u->data[s], p->bytes[s], p->data[s], p->packed[s]) != p->bytes[s];
 	for (int s = 0; s < WEIGHTS_STREAMS; s++)
 		if (bad[s])
 			return broken(u, e);
@@ -245,7 +236,7 @@ int weights_unpack_tiles(const struct weights_pack *p, int width, int height, in
 		.height = height,
 		.across = (width + VIEW_TILE - 1) / VIEW_TILE,
 		.down = (height + VIEW_TILE - 1) / VIEW_TILE};
-	const int bad = inflate_all(&u, p, e) || take_all(&u, e);
+	const int bad = decompress_all(&u, p, e) || take_all(&u, e);
 	free(u.data[IDS]);
 	to->maps = u.data[MAPS];
 	to->levels = u.data[LEVELS];

@@ -145,7 +145,8 @@ bad() {
 	"$BIN/gs-check" "$file" | grep -q ': ok: refer.weights, packed, '
 	# the header with one thing changed, of the same length, without the checksums of data, which stay
 	for change in 's/"levels":/"levelx":/;tensor .levels. is missing' 's/"sizes":{"dtype":"I64"/"sizes":{"dtype":"F64"/;tensor .sizes.: is F64' \
-		's/"version":"2"/"version":"3"/;version 3 is newer than this program reads' 's/"ids":{"dtype":"U8"/"ids":{"dtype":"I8"/;tensor .ids.: is I8'; do
+		's/"version":"3"/"version":"4"/;version 4 is newer than this program reads' \
+		's/"version":"3"/"version":"2"/;packed, version 2 is older than this program reads' 's/"ids":{"dtype":"U8"/"ids":{"dtype":"I8"/;tensor .ids.: is I8'; do
 		sed "${change%%;*}" "$file" >broken
 		run "$BIN/gs-check" broken
 		[ "$status" = 1 ]
