@@ -171,7 +171,8 @@ struct lift_round {
 	struct lifting *l;
 	const struct report *to;
 	int round;
-	struct lift_mask *masks; /* (workers, set.n) */
+	struct lift_mask *masks;      /* (workers, set.n) */
+	struct lift_scratch *scratch; /* (workers) */
 };
 
 static int lift_view(void *context, int worker, size_t view, struct err *e)
@@ -179,6 +180,7 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 	const struct lift_round *r = context;
 	struct lifting *l = r->l;
 	struct lift_mask *masks = r->masks + (size_t)worker * l->set.n;
+	struct lift_scratch *scratch = &r->scratch[worker];
 	const size_t n = masks_of_view(l, view, masks);
 	struct weights weights;
 
@@ -188,9 +190,10 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 	if ((r->round ? weights_open_tiles : weights_open)(&weights, l->files->weights, &l->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
-	const int bad = weights.tiles.begin ? lift_objects_again(&l->lift, view, &weights.tiles, masks, n, e)
-					    : lift_objects_view(&l->lift, view, &blend, weights.height,
-						      weights.width, masks, n, e);
+	const int bad = weights.tiles.begin
+				? lift_objects_again(&l->lift, scratch, view, &weights.tiles, masks, n, e)
+				: lift_objects_view(&l->lift, scratch, view, &blend, weights.height,
+					  weights.width, masks, n, e);
 	weights_close(&weights);
 	return bad;
 }
@@ -211,9 +214,14 @@ static int lift(struct lifting *l, const struct report *to, struct err *e)
 	const struct each by = {&r, each_workers(n), lift_view, step};
 
 	r.masks = mem_alloc((size_t)by.workers, l->set.n * sizeof *r.masks, "masks", e);
-	int bad = !r.masks || lift_objects_init(&l->lift, l->scene.splats.n, l->objects + l->spare, n, e);
+	r.scratch = mem_zalloc((size_t)by.workers, sizeof *r.scratch, "masks", e);
+	int bad = !r.masks || !r.scratch ||
+		  lift_objects_init(&l->lift, l->scene.splats.n, l->objects + l->spare, n, e);
 	for (; r.round < LIFT_ROUNDS && !bad; r.round++)
 		bad = each_run(&by, n, e) || lift_objects_settle(&l->lift, e);
+	for (int i = 0; i < by.workers && r.scratch; i++)
+		lift_scratch_free(&r.scratch[i]);
+	free(r.scratch);
 	free(r.masks);
 	return bad || lift_objects_finish(&l->lift, &l->model, e) ? -1 : 0;
 }

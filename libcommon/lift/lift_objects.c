@@ -1,8 +1,10 @@
 #include "lift/lift_objects.h"
 
 #include "base/mem.h"
+#include "base/threads.h"
 #include "lift/lift_private.h"
 
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,24 +53,39 @@ void lift_objects_free(struct lift_objects *l)
 	*l = (struct lift_objects){0};
 }
 
+void lift_scratch_free(struct lift_scratch *s)
+{
+	free(s->images);
+	free(s->pixels);
+	free(s->rendered);
+	free(s->total);
+	*s = (struct lift_scratch){0};
+}
+
+int lift_room(void **block, size_t *room, size_t a, size_t b, size_t size, struct err *e)
+{
+	size_t n;
+
+	if (mem_size(a, b, &n))
+		return err_set(e, ERR_SYSTEM, "masks: out of memory");
+	return mem_room(block, room, n, size, "masks", e);
+}
+
 /* The mean of an object's masks, as an image. */
-static int fill_image(
-	const struct lift_mask *masks, size_t n, int height, int width, float *image, struct err *e)
+static int fill_image(const struct lift_mask *masks, size_t n, int height, int width, uint8_t *pixels,
+	float *image, struct err *e)
 {
 	const size_t count = (size_t)height * (size_t)width;
-	uint8_t *pixels = mem_alloc(count, 1, "masks", e);
-	int bad = !pixels;
 
-	memset(image, 0, count * sizeof *image);
-	for (size_t k = 0; k < n && !bad; k++) {
-		bad = rle_decode_at(&masks[k].mask->rle, height, width, pixels, e);
-		for (size_t p = 0; p < count && !bad; p++)
-			image[p] += (float)pixels[p];
+	for (size_t k = 0; k < n; k++) {
+		if (rle_decode_at(&masks[k].mask->rle, height, width, pixels, e))
+			return -1;
+		for (size_t p = 0; p < count; p++)
+			image[p] = k ? image[p] + (float)pixels[p] : (float)pixels[p];
 	}
 	for (size_t p = 0; p < count && n > 1; p++)
 		image[p] /= (float)n;
-	free(pixels);
-	return bad ? -1 : 0;
+	return 0;
 }
 
 /* A view's masks by object: those of the k-th are masks[starts[k]] to masks[starts[k + 1] - 1]. */
@@ -89,17 +106,20 @@ static int groups_make(struct groups *g, const struct lift_mask *masks, size_t n
 	return 0;
 }
 
-/* images (g->n,P) */
-static int fill_images(const struct groups *g, int height, int width, float *images, struct err *e)
+static int fill_images(struct lift_scratch *s, const struct groups *g, int height, int width, struct err *e)
 {
 	const size_t count = (size_t)height * (size_t)width;
+	const int threads = threads_available();
 	int failed = 0;
 
-#pragma omp parallel for schedule(dynamic) reduction(| : failed)
+	if (lift_room((void **)&s->images, &s->image_room, g->n, count, sizeof *s->images, e) ||
+		lift_room((void **)&s->pixels, &s->pixel_room, (size_t)threads, count, 1, e))
+		return -1;
+#pragma omp parallel for schedule(dynamic) reduction(| : failed) num_threads(threads)
 	for (size_t k = 0; k < g->n; k++) {
 		struct err mine;
 		if (fill_image(g->masks + g->starts[k], g->starts[k + 1] - g->starts[k], height, width,
-			    images + k * count, &mine)) {
+			    s->pixels + (size_t)omp_get_thread_num() * count, s->images + k * count, &mine)) {
 			failed = 1;
 #pragma omp critical
 			*e = mine;
@@ -130,9 +150,9 @@ static int add_view(struct lift_view *v, const struct view_weights *w, const str
 
 /* Later rounds: the votes of a view's masks, by how well they agree with what was lifted. */
 static int vote(const struct lift_objects *l, struct lift_view *v, const struct lift_weights *w,
-	const float *images, struct err *e)
+	struct lift_scratch *s, struct err *e)
 {
-	if (lift_agreement(l, v, w, images, v->agreement, e))
+	if (lift_agreement(l, v, w, s, v->agreement, e))
 		return -1;
 	for (size_t k = 0; k < v->n; k++) {
 		const float squared = (float)(v->agreement[k] * v->agreement[k]);
@@ -141,36 +161,28 @@ static int vote(const struct lift_objects *l, struct lift_view *v, const struct 
 	return 0;
 }
 
-static int take_view(struct lift_objects *l, size_t at, const struct lift_weights *w, int height, int width,
+static int take_view(struct lift_objects *l, struct lift_scratch *s, size_t at, const struct lift_weights *w,
 	const struct lift_mask *masks, size_t n, struct err *e)
 {
 	struct lift_view *v = &l->views[at];
 	struct groups g;
-	float *images = NULL;
-	int bad = groups_make(&g, masks, n, e) ||
-		  !(images = mem_alloc(g.n, lift_weights_pixels(w) * sizeof *images, "masks", e)) ||
-		  fill_images(&g, height, width, images, e) ||
-		  (l->round ? vote(l, v, w, images, e) : add_view(v, w->rows, &g, images, e));
+	const int bad = groups_make(&g, masks, n, e) || fill_images(s, &g, w->height, w->width, e) ||
+			(l->round ? vote(l, v, w, s, e) : add_view(v, w->rows, &g, s->images, e));
 
 	free(g.starts);
-	free(images);
 	return bad ? -1 : 0;
 }
 
-int lift_objects_view(struct lift_objects *l, size_t at, const struct view_weights *w, int height, int width,
-	const struct lift_mask *masks, size_t n, struct err *e)
+int lift_objects_view(struct lift_objects *l, struct lift_scratch *s, size_t at, const struct view_weights *w,
+	int height, int width, const struct lift_mask *masks, size_t n, struct err *e)
 {
-	const struct lift_weights rows = {w, NULL};
-
-	return take_view(l, at, &rows, height, width, masks, n, e);
+	return take_view(l, s, at, &(struct lift_weights){w, NULL, height, width}, masks, n, e);
 }
 
-int lift_objects_again(struct lift_objects *l, size_t at, const struct view_tiles *t,
+int lift_objects_again(struct lift_objects *l, struct lift_scratch *s, size_t at, const struct view_tiles *t,
 	const struct lift_mask *masks, size_t n, struct err *e)
 {
-	const struct lift_weights tiles = {NULL, t};
-
-	return take_view(l, at, &tiles, t->height, t->width, masks, n, e);
+	return take_view(l, s, at, &(struct lift_weights){NULL, t, t->height, t->width}, masks, n, e);
 }
 
 /* The mean of the last round, over an object's views. */

@@ -66,20 +66,31 @@ struct lift_objects {
 	size_t *masks;	   /* (O) views that have one */
 };
 
+/* Memory for the views that are taken one after the other, by one thread at a time; zeroed before the first.
+ * Asking the system for it again with each view would cost more than all that is done with it. */
+struct lift_scratch {
+	float *images;	 /* (n,P) of each object that the view has a mask of: the mean of its masks */
+	uint8_t *pixels; /* (threads,P) */
+	float *rendered; /* (threads,n,S) S pixels of a strip of the picture */
+	float *total;	 /* (threads,S) */
+	size_t image_room, pixel_room, rendered_room, total_room;
+};
+void lift_scratch_free(struct lift_scratch *s);
+
 /* For views of the numbers 0 to views - 1. Returns 0, or -1 with *e set and nothing to free. */
 int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, size_t views, struct err *e);
 void lift_objects_free(struct lift_objects *l);
 
 /* The masks of view `at`, in the order of their objects; several of one object are averaged. Every round has
  * the same. A view without masks need not come. Memory for a number of each Gaussian a view, and two of each
- * that a mask shows; while it lasts for an image of each object that has a mask. Returns 0, or -1 with *e set
+ * that a mask shows; in the scratch for an image of each object that has a mask. Returns 0, or -1 with *e set
  * for want of memory. */
-int lift_objects_view(struct lift_objects *l, size_t at, const struct view_weights *w, int height, int width,
-	const struct lift_mask *masks, size_t n, struct err *e);
+int lift_objects_view(struct lift_objects *l, struct lift_scratch *s, size_t at, const struct view_weights *w,
+	int height, int width, const struct lift_mask *masks, size_t n, struct err *e);
 
 /* The same in a round after the first, from the weights as tiles, with the same results as from rows in which
  * each pixel's weights are in the order of the Gaussians. */
-int lift_objects_again(struct lift_objects *l, size_t at, const struct view_tiles *t,
+int lift_objects_again(struct lift_objects *l, struct lift_scratch *s, size_t at, const struct view_tiles *t,
 	const struct lift_mask *masks, size_t n, struct err *e);
 
 /* Ends a round. Returns 0, or -1 with *e set for want of memory. */

@@ -8,17 +8,16 @@
 struct lift_weights {
 	const struct view_weights *rows;
 	const struct view_tiles *tiles;
+	int height, width;
 };
 
-static inline size_t lift_weights_pixels(const struct lift_weights *w)
-{
-	return w->rows ? w->rows->pixels : (size_t)w->tiles->width * (size_t)w->tiles->height;
-}
+/* Room for a x b items of `size` bytes, of the scratch: mem_room. */
+int lift_room(void **block, size_t *room, size_t a, size_t b, size_t size, struct err *e);
 
-/* agreement (v->n): soft intersection over union of each object's mask in images (v->n,P) with what is
- * claimed for it, rendered; two empty ones agree. Returns 0, or -1 with *e set for want of memory. */
+/* agreement (v->n): soft intersection over union of each object's mask in s->images with what is claimed for
+ * it, rendered; two empty ones agree. Returns 0, or -1 with *e set for want of memory. */
 int lift_agreement(const struct lift_objects *l, const struct lift_view *v, const struct lift_weights *of,
-	const float *images, double *agreement, struct err *e);
+	struct lift_scratch *s, double *agreement, struct err *e);
 
 /* l->shares and l->claims of what the views have and vote. Returns 0, or -1 with *e set for want of memory.
  */

@@ -182,6 +182,7 @@ struct lift_problem *lift_plain(void)
 
 int lift_problem(const struct lift_problem *q, size_t objects, struct lifted *to, struct lift_objects *l)
 {
+	struct lift_scratch s = {0};
 	struct err e;
 	int bad = 0;
 
@@ -192,10 +193,11 @@ int lift_problem(const struct lift_problem *q, size_t objects, struct lifted *to
 		for (int k = 0; k < VIEWS; k++) {
 			const int v = round % 2 ? VIEWS - 1 - k : k; /* any order */
 			bad |= lift_objects_view(
-				l, (size_t)v, &q->weights[v], H, W, q->masks[v], q->count[v], &e);
+				l, &s, (size_t)v, &q->weights[v], H, W, q->masks[v], q->count[v], &e);
 		}
 		bad |= lift_objects_settle(l, &e);
 	}
+	lift_scratch_free(&s);
 	return bad || lift_objects_finish(l, to, &e) ? -1 : 0;
 }
 

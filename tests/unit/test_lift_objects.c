@@ -80,6 +80,7 @@ static int pack_view(const struct view_weights *w, struct packed_view *to)
 static int lift_packed(const struct lift_problem *q, const struct packed_view *views, int with_tiles,
 	struct lift_objects *l, struct lifted *to)
 {
+	struct lift_scratch s = {0};
 	struct err e;
 	int bad = lift_objects_init(l, N, O, VIEWS, &e);
 
@@ -88,13 +89,14 @@ static int lift_packed(const struct lift_problem *q, const struct packed_view *v
 		for (size_t v = 0; v < VIEWS && !bad; v++) {
 			const struct view_weights rows = {
 				P, N, views[v].indptr, views[v].index, views[v].weight};
-			bad = round && with_tiles
-				      ? lift_objects_again(
-						l, v, &views[v].tiles, q->masks[v], q->count[v], &e)
-				      : lift_objects_view(l, v, &rows, H, W, q->masks[v], q->count[v], &e);
+			bad = round && with_tiles ? lift_objects_again(l, &s, v, &views[v].tiles, q->masks[v],
+							    q->count[v], &e)
+						  : lift_objects_view(l, &s, v, &rows, H, W, q->masks[v],
+							    q->count[v], &e);
 		}
 		bad = bad || lift_objects_settle(l, &e);
 	}
+	lift_scratch_free(&s);
 	return bad || lift_objects_finish(l, to, &e);
 }
 
