@@ -109,15 +109,15 @@ static int read_weight(struct weights *w, int64_t nnz, struct err *e)
 }
 
 /* Packed weights as rows of pixels. */
-static int unpack_rows(struct weights *w, const struct weights_pack *pack, int64_t pixels, struct err *e)
+static int unpack_rows(struct weights *w, const struct weights_pack *pack, struct err *e)
 {
-	w->owned_indptr = mem_alloc((size_t)pixels + 1, sizeof *w->owned_indptr, w->file.path, e);
-	if (!w->owned_indptr || weights_unpack(pack, w->width, w->height, w->gaussians, w->file.path,
-					w->owned_indptr, &w->owned_index, &w->owned, e))
+	if (!w->rows)
+		w->rows = mem_zalloc(1, sizeof *w->rows, w->file.path, e);
+	if (!w->rows || weights_unpack(pack, w->width, w->height, w->gaussians, w->file.path, w->rows, e))
 		return -1;
-	w->indptr = w->owned_indptr;
-	w->index = w->owned_index;
-	w->weight = w->owned;
+	w->indptr = w->rows->indptr;
+	w->index = w->rows->index;
+	w->weight = w->rows->weight;
 	return 0;
 }
 
@@ -153,7 +153,7 @@ static int read_packed(struct weights *w, int64_t pixels, int as_tiles, struct e
 		dropped ? mem_alloc((size_t)pixels, sizeof *w->owned_dropped, w->file.path, e) : NULL;
 	if (!w->owned_dropped || (as_tiles ? weights_unpack_tiles(&pack, w->width, w->height, w->gaussians,
 						     w->file.path, &w->tiles, e)
-					   : unpack_rows(w, &pack, pixels, e)))
+					   : unpack_rows(w, &pack, e)))
 		return -1;
 	for (int64_t p = 0; p < pixels; p++)
 		w->owned_dropped[p] = (float)((const uint8_t *)dropped->data)[p] / LEVELS;
@@ -192,9 +192,10 @@ static int read_all(struct weights *w, int as_tiles, struct err *e)
 													  : 0;
 }
 
-static int open_file(struct weights *w, const char *path, int as_tiles, struct err *e)
+static int open_file(
+	struct weights *w, struct weights_rows *rows, const char *path, int as_tiles, struct err *e)
 {
-	*w = (struct weights){0};
+	*w = (struct weights){.rows = rows, .is_lent = rows != NULL};
 	if (!safetensors_open(&w->file, path, e) && !read_all(w, as_tiles, e))
 		return 0;
 	weights_close(w);
@@ -203,7 +204,7 @@ static int open_file(struct weights *w, const char *path, int as_tiles, struct e
 
 int weights_open_file(struct weights *w, const char *path, struct err *e)
 {
-	return open_file(w, path, 0, e);
+	return open_file(w, NULL, path, 0, e);
 }
 
 /* That they are of this scene, and of this camera at the size that they have. */
@@ -224,13 +225,13 @@ static int check_origin(const struct weights *w, const struct scene *scene, size
 	return bad ? -1 : 0;
 }
 
-static int open_view(struct weights *w, const char *dir, const struct scene *scene, size_t view, int as_tiles,
-	struct err *e)
+static int open_view(struct weights *w, struct weights_rows *rows, const char *dir, const struct scene *scene,
+	size_t view, int as_tiles, struct err *e)
 {
 	char *path = file_join(dir, scene->cameras.views[view].name, ".safetensors", e);
 
 	*w = (struct weights){0};
-	int bad = path ? open_file(w, path, as_tiles, e) : -1;
+	int bad = path ? open_file(w, rows, path, as_tiles, e) : -1;
 	if (!bad && (bad = check_origin(w, scene, view, e)))
 		weights_close(w);
 	free(path);
@@ -239,13 +240,19 @@ static int open_view(struct weights *w, const char *dir, const struct scene *sce
 
 int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e)
 {
-	return open_view(w, dir, scene, view, 0, e);
+	return open_view(w, NULL, dir, scene, view, 0, e);
+}
+
+int weights_open_in(struct weights *w, struct weights_rows *rows, const char *dir, const struct scene *scene,
+	size_t view, struct err *e)
+{
+	return open_view(w, rows, dir, scene, view, 0, e);
 }
 
 int weights_open_tiles(
 	struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e)
 {
-	return open_view(w, dir, scene, view, 1, e);
+	return open_view(w, NULL, dir, scene, view, 1, e);
 }
 
 int weights_exist(const char *dir, const char *view, struct err *e)
@@ -261,8 +268,10 @@ void weights_close(struct weights *w)
 {
 	safetensors_close(&w->file);
 	free(w->owned);
-	free(w->owned_indptr);
-	free(w->owned_index);
+	if (w->rows && !w->is_lent) {
+		weights_rows_free(w->rows);
+		free(w->rows);
+	}
 	free(w->owned_dropped);
 	view_tiles_free(&w->tiles);
 	*w = (struct weights){0};

@@ -10,7 +10,8 @@
 
 enum { WEIGHTS_STREAMS = 3 };
 
-/* Streams of bytes, compressed by zstd: the Gaussians of each tile, which of its pixels each is in, and by how much. */
+/* Streams of bytes, compressed by zstd: the Gaussians of each tile, which of its pixels each is in, and by
+ * how much. */
 struct weights_pack {
 	size_t bytes[WEIGHTS_STREAMS], packed[WEIGHTS_STREAMS], room[WEIGHTS_STREAMS]; /* before and after */
 	uint8_t *data[WEIGHTS_STREAMS];
@@ -48,11 +49,20 @@ int weights_pack_part(
 int weights_pack_join(struct weights_pack *p, struct weights_pack *rows, int count, struct err *e);
 void weights_pack_free(struct weights_pack *p);
 
-/* The other way: indptr (P+1) is the caller's; *index and *weight, which are level / 255, are allocated, in
- * the order of the Gaussians within a pixel. ERR_FORMAT, after `path`, where the streams are no such weights
- * of a scene of so many Gaussians. */
+/* Rows of pixels that weights were unpacked to, and the room that they have. */
+struct weights_rows {
+	int64_t *indptr; /* (P+1) */
+	int32_t *index;
+	float *weight;
+	size_t indptr_room, index_room, weight_room;
+};
+void weights_rows_free(struct weights_rows *r);
+
+/* The other way: in *to, zeroed before the first and used again with each that follows; weights are level /
+ * 255, in the order of the Gaussians within a pixel. ERR_FORMAT, after `path`, where the streams are no such
+ * weights of a scene of so many Gaussians. */
 int weights_unpack(const struct weights_pack *p, int width, int height, int64_t gaussians, const char *path,
-	int64_t *indptr, int32_t **index, float **weight, struct err *e);
+	struct weights_rows *to, struct err *e);
 
 /* They as tiles; view_tiles_free. ERR_FORMAT as above, and then there is nothing to free. */
 int weights_unpack_tiles(const struct weights_pack *p, int width, int height, int64_t gaussians,

@@ -198,32 +198,41 @@ static void put_row(const struct view_tiles *t, const struct view_tiles_lookup *
 	}
 }
 
+void weights_rows_free(struct weights_rows *r)
+{
+	free(r->indptr);
+	free(r->index);
+	free(r->weight);
+	*r = (struct weights_rows){0};
+}
+
 /* Counted in place p + 1, a pixel's weights end where those of the next begin: sums give both, and when they
  * are put, each place moves from its pixel's beginning to its end, where the next begins. */
-static int fill(const struct view_tiles *t, const char *path, int64_t *indptr, int32_t **index,
-	float **weight, struct err *e)
+static int fill(const struct view_tiles *t, const char *path, struct weights_rows *to, struct err *e)
 {
 	const int64_t pixels = (int64_t)t->width * t->height;
+	const size_t all = t->level_begin[t->down];
 	struct view_tiles_lookup of;
 	int64_t sum = 0;
 
 	view_tiles_lookup_make(&of, t);
-	memset(indptr, 0, ((size_t)pixels + 1) * sizeof *indptr);
-	*index = mem_alloc(t->level_begin[t->down], sizeof **index, path, e);
-	*weight = mem_alloc(t->level_begin[t->down], sizeof **weight, path, e);
-	if (!*index || !*weight)
+	if (mem_room((void **)&to->indptr, &to->indptr_room, (size_t)pixels + 1, sizeof *to->indptr, path,
+		    e) ||
+		mem_room((void **)&to->index, &to->index_room, all, sizeof *to->index, path, e) ||
+		mem_room((void **)&to->weight, &to->weight_room, all, sizeof *to->weight, path, e))
 		return -1;
+	memset(to->indptr, 0, ((size_t)pixels + 1) * sizeof *to->indptr);
 #pragma omp parallel for schedule(dynamic)
 	for (int row = 0; row < t->down; row++)
-		count_row(t, row, indptr + 1);
+		count_row(t, row, to->indptr + 1);
 	for (int64_t p = 0; p < pixels; p++) {
-		const int64_t n = indptr[p + 1];
-		indptr[p + 1] = sum;
+		const int64_t n = to->indptr[p + 1];
+		to->indptr[p + 1] = sum;
 		sum += n;
 	}
 #pragma omp parallel for schedule(dynamic)
 	for (int row = 0; row < t->down; row++)
-		put_row(t, &of, row, indptr + 1, *index, *weight);
+		put_row(t, &of, row, to->indptr + 1, to->index, to->weight);
 	return 0;
 }
 
@@ -246,21 +255,13 @@ int weights_unpack_tiles(const struct weights_pack *p, int width, int height, in
 }
 
 int weights_unpack(const struct weights_pack *p, int width, int height, int64_t gaussians, const char *path,
-	int64_t *indptr, int32_t **index, float **weight, struct err *e)
+	struct weights_rows *to, struct err *e)
 {
 	struct view_tiles tiles;
 
-	*index = NULL;
-	*weight = NULL;
 	if (weights_unpack_tiles(p, width, height, gaussians, path, &tiles, e))
 		return -1;
-	const int bad = fill(&tiles, path, indptr, index, weight, e);
+	const int bad = fill(&tiles, path, to, e);
 	view_tiles_free(&tiles);
-	if (!bad)
-		return 0;
-	free(*index);
-	free(*weight);
-	*index = NULL;
-	*weight = NULL;
-	return -1;
+	return bad;
 }

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/weights.h"
+#include "formats/weights_pack.h"
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -173,6 +174,7 @@ struct lift_round {
 	int round;
 	struct lift_mask *masks;      /* (workers, set.n) */
 	struct lift_scratch *scratch; /* (workers) */
+	struct weights_rows *rows;    /* (workers) */
 };
 
 static int lift_view(void *context, int worker, size_t view, struct err *e)
@@ -187,7 +189,8 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 	if (!n)
 		return 0;
 	/* the first round needs rows of pixels */
-	if ((r->round ? weights_open_tiles : weights_open)(&weights, l->files->weights, &l->scene, view, e))
+	if (r->round ? weights_open_tiles(&weights, l->files->weights, &l->scene, view, e)
+		     : weights_open_in(&weights, &r->rows[worker], l->files->weights, &l->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
 	const int bad = weights.tiles.begin
@@ -215,13 +218,17 @@ static int lift(struct lifting *l, const struct report *to, struct err *e)
 
 	r.masks = mem_alloc((size_t)by.workers, l->set.n * sizeof *r.masks, "masks", e);
 	r.scratch = mem_zalloc((size_t)by.workers, sizeof *r.scratch, "masks", e);
-	int bad = !r.masks || !r.scratch ||
+	r.rows = mem_zalloc((size_t)by.workers, sizeof *r.rows, "views", e);
+	int bad = !r.masks || !r.scratch || !r.rows ||
 		  lift_objects_init(&l->lift, l->scene.splats.n, l->objects + l->spare, n, e);
 	for (; r.round < LIFT_ROUNDS && !bad; r.round++)
 		bad = each_run(&by, n, e) || lift_objects_settle(&l->lift, e);
-	for (int i = 0; i < by.workers && r.scratch; i++)
+	for (int i = 0; i < by.workers && r.scratch && r.rows; i++) {
 		lift_scratch_free(&r.scratch[i]);
+		weights_rows_free(&r.rows[i]);
+	}
 	free(r.scratch);
+	free(r.rows);
 	free(r.masks);
 	return bad || lift_objects_finish(&l->lift, &l->model, e) ? -1 : 0;
 }

@@ -58,9 +58,7 @@ static void test_threads(void)
 
 /* A problem's weights as those of a packed file: rows of pixels, and tiles. */
 struct packed_view {
-	int64_t indptr[P + 1];
-	int32_t *index;
-	float *weight;
+	struct weights_rows rows;
 	struct view_tiles tiles;
 };
 
@@ -70,7 +68,7 @@ static int pack_view(const struct view_weights *w, struct packed_view *to)
 	struct err e;
 
 	const int bad = pack_whole(&pack, W, H, N, w->indptr, w->index, w->weight, &e) ||
-			weights_unpack(&pack, W, H, N, "w", to->indptr, &to->index, &to->weight, &e) ||
+			weights_unpack(&pack, W, H, N, "w", &to->rows, &e) ||
 			weights_unpack_tiles(&pack, W, H, N, "w", &to->tiles, &e);
 	weights_pack_free(&pack);
 	return bad;
@@ -88,7 +86,7 @@ static int lift_packed(const struct lift_problem *q, const struct packed_view *v
 	for (int round = 0; round < LIFT_ROUNDS && !bad; round++) {
 		for (size_t v = 0; v < VIEWS && !bad; v++) {
 			const struct view_weights rows = {
-				P, N, views[v].indptr, views[v].index, views[v].weight};
+				P, N, views[v].rows.indptr, views[v].rows.index, views[v].rows.weight};
 			bad = round && with_tiles ? lift_objects_again(l, &s, v, &views[v].tiles, q->masks[v],
 							    q->count[v], &e)
 						  : lift_objects_view(l, &s, v, &rows, H, W, q->masks[v],
@@ -125,8 +123,7 @@ static void test_tiles(uint64_t seed)
 		lift_objects_free(&l[k]);
 	}
 	for (int v = 0; v < VIEWS; v++) {
-		free(views[v].index);
-		free(views[v].weight);
+		weights_rows_free(&views[v].rows);
 		view_tiles_free(&views[v].tiles);
 	}
 	free(views);

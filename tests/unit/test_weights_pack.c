@@ -60,75 +60,62 @@ static long count_wrong(
 	return wrong;
 }
 
-static void check_round_trip(struct rng *rng, int width, int height, int gaussians)
+/* rows: used again, whatever was in them. */
+static void check_round_trip(struct rng *rng, int width, int height, int gaussians, struct weights_rows *rows)
 {
 	struct matrix m = random_matrix(rng, width, height, gaussians);
-	int64_t *indptr = malloc((size_t)(width * height + 1) * 8);
 	struct weights_pack pack;
 	struct err e;
-	int32_t *index;
-	float *weight;
 
 	CHECK(!pack_whole(&pack, width, height, (size_t)gaussians, m.indptr, m.index, m.weight, &e), "%s",
 		e.message);
-	if (CHECK(!weights_unpack(&pack, width, height, gaussians, "w", indptr, &index, &weight, &e), "%s",
-		    e.message)) {
-		CHECK(count_wrong(&m, indptr, index, weight) == 0, "%dx%d of %d: %ld differ", width, height,
-			gaussians, count_wrong(&m, indptr, index, weight));
-		free(index);
-		free(weight);
+	if (CHECK(!weights_unpack(&pack, width, height, gaussians, "w", rows, &e), "%s", e.message)) {
+		const long wrong = count_wrong(&m, rows->indptr, rows->index, rows->weight);
+		CHECK(wrong == 0, "%dx%d of %d: %ld differ", width, height, gaussians, wrong);
 	}
 	weights_pack_free(&pack);
-	free(indptr);
 	matrix_free(&m);
 }
 
 static void weights_come_back(void)
 {
+	struct weights_rows rows = {0};
 	struct rng rng;
 
 	rng_seed(&rng, 3, 1);
 	for (int i = 0; i < 20; i++)
 		check_round_trip(&rng, 1 + i, 1 + (int)(rng_uniform(&rng) * 30),
-			1 + (int)(rng_uniform(&rng) * GAUSSIANS));
-	check_round_trip(&rng, 123, 45, GAUSSIANS);
-	check_round_trip(&rng, 8, 8, 1);
+			1 + (int)(rng_uniform(&rng) * GAUSSIANS), &rows);
+	check_round_trip(&rng, 123, 45, GAUSSIANS, &rows);
+	check_round_trip(&rng, 8, 8, 1, &rows);
+	weights_rows_free(&rows);
 }
 
 static void nothing_is_packed(void)
 {
 	const int64_t none[13] = {0};
-	int64_t indptr[13];
+	struct weights_rows rows = {0};
 	struct weights_pack pack;
 	struct err e;
-	int32_t *index;
-	float *weight;
 
 	CHECK(!pack_whole(&pack, 4, 3, 0, none, NULL, NULL, &e), "%s", e.message);
-	CHECK(!weights_unpack(&pack, 4, 3, 0, "w", indptr, &index, &weight, &e), "%s", e.message);
-	CHECK(indptr[12] == 0, "%d", (int)indptr[12]);
-	free(index);
-	free(weight);
+	CHECK(!weights_unpack(&pack, 4, 3, 0, "w", &rows, &e), "%s", e.message);
+	CHECK(rows.indptr && rows.indptr[12] == 0, "no weights");
+	weights_rows_free(&rows);
 	weights_pack_free(&pack);
 }
 
 static int unpacks(const struct weights_pack *pack, int width, int height, int gaussians)
 {
-	int64_t *indptr = malloc((size_t)(width * height + 1) * 8);
+	struct weights_rows rows = {0};
 	struct err e = {0};
-	int32_t *index;
-	float *weight;
-	const int bad = weights_unpack(pack, width, height, gaussians, "w", indptr, &index, &weight, &e);
+	const int bad = weights_unpack(pack, width, height, gaussians, "w", &rows, &e);
 
-	if (!bad) {
-		free(index);
-		free(weight);
-	} else {
+	if (bad)
 		CHECK(e.code == ERR_FORMAT &&
 				!strncmp(e.message, "w: packed weights are broken, after byte ", 41),
 			"%s", e.message);
-	}
-	free(indptr);
+	weights_rows_free(&rows);
 	return !bad;
 }
 
