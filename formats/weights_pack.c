@@ -186,74 +186,61 @@ int weights_pack_part(
 	return 0;
 }
 
-static int compress_stream(struct weights_pack *p, int stream, struct err *e)
+/* A stream of all rows, one after another, as one frame. */
+static int compress_rows(ZSTD_CCtx *by, struct weights_pack *p, const struct weights_pack *rows, int count,
+	int stream, struct err *e)
 {
-	const size_t room = ZSTD_compressBound(p->bytes[stream]);
-	uint8_t *out = mem_alloc(room, 1, "weights", e);
-	ZSTD_CCtx *by = out ? ZSTD_createCCtx() : NULL;
+	ZSTD_outBuffer out = {p->data[stream], p->room[stream], 0};
+	size_t left = ZSTD_CCtx_setPledgedSrcSize(by, p->bytes[stream]);
 
-	if (!by) {
-		free(out);
-		return err_set(e, ERR_SYSTEM, "weights: out of memory");
+	for (int row = 0; row <= count && !ZSTD_isError(left); row++) {
+		const struct weights_pack *from = row < count ? &rows[row] : NULL;
+		ZSTD_inBuffer in = {from ? from->data[stream] : NULL, from ? from->bytes[stream] : 0, 0};
+		do /* there is room for all of it */
+			left = ZSTD_compressStream2(by, &out, &in, from ? ZSTD_e_continue : ZSTD_e_end);
+		while (!ZSTD_isError(left) && (from ? in.pos < in.size : left));
 	}
-	ZSTD_CCtx_setParameter(by, ZSTD_c_compressionLevel, EFFORT);
-	ZSTD_CCtx_setParameter(by, ZSTD_c_checksumFlag, 1);
-	const size_t packed =
-		ZSTD_compress2(by, out, room, p->data[stream] ? p->data[stream] : out, p->bytes[stream]);
-	ZSTD_freeCCtx(by);
-	free(p->data[stream]);
-	p->data[stream] = out;
-	if (ZSTD_isError(packed))
-		return err_set(e, ERR_SYSTEM, "weights: %s", ZSTD_getErrorName(packed));
-	p->packed[stream] = packed;
+	if (ZSTD_isError(left))
+		return err_set(e, ERR_SYSTEM, "weights: %s", ZSTD_getErrorName(left));
+	p->packed[stream] = out.pos;
 	return 0;
 }
 
-static int compress_all(struct weights_pack *p, struct err *e)
+static int compress_stream(
+	struct weights_pack *p, const struct weights_pack *rows, int count, int stream, struct err *e)
+{
+	p->bytes[stream] = 0;
+	for (int row = 0; row < count; row++)
+		p->bytes[stream] += rows[row].bytes[stream];
+	if (mem_room((void **)&p->data[stream], &p->room[stream], ZSTD_compressBound(p->bytes[stream]), 1,
+		    "weights", e))
+		return -1;
+	ZSTD_CCtx *by = ZSTD_createCCtx();
+	if (!by)
+		return err_set(e, ERR_SYSTEM, "weights: out of memory");
+	ZSTD_CCtx_setParameter(by, ZSTD_c_compressionLevel, EFFORT);
+	ZSTD_CCtx_setParameter(by, ZSTD_c_checksumFlag, 1);
+	const int bad = compress_rows(by, p, rows, count, stream, e);
+	ZSTD_freeCCtx(by);
+	return bad;
+}
+
+int weights_pack_join(struct weights_pack *p, struct weights_pack *rows, int count, struct err *e)
 {
 	struct err errors[WEIGHTS_STREAMS];
 	int bad[WEIGHTS_STREAMS];
 
 #pragma omp parallel for schedule(dynamic)
-	for (int s = 0; s < WEIGHTS_STREAMS; s++)
-		bad[s] = compress_stream(p, s, &errors[s]);
+	for (int s = WEIGHTS_STREAMS - 1; s >= 0; s--)
+		bad[s] = compress_stream(p, rows, count, s, &errors[s]);
+	for (int row = 0; row < count; row++)
+		memset(rows[row].bytes, 0, sizeof rows[row].bytes);
 	for (int s = 0; s < WEIGHTS_STREAMS; s++)
 		if (bad[s]) {
 			*e = errors[s];
 			return -1;
 		}
 	return 0;
-}
-
-/* The streams of all rows one after another. */
-static int join_stream(
-	struct weights_pack *p, const struct weights_pack *rows, int count, int stream, struct err *e)
-{
-	size_t all = 0;
-
-	for (int row = 0; row < count; row++)
-		all += rows[row].bytes[stream];
-	p->data[stream] = mem_alloc(all, 1, "weights", e);
-	p->room[stream] = all;
-	for (int row = 0; row < count && p->data[stream]; row++) {
-		if (rows[row].bytes[stream])
-			memcpy(p->data[stream] + p->bytes[stream], rows[row].data[stream],
-				rows[row].bytes[stream]);
-		p->bytes[stream] += rows[row].bytes[stream];
-	}
-	return p->data[stream] ? 0 : -1;
-}
-
-int weights_pack_join(struct weights_pack *p, struct weights_pack *rows, int count, struct err *e)
-{
-	int bad = 0;
-
-	*p = (struct weights_pack){0};
-	for (int s = 0; s < WEIGHTS_STREAMS; s++)
-		bad = bad || join_stream(p, rows, count, s, e);
-	for (int row = 0; row < count; row++)
-		weights_pack_free(&rows[row]);
-	return bad || compress_all(p, e) ? -1 : 0;
 }
 
 void weights_pack_free(struct weights_pack *p)

@@ -40,12 +40,12 @@ int weights_packer_make(struct weights_packer *t, size_t gaussians, struct err *
 void weights_packer_free(struct weights_packer *t);
 
 /* Packs the next part of some rows of tiles, which go on in rows (height/8, rounded up), zeroed before the
- * first. Parts are whole tiles but at the picture's edge. Returns 0, or -1 with *e set; free the rows after
- * either. */
+ * first. Parts are whole tiles but at the picture's edge. Returns 0, or -1 with *e set. */
 int weights_pack_part(
 	struct weights_pack *rows, struct weights_packer *t, const struct weights_picture *v, struct err *e);
 
-/* All rows of tiles, compressed; they are freed. Returns 0, or -1 with *e set; free *p after either. */
+/* All rows of tiles, compressed. They are empty after it, and have room for the next picture's; *p, zeroed
+ * before the first, may be used again too. Returns 0, or -1 with *e set. */
 int weights_pack_join(struct weights_pack *p, struct weights_pack *rows, int count, struct err *e);
 void weights_pack_free(struct weights_pack *p);
 

@@ -26,6 +26,7 @@ static int in_split(const struct camera *c, int split)
 struct room {
 	struct render_view *view;
 	struct render_weights rendered;
+	struct weighed_packed packed;
 	float *dropped;
 	size_t dropped_room;
 	double covered; /* the largest part of a view whose pixels are more scene than background */
@@ -35,6 +36,7 @@ static void room_free(struct room *room)
 {
 	render_free(room->view);
 	render_weights_free(&room->rendered);
+	weighed_packed_free(&room->packed);
 	free(room->dropped);
 }
 
@@ -118,11 +120,11 @@ static int weigh_view(void *context, int worker, size_t at, struct err *e)
 	camera_scaled_size(full, o->scale, &done->width, &done->height);
 	const size_t pixels = (size_t)done->width * (size_t)done->height;
 	const struct camera camera = camera_resize(full, done->width, done->height);
-	struct weighed_packed packed = {0};
+	struct weighed_packed *packed = &room->packed;
 	const struct render_weights *rendered = &room->rendered;
 	int bad = prepare(room, &of->scene->splats, &camera, e) ||
-		  (o->is_packed ? weigh_packed(&packed, room->view, &camera, of->scene->splats.n,
-					  o->tolerance, room->dropped, e)
+		  (o->is_packed ? weigh_packed(packed, room->view, &camera, of->scene->splats.n, o->tolerance,
+					  room->dropped, e)
 				: render(room, pixels, o, e));
 	done->ms = 1e3 * (omp_get_wtime() - start);
 	const struct weights w = {.width = done->width,
@@ -135,15 +137,14 @@ static int weigh_view(void *context, int worker, size_t at, struct err *e)
 		.scene = of->scene->fingerprint,
 		.camera = fingerprint_camera(&camera),
 		.precision = o->precision,
-		.pack = o->is_packed ? &packed.pack : NULL};
+		.pack = o->is_packed ? &packed->pack : NULL};
 	if (!bad) {
-		done->weights = o->is_packed ? (double)packed.weights : (double)rendered->indptr[pixels];
+		done->weights = o->is_packed ? (double)packed->weights : (double)rendered->indptr[pixels];
 		const size_t covered =
-			o->is_packed ? packed.covered : weighing_cover(rendered->transmittance, pixels);
+			o->is_packed ? packed->covered : weighing_cover(rendered->transmittance, pixels);
 		room->covered = fmax(room->covered, (double)covered / (double)pixels);
 		bad = weights_write(&w, o->folder, full->name, of->text, e);
 	}
-	weights_pack_free(&packed.pack);
 	return bad;
 }
 

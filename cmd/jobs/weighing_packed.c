@@ -5,6 +5,7 @@
 #include "formats/weights.h"
 #include "splat/prune.h"
 
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +15,7 @@ enum {
 };
 
 /* One thread's. */
-struct room {
+struct packing_room {
 	struct render_weights rendered;
 	struct weights_packer packer;
 	float dropped[PART_WIDTH * RENDER_PART];
@@ -44,7 +45,8 @@ struct packing {
 	struct counted *counted;   /* (rows of parts) */
 };
 
-static int pack_part(const struct packing *p, struct room *r, const struct render_part *part, struct err *e)
+static int pack_part(
+	const struct packing *p, struct packing_room *r, const struct render_part *part, struct err *e)
 {
 	const size_t width = (size_t)part->width, height = (size_t)part->height, pixels = width * height;
 	struct render_weights *w = &r->rendered;
@@ -68,7 +70,7 @@ static int smaller(int a, int b)
 }
 
 /* The parts from row y of the pixels on. */
-static int pack_row(const struct packing *p, struct room *r, int y, struct err *e)
+static int pack_row(const struct packing *p, struct packing_room *r, int y, struct err *e)
 {
 	for (int x = 0; x < p->width; x += PART_WIDTH) {
 		const struct render_part part = {
@@ -79,9 +81,9 @@ static int pack_row(const struct packing *p, struct room *r, int y, struct err *
 	return 0;
 }
 
-static struct room *room_make(size_t gaussians, struct err *e)
+static struct packing_room *room_make(size_t gaussians, struct err *e)
 {
-	struct room *r = mem_zalloc(1, sizeof *r, "weights", e);
+	struct packing_room *r = mem_zalloc(1, sizeof *r, "weights", e);
 
 	if (!r || !weights_packer_make(&r->packer, gaussians, e))
 		return r;
@@ -90,7 +92,7 @@ static struct room *room_make(size_t gaussians, struct err *e)
 	return NULL;
 }
 
-static void room_free(struct room *r)
+static void room_free(struct packing_room *r)
 {
 	if (!r)
 		return;
@@ -99,15 +101,63 @@ static void room_free(struct room *r)
 	free(r);
 }
 
-static int pack_rows(const struct packing *p, size_t gaussians, struct err *e)
+static void free_rooms(struct weighed_packed *w)
+{
+	for (int k = 0; k < w->room_count; k++)
+		room_free(w->rooms[k]);
+	free(w->rooms);
+	w->rooms = NULL;
+	w->room_count = 0;
+}
+
+static void free_rows(struct weighed_packed *w)
+{
+	for (int k = 0; k < w->row_count; k++)
+		weights_pack_free(&w->rows[k]);
+	free(w->rows);
+	w->rows = NULL;
+	w->row_count = 0;
+}
+
+void weighed_packed_free(struct weighed_packed *w)
+{
+	weights_pack_free(&w->pack);
+	free_rooms(w);
+	free_rows(w);
+}
+
+static int make_rooms(struct weighed_packed *w, int threads, size_t gaussians, struct err *e)
+{
+	if (threads <= w->room_count)
+		return 0;
+	free_rooms(w);
+	w->rooms = mem_zalloc((size_t)threads, sizeof *w->rooms, "weights", e);
+	if (!w->rooms)
+		return -1;
+	for (w->room_count = 0; w->room_count < threads; w->room_count++)
+		if (!(w->rooms[w->room_count] = room_make(gaussians, e)))
+			return -1;
+	return 0;
+}
+
+static int make_rows(struct weighed_packed *w, int count, struct err *e)
+{
+	if (count <= w->row_count)
+		return 0;
+	free_rows(w);
+	w->rows = mem_zalloc((size_t)count, sizeof *w->rows, "weights", e);
+	w->row_count = w->rows ? count : 0;
+	return w->rows ? 0 : -1;
+}
+
+static int pack_rows(const struct packing *p, struct packing_room **rooms, int threads, struct err *e)
 {
 	int failed = 0;
 
-#pragma omp parallel num_threads(threads_available()) reduction(| : failed)
+#pragma omp parallel num_threads(threads) reduction(| : failed)
 	{
 		struct err mine;
-		struct room *r = room_make(gaussians, &mine);
-		failed = !r;
+		struct packing_room *r = rooms[omp_get_thread_num()];
 #pragma omp for schedule(dynamic)
 		for (int y = 0; y < p->height; y += RENDER_PART)
 			failed = failed || pack_row(p, r, y, &mine);
@@ -115,7 +165,6 @@ static int pack_rows(const struct packing *p, size_t gaussians, struct err *e)
 #pragma omp critical
 			*e = mine;
 		}
-		room_free(r);
 	}
 	return failed ? -1 : 0;
 }
@@ -124,21 +173,17 @@ int weigh_packed(struct weighed_packed *to, const struct render_view *v, const s
 	size_t gaussians, double tolerance, float *dropped, struct err *e)
 {
 	const int count = (c->height + VIEW_TILE - 1) / VIEW_TILE,
-		  parts = (count + TILE_ROWS - 1) / TILE_ROWS;
-	struct packing p = {v, c->width, c->height, tolerance, dropped,
-		mem_zalloc((size_t)count, sizeof *p.rows, "weights", e),
-		mem_zalloc((size_t)parts, sizeof *p.counted, "weights", e)};
+		  parts = (count + TILE_ROWS - 1) / TILE_ROWS, threads = threads_available();
+	struct counted *counted = mem_zalloc((size_t)parts, sizeof *counted, "weights", e);
+	int bad = !counted || make_rows(to, count, e) || make_rooms(to, threads, gaussians, e);
+	const struct packing p = {v, c->width, c->height, tolerance, dropped, to->rows, counted};
 
-	*to = (struct weighed_packed){0};
-	int bad = !p.rows || !p.counted || pack_rows(&p, gaussians, e);
+	bad = bad || pack_rows(&p, to->rooms, threads, e) || weights_pack_join(&to->pack, to->rows, count, e);
+	to->weights = to->covered = 0;
 	for (int k = 0; k < parts && !bad; k++) {
-		to->weights += p.counted[k].weights;
-		to->covered += p.counted[k].covered;
+		to->weights += counted[k].weights;
+		to->covered += counted[k].covered;
 	}
-	for (int k = 0; k < count && bad && p.rows; k++)
-		weights_pack_free(&p.rows[k]);
-	bad = bad || weights_pack_join(&to->pack, p.rows, count, e);
-	free(p.rows);
-	free(p.counted);
+	free(counted);
 	return bad ? -1 : 0;
 }

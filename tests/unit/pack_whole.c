@@ -18,7 +18,10 @@ int pack_whole(struct weights_pack *p, int width, int height, size_t gaussians, 
 			indptr + (size_t)top * (size_t)width, index, weight};
 		bad = weights_pack_part(&rows[r], &packer, &picture, e);
 	}
+	*p = (struct weights_pack){0};
 	bad = bad || weights_pack_join(p, rows, count, e);
+	for (int r = 0; r < count; r++)
+		weights_pack_free(&rows[r]);
 	weights_packer_free(&packer);
 	free(rows);
 	return bad;
