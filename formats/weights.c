@@ -108,16 +108,21 @@ static int read_weight(struct weights *w, int64_t nnz, struct err *e)
 	return 0;
 }
 
-/* Packed weights as rows of pixels. */
-static int unpack_rows(struct weights *w, const struct weights_pack *pack, struct err *e)
+/* Packed weights as rows of pixels, or as tiles. */
+static int unpack(struct weights *w, const struct weights_pack *pack, int as_tiles, struct err *e)
 {
-	if (!w->rows)
-		w->rows = mem_zalloc(1, sizeof *w->rows, w->file.path, e);
-	if (!w->rows || weights_unpack(pack, w->width, w->height, w->gaussians, w->file.path, w->rows, e))
+	if (!w->room)
+		w->room = mem_zalloc(1, sizeof *w->room, w->file.path, e);
+	if (!w->room || (as_tiles ? weights_unpack_tiles : weights_unpack)(
+				pack, w->width, w->height, w->gaussians, w->file.path, w->room, e))
 		return -1;
-	w->indptr = w->rows->indptr;
-	w->index = w->rows->index;
-	w->weight = w->rows->weight;
+	if (as_tiles) {
+		w->tiles = &w->room->tiles;
+		return 0;
+	}
+	w->indptr = w->room->indptr;
+	w->index = w->room->index;
+	w->weight = w->room->weight;
 	return 0;
 }
 
@@ -151,9 +156,7 @@ static int read_packed(struct weights *w, int64_t pixels, int as_tiles, struct e
 	w->is_packed = 1;
 	w->owned_dropped =
 		dropped ? mem_alloc((size_t)pixels, sizeof *w->owned_dropped, w->file.path, e) : NULL;
-	if (!w->owned_dropped || (as_tiles ? weights_unpack_tiles(&pack, w->width, w->height, w->gaussians,
-						     w->file.path, &w->tiles, e)
-					   : unpack_rows(w, &pack, e)))
+	if (!w->owned_dropped || unpack(w, &pack, as_tiles, e))
 		return -1;
 	for (int64_t p = 0; p < pixels; p++)
 		w->owned_dropped[p] = (float)((const uint8_t *)dropped->data)[p] / LEVELS;
@@ -193,9 +196,9 @@ static int read_all(struct weights *w, int as_tiles, struct err *e)
 }
 
 static int open_file(
-	struct weights *w, struct weights_rows *rows, const char *path, int as_tiles, struct err *e)
+	struct weights *w, struct weights_room *room, const char *path, int as_tiles, struct err *e)
 {
-	*w = (struct weights){.rows = rows, .is_lent = rows != NULL};
+	*w = (struct weights){.room = room, .is_lent = room != NULL};
 	if (!safetensors_open(&w->file, path, e) && !read_all(w, as_tiles, e))
 		return 0;
 	weights_close(w);
@@ -225,13 +228,13 @@ static int check_origin(const struct weights *w, const struct scene *scene, size
 	return bad ? -1 : 0;
 }
 
-static int open_view(struct weights *w, struct weights_rows *rows, const char *dir, const struct scene *scene,
+static int open_view(struct weights *w, struct weights_room *room, const char *dir, const struct scene *scene,
 	size_t view, int as_tiles, struct err *e)
 {
 	char *path = file_join(dir, scene->cameras.views[view].name, ".safetensors", e);
 
 	*w = (struct weights){0};
-	int bad = path ? open_file(w, rows, path, as_tiles, e) : -1;
+	int bad = path ? open_file(w, room, path, as_tiles, e) : -1;
 	if (!bad && (bad = check_origin(w, scene, view, e)))
 		weights_close(w);
 	free(path);
@@ -243,16 +246,16 @@ int weights_open(struct weights *w, const char *dir, const struct scene *scene, 
 	return open_view(w, NULL, dir, scene, view, 0, e);
 }
 
-int weights_open_in(struct weights *w, struct weights_rows *rows, const char *dir, const struct scene *scene,
+int weights_open_in(struct weights *w, struct weights_room *room, const char *dir, const struct scene *scene,
 	size_t view, struct err *e)
 {
-	return open_view(w, rows, dir, scene, view, 0, e);
+	return open_view(w, room, dir, scene, view, 0, e);
 }
 
-int weights_open_tiles(
-	struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e)
+int weights_open_tiles(struct weights *w, struct weights_room *room, const char *dir,
+	const struct scene *scene, size_t view, struct err *e)
 {
-	return open_view(w, NULL, dir, scene, view, 1, e);
+	return open_view(w, room, dir, scene, view, 1, e);
 }
 
 int weights_exist(const char *dir, const char *view, struct err *e)
@@ -268,12 +271,11 @@ void weights_close(struct weights *w)
 {
 	safetensors_close(&w->file);
 	free(w->owned);
-	if (w->rows && !w->is_lent) {
-		weights_rows_free(w->rows);
-		free(w->rows);
+	if (w->room && !w->is_lent) {
+		weights_room_free(w->room);
+		free(w->room);
 	}
 	free(w->owned_dropped);
-	view_tiles_free(&w->tiles);
 	*w = (struct weights){0};
 }
 

@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 struct weights_pack;
-struct weights_rows;
+struct weights_room;
 
 struct weights {
 	int width, height;     /* of the rendered size: P = width*height pixels, row-major */
@@ -26,10 +26,10 @@ struct weights {
 	struct safetensors file;	  /* keeps the map alive */
 	float *owned;			  /* the converted copy of f16 and u8 weights, else NULL */
 	int is_packed;			  /* in the file: u8, and in few bytes */
-	struct weights_rows *rows;	  /* what packed weights become; NULL: they are not packed */
-	int is_lent;			  /* rows are somebody else's */
+	struct weights_room *room;	  /* of what packed weights become; NULL: they are not packed */
+	int is_lent;			  /* the room is somebody else's */
 	float *owned_dropped;
-	struct view_tiles tiles;	 /* of weights_open_tiles, else zeroed */
+	const struct view_tiles *tiles;	 /* of weights_open_tiles, in the room; else NULL */
 	enum precision precision;	 /* of the weights in the file */
 	const struct weights_pack *pack; /* for weights_write: packed weights, in place of indptr, index and
 					    weight; else NULL */
@@ -42,15 +42,15 @@ struct weights {
 /* Maps and checks DIR/VIEW.safetensors: indptr rises from 0 to nnz, ids in [0,gaussians), weights finite in
  * [0,1]. VIEW is a view of the scene; weights of another scene, or of another camera, are an error. */
 int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e);
-/* The same for one view after the other: what packed weights become is in *rows, zeroed before the first, and
+/* The same for one view after the other: what packed weights become is in *room, zeroed before the first, and
  * lasts until the next. To ask the system for so much memory with each view costs more than to fill it.
- * weights_rows_free (formats/weights_pack.h) at last. */
-int weights_open_in(struct weights *w, struct weights_rows *rows, const char *dir, const struct scene *scene,
+ * weights_room_free (formats/weights_pack.h) at last. */
+int weights_open_in(struct weights *w, struct weights_room *room, const char *dir, const struct scene *scene,
 	size_t view, struct err *e);
-/* weights_open, but that packed weights become tiles, and indptr, index and weight are NULL; w->tiles.begin
- * is NULL where weights are not packed. */
-int weights_open_tiles(
-	struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e);
+/* The same, but that packed weights become tiles, and indptr, index and weight are NULL; w->tiles is NULL
+ * where weights are not packed. */
+int weights_open_tiles(struct weights *w, struct weights_room *room, const char *dir,
+	const struct scene *scene, size_t view, struct err *e);
 /* weights_open by its path and of any scene; "-" is stdin. */
 int weights_open_file(struct weights *w, const char *path, struct err *e);
 /* 1 where DIR/VIEW.safetensors is there, 0 where it is not, -1 with *e. */

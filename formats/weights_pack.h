@@ -49,23 +49,28 @@ int weights_pack_part(
 int weights_pack_join(struct weights_pack *p, struct weights_pack *rows, int count, struct err *e);
 void weights_pack_free(struct weights_pack *p);
 
-/* Rows of pixels that weights were unpacked to, and the room that they have. */
-struct weights_rows {
+/* What a view's weights are unpacked to, and memory for it: zeroed before the first view, and used again with
+ * each that follows. */
+struct weights_room {
+	struct view_tiles tiles;
+	/* rows of pixels */
 	int64_t *indptr; /* (P+1) */
 	int32_t *index;
 	float *weight;
-	size_t indptr_room, index_room, weight_room;
+
+	uint8_t *ids; /* the stream of the tiles' Gaussians */
+	size_t indptr_room, index_room, weight_room, ids_room;
+	size_t begin_room, gaussians_room, maps_room, level_begin_room, levels_room; /* of the tiles */
 };
-void weights_rows_free(struct weights_rows *r);
+void weights_room_free(struct weights_room *r);
 
-/* The other way: in *to, zeroed before the first and used again with each that follows; weights are level /
- * 255, in the order of the Gaussians within a pixel. ERR_FORMAT, after `path`, where the streams are no such
- * weights of a scene of so many Gaussians. */
-int weights_unpack(const struct weights_pack *p, int width, int height, int64_t gaussians, const char *path,
-	struct weights_rows *to, struct err *e);
-
-/* They as tiles; view_tiles_free. ERR_FORMAT as above, and then there is nothing to free. */
+/* The other way: the tiles. ERR_FORMAT, after `path`, where the streams are no such weights of a scene of so
+ * many Gaussians; the room is then as it may be used again or freed. */
 int weights_unpack_tiles(const struct weights_pack *p, int width, int height, int64_t gaussians,
-	const char *path, struct view_tiles *to, struct err *e);
+	const char *path, struct weights_room *to, struct err *e);
+
+/* The tiles and the rows; weights are level / 255, in the order of the Gaussians within a pixel. */
+int weights_unpack(const struct weights_pack *p, int width, int height, int64_t gaussians, const char *path,
+	struct weights_room *to, struct err *e);
 
 #endif

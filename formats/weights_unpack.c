@@ -10,12 +10,11 @@
 
 enum { IDS, MAPS, LEVELS, PIXELS = VIEW_TILE_PIXELS };
 
-/* The streams again, of which the second and the third become the tiles'. */
 struct unpacking {
 	const char *path;
 	int64_t gaussians;
-	struct view_tiles *to;
-	uint8_t *data[WEIGHTS_STREAMS];
+	struct weights_room *room;
+	struct view_tiles *to; /* the room's */
 	size_t bytes[WEIGHTS_STREAMS];
 	size_t at;	/* in the first stream */
 	size_t entries; /* Gaussians of tiles */
@@ -27,19 +26,25 @@ static int broken(const struct unpacking *u, struct err *e)
 		u->path, u->at);
 }
 
+static int make_room(uint8_t **data, size_t *room, size_t bytes, const char *path, struct err *e)
+{
+	return mem_room((void **)data, room, bytes + 1, 1, path, e);
+}
+
 static int decompress_all(struct unpacking *u, const struct weights_pack *p, struct err *e)
 {
+	struct weights_room *r = u->room;
 	int bad[WEIGHTS_STREAMS];
 
-	for (int s = 0; s < WEIGHTS_STREAMS; s++) {
-		u->bytes[s] = p->bytes[s];
-		u->data[s] = mem_alloc(p->bytes[s] + 1, 1, u->path, e);
-		if (!u->data[s])
-			return -1;
-	}
+	memcpy(u->bytes, p->bytes, sizeof u->bytes);
+	if (make_room(&r->ids, &r->ids_room, p->bytes[IDS], u->path, e) ||
+		make_room(&u->to->maps, &r->maps_room, p->bytes[MAPS], u->path, e) ||
+		make_room(&u->to->levels, &r->levels_room, p->bytes[LEVELS], u->path, e))
+		return -1;
+	uint8_t *const data[WEIGHTS_STREAMS] = {r->ids, u->to->maps, u->to->levels};
 #pragma omp parallel for schedule(dynamic)
 	for (int s = WEIGHTS_STREAMS - 1; s >= 0; s--)
-		bad[s] = ZSTD_decompress(u->data[s], p->bytes[s], p->data[s], p->packed[s]) != p->bytes[s];
+		bad[s] = ZSTD_decompress(data[s], p->bytes[s], p->data[s], p->packed[s]) != p->bytes[s];
 	for (int s = 0; s < WEIGHTS_STREAMS; s++)
 		if (bad[s])
 			return broken(u, e);
@@ -52,7 +57,7 @@ static int take_number(struct unpacking *u, uint32_t *x, struct err *e)
 	for (int shift = 0; shift < 35; shift += 7) {
 		if (u->at == u->bytes[IDS])
 			return broken(u, e);
-		const uint8_t byte = u->data[IDS][u->at++];
+		const uint8_t byte = u->room->ids[u->at++];
 		*x |= (uint32_t)(byte & 127) << shift;
 		if (byte < 128)
 			return 0;
@@ -116,13 +121,16 @@ static int take_all(struct unpacking *u, struct err *e)
 {
 	const size_t tiles = (size_t)u->to->across * (size_t)u->to->down;
 
+	struct weights_room *r = u->room;
+
 	u->entries = u->bytes[MAPS] / 8;
-	u->to->maps = u->data[MAPS];
-	u->to->ids = mem_alloc(u->entries, sizeof *u->to->ids, u->path, e);
-	u->to->begin = mem_zalloc(tiles + 1, sizeof *u->to->begin, u->path, e);
-	u->to->level_begin = mem_zalloc((size_t)u->to->down + 1, sizeof *u->to->level_begin, u->path, e);
-	if (!u->to->ids || !u->to->begin || !u->to->level_begin)
+	if (mem_room((void **)&u->to->ids, &r->gaussians_room, u->entries, sizeof *u->to->ids, u->path, e) ||
+		mem_room((void **)&u->to->begin, &r->begin_room, tiles + 1, sizeof *u->to->begin, u->path,
+			e) ||
+		mem_room((void **)&u->to->level_begin, &r->level_begin_room, (size_t)u->to->down + 1,
+			sizeof *u->to->level_begin, u->path, e))
 		return -1;
+	u->to->begin[0] = u->to->level_begin[0] = 0;
 	for (size_t t = 0; t < tiles; t++)
 		if (take_ids(u, t, e))
 			return -1;
@@ -198,18 +206,21 @@ static void put_row(const struct view_tiles *t, const struct view_tiles_lookup *
 	}
 }
 
-void weights_rows_free(struct weights_rows *r)
+void weights_room_free(struct weights_room *r)
 {
+	view_tiles_free(&r->tiles);
 	free(r->indptr);
 	free(r->index);
 	free(r->weight);
-	*r = (struct weights_rows){0};
+	free(r->ids);
+	*r = (struct weights_room){0};
 }
 
 /* Counted in place p + 1, a pixel's weights end where those of the next begin: sums give both, and when they
  * are put, each place moves from its pixel's beginning to its end, where the next begins. */
-static int fill(const struct view_tiles *t, const char *path, struct weights_rows *to, struct err *e)
+static int fill(struct weights_room *to, const char *path, struct err *e)
 {
+	const struct view_tiles *t = &to->tiles;
 	const int64_t pixels = (int64_t)t->width * t->height;
 	const size_t all = t->level_begin[t->down];
 	struct view_tiles_lookup of;
@@ -237,31 +248,19 @@ static int fill(const struct view_tiles *t, const char *path, struct weights_row
 }
 
 int weights_unpack_tiles(const struct weights_pack *p, int width, int height, int64_t gaussians,
-	const char *path, struct view_tiles *to, struct err *e)
+	const char *path, struct weights_room *to, struct err *e)
 {
-	struct unpacking u = {.path = path, .gaussians = gaussians, .to = to};
+	struct unpacking u = {.path = path, .gaussians = gaussians, .room = to, .to = &to->tiles};
 
-	*to = (struct view_tiles){.width = width,
-		.height = height,
-		.across = (width + VIEW_TILE - 1) / VIEW_TILE,
-		.down = (height + VIEW_TILE - 1) / VIEW_TILE};
-	const int bad = decompress_all(&u, p, e) || take_all(&u, e);
-	free(u.data[IDS]);
-	to->maps = u.data[MAPS];
-	to->levels = u.data[LEVELS];
-	if (bad)
-		view_tiles_free(to);
-	return bad ? -1 : 0;
+	to->tiles.width = width;
+	to->tiles.height = height;
+	to->tiles.across = (width + VIEW_TILE - 1) / VIEW_TILE;
+	to->tiles.down = (height + VIEW_TILE - 1) / VIEW_TILE;
+	return decompress_all(&u, p, e) || take_all(&u, e) ? -1 : 0;
 }
 
 int weights_unpack(const struct weights_pack *p, int width, int height, int64_t gaussians, const char *path,
-	struct weights_rows *to, struct err *e)
+	struct weights_room *to, struct err *e)
 {
-	struct view_tiles tiles;
-
-	if (weights_unpack_tiles(p, width, height, gaussians, path, &tiles, e))
-		return -1;
-	const int bad = fill(&tiles, path, to, e);
-	view_tiles_free(&tiles);
-	return bad;
+	return weights_unpack_tiles(p, width, height, gaussians, path, to, e) || fill(to, path, e) ? -1 : 0;
 }

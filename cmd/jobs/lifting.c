@@ -174,7 +174,7 @@ struct lift_round {
 	int round;
 	struct lift_mask *masks;      /* (workers, set.n) */
 	struct lift_scratch *scratch; /* (workers) */
-	struct weights_rows *rows;    /* (workers) */
+	struct weights_room *rooms;   /* (workers) */
 };
 
 static int lift_view(void *context, int worker, size_t view, struct err *e)
@@ -189,12 +189,12 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 	if (!n)
 		return 0;
 	/* the first round needs rows of pixels */
-	if (r->round ? weights_open_tiles(&weights, l->files->weights, &l->scene, view, e)
-		     : weights_open_in(&weights, &r->rows[worker], l->files->weights, &l->scene, view, e))
+	if (r->round ? weights_open_tiles(&weights, &r->rooms[worker], l->files->weights, &l->scene, view, e)
+		     : weights_open_in(&weights, &r->rooms[worker], l->files->weights, &l->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
-	const int bad = weights.tiles.begin
-				? lift_objects_again(&l->lift, scratch, view, &weights.tiles, masks, n, e)
+	const int bad = weights.tiles
+				? lift_objects_again(&l->lift, scratch, view, weights.tiles, masks, n, e)
 				: lift_objects_view(&l->lift, scratch, view, &blend, weights.height,
 					  weights.width, masks, n, e);
 	weights_close(&weights);
@@ -218,17 +218,17 @@ static int lift(struct lifting *l, const struct report *to, struct err *e)
 
 	r.masks = mem_alloc((size_t)by.workers, l->set.n * sizeof *r.masks, "masks", e);
 	r.scratch = mem_zalloc((size_t)by.workers, sizeof *r.scratch, "masks", e);
-	r.rows = mem_zalloc((size_t)by.workers, sizeof *r.rows, "views", e);
-	int bad = !r.masks || !r.scratch || !r.rows ||
+	r.rooms = mem_zalloc((size_t)by.workers, sizeof *r.rooms, "views", e);
+	int bad = !r.masks || !r.scratch || !r.rooms ||
 		  lift_objects_init(&l->lift, l->scene.splats.n, l->objects + l->spare, n, e);
 	for (; r.round < LIFT_ROUNDS && !bad; r.round++)
 		bad = each_run(&by, n, e) || lift_objects_settle(&l->lift, e);
-	for (int i = 0; i < by.workers && r.scratch && r.rows; i++) {
+	for (int i = 0; i < by.workers && r.scratch && r.rooms; i++) {
 		lift_scratch_free(&r.scratch[i]);
-		weights_rows_free(&r.rows[i]);
+		weights_room_free(&r.rooms[i]);
 	}
 	free(r.scratch);
-	free(r.rows);
+	free(r.rooms);
 	free(r.masks);
 	return bad || lift_objects_finish(&l->lift, &l->model, e) ? -1 : 0;
 }

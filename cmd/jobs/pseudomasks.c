@@ -60,9 +60,9 @@ static int lift_carried(struct pseudomasks *w, struct err *e)
 /* What the workers share, and the masks of the views that wait for their turn to be written. */
 struct by_views {
 	struct pseudomasks *w;
-	char *is_there;		   /* (views) whether there are weights */
-	struct shown *shown;	   /* (views) */
-	struct weights_rows *rows; /* (workers) */
+	char *is_there;		    /* (views) whether there are weights */
+	struct shown *shown;	    /* (views) */
+	struct weights_room *rooms; /* (workers) */
 };
 
 /* All masks of a view: (count) of put_views. */
@@ -80,7 +80,7 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 
 	if (!b->is_there[view])
 		return 0;
-	if (weights_open_in(&weights, &b->rows[worker], w->options->weights, &w->scene, view, e))
+	if (weights_open_in(&weights, &b->rooms[worker], w->options->weights, &w->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
 	const int bad = regions_lift(&b->w->regions, view, &blend, weights.height, weights.width, e);
@@ -145,7 +145,7 @@ static int show_view(void *context, int worker, size_t view, struct err *e)
 	to->masks = mem_zalloc(shown_count(w), sizeof *to->masks, "masks", e);
 	to->scores = mem_alloc(shown_count(w), sizeof *to->scores, "masks", e);
 	const int bad = !to->masks || !to->scores ||
-			(needs && weights_open_in(&weights, &b->rows[worker], w->options->weights, &w->scene,
+			(needs && weights_open_in(&weights, &b->rooms[worker], w->options->weights, &w->scene,
 					  view, e)) ||
 			render(w, view, needs ? &weights : NULL, to, e);
 	weights_close(&weights);
@@ -244,15 +244,15 @@ static int put_views(struct pseudomasks *w, const struct report *to, struct err 
 	const size_t views = w->scene.cameras.n;
 	b.is_there = mem_alloc(views, 1, "views", e);
 	b.shown = mem_zalloc(views, sizeof *b.shown, "views", e);
-	b.rows = mem_zalloc(EACH_WORKERS, sizeof *b.rows, "views", e);
-	const int bad = !b.is_there || !b.shown || !b.rows ||
+	b.rooms = mem_zalloc(EACH_WORKERS, sizeof *b.rooms, "views", e);
+	const int bad = !b.is_there || !b.shown || !b.rooms ||
 			weights_mark(w->options->weights, &w->scene.cameras, b.is_there, &w->left_out, e) ||
 			put_all(&b, to, e);
 	for (size_t v = 0; v < views && b.shown; v++)
 		shown_free(&b.shown[v], shown_count(w));
-	for (int i = 0; i < EACH_WORKERS && b.rows; i++)
-		weights_rows_free(&b.rows[i]);
-	free(b.rows);
+	for (int i = 0; i < EACH_WORKERS && b.rooms; i++)
+		weights_room_free(&b.rooms[i]);
+	free(b.rooms);
 	free(b.is_there);
 	free(b.shown);
 	return bad ? -1 : 0;

@@ -58,8 +58,7 @@ static void test_threads(void)
 
 /* A problem's weights as those of a packed file: rows of pixels, and tiles. */
 struct packed_view {
-	struct weights_rows rows;
-	struct view_tiles tiles;
+	struct weights_room room;
 };
 
 static int pack_view(const struct view_weights *w, struct packed_view *to)
@@ -68,8 +67,7 @@ static int pack_view(const struct view_weights *w, struct packed_view *to)
 	struct err e;
 
 	const int bad = pack_whole(&pack, W, H, N, w->indptr, w->index, w->weight, &e) ||
-			weights_unpack(&pack, W, H, N, "w", &to->rows, &e) ||
-			weights_unpack_tiles(&pack, W, H, N, "w", &to->tiles, &e);
+			weights_unpack(&pack, W, H, N, "w", &to->room, &e);
 	weights_pack_free(&pack);
 	return bad;
 }
@@ -86,9 +84,9 @@ static int lift_packed(const struct lift_problem *q, const struct packed_view *v
 	for (int round = 0; round < LIFT_ROUNDS && !bad; round++) {
 		for (size_t v = 0; v < VIEWS && !bad; v++) {
 			const struct view_weights rows = {
-				P, N, views[v].rows.indptr, views[v].rows.index, views[v].rows.weight};
-			bad = round && with_tiles ? lift_objects_again(l, &s, v, &views[v].tiles, q->masks[v],
-							    q->count[v], &e)
+				P, N, views[v].room.indptr, views[v].room.index, views[v].room.weight};
+			bad = round && with_tiles ? lift_objects_again(l, &s, v, &views[v].room.tiles,
+							    q->masks[v], q->count[v], &e)
 						  : lift_objects_view(l, &s, v, &rows, H, W, q->masks[v],
 							    q->count[v], &e);
 		}
@@ -123,8 +121,7 @@ static void test_tiles(uint64_t seed)
 		lift_objects_free(&l[k]);
 	}
 	for (int v = 0; v < VIEWS; v++) {
-		weights_rows_free(&views[v].rows);
-		view_tiles_free(&views[v].tiles);
+		weights_room_free(&views[v].room);
 	}
 	free(views);
 	lift_problem_free(q);

@@ -60,8 +60,8 @@ static long count_wrong(
 	return wrong;
 }
 
-/* rows: used again, whatever was in them. */
-static void check_round_trip(struct rng *rng, int width, int height, int gaussians, struct weights_rows *rows)
+/* room: used again, whatever was in them. */
+static void check_round_trip(struct rng *rng, int width, int height, int gaussians, struct weights_room *room)
 {
 	struct matrix m = random_matrix(rng, width, height, gaussians);
 	struct weights_pack pack;
@@ -69,8 +69,8 @@ static void check_round_trip(struct rng *rng, int width, int height, int gaussia
 
 	CHECK(!pack_whole(&pack, width, height, (size_t)gaussians, m.indptr, m.index, m.weight, &e), "%s",
 		e.message);
-	if (CHECK(!weights_unpack(&pack, width, height, gaussians, "w", rows, &e), "%s", e.message)) {
-		const long wrong = count_wrong(&m, rows->indptr, rows->index, rows->weight);
+	if (CHECK(!weights_unpack(&pack, width, height, gaussians, "w", room, &e), "%s", e.message)) {
+		const long wrong = count_wrong(&m, room->indptr, room->index, room->weight);
 		CHECK(wrong == 0, "%dx%d of %d: %ld differ", width, height, gaussians, wrong);
 	}
 	weights_pack_free(&pack);
@@ -79,43 +79,43 @@ static void check_round_trip(struct rng *rng, int width, int height, int gaussia
 
 static void weights_come_back(void)
 {
-	struct weights_rows rows = {0};
+	struct weights_room room = {0};
 	struct rng rng;
 
 	rng_seed(&rng, 3, 1);
 	for (int i = 0; i < 20; i++)
 		check_round_trip(&rng, 1 + i, 1 + (int)(rng_uniform(&rng) * 30),
-			1 + (int)(rng_uniform(&rng) * GAUSSIANS), &rows);
-	check_round_trip(&rng, 123, 45, GAUSSIANS, &rows);
-	check_round_trip(&rng, 8, 8, 1, &rows);
-	weights_rows_free(&rows);
+			1 + (int)(rng_uniform(&rng) * GAUSSIANS), &room);
+	check_round_trip(&rng, 123, 45, GAUSSIANS, &room);
+	check_round_trip(&rng, 8, 8, 1, &room);
+	weights_room_free(&room);
 }
 
 static void nothing_is_packed(void)
 {
 	const int64_t none[13] = {0};
-	struct weights_rows rows = {0};
+	struct weights_room room = {0};
 	struct weights_pack pack;
 	struct err e;
 
 	CHECK(!pack_whole(&pack, 4, 3, 0, none, NULL, NULL, &e), "%s", e.message);
-	CHECK(!weights_unpack(&pack, 4, 3, 0, "w", &rows, &e), "%s", e.message);
-	CHECK(rows.indptr && rows.indptr[12] == 0, "no weights");
-	weights_rows_free(&rows);
+	CHECK(!weights_unpack(&pack, 4, 3, 0, "w", &room, &e), "%s", e.message);
+	CHECK(room.indptr && room.indptr[12] == 0, "no weights");
+	weights_room_free(&room);
 	weights_pack_free(&pack);
 }
 
 static int unpacks(const struct weights_pack *pack, int width, int height, int gaussians)
 {
-	struct weights_rows rows = {0};
+	struct weights_room room = {0};
 	struct err e = {0};
-	const int bad = weights_unpack(pack, width, height, gaussians, "w", &rows, &e);
+	const int bad = weights_unpack(pack, width, height, gaussians, "w", &room, &e);
 
 	if (bad)
 		CHECK(e.code == ERR_FORMAT &&
 				!strncmp(e.message, "w: packed weights are broken, after byte ", 41),
 			"%s", e.message);
-	weights_rows_free(&rows);
+	weights_room_free(&room);
 	return !bad;
 }
 
