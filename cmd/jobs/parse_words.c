@@ -65,6 +65,11 @@ void parse_words_tree(struct parse_words *w, const struct parse *p, const char *
 				parse_words_add(w, "]");
 			}
 	}
+	if (!phrase && p->view != PARSE_VIEW_NONE && p->view_phrase > 0) {
+		parse_words_add(w, p->view == PARSE_VIEW_FACING ? ", facing (" : ", seen from (");
+		parse_words_phrase(w, p, text, p->view_phrase);
+		parse_words_add(w, ")");
+	}
 	for (int k = 0; k < f->except.n && depth < 4; k++) {
 		parse_words_add(w, ", but not ");
 		parse_words_tree(w, p, text, f->except.item[k], depth + 1);

@@ -12,6 +12,7 @@
 enum { POINTS = 2048 }; /* of an object, at most about so many */
 static const double trimmed = 0.1, longer = 0.1, most_weight = 4;
 static const double alike_colour = 8, alike_size = 0.15;
+static const double no_direction = 0.1;		   /* of the spacing */
 static const double degree0 = 0.28209479177387814; /* the spherical harmonic of degree 0 */
 
 void arrangement_free(struct arrangement *a)
@@ -75,15 +76,29 @@ static void find_middle(const struct arrangement *a, double middle[3])
 			middle[k] += a->points[i].at[k] / (double)n;
 }
 
-/* Axes and centre of the viewpoint. */
-static void look(const struct cameras *c, const struct viewpoint *from, const double middle[3],
-	double axes[3][3], double eye[3])
+int arrangement_where(const struct arrangement *a, size_t object, double at[3])
 {
-	double away[3] = {0}, count = 0, up[3];
+	double weight = 0;
+
+	memset(at, 0, 3 * sizeof *at);
+	for (size_t i = a->begin[object]; i < a->begin[object + 1]; i++) {
+		weight += a->points[i].weight;
+		for (int k = 0; k < 3; k++)
+			at[k] += a->points[i].weight * a->points[i].at[k];
+	}
+	for (int k = 0; k < 3 && weight > 0; k++)
+		at[k] /= weight;
+	return weight > 0;
+}
+
+/* The mean of the cameras that the scene is usually looked at from. */
+static void look_usual(const struct cameras *c, double eye[3], double away[3])
+{
+	double count = 0;
 
 	memset(eye, 0, 3 * sizeof *eye);
-	cameras_up(c, up);
-	for (size_t i = 0; i < c->n && from->kind == VIEWPOINT_USUAL; i++) {
+	memset(away, 0, 3 * sizeof *away);
+	for (size_t i = 0; i < c->n; i++) {
 		double centre[3];
 		if (!is_looked_from(c, i))
 			continue;
@@ -96,14 +111,39 @@ static void look(const struct cameras *c, const struct viewpoint *from, const do
 	}
 	for (int k = 0; k < 3; k++)
 		eye[k] /= count > 0 ? count : 1;
+}
+
+/* Turns to a point, unless it is right above or below, nearer than `least`: that is no direction. */
+static void turn_to(
+	const double point[3], const double eye[3], const double up[3], double least, double away[3])
+{
+	double to[3];
+
+	for (int k = 0; k < 3; k++)
+		to[k] = point[k] - eye[k];
+	const double rise = dot(to, up);
+	if (dot(to, to) - rise * rise > least * least)
+		memcpy(away, to, sizeof to);
+}
+
+/* Axes and centre of the viewpoint. */
+static void look(const struct arrangement *a, const struct viewpoint *from, double axes[3][3], double eye[3])
+{
+	const double least = no_direction * a->spacing;
+	double away[3], up[3], middle[3];
+
+	cameras_up(a->cameras, up);
+	look_usual(a->cameras, eye, away);
 	if (from->kind == VIEWPOINT_CAMERA) {
 		camera_centre(from->camera, eye);
 		memcpy(away, from->camera->world_to_camera[2], sizeof away);
 	} else if (from->kind == VIEWPOINT_POINT) {
 		memcpy(eye, from->point, 3 * sizeof *eye);
-		for (int k = 0; k < 3; k++)
-			away[k] = middle[k] - eye[k];
+		find_middle(a, middle);
+		turn_to(middle, eye, up, least, away);
 	}
+	if (from->is_facing)
+		turn_to(from->faced, eye, up, least, away);
 	level_axes(up, away, axes);
 }
 
@@ -224,9 +264,9 @@ static void take_box(struct arrangement *a, size_t o, double axes[3][3])
 	to->in_sight = to->is_there;
 }
 
-/* Where objects are in a picture: whether their middle is in it, and how far right it is there, as a length
- * at the objects' mean distance. */
-static void see(struct arrangement *a, const struct camera *c, double axes[3][3])
+/* Where objects are in a picture: whether their middle is in it, and, unless whoever speaks has turned to
+ * something, how far right it is there, as a length at the objects' mean distance. */
+static void see(struct arrangement *a, const struct camera *c, double axes[3][3], int is_facing)
 {
 	double mean = 0, count = 0, depth;
 
@@ -248,7 +288,8 @@ static void see(struct arrangement *a, const struct camera *c, double axes[3][3]
 			}
 			const double x = c->fx * at[0] / depth + c->cx, y = c->fy * at[1] / depth + c->cy;
 			p->in_sight = at[2] > 0 && x >= 0 && x <= c->width && y >= 0 && y <= c->height;
-			p->side = at[0] / depth * fmax(mean / count, 1e-6);
+			if (!is_facing)
+				p->side = at[0] / depth * fmax(mean / count, 1e-6);
 		}
 }
 
@@ -291,17 +332,16 @@ static void find_spacing(struct arrangement *a)
 
 void arrangement_look(struct arrangement *a, const struct viewpoint *from)
 {
-	double axes[3][3], eye[3], middle[3];
+	double axes[3][3], eye[3];
 
-	find_middle(a, middle);
-	look(a->cameras, from, middle, axes, eye);
+	look(a, from, axes, eye);
 	a->viewer.is_there = 1;
 	for (int k = 0; k < 3; k++)
 		a->viewer.centre[k] = dot(axes[k], eye);
 	for (size_t o = 0; o < a->n; o++)
 		take_box(a, o, axes);
 	if (from->kind == VIEWPOINT_CAMERA)
-		see(a, from->camera, axes);
+		see(a, from->camera, axes, from->is_facing);
 	centre_all(a);
 	find_spacing(a);
 }

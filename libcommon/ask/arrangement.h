@@ -52,6 +52,9 @@ int arrangement_make(struct arrangement *a, const struct lifted *l, const struct
 /* The same seen from elsewhere. VIEWPOINT_USUAL is the mean of the training cameras' centres (of all, where
  * none is for training), looking level along the mean of their directions. */
 void arrangement_look(struct arrangement *a, const struct viewpoint *from);
+
+/* Where an object is in the scene, whatever it is seen from: the mean of its points. 0: it has none. */
+int arrangement_where(const struct arrangement *a, size_t object, double at[3]);
 void arrangement_free(struct arrangement *a);
 
 /* Whether two objects are the same to look at, but for where they are: 0 where they are, and less the more

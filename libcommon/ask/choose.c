@@ -60,16 +60,9 @@ static void softmax(double *x, size_t n)
 		x[i] /= sum;
 }
 
-static int is_same_view(const struct viewpoint *a, const struct viewpoint *b)
-{
-	return a->kind == b->kind && (a->kind != VIEWPOINT_CAMERA || a->camera == b->camera) &&
-	       (a->kind != VIEWPOINT_POINT || (a->point[0] == b->point[0] && a->point[1] == b->point[1] &&
-						      a->point[2] == b->point[2]));
-}
-
 static void look_from(struct chooser *c, const struct viewpoint *from)
 {
-	if (!is_same_view(&c->from, from))
+	if (!viewpoint_is_same(&c->from, from))
 		arrangement_look(&c->arrangement, from);
 	c->from = *from;
 }
@@ -255,6 +248,39 @@ static void choose_purpose(struct chooser *c, int several, struct choice *to, do
 	to->is_several = several;
 }
 
+/* Where a sentence says that it is said, if that is told by things that are here: "when facing the window",
+ * "from the door". Several that fit alike tell nothing, but where several are meant. */
+static int says_from(const struct chooser *c, const struct parse *p, struct viewpoint *to)
+{
+	const struct meaning *m = &c->meaning;
+	const size_t n = c->arrangement.n;
+	const int phrase = p->view == PARSE_VIEW_NONE ? -1 : p->view_phrase;
+
+	if (phrase < 1 || p->phrases[phrase].viewer || p->phrases[phrase].scene || m->known[phrase] < 0.5)
+		return 0;
+	const double *fit = m->fit + (size_t)phrase * (n + 1);
+	const size_t best = best_of(fit, n);
+	double at[3] = {0}, count = 0;
+	for (size_t o = 0; o < n; o++) {
+		double centre[3];
+		if (fit[o] < VIEW_ALIKE * fit[best] || !arrangement_where(&c->arrangement, o, centre))
+			continue;
+		for (int k = 0; k < 3; k++)
+			at[k] += centre[k];
+		count++;
+	}
+	if (m->there[(size_t)phrase * n + best] < VIEW_THERE || !count ||
+		(count > 1 && p->phrases[phrase].count == PARSE_ONE))
+		return 0;
+	for (int k = 0; k < 3; k++)
+		at[k] /= count;
+	to->is_facing = p->view == PARSE_VIEW_FACING;
+	if (!to->is_facing)
+		to->kind = VIEWPOINT_POINT;
+	memcpy(to->is_facing ? to->faced : to->point, at, sizeof at);
+	return 1;
+}
+
 /* s gets the sentence with its parse, which is `own` where the sentence has none. */
 static int choose_parsed(struct chooser *c, const struct choose_sentence *from, struct vocabulary_sentence *s,
 	struct choice *to, double *row, char *chosen, struct parse *own, struct err *e)
@@ -268,6 +294,12 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 	*s = (struct vocabulary_sentence){p, from->vectors, from->words};
 	if (meaning_judge(&c->meaning, s, e))
 		return -1;
+	struct viewpoint said = from->from;
+	if (says_from(c, p, &said)) {
+		look_from(c, &said);
+		if (meaning_judge(&c->meaning, s, e))
+			return -1;
+	}
 	memset(row, 0, l->objects * sizeof *row);
 	to->is_several = p->phrases[0].count != PARSE_ONE || p->phrases[0].also.n;
 	to->there = choose_phrase(c, p, 0, row, chosen);

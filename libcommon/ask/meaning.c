@@ -535,5 +535,10 @@ int meaning_judge(struct meaning *m, const struct vocabulary_sentence *s, struct
 	judge_phrase(m, 0, 0);
 	for (int k = 0; k < p->phrases[0].also.n; k++)
 		judge_phrase(m, p->phrases[0].also.item[k], 0);
+	/* what is faced, or where the speaker stands, says nothing of what is meant */
+	const size_t unknown = m->unknown;
+	if (p->view != PARSE_VIEW_NONE && p->view_phrase > 0)
+		judge_phrase(m, p->view_phrase, 0);
+	m->unknown = unknown;
 	return 0;
 }

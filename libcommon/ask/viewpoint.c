@@ -4,6 +4,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+static int is_same_point(const double a[3], const double b[3])
+{
+	return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+int viewpoint_is_same(const struct viewpoint *a, const struct viewpoint *b)
+{
+	return a->kind == b->kind && (a->kind != VIEWPOINT_CAMERA || a->camera == b->camera) &&
+	       (a->kind != VIEWPOINT_POINT || is_same_point(a->point, b->point)) &&
+	       a->is_facing == b->is_facing && (!a->is_facing || is_same_point(a->faced, b->faced));
+}
+
 int viewpoint_read(
 	struct viewpoint *v, const char *text, const struct cameras *cameras, const double offset[3])
 {

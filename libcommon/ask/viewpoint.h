@@ -8,7 +8,11 @@ struct viewpoint {
 	enum { VIEWPOINT_USUAL, VIEWPOINT_CAMERA, VIEWPOINT_POINT } kind;
 	const struct camera *camera; /* of VIEWPOINT_CAMERA: as seen in its picture */
 	double point[3]; /* of VIEWPOINT_POINT, in the scene: looking level at the middle of the objects */
+	int is_facing;	 /* from there, but looking level at `faced`: "when facing the window" */
+	double faced[3];
 };
+
+int viewpoint_is_same(const struct viewpoint *a, const struct viewpoint *b);
 
 /* The name of a view, or "x,y,z" in the world that the scene was imported from, whose origin is at -offset.
  * 0, or -1 where it is neither. */
