@@ -49,7 +49,7 @@ struct choose_sentence {
 	const float *vectors; /* (words, the model's width) */
 	const float *middle;  /* the same of the encoder's middle layer; NULL: not known */
 	size_t words;
-	struct viewpoint from; /* unless it says itself from where: "when facing the kettle" */
+	struct viewpoint from;	   /* unless it says itself from where: "when facing the kettle" */
 	const struct parse *parse; /* NULL: not known, the text is parsed */
 };
 
