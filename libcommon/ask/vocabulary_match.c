@@ -134,6 +134,13 @@ static void add_usual(struct vocabulary *v, const char *lemma, double *match)
 	}
 }
 
+/* Words that say where a thing is are of other things. */
+static int says_place(const struct vocabulary_item *item)
+{
+	return item->role > VOCABULARY_ATTRIBUTE && item->relation != PARSE_WITH &&
+	       item->relation != PARSE_OTHER;
+}
+
 void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
 {
 	const struct lifted *l = v->lifted;
@@ -150,7 +157,7 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
 		double *to = &match[item->object], x;
-		if (item->sentence == v->without)
+		if (item->sentence == v->without || says_place(item))
 			continue;
 		x = item->role == VOCABULARY_ATTRIBUTE
 			    ? wordnet_adjectives_fit(&adjective, &v->kinds[item->kind].adjective)
@@ -164,12 +171,6 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 			*to = x;
 	}
 	add_usual(v, word->lemma, match);
-}
-
-static int says_place(const struct vocabulary_item *item)
-{
-	return item->role > VOCABULARY_ATTRIBUTE && item->relation != PARSE_WITH &&
-	       item->relation != PARSE_OTHER;
 }
 
 void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
