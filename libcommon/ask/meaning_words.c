@@ -331,6 +331,19 @@ static void judge_about(struct meaning *m, double *value)
 		value[o] /= most;
 }
 
+/* How far objects have what an anchor of "with a lid" or "with a lid on it" names. 0 where the clause or the
+ * anchor is none such, or no object is said or known to have it. */
+static int judge_part(struct meaning *m, const struct parse_clause *c, int anchor, double *match)
+{
+	const struct parse *p = m->sentence->parse;
+
+	if (anchor < 0 || (c->relation != PARSE_WITH && c->relation != PARSE_SUPPORTS))
+		return 0;
+	vocabulary_has(
+		m->vocabulary, m->sentence, meaning_head_of(p, &p->phrases[c->anchors.item[anchor]]), match);
+	return largest(match, objects_of(m)) >= 0.5;
+}
+
 /* What a thing does, is for, or has: any word of it may be said of an object. */
 void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, double *value)
 {
@@ -348,7 +361,8 @@ void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, do
 		if (word < 0)
 			continue;
 		memset(use, 0, n * sizeof *use);
-		if (!vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match)) {
+		if (!judge_part(m, c, k - c->words.n, match) &&
+			!vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match)) {
 			vocabulary_attribute(m->vocabulary, m->sentence, word, match);
 			vocabulary_use(m->vocabulary, m->sentence, word, use);
 		}

@@ -3,13 +3,9 @@
 #include "base/file.h"
 
 #include <stdint.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 
-/* A stream of memory has a buffer too, which is filled anew after each seek: of about a line of WordNet's. */
-enum { BUFFER = 512 };
-
-void mapped_stream_take(FILE **stream)
+void mapped_stream_take(FILE **stream, char buffer[MAPPED_STREAM_BUFFER])
 {
 	struct file_map map;
 	struct stat st;
@@ -23,7 +19,7 @@ void mapped_stream_take(FILE **stream)
 		file_unmap(&map);
 		return;
 	}
-	setvbuf(mapped, malloc(BUFFER), _IOFBF, BUFFER); /* its own buffer where there is no memory */
+	setvbuf(mapped, buffer, _IOFBF, MAPPED_STREAM_BUFFER);
 	fclose(*stream);
 	*stream = mapped;
 }

@@ -17,9 +17,11 @@ enum { DEEPEST = 10, ADJECTIVE_SENSES = 4 };
 /* A question about a scene looks up thousands of words, each by some twenty seeks. */
 static void map_files(void)
 {
+	static char buffers[NUMPARTS + 1][2][MAPPED_STREAM_BUFFER];
+
 	for (int pos = 1; pos <= NUMPARTS; pos++) {
-		mapped_stream_take(&indexfps[pos]);
-		mapped_stream_take(&datafps[pos]);
+		mapped_stream_take(&indexfps[pos], buffers[pos][0]);
+		mapped_stream_take(&datafps[pos], buffers[pos][1]);
 	}
 }
 

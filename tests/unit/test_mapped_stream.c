@@ -6,6 +6,8 @@
 
 enum { BYTES = 10000 };
 
+static char buffer[MAPPED_STREAM_BUFFER];
+
 /* A file of BYTES bytes, every 37th the end of a line, and some of them 0. */
 static FILE *make_file(int bytes)
 {
@@ -22,7 +24,7 @@ static void reads_as_a_file_does(void)
 {
 	FILE *plain = make_file(BYTES), *mapped = make_file(BYTES), *const before = mapped;
 
-	mapped_stream_take(&mapped);
+	mapped_stream_take(&mapped, buffer);
 	CHECK(mapped != before, "is another stream");
 	CHECK(!fseek(mapped, 0, SEEK_END) && ftell(mapped) == BYTES, "ends at %ld", ftell(mapped));
 	CHECK(getc(mapped) == EOF, "nothing after the end");
@@ -44,9 +46,9 @@ static void stays_where_it_cannot_be_mapped(void)
 	FILE *none = NULL, *empty = make_file(0), *const was_empty = empty;
 	int ends[2];
 
-	mapped_stream_take(&none);
+	mapped_stream_take(&none, buffer);
 	CHECK(!none, "no stream");
-	mapped_stream_take(&empty);
+	mapped_stream_take(&empty, buffer);
 	CHECK(empty == was_empty && getc(empty) == EOF, "an empty file");
 	fclose(empty);
 	if (!CHECK(!pipe(ends), "a pipe"))
@@ -54,7 +56,7 @@ static void stays_where_it_cannot_be_mapped(void)
 	FILE *in = fdopen(ends[0], "r"), *const was_in = in;
 	CHECK(write(ends[1], "x", 1) == 1, "written");
 	close(ends[1]);
-	mapped_stream_take(&in);
+	mapped_stream_take(&in, buffer);
 	CHECK(in == was_in && getc(in) == 'x', "a pipe is read as before");
 	fclose(in);
 }
