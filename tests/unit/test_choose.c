@@ -448,6 +448,13 @@ static void words_of_others(void)
 	}
 }
 
+/* A mug that is left of the crate has no crate. */
+static void places_are_no_parts(void)
+{
+	ask("the thing with a crate", WORDS | RELATIONS);
+	CHECK(probability[0] < 0.5, "the mug has a crate: %g", (double)probability[0]);
+}
+
 int main(void)
 {
 	make_scene();
@@ -468,5 +475,6 @@ int main(void)
 	general_nouns();
 	colours_of_parts();
 	words_of_others();
+	places_are_no_parts();
 	return unit_end();
 }
