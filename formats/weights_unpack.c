@@ -120,7 +120,6 @@ static int take_maps(struct unpacking *u, int row, struct err *e)
 static int take_all(struct unpacking *u, struct err *e)
 {
 	const size_t tiles = (size_t)u->to->across * (size_t)u->to->down;
-
 	struct weights_room *r = u->room;
 
 	u->entries = u->bytes[MAPS] / 8;
