@@ -1,5 +1,6 @@
 #include "ask/arrangement.h"
 
+#include "ask/resting.h"
 #include "base/mem.h"
 #include "geom/up.h"
 #include "lang/colours.h"
@@ -344,6 +345,7 @@ void arrangement_look(struct arrangement *a, const struct viewpoint *from)
 		see(a, from->camera, axes, from->is_facing);
 	centre_all(a);
 	find_spacing(a);
+	resting_find(a);
 }
 
 int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,

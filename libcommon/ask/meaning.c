@@ -3,6 +3,7 @@
 #include "ask/constants.h"
 #include "ask/meaning_private.h"
 #include "ask/relate.h"
+#include "ask/resting.h"
 #include "base/mem.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
@@ -223,11 +224,22 @@ static int is_of_colour(const struct meaning *m, const struct parse_clause *c)
 	       colour_word(p->words[noun->item[noun->n - 1]].lemma) >= 0;
 }
 
+/* out (O): how true a clause is whose anchor is no object here. */
+static void relate_unnamed(const struct meaning *m, const struct parse_clause *c, double *out)
+{
+	const struct parse *p = m->sentence->parse;
+	const int head = c->anchors.n ? meaning_head_of(p, &p->phrases[c->anchors.item[0]]) : -1;
+	const int is_held = head >= 0 && resting_holds(p->words[head].lemma);
+
+	resting_relate(m->arrangement, is_held ? c->relation : PARSE_OTHER, out);
+}
+
 /* value (O): how far a clause holds, before what is negated is turned round. said (O) is scratch. */
 static void judge_predication(struct meaning *m, int phrase, const struct parse_clause *c, const double *fit,
 	double *said, double *value)
 {
 	const size_t n = objects_of(m);
+	double *unnamed = m->scratch;
 
 	if (c->relation == PARSE_OTHER || is_of_colour(m, c)) {
 		meaning_judge_predicate(m, c, value);
@@ -242,10 +254,11 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 			value[o] = fmax(said[o], known * value[o]);
 		return;
 	}
+	relate_unnamed(m, c, unnamed);
 	meaning_judge_said(m, c, said);
 	for (size_t o = 0; o < n; o++)
-		value[o] = fmax(known * value[o] + (1 - known) * UNKNOWN_RELATION,
-			(1 - known) * SAID_WORTH * said[o]);
+		value[o] = fmax(
+			known * value[o] + (1 - known) * unnamed[o], (1 - known) * SAID_WORTH * said[o]);
 }
 
 /* "no other bowl", or no bowl of a bowl: another one than the thing itself. */

@@ -74,7 +74,8 @@ static void mark_words(const struct meaning *m, char *counts)
 			(char)(purpose_is_content(p, w) && !is_of_place(m, w) && !is_before_generic(p, w));
 }
 
-/* words (O): what the words that count give, summed; the less the more things here a word is of. */
+/* words (O): what the words that count give, summed; the less the more things here a word is of. Squares, as
+ * half a match is mostly by a rare sense of the word. */
 static void add_words(const struct meaning *m, const char *counts, double *words, double *match)
 {
 	const size_t n = objects_of(m);
@@ -86,9 +87,9 @@ static void add_words(const struct meaning *m, const char *counts, double *words
 		vocabulary_use(m->vocabulary, m->sentence, w, match);
 		double all = 0;
 		for (size_t o = 0; o < n; o++)
-			all += match[o];
+			all += match[o] * match[o];
 		for (size_t o = 0; o < n; o++)
-			words[o] += match[o] / sqrt(fmax(1, all));
+			words[o] += match[o] * match[o] / sqrt(fmax(1, all));
 	}
 }
 

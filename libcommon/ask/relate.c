@@ -321,7 +321,7 @@ static void by_itself(
 	}
 	if (r->kind == PARSE_ON && r->count) { /* on the table itself, rather than on a thing that is on it */
 		for (size_t o = 0; o < a->n; o++) {
-			out[o] = 1;
+			out[o] = 1 - ON_THE_REST * a->objects[o].raised;
 			for (size_t i = 0; i < a->n; i++)
 				if (i != o && a->objects[i].is_there)
 					out[o] = fmin(

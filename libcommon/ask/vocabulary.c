@@ -150,7 +150,7 @@ static int add_item(struct vocabulary *v, size_t r, int word, enum vocabulary_ro
 			"vocabulary", e))
 		return -1;
 	struct vocabulary_item *item = &v->items[v->n];
-	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0, 0, 0};
+	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0, 0, 0, 0};
 	if (add_kind(v, w->lemma, &item->kind, e))
 		return -1;
 	vocabulary_word_vector(v, w, vectors_of(l, r), v->vectors + width * v->n++);
@@ -269,6 +269,22 @@ static void mark_general(struct vocabulary *v)
 	}
 }
 
+static void count_calls(struct vocabulary *v)
+{
+	const struct lifted *l = v->lifted;
+
+	for (size_t i = 0; i < v->n; i++) {
+		struct vocabulary_item *a = &v->items[i];
+		float called = 0, all = 0;
+		for (size_t k = 0; k < v->n && a->role == VOCABULARY_NOUN; k++)
+			called += v->items[k].role == VOCABULARY_NOUN && v->items[k].object == a->object &&
+				  v->items[k].kind == a->kind;
+		for (size_t r = 0; r < l->sentences; r++)
+			all += (size_t)l->object[r] == a->object;
+		a->often = fminf(called / all, 1);
+	}
+}
+
 /* Which objects are of one kind: 2 called by one noun that is not general, 1 their names end alike. */
 static int find_kin(struct vocabulary *v, struct err *e)
 {
@@ -369,6 +385,7 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	if (read_names(v, e) || read_sentences(v, parser, e))
 		return -1;
 	mark_general(v);
+	count_calls(v);
 	if (find_about(v, e) || find_kin(v, e))
 		return -1;
 	for (size_t r = 0; r < l->sentences; r++)

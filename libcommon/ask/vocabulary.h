@@ -33,6 +33,7 @@ struct vocabulary_item {
 	size_t kind;		      /* into kinds */
 	int is_of_name;		      /* of the object's noun: "earbud" and "case" */
 	int is_general; /* a noun that is above another one of the same object: "container" of a bowl */
+	float often;	/* of VOCABULARY_NOUN: the share of the object's sentences that call it so */
 };
 
 /* What is known of a lemma. */

@@ -99,8 +99,9 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		if (item->sentence == v->without ||
 			(item->role != VOCABULARY_NOUN && item->role != VOCABULARY_ANCHOR))
 			continue;
-		double x = !strcmp(word->lemma, item->lemma) ? 1 : 0;
-		if (x < 1) {
+		const int is_same = !strcmp(word->lemma, item->lemma);
+		double x = is_same ? CALLED_ONCE + (1 - CALLED_ONCE) * (double)item->often : 0;
+		if (!is_same) {
 			x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
 			x = fmax(x, knowledge(v, &known, &v->kinds[item->kind], item->is_general));
 		}
