@@ -388,7 +388,8 @@ static void general_nouns(void)
 	CHECK(!vocabulary_make(&v, &l, &parser, &e), "%s", e.message);
 	for (v.has_names = 0; v.has_names < 2; v.has_names++) {
 		vocabulary_noun(&v, &s, 0, match);
-		CHECK(match[0] == 1 && match[2] == 1, "toys: %g, %g", match[0], match[2]);
+		CHECK(match[0] > 0.97 && match[0] < 1 && match[2] == match[0],
+			"toys, as half of their sentences have it: %g, %g", match[0], match[2]);
 		CHECK(match[1] > 0.5 && match[1] < 1, "the other mug: %g", match[1]);
 		CHECK(match[3] < 0.5, "the tin: %g", match[3]);
 	}
