@@ -343,7 +343,7 @@ static double weight_of(const struct arrangement *a, const struct relate_anchor 
 {
 	const double x = anchor->p[i] / fmax(largest(anchor->p, a->n + 1), 1e-12);
 
-	return at(a, i)->is_there ? x * x : 0;
+	return at(a, i)->is_there ? x * x * x : 0;
 }
 
 static double between(const struct arrangement *a, const struct arranged *o, const struct arranged *p,
