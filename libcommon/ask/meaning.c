@@ -145,6 +145,19 @@ static enum relate_width width_of(const struct parse *p, const struct parse_phra
 	return f->count != PARSE_ONE ? RELATE_HALF_PLANE : directions > 1 ? RELATE_WIDE : RELATE_NARROW;
 }
 
+/* "something" beside the thing itself: "that carries something", but not "something to put flowers in". */
+static int speaks_of_something(const struct parse *p)
+{
+	static const char *const some[] = {"something", "anything", "things", "stuff", NULL};
+
+	for (int w = 0; w < p->word_count; w++)
+		if (meaning_word_is(&p->words[w], some) &&
+			(p->words[w].span.end <= p->phrases[0].span.begin ||
+				p->words[w].span.begin >= p->phrases[0].span.end))
+			return 1;
+	return 0;
+}
+
 /* "with nothing on it", "by itself". */
 static int is_of_anything(const struct parse_clause *c)
 {
@@ -388,10 +401,12 @@ static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
 }
 
 /* "around", and nothing is there that it is around; "in" of "what you boil water in". */
-static int says_nothing(const struct parse_clause *c)
+static int says_nothing(const struct parse *p, const struct parse_clause *c)
 {
-	return (c->relation == PARSE_NEAR || c->relation == PARSE_SUPPORTS) && c->degree == PARSE_PLAIN &&
-	       !c->anchors.n && !c->negated;
+	const int may_be =
+		c->relation == PARSE_NEAR || (c->relation == PARSE_SUPPORTS && !speaks_of_something(p));
+
+	return may_be && c->degree == PARSE_PLAIN && !c->anchors.n && !c->negated;
 }
 
 /* The clauses that compare, or those that do not. Those of the place as a whole are the thing's: "everything
@@ -405,7 +420,7 @@ static void judge_clauses(struct meaning *m, int phrase, const struct parse_phra
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
 		const int is_mutual = !phrase && !c->anchors.n && meaning_is_mutual(p) &&
 				      (c->relation == PARSE_NEAR || c->relation == PARSE_FAR);
-		if (turn_of(c) == turn && !says_nothing(c) && !is_mutual && c != counted_by(p, f, names_end))
+		if (turn_of(c) == turn && !says_nothing(p, c) && !is_mutual && c != counted_by(p, f, names_end))
 			judge_clause(m, phrase, f->clauses.item[k], fit);
 		for (int j = 0; j < c->anchors.n; j++)
 			if (is_scene(m, c->anchors.item[j]))

@@ -1,5 +1,5 @@
-/* "The tray and whatever is on it", "the jar together with what it stands on": the second thing has no name,
- * but its place by the first, which is the target. */
+/* "The tray and whatever is on it", "the jar together with what it stands on", "the mug and the saucer under
+ * it": the second thing has a place by the first, which is the target, and often no name. */
 #include "lang/analysis.h"
 #include "lang/closed.h"
 
@@ -7,9 +7,10 @@
 #include <string.h>
 
 /* Where such a thing is spoken of: the first word of "and" and the first one after it, the word of its place,
- * and whether it is said the other way round ("what it stands on"). */
+ * and whether it is said the other way round ("what it stands on"); the phrases that have the words of the
+ * first thing and of the second, -1 where that has no name. */
 struct carried {
-	int joint, from, place, is_round;
+	int joint, from, place, is_round, first, second;
 };
 
 static int relation_of(const struct parse *p, int word)
@@ -35,33 +36,92 @@ static int joint_before(const struct parse *p, int i)
 		       : -1;
 }
 
+/* Whether "it" is after a place: "under it", "to the left of it". */
+static int is_by_it(const struct parse *p, int place)
+{
+	static const char *const it[] = {"it", "them", NULL}, *const of[] = {"of", "to", "from", NULL};
+
+	return parse_word_is(p, place + 1, it) ||
+	       (parse_word_is(p, place + 1, of) && parse_word_is(p, place + 2, it));
+}
+
+/* The place of a thing that is spoken of from word `from` on: 1 and *c, or 0. */
+static int find_place(const struct parse *p, int from, struct carried *c)
+{
+	static const char *const they[] = {"it", "they", NULL};
+	const int last = p->word_count - 1;
+
+	c->is_round = 0;
+	for (c->place = from; c->place < last; c->place++)
+		if (relation_of(p, c->place) >= 0 && is_by_it(p, c->place))
+			return 1;
+	for (int w = from; w < last && relation_of(p, last) >= 0; w++)
+		c->is_round |= parse_word_is(p, w, they);
+	return c->is_round;
+}
+
+/* The last word of a phrase's noun among from..to-1; -1. */
+static int noun_within(const struct parse *p, int phrase, int from, int to)
+{
+	const struct parse_list *noun = &p->phrases[phrase].noun;
+	int last = -1;
+
+	for (int i = 0; i < noun->n; i++)
+		last = noun->item[i] >= from && noun->item[i] < to ? noun->item[i] : last;
+	return last;
+}
+
+/* The phrase whose noun ends last among the words from..to-1; or -1. */
+static int phrase_within(const struct parse *p, int from, int to)
+{
+	int best = -1, end = -1;
+
+	for (int k = 0; k < p->phrase_count; k++)
+		if (noun_within(p, k, from, to) > end) {
+			best = k;
+			end = noun_within(p, k, from, to);
+		}
+	return best;
+}
+
+/* Whether a word among from..to-1 says that something has, or may be by, another: that may be what "it" is.
+ */
+static int tells_other(const struct parse *p, int from, int to, int is_place_too)
+{
+	for (int w = from; w < to; w++) {
+		const int closed = closed_find(p->words[w].text);
+		const int class = closed < 0 ? -1 : (int)closed_words[closed].class;
+		if (class == CLOSED_WITH || class == CLOSED_HAVE || (is_place_too && class == CLOSED_PLACE))
+			return 1;
+	}
+	return 0;
+}
+
 static int find_carried(const struct parse *p, struct carried *c)
 {
-	static const char *const the[] = {"the", "all", "also", NULL}, *const it[] = {"it", "them", NULL},
-				 *const they[] = {"it", "they", NULL};
+	static const char *const the[] = {"the", "all", "also", NULL};
 	static const char *const things[] = {
 		"whatever", "what", "everything", "anything", "thing", "things", "something", "stuff", NULL};
-	const int last = p->word_count - 1;
-	int head;
 
-	for (int w = 1; w < last; w++) {
-		const int joint = joint_before(p, w + 1);
-		if (joint < 1)
+	for (int w = 1; w < p->word_count - 1; w++) {
+		int head = w + 1;
+		c->joint = joint_before(p, head);
+		c->from = w + 1;
+		if (c->joint < 1)
 			continue;
-		for (head = w + 1; parse_word_is(p, head, the);)
+		while (parse_word_is(p, head, the))
 			head++;
-		if (!parse_word_is(p, head, things))
+		c->first = c->second = -1;
+		const int is_named = !parse_word_is(p, head, things);
+		if (!find_place(p, head + !is_named, c))
 			continue;
-		for (int i = head + 1; i < last; i++)
-			if (relation_of(p, i) >= 0 && parse_word_is(p, i + 1, it)) {
-				*c = (struct carried){joint, w + 1, i, 0};
-				return 1;
-			}
-		if (relation_of(p, last) >= 0 &&
-			(parse_word_is(p, head + 1, they) || parse_word_is(p, head + 2, they))) {
-			*c = (struct carried){joint, w + 1, last, 1};
+		if (!is_named)
 			return 1;
-		}
+		c->first = phrase_within(p, 0, c->joint);
+		c->second = phrase_within(p, c->from, c->place);
+		if (c->first >= 0 && c->second >= 0 && !tells_other(p, 0, c->joint, 1) &&
+			!tells_other(p, c->joint, c->place, 0))
+			return 1;
 	}
 	return 0;
 }
@@ -105,47 +165,111 @@ static struct parse_phrase plain(struct parse_span span, int count)
 	return (struct parse_phrase){.span = span, .count = count, .from = PARSE_OTHER};
 }
 
-int parse_carried(struct parse *p, struct err *e)
+static void widen(const struct parse *p, struct parse_phrase *f, const struct parse_list *words)
+{
+	for (int i = 0; i < words->n; i++) {
+		const struct parse_span *w = &p->words[words->item[i]].span;
+		f->span.begin = f->span.end && f->span.begin < w->begin ? f->span.begin : w->begin;
+		f->span.end = f->span.end > w->end ? f->span.end : w->end;
+	}
+}
+
+/* A phrase's noun and attributes among the words from..to-1 become another's. */
+static int take_words(const struct parse *p, struct parse_phrase *to, const struct parse_phrase *from,
+	int begin, int end, struct err *e)
+{
+	struct parse_list noun = {0}, attributes = {0};
+	int bad = 0;
+
+	for (int i = 0; i < from->noun.n && !bad; i++)
+		if (from->noun.item[i] >= begin && from->noun.item[i] < end)
+			bad = parse_list_add(&noun, from->noun.item[i], e);
+	for (int i = 0; i < from->attributes.n && !bad; i++)
+		if (from->attributes.item[i] >= begin && from->attributes.item[i] < end)
+			bad = parse_list_add(&attributes, from->attributes.item[i], e);
+	free(to->noun.item);
+	free(to->attributes.item);
+	to->noun = noun;
+	to->attributes = attributes;
+	to->span = (struct parse_span){0};
+	widen(p, to, &noun);
+	widen(p, to, &attributes);
+	return bad;
+}
+
+/* The target is the first thing: its words before "and". Returns 0 and *is_so, or -1. */
+static int settle_first(struct parse *p, const struct carried *c, int *is_so, struct err *e)
+{
+	struct parse_phrase *f = &p->phrases[0];
+
+	*is_so = 1;
+	if (c->second >= 0) {
+		f->count = p->phrases[c->first].count;
+		return take_words(p, f, &p->phrases[c->first], 0, c->joint, e);
+	}
+	parse_list_cut(&f->noun, c->joint);
+	parse_list_cut(&f->attributes, c->joint);
+	if (f->noun.n)
+		return 0;
+	/* "whatever" was taken for what is meant */
+	*is_so = closed_find(p->words[c->joint - 1].text) < 0;
+	parse_list_cut(&f->attributes, *is_so ? c->joint - 1 : c->joint);
+	return *is_so ? parse_list_add(&f->noun, c->joint - 1, e) : 0;
+}
+
+/* Of the second thing where that has no name: "the thing under it" is one. */
+static int count_second(const struct parse *p, const struct carried *c)
 {
 	static const char *const one[] = {"thing", "something", NULL};
-	struct carried c;
-	int is_one;
+	int is_one = c->is_round;
 
-	struct parse_phrase *f = &p->phrases[0];
-	if (!find_carried(p, &c) || f->also.n > 1 ||
-		(f->also.n && p->phrases[f->also.item[0]].noun.n && f->noun.n))
-		return 0;
-	parse_list_cut(&f->noun, c.joint);
-	parse_list_cut(&f->attributes, c.joint);
-	if (!f->noun.n) { /* "whatever" was taken for what is meant */
-		if (closed_find(p->words[c.joint - 1].text) >= 0)
-			return 0;
-		parse_list_cut(&f->attributes, c.joint - 1);
-		if (parse_list_add(&f->noun, c.joint - 1, e))
-			return -1;
-	}
-	is_one = c.is_round;
-	for (int w = c.from; w < c.place; w++)
+	for (int w = c->from; w < c->place; w++)
 		is_one |= parse_word_is(p, w, one);
-	keep_clauses(p, &f->clauses, c.joint);
+	return is_one ? PARSE_ONE : PARSE_ALL;
+}
+
+int parse_carried(struct parse *p, struct err *e)
+{
+	struct carried c;
+	int is_so;
+
+	const struct parse_list *also = &p->phrases[0].also;
+	if (!find_carried(p, &c) || also->n > 1 ||
+		(c.second < 0 && also->n && p->phrases[also->item[0]].noun.n && p->phrases[0].noun.n))
+		return 0;
+	const int named = c.second >= 0 ? p->phrases[c.second].count : 0;
+	struct parse_phrase words = {0};
+	if (c.second >= 0 && take_words(p, &words, &p->phrases[c.second], c.from, c.place, e))
+		return -1;
+	if (settle_first(p, &c, &is_so, e) || !is_so)
+		return is_so ? -1 : 0;
+	keep_clauses(p, &p->phrases[0].clauses, c.joint);
 	parse_list_cut(&p->unexplained, c.joint);
 	if (make_room(p, e))
 		return -1;
-	f = &p->phrases[0];
+	struct parse_phrase *f = &p->phrases[0];
 	const int is_new = !f->also.n, other = is_new ? p->phrase_count : f->also.item[0];
 	const int again = p->phrase_count + is_new, clause = p->clause_count;
-	enum parse_relation r = (enum parse_relation)relation_of(p, c.place);
+	const int place = closed_find(p->words[c.place].text);
+	const enum parse_relation r = (enum parse_relation)closed_words[place].relation;
 	if (is_new)
 		p->phrases[other] = plain(p->words[c.from].span, PARSE_ONE);
-	p->phrases[other].count = is_one ? PARSE_ONE : PARSE_ALL;
-	p->phrases[other].noun.n = p->phrases[other].attributes.n = p->phrases[other].clauses.n = 0;
+	struct parse_phrase *second = &p->phrases[other];
+	second->count = c.second >= 0 ? named : count_second(p, &c);
+	second->clauses.n = 0;
+	free(second->noun.item);
+	free(second->attributes.item);
+	second->span = c.second >= 0 ? words.span : second->span;
+	second->noun = words.noun;
+	second->attributes = words.attributes;
 	p->phrases[again] = plain(f->span, f->count);
-	p->clauses[clause] = (struct parse_clause){
-		.span = p->words[c.place].span, .relation = c.is_round ? closed_inverse(r) : r};
+	p->clauses[clause] = (struct parse_clause){.span = p->words[c.place].span,
+		.relation = c.is_round ? closed_inverse(r) : r,
+		.degree = c.is_round ? PARSE_PLAIN : (enum parse_degree)closed_words[place].value};
 	p->phrase_count = again + 1;
 	p->clause_count++;
 	return parse_list_add(&p->clauses[clause].anchors, again, e) ||
-			       parse_list_add(&p->phrases[other].clauses, clause, e) ||
+			       parse_list_add(&second->clauses, clause, e) ||
 			       copy_list(&p->phrases[again].noun, &f->noun, e) ||
 			       copy_list(&p->phrases[again].attributes, &f->attributes, e) ||
 			       copy_list(&p->phrases[again].clauses, &f->clauses, e) ||
