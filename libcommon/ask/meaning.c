@@ -261,7 +261,7 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	const double known = judge_relation(m, phrase, c, fit, value);
 	/* what carries or holds something that is nothing here has it: "the one with its screen on" */
 	if (c->relation == PARSE_WITH ||
-		(c->relation == PARSE_SUPPORTS && c->anchors.n && !c->negated && known < 0.5)) {
+		(c->relation == PARSE_SUPPORTS && c->anchors.n && known < 0.5)) {
 		meaning_judge_predicate(m, c, said);
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(said[o], known * value[o]);

@@ -4,6 +4,7 @@
 #include "base/dot.h"
 #include "base/largest.h"
 #include "lang/colours.h"
+#include "lang/finish.h"
 #include "lang/kinds.h"
 
 #include <math.h>
@@ -167,9 +168,11 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 		double *to = &match[item->object], x;
 		if (item->sentence == v->without || says_place(item))
 			continue;
-		x = item->role == VOCABULARY_ATTRIBUTE
-			    ? wordnet_adjectives_fit(&adjective, &v->kinds[item->kind].adjective)
+		x = item->role == VOCABULARY_ATTRIBUTE && v->has_knowledge
+			    ? finish_fits(word->lemma, item->lemma)
 			    : 0;
+		if (x == 0 && item->role == VOCABULARY_ATTRIBUTE)
+			x = wordnet_adjectives_fit(&adjective, &v->kinds[item->kind].adjective);
 		if (x == 0)
 			x = worth(dot_float(v->word, v->vectors + i * width, width), ATTRIBUTE_HALF,
 				ATTRIBUTE_SOFT);

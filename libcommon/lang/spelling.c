@@ -67,9 +67,10 @@ static int is_slip_of(const struct suspect *s, const char *right)
 static int is_slip_of_noun(const struct suspect *s, const char *noun)
 {
 	static const char *const plurals[] = {"", "s", "es"};
+	const size_t length = strlen(noun), forms = length && strchr("sxzho", noun[length - 1]) ? 3 : 2;
 	char form[SPELLING_LENGTH + 2];
 
-	for (size_t i = 0; i < sizeof plurals / sizeof *plurals && strlen(noun) < SPELLING_LENGTH - 2; i++) {
+	for (size_t i = 0; i < forms && length < SPELLING_LENGTH - 2; i++) {
 		snprintf(form, sizeof form, "%s%s", noun, plurals[i]);
 		if (is_slip_of(s, form))
 			return 1;
@@ -80,12 +81,14 @@ static int is_slip_of_noun(const struct suspect *s, const char *noun)
 static int is_known(const char *word, const char *lemma, const char *const *known, int known_count)
 {
 	struct things_rows rows;
+	struct wordnet_adjective adjective;
 
 	for (int i = 0; i < known_count; i++)
 		if (!strcmp(known[i], word) || !strcmp(known[i], lemma))
 			return 1;
 	things_find(&rows, lemma);
-	return rows.n || colour_word(word) >= 0 || kinds_have(lemma);
+	wordnet_find_adjective(&adjective, word);
+	return rows.n || adjective.n || colour_word(word) >= 0 || kinds_have(lemma);
 }
 
 /* One of the nouns of a group, or its plural. */
