@@ -12,7 +12,7 @@
 
 enum { POINTS = 2048 }; /* of an object, at most about so many */
 static const double trimmed = 0.1, longer = 0.1, most_weight = 4;
-static const double alike_colour = 8, alike_size = 0.15;
+static const double alike_colour = 8, alike_spread = 4, alike_size = 0.15;
 static const double no_direction = 0.1;		   /* of the spacing */
 static const double degree0 = 0.28209479177387814; /* the spherical harmonic of degree 0 */
 
@@ -208,10 +208,14 @@ static void take_colours(struct arranged *o, const struct splats *s, const struc
 		for (int k = 0; k < 3; k++)
 			rgb[k] = 0.5 + degree0 * sh[k];
 		colour_lab(rgb, lab);
-		for (size_t k = 0; k < 3; k++)
+		for (size_t k = 0; k < 3; k++) {
 			o->lab[k] += weight[i] / total * lab[k];
+			o->spread[k] += weight[i] / total * lab[k] * lab[k];
+		}
 		colour_call(lab, weight[i] / total, o->colours);
 	}
+	for (size_t k = 0; k < 3; k++)
+		o->spread[k] = sqrt(fmax(o->spread[k] - o->lab[k] * o->lab[k], 0));
 }
 
 /* The points of object o, after those before it. */
@@ -393,8 +397,10 @@ double arrangement_alike(const struct arrangement *a, size_t i, size_t k)
 	lengths(p, x);
 	lengths(q, y);
 	for (int d = 0; d < 3; d++) {
-		double colour = (p->lab[d] - q->lab[d]) / alike_colour, size = (x[d] - y[d]) / alike_size;
-		sum += colour * colour + size * size;
+		const double colour = (p->lab[d] - q->lab[d]) / alike_colour,
+			     spread = (p->spread[d] - q->spread[d]) / alike_spread,
+			     size = (x[d] - y[d]) / alike_size;
+		sum += colour * colour + spread * spread + size * size;
 	}
 	return -0.5 * sum;
 }

@@ -22,6 +22,7 @@ struct arranged {
 	double raised;	  /* how far it stands higher than most, on something that has no name (ask/resting.h) */
 	double side;	  /* how far right it looks: centre[0], or, in a picture, in perspective */
 	double lab[3];	  /* mean colour, CIE L*a*b* (D65) */
+	double spread[3]; /* standard deviation of the colour: of stripes, or of light and shade */
 	double colours[COLOUR_WORDS]; /* part of it that people would call so (lang/colours.h) */
 };
 
@@ -59,7 +60,8 @@ int arrangement_where(const struct arrangement *a, size_t object, double at[3]);
 void arrangement_free(struct arrangement *a);
 
 /* Whether two objects are the same to look at, but for where they are: 0 where they are, and less the more
- * they differ in mean colour (by 8 of L*a*b*) and in size (by 15%): -1/2 of the sum of the squares. */
+ * they differ in mean colour (by 8 of L*a*b*), in its spread (by 4) and in size (by 15%): -1/2 of the sum of
+ * the squares. */
 double arrangement_alike(const struct arrangement *a, size_t i, size_t k);
 
 /* Mean of the logarithms of a box's lengths. */

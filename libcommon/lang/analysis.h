@@ -74,4 +74,7 @@ int parse_settle(struct parse *p, struct err *e);
 /* A part of parse_settle: "the tray and what is on it" are two. Likewise. */
 int parse_carried(struct parse *p, struct err *e);
 
+/* A part of parse_settle: "I need that tray" of a tray that something is on. Likewise. */
+int parse_that(struct parse *p, struct err *e);
+
 #endif

@@ -18,9 +18,9 @@ static int find(const char *lemma)
 {
 	const size_t length = strlen(lemma);
 
-	for (int k = 0; k < FINISHES; k++)
+	for (int k = 0; k < FINISHES && length; k++)
 		for (const char *at = words[k]; (at = strstr(at, lemma)); at++)
-			if (at > words[k] && at[-1] == ' ' && at[length] == ' ' && length)
+			if (at > words[k] && at[-1] == ' ' && at[length] == ' ')
 				return k;
 	return -1;
 }

@@ -84,17 +84,25 @@ static int phrase_within(const struct parse *p, int from, int to)
 	return best;
 }
 
-/* Whether a word among from..to-1 says that something has, or may be by, another: that may be what "it" is.
- */
-static int tells_other(const struct parse *p, int from, int to, int is_place_too)
+/* Whether a word among from..to-1 is of one of the classes, bits. */
+static int has_class(const struct parse *p, int from, int to, unsigned classes)
 {
 	for (int w = from; w < to; w++) {
 		const int closed = closed_find(p->words[w].text);
-		const int class = closed < 0 ? -1 : (int)closed_words[closed].class;
-		if (class == CLOSED_WITH || class == CLOSED_HAVE || (is_place_too && class == CLOSED_PLACE))
+		if (closed >= 0 && classes >> closed_words[closed].class & 1)
 			return 1;
 	}
 	return 0;
+}
+
+/* Whether both things are named, and nothing else can be what "it" is. */
+static int are_named(const struct parse *p, const struct carried *c)
+{
+	const unsigned has = 1U << CLOSED_WITH | 1U << CLOSED_HAVE;
+
+	return c->first >= 0 && c->second >= 0 && !has_class(p, 0, c->joint, has | 1U << CLOSED_PLACE) &&
+	       !has_class(p, c->joint, c->place, has | 1U << CLOSED_NEGATION) &&
+	       !has_class(p, c->joint, noun_within(p, c->second, c->from, c->place), 1U << CLOSED_BE);
 }
 
 static int find_carried(const struct parse *p, struct carried *c)
@@ -119,8 +127,7 @@ static int find_carried(const struct parse *p, struct carried *c)
 			return 1;
 		c->first = phrase_within(p, 0, c->joint);
 		c->second = phrase_within(p, c->from, c->place);
-		if (c->first >= 0 && c->second >= 0 && !tells_other(p, 0, c->joint, 1) &&
-			!tells_other(p, c->joint, c->place, 0))
+		if (are_named(p, c))
 			return 1;
 	}
 	return 0;

@@ -187,6 +187,47 @@ static int settle_it(struct parse *p, struct err *e)
 	return 0;
 }
 
+/* The phrase that ends right before a relative word and a phrase that is left out, of those that a phrase's
+ * clauses are to; or -1. */
+static int described_before(
+	const struct parse *p, const struct parse_phrase *f, const struct parse_phrase *out)
+{
+	static const char *const relative[] = {"that", "which", NULL};
+
+	for (int k = 0; k < f->clauses.n; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		for (int j = 0; j < c->anchors.n; j++) {
+			const struct parse_phrase *a = &p->phrases[c->anchors.item[j]];
+			for (int w = 1; w < p->word_count && p->words[w].span.end < out->span.begin; w++)
+				if (parse_word_is(p, w, relative) && p->words[w - 1].span.end == a->span.end)
+					return c->anchors.item[j];
+		}
+	}
+	return -1;
+}
+
+/* "whatever is on the tray that isn't the red one" is not on the red tray. */
+static int settle_except(struct parse *p, struct err *e)
+{
+	struct parse_phrase *f = &p->phrases[0];
+	int n = 0;
+
+	for (int k = 0; k < f->except.n; k++) {
+		const int out = f->except.item[k];
+		struct parse_phrase *x = &p->phrases[out];
+		const int of = f->noun.n ? -1 : described_before(p, f, x);
+		if (of < 0) {
+			f->except.item[n++] = out;
+			continue;
+		}
+		if ((!x->noun.n && copy_list(&x->noun, &p->phrases[of].noun, e)) ||
+			parse_list_add(&p->phrases[of].except, out, e))
+			return -1;
+	}
+	f->except.n = n;
+	return 0;
+}
+
 /* A jar of tea is a jar: what fills it only says which. */
 static void settle_content(const struct parse *p, struct parse_phrase *f)
 {
@@ -218,6 +259,8 @@ int parse_settle(struct parse *p, struct err *e)
 	for (int k = 0; k < f->clauses.n; k++)
 		settle_comparison(p, f, &p->clauses[f->clauses.item[k]]);
 	settle_superlative(p, f);
-	return settle_it(p, e) || settle_than(p, f, e) || settle_view(p, f, e) || parse_carried(p, e) ? -1
-												      : 0;
+	return settle_it(p, e) || settle_except(p, e) || settle_than(p, f, e) || settle_view(p, f, e) ||
+			       parse_carried(p, e) || parse_that(p, e)
+		       ? -1
+		       : 0;
 }

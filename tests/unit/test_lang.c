@@ -1,5 +1,6 @@
 /* lang/: colour words, what nouns share, and what WordNet knows, where it is there. */
 #include "lang/colours.h"
+#include "lang/finish.h"
 #include "lang/kinds.h"
 #include "lang/spelling.h"
 #include "lang/things.h"
@@ -47,6 +48,10 @@ static void colours(void)
 
 static void kinds(void)
 {
+	CHECK(finish_fits("ring", "banded") == 1 && finish_fits("plain", "striped") == -1 &&
+			!finish_fits("shiny", "striped") && !finish_fits("ring", "jar") &&
+			!finish_fits("", "plain"),
+		"looks");
 	CHECK(kinds_share("cube", "box") && kinds_share("box", "cube") && !kinds_share("cube", "ball"),
 		"kinds");
 	CHECK(!kinds_share("", "box") && !kinds_share("ox", "box") && !kinds_share("box block", "box"),

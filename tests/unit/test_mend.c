@@ -207,6 +207,41 @@ static void carried_things(void)
 	carries("both sleds and everything under them", PARSE_ALL, PARSE_BELOW, "sled");
 	carries("the sled and the thing in it", PARSE_ONE, PARSE_INSIDE, "sled");
 	carries("whatever is on the sled", 0, PARSE_ON, NULL);
+	carries("the sled and the red jug under it", PARSE_ONE, PARSE_BELOW, "sled");
+	carries("the sled and also the two jugs to the left of it", 2, PARSE_LEFT, "sled");
+	carries("the sled, and the jug that is nearest to it", PARSE_ONE, PARSE_NEAR, "sled");
+	carries("the sled and the jug it stands on", PARSE_ONE, PARSE_SUPPORTS, "sled");
+	carries("the sled with a jug and a bell on it", 0, PARSE_ON, NULL);
+}
+
+/* What a sentence tells of at first is not what it asks for at last. */
+static void asks_at_last(void)
+{
+	struct parse p = parsed("the jug on a sled, bring that sled");
+
+	CHECK(!strcmp(p.words[p.phrases[0].noun.item[0]].lemma, "sled") && p.phrases[0].count == PARSE_ONE &&
+			p.phrases[0].clauses.n == 1 && p.clauses[0].relation == PARSE_SUPPORTS &&
+			!p.unexplained.n,
+		"the sled: %s", p.words[p.phrases[0].noun.item[0]].lemma);
+	parse_free(&p);
+	p = parsed("the sled near the jug, left of that jug");
+	CHECK(!strcmp(p.words[p.phrases[0].noun.item[0]].lemma, "sled"), "the sled by that jug: %s",
+		p.words[p.phrases[0].noun.item[0]].lemma);
+	parse_free(&p);
+}
+
+/* What is left out is left out of what it is said of. */
+static void left_out_of(void)
+{
+	struct parse p = parsed("something on the tray that is not red");
+
+	if (CHECK(p.clause_count && p.clauses[0].anchors.n == 1, "on something")) {
+		const struct parse_phrase *tray = &p.phrases[p.clauses[0].anchors.item[0]];
+		CHECK(!p.phrases[0].except.n && tray->except.n == 1 &&
+				p.phrases[tray->except.item[0]].noun.n == 1,
+			"the thing %d, the tray %d", p.phrases[0].except.n, tray->except.n);
+	}
+	parse_free(&p);
 }
 
 /* One thing is meant, by an attribute. */
@@ -231,6 +266,8 @@ static void compared_with_all(void)
 int main(void)
 {
 	carried_things();
+	asks_at_last();
+	left_out_of();
 	compared_with_all();
 	mends_looks();
 	mends_places();
