@@ -102,7 +102,8 @@ static int are_named(const struct parse *p, const struct carried *c)
 
 	return c->first >= 0 && c->second >= 0 && !has_class(p, 0, c->joint, has | 1U << CLOSED_PLACE) &&
 	       !has_class(p, c->joint, c->place, has | 1U << CLOSED_NEGATION) &&
-	       !has_class(p, c->joint, noun_within(p, c->second, c->from, c->place), 1U << CLOSED_BE);
+	       !has_class(p, c->joint, noun_within(p, c->second, c->from, c->place),
+		       1U << CLOSED_BE | 1U << CLOSED_REQUEST);
 }
 
 static int find_carried(const struct parse *p, struct carried *c)
