@@ -241,7 +241,8 @@ static int is_of_colour(const struct meaning *m, const struct parse_clause *c)
 static void relate_unnamed(const struct meaning *m, const struct parse_clause *c, double *out)
 {
 	const struct parse *p = m->sentence->parse;
-	const int head = c->anchors.n ? meaning_head_of(p, &p->phrases[c->anchors.item[0]]) : -1;
+	const int may_be = c->anchors.n && (c->relation == PARSE_ON || c->relation == PARSE_BELOW);
+	const int head = may_be ? meaning_head_of(p, &p->phrases[c->anchors.item[0]]) : -1;
 	const int is_held = head >= 0 && resting_holds(p->words[head].lemma);
 
 	resting_relate(m->arrangement, is_held ? c->relation : PARSE_OTHER, out);
@@ -267,7 +268,10 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 			value[o] = fmax(said[o], known * value[o]);
 		return;
 	}
-	relate_unnamed(m, c, unnamed);
+	if (known < 1)
+		relate_unnamed(m, c, unnamed);
+	else
+		memset(unnamed, 0, n * sizeof *unnamed);
 	meaning_judge_said(m, c, said);
 	for (size_t o = 0; o < n; o++)
 		value[o] = fmax(

@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
+#include "lang/finish.h"
 #include "lang/kinds.h"
 
 #include <math.h>
@@ -134,6 +135,7 @@ static int add_kind(struct vocabulary *v, const char *lemma, size_t *kind, struc
 	wordnet_find_thing(&to->noun, lemma);
 	wordnet_find_adjective(&to->adjective, lemma);
 	things_find(&to->things, lemma);
+	to->finish = finish_of(lemma);
 	return 0;
 }
 

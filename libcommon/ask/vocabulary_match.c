@@ -155,6 +155,7 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 	const struct lifted *l = v->lifted;
 	const struct parse_word *word = &s->parse->words[w];
 	const size_t width = (size_t)l->width;
+	const int finish = v->has_knowledge ? finish_of(word->lemma) : -1;
 	struct wordnet_adjective adjective;
 
 	vocabulary_word_vector(v, word, s->vectors, v->word);
@@ -168,9 +169,7 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 		double *to = &match[item->object], x;
 		if (item->sentence == v->without || says_place(item))
 			continue;
-		x = item->role == VOCABULARY_ATTRIBUTE && v->has_knowledge
-			    ? finish_fits(word->lemma, item->lemma)
-			    : 0;
+		x = item->role == VOCABULARY_ATTRIBUTE ? finish_fits(finish, v->kinds[item->kind].finish) : 0;
 		if (x == 0 && item->role == VOCABULARY_ATTRIBUTE)
 			x = wordnet_adjectives_fit(&adjective, &v->kinds[item->kind].adjective);
 		if (x == 0)

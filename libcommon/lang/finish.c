@@ -13,8 +13,7 @@ static const char *const words[FINISHES] = {
 	[DULL] = " dull matt matte unpolished lustreless ",
 };
 
-/* STRIPES ..., or -1. */
-static int find(const char *lemma)
+int finish_of(const char *lemma)
 {
 	const size_t length = strlen(lemma);
 
@@ -25,11 +24,9 @@ static int find(const char *lemma)
 	return -1;
 }
 
-int finish_fits(const char *a, const char *b)
+int finish_fits(int a, int b)
 {
-	const int i = find(a), k = find(b);
-
-	if (i < 0 || k < 0)
+	if (a < 0 || b < 0)
 		return 0;
-	return i == k ? 1 : (i < SHINY) == (k < SHINY) ? -1 : 0;
+	return a == b ? 1 : (a < SHINY) == (b < SHINY) ? -1 : 0;
 }

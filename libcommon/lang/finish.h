@@ -3,8 +3,11 @@
 #ifndef LANG_FINISH_H
 #define LANG_FINISH_H
 
-/* 1 where two lemmas are of one look, -1 where what is the one is hardly the other ("plain", "striped"), 0
- * where nothing is known. */
-int finish_fits(const char *a, const char *b);
+/* The look that a lemma is a word of, for finish_fits; -1: none. */
+int finish_of(const char *lemma);
+
+/* 1 where two looks are one, -1 where what is the one is hardly the other ("plain", "striped"), 0 where
+ * nothing is known. */
+int finish_fits(int a, int b);
 
 #endif

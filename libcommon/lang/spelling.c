@@ -81,14 +81,12 @@ static int is_slip_of_noun(const struct suspect *s, const char *noun)
 static int is_known(const char *word, const char *lemma, const char *const *known, int known_count)
 {
 	struct things_rows rows;
-	struct wordnet_adjective adjective;
 
 	for (int i = 0; i < known_count; i++)
 		if (!strcmp(known[i], word) || !strcmp(known[i], lemma))
 			return 1;
 	things_find(&rows, lemma);
-	wordnet_find_adjective(&adjective, word);
-	return rows.n || adjective.n || colour_word(word) >= 0 || kinds_have(lemma);
+	return rows.n || colour_word(word) >= 0 || kinds_have(lemma);
 }
 
 /* One of the nouns of a group, or its plural. */
@@ -104,10 +102,28 @@ static int is_slip_of_group(const struct suspect *s, const char *group)
 	return 0;
 }
 
+static int find_right(const struct suspect *s, const char *const *known, int known_count)
+{
+	for (int i = 0; i < known_count; i++)
+		if (is_slip_of_noun(s, known[i]))
+			return 1;
+	for (int i = 0; i < closed_count; i++)
+		if (is_slip_of(s, closed_words[i].text))
+			return 1;
+	for (int i = 0; i < COLOUR_WORDS; i++)
+		if (is_slip_of(s, colour_name(i)))
+			return 1;
+	for (size_t g = 0; kinds_group(g); g++)
+		if (is_slip_of_group(s, kinds_group(g)))
+			return 1;
+	return 0;
+}
+
 int spelling_repair(const char *word, const char *const *known, int known_count, char *right)
 {
 	char lemma[TOKEN_LENGTH];
 	struct suspect s = {word, 6, right};
+	struct wordnet_adjective adjective;
 
 	if (strlen(word) < 3 || strlen(word) > SPELLING_LENGTH - 3 || isdigit((unsigned char)word[0]))
 		return 0;
@@ -116,17 +132,8 @@ int spelling_repair(const char *word, const char *const *known, int known_count,
 		return 0;
 	if (wordnet_is_there() && !wordnet_is_noun(lemma))
 		s.least = 5;
-	for (int i = 0; i < known_count; i++)
-		if (is_slip_of_noun(&s, known[i]))
-			return 1;
-	for (int i = 0; i < closed_count; i++)
-		if (is_slip_of(&s, closed_words[i].text))
-			return 1;
-	for (int i = 0; i < COLOUR_WORDS; i++)
-		if (is_slip_of(&s, colour_name(i)))
-			return 1;
-	for (size_t g = 0; kinds_group(g); g++)
-		if (is_slip_of_group(&s, kinds_group(g)))
-			return 1;
-	return 0;
+	if (!find_right(&s, known, known_count))
+		return 0;
+	wordnet_find_adjective(&adjective, word); /* an adjective is none */
+	return !adjective.n;
 }

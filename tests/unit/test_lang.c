@@ -48,9 +48,10 @@ static void colours(void)
 
 static void kinds(void)
 {
-	CHECK(finish_fits("ring", "banded") == 1 && finish_fits("plain", "striped") == -1 &&
-			!finish_fits("shiny", "striped") && !finish_fits("ring", "jar") &&
-			!finish_fits("", "plain"),
+	CHECK(finish_of("ring") >= 0 && finish_of("jar") == -1 && finish_of("") == -1 && finish_of("ban") == -1 &&
+			finish_fits(finish_of("ring"), finish_of("banded")) == 1 &&
+			finish_fits(finish_of("plain"), finish_of("striped")) == -1 &&
+			!finish_fits(finish_of("shiny"), finish_of("striped")) && !finish_fits(-1, -1),
 		"looks");
 	CHECK(kinds_share("cube", "box") && kinds_share("box", "cube") && !kinds_share("cube", "ball"),
 		"kinds");
