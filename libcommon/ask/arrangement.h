@@ -19,9 +19,9 @@ struct arranged {
 	double low[3],
 		high[3];  /* box: the middle 80% of its weight along each axis, a tenth longer each way */
 	double centre[3]; /* of the box */
-	double raised;	  /* how far it stands higher than most, on something that has no name (ask/resting.h) */
-	double side;	  /* how far right it looks: centre[0], or, in a picture, in perspective */
-	double lab[3];	  /* mean colour, CIE L*a*b* (D65) */
+	double raised; /* how far it stands higher than most, on something that has no name (ask/resting.h) */
+	double side;   /* how far right it looks: centre[0], or, in a picture, in perspective */
+	double lab[3]; /* mean colour, CIE L*a*b* (D65) */
 	double spread[3]; /* standard deviation of the colour: of stripes, or of light and shade */
 	double colours[COLOUR_WORDS]; /* part of it that people would call so (lang/colours.h) */
 };

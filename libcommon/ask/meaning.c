@@ -261,8 +261,7 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	}
 	const double known = judge_relation(m, phrase, c, fit, value);
 	/* what carries or holds something that is nothing here has it: "the one with its screen on" */
-	if (c->relation == PARSE_WITH ||
-		(c->relation == PARSE_SUPPORTS && c->anchors.n && known < 0.5)) {
+	if (c->relation == PARSE_WITH || (c->relation == PARSE_SUPPORTS && c->anchors.n && known < 0.5)) {
 		meaning_judge_predicate(m, c, said);
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(said[o], known * value[o]);
@@ -274,8 +273,8 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 		memset(unnamed, 0, n * sizeof *unnamed);
 	meaning_judge_said(m, c, said);
 	for (size_t o = 0; o < n; o++)
-		value[o] = fmax(
-			known * value[o] + (1 - known) * unnamed[o], (1 - known) * SAID_WORTH * said[o]);
+		value[o] =
+			fmax(known * value[o] + (1 - known) * unnamed[o], (1 - known) * SAID_WORTH * said[o]);
 }
 
 /* "no other bowl", or no bowl of a bowl: another one than the thing itself. */
@@ -424,7 +423,8 @@ static void judge_clauses(struct meaning *m, int phrase, const struct parse_phra
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
 		const int is_mutual = !phrase && !c->anchors.n && meaning_is_mutual(p) &&
 				      (c->relation == PARSE_NEAR || c->relation == PARSE_FAR);
-		if (turn_of(c) == turn && !says_nothing(p, c) && !is_mutual && c != counted_by(p, f, names_end))
+		if (turn_of(c) == turn && !says_nothing(p, c) && !is_mutual &&
+			c != counted_by(p, f, names_end))
 			judge_clause(m, phrase, f->clauses.item[k], fit);
 		for (int j = 0; j < c->anchors.n; j++)
 			if (is_scene(m, c->anchors.item[j]))

@@ -12,8 +12,8 @@ void resting_find(struct arrangement *a);
 /* Whether a noun is of what holds things up off the ground: "shelf", "windowsill". */
 int resting_holds(const char *lemma);
 
-/* out (a->n) in [0,1]: how true it is that each stands on, or below, such a thing, where it is no object here;
- * UNKNOWN_RELATION for other relations, and where nothing is raised. */
+/* out (a->n) in [0,1]: how true it is that each stands on, or below, such a thing, where it is no object
+ * here; UNKNOWN_RELATION for other relations, and where nothing is raised. */
 void resting_relate(const struct arrangement *a, enum parse_relation kind, double *out);
 
 #endif

@@ -42,7 +42,7 @@ struct vocabulary_kind {
 	struct wordnet_noun noun;
 	struct wordnet_adjective adjective;
 	struct things_rows things;
-	int finish; /* finish_of */
+	int finish;		 /* finish_of */
 	struct uses uses, parts; /* found when they are first asked for; n < 0 before */
 };
 

@@ -6,8 +6,8 @@ enum { STRIPES, SPOTS, PLAIN, SHINY, DULL, FINISHES };
 
 static const char *const words[FINISHES] = {
 	[STRIPES] = " striped stripy stripey stripe banded band ringed ring hooped hoop barred lined ",
-	[SPOTS] = " spotted spotty spot dotted dotty dot speckled speckle flecked fleck mottled freckled freckle "
-		  "dappled blotchy blotch splotchy patchy polka-dot ",
+	[SPOTS] =
+		" spotted spotty spot dotted dotty dot speckled speckle flecked mottled freckled blotchy blotch ",
 	[PLAIN] = " plain solid unpatterned uniform unicoloured monochrome ",
 	[SHINY] = " shiny glossy polished gleaming glittering lustrous sparkling ",
 	[DULL] = " dull matt matte unpolished lustreless ",

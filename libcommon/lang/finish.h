@@ -1,5 +1,5 @@
-/* Everyday words of how a surface looks, where WordNet's adjectives are not near one another, or where the one
- * is a noun: rings, "banded" and "striped". English. */
+/* Everyday words of how a surface looks, where WordNet's adjectives are not near one another, or where the
+ * one is a noun: rings, "banded" and "striped". English. */
 #ifndef LANG_FINISH_H
 #define LANG_FINISH_H
 

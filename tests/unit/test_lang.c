@@ -48,8 +48,8 @@ static void colours(void)
 
 static void kinds(void)
 {
-	CHECK(finish_of("ring") >= 0 && finish_of("jar") == -1 && finish_of("") == -1 && finish_of("ban") == -1 &&
-			finish_fits(finish_of("ring"), finish_of("banded")) == 1 &&
+	CHECK(finish_of("ring") >= 0 && finish_of("jar") == -1 && finish_of("") == -1 &&
+			finish_of("ban") == -1 && finish_fits(finish_of("ring"), finish_of("banded")) == 1 &&
 			finish_fits(finish_of("plain"), finish_of("striped")) == -1 &&
 			!finish_fits(finish_of("shiny"), finish_of("striped")) && !finish_fits(-1, -1),
 		"looks");
