@@ -249,12 +249,14 @@ int parse_carried(struct parse *p, struct err *e)
 	struct parse_phrase words = {0};
 	if (c.second >= 0 && take_words(p, &words, &p->phrases[c.second], c.from, c.place, e))
 		return -1;
-	if (settle_first(p, &c, &is_so, e) || !is_so)
-		return is_so ? -1 : 0;
+	const int bad = settle_first(p, &c, &is_so, e) || (is_so && make_room(p, e));
+	if (bad || !is_so) {
+		free(words.noun.item);
+		free(words.attributes.item);
+		return bad ? -1 : 0;
+	}
 	keep_clauses(p, &p->phrases[0].clauses, c.joint);
 	parse_list_cut(&p->unexplained, c.joint);
-	if (make_room(p, e))
-		return -1;
 	struct parse_phrase *f = &p->phrases[0];
 	const int is_new = !f->also.n, other = is_new ? p->phrase_count : f->also.item[0];
 	const int again = p->phrase_count + is_new, clause = p->clause_count;
