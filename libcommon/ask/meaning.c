@@ -136,8 +136,12 @@ static int is_scene(const struct meaning *m, int phrase)
 
 static enum relate_width width_of(const struct parse *p, const struct parse_phrase *f)
 {
+	static const char *const half[] = {"half", NULL};
 	int directions = 0;
 
+	for (int w = 0; w < p->word_count; w++) /* "in the left half": not the leftmost one */
+		if (meaning_word_is(&p->words[w], half))
+			return RELATE_HALF_PLANE;
 	for (int k = 0; k < f->clauses.n; k++) {
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
 		directions += c->relation <= PARSE_BEHIND && !c->negated ? c->anchors.n : 0;

@@ -25,7 +25,11 @@ void vocabulary_free(struct vocabulary *v)
 	free(v->kinds);
 	for (size_t o = 0; v->heads && o < v->lifted->objects; o++)
 		free(v->heads[o]);
+	for (size_t o = 0; v->contents && o < v->lifted->objects; o++)
+		free(v->contents[o]);
 	free(v->heads);
+	free(v->contents);
+	free(v->content_kinds);
 	free(v->head_kinds);
 	free(v->scratch);
 	free(v->about);
@@ -339,27 +343,39 @@ static int find_about(struct vocabulary *v, struct err *e)
 	return 0;
 }
 
-/* The nouns that objects' names end in. */
+static char *lower_copy(const char *word, size_t length, struct err *e)
+{
+	char *copy = mem_strdup(word, e);
+
+	for (size_t i = 0; copy && i < length; i++)
+		copy[i] = vocabulary_lower(copy[i]);
+	if (copy)
+		copy[length] = 0;
+	return copy;
+}
+
+/* The nouns that objects' names end in, and what is in them. */
 static int read_names(struct vocabulary *v, struct err *e)
 {
 	for (size_t o = 0; o < v->lifted->objects; o++) {
-		const char *name = v->lifted->names[o], *head = name;
-		size_t length = 0;
+		const char *name = v->lifted->names[o], *head = name, *before = name;
+		size_t length = 0, length_before = 0;
 		for (const char *p = name; *p; p += strspn(p, " -_")) {
 			const size_t n = strcspn(p, " -_");
 			if (n && (*p < '0' || *p > '9')) {
+				before = head;
+				length_before = length;
 				head = p;
 				length = n;
 			}
 			p += n;
 		}
-		v->heads[o] = mem_strdup(head, e);
+		v->heads[o] = lower_copy(head, length, e);
 		if (!v->heads[o])
 			return -1;
-		v->heads[o][length] = 0;
-		for (char *p = v->heads[o]; *p; p++)
-			*p = vocabulary_lower(*p);
-		if (add_kind(v, v->heads[o], &v->head_kinds[o], e))
+		v->contents[o] = lower_copy(before, kinds_hold(v->heads[o]) ? length_before : 0, e);
+		if (!v->contents[o] || add_kind(v, v->heads[o], &v->head_kinds[o], e) ||
+			add_kind(v, v->contents[o], &v->content_kinds[o], e))
 			return -1;
 	}
 	return 0;
@@ -379,9 +395,11 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	v->word = mem_alloc(width, sizeof *v->word, "vocabulary", e);
 	v->heads = mem_zalloc(l->objects, sizeof *v->heads, "vocabulary", e);
 	v->head_kinds = mem_alloc(l->objects, sizeof *v->head_kinds, "vocabulary", e);
+	v->contents = mem_zalloc(l->objects, sizeof *v->contents, "vocabulary", e);
+	v->content_kinds = mem_alloc(l->objects, sizeof *v->content_kinds, "vocabulary", e);
 	v->other = mem_alloc(l->objects, sizeof *v->other, "vocabulary", e);
-	if (!v->heads || !v->head_kinds || !v->other || !v->parses || !v->mean || !v->sentence_mean ||
-		!v->sentences || !v->scratch || !v->word)
+	if (!v->heads || !v->head_kinds || !v->contents || !v->content_kinds || !v->other || !v->parses ||
+		!v->mean || !v->sentence_mean || !v->sentences || !v->scratch || !v->word)
 		return -1;
 	find_means(v);
 	if (read_names(v, e) || read_sentences(v, parser, e))

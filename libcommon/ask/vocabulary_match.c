@@ -75,6 +75,19 @@ static void share_kin(const struct vocabulary *v, double *own, double *match)
 				match[k] = fmax(match[k], KIN_WORTH * own[o]);
 }
 
+/* How far a word is of what a thing holds by its name: the eraser of an "eraser box". */
+static double holds(const struct vocabulary *v, const struct vocabulary_kind *word, size_t object)
+{
+	const char *content = v->contents[object];
+
+	if (!*content || colour_word(content) >= 0)
+		return 0;
+	const double x = strcmp(word->lemma, content) != 0
+				 ? knowledge(v, word, &v->kinds[v->content_kinds[object]], 0)
+				 : 1;
+	return CONTENT_WORTH * x;
+}
+
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
 {
 	const struct lifted *l = v->lifted;
@@ -91,7 +104,8 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		const int named = v->has_names ? is_in_name(word->lemma, l->names[o]) : 0;
 		match[o] = named == 2 ? 1 : named ? NAME_PART : 0;
 		if (v->has_names && named < 2)
-			match[o] = fmax(match[o], knowledge(v, &known, &v->kinds[v->head_kinds[o]], 0));
+			match[o] = fmax(fmax(match[o], holds(v, &known, o)),
+				knowledge(v, &known, &v->kinds[v->head_kinds[o]], 0));
 	}
 	match[objects] = 0;
 	memset(v->other, 0, objects * sizeof *v->other);

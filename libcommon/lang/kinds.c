@@ -123,6 +123,18 @@ int kinds_have(const char *lemma)
 	return 0;
 }
 
+int kinds_hold(const char *lemma)
+{
+	static const char *const containers[] = {"bag", "basket", "bottle", "bowl", "box", "bucket", "can",
+		"carton", "case", "crate", "cup", "glass", "jar", "jug", "mug", "pack", "packet", "pot",
+		"sack", "tin", "tray", "tub", "tube", "vase", NULL};
+
+	for (int i = 0; containers[i]; i++)
+		if (!strcmp(lemma, containers[i]))
+			return 1;
+	return 0;
+}
+
 int kinds_share(const char *a, const char *b)
 {
 	char x[40], y[40];

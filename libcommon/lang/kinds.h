@@ -13,6 +13,9 @@ const char *kinds_group(size_t group);
 /* Whether a lemma is in any group. */
 int kinds_have(const char *lemma);
 
+/* Whether things called so hold others: a jar of tea is a jar, and an eraser box has an eraser. */
+int kinds_hold(const char *lemma);
+
 /* Whether two lemmas are in one group. */
 int kinds_share(const char *a, const char *b);
 

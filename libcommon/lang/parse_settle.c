@@ -2,6 +2,7 @@
  * what the thing is compared with, and from where one counts. */
 #include "lang/analysis.h"
 #include "lang/closed.h"
+#include "lang/kinds.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -231,19 +232,15 @@ static int settle_except(struct parse *p, struct err *e)
 /* A jar of tea is a jar: what fills it only says which. */
 static void settle_content(const struct parse *p, struct parse_phrase *f)
 {
-	static const char *const containers[] = {"bag", "basket", "bottle", "bowl", "box", "bucket", "can",
-		"carton", "case", "crate", "cup", "glass", "jar", "jug", "mug", "pack", "packet", "pot",
-		"sack", "tin", "tray", "tub", "tube", "vase", NULL};
 	const int content = f->noun.n ? f->noun.item[f->noun.n - 1] : 0;
 
 	for (int k = 0; k < f->attributes.n && is(p, content - 1, "of"); k++) {
 		int *const word = &f->attributes.item[k];
-		for (int i = 0; *word == content - 2 && containers[i]; i++)
-			if (!strcmp(p->words[*word].lemma, containers[i])) {
-				f->noun.item[f->noun.n - 1] = *word;
-				*word = content;
-				return;
-			}
+		if (*word == content - 2 && kinds_hold(p->words[*word].lemma)) {
+			f->noun.item[f->noun.n - 1] = *word;
+			*word = content;
+			return;
+		}
 	}
 }
 

@@ -396,6 +396,33 @@ static void general_nouns(void)
 	vocabulary_free(&v);
 }
 
+/* The eraser of an "eraser tin", by its name or a word for the same, but not the green of a "green tin". */
+static void contents(void)
+{
+	static char *held[] = {"mug", "Eraser tin", "crate", "green tin 2"};
+	static const char *const asked[] = {"eraser", "rubber", "green"};
+	static float word_vector[WIDTH];
+	struct lifted l = lifted;
+	struct vocabulary v;
+	struct err e;
+	double match[OBJECTS + 1];
+
+	l.names = held;
+	CHECK(!vocabulary_make(&v, &l, &parser, &e), "%s", e.message);
+	for (int i = 0; i < 3; i++) {
+		char *text = (char *)asked[i];
+		struct parse_word word = {
+			.text = text, .lemma = text, .pieces = (int)encode(text, word_vector)};
+		const struct parse parse = {.word_count = 1, .words = &word};
+		const struct vocabulary_sentence s = {&parse, word_vector, 1};
+		vocabulary_noun(&v, &s, 0, match);
+		CHECK(i < 2 ? match[1] > 0.5 && match[1] < 1 && match[0] < 0.5 && match[3] < 0.5
+			    : match[3] < 0.5,
+			"%s: %g, %g, %g", text, match[0], match[1], match[3]);
+	}
+	vocabulary_free(&v);
+}
+
 /* The colour of a part is a little the thing's, that of what it is near is not. */
 static void colours_of_parts(void)
 {
@@ -474,6 +501,7 @@ int main(void)
 	kept();
 	is_about();
 	general_nouns();
+	contents();
 	colours_of_parts();
 	words_of_others();
 	places_are_no_parts();

@@ -53,6 +53,7 @@ static void kinds(void)
 			finish_fits(finish_of("plain"), finish_of("striped")) == -1 &&
 			!finish_fits(finish_of("shiny"), finish_of("striped")) && !finish_fits(-1, -1),
 		"looks");
+	CHECK(kinds_hold("jar") && !kinds_hold("jam") && !kinds_hold(""), "what holds others");
 	CHECK(kinds_share("cube", "box") && kinds_share("box", "cube") && !kinds_share("cube", "ball"),
 		"kinds");
 	CHECK(!kinds_share("", "box") && !kinds_share("ox", "box") && !kinds_share("box block", "box"),
