@@ -3,7 +3,7 @@
 #
 # Asks the sentences of tests/bench/said/SET: of scenes of gs-synth that are made and lifted here (SCENE-SEED.jsonl) and, with
 # DATA, of a desk in the layout of pipelines/desk.mk (desk.jsonl). They were written from the pictures and a table of the
-# objects' places, without knowledge of the program. Those of `looked-at` its authors have read and worked on; those of
+# objects' places, without knowledge of the program. Those of `looked-at` and `later` its authors have read and worked on; those of
 # `kept-back` nobody has who works on the program: please keep it so, and read only the figures.
 #
 # Prints, for each file and in all, how many were answered with exactly the meant objects: of those that mean one thing (plain and
