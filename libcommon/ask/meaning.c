@@ -134,14 +134,14 @@ static int is_scene(const struct meaning *m, int phrase)
 	       (head >= 0 && m->known[phrase] < 0.5 && meaning_word_is(&p->words[head], places));
 }
 
-static enum relate_width width_of(const struct parse *p, const struct parse_phrase *f)
+static enum relate_width width_of(
+	const struct parse *p, const struct parse_phrase *f, const struct parse_clause *said)
 {
 	static const char *const half[] = {"half", NULL};
 	int directions = 0;
 
-	for (int w = 0; w < p->word_count; w++) /* "in the left half": not the leftmost one */
-		if (meaning_word_is(&p->words[w], half))
-			return RELATE_HALF_PLANE;
+	if (said->words.n && parse_word_is(p, said->words.item[0] + 1, half))
+		return RELATE_HALF_PLANE; /* "in the left half": not the leftmost one */
 	for (int k = 0; k < f->clauses.n; k++) {
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
 		directions += c->relation <= PARSE_BEHIND && !c->negated ? c->anchors.n : 0;
@@ -194,7 +194,7 @@ static double judge_relation(
 	const struct parse *p = m->sentence->parse;
 	struct relate_anchor anchors[ANCHORS];
 	const struct parse_phrase *f = &p->phrases[phrase];
-	struct relation r = {relation_of(p, c), degree_of(c), width_of(p, f), 0, 0, anchors};
+	struct relation r = {relation_of(p, c), degree_of(c), width_of(p, f, c), 0, 0, anchors};
 	double known = 1;
 
 	if (counted_by(p, f, counts_along) == c)
