@@ -285,6 +285,11 @@ struct view_weights weights_view(const struct weights *w)
 		(size_t)w->width * (size_t)w->height, (size_t)w->gaussians, w->indptr, w->index, w->weight};
 }
 
+struct view_matrix weights_matrix(const struct weights *w)
+{
+	return (struct view_matrix){w->height, w->width, (size_t)w->gaussians, weights_view(w), w->tiles};
+}
+
 /* The weights as the file has them: its own, or a converted copy in *owned. */
 static const void *convert(const struct weights *w, int64_t nnz, void **owned, struct err *e)
 {

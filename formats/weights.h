@@ -7,8 +7,7 @@
 #include "formats/precision.h"
 #include "formats/safetensors.h"
 #include "formats/scene.h"
-#include "splat/view_tiles.h"
-#include "splat/view_weights.h"
+#include "splat/view_matrix.h"
 
 #include <stdint.h>
 
@@ -69,6 +68,8 @@ int weights_each(const char *dir, const struct scene *scene, int (*needs)(const 
 
 /* What the library blends with; referred to. */
 struct view_weights weights_view(const struct weights *w);
+/* The same as rows or, after weights_open_tiles, as tiles. */
+struct view_matrix weights_matrix(const struct weights *w);
 
 /* Writes DIR/VIEW.safetensors, with the weights in w's precision; u8 has whole numbers of 1/255; or as
  * they are packed. */

@@ -4,6 +4,7 @@
 #include "formats/weights_pack.h"
 
 #include "base/mem.h"
+#include "base/ones.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -67,7 +68,7 @@ static int put_gaussian(struct weights_pack *p, const uint8_t levels[PIXELS], st
 		before = level;
 	}
 	p->bytes[MAPS] += 8;
-	p->bytes[LEVELS] += (size_t)__builtin_popcountll(map);
+	p->bytes[LEVELS] += ones(map);
 	return 0;
 }
 

@@ -3,6 +3,7 @@
 #include "formats/weights_pack.h"
 
 #include "base/mem.h"
+#include "base/ones.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -110,7 +111,7 @@ static int take_maps(struct unpacking *u, int row, struct err *e)
 			const uint64_t map = view_tiles_map(u->to, i);
 			if (!map || map & ~inside)
 				return broken(u, e);
-			u->to->level_begin[row + 1] += (size_t)__builtin_popcountll(map);
+			u->to->level_begin[row + 1] += ones(map);
 		}
 	}
 	return 0;

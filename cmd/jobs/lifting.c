@@ -172,9 +172,8 @@ struct lift_round {
 	struct lifting *l;
 	const struct report *to;
 	int round;
-	struct lift_mask *masks;      /* (workers, set.n) */
-	struct lift_scratch *scratch; /* (workers) */
-	struct weights_room *rooms;   /* (workers) */
+	struct lift_mask *masks;    /* (workers, set.n) */
+	struct weights_room *rooms; /* (workers) */
 };
 
 static int lift_view(void *context, int worker, size_t view, struct err *e)
@@ -182,21 +181,16 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 	const struct lift_round *r = context;
 	struct lifting *l = r->l;
 	struct lift_mask *masks = r->masks + (size_t)worker * l->set.n;
-	struct lift_scratch *scratch = &r->scratch[worker];
 	const size_t n = masks_of_view(l, view, masks);
 	struct weights weights;
 
 	if (!n)
 		return 0;
-	/* the first round needs rows of pixels */
-	if (r->round ? weights_open_tiles(&weights, &r->rooms[worker], l->files->weights, &l->scene, view, e)
-		     : weights_open_in(&weights, &r->rooms[worker], l->files->weights, &l->scene, view, e))
+	if (weights_open_tiles(&weights, &r->rooms[worker], l->files->weights, &l->scene, view, e))
 		return -1;
-	const struct view_weights blend = weights_view(&weights);
-	const int bad = weights.tiles
-				? lift_objects_again(&l->lift, scratch, view, weights.tiles, masks, n, e)
-				: lift_objects_view(&l->lift, scratch, view, &blend, weights.height,
-					  weights.width, masks, n, e);
+	const struct view_matrix w = weights_matrix(&weights);
+	const int bad = r->round ? lift_objects_vote(&l->lift, view, &w, e)
+				 : lift_objects_view(&l->lift, view, &w, masks, n, e);
 	weights_close(&weights);
 	return bad;
 }
@@ -217,17 +211,13 @@ static int lift(struct lifting *l, const struct report *to, struct err *e)
 	const struct each by = {&r, each_workers(n), lift_view, step};
 
 	r.masks = mem_alloc((size_t)by.workers, l->set.n * sizeof *r.masks, "masks", e);
-	r.scratch = mem_zalloc((size_t)by.workers, sizeof *r.scratch, "masks", e);
 	r.rooms = mem_zalloc((size_t)by.workers, sizeof *r.rooms, "views", e);
-	int bad = !r.masks || !r.scratch || !r.rooms ||
+	int bad = !r.masks || !r.rooms ||
 		  lift_objects_init(&l->lift, l->scene.splats.n, l->objects + l->spare, n, e);
 	for (; r.round < LIFT_ROUNDS && !bad; r.round++)
 		bad = each_run(&by, n, e) || lift_objects_settle(&l->lift, e);
-	for (int i = 0; i < by.workers && r.scratch && r.rooms; i++) {
-		lift_scratch_free(&r.scratch[i]);
+	for (int i = 0; i < by.workers && r.rooms; i++)
 		weights_room_free(&r.rooms[i]);
-	}
-	free(r.scratch);
 	free(r.rooms);
 	free(r.masks);
 	return bad || lift_objects_finish(&l->lift, &l->model, e) ? -1 : 0;

@@ -80,10 +80,10 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 
 	if (!b->is_there[view])
 		return 0;
-	if (weights_open_in(&weights, &b->rooms[worker], w->options->weights, &w->scene, view, e))
+	if (weights_open_tiles(&weights, &b->rooms[worker], w->options->weights, &w->scene, view, e))
 		return -1;
-	const struct view_weights blend = weights_view(&weights);
-	const int bad = regions_lift(&b->w->regions, view, &blend, weights.height, weights.width, e);
+	const struct view_matrix blend = weights_matrix(&weights);
+	const int bad = regions_lift(&b->w->regions, view, &blend, e);
 	weights_close(&weights);
 	return bad;
 }
@@ -105,15 +105,14 @@ static int lift_regions(struct by_views *b, struct err *e)
 static int render(const struct pseudomasks *w, size_t view, const struct weights *weights, struct shown *to,
 	struct err *e)
 {
-	const struct view_weights blend = weights ? weights_view(weights) : (struct view_weights){0};
-	const int height = weights ? weights->height : 0, width = weights ? weights->width : 0;
+	const struct view_matrix blend = weights ? weights_matrix(weights) : (struct view_matrix){0};
 
 	if (w->options->method == PSEUDOMASK_SCENE)
-		return regions_render(&w->regions, view, weights ? &blend : NULL, height, width, to->masks,
-			to->scores, &to->rendered, e);
+		return regions_render(
+			&w->regions, view, weights ? &blend : NULL, to->masks, to->scores, &to->rendered, e);
 	for (size_t i = 0; i < w->propagation.count; i++)
 		to->scores[i] = w->propagation.starts[i].vote;
-	return propagate_render(&w->propagation, view, &blend, height, width, to->masks, e);
+	return propagate_render(&w->propagation, view, &blend.rows, blend.height, blend.width, to->masks, e);
 }
 
 /* How many masks a view may have. */
@@ -131,6 +130,15 @@ static void shown_free(struct shown *s, size_t n)
 	*s = (struct shown){0};
 }
 
+static int open_weights(
+	const struct by_views *b, struct weights *weights, int worker, size_t view, struct err *e)
+{
+	const struct pseudomasks *w = b->w;
+
+	return (w->options->method == PSEUDOMASK_SCENE ? weights_open_tiles : weights_open_in)(
+		weights, &b->rooms[worker], w->options->weights, &w->scene, view, e);
+}
+
 /* Weights are read only where something has to be rendered. */
 static int show_view(void *context, int worker, size_t view, struct err *e)
 {
@@ -144,9 +152,7 @@ static int show_view(void *context, int worker, size_t view, struct err *e)
 		return 0;
 	to->masks = mem_zalloc(shown_count(w), sizeof *to->masks, "masks", e);
 	to->scores = mem_alloc(shown_count(w), sizeof *to->scores, "masks", e);
-	const int bad = !to->masks || !to->scores ||
-			(needs && weights_open_in(&weights, &b->rooms[worker], w->options->weights, &w->scene,
-					  view, e)) ||
+	const int bad = !to->masks || !to->scores || (needs && open_weights(b, &weights, worker, view, e)) ||
 			render(w, view, needs ? &weights : NULL, to, e);
 	weights_close(&weights);
 	return bad ? -1 : 0;

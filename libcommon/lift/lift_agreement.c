@@ -1,70 +1,93 @@
-/* What is claimed for each object is rendered first, whether the weights come as rows of pixels or as tiles,
- * and then compared with the masks: a strip of the picture, which is a row of tiles, at a time. What is
- * rendered of a strip stays in the cache, and only where something was. */
+/* A tile of the picture at a time: what is claimed for each object is rendered, and then compared with the
+ * masks, where there is anything of it. */
 #include "base/mem.h"
-#include "base/threads.h"
 #include "lift/lift_private.h"
+#include "mask/bits.h"
 
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Of an object's mask and what is rendered, over a strip: the mask alone is `either` where nothing is. */
+enum { PIXELS = VIEW_TILE_PIXELS };
+
+/* Of an object's mask and what is rendered: the mask alone is `either` where nothing is. */
 struct overlap {
 	double both, either;
 };
 
 struct work {
 	const struct lift_objects *l;
-	const struct lift_weights *of;
-	const float *images;	  /* (n,P) */
-	size_t n, pixels;	  /* of the picture */
-	int32_t *slots;		  /* (O) where the view has an object's mask, or LIFT_NOBODY */
-	struct overlap *overlaps; /* (strips,n), less what the masks alone have */
-	char *is_touched;	  /* (threads,n) all 0 between strips */
+	const struct lift_view *v;
+	const struct view_matrix *w;
+	int across, down; /* tiles */
+	int32_t *slots;	  /* (O) where the view has an object's mask, or LIFT_NOBODY */
+	struct view_tiles_lookup of;
 };
 
-/* A strip of rows, and one thread's room for it. */
-struct strip {
-	size_t first, pixels; /* of the picture; S, but for the last strip */
-	float *rendered;      /* (n,S) of each mask's object: weights times shares; all 0 between strips */
-	float *total;	      /* (S) all weights */
-	char *is_touched;     /* (n) whether anything was rendered */
-	size_t room;	      /* S */
+/* What is rendered of a tile, by one thread. */
+struct drawn {
+	double total[PIXELS];	  /* all weights */
+	float (*objects)[PIXELS]; /* (n) weights times shares of each mask's object; 0 between tiles */
+	int32_t *touched;	  /* (n) those that are not all 0, and */
+	size_t touched_count;	  /* how many */
+	char *is_touched;	  /* (n) */
+	struct overlap *overlaps; /* (n) less what the masks alone have, over a row of tiles */
 };
 
-/* Which mask's object has claimed a Gaussian, if any, and its share. */
-static int32_t claimed(const struct work *work, int32_t gaussian, float *share)
+static void drawn_free(struct drawn *d)
 {
-	const struct lift_claim claim = work->l->claims[gaussian];
-
-	*share = claim.share;
-	return claim.object == LIFT_NOBODY ? LIFT_NOBODY : work->slots[claim.object];
+	free(d->objects);
+	free(d->touched);
+	free(d->is_touched);
 }
 
-static void render_pixels(const struct work *work, const struct strip *s)
+static int drawn_make(struct drawn *d, size_t n, struct err *e)
 {
-	const struct view_weights *w = work->of->rows;
+	*d = (struct drawn){.objects = mem_zalloc(n, sizeof *d->objects, "masks", e),
+		.touched = mem_alloc(n, sizeof *d->touched, "masks", e),
+		.is_touched = mem_zalloc(n, 1, "masks", e)};
+	return d->objects && d->touched && d->is_touched ? 0 : -1;
+}
 
-	for (size_t p = 0; p < s->pixels; p++) {
-		double total = 0;
-		for (int64_t k = w->indptr[s->first + p]; k < w->indptr[s->first + p + 1]; k++) {
-			float share;
-			const int32_t slot = claimed(work, w->index[k], &share);
-			total += (double)w->weight[k];
-			if (slot == LIFT_NOBODY)
-				continue;
-			s->rendered[(size_t)slot * s->room + p] += w->weight[k] * share;
-			s->is_touched[slot] = 1;
-		}
-		s->total[p] = (float)total;
+/* Where a Gaussian's weights times *share go; NULL: nowhere. */
+static float *find_place(const struct work *work, struct drawn *d, int32_t gaussian, float *share)
+{
+	const struct lift_claim claim = work->l->claims[gaussian];
+	const int32_t slot = claim.object == LIFT_NOBODY ? LIFT_NOBODY : work->slots[claim.object];
+
+	*share = claim.share;
+	if (slot == LIFT_NOBODY)
+		return NULL;
+	if (!d->is_touched[slot])
+		d->touched[d->touched_count++] = slot;
+	d->is_touched[slot] = 1;
+	return d->objects[slot];
+}
+
+static void draw_pixel(const struct work *work, struct drawn *d, size_t p, size_t pixel)
+{
+	const struct view_weights *w = &work->w->rows;
+
+	for (int64_t k = w->indptr[p]; k < w->indptr[p + 1]; k++) {
+		float share, *place = find_place(work, d, w->index[k], &share);
+		d->total[pixel] += (double)w->weight[k];
+		if (place)
+			place[pixel] += w->weight[k] * share;
 	}
 }
 
-/* One entry of a tile, by itself so that all of it stays in registers; corner: the tile's first pixel of what
- * is rendered. Returns where the levels of the next begin. */
-__attribute__((noinline)) static const uint8_t *add_entry(const struct view_tiles_lookup *of, uint64_t map,
-	const uint8_t *more, double *total, float share, float *corner)
+static void draw_rows(const struct work *work, struct drawn *d, int row, int column)
+{
+	for (int i = 0; i < PIXELS; i++) {
+		const int x = column * VIEW_TILE + i % VIEW_TILE, y = row * VIEW_TILE + i / VIEW_TILE;
+		if (x < work->w->width && y < work->w->height)
+			draw_pixel(work, d, (size_t)y * (size_t)work->w->width + (size_t)x, (size_t)i);
+	}
+}
+
+/* One entry of a tile, by itself so that all of it stays in registers. Returns where the levels of the next
+ * begin. */
+__attribute__((noinline)) static const uint8_t *draw_entry(const struct view_tiles_lookup *of, uint64_t map,
+	const uint8_t *more, double *total, float share, float *place)
 {
 	uint8_t level = 0;
 
@@ -72,134 +95,141 @@ __attribute__((noinline)) static const uint8_t *add_entry(const struct view_tile
 		const int pixel = __builtin_ctzll(map);
 		level = (uint8_t)(level + *more++);
 		total[pixel] += (double)of->weight[level];
-		if (corner)
-			corner[of->pixel[pixel]] += of->weight[level] * share;
+		if (place)
+			place[pixel] += of->weight[level] * share;
 	}
 	return more;
 }
 
-static void render_tiles(
-	const struct work *work, const struct view_tiles_lookup *of, int row, const struct strip *s)
+static const uint8_t *draw_tile(const struct work *work, struct drawn *d, size_t tile, const uint8_t *more)
 {
-	const struct view_tiles *t = work->of->tiles;
-	const uint8_t *more = t->levels + t->level_begin[row];
+	const struct view_tiles *t = work->w->tiles;
 
-	for (int column = 0; column < t->across; column++) {
-		const size_t tile = (size_t)row * (size_t)t->across + (size_t)column;
-		const int x = column * VIEW_TILE, y = row * VIEW_TILE;
-		double total[VIEW_TILE_PIXELS] = {0};
-		for (size_t i = t->begin[tile]; i < t->begin[tile + 1]; i++) {
-			float share, *corner = NULL;
-			const int32_t slot = claimed(work, t->ids[i], &share);
-			if (slot != LIFT_NOBODY) {
-				corner = s->rendered + (size_t)slot * s->room + x;
-				s->is_touched[slot] = 1;
-			}
-			more = add_entry(of, view_tiles_map(t, i), more, total, share, corner);
-		}
-		for (int i = 0; i < VIEW_TILE_PIXELS; i++)
-			if (x + i % VIEW_TILE < t->width && y + i / VIEW_TILE < t->height)
-				s->total[(size_t)x + (size_t)of->pixel[i]] = (float)total[i];
+	for (size_t i = t->begin[tile]; i < t->begin[tile + 1]; i++) {
+		float share, *place = find_place(work, d, t->ids[i], &share);
+		more = draw_entry(&work->of, view_tiles_map(t, i), more, d->total, share, place);
 	}
+	return more;
+}
+
+/* The mean of an object's masks, in a tile. */
+static void fill_mask(const struct work *work, size_t k, size_t tile, float mask[PIXELS])
+{
+	const size_t tiles = (size_t)work->across * (size_t)work->down, begin = work->v->starts[k],
+		     end = work->v->starts[k + 1];
+
+	memset(mask, 0, PIXELS * sizeof *mask);
+	for (size_t m = begin; m < end; m++)
+		for (uint64_t left = work->v->bits[m * tiles + tile]; left; left &= left - 1)
+			mask[__builtin_ctzll(left)]++;
+	for (int i = 0; i < PIXELS && end - begin > 1; i++)
+		mask[i] /= (float)(end - begin);
 }
 
 /* How what is rendered of object k changes the overlap of its mask alone. */
-static struct overlap compare(const struct work *work, const struct strip *s, size_t k)
+static void compare(const struct work *work, struct drawn *d, size_t k, size_t tile)
 {
-	const float *image = work->images + k * work->pixels + s->first,
-		    *rendered = s->rendered + k * s->room;
-	struct overlap sum = {0, 0};
+	struct overlap *sum = &d->overlaps[k];
+	float mask[PIXELS];
 
-	for (size_t p = 0; p < s->pixels; p++) {
-		if (!(rendered[p] > 0))
+	fill_mask(work, k, tile, mask);
+	for (int i = 0; i < PIXELS; i++) {
+		if (!(d->objects[k][i] > 0))
 			continue;
-		const double mask = (double)image[p], a = (double)(rendered[p] / s->total[p]);
-		sum.both += a < mask ? a : mask;
-		sum.either += a > mask ? a - mask : 0;
-	}
-	return sum;
-}
-
-/* Strip `row`, and all is 0 again. */
-static void take_strip(
-	const struct work *work, const struct view_tiles_lookup *of, int row, const struct strip *s)
-{
-	if (of)
-		render_tiles(work, of, row, s);
-	else
-		render_pixels(work, s);
-	for (size_t k = 0; k < work->n; k++) {
-		work->overlaps[(size_t)row * work->n + k] =
-			s->is_touched[k] ? compare(work, s, k) : (struct overlap){0, 0};
-		if (s->is_touched[k])
-			memset(s->rendered + k * s->room, 0, s->room * sizeof *s->rendered);
-		s->is_touched[k] = 0;
+		const double m = (double)mask[i], a = (double)d->objects[k][i] / d->total[i];
+		sum->both += a < m ? a : m;
+		sum->either += a > m ? a - m : 0;
 	}
 }
 
-static void take_strips(const struct work *work, struct lift_scratch *s, size_t room, int strips, int threads)
+static void take_row(const struct work *work, struct drawn *d, int row)
 {
-	struct view_tiles_lookup of;
+	const struct view_tiles *t = work->w->tiles;
+	const uint8_t *more = t ? t->levels + t->level_begin[row] : NULL;
 
-	if (work->of->tiles)
-		view_tiles_lookup_make(&of, work->of->tiles);
-	memset(s->rendered, 0, (size_t)threads * work->n * room * sizeof *s->rendered);
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-	for (int row = 0; row < strips; row++) {
-		const size_t mine = (size_t)omp_get_thread_num(), first = (size_t)row * room;
-		take_strip(work, work->of->tiles ? &of : NULL, row,
-			&(struct strip){first, work->pixels - first < room ? work->pixels - first : room,
-				s->rendered + mine * work->n * room, s->total + mine * room,
-				work->is_touched + mine * work->n, room});
+	for (int column = 0; column < work->across; column++) {
+		const size_t tile = (size_t)row * (size_t)work->across + (size_t)column;
+		memset(d->total, 0, sizeof d->total);
+		if (t)
+			more = draw_tile(work, d, tile, more);
+		else
+			draw_rows(work, d, row, column);
+		for (size_t i = 0; i < d->touched_count; i++) {
+			const size_t k = (size_t)d->touched[i];
+			compare(work, d, k, tile);
+			memset(d->objects[k], 0, sizeof d->objects[k]);
+			d->is_touched[k] = 0;
+		}
+		d->touched_count = 0;
 	}
 }
 
-static double sum_image(const float *image, size_t pixels)
+/* overlaps (rows of tiles,n), zeroed. */
+static int take_rows(const struct work *work, struct overlap *overlaps, struct err *e)
 {
-	double sum = 0;
+	const size_t n = work->v->n;
+	int failed = 0;
 
-	for (size_t p = 0; p < pixels; p++)
-		if (image[p] > 0)
-			sum += (double)image[p];
-	return sum;
+#pragma omp parallel reduction(| : failed)
+	{
+		struct err mine;
+		struct drawn d;
+		failed = drawn_make(&d, n, &mine) != 0;
+#pragma omp for schedule(dynamic)
+		for (int row = 0; row < work->down; row++) {
+			d.overlaps = overlaps + (size_t)row * n;
+			if (!failed)
+				take_row(work, &d, row);
+		}
+		if (failed) {
+#pragma omp critical
+			*e = mine;
+		}
+		drawn_free(&d);
+	}
+	return failed ? -1 : 0;
 }
 
-static double agreement_of(const struct work *work, int strips, size_t k)
+/* The sum of the mean of an object's masks. */
+static double area_of(const struct work *work, size_t k)
 {
-	double both = 0, either = sum_image(work->images + k * work->pixels, work->pixels);
+	const size_t tiles = (size_t)work->across * (size_t)work->down,
+		     masks = work->v->starts[k + 1] - work->v->starts[k];
+	const uint8_t *bits = (const uint8_t *)(work->v->bits + work->v->starts[k] * tiles);
 
-	for (size_t row = 0; row < (size_t)strips; row++) {
-		both += work->overlaps[row * work->n + k].both;
-		either += work->overlaps[row * work->n + k].either;
+	return (double)bits_common(bits, bits, masks * tiles * sizeof *work->v->bits) / (double)masks;
+}
+
+static double agreement_of(const struct work *work, const struct overlap *overlaps, size_t k)
+{
+	double both = 0, either = area_of(work, k);
+
+	for (size_t row = 0; row < (size_t)work->down; row++) {
+		both += overlaps[row * work->v->n + k].both;
+		either += overlaps[row * work->v->n + k].either;
 	}
 	return either > 0 ? both / either : 1;
 }
 
-int lift_agreement(const struct lift_objects *l, const struct lift_view *v, const struct lift_weights *of,
-	struct lift_scratch *s, double *agreement, struct err *e)
+int lift_agreement(const struct lift_objects *l, const struct lift_view *v, const struct view_matrix *w,
+	double *agreement, struct err *e)
 {
-	const int strips = (of->height + VIEW_TILE - 1) / VIEW_TILE, threads = threads_available();
-	const size_t n = v->n, room = (size_t)of->width * VIEW_TILE;
-	struct work work = {l, of, s->images, n, (size_t)of->width * (size_t)of->height,
-		mem_alloc(l->objects, sizeof *work.slots, "masks", e),
-		mem_alloc((size_t)strips, n * sizeof *work.overlaps, "masks", e),
-		mem_zalloc((size_t)threads, n, "masks", e)};
-	const int bad =
-		!work.slots || !work.overlaps || !work.is_touched ||
-		lift_room((void **)&s->rendered, &s->rendered_room, (size_t)threads * n, room,
-			sizeof *s->rendered, e) ||
-		lift_room((void **)&s->total, &s->total_room, (size_t)threads, room, sizeof *s->total, e);
+	struct work work = {l, v, w, (w->width + VIEW_TILE - 1) / VIEW_TILE,
+		(w->height + VIEW_TILE - 1) / VIEW_TILE,
+		.slots = mem_alloc(l->objects, sizeof *work.slots, "masks", e)};
+	struct overlap *overlaps = mem_zalloc((size_t)work.down, v->n * sizeof *overlaps, "masks", e);
+	int bad = !work.slots || !overlaps;
 
 	for (size_t o = 0; o < l->objects && !bad; o++)
 		work.slots[o] = LIFT_NOBODY;
-	for (size_t k = 0; k < n && !bad; k++)
+	for (size_t k = 0; k < v->n && !bad; k++)
 		work.slots[v->objects[k]] = (int32_t)k;
-	if (!bad)
-		take_strips(&work, s, room, strips, threads);
-	for (size_t k = 0; k < n && !bad; k++)
-		agreement[k] = agreement_of(&work, strips, k);
+	if (w->tiles)
+		view_tiles_lookup_make(&work.of, w->tiles);
+	bad = bad || take_rows(&work, overlaps, e);
+	for (size_t k = 0; k < v->n && !bad; k++)
+		agreement[k] = agreement_of(&work, overlaps, k);
 	free(work.slots);
-	free(work.overlaps);
-	free(work.is_touched);
+	free(overlaps);
 	return bad ? -1 : 0;
 }

@@ -1,12 +1,10 @@
 #include "lift/lift_objects.h"
 
 #include "base/mem.h"
-#include "base/threads.h"
 #include "lift/lift_private.h"
+#include "mask/bits.h"
 
-#include <omp.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* So that the masks of an object that another one has taken over still vote, all alike. */
 static const float LEAST_VOTE = 0.01f;
@@ -33,6 +31,8 @@ static void view_free(struct lift_view *v)
 	for (size_t k = 0; k < v->n && v->rows; k++)
 		shares_free(&v->rows[k]);
 	free(v->objects);
+	free(v->starts);
+	free(v->bits);
 	free(v->rows);
 	free(v->vote);
 	free(v->agreement);
@@ -53,136 +53,76 @@ void lift_objects_free(struct lift_objects *l)
 	*l = (struct lift_objects){0};
 }
 
-void lift_scratch_free(struct lift_scratch *s)
+static int fill_bits(
+	struct lift_view *v, const struct lift_mask *masks, size_t n, int height, int width, struct err *e)
 {
-	free(s->images);
-	free(s->pixels);
-	free(s->rendered);
-	free(s->total);
-	*s = (struct lift_scratch){0};
-}
-
-int lift_room(void **block, size_t *room, size_t a, size_t b, size_t size, struct err *e)
-{
-	size_t n;
-
-	if (mem_size(a, b, &n))
-		return err_set(e, ERR_SYSTEM, "masks: out of memory");
-	return mem_room(block, room, n, size, "masks", e);
-}
-
-/* The mean of an object's masks, as an image. */
-static int fill_image(const struct lift_mask *masks, size_t n, int height, int width, uint8_t *pixels,
-	float *image, struct err *e)
-{
-	const size_t count = (size_t)height * (size_t)width;
-
-	for (size_t k = 0; k < n; k++) {
-		if (rle_decode_at(&masks[k].mask->rle, height, width, pixels, e))
-			return -1;
-		for (size_t p = 0; p < count; p++)
-			image[p] = k ? image[p] + (float)pixels[p] : (float)pixels[p];
-	}
-	for (size_t p = 0; p < count && n > 1; p++)
-		image[p] /= (float)n;
-	return 0;
-}
-
-/* A view's masks by object: those of the k-th are masks[starts[k]] to masks[starts[k + 1] - 1]. */
-struct groups {
-	const struct lift_mask *masks;
-	size_t n, *starts; /* (n+1) */
-};
-
-static int groups_make(struct groups *g, const struct lift_mask *masks, size_t n, struct err *e)
-{
-	*g = (struct groups){masks, 0, mem_alloc(n + 1, sizeof *g->starts, "masks", e)};
-	if (!g->starts)
-		return -1;
-	for (size_t k = 0; k < n; k++)
-		if (!k || masks[k].object != masks[k - 1].object)
-			g->starts[g->n++] = k;
-	g->starts[g->n] = n;
-	return 0;
-}
-
-static int fill_images(struct lift_scratch *s, const struct groups *g, int height, int width, struct err *e)
-{
-	const size_t count = (size_t)height * (size_t)width;
-	const int threads = threads_available();
+	const size_t tiles = bits_tiles(height, width);
 	int failed = 0;
 
-	if (lift_room((void **)&s->images, &s->image_room, g->n, count, sizeof *s->images, e) ||
-		lift_room((void **)&s->pixels, &s->pixel_room, (size_t)threads, count, 1, e))
-		return -1;
-#pragma omp parallel for schedule(dynamic) reduction(| : failed) num_threads(threads)
-	for (size_t k = 0; k < g->n; k++) {
+#pragma omp parallel for schedule(dynamic) reduction(| : failed)
+	for (size_t k = 0; k < n; k++) {
 		struct err mine;
-		if (fill_image(g->masks + g->starts[k], g->starts[k + 1] - g->starts[k], height, width,
-			    s->pixels + (size_t)omp_get_thread_num() * count, s->images + k * count, &mine)) {
+		uint8_t *pixels = mem_alloc((size_t)height * (size_t)width, 1, "masks", &mine);
+		if (!pixels || rle_decode_at(&masks[k].mask->rle, height, width, pixels, &mine)) {
 			failed = 1;
 #pragma omp critical
 			*e = mine;
-		}
+		} else
+			bits_pack_tiles(pixels, height, width, v->bits + k * tiles);
+		free(pixels);
 	}
 	return failed ? -1 : 0;
 }
 
-/* The first round: what the view's masks show. */
-static int add_view(struct lift_view *v, const struct view_weights *w, const struct groups *g,
-	const float *images, struct err *e)
+/* What the view and each object's masks show. */
+static int make_rows(struct lift_view *v, const struct view_matrix *w, struct err *e)
 {
-	*v = (struct lift_view){.n = g->n};
-	v->objects = mem_alloc(v->n, sizeof *v->objects, "views", e);
-	v->rows = mem_zalloc(v->n, sizeof *v->rows, "views", e);
-	v->vote = mem_alloc(v->n, sizeof *v->vote, "views", e);
-	v->agreement = mem_zalloc(v->n, sizeof *v->agreement, "views", e);
-	v->weight = mem_alloc(w->gaussians, sizeof *v->weight, "views", e);
-	if (!v->objects || !v->rows || !v->vote || !v->agreement || !v->weight ||
-		shares_of_view(v->weight, w, e) || shares_make(v->rows, w, images, v->n, e))
-		return -1;
-	for (size_t k = 0; k < v->n; k++) {
-		v->objects[k] = g->masks[g->starts[k]].object;
-		v->vote[k] = 1;
-	}
-	return 0;
+	struct shares_masks *masks = mem_alloc(v->n, sizeof *masks, "masks", e);
+
+	for (size_t k = 0; k < v->n && masks; k++)
+		masks[k] = (struct shares_masks){v->bits + v->starts[k] * bits_tiles(w->height, w->width),
+			v->starts[k + 1] - v->starts[k]};
+	const int bad = !masks || shares_make(v->weight, v->rows, w, masks, v->n, e);
+	free(masks);
+	return bad ? -1 : 0;
 }
 
-/* Later rounds: the votes of a view's masks, by how well they agree with what was lifted. */
-static int vote(const struct lift_objects *l, struct lift_view *v, const struct lift_weights *w,
-	struct lift_scratch *s, struct err *e)
+int lift_objects_view(struct lift_objects *l, size_t at, const struct view_matrix *w,
+	const struct lift_mask *masks, size_t n, struct err *e)
 {
-	if (lift_agreement(l, v, w, s, v->agreement, e))
+	struct lift_view *v = &l->views[at];
+
+	v->objects = mem_alloc(n, sizeof *v->objects, "views", e);
+	v->starts = mem_alloc(n + 1, sizeof *v->starts, "views", e);
+	v->bits = mem_alloc(n, bits_tiles(w->height, w->width) * sizeof *v->bits, "masks", e);
+	v->rows = mem_zalloc(n, sizeof *v->rows, "views", e);
+	v->vote = mem_alloc(n, sizeof *v->vote, "views", e);
+	v->agreement = mem_zalloc(n, sizeof *v->agreement, "views", e);
+	v->weight = mem_alloc(w->gaussians, sizeof *v->weight, "views", e);
+	if (!v->objects || !v->starts || !v->bits || !v->rows || !v->vote || !v->agreement || !v->weight)
+		return -1;
+	for (size_t k = 0; k < n; k++) {
+		if (k && masks[k].object == masks[k - 1].object)
+			continue;
+		v->objects[v->n] = masks[k].object;
+		v->vote[v->n] = 1;
+		v->starts[v->n++] = k;
+	}
+	v->starts[v->n] = n;
+	return fill_bits(v, masks, n, w->height, w->width, e) || make_rows(v, w, e) ? -1 : 0;
+}
+
+int lift_objects_vote(struct lift_objects *l, size_t at, const struct view_matrix *w, struct err *e)
+{
+	struct lift_view *v = &l->views[at];
+
+	if (lift_agreement(l, v, w, v->agreement, e))
 		return -1;
 	for (size_t k = 0; k < v->n; k++) {
 		const float squared = (float)(v->agreement[k] * v->agreement[k]);
 		v->vote[k] = squared > LEAST_VOTE ? squared : LEAST_VOTE;
 	}
 	return 0;
-}
-
-static int take_view(struct lift_objects *l, struct lift_scratch *s, size_t at, const struct lift_weights *w,
-	const struct lift_mask *masks, size_t n, struct err *e)
-{
-	struct lift_view *v = &l->views[at];
-	struct groups g;
-	const int bad = groups_make(&g, masks, n, e) || fill_images(s, &g, w->height, w->width, e) ||
-			(l->round ? vote(l, v, w, s, e) : add_view(v, w->rows, &g, s->images, e));
-
-	free(g.starts);
-	return bad ? -1 : 0;
-}
-
-int lift_objects_view(struct lift_objects *l, struct lift_scratch *s, size_t at, const struct view_weights *w,
-	int height, int width, const struct lift_mask *masks, size_t n, struct err *e)
-{
-	return take_view(l, s, at, &(struct lift_weights){w, NULL, height, width}, masks, n, e);
-}
-
-int lift_objects_again(struct lift_objects *l, struct lift_scratch *s, size_t at, const struct view_tiles *t,
-	const struct lift_mask *masks, size_t n, struct err *e)
-{
-	return take_view(l, s, at, &(struct lift_weights){NULL, t, t->height, t->width}, masks, n, e);
 }
 
 /* The mean of the last round, over an object's views. */

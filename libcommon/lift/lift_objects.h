@@ -14,9 +14,10 @@
  * desk (11 objects, two test views, weights at a third, the cut of lifted.h): the mean alone 70.9 mIoU, with
  * all of it 88.0.
  *
- *     for each of LIFT_ROUNDS rounds { lift_objects_view for each view, once; lift_objects_settle; }
- * Within a round the views may come in any order, and from many threads at once. Results are the same to the
- * bit for any number of threads, not where views have other numbers. */
+ *     for each view { lift_objects_view; }
+ *     for each of LIFT_ROUNDS rounds { but in the first, for each view { lift_objects_vote; }
+ * lift_objects_settle; } Within a round the views may come in any order, and from many threads at once.
+ * Results are the same to the bit for any number of threads, not where views have other numbers. */
 #ifndef LIFT_LIFT_OBJECTS_H
 #define LIFT_LIFT_OBJECTS_H
 
@@ -24,8 +25,7 @@
 #include "lift/lifted_model.h"
 #include "lift/shares.h"
 #include "mask/mask.h"
-#include "splat/view_tiles.h"
-#include "splat/view_weights.h"
+#include "splat/view_matrix.h"
 
 #include <stddef.h>
 
@@ -37,10 +37,12 @@ struct lift_mask {
 	size_t object;
 };
 
-/* What a view's masks show, kept from the first round on. */
+/* A view's masks and what they show. */
 struct lift_view {
 	size_t n;
 	size_t *objects;     /* (n) that have a mask, rising */
+	size_t *starts;	     /* (n+1) where the masks of each begin */
+	uint64_t *bits;	     /* (masks,tiles of the picture) mask/bits.h */
 	struct shares *rows; /* (n) of the mean of each one's masks */
 	float *vote;	     /* (n) of this round */
 	double *agreement;   /* (n) of this round */
@@ -66,32 +68,18 @@ struct lift_objects {
 	size_t *masks;	   /* (O) views that have one */
 };
 
-/* Memory for the views that are taken one after the other, by one thread at a time; zeroed before the first.
- * Asking the system for it again with each view would cost more than all that is done with it. */
-struct lift_scratch {
-	float *images;	 /* (n,P) of each object that the view has a mask of: the mean of its masks */
-	uint8_t *pixels; /* (threads,P) */
-	float *rendered; /* (threads,n,S) S pixels of a strip of the picture */
-	float *total;	 /* (threads,S) */
-	size_t image_room, pixel_room, rendered_room, total_room;
-};
-void lift_scratch_free(struct lift_scratch *s);
-
 /* For views of the numbers 0 to views - 1. Returns 0, or -1 with *e set and nothing to free. */
 int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, size_t views, struct err *e);
 void lift_objects_free(struct lift_objects *l);
 
-/* The masks of view `at`, in the order of their objects; several of one object are averaged. Every round has
- * the same. A view without masks need not come. Memory for a number of each Gaussian a view, and two of each
- * that a mask shows; in the scratch for an image of each object that has a mask. Returns 0, or -1 with *e set
- * for want of memory. */
-int lift_objects_view(struct lift_objects *l, struct lift_scratch *s, size_t at, const struct view_weights *w,
-	int height, int width, const struct lift_mask *masks, size_t n, struct err *e);
-
-/* The same in a round after the first, from the weights as tiles, with the same results as from rows in which
- * each pixel's weights are in the order of the Gaussians. */
-int lift_objects_again(struct lift_objects *l, struct lift_scratch *s, size_t at, const struct view_tiles *t,
+/* The masks of view `at`, in the order of their objects; several of one object are averaged. A view without
+ * masks need not come. Memory for a number of each Gaussian a view, two of each that a mask shows, and a bit
+ * for each pixel a mask. Returns 0, or -1 with *e set for want of memory. */
+int lift_objects_view(struct lift_objects *l, size_t at, const struct view_matrix *w,
 	const struct lift_mask *masks, size_t n, struct err *e);
+
+/* In a round after the first: how well the view's masks agree with what was lifted. */
+int lift_objects_vote(struct lift_objects *l, size_t at, const struct view_matrix *w, struct err *e);
 
 /* Ends a round. Returns 0, or -1 with *e set for want of memory. */
 int lift_objects_settle(struct lift_objects *l, struct err *e);

@@ -1,6 +1,7 @@
 #include "lift/marks.h"
 
 #include "base/mem.h"
+#include "base/ones.h"
 
 enum { WORD = 64 };
 
@@ -19,7 +20,7 @@ size_t marks_count(const uint64_t *marks, size_t gaussians)
 	size_t n = 0;
 
 	for (size_t word = 0; word < words(gaussians); word++)
-		n += (size_t)__builtin_popcountll(marks[word]);
+		n += ones(marks[word]);
 	return n;
 }
 

@@ -36,7 +36,7 @@
 #include "lift/seen.h"
 #include "lift/shares.h"
 #include "mask/pool.h"
-#include "splat/view_weights.h"
+#include "splat/view_matrix.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -97,11 +97,10 @@ int regions_init(struct regions *r, const struct pool *p, const size_t *places, 
 	size_t gaussians, double min_score, struct err *e);
 void regions_free(struct regions *r);
 
-/* Lifts the candidates of a view, which has these weights and that size; masks of another size are reduced by
- * area. Once a view, in any order, and from many threads at once; the masks of views that are not lifted are
- * left out of all. */
-int regions_lift(
-	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e);
+/* Lifts the candidates of a view, which has these weights; masks of another size are reduced by area. Once a
+ * view, in any order, and from many threads at once; the masks of views that are not lifted are left out of
+ * all. */
+int regions_lift(struct regions *r, size_t view, const struct view_matrix *w, struct err *e);
 
 /* Grows the regions, after all views are lifted. */
 int regions_grow(struct regions *r, struct err *e);
@@ -121,7 +120,7 @@ int regions_need_weights(const struct regions *r, size_t view);
  * empty where an object has no region or shows nothing of it. The score is the agreement of the candidate
  * with the region, and the region's typical one where it is rendered: *rendered goes up by each such mask
  * that is not empty. On failure there are none. */
-int regions_render(const struct regions *r, size_t view, const struct view_weights *w, int height, int width,
-	struct rle *masks, double *scores, size_t *rendered, struct err *e);
+int regions_render(const struct regions *r, size_t view, const struct view_matrix *w, struct rle *masks,
+	double *scores, size_t *rendered, struct err *e);
 
 #endif

@@ -6,17 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BATCH = 16 }; /* masks that are images at a time */
 /* Intersection over union from which masks of a view are one candidate. Of 0.9, 0.95 and every mask by
  * itself, the mIoU of the masks that come of it in training views, mean of the eight scenes of
  * pipelines/ablation.md: 66.5, 66.7, 66.8. */
 #define ALIKE 0.95
 
-/* Masks of one view as bits at its size. */
+/* Masks of one view as bits at its size, by tiles. */
 struct shapes {
-	size_t n, bytes;
-	uint8_t *bits; /* (n,bytes) */
-	size_t *area;  /* (n) */
+	size_t n, tiles;
+	uint64_t *bits; /* (n,tiles) */
+	size_t *area;	/* (n) */
 };
 
 static void shapes_free(struct shapes *s)
@@ -25,16 +24,22 @@ static void shapes_free(struct shapes *s)
 	free(s->area);
 }
 
+/* Pixels in common. */
+static size_t common(const struct shapes *s, size_t a, size_t b)
+{
+	return bits_common((const uint8_t *)(s->bits + a * s->tiles),
+		(const uint8_t *)(s->bits + b * s->tiles), s->tiles * sizeof *s->bits);
+}
+
 static int fill_shape(
 	struct shapes *s, size_t k, const struct rle *mask, int height, int width, struct err *e)
 {
-	const size_t pixels = (size_t)height * (size_t)width;
-	uint8_t *mine = mem_alloc(pixels, 1, "masks", e), *bits = s->bits + k * s->bytes;
-	int bad = !mine || rle_decode_at(mask, height, width, mine, e);
+	uint8_t *mine = mem_alloc((size_t)height * (size_t)width, 1, "masks", e);
+	const int bad = !mine || rle_decode_at(mask, height, width, mine, e);
 
 	if (!bad) {
-		bits_pack(mine, pixels, bits);
-		s->area[k] = bits_common(bits, bits, s->bytes);
+		bits_pack_tiles(mine, height, width, s->bits + k * s->tiles);
+		s->area[k] = common(s, k, k);
 	}
 	free(mine);
 	return bad;
@@ -45,8 +50,8 @@ static int shapes_make(
 {
 	int failed = 0;
 
-	*s = (struct shapes){.n = n, .bytes = bits_bytes((size_t)height * (size_t)width)};
-	s->bits = mem_alloc(n, s->bytes, "masks", e);
+	*s = (struct shapes){.n = n, .tiles = bits_tiles(height, width)};
+	s->bits = mem_alloc(n, s->tiles * sizeof *s->bits, "masks", e);
 	s->area = mem_alloc(n, sizeof *s->area, "masks", e);
 	if (!s->bits || !s->area)
 		return -1;
@@ -65,8 +70,7 @@ static int shapes_make(
 /* Intersection over union; two empty ones agree. */
 static double agreement(const struct shapes *s, size_t a, size_t b)
 {
-	const size_t all = s->area[a] + s->area[b];
-	const size_t both = bits_common(s->bits + a * s->bytes, s->bits + b * s->bytes, s->bytes);
+	const size_t all = s->area[a] + s->area[b], both = common(s, a, b);
 
 	return all ? (double)both / (double)(all - both) : 1;
 }
@@ -128,44 +132,42 @@ static size_t add_candidates(
 	return n;
 }
 
-/* The shares of `now` candidates. */
-static int lift(struct regions_candidate *c, size_t now, const struct view_weights *w, const struct shapes *s,
-	const size_t *from, float *image, struct err *e)
+/* The shares of n candidates of a view, whose masks are from[]. */
+static int lift(struct seen *seen, struct regions_candidate *c, size_t n, const struct view_matrix *w,
+	const struct shapes *s, const size_t *from, struct err *e)
 {
-	struct shares rows[BATCH];
+	float *weight = mem_alloc(w->gaussians, sizeof *weight, "views", e);
+	struct shares *rows = mem_alloc(n, sizeof *rows, "masks", e);
+	struct shares_masks *masks = mem_alloc(n, sizeof *masks, "masks", e);
+	int bad = !weight || !rows || !masks;
 
-	memset(image, 0, now * w->pixels * sizeof *image);
-#pragma omp parallel for schedule(dynamic)
-	for (size_t k = 0; k < now; k++)
-		bits_place(s->bits + from[k] * s->bytes, w->pixels, image + k * w->pixels);
-	if (shares_make(rows, w, image, now, e))
-		return -1;
-	for (size_t k = 0; k < now; k++) {
+	for (size_t k = 0; k < n && !bad; k++)
+		masks[k] = (struct shares_masks){s->bits + from[k] * s->tiles, 1};
+	bad = bad || shares_make(weight, rows, w, masks, n, e);
+	for (size_t k = 0; k < n && !bad; k++) {
 		c[k].shares = rows[k];
 		for (size_t i = 0; i < rows[k].n; i++)
 			c[k].mass += (double)rows[k].share[i];
 	}
-	return 0;
-}
-
-static int lift_masks(struct regions *r, const struct view_weights *w, const struct shapes *s, size_t first,
-	size_t *n, struct err *e)
-{
-	size_t *from = mem_alloc(s->n, sizeof *from, "masks", e);
-	float *image = mem_alloc(w->pixels, BATCH * sizeof *image, "masks", e);
-	int bad = !from || !image;
-
-	*n = bad ? 0 : add_candidates(r, first, r->witnesses + first, s, from);
-	for (size_t at = 0; at < *n && !bad; at += BATCH)
-		bad = lift(&r->candidates[first + at], *n - at < BATCH ? *n - at : BATCH, w, s, from + at,
-			image, e);
-	free(from);
-	free(image);
+	bad = bad || seen_make(seen, weight, w->gaussians, e);
+	free(weight);
+	free(rows);
+	free(masks);
 	return bad ? -1 : 0;
 }
 
-int regions_lift(
-	struct regions *r, size_t view, const struct view_weights *w, int height, int width, struct err *e)
+static int lift_masks(struct regions *r, size_t view, const struct view_matrix *w, const struct shapes *s,
+	size_t first, size_t *n, struct err *e)
+{
+	size_t *from = mem_alloc(s->n, sizeof *from, "masks", e);
+
+	*n = from ? add_candidates(r, first, r->witnesses + first, s, from) : 0;
+	const int bad = !from || lift(&r->seen[view], &r->candidates[first], *n, w, s, from, e);
+	free(from);
+	return bad ? -1 : 0;
+}
+
+int regions_lift(struct regions *r, size_t view, const struct view_matrix *w, struct err *e)
 {
 	struct shapes s = {0};
 	size_t begin = 0, end, n = 0;
@@ -174,9 +176,8 @@ int regions_lift(
 		begin++;
 	for (end = begin; end < r->witness_count && r->witnesses[end].view == view;)
 		end++;
-	int bad = seen_make(&r->seen[view], w, e) ||
-		  shapes_make(&s, r->witnesses + begin, end - begin, height, width, e) ||
-		  lift_masks(r, w, &s, begin, &n, e);
+	const int bad = shapes_make(&s, r->witnesses + begin, end - begin, w->height, w->width, e) ||
+			lift_masks(r, view, w, &s, begin, &n, e);
 	r->ranges[view] = (struct regions_range){begin, begin + n};
 	shapes_free(&s);
 	return bad ? -1 : 0;

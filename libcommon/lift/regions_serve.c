@@ -129,36 +129,44 @@ int regions_need_weights(const struct regions *r, size_t view)
 /* Memory to render the objects of a view: a group of them at a time. */
 struct painter {
 	const struct regions *r;
-	const struct view_weights *w;
-	int height, width;
+	const struct view_matrix *w;
 	const struct rle *like; /* whose size the masks get, or NULL */
 	float *image;		/* (VIEW_GROUP,P) */
 	uint8_t *pixels;	/* (P) */
 	size_t group;		/* the one that the image has */
 };
 
-static int painter_make(struct painter *t, const struct view_weights *w, struct err *e)
+static int painter_make(struct painter *t, const struct view_matrix *w, struct err *e)
 {
 	t->w = w;
 	t->group = REGIONS_NONE;
-	t->image = mem_alloc(w->pixels, VIEW_GROUP * sizeof *t->image, "masks", e);
-	t->pixels = mem_alloc(w->pixels, 1, "masks", e);
+	t->image = mem_alloc(w->rows.pixels, VIEW_GROUP * sizeof *t->image, "masks", e);
+	t->pixels = mem_alloc(w->rows.pixels, 1, "masks", e);
 	return t->image && t->pixels ? 0 : -1;
+}
+
+static void render_group(const struct painter *t, size_t group)
+{
+	const float *field = t->r->field + group * VIEW_GROUP * t->r->gaussians;
+
+	if (t->w->tiles)
+		view_tiles_blend_group(t->w->tiles, field, t->image);
+	else
+		backproject_render(&t->w->rows, field, VIEW_GROUP, t->image);
 }
 
 static int paint(struct painter *t, size_t object, struct rle *mask, struct err *e)
 {
-	const size_t group = object / VIEW_GROUP, pixels = t->w->pixels;
+	const size_t group = object / VIEW_GROUP, pixels = t->w->rows.pixels;
 	const float *image = t->image + object % VIEW_GROUP * pixels;
 	struct rle small;
 
 	if (group != t->group)
-		backproject_render(
-			t->w, t->r->field + group * VIEW_GROUP * t->r->gaussians, VIEW_GROUP, t->image);
+		render_group(t, group);
 	t->group = group;
 	for (size_t p = 0; p < pixels; p++)
 		t->pixels[p] = image[p] > 0;
-	if (rle_encode(&small, t->pixels, t->height, t->width, e))
+	if (rle_encode(&small, t->pixels, t->w->height, t->w->width, e))
 		return -1;
 	if (!t->like || rle_same_size(t->like, &small)) {
 		*mask = small;
@@ -190,14 +198,12 @@ static int put_mask(struct painter *t, size_t object, size_t view, struct rle *m
 	return 0;
 }
 
-int regions_render(const struct regions *r, size_t view, const struct view_weights *w, int height, int width,
-	struct rle *masks, double *scores, size_t *rendered, struct err *e)
+int regions_render(const struct regions *r, size_t view, const struct view_matrix *w, struct rle *masks,
+	double *scores, size_t *rendered, struct err *e)
 {
 	const struct regions_range range = r->ranges[view];
-	struct painter t = {.r = r,
-		.height = height,
-		.width = width,
-		.like = range.end > range.begin ? &r->candidates[range.begin].mask->rle : NULL};
+	struct painter t = {
+		.r = r, .like = range.end > range.begin ? &r->candidates[range.begin].mask->rle : NULL};
 	int bad = w && painter_make(&t, w, e);
 
 	for (size_t o = 0; o < r->object_count; o++) {

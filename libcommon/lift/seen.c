@@ -2,20 +2,18 @@
 
 #include "base/mem.h"
 #include "lift/marks.h"
-#include "lift/shares.h"
 
 #include <stdlib.h>
 
-/* weight (n): of all Gaussians. */
-static int pack(struct seen *s, const float *weight, size_t n, struct err *e)
+int seen_make(struct seen *s, const float *weight, size_t gaussians, struct err *e)
 {
 	uint32_t count = 1;
 
-	s->marks = marks_make(n, e);
-	s->before = mem_alloc(n / 64 + 1, sizeof *s->before, "views", e);
+	*s = (struct seen){.marks = marks_make(gaussians, e),
+		.before = mem_alloc(gaussians / 64 + 1, sizeof *s->before, "views", e)};
 	if (!s->marks || !s->before)
 		return -1;
-	for (size_t i = 0; i < n; i++) {
+	for (size_t i = 0; i < gaussians; i++) {
 		if (i % 64 == 0)
 			s->before[i / 64] = count;
 		if (!(weight[i] > 0))
@@ -28,20 +26,10 @@ static int pack(struct seen *s, const float *weight, size_t n, struct err *e)
 		return -1;
 	s->weight[0] = 0;
 	count = 1;
-	for (size_t i = 0; i < n; i++)
+	for (size_t i = 0; i < gaussians; i++)
 		if (weight[i] > 0)
 			s->weight[count++] = weight[i];
 	return 0;
-}
-
-int seen_make(struct seen *s, const struct view_weights *w, struct err *e)
-{
-	float *weight = mem_alloc(w->gaussians, sizeof *weight, "views", e);
-
-	*s = (struct seen){0};
-	const int bad = !weight || shares_of_view(weight, w, e) || pack(s, weight, w->gaussians, e);
-	free(weight);
-	return bad ? -1 : 0;
 }
 
 void seen_free(struct seen *s)

@@ -2,98 +2,166 @@
 
 #include "base/mem.h"
 #include "lift/marks.h"
+#include "lift/tile_levels.h"
+#include "mask/bits.h"
 #include "splat/backproject.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-/* One thread's: sums of all Gaussians, and which of them are above 0. All 0 between images. */
+/* One thread's: sums of all Gaussians, and which of them are above 0. All 0 between masks. */
 struct sums {
-	float *sum; /* (N) */
 	uint64_t *marks;
+	uint64_t *levels; /* (N) from tiles: in 1/255; else NULL */
+	float *sum;	  /* (N) from rows, and */
+	float *image;	  /* (P) the mean of the masks */
 };
 
-/* Pixels in their order. Returns how many sums are above 0. */
-static size_t add_image(struct sums *s, const struct view_weights *w, const float *image)
+static int sums_make(struct sums *s, const struct view_matrix *w, struct err *e)
 {
-	size_t n = 0;
+	*s = (struct sums){.marks = marks_make(w->gaussians, e)};
+	if (!s->marks)
+		return -1;
+	if (w->tiles) {
+		s->levels = mem_zalloc(w->gaussians, sizeof *s->levels, "masks", e);
+		return s->levels ? 0 : -1;
+	}
+	s->sum = mem_zalloc(w->gaussians, sizeof *s->sum, "masks", e);
+	s->image = mem_alloc(w->rows.pixels, sizeof *s->image, "masks", e);
+	return s->sum && s->image ? 0 : -1;
+}
 
+static void sums_free(struct sums *s)
+{
+	free(s->marks);
+	free(s->levels);
+	free(s->sum);
+	free(s->image);
+}
+
+/* Pixels in their order. */
+static void add_image(struct sums *s, const struct view_weights *w)
+{
 	for (size_t p = 0; p < w->pixels; p++) {
-		if (!(image[p] > 0))
+		if (!(s->image[p] > 0))
 			continue;
 		for (int64_t k = w->indptr[p]; k < w->indptr[p + 1]; k++) {
 			const size_t i = (size_t)w->index[k];
-			const float before = s->sum[i];
-			s->sum[i] += w->weight[k] * image[p];
-			if (before > 0 || !(s->sum[i] > 0))
-				continue;
-			marks_add(s->marks, i);
-			n++;
+			s->sum[i] += w->weight[k] * s->image[p];
+			if (s->sum[i] > 0)
+				marks_add(s->marks, i);
 		}
 	}
-	return n;
+}
+
+static void add_rows(struct sums *s, const struct view_matrix *w, const struct shares_masks *m)
+{
+	const size_t pixels = w->rows.pixels, tiles = bits_tiles(w->height, w->width);
+
+	memset(s->image, 0, pixels * sizeof *s->image);
+	for (size_t k = 0; k < m->count; k++)
+		bits_add_tiles(m->bits + k * tiles, w->height, w->width, s->image);
+	for (size_t p = 0; p < pixels && m->count > 1; p++)
+		s->image[p] /= (float)m->count;
+	add_image(s, &w->rows);
+}
+
+/* A mask's bits of one tile, not all 0. */
+static void add_tile(struct sums *s, const struct tile_levels *of, size_t tile, uint64_t bits)
+{
+	const struct view_tiles *t = of->tiles;
+
+	for (size_t i = t->begin[tile]; i < t->begin[tile + 1]; i++) {
+		const uint32_t sum = tile_levels_sum(of, i, bits);
+		if (!sum)
+			continue;
+		s->levels[t->ids[i]] += sum;
+		marks_add(s->marks, (size_t)t->ids[i]);
+	}
+}
+
+static void add_tiles(struct sums *s, const struct tile_levels *of, const struct shares_masks *m)
+{
+	const size_t tiles = (size_t)of->tiles->across * (size_t)of->tiles->down;
+
+	for (size_t k = 0; k < m->count; k++)
+		for (size_t tile = 0; tile < tiles; tile++)
+			if (m->bits[k * tiles + tile])
+				add_tile(s, of, tile, m->bits[k * tiles + tile]);
 }
 
 /* Moves the sums into a row, in the order of the Gaussians. */
-static void take(struct sums *s, size_t gaussians, struct shares *row)
+static void take(struct sums *s, size_t gaussians, size_t masks, struct shares *row)
 {
 	row->n = marks_take(s->marks, gaussians, row->index);
 	for (size_t k = 0; k < row->n; k++) {
-		row->share[k] = s->sum[row->index[k]];
-		s->sum[row->index[k]] = 0;
+		const size_t i = (size_t)row->index[k];
+		if (s->levels) {
+			row->share[k] = (float)((double)s->levels[i] / (255 * (double)masks));
+			s->levels[i] = 0;
+		} else {
+			row->share[k] = s->sum[i];
+			s->sum[i] = 0;
+		}
 	}
 }
 
-static int make_row(
-	struct shares *row, struct sums *s, const struct view_weights *w, const float *image, struct err *e)
+static int make_row(struct shares *row, struct sums *s, const struct view_matrix *w,
+	const struct tile_levels *levels, const struct shares_masks *m, struct err *e)
 {
-	const size_t n = add_image(s, w, image);
-
+	if (w->tiles)
+		add_tiles(s, levels, m);
+	else
+		add_rows(s, w, m);
+	const size_t n = marks_count(s->marks, w->gaussians);
 	*row = (struct shares){.index = mem_alloc(n, sizeof *row->index, "masks", e),
 		.share = mem_alloc(n, sizeof *row->share, "masks", e)};
 	if (!row->index || !row->share)
 		return -1;
-	take(s, w->gaussians, row);
+	take(s, w->gaussians, m->count, row);
 	return 0;
 }
 
-int shares_make(
-	struct shares *rows, const struct view_weights *w, const float *images, size_t count, struct err *e)
+static int make_rows(struct shares *rows, const struct view_matrix *w, const struct tile_levels *levels,
+	const struct shares_masks *masks, size_t count, struct err *e)
 {
 	int failed = 0;
 
-	for (size_t k = 0; k < count; k++)
-		rows[k] = (struct shares){0};
 #pragma omp parallel reduction(| : failed) if (count > 1)
 	{
 		struct err mine;
-		struct sums s = {mem_zalloc(w->gaussians, sizeof *s.sum, "masks", &mine),
-			marks_make(w->gaussians, &mine)};
-		failed = !s.sum || !s.marks;
+		struct sums s;
+		failed = sums_make(&s, w, &mine) != 0;
 #pragma omp for schedule(dynamic)
 		for (size_t k = 0; k < count; k++)
-			failed = failed || make_row(&rows[k], &s, w, images + k * w->pixels, &mine);
+			failed = failed || make_row(&rows[k], &s, w, levels, &masks[k], &mine);
 		if (failed) {
 #pragma omp critical
 			*e = mine;
 		}
-		free(s.sum);
-		free(s.marks);
+		sums_free(&s);
 	}
-	for (size_t k = 0; k < count && failed; k++)
-		shares_free(&rows[k]);
 	return failed ? -1 : 0;
 }
 
-void shares_free(struct shares *row)
+static int weigh_tiles(float *weight, size_t gaussians, const struct tile_levels *levels, struct err *e)
 {
-	free(row->index);
-	free(row->share);
-	*row = (struct shares){0};
+	const struct view_tiles *t = levels->tiles;
+	uint64_t *sum = mem_zalloc(gaussians, sizeof *sum, "views", e);
+
+	if (!sum)
+		return -1;
+	for (size_t i = 0, n = t->begin[(size_t)t->across * (size_t)t->down]; i < n; i++)
+		sum[t->ids[i]] += levels->total[i];
+	for (size_t i = 0; i < gaussians; i++)
+		weight[i] = (float)((double)sum[i] / 255);
+	free(sum);
+	return 0;
 }
 
-int shares_of_view(float *weight, const struct view_weights *w, struct err *e)
+static int weigh_rows(float *weight, const struct view_weights *w, struct err *e)
 {
-	double *sum = mem_zalloc(w->gaussians, sizeof *sum, "masks", e);
+	double *sum = mem_zalloc(w->gaussians, sizeof *sum, "views", e);
 
 	if (!sum)
 		return -1;
@@ -102,4 +170,28 @@ int shares_of_view(float *weight, const struct view_weights *w, struct err *e)
 		weight[i] = (float)sum[i];
 	free(sum);
 	return 0;
+}
+
+int shares_make(float *weight, struct shares *rows, const struct view_matrix *w,
+	const struct shares_masks *masks, size_t count, struct err *e)
+{
+	struct tile_levels levels = {0};
+
+	for (size_t k = 0; k < count; k++)
+		rows[k] = (struct shares){0};
+	const int bad = (w->tiles ? tile_levels_make(&levels, w->tiles, e) ||
+						weigh_tiles(weight, w->gaussians, &levels, e)
+				  : weigh_rows(weight, &w->rows, e)) ||
+			make_rows(rows, w, &levels, masks, count, e);
+	for (size_t k = 0; k < count && bad; k++)
+		shares_free(&rows[k]);
+	tile_levels_free(&levels);
+	return bad ? -1 : 0;
+}
+
+void shares_free(struct shares *row)
+{
+	free(row->index);
+	free(row->share);
+	*row = (struct shares){0};
 }

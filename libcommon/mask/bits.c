@@ -1,5 +1,7 @@
 #include "mask/bits.h"
 
+#include "base/ones.h"
+
 #include <string.h>
 
 size_t bits_bytes(size_t n)
@@ -38,16 +40,49 @@ size_t bits_common(const uint8_t *a, const uint8_t *b, size_t bytes)
 		uint64_t x, y;
 		memcpy(&x, a + at, 8);
 		memcpy(&y, b + at, 8);
-		n += (size_t)__builtin_popcountll(x & y);
+		n += ones(x & y);
 	}
 	for (; at < bytes; at++)
 		n += (size_t)__builtin_popcount(a[at] & b[at]);
 	return n;
 }
 
-void bits_place(const uint8_t *bits, size_t n, float *image)
+static size_t tiles_along(int pixels)
 {
-	for (size_t byte = 0; byte < bits_bytes(n); byte++)
-		for (unsigned left = bits[byte]; left; left &= left - 1)
-			image[byte * 8 + (size_t)__builtin_ctz(left)] = 1;
+	return ((size_t)pixels + BITS_TILE - 1) / BITS_TILE;
+}
+
+size_t bits_tiles(int height, int width)
+{
+	return tiles_along(height) * tiles_along(width);
+}
+
+void bits_pack_tiles(const uint8_t *mask, int height, int width, uint64_t *tiles)
+{
+	const size_t across = tiles_along(width);
+
+	memset(tiles, 0, bits_tiles(height, width) * sizeof *tiles);
+	for (int y = 0; y < height; y++) {
+		uint64_t *row = tiles + (size_t)(y / BITS_TILE) * across;
+		for (size_t t = 0; t < across; t++) {
+			const size_t left = (size_t)width - t * BITS_TILE;
+			uint8_t eight = 0;
+			bits_pack(mask + (size_t)y * (size_t)width + t * BITS_TILE,
+				left < BITS_TILE ? left : BITS_TILE, &eight);
+			row[t] |= (uint64_t)eight << y % BITS_TILE * BITS_TILE;
+		}
+	}
+}
+
+void bits_add_tiles(const uint64_t *tiles, int height, int width, float *image)
+{
+	const size_t across = tiles_along(width);
+
+	for (size_t t = 0; t < bits_tiles(height, width); t++) {
+		float *corner = image + t / across * BITS_TILE * (size_t)width + t % across * BITS_TILE;
+		for (uint64_t left = tiles[t]; left; left &= left - 1) {
+			const size_t i = (size_t)__builtin_ctzll(left);
+			corner[i / BITS_TILE * (size_t)width + i % BITS_TILE]++;
+		}
+	}
 }

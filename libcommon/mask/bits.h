@@ -18,7 +18,15 @@ void bits_expand(const uint8_t *bits, size_t from, size_t to, uint8_t *mask);
 /* How many bits two of that many bytes have in common. */
 size_t bits_common(const uint8_t *a, const uint8_t *b, size_t bytes);
 
-/* image (n) gets 1 where there is a bit; the rest stays. */
-void bits_place(const uint8_t *bits, size_t n, float *image);
+/* The same by tiles of 8 by 8 pixels: bit i of word t is the pixel in column i mod 8 and row i / 8 of tile t,
+ * and tiles are numbered row by row. Bits beyond the picture's edge are 0. */
+enum { BITS_TILE = 8 };
+size_t bits_tiles(int height, int width);
+
+/* mask (height,width) of 0 or 1; tiles (bits_tiles). */
+void bits_pack_tiles(const uint8_t *mask, int height, int width, uint64_t *tiles);
+
+/* image (height,width) += 1 where there is a bit. */
+void bits_add_tiles(const uint64_t *tiles, int height, int width, float *image);
 
 #endif

@@ -38,6 +38,10 @@ struct view_tiles_lookup {
 	int64_t pixel[VIEW_TILE_PIXELS];
 };
 
+/* image (VIEW_GROUP,P) = W m (N,VIEW_GROUP), to the bit what view_blend_group makes of rows of pixels in
+ * which the Gaussians rise. */
+void view_tiles_blend_group(const struct view_tiles *t, const float *m, float *image);
+
 void view_tiles_lookup_make(struct view_tiles_lookup *l, const struct view_tiles *t);
 
 void view_tiles_free(struct view_tiles *t);

@@ -6,7 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct view_weights make_view(struct random_view *v, struct rng *r)
+static struct view_matrix rows_of(const struct random_view *v)
+{
+	return (struct view_matrix){H, W, N, {P, N, v->indptr, v->index, v->weight}, NULL};
+}
+
+static struct view_matrix make_view(struct random_view *v, struct rng *r)
 {
 	int64_t n = 0;
 
@@ -19,7 +24,7 @@ static struct view_weights make_view(struct random_view *v, struct rng *r)
 		}
 	}
 	v->indptr[P] = n;
-	return (struct view_weights){P, N, v->indptr, v->index, v->weight};
+	return rows_of(v);
 }
 
 void lift_add_mask(struct lift_problem *q, int view, size_t object, int from, int to, int times)
@@ -117,7 +122,7 @@ static void naive_round(const struct lift_problem *q, int round)
 		int n = 0;
 		mean_agreement[o] = 0;
 		for (int v = 0; v < VIEWS; v++) {
-			const struct view_weights *w = &q->weights[v];
+			const struct view_weights *w = &q->weights[v].rows;
 			if (!naive_mask(q, v, o, mask))
 				continue;
 			const double a = round ? naive_agreement(w, mask, share_of[o]) : 1;
@@ -174,15 +179,13 @@ struct lift_problem *lift_plain(void)
 			q->views[v].index[p] = p % W;
 			q->views[v].weight[p] = 0.9f;
 		}
-		q->weights[v] = (struct view_weights){
-			P, N, q->views[v].indptr, q->views[v].index, q->views[v].weight};
+		q->weights[v] = rows_of(&q->views[v]);
 	}
 	return q;
 }
 
 int lift_problem(const struct lift_problem *q, size_t objects, struct lifted *to, struct lift_objects *l)
 {
-	struct lift_scratch s = {0};
 	struct err e;
 	int bad = 0;
 
@@ -192,12 +195,12 @@ int lift_problem(const struct lift_problem *q, size_t objects, struct lifted *to
 	for (int round = 0; round < LIFT_ROUNDS; round++) {
 		for (int k = 0; k < VIEWS; k++) {
 			const int v = round % 2 ? VIEWS - 1 - k : k; /* any order */
-			bad |= lift_objects_view(
-				l, &s, (size_t)v, &q->weights[v], H, W, q->masks[v], q->count[v], &e);
+			bad |= round ? lift_objects_vote(l, (size_t)v, &q->weights[v], &e)
+				     : lift_objects_view(
+					       l, (size_t)v, &q->weights[v], q->masks[v], q->count[v], &e);
 		}
 		bad |= lift_objects_settle(l, &e);
 	}
-	lift_scratch_free(&s);
 	return bad || lift_objects_finish(l, to, &e) ? -1 : 0;
 }
 

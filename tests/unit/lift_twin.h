@@ -27,7 +27,7 @@ struct random_view {
 
 struct lift_problem {
 	struct random_view views[VIEWS];
-	struct view_weights weights[VIEWS];
+	struct view_matrix weights[VIEWS]; /* rows; lifted by tiles where there are some */
 	size_t count[VIEWS];
 	struct lift_mask masks[VIEWS][2 * O];
 	struct mask shown[MOST];

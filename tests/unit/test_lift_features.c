@@ -62,7 +62,7 @@ static struct lifted_features *lift(const struct lift_problem *w, const struct p
 			float features[SOURCES * CHANNELS];
 			for (size_t k = 0; k < SOURCES; k++)
 				memcpy(features + k * n, q->features[v][k] + first, n * sizeof *features);
-			bad = source_weights_make(&s, &w->weights[v], q->source[v], SOURCES, &e);
+			bad = source_weights_make(&s, &w->weights[v].rows, q->source[v], SOURCES, &e);
 			if (!bad)
 				lift_features_add(&l, n, &s, features, q->factor[v], !first);
 		}
@@ -84,14 +84,15 @@ static void twin(
 {
 	for (int v = 0; v < VIEWS; v++)
 		for (int p = 0; p < P; p++)
-			for (int64_t k = w->weights[v].indptr[p]; k < w->weights[v].indptr[p + 1]; k++) {
-				const int i = w->weights[v].index[k], own = q->source[v][p];
+			for (int64_t k = w->weights[v].rows.indptr[p]; k < w->weights[v].rows.indptr[p + 1];
+				k++) {
+				const int i = w->weights[v].rows.index[k], own = q->source[v][p];
 				if (own < 0)
 					continue;
-				weight[i] += (double)w->weights[v].weight[k];
+				weight[i] += (double)w->weights[v].rows.weight[k];
 				for (int c = 0; c < CHANNELS; c++)
-					mean[i][c] += (double)w->weights[v].weight[k] * q->factor[v][own] *
-						      (double)q->features[v][own][c];
+					mean[i][c] += (double)w->weights[v].rows.weight[k] *
+						      q->factor[v][own] * (double)q->features[v][own][c];
 			}
 	for (int i = 0; i < N; i++)
 		for (int c = 0; c < CHANNELS; c++)
@@ -160,7 +161,7 @@ static void lift_all_labels(const struct lift_problem *w, const struct pictures 
 	int bad = lift_labels_init(&l, N, &e);
 
 	for (int v = 0; v < VIEWS && !bad; v++)
-		bad = source_weights_make(&s, &w->weights[v], q->source[v], SOURCES, &e) ||
+		bad = source_weights_make(&s, &w->weights[v].rows, q->source[v], SOURCES, &e) ||
 		      lift_labels_add(&l, &s, q->label[v], &e);
 	CHECK(!bad, "%s", e.message);
 	lift_labels_end(&l, label, reliability, weight);
@@ -180,10 +181,11 @@ static void test_labels(uint64_t seed)
 	memset(votes, 0, sizeof votes);
 	for (int v = 0; v < VIEWS; v++)
 		for (int p = 0; p < P; p++)
-			for (int64_t k = w->weights[v].indptr[p]; k < w->weights[v].indptr[p + 1]; k++)
+			for (int64_t k = w->weights[v].rows.indptr[p]; k < w->weights[v].rows.indptr[p + 1];
+				k++)
 				if (q->source[v][p] >= 0)
-					votes[w->weights[v].index[k]][q->label[v][q->source[v][p]]] +=
-						(double)w->weights[v].weight[k];
+					votes[w->weights[v].rows.index[k]][q->label[v][q->source[v][p]]] +=
+						(double)w->weights[v].rows.weight[k];
 	for (int i = 0; i < N; i++) {
 		double best = 0, sum = 0;
 		int winner = LABEL_NONE;

@@ -56,74 +56,39 @@ static void test_threads(void)
 	lift_problem_free(q);
 }
 
-/* A problem's weights as those of a packed file: rows of pixels, and tiles. */
-struct packed_view {
-	struct weights_room room;
-};
-
-static int pack_view(const struct view_weights *w, struct packed_view *to)
+/* A problem's weights become those of a packed file, in both forms. */
+static int pack_views(struct lift_problem *q, struct weights_room *rooms)
 {
-	struct weights_pack pack;
-	struct err e;
+	int bad = 0;
 
-	const int bad = pack_whole(&pack, W, H, N, w->indptr, w->index, w->weight, &e) ||
-			weights_unpack(&pack, W, H, N, "w", &to->room, &e);
-	weights_pack_free(&pack);
-	return bad;
-}
-
-/* Lifts with tiles in the later rounds, or with rows alone. */
-static int lift_packed(const struct lift_problem *q, const struct packed_view *views, int with_tiles,
-	struct lift_objects *l, struct lifted *to)
-{
-	struct lift_scratch s = {0};
-	struct err e;
-	int bad = lift_objects_init(l, N, O, VIEWS, &e);
-
-	*to = (struct lifted){0};
-	for (int round = 0; round < LIFT_ROUNDS && !bad; round++) {
-		for (size_t v = 0; v < VIEWS && !bad; v++) {
-			const struct view_weights rows = {
-				P, N, views[v].room.indptr, views[v].room.index, views[v].room.weight};
-			bad = round && with_tiles ? lift_objects_again(l, &s, v, &views[v].room.tiles,
-							    q->masks[v], q->count[v], &e)
-						  : lift_objects_view(l, &s, v, &rows, H, W, q->masks[v],
-							    q->count[v], &e);
-		}
-		bad = bad || lift_objects_settle(l, &e);
+	for (int v = 0; v < VIEWS; v++) {
+		struct view_weights *w = &q->weights[v].rows;
+		struct weights_pack pack;
+		struct err e;
+		bad |= pack_whole(&pack, W, H, N, w->indptr, w->index, w->weight, &e) ||
+		       weights_unpack(&pack, W, H, N, "w", &rooms[v], &e);
+		weights_pack_free(&pack);
+		*w = (struct view_weights){P, N, rooms[v].indptr, rooms[v].index, rooms[v].weight};
+		q->weights[v].tiles = &rooms[v].tiles;
 	}
-	lift_scratch_free(&s);
-	return bad || lift_objects_finish(l, to, &e);
+	return bad;
 }
 
 static void test_tiles(uint64_t seed)
 {
+	static struct weights_room rooms[VIEWS];
 	struct lift_problem *q = lift_random(seed);
-	struct packed_view *views = calloc(VIEWS, sizeof *views);
-	struct lift_objects l[2] = {{0}};
-	struct lifted got[2] = {{0}};
-	int bad = 0;
+	struct lift_objects l;
+	struct lifted got;
 
+	if (CHECK(!pack_views(q, rooms) && !lift_problem(q, O, &got, &l), "lifts packed weights")) {
+		const double worst = lift_twin_error(q, &got);
+		CHECK(worst < 1e-6, "off by %g", worst);
+	}
+	lifted_free(&got);
+	lift_objects_free(&l);
 	for (int v = 0; v < VIEWS; v++)
-		bad |= pack_view(&q->weights[v], &views[v]);
-	for (int k = 0; k < 2; k++)
-		bad = bad || lift_packed(q, views, k, &l[k], &got[k]);
-	if (CHECK(!bad, "lifts packed weights")) {
-		const size_t n = (size_t)got[0].indptr[O] * sizeof(float);
-		CHECK(n && !memcmp(got[0].indptr, got[1].indptr, (O + 1) * sizeof *got[0].indptr) &&
-				!memcmp(got[0].share, got[1].share, n) &&
-				!memcmp(got[0].index, got[1].index, n) &&
-				!memcmp(got[0].confidence, got[1].confidence, O * sizeof(float)),
-			"tiles differ from rows");
-	}
-	for (int k = 0; k < 2; k++) {
-		lifted_free(&got[k]);
-		lift_objects_free(&l[k]);
-	}
-	for (int v = 0; v < VIEWS; v++) {
-		weights_room_free(&views[v].room);
-	}
-	free(views);
+		weights_room_free(&rooms[v]);
 	lift_problem_free(q);
 }
 

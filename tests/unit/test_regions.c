@@ -2,6 +2,7 @@
  * that votes get it wrong and regions right; and sums and agreements against the definition in float64. */
 #include "lift/regions.h"
 #include "mask_help.h"
+#include "pack_whole.h"
 #include "unit.h"
 
 #include <omp.h>
@@ -11,12 +12,11 @@ enum { H = 24, W = 32, P = H * W, VIEWS = 7, N = P + VIEWS, MOST = 400, BARE = 5
 enum { BOX, BAG, CAN, JAR, OBJECTS }; /* in the order in which they come */
 
 /* Gaussian p + v is what pixel p of view v shows, with a little of another through it. The last view has no
- * weights, the one before no candidates. */
+ * weights, the one before no candidates. Weights are as packed ones, in both forms. */
+enum { ROWS, TILES, FORMS };
 struct scene {
-	int64_t indptr[VIEWS][P + 1];
-	int32_t index[VIEWS][2 * P];
-	float weight[VIEWS][2 * P];
-	struct view_weights weights[VIEWS];
+	struct weights_room rooms[VIEWS];
+	struct view_matrix weights[FORMS][VIEWS];
 	size_t n, views[MOST];
 	struct mask masks[MOST];
 };
@@ -27,16 +27,36 @@ static const int sides[OBJECTS][4] = {{2, 3, 9, 11}, {3, 17, 10, 26}, {15, 20, 2
 static void make_weights(struct scene *s, struct rng *r)
 {
 	for (int v = 0; v < VIEWS; v++) {
+		static int64_t indptr[P + 1];
+		static int32_t index[2 * P];
+		static float weight[2 * P];
+		struct weights_room *room = &s->rooms[v];
+		struct weights_pack pack;
+		struct err e;
 		for (int p = 0; p < P; p++) {
-			s->indptr[v][p] = 2 * p;
-			s->index[v][2 * p] = p + v;
-			s->index[v][2 * p + 1] = (int32_t)rng_below(r, N);
-			s->weight[v][2 * p] = (float)(0.6 + 0.3 * rng_uniform(r));
-			s->weight[v][2 * p + 1] = (float)(0.03 * rng_uniform(r));
+			indptr[p] = 2 * p;
+			index[2 * p] = p + v;
+			index[2 * p + 1] = (int32_t)rng_below(r, N);
+			weight[2 * p] = (float)(0.6 + 0.3 * rng_uniform(r));
+			weight[2 * p + 1] = (float)(0.03 * rng_uniform(r));
 		}
-		s->indptr[v][P] = 2 * P;
-		s->weights[v] = (struct view_weights){P, N, s->indptr[v], s->index[v], s->weight[v]};
+		indptr[P] = 2 * P;
+		CHECK(!pack_whole(&pack, W, H, N, indptr, index, weight, &e) &&
+				!weights_unpack(&pack, W, H, N, "w", room, &e),
+			"%s", e.message);
+		weights_pack_free(&pack);
+		s->weights[ROWS][v] =
+			(struct view_matrix){H, W, N, {P, N, room->indptr, room->index, room->weight}, NULL};
+		s->weights[TILES][v] = (struct view_matrix){H, W, N, {P, N, NULL, NULL, NULL}, &room->tiles};
 	}
+}
+
+static void scene_free(struct scene *s, size_t masks)
+{
+	for (int v = 0; v < VIEWS; v++)
+		weights_room_free(&s->rooms[v]);
+	for (size_t i = 0; i < masks; i++)
+		rle_free(&s->masks[i].rle);
 }
 
 /* An object in a view, its rows short by `cut` pixels: pixels (P). */
@@ -109,11 +129,12 @@ static double iou(const struct rle *mask, int object, int view)
 
 static double naive_sum(const struct scene *s, size_t view, const uint8_t *mask, int32_t gaussian)
 {
+	const struct view_weights *w = &s->weights[ROWS][view].rows;
 	double sum = 0;
 
-	for (int64_t k = 0; k < 2 * P; k++)
-		if (s->index[view][k] == gaussian && (!mask || mask[k / 2]))
-			sum += (double)s->weight[view][k];
+	for (int p = 0; p < P; p++)
+		for (int64_t k = w->indptr[p]; k < w->indptr[p + 1] && (!mask || mask[p]); k++)
+			sum += w->index[k] == gaussian ? (double)w->weight[k] : 0;
 	return sum;
 }
 
@@ -161,7 +182,7 @@ struct result {
 	double scores[VIEWS][OBJECTS];
 };
 
-static void solve(const struct scene *s, const struct pool *p, int is_backward, struct result *to)
+static void solve(const struct scene *s, const struct pool *p, int form, int is_backward, struct result *to)
 {
 	struct regions r;
 	size_t rendered = 0;
@@ -176,7 +197,7 @@ static void solve(const struct scene *s, const struct pool *p, int is_backward, 
 	for (size_t k = 0; k < UNLIT; k++) {
 		const size_t v = is_backward ? UNLIT - 1 - k : k;
 		struct err own;
-		bad |= regions_lift(&r, v, &s->weights[v], H, W, &own);
+		bad |= regions_lift(&r, v, &s->weights[form][v], &own);
 	}
 	CHECK(!bad, "a view is not lifted");
 	CHECK(!regions_grow(&r, &e) && r.region_count == 3, "%zu regions", r.region_count);
@@ -185,7 +206,7 @@ static void solve(const struct scene *s, const struct pool *p, int is_backward, 
 	CHECK(r.served[CAN] == REGIONS_NONE, "the can has region %zu", r.served[CAN]);
 	for (size_t v = 0; v < UNLIT; v++) {
 		CHECK(!regions_render(
-			      &r, v, &s->weights[v], H, W, to->masks[v], to->scores[v], &rendered, &e),
+			      &r, v, &s->weights[form][v], to->masks[v], to->scores[v], &rendered, &e),
 			"%s", e.message);
 		CHECK(!rle_area(&to->masks[v][CAN]), "view %zu has a can", v);
 		for (int o = 0; o < OBJECTS; o++) {
@@ -227,6 +248,20 @@ static void compare(const struct result *a, struct result *b, const char *what)
 	result_free(b);
 }
 
+/* Rows of pixels are summed in floats: the same masks, and scores but for rounding. Frees b. */
+static void compare_masks(const struct result *a, struct result *b)
+{
+	for (int v = 0; v < UNLIT; v++)
+		for (int o = 0; o < OBJECTS; o++) {
+			const struct rle *m = &a->masks[v][o], *other = &b->masks[v][o];
+			CHECK(m->n == other->n &&
+					(!m->n || !memcmp(m->runs, other->runs, m->n * sizeof *m->runs)) &&
+					fabs(a->scores[v][o] - b->scores[v][o]) < 1e-5,
+				"view %d, %s: rows differ from tiles", v, objects[o]);
+		}
+	result_free(b);
+}
+
 static void test_confusion(void)
 {
 	static struct scene s;
@@ -249,9 +284,11 @@ static void test_confusion(void)
 	CHECK(wrong == 4, "votes err in %zu views", wrong);
 	for (int threads = 1; threads <= 2; threads++) {
 		omp_set_num_threads(threads);
-		solve(&s, &pool, threads == 2, &results[threads - 1]);
+		solve(&s, &pool, TILES, threads == 2, &results[threads - 1]);
 	}
 	compare(&results[0], &results[1], "threads, and the order of views");
+	solve(&s, &pool, ROWS, 0, &results[1]);
+	compare_masks(&results[0], &results[1]);
 	pool_free(&pool);
 	/* every record twice */
 	for (size_t i = 0; i < once; i++, s.n++) {
@@ -259,12 +296,11 @@ static void test_confusion(void)
 		s.views[s.n] = s.views[i];
 	}
 	CHECK(!pool_make(&pool, s.masks, s.n, &e), "%s", e.message);
-	solve(&s, &pool, 0, &results[1]);
+	solve(&s, &pool, TILES, 0, &results[1]);
 	compare(&results[0], &results[1], "doubled records");
 	pool_free(&pool);
 	result_free(&results[0]);
-	for (size_t i = 0; i < once; i++)
-		rle_free(&s.masks[i].rle);
+	scene_free(&s, once);
 }
 
 /* A thing that one of the box's sentences means, and no object is, is spare; not so the part of the box that
@@ -293,7 +329,7 @@ static void test_spare(void)
 		omp_set_num_threads(threads);
 		CHECK(!regions_init(&r, &pool, s.views, VIEWS, N, 0.3, &e), "%s", e.message);
 		for (size_t v = 0; v < UNLIT; v++)
-			CHECK(!regions_lift(&r, v, &s.weights[v], H, W, &e), "%s", e.message);
+			CHECK(!regions_lift(&r, v, &s.weights[TILES][v], &e), "%s", e.message);
 		CHECK(!regions_grow(&r, &e) && !regions_assign(&r, &e), "%s", e.message);
 		CHECK(r.region_count > 3 && r.spare_count == 1, "%zu of %zu regions are spare", r.spare_count,
 			r.region_count);
@@ -309,8 +345,7 @@ static void test_spare(void)
 		regions_free(&r);
 	}
 	pool_free(&pool);
-	for (size_t i = 0; i < s.n; i++)
-		rle_free(&s.masks[i].rle);
+	scene_free(&s, s.n);
 }
 
 static void test_none(void)

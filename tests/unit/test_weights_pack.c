@@ -4,6 +4,7 @@
 
 #include "base/rng.h"
 #include "pack_whole.h"
+#include "splat/view_weights.h"
 
 enum { MOST = 60, GAUSSIANS = 5000 };
 
@@ -60,6 +61,25 @@ static long count_wrong(
 	return wrong;
 }
 
+/* What tiles blend is what rows of pixels do, to the bit. */
+static void check_blend(
+	struct rng *rng, const struct matrix *m, int gaussians, const struct weights_room *room)
+{
+	const size_t pixels = (size_t)m->width * (size_t)m->height, values = (size_t)gaussians * VIEW_GROUP;
+	const struct view_weights w = {pixels, (size_t)gaussians, room->indptr, room->index, room->weight};
+	float *field = malloc(values * sizeof *field + 1),
+	      *image = malloc(2 * VIEW_GROUP * pixels * sizeof *image);
+
+	for (size_t i = 0; i < values; i++)
+		field[i] = (float)(rng_uniform(rng) - 0.5);
+	view_blend_group(&w, field, VIEW_GROUP, 0, pixels, image, pixels);
+	view_tiles_blend_group(&room->tiles, field, image + VIEW_GROUP * pixels);
+	CHECK(!memcmp(image, image + VIEW_GROUP * pixels, VIEW_GROUP * pixels * sizeof *image),
+		"%dx%d: tiles blend otherwise than rows", m->width, m->height);
+	free(field);
+	free(image);
+}
+
 /* room: used again, whatever was in them. */
 static void check_round_trip(struct rng *rng, int width, int height, int gaussians, struct weights_room *room)
 {
@@ -72,6 +92,7 @@ static void check_round_trip(struct rng *rng, int width, int height, int gaussia
 	if (CHECK(!weights_unpack(&pack, width, height, gaussians, "w", room, &e), "%s", e.message)) {
 		const long wrong = count_wrong(&m, room->indptr, room->index, room->weight);
 		CHECK(wrong == 0, "%dx%d of %d: %ld differ", width, height, gaussians, wrong);
+		check_blend(rng, &m, gaussians, room);
 	}
 	weights_pack_free(&pack);
 	matrix_free(&m);
