@@ -1,5 +1,6 @@
 #include "lang/wordnet.h"
 
+#include "base/hash.h"
 #include "lang/synsets.h"
 
 #include <math.h>
@@ -57,7 +58,7 @@ static void climb(struct wordnet_noun *to, long synset, int depth, int sense)
 		free_synset(s);
 }
 
-void wordnet_find(struct wordnet_noun *to, const char *lemma)
+static void find(struct wordnet_noun *to, const char *lemma)
 {
 	long senses[WORDNET_SENSES];
 	const int n = synsets_of(lemma, NOUN, senses, WORDNET_SENSES);
@@ -65,6 +66,26 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma)
 	to->n = 0;
 	for (int i = 0; i < n; i++)
 		climb(to, senses[i], 0, i);
+}
+
+/* Sentences of a scene say the same words again and again: the last noun of each hash is kept. */
+void wordnet_find(struct wordnet_noun *to, const char *lemma)
+{
+	static struct {
+		char lemma[64]; /* "": none yet */
+		struct wordnet_noun noun;
+	} kept[256];
+	const size_t length = strlen(lemma), at = hash64(lemma, length, 0) % 256;
+
+	if (!length || length >= sizeof kept[at].lemma) {
+		find(to, lemma);
+		return;
+	}
+	if (strcmp(kept[at].lemma, lemma) != 0) {
+		find(&kept[at].noun, lemma);
+		memcpy(kept[at].lemma, lemma, length + 1);
+	}
+	*to = kept[at].noun;
 }
 
 /* Whether a sense of a noun is a kind of a synset. */
@@ -78,12 +99,12 @@ static int is_kind_of(const struct wordnet_noun *noun, int sense, long synset)
 
 void wordnet_find_thing(struct wordnet_noun *to, const char *lemma)
 {
-	long made, food;
+	static long made, food;
 	int kept = 0;
 
 	wordnet_find(to, lemma);
-	if (!synsets_of("artifact", NOUN, &made, 1) || !synsets_of("food", NOUN, &food, 1) ||
-		!is_kind_of(to, 0, made))
+	if ((!made && !synsets_of("artifact", NOUN, &made, 1)) ||
+		(!food && !synsets_of("food", NOUN, &food, 1)) || !is_kind_of(to, 0, made))
 		return;
 	const struct wordnet_noun all = *to;
 	for (int i = 0; i < all.n; i++)
