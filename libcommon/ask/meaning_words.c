@@ -213,8 +213,13 @@ static int is_said_of_something(struct meaning *m, int word, double *match)
  * here. */
 static int is_vague(const struct parse_word *w)
 {
-	static const char *const vague[] = {"gadget", "gizmo", "contraption", "widget", "doodad", "doohickey",
-		"thingamajig", "thingamabob", "whatsit", NULL};
+	static const char *const vague[] = {"apparatus", "article", "beauty", "belonging", "bit", "bloke",
+		"buddy", "bugger", "candidate", "chap", "character", "contraption", "critter", "customer",
+		"doobry", "doodad", "doodah", "doofer", "doohickey", "entity", "exhibit", "fella", "fellow",
+		"gadget", "gismo", "gizmo", "gubbins", "guy", "implement", "lad", "mate", "number",
+		"possession", "prop", "specimen", "sucker", "thingamabob", "thingamajig", "thingie",
+		"thingumabob", "thingumajig", "thingummy", "whatchamacallit", "whatnot", "whatsit", "widget",
+		"wotsit", NULL};
 
 	return meaning_word_is(w, vague);
 }
