@@ -357,11 +357,12 @@ static int phrase_start(const struct build *b, int head)
 
 static void count_phrase(struct build *b, int head, struct parse_phrase *f)
 {
-	static const char *const several[] = {"ones", "things", "objects", "items", "stuff", NULL};
+	static const char *const several[] = {
+		"ones", "things", "objects", "items", "stuff", "those", "these", NULL};
 	const struct tokens *t = b->t;
 	int start = phrase_start(b, head), number = 0, of;
 
-	for (int i = start; i <= head; i++)
+	for (int i = start; i <= head && !(number > 1 && tokens_is(t, i, "of")); i++)
 		if (tokens_class(t, i) == CLOSED_NUMBER && (!number || value_of(t, i) > 0))
 			number = value_of(t, i);
 	if (tokens_is(t, head, "everything") || tokens_is(t, head, "anything") ||
@@ -416,6 +417,31 @@ static void find_group(struct build *b)
 		}
 }
 
+/* "Spoons, both of them", "of the five keys the two on the nail". */
+static void count_late(struct build *b)
+{
+	static const char *const them[] = {"them", "those", "these", NULL};
+	const struct tokens *t = b->t;
+	struct parse_phrase *f = &b->p->phrases[0];
+
+	if (f->count == PARSE_ONE && !f->group)
+		return;
+	for (int i = b->noun + 1; i < t->n; i++) {
+		if (tokens_class(t, i) != CLOSED_NUMBER || value_of(t, i) == PARSE_ONE)
+			continue;
+		const int is_of_them = tokens_is(t, i + 1, "of") && tokens_is_any(t, i + 2, them);
+		const int is_alone = f->group > value_of(t, i) && value_of(t, i) > 0 &&
+				     tokens_is(t, i - 1, "the") &&
+				     (i + 1 == t->n || tokens_class(t, i + 1) == CLOSED_PREPOSITION ||
+					     tokens_class(t, i + 1) == CLOSED_PLACE);
+		if (!is_of_them && !is_alone)
+			continue;
+		f->count = value_of(t, i);
+		f->group = 0;
+		return;
+	}
+}
+
 /* "What is on the plates? I need both." */
 static void count_again(struct build *b)
 {
@@ -441,6 +467,7 @@ static void count_phrases(struct build *b)
 		if (b->phrase_of[i] > 0 || (b->phrase_of[i] == 0 && i == b->noun))
 			count_phrase(b, i, &b->p->phrases[b->phrase_of[i]]);
 	find_group(b);
+	count_late(b);
 	count_again(b);
 }
 
