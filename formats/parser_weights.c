@@ -15,16 +15,16 @@
 EMBED(parser_default, "formats/parser_default.safetensors");
 extern const unsigned char parser_default_begin[], parser_default_end[];
 
-enum { MEMBERS_MOST = 8, NAME_LENGTH = 40, TENSORS_MOST = 2 * MEMBERS_MOST * PARSER_PARTS };
+enum { NAME_LENGTH = 40, TENSORS_MOST = 2 * PARSER_MEMBERS * PARSER_PARTS };
 
 /* A file in the making. */
 struct making {
 	int n;
 	struct st_tensor tensors[TENSORS_MOST];
 	char names[TENSORS_MOST][NAME_LENGTH];
-	int8_t *whole[MEMBERS_MOST]; /* of the matrices, and what a row's are to be multiplied by */
-	float *factor[MEMBERS_MOST];
-	uint16_t *half[MEMBERS_MOST]; /* of the vectors */
+	int8_t *whole[PARSER_MEMBERS]; /* of the matrices, and what a row's are to be multiplied by */
+	float *factor[PARSER_MEMBERS];
+	uint16_t *half[PARSER_MEMBERS]; /* of the vectors */
 };
 
 /* "vector.weight" of the first member, "1.vector.weight" of the next; tail: "", or ".scale" for the factors
@@ -98,18 +98,18 @@ static int take_member(struct parser_weights *w, int member, const struct safete
 	return 0;
 }
 
-/* Older ones were learnt on the encoder's last layer, or written otherwise. */
+/* Older ones are of another network, or were learnt on the encoder's last layer. */
 static int need_version(const struct safetensors *st, struct err *e)
 {
 	const char *version;
 
-	if (safetensors_need_format(st, "refer.parser", 3, e))
+	if (safetensors_need_format(st, "refer.parser", 4, e))
 		return -1;
 	version = safetensors_meta(st, "version");
-	return !strcmp(version, "3")
+	return !strcmp(version, "4")
 		       ? 0
 		       : err_set(e, ERR_FORMAT,
-				 "%s: refer.parser version %s is older than this program reads (3)", st->path,
+				 "%s: refer.parser version %s is older than this program reads (4)", st->path,
 				 version);
 }
 
@@ -132,7 +132,7 @@ static int take_tensors(struct parser_weights *w, const struct safetensors *st, 
 	for (int member = 0;; member++) {
 		if (take_member(w, member, st, e))
 			return -1;
-		if (member + 1 == MEMBERS_MOST ||
+		if (member + 1 == PARSER_MEMBERS ||
 			!safetensors_find(st, name_of(name, member + 1, "vector.weight", "")))
 			return 0;
 		w->next = mem_zalloc(1, sizeof *w->next, "parser's weights", e);
@@ -239,10 +239,10 @@ int parser_weights_write(const struct parser_weights *w, const char *path, const
 	char seed_text[32];
 	int members = 0, bad = 0;
 
-	for (const struct parser_weights *k = w; k && members < MEMBERS_MOST && !bad; k = k->next)
+	for (const struct parser_weights *k = w; k && members < PARSER_MEMBERS && !bad; k = k->next)
 		bad = put_member(k, members++, &m, e);
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
-	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "3"}, {"tool", "parse-train"},
+	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "4"}, {"tool", "parse-train"},
 		{"options", options}, {"seed", seed_text}, {"source", source},
 		{"encoder", w->encoder[0] ? w->encoder : NULL}};
 	if (!bad)

@@ -61,9 +61,10 @@ static int take_readings(struct parser_training *s, struct err *e)
 	return 0;
 }
 
-static void say(void *context, int epoch, double loss)
+static void say(void *context, int member, int epoch, double loss)
 {
-	report_note(context, 1, "epoch %d: loss %.4f", epoch + 1, loss);
+#pragma omp critical
+	report_note(context, 1, "network %d, epoch %d: loss %.4f", member + 1, epoch + 1, loss);
 }
 
 static int put_parses(
@@ -88,37 +89,14 @@ static int put_parses(
 	return 0;
 }
 
-static void set_member(struct parser_training *s, int member)
+/* Networks of zeros, as many as are asked for. */
+static int make_members(struct parser_weights *w, int width, long long members, struct err *e)
 {
-	s->school.seed = (unsigned long long)s->options->seed + (unsigned long long)member * 1000;
-}
-
-/* The members, one after the other, by the examples alone. */
-static int learn_examples(struct parser_training *s, struct parser_weights *w, struct err *e)
-{
-	for (int member = 0;; member++) {
-		set_member(s, member);
-		if (parser_weights_make(w, s->examples.width, e) || parser_school_examples(&s->school, w, e))
-			return -1;
-		if (member + 1 == s->options->members)
-			return 0;
+	if (parser_weights_make(w, width, e))
+		return -1;
+	for (long long k = 1; k < members; k++, w = w->next) {
 		w->next = mem_zalloc(1, sizeof *w->next, "parser's weights", e);
-		if (!w->next)
-			return -1;
-		w = w->next;
-	}
-}
-
-/* All but one fold's readings, or all. */
-static int learn_readings(struct parser_training *s, struct parser_weights *w, int without, struct err *e)
-{
-	for (int member = 0; w; w = w->next, member++) {
-		struct parser_weights *next = w->next;
-		set_member(s, member);
-		w->next = NULL; /* the readings are aligned by this member alone */
-		const int bad = parser_school_readings(&s->school, w, without, e);
-		w->next = next;
-		if (bad)
+		if (!w->next || parser_weights_make(w->next, width, e))
 			return -1;
 	}
 	return 0;
@@ -134,18 +112,15 @@ static void copy_members(struct parser_weights *to, const struct parser_weights 
 static int cross_validate(struct parser_training *s, struct parser_weights *w, struct err *e)
 {
 	struct file_out out = {0};
-	struct parser_weights begun = {0}, *last = &begun;
-	int bad = file_out_open(&out, s->options->output, e) || parser_weights_make(&begun, w->width, e);
+	struct parser_weights begun = {0};
+	int bad = file_out_open(&out, s->options->output, e) ||
+		  make_members(&begun, w->width, s->options->members, e);
 
-	for (const struct parser_weights *m = w->next; m && !bad; m = m->next, last = last->next) {
-		last->next = mem_zalloc(1, sizeof *last->next, "parser's weights", e);
-		bad = !last->next || parser_weights_make(last->next, w->width, e);
-	}
 	if (!bad)
 		copy_members(&begun, w);
 	for (int fold = 0; fold < s->options->folds && !bad; fold++) {
 		copy_members(w, &begun);
-		bad = learn_readings(s, w, fold, e) || put_parses(s, w, fold, out.stream, e);
+		bad = parser_school_readings(&s->school, w, fold, e) || put_parses(s, w, fold, out.stream, e);
 	}
 	parser_weights_free(&begun);
 	return file_out_end(&out, bad, e);
@@ -155,12 +130,13 @@ static int learn_weights(struct parser_training *s, struct err *e)
 {
 	const struct parser_training_options *o = s->options;
 	struct parser_weights w = {0};
-	int bad = learn_examples(s, &w, e);
+	int bad = make_members(&w, s->examples.width, o->members, e) ||
+		  parser_school_examples(&s->school, &w, e);
 
 	if (!bad) {
 		memcpy(w.encoder, s->examples.encoder.hex, sizeof w.encoder);
 		bad = o->folds ? cross_validate(s, &w, e)
-			       : learn_readings(s, &w, -1, e) ||
+			       : parser_school_readings(&s->school, &w, -1, e) ||
 					 parser_weights_write(&w, o->output, o->readings ? "--readings" : "",
 						 o->seed, o->source, e);
 	}
@@ -173,6 +149,7 @@ int parser_train(const struct parser_training_options *o, const struct report *t
 	struct parser_training s = {.options = o,
 		.school = {.epochs = (int)o->epochs,
 			.rounds = (int)o->rounds,
+			.seed = (unsigned long long)o->seed,
 			.progress = say,
 			.context = (void *)to}};
 	int bad = text_read(&s.examples, o->examples, e) || check_encoding(&s, &s.examples, o->examples, e) ||

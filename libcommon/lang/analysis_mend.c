@@ -161,14 +161,18 @@ static void mend_any_colour(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "left of the grey one": grey is said of what comes right after it. */
+/* "left of the plain grey one": plain and grey are said of what comes right after them. */
 static void mend_attributes(struct analysis *a, const struct tokens *t)
 {
-	for (int i = 0; i + 1 < t->n; i++) {
-		const enum word_role next = a->word[i + 1].role;
-		if (a->word[i].role == ROLE_ATTRIBUTE && !t->word[i + 1].before && role_is_phrase(next) &&
-			tokens_class(t, i) != CLOSED_RELATIVE)
-			a->word[i].head = next == ROLE_TARGET ? ROOT : i + 1;
+	int noun = -1; /* that word i + 1 is, or is said of as it stands before it */
+
+	for (int i = t->n - 1; i >= 0; i--) {
+		if (noun >= 0 && t->word[i + 1].before)
+			noun = -1;
+		if (a->word[i].role == ROLE_ATTRIBUTE && noun >= 0 && tokens_class(t, i) != CLOSED_RELATIVE)
+			a->word[i].head = a->word[noun].role == ROLE_TARGET ? ROOT : noun;
+		else if (a->word[i].role != ROLE_NAME)
+			noun = role_is_phrase(a->word[i].role) ? i : -1;
 	}
 }
 

@@ -53,10 +53,11 @@ static int state_make(struct course_state *s, int width, size_t count, size_t n,
 	s->lessons = mem_alloc((size_t)batch, sizeof *s->lessons, "lessons", e);
 	if (!s->moments || !s->order || !s->lessons || parser_weights_make(&s->gradient, width, e) ||
 		parser_batch_make(&s->batch, batch * TOKENS_MOST, batch, &s->gradient, e) ||
-		parser_batch_make(&s->scratch, batch * TOKENS_MOST, batch, &s->gradient, e))
+		parser_scratch_make(&s->scratch, batch * TOKENS_MOST, batch, &s->gradient, e))
 		return -1;
 	s->batch.keep = mem_alloc((size_t)batch * TOKENS_MOST * NET_HIDDEN, sizeof(float), "dropout", e);
-	return s->batch.keep ? 0 : -1;
+	s->batch.keep_state = mem_alloc((size_t)batch * TOKENS_MOST * NET_STATE, sizeof(float), "dropout", e);
+	return s->batch.keep && s->batch.keep_state ? 0 : -1;
 }
 
 static void state_free(struct course_state *s)
@@ -69,10 +70,10 @@ static void state_free(struct course_state *s)
 	free(s->lessons);
 }
 
-static void drop(struct parser_batch *b, double share, struct rng *r)
+static void drop(float *keep, size_t n, double share, struct rng *r)
 {
-	for (size_t i = 0; i < (size_t)b->rows * NET_HIDDEN; i++)
-		b->keep[i] = rng_u32(r) < share * 4294967296.0 ? 0 : (float)(1 / (1 - share));
+	for (size_t i = 0; i < n; i++)
+		keep[i] = rng_u32(r) < share * 4294967296.0 ? 0 : (float)(1 / (1 - share));
 }
 
 /* Some closed words are hidden, so that the vectors learn to do without them. */
@@ -102,7 +103,8 @@ int parser_learn(struct parser_weights *w, const struct parser_sample *const *sa
 				s.lessons[s.batch.sentences] = x->right;
 				parser_batch_add(&s.batch, x->features, x->vectors, x->n, w->width);
 			}
-			drop(&s.batch, course->dropout, r);
+			drop(s.batch.keep, (size_t)s.batch.rows * NET_HIDDEN, course->dropout, r);
+			drop(s.batch.keep_state, (size_t)s.batch.rows * NET_STATE, course->dropout_state, r);
 			hide(&s.batch, 0.1, r);
 			parser_forward(w, &s.batch);
 			memset(s.gradient.slab, 0, sizeof(float) * w->count);
@@ -114,7 +116,7 @@ int parser_learn(struct parser_weights *w, const struct parser_sample *const *sa
 				course->rate * left, 0.9, 0.99, 1e-8, (long)step);
 		}
 		if (course->progress)
-			course->progress(course->context, epoch, loss / (double)steps);
+			course->progress(course->context, course->member, epoch, loss / (double)steps);
 	}
 	state_free(&s);
 	return bad;

@@ -1,5 +1,6 @@
 #include "lang/parser_learn.h"
 
+#include "base/mem.h"
 #include "nn/linear.h"
 #include "nn/loss.h"
 
@@ -15,15 +16,27 @@ void parser_weights_begin(struct parser_weights *w, struct rng *r)
 	for (int i = 0; i < PARSER_PARTS; i++) {
 		size_t n = parts[i].rows * (parts[i].columns ? parts[i].columns : 1);
 		/* tables of words are sums' terms: small */
-		double most = !parts[i].columns			  ? 0
-			      : p >= w->closed && p < w->layer[0] ? 0.1
-								  : sqrt(3.0 / (double)parts[i].columns);
+		double most = !parts[i].columns			     ? 0
+			      : p >= w->closed && p < w->ahead.input ? 0.1
+								     : sqrt(3.0 / (double)parts[i].columns);
 		for (size_t k = 0; k < n; k++)
 			p[k] = (float)rng_range(r, -most, most + (most > 0 ? 0 : 1e-30));
 		p += n;
 	}
 	for (int k = 0; k < NET_ARC; k++)
 		w->root[k] = (float)rng_range(r, -0.3, 0.3);
+}
+
+int parser_scratch_make(
+	struct parser_batch *b, int capacity, int sentences, const struct parser_weights *w, struct err *e)
+{
+	if (parser_batch_make(b, capacity, sentences, w, e))
+		return -1;
+	b->scratch = mem_alloc(lstm_scratch(&w->ahead, sentences), sizeof *b->scratch, "parser", e);
+	if (b->scratch)
+		return 0;
+	parser_batch_free(b);
+	return -1;
 }
 
 /* Cross-entropy of n logits against `right`; d gets its gradient times `scale`. */
@@ -106,30 +119,6 @@ static double losses(const struct parser_weights *w, struct parser_weights *dw, 
 	return loss;
 }
 
-/* The transpose of gather: d->gathered into dh. */
-static void scatter(const struct parser_batch *b, const float *dgathered, int reach, float *dh)
-{
-	for (int s = 0; s < b->sentences; s++) {
-		int first = b->start[s], end = b->start[s + 1];
-		float mean[NET_HIDDEN] = {0};
-		for (int r = first; r < end; r++) {
-			const float *row = dgathered + (size_t)r * NET_BLOCKS * NET_HIDDEN;
-			for (int k = 0; k < 3; k++) {
-				int at = r + (k - 1) * reach;
-				if (at >= first && at < end)
-					for (int c = 0; c < NET_HIDDEN; c++)
-						dh[(size_t)at * NET_HIDDEN + (size_t)c] +=
-							row[k * NET_HIDDEN + c];
-			}
-			for (int c = 0; c < NET_HIDDEN; c++)
-				mean[c] += row[3 * NET_HIDDEN + c] / (float)(end - first);
-		}
-		for (int r = first; r < end; r++)
-			for (int c = 0; c < NET_HIDDEN; c++)
-				dh[(size_t)r * NET_HIDDEN + (size_t)c] += mean[c];
-	}
-}
-
 static void add_to(float *table, const float *d)
 {
 	for (int k = 0; k < NET_HIDDEN; k++)
@@ -144,7 +133,7 @@ static void embed_back(struct parser_weights *dw, const struct parser_batch *b, 
 			size_t at = (size_t)r * NET_HIDDEN + (size_t)k;
 			if (b->keep)
 				d[k] *= b->keep[at];
-			if (!(b->h[0][at] > 0))
+			if (!(b->first[at] > 0))
 				d[k] = 0;
 		}
 		add_to(dw->closed + b->features[r].closed * NET_HIDDEN, d);
@@ -159,32 +148,33 @@ static void embed_back(struct parser_weights *dw, const struct parser_batch *b, 
 double parser_backward(const struct parser_weights *w, struct parser_weights *dw,
 	const struct parser_batch *b, const struct analysis_word *const *lessons, struct parser_batch *d)
 {
-	static const int reach[NET_LAYERS] = {1, 2, 4};
-	size_t rows = (size_t)b->rows, h = rows * NET_HIDDEN;
-	float *dh = d->h[0], *part = d->h[1];
+	const struct lstm_sequences ahead = {b->start, b->sentences, 0}, back = {b->start, b->sentences, 1};
+	const size_t rows = (size_t)b->rows, h = rows * NET_HIDDEN;
+	float *dh = d->h, *part = d->first;
 	double loss;
 
 	memset(d->out, 0, sizeof(float) * rows * NET_OUT);
 	memset(d->dependent, 0, sizeof(float) * rows * NET_ARC);
 	memset(d->head, 0, sizeof(float) * rows * NET_ARC);
 	loss = losses(w, dw, b, lessons, d);
-	linear_backward(
-		dh, dw->out, dw->out_bias, d->out, b->h[NET_LAYERS], w->out, rows, NET_HIDDEN, NET_OUT);
-	linear_backward(part, dw->dependent, dw->dependent_bias, d->dependent, b->h[NET_LAYERS], w->dependent,
-		rows, NET_HIDDEN, NET_ARC);
+	linear_backward(dh, dw->out, dw->out_bias, d->out, b->h, w->out, rows, NET_HIDDEN, NET_OUT);
+	linear_backward(part, dw->dependent, dw->dependent_bias, d->dependent, b->h, w->dependent, rows,
+		NET_HIDDEN, NET_ARC);
 	for (size_t i = 0; i < h; i++)
 		dh[i] += part[i];
-	linear_backward(
-		part, dw->head, dw->head_bias, d->head, b->h[NET_LAYERS], w->head, rows, NET_HIDDEN, NET_ARC);
+	linear_backward(part, dw->head, dw->head_bias, d->head, b->h, w->head, rows, NET_HIDDEN, NET_ARC);
 	for (size_t i = 0; i < h; i++)
 		dh[i] += part[i];
-	for (int l = NET_LAYERS; l-- > 0;) {
-		for (size_t i = 0; i < h; i++)
-			part[i] = b->grown[l][i] > 0 ? dh[i] : 0;
-		linear_backward(d->gathered[0], dw->layer[l], dw->layer_bias[l], part, b->gathered[l],
-			w->layer[l], rows, NET_BLOCKS * NET_HIDDEN, NET_HIDDEN);
-		scatter(b, d->gathered[0], reach[l], dh);
-	}
+	for (size_t i = 0; i < h; i++)
+		part[i] = b->grown[i] > 0 ? dh[i] : 0;
+	linear_backward(
+		d->state, dw->down, dw->down_bias, part, b->state, w->down, rows, NET_STATE, NET_HIDDEN);
+	for (size_t i = 0; b->keep_state && i < rows * NET_STATE; i++)
+		d->state[i] *= b->keep_state[i];
+	lstm_backward(
+		&w->ahead, &dw->ahead, &ahead, b->first, &b->ahead, d->state, NET_STATE, dh, d->scratch);
+	lstm_backward(&w->back, &dw->back, &back, b->first, &b->back, d->state + NET_UNITS, NET_STATE, dh,
+		d->scratch);
 	embed_back(dw, b, dh);
 	return loss;
 }

@@ -8,10 +8,15 @@
 /* Uniform in +-sqrt(6 / inputs) for the matrices. */
 void parser_weights_begin(struct parser_weights *w, struct rng *r);
 
+/* A batch that parser_backward can use as its scratch. Freed as any batch. */
+int parser_scratch_make(
+	struct parser_batch *b, int capacity, int sentences, const struct parser_weights *w, struct err *e);
+
 /* Adds to dw the gradient of the loss, and returns the loss: the sum over words of the cross-entropies of
  * role, and where it has them head, relation and negation, divided by the number of words. b holds
  * parser_forward's results. lessons: what each sentence's words should be, an array a sentence; a word whose
- * role is ROLES is not learnt from. scratch is of the shape of b, its contents are lost. */
+ * role is ROLES is not learnt from. scratch is of the shape of b, its contents are lost, and so is what b
+ * holds of the lstms. */
 double parser_backward(const struct parser_weights *w, struct parser_weights *dw,
 	const struct parser_batch *b, const struct analysis_word *const *lessons,
 	struct parser_batch *scratch);
@@ -29,10 +34,11 @@ int parser_sample_make(struct parser_sample *s, const struct tokens *t, const st
 void parser_sample_free(struct parser_sample *s);
 
 struct parser_course {
-	int epochs, batch; /* sentences in a step */
-	double rate, dropout;
+	int epochs, batch;		     /* sentences in a step */
+	double rate, dropout, dropout_state; /* the share of h0 and of s that is dropped */
+	int member;			     /* for progress: which network it is */
 	/* said of each epoch; may be NULL */
-	void (*progress)(void *context, int epoch, double loss);
+	void (*progress)(void *context, int member, int epoch, double loss);
 	void *context;
 };
 

@@ -8,21 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the decoder: first guesses, each kept since the readings' sentences were parsed better with it, none
- * searched. How likely a word must be a predicate to become one for its anchor, and what that counts beside
- * the arc; what a second anchor without "and" costs; how near an anchor a predicate is rather said of it, and
- * by how much; what it costs to be said of an anchor before a pause or "and". */
-#define NET_PREDICATE_LEAST 0.02
-#define NET_PREDICATE_WEIGHT 0.5
-#define NET_LIST_COST 3.0
-#define NET_CLOSE 4
-#define NET_CLOSE_BONUS 1.5f
-#define NET_PARTED_COST 1.5f
-/* How likely "with" or "has" must be another relation than that. */
-#define NET_WITH_MOST 0.5
-
-static const int reach[NET_LAYERS] = {1, 2, 4};
-
 void parser_parts(int width, struct parser_part parts[PARSER_PARTS])
 {
 	const struct parser_part all[PARSER_PARTS] = {
@@ -32,12 +17,14 @@ void parser_parts(int width, struct parser_part parts[PARSER_PARTS])
 		{"role", ROLES, NET_HIDDEN},
 		{"relation", PARSE_RELATIONS + 1, NET_HIDDEN},
 		{"pause", NET_PAUSES, NET_HIDDEN},
-		{"layer.0.weight", NET_HIDDEN, NET_BLOCKS * NET_HIDDEN},
-		{"layer.0.bias", NET_HIDDEN, 0},
-		{"layer.1.weight", NET_HIDDEN, NET_BLOCKS * NET_HIDDEN},
-		{"layer.1.bias", NET_HIDDEN, 0},
-		{"layer.2.weight", NET_HIDDEN, NET_BLOCKS * NET_HIDDEN},
-		{"layer.2.bias", NET_HIDDEN, 0},
+		{"ahead.input", 4 * NET_UNITS, NET_HIDDEN},
+		{"ahead.recurrent", NET_UNITS, 4 * NET_UNITS},
+		{"ahead.bias", 4 * NET_UNITS, 0},
+		{"back.input", 4 * NET_UNITS, NET_HIDDEN},
+		{"back.recurrent", NET_UNITS, 4 * NET_UNITS},
+		{"back.bias", 4 * NET_UNITS, 0},
+		{"down.weight", NET_HIDDEN, NET_STATE},
+		{"down.bias", NET_HIDDEN, 0},
 		{"out.weight", NET_OUT, NET_HIDDEN},
 		{"out.bias", NET_OUT, 0},
 		{"dependent.weight", NET_ARC, NET_HIDDEN},
@@ -56,11 +43,14 @@ int parser_weights_make(struct parser_weights *w, int width, struct err *e)
 {
 	struct parser_part parts[PARSER_PARTS];
 	float **const at[PARSER_PARTS] = {&w->vector, &w->vector_bias, &w->closed, &w->role, &w->relation,
-		&w->pause, &w->layer[0], &w->layer_bias[0], &w->layer[1], &w->layer_bias[1], &w->layer[2],
-		&w->layer_bias[2], &w->out, &w->out_bias, &w->dependent, &w->dependent_bias, &w->head,
-		&w->head_bias, &w->root, &w->distance, &w->agree};
+		&w->pause, &w->ahead.input, &w->ahead.recurrent, &w->ahead.bias, &w->back.input,
+		&w->back.recurrent, &w->back.bias, &w->down, &w->down_bias, &w->out, &w->out_bias,
+		&w->dependent, &w->dependent_bias, &w->head, &w->head_bias, &w->root, &w->distance,
+		&w->agree};
 
-	*w = (struct parser_weights){.width = width};
+	*w = (struct parser_weights){.width = width,
+		.ahead = {.in = NET_HIDDEN, .units = NET_UNITS},
+		.back = {.in = NET_HIDDEN, .units = NET_UNITS}};
 	parser_parts(width, parts);
 	for (int i = 0; i < PARSER_PARTS; i++)
 		w->count += parts[i].rows * (parts[i].columns ? parts[i].columns : 1);
@@ -97,12 +87,11 @@ int parser_batch_make(
 	struct {
 		float **at;
 		size_t columns;
-	} floats[] = {{&b->x, (size_t)w->width}, {&b->h[0], NET_HIDDEN}, {&b->h[1], NET_HIDDEN},
-		{&b->h[2], NET_HIDDEN}, {&b->h[3], NET_HIDDEN}, {&b->gathered[0], NET_BLOCKS * NET_HIDDEN},
-		{&b->gathered[1], NET_BLOCKS * NET_HIDDEN}, {&b->gathered[2], NET_BLOCKS * NET_HIDDEN},
-		{&b->grown[0], NET_HIDDEN}, {&b->grown[1], NET_HIDDEN}, {&b->grown[2], NET_HIDDEN},
-		{&b->out, NET_OUT}, {&b->own, NET_OUT}, {&b->dependent, members * NET_ARC},
-		{&b->head, members * NET_ARC}};
+	} floats[] = {{&b->x, (size_t)w->width}, {&b->first, NET_HIDDEN}, {&b->state, NET_STATE},
+		{&b->grown, NET_HIDDEN}, {&b->h, NET_HIDDEN}, {&b->ahead.gates, 4 * NET_UNITS},
+		{&b->ahead.cell, NET_UNITS}, {&b->ahead.before, NET_UNITS}, {&b->back.gates, 4 * NET_UNITS},
+		{&b->back.cell, NET_UNITS}, {&b->back.before, NET_UNITS}, {&b->out, NET_OUT},
+		{&b->own, NET_OUT}, {&b->dependent, members * NET_ARC}, {&b->head, members * NET_ARC}};
 	for (size_t i = 0; i < sizeof floats / sizeof *floats && !bad; i++)
 		bad = !(*floats[i].at = mem_zalloc(n, floats[i].columns * sizeof(float), "parser", e));
 	if (!bad)
@@ -116,13 +105,18 @@ int parser_batch_make(
 
 void parser_batch_free(struct parser_batch *b)
 {
-	for (int l = 0; l < NET_LAYERS; l++) {
-		free(b->gathered[l]);
-		free(b->grown[l]);
-	}
-	for (int l = 0; l <= NET_LAYERS; l++)
-		free(b->h[l]);
 	free(b->x);
+	free(b->first);
+	free(b->state);
+	free(b->grown);
+	free(b->h);
+	free(b->ahead.gates);
+	free(b->ahead.cell);
+	free(b->ahead.before);
+	free(b->back.gates);
+	free(b->back.cell);
+	free(b->back.before);
+	free(b->scratch);
 	free(b->out);
 	free(b->own);
 	free(b->dependent);
@@ -130,6 +124,7 @@ void parser_batch_free(struct parser_batch *b)
 	free(b->features);
 	free(b->start);
 	free(b->keep);
+	free(b->keep_state);
 	*b = (struct parser_batch){0};
 }
 
@@ -192,9 +187,9 @@ static void add_row(float *to, const float *from)
 static void embed(const struct parser_weights *w, struct parser_batch *b)
 {
 	linear_forward(
-		b->h[0], b->x, w->vector, w->vector_bias, (size_t)b->rows, (size_t)w->width, NET_HIDDEN);
+		b->first, b->x, w->vector, w->vector_bias, (size_t)b->rows, (size_t)w->width, NET_HIDDEN);
 	for (int r = 0; r < b->rows; r++) {
-		float *h = b->h[0] + (size_t)r * NET_HIDDEN;
+		float *h = b->first + (size_t)r * NET_HIDDEN;
 		add_row(h, w->closed + b->features[r].closed * NET_HIDDEN);
 		add_row(h, w->role + b->features[r].role * NET_HIDDEN);
 		add_row(h, w->relation + b->features[r].relation * NET_HIDDEN);
@@ -207,49 +202,24 @@ static void embed(const struct parser_weights *w, struct parser_batch *b)
 	}
 }
 
-static void gather(const struct parser_batch *b, int layer)
-{
-	const float *h = b->h[layer];
-	float *out = b->gathered[layer];
-
-	memset(out, 0, sizeof *out * (size_t)b->rows * NET_BLOCKS * NET_HIDDEN);
-	for (int s = 0; s < b->sentences; s++) {
-		int first = b->start[s], end = b->start[s + 1];
-		float mean[NET_HIDDEN] = {0};
-		for (int r = first; r < end; r++)
-			add_row(mean, h + (size_t)r * NET_HIDDEN);
-		for (int d = 0; d < NET_HIDDEN; d++)
-			mean[d] /= (float)(end - first);
-		for (int r = first; r < end; r++) {
-			float *row = out + (size_t)r * NET_BLOCKS * NET_HIDDEN;
-			for (int k = 0; k < 3; k++) {
-				int at = r + (k - 1) * reach[layer];
-				if (at >= first && at < end)
-					memcpy(row + k * NET_HIDDEN, h + (size_t)at * NET_HIDDEN,
-						sizeof *row * NET_HIDDEN);
-			}
-			memcpy(row + 3 * NET_HIDDEN, mean, sizeof mean);
-		}
-	}
-}
-
 /* One member: out (rows), and the arcs of that member. */
 static void forward(const struct parser_weights *w, struct parser_batch *b, size_t member, float *out)
 {
 	const size_t rows = (size_t)b->rows, at = member * (size_t)b->capacity * NET_ARC;
 
+	const struct lstm_sequences ahead = {b->start, b->sentences, 0}, back = {b->start, b->sentences, 1};
+
 	embed(w, b);
-	for (int l = 0; l < NET_LAYERS; l++) {
-		gather(b, l);
-		linear_forward(b->grown[l], b->gathered[l], w->layer[l], w->layer_bias[l], rows,
-			NET_BLOCKS * NET_HIDDEN, NET_HIDDEN);
-		for (size_t i = 0; i < rows * NET_HIDDEN; i++)
-			b->h[l + 1][i] = b->h[l][i] + (b->grown[l][i] > 0 ? b->grown[l][i] : 0);
-	}
-	const float *h = b->h[NET_LAYERS];
-	linear_forward(out, h, w->out, w->out_bias, rows, NET_HIDDEN, NET_OUT);
-	linear_forward(b->dependent + at, h, w->dependent, w->dependent_bias, rows, NET_HIDDEN, NET_ARC);
-	linear_forward(b->head + at, h, w->head, w->head_bias, rows, NET_HIDDEN, NET_ARC);
+	lstm_forward(&w->ahead, &ahead, b->first, &b->ahead, b->state, NET_STATE);
+	lstm_forward(&w->back, &back, b->first, &b->back, b->state + NET_UNITS, NET_STATE);
+	for (size_t i = 0; b->keep_state && i < rows * NET_STATE; i++)
+		b->state[i] *= b->keep_state[i];
+	linear_forward(b->grown, b->state, w->down, w->down_bias, rows, NET_STATE, NET_HIDDEN);
+	for (size_t i = 0; i < rows * NET_HIDDEN; i++)
+		b->h[i] = b->first[i] + (b->grown[i] > 0 ? b->grown[i] : 0);
+	linear_forward(out, b->h, w->out, w->out_bias, rows, NET_HIDDEN, NET_OUT);
+	linear_forward(b->dependent + at, b->h, w->dependent, w->dependent_bias, rows, NET_HIDDEN, NET_ARC);
+	linear_forward(b->head + at, b->h, w->head, w->head_bias, rows, NET_HIDDEN, NET_ARC);
 }
 
 void parser_forward(const struct parser_weights *w, struct parser_batch *b)
@@ -311,162 +281,4 @@ void parser_arcs(
 		score_arcs(w, b, (size_t)members, sentence, i, scores);
 	for (int j = 0; j <= n && members > 1; j++)
 		scores[j] /= members;
-}
-
-static int best_of(const float *x, int n)
-{
-	int best = 0;
-
-	for (int i = 1; i < n; i++)
-		if (x[i] > x[best])
-			best = i;
-	return best;
-}
-
-/* 1 where word i is, or hangs by some way on, word `above`. */
-static int is_below(const struct analysis *a, int i, int above)
-{
-	for (int steps = 0; i != ROOT && steps <= a->n; steps++, i = a->word[i].head)
-		if (i == above)
-			return 1;
-	return 0;
-}
-
-static double role_log(const struct parser_batch *b, int sentence, int i, enum word_role r)
-{
-	const float *out = b->out + (size_t)(b->start[sentence] + i) * NET_OUT;
-
-	return (double)out[r] - loss_log_sum_exp(out, ROLES);
-}
-
-/* "the desk with the lamp" may carry it, or have it as a part: where neither is likely, it says no more than
- * that. */
-static enum parse_relation relation_of(const float *scores, const struct tokens *t, int i)
-{
-	const int class = tokens_class(t, i), best = best_of(scores, PARSE_RELATIONS);
-	const double p = exp((double)scores[best] - loss_log_sum_exp(scores, PARSE_RELATIONS));
-
-	return (class == CLOSED_WITH || class == CLOSED_HAVE) && p < NET_WITH_MOST
-		       ? PARSE_WITH
-		       : (enum parse_relation)best;
-}
-
-static void make_predicate(
-	const struct parser_batch *b, int sentence, const struct tokens *t, struct analysis *a, int i)
-{
-	const float *out = b->out + (size_t)(b->start[sentence] + i) * NET_OUT;
-
-	a->word[i].role = ROLE_PREDICATE;
-	a->word[i].relation = relation_of(out + ROLES, t, i);
-	a->word[i].negated = out[ROLES + PARSE_RELATIONS] > 0;
-}
-
-/* 1 where a pause or "and" parts words i and j, i before j. */
-static int is_parted(const struct tokens *t, int i, int j)
-{
-	for (int k = i + 1; k <= j; k++)
-		if (t->word[k].before || (k < j && t->word[k].closed >= 0 &&
-						 closed_words[t->word[k].closed].class == CLOSED_CONJUNCTION))
-			return 1;
-	return 0;
-}
-
-/* 1 where predicate j has an anchor already, and nothing parts that from word i: the two are no list. */
-static int has_near_anchor(const struct analysis *a, const struct tokens *t, int j, int i)
-{
-	for (int k = i - 1; k >= 0; k--)
-		if (a->word[k].role == ROLE_ANCHOR && a->word[k].head == j)
-			return !is_parted(t, k, i);
-	return 0;
-}
-
-/* Hangs each anchor on the word that is likeliest its predicate, whatever that word seemed to be by itself:
- * an anchor says that there is a predicate. */
-static void hang_anchors(const struct parser_weights *w, const struct parser_batch *b, int sentence,
-	const struct tokens *t, struct analysis *a)
-{
-	float scores[TOKENS_MOST + 1];
-
-	for (int i = 0; i < a->n; i++) {
-		int best = ROOT;
-		double most = -INFINITY, all;
-		if (a->word[i].role != ROLE_ANCHOR)
-			continue;
-		parser_arcs(w, b, sentence, i, scores);
-		all = loss_log_sum_exp(scores, (size_t)a->n + 1);
-		for (int j = 0; j < a->n; j++) {
-			enum word_role r = a->word[j].role;
-			if (j == i || (r != ROLE_PREDICATE && r != ROLE_NONE))
-				continue;
-			double p = role_log(b, sentence, j, ROLE_PREDICATE);
-			if (r == ROLE_NONE && p < log(NET_PREDICATE_LEAST))
-				continue;
-			double score = scores[j + 1] - all + NET_PREDICATE_WEIGHT * p;
-			if (has_near_anchor(a, t, j, i))
-				score -= NET_LIST_COST;
-			if (score > most) {
-				most = score;
-				best = j;
-			}
-		}
-		a->word[i].head = best;
-		if (best != ROOT && a->word[best].role != ROLE_PREDICATE)
-			make_predicate(b, sentence, t, a, best);
-	}
-}
-
-/* Hangs each word of these roles on the best that it may hang on. */
-static void hang(const struct parser_weights *w, const struct parser_batch *b, int sentence,
-	const struct tokens *t, struct analysis *a, int wanted)
-{
-	float scores[TOKENS_MOST + 1];
-
-	for (int i = 0; i < a->n; i++) {
-		enum word_role r = a->word[i].role;
-		int best = ROOT;
-		float most = -INFINITY;
-		if (!(wanted >> r & 1))
-			continue;
-		parser_arcs(w, b, sentence, i, scores);
-		for (int j = -1; j < a->n; j++) {
-			enum word_role up = j < 0 ? ROLE_TARGET : a->word[j].role;
-			int may = j < 0 || (role_is_phrase(up) && up != ROLE_TARGET);
-			if (!may || (j >= 0 && is_below(a, j, i)))
-				continue;
-			/* a predicate right after an anchor is rather said of that */
-			if (r == ROLE_PREDICATE && j >= 0 && j < i && i - j <= NET_CLOSE &&
-				!is_parted(t, j, i))
-				scores[j + 1] += NET_CLOSE_BONUS;
-			/* and one after a pause or "and" of the target */
-			if (r == ROLE_PREDICATE && j >= 0 && j < i && is_parted(t, j, i))
-				scores[j + 1] -= NET_PARTED_COST;
-			if (scores[j + 1] > most) {
-				most = scores[j + 1];
-				best = j;
-			}
-		}
-		a->word[i].head = best;
-	}
-}
-
-void parser_decode(const struct parser_weights *w, const struct parser_batch *b, int sentence,
-	const struct tokens *t, struct analysis *a, double *sure)
-{
-	int first = b->start[sentence];
-	double sum = 0;
-
-	*a = (struct analysis){.n = t->n};
-	for (int i = 0; i < t->n; i++) {
-		const float *out = b->out + (size_t)(first + i) * NET_OUT;
-		a->word[i].role = (enum word_role)best_of(out, ROLES);
-		a->word[i].head = ROOT;
-		sum += exp((double)out[a->word[i].role] - loss_log_sum_exp(out, ROLES));
-		if (a->word[i].role == ROLE_PREDICATE)
-			make_predicate(b, sentence, t, a, i);
-	}
-	hang_anchors(w, b, sentence, t, a);
-	hang(w, b, sentence, t, a, 1 << ROLE_PREDICATE);
-	hang(w, b, sentence, t, a, 1 << ROLE_ATTRIBUTE | 1 << ROLE_NAME | 1 << ROLE_EXCEPT);
-	analysis_repair(a);
-	*sure = t->n ? sum / t->n : 0;
 }

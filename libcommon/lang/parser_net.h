@@ -1,24 +1,28 @@
 /* The learnt parser: what each word is, what it hangs on, and which relation it says, from the encoder's word
  * vectors, its closed-class word and what the grammar thinks of it.
  *
- *   h0 = relu(Wv x + b + E[closed] + E[grammar's role] + E[grammar's relation] + E[pause])     x: mean of the
- * word's pieces h_{l+1} = h_l + relu(W_l [h_l(i-d), h_l(i), h_l(i+d), mean h_l] + b_l),  d = 1, 2, 4 zero
- * outside the sentence roles, relations, negation: linear in h3 arc(i,j) = (A h3_i + a) . (B h3_j + b) / sqrt
- * K + distance[j - i] + agree [the grammar hangs i on j] after Dozat and Manning (2017), "Deep biaffine
- * attention for neural dependency parsing"; ROOT is a j of its own. */
+ *   h0 = relu(Wv x + b + E[closed] + E[grammar's role] + E[grammar's relation] + E[pause])
+ *   s  = [lstm of h0 from the first word on, lstm from the last word back]      (nn/lstm.h)
+ *   h  = h0 + relu(D s + d)
+ *   roles, relations, negation: linear in h
+ *   arc(i,j) = (A h_i + a) . (B h_j + b) / sqrt K + distance[j - i] + agree [the grammar hangs i on j]
+ *
+ * with x the mean of the word's pieces. After Dozat and Manning (2017), "Deep biaffine attention for neural
+ * dependency parsing"; ROOT is a j of its own. */
 #ifndef LANG_PARSER_NET_H
 #define LANG_PARSER_NET_H
 
 #include "lang/analysis.h"
 #include "lang/closed.h"
+#include "nn/lstm.h"
 
 #include <stddef.h>
 
 enum {
 	NET_HIDDEN = 160,
+	NET_UNITS = 112, /* of the lstm of either direction */
+	NET_STATE = 2 * NET_UNITS,
 	NET_ARC = 48,
-	NET_LAYERS = 3,
-	NET_BLOCKS = 4,	    /* that a layer looks at: before, here, after, mean */
 	NET_DISTANCES = 17, /* -8 or less ... 8 or more */
 	NET_CLOSED = CLOSED_MOST + 1,
 	NET_PAUSES = 4, /* as before a word; 3: a plural */
@@ -33,7 +37,8 @@ struct parser_weights {
 	float *vector, *vector_bias; /* (H,width), (H) */
 	float *closed, *role, *relation,
 		*pause; /* (NET_CLOSED,H), (ROLES,H), (PARSE_RELATIONS + 1,H), (NET_PAUSES,H) */
-	float *layer[NET_LAYERS], *layer_bias[NET_LAYERS]; /* (H,4H), (H) */
+	struct lstm ahead, back;
+	float *down, *down_bias;	   /* (H,2U), (H) */
 	float *out, *out_bias;		   /* (ROLES + PARSE_RELATIONS + 1, H): roles, relations, negated */
 	float *dependent, *dependent_bias; /* (K,H), (K) */
 	float *head, *head_bias;	   /* (K,H), (K) */
@@ -49,7 +54,7 @@ struct parser_part {
 	const char *name;
 	size_t rows, columns;
 };
-enum { PARSER_PARTS = 21 };
+enum { PARSER_PARTS = 23, PARSER_MEMBERS = 8 /* at most */ };
 void parser_parts(int width, struct parser_part parts[PARSER_PARTS]);
 
 /* Zeroed. parser_weights_free frees. */
@@ -68,12 +73,14 @@ struct parser_batch {
 	int *start;			  /* (sentences + 1) */
 	float *x;			  /* (rows,width) */
 	struct parser_features *features; /* (rows) */
-	float *keep;			  /* (rows,H): factors of dropout; NULL: none */
-	float *h[NET_LAYERS + 1], *gathered[NET_LAYERS],
-		*grown[NET_LAYERS]; /* (rows,H), (rows,4H), (rows,H) */
-	float *out;		    /* (rows, ROLES + PARSE_RELATIONS + 1), the mean of the members' */
-	float *own;		    /* the same of one member */
-	float *dependent, *head;    /* (members,capacity,K) */
+	float *keep, *keep_state;	  /* (rows,H), (rows,2U): factors of dropout; NULL: none */
+	float *first, *state;		  /* (rows,H), (rows,2U): h0 and s */
+	float *grown, *h;		  /* (rows,H): D s + d, and h */
+	struct lstm_memory ahead, back;
+	float *scratch;		 /* of lstm_backward */
+	float *out;		 /* (rows, ROLES + PARSE_RELATIONS + 1), the mean of the members' */
+	float *own;		 /* the same of one member */
+	float *dependent, *head; /* (members,capacity,K) */
 };
 
 enum { NET_OUT = ROLES + PARSE_RELATIONS + 1 };

@@ -9,13 +9,30 @@
  * for each reading, and the share of units dropped: of few tried values those that took the most of other
  * writers' marked sentences apart rightly. */
 enum { SCHOOL_BATCH = 16, SHARE = 3 };
-static const double examples_rate = 0.002, readings_rate = 0.001, dropout = 0.4;
+static const double examples_rate = 0.002, readings_rate = 0.001, dropout = 0.33, dropout_state = 0.2;
 /* passes of a round, and of the last */
 enum { ROUND_EPOCHS = 4, LAST_EPOCHS = 6 };
 
-static struct parser_course course_of(const struct parser_school *s, int epochs, double rate)
+/* One network among those that learn. */
+struct pupil {
+	const struct parser_school *school;
+	struct parser_weights *weights;
+	int member, without;
+	struct rng rng;
+	struct parser_sample *read; /* as the school's, with `right` as this network finds it */
+};
+
+static struct parser_course course_of(const struct pupil *p, int epochs, double rate)
 {
-	return (struct parser_course){epochs, SCHOOL_BATCH, rate, dropout, s->progress, s->context};
+	const struct parser_school *s = p->school;
+
+	return (struct parser_course){
+		epochs, SCHOOL_BATCH, rate, dropout, dropout_state, p->member, s->progress, s->context};
+}
+
+static unsigned long long seed_of(const struct pupil *p)
+{
+	return p->school->seed + (unsigned long long)p->member * 1000;
 }
 
 /* Adds the marked sentences. Returns how many samples the set has then. */
@@ -27,45 +44,46 @@ static size_t add_marked(const struct parser_school *s, const struct parser_samp
 	return n;
 }
 
-int parser_school_examples(const struct parser_school *s, struct parser_weights *w, struct err *e)
+static int learn_examples(struct pupil *p, struct err *e)
 {
-	struct parser_course course = course_of(s, s->epochs, examples_rate);
+	const struct parser_school *s = p->school;
+	struct parser_course course = course_of(p, s->epochs, examples_rate);
 	const struct parser_sample **set =
 		mem_alloc(s->example_count + s->marked_count, sizeof *set, "samples", e);
-	struct rng r;
 	size_t n = 0;
 	int bad;
 
 	if (!set)
 		return -1;
-	rng_seed(&r, s->seed, 7);
-	parser_weights_begin(w, &r);
+	rng_seed(&p->rng, seed_of(p), 7);
+	parser_weights_begin(p->weights, &p->rng);
 	for (size_t i = 0; i < s->example_count; i++)
 		if (s->examples[i].n)
 			set[n++] = &s->examples[i];
 	n = add_marked(s, set, n);
-	bad = parser_learn(w, set, n, &course, &r, e);
+	bad = parser_learn(p->weights, set, n, &course, &p->rng, e);
 	free(set);
 	return bad;
 }
 
 /* What the readings say, in words, by the weights as they are. */
-static int align(const struct parser_school *s, const struct parser_weights *w, struct err *e)
+static int align(struct pupil *p, struct err *e)
 {
+	const struct parser_school *s = p->school;
 	struct parser_batch b;
 	struct tokens *t = mem_alloc(1, sizeof *t, "words", e);
 	struct analysis a;
-	int bad = !t || parser_batch_make(&b, TOKENS_MOST, 1, w, e);
+	int bad = !t || parser_batch_make(&b, TOKENS_MOST, 1, p->weights, e);
 
 	for (size_t i = 0; i < s->read_count && !bad; i++) {
-		struct parser_sample *x = &s->read[i];
+		struct parser_sample *x = &p->read[i];
 		if (!x->n)
 			continue;
 		tokens_take(t, s->texts[i], s->pieces[i], NULL, 0);
 		parser_batch_clear(&b);
-		parser_batch_add(&b, x->features, x->vectors, x->n, w->width);
-		parser_forward(w, &b);
-		reading_align(s->readings[i], w, &b, 0, t, &a);
+		parser_batch_add(&b, x->features, x->vectors, x->n, p->weights->width);
+		parser_forward(p->weights, &b);
+		reading_align(s->readings[i], p->weights, &b, 0, t, &a);
 		memcpy(x->right, a.word, sizeof *x->right * (size_t)x->n);
 	}
 	if (!bad)
@@ -74,23 +92,47 @@ static int align(const struct parser_school *s, const struct parser_weights *w, 
 	return bad ? -1 : 0;
 }
 
-int parser_school_readings(
-	const struct parser_school *s, struct parser_weights *w, int without, struct err *e)
+/* p->read, of which only `right` is its own. */
+static int copy_read(struct pupil *p, struct err *e)
 {
+	const struct parser_school *s = p->school;
+
+	p->read = mem_zalloc(s->read_count, sizeof *p->read, "samples", e);
+	if (!p->read)
+		return -1;
+	for (size_t i = 0; i < s->read_count; i++) {
+		p->read[i] = s->read[i];
+		p->read[i].right = mem_zalloc((size_t)s->read[i].n, sizeof *s->read[i].right, "samples", e);
+		if (!p->read[i].right)
+			return -1;
+	}
+	return 0;
+}
+
+static void free_read(struct pupil *p)
+{
+	for (size_t i = 0; p->read && i < p->school->read_count; i++)
+		free(p->read[i].right);
+	free(p->read);
+	p->read = NULL;
+}
+
+static int learn_readings(struct pupil *p, struct err *e)
+{
+	const struct parser_school *s = p->school;
 	const struct parser_sample **set =
 		mem_alloc(s->example_count + s->read_count + s->marked_count, sizeof *set, "samples", e);
-	struct rng r;
-	int bad = !set;
+	int bad = !set || copy_read(p, e);
 
-	rng_seed(&r, s->seed, 8);
+	rng_seed(&p->rng, seed_of(p), 8);
 	for (int k = 0; k < s->rounds && s->read_count && !bad; k++) {
 		struct parser_course course =
-			course_of(s, k + 1 == s->rounds ? LAST_EPOCHS : ROUND_EPOCHS, readings_rate);
+			course_of(p, k + 1 == s->rounds ? LAST_EPOCHS : ROUND_EPOCHS, readings_rate);
 		size_t n = 0;
-		bad = align(s, w, e);
+		bad = align(p, e);
 		for (size_t i = 0; i < s->read_count; i++)
-			if (s->read[i].n && s->fold[i] != without)
-				set[n++] = &s->read[i];
+			if (p->read[i].n && s->fold[i] != p->without)
+				set[n++] = &p->read[i];
 		/* another part of the examples each round, SHARE for each reading: people who speak of
 		 * rooms seldom deny or count, and speak otherwise than of what lies on a table */
 		for (size_t i = 0; i < s->example_count && i < SHARE * s->read_count; i++) {
@@ -101,10 +143,46 @@ int parser_school_readings(
 		}
 		n = add_marked(s, set, n);
 		if (!bad)
-			bad = parser_learn(w, set, n, &course, &r, e);
+			bad = parser_learn(p->weights, set, n, &course, &p->rng, e);
 	}
 	free(set);
+	free_read(p);
 	return bad ? -1 : 0;
+}
+
+/* Each member does so by itself, so that the number of threads changes nothing. */
+static int each_member(const struct parser_school *s, struct parser_weights *w, int without,
+	int (*learn)(struct pupil *p, struct err *e), struct err *e)
+{
+	struct pupil pupils[PARSER_MEMBERS];
+	struct err errors[PARSER_MEMBERS] = {{0}};
+	int n = 0, bad = 0;
+
+	for (struct parser_weights *next; w && n < PARSER_MEMBERS; w = next, n++) {
+		next = w->next;
+		pupils[n] = (struct pupil){.school = s, .weights = w, .member = n, .without = without};
+		w->next = NULL; /* learns alone */
+	}
+#pragma omp parallel for schedule(dynamic) reduction(| : bad)
+	for (int k = 0; k < n; k++)
+		bad |= learn(&pupils[k], &errors[k]) != 0;
+	for (int k = 0; k < n; k++)
+		pupils[k].weights->next = k + 1 < n ? pupils[k + 1].weights : NULL;
+	for (int k = n; k-- > 0;)
+		if (errors[k].message[0])
+			*e = errors[k];
+	return bad ? -1 : 0;
+}
+
+int parser_school_examples(const struct parser_school *s, struct parser_weights *w, struct err *e)
+{
+	return each_member(s, w, -1, learn_examples, e);
+}
+
+int parser_school_readings(
+	const struct parser_school *s, struct parser_weights *w, int without, struct err *e)
+{
+	return s->read_count ? each_member(s, w, without, learn_readings, e) : 0;
 }
 
 void parser_school_blind(struct parser_school *s)

@@ -11,17 +11,19 @@ struct parser_school {
 	size_t example_count;
 	struct parser_sample *marked; /* (marked_count): people's sentences with marks */
 	size_t marked_count;
-	struct parser_sample *read; /* (read_count): sentences with readings; `right` is found */
+	struct parser_sample *read; /* (read_count): sentences with readings; without `right` */
 	const struct reading **readings;
 	char **texts, **pieces; /* (read_count) of these */
 	int *fold;		/* (read_count): which part they are left out with */
 	size_t read_count;
 	int epochs, rounds;
 	unsigned long long seed;
-	void (*progress)(void *context, int epoch, double loss); /* may be NULL */
+	/* of parser_course; may be NULL; of several members at once, one at a time */
+	void (*progress)(void *context, int member, int epoch, double loss);
 	void *context;
 };
 
+/* All members of w learn, each by itself from its own start; on several threads at once. */
 int parser_school_examples(const struct parser_school *s, struct parser_weights *w, struct err *e);
 /* Goes on from there with the readings but those of fold `without` (-1: with all), the marked sentences, and
  * some of the examples. */

@@ -348,7 +348,7 @@ static void gradient_is_right(void)
 	rng_seed(&r, 5, 2);
 	CHECK(!parser_weights_make(&w, WIDTH, &e) && !parser_weights_make(&dw, WIDTH, &e) &&
 			!parser_weights_make(&spare, WIDTH, &e) && !parser_batch_make(&b, 200, 3, &w, &e) &&
-			!parser_batch_make(&scratch, 200, 3, &w, &e),
+			!parser_scratch_make(&scratch, 200, 3, &w, &e),
 		"%s", e.message);
 	parser_weights_begin(&w, &r);
 	for (int k = 0; k < 3; k++) {
