@@ -266,9 +266,10 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	const double known = judge_relation(m, phrase, c, fit, value);
 	/* what carries or holds something that is nothing here has it: "the one with its screen on" */
 	if (c->relation == PARSE_WITH || (c->relation == PARSE_SUPPORTS && c->anchors.n && known < 0.5)) {
-		meaning_judge_predicate(m, c, said);
+		const double is_said = meaning_judge_predicate(m, c, said);
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(said[o], known * value[o]);
+		meaning_judge_part_colours(m, c, is_said, value);
 		return;
 	}
 	if (known < 1)

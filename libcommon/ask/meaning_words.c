@@ -104,19 +104,67 @@ static int is_blue_green(const struct parse *p, int word)
 			       meaning_word_is(&p->words[word + 1], blue)));
 }
 
-/* Whether a phrase has a colour before word `word`, with other words between than its looks: "the brown cup
- * with white stripes". Of that colour are parts at most. */
-static int is_of_part(const struct parse *p, const struct parse_phrase *f, int word)
+/* What a colour is of that a phrase has after another one: "the brown cup with white stripes". */
+enum coloured { OF_THING, OF_PART_PERHAPS, OF_PART };
+
+static enum coloured coloured_by(const struct parse *p, const struct parse_phrase *f, int word)
 {
-	int has_other = 0;
+	static const char *const with[] = {"with", "w", "having", NULL};
+	enum coloured of = OF_THING;
 
 	for (int i = word - 1; i >= 0; i--) {
-		if (!parse_list_has(&f->attributes, i))
-			has_other = 1;
-		else if (has_other && colour_word(p->words[i].lemma) >= 0)
-			return 1;
+		if (parse_list_has(&f->attributes, i)) {
+			if (of != OF_THING && colour_word(p->words[i].lemma) >= 0)
+				return of;
+		} else if (of != OF_PART) {
+			of = meaning_word_is(&p->words[i], with) ? OF_PART : OF_PART_PERHAPS;
+		}
 	}
+	return OF_THING;
+}
+
+/* value (O): how far any part of an object has the colour of a word, by its Gaussians; 0 where that is no
+ * colour. */
+static int judge_part_colour(const struct meaning *m, int word, double *value)
+{
+	const int colour = colour_word(m->sentence->parse->words[word].lemma);
+
+	for (size_t o = 0; o < objects_of(m) && colour >= 0; o++) {
+		const double share = m->arrangement->objects[o].colours[colour];
+		value[o] = share / (share + PART_COLOUR_SHARE);
+	}
+	return colour >= 0;
+}
+
+/* Whether a phrase names what a surface is marked with. */
+static int is_marking(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char *const markings[] = {"band", "bit", "blob", "blotch", "check", "dot", "fleck",
+		"freckle", "hoop", "line", "marking", "patch", "pattern", "ring", "speck", "speckle",
+		"splash", "splodge", "splotch", "spot", "streak", "stripe", "swirl", NULL};
+	const int head = meaning_head_of(p, f);
+
+	for (int k = 0; head >= 0 && markings[k]; k++)
+		if (!strcmp(p->words[head].lemma, markings[k]))
+			return 1;
 	return 0;
+}
+
+void meaning_judge_part_colours(
+	struct meaning *m, const struct parse_clause *c, double is_said, double *value)
+{
+	const struct parse *p = m->sentence->parse;
+	double *match = m->scratch + objects_of(m);
+
+	for (int k = 0; k < c->anchors.n; k++) {
+		const struct parse_phrase *f = &p->phrases[c->anchors.item[k]];
+		const int counts = m->known[c->anchors.item[k]] < 0.5 && (is_said < 0.5 || is_marking(p, f));
+		for (int a = 0; a < f->attributes.n && counts; a++) {
+			const int is_colour = judge_part_colour(m, f->attributes.item[a], match);
+			for (size_t o = 0; o < objects_of(m) && is_colour; o++)
+				value[o] *= PART_COLOUR_LEAST + (1 - PART_COLOUR_LEAST) * match[o];
+		}
+	}
 }
 
 /* How far objects are of the colour of a word, and of those right after it that are colours too: "salmon
@@ -129,7 +177,9 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 
 	if (colour_before(p, word) >= 0)
 		return;
-	const double least = is_of_part(p, &p->phrases[phrase], word) ? PART_COLOUR_LEAST : COLOUR_LEAST;
+	static const double leasts[] = {COLOUR_LEAST, OTHER_COLOUR_LEAST, PART_COLOUR_LEAST};
+	const enum coloured of = coloured_by(p, &p->phrases[phrase], word);
+	const double least = leasts[of];
 	double *value = meaning_add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
 	memset(value, 0, n * sizeof *value);
 	m->vocabulary->of_several = p->phrases[phrase].count != PARSE_ONE;
@@ -138,7 +188,10 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 		memcpy(value, match, n * sizeof *value);
 	}
 	for (; word >= 0; word = colour_after(p, word)) {
-		vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);
+		if (of == OF_PART)
+			judge_part_colour(m, word, match);
+		else
+			vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(value[o], match[o]);
 	}
@@ -350,7 +403,7 @@ static int judge_part(struct meaning *m, const struct parse_clause *c, int ancho
 }
 
 /* What a thing does, is for, or has: any word of it may be said of an object. */
-void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, double *value)
+double meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, double *value)
 {
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
@@ -383,4 +436,5 @@ void meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, do
 					: (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most);
 	if (words && c->relation == PARSE_OTHER)
 		judge_about(m, value);
+	return most;
 }
