@@ -56,6 +56,14 @@ int parse_list_add(struct parse_list *list, int item, struct err *e)
 	return 0;
 }
 
+int parse_list_join(struct parse_list *to, const struct parse_list *from, struct err *e)
+{
+	for (int i = 0; i < from->n; i++)
+		if (parse_list_add(to, from->item[i], e))
+			return -1;
+	return 0;
+}
+
 int parse_list_has(const struct parse_list *list, int item)
 {
 	for (int i = 0; i < list->n; i++)

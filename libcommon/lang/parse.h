@@ -115,6 +115,9 @@ int parse_relation_find(const char *name);
 /* Appends to a list; -1 only where memory is out. */
 int parse_list_add(struct parse_list *list, int item, struct err *e);
 
+/* Appends a list's items to another; likewise. */
+int parse_list_join(struct parse_list *to, const struct parse_list *from, struct err *e);
+
 /* Whether an item is in a list. */
 int parse_list_has(const struct parse_list *list, int item);
 

@@ -145,14 +145,6 @@ static void keep_clauses(const struct parse *p, struct parse_list *l, int from)
 	l->n = n;
 }
 
-static int copy_list(struct parse_list *to, const struct parse_list *from, struct err *e)
-{
-	for (int i = 0; i < from->n; i++)
-		if (parse_list_add(to, from->item[i], e))
-			return -1;
-	return 0;
-}
-
 /* Room for two phrases and a clause more. */
 static int make_room(struct parse *p, struct err *e)
 {
@@ -280,9 +272,9 @@ int parse_carried(struct parse *p, struct err *e)
 	p->clause_count++;
 	return parse_list_add(&p->clauses[clause].anchors, again, e) ||
 			       parse_list_add(&second->clauses, clause, e) ||
-			       copy_list(&p->phrases[again].noun, &f->noun, e) ||
-			       copy_list(&p->phrases[again].attributes, &f->attributes, e) ||
-			       copy_list(&p->phrases[again].clauses, &f->clauses, e) ||
+			       parse_list_join(&p->phrases[again].noun, &f->noun, e) ||
+			       parse_list_join(&p->phrases[again].attributes, &f->attributes, e) ||
+			       parse_list_join(&p->phrases[again].clauses, &f->clauses, e) ||
 			       (is_new && parse_list_add(&f->also, other, e))
 		       ? -1
 		       : 0;

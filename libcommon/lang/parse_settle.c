@@ -161,15 +161,6 @@ static int settle_view(struct parse *p, struct parse_phrase *f, struct err *e)
 		       : 0;
 }
 
-static int copy_list(struct parse_list *to, const struct parse_list *from, struct err *e)
-{
-	to->n = 0;
-	for (int i = 0; i < from->n; i++)
-		if (parse_list_add(to, from->item[i], e))
-			return -1;
-	return 0;
-}
-
 /* "near the sink but not over it": an anchor "it" is the phrase before it, which is an anchor too. */
 static int settle_it(struct parse *p, struct err *e)
 {
@@ -181,8 +172,10 @@ static int settle_it(struct parse *p, struct err *e)
 		if (f->noun.n != 1 || f->clauses.n || !parse_word_is(p, f->noun.item[0], it))
 			continue;
 		f->count = earlier->count;
-		if (copy_list(&f->noun, &earlier->noun, e) ||
-			copy_list(&f->attributes, &earlier->attributes, e))
+		parse_list_cut(&f->noun, 0);
+		parse_list_cut(&f->attributes, 0);
+		if (parse_list_join(&f->noun, &earlier->noun, e) ||
+			parse_list_join(&f->attributes, &earlier->attributes, e))
 			return -1;
 	}
 	return 0;
@@ -221,7 +214,7 @@ static int settle_except(struct parse *p, struct err *e)
 			f->except.item[n++] = out;
 			continue;
 		}
-		if ((!x->noun.n && copy_list(&x->noun, &p->phrases[of].noun, e)) ||
+		if ((!x->noun.n && parse_list_join(&x->noun, &p->phrases[of].noun, e)) ||
 			parse_list_add(&p->phrases[of].except, out, e))
 			return -1;
 	}

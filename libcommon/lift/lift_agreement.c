@@ -8,6 +8,7 @@
 #include <string.h>
 
 enum { PIXELS = VIEW_TILE_PIXELS };
+_Static_assert((int)BITS_TILE == (int)VIEW_TILE, "masks and weights are cut into the same tiles");
 
 /* Of an object's mask and what is rendered: the mask alone is `either` where nothing is. */
 struct overlap {
