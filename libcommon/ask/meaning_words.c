@@ -177,7 +177,7 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 
 	if (colour_before(p, word) >= 0)
 		return;
-	static const double leasts[] = {COLOUR_LEAST, OTHER_COLOUR_LEAST, PART_COLOUR_LEAST};
+	const double leasts[] = {COLOUR_LEAST, OTHER_COLOUR_LEAST, PART_COLOUR_LEAST};
 	const enum coloured of = coloured_by(p, &p->phrases[phrase], word);
 	const double least = leasts[of];
 	double *value = meaning_add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
