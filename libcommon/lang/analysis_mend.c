@@ -59,53 +59,6 @@ static void mend_denied_looks(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* Where what is left out begins: after "except", "apart from", "just leave", "but the one"; 0 where it does
- * not at word i.
- */
-static int exception_at(const struct tokens *t, int i)
-{
-	static const char *const leave[] = {"leave", "leaving", "minus", NULL};
-
-	if (tokens_is(t, i, "except") || tokens_is(t, i, "excluding") || tokens_is(t, i, "excepting"))
-		return i + 1 + tokens_is(t, i + 1, "for");
-	if (tokens_is_any(t, i, leave) &&
-		(t->word[i].before || tokens_is(t, i - 1, "just") || tokens_is(t, i - 1, "only")))
-		return i + 1;
-	if ((tokens_is(t, i, "apart") || tokens_is(t, i, "aside")) && tokens_is(t, i + 1, "from"))
-		return i + 2;
-	if (tokens_is(t, i, "but") && tokens_is(t, i + 1, "the") &&
-		(tokens_is(t, i + 2, "one") || tokens_is(t, i + 2, "ones")))
-		return i + 1;
-	return 0;
-}
-
-/* "all lamps except the one that is nearest to the sink": the nearest one is left out. */
-static void mend_except(struct analysis *a, const struct tokens *t)
-{
-	int found = 0, from = 0, out;
-
-	for (int i = 0; i < t->n && !from; i++) {
-		from = found ? exception_at(t, i) : 0;
-		found |= a->word[i].role == ROLE_TARGET;
-	}
-	for (out = from; out < t->n && out < from + 6; out++)
-		if (role_is_phrase(a->word[out].role) || tokens_is(t, out, "one") ||
-			tokens_is(t, out, "ones"))
-			break;
-	if (!from || out >= t->n || out >= from + 6 || a->word[out].role == ROLE_ANCHOR)
-		return;
-	a->word[out] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
-	if (tokens_is(t, from - 1, "from")) /* "apart" is no place then */
-		analysis_give_up(&a->word[from - 2]);
-	for (int i = from; i < t->n && t->word[i].before != PAUSE_STOP; i++) {
-		const int is_said =
-			a->word[i].role == ROLE_PREDICATE || (a->word[i].role == ROLE_ATTRIBUTE && i < out);
-		if (i == out || !is_said || (a->word[i].head != ROOT && a->word[i].head != out))
-			continue;
-		a->word[i].head = out;
-	}
-}
-
 /* Whether a negation is among words from..to-1. */
 static int is_denied(const struct tokens *t, int from, int to)
 {
@@ -122,25 +75,6 @@ static void mend_negation(struct analysis *a, const struct tokens *t)
 		const int out = a->word[i].role == ROLE_PREDICATE ? a->word[i].head : -1;
 		if (out >= 0 && a->word[out].role == ROLE_EXCEPT && !is_denied(t, out + 1, i))
 			a->word[i].negated = 0;
-	}
-}
-
-/* "neither red nor green": red is left out too. */
-static void mend_neither(struct analysis *a, const struct tokens *t)
-{
-	for (int i = 0; i < t->n; i++) {
-		int nor = i + 1, out, is_bare = 1;
-		while (nor < t->n && nor < i + 5 && !tokens_is(t, nor, "nor"))
-			nor++;
-		for (out = nor + 1; out < t->n && out < nor + 4 && a->word[out].role != ROLE_EXCEPT;)
-			out++;
-		if (!tokens_is(t, i, "neither") || !tokens_is(t, nor, "nor") || nor < i + 2 || out >= t->n ||
-			a->word[out].role != ROLE_EXCEPT)
-			continue;
-		for (int j = i + 1; j < nor; j++)
-			is_bare &= a->word[j].role == ROLE_NONE || a->word[j].role == ROLE_ATTRIBUTE;
-		if (is_bare)
-			a->word[nor - 1] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
 	}
 }
 
@@ -243,9 +177,7 @@ static void mend_empty(struct analysis *a, const struct tokens *t)
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	mend_isnt(a, t);
-	mend_except(a, t);
 	mend_negation(a, t);
-	mend_neither(a, t);
 	mend_attributes(a, t);
 	analysis_places(a, grammar, t);
 	analysis_it(a, t);
