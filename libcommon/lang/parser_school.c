@@ -129,6 +129,8 @@ static int learn_readings(struct pupil *p, struct err *e)
 		struct parser_course course =
 			course_of(p, k + 1 == s->rounds ? LAST_EPOCHS : ROUND_EPOCHS, readings_rate);
 		size_t n = 0;
+/* one at a time: WordNet, which words are looked up in, has buffers of its own */
+#pragma omp critical(school_align)
 		bad = align(p, e);
 		for (size_t i = 0; i < s->read_count; i++)
 			if (p->read[i].n && s->fold[i] != p->without)
