@@ -144,10 +144,7 @@ static int is_marking(const struct parse *p, const struct parse_phrase *f)
 		"splash", "splodge", "splotch", "spot", "streak", "stripe", "swirl", NULL};
 	const int head = meaning_head_of(p, f);
 
-	for (int k = 0; head >= 0 && markings[k]; k++)
-		if (!strcmp(p->words[head].lemma, markings[k]))
-			return 1;
-	return 0;
+	return head >= 0 && meaning_word_is(&p->words[head], markings);
 }
 
 void meaning_judge_part_colours(

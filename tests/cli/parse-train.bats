@@ -64,6 +64,18 @@ not() { ! "$@"; }
 	[ "${lines[0]}" = "parse-train: --folds needs --readings" ]
 }
 
+@test "networks that learn from readings at once: the same bytes for any number of threads" {
+	"$BIN/parse-train" --write 30 | "$BIN/text-encode" -q --model encoder -o examples
+	"$BIN/parse-train" --write 400 --seed 5 >sentences
+	"$BIN/text-encode" -q --model encoder -o text sentences
+	jq -c '{ref,target:"cup",room:"a",clauses:[{relation:"near",anchors:[{noun:"box"}]}]}' sentences >readings
+	for n in 1 2 7; do
+		"$BIN/parse-train" --threads "$n" --epochs 1 --rounds 1 --readings readings --readings-text text examples -o "weights$n"
+	done
+	cmp weights1 weights2
+	cmp weights1 weights7
+}
+
 @test "refuses sentences that it did not write" {
 	encode "the wug on the dax"
 	says 3 "parse-train: text: ref 'r0': not what parse-train --write makes with --seed 1" "$BIN/parse-train" text -o weights
