@@ -103,13 +103,13 @@ static int need_version(const struct safetensors *st, struct err *e)
 {
 	const char *version;
 
-	if (safetensors_need_format(st, "refer.parser", 4, e))
+	if (safetensors_need_format(st, "refer.parser", 5, e))
 		return -1;
 	version = safetensors_meta(st, "version");
-	return !strcmp(version, "4")
+	return !strcmp(version, "5")
 		       ? 0
 		       : err_set(e, ERR_FORMAT,
-				 "%s: refer.parser version %s is older than this program reads (4)", st->path,
+				 "%s: refer.parser version %s is older than this program reads (5)", st->path,
 				 version);
 }
 
@@ -242,7 +242,7 @@ int parser_weights_write(const struct parser_weights *w, const char *path, const
 	for (const struct parser_weights *k = w; k && members < PARSER_MEMBERS && !bad; k = k->next)
 		bad = put_member(k, members++, &m, e);
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
-	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "4"}, {"tool", "parse-train"},
+	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "5"}, {"tool", "parse-train"},
 		{"options", options}, {"seed", seed_text}, {"source", source},
 		{"encoder", w->encoder[0] ? w->encoder : NULL}};
 	if (!bad)

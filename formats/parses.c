@@ -186,6 +186,7 @@ static void add_sets(const struct writer *w, cJSON *o, const struct parse_phrase
 	if (f->group)
 		add_number(o, "group", f->group);
 	add_ordinal(o, f);
+	add_phrases(w, o, "among", &f->among);
 	add_phrases(w, o, "except", &f->except);
 	add_phrases(w, o, "also", &f->also);
 }

@@ -154,8 +154,8 @@ static int read_ordinal(struct reader *r, const cJSON *o, struct parse_phrase *f
 
 	if (!item)
 		return 0;
-	if (!cJSON_IsObject(item) || !(k == -1 || (k >= 1 && k <= 1e6 && k == floor(k))))
-		return bad(r, "ordinal", "an object with a whole number 'k', from 1, or -1");
+	if (!cJSON_IsObject(item) || !(k != 0 && fabs(k) <= 1e6 && k == floor(k)))
+		return bad(r, "ordinal", "an object with a whole number 'k' that is not 0");
 	f->ordinal = (int)k;
 	f->from = PARSE_OTHER;
 	if (from) {
@@ -288,13 +288,13 @@ static int read_phrase(struct reader *r, const cJSON *of, const cJSON *sets)
 	failed = (noun && take_words(r, noun->valuestring, f.span, &r->p->phrases[at].noun)) ||
 		 read_list(r, of, "words", f.span, &r->p->phrases[at].attributes);
 	cJSON_ArrayForEach(c, clauses) if (!failed) failed = read_clause(r, c, at);
-	for (int k = 0; k < 2 && !failed; k++) {
+	static const char *const keys[] = {"among", "except", "also"};
+	for (int k = 0; k < 3 && !failed; k++) {
+		/* the array may move while phrases are read */
 		struct parse_list list = {0};
-		failed = read_phrases(r, sets, k ? "also" : "except", &list);
-		if (k)
-			r->p->phrases[at].also = list;
-		else
-			r->p->phrases[at].except = list;
+		failed = read_phrases(r, sets, keys[k], &list);
+		struct parse_phrase *to = &r->p->phrases[at];
+		*(k == 0 ? &to->among : k == 1 ? &to->except : &to->also) = list;
 	}
 	return failed ? -1 : at;
 }

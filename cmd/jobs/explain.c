@@ -129,7 +129,7 @@ static int add_number(cJSON *to, const char *key, double x)
 static int add_words_of(cJSON *to, const struct explained *x, const struct meaning_part *part)
 {
 	static const char *const kinds[MEANING_KINDS] = {
-		"noun", "attribute", "colour", "clause", "size", "except", "ordinal"};
+		"noun", "attribute", "colour", "clause", "size", "except", "among", "ordinal"};
 	char buffer[EXPLAIN_REASON] = "";
 	struct parse_words w = {buffer, 0, sizeof buffer};
 

@@ -70,6 +70,10 @@ void parse_words_tree(struct parse_words *w, const struct parse *p, const char *
 		parse_words_phrase(w, p, text, p->view_phrase);
 		parse_words_add(w, ")");
 	}
+	for (int k = 0; k < f->among.n && depth < 4; k++) {
+		parse_words_add(w, k ? " or " : ", one of: ");
+		parse_words_tree(w, p, text, f->among.item[k], depth + 1);
+	}
 	for (int k = 0; k < f->except.n && depth < 4; k++) {
 		parse_words_add(w, ", but not ");
 		parse_words_tree(w, p, text, f->except.item[k], depth + 1);

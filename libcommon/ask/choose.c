@@ -414,7 +414,7 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	if (!has(c, CHOOSE_RELATIONS))
 		c->meaning.without |= 1U << MEANING_CLAUSE | 1U << MEANING_ORDINAL;
 	if (!has(c, CHOOSE_EXCEPT))
-		c->meaning.without |= 1U << MEANING_EXCEPT;
+		c->meaning.without |= 1U << MEANING_EXCEPT | 1U << MEANING_AMONG;
 	return 0;
 }
 

@@ -30,7 +30,7 @@ enum choose_part {
 	CHOOSE_COLOURS,
 	CHOOSE_SIZES,	  /* "large" */
 	CHOOSE_RELATIONS, /* other clauses, and ordinals */
-	CHOOSE_EXCEPT,	  /* "but not the red one" */
+	CHOOSE_EXCEPT,	  /* "but not the red one", "of the jar and the tin" */
 	CHOOSE_SENTENCE,
 	CHOOSE_WORDING, /* what the wording alone is nearest to, where the parse finds nothing */
 	CHOOSE_PURPOSE, /* what a thing is for, of sentences that say that */

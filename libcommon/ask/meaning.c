@@ -333,43 +333,6 @@ static void judge_clause(struct meaning *m, int phrase, int clause, const double
 
 static void judge_phrase(struct meaning *m, int phrase, int depth);
 
-static void judge_except(struct meaning *m, int phrase, int except)
-{
-	const size_t n = objects_of(m);
-	const double *fit = fit_of(m, except), most = fmax(largest(fit, n), 1e-9);
-	double *value = meaning_add_part(m, phrase, MEANING_EXCEPT, except), *there = there_of(m, phrase);
-
-	/* "not the red one" leaves out all that are red, but "not the one by the door" only one */
-	const int is_kind = !m->sentence->parse->phrases[except].clauses.n;
-	for (size_t o = 0; o < n; o++) {
-		const double x = m->known[except] * fit[o] / most;
-		value[o] =
-			1 - (1 - EXCEPT_LEAST) *
-				    (is_kind ? fmax(x, 1 / (1 + exp((EXCEPT_HALF - x) / EXCEPT_SOFT))) : x);
-		there[o] *= value[o];
-	}
-	meaning_take_part(m, &m->parts[m->part_count - 1]);
-}
-
-/* "of the two cups": only the best two are compared. */
-static void keep_group(const struct parse_phrase *f, double *fit, size_t n, double *scratch)
-{
-	double limit = 0;
-
-	if (f->group < 2 || (size_t)f->group >= n)
-		return;
-	memcpy(scratch, fit, n * sizeof *fit);
-	for (int k = 0; k < f->group; k++) {
-		size_t best = 0;
-		for (size_t o = 0; o < n; o++)
-			best = scratch[o] > scratch[best] ? o : best;
-		limit = scratch[best];
-		scratch[best] = -1;
-	}
-	for (size_t o = 0; o < n; o++)
-		fit[o] *= fit[o] < limit ? GROUP_ELSE : 1;
-}
-
 static void rank_away_from(struct meaning *m, const struct parse_clause *c, const double *fit, double *value)
 {
 	const struct parse *p = m->sentence->parse;
@@ -492,6 +455,8 @@ static void judge_below(struct meaning *m, const struct parse_phrase *f, int dep
 	}
 	for (int k = 0; k < f->except.n; k++)
 		judge_phrase(m, f->except.item[k], depth + 1);
+	for (int k = 0; k < f->among.n; k++)
+		judge_phrase(m, f->among.item[k], depth + 1);
 }
 
 static void judge_phrase(struct meaning *m, int phrase, int depth)
@@ -516,8 +481,9 @@ static void judge_phrase(struct meaning *m, int phrase, int depth)
 		meaning_judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
 	judge_clauses(m, phrase, f, fit, AT_ONCE, 0);
 	for (int k = 0; k < f->except.n; k++)
-		judge_except(m, phrase, f->except.item[k]);
-	keep_group(f, fit, n, m->scratch);
+		meaning_judge_except(m, phrase, f->except.item[k]);
+	meaning_judge_among(m, phrase);
+	meaning_keep_group(m, phrase);
 	judge_order(m, phrase);
 	if (!phrase)
 		meaning_keep_mutual(m, fit, m->scratch);
@@ -531,7 +497,7 @@ static size_t parts_of(const struct parse *p)
 
 	for (int i = 0; i < p->phrase_count; i++) {
 		const struct parse_phrase *f = &p->phrases[i];
-		n += 3 + (size_t)(f->noun.n + f->attributes.n + 3 * f->clauses.n + f->except.n);
+		n += 4 + (size_t)(f->noun.n + f->attributes.n + 3 * f->clauses.n + f->except.n);
 	}
 	return n;
 }

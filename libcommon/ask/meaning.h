@@ -19,6 +19,7 @@ enum meaning_kind {
 	MEANING_CLAUSE,
 	MEANING_SIZE, /* a clause too: "large" */
 	MEANING_EXCEPT,
+	MEANING_AMONG, /* one of several that are named */
 	MEANING_ORDINAL,
 	MEANING_KINDS
 };

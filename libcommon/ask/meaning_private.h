@@ -1,5 +1,5 @@
 /* What the two halves of ask/meaning.h share: meaning.c has phrases and clauses, meaning_words.c their words,
- * mutual.c what stands to each other.
+ * meaning_sets.c what is left out or chosen from, mutual.c what stands to each other.
  */
 #ifndef ASK_MEANING_PRIVATE_H
 #define ASK_MEANING_PRIVATE_H
@@ -56,6 +56,15 @@ void meaning_judge_part_colours(
 /* What a thing does, is for, or has: any word of it may be said of an object. Returns how far something is
  * known to be so. */
 double meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, double *value);
+
+/* The phrase's fit takes in a phrase that is left out. */
+void meaning_judge_except(struct meaning *m, int phrase, int except);
+
+/* And that it is one of several that are named: "of the jar, the tin and the box the tallest". */
+void meaning_judge_among(struct meaning *m, int phrase);
+
+/* "of the two cups": only the best two are compared. */
+void meaning_keep_group(struct meaning *m, int phrase);
 
 /* Whether several are meant that stand to each other somehow. */
 int meaning_is_mutual(const struct parse *p);

@@ -2,7 +2,8 @@
 
 int role_is_phrase(enum word_role r)
 {
-	return r == ROLE_TARGET || r == ROLE_ANCHOR || r == ROLE_ALSO || r == ROLE_EXCEPT || r == ROLE_VIEW;
+	return r == ROLE_TARGET || r == ROLE_ANCHOR || r == ROLE_ALSO || r == ROLE_EXCEPT || r == ROLE_VIEW ||
+	       r == ROLE_MEMBER;
 }
 
 void analysis_give_up(struct analysis_word *w)
@@ -27,6 +28,7 @@ static int may_hang(const struct analysis *a, int i)
 	case ROLE_TARGET:
 	case ROLE_ALSO:
 	case ROLE_VIEW:
+	case ROLE_MEMBER:
 		return h == ROOT;
 	case ROLE_ANCHOR:
 		return h != ROOT && up == ROLE_PREDICATE;

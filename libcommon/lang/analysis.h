@@ -16,6 +16,7 @@ enum word_role {
 	ROLE_ALSO,	/* the noun of a further target; ROOT */
 	ROLE_EXCEPT,	/* the noun of what is left out; ROOT or the phrase that it is left out of */
 	ROLE_VIEW,	/* the noun of what is faced or stood at; ROOT */
+	ROLE_MEMBER,	/* the noun of one of those that the target is chosen from; ROOT */
 	ROLE_NAME,	/* a part of a noun of several words ("trash" can); hangs on the noun */
 	ROLE_ATTRIBUTE, /* hangs on a noun, or on ROOT for the target */
 	ROLE_PREDICATE, /* the main word of a relation; hangs on its figure: a noun, or ROOT for the target */
@@ -52,7 +53,10 @@ void analysis_repair(struct analysis *a);
  * and places. grammar: what grammar_analyse made. */
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
 
-/* A part of analysis_mend: who looks, corners, places that are said twice. */
+/* A part of analysis_mend: what is denied. */
+void analysis_denied(struct analysis *a, const struct tokens *t);
+
+/* Another: who looks, corners, places that are said twice. */
 void analysis_places(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
 
 /* Another: what "it" is, what stands by itself, "a book behind it". */
@@ -73,6 +77,9 @@ int parse_settle(struct parse *p, struct err *e);
 
 /* A part of parse_settle: "the tray and what is on it" are two. Likewise. */
 int parse_carried(struct parse *p, struct err *e);
+
+/* A part of parse_settle: "two boxes, the red one and the one by the door". Likewise. */
+int parse_members(struct parse *p, struct err *e);
 
 /* A part of parse_settle: "I need that tray" of a tray that something is on. Likewise. */
 int parse_that(struct parse *p, struct err *e);

@@ -5,79 +5,6 @@
 #include "lang/closed.h"
 #include "lang/colours.h"
 
-/* The noun that the words from i on stand before as adjectives do, or -1. */
-static int noun_after(const struct analysis *a, const struct tokens *t, int i)
-{
-	for (int j = i + 1; j < t->n && !t->word[j].before; j++) {
-		enum word_role r = a->word[j].role;
-		if (role_is_phrase(r))
-			return j;
-		if (r != ROLE_ATTRIBUTE && r != ROLE_NAME && tokens_class(t, j) != CLOSED_SIZE &&
-			tokens_class(t, j) != CLOSED_ATTRIBUTE)
-			return -1;
-	}
-	return -1;
-}
-
-/* "the door that isn't brown": brown ones are left out. */
-static void mend_isnt(struct analysis *a, const struct tokens *t)
-{
-	for (int i = 0; i + 1 < t->n; i++) {
-		const int next = tokens_class(t, i + 1) == CLOSED_ADVERB ? i + 2 : i + 1;
-		if (tokens_class(t, i) == CLOSED_NEGATION && !tokens_is(t, i, "no") &&
-			!tokens_is(t, i, "without") && next < t->n && !t->word[next].before &&
-			a->word[next].role == ROLE_ATTRIBUTE && a->word[next].head < next &&
-			noun_after(a, t, next) < 0)
-			a->word[next].role = ROLE_EXCEPT;
-	}
-}
-
-/* Whether a word says how a thing looks, and no noun comes after it of which it says so. */
-static int is_look_alone(const struct analysis *a, const struct tokens *t, int i)
-{
-	const int is_look = i < t->n && !t->word[i].before &&
-			    (colour_word(t->word[i].text) >= 0 || tokens_class(t, i) == CLOSED_ATTRIBUTE);
-
-	return is_look && (i + 1 == t->n || t->word[i + 1].before || a->word[i + 1].role == ROLE_NONE);
-}
-
-/* "the can that isn't orange or red": what is orange is left out, and what is red. */
-static void mend_denied_looks(struct analysis *a, const struct tokens *t)
-{
-	for (int i = 0; i < t->n; i++) {
-		int j = i + 1;
-		while (tokens_class(t, j) == CLOSED_ADVERB)
-			j++;
-		if (tokens_class(t, i) != CLOSED_NEGATION || !is_look_alone(a, t, j))
-			continue;
-		if (a->word[j].role == ROLE_NONE)
-			a->word[j] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
-		if (a->word[j].role == ROLE_EXCEPT &&
-			(tokens_is(t, j + 1, "or") || tokens_is(t, j + 1, "nor")) &&
-			is_look_alone(a, t, j + 2))
-			a->word[j + 2] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
-	}
-}
-
-/* Whether a negation is among words from..to-1. */
-static int is_denied(const struct tokens *t, int from, int to)
-{
-	for (int i = from; i < to; i++)
-		if (tokens_class(t, i) == CLOSED_NEGATION)
-			return 1;
-	return 0;
-}
-
-/* "not the one under the shelf": the one that is under it is left out, and nothing more is denied. */
-static void mend_negation(struct analysis *a, const struct tokens *t)
-{
-	for (int i = 0; i < t->n; i++) {
-		const int out = a->word[i].role == ROLE_PREDICATE ? a->word[i].head : -1;
-		if (out >= 0 && a->word[out].role == ROLE_EXCEPT && !is_denied(t, out + 1, i))
-			a->word[i].negated = 0;
-	}
-}
-
 /* "any colour but orange": orange is left out. */
 static void mend_any_colour(struct analysis *a, const struct tokens *t)
 {
@@ -174,16 +101,41 @@ static void mend_empty(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* Of an end of a thing ("the bottom" in "pale green at the bottom") the word before that place; else -1. */
+static int look_of_end(const struct tokens *t, int i)
+{
+	static const char *const ends[] = {"top", "bottom", "base", "tip", "rim", NULL};
+	static const char *const at[] = {"at", "on", "round", "around", "near", NULL};
+	const int before = tokens_is(t, i - 1, "the") ? i - 2 : i - 1;
+
+	if (!tokens_is_any(t, i, ends) || before < 1 || !tokens_is_any(t, before, at))
+		return -1;
+	for (int j = before; j <= i; j++)
+		if (t->word[j].before)
+			return -1;
+	return before - 1;
+}
+
+/* "Pale green at the bottom" says how a part looks, and not where the thing is. */
+static void mend_ends(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		const int look = look_of_end(t, i);
+		if (look >= 0 && a->word[i].role == ROLE_PREDICATE && !analysis_has_anchor(a, i) &&
+			a->word[look].role == ROLE_ATTRIBUTE)
+			analysis_give_up(&a->word[i]);
+	}
+}
+
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
-	mend_isnt(a, t);
-	mend_negation(a, t);
+	analysis_denied(a, t);
 	mend_attributes(a, t);
 	analysis_places(a, grammar, t);
 	analysis_it(a, t);
 	mend_any_colour(a, t);
 	mend_empty(a, t);
-	mend_denied_looks(a, t);
 	mend_compounds(a, t);
+	mend_ends(a, t);
 	analysis_repair(a);
 }

@@ -8,11 +8,11 @@
 static const char *const groups[] = {
 	/* shapes */
 	" box block cube cuboid brick crate carton case parcel package packet pack chest bin ",
-	" ball sphere orb globe marble bead bauble bubble ",
-	" cylinder tube can tin drum canister barrel roll pipe keg cask roller spool ",
-	" cone pyramid pylon hat spike tepee funnel ",
-	" ring hoop donut torus loop circle wheel tyre tire ",
-	" disc disk puck coaster coin token lid ",
+	" ball sphere orb globe marble bead bauble bubble globule gobstopper cannonball planet ",
+	" cylinder tube can tin drum canister barrel roll pipe keg cask roller spool pillar column bobbin log ",
+	" cone pyramid pylon hat spike tepee teepee tipi wigwam funnel spire steeple cornet bollard ",
+	" ring hoop donut doughnut torus loop circle wheel tyre tire band quoit ",
+	" disc disk puck coaster coin token lid counter frisbee ",
 	" rod stick pole bar dowel baton staff post ",
 	" sheet card paper page leaf slip note ",
 	" slab board plank panel tile ",

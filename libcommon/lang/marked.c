@@ -17,7 +17,8 @@ static const char *read_name(const char *s, struct mark_name *name)
 	static const struct {
 		char letter;
 		enum word_role role;
-	} letters[] = {{'T', ROLE_TARGET}, {'S', ROLE_ALSO}, {'X', ROLE_EXCEPT}, {'V', ROLE_VIEW}};
+	} letters[] = {{'T', ROLE_TARGET}, {'S', ROLE_ALSO}, {'X', ROLE_EXCEPT}, {'V', ROLE_VIEW},
+		{'M', ROLE_MEMBER}};
 	char *end;
 
 	*name = (struct mark_name){.role = ROLE_ANCHOR};

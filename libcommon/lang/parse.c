@@ -31,6 +31,7 @@ void parse_free(struct parse *p)
 		free(f->noun.item);
 		free(f->attributes.item);
 		free(f->clauses.item);
+		free(f->among.item);
 		free(f->except.item);
 		free(f->also.item);
 	}

@@ -68,9 +68,11 @@ struct parse_phrase {
 	struct parse_list noun; /* words of the noun, the head last ("trash can"); none: "the other one" */
 	struct parse_list attributes; /* other words that say something of it: "red", "wooden", "shiny" */
 	struct parse_list clauses;    /* clauses that it is the figure of */
-	struct parse_list except;     /* phrases that are left out: "but not the red one", "except the mug" */
-	struct parse_list also;	      /* phrases meant too: "the red mug and the bowl"; of the target only */
-	int count;		      /* PARSE_ONE, PARSE_ALL, PARSE_SEVERAL or a number */
+	struct parse_list
+		among; /* phrases one of which it is: "of the jar, the tin and the box the tallest" */
+	struct parse_list except; /* phrases that are left out: "but not the red one", "except the mug" */
+	struct parse_list also;	  /* phrases meant too: "the red mug and the bowl"; of the target only */
+	int count;		  /* PARSE_ONE, PARSE_ALL, PARSE_SEVERAL or a number */
 	int group;   /* "the left one of the two cups": 2; "which of the cups": PARSE_SEVERAL; 0: no
 			group is spoken of */
 	int ordinal; /* 2 for "second", -1 for "last"; 0: none */

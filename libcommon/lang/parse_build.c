@@ -4,36 +4,16 @@
 #include "lang/analysis.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
+#include "lang/parse_private.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-struct build {
-	struct parse *p;
-	const struct analysis *a;
-	const struct tokens *t;
-	struct err *e;
-	int phrase_of[TOKENS_MOST]; /* of a phrase's head: its phrase, else -1 */
-	int noun;		    /* the target's main noun, or -1 */
-	int from;		    /* the place word that an ordinal counts from, or -1 */
-};
-
-static int value_of(const struct tokens *t, int i)
-{
-	return closed_words[t->word[i].closed].value;
-}
 
 static int tail(const char *w, const char *end)
 {
 	size_t n = strlen(w), m = strlen(end);
 
 	return n > m + 2 && !strcmp(w + n - m, end);
-}
-
-static int is_plural(const struct tokens *t, int i)
-{
-	return strcmp(t->word[i].text, t->word[i].lemma) != 0 && !tokens_is(t, i, "glasses") &&
-	       !tokens_is(t, i, "scissors");
 }
 
 static int add_words(struct build *b)
@@ -78,18 +58,6 @@ static int add_phrases(struct build *b)
 	return 0;
 }
 
-static int phrase_under(const struct build *b, int head)
-{
-	return head == ROOT ? 0 : b->phrase_of[head];
-}
-
-/* A head that names no kind of thing is none. */
-static int names_kind(const struct build *b, int i)
-{
-	return tokens_class(b->t, i) != CLOSED_GENERIC && tokens_class(b->t, i) != CLOSED_NUMBER &&
-	       tokens_class(b->t, i) != CLOSED_RELATIVE && tokens_class(b->t, i) != CLOSED_DETERMINER;
-}
-
 /* Words that only lead to one that says something: "of red colour", "a piece of fruit", "mid-sized"; but
  * "coloured" by itself does. */
 static int says_nothing(const struct tokens *t, int i)
@@ -119,7 +87,7 @@ static int add_noun(struct build *b, int head, struct parse_phrase *f)
 		!b->t->word[first].before)
 		first--;
 	widen(&f->span, b->t->word[head].span);
-	if (!names_kind(b, head))
+	if (!build_names_kind(b, head))
 		return 0;
 	for (int i = first; i <= head; i++) {
 		widen(&f->span, b->t->word[i].span);
@@ -169,7 +137,7 @@ static int fill_phrases(struct build *b)
 	}
 	for (int i = 0; i < b->t->n; i++) {
 		enum word_role r = b->a->word[i].role;
-		int owner = phrase_under(b, b->a->word[i].head);
+		int owner = build_phrase_under(b, b->a->word[i].head);
 		if ((r != ROLE_ATTRIBUTE && r != ROLE_NAME) || owner < 0 || says_nothing(b->t, i) ||
 			tokens_class(b->t, i) == CLOSED_CONJUNCTION)
 			continue;
@@ -205,8 +173,8 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	if (tokens_is_any(t, i, most))
 		return PARSE_MOST;
 	if (c == CLOSED_PLACE || c == CLOSED_SIZE) {
-		if (value_of(t, i))
-			return (enum parse_degree)value_of(t, i);
+		if (build_value(t, i))
+			return (enum parse_degree)build_value(t, i);
 	} else if (tail(w, "est") || tail(w, "most")) {
 		return PARSE_MOST;
 	} else if (tail(w, "er") && tokens_is(t, i + 1, "than")) {
@@ -255,7 +223,7 @@ static int is_nothing(const struct tokens *t, int i)
 static int add_clause(struct build *b, int i, int from, int end)
 {
 	struct parse *p = b->p;
-	int figure = phrase_under(b, b->a->word[i].head), at = p->clause_count, k = 0;
+	int figure = build_phrase_under(b, b->a->word[i].head), at = p->clause_count, k = 0;
 	struct parse_clause *c = &p->clauses[at];
 
 	if (figure < 0)
@@ -321,8 +289,10 @@ static int add_others(struct build *b)
 		int bad = 0;
 		if (r == ROLE_ALSO) {
 			bad = parse_list_add(&p->phrases[0].also, b->phrase_of[i], b->e);
+		} else if (r == ROLE_MEMBER) {
+			bad = parse_list_add(&p->phrases[0].among, b->phrase_of[i], b->e);
 		} else if (r == ROLE_EXCEPT) {
-			int owner = phrase_under(b, b->a->word[i].head);
+			int owner = build_phrase_under(b, b->a->word[i].head);
 			bad = parse_list_add(
 				&p->phrases[owner < 0 ? 0 : owner].except, b->phrase_of[i], b->e);
 		} else if (r == ROLE_NONE && b->t->word[i].closed < 0 && !says_nothing(b->t, i)) {
@@ -332,211 +302,6 @@ static int add_others(struct build *b)
 			return -1;
 	}
 	return 0;
-}
-
-/* Words back from a head that belong to its phrase: articles, numbers, attributes. */
-static int phrase_start(const struct build *b, int head)
-{
-	int i = head;
-
-	while (i > 0 && !b->t->word[i].before) {
-		int c = tokens_class(b->t, i - 1);
-		enum word_role r = b->a->word[i - 1].role;
-		if (!(r == ROLE_NAME || r == ROLE_ATTRIBUTE || c == CLOSED_DETERMINER || c == CLOSED_NUMBER ||
-			    c == CLOSED_ORDINAL || c == CLOSED_SIZE || c == CLOSED_ATTRIBUTE ||
-			    c == CLOSED_ADVERB ||
-			    (c == CLOSED_PLACE && r == ROLE_PREDICATE &&
-				    b->a->word[i - 1].head == b->a->word[head].head) ||
-			    (tokens_is(b->t, i - 1, "of") && i > 1 &&
-				    tokens_class(b->t, i - 2) == CLOSED_NUMBER)))
-			break;
-		i--;
-	}
-	return i;
-}
-
-static void count_phrase(struct build *b, int head, struct parse_phrase *f)
-{
-	static const char *const several[] = {
-		"ones", "things", "objects", "items", "stuff", "those", "these", NULL};
-	const struct tokens *t = b->t;
-	int start = phrase_start(b, head), number = 0, of;
-
-	for (int i = start; i <= head && !(number > 1 && tokens_is(t, i, "of")); i++)
-		if (tokens_class(t, i) == CLOSED_NUMBER && (!number || value_of(t, i) > 0))
-			number = value_of(t, i);
-	if (tokens_is(t, head, "everything") || tokens_is(t, head, "anything") ||
-		tokens_is(t, head, "whatever"))
-		number = PARSE_ALL;
-	if (!number && names_kind(b, head) && is_plural(t, head))
-		number = PARSE_SEVERAL;
-	if (!number && tokens_is_any(t, head, several))
-		number = PARSE_SEVERAL;
-	f->count = number ? number : PARSE_ONE;
-	/* "of the two cups", "which of the cups", unless all of them are meant */
-	of = start - 1;
-	if (of >= 0 && (tokens_is(t, of, "of") || tokens_is(t, of, "between")) && tokens_is(t, of, "of") &&
-		f->count != PARSE_ONE && tokens_class(t, of - 1) != CLOSED_NUMBER && f == &b->p->phrases[0]) {
-		f->group = number;
-		f->count = PARSE_ONE;
-	}
-}
-
-/* "Two mugs stand there. I want the smaller." */
-static int compares_later(const struct build *b, int i)
-{
-	const struct tokens *t = b->t;
-	const int is_end = i + 1 >= t->n || t->word[i + 1].before;
-
-	if (b->a->word[i].role != ROLE_PREDICATE || b->a->word[i].head != ROOT ||
-		!tokens_is(t, i - 1, "the") || !is_end)
-		return 0;
-	for (int j = b->noun + 1; j <= i; j++)
-		if (t->word[j].before == PAUSE_STOP)
-			return 1;
-	return 0;
-}
-
-/* "Two red chairs. Which one is ...": a later word of the target that means one of them. */
-static void find_group(struct build *b)
-{
-	struct parse_phrase *f = &b->p->phrases[0];
-
-	if (f->count == PARSE_ONE || f->count == PARSE_ALL || b->noun < 0)
-		return;
-	for (int i = b->noun + 1; i < b->t->n; i++)
-		if ((b->a->word[i].role == ROLE_TARGET && !tokens_is(b->t, i, "ones") &&
-			    !is_plural(b->t, i)) ||
-			tokens_is(b->t, i, "whichever") || compares_later(b, i) ||
-			(tokens_is(b->t, i, "one") && b->a->word[i].role == ROLE_NONE &&
-				!(tokens_is(b->t, i - 1, "the") &&
-					tokens_class(b->t, i - 2) == CLOSED_NEGATION))) {
-			f->group = f->count;
-			f->count = PARSE_ONE;
-			return;
-		}
-}
-
-/* "Spoons, both of them", "of the five keys the two on the nail". */
-static void count_late(struct build *b)
-{
-	static const char *const them[] = {"them", "those", "these", NULL};
-	const struct tokens *t = b->t;
-	struct parse_phrase *f = &b->p->phrases[0];
-
-	if (f->count == PARSE_ONE && !f->group)
-		return;
-	for (int i = b->noun + 1; i < t->n; i++) {
-		if (tokens_class(t, i) != CLOSED_NUMBER || value_of(t, i) == PARSE_ONE)
-			continue;
-		const int is_of_them = tokens_is(t, i + 1, "of") && tokens_is_any(t, i + 2, them);
-		const int is_alone = f->group > value_of(t, i) && value_of(t, i) > 0 &&
-				     tokens_is(t, i - 1, "the") &&
-				     (i + 1 == t->n || tokens_class(t, i + 1) == CLOSED_PREPOSITION ||
-					     tokens_class(t, i + 1) == CLOSED_PLACE);
-		if (!is_of_them && !is_alone)
-			continue;
-		f->count = value_of(t, i);
-		f->group = 0;
-		return;
-	}
-}
-
-/* "What is on the plates? I need both." */
-static void count_again(struct build *b)
-{
-	struct parse_phrase *f = &b->p->phrases[0];
-	int begin = 0;
-
-	for (int i = 1; i < b->t->n; i++)
-		begin = b->t->word[i].before == PAUSE_STOP ? i : begin;
-	for (int i = begin; i < b->t->n && begin && f->count == PARSE_ONE && !f->group; i++) {
-		const int is_last = i + 1 == b->t->n || tokens_class(b->t, i + 1) == CLOSED_PREPOSITION;
-		if (is_last && tokens_is(b->t, i, "both"))
-			f->count = 2;
-		else if (is_last && tokens_is(b->t, i, "all"))
-			f->count = PARSE_ALL;
-	}
-}
-
-static void count_phrases(struct build *b)
-{
-	for (int k = 0; k < b->p->phrase_count; k++)
-		b->p->phrases[k].count = PARSE_ONE;
-	for (int i = 0; i < b->t->n; i++)
-		if (b->phrase_of[i] > 0 || (b->phrase_of[i] == 0 && i == b->noun))
-			count_phrase(b, i, &b->p->phrases[b->phrase_of[i]]);
-	find_group(b);
-	count_late(b);
-	count_again(b);
-}
-
-static enum parse_relation end_of(const struct tokens *t, int i)
-{
-	enum parse_relation r = PARSE_OTHER;
-
-	if (tokens_class(t, i) == CLOSED_PLACE)
-		r = (enum parse_relation)closed_words[t->word[i].closed].relation;
-	return r <= PARSE_BELOW ? r : PARSE_OTHER;
-}
-
-/* "from the left", "from left", "left to right", "start at the left-hand end". */
-static enum parse_relation counted_from(struct build *b)
-{
-	const struct tokens *t = b->t;
-
-	for (int i = 0; i < t->n; i++) {
-		if (end_of(t, i) != PARSE_OTHER && tokens_is(t, i + 1, "to") &&
-			end_of(t, i + 2) != PARSE_OTHER)
-			return end_of(t, i);
-		if (!tokens_is(t, i, "from") && !tokens_is(t, i, "at"))
-			continue;
-		int j = i + 1;
-		while (tokens_is(t, j, "the") || tokens_is(t, j, "very") || tokens_is(t, j, "far"))
-			j++;
-		if (end_of(t, j) != PARSE_OTHER && !tokens_is(t, j + 1, "of")) {
-			b->from = b->a->word[j].role == ROLE_PREDICATE ? j : b->from;
-			return end_of(t, j);
-		}
-	}
-	return PARSE_OTHER;
-}
-
-/* "first find the box", "first, you": it tells the order of what is done. */
-static int tells_step(const struct tokens *t, int i)
-{
-	return tokens_is(t, i, "first") && i + 1 < t->n &&
-	       (t->word[i + 1].before || tokens_class(t, i + 1) == CLOSED_REQUEST ||
-		       tokens_class(t, i + 1) == CLOSED_PRONOUN);
-}
-
-static void find_ordinals(struct build *b)
-{
-	const struct tokens *t = b->t;
-
-	for (int i = 0; i < t->n; i++) {
-		int value = 0, owner = 0;
-		if (tokens_class(t, i) == CLOSED_ORDINAL && !tells_step(t, i))
-			value = value_of(t, i);
-		else if (tokens_is(t, i, "number") && i + 1 < t->n)
-			value = tokens_is(t, i + 1, "one") ? 1
-				: tokens_class(t, i + 1) == CLOSED_NUMBER && value_of(t, i + 1) > 0
-					? value_of(t, i + 1)
-					: 0;
-		if (!value)
-			continue;
-		for (int j = i + 1; j < t->n && j <= i + 4 && !t->word[j].before; j++) {
-			/* "second nearest to the door": the figure is counted */
-			const int is_predicate = b->a->word[j].role == ROLE_PREDICATE;
-			if (!is_predicate && b->phrase_of[j] < 0)
-				continue;
-			owner = is_predicate ? phrase_under(b, b->a->word[j].head) : b->phrase_of[j];
-			break;
-		}
-		owner = owner < 0 ? 0 : owner;
-		b->p->phrases[owner].ordinal = value;
-		b->p->phrases[owner].from = counted_from(b);
-	}
 }
 
 static void find_view(struct build *b)
@@ -569,8 +334,8 @@ int parse_build(struct parse *p, const struct analysis *a, const struct tokens *
 		parse_free(p);
 		return -1;
 	}
-	count_phrases(&b);
-	find_ordinals(&b);
+	parse_counts(&b);
+	parse_ordinals(&b);
 	if (add_clauses(&b) || add_others(&b)) {
 		parse_free(p);
 		return -1;

@@ -27,7 +27,8 @@ void token_lemma(const char *word, char *out)
 		{"shelves", "shelf"}, {"bookshelves", "bookshelf"}, {"knives", "knife"}, {"feet", "foot"},
 		{"men", "man"}, {"women", "woman"}, {"people", "person"}, {"children", "child"},
 		{"leaves", "leaf"}, {"loaves", "loaf"}, {"halves", "half"}, {"teeth", "tooth"},
-		{"geese", "goose"}, {"scarves", "scarf"}};
+		{"geese", "goose"}, {"scarves", "scarf"}, {"atlas", "atlas"}, {"canvas", "canvas"},
+		{"thermos", "thermos"}, {"lens", "lens"}};
 	/* the tails of plurals, and what they become */
 	static const char *const tails[][2] = {{"ies", "y"}, {"sses", "ss"}, {"xes", "x"}, {"ches", "ch"},
 		{"shes", "sh"}, {"zes", "ze"}, {"oes", "o"}};

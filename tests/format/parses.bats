@@ -46,7 +46,7 @@ refuses() {
 @test "counts and ordinals" {
 	refuses "2: key 'count' is not 'one', 'several', 'all' or a whole number from 1" '{"ref":"b","target":{},"count":0}'
 	refuses "2: key 'group' is not 'one', 'several', 'all' or a whole number from 1" '{"ref":"b","target":{},"group":"two"}'
-	refuses "2: key 'ordinal' is not an object with a whole number 'k', from 1, or -1" '{"ref":"b","target":{},"ordinal":{"k":0}}'
+	refuses "2: key 'ordinal' is not an object with a whole number 'k' that is not 0" '{"ref":"b","target":{},"ordinal":{"k":0}}'
 	refuses "2: key 'from' is not 'left', 'right', 'front', 'behind', 'above' or 'below'" \
 		'{"ref":"b","target":{},"ordinal":{"k":1,"from":"top"}}'
 }

@@ -86,11 +86,11 @@ static float probability[OBJECTS];
 static char chosen[OBJECTS];
 static struct choice choice;
 
-/* The sentence's best object. */
-static inline int ask_from(const char *text, unsigned parts, struct viewpoint from)
+/* The sentence's best object; p: its parse, or NULL. */
+static inline int ask_parsed(const char *text, unsigned parts, struct viewpoint from, const struct parse *p)
 {
 	static float vectors[MOST * WIDTH];
-	const struct choose_sentence s = {text, text, vectors, NULL, encode(text, vectors), from, NULL};
+	const struct choose_sentence s = {text, text, vectors, NULL, encode(text, vectors), from, p};
 	struct err e;
 	int best = 0;
 
@@ -102,6 +102,11 @@ static inline int ask_from(const char *text, unsigned parts, struct viewpoint fr
 	}
 	CHECK(choice.there >= 0 && choice.there <= 1, "'%s': %g there", text, choice.there);
 	return best;
+}
+
+static inline int ask_from(const char *text, unsigned parts, struct viewpoint from)
+{
+	return ask_parsed(text, parts, from, NULL);
 }
 
 static inline int ask(const char *text, unsigned parts)

@@ -4,6 +4,7 @@
 #include "ask/vocabulary.h"
 #include "choose_scene.h"
 #include "lang/wordnet.h"
+#include "mend_help.h"
 
 /* The objects chosen, as bits. */
 static unsigned set_of(const char *text)
@@ -483,9 +484,40 @@ static void places_are_no_parts(void)
 	CHECK(probability[0] < 0.5, "the mug has a crate: %g", (double)probability[0]);
 }
 
+/* The best of a sentence whose words are so. */
+static int best_of_roles(const char *text, const char *roles, enum parse_relation relation)
+{
+	struct tokens t;
+	struct parse p;
+	struct err e;
+
+	tokens_take(&t, text, text, NULL, 0);
+	const struct analysis a = made(&t, roles, relation);
+	CHECK(!parse_build(&p, &a, &t, &e), "'%s'", text);
+	const int best = ask_parsed(text, CHOOSE_ALL, (struct viewpoint){.kind = VIEWPOINT_USUAL}, &p);
+	parse_free(&p);
+	return best;
+}
+
+/* One of those that are named, whatever else fits. */
+static void members(void)
+{
+	const char *behind = "of the mug and the tin the back one", *back = "the back one";
+
+	CHECK(best_of_roles(back, ". P T", PARSE_BEHIND) == 2, "the crate is at the back");
+	const int mug = best_of_roles(behind, ". . M . . M . P T", PARSE_BEHIND);
+	CHECK((mug == 0 || mug == 1) && choice.there > 0.5, "a mug is behind the tin: %d, %g", mug,
+		choice.there);
+	CHECK(best_of_roles("of the tin and the mug the back one", ". . M . . M . P T", PARSE_BEHIND) == mug,
+		"in any order");
+	best_of_roles("of the zeppelin and the wug the back one", ". . M . . M . P T", PARSE_BEHIND);
+	CHECK(choice.there < 0.5, "neither is there: %g", choice.there);
+}
+
 int main(void)
 {
 	make_scene();
+	members();
 	twins();
 	spare();
 	parts();

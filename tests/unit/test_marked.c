@@ -29,7 +29,7 @@ static int word(const char *text)
 /* "role:relation@head" of a word */
 static const char *is(const char *text)
 {
-	static const char *const roles[] = {"-", "T", "A", "S", "X", "V", "n", "a", "P"};
+	static const char *const roles[] = {"-", "T", "A", "S", "X", "V", "M", "n", "a", "P"};
 	static char out[96];
 	const struct analysis_word *w = &a.word[word(text)];
 	const int is_predicate = w->role == ROLE_PREDICATE;

@@ -25,6 +25,18 @@ static void mends_looks(void)
 	mends("the ash-coloured vase", ". T . .", 0, 3, ROLE_TARGET, ROOT, 0);
 	mends("the ash-coloured vase", ". T . .", 0, 1, ROLE_ATTRIBUTE, ROOT, 0);
 
+	mends("a jug, pale green at the bottom", ". T a a . . P", PARSE_BELOW, 6, ROLE_NONE, ROOT, 0);
+	mends("the jug at the bottom", ". T . . P", PARSE_BELOW, 4, ROLE_PREDICATE, ROOT, PARSE_BELOW);
+	mends("a green jug at the bottom of it", ". a T . . P . A5", PARSE_BELOW, 5, ROLE_PREDICATE, ROOT,
+		PARSE_BELOW);
+
+	const char *other = "not the orange jug, the other one";
+	mends(other, ". . a T . . .", 0, 3, ROLE_EXCEPT, ROOT, 0);
+	mends(other, ". . a T . . .", 0, 2, ROLE_ATTRIBUTE, 3, 0);
+	mends(other, ". . a T . . .", 0, 6, ROLE_TARGET, ROOT, 0);
+	mends("not the orange jug, the other jug", ". . a T . . .", 0, 3, ROLE_TARGET, ROOT, 0);
+	mends("the orange jug, the other one", ". a T . . .", 0, 2, ROLE_TARGET, ROOT, 0);
+
 	const struct analysis a = mended("the empty vase", ". a T", 0);
 	CHECK(a.word[1].role == ROLE_PREDICATE && a.word[1].relation == PARSE_SUPPORTS && a.word[1].negated,
 		"an empty vase: role %d", a.word[1].role);

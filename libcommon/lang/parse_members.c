@@ -1,0 +1,79 @@
+/* Sets that are told one by one: "two boxes, the red one on the shelf and the one by the door". */
+#include "lang/analysis.h"
+#include "lang/closed.h"
+
+#include <string.h>
+
+/* Whether a phrase has no noun but the target's: "the red one". */
+static int is_one_of(const struct parse_phrase *f, const struct parse_phrase *target)
+{
+	return !f->noun.n || (target->noun.n && f->noun.item[0] == target->noun.item[0]);
+}
+
+/* Whether the target's noun says no more than that there are several: "the things", "a group". */
+static int is_of_things(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char *const sets[] = {
+		"group", "pair", "trio", "set", "lot", "collection", "bunch", NULL};
+
+	return !f->noun.n || parse_word_is(p, f->noun.item[f->noun.n - 1], sets);
+}
+
+/* Whether the further targets are the members of what the target names. */
+static int are_members(const struct parse *p)
+{
+	const struct parse_phrase *f = &p->phrases[0];
+
+	if (f->count == PARSE_ONE || f->also.n < 2 || (f->count > 1 && f->count != f->also.n))
+		return 0;
+	for (int k = 0; k < f->also.n; k++)
+		if (!is_one_of(&p->phrases[f->also.item[k]], f) && !is_of_things(p, f))
+			return 0;
+	return 1;
+}
+
+/* What is said of all is said of each. */
+static int take_common(struct parse_phrase *f, const struct parse_phrase *all, struct err *e)
+{
+	if (!f->noun.n && parse_list_join(&f->noun, &all->noun, e))
+		return -1;
+	return parse_list_join(&f->attributes, &all->attributes, e) ||
+			       parse_list_join(&f->clauses, &all->clauses, e)
+		       ? -1
+		       : 0;
+}
+
+/* The first member becomes the target. */
+static int turn(struct parse *p, struct err *e)
+{
+	struct parse_phrase *f = &p->phrases[0];
+	const int first = f->also.item[0];
+	struct parse_phrase *member = &p->phrases[first];
+	const struct parse_phrase all = *f;
+
+	for (int k = 1; k < f->also.n; k++)
+		f->also.item[k - 1] = f->also.item[k];
+	f->also.n--;
+	if (parse_list_join(&member->also, &f->also, e) || parse_list_join(&member->except, &f->except, e))
+		return -1;
+	*f = *member;
+	p->phrases[first] = all;
+	parse_list_cut(&p->phrases[first].also, 0);
+	parse_list_cut(&p->phrases[first].except, 0);
+	p->phrases[first].group = 0;
+	return 0;
+}
+
+int parse_members(struct parse *p, struct err *e)
+{
+	const struct parse_phrase *f = &p->phrases[0];
+
+	if (f->among.n > 1 && f->count == PARSE_ONE && !f->group)
+		p->phrases[0].group = f->among.n;
+	if (!are_members(p))
+		return 0;
+	for (int k = 0; k < f->also.n; k++)
+		if (take_common(&p->phrases[f->also.item[k]], f, e))
+			return -1;
+	return turn(p, e);
+}

@@ -1,0 +1,55 @@
+/* What the parts of parse_build share. */
+#ifndef LANG_PARSE_PRIVATE_H
+#define LANG_PARSE_PRIVATE_H
+
+#include "lang/analysis.h"
+#include "lang/closed.h"
+
+#include <string.h>
+
+struct build {
+	struct parse *p;
+	const struct analysis *a;
+	const struct tokens *t;
+	struct err *e;
+	int phrase_of[TOKENS_MOST]; /* of a phrase's head: its phrase, else -1 */
+	int noun;		    /* the target's main noun, or -1 */
+	int from;		    /* the place word that an ordinal counts from, or -1 */
+};
+
+/* A closed word's value. */
+static inline int build_value(const struct tokens *t, int i)
+{
+	return closed_words[t->word[i].closed].value;
+}
+
+/* The plural of a noun; "scissors" are one thing. */
+static inline int build_is_plural(const struct tokens *t, int i)
+{
+	static const char *const pairs[] = {"binoculars", "clippers", "earphones", "forceps", "glasses",
+		"goggles", "headphones", "jeans", "pliers", "scales", "scissors", "secateurs", "shears",
+		"shorts", "spectacles", "sunglasses", "tongs", "trousers", "tweezers", NULL};
+
+	return strcmp(t->word[i].text, t->word[i].lemma) != 0 && !tokens_is_any(t, i, pairs);
+}
+
+/* A head that names no kind of thing is none. */
+static inline int build_names_kind(const struct build *b, int i)
+{
+	return tokens_class(b->t, i) != CLOSED_GENERIC && tokens_class(b->t, i) != CLOSED_NUMBER &&
+	       tokens_class(b->t, i) != CLOSED_RELATIVE && tokens_class(b->t, i) != CLOSED_DETERMINER;
+}
+
+/* The phrase that a head heads, or -1. */
+static inline int build_phrase_under(const struct build *b, int head)
+{
+	return head == ROOT ? 0 : b->phrase_of[head];
+}
+
+/* How many things each phrase means, and of how many. */
+void parse_counts(struct build *b);
+
+/* "The second from the left". b->from gets the place word that it counts from. */
+void parse_ordinals(struct build *b);
+
+#endif

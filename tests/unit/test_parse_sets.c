@@ -1,0 +1,112 @@
+/* How many things a parse means, which of them by an ordinal, and of what set (lang/parse_counts.c,
+ * parse_ordinals.c, parse_members.c), of analyses that were made by hand. */
+#include "mend_help.h"
+#include "unit.h"
+
+#include <string.h>
+
+static struct parse built(const char *text, const char *roles, enum parse_relation relation)
+{
+	struct tokens t;
+	struct parse p;
+	struct err e;
+
+	tokens_take(&t, text, NULL, NULL, 0);
+	const struct analysis a = made(&t, roles, relation);
+	CHECK(!parse_build(&p, &a, &t, &e), "'%s'", text);
+	return p;
+}
+
+static void counts(const char *text, const char *roles, int count, int group)
+{
+	struct parse p = built(text, roles, PARSE_SMALLER);
+	const struct parse_phrase *f = &p.phrases[0];
+
+	CHECK(f->count == count && f->group == group, "'%s': count %d, group %d", text, f->count, f->group);
+	parse_free(&p);
+}
+
+static void ordinal(const char *text, const char *roles, int k, enum parse_relation from)
+{
+	struct parse p = built(text, roles, PARSE_NEAR);
+	const struct parse_phrase *f = &p.phrases[0];
+
+	CHECK(f->ordinal == k && (!k || f->from == from), "'%s': ordinal %d from %s", text, f->ordinal,
+		parse_relation_name(f->from));
+	parse_free(&p);
+}
+
+/* One of those that are told of first. */
+static void counts_things(void)
+{
+	counts("both lamps", ". T", 2, 0);
+	counts("two lamps, mine is broken", ". T . . a", PARSE_ONE, 2);
+	counts("both lamps are mine", ". T . .", 2, 0);
+	counts("two lamps, not that lamp", ". T . . E", 2, 0);
+	counts("two lamps, give me that lamp", ". T . . . .", PARSE_ONE, 2);
+	counts("two lamps and one small plate", ". T . . P5 L", 2, 0);
+	counts("the lamps, every last one", ". T . . .", PARSE_SEVERAL, 0);
+	counts("two lamps, not the red one. bring the other", ". T . . a5 E . . .", PARSE_ONE, 2);
+	counts("two lamps, the smallest", ". T . P", PARSE_ONE, 2);
+	counts("the lamps at the back", ". T . . P", PARSE_SEVERAL, 0);
+	counts("think of both lamps", ". . . T", 2, 0);
+	counts("which of the lamps", ". . . T", PARSE_ONE, PARSE_SEVERAL);
+	counts("all the lamps. the smallest", ". . T . P", PARSE_ONE, PARSE_ALL);
+	counts("all but the smallest lamp", ". . . P4 E", PARSE_ONE, 0);
+	counts("the tweezers", ". T", PARSE_ONE, 0);
+	counts("an atlas", ". T", PARSE_ONE, 0);
+}
+
+/* "Last" and "second" of time and steps count nothing. */
+static void counts_in_order(void)
+{
+	ordinal("the third lamp from the left", ". . T . . .", 3, PARSE_LEFT);
+	ordinal("the lamp, third from the left", ". T . . . .", 3, PARSE_LEFT);
+	ordinal("which lamp comes fourth, going left to right", ". T . . . . . .", 4, PARSE_LEFT);
+	ordinal("a lamp I bought last week", ". T . . . .", 0, 0);
+	ordinal("give me a second, the lamp", ". . . . . T", 0, 0);
+	ordinal("the lamp that we put away first", ". T . . . . .", 0, 0);
+	ordinal("first find the lamp", ". . . T", 0, 0);
+	ordinal("every last lamp", ". . T", 0, 0);
+	ordinal("the first aid lamp", ". . a T", 0, 0);
+	ordinal("a lamp on the third floor", ". T . . . .", 0, 0);
+	ordinal("a row of lamps, the third lamp", ". . . T . . .", 3, PARSE_OTHER);
+	ordinal("the last lamp but one", ". . T . .", -2, PARSE_OTHER);
+	ordinal("the last lamp", ". . T", -1, PARSE_OTHER);
+	ordinal("lamp number two", "T . .", 2, PARSE_OTHER);
+	ordinal("not the first lamp, the second", ". . . T . .", 2, PARSE_OTHER);
+	ordinal("the second nearest lamp", ". . P T", 2, PARSE_OTHER);
+}
+
+/* "Two boxes, a red one and a blue one" are a red box and a blue box. */
+static void tells_members(void)
+{
+	struct parse p =
+		built("two small boxes, a red one and a blue one", ". P T . a5 L . . a9 L", PARSE_SMALLER);
+	const struct parse_phrase *f = &p.phrases[0];
+
+	CHECK(f->count == PARSE_ONE && f->also.n == 1 && f->attributes.n == 1 && f->clauses.n == 1,
+		"a red box: count %d, %d also, %d looks", f->count, f->also.n, f->attributes.n);
+	const struct parse_phrase *other = &p.phrases[f->also.item[0]];
+	CHECK(other->noun.n == 1 && other->clauses.n == 1 && other->attributes.n == 1 &&
+			!strcmp(p.words[other->attributes.item[0]].text, "blue"),
+		"a blue box: %d nouns", other->noun.n);
+	parse_free(&p);
+
+	p = built("two boxes and a cone", ". T . . L", PARSE_SMALLER);
+	CHECK(p.phrases[0].count == 2 && p.phrases[0].also.n == 1, "two boxes and a cone are three");
+	parse_free(&p);
+
+	p = built("of the jar and the tin the smallest", ". . M . . M . P", PARSE_SMALLER);
+	CHECK(p.phrases[0].among.n == 2 && p.phrases[0].group == 2 && p.phrases[0].count == PARSE_ONE,
+		"of two: %d", p.phrases[0].group);
+	parse_free(&p);
+}
+
+int main(void)
+{
+	counts_things();
+	counts_in_order();
+	tells_members();
+	return unit_end();
+}
