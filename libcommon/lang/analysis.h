@@ -81,7 +81,4 @@ int parse_carried(struct parse *p, struct err *e);
 /* A part of parse_settle: "two boxes, the red one and the one by the door". Likewise. */
 int parse_members(struct parse *p, struct err *e);
 
-/* A part of parse_settle: "I need that tray" of a tray that something is on. Likewise. */
-int parse_that(struct parse *p, struct err *e);
-
 #endif

@@ -95,12 +95,29 @@ static int has_class(const struct parse *p, int from, int to, unsigned classes)
 	return 0;
 }
 
+/* "There's the laptop, and the cable behind it" tells where the cable is; so does what comes after a pause.
+ */
+static int is_told(const struct parse *p, const struct carried *c)
+{
+	static const char *const told[] = {
+		"there", "here", "see", "spot", "locate", "start", "where", "know", NULL};
+
+	for (int w = 0; w < c->joint; w++)
+		if (parse_word_is(p, w, told))
+			return 1;
+	for (int w = c->joint; w < c->place; w++)
+		if (p->words[w + 1].span.begin > p->words[w].span.end + 1)
+			return 1;
+	return 0;
+}
+
 /* Whether both things are named, and nothing else can be what "it" is. */
 static int are_named(const struct parse *p, const struct carried *c)
 {
 	const unsigned has = 1U << CLOSED_WITH | 1U << CLOSED_HAVE;
 
-	return c->first >= 0 && c->second >= 0 && !has_class(p, 0, c->joint, has | 1U << CLOSED_PLACE) &&
+	return c->first >= 0 && c->second >= 0 && relation_of(p, c->place) != PARSE_BETWEEN &&
+	       !has_class(p, 0, c->joint, has | 1U << CLOSED_PLACE) &&
 	       !has_class(p, c->joint, c->place, has | 1U << CLOSED_NEGATION) &&
 	       !has_class(p, c->joint, noun_within(p, c->second, c->from, c->place),
 		       1U << CLOSED_BE | 1U << CLOSED_REQUEST);
@@ -122,7 +139,7 @@ static int find_carried(const struct parse *p, struct carried *c)
 			head++;
 		c->first = c->second = -1;
 		const int is_named = !parse_word_is(p, head, things);
-		if (!find_place(p, head + !is_named, c))
+		if (!find_place(p, head + !is_named, c) || is_told(p, c))
 			continue;
 		if (!is_named)
 			return 1;

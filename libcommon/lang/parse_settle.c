@@ -250,7 +250,7 @@ int parse_settle(struct parse *p, struct err *e)
 		settle_comparison(p, f, &p->clauses[f->clauses.item[k]]);
 	settle_superlative(p, f);
 	return settle_it(p, e) || settle_except(p, e) || settle_than(p, f, e) || settle_view(p, f, e) ||
-			       parse_members(p, e) || parse_carried(p, e) || parse_that(p, e)
+			       parse_members(p, e) || parse_carried(p, e)
 		       ? -1
 		       : 0;
 }
