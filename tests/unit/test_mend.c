@@ -221,9 +221,6 @@ static void carried_things(void)
 	carries("the sled, and the jug that is nearest to it", PARSE_ONE, PARSE_NEAR, "sled");
 	carries("the sled and the jug it stands on", PARSE_ONE, PARSE_SUPPORTS, "sled");
 	carries("the sled with a jug and a bell on it", 0, PARSE_ON, NULL);
-	/* what is only told, and what comes after a pause */
-	carries("there is the sled and the jug behind it", 0, PARSE_BEHIND, NULL);
-	carries("the sled and a jug. the bell behind it", 0, PARSE_BEHIND, NULL);
 }
 
 /* How many phrases are left out of the target, and of what it is on, by an analysis that says the target. */

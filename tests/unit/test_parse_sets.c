@@ -103,8 +103,26 @@ static void tells_members(void)
 	parse_free(&p);
 }
 
+/* How many more than the target a sentence means that tells where it is. */
+static void tells(const char *text, const char *roles, enum parse_relation relation, int also)
+{
+	struct parse p = built(text, roles, relation);
+
+	CHECK(p.phrases[0].also.n == also, "'%s': %d more", text, p.phrases[0].also.n);
+	parse_free(&p);
+}
+
+static void tells_places(void)
+{
+	tells("the sled and the jug behind it", ". A5 . . T P .", PARSE_BEHIND, 1);
+	tells("there is the sled and the jug behind it", ". . . A7 . . T P .", PARSE_BEHIND, 0);
+	tells("the sled and the jug. the bell behind it", ". . . . A7 . T P .", PARSE_BEHIND, 0);
+	tells("a sled and a jug and the bell between them", ". A8 . . A8 . . T P .", PARSE_BETWEEN, 0);
+}
+
 int main(void)
 {
+	tells_places();
 	counts_things();
 	counts_in_order();
 	tells_members();
