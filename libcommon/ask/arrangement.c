@@ -1,5 +1,6 @@
 #include "ask/arrangement.h"
 
+#include "ask/object_span.h"
 #include "ask/resting.h"
 #include "base/mem.h"
 #include "geom/up.h"
@@ -11,7 +12,7 @@
 #include <string.h>
 
 enum { POINTS = 2048 }; /* of an object, at most about so many */
-static const double trimmed = 0.1, longer = 0.1, most_weight = 4;
+static const double most_weight = 4;
 static const double alike_colour = 8, alike_spread = 4, alike_size = 0.15;
 static const double no_direction = 0.1;		   /* of the spacing */
 static const double degree0 = 0.28209479177387814; /* the spherical harmonic of degree 0 */
@@ -259,11 +260,10 @@ static void take_box(struct arrangement *a, size_t o, double axes[3][3])
 			const struct arranged_point *p = &a->points[a->begin[o] + i];
 			a->along[i] = (struct quantile_item){dot(axes[k], p->at), p->weight};
 		}
-		const double low = quantile_weighted(a->along, n, trimmed);
-		const double high = quantile_weighted(a->along, n, 1 - trimmed);
-		to->low[k] = low - longer * (high - low);
-		to->high[k] = high + longer * (high - low);
-		to->centre[k] = (low + high) / 2;
+		const struct object_span span = object_span(a->along, n, k == 2);
+		to->low[k] = span.low;
+		to->high[k] = span.high;
+		to->centre[k] = span.middle;
 	}
 	to->side = to->centre[0];
 	to->in_sight = to->is_there;

@@ -16,9 +16,8 @@ struct arranged {
 	int in_sight; /* 0: the viewpoint is a picture, and the centre is outside of it */
 	/* Axes: 0 to the right, 1 away from the viewer, 2 up; scene units, the origin at the middle of the
 	 * objects. */
-	double low[3],
-		high[3];  /* box: the middle 80% of its weight along each axis, a tenth longer each way */
-	double centre[3]; /* of the box */
+	double low[3], high[3]; /* box: ask/object_span.h along each axis */
+	double centre[3];	/* of the box */
 	double raised; /* how far it stands higher than most, on something that has no name (ask/resting.h) */
 	double side;   /* how far right it looks: centre[0], or, in a picture, in perspective */
 	double lab[3]; /* mean colour, CIE L*a*b* (D65) */

@@ -51,7 +51,8 @@ void meaning_keep_group(struct meaning *m, int phrase)
 	const size_t n = objects_of(m);
 	double *fit = fit_of(m, phrase), *left = m->scratch, limit = 0;
 
-	if (group < 2 || (size_t)group >= n)
+	/* where names hardly tell, it is in doubt which things are the cups */
+	if (group < 2 || (size_t)group >= n || m->naming != 1)
 		return;
 	memcpy(left, fit, n * sizeof *fit);
 	for (int k = 0; k < group; k++) {

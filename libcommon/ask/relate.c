@@ -131,11 +131,19 @@ static double pair(const struct arrangement *a, enum parse_relation relation, en
 	}
 }
 
+/* How far a thing is from who looks: some mean the way to it, others how far back it is. */
+static double away_from_viewer(const struct arrangement *a, const struct arranged *o)
+{
+	const double right = o->centre[0] - a->viewer.centre[0], away = o->centre[1] - a->viewer.centre[1];
+
+	return (hypot(right, away) + away) / 2;
+}
+
 /* The end that a relation counts from has the smallest key. */
 static double key_of(const struct arrangement *a, enum parse_relation relation, const struct arranged *o)
 {
 	const double wide = o->high[0] - o->low[0], deep = o->high[1] - o->low[1];
-	const double eye = hypot(o->centre[0] - a->viewer.centre[0], o->centre[1] - a->viewer.centre[1]);
+	const double eye = away_from_viewer(a, o);
 
 	switch (relation) {
 	case PARSE_LEFT:
@@ -383,7 +391,9 @@ static void compare(const struct arrangement *a, const struct relation *r, size_
 	if (is_distance || i == a->n) {
 		for (size_t o = 0; o < a->n; o++)
 			key[o] = (r->kind == PARSE_FAR || r->kind == PARSE_BEHIND ? -1 : 1) *
-				 level_distance(&a->objects[o], q) / a->spacing;
+				 (i == a->n ? away_from_viewer(a, &a->objects[o])
+					    : level_distance(&a->objects[o], q)) /
+				 a->spacing;
 		rank(a, key, fit, r->place, BEST_SOFT, i, out);
 		return;
 	}
