@@ -78,6 +78,9 @@ int parse_settle(struct parse *p, struct err *e);
 /* A part of parse_settle: "the tray and what is on it" are two. Likewise. */
 int parse_carried(struct parse *p, struct err *e);
 
+/* A part of parse_settle: the jar on one side and the tin on the other. Likewise. */
+int parse_between(struct parse *p, struct err *e);
+
 /* A part of parse_settle: "two boxes, the red one and the one by the door". Likewise. */
 int parse_members(struct parse *p, struct err *e);
 

@@ -249,8 +249,8 @@ int parse_settle(struct parse *p, struct err *e)
 	for (int k = 0; k < f->clauses.n; k++)
 		settle_comparison(p, f, &p->clauses[f->clauses.item[k]]);
 	settle_superlative(p, f);
-	return settle_it(p, e) || settle_except(p, e) || settle_than(p, f, e) || settle_view(p, f, e) ||
-			       parse_members(p, e) || parse_carried(p, e)
+	return parse_between(p, e) || settle_it(p, e) || settle_except(p, e) || settle_than(p, f, e) ||
+			       settle_view(p, f, e) || parse_members(p, e) || parse_carried(p, e)
 		       ? -1
 		       : 0;
 }

@@ -120,8 +120,30 @@ static void tells_places(void)
 	tells("a sled and a jug and the bell between them", ". A8 . . A8 . . T P .", PARSE_BETWEEN, 0);
 }
 
+/* The target is between two things, and is all that is meant. */
+static void is_between(const char *text, const char *roles)
+{
+	struct parse p = built(text, roles, PARSE_BETWEEN);
+	const struct parse_phrase *f = &p.phrases[0];
+
+	CHECK(!f->also.n && f->clauses.n == 1 && p.clauses[f->clauses.item[0]].anchors.n == 2,
+		"'%s': %d more, %d clauses", text, f->also.n, f->clauses.n);
+	parse_free(&p);
+}
+
+static void settles_between(void)
+{
+	const char *sides = "mug with a jar one side, a tin other";
+
+	is_between(sides, "T . . A5 . P . L .");
+	is_between(sides, "T . . A5 . P . A8 P");
+	is_between(sides, "T . . A5 . P . A5 .");
+	tells("the mug between the jars and the tin", ". T P . A2 . . L", PARSE_BETWEEN, 1);
+}
+
 int main(void)
 {
+	settles_between();
 	tells_places();
 	counts_things();
 	counts_in_order();
