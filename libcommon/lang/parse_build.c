@@ -219,6 +219,18 @@ static int is_nothing(const struct tokens *t, int i)
 	return tokens_is(t, i, "nothing") || tokens_is(t, i, "nobody") || tokens_is(t, i, "none");
 }
 
+/* Whether a predicate says what a thing does or is for. */
+static int says_use(const struct build *b, int i)
+{
+	return b->a->word[i].role == ROLE_PREDICATE && b->a->word[i].relation == PARSE_OTHER;
+}
+
+/* Whether word j goes on with what a predicate before it says: "put on the road to warn drivers". */
+static int tells_on(const struct build *b, int j)
+{
+	return !b->t->word[j].before && b->a->word[j].role == ROLE_NONE;
+}
+
 /* The clause of predicate i with the anchors `from` to `end` of those that it has; all where end is -1. */
 static int add_clause(struct build *b, int i, int from, int end)
 {
@@ -235,6 +247,9 @@ static int add_clause(struct build *b, int i, int from, int end)
 	p->clause_count++;
 	if (parse_list_add(&c->words, i, b->e) || parse_list_add(&p->phrases[figure].clauses, at, b->e))
 		return -1;
+	for (int j = i + 1; says_use(b, i) && j < b->t->n && tells_on(b, j); j++)
+		if (b->t->word[j].closed < 0 && parse_list_add(&c->words, j, b->e))
+			return -1;
 	for (int j = 0; j < b->t->n; j++) {
 		if (b->a->word[j].role != ROLE_ANCHOR || b->a->word[j].head != i)
 			continue;
@@ -280,6 +295,14 @@ static int add_clauses(struct build *b)
 	return 0;
 }
 
+/* Whether a word is one of a predicate's. */
+static int is_told_on(const struct build *b, int j)
+{
+	while (j > 0 && tells_on(b, j))
+		j--;
+	return says_use(b, j);
+}
+
 static int add_others(struct build *b)
 {
 	struct parse *p = b->p;
@@ -295,7 +318,8 @@ static int add_others(struct build *b)
 			int owner = build_phrase_under(b, b->a->word[i].head);
 			bad = parse_list_add(
 				&p->phrases[owner < 0 ? 0 : owner].except, b->phrase_of[i], b->e);
-		} else if (r == ROLE_NONE && b->t->word[i].closed < 0 && !says_nothing(b->t, i)) {
+		} else if (r == ROLE_NONE && b->t->word[i].closed < 0 && !says_nothing(b->t, i) &&
+			   !is_told_on(b, i)) {
 			bad = parse_list_add(&p->unexplained, i, b->e);
 		}
 		if (bad)

@@ -141,8 +141,20 @@ static void settles_between(void)
 	tells("the mug between the jars and the tin", ". T P . A2 . . L", PARSE_BETWEEN, 1);
 }
 
+/* What a thing is for is all that is said of it. */
+static void tells_use(void)
+{
+	struct parse p =
+		built("a cone to put on the road to warn drivers, quick", ". T . P . . . . . . .", PARSE_OTHER);
+
+	CHECK(p.clause_count == 1 && p.clauses[0].words.n == 4 && p.unexplained.n == 1,
+		"%d words, %d unexplained", p.clauses[0].words.n, p.unexplained.n);
+	parse_free(&p);
+}
+
 int main(void)
 {
+	tells_use();
 	settles_between();
 	tells_places();
 	counts_things();
