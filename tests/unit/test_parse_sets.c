@@ -144,8 +144,8 @@ static void settles_between(void)
 /* What a thing is for is all that is said of it. */
 static void tells_use(void)
 {
-	struct parse p =
-		built("a cone to put on the road to warn drivers, quick", ". T . P . . . . . . .", PARSE_OTHER);
+	struct parse p = built(
+		"a cone to put on the road to warn drivers, quick", ". T . P . . . . . . .", PARSE_OTHER);
 
 	CHECK(p.clause_count == 1 && p.clauses[0].words.n == 4 && p.unexplained.n == 1,
 		"%d words, %d unexplained", p.clauses[0].words.n, p.unexplained.n);
