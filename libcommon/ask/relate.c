@@ -320,6 +320,16 @@ static void sized(const struct arrangement *a, enum parse_relation relation, con
 
 /* Where nothing is named: "the left one", "on the left" is the leftmost of those that fit or on the left
  * side. */
+/* How far anything else fits as well as object o, or the best. */
+static double rivalry(const struct arrangement *a, const double *fit, size_t o)
+{
+	double most = 0;
+
+	for (size_t k = 0; k < a->n; k++)
+		most = k != o && a->objects[k].is_there ? fmax(most, fit[k]) : most;
+	return fmin(1, most / fmax(fit[o], 1e-12));
+}
+
 static void by_itself(
 	const struct arrangement *a, const struct relation *r, const double *fit, double *key, double *out)
 {
@@ -342,7 +352,10 @@ static void by_itself(
 	const int is_ordered = r->kind <= PARSE_BELOW || r->kind == PARSE_NEAR || r->kind == PARSE_FAR;
 	for (size_t o = 0; o < a->n; o++) {
 		const double side = alone(a, r->kind, fit, o);
-		out[o] = is_ordered && r->width != RELATE_HALF_PLANE ? 0.4 * out[o] + 0.6 * side : side;
+		/* of what nothing else is like, the side alone tells */
+		const double rank =
+			is_ordered && r->width != RELATE_HALF_PLANE ? 0.4 * rivalry(a, fit, o) : 0;
+		out[o] = rank * out[o] + (1 - rank) * side;
 	}
 }
 

@@ -499,6 +499,17 @@ static int best_of_roles(const char *text, const char *roles, enum parse_relatio
 	return best;
 }
 
+/* The left one of two is one, wherever it is; of what is there but once the side has to be so. */
+static void sides(void)
+{
+	CHECK(ask("the mug on the left", CHOOSE_ALL) == 0 && choice.there > 0.7, "a left mug: %g",
+		choice.there);
+	ask("the crate at the front", CHOOSE_ALL);
+	CHECK(choice.there < 0.5, "the crate is at the back: %g", choice.there);
+	CHECK(ask("the crate at the back", CHOOSE_ALL) == 2 && choice.there > 0.7, "the back: %g",
+		choice.there);
+}
+
 /* One of those that are named, whatever else fits. */
 static void members(void)
 {
@@ -518,6 +529,7 @@ int main(void)
 {
 	make_scene();
 	members();
+	sides();
 	twins();
 	spare();
 	parts();
