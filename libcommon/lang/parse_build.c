@@ -290,7 +290,8 @@ static int add_clauses(struct build *b)
 	if (!b->p->clauses)
 		return -1;
 	for (int i = 0; i < b->t->n; i++)
-		if (b->a->word[i].role == ROLE_PREDICATE && i != b->from && add_predicate(b, i))
+		if (b->a->word[i].role == ROLE_PREDICATE && i != b->from && !build_is_way(b->t, i) &&
+			add_predicate(b, i))
 			return -1;
 	return 0;
 }

@@ -1,32 +1,23 @@
 /* "The second from the left": which of those that fit, told from the closed-class words around. */
 #include "lang/parse_private.h"
 
-static enum parse_relation end_of(const struct tokens *t, int i)
-{
-	enum parse_relation r = PARSE_OTHER;
-
-	if (tokens_class(t, i) == CLOSED_PLACE)
-		r = (enum parse_relation)closed_words[t->word[i].closed].relation;
-	return r <= PARSE_BELOW ? r : PARSE_OTHER;
-}
-
 /* "from the left", "from left", "left to right", "start at the left-hand end". */
 static enum parse_relation counted_from(struct build *b)
 {
 	const struct tokens *t = b->t;
 
 	for (int i = 0; i < t->n; i++) {
-		if (end_of(t, i) != PARSE_OTHER && tokens_is(t, i + 1, "to") &&
-			end_of(t, i + 2) != PARSE_OTHER)
-			return end_of(t, i);
+		if (build_end(t, i) != PARSE_OTHER && tokens_is(t, i + 1, "to") &&
+			build_end(t, i + 2) != PARSE_OTHER)
+			return build_end(t, i);
 		if (!tokens_is(t, i, "from") && !tokens_is(t, i, "at"))
 			continue;
 		int j = i + 1;
 		while (tokens_is(t, j, "the") || tokens_is(t, j, "very") || tokens_is(t, j, "far"))
 			j++;
-		if (end_of(t, j) != PARSE_OTHER && !tokens_is(t, j + 1, "of")) {
+		if (build_end(t, j) != PARSE_OTHER && !tokens_is(t, j + 1, "of")) {
 			b->from = b->a->word[j].role == ROLE_PREDICATE ? j : b->from;
-			return end_of(t, j);
+			return build_end(t, j);
 		}
 	}
 	return PARSE_OTHER;

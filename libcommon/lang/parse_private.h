@@ -46,6 +46,25 @@ static inline int build_phrase_under(const struct build *b, int head)
 	return head == ROOT ? 0 : b->phrase_of[head];
 }
 
+/* The end that a word names: "left", "back"; PARSE_OTHER: none. */
+static inline enum parse_relation build_end(const struct tokens *t, int i)
+{
+	enum parse_relation r = PARSE_OTHER;
+
+	if (tokens_class(t, i) == CLOSED_PLACE)
+		r = (enum parse_relation)closed_words[t->word[i].closed].relation;
+	return r <= PARSE_BELOW ? r : PARSE_OTHER;
+}
+
+/* Whether a word tells which way one goes, and no place: either of "left to right". */
+static inline int build_is_way(const struct tokens *t, int i)
+{
+	const int first = tokens_is(t, i + 1, "to") ? i : i - 2;
+
+	return tokens_is(t, first + 1, "to") && build_end(t, first) != PARSE_OTHER &&
+	       build_end(t, first + 2) != PARSE_OTHER;
+}
+
 /* How many things each phrase means, and of how many. */
 void parse_counts(struct build *b);
 

@@ -78,6 +78,19 @@ static void counts_in_order(void)
 	ordinal("the second nearest lamp", ". . P T", 2, PARSE_OTHER);
 }
 
+/* "Left to right" is a way and no place. */
+static void tells_way(void)
+{
+	struct parse p = built("going left to right the second mug", ". P . P . . T", PARSE_RIGHT);
+
+	CHECK(!p.clause_count && p.phrases[0].ordinal == 2 && p.phrases[0].from == PARSE_LEFT,
+		"%d clauses, number %d", p.clause_count, p.phrases[0].ordinal);
+	parse_free(&p);
+	p = built("the mug to the left", ". T . . P", PARSE_LEFT);
+	CHECK(p.clause_count == 1, "%d clauses", p.clause_count);
+	parse_free(&p);
+}
+
 /* "Two boxes, a red one and a blue one" are a red box and a blue box. */
 static void tells_members(void)
 {
@@ -159,6 +172,7 @@ int main(void)
 	tells_places();
 	counts_things();
 	counts_in_order();
+	tells_way();
 	tells_members();
 	return unit_end();
 }
