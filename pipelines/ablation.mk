@@ -185,12 +185,13 @@ $(1)/masks/first.jsonl: $(1)/weights/complete
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/first,pseudomask-select --method first --scene $(1)/scene --weights $(1)/weights -o $$@ \
 		$(1)/data/candidates.jsonl)
-$(1)/masks/scene.jsonl: $(1)/weights/complete
+$(1)/masks/scene.jsonl $(1)/masks/spare &: $(1)/weights/complete
 	@mkdir -p $$(@D)
-	$$(call log,$(1)/log/select3d,pseudomask-select --scene $(1)/scene --weights $(1)/weights --spare $(1)/masks/spare -o $$@ \
-		$(1)/data/candidates.jsonl)
+	$$(call log,$(1)/log/select3d,pseudomask-select --scene $(1)/scene --weights $(1)/weights --spare $(1)/masks/spare \
+		-o $(1)/masks/scene.jsonl $(1)/data/candidates.jsonl)
 $(1)/lifted/voted.safetensors: $(1)/masks/ciou.jsonl
 $(1)/lifted/plain.safetensors $(1)/lifted/full.safetensors: $(1)/masks/scene.jsonl
+$(1)/lifted/full.safetensors: $(1)/masks/spare
 $(1)/lifted/%.safetensors: $(1)/weights/complete $(1)/text/contextual.safetensors
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/lift.$$*,refer-lift --scene $(1)/scene --weights $(1)/weights --text $(1)/text/contextual.safetensors \

@@ -31,6 +31,12 @@ static void add_part(struct parse_words *w, const struct explained *x, const str
 	case MEANING_EXCEPT:
 		parse_words_phrase(w, p, text, part->index);
 		break;
+	case MEANING_AMONG:
+		for (int k = 0; k < p->phrases[part->phrase].among.n; k++) {
+			parse_words_add(w, k ? " or " : "");
+			parse_words_phrase(w, p, text, p->phrases[part->phrase].among.item[k]);
+		}
+		break;
 	default:
 		break;
 	}

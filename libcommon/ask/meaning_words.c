@@ -110,12 +110,10 @@ enum coloured { OF_THING, OF_PART_PERHAPS, OF_PART };
 static enum coloured coloured_by(const struct parse *p, const struct parse_phrase *f, int word)
 {
 	static const char *const with[] = {"with", "w", "having", NULL};
-	static const char *const at[] = {"at", "on", "round", "around", "near", NULL};
-	static const char *const ends[] = {"top", "bottom", "base", "tip", "rim", NULL};
 	enum coloured of = OF_THING;
 
-	if (parse_word_is(p, word + 1, at) &&
-		(parse_word_is(p, word + 2, ends) || parse_word_is(p, word + 3, ends)))
+	if (parse_word_is(p, word + 1, closed_at_end) &&
+		(parse_word_is(p, word + 2, closed_ends) || parse_word_is(p, word + 3, closed_ends)))
 		return OF_PART; /* "green at the bottom" */
 	for (int i = word - 1; i >= 0; i--) {
 		if (parse_list_has(&f->attributes, i)) {

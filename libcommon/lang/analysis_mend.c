@@ -104,11 +104,9 @@ static void mend_empty(struct analysis *a, const struct tokens *t)
 /* Of an end of a thing ("the bottom" in "pale green at the bottom") the word before that place; else -1. */
 static int look_of_end(const struct tokens *t, int i)
 {
-	static const char *const ends[] = {"top", "bottom", "base", "tip", "rim", NULL};
-	static const char *const at[] = {"at", "on", "round", "around", "near", NULL};
 	const int before = tokens_is(t, i - 1, "the") ? i - 2 : i - 1;
 
-	if (!tokens_is_any(t, i, ends) || before < 1 || !tokens_is_any(t, before, at))
+	if (!tokens_is_any(t, i, closed_ends) || before < 1 || !tokens_is_any(t, before, closed_at_end))
 		return -1;
 	for (int j = before; j <= i; j++)
 		if (t->word[j].before)

@@ -518,6 +518,9 @@ const struct closed_word closed_words[] = {
 	{"flatter", CLOSED_SIZE, PARSE_SHORTER, 1},
 	{"flattest", CLOSED_SIZE, PARSE_SHORTER, 2},
 };
+const char *const closed_ends[] = {"top", "bottom", "base", "tip", "rim", NULL};
+const char *const closed_at_end[] = {"at", "on", "round", "around", "near", NULL};
+
 const int closed_count = sizeof closed_words / sizeof *closed_words;
 
 int closed_find(const char *text)

@@ -75,7 +75,7 @@ struct parse_phrase {
 	int count;		  /* PARSE_ONE, PARSE_ALL, PARSE_SEVERAL or a number */
 	int group;   /* "the left one of the two cups": 2; "which of the cups": PARSE_SEVERAL; 0: no
 			group is spoken of */
-	int ordinal; /* 2 for "second", -1 for "last"; 0: none */
+	int ordinal; /* 2 for "second", -1 for "last", -2 for "last but one"; 0: none */
 	enum parse_relation from; /* of an ordinal: the end it counts from ("from the left": PARSE_LEFT;
 				     PARSE_OTHER: not said) */
 	int viewer;		  /* 1: who looks or the camera: "us", "me", "the camera" */

@@ -7,8 +7,7 @@ static enum parse_relation counted_from(struct build *b)
 	const struct tokens *t = b->t;
 
 	for (int i = 0; i < t->n; i++) {
-		if (build_end(t, i) != PARSE_OTHER && tokens_is(t, i + 1, "to") &&
-			build_end(t, i + 2) != PARSE_OTHER)
+		if (build_is_way(t, i))
 			return build_end(t, i);
 		if (!tokens_is(t, i, "from") && !tokens_is(t, i, "at"))
 			continue;

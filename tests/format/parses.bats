@@ -51,6 +51,16 @@ refuses() {
 		'{"ref":"b","target":{},"ordinal":{"k":1,"from":"top"}}'
 }
 
+@test "what a thing is one of is written, and read" {
+	echo 'Of the wug/M, the dax/M2 and the fep/M3 on/P1:on@M3 the gorp/A1, bring the tallest/P2:taller one/T.' >marks
+	"$BIN/parse-train" --marked marks --sentences -o sentences
+	"$BIN/text-encode" -q --model "$BATS_TEST_DIRNAME/../golden/bert" -o text sentences
+	"$BIN/parse-train" --marked marks --marked-text text --parses -o x
+	[ "$(jq -c '[.group] + [.among[].noun]' x)" = '[3,"wug","dax","fep"]' ]
+	says 0 'x: ok: parses, 1 parses, 2 clauses' "$BIN/gs-check" x
+	refuses "2: key 'among' is not a list of phrases" '{"ref":"b","target":{},"among":["x"]}'
+}
+
 @test "clauses" {
 	local deep='{"noun":"x"}'
 	refuses "2: key 'clauses' is not a list of objects" '{"ref":"b","target":{},"clauses":{}}'

@@ -54,4 +54,17 @@ static inline void mends(const char *text, const char *roles, enum parse_relatio
 		parse_relation_name(a.word[word].relation));
 }
 
+/* The parse that is built of it. */
+static inline struct parse built(const char *text, const char *roles, enum parse_relation relation)
+{
+	struct tokens t;
+	struct parse p;
+	struct err e;
+
+	tokens_take(&t, text, NULL, NULL, 0);
+	const struct analysis a = made(&t, roles, relation);
+	CHECK(!parse_build(&p, &a, &t, &e), "'%s'", text);
+	return p;
+}
+
 #endif

@@ -487,13 +487,7 @@ static void places_are_no_parts(void)
 /* The best of a sentence whose words are so. */
 static int best_of_roles(const char *text, const char *roles, enum parse_relation relation)
 {
-	struct tokens t;
-	struct parse p;
-	struct err e;
-
-	tokens_take(&t, text, text, NULL, 0);
-	const struct analysis a = made(&t, roles, relation);
-	CHECK(!parse_build(&p, &a, &t, &e), "'%s'", text);
+	struct parse p = built(text, roles, relation);
 	const int best = ask_parsed(text, CHOOSE_ALL, (struct viewpoint){.kind = VIEWPOINT_USUAL}, &p);
 	parse_free(&p);
 	return best;

@@ -5,18 +5,6 @@
 
 #include <string.h>
 
-static struct parse built(const char *text, const char *roles, enum parse_relation relation)
-{
-	struct tokens t;
-	struct parse p;
-	struct err e;
-
-	tokens_take(&t, text, NULL, NULL, 0);
-	const struct analysis a = made(&t, roles, relation);
-	CHECK(!parse_build(&p, &a, &t, &e), "'%s'", text);
-	return p;
-}
-
 static void counts(const char *text, const char *roles, int count, int group)
 {
 	struct parse p = built(text, roles, PARSE_SMALLER);
