@@ -116,14 +116,14 @@ ask.lift-sizes = --without relations,except
 lift.lift-colours = plain
 ask.lift-colours = --without relations,except,sizes
 lift.lift-alike = plain
-ask.lift-alike = --without relations,except,sizes,colours
+ask.lift-alike = --without relations,except,sizes,colours,surfaces
 lift.lift-names = plain
-ask.lift-names = --without relations,except,sizes,colours,alike
+ask.lift-names = --without relations,except,sizes,colours,surfaces,alike
 lift.lift-words = plain
-ask.lift-words = --without relations,except,sizes,colours,alike,names
+ask.lift-words = --without relations,except,sizes,colours,surfaces,alike,names
 lift.lift-sentence = plain
-ask.lift-sentence = --without relations,except,sizes,colours,alike,names,words,knowledge,wording,purpose
-parts := words names knowledge alike colours sizes relations except sentence wording purpose
+ask.lift-sentence = --without relations,except,sizes,colours,surfaces,alike,names,words,knowledge,wording,purpose
+parts := words names knowledge alike colours surfaces sizes relations except sentence wording purpose
 $(foreach p,$(parts),$(eval lift.lift-but-$(p) = full)$(eval ask.lift-but-$(p) = --without $(p)))
 encoders := $(foreach b,$(BERTS),$(firstword $(subst =, ,$(b))))
 $(foreach b,$(BERTS),$(eval dir.$(firstword $(subst =, ,$(b))) := $(lastword $(subst =, ,$(b)))))

@@ -195,11 +195,23 @@ static int find_own(struct extent *x, const struct lifted *l, size_t object, con
 	return bad ? -1 : 0;
 }
 
-/* Mean colour, and what it is called, of every `step`th Gaussian. */
-static void take_colours(struct arranged *o, const struct splats *s, const struct extent *own, size_t step,
-	const double *weight)
+/* How far a colour depends on where it is seen from: the sum of the squares of the first degree. */
+static double view_dependence(const struct splats *s, const float *sh)
+{
+	double sum = 0;
+
+	for (int k = 3; k < 12 && s->sh_coefficients >= 4; k++)
+		sum += (double)sh[k] * sh[k];
+	return isfinite(sum) ? sum : 0;
+}
+
+/* Mean colour, what it is called, and the surface, of every `step`th Gaussian. points (own->n / step + 1) is
+ * scratch. */
+static int take_looks(struct arranged *o, const struct splats *s, const struct extent *own, size_t step,
+	const double *weight, const double up[3], struct surface_point *points, struct err *e)
 {
 	double total = 0;
+	size_t n = 0;
 
 	for (size_t i = 0; i < own->n; i += step)
 		total += weight[i];
@@ -214,9 +226,15 @@ static void take_colours(struct arranged *o, const struct splats *s, const struc
 			o->spread[k] += weight[i] / total * lab[k] * lab[k];
 		}
 		colour_call(lab, weight[i] / total, o->colours);
+		const float *mean = s->means + 3 * (size_t)own->ids[i];
+		points[n++] = (struct surface_point){
+			{mean[0], mean[1], mean[2]}, {lab[0], lab[1], lab[2]}, weight[i]};
+		o->surface.view_dependence += weight[i] / total * view_dependence(s, sh) / 9;
 	}
 	for (size_t k = 0; k < 3; k++)
 		o->spread[k] = sqrt(fmax(o->spread[k] - o->lab[k] * o->lab[k], 0));
+	o->surface.view_dependence = sqrt(o->surface.view_dependence);
+	return surface_find(&o->surface, points, n, up, e);
 }
 
 /* The points of object o, after those before it. */
@@ -230,14 +248,15 @@ static int take_points(struct arrangement *a, size_t o, const struct lifted *l, 
 	const size_t step = 1 + own.n / POINTS;
 	double *weight = mem_alloc(own.n, sizeof *weight, "objects", e);
 	double *sorted = mem_alloc(own.n, sizeof *sorted, "objects", e);
-	const int bad = !weight || !sorted;
+	struct surface_point *points = mem_alloc(POINTS + 1, sizeof *points, "objects", e);
+	int bad = !weight || !sorted || !points;
 	a->begin[o + 1] = a->begin[o];
 	a->objects[o].is_there = own.n > 0;
 	if (!bad && own.n) {
 		for (size_t i = 0; i < own.n; i++)
 			weight[i] = size_of(s, (size_t)own.ids[i]);
 		level_weights(weight, sorted, own.n);
-		take_colours(&a->objects[o], s, &own, step, weight);
+		bad = take_looks(&a->objects[o], s, &own, step, weight, up, points, e);
 		for (size_t i = 0; i < own.n; i += step) {
 			const float *mean = s->means + 3 * (size_t)own.ids[i];
 			a->points[a->begin[o + 1]++] =
@@ -246,8 +265,23 @@ static int take_points(struct arrangement *a, size_t o, const struct lifted *l, 
 	}
 	free(weight);
 	free(sorted);
+	free(points);
 	extent_free(&own);
 	return bad ? -1 : 0;
+}
+
+/* How objects shine beside one another. */
+static void compare_gloss(struct arrangement *a)
+{
+	double low = INFINITY, high = 0;
+
+	for (size_t o = 0; o < a->n; o++) {
+		const double x = a->objects[o].surface.view_dependence;
+		low = x > 0 ? fmin(low, x) : low;
+		high = fmax(high, x);
+	}
+	for (size_t o = 0; o < a->n; o++)
+		surface_set_gloss(&a->objects[o].surface, low, high);
 }
 
 static void take_box(struct arrangement *a, size_t o, double axes[3][3])
@@ -368,6 +402,8 @@ int arrangement_make(struct arrangement *a, const struct lifted *l, const struct
 	cameras_up(cameras, up);
 	for (size_t o = 0; o < a->n && !bad; o++)
 		bad = take_points(a, o, l, splats, up, e);
+	if (!bad)
+		compare_gloss(a);
 	if (bad)
 		arrangement_free(a);
 	else

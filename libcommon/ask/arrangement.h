@@ -3,6 +3,7 @@
 #ifndef ASK_ARRANGEMENT_H
 #define ASK_ARRANGEMENT_H
 
+#include "ask/object_surface.h"
 #include "ask/viewpoint.h"
 #include "base/err.h"
 #include "base/quantile.h"
@@ -23,6 +24,7 @@ struct arranged {
 	double lab[3]; /* mean colour, CIE L*a*b* (D65) */
 	double spread[3]; /* standard deviation of the colour: of stripes, or of light and shade */
 	double colours[COLOUR_WORDS]; /* part of it that people would call so (lang/colours.h) */
+	struct surface surface;
 };
 
 /* A Gaussian of an object: where it is in the scene, and how much it counts. */

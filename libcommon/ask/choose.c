@@ -13,7 +13,7 @@
 int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
 {
 	static const char *const names[CHOOSE_PARTS] = {"words", "names", "knowledge", "alike", "colours",
-		"sizes", "relations", "except", "sentence", "wording", "purpose"};
+		"surfaces", "sizes", "relations", "except", "sentence", "wording", "purpose"};
 
 	*parts = CHOOSE_ALL;
 	while (list_next(&list, unknown)) {
@@ -401,6 +401,7 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	c->meaning = (struct meaning){.arrangement = &c->arrangement,
 		.vocabulary = &c->vocabulary,
 		.looks = has(c, CHOOSE_ALIKE) ? c->looks : NULL,
+		.has_surfaces = has(c, CHOOSE_SURFACES),
 		.naming = s->naming};
 	if (!has(c, CHOOSE_WORDS))
 		c->meaning.without |= 1U << MEANING_NOUN | 1U << MEANING_ATTRIBUTE;

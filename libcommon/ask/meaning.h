@@ -16,6 +16,7 @@ enum meaning_kind {
 	MEANING_NOUN,
 	MEANING_ATTRIBUTE,
 	MEANING_COLOUR,
+	MEANING_SURFACE, /* what is seen of an attribute, where words hardly count (naming) */
 	MEANING_CLAUSE,
 	MEANING_SIZE, /* a clause too: "large" */
 	MEANING_EXCEPT,
@@ -37,6 +38,7 @@ struct meaning {
 	struct vocabulary *vocabulary;
 	unsigned without;    /* a bit 1 << meaning_kind for each kind of part that counts for nothing */
 	const double *looks; /* (O,O): how far two objects share what is said of them; NULL: not at all */
+	int has_surfaces;    /* whether what Gaussians show of a look counts */
 	double naming;	     /* the power of nouns and attributes that are no colours; 1 */
 
 	/* Of the sentence that was judged last. */

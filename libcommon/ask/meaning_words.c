@@ -4,6 +4,7 @@
 #include "ask/meaning_private.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
+#include "lang/finish.h"
 #include "lang/purpose.h"
 #include "lang/tokens.h"
 
@@ -330,6 +331,38 @@ static int is_shade(const struct parse *p, int word)
 	       colour_word(p->words[word + 1].lemma) >= 0;
 }
 
+/* The look that a word is of, where what Gaussians show of it counts; -1: none. */
+static int look_of(const struct meaning *m, int word)
+{
+	return m->has_surfaces ? finish_of(m->sentence->parse->words[word].lemma) : -1;
+}
+
+/* What the Gaussians show of a look, where sentences do not say it. */
+static void add_seen(const struct meaning *m, int word, double *match)
+{
+	const int finish = look_of(m, word);
+
+	for (size_t o = 0; o < objects_of(m) && finish >= 0 && m->naming == 1; o++) {
+		const double seen = surface_fits(&m->arrangement->objects[o].surface, finish);
+		if (fabs(match[o]) < 1)
+			match[o] = fmax(-1, fmin(1, match[o] + SURFACE_WORTH * seen));
+	}
+}
+
+/* The same as a part of its own, where it is in doubt whose Gaussians they are. */
+static void judge_surface(struct meaning *m, int phrase, int word)
+{
+	const int finish = look_of(m, word);
+
+	if (finish < 0 || m->naming == 1)
+		return;
+	double *value = meaning_add_part(m, phrase, MEANING_SURFACE, word);
+	for (size_t o = 0; o < objects_of(m); o++)
+		value[o] = pow(SURFACE_UNLIKE,
+			0.5 - 0.5 * surface_fits(&m->arrangement->objects[o].surface, finish));
+	meaning_take_part(m, &m->parts[m->part_count - 1]);
+}
+
 void meaning_judge_attribute(struct meaning *m, int phrase, int word, double least)
 {
 	const size_t n = objects_of(m);
@@ -340,16 +373,20 @@ void meaning_judge_attribute(struct meaning *m, int phrase, int word, double lea
 		judge_colour(m, phrase, word);
 		return;
 	}
-	double *value = meaning_add_part(m, phrase, MEANING_ATTRIBUTE, word);
+	double *value = meaning_add_part(m, phrase, MEANING_ATTRIBUTE, word), *there = there_of(m, phrase);
 	vocabulary_attribute(m->vocabulary, m->sentence, word, value);
 	share_looks(m, value);
-	const double most = fmax(0, largest(value, n));
+	add_seen(m, word, value);
+	const double most = fmax(0, largest(value, n)), gone = look_of(m, word) < 0 ? 0 : LOOK_THERE;
 	m->unknown += most < 0.5;
-	for (size_t o = 0; o < n; o++)
+	for (size_t o = 0; o < n; o++) {
+		there[o] *= 1 + gone * fmin(0, value[o]);
 		value[o] = (value[o] < 0 ? least * (1 + (1 - OPPOSITE) * value[o])
 					 : least + (1 - least) * value[o]) /
 			   (least + (1 - least) * most);
+	}
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
+	judge_surface(m, phrase, word);
 }
 
 /* A part that is, or fits, no object, but that training sentences may tell of: "with a handle", "on the
@@ -422,6 +459,7 @@ double meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, 
 		if (!judge_part(m, c, k - c->words.n, match) &&
 			!vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match)) {
 			vocabulary_attribute(m->vocabulary, m->sentence, word, match);
+			add_seen(m, word, match);
 			vocabulary_use(m->vocabulary, m->sentence, word, use);
 		}
 		for (size_t o = 0; o < n; o++)

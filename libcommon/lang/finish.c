@@ -2,15 +2,13 @@
 
 #include <string.h>
 
-enum { STRIPES, SPOTS, PLAIN, SHINY, DULL, FINISHES };
-
 static const char *const words[FINISHES] = {
-	[STRIPES] = " striped stripy stripey stripe banded band ringed ring hooped hoop barred lined ",
-	[SPOTS] =
+	[FINISH_STRIPES] = " striped stripy stripey stripe banded band ringed ring hooped hoop barred lined ",
+	[FINISH_SPOTS] =
 		" spotted spotty spot dotted dotty dot speckled speckle flecked mottled freckled blotchy blotch ",
-	[PLAIN] = " plain solid unpatterned uniform unicoloured monochrome ",
-	[SHINY] = " shiny glossy polished gleaming glittering lustrous sparkling ",
-	[DULL] = " dull matt matte unpolished lustreless ",
+	[FINISH_PLAIN] = " plain solid unpatterned uniform unicoloured monochrome ",
+	[FINISH_SHINY] = " shiny glossy polished gleaming glittering lustrous sparkling ",
+	[FINISH_DULL] = " dull matt matte unpolished lustreless ",
 };
 
 int finish_of(const char *lemma)
@@ -28,5 +26,5 @@ int finish_fits(int a, int b)
 {
 	if (a < 0 || b < 0)
 		return 0;
-	return a == b ? 1 : (a < SHINY) == (b < SHINY) ? -1 : 0;
+	return a == b ? 1 : (a < FINISH_SHINY) == (b < FINISH_SHINY) ? -1 : 0;
 }

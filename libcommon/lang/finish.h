@@ -3,7 +3,9 @@
 #ifndef LANG_FINISH_H
 #define LANG_FINISH_H
 
-/* The look that a lemma is a word of, for finish_fits; -1: none. */
+enum finish { FINISH_STRIPES, FINISH_SPOTS, FINISH_PLAIN, FINISH_SHINY, FINISH_DULL, FINISHES };
+
+/* The look that a lemma is a word of; -1: none. */
 int finish_of(const char *lemma);
 
 /* 1 where two looks are one, -1 where what is the one is hardly the other ("plain", "striped"), 0 where

@@ -519,9 +519,34 @@ static void members(void)
 	CHECK(choice.there < 0.5, "neither is there: %g", choice.there);
 }
 
+/* What shines in the pictures is the gleaming thing, where no sentence says what is; and what does not shine
+ * is no gleaming tin. */
+static void surfaces(void)
+{
+	static float shiny[12 * N];
+	const struct splats plain = splats;
+
+	for (int i = 0; i < N; i++) {
+		memcpy(shiny + 12 * i, sh + 3 * i, 3 * sizeof *sh);
+		for (int k = 3; k < 12; k++)
+			shiny[12 * i + k] = i / EACH == 2 ? 0.3F : 0.05F;
+	}
+	splats.sh = shiny;
+	splats.sh_coefficients = 4;
+	CHECK(ask("the gleaming thing", WORDS | SURFACES) == 2 && probability[2] > 0.5, "the crate: %g",
+		(double)probability[2]);
+	CHECK(ask("the matt tin", CHOOSE_ALL) == 3 && choice.there > 0.5, "a matt tin: %g", choice.there);
+	ask("the gleaming tin", CHOOSE_ALL & ~WORDING);
+	CHECK(choice.there < 0.5, "no gleaming tin: %g", choice.there);
+	ask("the gleaming tin", CHOOSE_ALL & ~WORDING & ~SURFACES);
+	CHECK(choice.there > 0.5, "nobody looks: %g", choice.there);
+	splats = plain;
+}
+
 int main(void)
 {
 	make_scene();
+	surfaces();
 	members();
 	sides();
 	twins();
