@@ -22,6 +22,7 @@ static void add_part(struct parse_words *w, const struct explained *x, const str
 		break;
 	case MEANING_ATTRIBUTE:
 	case MEANING_COLOUR:
+	case MEANING_SURFACE:
 		parse_words_add(w, p->words[part->index].text);
 		break;
 	case MEANING_CLAUSE:
@@ -134,8 +135,15 @@ static int add_number(cJSON *to, const char *key, double x)
 
 static int add_words_of(cJSON *to, const struct explained *x, const struct meaning_part *part)
 {
-	static const char *const kinds[MEANING_KINDS] = {
-		"noun", "attribute", "colour", "clause", "size", "except", "among", "ordinal"};
+	static const char *const kinds[MEANING_KINDS] = {[MEANING_NOUN] = "noun",
+		[MEANING_ATTRIBUTE] = "attribute",
+		[MEANING_COLOUR] = "colour",
+		[MEANING_SURFACE] = "surface",
+		[MEANING_CLAUSE] = "clause",
+		[MEANING_SIZE] = "size",
+		[MEANING_EXCEPT] = "except",
+		[MEANING_AMONG] = "among",
+		[MEANING_ORDINAL] = "ordinal"};
 	char buffer[EXPLAIN_REASON] = "";
 	struct parse_words w = {buffer, 0, sizeof buffer};
 
