@@ -90,6 +90,7 @@ $(BUILD)/obj/formats/parser_weights.o: formats/parser_default.safetensors
 
 # So is what is known of everyday things.
 $(BUILD)/obj/libcommon/lang/things.o: libcommon/lang/things.tsv
+$(BUILD)/obj/libcommon/lang/things_vectors.o: libcommon/lang/things.vectors
 
 # So are the page of refer-report and its viewer.
 $(BUILD)/obj/cmd/jobs/reporting.o: cmd/jobs/report_page.html

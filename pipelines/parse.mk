@@ -6,6 +6,8 @@
 # are taken apart rightly, by PARSER=weights or text-parse's own. `make -f pipelines/parse.mk folds` makes $(OUT)/folds.jsonl, parses of
 # the readings' sentences by weights that saw no sentence of their room (FOLDS, 3), and $(OUT)/folds-blind.jsonl, the same without the grammar.
 #
+# `make -f pipelines/parse.mk things` makes $(OUT)/things.vectors, to become libcommon/lang/things.vectors, with build/bench/fit_things.
+#
 # EXAMPLES (20000) sentences, SEED (1), EPOCHS (4), MEMBERS (2) networks, MARKED and TESTS (pipelines/marked/learn/*.txt, .../test/*.txt), SOURCE
 # what the weights say that they were learnt from, BERT the encoder's folder.
 here := $(dir $(lastword $(MAKEFILE_LIST)))
@@ -25,9 +27,10 @@ NEEDS = $(OUT)/examples.safetensors $(OUT)/marked.safetensors $(if $(READINGS),$
 
 .DELETE_ON_ERROR:
 .SECONDARY:
-.PHONY: all folds test
+.PHONY: all folds test things
 all: $(OUT)/parser.safetensors
 folds: $(OUT)/folds.jsonl $(OUT)/folds-blind.jsonl
+things: $(OUT)/things.vectors
 
 test: $(OUT)/tests.parses.jsonl $(OUT)/tests.gold.jsonl
 	jq -rn --slurpfile gold $(OUT)/tests.gold.jsonl --slurpfile parses $(OUT)/tests.parses.jsonl -f $(here)parse-score.jq
@@ -68,3 +71,11 @@ $(OUT)/folds.jsonl: $(NEEDS)
 
 $(OUT)/folds-blind.jsonl: $(NEEDS)
 	$(LEARN) --folds $(FOLDS) --no-grammar -o $@ $<
+
+# A sentence for each use in the table, whose object is its line.
+$(OUT)/things.jsonl: $(here)../libcommon/lang/things.tsv
+	@mkdir -p $(@D)
+	jq -Rc '(input_line_number - 1) as $$n | split("\t")[1] | split("; ") | to_entries[] | {ref: "\($$n)-\(.key)", object: "\($$n)", text: .value, split: "test"}' $< >$@
+
+$(OUT)/things.vectors: $(OUT)/things.safetensors
+	fit_things $< $@

@@ -39,7 +39,7 @@ struct chooser {
 	struct meaning meaning;
 	struct wording wording;
 	double *score, *whole; /* (O) */
-	double *purpose;       /* (2 O) scratch */
+	double *purpose;       /* (4 O) scratch */
 	double *looks;	       /* (O,O) */
 };
 
@@ -389,7 +389,7 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	*c = (struct chooser){.scene = s, .parts = parts, .from = {.kind = VIEWPOINT_USUAL}};
 	c->score = mem_alloc(objects, sizeof *c->score, "choice", e);
 	c->whole = mem_alloc(objects, sizeof *c->whole, "choice", e);
-	c->purpose = mem_alloc(objects, 2 * sizeof *c->purpose, "choice", e);
+	c->purpose = mem_alloc(objects, 4 * sizeof *c->purpose, "choice", e);
 	c->looks = mem_alloc(objects, objects * sizeof *c->looks, "choice", e);
 	if (!c->score || !c->whole || !c->purpose || !c->looks ||
 		arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||

@@ -104,39 +104,101 @@ int purposes_says_more(const struct meaning *m)
 	return 0;
 }
 
-/* By its form, or as its noun is of nothing that one could point at: "where the countries are". */
-static int is_purpose(const struct parse *p, int head)
+/* parts (O): the logarithms of what the sentence says besides. */
+static void add_parts(const struct meaning *m, double *parts)
 {
-	return purpose_is_said(p) || (head >= 0 && !uses_names_thing(p->words[head].lemma));
+	const size_t n = objects_of(m);
+
+	memset(parts, 0, n * sizeof *parts);
+	for (size_t k = 0; k < m->part_count; k++)
+		for (size_t o = 0; o < n && is_kept(m, &m->parts[k]); o++)
+			parts[o] += PURPOSE_PARTS * log(fmax(m->parts[k].value[o], 1e-6));
+}
+
+/* Whether a thing is asked for by its name: one that is here, or "is there a spoon?". */
+static int is_by_name(const struct meaning *m, int head)
+{
+	static const char *const there[] = {"there", "is", "'s", NULL};
+	const struct parse *p = m->sentence->parse;
+
+	return head >= 0 && (m->known[0] >= PURPOSE_NOUN ||
+				    (head > 1 && closed_is(p->words[head - 1].text, CLOSED_DETERMINER) &&
+					    parse_word_is(p, head - 2, there)));
+}
+
+/* Whether the words that count say more than a name: "where is the teddy bear?" does not. */
+static int says_more_than_name(const struct parse *p, const char *counts)
+{
+	const struct parse_list *noun = &p->phrases[0].noun;
+
+	for (int w = 0; w < p->word_count; w++)
+		if (counts[w] && !parse_list_has(noun, w))
+			return 1;
+	return 0;
+}
+
+/* What is known of a sentence, by object where (O). */
+struct purpose {
+	int is_said, is_known; /* that it is one by its form; what the scene's things are for */
+	double *about;	       /* (O) the cosine with its nouns */
+	double *words;	       /* (O) its words in glosses and uses */
+	double *use, any;      /* (O) of vocabulary_for */
+	double *parts;	       /* (O) what is said besides: logarithms */
+};
+
+/* counts marks the words that count; scratch (O). */
+static void find_purpose(struct purpose *u, const struct meaning *m, char *counts, double *scratch)
+{
+	mark_words(m, counts);
+	add_words(m, counts, u->words, scratch);
+	vocabulary_about(m->vocabulary, m->sentence, counts, u->about);
+	add_parts(m, u->parts);
+	u->is_known = vocabulary_for(m->vocabulary, m->sentence, counts, u->about, u->use, &u->any);
+	u->is_said = purpose_is_said(m->sentence->parse);
+}
+
+/* By its form; by more words than a name has; or as its noun is of nothing that one could point at: "where
+ * the countries are". */
+static int may_be_purpose(const struct purpose *u, const struct parse *p, int head, const char *counts)
+{
+	return u->is_said || (u->is_known ? says_more_than_name(p, counts)
+					  : head >= 0 && !uses_names_thing(p->words[head].lemma));
+}
+
+static double fit_of_object(const struct purpose *u, size_t o)
+{
+	const double fit = u->is_known ? PURPOSE_USE * u->use[o] + PURPOSE_NAME * u->about[o] +
+						 PURPOSE_WORD * u->words[o]
+				       : PURPOSE_ABOUT * u->about[o] + PURPOSE_WORDS * u->words[o];
+
+	return fit + u->parts[o];
+}
+
+/* log odds that object o, which fits best, is meant. */
+static double sureness(const struct purpose *u, size_t o)
+{
+	return u->is_known ? PURPOSE_SURE * (u->use[o] - u->any) + PURPOSE_SURE_NAME * u->about[o] +
+				     PURPOSE_SURE_WORD * u->words[o] + PURPOSE_SURE_PARTS * u->parts[o] +
+				     (u->is_said ? PURPOSE_SAID : PURPOSE_UNSAID)
+			   : PURPOSE_THERE * fit_of_object(u, o) + PURPOSE_BASE;
 }
 
 double purposes_judge(const struct meaning *m, double *score, double *scratch)
 {
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
-	double *about = scratch, *words = scratch + n;
+	const int head = meaning_head_of(p, &p->phrases[0]);
+	struct purpose u = {
+		.about = scratch, .words = scratch + n, .use = scratch + 2 * n, .parts = scratch + 3 * n};
 	char counts[TOKENS_MOST];
 
-	static const char *const there[] = {"there", "is", "'s", NULL};
-	const int head = meaning_head_of(p, &p->phrases[0]);
-	/* "is there a spoon?" asks for a spoon */
-	const int is_named = head > 1 && closed_is(p->words[head - 1].text, CLOSED_DETERMINER) &&
-			     parse_word_is(p, head - 2, there);
-	if ((head >= 0 && (is_named || m->known[0] >= PURPOSE_NOUN)) || !is_purpose(p, head))
+	if (is_by_name(m, head))
 		return 0;
-	mark_words(m, counts);
-	add_words(m, counts, words, score);
-	vocabulary_about(m->vocabulary, m->sentence, counts, about);
+	find_purpose(&u, m, counts, score);
+	if (!may_be_purpose(&u, p, head, counts))
+		return 0;
 	for (size_t o = 0; o < n; o++)
-		score[o] = m->arrangement->objects[o].is_there
-				   ? PURPOSE_ABOUT * about[o] + PURPOSE_WORDS * words[o]
-				   : not_there;
-	for (size_t k = 0; k < m->part_count; k++) {
-		if (!is_kept(m, &m->parts[k]))
-			continue;
-		for (size_t o = 0; o < n; o++)
-			score[o] += PURPOSE_PARTS * log(fmax(m->parts[k].value[o], 1e-6));
-	}
-	const double best = largest(score, n);
-	return 1 / (1 + exp(-(PURPOSE_THERE * best + PURPOSE_BASE)));
+		score[o] = m->arrangement->objects[o].is_there ? fit_of_object(&u, o) : not_there;
+	const double sure = sureness(&u, best_of(score, n));
+	return sure < 0 && u.is_known && !u.is_said ? 0 : 1 / (1 + exp(-sure));
 }

@@ -36,6 +36,10 @@ void vocabulary_free(struct vocabulary *v)
 	free(v->kin);
 	free(v->word);
 	free(v->other);
+	free(v->line_begin);
+	free(v->lines);
+	free(v->cosine);
+	things_vectors_free(&v->things);
 	*v = (struct vocabulary){0};
 }
 
@@ -84,8 +88,8 @@ void vocabulary_sentence_vector(
 	take_direction(sum, width, out);
 }
 
-void vocabulary_words_vector(
-	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, float *out)
+void vocabulary_words_vector(struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts,
+	const double *less, float *out)
 {
 	const size_t width = (size_t)v->lifted->width;
 	double *sum = v->scratch, pieces = 0;
@@ -99,7 +103,7 @@ void vocabulary_words_vector(
 			pieces++;
 		}
 	for (size_t d = 0; d < width; d++)
-		sum[d] = pieces ? sum[d] / pieces - v->mean[d] : 0;
+		sum[d] = pieces ? sum[d] / pieces - (less ? less[d] : 0) : 0;
 	take_direction(sum, v->lifted->width, out);
 }
 
@@ -406,7 +410,7 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 		return -1;
 	mark_general(v);
 	count_calls(v);
-	if (find_about(v, e) || find_kin(v, e))
+	if (find_about(v, e) || find_kin(v, e) || vocabulary_find_lines(v, parser, e))
 		return -1;
 	for (size_t r = 0; r < l->sentences; r++)
 		vocabulary_sentence_vector(v, vectors_of(l, r), (size_t)(l->offsets[r + 1] - l->offsets[r]),

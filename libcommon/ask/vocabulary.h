@@ -7,6 +7,7 @@
 #include "base/err.h"
 #include "lang/parser.h"
 #include "lang/things.h"
+#include "lang/things_vectors.h"
 #include "lang/uses.h"
 #include "lang/wordnet.h"
 #include "lift/lifted_model.h"
@@ -72,6 +73,11 @@ struct vocabulary {
 	float *word;	 /* (width) */
 	char *kin; /* (O,O) what makes two objects one kind: 2 a noun that is not general, 1 their names */
 	double *other; /* (O) */
+	struct things_vectors things;
+	size_t *line_begin, line_count,
+		line_capacity; /* (O+1) lines line_begin[o] to line_begin[o+1] are ... */
+	int *lines;	       /* ... the lines of the table that object o is */
+	float *cosine;	       /* (things.lines) of the sentence that was asked last */
 };
 
 /* Refers to l, which must outlive it. Returns 0, or -1 with *e set; vocabulary_free after either. */
@@ -109,6 +115,12 @@ void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, i
  * says of that. */
 void vocabulary_about(
 	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, double *match);
+
+/* What the mean of a sentence's words that count is for: match (O) the best cosine with the uses of what an
+ * object is, or by `about` (O, of vocabulary_about) where nothing is known of that; *any the soft maximum
+ * over all everyday things. Returns 0 where the encoder is not the one that made lang/things_vectors.h. */
+int vocabulary_for(struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts,
+	const double *about, double *match, double *any);
 
 /* fit (O): how far an object is of the colour of a word, in [0,1], by its Gaussians and by the colours that
  * training sentences say it has. Returns 0 where it is no colour word. */

@@ -269,44 +269,6 @@ void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, i
 	add_usual(v, word->lemma, match);
 }
 
-/* How far things of a kind are for what a word says. */
-static double kind_fits(struct vocabulary *v, size_t kind, const struct uses *word)
-{
-	struct vocabulary_kind *k = &v->kinds[kind];
-
-	if (k->uses.n < 0)
-		uses_of_thing(&k->uses, k->lemma);
-	return uses_fit(&k->uses, word);
-}
-
-void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
-{
-	const struct lifted *l = v->lifted;
-	struct uses word;
-
-	memset(match, 0, l->objects * sizeof *match);
-	if (!v->has_knowledge)
-		return;
-	uses_of_word(&word, s->parse->words[w].lemma);
-	for (size_t o = 0; o < l->objects && word.n && v->has_names; o++)
-		match[o] = kind_fits(v, v->head_kinds[o], &word);
-	for (size_t i = 0; i < v->n && word.n; i++) {
-		const struct vocabulary_item *item = &v->items[i];
-		if (item->role == VOCABULARY_NOUN && item->sentence != v->without && !item->is_general)
-			match[item->object] = fmax(match[item->object], kind_fits(v, item->kind, &word));
-	}
-}
-
-void vocabulary_about(
-	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, double *match)
-{
-	const size_t width = (size_t)v->lifted->width;
-
-	vocabulary_words_vector(v, s, counts, v->word);
-	for (size_t o = 0; o < v->lifted->objects; o++)
-		match[o] = dot_float(v->word, v->about + o * width, width);
-}
-
 /* A colour that an object's name begins with, as "red bag" does, is said as often as NAME_COLOUR sentences
  * say it. Returns how often a colour is said so, and adds to *like how often one like this. */
 static double name_says(const char *name, int colour, double *like)

@@ -1,4 +1,5 @@
-/* What the two halves of ask/vocabulary.h share: vocabulary.c makes it, vocabulary_match.c asks it. */
+/* What the two halves of ask/vocabulary.h share: vocabulary.c makes it, vocabulary_match.c and
+ * vocabulary_uses.c ask it. */
 #ifndef ASK_VOCABULARY_PRIVATE_H
 #define ASK_VOCABULARY_PRIVATE_H
 
@@ -12,9 +13,13 @@ void vocabulary_word_vector(
 void vocabulary_sentence_vector(
 	struct vocabulary *v, const float *vectors, size_t pieces, const double *less, float *out);
 
-/* out (width) of length 1: the mean of the pieces of the words that count, less the scene's mean. */
-void vocabulary_words_vector(
-	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, float *out);
+/* out (width) of length 1: the mean of the pieces of the words that count, less one of v's means; NULL: of
+ * none. */
+void vocabulary_words_vector(struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts,
+	const double *less, float *out);
+
+/* Finds the lines of lang/things.h that each object is, after all else is known of it. */
+int vocabulary_find_lines(struct vocabulary *v, const struct parser *parser, struct err *e);
 
 static inline char vocabulary_lower(char c)
 {

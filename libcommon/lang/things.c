@@ -64,3 +64,12 @@ const char *things_text(int row, enum things_field field, size_t *length)
 	*length = (size_t)(end_of(p, field == THINGS_HAS ? '\n' : '\t') - p);
 	return p;
 }
+
+uint32_t things_hash(void)
+{
+	uint32_t h = 2166136261U;
+
+	for (const unsigned char *p = things_begin; p < things_end; p++)
+		h = (h ^ *p) * 16777619U;
+	return h;
+}

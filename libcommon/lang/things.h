@@ -5,6 +5,7 @@
 #define LANG_THINGS_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 enum { THINGS_ROWS = 6 };
 
@@ -23,5 +24,8 @@ int things_share(const struct things_rows *a, const struct things_rows *b);
 
 /* A field of a line, of *length bytes, not ended by 0; NULL past the last line. */
 const char *things_text(int row, enum things_field field, size_t *length);
+
+/* A hash of the whole table (FNV-1a), by which what is made of it says so. */
+uint32_t things_hash(void);
 
 #endif

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # How often a sentence that says only what a thing is for finds it. The objects of a made scene get other names, fourteen
-# at a time, each with no sentence but its name; purposes.tsv has a name and a sentence a line. Then the sentences of the next
-# fourteen are asked: how many are refused (some are of use for what is here too). The constants of ask/purposes.h were fitted to
-# these sentences. usage: tests/bench/purposes.sh [PARTS]; PARTS as refer-render --without
+# at a time, each with no sentence but its name; a list has a name and a sentence a line. Then the sentences of the next
+# fourteen are asked: how many are refused (some are of use for what is here too). usage: tests/bench/purposes.sh [PARTS]; PARTS as
+# refer-render --without
+#	LIST=purposes   the list, tests/bench/LIST.tsv: purposes, situations (both were looked at, and constants of ask/purposes.h
+#			fitted to them) or situations-kept, which nobody read
 #	BIN=build/bin   the tools
 #	BERT            folder of the language encoder
 set -eu -o pipefail
 BIN=${BIN:-build/bin} BERT=${BERT:-${XDG_CACHE_HOME:-$HOME/.cache}/refersplat/encoder}
-list=$(dirname "$0")/purposes.tsv
+list=$(dirname "$0")/${LIST:-purposes}.tsv
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

@@ -69,11 +69,14 @@ static int name_one_thing(const char *a, const char *b)
 	return things_share(&first, &second);
 }
 
-/* A field of a line of the table: items of small letters, with one space or hyphen between words. */
+/* A field of a line of the table: items of small letters and digits, with one space or hyphen between words.
+ */
 static int is_well_formed(const char *text, size_t length, char between)
 {
 	for (size_t i = 0; i < length; i++) {
-		const int is_letter = text[i] >= 'a' && text[i] <= 'z', is_last = i + 1 == length;
+		const int is_letter =
+				  (text[i] >= 'a' && text[i] <= 'z') || (text[i] >= '0' && text[i] <= '9'),
+			  is_last = i + 1 == length;
 		if (text[i] == between && (is_last || text[i + 1] != ' '))
 			return 0;
 		if (!is_letter && (!i || is_last || (text[i] != between && text[i] != ' ' && text[i] != '-')))

@@ -1,0 +1,139 @@
+/* What sentences say the use of things is, and what things are for. */
+#include "ask/constants.h"
+#include "ask/vocabulary_private.h"
+#include "base/dot.h"
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LONGEST_NAME = 64 };
+
+/* How far things of a kind are for what a word says. */
+static double kind_fits(struct vocabulary *v, size_t kind, const struct uses *word)
+{
+	struct vocabulary_kind *k = &v->kinds[kind];
+
+	if (k->uses.n < 0)
+		uses_of_thing(&k->uses, k->lemma);
+	return uses_fit(&k->uses, word);
+}
+
+void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
+{
+	const struct lifted *l = v->lifted;
+	struct uses word;
+
+	memset(match, 0, l->objects * sizeof *match);
+	if (!v->has_knowledge)
+		return;
+	uses_of_word(&word, s->parse->words[w].lemma);
+	for (size_t o = 0; o < l->objects && word.n && v->has_names; o++)
+		match[o] = kind_fits(v, v->head_kinds[o], &word);
+	for (size_t i = 0; i < v->n && word.n; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->role == VOCABULARY_NOUN && item->sentence != v->without && !item->is_general)
+			match[item->object] = fmax(match[item->object], kind_fits(v, item->kind, &word));
+	}
+}
+
+void vocabulary_about(
+	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, double *match)
+{
+	const size_t width = (size_t)v->lifted->width;
+
+	vocabulary_words_vector(v, s, counts, v->mean, v->word);
+	for (size_t o = 0; o < v->lifted->objects; o++)
+		match[o] = dot_float(v->word, v->about + o * width, width);
+}
+
+/* Adds lines of the table to an object's, each once. */
+static int add_lines(struct vocabulary *v, size_t object, const struct things_rows *rows, struct err *e)
+{
+	for (int i = 0; i < rows->n; i++) {
+		size_t k = v->line_begin[object];
+		while (k < v->line_count && v->lines[k] != rows->row[i])
+			k++;
+		if (k < v->line_count)
+			continue;
+		if (mem_grow((void **)&v->lines, &v->line_capacity, v->line_count + 1, sizeof *v->lines,
+			    "vocabulary", e))
+			return -1;
+		v->lines[v->line_count++] = rows->row[i];
+	}
+	return 0;
+}
+
+/* The lines of a name, or of what is left of it without its first words: "pencil case" of "red pencil case".
+ */
+static void find_name(const char *name, struct things_rows *rows)
+{
+	char lower[LONGEST_NAME];
+	size_t n = strlen(name);
+
+	rows->n = 0;
+	while (n && (strchr(" -_", name[n - 1]) || (name[n - 1] >= '0' && name[n - 1] <= '9')))
+		n--;
+	if (n >= sizeof lower)
+		return;
+	for (size_t i = 0; i < n; i++)
+		lower[i] = strchr("-_", name[i]) ? ' ' : vocabulary_lower(name[i]);
+	lower[n] = 0;
+	for (const char *from = lower; from && !rows->n; from = strchr(from, ' '))
+		things_find(rows, from += *from == ' ');
+}
+
+int vocabulary_find_lines(struct vocabulary *v, const struct parser *parser, struct err *e)
+{
+	const struct lifted *l = v->lifted;
+
+	v->line_begin = mem_zalloc(l->objects + 1, sizeof *v->line_begin, "vocabulary", e);
+	if (!v->line_begin || things_vectors_open(&v->things, parser->encoder, l->width, e))
+		return -1;
+	v->cosine = mem_alloc((size_t)v->things.lines, sizeof *v->cosine, "vocabulary", e);
+	for (size_t o = 0; o < l->objects; o++) {
+		struct things_rows rows;
+		v->line_begin[o] = v->line_count;
+		find_name(l->names[o], &rows);
+		if (add_lines(v, o, &rows, e) ||
+			(*v->contents[o] && add_lines(v, o, &v->kinds[v->content_kinds[o]].things, e)))
+			return -1;
+		for (size_t i = 0; i < v->n; i++) {
+			const struct vocabulary_item *item = &v->items[i];
+			if (item->object == o && item->role == VOCABULARY_NOUN && !item->is_general &&
+				add_lines(v, o, &v->kinds[item->kind].things, e))
+				return -1;
+		}
+	}
+	v->line_begin[l->objects] = v->line_count;
+	return v->cosine ? 0 : -1;
+}
+
+/* log of the sum over all things of exp(cosine / soft), times soft. */
+static double any_thing(const struct vocabulary *v)
+{
+	double sum = 0;
+
+	for (int i = 0; i < v->things.lines; i++)
+		sum += exp((double)v->cosine[i] / USE_SOFT);
+	return USE_SOFT * log(sum);
+}
+
+int vocabulary_for(struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts,
+	const double *about, double *match, double *any)
+{
+	if (!v->things.lines || !v->has_knowledge)
+		return 0;
+	vocabulary_words_vector(v, s, counts, 0, v->word);
+	things_vectors_cosines(&v->things, v->word, v->cosine);
+	*any = any_thing(v);
+	for (size_t o = 0; o < v->lifted->objects; o++) {
+		match[o] = USE_BY_NAME * about[o] + USE_OF_ANY;
+		if (v->line_begin[o] < v->line_begin[o + 1])
+			match[o] = -1;
+		for (size_t k = v->line_begin[o]; k < v->line_begin[o + 1]; k++)
+			match[o] = fmax(match[o], (double)v->cosine[v->lines[k]]);
+	}
+	return 1;
+}

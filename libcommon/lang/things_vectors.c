@@ -1,0 +1,59 @@
+#include "lang/things_vectors.h"
+
+#include "base/embed.h"
+#include "base/mem.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+EMBED(things_vectors, "libcommon/lang/things.vectors");
+extern const unsigned char things_vectors_begin[], things_vectors_end[];
+
+int things_vectors_open(struct things_vectors *t, const char *encoder, int width, struct err *e)
+{
+	const char *const begin = (const char *)things_vectors_begin;
+	char of[17];
+
+	*t = (struct things_vectors){0};
+	if (sscanf(begin, "refer.things 1 %16s %d %d %8" SCNx32, of, &t->lines, &t->width, &t->hash) != 4 ||
+		t->width != width || !encoder || strcmp(encoder, of) != 0) {
+		t->lines = 0;
+		return 0;
+	}
+	t->of = (const int8_t *)(strchr(begin, '\n') + 1);
+	t->length = mem_alloc((size_t)t->lines, sizeof *t->length, "things", e);
+	for (int i = 0; i < t->lines && t->length; i++) {
+		const int8_t *line = t->of + (size_t)i * (size_t)width;
+		double square = 0;
+		for (int d = 0; d < width; d++)
+			square += line[d] * line[d];
+		t->length[i] = (float)sqrt(square);
+	}
+	return t->length ? 0 : -1;
+}
+
+void things_vectors_free(struct things_vectors *t)
+{
+	free(t->length);
+	*t = (struct things_vectors){0};
+}
+
+void things_vectors_cosines(const struct things_vectors *t, const float *direction, float *cosine)
+{
+	for (int i = 0; i < t->lines; i++) {
+		const int8_t *line = t->of + (size_t)i * (size_t)t->width;
+		float sum[8] = {0};
+		int d = 0;
+		for (; d + 8 <= t->width; d += 8)
+			for (int k = 0; k < 8; k++)
+				sum[k] += direction[d + k] * (float)line[d + k];
+		for (; d < t->width; d++)
+			sum[0] += direction[d] * (float)line[d];
+		for (int k = 1; k < 8; k++)
+			sum[0] += sum[k];
+		cosine[i] = sum[0] / t->length[i];
+	}
+}
