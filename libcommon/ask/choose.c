@@ -232,7 +232,8 @@ static void choose_wording(
 static void choose_purpose(struct chooser *c, int several, struct choice *to, double *row, char *chosen)
 {
 	const size_t n = c->arrangement.n;
-	const double there = purposes_judge(&c->meaning, c->score, c->purpose);
+	const int is_lost = to->there >= PARSE_LEAST && largest(row, n) < PURPOSE_LOST;
+	const double there = purposes_judge(&c->meaning, is_lost, c->score, c->purpose);
 
 	if (there <= 0)
 		return;

@@ -139,22 +139,26 @@ static int says_more_than_name(const struct parse *p, const char *counts)
 
 /* What is known of a sentence, by object where (O). */
 struct purpose {
-	int is_said, is_known; /* that it is one by its form; what the scene's things are for */
-	double *about;	       /* (O) the cosine with its nouns */
-	double *words;	       /* (O) its words in glosses and uses */
-	double *use, any;      /* (O) of vocabulary_for */
-	double *parts;	       /* (O) what is said besides: logarithms */
+	int is_said;	  /* that it is one by its form, or that it says nothing else */
+	int is_known;	  /* what things are for */
+	double *about;	  /* (O) the cosine with its nouns */
+	double *words;	  /* (O) its words in glosses and uses */
+	double *use, any; /* (O) of vocabulary_for */
+	double *parts;	  /* (O) what is said besides: logarithms */
 };
 
 /* counts marks the words that count; scratch (O). */
-static void find_purpose(struct purpose *u, const struct meaning *m, char *counts, double *scratch)
+static void find_purpose(
+	struct purpose *u, const struct meaning *m, int is_lost, char *counts, double *scratch)
 {
+	const struct parse *p = m->sentence->parse;
+
 	mark_words(m, counts);
 	add_words(m, counts, u->words, scratch);
 	vocabulary_about(m->vocabulary, m->sentence, counts, u->about);
 	add_parts(m, u->parts);
 	u->is_known = vocabulary_for(m->vocabulary, m->sentence, counts, u->about, u->use, &u->any);
-	u->is_said = purpose_is_said(m->sentence->parse);
+	u->is_said = purpose_is_said(p) || (is_lost && says_more_than_name(p, counts));
 }
 
 /* By its form; by more words than a name has; or as its noun is of nothing that one could point at: "where
@@ -183,7 +187,7 @@ static double sureness(const struct purpose *u, size_t o)
 			   : PURPOSE_THERE * fit_of_object(u, o) + PURPOSE_BASE;
 }
 
-double purposes_judge(const struct meaning *m, double *score, double *scratch)
+double purposes_judge(const struct meaning *m, int is_lost, double *score, double *scratch)
 {
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
@@ -194,7 +198,7 @@ double purposes_judge(const struct meaning *m, double *score, double *scratch)
 
 	if (is_by_name(m, head))
 		return 0;
-	find_purpose(&u, m, counts, score);
+	find_purpose(&u, m, is_lost, counts, score);
 	if (!may_be_purpose(&u, p, head, counts))
 		return 0;
 	for (size_t o = 0; o < n; o++)
