@@ -3,6 +3,7 @@
 #include "ask/constants.h"
 #include "ask/meaning_private.h"
 #include "lang/closed.h"
+#include "lang/colours.h"
 #include "lang/purpose.h"
 #include "lang/tokens.h"
 
@@ -75,6 +76,16 @@ static void mark_words(const struct meaning *m, char *counts)
 	for (int w = 0; w < p->word_count; w++)
 		counts[w] =
 			(char)(purpose_is_content(p, w) && !is_of_place(m, w) && !is_before_generic(p, w));
+}
+
+/* Marks all words but those of places and colours: what is told of the use, as a sentence. */
+static void mark_told(const struct meaning *m, char *told)
+{
+	const struct parse *p = m->sentence->parse;
+
+	for (int w = 0; w < p->word_count; w++)
+		told[w] = (char)(!is_of_place(m, w) && !is_before_generic(p, w) &&
+				 colour_word(p->words[w].lemma) < 0);
 }
 
 /* words (O): what the words that count give, summed; the less the more things here a word is of. Squares, as
@@ -152,12 +163,14 @@ static void find_purpose(
 	struct purpose *u, const struct meaning *m, int is_lost, char *counts, double *scratch)
 {
 	const struct parse *p = m->sentence->parse;
+	char told[TOKENS_MOST];
 
 	mark_words(m, counts);
 	add_words(m, counts, u->words, scratch);
 	vocabulary_about(m->vocabulary, m->sentence, counts, u->about);
 	add_parts(m, u->parts);
-	u->is_known = vocabulary_for(m->vocabulary, m->sentence, counts, u->about, u->use, &u->any);
+	mark_told(m, told);
+	u->is_known = vocabulary_for(m->vocabulary, m->sentence, told, u->about, u->use, &u->any);
 	u->is_said = purpose_is_said(p) || (is_lost && says_more_than_name(p, counts));
 }
 
