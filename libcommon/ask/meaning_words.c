@@ -278,6 +278,19 @@ static int is_vague(const struct parse_word *w)
 	return meaning_word_is(w, vague);
 }
 
+/* "The white pebble" is a case: a shape in place of a name, where nothing here is called so. "A power strip"
+ * and "a sheet of paper" are names. */
+static int is_shape(const struct parse *p, const struct parse_phrase *f, int head)
+{
+	static const char *const shapes[] = {"blob", "bulge", "bump", "bundle", "capsule", "chunk", "clump",
+		"dollop", "dome", "heap", "hump", "hunk", "lozenge", "lump", "mound", "nub", "nugget",
+		"oblong", "oval", "patch", "pebble", "pill", "pod", "rectangle", "sheet", "shell", "slab",
+		"sliver", "square", "strip", "stub", "tablet", "wad", "wedge", NULL};
+	static const char *const of[] = {"of", NULL};
+
+	return f->noun.n == 1 && meaning_word_is(&p->words[head], shapes) && !parse_word_is(p, head + 1, of);
+}
+
 void meaning_judge_noun(struct meaning *m, int phrase)
 {
 	const struct parse *p = m->sentence->parse;
@@ -294,7 +307,8 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	if (head < 0)
 		return;
 	vocabulary_noun(m->vocabulary, m->sentence, head, match);
-	for (size_t o = 0; o < n && is_vague(&p->words[head]); o++)
+	const int is_any = is_vague(&p->words[head]) || (is_shape(p, f, head) && largest(match, n) < 0.5);
+	for (size_t o = 0; o < n && is_any; o++)
 		match[o] = fmax(match[o], VAGUE_LEAST);
 	if (colour_word(p->words[head].lemma) >= 0 && largest(match, n) < 0.5) { /* "something orange" */
 		judge_colour(m, phrase, head);
@@ -307,7 +321,7 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	value = meaning_add_part(m, phrase, MEANING_NOUN, head);
 	const double best = fmax(0, largest(match, n)), most = fmax(best, match[n]);
 	/* of several things each has to be called so as well as another is */
-	const double power = f->count == PARSE_ONE || is_vague(&p->words[head]) ? 0 : NOUN_SEVERAL;
+	const double power = f->count == PARSE_ONE || is_any ? 0 : NOUN_SEVERAL;
 	m->known[phrase] = best;
 	for (size_t o = 0; o < n; o++) {
 		const double x = match[o] * pow(match[o] / fmax(most, 1e-9), power);

@@ -168,6 +168,10 @@ static void sets(void)
 
 static void absent(void)
 {
+	ask("the red slab", CHOOSE_ALL & ~WORDING & ~SENTENCE);
+	CHECK(choice.there > 0.5, "a shape: %g", choice.there);
+	ask("the red slab of butter", CHOOSE_ALL & ~WORDING & ~SENTENCE);
+	CHECK(choice.there < 0.5, "a name: %g", choice.there);
 	ask("the large wooden box", CHOOSE_ALL);
 	CHECK(choice.there > 0.8, "what is there has %g", choice.there);
 	ask("the violet zeppelin", CHOOSE_ALL);
@@ -460,6 +464,7 @@ static void words_of_others(void)
 	} asks[] = {
 		{"the cup on the right", "what one mug is called, the other may be called", 1},
 		{"the red gadget", "anything may be a gadget", 2},
+		{"the red lump", "and have a shape", 2},
 		{"the mug left of the handle", "a part stands for its thing", 0},
 		{"not the mug on the left , the other one", "the other one is a mug", 1},
 	};
