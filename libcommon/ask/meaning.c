@@ -184,6 +184,12 @@ static void rank_more(
 	}
 }
 
+/* "large", or as large as something. */
+static int is_size(const struct parse_clause *c)
+{
+	return c->degree == PARSE_PLAIN && c->relation >= PARSE_LARGER && c->relation <= PARSE_WIDER;
+}
+
 /* value (O) of a clause that has places in it; returns how far its anchors are known. */
 static double judge_relation(
 	struct meaning *m, int phrase, const struct parse_clause *c, const double *fit, double *value)
@@ -197,6 +203,8 @@ static double judge_relation(
 	struct relation r = {relation_of(p, c), degree_of(c), width_of(p, f, c), 0, 0, anchors};
 	double known = 1;
 
+	if (c->negated && is_size(c) && c->anchors.n) /* what is not as large is not larger */
+		r.degree = PARSE_MORE;
 	if (counted_by(p, f, counts_along) == c)
 		r.place = f->ordinal;
 	if (!c->anchors.n && is_of_anything(c)) {
@@ -222,12 +230,6 @@ static double judge_relation(
 	if (r.degree == PARSE_MOST)
 		rank_more(m, &r, f->count, fit, value);
 	return known;
-}
-
-/* "large", of a thing by itself. */
-static int is_size(const struct parse_clause *c)
-{
-	return c->degree == PARSE_PLAIN && c->relation >= PARSE_LARGER && c->relation <= PARSE_WIDER;
 }
 
 /* "in tangerine", where nothing is called so. */

@@ -8,8 +8,8 @@
 #include "ask/meaning.h"
 
 /* score (O): logarithms of what fits, for a softmax; scratch (4 O). Returns P that the best of them is meant,
- * 0 where no use is said. m: the sentence is judged. is_lost: its parse tells nothing, so that what it is about
- * is all there is. */
+ * 0 where no use is said. m: the sentence is judged. is_lost: its parse tells nothing, so that what it is
+ * about is all there is. */
 double purposes_judge(const struct meaning *m, int is_lost, double *score, double *scratch);
 
 /* Whether the parse tells of colours or places besides: "the red thing you drink from". */

@@ -423,6 +423,20 @@ static void compare(const struct arrangement *a, const struct relation *r, size_
 	}
 }
 
+/* "as tall as": how alike two things are in a size. */
+static double is_as(const struct arrangement *a, enum parse_relation size, const struct arranged *o,
+	const struct arranged *q)
+{
+	return exp(-fabs(key_of(a, size, o) - key_of(a, size, q)) / AS_LARGE_SOFT);
+}
+
+/* "left of", "as tall as": of an anchor that is q. */
+static double plainly(const struct arrangement *a, const struct relation *r, const struct arranged *o,
+	const struct arranged *q)
+{
+	return is_size(r->kind) ? is_as(a, r->kind, o, q) : pair(a, r->kind, r->width, o, q);
+}
+
 /* Of one anchor: the best of what it may be, or all of what it is. */
 static void to_anchor(const struct arrangement *a, const struct relation *r,
 	const struct relate_anchor *anchor, const double *fit, double *key, double *one, double *out)
@@ -440,9 +454,8 @@ static void to_anchor(const struct arrangement *a, const struct relation *r,
 				out[o] *= anchor->is_every && !anchor->is_other ? 1 - w : 1;
 				continue;
 			}
-			const double x = r->degree != PARSE_PLAIN
-						 ? one[o]
-						 : pair(a, r->kind, r->width, &a->objects[o], at(a, i));
+			const double x =
+				r->degree != PARSE_PLAIN ? one[o] : plainly(a, r, &a->objects[o], at(a, i));
 			out[o] = anchor->is_every ? out[o] * (1 - w + w * x) : fmax(out[o], w * x);
 		}
 	}

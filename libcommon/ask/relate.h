@@ -30,7 +30,7 @@ struct relation {
 
 /* out (a->n). fit (n) in [0,1]: how well each object fits what else is said of the target, for what compares
  * (nearest, leftmost, largest ...) compares with those that fit. key (3n) is scratch. An object is not its
- * own anchor. */
+ * own anchor. A plain size with an anchor is "as large as". */
 void relate(
 	const struct arrangement *a, const struct relation *r, const double *fit, double *key, double *out);
 

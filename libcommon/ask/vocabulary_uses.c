@@ -125,7 +125,7 @@ int vocabulary_for(struct vocabulary *v, const struct vocabulary_sentence *s, co
 {
 	if (!v->things.lines || !v->has_knowledge)
 		return 0;
-	vocabulary_words_vector(v, s, counts, 0, v->word);
+	vocabulary_words_vector(v, s, counts, NULL, v->word);
 	things_vectors_cosines(&v->things, v->word, v->cosine);
 	*any = any_thing(v);
 	for (size_t o = 0; o < v->lifted->objects; o++) {

@@ -114,6 +114,13 @@ static void relations(void)
 		"nothing is its own anchor");
 	winner(PARSE_LEFT, PARSE_PLAIN, TRAY, NONE);
 	CHECK(out[CUP] < 0.01, "what stands on a thing is not left of it: %g", out[CUP]);
+	winner(PARSE_TALLER, PARSE_PLAIN, LEFT, NONE);
+	CHECK(out[RIGHT] > 0.99 && out[FRONT] > 0.99 && out[LEFT] == 0,
+		"as tall as the left one: %g %g, itself %g", out[RIGHT], out[FRONT], out[LEFT]);
+	CHECK(out[CUP] < 0.9 && out[CUP] > out[TRAY] && out[TALL] < 0.05 && out[TRAY] < 0.05,
+		"and not as much: %g %g %g", out[CUP], out[TALL], out[TRAY]);
+	winner(PARSE_SMALLER, PARSE_PLAIN, LEFT, NONE);
+	CHECK(out[RIGHT] > 0.99 && out[TRAY] < 0.6, "as small as: %g %g", out[RIGHT], out[TRAY]);
 	winner(PARSE_TALLER, PARSE_MORE, CUP, NONE);
 	CHECK(out[LEFT] < 0.1 && out[TALL] > 0.9, "taller than the cup: %g, %g", out[LEFT], out[TALL]);
 }
