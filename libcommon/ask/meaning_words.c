@@ -36,8 +36,8 @@ int meaning_word_is(const struct parse_word *w, const char *const *list)
 int meaning_head_of(const struct parse *p, const struct parse_phrase *f)
 {
 	static const char *const generic[] = {"thing", "object", "item", "one", "something", "anything",
-		"everything", "stuff", "what", "whatever", "which", "thingy", "other", "another", "piece",
-		NULL};
+		"everything", "stuff", "what", "whatever", "which", "who", "whoever", "thingy", "other",
+		"another", "piece", NULL};
 	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
 
 	return head >= 0 && (meaning_word_is(&p->words[head], generic) ||

@@ -125,6 +125,30 @@ static void mend_ends(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* "Who is wearing the scarf?" asks for whoever has it, not for the scarf. */
+static void mend_who(struct analysis *a, const struct tokens *t)
+{
+	int who = 0, predicate, noun = 0;
+
+	while (who < t->n && !tokens_is(t, who, "who"))
+		who++;
+	for (predicate = who + 1; predicate < t->n && !analysis_is_predicate(a, predicate);)
+		predicate++;
+	while (noun < t->n && a->word[noun].role != ROLE_TARGET)
+		noun++;
+	if (predicate >= t->n || noun >= t->n || noun < who || a->word[who].role != ROLE_NONE ||
+		analysis_has_anchor(a, predicate) ||
+		(a->word[predicate].relation != PARSE_WITH && a->word[predicate].relation != PARSE_SUPPORTS))
+		return;
+	for (int i = 0; i < t->n; i++)
+		if (a->word[i].role == ROLE_ATTRIBUTE && a->word[i].head == ROOT)
+			a->word[i].head = noun;
+	a->word[noun].role = ROLE_ANCHOR;
+	a->word[noun].head = predicate;
+	a->word[who] = (struct analysis_word){.role = ROLE_TARGET, .head = ROOT};
+	a->word[predicate].head = who;
+}
+
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	analysis_denied(a, t);
@@ -133,6 +157,7 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 	analysis_it(a, t);
 	mend_any_colour(a, t);
 	mend_empty(a, t);
+	mend_who(a, t);
 	mend_compounds(a, t);
 	mend_ends(a, t);
 	analysis_repair(a);

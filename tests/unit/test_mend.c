@@ -270,8 +270,23 @@ static void compared_with_all(void)
 	}
 }
 
+/* Whoever wears the scarf is meant, where the scarf is what nothing has an anchor for. */
+static void who(void)
+{
+	static const char said[] = "who is wearing the yellow scarf";
+
+	mends(said, ". . P . a T", PARSE_WITH, 0, ROLE_TARGET, ROOT, 0);
+	mends(said, ". . P . a T", PARSE_WITH, 2, ROLE_PREDICATE, ROOT, PARSE_WITH);
+	mends(said, ". . P . a T", PARSE_WITH, 4, ROLE_ATTRIBUTE, 5, 0);
+	mends(said, ". . P . a T", PARSE_WITH, 5, ROLE_ANCHOR, 2, 0);
+	mends("who has a scarf on", ". . . T P", PARSE_SUPPORTS, 3, ROLE_ANCHOR, 4, 0);
+	mends("the man who has a scarf", ". T . P1 . A3", PARSE_WITH, 1, ROLE_TARGET, ROOT, 0);
+	mends("who is near the yellow scarf", ". . P . a T", PARSE_NEAR, 5, ROLE_TARGET, ROOT, 0);
+}
+
 int main(void)
 {
+	who();
 	carried_things();
 	left_out_of();
 	compared_with_all();
