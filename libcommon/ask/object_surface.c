@@ -139,7 +139,7 @@ static void measure_axis(struct axis *a, const struct surface_point *p, size_t n
 
 static int cut(double x, int cells)
 {
-	return x < 0 ? 0 : x * cells >= cells - 1 ? cells - 1 : (int)(x * cells);
+	return x < 0 ? 0 : x >= cells - 1 ? cells - 1 : (int)x;
 }
 
 /* How much of which colour a point has is told by its place along an axis, and how often it changes there. */
@@ -156,7 +156,7 @@ static struct told tell_along(
 	int last = -1;
 
 	for (size_t i = 0; i < n; i++) {
-		const int b = cut(place(a, &p[i]), BINS);
+		const int b = cut(BINS * place(a, &p[i]), BINS);
 		weight[b] += p[i].weight;
 		second[b] += c->is_second[i] ? p[i].weight : 0;
 		total += p[i].weight;
@@ -207,9 +207,8 @@ static double roughness(const struct axis axes[3], const struct two_colours *c, 
 	for (size_t i = 0; i < n; i++) {
 		size_t at = 0;
 		for (int k = 0; k < 3; k++)
-			at += (size_t)(step[k] * cut(place(&axes[k], &p[i]) * axes[k].length / most * CELLS /
-								 (SIDE - 1),
-							 SIDE - 1));
+			at += (size_t)(step[k] *
+				       cut(CELLS * place(&axes[k], &p[i]) * axes[k].length / most, SIDE - 1));
 		cells[at].weight += p[i].weight;
 		cells[at].second += c->is_second[i] ? p[i].weight : 0;
 	}

@@ -68,24 +68,17 @@ static int is_of_place(const struct meaning *m, int word)
 	return 0;
 }
 
-/* Marks the words that tell of the use. */
-static void mark_words(const struct meaning *m, char *counts)
+/* told marks all words but those of places and colours: what is told of the use, as a sentence; counts, of
+ * these, the words that are not of grammar. */
+static void mark_words(const struct meaning *m, char *told, char *counts)
 {
 	const struct parse *p = m->sentence->parse;
 
-	for (int w = 0; w < p->word_count; w++)
-		counts[w] =
-			(char)(purpose_is_content(p, w) && !is_of_place(m, w) && !is_before_generic(p, w));
-}
-
-/* Marks all words but those of places and colours: what is told of the use, as a sentence. */
-static void mark_told(const struct meaning *m, char *told)
-{
-	const struct parse *p = m->sentence->parse;
-
-	for (int w = 0; w < p->word_count; w++)
+	for (int w = 0; w < p->word_count; w++) {
 		told[w] = (char)(!is_of_place(m, w) && !is_before_generic(p, w) &&
 				 colour_word(p->words[w].lemma) < 0);
+		counts[w] = (char)(told[w] && purpose_is_content(p, w));
+	}
 }
 
 /* words (O): what the words that count give, summed; the less the more things here a word is of. Squares, as
@@ -165,11 +158,10 @@ static void find_purpose(
 	const struct parse *p = m->sentence->parse;
 	char told[TOKENS_MOST];
 
-	mark_words(m, counts);
+	mark_words(m, told, counts);
 	add_words(m, counts, u->words, scratch);
 	vocabulary_about(m->vocabulary, m->sentence, counts, u->about);
 	add_parts(m, u->parts);
-	mark_told(m, told);
 	u->is_known = vocabulary_for(m->vocabulary, m->sentence, told, u->about, u->use, &u->any);
 	u->is_said = purpose_is_said(p) || (is_lost && says_more_than_name(p, counts));
 }

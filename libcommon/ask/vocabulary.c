@@ -37,6 +37,7 @@ void vocabulary_free(struct vocabulary *v)
 	free(v->word);
 	free(v->other);
 	free(v->line_begin);
+	free(v->line_named);
 	free(v->lines);
 	free(v->cosine);
 	things_vectors_free(&v->things);

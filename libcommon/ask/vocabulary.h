@@ -74,10 +74,12 @@ struct vocabulary {
 	char *kin; /* (O,O) what makes two objects one kind: 2 a noun that is not general, 1 their names */
 	double *other; /* (O) */
 	struct things_vectors things;
-	size_t *line_begin, line_count,
-		line_capacity; /* (O+1) lines line_begin[o] to line_begin[o+1] are ... */
-	int *lines;	       /* ... the lines of the table that object o is */
-	float *cosine;	       /* (things.lines) of the sentence that was asked last */
+	/* Object o is lines line_begin[o] to line_begin[o + 1] of the table, those from line_named[o] on by
+	 * its name alone. */
+	int *lines;
+	size_t *line_begin, *line_named; /* (O+1) */
+	size_t line_count, line_capacity;
+	float *cosine; /* (things.lines) of the sentence that was asked last */
 };
 
 /* Refers to l, which must outlive it. Returns 0, or -1 with *e set; vocabulary_free after either. */

@@ -89,22 +89,24 @@ int vocabulary_find_lines(struct vocabulary *v, const struct parser *parser, str
 	const struct lifted *l = v->lifted;
 
 	v->line_begin = mem_zalloc(l->objects + 1, sizeof *v->line_begin, "vocabulary", e);
-	if (!v->line_begin || things_vectors_open(&v->things, parser->encoder, l->width, e))
+	v->line_named = mem_zalloc(l->objects + 1, sizeof *v->line_named, "vocabulary", e);
+	if (!v->line_begin || !v->line_named || things_vectors_open(&v->things, parser->encoder, l->width, e))
 		return -1;
 	v->cosine = mem_alloc((size_t)v->things.lines, sizeof *v->cosine, "vocabulary", e);
 	for (size_t o = 0; o < l->objects; o++) {
 		struct things_rows rows;
 		v->line_begin[o] = v->line_count;
-		find_name(l->names[o], &rows);
-		if (add_lines(v, o, &rows, e) ||
-			(*v->contents[o] && add_lines(v, o, &v->kinds[v->content_kinds[o]].things, e)))
-			return -1;
 		for (size_t i = 0; i < v->n; i++) {
 			const struct vocabulary_item *item = &v->items[i];
 			if (item->object == o && item->role == VOCABULARY_NOUN && !item->is_general &&
 				add_lines(v, o, &v->kinds[item->kind].things, e))
 				return -1;
 		}
+		v->line_named[o] = v->line_count;
+		find_name(l->names[o], &rows);
+		if (add_lines(v, o, &rows, e) ||
+			(*v->contents[o] && add_lines(v, o, &v->kinds[v->content_kinds[o]].things, e)))
+			return -1;
 	}
 	v->line_begin[l->objects] = v->line_count;
 	return v->cosine ? 0 : -1;
@@ -129,10 +131,10 @@ int vocabulary_for(struct vocabulary *v, const struct vocabulary_sentence *s, co
 	things_vectors_cosines(&v->things, v->word, v->cosine);
 	*any = any_thing(v);
 	for (size_t o = 0; o < v->lifted->objects; o++) {
-		match[o] = USE_BY_NAME * about[o] + USE_OF_ANY;
-		if (v->line_begin[o] < v->line_begin[o + 1])
-			match[o] = -1;
-		for (size_t k = v->line_begin[o]; k < v->line_begin[o + 1]; k++)
+		const size_t begin = v->line_begin[o],
+			     end = v->has_names ? v->line_begin[o + 1] : v->line_named[o];
+		match[o] = begin < end ? -1 : USE_BY_NAME * about[o] + USE_OF_ANY;
+		for (size_t k = begin; k < end; k++)
 			match[o] = fmax(match[o], (double)v->cosine[v->lines[k]]);
 	}
 	return 1;

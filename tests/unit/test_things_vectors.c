@@ -70,6 +70,8 @@ static struct choice choice;
 static float probability[OBJECTS];
 
 /* The object that a sentence means whose words all have the vector of a line; -1: none. */
+static unsigned parts = CHOOSE_ALL;
+
 static int ask(const char *text, const char *thing, const char *of)
 {
 	static float vectors[MOST * WIDTH];
@@ -89,7 +91,7 @@ static int ask(const char *text, const char *thing, const char *of)
 	for (size_t i = 0; i < words * WIDTH; i++)
 		vectors[i] = (float)line[i % WIDTH];
 	const struct choose_sentence s = {text, text, vectors, NULL, words, {.kind = VIEWPOINT_USUAL}, NULL};
-	CHECK(!choose(&scene, &s, 1, CHOOSE_ALL, &choice, probability, chosen, NULL, &e), "'%s'", text);
+	CHECK(!choose(&scene, &s, 1, parts, &choice, probability, chosen, NULL, &e), "'%s'", text);
 	for (int o = 0; o < OBJECTS && choice.there > 0.5; o++)
 		if (chosen[o])
 			return o;
@@ -130,6 +132,9 @@ static void uses(void)
 	CHECK(choice.is_by_purpose, "by what it is for");
 	expect(1, form, "stapler", encoder, "the number of a name is no word of it");
 	expect(-1, form, "hammer", encoder, "there is no hammer");
+	parts &= ~(1U << CHOOSE_NAMES);
+	expect(-1, form, "kettle", encoder, "nobody says that it is a kettle");
+	parts = CHOOSE_ALL;
 	expect(0, story, "kettle", encoder, "without the form of one");
 	expect(-1, story, "hammer", encoder, "nor a hammer then");
 	expect(-1, "where is the trombone", "kettle", encoder, "a name, and not here");
