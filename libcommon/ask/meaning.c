@@ -268,10 +268,10 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	const double known = judge_relation(m, phrase, c, fit, value);
 	/* what carries or holds something that is nothing here has it: "the one with its screen on" */
 	if (c->relation == PARSE_WITH || (c->relation == PARSE_SUPPORTS && c->anchors.n && known < 0.5)) {
-		const double is_said = meaning_judge_predicate(m, c, said);
+		meaning_judge_predicate(m, c, said);
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(said[o], known * value[o]);
-		meaning_judge_part_colours(m, c, is_said, value);
+		meaning_judge_part_colours(m, phrase, c, value);
 		return;
 	}
 	if (known < 1)
@@ -308,11 +308,13 @@ static double is_anchor(const struct meaning *m, int phrase, const struct parse_
 	return is;
 }
 
-/* Whether a clause says that two things touch. */
-static int is_contact(const struct parse_clause *c)
+/* Whether a clause is so or not: of two things that touch, or that are compared. */
+static int is_plain_fact(const struct parse_clause *c)
 {
-	return c->anchors.n && !c->negated &&
-	       (c->relation == PARSE_ON || c->relation == PARSE_INSIDE || c->relation == PARSE_SUPPORTS);
+	const unsigned contact =
+		1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_SUPPORTS | 1U << PARSE_BELOW;
+
+	return c->anchors.n && !c->negated && (contact >> c->relation & 1 || degree_of(c) == PARSE_MORE);
 }
 
 static void judge_clause(struct meaning *m, int phrase, int clause, const double *fit)
@@ -322,7 +324,7 @@ static void judge_clause(struct meaning *m, int phrase, int clause, const double
 	double *value = meaning_add_part(m, phrase, is_size(c) ? MEANING_SIZE : MEANING_CLAUSE, clause);
 	double *there = there_of(m, phrase);
 	const double least = is_size(c) ? SIZE_LEAST : RELATION_LEAST;
-	const double soft = is_contact(c) ? CONTACT_THERE : RELATION_THERE;
+	const double soft = is_plain_fact(c) ? CONTACT_THERE : RELATION_THERE;
 
 	judge_predication(m, phrase, c, fit, m->scratch + 7 * n, value);
 	for (size_t o = 0; o < n; o++) {

@@ -47,11 +47,8 @@ void meaning_judge_attribute(struct meaning *m, int phrase, int word, double lea
  * shelf". */
 void meaning_judge_said(struct meaning *m, const struct parse_clause *c, double *said);
 
-/* value (O) takes in the colours of parts that are no objects: "with a black cap". is_said: how far something
- * is known to have such a part. If it is, only the colours of markings count: of stripes sentences seldom say
- * the colour, but a scarf that is said is there, whatever the light makes of its yellow. */
-void meaning_judge_part_colours(
-	struct meaning *m, const struct parse_clause *c, double is_said, double *value);
+/* value (O) takes in the colours of parts that are no objects: "with a black cap". */
+void meaning_judge_part_colours(struct meaning *m, int phrase, const struct parse_clause *c, double *value);
 
 /* What a thing does, is for, or has: any word of it may be said of an object. Returns how far something is
  * known to be so. */

@@ -127,19 +127,6 @@ static enum coloured coloured_by(const struct parse *p, const struct parse_phras
 	return OF_THING;
 }
 
-/* value (O): how far any part of an object has the colour of a word, by its Gaussians; 0 where that is no
- * colour. */
-static int judge_part_colour(const struct meaning *m, int word, double *value)
-{
-	const int colour = colour_word(m->sentence->parse->words[word].lemma);
-
-	for (size_t o = 0; o < objects_of(m) && colour >= 0; o++) {
-		const double share = m->arrangement->objects[o].colours[colour];
-		value[o] = share / (share + PART_COLOUR_SHARE);
-	}
-	return colour >= 0;
-}
-
 /* Whether a phrase names what a surface is marked with. */
 static int is_marking(const struct parse *p, const struct parse_phrase *f)
 {
@@ -151,19 +138,35 @@ static int is_marking(const struct parse *p, const struct parse_phrase *f)
 	return head >= 0 && meaning_word_is(&p->words[head], markings);
 }
 
-void meaning_judge_part_colours(
-	struct meaning *m, const struct parse_clause *c, double is_said, double *value)
+/* Whether a part is all that one sees of a thing: "a book with a red cover". */
+static int is_outside(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char *const outsides[] = {"binding", "body", "coating", "colour", "color", "cover",
+		"exterior", "finish", "fur", "glaze", "outside", "paint", "skin", "surface", NULL};
+	const int head = meaning_head_of(p, f);
+
+	return head >= 0 && meaning_word_is(&p->words[head], outsides);
+}
+
+/* "With a yellow scarf": a colour that nothing here has, or is said to have, speaks against its being there. */
+void meaning_judge_part_colours(struct meaning *m, int phrase, const struct parse_clause *c, double *value)
 {
 	const struct parse *p = m->sentence->parse;
-	double *match = m->scratch + objects_of(m);
+	double *match = m->scratch + objects_of(m), *there = there_of(m, phrase);
 
 	for (int k = 0; k < c->anchors.n; k++) {
 		const struct parse_phrase *f = &p->phrases[c->anchors.item[k]];
-		const int counts = m->known[c->anchors.item[k]] < 0.5 && (is_said < 0.5 || is_marking(p, f));
+		const int counts = m->known[c->anchors.item[k]] < 0.5 || is_marking(p, f);
 		for (int a = 0; a < f->attributes.n && counts; a++) {
-			const int is_colour = judge_part_colour(m, f->attributes.item[a], match);
-			for (size_t o = 0; o < objects_of(m) && is_colour; o++)
+			const char *word = p->words[f->attributes.item[a]].lemma;
+			const int is_colour =
+				is_outside(p, f)
+					? vocabulary_colour(m->vocabulary, m->arrangement, word, match)
+					: vocabulary_part_colour(m->vocabulary, m->arrangement, word, match);
+			for (size_t o = 0; o < objects_of(m) && is_colour; o++) {
 				value[o] *= PART_COLOUR_LEAST + (1 - PART_COLOUR_LEAST) * match[o];
+				there[o] *= c->negated ? 1 : PART_COLOUR_THERE + (1 - PART_COLOUR_THERE) * match[o];
+			}
 		}
 	}
 }
@@ -190,7 +193,7 @@ static void judge_colour(struct meaning *m, int phrase, int word)
 	}
 	for (; word >= 0; word = colour_after(p, word)) {
 		if (of == OF_PART)
-			judge_part_colour(m, word, match);
+			vocabulary_part_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);
 		else
 			vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);
 		for (size_t o = 0; o < n; o++)

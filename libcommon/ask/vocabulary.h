@@ -128,6 +128,10 @@ int vocabulary_for(struct vocabulary *v, const struct vocabulary_sentence *s, co
  * training sentences say it has. Returns 0 where it is no colour word. */
 int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit);
 
+/* The same of any part of an object. */
+int vocabulary_part_colour(
+	const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit);
+
 /* Whether two objects were called by one noun. */
 int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b);
 

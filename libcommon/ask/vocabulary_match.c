@@ -336,6 +336,33 @@ int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, c
 	return 1;
 }
 
+/* Whether any sentence of an object says a colour of it or of a part of it. */
+static double says_colour(const struct vocabulary *v, size_t object, int colour)
+{
+	double most = 0;
+
+	for (size_t i = 0; i < v->n && v->has_said; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		const int said = item->object == object && item->sentence != v->without && !says_place(item)
+					 ? colour_word(item->lemma)
+					 : -1;
+		most = said < 0 ? most : fmax(most, colour_words_alike(said, colour));
+	}
+	return most;
+}
+
+int vocabulary_part_colour(
+	const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit)
+{
+	const int colour = colour_word(word);
+
+	for (size_t o = 0; o < a->n && colour >= 0; o++) {
+		const double share = a->objects[o].colours[colour];
+		fit[o] = fmax(share / (share + PART_COLOUR_SHARE), says_colour(v, o, colour));
+	}
+	return colour >= 0;
+}
+
 size_t vocabulary_whole(
 	struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match)
 {
