@@ -37,7 +37,8 @@ void parse_words_clause(
 	static const char *const degrees[] = {"", "more ", "most "};
 
 	parse_words_add(w, c->negated ? "not " : "");
-	parse_words_add(w, degrees[c->degree]);
+	if (c->relation != PARSE_OTHER) /* the word itself compares: "darkest" */
+		parse_words_add(w, degrees[c->degree]);
 	if (c->relation == PARSE_OTHER && c->span.begin < c->span.end)
 		parse_words_bytes(w, text + c->span.begin, (size_t)(c->span.end - c->span.begin));
 	else

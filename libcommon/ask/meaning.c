@@ -75,7 +75,7 @@ static enum parse_relation relation_of(const struct parse *p, const struct parse
 static enum parse_degree degree_of(const struct parse_clause *c)
 {
 	const unsigned plain = 1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_SUPPORTS |
-			       1U << PARSE_BETWEEN | 1U << PARSE_WITH | 1U << PARSE_OTHER;
+			       1U << PARSE_BETWEEN | 1U << PARSE_WITH;
 
 	return plain >> c->relation & 1 ? PARSE_PLAIN : c->degree;
 }
@@ -258,9 +258,16 @@ static void relate_unnamed(const struct meaning *m, const struct parse_clause *c
 static void judge_predication(struct meaning *m, int phrase, const struct parse_clause *c, const double *fit,
 	double *said, double *value)
 {
+	const struct parse *p = m->sentence->parse;
+	const struct parse_phrase *f = &p->phrases[phrase];
 	const size_t n = objects_of(m);
 	double *unnamed = m->scratch;
 
+	if (meaning_compares_looks(p, c)) {
+		meaning_judge_compared(
+			m, c, counted_by(p, f, counts_along) == c ? f->ordinal : 1, fit, value);
+		return;
+	}
 	if (c->relation == PARSE_OTHER || is_of_colour(m, c)) {
 		meaning_judge_predicate(m, c, value);
 		return;

@@ -1,5 +1,6 @@
 /* What the two halves of ask/meaning.h share: meaning.c has phrases and clauses, meaning_words.c their words,
- * meaning_sets.c what is left out or chosen from, mutual.c what stands to each other.
+ * meaning_sets.c what is left out or chosen from, meaning_compared.c looks that are compared, mutual.c what
+ * stands to each other.
  */
 #ifndef ASK_MEANING_PRIVATE_H
 #define ASK_MEANING_PRIVATE_H
@@ -53,6 +54,13 @@ void meaning_judge_part_colours(struct meaning *m, int phrase, const struct pars
 /* What a thing does, is for, or has: any word of it may be said of an object. Returns how far something is
  * known to be so. */
 double meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, double *value);
+
+/* Whether a clause compares looks: "darkest", "shinier than the kettle". */
+int meaning_compares_looks(const struct parse *p, const struct parse_clause *c);
+
+/* value (O) of such a clause among those that fit, the place-th of them. Its anchors are judged. */
+void meaning_judge_compared(
+	struct meaning *m, const struct parse_clause *c, int place, const double *fit, double *value);
 
 /* The phrase's fit takes in a phrase that is left out. */
 void meaning_judge_except(struct meaning *m, int phrase, int except);

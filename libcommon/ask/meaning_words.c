@@ -148,7 +148,8 @@ static int is_outside(const struct parse *p, const struct parse_phrase *f)
 	return head >= 0 && meaning_word_is(&p->words[head], outsides);
 }
 
-/* "With a yellow scarf": a colour that nothing here has, or is said to have, speaks against its being there. */
+/* "With a yellow scarf": a colour that nothing here has, or is said to have, speaks against its being there.
+ */
 void meaning_judge_part_colours(struct meaning *m, int phrase, const struct parse_clause *c, double *value)
 {
 	const struct parse *p = m->sentence->parse;
@@ -165,7 +166,9 @@ void meaning_judge_part_colours(struct meaning *m, int phrase, const struct pars
 					: vocabulary_part_colour(m->vocabulary, m->arrangement, word, match);
 			for (size_t o = 0; o < objects_of(m) && is_colour; o++) {
 				value[o] *= PART_COLOUR_LEAST + (1 - PART_COLOUR_LEAST) * match[o];
-				there[o] *= c->negated ? 1 : PART_COLOUR_THERE + (1 - PART_COLOUR_THERE) * match[o];
+				there[o] *= c->negated
+						    ? 1
+						    : PART_COLOUR_THERE + (1 - PART_COLOUR_THERE) * match[o];
 			}
 		}
 	}

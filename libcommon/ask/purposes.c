@@ -40,8 +40,8 @@ static int is_kept(const struct meaning *m, const struct meaning_part *part)
 	const struct parse_clause *c = &p->clauses[part->index];
 	const int is_of_scene = c->relation <= PARSE_BEHIND || c->degree != PARSE_PLAIN ||
 				(c->relation >= PARSE_CORNER && c->relation <= PARSE_FLOOR);
-	if (c->relation >= PARSE_WITH || c->relation == PARSE_INSIDE || c->negated ||
-		(!c->anchors.n && !is_of_scene))
+	const int is_place = c->relation < PARSE_WITH && c->relation != PARSE_INSIDE;
+	if ((!is_place && !meaning_compares_looks(p, c)) || c->negated || (!c->anchors.n && !is_of_scene))
 		return 0;
 	for (int k = 0; k < c->anchors.n; k++)
 		if (m->known[c->anchors.item[k]] < 0.5 || !p->phrases[c->anchors.item[k]].noun.n)

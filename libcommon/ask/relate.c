@@ -221,6 +221,11 @@ void relate_rank(const struct arrangement *a, enum parse_relation from, int k, c
 	rank(a, key, fit, abs(k), soft_of(from), a->n, out);
 }
 
+void relate_rank_by(const struct arrangement *a, const double *key, int k, const double *fit, double *out)
+{
+	rank(a, key, fit, k, 1, a->n, out);
+}
+
 /* -1 to 1: where an object is in the objects' extent. */
 static double place(const struct arrangement *a, const struct arranged *o, int axis)
 {

@@ -39,6 +39,9 @@ void relate(
 void relate_rank(const struct arrangement *a, enum parse_relation from, int k, const double *fit, double *key,
 	double *out);
 
+/* The same by a key of the caller's, in units of what is told apart: the smallest is the first. */
+void relate_rank_by(const struct arrangement *a, const double *key, int k, const double *fit, double *out);
+
 /* p stands on q, in [0,1]. */
 double relate_stands_on(const struct arrangement *a, const struct arranged *p, const struct arranged *q);
 

@@ -4,6 +4,7 @@
 #include "lang/analysis.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
+#include "lang/compared.h"
 
 /* "any colour but orange": orange is left out. */
 static void mend_any_colour(struct analysis *a, const struct tokens *t)
@@ -149,6 +150,30 @@ static void mend_who(struct analysis *a, const struct tokens *t)
 	a->word[predicate].head = who;
 }
 
+/* Whether a word is said of something as a look or a size. */
+static int is_said_of_looks(const struct analysis_word *w)
+{
+	return w->role == ROLE_ATTRIBUTE || w->role == ROLE_NAME || w->role == ROLE_TARGET ||
+	       (w->role == ROLE_PREDICATE && w->relation >= PARSE_LARGER && w->relation <= PARSE_WIDER);
+}
+
+/* "the darkest", "the most colourful one", "shinier than the tin": no sizes, but looks that are compared. */
+static void mend_compared(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		const struct analysis_word w = a->word[i];
+		if (!is_said_of_looks(&w) || compared_at(t, i) == PARSE_PLAIN)
+			continue;
+		const int is_of_target = w.head >= 0 && a->word[w.head].role == ROLE_TARGET;
+		a->word[i] = (struct analysis_word){ROLE_PREDICATE, is_of_target ? ROOT : w.head, PARSE_OTHER,
+			w.role == ROLE_PREDICATE && w.negated};
+		const int start = tokens_class(t, i + 2) == CLOSED_DETERMINER ? i + 3 : i + 2;
+		const int noun = tokens_is(t, i + 1, "than") ? noun_of_run(a, t, start) : -1;
+		if (noun >= 0 && a->word[noun].role == ROLE_NONE)
+			a->word[noun] = (struct analysis_word){.role = ROLE_ANCHOR, .head = i};
+	}
+}
+
 void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	analysis_denied(a, t);
@@ -157,6 +182,7 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 	analysis_it(a, t);
 	mend_any_colour(a, t);
 	mend_empty(a, t);
+	mend_compared(a, t);
 	mend_who(a, t);
 	mend_compounds(a, t);
 	mend_ends(a, t);

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "lang/analysis.h"
 #include "lang/closed.h"
+#include "lang/compared.h"
 #include "lang/colours.h"
 #include "lang/parse_private.h"
 
@@ -172,6 +173,8 @@ static enum parse_degree degree_of(const struct build *b, int i)
 		return PARSE_PLAIN;
 	if (tokens_is_any(t, i, most))
 		return PARSE_MOST;
+	if (r == PARSE_OTHER)
+		return compared_at(t, i);
 	if (c == CLOSED_PLACE || c == CLOSED_SIZE) {
 		if (build_value(t, i))
 			return (enum parse_degree)build_value(t, i);
@@ -222,7 +225,8 @@ static int is_nothing(const struct tokens *t, int i)
 /* Whether a predicate says what a thing does or is for. */
 static int says_use(const struct build *b, int i)
 {
-	return b->a->word[i].role == ROLE_PREDICATE && b->a->word[i].relation == PARSE_OTHER;
+	return b->a->word[i].role == ROLE_PREDICATE && b->a->word[i].relation == PARSE_OTHER &&
+	       compared_at(b->t, i) == PARSE_PLAIN;
 }
 
 /* Whether word j goes on with what a predicate before it says: "put on the road to warn drivers". */

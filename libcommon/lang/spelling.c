@@ -2,6 +2,7 @@
 
 #include "lang/closed.h"
 #include "lang/colours.h"
+#include "lang/compared.h"
 #include "lang/kinds.h"
 #include "lang/things.h"
 #include "lang/tokens.h"
@@ -81,12 +82,14 @@ static int is_slip_of_noun(const struct suspect *s, const char *noun)
 static int is_known(const char *word, const char *lemma, const char *const *known, int known_count)
 {
 	struct things_rows rows;
+	char base[COMPARED_LENGTH];
 
 	for (int i = 0; i < known_count; i++)
 		if (!strcmp(known[i], word) || !strcmp(known[i], lemma))
 			return 1;
 	things_find(&rows, lemma);
-	return rows.n || colour_word(word) >= 0 || kinds_have(lemma);
+	return rows.n || colour_word(word) >= 0 || kinds_have(lemma) ||
+	       compared_of(word, base) != PARSE_PLAIN;
 }
 
 /* One of the nouns of a group, or its plural. */

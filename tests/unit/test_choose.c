@@ -548,9 +548,30 @@ static void surfaces(void)
 	splats = plain;
 }
 
+/* Looks are compared among those that are meant; the crate is darker than the tin, and the mugs are bright.
+ */
+static void comparisons(void)
+{
+	const char *tin = "something darker than the tin", *brighter = "something brighter than the crate";
+
+	CHECK(ask("the darkest thing", CHOOSE_ALL) == 2 && choice.there > 0.5, "the darkest: %g",
+		choice.there);
+	CHECK(ask("the second darkest thing", CHOOSE_ALL) == 3, "the second darkest");
+	CHECK(ask("the reddest thing", CHOOSE_ALL) == 2 && choice.there > 0.5, "the reddest: %g",
+		choice.there);
+	CHECK(best_of_roles(tin, "T P . . A1", PARSE_OTHER) == 2 && choice.there > 0.5,
+		"darker than the tin: %g", choice.there);
+	best_of_roles(brighter, "T P . . A1", PARSE_OTHER);
+	CHECK(probability[2] < 0.1, "the crate is brighter than itself: %g", (double)probability[2]);
+	best_of_roles("something darker than the crate", "T P . . A1", PARSE_OTHER);
+	CHECK(choice.there < 0.5, "nothing is darker: %g", choice.there);
+	CHECK(best_of_roles("the darkest mug", ". P T", PARSE_OTHER) < 2, "a mug");
+}
+
 int main(void)
 {
 	make_scene();
+	comparisons();
 	surfaces();
 	members();
 	sides();

@@ -1,5 +1,6 @@
 /* lang/: colour words, what nouns share, and what WordNet knows, where it is there. */
 #include "lang/colours.h"
+#include "lang/compared.h"
 #include "lang/finish.h"
 #include "lang/kinds.h"
 #include "lang/spelling.h"
@@ -58,6 +59,33 @@ static void kinds(void)
 		"kinds");
 	CHECK(!kinds_share("", "box") && !kinds_share("ox", "box") && !kinds_share("box block", "box"),
 		"whole words");
+}
+
+static void comparisons(void)
+{
+	static const struct {
+		const char *word, *base;
+		enum parse_degree degree;
+		enum compared_look look;
+	} words[] = {{"darkest", "dark", PARSE_MOST, COMPARED_DARK},
+		{"paler", "pale", PARSE_MORE, COMPARED_BRIGHT},
+		{"reddest", "red", PARSE_MOST, COMPARED_COLOUR},
+		{"shinier", "shiny", PARSE_MORE, COMPARED_FINISH},
+		{"stripiest", "stripy", PARSE_MOST, COMPARED_FINISH}};
+	static const char *const none[] = {"largest", "nearest", "heaviest", "thinner", "dark", "silver",
+		"forest", "modest", "marker", "drawer", "est", "er", "", "chest", "flower"};
+	char base[COMPARED_LENGTH];
+
+	for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+		CHECK(compared_of(words[i].word, base) == words[i].degree && !strcmp(base, words[i].base) &&
+				compared_look(base) == words[i].look,
+			"%s: '%s'", words[i].word, base);
+	for (size_t i = 0; i < sizeof none / sizeof *none; i++)
+		CHECK(compared_of(none[i], base) == PARSE_PLAIN, "%s compares", none[i]);
+	CHECK(compared_look("colourful") == COMPARED_COLOURFUL && compared_look("soft") == COMPARED_NONE,
+		"looks");
+	if (wordnet_is_there())
+		CHECK(compared_of("softest", base) == PARSE_MOST && !strcmp(base, "soft"), "softest");
 }
 
 static int name_one_thing(const char *a, const char *b)
@@ -239,6 +267,7 @@ int main(void)
 	uses();
 	colours();
 	kinds();
+	comparisons();
 	things();
 	parts_of_things();
 	wordnet();

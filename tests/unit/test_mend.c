@@ -19,6 +19,10 @@ static void mends_looks(void)
 	mends("the can, not the orange box", ". T . . a5 E", 0, 4, ROLE_ATTRIBUTE, 5, 0);
 	mends("the can that is not by an orange box", ". T . . . P . a8 A5", PARSE_NEAR, 7, ROLE_ATTRIBUTE, 8,
 		0);
+	mends("the darkest can", ". P T", PARSE_SMALLER, 1, ROLE_PREDICATE, ROOT, PARSE_OTHER);
+	mends("the smallest can", ". P T", PARSE_SMALLER, 1, ROLE_PREDICATE, ROOT, PARSE_SMALLER);
+	mends("the most colourful can", ". . a T", 0, 2, ROLE_PREDICATE, ROOT, PARSE_OTHER);
+	mends("shinier than the pot", "a . . .", 0, 3, ROLE_ANCHOR, 0, 0);
 	mends("the orange can", ". a T", 0, 1, ROLE_ATTRIBUTE, ROOT, 0);
 
 	mends("the lamp left of the grey one", ". T P . . a A2", PARSE_LEFT, 5, ROLE_ATTRIBUTE, 6, 0);

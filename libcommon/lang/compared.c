@@ -1,0 +1,97 @@
+#include "lang/compared.h"
+
+#include "lang/closed.h"
+#include "lang/colours.h"
+#include "lang/finish.h"
+#include "lang/wordnet.h"
+
+#include <string.h>
+
+static int is_among(const char *word, const char *const *list)
+{
+	for (; *list; list++)
+		if (!strcmp(word, *list))
+			return 1;
+	return 0;
+}
+
+enum compared_look compared_look(const char *adjective)
+{
+	static const char *const dark[] = {"dark", "dim", "dusky", "gloomy", NULL},
+				 *const bright[] = {"bright", "fair", "light", "pale", NULL},
+				 *const colourful[] = {
+					 "colorful", "colourful", "gaudy", "saturated", "vivid", NULL};
+
+	return is_among(adjective, dark)	? COMPARED_DARK
+	       : is_among(adjective, bright)	? COMPARED_BRIGHT
+	       : is_among(adjective, colourful) ? COMPARED_COLOURFUL
+	       : colour_word(adjective) >= 0	? COMPARED_COLOUR
+	       : finish_of(adjective) >= 0	? COMPARED_FINISH
+						: COMPARED_NONE;
+}
+
+/* Adjectives of size and place. */
+static int is_measure(const char *base)
+{
+	static const char *const measures[] = {"bulky", "chubby", "chunky", "close", "deep", "far", "fat",
+		"few", "flat", "heavy", "high", "lofty", "low", "narrow", "near", "plump", "shallow",
+		"skinny", "slight", "slim", "stout", "tall", "thick", "thin", NULL};
+
+	return is_among(base, measures) || closed_is(base, CLOSED_SIZE) || closed_is(base, CLOSED_PLACE);
+}
+
+/* Whether a base with one of the endings that a comparison takes away from it is how something looks; 2 where
+ * it is some other adjective. */
+static int find_base(char *base)
+{
+	static const char *const endings[] = {"", "e"};
+	struct wordnet_adjective known;
+	const size_t n = strlen(base);
+
+	if (base[n - 1] == 'i')
+		base[n - 1] = 'y';
+	for (int k = 0; k < 3; k++) {
+		if (k == 2 && (n < 3 || base[n - 1] != base[n - 2]))
+			break;
+		memcpy(base + (k == 2 ? n - 1 : n), k == 2 ? "" : endings[k], k == 1 ? 2 : 1);
+		if (is_measure(base))
+			return 0;
+		if (compared_look(base) != COMPARED_NONE)
+			return 1;
+		wordnet_find_adjective(&known, base);
+		if (known.n)
+			return 2;
+	}
+	return 0;
+}
+
+enum parse_degree compared_of(const char *word, char *base)
+{
+	const size_t n = strlen(word);
+	const int is_most = n > 5 && !strcmp(word + n - 3, "est"),
+		  is_more = n > 4 && !strcmp(word + n - 2, "er");
+	struct wordnet_adjective whole;
+
+	if ((!is_most && !is_more) || n >= COMPARED_LENGTH - 1 || closed_find(word) >= 0 ||
+		colour_word(word) >= 0)
+		return PARSE_PLAIN;
+	memcpy(base, word, n);
+	base[n - (is_most ? 3 : 2)] = 0;
+	const int found = find_base(base);
+	if (found == 1)
+		return is_most ? PARSE_MOST : PARSE_MORE;
+	wordnet_find_adjective(&whole, word); /* "modest" is no more of "mod", and no forest is fore */
+	return found == 2 && is_most && !whole.n && !wordnet_is_noun(word) ? PARSE_MOST : PARSE_PLAIN;
+}
+
+enum parse_degree compared_at(const struct tokens *t, int i)
+{
+	char base[COMPARED_LENGTH];
+	const enum parse_degree own = compared_of(t->word[i].text, base);
+
+	if (own != PARSE_PLAIN || t->word[i].before || compared_look(t->word[i].text) == COMPARED_NONE)
+		return own;
+	return tokens_is(t, i - 1, "most")   ? PARSE_MOST
+	       : tokens_is(t, i - 1, "more") ? PARSE_MORE
+					     : PARSE_PLAIN;
+}
