@@ -130,13 +130,30 @@ static int is_by_name(const struct meaning *m, int head)
 					    parse_word_is(p, head - 2, there)));
 }
 
-/* Whether the words that count say more than a name: "where is the teddy bear?" does not. */
+/* Whether a word is of what the target is said to be near, under ... */
+static int is_of_anchor(const struct parse *p, int word)
+{
+	const struct parse_list *clauses = &p->phrases[0].clauses;
+
+	for (int k = 0; k < clauses->n; k++) {
+		const struct parse_clause *c = &p->clauses[clauses->item[k]];
+		for (int j = 0; c->relation < PARSE_SUPPORTS && j < c->anchors.n; j++) {
+			const struct parse_phrase *f = &p->phrases[c->anchors.item[j]];
+			if (parse_list_has(&f->noun, word) || parse_list_has(&f->attributes, word))
+				return 1;
+		}
+	}
+	return 0;
+}
+
+/* Whether the words that count say more than a name and a place: "where is the teddy bear by the window?"
+ * does not. */
 static int says_more_than_name(const struct parse *p, const char *counts)
 {
 	const struct parse_list *noun = &p->phrases[0].noun;
 
 	for (int w = 0; w < p->word_count; w++)
-		if (counts[w] && !parse_list_has(noun, w))
+		if (counts[w] && !parse_list_has(noun, w) && !(noun->n && is_of_anchor(p, w)))
 			return 1;
 	return 0;
 }
