@@ -1,6 +1,6 @@
-/* What the two halves of ask/meaning.h share: meaning.c has phrases and clauses, meaning_words.c their words,
- * meaning_sets.c what is left out or chosen from, meaning_compared.c looks that are compared, mutual.c what
- * stands to each other.
+/* What the parts of ask/meaning.h share: meaning.c has phrases, meaning_clauses.c how they stand to one
+ * another, meaning_nouns.c, meaning_colours.c and meaning_words.c their words, meaning_sets.c what is left
+ * out or chosen from, meaning_compared.c looks that are compared, mutual.c what stands to each other.
  */
 #ifndef ASK_MEANING_PRIVATE_H
 #define ASK_MEANING_PRIVATE_H
@@ -37,10 +37,17 @@ int meaning_word_is(const struct parse_word *w, const char *const *list);
 /* The word that names the kind of thing, or -1: "something", "the red one". */
 int meaning_head_of(const struct parse *p, const struct parse_phrase *f);
 
+/* Whether a word of the phrase is in a list that ends in NULL. */
+int meaning_has_word(const struct parse *p, const struct parse_phrase *f, const char *const *list);
+
 /* "the other cups", "anything else". */
 int meaning_is_other(const struct parse *p, const struct parse_phrase *f);
 
 void meaning_judge_noun(struct meaning *m, int phrase);
+
+/* How far objects are of the colour of a word, and of those right after it that are colours too: "salmon
+ * pink" and "black and white" are either. Nothing where the word before it has done so. */
+void meaning_judge_colour(struct meaning *m, int phrase, int word);
 
 void meaning_judge_attribute(struct meaning *m, int phrase, int word, double least);
 
@@ -50,6 +57,20 @@ void meaning_judge_said(struct meaning *m, const struct parse_clause *c, double 
 
 /* value (O) takes in the colours of parts that are no objects: "with a black cap". */
 void meaning_judge_part_colours(struct meaning *m, int phrase, const struct parse_clause *c, double *value);
+
+/* The place as a whole, unless something is called so. */
+int meaning_is_scene(const struct meaning *m, int phrase);
+
+/* When a clause is judged: what compares with all else that fits has to wait for it. */
+enum meaning_turn { AT_ONCE, BY_PLACE, BY_DEGREE };
+
+/* The clauses of that turn. Those of the place as a whole are the thing's: "everything on the shelf that is
+ * left of the lamp". f: the phrase or that place; fit: what is compared. */
+void meaning_judge_clauses(struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit,
+	enum meaning_turn turn, int depth);
+
+/* What orders those that fit so far, each by itself. */
+void meaning_judge_order(struct meaning *m, int phrase);
 
 /* What a thing does, is for, or has: any word of it may be said of an object. Returns how far something is
  * known to be so. */
