@@ -548,6 +548,30 @@ static void surfaces(void)
 	splats = plain;
 }
 
+/* A part of a colour that a thing has nowhere speaks against it, and so does a cover. */
+static void coloured_parts(void)
+{
+	ask("the crate with a red lid", CHOOSE_ALL & ~WORDING);
+	CHECK(choice.there > 0.5, "a red lid of a red crate: %g", choice.there);
+	ask("the crate with a green lid", CHOOSE_ALL & ~WORDING);
+	CHECK(choice.there < 0.5, "a green lid: %g", choice.there);
+	ask("the crate without a green lid", CHOOSE_ALL & ~WORDING);
+	CHECK(choice.there > 0.5, "none: %g", choice.there);
+	ask("the crate with a green cover", CHOOSE_ALL & ~WORDING);
+	CHECK(choice.there < 0.5, "a green cover: %g", choice.there);
+}
+
+/* What compares, and what lies under another, is so or not. */
+static void plain_facts(void)
+{
+	ask("the crate under the tin", CHOOSE_ALL & ~WORDING);
+	CHECK(choice.there < 0.5, "it stands beside it: %g", choice.there);
+	best_of_roles("the mug further back than the crate", ". T . P . . A3", PARSE_BEHIND);
+	CHECK(choice.there < 0.5, "nothing is: %g", choice.there);
+	best_of_roles("the mug further back than the tin", ". T . P . . A3", PARSE_BEHIND);
+	CHECK(choice.there > 0.5, "both are: %g", choice.there);
+}
+
 /* Looks are compared among those that are meant; the crate is darker than the tin, and the mugs are bright.
  */
 static void comparisons(void)
@@ -572,6 +596,8 @@ int main(void)
 {
 	make_scene();
 	comparisons();
+	coloured_parts();
+	plain_facts();
 	surfaces();
 	members();
 	sides();
