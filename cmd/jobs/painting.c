@@ -1,10 +1,7 @@
-#include "cmd/jobs/painting.h"
+#include "cmd/jobs/painting_private.h"
 
 #include "base/file.h"
-#include "base/mem.h"
 #include "base/name.h"
-#include "base/names.h"
-#include "base/path.h"
 #include "cmd/jobs/mask_tree.h"
 #include "formats/annotations.h"
 #include "formats/jsonl.h"
@@ -16,44 +13,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* A warning where more of a picture than this is of a colour that is neither black nor white and has no name.
- */
-static const double unnamed_share = 0.001;
-
-/* The view of a picture: its file name without the ending. */
-static char *view_of(const char *path, struct err *e)
-{
-	int length;
-	const char *last = path_last(path, &length);
-	char *stem = mem_strdup(last, e), *dot;
-
-	if (!stem)
-		return NULL;
-	stem[length] = 0;
-	dot = strrchr(stem, '.');
-	if (dot && dot > stem)
-		*dot = 0;
-	char *view = name_to_view(stem, e);
-	free(stem);
-	return view;
-}
-
-struct picture_read {
-	const char *path;
-	char *view;
-	int height, width;
-	uint8_t *rgb, *mask;
-};
-
-static uint32_t colour_at(const struct picture_read *p, size_t pixel)
-{
-	const uint8_t *c = p->rgb + 3 * pixel;
-
-	return (uint32_t)c[0] << 16 | (uint32_t)c[1] << 8 | c[2];
-}
-
-/* The record of a mask, which is freed. Where it goes: the lens's photograph to the view. */
-static int put_mask(struct mask *mask, struct warping *w, const char *path, FILE *out, struct err *e)
+int painting_put(struct mask *mask, struct warping *w, const char *path, FILE *out, struct err *e)
 {
 	int bad = 0;
 
@@ -66,72 +26,6 @@ static int put_mask(struct mask *mask, struct warping *w, const char *path, FILE
 	}
 	rle_free(&mask->rle);
 	return bad;
-}
-
-/* The mask of a colour, if any pixel has it: its record. */
-static int put_name(
-	struct picture_read *p, struct painting_name *name, struct warping *w, FILE *out, struct err *e)
-{
-	struct mask mask = {.view = p->view, .object = name->name, .score = NAN, .visible = NAN};
-	const size_t pixels = (size_t)p->height * (size_t)p->width;
-	size_t covered = 0;
-
-	for (size_t at = 0; at < pixels; at++)
-		covered += p->mask[at] = colour_at(p, at) == name->colour;
-	if (!covered)
-		return 0;
-	name->is_seen = 1;
-	if (rle_encode(&mask.rle, p->mask, p->height, p->width, e))
-		return -1;
-	return put_mask(&mask, w, p->path, out, e);
-}
-
-static int by_value(const void *a, const void *b)
-{
-	const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-
-	return (x > y) - (x < y);
-}
-
-/* Colours that cover much and have no name: a slip of the painter or of the file of names. */
-static int warn_unnamed(const struct picture_read *p, const struct painting_names *names,
-	const struct report *to, struct err *e)
-{
-	const size_t pixels = (size_t)p->height * (size_t)p->width;
-	uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
-
-	if (!sorted)
-		return -1;
-	for (size_t at = 0; at < pixels; at++)
-		sorted[at] = colour_at(p, at);
-	qsort(sorted, pixels, sizeof *sorted, by_value);
-	for (size_t first = 0, end; first < pixels; first = end) {
-		for (end = first; end < pixels && sorted[end] == sorted[first];)
-			end++;
-		const double share = (double)(end - first) / (double)pixels;
-		if (share > unnamed_share && sorted[first] && sorted[first] != 0xffffff &&
-			!painting_names_find(names, sorted[first]))
-			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path,
-				(unsigned)sorted[first], 100 * share);
-	}
-	free(sorted);
-	return 0;
-}
-
-static int put_picture(struct painting_names *names, const char *path, struct warping *w, FILE *out,
-	const struct report *to, struct err *e)
-{
-	struct picture_read p = {.path = path};
-	int bad = image_read_rgb(path, &p.rgb, &p.height, &p.width, e) || !(p.view = view_of(path, e)) ||
-		  !(p.mask = mem_alloc((size_t)p.height, (size_t)p.width, path, e)) ||
-		  warn_unnamed(&p, names, to, e);
-
-	for (size_t i = 0; i < names->n && !bad; i++)
-		bad = put_name(&p, &names->items[i], w, out, e);
-	free(p.view);
-	free(p.rgb);
-	free(p.mask);
-	return bad ? -1 : 0;
 }
 
 /* Whether each shape has a box, in the picture that the mask is of. */
@@ -161,7 +55,7 @@ static int put_labels(const struct annotations *a, const char *path, struct warp
 		if (!rle_area(shown))
 			continue;
 		if (rle_from_runs(&mask.rle, shown->runs, shown->n, shown->height, shown->width, e) ||
-			put_mask(&mask, w, path, out, e))
+			painting_put(&mask, w, path, out, e))
 			return -1;
 	}
 	return 0;
@@ -258,7 +152,7 @@ static int put_tree_mask(void *to, const char *path, const char *view, const cha
 		return 0;
 	}
 	++*t->count;
-	return put_mask(&mask, t->w, path, t->out, e);
+	return painting_put(&mask, t->w, path, t->out, e);
 }
 
 static int put_any(struct painting_names *names, const char *path, struct warping *w, FILE *out,
@@ -272,30 +166,7 @@ static int put_any(struct painting_names *names, const char *path, struct warpin
 		return put_records(path, w, out, count, e);
 	if (file_is_dir(path))
 		return mask_tree_each(path, put_tree_mask, &tree, e);
-	return put_picture(names, path, w, out, to, e);
-}
-
-/* Pictures that are called the same in different folders are of one view. */
-static int warn_shared(const char *const *pictures, size_t count, const struct report *to, struct err *e)
-{
-	char **views = mem_zalloc(count, sizeof *views, "views", e);
-	struct names names = {0};
-	size_t earlier;
-	int bad = !views;
-
-	for (size_t i = 0; i < count && !bad; i++)
-		if (painting_needs_names(pictures[i]))
-			bad = !(views[i] = view_of(pictures[i], e));
-	bad = bad || names_make(&names, views, sizeof *views, 0, count, e);
-	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
-	if (twice != NAMES_NONE)
-		report_warn(to, "%s and %s are both of view '%s'", pictures[earlier], pictures[twice],
-			views[twice]);
-	names_free(&names);
-	for (size_t i = 0; views && i < count; i++)
-		free(views[i]);
-	free(views);
-	return bad ? -1 : 0;
+	return painting_put_colours(names, path, w, out, to, e);
 }
 
 static int put_all(struct painting_names *names, const char *const *pictures, size_t count, struct warping *w,
@@ -303,7 +174,7 @@ static int put_all(struct painting_names *names, const char *const *pictures, si
 {
 	size_t seen = 0, labels = 0;
 
-	if (warn_shared(pictures, count, to, e))
+	if (painting_warn_shared(pictures, count, to, e))
 		return -1;
 	for (size_t i = 0; i < count; i++)
 		if (put_any(names, pictures[i], w, out, &labels, to, e))

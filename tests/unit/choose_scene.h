@@ -3,6 +3,7 @@
 #define CHOOSE_SCENE_H
 
 #include "ask/choose.h"
+#include "mend_help.h"
 #include "unit.h"
 
 #include <math.h>
@@ -124,5 +125,14 @@ enum {
 	SENTENCE = 1 << CHOOSE_SENTENCE,
 	WORDING = 1 << CHOOSE_WORDING
 };
+
+/* The best of a sentence whose words are so. */
+static inline int best_of_roles(const char *text, const char *roles, enum parse_relation relation)
+{
+	struct parse p = built(text, roles, relation);
+	const int best = ask_parsed(text, CHOOSE_ALL, (struct viewpoint){.kind = VIEWPOINT_USUAL}, &p);
+	parse_free(&p);
+	return best;
+}
 
 #endif

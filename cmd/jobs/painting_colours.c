@@ -1,0 +1,137 @@
+/* Pictures that have a colour for each thing: a mask for each colour that has a name. */
+#include "cmd/jobs/painting_private.h"
+
+#include "base/mem.h"
+#include "base/name.h"
+#include "base/names.h"
+#include "base/path.h"
+#include "formats/png.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A warning where more of a picture than this is of a colour that is neither black nor white and has no name.
+ */
+static const double unnamed_share = 0.001;
+
+/* The view of a picture: its file name without the ending. */
+static char *view_of(const char *path, struct err *e)
+{
+	int length;
+	const char *last = path_last(path, &length);
+	char *stem = mem_strdup(last, e), *dot;
+
+	if (!stem)
+		return NULL;
+	stem[length] = 0;
+	dot = strrchr(stem, '.');
+	if (dot && dot > stem)
+		*dot = 0;
+	char *view = name_to_view(stem, e);
+	free(stem);
+	return view;
+}
+
+struct picture_read {
+	const char *path;
+	char *view;
+	int height, width;
+	uint8_t *rgb, *mask;
+};
+
+static uint32_t colour_at(const struct picture_read *p, size_t pixel)
+{
+	const uint8_t *c = p->rgb + 3 * pixel;
+
+	return (uint32_t)c[0] << 16 | (uint32_t)c[1] << 8 | c[2];
+}
+
+/* The mask of a colour, if any pixel has it: its record. */
+static int put_name(
+	struct picture_read *p, struct painting_name *name, struct warping *w, FILE *out, struct err *e)
+{
+	struct mask mask = {.view = p->view, .object = name->name, .score = NAN, .visible = NAN};
+	const size_t pixels = (size_t)p->height * (size_t)p->width;
+	size_t covered = 0;
+
+	for (size_t at = 0; at < pixels; at++)
+		covered += p->mask[at] = colour_at(p, at) == name->colour;
+	if (!covered)
+		return 0;
+	name->is_seen = 1;
+	if (rle_encode(&mask.rle, p->mask, p->height, p->width, e))
+		return -1;
+	return painting_put(&mask, w, p->path, out, e);
+}
+
+static int by_value(const void *a, const void *b)
+{
+	const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* Colours that cover much and have no name: a slip of the painter or of the file of names. */
+static int warn_unnamed(const struct picture_read *p, const struct painting_names *names,
+	const struct report *to, struct err *e)
+{
+	const size_t pixels = (size_t)p->height * (size_t)p->width;
+	uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
+
+	if (!sorted)
+		return -1;
+	for (size_t at = 0; at < pixels; at++)
+		sorted[at] = colour_at(p, at);
+	qsort(sorted, pixels, sizeof *sorted, by_value);
+	for (size_t first = 0, end; first < pixels; first = end) {
+		for (end = first; end < pixels && sorted[end] == sorted[first];)
+			end++;
+		const double share = (double)(end - first) / (double)pixels;
+		if (share > unnamed_share && sorted[first] && sorted[first] != 0xffffff &&
+			!painting_names_find(names, sorted[first]))
+			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path,
+				(unsigned)sorted[first], 100 * share);
+	}
+	free(sorted);
+	return 0;
+}
+
+int painting_put_colours(struct painting_names *names, const char *path, struct warping *w, FILE *out,
+	const struct report *to, struct err *e)
+{
+	struct picture_read p = {.path = path};
+	int bad = image_read_rgb(path, &p.rgb, &p.height, &p.width, e) || !(p.view = view_of(path, e)) ||
+		  !(p.mask = mem_alloc((size_t)p.height, (size_t)p.width, path, e)) ||
+		  warn_unnamed(&p, names, to, e);
+
+	for (size_t i = 0; i < names->n && !bad; i++)
+		bad = put_name(&p, &names->items[i], w, out, e);
+	free(p.view);
+	free(p.rgb);
+	free(p.mask);
+	return bad ? -1 : 0;
+}
+
+/* Pictures that are called the same in different folders are of one view. */
+int painting_warn_shared(const char *const *pictures, size_t count, const struct report *to, struct err *e)
+{
+	char **views = mem_zalloc(count, sizeof *views, "views", e);
+	struct names names = {0};
+	size_t earlier;
+	int bad = !views;
+
+	for (size_t i = 0; i < count && !bad; i++)
+		if (painting_needs_names(pictures[i]))
+			bad = !(views[i] = view_of(pictures[i], e));
+	bad = bad || names_make(&names, views, sizeof *views, 0, count, e);
+	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
+	if (twice != NAMES_NONE)
+		report_warn(to, "%s and %s are both of view '%s'", pictures[earlier], pictures[twice],
+			views[twice]);
+	names_free(&names);
+	for (size_t i = 0; views && i < count; i++)
+		free(views[i]);
+	free(views);
+	return bad ? -1 : 0;
+}

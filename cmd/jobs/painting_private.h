@@ -1,0 +1,19 @@
+/* What the parts of cmd/jobs/painting.h share: painting_colours.c has pictures of colours, painting.c the
+ * rest. */
+#ifndef CMD_JOBS_PAINTING_PRIVATE_H
+#define CMD_JOBS_PAINTING_PRIVATE_H
+
+#include "cmd/jobs/painting.h"
+#include "formats/masks.h"
+
+/* The record of a mask, which is freed. Where it goes: the lens's photograph to the view. */
+int painting_put(struct mask *mask, struct warping *w, const char *path, FILE *out, struct err *e);
+
+/* A mask record for each colour of a picture that has a name. */
+int painting_put_colours(struct painting_names *names, const char *path, struct warping *w, FILE *out,
+	const struct report *to, struct err *e);
+
+/* A warning where pictures that are called the same in different folders are of one view. */
+int painting_warn_shared(const char *const *pictures, size_t count, const struct report *to, struct err *e);
+
+#endif
