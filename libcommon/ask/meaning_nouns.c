@@ -99,7 +99,7 @@ static int is_shape(const struct parse *p, const struct parse_phrase *f, int hea
 	static const char *const shapes[] = {"blob", "bulge", "bump", "bundle", "capsule", "chunk", "clump",
 		"dollop", "dome", "heap", "hump", "hunk", "lozenge", "lump", "mound", "nub", "nugget",
 		"oblong", "oval", "patch", "pebble", "pill", "pod", "rectangle", "sheet", "shell", "slab",
-		"sliver", "square", "strip", "stub", "tablet", "wad", "wedge", NULL};
+		"sliver", "square", "strip", "stub", "wad", "wedge", NULL};
 	static const char *const of[] = {"of", NULL};
 
 	return f->noun.n == 1 && meaning_word_is(&p->words[head], shapes) && !parse_word_is(p, head + 1, of);
