@@ -122,6 +122,8 @@ void explain_refusal(const struct explained *x, char reason[EXPLAIN_REASON])
 		parse_words_add(&w, " comes nearest, but '");
 		add_said(&w, x, worst);
 		parse_words_add(&w, worst->kind == MEANING_EXCEPT ? "' leaves it out" : "' does not fit it");
+	} else if (meaning_is_empty(m, 0)) {
+		parse_words_add(&w, "it does not say which thing is meant");
 	} else {
 		parse_words_add(&w, m->vocabulary->lifted->names[best]);
 		parse_words_add(&w, " comes nearest, but not near enough");

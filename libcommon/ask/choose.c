@@ -99,6 +99,8 @@ static int tells_nothing(const struct meaning *m, const struct parse *p, int phr
 	const size_t n = m->arrangement->n;
 	const double *fit = m->fit + (size_t)phrase * (n + 1), most = largest(fit, n);
 
+	if (meaning_is_empty(m, phrase) && p->phrases[phrase].count != PARSE_ALL)
+		return n > 1;
 	if (anchors == 1 && (p->phrases[phrase].count == PARSE_ONE || !m->unknown))
 		return 0;
 	for (size_t o = 0; o < n; o++)

@@ -170,3 +170,11 @@ int meaning_judge(struct meaning *m, const struct vocabulary_sentence *s, struct
 	m->unknown = unknown;
 	return 0;
 }
+
+int meaning_is_empty(const struct meaning *m, int phrase)
+{
+	for (size_t k = 0; k < m->part_count; k++)
+		if (m->parts[k].phrase == phrase)
+			return 0;
+	return 1;
+}

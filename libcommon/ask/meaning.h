@@ -61,4 +61,7 @@ int meaning_judge(struct meaning *m, const struct vocabulary_sentence *s, struct
 /* Frees what it made for itself. */
 void meaning_free(struct meaning *m);
 
+/* Whether nothing at all was said of what a phrase means: "where is it?" */
+int meaning_is_empty(const struct meaning *m, int phrase);
+
 #endif

@@ -62,6 +62,9 @@ void analysis_places(struct analysis *a, const struct analysis *grammar, const s
 /* Another: what "it" is, what stands by itself, "a book behind it". */
 void analysis_it(struct analysis *a, const struct tokens *t);
 
+/* Another: where a thing shall be put. */
+void analysis_command(struct analysis *a, const struct tokens *t);
+
 /* Whether there is such a word and it is a predicate. */
 int analysis_is_predicate(const struct analysis *a, int i);
 /* Whether a word is the predicate of an anchor. */

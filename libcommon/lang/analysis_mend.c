@@ -180,6 +180,7 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 	mend_attributes(a, t);
 	analysis_places(a, grammar, t);
 	analysis_it(a, t);
+	analysis_command(a, t);
 	mend_any_colour(a, t);
 	mend_empty(a, t);
 	mend_compared(a, t);

@@ -515,9 +515,21 @@ static void members(void)
 	CHECK(choice.there < 0.5, "neither is there: %g", choice.there);
 }
 
+/* Of four things a sentence that says nothing means none. */
+static void nothing_said(void)
+{
+	ask("where is it?", CHOOSE_ALL);
+	CHECK(choice.there < 0.5, "it: %g", choice.there);
+	ask("the thing", CHOOSE_ALL);
+	CHECK(choice.there < 0.5, "the thing: %g", choice.there);
+	ask("the red thing", CHOOSE_ALL);
+	CHECK(choice.there > 0.5, "the red thing: %g", choice.there);
+}
+
 int main(void)
 {
 	make_scene();
+	nothing_said();
 	members();
 	sides();
 	twins();

@@ -19,6 +19,13 @@ static void mends_looks(void)
 	mends("the can, not the orange box", ". T . . a5 E", 0, 4, ROLE_ATTRIBUTE, 5, 0);
 	mends("the can that is not by an orange box", ". T . . . P . a8 A5", PARSE_NEAR, 7, ROLE_ATTRIBUTE, 8,
 		0);
+	mends("put the jug on the tray", ". . T P . A3", PARSE_ON, 3, ROLE_NONE, ROOT, 0);
+	mends("could you put the jug on the red tray", ". . . . T P . a7 A5", PARSE_ON, 7, ROLE_NONE, ROOT,
+		0);
+	mends("she put the jug on the tray", ". . . T P . A4", PARSE_ON, 4, ROLE_PREDICATE, ROOT, PARSE_ON);
+	mends("put the jug on the tray into it", ". . T P . A3 P .", PARSE_ON, 3, ROLE_PREDICATE, ROOT,
+		PARSE_ON);
+	mends("bring the jug on the tray", ". . T P . A3", PARSE_ON, 3, ROLE_PREDICATE, ROOT, PARSE_ON);
 	mends("the darkest can", ". P T", PARSE_SMALLER, 1, ROLE_PREDICATE, ROOT, PARSE_OTHER);
 	mends("the smallest can", ". P T", PARSE_SMALLER, 1, ROLE_PREDICATE, ROOT, PARSE_SMALLER);
 	mends("the most colourful can", ". . a T", 0, 2, ROLE_PREDICATE, ROOT, PARSE_OTHER);

@@ -1,0 +1,62 @@
+/* Commands that say where a thing shall go: "put the cup on the tray" does not say that it is there. */
+#include "lang/analysis.h"
+#include "lang/closed.h"
+
+/* Whether a verb is a command, and tells not what somebody did: "put", "please put", "could you now put". */
+static int is_command(const struct tokens *t, int verb)
+{
+	int i = verb;
+
+	while (i > 0 && !t->word[i].before &&
+		(tokens_class(t, i - 1) == CLOSED_REQUEST || tokens_class(t, i - 1) == CLOSED_ADVERB ||
+			tokens_class(t, i - 1) == CLOSED_CONJUNCTION))
+		i--;
+	return !i || t->word[i].before || tokens_is(t, i - 1, "to") ||
+	       (tokens_is(t, i - 1, "you") && tokens_class(t, i - 2) == CLOSED_AUXILIARY);
+}
+
+/* The last verb before the target's noun that has to say where to, or -1; nothing else stands between. */
+static int verb_of_placing(const struct analysis *a, const struct tokens *t, int noun)
+{
+	static const char *const verbs[] = {"put", "place", "set", "drop", "lay", "throw", "stick", "pop",
+		"stuff", "tuck", "dump", "shove", "toss", "stow", "hang", NULL};
+
+	for (int i = noun - 1; i >= 0 && !t->word[i + 1].before; i--) {
+		if (tokens_is_any(t, i, verbs))
+			return tokens_class(t, i + 1) == CLOSED_DETERMINER && is_command(t, i) ? i : -1;
+		if (role_is_phrase(a->word[i].role))
+			return -1;
+	}
+	return -1;
+}
+
+/* Whether a word hangs on another, at any depth. */
+static int hangs_on(const struct analysis *a, int i, int on)
+{
+	for (int depth = 0; i >= 0 && depth < a->n; i = a->word[i].head, depth++)
+		if (i == on)
+			return 1;
+	return 0;
+}
+
+void analysis_command(struct analysis *a, const struct tokens *t)
+{
+	struct analysis before;
+	int noun = 0, goal = -1;
+
+	while (noun < t->n && a->word[noun].role != ROLE_TARGET)
+		noun++;
+	if (noun == t->n || verb_of_placing(a, t, noun) < 0)
+		return;
+	for (int i = noun + 1; i < t->n; i++) {
+		const struct analysis_word *w = &a->word[i];
+		if (w->role == ROLE_PREDICATE && (w->head == ROOT || w->head == noun) &&
+			(w->relation < PARSE_LARGER || w->relation == PARSE_CORNER ||
+				w->relation == PARSE_FLOOR))
+			goal = i;
+	}
+	before = *a;
+	for (int i = 0; i < t->n && goal >= 0; i++)
+		if (hangs_on(&before, i, goal))
+			analysis_give_up(&a->word[i]);
+}
