@@ -15,19 +15,19 @@ static int is_command(const struct tokens *t, int verb)
 	       (tokens_is(t, i - 1, "you") && tokens_class(t, i - 2) == CLOSED_AUXILIARY);
 }
 
-/* The last verb before the target's noun that has to say where to, or -1; nothing else stands between. */
-static int verb_of_placing(const struct analysis *a, const struct tokens *t, int noun)
+/* The verb that has to say where to of whose object the target is the noun, or -1. */
+static int verb_of_placing(const struct tokens *t, int noun)
 {
 	static const char *const verbs[] = {"put", "place", "set", "drop", "lay", "throw", "stick", "pop",
 		"stuff", "tuck", "dump", "shove", "toss", "stow", "hang", NULL};
+	int i = noun - 1;
 
-	for (int i = noun - 1; i >= 0 && !t->word[i + 1].before; i--) {
-		if (tokens_is_any(t, i, verbs))
-			return tokens_class(t, i + 1) == CLOSED_DETERMINER && is_command(t, i) ? i : -1;
-		if (role_is_phrase(a->word[i].role))
-			return -1;
-	}
-	return -1;
+	while (i > 0 && !t->word[i + 1].before && tokens_class(t, i) != CLOSED_DETERMINER)
+		i--;
+	return i > 0 && tokens_class(t, i) == CLOSED_DETERMINER && !t->word[i].before &&
+			       tokens_is_any(t, i - 1, verbs) && is_command(t, i - 1)
+		       ? i - 1
+		       : -1;
 }
 
 /* Whether a word hangs on another, at any depth. */
@@ -46,7 +46,7 @@ void analysis_command(struct analysis *a, const struct tokens *t)
 
 	while (noun < t->n && a->word[noun].role != ROLE_TARGET)
 		noun++;
-	if (noun == t->n || verb_of_placing(a, t, noun) < 0)
+	if (noun == t->n || verb_of_placing(t, noun) < 0)
 		return;
 	for (int i = noun + 1; i < t->n; i++) {
 		const struct analysis_word *w = &a->word[i];

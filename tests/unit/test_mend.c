@@ -25,6 +25,8 @@ static void mends_looks(void)
 	mends("she put the jug on the tray", ". . . T P . A4", PARSE_ON, 4, ROLE_PREDICATE, ROOT, PARSE_ON);
 	mends("put the jug on the tray into it", ". . T P . A3 P .", PARSE_ON, 3, ROLE_PREDICATE, ROOT,
 		PARSE_ON);
+	mends("put a box around the jug on the tray", ". . . . . T P . A6", PARSE_ON, 6, ROLE_PREDICATE, ROOT,
+		PARSE_ON);
 	mends("bring the jug on the tray", ". . T P . A3", PARSE_ON, 3, ROLE_PREDICATE, ROOT, PARSE_ON);
 	mends("the darkest can", ". P T", PARSE_SMALLER, 1, ROLE_PREDICATE, ROOT, PARSE_OTHER);
 	mends("the smallest can", ". P T", PARSE_SMALLER, 1, ROLE_PREDICATE, ROOT, PARSE_SMALLER);
