@@ -183,6 +183,12 @@ static void find_purpose(
 	u->is_said = purpose_is_said(p) || (is_lost && says_more_than_name(p, counts));
 }
 
+/* Whether any word tells of something: none of "all of them" does. */
+static int tells(const struct parse *p, const char *counts)
+{
+	return p->word_count && memchr(counts, 1, (size_t)p->word_count);
+}
+
 /* By its form; by more words than a name has; or as its noun is of nothing that one could point at: "where
  * the countries are". */
 static int may_be_purpose(const struct purpose *u, const struct parse *p, int head, const char *counts)
@@ -221,7 +227,7 @@ double purposes_judge(const struct meaning *m, int is_lost, double *score, doubl
 	if (is_by_name(m, head))
 		return 0;
 	find_purpose(&u, m, is_lost, counts, score);
-	if (!may_be_purpose(&u, p, head, counts))
+	if (!tells(p, counts) || !may_be_purpose(&u, p, head, counts))
 		return 0;
 	for (size_t o = 0; o < n; o++)
 		score[o] = m->arrangement->objects[o].is_there ? fit_of_object(&u, o) : not_there;

@@ -47,6 +47,11 @@ struct vocabulary_kind {
 	struct uses uses, parts; /* found when they are first asked for; n < 0 before */
 };
 
+/* A line of lang/things.h. */
+struct vocabulary_line {
+	int row, is_part; /* is_part: of what things of another line have */
+};
+
 struct vocabulary {
 	const struct lifted *lifted;
 	struct parse *parses;  /* (R) of the training sentences */
@@ -76,7 +81,7 @@ struct vocabulary {
 	struct things_vectors things;
 	/* Object o is lines line_begin[o] to line_begin[o + 1] of the table, those from line_named[o] on by
 	 * its name alone. */
-	int *lines;
+	struct vocabulary_line *lines;
 	size_t *line_begin, *line_named; /* (O+1) */
 	size_t line_count, line_capacity;
 	float *cosine; /* (things.lines) of the sentence that was asked last */

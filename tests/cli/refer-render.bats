@@ -52,7 +52,7 @@ refuses() {
 }
 
 # lifted: two objects of 300 of the scene's Gaussians each in lifted.safetensors, and in asked.safetensors sentences that
-# mean the first, the second, again the first, any of both, and nothing for want of words. Word vectors have two columns.
+# mean the first, the second, again the first, any cups, and nothing for want of words. Word vectors have two columns.
 lifted() {
 	local header one=003c zero=0000 index share
 	header='{"__metadata__":{"format":"refer.lifted","version":"1","gaussians":"1000","names":"[\"cup\",\"box\"]","texts":"[\"cup\",\"box\"]","pieces":"[\"cup\",\"box\"]"},"indptr":{"dtype":"I64","shape":[3],"data_offsets":[0,24]},"offsets":{"dtype":"I64","shape":[3],"data_offsets":[24,48]},"index":{"dtype":"I32","shape":[600],"data_offsets":[48,2448]},"object":{"dtype":"I32","shape":[2],"data_offsets":[2448,2456]},"confidence":{"dtype":"F32","shape":[2],"data_offsets":[2456,2464]},"words":{"dtype":"F16","shape":[2,2],"data_offsets":[2464,2472]},"share":{"dtype":"U8","shape":[600],"data_offsets":[2472,3072]}}'
@@ -62,7 +62,7 @@ lifted() {
 	st lifted.safetensors "$header" "$(printf '%s' 0000000000000000 2c01000000000000 5802000000000000 \
 		0000000000000000 0100000000000000 0200000000000000 "$index" 00000000 01000000 $f1 $fhalf \
 		$one$zero $zero$one "$share")"
-	header='{"__metadata__":{"format":"refer.text","version":"1","refs":"[\"first\",\"second\",\"again\",\"any\",\"none\"]","objects":"[\"cup\",\"box\",\"cup\",\"?\",\"?\"]","texts":"[\"cup\",\"box\",\"cup\",\"it\",\"\"]","pieces":"[\"cup\",\"box\",\"cup\",\"fig\",\"\"]","splits":"[\"test\",\"test\",\"test\",\"test\",\"test\"]"},"offsets":{"dtype":"I64","shape":[6],"data_offsets":[0,48]},"words":{"dtype":"F32","shape":[4,2],"data_offsets":[48,80]},"sentences":{"dtype":"F32","shape":[5,2],"data_offsets":[80,120]}}'
+	header='{"__metadata__":{"format":"refer.text","version":"1","refs":"[\"first\",\"second\",\"again\",\"any\",\"none\"]","objects":"[\"cup\",\"box\",\"cup\",\"?\",\"?\"]","texts":"[\"cup\",\"box\",\"cup\",\"cups\",\"\"]","pieces":"[\"cup\",\"box\",\"cup\",\"cups\",\"\"]","splits":"[\"test\",\"test\",\"test\",\"test\",\"test\"]"},"offsets":{"dtype":"I64","shape":[6],"data_offsets":[0,48]},"words":{"dtype":"F32","shape":[4,2],"data_offsets":[48,80]},"sentences":{"dtype":"F32","shape":[5,2],"data_offsets":[80,120]}}'
 	while (((8 + ${#header}) % 8)); do header+=' '; done
 	st asked.safetensors "$header" "$(printf '%02x00000000000000' 0 1 2 3 4 4)$f1$f0$f0$f1$f1$f0$f1$f1$f1$f0$f0$f1$f1$f0$f1$f1$f0$f0"
 	"$BIN/gs-check" lifted.safetensors asked.safetensors >/dev/null
