@@ -126,6 +126,28 @@ static void mend_ends(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* The first noun from word i on, or -1; none stands before a word of `stop`. */
+static int next_noun(const struct analysis *a, const struct tokens *t, int i, const char *stop)
+{
+	for (; i < t->n && !tokens_is(t, i, stop); i++)
+		if (role_is_phrase(a->word[i].role))
+			return i;
+	return -1;
+}
+
+/* "left of both the jar and the tin": of the tin too. */
+static void mend_both(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 1; i < t->n; i++) {
+		const int is_of = tokens_class(t, i - 1) == CLOSED_PREPOSITION || tokens_is(t, i - 1, "than");
+		const int first = tokens_is(t, i, "both") && is_of ? next_noun(a, t, i + 1, "and") : -1;
+		const int second =
+			first >= 0 && tokens_is(t, first + 1, "and") ? next_noun(a, t, first + 2, "and") : -1;
+		if (second >= 0 && a->word[first].role == ROLE_ANCHOR && a->word[second].role == ROLE_ALSO)
+			a->word[second] = a->word[first];
+	}
+}
+
 /* "Who is wearing the scarf?" asks for whoever has it, not for the scarf. */
 static void mend_who(struct analysis *a, const struct tokens *t)
 {
@@ -184,6 +206,7 @@ void analysis_mend(struct analysis *a, const struct analysis *grammar, const str
 	mend_any_colour(a, t);
 	mend_empty(a, t);
 	mend_compared(a, t);
+	mend_both(a, t);
 	mend_who(a, t);
 	mend_compounds(a, t);
 	mend_ends(a, t);

@@ -28,6 +28,9 @@ static void mends_looks(void)
 	mends("put a box around the jug on the tray", ". . . . . T P . A6", PARSE_ON, 6, ROLE_PREDICATE, ROOT,
 		PARSE_ON);
 	mends("bring the jug on the tray", ". . T P . A3", PARSE_ON, 3, ROLE_PREDICATE, ROOT, PARSE_ON);
+	mends("the cup left of both the jar and the tin", ". T P . . . A2 . . L", PARSE_LEFT, 9, ROLE_ANCHOR,
+		2, 0);
+	mends("the cup left of the jar and the tin", ". T P . . A2 . . L", PARSE_LEFT, 8, ROLE_ALSO, ROOT, 0);
 	mends("the darkest can", ". P T", PARSE_SMALLER, 1, ROLE_PREDICATE, ROOT, PARSE_OTHER);
 	mends("the smallest can", ". P T", PARSE_SMALLER, 1, ROLE_PREDICATE, ROOT, PARSE_SMALLER);
 	mends("the most colourful can", ". . a T", 0, 2, ROLE_PREDICATE, ROOT, PARSE_OTHER);
