@@ -40,29 +40,38 @@ static int is_measure(const char *base)
 	return is_among(base, measures) || closed_is(base, CLOSED_SIZE) || closed_is(base, CLOSED_PLACE);
 }
 
-/* Whether a base with one of the endings that a comparison takes away from it is how something looks; 2 where
- * it is some other adjective. */
-static int find_base(char *base)
+enum adjective { NONE, MEASURE, LOOK, OTHER };
+
+static enum adjective adjective_of(const char *base)
 {
-	static const char *const endings[] = {"", "e"};
 	struct wordnet_adjective known;
+
+	if (is_measure(base))
+		return MEASURE;
+	if (compared_look(base) != COMPARED_NONE)
+		return LOOK;
+	wordnet_find_adjective(&known, base);
+	return known.n ? OTHER : NONE;
+}
+
+/* What is left of a word without -er or -est becomes an adjective: "shini" shiny, "pal" pale, "redd" red. */
+static enum adjective find_base(char *base)
+{
 	const size_t n = strlen(base);
+	enum adjective found;
 
 	if (base[n - 1] == 'i')
 		base[n - 1] = 'y';
-	for (int k = 0; k < 3; k++) {
-		if (k == 2 && (n < 3 || base[n - 1] != base[n - 2]))
-			break;
-		memcpy(base + (k == 2 ? n - 1 : n), k == 2 ? "" : endings[k], k == 1 ? 2 : 1);
-		if (is_measure(base))
-			return 0;
-		if (compared_look(base) != COMPARED_NONE)
-			return 1;
-		wordnet_find_adjective(&known, base);
-		if (known.n)
-			return 2;
+	found = adjective_of(base);
+	if (found == NONE) {
+		memcpy(base + n, "e", 2);
+		found = adjective_of(base);
 	}
-	return 0;
+	if (found == NONE && base[n - 1] == base[n - 2]) {
+		base[n - 1] = 0;
+		found = adjective_of(base);
+	}
+	return found;
 }
 
 enum parse_degree compared_of(const char *word, char *base)
@@ -77,11 +86,11 @@ enum parse_degree compared_of(const char *word, char *base)
 		return PARSE_PLAIN;
 	memcpy(base, word, n);
 	base[n - (is_most ? 3 : 2)] = 0;
-	const int found = find_base(base);
-	if (found == 1)
+	const enum adjective found = find_base(base);
+	if (found == LOOK)
 		return is_most ? PARSE_MOST : PARSE_MORE;
 	wordnet_find_adjective(&whole, word); /* "modest" is no more of "mod", and no forest is fore */
-	return found == 2 && is_most && !whole.n && !wordnet_is_noun(word) ? PARSE_MOST : PARSE_PLAIN;
+	return found == OTHER && is_most && !whole.n && !wordnet_is_noun(word) ? PARSE_MOST : PARSE_PLAIN;
 }
 
 enum parse_degree compared_at(const struct tokens *t, int i)
