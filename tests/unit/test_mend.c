@@ -27,6 +27,10 @@ static void mends_looks(void)
 		PARSE_ON);
 	mends("put a box around the jug on the tray", ". . . . . T P . A6", PARSE_ON, 6, ROLE_PREDICATE, ROOT,
 		PARSE_ON);
+	mends("move the jug to the left of the tray", ". . T . . P . . A5", PARSE_LEFT, 5, ROLE_NONE, ROOT,
+		0);
+	mends("move the jug left of the tray", ". . T P . . A3", PARSE_LEFT, 3, ROLE_PREDICATE, ROOT,
+		PARSE_LEFT);
 	mends("bring the jug on the tray", ". . T P . A3", PARSE_ON, 3, ROLE_PREDICATE, ROOT, PARSE_ON);
 	mends("the cup left of both the jar and the tin", ". T P . . . A2 . . L", PARSE_LEFT, 9, ROLE_ANCHOR,
 		2, 0);
