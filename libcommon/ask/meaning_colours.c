@@ -131,7 +131,7 @@ void meaning_judge_colour(struct meaning *m, int phrase, int word)
 		else
 			vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);
 		for (size_t o = 0; o < n; o++)
-			value[o] = 1 - (1 - value[o]) * (1 - match[o]); /* either, or between them */
+			value[o] = fmax(value[o], match[o]);
 	}
 	m->vocabulary->of_several = 0;
 	for (size_t o = 0; o < n; o++) {

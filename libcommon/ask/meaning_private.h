@@ -46,7 +46,7 @@ int meaning_is_other(const struct parse *p, const struct parse_phrase *f);
 void meaning_judge_noun(struct meaning *m, int phrase);
 
 /* How far objects are of the colour of a word, and of those right after it that are colours too: "salmon
- * pink" and "black and white" are either, or between them. Nothing where the word before it has done so. */
+ * pink" and "black and white" are either. Nothing where the word before it has done so. */
 void meaning_judge_colour(struct meaning *m, int phrase, int word);
 
 void meaning_judge_attribute(struct meaning *m, int phrase, int word, double least);
