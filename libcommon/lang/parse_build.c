@@ -3,8 +3,8 @@
 #include "base/mem.h"
 #include "lang/analysis.h"
 #include "lang/closed.h"
-#include "lang/compared.h"
 #include "lang/colours.h"
+#include "lang/compared.h"
 #include "lang/parse_private.h"
 
 #include <stdlib.h>

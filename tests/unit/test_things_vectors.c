@@ -69,9 +69,9 @@ static struct camera view;
 static struct choice choice;
 static float probability[OBJECTS];
 
-/* The object that a sentence means whose words all have the vector of a line; -1: none. */
 static unsigned parts = CHOOSE_ALL;
 
+/* The object that a sentence means whose words all have the vector of a line; -1: none. */
 static int ask(const char *text, const char *thing, const char *of)
 {
 	static float vectors[MOST * WIDTH];
