@@ -23,6 +23,7 @@ PIC := -fPIC -fvisibility=hidden
 # A change of any of these rebuilds everything (see $(BUILD)/flags).
 COMPILE = $(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L -DVERSION='"$(VERSION)"' -Ilibcommon -I. \
 	$(CFLAGS) -std=c11 $(PIC) $(OPENMP) -ffp-contract=off -fno-math-errno $(WARNINGS) $(WERROR)
+COMPILE_TEST = $(COMPILE) -Wno-missing-prototypes -Dmain=main_of_$(basename $(notdir $<))
 LINK = $(CC) $(CFLAGS) $(OPENMP) $(LDFLAGS)
 
 TOOLS := $(patsubst cmd/%.c,%,$(wildcard cmd/*.c))
@@ -37,7 +38,7 @@ SONAME := librefersplat.so.0
 SHARED := $(BUILD)/lib/librefersplat.so.$(VERSION)
 STATIC := $(BUILD)/lib/librefersplat.a
 UNITS := $(patsubst tests/unit/%.c,$(BUILD)/unit/%,$(wildcard tests/unit/test_*.c))
-UNIT_HELPERS := $(filter-out tests/unit/test_%,$(wildcard tests/unit/*.c))
+UNIT_HELPERS := $(filter-out tests/unit/test_% tests/unit/program.c,$(wildcard tests/unit/*.c))
 UNIT_OBJECTS := $(UNIT_HELPERS:%.c=$(BUILD)/obj/%.o)
 STABILITY := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard tests/stability/*.c))
 BENCHES := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/bench_*.c tests/bench/fit_*.c))
@@ -127,9 +128,23 @@ $(BUILD)/completion/zsh/_%: $(BUILD)/bin/%
 	@mkdir -p $(@D)
 	@$< --completion=zsh >$@.new && mv $@.new $@
 
-$(BUILD)/unit/%: $(BUILD)/obj/tests/unit/%.o $(UNIT_OBJECTS) $(LIBRARY)
+# All unit tests are one program, which runs the one that it is called by: linking it once is quick. The main of test_NAME.c is called main_of_test_NAME there.
+$(BUILD)/obj/tests/unit/test_%.o: tests/unit/test_%.c $(BUILD)/flags | $(BUILD)/headers
 	@mkdir -p $(@D)
+	$(COMPILE_TEST) -MMD -MP -c -o $@ $<
+
+$(BUILD)/unit/tests.def: $(wildcard tests/unit)
+	@mkdir -p $(@D)
+	@printf 'TEST(%s)\n' $(notdir $(UNITS)) | cmp -s - $@ || printf 'TEST(%s)\n' $(notdir $(UNITS)) >$@
+
+$(BUILD)/obj/tests/unit/program.o: CPPFLAGS += -I$(BUILD)/unit
+$(BUILD)/obj/tests/unit/program.o: $(BUILD)/unit/tests.def
+
+$(BUILD)/unit/program: $(UNITS:$(BUILD)/%=$(BUILD)/obj/tests/%.o) $(BUILD)/obj/tests/unit/program.o $(UNIT_OBJECTS) $(LIBRARY)
 	$(LINK) -o $@ $^ $(LDLIBS)
+
+$(UNITS): $(BUILD)/unit/program
+	@ln -f $< $@
 
 $(BUILD)/stability: $(STABILITY) $(UNIT_OBJECTS) $(LIBRARY)
 	$(LINK) -o $@ $^ $(LDLIBS)
@@ -151,8 +166,8 @@ $(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(BUILD)/obj/tests/fuzz/driver.o $(
 # Changes only when the commands do, and then everything is older than it.
 $(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
-	@printf '%s\n' '$(subst ','\'',$(COMPILE) / $(LINK))' | cmp -s - $@ || \
-		printf '%s\n' '$(subst ','\'',$(COMPILE) / $(LINK))' >$@
+	@printf '%s\n' '$(subst ','\'',$(COMPILE_TEST) / $(LINK))' | cmp -s - $@ || \
+		printf '%s\n' '$(subst ','\'',$(COMPILE_TEST) / $(LINK))' >$@
 
 # One line in place of a wall of errors where a library's header is not there.
 $(BUILD)/headers:

@@ -492,10 +492,12 @@ static int dump(char **words)
 	return 0;
 }
 
-int main(int argc, char **argv)
+int main(void)
 {
-	if (argc == 6 && !strcmp(argv[1], "--dump"))
-		return dump(argv + 2);
+	char **words = unit_arguments;
+
+	if (words[0] && !strcmp(words[0], "--dump"))
+		return words[1] && words[2] && words[3] && words[4] && !words[5] ? dump(words + 1) : 2;
 	all_gradients();
 	contrast_is_live();
 	known_answers();

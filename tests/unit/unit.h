@@ -1,4 +1,4 @@
-/* The smallest unit test kit. A test program's main calls its cases and returns unit_end(). */
+/* The smallest unit test kit. A test's main calls its cases and returns unit_end(); all are one program (program.c). */
 #ifndef UNIT_H
 #define UNIT_H
 
@@ -8,6 +8,8 @@
 #include <string.h>
 
 static int unit_failed, unit_passed;
+
+extern char **unit_arguments; /* what follows the test's name, NULL at its end */
 
 /* Counts one named check; prints failures with their place. */
 #define CHECK(condition, ...) unit_check(!!(condition), __FILE__, __LINE__, #condition, __VA_ARGS__)
