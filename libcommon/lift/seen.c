@@ -42,9 +42,11 @@ void seen_free(struct seen *s)
 
 void seen_add(const struct seen *s, size_t gaussians, double *sum)
 {
+	if (!s->marks)
+		return;
 	const float *next = s->weight + 1;
 
-	for (size_t word = 0; s->marks && word <= gaussians / 64; word++)
+	for (size_t word = 0; word <= gaussians / 64; word++)
 		for (uint64_t left = s->marks[word]; left; left &= left - 1)
 			sum[word * 64 + (size_t)__builtin_ctzll(left)] += (double)*next++;
 }

@@ -31,7 +31,7 @@ static void put_value(struct bytes *b, char type, double value)
 {
 	size_t size = strchr("cC", type) ? 1 : strchr("sS", type) ? 2 : type == 'd' ? 8 : 4;
 	float single = (float)value;
-	uint64_t bits = (uint64_t)(int64_t)value;
+	uint64_t bits = strchr("fd", type) ? 0 : (uint64_t)(int64_t)value;
 	uint32_t low;
 
 	if (b->encoding == 0) {

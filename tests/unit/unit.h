@@ -1,4 +1,5 @@
-/* The smallest unit test kit. A test's main calls its cases and returns unit_end(); all are one program (program.c). */
+/* The smallest unit test kit. A test's main calls its cases and returns unit_end(); all are one program
+ * (program.c). */
 #ifndef UNIT_H
 #define UNIT_H
 

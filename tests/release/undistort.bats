@@ -1,5 +1,6 @@
 #!/usr/bin/env bats
 # UNDISTORT=1: the workflow without training, from masks on photographs of a lens that distorts.
+# Parts: pipelines/(lift|two-stage|common).* libcommon/geom/lens.* cmd/mask-import.c
 
 setup_file() {
 	export BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

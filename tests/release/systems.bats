@@ -1,5 +1,6 @@
 #!/usr/bin/env bats
 # The table of systems, on the smallest scene there is.
+# Parts: pipelines/(systems|published).* cmd/feature-.*
 
 setup_file() {
 	export BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,5 +1,6 @@
 #!/usr/bin/env bats
 # The ablation tables: what the report makes of given scores, and the pipeline on the smallest scene there is.
+# Parts: pipelines/ablation.* pipelines/two-stage.mk pipelines/common.mk cmd/(gs-synth|refer-train).c
 
 setup() {
 	export BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,6 +1,7 @@
 #!/usr/bin/env bats
 # The lesson of refersplat(7): every command of it, one after the other in an empty folder; and with the real encoder, where that is, what the
 # lesson says that they answer.
+# Parts: man/refersplat.7 cmd/[a-z-]*.c pipelines/(lift|two-stage|common).mk
 
 setup_file() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
