@@ -92,8 +92,14 @@ static int distort_masks(struct exporting *x, const char *scene, struct err *e)
 int exporting_read(struct exporting *x, const char *masks, const char *scene, int distort, struct err *e)
 {
 	x->path = file_name(masks);
-	if (masks_read(&x->masks, masks, e) || (scene && read_cameras(x, scene, e)) ||
-		(distort && distort_masks(x, scene, e)))
+	long *lines = NULL;
+	const int bad = masks_read_lines(&x->masks, &lines, masks, e) ||
+			(scene && read_cameras(x, scene, e)) ||
+			(distort ? distort_masks(x, scene, e)
+				 : masks_views(&x->masks, lines, masks, &x->cameras, NULL, e));
+
+	free(lines);
+	if (bad)
 		return -1;
 	const size_t n = x->masks.n;
 	x->view_of = mem_alloc(n, sizeof *x->view_of, x->path, e);
