@@ -36,10 +36,11 @@ static int has_boxes(const struct annotation *a, const struct warping *w)
 
 /* A mask record for each label of each picture that a JSON file is of. */
 static int put_labels(const struct annotations *a, const char *path, struct warping *w, FILE *out,
-	const struct report *to, struct err *e)
+	size_t *count, const struct report *to, struct err *e)
 {
-	if (a->left_out)
-		report_warn(to, "%s: %zu shapes without an area are left out", file_name(path), a->left_out);
+	for (size_t i = 0; i < a->left_count; i++)
+		report_warn(to, "%s: %zu %s are left out", file_name(path), a->left_out[i].n,
+			a->left_out[i].kind);
 	for (size_t i = 0; i < a->n; i++) {
 		const struct annotation *one = &a->items[i];
 		struct mask mask = {.view = one->view,
@@ -54,6 +55,7 @@ static int put_labels(const struct annotations *a, const char *path, struct warp
 		const struct rle *shown = &one->mask;
 		if (!rle_area(shown))
 			continue;
+		++*count;
 		if (rle_from_runs(&mask.rle, shown->runs, shown->n, shown->height, shown->width, e) ||
 			painting_put(&mask, w, path, out, e))
 			return -1;
@@ -66,9 +68,8 @@ static int put_labelled(
 	const char *path, struct warping *w, FILE *out, size_t *count, const struct report *to, struct err *e)
 {
 	struct annotations a;
-	const int bad = annotations_read(&a, path, e) || put_labels(&a, path, w, out, to, e);
+	const int bad = annotations_read(&a, path, e) || put_labels(&a, path, w, out, count, to, e);
 
-	*count += a.n;
 	annotations_free(&a);
 	return bad ? -1 : 0;
 }

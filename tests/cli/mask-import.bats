@@ -136,7 +136,7 @@ made() {
 	labelme '{"label":"dot","points":[[3,2],[3,3.1]],"shape_type":"circle"}' '{"label":"line","points":[[0,0],[1,1]],"shape_type":"line"}' >b.json
 	echo '{"view":"view_1","object":"dot","segmentation":{"size":[4,6],"counts":[9,2,2,2,9]}}' >truth.jsonl
 	made b.json
-	[ "$(cat err)" = "mask-import: warning: b.json: 1 shapes without an area are left out" ]
+	[ "$(cat err)" = "mask-import: warning: b.json: 1 shapes of type 'line' are left out" ]
 }
 
 @test "COCO: polygons, compressed and plain run lengths, of several pictures" {
@@ -154,10 +154,63 @@ made() {
 	sed -i "s/REPLACED/$(jq -r 'select(.object == "kettle").segmentation.counts' made.jsonl)/" coco.json
 	echo '{"view":"view_2","object":"kettle","segmentation":{"size":[3,4],"counts":[3,2,1,2,4]}}' >>truth.jsonl
 	made coco.json
-	[ "$(cat err)" = "mask-import: warning: coco.json: 1 shapes without an area are left out" ]
+	[ "$(cat err)" = "mask-import: warning: coco.json: 1 annotations without an outline are left out" ]
 	# a picture and labels together
 	"$BIN/mask-import" --names names -o both view_1.png first.json
 	[ "$(jq -s length both)" = 4 ]
+}
+
+# coco SEGMENTATION: a COCO file of one label in a picture of 20 by 12 pixels, on stdout.
+coco() {
+	jq -n --argjson s "$1" '{images: [{id: 1, file_name: "a.png", height: 12, width: 20}], categories: [{id: 1, name: "cup"}],
+		annotations: [{image_id: 1, category_id: 1, segmentation: $s, bbox: [2, 2, 4, 6]}]}'
+}
+
+@test "labels of another picture's size, in shares, or nested are errors; what has no area is named" {
+	wrong() {
+		coco "$1" >x.json
+		says 3 "mask-import: x.json: annotation 0: $2" "$BIN/mask-import" -o none x.json
+		[ ! -e none ]
+	}
+	wrong '[[2,2,6,2,6,8,2,8],[30,2,32,2,32,4]]' "its point 30,2 is outside the picture, 20x12 (width x height): is it of a picture of another size?"
+	wrong '[[2,2,6,2,6,14]]' "its point 6,14 is outside the picture, 20x12 (width x height): is it of a picture of another size?"
+	wrong '[[0.1,0.1,0.9,0.1,0.9,0.9]]' "all its points are within one pixel of the picture, 20x12: are they shares of it, not pixels?"
+	wrong '[[[2,2,6,2,6,8]]]' "a point is not two numbers, but a list of more: is the outline nested too deep?"
+	wrong '[[[[2,2],[6,2],[6,8]]]]' "a point is not two numbers, but a list of more: is the outline nested too deep?"
+	wrong '{"size":[20,12],"counts":[0,240]}' "key 'segmentation.size' is 12x20, but its picture is 20x12 (width x height): height and width are exchanged in one of them"
+	wrong '{"size":[10,24],"counts":[0,240]}' "key 'segmentation.size' is 24x10, but its picture is 20x12 (width x height)"
+	wrong '{"counts":[0,240]}' "key 'segmentation.size' is not [height,width]"
+	# a little beside the picture is at its edge
+	coco '[[-1,-1,21,-1,21,13,-1,13]]' >x.json
+	"$BIN/mask-import" x.json | "$BIN/mask-export" | jq -e '.annotations[0].area == 240'
+	gone() {
+		coco "$1" >x.json
+		says 3 "mask-import: warning: x.json: 1 $2 are left out
+mask-import: x.json: has no label with an area" "$BIN/mask-import" -o none x.json
+	}
+	gone '[[2,2,6,8]]' "outlines of fewer than three corners"
+	gone '[[2,2,2.2,2,2.2,2.2]]' "shapes without a pixel"
+	gone '[]' "boxes (key 'bbox') without an outline"
+	gone '{"size":[12,20],"counts":[240]}' "shapes without a pixel"
+}
+
+@test "LabelMe's and X-AnyLabeling's other shapes: what has four corners is read, other types are named" {
+	echo '{"view":"view_1","object":"box","segmentation":{"size":[4,6],"counts":[5,2,2,2,13]}}' >truth.jsonl
+	for type in rotation quadrilateral oriented_rectangle rectangle; do
+		labelme '{"label":"box","points":[[1,1],[3,1],[3,3],[1,3]],"shape_type":"'$type'"}' >a.json
+		made a.json
+	done
+	# a turned one may reach out, others not
+	labelme '{"label":"box","points":[[-3,2],[2,-3],[5,2],[2,7]],"shape_type":"rotation"}' >a.json
+	"$BIN/mask-import" -o made.jsonl a.json
+	sed -i s/rotation/quadrilateral/ a.json
+	says 3 "mask-import: a.json: shape 0: its point -3,2 is outside the picture, 6x4 (width x height): is it of a picture of another size?" "$BIN/mask-import" a.json
+	labelme '{"label":"a","points":[[1,1],[3,1],[3,3]],"shape_type":"cuboid"}' '{"label":"b","points":[[1,1],[3,1],[3,3]],"shape_type":"linestrip"}' \
+		'{"label":"c","points":[[1,1],[3,1]],"shape_type":"linestrip"}' '{"label":"d","points":[[1,1],[3,3]],"shape_type":"rectangle"}' >a.json
+	"$BIN/mask-import" -o made.jsonl a.json 2>err
+	[ "$(cat err)" = "mask-import: warning: a.json: 1 shapes of type 'cuboid' are left out
+mask-import: warning: a.json: 2 shapes of type 'linestrip' are left out" ]
+	[ "$(jq -r .object made.jsonl)" = d ]
 }
 
 @test "a detector's: each thing that it found by itself, with its score; COCO's with its sentence" {
