@@ -188,7 +188,7 @@ static int open_labels(const struct feature_maps *m, size_t view, int height, in
 	struct feature_sources *s, struct err *e)
 {
 	char *path = view_path(m, view, ".png", e);
-	uint16_t *labels = NULL;
+	int32_t *labels = NULL;
 	int own[2];
 
 	const int bad = !path || png_read_labels(path, &labels, &own[0], &own[1], e) ||

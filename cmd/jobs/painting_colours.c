@@ -37,15 +37,9 @@ struct picture_read {
 	const char *path;
 	char *view;
 	int height, width;
-	uint8_t *rgb, *mask;
+	uint32_t *paint;
+	uint8_t *mask;
 };
-
-static uint32_t colour_at(const struct picture_read *p, size_t pixel)
-{
-	const uint8_t *c = p->rgb + 3 * pixel;
-
-	return (uint32_t)c[0] << 16 | (uint32_t)c[1] << 8 | c[2];
-}
 
 /* The mask of a colour, if any pixel has it: its record. */
 static int put_name(
@@ -56,7 +50,7 @@ static int put_name(
 	size_t covered = 0;
 
 	for (size_t at = 0; at < pixels; at++)
-		covered += p->mask[at] = colour_at(p, at) == name->colour;
+		covered += p->mask[at] = p->paint[at] == name->colour;
 	if (!covered)
 		return 0;
 	name->is_seen = 1;
@@ -82,16 +76,22 @@ static int warn_unnamed(const struct picture_read *p, const struct painting_name
 	if (!sorted)
 		return -1;
 	for (size_t at = 0; at < pixels; at++)
-		sorted[at] = colour_at(p, at);
+		sorted[at] = p->paint[at];
 	qsort(sorted, pixels, sizeof *sorted, by_value);
 	for (size_t first = 0, end; first < pixels; first = end) {
 		for (end = first; end < pixels && sorted[end] == sorted[first];)
 			end++;
 		const double share = (double)(end - first) / (double)pixels;
-		if (share > unnamed_share && sorted[first] && sorted[first] != 0xffffff &&
-			!painting_names_find(names, sorted[first]))
-			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path,
-				(unsigned)sorted[first], 100 * share);
+		const uint32_t colour = sorted[first];
+		if (share <= unnamed_share || !colour || colour == 0xffffff || colour == PNG_PAINT_NONE ||
+			painting_names_find(names, colour))
+			continue;
+		if (colour & PNG_PAINT_NUMBER)
+			report_warn(to, "%s: %u, %.1f%% of it, has no name", p->path,
+				(unsigned)(colour ^ PNG_PAINT_NUMBER), 100 * share);
+		else
+			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path, (unsigned)colour,
+				100 * share);
 	}
 	free(sorted);
 	return 0;
@@ -101,14 +101,14 @@ int painting_put_colours(struct painting_names *names, const char *path, struct 
 	const struct report *to, struct err *e)
 {
 	struct picture_read p = {.path = path};
-	int bad = image_read_rgb(path, &p.rgb, &p.height, &p.width, e) || !(p.view = view_of(path, e)) ||
+	int bad = png_read_paint(path, &p.paint, &p.height, &p.width, e) || !(p.view = view_of(path, e)) ||
 		  !(p.mask = mem_alloc((size_t)p.height, (size_t)p.width, path, e)) ||
 		  warn_unnamed(&p, names, to, e);
 
 	for (size_t i = 0; i < names->n && !bad; i++)
 		bad = put_name(&p, &names->items[i], w, out, e);
 	free(p.view);
-	free(p.rgb);
+	free(p.paint);
 	free(p.mask);
 	return bad ? -1 : 0;
 }

@@ -20,9 +20,11 @@ chunk() {
 	printf '%s%s%s' "$(number $((${#2} / 2)))" "$body" "$(printf %s "$body" | xxd -r -p | gzip -c | tail -c 8 | head -c 4 | xxd -p | fold -w2 | tac | tr -d '\n')"
 }
 
-# picture FILE ROW...: a colour PNG; a row is its pixels, rrggbb. The data are one stored block of deflate.
+# picture FILE ROW...: a colour PNG; a row is its pixels, rrggbb. The data are one stored block of deflate. Other kinds by
+# kind=BBCC, bits and colour type: 1000 are greys of 16 bits, 0806 rrggbbaa.
 picture() {
-	local file=$1 row data='' sum_a=1 sum_b=0 byte n
+	local file=$1 row data='' sum_a=1 sum_b=0 byte n kind=${kind:-0802}
+	local -A digits=([0802]=6 [0806]=8 [1000]=4)
 	shift
 	for row; do data+=00${row// /}; done
 	for byte in $(fold -w2 <<<"$data"); do
@@ -32,7 +34,7 @@ picture() {
 	{
 		printf 89504e470d0a1a0a
 		row=${1// /}
-		chunk IHDR "$(number $((${#row} / 6)))$(number $#)0802000000"
+		chunk IHDR "$(number $((${#row} / ${digits[$kind]})))$(number $#)${kind}000000"
 		chunk IDAT "780101${n:2}${n:0:2}$(printf '%04x' $((16#${n:2}${n:0:2} ^ 65535)))$data$(printf '%04x%04x' $sum_b $sum_a)"
 		chunk IEND ''
 	} | xxd -r -p >"$file"
@@ -61,6 +63,29 @@ frame.a plate" ]
 	"$BIN/mask-import" --names - view_1.png more/frame.a.png <all | cmp - masks
 }
 
+@test "numbers of 16 bits are numbers, what is transparent is nothing, and JPEG is refused" {
+	kind=1000 picture map.png '0001 012c 0000 0100'
+	printf '1 cup\n300 plate\n' >names
+	says 0 "mask-import: warning: map.png: 256, 25.0% of it, has no name" "$BIN/mask-import" --names names -o masks map.png
+	[ "$(jq -c .object masks)" = '"cup"
+"plate"' ]
+	printf '%s\n' '{"view":"map","object":"cup","segmentation":{"size":[1,4],"counts":[0,1,3]}}' \
+		'{"view":"map","object":"plate","segmentation":{"size":[1,4],"counts":[1,1,2]}}' >truth
+	"$BIN/miou-score" --json --truth truth masks | jq -e '.miou == 1 and .pairs == 2'
+	mkdir -p tree/map
+	kind=0806 picture map.png 'ff0000ff ff000000 ff000001 000000ff'
+	echo '#ff0000 cup' >names
+	cp map.png tree/map/cup.png
+	echo '{"view":"map","object":"cup","path":"map.png"}' >path.jsonl
+	head -n 1 truth >one
+	for way in "--names names map.png" tree path.jsonl; do
+		"$BIN/mask-import" -o masks $way
+		"$BIN/miou-score" --json --truth one masks | jq -e '.miou == 1 and .pairs == 1'
+	done
+	printf '\xff\xd8\xff' >map.png
+	says 3 "mask-import: map.png: a JPEG, whose colours are not quite those that were painted: save it as PNG" "$BIN/mask-import" --names names -o none map.png
+}
+
 @test "what has no name, and a name that has no pixel, are told; -q is silent" {
 	echo '7 plate' >names
 	echo '#ff0000 cup' >>names
@@ -84,13 +109,13 @@ refuses() {
 
 @test "names that are malformed: exact messages" {
 	names() { printf "$1" >names; }
-	names '#ff0000 cup\n#ff00 mug\n' && refuses 3 "names:2: does not begin with #rrggbb or 0 to 255, and a blank"
-	for bad in 'ff0000 cup' '256 cup' '-1 cup' '0003 cup' '#ff00001 cup' '3cup' '# cup' 'cup'; do
-		names "$bad" && refuses 3 "names:1: does not begin with #rrggbb or 0 to 255, and a blank"
+	names '#ff0000 cup\n#ff00 mug\n' && refuses 3 "names:2: does not begin with #rrggbb or 0 to 65535, and a blank"
+	for bad in 'ff0000 cup' '65536 cup' '-1 cup' '0003 cup' '#ff00001 cup' '3cup' '# cup' 'cup'; do
+		names "$bad" && refuses 3 "names:1: does not begin with #rrggbb or 0 to 65535, and a blank"
 	done
 	names '3 \n' && refuses 3 "names:1: the name is empty"
 	names '3 caf\xe9\n' && refuses 3 "names:1: the name is not UTF-8 at byte 4"
-	names '3 cup\n#030303 mug\n' && refuses 3 "names:2: colour #030303 has a name already"
+	names '3 cup\n#030303 mug\n' && refuses 3 "names:2: its colour or number has a name already"
 	names '3 cup\n4 cup\n' && refuses 3 "names:2: the name 'cup' has a colour already"
 	names '\n' && refuses 3 "names: holds no names"
 	names '9 cup\n' && refuses 3 "view_1.png: has none of the colours that have names"
