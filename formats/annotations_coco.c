@@ -3,6 +3,8 @@
 
 #include "base/mem.h"
 #include "base/name.h"
+#include "base/names.h"
+#include "geom/views.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -143,33 +145,90 @@ static int read_ref(struct reading *r, const cJSON *item, size_t before, struct 
 	return ref && !(a->items[a->n - 1].ref = mem_strdup(ref, e)) ? -1 : 0;
 }
 
-static int read_mask(struct reading *r, const cJSON *item, const char *file, const char *name, struct err *e)
+static int read_mask(struct reading *r, const cJSON *item, const char *view, const char *name, struct err *e)
 {
 	const size_t before = r->to->n;
-	char *view = reading_view(file, e);
-	const int bad = !view || read_score(r, item, e) || read_segmentation(r, item, view, name, e) ||
+	const int bad = read_score(r, item, e) || read_segmentation(r, item, view, name, e) ||
 			read_ref(r, item, before, e);
 
-	free(view);
 	r->score = NAN;
 	return bad ? -1 : 0;
 }
 
-static int read_annotation(struct reading *r, const cJSON *root, const cJSON *item, struct err *e)
+/* The views of all pictures, as gs-import names those of photographs of these paths. */
+struct coco {
+	size_t n;
+	char **files, **views;
+};
+
+static void coco_free(struct coco *c)
 {
-	const cJSON *image = with_id(cJSON_GetObjectItemCaseSensitive(root, "images"),
-		cJSON_GetObjectItemCaseSensitive(item, "image_id"));
+	for (size_t i = 0; i < c->n; i++) {
+		free(c->files[i]);
+		free(c->views[i]);
+	}
+	free(c->files);
+	free(c->views);
+}
+
+static int check_twice(const struct reading *r, const struct coco *c, struct err *e)
+{
+	struct names names;
+	size_t earlier;
+
+	if (names_make(&names, c->files, sizeof *c->files, 0, c->n, e))
+		return -1;
+	const size_t twice = names_twice(&names, &earlier);
+	names_free(&names);
+	return twice == NAMES_NONE
+		       ? 0
+		       : err_set(e, ERR_FORMAT,
+				 "%s: images %zu and %zu have one file_name, '%.300s': their labels would be of one view",
+				 r->path, earlier, twice, c->files[twice]);
+}
+
+static int name_views(struct reading *r, const cJSON *images, struct coco *c, struct err *e)
+{
+	const cJSON *image;
+	const size_t n = (size_t)cJSON_GetArraySize(images);
+
+	c->files = mem_zalloc(n, sizeof *c->files, "images", e);
+	c->views = mem_zalloc(n, sizeof *c->views, "images", e);
+	if (!c->files || !c->views)
+		return -1;
+	cJSON_ArrayForEach(image, images)
+	{
+		const char *file;
+		snprintf(r->where, WHERE, "%s: image %zu", r->path, c->n);
+		if (json_string(image, "file_name", 1, &file, r->where, e) < 0 ||
+			!(c->files[c->n++] = mem_strdup(file, e)))
+			return -1;
+		for (char *p = c->files[c->n - 1]; *p; p++)
+			*p = *p == '\\' ? '/' : *p;
+	}
+	return check_twice(r, c, e) || views_name((const char *const *)c->files, c->n, c->views, r->path, e)
+		       ? -1
+		       : 0;
+}
+
+static int read_annotation(
+	struct reading *r, const struct coco *c, const cJSON *root, const cJSON *item, struct err *e)
+{
+	const cJSON *images = cJSON_GetObjectItemCaseSensitive(root, "images"), *before;
+	const cJSON *image = with_id(images, cJSON_GetObjectItemCaseSensitive(item, "image_id"));
 	const cJSON *category = with_id(cJSON_GetObjectItemCaseSensitive(root, "categories"),
 		cJSON_GetObjectItemCaseSensitive(item, "category_id"));
-	const char *file, *name;
+	const char *name;
+	size_t at = 0;
 
 	if (!image || !category)
 		return err_set(e, ERR_FORMAT, "%s: no %s has its '%s'", r->where,
 			image ? "category" : "image", image ? "category_id" : "image_id");
-	return json_string(image, "file_name", 1, &file, r->where, e) < 0 ||
-			       json_string(category, "name", 1, &name, r->where, e) < 0 ||
+	for (before = images->child; before != image; before = before->next)
+		at++;
+	return json_string(category, "name", 1, &name, r->where, e) < 0 ||
 			       reading_size(r, image, "height", "width", e) ||
-			       read_mask(r, item, file, name, e)
+			       read_mask(r, item, c->views[at], name, e)
 		       ? -1
 		       : 0;
 }
@@ -179,25 +238,30 @@ static int read_found(struct reading *r, const cJSON *root, const cJSON *item, s
 {
 	const char *file, *name;
 
-	return json_string(root, "image_path", 1, &file, r->where, e) < 0 ||
-			       json_string(item, "class_name", 1, &name, r->where, e) < 0 ||
-			       reading_size(r, root, "img_height", "img_width", e) ||
-			       read_mask(r, item, file, name, e)
-		       ? -1
-		       : 0;
+	if (json_string(root, "image_path", 1, &file, r->where, e) < 0 ||
+		json_string(item, "class_name", 1, &name, r->where, e) < 0 ||
+		reading_size(r, root, "img_height", "img_width", e))
+		return -1;
+	char *view = reading_view(file, e);
+	const int bad = !view || read_mask(r, item, view, name, e);
+	free(view);
+	return bad ? -1 : 0;
 }
 
 int reading_annotations(struct reading *r, const cJSON *root, struct err *e)
 {
 	const int is_found = cJSON_GetObjectItemCaseSensitive(root, "image_path") != NULL;
 	const cJSON *item;
+	struct coco c = {0};
 	size_t i = 0;
+	int bad = !is_found && name_views(r, cJSON_GetObjectItemCaseSensitive(root, "images"), &c, e);
 
 	cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "annotations"))
 	{
 		snprintf(r->where, WHERE, "%s: annotation %zu", r->path, i++);
-		if (is_found ? read_found(r, root, item, e) : read_annotation(r, root, item, e))
-			return -1;
+		bad = bad ||
+		      (is_found ? read_found(r, root, item, e) : read_annotation(r, &c, root, item, e));
 	}
-	return 0;
+	coco_free(&c);
+	return bad ? -1 : 0;
 }

@@ -17,7 +17,6 @@ struct reading {
 	char where[WHERE]; /* "path: shape 3", for messages */
 	int height, width;
 	double score; /* of the detector's annotation that is read, or NAN */
-	char **views; /* of COCO's pictures, in their order */
 	uint8_t *flips, *mask;
 	double *points;
 	size_t flips_room, mask_room, points_room;

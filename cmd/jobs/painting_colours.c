@@ -6,6 +6,7 @@
 #include "base/names.h"
 #include "base/path.h"
 #include "formats/png.h"
+#include "geom/views.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +16,8 @@
  */
 static const double unnamed_share = 0.001;
 
-/* The view of a picture: its file name without the ending. */
+/* The view of a picture: its file name without the ending, and without that of the photograph, which COLMAP's
+ * names of masks have before it. */
 static char *view_of(const char *path, struct err *e)
 {
 	int length;
@@ -28,6 +30,7 @@ static char *view_of(const char *path, struct err *e)
 	dot = strrchr(stem, '.');
 	if (dot && dot > stem)
 		*dot = 0;
+	stem[view_stem(stem)] = 0;
 	char *view = name_to_view(stem, e);
 	free(stem);
 	return view;
