@@ -21,6 +21,8 @@ void annotations_free(struct annotations *a)
 		mask_place_free(a->items[i].boxes);
 	}
 	free(a->items);
+	free(a->view);
+	free(a->picture);
 	for (size_t i = 0; i < a->left_count; i++)
 		free(a->left_out[i].kind);
 	free(a->left_out);
@@ -52,14 +54,13 @@ static int read_labelme(struct reading *r, const cJSON *root, struct err *e)
 	if (json_string(root, "imagePath", 1, &image, r->where, e) < 0 ||
 		reading_size(r, root, "imageHeight", "imageWidth", e))
 		return -1;
-	char *view = reading_view(image, e);
+	const char *view = reading_picture(r, r->path, image, e);
 	int bad = !view;
 	cJSON_ArrayForEach(shape, shapes)
 	{
 		snprintf(r->where, WHERE, "%s: shape %zu", r->path, i++);
 		bad = bad || read_shape(r, shape, view, e);
 	}
-	free(view);
 	return bad ? -1 : 0;
 }
 
@@ -102,14 +103,13 @@ static int read_isat(struct reading *r, const cJSON *root, struct err *e)
 	if (json_string(info, "name", 1, &image, r->where, e) < 0 ||
 		reading_size(r, info, "height", "width", e))
 		return -1;
-	char *view = reading_view(image, e);
+	const char *view = reading_picture(r, r->path, image, e);
 	int bad = !view;
 	cJSON_ArrayForEach(object, cJSON_GetObjectItemCaseSensitive(root, "objects"))
 	{
 		snprintf(r->where, WHERE, "%s: object %zu", r->path, i++);
 		bad = bad || read_object(r, object, view, e);
 	}
-	free(view);
 	return bad ? -1 : 0;
 }
 

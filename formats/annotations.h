@@ -27,6 +27,8 @@ struct annotations_left {
 };
 
 struct annotations {
+	char *view, *picture; /* LabelMe's, ISAT's and Grounded-SAM-2's: the one picture's view, and its path
+				 as the tool would find it, without ".."; else NULL */
 	size_t n, capacity;
 	struct annotation *items; /* in the order of the file */
 	size_t left_count, left_capacity;

@@ -242,10 +242,8 @@ static int read_found(struct reading *r, const cJSON *root, const cJSON *item, s
 		json_string(item, "class_name", 1, &name, r->where, e) < 0 ||
 		reading_size(r, root, "img_height", "img_width", e))
 		return -1;
-	char *view = reading_view(file, e);
-	const int bad = !view || read_mask(r, item, view, name, e);
-	free(view);
-	return bad ? -1 : 0;
+	const char *view = reading_picture(r, "", file, e);
+	return view ? read_mask(r, item, view, name, e) : -1;
 }
 
 int reading_annotations(struct reading *r, const cJSON *root, struct err *e)

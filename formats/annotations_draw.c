@@ -1,6 +1,7 @@
 /* Shapes of labels as masks: points in the picture's pixels, drawn and put together by view and name. */
 #include "formats/annotations_private.h"
 
+#include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
 #include "formats/png.h"
@@ -29,6 +30,45 @@ char *reading_view(const char *image, struct err *e)
 	char *view = name_to_view(stem, e);
 	free(stem);
 	return view;
+}
+
+/* Takes ".", and ".." with what is before it, out of a path. */
+static void simplify(char *path)
+{
+	char *to = path;
+
+	for (const char *from = path; *from;) {
+		const size_t n = strcspn(from, "/"), next = n + (from[n] == '/');
+		if (n == 2 && !memcmp(from, "..", 2) && to > path + 1 &&
+			!(to - path >= 3 && !memcmp(to - 3, "../", 3))) {
+			do
+				to--;
+			while (to > path && to[-1] != '/');
+		} else if ((n != 1 || *from != '.') && (n || from == path)) {
+			memmove(to, from, next);
+			to += next;
+		}
+		from += next;
+	}
+	*to = 0;
+}
+
+const char *reading_picture(struct reading *r, const char *json, const char *image, struct err *e)
+{
+	struct annotations *a = r->to;
+	char *path = mem_strdup(image, e), *folder = *json ? file_dir(json, e) : mem_strdup(".", e);
+
+	for (char *p = path; p && *p; p++)
+		*p = *p == '\\' ? '/' : *p;
+	if (!a->view)
+		a->view = reading_view(image, e);
+	if (!a->picture && path && folder)
+		a->picture = file_join(strchr(path, ':') ? "." : folder, path, "", e);
+	if (a->picture)
+		simplify(a->picture);
+	free(path);
+	free(folder);
+	return a->picture ? a->view : NULL;
 }
 
 int reading_size(struct reading *r, const cJSON *object, const char *height, const char *width, struct err *e)

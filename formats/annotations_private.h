@@ -49,6 +49,10 @@ int reading_leave_out(struct reading *r, const char *kind, struct err *e);
 /* A picture's name as a view: without folders of either kind of slash, and without the ending. */
 char *reading_view(const char *image, struct err *e);
 
+/* Notes the one picture of a file, whose path is as seen from the folder of `json`: its view, which stays the
+ * reading's; NULL with *e. */
+const char *reading_picture(struct reading *r, const char *json, const char *image, struct err *e);
+
 /* COCO's annotations, or Grounded-SAM-2's. */
 int reading_annotations(struct reading *r, const cJSON *root, struct err *e);
 

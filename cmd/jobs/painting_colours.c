@@ -116,8 +116,14 @@ int painting_put_colours(struct painting_names *names, const char *path, struct 
 	return bad ? -1 : 0;
 }
 
-/* Pictures that are called the same in different folders are of one view. */
-int painting_warn_shared(const char *const *pictures, size_t count, const struct report *to, struct err *e)
+int painting_two_pictures(const char *earlier, const char *later, const char *view, struct err *e)
+{
+	return err_set(e, ERR_FORMAT,
+		"%s: of view '%s', and so is %s, of another folder's picture: name pictures as their views are in the scene, or import them one by one",
+		later, view, earlier);
+}
+
+int painting_check_shared(const char *const *pictures, size_t count, struct err *e)
 {
 	char **views = mem_zalloc(count, sizeof *views, "views", e);
 	struct names names = {0};
@@ -130,8 +136,7 @@ int painting_warn_shared(const char *const *pictures, size_t count, const struct
 	bad = bad || names_make(&names, views, sizeof *views, 0, count, e);
 	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
 	if (twice != NAMES_NONE)
-		report_warn(to, "%s and %s are both of view '%s'", pictures[earlier], pictures[twice],
-			views[twice]);
+		bad = painting_two_pictures(pictures[earlier], pictures[twice], views[twice], e);
 	names_free(&names);
 	for (size_t i = 0; views && i < count; i++)
 		free(views[i]);

@@ -100,11 +100,42 @@ refuses() {
 	says "$1" "mask-import: $2" "$BIN/mask-import" -q --names names -o none view_1.png && [ ! -e none ]
 }
 
-@test "pictures of one name in two folders are told" {
-	mkdir a b
+@test "pictures of one name in two folders: COCO's views are as gs-import names them, else an error" {
+	mkdir -p a b
 	cp view_1.png a && cp view_1.png b
-	says 0 "mask-import: warning: a/view_1.png and b/view_1.png are both of view 'view_1'" \
-		"$BIN/mask-import" --names names -o masks a/view_1.png b/view_1.png
+	two() {
+		local first=$1 second=$2
+		says 3 "mask-import: $second: of view 'view_1', and so is $first, of another folder's picture: name pictures as their views are in the scene, or import them one by one" \
+			"$BIN/mask-import" -q --names names -o none "$first" "$second"
+		[ ! -e none ]
+	}
+	two a/view_1.png b/view_1.png
+	labelme '{"label":"cup","points":[[1,1],[3,1],[3,3]]}' >a/1.json
+	cp a/1.json a/2.json
+	cp a/1.json b/1.json # of ../photos, which is the same for both
+	"$BIN/mask-import" -q -o masks a/1.json a/2.json b/1.json
+	sed -i 's,\.\.\\\\photos\\\\,,' a/1.json b/1.json
+	grep -q '"imagePath":"view_1.jpg"' a/1.json
+	two a/1.json b/1.json
+	jq -n '{images: ["left\\0.jpg", "right/0.jpg", "a/1.png"] | to_entries | map({id: .key, file_name: .value, height: 3, width: 4}), categories: [{id: 1, name: "cup"}],
+		annotations: [0, 1, 2 | {image_id: ., category_id: 1, segmentation: [[0, 0, 4, 0, 4, 3, 0, 3]]}]}' >coco.json
+	[ "$("$BIN/mask-import" coco.json | jq -r .view | tr '\n' ' ')" = "left_0 right_0 1 " ]
+	jq '.images[2].file_name = "right/0.jpg"' coco.json >bad.json
+	says 3 "mask-import: bad.json: images 1 and 2 have one file_name, 'right/0.jpg': their labels would be of one view" "$BIN/mask-import" bad.json
+}
+
+@test "COLMAP's names of masks: the photograph's name with its ending, and .png" {
+	mkdir -p tree/v.JPG tree/w
+	cp view_1.png v.jpg.png
+	cp view_1.png tree/v.JPG/cup.png
+	cp view_1.png tree/w/cup.png
+	[ "$("$BIN/mask-import" -q --names names v.jpg.png | jq -r .view | sort -u)" = v ]
+	[ "$("$BIN/mask-import" tree | jq -r .view | tr '\n' ' ')" = "v w " ]
+	# two photographs of one name keep their endings, as in the scene
+	cp -r tree/w tree/v.png
+	[ "$("$BIN/mask-import" tree | jq -r .view | tr '\n' ' ')" = "v.JPG v.png w " ]
+	cp view_1.png tree/w/0.jpg.png
+	says 3 "mask-import: tree/w/0.jpg.png: the mask of a photograph, as COLMAP names them, not of a thing: give such pictures by themselves, with --names" "$BIN/mask-import" -o none tree
 }
 
 @test "names that are malformed: exact messages" {
