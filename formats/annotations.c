@@ -178,6 +178,7 @@ static int read_any(struct reading *r, const cJSON *root, const char *path, stru
 	const int is_labelme = cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "shapes"));
 
 	snprintf(r->where, WHERE, "%s", r->path);
+	r->to->is_layered = is_labelme;
 	if (is_labelme)
 		return read_labelme(r, root, e);
 	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "annotations")))

@@ -31,6 +31,7 @@ struct annotations {
 				 as the tool would find it, without ".."; else NULL */
 	size_t n, capacity;
 	struct annotation *items; /* in the order of the file */
+	int is_layered;		  /* LabelMe's and COCO's: outlines may go on beneath what lies on them */
 	size_t left_count, left_capacity;
 	struct annotations_left *left_out; /* what has no area or is of no known type */
 };

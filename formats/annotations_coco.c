@@ -252,6 +252,7 @@ int reading_annotations(struct reading *r, const cJSON *root, struct err *e)
 	const cJSON *item;
 	struct coco c = {0};
 	size_t i = 0;
+	r->to->is_layered = 1;
 	int bad = !is_found && name_views(r, cJSON_GetObjectItemCaseSensitive(root, "images"), &c, e);
 
 	cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "annotations"))

@@ -102,7 +102,7 @@ static int put_labelled(struct putting *p, const char *path, struct err *e)
 {
 	struct annotations a;
 	const int bad = annotations_read(&a, path, e) || check_picture(p, &a, path, e) ||
-			put_labels(&a, path, p->w, p->out, &p->count, p->to, e);
+			painting_layers(&a, e) || put_labels(&a, path, p->w, p->out, &p->count, p->to, e);
 
 	annotations_free(&a);
 	return bad ? -1 : 0;

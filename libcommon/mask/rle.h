@@ -41,6 +41,8 @@ size_t rle_area(const struct rle *r);
 size_t rle_intersection(const struct rle *a, const struct rle *b);
 /* a or b, of the same size. `to` is neither of them. */
 int rle_unite(struct rle *to, const struct rle *a, const struct rle *b, struct err *e);
+/* a but not b, likewise. */
+int rle_without(struct rle *to, const struct rle *a, const struct rle *b, struct err *e);
 int rle_same_size(const struct rle *a, const struct rle *b);
 /* Intersection over union; two empty masks give 1. */
 double rle_iou(const struct rle *a, const struct rle *b);

@@ -269,6 +269,29 @@ mask-import: warning: a.json: 2 shapes of type 'linestrip' are left out" ]
 	[ "$(jq -r .object made.jsonl)" = d ]
 }
 
+@test "the smaller outline lies on the larger, whatever their order; parts and second names stay" {
+	shape() { printf '{"label":"%s","points":[[%s],[%s],[%s],[%s]]}' "$1" $2,$3 $4,$3 $4,$5 $2,$5; }
+	pad=$(shape pad 0 0 6 4) mouse=$(shape mouse 1 1 3 3)
+	areas() { "$BIN/mask-import" -q "$1" | "$BIN/mask-export" | jq -r '[.categories[].name, .annotations[].area | tostring] | join(" ")'; }
+	labelme "$pad" "$mouse" >a.json && [ "$(areas a.json)" = "pad mouse 20 4" ]
+	labelme "$mouse" "$pad" >a.json && [ "$(areas a.json)" = "mouse pad 4 20" ]
+	# a cable of three pixels on the mouse on the pad
+	labelme "$mouse" "$pad" "$(shape cable 2 0 3 3)" >a.json && [ "$(areas a.json)" = "mouse pad cable 2 19 3" ]
+	for part in "wheel of the pad" "wheel of pad" "pad's wheel"; do
+		labelme "$(shape "$part" 1 1 3 3)" "$pad" >a.json && [ "$(areas a.json)" = "$part pad 4 24" ]
+	done
+	labelme "$(shape "wheel of the pad" 1 1 3 3)" "$(shape 'red pad' 0 0 6 4)" >a.json && [ "$(areas a.json)" = "wheel of the pad red pad 4 24" ]
+	labelme "$(shape cover 0 0 6 4)" "$pad" >a.json && [ "$(areas a.json)" = "cover pad 24 24" ]
+	# COCO's outlines too, but not run lengths, nor what a detector found, nor ISAT's
+	jq -n '{images: [{id: 1, file_name: "a.png", height: 4, width: 6}], categories: [{id: 1, name: "pad"}, {id: 2, name: "mouse"}],
+		annotations: [{image_id: 1, category_id: 1, segmentation: [[0,0,6,0,6,4,0,4]]}, {image_id: 1, category_id: 2, segmentation: [[1,1,3,1,3,3,1,3]]}]}' >coco.json
+	[ "$(areas coco.json)" = "pad mouse 20 4" ]
+	jq '.annotations[].score = 0.5' coco.json >found.json && [ "$(areas found.json)" = "pad mouse 24 4" ]
+	jq '.annotations[0].segmentation = {size: [4, 6], counts: [0, 24]}' coco.json >runs.json && [ "$(areas runs.json)" = "pad mouse 24 4" ]
+	jq -n '{info: {name: "a.jpg", width: 6, height: 4}, objects: [{category: "pad", segmentation: [[0,0],[6,0],[6,4],[0,4]]}, {category: "mouse", segmentation: [[1,1],[3,1],[3,3],[1,3]]}]}' >isat.json
+	[ "$(areas isat.json)" = "pad mouse 24 4" ]
+}
+
 @test "a detector's: each thing that it found by itself, with its score; COCO's with its sentence" {
 	jq -n '{image_path: "photos/view_1.jpg", img_height: 3, img_width: 4, box_format: "xyxy", annotations: [
 		{class_name: "red cup", bbox: [0, 0, 1, 3], segmentation: {size: [3, 4], counts: [0, 3, 9]}, score: [0.75]},

@@ -70,6 +70,12 @@ static void test_random(void)
 		CHECK(rle_intersection(&x, &y) == both && rle_intersection(&y, &x) == both, "round %d",
 			round);
 		CHECK(rle_iou(&x, &y) == (either ? (double)both / (double)either : 1), "round %d", round);
+		rle_free(&parsed);
+		int wrong = rle_without(&parsed, &x, &y, &e);
+		rle_decode(&parsed, back);
+		for (size_t i = 0; i < pixels; i++)
+			wrong += back[i] != (a[i] && !b[i]);
+		CHECK(!wrong, "round %d: %d pixels of a without b", round, wrong);
 		rle_free(&x);
 		rle_free(&y);
 		rle_free(&parsed);
