@@ -1,5 +1,6 @@
 #include "formats/annotations_private.h"
 
+#include "base/base64.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/path.h"
@@ -45,6 +46,37 @@ static int read_shape(struct reading *r, const cJSON *shape, const char *view, s
 	return reading_draw_shape(r, type, count, view, label, e);
 }
 
+/* LabelMe says the size of a picture that it also holds, or that lies beside it. A smaller or larger copy
+ * will do there, and of a JPEG one that is turned, as cameras say in it that they were. */
+static int check_picture(struct reading *r, const cJSON *root, struct err *e)
+{
+	const cJSON *data = cJSON_GetObjectItemCaseSensitive(root, "imageData");
+	const int is_held = cJSON_IsString(data) && *data->valuestring;
+	const char *picture = r->to->picture;
+	enum picture_kind kind = PICTURE_NONE;
+	int height = 0, width = 0;
+	size_t n = 0;
+	void *bytes = is_held ? base64_bytes(data->valuestring, &n, e) : NULL;
+
+	if (is_held && !bytes)
+		return -1;
+	const int is_beside =
+		!is_held && file_exists(picture) && !file_is_dir(picture) && !file_is_pipe(picture);
+	FILE *in = n ? fmemopen(bytes, n, "rb") : is_beside ? fopen(picture, "rb") : NULL;
+	if (in) {
+		kind = picture_size(in, &height, &width);
+		fclose(in);
+	}
+	free(bytes);
+	const int is_turned = kind == PICTURE_JPEG && rle_has_shape(width, height, r->height, r->width);
+	if (kind == PICTURE_NONE || (height == r->height && width == r->width) ||
+		(!is_held && (is_turned || rle_has_shape(height, width, r->height, r->width))))
+		return 0;
+	return err_set(e, ERR_FORMAT,
+		"%s: imageWidth and imageHeight are %dx%d, but %s is %dx%d: the labels are of another picture",
+		r->where, r->width, r->height, is_held ? "the picture in imageData" : picture, width, height);
+}
+
 static int read_labelme(struct reading *r, const cJSON *root, struct err *e)
 {
 	const cJSON *shapes = cJSON_GetObjectItemCaseSensitive(root, "shapes"), *shape;
@@ -55,7 +87,7 @@ static int read_labelme(struct reading *r, const cJSON *root, struct err *e)
 		reading_size(r, root, "imageHeight", "imageWidth", e))
 		return -1;
 	const char *view = reading_picture(r, r->path, image, e);
-	int bad = !view;
+	int bad = !view || check_picture(r, root, e);
 	cJSON_ArrayForEach(shape, shapes)
 	{
 		snprintf(r->where, WHERE, "%s: shape %zu", r->path, i++);

@@ -37,6 +37,10 @@ int png_read_paint(const char *path, uint32_t **paint, int *height, int *width, 
 /* Up to 255 the grey 0xrrggbb, else PNG_PAINT_NUMBER and the number. */
 uint32_t png_paint_number(uint32_t number);
 
+/* What a stream begins with: PICTURE_PNG or PICTURE_JPEG, whose size it says, or PICTURE_NONE. */
+enum picture_kind { PICTURE_NONE, PICTURE_PNG, PICTURE_JPEG };
+enum picture_kind picture_size(FILE *in, int *height, int *width);
+
 /* A PNG or JPEG (by content) as RGB, (height,width,3). free() it. */
 int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, struct err *e);
 

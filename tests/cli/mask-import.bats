@@ -292,6 +292,24 @@ mask-import: warning: a.json: 2 shapes of type 'linestrip' are left out" ]
 	[ "$(areas isat.json)" = "pad mouse 24 4" ]
 }
 
+@test "LabelMe's size of the picture is that of imageData, and has the shape of the photograph" {
+	labelme '{"label":"cup","points":[[1,1],[3,1],[3,3]]}' | jq '.imagePath = "view_1.png"' >a.json
+	picture held.png '000000 000000 000000 000000 000000 000000' '000000 000000 000000 000000 000000 000000'
+	refuse() { says 3 "mask-import: a.json: imageWidth and imageHeight are 6x4, but $1: the labels are of another picture" "$BIN/mask-import" -o none a.json; }
+	picture view_1.png '000000 000000 000000' '000000 000000 000000'
+	"$BIN/mask-import" a.json >made.jsonl
+	picture view_1.png '000000' '000000' '000000' '000000' '000000' '000000' '000000' '000000' '000000'
+	refuse "view_1.png is 1x9"
+	jq --arg data "$(base64 -w0 held.png)" '.imageData = $data' a.json >b.json && mv b.json a.json
+	refuse "the picture in imageData is 6x2"
+	# a JPEG's header, of a picture that may be turned: 4 wide, 6 high
+	printf '\xff\xd8\xff\xe0\x00\x03x\xff\xff\xc0\x00\x0b\x08\x00\x06\x00\x04\x01\x01\x11\x00' >turned.jpg
+	jq --arg data "$(base64 -w0 turned.jpg)" '.imageData = $data' a.json >b.json && mv b.json a.json
+	refuse "the picture in imageData is 4x6"
+	jq '.imageData = null | .imagePath = "turned.jpg"' a.json >b.json
+	"$BIN/mask-import" b.json >made.jsonl
+}
+
 @test "a detector's: each thing that it found by itself, with its score; COCO's with its sentence" {
 	jq -n '{image_path: "photos/view_1.jpg", img_height: 3, img_width: 4, box_format: "xyxy", annotations: [
 		{class_name: "red cup", bbox: [0, 0, 1, 3], segmentation: {size: [3, 4], counts: [0, 3, 9]}, score: [0.75]},
