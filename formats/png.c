@@ -1,32 +1,15 @@
-#include "formats/png.h"
+#include "formats/png_private.h"
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/jpeg.h"
 
-#include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-enum { MAX_SIDE = 65536, DEFLATE_RATIO = 1032 /* what a byte of deflate can become at most */ };
-
-/* What libpng reports, and what must be released when it jumps out. */
-struct png_job {
-	const char *path;
-	struct err *e;
-	png_structp png;
-	png_infop info;
-	uint8_t *raw;
-	png_bytep *rows;
-	size_t row_bytes;
-	int height, width, channels, depth;
-	int is_rgb;    /* of 16 bit samples the high byte, without alpha */
-	int is_labels; /* a palette's numbers are kept, and colours are an error */
-	uint8_t palette_alpha[256];
-	int grey_clear; /* the grey level that is transparent, or -1 */
-};
+enum { DEFLATE_RATIO = 1032 /* what a byte of deflate can become at most */ };
 
 int picture_check_size(const char *path, const char *kind, size_t width, size_t height, struct err *e)
 {
@@ -47,7 +30,7 @@ int picture_check_bytes(const char *path, const char *kind, size_t width, size_t
 		width, height, (long long)st.st_size);
 }
 
-static _Noreturn void on_error(png_structp png, png_const_charp message)
+_Noreturn void png_job_error(png_structp png, png_const_charp message)
 {
 	struct png_job *job = png_get_error_ptr(png);
 
@@ -57,7 +40,7 @@ static _Noreturn void on_error(png_structp png, png_const_charp message)
 	png_longjmp(png, 1);
 }
 
-static void on_warning(png_structp png, png_const_charp message)
+void png_job_warning(png_structp png, png_const_charp message)
 {
 	(void)png;
 	(void)message;
@@ -75,21 +58,6 @@ static void read_bytes(png_structp png, png_bytep data, size_t len)
 	else
 		err_set(job->e, ERR_FORMAT, "%s: PNG: the file ends too early", job->path);
 	png_error(png, "read");
-}
-
-static void write_bytes(png_structp png, png_bytep data, size_t len)
-{
-	struct png_job *job = png_get_error_ptr(png);
-
-	if (fwrite(data, 1, len, png_get_io_ptr(png)) == len)
-		return;
-	err_errno(job->e, "%s", job->path);
-	png_error(png, "write");
-}
-
-static void flush_bytes(png_structp png)
-{
-	(void)png; /* the file is flushed as a whole when it is committed */
 }
 
 static void release(struct png_job *job)
@@ -123,7 +91,7 @@ static int decode(struct png_job *job, FILE *in)
 	if (setjmp(png_jmpbuf(job->png)))
 		return -1;
 	png_set_read_fn(job->png, in, read_bytes);
-	png_set_user_limits(job->png, MAX_SIDE, MAX_SIDE);
+	png_set_user_limits(job->png, PNG_SIDE_MAX, PNG_SIDE_MAX);
 	png_read_info(job->png, job->info);
 	const size_t width = png_get_image_width(job->png, job->info),
 		     height = png_get_image_height(job->png, job->info);
@@ -166,7 +134,7 @@ static int decode(struct png_job *job, FILE *in)
 static int read_raw(struct png_job *job, FILE *in)
 {
 	job->e->code = ERR_NONE;
-	job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+	job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, png_job_error, png_job_warning);
 	if (job->png)
 		job->info = png_create_info_struct(job->png);
 	int bad = job->info ? decode(job, in) : err_set(job->e, ERR_SYSTEM, "%s: out of memory", job->path);
@@ -364,87 +332,4 @@ int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, str
 				 : err_set(e, ERR_FORMAT, "%s: an empty file, not an image", name);
 	file_close(in);
 	return bad;
-}
-
-/* Colour pictures are for a person to look at, and many are drawn: a fifth of the time for a third more
- * bytes. */
-static void set_effort(const struct png_job *job)
-{
-	if (job->channels != 3)
-		return;
-	png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-	png_set_compression_level(job->png, 1);
-}
-
-static int encode(struct png_job *job, FILE *out)
-{
-	int colour = job->channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY;
-
-	if (setjmp(png_jmpbuf(job->png)))
-		return -1;
-	png_set_write_fn(job->png, out, write_bytes, flush_bytes);
-	png_set_user_limits(job->png, MAX_SIDE, MAX_SIDE);
-	png_set_IHDR(job->png, job->info, (png_uint_32)job->width, (png_uint_32)job->height, job->depth,
-		colour, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-	set_effort(job);
-	png_write_info(job->png, job->info);
-	const uint16_t one = 1;
-	if (job->depth == 16 && *(const uint8_t *)&one)
-		png_set_swap(job->png); /* PNG is big-endian */
-	for (int y = 0; y < job->height; y++)
-		png_write_row(job->png, job->raw + (size_t)y * job->row_bytes);
-	png_write_end(job->png, job->info);
-	return 0;
-}
-
-static const char *out_name(const char *path)
-{
-	return strcmp(path, "-") ? path : "stdout";
-}
-
-static int write_raw(struct png_job *job, const char *path)
-{
-	struct file_out out;
-
-	if (job->height < 1 || job->width < 1 || job->height > MAX_SIDE || job->width > MAX_SIDE)
-		return err_set(
-			job->e, ERR_SYSTEM, "%s: a PNG cannot be %dx%d", job->path, job->width, job->height);
-	if (file_out_open(&out, path, job->e))
-		return -1;
-	job->e->code = ERR_NONE;
-	job->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
-	if (job->png)
-		job->info = png_create_info_struct(job->png);
-	int bad = job->info ? encode(job, out.stream)
-			    : err_set(job->e, ERR_SYSTEM, "%s: out of memory", job->path);
-	png_destroy_write_struct(&job->png, &job->info);
-	if (bad)
-		file_out_abort(&out);
-	else
-		bad = file_out_commit(&out, job->e);
-	return bad;
-}
-
-int png_write(const char *path, const uint8_t *pixels, int height, int width, int channels, struct err *e)
-{
-	struct png_job job = {.path = out_name(path),
-		.e = e,
-		.height = height,
-		.width = width,
-		.channels = channels,
-		.depth = 8};
-
-	job.row_bytes = (size_t)width * (size_t)channels;
-	job.raw = (uint8_t *)(size_t)pixels;
-	return write_raw(&job, path);
-}
-
-int png_write16(const char *path, const uint16_t *grey, int height, int width, struct err *e)
-{
-	struct png_job job = {
-		.path = out_name(path), .e = e, .height = height, .width = width, .channels = 1, .depth = 16};
-
-	job.row_bytes = (size_t)width * 2;
-	job.raw = (uint8_t *)(size_t)grey;
-	return write_raw(&job, path);
 }
