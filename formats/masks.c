@@ -269,6 +269,18 @@ int masks_check_shape(const struct mask *m, const char *of, int height, int widt
 	return err_prefix(e, where);
 }
 
+/* A view that is named by folder and file, where the scene has no two files of that name. */
+static int no_view(const struct names *names, const char *view, const char *path, long line, struct err *e)
+{
+	const char *file = strchr(view, '_');
+
+	while (file && names_find(names, file + 1) == NAMES_NONE)
+		file = strchr(file + 1, '_');
+	return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%.300s'%s%.300s%s",
+		file_name(path), line, view, file ? ", but '" : "", file ? file + 1 : "",
+		file ? "': are photographs of other folders not in it? Take only the labels of its own" : "");
+}
+
 int masks_views(const struct masks *set, const long *lines, const char *path, const struct cameras *cameras,
 	size_t *views, struct err *e)
 {
@@ -279,8 +291,7 @@ int masks_views(const struct masks *set, const long *lines, const char *path, co
 	for (size_t i = 0; i < set->n && !bad; i++) {
 		const size_t at = names_find(&names, set->items[i].view);
 		if (at == NAMES_NONE && views)
-			bad = err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%s'",
-				file_name(path), lines[i], set->items[i].view);
+			bad = no_view(&names, set->items[i].view, path, lines[i], e);
 		if (views)
 			views[i] = at;
 		if (at != NAMES_NONE && (views || !cameras->views[at].lens.model))
