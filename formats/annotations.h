@@ -17,12 +17,23 @@ struct annotation {
 	struct rle mask;	  /* all shapes of the label */
 	struct mask_place *boxes; /* of ISAT and LERF-OVS, a box for each shape that has one; else NULL */
 	size_t shapes;
+	int is_outline; /* a polygon is among them, so that what lies on it may be in it */
+};
+
+/* Shapes that are left out, by what they are: "shapes of type 'line'". */
+struct annotations_left {
+	char *kind;
+	size_t n;
 };
 
 struct annotations {
+	char *view, *picture; /* LabelMe's, ISAT's and Grounded-SAM-2's: the one picture's view, and its path
+				 as the tool would find it, without ".."; else NULL */
 	size_t n, capacity;
 	struct annotation *items; /* in the order of the file */
-	size_t left_out;	  /* shapes that have no area: points, lines, empty ones */
+	int is_layered;		  /* LabelMe's and COCO's: outlines may go on beneath what lies on them */
+	size_t left_count, left_capacity;
+	struct annotations_left *left_out; /* what has no area or is of no known type */
 };
 
 /* Reads any of them ("-" is stdin). Returns 0, or -1 with *e ("path: shape 3: ..."); free after either. */

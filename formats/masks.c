@@ -258,6 +258,29 @@ int masks_pool(struct pool *p, const struct masks *set, const long *lines, const
 		b->rle.height, lines[first]);
 }
 
+int masks_check_shape(const struct mask *m, const char *of, int height, int width, const char *path,
+	long line, struct err *e)
+{
+	char where[1024];
+
+	if (!mask_check_shape(m->view, &m->rle, of, height, width, e))
+		return 0;
+	snprintf(where, sizeof where, "%s:%ld", file_name(path), line);
+	return err_prefix(e, where);
+}
+
+/* A view that is named by folder and file, where the scene has no two files of that name. */
+static int no_view(const struct names *names, const char *view, const char *path, long line, struct err *e)
+{
+	const char *file = strchr(view, '_');
+
+	while (file && names_find(names, file + 1) == NAMES_NONE)
+		file = strchr(file + 1, '_');
+	return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%.300s'%s%.300s%s",
+		file_name(path), line, view, file ? ", but '" : "", file ? file + 1 : "",
+		file ? "': are photographs of other folders not in it? Take only the labels of its own" : "");
+}
+
 int masks_views(const struct masks *set, const long *lines, const char *path, const struct cameras *cameras,
 	size_t *views, struct err *e)
 {
@@ -266,10 +289,14 @@ int masks_views(const struct masks *set, const long *lines, const char *path, co
 		&names, cameras->views, sizeof *cameras->views, offsetof(struct camera, name), cameras->n, e);
 
 	for (size_t i = 0; i < set->n && !bad; i++) {
-		views[i] = names_find(&names, set->items[i].view);
-		if (views[i] == NAMES_NONE)
-			bad = err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%s'",
-				file_name(path), lines[i], set->items[i].view);
+		const size_t at = names_find(&names, set->items[i].view);
+		if (at == NAMES_NONE && views)
+			bad = no_view(&names, set->items[i].view, path, lines[i], e);
+		if (views)
+			views[i] = at;
+		if (at != NAMES_NONE && (views || !cameras->views[at].lens.model))
+			bad = masks_check_shape(&set->items[i], "the view", cameras->views[at].height,
+				cameras->views[at].width, path, lines[i], e);
 	}
 	names_free(&names);
 	return bad;

@@ -21,7 +21,12 @@ int masks_read_lines(struct masks *set, long **lines, const char *path, struct e
 
 /* The records of a file pooled. ERR_FORMAT where masks of a view differ in size. */
 int masks_pool(struct pool *p, const struct masks *set, const long *lines, const char *path, struct err *e);
-/* views (n): the number of each record's view. ERR_FORMAT where there is none of the name. */
+/* 0 where a mask, of a line of a file, has the shape of what it is of: mask_check_shape. */
+int masks_check_shape(const struct mask *m, const char *of, int height, int width, const char *path,
+	long line, struct err *e);
+/* views (n): the number of each record's view. ERR_FORMAT where there is none of the name, or its shape is
+ * not the mask's. With NULL the masks of views that are not there are left alone, and those of photographs
+ * that a lens distorts. */
 int masks_views(const struct masks *set, const long *lines, const char *path, const struct cameras *cameras,
 	size_t *views, struct err *e);
 

@@ -1,30 +1,15 @@
-#include "formats/png.h"
+#include "formats/png_private.h"
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/jpeg.h"
 
-#include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-enum { MAX_SIDE = 65536, DEFLATE_RATIO = 1032 /* what a byte of deflate can become at most */ };
-
-/* What libpng reports, and what must be released when it jumps out. */
-struct png_job {
-	const char *path;
-	struct err *e;
-	png_structp png;
-	png_infop info;
-	uint8_t *raw;
-	png_bytep *rows;
-	size_t row_bytes;
-	int height, width, channels, depth;
-	int is_8bit;   /* 16 bit samples are read as their high byte */
-	int is_labels; /* a palette's numbers are kept, and colours are an error */
-};
+enum { DEFLATE_RATIO = 1032 /* what a byte of deflate can become at most */ };
 
 int picture_check_size(const char *path, const char *kind, size_t width, size_t height, struct err *e)
 {
@@ -45,7 +30,7 @@ int picture_check_bytes(const char *path, const char *kind, size_t width, size_t
 		width, height, (long long)st.st_size);
 }
 
-static _Noreturn void on_error(png_structp png, png_const_charp message)
+_Noreturn void png_job_error(png_structp png, png_const_charp message)
 {
 	struct png_job *job = png_get_error_ptr(png);
 
@@ -55,7 +40,7 @@ static _Noreturn void on_error(png_structp png, png_const_charp message)
 	png_longjmp(png, 1);
 }
 
-static void on_warning(png_structp png, png_const_charp message)
+void png_job_warning(png_structp png, png_const_charp message)
 {
 	(void)png;
 	(void)message;
@@ -75,21 +60,6 @@ static void read_bytes(png_structp png, png_bytep data, size_t len)
 	png_error(png, "read");
 }
 
-static void write_bytes(png_structp png, png_bytep data, size_t len)
-{
-	struct png_job *job = png_get_error_ptr(png);
-
-	if (fwrite(data, 1, len, png_get_io_ptr(png)) == len)
-		return;
-	err_errno(job->e, "%s", job->path);
-	png_error(png, "write");
-}
-
-static void flush_bytes(png_structp png)
-{
-	(void)png; /* the file is flushed as a whole when it is committed */
-}
-
 static void release(struct png_job *job)
 {
 	free(job->raw);
@@ -98,13 +68,30 @@ static void release(struct png_job *job)
 	job->rows = NULL;
 }
 
+/* Of labels, whose palette and greys are not made colours, what is transparent. */
+static void take_clear(struct png_job *job)
+{
+	png_bytep alpha = NULL;
+	png_color_16p grey = NULL;
+	int n = 0;
+
+	memset(job->palette_alpha, 255, sizeof job->palette_alpha);
+	job->grey_clear = -1;
+	if (!png_get_tRNS(job->png, job->info, &alpha, &n, &grey))
+		return;
+	if (png_get_color_type(job->png, job->info) != PNG_COLOR_TYPE_PALETTE)
+		job->grey_clear = grey->gray;
+	else if (alpha)
+		memcpy(job->palette_alpha, alpha, (size_t)n);
+}
+
 /* Everything that may jump: nothing here owns memory that `job` does not know of. */
 static int decode(struct png_job *job, FILE *in)
 {
 	if (setjmp(png_jmpbuf(job->png)))
 		return -1;
 	png_set_read_fn(job->png, in, read_bytes);
-	png_set_user_limits(job->png, MAX_SIDE, MAX_SIDE);
+	png_set_user_limits(job->png, PNG_SIDE_MAX, PNG_SIDE_MAX);
 	png_read_info(job->png, job->info);
 	const size_t width = png_get_image_width(job->png, job->info),
 		     height = png_get_image_height(job->png, job->info);
@@ -115,15 +102,15 @@ static int decode(struct png_job *job, FILE *in)
 	const int type = png_get_color_type(job->png, job->info);
 	if (job->is_labels && type != PNG_COLOR_TYPE_PALETTE && type & PNG_COLOR_MASK_COLOR)
 		return err_set(job->e, ERR_FORMAT, "%s: PNG: has colours, not numbers of labels", job->path);
+	take_clear(job);
 	if (job->is_labels)
 		png_set_packing(job->png);
-	else if (type == PNG_COLOR_TYPE_PALETTE)
-		png_set_palette_to_rgb(job->png);
-	else if (png_get_bit_depth(job->png, job->info) < 8)
-		png_set_expand_gray_1_2_4_to_8(job->png);
-	png_set_strip_alpha(job->png);
-	if (job->is_8bit)
+	else
+		png_set_expand(job->png);
+	if (job->is_rgb) {
+		png_set_strip_alpha(job->png);
 		png_set_strip_16(job->png);
+	}
 	png_set_interlace_handling(job->png);
 	png_read_update_info(job->png, job->info);
 	job->height = (int)png_get_image_height(job->png, job->info);
@@ -142,11 +129,12 @@ static int decode(struct png_job *job, FILE *in)
 	return 0;
 }
 
-/* The whole image as 8 or 16 bit (big-endian) samples of 1 or 3 channels. release() it in any case. */
+/* The whole image as 8 or 16 bit (big-endian) samples of 1 or 3 channels, and one of alpha where there is
+ * some. release() it in any case. */
 static int read_raw(struct png_job *job, FILE *in)
 {
 	job->e->code = ERR_NONE;
-	job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+	job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, png_job_error, png_job_warning);
 	if (job->png)
 		job->info = png_create_info_struct(job->png);
 	int bad = job->info ? decode(job, in) : err_set(job->e, ERR_SYSTEM, "%s: out of memory", job->path);
@@ -154,28 +142,76 @@ static int read_raw(struct png_job *job, FILE *in)
 	return bad;
 }
 
+/* Sample k of a pixel. */
+static unsigned sample(const struct png_job *job, size_t pixel, int k)
+{
+	const size_t at = pixel % (size_t)job->width * (size_t)job->channels + (size_t)k;
+	const uint8_t *row = job->rows[pixel / (size_t)job->width];
+
+	return job->depth == 16 ? (unsigned)row[2 * at] << 8 | row[2 * at + 1] : row[at];
+}
+
+static size_t pixels_of(const struct png_job *job)
+{
+	return (size_t)job->height * (size_t)job->width;
+}
+
+/* The least alpha of what is not transparent: half of the largest, since soft edges and what a soft rubber
+ * leaves are less, and all that is painted may be pale. 0 without alpha. */
+static unsigned least_alpha(const struct png_job *job)
+{
+	unsigned most = 0;
+
+	if (job->channels % 2)
+		return 0;
+	for (size_t i = 0, n = pixels_of(job); i < n; i++) {
+		const unsigned alpha = sample(job, i, job->channels - 1);
+		most = alpha > most ? alpha : most;
+	}
+	return most / 2 + 1;
+}
+
+static int is_clear(const struct png_job *job, size_t pixel, unsigned least)
+{
+	return least && sample(job, pixel, job->channels - 1) < least;
+}
+
+/* Opens, reads with the job's settings, and makes room for a value of so many bytes for each pixel: NULL with
+ * *e, then too release() it. */
+static void *read_pixels(struct png_job *job, const char *path, size_t bytes)
+{
+	FILE *in = file_open(path, job->e);
+	void *out = NULL;
+
+	job->path = file_name(path);
+	if (!in)
+		return NULL;
+	const int first = getc(in);
+	ungetc(first, in);
+	if (first == 0xff)
+		err_set(job->e, ERR_FORMAT,
+			"%s: a JPEG, whose colours are not quite those that were painted: save it as PNG",
+			job->path);
+	else if (!read_raw(job, in))
+		out = mem_alloc(pixels_of(job), bytes, job->path, job->e);
+	file_close(in);
+	return out;
+}
+
 int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e)
 {
-	struct png_job job = {.path = file_name(path), .e = e};
-	FILE *in = file_open(path, e);
-	uint8_t *mask = NULL;
+	struct png_job job = {.e = e};
+	uint8_t *mask = read_pixels(&job, path, 1);
 
-	if (!in)
-		return -1;
-	int bad = read_raw(&job, in);
-	file_close(in);
-	if (!bad)
-		mask = mem_alloc((size_t)job.height, (size_t)job.width, job.path, e);
 	if (mask) {
-		size_t used = (size_t)job.depth / 8 * (size_t)job.channels;
-		for (size_t y = 0; y < (size_t)job.height; y++)
-			for (size_t x = 0; x < (size_t)job.width; x++) {
-				const uint8_t *p = job.rows[y] + x * used;
-				uint8_t any = 0;
-				for (size_t k = 0; k < used; k++)
-					any |= p[k];
-				mask[y * (size_t)job.width + x] = any != 0;
-			}
+		const int colours = job.channels - !(job.channels % 2);
+		const unsigned least = least_alpha(&job);
+		for (size_t i = 0, n = pixels_of(&job); i < n; i++) {
+			unsigned any = 0;
+			for (int k = 0; k < colours; k++)
+				any |= sample(&job, i, k);
+			mask[i] = any && !is_clear(&job, i, least);
+		}
 		*pixels = mask;
 		*height = job.height;
 		*width = job.width;
@@ -184,21 +220,19 @@ int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, s
 	return mask ? 0 : -1;
 }
 
-int png_read_labels(const char *path, uint16_t **labels, int *height, int *width, struct err *e)
+int png_read_labels(const char *path, int32_t **labels, int *height, int *width, struct err *e)
 {
-	struct png_job job = {.path = file_name(path), .e = e, .is_labels = 1};
-	FILE *in = file_open(path, e);
-	uint16_t *out = NULL;
+	struct png_job job = {.e = e, .is_labels = 1};
+	int32_t *out = read_pixels(&job, path, sizeof *out);
 
-	if (!in)
-		return -1;
-	if (!read_raw(&job, in))
-		out = mem_alloc((size_t)job.height * (size_t)job.width, sizeof *out, job.path, e);
-	file_close(in);
-	for (size_t i = 0, n = (size_t)job.height * (size_t)job.width; out && i < n; i++) {
-		const uint8_t *row = job.rows[i / (size_t)job.width];
-		const size_t x = i % (size_t)job.width;
-		out[i] = job.depth == 16 ? (uint16_t)(row[2 * x] << 8 | row[2 * x + 1]) : row[x];
+	if (out) {
+		const unsigned least = least_alpha(&job);
+		for (size_t i = 0, n = pixels_of(&job); i < n; i++) {
+			const unsigned label = sample(&job, i, 0);
+			const int is_none = is_clear(&job, i, least) || (int)label == job.grey_clear ||
+					    (label < 256 && !job.palette_alpha[label]);
+			out[i] = is_none ? -1 : (int32_t)label;
+		}
 	}
 	*labels = out;
 	*height = job.height;
@@ -207,9 +241,54 @@ int png_read_labels(const char *path, uint16_t **labels, int *height, int *width
 	return out ? 0 : -1;
 }
 
+/* Whether samples of 16 bits are 8 bits said twice, as programs write a picture of 8 bits. */
+static int is_doubled(const struct png_job *job, size_t pixel, int colours)
+{
+	int is = 1;
+
+	for (int k = 0; k < colours; k++)
+		is = is && sample(job, pixel, k) % 257 == 0;
+	return is;
+}
+
+int png_read_paint(const char *path, uint32_t **paint, int *height, int *width, struct err *e)
+{
+	struct png_job job = {.e = e};
+	uint32_t *out = read_pixels(&job, path, sizeof *out);
+
+	if (out) {
+		const int is_wide = job.depth == 16, colours = job.channels < 3 ? 1 : 3;
+		const unsigned least = least_alpha(&job), shift = is_wide ? 8 : 0;
+		const size_t n = pixels_of(&job);
+		int is_number = 0;
+		for (size_t i = 0; i < n && is_wide && colours == 1; i++)
+			is_number = is_number || !is_doubled(&job, i, 1);
+		for (size_t i = 0; i < n; i++) {
+			const unsigned first = sample(&job, i, 0);
+			if (is_clear(&job, i, least) || (is_wide && colours == 3 && !is_doubled(&job, i, 3)))
+				out[i] = PNG_PAINT_NONE;
+			else if (colours == 1)
+				out[i] = png_paint_number(is_number ? first : first >> shift);
+			else
+				out[i] = (uint32_t)(first >> shift << 16 | sample(&job, i, 1) >> shift << 8 |
+						    sample(&job, i, 2) >> shift);
+		}
+		*height = job.height;
+		*width = job.width;
+	}
+	*paint = out;
+	release(&job);
+	return out ? 0 : -1;
+}
+
+uint32_t png_paint_number(uint32_t number)
+{
+	return number > 255 ? PNG_PAINT_NUMBER | number : number * 0x010101;
+}
+
 static int read_png_rgb(const char *path, FILE *in, uint8_t **rgb, int *height, int *width, struct err *e)
 {
-	struct png_job job = {.path = path, .e = e, .is_8bit = 1};
+	struct png_job job = {.path = path, .e = e, .is_rgb = 1};
 	uint8_t *out = NULL;
 
 	if (!read_raw(&job, in))
@@ -253,87 +332,4 @@ int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, str
 				 : err_set(e, ERR_FORMAT, "%s: an empty file, not an image", name);
 	file_close(in);
 	return bad;
-}
-
-/* Colour pictures are for a person to look at, and many are drawn: a fifth of the time for a third more
- * bytes. */
-static void set_effort(const struct png_job *job)
-{
-	if (job->channels != 3)
-		return;
-	png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-	png_set_compression_level(job->png, 1);
-}
-
-static int encode(struct png_job *job, FILE *out)
-{
-	int colour = job->channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY;
-
-	if (setjmp(png_jmpbuf(job->png)))
-		return -1;
-	png_set_write_fn(job->png, out, write_bytes, flush_bytes);
-	png_set_user_limits(job->png, MAX_SIDE, MAX_SIDE);
-	png_set_IHDR(job->png, job->info, (png_uint_32)job->width, (png_uint_32)job->height, job->depth,
-		colour, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-	set_effort(job);
-	png_write_info(job->png, job->info);
-	const uint16_t one = 1;
-	if (job->depth == 16 && *(const uint8_t *)&one)
-		png_set_swap(job->png); /* PNG is big-endian */
-	for (int y = 0; y < job->height; y++)
-		png_write_row(job->png, job->raw + (size_t)y * job->row_bytes);
-	png_write_end(job->png, job->info);
-	return 0;
-}
-
-static const char *out_name(const char *path)
-{
-	return strcmp(path, "-") ? path : "stdout";
-}
-
-static int write_raw(struct png_job *job, const char *path)
-{
-	struct file_out out;
-
-	if (job->height < 1 || job->width < 1 || job->height > MAX_SIDE || job->width > MAX_SIDE)
-		return err_set(
-			job->e, ERR_SYSTEM, "%s: a PNG cannot be %dx%d", job->path, job->width, job->height);
-	if (file_out_open(&out, path, job->e))
-		return -1;
-	job->e->code = ERR_NONE;
-	job->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
-	if (job->png)
-		job->info = png_create_info_struct(job->png);
-	int bad = job->info ? encode(job, out.stream)
-			    : err_set(job->e, ERR_SYSTEM, "%s: out of memory", job->path);
-	png_destroy_write_struct(&job->png, &job->info);
-	if (bad)
-		file_out_abort(&out);
-	else
-		bad = file_out_commit(&out, job->e);
-	return bad;
-}
-
-int png_write(const char *path, const uint8_t *pixels, int height, int width, int channels, struct err *e)
-{
-	struct png_job job = {.path = out_name(path),
-		.e = e,
-		.height = height,
-		.width = width,
-		.channels = channels,
-		.depth = 8};
-
-	job.row_bytes = (size_t)width * (size_t)channels;
-	job.raw = (uint8_t *)(size_t)pixels;
-	return write_raw(&job, path);
-}
-
-int png_write16(const char *path, const uint16_t *grey, int height, int width, struct err *e)
-{
-	struct png_job job = {
-		.path = out_name(path), .e = e, .height = height, .width = width, .channels = 1, .depth = 16};
-
-	job.row_bytes = (size_t)width * 2;
-	job.raw = (uint8_t *)(size_t)grey;
-	return write_raw(&job, path);
 }

@@ -20,13 +20,26 @@ int picture_check_size(const char *path, const char *kind, size_t width, size_t 
 int picture_check_bytes(const char *path, const char *kind, size_t width, size_t height, uint64_t least,
 	FILE *in, struct err *e);
 
-/* A PNG as a mask: pixels (height,width) get 1 where any colour channel is nonzero (alpha ignored). free()
- * it. */
+/* What is transparent: less than half as opaque as the most opaque pixel, also by a palette or a colour that
+ * is. A PNG as a mask: pixels (height,width) get 1 where any colour channel is nonzero and it is not
+ * transparent. free() it. */
 int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e);
 
-/* A PNG of numbers: grey levels of up to 16 bits as they are in the file, or the places in a palette; alpha
- * is ignored, other colours are an error. labels (height,width); free() it. */
-int png_read_labels(const char *path, uint16_t **labels, int *height, int *width, struct err *e);
+/* A PNG of numbers: grey levels of up to 16 bits as they are in the file, or the places in a palette, -1
+ * where it is transparent; other colours are an error. labels (height,width); free() it. */
+int png_read_labels(const char *path, int32_t **labels, int *height, int *width, struct err *e);
+
+/* A painted PNG: paint (height,width) is 0xrrggbb, a grey or number as png_paint_number has it, or
+ * PNG_PAINT_NONE, where it is transparent or a colour of 16 bits that none of 8 bits is. Greys of 16 bits are
+ * numbers, but where all are 8 bits said twice. free() it. */
+enum { PNG_PAINT_NUMBER = 1 << 24, PNG_PAINT_NONE = 1 << 25 };
+int png_read_paint(const char *path, uint32_t **paint, int *height, int *width, struct err *e);
+/* Up to 255 the grey 0xrrggbb, else PNG_PAINT_NUMBER and the number. */
+uint32_t png_paint_number(uint32_t number);
+
+/* What a stream begins with: PICTURE_PNG or PICTURE_JPEG, whose size it says, or PICTURE_NONE. */
+enum picture_kind { PICTURE_NONE, PICTURE_PNG, PICTURE_JPEG };
+enum picture_kind picture_size(FILE *in, int *height, int *width);
 
 /* A PNG or JPEG (by content) as RGB, (height,width,3). free() it. */
 int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, struct err *e);

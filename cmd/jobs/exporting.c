@@ -2,13 +2,14 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "base/path.h"
+#include "base/name.h"
 #include "cmd/jobs/pictures.h"
 #include "cmd/jobs/warping.h"
 #include "formats/jsonl.h"
 #include "formats/masks.h"
 #include "formats/png.h"
 #include "formats/scene.h"
+#include "geom/views.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -92,8 +93,14 @@ static int distort_masks(struct exporting *x, const char *scene, struct err *e)
 int exporting_read(struct exporting *x, const char *masks, const char *scene, int distort, struct err *e)
 {
 	x->path = file_name(masks);
-	if (masks_read(&x->masks, masks, e) || (scene && read_cameras(x, scene, e)) ||
-		(distort && distort_masks(x, scene, e)))
+	long *lines = NULL;
+	const int bad = masks_read_lines(&x->masks, &lines, masks, e) ||
+			(scene && read_cameras(x, scene, e)) ||
+			(distort ? distort_masks(x, scene, e)
+				 : masks_views(&x->masks, lines, masks, &x->cameras, NULL, e));
+
+	free(lines);
+	if (bad)
 		return -1;
 	const size_t n = x->masks.n;
 	x->view_of = mem_alloc(n, sizeof *x->view_of, x->path, e);
@@ -120,23 +127,45 @@ void exporting_free(struct exporting *x)
 	cameras_free(&x->cameras);
 }
 
+/* The part of a photograph's path that gives the view its name, so that mask-import finds it: the file, or as
+ * many folders as tell it from another's. The file where none does. NULL with *e. */
+static const char *file_of(const char *image, const char *view, struct err *e)
+{
+	const char *from = view_base(image);
+
+	for (;;) {
+		char *stem = mem_strdup(from, e), *whole = stem ? name_to_view(from, e) : NULL;
+		if (stem)
+			stem[view_stem(stem)] = 0;
+		char *name = whole ? name_to_view(stem, e) : NULL;
+		const int is_out = !name, is_it = name && (!strcmp(name, view) || !strcmp(whole, view));
+		free(stem);
+		free(whole);
+		free(name);
+		if (is_out || is_it)
+			return is_out ? NULL : from;
+		if (from == image)
+			return view_base(image);
+		do
+			from--;
+		while (from > image && from[-1] != '/');
+	}
+}
+
 /* The photograph of a view, as the scene has it; else the view's name as a PNG. */
 static int put_file_name(const struct exporting *x, FILE *out, const char *view, struct err *e)
 {
 	char name[4096];
-	int length = 0;
 	const char *image = NULL;
 
 	for (size_t v = 0; v < x->cameras.n && !image; v++)
 		if (!strcmp(x->cameras.views[v].name, view))
 			image = x->cameras.views[v].image;
-	if (image) {
-		image = path_last(image, &length);
-		snprintf(name, sizeof name, "%.*s", length, image);
-	} else {
+	if (image && !(image = file_of(image, view, e)))
+		return -1;
+	if (!image)
 		snprintf(name, sizeof name, "%s.png", view);
-	}
-	return jsonl_put_string(out, ",\"file_name\":", name, e);
+	return jsonl_put_string(out, ",\"file_name\":", image ? image : name, e);
 }
 
 static int put_images(const struct exporting *x, FILE *out, struct err *e)

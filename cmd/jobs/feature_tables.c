@@ -4,6 +4,7 @@
 #include "formats/features.h"
 #include "formats/png.h"
 #include "lift/source_weights.h"
+#include "mask/rle.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -15,6 +16,19 @@ enum { LABELS = 1 << 16 }; /* what 16 bits have */
 static char *view_path(const struct feature_maps *m, size_t view, const char *suffix, struct err *e)
 {
 	return file_join(m->options->folder, m->scene->cameras.views[view].name, suffix, e);
+}
+
+/* Whether a map has the shape of its view. Cells may be of a picture that was made square for a network: only
+ * those that lie across are refused. */
+static int check_shape(const struct feature_maps *m, size_t view, const char *path, size_t rows,
+	size_t columns, struct err *e)
+{
+	const struct camera *c = &m->scene->cameras.views[view];
+	const int64_t h = (int64_t)rows, w = (int64_t)columns;
+
+	if (m->kind == MAPS_CELLS && !rle_has_shape(w, h, c->height, c->width))
+		return 0;
+	return rle_check_shape("a map", h, w, "the view", c->height, c->width, e) ? err_prefix(e, path) : 0;
 }
 
 /* A table of features: VIEW.npy (H,W,C), or VIEW_f.npy (N,C). */
@@ -83,7 +97,8 @@ static int open_table(
 	char *called;
 	int bad = open_array(m, view, is_map ? "" : "_f", t, &called, e);
 
-	if (!bad && (bad = check_table(t, is_map ? 3 : 2, called, e)))
+	if (!bad && (bad = check_table(t, is_map ? 3 : 2, called, e) ||
+			    (is_map && check_shape(m, view, called, t->shape[0], t->shape[1], e))))
 		npy_close(t);
 	if (!bad)
 		*channels = t->shape[t->dims - 1];
@@ -104,8 +119,8 @@ int feature_tables_channels(const struct feature_maps *m, size_t view, size_t *c
 }
 
 /* The segments' numbers at a view's pixels, of one level of (L,H,W), or of (H,W). */
-static int read_ids(const struct feature_maps *m, const struct npy_file *ids, const char *path, int height,
-	int width, struct feature_sources *s, struct err *e)
+static int read_ids(const struct feature_maps *m, size_t view, const struct npy_file *ids, const char *path,
+	int height, int width, struct feature_sources *s, struct err *e)
 {
 	const size_t level = (size_t)m->options->level, pixels = (size_t)height * (size_t)width;
 	const size_t levels = ids->dims == 3 ? ids->shape[0] : 1, rows = s->table.shape[0];
@@ -120,6 +135,8 @@ static int read_ids(const struct feature_maps *m, const struct npy_file *ids, co
 	if (mem_size(shape[0], shape[1], &cells) || cells > INT32_MAX || !cells)
 		return err_set(e, ERR_FORMAT, "%s: %zux%zu pixels, not 1 to %d altogether", path, shape[1],
 			shape[0], INT32_MAX);
+	if (check_shape(m, view, path, shape[0], shape[1], e))
+		return -1;
 	source_cells(s->raw, height, width, shape[0], shape[1]);
 	for (size_t p = 0; p < pixels; p++) {
 		const size_t cell = (size_t)s->raw[p];
@@ -141,7 +158,7 @@ static int open_segments(const struct feature_maps *m, size_t view, int height, 
 	int bad = open_array(m, view, "_s", &ids, &called, e);
 
 	if (!bad) {
-		bad = read_ids(m, &ids, called, height, width, s, e);
+		bad = read_ids(m, view, &ids, called, height, width, s, e);
 		npy_close(&ids);
 	}
 	free(called);
@@ -171,10 +188,11 @@ static int open_labels(const struct feature_maps *m, size_t view, int height, in
 	struct feature_sources *s, struct err *e)
 {
 	char *path = view_path(m, view, ".png", e);
-	uint16_t *labels = NULL;
+	int32_t *labels = NULL;
 	int own[2];
 
-	const int bad = !path || png_read_labels(path, &labels, &own[0], &own[1], e);
+	const int bad = !path || png_read_labels(path, &labels, &own[0], &own[1], e) ||
+			check_shape(m, view, path, own[0], own[1], e);
 	if (!bad) {
 		source_cells(s->raw, height, width, (size_t)own[0], (size_t)own[1]);
 		for (size_t p = 0, n = (size_t)height * (size_t)width; p < n; p++)

@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/path.h"
+#include "geom/views.h"
 
 #include <dirent.h>
 #include <stdlib.h>
@@ -46,6 +47,13 @@ static int walk_picture(struct walk *w, const char *folder, const char *view, co
 		return 0;
 	if (stem)
 		stem[strlen(stem) - 4] = 0;
+	if (stem && stem[view_stem(stem)]) {
+		err_set(e, ERR_FORMAT,
+			"%s/%s: the mask of a photograph, as COLMAP names them, not of a thing: give such pictures by themselves, with --names",
+			folder, file);
+		free(stem);
+		return -1;
+	}
 	char *name = stem ? name_from_file(stem, e) : NULL,
 	     *path = name ? file_join(folder, file, "", e) : NULL;
 	int bad = !path;
@@ -59,32 +67,64 @@ static int walk_picture(struct walk *w, const char *folder, const char *view, co
 	return bad;
 }
 
-/* Calls `each` for what is in a folder, in order of names. */
-static int each_entry(struct walk *w, const char *folder, const char *view,
-	int (*each)(struct walk *w, const char *folder, const char *view, const char *file, struct err *e),
-	struct err *e)
+/* What a folder has, in order of names: their count, or -1 with *e. free() all. */
+static int list(const char *folder, struct dirent ***names, struct err *e)
 {
-	struct dirent **names = NULL;
-	const int n = scandir(folder, &names, is_shown, alphasort);
-	int bad = n < 0 ? err_errno(e, "%s", folder) : 0;
+	*names = NULL;
+	const int n = scandir(folder, names, is_shown, alphasort);
 
-	for (int i = 0; i < n; i++) {
-		bad = bad || each(w, folder, view, names[i]->d_name, e);
+	return n < 0 ? err_errno(e, "%s", folder) : n;
+}
+
+static void free_list(struct dirent **names, int n)
+{
+	for (int i = 0; i < n; i++)
 		free(names[i]);
-	}
 	free(names);
+}
+
+static int walk_view(struct walk *w, const char *folder, const char *view, struct err *e)
+{
+	struct dirent **names;
+	const int n = list(folder, &names, e);
+	int bad = n < 0;
+
+	for (int i = 0; i < n && !bad; i++)
+		bad = walk_picture(w, folder, view, names[i]->d_name, e);
+	free_list(names, n);
 	return bad ? -1 : 0;
 }
 
-static int walk_view(struct walk *w, const char *folder, const char *none, const char *file, struct err *e)
+/* The folders of a folder, each a view's: named as its photograph, perhaps with the ending. */
+static int walk_views(struct walk *w, struct err *e)
 {
-	char *path = file_join(folder, file, "", e), *view = path ? name_to_view(file, e) : NULL;
-	const int bad = !view || (file_is_dir(path) && each_entry(w, path, view, walk_picture, e));
+	struct dirent **names;
+	const int n = list(w->dir, &names, e);
+	const size_t most = n < 0 ? 0 : (size_t)n;
+	char **paths = mem_zalloc(most, sizeof *paths, "views", e),
+	     **views = mem_zalloc(most, sizeof *views, "views", e);
+	const char **files = mem_zalloc(most, sizeof *files, "views", e);
+	int bad = n < 0 || !paths || !views || !files;
+	size_t count = 0;
 
-	(void)none;
-	free(path);
-	free(view);
-	return bad;
+	for (int i = 0; i < n && !bad; i++) {
+		bad = !(paths[count] = file_join(w->dir, names[i]->d_name, "", e));
+		if (!bad && file_is_dir(paths[count]))
+			files[count++] = names[i]->d_name;
+		else
+			free(paths[count]);
+	}
+	bad = bad || views_name(files, count, views, w->dir, e);
+	for (size_t i = 0; i < count; i++) {
+		bad = bad || walk_view(w, paths[i], views[i], e);
+		free(paths[i]);
+		free(views[i]);
+	}
+	free(paths);
+	free(views);
+	free(files);
+	free_list(names, n);
+	return bad ? -1 : 0;
 }
 
 static int read_classes(struct walk *w, struct err *e)
@@ -100,7 +140,7 @@ static int read_classes(struct walk *w, struct err *e)
 int mask_tree_each(const char *dir, mask_tree_put *put, void *to, struct err *e)
 {
 	struct walk w = {.dir = dir, .put = put, .to = to};
-	int bad = read_classes(&w, e) || each_entry(&w, dir, NULL, walk_view, e);
+	int bad = read_classes(&w, e) || walk_views(&w, e);
 
 	if (!bad && !w.pictures)
 		bad = err_set(e, ERR_FORMAT, "%s: has no masks VIEW/NAME.png%s", dir,

@@ -1,6 +1,7 @@
 #include "cmd/jobs/painting_private.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/name.h"
 #include "cmd/jobs/mask_tree.h"
 #include "formats/annotations.h"
@@ -36,10 +37,11 @@ static int has_boxes(const struct annotation *a, const struct warping *w)
 
 /* A mask record for each label of each picture that a JSON file is of. */
 static int put_labels(const struct annotations *a, const char *path, struct warping *w, FILE *out,
-	const struct report *to, struct err *e)
+	size_t *count, const struct report *to, struct err *e)
 {
-	if (a->left_out)
-		report_warn(to, "%s: %zu shapes without an area are left out", file_name(path), a->left_out);
+	for (size_t i = 0; i < a->left_count; i++)
+		report_warn(to, "%s: %zu %s are left out", file_name(path), a->left_out[i].n,
+			a->left_out[i].kind);
 	for (size_t i = 0; i < a->n; i++) {
 		const struct annotation *one = &a->items[i];
 		struct mask mask = {.view = one->view,
@@ -54,6 +56,7 @@ static int put_labels(const struct annotations *a, const char *path, struct warp
 		const struct rle *shown = &one->mask;
 		if (!rle_area(shown))
 			continue;
+		++*count;
 		if (rle_from_runs(&mask.rle, shown->runs, shown->n, shown->height, shown->width, e) ||
 			painting_put(&mask, w, path, out, e))
 			return -1;
@@ -61,14 +64,46 @@ static int put_labels(const struct annotations *a, const char *path, struct warp
 	return 0;
 }
 
-/* *count grows by the labels. */
-static int put_labelled(
-	const char *path, struct warping *w, FILE *out, size_t *count, const struct report *to, struct err *e)
+/* A picture that a file of labels was of. */
+struct labelled {
+	char *view, *picture, *file;
+};
+
+/* What all inputs share. */
+struct putting {
+	struct painting_names *names;
+	struct warping *w;
+	FILE *out;
+	const struct report *to;
+	size_t count; /* records of labels */
+	struct labelled *labelled;
+	size_t labelled_count, labelled_room;
+};
+
+/* Pictures that are called the same in different folders would be of one view. */
+static int check_picture(struct putting *p, struct annotations *a, const char *path, struct err *e)
+{
+	if (!a->picture)
+		return 0;
+	for (size_t i = 0; i < p->labelled_count; i++) {
+		const struct labelled *one = &p->labelled[i];
+		if (!strcmp(one->view, a->view) && strcmp(one->picture, a->picture))
+			return painting_two_pictures(one->file, path, a->view, e);
+	}
+	if (mem_grow((void **)&p->labelled, &p->labelled_room, p->labelled_count + 1, sizeof *p->labelled,
+		    "pictures", e))
+		return -1;
+	p->labelled[p->labelled_count++] = (struct labelled){a->view, a->picture, mem_strdup(path, e)};
+	a->view = a->picture = NULL;
+	return p->labelled[p->labelled_count - 1].file ? 0 : -1;
+}
+
+static int put_labelled(struct putting *p, const char *path, struct err *e)
 {
 	struct annotations a;
-	const int bad = annotations_read(&a, path, e) || put_labels(&a, path, w, out, to, e);
+	const int bad = annotations_read(&a, path, e) || check_picture(p, &a, path, e) ||
+			painting_layers(&a, e) || put_labels(&a, path, p->w, p->out, &p->count, p->to, e);
 
-	*count += a.n;
 	annotations_free(&a);
 	return bad ? -1 : 0;
 }
@@ -124,15 +159,9 @@ int painting_needs_names(const char *path)
 	return !is_labelled(path) && !is_records(path) && !file_is_dir(path);
 }
 
-struct tree {
-	struct warping *w;
-	FILE *out;
-	size_t *count;
-};
-
 static int put_tree_mask(void *to, const char *path, const char *view, const char *name, struct err *e)
 {
-	struct tree *t = to;
+	struct putting *p = to;
 	struct mask mask = {.view = view, .object = name, .score = NAN, .visible = NAN};
 	char fault[NAME_FAULT];
 	const char *reason = name_fault(name, NAME_DATA, fault);
@@ -151,40 +180,37 @@ static int put_tree_mask(void *to, const char *path, const char *view, const cha
 		rle_free(&mask.rle);
 		return 0;
 	}
-	++*t->count;
-	return painting_put(&mask, t->w, path, t->out, e);
+	p->count++;
+	return painting_put(&mask, p->w, path, p->out, e);
 }
 
-static int put_any(struct painting_names *names, const char *path, struct warping *w, FILE *out,
-	size_t *count, const struct report *to, struct err *e)
+static int put_any(struct putting *p, const char *path, struct err *e)
 {
-	struct tree tree = {w, out, count};
-
 	if (is_labelled(path))
-		return put_labelled(path, w, out, count, to, e);
+		return put_labelled(p, path, e);
 	if (is_records(path))
-		return put_records(path, w, out, count, e);
+		return put_records(path, p->w, p->out, &p->count, e);
 	if (file_is_dir(path))
-		return mask_tree_each(path, put_tree_mask, &tree, e);
-	return painting_put_colours(names, path, w, out, to, e);
+		return mask_tree_each(path, put_tree_mask, p, e);
+	return painting_put_colours(p->names, path, p->w, p->out, p->to, e);
 }
 
-static int put_all(struct painting_names *names, const char *const *pictures, size_t count, struct warping *w,
-	FILE *out, const struct report *to, struct err *e)
+static int put_all(struct putting *p, const char *const *pictures, size_t count, struct err *e)
 {
-	size_t seen = 0, labels = 0;
+	const struct painting_names *names = p->names;
+	size_t seen = 0;
 
-	if (painting_warn_shared(pictures, count, to, e))
+	if (painting_check_shared(pictures, count, e))
 		return -1;
 	for (size_t i = 0; i < count; i++)
-		if (put_any(names, pictures[i], w, out, &labels, to, e))
+		if (put_any(p, pictures[i], e))
 			return -1;
 	for (size_t i = 0; i < names->n; i++)
 		seen += names->items[i].is_seen != 0;
 	for (size_t i = 0; i < names->n && seen; i++)
 		if (!names->items[i].is_seen)
-			report_warn(to, "'%s' is in no picture", names->items[i].name);
-	if (seen || labels)
+			report_warn(p->to, "'%s' is in no picture", names->items[i].name);
+	if (seen || p->count)
 		return 0;
 	return err_set(e, ERR_FORMAT,
 		names->n ? "%s: has none of the colours that have names" : "%s: has no label with an area",
@@ -194,9 +220,18 @@ static int put_all(struct painting_names *names, const char *const *pictures, si
 int painting_write(struct painting_names *names, const char *const *pictures, size_t count, struct warping *w,
 	const char *path, const struct report *to, struct err *e)
 {
+	struct putting p = {.names = names, .w = w, .to = to};
 	struct file_out out;
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	return file_out_end(&out, put_all(names, pictures, count, w, out.stream, to, e), e);
+	p.out = out.stream;
+	const int bad = put_all(&p, pictures, count, e);
+	for (size_t i = 0; i < p.labelled_count; i++) {
+		free(p.labelled[i].view);
+		free(p.labelled[i].picture);
+		free(p.labelled[i].file);
+	}
+	free(p.labelled);
+	return file_out_end(&out, bad, e);
 }

@@ -6,6 +6,7 @@
 #include "base/names.h"
 #include "base/path.h"
 #include "formats/png.h"
+#include "geom/views.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +16,8 @@
  */
 static const double unnamed_share = 0.001;
 
-/* The view of a picture: its file name without the ending. */
+/* The view of a picture: its file name without the ending, and without that of the photograph, which COLMAP's
+ * names of masks have before it. */
 static char *view_of(const char *path, struct err *e)
 {
 	int length;
@@ -28,6 +30,7 @@ static char *view_of(const char *path, struct err *e)
 	dot = strrchr(stem, '.');
 	if (dot && dot > stem)
 		*dot = 0;
+	stem[view_stem(stem)] = 0;
 	char *view = name_to_view(stem, e);
 	free(stem);
 	return view;
@@ -37,15 +40,9 @@ struct picture_read {
 	const char *path;
 	char *view;
 	int height, width;
-	uint8_t *rgb, *mask;
+	uint32_t *paint;
+	uint8_t *mask;
 };
-
-static uint32_t colour_at(const struct picture_read *p, size_t pixel)
-{
-	const uint8_t *c = p->rgb + 3 * pixel;
-
-	return (uint32_t)c[0] << 16 | (uint32_t)c[1] << 8 | c[2];
-}
 
 /* The mask of a colour, if any pixel has it: its record. */
 static int put_name(
@@ -56,7 +53,7 @@ static int put_name(
 	size_t covered = 0;
 
 	for (size_t at = 0; at < pixels; at++)
-		covered += p->mask[at] = colour_at(p, at) == name->colour;
+		covered += p->mask[at] = p->paint[at] == name->colour;
 	if (!covered)
 		return 0;
 	name->is_seen = 1;
@@ -82,16 +79,22 @@ static int warn_unnamed(const struct picture_read *p, const struct painting_name
 	if (!sorted)
 		return -1;
 	for (size_t at = 0; at < pixels; at++)
-		sorted[at] = colour_at(p, at);
+		sorted[at] = p->paint[at];
 	qsort(sorted, pixels, sizeof *sorted, by_value);
 	for (size_t first = 0, end; first < pixels; first = end) {
 		for (end = first; end < pixels && sorted[end] == sorted[first];)
 			end++;
 		const double share = (double)(end - first) / (double)pixels;
-		if (share > unnamed_share && sorted[first] && sorted[first] != 0xffffff &&
-			!painting_names_find(names, sorted[first]))
-			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path,
-				(unsigned)sorted[first], 100 * share);
+		const uint32_t colour = sorted[first];
+		if (share <= unnamed_share || !colour || colour == 0xffffff || colour == PNG_PAINT_NONE ||
+			painting_names_find(names, colour))
+			continue;
+		if (colour & PNG_PAINT_NUMBER)
+			report_warn(to, "%s: %u, %.1f%% of it, has no name", p->path,
+				(unsigned)(colour ^ PNG_PAINT_NUMBER), 100 * share);
+		else
+			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path, (unsigned)colour,
+				100 * share);
 	}
 	free(sorted);
 	return 0;
@@ -101,20 +104,26 @@ int painting_put_colours(struct painting_names *names, const char *path, struct 
 	const struct report *to, struct err *e)
 {
 	struct picture_read p = {.path = path};
-	int bad = image_read_rgb(path, &p.rgb, &p.height, &p.width, e) || !(p.view = view_of(path, e)) ||
+	int bad = png_read_paint(path, &p.paint, &p.height, &p.width, e) || !(p.view = view_of(path, e)) ||
 		  !(p.mask = mem_alloc((size_t)p.height, (size_t)p.width, path, e)) ||
 		  warn_unnamed(&p, names, to, e);
 
 	for (size_t i = 0; i < names->n && !bad; i++)
 		bad = put_name(&p, &names->items[i], w, out, e);
 	free(p.view);
-	free(p.rgb);
+	free(p.paint);
 	free(p.mask);
 	return bad ? -1 : 0;
 }
 
-/* Pictures that are called the same in different folders are of one view. */
-int painting_warn_shared(const char *const *pictures, size_t count, const struct report *to, struct err *e)
+int painting_two_pictures(const char *earlier, const char *later, const char *view, struct err *e)
+{
+	return err_set(e, ERR_FORMAT,
+		"%s: of view '%s', and so is %s, of another folder's picture: name pictures as their views are in the scene, or import them one by one",
+		later, view, earlier);
+}
+
+int painting_check_shared(const char *const *pictures, size_t count, struct err *e)
 {
 	char **views = mem_zalloc(count, sizeof *views, "views", e);
 	struct names names = {0};
@@ -127,8 +136,7 @@ int painting_warn_shared(const char *const *pictures, size_t count, const struct
 	bad = bad || names_make(&names, views, sizeof *views, 0, count, e);
 	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
 	if (twice != NAMES_NONE)
-		report_warn(to, "%s and %s are both of view '%s'", pictures[earlier], pictures[twice],
-			views[twice]);
+		bad = painting_two_pictures(pictures[earlier], pictures[twice], views[twice], e);
 	names_free(&names);
 	for (size_t i = 0; views && i < count; i++)
 		free(views[i]);

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "formats/jsonl.h"
+#include "formats/png.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +16,7 @@ void painting_names_free(struct painting_names *names)
 	*names = (struct painting_names){0};
 }
 
-/* "#rrggbb" or "0" to "255" at the beginning of a line: where it ends, or NULL. */
+/* "#rrggbb" or "0" to "65535" at the beginning of a line: where it ends, or NULL. */
 static char *take_colour(char *text, uint32_t *colour)
 {
 	const int is_hex = *text == '#';
@@ -23,9 +24,10 @@ static char *take_colour(char *text, uint32_t *colour)
 	const size_t n = strspn(digits, is_hex ? "0123456789abcdefABCDEF" : "0123456789");
 	const unsigned long value = strtoul(digits, &end, is_hex ? 16 : 10);
 
-	if (end != digits + n || (is_hex ? n != 6 : !n || n > 3 || value > 255) || !strchr(" \t", *end))
+	if (end != digits + n || (is_hex ? n != 6 : !n || value > 65535 || n > (value > 255 ? 5 : 3)) ||
+		!strchr(" \t", *end))
 		return NULL;
-	*colour = (uint32_t)(is_hex ? value : value * 0x010101);
+	*colour = is_hex ? (uint32_t)value : png_paint_number((uint32_t)value);
 	return end;
 }
 
@@ -52,7 +54,7 @@ static int add_name(struct painting_names *names, const struct jsonl *j, struct 
 	char *name = take_colour(text, &colour);
 
 	if (!name)
-		return jsonl_err(j, e, "does not begin with #rrggbb or 0 to 255, and a blank");
+		return jsonl_err(j, e, "does not begin with #rrggbb or 0 to 65535, and a blank");
 	name += strspn(name, " \t");
 	for (size_t n = strlen(name); n && strchr(" \t", name[n - 1]); n--)
 		name[n - 1] = 0;
@@ -60,7 +62,7 @@ static int add_name(struct painting_names *names, const struct jsonl *j, struct 
 	if (reason)
 		return jsonl_err(j, e, "the name %s", reason);
 	if (painting_names_find(names, colour))
-		return jsonl_err(j, e, "colour #%06x has a name already", (unsigned)colour);
+		return jsonl_err(j, e, "its colour or number has a name already");
 	if (has_name(names, name))
 		return jsonl_err(j, e, "the name '%s' has a colour already", name);
 	if (mem_grow(

@@ -7,9 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* One line of the file of names: "#c81e1e kettle", or "3 kettle" for the grey of that value. */
+/* One line of the file of names: "#c81e1e kettle", or "3 kettle" for the grey or the number of 16 bits. */
 struct painting_name {
-	uint32_t colour; /* 0xrrggbb */
+	uint32_t colour; /* as png_read_paint has it */
 	char *name;
 	int is_seen; /* in a picture */
 };

@@ -4,6 +4,7 @@
 #define CMD_JOBS_PAINTING_PRIVATE_H
 
 #include "cmd/jobs/painting.h"
+#include "formats/annotations.h"
 #include "formats/masks.h"
 
 /* The record of a mask, which is freed. Where it goes: the lens's photograph to the view. */
@@ -13,7 +14,13 @@ int painting_put(struct mask *mask, struct warping *w, const char *path, FILE *o
 int painting_put_colours(struct painting_names *names, const char *path, struct warping *w, FILE *out,
 	const struct report *to, struct err *e);
 
-/* A warning where pictures that are called the same in different folders are of one view. */
-int painting_warn_shared(const char *const *pictures, size_t count, const struct report *to, struct err *e);
+/* Takes the pixels of outlines that lie on larger ones away from these. */
+int painting_layers(struct annotations *a, struct err *e);
+
+/* ERR_FORMAT where pictures that are called the same in different folders are of one view. */
+int painting_check_shared(const char *const *pictures, size_t count, struct err *e);
+
+/* That error, of two files; always -1. */
+int painting_two_pictures(const char *earlier, const char *later, const char *view, struct err *e);
 
 #endif

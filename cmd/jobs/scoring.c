@@ -15,6 +15,10 @@ int scoring_read(struct scoring *in, const struct scoring_files *p, int is_parti
 			       (p->other && score_masks_read(&in->other, p->other, e)) ||
 			       (p->whole && score_masks_read(&in->whole, p->whole, e)) ||
 			       (p->sentences && sentences_read(&in->sentences, p->sentences, e)) ||
+			       score_masks_check(&in->truth, &in->truth, e) ||
+			       score_masks_check(&in->predictions, &in->truth, e) ||
+			       score_masks_check(&in->other, &in->truth, e) ||
+			       score_masks_check(&in->whole, &in->truth, e) ||
 			       (is_partial && score_keep_views(in->truth.set.items, &in->truth.n,
 						      in->predictions.set.items, in->predictions.n,
 						      in->other.set.items, in->other.n, e))

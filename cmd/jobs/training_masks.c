@@ -26,8 +26,9 @@ static int add_mask(
 
 	if (place == NAMES_NONE)
 		bad = jsonl_err(j, e, "key 'view': the scene has no view '%s'", m->view);
-	else if (c->split == SPLIT_TEST)
-		t->test_masks++;
+	else
+		bad = masks_check_shape(m, "the view", c->height, c->width, j->path, j->line_number, e);
+	t->test_masks += !bad && c->split == SPLIT_TEST;
 	if (bad || c->split == SPLIT_TEST) {
 		mask_free(m);
 		return bad;

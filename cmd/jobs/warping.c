@@ -5,6 +5,7 @@
 #include "formats/png.h"
 #include "formats/scene.h"
 #include "geom/lens.h"
+#include "mask/mask.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,12 +37,6 @@ static const struct camera *find_view(const struct warping *w, const char *view)
 	return NULL;
 }
 
-/* Whether a size is one of the same shape, but for what rounding it takes. */
-static int has_shape(int rows, int columns, int height, int width)
-{
-	return fabs((double)columns * height / width - rows) <= 1;
-}
-
 /* A mask that was undistorted already has the other's size. */
 static int check_shape(const struct warping *w, const struct camera *c, const struct rle *mask, struct err *e)
 {
@@ -53,11 +48,13 @@ static int check_shape(const struct warping *w, const struct camera *c, const st
 	if ((int64_t)mask->height * mask->width > INT32_MAX)
 		return err_set(e, ERR_FORMAT, "view '%s': a mask of %dx%d has more than %d pixels", c->name,
 			mask->width, mask->height, INT32_MAX);
-	if (!is_other && has_shape(mask->height, mask->width, height[is_back], width[is_back]))
-		return 0;
-	return err_set(e, ERR_FORMAT, "view '%s': a mask of %dx%d, but its %s is %dx%d%s", c->name,
-		mask->width, mask->height, is_back ? "pinhole" : "photograph", width[is_back],
-		height[is_back], is_other && !is_back ? ": it is undistorted already" : "");
+	if (is_other)
+		return err_set(e, ERR_FORMAT,
+			"view '%s': a mask of %dx%d, but its %s is %dx%d: it is %s already", c->name,
+			mask->width, mask->height, is_back ? "pinhole" : "photograph", width[is_back],
+			height[is_back], is_back ? "distorted" : "undistorted");
+	return mask_check_shape(c->name, mask, is_back ? "its pinhole" : "its photograph", height[is_back],
+		width[is_back], e);
 }
 
 /* Cameras with one lens share a map. */
@@ -92,7 +89,7 @@ int warping_mask(struct warping *w, const char *view, struct rle *mask, struct e
 	if (!c)
 		return err_set(e, ERR_FORMAT, "view '%s' is not in the scene", view);
 	if (!c->lens.model)
-		return 0;
+		return mask_check_shape(view, mask, "the view", c->height, c->width, e);
 	if (check_shape(w, c, mask, e) || make_map(w, c, mask->height, mask->width, e) ||
 		mem_room((void **)&w->from, &w->from_room, (size_t)mask->height * (size_t)mask->width, 1,
 			"masks", e))

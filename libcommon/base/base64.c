@@ -42,3 +42,18 @@ char *base64_text(const char *before, const void *bytes, size_t n, struct err *e
 	text[first + length] = 0;
 	return text;
 }
+
+void *base64_bytes(const char *text, size_t *n, struct err *e)
+{
+	const size_t length = strspn(text, digits);
+	unsigned char *bytes = mem_alloc(length / 4 * 3 + 3, 1, "base64", e);
+	uint32_t bits = 0;
+
+	*n = 0;
+	for (size_t i = 0; i < length && bytes; i++) {
+		bits = bits << 6 | (uint32_t)(strchr(digits, text[i]) - digits);
+		if (i % 4) /* six bits of the first, then a byte for each */
+			bytes[(*n)++] = (unsigned char)(bits >> (6 - 2 * (i % 4)));
+	}
+	return bytes;
+}

@@ -16,6 +16,7 @@ struct entry {
 	struct camera view;
 	enum level level;
 	int is_shared; /* another view has this name */
+	size_t place;
 };
 
 const char *view_fault(const struct camera *c)
@@ -115,10 +116,6 @@ static int name_entries(struct entry *entries, size_t n, const char *path, struc
 	int state = 1;
 
 	for (size_t i = 0; i < n; i++) {
-		const char *fault = view_fault(&entries[i].view);
-		if (fault)
-			return err_set(
-				e, ERR_FORMAT, "%s: view '%s': %s", path, entries[i].view.image, fault);
 		if (set_name(&entries[i].view, FILE_STEM, e))
 			return -1;
 		if (!*entries[i].view.name)
@@ -136,11 +133,34 @@ int views_finish(struct cameras *c, const char *path, struct err *e)
 
 	if (!entries)
 		return -1;
-	for (size_t i = 0; i < c->n; i++)
+	int bad = 0;
+	for (size_t i = 0; i < c->n; i++) {
 		entries[i].view = c->views[i];
-	int bad = name_entries(entries, c->n, path, e);
+		const char *fault = view_fault(&c->views[i]);
+		if (fault && !bad)
+			bad = err_set(e, ERR_FORMAT, "%s: view '%s': %s", path, c->views[i].image, fault);
+	}
+	bad = bad || name_entries(entries, c->n, path, e);
 	for (size_t i = 0; i < c->n; i++)
 		c->views[i] = entries[i].view;
 	free(entries);
 	return bad;
+}
+
+int views_name(const char *const *images, size_t n, char **names, const char *path, struct err *e)
+{
+	struct entry *entries = mem_zalloc(n, sizeof *entries, "views", e);
+
+	if (!entries)
+		return -1;
+	for (size_t i = 0; i < n; i++)
+		entries[i] = (struct entry){.view.image = (char *)(size_t)images[i], .place = i};
+	const int bad = name_entries(entries, n, path, e);
+	for (size_t i = 0; i < n; i++)
+		if (bad)
+			free(entries[i].view.name);
+		else
+			names[entries[i].place] = entries[i].view.name;
+	free(entries);
+	return bad ? -1 : 0;
 }

@@ -22,6 +22,10 @@ int view_set_size(struct camera *c, double width, double height);
  * as name_to_file writes it. Two of the same path are an error. `path` is for messages. */
 int views_finish(struct cameras *c, const char *path, struct err *e);
 
+/* The names (n) of views that views_finish gives to images of these paths, in their order: free() each.
+ * Returns 0, or -1 with *e and no names. */
+int views_name(const char *const *images, size_t n, char **names, const char *path, struct err *e);
+
 /* Length of an image path without its extension, where it has one of the above; else its whole length. */
 size_t view_stem(const char *image);
 

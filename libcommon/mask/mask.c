@@ -3,6 +3,7 @@
 #include "base/mem.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 double mask_confidence(const struct mask *m)
@@ -13,6 +14,17 @@ double mask_confidence(const struct mask *m)
 const char *mask_object(const struct mask *m)
 {
 	return m->object ? m->object : m->ref;
+}
+
+int mask_check_shape(
+	const char *view, const struct rle *rle, const char *of, int height, int width, struct err *e)
+{
+	char before[512];
+
+	if (!rle_check_shape("a mask", rle->height, rle->width, of, height, width, e))
+		return 0;
+	snprintf(before, sizeof before, "view '%.300s'", view);
+	return err_prefix(e, before);
 }
 
 void mask_free(struct mask *m)

@@ -27,6 +27,10 @@ double mask_confidence(const struct mask *m);
 /* What a mask goes by where there is one of each object: its object, else its ref. */
 const char *mask_object(const struct mask *m);
 
+/* 0 where a mask of a view can be of a picture of that size: rle_check_shape; `of` is what the picture is. */
+int mask_check_shape(
+	const char *view, const struct rle *rle, const char *of, int height, int width, struct err *e);
+
 /* Of a mask that owns its strings, runs and place. */
 void mask_free(struct mask *m);
 

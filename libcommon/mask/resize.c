@@ -70,6 +70,25 @@ static void add_column(
 	}
 }
 
+int rle_has_shape(int64_t h, int64_t w, int64_t height, int64_t width)
+{
+	const int64_t off = h * width - w * height, small = h + w, large = height + width;
+
+	return (off < 0 ? -off : off) <= (small > large ? small : large) &&
+	       (h != width || w != height || h == w);
+}
+
+int rle_check_shape(const char *what, int64_t h, int64_t w, const char *name, int64_t height, int64_t width,
+	struct err *e)
+{
+	if (rle_has_shape(h, w, height, width))
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s of %lldx%lld, but %s is %lldx%lld (width x height)%s", what,
+		(long long)w, (long long)h, name, (long long)width, (long long)height,
+		rle_has_shape(w, h, height, width) ? ": is the photograph turned by EXIF?"
+						   : ": the shapes differ, and nothing is stretched");
+}
+
 /* New columns are made one after another, which is the order of the runs: no image is ever held. */
 int rle_resize(struct rle *to, const struct rle *from, int height, int width, struct err *e)
 {

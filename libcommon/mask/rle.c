@@ -298,7 +298,7 @@ size_t rle_intersection(const struct rle *a, const struct rle *b)
 	return both;
 }
 
-int rle_unite(struct rle *to, const struct rle *a, const struct rle *b, struct err *e)
+static int combine(struct rle *to, const struct rle *a, const struct rle *b, int is_without, struct err *e)
 {
 	struct walk w = {.a = a, .b = b};
 
@@ -307,11 +307,21 @@ int rle_unite(struct rle *to, const struct rle *a, const struct rle *b, struct e
 	to->n = 1;
 	to->runs[0] = 0;
 	for (uint64_t length; (length = walk_on(&w));) {
-		if ((is_in(w.i) || is_in(w.j)) != is_in(to->n))
+		if ((is_without ? is_in(w.i) && !is_in(w.j) : is_in(w.i) || is_in(w.j)) != is_in(to->n))
 			to->runs[to->n++] = 0;
 		to->runs[to->n - 1] += (uint32_t)length;
 	}
 	return 0;
+}
+
+int rle_unite(struct rle *to, const struct rle *a, const struct rle *b, struct err *e)
+{
+	return combine(to, a, b, 0, e);
+}
+
+int rle_without(struct rle *to, const struct rle *a, const struct rle *b, struct err *e)
+{
+	return combine(to, a, b, 1, e);
 }
 
 double rle_iou(const struct rle *a, const struct rle *b)

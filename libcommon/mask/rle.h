@@ -41,9 +41,20 @@ size_t rle_area(const struct rle *r);
 size_t rle_intersection(const struct rle *a, const struct rle *b);
 /* a or b, of the same size. `to` is neither of them. */
 int rle_unite(struct rle *to, const struct rle *a, const struct rle *b, struct err *e);
+/* a but not b, likewise. */
+int rle_without(struct rle *to, const struct rle *a, const struct rle *b, struct err *e);
 int rle_same_size(const struct rle *a, const struct rle *b);
 /* Intersection over union; two empty masks give 1. */
 double rle_iou(const struct rle *a, const struct rle *b);
+
+/* Whether a mask or another map of h x w can be of a picture of height x width: sides that a resize rounds,
+ * cuts or raises are less than one pixel of the smaller off, so |h width - w height| is at most the larger
+ * sum of sides; the picture's own sides exchanged are another shape always. */
+int rle_has_shape(int64_t h, int64_t w, int64_t height, int64_t width);
+
+/* Returns 0 where it can, else -1 with ERR_FORMAT and no file name: "a mask of 3x4, but NAME is 4x3 ...". */
+int rle_check_shape(const char *what, int64_t h, int64_t w, const char *name, int64_t height, int64_t width,
+	struct err *e);
 
 /* Another size: each new pixel's share of foreground by area, cut at one half (> 0.5 is foreground, exactly
  * 0.5 too). The shares are exact: whole numbers of 1/(H*W) of a new pixel. */

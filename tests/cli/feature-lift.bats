@@ -56,6 +56,18 @@ halves() {
 		END { exit bad || seen < 500 || unseen < 20 }' rows
 }
 
+@test "masks, labels and maps that lie across their views are refused" {
+	across() { refuses 3 "$1 of 48x64, but the view is 64x48 (width x height): is the photograph turned by EXIF?" -q "${@:2}"; }
+	jq -nc --arg view "${views[0]}" '{view: $view, object: "o", segmentation: {size: [64, 48], counts: [0, 3072]}}' >across.jsonl
+	across "across.jsonl:1: view '${views[0]}': a mask" --masks across.jsonl
+	"$BIN/mask-export" --png tree -o /dev/null across.jsonl
+	cp "tree/${views[0]}/o.png" "maps/${views[0]}.png"
+	across "maps/${views[0]}.png: a map" maps
+	rm maps/*
+	npy "maps/${views[0]}.npy" '<f4' '8, 6, 2' "$(printf "$left%.0s" {1..48})"
+	refuses 3 "maps/${views[0]}.npy: a map of 6x8, but the view is 64x48 (width x height): is the photograph turned by EXIF?" -q maps
+}
+
 @test "halves of the same numbers, and other types of them, are the same" {
 	halves
 	lift -o expected maps

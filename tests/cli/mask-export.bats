@@ -46,6 +46,12 @@ setup() {
 	mv cameras.json scene
 	"$BIN/mask-export" --scene scene masks.jsonl | jq -c '[.images[].file_name]' >names
 	[ "$(cat names)" = '["IMG 7.JPG","v2.png"]' ]
+	# views of one file's name in two folders: as many folders as mask-import needs for the same views
+	printf '[%s,%s]\n' "$(view 'name="a_0"' 'image="../pictures/a/0.png"')" "$(view 'name="b_0"' 'image="../pictures/b/0.png"')" >scene/cameras.json
+	for view in a_0 b_0; do printf '{"view":"%s","object":"cup","segmentation":{"size":[3,4],"counts":[0,12]}}\n' $view; done >two.jsonl
+	"$BIN/mask-export" --scene scene -o coco.json two.jsonl
+	[ "$(jq -c '[.images[].file_name]' coco.json)" = '["a/0.png","b/0.png"]' ]
+	[ "$("$BIN/mask-import" coco.json | jq -r .view | tr '\n' ' ')" = "a_0 b_0 " ]
 	says 4 "mask-export: none/cameras.json: No such file or directory" "$BIN/mask-export" --scene none masks.jsonl
 }
 

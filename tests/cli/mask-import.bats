@@ -20,9 +20,11 @@ chunk() {
 	printf '%s%s%s' "$(number $((${#2} / 2)))" "$body" "$(printf %s "$body" | xxd -r -p | gzip -c | tail -c 8 | head -c 4 | xxd -p | fold -w2 | tac | tr -d '\n')"
 }
 
-# picture FILE ROW...: a colour PNG; a row is its pixels, rrggbb. The data are one stored block of deflate.
+# picture FILE ROW...: a colour PNG; a row is its pixels, rrggbb. The data are one stored block of deflate. Other kinds by
+# kind=BBCC, bits and colour type: 1000 are greys of 16 bits, 0806 rrggbbaa.
 picture() {
-	local file=$1 row data='' sum_a=1 sum_b=0 byte n
+	local file=$1 row data='' sum_a=1 sum_b=0 byte n kind=${kind:-0802}
+	local -A digits=([0802]=6 [0806]=8 [1000]=4)
 	shift
 	for row; do data+=00${row// /}; done
 	for byte in $(fold -w2 <<<"$data"); do
@@ -32,7 +34,7 @@ picture() {
 	{
 		printf 89504e470d0a1a0a
 		row=${1// /}
-		chunk IHDR "$(number $((${#row} / 6)))$(number $#)0802000000"
+		chunk IHDR "$(number $((${#row} / ${digits[$kind]})))$(number $#)${kind}000000"
 		chunk IDAT "780101${n:2}${n:0:2}$(printf '%04x' $((16#${n:2}${n:0:2} ^ 65535)))$data$(printf '%04x%04x' $sum_b $sum_a)"
 		chunk IEND ''
 	} | xxd -r -p >"$file"
@@ -61,6 +63,29 @@ frame.a plate" ]
 	"$BIN/mask-import" --names - view_1.png more/frame.a.png <all | cmp - masks
 }
 
+@test "numbers of 16 bits are numbers, what is transparent is nothing, and JPEG is refused" {
+	kind=1000 picture map.png '0001 012c 0000 0100'
+	printf '1 cup\n300 plate\n' >names
+	says 0 "mask-import: warning: map.png: 256, 25.0% of it, has no name" "$BIN/mask-import" --names names -o masks map.png
+	[ "$(jq -c .object masks)" = '"cup"
+"plate"' ]
+	printf '%s\n' '{"view":"map","object":"cup","segmentation":{"size":[1,4],"counts":[0,1,3]}}' \
+		'{"view":"map","object":"plate","segmentation":{"size":[1,4],"counts":[1,1,2]}}' >truth
+	"$BIN/miou-score" --json --truth truth masks | jq -e '.miou == 1 and .pairs == 2'
+	mkdir -p tree/map
+	kind=0806 picture map.png 'ff0000ff ff000000 ff000001 000000ff'
+	echo '#ff0000 cup' >names
+	cp map.png tree/map/cup.png
+	echo '{"view":"map","object":"cup","path":"map.png"}' >path.jsonl
+	head -n 1 truth >one
+	for way in "--names names map.png" tree path.jsonl; do
+		"$BIN/mask-import" -o masks $way
+		"$BIN/miou-score" --json --truth one masks | jq -e '.miou == 1 and .pairs == 1'
+	done
+	printf '\xff\xd8\xff' >map.png
+	says 3 "mask-import: map.png: a JPEG, whose colours are not quite those that were painted: save it as PNG" "$BIN/mask-import" --names names -o none map.png
+}
+
 @test "what has no name, and a name that has no pixel, are told; -q is silent" {
 	echo '7 plate' >names
 	echo '#ff0000 cup' >>names
@@ -75,22 +100,53 @@ refuses() {
 	says "$1" "mask-import: $2" "$BIN/mask-import" -q --names names -o none view_1.png && [ ! -e none ]
 }
 
-@test "pictures of one name in two folders are told" {
-	mkdir a b
+@test "pictures of one name in two folders: COCO's views are as gs-import names them, else an error" {
+	mkdir -p a b
 	cp view_1.png a && cp view_1.png b
-	says 0 "mask-import: warning: a/view_1.png and b/view_1.png are both of view 'view_1'" \
-		"$BIN/mask-import" --names names -o masks a/view_1.png b/view_1.png
+	two() {
+		local first=$1 second=$2
+		says 3 "mask-import: $second: of view 'view_1', and so is $first, of another folder's picture: name pictures as their views are in the scene, or import them one by one" \
+			"$BIN/mask-import" -q --names names -o none "$first" "$second"
+		[ ! -e none ]
+	}
+	two a/view_1.png b/view_1.png
+	labelme '{"label":"cup","points":[[1,1],[3,1],[3,3]]}' >a/1.json
+	cp a/1.json a/2.json
+	cp a/1.json b/1.json # of ../photos, which is the same for both
+	"$BIN/mask-import" -q -o masks a/1.json a/2.json b/1.json
+	sed -i 's,\.\.\\\\photos\\\\,,' a/1.json b/1.json
+	grep -q '"imagePath":"view_1.jpg"' a/1.json
+	two a/1.json b/1.json
+	jq -n '{images: ["left\\0.jpg", "right/0.jpg", "a/1.png"] | to_entries | map({id: .key, file_name: .value, height: 3, width: 4}), categories: [{id: 1, name: "cup"}],
+		annotations: [0, 1, 2 | {image_id: ., category_id: 1, segmentation: [[0, 0, 4, 0, 4, 3, 0, 3]]}]}' >coco.json
+	[ "$("$BIN/mask-import" coco.json | jq -r .view | tr '\n' ' ')" = "left_0 right_0 1 " ]
+	jq '.images[2].file_name = "right/0.jpg"' coco.json >bad.json
+	says 3 "mask-import: bad.json: images 1 and 2 have one file_name, 'right/0.jpg': their labels would be of one view" "$BIN/mask-import" bad.json
+}
+
+@test "COLMAP's names of masks: the photograph's name with its ending, and .png" {
+	mkdir -p tree/v.JPG tree/w
+	cp view_1.png v.jpg.png
+	cp view_1.png tree/v.JPG/cup.png
+	cp view_1.png tree/w/cup.png
+	[ "$("$BIN/mask-import" -q --names names v.jpg.png | jq -r .view | sort -u)" = v ]
+	[ "$("$BIN/mask-import" tree | jq -r .view | tr '\n' ' ')" = "v w " ]
+	# two photographs of one name keep their endings, as in the scene
+	cp -r tree/w tree/v.png
+	[ "$("$BIN/mask-import" tree | jq -r .view | tr '\n' ' ')" = "v.JPG v.png w " ]
+	cp view_1.png tree/w/0.jpg.png
+	says 3 "mask-import: tree/w/0.jpg.png: the mask of a photograph, as COLMAP names them, not of a thing: give such pictures by themselves, with --names" "$BIN/mask-import" -o none tree
 }
 
 @test "names that are malformed: exact messages" {
 	names() { printf "$1" >names; }
-	names '#ff0000 cup\n#ff00 mug\n' && refuses 3 "names:2: does not begin with #rrggbb or 0 to 255, and a blank"
-	for bad in 'ff0000 cup' '256 cup' '-1 cup' '0003 cup' '#ff00001 cup' '3cup' '# cup' 'cup'; do
-		names "$bad" && refuses 3 "names:1: does not begin with #rrggbb or 0 to 255, and a blank"
+	names '#ff0000 cup\n#ff00 mug\n' && refuses 3 "names:2: does not begin with #rrggbb or 0 to 65535, and a blank"
+	for bad in 'ff0000 cup' '65536 cup' '-1 cup' '0003 cup' '#ff00001 cup' '3cup' '# cup' 'cup'; do
+		names "$bad" && refuses 3 "names:1: does not begin with #rrggbb or 0 to 65535, and a blank"
 	done
 	names '3 \n' && refuses 3 "names:1: the name is empty"
 	names '3 caf\xe9\n' && refuses 3 "names:1: the name is not UTF-8 at byte 4"
-	names '3 cup\n#030303 mug\n' && refuses 3 "names:2: colour #030303 has a name already"
+	names '3 cup\n#030303 mug\n' && refuses 3 "names:2: its colour or number has a name already"
 	names '3 cup\n4 cup\n' && refuses 3 "names:2: the name 'cup' has a colour already"
 	names '\n' && refuses 3 "names: holds no names"
 	names '9 cup\n' && refuses 3 "view_1.png: has none of the colours that have names"
@@ -136,7 +192,7 @@ made() {
 	labelme '{"label":"dot","points":[[3,2],[3,3.1]],"shape_type":"circle"}' '{"label":"line","points":[[0,0],[1,1]],"shape_type":"line"}' >b.json
 	echo '{"view":"view_1","object":"dot","segmentation":{"size":[4,6],"counts":[9,2,2,2,9]}}' >truth.jsonl
 	made b.json
-	[ "$(cat err)" = "mask-import: warning: b.json: 1 shapes without an area are left out" ]
+	[ "$(cat err)" = "mask-import: warning: b.json: 1 shapes of type 'line' are left out" ]
 }
 
 @test "COCO: polygons, compressed and plain run lengths, of several pictures" {
@@ -154,10 +210,104 @@ made() {
 	sed -i "s/REPLACED/$(jq -r 'select(.object == "kettle").segmentation.counts' made.jsonl)/" coco.json
 	echo '{"view":"view_2","object":"kettle","segmentation":{"size":[3,4],"counts":[3,2,1,2,4]}}' >>truth.jsonl
 	made coco.json
-	[ "$(cat err)" = "mask-import: warning: coco.json: 1 shapes without an area are left out" ]
+	[ "$(cat err)" = "mask-import: warning: coco.json: 1 annotations without an outline are left out" ]
 	# a picture and labels together
 	"$BIN/mask-import" --names names -o both view_1.png first.json
 	[ "$(jq -s length both)" = 4 ]
+}
+
+# coco SEGMENTATION: a COCO file of one label in a picture of 20 by 12 pixels, on stdout.
+coco() {
+	jq -n --argjson s "$1" '{images: [{id: 1, file_name: "a.png", height: 12, width: 20}], categories: [{id: 1, name: "cup"}],
+		annotations: [{image_id: 1, category_id: 1, segmentation: $s, bbox: [2, 2, 4, 6]}]}'
+}
+
+@test "labels of another picture's size, in shares, or nested are errors; what has no area is named" {
+	wrong() {
+		coco "$1" >x.json
+		says 3 "mask-import: x.json: annotation 0: $2" "$BIN/mask-import" -o none x.json
+		[ ! -e none ]
+	}
+	wrong '[[2,2,6,2,6,8,2,8],[30,2,32,2,32,4]]' "its point 30,2 is outside the picture, 20x12 (width x height): is it of a picture of another size?"
+	wrong '[[2,2,6,2,6,14]]' "its point 6,14 is outside the picture, 20x12 (width x height): is it of a picture of another size?"
+	wrong '[[0.1,0.1,0.9,0.1,0.9,0.9]]' "all its points are within one pixel of the picture, 20x12: are they shares of it, not pixels?"
+	wrong '[[[2,2,6,2,6,8]]]' "a point is not two numbers, but a list of more: is the outline nested too deep?"
+	wrong '[[[[2,2],[6,2],[6,8]]]]' "a point is not two numbers, but a list of more: is the outline nested too deep?"
+	wrong '{"size":[20,12],"counts":[0,240]}' "key 'segmentation.size' is 12x20, but its picture is 20x12 (width x height): height and width are exchanged in one of them"
+	wrong '{"size":[10,24],"counts":[0,240]}' "key 'segmentation.size' is 24x10, but its picture is 20x12 (width x height)"
+	wrong '{"counts":[0,240]}' "key 'segmentation.size' is not [height,width]"
+	# a little beside the picture is at its edge
+	coco '[[-1,-1,21,-1,21,13,-1,13]]' >x.json
+	"$BIN/mask-import" x.json | "$BIN/mask-export" | jq -e '.annotations[0].area == 240'
+	gone() {
+		coco "$1" >x.json
+		says 3 "mask-import: warning: x.json: 1 $2 are left out
+mask-import: x.json: has no label with an area" "$BIN/mask-import" -o none x.json
+	}
+	gone '[[2,2,6,8]]' "outlines of fewer than three corners"
+	gone '[[2,2,2.2,2,2.2,2.2]]' "shapes without a pixel"
+	gone '[]' "boxes (key 'bbox') without an outline"
+	gone '{"size":[12,20],"counts":[240]}' "shapes without a pixel"
+}
+
+@test "LabelMe's and X-AnyLabeling's other shapes: what has four corners is read, other types are named" {
+	echo '{"view":"view_1","object":"box","segmentation":{"size":[4,6],"counts":[5,2,2,2,13]}}' >truth.jsonl
+	for type in rotation quadrilateral oriented_rectangle rectangle; do
+		labelme '{"label":"box","points":[[1,1],[3,1],[3,3],[1,3]],"shape_type":"'$type'"}' >a.json
+		made a.json
+	done
+	# a turned one may reach out, others not
+	labelme '{"label":"box","points":[[-3,2],[2,-3],[5,2],[2,7]],"shape_type":"rotation"}' >a.json
+	"$BIN/mask-import" -o made.jsonl a.json
+	sed -i s/rotation/quadrilateral/ a.json
+	says 3 "mask-import: a.json: shape 0: its point -3,2 is outside the picture, 6x4 (width x height): is it of a picture of another size?" "$BIN/mask-import" a.json
+	labelme '{"label":"a","points":[[1,1],[3,1],[3,3]],"shape_type":"cuboid"}' '{"label":"b","points":[[1,1],[3,1],[3,3]],"shape_type":"linestrip"}' \
+		'{"label":"c","points":[[1,1],[3,1]],"shape_type":"linestrip"}' '{"label":"d","points":[[1,1],[3,3]],"shape_type":"rectangle"}' >a.json
+	"$BIN/mask-import" -o made.jsonl a.json 2>err
+	[ "$(cat err)" = "mask-import: warning: a.json: 1 shapes of type 'cuboid' are left out
+mask-import: warning: a.json: 2 shapes of type 'linestrip' are left out" ]
+	[ "$(jq -r .object made.jsonl)" = d ]
+}
+
+@test "the smaller outline lies on the larger, whatever their order; parts and second names stay" {
+	shape() { printf '{"label":"%s","points":[[%s],[%s],[%s],[%s]]}' "$1" $2,$3 $4,$3 $4,$5 $2,$5; }
+	pad=$(shape pad 0 0 6 4) mouse=$(shape mouse 1 1 3 3)
+	areas() { "$BIN/mask-import" -q "$1" | "$BIN/mask-export" | jq -r '[.categories[].name, .annotations[].area | tostring] | join(" ")'; }
+	labelme "$pad" "$mouse" >a.json && [ "$(areas a.json)" = "pad mouse 20 4" ]
+	labelme "$mouse" "$pad" >a.json && [ "$(areas a.json)" = "mouse pad 4 20" ]
+	# a cable of three pixels on the mouse on the pad
+	labelme "$mouse" "$pad" "$(shape cable 2 0 3 3)" >a.json && [ "$(areas a.json)" = "mouse pad cable 2 19 3" ]
+	for part in "wheel of the pad" "wheel of pad" "pad's wheel"; do
+		labelme "$(shape "$part" 1 1 3 3)" "$pad" >a.json && [ "$(areas a.json)" = "$part pad 4 24" ]
+	done
+	labelme "$(shape "wheel of the pad" 1 1 3 3)" "$(shape 'red pad' 0 0 6 4)" >a.json && [ "$(areas a.json)" = "wheel of the pad red pad 4 24" ]
+	labelme "$(shape cover 0 0 6 4)" "$pad" >a.json && [ "$(areas a.json)" = "cover pad 24 24" ]
+	# COCO's outlines too, but not run lengths, nor what a detector found, nor ISAT's
+	jq -n '{images: [{id: 1, file_name: "a.png", height: 4, width: 6}], categories: [{id: 1, name: "pad"}, {id: 2, name: "mouse"}],
+		annotations: [{image_id: 1, category_id: 1, segmentation: [[0,0,6,0,6,4,0,4]]}, {image_id: 1, category_id: 2, segmentation: [[1,1,3,1,3,3,1,3]]}]}' >coco.json
+	[ "$(areas coco.json)" = "pad mouse 20 4" ]
+	jq '.annotations[].score = 0.5' coco.json >found.json && [ "$(areas found.json)" = "pad mouse 24 4" ]
+	jq '.annotations[0].segmentation = {size: [4, 6], counts: [0, 24]}' coco.json >runs.json && [ "$(areas runs.json)" = "pad mouse 24 4" ]
+	jq -n '{info: {name: "a.jpg", width: 6, height: 4}, objects: [{category: "pad", segmentation: [[0,0],[6,0],[6,4],[0,4]]}, {category: "mouse", segmentation: [[1,1],[3,1],[3,3],[1,3]]}]}' >isat.json
+	[ "$(areas isat.json)" = "pad mouse 24 4" ]
+}
+
+@test "LabelMe's size of the picture is that of imageData, and has the shape of the photograph" {
+	labelme '{"label":"cup","points":[[1,1],[3,1],[3,3]]}' | jq '.imagePath = "view_1.png"' >a.json
+	picture held.png '000000 000000 000000 000000 000000 000000' '000000 000000 000000 000000 000000 000000'
+	refuse() { says 3 "mask-import: a.json: imageWidth and imageHeight are 6x4, but $1: the labels are of another picture" "$BIN/mask-import" -o none a.json; }
+	picture view_1.png '000000 000000 000000' '000000 000000 000000'
+	"$BIN/mask-import" a.json >made.jsonl
+	picture view_1.png '000000' '000000' '000000' '000000' '000000' '000000' '000000' '000000' '000000'
+	refuse "view_1.png is 1x9"
+	jq --arg data "$(base64 -w0 held.png)" '.imageData = $data' a.json >b.json && mv b.json a.json
+	refuse "the picture in imageData is 6x2"
+	# a JPEG's header, of a picture that may be turned: 4 wide, 6 high
+	printf '\xff\xd8\xff\xe0\x00\x03x\xff\xff\xc0\x00\x0b\x08\x00\x06\x00\x04\x01\x01\x11\x00' >turned.jpg
+	jq --arg data "$(base64 -w0 turned.jpg)" '.imageData = $data' a.json >b.json && mv b.json a.json
+	refuse "the picture in imageData is 4x6"
+	jq '.imageData = null | .imagePath = "turned.jpg"' a.json >b.json
+	"$BIN/mask-import" b.json >made.jsonl
 }
 
 @test "a detector's: each thing that it found by itself, with its score; COCO's with its sentence" {

@@ -172,6 +172,14 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 	[ "${lines[0]}" = "miou-score: --truth TRUTH is required" ]
 }
 
+@test "a prediction of another shape than its truth is an error" {
+	echo '{"view":"v1","object":"cup","segmentation":{"size":[300,100],"counts":[30000]}}' >>pred.jsonl
+	run "$BIN/miou-score" --truth truth.jsonl -o out pred.jsonl
+	[ "$status" -eq 3 ]
+	[[ $output == "miou-score: pred.jsonl:6: view 'v1': a mask of 100x300, but its truth is "*" (width x height): "* ]]
+	[ -z "$(strays)" ]
+}
+
 @test "two records of one name are an error with both lines" {
 	echo "{\"view\":\"v1\",\"ref\":\"cup-2\",\"object\":\"mug\",\"segmentation\":$two}" >> pred.jsonl
 	run "$BIN/miou-score" --truth truth.jsonl -o out pred.jsonl

@@ -238,6 +238,8 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 @test "input that does not belong together, or is of another kind" {
 	jq -c '.view = "elsewhere"' masks.jsonl | head -n 1 >away
 	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'" --masks away
+	sed 's/elsewhere/left_view_000/' away >folder
+	refuses 3 "folder:1: key 'view': the scene has no view 'left_view_000', but 'view_000': are photographs of other folders not in it? Take only the labels of its own" --masks folder
 	cat masks.jsonl away >later
 	refuses 3 "later:$(wc -l <later): key 'view': the scene has no view 'elsewhere'" --spare later
 	refuses 3 "scene/splats.safetensors: format is 'refer.splats', expected 'refer.text'" --text scene/splats.safetensors

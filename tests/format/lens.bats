@@ -114,8 +114,8 @@ setup() {
 	record view_000 "$size" >m.jsonl
 	says 3 "mask-import: m.jsonl:1: view 'view_000': a mask of $pinhole, but its photograph is 64x48: it is undistorted already" "$BIN/mask-import" --undistort flat -o out m.jsonl
 	record view_000 48,70 >m.jsonl
-	says 3 "mask-import: m.jsonl:1: view 'view_000': a mask of 70x48, but its photograph is 64x48" "$BIN/mask-import" --undistort flat -o out m.jsonl
-	says 3 "mask-export: m.jsonl: view 'view_000': a mask of 70x48, but its pinhole is $pinhole" "$BIN/mask-export" --distort --scene flat -o out m.jsonl
+	says 3 "mask-import: m.jsonl:1: view 'view_000': a mask of 70x48, but its photograph is 64x48 (width x height): the shapes differ, and nothing is stretched" "$BIN/mask-import" --undistort flat -o out m.jsonl
+	says 3 "mask-export: m.jsonl: view 'view_000': a mask of 70x48, but its pinhole is $pinhole (width x height): the shapes differ, and nothing is stretched" "$BIN/mask-export" --distort --scene flat -o out m.jsonl
 	record view_00 48,64 >m.jsonl
 	says 3 "mask-import: m.jsonl:1: view 'view_00' is not in the scene" "$BIN/mask-import" --undistort flat -o out m.jsonl
 	"$BIN/mask-export" -o m.json m.jsonl

@@ -165,7 +165,7 @@ static void try_splat(const char *path)
 static void try_image(const char *path)
 {
 	uint8_t *rgb = NULL, *mask = NULL;
-	uint16_t *labels = NULL;
+	int32_t *labels = NULL;
 	int height, width;
 
 	if (!image_read_rgb(path, &rgb, &height, &width, &e))

@@ -47,6 +47,11 @@ static void base64_known_answers(void)
 		struct err e;
 		char *text = base64_text("data:", known[i].bytes, strlen(known[i].bytes), &e);
 		CHECK(text && !strncmp(text, "data:", 5) && !strcmp(text + 5, known[i].text), "%s", text);
+		size_t n;
+		char *bytes = base64_bytes(known[i].text, &n, &e);
+		CHECK(bytes && n == strlen(known[i].bytes) && !memcmp(bytes, known[i].bytes, n),
+			"%zu bytes of %s", n, known[i].text);
+		free(bytes);
 		free(text);
 	}
 }

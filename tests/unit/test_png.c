@@ -28,6 +28,9 @@ static void put(const char *bytes, size_t len)
 	fclose(out);
 }
 
+/* The colour of put_png's greys and RGB that is transparent, or NULL. */
+static png_color_16 *clear_colour;
+
 /* A 3x2 PNG of any kind. rows: 2 rows of raw samples. */
 static void put_png(int depth, int colour, int interlace, const uint8_t *rows, size_t row_bytes)
 {
@@ -44,6 +47,8 @@ static void put_png(int depth, int colour, int interlace, const uint8_t *rows, s
 		png_set_PLTE(png, info, palette, 4);
 		png_set_tRNS(png, info, (png_byte[]){0, 128, 255, 7}, 4, NULL);
 	}
+	if (clear_colour)
+		png_set_tRNS(png, info, NULL, 0, clear_colour);
 	png_write_info(png, info);
 	png_write_image(png, both);
 	png_write_end(png, info);
@@ -64,6 +69,76 @@ static void expect_mask(const char *what, const char *expected)
 		got[i] = (char)('0' + m[i]);
 	CHECK(!strcmp(got, expected), "%s: %s, expected %s", what, got, expected);
 	free(m);
+}
+
+static void expect_labels(const char *what, const int32_t expected[6])
+{
+	int32_t *labels;
+	int h = 0, w = 0;
+	struct err e = {0};
+
+	if (!CHECK(!png_read_labels(path, &labels, &h, &w, &e), "%s: %s", what, e.message))
+		return;
+	CHECK(h == 2 && w == 3 && !memcmp(labels, expected, 6 * sizeof *labels), "%s: %dx%d, %d %d %d", what,
+		w, h, labels[0], labels[1], labels[5]);
+	free(labels);
+}
+
+static void expect_paint(const char *what, const uint32_t expected[6])
+{
+	uint32_t *paint;
+	int h, w;
+	struct err e = {0};
+
+	if (!CHECK(!png_read_paint(path, &paint, &h, &w, &e), "%s: %s", what, e.message))
+		return;
+	CHECK(h == 2 && w == 3 && !memcmp(paint, expected, 6 * sizeof *paint), "%s: %x %x %x %x %x %x", what,
+		paint[0], paint[1], paint[2], paint[3], paint[4], paint[5]);
+	free(paint);
+}
+
+/* What is painted, with numbers of 16 bits, and what is transparent in any way. */
+static void test_paint(void)
+{
+	enum { N = PNG_PAINT_NUMBER, NONE = PNG_PAINT_NONE };
+	const uint8_t numbers[12] = {0, 1, 1, 44, 0, 0, 0, 255, 255, 255, 0, 2};
+	const uint8_t doubled[12] = {1, 1, 255, 255, 0, 0, 7, 7, 0, 0, 0, 0}, bits[2] = {0xa0, 0x40};
+	const uint8_t rgb[18] = {1, 2, 3, 255, 255, 255, 0, 0, 0, 1, 2, 3, 1, 2, 4, 255, 255, 255};
+	const uint8_t pale[24] = {
+		9, 0, 0, 99, 9, 0, 0, 3, 1, 1, 1, 0, 0, 7, 0, 100, 5, 5, 5, 49, 0, 0, 0, 51};
+	uint8_t deep[48] = {0};
+	png_color_16 white = {.red = 255, .green = 255, .blue = 255, .gray = 1};
+
+	put_png(16, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, numbers, 6);
+	expect_paint("16 bits are numbers",
+		(const uint32_t[]){0x010101, N | 300, 0, 0xffffff, N | 65535, 0x020202});
+	put_png(16, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, doubled, 6);
+	expect_paint("8 bits twice", (const uint32_t[]){0x010101, 0xffffff, 0, 0x070707, 0, 0});
+	put_png(8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, rgb, 9);
+	expect_paint("colours", (const uint32_t[]){0x010203, 0xffffff, 0, 0x010203, 0x010204, 0xffffff});
+	clear_colour = &white;
+	put_png(8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, rgb, 9);
+	expect_paint("a clear colour", (const uint32_t[]){0x010203, NONE, 0, 0x010203, 0x010204, NONE});
+	expect_mask("a clear colour", "100110");
+	put_png(1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, bits, 1);
+	expect_paint("a clear bit", (const uint32_t[]){NONE, 0, NONE, 0, NONE, 0});
+	expect_labels("a clear bit", (const int32_t[]){-1, 0, -1, 0, -1, 0});
+	clear_colour = NULL;
+	put_png(1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, bits, 1);
+	expect_paint("bits are black and white", (const uint32_t[]){0xffffff, 0, 0xffffff, 0, 0xffffff, 0});
+	put_png(8, PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, pale, 12);
+	expect_paint(
+		"pale paint and a soft rubber", (const uint32_t[]){0x090000, NONE, NONE, 0x000700, NONE, 0});
+	expect_mask("pale paint and a soft rubber", "100100");
+	put_png(2, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_NONE, (const uint8_t *)"\x18\xc4", 1);
+	expect_paint("a palette", (const uint32_t[]){NONE, 1, 0x090000, NONE, NONE, 1});
+	for (int i = 0; i < 6; i++)
+		deep[8 * i] = deep[8 * i + 1] = deep[8 * i + 6] = 255; /* red; a high byte of alpha */
+	deep[1] = 254;
+	deep[46] = 0;
+	put_png(16, PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, deep, 24);
+	expect_paint("16 bit colour", (const uint32_t[]){NONE, 0xff0000, 0xff0000, 0xff0000, 0xff0000, NONE});
+	expect_mask("16 bit colour", "111110");
 }
 
 static void expect_rgb(const char *what, const uint8_t expected[18])
@@ -99,9 +174,9 @@ static void test_kinds(void)
 	expect_mask("interlaced", "011001");
 	expect_rgb("interlaced", (uint8_t[18]){0, 0, 0, 1, 1, 1, 255, 255, 255, 0, 0, 0, 0, 0, 0, 7, 7, 7});
 	put_png(8, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_INTERLACE_NONE, grey_alpha, 6);
-	expect_mask("alpha does not count", "010010");
+	expect_mask("what is transparent is none", "000010");
 	put_png(8, PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, rgba, 12);
-	expect_mask("any colour", "011010");
+	expect_mask("any colour", "000010");
 	expect_rgb("any colour", (uint8_t[18]){0, 0, 0, 0, 0, 1, 5, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0, 0});
 	put_png(16, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, deep, 6);
 	expect_mask("16 bit: 1 of 65535 is foreground", "011001");
@@ -344,39 +419,26 @@ static void test_size(void)
 		"the limit");
 }
 
-static void expect_labels(const char *what, const uint16_t expected[6])
-{
-	uint16_t *labels;
-	int h = 0, w = 0;
-	struct err e = {0};
-
-	if (!CHECK(!png_read_labels(path, &labels, &h, &w, &e), "%s: %s", what, e.message))
-		return;
-	CHECK(h == 2 && w == 3 && !memcmp(labels, expected, 6 * sizeof *labels), "%s: %dx%d, %d %d %d", what,
-		w, h, labels[0], labels[1], labels[5]);
-	free(labels);
-}
-
 static void test_labels(void)
 {
 	struct err e = {0};
-	uint16_t *labels;
+	int32_t *labels;
 	int h, w;
 
 	put_png(8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, (const uint8_t *)"\0\1\2\375\376\377", 3);
-	expect_labels("8 bits", (const uint16_t[]){0, 1, 2, 253, 254, 255});
+	expect_labels("8 bits", (const int32_t[]){0, 1, 2, 253, 254, 255});
 	put_png(16, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_ADAM7, (const uint8_t *)"\0\0\0\1\1\0\377\377\0\7\1\1",
 		6);
-	expect_labels("16 bits", (const uint16_t[]){0, 1, 256, 65535, 7, 257});
+	expect_labels("16 bits", (const int32_t[]){0, 1, 256, 65535, 7, 257});
 	put_png(2, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, (const uint8_t *)"\x18\xe4", 1);
-	expect_labels("2 bits", (const uint16_t[]){0, 1, 2, 3, 2, 1});
+	expect_labels("2 bits", (const int32_t[]){0, 1, 2, 3, 2, 1});
 	put_png(8, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_NONE, (const uint8_t *)"\0\1\2\3\2\1", 3);
-	expect_labels("a palette", (const uint16_t[]){0, 1, 2, 3, 2, 1});
+	expect_labels("a palette", (const int32_t[]){-1, 1, 2, 3, 2, 1});
 	put_png(2, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_NONE, (const uint8_t *)"\x18\xe4", 1);
-	expect_labels("a palette of 2 bits", (const uint16_t[]){0, 1, 2, 3, 2, 1});
+	expect_labels("a palette of 2 bits", (const int32_t[]){-1, 1, 2, 3, 2, 1});
 	put_png(8, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_INTERLACE_NONE,
 		(const uint8_t *)"\5\0\6\1\7\2\10\377\11\0\12\0", 6);
-	expect_labels("alpha", (const uint16_t[]){5, 6, 7, 8, 9, 10});
+	expect_labels("alpha", (const int32_t[]){-1, -1, -1, 8, -1, -1});
 	put_png(8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, (const uint8_t *)"123456789123456789", 9);
 	CHECK(png_read_labels(path, &labels, &h, &w, &e) && e.code == ERR_FORMAT &&
 			strstr(e.message, ": PNG: has colours, not numbers of labels"),
@@ -397,6 +459,7 @@ int main(void)
 	test_write_jpeg();
 	test_size();
 	test_labels();
+	test_paint();
 	unlink(path);
 	return unit_end();
 }

@@ -2,6 +2,8 @@
 #include "mask_help.h"
 #include "unit.h"
 
+#include <math.h>
+
 static int golden_pixel(int height, int width, const int f[4], int y, int x)
 {
 	if (f[3])
@@ -68,6 +70,12 @@ static void test_random(void)
 		CHECK(rle_intersection(&x, &y) == both && rle_intersection(&y, &x) == both, "round %d",
 			round);
 		CHECK(rle_iou(&x, &y) == (either ? (double)both / (double)either : 1), "round %d", round);
+		rle_free(&parsed);
+		int wrong = rle_without(&parsed, &x, &y, &e);
+		rle_decode(&parsed, back);
+		for (size_t i = 0; i < pixels; i++)
+			wrong += back[i] != (a[i] && !b[i]);
+		CHECK(!wrong, "round %d: %d pixels of a without b", round, wrong);
 		rle_free(&x);
 		rle_free(&y);
 		rle_free(&parsed);
@@ -256,8 +264,45 @@ static void test_extremes(void)
 	rle_free(&r);
 }
 
+/* A side of a picture made smaller: rounded, cut or raised. */
+static int side(int full, double scale, int how)
+{
+	const double x = full * scale, made = how == 0 ? floor(x + 0.5) : how == 1 ? floor(x) : ceil(x);
+
+	return made < 1 ? 1 : (int)made;
+}
+
+/* What a photograph becomes at two scales has one shape; crops, other formats and turned pictures have not.
+ */
+static void test_shapes(void)
+{
+	static const int others[][4] = {{160, 120, 120, 160}, {53, 40, 120, 160}, {101, 100, 100, 101},
+		{120, 120, 120, 160}, {118, 160, 120, 160}, {1088, 1920, 1080, 1920}, {90, 160, 120, 160}};
+	struct rng rng;
+	struct err e = {0};
+	int refused = 0;
+
+	rng_seed(&rng, 8, 1);
+	for (int round = 0; round < 100000; round++) {
+		const int h = 40 + (int)rng_below(&rng, 4000), w = 40 + (int)rng_below(&rng, 4000),
+			  how = round % 3;
+		const double a = 0.02 + rng_uniform(&rng), b = 0.02 + rng_uniform(&rng);
+		refused += !rle_has_shape(side(h, a, how), side(w, a, how), h, w) ||
+			   !rle_has_shape(h, w, side(h, a, how), side(w, a, how)) ||
+			   !rle_has_shape(side(h, a, how), side(w, a, how), side(h, b, how), side(w, b, how));
+	}
+	CHECK(!refused, "%d resized pictures", refused);
+	for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+		const int *o = others[i];
+		CHECK(rle_check_shape("a mask", o[0], o[1], "the view", o[2], o[3], &e) &&
+				e.code == ERR_FORMAT && !strstr(e.message, "EXIF") == (i > 2),
+			"%dx%d of %dx%d: %s", o[1], o[0], o[3], o[2], e.message);
+	}
+}
+
 int main(void)
 {
+	test_shapes();
 	test_golden();
 	test_random();
 	test_fit();

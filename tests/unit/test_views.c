@@ -38,6 +38,18 @@ static void names(const char *const *images, const char *const *expected)
 		CHECK(!strcmp(name, expected[n]), "view %zu is %s, not %s", n, name, expected[n]);
 	}
 	CHECK(bad || (n == c.n && !expected[n]), "%zu views, %zu of them as expected", c.n, n);
+	/* the same in the order of the images, without cameras */
+	char **own = mem_zalloc(c.n, sizeof *own, "views", &e);
+	bad = bad || views_name(images, c.n, own, "file", &e);
+	for (size_t i = 0; !bad && i < c.n; i++) {
+		size_t at = 0;
+		while (strcmp(c.views[at].image, images[i]))
+			at++;
+		CHECK(!strcmp(own[i], c.views[at].name), "%s is %s, not %s", images[i], own[i],
+			c.views[at].name);
+		free(own[i]);
+	}
+	free(own);
 	cameras_free(&c);
 }
 
