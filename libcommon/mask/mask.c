@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 double mask_confidence(const struct mask *m)
 {
@@ -13,6 +14,18 @@ double mask_confidence(const struct mask *m)
 const char *mask_object(const struct mask *m)
 {
 	return m->object ? m->object : m->ref;
+}
+
+int mask_order(const struct mask *a, const struct mask *b)
+{
+	const struct rle *p = &a->rle, *q = &b->rle;
+	int order = strcmp(mask_object(a), mask_object(b));
+
+	if (!order)
+		order = strcmp(a->ref ? a->ref : "", b->ref ? b->ref : "");
+	if (!order)
+		order = (p->n > q->n) - (p->n < q->n);
+	return order || !p->n ? order : memcmp(p->runs, q->runs, p->n * sizeof *p->runs);
 }
 
 void mask_free(struct mask *m)

@@ -27,6 +27,10 @@ double mask_confidence(const struct mask *m);
 /* What a mask goes by where there is one of each object: its object, else its ref. */
 const char *mask_object(const struct mask *m);
 
+/* By what masks go by, then by sentence and pixels: an order that is not that in which they came. 0 where all
+ * of that is the same. */
+int mask_order(const struct mask *a, const struct mask *b);
+
 /* Of a mask that owns its strings, runs and place. */
 void mask_free(struct mask *m);
 
