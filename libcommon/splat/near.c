@@ -14,8 +14,9 @@
 #define NEAR_COVERS 0.03 /* of a picture; there, all that hide a view cover 0.4, no thing 0.025 */
 #define NEAR_SAME 5e-4	 /* of all pictures */
 
-/* Depths are counted by the first bits of their floats: by steps of 1/4096. */
-enum { DROPPED_BITS = 11, STEPS = 1 << (31 - DROPPED_BITS) };
+/* Depths are counted by the first bits of their floats: by steps of 1/4096. Views count in slabs, side by
+ * side. */
+enum { DROPPED_BITS = 11, STEPS = 1 << (31 - DROPPED_BITS), SLABS = 8 };
 
 static double depth(const struct camera *c, const float *mean)
 {
@@ -38,7 +39,6 @@ static void count_view(const struct splats *s, const struct camera *c, uint64_t 
 		const float z = (float)x[2];
 		uint32_t bits;
 		memcpy(&bits, &z, sizeof bits);
-#pragma omp atomic
 		counts[bits >> DROPPED_BITS]++;
 	}
 }
@@ -46,7 +46,7 @@ static void count_view(const struct splats *s, const struct camera *c, uint64_t 
 /* d, or 0 where no view has a Gaussian. */
 static int find_first(const struct splats *s, const struct cameras *cameras, double *first, struct err *e)
 {
-	uint64_t *counts = mem_zalloc(STEPS, sizeof *counts, "depths", e), all = 0, passed = 0;
+	uint64_t *counts = mem_zalloc(STEPS, SLABS * sizeof *counts, "depths", e), all = 0, passed = 0;
 	uint32_t k = 0;
 	float z;
 
@@ -54,9 +54,12 @@ static int find_first(const struct splats *s, const struct cameras *cameras, dou
 	if (!counts)
 		return -1;
 #pragma omp parallel for schedule(dynamic)
-	for (size_t v = 0; v < cameras->n; v++)
-		count_view(s, &cameras->views[v], counts);
-	for (uint32_t i = 0; i < STEPS; i++)
+	for (size_t slab = 0; slab < SLABS; slab++)
+		for (size_t v = slab; v < cameras->n; v += SLABS)
+			count_view(s, &cameras->views[v], counts + slab * STEPS);
+	for (size_t i = STEPS; i < (size_t)SLABS * STEPS; i++)
+		counts[i % STEPS] += counts[i];
+	for (size_t i = 0; i < STEPS; i++)
 		all += counts[i];
 	while (all && (double)(passed += counts[k]) <= NEAR_FIRST * (double)all)
 		k++;
