@@ -16,13 +16,18 @@ const char *mask_object(const struct mask *m)
 	return m->object ? m->object : m->ref;
 }
 
+static int order_names(const char *a, const char *b)
+{
+	return strcmp(a ? a : "", b ? b : "");
+}
+
 int mask_order(const struct mask *a, const struct mask *b)
 {
 	const struct rle *p = &a->rle, *q = &b->rle;
-	int order = strcmp(mask_object(a), mask_object(b));
+	int order = order_names(mask_object(a), mask_object(b));
 
 	if (!order)
-		order = strcmp(a->ref ? a->ref : "", b->ref ? b->ref : "");
+		order = order_names(a->ref, b->ref);
 	if (!order)
 		order = (p->n > q->n) - (p->n < q->n);
 	return order || !p->n ? order : memcmp(p->runs, q->runs, p->n * sizeof *p->runs);
