@@ -53,6 +53,9 @@ static void note_splats(
 		degree++;
 	cli_note(cli, 1, "%s: %zu Gaussians, spherical harmonics of degree %d, offset %.17g %.17g %.17g",
 		file_name(splats), s->splats.n, degree, s->offset[0], s->offset[1], s->offset[2]);
+	if (s->splats.near != SPLATS_NEAR)
+		cli_note(cli, 1, "%s: views leave out what is within %.3g of the camera", file_name(splats),
+			s->splats.near);
 	if (!dropped)
 		return;
 	cli_warn(cli, "%s: left out %zu of %zu Gaussians: %zu not finite, %zu with a zero quaternion",

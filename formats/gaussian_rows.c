@@ -79,7 +79,7 @@ static int by_value(const void *a, const void *b)
 static int choose_offset(double offset[3], const double *means, size_t n, struct err *e)
 {
 	size_t step = (n + SAMPLES - 1) / SAMPLES, count = 0;
-	double median[3], spread = 1, far = 0;
+	double median[3], spread = 0, far = 0;
 
 	memset(offset, 0, 3 * sizeof *offset);
 	if (!n)
@@ -97,8 +97,9 @@ static int choose_offset(double offset[3], const double *means, size_t n, struct
 		far = fmax(far, fabs(median[k]));
 	}
 	free(sorted);
-	for (int k = 0; far > 16 * spread && k < 3; k++)
-		offset[k] = round(median[k]) + 0.0; /* no -0 */
+	const double unit = spread > 0 && spread < 1 ? exp2(floor(log2(spread))) : 1;
+	for (int k = 0; far > 16 * fmax(spread, unit) && k < 3; k++)
+		offset[k] = round(median[k] / unit) * unit + 0.0; /* no -0 */
 	return 0;
 }
 

@@ -86,6 +86,13 @@ int scene_read_splats(struct scene *s, const char *path, struct err *e)
 	}
 	if (splats_alloc(&s->splats, (size_t)n, (int)k, e))
 		goto done;
+	const char *near = safetensors_meta(&st, "near");
+	char after;
+	if (near && (sscanf(near, "%lf%c", &s->splats.near, &after) != 1 || !(s->splats.near > 0) ||
+			    !isfinite(s->splats.near))) {
+		err_set(e, ERR_FORMAT, "%s: metadata 'near' is not a number above 0", path);
+		goto done;
+	}
 	float *to[5] = {
 		s->splats.means, s->splats.scales, s->splats.quats, s->splats.opacities, s->splats.sh};
 	for (int i = 0; i < 5; i++)
@@ -380,7 +387,7 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 	const struct splats *p = &s->splats;
 	int64_t n = (int64_t)p->n;
 	const struct fingerprint own = fingerprint_scene(p->means, p->n);
-	char offset[128];
+	char offset[128], near[32];
 	struct st_tensor tensors[] = {
 		{.name = "means", .dtype = ST_F32, .dims = 2, .shape = {n, 3}, .data = p->means},
 		{.name = "scales", .dtype = ST_F32, .dims = 2, .shape = {n, 3}, .data = p->scales},
@@ -393,15 +400,16 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 			.data = p->sh},
 	};
 	struct st_meta meta[] = {{"format", "refer.splats"}, {"version", "1"}, {"tool", "gs-import"},
-		{"options", options}, {"seed", "0"}, {"offset", offset}, {"scene", own.hex}};
+		{"options", options}, {"seed", "0"}, {"offset", offset}, {"scene", own.hex}, {"near", near}};
+	const size_t keys = sizeof meta / sizeof *meta - (p->near == SPLATS_NEAR);
 
+	snprintf(near, sizeof near, "%.17g", p->near);
 	snprintf(offset, sizeof offset, "[%.17g,%.17g,%.17g]", s->offset[0], s->offset[1], s->offset[2]);
 	if (file_make_dir(dir, e))
 		return -1;
 	char *splats = file_join(dir, "splats.safetensors", "", e),
 	     *cameras = file_join(dir, "cameras.json", "", e);
-	int bad = !splats || !cameras ||
-		  safetensors_write(splats, tensors, 5, meta, sizeof meta / sizeof *meta, e) ||
+	int bad = !splats || !cameras || safetensors_write(splats, tensors, 5, meta, keys, e) ||
 		  write_cameras(&s->cameras, cameras, e);
 	free(splats);
 	free(cameras);

@@ -151,19 +151,26 @@ void asking_answer_free(struct asking_answer *answer)
 	cJSON_Delete(answer->explained);
 }
 
-/* The chosen objects, likeliest first, and the likeliest of the others. */
-static void sort_things(struct asking_answer *answer, const char *chosen, size_t objects)
+/* Whether object o is told before another: the likelier one, and of two as likely by name. */
+static int is_before(const struct asking_answer *answer, char *const *names, size_t o, size_t other)
 {
-	const double *p = answer->probability;
+	const double own = answer->probability[o], theirs = answer->probability[other];
 
+	return own > theirs || (own == theirs && strcmp(names[o], names[other]) < 0);
+}
+
+/* The chosen objects, likeliest first, and the likeliest of the others. */
+static void sort_things(struct asking_answer *answer, char *const *names, const char *chosen, size_t objects)
+{
 	for (size_t o = 0; o < objects; o++) {
 		if (!chosen[o]) {
-			if (answer->runner_up == ASKING_NONE || p[o] > p[answer->runner_up])
+			if (answer->runner_up == ASKING_NONE ||
+				is_before(answer, names, o, answer->runner_up))
 				answer->runner_up = o;
 			continue;
 		}
 		size_t k = answer->count++;
-		for (; k && p[answer->things[k - 1]] < p[o]; k--)
+		for (; k && is_before(answer, names, o, answer->things[k - 1]); k--)
 			answer->things[k] = answer->things[k - 1];
 		answer->things[k] = o;
 	}
@@ -191,7 +198,7 @@ static int choose_answer(struct asking *a, const struct text *t, size_t r, struc
 			w->answer->probability[o] = choice.there * (double)probability[o];
 		if (choice.there < a->options->least)
 			memset(chosen, 0, objects);
-		sort_things(w->answer, chosen, objects);
+		sort_things(w->answer, a->model.lifted.names, chosen, objects);
 	}
 	free(probability);
 	free(chosen);

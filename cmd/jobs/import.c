@@ -7,6 +7,7 @@
 #include "formats/dataparser.h"
 #include "geom/lens.h"
 #include "geom/views.h"
+#include "splat/near.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -197,7 +198,7 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
 	char *metadata = describe_options(o->test_views, e);
-	int bad = !metadata || file_make_dir(folder, e) ||
+	int bad = !metadata || near_find(&s->splats, &s->cameras, e) || file_make_dir(folder, e) ||
 		  camerafile_images(&s->cameras, o->images, folder, &found->missing, e) ||
 		  (o->images && resemblance_find(&found->resemblance, s, folder, to, e)) ||
 		  scene_write(s, folder, metadata, e);

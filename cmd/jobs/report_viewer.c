@@ -66,12 +66,16 @@ static int put_modules(FILE *out, const char *dir, struct err *e)
 	return 0;
 }
 
+/* To six digits of the largest. */
 static cJSON *numbers(const double *x, int n)
 {
-	double rounded[3];
+	double rounded[3], most = 0;
 
 	for (int k = 0; k < n; k++)
-		rounded[k] = round(x[k] * 1e5) / 1e5;
+		most = fmax(most, fabs(x[k]));
+	const double digits = most > 0 ? pow(10, 5 - floor(log10(most))) : 1;
+	for (int k = 0; k < n; k++)
+		rounded[k] = round(x[k] * digits) / digits;
 	return cJSON_CreateDoubleArray(rounded, n);
 }
 

@@ -95,6 +95,9 @@ window.scene_viewer = (() => {
 		const centre = new THREE.Vector3(...from.centre), forward = new THREE.Vector3(...from.forward);
 		const depths = groups.filter(g => g.centre).map(g => new THREE.Vector3(...g.centre).sub(centre).dot(forward)).filter(d => d > 0);
 		const depth = depths.length ? depths.reduce((a, b) => a + b) / depths.length : 3;
+		camera.near = depth / 500;
+		camera.far = depth * 200;
+		camera.updateProjectionMatrix();
 		camera.position.copy(centre);
 		controls.target.copy(centre).addScaledVector(forward, depth);
 		controls.update();

@@ -298,6 +298,7 @@ static int take_whole(const struct responses *a, size_t answer, const struct spl
 		n += in_sight[i] && is_of(a, s->n, answer, i);
 	if (splats_alloc(whole, n, 1, e))
 		return -1;
+	whole->near = s->near;
 	memset(whole->sh, 0, n * 3 * sizeof *whole->sh);
 	for (size_t i = 0; i < s->n; i++) {
 		if (!in_sight[i] || !is_of(a, s->n, answer, i))

@@ -14,8 +14,8 @@
 enum { POINTS = 2048 }; /* of an object, at most about so many */
 static const double most_weight = 4;
 static const double alike_colour = 8, alike_spread = 4, alike_size = 0.15;
-static const double no_direction = 0.1;		   /* of the spacing */
-static const double degree0 = 0.28209479177387814; /* the spherical harmonic of degree 0 */
+static const double no_direction = 0.1, nothing = 1e-6; /* of the spacing */
+static const double degree0 = 0.28209479177387814;	/* the spherical harmonic of degree 0 */
 
 void arrangement_free(struct arrangement *a)
 {
@@ -319,7 +319,7 @@ static void see(struct arrangement *a, const struct camera *c, double axes[3][3]
 				world[d] = p->centre[0] * axes[0][d] + p->centre[1] * axes[1][d] +
 					   p->centre[2] * axes[2][d];
 			camera_transform(c, world, at);
-			depth = fmax(at[2], 1e-6);
+			depth = fmax(at[2], nothing * a->spacing);
 			if (!pass) {
 				mean += at[2];
 				count++;
@@ -328,7 +328,7 @@ static void see(struct arrangement *a, const struct camera *c, double axes[3][3]
 			const double x = c->fx * at[0] / depth + c->cx, y = c->fy * at[1] / depth + c->cy;
 			p->in_sight = at[2] > 0 && x >= 0 && x <= c->width && y >= 0 && y <= c->height;
 			if (!is_facing)
-				p->side = at[0] / depth * fmax(mean / count, 1e-6);
+				p->side = at[0] / depth * fmax(mean / count, nothing * a->spacing);
 		}
 }
 
@@ -411,14 +411,19 @@ int arrangement_make(struct arrangement *a, const struct lifted *l, const struct
 	return bad ? -1 : 0;
 }
 
-/* Lengths of the box: the shorter and the longer one on the ground, and the height. */
-static void lengths(const struct arranged *o, double out[3])
+double arranged_length(const struct arrangement *a, double length)
 {
-	double a = o->high[0] - o->low[0], b = o->high[1] - o->low[1];
+	return log(fmax(length, nothing * a->spacing));
+}
 
-	out[0] = log(fmax(fmin(a, b), 1e-6));
-	out[1] = log(fmax(fmax(a, b), 1e-6));
-	out[2] = log(fmax(o->high[2] - o->low[2], 1e-6));
+/* Lengths of the box: the shorter and the longer one on the ground, and the height. */
+static void lengths(const struct arrangement *a, const struct arranged *o, double out[3])
+{
+	const double wide = o->high[0] - o->low[0], deep = o->high[1] - o->low[1];
+
+	out[0] = arranged_length(a, fmin(wide, deep));
+	out[1] = arranged_length(a, fmax(wide, deep));
+	out[2] = arranged_length(a, o->high[2] - o->low[2]);
 }
 
 double arrangement_alike(const struct arrangement *a, size_t i, size_t k)
@@ -430,8 +435,8 @@ double arrangement_alike(const struct arrangement *a, size_t i, size_t k)
 		return 0;
 	if (!p->is_there || !q->is_there)
 		return -INFINITY;
-	lengths(p, x);
-	lengths(q, y);
+	lengths(a, p, x);
+	lengths(a, q, y);
 	for (int d = 0; d < 3; d++) {
 		const double colour = (p->lab[d] - q->lab[d]) / alike_colour,
 			     spread = (p->spread[d] - q->spread[d]) / alike_spread,
@@ -441,11 +446,11 @@ double arrangement_alike(const struct arrangement *a, size_t i, size_t k)
 	return -0.5 * sum;
 }
 
-double arranged_bulk(const struct arranged *o)
+double arranged_bulk(const struct arrangement *a, const struct arranged *o)
 {
 	double sum = 0;
 
 	for (int k = 0; k < 3; k++)
-		sum += log(fmax(o->high[k] - o->low[k], 1e-6)) / 3;
+		sum += arranged_length(a, o->high[k] - o->low[k]) / 3;
 	return sum;
 }

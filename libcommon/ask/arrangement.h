@@ -65,7 +65,8 @@ void arrangement_free(struct arrangement *a);
  * the squares. */
 double arrangement_alike(const struct arrangement *a, size_t i, size_t k);
 
-/* Mean of the logarithms of a box's lengths. */
-double arranged_bulk(const struct arranged *o);
+/* The logarithm of a length, which may be 0, and the mean of those of a box. */
+double arranged_length(const struct arrangement *a, double length);
+double arranged_bulk(const struct arrangement *a, const struct arranged *o);
 
 #endif

@@ -29,7 +29,8 @@ static double feet_overlap(const struct arranged *p, const struct arranged *q)
 		own *= p->high[k] - p->low[k];
 		other *= q->high[k] - q->low[k];
 	}
-	return common / fmax(fmin(own, other), 1e-9);
+	own = fmin(own, other);
+	return own > 0 ? common / own : 0;
 }
 
 double relate_stands_on(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
@@ -60,7 +61,8 @@ static double on_side(const struct arrangement *a, const struct arranged *p, con
 	double main, double aside, enum relate_width width)
 {
 	const double there = step((main / a->spacing - APART_LEAST) / APART_SOFT);
-	const double along = main / (hypot(main, aside) + 1e-9), up = p->centre[2] - q->centre[2];
+	const double along = main / (hypot(main, aside) + 1e-9 * a->spacing),
+		     up = p->centre[2] - q->centre[2];
 	const double distance = hypot(level_distance(p, q), up);
 
 	if (width == RELATE_HALF_PLANE)
@@ -82,7 +84,7 @@ static double near(const struct arrangement *a, const struct arranged *p, const 
 static double inside(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
 {
 	return step((feet_overlap(p, q) - 0.6) / 0.1) * step((q->high[2] - p->low[2]) / (0.03 * a->spacing)) *
-	       step((arranged_bulk(q) - arranged_bulk(p)) / 0.1);
+	       step((arranged_bulk(a, q) - arranged_bulk(a, p)) / 0.1);
 }
 
 static double pair(const struct arrangement *a, enum parse_relation relation, enum relate_width width,
@@ -163,16 +165,16 @@ static double key_of(const struct arrangement *a, enum parse_relation relation, 
 	case PARSE_FLOOR:
 		return o->centre[2] / a->spacing;
 	case PARSE_LARGER:
-		return -arranged_bulk(o);
+		return -arranged_bulk(a, o);
 	case PARSE_SMALLER:
-		return arranged_bulk(o);
+		return arranged_bulk(a, o);
 	case PARSE_TALLER:
-		return -log(fmax(o->high[2] - o->low[2], 1e-9));
+		return -arranged_length(a, o->high[2] - o->low[2]);
 	case PARSE_SHORTER:
-		return log(fmax(o->high[2] - o->low[2], 1e-9));
+		return arranged_length(a, o->high[2] - o->low[2]);
 	case PARSE_LONGER:
 	case PARSE_WIDER:
-		return -log(fmax(fmax(wide, deep), 1e-9));
+		return -arranged_length(a, fmax(wide, deep));
 	default:
 		return 0;
 	}
@@ -376,7 +378,7 @@ static double between(const struct arrangement *a, const struct arranged *o, con
 	const struct arranged *q)
 {
 	const double x = q->centre[0] - p->centre[0], y = q->centre[1] - p->centre[1];
-	const double length = hypot(x, y) + 1e-9;
+	const double length = hypot(x, y) + 1e-9 * a->spacing;
 	const double u = o->centre[0] - p->centre[0], v = o->centre[1] - p->centre[1];
 	const double along = (u * x + v * y) / (length * length), aside = fabs(u * y - v * x) / length;
 

@@ -42,7 +42,7 @@ static int by_view(const void *a, const void *b)
 	if (!order)
 		order = (mine < other) - (mine > other);
 	if (!order)
-		order = order_sizes(p->object, q->object);
+		order = mask_order(p->mask, q->mask);
 	return order ? order : order_masks(p, q);
 }
 

@@ -268,6 +268,27 @@ static size_t find_views(const struct regions *r, size_t object, size_t *all, si
 	return found;
 }
 
+struct named {
+	const char *name;
+	size_t object;
+};
+
+static int order_names(const void *a, const void *b)
+{
+	return strcmp(((const struct named *)a)->name, ((const struct named *)b)->name);
+}
+
+/* Objects by name, so that regions do not depend on the order in which these came. */
+static void name_objects(const struct regions *r, struct named *named)
+{
+	for (size_t o = 0; o < r->object_count; o++)
+		named[o] = (struct named){"", o};
+	for (size_t i = 0; i < r->witness_count; i++)
+		named[r->witnesses[i].object].name = mask_object(r->witnesses[i].mask);
+	if (r->object_count)
+		qsort(named, r->object_count, sizeof *named, order_names);
+}
+
 static int grow_object(struct regions *r, struct growth *g, size_t object, float *explained,
 	const double *total, struct err *e)
 {
@@ -295,16 +316,19 @@ int regions_grow(struct regions *r, struct err *e)
 	regions_settle(r);
 	float *explained = mem_zalloc(r->count, sizeof *explained, "regions", e);
 	double *total = mem_zalloc(r->gaussians, sizeof *total, "regions", e);
-	int bad = !explained || !total || growth_make(&g, r, e);
+	struct named *named = mem_alloc(r->object_count, sizeof *named, "regions", e);
+	int bad = !explained || !total || !named || growth_make(&g, r, e);
 
 	for (size_t v = 0; v < r->views && !bad; v++)
 		seen_add(&r->seen[v], r->gaussians, total);
 	if (!bad) {
-		for (size_t object = 0; object < r->object_count && !bad; object++)
-			bad = grow_object(r, &g, object, explained, total, e);
+		name_objects(r, named);
+		for (size_t i = 0; i < r->object_count && !bad; i++)
+			bad = grow_object(r, &g, named[i].object, explained, total, e);
 		growth_free(&g);
 	}
 	free(explained);
 	free(total);
+	free(named);
 	return bad ? -1 : 0;
 }

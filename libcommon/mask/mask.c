@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 double mask_confidence(const struct mask *m)
 {
@@ -25,6 +26,23 @@ int mask_check_shape(
 		return 0;
 	snprintf(before, sizeof before, "view '%.300s'", view);
 	return err_prefix(e, before);
+}
+
+static int order_names(const char *a, const char *b)
+{
+	return strcmp(a ? a : "", b ? b : "");
+}
+
+int mask_order(const struct mask *a, const struct mask *b)
+{
+	const struct rle *p = &a->rle, *q = &b->rle;
+	int order = order_names(mask_object(a), mask_object(b));
+
+	if (!order)
+		order = order_names(a->ref, b->ref);
+	if (!order)
+		order = (p->n > q->n) - (p->n < q->n);
+	return order || !p->n ? order : memcmp(p->runs, q->runs, p->n * sizeof *p->runs);
 }
 
 void mask_free(struct mask *m)

@@ -31,6 +31,10 @@ const char *mask_object(const struct mask *m);
 int mask_check_shape(
 	const char *view, const struct rle *rle, const char *of, int height, int width, struct err *e);
 
+/* By what masks go by, then by sentence and pixels: an order that is not that in which they came. 0 where all
+ * of that is the same. */
+int mask_order(const struct mask *a, const struct mask *b);
+
 /* Of a mask that owns its strings, runs and place. */
 void mask_free(struct mask *m);
 

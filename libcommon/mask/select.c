@@ -43,8 +43,11 @@ long select_winner(const struct mask *const *candidates, const size_t *areas, si
 		const double score = mask_confidence(candidates[k]);
 		if (!(score > min_score))
 			continue;
+		const double surest = best < 0 ? 0 : mask_confidence(candidates[best]);
 		if (best < 0 || votes[k] > votes[best] ||
-			(votes[k] == votes[best] && score > mask_confidence(candidates[best])))
+			(votes[k] == votes[best] &&
+				(score > surest || (score == surest &&
+							   mask_order(candidates[k], candidates[best]) < 0))))
 			best = (long)k;
 	}
 	return best;

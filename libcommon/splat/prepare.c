@@ -136,7 +136,7 @@ int render_again_where(struct render_view *v, const struct splats *s, const stru
 		mem_room((void **)&v->tallies, &v->tally_room, tallies, sizeof *v->tallies, "tile lists", e))
 		return -1;
 	struct order_item *items = v->order, *spare = v->order + s->n;
-	project_lens_make(&lens, c);
+	project_lens_make(&lens, c, s->near);
 	if (wanted_find(&v->wanted, &v->grid, s, &lens, kernels_of(v->level), is_wanted, e) ||
 		project_all(v, s, &lens, spare, threads, e))
 		return -1;

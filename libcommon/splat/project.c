@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-void project_lens_make(struct project_lens *lens, const struct camera *c)
+void project_lens_make(struct project_lens *lens, const struct camera *c, double near)
 {
 	double half_x = 0.5 * c->width / c->fx, half_y = 0.5 * c->height / c->fy;
 
@@ -13,6 +13,7 @@ void project_lens_make(struct project_lens *lens, const struct camera *c)
 	lens->cy = c->cy;
 	lens->width = c->width;
 	lens->height = c->height;
+	lens->near = near;
 	for (int k = 0; k < 3; k++) {
 		const double *a = c->world_to_camera[(k + 1) % 3], *b = c->world_to_camera[(k + 2) % 3];
 		for (int i = 0; i < 3; i++)

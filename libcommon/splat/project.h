@@ -27,13 +27,14 @@ struct project_lens {
 	double width, height;	/* pixels */
 	double normal[3][3];	/* row k: the cross product of the rotation's other two rows */
 	double low[2], high[2]; /* limits of x/z and y/z in the Jacobian */
+	double near;		/* of the splats */
 };
 
-void project_lens_make(struct project_lens *lens, const struct camera *c);
+void project_lens_make(struct project_lens *lens, const struct camera *c, double near);
 
 enum { PROJECT_LANES = 64 }; /* enough that a lane is in memory when its vector is read */
 
-/* Gaussians side by side; opacities are at least 1/255. Not seen are those with z <= 0.2, those whose ellipse
+/* Gaussians side by side; opacities are at least 1/255. Not seen are those with z <= near, those whose ellipse
  * holds no pixel centre, and those whose covariance exceeds double (a standard deviation above 1e75 px). */
 struct project_batch {
 	float mean[3][PROJECT_LANES], scale[3][PROJECT_LANES], quat[4][PROJECT_LANES];

@@ -11,7 +11,6 @@
 
 #include <math.h>
 
-#define PROJECT_NEAR 0.2
 #define PROJECT_LOW_PASS 0.3			  /* px^2 */
 #define PROJECT_HALF_LOG2E 0.72134752044448170368 /* e^(-q/2) = 2^(-this q) */
 
@@ -173,7 +172,7 @@ VEC_INLINE void project_some(const struct project_lens *lens, struct project_bat
 	project_real px = lens->fx * rx + lens->cx, py = lens->fy * ry + lens->cy;
 	project_int columns[2], rows[2];
 	/* a product with 0 is 0 where the other is finite */
-	project_mask seen = (cz > PROJECT_NEAR) & (0 * px == 0) & (0 * py == 0) & (0 * det == 0) &
+	project_mask seen = (cz > lens->near) & (0 * px == 0) & (0 * py == 0) & (0 * det == 0) &
 			    project_range(px, half_width, lens->width, &columns[0], &columns[1]) &
 			    project_range(py, half_height, lens->height, &rows[0], &rows[1]);
 

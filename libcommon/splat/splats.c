@@ -7,7 +7,7 @@
 
 int splats_alloc(struct splats *s, size_t n, int sh_coefficients, struct err *e)
 {
-	*s = (struct splats){.n = n, .sh_coefficients = sh_coefficients};
+	*s = (struct splats){.n = n, .sh_coefficients = sh_coefficients, .near = SPLATS_NEAR};
 	s->means = mem_alloc(n, 3 * sizeof(float), "means", e);
 	s->scales = mem_alloc(n, 3 * sizeof(float), "scales", e);
 	s->quats = mem_alloc(n, 4 * sizeof(float), "quats", e);
@@ -35,7 +35,7 @@ void splats_keep_means(struct splats *s)
 	free(s->quats);
 	free(s->opacities);
 	free(s->sh);
-	*s = (struct splats){.n = s->n, .means = s->means};
+	*s = (struct splats){.n = s->n, .near = s->near, .means = s->means};
 }
 
 int splats_keep(struct splats *to, const struct splats *from, const char *kept, struct err *e)
@@ -48,6 +48,7 @@ int splats_keep(struct splats *to, const struct splats *from, const char *kept, 
 		n += kept[i] != 0;
 	if (splats_alloc(to, n, from->sh_coefficients, e))
 		return -1;
+	to->near = from->near;
 	for (size_t i = 0; i < from->n; i++) {
 		if (!kept[i])
 			continue;

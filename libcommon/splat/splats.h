@@ -6,9 +6,12 @@
 
 #include <stddef.h>
 
+#define SPLATS_NEAR 0.2 /* world units: the near plane of 3DGS */
+
 struct splats {
 	size_t n;
 	int sh_coefficients; /* K = (degree+1)^2: 1, 4, 9 or 16 */
+	double near;	     /* world units: no view shows Gaussians whose camera z is at most this */
 	float *means;	     /* (n,3) world units, recentred on import */
 	float *scales;	     /* (n,3) standard deviations, >= 0 */
 	float *quats;	     /* (n,4) w,x,y,z; of any length but 0 */
@@ -16,7 +19,7 @@ struct splats {
 	float *sh;	     /* (n,K,3) spherical harmonics, colour channel last */
 };
 
-/* Allocates every array (not initialised). Returns 0, or -1 with *e set and *s zeroed. */
+/* Allocates every array (not initialised); near is SPLATS_NEAR. Returns 0, or -1 with *e set and *s zeroed. */
 int splats_alloc(struct splats *s, size_t n, int sh_coefficients, struct err *e);
 /* to: those of `from` where kept (n) is not 0, in their order. Returns 0, or -1 with *e set and *to zeroed.
  */

@@ -43,6 +43,7 @@ static int see_alone(const struct synth_scene *s, int object, const struct camer
 	const struct splats *all = &s->splats;
 	struct splats own = {.n = s->first[object + 1] - from,
 		.sh_coefficients = all->sh_coefficients,
+		.near = all->near,
 		.means = all->means + 3 * from,
 		.scales = all->scales + 3 * from,
 		.quats = all->quats + 4 * from,

@@ -74,6 +74,19 @@ not() { ! "$@"; }
 	"$BIN/gs-check" scene
 }
 
+@test "the near plane" {
+	splats scene/splats.safetensors meta=',"near":"7.5e-3"'
+	"$BIN/gs-check" scene
+	for near in '' x '1 2' 0 -0.2 nan inf; do
+		bad_splats "metadata 'near' is not a number above 0" meta=",\"near\":\"$near\""
+	done
+	# the Gaussian is 2 before the camera
+	splats scene/splats.safetensors meta=',"near":"1.99"'
+	"$BIN/gs-weigh" -q -o weights scene
+	splats scene/splats.safetensors meta=',"near":"2"'
+	not "$BIN/gs-weigh" -q -o weights scene
+}
+
 @test "the offset of the import" {
 	splats scene/splats.safetensors meta=',"offset":"[1,2.5,-3e6]"'
 	"$BIN/gs-check" scene

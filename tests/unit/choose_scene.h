@@ -48,7 +48,7 @@ static float means[3 * N], scales[3 * N], quats[4 * N], opacities[N], sh[3 * N],
 static int32_t index_of[N];
 static int64_t indptr[OBJECTS + 1];
 static float confidence[OBJECTS] = {1, 1, 1, 1};
-static struct splats splats = {N, 1, means, scales, quats, opacities, sh};
+static struct splats splats = {N, 1, SPLATS_NEAR, means, scales, quats, opacities, sh};
 static struct lifted lifted = {N, OBJECTS, names, confidence, indptr, index_of, share, 6, WIDTH, object,
 	pieces, pieces, offsets, words, NULL};
 static struct camera view;

@@ -288,7 +288,7 @@ static void levels_project_alike(void)
 			batch.quat[k][l] = s.quats[4 * l + k];
 		batch.opacity[l] = 0.01f + 0.99f * s.opacities[l];
 	}
-	project_lens_make(&lens, &c);
+	project_lens_make(&lens, &c, s.near);
 	for (enum cpu_level level = CPU_PLAIN; level <= cpu_level(); level++) {
 		results[level] = batch;
 		kernels_of(level)->project(&lens, &results[level], PROJECT_LANES);

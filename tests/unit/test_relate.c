@@ -255,7 +255,7 @@ static void arrangement(void)
 	static float means[3 * N], scales[3 * N], quats[4 * N], opacities[N], sh[3 * N], share[N];
 	static int32_t index[N];
 	int64_t indptr[] = {0, EACH, N, N};
-	struct splats s = {N, 1, means, scales, quats, opacities, sh};
+	struct splats s = {N, 1, SPLATS_NEAR, means, scales, quats, opacities, sh};
 	struct lifted l = {.gaussians = N, .objects = 3, .indptr = indptr, .index = index, .share = share};
 	struct camera views[] = {camera_at(-1), camera_at(1)};
 	struct cameras cameras = {2, views};

@@ -14,7 +14,7 @@ static float means[] = {0, 0, 4, 0, 0, 5, 0, 0, -3, 0, 0, 10};
 static float scales[] = {.2f, .2f, .2f, .5f, .5f, .5f, 1, 1, 1, 20, 20, 20};
 static float quats[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
 static float opacities[] = {1, 1, 1, 1}, sh[3 * N];
-static const struct splats splats = {N, 1, means, scales, quats, opacities, sh};
+static const struct splats splats = {N, 1, SPLATS_NEAR, means, scales, quats, opacities, sh};
 static struct camera camera = {.name = (char[]){"v"},
 	.width = SIDE,
 	.height = SIDE,

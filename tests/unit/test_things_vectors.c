@@ -75,7 +75,7 @@ static unsigned parts = CHOOSE_ALL;
 static int ask(const char *text, const char *thing, const char *of)
 {
 	static float vectors[MOST * WIDTH];
-	static const struct splats splats = {N, 1, means, scales, quats, opacities, sh};
+	static const struct splats splats = {N, 1, SPLATS_NEAR, means, scales, quats, opacities, sh};
 	static const struct cameras cameras = {1, &view};
 	const struct lifted lifted = {N, OBJECTS, names, confidence, indptr, index_of, share, 0, WIDTH, NULL,
 		NULL, NULL, offsets, no_words, NULL};
