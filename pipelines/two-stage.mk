@@ -161,6 +161,8 @@ $(model2): $(masks2)
 $(SCENE)/stage%/model.safetensors: $(weights) $(text) $(SCENE)/log/train%.command
 	@mkdir -p $(@D)
 	@[ ! -e $@.checkpoint ] || [ -z "$$(find $^ -newer $@.checkpoint)" ] || rm $@.checkpoint
+	@[ ! -e $@.checkpoint ] || echo "refer-train (train$*): goes on after step $$(head -c 9999 $@.checkpoint | \
+		LC_ALL=C sed -n 's/.*"iteration":"\([0-9]*\)".*/\1/p') of an interrupted training"
 	$(call run,train$*)
 
 $(model3): $(masks3) $(weights) $(text) $(SCENE)/log/lift.command

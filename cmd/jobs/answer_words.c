@@ -1,5 +1,6 @@
 #include "cmd/jobs/answer_words.h"
 
+#include "base/number.h"
 #include <math.h>
 #include <string.h>
 
@@ -23,12 +24,9 @@ static const char *side_of(const struct asking_answer *a, size_t object, size_t 
 
 static void put_percent(FILE *out, double p)
 {
-	const double percent = 100 * p;
+	char text[NUMBER_SIZE];
 
-	if (percent > 0 && percent < 1)
-		fprintf(out, "below 1%%");
-	else
-		fprintf(out, "%.0f%%", percent > 99 && percent < 100 ? 99 : percent);
+	fputs(number_percent(text, p), out);
 }
 
 static void put_view(const struct answer_told *t, FILE *out)
@@ -268,10 +266,12 @@ int answer_put_json(const struct answer_told *t, FILE *out, struct err *e)
 void answer_caption(const struct answer_told *t, char *to, size_t room)
 {
 	const struct asking_answer *a = t->answer;
+	char percent[NUMBER_SIZE];
 	size_t n = 0;
 
 	snprintf(to, room, "nothing here is that");
 	for (size_t k = 0; k < a->count && n < room; k++)
-		n += (size_t)snprintf(to + n, room - n, "%s%s %.0f%%", k ? ", " : "",
-			t->asking->model.lifted.names[a->things[k]], 100 * a->probability[a->things[k]]);
+		n += (size_t)snprintf(to + n, room - n, "%s%s %s", k ? ", " : "",
+			t->asking->model.lifted.names[a->things[k]],
+			number_percent(percent, a->probability[a->things[k]]));
 }

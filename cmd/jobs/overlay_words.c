@@ -1,5 +1,6 @@
 #include "cmd/jobs/overlay_words.h"
 
+#include "base/number.h"
 #include "cmd/jobs/meant.h"
 
 #include <math.h>
@@ -37,6 +38,7 @@ void overlay_words(const struct request *r, size_t i, double score, char *out, s
 {
 	const struct responses *a = &r->responses;
 	const size_t k = a->answer[i];
+	char percent[NUMBER_SIZE];
 
 	*out = 0;
 	if (!a->begin) {
@@ -51,5 +53,5 @@ void overlay_words(const struct request *r, size_t i, double score, char *out, s
 	if (right >= 0)
 		say(out, size, right ? ": right" : ": wrong");
 	if (a->sure && a->begin[k] < a->begin[k + 1])
-		say(out, size, ", %.0f%%", 100 * a->sure[i]);
+		say(out, size, ", %s", number_percent(percent, a->sure[i]));
 }

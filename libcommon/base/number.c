@@ -12,3 +12,12 @@ char *number_text(char text[NUMBER_SIZE], double x)
 	}
 	return text;
 }
+
+char *number_percent(char text[NUMBER_SIZE], double p)
+{
+	if (p > 0 && p < 0.01)
+		snprintf(text, NUMBER_SIZE, "below 1%%");
+	else
+		snprintf(text, NUMBER_SIZE, "%.0f%%", p < 1 && p > 0.99 ? 99 : 100 * p);
+	return text;
+}

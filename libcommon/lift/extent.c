@@ -4,6 +4,7 @@
 #include "base/quantile.h"
 #include "geom/rotation.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,8 +27,40 @@ struct cloud {
 	struct quantile_item *items;
 };
 
-/* One end of the cloud in direction d, of every `step`th Gaussian: the greatest that is not trimmed. */
-static double reach(const struct cloud *c, size_t step, const double d[3])
+static int by_place(const void *a, const void *b)
+{
+	const struct quantile_item *x = a, *y = b;
+
+	return (x->at > y->at) - (x->at < y->at);
+}
+
+/* Where a box begins whose far end is at the other tail. */
+static double dense_end(struct quantile_item *items, size_t n)
+{
+	double total = 0, out = 0, beyond = 0, most = -INFINITY, end = 0;
+	size_t far = n;
+
+	qsort(items, n, sizeof *items, by_place);
+	for (size_t i = 0; i < n; i++)
+		total += items[i].weight;
+	while (far && beyond <= EXTENT_TAIL * total)
+		beyond += items[--far].weight;
+	for (size_t i = 0; i < n && out <= EXTENT_TAIL * total; out += items[i++].weight) {
+		if (out + items[i].weight <= EXTENT_TRIM * total)
+			continue;
+		const double length = fmax(items[far].at - items[i].at, DBL_MIN);
+		const double dense = log(1 - out / total) - EXTENT_THIN * log(length);
+		if (dense > most) {
+			most = dense;
+			end = items[i].at;
+		}
+	}
+	return end;
+}
+
+/* One end of the cloud in direction d, of every `step`th Gaussian: where it gets thin, or, at once, the
+ * greatest that is not trimmed. */
+static double reach(const struct cloud *c, size_t step, const double d[3], int is_quick)
 {
 	size_t n = 0;
 
@@ -41,18 +74,18 @@ static double reach(const struct cloud *c, size_t step, const double d[3])
 		const double at = m[0] * d[0] + m[1] * d[1] + m[2] * d[2] + EXTENT_SIGMAS * sqrt(variance);
 		c->items[n++] = (struct quantile_item){-at, c->weight[i]};
 	}
-	return -quantile_weighted(c->items, n, EXTENT_TRIM);
+	return -(is_quick ? quantile_weighted(c->items, n, EXTENT_TRIM) : dense_end(c->items, n));
 }
 
-/* The box along the first `count` of these axes. */
-static struct box box_along(const struct cloud *c, size_t step, const double axes[3][3], int count)
+/* The box along these axes; to compare its foot alone, along the first two, of every `step`th Gaussian. */
+static struct box box_along(const struct cloud *c, size_t step, const double axes[3][3], int is_foot)
 {
 	struct box b = {0};
 
 	memcpy(b.axes, axes, sizeof b.axes);
-	for (int k = 0; k < count; k++) {
+	for (int k = 0; k < (is_foot ? 2 : 3); k++) {
 		const double back[3] = {-axes[k][0], -axes[k][1], -axes[k][2]};
-		const double high = reach(c, step, axes[k]), low = -reach(c, step, back);
+		const double high = reach(c, step, axes[k], is_foot), low = -reach(c, step, back, is_foot);
 		b.half[k] = fmax(high - low, 0) / 2;
 		for (int d = 0; d < 3; d++)
 			b.centre[d] += (high + low) / 2 * axes[k][d];
@@ -88,7 +121,7 @@ static struct box turned_box(const struct cloud *c, const double up[3])
 
 	for (int i = 0; i < TURNS; i++) {
 		axes_at(up, i * pi / 2 / TURNS, axes);
-		const struct box b = box_along(c, step, axes, 2);
+		const struct box b = box_along(c, step, axes, 1);
 		const double foot = b.half[0] * b.half[1];
 		if (!i)
 			level = foot;
@@ -98,7 +131,7 @@ static struct box turned_box(const struct cloud *c, const double up[3])
 		}
 	}
 	axes_at(up, least < (1 - EXTENT_GAIN) * level ? angle : 0, axes);
-	return box_along(c, 1, axes, 3);
+	return box_along(c, 1, axes, 0);
 }
 
 struct cell {
@@ -288,7 +321,7 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 	if (!bad && n) {
 		keep(&c, x->ids, kept);
 		x->n = c.n;
-		x->aligned = box_along(&c, 1, world, 3);
+		x->aligned = box_along(&c, 1, world, 0);
 		x->turned = turned_box(&c, up);
 	}
 	free(c.means);

@@ -3,8 +3,9 @@
  * A Gaussian counts w = min(r / median of r, 1)^4, r its response: what is partly of something else, as halos
  * and contacts are, counts little. Gaussians farther from the rest than they are from each other are strays:
  * only the heaviest cluster stays, and those at least EXTENT_PART as heavy. Along a direction the box begins
- * where EXTENT_TRIM of the weight is passed, and ends likewise, with Gaussians EXTENT_SIGMAS standard
- * deviations long. formats/boxes.md says how these were chosen. */
+ * where between EXTENT_TRIM and EXTENT_TAIL of the weight W is passed, and ends likewise, with Gaussians
+ * EXTENT_SIGMAS standard deviations long: where W inside / length^EXTENT_THIN is largest, as what makes the
+ * box much longer for little weight is of something else. formats/boxes.md says how these were chosen. */
 #ifndef LIFT_EXTENT_H
 #define LIFT_EXTENT_H
 
@@ -17,6 +18,8 @@
 
 #define EXTENT_PART 0.1
 #define EXTENT_TRIM 0.01
+#define EXTENT_TAIL 0.1
+#define EXTENT_THIN 0.1
 #define EXTENT_SIGMAS 1.0
 /* Cells in which clusters are looked for, over the mean distance of Gaussians on a surface of this extent. */
 #define EXTENT_SPACING 1.5

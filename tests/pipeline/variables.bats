@@ -106,6 +106,7 @@ cut_off() {
 	cut_off ITERATIONS=2000 "TRAIN=--checkpoint 20"
 	checkpoint=$(stat -c %Y "$WORK/stage1/model.safetensors.checkpoint")
 	cut_off ITERATIONS=2000 "TRAIN=--checkpoint 20"
+	grep -qE '^refer-train \(train1\): goes on after step [0-9]+ of an interrupted training$' <<<"$output"
 	[ "$(stat -c %Y "$WORK/stage1/model.safetensors.checkpoint")" = "$checkpoint" ]
 }
 

@@ -3,6 +3,7 @@
 #include "base/base64.h"
 #include "base/hash.h"
 #include "base/mem.h"
+#include "base/number.h"
 #include "base/rng.h"
 #include "formats/safetensors.h"
 
@@ -79,6 +80,21 @@ static void sizes_overflow(void)
 	CHECK(!mem_alloc((size_t)1 << 62, 16, "x", &e) && e.code == ERR_SYSTEM, "2^66 bytes are refused");
 }
 
+/* 100% is said of what is certain only. */
+static void percents(void)
+{
+	static const struct {
+		double p;
+		const char *text;
+	} cases[] = {{0, "0%"}, {0.0099, "below 1%"}, {0.01, "1%"}, {0.974, "97%"}, {0.9951, "99%"},
+		{0.9999999, "99%"}, {1, "100%"}};
+	char text[NUMBER_SIZE];
+
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+		CHECK(!strcmp(number_percent(text, cases[i].p), cases[i].text), "%.17g: %s", cases[i].p,
+			text);
+}
+
 int main(void)
 {
 	rng_known_answers();
@@ -86,5 +102,6 @@ int main(void)
 	base64_known_answers();
 	half_round_trip();
 	sizes_overflow();
+	percents();
 	return unit_end();
 }
