@@ -137,13 +137,13 @@ row views 1 equal 0 'order of the views'
 renamed() {
 	local folder=$1 i=0 name
 	shift
-	again $folder
+	again "$folder"
 	for name in "$@"; do
 		echo "s/view_00$i/photo $name/" >&3
 		echo "s/\"view\":\"photo $name\"/\"view\":\"view_00$i\"/" >&4
 		i=$((i + 1))
-	done 3>$folder/to 4>$folder/names
-	sed -i -f $folder/to $folder/{sparse/0/images.txt,candidates.jsonl,test-views}
+	done 3>"$folder"/to 4>"$folder"/names
+	sed -i -f "$folder/to" "$folder"/{sparse/0/images.txt,candidates.jsonl,test-views}
 }
 renamed names 1 Z e é Ω Ж а 見
 row names 1 equal 0 'names of the views'

@@ -34,8 +34,9 @@ void project_lens_make(struct project_lens *lens, const struct camera *c, double
 
 enum { PROJECT_LANES = 64 }; /* enough that a lane is in memory when its vector is read */
 
-/* Gaussians side by side; opacities are at least 1/255. Not seen are those with z <= near, those whose ellipse
- * holds no pixel centre, and those whose covariance exceeds double (a standard deviation above 1e75 px). */
+/* Gaussians side by side; opacities are at least 1/255. Not seen are those with z <= near, those whose
+ * ellipse holds no pixel centre, and those whose covariance exceeds double (a standard deviation above 1e75
+ * px). */
 struct project_batch {
 	float mean[3][PROJECT_LANES], scale[3][PROJECT_LANES], quat[4][PROJECT_LANES];
 	float opacity[PROJECT_LANES];

@@ -5,9 +5,9 @@
  * 1/255, front to back by camera z, ties by index. A pixel ends before the first Gaussian that would bring T
  * below 1e-4: that one is not blended, so T >= 1e-4 is what is left, and weights and T sum to 1.
  *
- * Gaussians with z <= splats.near are left out. In the Jacobian x/z and y/z are limited to the field of view and 0.3
- * of its half beyond each edge, which is 1.3 times the half field of view where the principal point is
- * central.
+ * Gaussians with z <= splats.near are left out. In the Jacobian x/z and y/z are limited to the field of view
+ * and 0.3 of its half beyond each edge, which is 1.3 times the half field of view where the principal point
+ * is central.
  *
  * Weights agree with double precision to 1e-6; a pixel may differ by a whole Gaussian where a falls within
  * rounding of 1/255, or T of 1e-4. Results do not depend on tile size or number of threads. They are the same

@@ -19,7 +19,8 @@ struct splats {
 	float *sh;	     /* (n,K,3) spherical harmonics, colour channel last */
 };
 
-/* Allocates every array (not initialised); near is SPLATS_NEAR. Returns 0, or -1 with *e set and *s zeroed. */
+/* Allocates every array (not initialised); near is SPLATS_NEAR. Returns 0, or -1 with *e set and *s zeroed.
+ */
 int splats_alloc(struct splats *s, size_t n, int sh_coefficients, struct err *e);
 /* to: those of `from` where kept (n) is not 0, in their order. Returns 0, or -1 with *e set and *to zeroed.
  */
