@@ -79,7 +79,7 @@ window.scene_viewer = (() => {
 		const {renderer, world, camera, controls} = three;
 		if (controls.update()) wake();
 		three.frames = is_sorted(three) ? three.frames + 1 : 0;
-		if (performance.now() > three.until && three.frames > 8) return;
+		if (performance.now() > three.until && three.frames > 4) return;
 		renderer.render(world, camera);
 		stage.dataset.frames = 1 + Number(stage.dataset.frames || 0);
 		if (three.is_ready || three.frames < 3) return;
