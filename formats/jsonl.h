@@ -14,6 +14,7 @@ struct jsonl {
 	FILE *in;
 	const char *path; /* as messages name it */
 	char *line;
+	char *text; /* where the file is UTF-16: all of it as UTF-8, which `in` reads */
 	size_t capacity;
 	long line_number; /* of the line last returned, from 1 */
 	long records;	  /* objects that were asked for */

@@ -53,7 +53,7 @@ static char *copy_item(
 		jsonl_err(j, e, "key '%s': item '%s' %s", key, value, reason);
 		return NULL;
 	}
-	return mem_strdup(value, e);
+	return name_copy(value, e);
 }
 
 /* A list of strings that may be absent or null: then *strings stays NULL. */
