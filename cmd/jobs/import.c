@@ -16,7 +16,14 @@
 
 static const char every[] = "every:";
 
-/* 0, N, 2N ... in name order, as 3DGS holds out every 8th. */
+static int by_image(const void *a, const void *b)
+{
+	const struct camera *x = *(struct camera *const *)a, *y = *(struct camera *const *)b;
+
+	return strcmp(x->image, y->image);
+}
+
+/* 0, N, 2N ... in the order of the photographs' whole paths, as 3DGS and gsplat hold out every 8th. */
 static int split_every(struct cameras *c, const char *test_views, struct err *e)
 {
 	const char *text = test_views + strlen(every);
@@ -26,8 +33,15 @@ static int split_every(struct cameras *c, const char *test_views, struct err *e)
 	if (text[0] < '0' || text[0] > '9' || *end || n < 1 || n > 1000000000)
 		return err_set(e, ERR_USAGE, "--test-views: '%s' is not every:N with N from 1 to 1000000000",
 			test_views);
+	struct camera **sorted = mem_alloc(c->n, sizeof *sorted, "views", e);
+	if (!sorted)
+		return -1;
 	for (size_t i = 0; i < c->n; i++)
-		c->views[i].split = i % n ? SPLIT_TRAIN : SPLIT_TEST;
+		sorted[i] = &c->views[i];
+	qsort(sorted, c->n, sizeof *sorted, by_image);
+	for (size_t i = 0; i < c->n; i++)
+		sorted[i]->split = i % n ? SPLIT_TRAIN : SPLIT_TEST;
+	free(sorted);
 	return 0;
 }
 
@@ -191,8 +205,11 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	struct err *e)
 {
 	*found = (struct import_found){0};
-	if (anysplats_read(&s->splats, s->offset, report, o->splats, e) ||
-		read_cameras(&s->cameras, o, cameras, e) || move(s, o->splats, cameras, to, e) ||
+	if (anysplats_read(&s->splats, s->offset, report, o->splats, e))
+		return -1;
+	if (!s->splats.n)
+		return err_set(e, ERR_FORMAT, "%s: holds no Gaussians", file_name(o->splats));
+	if (read_cameras(&s->cameras, o, cameras, e) || move(s, o->splats, cameras, to, e) ||
 		split(&s->cameras, o->test_views, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);

@@ -116,6 +116,39 @@ Try 'gs-import --help'." "$BIN/gs-import" -o scene s.ply
 	[ "$(views "$BIN/gs-import" --cameras model --test-views every:1 -o scene s.ply)" = '["a","test"]["b","test"]["c","test"]' ]
 }
 
+@test "every N-th view as trainers count: by whole paths with their endings" {
+	local order=0
+	: >model/images.txt
+	for name in b/1.jpg b/2.jpg a/3.jpg a/4.jpg 'c 1.jpg' c.jpg; do
+		printf '%s 1 0 0 0 0 0 2 1 %s\n\n' $((++order)) "$name" >>model/images.txt
+	done
+	[ "$(views "$BIN/gs-import" --cameras model --test-views every:4 -o scene s.ply | grep -o '"[^"]*","test"' | tr -d '\n')" = '"3","test""c 1","test"' ]
+}
+
+@test "paths of Windows, and paths that are written in other ways: one photograph, one name" {
+	mkdir photos
+	for name in a b é; do : >"photos/$name.jpg"; done
+	for path in 'photos\\' '.\\photos\\' 'C:\\x\\photos\\' './photos//./' '\\\\host\\photos\\'; do
+		transforms "frames=[$(frame "file_path=\"${path}a.jpg\""),$(frame "file_path=\"${path}b.jpg\"")]" 'test_filenames=["photos/b.jpg"]' >t.json
+		"$BIN/gs-import" --cameras t.json --images photos -o scene s.ply
+		[ "$(imported name image | tr -d '\n')" = '["a","../photos/a.jpg"]["b","../photos/b.jpg"]' ]
+		case $path in .*) [ "$(imported split | tr -d '\n')" = '["train"]["test"]' ] ;; esac
+	done
+	printf '[%s]' "$(camera3dgs 'img_name="cam1\\a"')" >c.json
+	"$BIN/gs-import" --cameras c.json --images photos -o scene s.ply
+	[ "$(imported name image)" = '["a","../photos/a.jpg"]' ]
+	sed -i 's/ b.jpg/ cam1\\b.jpg/' model/images.txt
+	"$BIN/gs-import" --cameras model -o scene s.ply
+	[ "$(imported name | tr -d '\n')" = '["a"]["b"]["c"]' ]
+	# decomposed, as macOS writes names: e and an accent
+	printf '1 1 0 0 0 0 0 2 1 e\xcc\x81.jpg\n' >model/images.txt
+	"$BIN/gs-import" --cameras model --images photos --test-views é -o scene s.ply
+	[ "$(imported name image split)" = '["é","../photos/é.jpg","test"]' ]
+	mv photos/é.jpg "photos/$(printf 'e\xcc\x81').jpg"
+	"$BIN/gs-import" --cameras model --images photos -o scene s.ply
+	[ "$(imported image)" = "[\"../photos/$(printf 'e\xcc\x81').jpg\"]" ]
+}
+
 @test "test views that are not there" {
 	for name in x '' a.jpg A ab; do
 		says 2 "gs-import: --test-views: no view '$name'
@@ -230,8 +263,8 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 
 @test "no Gaussians at all" {
 	ply_header 0 >s.ply
-	"$BIN/gs-import" --cameras model -o scene s.ply
-	"$BIN/gs-check" scene | grep -q ' 0 gaussians'
+	says 3 "gs-import: s.ply: holds no Gaussians" "$BIN/gs-import" --cameras model -o scene s.ply
+	[ ! -e scene ]
 }
 
 @test "a scene far from the origin: the offset is kept and the cameras move with it" {
