@@ -172,13 +172,14 @@ static int read_cameras(struct cameras *c, const struct import_options *o, const
 	return 0;
 }
 
-/* Into the frame that nerfstudio trained in, where it says how. */
-static int move(
-	struct scene *s, const char *splats, const char *cameras, const struct report *to, struct err *e)
+/* Into the frame that nerfstudio trained in, where it says how; else the cameras should be in that of the
+ * splats. */
+static int move(struct scene *s, const char *splats, const char *cameras, double *near,
+	const struct report *to, struct err *e)
 {
 	e->code = ERR_NONE;
 	char *path = dataparser_find(splats, cameras, e);
-	int bad = !path && e->code != ERR_NONE;
+	int bad = !path && (e->code != ERR_NONE || point_frame_find(near, s, cameras, e));
 
 	if (path) {
 		report_note(to, 1, "%s: cameras are moved by it", path);
@@ -204,12 +205,12 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	const char *cameras, const char *folder, struct import_found *found, const struct report *to,
 	struct err *e)
 {
-	*found = (struct import_found){0};
+	*found = (struct import_found){.near = 1};
 	if (anysplats_read(&s->splats, s->offset, report, o->splats, e))
 		return -1;
 	if (!s->splats.n)
 		return err_set(e, ERR_FORMAT, "%s: holds no Gaussians", file_name(o->splats));
-	if (read_cameras(&s->cameras, o, cameras, e) || move(s, o->splats, cameras, to, e) ||
+	if (read_cameras(&s->cameras, o, cameras, e) || move(s, o->splats, cameras, &found->near, to, e) ||
 		split(&s->cameras, o->test_views, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);

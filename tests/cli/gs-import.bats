@@ -169,7 +169,7 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 	: >photos/deep/b.jpg
 	sed -i 's, b.jpg, deep/b.jpg,' model/images.txt
 	"$BIN/gs-import" --cameras model --images photos -o scene s.ply 2>err
-	[ "$(cat err)" = "gs-import: warning: photos: no photograph for 1 of 3 views" ]
+	grep -qx "gs-import: warning: photos: no photograph for 1 of 3 views" err
 	[ "$(imported image | tr -d '\n')" = '["../photos/a.jpg"]["../photos/deep/b.jpg"][null]' ]
 	"$BIN/gs-import" -q --cameras model --images "$PWD/photos/deep" -o out/scene s.ply 2>err
 	[ ! -s err ]
@@ -256,7 +256,7 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 	mkdir photos && : >"photos/$name" && : >photos/a.jpg
 	printf '1 1 0 0 0 0 0 2 1 %s\n\n2 1 0 0 0 0 0 2 1 a.jpg\n' "$name" >model/images.txt
 	"$BIN/gs-import" --cameras model --images photos -o scene s.ply 2>err
-	[ "$(cat err)" = "gs-import: warning: photos: no photograph for 1 of 2 views" ]
+	grep -qx "gs-import: warning: photos: no photograph for 1 of 2 views" err
 	[ "$(imported image | tr -d '\n')" = '["../photos/a.jpg"][null]' ]
 	iconv -f utf-8 -t utf-8 scene/cameras.json >/dev/null
 }
@@ -357,6 +357,32 @@ Try 'gs-import --help'." "$BIN/gs-import" -o "../$(basename "$PWD")" s.ply
 	[ ! -e none ]
 }
 
+@test "splats that are not where the points of the cameras' reconstruction are: a warning, without photographs" {
+	# 500 of a ball's surface, and a part of it
+	awk 'BEGIN {for (i = 0; i < 500; i++) {z = i / 250 - 1; r = sqrt(1 - z * z); print r * cos(2.4 * i), r * sin(2.4 * i), z + 4}}' >places
+	points() { awk '{print NR, $0, "9 9 9 0.5 1 2"}' "$1" >model/points3D.txt; }
+	splats() { mapfile -t rows < <(awk -v s="$1" '{print s * $1, s * $2, s * $3, "1 0 0 0 -3 -3 -3 1 0 0 0"}' "$2"); splats_ply s.ply "${rows[@]}"; }
+	points places
+	splats 1 places
+	says 0 "" "$BIN/gs-import" --cameras model -o scene s.ply
+	head -n 150 places >part
+	splats 1 part
+	says 0 "" "$BIN/gs-import" --cameras model -o scene s.ply
+	splats 0.5 places
+	for kind in txt ply; do
+		"$BIN/gs-import" --cameras model -o scene s.ply 2>err
+		grep -qE '^gs-import: warning: model: the splats are in another frame than the cameras, or of another scene: [0-9]% of the points beside the cameras are near a splat, or the other way round, at least 40% is right: gsplat trains ' err
+		rm -f model/points3D.txt
+		{ ply_header 500 'x y z'; cat places; } >model/points3D.ply
+	done
+	# what is no points is none
+	for file in bin txt; do
+		echo "# nothing 1 2 3 nan" >"model/points3D.$file"
+		splats 1 places
+		says 0 "" "$BIN/gs-import" --cameras model -o scene s.ply
+	done
+}
+
 @test "a scene that does not look like its photographs: a warning; one that does: none" {
 	"$BIN/gs-synth" -q --objects 3 --views 5 --size 96x72 --gaussians 2000 -o made
 	"$BIN/gs-import" --cameras made/sparse/0 --images made/images -o scene made/point_cloud.ply 2>err
@@ -366,11 +392,24 @@ Try 'gs-import --help'." "$BIN/gs-import" -o "../$(basename "$PWD")" s.ply
 	for i in 0 1 2 3 4; do cp "made/images/view_00$(((i + 1) % 5)).png" "other/view_00$i.png"; done
 	"$BIN/gs-import" --cameras made/sparse/0 --images other -o scene made/point_cloud.ply 2>err
 	[ "$(wc -l <err)" = 1 ]
-	grep -qE '^gs-import: warning: other: the scene does not look like its photographs \(by -?0\.[0-3][0-9] in the middle of 5 views, at least 0\.4 is right\): are made/sparse/0 the cameras that it was trained with, and in its frame\?$' err
+	grep -qE '^gs-import: warning: other: the scene does not look like its photographs \(by -?0\.[0-3][0-9] in the middle of 5 views, at least 0\.4 is right\): are made/sparse/0 the cameras that it was trained with, and in its frame\? gsplat trains .* were moved with them$' err
 	"$BIN/gs-import" -q --cameras made/sparse/0 --images other -o scene made/point_cloud.ply 2>err
 	[ ! -s err ]
-	# what cannot be read is not compared
-	for i in 0 1 2 3 4; do echo none >"other/view_00$i.png"; done
-	"$BIN/gs-import" --cameras made/sparse/0 --images other -o scene made/point_cloud.ply 2>err
-	[ ! -s err ]
+	# what cannot be read is not compared, and that is said
+	for i in 0 1 2; do cp "made/images/view_00$i.png" other; done
+	for i in 3 4; do echo none >"other/view_00$i.png"; done
+	says 0 "gs-import: warning: 2 of 5 photographs are not compared with the scene: scene/../other/view_003.png: neither PNG nor JPEG: begins with byte 0x6e" \
+		"$BIN/gs-import" --cameras made/sparse/0 --images other -o scene made/point_cloud.ply
+	# photographs that are turned against their cameras, which are turned about their axis here: by a quarter, and the first upside down
+	turned() {
+		says 0 "gs-import: warning: made/images: the photographs of $1 of 5 views are turned against their cameras ('view_000' is right after $2 degrees clockwise): turn their pixels as EXIF says ('mogrify -auto-orient'), or give those that the cameras are of" \
+			"$BIN/gs-import" --cameras m --images made/images -o scene made/point_cloud.ply
+	}
+	mkdir m
+	awk '/^[0-9]/ {print $1, $2, $4, $3, $5, $6, $8, $7}' made/sparse/0/cameras.txt >m/cameras.txt
+	awk '/^[0-9]/ {print $1, $2 - $5, $3 - $4, $4 + $3, $5 + $2, -$7, $6, $8, $9, $10; print ""}' made/sparse/0/images.txt >m/images.txt
+	turned 5 90
+	cp made/sparse/0/cameras.txt m
+	awk '/^1 / {print $1, -$5, -$4, $3, $2, -$6, -$7, $8, $9, $10; next} {print}' made/sparse/0/images.txt >m/images.txt
+	turned 1 180
 }
