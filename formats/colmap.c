@@ -253,11 +253,9 @@ static char *next_line(struct lines *in)
 	if (!*line)
 		return NULL;
 	in->number++;
-	end = line + strcspn(line, "\n");
-	in->next = *end ? end + 1 : end;
+	end = line + strcspn(line, "\r\n");
+	in->next = end + (*end == '\r' && end[1] == '\n') + (*end != 0);
 	*end = 0;
-	if (end > line && end[-1] == '\r')
-		end[-1] = 0;
 	return line;
 }
 

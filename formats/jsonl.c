@@ -100,7 +100,10 @@ static ssize_t read_line(struct jsonl *j, struct err *e)
 /* The next line that is not blank: its length, 0 at the end, -1 with *e. */
 static ssize_t next_line(struct jsonl *j, struct err *e)
 {
-	for (;;) {
+	const size_t peeked = j->peeked;
+
+	j->peeked = 0;
+	while (!peeked) {
 		ssize_t len = read_line(j, e);
 		if (len <= 0)
 			return len;
@@ -110,6 +113,15 @@ static ssize_t next_line(struct jsonl *j, struct err *e)
 		if (strspn(j->line, " \t\r\n") < (size_t)len)
 			return len;
 	}
+	return (ssize_t)peeked;
+}
+
+int jsonl_peek(struct jsonl *j, struct err *e)
+{
+	const ssize_t len = next_line(j, e);
+
+	j->peeked = len > 0 ? (size_t)len : 0;
+	return len < 0 ? -1 : len > 0;
 }
 
 /* A file of another program, which is one JSON value over many lines, or on the first. */

@@ -99,8 +99,9 @@ static int read_property(struct plyfile *f, char *line, int number, struct err *
 	}
 	type = find_type(word);
 	if (type < 0)
-		return err_set(
-			e, ERR_FORMAT, "%s:%d: property type '%.40s' is unknown", f->path, number, word);
+		return err_set(e, ERR_FORMAT,
+			"%s:%d: property type '%.40s' is unknown: export the scene with floats where it was made",
+			f->path, number, word);
 	p.type = (enum plyfile_type)type;
 	p.count_type = (enum plyfile_type)count_type;
 	p.name = next_word(&line);

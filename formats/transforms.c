@@ -278,6 +278,10 @@ int transforms_parse(struct cameras *c, const cJSON *root, const char *path, str
 	const cJSON *frames = cJSON_GetObjectItemCaseSensitive(root, "frames");
 
 	*c = (struct cameras){0};
+	if (!frames)
+		return err_set(e, ERR_FORMAT,
+			"%s: neither a transforms.json, which has a key 'frames', nor a 3DGS cameras.json, which is a list",
+			path);
 	if (!cJSON_IsArray(frames))
 		return err_set(e, ERR_FORMAT, "%s: key 'frames' is not a list", path);
 	c->views = mem_zalloc((size_t)cJSON_GetArraySize(frames), sizeof *c->views, path, e);

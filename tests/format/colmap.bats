@@ -58,9 +58,12 @@ bad_image() {
 	says 3 "gs-import: model/images.txt: view 'b.jpg': its pose is not a rotation and a translation" import
 }
 
-@test "CR LF, blank lines and comments between entries; names with blanks" {
+@test "CR LF, CR, blank lines and comments between entries; names with blanks" {
 	sed -i 's/^3 /\n# more\n3 /; s/c.jpg/my c.jpg  /; s/$/\r/' model/images.txt
 	sed -i 's/$/\r/' model/cameras.txt
+	import
+	[ "$(imported name | tr -d '\n')" = '["a"]["b"]["my c"]' ]
+	tr -d '\r' <model/images.txt | tr '\n' '\r' >old && mv old model/images.txt
 	import
 	[ "$(imported name | tr -d '\n')" = '["a"]["b"]["my c"]' ]
 }
