@@ -150,7 +150,7 @@ static int read_line(struct plyfile *f, char *line, int number, struct err *e)
 			return err_set(e, ERR_FORMAT, "%s:2: the second line is not 'format'", f->path);
 		return read_format(f, line, number, e);
 	}
-	if (!strcmp(word, "comment"))
+	if (!strcmp(word, "comment") || !strcmp(word, "obj_info"))
 		note_mode(f, line + strspn(line, " \t"));
 	if (!*word || !strcmp(word, "comment") || !strcmp(word, "obj_info"))
 		return 0;

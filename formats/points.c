@@ -34,10 +34,10 @@ static int add(struct points *to, const double *at, struct err *e)
 static int read_binary(struct points *to, const struct file_map *map, struct err *e)
 {
 	enum { FIXED = 51, PAIR = 8, PLACE = 8 };
-	const unsigned char *p = map->data + 8, *end = map->data + map->len;
+	const unsigned char *p = map->data, *end = p + map->len;
 	double at[3];
 
-	while (map->len > 8 && end - p >= FIXED) {
+	for (p += map->len < 8 ? 0 : 8; end - p >= FIXED;) {
 		const uint64_t pairs = little_get(p + FIXED - 8, 8);
 		for (int k = 0; k < 3; k++) {
 			const uint64_t bits = little_get(p + PLACE + 8 * k, 8);

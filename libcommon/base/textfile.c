@@ -89,5 +89,6 @@ int textfile_read(const char *path, char **text, size_t *len, struct err *e)
 	if (!textfile_decode(text, len, file_name(path), e))
 		return 0;
 	free(*text);
+	*text = NULL;
 	return -1;
 }

@@ -13,7 +13,7 @@ int textfile_is_wide(const char *text, size_t len);
  * UTF-16. Returns 0, or -1 with *e ("name: ...") and *text still to be freed. */
 int textfile_decode(char **text, size_t *len, const char *name, struct err *e);
 
-/* As file_read, decoded. */
+/* As file_read, decoded. *text is NULL on failure. */
 int textfile_read(const char *path, char **text, size_t *len, struct err *e);
 
 #endif

@@ -139,7 +139,14 @@ bad_image() {
 	done
 }
 
-@test "zero bytes, no entries" {
+@test "zero bytes, no entries, UTF-16 and half of it" {
+	for part in cameras images; do
+		iconv -f UTF-8 -t UTF-16 model/$part.txt >wide
+		mv wide model/$part.txt
+	done
+	import && rm -r scene
+	printf x >>model/images.txt
+	says 3 "gs-import: model/images.txt: UTF-16 that is cut within a character at offset $(($(wc -c <model/images.txt) - 1)): save it as UTF-8" import
 	printf '# images\n\0' >model/images.txt
 	says 3 "gs-import: model/images.txt: a NUL byte at offset 9" import
 	printf '# images\n' >model/images.txt
