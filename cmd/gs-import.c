@@ -3,6 +3,7 @@
 #include "cli/cli.h"
 #include "cmd/jobs/import.h"
 #include "formats/colmap.h"
+#include "formats/dataparser.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -75,10 +76,23 @@ static void note_cameras(
 	cli_note(cli, 1, "%s: %zu views, %zu of them for testing", file_name(path), c->n, test);
 	if (files.images && found->missing)
 		cli_warn(cli, "%s: no photograph for %zu of %zu views", files.images, found->missing, c->n);
-	if (r->views && r->typical < RESEMBLANCE_LEAST)
+	const int is_alike = !r->views || r->typical >= RESEMBLANCE_LEAST;
+	if (found->near < POINT_FRAME_LEAST && is_alike)
+		cli_warn(cli,
+			"%s: the splats are in another frame than the cameras, or of another scene: %.0f%% of the points beside the cameras are near a splat, or the other way round, at least %.0f%% is right: " DATAPARSER_WAY_OUT,
+			file_name(path), 100 * found->near, 100 * POINT_FRAME_LEAST);
+	if (r->unread)
+		cli_warn(cli, "%zu of %zu photographs are not compared with the scene: %s", r->unread,
+			r->unread + r->views, r->why.message);
+	if (r->turned)
+		cli_warn(cli,
+			"%s: the photographs of %zu of %zu views are turned against their cameras ('%s' is right after %d degrees clockwise): "
+			"turn their pixels as EXIF says ('mogrify -auto-orient'), or give those that the cameras are of",
+			files.images, r->turned, r->views, r->first, r->degrees);
+	if (!is_alike)
 		cli_warn(cli,
 			"%s: the scene does not look like its photographs (by %.2f in the middle of %zu views, at least %.2g is right): "
-			"are %s the cameras that it was trained with, and in its frame?",
+			"are %s the cameras that it was trained with, and in its frame? " DATAPARSER_WAY_OUT,
 			files.images, r->typical, r->views, RESEMBLANCE_LEAST, file_name(path));
 }
 

@@ -1,6 +1,8 @@
 /* refer-lift: objects lifted onto the Gaussians from their masks, in closed form. */
+#include "base/file.h"
 #include "cli/cli.h"
 #include "cmd/jobs/lifting.h"
+#include "formats/dataparser.h"
 #include "formats/lifted.h"
 
 static struct {
@@ -44,6 +46,12 @@ static int run(struct lifting *l, const struct cli *c, struct err *e)
 	cli_note(c, 1,
 		"%zu objects, %lld Gaussians with a share in one; agreement of the masks %.3f; %zu changed places",
 		model->objects, (long long)model->indptr[model->objects], confidence, moved);
+	if (model->objects && confidence < LIFT_AGREEMENT_LEAST)
+		cli_warn(c,
+			"%s: the masks agree by %.2f with what was lifted of them, at least %.2g is right: what they show in one view is not where others show it: "
+			"are the cameras of %s those that its splats were trained with, and in their frame? " DATAPARSER_WAY_OUT,
+			file_name(options.files.masks), confidence, LIFT_AGREEMENT_LEAST,
+			options.files.scene);
 	const struct origin origin = {l->scene.fingerprint, l->text.encoder};
 	return lifted_write(
 		model, &origin, c->output, options.is_as_masked ? "--names masks" : "--names sentences", e);

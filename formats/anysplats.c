@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/path.h"
+#include "formats/foreign.h"
 #include "formats/glb.h"
 #include "formats/ply.h"
 #include "formats/sog.h"
@@ -31,6 +32,11 @@ int anysplats_read(
 	if (file_map(path, &map, e))
 		return -1;
 	const int is_ply = map.len >= 4 && (!memcmp(map.data, "ply\n", 4) || !memcmp(map.data, "ply\r", 4));
+	if (!is_ply && !spz_is(&map) && !glb_is(&map) &&
+		foreign_file(name, FOREIGN_SPLATS, map.data, map.len, e)) {
+		file_unmap(&map);
+		return -1;
+	}
 	if (!is_ply && (spz_is(&map) || path_ends(name, ".spz")))
 		return spz_read_map(s, offset, report, name, &map, e);
 	if (!is_ply && path_ends(name, ".splat"))

@@ -2,7 +2,9 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/name.h"
 #include "base/path.h"
+#include "base/textfile.h"
 #include "base/utf8.h"
 #include "formats/cameras3dgs.h"
 #include "formats/colmap.h"
@@ -35,6 +37,26 @@ char *camerafile_find(const char *dir, struct err *e)
 	return NULL;
 }
 
+/* JSON, or what else the file is. */
+static cJSON *read_json(const char *path, struct err *e)
+{
+	const char *name = file_name(path);
+	cJSON *root = NULL;
+	char *text;
+	size_t len;
+
+	if (textfile_read(path, &text, &len, e))
+		return NULL;
+	if (strchr("{[", text[strspn(text, " \t\r\n")]))
+		root = json_parse(text, len, name, e);
+	else if (!foreign_file(name, FOREIGN_CAMERAS, text, len, e))
+		err_set(e, ERR_FORMAT,
+			"%s: neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json",
+			name);
+	free(text);
+	return root;
+}
+
 int camerafile_read(struct cameras *c, const char *path, struct err *e)
 {
 	const char *name = file_name(path);
@@ -45,18 +67,15 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e)
 	if (file_is_dir(path)) {
 		bad = colmap_read(c, path, e);
 	} else {
-		root = json_read(path, e);
+		root = read_json(path, e);
 		const cJSON *frames = cJSON_GetObjectItemCaseSensitive(root, "frames"),
 			    *image = cJSON_GetObjectItemCaseSensitive(root ? root->child : NULL, "img_name");
 		if (root && !frames && !image && foreign_json(root, name, e))
 			bad = -1;
 		else if (cJSON_IsArray(root))
 			bad = cameras3dgs_parse(c, root, name, e);
-		else if (cJSON_IsObject(root))
-			bad = transforms_parse(c, root, name, e);
 		else if (root)
-			bad = err_set(
-				e, ERR_FORMAT, "%s: neither a 3DGS cameras.json nor a transforms.json", name);
+			bad = transforms_parse(c, root, name, e);
 		cJSON_Delete(root);
 	}
 	if (!bad && !c->n)
@@ -102,13 +121,15 @@ static char *find_image(const char *dir, const char *image, struct err *e)
 	const int leaves = path_leaves(image);
 	static const char *const suffixes[] = {"", ".jpg", ".JPG", ".jpeg", ".JPEG", ".png", ".PNG"};
 	size_t tries = image[view_stem(image)] ? 1 : sizeof suffixes / sizeof *suffixes;
-	char *path = NULL;
+	char *path = NULL, *decomposed = name_decomposed(image, e);
 
-	for (size_t i = 0; !path && i < tries; i++) {
-		path = leaves ? NULL : try_file(dir, image, suffixes[i], e);
+	for (size_t i = 0; decomposed && !path && i < 2 * tries; i++) {
+		const char *name = i % 2 ? decomposed : image, *suffix = suffixes[i / 2];
+		path = leaves ? NULL : try_file(dir, name, suffix, e);
 		if (!path)
-			path = try_file(dir, view_base(image), suffixes[i], e);
+			path = try_file(dir, view_base(name), suffix, e);
 	}
+	free(decomposed);
 	return path;
 }
 

@@ -30,7 +30,7 @@ static int read_view(struct camera *c, const cJSON *item, const char *where, str
 		for (int k = 0; k < 3; k++)
 			rotation[r][k] = rows[3 * k + r];
 	camera_set_centre(c, rotation, centre);
-	c->image = mem_strdup(image, e);
+	c->image = view_image(image, e);
 	return c->image ? 0 : -1;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/textfile.h"
 #include "geom/lens.h"
 #include "geom/rotation.h"
 #include "geom/views.h"
@@ -31,8 +32,10 @@ struct cursor {
 
 /* A place in a text file that was read whole. */
 struct lines {
-	char *path, *text, *next;
+	char *text, *next;
 	long number;
+	unsigned long images; /* that a comment says the file has */
+	long images_line;     /* 0: none does */
 };
 
 /* Where the model distorts, the pinhole is of its focal lengths and principal point until lens_pinhole finds
@@ -115,7 +118,7 @@ static int add_view(struct cameras *c, size_t *capacity, const struct entries *a
 	};
 	v = l->camera;
 	memcpy(v.world_to_camera, m, sizeof m);
-	v.image = mem_strdup(image, e);
+	v.image = view_image(image, e);
 	if (!v.image)
 		return -1;
 	if (mem_grow(&block, capacity, c->n + 1, sizeof v, path, e)) {
@@ -250,11 +253,9 @@ static char *next_line(struct lines *in)
 	if (!*line)
 		return NULL;
 	in->number++;
-	end = line + strcspn(line, "\n");
-	in->next = *end ? end + 1 : end;
+	end = line + strcspn(line, "\r\n");
+	in->next = end + (*end == '\r' && end[1] == '\n') + (*end != 0);
 	*end = 0;
-	if (end > line && end[-1] == '\r')
-		end[-1] = 0;
 	return line;
 }
 
@@ -296,7 +297,7 @@ static int open_text(struct lines *in, const char *path, struct err *e)
 	size_t len;
 
 	*in = (struct lines){0};
-	if (file_read(path, &in->text, &len, e))
+	if (textfile_read(path, &in->text, &len, e))
 		return -1;
 	in->next = in->text;
 	if (strlen(in->text) != len)
@@ -344,33 +345,92 @@ static int read_cameras_text(struct entries *all, struct lines *in, const char *
 	return 0;
 }
 
+/* What a line of images.txt is. */
+struct image_line {
+	uint32_t camera;
+	double pose[7];
+	char *name;
+};
+
+/* ID QW QX QY QZ TX TY TZ CAMERA_ID NAME: the name is cut in place. -1 where the line is none. */
+static int parse_image(char *line, struct image_line *to)
+{
+	uint32_t id;
+	int bad = next_id(&line, &id);
+
+	for (int k = 0; !bad && k < 7; k++)
+		bad = next_number(&line, &to->pose[k]);
+	if (bad || next_id(&line, &to->camera))
+		return -1;
+	to->name = line + strspn(line, " \t");
+	size_t len = strlen(to->name);
+	while (len && (to->name[len - 1] == ' ' || to->name[len - 1] == '\t'))
+		to->name[--len] = 0;
+	return 0;
+}
+
+/* Whether a line is an image's points, X Y POINT3D_ID of each: nothing but numbers, and each third one whole,
+ * which an image's line without its name is only by chance. */
+static int is_points(char *line)
+{
+	double value = 0;
+	size_t n = 0;
+
+	for (; line[strspn(line, " \t")]; n++)
+		if (next_number(&line, &value) || (n % 3 == 2 && value != floor(value)))
+			return 0;
+	return n % 3 == 0;
+}
+
+/* COLMAP's comment of how many images there are, where the line is that. */
+static void note_count(const char *comment, struct lines *in)
+{
+	const char *at = strstr(comment, "Number of images:");
+
+	if (!at)
+		return;
+	in->images = strtoul(strchr(at, ':') + 1, NULL, 10);
+	in->images_line = in->number;
+}
+
+/* An image's line is followed by one of its points, which may be empty; files of other programs leave it out.
+ */
 static int read_images_text(
 	struct cameras *c, const struct entries *all, struct lines *in, const char *path, struct err *e)
 {
 	size_t capacity = 0;
+	int may_be_points = 0;
+	struct image_line image;
 	char *line;
 
 	if (open_text(in, path, e))
 		return -1;
-	while ((line = next_entry(in))) {
-		uint32_t id, camera;
-		double pose[7];
-		int bad = next_id(&line, &id);
-		for (int k = 0; !bad && k < 7; k++)
-			bad = next_number(&line, &pose[k]);
-		if (bad || next_id(&line, &camera))
-			return err_set(e, ERR_FORMAT, "%s:%ld: not 'ID QW QX QY QZ TX TY TZ CAMERA_ID NAME'",
-				path, in->number);
-		line += strspn(line, " \t");
-		size_t len = strlen(line);
-		while (len && (line[len - 1] == ' ' || line[len - 1] == '\t'))
-			line[--len] = 0;
-		if (!len)
+	while ((line = next_line(in))) {
+		const char first = line[strspn(line, " \t")];
+		if (first == '#') {
+			note_count(line, in);
+			continue;
+		}
+		if (!first || (may_be_points && is_points(line))) {
+			may_be_points = 0;
+			continue;
+		}
+		if (parse_image(line, &image))
+			return err_set(e, ERR_FORMAT,
+				"%s:%ld: not 'ID QW QX QY QZ TX TY TZ CAMERA_ID NAME'%s", path, in->number,
+				may_be_points
+					? ", and not the points of the image before, 'X Y POINT3D_ID ...'"
+					: "");
+		if (!*image.name)
 			return err_set(e, ERR_FORMAT, "%s:%ld: image without a name", path, in->number);
-		if (add_view(c, &capacity, all, pose, camera, line, path, e))
+		if (add_view(c, &capacity, all, image.pose, image.camera, image.name, path, e))
 			return -1;
-		next_line(in); /* the image's points, perhaps none */
+		may_be_points = 1;
 	}
+	if (in->images_line && in->images != c->n)
+		return err_set(e, ERR_FORMAT,
+			"%s: has %zu images, but line %ld says %lu: is the file whole? If so, take that line out",
+			path, c->n, in->images_line, in->images);
 	return 0;
 }
 

@@ -6,6 +6,10 @@
 #include "base/err.h"
 #include "geom/camera.h"
 
+/* What a person can do where cameras and splats are in two frames, for messages. */
+#define DATAPARSER_WAY_OUT                                                                                   \
+	"gsplat trains in the cameras' frame with --no-normalize-world-space, nerfstudio writes its own into dataparser_transforms.json, and moved splats need cameras that were moved with them"
+
 /* The file, where it lies beside the splats or the cameras: free() it. NULL where there is none, and with *e
  * set where memory is out. */
 char *dataparser_find(const char *splats, const char *cameras, struct err *e);

@@ -12,8 +12,9 @@
 /* JSON that is not what was wanted; name is the file's, for the message. */
 int foreign_json(const cJSON *root, const char *name, struct err *e);
 
-/* A file that does not begin as a .ply does, by its name. */
-int foreign_splats(const char *name, struct err *e);
+/* A file that is none of those read there, by its name or how it begins. */
+enum foreign_place { FOREIGN_SPLATS, FOREIGN_CAMERAS };
+int foreign_file(const char *name, enum foreign_place place, const void *data, size_t len, struct err *e);
 
 /* A .ply whose rows are not those of a 3DGS scene that can be rendered. */
 int foreign_vertices(const struct plyfile *f, const struct plyfile_element *vertex, struct err *e);

@@ -38,6 +38,12 @@ static enum verdict put_quat(float *quat, const double *q)
 	return KEEP;
 }
 
+/* The logits of 1 and 0, and the logarithm of 0, are infinite: opaque, clear and flat Gaussians. */
+static int has_limit(int k, double value)
+{
+	return k == ROW_OPACITY ? !isnan(value) : k >= ROW_SCALE && k < ROW_ROT && value < 0;
+}
+
 /* The row as Gaussian i of s, its mean in double. Nothing that scene_read would refuse is kept. */
 static enum verdict put_gaussian(struct splats *s, size_t i, double *mean, int rest, const double *row)
 {
@@ -47,7 +53,7 @@ static enum verdict put_gaussian(struct splats *s, size_t i, double *mean, int r
 	for (int k = 0; k < ROW_REST + rest; k++) {
 		/* A quarter of the largest float leaves room for the offset to be taken away. */
 		double limit = k < ROW_DC ? FLT_MAX / 4 : FLT_MAX;
-		if (!(fabs(row[k]) <= limit))
+		if (!(fabs(row[k]) <= limit) && !has_limit(k, row[k]))
 			return NOT_FINITE;
 	}
 	for (int k = 0; k < 3; k++) {
@@ -157,6 +163,10 @@ static int read_and_shift(struct splats *s, double offset[3], struct rows_report
 	for (size_t i = 0; !bad && i < 3 * s->n; i++)
 		s->means[i] = (float)(means[i] - offset[i % 3]);
 	free(means);
+	if (!bad && n && !s->n)
+		return err_set(e, ERR_FORMAT,
+			"%s: none of its %zu Gaussians can be used: %zu have a value that is not finite, %zu a zero quaternion",
+			from->path, n, report->not_finite, report->zero_quat);
 	return -bad;
 }
 

@@ -175,7 +175,7 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 				" had logarithms, which are not read",
 				in->file.name, row, scale);
 		values[ROW_MEAN + k] = signs[k] * (glb_value(&in->means, row, k) + in->before[k]);
-		values[ROW_SCALE + k] = log(fmax(scale, 0x1p-149));
+		values[ROW_SCALE + k] = log(scale);
 		values[ROW_DC + k] = glb_value(&in->sh[0], row, k);
 	}
 	values[ROW_OPACITY] = gaussian_logit(glb_value(&in->opacities, row, 0));

@@ -1,6 +1,7 @@
 #include "formats/json.h"
 
 #include "base/file.h"
+#include "base/textfile.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -28,7 +29,7 @@ cJSON *json_read(const char *path, struct err *e)
 	char *text;
 	size_t len;
 
-	if (file_read(path, &text, &len, e))
+	if (textfile_read(path, &text, &len, e))
 		return NULL;
 	cJSON *value = json_parse(text, len, file_name(path), e);
 	free(text);

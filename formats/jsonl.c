@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
+#include "base/textfile.h"
 #include "formats/foreign.h"
 #include "formats/json.h"
 
@@ -23,6 +24,7 @@ void jsonl_close(struct jsonl *j)
 {
 	file_close(j->in);
 	free(j->line);
+	free(j->text);
 	*j = (struct jsonl){0};
 }
 
@@ -35,6 +37,34 @@ int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
 	vsnprintf(reason, sizeof reason, format, ap);
 	va_end(ap);
 	return err_set(e, ERR_FORMAT, "%s:%ld: %s", j->path, j->line_number, reason);
+}
+
+static ssize_t read_line(struct jsonl *j, struct err *e);
+
+/* After `used` bytes of UTF-16 in j->line: reads on from all of the text as UTF-8. */
+static int decode_rest(struct jsonl *j, size_t used, struct err *e)
+{
+	size_t got = used;
+
+	while (got) {
+		if (mem_grow((void **)&j->line, &j->capacity, used + 65536 + 1, 1, j->path, e))
+			return -1;
+		used += got = fread(j->line + used, 1, j->capacity - used - 1, j->in);
+	}
+	if (ferror(j->in))
+		return err_errno(e, "%s", j->path);
+	j->line[used] = 0;
+	j->text = j->line;
+	j->line = NULL;
+	j->capacity = 0;
+	if (textfile_decode(&j->text, &used, j->path, e))
+		return -1;
+	FILE *in = fmemopen(j->text, used ? used : 1, "r"); /* of no text, the NUL after it */
+	if (!in)
+		return err_errno(e, "%s", j->path);
+	file_close(j->in);
+	j->in = in;
+	return 0;
 }
 
 /* The next line, with a NUL after it: its length, 0 at the end, -1 with *e. Nothing of a line that is too
@@ -59,13 +89,21 @@ static ssize_t read_line(struct jsonl *j, struct err *e)
 		return err_errno(e, "%s", j->path);
 	if (len)
 		j->line[len] = 0;
+	const int is_first = !j->line_number && !j->text;
+	if (is_first && textfile_is_wide(j->line, len))
+		return decode_rest(j, len, e) ? -1 : read_line(j, e);
+	if (is_first && textfile_decode(&j->line, &len, j->path, e))
+		return -1;
 	return (ssize_t)len;
 }
 
 /* The next line that is not blank: its length, 0 at the end, -1 with *e. */
 static ssize_t next_line(struct jsonl *j, struct err *e)
 {
-	for (;;) {
+	const size_t peeked = j->peeked;
+
+	j->peeked = 0;
+	while (!peeked) {
 		ssize_t len = read_line(j, e);
 		if (len <= 0)
 			return len;
@@ -75,6 +113,15 @@ static ssize_t next_line(struct jsonl *j, struct err *e)
 		if (strspn(j->line, " \t\r\n") < (size_t)len)
 			return len;
 	}
+	return (ssize_t)peeked;
+}
+
+int jsonl_peek(struct jsonl *j, struct err *e)
+{
+	const ssize_t len = next_line(j, e);
+
+	j->peeked = len > 0 ? (size_t)len : 0;
+	return len < 0 ? -1 : len > 0;
 }
 
 /* A file of another program, which is one JSON value over many lines, or on the first. */
@@ -152,7 +199,7 @@ int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum
 	const char *reason = name_fault(text, kind, fault);
 	if (reason)
 		return jsonl_err(j, e, "key '%s' %s", key, reason);
-	*name = mem_strdup(text, e);
+	*name = name_copy(text, e);
 	return *name ? 0 : -1;
 }
 

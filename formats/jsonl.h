@@ -14,7 +14,9 @@ struct jsonl {
 	FILE *in;
 	const char *path; /* as messages name it */
 	char *line;
+	char *text; /* where the file is UTF-16: all of it as UTF-8, which `in` reads */
 	size_t capacity;
+	size_t peeked;	  /* the length of a line that was looked at before it is asked for */
 	long line_number; /* of the line last returned, from 1 */
 	long records;	  /* objects that were asked for */
 };
@@ -25,6 +27,9 @@ int jsonl_open(struct jsonl *j, const char *path, struct err *e);
 /* The next line's object: 1 and *object (the caller's, cJSON_Delete), 0 at the end, -1 with *e
  * ("path:LINE: reason"). Empty lines are skipped. */
 int jsonl_next(struct jsonl *j, cJSON **object, struct err *e);
+
+/* The next line that is not blank, in j->line, of which jsonl_next or jsonl_text is next: 1, 0, -1. */
+int jsonl_peek(struct jsonl *j, struct err *e);
 
 /* The next line that is not blank, in j->line without its end, of a file that is no JSON: 1, 0 at the end, -1
  * with *e. */

@@ -2,13 +2,13 @@
 
 #include "base/mem.h"
 #include "base/names.h"
-#include "formats/foreign.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { HEADER_LIMIT = 1 << 20 };
 
@@ -99,8 +99,9 @@ static int read_property(struct plyfile *f, char *line, int number, struct err *
 	}
 	type = find_type(word);
 	if (type < 0)
-		return err_set(
-			e, ERR_FORMAT, "%s:%d: property type '%.40s' is unknown", f->path, number, word);
+		return err_set(e, ERR_FORMAT,
+			"%s:%d: property type '%.40s' is unknown: export the scene with floats where it was made",
+			f->path, number, word);
 	p.type = (enum plyfile_type)type;
 	p.count_type = (enum plyfile_type)count_type;
 	p.name = next_word(&line);
@@ -118,6 +119,27 @@ static int read_property(struct plyfile *f, char *line, int number, struct err *
 	return 0;
 }
 
+/* Whether text begins with one of the words, in any case. */
+static int begins(const char *text, const char *const *words, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		if (!strncasecmp(text, words[i], strlen(words[i])))
+			return 1;
+	return 0;
+}
+
+/* Trainers say so how a scene is to be rendered; the last one counts. */
+static void note_mode(struct plyfile *f, const char *comment)
+{
+	static const char *const keys[] = {"SplatRenderMode", "antialias", "train_flags"},
+				 *const values[] = {"mip", "antialias", "1", "true", "yes", "on", "2dgs"};
+	const char *value = comment + strcspn(comment, " \t\r:=");
+
+	value += strspn(value, " \t\r:=");
+	if (begins(comment, keys, 3))
+		f->mode = !*value || begins(value, values, 7) ? comment : NULL;
+}
+
 /* One header line: 1 for end_header. */
 static int read_line(struct plyfile *f, char *line, int number, struct err *e)
 {
@@ -128,8 +150,8 @@ static int read_line(struct plyfile *f, char *line, int number, struct err *e)
 			return err_set(e, ERR_FORMAT, "%s:2: the second line is not 'format'", f->path);
 		return read_format(f, line, number, e);
 	}
-	if (!strcmp(word, "comment") && !strncmp(line + strspn(line, " \t"), "SplatRenderMode:", 16))
-		f->is_mip |= strstr(line, "mip") != NULL;
+	if (!strcmp(word, "comment") || !strcmp(word, "obj_info"))
+		note_mode(f, line + strspn(line, " \t"));
 	if (!*word || !strcmp(word, "comment") || !strcmp(word, "obj_info"))
 		return 0;
 	if (!strcmp(word, "element"))
@@ -182,8 +204,6 @@ static int read_header(struct plyfile *f, struct err *e)
 	const char *data = (const char *)f->map.data;
 	size_t len = f->map.len < HEADER_LIMIT ? f->map.len : HEADER_LIMIT, at = 0;
 
-	if ((len < 3 || memcmp(data, "ply", 3)) && foreign_splats(f->path, e))
-		return -1;
 	if (len < 4 || memcmp(data, "ply", 3) ||
 		(data[3] != '\n' && memcmp(data, "ply\r\n", len < 5 ? len : 5)))
 		return err_set(e, ERR_FORMAT, "%s: not a PLY file: the first line is not 'ply'", f->path);

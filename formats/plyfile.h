@@ -34,8 +34,8 @@ struct plyfile {
 	enum plyfile_encoding encoding;
 	size_t n, capacity; /* elements, in the file's order */
 	struct plyfile_element *elements;
-	int is_mip;   /* a comment says that it is to be rendered in another way: SplatRenderMode: mip */
-	char *header; /* the names point into it */
+	const char *mode; /* the comment that it is to be rendered in another way: SplatRenderMode: mip */
+	char *header;	  /* the names point into it */
 	struct file_map map;
 	size_t at; /* offset of the next row */
 };

@@ -176,7 +176,7 @@ static int read_name(struct camera *c, const cJSON *view, const char *path, int 
 	const char *reason = name_fault(name->valuestring, NAME_VIEW, fault);
 	if (reason)
 		return err_set(e, ERR_FORMAT, "%s: view %d: key 'name' %s", path, index, reason);
-	c->name = mem_strdup(name->valuestring, e);
+	c->name = name_copy(name->valuestring, e);
 	return c->name ? 0 : -1;
 }
 

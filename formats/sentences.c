@@ -53,7 +53,7 @@ static char *copy_item(
 		jsonl_err(j, e, "key '%s': item '%s' %s", key, value, reason);
 		return NULL;
 	}
-	return mem_strdup(value, e);
+	return name_copy(value, e);
 }
 
 /* A list of strings that may be absent or null: then *strings stays NULL. */
@@ -195,13 +195,12 @@ static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)
 	return got;
 }
 
-/* Whether the file begins as JSON may, or with a byte order mark or a NUL. */
-static int is_json(FILE *in)
+/* Whether the file's text begins as JSON may; -1 with *e. */
+static int is_json(struct jsonl *j, struct err *e)
 {
-	const int first = getc(in);
+	const int got = jsonl_peek(j, e);
 
-	ungetc(first, in);
-	return first == EOF || strchr(" \t\r\n{[\"\xEF", first);
+	return got < 0 ? -1 : !got || strchr("{[\"", j->line[strspn(j->line, " \t")]);
 }
 
 static int read_file(struct sentences *s, const char *path, int is_any, struct err *e)
@@ -211,7 +210,8 @@ static int read_file(struct sentences *s, const char *path, int is_any, struct e
 	*s = (struct sentences){0};
 	if (jsonl_open(&j, path, e))
 		return -1;
-	int bad = is_any && !is_json(j.in) ? read_plain(s, &j, e) : read_all(s, &j, e);
+	const int json = is_any ? is_json(&j, e) : 1;
+	int bad = json < 0 ? -1 : json ? read_all(s, &j, e) : read_plain(s, &j, e);
 	jsonl_close(&j);
 	if (bad)
 		sentences_free(s);

@@ -5,7 +5,6 @@
 #include "base/mem.h"
 #include "splat/sh.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -35,10 +34,8 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 
 	(void)e;
 	for (int k = 0; k < 3; k++) {
-		const double scale = little_get_f32(p + 12 + 4 * k);
 		values[ROW_MEAN + k] = little_get_f32(p + 4 * k);
-		/* The logarithm of 0 is not finite; the smallest float's stands for it. */
-		values[ROW_SCALE + k] = scale == 0 ? log((double)FLT_TRUE_MIN) : log(scale);
+		values[ROW_SCALE + k] = log(little_get_f32(p + 12 + 4 * k));
 		values[ROW_DC + k] = (p[24 + k] / 255.0 - 0.5) / SH_C0;
 	}
 	values[ROW_OPACITY] = gaussian_logit(p[27] / 255.0);

@@ -13,7 +13,7 @@
 /* The file_path lists of one split, sorted. */
 struct names {
 	size_t n, capacity;
-	const char **items;
+	char **items;
 };
 
 /* A frame's own value, else the file's. */
@@ -172,7 +172,7 @@ static int read_frame(
 		for (int k = 0; k < 3; k++)
 			rotation[r][k] = r ? 0 - m[k][r] : m[k][r];
 	camera_set_centre(c, rotation, (double[]){m[0][3], m[1][3], m[2][3]});
-	c->image = mem_strdup(image, e);
+	c->image = view_image(image, e);
 	return c->image ? 0 : -1;
 }
 
@@ -192,23 +192,31 @@ static int add_names(struct names *names, const cJSON *root, const char *key, co
 		return err_set(e, ERR_FORMAT, "%s: key '%s' is not a list", path, key);
 	cJSON_ArrayForEach(item, list)
 	{
-		void *block = (void *)names->items;
+		void *block = names->items;
 		if (!cJSON_IsString(item))
 			return err_set(e, ERR_FORMAT, "%s: key '%s' is not a list of strings", path, key);
 		if (mem_grow(&block, &names->capacity, names->n + 1, sizeof *names->items, path, e))
 			return -1;
 		names->items = block;
-		names->items[names->n++] = item->valuestring;
+		if (!(names->items[names->n] = view_image(item->valuestring, e)))
+			return -1;
+		names->n++;
 	}
 	if (names->n)
-		qsort((void *)names->items, names->n, sizeof *names->items, by_text);
+		qsort(names->items, names->n, sizeof *names->items, by_text);
 	return 1;
+}
+
+static void free_names(struct names *names)
+{
+	for (size_t i = 0; i < names->n; i++)
+		free(names->items[i]);
+	free(names->items);
 }
 
 static int is_named(const struct names *names, const char *image)
 {
-	return names->n &&
-	       bsearch(&image, (const void *)names->items, names->n, sizeof *names->items, by_text);
+	return names->n && bsearch(&image, names->items, names->n, sizeof *names->items, by_text);
 }
 
 /* Test views are those listed as such, and where there is a list of training views also those that it lacks.
@@ -225,8 +233,8 @@ static int read_splits(struct cameras *c, const cJSON *root, const char *path, s
 		if (is_named(&test, v->image) || (has_train && !is_named(&train, v->image)))
 			v->split = SPLIT_TEST;
 	}
-	free((void *)train.items);
-	free((void *)test.items);
+	free_names(&train);
+	free_names(&test);
 	return -bad;
 }
 
@@ -270,6 +278,10 @@ int transforms_parse(struct cameras *c, const cJSON *root, const char *path, str
 	const cJSON *frames = cJSON_GetObjectItemCaseSensitive(root, "frames");
 
 	*c = (struct cameras){0};
+	if (!frames)
+		return err_set(e, ERR_FORMAT,
+			"%s: neither a transforms.json, which has a key 'frames', nor a 3DGS cameras.json, which is a list",
+			path);
 	if (!cJSON_IsArray(frames))
 		return err_set(e, ERR_FORMAT, "%s: key 'frames' is not a list", path);
 	c->views = mem_zalloc((size_t)cJSON_GetArraySize(frames), sizeof *c->views, path, e);

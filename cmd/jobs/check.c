@@ -118,12 +118,12 @@ static int begins(const struct head *h, const char *with)
 	return h->len >= len && !memcmp(h->bytes, with, len);
 }
 
-/* A UTF-8 byte order mark and blanks may stand before the first bracket. */
+/* A byte order mark and blanks may stand before the first bracket, of UTF-16 too. */
 static int is_json(const struct head *h, int first)
 {
-	size_t i = begins(h, "\xef\xbb\xbf") ? 3 : 0;
+	size_t i = begins(h, "\xef\xbb\xbf") ? 3 : begins(h, "\xff\xfe") || begins(h, "\xfe\xff") ? 2 : 0;
 
-	while (i < h->len && h->bytes[i] && strchr(" \t\r\n", h->bytes[i]))
+	while (i < h->len && strchr(" \t\r\n", h->bytes[i]))
 		i++;
 	return i < h->len && h->bytes[i] == first;
 }

@@ -17,7 +17,14 @@
 
 static const char every[] = "every:";
 
-/* 0, N, 2N ... in name order, as 3DGS holds out every 8th. */
+static int by_image(const void *a, const void *b)
+{
+	const struct camera *x = *(struct camera *const *)a, *y = *(struct camera *const *)b;
+
+	return strcmp(x->image, y->image);
+}
+
+/* 0, N, 2N ... in the order of the photographs' whole paths, as 3DGS and gsplat hold out every 8th. */
 static int split_every(struct cameras *c, const char *test_views, struct err *e)
 {
 	const char *text = test_views + strlen(every);
@@ -27,8 +34,15 @@ static int split_every(struct cameras *c, const char *test_views, struct err *e)
 	if (text[0] < '0' || text[0] > '9' || *end || n < 1 || n > 1000000000)
 		return err_set(e, ERR_USAGE, "--test-views: '%s' is not every:N with N from 1 to 1000000000",
 			test_views);
+	struct camera **sorted = mem_alloc(c->n, sizeof *sorted, "views", e);
+	if (!sorted)
+		return -1;
 	for (size_t i = 0; i < c->n; i++)
-		c->views[i].split = i % n ? SPLIT_TRAIN : SPLIT_TEST;
+		sorted[i] = &c->views[i];
+	qsort(sorted, c->n, sizeof *sorted, by_image);
+	for (size_t i = 0; i < c->n; i++)
+		sorted[i]->split = i % n ? SPLIT_TRAIN : SPLIT_TEST;
+	free(sorted);
 	return 0;
 }
 
@@ -159,13 +173,14 @@ static int read_cameras(struct cameras *c, const struct import_options *o, const
 	return 0;
 }
 
-/* Into the frame that nerfstudio trained in, where it says how. */
-static int move(
-	struct scene *s, const char *splats, const char *cameras, const struct report *to, struct err *e)
+/* Into the frame that nerfstudio trained in, where it says how; else the cameras should be in that of the
+ * splats. */
+static int move(struct scene *s, const char *splats, const char *cameras, double *near,
+	const struct report *to, struct err *e)
 {
 	e->code = ERR_NONE;
 	char *path = dataparser_find(splats, cameras, e);
-	int bad = !path && e->code != ERR_NONE;
+	int bad = !path && (e->code != ERR_NONE || point_frame_find(near, s, cameras, e));
 
 	if (path) {
 		report_note(to, 1, "%s: cameras are moved by it", path);
@@ -191,9 +206,12 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	const char *cameras, const char *folder, struct import_found *found, const struct report *to,
 	struct err *e)
 {
-	*found = (struct import_found){0};
-	if (anysplats_read(&s->splats, s->offset, report, o->splats, e) ||
-		read_cameras(&s->cameras, o, cameras, e) || move(s, o->splats, cameras, to, e) ||
+	*found = (struct import_found){.near = 1};
+	if (anysplats_read(&s->splats, s->offset, report, o->splats, e))
+		return -1;
+	if (!s->splats.n)
+		return err_set(e, ERR_FORMAT, "%s: holds no Gaussians", file_name(o->splats));
+	if (read_cameras(&s->cameras, o, cameras, e) || move(s, o->splats, cameras, &found->near, to, e) ||
 		split(&s->cameras, o->test_views, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);

@@ -5,6 +5,7 @@
 
 #include "base/err.h"
 #include "base/report.h"
+#include "cmd/jobs/point_frame.h"
 #include "cmd/jobs/resemblance.h"
 #include "formats/gaussian_rows.h"
 #include "formats/scene.h"
@@ -25,6 +26,7 @@ char *import_find_cameras(const struct import_options *o, struct err *e);
 struct import_found {
 	size_t missing; /* views without a photograph */
 	struct resemblance resemblance;
+	double near; /* POINT_FRAME_LEAST and more, where splats and the cameras' points have one frame */
 };
 
 /* The splats in a folder: SOG's meta.json, or point_cloud/iteration_N/point_cloud.ply of the last N that 3DGS

@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/path.h"
+#include "base/textfile.h"
 #include "geom/views.h"
 
 #include <dirent.h>
@@ -129,11 +130,13 @@ static int walk_views(struct walk *w, struct err *e)
 
 static int read_classes(struct walk *w, struct err *e)
 {
-	char *path = file_join(w->dir, "classes.txt", "", e);
+	char *path = file_join(w->dir, "classes.txt", "", e), *text = NULL;
 	size_t length;
-	const int bad = !path || (file_exists(path) && file_read(path, &w->classes, &length, e));
+	const int bad = !path || (file_exists(path) && (textfile_read(path, &text, &length, e) ||
+							       !(w->classes = name_copy(text, e))));
 
 	free(path);
+	free(text);
 	return bad;
 }
 

@@ -27,7 +27,7 @@ static size_t trim(char *text, size_t n)
 static const char *find_fault(const char *text, size_t n)
 {
 	if (strlen(text) < n)
-		return "has a NUL byte";
+		return "has a NUL byte, as UTF-16 has: write it as UTF-8";
 	if (utf8_check(text, n) < n)
 		return "is not UTF-8";
 	return n > QUESTION_MOST ? too_long : NULL;

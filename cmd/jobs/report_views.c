@@ -62,7 +62,7 @@ static int read_photograph(const struct report_run *r, const struct camera *c, s
 	int found = 0;
 
 	if (path && file_exists(path)) {
-		found = !warping_read_photograph(c, r->scene.path, &p->rgb, &p->height, &p->width, e);
+		found = !warping_read_photograph(c, r->scene.path, 0, &p->rgb, &p->height, &p->width, e);
 		if (!found)
 			report_warn(to, "%s; the view is rendered instead", e->message);
 	}

@@ -91,23 +91,47 @@ static int compare(const struct scene *s, const struct camera *full, const uint8
 	return 0;
 }
 
-/* A photograph that cannot be read is none: 1. */
-static int compare_file(const struct scene *s, const struct camera *c, const char *folder,
-	double *correlation, const struct report *to, struct err *e)
+/* The photograph after so many quarter turns. One that cannot be read is none: 1, and r says why of the
+ * first.
+ */
+static int compare_file(struct resemblance *r, const struct scene *s, const struct camera *c,
+	const char *folder, int turns, double *correlation, const struct report *to, struct err *e)
 {
 	uint8_t *rgb = NULL;
 	int height, width;
 	struct err why;
 
-	if (warping_read_photograph(c, folder, &rgb, &height, &width, &why)) {
+	if (warping_read_photograph(c, folder, turns, &rgb, &height, &width, &why)) {
 		report_note(to, 1, "%s: not compared: %s", c->name, why.message);
+		if (!r->unread++)
+			r->why = why;
 		return 1;
 	}
 	const int bad = compare(s, c, rgb, height, width, correlation, e);
 	free(rgb);
-	if (!bad)
-		report_note(to, 1, "%s: resembles its photograph by %.2f", c->name, *correlation);
 	return bad;
+}
+
+/* As it is, and where it is not alike, turned: what is like the view then is not upright. */
+static int compare_turned(struct resemblance *r, const struct scene *s, const struct camera *c,
+	const char *folder, double *correlation, const struct report *to, struct err *e)
+{
+	int state = compare_file(r, s, c, folder, 0, correlation, to, e);
+
+	if (!state)
+		report_note(to, 1, "%s: resembles its photograph by %.2f", c->name, *correlation);
+	for (int turns = 1; !state && turns < 4 && *correlation < RESEMBLANCE_LEAST; turns++) {
+		double turned;
+		state = compare_file(r, s, c, folder, turns, &turned, to, e);
+		if (state || turned < RESEMBLANCE_LEAST)
+			continue;
+		*correlation = turned;
+		if (!r->turned++) {
+			r->first = c->name;
+			r->degrees = 90 * turns;
+		}
+	}
+	return state;
 }
 
 static int by_value(const void *a, const void *b)
@@ -128,7 +152,7 @@ int resemblance_find(struct resemblance *r, const struct scene *s, const char *f
 	for (size_t v = 0; v < c->n; v += step) {
 		if (!c->views[v].image)
 			continue;
-		const int state = compare_file(s, &c->views[v], folder, &all[r->views], to, e);
+		const int state = compare_turned(r, s, &c->views[v], folder, &all[r->views], to, e);
 		if (state < 0)
 			return -1;
 		r->views += !state;

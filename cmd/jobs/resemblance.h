@@ -14,8 +14,13 @@
 #define RESEMBLANCE_LEAST 0.4
 
 struct resemblance {
-	size_t views;	/* that were compared; of others the photograph cannot be read */
-	double typical; /* the middle correlation, -1 to 1 */
+	size_t views;	   /* that were compared */
+	double typical;	   /* the middle correlation, -1 to 1, of photographs that are turned upright */
+	size_t turned;	   /* views whose photograph is alike only when it is turned */
+	const char *first; /* the first of them, of the scene's names, and its way, clockwise */
+	int degrees;
+	size_t unread; /* views whose photograph cannot be read, and why the first cannot */
+	struct err why;
 };
 
 /* Compares views that are spread over the scene, whose photographs lie relative to the folder. Returns 0, or

@@ -126,12 +126,30 @@ static int undistort(const struct camera *c, uint8_t **rgb, int *height, int *wi
 	return to ? 0 : -1;
 }
 
-int warping_read_photograph(
-	const struct camera *c, const char *folder, uint8_t **rgb, int *height, int *width, struct err *e)
+/* A quarter turn clockwise. */
+static int turn(uint8_t **rgb, int *height, int *width, struct err *e)
+{
+	const size_t h = (size_t)*height, w = (size_t)*width;
+	uint8_t *to = mem_alloc(h * w, 3, "photograph", e);
+
+	for (size_t y = 0; to && y < h; y++)
+		for (size_t x = 0; x < w; x++)
+			memcpy(to + 3 * (x * h + h - 1 - y), *rgb + 3 * (y * w + x), 3);
+	free(*rgb);
+	*rgb = to;
+	*height = (int)w;
+	*width = (int)h;
+	return to ? 0 : -1;
+}
+
+int warping_read_photograph(const struct camera *c, const char *folder, int turns, uint8_t **rgb, int *height,
+	int *width, struct err *e)
 {
 	char *path = file_join(folder, c->image, "", e);
 	int bad = !path || image_read_rgb(path, rgb, height, width, e);
 
+	for (; !bad && turns; turns--)
+		bad = turn(rgb, height, width, e);
 	free(path);
 	return bad || (c->lens.model && undistort(c, rgb, height, width, e)) ? -1 : 0;
 }

@@ -34,9 +34,9 @@ void warping_free(struct warping *w);
  * of. */
 int warping_mask(struct warping *w, const char *view, struct rle *mask, struct err *e);
 
-/* The photograph of a view in a scene's folder, as the view sees it: rgb (height,width,3); free() it.
- * c->image is there. Returns 0, or -1 with *e set. */
-int warping_read_photograph(
-	const struct camera *c, const char *folder, uint8_t **rgb, int *height, int *width, struct err *e);
+/* The photograph of a view in a scene's folder, as the view sees it after so many quarter turns clockwise:
+ * rgb (height,width,3); free() it. c->image is there. Returns 0, or -1 with *e set. */
+int warping_read_photograph(const struct camera *c, const char *folder, int turns, uint8_t **rgb, int *height,
+	int *width, struct err *e);
 
 #endif

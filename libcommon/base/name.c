@@ -5,7 +5,10 @@
 
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include <utf8proc.h>
 
 static int is_control(uint32_t c)
 {
@@ -62,6 +65,28 @@ static char *escape(const char *text, const char *marked, struct err *e)
 	return name;
 }
 
+/* utf8proc hands out a block of malloc's. */
+static char *copy_form(
+	const char *text, utf8proc_uint8_t *(*form)(const utf8proc_uint8_t *text), struct err *e)
+{
+	const char *p = text;
+
+	while ((signed char)*p > 0)
+		p++;
+	char *made = *p ? (char *)form((const utf8proc_uint8_t *)text) : NULL;
+	return made ? made : mem_strdup(text, e);
+}
+
+char *name_copy(const char *text, struct err *e)
+{
+	return copy_form(text, utf8proc_NFC, e);
+}
+
+char *name_decomposed(const char *text, struct err *e)
+{
+	return copy_form(text, utf8proc_NFD, e);
+}
+
 char *name_to_file(const char *text, struct err *e)
 {
 	return escape(text, "/%", e);
@@ -69,8 +94,9 @@ char *name_to_file(const char *text, struct err *e)
 
 char *name_to_view(const char *text, struct err *e)
 {
-	char *name = escape(text, ",", e);
+	char *composed = name_copy(text, e), *name = composed ? escape(composed, ",", e) : NULL;
 
+	free(composed);
 	for (char *p = name; p && *p; p++)
 		if (*p == '/')
 			*p = '_';
@@ -99,5 +125,7 @@ char *name_from_file(const char *file, struct err *e)
 	}
 	if (text)
 		*to = 0;
-	return text;
+	char *name = text ? name_copy(text, e) : NULL;
+	free(text);
+	return name;
 }

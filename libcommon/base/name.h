@@ -18,18 +18,24 @@ enum { NAME_FAULT = 64 };
  * Control characters are U+0000 to U+001F and U+007F to U+009F. */
 const char *name_fault(const char *name, enum name_kind kind, char fault[NAME_FAULT]);
 
+/* A copy in Unicode's composed form, NFC, or in its decomposed one, NFD, as macOS writes file names: names
+ * that look the same are the same. What is not UTF-8 is copied as it is. free() it; NULL with *e set when
+ * memory is out. */
+char *name_copy(const char *text, struct err *e);
+char *name_decomposed(const char *text, struct err *e);
+
 /* Any text as a file name, such that different texts have different names: '/', '%', control characters,
  * bytes that are not UTF-8, and the dots of '.' and '..' are written as '%' and two capital hexadecimal
  * digits for each byte. free() it; NULL with *e set when memory is out. */
 char *name_to_file(const char *text, struct err *e);
 
-/* The text of which name_to_file made a file name; what it would not have written stays. free() it; NULL with
- * *e set when memory is out. */
+/* The text of which name_to_file made a file name, composed; what it would not have written stays. free() it;
+ * NULL with *e set when memory is out. */
 char *name_from_file(const char *file, struct err *e);
 
-/* A view's name from a part of a photograph's path: '/' becomes '_'; what a view's name cannot have, and ',',
- * which separates names in options, is written as above, but '%' stays. Different texts may have one name.
- * free() it; NULL with *e set when memory is out. */
+/* A view's name from a part of a photograph's path, composed: '/' becomes '_'; what a view's name cannot
+ * have, and ',', which separates names in options, is written as above, but '%' stays. Different texts may
+ * have one name. free() it; NULL with *e set when memory is out. */
 char *name_to_view(const char *text, struct err *e);
 
 #endif

@@ -1,6 +1,7 @@
 #include "base/names.h"
 
 #include "base/mem.h"
+#include "base/name.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -92,12 +93,12 @@ int names_mark(const void *items, size_t stride, size_t offset, size_t n, const 
 	const char *option, const char *what, char *chosen, struct err *e)
 {
 	struct list_name name;
-	struct names names;
-	int bad = 0;
+	struct names names = {0};
+	char *copy = list ? name_copy(list, e) : NULL;
+	const char *rest = copy;
+	int bad = (list && !copy) || names_make(&names, items, stride, offset, n, e);
 
-	if (names_make(&names, items, stride, offset, n, e))
-		return -1;
-	while (!bad && list_next(&list, &name)) {
+	while (!bad && list_next(&rest, &name)) {
 		const size_t place = names_find_part(&names, &name);
 		if (place == NAMES_NONE)
 			bad = err_set(
@@ -106,5 +107,6 @@ int names_mark(const void *items, size_t stride, size_t offset, size_t n, const 
 			chosen[place] = 1;
 	}
 	names_free(&names);
-	return bad;
+	free(copy);
+	return bad ? -1 : 0;
 }

@@ -42,6 +42,32 @@ int view_set_size(struct camera *c, double width, double height)
 	return 0;
 }
 
+char *view_image(const char *path, struct err *e)
+{
+	char *image = name_copy(path, e), *to = image;
+
+	for (char *p = image; p && *p; p++)
+		*p = (char)(*p == '\\' ? '/' : *p);
+	const char *from = image;
+	if (from && ((*from | 32) >= 'a' && (*from | 32) <= 'z') && from[1] == ':' && from[2] == '/')
+		from += 2;
+	while (from && *from) {
+		const size_t n = strcspn(from, "/");
+		const int is_nothing = n == 1 && *from == '.' && from[n];
+		if (!is_nothing) {
+			memmove(to, from, n);
+			to += n;
+		}
+		from += n;
+		if (*from && !is_nothing && (to == image || to[-1] != '/'))
+			*to++ = '/';
+		from += *from == '/';
+	}
+	if (image)
+		*to = 0;
+	return image;
+}
+
 const char *view_base(const char *image)
 {
 	const char *slash = strrchr(image, '/');
@@ -67,8 +93,7 @@ static int set_name(struct camera *c, enum level level, struct err *e)
 	size_t len = level >= WHOLE_PATH ? strlen(c->image) : view_stem(c->image);
 	const char *end = c->image + len;
 
-	while (from < end && (*from == '/' || !strncmp(from, "./", 2)))
-		from++;
+	from += from < end && *from == '/';
 	len = (size_t)(end - from);
 	char *part = mem_alloc(len + 1, 1, "view name", e);
 	if (!part)

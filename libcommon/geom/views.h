@@ -13,7 +13,12 @@ const char *view_fault(const struct camera *c);
 /* Sets the size where both are whole numbers from 1 to VIEW_SIZE_MAX; else -1. */
 int view_set_size(struct camera *c, double width, double height);
 
-/* Takes cameras whose `image` is the photograph's path as the foreign file has it and whose `name` is NULL.
+/* A photograph's path as a foreign file has it, written one way: slashes for backslashes and no letter of a
+ * drive, as Windows has them, no "." and no slash twice, in Unicode's composed form. free() it; NULL with *e
+ * set when memory is out. */
+char *view_image(const char *path, struct err *e);
+
+/* Takes cameras whose `image` is that path and whose `name` is NULL.
  * Checks each (view_fault), names it and sorts by name (byte order).
  *
  * A view's name is its image's file name without folder and without an image extension (.jpg .jpeg .png .bmp

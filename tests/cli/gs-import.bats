@@ -116,6 +116,39 @@ Try 'gs-import --help'." "$BIN/gs-import" -o scene s.ply
 	[ "$(views "$BIN/gs-import" --cameras model --test-views every:1 -o scene s.ply)" = '["a","test"]["b","test"]["c","test"]' ]
 }
 
+@test "every N-th view as trainers count: by whole paths with their endings" {
+	local order=0
+	: >model/images.txt
+	for name in b/1.jpg b/2.jpg a/3.jpg a/4.jpg 'c 1.jpg' c.jpg; do
+		printf '%s 1 0 0 0 0 0 2 1 %s\n\n' $((++order)) "$name" >>model/images.txt
+	done
+	[ "$(views "$BIN/gs-import" --cameras model --test-views every:4 -o scene s.ply | grep -o '"[^"]*","test"' | tr -d '\n')" = '"3","test""c 1","test"' ]
+}
+
+@test "paths of Windows, and paths that are written in other ways: one photograph, one name" {
+	mkdir photos
+	for name in a b é; do : >"photos/$name.jpg"; done
+	for path in 'photos\\' '.\\photos\\' 'C:\\x\\photos\\' './photos//./' '\\\\host\\photos\\'; do
+		transforms "frames=[$(frame "file_path=\"${path}a.jpg\""),$(frame "file_path=\"${path}b.jpg\"")]" 'test_filenames=["photos/b.jpg"]' >t.json
+		"$BIN/gs-import" --cameras t.json --images photos -o scene s.ply
+		[ "$(imported name image | tr -d '\n')" = '["a","../photos/a.jpg"]["b","../photos/b.jpg"]' ]
+		case $path in .*) [ "$(imported split | tr -d '\n')" = '["train"]["test"]' ] ;; esac
+	done
+	printf '[%s]' "$(camera3dgs 'img_name="cam1\\a"')" >c.json
+	"$BIN/gs-import" --cameras c.json --images photos -o scene s.ply
+	[ "$(imported name image)" = '["a","../photos/a.jpg"]' ]
+	sed -i 's/ b.jpg/ cam1\\b.jpg/' model/images.txt
+	"$BIN/gs-import" --cameras model -o scene s.ply
+	[ "$(imported name | tr -d '\n')" = '["a"]["b"]["c"]' ]
+	# decomposed, as macOS writes names: e and an accent
+	printf '1 1 0 0 0 0 0 2 1 e\xcc\x81.jpg\n' >model/images.txt
+	"$BIN/gs-import" --cameras model --images photos --test-views é -o scene s.ply
+	[ "$(imported name image split)" = '["é","../photos/é.jpg","test"]' ]
+	mv photos/é.jpg "photos/$(printf 'e\xcc\x81').jpg"
+	"$BIN/gs-import" --cameras model --images photos -o scene s.ply
+	[ "$(imported image)" = "[\"../photos/$(printf 'e\xcc\x81').jpg\"]" ]
+}
+
 @test "test views that are not there" {
 	for name in x '' a.jpg A ab; do
 		says 2 "gs-import: --test-views: no view '$name'
@@ -136,7 +169,7 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 	: >photos/deep/b.jpg
 	sed -i 's, b.jpg, deep/b.jpg,' model/images.txt
 	"$BIN/gs-import" --cameras model --images photos -o scene s.ply 2>err
-	[ "$(cat err)" = "gs-import: warning: photos: no photograph for 1 of 3 views" ]
+	grep -qx "gs-import: warning: photos: no photograph for 1 of 3 views" err
 	[ "$(imported image | tr -d '\n')" = '["../photos/a.jpg"]["../photos/deep/b.jpg"][null]' ]
 	"$BIN/gs-import" -q --cameras model --images "$PWD/photos/deep" -o out/scene s.ply 2>err
 	[ ! -s err ]
@@ -223,15 +256,15 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 	mkdir photos && : >"photos/$name" && : >photos/a.jpg
 	printf '1 1 0 0 0 0 0 2 1 %s\n\n2 1 0 0 0 0 0 2 1 a.jpg\n' "$name" >model/images.txt
 	"$BIN/gs-import" --cameras model --images photos -o scene s.ply 2>err
-	[ "$(cat err)" = "gs-import: warning: photos: no photograph for 1 of 2 views" ]
+	grep -qx "gs-import: warning: photos: no photograph for 1 of 2 views" err
 	[ "$(imported image | tr -d '\n')" = '["../photos/a.jpg"][null]' ]
 	iconv -f utf-8 -t utf-8 scene/cameras.json >/dev/null
 }
 
 @test "no Gaussians at all" {
 	ply_header 0 >s.ply
-	"$BIN/gs-import" --cameras model -o scene s.ply
-	"$BIN/gs-check" scene | grep -q ' 0 gaussians'
+	says 3 "gs-import: s.ply: holds no Gaussians" "$BIN/gs-import" --cameras model -o scene s.ply
+	[ ! -e scene ]
 }
 
 @test "a scene far from the origin: the offset is kept and the cameras move with it" {
@@ -324,6 +357,32 @@ Try 'gs-import --help'." "$BIN/gs-import" -o "../$(basename "$PWD")" s.ply
 	[ ! -e none ]
 }
 
+@test "splats that are not where the points of the cameras' reconstruction are: a warning, without photographs" {
+	# 500 of a ball's surface, and a part of it
+	awk 'BEGIN {for (i = 0; i < 500; i++) {z = i / 250 - 1; r = sqrt(1 - z * z); print r * cos(2.4 * i), r * sin(2.4 * i), z + 4}}' >places
+	points() { awk '{print NR, $0, "9 9 9 0.5 1 2"}' "$1" >model/points3D.txt; }
+	splats() { mapfile -t rows < <(awk -v s="$1" '{print s * $1, s * $2, s * $3, "1 0 0 0 -3 -3 -3 1 0 0 0"}' "$2"); splats_ply s.ply "${rows[@]}"; }
+	points places
+	splats 1 places
+	says 0 "" "$BIN/gs-import" --cameras model -o scene s.ply
+	head -n 150 places >part
+	splats 1 part
+	says 0 "" "$BIN/gs-import" --cameras model -o scene s.ply
+	splats 0.5 places
+	for kind in txt ply; do
+		"$BIN/gs-import" --cameras model -o scene s.ply 2>err
+		grep -qE '^gs-import: warning: model: the splats are in another frame than the cameras, or of another scene: [0-9]% of the points beside the cameras are near a splat, or the other way round, at least 40% is right: gsplat trains ' err
+		rm -f model/points3D.txt
+		{ ply_header 500 'x y z'; cat places; } >model/points3D.ply
+	done
+	# what is no points is none
+	for file in bin txt; do
+		echo "# nothing 1 2 3 nan" >"model/points3D.$file"
+		splats 1 places
+		says 0 "" "$BIN/gs-import" --cameras model -o scene s.ply
+	done
+}
+
 @test "a scene that does not look like its photographs: a warning; one that does: none" {
 	"$BIN/gs-synth" -q --objects 3 --views 5 --size 96x72 --gaussians 2000 -o made
 	"$BIN/gs-import" --cameras made/sparse/0 --images made/images -o scene made/point_cloud.ply 2>err
@@ -333,11 +392,24 @@ Try 'gs-import --help'." "$BIN/gs-import" -o "../$(basename "$PWD")" s.ply
 	for i in 0 1 2 3 4; do cp "made/images/view_00$(((i + 1) % 5)).png" "other/view_00$i.png"; done
 	"$BIN/gs-import" --cameras made/sparse/0 --images other -o scene made/point_cloud.ply 2>err
 	[ "$(wc -l <err)" = 1 ]
-	grep -qE '^gs-import: warning: other: the scene does not look like its photographs \(by -?0\.[0-3][0-9] in the middle of 5 views, at least 0\.4 is right\): are made/sparse/0 the cameras that it was trained with, and in its frame\?$' err
+	grep -qE '^gs-import: warning: other: the scene does not look like its photographs \(by -?0\.[0-3][0-9] in the middle of 5 views, at least 0\.4 is right\): are made/sparse/0 the cameras that it was trained with, and in its frame\? gsplat trains .* were moved with them$' err
 	"$BIN/gs-import" -q --cameras made/sparse/0 --images other -o scene made/point_cloud.ply 2>err
 	[ ! -s err ]
-	# what cannot be read is not compared
-	for i in 0 1 2 3 4; do echo none >"other/view_00$i.png"; done
-	"$BIN/gs-import" --cameras made/sparse/0 --images other -o scene made/point_cloud.ply 2>err
-	[ ! -s err ]
+	# what cannot be read is not compared, and that is said
+	for i in 0 1 2; do cp "made/images/view_00$i.png" other; done
+	for i in 3 4; do echo none >"other/view_00$i.png"; done
+	says 0 "gs-import: warning: 2 of 5 photographs are not compared with the scene: scene/../other/view_003.png: neither PNG nor JPEG: begins with byte 0x6e" \
+		"$BIN/gs-import" --cameras made/sparse/0 --images other -o scene made/point_cloud.ply
+	# photographs that are turned against their cameras, which are turned about their axis here: by a quarter, and the first upside down
+	turned() {
+		says 0 "gs-import: warning: made/images: the photographs of $1 of 5 views are turned against their cameras ('view_000' is right after $2 degrees clockwise): turn their pixels as EXIF says ('mogrify -auto-orient'), or give those that the cameras are of" \
+			"$BIN/gs-import" --cameras m --images made/images -o scene made/point_cloud.ply
+	}
+	mkdir m
+	awk '/^[0-9]/ {print $1, $2, $4, $3, $5, $6, $8, $7}' made/sparse/0/cameras.txt >m/cameras.txt
+	awk '/^[0-9]/ {print $1, $2 - $5, $3 - $4, $4 + $3, $5 + $2, -$7, $6, $8, $9, $10; print ""}' made/sparse/0/images.txt >m/images.txt
+	turned 5 90
+	cp made/sparse/0/cameras.txt m
+	awk '/^1 / {print $1, -$5, -$4, $3, $2, -$6, -$7, $8, $9, $10; next} {print}' made/sparse/0/images.txt >m/images.txt
+	turned 1 180
 }

@@ -133,7 +133,7 @@ setup() {
 	[ "$(cut -d: -f1 out)" = "$thing"$'\n'"$thing" ]
 	[ "$(cat err)" = "refer-ask: stdin:1: is not UTF-8
 refer-ask: stdin:3: is longer than 2000 bytes
-refer-ask: stdin:5: has a NUL byte" ]
+refer-ask: stdin:5: has a NUL byte, as UTF-16 has: write it as UTF-8" ]
 	says 3 "refer-ask: the question is not UTF-8" ask run $'caf\xe9'
 	says 3 "refer-ask: the question is longer than 2000 bytes" ask run "$long"
 	says 3 "refer-ask: the question is empty" ask run "  "

@@ -185,6 +185,10 @@ Try 'text-encode --help'." env -u XDG_CACHE_HOME -u HOME "$BIN/text-encode" -o t
 	cmp text json
 	printf 'the red cup\n\n  \r\nthe big mug\r\ntasse à café' >plain
 	encode plain | cmp - text
+	{ printf '\xef\xbb\xbf'; cat plain; } | encode - | cmp - text
+	iconv -f UTF-8 -t UTF-16 plain | encode - | cmp - text
+	printf '{"ref":"%s","object":"?","text":"%s","split":"test"}\n' 1 "the red cup" 4 "the big mug" 5 "tasse à café" |
+		iconv -f UTF-8 -t UTF-16 | encode - | cmp - text
 	"$BIN/gs-check" text
 	printf 'cup\ncaf\xe9\n' >latin
 	says 3 'text-encode: latin:2: not UTF-8 at byte 4' "$BIN/text-encode" --model model -o none latin

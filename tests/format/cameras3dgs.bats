@@ -73,7 +73,7 @@ refused() {
 	printf '[]\0' >cameras.json
 	says 3 "gs-import: cameras.json: not JSON: a NUL byte at offset 2" import
 	printf '5' >cameras.json
-	says 3 "gs-import: cameras.json: neither a 3DGS cameras.json nor a transforms.json" import
+	says 3 "gs-import: cameras.json: neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json" import
 	printf '[]' >cameras.json
 	says 3 "gs-import: cameras.json: no views" import
 	printf '[7]' >cameras.json

@@ -10,6 +10,9 @@ setup() {
 	colmap model
 }
 
+# Fails where the command succeeds; a plain ! would let the test go on.
+not() { ! "$@"; }
+
 import() {
 	"$BIN/gs-import" --cameras model -o scene "$@" s.ply
 }
@@ -55,9 +58,12 @@ bad_image() {
 	says 3 "gs-import: model/images.txt: view 'b.jpg': its pose is not a rotation and a translation" import
 }
 
-@test "CR LF, blank lines and comments between entries; names with blanks" {
+@test "CR LF, CR, blank lines and comments between entries; names with blanks" {
 	sed -i 's/^3 /\n# more\n3 /; s/c.jpg/my c.jpg  /; s/$/\r/' model/images.txt
 	sed -i 's/$/\r/' model/cameras.txt
+	import
+	[ "$(imported name | tr -d '\n')" = '["a"]["b"]["my c"]' ]
+	tr -d '\r' <model/images.txt | tr '\n' '\r' >old && mv old model/images.txt
 	import
 	[ "$(imported name | tr -d '\n')" = '["a"]["b"]["my c"]' ]
 }
@@ -113,7 +119,34 @@ bad_image() {
 	says 3 "gs-import: model/images.txt: image 'x/.png' gives no view name" import
 }
 
-@test "zero bytes, no entries" {
+@test "lines of points, perhaps none: what a line is counts, and how many there are by the comment" {
+	model() {
+		printf '%b\n' "$@" >model/images.txt
+		import -o "$BATS_TEST_TMPDIR/out"
+		[ "$(jq -c '[.[].name]' out/cameras.json)" = '["12","a b 7","b"]' ]
+	}
+	local one='1 1 0 0 0 0 0 2 1 b.jpg' two='2 1 0 0 0.5 0 0 2 1 a b 7.jpg' three='3 1 0 0 0 0 1.5 2 2 12'
+	model "$one" "$two" "$three"
+	model "$one" '# none' "$two" '# of it' '1.5 2.5 -1 3 4 7' "$three"
+	model "$one\r" '1 2 3 4 5 6 7 8 9 \r' "$two\r" '\r' "$three\r" ' 1e2 2 18446744073709551615'
+	model '# Number of images: 3, mean observations per image: 0' "$one" "$two" '' '' "$three"
+	printf '%s\n' "# Number of images: 3" "$one" "$two" >model/images.txt
+	says 3 "gs-import: model/images.txt: has 2 images, but line 1 says 3: is the file whole? If so, take that line out" import
+	for line in '1 2' '1 2 3 4' '1 2 x' '2 1 0.5 0 0 0 0 2 1' '512.5 1 0 0 0 0 0 2 1 b.jpg'; do
+		printf '%s\n' "$one" "$line" "$three" >model/images.txt
+		not import 2>err
+		grep -q "^gs-import: model/images.txt:2: \(not 'ID .* NAME', and not the points of the image before, 'X Y POINT3D_ID ...'\|image without a name\)$" err
+	done
+}
+
+@test "zero bytes, no entries, UTF-16 and half of it" {
+	for part in cameras images; do
+		iconv -f UTF-8 -t UTF-16 model/$part.txt >wide
+		mv wide model/$part.txt
+	done
+	import && rm -r scene
+	printf x >>model/images.txt
+	says 3 "gs-import: model/images.txt: UTF-16 that is cut within a character at offset $(($(wc -c <model/images.txt) - 1)): save it as UTF-8" import
 	printf '# images\n\0' >model/images.txt
 	says 3 "gs-import: model/images.txt: a NUL byte at offset 9" import
 	printf '# images\n' >model/images.txt

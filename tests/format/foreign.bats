@@ -45,22 +45,75 @@ refused() {
 	no_splats step.ckpt "a checkpoint, not a .ply: nerfstudio writes one by 'ns-export gaussian-splat', 3DGS into point_cloud/iteration_N"
 	echo x >points3D.bin
 	no_splats points3D.bin "not a .ply: points3D of COLMAP are no trained scene; 3DGS trains one from them"
+	while IFS='|' read -r file reason; do
+		echo x >"$file"
+		no_splats "$file" "$reason"
+	done <<-'END'
+		a.ssproj|a project of SuperSplat, not a .ply: open it there, and export the scene as a .ply
+		a.USDZ|a scene of USD, not a .ply: export the scene as a .ply where it was made
+		a.html|a page of a viewer, not a .ply: export the scene as a .ply where it was made
+		a.las|a point cloud, not a trained scene: give a scene that 3D Gaussian Splatting trained
+		a.json|JSON, not splats: cameras are for --cameras, and SOG's JSON is called meta.json
+	END
 	echo x >other
 	no_splats other "not a PLY file: the first line is not 'ply'"
 }
 
 @test "a .ply of points, a mesh, and scenes that are to be rendered in another way" {
 	{ ply_header 1 'x y z red green blue'; echo 0 0 0 1 1 1; } >points.ply
-	no_splats points.ply "a point cloud, not a trained scene: it has points without scale and opacity; 3D Gaussian Splatting trains a scene from them, point_cloud/iteration_N/point_cloud.ply"
+	no_splats points.ply "a point cloud, not a trained scene: it has points without scale and rotation; 3D Gaussian Splatting trains a scene from them, point_cloud/iteration_N/point_cloud.ply"
 	{ ply_header 1 'x y z' | sed 's/end_header/element face 1\nproperty list uchar int vertex_indices\nend_header/'; echo 0 0 0; echo 3 0 0 0; } >mesh.ply
-	no_splats mesh.ply "a mesh, not a trained scene: it has points without scale and opacity; 3D Gaussian Splatting trains a scene from them, point_cloud/iteration_N/point_cloud.ply"
+	no_splats mesh.ply "a mesh, not a trained scene: it has points without scale and rotation; 3D Gaussian Splatting trains a scene from them, point_cloud/iteration_N/point_cloud.ply"
 	{ ply_header 1 "$ply_names filter_3D"; echo 0 0 2 1 0.5 0 0 -3 -3 -3 1 0 0 0 0.1; } >mip.ply
 	no_splats mip.ply "a scene of Mip-Splatting (property 'filter_3D'), which 3DGS's rendering gets wrong: its 'python create_fused_ply.py -m MODEL --output_ply fused.ply' makes one that is right"
+}
+
+@test "a .ply of another method is named for it" {
+	local train="give a scene that 3D Gaussian Splatting trained"
+	while IFS='|' read -r names reason; do
+		ply_header 0 "$names" >f.ply
+		no_splats f.ply "$reason"
+	done <<-END
+		${ply_names/scale_2/}|flat Gaussians of 2DGS, with two scales, which are rendered in another way: $train
+		${ply_names/f_dc_0/f_offset_0 f_anchor_feat_0}|anchors of Scaffold-GS, which its networks make Gaussians of: $train
+		${ply_names/f_dc_0 f_dc_1 f_dc_2/f_0 f_1 f_2}|features of SAGA without colours (property 'f_0'): give its scene_point_cloud.ply
+		${ply_names/f_dc_0 f_dc_1 f_dc_2/red green blue}|Gaussians with colours in place of spherical harmonics (property 'red'): 'ns-export gaussian-splat --ply-color-mode sh_coeffs' writes these
+		$ply_names trbf_center|Gaussians that move (property 'trbf_center'): $train
+	END
+	ply_header 0 | sed 's/float opacity/ushort opacity/' >f.ply
+	no_splats f.ply "property 'opacity' has whole numbers, half floats or codes of a packed scene: export it with floats where it was made"
+}
+
+@test "comments that say how a scene is to be rendered: in any case, and the last one counts" {
 	splats_ply s.ply
-	sed 's/^element vertex/comment SplatRenderMode: mip\n&/' s.ply >mode.ply
-	no_splats mode.ply "trained for another way of rendering ('SplatRenderMode: mip'), which would be wrong here: train it without that mode"
-	sed 's/^element vertex/comment SplatRenderMode: default\n&/' s.ply >mode.ply
-	"$BIN/gs-import" --cameras model -o scene mode.ply
+	for mode in 'SplatRenderMode: mip' 'splatrendermode:Mip' 'antialiased 1' 'Antialiased: true' 'train_flags antialiasing'; do
+		sed "s/^element vertex/comment SplatRenderMode: default\n comment  $mode\n&/" s.ply >mode.ply
+		no_splats mode.ply "trained for another way of rendering ('$mode'), which would be wrong here: train it without that mode"
+		sed "s/^element vertex/comment $mode\ncomment antialiased 0\ncomment other mip\n&/" s.ply >mode.ply
+		"$BIN/gs-check" mode.ply
+	done
+}
+
+@test "camera files of other programs: what they are, and the way out" {
+	splats_ply s.ply
+	local trained="give the COLMAP model or transforms.json that the scene was trained with"
+	while IFS='|' read -r file text reason; do
+		printf "$text" >"$file"
+		says 3 "gs-import: $file: $reason" "$BIN/gs-import" --cameras "$file" -o scene s.ply
+	done <<-END
+		a.csv|name,x|a table (.csv), as RealityCapture exports: 'ns-process-data realitycapture --csv a.csv' makes a transforms.json, or export them as a COLMAP model
+		a.xml|x|XML, as Metashape exports: 'ns-process-data metashape --xml a.xml' makes a transforms.json, or export them as a COLMAP model
+		bundle|# Bundle file v0.3|cameras of Bundler: $trained
+		a.npy|\\x93NUMPY\\x01|an array of NumPy, as LLFF's poses_bounds.npy: give the COLMAP model that it was made from, sparse/0
+		database.db|x|COLMAP's database, which has no poses: give the folder of its model, sparse/0
+		images.txt|x|a text file: of a COLMAP model, give the folder with cameras.txt and images.txt
+		images.bin|x|a part of a COLMAP model: give the model's folder
+		other|x|neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json
+		r.json|{"K":[1],"poses":[]}|cameras of Record3D: 'ns-process-data record3d' makes a transforms.json of the capture
+		n.json|[{"file_path":"a","transform":[]}]|cameras of nerfstudio's 'ns-export cameras': give the transforms.json that it trained with, and put its dataparser_transforms.json beside the splats
+		p.json|{"camera_path":[],"render_height":1}|a camera path of nerfstudio's viewer: $trained
+		o.json|[{"cameras":{},"shots":{}}]|cameras of OpenSfM or OpenDroneMap: 'ns-process-data odm' makes a transforms.json of them
+	END
 }
 
 @test "JSON of other programs, in place of mask records and of cameras" {

@@ -29,6 +29,21 @@ not() { ! "$@"; }
 	says 0 "x: $fine" "$BIN/gs-check" x
 }
 
+@test "UTF-16 of either order, with its mark or without, is read as the same in UTF-8" {
+	printf '%s\r\n\r\n%s\r\n' "${one/red/rouge \\u00e9 é 😀}" "$two" >x
+	for code in UTF-16LE UTF-16BE; do
+		iconv -f UTF-8 -t $code x >bare
+		{ [ $code = UTF-16LE ] && printf '\xff\xfe' || printf '\xfe\xff'; cat bare; } >marked
+		for file in bare marked; do
+			says 0 "$file: $fine" "$BIN/gs-check" $file
+			head -c -5 $file >cut
+			says 1 "cut: UTF-16 that is cut within a character at offset $(($(wc -c <cut) - 1)): save it as UTF-8" "$BIN/gs-check" cut
+		done
+	done
+	printf '{"w":40,"h":30,"fl_x":50,"frames":[]}' | iconv -t UTF-16 >t.json
+	says 1 "t.json: no views" "$BIN/gs-check" t.json
+}
+
 @test "lines are counted with the blank ones" {
 	printf '\n%s\n\n\n{}\n' "$one" >x
 	says 1 "x:5: key 'ref' is missing" "$BIN/gs-check" x

@@ -71,7 +71,7 @@ ply_fields='x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot
 make_properties() { # a header may have 1 MiB: less than 100,000 properties
 	{
 		printf 'ply\nformat binary_little_endian 1.0\nelement vertex 0\n'
-		printf 'property char %s\n' $ply_fields
+		printf 'property float %s\n' $ply_fields
 		lines $(($1 / 2)) 'property char @'
 		echo end_header
 	} >"$work/$2"
@@ -81,7 +81,7 @@ make_elements() { # as above
 		printf 'ply\nformat binary_little_endian 1.0\n'
 		lines $(($1 / 2)) 'element @ 0'
 		echo element vertex 0
-		printf 'property char %s\n' $ply_fields
+		printf 'property float %s\n' $ply_fields
 		echo end_header
 	} >"$work/$2"
 }

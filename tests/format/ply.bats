@@ -61,12 +61,12 @@ header() {
 
 @test "property lines" {
 	header "property before any element" 'property float x'
-	header "property type 'real' is unknown" 'element vertex 1' 'property real x'
-	header "property type '' is unknown" 'element vertex 1' property
+	header "property type 'real' is unknown: export the scene with floats where it was made" 'element vertex 1' 'property real x'
+	header "property type '' is unknown: export the scene with floats where it was made" 'element vertex 1' property
 	header "property without a name" 'element vertex 1' 'property float'
 	header "property 'x' appears twice" 'element vertex 1' 'property float x' 'property int x'
 	header "list count type 'float' is not an integer type" 'element vertex 1' 'property list float int x'
-	header "property type 'x' is unknown" 'element vertex 1' 'property list int x'
+	header "property type 'x' is unknown: export the scene with floats where it was made" 'element vertex 1' 'property list int x'
 	header "header line 'vertex' is unknown" 'vertex 1'
 }
 
@@ -81,6 +81,7 @@ header() {
 	printf 'ply\nformat ascii 1.0\nend_header\n' >s.ply
 	refused "no element 'vertex'"
 	for name in $ply_names; do
+		[ $name != scale_2 ] || continue # 2DGS: foreign.bats
 		ply_header 0 "${ply_names/$name/other}" >s.ply
 		refused "element 'vertex' has no property '$name'"
 	done

@@ -96,7 +96,9 @@ lens() {
 	bad_frame "key 'transform_matrix' is not 3x4 numbers" transform_matrix='[[1,0,0,0],[0,1,0,0],[0,0,1]]'
 	bad_frame "key 'transform_matrix' is not 4x4 numbers" transform_matrix=5
 	refused "key 'file_path' is missing" frames=[1]
-	for frames in '' 5 '{}'; do
+	transforms frames= >transforms.json
+	says 3 "gs-import: transforms.json: neither a transforms.json, which has a key 'frames', nor a 3DGS cameras.json, which is a list" import
+	for frames in 5 '{}'; do
 		transforms "frames=$frames" >transforms.json
 		says 3 "gs-import: transforms.json: key 'frames' is not a list" import
 	done

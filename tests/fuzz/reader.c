@@ -24,6 +24,7 @@
 #include "formats/parser_weights.h"
 #include "formats/parses.h"
 #include "formats/png.h"
+#include "formats/points.h"
 #include "formats/readings.h"
 #include "formats/safetensors.h"
 #include "formats/scene.h"
@@ -124,6 +125,16 @@ static void try_lifted(const char *path)
 
 	if (!lifted_read(&l, &origin, path, &e))
 		lifted_free(&l);
+}
+
+static void try_points(const char *path)
+{
+	static const double offset[3];
+	float *points;
+	size_t n;
+
+	if (!points_read(&points, &n, path, offset, &e))
+		free(points);
 }
 
 static void try_scene(const char *path)
@@ -293,6 +304,7 @@ static const struct target {
 	{"parser", try_parser, {0}, 1},
 	{"parses", try_parses, {0}, 0},
 	{"ply", try_scene, {0}, 0},
+	{"points", try_points, {"points3D.bin", "points3D.txt", "points3D.ply"}, 0},
 	{"readings", try_readings, {0}, 0},
 	{"safetensors", try_safetensors, {0}, 0},
 	{"scene", try_folder, {"cameras.json", "splats.safetensors"}, 0},

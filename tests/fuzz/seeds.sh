@@ -136,6 +136,10 @@ folder colmap-text small/sparse/0/cameras.txt small/sparse/0/images.txt
 printf '\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0\0\0\24\100\0\0\0\0\0\0\24\100\0\0\0\0\0\0\0\100\0\0\0\0\0\0\370\77' >cameras.bin
 { printf '\1\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0\0\0\360\77'; head -c 48 /dev/zero; printf '\1\0\0\0a.png\0'; head -c 8 /dev/zero; } >images.bin
 folder colmap-binary cameras.bin images.bin
+{ printf '\2\0\0\0\0\0\0\0'; head -c 43 /dev/zero; printf '\1\0\0\0\0\0\0\0'; head -c 67 /dev/zero; } >points3D.bin
+printf '# points\n1 0.5 1 2 9 9 9 0.5 1 2\n' >points3D.txt
+printf 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n' >points3D.ply
+folder points points3D.bin points3D.txt points3D.ply
 cp -r "$golden/clip" "$golden/open-clip" .
 folder_cut clip 64 clip/config.json clip/model.safetensors
 folder_cut clip-open 64 open-clip/open_clip_config.json open-clip/open_clip_model.safetensors

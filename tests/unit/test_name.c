@@ -109,6 +109,9 @@ static void known_answers(void)
 	becomes(name_to_view, "50%", "50%");
 	becomes(name_to_view, "a,b\t", "a%2Cb%09");
 	becomes(name_to_view, "..", "%2E%2E");
+	becomes(name_to_view, "e\xcc\x81", "\xc3\xa9");
+	becomes(name_copy, "e\xcc\x81\xff", "e\xcc\x81\xff");
+	becomes(name_decomposed, "\xc3\xa9", "e\xcc\x81");
 }
 
 int main(void)

@@ -278,17 +278,17 @@ static void build_plain(struct bytes *b, int n, double rows[][14])
 static void left_out(void)
 {
 	static struct bytes b;
-	double rows[24][14];
+	double rows[26][14];
 	struct splats s;
 	struct rows_report report;
 	struct err e = {0};
 	double offset[3] = {0};
 
-	for (int i = 0; i < 24; i++)
+	for (int i = 0; i < 26; i++)
 		for (int k = 0; k < 14; k++)
 			rows[i][k] = 1 + i;
 	for (int k = 0; k < 14; k++)
-		rows[1 + k][k] = k % 3 == 0 ? NAN : k % 3 == 1 ? INFINITY : -INFINITY;
+		rows[1 + k][k] = k == 8 ? INFINITY : k % 3 == 0 ? NAN : k % 3 == 1 ? INFINITY : -INFINITY;
 	rows[16][8] = 89;    /* exp is above the floats */
 	rows[17][1] = 3e38;  /* finite, but its distance from an offset need not be */
 	rows[18][4] = 1e300; /* a double beyond the floats */
@@ -298,21 +298,31 @@ static void left_out(void)
 	rows[21][13] = -1e-200;
 	for (int k = 10; k < 14; k++)
 		rows[22][k] = 1e37;
-	build_plain(&b, 24, rows);
+	for (int k = 7; k < 10; k++) /* what has a limit: opaque and clear, and flat */
+		rows[24][k] = rows[25][k] = k == 9 ? -INFINITY : 0;
+	rows[24][6] = INFINITY;
+	rows[25][6] = -INFINITY;
+	build_plain(&b, 26, rows);
 	int bad = ply_read(&s, offset, &report, path, &e);
 	if (!CHECK(!bad, "%s", e.message))
 		return;
-	CHECK(report.read == 24 && report.not_finite == 18 && report.zero_quat == 1,
+	CHECK(report.read == 26 && report.not_finite == 18 && report.zero_quat == 1,
 		"read %zu, left out %zu and %zu", report.read, report.not_finite, report.zero_quat);
 	for (size_t i = 0; i < 19; i++) {
 		size_t want = i < 14 ? i + 1 : i + 2;
 		CHECK(report.dropped[i] == want, "left out %zu in place of %zu", report.dropped[i], want);
 	}
-	CHECK(s.n == 5 && s.means[0] == 1 && s.means[3] == 16 && s.means[6] == 22, "the others moved up");
+	CHECK(s.n == 7 && s.means[0] == 1 && s.means[3] == 16 && s.means[6] == 22, "the others moved up");
+	CHECK(s.opacities[5] == 1 && s.opacities[6] == 0 && s.scales[15] == 1 && s.scales[17] == 0,
+		"infinite: opacities %g and %g, scale %g", s.opacities[5], s.opacities[6], s.scales[17]);
 	CHECK(s.quats[8] == 0 && s.quats[11] == -1, "a tiny quaternion is made one: %g", s.quats[11]);
 	CHECK(s.quats[12] == 0.5f && s.quats[15] == 0.5f, "a huge one too: %g", s.quats[12]);
 	splats_free(&s);
 	free(report.dropped);
+	build_plain(&b, 14, rows + 1);
+	CHECK(ply_read(&s, offset, &report, path, &e) &&
+			strstr(e.message, "none of its 14 Gaussians can be used: 14 have a value"),
+		"%s", e.message);
 }
 
 static void recentring(void)

@@ -17,7 +17,7 @@ static void make_views(struct cameras *c, const char *const *images)
 	for (size_t i = 0; i < c->n; i++) {
 		struct camera *v = &c->views[i];
 		*v = (struct camera){
-			.image = mem_strdup(images[i], &e), .width = 4, .height = 3, .fx = 1, .fy = 1};
+			.image = view_image(images[i], &e), .width = 4, .height = 3, .fx = 1, .fy = 1};
 		for (int k = 0; k < 4; k++)
 			v->world_to_camera[k][k] = 1;
 	}
