@@ -48,7 +48,8 @@ window.scene_viewer = (() => {
 		const renderer = new THREE.WebGLRenderer({canvas, antialias: false});
 		const world = new THREE.Scene(), camera = new THREE.PerspectiveCamera(50, 1, .01, 1000);
 		world.background = new THREE.Color(0x22252a);
-		world.add(new SPARK.SparkRenderer({renderer}));
+		const spark = new SPARK.SparkRenderer({renderer});
+		world.add(spark);
 		const bytes = await load_splats(), groups = [];
 		let at = 0;
 		for (const g of scene.groups) {
@@ -63,18 +64,33 @@ window.scene_viewer = (() => {
 		const controls = new OrbitControls(camera, canvas);
 		controls.zoomSpeed = .6;
 		controls.rotateSpeed = .5;
-		return {THREE, renderer, world, camera, controls, groups, until: 0};
+		return {THREE, renderer, spark, world, camera, controls, groups, until: 0, frames: 0};
 	}
 
-	// Frames are drawn while something moves, and a little longer, as the splats are sorted meanwhile.
+	// Frames are drawn while something moves, until the splats are sorted for it, however long that takes, and a few more. The
+	// photograph stays until the first that are sorted.
 	function wake() { three.until = performance.now() + 1500; }
+
+	function is_sorted({spark}) {
+		return spark.lastSortTime > 0 && !spark.sorting && !spark.sortDirty && (three.is_ready || spark.activeSplats > 0 || !scene.count);
+	}
 
 	function draw() {
 		const {renderer, world, camera, controls} = three;
 		if (controls.update()) wake();
-		if (performance.now() > three.until) return;
+		three.frames = is_sorted(three) ? three.frames + 1 : 0;
+		if (performance.now() > three.until && three.frames > 4) return;
 		renderer.render(world, camera);
 		stage.dataset.frames = 1 + Number(stage.dataset.frames || 0);
+		if (three.is_ready || three.frames < 3) return;
+		three.is_ready = true;
+		stage.classList.add('is-on');
+		tell();
+	}
+
+	function tell() {
+		hint.textContent = !three.is_ready ? 'Sorting the scene …' :
+			words || 'Drag to turn, scroll or pinch to come nearer, right button or two fingers to move.';
 	}
 
 	function resize() {
@@ -112,13 +128,12 @@ window.scene_viewer = (() => {
 			}
 			if (g.box) g.box.visible = is_lit && is_boxed;
 		}
-		hint.textContent = words;
+		tell();
 		wake();
 	}
 
 	async function load() {
 		start.hidden = true;
-		stage.classList.add('is-on');
 		hint.textContent = 'Unpacking the scene …';
 		await new Promise(done => setTimeout(done, 30));
 		three = await make_scene(await load_modules());
@@ -128,7 +143,6 @@ window.scene_viewer = (() => {
 		new ResizeObserver(resize).observe(stage);
 		three.controls.addEventListener('change', wake);
 		three.renderer.setAnimationLoop(draw);
-		if (!words) hint.textContent = 'Drag to turn, scroll or pinch to come nearer, right button or two fingers to move.';
 	}
 
 	function begin() {

@@ -100,10 +100,12 @@ fine() {
 		document.querySelectorAll('.tabs button')[1].click();
 		check(texts().length === data.sets[1].sentences.length, 'the other sentences are shown');
 		check(\$('#viewer').hidden, 'there is no viewer');
+		check(score_words({sentences: [{text: 'mug', said: ['mug'], right: true}]}).startsWith('The right thing is found for 1 of 1 name'), 'names alone are called so');
+		check(percent(.999) === '99%' && percent(.001) === 'below 1%' && percent(1) === '100%', 'certain is only what is');
 		check(document.documentElement.scrollWidth <= innerWidth, 'nothing is wider than the window');
 	" >said
 	fine said
-	[ "$(grep -c ^ok said)" = 13 ]
+	[ "$(grep -c ^ok said)" = 15 ]
 }
 
 @test "on a telephone nothing is wider than the window" {
@@ -116,13 +118,25 @@ fine() {
 	"$BIN/refer-report" -q --truth truth.jsonl -o scene.html run
 	browse scene.html "
 		check(!\$('#viewer').hidden, 'there is a viewer');
+		const style = what => getComputedStyle(\$(what));
+		check(style('.stage').backgroundSize === 'contain' && style('.stage').backgroundImage !== 'none', 'the whole photograph is there');
+		// A canvas that can be read, and a worker that sorts long after the page would have come to rest.
+		const {getContext} = HTMLCanvasElement.prototype, {postMessage} = Worker.prototype;
+		HTMLCanvasElement.prototype.getContext = function (kind, o) { return getContext.call(this, kind, {...o, preserveDrawingBuffer: true}); };
+		Worker.prototype.postMessage = function (...what) { setTimeout(() => postMessage.apply(this, what), 2500); };
 		\$('.in-scene').click();
 		check(await until(() => Number(\$('.stage').dataset.frames) >= 3), 'frames are drawn');
+		check(style('.stage canvas').visibility === 'hidden', 'and not shown before they are sorted');
+		check(await until(() => style('.stage canvas').visibility === 'visible'), 'then they are');
+		const gl = \$('.stage canvas').getContext('webgl2'), pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+		gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+		const colours = new Set(new Uint32Array(pixels.buffer));
+		check(colours.size > 1000, 'the scene has many colours: ' + colours.size);
 		check(\$('#viewer select').value === data.sets[0].sentences.find(s => s.ref === \$('.card.is-shown').dataset.ref).answer[0], 'the answer is chosen');
 		check(\$('.hint').textContent.includes(\$('.card.is-shown h3').textContent), 'the sentence is there');
 		const context = \$('.stage canvas').getContext('webgl2');
 		check(context && context.getError() === 0, 'WebGL has no error');
 	" >said
 	fine said
-	[ "$(grep -c ^ok said)" = 5 ]
+	[ "$(grep -c ^ok said)" = 9 ]
 }
