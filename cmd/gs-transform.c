@@ -8,7 +8,7 @@
 
 static struct transforming options = {.scale = 1};
 static int format;
-static long long spz_version = 3;
+static long long spz_version = ANYSPLATS_SPZ_VERSION;
 
 static const struct cli_option table[] = {
 	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz|glb|sog",

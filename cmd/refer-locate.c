@@ -4,15 +4,16 @@
 #include "cli/cli.h"
 #include "cmd/jobs/labelling.h"
 #include "cmd/jobs/locating.h"
-#include "formats/ply.h"
-#include "formats/splat.h"
+#include "cmd/jobs/questions.h"
+#include "cmd/jobs/showing.h"
+#include "formats/anysplats.h"
 
 #include <string.h>
 
 static struct {
 	struct request_options request;
-	const char *ply, *splat, *each;
-	int show, is_all;
+	const char *ply, *splat, *each, *encoder;
+	int show, is_all, shows[LOCATE_REMOVED + 1];
 } options = {.request = REQUEST_DEFAULTS};
 
 static const struct cli_option table[] = {REQUEST_FILES(options.request), REQUEST_SENTENCES(options.request),
@@ -28,12 +29,19 @@ static const struct cli_option table[] = {REQUEST_FILES(options.request), REQUES
 	{"splat", 0, CLI_STRING, &options.splat, "FILE", "the same as a .splat for web viewers", 0, 0},
 	{"show", 0, CLI_CHOICE, &options.show, "coloured|isolated|removed",
 		"what --ply and --splat do with the object (default coloured)", 0, 0},
+	{"colour", 0, CLI_FLAG, &options.shows[LOCATE_COLOURED], NULL,
+		"of RUN, -o is the scene with what QUESTION means painted", 0, 0},
+	{"alone", 0, CLI_FLAG, &options.shows[LOCATE_ISOLATED], NULL, "or that alone", 0, 0},
+	{"remove", 0, CLI_FLAG, &options.shows[LOCATE_REMOVED], NULL, "or everything else", 0, 0},
+	{"encoder", 0, CLI_STRING, &options.encoder, "DIR",
+		"of RUN, the encoder's folder (default: where 'make encoder' puts it)", 0, 0},
 	{0}};
 
 static const struct cli_tool tool = {.name = "refer-locate",
-	.operands = "--scene SCENE --model MODEL (--text TEXT | --all)",
-	.summary = "Say where in space the objects of sentences are.",
+	.operands = "--scene SCENE --model MODEL (--text TEXT | --all) | RUN QUESTION",
+	.summary = "Say where in space the objects of sentences are, or show the scene with or without them.",
 	.options = table,
+	.max_operands = 2,
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT};
 
 static int choose_sentences(struct request *q, const struct cli *c, struct err *e)
@@ -66,47 +74,14 @@ static int locate(struct locating *r, const struct cli *c, struct err *e)
 	return 0;
 }
 
-static int write_boxes(const struct locating *r, const struct cli *c, struct err *e)
-{
-	const struct request *q = &r->request;
-	struct file_out out;
-	int bad = 0;
-
-	if (file_out_open(&out, c->output, e))
-		return -1;
-	for (size_t i = 0; i < q->count && !bad; i++)
-		bad = locating_put(r, i, out.stream, e);
-	return file_out_end(&out, bad, e);
-}
-
-static int write_scene(const struct locating *r, struct err *e)
-{
-	const struct request *q = &r->request;
-	const struct extent *x = &r->answers[q->responses.answer[0]].extent;
-	struct splats shown;
-
-	if (locate_show(&shown, &q->scene.splats, x, (enum locate_show)options.show, e))
-		return -1;
-	int bad = (options.ply && ply_write(&shown, q->scene.offset, options.ply, e)) ||
-		  (options.splat && splat_write(&shown, (double[3]){0}, options.splat, e));
-	splats_free(&shown);
-	return bad ? -1 : 0;
-}
-
-static int write_labels(const struct labelling *r, const struct cli *c, struct err *e)
-{
-	struct file_out out;
-
-	return file_out_open(&out, c->output, e) || file_out_end(&out, labelling_put(r, out.stream, e), e);
-}
-
 /* Every object, without sentences. */
 static int label(const struct cli *c, struct err *e)
 {
 	struct labelling r = {0};
 	const int bad = labelling_open(&r, options.request.scene, options.request.model, e) ||
 			(options.each && labelling_write_each(&r, options.each, e)) ||
-			(options.ply && labelling_write_scene(&r, options.ply, e)) || write_labels(&r, c, e);
+			(options.ply && labelling_write_scene(&r, options.ply, e)) ||
+			labelling_write(&r, c->output, e);
 
 	labelling_free(&r);
 	return bad ? -1 : 0;
@@ -124,10 +99,46 @@ static void check_all(const struct cli *c)
 			c, "--all goes with --scene, --model, --ply and --each only: it needs no sentences");
 }
 
+/* What is done with what the question means. */
+static enum locate_show check_run(const struct cli *c)
+{
+	const int *k = options.shows, count = k[0] + k[1] + k[2];
+
+	if (c->operand_count < 2 || count != 1)
+		cli_usage(c, "RUN goes with a QUESTION and one of --colour, --alone and --remove");
+	if (options.request.text || options.is_all || options.ply || options.splat || options.show ||
+		options.request.refs || options.request.sentences != REQUEST_ALL || options.each)
+		cli_usage(c,
+			"RUN QUESTION goes with --scene, --model, --encoder, --viewpoint and -o only: it needs no sentences");
+	if (anysplats_format_of(c->output) < 0)
+		cli_usage(c, "-o %s: not .ply, .splat, .spz, .glb or .sog: it is for the scene", c->output);
+	cli_refuse_overwrite(c, CLI_SCENE " model encoder:" ENCODER_PARTS " RUN:scene|lifted|*.safetensors",
+		"output", NULL);
+	return (enum locate_show)(k[LOCATE_ISOLATED] + 2 * k[LOCATE_REMOVED]);
+}
+
+static int show(const struct cli *c, struct err *e)
+{
+	const struct request_options *o = &options.request;
+	const enum locate_show how = check_run(c);
+	const struct asking_options ask = {.run = c->operands[0],
+		.given = {(char *)o->scene, (char *)o->model, (char *)options.encoder},
+		.viewpoint = o->viewpoint,
+		.least = o->least};
+	struct question q = {0};
+	struct cli_report to;
+
+	if (!question_take(&q, c->operands[1]))
+		return err_set(e, ERR_FORMAT, "the question %s", q.fault);
+	return showing_ask(&ask, q.text, how, c->output, stdout, cli_report(&to, c), e);
+}
+
 static void check(const struct cli *c)
 {
 	const struct request_options *o = &options.request;
 
+	if (options.shows[0] || options.shows[1] || options.shows[2] || options.encoder)
+		cli_usage(c, "--colour, --alone, --remove and --encoder are for RUN QUESTION");
 	if (!o->scene || !o->model || (!o->text && !options.is_all))
 		cli_usage(c, "--scene, --model and --text (or --all) are required");
 	check_all(c);
@@ -135,13 +146,16 @@ static void check(const struct cli *c)
 		cli_usage(c, "--ply and --splat must name a file");
 	if (options.show && !options.ply && !options.splat)
 		cli_usage(c, "--show is for --ply and --splat");
+	cli_refuse_overwrite(c, CLI_SCENE " text model", "output ply splat each:*.ply", NULL);
 }
 
 static int answer(const struct cli *c, struct err *e)
 {
 	struct locating r = {0};
-	const int bad = locate(&r, c, e) || ((options.ply || options.splat) && write_scene(&r, e)) ||
-			write_boxes(&r, c, e);
+	const int bad = locate(&r, c, e) ||
+			((options.ply || options.splat) && showing_write(&r, (enum locate_show)options.show,
+								   options.ply, options.splat, e)) ||
+			locating_write(&r, c->output, e);
 
 	locating_free(&r);
 	return bad ? -1 : 0;
@@ -153,7 +167,8 @@ int main(int argc, char **argv)
 	struct err e = {0};
 
 	cli_parse(&c, &tool, argc, argv);
+	if (c.operand_count)
+		return show(&c, &e) ? cli_fail(&c, &e) : cli_done(&c);
 	check(&c);
-	cli_refuse_overwrite(&c, CLI_SCENE " text model", "output ply splat each:*.ply", NULL);
 	return (options.is_all ? label(&c, &e) : answer(&c, &e)) ? cli_fail(&c, &e) : cli_done(&c);
 }

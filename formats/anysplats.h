@@ -27,6 +27,8 @@ enum anysplats_format {
 /* The format that a name ends with; -1 where it is none. */
 int anysplats_format_of(const char *path);
 
+enum { ANYSPLATS_SPZ_VERSION = 3 }; /* where none is asked for */
+
 /* Writes means + offset; spz_version is 2 to 4. "-" is stdout. Returns 0, or -1 with *e set. */
 int anysplats_write(const struct splats *s, const double offset[3], enum anysplats_format format,
 	int spz_version, const char *path, struct err *e);

@@ -1,10 +1,10 @@
 #include "cmd/jobs/labelling.h"
 
-#include "answer/locate.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
 #include "cmd/jobs/object_extents.h"
+#include "cmd/jobs/showing.h"
 #include "formats/boxes.h"
 #include "formats/ply.h"
 #include "lift/labels.h"
@@ -38,14 +38,13 @@ int labelling_write_scene(const struct labelling *r, const char *path, struct er
 	return ply_write_labelled(&r->scene.splats, r->scene.offset, r->labels, path, e);
 }
 
-static int write_one(const struct labelling *r, size_t object, const char *dir, struct err *e)
+static int write_one(const struct showing *w, size_t object, const char *dir, struct err *e)
 {
-	char *name = name_to_file(r->model.lifted.names[object], e),
+	char *name = name_to_file(w->lifted->names[object], e),
 	     *path = name ? file_join(dir, name, ".ply", e) : NULL;
 	struct splats alone = {0};
-	const int bad = !path ||
-			locate_show(&alone, &r->scene.splats, &r->extents[object], LOCATE_ISOLATED, e) ||
-			ply_write(&alone, r->scene.offset, path, e);
+	const int bad = !path || showing_things(&alone, w, &object, 1, LOCATE_ISOLATED, e) ||
+			ply_write(&alone, w->scene->offset, path, e);
 
 	splats_free(&alone);
 	free(path);
@@ -55,27 +54,33 @@ static int write_one(const struct labelling *r, size_t object, const char *dir, 
 
 int labelling_write_each(const struct labelling *r, const char *dir, struct err *e)
 {
+	struct showing w;
+
 	if (file_make_dir(dir, e))
 		return -1;
-	for (size_t o = 0; o < r->model.lifted.objects; o++)
-		if (write_one(r, o, dir, e))
-			return -1;
-	return 0;
+	int bad = showing_open(&w, &r->scene, &r->model.lifted, r->extents, e);
+	for (size_t o = 0; o < r->model.lifted.objects && !bad; o++)
+		bad = write_one(&w, o, dir, e);
+	showing_free(&w);
+	return bad ? -1 : 0;
 }
 
-int labelling_put(const struct labelling *r, FILE *out, struct err *e)
+int labelling_write(const struct labelling *r, const char *path, struct err *e)
 {
 	const struct lifted *l = &r->model.lifted;
+	struct file_out out;
+	int bad = 0;
 
-	for (size_t o = 0; o < l->objects; o++) {
+	if (file_out_open(&out, path, e))
+		return -1;
+	for (size_t o = 0; o < l->objects && !bad; o++) {
 		const struct extent *x = &r->extents[o];
 		const struct box_gaussians of = {x->n, x->ids};
 		struct box_record record = object_extents_record(x, r->scene.offset, l->confidence[o]);
 		record.object = l->names[o];
 		record.label = (int)o + 1;
 		labels_colour(record.label, record.colour);
-		if (boxes_put(out, &record, &of, e))
-			return -1;
+		bad = boxes_put(out.stream, &record, &of, e);
 	}
-	return 0;
+	return file_out_end(&out, bad, e);
 }

@@ -26,7 +26,7 @@ void labelling_free(struct labelling *r);
 int labelling_write_scene(const struct labelling *r, const char *path, struct err *e);
 /* DIR/OBJECT.ply for each object, with `/` and the like in names escaped (base/name.h). */
 int labelling_write_each(const struct labelling *r, const char *dir, struct err *e);
-/* A line for each object, formats/boxes.md. */
-int labelling_put(const struct labelling *r, FILE *out, struct err *e);
+/* A line for each object, formats/boxes.md; "-" is stdout. */
+int labelling_write(const struct labelling *r, const char *path, struct err *e);
 
 #endif

@@ -1,5 +1,6 @@
 #include "cmd/jobs/locating.h"
 
+#include "base/file.h"
 #include "base/mem.h"
 #include "cmd/jobs/object_extents.h"
 #include "formats/boxes.h"
@@ -65,7 +66,7 @@ static int make_parts(const struct locating *r, size_t answer, struct box_record
 	return *parts ? 0 : -1;
 }
 
-int locating_put(const struct locating *r, size_t i, FILE *out, struct err *e)
+static int put(const struct locating *r, size_t i, FILE *out, struct err *e)
 {
 	const struct request *q = &r->request;
 	const size_t answer = q->responses.answer[i];
@@ -85,4 +86,16 @@ int locating_put(const struct locating *r, size_t i, FILE *out, struct err *e)
 	const int bad = boxes_put(out, &record, &of, e);
 	free(parts);
 	return bad;
+}
+
+int locating_write(const struct locating *r, const char *path, struct err *e)
+{
+	struct file_out out;
+	int bad = 0;
+
+	if (file_out_open(&out, path, e))
+		return -1;
+	for (size_t i = 0; i < r->request.count && !bad; i++)
+		bad = put(r, i, out.stream, e);
+	return file_out_end(&out, bad, e);
 }

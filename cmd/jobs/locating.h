@@ -5,8 +5,6 @@
 #include "answer/locate.h"
 #include "cmd/jobs/request.h"
 
-#include <stdio.h>
-
 struct locating {
 	struct request request;	 /* answered by the caller */
 	struct located *answers; /* (answers) */
@@ -17,8 +15,8 @@ struct locating {
  */
 int locating_find(struct locating *r, double up[3], struct err *e);
 
-/* The line of the request's sentence i, formats/boxes.md. */
-int locating_put(const struct locating *r, size_t i, FILE *out, struct err *e);
+/* A line for each sentence, formats/boxes.md; "-" is stdout. */
+int locating_write(const struct locating *r, const char *path, struct err *e);
 
 /* With its request. */
 void locating_free(struct locating *r);

@@ -1,6 +1,7 @@
 #include "answer/locate.h"
 
 #include "base/mem.h"
+#include "lift/inside.h"
 #include "splat/sh.h"
 
 #include <math.h>
@@ -54,20 +55,94 @@ static void paint_one(float *sh, int coefficients)
 	}
 }
 
-int locate_show(struct splats *to, const struct splats *s, const struct extent *x, enum locate_show show,
-	struct err *e)
+static void only_of_extent(char *own, const struct extent *x, size_t n)
+{
+	for (size_t i = 0; i < x->n; i++)
+		own[x->ids[i]] *= 2;
+	for (size_t i = 0; i < n; i++)
+		own[i] = own[i] > 1;
+}
+
+/* What locate_things goes over. */
+struct taking {
+	const struct lifted *l;
+	const struct splats *s;
+	const float *most;
+	float *best;	    /* (N) the largest share of each Gaussian */
+	char *own, *others; /* (N) of one thing */
+	enum locate_show show;
+};
+
+static int take_thing(char *of, const struct taking *t, size_t thing, const struct extent *x, struct err *e)
+{
+	const struct lifted *l = t->l;
+	const size_t n = t->s->n;
+
+	memset(t->own, 0, n);
+	for (int64_t k = l->indptr[thing]; k < l->indptr[thing + 1]; k++)
+		t->own[l->index[k]] = l->share[k] > LIFTED_CUT && l->share[k] >= t->best[l->index[k]];
+	if (t->show == LOCATE_ISOLATED)
+		only_of_extent(t->own, x, n);
+	for (size_t i = 0; i < n; i++)
+		t->others[i] = !t->own[i] && t->best[i] > LIFTED_CUT;
+	if (inside_take(t->own, x, t->s, t->most, t->others, e))
+		return -1;
+	for (size_t i = 0; i < n; i++)
+		of[i] |= t->own[i];
+	return 0;
+}
+
+int locate_things(char *of, const struct lifted *l, const struct extent *extents, const size_t *things,
+	size_t count, enum locate_show show, const struct splats *s, const float *most, struct err *e)
+{
+	const struct taking t = {l, s, most, mem_zalloc(s->n, sizeof(float), "object", e),
+		mem_alloc(s->n, 1, "object", e), mem_alloc(s->n, 1, "object", e), show};
+	int bad = !t.best || !t.own || !t.others;
+
+	memset(of, 0, s->n);
+	for (int64_t k = 0; k < l->indptr[l->objects] && !bad; k++)
+		t.best[l->index[k]] = fmaxf(t.best[l->index[k]], l->share[k]);
+	for (size_t i = 0; i < count && !bad; i++)
+		bad = take_thing(of, &t, things[i], &extents[things[i]], e);
+	free(t.best);
+	free(t.own);
+	free(t.others);
+	return bad ? -1 : 0;
+}
+
+int locate_answer(char *of, const struct responses *a, size_t answer, const struct extent *x,
+	enum locate_show show, const struct splats *s, const float *most, struct err *e)
+{
+	int32_t *ids = mem_alloc(s->n, sizeof *ids, "object", e);
+	float *responses = mem_alloc(s->n, sizeof *responses, "object", e);
+	const size_t n = ids && responses ? responses_gaussians(a, s->n, answer, ids, responses) : 0;
+	int bad = !ids || !responses;
+
+	memset(of, 0, s->n);
+	for (size_t i = 0; i < n; i++)
+		of[ids[i]] = 1;
+	if (show == LOCATE_ISOLATED)
+		only_of_extent(of, x, s->n);
+	bad = bad || inside_take(of, x, s, most, NULL, e);
+	free(ids);
+	free(responses);
+	return bad ? -1 : 0;
+}
+
+int locate_show(
+	struct splats *to, const struct splats *s, const char *of, enum locate_show show, struct err *e)
 {
 	char *kept = mem_alloc(s->n, 1, "scene", e);
 
 	*to = (struct splats){0};
 	if (!kept)
 		return -1;
-	memset(kept, show != LOCATE_ISOLATED, s->n);
-	for (size_t i = 0; i < x->n && show != LOCATE_COLOURED; i++)
-		kept[x->ids[i]] = show == LOCATE_ISOLATED;
+	for (size_t i = 0; i < s->n; i++)
+		kept[i] = show == LOCATE_COLOURED || (of[i] != 0) == (show == LOCATE_ISOLATED);
 	int bad = splats_keep(to, s, kept, e);
-	for (size_t i = 0; i < x->n && !bad && show == LOCATE_COLOURED; i++)
-		paint_one(to->sh + 3 * (size_t)s->sh_coefficients * (size_t)x->ids[i], s->sh_coefficients);
+	for (size_t i = 0; i < s->n && !bad && show == LOCATE_COLOURED; i++)
+		if (of[i])
+			paint_one(to->sh + 3 * (size_t)s->sh_coefficients * i, s->sh_coefficients);
 	free(kept);
 	return bad;
 }

@@ -17,12 +17,22 @@ struct located {
 int locate_all(struct located *all, const struct responses *a, const struct splats *s, const double up[3],
 	struct err *e);
 
-/* Which Gaussians a viewer shows of an answer, and in which colour. */
+/* What is shown of the Gaussians of an answer. */
 enum locate_show { LOCATE_COLOURED, LOCATE_ISOLATED, LOCATE_REMOVED };
 
-/* to: the scene with the answer's Gaussians painted, them alone, or the scene without them. splats_free it.
+/* of (N) gets 1 for the Gaussians of things of a lifted model (extents (O)), else 0: those that are mostly in
+ * a thing's masks, more than in another's, and those inside it (lift/inside.h). Strays are among them, as
+ * reflections lie far behind what shows them, but not to show the thing isolated. most (N):
+ * splat/visibility.h. Both return 0, or -1 with *e set. */
+int locate_things(char *of, const struct lifted *l, const struct extent *extents, const size_t *things,
+	size_t count, enum locate_show show, const struct splats *s, const float *most, struct err *e);
+/* The same of an answer by any model, whose things are not known; x: its extent. */
+int locate_answer(char *of, const struct responses *a, size_t answer, const struct extent *x,
+	enum locate_show show, const struct splats *s, const float *most, struct err *e);
+
+/* to: the scene with the Gaussians of (N) painted, them alone, or the scene without them. splats_free it.
  * Returns 0, or -1 with *e set and *to zeroed. */
-int locate_show(struct splats *to, const struct splats *s, const struct extent *x, enum locate_show show,
-	struct err *e);
+int locate_show(
+	struct splats *to, const struct splats *s, const char *of, enum locate_show show, struct err *e);
 
 #endif

@@ -13,7 +13,8 @@ struct tree {
 };
 
 struct search {
-	size_t from;
+	const float *from;
+	size_t self; /* of the points, or none */
 	int k;
 	double nearest[NEIGHBOURS_MOST]; /* squared, rising */
 };
@@ -83,7 +84,7 @@ static void offer(struct search *s, double squared)
 
 static void look(const struct tree *t, size_t low, size_t high, int axis, struct search *s)
 {
-	const float *from = t->points + 3 * s->from;
+	const float *from = s->from;
 
 	while (high > low) {
 		const size_t middle = low + (high - low) / 2, here = t->order[middle];
@@ -91,7 +92,7 @@ static void look(const struct tree *t, size_t low, size_t high, int axis, struct
 		const double x = (double)p[0] - from[0], y = (double)p[1] - from[1],
 			     z = (double)p[2] - from[2];
 		const double side = (double)from[axis] - p[axis];
-		if (here != s->from)
+		if (here != s->self)
 			offer(s, x * x + y * y + z * z);
 		axis = (axis + 1) % 3;
 		if (side < 0) {
@@ -106,7 +107,9 @@ static void look(const struct tree *t, size_t low, size_t high, int axis, struct
 	}
 }
 
-int neighbours_find(const float *points, size_t n, int k, float *distance, struct err *e)
+/* from (m,3) are the points where `is_same`, else others. */
+static int find(const float *points, size_t n, const float *from, size_t m, int is_same, int k,
+	float *distance, struct err *e)
 {
 	struct tree t = {points, mem_alloc(n, sizeof *t.order, "neighbours", e)};
 
@@ -116,8 +119,8 @@ int neighbours_find(const float *points, size_t n, int k, float *distance, struc
 		t.order[i] = i;
 	build(&t, 0, n, 0);
 #pragma omp parallel for schedule(dynamic, 1024)
-	for (size_t i = 0; i < n; i++) {
-		struct search s = {.from = i, .k = k};
+	for (size_t i = 0; i < m; i++) {
+		struct search s = {.from = from + 3 * i, .self = is_same ? i : n, .k = k};
 		for (int j = 0; j < k; j++)
 			s.nearest[j] = INFINITY;
 		look(&t, 0, n, 0, &s);
@@ -125,4 +128,15 @@ int neighbours_find(const float *points, size_t n, int k, float *distance, struc
 	}
 	free(t.order);
 	return 0;
+}
+
+int neighbours_find(const float *points, size_t n, int k, float *distance, struct err *e)
+{
+	return find(points, n, points, n, 1, k, distance, e);
+}
+
+int neighbours_of(
+	const float *points, size_t n, const float *from, size_t m, int k, float *distance, struct err *e)
+{
+	return find(points, n, from, m, 0, k, distance, e);
 }

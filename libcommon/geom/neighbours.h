@@ -12,4 +12,8 @@ enum { NEIGHBOURS_MOST = 16 };
  * (n,3), k from 1 to NEIGHBOURS_MOST. Returns 0, or -1 with *e set. */
 int neighbours_find(const float *points, size_t n, int k, float *distance, struct err *e);
 
+/* The same of each of `from` (m,3), which are none of the points. */
+int neighbours_of(
+	const float *points, size_t n, const float *from, size_t m, int k, float *distance, struct err *e);
+
 #endif

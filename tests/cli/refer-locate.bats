@@ -146,31 +146,32 @@ Try 'refer-locate --help'." --refs pink-cone-1,none
 	grep -a -q '^property float x' near.ply
 }
 
-@test "--ply: isolated and removed are all of the scene, coloured too, and gs-import reads them back" {
+@test "--ply: isolated has what the line names and what is inside it, removed nothing of that, coloured all; gs-import reads them back" {
 	for show in coloured isolated removed; do
 		locate --refs brown-box-1 --show $show --ply $show.ply -o boxes.jsonl
 	done
 	count=$(jq .count boxes.jsonl)
 	[ "$(vertices coloured.ply)" = 1000 ]
-	[ "$(vertices isolated.ply)" = "$count" ]
-	[ "$(vertices removed.ply)" = $((1000 - count)) ]
+	[ "$(vertices isolated.ply)" -ge "$count" ]
+	[ "$(vertices removed.ply)" -le $((1000 - count)) ]
 	for show in coloured isolated removed; do
 		"$BIN/gs-import" -q --cameras "$made/sparse/0" --images "$made/images" -o $show $show.ply
 		[[ $("$BIN/gs-check" $show/splats.safetensors) == *": ok: refer.splats, $(vertices $show.ply) gaussians, 4 harmonics, scene "* ]]
 	done
 	means scene/splats.safetensors 1000 >all
 	means coloured/splats.safetensors 1000 | cmp - all
-	{
-		means isolated/splats.safetensors "$count"
-		means removed/splats.safetensors $((1000 - count))
-	} | sort | cmp - <(sort all)
-	jq -r '.gaussians[] + 1' boxes.jsonl | sed 's/$/p/' | sed -n -f - all | cmp - <(means isolated/splats.safetensors "$count")
+	jq -r '.gaussians[] + 1' boxes.jsonl | sed 's/$/p/' | sed -n -f - all | sort >own
+	means isolated/splats.safetensors "$(vertices isolated.ply)" | sort >alone
+	means removed/splats.safetensors "$(vertices removed.ply)" | sort >rest
+	[ -z "$(comm -23 own alone)" ]
+	[ -z "$(comm -12 alone rest)" ]
+	[ -z "$(sort -u alone rest | comm -23 - <(sort all))" ]
 }
 
 @test "--splat: 32 bytes for each Gaussian, the largest first" {
 	locate --refs brown-box-1 --show isolated --splat x.splat -o boxes.jsonl
 	count=$(jq .count boxes.jsonl)
-	[ "$(wc -c <x.splat)" = $((32 * count)) ]
+	[ "$(wc -c <x.splat)" -ge $((32 * count)) ] && [ $(($(wc -c <x.splat) % 32)) = 0 ]
 	od -An -v -w32 -t f4 x.splat | awk '{ print $4 * $5 * $6 }' >volumes
 	od -An -v -w32 -t u1 x.splat | awk '{ print $28 }' | paste volumes - |
 		awk '$2 > 25 { size = $1 * $2; bad = bad || (n++ && size > last * 1.04); last = size } END { exit bad || n < 20 }'
@@ -178,6 +179,38 @@ Try 'refer-locate --help'." --refs pink-cone-1,none
 	jq -r '[.centre[], (.max[0] - .min[0])] | @tsv' boxes.jsonl >centre
 	od -An -v -w32 -t f4 x.splat | awk 'NR == FNR { split($0, c); next } { x += $1; n++ }
 		END { exit !((x / n - c[1]) ^ 2 < (c[4] / 2) ^ 2) }' centre -
+}
+
+@test "of a folder of lift.mk: one question and what is done with the thing" {
+	mkdir -p run/lifted
+	cp -r scene run/scene
+	"$BIN/refer-lift" -q --scene scene --weights "$made/weights" --text "$made/all.safetensors" --masks "$made/lift-masks.jsonl" \
+		-o run/lifted/model.safetensors
+	of() { "$BIN/refer-locate" run --encoder "$made/encoder" "$@"; }
+	"$BIN/refer-locate" --scene scene --text "$made/all.safetensors" --model run/lifted/model.safetensors --refs brown-box-1 \
+		--show removed --ply expected.ply -o /dev/null
+	of "the brown box" --remove -o rest.ply >said
+	grep -qE '^brown box [0-9]+%: [0-9]+ of 1000 Gaussians$' said
+	[ "$(sed 's/.*: //; s/ of.*//' said)" = $((1000 - $(vertices rest.ply))) ]
+	cmp rest.ply expected.ply
+	of "the brown box" --alone --threads 1 -o alone.ply >one
+	of "the brown box" --alone --threads 2 -o two.ply | cmp - one
+	cmp alone.ply two.ply
+	of "the brown box" --colour -o coloured.splat >said
+	[ "$(wc -c <coloured.splat)" = 32000 ]
+	mkdir out
+	says 1 "refer-locate: nothing here is that: it does not say which thing is meant" of "..." --remove -o out/x.ply
+	says 4 "refer-locate: no/x.ply: No such file or directory" of "the brown box" --remove --encoder none -o no/x.ply
+	usage() { says 2 "refer-locate: $1
+Try 'refer-locate --help'." "${@:2}"; }
+	usage "RUN goes with a QUESTION and one of --colour, --alone and --remove" of "the brown box" -o out/x.ply
+	usage "RUN goes with a QUESTION and one of --colour, --alone and --remove" of --remove -o out/x.ply
+	usage "RUN goes with a QUESTION and one of --colour, --alone and --remove" of "the brown box" --remove --alone -o out/x.ply
+	usage "-o out/x.jsonl: not .ply, .splat, .spz, .glb or .sog: it is for the scene" of "the brown box" --remove -o out/x.jsonl
+	usage "RUN QUESTION goes with --scene, --model, --encoder, --viewpoint and -o only: it needs no sentences" \
+		of "the brown box" --remove --text text.safetensors -o out/x.ply
+	usage "--colour, --alone, --remove and --encoder are for RUN QUESTION" locate --remove -o out/x.ply
+	[ -z "$(ls -A out)" ]
 }
 
 @test "scenes are of one sentence" {
@@ -239,7 +272,7 @@ last_property() {
 pink cone.ply
 yellow bowl.ply" ]
 	for n in 1 2 3; do
-		[ "$(vertices "objects/$(jq -r "select(.label == $n).object" labels.jsonl).ply")" = "$(jq "select(.label == $n).count" labels.jsonl)" ]
+		[ "$(vertices "objects/$(jq -r "select(.label == $n).object" labels.jsonl).ply")" -ge "$(jq "select(.label == $n).count" labels.jsonl)" ]
 	done
 	"$BIN/refer-locate" --scene scene --text "$made/all.safetensors" --model lifted.safetensors --refs brown-box-1 \
 		--show isolated --ply alone.ply -o /dev/null
