@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/path.h"
+#include "base/textfile.h"
 #include "formats/foreign.h"
 #include "formats/png.h"
 
@@ -237,5 +238,5 @@ int annotations_read(struct annotations *a, const char *path, struct err *e)
 	free(r.flips);
 	free(r.mask);
 	free(r.points);
-	return bad ? -1 : 0;
+	return bad ? textfile_note(path, e) : 0;
 }

@@ -82,7 +82,7 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e)
 		bad = err_set(e, ERR_FORMAT, "%s: no views", name);
 	if (bad)
 		cameras_free(c);
-	return bad;
+	return bad ? textfile_note(path, e) : 0;
 }
 
 int camerafile_need_pinholes(const struct cameras *c, const char *path, const char *images, struct err *e)

@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/utf8.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,5 +91,18 @@ int textfile_read(const char *path, char **text, size_t *len, struct err *e)
 		return 0;
 	free(*text);
 	*text = NULL;
+	return -1;
+}
+
+int textfile_note(const char *path, struct err *e)
+{
+	char begin[4];
+	FILE *in = strcmp(path, "-") && !file_is_pipe(path) ? fopen(path, "rb") : NULL;
+	const size_t used = strlen(e->message);
+
+	if (in && textfile_is_wide(begin, fread(begin, 1, sizeof begin, in)))
+		snprintf(e->message + used, sizeof e->message - used, " (read as UTF-16)");
+	if (in)
+		fclose(in);
 	return -1;
 }

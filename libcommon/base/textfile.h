@@ -16,4 +16,8 @@ int textfile_decode(char **text, size_t *len, const char *name, struct err *e);
 /* As file_read, decoded. *text is NULL on failure. */
 int textfile_read(const char *path, char **text, size_t *len, struct err *e);
 
+/* After an error of what a file says: that it is UTF-16, where it is and can be read again, goes behind the
+ * message. -1. */
+int textfile_note(const char *path, struct err *e);
+
 #endif
