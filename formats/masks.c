@@ -2,10 +2,10 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "base/names.h"
 #include "base/number.h"
 #include "base/path.h"
 #include "formats/png.h"
+#include "geom/views.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -269,37 +269,76 @@ int masks_check_shape(const struct mask *m, const char *of, int height, int widt
 	return err_prefix(e, where);
 }
 
-/* A view that is named by folder and file, where the scene has no two files of that name. */
-static int no_view(const struct names *names, const char *view, const char *path, long line, struct err *e)
+int masks_find_view(
+	struct mask *m, const struct names *names, const struct cameras *c, size_t *at, struct err *e)
 {
-	const char *file = strchr(view, '_');
+	int is_so = 0;
 
-	while (file && names_find(names, file + 1) == NAMES_NONE)
-		file = strchr(file + 1, '_');
-	return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%.300s'%s%.300s%s",
-		file_name(path), line, view, file ? ", but '" : "", file ? file + 1 : "",
-		file ? "': are photographs of other folders not in it? Take only the labels of its own" : "");
+	*at = names_find(names, m->view);
+	for (size_t v = 0; v < c->n && *at == NAMES_NONE; v++)
+		if ((is_so = view_is_called(&c->views[v], m->view, e)) > 0)
+			*at = v;
+		else if (is_so < 0)
+			return -1;
+	if (is_so <= 0)
+		return 0;
+	char *name = mem_strdup(c->views[*at].name, e);
+	free((char *)m->view);
+	m->view = name;
+	return name ? 0 : -1;
 }
 
-int masks_views(const struct masks *set, const long *lines, const char *path, const struct cameras *cameras,
-	size_t *views, struct err *e)
+/* Leaves out the masks of views that the scene lacks: COLMAP may have left photographs out. Of all masks it
+ * is an error. */
+static int leave_out(struct masks *set, long *lines, size_t *views, const char *path, const struct report *to,
+	struct err *e)
+{
+	size_t kept = 0, first = set->n;
+
+	for (size_t i = 0; i < set->n; i++)
+		first = views[i] == NAMES_NONE && first == set->n ? i : first;
+	for (size_t i = 0; i < set->n; i++)
+		kept += views[i] != NAMES_NONE;
+	if (kept == set->n)
+		return 0;
+	if (!kept)
+		return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%.300s'",
+			file_name(path), lines[first], set->items[first].view);
+	report_warn(to,
+		"%s:%ld: the scene has no view '%.300s': %zu of %zu masks, of views that it lacks, are left out",
+		file_name(path), lines[first], set->items[first].view, set->n - kept, set->n);
+	kept = 0;
+	for (size_t i = 0; i < set->n; i++) {
+		if (views[i] == NAMES_NONE) {
+			mask_free(&set->items[i]);
+			continue;
+		}
+		set->items[kept] = set->items[i];
+		lines[kept] = lines[i];
+		views[kept++] = views[i];
+	}
+	set->n = kept;
+	return 0;
+}
+
+int masks_views(struct masks *set, long *lines, const char *path, const struct cameras *cameras,
+	size_t *views, const struct report *to, struct err *e)
 {
 	struct names names;
 	int bad = names_make(
 		&names, cameras->views, sizeof *cameras->views, offsetof(struct camera, name), cameras->n, e);
 
 	for (size_t i = 0; i < set->n && !bad; i++) {
-		const size_t at = names_find(&names, set->items[i].view);
-		if (at == NAMES_NONE && views)
-			bad = no_view(&names, set->items[i].view, path, lines[i], e);
+		size_t at;
+		bad = masks_find_view(&set->items[i], &names, cameras, &at, e);
 		if (views)
 			views[i] = at;
-		if (at != NAMES_NONE && (views || !cameras->views[at].lens.model))
+		if (!bad && at != NAMES_NONE && (views || !cameras->views[at].lens.model))
 			bad = masks_check_shape(&set->items[i], "the view", cameras->views[at].height,
 				cameras->views[at].width, path, lines[i], e);
 	}
 	names_free(&names);
-	return bad;
+	return bad ? -1 : views && set->n ? leave_out(set, lines, views, path, to, e) : 0;
 }
 
 static void put_number(FILE *out, const char *before, double x)

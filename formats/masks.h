@@ -3,6 +3,8 @@
 #define FORMATS_MASKS_H
 
 #include "base/err.h"
+#include "base/names.h"
+#include "base/report.h"
 #include "formats/jsonl.h"
 #include "geom/camera.h"
 #include "mask/mask.h"
@@ -24,11 +26,17 @@ int masks_pool(struct pool *p, const struct masks *set, const long *lines, const
 /* 0 where a mask, of a line of a file, has the shape of what it is of: mask_check_shape. */
 int masks_check_shape(const struct mask *m, const char *of, int height, int width, const char *path,
 	long line, struct err *e);
-/* views (n): the number of each record's view. ERR_FORMAT where there is none of the name, or its shape is
- * not the mask's. With NULL the masks of views that are not there are left alone, and those of photographs
- * that a lens distorts. */
-int masks_views(const struct masks *set, const long *lines, const char *path, const struct cameras *cameras,
-	size_t *views, struct err *e);
+/* *at: the view of a scene, whose names (names) are these, that a mask is of by its name or by its
+ * photograph's (view_is_called), which the mask then has; NAMES_NONE where there is none. */
+int masks_find_view(
+	struct mask *m, const struct names *names, const struct cameras *c, size_t *at, struct err *e);
+
+/* views (n): the number of each record's view, which the record then names as the scene does
+ * (view_is_called). Masks of views that the scene lacks are left out, with a warning; ERR_FORMAT where that
+ * leaves none, or a mask has not the shape of its view. With NULL (and no report) nothing is left out, and
+ * masks of photographs that a lens distorts are not compared. */
+int masks_views(struct masks *set, long *lines, const char *path, const struct cameras *cameras,
+	size_t *views, const struct report *to, struct err *e);
 
 /* One line. Keys in the order view, ref, object, score, visible, peak, boxes, segmentation; absent ones left
  * out. */

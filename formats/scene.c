@@ -211,10 +211,22 @@ static int read_lens(struct lens *l, const cJSON *view, const char *path, int in
 	return 0;
 }
 
+/* A string that may be absent. */
+static int read_path(
+	char **to, const cJSON *view, const char *key, const char *path, int index, struct err *e)
+{
+	const cJSON *value = cJSON_GetObjectItemCaseSensitive(view, key);
+
+	if (!value || cJSON_IsNull(value))
+		return 0;
+	if (!cJSON_IsString(value))
+		return err_set(e, ERR_FORMAT, "%s: view %d: key '%s' is not a string", path, index, key);
+	return (*to = mem_strdup(value->valuestring, e)) ? 0 : -1;
+}
+
 static int read_view(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
 {
 	const cJSON *split = cJSON_GetObjectItemCaseSensitive(view, "split");
-	const cJSON *image = cJSON_GetObjectItemCaseSensitive(view, "image");
 	double width = 0, height = 0;
 
 	if (read_name(c, view, path, index, e) || view_number(view, "width", path, index, &width, e) ||
@@ -238,13 +250,8 @@ static int read_view(struct camera *c, const cJSON *view, const char *path, int 
 		return err_set(
 			e, ERR_FORMAT, "%s: view %d: key 'split' is not \"train\" or \"test\"", path, index);
 	c->split = !strcmp(split->valuestring, "test") ? SPLIT_TEST : SPLIT_TRAIN;
-	if (cJSON_IsString(image)) {
-		c->image = mem_strdup(image->valuestring, e);
-		return c->image ? 0 : -1;
-	}
-	if (image && !cJSON_IsNull(image))
-		return err_set(e, ERR_FORMAT, "%s: view %d: key 'image' is not a string", path, index);
-	return 0;
+	return read_path(&c->image, view, "image", path, index, e) ||
+	       read_path(&c->source, view, "source", path, index, e);
 }
 
 static int check_unique(const struct cameras *c, const char *path, struct err *e)
@@ -358,6 +365,10 @@ static int put_view(FILE *out, const struct camera *c)
 	}
 	fprintf(out, "],\n  \"split\":\"%s\",\"image\":", c->split == SPLIT_TEST ? "test" : "train");
 	int bad = put_string(out, c->image);
+	if (c->source) {
+		fputs(",\"source\":", out);
+		bad = bad || put_string(out, c->source);
+	}
 	if (c->lens.model)
 		put_lens(out, &c->lens);
 	fputs("}", out);

@@ -97,7 +97,7 @@ int exporting_read(struct exporting *x, const char *masks, const char *scene, in
 	const int bad = masks_read_lines(&x->masks, &lines, masks, e) ||
 			(scene && read_cameras(x, scene, e)) ||
 			(distort ? distort_masks(x, scene, e)
-				 : masks_views(&x->masks, lines, masks, &x->cameras, NULL, e));
+				 : masks_views(&x->masks, lines, masks, &x->cameras, NULL, NULL, e));
 
 	free(lines);
 	if (bad)

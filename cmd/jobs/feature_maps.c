@@ -137,10 +137,10 @@ static int find_masks(struct feature_maps *m, const struct report *to, struct er
 
 	int bad = masks_read_lines(&m->set, &lines, o->masks, e) ||
 		  (o->text && text_read(&m->text, o->text, e)) ||
-		  mask_index_make(&m->index, m->set.items, m->set.n, MASK_BY_OBJECT, e) ||
 		  !(views = mem_alloc(m->set.n, sizeof *views, "masks", e)) ||
-		  !(m->row = mem_alloc(m->set.n, sizeof *m->row, "masks", e)) ||
-		  masks_views(&m->set, lines, o->masks, c, views, e) || find_rows(m, to, e);
+		  masks_views(&m->set, lines, o->masks, c, views, to, e) ||
+		  mask_index_make(&m->index, m->set.items, m->set.n, MASK_BY_OBJECT, e) ||
+		  !(m->row = mem_alloc(m->set.n, sizeof *m->row, "masks", e)) || find_rows(m, to, e);
 	for (size_t v = 0; v < c->n && !bad; v++)
 		m->is_there[v] = c->views[v].split == SPLIT_TRAIN;
 	m->kind = o->text ? MAPS_MASKS : MAPS_MASK_LABELS;

@@ -147,7 +147,7 @@ static int learn_from(struct learning *l, const struct report *to, struct err *e
 	const struct learning_options *o = l->options;
 	struct training *d = &l->data;
 
-	if (training_read(d, &o->from, o->trainer.hold_out, o->trainer.seed, e))
+	if (training_read(d, &o->from, o->trainer.hold_out, o->trainer.seed, to, e))
 		return -1;
 	if (d->left_out)
 		report_warn(to, "%s: %zu training sentences without words are left out", o->from.text,

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 /* The masks of a file, and the view of each, after those that there are. */
-static int add_masks(struct lifting *l, const char *path, struct err *e)
+static int add_masks(struct lifting *l, const char *path, const struct report *to, struct err *e)
 {
 	struct masks set;
 	long *lines;
@@ -21,7 +21,7 @@ static int add_masks(struct lifting *l, const char *path, struct err *e)
 		return -1;
 	int bad = mem_grow((void **)&l->views, &l->view_capacity, l->set.n + set.n, sizeof *l->views, "masks",
 			  e) ||
-		  masks_views(&set, lines, path, &l->scene.cameras, l->views + l->set.n, e);
+		  masks_views(&set, lines, path, &l->scene.cameras, l->views + l->set.n, to, e);
 	while (taken < set.n && !bad)
 		bad = masks_add(&l->set, &set.items[taken++], e);
 	while (taken < set.n)
@@ -31,13 +31,13 @@ static int add_masks(struct lifting *l, const char *path, struct err *e)
 	return bad ? -1 : 0;
 }
 
-static int load(struct lifting *l, struct err *e)
+static int load(struct lifting *l, const struct report *to, struct err *e)
 {
 	if (scene_read(&l->scene, l->files->scene, e) || text_read(&l->text, l->files->text, e) ||
-		add_masks(l, l->files->masks, e))
+		add_masks(l, l->files->masks, to, e))
 		return -1;
 	l->own = l->set.n;
-	if (l->files->spare && add_masks(l, l->files->spare, e))
+	if (l->files->spare && add_masks(l, l->files->spare, to, e))
 		return -1;
 	if (!l->text.pieces)
 		return err_set(e, ERR_FORMAT, "%s: has no word pieces: encode the sentences anew",
@@ -226,7 +226,7 @@ static int lift(struct lifting *l, const struct report *to, struct err *e)
 int lifting_read(struct lifting *l, const struct lifting_files *files, const struct report *to, struct err *e)
 {
 	l->files = files;
-	if (load(l, e) || parser_weights_default(&l->weights, e) ||
+	if (load(l, to, e) || parser_weights_default(&l->weights, e) ||
 		parser_weights_need_middle(
 			&l->weights, file_name(files->text), l->text.middle, &l->text.encoder, e) ||
 		find_views(l, to, e) || find_sentences(l, e))

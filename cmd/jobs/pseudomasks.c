@@ -238,14 +238,17 @@ static int put_all(struct by_views *b, const struct report *to, struct err *e)
 	return 0;
 }
 
+static int find_views(struct pseudomasks *w, const struct report *to, struct err *e)
+{
+	w->views = mem_alloc(w->set.n, sizeof *w->views, "views", e);
+	return !w->views || scene_read(&w->scene, w->options->scene, e) ||
+	       masks_views(&w->set, w->lines, w->options->candidates, &w->scene.cameras, w->views, to, e);
+}
+
 static int put_views(struct pseudomasks *w, const struct report *to, struct err *e)
 {
 	struct by_views b = {.w = w};
 
-	w->views = mem_alloc(w->set.n, sizeof *w->views, "views", e);
-	if (!w->views || scene_read(&w->scene, w->options->scene, e) ||
-		masks_views(&w->set, w->lines, w->options->candidates, &w->scene.cameras, w->views, e))
-		return -1;
 	splats_keep_means(&w->scene.splats);
 	const size_t views = w->scene.cameras.n;
 	b.is_there = mem_alloc(views, 1, "views", e);
@@ -272,8 +275,9 @@ int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *op
 	struct file_out out, spare;
 
 	w->options = options;
-	if (masks_read_lines(&w->set, &w->lines, w->options->candidates, e) ||
-		masks_pool(&w->pool, &w->set, w->lines, w->options->candidates, e))
+	if (masks_read_lines(&w->set, &w->lines, options->candidates, e) ||
+		(method >= PSEUDOMASK_FIRST && find_views(w, to, e)) ||
+		masks_pool(&w->pool, &w->set, w->lines, options->candidates, e))
 		return -1;
 	if (!w->set.n)
 		report_warn(to, "%s: no candidates", file_name(w->options->candidates));

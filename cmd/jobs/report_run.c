@@ -111,7 +111,7 @@ static int read_set(struct report_run *r, size_t place, struct err *e)
 		*s = (struct report_set){.way = places[place].way, .name = places[place].name};
 		r->set_count++;
 		bad = text_read(&s->text, text, e) || score_masks_read(&s->masks, masks, e) ||
-		      masks_views(&s->masks.set, s->masks.lines, masks, &r->scene.cameras, NULL, e);
+		      masks_views(&s->masks.set, s->masks.lines, masks, &r->scene.cameras, NULL, NULL, e);
 		bad = bad || (r->truth_path && score_set(r, s, e));
 		s->masks.path = NULL;
 	}
@@ -201,7 +201,7 @@ int report_run_read(
 	if (read_scene(r, e) || read_lifted(r, e) || find_truth(r, e) ||
 		(r->truth_path && (score_masks_read(&r->truth, r->truth_path, e) ||
 					  masks_views(&r->truth.set, r->truth.lines, r->truth_path,
-						  &r->scene.cameras, NULL, e))) ||
+						  &r->scene.cameras, NULL, NULL, e))) ||
 		read_sets(r, to, e))
 		return -1;
 	return choose_views(r, e);

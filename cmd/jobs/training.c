@@ -131,8 +131,8 @@ static int hold_out(
 	return 0;
 }
 
-static int read_all(
-	struct training *t, const struct training_files *from, double share, uint64_t seed, struct err *e)
+static int read_all(struct training *t, const struct training_files *from, double share, uint64_t seed,
+	const struct report *to, struct err *e)
 {
 	size_t pairs = 0;
 
@@ -143,7 +143,7 @@ static int read_all(
 		return -1;
 	if (!t->sentences)
 		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(from->text));
-	if (training_read_masks(t, from->weights, from->masks, e) ||
+	if (training_read_masks(t, from->weights, from->masks, to, e) ||
 		supervision_link(
 			&t->masks, t->refs, t->object_names, t->sentences, t->views.views, t->views.n, e))
 		return -1;
@@ -159,11 +159,11 @@ static int read_all(
 	return 0;
 }
 
-int training_read(
-	struct training *t, const struct training_files *from, double share, uint64_t seed, struct err *e)
+int training_read(struct training *t, const struct training_files *from, double share, uint64_t seed,
+	const struct report *to, struct err *e)
 {
 	*t = (struct training){0};
-	int bad = read_all(t, from, share, seed, e);
+	int bad = read_all(t, from, share, seed, to, e);
 	if (bad)
 		training_free(t);
 	return bad;

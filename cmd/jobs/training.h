@@ -4,6 +4,7 @@
 #define CMD_JOBS_TRAINING_H
 
 #include "base/err.h"
+#include "base/report.h"
 #include "cmd/jobs/training_views.h"
 #include "formats/checkpoint.h"
 #include "formats/precision.h"
@@ -36,8 +37,8 @@ struct training_files {
 	const char *lifted; /* NULL: no warm start */
 };
 
-int training_read(
-	struct training *t, const struct training_files *from, double hold_out, uint64_t seed, struct err *e);
+int training_read(struct training *t, const struct training_files *from, double hold_out, uint64_t seed,
+	const struct report *to, struct err *e);
 /* What a checkpoint of it is of. */
 struct checkpoint_of training_identity(
 	const struct training *t, const struct training_files *from, const struct trainer_options *o);

@@ -13,25 +13,30 @@ struct mask_reading {
 	struct names names; /* of the scene's views */
 	long *view_of;	    /* (the scene's views) the training view, or -1 */
 	size_t capacity;
-	long *lines; /* of each mask that was kept */
+	long *lines;	/* of each mask that was kept */
+	size_t unknown; /* masks of views that the scene lacks */
+	struct err why; /* the first of them */
 };
 
 /* One mask, taken over: its view's weights are read when it is the first of the view. */
 static int add_mask(
 	struct training *t, const struct jsonl *j, struct mask *m, struct mask_reading *r, struct err *e)
 {
-	const size_t place = names_find(&r->names, m->view), n = t->masks.masks.n;
-	const struct camera *c = t->scene.cameras.views + (place == NAMES_NONE ? 0 : place);
-	int bad = 0;
+	const size_t n = t->masks.masks.n;
+	size_t place;
+	int bad = masks_find_view(m, &r->names, &t->scene.cameras, &place, e);
+	const int is_unknown = !bad && place == NAMES_NONE;
+	const struct camera *c = t->scene.cameras.views + (bad || is_unknown ? 0 : place);
 
-	if (place == NAMES_NONE)
-		bad = jsonl_err(j, e, "key 'view': the scene has no view '%s'", m->view);
-	else
-		bad = masks_check_shape(m, "the view", c->height, c->width, j->path, j->line_number, e);
-	t->test_masks += !bad && c->split == SPLIT_TEST;
-	if (bad || c->split == SPLIT_TEST) {
+	if (is_unknown && !r->unknown++)
+		jsonl_err(j, &r->why, "key 'view': the scene has no view '%s'", m->view);
+	if (!is_unknown)
+		bad = bad ||
+		      masks_check_shape(m, "the view", c->height, c->width, j->path, j->line_number, e);
+	t->test_masks += !bad && !is_unknown && c->split == SPLIT_TEST;
+	if (bad || is_unknown || c->split == SPLIT_TEST) {
 		mask_free(m);
-		return bad;
+		return bad ? -1 : 0;
 	}
 	long *view = &r->view_of[place];
 	if (*view < 0) {
@@ -71,7 +76,20 @@ static int add_masks(struct training *t, const char *path, struct mask_reading *
 	return err_set(e, ERR_FORMAT, "%s:%ld: %s", file_name(path), r->lines[later], reason.message);
 }
 
-int training_read_masks(struct training *t, const char *weights, const char *path, struct err *e)
+/* Masks of views that the scene lacks are left out, unless all are. */
+static int check_unknown(
+	const struct training *t, const struct mask_reading *r, const struct report *to, struct err *e)
+{
+	if (!r->unknown)
+		return 0;
+	if (!t->masks.masks.n && !t->test_masks)
+		return err_set(e, ERR_FORMAT, "%s", r->why.message);
+	report_warn(to, "%s: %zu masks, of views that it lacks, are left out", r->why.message, r->unknown);
+	return 0;
+}
+
+int training_read_masks(
+	struct training *t, const char *weights, const char *path, const struct report *to, struct err *e)
 {
 	const size_t count = t->scene.cameras.n;
 	struct mask_reading r = {.view_of = mem_alloc(count, sizeof *r.view_of, "views", e)};
@@ -81,7 +99,7 @@ int training_read_masks(struct training *t, const char *weights, const char *pat
 			  offsetof(struct camera, name), count, e);
 	for (size_t v = 0; v < count && !bad; v++)
 		r.view_of[v] = -1;
-	bad = bad || add_masks(t, path, &r, e);
+	bad = bad || add_masks(t, path, &r, e) || check_unknown(t, &r, to, e);
 	names_free(&r.names);
 	free(r.view_of);
 	free(r.lines);

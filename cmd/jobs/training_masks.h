@@ -6,6 +6,7 @@
 
 /* Fills t->masks and, of the training views that they name, in the order in which they do, t->views,
  * t->weights and t->cameras. The scene has been read. Returns 0, or -1 with *e set. */
-int training_read_masks(struct training *t, const char *weights, const char *path, struct err *e);
+int training_read_masks(
+	struct training *t, const char *weights, const char *path, const struct report *to, struct err *e);
 
 #endif

@@ -11,6 +11,7 @@ void cameras_free(struct cameras *c)
 	for (size_t i = 0; i < c->n; i++) {
 		free(c->views[i].name);
 		free(c->views[i].image);
+		free(c->views[i].source);
 	}
 	free(c->views);
 	*c = (struct cameras){0};

@@ -18,8 +18,10 @@ struct lens {
 };
 
 struct camera {
-	char *name;  /* unique in a scene; owned */
-	char *image; /* path of the photograph as the scene's cameras.json has it, or NULL; owned */
+	char *name;   /* unique in a scene; owned */
+	char *image;  /* path of the photograph as the scene's cameras.json has it, or NULL; owned */
+	char *source; /* path of the photograph in the file of cameras where `name` lacks its folders, or
+			 NULL; owned */
 	int width, height;
 	double fx, fy, cx, cy;	      /* pixels; the centre of pixel (column i, row j) is (i+0.5, j+0.5) */
 	double world_to_camera[4][4]; /* row-major, rigid: x_camera = R x_world + t */

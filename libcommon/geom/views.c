@@ -166,10 +166,32 @@ int views_finish(struct cameras *c, const char *path, struct err *e)
 			bad = err_set(e, ERR_FORMAT, "%s: view '%s': %s", path, c->views[i].image, fault);
 	}
 	bad = bad || name_entries(entries, c->n, path, e);
-	for (size_t i = 0; i < c->n; i++)
-		c->views[i] = entries[i].view;
+	for (size_t i = 0; i < c->n; i++) {
+		struct camera *v = &c->views[i];
+		*v = entries[i].view;
+		const int lacks_folders =
+			!bad && entries[i].level == FILE_STEM && view_base(v->image) != v->image;
+		bad = bad || (lacks_folders && !(v->source = mem_strdup(v->image, e)));
+	}
 	free(entries);
-	return bad;
+	return bad ? -1 : 0;
+}
+
+int view_is_called(const struct camera *c, const char *name, struct err *e)
+{
+	int is_so = 0;
+
+	for (const char *from = c->source; from && !is_so; from = strchr(from, '/')) {
+		from += *from == '/';
+		char *part = mem_strdup(from, e);
+		if (part)
+			part[view_stem(part)] = 0;
+		char *called = part ? name_to_view(part, e) : NULL;
+		is_so = called ? !strcmp(called, name) : -1;
+		free(called);
+		free(part);
+	}
+	return is_so;
 }
 
 int views_name(const char *const *images, size_t n, char **names, const char *path, struct err *e)

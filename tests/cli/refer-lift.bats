@@ -243,13 +243,27 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 	refuses 3 "old: has no word pieces: encode the sentences anew" --text old
 }
 
+@test "masks of photographs by folder and file, some of a folder that the scene lacks" {
+	mkdir model
+	cp "$made/sparse/0/"* model
+	sed -i 's,view_[0-9]*\.png,left/&,' model/images.txt
+	"$BIN/gs-import" -q --cameras model --test-views "$(cat "$made/test-views")" -o scene "$made/point_cloud.ply"
+	jq -e '.[0] | .name == "view_000" and .source == "left/view_000.png"' scene/cameras.json
+	lift -q -o plain
+	jq -c '.view = "left_" + .view' masks.jsonl >folder.jsonl
+	{ jq -c '.view = "right_" + .view' masks.jsonl; cat folder.jsonl; } >both.jsonl
+	lift -q --masks folder.jsonl -o folder
+	cmp plain folder
+	lift --masks both.jsonl -o both 2>said
+	cmp plain both
+	n=$(wc -l <masks.jsonl)
+	grep -q "^refer-lift: warning: both.jsonl:1: the scene has no view 'right_view_00.': $n of $((2 * n)) masks, of views that it lacks, are left out$" said
+}
+
 @test "input that does not belong together, or is of another kind" {
 	jq -c '.view = "elsewhere"' masks.jsonl | head -n 1 >away
 	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'" --masks away
-	sed 's/elsewhere/left_view_000/' away >folder
-	refuses 3 "folder:1: key 'view': the scene has no view 'left_view_000', but 'view_000': are photographs of other folders not in it? Take only the labels of its own" --masks folder
-	cat masks.jsonl away >later
-	refuses 3 "later:$(wc -l <later): key 'view': the scene has no view 'elsewhere'" --spare later
+	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'" --spare away
 	refuses 3 "scene/splats.safetensors: format is 'refer.splats', expected 'refer.text'" --text scene/splats.safetensors
 	refuses 3 "scene/cameras.json: the cameras of a scene folder: name the folder in its place where a scene is wanted" --masks scene/cameras.json
 }
