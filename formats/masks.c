@@ -262,14 +262,15 @@ int masks_views(const struct masks *set, const long *lines, const char *path, co
 	size_t *views, struct err *e)
 {
 	struct names names;
+	char few[NAMES_FEW];
 	int bad = names_make(
 		&names, cameras->views, sizeof *cameras->views, offsetof(struct camera, name), cameras->n, e);
 
 	for (size_t i = 0; i < set->n && !bad; i++) {
 		views[i] = names_find(&names, set->items[i].view);
 		if (views[i] == NAMES_NONE)
-			bad = err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%s'",
-				file_name(path), lines[i], set->items[i].view);
+			bad = err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%s'%s",
+				file_name(path), lines[i], set->items[i].view, names_few(&names, few));
 	}
 	names_free(&names);
 	return bad;

@@ -191,9 +191,11 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	struct err *e)
 {
 	*found = (struct import_found){0};
-	if (anysplats_read(&s->splats, s->offset, report, o->splats, e) ||
-		read_cameras(&s->cameras, o, cameras, e) || move(s, o->splats, cameras, to, e) ||
-		split(&s->cameras, o->test_views, e))
+	/* Cameras first: what is wrong with them, or with a name of a view, is said before the splats, which
+	 * take longer. */
+	if (read_cameras(&s->cameras, o, cameras, e) || split(&s->cameras, o->test_views, e) ||
+		move(s, o->splats, cameras, to, e) ||
+		anysplats_read(&s->splats, s->offset, report, o->splats, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
 	char *metadata = describe_options(o->test_views, e);

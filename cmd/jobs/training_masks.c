@@ -22,10 +22,12 @@ static int add_mask(
 {
 	const size_t place = names_find(&r->names, m->view), n = t->masks.masks.n;
 	const struct camera *c = t->scene.cameras.views + (place == NAMES_NONE ? 0 : place);
+	char few[NAMES_FEW];
 	int bad = 0;
 
 	if (place == NAMES_NONE)
-		bad = jsonl_err(j, e, "key 'view': the scene has no view '%s'", m->view);
+		bad = jsonl_err(
+			j, e, "key 'view': the scene has no view '%s'%s", m->view, names_few(&r->names, few));
 	else if (c->split == SPLIT_TEST)
 		t->test_masks++;
 	if (bad || c->split == SPLIT_TEST) {

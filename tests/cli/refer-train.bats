@@ -261,7 +261,7 @@ cut_short() {
 
 @test "a mask of a view that the scene does not have" {
 	sed '3s/"view_[0-9]*"/"view_999"/' masks.jsonl >other.jsonl
-	refuses 3 "other.jsonl:3: key 'view': the scene has no view 'view_999'" --masks other.jsonl
+	refuses 3 "other.jsonl:3: key 'view': the scene has no view 'view_999'; there are 5: view_000, view_001, view_002, view_003, view_004" --masks other.jsonl
 }
 
 @test "two masks of one sentence or object in a view" {
