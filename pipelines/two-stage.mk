@@ -14,8 +14,8 @@
 # SENTENCES   sentences, JSON Lines (required, but with MASKS)
 # CANDIDATES  candidate masks, JSON Lines (required, but with MASKS)
 # MASKS       masks that a person drew, in place of CANDIDATES: JSON of LabelMe, COCO or a detector (Grounded-SAM-2), or a folder of
-#             such; pictures, with NAMES; a folder of VIEW/NAME.png; or mask records, JSON Lines. Where SENTENCES is not given, the names of the things are the sentences. A PNG that
-#             mask records name is not watched for changes
+#             such; pictures, with NAMES; a folder of VIEW/NAME.png; or mask records, JSON Lines. Where SENTENCES is not given, the
+#             names of the things are the sentences. A PNG that mask records name is not watched for changes
 # NAMES       what the colours of MASKS mean, as mask-import takes it: MASKS is then a painted photograph, a PNG with the name
 #             of its view, or a folder of such
 # TRUTH       true masks to score against; optional
