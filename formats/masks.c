@@ -290,9 +290,10 @@ int masks_find_view(
 
 /* Leaves out the masks of views that the scene lacks: COLMAP may have left photographs out. Of all masks it
  * is an error. */
-static int leave_out(struct masks *set, long *lines, size_t *views, const char *path, const struct report *to,
-	struct err *e)
+static int leave_out(struct masks *set, long *lines, size_t *views, const char *path,
+	const struct names *names, const struct report *to, struct err *e)
 {
+	char few[NAMES_FEW];
 	size_t kept = 0, first = set->n;
 
 	for (size_t i = 0; i < set->n; i++)
@@ -302,8 +303,8 @@ static int leave_out(struct masks *set, long *lines, size_t *views, const char *
 	if (kept == set->n)
 		return 0;
 	if (!kept)
-		return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%.300s'",
-			file_name(path), lines[first], set->items[first].view);
+		return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%.300s'%s",
+			file_name(path), lines[first], set->items[first].view, names_few(names, few));
 	report_warn(to,
 		"%s:%ld: the scene has no view '%.300s': %zu of %zu masks, of views that it lacks, are left out",
 		file_name(path), lines[first], set->items[first].view, set->n - kept, set->n);
@@ -337,8 +338,9 @@ int masks_views(struct masks *set, long *lines, const char *path, const struct c
 			bad = masks_check_shape(&set->items[i], "the view", cameras->views[at].height,
 				cameras->views[at].width, path, lines[i], e);
 	}
+	bad = bad || (views && set->n && leave_out(set, lines, views, path, &names, to, e));
 	names_free(&names);
-	return bad ? -1 : views && set->n ? leave_out(set, lines, views, path, to, e) : 0;
+	return bad ? -1 : 0;
 }
 
 static void put_number(FILE *out, const char *before, double x)

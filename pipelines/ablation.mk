@@ -31,7 +31,9 @@ SIZE ?= quick
 SCENES ?= diner toys tea kitchen
 THREADS ?= 1
 TRAIN ?= --feature-rate 0.01 --mlp-rate 0.0004
-$(call check,,OUT BIN BERT,SIZE SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS)
+tables := statistics unseen modules second similarity masks interaction width encoder contrast settings steps sentences lifted hard space
+$(call check,,OUT BIN BERT,SIZE SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS run.% masks.% text.% steps.% init.% lift.% \
+	ask.% $(tables) exact)
 ifeq ($(SIZE),full)
 SEEDS ?= 21 22
 ITERATIONS ?= 5000
@@ -146,7 +148,6 @@ lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike
 hard := two warmed lift-relations lift
 space := lift
 unseen := lift
-tables := statistics unseen modules second similarity masks interaction width encoder contrast settings steps sentences lifted hard space
 RUNS ?= $(sort $(foreach t,$(tables) exact,$($(t))))
 
 root := $(OUT)/$(SIZE)

@@ -28,25 +28,36 @@ options = $(foreach w,$($(1)),$(call quote,$(w)))
 unsafe := : ; & ' " ` $$ \ * ? [ ] { } < > | ! ~ % = $(hash) $(open) $(close)
 found_in = $(if $(findstring $(newline),$(1)),newline,$(if $(findstring $(space),$(1))$(findstring $(tab),$(1)),blank,$(firstword \
 	$(foreach c,$(unsafe),$(if $(findstring $(c),$(1)),$(c))))))
-refuse = $(error $(1) has a $(2), which file names cannot have here; use a symbolic link with another name)
+refuse = $(error $(called): $(1) has a $(2), which file names cannot have here; use a symbolic link with another name: ln -s OLD NEW)
 check_path = $(if $(call found_in,$($(1))),$(call refuse,$(1),$(call found_in,$($(1)))))$(if $(filter -%,$($(1))),$(error \
-	$(1) begins with a dash; write ./$($(1))))
-check_line = $(if $(findstring $(newline),$($(1))),$(error $(1) has a newline))
+	$(called): $(1) begins with a dash; write ./$($(1))))
+check_line = $(if $(findstring $(newline),$($(1))),$(error $(called): $(1) has a newline))
 
 # What the user gives is taken as it is: no $ in it stands for anything, here or where make exports it. $(call take,VARIABLE)
 take = $(if $(filter command environment,$(firstword $(origin $(1)))),$(eval override $(1) := $$(value $(1))))
 
-# Takes the variables: names of files and folders, and others. Stops where one that is needed is not set, or one cannot be
-# used. To be called before any of them is looked at. The pipeline that is named is the one that was called, which may include
-# others. $(call check,NEEDED,NAMES OF FILES,OTHERS)
+# What the command line may set besides: of make and the shell, of the programs, and of all pipelines.
+others_known := MAKEFLAGS MAKE SHELL HOME PATH TMPDIR XDG_CACHE_HOME OMP_% REFERSPLAT_% V BIN BERT
+
+# Takes the variables: names of files and folders, and others. Stops where one is not known, one that is needed is not set, one
+# cannot be used, or check.sh finds that its file cannot be. To be called once, before any of them is looked at. The pipeline that is
+# named is the one that was called, which may include others. Another make hands on variables of its own, so what it sets need not be
+# known. $(call check,NEEDED,NAMES OF FILES,OTHERS)
 define check
-$(foreach v,$(2) $(3),$(call take,$(v)))$(if $(filter help clean,$(MAKECMDGOALS)),,$(if $(call missing,$(1)),$(error \
-	$(called): $(call missing,$(1)) not set; 'make -f $(called) help' says what they are)))$(foreach v,$(2),$(call check_path,$(v)))$(foreach \
-	v,$(3),$(call check_line,$(v)))
+$(if $(filter-out 0,$(MAKELEVEL)),,$(foreach v,$(filter-out $(others_known) $(2) $(3),$(.VARIABLES)),$(if $(filter command%,$(origin \
+	$(v))),$(call unknown,$(v),$(2) $(3) V BIN BERT))))$(foreach v,$(2) $(3),$(call take,$(v)))$(if $(filter help clean,$(MAKECMDGOALS)),,$(if \
+	$(call missing,$(1)),$(error $(called): $(call missing,$(1)) not set$(ways); $(see_help))))$(foreach v,$(2),$(call \
+	check_path,$(v)))$(foreach v,$(3),$(call check_line,$(v)))$(if $(filter help clean,$(MAKECMDGOALS)),,$(call check_files,$(2) $(3)))
 endef
+see_help = 'make -f $(called) help' says what they are
+unknown = $(error $(called): $(1) is none of its variables$(call like,$(shell $(here)check.sh --closest $(call quote,$(1)) $(2))); 'make -f $(called) help' lists them)
+like = $(if $(1),: did you mean $(1)?)
+check_files = $(call stop,$(shell $(here)check.sh $(call quoted,tool_folder) $(foreach v,$(1),$(if $($(v)),$(call quote,$(v)=$($(v)))))))
+stop = $(if $(1),$(error $(called): $(1)))
 called := $(firstword $(MAKEFILE_LIST))
 missing = $(strip $(foreach v,$(1),$(if $($(v)),,$(v))))
 
+tool_folder = $(if $(BIN),$(BIN)/)
 tool = $(if $(BIN),$(call quote,$(BIN)/))
 
 # A step is a tool's command line, the variable command.STEP. log/STEP.command, which its results depend on, is what it was
@@ -57,7 +68,7 @@ track = $(foreach s,$(1),$(if $(call same,$(file <$(SCENE)/log/$(s).command),$(c
 
 # Variables that rules are made from: no character that the shell gives a meaning may be in them. $(call check_plain,VARIABLES)
 shell_characters := ; & ' " ` $$ \ * ? [ ] { } < > | ! ~ $(hash) $(open) $(close)
-check_plain = $(foreach v,$(1),$(foreach c,$(shell_characters),$(if $(findstring $(c),$($(v))),$(error $(v) has a $(c)))))
+check_plain = $(foreach v,$(1),$(foreach c,$(shell_characters),$(if $(findstring $(c),$($(v))),$(error $(called): $(v) has a $(c)))))
 
 # What is asked of a file that nothing but a command line makes: it holds that line, and is as old as the line.
 define keep

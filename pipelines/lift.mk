@@ -24,8 +24,9 @@
 .DEFAULT_GOAL := lifted
 SCALE ?= 0.3333
 WEIGH ?= --packed --tolerance 0.05
+more_files := ASK WHOLE BOXES
+more := RENDER WORDS
 include $(dir $(lastword $(MAKEFILE_LIST)))two-stage.mk
-$(call check,,ASK WHOLE BOXES,RENDER)
 
 asked := $(if $(ASK),$(SCENE)/lifted/asked.jsonl)
 answers := $(if $(TEST_VIEWS),$(foreach t,$(splits),$(SCENE)/lifted/predictions.$(t).jsonl) $(asked))

@@ -9,7 +9,8 @@
 # `make -f pipelines/parse.mk things` makes $(OUT)/things.vectors, to become libcommon/lang/things.vectors, with build/bench/fit_things.
 #
 # EXAMPLES (20000) sentences, SEED (1), EPOCHS (4), MEMBERS (2) networks, MARKED and TESTS (pipelines/marked/learn/*.txt, .../test/*.txt), SOURCE
-# what the weights say that they were learnt from, BERT the encoder's folder.
+# what the weights say that they were learnt from, BERT the encoder's folder, BIN that of the tools.
+
 here := $(dir $(lastword $(MAKEFILE_LIST)))
 OUT ?= work/parse
 EXAMPLES ?= 20000
@@ -20,15 +21,18 @@ FOLDS ?= 3
 MARKED ?= $(wildcard $(here)marked/learn/*.txt)
 TESTS ?= $(wildcard $(here)marked/test/*.txt)
 SOURCE ?= the example and marked sentences of refersplat
-BERT ?= $(HOME)/.cache/refersplat/encoder
-LEARN = parse-train --seed $(SEED) --epochs $(EPOCHS) --members $(MEMBERS) --marked $(OUT)/marked.txt --marked-text $(OUT)/marked.safetensors \
+include $(here)common.mk
+$(call check,,READINGS READINGS_SENTENCES OUT PARSER,EXAMPLES SEED EPOCHS MEMBERS FOLDS MARKED TESTS SOURCE BERT BIN)
+LEARN = $(tool)parse-train --seed $(SEED) --epochs $(EPOCHS) --members $(MEMBERS) --marked $(OUT)/marked.txt --marked-text $(OUT)/marked.safetensors \
 	$(if $(READINGS),--readings $(READINGS) --readings-text $(OUT)/readings.safetensors)
 NEEDS = $(OUT)/examples.safetensors $(OUT)/marked.safetensors $(if $(READINGS),$(OUT)/readings.safetensors)
 
-.DELETE_ON_ERROR:
-.SECONDARY:
 .PHONY: all folds test things
 all: $(OUT)/parser.safetensors
+
+help:
+	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(called)
+
 folds: $(OUT)/folds.jsonl $(OUT)/folds-blind.jsonl
 things: $(OUT)/things.vectors
 
@@ -44,24 +48,24 @@ $(OUT)/tests.txt: $(TESTS)
 	cat $^ >$@
 
 $(OUT)/%.jsonl: $(OUT)/%.txt
-	parse-train --marked $< --sentences -o $@
+	$(tool)parse-train --marked $< --sentences -o $@
 
 $(OUT)/%.safetensors: $(OUT)/%.jsonl
-	text-encode --model $(BERT) -o $@ $<
+	$(tool)text-encode --model $(call quoted,BERT) -o $@ $<
 
 $(OUT)/tests.gold.jsonl: $(OUT)/tests.txt $(OUT)/tests.safetensors
-	parse-train --marked $< --marked-text $(OUT)/tests.safetensors --parses -o $@
+	$(tool)parse-train --marked $< --marked-text $(OUT)/tests.safetensors --parses -o $@
 
 $(OUT)/tests.parses.jsonl: $(OUT)/tests.safetensors $(PARSER)
-	text-parse $(if $(PARSER),--parser $(PARSER)) -o $@ $<
+	$(tool)text-parse $(if $(PARSER),--parser $(PARSER)) -o $@ $<
 
 $(OUT)/examples.jsonl:
 	@mkdir -p $(@D)
-	parse-train --seed $(SEED) --write $(EXAMPLES) -o $@
+	$(tool)parse-train --seed $(SEED) --write $(EXAMPLES) -o $@
 
 $(OUT)/readings.safetensors: $(READINGS_SENTENCES)
 	@mkdir -p $(@D)
-	text-encode --model $(BERT) -o $@ $<
+	$(tool)text-encode --model $(call quoted,BERT) -o $@ $<
 
 $(OUT)/parser.safetensors: $(NEEDS)
 	$(LEARN) --source "$(SOURCE)" -o $@ $<

@@ -13,9 +13,9 @@
 # TEST_VIEWS  test views as gs-import takes them: NAME,... or every:N; default every:8, and none with MASKS
 # SENTENCES   sentences, JSON Lines (required, but with MASKS)
 # CANDIDATES  candidate masks, JSON Lines (required, but with MASKS)
-# MASKS       masks that a person drew, in place of CANDIDATES: JSON of LabelMe or COCO, or a folder of such; pictures, with NAMES;
-#             or mask records, JSON Lines. Where SENTENCES is not given, the names of the things are the sentences. A PNG that
-#             mask records name is not watched for changes
+# MASKS       masks that a person drew, in place of CANDIDATES: JSON of LabelMe, COCO or a detector (Grounded-SAM-2), or a folder of
+#             such; pictures, with NAMES; a folder of VIEW/NAME.png; or mask records, JSON Lines. Where SENTENCES is not given, the
+#             names of the things are the sentences. A PNG that mask records name is not watched for changes
 # NAMES       what the colours of MASKS mean, as mask-import takes it: MASKS is then a painted photograph, a PNG with the name
 #             of its view, or a folder of such
 # TRUTH       true masks to score against; optional
@@ -42,10 +42,18 @@ ITERATIONS ?= 45000
 SEED ?= 1
 TEACH ?= lifted
 include $(here)common.mk
-$(call take,MASKS)
-$(call check,SCENE SPLATS $(if $(MASKS),,SENTENCES CANDIDATES),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH,IMAGES TEST_VIEWS BERT SCALE \
-	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN UNDISTORT)
-$(if $(filter stage1 lifted,$(TEACH)),,$(error TEACH is stage1 or lifted))
+$(foreach v,MASKS SENTENCES CANDIDATES,$(call take,$(v)))
+# How the things may be given, for whoever has given none.
+define ways
+$(if $(MASKS),,; the things to find are named in one of three ways:
+  MASKS=frame_00041.png NAMES=names.txt           no masks yet: paint each thing of one photograph in a colour of its own, and list colours and names
+  MASKS=labels.json                               labels of LabelMe or COCO, or the JSON of a detector such as Grounded-SAM-2; no sentences needed
+  SENTENCES=s.jsonl CANDIDATES=candidates.jsonl   sentences, and the masks that a detector found for them
+for example: make -f $(called) SCENE=work/kitchen SPLATS=point_cloud.ply CAMERAS=sparse/0 MASKS=labels.json)
+endef
+$(call check,SCENE SPLATS $(if $(SENTENCES)$(CANDIDATES),$(if $(MASKS),,SENTENCES CANDIDATES),MASKS),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH $(more_files),IMAGES TEST_VIEWS BERT SCALE \
+	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN UNDISTORT $(more))
+$(if $(filter stage1 lifted,$(TEACH)),,$(error $(called): TEACH is '$(TEACH)', and stage1 or lifted are what it can be))
 
 # Of a folder of 3DGS the last iteration, as gs-import takes it.
 splats := $(if $(wildcard $(SPLATS)/.),$(or $(shell ls -d $(SPLATS)/point_cloud/iteration_*/point_cloud.ply $(SPLATS)/iteration_*/point_cloud.ply \
@@ -53,6 +61,8 @@ splats := $(if $(wildcard $(SPLATS)/.),$(or $(shell ls -d $(SPLATS)/point_cloud/
 beside := $(patsubst %/,%,$(dir $(splats)))
 cameras := $(if $(CAMERAS),$(if $(wildcard $(CAMERAS)/.),$(call camera_files,$(CAMERAS)),$(CAMERAS)),$(or $(call \
 	camera_files,$(beside)),$(if $(filter iteration_%,$(notdir $(beside))),$(call camera_files,$(beside)/../..)))) $(wildcard $(beside)/dataparser_transforms.json)
+$(if $(CAMERAS)$(strip $(cameras))$(filter help clean,$(MAKECMDGOALS)),,$(error $(called): CAMERAS not set, and no cameras beside $(splats): name a COLMAP model \
+	(the folder sparse/0), cameras.json of 3DGS or transforms.json of nerfstudio))
 scene := $(SCENE)/scene/cameras.json
 weights := $(SCENE)/weights/complete
 # Mask records of a variable as the views see them. $(call flat,VARIABLE,NAME)
@@ -62,7 +72,7 @@ truth := $(call flat,TRUTH,truth)
 text := $(SCENE)/text.safetensors
 # Photographs that a person painted, with NAMES, or labelled, as JSON.
 labelled := $(or $(wildcard $(MASKS)/*.json),$(filter %.json,$(MASKS)))
-painted := $(if $(MASKS),$(or $(labelled),$(if $(NAMES),$(or $(wildcard $(MASKS)/*.png),$(MASKS))),$(if $(UNDISTORT),$(MASKS))))
+painted := $(if $(MASKS),$(or $(labelled),$(if $(NAMES),$(or $(wildcard $(MASKS)/*.png),$(MASKS))),$(if $(UNDISTORT)$(wildcard $(MASKS)/.),$(MASKS))))
 drawn := $(if $(painted),$(SCENE)/painted.jsonl,$(MASKS))
 masks1 := $(or $(drawn),$(SCENE)/stage1/masks.jsonl)
 masks2 := $(SCENE)/stage2/masks.jsonl
@@ -96,7 +106,7 @@ command.import = gs-import $(if $(CAMERAS),--cameras $(CAMERAS)) $(if $(IMAGES),
 	$(if $(TEST_VIEWS),--test-views $(call quoted,TEST_VIEWS)) $(undistort_flag)-o $(SCENE)/scene $(splats)
 command.weigh = gs-weigh --scale $(call quoted,SCALE) $(call options,WEIGH) -o $(SCENE)/weights $(SCENE)/scene
 command.encode = text-encode --model $(call quoted,BERT) $(if $(SENTENCES),,--names) -o $(text) $(or $(SENTENCES),$(drawn))
-command.paint = mask-import $(if $(NAMES),--names $(NAMES)) $(undistort)-o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
+command.paint = mask-import $(if $(NAMES),--names $(NAMES)) --undistort $(SCENE)/scene -o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
 command.select = pseudomask-select $(call options,SELECT) -o $(masks1) $(candidates)
 train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks$(1)) \
 	--iterations $(call quoted,ITERATIONS) --seed $(call quoted,SEED) --resume --log $(SCENE)/stage$(1)/train.log \
@@ -122,7 +132,15 @@ $(SCENE)/log/%.command:
 $(scene): $(splats) $(cameras) $(SCENE)/log/import.command
 	$(call run,import)
 
-$(weights): $(scene) $(SCENE)/log/weigh.command
+# What the records say is read before anything that takes long, and again where one changed.
+records := $(foreach v,SENTENCES CANDIDATES TRUTH $(more_files),$(if $($(v)),$(v))) $(if $(painted),,$(if $(MASKS),MASKS))
+$(SCENE)/log/checked: $(scene) $(foreach v,$(records),$($(v)))
+	@fault=$$($(here)check.sh --records $(call quoted,tool_folder) $(SCENE)/scene $(foreach v,$(records),$(call quote,$(v)=$($(v))))) && \
+		[ -z "$$fault" ] || { printf '%s\n' $(call quoted,called)": $$fault" >&2; exit 3; }
+	@touch $@
+$(weights) $(text) $(if $(MASKS),,$(masks1)): | $(SCENE)/log/checked
+
+$(weights): $(scene) $(SCENE)/log/weigh.command $(if $(painted),| $(drawn))
 	$(call run,weigh)
 	@touch $@
 
@@ -130,7 +148,7 @@ $(text): $(or $(SENTENCES),$(drawn)) $(SCENE)/log/encode.command
 	$(call run,encode)
 
 ifneq ($(painted),)
-$(drawn): $(NAMES) $(painted) $(if $(UNDISTORT),$(scene)) $(SCENE)/log/paint.command
+$(drawn): $(NAMES) $(painted) $(scene) $(SCENE)/log/paint.command
 	$(call run,paint)
 endif
 

@@ -148,6 +148,13 @@ breaks() {
 	no_longer_than 200 cmd/*.c
 }
 
+@test "pages outside formats and man are short: 150 lines each, 70 kB in all, and no commit in them" {
+	local pages=(README.md libcommon/README.md tests/*.md tests/*/*.md pipelines/*.md)
+	no_longer_than 150 "${pages[@]}"
+	[ "$(cat "${pages[@]}" | wc -c)" -lt 70000 ]
+	not grep -nE '[Cc]ommit [0-9a-f]{7}' "${pages[@]}" man/*
+}
+
 @test "no loose ends" {
 	none 'TODO|FIXME|HACK' cmd formats libcommon tests
 	not grep -nE 'TODO|FIXME|HACK' Makefile pipelines/* man/*

@@ -207,12 +207,14 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	struct err *e)
 {
 	*found = (struct import_found){.near = 1};
-	if (anysplats_read(&s->splats, s->offset, report, o->splats, e))
+	/* Cameras first: what is wrong with them, or with a name of a view, is said before the splats, which
+	 * take longer. */
+	if (read_cameras(&s->cameras, o, cameras, e) || split(&s->cameras, o->test_views, e) ||
+		anysplats_read(&s->splats, s->offset, report, o->splats, e))
 		return -1;
 	if (!s->splats.n)
 		return err_set(e, ERR_FORMAT, "%s: holds no Gaussians", file_name(o->splats));
-	if (read_cameras(&s->cameras, o, cameras, e) || move(s, o->splats, cameras, &found->near, to, e) ||
-		split(&s->cameras, o->test_views, e))
+	if (move(s, o->splats, cameras, &found->near, to, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
 	char *metadata = describe_options(o->test_views, e);

@@ -23,13 +23,15 @@ static int add_mask(
 	struct training *t, const struct jsonl *j, struct mask *m, struct mask_reading *r, struct err *e)
 {
 	const size_t n = t->masks.masks.n;
+	char few[NAMES_FEW];
 	size_t place;
 	int bad = masks_find_view(m, &r->names, &t->scene.cameras, &place, e);
 	const int is_unknown = !bad && place == NAMES_NONE;
 	const struct camera *c = t->scene.cameras.views + (bad || is_unknown ? 0 : place);
 
 	if (is_unknown && !r->unknown++)
-		jsonl_err(j, &r->why, "key 'view': the scene has no view '%s'", m->view);
+		jsonl_err(j, &r->why, "key 'view': the scene has no view '%s'%s", m->view,
+			names_few(&r->names, few));
 	if (!is_unknown)
 		bad = bad ||
 		      masks_check_shape(m, "the view", c->height, c->width, j->path, j->line_number, e);

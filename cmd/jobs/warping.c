@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/names.h"
 #include "formats/png.h"
 #include "formats/scene.h"
 #include "geom/lens.h"
@@ -79,6 +80,19 @@ static int make_map(struct warping *w, const struct camera *c, int rows, int col
 	return 0;
 }
 
+static int refuse_view(const struct warping *w, const char *view, struct err *e)
+{
+	const struct cameras *c = &w->cameras;
+	struct names names;
+	char few[NAMES_FEW];
+
+	if (names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e))
+		return -1;
+	err_set(e, ERR_FORMAT, "view '%s' is not in the scene%s", view, names_few(&names, few));
+	names_free(&names);
+	return -1;
+}
+
 int warping_mask(struct warping *w, const char *view, struct rle *mask, struct err *e)
 {
 	const struct camera *c = w->way == WARP_NONE ? NULL : find_view(w, view);
@@ -87,7 +101,7 @@ int warping_mask(struct warping *w, const char *view, struct rle *mask, struct e
 	if (w->way == WARP_NONE)
 		return 0;
 	if (!c)
-		return err_set(e, ERR_FORMAT, "view '%s' is not in the scene", view);
+		return refuse_view(w, view, e);
 	if (!c->lens.model)
 		return mask_check_shape(view, mask, "the view", c->height, c->width, e);
 	if (check_shape(w, c, mask, e) || make_map(w, c, mask->height, mask->width, e) ||

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/name.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,6 +90,19 @@ size_t names_count(const struct names *names)
 	return count;
 }
 
+const char *names_few(const struct names *names, char few[NAMES_FEW])
+{
+	const size_t shown = names->n > 5 ? 3 : names->n;
+	int used = snprintf(few, NAMES_FEW, "; there %s %zu", names->n == 1 ? "is" : "are", names->n);
+
+	for (size_t i = 0; i < shown && used < NAMES_FEW; i++)
+		used += snprintf(few + used, (size_t)(NAMES_FEW - used), "%s %s", i ? "," : ":",
+			names->sorted[i].name);
+	if (shown < names->n && used < NAMES_FEW)
+		snprintf(few + used, (size_t)(NAMES_FEW - used), " ... %s", names->sorted[names->n - 1].name);
+	return few;
+}
+
 int names_mark(const void *items, size_t stride, size_t offset, size_t n, const char *list,
 	const char *option, const char *what, char *chosen, struct err *e)
 {
@@ -100,9 +114,10 @@ int names_mark(const void *items, size_t stride, size_t offset, size_t n, const 
 
 	while (!bad && list_next(&rest, &name)) {
 		const size_t place = names_find_part(&names, &name);
+		char few[NAMES_FEW];
 		if (place == NAMES_NONE)
-			bad = err_set(
-				e, ERR_USAGE, "%s: no %s '%.*s'", option, what, (int)name.length, name.text);
+			bad = err_set(e, ERR_USAGE, "%s: no %s '%.*s'%s", option, what, (int)name.length,
+				name.text, names_few(&names, few));
 		else
 			chosen[place] = 1;
 	}

@@ -36,9 +36,14 @@ size_t names_twice(const struct names *names, size_t *earlier);
 /* How many different names there are. */
 size_t names_count(const struct names *names);
 
+/* For a message on a name that is not there, "; there are 26: a, b, c ... z": how many there are, and some.
+ * Returns few. */
+enum { NAMES_FEW = 400 };
+const char *names_few(const struct names *names, char few[NAMES_FEW]);
+
 /* Sets chosen[place] (n) to 1 for the first item, of those that names_make takes, of each name in a
- * comma-separated list (NULL has none). Returns 0, or -1 with *e: ERR_USAGE and "option: no what 'NAME'" for
- * a name that no item has. */
+ * comma-separated list (NULL has none). Returns 0, or -1 with *e: ERR_USAGE and "option: no what 'NAME';
+ * there are ..." for a name that no item has. */
 int names_mark(const void *items, size_t stride, size_t offset, size_t n, const char *list,
 	const char *option, const char *what, char *chosen, struct err *e);
 

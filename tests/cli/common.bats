@@ -157,21 +157,37 @@ capture() {
 	each_tool sections
 }
 
-@test "the examples of the manual pages can be pasted: no line is wider than a terminal" {
-	narrow() {
-		sed -n '/^\.Sh EXAMPLES/,/^\.Sh SEE/s/^\.Dl //p' "$MAN/$1.1" | sed 's/^"\(.*\)"$/\1/; s/\\(..\|\\[-e&]/x/g' | awk 'length > 69 { print; bad = 1 } END { exit bad }'
-	}
-	each_tool narrow
-}
-
-# The .Dl lines of EXAMPLES are shell commands; each page's run in order in one folder, which has a file of each kind.
-@test "the examples of the manual pages run" {
+# In one folder, in order, which has a file of each kind; as a terminal of 80 columns shows them.
+@test "the examples of the manual pages run as they are pasted" {
+	command -v mandoc || skip "mandoc is not installed"
+	load pasted
 	examples() {
 		local script=$BATS_TEST_TMPDIR/$1.sh
-		sed -n '/^\.Sh EXAMPLES/,/^\.Sh SEE/s/^\.Dl //p' "$MAN/$1.1" | sed 's/^" *\(.*\)"$/\1/; s/\\-/-/g; s/\\&//g; s/\\(aq/'\''/g; s/\\(dq/"/g; s/\\e/\\/g' >"$script"
+		pasted "$MAN/$1.1" EXAMPLES "SEE ALSO" >"$script"
 		[ -s "$script" ] || return 1
+		[ "$(wc -l <"$script")" = "$(sed -n '/^\.Sh EXAMPLES/,/^\.Sh SEE/p' "$MAN/$1.1" | grep -c '^\.Dl')" ] || { echo "a line is wider than the terminal"; cat "$script"; return 1; }
 		rm -rf here && cp -r "$BATS_FILE_TMPDIR/examples" here
 		(cd here && XDG_CACHE_HOME=$PWD/cache PATH=$BIN:$PATH bash -eu -o pipefail "$script" >../out 2>&1 </dev/null) || { cat "$script" out; return 1; }
 	}
 	each_tool examples
+}
+
+@test "manual pages: no prose as flags, no blank before a comma, every option in the synopsis, every page that is named in SEE ALSO" {
+	command -v mandoc || skip "mandoc is not installed"
+	sound() {
+		local page=$1 tool=$(basename "${1%.*}") shown
+		shown=$(mandoc -T utf8 -O width=200 "$page" | col -bx)
+		! grep -nE '^ {5}.*(^| )-[a-z]{3,}|[a-z)’] , |[a-z)’] \. ' <<<"$(grep -vE '^ {11}|[_=]|\(-l' <<<"$shown")" || return 1
+		grep -oE '^\.Xr [a-z-]+ [137]' "$page" | cut -d' ' -f2,3 | sort -u | while read -r name part; do
+			[ "$name" = "$tool" ] || [ ! -e "$MAN/$name.$part" ] || sed -n '/^\.Sh SEE ALSO/,$p' "$page" | grep -q "^\.Xr $name $part" ||
+				{ echo "$page: $name is not in SEE ALSO"; exit 1; }
+		done || return 1
+		[ -x "$BIN/$tool" ] || return 0
+		"$BIN/$tool" --help | sed -nE 's/^ +(-., )?(--[a-z0-9-]+).*/\2/p' | grep -vxE -- '--(help|version|verbose|quiet|output|picture)' | while read -r option; do
+			sed -n '/^SYNOPSIS/,/^DESCRIPTION/p' <<<"$shown" | grep -qF -- "$option" || { echo "$page: $option is not in the synopsis"; exit 1; }
+		done
+	}
+	for page in "$MAN"/*.[137]; do sound "$page" || { echo "^ $page"; false; }; done
+	# the whole is told of by refersplat(7)
+	for page in "$MAN"/*.[13]; do sed -n '/^\.Sh SEE ALSO/,$p' "$MAN/refersplat.7" | grep -q "^\.Xr $(basename "${page%.*}") ${page##*.}"; done
 }

@@ -151,10 +151,10 @@ Try 'gs-import --help'." "$BIN/gs-import" -o scene s.ply
 
 @test "test views that are not there" {
 	for name in x '' a.jpg A ab; do
-		says 2 "gs-import: --test-views: no view '$name'
+		says 2 "gs-import: --test-views: no view '$name'; there are 3: a, b, c
 Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "$name" -o scene s.ply
 	done
-	says 2 "gs-import: --test-views: no view ''
+	says 2 "gs-import: --test-views: no view ''; there are 3: a, b, c
 Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views a, -o scene s.ply
 	for n in '' 0 -1 2x 1.5 ' 2' 99999999999999999999; do
 		says 2 "gs-import: --test-views: 'every:$n' is not every:N with N from 1 to 1000000000

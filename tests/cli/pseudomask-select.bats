@@ -345,7 +345,7 @@ truth_of() { jq -c "select(.view == \"$1\") | .score = 0.9" "$BATS_FILE_TMPDIR/t
 	refuses 4 "nowhere/splats.safetensors: No such file or directory" --scene nowhere ../true.jsonl
 	refuses 4 "nowhere: has no weights of a training view" --weights nowhere ../true.jsonl
 	jq -c '.view = "view_999"' ../true.jsonl > ../other.jsonl
-	refuses 3 "../other.jsonl:1: key 'view': the scene has no view 'view_999'" ../other.jsonl
+	refuses 3 "../other.jsonl:1: key 'view': the scene has no view 'view_999'; there are 6: view_000, view_001, view_002 ... view_005" ../other.jsonl
 	"$BIN/gs-synth" -q --gaussians 3001 --views 6 --size 96x72 -o ../other
 	"$BIN/gs-import" -q --images ../other/images --test-views view_004 -o ../other/scene ../other/point_cloud.ply
 	refuses 3 "synth/weights/view_000.safetensors: is of a scene of 3000 Gaussians, ../other/scene has 3001" --scene ../other/scene ../true.jsonl
@@ -505,7 +505,7 @@ scene() {
 	}
 	refuses 4 "nowhere/splats.safetensors: No such file or directory" --scene nowhere ../true.jsonl
 	jq -c '.view = "view_999"' ../true.jsonl > ../other.jsonl
-	refuses 3 "../other.jsonl:1: key 'view': the scene has no view 'view_999'" ../other.jsonl
+	refuses 3 "../other.jsonl:1: key 'view': the scene has no view 'view_999'; there are 6: view_000, view_001, view_002 ... view_005" ../other.jsonl
 	mkdir ../regions-cut
 	head -c 5000 synth/weights/view_000.safetensors > ../regions-cut/view_000.safetensors
 	refuses 3 "../regions-cut/view_000.safetensors: *" --weights ../regions-cut ../true.jsonl

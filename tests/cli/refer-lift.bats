@@ -262,8 +262,8 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 
 @test "input that does not belong together, or is of another kind" {
 	jq -c '.view = "elsewhere"' masks.jsonl | head -n 1 >away
-	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'" --masks away
-	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'" --spare away
+	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'; there are 6: view_000, view_001, view_002 ... view_005" --masks away
+	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'; there are 6: view_000, view_001, view_002 ... view_005" --spare away
 	refuses 3 "scene/splats.safetensors: format is 'refer.splats', expected 'refer.text'" --text scene/splats.safetensors
 	refuses 3 "scene/cameras.json: the cameras of a scene folder: name the folder in its place where a scene is wanted" --masks scene/cameras.json
 }

@@ -107,7 +107,7 @@ silent nothing" ]
 	[ "$(locate --sentences train | jq -r .ref | tr '\n' ' ')" = "brown-box-1 pink-cone-1 yellow-bowl-1 " ]
 	[ "$(locate --sentences test | jq -r .ref | tr '\n' ' ')" = "yellow-bowl-5 silent " ]
 	[ "$(locate --refs silent,pink-cone-1 | jq -r .ref | tr '\n' ' ')" = "pink-cone-1 silent " ]
-	refuses 2 "--refs: no sentence 'none'
+	refuses 2 "--refs: no sentence 'none'; there are 5: brown-box-1, pink-cone-1, silent, yellow-bowl-1, yellow-bowl-5
 Try 'refer-locate --help'." --refs pink-cone-1,none
 }
 

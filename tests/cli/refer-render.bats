@@ -286,9 +286,9 @@ png/$test_view/yellow-bowl-1.png " ]
 
 @test "names that are not there" {
 	try=$'\n'"Try 'refer-render --help'."
-	refuses 2 "--views: no view 'view_99'$try" --views view_001,view_99
-	refuses 2 "--views: no view ''$try" --views view_001,
-	refuses 2 "--refs: no sentence 'pink-cone'$try" --refs pink-cone-1,pink-cone
+	refuses 2 "--views: no view 'view_99'; there are 5: view_000, view_001, view_002, view_003, view_004$try" --views view_001,view_99
+	refuses 2 "--views: no view ''; there are 5: view_000, view_001, view_002, view_003, view_004$try" --views view_001,
+	refuses 2 "--refs: no sentence 'pink-cone'; there are 5: brown-box-1, pink-cone-1, silent, yellow-bowl-1, yellow-bowl-5$try" --refs pink-cone-1,pink-cone
 }
 
 @test "a split without views or sentences has no records" {

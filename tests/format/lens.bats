@@ -117,10 +117,10 @@ setup() {
 	says 3 "mask-import: m.jsonl:1: view 'view_000': a mask of 70x48, but its photograph is 64x48 (width x height): the shapes differ, and nothing is stretched" "$BIN/mask-import" --undistort flat -o out m.jsonl
 	says 3 "mask-export: m.jsonl: view 'view_000': a mask of 70x48, but its pinhole is $pinhole (width x height): the shapes differ, and nothing is stretched" "$BIN/mask-export" --distort --scene flat -o out m.jsonl
 	record view_00 48,64 >m.jsonl
-	says 3 "mask-import: m.jsonl:1: view 'view_00' is not in the scene" "$BIN/mask-import" --undistort flat -o out m.jsonl
+	says 3 "mask-import: m.jsonl:1: view 'view_00' is not in the scene; there are 10: view_000, view_001, view_002 ... view_009" "$BIN/mask-import" --undistort flat -o out m.jsonl
 	"$BIN/mask-export" -o m.json m.jsonl
 	jq '.annotations[0].segmentation.counts = [0,3072]' m.json >n.json
-	says 3 "mask-import: n.json: view 'view_00' is not in the scene" "$BIN/mask-import" --undistort flat -o out n.json
+	says 3 "mask-import: n.json: view 'view_00' is not in the scene; there are 10: view_000, view_001, view_002 ... view_009" "$BIN/mask-import" --undistort flat -o out n.json
 	[ ! -e out ]
 	says 2 "mask-export: --distort needs --scene SCENE
 Try 'mask-export --help'." "$BIN/mask-export" --distort m.jsonl

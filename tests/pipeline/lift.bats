@@ -138,7 +138,10 @@ not() { ! "$@"; }
 @test "all missing variables are named at once, by the pipeline that was called, and its help says what they are" {
 	run make -f "$ROOT/pipelines/lift.mk"
 	[ "$status" = 2 ]
-	[[ $output == *"$ROOT/pipelines/lift.mk: SCENE SPLATS SENTENCES CANDIDATES not set; 'make -f $ROOT/pipelines/lift.mk help' says what they are."* ]]
+	[[ $output == *"$ROOT/pipelines/lift.mk: SCENE SPLATS MASKS not set; the things to find are named in one of three ways:"* ]]
+	[[ $output == *"'make -f $ROOT/pipelines/lift.mk help' says what they are."* ]]
+	grep -q '^  MASKS=frame_00041.png NAMES=names.txt ' <<<"$output"
+	grep -q '^  SENTENCES=.* CANDIDATES=' <<<"$output"
 	make -f "$ROOT/pipelines/lift.mk" help | grep -q '^SCALE '
 	make -f "$ROOT/pipelines/desk.mk" help | grep -q '^DATA '
 	make -f "$ROOT/pipelines/demo.mk" help | grep -q '^DEMO '

@@ -44,14 +44,14 @@ load two-stage.bash
 @test "all missing variables are named at once" {
 	run make -f "$ROOT/pipelines/two-stage.mk" SCENE=x
 	[ "$status" = 2 ]
-	grep -q "SPLATS SENTENCES CANDIDATES not set" <<<"$output"
+	grep -q "two-stage.mk: SPLATS MASKS not set; the things" <<<"$output"
 }
 
 @test "a step that fails shows what its tool said, and leaves no result" {
 	printf '{"view":1}\n' >"$BATS_TEST_TMPDIR/bad.jsonl"
 	WORK=$BATS_TEST_TMPDIR/bad run two_stage CANDIDATES="$BATS_TEST_TMPDIR/bad.jsonl"
 	[ "$status" = 2 ]
-	grep -q "pseudomask-select: .*bad.jsonl:1: " <<<"$output"
+	grep -q "two-stage.mk: CANDIDATES: .*bad.jsonl:1: " <<<"$output"
 	[ ! -e "$BATS_TEST_TMPDIR/bad/stage1/masks.jsonl" ]
 }
 
@@ -84,7 +84,7 @@ demo() {
 	[ "$(demo 2 "${small/1000/1001}")" -gt 3 ]
 	[ "$(demo 2 "${small/1000/1001}")" = 0 ]
 	# A remake that fails leaves no data that pass for the old ones.
-	[ "$(demo 3 "--objects 0")" = 0 ]
+	[ "$(demo 3 "--objects 64 --views 2 --size 16x16 --gaussians 1000")" = 0 ]
 	[ ! -e demo/data/made-by ]
 	[ "$(demo 2 "${small/1000/1001}")" -gt 3 ]
 }

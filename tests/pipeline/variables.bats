@@ -69,6 +69,7 @@ cut_off() {
 	rm tools/refer-train
 	cat >tools/refer-train <<-END
 		#!/bin/sh
+		case "\$*" in *--help) exec "$BIN/refer-train" "\$@" ;; esac
 		"$BIN/refer-train" "\$@" &
 		while [ ! -e "$WORK/stage1/model.safetensors.checkpoint" ] && kill -0 \$!; do sleep 0.05; done
 		kill -9 \$!
@@ -117,12 +118,12 @@ cut_off() {
 		for variable in SCENE SPLATS CAMERAS SENTENCES CANDIDATES TRUTH; do
 			run two_stage "$variable=$name"
 			[ "$status" = 2 ] || { echo "$variable=$name: $status $output"; false; }
-			grep -qF "*** $variable has a " <<<"$output" || { echo "$variable=$name: $output"; false; }
+			grep -qF ".mk: $variable has a " <<<"$output" || { echo "$variable=$name: $output"; false; }
 			[ "${#lines[@]}" = 1 ] || { echo "$variable=$name: $output"; false; }
 		done
 	done
 	SPLATS='a$(shell touch done)' run make -f "$ROOT/pipelines/two-stage.mk" SCENE=x SENTENCES=y CANDIDATES=z
-	grep -qF '*** SPLATS has a ' <<<"$output"
+	grep -qF '.mk: SPLATS has a ' <<<"$output"
 	[ -z "$(ls)" ]
 }
 
@@ -135,7 +136,7 @@ cut_off() {
 		WORK=$PWD/work run two_stage SCALE="$value"
 		grep -qF "gs-weigh: --scale: '$value' is not" <<<"$output"
 		WORK=$PWD/work run two_stage BERT="$PWD/$value"
-		grep -qF "text-encode: $PWD/$value" <<<"$output"
+		grep -qF "BERT: $PWD/$value: no language encoder there" <<<"$output"
 		WORK=$PWD/work run two_stage SELECT="$value"
 		grep -qE "pseudomask-select: |Try 'pseudomask-select" <<<"$output"
 		[ "$(ls)" = work ] || { ls; echo "$value"; false; }
@@ -149,7 +150,7 @@ cut_off() {
 	for variable in SCENE SPLATS CAMERAS SENTENCES CANDIDATES TRUTH; do
 		run two_stage "$variable=-name"
 		[ "$status" = 2 ]
-		grep -qF "*** $variable begins with a dash; write ./-name" <<<"$output"
+		grep -qF ".mk: $variable begins with a dash; write ./-name" <<<"$output"
 	done
 }
 
@@ -191,11 +192,98 @@ cut_off() {
 	for variable in DATA OUT ASK; do
 		run make -f "$ROOT/pipelines/desk.mk" BIN="$BIN" DATA=x "$variable=a b"
 		[ "$status" = 2 ]
-		grep -qF "*** $variable has a blank" <<<"$output"
+		grep -qF ".mk: $variable has a blank" <<<"$output"
 	done
 	run env -u DATA make -f "$ROOT/pipelines/desk.mk"
 	grep -qF "DATA not set" <<<"$output"
 	run make -f "$ROOT/pipelines/demo.mk" DEMO='$(shell touch done)'
-	grep -qF "*** DEMO has a" <<<"$output"
+	grep -qF ".mk: DEMO has a" <<<"$output"
 	[ ! -e done ]
+}
+
+# refused LINE ARGUMENT...: the workflow without training, on the scene, stops before it makes anything, and says so in a line that ends with LINE.
+refused() {
+	local line=$1
+	shift
+	rm -rf "$BATS_TEST_TMPDIR/new"
+	run env PATH="$PWD:$PATH" make -f "$ROOT/pipelines/lift.mk" SCENE="$BATS_TEST_TMPDIR/new" SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" \
+		BERT="$ROOT/tests/golden/bert" BIN="$BIN" "${given[@]}" "$@"
+	[ "$status" = 2 ] && [[ ${lines[0]} == *"lift.mk: $line"* ]] && [ ! -e "$BATS_TEST_TMPDIR/new" ] || { echo "$line: $output"; return 1; }
+}
+
+@test "a variable that the pipeline does not know is refused, with the one that it may be, where the command line sets it" {
+	cd "$BATS_TEST_TMPDIR"
+	given=()
+	refused "MASK is none of its variables: did you mean MASKS?" MASK=x
+	refused "masks is none of its variables: did you mean MASKS?" masks=x
+	refused "SENTENCE is none of its variables: did you mean SENTENCES?" SENTENCE=x
+	refused "CANDIADTES is none of its variables: did you mean CANDIDATES?" CANDIADTES=x
+	refused "DATA is none of its variables; " DATA=x
+	refused "SPLATS: none: no such file" SPLATS=none MASKS=none V=1 SHELL=/bin/sh OMP_NUM_THREADS=1
+	for pipeline in two-stage demo desk lerf systems ablation parse; do
+		run env MASK=x make -f "$ROOT/pipelines/$pipeline.mk" SEEEDS=1
+		[ "$status" = 2 ]
+		[[ $output == *"$pipeline.mk: SEEEDS is none of its variables"* ]]
+		make -f "$ROOT/pipelines/$pipeline.mk" help | grep -qE '^#? ?[A-Z]'
+	done
+	MASK=x SEEEDS=1 make -n -f "$ROOT/pipelines/ablation.mk" cells SEEDS=1 BIN="$BIN" BERT="$ROOT/tests/golden/bert" run.mine="--lambda 0.1"
+}
+
+@test "what cannot be is said before any work: the pipeline, the variable, the file, and what is needed" {
+	cd "$BATS_TEST_TMPDIR"
+	mkdir empty painted
+	touch none-in
+	cp "$DATA/images/"*0.png picture.png
+	cp picture.png "painted/a b.png"
+	printf '\377\330\377\340' >photo.jpg
+	echo '255 box' >names
+	given=(SENTENCES="$DATA/sentences.jsonl" CANDIDATES="$DATA/candidates.jsonl")
+	for variable in SPLATS CAMERAS SENTENCES CANDIDATES TRUTH ASK WHOLE BOXES IMAGES MASKS; do
+		refused "$variable: away: no such f" "$variable=away"
+	done
+	for variable in SENTENCES CANDIDATES TRUTH ASK WHOLE BOXES; do
+		refused "$variable: none-in: is empty" "$variable=none-in"
+		refused "$variable: empty: is a folder, and a file is needed" "$variable=empty"
+		refused "$variable: picture.png: is a PNG, and JSON Lines are needed" "$variable=picture.png"
+	done
+	refused "SPLATS: picture.png: is a PNG, and a trained 3DGS scene is needed" SPLATS=picture.png
+	refused "SPLATS: $DATA/boxes.jsonl: is JSON Lines, and a trained" SPLATS="$DATA/boxes.jsonl"
+	refused "CAMERAS: photo.jpg: is a JPEG, and cameras are needed" CAMERAS=photo.jpg
+	refused "CANDIDATES: names: is not JSON Lines" CANDIDATES=names
+	refused "IMAGES: names: is no folder" IMAGES=names
+	refused "BERT: away: no language encoder there: 'make encoder'" BERT=away
+	refused "BERT: empty: is no language encoder: no config.json in it" BERT=empty
+	refused "BIN: no gs-import in away/: run 'make' in the checkout first" BIN=away
+	refused "SCENE: names/work: names is no folder, so nothing can be written there" SCENE=names/work
+	refused "LIFT: refer-lift: unknown option '--no-such'" LIFT=--no-such
+	refused "SCALE: gs-weigh: --scale: 'x' is not a number" SCALE=x
+	cp "$DATA/point_cloud.ply" alone.ply
+	refused "CAMERAS not set, and no cameras beside alone.ply" CAMERAS= SPLATS=alone.ply
+	given=()
+	refused "MASKS: picture.png: is a painted photograph, so NAMES=FILE is needed" MASKS=picture.png
+	refused "MASKS: photo.jpg: is a JPEG; paint over the photograph and save it as a PNG" MASKS=photo.jpg NAMES=names
+	refused "MASKS: empty: has no *.png, *.json or NAME/*.png in it" MASKS=empty
+	refused "MASKS: painted: has a file 'a b.png', whose name make cannot take" MASKS=painted NAMES=names
+	refused "NAMES: names: names the colours of painted photographs" MASKS="$DATA/truth.jsonl" NAMES=names
+	printf '#!/bin/sh\nprintf "head\\na 9 9 0 9 /\\n"\n' >df
+	chmod +x df
+	refused "SCENE: $PWD/new: the disk of $PWD is full: 0 kB are free" MASKS="$DATA/truth.jsonl"
+}
+
+@test "views that are not there, and records of another kind, are said after the import, before anything that takes long" {
+	cd "$BATS_TEST_TMPDIR"
+	jq -c '.view = "elsewhere"' "$DATA/truth.jsonl" >away.jsonl
+	local few="; there are 6: view_000, view_001, view_002 ... view_005"
+	WORK=$PWD/work
+	run two_stage CANDIDATES=away.jsonl
+	[[ $output == *"two-stage.mk: CANDIDATES: away.jsonl:1: view 'elsewhere' is not in the scene$few"* ]]
+	run two_stage MASKS=away.jsonl
+	[[ $output == *"two-stage.mk: MASKS: away.jsonl:1: view 'elsewhere' is not in the scene$few"* ]]
+	run two_stage TRUTH="$DATA/boxes.jsonl"
+	[[ $output == *"two-stage.mk: TRUTH: $DATA/boxes.jsonl: has boxes, "*", and masks are needed"* ]]
+	cp "$DATA/images/view_000.png" elsewhere.png
+	run two_stage MASKS=elsewhere.png NAMES=<(echo '0 box')
+	[ "$(ls work)" = $'log\nscene' ]
+	run two_stage TEST_VIEWS=elsewhere
+	[[ $output == *"gs-import: --test-views: no view 'elsewhere'$few"* ]]
 }

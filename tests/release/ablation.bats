@@ -174,12 +174,12 @@ report() {
 	for variable in SCENES SEEDS RUNS SYNTH TRAIN SCALE ITERATIONS THREADS; do
 		run ablation scores "$variable=1; touch done"
 		[ "$status" = 2 ]
-		grep -qF "*** $variable has a ;" <<<"$output"
+		grep -qE "ablation.mk: $variable(: | has a ;)" <<<"$output"
 		run ablation scores "$variable="'$(shell touch done)'
 		[ "$status" = 2 ]
 	done
 	run ablation scores "OUT=a b"
-	grep -qF "*** OUT has a blank" <<<"$output"
+	grep -qF ".mk: OUT has a blank" <<<"$output"
 	[ ! -e done ]
 }
 

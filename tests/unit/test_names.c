@@ -51,7 +51,9 @@ static void lists_mark_places(void)
 		"marked");
 	CHECK(!names_mark(texts, sizeof *texts, 0, 4, NULL, "--refs", "sentence", chosen, &e), "no list");
 	CHECK(names_mark(texts, sizeof *texts, 0, 4, "r1,r22,r2", "--refs", "sentence", chosen, &e) == -1 &&
-			e.code == ERR_USAGE && !strcmp(e.message, "--refs: no sentence 'r22'") && chosen[0],
+			e.code == ERR_USAGE &&
+			!strcmp(e.message, "--refs: no sentence 'r22'; there are 4: r, r1, r2, r2") &&
+			chosen[0],
 		"an unknown name: %s", e.message);
 }
 

@@ -125,7 +125,7 @@ static void text_round_trip(void)
 	CHECK(!text_mark(&out, "r3,r1,r3", "--refs", chosen, &e) && chosen[0] && !chosen[1] && chosen[2],
 		"text_mark");
 	CHECK(text_mark(&out, "r1,r,r2", "--refs", chosen, &e) == -1 && e.code == ERR_USAGE &&
-			!strcmp(e.message, "--refs: no sentence 'r'") && !chosen[1],
+			!strcmp(e.message, "--refs: no sentence 'r'; there are 3: r1, r2, r3") && !chosen[1],
 		"an unknown ref: %s", e.message);
 	text_free(&out);
 }
