@@ -21,7 +21,8 @@ static const struct cli_option table[] = {
 		"masks of regions that an object may have instead, of pseudomask-select --spare; not looked at with --names masks",
 		0, 0},
 	{"names", 0, CLI_CHOICE, &options.is_as_masked, "sentences|masks",
-		"which of several alike an object is: as sentences say (default), or as masks do", 0, 0},
+		"which of several alike an object is: as sentences say, where its masks have scores (default), or as masks do",
+		0, 0},
 	{0}};
 
 static const struct cli_tool tool = {.name = "refer-lift",

@@ -14,7 +14,7 @@
 # SENTENCES   sentences, JSON Lines (required, but with MASKS)
 # CANDIDATES  candidate masks, JSON Lines (required, but with MASKS)
 # MASKS       masks that a person drew, in place of CANDIDATES: JSON of LabelMe, COCO or a detector (Grounded-SAM-2), or a folder of
-#             such; pictures, with NAMES; a folder of VIEW/NAME.png; or mask records, JSON Lines. Where SENTENCES is not given, the
+#             such; pictures, with NAMES; a folder of VIEW/NAME.png; or mask records, JSON Lines. They keep their names, whatever SENTENCES say. Where SENTENCES is not given, the
 #             names of the things are the sentences. A PNG that mask records name is not watched for changes
 # NAMES       what the colours of MASKS mean, as mask-import takes it: MASKS is then a painted photograph, a PNG with the name
 #             of its view, or a folder of such
@@ -116,7 +116,7 @@ predict = $(call render,$(1)) --sentences $(2) -o $(SCENE)/stage$(1)/predictions
 command.teach = $(call render,$(teacher)) --split train --sentences train --scale $(call quoted,SCALE) -o $(masks2)
 command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights --spare $(spare3) -o $(masks3) $(candidates)
 command.lift = refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks3) \
-	$(if $(spare3),--spare $(spare3)) $(call options,LIFT) \
+	$(if $(spare3),--spare $(spare3)) $(call options,LIFT) $(if $(MASKS),--names masks) \
 	-o $(model3)
 command.page = refer-report $(if $(TRUTH),--truth $(truth)) $(SCENE)
 command.score = miou-score --json --quiet --predicted-views --truth $(truth)

@@ -1,12 +1,12 @@
 #include "cmd/jobs/lifting.h"
 
-#include "ask/disambiguate.h"
 #include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/weights.h"
 #include "formats/weights_pack.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 
@@ -235,18 +235,61 @@ int lifting_read(struct lifting *l, const struct lifting_files *files, const str
 	return find_spare(l, e);
 }
 
+/* A person gives no score, every detector and pseudomask-select does. */
+static int find_fixed(struct lifting *l, int is_as_masked, struct err *e)
+{
+	l->is_fixed = mem_zalloc(l->objects + l->spare, 1, "objects", e);
+	l->found = mem_zalloc(l->objects, sizeof *l->found, "objects", e);
+	if (!l->is_fixed || !l->found)
+		return -1;
+	for (size_t i = 0; i < l->own; i++)
+		if (l->mask_object[i] != LIFTED_NONE && l->is_there[l->views[i]])
+			l->is_fixed[l->mask_object[i]] |= is_as_masked || isnan(l->set.items[i].score);
+	return 0;
+}
+
+/* Warns of sentences that say otherwise, and of what changed places: one line for all. Returns how many did.
+ */
+static size_t tell_names(const struct lifting *l, const struct report *to)
+{
+	const char *path = file_name(l->files->masks);
+	const struct disambiguated *first = NULL;
+	size_t moved = 0, at = 0;
+
+	for (size_t o = 0; o < l->objects; o++) {
+		const struct disambiguated *d = &l->found[o];
+		if (d->is_moved && !moved++) {
+			first = d;
+			at = o;
+		} else if (l->is_fixed[o] && d->against)
+			report_warn(to,
+				"%s: %zu of the %zu sentences of '%s' say another thing, as '%s', which fits '%s' (%.2f against %.2f): the label stays; is the sentence of it?",
+				path, d->against, d->sentences, l->names[o], l->model.texts[d->sentence],
+				l->names[d->other], (double)d->other_p, (double)d->own_p);
+	}
+	if (moved)
+		report_warn(to,
+			"%s: %zu objects have masks that a detector found for others, as their sentences say: '%s' has those of %s%s%s, by '%s' (%.2f against %.2f); --names masks keeps them",
+			path, moved, l->names[at], *l->names[first->other] ? "'" : "",
+			*l->names[first->other] ? l->names[first->other] : "a region without a name",
+			*l->names[first->other] ? "'" : "", l->model.texts[first->sentence],
+			(double)first->other_p, (double)first->own_p);
+	return moved;
+}
+
 int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struct report *to, struct err *e)
 {
 	const struct parser parser = {.weights = &l->weights, .encoder = l->text.encoder.hex};
 
-	*moved = 0;
 	report_start(to, "views", (double)l->scene.cameras.n * LIFT_ROUNDS);
 	int bad = lift(l, to, e);
 	report_end(to);
 	if (bad || lifted_add_sentences(&l->model, &l->text, l->sentence_object, l->names, e) ||
-		(!is_as_masked && disambiguate(&l->model, l->objects, &l->scene.splats, &l->scene.cameras,
-					  &parser, moved, e)))
+		find_fixed(l, is_as_masked, e) ||
+		disambiguate(&l->model, l->objects, l->is_fixed, &l->scene.splats, &l->scene.cameras, &parser,
+			l->found, e))
 		return -1;
+	*moved = tell_names(l, to);
 	lifted_cut(&l->model, l->objects);
 	return 0;
 }
@@ -263,6 +306,8 @@ void lifting_free(struct lifting *l)
 	names_free(&l->refs);
 	names_free(&l->objects_of);
 	free(l->trained);
+	free(l->is_fixed);
+	free(l->found);
 	free(l->is_shown);
 	free(l->names);
 	free(l->is_there);

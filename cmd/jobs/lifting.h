@@ -3,6 +3,7 @@
 #ifndef CMD_JOBS_LIFTING_H
 #define CMD_JOBS_LIFTING_H
 
+#include "ask/disambiguate.h"
 #include "base/err.h"
 #include "base/names.h"
 #include "base/report.h"
@@ -32,6 +33,8 @@ struct lifting {
 	size_t *sentence_object, *mask_object; /* (text.n), (set.n) in names; LIFTED_NONE: does not count */
 	struct names refs, objects_of;	       /* of the sentences; of `trained` */
 	const char **trained;		       /* (text.n) objects of the training sentences, else NULL */
+	char *is_fixed;			       /* (objects + spare) a person named it, or all are as masked */
+	struct disambiguated *found;	       /* (objects) what the sentences say of each */
 	char *is_shown;	       /* (text.n) by a mask, at the first training sentence of an object */
 	size_t objects, spare; /* spare regions are the objects after the others */
 	/* (objects + spare) of the sentences, in the order in which these first name them, then ""; not owned
@@ -49,8 +52,9 @@ struct lifting {
 int lifting_read(
 	struct lifting *l, const struct lifting_files *files, const struct report *to, struct err *e);
 
-/* Lifts them: l->model. Of objects that look alike, each is where its sentences say, and *moved how many
- * changed places for that; is_as_masked: where its masks are. */
+/* Lifts them: l->model. Objects with a mask without a score, which a person drew, and with is_as_masked all,
+ * are where their masks are, and warnings tell which sentences say otherwise. Of the others that look alike,
+ * each is where its sentences say; a warning tells which changed places for that, and *moved how many. */
 int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struct report *to, struct err *e);
 
 void lifting_free(struct lifting *l);

@@ -22,9 +22,19 @@
  * with 0.25 log(confidence + 0.02) for the object that has it; this says which are left over, and nothing
  * where none are.
  *
- * *moved gets how many of the named have others than before. Returns 0, or -1 with *e set and the model as it
- * was. */
-int disambiguate(struct lifted *l, size_t named, const struct splats *splats, const struct cameras *cameras,
-	const struct parser *parser, size_t *moved, struct err *e);
+ * An object that is_fixed (objects, 0 or 1; spare ones too) keeps its Gaussians, whatever sentences say, and
+ * nobody else gets them: a person named them. The others change places only where that is clearly better.
+ *
+ * to (named) gets what came of each. Returns 0, or -1 with *e set and the model as it was. */
+struct disambiguated {
+	int is_moved;
+	size_t sentences, against; /* of a fixed one: its sentences, and those that plainly mean another */
+	/* What tells most against what it was, where it moved or `against` is not 0: a sentence, the object
+	 * that it means, as this was before, and how probably it means its own and that. */
+	size_t sentence, other;
+	float own_p, other_p;
+};
+int disambiguate(struct lifted *l, size_t named, const char *is_fixed, const struct splats *splats,
+	const struct cameras *cameras, const struct parser *parser, struct disambiguated *to, struct err *e);
 
 #endif
