@@ -134,7 +134,7 @@ char *import_find_cameras(const struct import_options *o, struct err *e)
 	return found;
 }
 
-static int split(struct cameras *c, const char *test_views, struct err *e)
+int import_split(struct cameras *c, const char *test_views, struct err *e)
 {
 	if (!test_views)
 		return 0;
@@ -193,7 +193,7 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	*found = (struct import_found){0};
 	if (anysplats_read(&s->splats, s->offset, report, o->splats, e) ||
 		read_cameras(&s->cameras, o, cameras, e) || move(s, o->splats, cameras, to, e) ||
-		split(&s->cameras, o->test_views, e))
+		import_split(&s->cameras, o->test_views, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
 	char *metadata = describe_options(o->test_views, e);

@@ -1,0 +1,18 @@
+/* The backward pass of projection, and of colours: from a view's sums over pixels to gradients of parameters. */
+#ifndef FIT_PROJECT_BACK_H
+#define FIT_PROJECT_BACK_H
+
+#include "fit/gaussians.h"
+#include "geom/camera.h"
+#include "splat/render.h"
+
+/* colors (N,3) of the view's visible Gaussians, as sh_color has them, from harmonics up to `degree`. */
+void fit_colors(const struct fit_gaussians *g, const struct render_view *v, const struct camera *c, int degree,
+	float *colors);
+
+/* From sums (N,BACK_SUMS) of fit/back.h the gradient slab, for harmonics up to `degree`; 0 for a Gaussian that the view
+ * has not. colors are those of fit_colors: a channel at 0 has no gradient. */
+void fit_project_back(struct fit_gaussians *g, const struct render_view *v, const struct camera *c, int degree,
+	const float *colors, const float *sums);
+
+#endif
