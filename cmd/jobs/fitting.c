@@ -181,7 +181,7 @@ static int judge(struct fitting *f, double *psnr, double *ssim, struct err *e)
 {
 	*psnr = *ssim = 0;
 	for (size_t i = 0; i < f->tested; i++) {
-		struct image_loss l;
+		struct photo_loss l;
 		if (fit_judge(&f->fit, &f->photographs[f->learned + i], &l, e))
 			return -1;
 		*psnr += fit_psnr(l.squares) / (double)f->tested;

@@ -51,7 +51,7 @@ void fit_close(struct fit *f)
 	fit_gaussians_free(&f->gaussians);
 	render_free(f->view);
 	back_free(&f->back);
-	image_loss_free(&f->room);
+	photo_loss_free(&f->room);
 	free(f->order);
 	free(f->colors);
 	free(f->sums);
@@ -78,13 +78,13 @@ static int render(struct fit *f, const struct camera *c, int degree, struct err 
 	return 0;
 }
 
-int fit_judge(struct fit *f, const struct photograph *p, struct image_loss *l, struct err *e)
+int fit_judge(struct fit *f, const struct photograph *p, struct photo_loss *l, struct err *e)
 {
 	const struct camera *c = &p->camera[0];
 
 	fit_gaussians_activate(&f->gaussians);
 	return render(f, c, f->gaussians.degree, e) ||
-		       image_loss(l, f->image, p->rgb[0], c->height, c->width, NULL, NULL, &f->room, e)
+		       photo_loss(l, f->image, p->rgb[0], c->height, c->width, NULL, NULL, &f->room, e)
 		       ? -1
 		       : 0;
 }
@@ -97,7 +97,7 @@ static int back(struct fit *f, const struct photograph *p, int level, int degree
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 	float *gradient = f->image + 3 * pixels, *error = f->image + 6 * pixels;
 
-	if (image_loss(&f->last, f->image, p->rgb[level], c->height, c->width, gradient, error, &f->room, e) ||
+	if (photo_loss(&f->last, f->image, p->rgb[level], c->height, c->width, gradient, error, &f->room, e) ||
 		back_view(f->view, f->colors, f->image, gradient, error, f->sums, &f->back, e))
 		return -1;
 	fit_project_back(g, f->view, c, degree, f->colors, f->sums);

@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "fit/back.h"
 #include "fit/gaussians.h"
-#include "fit/image_loss.h"
+#include "fit/photo_loss.h"
 #include "fit/photograph.h"
 #include "splat/render.h"
 
@@ -34,11 +34,11 @@ struct fit {
 	size_t first;	/* how many Gaussians there were then: at the start */
 	struct rng rng;
 	uint32_t *order; /* (views) in which they are looked at, until the next shuffle */
-	struct image_loss last; /* of the last step's view */
+	struct photo_loss last; /* of the last step's view */
 
 	struct render_view *view;
 	struct back_room back;
-	struct image_loss_room room;
+	struct photo_loss_room room;
 	float *colors, *sums, *error; /* (capacity,3), (capacity,BACK_SUMS), (capacity): what each had of the error lately */
 	float *image;		      /* (3,P), its gradient (3,P), the error of each pixel (P) */
 	size_t image_room;
@@ -56,7 +56,7 @@ void fit_close(struct fit *f);
 int fit_step(struct fit *f, double progress, struct err *e);
 
 /* The loss of a photograph, in full size and with all harmonics. Returns 0, or -1 with *e set. */
-int fit_judge(struct fit *f, const struct photograph *p, struct image_loss *l, struct err *e);
+int fit_judge(struct fit *f, const struct photograph *p, struct photo_loss *l, struct err *e);
 
 /* 10 log10 (1 / mean of squares), dB. */
 double fit_psnr(double squares);

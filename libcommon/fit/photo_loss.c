@@ -1,6 +1,6 @@
 /* All windows are filtered in two passes, along rows and then along columns; so is, backwards, what the gradient takes from
  * each pixel's SSIM to the pixels of its window. Sums are made row by row and added in order. */
-#include "fit/image_loss.h"
+#include "fit/photo_loss.h"
 
 #include "base/mem.h"
 #include "base/threads.h"
@@ -160,7 +160,7 @@ static void differences(const struct channel *c, int y, float *error)
 
 /* One channel's sums are added to *l; rows share the work; `scratch` has 6 rows and some for each thread. */
 static void channel_loss(
-	const struct channel *c, float *scratch, size_t scratch_row, float *gradient, float *error, struct image_loss *l)
+	const struct channel *c, float *scratch, size_t scratch_row, float *gradient, float *error, struct photo_loss *l)
 {
 #pragma omp parallel for schedule(static)
 	for (int y = 0; y < c->height; y++) {
@@ -185,19 +185,19 @@ static void channel_loss(
 	}
 }
 
-void image_loss_free(struct image_loss_room *r)
+void photo_loss_free(struct photo_loss_room *r)
 {
 	free(r->planes);
 	free(r->rows);
-	*r = (struct image_loss_room){0};
+	*r = (struct photo_loss_room){0};
 }
 
-int image_loss(struct image_loss *l, const float *image, const uint8_t *photograph, int height, int width,
-	float *gradient, float *error, struct image_loss_room *room, struct err *e)
+int photo_loss(struct photo_loss *l, const float *image, const uint8_t *photograph, int height, int width,
+	float *gradient, float *error, struct photo_loss_room *room, struct err *e)
 {
 	const size_t pixels = (size_t)height * (size_t)width, row = 6 * (size_t)width + 2 * REACH + 16;
 
-	*l = (struct image_loss){0};
+	*l = (struct photo_loss){0};
 	if (mem_room((void **)&room->planes, &room->plane_room, 9 * pixels + (size_t)threads_available() * row,
 		    sizeof *room->planes, "image", e) ||
 		mem_room((void **)&room->rows, &room->row_room, 3 * (size_t)height, sizeof *room->rows, "image", e))
