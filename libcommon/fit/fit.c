@@ -33,10 +33,11 @@ int fit_open(struct fit *f, struct fit_gaussians *g, const struct fit_options *o
 	*f = (struct fit){.options = *o, .gaussians = *g, .photographs = photographs, .views = views, .first = g->n};
 	*g = (struct fit_gaussians){0};
 	f->order = mem_alloc(views, sizeof *f->order, "views", e);
+	f->seen = mem_alloc(f->gaussians.capacity, 1, "views", e);
 	f->colors = mem_alloc(f->gaussians.capacity, 3 * sizeof *f->colors, "colours", e);
 	f->sums = mem_zalloc(f->gaussians.capacity, BACK_SUMS * sizeof *f->sums, "gradients", e);
 	f->error = mem_zalloc(f->gaussians.capacity, sizeof *f->error, "gradients", e);
-	if (!f->order || !f->colors || !f->sums || !f->error)
+	if (!f->order || !f->seen || !f->colors || !f->sums || !f->error)
 		return -1;
 	rng_seed(&f->rng, o->seed, 0);
 	for (size_t i = 0; i < views; i++)
@@ -53,6 +54,7 @@ void fit_close(struct fit *f)
 	back_free(&f->back);
 	photo_loss_free(&f->room);
 	free(f->order);
+	free(f->seen);
 	free(f->colors);
 	free(f->sums);
 	free(f->error);
@@ -73,7 +75,8 @@ static int render(struct fit *f, const struct camera *c, int degree, struct err 
 	if (mem_room((void **)&f->image, &f->image_room, 7 * pixels, sizeof *f->image, "image", e) ||
 		render_again(f->view, &f->gaussians.splats, c, e))
 		return -1;
-	fit_colors(&f->gaussians, f->view, c, degree, f->colors);
+	fit_seen(f->view, f->seen);
+	fit_colors(&f->gaussians, f->seen, c, degree, f->colors);
 	render_packed(f->view, f->colors, 3, f->image, NULL);
 	return 0;
 }
@@ -100,7 +103,7 @@ static int back(struct fit *f, const struct photograph *p, int level, int degree
 	if (photo_loss(&f->last, f->image, p->rgb[level], c->height, c->width, gradient, error, &f->room, e) ||
 		back_view(f->view, f->colors, f->image, gradient, error, f->sums, &f->back, e))
 		return -1;
-	fit_project_back(g, f->view, c, degree, f->colors, f->sums);
+	fit_project_back(g, f->view, f->seen, c, degree, f->colors, f->sums);
 	const float area = (float)(1 << 2 * level); /* pixels of full size */
 #pragma omp parallel for schedule(static)
 	for (size_t i = 0; i < g->n; i++) {

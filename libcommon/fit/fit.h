@@ -37,6 +37,7 @@ struct fit {
 	struct photo_loss last; /* of the last step's view */
 
 	struct render_view *view;
+	uint8_t *seen; /* (capacity) by that view */
 	struct back_room back;
 	struct photo_loss_room room;
 	float *colors, *sums, *error; /* (capacity,3), (capacity,BACK_SUMS), (capacity): what each had of the error lately */

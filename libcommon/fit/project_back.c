@@ -144,27 +144,36 @@ static void direction_of(const float *mean, const double centre[3], double d[3],
 		d[k] /= *length;
 }
 
-void fit_colors(
-	const struct fit_gaussians *g, const struct render_view *v, const struct camera *c, int degree, float *colors)
+void fit_seen(const struct render_view *v, uint8_t *seen)
+{
+	memset(seen, 0, v->gaussians);
+#pragma omp parallel for schedule(static)
+	for (size_t i = 0; i < v->visible; i++)
+		seen[v->sorted[i].index] = 1;
+}
+
+void fit_colors(const struct fit_gaussians *g, const uint8_t *seen, const struct camera *c, int degree, float *colors)
 {
 	const int parts = fit_parts(degree), coefficients = (degree + 1) * (degree + 1);
 	double centre[3];
 
 	camera_centre(c, centre);
-#pragma omp parallel for schedule(static)
-	for (size_t i = 0; i < v->visible; i++) {
-		const size_t at = v->sorted[i].index;
-		double d[3], length, y[SH_MAX], sum[3] = {0.5, 0.5, 0.5};
+#pragma omp parallel for schedule(dynamic, BLOCK)
+	for (size_t at = 0; at < g->n; at++) {
+		double d[3], length, y[SH_MAX];
+		float sum[3] = {0.5f, 0.5f, 0.5f};
+		if (!seen[at])
+			continue;
 		direction_of(g->splats.means + 3 * at, centre, d, &length);
 		sh_basis(d, coefficients, y);
 		for (int p = FIT_SH, k = 0; p < parts; p++) {
 			const float *sh = g->at[FIT_VALUE][p] + fit_width[p] * at;
 			for (int m = 0; m < fit_width[p]; m += 3, k++)
 				for (int n = 0; n < 3; n++)
-					sum[n] += y[k] * sh[m + n];
+					sum[n] += (float)y[k] * sh[m + n];
 		}
 		for (int n = 0; n < 3; n++)
-			colors[3 * at + (size_t)n] = (float)fmax(0, sum[n]);
+			colors[3 * at + (size_t)n] = fmaxf(0, sum[n]);
 	}
 }
 
@@ -230,31 +239,40 @@ static void put(struct fit_gaussians *g, const struct lanes *b, size_t at, int l
 	to[FIT_LOGIT][at] = (float)(b->sums[BACK_G][l] * (1 - o)); /* de/dlogit = (1-o) / ln 2 */
 }
 
-void fit_project_back(struct fit_gaussians *g, const struct render_view *v, const struct camera *c, int degree,
-	const float *colors, const float *sums)
+static void clear(struct fit_gaussians *g, int degree, size_t at)
+{
+	for (int p = 0; p < fit_parts(degree); p++)
+		memset(g->at[FIT_GRADIENT][p] + fit_width[p] * at, 0, fit_width[p] * sizeof(float));
+}
+
+void fit_project_back(struct fit_gaussians *g, const struct render_view *v, const uint8_t *seen, const struct camera *c,
+	int degree, const float *colors, const float *sums)
 {
 	struct project_lens lens;
 	double centre[3];
 
 	project_lens_make(&lens, c);
 	camera_centre(c, centre);
-	for (int p = 0; p < fit_parts(degree); p++)
-#pragma omp parallel for schedule(static)
-		for (size_t from = 0; from < g->n; from += BLOCK)
-			memset(g->at[FIT_GRADIENT][p] + fit_width[p] * from, 0,
-				fit_width[p] * (g->n - from < BLOCK ? g->n - from : BLOCK) * sizeof(float));
-#pragma omp parallel for schedule(static)
-	for (size_t from = 0; from < v->visible; from += LANES) {
-		const int n = v->visible - from < LANES ? (int)(v->visible - from) : LANES;
-		struct lanes b;
-		for (int l = 0; l < LANES; l++) /* what is left over repeats the first */
-			take(&b, g, v, v->sorted[from + (size_t)(l < n ? l : 0)].index, l, sums);
-		lanes_back(&lens, &b);
-		for (int l = 0; l < n; l++) {
-			const size_t at = v->sorted[from + (size_t)l].index;
-			put(g, &b, at, l);
-			color_back(g, at, degree, centre, colors + 3 * at, sums + at * BACK_SUMS + BACK_RED,
-				g->at[FIT_GRADIENT][FIT_MEAN] + 3 * at);
+#pragma omp parallel for schedule(dynamic)
+	for (size_t begin = 0; begin < g->n; begin += BLOCK) {
+		const size_t end = begin + BLOCK < g->n ? begin + BLOCK : g->n;
+		struct lanes b = {0}; /* lanes left over compute what is not looked at */
+		for (size_t i = begin; i < end;) {
+			size_t who[LANES];
+			int n = 0;
+			for (; i < end && n < LANES; i++)
+				if (seen[i]) {
+					take(&b, g, v, i, n, sums);
+					who[n++] = i;
+				} else {
+					clear(g, degree, i);
+				}
+			lanes_back(&lens, &b);
+			for (int l = 0; l < n; l++) {
+				put(g, &b, who[l], l);
+				color_back(g, who[l], degree, centre, colors + 3 * who[l],
+					sums + who[l] * BACK_SUMS + BACK_RED, g->at[FIT_GRADIENT][FIT_MEAN] + 3 * who[l]);
+			}
 		}
 	}
 }

@@ -149,6 +149,7 @@ static double slope_of(struct problem *p, size_t i, int part, size_t k)
 static void gradients(struct problem *p, enum cpu_level level)
 {
 	static float image[3 * PIXELS], error[PIXELS], colors[3 * MOST], sums[BACK_SUMS * MOST];
+	static uint8_t seen[MOST];
 	struct back_room room = {0};
 	struct err e;
 	struct render_view *v = render_prepare(&p->g.splats, &p->c, &e);
@@ -156,11 +157,12 @@ static void gradients(struct problem *p, enum cpu_level level)
 	if (!v)
 		abort();
 	v->level = level;
-	fit_colors(&p->g, v, &p->c, 3, colors);
+	fit_seen(v, seen);
+	fit_colors(&p->g, seen, &p->c, 3, colors);
 	render_packed(v, colors, 3, image, NULL);
 	if (back_view(v, colors, image, p->gradient, error, sums, &room, &e))
 		abort();
-	fit_project_back(&p->g, v, &p->c, 3, colors, sums);
+	fit_project_back(&p->g, v, seen, &p->c, 3, colors, sums);
 	back_free(&room);
 	render_free(v);
 }
