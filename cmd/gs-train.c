@@ -24,7 +24,6 @@ static const struct cli_option table[] = {
 	{"degree", 0, CLI_INT, &options.degree, "N", "of the spherical harmonics, 0 to 3 (default 3)", 0, 3},
 	{"scale", 0, CLI_REAL, &options.scale, "S", "learn from photographs of round(W S) x round(H S) (default 1)",
 		0.001, 1},
-	{"by-error", 0, CLI_FLAG, &options.by_error, NULL, "x", 0, 0},
 	{"log", 0, CLI_STRING, &options.log, "FILE",
 		"write the losses there, JSON Lines, a line every 100 steps; - is stdout", 0, 0},
 	{0},

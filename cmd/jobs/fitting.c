@@ -245,7 +245,7 @@ static int run(struct fitting *f, struct err *e)
 		return -1;
 	move_photographs(f);
 	const struct fit_options options = {
-		f->extent, (size_t)o->gaussians, (int)o->degree, (uint64_t)o->seed, o->by_error};
+		f->extent, (size_t)o->gaussians, (int)o->degree, (uint64_t)o->seed};
 	report_note(f->to, 1, "%zu photographs to learn from, %zu to test with, %zu Gaussians to begin with, extent %.4g",
 		f->learned, f->tested, f->gaussians.n, f->extent);
 	int bad = file_out_claim(&claim, o->output, e);

@@ -19,7 +19,6 @@ struct fitting_options {
 	long long iterations, gaussians, degree, seed;
 	double scale;	/* of the photographs */
 	double minutes; /* > 0: as many steps as they give */
-	int by_error;
 };
 
 /* Trains and writes the scene. Returns 0, or -1 with *e set. */

@@ -31,7 +31,7 @@ void back_free(struct back_room *r)
 
 /* What a tile's pixels begin with. Pixels outside the image have no light and count for nothing. */
 static void start(struct back_tile *b, const struct tile_grid *g, struct place at, const float *image,
-	const float *gradient, const float *error)
+	const float *gradient)
 {
 	const size_t pixels = (size_t)g->width * (size_t)g->height;
 
@@ -44,7 +44,6 @@ static void start(struct back_tile *b, const struct tile_grid *g, struct place a
 				b->d[c][to] = gradient[c * pixels + from];
 				b->rest[to] += gradient[c * pixels + from] * image[c * pixels + from];
 			}
-			b->d[3][to] = error[from];
 		}
 }
 
@@ -68,7 +67,7 @@ static void gather(
 }
 
 int back_view(const struct render_view *v, const float *colors, const float *image, const float *gradient,
-	const float *error, float *sums, struct back_room *room, struct err *e)
+	float *sums, struct back_room *room, struct err *e)
 {
 	const struct back_kernels *kernels = back_kernels_of(v->level);
 	const size_t tiles = (size_t)v->grid.columns * (size_t)v->grid.rows;
@@ -86,7 +85,7 @@ int back_view(const struct render_view *v, const float *colors, const float *ima
 		struct back_tile b __attribute__((aligned(64)));
 		struct back_sums own __attribute__((aligned(64)));
 		blend_start(&t, at.x, at.y, at.columns, at.rows, 0);
-		start(&b, &v->grid, at, image, gradient, error);
+		start(&b, &v->grid, at, image, gradient);
 		room->done[k] = kernels->tile(&t, &b, &own, v->projected, v->tiles.entries + begin,
 			v->tiles.start[k + 1] - begin, colors, room->parts + begin * BACK_SUMS);
 	}

@@ -17,12 +17,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What is summed over pixels, for each Gaussian: g = dL/de / ln 2 and its moments, dL/dc, and w times the error. */
-enum { BACK_G, BACK_U, BACK_V, BACK_UU, BACK_UV, BACK_VV, BACK_RED, BACK_GREEN, BACK_BLUE, BACK_ERROR, BACK_SUMS };
+/* What is summed over pixels, for each Gaussian: g = dL/de / ln 2 and its moments, dL/dc, and w. */
+enum { BACK_G, BACK_U, BACK_V, BACK_UU, BACK_UV, BACK_VV, BACK_RED, BACK_GREEN, BACK_BLUE, BACK_WEIGHT, BACK_SUMS };
 
 /* A tile's pixels, block by block as in struct blend_tile. */
 struct back_tile {
-	float d[4][TILE_PIXELS]; /* dL/dC, and the error */
+	float d[3][TILE_PIXELS]; /* dL/dC */
 	float rest[TILE_PIXELS]; /* of dL/dC . C behind what was blended */
 };
 
@@ -48,9 +48,9 @@ struct back_room {
 };
 void back_free(struct back_room *r);
 
-/* sums (N,BACK_SUMS), 0 for Gaussians that the view has not. image and gradient are planes (3,P),
- * error (P). Returns 0, or -1 with *e set. */
+/* sums (N,BACK_SUMS), 0 for Gaussians that the view has not. image and gradient are planes (3,P).
+ * Returns 0, or -1 with *e set. */
 int back_view(const struct render_view *v, const float *colors, const float *image, const float *gradient,
-	const float *error, float *sums, struct back_room *room, struct err *e);
+	float *sums, struct back_room *room, struct err *e);
 
 #endif

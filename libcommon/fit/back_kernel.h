@@ -16,7 +16,7 @@ VEC_INLINE vecn back_inverse(vecn x)
 
 struct back_block {
 	struct blend_block at;
-	vecn d[4][BLEND_PARTS], rest[BLEND_PARTS];
+	vecn d[3][BLEND_PARTS], rest[BLEND_PARTS];
 };
 
 VEC_INLINE void back_add(float *sum, vecn x)
@@ -52,8 +52,9 @@ VEC_INLINE void back_part(
 	back_add(sums[BACK_UU] + lanes, gu * u);
 	back_add(sums[BACK_UV] + lanes, gu * v);
 	back_add(sums[BACK_VV] + lanes, gv * v);
-	for (int c = 0; c < 4; c++)
+	for (int c = 0; c < 3; c++)
 		back_add(sums[BACK_RED + c] + lanes, w * b->d[c][i]);
+	back_add(sums[BACK_WEIGHT] + lanes, w);
 }
 
 VEC_INLINE void back_block(struct blend_tile *t, struct back_tile *tile, struct back_sums *sums,
@@ -65,7 +66,7 @@ VEC_INLINE void back_block(struct blend_tile *t, struct back_tile *tile, struct 
 	for (int i = 0; i < BLEND_PARTS; i++) {
 		const int at = k * BLEND_LANES + i * VEC_LANES;
 		b.rest[i] = vec_load(tile->rest + at);
-		for (int c = 0; c < 4; c++)
+		for (int c = 0; c < 3; c++)
 			b.d[c][i] = vec_load(tile->d[c] + at);
 	}
 	for (; column; column &= column - 1) {

@@ -14,8 +14,9 @@
 #define RATE_MEAN_END 1.6e-6
 static const double rates[FIT_PARTS] = {0, 0.005, 0.001, 0.05, 0.0025, 0.0025 / 20, 0.0025 / 20, 0.0025 / 20};
 
-/* Small weights on opacities and scales, each a mean over all (3DGS-MCMC). */
-#define WEIGHT_OPACITY 0.01f
+/* Small weights on opacities and scales, each a mean over all. 3DGS-MCMC has 0.01 for both; in short trainings less on
+ * opacities is better: 32.4 in place of 31.9 dB on a desk after 1,000 steps. */
+#define WEIGHT_OPACITY 0.003f
 #define WEIGHT_SCALE 0.01f
 
 /* Progress at which the images become half and full size, and each degree of the harmonics begins. */
@@ -34,10 +35,11 @@ int fit_open(struct fit *f, struct fit_gaussians *g, const struct fit_options *o
 	*g = (struct fit_gaussians){0};
 	f->order = mem_alloc(views, sizeof *f->order, "views", e);
 	f->seen = mem_alloc(f->gaussians.capacity, 1, "views", e);
+	f->dead = mem_alloc(f->gaussians.capacity, 1, "Gaussians", e);
 	f->colors = mem_alloc(f->gaussians.capacity, 3 * sizeof *f->colors, "colours", e);
 	f->sums = mem_zalloc(f->gaussians.capacity, BACK_SUMS * sizeof *f->sums, "gradients", e);
-	f->error = mem_zalloc(f->gaussians.capacity, sizeof *f->error, "gradients", e);
-	if (!f->order || !f->seen || !f->colors || !f->sums || !f->error)
+	f->weight = mem_zalloc(f->gaussians.capacity, sizeof *f->weight, "gradients", e);
+	if (!f->order || !f->seen || !f->colors || !f->sums || !f->weight || !f->dead)
 		return -1;
 	rng_seed(&f->rng, o->seed, 0);
 	for (size_t i = 0; i < views; i++)
@@ -57,7 +59,8 @@ void fit_close(struct fit *f)
 	free(f->seen);
 	free(f->colors);
 	free(f->sums);
-	free(f->error);
+	free(f->weight);
+	free(f->dead);
 	free(f->image);
 	*f = (struct fit){0};
 }
@@ -72,7 +75,7 @@ static int render(struct fit *f, const struct camera *c, int degree, struct err 
 {
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 
-	if (mem_room((void **)&f->image, &f->image_room, 7 * pixels, sizeof *f->image, "image", e) ||
+	if (mem_room((void **)&f->image, &f->image_room, 6 * pixels, sizeof *f->image, "image", e) ||
 		render_again(f->view, &f->gaussians.splats, c, e))
 		return -1;
 	fit_seen(f->view, f->seen);
@@ -87,28 +90,28 @@ int fit_judge(struct fit *f, const struct photograph *p, struct photo_loss *l, s
 
 	fit_gaussians_activate(&f->gaussians);
 	return render(f, c, f->gaussians.degree, e) ||
-		       photo_loss(l, f->image, p->rgb[0], c->height, c->width, NULL, NULL, &f->room, e)
+		       photo_loss(l, f->image, p->rgb[0], c->height, c->width, NULL, &f->room, e)
 		       ? -1
 		       : 0;
 }
 
-/* The image's gradient, and from it the slab's; errors are noted. */
+/* The image's gradient, and from it the slab's; weights are noted. */
 static int back(struct fit *f, const struct photograph *p, int level, int degree, struct err *e)
 {
 	const struct camera *c = &p->camera[level];
 	struct fit_gaussians *g = &f->gaussians;
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
-	float *gradient = f->image + 3 * pixels, *error = f->image + 6 * pixels;
+	float *gradient = f->image + 3 * pixels;
 
-	if (photo_loss(&f->last, f->image, p->rgb[level], c->height, c->width, gradient, error, &f->room, e) ||
-		back_view(f->view, f->colors, f->image, gradient, error, f->sums, &f->back, e))
+	if (photo_loss(&f->last, f->image, p->rgb[level], c->height, c->width, gradient, &f->room, e) ||
+		back_view(f->view, f->colors, f->image, gradient, f->sums, &f->back, e))
 		return -1;
 	fit_project_back(g, f->view, f->seen, c, degree, f->colors, f->sums);
 	const float area = (float)(1 << 2 * level); /* pixels of full size */
 #pragma omp parallel for schedule(static)
 	for (size_t i = 0; i < g->n; i++) {
 		const float o = g->splats.opacities[i];
-		f->error[i] += area * f->sums[i * BACK_SUMS + BACK_ERROR];
+		f->weight[i] += area * f->sums[i * BACK_SUMS + BACK_WEIGHT];
 		g->at[FIT_GRADIENT][FIT_LOGIT][i] += WEIGHT_OPACITY * o * (1 - o) / (float)g->n;
 		for (size_t k = 3 * i; k < 3 * i + 3; k++)
 			g->at[FIT_GRADIENT][FIT_SCALE][k] += WEIGHT_SCALE * g->splats.scales[k] / (3 * (float)g->n);
@@ -140,9 +143,16 @@ static int grow_now(struct fit *f, double progress, struct err *e)
 	const double first = (double)f->first, most = fmax((double)f->options.most, first);
 	const double wanted = first * pow(most / first, fmin(share, 1));
 	fit_gaussians_activate(g);
-	if (grow(g, f->options.by_error ? f->error : g->splats.opacities, (size_t)wanted, &f->rng, e))
+	/* what no view has shown since all were looked at is as good as dead */
+	const size_t n = g->n;
+	const int all_seen = f->iteration - f->weighed >= (long)f->views;
+	for (size_t i = 0; i < n; i++)
+		f->dead[i] = g->splats.opacities[i] <= GROW_DEAD || (all_seen && f->weight[i] < FIT_SHOWN);
+	if (grow(g, f->dead, (size_t)wanted, &f->rng, e))
 		return -1;
-	memset(f->error, 0, g->capacity * sizeof *f->error);
+	for (size_t i = 0; i < g->n; i++)
+		f->weight[i] = all_seen ? 0 : i >= n || f->dead[i] ? FIT_SHOWN : f->weight[i];
+	f->weighed = all_seen ? f->iteration : f->weighed;
 	return 0;
 }
 
@@ -180,15 +190,12 @@ int fit_shown(struct fit *f, char *kept, struct err *e)
 		const size_t pixels = (size_t)c->width * (size_t)c->height;
 		if (render(f, c, 0, e))
 			return -1;
-		/* with an error of 1 in each pixel, what is summed is the weight */
 		memset(f->image, 0, 6 * pixels * sizeof *f->image);
-		for (size_t p = 6 * pixels; p < 7 * pixels; p++)
-			f->image[p] = 1;
-		if (back_view(f->view, f->colors, f->image, f->image + 3 * pixels, f->image + 6 * pixels, f->sums,
+		if (back_view(f->view, f->colors, f->image, f->image + 3 * pixels, f->sums,
 			    &f->back, e))
 			return -1;
 		for (size_t k = 0; k < g->n; k++)
-			kept[k] |= f->sums[k * BACK_SUMS + BACK_ERROR] >= FIT_SHOWN;
+			kept[k] |= f->sums[k * BACK_SUMS + BACK_WEIGHT] >= FIT_SHOWN;
 	}
 	return 0;
 }

@@ -20,7 +20,6 @@ struct fit_options {
 	size_t most;   /* Gaussians */
 	int degree;    /* of the harmonics in the end, 0 to 3 */
 	uint64_t seed;
-	int by_error;
 };
 
 struct fit {
@@ -40,8 +39,11 @@ struct fit {
 	uint8_t *seen; /* (capacity) by that view */
 	struct back_room back;
 	struct photo_loss_room room;
-	float *colors, *sums, *error; /* (capacity,3), (capacity,BACK_SUMS), (capacity): what each had of the error lately */
-	float *image;		      /* (3,P), its gradient (3,P), the error of each pixel (P) */
+	float *colors, *sums; /* (capacity,3), (capacity,BACK_SUMS) */
+	float *weight;	      /* (capacity) what each has shown since step `weighed`, in pixels of full size */
+	uint8_t *dead;	      /* (capacity) */
+	long weighed;
+	float *image; /* (3,P), its gradient (3,P) */
 	size_t image_room;
 };
 

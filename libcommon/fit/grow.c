@@ -32,13 +32,13 @@ void grow_split(double opacity, int copies, double *part, double *factor)
 	*factor = profile(opacity, 1) / profile(*part, copies);
 }
 
-/* cumulative (n): sums of the chances of those alive. */
-static double accumulate(const struct fit_gaussians *g, const float *chance, double *cumulative)
+/* cumulative (n): sums of the opacities of those alive. */
+static double accumulate(const struct fit_gaussians *g, const uint8_t *dead, double *cumulative)
 {
 	double sum = 0;
 
 	for (size_t i = 0; i < g->n; i++) {
-		sum += g->splats.opacities[i] > GROW_DEAD ? (double)chance[i] : 0;
+		sum += dead[i] ? 0 : (double)g->splats.opacities[i];
 		cumulative[i] = sum;
 	}
 	return sum;
@@ -84,14 +84,14 @@ static void share(struct fit_gaussians *g, size_t i, int copies)
 	copy(g, i, i);
 }
 
-static void place(struct fit_gaussians *g, size_t wanted, const double *cumulative, uint32_t *originals, uint16_t *copies,
+static void place(struct fit_gaussians *g, const uint8_t *dead, size_t wanted, const double *cumulative, uint32_t *originals, uint16_t *copies,
 	struct rng *rng)
 {
 	const size_t n = g->n, all = wanted > n ? wanted : n;
 
 	for (size_t i = 0; i < all; i++) {
 		originals[i] = (uint32_t)i;
-		if (i < n && g->splats.opacities[i] > GROW_DEAD)
+		if (i < n && !dead[i])
 			continue;
 		originals[i] = (uint32_t)draw(cumulative, n, rng);
 		copies[originals[i]] += copies[originals[i]] < COPIES_MOST;
@@ -105,7 +105,7 @@ static void place(struct fit_gaussians *g, size_t wanted, const double *cumulati
 	g->n = all;
 }
 
-int grow(struct fit_gaussians *g, const float *chance, size_t wanted, struct rng *rng, struct err *e)
+int grow(struct fit_gaussians *g, const uint8_t *dead, size_t wanted, struct rng *rng, struct err *e)
 {
 	wanted = wanted < g->capacity ? wanted : g->capacity;
 	const size_t all = wanted > g->n ? wanted : g->n;
@@ -114,8 +114,8 @@ int grow(struct fit_gaussians *g, const float *chance, size_t wanted, struct rng
 	uint16_t *copies = mem_zalloc(g->n, sizeof *copies, "Gaussians", e);
 	const int bad = !cumulative || !originals || !copies;
 
-	if (!bad && g->n && accumulate(g, chance, cumulative) > 0)
-		place(g, wanted, cumulative, originals, copies, rng);
+	if (!bad && g->n && accumulate(g, dead, cumulative) > 0)
+		place(g, dead, wanted, cumulative, originals, copies, rng);
 	free(cumulative);
 	free(originals);
 	free(copies);

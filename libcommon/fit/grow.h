@@ -11,11 +11,11 @@
 /* At most this opaque is dead. */
 #define GROW_DEAD 0.005f
 
-/* Moves the dead ones onto others, and adds copies until there are `wanted`, or as many as have room. Both are drawn with
- * a chance in proportion to chance[i] (n) >= 0, of those alive; a copy and its original share opacity and scale so that
+/* Moves those with dead[i] (n) onto others, and adds copies until there are `wanted`, or as many as have room. The others
+ * are drawn of those alive, with a chance in proportion to their opacity; a copy and its original share opacity and scale so that
  * together they show what the original did (section 4.3 there). Activations must be up to date, and are not after. Returns
  * 0, or -1 with *e set. */
-int grow(struct fit_gaussians *g, const float *chance, size_t wanted, struct rng *rng, struct err *e);
+int grow(struct fit_gaussians *g, const uint8_t *dead, size_t wanted, struct rng *rng, struct err *e);
 
 /* Shifts each mean by the covariance times noise, the more the fainter it is; `rate` is that of the positions. The same
  * for one seed and step, whatever the threads. */

@@ -142,7 +142,7 @@ static void gradient_row(const struct channel *c, int y, float *row, float *grad
 	}
 }
 
-static void differences(const struct channel *c, int y, float *error)
+static void differences(const struct channel *c, int y)
 {
 	const size_t n = (size_t)c->width, at = (size_t)y * n;
 	double l1 = 0, squares = 0;
@@ -151,8 +151,6 @@ static void differences(const struct channel *c, int y, float *error)
 		const float a = c->x[i], d = (a < 0 ? 0 : a > 1 ? 1 : a) - c->y[i];
 		l1 += fabsf(a - c->y[i]);
 		squares += (double)d * d;
-		if (error)
-			error[i] += fabsf(a - c->y[i]) / 3;
 	}
 	c->rows[c->height + y] = l1;
 	c->rows[2 * c->height + y] = squares;
@@ -160,12 +158,12 @@ static void differences(const struct channel *c, int y, float *error)
 
 /* One channel's sums are added to *l; rows share the work; `scratch` has 6 rows and some for each thread. */
 static void channel_loss(
-	const struct channel *c, float *scratch, size_t scratch_row, float *gradient, float *error, struct photo_loss *l)
+	const struct channel *c, float *scratch, size_t scratch_row, float *gradient, struct photo_loss *l)
 {
 #pragma omp parallel for schedule(static)
 	for (int y = 0; y < c->height; y++) {
 		filter_rows(c, y, scratch + (size_t)omp_get_thread_num() * scratch_row);
-		differences(c, y, error);
+		differences(c, y);
 	}
 #pragma omp parallel for schedule(static)
 	for (int y = 0; y < c->height; y++)
@@ -193,7 +191,7 @@ void photo_loss_free(struct photo_loss_room *r)
 }
 
 int photo_loss(struct photo_loss *l, const float *image, const uint8_t *photograph, int height, int width,
-	float *gradient, float *error, struct photo_loss_room *room, struct err *e)
+	float *gradient, struct photo_loss_room *room, struct err *e)
 {
 	const size_t pixels = (size_t)height * (size_t)width, row = 6 * (size_t)width + 2 * REACH + 16;
 
@@ -202,8 +200,6 @@ int photo_loss(struct photo_loss *l, const float *image, const uint8_t *photogra
 		    sizeof *room->planes, "image", e) ||
 		mem_room((void **)&room->rows, &room->row_room, 3 * (size_t)height, sizeof *room->rows, "image", e))
 		return -1;
-	if (error)
-		memset(error, 0, pixels * sizeof *error);
 	for (size_t k = 0; k < 3; k++) {
 		struct channel c = {.height = height, .width = width, .y = room->planes, .rows = room->rows};
 		c.x = image + k * pixels;
@@ -212,7 +208,7 @@ int photo_loss(struct photo_loss *l, const float *image, const uint8_t *photogra
 #pragma omp parallel for schedule(static)
 		for (size_t p = 0; p < pixels; p++)
 			c.y[p] = (float)photograph[3 * p + k] * (1.0f / 255);
-		channel_loss(&c, room->planes + 9 * pixels, row, gradient ? gradient + k * pixels : NULL, error, l);
+		channel_loss(&c, room->planes + 9 * pixels, row, gradient ? gradient + k * pixels : NULL, l);
 	}
 	const double n = 3 * (double)pixels;
 	l->l1 /= n;

@@ -21,9 +21,9 @@ struct photo_loss_room {
 };
 void photo_loss_free(struct photo_loss_room *r);
 
-/* image (3,P) against the bytes of a photograph (P,3). gradient (3,P) gets dL/dimage, error (P) the mean over channels of
- * the difference; both NULL: the loss alone. Returns 0, or -1 with *e set. */
+/* image (3,P) against the bytes of a photograph (P,3). gradient (3,P) gets dL/dimage; NULL: the loss
+ * alone. Returns 0, or -1 with *e set. */
 int photo_loss(struct photo_loss *l, const float *image, const uint8_t *photograph, int height, int width,
-	float *gradient, float *error, struct photo_loss_room *room, struct err *e);
+	float *gradient, struct photo_loss_room *room, struct err *e);
 
 #endif

@@ -56,7 +56,7 @@ static double lap(void)
 static void measure(const struct splats *s, const struct camera *c, int repeats)
 {
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
-	float *image = need(7 * pixels, sizeof *image), *colors = need(s->n, 3 * sizeof *colors),
+	float *image = need(6 * pixels, sizeof *image), *colors = need(s->n, 3 * sizeof *colors),
 	      *sums = need(s->n, BACK_SUMS * sizeof *sums);
 	uint8_t *photograph = need(pixels, 3), *seen = need(s->n, 1);
 	struct fit_gaussians g;
@@ -81,10 +81,9 @@ static void measure(const struct splats *s, const struct camera *c, int repeats)
 		times[COLORS] = lap();
 		render_packed(v, colors, 3, image, NULL);
 		times[BLEND] = lap();
-		bad = bad || photo_loss(&loss, image, photograph, c->height, c->width, image + 3 * pixels,
-				      image + 6 * pixels, &loss_room, &e);
+		bad = bad || photo_loss(&loss, image, photograph, c->height, c->width, image + 3 * pixels, &loss_room, &e);
 		times[LOSS] = lap();
-		bad = bad || back_view(v, colors, image, image + 3 * pixels, image + 6 * pixels, sums, &back_room, &e);
+		bad = bad || back_view(v, colors, image, image + 3 * pixels, sums, &back_room, &e);
 		times[BACK] = lap();
 		fit_project_back(&g, v, seen, c, 3, colors, sums);
 		times[PROJECT] = lap();

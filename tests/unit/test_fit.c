@@ -148,7 +148,7 @@ static double slope_of(struct problem *p, size_t i, int part, size_t k)
 
 static void gradients(struct problem *p, enum cpu_level level)
 {
-	static float image[3 * PIXELS], error[PIXELS], colors[3 * MOST], sums[BACK_SUMS * MOST];
+	static float image[3 * PIXELS], colors[3 * MOST], sums[BACK_SUMS * MOST];
 	static uint8_t seen[MOST];
 	struct back_room room = {0};
 	struct err e;
@@ -160,7 +160,7 @@ static void gradients(struct problem *p, enum cpu_level level)
 	fit_seen(v, seen);
 	fit_colors(&p->g, seen, &p->c, 3, colors);
 	render_packed(v, colors, 3, image, NULL);
-	if (back_view(v, colors, image, p->gradient, error, sums, &room, &e))
+	if (back_view(v, colors, image, p->gradient, sums, &room, &e))
 		abort();
 	fit_project_back(&p->g, v, seen, &p->c, 3, colors, sums);
 	back_free(&room);
@@ -302,7 +302,7 @@ static double twin_photo_loss(const float *image, const uint8_t *photograph)
 
 static void loss_of_images(void)
 {
-	static float image[3 * PIXELS], gradient[3 * PIXELS], error[PIXELS];
+	static float image[3 * PIXELS], gradient[3 * PIXELS];
 	static uint8_t photograph[3 * PIXELS];
 	struct photo_loss_room room = {0};
 	struct photo_loss l;
@@ -315,7 +315,7 @@ static void loss_of_images(void)
 		photograph[i] = (uint8_t)rng_below(&r, 256);
 		image[i % 3 * PIXELS + i / 3] = (float)(photograph[i] / 255.0 + 0.2 * rng_normal(&r));
 	}
-	if (photo_loss(&l, image, photograph, HEIGHT, WIDTH, gradient, error, &room, &e))
+	if (photo_loss(&l, image, photograph, HEIGHT, WIDTH, gradient, &room, &e))
 		abort();
 	CHECK(fabs(l.total - twin_photo_loss(image, photograph)) < 1e-6, "%.9g, not %.9g", l.total,
 		twin_photo_loss(image, photograph));
