@@ -9,15 +9,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int add(struct colmap_points *p, size_t *room, const double place[3], const double color[3], const char *path,
-	struct err *e)
+static int add(struct colmap_points *p, size_t *room, const double place[3], const double color[3],
+	const char *path, struct err *e)
 {
 	size_t places = *room, colors = *room;
 
 	for (int k = 0; k < 3; k++)
 		if (!isfinite(place[k]) || !(color[k] >= 0 && color[k] <= 255))
 			return err_set(e, ERR_FORMAT,
-				"%s: point %zu: its place is not finite, or its colour not within 0 to 255", path, p->n);
+				"%s: point %zu: its place is not finite, or its colour not within 0 to 255",
+				path, p->n);
 	if (mem_grow((void **)&p->places, &places, p->n + 1, 3 * sizeof *p->places, path, e) ||
 		mem_grow((void **)&p->colors, &colors, p->n + 1, 3, path, e))
 		return -1;
@@ -30,7 +31,8 @@ static int add(struct colmap_points *p, size_t *room, const double place[3], con
 	return 0;
 }
 
-/* How many, and for each: id (u64), place (3 f64), colour (3 u8), error (f64), how many views (u64) with 8 bytes each. */
+/* How many, and for each: id (u64), place (3 f64), colour (3 u8), error (f64), how many views (u64) with 8
+ * bytes each. */
 enum { ENTRY = 8 + 24 + 3 + 8 + 8 };
 
 static int read_binary(struct colmap_points *p, const char *path, struct err *e)
@@ -49,8 +51,9 @@ static int read_binary(struct colmap_points *p, const char *path, struct err *e)
 		if (map.len - at >= ENTRY)
 			views = little_get(entry + ENTRY - 8, 8);
 		if (map.len - at < ENTRY || views > (map.len - at - ENTRY) / 8) {
-			bad = err_set(e, ERR_FORMAT, "%s: the file ends at offset %zu, within point %llu of %llu", path,
-				map.len, (unsigned long long)i, (unsigned long long)n);
+			bad = err_set(e, ERR_FORMAT,
+				"%s: the file ends at offset %zu, within point %llu of %llu", path, map.len,
+				(unsigned long long)i, (unsigned long long)n);
 			break;
 		}
 		for (size_t k = 0; k < 3; k++) {

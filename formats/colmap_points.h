@@ -13,7 +13,8 @@ struct colmap_points {
 	uint8_t *colors; /* (n,3) */
 };
 
-/* points3D.bin of the folder, or points3D.txt; none where there is neither. Returns 0, or -1 with *e set and *p zeroed. */
+/* points3D.bin of the folder, or points3D.txt; none where there is neither. Returns 0, or -1 with *e set and
+ * *p zeroed. */
 int colmap_points_read(struct colmap_points *p, const char *dir, struct err *e);
 void colmap_points_free(struct colmap_points *p);
 

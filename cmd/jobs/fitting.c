@@ -53,16 +53,19 @@ static int read_cameras(struct fitting *f, struct err *e)
 	size_t missing;
 
 	f->path = import_find_cameras(&files, e);
-	if (!f->path || camerafile_read(&f->cameras, f->path, e) || import_split(&f->cameras, o->test_views, e))
+	if (!f->path || camerafile_read(&f->cameras, f->path, e) ||
+		import_split(&f->cameras, o->test_views, e))
 		return -1;
 	cameras_undistort(&f->cameras);
 	if (camerafile_images(&f->cameras, o->images, ".", &missing, e))
 		return -1;
 	if (missing == f->cameras.n)
-		return err_set(e, ERR_FORMAT, "%s: no photograph for any of the %zu views of %s, such as '%s'",
-			o->images, missing, file_name(f->path), f->cameras.views[0].name);
+		return err_set(e, ERR_FORMAT,
+			"%s: no photograph for any of the %zu views of %s, such as '%s'", o->images, missing,
+			file_name(f->path), f->cameras.views[0].name);
 	if (missing)
-		report_warn(f->to, "%s: no photograph for %zu of %zu views", o->images, missing, f->cameras.n);
+		report_warn(
+			f->to, "%s: no photograph for %zu of %zu views", o->images, missing, f->cameras.n);
 	return 0;
 }
 
@@ -75,8 +78,8 @@ static int read_photograph(struct fitting *f, const struct camera *c, struct pho
 	if (warping_read_photograph(c, ".", &rgb, &height, &width, e))
 		return -1;
 	int bad = fabs((double)c->width * height / width - c->height) > 1 + 0.005 * c->height
-			  ? err_set(e, ERR_FORMAT, "%s: %dx%d, which is not the shape of its camera, %dx%d", c->image,
-				    width, height, c->width, c->height)
+			  ? err_set(e, ERR_FORMAT, "%s: %dx%d, which is not the shape of its camera, %dx%d",
+				    c->image, width, height, c->width, c->height)
 			  : photograph_make(p, c, f->options->scale, rgb, height, width, e);
 	free(rgb);
 	return bad ? -1 : 0;
@@ -105,64 +108,65 @@ static int read_photographs(struct fitting *f, struct err *e)
 		}
 	report_end(f->to);
 	if (!bad && !f->learned)
-		bad = err_set(e, ERR_FORMAT, "%s: every view with a photograph is kept for testing", file_name(f->path));
+		bad = err_set(e, ERR_FORMAT, "%s: every view with a photograph is kept for testing",
+			file_name(f->path));
 	return bad;
 }
 
-/* The points are moved to the offset in double. */
-static int start_from_points(struct fitting *f, const struct colmap_points *p, struct rng *rng, struct err *e)
+/* Where there are none, points are drawn around the cameras. */
+static int make_points(struct fitting *f, struct colmap_points *p, struct rng *rng, struct err *e)
 {
-	const size_t n = p->n ? p->n : RANDOM_POINTS;
-	float *places = mem_alloc(n, 3 * sizeof *places, "points", e);
-	uint8_t *colors = mem_alloc(n, 3, "points", e);
-	int bad = !places || !colors;
-
-	if (!bad && p->n) {
-		bad = gaussian_offset(f->offset, p->places, n, e);
-		for (size_t i = 0; i < 3 * n && !bad; i++)
-			places[i] = (float)(p->places[i] - f->offset[i % 3]);
-		memcpy(colors, p->colors, 3 * n);
-	}
-	if (!bad) {
-		cameras_shift(&f->cameras, f->offset);
-		f->extent = start_extent(f->seen, f->learned, places, p->n);
-		if (!p->n)
-			start_points(f->seen, f->learned, f->extent, places, colors, n, rng);
-		bad = start_at_points(&f->gaussians, places, colors, n, rng, e);
-	}
-	free(places);
-	free(colors);
-	return bad;
+	p->n = RANDOM_POINTS;
+	p->places = mem_alloc(p->n, 3 * sizeof *p->places, "points", e);
+	p->colors = mem_alloc(p->n, 3, "points", e);
+	if (!p->places || !p->colors)
+		return -1;
+	start_points(f->seen, f->learned, p->places, p->colors, p->n, rng);
+	report_warn(f->to, "%s: no points to begin with: %zu are taken at random", file_name(f->path), p->n);
+	return 0;
 }
 
-static int start(struct fitting *f, struct err *e)
+/* Points are moved to the offset in double. */
+static int start_from_points(struct fitting *f, struct err *e)
 {
 	const struct fitting_options *o = f->options;
-	struct colmap_points points = {0};
-	struct splats init = {0};
+	struct colmap_points p = {0};
+	float *places = NULL;
 	struct rng rng;
-	int bad = 0;
 
 	rng_seed(&rng, (uint64_t)o->seed, 1);
-	if (o->init) {
-		bad = anysplats_read(&init, f->offset, NULL, o->init, e);
-		if (!bad) {
-			cameras_shift(&f->cameras, f->offset);
-			f->extent = start_extent(f->seen, f->learned, init.means, init.n);
-		}
-	} else if (o->points || file_is_dir(f->path)) {
-		bad = colmap_points_read(&points, o->points ? o->points : f->path, e);
+	int bad = (o->points || file_is_dir(f->path)) &&
+		  colmap_points_read(&p, o->points ? o->points : f->path, e);
+	bad = bad || (!p.n && make_points(f, &p, &rng, e)) || gaussian_offset(f->offset, p.places, p.n, e) ||
+	      fit_gaussians_alloc(&f->gaussians, o->gaussians ? (size_t)o->gaussians : start_number(p.n),
+		      (int)o->degree, e) ||
+	      !(places = mem_alloc(p.n, 3 * sizeof *places, "points", e));
+	if (!bad) {
+		for (size_t i = 0; i < 3 * p.n; i++)
+			places[i] = (float)(p.places[i] - f->offset[i % 3]);
+		cameras_shift(&f->cameras, f->offset);
+		f->extent = start_extent(f->seen, f->learned, places, p.n);
+		bad = start_at_points(&f->gaussians, places, p.colors, p.n, &rng, e);
 	}
-	const size_t most = init.n > (size_t)o->gaussians ? init.n : (size_t)o->gaussians;
-	bad = bad || fit_gaussians_alloc(&f->gaussians, most, (int)o->degree, e);
-	if (!bad && o->init)
-		fit_gaussians_take(&f->gaussians, &init);
-	else if (!bad)
-		bad = start_from_points(f, &points, &rng, e);
-	if (!bad && !points.n && !o->init)
-		report_warn(f->to, "%s: no points to begin with: %d are taken at random", file_name(f->path), RANDOM_POINTS);
-	colmap_points_free(&points);
-	splats_free(&init);
+	free(places);
+	colmap_points_free(&p);
+	return bad ? -1 : 0;
+}
+
+static int start_from_scene(struct fitting *f, struct err *e)
+{
+	const struct fitting_options *o = f->options;
+	struct splats s = {0};
+	int bad = anysplats_read(&s, f->offset, NULL, o->init, e);
+
+	bad = bad || fit_gaussians_alloc(&f->gaussians,
+			     s.n > (size_t)o->gaussians ? s.n : (size_t)o->gaussians, (int)o->degree, e);
+	if (!bad) {
+		cameras_shift(&f->cameras, f->offset);
+		f->extent = start_extent(f->seen, f->learned, s.means, s.n);
+		fit_gaussians_take(&f->gaussians, &s);
+	}
+	splats_free(&s);
 	return bad ? -1 : 0;
 }
 
@@ -186,8 +190,8 @@ static int judge(struct fitting *f, double *psnr, double *ssim, struct err *e)
 			return -1;
 		*psnr += fit_psnr(l.squares) / (double)f->tested;
 		*ssim += l.ssim / (double)f->tested;
-		report_note(f->to, 2, "%s: PSNR %.2f dB, SSIM %.4f", f->photographs[f->learned + i].camera[0].name,
-			fit_psnr(l.squares), l.ssim);
+		report_note(f->to, 2, "%s: PSNR %.2f dB, SSIM %.4f",
+			f->photographs[f->learned + i].camera[0].name, fit_psnr(l.squares), l.ssim);
 	}
 	return 0;
 }
@@ -208,7 +212,8 @@ static int take_steps(struct fitting *f, struct err *e)
 		if (!bad && fit->iteration % NOTE_EVERY == 0) {
 			snprintf(f->note, sizeof f->note, "%zu Gaussians, PSNR %.2f", fit->gaussians.n,
 				fit_psnr(squares));
-			bad = trainlog_put_fit(&f->log, fit->iteration, fit->gaussians.n, loss, fit_psnr(squares), e);
+			bad = trainlog_put_fit(
+				&f->log, fit->iteration, fit->gaussians.n, loss, fit_psnr(squares), e);
 			loss = squares = 0;
 		}
 		done = o->minutes > 0 ? seconds() - begin : (double)fit->iteration;
@@ -218,17 +223,37 @@ static int take_steps(struct fitting *f, struct err *e)
 	return bad;
 }
 
+/* Training on photographs that show nothing would end in nothing. */
+static int check_start(struct fitting *f, struct err *e)
+{
+	const size_t n = f->fit.gaussians.n;
+	char *kept = mem_alloc(n, 1, "Gaussians", e);
+	int bad = !kept || fit_shown(&f->fit, FIT_LEVELS - 1, kept, e);
+
+	if (!bad && !memchr(kept, 1, n))
+		bad = err_set(e, ERR_FORMAT,
+			"%s: no photograph shows any of the %zu %s to begin with: they must be in the cameras' frame, before a camera, and farther from it than 0.2",
+			file_name(f->options->init     ? f->options->init
+				  : f->options->points ? f->options->points
+						       : f->path),
+			n, f->options->init ? "Gaussians" : "points");
+	free(kept);
+	return bad ? -1 : 0;
+}
+
 static int finish(struct fitting *f, struct err *e)
 {
 	const size_t n = f->fit.gaussians.n;
 	char *kept = mem_alloc(n, 1, "Gaussians", e);
 	struct splats s = {0};
 	double psnr, ssim;
-	int bad = !kept || judge(f, &psnr, &ssim, e) || fit_shown(&f->fit, kept, e) ||
-		  fit_gaussians_give(&f->fit.gaussians, kept, &s, e) || ply_write(&s, f->offset, f->options->output, e);
+	int bad = !kept || judge(f, &psnr, &ssim, e) || fit_shown(&f->fit, 0, kept, e) ||
+		  fit_gaussians_give(&f->fit.gaussians, kept, &s, e) ||
+		  ply_write(&s, f->offset, f->options->output, e);
 
 	if (!bad)
-		report_note(f->to, 1, "%ld steps, %zu Gaussians, of which %zu are shown and written", f->fit.iteration, n, s.n);
+		report_note(f->to, 1, "%ld steps, %zu Gaussians, of which %zu are shown and written",
+			f->fit.iteration, n, s.n);
 	if (!bad && f->tested)
 		report_note(f->to, 1, "%zu test views: PSNR %.2f dB, SSIM %.4f", f->tested, psnr, ssim);
 	splats_free(&s);
@@ -241,17 +266,18 @@ static int run(struct fitting *f, struct err *e)
 	const struct fitting_options *o = f->options;
 	struct file_out claim;
 
-	if (read_cameras(f, e) || read_photographs(f, e) || start(f, e))
+	if (read_cameras(f, e) || read_photographs(f, e) ||
+		(o->init ? start_from_scene(f, e) : start_from_points(f, e)))
 		return -1;
 	move_photographs(f);
-	const struct fit_options options = {
-		f->extent, (size_t)o->gaussians, (int)o->degree, (uint64_t)o->seed};
-	report_note(f->to, 1, "%zu photographs to learn from, %zu to test with, %zu Gaussians to begin with, extent %.4g",
+	const struct fit_options options = {f->extent, (uint64_t)o->seed};
+	report_note(f->to, 1,
+		"%zu photographs to learn from, %zu to test with, %zu Gaussians to begin with, extent %.4g",
 		f->learned, f->tested, f->gaussians.n, f->extent);
 	int bad = file_out_claim(&claim, o->output, e);
 	bad = bad || trainlog_open(&f->log, o->log, 0, e) ||
-	      fit_open(&f->fit, &f->gaussians, &options, f->photographs, f->learned, e) || take_steps(f, e) ||
-	      finish(f, e);
+	      fit_open(&f->fit, &f->gaussians, &options, f->photographs, f->learned, e) ||
+	      check_start(f, e) || take_steps(f, e) || finish(f, e);
 	file_out_abort(&claim);
 	return bad ? -1 : 0;
 }

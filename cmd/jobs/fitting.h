@@ -9,16 +9,18 @@
 #include <stdint.h>
 
 struct fitting_options {
-	const char *cameras;	/* a file, or a folder that has one */
-	const char *images;	/* the photographs' folder */
-	const char *points;	/* COLMAP model with the first Gaussians' places; NULL: the cameras', where it is one */
-	const char *init;	/* a scene to go on from; NULL: the points */
+	const char *cameras; /* a file, or a folder that has one */
+	const char *images;  /* the photographs' folder */
+	const char *points;  /* COLMAP model with the first Gaussians' places; NULL: the cameras', where it is
+				one */
+	const char *init;    /* a scene to go on from; NULL: the points */
 	const char *test_views; /* as import_split has it; NULL: the camera file's */
 	const char *log;	/* NULL: none */
 	const char *output;
-	long long iterations, gaussians, degree, seed;
-	double scale;	/* of the photographs */
-	double minutes; /* > 0: as many steps as they give */
+	long long iterations, degree, seed;
+	long long gaussians; /* 0: start_number */
+	double scale;	     /* of the photographs */
+	double minutes;	     /* > 0: as many steps as they give */
 };
 
 /* Trains and writes the scene. Returns 0, or -1 with *e set. */

@@ -1,10 +1,10 @@
-/* The backward blending kernel, for the instruction set in force where this is included. It walks as the forward one
- * does (splat/blend_kernel.h) and finds the same weights. */
+/* The backward blending kernel, for the instruction set in force where this is included. It walks as the
+ * forward one does (splat/blend_kernel.h) and finds the same weights. */
 #include "fit/back.h"
 #include "splat/blend_kernel.h"
 
-/* 1/x for x in [0.01, 1], within 2 ulp: Newton's method from the bits, as fast as a division is not, and the same bits on
- * all machines that fuse. */
+/* 1/x for x in [0.01, 1], within 2 ulp: Newton's method from the bits, as fast as a division is not, and the
+ * same bits on all machines that fuse. */
 VEC_INLINE vecn back_inverse(vecn x)
 {
 	vecn y = (vecn)(0x7ef311c7 - (vecni)x);
@@ -25,11 +25,12 @@ VEC_INLINE void back_add(float *sum, vecn x)
 }
 
 /* Adds part i of a block to the sums of one Gaussian. */
-VEC_INLINE void back_part(
-	struct back_block *b, const struct blend_splat *s, const float *color, float (*sums)[BLEND_LANES], int i)
+VEC_INLINE void back_part(struct back_block *b, const struct blend_splat *s, const float *color,
+	float (*sums)[BLEND_LANES], int i)
 {
 	const int lanes = i * VEC_LANES;
-	vecn u = vec_fma(vec_splat(s->l11), b->at.x[i], vec_fma(vec_splat(s->l21), b->at.y[i], vec_splat(s->u)));
+	vecn u = vec_fma(
+		vec_splat(s->l11), b->at.x[i], vec_fma(vec_splat(s->l21), b->at.y[i], vec_splat(s->u)));
 	vecn v = vec_fma(vec_splat(s->l22), b->at.y[i], vec_splat(s->v));
 	vecn e = vec_fnma(u, u, vec_fnma(v, v, vec_splat(s->log_opacity)));
 	vecm is_seen = vec_ge(e, vec_splat(BLEND_ALPHA_MIN_LOG2));
@@ -91,8 +92,8 @@ VEC_INLINE float back_total(const float *x)
 	return (half[0] + half[2]) + (half[1] + half[3]);
 }
 
-static size_t back_tile(struct blend_tile *t, struct back_tile *b, struct back_sums *sums, const struct projected *p,
-	const uint32_t *list, size_t n, const float *colors, float *out)
+static size_t back_tile(struct blend_tile *t, struct back_tile *b, struct back_sums *sums,
+	const struct projected *p, const uint32_t *list, size_t n, const float *colors, float *out)
 {
 	struct blend_chunk chunk;
 	size_t at = 0;

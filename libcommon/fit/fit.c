@@ -14,24 +14,26 @@
 #define RATE_MEAN_END 1.6e-6
 static const double rates[FIT_PARTS] = {0, 0.005, 0.001, 0.05, 0.0025, 0.0025 / 20, 0.0025 / 20, 0.0025 / 20};
 
-/* Small weights on opacities and scales, each a mean over all. 3DGS-MCMC has 0.01 for both; in short trainings less on
- * opacities is better: 32.4 in place of 31.9 dB on a desk after 1,000 steps. */
+/* Small weights on opacities and scales, each a mean over all. 3DGS-MCMC has 0.01 for both; in short
+ * trainings less on opacities is better: 32.4 in place of 31.9 dB on a desk after 1,000 steps. */
 #define WEIGHT_OPACITY 0.003f
 #define WEIGHT_SCALE 0.01f
 
 /* Progress at which the images become half and full size, and each degree of the harmonics begins. */
 static const double level_ends[FIT_LEVELS - 1] = {0.35, 0.1}, degree_begins[3] = {0.1, 0.2, 0.3};
 
-/* Gaussians are moved and added from the first of these on, so often, until the last; by GROWN there are all. */
+/* Gaussians are moved and added from the first of these on, so often, until the last; by GROWN there are all.
+ */
 #define GROW_BEGIN 0.02
 #define GROW_STEP 0.005
 #define GROWN 0.5
 #define GROW_END 0.85
 
-int fit_open(struct fit *f, struct fit_gaussians *g, const struct fit_options *o, const struct photograph *photographs,
-	size_t views, struct err *e)
+int fit_open(struct fit *f, struct fit_gaussians *g, const struct fit_options *o,
+	const struct photograph *photographs, size_t views, struct err *e)
 {
-	*f = (struct fit){.options = *o, .gaussians = *g, .photographs = photographs, .views = views, .first = g->n};
+	*f = (struct fit){
+		.options = *o, .gaussians = *g, .photographs = photographs, .views = views, .first = g->n};
 	*g = (struct fit_gaussians){0};
 	f->order = mem_alloc(views, sizeof *f->order, "views", e);
 	f->seen = mem_alloc(f->gaussians.capacity, 1, "views", e);
@@ -90,7 +92,7 @@ int fit_judge(struct fit *f, const struct photograph *p, struct photo_loss *l, s
 
 	fit_gaussians_activate(&f->gaussians);
 	return render(f, c, f->gaussians.degree, e) ||
-		       photo_loss(l, f->image, p->rgb[0], c->height, c->width, NULL, &f->room, e)
+			       photo_loss(l, f->image, p->rgb[0], c->height, c->width, NULL, &f->room, e)
 		       ? -1
 		       : 0;
 }
@@ -114,7 +116,8 @@ static int back(struct fit *f, const struct photograph *p, int level, int degree
 		f->weight[i] += area * f->sums[i * BACK_SUMS + BACK_WEIGHT];
 		g->at[FIT_GRADIENT][FIT_LOGIT][i] += WEIGHT_OPACITY * o * (1 - o) / (float)g->n;
 		for (size_t k = 3 * i; k < 3 * i + 3; k++)
-			g->at[FIT_GRADIENT][FIT_SCALE][k] += WEIGHT_SCALE * g->splats.scales[k] / (3 * (float)g->n);
+			g->at[FIT_GRADIENT][FIT_SCALE][k] +=
+				WEIGHT_SCALE * g->splats.scales[k] / (3 * (float)g->n);
 	}
 	return 0;
 }
@@ -124,9 +127,9 @@ static void step_parameters(struct fit *f, double mean_rate, int degree)
 	struct fit_gaussians *g = &f->gaussians;
 
 	for (int p = 0; p < fit_parts(degree); p++)
-		adam_step(g->at[FIT_VALUE][p], g->at[FIT_GRADIENT][p], g->at[FIT_MOMENT1][p], g->at[FIT_MOMENT2][p],
-			g->n * fit_width[p], p == FIT_MEAN ? mean_rate : rates[p], 0.9, 0.999, 1e-15,
-			f->iteration + 1);
+		adam_step(g->at[FIT_VALUE][p], g->at[FIT_GRADIENT][p], g->at[FIT_MOMENT1][p],
+			g->at[FIT_MOMENT2][p], g->n * fit_width[p], p == FIT_MEAN ? mean_rate : rates[p], 0.9,
+			0.999, 1e-15, f->iteration + 1);
 }
 
 /* From time to time dead Gaussians are moved and others added, evenly in the logarithm of their number. */
@@ -139,8 +142,9 @@ static int grow_now(struct fit *f, double progress, struct err *e)
 		return 0;
 	f->grown = progress;
 	if (!fit_gaussians_are_finite(g))
-		return err_set(e, ERR_CHECK, "the Gaussians are no more finite numbers at step %ld", f->iteration);
-	const double first = (double)f->first, most = fmax((double)f->options.most, first);
+		return err_set(
+			e, ERR_CHECK, "the Gaussians are no more finite numbers at step %ld", f->iteration);
+	const double first = (double)f->first, most = (double)g->capacity;
 	const double wanted = first * pow(most / first, fmin(share, 1));
 	fit_gaussians_activate(g);
 	/* what no view has shown since all were looked at is as good as dead */
@@ -179,20 +183,19 @@ int fit_step(struct fit *f, double progress, struct err *e)
 	return grow_now(f, progress, e);
 }
 
-int fit_shown(struct fit *f, char *kept, struct err *e)
+int fit_shown(struct fit *f, int level, char *kept, struct err *e)
 {
 	const struct fit_gaussians *g = &f->gaussians;
 
 	memset(kept, 0, g->n);
 	fit_gaussians_activate(&f->gaussians);
 	for (size_t i = 0; i < f->views; i++) {
-		const struct camera *c = &f->photographs[i].camera[0];
+		const struct camera *c = &f->photographs[i].camera[level];
 		const size_t pixels = (size_t)c->width * (size_t)c->height;
 		if (render(f, c, 0, e))
 			return -1;
 		memset(f->image, 0, 6 * pixels * sizeof *f->image);
-		if (back_view(f->view, f->colors, f->image, f->image + 3 * pixels, f->sums,
-			    &f->back, e))
+		if (back_view(f->view, f->colors, f->image, f->image + 3 * pixels, f->sums, &f->back, e))
 			return -1;
 		for (size_t k = 0; k < g->n; k++)
 			kept[k] |= f->sums[k * BACK_SUMS + BACK_WEIGHT] >= FIT_SHOWN;

@@ -7,12 +7,12 @@
 #include <string.h>
 
 enum { COPIES_MOST = 51, STEPS = 64 };
-#define NOISE 5e5	/* times the positions' rate */
-#define NOISE_STEEP 100 /* how fast noise fades above GROW_DEAD */
+#define NOISE 5e5	 /* times the positions' rate */
+#define NOISE_STEEP 100	 /* how fast noise fades above GROW_DEAD */
 #define NOISE_ABOVE 0.2f /* more opaque than this there is less than 1e-8 of it */
 
-/* The integral over s of 1 - (1 - o e^(-s^2))^n, the profile of n Gaussians on one spot: it is the double sum over
- * binomials of their equation 9, without the cancellation. */
+/* The integral over s of 1 - (1 - o e^(-s^2))^n, the profile of n Gaussians on one spot: it is the double sum
+ * over binomials of their equation 9, without the cancellation. */
 static double profile(double o, int n)
 {
 	double sum = 0;
@@ -84,8 +84,8 @@ static void share(struct fit_gaussians *g, size_t i, int copies)
 	copy(g, i, i);
 }
 
-static void place(struct fit_gaussians *g, const uint8_t *dead, size_t wanted, const double *cumulative, uint32_t *originals, uint16_t *copies,
-	struct rng *rng)
+static void place(struct fit_gaussians *g, const uint8_t *dead, size_t wanted, const double *cumulative,
+	uint32_t *originals, uint16_t *copies, struct rng *rng)
 {
 	const size_t n = g->n, all = wanted > n ? wanted : n;
 
@@ -125,7 +125,8 @@ int grow(struct fit_gaussians *g, const uint8_t *dead, size_t wanted, struct rng
 /* mean += R S^2 R^T noise */
 static void shake(float *mean, const float *scale, const float *quat, const double noise[3])
 {
-	const double w = quat[0], x = quat[1], y = quat[2], z = quat[3], two = 2 / (w * w + x * x + y * y + z * z);
+	const double w = quat[0], x = quat[1], y = quat[2], z = quat[3],
+		     two = 2 / (w * w + x * x + y * y + z * z);
 	const double turn[3][3] = {{1 - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)},
 		{two * (x * y + w * z), 1 - two * (x * x + z * z), two * (y * z - w * x)},
 		{two * (x * z - w * y), two * (y * z + w * x), 1 - two * (x * x + y * y)}};

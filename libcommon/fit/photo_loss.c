@@ -1,5 +1,6 @@
-/* All windows are filtered in two passes, along rows and then along columns; so is, backwards, what the gradient takes from
- * each pixel's SSIM to the pixels of its window. Sums are made row by row and added in order. */
+/* All windows are filtered in two passes, along rows and then along columns; so is, backwards, what the
+ * gradient takes from each pixel's SSIM to the pixels of its window. Sums are made row by row and added in
+ * order. */
 #include "fit/photo_loss.h"
 
 #include "base/mem.h"
@@ -16,8 +17,8 @@ enum { REACH = 5, TAPS = 2 * REACH + 1 };
 #define SSIM_C2 9e-4f /* 0.03^2 */
 
 /* e^(-x^2 / 4.5), with sum 1 */
-static const float window[TAPS] = {0.00102838f, 0.00759876f, 0.03600078f, 0.10936069f, 0.21300554f, 0.26601172f,
-	0.21300554f, 0.10936069f, 0.03600078f, 0.00759876f, 0.00102838f};
+static const float window[TAPS] = {0.00102838f, 0.00759876f, 0.03600078f, 0.10936069f, 0.21300554f,
+	0.26601172f, 0.21300554f, 0.10936069f, 0.03600078f, 0.00759876f, 0.00102838f};
 
 #if defined(__x86_64__) && defined(__GLIBC__)
 #define CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
@@ -37,7 +38,8 @@ CLONES static void filter_row(const float *restrict in, float *restrict out, int
 }
 
 /* The same over rows: row y of a plane whose rows are `width` long. */
-CLONES static void filter_column(const float *restrict plane, float *restrict out, int y, int height, int width)
+CLONES static void filter_column(
+	const float *restrict plane, float *restrict out, int y, int height, int width)
 {
 	memset(out, 0, (size_t)width * sizeof *out);
 	for (int t = 0; t < TAPS; t++) {
@@ -50,15 +52,16 @@ CLONES static void filter_column(const float *restrict plane, float *restrict ou
 	}
 }
 
-/* SSIM of a row of pixels from the filtered means x and y, xx, yy and xy; returns its sum. In place of xx, yy and xy come
- * its slopes in the filtered x, xx and xy. */
-CLONES static double ssim_row(float *restrict x, const float *restrict y, float *restrict xx, float *restrict yy,
-	float *restrict xy, float *restrict score, int n)
+/* SSIM of a row of pixels from the filtered means x and y, xx, yy and xy; returns its sum. In place of xx, yy
+ * and xy come its slopes in the filtered x, xx and xy. */
+CLONES static double ssim_row(float *restrict x, const float *restrict y, float *restrict xx,
+	float *restrict yy, float *restrict xy, float *restrict score, int n)
 {
 	double sum = 0;
 
 	for (int i = 0; i < n; i++) {
-		const float mx = x[i], my = y[i], a1 = 2 * mx * my + SSIM_C1, b1 = mx * mx + my * my + SSIM_C1;
+		const float mx = x[i], my = y[i], a1 = 2 * mx * my + SSIM_C1,
+			    b1 = mx * mx + my * my + SSIM_C1;
 		const float a2 = 2 * (xy[i] - mx * my) + SSIM_C2;
 		const float b2 = (xx[i] - mx * mx) + (yy[i] - my * my) + SSIM_C2;
 		const float per = 1 / (b1 * b2), s = a1 * a2 * per;
@@ -137,8 +140,7 @@ static void gradient_row(const struct channel *c, int y, float *row, float *grad
 	for (size_t i = 0; i < n; i++) {
 		const float a = c->x[at + i], b = c->y[at + i];
 		const float ssim = row[i] + 2 * a * row[n + i] + b * row[2 * n + i];
-		gradient[at + i] =
-			per * ((1 - SHARE_SSIM) * (float)((a > b) - (a < b)) - SHARE_SSIM * ssim);
+		gradient[at + i] = per * ((1 - SHARE_SSIM) * (float)((a > b) - (a < b)) - SHARE_SSIM * ssim);
 	}
 }
 
@@ -196,9 +198,10 @@ int photo_loss(struct photo_loss *l, const float *image, const uint8_t *photogra
 	const size_t pixels = (size_t)height * (size_t)width, row = 6 * (size_t)width + 2 * REACH + 16;
 
 	*l = (struct photo_loss){0};
-	if (mem_room((void **)&room->planes, &room->plane_room, 9 * pixels + (size_t)threads_available() * row,
-		    sizeof *room->planes, "image", e) ||
-		mem_room((void **)&room->rows, &room->row_room, 3 * (size_t)height, sizeof *room->rows, "image", e))
+	if (mem_room((void **)&room->planes, &room->plane_room,
+		    9 * pixels + (size_t)threads_available() * row, sizeof *room->planes, "image", e) ||
+		mem_room((void **)&room->rows, &room->row_room, 3 * (size_t)height, sizeof *room->rows,
+			"image", e))
 		return -1;
 	for (size_t k = 0; k < 3; k++) {
 		struct channel c = {.height = height, .width = width, .y = room->planes, .rows = room->rows};

@@ -1,5 +1,6 @@
-/* The loss of an image beside its photograph: 0.8 L1 + 0.2 (1 - SSIM), as 3DGS has it, each a mean over pixels and
- * channels. SSIM (Wang et al. 2004) has a Gaussian window of 11x11 pixels, sigma 1.5, with zeros beyond the edge. */
+/* The loss of an image beside its photograph: 0.8 L1 + 0.2 (1 - SSIM), as 3DGS has it, each a mean over
+ * pixels and channels. SSIM (Wang et al. 2004) has a Gaussian window of 11x11 pixels, sigma 1.5, with zeros
+ * beyond the edge. */
 #ifndef FIT_PHOTO_LOSS_H
 #define FIT_PHOTO_LOSS_H
 

@@ -23,7 +23,8 @@ static void add_row(const uint8_t *row, int from, float *sums, int to, float sha
 }
 
 /* Each pixel becomes the mean over its area. */
-static int shrink(const uint8_t *rgb, int height, int width, uint8_t *to, int rows, int columns, struct err *e)
+static int shrink(
+	const uint8_t *rgb, int height, int width, uint8_t *to, int rows, int columns, struct err *e)
 {
 	const size_t n = 3 * (size_t)columns;
 	float *sums = mem_alloc(n, sizeof *sums, "photograph", e);
@@ -34,7 +35,8 @@ static int shrink(const uint8_t *rgb, int height, int width, uint8_t *to, int ro
 		memset(sums, 0, n * sizeof *sums);
 		for (int i = (int)top; i < height && i < bottom; i++) {
 			const double begin = i > top ? i : top, end = i + 1 < bottom ? i + 1 : bottom;
-			add_row(rgb + 3 * (size_t)i * (size_t)width, width, sums, columns, (float)((end - begin) / step));
+			add_row(rgb + 3 * (size_t)i * (size_t)width, width, sums, columns,
+				(float)((end - begin) / step));
 		}
 		for (size_t k = 0; k < n; k++)
 			to[(size_t)y * n + k] = (uint8_t)fminf(255, sums[k] + 0.5f);
@@ -43,8 +45,8 @@ static int shrink(const uint8_t *rgb, int height, int width, uint8_t *to, int ro
 	return sums ? 0 : -1;
 }
 
-int photograph_make(struct photograph *p, const struct camera *c, double scale, const uint8_t *rgb, int height,
-	int width, struct err *e)
+int photograph_make(struct photograph *p, const struct camera *c, double scale, const uint8_t *rgb,
+	int height, int width, struct err *e)
 {
 	*p = (struct photograph){0};
 	scale = fmin(scale, (double)width / c->width);

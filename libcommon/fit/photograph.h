@@ -16,10 +16,10 @@ struct photograph {
 	uint8_t *rgb[FIT_LEVELS];	  /* (height,width,3) of that camera */
 };
 
-/* The view c at `scale` of its size, from a picture of it in any size; where that is smaller, no larger than it. Returns
- * 0, or -1 with *e set and *p zeroed. */
-int photograph_make(struct photograph *p, const struct camera *c, double scale, const uint8_t *rgb, int height,
-	int width, struct err *e);
+/* The view c at `scale` of its size, from a picture of it in any size; where that is smaller, no larger than
+ * it. Returns 0, or -1 with *e set and *p zeroed. */
+int photograph_make(struct photograph *p, const struct camera *c, double scale, const uint8_t *rgb,
+	int height, int width, struct err *e);
 void photograph_free(struct photograph *p);
 
 #endif

@@ -1,7 +1,8 @@
-/* With d = x - mean, (u,v) = L d and h = log2(e)/2, the inverse of the projected covariance C is L^T L / h. From the moments
- * M of g = dL/de in (u,v), the mean of the projection has the gradient 2 L^T M_1, and C has L^T M_2 L / h: no inverse is
- * taken and nothing cancels. C = B B^T + 0.3 I with B = T R S, T = J W (splat/project_kernel.h), and the rest is the
- * chain rule. Gaussians stand side by side, so that the compiler makes vectors of them. */
+/* With d = x - mean, (u,v) = L d and h = log2(e)/2, the inverse of the projected covariance C is L^T L / h.
+ * From the moments M of g = dL/de in (u,v), the mean of the projection has the gradient 2 L^T M_1, and C has
+ * L^T M_2 L / h: no inverse is taken and nothing cancels. C = B B^T + 0.3 I with B = T R S, T = J W
+ * (splat/project_kernel.h), and the rest is the chain rule. Gaussians stand side by side, so that the
+ * compiler makes vectors of them. */
 #include "fit/project_back.h"
 
 #include "fit/back.h"
@@ -39,7 +40,8 @@ static inline __attribute__((always_inline)) struct jacobian jacobian_at(
 	struct jacobian j;
 
 	for (int r = 0; r < 3; r++)
-		j.at[r] = w[r][0] * b->mean[0][l] + w[r][1] * b->mean[1][l] + w[r][2] * b->mean[2][l] + w[r][3];
+		j.at[r] =
+			w[r][0] * b->mean[0][l] + w[r][1] * b->mean[1][l] + w[r][2] * b->mean[2][l] + w[r][3];
 	j.per_z = 1 / j.at[2];
 	for (int r = 0; r < 2; r++) {
 		const double ray = j.at[r] * j.per_z, low = lens->low[r], high = lens->high[r];
@@ -52,8 +54,8 @@ static inline __attribute__((always_inline)) struct jacobian jacobian_at(
 }
 
 /* The gradient of the mean, from those of T and of the mean's pixel. */
-static inline __attribute__((always_inline)) void mean_back(const struct project_lens *lens, struct lanes *b, int l,
-	const struct jacobian *j, const double dt[2][3], const double dpixel[2])
+static inline __attribute__((always_inline)) void mean_back(const struct project_lens *lens, struct lanes *b,
+	int l, const struct jacobian *j, const double dt[2][3], const double dpixel[2])
 {
 	const double(*w)[4] = lens->world_to_camera, focal[2] = {lens->fx, lens->fy};
 	double dat[3] = {0, 0, 0}, dper_z = 0;
@@ -88,24 +90,27 @@ static inline __attribute__((always_inline)) void quat_back(
 		b->dquat[k][l] = (dq[k] - along * q[k]) * per_length;
 }
 
-static inline __attribute__((always_inline)) void lane_back(const struct project_lens *lens, struct lanes *b, int l)
+static inline __attribute__((always_inline)) void lane_back(
+	const struct project_lens *lens, struct lanes *b, int l)
 {
 	const struct jacobian j = jacobian_at(lens, b, l);
 	const double per_length = 1 / sqrt(b->quat[0][l] * b->quat[0][l] + b->quat[1][l] * b->quat[1][l] +
-					   b->quat[2][l] * b->quat[2][l] + b->quat[3][l] * b->quat[3][l]);
-	const double q[4] = {b->quat[0][l] * per_length, b->quat[1][l] * per_length, b->quat[2][l] * per_length,
-		b->quat[3][l] * per_length};
+					      b->quat[2][l] * b->quat[2][l] + b->quat[3][l] * b->quat[3][l]);
+	const double q[4] = {b->quat[0][l] * per_length, b->quat[1][l] * per_length,
+		b->quat[2][l] * per_length, b->quat[3][l] * per_length};
 	const double w = q[0], x = q[1], y = q[2], z = q[3];
 	const double turn[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
 		{2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
 		{2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
 	const double l11 = b->l11[l], l21 = b->l21[l], l22 = b->l22[l];
-	const double uu = LN2 * b->sums[BACK_UU][l], uv = LN2 * b->sums[BACK_UV][l], vv = LN2 * b->sums[BACK_VV][l];
+	const double uu = LN2 * b->sums[BACK_UU][l], uv = LN2 * b->sums[BACK_UV][l],
+		     vv = LN2 * b->sums[BACK_VV][l];
 	const double u = 2 * LN2 * b->sums[BACK_U][l], v = 2 * LN2 * b->sums[BACK_V][l];
 	const double dpixel[2] = {l11 * u, l21 * u + l22 * v};
 	/* dL/dC, twice, as B is there twice */
 	const double h = 2 / HALF_LOG2E, right[2] = {uu * l21 + uv * l22, uv * l21 + vv * l22};
-	const double xx = h * l11 * uu * l11, xy = h * l11 * right[0], yy = h * (l21 * right[0] + l22 * right[1]);
+	const double xx = h * l11 * uu * l11, xy = h * l11 * right[0],
+		     yy = h * (l21 * right[0] + l22 * right[1]);
 	double dt[2][3] = {{0}}, dturn[3][3];
 
 	for (int k = 0; k < 3; k++) {
@@ -123,7 +128,8 @@ static inline __attribute__((always_inline)) void lane_back(const struct project
 	mean_back(lens, b, l, &j, dt, dpixel);
 }
 
-/* The clones give the machine's vector width; every operation is correctly rounded, so they give the same bytes. */
+/* The clones give the machine's vector width; every operation is correctly rounded, so they give the same
+ * bytes. */
 #if defined(__x86_64__) && defined(__GLIBC__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
@@ -152,7 +158,8 @@ void fit_seen(const struct render_view *v, uint8_t *seen)
 		seen[v->sorted[i].index] = 1;
 }
 
-void fit_colors(const struct fit_gaussians *g, const uint8_t *seen, const struct camera *c, int degree, float *colors)
+void fit_colors(
+	const struct fit_gaussians *g, const uint8_t *seen, const struct camera *c, int degree, float *colors)
 {
 	const int parts = fit_parts(degree), coefficients = (degree + 1) * (degree + 1);
 	double centre[3];
@@ -178,8 +185,8 @@ void fit_colors(const struct fit_gaussians *g, const uint8_t *seen, const struct
 }
 
 /* Harmonics, and what the colour adds to the gradient of the mean, through the direction. */
-static void color_back(struct fit_gaussians *g, size_t at, int degree, const double centre[3], const float *color,
-	const float *dcolor, float *dmean)
+static void color_back(struct fit_gaussians *g, size_t at, int degree, const double centre[3],
+	const float *color, const float *dcolor, float *dmean)
 {
 	const int parts = fit_parts(degree), coefficients = (degree + 1) * (degree + 1);
 	float d[3];
@@ -207,8 +214,8 @@ static void color_back(struct fit_gaussians *g, size_t at, int degree, const dou
 		dmean[n] += (float)((dto[n] - along * to[n]) / length);
 }
 
-static void take(struct lanes *b, const struct fit_gaussians *g, const struct render_view *v, size_t at, int l,
-	const float *sums)
+static void take(struct lanes *b, const struct fit_gaussians *g, const struct render_view *v, size_t at,
+	int l, const float *sums)
 {
 	const struct projected *p = &v->projected[at];
 
@@ -245,8 +252,8 @@ static void clear(struct fit_gaussians *g, int degree, size_t at)
 		memset(g->at[FIT_GRADIENT][p] + fit_width[p] * at, 0, fit_width[p] * sizeof(float));
 }
 
-void fit_project_back(struct fit_gaussians *g, const struct render_view *v, const uint8_t *seen, const struct camera *c,
-	int degree, const float *colors, const float *sums)
+void fit_project_back(struct fit_gaussians *g, const struct render_view *v, const uint8_t *seen,
+	const struct camera *c, int degree, const float *colors, const float *sums)
 {
 	struct project_lens lens;
 	double centre[3];
@@ -271,7 +278,8 @@ void fit_project_back(struct fit_gaussians *g, const struct render_view *v, cons
 			for (int l = 0; l < n; l++) {
 				put(g, &b, who[l], l);
 				color_back(g, who[l], degree, centre, colors + 3 * who[l],
-					sums + who[l] * BACK_SUMS + BACK_RED, g->at[FIT_GRADIENT][FIT_MEAN] + 3 * who[l]);
+					sums + who[l] * BACK_SUMS + BACK_RED,
+					g->at[FIT_GRADIENT][FIT_MEAN] + 3 * who[l]);
 			}
 		}
 	}

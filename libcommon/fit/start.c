@@ -22,7 +22,8 @@ double start_extent(const struct camera *const *cameras, size_t n, const float *
 	}
 	for (size_t i = 0; i < n; i++) {
 		camera_centre(cameras[i], centre);
-		most = fmax(most, hypot(hypot(centre[0] - mean[0], centre[1] - mean[1]), centre[2] - mean[2]));
+		most = fmax(
+			most, hypot(hypot(centre[0] - mean[0], centre[1] - mean[1]), centre[2] - mean[2]));
 	}
 	for (size_t i = 0; i < 3 * points_n; i++)
 		middle[i % 3] += points[i] / (double)points_n;
@@ -30,23 +31,29 @@ double start_extent(const struct camera *const *cameras, size_t n, const float *
 	return most > 1e-3 * far ? 1.1 * most : far > 0 ? 0.1 * far : 1;
 }
 
-void start_points(const struct camera *const *cameras, size_t cameras_n, double extent, float *points,
-	uint8_t *colors, size_t n, struct rng *rng)
+void start_points(const struct camera *const *cameras, size_t cameras_n, double *points, uint8_t *colors,
+	size_t n, struct rng *rng)
 {
-	double low[3], high[3], centre[3];
+	double low[3], high[3], centre[3], most = 0;
 
 	for (size_t i = 0; i < cameras_n; i++) {
 		camera_centre(cameras[i], centre);
 		for (int k = 0; k < 3; k++) {
 			low[k] = i && low[k] < centre[k] ? low[k] : centre[k];
 			high[k] = i && high[k] > centre[k] ? high[k] : centre[k];
+			most = fmax(most, high[k] - low[k]);
 		}
 	}
+	most = most > 0 ? most : 1;
 	for (size_t i = 0; i < 3 * n; i++) {
-		const double more = fmax(high[i % 3] - low[i % 3], extent);
-		points[i] = (float)rng_range(rng, low[i % 3] - more, high[i % 3] + more);
+		points[i] = rng_range(rng, low[i % 3] - most, high[i % 3] + most);
 		colors[i] = 127;
 	}
+}
+
+size_t start_number(size_t points)
+{
+	return points < 2000 ? 20000 : points > 50000 ? 500000 : 10 * points;
 }
 
 /* Which of n points have room. */
@@ -61,8 +68,8 @@ static char *choose(size_t n, size_t room, struct rng *rng, struct err *e)
 	return chosen;
 }
 
-int start_at_points(struct fit_gaussians *g, const float *points, const uint8_t *colors, size_t n, struct rng *rng,
-	struct err *e)
+int start_at_points(struct fit_gaussians *g, const float *points, const uint8_t *colors, size_t n,
+	struct rng *rng, struct err *e)
 {
 	float *const *to = g->at[FIT_VALUE];
 	char *chosen = choose(n, g->capacity - g->n, rng, e);

@@ -11,7 +11,8 @@ enum { SH_MAX = 16 };
 /* Y_0 ... Y_15 at the unit vector d, as far as `coefficients`. */
 void sh_basis(const double d[3], int coefficients, double y[SH_MAX]);
 
-/* slope[k][m] = dY_m/d(d[k]), of all 16, the polynomials of sh_basis taken as functions of three free numbers. */
+/* slope[k][m] = dY_m/d(d[k]), of all 16, the polynomials of sh_basis taken as functions of three free
+ * numbers. */
 void sh_slopes(const double d[3], double slope[3][SH_MAX]);
 
 /* rgb[c] = max(0, 1/2 + sum_k sh[k][c] Y_k(d)), d the direction from the camera's centre to the Gaussian's

@@ -2,10 +2,11 @@
  *
  *	bench_fit [-n GAUSSIANS,...] [-s WxH,...] [-r REPEATS] [SPLATS CAMERAS]
  *
- * SPLATS is a scene in any form, and CAMERAS a COLMAP model or camera file, of which the first view is taken; without them
- * scenes of -n Gaussians (default 20000,100000,500000) are made as gs-synth makes them. For each scene and size (default
- * 400x266,986x728) a line with the processors' time in ms, the least of the repeats, of each part of a step: projection
- * and order, colours, blending, the image's loss, blending backwards, the rest backwards, Adam, and noise. */
+ * SPLATS is a scene in any form, and CAMERAS a COLMAP model or camera file, of which the first view is taken;
+ *without them scenes of -n Gaussians (default 20000,100000,500000) are made as gs-synth makes them. For each
+ *scene and size (default 400x266,986x728) a line with the processors' time in ms, the least of the repeats,
+ *of each part of a step: projection and order, colours, blending, the image's loss, blending backwards, the
+ *rest backwards, Adam, and noise. */
 #include "base/mem.h"
 #include "fit/fit.h"
 #include "fit/grow.h"
@@ -23,7 +24,8 @@
 #include <unistd.h>
 
 enum { PREPARE, COLORS, BLEND, LOSS, BACK, PROJECT, ADAM, NOISE, PARTS };
-static const char *const names[PARTS] = {"prepare", "colors", "blend", "loss", "back", "project_back", "adam", "noise"};
+static const char *const names[PARTS] = {
+	"prepare", "colors", "blend", "loss", "back", "project_back", "adam", "noise"};
 
 static _Noreturn void fail(const char *message)
 {
@@ -81,7 +83,8 @@ static void measure(const struct splats *s, const struct camera *c, int repeats)
 		times[COLORS] = lap();
 		render_packed(v, colors, 3, image, NULL);
 		times[BLEND] = lap();
-		bad = bad || photo_loss(&loss, image, photograph, c->height, c->width, image + 3 * pixels, &loss_room, &e);
+		bad = bad || photo_loss(&loss, image, photograph, c->height, c->width, image + 3 * pixels,
+				     &loss_room, &e);
 		times[LOSS] = lap();
 		bad = bad || back_view(v, colors, image, image + 3 * pixels, sums, &back_room, &e);
 		times[BACK] = lap();
@@ -100,8 +103,9 @@ static void measure(const struct splats *s, const struct camera *c, int repeats)
 	}
 	if (!v)
 		fail(e.message);
-	printf("{\"bench\":\"fit\",\"gaussians\":%zu,\"visible\":%zu,\"width\":%d,\"height\":%d,\"pairs\":%zu", s->n,
-		v->visible, c->width, c->height, v->tiles.start[(size_t)v->grid.columns * (size_t)v->grid.rows]);
+	printf("{\"bench\":\"fit\",\"gaussians\":%zu,\"visible\":%zu,\"width\":%d,\"height\":%d,\"pairs\":%zu",
+		s->n, v->visible, c->width, c->height,
+		v->tiles.start[(size_t)v->grid.columns * (size_t)v->grid.rows]);
 	double sum = 0;
 	for (int k = 0; k < PARTS; k++) {
 		printf(",\"%s_ms\":%.2f", names[k], least[k]);
@@ -150,8 +154,11 @@ static void measure_file(const char *splats, const char *cameras, const char *si
 static void measure_made(const char *gaussians, const char *sizes, int repeats)
 {
 	for (const char *at = gaussians; at; at = strchr(at, ',')) {
-		struct synth_options o = {.preset = synth_preset(0), .objects = 8, .views = SYNTH_MIN_VIEWS,
-			.width = 986, .height = 728};
+		struct synth_options o = {.preset = synth_preset(0),
+			.objects = 8,
+			.views = SYNTH_MIN_VIEWS,
+			.width = 986,
+			.height = 728};
 		struct synth_scene scene;
 		struct err e;
 		int attempt = 0;

@@ -1,5 +1,5 @@
-/* The gradients of training beside central differences of a plain forward pass in long double (render_twin.h), in hard
- * cases; the loss of images beside its definition; how Gaussians are split. */
+/* The gradients of training beside central differences of a plain forward pass in long double
+ * (render_twin.h), in hard cases; the loss of images beside its definition; how Gaussians are split. */
 #include "unit.h"
 
 #include "base/rng.h"
@@ -16,7 +16,8 @@
 enum { WIDTH = 29, HEIGHT = 21, PIXELS = WIDTH * HEIGHT, MOST = 512 };
 
 static const char *const level_names[CPU_LEVELS] = {"plain", "avx2", "avx512"};
-static const char *const part_names[FIT_PARTS] = {"mean", "scale", "quat", "logit", "sh", "sh1", "sh2", "sh3"};
+static const char *const part_names[FIT_PARTS] = {
+	"mean", "scale", "quat", "logit", "sh", "sh1", "sh2", "sh3"};
 
 /* A scene with colours of degree 3, a camera, and a gradient for each pixel. */
 struct problem {
@@ -77,8 +78,8 @@ static void twin_color(const struct problem *p, size_t i, long double rgb[3])
 	}
 }
 
-/* The sum over pixels of gradient times colour. With `mend`, pixels at which something is about to change that has no
- * slope get no gradient. */
+/* The sum over pixels of gradient times colour. With `mend`, pixels at which something is about to change
+ * that has no slope get no gradient. */
 static long double twin_loss(struct problem *p, int mend)
 {
 	static int32_t index[MOST];
@@ -97,7 +98,8 @@ static long double twin_loss(struct problem *p, int mend)
 			if (mend && pixel.margin < 0.03)
 				p->gradient[n * PIXELS + at] = 0;
 			for (size_t k = 0; k < pixel.n; k++)
-				sum += p->gradient[n * PIXELS + at] * pixel.weight[k] * rgb[pixel.index[k]][n];
+				sum += p->gradient[n * PIXELS + at] * pixel.weight[k] *
+				       rgb[pixel.index[k]][n];
 		}
 	}
 	twin_free(&twin);
@@ -137,7 +139,7 @@ static double slope_of(struct problem *p, size_t i, int part, size_t k)
 	double slope, least = fmin(fmin(s->scales[3 * i], s->scales[3 * i + 1]), s->scales[3 * i + 2]);
 	float *at = twin_place(p, i, part, k, &slope);
 	const double most = fmax(fmax(s->scales[3 * i], s->scales[3 * i + 1]), s->scales[3 * i + 2]);
-	const double step = part == FIT_MEAN   ? 3e-3 * fmax(least, 0.01)
+	const double step = part == FIT_MEAN	? 3e-3 * fmax(least, 0.01)
 			    : part == FIT_SCALE ? 1e-3 * fmax(*at, 0.01)
 			    : part == FIT_QUAT	? fmin(2e-3, 0.03 * fmax(least, 0.01) / most)
 			    : part == FIT_LOGIT ? 3e-4 * fmin(*at, 1.0 - *at) + 1e-7
@@ -174,7 +176,8 @@ static size_t stride_of(int part)
 }
 
 /* Every step-th Gaussian's gradients; the error is beside the part's largest. */
-static void check(const char *what, const struct splats *s, const struct camera *c, size_t step, double tolerance)
+static void check(
+	const char *what, const struct splats *s, const struct camera *c, size_t step, double tolerance)
 {
 	static struct problem p;
 	static double slopes[MOST][FIT_PARTS][21];
@@ -196,12 +199,14 @@ static void check(const char *what, const struct splats *s, const struct camera 
 				for (size_t k = 0; k < fit_width[part]; k += stride_of(part))
 					worst[part] = fmax(worst[part],
 						fabs(slopes[i][part][k] -
-							(double)p.g.at[FIT_GRADIENT][part][fit_width[part] * i + k]));
+							(double)p.g.at[FIT_GRADIENT][part]
+								      [fit_width[part] * i + k]));
 		for (int part = 0; part < FIT_PARTS; part++) {
 			if (level == cpu_level())
-				printf("%s: %s: %.1e of %.3g\n", what, part_names[part], worst[part] / most[part], most[part]);
-			CHECK(worst[part] <= tolerance * most[part] + 1e-9, "%s, %s: %s is off by %g of %g", what,
-				level_names[level], part_names[part], worst[part], most[part]);
+				printf("%s: %s: %.1e of %.3g\n", what, part_names[part],
+					worst[part] / most[part], most[part]);
+			CHECK(worst[part] <= tolerance * most[part] + 1e-9, "%s, %s: %s is off by %g of %g",
+				what, level_names[level], part_names[part], worst[part], most[part]);
 		}
 	}
 	problem_free(&p);
@@ -212,8 +217,10 @@ static struct camera tilted(void)
 	struct camera c = camera_at_origin(WIDTH, HEIGHT, 30);
 	const double angle = 0.2;
 
-	memcpy(c.world_to_camera[0], (double[4]){cos(angle), 0, sin(angle), 0.2}, sizeof c.world_to_camera[0]);
-	memcpy(c.world_to_camera[2], (double[4]){-sin(angle), 0, cos(angle), 0.5}, sizeof c.world_to_camera[2]);
+	memcpy(c.world_to_camera[0], (double[4]){cos(angle), 0, sin(angle), 0.2},
+		sizeof c.world_to_camera[0]);
+	memcpy(c.world_to_camera[2], (double[4]){-sin(angle), 0, cos(angle), 0.5},
+		sizeof c.world_to_camera[2]);
 	c.fy = 25;
 	c.cx = 16.3;
 	return c;
@@ -232,22 +239,24 @@ static void random_scene(void)
 static void hard_shapes(void)
 {
 	const struct camera c = tilted();
-	static const double means[][3] = {{0, 0, 2}, {0.3, 0.2, 2}, {-1.9, 0.1, 2}, {2, -0.3, 2.2}, {0.1, -0.2, 3},
-		{0.2, 0.3, 0.1}, {0, 0.1, 1.5}, {-0.4, -0.5, 4}, {0.5, 0.5, 60},
-		{0, 0, -1}};
-	static const double scales[][3] = {{1e-3, 1e-3, 0.6}, {0.5, 0.4, 1e-4}, {0.4, 0.4, 0.4}, {1.1, 0.3, 0.6},
-		{0.3, 0.2, 0.3}, {0.3, 0.3, 0.3}, {0.05, 0.2, 0.01}, {0.02, 0.9, 0.02}, {9, 5, 7}, {0.1, 0.1, 0.1}};
+	static const double means[][3] = {{0, 0, 2}, {0.3, 0.2, 2}, {-1.9, 0.1, 2}, {2, -0.3, 2.2},
+		{0.1, -0.2, 3}, {0.2, 0.3, 0.1}, {0, 0.1, 1.5}, {-0.4, -0.5, 4}, {0.5, 0.5, 60}, {0, 0, -1}};
+	static const double scales[][3] = {{1e-3, 1e-3, 0.6}, {0.5, 0.4, 1e-4}, {0.4, 0.4, 0.4},
+		{1.1, 0.3, 0.6}, {0.3, 0.2, 0.3}, {0.3, 0.3, 0.3}, {0.05, 0.2, 0.01}, {0.02, 0.9, 0.02},
+		{9, 5, 7}, {0.1, 0.1, 0.1}};
 	static const double opacities[] = {0.9, 0.8, 0.7, 0.6, 0.9999, 0.5, 0.006, 0.3, 0.95, 0.5};
 	const size_t n = sizeof opacities / sizeof *opacities;
 	struct splats s = make_splats(n);
 
 	for (size_t i = 0; i < n; i++) {
 		set_splat(&s, i, means[i], scales[i], opacities[i]);
-		memcpy(s.quats + 4 * i, (float[4]){0.9f, 0.4f - 0.1f * (float)i, 1.3f, -0.7f}, 4 * sizeof(float));
+		memcpy(s.quats + 4 * i, (float[4]){0.9f, 0.4f - 0.1f * (float)i, 1.3f, -0.7f},
+			4 * sizeof(float));
 	}
 	for (size_t i = 0; i < n; i++) {
 		char name[32];
-		struct splats one = {1, 1, s.means + 3 * i, s.scales + 3 * i, s.quats + 4 * i, s.opacities + i, s.sh};
+		struct splats one = {
+			1, 1, s.means + 3 * i, s.scales + 3 * i, s.quats + 4 * i, s.opacities + i, s.sh};
 		snprintf(name, sizeof name, "shape %zu alone", i);
 		check(name, &one, &c, 1, 2e-4);
 	}
@@ -265,7 +274,8 @@ static void deep(void)
 	rng_seed(&r, 8, 1);
 	for (size_t i = 0; i < s.n; i++)
 		set_splat(&s, i,
-			(double[3]){rng_range(&r, -0.3, 0.3), rng_range(&r, -0.3, 0.3), 2 + 0.02 * (double)(i * 7 % s.n)},
+			(double[3]){rng_range(&r, -0.3, 0.3), rng_range(&r, -0.3, 0.3),
+				2 + 0.02 * (double)(i * 7 % s.n)},
 			(double[3]){0.9, 0.6, 0.8}, 0.02);
 	check("layers", &s, &c, 133, 1e-4);
 	splats_free(&s);
@@ -295,7 +305,8 @@ static double twin_photo_loss(const float *image, const uint8_t *photograph)
 			const double ssim = (2 * m[0] * m[1] + 1e-4) * (2 * (m[4] - m[0] * m[1]) + 9e-4) /
 					    (m[0] * m[0] + m[1] * m[1] + 1e-4) /
 					    (m[2] - m[0] * m[0] + m[3] - m[1] * m[1] + 9e-4);
-			total += 0.8 * fabs(image[n * PIXELS + at] - photograph[3 * at + n] / 255.0) + 0.2 * (1 - ssim);
+			total += 0.8 * fabs(image[n * PIXELS + at] - photograph[3 * at + n] / 255.0) +
+				 0.2 * (1 - ssim);
 		}
 	return total / (3 * PIXELS);
 }
@@ -345,7 +356,8 @@ static void splitting(void)
 				a += o * exp(-s * s);
 				b += 1 - pow(1 - part * exp(-s * s / (factor * factor)), copies);
 			}
-			CHECK(fabs(1 - pow(1 - part, copies) - o) < 1e-9, "%d copies of %g: %g each", copies, o, part);
+			CHECK(fabs(1 - pow(1 - part, copies) - o) < 1e-9, "%d copies of %g: %g each", copies,
+				o, part);
 			CHECK(fabs(b / a - 1) < 2e-3, "%d copies of %g show %g of it", copies, o, b / a);
 		}
 }
@@ -376,22 +388,24 @@ static void learns(void)
 	}
 	for (int k = 0; k < 2; k++) {
 		struct fit f;
-		const struct fit_options o = {.extent = 1, .most = 300, .degree = 1, .seed = 4};
+		const struct fit_options o = {.extent = 1, .seed = 4};
 		omp_set_num_threads(k ? 3 : 1);
 		if (fit_gaussians_alloc(&first[k], 300, 1, &e))
 			abort();
 		fit_gaussians_take(&first[k], &s);
 		for (size_t i = 0; i < 600; i++)
 			first[k].at[FIT_VALUE][FIT_SH][i] = 0;
-		if (fit_open(&f, &first[k], &o, photographs, 3, &e) || fit_judge(&f, &photographs[3], &before, &e))
+		if (fit_open(&f, &first[k], &o, photographs, 3, &e) ||
+			fit_judge(&f, &photographs[3], &before, &e))
 			abort();
 		for (int i = 0; i < 100; i++)
 			CHECK(!fit_step(&f, i / 100.0, &e), "step %d: %s", i, e.message);
 		if (fit_judge(&f, &photographs[3], &after, &e))
 			abort();
 		CHECK(f.gaussians.n == 300, "%zu Gaussians", f.gaussians.n);
-		CHECK(after.total < 0.5 * before.total, "the loss of a view that was not learned from: %g, then %g",
-			before.total, after.total);
+		CHECK(after.total < 0.5 * before.total,
+			"the loss of a view that was not learned from: %g, then %g", before.total,
+			after.total);
 		ends[k] = malloc(300 * 3 * sizeof(float));
 		memcpy(ends[k], f.gaussians.splats.means, 300 * 3 * sizeof(float));
 		fit_close(&f);

@@ -1,4 +1,4 @@
-#include "fit/gaussians.h"
+#include "fit/parameters.h"
 
 #include "base/mem.h"
 
@@ -19,10 +19,10 @@ int fit_gaussians_alloc(struct fit_gaussians *g, size_t capacity, int degree, st
 	size_t row = 0, all, at = 0;
 
 	*g = (struct fit_gaussians){.degree = degree};
-	capacity = (capacity + 15) / 16 * 16; /* parts begin on cache lines */
+	const size_t room = (capacity + 15) / 16 * 16; /* so that parts begin on cache lines */
 	for (int p = 0; p < parts; p++)
 		row += fit_width[p];
-	if (mem_size(capacity, row, &all))
+	if (room < capacity || mem_size(room, row, &all))
 		return err_set(e, ERR_SYSTEM, "%zu Gaussians are too many", capacity);
 	g->slab = mem_zalloc(all, FIT_SLABS * sizeof *g->slab, "Gaussians", e);
 	g->splats.scales = mem_alloc(capacity, 3 * sizeof(float), "Gaussians", e);
@@ -35,7 +35,7 @@ int fit_gaussians_alloc(struct fit_gaussians *g, size_t capacity, int degree, st
 	for (int s = 0; s < FIT_SLABS; s++)
 		for (int p = 0; p < parts; p++) {
 			g->at[s][p] = g->slab + at;
-			at += capacity * fit_width[p];
+			at += room * fit_width[p];
 		}
 	g->splats.means = g->at[FIT_VALUE][FIT_MEAN];
 	g->splats.quats = g->at[FIT_VALUE][FIT_QUAT];
