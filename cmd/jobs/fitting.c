@@ -247,8 +247,8 @@ static int finish(struct fitting *f, struct err *e)
 	char *kept = mem_alloc(n, 1, "Gaussians", e);
 	struct splats s = {0};
 	double psnr, ssim;
-	int bad = !kept || judge(f, &psnr, &ssim, e) || fit_shown(&f->fit, 0, kept, e) ||
-		  fit_gaussians_give(&f->fit.gaussians, kept, &s, e) ||
+	int bad = !kept || fit_check(&f->fit, e) || judge(f, &psnr, &ssim, e) ||
+		  fit_shown(&f->fit, 0, kept, e) || fit_gaussians_give(&f->fit.gaussians, kept, &s, e) ||
 		  ply_write(&s, f->offset, f->options->output, e);
 
 	if (!bad)

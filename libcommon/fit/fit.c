@@ -132,6 +132,15 @@ static void step_parameters(struct fit *f, double mean_rate, int degree)
 			0.999, 1e-15, f->iteration + 1);
 }
 
+int fit_check(const struct fit *f, struct err *e)
+{
+	return fit_gaussians_are_finite(&f->gaussians)
+		       ? 0
+		       : err_set(e, ERR_CHECK,
+				 "training diverged: after step %ld the Gaussians are not finite numbers",
+				 f->iteration);
+}
+
 /* From time to time dead Gaussians are moved and others added, evenly in the logarithm of their number. */
 static int grow_now(struct fit *f, double progress, struct err *e)
 {
@@ -141,9 +150,8 @@ static int grow_now(struct fit *f, double progress, struct err *e)
 	if (progress < GROW_BEGIN || progress > GROW_END || progress < f->grown + GROW_STEP)
 		return 0;
 	f->grown = progress;
-	if (!fit_gaussians_are_finite(g))
-		return err_set(
-			e, ERR_CHECK, "the Gaussians are no more finite numbers at step %ld", f->iteration);
+	if (fit_check(f, e))
+		return -1;
 	const double first = (double)f->first, most = (double)g->capacity;
 	const double wanted = first * pow(most / first, fmin(share, 1));
 	fit_gaussians_activate(g);

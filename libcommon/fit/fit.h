@@ -61,6 +61,9 @@ int fit_step(struct fit *f, double progress, struct err *e);
 /* The loss of a photograph, in full size and with all harmonics. Returns 0, or -1 with *e set. */
 int fit_judge(struct fit *f, const struct photograph *p, struct photo_loss *l, struct err *e);
 
+/* Returns 0, or -1 with *e set (ERR_CHECK) where the Gaussians are no more finite numbers. */
+int fit_check(const struct fit *f, struct err *e);
+
 /* 10 log10 (1 / mean of squares), dB. */
 double fit_psnr(double squares);
 

@@ -408,6 +408,9 @@ static void learns(void)
 			after.total);
 		ends[k] = malloc(300 * 3 * sizeof(float));
 		memcpy(ends[k], f.gaussians.splats.means, 300 * 3 * sizeof(float));
+		f.gaussians.splats.means[7] = NAN;
+		CHECK(fit_step(&f, 1, &e) == 0 && fit_check(&f, &e) == -1 && e.code == ERR_CHECK,
+			"a number that is none is found");
 		fit_close(&f);
 	}
 	CHECK(!memcmp(ends[0], ends[1], 300 * 3 * sizeof(float)), "1 and 3 threads differ");
