@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-static struct fitting_options options = {.iterations = 7000, .degree = 3, .scale = 1};
+static struct fitting_options options = {.iterations = -1, .degree = 3, .scale = 1};
 
 static const struct cli_option table[] = {
 	{"cameras", 0, CLI_STRING, &options.cameras, "PATH",
@@ -50,6 +50,11 @@ int main(int argc, char **argv)
 	cli_parse(&cli, &tool, argc, argv);
 	if (!options.cameras || !options.images)
 		cli_usage(&cli, "--cameras and --images are required");
+	if (options.minutes > 0 && options.iterations >= 0)
+		cli_usage(&cli, "--iterations and --minutes do not go together");
+	if (options.init && options.points)
+		cli_usage(&cli, "--init and --points do not go together");
+	options.iterations = options.iterations < 0 ? 7000 : options.iterations;
 	options.output = cli.output;
 	options.seed = cli.seed;
 	cli_refuse_terminal(&cli);

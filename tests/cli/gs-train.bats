@@ -123,9 +123,13 @@ refuses() {
 	refuses "sparse/0: no photograph shows any of the 3 points to begin with: they must be in the cameras' frame, before a camera, and farther from it than 0.2"
 }
 
-@test "a photograph or a camera is not overwritten" {
+@test "a photograph or a camera is not overwritten; options that exclude each other" {
 	says 2 "gs-train: -o images/view_000.png would be among the files of --images images
 Try 'gs-train --help'." try -o images/view_000.png
 	says 2 "gs-train: --cameras and --images are required
 Try 'gs-train --help'." "$BIN/gs-train" -o out.ply
+	says 2 "gs-train: --iterations and --minutes do not go together
+Try 'gs-train --help'." try --minutes 1
+	says 2 "gs-train: --init and --points do not go together
+Try 'gs-train --help'." try --init a --points b
 }
