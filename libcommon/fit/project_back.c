@@ -136,7 +136,9 @@ __attribute__((target_clones("avx512f", "avx2", "default")))
 static void
 lanes_back(const struct project_lens *lens, struct lanes *b)
 {
+#if !defined __clang__ /* which warns where it cannot */
 #pragma omp simd
+#endif
 	for (int l = 0; l < LANES; l++)
 		lane_back(lens, b, l);
 }

@@ -55,6 +55,22 @@ static double lap(void)
 	return passed;
 }
 
+static void print_line(
+	size_t n, const struct render_view *v, const struct camera *c, const double times[PARTS])
+{
+	double sum = 0;
+
+	printf("{\"bench\":\"fit\",\"gaussians\":%zu,\"visible\":%zu,\"width\":%d,\"height\":%d,\"pairs\":%zu",
+		n, v->visible, c->width, c->height,
+		v->tiles.start[(size_t)v->grid.columns * (size_t)v->grid.rows]);
+	for (int k = 0; k < PARTS; k++) {
+		printf(",\"%s_ms\":%.2f", names[k], times[k]);
+		sum += times[k];
+	}
+	printf(",\"step_ms\":%.2f}\n", sum);
+	fflush(stdout);
+}
+
 static void measure(const struct splats *s, const struct camera *c, int repeats)
 {
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
@@ -103,16 +119,7 @@ static void measure(const struct splats *s, const struct camera *c, int repeats)
 	}
 	if (!v)
 		fail(e.message);
-	printf("{\"bench\":\"fit\",\"gaussians\":%zu,\"visible\":%zu,\"width\":%d,\"height\":%d,\"pairs\":%zu",
-		s->n, v->visible, c->width, c->height,
-		v->tiles.start[(size_t)v->grid.columns * (size_t)v->grid.rows]);
-	double sum = 0;
-	for (int k = 0; k < PARTS; k++) {
-		printf(",\"%s_ms\":%.2f", names[k], least[k]);
-		sum += least[k];
-	}
-	printf(",\"step_ms\":%.2f}\n", sum);
-	fflush(stdout);
+	print_line(s->n, v, c, least);
 	render_free(v);
 	back_free(&back_room);
 	photo_loss_free(&loss_room);
