@@ -82,7 +82,7 @@ static int by_value(const void *a, const void *b)
 }
 
 /* The rule of ply.md: far from the origin, compared with the scene's own size, means an offset. */
-static int choose_offset(double offset[3], const double *means, size_t n, struct err *e)
+int gaussian_offset(double offset[3], const double *means, size_t n, struct err *e)
 {
 	size_t step = (n + SAMPLES - 1) / SAMPLES, count = 0;
 	double median[3], spread = 0, far = 0;
@@ -159,7 +159,7 @@ static int read_and_shift(struct splats *s, double offset[3], struct rows_report
 	if (splats_alloc(s, n, 1 + from->rest / 3, e))
 		return -1;
 	double *means = mem_alloc(n, 3 * sizeof *means, "means", e);
-	int bad = !means || read_all(s, means, report, from, e) || choose_offset(offset, means, s->n, e);
+	int bad = !means || read_all(s, means, report, from, e) || gaussian_offset(offset, means, s->n, e);
 	for (size_t i = 0; !bad && i < 3 * s->n; i++)
 		s->means[i] = (float)(means[i] - offset[i % 3]);
 	free(means);

@@ -42,6 +42,9 @@ struct gaussian_rows {
 int gaussian_rows_read(struct splats *s, double offset[3], struct rows_report *report,
 	const struct gaussian_rows *from, struct err *e);
 
+/* The offset of means (n,3), by the rule of ply.md. Returns 0, or -1 with *e set. */
+int gaussian_offset(double offset[3], const double *means, size_t n, struct err *e);
+
 /* The row of Gaussian i, without an offset; the number of its values. */
 int gaussian_row_of(const struct splats *s, size_t i, double *values);
 

@@ -70,6 +70,17 @@ int trainlog_put_held(struct trainlog *l, long iteration, const struct held_out_
 	return 0;
 }
 
+int trainlog_put_fit(
+	struct trainlog *l, long iteration, size_t gaussians, double loss, double psnr, struct err *e)
+{
+	if (l->stream &&
+		(fprintf(l->stream, "{\"iteration\":%ld,\"gaussians\":%zu,\"loss\":%.9g,\"psnr\":%.9g}\n",
+			 iteration, gaussians, loss, psnr) < 0 ||
+			fflush(l->stream)))
+		return err_errno(e, "%s", file_name(l->path));
+	return 0;
+}
+
 int trainlog_close(struct trainlog *l, struct err *e)
 {
 	int bad = 0;

@@ -26,6 +26,10 @@ int trainlog_step(struct trainlog *l, struct train_state *t, struct err *e);
 /* A line of what the held-out masks say. */
 int trainlog_put_held(struct trainlog *l, long iteration, const struct held_out_score *score, struct err *e);
 
+/* A line of gs-train: means over the steps since the last. */
+int trainlog_put_fit(
+	struct trainlog *l, long iteration, size_t gaussians, double loss, double psnr, struct err *e);
+
 /* Closes in any case, also a log that was not opened. */
 int trainlog_close(struct trainlog *l, struct err *e);
 

@@ -149,7 +149,7 @@ char *import_find_cameras(const struct import_options *o, struct err *e)
 	return found;
 }
 
-static int split(struct cameras *c, const char *test_views, struct err *e)
+int import_split(struct cameras *c, const char *test_views, struct err *e)
 {
 	if (!test_views)
 		return 0;
@@ -209,7 +209,7 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	*found = (struct import_found){.near = 1};
 	/* Cameras first: what is wrong with them, or with a name of a view, is said before the splats, which
 	 * take longer. */
-	if (read_cameras(&s->cameras, o, cameras, e) || split(&s->cameras, o->test_views, e) ||
+	if (read_cameras(&s->cameras, o, cameras, e) || import_split(&s->cameras, o->test_views, e) ||
 		anysplats_read(&s->splats, s->offset, report, o->splats, e))
 		return -1;
 	if (!s->splats.n)

@@ -210,8 +210,8 @@ VEC_INLINE void blend_channels(struct blend_tile *t, const struct projected *p, 
 	}
 }
 
-static void blend_values(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
-	const float *values, int channels)
+__attribute__((unused)) static void blend_values(struct blend_tile *t, const struct projected *p,
+	const uint32_t *list, size_t n, const float *values, int channels)
 {
 	/* so that the sums of a block stay in registers */
 	if (channels == 1)
@@ -288,13 +288,14 @@ VEC_INLINE size_t blend_each(struct blend_tile *t, const struct projected *p, co
 	return n;
 }
 
-static size_t blend_weights(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
-	struct blend_records *records)
+__attribute__((unused)) static size_t blend_weights(struct blend_tile *t, const struct projected *p,
+	const uint32_t *list, size_t n, struct blend_records *records)
 {
 	return blend_each(t, p, list, n, records);
 }
 
-static void blend_counts(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n)
+__attribute__((unused)) static void blend_counts(
+	struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n)
 {
 	blend_each(t, p, list, n, NULL);
 }

@@ -1,4 +1,4 @@
-/* What render_prepare makes; for the rasteriser and its tests. */
+/* What render_prepare makes; for the rasteriser, its way back in training (fit), and tests. */
 #ifndef SPLAT_VIEW_H
 #define SPLAT_VIEW_H
 

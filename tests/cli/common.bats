@@ -18,6 +18,7 @@ missing_input() {
 	cat <<-END
 		gs-check none
 		gs-import -o out none
+		gs-train --cameras none --images none -o out
 		gs-transform --format ply -o out none
 		gs-weigh -o out none
 		text-encode --model none -o out none

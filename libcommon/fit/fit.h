@@ -1,0 +1,75 @@
+/* Training of 3D Gaussians from posed photographs: the loss and the rates of 3DGS (Kerbl et al. 2023), number
+ * and places by 3DGS-MCMC (fit/grow.h), images from coarse to fine. What is trained is what the rasteriser
+ * (splat/render.h) shows, over black. The same input, options and seed give the same bytes for any number of
+ * threads. */
+#ifndef FIT_FIT_H
+#define FIT_FIT_H
+
+#include "base/err.h"
+#include "base/rng.h"
+#include "fit/back.h"
+#include "fit/parameters.h"
+#include "fit/photo_loss.h"
+#include "fit/photograph.h"
+#include "splat/render.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct fit_options {
+	double extent; /* start_extent's: what positions are measured by */
+
+	uint64_t seed;
+};
+
+struct fit {
+	struct fit_options options;
+	struct fit_gaussians gaussians;
+	const struct photograph *photographs; /* (views) to learn from; the caller's */
+	size_t views;
+
+	long iteration; /* steps done */
+	double grown;	/* the progress at which Gaussians were last moved or added */
+	size_t first;	/* how many Gaussians there were then: at the start */
+	struct rng rng;
+	uint32_t *order;	/* (views) in which they are looked at, until the next shuffle */
+	struct photo_loss last; /* of the last step's view */
+
+	struct render_view *view;
+	uint8_t *seen; /* (capacity) by that view */
+	struct back_room back;
+	struct photo_loss_room room;
+	float *colors, *sums; /* (capacity,3), (capacity,BACK_SUMS) */
+	float *weight; /* (capacity) what each has shown since step `weighed`, in pixels of full size */
+	uint8_t *dead; /* (capacity) */
+	long weighed;
+	float *image; /* (3,P), its gradient (3,P) */
+	size_t image_room;
+};
+
+/* A fit of the Gaussians in *g, which become its own; in the end there are as many as it has room for.
+ * Returns 0, or -1 with *e set; fit_close after either. */
+int fit_open(struct fit *f, struct fit_gaussians *g, const struct fit_options *o,
+	const struct photograph *photographs, size_t views, struct err *e);
+void fit_close(struct fit *f);
+
+/* A step on one photograph. progress, from 0 to 1 and never less than before, is how much of the training is
+ * done: by it go the size of the images, the rates, the degree of the harmonics and the number of Gaussians.
+ * Returns 0, or -1 with *e set: ERR_CHECK where the Gaussians are no more finite numbers. */
+int fit_step(struct fit *f, double progress, struct err *e);
+
+/* The loss of a photograph, in full size and with all harmonics. Returns 0, or -1 with *e set. */
+int fit_judge(struct fit *f, const struct photograph *p, struct photo_loss *l, struct err *e);
+
+/* Returns 0, or -1 with *e set (ERR_CHECK) where the Gaussians are no more finite numbers. */
+int fit_check(const struct fit *f, struct err *e);
+
+/* 10 log10 (1 / mean of squares), dB. */
+double fit_psnr(double squares);
+
+/* kept (n) gets 1 for the Gaussians that some photograph shows: with weights of FIT_SHOWN in sum over its
+ * pixels at that level. Returns 0, or -1 with *e set. */
+#define FIT_SHOWN 0.02f
+int fit_shown(struct fit *f, int level, char *kept, struct err *e);
+
+#endif

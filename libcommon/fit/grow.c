@@ -1,0 +1,157 @@
+#include "fit/grow.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { COPIES_MOST = 51, STEPS = 64 };
+#define NOISE 5e5	 /* times the positions' rate */
+#define NOISE_STEEP 100	 /* how fast noise fades above GROW_DEAD */
+#define NOISE_ABOVE 0.2f /* more opaque than this there is less than 1e-8 of it */
+
+/* The integral over s of 1 - (1 - o e^(-s^2))^n, the profile of n Gaussians on one spot: it is the double sum
+ * over binomials of their equation 9, without the cancellation. */
+static double profile(double o, int n)
+{
+	double sum = 0;
+	const double end = 6, step = end / STEPS;
+
+	for (int i = 0; i <= STEPS; i++) { /* Simpson */
+		const double s = i * step, y = 1 - pow(1 - o * exp(-s * s), n);
+		sum += y * (i == 0 || i == STEPS ? 1 : i % 2 ? 4 : 2);
+	}
+	return sum * step / 3;
+}
+
+void grow_split(double opacity, int copies, double *part, double *factor)
+{
+	copies = copies > COPIES_MOST ? COPIES_MOST : copies;
+	*part = 1 - pow(1 - opacity, 1.0 / copies);
+	*factor = profile(opacity, 1) / profile(*part, copies);
+}
+
+/* cumulative (n): sums of the opacities of those alive. */
+static double accumulate(const struct fit_gaussians *g, const uint8_t *dead, double *cumulative)
+{
+	double sum = 0;
+
+	for (size_t i = 0; i < g->n; i++) {
+		sum += dead[i] ? 0 : (double)g->splats.opacities[i];
+		cumulative[i] = sum;
+	}
+	return sum;
+}
+
+static size_t draw(const double *cumulative, size_t n, struct rng *rng)
+{
+	const double at = rng_uniform(rng) * cumulative[n - 1];
+	size_t low = 0, high = n - 1;
+
+	while (low < high) {
+		const size_t middle = low + (high - low) / 2;
+		if (cumulative[middle] > at)
+			high = middle;
+		else
+			low = middle + 1;
+	}
+	return low;
+}
+
+/* Gaussian `to` becomes a copy of `from`, with no history. */
+static void copy(struct fit_gaussians *g, size_t from, size_t to)
+{
+	for (int p = 0; p < fit_parts(g->degree); p++) {
+		const size_t w = fit_width[p];
+		memcpy(g->at[FIT_VALUE][p] + w * to, g->at[FIT_VALUE][p] + w * from, w * sizeof(float));
+		for (int s = FIT_MOMENT1; s <= FIT_MOMENT2; s++)
+			memset(g->at[s][p] + w * to, 0, w * sizeof(float));
+	}
+}
+
+/* Original and copies share what the original showed. */
+static void share(struct fit_gaussians *g, size_t i, int copies)
+{
+	float *scale = g->at[FIT_VALUE][FIT_SCALE] + 3 * i;
+	double part, factor;
+
+	grow_split(g->splats.opacities[i], copies, &part, &factor);
+	part = fmin(fmax(part, (double)GROW_DEAD), 1 - 1e-6);
+	g->at[FIT_VALUE][FIT_LOGIT][i] = (float)log(part / (1 - part));
+	for (int k = 0; k < 3; k++)
+		scale[k] += (float)log(factor);
+	copy(g, i, i);
+}
+
+static void place(struct fit_gaussians *g, const uint8_t *dead, size_t wanted, const double *cumulative,
+	uint32_t *originals, uint16_t *copies, struct rng *rng)
+{
+	const size_t n = g->n, all = wanted > n ? wanted : n;
+
+	for (size_t i = 0; i < all; i++) {
+		originals[i] = (uint32_t)i;
+		if (i < n && !dead[i])
+			continue;
+		originals[i] = (uint32_t)draw(cumulative, n, rng);
+		copies[originals[i]] += copies[originals[i]] < COPIES_MOST;
+	}
+	for (size_t i = 0; i < n; i++)
+		if (copies[i])
+			share(g, i, copies[i] + 1);
+	for (size_t i = 0; i < all; i++)
+		if (originals[i] != i)
+			copy(g, originals[i], i);
+	g->n = all;
+}
+
+int grow(struct fit_gaussians *g, const uint8_t *dead, size_t wanted, struct rng *rng, struct err *e)
+{
+	wanted = wanted < g->capacity ? wanted : g->capacity;
+	const size_t all = wanted > g->n ? wanted : g->n;
+	double *cumulative = mem_alloc(g->n, sizeof *cumulative, "Gaussians", e);
+	uint32_t *originals = mem_alloc(all, sizeof *originals, "Gaussians", e);
+	uint16_t *copies = mem_zalloc(g->n, sizeof *copies, "Gaussians", e);
+	const int bad = !cumulative || !originals || !copies;
+
+	if (!bad && g->n && accumulate(g, dead, cumulative) > 0)
+		place(g, dead, wanted, cumulative, originals, copies, rng);
+	free(cumulative);
+	free(originals);
+	free(copies);
+	return bad ? -1 : 0;
+}
+
+/* mean += R S^2 R^T noise */
+static void shake(float *mean, const float *scale, const float *quat, const double noise[3])
+{
+	const double w = quat[0], x = quat[1], y = quat[2], z = quat[3],
+		     two = 2 / (w * w + x * x + y * y + z * z);
+	const double turn[3][3] = {{1 - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)},
+		{two * (x * y + w * z), 1 - two * (x * x + z * z), two * (y * z - w * x)},
+		{two * (x * z - w * y), two * (y * z + w * x), 1 - two * (x * x + y * y)}};
+
+	for (int k = 0; k < 3; k++) {
+		const double along = turn[0][k] * noise[0] + turn[1][k] * noise[1] + turn[2][k] * noise[2];
+		const double by = (double)scale[k] * scale[k] * along;
+		for (int i = 0; i < 3; i++)
+			mean[i] += (float)(turn[i][k] * by);
+	}
+}
+
+void grow_noise(struct fit_gaussians *g, double rate, uint64_t seed, long step)
+{
+#pragma omp parallel for schedule(static)
+	for (size_t i = 0; i < g->n; i++) {
+		const float o = g->splats.opacities[i];
+		double noise[3];
+		struct rng r;
+		if (o > NOISE_ABOVE)
+			continue;
+		const double size = NOISE * rate / (1 + exp(NOISE_STEEP * (double)(o - GROW_DEAD)));
+		rng_seed(&r, seed * 0x9e3779b97f4a7c15 + (uint64_t)step, i);
+		for (int k = 0; k < 3; k++)
+			noise[k] = size * rng_normal(&r);
+		shake(g->splats.means + 3 * i, g->splats.scales + 3 * i, g->splats.quats + 4 * i, noise);
+	}
+}

@@ -1,0 +1,25 @@
+/* Photographs of a scene, with their cameras, at the sizes in which they are learned from. */
+#ifndef FIT_PHOTOGRAPH_H
+#define FIT_PHOTOGRAPH_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Each level is half as wide and high as that before it. */
+enum { FIT_LEVELS = 3 };
+
+struct photograph {
+	struct camera camera[FIT_LEVELS]; /* name and image belong to the camera it was made with */
+	uint8_t *rgb[FIT_LEVELS];	  /* (height,width,3) of that camera */
+};
+
+/* The view c at `scale` of its size, from a picture of it in any size; where that is smaller, no larger than
+ * it. Returns 0, or -1 with *e set and *p zeroed. */
+int photograph_make(struct photograph *p, const struct camera *c, double scale, const uint8_t *rgb,
+	int height, int width, struct err *e);
+void photograph_free(struct photograph *p);
+
+#endif

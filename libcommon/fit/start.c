@@ -1,0 +1,102 @@
+#include "fit/start.h"
+
+#include "base/mem.h"
+#include "geom/neighbours.h"
+#include "splat/sh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define OPACITY 0.1f
+enum { NEIGHBOURS = 3 };
+
+double start_extent(const struct camera *const *cameras, size_t n, const float *points, size_t points_n)
+{
+	double mean[3] = {0}, centre[3], middle[3] = {0}, most = 0, far = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		camera_centre(cameras[i], centre);
+		for (int k = 0; k < 3; k++)
+			mean[k] += centre[k] / (double)n;
+	}
+	for (size_t i = 0; i < n; i++) {
+		camera_centre(cameras[i], centre);
+		most = fmax(
+			most, hypot(hypot(centre[0] - mean[0], centre[1] - mean[1]), centre[2] - mean[2]));
+	}
+	for (size_t i = 0; i < 3 * points_n; i++)
+		middle[i % 3] += points[i] / (double)points_n;
+	far = hypot(hypot(middle[0] - mean[0], middle[1] - mean[1]), middle[2] - mean[2]);
+	return most > 1e-3 * far ? 1.1 * most : far > 0 ? 0.1 * far : 1;
+}
+
+void start_points(const struct camera *const *cameras, size_t cameras_n, double *points, uint8_t *colors,
+	size_t n, struct rng *rng)
+{
+	double low[3], high[3], centre[3], most = 0;
+
+	for (size_t i = 0; i < cameras_n; i++) {
+		camera_centre(cameras[i], centre);
+		for (int k = 0; k < 3; k++) {
+			low[k] = i && low[k] < centre[k] ? low[k] : centre[k];
+			high[k] = i && high[k] > centre[k] ? high[k] : centre[k];
+			most = fmax(most, high[k] - low[k]);
+		}
+	}
+	most = most > 0 ? most : 1;
+	for (size_t i = 0; i < 3 * n; i++) {
+		points[i] = rng_range(rng, low[i % 3] - most, high[i % 3] + most);
+		colors[i] = 127;
+	}
+}
+
+size_t start_number(size_t points)
+{
+	return points < 2000 ? 20000 : points > 50000 ? 500000 : 10 * points;
+}
+
+/* Which of n points have room. */
+static char *choose(size_t n, size_t room, struct rng *rng, struct err *e)
+{
+	char *chosen = mem_alloc(n, 1, "points", e);
+
+	for (size_t i = 0; i < n && chosen; i++) {
+		chosen[i] = rng_uniform(rng) * (double)(n - i) < (double)room;
+		room -= chosen[i] != 0;
+	}
+	return chosen;
+}
+
+int start_at_points(struct fit_gaussians *g, const float *points, const uint8_t *colors, size_t n,
+	struct rng *rng, struct err *e)
+{
+	float *const *to = g->at[FIT_VALUE];
+	char *chosen = choose(n, g->capacity - g->n, rng, e);
+	float *far = mem_zalloc(n, 2 * sizeof *far, "points", e);
+	int bad = !chosen || !far;
+
+	for (int k = 1; k <= NEIGHBOURS && !bad; k++) {
+		bad = neighbours_find(points, n, k, far + n, e) != 0;
+		for (size_t i = 0; i < n && !bad; i++)
+			far[i] += far[n + i] * far[n + i] / NEIGHBOURS;
+	}
+	for (size_t i = 0; i < n && !bad; i++) {
+		const size_t at = g->n;
+		/* alone, or on top of another */
+		const float scale = isfinite(far[i]) ? sqrtf(fmaxf(far[i], 1e-14f)) : 0.1f;
+		if (!chosen[i])
+			continue;
+		memcpy(to[FIT_MEAN] + 3 * at, points + 3 * i, 3 * sizeof(float));
+		for (size_t k = 0; k < 3; k++) {
+			to[FIT_SCALE][3 * at + k] = logf(scale);
+			to[FIT_SH][3 * at + k] = ((float)colors[3 * i + k] / 255 - 0.5f) / (float)SH_C0;
+		}
+		to[FIT_QUAT][4 * at] = 1;
+		to[FIT_LOGIT][at] = logf(OPACITY / (1 - OPACITY));
+		g->n++;
+	}
+	free(chosen);
+	free(far);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,135 @@
+#!/usr/bin/env bats
+# gs-train. Options that every tool has are in common.bats; whether gradients are right in unit/test_fit.c.
+
+setup_file() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	"$BIN/gs-synth" -q --objects 3 --views 5 --size 64x48 --gaussians 1000 -o "$BATS_FILE_TMPDIR/made"
+}
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load ../format/files
+	cd "$BATS_TEST_TMPDIR"
+	cp -r "$BATS_FILE_TMPDIR/made/"{images,sparse} .
+	points='1 0 0 0.1 200 10 10 0.5 1 7
+2 0.1 0 0.1 10 200 10 0.5
+3 0 0.1 0.2 10 10 200 0.5 1 7 2 9'
+	echo "$points" >sparse/0/points3D.txt
+}
+
+try() { "$BIN/gs-train" -q --cameras sparse/0 --images images --gaussians 300 --iterations 60 -o out.ply "$@"; }
+
+# refuses MESSAGE ARGUMENT...: exit 3, and nothing is written.
+refuses() {
+	local message=$1
+	shift
+	says 3 "gs-train: $message" try "$@" && [ ! -e out.ply ]
+}
+
+@test "it learns the photographs, and gs-import reads what it writes" {
+	"$BIN/gs-train" --cameras sparse/0 --images images --gaussians 500 --iterations 500 --degree 1 -v --log log.jsonl -o out.ply 2>err
+	[ "$(jq -r .iteration log.jsonl | tr '\n' ' ')" = "100 200 300 400 500 " ]
+	[ "$(jq -s '.[4].psnr > .[0].psnr + 5 and .[4].psnr > 20 and .[4].gaussians == 500' log.jsonl)" = true ]
+	grep -qx 'gs-train: 5 photographs to learn from, 0 to test with, 3 Gaussians to begin with, extent .*' err
+	"$BIN/gs-import" -v --cameras sparse/0 --images images -o scene out.ply 2>err
+	! grep -q 'does not look like' err
+	grep -q 'spherical harmonics of degree 1' err
+}
+
+@test "threads change nothing, the seed does, and - is stdout" {
+	try --threads 1
+	try --threads 3 -o three.ply
+	cmp out.ply three.ply
+	try --seed 2 -o other.ply
+	! cmp -s out.ply other.ply
+	try -o - | cmp - out.ply
+}
+
+@test "test views are not learned from, but judged" {
+	"$BIN/gs-train" --cameras sparse/0 --images images --gaussians 300 --iterations 20 --test-views every:4 -vv -o out.ply 2>err
+	grep -q '^gs-train: 3 photographs to learn from, 2 to test with' err
+	grep -q '^gs-train: 2 test views: PSNR ' err
+	[ "$(grep -c '^gs-train: view_00[04]: PSNR ' err)" = 2 ]
+	rm out.ply
+	refuses "sparse/0: every view with a photograph is kept for testing" --test-views every:1
+}
+
+@test "--init goes on from a scene" {
+	try
+	"$BIN/gs-train" --cameras sparse/0 --images images --iterations 0 -v --init out.ply -o same.ply 2>err
+	grep -qE '^gs-train: 0 steps, ([0-9]+) Gaussians, of which \1 are shown and written$' err
+	[ "$(wc -c <same.ply)" = "$(wc -c <out.ply)" ]
+}
+
+@test "points of a model in binary are those in text" {
+	try
+	{
+		printf '0300000000000000'
+		printf '%s' 01000000000000000000000000000000'0000000000000000'9a9999999999b93f c80a0a 000000000000e03f 0100000000000000 0100000007000000
+		printf '%s' 02000000000000009a9999999999b93f'0000000000000000'9a9999999999b93f 0ac80a 000000000000e03f 0000000000000000
+		printf '%s' 03000000000000000000000000000000 9a9999999999b93f 9a9999999999c93f 0a0ac8 000000000000e03f 0200000000000000 01000000070000000200000009000000
+	} | xxd -r -p >sparse/0/points3D.bin
+	try -o binary.ply
+	cmp out.ply binary.ply
+	head -c 100 sparse/0/points3D.bin >cut && mv cut sparse/0/points3D.bin
+	rm out.ply
+	refuses "sparse/0/points3D.bin: the file ends at offset 100, within point 1 of 3"
+	rm sparse/0/points3D.bin
+	echo "$points" | sed '2s/200/red/' >sparse/0/points3D.txt
+	refuses "sparse/0/points3D.txt:2: not 'ID X Y Z R G B ERROR'"
+	echo "$points" | sed '2s/0.1/nan/' >sparse/0/points3D.txt
+	refuses "sparse/0/points3D.txt: point 1: its place is not finite, or its colour not within 0 to 255"
+}
+
+@test "without points the first Gaussians are drawn" {
+	rm sparse/0/points3D.txt
+	says 0 "gs-train: warning: sparse/0: no points to begin with: 20000 are taken at random" \
+		"$BIN/gs-train" --cameras sparse/0 --images images --gaussians 300 --iterations 5 -o out.ply
+}
+
+@test "a scene far from the origin is learned as well" {
+	try
+	awk '{ $2 = sprintf("%.9g", $2 + 1e6); print }' <<<"$points" >sparse/0/points3D.txt
+	# x_camera = R (x - d) + t
+	awk '/^#/ || !NF { print; next } {
+		w = $2; x = $3; y = $4; z = $5; d = 1e6
+		$6 = sprintf("%.12f", $6 - d * (1 - 2 * (y * y + z * z))); $7 = sprintf("%.12f", $7 - d * 2 * (x * y + w * z))
+		$8 = sprintf("%.12f", $8 - d * 2 * (x * z - w * y)); print }' sparse/0/images.txt >moved
+	mv moved sparse/0/images.txt
+	"$BIN/gs-train" --cameras sparse/0 --images images --gaussians 500 --iterations 500 --degree 0 -q --log far.jsonl -o far.ply
+	[ "$(jq -s 'last.psnr > 18' far.jsonl)" = true ]
+	grep -aq 'property double x' far.ply
+}
+
+@test "photographs that are missing, of another size, or of another shape" {
+	rm images/view_001.png
+	says 0 "gs-train: warning: images: no photograph for 1 of 5 views" \
+		"$BIN/gs-train" --cameras sparse/0 --images images --gaussians 300 --iterations 5 -o out.ply
+	rm out.ply
+	cp images/view_000.png kept
+	"$BIN/gs-synth" -q --objects 3 --views 2 --size 32x24 --gaussians 1000 -o half
+	cp half/images/view_000.png images
+	try
+	rm out.ply
+	"$BIN/gs-synth" -q --objects 3 --views 2 --size 48x48 --gaussians 1000 -o square
+	cp square/images/view_000.png images
+	refuses "images/view_000.png: 48x48, which is not the shape of its camera, 64x48"
+	rm images/*
+	refuses "images: no photograph for any of the 5 views of sparse/0, such as 'view_000'"
+}
+
+@test "points that no photograph shows" {
+	awk '{ $4 -= 1000; print }' <<<"$points" >sparse/0/points3D.txt
+	refuses "sparse/0: no photograph shows any of the 3 points to begin with: they must be in the cameras' frame, before a camera, and farther from it than 0.2"
+}
+
+@test "a photograph or a camera is not overwritten; options that exclude each other" {
+	says 2 "gs-train: -o images/view_000.png would be among the files of --images images
+Try 'gs-train --help'." try -o images/view_000.png
+	says 2 "gs-train: --cameras and --images are required
+Try 'gs-train --help'." "$BIN/gs-train" -o out.ply
+	says 2 "gs-train: --iterations and --minutes do not go together
+Try 'gs-train --help'." try --minutes 1
+	says 2 "gs-train: --init and --points do not go together
+Try 'gs-train --help'." try --init a --points b
+}
