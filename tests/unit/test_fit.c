@@ -256,7 +256,7 @@ static void hard_shapes(void)
 	for (size_t i = 0; i < n; i++) {
 		char name[32];
 		struct splats one = {.n = 1,
-			.coefficients = 1,
+			.sh_coefficients = 1,
 			.near = s.near,
 			.means = s.means + 3 * i,
 			.scales = s.scales + 3 * i,
