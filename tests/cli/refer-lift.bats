@@ -91,7 +91,7 @@ not() { ! "$@"; }
 	"$BIN/gs-import" -q --cameras "$made/sparse/0" --test-views "$(cat "$made/test-views")" -o scene s.ply
 	"$BIN/gs-weigh" -q -o weights scene
 	"$BIN/refer-lift" --scene scene --weights weights --text text.safetensors --masks masks.jsonl -o model 2>err
-	grep -qE '^refer-lift: warning: masks.jsonl: the masks agree by 0\.[0-4][0-9] with what was lifted of them, at least 0\.55 is right: .* are the cameras of scene those that its splats were trained with, and in their frame\? gsplat trains' err
+	grep -qE '^refer-lift: warning: masks.jsonl: the masks agree by 0\.[0-4][0-9] with what was lifted of them, at least 0\.35 is right: .* are the cameras of scene those that its splats were trained with, and in their frame\? gsplat trains' err
 }
 
 @test "pipes, stdin, stdout and any number of threads give the same" {

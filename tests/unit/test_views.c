@@ -43,8 +43,10 @@ static void names(const char *const *images, const char *const *expected)
 	bad = bad || views_name(images, c.n, own, "file", &e);
 	for (size_t i = 0; !bad && i < c.n; i++) {
 		size_t at = 0;
-		while (strcmp(c.views[at].image, images[i]))
+		char *image = view_image(images[i], &e);
+		while (strcmp(c.views[at].image, image))
 			at++;
+		free(image);
 		CHECK(!strcmp(own[i], c.views[at].name), "%s is %s, not %s", images[i], own[i],
 			c.views[at].name);
 		free(own[i]);
