@@ -40,7 +40,8 @@ follow() {
 @test "with the real encoder the answers are those of the page" {
 	[ -e "$cache/config.json" ] || skip "make encoder has not been run"
 	follow "$cache"
-	[ ! -s err ]
+	# nothing but that sentences told look-alikes apart
+	[ -z "$(grep -v 'masks that a detector found for others, as their sentences say' err)" ]
 	# what is found, up to its percentage
 	sed -n '/^\.Ss Questions/,/^\.Ss Masks/p' "$BATS_TEST_DIRNAME/../../man/refersplat.7" | sed -n '/^\.Bd/,/^\.Ed/p' | grep -v '^\.' |
 		sed 's/ *\.\.\..*//' >answers
