@@ -35,7 +35,7 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 	(void)e;
 	for (int k = 0; k < 3; k++) {
 		values[ROW_MEAN + k] = little_get_f32(p + 4 * k);
-		values[ROW_SCALE + k] = log(little_get_f32(p + 12 + 4 * k));
+		values[ROW_SCALE + k] = log((double)little_get_f32(p + 12 + 4 * k));
 		values[ROW_DC + k] = (p[24 + k] / 255.0 - 0.5) / SH_C0;
 	}
 	values[ROW_OPACITY] = gaussian_logit(p[27] / 255.0);
