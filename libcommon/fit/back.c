@@ -71,7 +71,6 @@ int back_view(const struct render_view *v, const float *colors, const float *ima
 {
 	const struct back_kernels *kernels = back_kernels_of(v->level);
 	const size_t tiles = (size_t)v->grid.columns * (size_t)v->grid.rows;
-	const int threads = threads_available();
 
 	if (mem_room((void **)&room->parts, &room->part_room, v->tiles.start[tiles],
 		    BACK_SUMS * sizeof *room->parts, "gradients", e) ||
@@ -89,7 +88,7 @@ int back_view(const struct render_view *v, const float *colors, const float *ima
 		room->done[k] = kernels->tile(&t, &b, &own, v->projected, v->tiles.entries + begin,
 			v->tiles.start[k + 1] - begin, colors, room->parts + begin * BACK_SUMS);
 	}
-#pragma omp parallel num_threads(threads)
+#pragma omp parallel num_threads(threads_available())
 	{
 		const size_t part = (size_t)omp_get_thread_num(), all = (size_t)omp_get_num_threads();
 		gather(v, room, v->gaussians * part / all, v->gaussians * (part + 1) / all, sums);
