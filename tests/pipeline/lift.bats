@@ -103,7 +103,10 @@ not() { ! "$@"; }
 @test "MASKS with sentences: in place of candidates" {
 	cd "$BATS_TEST_TMPDIR"
 	WORK=$PWD/masks lift MASKS="$WORK/lifted/masks.jsonl" CANDIDATES= >log 2>&1
-	cmp masks/lifted/model.safetensors "$WORK/lifted/model.safetensors"
+	# they keep their names
+	"$BIN/refer-lift" -q --scene "$WORK/scene" --weights "$WORK/weights" --text "$WORK/text.safetensors" \
+		--masks "$WORK/lifted/masks.jsonl" --names masks -o kept
+	cmp masks/lifted/model.safetensors kept
 	cmp masks/lifted/predictions.test.jsonl "$WORK/lifted/predictions.test.jsonl"
 	not grep -q pseudomask-select log
 	run lift CANDIDATES=
