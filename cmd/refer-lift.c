@@ -5,6 +5,8 @@
 #include "formats/dataparser.h"
 #include "formats/lifted.h"
 
+#include <string.h>
+
 static struct {
 	struct lifting_files files;
 	int is_as_masked;
@@ -32,6 +34,24 @@ static const struct cli_tool tool = {.name = "refer-lift",
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT,
 	.output_arg = "MODEL"};
 
+/* Masks that show no one scene are an error: nothing that is lifted of them is right. */
+static int check_left_out(const struct lifting *l, const struct cli *c, struct err *e)
+{
+	double fit;
+
+	if (lift_left_out(&l->lift, l->model.objects, &fit, e))
+		return -1;
+	if (!(fit < LIFT_LEFT_OUT_FINE))
+		return 0;
+	err_set(e, ERR_FORMAT,
+		"%s: what masks show in one view is not where those of other views show it (by %.2f, at least %.2g is right): are they of other views, or of turned photographs, or are the cameras of %s in another frame than its splats? " DATAPARSER_WAY_OUT,
+		file_name(options.files.masks), fit, LIFT_LEFT_OUT_FINE, options.files.scene);
+	if (fit < LIFT_LEFT_OUT_LEAST)
+		return -1;
+	cli_warn(c, "%s", e->message);
+	return 0;
+}
+
 static int run(struct lifting *l, const struct cli *c, struct err *e)
 {
 	const struct lifted *model = &l->model;
@@ -47,10 +67,11 @@ static int run(struct lifting *l, const struct cli *c, struct err *e)
 	cli_note(c, 1,
 		"%zu objects, %lld Gaussians with a share in one; agreement of the masks %.3f; %zu changed places",
 		model->objects, (long long)model->indptr[model->objects], confidence, moved);
-	if (model->objects && confidence < LIFT_AGREEMENT_LEAST)
+	if (check_left_out(l, c, e))
+		return -1;
+	if (model->objects && !memchr(l->is_fixed, 1, model->objects) && confidence < LIFT_AGREEMENT_LEAST)
 		cli_warn(c,
-			"%s: the masks agree by %.2f with what was lifted of them, at least %.2g is right: what they show in one view is not where others show it: "
-			"are the cameras of %s those that its splats were trained with, and in their frame? " DATAPARSER_WAY_OUT,
+			"%s: the masks agree by %.2f with what was lifted of them, at least %.2g is right: are the cameras of %s those that its splats were trained with, and in their frame? " DATAPARSER_WAY_OUT,
 			file_name(options.files.masks), confidence, LIFT_AGREEMENT_LEAST,
 			options.files.scene);
 	const struct origin origin = {l->scene.fingerprint, l->text.encoder};

@@ -1,0 +1,138 @@
+/* Whether masks of different views show one scene: each mask is compared with what the other views' masks
+ * lifted of its object. With its own among them it would agree with itself. No picture is drawn: a mask is
+ * what it shows of each Gaussian. */
+#include "lift/lift_objects.h"
+
+#include "base/mem.h"
+#include "base/quantile.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A Gaussian is compared where other views show it with this share of the weight that the mask's view gives
+ * it, and this more. */
+static const double known_share = 0.05, known_least = 0.01;
+
+struct room {
+	int32_t *who; /* (count) Gaussians that any mask of the object shows, in the order in which they come
+		       */
+	int64_t *place;	  /* (N) where in who, or -1 */
+	double *in, *all; /* (N), first count: weight within the masks, and in all of their views, by votes */
+	float *own;	  /* (N), first count: of the view that is looked at */
+	size_t count;
+};
+
+static const struct shares *row_of(const struct lift_view *v, size_t object, double *vote)
+{
+	for (size_t k = 0; k < v->n; k++)
+		if (v->objects[k] == object) {
+			*vote = (double)v->vote[k];
+			return &v->rows[k];
+		}
+	return NULL;
+}
+
+static void gather(const struct lift_objects *l, size_t object, struct room *r)
+{
+	double vote;
+
+	for (size_t v = 0; v < l->view_count; v++) {
+		const struct shares *row = row_of(&l->views[v], object, &vote);
+		for (size_t j = 0; row && j < row->n; j++) {
+			int64_t *at = &r->place[row->index[j]];
+			if (*at < 0) {
+				*at = (int64_t)r->count;
+				r->who[r->count] = row->index[j];
+				r->in[r->count] = r->all[r->count] = 0;
+				r->count++;
+			}
+			r->in[*at] += vote * (double)row->share[j];
+		}
+	}
+	for (size_t v = 0; v < l->view_count; v++)
+		if (row_of(&l->views[v], object, &vote))
+			for (size_t i = 0; i < r->count; i++)
+				r->all[i] += vote * (double)l->views[v].weight[r->who[i]];
+}
+
+/* The share that a Gaussian wholly of the object has, as masks are ragged. */
+static double level_of(const struct room *r)
+{
+	double squares = 0, sum = 0;
+
+	for (size_t i = 0; i < r->count; i++) {
+		sum += r->in[i];
+		squares += r->in[i] * r->in[i] / (r->all[i] + known_least);
+	}
+	return squares > 0 ? squares / sum : 1;
+}
+
+/* The soft intersection over union of a view's masks with what the others lifted; negative where others show
+ * none of it. */
+static double compare(
+	const struct lift_view *v, const struct shares *row, double vote, double level, struct room *r)
+{
+	double both = 0, either = 0;
+
+	memset(r->own, 0, r->count * sizeof *r->own);
+	for (size_t j = 0; j < row->n; j++)
+		r->own[r->place[row->index[j]]] = row->share[j];
+	for (size_t i = 0; i < r->count; i++) {
+		const double own = (double)r->own[i], weight = (double)v->weight[r->who[i]],
+			     all = r->all[i] - vote * weight, in = fmax(r->in[i] - vote * own, 0);
+		if (!(weight > 0) || all < known_share * vote * weight + known_least)
+			continue;
+		const double lifted = weight * fmin(in / (all + known_least) / level, 1);
+		both += fmin(own, lifted);
+		either += fmax(own, lifted);
+	}
+	return either > 0 ? both / either : -1;
+}
+
+static int rising(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+int lift_left_out(const struct lift_objects *l, size_t named, double *agreement, struct err *e)
+{
+	size_t most = 0, n = 0;
+	struct room r = {.who = mem_alloc(l->gaussians, sizeof *r.who, "shares", e),
+		.place = mem_alloc(l->gaussians, sizeof *r.place, "shares", e),
+		.in = mem_alloc(l->gaussians, sizeof *r.in, "shares", e),
+		.all = mem_alloc(l->gaussians, sizeof *r.all, "shares", e),
+		.own = mem_alloc(l->gaussians, sizeof *r.own, "shares", e)};
+
+	for (size_t v = 0; v < l->view_count; v++)
+		most += l->views[v].n;
+	double *found = mem_alloc(most, sizeof *found, "shares", e);
+	const int bad = !r.who || !r.place || !r.in || !r.all || !r.own || !found;
+	for (size_t i = 0; i < l->gaussians && !bad; i++)
+		r.place[i] = -1;
+	for (size_t o = 0; o < named && !bad; o++) {
+		double vote;
+		gather(l, o, &r);
+		const double level = level_of(&r);
+		for (size_t v = 0; v < l->view_count; v++) {
+			const struct shares *row = row_of(&l->views[v], o, &vote);
+			const double one = row ? compare(&l->views[v], row, vote, level, &r) : -1;
+			if (one >= 0)
+				found[n++] = one;
+		}
+		while (r.count)
+			r.place[r.who[--r.count]] = -1;
+	}
+	if (n)
+		qsort(found, n, sizeof *found, rising);
+	*agreement = n >= LIFT_LEFT_OUT_MASKS ? quantile_sorted(found, n, 0.5) : NAN;
+	free(r.who);
+	free(r.place);
+	free(r.in);
+	free(r.all);
+	free(r.own);
+	free(found);
+	return bad ? -1 : 0;
+}
