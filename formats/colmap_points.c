@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/little.h"
 #include "base/mem.h"
+#include "base/textfile.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -76,7 +77,7 @@ static int read_text(struct colmap_points *p, const char *path, struct err *e)
 	char *text = NULL;
 	size_t length, room = 0;
 	long number = 0;
-	int bad = file_read(path, &text, &length, e);
+	int bad = textfile_read(path, &text, &length, e);
 
 	for (char *line = text; !bad && *line; number++) {
 		char *end = line + strcspn(line, "\n"), *next = end + (*end != 0);

@@ -1,13 +1,11 @@
 #include "formats/points.h"
 
 #include "base/file.h"
-#include "base/little.h"
 #include "base/mem.h"
-#include "base/path.h"
+#include "formats/colmap_points.h"
 #include "formats/plyfile.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,46 +27,19 @@ static int add(struct points *to, const double *at, struct err *e)
 	return 0;
 }
 
-/* A count; of each point an id, its place, a colour and an error, and a count of pairs of numbers and these.
- */
-static int read_binary(struct points *to, const struct file_map *map, struct err *e)
+static int read_colmap(struct points *to, const char *folder, struct err *e)
 {
-	enum { FIXED = 51, PAIR = 8, PLACE = 8 };
-	const unsigned char *p = map->data, *end = p + map->len;
-	double at[3];
+	struct colmap_points p;
+	struct err why;
+	int bad = 0;
 
-	for (p += map->len < 8 ? 0 : 8; end - p >= FIXED;) {
-		const uint64_t pairs = little_get(p + FIXED - 8, 8);
-		for (int k = 0; k < 3; k++) {
-			const uint64_t bits = little_get(p + PLACE + 8 * k, 8);
-			memcpy(&at[k], &bits, sizeof bits);
-		}
-		if (add(to, at, e))
-			return -1;
-		p += FIXED;
-		if (pairs > (size_t)(end - p) / PAIR)
-			return 0;
-		p += pairs * PAIR;
+	if (colmap_points_read(&p, folder, &why)) {
+		return why.code == ERR_SYSTEM ? err_set(e, why.code, "%s", why.message) : 0;
 	}
-	return 0;
-}
-
-/* ID X Y Z ... in each line. */
-static int read_text(struct points *to, const struct file_map *map, struct err *e)
-{
-	const char *line = (const char *)map->data, *end = line + map->len;
-	char start[160];
-	double at[3];
-
-	for (; line < end; line++) {
-		const char *newline = memchr(line, '\n', (size_t)(end - line));
-		const size_t n = (size_t)((newline ? newline : end) - line);
-		snprintf(start, sizeof start, "%.*s", (int)(n < sizeof start ? n : sizeof start - 1), line);
-		if (sscanf(start, "%*s %lf %lf %lf", &at[0], &at[1], &at[2]) == 3 && add(to, at, e))
-			return -1;
-		line += n;
-	}
-	return 0;
+	for (size_t i = 0; i < p.n && !bad; i++)
+		bad = add(to, p.places + 3 * i, e);
+	colmap_points_free(&p);
+	return bad;
 }
 
 static int read_ply(struct points *to, struct file_map *map, struct err *e)
@@ -95,11 +66,10 @@ static int read_ply(struct points *to, struct file_map *map, struct err *e)
 
 int points_read(float **points, size_t *n, const char *cameras, const double offset[3], struct err *e)
 {
-	static const char *const names[] = {
-		"points3D.bin", "points3D.txt", "points3D.ply", "sparse_pc.ply", "input.ply"};
+	static const char *const names[] = {"points3D.ply", "sparse_pc.ply", "input.ply"};
 	struct points to = {.offset = offset};
 	char *folder = file_is_dir(cameras) ? mem_strdup(cameras, e) : file_dir(cameras, e);
-	int bad = !folder;
+	int bad = !folder || (strcmp(cameras, "-") && read_colmap(&to, folder, e));
 
 	for (size_t i = 0; !bad && !to.n && strcmp(cameras, "-") && i < sizeof names / sizeof *names; i++) {
 		char *path = file_join(folder, names[i], "", e);
@@ -107,9 +77,7 @@ int points_read(float **points, size_t *n, const char *cameras, const double off
 		struct err ignored;
 		bad = !path;
 		if (path && file_exists(path) && !file_map(path, &map, &ignored)) {
-			bad = (path_ends(path, ".bin")		? read_binary(&to, &map, e)
-				      : path_ends(path, ".txt") ? read_text(&to, &map, e)
-								: read_ply(&to, &map, e)) != 0;
+			bad = read_ply(&to, &map, e) != 0;
 			file_unmap(&map);
 		}
 		free(path);
