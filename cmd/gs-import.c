@@ -1,7 +1,7 @@
 /* gs-import: makes a scene folder from a trained 3DGS scene and its cameras. */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cmd/jobs/import.h"
+#include "cmd/import/import.h"
 #include "formats/colmap.h"
 #include "formats/dataparser.h"
 

@@ -1,7 +1,7 @@
 /* gs-train: trains a 3DGS scene from photographs and their cameras. */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cmd/jobs/fitting.h"
+#include "cmd/train/fitting.h"
 #include "formats/colmap.h"
 
 #include <string.h>

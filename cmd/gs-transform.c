@@ -1,6 +1,6 @@
 /* gs-transform: splats from one format into another, cut and moved. */
 #include "cli/cli.h"
-#include "cmd/jobs/transforming.h"
+#include "cmd/import/transforming.h"
 #include "formats/anysplats.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* gs-weigh: the blend weights of a scene's views. */
 #include "cli/cli.h"
-#include "cmd/jobs/weighing.h"
+#include "cmd/lift/weighing.h"
 #include "formats/scene.h"
 
 #include <string.h>

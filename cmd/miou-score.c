@@ -1,6 +1,6 @@
 /* miou-score: how well predicted masks match the true ones. */
 #include "cli/cli.h"
-#include "cmd/jobs/scoring.h"
+#include "cmd/score/scoring.h"
 #include "formats/scores.h"
 
 #include <string.h>

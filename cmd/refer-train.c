@@ -1,7 +1,7 @@
 /* refer-train: learns the referring model of a scene from masks (one stage of the method). */
 #include "cli/cli.h"
 #include "cli/stop.h"
-#include "cmd/jobs/learn.h"
+#include "cmd/train/learn.h"
 #include "formats/checkpoint.h"
 
 #include <stdlib.h>

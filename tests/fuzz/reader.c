@@ -4,7 +4,7 @@
  * is zeros that are not in the input, so that inputs stay small. Built by `make fuzz`;
  * REFERSPLAT_FUZZ_SEED=FILE has the checkpoint's target write a seed first. */
 #include "base/file.h"
-#include "cmd/jobs/check.h"
+#include "cmd/check/check.h"
 #include "formats/annotations.h"
 #include "formats/anysplats.h"
 #include "formats/bert_model.h"
