@@ -9,7 +9,7 @@
 #include "cmd/text/encode.h"
 #include "cmd/ask/explain.h"
 #include "cmd/run/run_folder.h"
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 #include "lift/extent.h"
 
 struct asking_options {

@@ -5,9 +5,9 @@
 #include "cmd/check/check_arrays.h"
 #include "cmd/check/check_folder.h"
 #include "cmd/check/check_records.h"
-#include "formats/anysplats.h"
-#include "formats/json.h"
-#include "formats/jsonl.h"
+#include "formats/splats/anysplats.h"
+#include "formats/records/json.h"
+#include "formats/records/jsonl.h"
 
 #include <stdio.h>
 #include <string.h>

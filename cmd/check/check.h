@@ -4,8 +4,8 @@
 #define CMD_JOBS_CHECK_H
 
 #include "base/err.h"
-#include "formats/fingerprint.h"
-#include "formats/safetensors.h"
+#include "formats/arrays/fingerprint.h"
+#include "formats/arrays/safetensors.h"
 
 enum { CHECK_MAX_FACTS = 6 };
 

@@ -4,7 +4,7 @@
 #define CMD_JOBS_CHECK_ARRAYS_H
 
 #include "cmd/check/check.h"
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 
 /* Those of ours, whose kind is known already. */
 int check_splats(struct check *c, const char *path, struct err *e);

@@ -3,10 +3,10 @@
 
 #include "base/mem.h"
 #include "base/names.h"
-#include "formats/boxes.h"
-#include "formats/masks.h"
-#include "formats/parses.h"
-#include "formats/sentences.h"
+#include "formats/records/boxes.h"
+#include "formats/records/masks.h"
+#include "formats/records/parses.h"
+#include "formats/records/sentences.h"
 
 #include <stddef.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* What cmd/check/check.h says of JSON Lines (formats/jsonl.md): each reads a whole file with its format's
- * reader, and adds the kind and what it counted. Return 0, or -1 with *e. */
+/* What cmd/check/check.h says of JSON Lines (formats/records/jsonl.md): each reads a whole file with its
+ * format's reader, and adds the kind and what it counted. Return 0, or -1 with *e. */
 #ifndef CMD_JOBS_CHECK_RECORDS_H
 #define CMD_JOBS_CHECK_RECORDS_H
 

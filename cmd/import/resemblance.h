@@ -4,7 +4,7 @@
 
 #include "base/err.h"
 #include "base/report.h"
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 
 #include <stddef.h>
 

@@ -16,8 +16,8 @@ struct transforming {
 	double scale;
 	const char *known;   /* X0,Y0,Z0,X1,Y1,Z1=LENGTH in place of scale: two points and how far they are
 				apart;   NULL: scale */
-	const char *up_from; /* cameras, a file or folder (formats/camerafile.h): what is up for them becomes
-				-y; NULL: not */
+	const char *up_from; /* cameras, a file or folder (formats/cameras/camerafile.h): what is up for them
+				becomes -y; NULL: not */
 };
 
 struct transforming_count {

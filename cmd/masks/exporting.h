@@ -1,4 +1,5 @@
-/* Mask records as other programs have them: COCO's JSON, and a PNG for each mask. formats/annotations.md. */
+/* Mask records as other programs have them: COCO's JSON, and a PNG for each mask.
+ * formats/records/annotations.md. */
 #ifndef CMD_JOBS_EXPORTING_H
 #define CMD_JOBS_EXPORTING_H
 

@@ -1,5 +1,5 @@
 /* A folder of masks as pictures, DIR/VIEW/NAME.png, as mask-export --png writes it and as 3D-OVS has its
- * segmentations. formats/annotations.md. */
+ * segmentations. formats/records/annotations.md. */
 #ifndef CMD_JOBS_MASK_TREE_H
 #define CMD_JOBS_MASK_TREE_H
 

@@ -4,8 +4,8 @@
 #define CMD_JOBS_PAINTING_PRIVATE_H
 
 #include "cmd/masks/painting.h"
-#include "formats/annotations.h"
-#include "formats/masks.h"
+#include "formats/records/annotations.h"
+#include "formats/records/masks.h"
 
 /* The record of a mask, which is freed. Where it goes: the lens's photograph to the view. */
 int painting_put(struct mask *mask, struct warping *w, const char *path, FILE *out, struct err *e);

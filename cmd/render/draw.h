@@ -1,5 +1,5 @@
 /* The masks of a request's sentences in views of the scene, and pictures of them: refer-render.
- * formats/masks.md, formats/pictures.md. */
+ * formats/records/masks.md, formats/images/pictures.md. */
 #ifndef CMD_JOBS_DRAW_H
 #define CMD_JOBS_DRAW_H
 

@@ -15,7 +15,7 @@ struct locating {
  */
 int locating_find(struct locating *r, double up[3], struct err *e);
 
-/* A line for each sentence, formats/boxes.md; "-" is stdout. */
+/* A line for each sentence, formats/records/boxes.md; "-" is stdout. */
 int locating_write(const struct locating *r, const char *path, struct err *e);
 
 /* With its request. */

@@ -2,7 +2,7 @@
 #ifndef CMD_JOBS_MEANT_H
 #define CMD_JOBS_MEANT_H
 
-#include "formats/text.h"
+#include "formats/scene/text.h"
 #include "lift/lifted_model.h"
 
 #include <cjson/cJSON.h>

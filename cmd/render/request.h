@@ -8,8 +8,8 @@
 #include "ask/viewpoint.h"
 #include "base/err.h"
 #include "cmd/run/anymodel.h"
-#include "formats/scene.h"
-#include "formats/text.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/text.h"
 
 #include <stddef.h>
 

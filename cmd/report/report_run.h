@@ -6,8 +6,8 @@
 #include "base/report.h"
 #include "cmd/run/anymodel.h"
 #include "cmd/score/score_masks.h"
-#include "formats/scene.h"
-#include "formats/text.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/text.h"
 #include "score/score.h"
 
 #include <stddef.h>

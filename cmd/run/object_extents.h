@@ -3,7 +3,7 @@
 #define CMD_JOBS_OBJECT_EXTENTS_H
 
 #include "base/err.h"
-#include "formats/boxes.h"
+#include "formats/records/boxes.h"
 #include "geom/camera.h"
 #include "lift/extent.h"
 #include "lift/lifted_model.h"

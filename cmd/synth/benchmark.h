@@ -1,5 +1,5 @@
 /* A synthetic benchmark: made until all of it can be seen and told apart in words, then written: gs-synth.
- * formats/synth.md. */
+ * formats/scene/synth.md. */
 #ifndef CMD_JOBS_BENCHMARK_H
 #define CMD_JOBS_BENCHMARK_H
 

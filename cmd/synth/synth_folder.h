@@ -1,4 +1,4 @@
-/* The folder of a synthetic benchmark, as gs-synth makes it. formats/synth.md. */
+/* The folder of a synthetic benchmark, as gs-synth makes it. formats/scene/synth.md. */
 #ifndef CMD_JOBS_SYNTH_FOLDER_H
 #define CMD_JOBS_SYNTH_FOLDER_H
 

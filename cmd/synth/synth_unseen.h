@@ -1,4 +1,5 @@
-/* The files of the unseen split of a synthetic benchmark: sentences and their parses. formats/synth.md. */
+/* The files of the unseen split of a synthetic benchmark: sentences and their parses. formats/scene/synth.md.
+ */
 #ifndef CMD_JOBS_SYNTH_UNSEEN_H
 #define CMD_JOBS_SYNTH_UNSEEN_H
 

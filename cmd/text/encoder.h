@@ -3,9 +3,9 @@
 #define CMD_JOBS_ENCODER_H
 
 #include "base/err.h"
-#include "formats/bert_model.h"
-#include "formats/clip_model.h"
-#include "formats/fingerprint.h"
+#include "formats/encoders/bert_model.h"
+#include "formats/encoders/clip_model.h"
+#include "formats/arrays/fingerprint.h"
 #include "nn/bpe.h"
 #include "nn/wordpiece.h"
 

@@ -1,5 +1,5 @@
 /* The weights of text-parse, learnt from the project's own example sentences and from readings of others:
- * parse-train. formats/parser_weights.md, formats/readings.md. */
+ * parse-train. formats/encoders/parser_weights.md, formats/records/readings.md. */
 #ifndef CMD_JOBS_PARSER_TRAINING_H
 #define CMD_JOBS_PARSER_TRAINING_H
 

@@ -1,4 +1,4 @@
-/* The masks that a training learns from, and with them its views. formats/training.md. */
+/* The masks that a training learns from, and with them its views. formats/scene/training.md. */
 #ifndef CMD_JOBS_TRAINING_MASKS_H
 #define CMD_JOBS_TRAINING_MASKS_H
 

@@ -4,8 +4,8 @@
 #define CMD_JOBS_TRAINING_VIEWS_H
 
 #include "base/err.h"
-#include "formats/scene.h"
-#include "formats/weights.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/weights.h"
 #include "train/train.h"
 #include "train/view_source.h"
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env bats
-# Each rule of formats/parses.md and formats/parser_weights.md broken once.
+# Each rule of formats/records/parses.md and formats/encoders/parser_weights.md broken once.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
 	load files
 	cd "$BATS_TEST_TMPDIR"
-	page=$BATS_TEST_DIRNAME/../../formats/parses.md
+	page=$BATS_TEST_DIRNAME/../../formats/records/parses.md
 }
 
 # refuses REASON LINE...: after a good first line, these lines are refused so.
@@ -74,7 +74,7 @@ refuses() {
 }
 
 @test "the weights: a file cut short at any place, and one of another format" {
-	local weights=$BATS_TEST_DIRNAME/../../formats/parser_default.safetensors size
+	local weights=$BATS_TEST_DIRNAME/../../formats/encoders/parser_default.safetensors size
 	cp "$weights" w
 	"$BIN/gs-check" w
 	size=$(stat -c %s w)

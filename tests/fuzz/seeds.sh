@@ -167,7 +167,7 @@ tail -c +$((29 + json)) few.glb >numbers.bin
 folder gltf scene.gltf numbers.bin
 seed npy response/view_000/*.npy
 seed npz "$golden"/npz/*.npz
-cp "$here/formats/parser_default.safetensors" parser.safetensors
+cp "$here/formats/encoders/parser_default.safetensors" parser.safetensors
 seed_cut parser 64 parser.safetensors
 split -l 1 some-parses.jsonl parse-
 seed parses parse-*
@@ -221,8 +221,9 @@ for target in "$dir"/*/; do
 	check) set -- scene.c weights.c text.c lifted.c features.c selection.c masks.c boxes.c sentences.c ;;
 	*) set -- "${target%-*}.c" ;;
 	esac
+	set -- "$@" safetensors.c json.c
 	{
-		grep -oh '"[A-Za-z_0-9.]\{2,24\}"' "$@" safetensors.c json.c || true
+		grep -oh '"[A-Za-z_0-9.]\{2,24\}"' ${@/#/*\/} || true
 		printf '%s\n' '"null"' '"true"' '"-1"' '"1e308"' '"99999999999999999999"' '"4294967296"' '"\xff\xff\xff\xff"' '"\x00\x00\x00\x80"' '"nan"' \
 			'"[[[["' '"\x5cu0000"'
 	} | sort -u >"$dir/$target.dict"
