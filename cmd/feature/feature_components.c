@@ -1,5 +1,6 @@
 #include "cmd/feature/feature_components.h"
 
+#include "base/half.h"
 #include "base/mem.h"
 #include "formats/arrays/safetensors.h"
 #include "nn/linear.h"
@@ -58,9 +59,9 @@ static void keep(struct feature_components *c, int is_half, size_t i, float *y)
 
 	for (size_t k = 0; k < count; k++) {
 		if (is_half) {
-			const uint16_t half = st_float_to_half(y[k]);
+			const uint16_t half = half_of_float(y[k]);
 			((uint16_t *)c->values)[i * count + k] = half;
-			y[k] = st_half_to_float(half);
+			y[k] = half_to_float(half);
 		} else {
 			((float *)c->values)[i * count + k] = y[k];
 		}

@@ -1,9 +1,10 @@
 #include "cmd/feature/feature_lifting.h"
 
 #include "base/file.h"
+#include "base/half.h"
 #include "base/mem.h"
-#include "formats/scene/features.h"
 #include "formats/arrays/safetensors.h"
+#include "formats/scene/features.h"
 #include "formats/scene/weights.h"
 
 #include <stdio.h>
@@ -89,7 +90,7 @@ static void take_block(struct feature_lifting *l)
 			memcpy(single + at, from, block * sizeof *from);
 		else
 			for (size_t c = 0; c < block; c++)
-				half[at + c] = st_float_to_half(from[c]);
+				half[at + c] = half_of_float(from[c]);
 	}
 }
 

@@ -7,7 +7,7 @@
 #include "base/report.h"
 #include "cmd/import/point_frame.h"
 #include "cmd/import/resemblance.h"
-#include "formats/splats/gaussian_rows.h"
+#include "splat/gaussian_rows.h"
 #include "formats/scene/scene.h"
 
 #include <stddef.h>

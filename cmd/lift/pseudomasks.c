@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/scene/weights.h"
-#include "formats/scene/weights_pack.h"
+#include "splat/weights_pack.h"
 #include "mask/select.h"
 
 #include <math.h>

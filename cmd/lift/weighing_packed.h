@@ -4,7 +4,7 @@
 #define CMD_JOBS_WEIGHING_PACKED_H
 
 #include "base/err.h"
-#include "formats/scene/weights_pack.h"
+#include "splat/weights_pack.h"
 #include "geom/camera.h"
 #include "splat/render.h"
 

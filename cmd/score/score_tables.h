@@ -5,7 +5,7 @@
 
 #include "base/err.h"
 #include "cmd/score/score_masks.h"
-#include "formats/records/scores.h"
+#include "cmd/score/scores.h"
 #include "formats/records/sentences.h"
 #include "score/score_rows.h"
 

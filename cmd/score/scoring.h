@@ -6,7 +6,7 @@
 #include "base/err.h"
 #include "base/report.h"
 #include "cmd/score/score_masks.h"
-#include "formats/records/scores.h"
+#include "cmd/score/scores.h"
 #include "formats/records/sentences.h"
 
 /* NULL where one was not named; the first two always are. */

@@ -1,5 +1,6 @@
 #include "formats/arrays/npy.h"
 
+#include "base/half.h"
 #include "base/little.h"
 #include "base/mem.h"
 #include "formats/arrays/safetensors.h"
@@ -274,7 +275,7 @@ double npy_value(const struct npy_file *a, size_t i)
 
 	switch (a->type) {
 	case NPY_F16:
-		return (double)st_half_to_float((uint16_t)little_get(at, size));
+		return (double)half_to_float((uint16_t)little_get(at, size));
 	case NPY_F32:
 		return (double)little_get_f32(at);
 	case NPY_F64:

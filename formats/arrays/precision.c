@@ -1,5 +1,6 @@
 #include "formats/arrays/precision.h"
 
+#include "base/half.h"
 #include "base/mem.h"
 
 #include <float.h>
@@ -95,7 +96,7 @@ static int convert(struct precision_matrix *m, const char *name, enum precision 
 	if (p == PRECISION_F16) {
 		uint16_t *half = (uint16_t *)m->owned;
 		for (size_t i = 0; i < count; i++)
-			half[i] = st_float_to_half(x[i]);
+			half[i] = half_of_float(x[i]);
 		m->tensors[0].data = half;
 		return 0;
 	}

@@ -1,5 +1,7 @@
 #include "formats/arrays/safetensors.h"
 
+#include "base/half.h"
+#include "base/little.h"
 #include "base/mem.h"
 
 #include <cjson/cJSON.h>
@@ -387,51 +389,6 @@ int safetensors_need_format(const struct safetensors *st, const char *format, in
 	return 0;
 }
 
-/* The exponent of a half is 112 less than a float's; the product is exact, also for subnormal halves.
- * Infinities and NaN get the float's largest exponent. */
-float st_half_to_float(uint16_t h)
-{
-	uint32_t bits = (uint32_t)(h & 0x7fff) << 13;
-	float f;
-
-	memcpy(&f, &bits, 4);
-	f *= 0x1p112f;
-	memcpy(&bits, &f, 4);
-	bits |= (h & 0x7c00) == 0x7c00 ? 0x7f800000 : 0;
-	bits |= (uint32_t)(h & 0x8000) << 16;
-	memcpy(&f, &bits, 4);
-	return f;
-}
-
-uint16_t st_float_to_half(float f)
-{
-	uint32_t bits;
-
-	memcpy(&bits, &f, 4);
-	uint16_t sign = (uint16_t)(bits >> 16 & 0x8000);
-	bits &= 0x7fffffff;
-	if (bits > 0x7f800000)
-		return sign | 0x7e00;
-	if (bits >= 0x477ff000)
-		return sign | 0x7c00;
-	if (bits < 0x38800000) { /* subnormal or zero: exact scaling, then round to nearest even */
-		float a;
-		memcpy(&a, &bits, 4);
-		return sign | (uint16_t)lrintf(a * 0x1p24f);
-	}
-	bits += 0xfff + (bits >> 13 & 1);
-	return sign | (uint16_t)((bits >> 13) - (112 << 10));
-}
-
-float st_bfloat_to_float(uint16_t b)
-{
-	uint32_t bits = (uint32_t)b << 16;
-	float f;
-
-	memcpy(&f, &bits, 4);
-	return f;
-}
-
 int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, struct err *e)
 {
 	const unsigned char *p = t->data;
@@ -448,25 +405,22 @@ int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, st
 		for (size_t i = 0; i < count; i++) {
 			uint16_t half;
 			memcpy(&half, p + 2 * i, 2);
-			out[i] = st_half_to_float(half);
+			out[i] = half_to_float(half);
 		}
 		return 0;
 	}
+	if (t->dtype != ST_F64 && t->dtype != ST_BF16)
+		return err_set(e, ERR_FORMAT, "tensor '%s': is %s, expected a float type", t->name,
+			dtypes[t->dtype].name);
 	for (size_t i = 0; i < count; i++, p += size) {
-		uint16_t half;
-		double wide;
-		switch (t->dtype) {
-		case ST_F64:
+		double wide = 0;
+		uint32_t bits;
+		if (t->dtype == ST_F64) {
 			memcpy(&wide, p, 8);
 			out[i] = (float)wide;
-			break;
-		case ST_BF16:
-			memcpy(&half, p, 2);
-			out[i] = st_bfloat_to_float(half);
-			break;
-		default:
-			return err_set(e, ERR_FORMAT, "tensor '%s': is %s, expected a float type", t->name,
-				dtypes[t->dtype].name);
+		} else { /* the higher half of a float */
+			bits = (uint32_t)little_get(p, 2) << 16;
+			memcpy(&out[i], &bits, 4);
 		}
 	}
 	return 0;

@@ -94,9 +94,4 @@ int safetensors_write(const char *path, const struct st_tensor *tensors, size_t 
 size_t st_dtype_size(enum st_dtype t);
 const char *st_dtype_name(enum st_dtype t);
 
-/* IEEE half to and from float, rounding to nearest even; bfloat16 to float. */
-float st_half_to_float(uint16_t h);
-uint16_t st_float_to_half(float f);
-float st_bfloat_to_float(uint16_t b);
-
 #endif

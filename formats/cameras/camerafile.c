@@ -8,9 +8,9 @@
 #include "base/utf8.h"
 #include "formats/cameras/cameras3dgs.h"
 #include "formats/cameras/colmap.h"
+#include "formats/cameras/transforms.h"
 #include "formats/records/foreign.h"
 #include "formats/records/json.h"
-#include "formats/cameras/transforms.h"
 #include "geom/lens.h"
 #include "geom/views.h"
 

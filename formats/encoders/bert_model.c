@@ -1,8 +1,8 @@
 #include "formats/encoders/bert_model.h"
 
 #include "base/file.h"
-#include "formats/records/json.h"
 #include "formats/encoders/pretrained.h"
+#include "formats/records/json.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/records/json.h"
 #include "formats/encoders/pretrained.h"
+#include "formats/records/json.h"
 
 #include <stdio.h>
 #include <stdlib.h>

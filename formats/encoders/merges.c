@@ -3,8 +3,8 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/utf8.h"
-#include "formats/records/json.h"
 #include "formats/encoders/vocab.h"
+#include "formats/records/json.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 #include "formats/encoders/parser_weights.h"
 
 #include "base/embed.h"
+#include "base/half.h"
 #include "base/mem.h"
 #include "formats/arrays/fingerprint.h"
 #include "formats/arrays/safetensors.h"
@@ -226,7 +227,7 @@ static int put_member(const struct parser_weights *w, int member, struct making 
 		} else {
 			next_tensor(m, ST_F16, half, (int64_t)n);
 			for (size_t k = 0; k < n; k++)
-				*half++ = st_float_to_half(*from++);
+				*half++ = half_of_float(*from++);
 		}
 	}
 	return 0;

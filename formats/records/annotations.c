@@ -5,8 +5,8 @@
 #include "base/mem.h"
 #include "base/path.h"
 #include "base/textfile.h"
-#include "formats/records/foreign.h"
 #include "formats/images/png.h"
+#include "formats/records/foreign.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@
 #include "base/mem.h"
 #include "formats/records/json.h"
 #include "formats/records/jsonl.h"
-#include "mask/mask_index.h"
 #include "geom/rotation.h"
+#include "mask/mask_index.h"
 
 #include <math.h>
 #include <stdlib.h>

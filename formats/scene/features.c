@@ -1,5 +1,6 @@
 #include "formats/scene/features.h"
 
+#include "base/half.h"
 #include "base/number.h"
 #include "nn/linear.h"
 
@@ -159,7 +160,7 @@ static void stored_floats(const struct features *f, size_t from, size_t n, float
 		memcpy(out, (const float *)f->values + from, n * sizeof *out);
 	else
 		for (size_t i = 0; i < n; i++)
-			out[i] = st_half_to_float(half[from + i]);
+			out[i] = half_to_float(half[from + i]);
 }
 
 /* out (n,C): the features that the components of Gaussians from `first` on stand for. */

@@ -4,8 +4,8 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/names.h"
-#include "formats/records/json.h"
 #include "formats/arrays/safetensors.h"
+#include "formats/records/json.h"
 #include "geom/lens.h"
 #include "geom/views.h"
 

@@ -1,7 +1,8 @@
 #include "formats/scene/weights.h"
 
+#include "base/half.h"
 #include "base/mem.h"
-#include "formats/scene/weights_pack.h"
+#include "splat/weights_pack.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -298,7 +299,7 @@ static const void *convert(const struct weights *w, int64_t nnz, void **owned, s
 	*owned = mem_alloc((size_t)nnz, st_dtype_size(precision_dtype(w->precision)), "weights", e);
 	if (*owned && w->precision == PRECISION_F16)
 		for (int64_t i = 0; i < nnz; i++)
-			((uint16_t *)*owned)[i] = st_float_to_half(w->weight[i]);
+			((uint16_t *)*owned)[i] = half_of_float(w->weight[i]);
 	else if (*owned)
 		for (int64_t i = 0; i < nnz; i++)
 			((uint8_t *)*owned)[i] = (uint8_t)(w->weight[i] * LEVELS + 0.5f);

@@ -44,7 +44,7 @@ struct weights {
 int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e);
 /* The same for one view after the other: what packed weights become is in *room, zeroed before the first, and
  * lasts until the next. To ask the system for so much memory with each view costs more than to fill it.
- * weights_room_free (formats/scene/weights_pack.h) at last. */
+ * weights_room_free (splat/weights_pack.h) at last. */
 int weights_open_in(struct weights *w, struct weights_room *room, const char *dir, const struct scene *scene,
 	size_t view, struct err *e);
 /* The same, but that packed weights become tiles, and indptr, index and weight are NULL; w->tiles is NULL

@@ -3,7 +3,7 @@
 #define FORMATS_ANYSPLATS_H
 
 #include "base/err.h"
-#include "formats/splats/gaussian_rows.h"
+#include "splat/gaussian_rows.h"
 #include "splat/splats.h"
 
 /* Reads a .ply, .spz, SOG, .glb or .splat ("-" is stdin): by how the file begins; .splat, which begins with a

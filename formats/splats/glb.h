@@ -5,7 +5,7 @@
 
 #include "base/err.h"
 #include "base/file.h"
-#include "formats/splats/gaussian_rows.h"
+#include "splat/gaussian_rows.h"
 #include "splat/splats.h"
 
 #include <cjson/cJSON.h>

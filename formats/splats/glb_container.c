@@ -3,8 +3,8 @@
 #include "base/little.h"
 #include "base/mem.h"
 #include "base/path.h"
-#include "formats/splats/glb.h"
 #include "formats/records/json.h"
+#include "formats/splats/glb.h"
 #include "geom/rotation.h"
 
 #include <ctype.h>

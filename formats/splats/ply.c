@@ -4,9 +4,9 @@
 #include "base/little.h"
 #include "base/mem.h"
 #include "formats/records/foreign.h"
-#include "formats/splats/gaussian_rows.h"
 #include "formats/splats/plyfile.h"
 #include "formats/splats/plypacked.h"
+#include "splat/gaussian_rows.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 
 #include "base/mem.h"
 #include "formats/arrays/archive.h"
-#include "formats/records/json.h"
 #include "formats/images/webp.h"
+#include "formats/records/json.h"
 
 #include <math.h>
 #include <stdint.h>

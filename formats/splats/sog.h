@@ -4,7 +4,7 @@
 
 #include "base/err.h"
 #include "base/file.h"
-#include "formats/splats/gaussian_rows.h"
+#include "splat/gaussian_rows.h"
 #include "splat/splats.h"
 
 /* Whether a file begins as a zip. */

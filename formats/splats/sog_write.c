@@ -2,11 +2,11 @@
  * formats/splats/sog.md. */
 #include "base/little.h"
 #include "base/mem.h"
-#include "formats/splats/gaussian_rows.h"
-#include "formats/splats/sog.h"
-#include "formats/splats/sog_palette.h"
-#include "formats/images/webp.h"
 #include "formats/arrays/zip_write.h"
+#include "formats/images/webp.h"
+#include "formats/splats/sog.h"
+#include "splat/gaussian_rows.h"
+#include "splat/palette.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ struct writing {
 	int width, height;
 	unsigned char *rgba; /* (height, width, 4) the image at hand */
 	double low[3], high[3];
-	double scales[SOG_CODES], colours[SOG_CODES], sh[SOG_CODES];
+	double scales[PALETTE_CODES], colours[PALETTE_CODES], sh[PALETTE_CODES];
 	size_t palette;
 	struct zip_write zip;
 };
@@ -168,7 +168,7 @@ static double log_scale(const struct splats *s, size_t i, int k)
 static void put_scale(const struct writing *w, size_t i, unsigned char *pixel)
 {
 	for (int k = 0; k < 3; k++)
-		pixel[k] = (unsigned char)sog_code(w->scales, log_scale(w->s, i, k));
+		pixel[k] = (unsigned char)palette_code(w->scales, log_scale(w->s, i, k));
 }
 
 static const float *sh_of(const struct writing *w, size_t i)
@@ -179,7 +179,7 @@ static const float *sh_of(const struct writing *w, size_t i)
 static void put_colour(const struct writing *w, size_t i, unsigned char *pixel)
 {
 	for (int k = 0; k < 3; k++)
-		pixel[k] = (unsigned char)sog_code(w->colours, (double)sh_of(w, i)[k]);
+		pixel[k] = (unsigned char)palette_code(w->colours, (double)sh_of(w, i)[k]);
 	pixel[3] = (unsigned char)lrint(255 * (double)w->s->opacities[i]);
 }
 
@@ -192,10 +192,10 @@ static int make_codebooks(struct writing *w, struct err *e)
 
 	for (size_t i = 0; i < 3 * n && !bad; i++)
 		values[i] = (float)log_scale(w->s, i / 3, (int)(i % 3));
-	bad = bad || sog_codebook(w->scales, values, 3 * n, e);
+	bad = bad || palette_codebook(w->scales, values, 3 * n, e);
 	for (size_t i = 0; i < 3 * n && !bad; i++)
 		values[i] = sh_of(w, i / 3)[i % 3];
-	bad = bad || sog_codebook(w->colours, values, 3 * n, e);
+	bad = bad || palette_codebook(w->colours, values, 3 * n, e);
 	free(values);
 	return bad;
 }
@@ -217,14 +217,14 @@ static int write_centres(struct writing *w, const float *centres, struct err *e)
 {
 	const size_t per = (size_t)w->s->sh_coefficients - 1;
 
-	if (sog_codebook(w->sh, centres, 3 * per * w->palette, e) ||
+	if (palette_codebook(w->sh, centres, 3 * per * w->palette, e) ||
 		start_image(
 			w, PALETTE_ROW * (int)per, (int)((w->palette + PALETTE_ROW - 1) / PALETTE_ROW), e))
 		return -1;
 	for (size_t k = 0; k < per * w->palette; k++)
 		for (int c = 0; c < 3; c++)
 			w->rgba[4 * k + (size_t)c] =
-				(unsigned char)sog_code(w->sh, (double)centres[3 * k + (size_t)c]);
+				(unsigned char)palette_code(w->sh, (double)centres[3 * k + (size_t)c]);
 	return end_image(w, "shN_centroids.webp", e);
 }
 
@@ -248,7 +248,7 @@ static int write_harmonics(struct writing *w, struct err *e)
 
 	for (size_t i = 0; i < n && !bad; i++)
 		memcpy(rows + i * width, sh_of(w, i) + 3, width * sizeof *rows);
-	bad = bad || sog_palette(centres, &w->palette, labels, rows, n, width, most, e) ||
+	bad = bad || palette_rows(centres, &w->palette, labels, rows, n, width, most, e) ||
 	      write_labels(w, labels, e) || write_centres(w, centres, e);
 	free(rows);
 	free(centres);
@@ -271,16 +271,16 @@ static void print_meta(FILE *out, const struct writing *w)
 	print_numbers(out, "mins", w->low, 3);
 	print_numbers(out, "maxs", w->high, 3);
 	fputs("\"files\":[\"means_l.webp\",\"means_u.webp\"]},\"scales\":{", out);
-	print_numbers(out, "codebook", w->scales, SOG_CODES);
+	print_numbers(out, "codebook", w->scales, PALETTE_CODES);
 	fputs("\"files\":[\"scales.webp\"]},\"quats\":{\"files\":[\"quats.webp\"]},\"sh0\":{", out);
-	print_numbers(out, "codebook", w->colours, SOG_CODES);
+	print_numbers(out, "codebook", w->colours, PALETTE_CODES);
 	fputs("\"files\":[\"sh0.webp\"]}", out);
 	if (w->palette) {
 		fprintf(out, ",\"shN\":{\"count\":%zu,\"bands\":%d,", w->palette,
 			w->s->sh_coefficients == 4   ? 1
 			: w->s->sh_coefficients == 9 ? 2
 						     : 3);
-		print_numbers(out, "codebook", w->sh, SOG_CODES);
+		print_numbers(out, "codebook", w->sh, PALETTE_CODES);
 		fputs("\"files\":[\"shN_centroids.webp\",\"shN_labels.webp\"]}", out);
 	}
 	fputs("}", out);

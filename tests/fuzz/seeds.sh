@@ -217,7 +217,6 @@ for target in "$dir"/*/; do
 	glb | gltf) set -- glb.c glb_container.c ;;
 	sog) set -- sog.c archive.c ;;
 	spz) set -- spz.c spz_container.c ;;
-	weights) set -- weights.c weights_pack.c ;;
 	check) set -- scene.c weights.c text.c lifted.c features.c selection.c masks.c boxes.c sentences.c ;;
 	*) set -- "${target%-*}.c" ;;
 	esac

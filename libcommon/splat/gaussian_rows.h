@@ -1,8 +1,8 @@
 /* Gaussians from files of any layout: a reader gives rows of numbers in one order, and what every reader does
  * is done here: activations, leaving out what no scene may have, the offset. formats/splats/ply.md has the
  * rules. */
-#ifndef FORMATS_GAUSSIAN_ROWS_H
-#define FORMATS_GAUSSIAN_ROWS_H
+#ifndef SPLAT_GAUSSIAN_ROWS_H
+#define SPLAT_GAUSSIAN_ROWS_H
 
 #include "base/err.h"
 #include "splat/splats.h"

@@ -1,6 +1,6 @@
 /* A view's weights in few bytes: formats/scene/weights.md, "Packed". Used by formats/scene/weights.c. */
-#ifndef FORMATS_WEIGHTS_PACK_H
-#define FORMATS_WEIGHTS_PACK_H
+#ifndef SPLAT_WEIGHTS_PACK_H
+#define SPLAT_WEIGHTS_PACK_H
 
 #include "base/err.h"
 #include "splat/view_tiles.h"

@@ -1,4 +1,4 @@
-#include "formats/records/scores.h"
+#include "cmd/score/scores.h"
 
 #include "base/file.h"
 #include "base/number.h"

@@ -1,7 +1,7 @@
 /* Neighbouring pixels see the same Gaussians, by weights that differ little. So a tile of 8 by 8 pixels has a
  * list of its Gaussians once, for each a bit for every pixel, and along a Gaussian's pixels the differences
  * of its weights, which zstd makes small. */
-#include "formats/scene/weights_pack.h"
+#include "splat/weights_pack.h"
 
 #include "base/mem.h"
 #include "base/ones.h"

@@ -1,4 +1,4 @@
-#include "formats/splats/gaussian_rows.h"
+#include "splat/gaussian_rows.h"
 
 #include "base/mem.h"
 

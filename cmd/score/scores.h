@@ -1,6 +1,6 @@
 /* Scores: what miou-score writes, as text, JSON or CSV. formats/records/scores.md. */
-#ifndef FORMATS_SCORES_H
-#define FORMATS_SCORES_H
+#ifndef CMD_SCORES_H
+#define CMD_SCORES_H
 
 #include "base/err.h"
 #include "score/score_rows.h"

@@ -1,4 +1,4 @@
-#include "formats/splats/sog_palette.h"
+#include "splat/palette.h"
 
 #include "base/mem.h"
 
@@ -17,9 +17,9 @@ static int rising(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-int sog_code(const double codes[SOG_CODES], double value)
+int palette_code(const double codes[PALETTE_CODES], double value)
 {
-	int low = 0, high = SOG_CODES - 1;
+	int low = 0, high = PALETTE_CODES - 1;
 
 	while (low < high) {
 		const int middle = (low + high) / 2;
@@ -47,14 +47,14 @@ static size_t count_below(const float *sorted, size_t n, double limit)
 }
 
 /* sums (n + 1) of the first so many sorted values. A code that no value is nearest to stays. */
-static void improve(double codes[SOG_CODES], const float *sorted, const double *sums, size_t n)
+static void improve(double codes[PALETTE_CODES], const float *sorted, const double *sums, size_t n)
 {
-	double better[SOG_CODES];
+	double better[PALETTE_CODES];
 	size_t begin = 0;
 
-	for (int k = 0; k < SOG_CODES; k++) {
+	for (int k = 0; k < PALETTE_CODES; k++) {
 		const size_t end =
-			k + 1 < SOG_CODES ? count_below(sorted, n, (codes[k] + codes[k + 1]) / 2) : n;
+			k + 1 < PALETTE_CODES ? count_below(sorted, n, (codes[k] + codes[k + 1]) / 2) : n;
 		better[k] = end > begin ? (sums[end] - sums[begin]) / (double)(end - begin) : codes[k];
 		begin = end > begin ? end : begin;
 	}
@@ -62,18 +62,18 @@ static void improve(double codes[SOG_CODES], const float *sorted, const double *
 }
 
 /* The different ones of sorted values, where they are no more than codes; else 0. */
-static int take_different(double codes[SOG_CODES], const float *sorted, size_t n)
+static int take_different(double codes[PALETTE_CODES], const float *sorted, size_t n)
 {
 	int count = 0;
 
 	for (size_t i = 0; i < n; i++) {
 		if (i && sorted[i] == sorted[i - 1])
 			continue;
-		if (count == SOG_CODES)
+		if (count == PALETTE_CODES)
 			return 0;
 		codes[count++] = (double)sorted[i];
 	}
-	for (; count < SOG_CODES; count++)
+	for (; count < PALETTE_CODES; count++)
 		codes[count] = count ? codes[count - 1] : 0;
 	return 1;
 }
@@ -84,7 +84,7 @@ static int take_different(double codes[SOG_CODES], const float *sorted, size_t n
 struct partition {
 	double counts[BINS + 1], sums[BINS + 1], squares[BINS + 1]; /* of the first so many bins */
 	double least[BINS + 1], next[BINS + 1];
-	uint16_t starts[SOG_CODES][BINS + 1]; /* where the last set begins */
+	uint16_t starts[PALETTE_CODES][BINS + 1]; /* where the last set begins */
 };
 
 static double error_between(const struct partition *p, int from, int to)
@@ -137,7 +137,7 @@ static void fill_bins(struct partition *p, const float *sorted, size_t n)
 }
 
 /* The means of the best sets. An empty one has the code after it. */
-static int cut_best(double codes[SOG_CODES], const float *sorted, size_t n, struct err *e)
+static int cut_best(double codes[PALETTE_CODES], const float *sorted, size_t n, struct err *e)
 {
 	struct partition *p = mem_alloc(1, sizeof *p, "codebook", e);
 	int end = BINS;
@@ -147,23 +147,23 @@ static int cut_best(double codes[SOG_CODES], const float *sorted, size_t n, stru
 	fill_bins(p, sorted, n);
 	for (int b = 0; b <= BINS; b++)
 		p->least[b] = error_between(p, 0, b);
-	for (int set = 1; set < SOG_CODES; set++) {
+	for (int set = 1; set < PALETTE_CODES; set++) {
 		add_set(p, set, 0, BINS, 0, BINS);
 		memcpy(p->least, p->next, sizeof p->least);
 	}
-	for (int set = SOG_CODES - 1; set >= 0; set--) {
+	for (int set = PALETTE_CODES - 1; set >= 0; set--) {
 		const int start = set ? p->starts[set][end] : 0;
 		const double count = p->counts[end] - p->counts[start];
 		codes[set] = count > 0 ? (double)sorted[0] + (p->sums[end] - p->sums[start]) / count
-			     : set + 1 < SOG_CODES ? codes[set + 1]
-						   : (double)sorted[n - 1];
+			     : set + 1 < PALETTE_CODES ? codes[set + 1]
+						       : (double)sorted[n - 1];
 		end = start;
 	}
 	free(p);
 	return 0;
 }
 
-int sog_codebook(double codes[SOG_CODES], const float *values, size_t n, struct err *e)
+int palette_codebook(double codes[PALETTE_CODES], const float *values, size_t n, struct err *e)
 {
 	float *sorted = mem_alloc(n, sizeof *sorted, "codebook", e);
 	double *sums = sorted ? mem_alloc(n + 1, sizeof *sums, "codebook", e) : NULL;
@@ -287,7 +287,7 @@ static void take_centres(const struct cutting *c, float *centres, uint16_t *labe
 	}
 }
 
-int sog_palette(float *centres, size_t *k, uint16_t *labels, const float *rows, size_t n, size_t width,
+int palette_rows(float *centres, size_t *k, uint16_t *labels, const float *rows, size_t n, size_t width,
 	size_t most, struct err *e)
 {
 	struct cutting c = {.rows = rows, .width = width};

@@ -1,6 +1,6 @@
 /* The other way: the streams are decompressed and checked, and become tiles; these then become rows of
  * pixels. */
-#include "formats/scene/weights_pack.h"
+#include "splat/weights_pack.h"
 
 #include "base/mem.h"
 #include "base/ones.h"
