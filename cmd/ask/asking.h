@@ -1,6 +1,6 @@
 /* A lifted scene that is asked one question after the other, with everything loaded once: refer-ask. */
-#ifndef CMD_JOBS_ASKING_H
-#define CMD_JOBS_ASKING_H
+#ifndef CMD_ASK_ASKING_H
+#define CMD_ASK_ASKING_H
 
 #include "ask/choose.h"
 #include "base/err.h"

@@ -1,7 +1,7 @@
 /* Features or labels of a scene's views, lifted onto its Gaussians: feature-lift. formats/scene/features.md.
  */
-#ifndef CMD_JOBS_FEATURE_LIFTING_H
-#define CMD_JOBS_FEATURE_LIFTING_H
+#ifndef CMD_FEATURE_FEATURE_LIFTING_H
+#define CMD_FEATURE_FEATURE_LIFTING_H
 
 #include "base/err.h"
 #include "base/report.h"

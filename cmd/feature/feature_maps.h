@@ -1,7 +1,7 @@
 /* What 2D models say of a scene's training views: maps of features, segments with a feature each, labels, or
  * masks with the vector of a text each; and which pixel has which. formats/scene/features.md. */
-#ifndef CMD_JOBS_FEATURE_MAPS_H
-#define CMD_JOBS_FEATURE_MAPS_H
+#ifndef CMD_FEATURE_FEATURE_MAPS_H
+#define CMD_FEATURE_FEATURE_MAPS_H
 
 #include "base/err.h"
 #include "base/names.h"

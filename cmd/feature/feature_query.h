@@ -1,7 +1,7 @@
 /* Which Gaussians of lifted features sentences select, by the rules of several systems: feature-query.
  * formats/scene/selection.md. */
-#ifndef CMD_JOBS_FEATURE_QUERY_H
-#define CMD_JOBS_FEATURE_QUERY_H
+#ifndef CMD_FEATURE_FEATURE_QUERY_H
+#define CMD_FEATURE_FEATURE_QUERY_H
 
 #include "base/err.h"
 #include "base/report.h"

@@ -1,7 +1,7 @@
 /* A scene folder from a trained 3DGS .ply and its cameras: gs-import. formats/scene/scene.md,
  * formats/cameras/camerafile.md. */
-#ifndef CMD_JOBS_IMPORT_H
-#define CMD_JOBS_IMPORT_H
+#ifndef CMD_IMPORT_IMPORT_H
+#define CMD_IMPORT_IMPORT_H
 
 #include "base/err.h"
 #include "base/report.h"

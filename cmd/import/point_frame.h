@@ -1,6 +1,6 @@
 /* Whether splats lie where the points of their cameras' reconstruction do: gs-import. */
-#ifndef CMD_JOBS_POINT_FRAME_H
-#define CMD_JOBS_POINT_FRAME_H
+#ifndef CMD_IMPORT_POINT_FRAME_H
+#define CMD_IMPORT_POINT_FRAME_H
 
 #include "base/err.h"
 #include "formats/scene/scene.h"

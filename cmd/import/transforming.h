@@ -1,6 +1,6 @@
 /* Splats of any format, cut and moved: gs-transform. */
-#ifndef CMD_JOBS_TRANSFORMING_H
-#define CMD_JOBS_TRANSFORMING_H
+#ifndef CMD_IMPORT_TRANSFORMING_H
+#define CMD_IMPORT_TRANSFORMING_H
 
 #include "base/err.h"
 #include "splat/move.h"

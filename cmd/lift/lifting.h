@@ -1,7 +1,7 @@
 /* The objects that sentences name, lifted onto the Gaussians from their masks: what refer-lift reads, which
  * mask is of which object, and the model that comes of it. formats/scene/lifted.md. */
-#ifndef CMD_JOBS_LIFTING_H
-#define CMD_JOBS_LIFTING_H
+#ifndef CMD_LIFT_LIFTING_H
+#define CMD_LIFT_LIFTING_H
 
 #include "ask/disambiguate.h"
 #include "base/err.h"

@@ -1,7 +1,7 @@
 /* The masks of objects, out of the candidates that a detector found for their sentences: pseudomask-select.
  * formats/records/masks.md. */
-#ifndef CMD_JOBS_PSEUDOMASKS_H
-#define CMD_JOBS_PSEUDOMASKS_H
+#ifndef CMD_LIFT_PSEUDOMASKS_H
+#define CMD_LIFT_PSEUDOMASKS_H
 
 #include "base/err.h"
 #include "base/report.h"

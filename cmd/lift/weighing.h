@@ -1,6 +1,6 @@
 /* The blend weights of a scene's views, rendered, pruned and written: gs-weigh. formats/scene/weights.md. */
-#ifndef CMD_JOBS_WEIGHING_H
-#define CMD_JOBS_WEIGHING_H
+#ifndef CMD_LIFT_WEIGHING_H
+#define CMD_LIFT_WEIGHING_H
 
 #include "base/err.h"
 #include "base/report.h"

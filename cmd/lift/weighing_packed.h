@@ -1,7 +1,7 @@
 /* A view's weights rendered, pruned and packed part by part (formats/scene/weights.md, "Packed"): a part
  * stays in the processor's cache, where the whole matrix takes a hundred megabytes. */
-#ifndef CMD_JOBS_WEIGHING_PACKED_H
-#define CMD_JOBS_WEIGHING_PACKED_H
+#ifndef CMD_LIFT_WEIGHING_PACKED_H
+#define CMD_LIFT_WEIGHING_PACKED_H
 
 #include "base/err.h"
 #include "splat/weights_pack.h"

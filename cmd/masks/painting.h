@@ -1,7 +1,7 @@
 /* Photographs that a person painted over, a colour for each thing, or labelled, as mask records: mask-import.
  */
-#ifndef CMD_JOBS_PAINTING_H
-#define CMD_JOBS_PAINTING_H
+#ifndef CMD_MASKS_PAINTING_H
+#define CMD_MASKS_PAINTING_H
 
 #include "base/err.h"
 #include "base/report.h"

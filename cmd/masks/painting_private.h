@@ -1,7 +1,7 @@
 /* What the parts of cmd/masks/painting.h share: painting_colours.c has pictures of colours, painting.c the
  * rest. */
-#ifndef CMD_JOBS_PAINTING_PRIVATE_H
-#define CMD_JOBS_PAINTING_PRIVATE_H
+#ifndef CMD_MASKS_PAINTING_PRIVATE_H
+#define CMD_MASKS_PAINTING_PRIVATE_H
 
 #include "cmd/masks/painting.h"
 #include "formats/records/annotations.h"

@@ -1,7 +1,7 @@
 /* Every object of a lifted scene at once: the scene with a label for each Gaussian, each object alone, and a
  * line of names, colours and boxes for each. */
-#ifndef CMD_JOBS_LABELLING_H
-#define CMD_JOBS_LABELLING_H
+#ifndef CMD_RENDER_LABELLING_H
+#define CMD_RENDER_LABELLING_H
 
 #include "base/err.h"
 #include "cmd/run/anymodel.h"

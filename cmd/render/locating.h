@@ -1,6 +1,6 @@
 /* Where the answers to sentences are, and of several things each by itself. */
-#ifndef CMD_JOBS_LOCATING_H
-#define CMD_JOBS_LOCATING_H
+#ifndef CMD_RENDER_LOCATING_H
+#define CMD_RENDER_LOCATING_H
 
 #include "answer/locate.h"
 #include "cmd/render/request.h"

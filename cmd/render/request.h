@@ -1,7 +1,7 @@
 /* What refer-render and refer-locate have in common: a scene, encoded sentences about it, a model, and what
  * the model answers to the sentences that were chosen. */
-#ifndef CMD_JOBS_REQUEST_H
-#define CMD_JOBS_REQUEST_H
+#ifndef CMD_RENDER_REQUEST_H
+#define CMD_RENDER_REQUEST_H
 
 #include "answer/responses.h"
 #include "ask/choose.h"

@@ -1,6 +1,6 @@
 /* What a run folder says of how it was made: times, losses, settings. */
-#ifndef CMD_JOBS_REPORT_LOGS_H
-#define CMD_JOBS_REPORT_LOGS_H
+#ifndef CMD_REPORT_REPORT_LOGS_H
+#define CMD_REPORT_REPORT_LOGS_H
 
 #include "base/err.h"
 

@@ -1,6 +1,6 @@
 /* What a run folder of the pipelines holds, as refer-report reads it. */
-#ifndef CMD_JOBS_REPORT_RUN_H
-#define CMD_JOBS_REPORT_RUN_H
+#ifndef CMD_REPORT_REPORT_RUN_H
+#define CMD_REPORT_REPORT_RUN_H
 
 #include "base/err.h"
 #include "base/report.h"

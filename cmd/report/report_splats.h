@@ -1,6 +1,6 @@
 /* The Gaussians that a viewer shows: those of each lifted object side by side, and the rest. */
-#ifndef CMD_JOBS_REPORT_SPLATS_H
-#define CMD_JOBS_REPORT_SPLATS_H
+#ifndef CMD_REPORT_REPORT_SPLATS_H
+#define CMD_REPORT_REPORT_SPLATS_H
 
 #include "base/err.h"
 #include "cmd/report/report_run.h"

@@ -1,7 +1,7 @@
 /* A model of any kind, told by the file: trained (formats/scene/model.md), lifted (formats/scene/lifted.md),
  * or what was selected for each sentence (formats/scene/selection.md). */
-#ifndef CMD_JOBS_ANYMODEL_H
-#define CMD_JOBS_ANYMODEL_H
+#ifndef CMD_RUN_ANYMODEL_H
+#define CMD_RUN_ANYMODEL_H
 
 #include "answer/responses.h"
 #include "base/err.h"

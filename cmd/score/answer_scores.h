@@ -1,6 +1,6 @@
 /* Scores of answers to sentences, what miou-score --answers writes. formats/records/scores.md. */
-#ifndef CMD_JOBS_ANSWER_SCORES_H
-#define CMD_JOBS_ANSWER_SCORES_H
+#ifndef CMD_SCORE_ANSWER_SCORES_H
+#define CMD_SCORE_ANSWER_SCORES_H
 
 #include "base/err.h"
 #include "cmd/score/score_masks.h"

@@ -1,6 +1,6 @@
 /* Scores of boxes, what miou-score --boxes writes. formats/records/boxes.md. */
-#ifndef CMD_JOBS_BOX_SCORES_H
-#define CMD_JOBS_BOX_SCORES_H
+#ifndef CMD_SCORE_BOX_SCORES_H
+#define CMD_SCORE_BOX_SCORES_H
 
 #include "base/err.h"
 #include "formats/records/boxes.h"

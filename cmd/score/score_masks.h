@@ -1,7 +1,7 @@
 /* Files of masks as scoring takes them: names of one record at most, so that it is clear what belongs to
  * what. formats/records/masks.md. */
-#ifndef CMD_JOBS_SCORE_MASKS_H
-#define CMD_JOBS_SCORE_MASKS_H
+#ifndef CMD_SCORE_SCORE_MASKS_H
+#define CMD_SCORE_SCORE_MASKS_H
 
 #include "formats/records/masks.h"
 

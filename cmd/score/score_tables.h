@@ -1,7 +1,7 @@
 /* The tables of miou-score that need other files beside the masks: by what sentences say, and by how much of
  * an object is seen. formats/records/scores.md. */
-#ifndef CMD_JOBS_SCORE_TABLES_H
-#define CMD_JOBS_SCORE_TABLES_H
+#ifndef CMD_SCORE_SCORE_TABLES_H
+#define CMD_SCORE_SCORE_TABLES_H
 
 #include "base/err.h"
 #include "cmd/score/score_masks.h"

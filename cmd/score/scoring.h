@@ -1,7 +1,7 @@
 /* What miou-score reads, put together, and the scores that come of it: of masks, of answers, of boxes.
  * formats/records/scores.md. */
-#ifndef CMD_JOBS_SCORING_H
-#define CMD_JOBS_SCORING_H
+#ifndef CMD_SCORE_SCORING_H
+#define CMD_SCORE_SCORING_H
 
 #include "base/err.h"
 #include "base/report.h"

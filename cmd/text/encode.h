@@ -1,6 +1,6 @@
 /* Sentences to word vectors by a language encoder: text-encode. formats/scene/text.md. */
-#ifndef CMD_JOBS_ENCODE_H
-#define CMD_JOBS_ENCODE_H
+#ifndef CMD_TEXT_ENCODE_H
+#define CMD_TEXT_ENCODE_H
 
 #include "base/err.h"
 #include "base/report.h"

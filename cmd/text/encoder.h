@@ -1,6 +1,6 @@
 /* A language encoder, of one of two kinds: a BERT or CLIP's text tower, with its vocabulary. */
-#ifndef CMD_JOBS_ENCODER_H
-#define CMD_JOBS_ENCODER_H
+#ifndef CMD_TEXT_ENCODER_H
+#define CMD_TEXT_ENCODER_H
 
 #include "base/err.h"
 #include "formats/encoders/bert_model.h"

@@ -1,7 +1,7 @@
 /* One stage of training, from files to the model: reads, goes on from a checkpoint, takes the steps, logs
  * them, writes. refer-train. formats/scene/training.md. */
-#ifndef CMD_JOBS_LEARN_H
-#define CMD_JOBS_LEARN_H
+#ifndef CMD_TRAIN_LEARN_H
+#define CMD_TRAIN_LEARN_H
 
 #include "base/err.h"
 #include "base/file.h"

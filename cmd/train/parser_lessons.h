@@ -1,7 +1,7 @@
 /* What parse-train learns from: the generator's example sentences, and people's with marks
  * (formats/records/marked.md). */
-#ifndef CMD_JOBS_PARSER_LESSONS_H
-#define CMD_JOBS_PARSER_LESSONS_H
+#ifndef CMD_TRAIN_PARSER_LESSONS_H
+#define CMD_TRAIN_PARSER_LESSONS_H
 
 #include "base/err.h"
 #include "formats/scene/text.h"

@@ -1,7 +1,7 @@
 /* What refer-train reads, put together: scene, weights, text and masks, checked against each other.
  * formats/scene/training.md. */
-#ifndef CMD_JOBS_TRAINING_H
-#define CMD_JOBS_TRAINING_H
+#ifndef CMD_TRAIN_TRAINING_H
+#define CMD_TRAIN_TRAINING_H
 
 #include "base/err.h"
 #include "base/report.h"

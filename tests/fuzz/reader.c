@@ -22,7 +22,6 @@
 #include "formats/arrays/npy.h"
 #include "formats/arrays/npz.h"
 #include "formats/encoders/parser_weights.h"
-#include "formats/records/parses.h"
 #include "formats/images/png.h"
 #include "formats/cameras/points.h"
 #include "formats/records/readings.h"
@@ -63,7 +62,6 @@ SIMPLE(masks, struct masks, masks_read, masks_free)
 SIMPLE(model, struct model, model_read, model_free)
 SIMPLE(npy, struct npy_file, npy_open, npy_close)
 SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
-SIMPLE(parses, struct parse_set, parses_read, parses_free)
 SIMPLE(readings, struct reading_set, readings_read, readings_free)
 SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
 SIMPLE(selection, struct selection, selection_read, selection_free)
@@ -302,7 +300,6 @@ static const struct target {
 	{"npy", try_npy, {0}, 0},
 	{"npz", try_npz, {0}, 0},
 	{"parser", try_parser, {0}, 1},
-	{"parses", try_parses, {0}, 0},
 	{"ply", try_scene, {0}, 0},
 	{"points", try_points, {"points3D.bin", "points3D.txt", "points3D.ply"}, 0},
 	{"readings", try_readings, {0}, 0},

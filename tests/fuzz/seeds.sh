@@ -86,7 +86,6 @@ first 3 sentences.jsonl some.jsonl
 first 3 masks.jsonl some-masks.jsonl
 first 3 boxes.jsonl some-boxes.jsonl
 text-encode -q --model encoder -o some.safetensors some.jsonl
-text-parse -q -o some-parses.jsonl some.safetensors
 parse-train -q --write 5 -o some-readings.jsonl
 refer-lift -q --scene scene --weights weights --text some.safetensors --masks masks.jsonl -o some-lifted.safetensors
 gs-weigh -q --split all -o few/whole few
@@ -169,8 +168,6 @@ seed npy response/view_000/*.npy
 seed npz "$golden"/npz/*.npz
 cp "$here/formats/encoders/parser_default.safetensors" parser.safetensors
 seed_cut parser 64 parser.safetensors
-split -l 1 some-parses.jsonl parse-
-seed parses parse-*
 seed ply few.ply packed.ply
 seed readings some-readings.jsonl
 seed safetensors few-lifted.safetensors few/weights/view_000.safetensors "$golden/good/small.safetensors"
@@ -212,7 +209,6 @@ for target in "$dir"/*/; do
 	merges) set -- merges.c vocab.c ;;
 	npz) set -- npz.c npy.c ;;
 	parser) set -- parser_weights.c ;;
-	parses) set -- parses_read.c ;;
 	ply) set -- ply.c plyfile.c plypacked.c ;;
 	glb | gltf) set -- glb.c glb_container.c ;;
 	sog) set -- sog.c archive.c ;;
