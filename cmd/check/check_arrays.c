@@ -188,7 +188,7 @@ int check_anysplats(struct check *c, const char *path, const char *kind, struct 
 
 int check_npy(struct check *c, const char *path, struct err *e)
 {
-	struct npy_file a;
+	struct npy a;
 
 	if (npy_open(&a, path, e))
 		return -1;
@@ -208,7 +208,7 @@ int check_npz(struct check *c, const char *path, struct err *e)
 	if (npz_open(&z, path, e))
 		return -1;
 	for (size_t i = 0; i < z.n && !bad; i++) {
-		struct npy_file a;
+		struct npy a;
 		if (!(bad = npz_entry(&z, i, &a, e))) {
 			values += (long long)a.count;
 			npy_close(&a);

@@ -46,7 +46,7 @@ struct feature_sources {
 	size_t count;
 	size_t *row; /* (count) of the table; FEATURES_ZERO: zero */
 	int32_t *label;
-	struct npy_file table; /* of features, open until the next view; not of masks and labels */
+	struct npy table; /* of features, open until the next view; not of masks and labels */
 	/* room that views share */
 	size_t pixel_room, row_room, label_room, place_room;
 	int32_t *place;

@@ -32,7 +32,7 @@ static int check_shape(const struct feature_maps *m, size_t view, const char *pa
 }
 
 /* A table of features: VIEW.npy (H,W,C), or VIEW_f.npy (N,C). */
-static int check_table(const struct npy_file *t, int dims, const char *path, struct err *e)
+static int check_table(const struct npy *t, int dims, const char *path, struct err *e)
 {
 	size_t rows = 1;
 
@@ -51,7 +51,7 @@ static int check_table(const struct npy_file *t, int dims, const char *path, str
 }
 
 /* VIEW.npz: its array `features`, or the one that numpy.savez gives no name. */
-static int open_packed(const char *file, struct npy_file *t, char **called, struct err *e)
+static int open_packed(const char *file, struct npy *t, char **called, struct err *e)
 {
 	static const char *const names[] = {"features", "arr_0"};
 	struct npz z;
@@ -65,7 +65,7 @@ static int open_packed(const char *file, struct npy_file *t, char **called, stru
 }
 
 /* The view's array with this suffix, and how messages name it. */
-static int open_array(const struct feature_maps *m, size_t view, const char *suffix, struct npy_file *t,
+static int open_array(const struct feature_maps *m, size_t view, const char *suffix, struct npy *t,
 	char **called, struct err *e)
 {
 	char ending[16];
@@ -91,7 +91,7 @@ static int open_array(const struct feature_maps *m, size_t view, const char *suf
 }
 
 static int open_table(
-	const struct feature_maps *m, size_t view, struct npy_file *t, size_t *channels, struct err *e)
+	const struct feature_maps *m, size_t view, struct npy *t, size_t *channels, struct err *e)
 {
 	const int is_map = m->kind == MAPS_CELLS;
 	char *called;
@@ -108,7 +108,7 @@ static int open_table(
 
 int feature_tables_channels(const struct feature_maps *m, size_t view, size_t *channels, struct err *e)
 {
-	struct npy_file t;
+	struct npy t;
 
 	if (m->kind != MAPS_CELLS && m->kind != MAPS_SEGMENTS)
 		return 0;
@@ -119,7 +119,7 @@ int feature_tables_channels(const struct feature_maps *m, size_t view, size_t *c
 }
 
 /* The segments' numbers at a view's pixels, of one level of (L,H,W), or of (H,W). */
-static int read_ids(const struct feature_maps *m, size_t view, const struct npy_file *ids, const char *path,
+static int read_ids(const struct feature_maps *m, size_t view, const struct npy *ids, const char *path,
 	int height, int width, struct feature_sources *s, struct err *e)
 {
 	const size_t level = (size_t)m->options->level, pixels = (size_t)height * (size_t)width;
@@ -153,7 +153,7 @@ static int read_ids(const struct feature_maps *m, size_t view, const struct npy_
 static int open_segments(const struct feature_maps *m, size_t view, int height, int width,
 	struct feature_sources *s, struct err *e)
 {
-	struct npy_file ids;
+	struct npy ids;
 	char *called;
 	int bad = open_array(m, view, "_s", &ids, &called, e);
 

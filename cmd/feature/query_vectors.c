@@ -27,7 +27,7 @@ static int take_shape(
 
 /* An array, which is closed; messages call it `name`. */
 static int take_array(
-	struct query_vectors *v, struct npy_file *a, const char *name, size_t channels, struct err *e)
+	struct query_vectors *v, struct npy *a, const char *name, size_t channels, struct err *e)
 {
 	int bad = a->dims == 2 ? take_shape(v, a->shape[0], a->shape[1], channels, name, e)
 			       : err_set(e, ERR_FORMAT, "%s: has %d dimensions, not 2: texts and channels",
@@ -41,7 +41,7 @@ static int take_array(
 
 static int read_npy(struct query_vectors *v, const char *path, size_t channels, struct err *e)
 {
-	struct npy_file a;
+	struct npy a;
 
 	return npy_open(&a, path, e) || take_array(v, &a, path, channels, e) ? -1 : 0;
 }
@@ -50,7 +50,7 @@ static int read_npz(struct query_vectors *v, const char *path, size_t channels, 
 {
 	static const char *const names[] = {"vectors", "arr_0"};
 	struct npz z;
-	struct npy_file a;
+	struct npy a;
 	char *called = NULL;
 
 	if (npz_open(&z, path, e))

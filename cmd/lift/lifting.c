@@ -9,6 +9,47 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* Gives lifted objects their names, and the sentences of a text with pieces: object (t->n) has the one that
+ * each names, or LIFTING_NONE where it stays out. *l can be freed in any case. */
+static int add_sentences(
+	struct lifted *l, const struct text *t, const size_t *object, const char *const *names, struct err *e)
+{
+	const size_t width = (size_t)t->width, words = (size_t)t->offsets[t->n];
+
+	l->width = t->width;
+	l->names = mem_zalloc(l->objects, sizeof *l->names, "objects", e);
+	l->object = mem_alloc(t->n, sizeof *l->object, "sentences", e);
+	l->texts = mem_zalloc(t->n, sizeof *l->texts, "sentences", e);
+	l->pieces = mem_zalloc(t->n, sizeof *l->pieces, "sentences", e);
+	l->offsets = mem_zalloc(t->n + 1, sizeof *l->offsets, "sentences", e);
+	l->words = mem_alloc(words, width * sizeof *l->words, "sentences", e);
+	if (t->middle)
+		l->middle = mem_alloc(words, width * sizeof *l->middle, "sentences", e);
+	if (!l->names || !l->object || !l->texts || !l->pieces || !l->offsets || !l->words ||
+		(t->middle && !l->middle))
+		return -1;
+	for (size_t o = 0; o < l->objects; o++)
+		if (!(l->names[o] = mem_strdup(names[o], e)))
+			return -1;
+	for (size_t i = 0; i < t->n; i++) {
+		if (object[i] == LIFTING_NONE)
+			continue;
+		const size_t to = l->sentences++, from = (size_t)t->offsets[i];
+		const size_t count = (size_t)t->offsets[i + 1] - from, at = (size_t)l->offsets[to];
+		l->object[to] = (int32_t)object[i];
+		memcpy(l->words + at * width, t->words + from * width, count * width * sizeof *l->words);
+		if (t->middle)
+			memcpy(l->middle + at * width, t->middle + from * width,
+				count * width * sizeof *l->middle);
+		l->offsets[to + 1] = (int64_t)(at + count);
+		if (!(l->texts[to] = mem_strdup(t->texts[i], e)) ||
+			!(l->pieces[to] = mem_strdup(t->pieces[i], e)))
+			return -1;
+	}
+	return 0;
+}
 
 /* The masks of a file, and the view of each, after those that there are. */
 static int add_masks(struct lifting *l, const char *path, const struct report *to, struct err *e)
@@ -102,7 +143,7 @@ static void find_objects(struct lifting *l, const struct report *to)
 
 	for (size_t i = 0; i < l->text.n; i++) {
 		const size_t first = l->trained[i] ? names_find(&l->objects_of, l->trained[i]) : i;
-		l->sentence_object[i] = first < i ? l->sentence_object[first] : LIFTED_NONE;
+		l->sentence_object[i] = first < i ? l->sentence_object[first] : LIFTING_NONE;
 		if (first < i || !l->trained[i])
 			continue;
 		if (l->is_shown[i])
@@ -113,8 +154,8 @@ static void find_objects(struct lifting *l, const struct report *to)
 	}
 	for (size_t i = 0; i < l->own; i++) {
 		const size_t first = l->mask_object[i];
-		l->mask_object[i] = first == NAMES_NONE ? LIFTED_NONE : l->sentence_object[first];
-		unknown += l->is_there[l->views[i]] && l->mask_object[i] == LIFTED_NONE;
+		l->mask_object[i] = first == NAMES_NONE ? LIFTING_NONE : l->sentence_object[first];
+		unknown += l->is_there[l->views[i]] && l->mask_object[i] == LIFTING_NONE;
 	}
 	if (unknown)
 		report_warn(to, "%s: %zu masks are of no training sentence's object",
@@ -135,13 +176,13 @@ static int find_spare(struct lifting *l, struct err *e)
 		const size_t first = masks[i].object ? names_find(&regions, masks[i].object) : NAMES_NONE;
 		if (first == i)
 			l->names[l->objects + l->spare] = "";
-		number[i] = first == NAMES_NONE ? LIFTED_NONE
+		number[i] = first == NAMES_NONE ? LIFTING_NONE
 			    : first < i		? number[first]
 						: l->objects + l->spare++;
 	}
 	for (size_t i = 0; i < n; i++)
 		if (!l->is_there[l->views[l->own + i]])
-			number[i] = LIFTED_NONE;
+			number[i] = LIFTING_NONE;
 	names_free(&regions);
 	return 0;
 }
@@ -161,7 +202,7 @@ static size_t masks_of_view(const struct lifting *l, size_t view, struct lift_ma
 	mask_index_view(&l->index, l->scene.cameras.views[view].name, &begin, &end);
 	for (size_t k = begin; k < end; k++) {
 		const size_t i = l->index.keys[k].at;
-		if (l->mask_object[i] != LIFTED_NONE)
+		if (l->mask_object[i] != LIFTING_NONE)
 			masks[n++] = (struct lift_mask){&l->set.items[i], l->mask_object[i]};
 	}
 	qsort(masks, n, sizeof *masks, by_object);
@@ -243,7 +284,7 @@ static int find_fixed(struct lifting *l, int is_as_masked, struct err *e)
 	if (!l->is_fixed || !l->found)
 		return -1;
 	for (size_t i = 0; i < l->own; i++)
-		if (l->mask_object[i] != LIFTED_NONE && l->is_there[l->views[i]])
+		if (l->mask_object[i] != LIFTING_NONE && l->is_there[l->views[i]])
 			l->is_fixed[l->mask_object[i]] |= is_as_masked || isnan(l->set.items[i].score);
 	return 0;
 }
@@ -284,7 +325,7 @@ int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struc
 	report_start(to, "views", (double)l->scene.cameras.n * LIFT_ROUNDS);
 	int bad = lift(l, to, e);
 	report_end(to);
-	if (bad || lifted_add_sentences(&l->model, &l->text, l->sentence_object, l->names, e) ||
+	if (bad || add_sentences(&l->model, &l->text, l->sentence_object, l->names, e) ||
 		find_fixed(l, is_as_masked, e) ||
 		disambiguate(&l->model, l->objects, l->is_fixed, &l->scene.splats, &l->scene.cameras, &parser,
 			l->found, e))

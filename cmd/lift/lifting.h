@@ -22,6 +22,8 @@ struct lifting_files {
 	const char *spare; /* masks of regions that an object may have in place of its own; NULL: none */
 };
 
+#define LIFTING_NONE ((size_t)-1)
+
 struct lifting {
 	const struct lifting_files *files;
 	struct scene scene;
@@ -30,7 +32,7 @@ struct lifting {
 	size_t own;			       /* the first of them; the others are of spare regions */
 	struct mask_index index;	       /* by object */
 	size_t *views, view_capacity;	       /* (set.n) of each mask */
-	size_t *sentence_object, *mask_object; /* (text.n), (set.n) in names; LIFTED_NONE: does not count */
+	size_t *sentence_object, *mask_object; /* (text.n), (set.n) in names; LIFTING_NONE: does not count */
 	struct names refs, objects_of;	       /* of the sentences; of `trained` */
 	const char **trained;		       /* (text.n) objects of the training sentences, else NULL */
 	char *is_fixed;			       /* (objects + spare) a person named it, or all are as masked */

@@ -1,6 +1,7 @@
 #include "cmd/text/encode.h"
 
 #include "base/mem.h"
+#include "formats/arrays/metalist.h"
 #include "formats/records/masks.h"
 
 #include <math.h>
@@ -9,6 +10,61 @@
 
 /* Tokens in one forward pass: enough to keep the products busy, little memory. */
 enum { ROWS_AT_ONCE = 1024 };
+
+/* sentences from words. ERR_FORMAT, with the ref, where one is not finite. */
+static int take_means(struct text *t, struct err *e)
+{
+	const size_t width = (size_t)t->width;
+
+	for (size_t r = 0; r < t->n; r++) {
+		const size_t first = (size_t)t->offsets[r], end = (size_t)t->offsets[r + 1];
+		for (size_t i = 0; i < width && end > first; i++) {
+			double sum = 0;
+			for (size_t w = first; w < end; w++)
+				sum += t->words[w * width + i];
+			t->sentences[r * width + i] = (float)(sum / (double)(end - first));
+			if (!isfinite(t->sentences[r * width + i]))
+				return err_set(e, ERR_FORMAT, "ref '%s': the encoder's output is not finite",
+					t->refs[r]);
+		}
+	}
+	return 0;
+}
+
+/* Sets (*list)[i], in a list that the first such entry makes. */
+static int set_entry(char ***list, size_t n, size_t i, const char *value, struct err *e)
+{
+	if (!*list) {
+		*list = mem_zalloc(n, sizeof **list, "sentences", e);
+		for (size_t k = 0; *list && k < n; k++)
+			if (!((*list)[k] = mem_strdup("", e)))
+				return -1;
+	}
+	char *copy = *list ? mem_strdup(value, e) : NULL;
+	if (!copy)
+		return -1;
+	free((*list)[i]);
+	(*list)[i] = copy;
+	return 0;
+}
+
+/* object_lists, views and kinds of the sentences; what none says stays NULL. */
+static int take_more(struct text *t, const struct sentences *s, struct err *e)
+{
+	int bad = 0;
+
+	for (size_t i = 0; i < s->n && !bad; i++) {
+		const struct sentence *one = &s->items[i];
+		char *list = one->has_objects ? metalist_print(one->objects, one->object_count) : NULL;
+		if (one->has_objects && !list)
+			bad = err_set(e, ERR_SYSTEM, "objects: out of memory");
+		bad = bad || (list && set_entry(&t->object_lists, s->n, i, list, e)) ||
+		      (one->view && set_entry(&t->views, s->n, i, one->view, e)) ||
+		      (one->kind && set_entry(&t->kinds, s->n, i, one->kind, e));
+		free(list);
+	}
+	return bad ? -1 : 0;
+}
 
 static int add_token(struct encoding_tokens *t, int32_t id, struct err *e)
 {
@@ -209,7 +265,7 @@ static int make_words(struct text *out, const struct encoder *with, const struct
 	free(scratch);
 	free(vectors);
 	free(middle);
-	return bad || (encoder_pools(with) ? check_finite(out, e) : text_take_means(out, e)) ? -1 : 0;
+	return bad || (encoder_pools(with) ? check_finite(out, e) : take_means(out, e)) ? -1 : 0;
 }
 
 static int has_sentence(const struct sentences *s, const char *ref)
@@ -256,7 +312,7 @@ int encode(struct encoding *x, const struct encoder *with, const struct report *
 
 	if (tokenise(to, &x->tokens, &x->sentences, with, e) ||
 		alloc_text(out, &x->sentences, &x->tokens, e) || alloc_vectors(out, with, e) ||
-		keep_pieces(out, &x->tokens, with, e) || text_take_more(out, &x->sentences, e) ||
+		keep_pieces(out, &x->tokens, with, e) || take_more(out, &x->sentences, e) ||
 		make_words(out, with, &x->tokens, to, e))
 		return -1;
 	out->encoder = with->fingerprint;

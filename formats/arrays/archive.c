@@ -1,9 +1,10 @@
-/* minizip reads zips through functions that open, read and seek: here from memory. */
+/* minizip reads zips through streams: here from memory. */
 #include "formats/arrays/archive.h"
 
 #include "base/mem.h"
 
 #include <minizip/unzip.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,58 +13,20 @@ enum { DEFLATE_RATIO = 1032 };
 
 static voidpf zip_open(voidpf archive, const void *name, int mode)
 {
+	const struct archive *a = archive;
+
 	(void)name;
 	(void)mode;
-	return archive;
-}
-
-static uLong zip_read(voidpf archive, voidpf stream, void *to, uLong want)
-{
-	struct archive *a = stream;
-	const size_t left = a->seek < a->map.len ? a->map.len - (size_t)a->seek : 0;
-	const size_t got = want < left ? want : left;
-
-	(void)archive;
-	if (got)
-		memcpy(to, a->map.data + a->seek, got);
-	a->seek += got;
-	return (uLong)got;
-}
-
-static ZPOS64_T zip_tell(voidpf archive, voidpf stream)
-{
-	(void)archive;
-	return ((struct archive *)stream)->seek;
-}
-
-static long zip_seek(voidpf archive, voidpf stream, ZPOS64_T by, int origin)
-{
-	struct archive *a = stream;
-
-	(void)archive;
-	a->seek = by + (origin == ZLIB_FILEFUNC_SEEK_CUR	  ? a->seek
-			       : origin == ZLIB_FILEFUNC_SEEK_END ? a->map.len
-								  : 0);
-	return a->seek > a->map.len ? -1 : 0;
-}
-
-static int zip_nothing(voidpf archive, voidpf stream)
-{
-	(void)archive;
-	(void)stream;
-	return 0;
+	return fmemopen((void *)(size_t)a->map.data, a->map.len, "rb");
 }
 
 int archive_open_zip(struct archive *a, const char *name, struct file_map *map, struct err *e)
 {
-	zlib_filefunc64_def functions = {.zopen64_file = zip_open,
-		.zread_file = zip_read,
-		.ztell64_file = zip_tell,
-		.zseek64_file = zip_seek,
-		.zclose_file = zip_nothing,
-		.zerror_file = zip_nothing,
-		.opaque = a};
+	zlib_filefunc64_def functions;
 
+	fill_fopen64_filefunc(&functions);
+	functions.zopen64_file = zip_open;
+	functions.opaque = a;
 	*a = (struct archive){.name = name, .map = *map};
 	*map = (struct file_map){0};
 	a->zip = unzOpen2_64(name, &functions);

@@ -8,11 +8,10 @@
 #include <stddef.h>
 
 struct archive {
-	const char *name;	 /* as messages name it */
-	const char *folder;	 /* the files are there; NULL: in a zip */
-	void *zip;		 /* minizip's */
-	struct file_map map;	 /* of the zip */
-	unsigned long long seek; /* the zip reader's place in it */
+	const char *name;    /* as messages name it */
+	const char *folder;  /* the files are there; NULL: in a zip */
+	void *zip;	     /* minizip's */
+	struct file_map map; /* of the zip */
 };
 
 /* A zip that is in memory, which is the archive's from then on; released on failure. Returns 0, or -1 with

@@ -6,6 +6,7 @@
 #include "formats/records/json.h"
 
 #include <cjson/cJSON.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,72 +17,59 @@ void metalist_free(char **strings, size_t n)
 	free(strings);
 }
 
-char **metalist_read(const struct safetensors *st, const char *key, size_t n, const char *of, struct err *e)
+/* The strings of a list, which has *n of them if it says; "" as reason where memory is out. */
+static char **take_strings(const cJSON *list, size_t *n, char reason[64])
 {
-	const char *value = safetensors_meta(st, key);
-	cJSON *list = value ? cJSON_Parse(value) : NULL;
-	char **strings = NULL;
-	size_t used = 0;
-
-	if (!list || !cJSON_IsArray(list)) {
-		err_set(e, ERR_FORMAT, "%s: metadata '%s' is not a JSON list", st->path, key);
-		goto fail;
-	}
-	if (json_has_nul(value)) {
-		err_set(e, ERR_FORMAT, "%s: metadata '%s': a NUL character (\\u0000) in a string", st->path,
-			key);
-		goto fail;
-	}
-	if ((size_t)cJSON_GetArraySize(list) != n) {
-		err_set(e, ERR_FORMAT, "%s: metadata '%s' has %d entries for %zu %s", st->path, key,
-			cJSON_GetArraySize(list), n, of);
-		goto fail;
-	}
-	strings = mem_zalloc(n, sizeof *strings, st->path, e);
-	if (!strings)
-		goto fail;
-	for (const cJSON *item = list->child; item; item = item->next, used++) {
-		const char *s = item->valuestring;
-		if (!cJSON_IsString(item) || utf8_check(s, strlen(s)) < strlen(s)) {
-			err_set(e, ERR_FORMAT, "%s: metadata '%s': entry %zu is not a UTF-8 string", st->path,
-				key, used);
-			goto fail;
-		}
-		strings[used] = mem_strdup(s, e);
-		if (!strings[used])
-			goto fail;
-	}
-	cJSON_Delete(list);
-	return strings;
-fail:
-	metalist_free(strings, used);
-	cJSON_Delete(list);
-	return NULL;
-}
-
-char **metalist_parse(const char *value, size_t *n, struct err *e)
-{
-	cJSON *list = cJSON_Parse(value);
-	char **strings = NULL;
+	struct err ignored;
+	char **strings = mem_zalloc((size_t)cJSON_GetArraySize(list) + 1, sizeof *strings, "names", &ignored);
 
 	*n = 0;
-	if (!list || !cJSON_IsArray(list)) {
-		err_set(e, ERR_FORMAT, "not a JSON list");
-		goto done;
-	}
-	strings = mem_zalloc((size_t)cJSON_GetArraySize(list) + 1, sizeof *strings, "names", e);
+	*reason = 0;
 	for (const cJSON *item = list->child; item && strings; item = item->next) {
 		const char *s = item->valuestring;
 		if (!cJSON_IsString(item) || utf8_check(s, strlen(s)) < strlen(s))
-			err_set(e, ERR_FORMAT, "entry %zu is not a UTF-8 string", *n);
-		else if ((strings[*n] = mem_strdup(s, e)) != NULL) {
+			snprintf(reason, 64, "entry %zu is not a UTF-8 string", *n);
+		else if ((strings[*n] = mem_strdup(s, &ignored)) != NULL) {
 			++*n;
 			continue;
 		}
 		metalist_free(strings, *n);
 		strings = NULL;
 	}
-done:
+	return strings;
+}
+
+char **metalist_read(const struct safetensors *st, const char *key, size_t n, const char *of, struct err *e)
+{
+	const char *value = safetensors_meta(st, key);
+	cJSON *list = value ? cJSON_Parse(value) : NULL;
+	char **strings = NULL, reason[64] = "";
+	size_t used;
+
+	if (!list || !cJSON_IsArray(list))
+		err_set(e, ERR_FORMAT, "%s: metadata '%s' is not a JSON list", st->path, key);
+	else if (json_has_nul(value))
+		err_set(e, ERR_FORMAT, "%s: metadata '%s': a NUL character (\\u0000) in a string", st->path,
+			key);
+	else if ((size_t)cJSON_GetArraySize(list) != n)
+		err_set(e, ERR_FORMAT, "%s: metadata '%s' has %d entries for %zu %s", st->path, key,
+			cJSON_GetArraySize(list), n, of);
+	else if (!(strings = take_strings(list, &used, reason)))
+		err_set(e, *reason ? ERR_FORMAT : ERR_SYSTEM, "%s: metadata '%s': %s", st->path, key,
+			*reason ? reason : "out of memory");
+	cJSON_Delete(list);
+	return strings;
+}
+
+char **metalist_parse(const char *value, size_t *n, struct err *e)
+{
+	cJSON *list = cJSON_Parse(value);
+	char **strings = NULL, reason[64] = "not a JSON list";
+
+	if (cJSON_IsArray(list))
+		strings = take_strings(list, n, reason);
+	if (!strings)
+		err_set(e, *reason ? ERR_FORMAT : ERR_SYSTEM, "%s", *reason ? reason : "out of memory");
 	cJSON_Delete(list);
 	return strings;
 }
@@ -141,6 +129,35 @@ int metalist_check_unique(char *const *strings, size_t n, const char *key, const
 				e, ERR_FORMAT, "%s: metadata '%s': '%s' appears twice", path, key, sorted[i]);
 	free(sorted);
 	return bad;
+}
+
+int64_t *metalist_offsets(
+	const struct safetensors *st, const char *name, const char *of, size_t *n, struct err *e)
+{
+	int64_t *offsets = safetensors_copy(st, name, ST_I64, 1, (int64_t[]){-1}, n, e);
+
+	if (!offsets || (*n >= 1 && *n <= INT32_MAX)) {
+		*n = offsets ? *n - 1 : 0;
+		return offsets;
+	}
+	err_set(e, ERR_FORMAT, "%s: tensor '%s': has %zu entries, expected 1 more than %s", st->path, name,
+		*n, of);
+	free(offsets);
+	*n = 0;
+	return NULL;
+}
+
+int metalist_check_index(const int32_t *index, const int64_t *indptr, size_t n, size_t limit, const char *of,
+	const char *path, struct err *e)
+{
+	for (size_t r = 0; r < n; r++)
+		for (int64_t k = indptr[r]; k < indptr[r + 1]; k++)
+			if (index[k] < 0 || (size_t)index[k] >= limit ||
+				(k > indptr[r] && index[k] <= index[k - 1]))
+				return err_set(e, ERR_FORMAT,
+					"%s: tensor 'index': item %lld does not rise within 0 to %lld, in %s %zu",
+					path, (long long)k, (long long)limit - 1, of, r);
+	return 0;
 }
 
 int metalist_check_offsets(const char *name, const int64_t *offsets, size_t n, int64_t count, const char *of,

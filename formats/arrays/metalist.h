@@ -29,9 +29,19 @@ char **metalist_parse(const char *value, size_t *n, struct err *e);
 /* No two are the same: 0, or -1 with *e. */
 int metalist_check_unique(char *const *strings, size_t n, const char *key, const char *path, struct err *e);
 
-/* Tensor `name` (n+1) begins with 0, never falls and ends with the count of the rows, which are `of`
- * ("words"): 0, or -1 with *e. */
+/* The offsets of tensor `name`: a copy, and in *n one less than there are entries, at most INT32_MAX - 1, of
+ * `of`
+ * ("sentences"). NULL with *e. */
+int64_t *metalist_offsets(
+	const struct safetensors *st, const char *name, const char *of, size_t *n, struct err *e);
+
+/* They (n+1) begin with 0, never fall and end with the count of the rows, which are `of` ("words"): 0, or -1
+ * with *e. */
 int metalist_check_offsets(const char *name, const int64_t *offsets, size_t n, int64_t count, const char *of,
+	const char *path, struct err *e);
+
+/* Tensor 'index' rises within each of n `of` ("object"), from 0 to below `limit`: 0, or -1 with *e. */
+int metalist_check_index(const int32_t *index, const int64_t *indptr, size_t n, size_t limit, const char *of,
 	const char *path, struct err *e);
 
 /* Metadata 'pieces': string i has pieces with one space between and none around, offsets[i+1] - offsets[i] of

@@ -17,12 +17,6 @@ enum {
 	HEADER_ROOM = 310,
 };
 
-void npy_free(struct npy *a)
-{
-	free(a->values);
-	*a = (struct npy){0};
-}
-
 static const struct {
 	char descr[4];
 	size_t size;
@@ -41,7 +35,6 @@ static const struct {
 struct walk {
 	const char *path, *data;
 	size_t at, end;
-	int is_f32_alone; /* no other type will do */
 	struct err *e;
 };
 
@@ -98,7 +91,7 @@ static int take_word(struct walk *w, const char *word)
 	return 1;
 }
 
-static int take_shape(struct walk *w, struct npy_file *a)
+static int take_shape(struct walk *w, struct npy *a)
 {
 	a->dims = 0;
 	a->count = 1;
@@ -134,7 +127,7 @@ static int find_type(const char *text, size_t len)
 	return -1;
 }
 
-static int take_type(struct walk *w, struct npy_file *a)
+static int take_type(struct walk *w, struct npy *a)
 {
 	size_t len = 0;
 
@@ -142,16 +135,15 @@ static int take_type(struct walk *w, struct npy_file *a)
 	const size_t begin = w->at;
 	const char *text = take_string(w, &len);
 	const int type = find_type(text, len);
-	if (type >= 0 && (type == NPY_F32 || !w->is_f32_alone)) {
+	if (type >= 0) {
 		a->type = (enum npy_type)type;
 		return 0;
 	}
 	w->at = begin;
-	return walk_err(w, w->is_f32_alone ? "'descr' is not '<f4' (float32, little-endian)"
-					   : "'descr' is no float or whole number, little-endian");
+	return walk_err(w, "'descr' is no float or whole number, little-endian");
 }
 
-static int read_header(struct walk *w, struct npy_file *a)
+static int read_header(struct walk *w, struct npy *a)
 {
 	enum { HAVE_TYPE = 1, HAVE_ORDER = 2, HAVE_SHAPE = 4, HAVE_ALL = 7 };
 	int have = 0;
@@ -190,8 +182,7 @@ static int read_header(struct walk *w, struct npy_file *a)
 	return 0;
 }
 
-static int read_bytes(
-	struct npy_file *a, const char *data, size_t len, const char *path, int is_f32_alone, struct err *e)
+static int read_bytes(struct npy *a, const char *data, size_t len, const char *path, struct err *e)
 {
 	const unsigned char *u = (const unsigned char *)data;
 	size_t begin = FIXED_BYTES, bytes;
@@ -211,7 +202,7 @@ static int read_bytes(
 	}
 	if (len - begin < header)
 		return err_set(e, ERR_FORMAT, "%s: offset %zu: the file ends inside the header", path, len);
-	struct walk w = {path, data, begin, begin + header, is_f32_alone, e};
+	struct walk w = {path, data, begin, begin + header, e};
 	if (read_header(&w, a))
 		return -1;
 	const size_t have = len - begin - header, size = types[a->type].size;
@@ -223,40 +214,30 @@ static int read_bytes(
 	return 0;
 }
 
-static int open_file(struct npy_file *a, const char *path, int is_f32_alone, struct err *e)
+int npy_open(struct npy *a, const char *path, struct err *e)
 {
-	*a = (struct npy_file){0};
+	*a = (struct npy){0};
 	if (file_map(path, &a->map, e))
 		return -1;
-	if (!read_bytes(a, (const char *)a->map.data, a->map.len, file_name(path), is_f32_alone, e))
+	if (!read_bytes(a, (const char *)a->map.data, a->map.len, file_name(path), e))
 		return 0;
 	npy_close(a);
 	return -1;
 }
 
-int npy_open(struct npy_file *a, const char *path, struct err *e)
+int npy_open_bytes(struct npy *a, char *data, size_t len, const char *name, struct err *e)
 {
-	return open_file(a, path, 0, e);
-}
-
-int npy_open_bytes(struct npy_file *a, char *data, size_t len, const char *name, struct err *e)
-{
-	*a = (struct npy_file){.map = {(const unsigned char *)data, len, 0}};
-	if (!read_bytes(a, data, len, name, 0, e))
+	*a = (struct npy){.map = {(const unsigned char *)data, len, 0}};
+	if (!read_bytes(a, data, len, name, e))
 		return 0;
 	npy_close(a);
 	return -1;
 }
 
-void npy_close(struct npy_file *a)
+void npy_close(struct npy *a)
 {
 	file_unmap(&a->map);
-	*a = (struct npy_file){0};
-}
-
-int npy_is_whole(const struct npy_file *a)
-{
-	return a->type > NPY_F64;
+	*a = (struct npy){0};
 }
 
 /* A number of `size` bytes with a sign. */
@@ -267,7 +248,7 @@ static double whole(const unsigned char *at, int size)
 	return (double)(int64_t)((bits ^ sign) - sign);
 }
 
-double npy_value(const struct npy_file *a, size_t i)
+double npy_value(const struct npy *a, size_t i)
 {
 	const int size = (int)types[a->type].size;
 	const unsigned char *at = a->data + i * (size_t)size;
@@ -290,30 +271,13 @@ double npy_value(const struct npy_file *a, size_t i)
 	}
 }
 
-void npy_floats(const struct npy_file *a, size_t first, size_t n, float *out)
+void npy_floats(const struct npy *a, size_t first, size_t n, float *out)
 {
 	if (a->type == NPY_F32)
 		memcpy(out, a->data + first * sizeof *out, n * sizeof *out);
 	else
 		for (size_t i = 0; i < n; i++)
 			out[i] = (float)npy_value(a, first + i);
-}
-
-int npy_read(struct npy *a, const char *path, struct err *e)
-{
-	struct npy_file file;
-
-	*a = (struct npy){0};
-	if (open_file(&file, path, 1, e))
-		return -1;
-	a->dims = file.dims;
-	memcpy(a->shape, file.shape, sizeof a->shape);
-	a->count = file.count;
-	a->values = mem_alloc(a->count, sizeof *a->values, file_name(path), e);
-	if (a->values)
-		npy_floats(&file, 0, a->count, a->values);
-	npy_close(&file);
-	return a->values ? 0 : -1;
 }
 
 int npy_write(const char *path, const float *values, const size_t *shape, int dims, struct err *e)

@@ -11,23 +11,12 @@
 
 enum { NPY_MAX_DIMS = 8 };
 
-struct npy {
-	int dims;		    /* 0: a single number */
-	size_t shape[NPY_MAX_DIMS]; /* row-major */
-	size_t count;		    /* product of the shape */
-	float *values;		    /* (count); owned */
-};
-
-/* Reads a whole file or pipe ("-" is stdin): version 1.0 or 2.0, '<f4', C order. */
-int npy_read(struct npy *a, const char *path, struct err *e);
-void npy_free(struct npy *a);
-
-/* A file of whatever numbers, in place: nothing is read before it is asked for. */
+/* An array in place: nothing is read before it is asked for. */
 enum npy_type {
 	NPY_F16,
 	NPY_F32,
 	NPY_F64,
-	NPY_U8, /* this one and those after it: whole numbers */
+	NPY_U8,
 	NPY_I8,
 	NPY_U16,
 	NPY_I16,
@@ -37,7 +26,7 @@ enum npy_type {
 	NPY_TYPES
 };
 
-struct npy_file {
+struct npy {
 	int dims;
 	size_t shape[NPY_MAX_DIMS];
 	size_t count;
@@ -47,16 +36,14 @@ struct npy_file {
 };
 
 /* C order, little-endian. Returns 0, or -1 with *e set and nothing to close. */
-int npy_open(struct npy_file *a, const char *path, struct err *e);
+int npy_open(struct npy *a, const char *path, struct err *e);
 /* The same of bytes in memory, which are a's from then on, also on failure; messages call them `name`. */
-int npy_open_bytes(struct npy_file *a, char *data, size_t len, const char *name, struct err *e);
-void npy_close(struct npy_file *a);
+int npy_open_bytes(struct npy *a, char *data, size_t len, const char *name, struct err *e);
+void npy_close(struct npy *a);
 
-/* Whether its type has whole numbers only. */
-int npy_is_whole(const struct npy_file *a);
-double npy_value(const struct npy_file *a, size_t i);
+double npy_value(const struct npy *a, size_t i);
 /* out (n): the values from `first` on. */
-void npy_floats(const struct npy_file *a, size_t first, size_t n, float *out);
+void npy_floats(const struct npy *a, size_t first, size_t n, float *out);
 
 /* Appears whole. "-" is stdout. dims in 0 to NPY_MAX_DIMS. */
 int npy_write(const char *path, const float *values, const size_t *shape, int dims, struct err *e);

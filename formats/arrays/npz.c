@@ -66,7 +66,7 @@ int npz_has(const struct npz *z, const char *name, const char *suffix, struct er
 }
 
 /* Messages call it `full`. */
-static int read_entry(struct npz *z, size_t place, struct npy_file *a, const char *full, struct err *e)
+static int read_entry(struct npz *z, size_t place, struct npy *a, const char *full, struct err *e)
 {
 	char *data = NULL;
 	size_t len = 0;
@@ -77,7 +77,7 @@ static int read_entry(struct npz *z, size_t place, struct npy_file *a, const cha
 		       : 0;
 }
 
-int npz_entry(struct npz *z, size_t place, struct npy_file *a, struct err *e)
+int npz_entry(struct npz *z, size_t place, struct npy *a, struct err *e)
 {
 	const char *file = z->entries[place].name;
 	const size_t room = strlen(z->path) + strlen(file) + sizeof ": ";
@@ -92,7 +92,7 @@ int npz_entry(struct npz *z, size_t place, struct npy_file *a, struct err *e)
 }
 
 int npz_array(
-	struct npz *z, const char *name, const char *suffix, struct npy_file *a, char **called, struct err *e)
+	struct npz *z, const char *name, const char *suffix, struct npy *a, char **called, struct err *e)
 {
 	char *full = join(z->path, name, suffix, e);
 	size_t place = 0;

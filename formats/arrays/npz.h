@@ -23,11 +23,11 @@ int npz_has(const struct npz *z, const char *name, const char *suffix, struct er
 
 /* Opens that array, in memory; npy_close it. *called (may be NULL): how messages name it, "FILE: NAME.npy";
  * free() it. Returns 0, or -1 with *e. */
-int npz_array(struct npz *z, const char *name, const char *suffix, struct npy_file *a, char **called,
-	struct err *e);
+int npz_array(
+	struct npz *z, const char *name, const char *suffix, struct npy *a, char **called, struct err *e);
 
 /* Opens the array of that place among the entries, as npz_array does. */
-int npz_entry(struct npz *z, size_t place, struct npy_file *a, struct err *e);
+int npz_entry(struct npz *z, size_t place, struct npy *a, struct err *e);
 
 /* The first of these names that an array has; NULL with *e where none has. */
 const char *npz_main(const struct npz *z, const char *const *names, size_t n, struct err *e);

@@ -36,16 +36,16 @@ enum st_dtype precision_dtype(enum precision p)
 	return precisions[p].dtype;
 }
 
-int precision_check(const float *x, size_t n, double limit, enum err_code code, const char *path,
-	const char *name, struct err *e)
+int precision_check(const float *x, size_t n, double limit, const char *path, const char *name, struct err *e)
 {
 	for (size_t i = 0; i < n; i++) {
 		if (fabs((double)x[i]) <= limit)
 			continue;
 		if (!isfinite(x[i]))
-			return err_set(e, code, "%s: tensor '%s': item %zu is not finite", path, name, i);
-		return err_set(e, code, "%s: tensor '%s': item %zu is %g, too large for this precision", path,
-			name, i, (double)x[i]);
+			return err_set(
+				e, ERR_CHECK, "%s: tensor '%s': item %zu is not finite", path, name, i);
+		return err_set(e, ERR_CHECK, "%s: tensor '%s': item %zu is %g, too large for this precision",
+			path, name, i, (double)x[i]);
 	}
 	return 0;
 }
@@ -107,12 +107,10 @@ static int convert(struct precision_matrix *m, const char *name, enum precision 
 	snprintf(m->low, sizeof m->low, "%s.low", name);
 	snprintf(m->step, sizeof m->step, "%s.step", name);
 	m->tensors[0].data = q;
-	m->tensors[1] = (struct st_tensor){.name = m->low, .dtype = ST_F32, .dims = 2, .data = low};
-	m->tensors[2] = (struct st_tensor){.name = m->step, .dtype = ST_F32, .dims = 2, .data = step};
-	for (int t = 1; t < 3; t++) {
-		m->tensors[t].shape[0] = group == PRECISION_ROWS ? (int64_t)rows : 1;
-		m->tensors[t].shape[1] = group == PRECISION_ROWS ? 1 : (int64_t)columns;
-	}
+	const int64_t down = group == PRECISION_ROWS ? (int64_t)rows : 1;
+	const int64_t across = group == PRECISION_ROWS ? 1 : (int64_t)columns;
+	m->tensors[1] = st_matrix(m->low, ST_F32, down, across, low);
+	m->tensors[2] = st_matrix(m->step, ST_F32, down, across, step);
 	m->count = 3;
 	return 0;
 }
@@ -121,12 +119,8 @@ int precision_put(struct precision_matrix *m, const char *name, enum precision p
 	size_t rows, size_t columns, const float *x, const char *path, struct err *e)
 {
 	*m = (struct precision_matrix){.count = 1};
-	m->tensors[0] = (struct st_tensor){.name = name,
-		.dtype = precisions[p].dtype,
-		.dims = 2,
-		.shape = {(int64_t)rows, (int64_t)columns},
-		.data = x};
-	if (precision_check(x, rows * columns, precisions[p].limit, ERR_CHECK, path, name, e))
+	m->tensors[0] = st_matrix(name, precisions[p].dtype, (int64_t)rows, (int64_t)columns, x);
+	if (precision_check(x, rows * columns, precisions[p].limit, path, name, e))
 		return -1;
 	return p == PRECISION_F32 ? 0 : convert(m, name, p, group, rows, columns, x, path, e);
 }
@@ -147,8 +141,7 @@ static const float *get_groups(const struct safetensors *st, const char *name, c
 
 	snprintf(full, sizeof full, "%s.%s", name, suffix);
 	const struct st_tensor *t = safetensors_need(st, full, ST_F32, 2, shape, e);
-	return t && !precision_check(t->data, groups, FLT_MAX, ERR_FORMAT, st->path, full, e) ? t->data
-											      : NULL;
+	return t && !safetensors_check_finite(st, full, t->data, groups, e) ? t->data : NULL;
 }
 
 int precision_get(const struct safetensors *st, const char *name, enum precision p,
@@ -174,5 +167,5 @@ int precision_get(const struct safetensors *st, const char *name, enum precision
 	} else if (safetensors_to_float(t, x, rows * columns, e)) {
 		return -1;
 	}
-	return precision_check(x, rows * columns, FLT_MAX, ERR_FORMAT, st->path, name, e);
+	return safetensors_check_finite(st, name, x, rows * columns, e);
 }

@@ -48,8 +48,9 @@ void precision_free(struct precision_matrix *m);
 int precision_get(const struct safetensors *st, const char *name, enum precision p,
 	enum precision_group group, size_t rows, size_t columns, float *x, struct err *e);
 
-/* 0 where all n numbers are within +-limit, else -1 with *e ("path: tensor 'name': item I is ..."). */
-int precision_check(const float *x, size_t n, double limit, enum err_code code, const char *path,
-	const char *name, struct err *e);
+/* 0 where all n numbers to be written are within +-limit, else -1 with *e (ERR_CHECK, "path: tensor 'name':
+ * item I is ..."). */
+int precision_check(
+	const float *x, size_t n, double limit, const char *path, const char *name, struct err *e);
 
 #endif

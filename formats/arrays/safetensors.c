@@ -29,11 +29,6 @@ const char *st_dtype_name(enum st_dtype t)
 	return dtypes[t].name;
 }
 
-static uint32_t checksum(const void *data, size_t len)
-{
-	return libdeflate_crc32(0, data, len);
-}
-
 /* One entry of the header; `data` is the file's data section. */
 static int read_entry(struct st_tensor *t, const cJSON *item, const char *path, const unsigned char *data,
 	size_t data_len, struct err *e)
@@ -151,32 +146,18 @@ static int check_layout(
 	return 0;
 }
 
-/* The key of a tensor's checksum; free() it. */
-static char *crc_key(const char *tensor, struct err *e)
-{
-	static const char prefix[] = "crc32.";
-	const size_t length = strlen(tensor);
-	char *key = mem_alloc(sizeof prefix + length, 1, "tensor name", e);
-
-	if (key) {
-		memcpy(key, prefix, sizeof prefix - 1);
-		memcpy(key + sizeof prefix - 1, tensor, length + 1);
-	}
-	return key;
-}
-
 static int check_crcs(const struct safetensors *st, struct err *e)
 {
 	for (size_t i = 0; i < st->n; i++) {
 		const struct st_tensor *t = &st->tensors[i];
-		char actual[16], *key = crc_key(t->name, e);
+		char actual[16], *key = st_crc_key(t->name, e);
 		if (!key)
 			return -1;
 		const char *expected = safetensors_meta(st, key);
 		free(key);
 		if (!expected)
 			continue;
-		snprintf(actual, sizeof actual, "%08x", checksum(t->data, t->bytes));
+		snprintf(actual, sizeof actual, "%08x", libdeflate_crc32(0, t->data, t->bytes));
 		if (strcmp(expected, actual))
 			return err_set(e, ERR_FORMAT, "%s: tensor '%s': crc32 is %s, the header says %s",
 				st->path, t->name, actual, expected);
@@ -216,7 +197,7 @@ static int read_header(struct safetensors *st, const cJSON *root, size_t header_
 /* Reads what st->map holds; closes on failure. */
 static int read_map(struct safetensors *st, struct err *e)
 {
-	uint64_t header_len = 0;
+	uint64_t header_len;
 	cJSON *root = NULL;
 
 	if (st->map.len < 8) {
@@ -224,8 +205,7 @@ static int read_map(struct safetensors *st, struct err *e)
 			st->map.len);
 		goto fail;
 	}
-	for (int i = 7; i >= 0; i--)
-		header_len = header_len << 8 | st->map.data[i];
+	header_len = little_get(st->map.data, 8);
 	if (header_len > st->map.len - 8 || header_len > 100000000) {
 		err_set(e, ERR_FORMAT,
 			"%s: header of %llu bytes does not fit a file of %zu: not safetensors, or cut short",
@@ -363,6 +343,29 @@ const struct st_tensor *safetensors_need(const struct safetensors *st, const cha
 	return NULL;
 }
 
+void *safetensors_copy(const struct safetensors *st, const char *name, enum st_dtype dtype, int dims,
+	const int64_t *shape, size_t *n, struct err *e)
+{
+	const struct st_tensor *t = safetensors_need(st, name, dtype, dims, shape, e);
+	void *copy = t ? mem_alloc(t->bytes, 1, st->path, e) : NULL;
+
+	if (copy)
+		memcpy(copy, t->data, t->bytes);
+	if (copy && n)
+		*n = (size_t)t->shape[0];
+	return copy;
+}
+
+int safetensors_check_finite(
+	const struct safetensors *st, const char *name, const float *x, size_t n, struct err *e)
+{
+	for (size_t i = 0; i < n; i++)
+		if (!isfinite(x[i]))
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path, name, i);
+	return 0;
+}
+
 int safetensors_need_format(const struct safetensors *st, const char *format, int version, struct err *e)
 {
 	const char *have = safetensors_meta(st, "format"), *text = safetensors_meta(st, "version");
@@ -424,96 +427,4 @@ int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, st
 		}
 	}
 	return 0;
-}
-
-static size_t tensor_bytes(const struct st_tensor *t)
-{
-	size_t bytes = dtypes[t->dtype].size;
-
-	for (int i = 0; i < t->dims; i++)
-		bytes *= (size_t)t->shape[i];
-	return bytes;
-}
-
-/* The header with the tensors in the order `order`; NULL with *e set when memory is out. */
-static char *make_header(const struct st_tensor *tensors, const size_t *order, size_t n,
-	const struct st_meta *meta, size_t meta_count, struct err *e)
-{
-	cJSON *root = cJSON_CreateObject(), *m = cJSON_AddObjectToObject(root, "__metadata__");
-	size_t at = 0;
-
-	for (size_t i = 0; i < meta_count; i++)
-		if (meta[i].value)
-			cJSON_AddStringToObject(m, meta[i].key, meta[i].value);
-	for (size_t k = 0; k < n; k++) {
-		const struct st_tensor *t = &tensors[order[k]];
-		size_t bytes = tensor_bytes(t);
-		char value[16], *key = crc_key(t->name, e);
-		if (!key) {
-			cJSON_Delete(root);
-			return NULL;
-		}
-		snprintf(value, sizeof value, "%08x", checksum(t->data, bytes));
-		cJSON_AddStringToObject(m, key, value);
-		free(key);
-		cJSON *item = cJSON_AddObjectToObject(root, t->name);
-		cJSON_AddStringToObject(item, "dtype", dtypes[t->dtype].name);
-		cJSON *shape = cJSON_AddArrayToObject(item, "shape");
-		for (int i = 0; i < t->dims; i++)
-			cJSON_AddItemToArray(shape, cJSON_CreateNumber((double)t->shape[i]));
-		cJSON *range = cJSON_AddArrayToObject(item, "data_offsets");
-		cJSON_AddItemToArray(range, cJSON_CreateNumber((double)at));
-		at += bytes;
-		cJSON_AddItemToArray(range, cJSON_CreateNumber((double)at));
-	}
-	char *text = cJSON_PrintUnformatted(root);
-	cJSON_Delete(root);
-	if (!text)
-		err_set(e, ERR_SYSTEM, "out of memory for the header");
-	return text;
-}
-
-/* A failed write is found out at once, while errno still says why. */
-static int put(struct file_out *out, const void *data, size_t bytes, struct err *e)
-{
-	return bytes && fwrite(data, 1, bytes, out->stream) != bytes
-		       ? err_errno(e, "%s", file_name(out->path))
-		       : 0;
-}
-
-int safetensors_write(const char *path, const struct st_tensor *tensors, size_t n, const struct st_meta *meta,
-	size_t meta_count, struct err *e)
-{
-	static const char spaces[64] = "                                                                ";
-	size_t *order = mem_alloc(n, sizeof *order, path, e);
-	struct file_out out = {0};
-	size_t k = 0;
-
-	if (!order)
-		return -1;
-	for (size_t size = 8; size; size /= 2)
-		for (size_t i = 0; i < n; i++)
-			if (dtypes[tensors[i].dtype].size == size)
-				order[k++] = i;
-	char *header = make_header(tensors, order, n, meta, meta_count, e);
-	if (!header) {
-		free(order);
-		return err_prefix(e, path);
-	}
-	if (file_out_open(&out, path, e)) {
-		free(order);
-		free(header);
-		return -1;
-	}
-	size_t used = strlen(header), padded = (used + 8 + 63) / 64 * 64 - 8;
-	unsigned char length[8];
-	for (int i = 0; i < 8; i++)
-		length[i] = (unsigned char)((uint64_t)padded >> (8 * i));
-	int bad =
-		put(&out, length, 8, e) || put(&out, header, used, e) || put(&out, spaces, padded - used, e);
-	for (k = 0; k < n && !bad; k++)
-		bad = put(&out, tensors[order[k]].data, tensor_bytes(&tensors[order[k]]), e);
-	free(order);
-	free(header);
-	return file_out_end(&out, bad, e);
 }

@@ -76,6 +76,15 @@ int safetensors_meta_int(const struct safetensors *st, const char *key, long lon
 const struct st_tensor *safetensors_need(const struct safetensors *st, const char *name, enum st_dtype dtype,
 	int dims, const int64_t *shape, struct err *e);
 
+/* A copy of the data of such a tensor, and in *n (may be NULL) the first length of its shape. free() it. */
+void *safetensors_copy(const struct safetensors *st, const char *name, enum st_dtype dtype, int dims,
+	const int64_t *shape, size_t *n, struct err *e);
+
+/* 0 where all numbers of a tensor are finite, else -1 with *e (ERR_FORMAT, "path: tensor 'name': item I is
+ * not finite"). */
+int safetensors_check_finite(
+	const struct safetensors *st, const char *name, const float *x, size_t n, struct err *e);
+
 /* The file's own `format` must be this (e.g. "refer.weights") and its `version` not above `version`; every
  * tensor must be aligned to its type, so that it may be used in place. */
 int safetensors_need_format(const struct safetensors *st, const char *format, int version, struct err *e);
@@ -84,11 +93,27 @@ int safetensors_need_format(const struct safetensors *st, const char *format, in
  * BF16 or F64 tensor to float, at whatever alignment. `out` holds `count` items, the shape's product. */
 int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, struct err *e);
 
+/* A tensor to write, of one or two dimensions. */
+static inline struct st_tensor st_vector(const char *name, enum st_dtype dtype, int64_t n, const void *data)
+{
+	return (struct st_tensor){.name = name, .dtype = dtype, .dims = 1, .shape = {n}, .data = data};
+}
+
+static inline struct st_tensor st_matrix(
+	const char *name, enum st_dtype dtype, int64_t rows, int64_t columns, const void *data)
+{
+	return (struct st_tensor){
+		.name = name, .dtype = dtype, .dims = 2, .shape = {rows, columns}, .data = data};
+}
+
 /* Writes path whole ("-" is stdout). Adds crc32.<tensor> for each tensor; `meta` should hold format, version,
  * tool, options and seed; a key whose value is NULL is left out. Data begin on a 64-byte boundary; tensors
  * are laid out widest type first, so that each is aligned to its own type. */
 int safetensors_write(const char *path, const struct st_tensor *tensors, size_t n, const struct st_meta *meta,
 	size_t meta_count, struct err *e);
+
+/* The key of a tensor's checksum; free() it. */
+char *st_crc_key(const char *tensor, struct err *e);
 
 /* Size of one item, and the name ("F32"). */
 size_t st_dtype_size(enum st_dtype t);

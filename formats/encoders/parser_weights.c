@@ -55,13 +55,10 @@ static int take_matrix(
 		return -1;
 	const int8_t *whole = t->data;
 	const float *factor = f->data;
-	for (size_t r = 0; r < rows; r++) {
-		if (!isfinite(factor[r]))
-			return err_set(
-				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path, scale, r);
-		for (size_t c = 0; c < columns; c++)
-			out[r * columns + c] = factor[r] * (float)whole[r * columns + c];
-	}
+	if (safetensors_check_finite(st, scale, factor, rows, e))
+		return -1;
+	for (size_t i = 0; i < rows * columns; i++)
+		out[i] = factor[i / columns] * (float)whole[i];
 	return 0;
 }
 
@@ -74,13 +71,8 @@ static int take_vector(
 	name_of(name, member, p->name, "");
 	const struct st_tensor *t = safetensors_need(st, name, ST_F16, 1, (int64_t[]){(int64_t)n}, e);
 
-	if (!t || safetensors_to_float(t, out, n, e))
-		return -1;
-	for (size_t k = 0; k < n; k++)
-		if (!isfinite(out[k]))
-			return err_set(
-				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path, name, k);
-	return 0;
+	return !t || safetensors_to_float(t, out, n, e) || safetensors_check_finite(st, name, out, n, e) ? -1
+													 : 0;
 }
 
 /* *w has been made. */
@@ -177,8 +169,7 @@ static struct st_tensor *next_tensor(struct making *m, enum st_dtype type, const
 {
 	struct st_tensor *t = &m->tensors[m->n];
 
-	*t = (struct st_tensor){
-		.name = m->names[m->n], .dtype = type, .dims = 1, .shape = {rows}, .data = data};
+	*t = st_vector(m->names[m->n], type, rows, data);
 	m->n++;
 	return t;
 }

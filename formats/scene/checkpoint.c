@@ -46,8 +46,7 @@ int checkpoint_write(
 	const int has_best = t->best.values && t->best.iteration;
 	const float *arrays[ARRAYS] = {t->values, t->m, t->v, t->best.values};
 	const double losses[3] = {t->sum.bce, t->sum.contrast, t->sum.total};
-	struct st_tensor tensors[NUMBERS + ARRAYS] = {
-		{.name = "losses", .dtype = ST_F64, .dims = 1, .shape = {3}, .data = losses}};
+	struct st_tensor tensors[NUMBERS + ARRAYS] = {st_vector("losses", ST_F64, 3, losses)};
 	char iteration[32], best[32], since[32];
 	const struct st_meta meta[] = {{"format", "refer.checkpoint"}, {"version", "1"},
 		{"tool", "refer-train"}, {"iteration", iteration}, {"identity", of->identity},
@@ -57,17 +56,9 @@ int checkpoint_write(
 	size_t n = 1;
 
 	if (has_best)
-		tensors[n++] = (struct st_tensor){.name = "best_score",
-			.dtype = ST_F64,
-			.dims = 1,
-			.shape = {1},
-			.data = &t->best.score};
+		tensors[n++] = st_vector("best_score", ST_F64, 1, &t->best.score);
 	for (int i = 0; i < ARRAYS - !has_best; i++)
-		tensors[n++] = (struct st_tensor){.name = names[i],
-			.dtype = ST_F32,
-			.dims = 1,
-			.shape = {(int64_t)t->count},
-			.data = arrays[i]};
+		tensors[n++] = st_vector(names[i], ST_F32, (int64_t)t->count, arrays[i]);
 	snprintf(iteration, sizeof iteration, "%ld", t->iteration);
 	snprintf(best, sizeof best, "%ld", t->best.iteration);
 	snprintf(since, sizeof since, "%ld", t->best.since);
@@ -82,11 +73,7 @@ static int read_array(float *to, size_t count, const struct safetensors *st, con
 	if (!tensor)
 		return -1;
 	memcpy(to, tensor->data, tensor->bytes);
-	for (size_t i = 0; i < count; i++)
-		if (!isfinite(to[i]))
-			return err_set(
-				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path, name, i);
-	return 0;
+	return safetensors_check_finite(st, name, to, count, e);
 }
 
 /* A tensor of `count` finite doubles, at most 3. */

@@ -55,17 +55,6 @@ static int read_labels(struct features *f, struct err *e)
 	return labels ? 0 : -1;
 }
 
-static int check_floats(const struct st_tensor *t, const char *path, size_t count, struct err *e)
-{
-	const float *x = t->data;
-
-	for (size_t i = 0; i < count; i++)
-		if (!isfinite(x[i]))
-			return err_set(
-				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", path, t->name, i);
-	return 0;
-}
-
 /* The features that were found are components of others. */
 static int read_components(struct features *f, struct err *e)
 {
@@ -87,8 +76,8 @@ static int read_components(struct features *f, struct err *e)
 	f->channels = (size_t)basis->shape[1];
 	f->basis = basis->data;
 	f->mean = mean->data;
-	return check_floats(basis, f->file.path, f->components * f->channels, e) ||
-			       check_floats(mean, f->file.path, f->channels, e)
+	return safetensors_check_finite(&f->file, "basis", f->basis, f->components * f->channels, e) ||
+			       safetensors_check_finite(&f->file, "mean", f->mean, f->channels, e)
 		       ? -1
 		       : 0;
 }
@@ -193,21 +182,11 @@ int features_write(const struct features *f, const char *path, const char *optio
 {
 	const int64_t n = (int64_t)f->gaussians, c = (int64_t)f->channels, k = (int64_t)f->components;
 	const struct st_tensor tensors[] = {
-		f->labels ? (struct st_tensor){.name = "labels",
-				    .dtype = ST_I32,
-				    .dims = 1,
-				    .shape = {n},
-				    .data = f->labels}
-			  : (struct st_tensor){.name = "features",
-				    .dtype = f->is_half ? ST_F16 : ST_F32,
-				    .dims = 2,
-				    .shape = {n, k ? k : c},
-				    .data = f->values},
-		{.name = "reliability", .dtype = ST_F32, .dims = 1, .shape = {n}, .data = f->reliability},
-		{.name = "weight", .dtype = ST_F32, .dims = 1, .shape = {n}, .data = f->weight},
-		{.name = "basis", .dtype = ST_F32, .dims = 2, .shape = {k, c}, .data = f->basis},
-		{.name = "mean", .dtype = ST_F32, .dims = 1, .shape = {c}, .data = f->mean},
-	};
+		f->labels ? st_vector("labels", ST_I32, n, f->labels)
+			  : st_matrix("features", f->is_half ? ST_F16 : ST_F32, n, k ? k : c, f->values),
+		st_vector("reliability", ST_F32, n, f->reliability),
+		st_vector("weight", ST_F32, n, f->weight), st_matrix("basis", ST_F32, k, c, f->basis),
+		st_vector("mean", ST_F32, c, f->mean)};
 	char gaussians[24], error[NUMBER_SIZE];
 
 	snprintf(gaussians, sizeof gaussians, "%lld", (long long)n);

@@ -52,15 +52,9 @@ static int read_bounds(struct model *m, const struct safetensors *st, struct err
 /* The Gaussians of the scene that have a row of features each. */
 static int read_ids(struct model *m, const struct safetensors *st, struct err *e)
 {
-	const struct st_tensor *ids = safetensors_need(st, "ids", ST_I32, 1, (int64_t[]){-1}, e);
-
-	if (!ids)
+	if (!(m->ids = safetensors_copy(st, "ids", ST_I32, 1, (int64_t[]){-1}, &m->n, e)))
 		return -1;
-	m->n = m->learning = (size_t)ids->shape[0];
-	m->ids = mem_alloc(m->n, sizeof *m->ids, st->path, e);
-	if (!m->ids)
-		return -1;
-	memcpy(m->ids, ids->data, ids->bytes);
+	m->learning = m->n;
 	for (size_t i = 0; i < m->n; i++)
 		if (m->ids[i] < 0 || (size_t)m->ids[i] >= m->scene_gaussians ||
 			(i && m->ids[i] <= m->ids[i - 1]))
@@ -114,16 +108,12 @@ static int read_learning(struct model *m, const struct safetensors *st, struct e
 /* The leaves whose Gaussians share a row of features. */
 static int read_leaves(struct model *m, const struct safetensors *st, struct err *e)
 {
-	const struct st_tensor *leaves = safetensors_need(st, "leaves", ST_I64, 1, (int64_t[]){-1}, e);
 	size_t bad;
 
-	if (!leaves || read_root(&m->octree, st, e))
+	if (!(m->octree.codes = safetensors_copy(st, "leaves", ST_I64, 1, (int64_t[]){-1}, &m->n, e)) ||
+		read_root(&m->octree, st, e))
 		return -1;
-	m->n = m->octree.n = (size_t)leaves->shape[0];
-	m->octree.codes = mem_alloc(m->n, sizeof *m->octree.codes, st->path, e);
-	if (!m->octree.codes)
-		return -1;
-	memcpy(m->octree.codes, leaves->data, leaves->bytes);
+	m->octree.n = m->n;
 	if (octree_check(&m->octree, &bad))
 		return err_set(e, ERR_FORMAT,
 			"%s: tensor 'leaves': item %zu is not a leaf after the one before", st->path, bad);
@@ -178,7 +168,7 @@ static int read_parameters(struct model *m, const struct safetensors *st, struct
 		if (!tensor)
 			return -1;
 		memcpy(to, tensor->data, tensor->bytes);
-		if (precision_check(to, (size_t)rows, FLT_MAX, ERR_FORMAT, st->path, name, e))
+		if (safetensors_check_finite(st, name, to, (size_t)rows, e))
 			return -1;
 	}
 	return 0;
@@ -287,10 +277,9 @@ static int add_parameters(struct parts *p, const struct model *m, const char *pa
 			add_matrix(p, &p->weights[t]);
 			continue;
 		}
-		if (precision_check(from, (size_t)rows, FLT_MAX, ERR_CHECK, path, name, e))
+		if (precision_check(from, (size_t)rows, FLT_MAX, path, name, e))
 			return -1;
-		p->tensors[p->n++] = (struct st_tensor){
-			.name = name, .dtype = ST_F32, .dims = 1, .shape = {rows}, .data = from};
+		p->tensors[p->n++] = st_vector(name, ST_F32, rows, from);
 	}
 	return 0;
 }
@@ -307,25 +296,14 @@ static int add_learning(struct parts *p, const struct model *m, const char *path
 		return -1;
 	for (size_t i = 0; i < m->learning; i++)
 		p->learning[m->ids[i] / 8] |= (uint8_t)(1 << m->ids[i] % 8);
-	p->tensors[p->n++] = (struct st_tensor){.name = "learning",
-		.dtype = ST_U8,
-		.dims = 1,
-		.shape = {(int64_t)bytes},
-		.data = p->learning};
+	p->tensors[p->n++] = st_vector("learning", ST_U8, (int64_t)bytes, p->learning);
 	return 0;
 }
 
 static int add_tensors(struct parts *p, const struct model *m, const char *path, struct err *e)
 {
-	p->tensors[p->n] = (struct st_tensor){
-		.name = "ids", .dtype = ST_I32, .dims = 1, .shape = {(int64_t)m->n}, .data = m->ids};
-	if (m->has_leaves)
-		p->tensors[p->n] = (struct st_tensor){.name = "leaves",
-			.dtype = ST_I64,
-			.dims = 1,
-			.shape = {(int64_t)m->n},
-			.data = m->octree.codes};
-	p->n++;
+	p->tensors[p->n++] = m->has_leaves ? st_vector("leaves", ST_I64, (int64_t)m->n, m->octree.codes)
+					   : st_vector("ids", ST_I32, (int64_t)m->n, m->ids);
 	if (add_learning(p, m, path, e) ||
 		precision_put(&p->features, "features", m->precision, PRECISION_COLUMNS, m->n,
 			(size_t)m->layout.feature_width, m->features, path, e))

@@ -400,10 +400,10 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 	const struct fingerprint own = fingerprint_scene(p->means, p->n);
 	char offset[128], near[32];
 	struct st_tensor tensors[] = {
-		{.name = "means", .dtype = ST_F32, .dims = 2, .shape = {n, 3}, .data = p->means},
-		{.name = "scales", .dtype = ST_F32, .dims = 2, .shape = {n, 3}, .data = p->scales},
-		{.name = "quats", .dtype = ST_F32, .dims = 2, .shape = {n, 4}, .data = p->quats},
-		{.name = "opacities", .dtype = ST_F32, .dims = 1, .shape = {n}, .data = p->opacities},
+		st_matrix("means", ST_F32, n, 3, p->means),
+		st_matrix("scales", ST_F32, n, 3, p->scales),
+		st_matrix("quats", ST_F32, n, 4, p->quats),
+		st_vector("opacities", ST_F32, n, p->opacities),
 		{.name = "sh",
 			.dtype = ST_F32,
 			.dims = 3,

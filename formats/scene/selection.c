@@ -17,44 +17,23 @@ void selection_free(struct selection *s)
 	*s = (struct selection){0};
 }
 
-static int check_index(const struct selection *s, const char *path, struct err *e)
-{
-	for (size_t r = 0; r < s->n; r++)
-		for (int64_t k = s->indptr[r]; k < s->indptr[r + 1]; k++)
-			if (s->index[k] < 0 || (size_t)s->index[k] >= s->gaussians ||
-				(k > s->indptr[r] && s->index[k] <= s->index[k - 1]))
-				return err_set(e, ERR_FORMAT,
-					"%s: tensor 'index': item %lld does not rise within 0 to %lld, in sentence %zu",
-					path, (long long)k, (long long)s->gaussians - 1, r);
-	return 0;
-}
-
 static int read_tensors(struct selection *s, const struct safetensors *st, struct err *e)
 {
-	const int64_t any = -1;
-	const struct st_tensor *indptr = safetensors_need(st, "indptr", ST_I64, 1, &any, e);
-	const struct st_tensor *index = indptr ? safetensors_need(st, "index", ST_I32, 1, &any, e) : NULL;
+	size_t n, items;
 
-	if (!index)
+	if (!(s->indptr = metalist_offsets(st, "indptr", "sentences", &n, e)) ||
+		!(s->index = safetensors_copy(st, "index", ST_I32, 1, (int64_t[]){-1}, &items, e)))
 		return -1;
-	if (indptr->shape[0] < 1 || indptr->shape[0] > INT32_MAX)
-		return err_set(e, ERR_FORMAT,
-			"%s: tensor 'indptr': has %lld entries, expected 1 more than sentences", st->path,
-			(long long)indptr->shape[0]);
-	const size_t n = (size_t)indptr->shape[0] - 1;
-	s->indptr = mem_alloc(n + 1, sizeof *s->indptr, st->path, e);
-	s->index = mem_alloc((size_t)index->shape[0], sizeof *s->index, st->path, e);
-	if (!s->indptr || !s->index)
-		return -1;
-	memcpy(s->indptr, indptr->data, indptr->bytes);
-	memcpy(s->index, index->data, index->bytes);
 	s->refs = metalist_read(st, "refs", n, "sentences", e);
 	s->n = s->refs ? n : 0;
-	if (!s->refs || metalist_check_names(s->refs, n, 0, "refs", st->path, e) ||
-		metalist_check_unique(s->refs, n, "refs", st->path, e) ||
-		metalist_check_offsets("indptr", s->indptr, n, index->shape[0], "items", st->path, e))
-		return -1;
-	return check_index(s, st->path, e);
+	return !s->refs || metalist_check_names(s->refs, n, 0, "refs", st->path, e) ||
+			       metalist_check_unique(s->refs, n, "refs", st->path, e) ||
+			       metalist_check_offsets(
+				       "indptr", s->indptr, n, (int64_t)items, "items", st->path, e) ||
+			       metalist_check_index(
+				       s->index, s->indptr, n, s->gaussians, "sentence", st->path, e)
+		       ? -1
+		       : 0;
 }
 
 int selection_take(struct selection *s, const struct safetensors *st, struct err *e)
@@ -87,10 +66,8 @@ int selection_read(struct selection *s, const char *path, struct err *e)
 int selection_write(const struct selection *s, const char *path, const char *options, struct err *e)
 {
 	const int64_t n = (int64_t)s->n;
-	const struct st_tensor tensors[] = {
-		{.name = "indptr", .dtype = ST_I64, .dims = 1, .shape = {n + 1}, .data = s->indptr},
-		{.name = "index", .dtype = ST_I32, .dims = 1, .shape = {s->indptr[n]}, .data = s->index},
-	};
+	const struct st_tensor tensors[] = {st_vector("indptr", ST_I64, n + 1, s->indptr),
+		st_vector("index", ST_I32, s->indptr[n], s->index)};
 	char *refs = metalist_print(s->refs, s->n), gaussians[24];
 
 	if (!refs)

@@ -17,40 +17,6 @@ void text_free_more(struct text *t)
 	t->object_lists = t->views = t->kinds = NULL;
 }
 
-/* Sets (*list)[i], in a list that the first such entry makes. */
-static int set_entry(char ***list, size_t n, size_t i, const char *value, struct err *e)
-{
-	if (!*list) {
-		*list = mem_zalloc(n, sizeof **list, "sentences", e);
-		for (size_t k = 0; *list && k < n; k++)
-			if (!((*list)[k] = mem_strdup("", e)))
-				return -1;
-	}
-	char *copy = *list ? mem_strdup(value, e) : NULL;
-	if (!copy)
-		return -1;
-	free((*list)[i]);
-	(*list)[i] = copy;
-	return 0;
-}
-
-int text_take_more(struct text *t, const struct sentences *s, struct err *e)
-{
-	int bad = 0;
-
-	for (size_t i = 0; i < s->n && !bad; i++) {
-		const struct sentence *one = &s->items[i];
-		char *list = one->has_objects ? metalist_print(one->objects, one->object_count) : NULL;
-		if (one->has_objects && !list)
-			bad = err_set(e, ERR_SYSTEM, "objects: out of memory");
-		bad = bad || (list && set_entry(&t->object_lists, s->n, i, list, e)) ||
-		      (one->view && set_entry(&t->views, s->n, i, one->view, e)) ||
-		      (one->kind && set_entry(&t->kinds, s->n, i, one->kind, e));
-		free(list);
-	}
-	return bad ? -1 : 0;
-}
-
 void text_free(struct text *t)
 {
 	metalist_free(t->refs, t->n);
@@ -64,25 +30,6 @@ void text_free(struct text *t)
 	free(t->sentences);
 	free(t->splits);
 	*t = (struct text){0};
-}
-
-int text_take_means(struct text *t, struct err *e)
-{
-	const size_t width = (size_t)t->width;
-
-	for (size_t r = 0; r < t->n; r++) {
-		const size_t first = (size_t)t->offsets[r], end = (size_t)t->offsets[r + 1];
-		for (size_t i = 0; i < width && end > first; i++) {
-			double sum = 0;
-			for (size_t w = first; w < end; w++)
-				sum += t->words[w * width + i];
-			t->sentences[r * width + i] = (float)(sum / (double)(end - first));
-			if (!isfinite(t->sentences[r * width + i]))
-				return err_set(e, ERR_FORMAT, "ref '%s': the encoder's output is not finite",
-					t->refs[r]);
-		}
-	}
-	return 0;
 }
 
 int text_mark(const struct text *t, const char *list, const char *option, char *chosen, struct err *e)
@@ -122,65 +69,37 @@ static int read_splits(struct text *t, const struct safetensors *st, struct err 
 	return t->splits ? bad : -1;
 }
 
-/* A copy of a float tensor, all of it finite. */
-static float *copy_floats(const struct safetensors *st, const struct st_tensor *tensor, struct err *e)
+/* A copy of a matrix of words or sentences, all of it finite. */
+static float *read_matrix(
+	const struct safetensors *st, const char *name, size_t rows, int width, struct err *e)
 {
-	size_t count = tensor->bytes / sizeof(float);
-	float *out = mem_alloc(count, sizeof *out, st->path, e);
+	float *x = safetensors_copy(st, name, ST_F32, 2, (int64_t[]){(int64_t)rows, width}, NULL, e);
 
-	if (!out || safetensors_to_float(tensor, out, count, e))
-		goto fail;
-	for (size_t i = 0; i < count; i++)
-		if (!isfinite(out[i])) {
-			err_set(e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path,
-				tensor->name, i);
-			goto fail;
-		}
-	return out;
-fail:
-	free(out);
-	return NULL;
-}
-
-/* Of the shape of the words. */
-static int read_middle(struct text *t, const struct safetensors *st, const int64_t shape[2], struct err *e)
-{
-	const struct st_tensor *middle = safetensors_need(st, "middle", ST_F32, 2, shape, e);
-
-	t->middle = middle ? copy_floats(st, middle, e) : NULL;
-	return t->middle ? 0 : -1;
+	if (x && safetensors_check_finite(st, name, x, rows * (size_t)width, e)) {
+		free(x);
+		return NULL;
+	}
+	return x;
 }
 
 static int read_tensors(struct text *t, const struct safetensors *st, struct err *e)
 {
-	const struct st_tensor *offsets = safetensors_need(st, "offsets", ST_I64, 1, (int64_t[]){-1}, e);
-	const struct st_tensor *words, *sentences;
+	const struct st_tensor *words;
 
-	if (!offsets || !(words = safetensors_need(st, "words", ST_F32, 2, (int64_t[]){-1, -1}, e)))
+	if (!(t->offsets = metalist_offsets(st, "offsets", "sentences", &t->n, e)) ||
+		!(words = safetensors_need(st, "words", ST_F32, 2, (int64_t[]){-1, -1}, e)))
 		return -1;
-	if (offsets->shape[0] < 1 || offsets->shape[0] > INT32_MAX)
-		return err_set(e, ERR_FORMAT,
-			"%s: tensor 'offsets': has %lld entries, expected 1 more than sentences", st->path,
-			(long long)offsets->shape[0]);
 	if (words->shape[1] < 1 || words->shape[1] > 65536)
 		return err_set(e, ERR_FORMAT, "%s: tensor 'words': width %lld is not in 1 to 65536", st->path,
 			(long long)words->shape[1]);
-	t->n = (size_t)offsets->shape[0] - 1;
+	const size_t rows = (size_t)words->shape[0];
 	t->width = (int)words->shape[1];
-	sentences = safetensors_need(st, "sentences", ST_F32, 2, (int64_t[]){(int64_t)t->n, t->width}, e);
-	if (!sentences)
+	if (!(t->words = read_matrix(st, "words", rows, t->width, e)) ||
+		!(t->sentences = read_matrix(st, "sentences", t->n, t->width, e)) ||
+		(safetensors_find(st, "middle") &&
+			!(t->middle = read_matrix(st, "middle", rows, t->width, e))))
 		return -1;
-	t->offsets = mem_alloc(t->n + 1, sizeof *t->offsets, st->path, e);
-	if (!t->offsets)
-		return -1;
-	memcpy(t->offsets, offsets->data, offsets->bytes);
-	if (safetensors_find(st, "middle") && read_middle(t, st, words->shape, e))
-		return -1;
-	t->words = copy_floats(st, words, e);
-	t->sentences = t->words ? copy_floats(st, sentences, e) : NULL;
-	return t->sentences ? metalist_check_offsets(
-				      "offsets", t->offsets, t->n, words->shape[0], "words", st->path, e)
-			    : -1;
+	return metalist_check_offsets("offsets", t->offsets, t->n, words->shape[0], "words", st->path, e);
 }
 
 /* A list that may not be there: then *to stays NULL. */
@@ -259,24 +178,10 @@ static char *print_splits(const struct text *t, struct err *e)
 int text_write(const struct text *t, const char *path, const char *options, struct err *e)
 {
 	int64_t n = (int64_t)t->n;
-	const struct st_tensor tensors[] = {
-		{.name = "words",
-			.dtype = ST_F32,
-			.dims = 2,
-			.shape = {t->offsets[n], t->width},
-			.data = t->words},
-		{.name = "offsets", .dtype = ST_I64, .dims = 1, .shape = {n + 1}, .data = t->offsets},
-		{.name = "sentences",
-			.dtype = ST_F32,
-			.dims = 2,
-			.shape = {n, t->width},
-			.data = t->sentences},
-		{.name = "middle",
-			.dtype = ST_F32,
-			.dims = 2,
-			.shape = {t->offsets[n], t->width},
-			.data = t->middle},
-	};
+	const struct st_tensor tensors[] = {st_matrix("words", ST_F32, t->offsets[n], t->width, t->words),
+		st_vector("offsets", ST_I64, n + 1, t->offsets),
+		st_matrix("sentences", ST_F32, n, t->width, t->sentences),
+		st_matrix("middle", ST_F32, t->offsets[n], t->width, t->middle)};
 	/* In the order of formats/scene/text.md; those that are NULL are left out. */
 	char **const lists[] = {
 		t->refs, t->objects, t->texts, NULL, t->pieces, t->object_lists, t->views, t->kinds};

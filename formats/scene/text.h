@@ -5,7 +5,6 @@
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
-#include "formats/records/sentences.h"
 #include "geom/camera.h"
 
 #include <stddef.h>
@@ -33,11 +32,6 @@ struct text {
 
 int text_read(struct text *t, const char *path, struct err *e);
 int text_write(const struct text *t, const char *path, const char *options, struct err *e);
-/* sentences from words. ERR_FORMAT, with the ref, where one is not finite. */
-int text_take_means(struct text *t, struct err *e);
-/* object_lists, views and kinds of the n sentences that the text is made from; what no sentence says stays
- * NULL. */
-int text_take_more(struct text *t, const struct sentences *s, struct err *e);
 void text_free_more(struct text *t);
 void text_free(struct text *t);
 

@@ -317,8 +317,7 @@ struct written {
 
 static void put(struct written *t, const char *name, enum st_dtype dtype, int64_t length, const void *data)
 {
-	t->tensors[t->n++] =
-		(struct st_tensor){.name = name, .dtype = dtype, .dims = 1, .shape = {length}, .data = data};
+	t->tensors[t->n++] = st_vector(name, dtype, length, data);
 }
 
 static int put_plain(struct written *t, const struct weights *w, int64_t pixels, struct err *e)

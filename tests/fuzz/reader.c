@@ -60,7 +60,7 @@ SIMPLE(check, struct check, check_file, check_free)
 SIMPLE(features, struct features, features_open, features_close)
 SIMPLE(masks, struct masks, masks_read, masks_free)
 SIMPLE(model, struct model, model_read, model_free)
-SIMPLE(npy, struct npy_file, npy_open, npy_close)
+SIMPLE(npy, struct npy, npy_open, npy_close)
 SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
 SIMPLE(readings, struct reading_set, readings_read, readings_free)
 SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
@@ -248,7 +248,7 @@ static void try_checkpoint(const char *path)
 static void try_npz(const char *path)
 {
 	struct npz z;
-	struct npy_file a;
+	struct npy a;
 
 	if (npz_open(&z, path, &e))
 		return;
