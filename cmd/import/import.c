@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "cmd/import/photographs.h"
 #include "formats/splats/anysplats.h"
 #include "formats/cameras/camerafile.h"
 #include "formats/cameras/dataparser.h"
@@ -219,7 +220,7 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	cameras_shift(&s->cameras, s->offset);
 	char *metadata = describe_options(o->test_views, e);
 	int bad = !metadata || near_find(&s->splats, &s->cameras, e) || file_make_dir(folder, e) ||
-		  camerafile_images(&s->cameras, o->images, folder, &found->missing, e) ||
+		  photographs_find(&s->cameras, o->images, folder, &found->missing, e) ||
 		  (o->images && resemblance_find(&found->resemblance, s, folder, to, e)) ||
 		  scene_write(s, folder, metadata, e);
 	free(metadata);

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cmd/import/import.h"
+#include "cmd/import/photographs.h"
 #include "cmd/import/warping.h"
 #include "fit/fit.h"
 #include "fit/start.h"
@@ -57,7 +58,7 @@ static int read_cameras(struct fitting *f, struct err *e)
 		import_split(&f->cameras, o->test_views, e))
 		return -1;
 	cameras_undistort(&f->cameras);
-	if (camerafile_images(&f->cameras, o->images, ".", &missing, e))
+	if (photographs_find(&f->cameras, o->images, ".", &missing, e))
 		return -1;
 	if (missing == f->cameras.n)
 		return err_set(e, ERR_FORMAT,

@@ -252,7 +252,6 @@ double npy_value(const struct npy *a, size_t i)
 {
 	const int size = (int)types[a->type].size;
 	const unsigned char *at = a->data + i * (size_t)size;
-	double value;
 
 	switch (a->type) {
 	case NPY_F16:
@@ -260,8 +259,7 @@ double npy_value(const struct npy *a, size_t i)
 	case NPY_F32:
 		return (double)little_get_f32(at);
 	case NPY_F64:
-		memcpy(&value, at, sizeof value);
-		return value;
+		return little_get_f64(at);
 	case NPY_U8:
 	case NPY_U16:
 	case NPY_U32:

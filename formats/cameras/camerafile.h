@@ -19,11 +19,4 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e);
  * photographs, or NULL. Returns 0, or -1 with *e. */
 int camerafile_need_pinholes(const struct cameras *c, const char *path, const char *images, struct err *e);
 
-/* Turns each view's `image` from the foreign file's into a path relative to the folder `scene` (which must
- * exist), of the photograph in the folder `images`: under the foreign path or, failing that, under its file
- * name, with .jpg .jpeg .png tried where it has no extension. NULL where there is none, or `images` is NULL.
- * *missing is how many were not found. */
-int camerafile_images(
-	struct cameras *c, const char *images, const char *scene, size_t *missing, struct err *e);
-
 #endif

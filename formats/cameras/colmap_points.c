@@ -58,8 +58,7 @@ static int read_binary(struct colmap_points *p, const char *path, struct err *e)
 			break;
 		}
 		for (size_t k = 0; k < 3; k++) {
-			const uint64_t bits = little_get(entry + 8 + 8 * k, 8);
-			memcpy(&place[k], &bits, sizeof bits);
+			place[k] = little_get_f64(entry + 8 + 8 * k);
 			color[k] = entry[32 + k];
 		}
 		bad = add(p, &room, place, color, path, e);

@@ -173,13 +173,10 @@ static void coco_free(struct coco *c)
 
 static int check_twice(const struct reading *r, const struct coco *c, struct err *e)
 {
-	struct names names;
-	size_t earlier;
+	size_t twice, earlier;
 
-	if (names_make(&names, c->files, sizeof *c->files, 0, c->n, e))
+	if (names_find_twice(c->files, sizeof *c->files, 0, c->n, &twice, &earlier, e))
 		return -1;
-	const size_t twice = names_twice(&names, &earlier);
-	names_free(&names);
 	return twice == NAMES_NONE
 		       ? 0
 		       : err_set(e, ERR_FORMAT,

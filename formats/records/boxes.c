@@ -11,8 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void record_free(struct box_record *r)
+static void record_free(void *record)
 {
+	const struct box_record *r = record;
+
 	free(r->ref);
 	free(r->object);
 }
@@ -77,8 +79,10 @@ static int read_boxes(const struct jsonl *j, const cJSON *object, struct box_rec
 	return read_turned(j, object, &r->turned, where, e);
 }
 
-static int read_record(const struct jsonl *j, const cJSON *object, struct box_record *r, struct err *e)
+static int read_record(const struct jsonl *j, const cJSON *object, void *record, struct err *e)
 {
+	struct box_record *r = record;
+
 	if (jsonl_name(j, object, "ref", NAME_DATA, 0, &r->ref, e) ||
 		jsonl_name(j, object, "object", NAME_DATA, 0, &r->object, e) ||
 		jsonl_number(j, object, "score", &r->score, e))
@@ -120,38 +124,21 @@ static int check_unique(const struct box_set *s, const long *lines, const char *
 int boxes_read(struct box_set *s, const char *path, struct err *e)
 {
 	struct jsonl j;
-	size_t capacity = 0, line_capacity = 0;
-	void *lines = NULL, *records = NULL;
-	cJSON *object;
-	int got;
+	long *lines;
 
 	*s = (struct box_set){0};
 	if (jsonl_open(&j, path, e))
 		return -1;
-	while ((got = jsonl_next(&j, &object, e)) > 0) {
-		struct box_record r = {0};
-		int bad = read_record(&j, object, &r, e) ||
-			  mem_grow(&records, &capacity, s->n + 1, sizeof r, j.path, e) ||
-			  mem_grow(&lines, &line_capacity, s->n + 1, sizeof(long), j.path, e);
-		cJSON_Delete(object);
-		if (bad) {
-			record_free(&r);
-			got = -1;
-			break;
-		}
-		((struct box_record *)records)[s->n] = r;
-		((long *)lines)[s->n++] = j.line_number;
-	}
-	s->records = records;
-	if (!got && !s->n)
-		got = err_set(e, ERR_FORMAT, "%s: holds no boxes", file_name(path));
-	if (!got)
-		got = check_unique(s, lines, file_name(path), e);
+	int bad = jsonl_records(
+		&j, sizeof *s->records, read_record, record_free, (void **)&s->records, &s->n, &lines, e);
+	if (!bad && !s->n)
+		bad = err_set(e, ERR_FORMAT, "%s: holds no boxes", file_name(path));
+	bad = bad || check_unique(s, lines, file_name(path), e);
 	jsonl_close(&j);
 	free(lines);
-	if (got)
+	if (bad)
 		boxes_free(s);
-	return got;
+	return bad ? -1 : 0;
 }
 
 /* ,"key":[x,...] with twelve digits: a thousandth of a unit a million kilounits from the origin. */

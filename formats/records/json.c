@@ -82,8 +82,7 @@ int json_string(
 	return 1;
 }
 
-/* `count` numbers of an array, 0 where they are. */
-static int get_numbers(const cJSON *array, int count, double *values)
+int json_numbers(const cJSON *array, int count, double *values)
 {
 	const cJSON *item = cJSON_IsArray(array) ? array->child : NULL;
 
@@ -104,12 +103,12 @@ int json_matrix(const cJSON *object, const char *key, int rows, int columns, dou
 	if (!item)
 		return err_missing(key, 1, where, e);
 	if (!columns) {
-		if (get_numbers(item, rows, values))
+		if (json_numbers(item, rows, values))
 			return err_set(e, ERR_FORMAT, "%s: key '%s' is not %d numbers", where, key, rows);
 		return 0;
 	}
 	for (int r = 0; !bad && r < rows; r++) {
-		bad = !row || get_numbers(row, columns, values + r * columns);
+		bad = !row || json_numbers(row, columns, values + r * columns);
 		row = bad ? row : row->next;
 	}
 	if (bad || row)

@@ -31,4 +31,7 @@ int json_string(
 int json_matrix(const cJSON *object, const char *key, int rows, int columns, double *values,
 	const char *where, struct err *e);
 
+/* `count` finite numbers of an array, no more and no fewer: 0, or -1. */
+int json_numbers(const cJSON *array, int count, double *values);
+
 #endif

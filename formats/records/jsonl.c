@@ -159,6 +159,45 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 	return jsonl_err(j, e, is_cut ? "a NUL character (\\u0000) in a string" : "not a JSON object");
 }
 
+int jsonl_records(struct jsonl *j, size_t size,
+	int (*read)(const struct jsonl *j, const cJSON *object, void *record, struct err *e),
+	void (*release)(void *record), void **records, size_t *n, long **lines, struct err *e)
+{
+	size_t capacity = 0, line_capacity = 0;
+	long *at = NULL;
+	cJSON *object;
+	int got;
+
+	*n = 0;
+	*records = NULL;
+	while ((got = jsonl_next(j, &object, e)) > 0) {
+		int bad = mem_grow(records, &capacity, *n + 1, size, j->path, e) ||
+			  mem_grow((void **)&at, &line_capacity, *n + 1, sizeof *at, j->path, e);
+		if (!bad) {
+			void *record = (char *)*records + *n * size;
+			at[(*n)++] = j->line_number;
+			bad = read(j, object, memset(record, 0, size), e);
+		}
+		cJSON_Delete(object);
+		if (bad) {
+			got = -1;
+			break;
+		}
+	}
+	for (size_t i = 0; got && i < *n; i++)
+		release((char *)*records + i * size);
+	if (got) {
+		free(*records);
+		*records = NULL;
+		*n = 0;
+	}
+	if (lines)
+		*lines = got ? NULL : at;
+	if (got || !lines)
+		free(at);
+	return got;
+}
+
 int jsonl_text(struct jsonl *j, struct err *e)
 {
 	ssize_t len = next_line(j, e);

@@ -36,6 +36,13 @@ int jsonl_peek(struct jsonl *j, struct err *e);
 int jsonl_text(struct jsonl *j, struct err *e);
 void jsonl_close(struct jsonl *j);
 
+/* All objects as records of `size` bytes, each zeroed and then filled by `read`, which returns 0, or -1 with
+ * *e; *records (*n) and the line of each in *lines (may be NULL): free() these. After an error, -1 with *e,
+ * there are none: `release` has had each. */
+int jsonl_records(struct jsonl *j, size_t size,
+	int (*read)(const struct jsonl *j, const cJSON *object, void *record, struct err *e),
+	void (*release)(void *record), void **records, size_t *n, long **lines, struct err *e);
+
 /* Sets ERR_FORMAT with "path:LINE: reason". Always returns -1. */
 int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));

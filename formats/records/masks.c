@@ -5,6 +5,7 @@
 #include "base/number.h"
 #include "base/path.h"
 #include "formats/images/png.h"
+#include "formats/records/json.h"
 #include "geom/views.h"
 
 #include <math.h>
@@ -31,21 +32,6 @@ static int read_visible(const struct jsonl *j, const cJSON *object, double *visi
 	return 0;
 }
 
-/* A list of so many finite numbers. */
-static int read_list_of(const cJSON *list, double *values, int n)
-{
-	const cJSON *item = list ? list->child : NULL;
-
-	if (!cJSON_IsArray(list) || cJSON_GetArraySize(list) != n)
-		return -1;
-	for (int i = 0; i < n; i++, item = item->next) {
-		if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
-			return -1;
-		values[i] = item->valuedouble;
-	}
-	return 0;
-}
-
 static int read_boxes(const struct jsonl *j, const cJSON *boxes, struct mask_place *place, struct err *e)
 {
 	const cJSON *item;
@@ -56,7 +42,7 @@ static int read_boxes(const struct jsonl *j, const cJSON *boxes, struct mask_pla
 		return jsonl_err(j, e, "key 'boxes' is not a list");
 	cJSON_ArrayForEach(item, boxes)
 	{
-		if (read_list_of(item, box, 4))
+		if (json_numbers(item, 4, box))
 			return jsonl_err(j, e, "key 'boxes': item %zu is not [left,top,right,bottom]", i);
 		if (mask_place_add_box(place, box, e))
 			return -1;
@@ -75,7 +61,7 @@ static int read_place(const struct jsonl *j, const cJSON *object, struct mask *m
 	if (!(m->place = mask_place_new(e)))
 		return -1;
 	if (peak && !cJSON_IsNull(peak)) {
-		if (read_list_of(peak, m->place->peak, 2))
+		if (json_numbers(peak, 2, m->place->peak))
 			return jsonl_err(j, e, "key 'peak' is not [column,row]");
 		m->place->has_peak = 1;
 	}

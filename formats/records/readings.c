@@ -7,12 +7,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void record_free(void *record)
+{
+	const struct reading_record *r = record;
+
+	free(r->ref);
+	free(r->room);
+}
+
 void readings_free(struct reading_set *s)
 {
-	for (size_t i = 0; i < s->n; i++) {
-		free(s->records[i].ref);
-		free(s->records[i].room);
-	}
+	for (size_t i = 0; i < s->n; i++)
+		record_free(&s->records[i]);
 	free(s->records);
 	*s = (struct reading_set){0};
 }
@@ -63,8 +69,9 @@ static void read_clauses(struct reading *r, const cJSON *of, int figure)
 	}
 }
 
-static int read_record(const struct jsonl *j, const cJSON *o, struct reading_record *r, struct err *e)
+static int read_record(const struct jsonl *j, const cJSON *o, void *record, struct err *e)
 {
+	struct reading_record *r = record;
 	const char *target = NULL;
 
 	if (jsonl_name(j, o, "ref", NAME_DATA, 1, &r->ref, e) ||
@@ -79,32 +86,14 @@ static int read_record(const struct jsonl *j, const cJSON *o, struct reading_rec
 int readings_read(struct reading_set *s, const char *path, struct err *e)
 {
 	struct jsonl j;
-	size_t capacity = 0;
-	void *records = NULL;
-	cJSON *o;
-	int got;
 
 	*s = (struct reading_set){0};
 	if (jsonl_open(&j, path, e))
 		return -1;
-	while ((got = jsonl_next(&j, &o, e)) > 0) {
-		struct reading_record r = {0};
-		int bad = read_record(&j, o, &r, e) ||
-			  mem_grow(&records, &capacity, s->n + 1, sizeof r, j.path, e);
-		cJSON_Delete(o);
-		s->records = records;
-		if (bad) {
-			free(r.ref);
-			free(r.room);
-			got = -1;
-			break;
-		}
-		s->records[s->n++] = r;
-	}
+	const int bad = jsonl_records(
+		&j, sizeof *s->records, read_record, record_free, (void **)&s->records, &s->n, NULL, e);
 	jsonl_close(&j);
-	if (got)
-		readings_free(s);
-	return got;
+	return bad;
 }
 
 const struct reading_record *readings_find(const struct reading_set *s, const char *ref)

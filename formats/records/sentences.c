@@ -9,8 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void sentence_free(struct sentence *s)
+static void sentence_free(void *record)
 {
+	const struct sentence *s = record;
+
 	for (size_t i = 0; i < s->view_count; i++)
 		free(s->views[i]);
 	for (size_t i = 0; i < s->object_count; i++)
@@ -109,8 +111,9 @@ static int read_target(struct sentence *s, const struct jsonl *j, const cJSON *o
 	return s->object ? 0 : -1;
 }
 
-static int read_one(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+static int read_one(const struct jsonl *j, const cJSON *object, void *record, struct err *e)
 {
+	struct sentence *s = record;
 	const char *text, *split = "train";
 
 	if (jsonl_name(j, object, "ref", NAME_DATA, 1, &s->ref, e) ||
@@ -132,13 +135,11 @@ static int read_one(struct sentence *s, const struct jsonl *j, const cJSON *obje
 
 static int check_unique(const struct sentences *s, const long *lines, const char *path, struct err *e)
 {
-	struct names refs;
-	size_t earlier;
+	size_t twice, earlier;
 
-	if (names_make(&refs, s->items, sizeof *s->items, offsetof(struct sentence, ref), s->n, e))
+	if (names_find_twice(
+		    s->items, sizeof *s->items, offsetof(struct sentence, ref), s->n, &twice, &earlier, e))
 		return -1;
-	const size_t twice = names_twice(&refs, &earlier);
-	names_free(&refs);
 	return twice == NAMES_NONE ? 0
 				   : err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", path,
 					     lines[twice], s->items[twice].ref, lines[earlier]);
@@ -146,31 +147,15 @@ static int check_unique(const struct sentences *s, const long *lines, const char
 
 static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 {
-	long *lines = NULL;
-	size_t capacity = 0, line_capacity = 0;
-	cJSON *object;
-	int got;
+	long *lines;
+	int bad = jsonl_records(
+		j, sizeof *s->items, read_one, sentence_free, (void **)&s->items, &s->n, &lines, e);
 
-	while ((got = jsonl_next(j, &object, e)) > 0) {
-		struct sentence one = {0};
-		int bad = read_one(&one, j, object, e) ||
-			  mem_grow((void **)&s->items, &capacity, s->n + 1, sizeof *s->items, j->path, e) ||
-			  mem_grow((void **)&lines, &line_capacity, s->n + 1, sizeof *lines, j->path, e);
-		cJSON_Delete(object);
-		if (bad) {
-			sentence_free(&one);
-			free(lines);
-			return -1;
-		}
-		lines[s->n] = j->line_number;
-		s->items[s->n++] = one;
-	}
-	if (!got && !s->n)
-		got = err_set(e, ERR_FORMAT, "%s: holds no sentences", j->path);
-	if (!got)
-		got = check_unique(s, lines, j->path, e);
+	if (!bad && !s->n)
+		bad = err_set(e, ERR_FORMAT, "%s: holds no sentences", j->path);
+	bad = bad || check_unique(s, lines, j->path, e);
 	free(lines);
-	return got;
+	return bad ? -1 : 0;
 }
 
 static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)

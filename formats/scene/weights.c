@@ -12,8 +12,6 @@
 /* A zstd block of 4 bytes may repeat one 131,072 times. */
 enum { VERSION_READ = 3, MAX_SIDE = 65536, LEVELS = 255, RATIO = 32768 };
 
-static const char *const stream_names[WEIGHTS_STREAMS] = {"ids", "maps", "levels"};
-
 static int check_indptr(const struct weights *w, int64_t pixels, int64_t nnz, struct err *e)
 {
 	const char *path = w->file.path;
@@ -142,13 +140,14 @@ static int read_packed(struct weights *w, int64_t pixels, int as_tiles, struct e
 			"%s: refer.weights, packed, version %s is older than this program reads (3)",
 			w->file.path, version);
 	for (int s = 0; s < WEIGHTS_STREAMS && dropped; s++) {
-		const struct st_tensor *t = safetensors_need(&w->file, stream_names[s], ST_U8, 1, &any, e);
+		const struct st_tensor *t =
+			safetensors_need(&w->file, weights_stream_name[s], ST_U8, 1, &any, e);
 		const int64_t bytes = ((const int64_t *)sizes->data)[s];
 		if (!t)
 			return -1;
 		if (bytes < 0 || bytes / RATIO > (int64_t)t->bytes)
 			return err_set(e, ERR_FORMAT, "%s: tensor 'sizes': %lld bytes cannot be in '%s'",
-				w->file.path, (long long)bytes, stream_names[s]);
+				w->file.path, (long long)bytes, weights_stream_name[s]);
 		pack.bytes[s] = (size_t)bytes;
 		pack.packed[s] = t->bytes;
 		pack.data[s] = (uint8_t *)(size_t)t->data;
@@ -259,7 +258,8 @@ int weights_open_tiles(struct weights *w, struct weights_room *room, const char 
 	return open_view(w, room, dir, scene, view, 1, e);
 }
 
-int weights_exist(const char *dir, const char *view, struct err *e)
+/* 1 where DIR/VIEW.safetensors is there, 0 where it is not, -1 with *e. */
+static int is_there(const char *dir, const char *view, struct err *e)
 {
 	char *path = file_join(dir, view, ".safetensors", e);
 	int found = path ? file_exists(path) : -1;
@@ -291,87 +291,6 @@ struct view_matrix weights_matrix(const struct weights *w)
 	return (struct view_matrix){w->height, w->width, (size_t)w->gaussians, weights_view(w), w->tiles};
 }
 
-/* The weights as the file has them: its own, or a converted copy in *owned. */
-static const void *convert(const struct weights *w, int64_t nnz, void **owned, struct err *e)
-{
-	if (w->precision == PRECISION_F32)
-		return w->weight;
-	*owned = mem_alloc((size_t)nnz, st_dtype_size(precision_dtype(w->precision)), "weights", e);
-	if (*owned && w->precision == PRECISION_F16)
-		for (int64_t i = 0; i < nnz; i++)
-			((uint16_t *)*owned)[i] = half_of_float(w->weight[i]);
-	else if (*owned)
-		for (int64_t i = 0; i < nnz; i++)
-			((uint8_t *)*owned)[i] = (uint8_t)(w->weight[i] * LEVELS + 0.5f);
-	return *owned;
-}
-
-/* The file's tensors: the weights as they are, or packed. Data that are made are its own. */
-struct written {
-	struct st_tensor tensors[5];
-	size_t n;
-	int64_t sizes[WEIGHTS_STREAMS];
-	void *converted;
-	uint8_t *dropped;
-};
-
-static void put(struct written *t, const char *name, enum st_dtype dtype, int64_t length, const void *data)
-{
-	t->tensors[t->n++] = st_vector(name, dtype, length, data);
-}
-
-static int put_plain(struct written *t, const struct weights *w, int64_t pixels, struct err *e)
-{
-	const int64_t nnz = w->indptr[pixels];
-	const void *data = convert(w, nnz, &t->converted, e);
-
-	if (!data)
-		return -1;
-	put(t, "indptr", ST_I64, pixels + 1, w->indptr);
-	put(t, "index", ST_I32, nnz, w->index);
-	put(t, "dropped", ST_F32, pixels, w->dropped);
-	put(t, "weight", precision_dtype(w->precision), nnz, data);
-	return 0;
-}
-
-static int put_packed(struct written *t, const struct weights *w, int64_t pixels, struct err *e)
-{
-	t->dropped = mem_alloc((size_t)pixels, 1, "weights", e);
-	if (!t->dropped)
-		return -1;
-	for (int64_t p = 0; p < pixels; p++)
-		t->dropped[p] = (uint8_t)(w->dropped[p] * LEVELS + 0.5f);
-	for (int s = 0; s < WEIGHTS_STREAMS; s++)
-		t->sizes[s] = (int64_t)w->pack->bytes[s];
-	put(t, "sizes", ST_I64, WEIGHTS_STREAMS, t->sizes);
-	for (int s = 0; s < WEIGHTS_STREAMS; s++)
-		put(t, stream_names[s], ST_U8, (int64_t)w->pack->packed[s], w->pack->data[s]);
-	put(t, "dropped", ST_U8, pixels, t->dropped);
-	return 0;
-}
-
-int weights_write(
-	const struct weights *w, const char *dir, const char *view, const char *options, struct err *e)
-{
-	const int64_t pixels = (int64_t)w->width * w->height;
-	char *path = file_join(dir, view, ".safetensors", e), width[16], height[16], gaussians[24];
-	struct written t = {0};
-	int bad = !path || (w->pack ? put_packed : put_plain)(&t, w, pixels, e);
-
-	snprintf(width, sizeof width, "%d", w->width);
-	snprintf(height, sizeof height, "%d", w->height);
-	snprintf(gaussians, sizeof gaussians, "%lld", (long long)w->gaussians);
-	struct st_meta meta[] = {{"format", "refer.weights"}, {"version", w->pack ? "3" : "1"},
-		{"tool", "gs-weigh"}, {"options", options}, {"seed", "0"}, {"view", view}, {"width", width},
-		{"height", height}, {"gaussians", gaussians}, {"scene", fingerprint_text(&w->scene)},
-		{"camera", fingerprint_text(&w->camera)}};
-	bad = bad || safetensors_write(path, t.tensors, t.n, meta, sizeof meta / sizeof *meta, e);
-	free(path);
-	free(t.converted);
-	free(t.dropped);
-	return bad ? -1 : 0;
-}
-
 /* Where no training view has weights, the folder is another one than was meant. */
 static int check_missing(const char *dir, size_t missing, size_t training, struct err *e)
 {
@@ -390,7 +309,7 @@ int weights_mark(const char *dir, const struct cameras *cameras, char *there, si
 		if (cameras->views[v].split != SPLIT_TRAIN)
 			continue;
 		training++;
-		int found = weights_exist(dir, cameras->views[v].name, e);
+		int found = is_there(dir, cameras->views[v].name, e);
 		if (found < 0)
 			return -1;
 		there[v] = (char)found;
@@ -412,7 +331,7 @@ int weights_each(const char *dir, const struct scene *scene, int (*needs)(const 
 		if (camera->split != SPLIT_TRAIN)
 			continue;
 		training++;
-		const int found = weights_exist(dir, camera->name, e);
+		const int found = is_there(dir, camera->name, e);
 		const int is_needed = !needs || needs(context, v);
 		if (found < 0 || (found && is_needed && weights_open(&w, dir, scene, v, e)))
 			return -1;

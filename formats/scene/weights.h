@@ -53,8 +53,6 @@ int weights_open_tiles(struct weights *w, struct weights_room *room, const char 
 	const struct scene *scene, size_t view, struct err *e);
 /* weights_open by its path and of any scene; "-" is stdin. */
 int weights_open_file(struct weights *w, const char *path, struct err *e);
-/* 1 where DIR/VIEW.safetensors is there, 0 where it is not, -1 with *e. */
-int weights_exist(const char *dir, const char *view, struct err *e);
 void weights_close(struct weights *w);
 
 /* there (cameras->n): 1 for the training views that have weights. *missing gets the number of those without.

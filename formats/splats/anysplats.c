@@ -24,9 +24,7 @@ int anysplats_read(
 	const char *name = file_name(path);
 	struct file_map map;
 
-	*s = (struct splats){0};
-	if (report)
-		*report = (struct rows_report){0};
+	gaussian_rows_none(s, report);
 	if (anysplats_is_meta(path))
 		return sog_read_meta(s, offset, report, path, e);
 	if (file_map(path, &map, e))

@@ -7,7 +7,7 @@
 #include "splat/splats.h"
 
 /* Reads a .ply, .spz, SOG, .glb or .splat ("-" is stdin): by how the file begins; .splat, which begins with a
- * Gaussian, and SOG's meta.json by their names. As ply_read. */
+ * Gaussian, and SOG's meta.json by their names. As ply_read_map. */
 int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e);
 

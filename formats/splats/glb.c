@@ -237,9 +237,7 @@ int glb_read_map(struct splats *s, double offset[3], struct rows_report *report,
 {
 	struct source in = {0};
 
-	*s = (struct splats){0};
-	if (report)
-		*report = (struct rows_report){0};
+	gaussian_rows_none(s, report);
 	int bad = glb_open(&in.file, name, map, e);
 	if (!bad) {
 		bad = read_all(&in, s, offset, report, e);

@@ -140,9 +140,7 @@ int ply_read_map(struct splats *s, double offset[3], struct rows_report *report,
 	struct rows_report local = {0};
 	struct plyfile f;
 
-	*s = (struct splats){0};
-	if (report)
-		*report = local;
+	gaussian_rows_none(s, report);
 	if (plyfile_open(&f, name, map, e))
 		return -1;
 	int bad = read_elements(s, offset, &local, &f, e);
@@ -154,16 +152,6 @@ int ply_read_map(struct splats *s, double offset[3], struct rows_report *report,
 	else
 		*report = local;
 	return bad;
-}
-
-int ply_read(struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e)
-{
-	struct file_map map;
-
-	*s = (struct splats){0};
-	if (report)
-		*report = (struct rows_report){0};
-	return file_map(path, &map, e) ? -1 : ply_read_map(s, offset, report, file_name(path), &map, e);
 }
 
 static void put_header(FILE *out, const struct splats *s, const char *mean_type, int has_labels)

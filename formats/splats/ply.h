@@ -9,13 +9,11 @@
 
 #include <stdint.h>
 
-/* Reads a 3DGS .ply ("-" is stdin; binary of either byte order, or ascii; or PlayCanvas's packed form):
- * activations applied (scales exp, opacity sigmoid), means minus `offset`, which is chosen here by the rule
- * in ply.md (0 for scenes near the origin) and returned. Quaternions keep their length unless it is extreme
- * (ply.md). `report` may be NULL. Returns 0, or -1 with *e set, *s zeroed and report->dropped NULL. */
-int ply_read(struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e);
-
-/* The same of a file that is in memory, which is released in any case; `name` is for messages. */
+/* Reads a 3DGS .ply that is in memory, which is released in any case (binary of either byte order, or ascii;
+ * or PlayCanvas's packed form): activations applied (scales exp, opacity sigmoid), means minus `offset`,
+ * which is chosen here by the rule in ply.md (0 for scenes near the origin) and returned. Quaternions keep
+ * their length unless it is extreme (ply.md). `name` is for messages, `report` may be NULL. Returns 0, or -1
+ * with *e set, *s zeroed and report->dropped NULL. */
 int ply_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e);
 

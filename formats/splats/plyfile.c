@@ -1,8 +1,10 @@
 #include "formats/splats/plyfile.h"
 
+#include "base/little.h"
 #include "base/mem.h"
 #include "base/names.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdint.h>
 #include <stddef.h>
@@ -61,7 +63,6 @@ static int read_format(struct plyfile *f, char *line, int number, struct err *e)
 
 static int read_element(struct plyfile *f, char *line, int number, struct err *e)
 {
-	void *block = f->elements;
 	const char *name = next_word(&line), *count = next_word(&line);
 	size_t rows = 0;
 
@@ -72,9 +73,8 @@ static int read_element(struct plyfile *f, char *line, int number, struct err *e
 			return err_set(e, ERR_FORMAT,
 				"%s:%d: element '%.80s': %.40s rows do not fit in memory", f->path, number,
 				name, count);
-	if (mem_grow(&block, &f->capacity, f->n + 1, sizeof *f->elements, f->path, e))
+	if (mem_grow((void **)&f->elements, &f->capacity, f->n + 1, sizeof *f->elements, f->path, e))
 		return -1;
-	f->elements = block;
 	f->elements[f->n++] = (struct plyfile_element){.name = name, .line = number, .rows = rows};
 	return 0;
 }
@@ -107,10 +107,8 @@ static int read_property(struct plyfile *f, char *line, int number, struct err *
 	p.name = next_word(&line);
 	if (!*p.name)
 		return err_set(e, ERR_FORMAT, "%s:%d: property without a name", f->path, number);
-	void *block = el->properties;
-	if (mem_grow(&block, &el->capacity, el->n + 1, sizeof p, f->path, e))
+	if (mem_grow((void **)&el->properties, &el->capacity, el->n + 1, sizeof p, f->path, e))
 		return -1;
-	el->properties = block;
 	el->properties[el->n++] = p;
 	el->has_list |= p.is_list;
 	/* In ascii the shortest value is a digit and the blank after it (the last one may lack that: see
@@ -163,34 +161,21 @@ static int read_line(struct plyfile *f, char *line, int number, struct err *e)
 	return err_set(e, ERR_FORMAT, "%s:%d: header line '%.40s' is unknown", f->path, number, word);
 }
 
-/* The first place whose name an earlier one has, or NAMES_NONE; -1 with *e. */
-static int find_twice(const void *items, size_t stride, size_t offset, size_t n, size_t *twice, struct err *e)
-{
-	struct names names;
-	size_t earlier;
-
-	if (names_make(&names, items, stride, offset, n, e))
-		return -1;
-	*twice = names_twice(&names, &earlier);
-	names_free(&names);
-	return 0;
-}
-
 /* Elements have different names, and the properties of each. */
 static int check_unique(const struct plyfile *f, struct err *e)
 {
-	size_t twice;
+	size_t twice, earlier;
 
-	if (find_twice(f->elements, sizeof *f->elements, offsetof(struct plyfile_element, name), f->n, &twice,
-		    e))
+	if (names_find_twice(f->elements, sizeof *f->elements, offsetof(struct plyfile_element, name), f->n,
+		    &twice, &earlier, e))
 		return -1;
 	if (twice != NAMES_NONE)
 		return err_set(e, ERR_FORMAT, "%s:%d: element '%.80s' appears twice", f->path,
 			f->elements[twice].line, f->elements[twice].name);
 	for (size_t i = 0; i < f->n; i++) {
 		const struct plyfile_element *el = &f->elements[i];
-		if (find_twice(el->properties, sizeof *el->properties,
-			    offsetof(struct plyfile_property, name), el->n, &twice, e))
+		if (names_find_twice(el->properties, sizeof *el->properties,
+			    offsetof(struct plyfile_property, name), el->n, &twice, &earlier, e))
 			return -1;
 		if (twice != NAMES_NONE)
 			return err_set(e, ERR_FORMAT, "%s:%d: property '%.80s' appears twice", f->path,
@@ -306,36 +291,26 @@ static int err_short(const struct plyfile *f, const struct plyfile_element *el, 
 
 static double decode(const unsigned char *p, enum plyfile_type type, int is_big)
 {
-	size_t size = types[type].size;
-	uint64_t bits = 0;
-	float single;
-	double wide;
+	const int size = (int)types[type].size;
+	unsigned char turned[8];
 
-	for (size_t i = 0; i < size; i++)
-		bits |= (uint64_t)p[i] << 8 * (is_big ? size - 1 - i : i);
+	for (int i = 0; is_big && i < size; i++)
+		turned[i] = p[size - 1 - i];
+	p = is_big ? turned : p;
 	switch (type) {
 	case PLY_I8:
-		return (int8_t)bits;
+		return (int8_t)*p;
 	case PLY_I16:
-		return (int16_t)bits;
+		return (int16_t)little_get(p, size);
 	case PLY_I32:
-		return (int32_t)bits;
-	case PLY_F32: {
-		uint32_t low = (uint32_t)bits;
-		memcpy(&single, &low, 4);
-		return single;
-	}
+		return (int32_t)little_get(p, size);
+	case PLY_F32:
+		return little_get_f32(p);
 	case PLY_F64:
-		memcpy(&wide, &bits, 8);
-		return wide;
+		return little_get_f64(p);
 	default:
-		return (double)bits;
+		return (double)little_get(p, size);
 	}
-}
-
-static int is_blank(unsigned char c)
-{
-	return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
 /* The next value at f->at: 0, or -1 with *e. */
@@ -353,11 +328,11 @@ static int next_value(struct plyfile *f, const struct plyfile_element *el, size_
 		f->at += types[type].size;
 		return 0;
 	}
-	while (f->at < f->map.len && is_blank(data[f->at]))
+	while (f->at < f->map.len && isspace(data[f->at]))
 		f->at++;
 	if (f->at == f->map.len)
 		return err_short(f, el, row, e);
-	while (f->at + len < f->map.len && len < sizeof word - 1 && !is_blank(data[f->at + len])) {
+	while (f->at + len < f->map.len && len < sizeof word - 1 && !isspace(data[f->at + len])) {
 		word[len] = (char)data[f->at + len];
 		len++;
 	}
@@ -426,7 +401,7 @@ int plyfile_end(const struct plyfile *f, struct err *e)
 {
 	size_t at = f->at;
 
-	while (f->encoding == PLY_ASCII && at < f->map.len && is_blank(f->map.data[at]))
+	while (f->encoding == PLY_ASCII && at < f->map.len && isspace(f->map.data[at]))
 		at++;
 	if (at < f->map.len)
 		return err_set(e, ERR_FORMAT, "%s: %zu bytes after the last element, from offset %zu",

@@ -263,9 +263,7 @@ int sog_read_map(struct splats *s, double offset[3], struct rows_report *report,
 {
 	struct sog f = {0};
 
-	*s = (struct splats){0};
-	if (report)
-		*report = (struct rows_report){0};
+	gaussian_rows_none(s, report);
 	return archive_open_zip(&f.files, name, map, e) ? -1 : read_all(&f, s, offset, report, e);
 }
 
@@ -275,9 +273,7 @@ int sog_read_meta(
 	struct sog f = {0};
 	char *folder = file_dir(meta, e);
 
-	*s = (struct splats){0};
-	if (report)
-		*report = (struct rows_report){0};
+	gaussian_rows_none(s, report);
 	if (!folder)
 		return -1;
 	archive_open_folder(&f.files, folder);

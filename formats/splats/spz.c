@@ -90,9 +90,7 @@ int spz_read_map(struct splats *s, double offset[3], struct rows_report *report,
 {
 	struct spz f;
 
-	*s = (struct splats){0};
-	if (report)
-		*report = (struct rows_report){0};
+	gaussian_rows_none(s, report);
 	int bad = spz_open(&f, name, map, e);
 	file_unmap(map);
 	if (bad)

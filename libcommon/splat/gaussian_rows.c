@@ -109,6 +109,13 @@ int gaussian_offset(double offset[3], const double *means, size_t n, struct err 
 	return 0;
 }
 
+void gaussian_rows_none(struct splats *s, struct rows_report *report)
+{
+	*s = (struct splats){0};
+	if (report)
+		*report = (struct rows_report){0};
+}
+
 static int note_dropped(
 	struct rows_report *report, size_t *capacity, size_t row, enum verdict why, struct err *e)
 {

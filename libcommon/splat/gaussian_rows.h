@@ -39,6 +39,9 @@ struct gaussian_rows {
 	void *reader;
 };
 
+/* No Gaussians, and nothing to report (may be NULL). */
+void gaussian_rows_none(struct splats *s, struct rows_report *report);
+
 /* Reads all rows. `report` may be NULL. Returns 0, or -1 with *e set, *s zeroed and report->dropped NULL. */
 int gaussian_rows_read(struct splats *s, double offset[3], struct rows_report *report,
 	const struct gaussian_rows *from, struct err *e);

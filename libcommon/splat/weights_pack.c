@@ -12,6 +12,8 @@
 
 enum { IDS, MAPS, LEVELS, PIXELS = VIEW_TILE_PIXELS, EFFORT = 1 };
 
+const char *const weights_stream_name[WEIGHTS_STREAMS] = {"ids", "maps", "levels"};
+
 /* Room for `more` bytes of a stream; NULL with *e. */
 static uint8_t *more_room(struct weights_pack *p, int stream, size_t more, struct err *e)
 {

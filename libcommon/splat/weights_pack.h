@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 enum { WEIGHTS_STREAMS = 3 };
+extern const char *const weights_stream_name[WEIGHTS_STREAMS];
 
 /* Streams of bytes, compressed by zstd: the Gaussians of each tile, which of its pixels each is in, and by
  * how much. */
