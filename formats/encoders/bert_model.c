@@ -52,43 +52,7 @@ static int read_config(struct bert *b, const char *dir, struct err *e)
 	return bad;
 }
 
-/* Where the tensors come from, and the names that this file gives them. */
-struct source {
-	struct safetensors st;
-	const char *prefix;	   /* "bert." or "" */
-	const char *scale, *shift; /* "weight" and "bias"; "gamma" and "beta" in old checkpoints */
-	struct err *e;
-};
-
-/* The tensor `name`.`part`, a vector of `columns` where rows is 0. */
-static int load(struct source *s, const char *name, const char *part, float *out, int rows, int columns)
-{
-	char full[256];
-
-	snprintf(full, sizeof full, "%s%s.%s", s->prefix, name, part);
-	return pretrained_load(&s->st, full, out, rows, columns, s->e);
-}
-
-static int load_linear(struct source *s, const char *layer, const char *name,
-	const struct transformer_linear *l, int in, int out)
-{
-	char full[128];
-
-	snprintf(full, sizeof full, "%s%s", layer, name);
-	return load(s, full, "weight", l->weight, out, in) || load(s, full, "bias", l->bias, 0, out) ? -1 : 0;
-}
-
-static int load_norm(
-	struct source *s, const char *layer, const char *name, const struct transformer_norm *n, int width)
-{
-	char full[128];
-
-	snprintf(full, sizeof full, "%s%s", layer, name);
-	return load(s, full, s->scale, n->scale, 0, width) || load(s, full, s->shift, n->shift, 0, width) ? -1
-													  : 0;
-}
-
-static int load_layer(struct source *s, const struct bert *b, int i)
+static int load_layer(struct pretrained *s, const struct bert *b, int i)
 {
 	static const struct transformer_layer none;
 	const struct transformer_layer *l = b->body.layers ? &b->body.layers[i] : &none;
@@ -96,35 +60,38 @@ static int load_layer(struct source *s, const struct bert *b, int i)
 	char at[64];
 
 	snprintf(at, sizeof at, "encoder.layer.%d.", i);
-	int bad = load_linear(s, at, "attention.self.query", &l->query, width, width) ||
-		  load_linear(s, at, "attention.self.key", &l->key, width, width) ||
-		  load_linear(s, at, "attention.self.value", &l->value, width, width) ||
-		  load_linear(s, at, "attention.output.dense", &l->attention_out, width, width) ||
-		  load_norm(s, at, "attention.output.LayerNorm", &l->attention_norm, width) ||
-		  load_linear(s, at, "intermediate.dense", &l->inner, width, inner) ||
-		  load_linear(s, at, "output.dense", &l->outer, inner, width) ||
-		  load_norm(s, at, "output.LayerNorm", &l->norm, width);
+	int bad = pretrained_linear(s, at, "attention.self.query", &l->query, width, width) ||
+		  pretrained_linear(s, at, "attention.self.key", &l->key, width, width) ||
+		  pretrained_linear(s, at, "attention.self.value", &l->value, width, width) ||
+		  pretrained_linear(s, at, "attention.output.dense", &l->attention_out, width, width) ||
+		  pretrained_norm(s, at, "attention.output.LayerNorm", &l->attention_norm, width) ||
+		  pretrained_linear(s, at, "intermediate.dense", &l->inner, width, inner) ||
+		  pretrained_linear(s, at, "output.dense", &l->outer, inner, width) ||
+		  pretrained_norm(s, at, "output.LayerNorm", &l->norm, width);
 	return bad ? -1 : 0;
 }
 
-static void find_names(struct source *s)
+/* Names have a prefix or none; those of old checkpoints' norms are others. */
+static void find_names(struct pretrained *s)
 {
 	if (safetensors_find(&s->st, "bert.embeddings.word_embeddings.weight"))
 		s->prefix = "bert.";
 	if (safetensors_find(
 		    &s->st, *s->prefix ? "bert.embeddings.LayerNorm.gamma" : "embeddings.LayerNorm.gamma")) {
-		s->scale = "gamma";
-		s->shift = "beta";
+		s->scale = ".gamma";
+		s->shift = ".beta";
 	}
 }
 
-static int load_tensors(struct source *s, const struct bert *b)
+static int load_tensors(struct pretrained *s, const struct bert *b)
 {
-	if (load(s, "embeddings.word_embeddings", "weight", b->word, b->words, b->body.width) ||
-		load(s, "embeddings.position_embeddings", "weight", b->position, b->positions,
-			b->body.width) ||
-		load(s, "embeddings.token_type_embeddings", "weight", b->type, b->types, b->body.width) ||
-		load_norm(s, "", "embeddings.LayerNorm", &b->norm, b->body.width))
+	static const char at[] = "embeddings.";
+	const int width = b->body.width;
+
+	if (pretrained_load(s, at, "word_embeddings", ".weight", b->word, b->words, width) ||
+		pretrained_load(s, at, "position_embeddings", ".weight", b->position, b->positions, width) ||
+		pretrained_load(s, at, "token_type_embeddings", ".weight", b->type, b->types, width) ||
+		pretrained_norm(s, at, "LayerNorm", &b->norm, width))
 		return -1;
 	for (int i = 0; i < b->body.layer_count; i++)
 		if (load_layer(s, b, i))
@@ -133,7 +100,7 @@ static int load_tensors(struct source *s, const struct bert *b)
 }
 
 /* That the file has all tensors is known before memory is taken for them. */
-static int load_all(struct source *s, struct bert *b)
+static int load_all(struct pretrained *s, struct bert *b)
 {
 	find_names(s);
 	return load_tensors(s, b) || bert_alloc(b, s->e) || load_tensors(s, b) ? -1 : 0;
@@ -141,7 +108,7 @@ static int load_all(struct source *s, struct bert *b)
 
 int bert_model_read(struct bert *b, const char *dir, struct err *e)
 {
-	struct source s = {.prefix = "", .scale = "weight", .shift = "bias", .e = e};
+	struct pretrained s = {.prefix = "", .scale = ".weight", .shift = ".bias", .e = e};
 	int bad = -1;
 
 	*b = (struct bert){0};

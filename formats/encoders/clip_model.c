@@ -179,18 +179,11 @@ static const struct layout layouts[] = {
 	{"text_model.", HUGGING_FACE}, {"", HUGGING_FACE}, {"", OPEN_CLIP_NAMES}, {"text.", OPEN_CLIP_NAMES}};
 
 struct source {
-	struct safetensors st;
+	struct pretrained from;
 	const struct layout *layout;
-	struct err *e;
 };
 
 enum { NAME = 160 };
-
-static void name_tensor(
-	char full[NAME], const struct source *s, const char *at, const char *name, const char *part)
-{
-	snprintf(full, NAME, "%s%s%s%s", s->layout->prefix, at, name, part);
-}
 
 static const struct layout *find_layout(const struct safetensors *st)
 {
@@ -204,48 +197,20 @@ static const struct layout *find_layout(const struct safetensors *st)
 	return layouts;
 }
 
-static int load(struct source *s, const char *at, const char *name, const char *part, float *out, int rows,
-	int columns)
-{
-	char full[NAME];
-
-	name_tensor(full, s, at, name, part);
-	return pretrained_load(&s->st, full, out, rows, columns, s->e);
-}
-
-static int load_linear(struct source *s, const char *at, const char *name, const struct transformer_linear *l,
-	int in, int out)
-{
-	return load(s, at, name, ".weight", l->weight, out, in) || load(s, at, name, ".bias", l->bias, 0, out)
-		       ? -1
-		       : 0;
-}
-
-static int load_norm(
-	struct source *s, const char *at, const char *name, const struct transformer_norm *n, int width)
-{
-	return load(s, at, name, ".weight", n->scale, 0, width) ||
-			       load(s, at, name, ".bias", n->shift, 0, width)
-		       ? -1
-		       : 0;
-}
-
 /* Query, key and value: thirds of a tensor, or three. */
 static int load_attention(struct source *s, const char *at, const struct transformer_layer *l, int width)
 {
 	static const char *const apart[] = {"self_attn.q_proj", "self_attn.k_proj", "self_attn.v_proj"};
 	const struct transformer_linear *const parts[] = {&l->query, &l->key, &l->value};
-	char weight[NAME], bias[NAME];
 	int bad = 0;
 
-	name_tensor(weight, s, at, "attn.in_proj", "_weight");
-	name_tensor(bias, s, at, "attn.in_proj", "_bias");
 	for (int i = 0; i < 3 && !bad; i++)
-		bad = s->layout->is_joined ? pretrained_load_part(&s->st, weight, parts[i]->weight, 3 * width,
-						     i * width, width, width, s->e) ||
-						     pretrained_load_part(&s->st, bias, parts[i]->bias,
-							     3 * width, i * width, width, 0, s->e)
-					   : load_linear(s, at, apart[i], parts[i], width, width);
+		bad = s->layout->is_joined
+			      ? pretrained_load_part(&s->from, at, "attn.in_proj_weight", parts[i]->weight,
+					3 * width, i * width, width, width) ||
+					pretrained_load_part(&s->from, at, "attn.in_proj_bias",
+						parts[i]->bias, 3 * width, i * width, width, 0)
+			      : pretrained_linear(&s->from, at, apart[i], parts[i], width, width);
 	return bad;
 }
 
@@ -258,32 +223,34 @@ static int load_layer(struct source *s, const struct clip *c, int i)
 	char at[64];
 
 	snprintf(at, sizeof at, "%s%d.", n->layer, i);
-	return load_norm(s, at, n->attention_norm, &l->attention_norm, width) ||
+	return pretrained_norm(&s->from, at, n->attention_norm, &l->attention_norm, width) ||
 			       load_attention(s, at, l, width) ||
-			       load_linear(s, at, n->attention_out, &l->attention_out, width, width) ||
-			       load_norm(s, at, n->feed_norm, &l->norm, width) ||
-			       load_linear(s, at, n->inner, &l->inner, width, inner) ||
-			       load_linear(s, at, n->outer, &l->outer, inner, width)
+			       pretrained_linear(
+				       &s->from, at, n->attention_out, &l->attention_out, width, width) ||
+			       pretrained_norm(&s->from, at, n->feed_norm, &l->norm, width) ||
+			       pretrained_linear(&s->from, at, n->inner, &l->inner, width, inner) ||
+			       pretrained_linear(&s->from, at, n->outer, &l->outer, inner, width)
 		       ? -1
 		       : 0;
 }
 
 /* HuggingFace's has no prefix; OpenCLIP's has, and is (width,projected). */
-static void name_projection(char full[NAME], const struct source *s)
+static const char *projection_prefix(const struct source *s)
 {
-	snprintf(full, NAME, "%s%s", s->layout->is_joined ? s->layout->prefix : "", s->layout->projection);
+	return s->layout->is_joined ? s->layout->prefix : "";
 }
 
 static int load_projection(struct source *s, const struct clip *c)
 {
 	const int rows = c->projected, columns = c->body.width;
-	char full[NAME];
+	struct pretrained from = s->from;
 
-	name_projection(full, s);
+	from.prefix = projection_prefix(s);
 	if (!s->layout->is_joined)
-		return pretrained_load(&s->st, full, c->projection, rows, columns, s->e);
-	float *turned = mem_alloc((size_t)rows * (size_t)columns, sizeof *turned, "encoder", s->e);
-	const int bad = !turned || pretrained_load(&s->st, full, turned, columns, rows, s->e);
+		return pretrained_load(&from, "", s->layout->projection, "", c->projection, rows, columns);
+	float *turned = mem_alloc((size_t)rows * (size_t)columns, sizeof *turned, "encoder", from.e);
+	const int bad =
+		!turned || pretrained_load(&from, "", s->layout->projection, "", turned, columns, rows);
 	for (int r = 0; r < rows && !bad; r++)
 		for (int k = 0; k < columns; k++)
 			c->projection[(size_t)r * (size_t)columns + (size_t)k] =
@@ -298,48 +265,50 @@ static int find_projection(struct source *s, struct clip *c, const struct kind *
 	char full[NAME];
 	int sides[2] = {kind->width, c->body.width};
 
-	name_projection(full, s);
-	if (!kind->is_projected && !safetensors_find(&s->st, full))
+	snprintf(full, sizeof full, "%s%s", projection_prefix(s), s->layout->projection);
+	if (!kind->is_projected && !safetensors_find(&s->from.st, full))
 		return 0;
 	c->projected = kind->width;
 	const int turned = s->layout->is_joined;
-	return pretrained_need(&s->st, full, sides[turned], sides[!turned], s->e) ? 0 : -1;
+	return pretrained_need(&s->from.st, full, sides[turned], sides[!turned], s->from.e) ? 0 : -1;
 }
 
 /* All but the projection. */
 static int load_body(struct source *s, const struct clip *c)
 {
-	if (load(s, s->layout->word, "", "", c->word, c->words, c->body.width) ||
-		load(s, s->layout->position, "", "", c->position, c->positions, c->body.width))
+	if (pretrained_load(&s->from, "", s->layout->word, "", c->word, c->words, c->body.width) ||
+		pretrained_load(
+			&s->from, "", s->layout->position, "", c->position, c->positions, c->body.width))
 		return -1;
 	for (int i = 0; i < c->body.layer_count; i++)
 		if (load_layer(s, c, i))
 			return -1;
-	return load_norm(s, "", s->layout->norm, &c->norm, c->body.width);
+	return pretrained_norm(&s->from, "", s->layout->norm, &c->norm, c->body.width);
 }
 
 /* That the file has all tensors is known before memory is taken for them. */
 static int load_all(struct source *s, struct clip *c, const struct kind *kind)
 {
-	s->layout = find_layout(&s->st);
-	return load_body(s, c) || find_projection(s, c, kind) || clip_alloc(c, s->e) || load_body(s, c) ||
-			       (c->projected && load_projection(s, c))
+	s->layout = find_layout(&s->from.st);
+	s->from.prefix = s->layout->prefix;
+	return load_body(s, c) || find_projection(s, c, kind) || clip_alloc(c, s->from.e) ||
+			       load_body(s, c) || (c->projected && load_projection(s, c))
 		       ? -1
 		       : 0;
 }
 
 int clip_model_read(struct clip *c, const char *dir, struct err *e)
 {
-	struct source s = {.e = e};
+	struct source s = {.from = {.scale = ".weight", .shift = ".bias", .e = e}};
 	struct kind kind = {0};
 	int bad = -1;
 
 	*c = (struct clip){.body = {.is_causal = 1, .is_norm_first = 1}};
 	if (read_config(c, &kind, dir, e))
 		return -1;
-	if (!pretrained_open(&s.st, dir, kind.is_open ? "open_clip_model.safetensors" : NULL, e)) {
+	if (!pretrained_open(&s.from.st, dir, kind.is_open ? "open_clip_model.safetensors" : NULL, e)) {
 		bad = load_all(&s, c, &kind);
-		safetensors_close(&s.st);
+		safetensors_close(&s.from.st);
 	}
 	if (bad)
 		clip_free(c);

@@ -4,6 +4,7 @@
 
 #include <dirent.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -129,8 +130,8 @@ const struct st_tensor *pretrained_need(
 }
 
 /* count numbers of the tensor from place `first` on. */
-static int load(const struct safetensors *st, const struct st_tensor *t, size_t first, size_t count,
-	float *out, struct err *e)
+static int load(
+	const struct pretrained *from, const struct st_tensor *t, size_t first, size_t count, float *out)
 {
 	struct st_tensor part = *t;
 
@@ -138,31 +139,53 @@ static int load(const struct safetensors *st, const struct st_tensor *t, size_t 
 		return 0;
 	part.data = (const char *)t->data + first * st_dtype_size(t->dtype);
 	part.bytes = count * st_dtype_size(t->dtype);
-	part.dims = 1;
-	part.shape[0] = (int64_t)count;
-	if (safetensors_to_float(&part, out, count, e))
+	if (safetensors_to_float(&part, out, count, from->e))
 		return -1;
 	for (size_t i = 0; i < count; i++)
 		if (!isfinite(out[i]))
-			return err_set(e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path,
-				t->name, first + i);
+			return err_set(from->e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite",
+				from->st.path, t->name, first + i);
 	return 0;
 }
 
-int pretrained_load(
-	const struct safetensors *st, const char *name, float *out, int rows, int columns, struct err *e)
-{
-	const struct st_tensor *t = pretrained_need(st, name, rows, columns, e);
+enum { NAME = 256 };
 
-	return t ? load(st, t, 0, (size_t)columns * (rows ? (size_t)rows : 1), out, e) : -1;
+int pretrained_load(struct pretrained *from, const char *at, const char *name, const char *part, float *out,
+	int rows, int columns)
+{
+	char full[NAME];
+
+	snprintf(full, sizeof full, "%s%s%s%s", from->prefix, at, name, part);
+	const struct st_tensor *t = pretrained_need(&from->st, full, rows, columns, from->e);
+	return t ? load(from, t, 0, (size_t)columns * (rows ? (size_t)rows : 1), out) : -1;
 }
 
-int pretrained_load_part(const struct safetensors *st, const char *name, float *out, int of, int first,
-	int rows, int columns, struct err *e)
+int pretrained_linear(struct pretrained *from, const char *at, const char *name,
+	const struct transformer_linear *l, int in, int out)
 {
-	const struct st_tensor *t =
-		columns ? pretrained_need(st, name, of, columns, e) : pretrained_need(st, name, 0, of, e);
-	const size_t each = columns ? (size_t)columns : 1;
+	return pretrained_load(from, at, name, ".weight", l->weight, out, in) ||
+			       pretrained_load(from, at, name, ".bias", l->bias, 0, out)
+		       ? -1
+		       : 0;
+}
 
-	return t ? load(st, t, (size_t)first * each, (size_t)rows * each, out, e) : -1;
+int pretrained_norm(struct pretrained *from, const char *at, const char *name,
+	const struct transformer_norm *n, int width)
+{
+	return pretrained_load(from, at, name, from->scale, n->scale, 0, width) ||
+			       pretrained_load(from, at, name, from->shift, n->shift, 0, width)
+		       ? -1
+		       : 0;
+}
+
+int pretrained_load_part(struct pretrained *from, const char *at, const char *name, float *out, int of,
+	int first, int rows, int columns)
+{
+	const size_t each = columns ? (size_t)columns : 1;
+	char full[NAME];
+
+	snprintf(full, sizeof full, "%s%s%s", from->prefix, at, name);
+	const struct st_tensor *t =
+		pretrained_need(&from->st, full, columns ? of : 0, columns ? columns : of, from->e);
+	return t ? load(from, t, (size_t)first * each, (size_t)rows * each, out) : -1;
 }

@@ -41,14 +41,27 @@ int pretrained_open(struct safetensors *st, const char *dir, const char *first, 
 const struct st_tensor *pretrained_need(
 	const struct safetensors *st, const char *name, int rows, int columns, struct err *e);
 
-/* Its numbers, all of them finite, into out (rows,columns). Where out is NULL the tensor is only looked for,
- * as by pretrained_need: so a reader looks for all of them before it takes memory for them. */
-int pretrained_load(
-	const struct safetensors *st, const char *name, float *out, int rows, int columns, struct err *e);
+/* Where tensors come from, and how the file names them. */
+struct pretrained {
+	struct safetensors st;
+	const char *prefix;	   /* of all names */
+	const char *scale, *shift; /* of a norm: ".weight" and ".bias" */
+	struct err *e;
+};
+
+/* The numbers of the tensor `at``name``part`, all of them finite, into out (rows,columns), or (columns) where
+ * rows is 0. Where out is NULL the tensor is only looked for, as by pretrained_need: so a reader looks for
+ * all of them before it takes memory for them. */
+int pretrained_load(struct pretrained *from, const char *at, const char *name, const char *part, float *out,
+	int rows, int columns);
+int pretrained_linear(struct pretrained *from, const char *at, const char *name,
+	const struct transformer_linear *l, int in, int out);
+int pretrained_norm(struct pretrained *from, const char *at, const char *name,
+	const struct transformer_norm *n, int width);
 
 /* The part of a tensor that begins at row `first` of (of,columns), or at place `first` of (of) where columns
  * is 0: its next `rows`. */
-int pretrained_load_part(const struct safetensors *st, const char *name, float *out, int of, int first,
-	int rows, int columns, struct err *e);
+int pretrained_load_part(struct pretrained *from, const char *at, const char *name, float *out, int of,
+	int first, int rows, int columns);
 
 #endif

@@ -11,6 +11,9 @@
 enum plyfile_type { PLY_I8, PLY_U8, PLY_I16, PLY_U16, PLY_I32, PLY_U32, PLY_F32, PLY_F64, PLY_TYPES };
 enum plyfile_encoding { PLY_ASCII, PLY_LITTLE, PLY_BIG };
 
+/* Bytes of a value in a binary file. */
+size_t plyfile_type_size(enum plyfile_type type);
+
 struct plyfile_property {
 	const char *name;
 	int line; /* of the header */

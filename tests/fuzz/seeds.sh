@@ -211,6 +211,7 @@ for target in "$dir"/*/; do
 	parser) set -- parser_weights.c ;;
 	ply) set -- ply.c plyfile.c plypacked.c ;;
 	glb | gltf) set -- glb.c glb_container.c ;;
+	colmap) set -- colmap.c colmap_text.c ;;
 	sog) set -- sog.c archive.c ;;
 	spz) set -- spz.c spz_container.c ;;
 	check) set -- scene.c weights.c text.c lifted.c features.c selection.c masks.c boxes.c sentences.c ;;
