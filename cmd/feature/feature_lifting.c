@@ -13,13 +13,6 @@
 
 #define MEBIBYTE 1048576.0
 
-static int is_there(const void *context, size_t view)
-{
-	const struct feature_lifting *l = context;
-
-	return l->maps.is_there[view];
-}
-
 /* A view's labels become votes. */
 static int add_labels(struct feature_lifting *l, struct err *e)
 {
@@ -48,30 +41,41 @@ static int add_features(struct feature_lifting *l, size_t view, struct err *e)
 	return 0;
 }
 
-static int add_view(void *context, size_t view, const struct weights *w, struct err *e)
+static int add_view(struct feature_lifting *l, size_t view, const struct weights *w, struct err *e)
 {
-	struct feature_lifting *l = context;
-
-	report_step(l->to, (double)++l->done, l->scene.cameras.views[view].name);
-	if (!w)
-		return 0;
 	const struct view_weights blend = weights_view(w);
+
 	if (feature_maps_view(&l->maps, view, w->height, w->width, &l->sources, e) ||
 		source_weights_make(&l->weights, &blend, l->sources.source, l->sources.count, e))
 		return -1;
 	return l->maps.channels ? add_features(l, view, e) : add_labels(l, e);
 }
 
+/* Those that have weights; these are read only where there are features or labels too. */
 static int all_views(struct feature_lifting *l, struct err *e)
 {
-	size_t missing;
+	const char *folder = l->options->weights;
+	char *has_weights = mem_alloc(l->scene.cameras.n, 1, "views", e);
+	size_t missing = 0;
+	int bad = !has_weights || weights_mark(folder, &l->scene.cameras, has_weights, &missing, e);
 
-	if (weights_each(l->options->weights, &l->scene, is_there, add_view, l, &missing, e))
-		return -1;
-	if (missing && !l->first)
+	for (size_t v = 0; v < l->scene.cameras.n && !bad; v++) {
+		struct weights w;
+		if (!has_weights[v])
+			continue;
+		report_step(l->to, (double)++l->done, l->scene.cameras.views[v].name);
+		if (!l->maps.is_there[v])
+			continue;
+		if (!(bad = weights_open(&w, folder, &l->scene, v, e))) {
+			bad = add_view(l, v, &w, e);
+			weights_close(&w);
+		}
+	}
+	free(has_weights);
+	if (!bad && missing && !l->first)
 		report_warn(l->to, "%s: %zu training views have no weights, and their features do not count",
-			l->options->weights, missing);
-	return 0;
+			folder, missing);
+	return bad ? -1 : 0;
 }
 
 /* The block's means into their columns. */

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/quantile.h"
-#include "formats/cameras/points.h"
+#include "cmd/import/points.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -227,7 +227,8 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 
 	if (!n)
 		return 0;
-	if (weights_open_tiles(&weights, &r->rooms[worker], l->files->weights, &l->scene, view, e))
+	if (weights_open_in(
+		    &weights, &r->rooms[worker], WEIGHTS_TILES, l->files->weights, &l->scene, view, e))
 		return -1;
 	const struct view_matrix w = weights_matrix(&weights);
 	const int bad = r->round ? lift_objects_vote(&l->lift, view, &w, e)

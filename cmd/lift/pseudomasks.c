@@ -80,7 +80,8 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 
 	if (!b->is_there[view])
 		return 0;
-	if (weights_open_tiles(&weights, &b->rooms[worker], w->options->weights, &w->scene, view, e))
+	if (weights_open_in(
+		    &weights, &b->rooms[worker], WEIGHTS_TILES, w->options->weights, &w->scene, view, e))
 		return -1;
 	const struct view_matrix blend = weights_matrix(&weights);
 	const int bad = regions_lift(&b->w->regions, view, &blend, e);
@@ -135,8 +136,9 @@ static int open_weights(
 {
 	const struct pseudomasks *w = b->w;
 
-	return (w->options->method == PSEUDOMASK_SCENE ? weights_open_tiles : weights_open_in)(
-		weights, &b->rooms[worker], w->options->weights, &w->scene, view, e);
+	return weights_open_in(weights, &b->rooms[worker],
+		w->options->method == PSEUDOMASK_SCENE ? WEIGHTS_TILES : WEIGHTS_ROWS, w->options->weights,
+		&w->scene, view, e);
 }
 
 /* Weights are read only where something has to be rendered. */

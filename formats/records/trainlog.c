@@ -1,5 +1,6 @@
 #include "formats/records/trainlog.h"
 
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -46,39 +47,46 @@ int trainlog_open(struct trainlog *l, const char *path, long iteration, struct e
 	return 0;
 }
 
+/* A line, at once. */
+static int put(struct trainlog *l, struct err *e, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));
+
+static int put(struct trainlog *l, struct err *e, const char *format, ...)
+{
+	va_list ap;
+
+	if (!l->stream)
+		return 0;
+	va_start(ap, format);
+	const int bad = vfprintf(l->stream, format, ap) < 0 || fflush(l->stream);
+	va_end(ap);
+	return bad ? err_errno(e, "%s", file_name(l->path)) : 0;
+}
+
 int trainlog_step(struct trainlog *l, struct train_state *t, struct err *e)
 {
 	const double n = TRAINLOG_EVERY;
 
 	if (t->iteration % TRAINLOG_EVERY)
 		return 0;
-	if (l->stream &&
-		(fprintf(l->stream, "{\"iteration\":%ld,\"bce\":%.9g,\"contrast\":%.9g,\"loss\":%.9g}\n",
-			 t->iteration, t->sum.bce / n, t->sum.contrast / n, t->sum.total / n) < 0 ||
-			fflush(l->stream)))
-		return err_errno(e, "%s", file_name(l->path));
+	if (put(l, e, "{\"iteration\":%ld,\"bce\":%.9g,\"contrast\":%.9g,\"loss\":%.9g}\n", t->iteration,
+		    t->sum.bce / n, t->sum.contrast / n, t->sum.total / n))
+		return -1;
 	t->sum = (struct step_losses){0};
 	return 0;
 }
 
 int trainlog_put_held(struct trainlog *l, long iteration, const struct held_out_score *score, struct err *e)
 {
-	if (l->stream && (fprintf(l->stream, "{\"iteration\":%ld,\"held_bce\":%.9g,\"held_iou\":%.9g}\n",
-				  iteration, score->bce, score->iou) < 0 ||
-				 fflush(l->stream)))
-		return err_errno(e, "%s", file_name(l->path));
-	return 0;
+	return put(l, e, "{\"iteration\":%ld,\"held_bce\":%.9g,\"held_iou\":%.9g}\n", iteration, score->bce,
+		score->iou);
 }
 
 int trainlog_put_fit(
 	struct trainlog *l, long iteration, size_t gaussians, double loss, double psnr, struct err *e)
 {
-	if (l->stream &&
-		(fprintf(l->stream, "{\"iteration\":%ld,\"gaussians\":%zu,\"loss\":%.9g,\"psnr\":%.9g}\n",
-			 iteration, gaussians, loss, psnr) < 0 ||
-			fflush(l->stream)))
-		return err_errno(e, "%s", file_name(l->path));
-	return 0;
+	return put(l, e, "{\"iteration\":%ld,\"gaussians\":%zu,\"loss\":%.9g,\"psnr\":%.9g}\n", iteration,
+		gaussians, loss, psnr);
 }
 
 int trainlog_close(struct trainlog *l, struct err *e)

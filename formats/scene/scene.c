@@ -228,23 +228,24 @@ static int read_view(struct camera *c, const cJSON *view, const char *path, int 
 {
 	const cJSON *split = cJSON_GetObjectItemCaseSensitive(view, "split");
 	double width = 0, height = 0;
+	const struct {
+		const char *key;
+		double *to;
+	} numbers[] = {{"width", &width}, {"height", &height}, {"fx", &c->fx}, {"fy", &c->fy}, {"cx", &c->cx},
+		{"cy", &c->cy}};
 
-	if (read_name(c, view, path, index, e) || view_number(view, "width", path, index, &width, e) ||
-		view_number(view, "height", path, index, &height, e) ||
-		view_number(view, "fx", path, index, &c->fx, e) ||
-		view_number(view, "fy", path, index, &c->fy, e) ||
-		view_number(view, "cx", path, index, &c->cx, e) ||
-		view_number(view, "cy", path, index, &c->cy, e) || read_pose(c, view, path, index, e) ||
-		read_lens(&c->lens, view, path, index, e))
+	if (read_name(c, view, path, index, e))
 		return -1;
-	if (!(width >= 1 && width <= 65536 && width == floor(width) && height >= 1 && height <= 65536 &&
-		    height == floor(height)))
+	for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+		if (view_number(view, numbers[i].key, path, index, numbers[i].to, e))
+			return -1;
+	if (read_pose(c, view, path, index, e) || read_lens(&c->lens, view, path, index, e))
+		return -1;
+	if (view_set_size(c, width, height))
 		return err_set(e, ERR_FORMAT, "%s: view %d: size %gx%g is not whole numbers in 1 to 65536",
 			path, index, width, height);
 	if (!(c->fx > 0 && c->fy > 0))
 		return err_set(e, ERR_FORMAT, "%s: view %d: focal length is not positive", path, index);
-	c->width = (int)width;
-	c->height = (int)height;
 	if (!cJSON_IsString(split) ||
 		(strcmp(split->valuestring, "train") && strcmp(split->valuestring, "test")))
 		return err_set(

@@ -228,13 +228,13 @@ static int check_origin(const struct weights *w, const struct scene *scene, size
 	return bad ? -1 : 0;
 }
 
-static int open_view(struct weights *w, struct weights_room *room, const char *dir, const struct scene *scene,
-	size_t view, int as_tiles, struct err *e)
+int weights_open_in(struct weights *w, struct weights_room *room, enum weights_form form, const char *dir,
+	const struct scene *scene, size_t view, struct err *e)
 {
 	char *path = file_join(dir, scene->cameras.views[view].name, ".safetensors", e);
 
 	*w = (struct weights){0};
-	int bad = path ? open_file(w, room, path, as_tiles, e) : -1;
+	int bad = path ? open_file(w, room, path, form == WEIGHTS_TILES, e) : -1;
 	if (!bad && (bad = check_origin(w, scene, view, e)))
 		weights_close(w);
 	free(path);
@@ -243,19 +243,7 @@ static int open_view(struct weights *w, struct weights_room *room, const char *d
 
 int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e)
 {
-	return open_view(w, NULL, dir, scene, view, 0, e);
-}
-
-int weights_open_in(struct weights *w, struct weights_room *room, const char *dir, const struct scene *scene,
-	size_t view, struct err *e)
-{
-	return open_view(w, room, dir, scene, view, 0, e);
-}
-
-int weights_open_tiles(struct weights *w, struct weights_room *room, const char *dir,
-	const struct scene *scene, size_t view, struct err *e)
-{
-	return open_view(w, room, dir, scene, view, 1, e);
+	return weights_open_in(w, NULL, WEIGHTS_ROWS, dir, scene, view, e);
 }
 
 /* 1 where DIR/VIEW.safetensors is there, 0 where it is not, -1 with *e. */
@@ -291,14 +279,6 @@ struct view_matrix weights_matrix(const struct weights *w)
 	return (struct view_matrix){w->height, w->width, (size_t)w->gaussians, weights_view(w), w->tiles};
 }
 
-/* Where no training view has weights, the folder is another one than was meant. */
-static int check_missing(const char *dir, size_t missing, size_t training, struct err *e)
-{
-	return training && missing == training
-		       ? err_set(e, ERR_SYSTEM, "%s: has no weights of a training view", dir)
-		       : 0;
-}
-
 int weights_mark(const char *dir, const struct cameras *cameras, char *there, size_t *missing, struct err *e)
 {
 	size_t training = 0;
@@ -315,33 +295,8 @@ int weights_mark(const char *dir, const struct cameras *cameras, char *there, si
 		there[v] = (char)found;
 		*missing += !found;
 	}
-	return check_missing(dir, *missing, training, e);
-}
-
-int weights_each(const char *dir, const struct scene *scene, int (*needs)(const void *context, size_t view),
-	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
-	size_t *missing, struct err *e)
-{
-	size_t training = 0;
-
-	*missing = 0;
-	for (size_t v = 0; v < scene->cameras.n; v++) {
-		const struct camera *camera = &scene->cameras.views[v];
-		struct weights w = {0};
-		if (camera->split != SPLIT_TRAIN)
-			continue;
-		training++;
-		const int found = is_there(dir, camera->name, e);
-		const int is_needed = !needs || needs(context, v);
-		if (found < 0 || (found && is_needed && weights_open(&w, dir, scene, v, e)))
-			return -1;
-		*missing += !found;
-		if (!found)
-			continue;
-		const int bad = visit(context, v, is_needed ? &w : NULL, e);
-		weights_close(&w);
-		if (bad)
-			return -1;
-	}
-	return check_missing(dir, *missing, training, e);
+	/* Where none has, the folder is another one than was meant. */
+	return training && *missing == training
+		       ? err_set(e, ERR_SYSTEM, "%s: has no weights of a training view", dir)
+		       : 0;
 }

@@ -29,7 +29,7 @@ struct weights {
 	struct weights_room *room;	  /* of what packed weights become; NULL: they are not packed */
 	int is_lent;			  /* the room is somebody else's */
 	float *owned_dropped;
-	const struct view_tiles *tiles;	 /* of weights_open_tiles, in the room; else NULL */
+	const struct view_tiles *tiles;	 /* of weights_open_in, in the room; else NULL */
 	enum precision precision;	 /* of the weights in the file */
 	const struct weights_pack *pack; /* for weights_write: packed weights, in place of indptr, index and
 					    weight; else NULL */
@@ -44,12 +44,10 @@ struct weights {
 int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e);
 /* The same for one view after the other: what packed weights become is in *room, zeroed before the first, and
  * lasts until the next. To ask the system for so much memory with each view costs more than to fill it.
- * weights_room_free (splat/weights_pack.h) at last. */
-int weights_open_in(struct weights *w, struct weights_room *room, const char *dir, const struct scene *scene,
-	size_t view, struct err *e);
-/* The same, but that packed weights become tiles, and indptr, index and weight are NULL; w->tiles is NULL
- * where weights are not packed. */
-int weights_open_tiles(struct weights *w, struct weights_room *room, const char *dir,
+ * weights_room_free (splat/weights_pack.h) at last. As tiles, packed weights have w->tiles, and indptr, index
+ * and weight are NULL; w->tiles is NULL where weights are not packed. */
+enum weights_form { WEIGHTS_ROWS, WEIGHTS_TILES };
+int weights_open_in(struct weights *w, struct weights_room *room, enum weights_form form, const char *dir,
 	const struct scene *scene, size_t view, struct err *e);
 /* weights_open by its path and of any scene; "-" is stdin. */
 int weights_open_file(struct weights *w, const char *path, struct err *e);
@@ -58,16 +56,10 @@ void weights_close(struct weights *w);
 /* there (cameras->n): 1 for the training views that have weights. *missing gets the number of those without.
  * -1 with *e where there is no other. */
 int weights_mark(const char *dir, const struct cameras *cameras, char *there, size_t *missing, struct err *e);
-/* Visits the training views that have weights, in the order of the cameras, each open only meanwhile, and
- * where `needs` is given and gives 0 not at all: w is NULL then. A visit that does not give 0 ends it.
- * *missing gets the number of training views without. -1 with *e, also where there is no other. */
-int weights_each(const char *dir, const struct scene *scene, int (*needs)(const void *context, size_t view),
-	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
-	size_t *missing, struct err *e);
 
 /* What the library blends with; referred to. */
 struct view_weights weights_view(const struct weights *w);
-/* The same as rows or, after weights_open_tiles, as tiles. */
+/* The same as rows or, of WEIGHTS_TILES, as tiles. */
 struct view_matrix weights_matrix(const struct weights *w);
 
 /* Writes DIR/VIEW.safetensors, with the weights in w's precision; u8 has whole numbers of 1/255; or as

@@ -1,4 +1,4 @@
-#include "formats/cameras/points.h"
+#include "cmd/import/points.h"
 
 #include "base/file.h"
 #include "base/mem.h"

@@ -1,8 +1,8 @@
 /* The points that a reconstruction has beside its cameras, in their frame: COLMAP's points3D.bin, .txt or
  * .ply, nerfstudio's sparse_pc.ply, 3DGS's input.ply. Only where they lie is read.
  * formats/cameras/camerafile.md. */
-#ifndef FORMATS_POINTS_H
-#define FORMATS_POINTS_H
+#ifndef CMD_POINTS_H
+#define CMD_POINTS_H
 
 #include "base/err.h"
 
