@@ -5,6 +5,7 @@
 #include "cmd/import/photographs.h"
 #include "formats/splats/anysplats.h"
 #include "formats/cameras/camerafile.h"
+#include "formats/cameras/colmap.h"
 #include "formats/cameras/dataparser.h"
 #include "geom/lens.h"
 #include "geom/views.h"
@@ -17,6 +18,29 @@
 #include <string.h>
 
 static const char every[] = "every:";
+
+/* The camera file in a folder: the folder itself where it is a COLMAP model, else the first there is of
+ * cameras.json, sparse/0, sparse, transforms.json. free() it. NULL with *e set (ERR_FORMAT) where there is
+ * none. */
+static char *find_cameras_in(const char *dir, struct err *e)
+{
+	static const char *const places[] = {"cameras.json", "sparse/0", "sparse", "transforms.json"};
+
+	if (colmap_is_model(dir))
+		return mem_strdup(dir, e);
+	for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+		char *path = file_join(dir, places[i], "", e);
+		if (!path)
+			return NULL;
+		if (strstr(places[i], ".json") ? file_exists(path) : colmap_is_model(path))
+			return path;
+		free(path);
+	}
+	err_set(e, ERR_FORMAT,
+		"%s: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json",
+		dir);
+	return NULL;
+}
 
 static int by_image(const void *a, const void *b)
 {
@@ -62,13 +86,13 @@ static int split_names(struct cameras *c, const char *test_views, struct err *e)
  * model. */
 static char *find_beside(const char *splats, struct err *e)
 {
-	char *dir = file_dir(splats, e), *found = dir ? camerafile_find(dir, e) : NULL;
+	char *dir = file_dir(splats, e), *found = dir ? find_cameras_in(dir, e) : NULL;
 	const char *slash = dir ? strrchr(dir, '/') : NULL;
 
 	if (dir && !found && !strncmp(slash ? slash + 1 : dir, "iteration_", 10)) {
 		struct err ignored;
 		char *model = file_join(dir, "../..", "", e);
-		found = model ? camerafile_find(model, &ignored) : NULL;
+		found = model ? find_cameras_in(model, &ignored) : NULL;
 		free(model);
 	}
 	free(dir);
@@ -141,7 +165,7 @@ char *import_find_cameras(const struct import_options *o, struct err *e)
 	if (check_images(o->images, e) || check_splats(o->splats, e))
 		return NULL;
 	if (o->cameras)
-		return file_is_dir(o->cameras) ? camerafile_find(o->cameras, e) : mem_strdup(o->cameras, e);
+		return file_is_dir(o->cameras) ? find_cameras_in(o->cameras, e) : mem_strdup(o->cameras, e);
 	char *found = find_beside(o->splats, e);
 	if (!found && e->code == ERR_FORMAT) {
 		const struct err reason = *e;

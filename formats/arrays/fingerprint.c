@@ -39,17 +39,21 @@ static uint64_t hash_vocabulary(const struct vocab *v)
 	return sum;
 }
 
+/* The sizes of an encoder: three of its own, and those of its body. */
+static uint64_t hash_sizes(int words, int positions, int own, const struct transformer *t, int is_static)
+{
+	const int64_t sizes[] = {words, positions, own, t->width, t->heads, t->inner, t->layer_count,
+		(int64_t)t->activation, is_static};
+
+	return hash64(&t->eps, sizeof t->eps, hash64(sizes, sizeof sizes, 0));
+}
+
 struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab *v, int is_static)
 {
-	const struct transformer *t = &b->body;
-	const int64_t sizes[] = {b->words, b->positions, b->types, t->width, t->heads, t->inner,
-		t->layer_count, (int64_t)t->activation, is_static};
 	const uint64_t vocabulary = hash_vocabulary(v);
+	const uint64_t sizes = hash_sizes(b->words, b->positions, b->types, &b->body, is_static);
 
-	uint64_t hash = hash64(sizes, sizeof sizes, 0);
-	hash = hash64(&t->eps, sizeof t->eps, hash);
-	hash = bert_hash(b, hash);
-	return fingerprint_of(hash64(&vocabulary, sizeof vocabulary, hash));
+	return fingerprint_of(hash64(&vocabulary, sizeof vocabulary, bert_hash(b, sizes)));
 }
 
 /* The same of merges, wherever the table has them. */
@@ -68,15 +72,10 @@ static uint64_t hash_merges(const struct bpe *b)
 
 struct fingerprint fingerprint_clip(const struct clip *c, const struct bpe *b, int is_static)
 {
-	const struct transformer *t = &c->body;
-	const int64_t sizes[] = {c->words, c->positions, c->projected, t->width, t->heads, t->inner,
-		t->layer_count, (int64_t)t->activation, is_static};
 	const uint64_t vocabulary[] = {hash_vocabulary(&b->vocab), hash_merges(b)};
+	const uint64_t sizes = hash_sizes(c->words, c->positions, c->projected, &c->body, is_static);
 
-	uint64_t hash = hash64(sizes, sizeof sizes, 0);
-	hash = hash64(&t->eps, sizeof t->eps, hash);
-	hash = clip_hash(c, hash);
-	return fingerprint_of(hash64(vocabulary, sizeof vocabulary, hash));
+	return fingerprint_of(hash64(vocabulary, sizeof vocabulary, clip_hash(c, sizes)));
 }
 
 int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const char *key, struct err *e)

@@ -66,6 +66,7 @@ char **metalist_parse(const char *value, size_t *n, struct err *e)
 	cJSON *list = cJSON_Parse(value);
 	char **strings = NULL, reason[64] = "not a JSON list";
 
+	*n = 0;
 	if (cJSON_IsArray(list))
 		strings = take_strings(list, n, reason);
 	if (!strings)

@@ -1,7 +1,6 @@
 #include "formats/cameras/camerafile.h"
 
 #include "base/file.h"
-#include "base/mem.h"
 #include "base/textfile.h"
 #include "formats/cameras/cameras3dgs.h"
 #include "formats/cameras/colmap.h"
@@ -12,26 +11,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-
-char *camerafile_find(const char *dir, struct err *e)
-{
-	static const char *const places[] = {"cameras.json", "sparse/0", "sparse", "transforms.json"};
-
-	if (colmap_is_model(dir))
-		return mem_strdup(dir, e);
-	for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-		char *path = file_join(dir, places[i], "", e);
-		if (!path)
-			return NULL;
-		if (strstr(places[i], ".json") ? file_exists(path) : colmap_is_model(path))
-			return path;
-		free(path);
-	}
-	err_set(e, ERR_FORMAT,
-		"%s: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json",
-		dir);
-	return NULL;
-}
 
 /* JSON, or what else the file is. */
 static cJSON *read_json(const char *path, struct err *e)

@@ -5,11 +5,6 @@
 #include "base/err.h"
 #include "geom/camera.h"
 
-/* The camera file in a folder: the folder itself where it is a COLMAP model, else the first there is of
- * cameras.json, sparse/0, sparse, transforms.json. free() it. NULL with *e set (ERR_FORMAT) where there is
- * none. */
-char *camerafile_find(const char *dir, struct err *e);
-
 /* Reads a COLMAP folder, or a JSON file ("-" is stdin): a list is a 3DGS cameras.json, an object a
  * transforms.json. There is at least one view. Cameras that distort have their lens, and the photograph's
  * size and intrinsics. Returns 0, or -1 with *e and *c zeroed. */

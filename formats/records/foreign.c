@@ -11,7 +11,6 @@ enum { MEMBERS = 3 };
 /* A way out is a format: %s is the file's name, %b that without its ending. */
 #define CONVERT "'npx @playcanvas/splat-transform %s %b.ply' converts it"
 #define EXPORT "export the scene as a .ply where it was made"
-#define TRAIN "give a scene that 3D Gaussian Splatting trained"
 #define MODEL "export them as a COLMAP model"
 #define TRAINED_WITH "give the COLMAP model or transforms.json that the scene was trained with"
 
@@ -78,9 +77,9 @@ static const struct {
 	{FOREIGN_SPLATS, ".usd", NULL, "a scene of USD, not a .ply", EXPORT},
 	{FOREIGN_SPLATS, ".html", NULL, "a page of a viewer, not a .ply", EXPORT},
 	{FOREIGN_SPLATS, ".safetensors", NULL, "arrays, not a .ply", EXPORT},
-	{FOREIGN_SPLATS, ".obj", NULL, "a mesh, not a trained scene", TRAIN},
-	{FOREIGN_SPLATS, ".las", "LASF", "a point cloud, not a trained scene", TRAIN},
-	{FOREIGN_SPLATS, ".pcd", "# .PCD", "a point cloud, not a trained scene", TRAIN},
+	{FOREIGN_SPLATS, ".obj", NULL, "a mesh, not a trained scene", FOREIGN_TRAIN},
+	{FOREIGN_SPLATS, ".las", "LASF", "a point cloud, not a trained scene", FOREIGN_TRAIN},
+	{FOREIGN_SPLATS, ".pcd", "# .PCD", "a point cloud, not a trained scene", FOREIGN_TRAIN},
 	{FOREIGN_SPLATS, ".json", NULL, "JSON, not splats",
 		"cameras are for --cameras, and SOG's JSON is called meta.json"},
 	{FOREIGN_SPLATS, ".ckpt", NULL, CHECKPOINT},
@@ -106,29 +105,7 @@ static const struct {
 	{FOREIGN_CAMERAS, ".ply", "ply", "a .ply, which has no cameras", TRAINED_WITH},
 };
 
-/* Properties of a .ply's vertices that one method writes, and 3DGS does not, or the other way round. */
-static const struct {
-	const char *has, *lacks, *what, *way_out;
-} layouts[] = {
-	{"filter_3D", NULL,
-		"a scene of Mip-Splatting (property 'filter_3D'), which 3DGS's rendering gets wrong",
-		"its 'python create_fused_ply.py -m MODEL --output_ply fused.ply' makes one that is right"},
-	{"f_anchor_feat_0", NULL, "anchors of Scaffold-GS, which its networks make Gaussians of", TRAIN},
-	{"f_offset_0", NULL, "anchors of Scaffold-GS, which its networks make Gaussians of", TRAIN},
-	{"trbf_center", NULL, "Gaussians that move (property 'trbf_center')", TRAIN},
-	{"scale_t", NULL, "Gaussians that move (property 'scale_t')", TRAIN},
-	{"binding_0", NULL, "Gaussians that a mesh moves (property 'binding_0')", TRAIN},
-	{"beta", NULL, "kernels that are no Gaussians (property 'beta')", TRAIN},
-	{"scale_1", "scale_2", "flat Gaussians of 2DGS, with two scales, which are rendered in another way",
-		TRAIN},
-	{"f_0", "f_dc_0", "features of SAGA without colours (property 'f_0')",
-		"give its scene_point_cloud.ply"},
-	{"red", "f_dc_0", "Gaussians with colours in place of spherical harmonics (property 'red')",
-		"'ns-export gaussian-splat --ply-color-mode sh_coeffs' writes these"},
-};
-
-/* NAME: WHAT: WAY OUT. */
-static int say(const char *name, const char *what, const char *way_out, struct err *e)
+int foreign_say(const char *name, const char *what, const char *way_out, struct err *e)
 {
 	const char *dot = strrchr(name, '.');
 	const int stem = (int)(dot ? (size_t)(dot - name) : strlen(name));
@@ -159,7 +136,7 @@ int foreign_json(const cJSON *root, const char *name, struct err *e)
 
 	for (size_t i = 0; cJSON_IsObject(object) && i < sizeof kinds / sizeof *kinds; i++)
 		if (kinds[i].is_list == is_list && has_members(object, &kinds[i]))
-			return say(name, kinds[i].what, kinds[i].way_out, e);
+			return foreign_say(name, kinds[i].what, kinds[i].way_out, e);
 	return 0;
 }
 
@@ -169,46 +146,7 @@ int foreign_file(const char *name, enum foreign_place place, const void *data, s
 		const size_t n = files[i].begin ? strlen(files[i].begin) : 0;
 		if (files[i].place == place && (path_ends(name, files[i].ending) ||
 						       (n && n <= len && !memcmp(data, files[i].begin, n))))
-			return say(name, files[i].what, files[i].way_out, e);
+			return foreign_say(name, files[i].what, files[i].way_out, e);
 	}
 	return 0;
-}
-
-/* Codes where 3DGS has floats: half floats, or quantised. */
-static int check_types(const struct plyfile *f, const struct plyfile_element *vertex, struct err *e)
-{
-	static const char *const names[] = {"f_dc_0", "opacity", "scale_0"};
-
-	for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-		const long at = plyfile_property(vertex, names[i]);
-		if (at >= 0 && vertex->properties[at].type < PLY_F32 && !vertex->properties[at].is_list)
-			return err_set(e, ERR_FORMAT,
-				"%s: property '%s' has whole numbers, half floats or codes of a packed scene: export it with floats where it was made",
-				f->path, names[i]);
-	}
-	return 0;
-}
-
-int foreign_vertices(const struct plyfile *f, const struct plyfile_element *vertex, struct err *e)
-{
-	const struct plyfile_element *face = plyfile_find(f, "face");
-	char mode[128];
-
-	for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
-		if (plyfile_property(vertex, layouts[i].has) >= 0 &&
-			(!layouts[i].lacks || plyfile_property(vertex, layouts[i].lacks) < 0) &&
-			(!layouts[i].lacks || plyfile_property(vertex, "rot_0") >= 0))
-			return say(f->path, layouts[i].what, layouts[i].way_out, e);
-	if (plyfile_property(vertex, "x") >= 0 && plyfile_property(vertex, "scale_0") < 0 &&
-		plyfile_property(vertex, "rot_0") < 0 && plyfile_property(vertex, "packed_position") < 0)
-		return err_set(e, ERR_FORMAT,
-			"%s: a %s, not a trained scene: it has points without scale and rotation; 3D Gaussian Splatting trains a scene from them, point_cloud/iteration_N/point_cloud.ply",
-			f->path, face && face->rows ? "mesh" : "point cloud");
-	if (f->mode) {
-		snprintf(mode, sizeof mode, "%.*s", (int)strcspn(f->mode, "\r"), f->mode);
-		return err_set(e, ERR_FORMAT,
-			"%s: trained for another way of rendering ('%s'), which would be wrong here: train it without that mode",
-			f->path, mode);
-	}
-	return check_types(f, vertex, e);
 }

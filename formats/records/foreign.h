@@ -6,7 +6,6 @@
 #define FORMATS_FOREIGN_H
 
 #include "base/err.h"
-#include "formats/splats/plyfile.h"
 
 #include <cjson/cJSON.h>
 
@@ -17,7 +16,8 @@ int foreign_json(const cJSON *root, const char *name, struct err *e);
 enum foreign_place { FOREIGN_SPLATS, FOREIGN_CAMERAS };
 int foreign_file(const char *name, enum foreign_place place, const void *data, size_t len, struct err *e);
 
-/* A .ply whose rows are not those of a 3DGS scene that can be rendered. */
-int foreign_vertices(const struct plyfile *f, const struct plyfile_element *vertex, struct err *e);
+/* ERR_FORMAT, "NAME: WHAT: WAY OUT", in which %s is the name, and %b that without its ending: -1. */
+int foreign_say(const char *name, const char *what, const char *way_out, struct err *e);
+#define FOREIGN_TRAIN "give a scene that 3D Gaussian Splatting trained"
 
 #endif

@@ -3,7 +3,6 @@
 #include "base/file.h"
 #include "base/little.h"
 #include "base/mem.h"
-#include "formats/records/foreign.h"
 #include "formats/splats/plyfile.h"
 #include "formats/splats/plypacked.h"
 #include "splat/gaussian_rows.h"
@@ -103,7 +102,7 @@ static int read_vertices(struct splats *s, double offset[3], struct rows_report 
 {
 	struct source in;
 
-	if (foreign_vertices(f, vertex, e))
+	if (ply_check_foreign(f, vertex, e))
 		return -1;
 	int bad = open_source(&in, f, vertex, chunks, e);
 	if (!bad) {
