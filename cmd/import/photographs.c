@@ -51,8 +51,7 @@ static char *image_path(const char *scene, const char *path, struct err *e)
 	return relative;
 }
 
-int photographs_find(
-	struct cameras *c, const char *images, const char *scene, size_t *missing, struct err *e)
+int photographs_find(struct cameras *c, const char *images, const char *scene, size_t *missing, struct err *e)
 {
 	*missing = 0;
 	for (size_t i = 0; i < c->n; i++) {

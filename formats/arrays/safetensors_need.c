@@ -1,4 +1,5 @@
-/* What readers of a format need of a safetensors file: numbers, tensors of a type and a shape, its own format. */
+/* What readers of a format need of a safetensors file: numbers, tensors of a type and a shape, its own
+ * format. */
 #include "base/half.h"
 #include "base/little.h"
 #include "base/mem.h"

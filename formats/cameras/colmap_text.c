@@ -99,8 +99,10 @@ static int read_camera_text(
 				in->number, lens_model_name(model), n, i);
 	if (line[strspn(line, " \t")])
 		return err_set(e, ERR_FORMAT, "%s:%ld: more than %d parameters", path, in->number, n);
-	return colmap_set_camera(&l, model, size[0], size[1], params, path, e) || colmap_add_entry(all, &l, path, e) ? -1
-												       : 0;
+	return colmap_set_camera(&l, model, size[0], size[1], params, path, e) ||
+			       colmap_add_entry(all, &l, path, e)
+		       ? -1
+		       : 0;
 }
 
 static int read_cameras_text(struct colmap_entries *all, struct lines *in, const char *path, struct err *e)
@@ -165,8 +167,8 @@ static void note_count(const char *comment, struct lines *in)
 
 /* An image's line is followed by one of its points, which may be empty; files of other programs leave it out.
  */
-static int read_images_text(
-	struct cameras *c, const struct colmap_entries *all, struct lines *in, const char *path, struct err *e)
+static int read_images_text(struct cameras *c, const struct colmap_entries *all, struct lines *in,
+	const char *path, struct err *e)
 {
 	size_t capacity = 0;
 	int may_be_points = 0;
