@@ -36,6 +36,9 @@ void fit_gaussians_activate(struct fit_gaussians *g);
 /* Adds the Gaussians of a trained scene, as many as there is room for. */
 void fit_gaussians_take(struct fit_gaussians *g, const struct splats *from);
 
+/* Leaves those with kept[i] (n) not 0, with their moments. */
+void fit_gaussians_keep(struct fit_gaussians *g, const char *kept);
+
 /* A trained scene of those with kept[i] (n) not 0, quaternions of length 1. Returns 0, or -1 with *e set and
  * *to zeroed. */
 int fit_gaussians_give(const struct fit_gaussians *g, const char *kept, struct splats *to, struct err *e);
