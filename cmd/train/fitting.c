@@ -260,10 +260,10 @@ static int run(struct fitting *f, struct err *e)
 
 	if (fitting_input_read(in, e))
 		return -1;
-	const struct fit_options options = {in->extent, (uint64_t)o->seed};
+	const struct fit_options options = {in->extent, in->size, (uint64_t)o->seed};
 	report_note(f->to, 1,
-		"%zu photographs to learn from, %zu to test with, %zu Gaussians to begin with, extent %.4g",
-		in->learned, in->tested, in->gaussians.n, in->extent);
+		"%zu photographs to learn from, %zu to test with, %zu Gaussians to begin with, extent %.4g, size %.4g",
+		in->learned, in->tested, in->gaussians.n, in->extent, in->size);
 	f->judges = in->tested ? fit_judges_of(in->photographs + in->learned, in->tested)
 			       : fit_judges_of(in->photographs, in->learned);
 	int bad = file_out_claim(&claim, o->output, e);

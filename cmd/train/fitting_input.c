@@ -143,6 +143,7 @@ static int start_from_points(struct fitting_input *f, struct err *e)
 			places[i] = (float)(p.places[i] - f->offset[i % 3]);
 		cameras_shift(&f->cameras, f->offset);
 		f->extent = start_extent(f->seen, f->learned, places, p.n);
+		f->size = start_size(f->seen, f->learned, places, p.n);
 		bad = start_at_points(&f->gaussians, places, p.colors, p.n, &rng, e);
 	}
 	free(places);
@@ -161,6 +162,7 @@ static int start_from_scene(struct fitting_input *f, struct err *e)
 	if (!bad) {
 		cameras_shift(&f->cameras, f->offset);
 		f->extent = start_extent(f->seen, f->learned, s.means, s.n);
+		f->size = start_size(f->seen, f->learned, s.means, s.n);
 		fit_gaussians_take(&f->gaussians, &s);
 	}
 	splats_free(&s);

@@ -16,7 +16,7 @@ struct fitting_input {
 	size_t learned, tested;
 	const struct camera **seen; /* (learned) */
 	struct fit_gaussians gaussians;
-	double extent;
+	double extent, size;
 	uint32_t checksum; /* CRC-32 of all of it */
 };
 

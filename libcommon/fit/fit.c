@@ -180,6 +180,7 @@ static int back(
 	if (back_view(f->view, f->colors, f->image, gradient, f->sums, &f->back, e))
 		return -1;
 	fit_project_back(g, f->view, f->seen, c, degree, f->colors, f->sums);
+	const float weight = WEIGHT_SCALE * (float)(FIT_SIZE / f->options.size);
 	const float area = (float)(1 << 2 * level); /* pixels of full size */
 #pragma omp parallel for schedule(static)
 	for (size_t i = 0; i < g->n; i++) {
@@ -187,8 +188,7 @@ static int back(
 		f->weight[i] += area * f->sums[i * BACK_SUMS + BACK_WEIGHT];
 		g->at[FIT_GRADIENT][FIT_LOGIT][i] += WEIGHT_OPACITY * o * (1 - o) / (float)g->n;
 		for (size_t k = 3 * i; k < 3 * i + 3; k++)
-			g->at[FIT_GRADIENT][FIT_SCALE][k] +=
-				WEIGHT_SCALE * g->splats.scales[k] / (3 * (float)g->n);
+			g->at[FIT_GRADIENT][FIT_SCALE][k] += weight * g->splats.scales[k] / (3 * (float)g->n);
 	}
 	return 0;
 }
@@ -258,7 +258,7 @@ int fit_step(struct fit *f, double progress, struct err *e)
 		return -1;
 	step_parameters(f, mean_rate, degree);
 	if (progress < GROW_END)
-		grow_noise(&f->gaussians, mean_rate, f->options.seed, f->state.iteration);
+		grow_noise(&f->gaussians, mean_rate, f->options.size, f->options.seed, f->state.iteration);
 	f->state.iteration++;
 	f->state.loss += f->last.total;
 	f->state.squares += f->last.squares;

@@ -19,6 +19,7 @@
 
 struct fit_options {
 	double extent; /* start_extent's: what positions are measured by */
+	double size;   /* start_size's: what the noise and the weight on scales are measured by */
 	uint64_t seed;
 };
 
