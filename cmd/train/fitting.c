@@ -19,6 +19,9 @@
 /* Photographs whose gains are this far apart were not exposed alike: those of one exposure have up to 0.1. */
 #define EXPOSURE_LEAST 0.15
 
+/* No loss of an image between black and white beside a photograph is above 1.2. */
+#define LOSS_MOST 10
+
 struct fitting {
 	const struct fitting_options *options;
 	const struct report *to;
@@ -114,9 +117,9 @@ static int record(struct fitting *f, struct err *e)
 	struct fit_state *s = &f->fit.state;
 	const long done = (long)s->iteration;
 
-	if (!isfinite(f->fit.last.total))
-		return err_set(
-			e, ERR_CHECK, "training diverged: the loss of step %ld is not a finite number", done);
+	if (!(f->fit.last.total < LOSS_MOST))
+		return err_set(e, ERR_CHECK, "training diverged: the loss of step %ld is %.3g", done,
+			f->fit.last.total);
 	if (done % TRAINLOG_EVERY == 0) {
 		const double psnr = fit_psnr(s->squares / TRAINLOG_EVERY);
 		snprintf(f->note, sizeof f->note, "%zu Gaussians, PSNR %.2f", f->fit.gaussians.n, psnr);
@@ -200,9 +203,9 @@ static int finish(struct fitting *f, struct err *e)
 static int fall_back(struct fitting *f, struct err *e)
 {
 	struct fit_gaussians *g = &f->fit.gaussians;
-	const long at = (long)f->fit.state.iteration;
-	const char *output = file_name(f->options->output);
+	char why[128];
 
+	snprintf(why, sizeof why, "%.127s", e->message);
 	memcpy(g->slab, f->good, (size_t)(g->at[FIT_GRADIENT][0] - g->slab) * sizeof *f->good);
 	g->n = f->good_n;
 	f->fit.state.iteration = f->good_step;
@@ -210,8 +213,8 @@ static int fall_back(struct fitting *f, struct err *e)
 	return finish(f, e)
 		       ? -1
 		       : err_set(e, ERR_FORMAT,
-				 "%s: training diverged by step %ld: numbers are not finite; the file has the scene of step %ld; try a lower --degree, fewer --gaussians, or points in place of --init",
-				 output, at, f->good_step);
+				 "%s: %s; the file has the scene of step %ld; try a lower --degree, fewer --gaussians, or points in place of --init",
+				 file_name(f->options->output), why, f->good_step);
 }
 
 /* Goes on from a checkpoint where that is wanted. */

@@ -94,7 +94,7 @@ static int prune(struct fit *f, const struct fit_judges *by, struct rank *ranks,
 	struct err *e)
 {
 	const size_t n = f->gaussians.n;
-	size_t low = 0, high = n;
+	size_t low = 0, high = n / 2;
 	double whole, psnr;
 
 	memcpy(logits, f->gaussians.at[FIT_VALUE][FIT_LOGIT], n * sizeof *logits);
