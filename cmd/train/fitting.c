@@ -2,41 +2,39 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/import/import.h"
-#include "cmd/import/photographs.h"
-#include "cmd/import/warping.h"
-#include "fit/fit.h"
-#include "fit/start.h"
-#include "formats/splats/anysplats.h"
-#include "formats/cameras/camerafile.h"
-#include "formats/cameras/colmap.h"
-#include "formats/cameras/colmap_points.h"
-#include "formats/splats/ply.h"
+#include "cmd/train/fitting_checkpoint.h"
+#include "cmd/train/fitting_input.h"
+#include "fit/needed.h"
+#include "formats/images/png.h"
 #include "formats/records/trainlog.h"
-#include "geom/lens.h"
+#include "formats/splats/ply.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
-enum { RANDOM_POINTS = 20000, NOTE_EVERY = 100 };
+/* Photographs whose gains are this far apart were not exposed alike: those of one exposure have up to 0.1. */
+#define EXPOSURE_LEAST 0.15
+
+/* No loss of an image between black and white beside a photograph is above 1.2. */
+#define LOSS_MOST 10
 
 struct fitting {
 	const struct fitting_options *options;
 	const struct report *to;
-	char *path; /* of the cameras */
-	struct cameras cameras;
-	double offset[3];
-	struct photograph *photographs; /* (cameras.n) first those to learn from, then those to test with */
-	size_t learned, tested;
-	const struct camera **seen; /* (learned) */
-	struct fit_gaussians gaussians;
-	double extent;
+	struct fitting_input in;
 	struct fit fit;
+	struct fit_judges judges;
 	struct trainlog log;
-	char note[64];
+	float *good; /* the parameters at the last evaluation */
+	size_t good_n;
+	long good_step;
+	double begin; /* when the training would have begun, had it not been cut off */
+	int is_own;   /* the checkpoint is of this training */
+	char identity[256], note[64];
 };
 
 static double seconds(void)
@@ -47,181 +45,114 @@ static double seconds(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static int read_cameras(struct fitting *f, struct err *e)
+/* Notes what to go back to where the training diverges. */
+static void keep(struct fitting *f)
 {
-	const struct fitting_options *o = f->options;
-	const struct import_options files = {.splats = "-", .cameras = o->cameras, .images = o->images};
-	size_t missing;
+	const struct fit_gaussians *g = &f->fit.gaussians;
 
-	f->path = import_find_cameras(&files, e);
-	if (!f->path || camerafile_read(&f->cameras, f->path, e) ||
-		import_split(&f->cameras, o->test_views, e))
-		return -1;
-	cameras_undistort(&f->cameras);
-	if (photographs_find(&f->cameras, o->images, ".", &missing, e))
-		return -1;
-	if (missing == f->cameras.n)
-		return err_set(e, ERR_FORMAT,
-			"%s: no photograph for any of the %zu views of %s, such as '%s'", o->images, missing,
-			file_name(f->path), f->cameras.views[0].name);
-	if (missing)
-		report_warn(
-			f->to, "%s: no photograph for %zu of %zu views", o->images, missing, f->cameras.n);
-	return 0;
+	memcpy(f->good, g->slab, (size_t)(g->at[FIT_GRADIENT][0] - g->slab) * sizeof *f->good);
+	f->good_n = g->n;
+	f->good_step = (long)f->fit.state.iteration;
 }
 
-/* A photograph may have another size than its camera, but not another shape. */
-static int read_photograph(struct fitting *f, const struct camera *c, struct photograph *p, struct err *e)
+static int draw_preview(struct fitting *f, struct err *e)
 {
-	uint8_t *rgb = NULL;
-	int height, width;
+	const struct camera *c = &f->judges.first->camera[0];
+	const size_t pixels = (size_t)c->width * (size_t)c->height;
+	struct photo_loss l;
+	char name[32];
 
-	if (warping_read_photograph(c, ".", 0, &rgb, &height, &width, e))
+	if (!f->options->preview)
+		return 0;
+	if (fit_judge(&f->fit, f->judges.first, &l, e))
 		return -1;
-	int bad = fabs((double)c->width * height / width - c->height) > 1 + 0.005 * c->height
-			  ? err_set(e, ERR_FORMAT, "%s: %dx%d, which is not the shape of its camera, %dx%d",
-				    c->image, width, height, c->width, c->height)
-			  : photograph_make(p, c, f->options->scale, rgb, height, width, e);
+	snprintf(name, sizeof name, "%08ld", (long)f->fit.state.iteration);
+	uint8_t *rgb = mem_alloc(pixels, 3, "picture", e);
+	char *path = file_join(f->options->preview, name, ".png", e);
+	for (size_t i = 0; rgb && i < 3 * pixels; i++)
+		rgb[i] = (uint8_t)(255 * fminf(fmaxf(f->fit.image[i % 3 * pixels + i / 3], 0), 1) + 0.5f);
+	const int bad = !rgb || !path || png_write(path, rgb, c->height, c->width, 3, e);
 	free(rgb);
+	free(path);
 	return bad ? -1 : 0;
 }
 
-static int read_photographs(struct fitting *f, struct err *e)
+/* What is due at some progress besides a step. */
+static int look(struct fitting *f, double progress, struct err *e)
 {
-	const size_t n = f->cameras.n;
-	int bad = 0;
+	struct fit *fit = &f->fit;
+	const size_t most = (size_t)fit->state.most, n = fit->gaussians.n;
+	double psnr, ssim;
+	int is_due;
 
-	f->photographs = mem_zalloc(n, sizeof *f->photographs, "photographs", e);
-	f->seen = mem_alloc(n, sizeof *f->seen, "photographs", e);
-	if (!f->photographs || !f->seen)
-		return -1;
-	report_start(f->to, "photographs", (double)n);
-	for (int split = SPLIT_TRAIN; split <= SPLIT_TEST; split++)
-		for (size_t i = 0; i < n && !bad; i++) {
-			const struct camera *c = &f->cameras.views[i];
-			if (!c->image || (int)c->split != split)
-				continue;
-			if (split == SPLIT_TRAIN)
-				f->seen[f->learned] = c;
-			bad = read_photograph(f, c, &f->photographs[f->learned + f->tested], e);
-			*(split == SPLIT_TRAIN ? &f->learned : &f->tested) += 1;
-			report_step(f->to, (double)(f->learned + f->tested), NULL);
-		}
-	report_end(f->to);
-	if (!bad && !f->learned)
-		bad = err_set(e, ERR_FORMAT, "%s: every view with a photograph is kept for testing",
-			file_name(f->path));
-	return bad;
-}
-
-/* Where there are none, points are drawn around the cameras. */
-static int make_points(struct fitting *f, struct colmap_points *p, struct rng *rng, struct err *e)
-{
-	p->n = RANDOM_POINTS;
-	p->places = mem_alloc(p->n, 3 * sizeof *p->places, "points", e);
-	p->colors = mem_alloc(p->n, 3, "points", e);
-	if (!p->places || !p->colors)
-		return -1;
-	start_points(f->seen, f->learned, p->places, p->colors, p->n, rng);
-	report_warn(f->to, "%s: no points to begin with: %zu are taken at random", file_name(f->path), p->n);
-	return 0;
-}
-
-/* Points are moved to the offset in double. */
-static int start_from_points(struct fitting *f, struct err *e)
-{
-	const struct fitting_options *o = f->options;
-	struct colmap_points p = {0};
-	float *places = NULL;
-	struct rng rng;
-
-	rng_seed(&rng, (uint64_t)o->seed, 1);
-	int bad = (o->points || file_is_dir(f->path)) &&
-		  colmap_points_read(&p, o->points ? o->points : f->path, e);
-	bad = bad || (!p.n && make_points(f, &p, &rng, e)) || gaussian_offset(f->offset, p.places, p.n, e) ||
-	      fit_gaussians_alloc(&f->gaussians, o->gaussians ? (size_t)o->gaussians : start_number(p.n),
-		      (int)o->degree, e) ||
-	      !(places = mem_alloc(p.n, 3 * sizeof *places, "points", e));
-	if (!bad) {
-		for (size_t i = 0; i < 3 * p.n; i++)
-			places[i] = (float)(p.places[i] - f->offset[i % 3]);
-		cameras_shift(&f->cameras, f->offset);
-		f->extent = start_extent(f->seen, f->learned, places, p.n);
-		bad = start_at_points(&f->gaussians, places, p.colors, p.n, &rng, e);
-	}
-	free(places);
-	colmap_points_free(&p);
-	return bad ? -1 : 0;
-}
-
-static int start_from_scene(struct fitting *f, struct err *e)
-{
-	const struct fitting_options *o = f->options;
-	struct splats s = {0};
-	int bad = anysplats_read(&s, f->offset, NULL, o->init, e);
-
-	bad = bad || fit_gaussians_alloc(&f->gaussians,
-			     s.n > (size_t)o->gaussians ? s.n : (size_t)o->gaussians, (int)o->degree, e);
-	if (!bad) {
-		cameras_shift(&f->cameras, f->offset);
-		f->extent = start_extent(f->seen, f->learned, s.means, s.n);
-		fit_gaussians_take(&f->gaussians, &s);
-	}
-	splats_free(&s);
-	return bad ? -1 : 0;
-}
-
-/* The cameras were moved after the photographs were read. */
-static void move_photographs(struct fitting *f)
-{
-	for (size_t i = 0; i < f->learned + f->tested; i++)
-		for (int k = 0; k < FIT_LEVELS; k++) {
-			struct cameras one = {1, &f->photographs[i].camera[k]};
-			cameras_shift(&one, f->offset);
-		}
-}
-
-/* Mean loss and PSNR of the test views. */
-static int judge(struct fitting *f, double *psnr, double *ssim, struct err *e)
-{
-	*psnr = *ssim = 0;
-	for (size_t i = 0; i < f->tested; i++) {
-		struct photo_loss l;
-		if (fit_judge(&f->fit, &f->photographs[f->learned + i], &l, e))
+	if (!fit->state.is_pruned && progress >= FIT_PRUNED) {
+		if (fit_check(fit, e) || fit_prune(fit, &f->judges, e))
 			return -1;
-		*psnr += fit_psnr(l.squares) / (double)f->tested;
-		*ssim += l.ssim / (double)f->tested;
-		report_note(f->to, 2, "%s: PSNR %.2f dB, SSIM %.4f",
-			f->photographs[f->learned + i].camera[0].name, fit_psnr(l.squares), l.ssim);
+		report_note(f->to, 1, "step %ld: %zu of %zu Gaussians add nothing and are left out",
+			(long)fit->state.iteration, n - fit->gaussians.n, n);
 	}
-	return 0;
+	if (fit_evaluate(fit, &f->judges, progress, &is_due, &psnr, &ssim, e))
+		return -1;
+	if (!is_due)
+		return 0;
+	if (fit_check(fit, e))
+		return -1;
+	keep(f);
+	report_note(f->to, 2, "step %ld: %zu Gaussians, %s PSNR %.2f dB, SSIM %.4f",
+		(long)fit->state.iteration, fit->gaussians.n, f->in.tested ? "held-out" : "training", psnr,
+		ssim);
+	if ((size_t)fit->state.most < most && !fit->state.is_pruned)
+		report_note(f->to, 1, "step %ld: more than %zu Gaussians gain nothing",
+			(long)fit->state.iteration, fit->gaussians.n);
+	return trainlog_put_judged(&f->log, (long)fit->state.iteration, fit->gaussians.n, psnr, ssim, e) ||
+			       draw_preview(f, e)
+		       ? -1
+		       : 0;
+}
+
+/* What is due after a step: a line of the log, a checkpoint. */
+static int record(struct fitting *f, struct err *e)
+{
+	const struct fitting_options *o = f->options;
+	struct fit_state *s = &f->fit.state;
+	const long done = (long)s->iteration;
+
+	if (!(f->fit.last.total < LOSS_MOST))
+		return err_set(e, ERR_CHECK, "training diverged: the loss of step %ld is %.3g", done,
+			f->fit.last.total);
+	if (done % TRAINLOG_EVERY == 0) {
+		const double psnr = fit_psnr(s->squares / TRAINLOG_EVERY);
+		snprintf(f->note, sizeof f->note, "%zu Gaussians, PSNR %.2f", f->fit.gaussians.n, psnr);
+		if (trainlog_put_fit(&f->log, done, f->fit.gaussians.n, s->loss / TRAINLOG_EVERY, psnr, e))
+			return -1;
+		s->loss = s->squares = 0;
+	}
+	if (!o->checkpoint || done % o->checkpoint || fit_check(&f->fit, e))
+		return o->checkpoint && done % o->checkpoint == 0 ? -1 : 0;
+	s->spent = seconds() - f->begin;
+	const int bad = fitting_checkpoint_write(&f->fit, o->checkpoint_path, f->identity, e);
+	f->is_own |= !bad;
+	return bad;
 }
 
 static int take_steps(struct fitting *f, struct err *e)
 {
 	const struct fitting_options *o = f->options;
-	const double begin = seconds(), all = o->minutes > 0 ? 60 * o->minutes : (double)o->iterations;
-	double done = 0, loss = 0, squares = 0;
+	const int is_timed = o->minutes > 0;
+	const double all = is_timed ? 60 * o->minutes : (double)o->iterations;
+	const struct fit_state *s = &f->fit.state;
+	double done = is_timed ? s->spent : (double)s->iteration;
 	int bad = 0;
 
-	report_start(f->to, o->minutes > 0 ? "seconds" : "steps", all);
+	f->begin = seconds() - s->spent;
+	report_start(f->to, is_timed ? "seconds" : "steps", all);
 	while (done < all && !bad) {
-		struct fit *fit = &f->fit;
-		bad = fit_step(fit, done / all, e);
-		loss += fit->last.total / NOTE_EVERY;
-		squares += fit->last.squares / NOTE_EVERY;
-		if (!bad && fit->iteration % NOTE_EVERY == 0) {
-			snprintf(f->note, sizeof f->note, "%zu Gaussians, PSNR %.2f", fit->gaussians.n,
-				fit_psnr(squares));
-			bad = trainlog_put_fit(
-				&f->log, fit->iteration, fit->gaussians.n, loss, fit_psnr(squares), e);
-			loss = squares = 0;
-		}
-		done = o->minutes > 0 ? seconds() - begin : (double)fit->iteration;
+		bad = look(f, done / all, e) || fit_step(&f->fit, done / all, e) || record(f, e);
+		done = is_timed ? seconds() - f->begin : (double)s->iteration;
 		report_step(f->to, done, *f->note ? f->note : NULL);
 	}
 	report_end(f->to);
-	return bad;
+	return bad ? -1 : fit_check(&f->fit, e);
 }
 
 /* Training on photographs that show nothing would end in nothing. */
@@ -229,15 +160,13 @@ static int check_start(struct fitting *f, struct err *e)
 {
 	const size_t n = f->fit.gaussians.n;
 	char *kept = mem_alloc(n, 1, "Gaussians", e);
-	int bad = !kept || fit_shown(&f->fit, FIT_LEVELS - 1, kept, e);
+	int bad = !kept || fit_shown(&f->fit, FIT_LEVELS - 1, kept, NULL, e);
 
 	if (!bad && !memchr(kept, 1, n))
 		bad = err_set(e, ERR_FORMAT,
-			"%s: no photograph shows any of the %zu %s to begin with: they must be in the cameras' frame, before a camera, and farther from it than 0.2",
-			file_name(f->options->init     ? f->options->init
-				  : f->options->points ? f->options->points
-						       : f->path),
-			n, f->options->init ? "Gaussians" : "points");
+			"%s: no photograph shows any of the %zu %s to begin with: they must be in the cameras' frame, before a camera, and farther from it than its near plane, which is at %.3g here",
+			fitting_input_start(&f->in), n, f->options->init ? "Gaussians" : "points",
+			f->fit.gaussians.splats.near);
 	free(kept);
 	return bad ? -1 : 0;
 }
@@ -245,47 +174,124 @@ static int check_start(struct fitting *f, struct err *e)
 static int finish(struct fitting *f, struct err *e)
 {
 	const size_t n = f->fit.gaussians.n;
+	const struct fit_judges tested = {f->judges.first, f->in.tested, 1};
 	char *kept = mem_alloc(n, 1, "Gaussians", e);
 	struct splats s = {0};
 	double psnr, ssim;
-	int bad = !kept || fit_check(&f->fit, e) || judge(f, &psnr, &ssim, e) ||
-		  fit_shown(&f->fit, 0, kept, e) || fit_gaussians_give(&f->fit.gaussians, kept, &s, e) ||
-		  ply_write(&s, f->offset, f->options->output, e);
+	int bad = !kept || fit_judge_all(&f->fit, &tested, &psnr, &ssim, e) ||
+		  fit_shown(&f->fit, 0, kept, NULL, e) ||
+		  fit_gaussians_give(&f->fit.gaussians, kept, &s, e) ||
+		  ply_write(&s, f->in.offset, f->options->output, e);
 
 	if (!bad)
 		report_note(f->to, 1, "%ld steps, %zu Gaussians, of which %zu are shown and written",
-			f->fit.iteration, n, s.n);
-	if (!bad && f->tested)
-		report_note(f->to, 1, "%zu test views: PSNR %.2f dB, SSIM %.4f", f->tested, psnr, ssim);
+			(long)f->fit.state.iteration, n, s.n);
+	for (size_t i = 0; i < tested.n && !bad; i++) {
+		struct photo_loss l;
+		bad = fit_judge(&f->fit, &tested.first[i], &l, e);
+		report_note(f->to, 2, "%s: PSNR %.2f dB, SSIM %.4f", tested.first[i].camera[0].name,
+			fit_psnr(l.squares), l.ssim);
+	}
+	if (!bad && tested.n)
+		report_note(f->to, 1, "%zu test views: PSNR %.2f dB, SSIM %.4f", tested.n, psnr, ssim);
 	splats_free(&s);
 	free(kept);
 	return bad ? -1 : 0;
 }
 
+/* Writes what was good at the last evaluation. Always -1. */
+static int fall_back(struct fitting *f, struct err *e)
+{
+	struct fit_gaussians *g = &f->fit.gaussians;
+	char why[128];
+
+	snprintf(why, sizeof why, "%.127s", e->message);
+	memcpy(g->slab, f->good, (size_t)(g->at[FIT_GRADIENT][0] - g->slab) * sizeof *f->good);
+	g->n = f->good_n;
+	f->fit.state.iteration = f->good_step;
+	fit_gaussians_activate(g);
+	return finish(f, e)
+		       ? -1
+		       : err_set(e, ERR_FORMAT,
+				 "%s: %s; the file has the scene of step %ld; try a lower --degree, fewer --gaussians, or points in place of --init",
+				 file_name(f->options->output), why, f->good_step);
+}
+
+/* Goes on from a checkpoint where that is wanted. */
+static int resume(struct fitting *f, struct err *e)
+{
+	const struct fitting_options *o = f->options;
+
+	snprintf(f->identity, sizeof f->identity,
+		"--iterations %lld --minutes %g --gaussians %zu --degree %lld --seed %lld --exposure %s, inputs %08x",
+		o->iterations, o->minutes, f->fit.gaussians.capacity, o->degree, o->seed, o->exposure,
+		(unsigned)f->in.checksum);
+	if (!o->checkpoint_path || !file_exists(o->checkpoint_path))
+		return 0;
+	if (!o->is_resumed && o->checkpoint)
+		report_warn(f->to,
+			"%s: is of an earlier training and will be replaced; --resume would go on from it",
+			o->checkpoint_path);
+	if (!o->is_resumed)
+		return 0;
+	if (fitting_checkpoint_read(&f->fit, o->checkpoint_path, f->identity, e))
+		return -1;
+	f->is_own = 1;
+	report_note(f->to, 1, "going on after step %ld", (long)f->fit.state.iteration);
+	return 0;
+}
+
+static int expose(struct fitting *f, struct err *e)
+{
+	const char *when = f->options->exposure;
+	double spread;
+
+	if (!strcmp(when, "never") || f->in.learned < 2)
+		return 0;
+	if (fit_expose(&f->fit, strcmp(when, "auto") ? 0 : EXPOSURE_LEAST, &spread, e))
+		return -1;
+	report_note(f->to, 1, "exposures are %.0f%% apart%s", 100 * spread,
+		f->fit.exposures.n ? ", and learned" : "");
+	return 0;
+}
+
 static int run(struct fitting *f, struct err *e)
 {
 	const struct fitting_options *o = f->options;
+	struct fitting_input *in = &f->in;
 	struct file_out claim;
 
-	if (read_cameras(f, e) || read_photographs(f, e) ||
-		(o->init ? start_from_scene(f, e) : start_from_points(f, e)))
+	if (fitting_input_read(in, e))
 		return -1;
-	move_photographs(f);
-	const struct fit_options options = {f->extent, (uint64_t)o->seed};
+	const struct fit_options options = {in->extent, in->size, (uint64_t)o->seed};
 	report_note(f->to, 1,
-		"%zu photographs to learn from, %zu to test with, %zu Gaussians to begin with, extent %.4g",
-		f->learned, f->tested, f->gaussians.n, f->extent);
+		"%zu photographs to learn from, %zu to test with, %zu Gaussians to begin with, extent %.4g, size %.4g",
+		in->learned, in->tested, in->gaussians.n, in->extent, in->size);
+	f->judges = in->tested ? fit_judges_of(in->photographs + in->learned, in->tested)
+			       : fit_judges_of(in->photographs, in->learned);
 	int bad = file_out_claim(&claim, o->output, e);
-	bad = bad || trainlog_open(&f->log, o->log, 0, e) ||
-	      fit_open(&f->fit, &f->gaussians, &options, f->photographs, f->learned, e) ||
-	      check_start(f, e) || take_steps(f, e) || finish(f, e);
+	bad = bad || (o->checkpoint_path && file_out_probe(o->checkpoint_path, e)) ||
+	      (o->preview && file_make_dir(o->preview, e)) ||
+	      fit_open(&f->fit, &in->gaussians, &options, in->photographs, in->learned, e) ||
+	      check_start(f, e) || expose(f, e) || resume(f, e) ||
+	      trainlog_open(&f->log, o->log, (long)f->fit.state.iteration, e);
+	const struct fit_gaussians *g = &f->fit.gaussians;
+	bad = bad || !(f->good = mem_alloc(
+			       (size_t)(g->at[FIT_GRADIENT][0] - g->slab), sizeof *f->good, "Gaussians", e));
+	if (!bad) {
+		keep(f);
+		bad = take_steps(f, e);
+		bad = bad && e->code == ERR_CHECK ? fall_back(f, e) : bad || finish(f, e);
+	}
+	if (!bad && f->is_own)
+		unlink(o->checkpoint_path);
 	file_out_abort(&claim);
 	return bad ? -1 : 0;
 }
 
 int fit_scene(const struct fitting_options *o, const struct report *to, struct err *e)
 {
-	struct fitting f = {.options = o, .to = to};
+	struct fitting f = {.options = o, .to = to, .in = {.options = o, .to = to}};
 	struct err late;
 	int bad = run(&f, e);
 
@@ -294,12 +300,7 @@ int fit_scene(const struct fitting_options *o, const struct report *to, struct e
 		bad = -1;
 	}
 	fit_close(&f.fit);
-	fit_gaussians_free(&f.gaussians);
-	for (size_t i = 0; f.photographs && i < f.cameras.n; i++)
-		photograph_free(&f.photographs[i]);
-	free(f.photographs);
-	free(f.seen);
-	cameras_free(&f.cameras);
-	free(f.path);
+	free(f.good);
+	fitting_input_free(&f.in);
 	return bad;
 }

@@ -14,8 +14,14 @@ struct fitting_options {
 	const char *points;  /* COLMAP model with the first Gaussians' places; NULL: the cameras', where it is
 				one */
 	const char *init;    /* a scene to go on from; NULL: the points */
-	const char *test_views; /* as import_split has it; NULL: the camera file's */
-	const char *log;	/* NULL: none */
+	const char *test_views;	     /* as import_split has it; NULL: the camera file's */
+	const char *ignore;	     /* folder of masks NAME.png of what does not count; NULL: none */
+	const char *exposure;	     /* "auto", "always" or "never" learned */
+	const char *preview;	     /* folder for a picture at each evaluation; NULL: none */
+	const char *log;	     /* NULL: none */
+	const char *checkpoint_path; /* NULL: none */
+	int is_resumed;		     /* go on from the checkpoint, if there is one */
+	long long checkpoint;	     /* one every so many steps; 0: never */
 	const char *output;
 	long long iterations, degree, seed;
 	long long gaussians; /* 0: start_number */

@@ -30,6 +30,10 @@ int trainlog_put_held(struct trainlog *l, long iteration, const struct held_out_
 int trainlog_put_fit(
 	struct trainlog *l, long iteration, size_t gaussians, double loss, double psnr, struct err *e);
 
+/* A line of gs-train's at an evaluation, over held-out views or, where there are none, those of training. */
+int trainlog_put_judged(
+	struct trainlog *l, long iteration, size_t gaussians, double psnr, double ssim, struct err *e);
+
 /* Closes in any case, also a log that was not opened. */
 int trainlog_close(struct trainlog *l, struct err *e);
 

@@ -12,6 +12,8 @@
 /* 3DGS's rates, those of positions per extent and falling from the first to the second. */
 #define RATE_MEAN 1.6e-4
 #define RATE_MEAN_END 1.6e-6
+#define RATE_EXPOSURE 0.01
+#define RATE_EXPOSURE_END 0.001
 static const double rates[FIT_PARTS] = {0, 0.005, 0.001, 0.05, 0.0025, 0.0025 / 20, 0.0025 / 20, 0.0025 / 20};
 
 /* Small weights on opacities and scales, each a mean over all. 3DGS-MCMC has 0.01 for both; in short
@@ -32,8 +34,11 @@ static const double level_ends[FIT_LEVELS - 1] = {0.35, 0.1}, degree_begins[3] =
 int fit_open(struct fit *f, struct fit_gaussians *g, const struct fit_options *o,
 	const struct photograph *photographs, size_t views, struct err *e)
 {
-	*f = (struct fit){
-		.options = *o, .gaussians = *g, .photographs = photographs, .views = views, .first = g->n};
+	*f = (struct fit){.options = *o,
+		.gaussians = *g,
+		.photographs = photographs,
+		.views = views,
+		.state = {.first = (int64_t)g->n, .most = (int64_t)g->capacity}};
 	*g = (struct fit_gaussians){0};
 	f->order = mem_alloc(views, sizeof *f->order, "views", e);
 	f->seen = mem_alloc(f->gaussians.capacity, 1, "views", e);
@@ -43,7 +48,7 @@ int fit_open(struct fit *f, struct fit_gaussians *g, const struct fit_options *o
 	f->weight = mem_zalloc(f->gaussians.capacity, sizeof *f->weight, "gradients", e);
 	if (!f->order || !f->seen || !f->colors || !f->sums || !f->weight || !f->dead)
 		return -1;
-	rng_seed(&f->rng, o->seed, 0);
+	rng_seed(&f->state.rng, o->seed, 0);
 	for (size_t i = 0; i < views; i++)
 		f->order[i] = (uint32_t)i;
 	fit_gaussians_activate(&f->gaussians);
@@ -57,6 +62,7 @@ void fit_close(struct fit *f)
 	render_free(f->view);
 	back_free(&f->back);
 	photo_loss_free(&f->room);
+	exposures_free(&f->exposures);
 	free(f->order);
 	free(f->seen);
 	free(f->colors);
@@ -77,7 +83,7 @@ static int render(struct fit *f, const struct camera *c, int degree, struct err 
 {
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 
-	if (mem_room((void **)&f->image, &f->image_room, 6 * pixels, sizeof *f->image, "image", e) ||
+	if (mem_room((void **)&f->image, &f->image_room, 9 * pixels, sizeof *f->image, "image", e) ||
 		render_again(f->view, &f->gaussians.splats, c, e))
 		return -1;
 	fit_seen(f->view, f->seen);
@@ -86,29 +92,95 @@ static int render(struct fit *f, const struct camera *c, int degree, struct err 
 	return 0;
 }
 
+/* What the photograph shows of f->image, where that is not the same: as it was exposed, and what is ignored
+ * as it is in the photograph. */
+static const float *show(struct fit *f, const struct photograph *p, int level, const float *exposure)
+{
+	const size_t pixels = (size_t)p->camera[level].width * (size_t)p->camera[level].height;
+	float *shown = f->image + 6 * pixels;
+
+	if (!exposure && !p->ignored[level])
+		return f->image;
+	if (exposure)
+		exposure_apply(exposure, f->image, shown, pixels);
+	else
+		memcpy(shown, f->image, 3 * pixels * sizeof *shown);
+	for (size_t i = 0; p->ignored[level] && i < pixels; i++)
+		for (size_t k = 0; p->ignored[level][i] && k < 3; k++)
+			shown[k * pixels + i] = (float)p->rgb[level][3 * i + k] * (1.0f / 255);
+	return shown;
+}
+
+/* The loss, as a mean over the pixels that count. */
+static int lose(struct fit *f, const struct photograph *p, int level, const float *shown, float *gradient,
+	struct photo_loss *l, struct err *e)
+{
+	const struct camera *c = &p->camera[level];
+	const size_t pixels = (size_t)c->width * (size_t)c->height;
+	const uint8_t *ignored = p->ignored[level];
+	size_t counted = ignored ? 0 : pixels;
+
+	if (photo_loss(l, shown, p->rgb[level], c->height, c->width, gradient, &f->room, e))
+		return -1;
+	for (size_t i = 0; ignored && i < pixels; i++) {
+		counted += !ignored[i];
+		for (size_t k = 0; gradient && ignored[i] && k < 3; k++)
+			gradient[k * pixels + i] = 0;
+	}
+	const double share = counted ? (double)pixels / (double)counted : 0;
+	l->l1 *= share;
+	l->squares *= share;
+	l->ssim = counted ? 1 - (1 - l->ssim) * share : 1;
+	l->total *= share;
+	return 0;
+}
+
 int fit_judge(struct fit *f, const struct photograph *p, struct photo_loss *l, struct err *e)
 {
-	const struct camera *c = &p->camera[0];
+	const size_t pixels = (size_t)p->camera[0].width * (size_t)p->camera[0].height;
+	float nearest[EXPOSURE_WIDTH], *exposure = f->exposures.n ? nearest : NULL;
 
 	fit_gaussians_activate(&f->gaussians);
-	return render(f, c, f->gaussians.degree, e) ||
-			       photo_loss(l, f->image, p->rgb[0], c->height, c->width, NULL, &f->room, e)
-		       ? -1
-		       : 0;
+	if (render(f, &p->camera[0], f->gaussians.degree, e))
+		return -1;
+	if (exposure && p >= f->photographs && p < f->photographs + f->views)
+		exposure = f->exposures.values + (size_t)(p - f->photographs) * EXPOSURE_WIDTH;
+	else if (exposure)
+		exposure_nearest(exposure, f->image, p->rgb[0], pixels);
+	return lose(f, p, 0, show(f, p, 0, exposure), NULL, l, e);
+}
+
+int fit_expose(struct fit *f, double least, double *spread, struct err *e)
+{
+	if (exposures_alloc(&f->exposures, f->views, e))
+		return -1;
+	*spread = exposures_guess(&f->exposures, &f->gaussians, f->photographs);
+	if (*spread < least)
+		exposures_free(&f->exposures);
+	return 0;
 }
 
 /* The image's gradient, and from it the slab's; weights are noted. */
-static int back(struct fit *f, const struct photograph *p, int level, int degree, struct err *e)
+static int back(
+	struct fit *f, const struct photograph *p, int level, int degree, double progress, struct err *e)
 {
+	const size_t which = (size_t)(p - f->photographs);
 	const struct camera *c = &p->camera[level];
 	struct fit_gaussians *g = &f->gaussians;
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 	float *gradient = f->image + 3 * pixels;
 
-	if (photo_loss(&f->last, f->image, p->rgb[level], c->height, c->width, gradient, &f->room, e) ||
-		back_view(f->view, f->colors, f->image, gradient, f->sums, &f->back, e))
+	const float *exposure = f->exposures.n ? f->exposures.values + which * EXPOSURE_WIDTH : NULL;
+	if (lose(f, p, level, show(f, p, level, exposure), gradient, &f->last, e))
+		return -1;
+	if (exposure)
+		exposures_step(&f->exposures, which, f->image, gradient, pixels,
+			RATE_EXPOSURE * pow(RATE_EXPOSURE_END / RATE_EXPOSURE, progress),
+			f->state.iteration / (long)f->views + 1);
+	if (back_view(f->view, f->colors, f->image, gradient, f->sums, &f->back, e))
 		return -1;
 	fit_project_back(g, f->view, f->seen, c, degree, f->colors, f->sums);
+	const float weight = WEIGHT_SCALE * (float)(FIT_SIZE / f->options.size);
 	const float area = (float)(1 << 2 * level); /* pixels of full size */
 #pragma omp parallel for schedule(static)
 	for (size_t i = 0; i < g->n; i++) {
@@ -116,8 +188,7 @@ static int back(struct fit *f, const struct photograph *p, int level, int degree
 		f->weight[i] += area * f->sums[i * BACK_SUMS + BACK_WEIGHT];
 		g->at[FIT_GRADIENT][FIT_LOGIT][i] += WEIGHT_OPACITY * o * (1 - o) / (float)g->n;
 		for (size_t k = 3 * i; k < 3 * i + 3; k++)
-			g->at[FIT_GRADIENT][FIT_SCALE][k] +=
-				WEIGHT_SCALE * g->splats.scales[k] / (3 * (float)g->n);
+			g->at[FIT_GRADIENT][FIT_SCALE][k] += weight * g->splats.scales[k] / (3 * (float)g->n);
 	}
 	return 0;
 }
@@ -129,7 +200,7 @@ static void step_parameters(struct fit *f, double mean_rate, int degree)
 	for (int p = 0; p < fit_parts(degree); p++)
 		adam_step(g->at[FIT_VALUE][p], g->at[FIT_GRADIENT][p], g->at[FIT_MOMENT1][p],
 			g->at[FIT_MOMENT2][p], g->n * fit_width[p], p == FIT_MEAN ? mean_rate : rates[p], 0.9,
-			0.999, 1e-15, f->iteration + 1);
+			0.999, 1e-15, f->state.iteration + 1);
 }
 
 int fit_check(const struct fit *f, struct err *e)
@@ -137,8 +208,8 @@ int fit_check(const struct fit *f, struct err *e)
 	return fit_gaussians_are_finite(&f->gaussians)
 		       ? 0
 		       : err_set(e, ERR_CHECK,
-				 "training diverged: after step %ld the Gaussians are not finite numbers",
-				 f->iteration);
+				 "training diverged: after step %lld the Gaussians are not finite numbers",
+				 (long long)f->state.iteration);
 }
 
 /* From time to time dead Gaussians are moved and others added, evenly in the logarithm of their number. */
@@ -147,30 +218,31 @@ static int grow_now(struct fit *f, double progress, struct err *e)
 	struct fit_gaussians *g = &f->gaussians;
 	const double share = (progress - GROW_BEGIN) / (GROWN - GROW_BEGIN);
 
-	if (progress < GROW_BEGIN || progress > GROW_END || progress < f->grown + GROW_STEP)
+	if (progress < GROW_BEGIN || progress > GROW_END || f->state.is_pruned ||
+		progress < f->state.grown + GROW_STEP)
 		return 0;
-	f->grown = progress;
+	f->state.grown = progress;
 	if (fit_check(f, e))
 		return -1;
-	const double first = (double)f->first, most = (double)g->capacity;
-	const double wanted = first * pow(most / first, fmin(share, 1));
+	const double first = (double)f->state.first, most = (double)f->state.most;
+	const double wanted = fmin(first * pow((double)g->capacity / first, fmin(share, 1)), most);
 	fit_gaussians_activate(g);
 	/* what no view has shown since all were looked at is as good as dead */
 	const size_t n = g->n;
-	const int all_seen = f->iteration - f->weighed >= (long)f->views;
+	const int all_seen = f->state.iteration - f->state.weighed >= (long)f->views;
 	for (size_t i = 0; i < n; i++)
 		f->dead[i] = g->splats.opacities[i] <= GROW_DEAD || (all_seen && f->weight[i] < FIT_SHOWN);
-	if (grow(g, f->dead, (size_t)wanted, &f->rng, e))
+	if (grow(g, f->dead, (size_t)wanted, &f->state.rng, e))
 		return -1;
 	for (size_t i = 0; i < g->n; i++)
 		f->weight[i] = all_seen ? 0 : i >= n || f->dead[i] ? FIT_SHOWN : f->weight[i];
-	f->weighed = all_seen ? f->iteration : f->weighed;
+	f->state.weighed = all_seen ? f->state.iteration : f->state.weighed;
 	return 0;
 }
 
 int fit_step(struct fit *f, double progress, struct err *e)
 {
-	const size_t turn = (size_t)f->iteration % f->views;
+	const size_t turn = (size_t)f->state.iteration % f->views;
 	const double mean_rate = f->options.extent * RATE_MEAN * pow(RATE_MEAN_END / RATE_MEAN, progress);
 	int level = FIT_LEVELS - 1, degree = 0;
 
@@ -179,23 +251,27 @@ int fit_step(struct fit *f, double progress, struct err *e)
 	while (degree < f->gaussians.degree && progress >= degree_begins[degree])
 		degree++;
 	if (!turn)
-		rng_shuffle(&f->rng, f->order, (uint32_t)f->views);
+		rng_shuffle(&f->state.rng, f->order, (uint32_t)f->views);
 	const struct photograph *p = &f->photographs[f->order[turn]];
 	fit_gaussians_activate(&f->gaussians);
-	if (render(f, &p->camera[level], degree, e) || back(f, p, level, degree, e))
+	if (render(f, &p->camera[level], degree, e) || back(f, p, level, degree, progress, e))
 		return -1;
 	step_parameters(f, mean_rate, degree);
 	if (progress < GROW_END)
-		grow_noise(&f->gaussians, mean_rate, f->options.seed, f->iteration);
-	f->iteration++;
+		grow_noise(&f->gaussians, mean_rate, f->options.size, f->options.seed, f->state.iteration);
+	f->state.iteration++;
+	f->state.loss += f->last.total;
+	f->state.squares += f->last.squares;
 	return grow_now(f, progress, e);
 }
 
-int fit_shown(struct fit *f, int level, char *kept, struct err *e)
+int fit_shown(struct fit *f, int level, char *kept, float *worth, struct err *e)
 {
 	const struct fit_gaussians *g = &f->gaussians;
 
 	memset(kept, 0, g->n);
+	for (size_t k = 0; worth && k < g->n; k++)
+		worth[k] = 0;
 	fit_gaussians_activate(&f->gaussians);
 	for (size_t i = 0; i < f->views; i++) {
 		const struct camera *c = &f->photographs[i].camera[level];
@@ -205,8 +281,12 @@ int fit_shown(struct fit *f, int level, char *kept, struct err *e)
 		memset(f->image, 0, 6 * pixels * sizeof *f->image);
 		if (back_view(f->view, f->colors, f->image, f->image + 3 * pixels, f->sums, &f->back, e))
 			return -1;
-		for (size_t k = 0; k < g->n; k++)
-			kept[k] |= f->sums[k * BACK_SUMS + BACK_WEIGHT] >= FIT_SHOWN;
+		for (size_t k = 0; k < g->n; k++) {
+			const float own = f->sums[k * BACK_SUMS + BACK_WEIGHT];
+			kept[k] |= own >= FIT_SHOWN;
+			if (worth)
+				worth[k] += own;
+		}
 	}
 	return 0;
 }

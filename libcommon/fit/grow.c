@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum { COPIES_MOST = 51, STEPS = 64 };
-#define NOISE 5e5	 /* times the positions' rate */
+#define NOISE 5e5	 /* times the positions' rate, in scenes of FIT_SIZE */
 #define NOISE_STEEP 100	 /* how fast noise fades above GROW_DEAD */
 #define NOISE_ABOVE 0.2f /* more opaque than this there is less than 1e-8 of it */
 
@@ -139,8 +139,10 @@ static void shake(float *mean, const float *scale, const float *quat, const doub
 	}
 }
 
-void grow_noise(struct fit_gaussians *g, double rate, uint64_t seed, long step)
+void grow_noise(struct fit_gaussians *g, double rate, double size, uint64_t seed, long step)
 {
+	const double scale = NOISE * rate * pow(FIT_SIZE / size, 2);
+
 #pragma omp parallel for schedule(static)
 	for (size_t i = 0; i < g->n; i++) {
 		const float o = g->splats.opacities[i];
@@ -148,10 +150,10 @@ void grow_noise(struct fit_gaussians *g, double rate, uint64_t seed, long step)
 		struct rng r;
 		if (o > NOISE_ABOVE)
 			continue;
-		const double size = NOISE * rate / (1 + exp(NOISE_STEEP * (double)(o - GROW_DEAD)));
+		const double most = scale / (1 + exp(NOISE_STEEP * (double)(o - GROW_DEAD)));
 		rng_seed(&r, seed * 0x9e3779b97f4a7c15 + (uint64_t)step, i);
 		for (int k = 0; k < 3; k++)
-			noise[k] = size * rng_normal(&r);
+			noise[k] = most * rng_normal(&r);
 		shake(g->splats.means + 3 * i, g->splats.scales + 3 * i, g->splats.quats + 4 * i, noise);
 	}
 }

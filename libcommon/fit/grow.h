@@ -19,8 +19,9 @@
 int grow(struct fit_gaussians *g, const uint8_t *dead, size_t wanted, struct rng *rng, struct err *e);
 
 /* Shifts each mean by the covariance times noise, the more the fainter it is; `rate` is that of the
- * positions. The same for one seed and step, whatever the threads. */
-void grow_noise(struct fit_gaussians *g, double rate, uint64_t seed, long step);
+ * positions. The covariance, a square of lengths, is taken in units of the scene's size, so that a scene may
+ * be in any unit. The same for one seed and step, whatever the threads. */
+void grow_noise(struct fit_gaussians *g, double rate, double size, uint64_t seed, long step);
 
 /* The opacity and the factor on the scales of each of `copies` that together look like one of that opacity.
  */

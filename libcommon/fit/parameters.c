@@ -85,6 +85,23 @@ void fit_gaussians_take(struct fit_gaussians *g, const struct splats *from)
 	g->n += n;
 }
 
+void fit_gaussians_keep(struct fit_gaussians *g, const char *kept)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < g->n; i++) {
+		if (!kept[i])
+			continue;
+		for (int p = 0; p < fit_parts(g->degree); p++)
+			for (int s = 0; s < FIT_SLABS; s++)
+				memmove(g->at[s][p] + n * fit_width[p], g->at[s][p] + i * fit_width[p],
+					fit_width[p] * sizeof(float));
+		n++;
+	}
+	g->n = n;
+	fit_gaussians_activate(g);
+}
+
 int fit_gaussians_give(const struct fit_gaussians *g, const char *kept, struct splats *to, struct err *e)
 {
 	const int coefficients = (g->degree + 1) * (g->degree + 1);

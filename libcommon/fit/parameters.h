@@ -15,6 +15,9 @@ enum fit_part { FIT_MEAN, FIT_SCALE, FIT_QUAT, FIT_LOGIT, FIT_SH, FIT_SH1, FIT_S
 enum fit_slab { FIT_VALUE, FIT_GRADIENT, FIT_MOMENT1, FIT_MOMENT2, FIT_SLABS };
 extern const unsigned char fit_width[FIT_PARTS]; /* 3 3 4 1 3 9 15 21 */
 
+/* A scene of such a size (start_size) has the constants of 3DGS-MCMC that are in units of length. */
+#define FIT_SIZE 10.0
+
 struct fit_gaussians {
 	size_t n, capacity;		 /* there are; at most */
 	int degree;			 /* of the harmonics that there is room for, 0 to 3 */
@@ -35,6 +38,9 @@ void fit_gaussians_activate(struct fit_gaussians *g);
 
 /* Adds the Gaussians of a trained scene, as many as there is room for. */
 void fit_gaussians_take(struct fit_gaussians *g, const struct splats *from);
+
+/* Leaves those with kept[i] (n) not 0, with their moments. */
+void fit_gaussians_keep(struct fit_gaussians *g, const char *kept);
 
 /* A trained scene of those with kept[i] (n) not 0, quaternions of length 1. Returns 0, or -1 with *e set and
  * *to zeroed. */

@@ -63,9 +63,30 @@ int photograph_make(struct photograph *p, const struct camera *c, double scale, 
 	return 0;
 }
 
+int photograph_ignore(struct photograph *p, const uint8_t *mask, int height, int width, struct err *e)
+{
+	for (int k = 0; k < FIT_LEVELS; k++) {
+		const size_t h = (size_t)p->camera[k].height, w = (size_t)p->camera[k].width;
+		uint8_t *to = p->ignored[k] = mem_zalloc(h * w, 1, "mask", e);
+		if (!to)
+			return -1;
+		/* each of the larger in turn, so that none is left out between */
+		const size_t rows = h > (size_t)height ? h : (size_t)height,
+			     columns = w > (size_t)width ? w : (size_t)width;
+		for (size_t y = 0; y < rows; y++)
+			for (size_t x = 0; x < columns; x++)
+				to[y * h / rows * w + x * w / columns] |=
+					mask[y * (size_t)height / rows * (size_t)width +
+						x * (size_t)width / columns] != 0;
+	}
+	return 0;
+}
+
 void photograph_free(struct photograph *p)
 {
-	for (int k = 0; k < FIT_LEVELS; k++)
+	for (int k = 0; k < FIT_LEVELS; k++) {
 		free(p->rgb[k]);
+		free(p->ignored[k]);
+	}
 	*p = (struct photograph){0};
 }

@@ -14,6 +14,7 @@ enum { FIT_LEVELS = 3 };
 struct photograph {
 	struct camera camera[FIT_LEVELS]; /* name and image belong to the camera it was made with */
 	uint8_t *rgb[FIT_LEVELS];	  /* (height,width,3) of that camera */
+	uint8_t *ignored[FIT_LEVELS];	  /* (height,width) 1 for a pixel that does not count; NULL: all do */
 };
 
 /* The view c at `scale` of its size, from a picture of it in any size; where that is smaller, no larger than
@@ -21,5 +22,9 @@ struct photograph {
 int photograph_make(struct photograph *p, const struct camera *c, double scale, const uint8_t *rgb,
 	int height, int width, struct err *e);
 void photograph_free(struct photograph *p);
+
+/* Pixels that hold a part of a mask (height,width) of the whole view do not count. Returns 0, or -1 with *e
+ * set. */
+int photograph_ignore(struct photograph *p, const uint8_t *mask, int height, int width, struct err *e);
 
 #endif

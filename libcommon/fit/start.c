@@ -11,15 +11,35 @@
 #define OPACITY 0.1f
 enum { NEIGHBOURS = 3 };
 
-double start_extent(const struct camera *const *cameras, size_t n, const float *points, size_t points_n)
+static void find_mean(const struct camera *const *cameras, size_t n, double mean[3])
 {
-	double mean[3] = {0}, centre[3], middle[3] = {0}, most = 0, far = 0;
+	double centre[3];
 
+	memset(mean, 0, 3 * sizeof *mean);
 	for (size_t i = 0; i < n; i++) {
 		camera_centre(cameras[i], centre);
 		for (int k = 0; k < 3; k++)
 			mean[k] += centre[k] / (double)n;
 	}
+}
+
+double start_size(const struct camera *const *cameras, size_t n, const float *points, size_t points_n)
+{
+	double mean[3], sum = 0;
+
+	find_mean(cameras, n, mean);
+	for (size_t i = 0; i < points_n; i++) {
+		const float *p = points + 3 * i;
+		sum += hypot(hypot(p[0] - mean[0], p[1] - mean[1]), p[2] - mean[2]) / (double)points_n;
+	}
+	return sum > 0 ? sum : 1;
+}
+
+double start_extent(const struct camera *const *cameras, size_t n, const float *points, size_t points_n)
+{
+	double mean[3], centre[3], middle[3] = {0}, most = 0, far = 0;
+
+	find_mean(cameras, n, mean);
 	for (size_t i = 0; i < n; i++) {
 		camera_centre(cameras[i], centre);
 		most = fmax(

@@ -12,6 +12,11 @@
  * is nothing, as with one camera, a tenth of how far the points' middle is (points (n,3)). */
 double start_extent(const struct camera *const *cameras, size_t n, const float *points, size_t points_n);
 
+/* The mean distance of the points from the mean of the cameras: the scene's own unit, 1 where that is
+ * nothing.
+ */
+double start_size(const struct camera *const *cameras, size_t n, const float *points, size_t points_n);
+
 /* One at each point (n,3), as large as its three neighbours are near, of its colour (n,3). What has no room
  * is left out at random. Returns 0, or -1 with *e set. */
 int start_at_points(struct fit_gaussians *g, const float *points, const uint8_t *colors, size_t n,

@@ -110,7 +110,7 @@ static void measure(const struct splats *s, const struct camera *c, int repeats)
 			adam_step(g.at[FIT_VALUE][p], g.at[FIT_GRADIENT][p], g.at[FIT_MOMENT1][p],
 				g.at[FIT_MOMENT2][p], g.n * fit_width[p], 1e-9, 0.9, 0.999, 1e-15, r + 1);
 		times[ADAM] = lap();
-		grow_noise(&g, 1e-12, 1, r);
+		grow_noise(&g, 1e-12, FIT_SIZE, 1, r);
 		times[NOISE] = lap();
 		if (bad)
 			fail(e.message);

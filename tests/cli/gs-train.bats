@@ -28,9 +28,10 @@ refuses() {
 
 @test "it learns the photographs, and gs-import reads what it writes" {
 	"$BIN/gs-train" --cameras sparse/0 --images images --gaussians 500 --iterations 500 --degree 1 -v --log log.jsonl -o out.ply 2>err
-	[ "$(jq -r .iteration log.jsonl | tr '\n' ' ')" = "100 200 300 400 500 " ]
-	[ "$(jq -s '.[4].psnr > .[0].psnr + 5 and .[4].psnr > 20 and .[4].gaussians == 500' log.jsonl)" = true ]
-	grep -qx 'gs-train: 5 photographs to learn from, 0 to test with, 3 Gaussians to begin with, extent .*' err
+	[ "$(jq -r 'select(.loss) | .iteration' log.jsonl | tr '\n' ' ')" = "100 200 300 400 500 " ]
+	[ "$(jq -s 'map(select(.judged_psnr)) | length == 19 and last.judged_psnr > 20' log.jsonl)" = true ]
+	[ "$(jq -s 'map(select(.loss)) | .[4].psnr > .[0].psnr + 5 and .[4].psnr > 20 and .[4].gaussians <= 500' log.jsonl)" = true ]
+	grep -qx 'gs-train: 5 photographs to learn from, 0 to test with, 3 Gaussians to begin with, extent .*, size .*' err
 	"$BIN/gs-import" -v --cameras sparse/0 --images images -o scene out.ply 2>err
 	! grep -q 'does not look like' err
 	grep -q 'spherical harmonics of degree 1' err
@@ -97,7 +98,7 @@ refuses() {
 		$8 = sprintf("%.12f", $8 - d * 2 * (x * z - w * y)); print }' sparse/0/images.txt >moved
 	mv moved sparse/0/images.txt
 	"$BIN/gs-train" --cameras sparse/0 --images images --gaussians 500 --iterations 500 --degree 0 -q --log far.jsonl -o far.ply
-	[ "$(jq -s 'last.psnr > 18' far.jsonl)" = true ]
+	[ "$(jq -s 'map(select(.loss)) | last.psnr > 18' far.jsonl)" = true ]
 	grep -aq 'property double x' far.ply
 }
 
@@ -120,7 +121,88 @@ refuses() {
 
 @test "points that no photograph shows" {
 	awk '{ $4 -= 1000; print }' <<<"$points" >sparse/0/points3D.txt
-	refuses "sparse/0: no photograph shows any of the 3 points to begin with: they must be in the cameras' frame, before a camera, and farther from it than 0.2"
+	refuses "sparse/0: no photograph shows any of the 3 points to begin with: they must be in the cameras' frame, before a camera, and farther from it than its near plane, which is at 0.2 here"
+}
+
+@test "a training that diverges leaves the last good scene" {
+	{
+		printf '%s\n' ply 'format ascii 1.0' 'element vertex 3'
+		printf 'property float %s\n' x y z f_dc_{0..2} f_rest_{0..8} opacity scale_{0..2} rot_{0..3}
+		echo end_header
+		# Its harmonics of degree 1, which are not looked at in the first steps, are of no photograph.
+		awk '{ print $2, $3, $4, 0, 0, 0, "1e25 1e25 1e25 1e25 1e25 1e25 1e25 1e25 1e25", 2, -2, -2, -2, 1, 0, 0, 0 }' <<<"$points"
+	} >bad.ply
+	run try --init bad.ply --degree 1 --iterations 400
+	[ "$status" = 3 ]
+	[[ $output =~ ^"gs-train: out.ply: training diverged: the loss of step "([0-9]+)" is "[-+.a-z0-9]+"; the file has the scene of step "([0-9]+)"; try a lower --degree, fewer --gaussians, or points in place of --init"$ ]]
+	[ "${BASH_REMATCH[1]}" -ge 40 ]
+	[ "${BASH_REMATCH[2]}" -le 40 ]
+	"$BIN/gs-check" out.ply
+	! ls | grep -q tmp
+}
+
+@test "a killed training goes on to the same bytes, again and again" {
+	try --iterations 400 --log whole.jsonl -o whole.ply --exposure always --test-views every:4
+	for at in 1 2 3; do
+		"$BIN/gs-train" -q --cameras sparse/0 --images images --gaussians 300 --iterations 400 --checkpoint 7 --resume --log log.jsonl \
+			--exposure always --test-views every:4 -o out.ply &
+		for ((i = 0; i < 1000; i++)); do [ -e out.ply.checkpoint ] && break; sleep 0.01; done
+		sleep 0.0$at
+		kill -KILL $! || true
+		wait $! || true
+	done
+	[ -e out.ply.checkpoint ]
+	[ ! -e out.ply ]
+	"$BIN/gs-train" -v --cameras sparse/0 --images images --gaussians 300 --iterations 400 --resume --log log.jsonl \
+		--exposure always --test-views every:4 -o out.ply 2>err
+	grep -qE '^gs-train: going on after step [0-9]+$' err
+	cmp whole.ply out.ply
+	cmp whole.jsonl log.jsonl
+	[ ! -e out.ply.checkpoint ]
+}
+
+@test "a checkpoint of another training, or a broken one, is not gone on with" {
+	"$BIN/gs-train" -q --cameras sparse/0 --images images --gaussians 300 --iterations 2000 --checkpoint 5 -o out.ply &
+	for ((i = 0; i < 1000; i++)); do [ -e out.ply.checkpoint ] && break; sleep 0.01; done
+	kill -KILL $!
+	wait $! || true
+	refuses "out.ply.checkpoint: is of another training (its options or inputs differ); remove it or train without --resume" \
+		--iterations 2000 --resume --seed 2
+	head -c 5000 out.ply.checkpoint >cut && mv cut out.ply.checkpoint
+	run try --resume
+	[ "$status" = 3 ]
+	[ ! -e out.ply ]
+	says 2 "gs-train: --resume needs a file to write to: there is no checkpoint of stdout
+Try 'gs-train --help'." try --resume -o -
+}
+
+@test "--preview draws a view at each evaluation, --minutes ends in time" {
+	try --preview seen --log log.jsonl
+	[ "$(ls seen)" = "$(jq -r 'select(.judged_psnr) | .iteration' log.jsonl | awk '{ printf "%08d.png\n", $1 }')" ]
+	for file in seen/*; do "$BIN/gs-check" "$file"; done
+	SECONDS=0
+	"$BIN/gs-train" -q --cameras sparse/0 --images images --gaussians 300 --minutes 0.02 -o timed.ply
+	[ $SECONDS -lt 20 ]
+}
+
+@test "--ignore: masks are read, and must have the shape of their view" {
+	mkdir masks
+	"$BIN/gs-synth" -q --objects 3 --views 2 --size 64x48 --gaussians 1000 -o other
+	try -o plain.ply
+	cp other/images/view_000.png masks
+	try --ignore masks
+	! cmp -s plain.ply out.ply
+	rm out.ply
+	"$BIN/gs-synth" -q --objects 3 --views 2 --size 48x48 --gaussians 1000 -o square
+	cp square/images/view_000.png masks
+	refuses "masks/view_000.png: 48x48, which is not the shape of its camera, 64x48" --ignore masks
+}
+
+@test "--exposure says whether photographs differ" {
+	"$BIN/gs-train" -v --cameras sparse/0 --images images --gaussians 300 --iterations 5 --exposure always -o out.ply 2>err
+	grep -qE '^gs-train: exposures are [0-9]+% apart, and learned$' err
+	says 2 "gs-train: --exposure is 'often', and auto, always or never are what it can be
+Try 'gs-train --help'." try --exposure often
 }
 
 @test "a photograph or a camera is not overwritten; options that exclude each other" {

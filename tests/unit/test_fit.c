@@ -394,7 +394,7 @@ static void learns(void)
 	}
 	for (int k = 0; k < 2; k++) {
 		struct fit f;
-		const struct fit_options o = {.extent = 1, .seed = 4};
+		const struct fit_options o = {.extent = 1, .size = FIT_SIZE, .seed = 4};
 		omp_set_num_threads(k ? 3 : 1);
 		if (fit_gaussians_alloc(&first[k], 300, 1, &e))
 			abort();

@@ -1,0 +1,233 @@
+#include "cmd/train/fitting_input.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "cmd/import/import.h"
+#include "cmd/import/photographs.h"
+#include "cmd/import/warping.h"
+#include "fit/start.h"
+#include "formats/cameras/camerafile.h"
+#include "formats/cameras/colmap.h"
+#include "formats/cameras/colmap_points.h"
+#include "formats/images/png.h"
+#include "formats/splats/anysplats.h"
+#include "geom/lens.h"
+#include "splat/near.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <zlib.h>
+
+enum { RANDOM_POINTS = 20000 };
+
+static int read_cameras(struct fitting_input *f, struct err *e)
+{
+	const struct fitting_options *o = f->options;
+	const struct import_options files = {.splats = "-", .cameras = o->cameras, .images = o->images};
+	size_t missing;
+
+	f->path = import_find_cameras(&files, e);
+	if (!f->path || camerafile_read(&f->cameras, f->path, e) ||
+		import_split(&f->cameras, o->test_views, e))
+		return -1;
+	cameras_undistort(&f->cameras);
+	if (photographs_find(&f->cameras, o->images, ".", &missing, e))
+		return -1;
+	if (missing == f->cameras.n)
+		return err_set(e, ERR_FORMAT,
+			"%s: no photograph for any of the %zu views of %s, such as '%s'", o->images, missing,
+			file_name(f->path), f->cameras.views[0].name);
+	if (missing)
+		report_warn(
+			f->to, "%s: no photograph for %zu of %zu views", o->images, missing, f->cameras.n);
+	return 0;
+}
+
+/* A photograph may have another size than its camera, but not another shape. */
+static int read_photograph(
+	struct fitting_input *f, const struct camera *c, struct photograph *p, struct err *e)
+{
+	uint8_t *rgb = NULL;
+	int height, width;
+
+	if (warping_read_photograph(c, ".", 0, &rgb, &height, &width, e))
+		return -1;
+	int bad = fabs((double)c->width * height / width - c->height) > 1 + 0.005 * c->height
+			  ? err_set(e, ERR_FORMAT, "%s: %dx%d, which is not the shape of its camera, %dx%d",
+				    c->image, width, height, c->width, c->height)
+			  : photograph_make(p, c, f->options->scale, rgb, height, width, e);
+	free(rgb);
+	return bad ? -1 : 0;
+}
+
+/* The pixels of a view that do not count, where there is a mask of it. */
+static int read_ignored(
+	const struct fitting_input *f, const struct camera *c, struct photograph *p, struct err *e)
+{
+	uint8_t *mask = NULL;
+	int height, width, bad = 0;
+	char *path = f->options->ignore ? file_join(f->options->ignore, c->name, ".png", e) : NULL;
+
+	if (f->options->ignore && !path)
+		return -1;
+	if (path && file_exists(path))
+		bad = png_read_mask(path, &mask, &height, &width, e);
+	if (!bad && mask && fabs((double)c->width * height / width - c->height) > 1 + 0.005 * c->height)
+		bad = err_set(e, ERR_FORMAT, "%s: %dx%d, which is not the shape of its camera, %dx%d", path,
+			width, height, c->width, c->height);
+	else if (!bad && mask)
+		bad = photograph_ignore(p, mask, height, width, e);
+	free(mask);
+	free(path);
+	return bad ? -1 : 0;
+}
+
+static int read_photographs(struct fitting_input *f, struct err *e)
+{
+	const size_t n = f->cameras.n;
+	int bad = 0;
+
+	f->photographs = mem_zalloc(n, sizeof *f->photographs, "photographs", e);
+	f->seen = mem_alloc(n, sizeof *f->seen, "photographs", e);
+	if (!f->photographs || !f->seen)
+		return -1;
+	report_start(f->to, "photographs", (double)n);
+	for (int split = SPLIT_TRAIN; split <= SPLIT_TEST; split++)
+		for (size_t i = 0; i < n && !bad; i++) {
+			const struct camera *c = &f->cameras.views[i];
+			if (!c->image || (int)c->split != split)
+				continue;
+			if (split == SPLIT_TRAIN)
+				f->seen[f->learned] = c;
+			struct photograph *p = &f->photographs[f->learned + f->tested];
+			bad = read_photograph(f, c, p, e) || read_ignored(f, c, p, e);
+			*(split == SPLIT_TRAIN ? &f->learned : &f->tested) += 1;
+			report_step(f->to, (double)(f->learned + f->tested), NULL);
+		}
+	report_end(f->to);
+	if (!bad && !f->learned)
+		bad = err_set(e, ERR_FORMAT, "%s: every view with a photograph is kept for testing",
+			file_name(f->path));
+	return bad;
+}
+
+/* Where there are none, points are drawn around the cameras. */
+static int make_points(struct fitting_input *f, struct colmap_points *p, struct rng *rng, struct err *e)
+{
+	p->n = RANDOM_POINTS;
+	p->places = mem_alloc(p->n, 3 * sizeof *p->places, "points", e);
+	p->colors = mem_alloc(p->n, 3, "points", e);
+	if (!p->places || !p->colors)
+		return -1;
+	start_points(f->seen, f->learned, p->places, p->colors, p->n, rng);
+	report_warn(f->to, "%s: no points to begin with: %zu are taken at random", file_name(f->path), p->n);
+	return 0;
+}
+
+/* Points are moved to the offset in double. */
+static int start_from_points(struct fitting_input *f, struct err *e)
+{
+	const struct fitting_options *o = f->options;
+	struct colmap_points p = {0};
+	float *places = NULL;
+	struct rng rng;
+
+	rng_seed(&rng, (uint64_t)o->seed, 1);
+	int bad = (o->points || file_is_dir(f->path)) &&
+		  colmap_points_read(&p, o->points ? o->points : f->path, e);
+	bad = bad || (!p.n && make_points(f, &p, &rng, e)) || gaussian_offset(f->offset, p.places, p.n, e) ||
+	      fit_gaussians_alloc(&f->gaussians, o->gaussians ? (size_t)o->gaussians : start_number(p.n),
+		      (int)o->degree, e) ||
+	      !(places = mem_alloc(p.n, 3 * sizeof *places, "points", e));
+	if (!bad) {
+		for (size_t i = 0; i < 3 * p.n; i++)
+			places[i] = (float)(p.places[i] - f->offset[i % 3]);
+		cameras_shift(&f->cameras, f->offset);
+		f->extent = start_extent(f->seen, f->learned, places, p.n);
+		f->size = start_size(f->seen, f->learned, places, p.n);
+		bad = start_at_points(&f->gaussians, places, p.colors, p.n, &rng, e);
+	}
+	free(places);
+	colmap_points_free(&p);
+	return bad ? -1 : 0;
+}
+
+static int start_from_scene(struct fitting_input *f, struct err *e)
+{
+	const struct fitting_options *o = f->options;
+	struct splats s = {0};
+	int bad = anysplats_read(&s, f->offset, NULL, o->init, e);
+
+	bad = bad || fit_gaussians_alloc(&f->gaussians,
+			     s.n > (size_t)o->gaussians ? s.n : (size_t)o->gaussians, (int)o->degree, e);
+	if (!bad) {
+		cameras_shift(&f->cameras, f->offset);
+		f->extent = start_extent(f->seen, f->learned, s.means, s.n);
+		f->size = start_size(f->seen, f->learned, s.means, s.n);
+		fit_gaussians_take(&f->gaussians, &s);
+	}
+	splats_free(&s);
+	return bad ? -1 : 0;
+}
+
+/* The cameras were moved after the photographs were read. */
+static void move_photographs(struct fitting_input *f)
+{
+	for (size_t i = 0; i < f->learned + f->tested; i++)
+		for (int k = 0; k < FIT_LEVELS; k++) {
+			struct cameras one = {1, &f->photographs[i].camera[k]};
+			cameras_shift(&one, f->offset);
+		}
+}
+
+static void add(uint32_t *sum, const void *data, size_t bytes)
+{
+	*sum = (uint32_t)crc32_z(*sum, data, bytes);
+}
+
+static void make_checksum(struct fitting_input *f)
+{
+	f->checksum = 0;
+	for (size_t i = 0; i < f->learned + f->tested; i++) {
+		const struct photograph *p = &f->photographs[i];
+		const struct camera *c = &p->camera[0];
+		const size_t pixels = (size_t)c->width * (size_t)c->height;
+		add(&f->checksum, &c->fx, 4 * sizeof c->fx);
+		add(&f->checksum, c->world_to_camera, sizeof c->world_to_camera);
+		add(&f->checksum, p->rgb[0], 3 * pixels);
+		if (p->ignored[0])
+			add(&f->checksum, p->ignored[0], pixels);
+	}
+	for (int p = 0; p < fit_parts(f->gaussians.degree); p++)
+		add(&f->checksum, f->gaussians.at[FIT_VALUE][p],
+			f->gaussians.n * fit_width[p] * sizeof(float));
+}
+
+int fitting_input_read(struct fitting_input *f, struct err *e)
+{
+	if (read_cameras(f, e) || read_photographs(f, e) ||
+		(f->options->init ? start_from_scene(f, e) : start_from_points(f, e)))
+		return -1;
+	move_photographs(f);
+	make_checksum(f);
+	fit_gaussians_activate(&f->gaussians);
+	return near_find(&f->gaussians.splats, &f->cameras, e);
+}
+
+const char *fitting_input_start(const struct fitting_input *f)
+{
+	const struct fitting_options *o = f->options;
+
+	return file_name(o->init ? o->init : o->points ? o->points : f->path);
+}
+
+void fitting_input_free(struct fitting_input *f)
+{
+	fit_gaussians_free(&f->gaussians);
+	for (size_t i = 0; f->photographs && i < f->cameras.n; i++)
+		photograph_free(&f->photographs[i]);
+	free(f->photographs);
+	free(f->seen);
+	cameras_free(&f->cameras);
+	free(f->path);
+}
