@@ -89,6 +89,9 @@ $(BUILD)/obj/formats/parser_weights.o: formats/parser_default.safetensors
 $(BUILD)/obj/libcommon/lang/things.o: libcommon/lang/things.tsv
 $(BUILD)/obj/libcommon/lang/things_vectors.o: libcommon/lang/things.vectors
 
+# So are the words of synthetic sentences.
+$(BUILD)/obj/libcommon/synth/wordings.o: libcommon/synth/sentences.tsv libcommon/synth/unseen.tsv
+
 # So are the page of refer-report and its viewer.
 $(BUILD)/obj/cmd/jobs/reporting.o: cmd/jobs/report_page.html
 $(BUILD)/obj/cmd/jobs/report_viewer.o: cmd/jobs/report_viewer.js

@@ -98,20 +98,25 @@ int synth_cameras_make(
 	return 0;
 }
 
-void synth_cameras_reference(const struct cameras *c, double right[2], double away[2])
+void synth_cameras_reference(const struct cameras *c, double centre[3], double right[2], double away[2])
 {
-	double sum[2] = {0}, centre[3];
+	double one[3];
+	int n = 0;
 
+	centre[0] = centre[1] = centre[2] = 0;
 	for (size_t i = 0; i < c->n; i++) {
 		if (c->views[i].split != SPLIT_TRAIN)
 			continue;
-		camera_centre(&c->views[i], centre);
-		sum[0] += centre[0];
-		sum[1] += centre[1];
+		camera_centre(&c->views[i], one);
+		for (int k = 0; k < 3; k++)
+			centre[k] += one[k];
+		n++;
 	}
-	double length = hypot(sum[0], sum[1]);
-	away[0] = -sum[0] / length;
-	away[1] = -sum[1] / length;
+	double length = hypot(centre[0], centre[1]);
+	away[0] = -centre[0] / length;
+	away[1] = -centre[1] / length;
 	right[0] = away[1];
 	right[1] = -away[0];
+	for (int k = 0; k < 3; k++)
+		centre[k] /= n;
 }

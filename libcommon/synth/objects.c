@@ -5,26 +5,17 @@
 
 #define PI 3.14159265358979323846
 
-static const char *const shape_names[SYNTH_SHAPES] = {
-	"ball", "box", "cylinder", "cone", "mug", "bowl", "plate", "book", "bottle"};
-
-static const struct {
-	const char *name;
-	double rgb[3];
-} colours[SYNTH_COLOURS] = {
-	{"red", {0.80, 0.08, 0.08}},
-	{"green", {0.10, 0.55, 0.15}},
-	{"blue", {0.10, 0.22, 0.80}},
-	{"yellow", {0.95, 0.85, 0.10}},
-	{"white", {0.95, 0.95, 0.93}},
-	{"black", {0.07, 0.07, 0.08}},
-	{"orange", {0.98, 0.50, 0.05}},
-	{"purple", {0.48, 0.14, 0.62}},
-	{"brown", {0.36, 0.18, 0.08}},
-	{"pink", {0.98, 0.55, 0.70}},
-	{"grey", {0.48, 0.49, 0.50}},
-	{"teal", {0.05, 0.58, 0.58}},
+static const char *const names[SYNTH_PROPERTIES][SYNTH_COLOURS + 1] = {
+	{"ball", "box", "cylinder", "cone", "mug", "bowl", "plate", "book", "bottle"},
+	{"red", "green", "blue", "yellow", "white", "black", "orange", "purple", "brown", "pink", "grey",
+		"teal"},
+	{"small", "medium", "big"},
+	{"plain", "shiny", "striped", "speckled"},
 };
+
+static const double colours[SYNTH_COLOURS][3] = {{0.80, 0.08, 0.08}, {0.10, 0.55, 0.15}, {0.10, 0.22, 0.80},
+	{0.95, 0.85, 0.10}, {0.95, 0.95, 0.93}, {0.07, 0.07, 0.08}, {0.98, 0.50, 0.05}, {0.48, 0.14, 0.62},
+	{0.36, 0.18, 0.08}, {0.98, 0.55, 0.70}, {0.48, 0.49, 0.50}, {0.05, 0.58, 0.58}};
 
 /* At scale 1. A mug's radius includes its handle. */
 static const struct {
@@ -69,14 +60,16 @@ struct synth_area synth_object_top(const struct synth_object *o, double *z)
 	return (struct synth_area){o->scale * a.x, o->scale * a.y};
 }
 
-const char *synth_shape_name(enum synth_shape s)
+int synth_object_value(const struct synth_object *o, enum synth_property p)
 {
-	return shape_names[s];
+	const int values[SYNTH_PROPERTIES] = {(int)o->shape, (int)o->colour, (int)o->size, (int)o->finish};
+
+	return values[p];
 }
 
-const char *synth_colour_name(enum synth_colour c)
+const char *synth_value_name(enum synth_property p, int value)
 {
-	return colours[c].name;
+	return names[p][value];
 }
 
 static void ball_surface(struct synth_surface *s)
@@ -168,7 +161,7 @@ void synth_object_colour(const struct synth_object *o, enum synth_tint tint, con
 	int is_pale = o->colour == SYNTH_WHITE || o->colour == SYNTH_YELLOW || o->colour == SYNTH_PINK;
 	const double *second = is_pale ? dark : pale;
 
-	memcpy(rgb, colours[o->colour].rgb, 3 * sizeof(double));
+	memcpy(rgb, colours[o->colour], 3 * sizeof(double));
 	if (tint == SYNTH_PAGES)
 		memcpy(rgb, pages, sizeof pages);
 	else if (tint == SYNTH_CAP)

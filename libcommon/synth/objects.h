@@ -25,7 +25,7 @@ enum synth_stream {
 	SYNTH_STREAM_SENTENCES,
 	SYNTH_STREAM_FAULTS,
 	SYNTH_STREAM_HIDING,
-	SYNTH_STREAM_TEST_HABITS,
+	SYNTH_STREAM_TEST_ERRORS,
 	SYNTH_STREAM_UNSEEN = 512, /* one a kind of sentence */
 	SYNTH_STREAM_VIEWS = 1024, /* candidates: one stream a view */
 };
@@ -59,6 +59,7 @@ enum synth_colour {
 };
 enum synth_size { SYNTH_SMALL, SYNTH_MEDIUM, SYNTH_BIG, SYNTH_SIZES };
 enum synth_finish { SYNTH_PLAIN, SYNTH_SHINY, SYNTH_STRIPED, SYNTH_SPECKLED, SYNTH_FINISHES };
+enum synth_property { SYNTH_SHAPE, SYNTH_COLOUR, SYNTH_SIZE, SYNTH_FINISH, SYNTH_PROPERTIES };
 
 struct synth_object {
 	enum synth_shape shape;
@@ -103,7 +104,9 @@ void synth_object_place(const struct synth_object *o, const double point[3], dou
 void synth_object_colour(const struct synth_object *o, enum synth_tint tint, const double point[3],
 	const struct synth_noise *texture, double rgb[3]);
 
-const char *synth_shape_name(enum synth_shape s);
-const char *synth_colour_name(enum synth_colour c);
+/* What an object is in one respect, as a number of the respective enum; and its name ("red"), NULL from the
+ * number of values on. */
+int synth_object_value(const struct synth_object *o, enum synth_property p);
+const char *synth_value_name(enum synth_property p, int value);
 
 #endif

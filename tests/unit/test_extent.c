@@ -287,8 +287,9 @@ static void true_boxes_are_tight(void)
 				for (int k = 0; k < 3; k++)
 					CHECK(most[b][k] > 0.9 && most[b][k] < 1 + 1e-9 &&
 							least[b][k] < -0.9 && least[b][k] > -1 - 1e-9,
-						"%s, box %d, axis %d: %g to %g", synth_shape_name(o.shape), b,
-						k, least[b][k], most[b][k]);
+						"%s, box %d, axis %d: %g to %g",
+						synth_value_name(SYNTH_SHAPE, (int)o.shape), b, k,
+						least[b][k], most[b][k]);
 		}
 }
 

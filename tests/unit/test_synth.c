@@ -142,7 +142,7 @@ static void cameras_see_the_table(void)
 	CHECK(worst < 1e-12, "rotations are off by %g", worst);
 	CHECK(tests == 5, "%d test views", tests);
 	CHECK(seen > 25 * 8 * 9 / 10, "%d of 200 object middles are in the picture", seen);
-	synth_cameras_reference(&c, right, away);
+	synth_cameras_reference(&c, (double[3]){0}, right, away);
 	CHECK(fabs(hypot(right[0], right[1]) - 1) < 1e-12 &&
 			fabs(right[0] * away[0] + right[1] * away[1]) < 1e-12,
 		"the reference directions are a frame");
