@@ -8,7 +8,6 @@
 #include "formats/ply.h"
 #include "formats/png.h"
 #include "synth/outline.h"
-#include "synth/true_boxes.h"
 #include "synth/truth.h"
 
 #include <math.h>
