@@ -1,8 +1,8 @@
 /* Learns the weights of text-parse: from the project's own example sentences, and readings of others if
  * given. */
 #include "cli/cli.h"
-#include "cmd/jobs/parser_lessons.h"
-#include "cmd/jobs/parser_training.h"
+#include "cmd/train/parser_lessons.h"
+#include "cmd/train/parser_training.h"
 
 int main(int argc, char **argv)
 {

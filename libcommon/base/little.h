@@ -24,6 +24,15 @@ static inline float little_get_f32(const unsigned char *p)
 	return value;
 }
 
+static inline double little_get_f64(const unsigned char *p)
+{
+	const uint64_t bits = little_get(p, 8);
+	double value;
+
+	memcpy(&value, &bits, 8);
+	return value;
+}
+
 /* Each writes at p and returns the place after it. */
 static inline unsigned char *little_put(unsigned char *p, uint64_t bits, int size)
 {

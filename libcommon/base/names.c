@@ -81,6 +81,18 @@ size_t names_twice(const struct names *names, size_t *earlier)
 	return later;
 }
 
+int names_find_twice(const void *items, size_t stride, size_t offset, size_t n, size_t *twice,
+	size_t *earlier, struct err *e)
+{
+	struct names names;
+
+	if (names_make(&names, items, stride, offset, n, e))
+		return -1;
+	*twice = names_twice(&names, earlier);
+	names_free(&names);
+	return 0;
+}
+
 size_t names_count(const struct names *names)
 {
 	size_t count = names->n > 0;

@@ -33,6 +33,10 @@ size_t names_find_part(const struct names *names, const struct list_name *name);
  * NAMES_NONE where all differ. */
 size_t names_twice(const struct names *names, size_t *earlier);
 
+/* The same of items as names_make takes them: 0 and *twice, or -1 with *e. */
+int names_find_twice(const void *items, size_t stride, size_t offset, size_t n, size_t *twice,
+	size_t *earlier, struct err *e);
+
 /* How many different names there are. */
 size_t names_count(const struct names *names);
 

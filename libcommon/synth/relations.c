@@ -1,5 +1,5 @@
 /* Directions are judged on the table, strictly also by bearing and distance from who looks; sizes both by
- * bulk and by the longest extent. Units: formats/synth.md. */
+ * bulk and by the longest extent. Units: formats/scene/synth.md. */
 #include "synth/relations.h"
 
 #include "synth/cameras.h"

@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "formats/npy.h"
+#include "formats/arrays/npy.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -28,7 +28,7 @@ struct sums {
 static int read_in(struct npy *a, const char *dir, const char *name, struct err *e)
 {
 	char *path = file_join(dir, name, "", e);
-	const int bad = !path || npy_read(a, path, e) ? -1 : 0;
+	const int bad = !path || npy_open(a, path, e) ? -1 : 0;
 
 	free(path);
 	return bad;
@@ -43,13 +43,13 @@ static int compare(struct sums *s, const char *const dirs[2], const char *name, 
 		bad = err_set(e, ERR_FORMAT, "%s: %zu values in %s, %zu in %s", name, a.count, dirs[0],
 			b.count, dirs[1]);
 	for (size_t i = 0; i < a.count && !bad; i++) {
-		const double x = (double)a.values[i], d = x - (double)b.values[i];
+		const double x = npy_value(&a, i), d = x - npy_value(&b, i);
 		s->values++;
 		s->squares += x * x;
 		s->differences += d * d;
 	}
-	npy_free(&a);
-	npy_free(&b);
+	npy_close(&a);
+	npy_close(&b);
 	return bad ? -1 : 0;
 }
 

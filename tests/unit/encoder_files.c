@@ -1,6 +1,7 @@
 #include "encoder_files.h"
 
 #include "base/file.h"
+#include "base/half.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -46,7 +47,7 @@ int store_as(struct st_tensor *t, enum st_dtype dtype, void *data)
 
 	const int bad = safetensors_to_float(t, floats, count, &e);
 	for (size_t k = 0; k < count && !bad; k++) {
-		uint16_t half = dtype == ST_F16 ? st_float_to_half(floats[k]) : to_bfloat(floats[k]);
+		uint16_t half = dtype == ST_F16 ? half_of_float(floats[k]) : to_bfloat(floats[k]);
 		if (dtype == ST_F32)
 			memcpy((char *)data + 4 * k, &floats[k], 4);
 		else

@@ -1,11 +1,12 @@
 #include "unit.h"
 
 #include "base/base64.h"
+#include "base/half.h"
 #include "base/hash.h"
 #include "base/mem.h"
 #include "base/number.h"
 #include "base/rng.h"
-#include "formats/safetensors.h"
+#include "formats/arrays/safetensors.h"
 
 /* The first outputs of the PCG32 reference program pcg32-demo, seeded with 42 and 54. */
 static void rng_known_answers(void)
@@ -62,13 +63,13 @@ static void half_round_trip(void)
 	int wrong = 0;
 
 	for (uint32_t h = 0; h < 65536; h++) {
-		float f = st_half_to_float((uint16_t)h);
-		if (!isnan(f) && st_float_to_half(f) != h)
+		float f = half_to_float((uint16_t)h);
+		if (!isnan(f) && half_of_float(f) != h)
 			wrong++;
 	}
 	CHECK(wrong == 0, "%d halves change on the way through float", wrong);
-	CHECK(st_float_to_half(1.00048828125f) == 0x3c00, "a tie rounds to even");
-	CHECK(st_float_to_half(65520) == 0x7c00, "65520 rounds to infinity");
+	CHECK(half_of_float(1.00048828125f) == 0x3c00, "a tie rounds to even");
+	CHECK(half_of_float(65520) == 0x7c00, "65520 rounds to infinity");
 }
 
 static void sizes_overflow(void)

@@ -3,7 +3,8 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/rng.h"
-#include "formats/ply.h"
+#include "formats/splats/anysplats.h"
+#include "formats/splats/ply.h"
 
 #include <float.h>
 #include <stdint.h>
@@ -131,7 +132,7 @@ static void any_layout(int encoding, int rest)
 
 	build_foreign(&b, encoding, 4, rest);
 	save(b.data, b.len);
-	int bad = ply_read(&s, offset, NULL, path, &e);
+	int bad = anysplats_read(&s, offset, NULL, path, &e);
 	if (!CHECK(!bad, "encoding %d, %d f_rest: %s", encoding, rest, e.message))
 		return;
 	CHECK(s.n == 4 && s.sh_coefficients == 1 + channel, "%zu Gaussians, K = %d", s.n, s.sh_coefficients);
@@ -171,7 +172,7 @@ static void broken(int encoding)
 	for (size_t len = 0; len + (encoding == 0 ? 2 : 0) < b.len; len++) {
 		struct err e = {0};
 		save(b.data, len);
-		if (!ply_read(&s, offset, NULL, path, &e)) {
+		if (!anysplats_read(&s, offset, NULL, path, &e)) {
 			accepted++;
 			splats_free(&s);
 		} else {
@@ -185,7 +186,7 @@ static void broken(int encoding)
 		struct rows_report report;
 		b.data[at] ^= 0xff;
 		save(b.data, b.len);
-		if (!ply_read(&s, offset, &report, path, &e)) {
+		if (!anysplats_read(&s, offset, &report, path, &e)) {
 			splats_free(&s);
 			free(report.dropped);
 		} else {
@@ -226,7 +227,7 @@ static void round_trip(int k, const double offset[3])
 	size_t n = 200;
 
 	make_splats(&a, n, k);
-	int bad = ply_write(&a, offset, path, &e) || ply_read(&b, back, NULL, path, &e);
+	int bad = ply_write(&a, offset, path, &e) || anysplats_read(&b, back, NULL, path, &e);
 	if (!CHECK(!bad, "K = %d: %s", k, e.message) || !b.means)
 		return;
 	CHECK(b.n == n && b.sh_coefficients == k, "%zu Gaussians, K = %d", b.n, b.sh_coefficients);
@@ -303,7 +304,7 @@ static void left_out(void)
 	rows[24][6] = INFINITY;
 	rows[25][6] = -INFINITY;
 	build_plain(&b, 26, rows);
-	int bad = ply_read(&s, offset, &report, path, &e);
+	int bad = anysplats_read(&s, offset, &report, path, &e);
 	if (!CHECK(!bad, "%s", e.message))
 		return;
 	CHECK(report.read == 26 && report.not_finite == 18 && report.zero_quat == 1,
@@ -320,7 +321,7 @@ static void left_out(void)
 	splats_free(&s);
 	free(report.dropped);
 	build_plain(&b, 14, rows + 1);
-	CHECK(ply_read(&s, offset, &report, path, &e) &&
+	CHECK(anysplats_read(&s, offset, &report, path, &e) &&
 			strstr(e.message, "none of its 14 Gaussians can be used: 14 have a value"),
 		"%s", e.message);
 }
@@ -341,7 +342,7 @@ static void recentring(void)
 		rows[i][2] = 3;
 	}
 	build_plain(&b, 5, rows);
-	int bad = ply_read(&s, offset, NULL, path, &e);
+	int bad = anysplats_read(&s, offset, NULL, path, &e);
 	if (!CHECK(!bad, "%s", e.message))
 		return;
 	CHECK(offset[0] == 1e6 && offset[1] == -3999998 && offset[2] == 3, "offset %g %.9g %g", offset[0],
@@ -355,7 +356,8 @@ static void recentring(void)
 		rows[i][1] = 20;
 	}
 	build_plain(&b, 5, rows);
-	CHECK(!ply_read(&s, offset, NULL, path, &e) && offset[0] == 0 && offset[1] == 0 && offset[2] == 0,
+	CHECK(!anysplats_read(&s, offset, NULL, path, &e) && offset[0] == 0 && offset[1] == 0 &&
+			offset[2] == 0,
 		"offset %g %g %g", offset[0], offset[1], offset[2]);
 	splats_free(&s);
 }
@@ -379,7 +381,7 @@ static void huge_counts(void)
 		memmove(b.data + head + len, b.data + head + 16, b.len - head - 16);
 		memcpy(at, text, len);
 		save(b.data, b.len - 16 + len);
-		CHECK(ply_read(&s, offset, NULL, path, &e) && e.code == ERR_FORMAT, "%s: %s", counts[i],
+		CHECK(anysplats_read(&s, offset, NULL, path, &e) && e.code == ERR_FORMAT, "%s: %s", counts[i],
 			e.message);
 	}
 }

@@ -1,6 +1,7 @@
 #include "unit.h"
 
-#include "formats/ply.h"
+#include "formats/splats/anysplats.h"
+#include "formats/splats/ply.h"
 
 #include <stdint.h>
 #include <unistd.h>
@@ -125,7 +126,7 @@ static void unpacked(int has_color, int rest)
 	double offset[3] = {0}, root = sqrt(2), low = has_color ? -0.5 : 0, span = has_color ? 2 : 1;
 
 	build(has_color, rest, &none);
-	int bad = ply_read(&s, offset, NULL, path, &e);
+	int bad = anysplats_read(&s, offset, NULL, path, &e);
 	if (!CHECK(!bad && s.n == 300 && s.sh_coefficients == 1 + rest / 3, "%s", e.message))
 		return;
 	CHECK(near(s.means[0], -1 + 2 / 2047.0) && near(s.means[1], -1 + 3 * 2 / 1023.0) &&
@@ -171,7 +172,7 @@ static void refused(const char *reason, int rest, const struct fault *fault)
 	double offset[3];
 
 	build(1, rest, fault);
-	CHECK(ply_read(&s, offset, NULL, path, &e) && e.code == ERR_FORMAT && strstr(e.message, reason),
+	CHECK(anysplats_read(&s, offset, NULL, path, &e) && e.code == ERR_FORMAT && strstr(e.message, reason),
 		"%s, not %s", e.message, reason);
 }
 
@@ -193,7 +194,8 @@ static void no_chunks(void)
 			" 1.0\nelement vertex 0\nproperty uint packed_position\nproperty uint packed_rotation\n"
 			"property uint packed_scale\nproperty uint packed_color\nend_header\n");
 		save(len);
-		CHECK(ply_read(&s, offset, NULL, path, &e) && strstr(e.message, reasons[i]), "%s", e.message);
+		CHECK(anysplats_read(&s, offset, NULL, path, &e) && strstr(e.message, reasons[i]), "%s",
+			e.message);
 	}
 }
 
@@ -208,7 +210,7 @@ static void cut(void)
 	for (size_t bytes = 0; bytes < len; bytes++) {
 		struct err e = {0};
 		save(bytes);
-		if (!ply_read(&s, offset, NULL, path, &e)) {
+		if (!anysplats_read(&s, offset, NULL, path, &e)) {
 			accepted++;
 			splats_free(&s);
 		}
@@ -219,7 +221,7 @@ static void cut(void)
 		struct err e = {0};
 		data[at] ^= 0xff;
 		save(len);
-		if (!ply_read(&s, offset, NULL, path, &e))
+		if (!anysplats_read(&s, offset, NULL, path, &e))
 			splats_free(&s);
 		else
 			accepted += e.code != ERR_FORMAT;

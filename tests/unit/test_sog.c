@@ -4,8 +4,9 @@
 
 #include "base/file.h"
 #include "base/rng.h"
-#include "formats/ply.h"
-#include "formats/sog.h"
+#include "formats/splats/anysplats.h"
+#include "formats/splats/ply.h"
+#include "formats/splats/sog.h"
 
 #include <minizip/zip.h>
 #include <unistd.h>
@@ -175,7 +176,7 @@ int main(void)
 
 	if (file < 0)
 		return 1;
-	if (CHECK(!ply_read(&a, offset, NULL, FOLDER "eight.ply", &e), "%s", e.message))
+	if (CHECK(!anysplats_read(&a, offset, NULL, FOLDER "eight.ply", &e), "%s", e.message))
 		test_golden(&a);
 	test_missing();
 	test_damage(0);

@@ -1,10 +1,10 @@
-/* .sog written and read back within the bounds of formats/sog.md; its codebooks and palettes beside naive
- * ones. */
+/* .sog written and read back within the bounds of formats/splats/sog.md; its codebooks and palettes beside
+ * naive ones. */
 #include "unit.h"
 
 #include "base/rng.h"
-#include "formats/sog.h"
-#include "formats/sog_palette.h"
+#include "formats/splats/sog.h"
+#include "splat/palette.h"
 
 #include <unistd.h>
 
@@ -12,11 +12,11 @@ enum { N = 3000, WIDTH = 9, ROWS = 500 };
 
 static char path[] = "/tmp/test_sog_write.XXXXXX";
 
-static int nearest(const double codes[SOG_CODES], double x)
+static int nearest(const double codes[PALETTE_CODES], double x)
 {
 	int best = 0;
 
-	for (int k = 1; k < SOG_CODES; k++)
+	for (int k = 1; k < PALETTE_CODES; k++)
 		if (fabs(codes[k] - x) < fabs(codes[best] - x))
 			best = k;
 	return best;
@@ -25,7 +25,7 @@ static int nearest(const double codes[SOG_CODES], double x)
 static void test_codebook(struct rng *r)
 {
 	static float values[N];
-	double codes[SOG_CODES], error = 0, even = 0, low = 1e9, high = -1e9;
+	double codes[PALETTE_CODES], error = 0, even = 0, low = 1e9, high = -1e9;
 	struct err e;
 
 	for (int i = 0; i < N; i++) {
@@ -34,12 +34,12 @@ static void test_codebook(struct rng *r)
 		low = fmin(low, (double)values[i]);
 		high = fmax(high, (double)values[i]);
 	}
-	CHECK(!sog_codebook(codes, values, N, &e), "%s", e.message);
-	for (int k = 1; k < SOG_CODES; k++)
+	CHECK(!palette_codebook(codes, values, N, &e), "%s", e.message);
+	for (int k = 1; k < PALETTE_CODES; k++)
 		CHECK(codes[k] >= codes[k - 1], "code %d falls", k);
 	for (int i = 0; i < N; i++) {
-		const double x = (double)values[i], step = (high - low) / (SOG_CODES - 1);
-		const double off = fabs(codes[sog_code(codes, x)] - x);
+		const double x = (double)values[i], step = (high - low) / (PALETTE_CODES - 1);
+		const double off = fabs(codes[palette_code(codes, x)] - x);
 		CHECK(fabs(off - fabs(codes[nearest(codes, x)] - x)) < 1e-12, "%g has not the nearest code",
 			x);
 		error += off * off;
@@ -51,11 +51,12 @@ static void test_codebook(struct rng *r)
 	/* few different values are kept as they are */
 	for (int i = 0; i < N; i++)
 		values[i] = (float)(i % 200) * 0.37f;
-	CHECK(!sog_codebook(codes, values, N, &e), "%s", e.message);
+	CHECK(!palette_codebook(codes, values, N, &e), "%s", e.message);
 	for (int i = 0; i < N; i++)
-		CHECK(codes[sog_code(codes, (double)values[i])] == (double)values[i], "%g",
+		CHECK(codes[palette_code(codes, (double)values[i])] == (double)values[i], "%g",
 			(double)values[i]);
-	CHECK(!sog_codebook(codes, values, 0, &e) && codes[0] == 0 && codes[SOG_CODES - 1] == 0, "none");
+	CHECK(!palette_codebook(codes, values, 0, &e) && codes[0] == 0 && codes[PALETTE_CODES - 1] == 0,
+		"none");
 }
 
 /* The squared error of a palette of so many entries; each entry is the mean of its rows. */
@@ -67,8 +68,8 @@ static double palette_error(const float *rows, size_t most)
 	size_t k = 0;
 	struct err e;
 
-	if (!CHECK(!sog_palette(centres, &k, labels, rows, ROWS, WIDTH, most, &e) && k <= most, "%zu entries",
-		    k))
+	if (!CHECK(!palette_rows(centres, &k, labels, rows, ROWS, WIDTH, most, &e) && k <= most,
+		    "%zu entries", k))
 		return 1e9;
 	for (size_t c = 0; c < k; c++)
 		for (size_t j = 0; j < WIDTH; j++) {

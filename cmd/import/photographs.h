@@ -1,0 +1,15 @@
+/* The photographs of cameras, as a foreign file calls them, in a folder. formats/cameras/camerafile.md. */
+#ifndef CMD_PHOTOGRAPHS_H
+#define CMD_PHOTOGRAPHS_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+
+/* Turns each view's `image` from the foreign file's into a path relative to the folder `scene` (which must
+ * exist), of the photograph in the folder `images`: under the foreign path or, failing that, under its file
+ * name, with .jpg .jpeg .png tried where it has no extension. NULL where there is none, or `images` is NULL.
+ * *missing is how many were not found. */
+int photographs_find(
+	struct cameras *c, const char *images, const char *scene, size_t *missing, struct err *e);
+
+#endif

@@ -1,0 +1,258 @@
+#include "formats/cameras/colmap_private.h"
+
+#include "base/file.h"
+#include "base/little.h"
+#include "base/mem.h"
+#include "geom/lens.h"
+#include "geom/views.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A place in a binary file. */
+struct cursor {
+	const char *path;
+	struct file_map map;
+	size_t at;
+};
+
+int colmap_set_camera(struct colmap_entry *c, const struct lens_model *m, double width, double height,
+	const double *params, const char *path, struct err *e)
+{
+	const int n = lens_model_parameters(m), focals = lens_model_focals(m);
+	struct lens lens = {.model = m};
+
+	for (int i = 0; i < n; i++)
+		if (!isfinite(lens.parameters[i] = params[i]))
+			return err_set(e, ERR_FORMAT, "%s: camera %lu: parameter %d is not finite", path,
+				(unsigned long)c->id, i);
+	if (view_set_size(&c->camera, width, height))
+		return err_set(e, ERR_FORMAT, "%s: camera %lu: size %gx%g is not whole numbers in 1 to 65536",
+			path, (unsigned long)c->id, width, height);
+	lens.width = c->camera.width;
+	lens.height = c->camera.height;
+	c->camera.fx = params[0];
+	c->camera.fy = params[focals - 1];
+	c->camera.cx = params[focals];
+	c->camera.cy = params[focals + 1];
+	if (lens_is_distorted(&lens))
+		c->camera.lens = lens;
+	return 0;
+}
+
+int colmap_add_entry(
+	struct colmap_entries *all, const struct colmap_entry *c, const char *path, struct err *e)
+{
+	void *block = all->items;
+
+	if (mem_grow(&block, &all->capacity, all->n + 1, sizeof *c, path, e))
+		return -1;
+	all->items = block;
+	all->items[all->n++] = *c;
+	return 0;
+}
+
+static int by_id(const void *a, const void *b)
+{
+	const struct colmap_entry *x = a, *y = b;
+
+	return (x->id > y->id) - (x->id < y->id);
+}
+
+int colmap_sort_entries(struct colmap_entries *all, const char *path, struct err *e)
+{
+	if (all->n)
+		qsort(all->items, all->n, sizeof *all->items, by_id);
+	for (size_t i = 0; i + 1 < all->n; i++)
+		if (all->items[i].id == all->items[i + 1].id)
+			return err_set(e, ERR_FORMAT, "%s: camera %lu appears twice", path,
+				(unsigned long)all->items[i].id);
+	return 0;
+}
+
+int colmap_add_view(struct cameras *c, size_t *capacity, const struct colmap_entries *all,
+	const double pose[7], uint32_t camera, const char *image, const char *path, struct err *e)
+{
+	void *block = c->views;
+	struct camera v;
+	double length = sqrt(pose[0] * pose[0] + pose[1] * pose[1] + pose[2] * pose[2] + pose[3] * pose[3]);
+	struct colmap_entry key = {.id = camera};
+	const struct colmap_entry *l = all->n ? bsearch(&key, all->items, all->n, sizeof key, by_id) : NULL;
+
+	if (!l)
+		return err_set(e, ERR_FORMAT, "%s: image '%.200s': no camera %lu in the model", path, image,
+			(unsigned long)camera);
+	if (!isfinite(length) || length < 1e-12)
+		return err_set(
+			e, ERR_FORMAT, "%s: image '%.200s': its rotation is zero or not finite", path, image);
+	double w = pose[0] / length, x = pose[1] / length, y = pose[2] / length, z = pose[3] / length;
+	double m[4][4] = {
+		{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), pose[4]},
+		{2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), pose[5]},
+		{2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), pose[6]},
+		{0, 0, 0, 1},
+	};
+	v = l->camera;
+	memcpy(v.world_to_camera, m, sizeof m);
+	v.image = view_image(image, e);
+	if (!v.image)
+		return -1;
+	if (mem_grow(&block, capacity, c->n + 1, sizeof v, path, e)) {
+		free(v.image);
+		return -1;
+	}
+	c->views = block;
+	c->views[c->n++] = v;
+	return 0;
+}
+
+/* The next `bytes` bytes, or NULL with *e. */
+static const unsigned char *take(
+	struct cursor *in, size_t bytes, const char *what, uint64_t index, struct err *e)
+{
+	if (bytes > in->map.len - in->at) {
+		err_set(e, ERR_FORMAT, "%s: the file ends at offset %zu, within %s %llu", in->path,
+			in->map.len, what, (unsigned long long)index);
+		return NULL;
+	}
+	in->at += bytes;
+	return in->map.data + in->at - bytes;
+}
+
+/* Opens a binary file and reads its number of entries, each of at least `entry` bytes. */
+static int open_binary(struct cursor *in, const char *path, size_t entry, uint64_t *count, struct err *e)
+{
+	*in = (struct cursor){.path = path};
+	if (file_map(path, &in->map, e))
+		return -1;
+	if (in->map.len < 8)
+		return err_set(
+			e, ERR_FORMAT, "%s: %zu bytes, too short for a COLMAP file", path, in->map.len);
+	*count = little_get(in->map.data, 8);
+	in->at = 8;
+	if (*count > (in->map.len - 8) / entry)
+		return err_set(e, ERR_FORMAT, "%s: %llu entries at offset 0 do not fit a file of %zu bytes",
+			path, (unsigned long long)*count, in->map.len);
+	return 0;
+}
+
+static int check_end(const struct cursor *in, struct err *e)
+{
+	if (in->at == in->map.len)
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: %zu bytes after the last entry, from offset %zu", in->path,
+		in->map.len - in->at, in->at);
+}
+
+static int read_cameras_binary(struct colmap_entries *all, struct cursor *in, const char *path, struct err *e)
+{
+	uint64_t count = 0;
+
+	if (open_binary(in, path, 24 + 3 * 8, &count, e))
+		return -1;
+	for (uint64_t i = 0; i < count; i++) {
+		const unsigned char *p = take(in, 24, "camera entry", i, e);
+		double params[LENS_PARAMETERS] = {0};
+		if (!p)
+			return -1;
+		struct colmap_entry l = {.id = (uint32_t)little_get(p, 4)};
+		const uint32_t id = (uint32_t)little_get(p + 4, 4);
+		const struct lens_model *model = lens_model_numbered(id);
+		double width = (double)little_get(p + 8, 8), height = (double)little_get(p + 16, 8);
+		if (!model)
+			return err_set(e, ERR_FORMAT, "%s: camera %lu: model id %ld at offset %zu is unknown",
+				path, (unsigned long)l.id, (long)(int32_t)id, in->at - 20);
+		p = take(in, 8 * (size_t)lens_model_parameters(model), "camera entry", i, e);
+		if (!p)
+			return -1;
+		for (int k = 0; k < lens_model_parameters(model); k++)
+			params[k] = little_get_f64(p + 8 * k);
+		if (colmap_set_camera(&l, model, width, height, params, path, e) ||
+			colmap_add_entry(all, &l, path, e))
+			return -1;
+	}
+	return check_end(in, e);
+}
+
+static int read_images_binary(struct cameras *c, const struct colmap_entries *all, struct cursor *in,
+	const char *path, struct err *e)
+{
+	uint64_t count = 0;
+	size_t capacity = 0;
+
+	if (open_binary(in, path, 64 + 1 + 8, &count, e))
+		return -1;
+	for (uint64_t i = 0; i < count; i++) {
+		const unsigned char *p = take(in, 64, "image entry", i, e), *end;
+		double pose[7];
+		if (!p)
+			return -1;
+		for (int k = 0; k < 7; k++)
+			pose[k] = little_get_f64(p + 4 + 8 * k);
+		uint32_t camera = (uint32_t)little_get(p + 60, 4);
+		const char *name = (const char *)in->map.data + in->at;
+		end = memchr(name, 0, in->map.len - in->at);
+		if (!take(in, end ? (size_t)((const char *)end - name) + 1 : SIZE_MAX, "image entry", i, e) ||
+			!(p = take(in, 8, "image entry", i, e)))
+			return -1;
+		uint64_t points = little_get(p, 8);
+		/* Each point is x, y (f64) and the id of its 3D point (i64). */
+		if (!take(in, points > SIZE_MAX / 24 ? SIZE_MAX : (size_t)points * 24, "image entry", i, e) ||
+			colmap_add_view(c, &capacity, all, pose, camera, name, path, e))
+			return -1;
+	}
+	return check_end(in, e);
+}
+
+static int is_pair(const char *dir, const char *suffix)
+{
+	struct err ignored;
+	char *a = file_join(dir, "cameras", suffix, &ignored),
+	     *b = file_join(dir, "images", suffix, &ignored);
+	int both = a && b && file_exists(a) && file_exists(b);
+
+	free(a);
+	free(b);
+	return both;
+}
+
+int colmap_is_model(const char *dir)
+{
+	return is_pair(dir, ".bin") || is_pair(dir, ".txt");
+}
+
+static int read_binary(
+	struct cameras *c, struct colmap_entries *all, const char *cameras, const char *images, struct err *e)
+{
+	struct cursor first = {0}, second = {0};
+	int bad = read_cameras_binary(all, &first, cameras, e) || colmap_sort_entries(all, cameras, e) ||
+		  read_images_binary(c, all, &second, images, e);
+
+	file_unmap(&first.map);
+	file_unmap(&second.map);
+	return bad;
+}
+
+int colmap_read(struct cameras *c, const char *dir, struct err *e)
+{
+	const char *suffix = is_pair(dir, ".bin") ? ".bin" : ".txt";
+	char *cameras = file_join(dir, "cameras", suffix, e), *images = file_join(dir, "images", suffix, e);
+	struct colmap_entries all = {0};
+	int bad = -1;
+
+	*c = (struct cameras){0};
+	if (cameras && images)
+		bad = !strcmp(suffix, ".bin") ? read_binary(c, &all, cameras, images, e)
+					      : colmap_read_text(c, &all, cameras, images, e);
+	if (!bad)
+		bad = views_finish(c, images, e);
+	if (bad)
+		cameras_free(c);
+	free(all.items);
+	free(cameras);
+	free(images);
+	return bad ? -1 : 0;
+}

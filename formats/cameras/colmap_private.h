@@ -1,0 +1,38 @@
+/* What the readers of COLMAP's two forms share: colmap.c has the binary one and the folder, colmap_text.c the
+ * other. formats/cameras/colmap.md. */
+#ifndef FORMATS_COLMAP_PRIVATE_H
+#define FORMATS_COLMAP_PRIVATE_H
+
+#include "formats/cameras/colmap.h"
+#include "geom/lens.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct colmap_entry {
+	uint32_t id;
+	struct camera camera; /* size, intrinsics and lens only */
+};
+
+struct colmap_entries {
+	size_t n, capacity;
+	struct colmap_entry *items;
+};
+
+/* Where the model distorts, the pinhole is of its focal lengths and principal point until lens_pinhole finds
+ * it. This and what follows: 0, or -1 with *e. */
+int colmap_set_camera(struct colmap_entry *c, const struct lens_model *m, double width, double height,
+	const double *params, const char *path, struct err *e);
+int colmap_add_entry(
+	struct colmap_entries *all, const struct colmap_entry *c, const char *path, struct err *e);
+int colmap_sort_entries(struct colmap_entries *all, const char *path, struct err *e);
+
+/* Adds a view: pose is qw qx qy qz tx ty tz, world to camera. */
+int colmap_add_view(struct cameras *c, size_t *capacity, const struct colmap_entries *all,
+	const double pose[7], uint32_t camera, const char *image, const char *path, struct err *e);
+
+/* cameras.txt and images.txt. */
+int colmap_read_text(struct cameras *c, struct colmap_entries *all, const char *cameras, const char *images,
+	struct err *e);
+
+#endif

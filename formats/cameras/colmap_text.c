@@ -1,0 +1,219 @@
+/* COLMAP's text form. Lines are cut in place. */
+#include "formats/cameras/colmap_private.h"
+
+#include "base/textfile.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A place in a text file that was read whole. */
+struct lines {
+	char *text, *next;
+	long number;
+	unsigned long images; /* that a comment says the file has */
+	long images_line;     /* 0: none does */
+};
+
+/* The next line, without its end, or NULL. Text lines are cut in place. */
+static char *next_line(struct lines *in)
+{
+	char *line = in->next, *end;
+
+	if (!*line)
+		return NULL;
+	in->number++;
+	end = line + strcspn(line, "\r\n");
+	in->next = end + (*end == '\r' && end[1] == '\n') + (*end != 0);
+	*end = 0;
+	return line;
+}
+
+/* The next line that is neither empty nor a comment. */
+static char *next_entry(struct lines *in)
+{
+	char *line;
+
+	while ((line = next_line(in)))
+		if (line[strspn(line, " \t")] && line[strspn(line, " \t")] != '#')
+			return line;
+	return NULL;
+}
+
+static int next_number(char **line, double *value)
+{
+	char *end;
+
+	*value = strtod(*line, &end);
+	if (end == *line || (*end && *end != ' ' && *end != '\t'))
+		return -1;
+	*line = end;
+	return 0;
+}
+
+/* As next_number; an id. */
+static int next_id(char **line, uint32_t *id)
+{
+	double value;
+
+	if (next_number(line, &value) || !(value >= 0 && value <= UINT32_MAX) || value != floor(value))
+		return -1;
+	*id = (uint32_t)value;
+	return 0;
+}
+
+static int open_text(struct lines *in, const char *path, struct err *e)
+{
+	size_t len;
+
+	*in = (struct lines){0};
+	if (textfile_read(path, &in->text, &len, e))
+		return -1;
+	in->next = in->text;
+	if (strlen(in->text) != len)
+		return err_set(e, ERR_FORMAT, "%s: a NUL byte at offset %zu", path, strlen(in->text));
+	return 0;
+}
+
+static int read_camera_text(
+	struct colmap_entries *all, struct lines *in, char *line, const char *path, struct err *e)
+{
+	double size[2], params[LENS_PARAMETERS] = {0};
+	struct colmap_entry l = {0};
+
+	if (next_id(&line, &l.id))
+		return err_set(e, ERR_FORMAT, "%s:%ld: does not begin with a camera id", path, in->number);
+	line += strspn(line, " \t");
+	size_t len = strcspn(line, " \t");
+	const struct lens_model *model = lens_model_named(line, len);
+	if (!model)
+		return err_set(e, ERR_FORMAT, "%s:%ld: camera model '%.*s' is unknown", path, in->number,
+			len < 60 ? (int)len : 60, line);
+	const int n = lens_model_parameters(model);
+	line += len;
+	if (next_number(&line, &size[0]) || next_number(&line, &size[1]))
+		return err_set(e, ERR_FORMAT, "%s:%ld: no width and height", path, in->number);
+	for (int i = 0; i < n; i++)
+		if (next_number(&line, &params[i]))
+			return err_set(e, ERR_FORMAT, "%s:%ld: model %s needs %d parameters, has %d", path,
+				in->number, lens_model_name(model), n, i);
+	if (line[strspn(line, " \t")])
+		return err_set(e, ERR_FORMAT, "%s:%ld: more than %d parameters", path, in->number, n);
+	return colmap_set_camera(&l, model, size[0], size[1], params, path, e) ||
+			       colmap_add_entry(all, &l, path, e)
+		       ? -1
+		       : 0;
+}
+
+static int read_cameras_text(struct colmap_entries *all, struct lines *in, const char *path, struct err *e)
+{
+	char *line;
+
+	if (open_text(in, path, e))
+		return -1;
+	while ((line = next_entry(in)))
+		if (read_camera_text(all, in, line, path, e))
+			return -1;
+	return 0;
+}
+
+/* What a line of images.txt is. */
+struct image_line {
+	uint32_t camera;
+	double pose[7];
+	char *name;
+};
+
+/* ID QW QX QY QZ TX TY TZ CAMERA_ID NAME: the name is cut in place. -1 where the line is none. */
+static int parse_image(char *line, struct image_line *to)
+{
+	uint32_t id;
+	int bad = next_id(&line, &id);
+
+	for (int k = 0; !bad && k < 7; k++)
+		bad = next_number(&line, &to->pose[k]);
+	if (bad || next_id(&line, &to->camera))
+		return -1;
+	to->name = line + strspn(line, " \t");
+	size_t len = strlen(to->name);
+	while (len && (to->name[len - 1] == ' ' || to->name[len - 1] == '\t'))
+		to->name[--len] = 0;
+	return 0;
+}
+
+/* Whether a line is an image's points, X Y POINT3D_ID of each: nothing but numbers, and each third one whole,
+ * which an image's line without its name is only by chance. */
+static int is_points(char *line)
+{
+	double value = 0;
+	size_t n = 0;
+
+	for (; line[strspn(line, " \t")]; n++)
+		if (next_number(&line, &value) || (n % 3 == 2 && value != floor(value)))
+			return 0;
+	return n % 3 == 0;
+}
+
+/* COLMAP's comment of how many images there are, where the line is that. */
+static void note_count(const char *comment, struct lines *in)
+{
+	const char *at = strstr(comment, "Number of images:");
+
+	if (!at)
+		return;
+	in->images = strtoul(strchr(at, ':') + 1, NULL, 10);
+	in->images_line = in->number;
+}
+
+/* An image's line is followed by one of its points, which may be empty; files of other programs leave it out.
+ */
+static int read_images_text(struct cameras *c, const struct colmap_entries *all, struct lines *in,
+	const char *path, struct err *e)
+{
+	size_t capacity = 0;
+	int may_be_points = 0;
+	struct image_line image;
+	char *line;
+
+	if (open_text(in, path, e))
+		return -1;
+	while ((line = next_line(in))) {
+		const char first = line[strspn(line, " \t")];
+		if (first == '#') {
+			note_count(line, in);
+			continue;
+		}
+		if (!first || (may_be_points && is_points(line))) {
+			may_be_points = 0;
+			continue;
+		}
+		if (parse_image(line, &image))
+			return err_set(e, ERR_FORMAT,
+				"%s:%ld: not 'ID QW QX QY QZ TX TY TZ CAMERA_ID NAME'%s", path, in->number,
+				may_be_points
+					? ", and not the points of the image before, 'X Y POINT3D_ID ...'"
+					: "");
+		if (!*image.name)
+			return err_set(e, ERR_FORMAT, "%s:%ld: image without a name", path, in->number);
+		if (colmap_add_view(c, &capacity, all, image.pose, image.camera, image.name, path, e))
+			return -1;
+		may_be_points = 1;
+	}
+	if (in->images_line && in->images != c->n)
+		return err_set(e, ERR_FORMAT,
+			"%s: has %zu images, but line %ld says %lu: is the file whole? If so, take that line out",
+			path, c->n, in->images_line, in->images);
+	return 0;
+}
+
+int colmap_read_text(
+	struct cameras *c, struct colmap_entries *all, const char *cameras, const char *images, struct err *e)
+{
+	struct lines first = {0}, second = {0};
+	int bad = read_cameras_text(all, &first, cameras, e) || colmap_sort_entries(all, cameras, e) ||
+		  read_images_text(c, all, &second, images, e);
+
+	free(first.text);
+	free(second.text);
+	return bad;
+}
