@@ -89,6 +89,9 @@ $(BUILD)/obj/formats/parser_weights.o: formats/encoders/parser_default.safetenso
 $(BUILD)/obj/libcommon/lang/things.o: libcommon/lang/things.tsv
 $(BUILD)/obj/libcommon/lang/things_vectors.o: libcommon/lang/things.vectors
 
+# So are the words of synthetic sentences.
+$(BUILD)/obj/libcommon/synth/wordings.o: libcommon/synth/sentences.tsv libcommon/synth/unseen.tsv
+
 # So are the page of refer-report and its viewer.
 $(BUILD)/obj/cmd/report/reporting.o: cmd/report/report_page.html
 $(BUILD)/obj/cmd/report/report_viewer.o: cmd/report/report_viewer.js

@@ -1,31 +1,24 @@
 #include "cmd/synth/benchmark.h"
 
-#include "base/mem.h"
 #include "cmd/synth/synth_folder.h"
 #include "synth/cameras.h"
-
-#include <stdlib.h>
 
 enum { ATTEMPTS = 20 };
 
 static int make_once(struct benchmark *b, struct err *e)
 {
-	struct synth_layout layout;
-	double right[2], away[2];
+	struct synth_viewpoint v;
 	struct synth_scene *s = &b->scene;
 
 	if (synth_scene_make(s, &b->options, e))
 		return -1;
-	synth_cameras_reference(&s->cameras, right, away);
-	synth_layout_make(&layout, s->objects, s->object_count, &s->table, right, away);
-	if (synth_sentences_make(b->sentences, &layout, b->options.seed, e) ||
-		synth_unseen_make(&b->unseen, s->objects, s->object_count, &s->table, &s->cameras,
-			b->options.seed, e)) {
-		synth_scene_free(s);
+	synth_viewpoint_reference(&v, s->objects, s->object_count, &s->table, &s->cameras, 0);
+	if (synth_sentences_make(&b->sentences, &v, b->options.seed, e) ||
+		synth_unseen_make(
+			&b->unseen, s->objects, s->object_count, &s->table, &s->cameras, b->options.seed, e))
 		return -1;
-	}
-	synth_detector_make(&b->detector, s->objects, s->object_count, b->sentences, s->preset->severity,
-		b->options.seed);
+	synth_detector_make(&b->detector, s->objects, s->object_count, b->sentences.items,
+		s->preset->severity, b->options.seed);
 	return 0;
 }
 
@@ -33,13 +26,10 @@ static int make_once(struct benchmark *b, struct err *e)
  * Nothing is written before. */
 int benchmark_make(struct benchmark *b, int number, uint64_t seed, struct err *e)
 {
-	b->sentences = mem_zalloc(
-		(size_t)b->options.objects * SYNTH_SENTENCES, sizeof *b->sentences, "sentences", e);
-	if (!b->sentences)
-		return -1;
 	for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
 		b->options.seed = synth_preset_seed(number, seed, attempt);
 		*e = (struct err){0};
+		benchmark_free(b);
 		if (!make_once(b, e))
 			return 0;
 		if (e->code != ERR_CHECK)
@@ -54,11 +44,11 @@ int benchmark_write(struct benchmark *b, const char *folder, const struct report
 {
 	struct synth_folder f = {.dir = folder,
 		.scene = &b->scene,
-		.sentences = b->sentences,
+		.sentences = &b->sentences,
 		.unseen = &b->unseen,
 		.detector = &b->detector,
 		.statistics = &b->statistics};
-	int bad = synth_statistics_make(&b->statistics, &b->scene, b->sentences, e) ||
+	int bad = synth_statistics_make(&b->statistics, &b->scene, &b->sentences, e) ||
 		  synth_folder_begin(&f, e);
 
 	report_start(to, "views", b->options.views);
@@ -74,7 +64,7 @@ int benchmark_write(struct benchmark *b, const char *folder, const struct report
 
 void benchmark_free(struct benchmark *b)
 {
-	free(b->sentences);
-	synth_unseen_free(&b->unseen);
+	synth_sentences_free(&b->sentences);
+	synth_sentences_free(&b->unseen);
 	synth_scene_free(&b->scene);
 }

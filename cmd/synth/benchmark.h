@@ -5,10 +5,9 @@
 
 #include "base/err.h"
 #include "base/report.h"
-#include "synth/candidates.h"
+#include "synth/detector.h"
 #include "synth/statistics.h"
 #include "synth/synth_scene.h"
-#include "synth/synth_sentences.h"
 #include "synth/unseen.h"
 
 #include <stdint.h>
@@ -17,8 +16,7 @@ struct benchmark {
 	struct synth_options options; /* the caller's, but for the seed */
 	struct synth_scene scene;
 	struct synth_detector detector;
-	struct synth_sentence *sentences;
-	struct synth_unseen_list unseen;
+	struct synth_sentences sentences, unseen;
 	struct synth_statistics statistics; /* known when it is written */
 };
 

@@ -8,7 +8,6 @@
 #include "formats/splats/ply.h"
 #include "formats/images/png.h"
 #include "synth/outline.h"
-#include "synth/true_boxes.h"
 #include "synth/truth.h"
 
 #include <math.h>
@@ -58,13 +57,12 @@ static int write_model(const struct synth_folder *f, struct err *e)
  * them. */
 static int write_sentences(const struct synth_folder *f, struct err *e)
 {
-	int n = f->scene->object_count * SYNTH_SENTENCES;
 	struct file_out out = {0};
 
 	if (open_in(&out, f->dir, "sentences.jsonl", e))
 		return -1;
-	for (int i = 0; i < n; i++) {
-		const struct synth_sentence *s = &f->sentences[i];
+	for (size_t i = 0; i < f->sentences->n; i++) {
+		const struct synth_sentence *s = &f->sentences->items[i];
 		fprintf(out.stream, "{\"ref\":\"%s\",\"object\":\"%s\",\"text\":\"%s\",\"split\":\"%s\"}\n",
 			s->ref, f->scene->objects[s->object].name, s->text,
 			s->split == SPLIT_TEST ? "test" : "train");
@@ -231,7 +229,6 @@ static int write_statistics(const struct synth_folder *f, struct err *e)
 
 	if (open_in(&out, f->dir, "statistics.json", e))
 		return -1;
-	int sentences = s->sentences[SPLIT_TRAIN] + s->sentences[SPLIT_TEST];
 	fprintf(out.stream,
 		"{\"scene\":\"%s\",\"objects\":%d,\"alike\":%d,\"alike_groups\":%d,\"stacked\":%d,"
 		"\"sentences\":{\"train\":%d,\"test\":%d},\"words\":{\"train\":%.2f,\"test\":%.2f},"
@@ -239,9 +236,12 @@ static int write_statistics(const struct synth_folder *f, struct err *e)
 		f->scene->preset->name, s->objects, s->alike, s->alike_groups, s->stacked,
 		s->sentences[SPLIT_TRAIN], s->sentences[SPLIT_TEST], s->words[SPLIT_TRAIN],
 		s->words[SPLIT_TEST]);
-	for (int r = 0; r < SYNTH_RELATIONS; r++) {
-		fprintf(out.stream, "%s\"%s\":%.4f", comma, synth_statistics_relation((enum synth_relation)r),
-			(double)s->relations[r] / sentences);
+	const struct synth_wordings *w = &f->sentences->wordings;
+	for (int i = 0; i < w->n; i++) {
+		if (w->rows[i].list != SYNTH_RELATIONS)
+			continue;
+		fprintf(out.stream, "%s\"%s\":%.4f", comma, w->rows[i].text,
+			synth_statistics_share(f->sentences, &w->rows[i]));
 		comma = ",";
 	}
 	fprintf(out.stream, "},\"views\":{\"train\":%d,\"test\":%d},\"gaussians\":%zu", s->views[SPLIT_TRAIN],

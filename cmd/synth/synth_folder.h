@@ -4,18 +4,16 @@
 
 #include "base/err.h"
 #include "base/file.h"
-#include "synth/candidates.h"
+#include "synth/detector.h"
 #include "synth/statistics.h"
 #include "synth/synth_scene.h"
-#include "synth/synth_sentences.h"
 #include "synth/unseen.h"
 
 /* What is written, nothing of it owned but the open outputs. */
 struct synth_folder {
 	const char *dir;
 	struct synth_scene *scene; /* its cameras get the names of their photographs */
-	const struct synth_sentence *sentences;
-	const struct synth_unseen_list *unseen;
+	const struct synth_sentences *sentences, *unseen;
 	const struct synth_detector *detector;
 	struct synth_statistics *statistics; /* each view adds to its visibility */
 	struct file_out candidates, test_candidates, truth, whole;

@@ -7,44 +7,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The names of enum parse_relation, in its order. What stands on or carries its anchor is above or below it,
- * with contact. */
-static const char *const relation_names[PARSE_RELATIONS] = {"left", "right", "front", "behind", "above",
-	"below", "above", "inside", "near", "far", "between", "middle", "larger", "smaller", "taller",
-	"shorter", "longer", "wider", "corner", "wall", "floor", "facing", "across", "below", "with",
-	"other"};
-
-static void put_strings(FILE *to, const char *key, const char *const *strings, int n)
+/* Words with spaces between. */
+static void put_strings(FILE *to, const char *comma, const char *words)
 {
-	fprintf(to, ",\"%s\":[", key);
-	for (int i = 0; i < n; i++)
-		fprintf(to, "%s\"%s\"", i ? "," : "", strings[i]);
-	fputc(']', to);
+	for (size_t n; words && (n = strcspn(words, " ")); words += n + (words[n] == ' '), comma = ",")
+		fprintf(to, "%s\"%.*s\"", comma, (int)n, words);
 }
 
 /* Other attributes, then those of the colour: "dark blue" is the colour blue with the word dark. */
-static void put_attributes(FILE *to, const struct synth_unseen_phrase *p)
+static void put_attributes(FILE *to, const struct synth_phrase *p)
 {
-	const char *space = p->colour ? strrchr(p->colour, ' ') : NULL, *comma = "";
-	const char *basic = space ? space + 1 : p->colour;
+	const char *finish = p->words[SYNTH_FINISH_WORD], *colour = p->words[SYNTH_COLOUR_WORD];
+	const char *space = colour ? strrchr(colour, ' ') : NULL;
 
-	if (!p->word_count && !p->colour)
+	if (!finish && !colour)
 		return;
 	fputs(",\"words\":[", to);
-	for (int i = 0; i < p->word_count; i++, comma = ",")
-		fprintf(to, "%s\"%s\"", comma, p->words[i]);
-	if (space) {
-		fprintf(to, "%s\"%.*s\"", comma, (int)(space - p->colour), p->colour);
-		comma = ",";
-	}
-	if (basic)
-		fprintf(to, "%s\"%s\"", comma, basic);
+	put_strings(to, "", finish);
+	put_strings(to, finish ? "," : "", colour);
 	fputc(']', to);
-	if (basic)
-		fprintf(to, ",\"colour\":\"%s\"", basic);
+	if (colour)
+		fprintf(to, ",\"colour\":\"%s\"", space ? space + 1 : colour);
 }
 
-static void put_count(FILE *to, const struct synth_unseen_phrase *p)
+static void put_count(FILE *to, const struct synth_phrase *p)
 {
 	if (p->count == PARSE_ALL)
 		fputs(",\"count\":\"all\"", to);
@@ -56,9 +42,9 @@ static void put_count(FILE *to, const struct synth_unseen_phrase *p)
 		fprintf(to, ",\"count\":%d", p->count);
 }
 
-static void put_phrase(FILE *to, const struct synth_unseen *x, int phrase);
+static void put_phrase(FILE *to, const struct synth_sentence *x, int phrase);
 
-static void put_phrases(FILE *to, const struct synth_unseen *x, const char *key, const int *phrases, int n)
+static void put_phrases(FILE *to, const struct synth_sentence *x, const char *key, const int *phrases, int n)
 {
 	fprintf(to, ",\"%s\":[", key);
 	for (int i = 0; i < n; i++) {
@@ -68,31 +54,41 @@ static void put_phrases(FILE *to, const struct synth_unseen *x, const char *key,
 	fputc(']', to);
 }
 
-static void put_clause(FILE *to, const struct synth_unseen *x, const struct synth_unseen_clause *c)
+/* What stands on or carries its anchor is above or below it, with contact. */
+static void put_clause(FILE *to, const struct synth_sentence *x, const struct synth_clause *c)
 {
 	static const char *const degrees[] = {"plain", "more", "most"};
+	enum parse_relation r = c->is.relation;
 
-	fprintf(to, "{\"relation\":\"%s\",\"negated\":%s", relation_names[c->relation],
+	fprintf(to, "{\"relation\":\"%s\",\"negated\":%s",
+		parse_relation_name(r == PARSE_ON	  ? PARSE_ABOVE
+				    : r == PARSE_SUPPORTS ? PARSE_BELOW
+							  : r),
 		c->negated ? "true" : "false");
-	if (c->relation == PARSE_ON || c->relation == PARSE_SUPPORTS)
+	if (r == PARSE_ON || r == PARSE_SUPPORTS)
 		fputs(",\"contact\":true", to);
-	if (c->degree != PARSE_PLAIN)
-		fprintf(to, ",\"degree\":\"%s\"", degrees[c->degree]);
+	if (c->is.degree != PARSE_PLAIN)
+		fprintf(to, ",\"degree\":\"%s\"", degrees[c->is.degree]);
 	put_phrases(to, x, "anchors", c->anchors, c->anchor_count);
-	if (c->word_count)
-		put_strings(to, "words", c->words, c->word_count);
+	if (r == PARSE_OTHER) {
+		fputs(",\"words\":[", to);
+		put_strings(to, "", c->said->more);
+		fputc(']', to);
+	}
 	fputc('}', to);
 }
 
 /* What hangs on a phrase. The target's stands beside "target", another's within it. */
-static void put_rest(FILE *to, const struct synth_unseen *x, const struct synth_unseen_phrase *p)
+static void put_rest(FILE *to, const struct synth_sentence *x, const struct synth_phrase *p)
 {
+	const char *size = p->words[SYNTH_SIZE_WORD];
+
 	fputs(",\"clauses\":[", to);
-	if (p->size)
+	if (size)
 		fprintf(to, "{\"relation\":\"%s\",\"negated\":false,\"anchors\":[],\"words\":[\"%s\"]}",
-			p->sense.sizes >> SYNTH_BIG & 1 ? "larger" : "smaller", p->size);
+			p->sense.surely[SYNTH_SIZE] >> SYNTH_BIG & 1 ? "larger" : "smaller", size);
 	for (int i = 0; i < p->clause_count; i++) {
-		fputs(i || p->size ? "," : "", to);
+		fputs(i || size ? "," : "", to);
 		put_clause(to, x, &x->clauses[p->clauses[i]]);
 	}
 	fputc(']', to);
@@ -101,7 +97,8 @@ static void put_rest(FILE *to, const struct synth_unseen *x, const struct synth_
 	if (p->group)
 		fprintf(to, ",\"group\":%d", p->group);
 	if (p->ordinal)
-		fprintf(to, ",\"ordinal\":{\"k\":%d,\"from\":\"%s\"}", p->ordinal, relation_names[p->from]);
+		fprintf(to, ",\"ordinal\":{\"k\":%d,\"from\":\"%s\"}", p->ordinal,
+			parse_relation_name(p->from));
 	if (p->except_count)
 		put_phrases(to, x, "except", p->except, p->except_count);
 	if (p->also_count)
@@ -109,11 +106,13 @@ static void put_rest(FILE *to, const struct synth_unseen *x, const struct synth_
 }
 
 /* "One" goes by the target's noun, but for "nothing", which goes by none. */
-static void put_phrase(FILE *to, const struct synth_unseen *x, int phrase)
+static void put_phrase(FILE *to, const struct synth_sentence *x, int phrase)
 {
-	const struct synth_unseen_phrase *p = &x->phrases[phrase];
+	const struct synth_phrase *p = &x->phrases[phrase];
 
-	fprintf(to, "{\"noun\":\"%s\"", *p->noun || p->is_anything ? p->noun : x->phrases[0].noun);
+	fprintf(to, "{\"noun\":\"%s\"",
+		*p->words[SYNTH_NOUN] || p->is_anything ? p->words[SYNTH_NOUN]
+							: x->phrases[0].words[SYNTH_NOUN]);
 	put_attributes(to, p);
 	put_count(to, p);
 	if (p->viewer)
@@ -122,11 +121,12 @@ static void put_phrase(FILE *to, const struct synth_unseen *x, int phrase)
 	fputc('}', to);
 }
 
-static void put_parse(FILE *to, const struct synth_unseen *x)
+static void put_parse(FILE *to, const struct synth_sentence *x)
 {
-	const struct synth_unseen_phrase *p = &x->phrases[0];
+	const struct synth_phrase *p = &x->phrases[0];
 
-	fprintf(to, "{\"ref\":\"%s\",\"text\":\"%s\",\"target\":{\"noun\":\"%s\"", x->ref, x->text, p->noun);
+	fprintf(to, "{\"ref\":\"%s\",\"text\":\"%s\",\"target\":{\"noun\":\"%s\"", x->ref, x->text,
+		p->words[SYNTH_NOUN]);
 	put_attributes(to, p);
 	fputc('}', to);
 	put_count(to, p);
@@ -134,19 +134,23 @@ static void put_parse(FILE *to, const struct synth_unseen *x)
 	fputs("}\n", to);
 }
 
-static void put_sentence(FILE *to, const struct synth_unseen *x, const struct synth_object *objects,
+static void put_sentence(FILE *to, const struct synth_sentence *x, const struct synth_object *objects,
 	const struct cameras *cameras)
 {
-	const char *names[SYNTH_MAX_OBJECTS];
-	int n = 0;
+	const char *comma = "";
+	uint64_t set = x->objects;
 
-	for (int i = 0; i < SYNTH_MAX_OBJECTS; i++)
-		if (x->objects >> i & 1)
-			names[n++] = objects[i].name;
 	fprintf(to, "{\"ref\":\"%s\"", x->ref);
-	if (n == 1)
-		fprintf(to, ",\"object\":\"%s\"", names[0]);
-	put_strings(to, "objects", names, n);
+	for (int i = 0; i < SYNTH_MAX_OBJECTS; i++)
+		if (set == (uint64_t)1 << i)
+			fprintf(to, ",\"object\":\"%s\"", objects[i].name);
+	fputs(",\"objects\":[", to);
+	for (int i = 0; i < SYNTH_MAX_OBJECTS; i++)
+		if (set >> i & 1) {
+			fprintf(to, "%s\"%s\"", comma, objects[i].name);
+			comma = ",";
+		}
+	fputc(']', to);
 	fprintf(to, ",\"text\":\"%s\",\"split\":\"test\",\"kind\":\"%s\"", x->text,
 		synth_unseen_kind_name(x->kind));
 	if (x->view >= 0)
@@ -163,18 +167,18 @@ static int open_in(struct file_out *out, const char *dir, const char *name, stru
 	return bad;
 }
 
-int synth_unseen_files(const char *dir, const struct synth_unseen_list *list,
+int synth_unseen_files(const char *dir, const struct synth_sentences *list,
 	const struct synth_object *objects, const struct cameras *cameras, struct err *e)
 {
 	struct file_out sentences = {0}, parses = {0};
 
 	if (open_in(&sentences, dir, "unseen.jsonl", e))
 		return -1;
-	for (int i = 0; i < list->n; i++)
+	for (size_t i = 0; i < list->n; i++)
 		put_sentence(sentences.stream, &list->items[i], objects, cameras);
 	if (file_out_commit(&sentences, e) || open_in(&parses, dir, "parses.unseen.jsonl", e))
 		return -1;
-	for (int i = 0; i < list->n; i++)
+	for (size_t i = 0; i < list->n; i++)
 		put_parse(parses.stream, &list->items[i]);
 	return file_out_commit(&parses, e);
 }

@@ -8,7 +8,7 @@
 #include "synth/unseen.h"
 
 /* Writes DIR/unseen.jsonl and DIR/parses.unseen.jsonl. */
-int synth_unseen_files(const char *dir, const struct synth_unseen_list *list,
+int synth_unseen_files(const char *dir, const struct synth_sentences *list,
 	const struct synth_object *objects, const struct cameras *cameras, struct err *e);
 
 #endif

@@ -3,6 +3,7 @@
  * edges, so that the least of these distances is the gap. */
 #include "base/dot.h"
 #include "geom/box.h"
+#include "geom/vector.h"
 
 #include <math.h>
 
@@ -31,12 +32,6 @@ static int is_parted_by(const struct box *a, const struct box *b, const double a
 	return fabs(apart) > reach(a, axis) + reach(b, axis);
 }
 
-static void cross(const double u[3], const double v[3], double out[3])
-{
-	for (int k = 0; k < 3; k++)
-		out[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-}
-
 static int is_parted(const struct box *a, const struct box *b)
 {
 	int parted = 0;
@@ -45,7 +40,7 @@ static int is_parted(const struct box *a, const struct box *b)
 		parted |= is_parted_by(a, b, a->axes[i]) || is_parted_by(a, b, b->axes[i]);
 		for (int j = 0; j < 3; j++) {
 			double axis[3];
-			cross(a->axes[i], b->axes[j], axis);
+			vector_cross(a->axes[i], b->axes[j], axis);
 			parted |= dot(axis, axis, 3) > PARALLEL && is_parted_by(a, b, axis);
 		}
 	}

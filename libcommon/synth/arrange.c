@@ -21,7 +21,8 @@ static void name_objects(struct synth_object *objects, int n)
 		int count = 1;
 		for (int j = 0; j < i; j++)
 			count += objects[j].shape == o->shape && objects[j].colour == o->colour;
-		const char *colour = synth_colour_name(o->colour), *shape = synth_shape_name(o->shape);
+		const char *colour = synth_value_name(SYNTH_COLOUR, (int)o->colour);
+		const char *shape = synth_value_name(SYNTH_SHAPE, (int)o->shape);
 		if (count == 1) {
 			snprintf(o->name, sizeof o->name, "%s %s", colour, shape);
 			snprintf(o->ref, sizeof o->ref, "%s-%s", colour, shape);

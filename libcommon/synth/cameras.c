@@ -2,22 +2,16 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
+#include "geom/vector.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #define PI 3.14159265358979323846
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 static void normalise(double a[3])
 {
-	double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+	double length = vector_length(a);
 
 	for (int k = 0; k < 3; k++)
 		a[k] /= length;
@@ -30,19 +24,17 @@ void synth_cameras_aim(struct camera *c, const double centre[3], const double ta
 	for (int k = 0; k < 3; k++)
 		forward[k] = target[k] - centre[k];
 	normalise(forward);
-	cross(forward, up, right);
+	vector_cross(forward, up, right);
 	normalise(right);
-	cross(forward, right, down);
+	vector_cross(forward, right, down);
 	for (int k = 0; k < 3; k++) {
 		c->world_to_camera[0][k] = cosine * right[k] + sine * down[k];
 		c->world_to_camera[1][k] = cosine * down[k] - sine * right[k];
 		c->world_to_camera[2][k] = forward[k];
 		c->world_to_camera[3][k] = 0;
 	}
-	for (int r = 0; r < 3; r++) {
-		const double *row = c->world_to_camera[r];
-		c->world_to_camera[r][3] = -(row[0] * centre[0] + row[1] * centre[1] + row[2] * centre[2]);
-	}
+	for (int r = 0; r < 3; r++)
+		c->world_to_camera[r][3] = -vector_dot(c->world_to_camera[r], centre);
 	c->world_to_camera[3][3] = 1;
 }
 
@@ -51,18 +43,11 @@ double synth_cameras_distance(const struct synth_table *table, const struct synt
 	return preset->distance * fmax(table->half_width, 1.3 * table->half_depth);
 }
 
-static int test_views(const struct synth_options *o)
-{
-	int n = o->views * o->preset->test_views / o->preset->views;
-
-	return n > 0 ? n : 1;
-}
-
 int synth_cameras_make(
 	struct cameras *c, const struct synth_options *o, const struct synth_table *table, struct err *e)
 {
 	double far = synth_cameras_distance(table, o->preset), reach = far / o->preset->distance;
-	int n = o->views, tests = test_views(o);
+	int n = o->views, share = n * o->preset->test_views / o->preset->views, tests = share ? share : 1;
 	struct rng r;
 
 	*c = (struct cameras){0};
@@ -98,20 +83,25 @@ int synth_cameras_make(
 	return 0;
 }
 
-void synth_cameras_reference(const struct cameras *c, double right[2], double away[2])
+void synth_cameras_reference(const struct cameras *c, double centre[3], double right[2], double away[2])
 {
-	double sum[2] = {0}, centre[3];
+	double one[3];
+	int n = 0;
 
+	centre[0] = centre[1] = centre[2] = 0;
 	for (size_t i = 0; i < c->n; i++) {
 		if (c->views[i].split != SPLIT_TRAIN)
 			continue;
-		camera_centre(&c->views[i], centre);
-		sum[0] += centre[0];
-		sum[1] += centre[1];
+		camera_centre(&c->views[i], one);
+		for (int k = 0; k < 3; k++)
+			centre[k] += one[k];
+		n++;
 	}
-	double length = hypot(sum[0], sum[1]);
-	away[0] = -sum[0] / length;
-	away[1] = -sum[1] / length;
+	double length = hypot(centre[0], centre[1]);
+	away[0] = -centre[0] / length;
+	away[1] = -centre[1] / length;
 	right[0] = away[1];
 	right[1] = -away[0];
+	for (int k = 0; k < 3; k++)
+		centre[k] /= n;
 }

@@ -22,6 +22,6 @@ void synth_cameras_aim(struct camera *c, const double centre[3], const double ta
 
 /* The reference viewpoint of spatial words: the mean of the training cameras' centres, looking at the table's
  * middle. right and away are its unit directions in the plane of the table. */
-void synth_cameras_reference(const struct cameras *c, double right[2], double away[2]);
+void synth_cameras_reference(const struct cameras *c, double centre[3], double right[2], double away[2]);
 
 #endif

@@ -2,18 +2,21 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
-#include "splat/sh.h"
+#include "geom/vector.h"
 #include "synth/cameras.h"
+#include "synth/noise.h"
+#include "synth/shading.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define PI 3.14159265358979323846
 
-/* Towards the light, and how much of a colour comes from everywhere. */
-static const double light[3] = {-0.45, -0.40, 0.80};
-static const double ambient = 0.58;
+/* With its middle so many deviations inside an edge, the edge is where an opaque Gaussian begins to fade. */
+static const double inside = 1.1;
+
+/* In the world as it is. */
+static const struct synth_object unmoved = {.scale = 1};
 
 /* What is being filled in: the next Gaussian's number goes up as Gaussians are put. */
 struct work {
@@ -25,20 +28,18 @@ struct work {
 
 /* A surface to be covered. */
 struct coat {
-	int owner;
-	const struct synth_object *object; /* that the surface is of; NULL: it lies in the world as it is */
+	int owner;			   /* -1: the table or the room */
+	const struct synth_object *object; /* that the surface is of, or unmoved */
+	int is_table;
 	struct synth_surface surface;
 	double gloss;
 	double longest; /* more than that a Gaussian is only where there are too few to cover; 0: any length
 			 */
-	/* The colour before the lamp's light, of the spot (as in the surface) and its place in the world. */
-	void (*paint)(const struct work *w, const struct coat *c, const struct synth_spot *spot,
-		const double world[3], double rgb[3]);
 };
 
-/* A Gaussian in the making: extents along and across its place's tangents, and out of the surface. */
+/* A Gaussian in the making: its extents along and across its place's tangent, and out of the surface. */
 struct grain {
-	double along, across, thick, opacity;
+	double side[2], thick, opacity;
 };
 
 /* The rotation that takes z to n and x as near to `along` as then can be, as a quaternion (w,x,y,z). */
@@ -58,30 +59,12 @@ static void frame_quaternion(const double n[3], const double along[3], float q[4
 		y_axis[1] = 1 - n[1] * n[1] / w;
 		y_axis[2] = -n[1];
 	}
-	double turn = atan2(along[0] * y_axis[0] + along[1] * y_axis[1] + along[2] * y_axis[2],
-		along[0] * x_axis[0] + along[1] * x_axis[1] + along[2] * x_axis[2]);
+	double turn = atan2(vector_dot(along, y_axis), vector_dot(along, x_axis));
 	double length = sqrt(w * w + x * x + y * y), c = cos(turn / 2) / length, s = sin(turn / 2) / length;
 	q[0] = (float)(w * c);
 	q[1] = (float)(x * c + y * s);
 	q[2] = (float)(y * c - x * s);
 	q[3] = (float)(w * s);
-}
-
-/* Colour as spherical harmonics: `rgb` on average, brighter by up to `gloss` seen from where the light is
- * mirrored. */
-static void set_colour(float *sh, const double rgb[3], const double normal[3], double gloss)
-{
-	double along = 2 * (light[0] * normal[0] + light[1] * normal[1] + light[2] * normal[2]), mirrored[3];
-
-	for (int k = 0; k < 3; k++)
-		mirrored[k] = along * normal[k] - light[k];
-	for (int k = 0; k < 3; k++) {
-		sh[k] = (float)((rgb[k] - 0.5) / SH_C0);
-		/* The direction in the harmonics is from the camera to the Gaussian. */
-		sh[3 + k] = (float)(gloss * mirrored[1] / SH_C1);
-		sh[6 + k] = (float)(-gloss * mirrored[2] / SH_C1);
-		sh[9 + k] = (float)(gloss * mirrored[0] / SH_C1);
-	}
 }
 
 static void put(struct work *w, int owner, const double mean[3], const struct grain *g,
@@ -92,12 +75,12 @@ static void put(struct work *w, int owner, const double mean[3], const struct gr
 
 	for (int k = 0; k < 3; k++)
 		p->means[3 * i + (size_t)k] = (float)mean[k];
-	p->scales[3 * i] = (float)g->along;
-	p->scales[3 * i + 1] = (float)g->across;
+	p->scales[3 * i] = (float)g->side[0];
+	p->scales[3 * i + 1] = (float)g->side[1];
 	p->scales[3 * i + 2] = (float)g->thick;
 	frame_quaternion(normal, along, p->quats + 4 * i);
 	p->opacities[i] = (float)g->opacity;
-	set_colour(p->sh + 3 * SYNTH_SH_COEFFICIENTS * i, rgb, normal, gloss);
+	synth_harmonics(p->sh + 3 * SYNTH_SH_COEFFICIENTS * i, rgb, normal, gloss);
 	w->s->owner[i] = owner;
 }
 
@@ -113,13 +96,10 @@ static double ratio(struct rng *r, double spread)
 static struct grain covering(double spacing, struct rng *r)
 {
 	double size = 0.66 * spacing * exp(0.15 * rng_normal(r)), aspect = sqrt(fmin(ratio(r, 0.9), 5));
-	struct grain g = {.along = size * aspect, .across = size / aspect};
+	double times = rng_below(r, 30) ? 1 : 2.5;
+	struct grain g = {.side = {times * (size * aspect), times * (size / aspect)}};
 
-	if (rng_below(r, 30) == 0) {
-		g.along *= 2.5;
-		g.across *= 2.5;
-	}
-	g.thick = fmin(g.along, g.across) / ratio(r, 1.8);
+	g.thick = fmin(g.side[0], g.side[1]) / ratio(r, 1.8);
 	g.opacity = rng_below(r, 4) ? 1 - 0.09 * pow(rng_uniform(r), 3) : rng_range(r, 0.5, 0.95);
 	return g;
 }
@@ -128,10 +108,10 @@ static struct grain covering(double spacing, struct rng *r)
 static struct grain detailing(double spacing, struct rng *r)
 {
 	double u = rng_uniform(r);
-	struct grain g = {.along = 0.75 * spacing * exp(0.55 * rng_normal(r))};
+	struct grain g = {.side[0] = 0.75 * spacing * exp(0.55 * rng_normal(r))};
 
-	g.across = g.along / ratio(r, 2.1);
-	g.thick = g.across / ratio(r, 1.7);
+	g.side[1] = g.side[0] / ratio(r, 2.1);
+	g.thick = g.side[1] / ratio(r, 1.7);
 	g.opacity = u < 0.62   ? 0.005 * pow(20, rng_uniform(r))
 		    : u < 0.94 ? 0.1 + 0.4 * pow(rng_uniform(r), 2)
 			       : rng_range(r, 0.5, 1);
@@ -174,66 +154,64 @@ static double clear_feet(struct work *w, int owner, double spacing, double point
 	return nearest;
 }
 
+static void turn_level(double angle, const double v[3], double out[3])
+{
+	out[0] = cos(angle) * v[0] - sin(angle) * v[1];
+	out[1] = sin(angle) * v[0] + cos(angle) * v[1];
+	out[2] = v[2];
+}
+
+/* The longest that a Gaussian may be along and across a spot, neither to reach over an edge nor to stand off.
+ * `point`, the spot in the world, may move. */
+static void limit(struct work *w, const struct coat *c, const struct synth_spot *spot, double spacing,
+	double point[3], double most[2])
+{
+	double scale = c->object->scale, clear = INFINITY;
+
+	if (spot->normal[2] > 0.99)
+		clear = fmax(0.4 * spacing, 0.8 * clear_feet(w, c->owner, spacing, point));
+	for (int k = 0; k < 2; k++)
+		most[k] = fmin(clear,
+			fmin(scale * spot->room[k] / inside, straight(scale * spot->bend[k], spacing)));
+}
+
 /* Lays one Gaussian on the spot of (a,b). */
 static void lay(struct work *w, const struct coat *c, struct grain g, double spacing, double a, double b)
 {
-	/* With its middle so far inside an edge, the edge is where an opaque one begins to fade. */
-	static const double inside = 1.1;
 	const struct synth_object *o = c->object;
 	struct rng *r = &w->rng;
-	double scale = o ? o->scale : 1, yaw = o ? o->yaw : 0, cosine = cos(yaw), sine = sin(yaw);
-	double point[3], mean[3], tilted[3], along[3], rgb[3], turn = 0, length = 0;
+	double point[3], normal[3], tangent[3], aside[3], most[2], mean[3], tilted[3], along[3], rgb[3],
+		turn = 0;
+	double cap = c->longest > 0 ? fmax(c->longest, 0.66 * spacing) : INFINITY;
+	int is_turned = (int)rng_below(r, 2);
 	struct synth_spot spot;
 
-	if (rng_below(r, 2)) {
-		double other = g.along;
-		g.along = g.across;
-		g.across = other;
-	}
-	double cap = c->longest > 0 ? fmax(c->longest, 0.66 * spacing) : INFINITY;
-	g.along = fmin(g.along, cap);
-	g.across = fmin(g.across, cap);
-	double longest = fmax(g.along, g.across);
-	synth_surface_spot(&c->surface, a, b, inside * fmin(longest, straight(0.3, spacing)) / scale, &spot);
-	double normal[3] = {cosine * spot.normal[0] - sine * spot.normal[1],
-		sine * spot.normal[0] + cosine * spot.normal[1], spot.normal[2]};
-	double tangent[3] = {cosine * spot.along[0] - sine * spot.along[1],
-		sine * spot.along[0] + cosine * spot.along[1], spot.along[2]};
-	double aside[3] = {normal[1] * tangent[2] - normal[2] * tangent[1],
-		normal[2] * tangent[0] - normal[0] * tangent[2],
-		normal[0] * tangent[1] - normal[1] * tangent[0]};
-	double most[2];
-	for (int k = 0; k < 2; k++)
-		most[k] = fmin(scale * spot.room[k] / inside, straight(scale * spot.bend[k], spacing));
-	if (o)
-		synth_object_place(o, spot.point, point);
-	else
-		memcpy(point, spot.point, sizeof point);
-	if (normal[2] > 0.99) {
-		double clear = fmax(0.4 * spacing, 0.8 * clear_feet(w, c->owner, spacing, point));
-		most[0] = fmin(most[0], clear);
-		most[1] = fmin(most[1], clear);
-	}
-	if (longest <= fmin(most[0], most[1])) {
+	g = (struct grain){{fmin(g.side[is_turned], cap), fmin(g.side[!is_turned], cap)}, g.thick, g.opacity};
+	double longest = fmax(g.side[0], g.side[1]);
+	synth_surface_spot(
+		&c->surface, a, b, inside * fmin(longest, straight(0.3, spacing)) / o->scale, &spot);
+	turn_level(o->yaw, spot.normal, normal);
+	turn_level(o->yaw, spot.along, tangent);
+	vector_cross(normal, tangent, aside);
+	synth_object_place(o, spot.point, point);
+	limit(w, c, &spot, spacing, point, most);
+	if (longest <= fmin(most[0], most[1]))
 		turn = rng_range(r, 0, 2 * PI);
-	} else {
-		g.along = fmin(g.along, most[0]);
-		g.across = fmin(g.across, most[1]);
-	}
-	g.thick = fmin(fmin(g.thick, 0.3 * spacing), fmin(g.along, g.across));
-	c->paint(w, c, &spot, point, rgb);
-	double shade = normal[0] * light[0] + normal[1] * light[1] + normal[2] * light[2];
-	shade = ambient + (1 - ambient) * fmax(0, shade) + 0.02 * rng_normal(r);
-	double tilt = 0.07 * fmin(1, spacing / fmax(g.along, g.across));
+	for (int k = 0; k < 2; k++)
+		g.side[k] = fmin(g.side[k], most[k]);
+	g.thick = fmin(fmin(g.thick, 0.3 * spacing), fmin(g.side[0], g.side[1]));
+	synth_albedo(w->s, &w->texture, c->owner, c->is_table, &spot, point, rgb);
+	double shade = synth_shade(normal) + 0.02 * rng_normal(r);
+	double tilt = 0.07 * fmin(1, spacing / fmax(g.side[0], g.side[1]));
 	for (int k = 0; k < 3; k++) {
 		rgb[k] = fmin(1, fmax(0, rgb[k] * shade + 0.012 * rng_normal(r)));
 		tilted[k] = normal[k] + tilt * rng_normal(r);
-		length += tilted[k] * tilted[k];
 		along[k] = cos(turn) * tangent[k] + sin(turn) * aside[k];
 		mean[k] = point[k] - g.thick * normal[k];
 	}
+	double length = vector_length(tilted);
 	for (int k = 0; k < 3; k++)
-		tilted[k] /= sqrt(length);
+		tilted[k] /= length;
 	put(w, c->owner, mean, &g, tilted, along, rgb, c->gloss);
 }
 
@@ -252,8 +230,7 @@ static void spread(size_t i, struct rng *r, double *a, double *b)
 static void put_coat(struct work *w, const struct coat *c, size_t n)
 {
 	size_t covers = n - n * 58 / 100;
-	double scale = c->object ? c->object->scale : 1;
-	double spacing = scale * sqrt(c->surface.area / (double)covers), a, b;
+	double spacing = c->object->scale * sqrt(c->surface.area / (double)covers), a, b;
 
 	for (size_t i = 0; i < covers; i++) {
 		spread(i, &w->rng, &a, &b);
@@ -266,57 +243,13 @@ static void put_coat(struct work *w, const struct coat *c, size_t n)
 	}
 }
 
-/* How much light the objects leave on a point of the table or of `owner`'s top. */
-static double shadow(const struct synth_scene *s, int owner, const double point[3])
-{
-	double left = 1;
-
-	for (int i = 0; i < s->object_count; i++) {
-		const struct synth_object *o = &s->objects[i];
-		double reach = o->z + 0.5 * o->height - point[2];
-		if (i == owner || reach <= 0)
-			continue;
-		double dx = point[0] - o->x + light[0] * reach, dy = point[1] - o->y + light[1] * reach;
-		double at = hypot(dx, dy) / (0.8 * o->radius + 0.4 * reach);
-		left *= 1 - 0.45 * fmax(0, 1 - at * at);
-	}
-	return left;
-}
-
-static void paint_object(const struct work *w, const struct coat *c, const struct synth_spot *spot,
-	const double world[3], double rgb[3])
-{
-	double left = spot->normal[2] > 0.5 ? shadow(w->s, c->owner, world) : 1;
-
-	synth_object_colour(c->object, spot->tint, spot->point, &w->texture, rgb);
-	for (int k = 0; k < 3; k++)
-		rgb[k] *= left;
-}
-
 static void put_object(struct work *w, int owner, size_t n)
 {
 	const struct synth_object *o = &w->s->objects[owner];
-	struct coat c = {.owner = owner,
-		.object = o,
-		.gloss = o->finish == SYNTH_SHINY ? 0.16 : 0.03,
-		.paint = paint_object};
+	struct coat c = {.owner = owner, .object = o, .gloss = o->finish == SYNTH_SHINY ? 0.16 : 0.03};
 
 	synth_object_surface(&c.surface, o->shape);
 	put_coat(w, &c, n);
-}
-
-/* Boards along x. */
-static void paint_table(const struct work *w, const struct coat *c, const struct synth_spot *spot,
-	const double p[3], double rgb[3])
-{
-	const struct synth_preset *preset = w->s->preset;
-	double board = floor((p[1] + w->s->table.half_depth) / preset->boards);
-	double grain = synth_noise_at(&w->texture, 0.6 * p[0] + 17 * board, 9 * p[1]);
-	double tone = 1 + 0.13 * grain + 0.05 * synth_noise_at(&w->texture, 7.3 * board, 0.5);
-
-	tone *= spot->tint == SYNTH_OWN ? shadow(w->s, c->owner, p) : 0.8;
-	for (int k = 0; k < 3; k++)
-		rgb[k] = preset->wood[k] * tone;
 }
 
 /* A slab on square legs. */
@@ -324,7 +257,7 @@ static void put_table(struct work *w, size_t n)
 {
 	static const double thickness = 0.16, leg = 0.16, depth = 2.2;
 	const struct synth_table *t = &w->s->table;
-	struct coat c = {.owner = -1, .gloss = 0.02, .paint = paint_table};
+	struct coat c = {.owner = -1, .is_table = 1, .object = &unmoved, .gloss = 0.02};
 
 	synth_surface_box(&c.surface, SYNTH_OWN, SYNTH_INNER, (double[3]){0, 0, -thickness},
 		2 * t->half_width, 2 * t->half_depth, thickness);
@@ -336,17 +269,6 @@ static void put_table(struct work *w, size_t n)
 			&c.surface, SYNTH_INNER, (double[3]){x, y, 0}, 2, (const double(*)[2])profile);
 	}
 	put_coat(w, &c, n);
-}
-
-static void paint_room(const struct work *w, const struct coat *c, const struct synth_spot *spot,
-	const double p[3], double rgb[3])
-{
-	const struct synth_preset *preset = w->s->preset;
-	double tone = 1 + 0.10 * synth_noise_at(&w->texture, 0.7 * p[0] + 0.9 * p[2], 0.7 * p[1]);
-
-	(void)c;
-	for (int k = 0; k < 3; k++)
-		rgb[k] = (spot->normal[2] > 0.5 ? preset->carpet : preset->wall)[k] * tone;
 }
 
 static double room_radius(const struct synth_scene *s)
@@ -361,21 +283,28 @@ static void put_room(struct work *w, size_t n)
 	double profile[3][2] = {{radius, height}, {radius, -2.2}, {0, -2.2}};
 	/* The rasteriser's projection, like that of 3DGS, spreads what is large and just beside or below a
 	 * camera over the whole image. */
-	struct coat c = {.owner = -1, .gloss = 0.01, .longest = 0.08 * radius, .paint = paint_room};
+	struct coat c = {.owner = -1, .object = &unmoved, .gloss = 0.01, .longest = 0.08 * radius};
 
 	synth_surface_turn(&c.surface, SYNTH_OWN, (double[3]){0}, 3, (const double(*)[2])profile);
 	put_coat(w, &c, n);
 }
 
-static void draw_frame(struct rng *r, double normal[3], double along[3])
+/* The rest of a stray is at random: thinner by ratios of this spread, and as the wall or of any colour. */
+static void put_astray(
+	struct work *w, const double mean[3], struct grain g, double spread, double tone, const double *wall)
 {
-	double turn = rng_range(r, 0, 2 * PI), rise = rng_range(r, -1, 1), flat = sqrt(1 - rise * rise);
+	struct rng *r = &w->rng;
+	double along[3], rgb[3];
 
-	normal[0] = flat * cos(turn);
-	normal[1] = flat * sin(turn);
-	normal[2] = rise;
+	g.side[1] = g.side[0] / ratio(r, spread);
+	g.thick = g.side[1] / ratio(r, spread);
+	double turn = rng_range(r, 0, 2 * PI), rise = rng_range(r, -1, 1), flat = sqrt(1 - rise * rise);
+	double normal[3] = {flat * cos(turn), flat * sin(turn), rise};
 	for (int k = 0; k < 3; k++)
 		along[k] = rng_normal(r);
+	for (int k = 0; k < 3; k++)
+		rgb[k] = fmin(1, fmax(0, wall ? wall[k] * tone : tone + 0.12 * rng_normal(r)));
+	put(w, -1, mean, &g, normal, along, rgb, 0.02);
 }
 
 /* A speck or needle in the air, mostly faint. */
@@ -385,16 +314,10 @@ static void put_speck(struct work *w, double fine)
 	struct rng *r = &w->rng;
 	double mean[3] = {t->half_width * rng_range(r, -1.3, 1.3), t->half_depth * rng_range(r, -1.3, 1.3),
 		rng_range(r, 0.05, 2.2)};
-	struct grain g = {.along = fine * 0.022 * exp(0.5 * rng_normal(r)),
+	struct grain g = {.side[0] = fine * 0.022 * exp(0.5 * rng_normal(r)),
 		.opacity = rng_below(r, 6) ? 0.005 * pow(24, rng_uniform(r)) : rng_range(r, 0.1, 0.6)};
-	double normal[3], along[3], rgb[3], tone = rng_range(r, 0.2, 0.9);
 
-	g.across = g.along / ratio(r, 1.3);
-	g.thick = g.across / ratio(r, 1.3);
-	draw_frame(r, normal, along);
-	for (int k = 0; k < 3; k++)
-		rgb[k] = fmin(1, fmax(0, tone + 0.12 * rng_normal(r)));
-	put(w, -1, mean, &g, normal, along, rgb, 0.02);
+	put_astray(w, mean, g, 1.3, rng_range(r, 0.2, 0.9), NULL);
 }
 
 /* Something large and soft before the wall, too far from the cameras to reach them. */
@@ -406,15 +329,10 @@ static void put_cloud(struct work *w, double fine)
 	       gap = 0.9 * radius - 1.1 * synth_cameras_distance(&s->table, s->preset);
 	double far = radius * rng_range(r, 0.9, 0.97), around = rng_range(r, 0, 2 * PI);
 	double mean[3] = {far * cos(around), far * sin(around), rng_range(r, -1.8, 0.6 * radius)};
-	struct grain g = {.along = fine * gap * rng_range(r, 0.06, 0.25), .opacity = rng_range(r, 0.02, 0.5)};
-	double normal[3], along[3], rgb[3], tone = rng_range(r, 0.9, 1.15);
+	struct grain g = {
+		.side[0] = fine * gap * rng_range(r, 0.06, 0.25), .opacity = rng_range(r, 0.02, 0.5)};
 
-	g.across = g.along / ratio(r, 0.4);
-	g.thick = g.across / ratio(r, 0.4);
-	draw_frame(r, normal, along);
-	for (int k = 0; k < 3; k++)
-		rgb[k] = fmin(1, s->preset->wall[k] * tone);
-	put(w, -1, mean, &g, normal, along, rgb, 0.02);
+	put_astray(w, mean, g, 0.4, rng_range(r, 0.9, 1.15), s->preset->wall);
 }
 
 /* What training leaves behind. However many there are, they hide about as much. */

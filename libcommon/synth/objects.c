@@ -1,29 +1,16 @@
 #include "synth/objects.h"
 
 #include <math.h>
-#include <string.h>
+#include <stddef.h>
 
 #define PI 3.14159265358979323846
 
-static const char *const shape_names[SYNTH_SHAPES] = {
-	"ball", "box", "cylinder", "cone", "mug", "bowl", "plate", "book", "bottle"};
-
-static const struct {
-	const char *name;
-	double rgb[3];
-} colours[SYNTH_COLOURS] = {
-	{"red", {0.80, 0.08, 0.08}},
-	{"green", {0.10, 0.55, 0.15}},
-	{"blue", {0.10, 0.22, 0.80}},
-	{"yellow", {0.95, 0.85, 0.10}},
-	{"white", {0.95, 0.95, 0.93}},
-	{"black", {0.07, 0.07, 0.08}},
-	{"orange", {0.98, 0.50, 0.05}},
-	{"purple", {0.48, 0.14, 0.62}},
-	{"brown", {0.36, 0.18, 0.08}},
-	{"pink", {0.98, 0.55, 0.70}},
-	{"grey", {0.48, 0.49, 0.50}},
-	{"teal", {0.05, 0.58, 0.58}},
+static const char *const names[SYNTH_PROPERTIES][SYNTH_COLOURS + 1] = {
+	{"ball", "box", "cylinder", "cone", "mug", "bowl", "plate", "book", "bottle"},
+	{"red", "green", "blue", "yellow", "white", "black", "orange", "purple", "brown", "pink", "grey",
+		"teal"},
+	{"small", "medium", "big"},
+	{"plain", "shiny", "striped", "speckled"},
 };
 
 /* At scale 1. A mug's radius includes its handle. */
@@ -69,79 +56,60 @@ struct synth_area synth_object_top(const struct synth_object *o, double *z)
 	return (struct synth_area){o->scale * a.x, o->scale * a.y};
 }
 
-const char *synth_shape_name(enum synth_shape s)
+int synth_object_value(const struct synth_object *o, enum synth_property p)
 {
-	return shape_names[s];
+	const int values[SYNTH_PROPERTIES] = {(int)o->shape, (int)o->colour, (int)o->size, (int)o->finish};
+
+	return values[p];
 }
 
-const char *synth_colour_name(enum synth_colour c)
+const char *synth_value_name(enum synth_property p, int value)
 {
-	return colours[c].name;
+	return names[p][value];
 }
 
-static void ball_surface(struct synth_surface *s)
-{
-	enum { RINGS = 18 };
-	double profile[RINGS + 1][2], r = measures[SYNTH_BALL].radius;
-
-	for (int i = 0; i <= RINGS; i++) {
-		double turn = PI * i / RINGS;
-		profile[i][0] = r * sin(turn);
-		profile[i][1] = r - r * cos(turn);
-	}
-	synth_surface_turn(s, SYNTH_OWN, (double[3]){0}, RINGS + 1, profile);
-}
+/* What is turned about the vertical: (radius, height) from below. */
+static const struct {
+	enum synth_shape shape;
+	enum synth_tint tint;
+	int n;
+	double profile[5][2];
+} turned[] = {
+	{SYNTH_CYLINDER, SYNTH_OWN, 3, {{0.28, 0}, {0.28, 0.80}, {0, 0.80}}},
+	{SYNTH_CONE, SYNTH_OWN, 2, {{0.40, 0}, {0, 0.90}}},
+	{SYNTH_MUG, SYNTH_OWN, 3, {{0.32, 0}, {0.32, 0.62}, {0.27, 0.62}}},
+	{SYNTH_MUG, SYNTH_INNER, 3, {{0.27, 0.62}, {0.27, 0.06}, {0, 0.06}}},
+	{SYNTH_BOWL, SYNTH_OWN, 5, {{0.20, 0}, {0.36, 0.08}, {0.47, 0.20}, {0.52, 0.34}, {0.47, 0.34}}},
+	{SYNTH_BOWL, SYNTH_INNER, 4, {{0.47, 0.34}, {0.42, 0.21}, {0.31, 0.11}, {0, 0.06}}},
+	{SYNTH_PLATE, SYNTH_OWN, 5, {{0.36, 0}, {0.62, 0.09}, {0.60, 0.11}, {0.38, 0.05}, {0, 0.05}}},
+	{SYNTH_BOTTLE, SYNTH_OWN, 5, {{0.24, 0}, {0.24, 0.62}, {0.20, 0.76}, {0.10, 0.88}, {0.10, 1.00}}},
+	{SYNTH_BOTTLE, SYNTH_CAP, 3, {{0.12, 0.98}, {0.12, 1.16}, {0, 1.16}}},
+};
 
 void synth_object_surface(struct synth_surface *s, enum synth_shape shape)
 {
+	enum { RINGS = 18 };
 	static const double origin[3] = {0};
-	static const double cylinder[][2] = {{0.28, 0}, {0.28, 0.80}, {0, 0.80}};
-	static const double cone[][2] = {{0.40, 0}, {0, 0.90}};
-	static const double mug[][2] = {{0.32, 0}, {0.32, 0.62}, {0.27, 0.62}};
-	static const double mug_inside[][2] = {{0.27, 0.62}, {0.27, 0.06}, {0, 0.06}};
-	static const double bowl[][2] = {{0.20, 0}, {0.36, 0.08}, {0.47, 0.20}, {0.52, 0.34}, {0.47, 0.34}};
-	static const double bowl_inside[][2] = {{0.47, 0.34}, {0.42, 0.21}, {0.31, 0.11}, {0, 0.06}};
-	static const double plate[][2] = {{0.36, 0}, {0.62, 0.09}, {0.60, 0.11}, {0.38, 0.05}, {0, 0.05}};
-	static const double bottle[][2] = {{0.24, 0}, {0.24, 0.62}, {0.20, 0.76}, {0.10, 0.88}, {0.10, 1.00}};
-	static const double cap[][2] = {{0.12, 0.98}, {0.12, 1.16}, {0, 1.16}};
+	double ball[RINGS + 1][2], r = measures[SYNTH_BALL].radius;
 
 	*s = (struct synth_surface){0};
-	switch (shape) {
-	case SYNTH_BALL:
-		ball_surface(s);
-		break;
-	case SYNTH_BOX:
+	for (size_t i = 0; i < sizeof turned / sizeof *turned; i++)
+		if (turned[i].shape == shape)
+			synth_surface_turn(s, turned[i].tint, origin, turned[i].n, turned[i].profile);
+	if (shape == SYNTH_BALL) {
+		for (int i = 0; i <= RINGS; i++) {
+			ball[i][0] = r * sin(PI * i / RINGS);
+			ball[i][1] = r - r * cos(PI * i / RINGS);
+		}
+		synth_surface_turn(s, SYNTH_OWN, origin, RINGS + 1, (const double(*)[2])ball);
+	} else if (shape == SYNTH_BOX) {
 		synth_surface_box(s, SYNTH_OWN, SYNTH_OWN, origin, 0.70, 0.58, 0.55);
-		break;
-	case SYNTH_CYLINDER:
-		synth_surface_turn(s, SYNTH_OWN, origin, 3, cylinder);
-		break;
-	case SYNTH_CONE:
-		synth_surface_turn(s, SYNTH_OWN, origin, 2, cone);
-		break;
-	case SYNTH_MUG:
-		synth_surface_turn(s, SYNTH_OWN, origin, 3, mug);
-		synth_surface_turn(s, SYNTH_INNER, origin, 3, mug_inside);
+	} else if (shape == SYNTH_MUG) {
 		synth_surface_half_ring(s, (double[3]){0.32, 0, 0.32}, 0.185, 0.05);
-		break;
-	case SYNTH_BOWL:
-		synth_surface_turn(s, SYNTH_OWN, origin, 5, bowl);
-		synth_surface_turn(s, SYNTH_INNER, origin, 4, bowl_inside);
-		break;
-	case SYNTH_PLATE:
-		synth_surface_turn(s, SYNTH_OWN, origin, 5, plate);
-		break;
-	case SYNTH_BOOK:
+	} else if (shape == SYNTH_BOOK) {
 		synth_surface_box(s, SYNTH_OWN, SYNTH_PAGES, origin, 0.86, 0.62, 0.17);
 		/* The spine is bound like the cover. */
 		s->patches[3].tint = SYNTH_OWN;
-		break;
-	case SYNTH_BOTTLE:
-		synth_surface_turn(s, SYNTH_OWN, origin, 5, bottle);
-		synth_surface_turn(s, SYNTH_CAP, origin, 3, cap);
-		break;
-	case SYNTH_SHAPES:
-		break;
 	}
 }
 
@@ -154,39 +122,32 @@ void synth_object_place(const struct synth_object *o, const double point[3], dou
 	world[2] = o->z + o->scale * point[2];
 }
 
-static void mix(double rgb[3], const double with[3], double share)
+/* The smallest box around o along x and y axes that are turned by `angle`. */
+static struct box box_at(const struct synth_object *o, const struct synth_surface *s, double angle)
 {
-	for (int k = 0; k < 3; k++)
-		rgb[k] += share * (with[k] - rgb[k]);
+	const double c = cos(angle), n = sin(angle);
+	struct box b = {{o->x, o->y, o->z}, {{c, n, 0}, {-n, c, 0}, {0, 0, 1}}, {0}};
+	const double turn = angle - o->yaw; /* from the surface's own axes */
+	const double axes[3][3] = {{cos(turn), sin(turn), 0}, {-sin(turn), cos(turn), 0}, {0, 0, 1}};
+
+	for (int k = 0; k < 3; k++) {
+		const double back[3] = {-axes[k][0], -axes[k][1], -axes[k][2]};
+		double high = o->scale * synth_surface_reach(s, axes[k]);
+		double low = -o->scale * synth_surface_reach(s, back);
+		b.half[k] = (high - low) / 2;
+		for (int d = 0; d < 3; d++)
+			b.centre[d] += (high + low) / 2 * b.axes[k][d];
+	}
+	return b;
 }
 
-void synth_object_colour(const struct synth_object *o, enum synth_tint tint, const double point[3],
-	const struct synth_noise *texture, double rgb[3])
+void synth_object_boxes(const struct synth_object *o, struct box *aligned, struct box *along_sides)
 {
-	static const double pages[3] = {0.90, 0.87, 0.76}, cap[3] = {0.20, 0.20, 0.22},
-			    pale[3] = {0.96, 0.96, 0.94}, dark[3] = {0.25, 0.25, 0.27}, night[3] = {0};
-	int is_pale = o->colour == SYNTH_WHITE || o->colour == SYNTH_YELLOW || o->colour == SYNTH_PINK;
-	const double *second = is_pale ? dark : pale;
+	struct synth_surface s;
 
-	memcpy(rgb, colours[o->colour].rgb, 3 * sizeof(double));
-	if (tint == SYNTH_PAGES)
-		memcpy(rgb, pages, sizeof pages);
-	else if (tint == SYNTH_CAP)
-		memcpy(rgb, cap, sizeof cap);
-	else if (tint == SYNTH_INNER)
-		mix(rgb, night, 0.35);
-	if (tint != SYNTH_OWN)
-		return;
-	if (o->finish == SYNTH_STRIPED) {
-		/* Up an upright thing, across a flat one. */
-		double at = o->shape == SYNTH_BOOK || o->shape == SYNTH_PLATE ? point[0] : point[2];
-		double phase = at / 0.24 - floor(at / 0.24);
-		if (phase > 0.6)
-			mix(rgb, second, 0.75);
-	} else if (o->finish == SYNTH_SPECKLED) {
-		double at =
-			synth_noise_at(texture, 13 * point[0] + 9 * point[2], 13 * point[1] - 9 * point[2]);
-		if (at > 0.33)
-			mix(rgb, second, 0.7);
-	}
+	synth_object_surface(&s, o->shape);
+	*aligned = box_at(o, &s, 0);
+	*along_sides = o->shape == SYNTH_BOX || o->shape == SYNTH_BOOK || o->shape == SYNTH_MUG
+			       ? box_at(o, &s, o->yaw)
+			       : *aligned;
 }

@@ -3,8 +3,7 @@
 #ifndef SYNTH_OBJECTS_H
 #define SYNTH_OBJECTS_H
 
-#include "base/err.h"
-#include "synth/noise.h"
+#include "geom/box.h"
 #include "synth/surface.h"
 
 #include <stdint.h>
@@ -25,7 +24,7 @@ enum synth_stream {
 	SYNTH_STREAM_SENTENCES,
 	SYNTH_STREAM_FAULTS,
 	SYNTH_STREAM_HIDING,
-	SYNTH_STREAM_TEST_HABITS,
+	SYNTH_STREAM_TEST_ERRORS,
 	SYNTH_STREAM_UNSEEN = 512, /* one a kind of sentence */
 	SYNTH_STREAM_VIEWS = 1024, /* candidates: one stream a view */
 };
@@ -59,6 +58,7 @@ enum synth_colour {
 };
 enum synth_size { SYNTH_SMALL, SYNTH_MEDIUM, SYNTH_BIG, SYNTH_SIZES };
 enum synth_finish { SYNTH_PLAIN, SYNTH_SHINY, SYNTH_STRIPED, SYNTH_SPECKLED, SYNTH_FINISHES };
+enum synth_property { SYNTH_SHAPE, SYNTH_COLOUR, SYNTH_SIZE, SYNTH_FINISH, SYNTH_PROPERTIES };
 
 struct synth_object {
 	enum synth_shape shape;
@@ -99,11 +99,13 @@ void synth_object_surface(struct synth_surface *s, enum synth_shape shape);
 /* The point of the world that a point of that surface is. `point` and `world` may be the same. */
 void synth_object_place(const struct synth_object *o, const double point[3], double world[3]);
 
-/* The colour (sRGB in [0,1]) before any light at a point of that surface. */
-void synth_object_colour(const struct synth_object *o, enum synth_tint tint, const double point[3],
-	const struct synth_noise *texture, double rgb[3]);
+/* What an object is in one respect, as a number of the respective enum; and its name ("red"), NULL from the
+ * number of values on. */
+int synth_object_value(const struct synth_object *o, enum synth_property p);
+const char *synth_value_name(enum synth_property p, int value);
 
-const char *synth_shape_name(enum synth_shape s);
-const char *synth_colour_name(enum synth_colour c);
+/* The smallest box along the world's axes, and the one that is turned with the object: along its sides, or a
+ * mug's handle. What is round all about fits every turn, and has both the same. */
+void synth_object_boxes(const struct synth_object *o, struct box *aligned, struct box *along_sides);
 
 #endif

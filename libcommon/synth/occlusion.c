@@ -11,16 +11,16 @@ enum { CELLS = SYNTH_OCCLUSION_COLUMNS * SYNTH_OCCLUSION_COLUMNS };
 static void set_points(float *points, const struct synth_object *o)
 {
 	struct synth_surface surface;
-	double p[3], normal[3];
+	struct synth_spot spot;
 
 	synth_object_surface(&surface, o->shape);
 	for (int i = 0; i < SYNTH_OCCLUSION_POINTS; i++, points += 3) {
 		/* Evenly spread in two dimensions: multiples of the golden ratio. */
-		synth_surface_at(&surface, (i + 0.5) / SYNTH_OCCLUSION_POINTS,
-			fmod(0.6180339887498949 * i, 1), p, normal);
-		synth_object_place(o, p, p);
+		synth_surface_spot(&surface, (i + 0.5) / SYNTH_OCCLUSION_POINTS,
+			fmod(0.6180339887498949 * i, 1), 0, &spot);
+		synth_object_place(o, spot.point, spot.point);
 		for (int k = 0; k < 3; k++)
-			points[k] = (float)p[k];
+			points[k] = (float)spot.point[k];
 	}
 }
 

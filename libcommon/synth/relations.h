@@ -1,72 +1,56 @@
-/* Where things are, as said from the reference viewpoint (synth_cameras_reference). A relation is judged in
- * three values, so that a sentence is only used where nobody could doubt what it means. */
+/* Where things are, as somebody sees them. A relation is judged in three values, so that a sentence is only
+ * used where nobody could doubt what it means: 1 plainly true, -1 plainly false, 0 arguable. */
 #ifndef SYNTH_RELATIONS_H
 #define SYNTH_RELATIONS_H
 
+#include "geom/camera.h"
+#include "lang/parse.h"
 #include "synth/objects.h"
-#include "synth/words.h"
 
-enum synth_relation {
-	/* of one other object */
-	SYNTH_LEFT_OF,
-	SYNTH_RIGHT_OF,
-	SYNTH_IN_FRONT_OF,
-	SYNTH_BEHIND,
-	SYNTH_NEXT_TO,
-	SYNTH_NEAREST_TO,
-	SYNTH_FARTHEST_FROM,
-	SYNTH_ON,
-	SYNTH_UNDER,
-	/* of two */
-	SYNTH_BETWEEN,
-	/* of the table */
-	SYNTH_LEFT_SIDE,
-	SYNTH_RIGHT_SIDE,
-	SYNTH_FRONT_SIDE,
-	SYNTH_BACK_SIDE,
-	SYNTH_MIDDLE,
-	SYNTH_ON_TABLE, /* and on no other object */
-	SYNTH_LEFTMOST,
-	SYNTH_RIGHTMOST,
-	/* of whoever looks */
-	SYNTH_NEAREST_US,
-	SYNTH_FARTHEST_US,
-	/* of the others that fit the noun phrase, and there must be such: "the left one of the two mugs" */
-	SYNTH_LEFT_ONE,
-	SYNTH_RIGHT_ONE,
-	SYNTH_NEAR_ONE,
-	SYNTH_FAR_ONE,
-	SYNTH_MIDDLE_ONE, /* of three */
-	SYNTH_LARGEST,
-	SYNTH_SMALLEST,
-	SYNTH_TALLEST,
-	SYNTH_RELATIONS
-};
+#include <stdint.h>
 
-/* The table as seen from the reference viewpoint: u to the right, v away. */
-struct synth_layout {
+/* The scene as seen from a place: u to the right, v away, in world units from the table's middle. */
+struct synth_viewpoint {
 	int n;
 	const struct synth_object *objects;
 	double u[SYNTH_MAX_OBJECTS], v[SYNTH_MAX_OBJECTS];
-	double half_u, half_v; /* of the table */
+	double bearing[SYNTH_MAX_OBJECTS]; /* to the right of the line of sight, radians */
+	double range[SYNTH_MAX_OBJECTS];   /* from who looks, along the table */
+	double half_u, half_v;		   /* of the table */
+	uint64_t visible; /* objects that are plainly to be seen: all, unless somebody says */
+	/* 1: by wider margins, and so that who measures a direction by bearing, or from who looks, finds the
+	 * same. formats/scene/synth.md has the margins. */
+	int is_strict;
 };
 
-void synth_layout_make(struct synth_layout *l, const struct synth_object *objects, int n,
-	const struct synth_table *table, const double right[2], const double away[2]);
+/* From `centre`, looking at the table; right and away are unit directions in its plane. */
+void synth_viewpoint_make(struct synth_viewpoint *s, const struct synth_object *objects, int n,
+	const struct synth_table *table, const double centre[3], const double right[2], const double away[2],
+	int is_strict);
 
-/* A relation with its other objects; a and b are -1 where it has none. */
-struct synth_clause {
-	enum synth_relation relation;
+/* From the reference viewpoint (synth_cameras_reference). */
+void synth_viewpoint_reference(struct synth_viewpoint *s, const struct synth_object *objects, int n,
+	const struct synth_table *table, const struct cameras *cameras, int is_strict);
+
+/* A relation to objects a and b; -1 where it has none. Degrees: PLAIN "left of a", "on the left"; MOST "the
+ * leftmost"; MORE "the left one", of those that are spoken of; a size with an object "larger than a". */
+struct synth_relation {
+	enum parse_relation relation;
+	enum parse_degree degree;
 	int a, b;
 };
 
-/* 1: plainly true of object i; -1: plainly false; 0: could be argued. What compares (nearest, leftmost,
- * largest
- * ...) compares i with the other objects that fit `among`. */
-int synth_clause_judge(
-	const struct synth_layout *l, const struct synth_clause *c, int i, const struct synth_meaning *among);
+/* Of object i. What ranks (nearest, leftmost, largest ...) compares i with the others of `among` (n),
+ * verdicts on what is spoken of; NULL: with everything. */
+int synth_relation_judge(
+	const struct synth_viewpoint *s, const struct synth_relation *r, int i, const int *among);
+
+/* 1 where i lies plainly farther in the direction (PARSE_LEFT to PARSE_BEHIND) than j, -1 where less far. */
+int synth_relation_compare(const struct synth_viewpoint *s, enum parse_relation direction, int i, int j);
+
+int synth_relation_is_size(enum parse_relation r);
 
 /* 1 where object i stands on object a, or on what stands on it. */
-int synth_layout_stands_on(const struct synth_layout *l, int i, int a);
+int synth_stands_on(const struct synth_object *objects, int i, int a);
 
 #endif

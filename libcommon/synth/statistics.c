@@ -5,42 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const char *const relation_names[SYNTH_RELATIONS] = {
-	[SYNTH_LEFT_OF] = "left of",
-	[SYNTH_RIGHT_OF] = "right of",
-	[SYNTH_IN_FRONT_OF] = "in front of",
-	[SYNTH_BEHIND] = "behind",
-	[SYNTH_NEXT_TO] = "next to",
-	[SYNTH_NEAREST_TO] = "nearest to",
-	[SYNTH_FARTHEST_FROM] = "farthest from",
-	[SYNTH_ON] = "on",
-	[SYNTH_UNDER] = "under",
-	[SYNTH_BETWEEN] = "between",
-	[SYNTH_LEFT_SIDE] = "left side of the table",
-	[SYNTH_RIGHT_SIDE] = "right side of the table",
-	[SYNTH_FRONT_SIDE] = "front of the table",
-	[SYNTH_BACK_SIDE] = "back of the table",
-	[SYNTH_MIDDLE] = "middle of the table",
-	[SYNTH_ON_TABLE] = "on the table",
-	[SYNTH_LEFTMOST] = "leftmost",
-	[SYNTH_RIGHTMOST] = "rightmost",
-	[SYNTH_NEAREST_US] = "nearest to us",
-	[SYNTH_FARTHEST_US] = "farthest from us",
-	[SYNTH_LEFT_ONE] = "the left one",
-	[SYNTH_RIGHT_ONE] = "the right one",
-	[SYNTH_NEAR_ONE] = "the nearer one",
-	[SYNTH_FAR_ONE] = "the farther one",
-	[SYNTH_MIDDLE_ONE] = "the middle one",
-	[SYNTH_LARGEST] = "largest",
-	[SYNTH_SMALLEST] = "smallest",
-	[SYNTH_TALLEST] = "tallest",
-};
-
-const char *synth_statistics_relation(enum synth_relation r)
-{
-	return relation_names[r];
-}
-
 const char *synth_statistics_band(int band)
 {
 	static const char *const names[SYNTH_BANDS] = {"0", "<0.15", "0.15-0.5", "0.5-0.85", ">=0.85"};
@@ -63,24 +27,27 @@ static void count_objects(struct synth_statistics *s, const struct synth_object 
 	}
 }
 
-static void count_sentences(struct synth_statistics *s, const struct synth_sentence *sentences, int n)
+static void count_sentences(struct synth_statistics *s, const struct synth_sentences *list)
 {
-	for (int i = 0; i < n; i++) {
-		const struct synth_sentence *t = &sentences[i];
-		int words = 1;
-		for (const char *p = t->text; *p; p++)
-			words += *p == ' ';
-		s->sentences[t->split]++;
-		s->words[t->split] += words;
-		for (int r = 0; r < SYNTH_RELATIONS; r++) {
-			int has = 0;
-			for (int k = 0; k < t->clause_count; k++)
-				has |= (int)t->clauses[k].relation == r;
-			s->relations[r] += has;
-		}
+	for (size_t i = 0; i < list->n; i++) {
+		s->sentences[list->items[i].split]++;
+		s->words[list->items[i].split] += synth_count_words(list->items[i].text);
 	}
 	for (int k = 0; k < SYNTH_SPLITS; k++)
 		s->words[k] /= s->sentences[k] ? s->sentences[k] : 1;
+}
+
+double synth_statistics_share(const struct synth_sentences *sentences, const struct synth_row *relation)
+{
+	int n = 0;
+
+	for (size_t i = 0; i < sentences->n; i++) {
+		int has = 0;
+		for (int k = 0; k < sentences->items[i].clause_count; k++)
+			has |= sentences->items[i].clauses[k].kind == relation;
+		n += has;
+	}
+	return (double)n / (double)sentences->n;
 }
 
 static int compare(const void *a, const void *b)
@@ -124,11 +91,11 @@ static int measure_gaussians(struct synth_statistics *s, const struct splats *p,
 }
 
 int synth_statistics_make(struct synth_statistics *s, const struct synth_scene *scene,
-	const struct synth_sentence *sentences, struct err *e)
+	const struct synth_sentences *sentences, struct err *e)
 {
 	*s = (struct synth_statistics){0};
 	count_objects(s, scene->objects, scene->object_count);
-	count_sentences(s, sentences, scene->object_count * SYNTH_SENTENCES);
+	count_sentences(s, sentences);
 	for (size_t i = 0; i < scene->cameras.n; i++)
 		s->views[scene->cameras.views[i].split]++;
 	return measure_gaussians(s, &scene->splats, e);

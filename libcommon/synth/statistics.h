@@ -25,8 +25,7 @@ struct synth_statistics {
 	int stacked;		 /* objects that stand on others */
 	/* Indices are enum camera_split. */
 	int views[SYNTH_SPLITS], sentences[SYNTH_SPLITS];
-	double words[SYNTH_SPLITS];	/* the mean length of a sentence */
-	int relations[SYNTH_RELATIONS]; /* sentences that have it */
+	double words[SYNTH_SPLITS]; /* the mean length of a sentence */
 	size_t gaussians;
 	/* At 5, 25, 50, 75 and 95%: opacity; largest over smallest scale; largest scale in world units. */
 	double opacity[SYNTH_QUANTILES], aspect[SYNTH_QUANTILES], size[SYNTH_QUANTILES];
@@ -35,13 +34,13 @@ struct synth_statistics {
 
 /* All but the visibility, which stays 0. Returns 0, or -1 with *e set. */
 int synth_statistics_make(struct synth_statistics *s, const struct synth_scene *scene,
-	const struct synth_sentence *sentences, struct err *e);
+	const struct synth_sentences *sentences, struct err *e);
 
 /* Counts an object in a view: its visible pixels, and how many they would be with nothing else there. */
 void synth_statistics_see(struct synth_statistics *s, enum camera_split split, size_t visible, size_t whole);
 
-/* "left of" ... */
-const char *synth_statistics_relation(enum synth_relation r);
+/* The share of sentences that have a relation (a row of RELATIONS). */
+double synth_statistics_share(const struct synth_sentences *sentences, const struct synth_row *relation);
 
 /* "0", "<0.15", "0.15-0.5", "0.5-0.85", ">=0.85". */
 const char *synth_statistics_band(int band);

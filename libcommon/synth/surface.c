@@ -1,5 +1,7 @@
 #include "synth/surface.h"
 
+#include "geom/vector.h"
+
 #include <math.h>
 
 #define PI 3.14159265358979323846
@@ -51,26 +53,14 @@ void synth_surface_turn(struct synth_surface *s, enum synth_tint tint, const dou
 	}
 }
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double norm(const double a[3])
-{
-	return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-}
-
-void synth_surface_rectangle(struct synth_surface *s, enum synth_tint tint, const double corner[3],
+static void add_rectangle(struct synth_surface *s, enum synth_tint tint, const double corner[3],
 	const double u[3], const double v[3])
 {
 	struct synth_patch p = {.kind = SYNTH_RECTANGLE, .tint = tint};
 	double outwards[3];
 
-	cross(u, v, outwards);
-	p.area = norm(outwards);
+	vector_cross(u, v, outwards);
+	p.area = vector_length(outwards);
 	for (int k = 0; k < 3; k++) {
 		p.centre[k] = corner[k];
 		p.u[k] = u[k];
@@ -85,11 +75,11 @@ void synth_surface_box(struct synth_surface *s, enum synth_tint top, enum synth_
 	double x = centre[0] - width / 2, y = centre[1] - depth / 2, z = centre[2];
 	double along[3] = {width, 0, 0}, across[3] = {0, depth, 0}, up[3] = {0, 0, height};
 
-	synth_surface_rectangle(s, top, (double[3]){x, y, z + height}, along, across);
-	synth_surface_rectangle(s, sides, (double[3]){x, y, z}, along, up);
-	synth_surface_rectangle(s, sides, (double[3]){x, y + depth, z}, up, along);
-	synth_surface_rectangle(s, sides, (double[3]){x, y, z}, up, across);
-	synth_surface_rectangle(s, sides, (double[3]){x + width, y, z}, across, up);
+	add_rectangle(s, top, (double[3]){x, y, z + height}, along, across);
+	add_rectangle(s, sides, (double[3]){x, y, z}, along, up);
+	add_rectangle(s, sides, (double[3]){x, y + depth, z}, up, along);
+	add_rectangle(s, sides, (double[3]){x, y, z}, up, across);
+	add_rectangle(s, sides, (double[3]){x + width, y, z}, across, up);
 }
 
 void synth_surface_half_ring(struct synth_surface *s, const double centre[3], double ring, double tube)
@@ -139,11 +129,11 @@ static void frustum_at(
 static void rectangle_at(
 	const struct synth_patch *p, double a, double b, double margin, struct synth_spot *spot)
 {
-	double width = norm(p->u), depth = norm(p->v);
+	double width = vector_length(p->u), depth = vector_length(p->v);
 
 	a = clamp(a, margin / width, 1 - margin / width);
 	b = clamp(b, margin / depth, 1 - margin / depth);
-	cross(p->u, p->v, spot->normal);
+	vector_cross(p->u, p->v, spot->normal);
 	for (int k = 0; k < 3; k++) {
 		spot->point[k] = p->centre[k] + a * p->u[k] + b * p->v[k];
 		spot->normal[k] /= p->area;
@@ -196,19 +186,6 @@ void synth_surface_spot(
 	}
 }
 
-enum synth_tint synth_surface_at(
-	const struct synth_surface *s, double a, double b, double point[3], double normal[3])
-{
-	struct synth_spot spot;
-
-	synth_surface_spot(s, a, b, 0, &spot);
-	for (int k = 0; k < 3; k++) {
-		point[k] = spot.point[k];
-		normal[k] = spot.normal[k];
-	}
-	return spot.tint;
-}
-
 static double patch_reach(const struct synth_patch *p, const double d[3])
 {
 	const double level = hypot(d[0], d[1]);
@@ -217,8 +194,7 @@ static double patch_reach(const struct synth_patch *p, const double d[3])
 	case SYNTH_FRUSTUM:
 		return fmax(p->r0 * level + p->z0 * d[2], p->r1 * level + p->z1 * d[2]);
 	case SYNTH_RECTANGLE:
-		return fmax(0, p->u[0] * d[0] + p->u[1] * d[1] + p->u[2] * d[2]) +
-		       fmax(0, p->v[0] * d[0] + p->v[1] * d[1] + p->v[2] * d[2]);
+		return fmax(0, vector_dot(p->u, d)) + fmax(0, vector_dot(p->v, d));
 	case SYNTH_HALF_RING: {
 		/* The ring's point that is farthest along d, then the tube's around it. */
 		const double along = d[0] > 0 ? hypot(d[0], d[2]) : fabs(d[2]);
@@ -234,19 +210,7 @@ double synth_surface_reach(const struct synth_surface *s, const double d[3])
 
 	for (int i = 0; i < s->n; i++) {
 		const struct synth_patch *p = &s->patches[i];
-		const double at = p->centre[0] * d[0] + p->centre[1] * d[1] + p->centre[2] * d[2];
-		most = fmax(most, at + patch_reach(p, d));
+		most = fmax(most, vector_dot(p->centre, d) + patch_reach(p, d));
 	}
 	return most;
-}
-
-int synth_surface_is_round(const struct synth_surface *s)
-{
-	int is_round = 1;
-
-	for (int i = 0; i < s->n; i++) {
-		const struct synth_patch *p = &s->patches[i];
-		is_round = is_round && p->kind == SYNTH_FRUSTUM && p->centre[0] == 0 && p->centre[1] == 0;
-	}
-	return is_round;
 }

@@ -36,8 +36,6 @@ struct synth_surface {
 /* A chain of frustums through n (radius, height) points about the vertical through `centre`. */
 void synth_surface_turn(struct synth_surface *s, enum synth_tint tint, const double centre[3], int n,
 	const double (*profile)[2]);
-void synth_surface_rectangle(struct synth_surface *s, enum synth_tint tint, const double corner[3],
-	const double u[3], const double v[3]);
 /* A box without its underside; `sides` is the tint of the faces whose outside is not up. */
 void synth_surface_box(struct synth_surface *s, enum synth_tint top, enum synth_tint sides,
 	const double centre[3], double width, double depth, double height);
@@ -58,15 +56,7 @@ struct synth_spot {
 void synth_surface_spot(
 	const struct synth_surface *s, double a, double b, double margin, struct synth_spot *spot);
 
-/* The point (a,b), its outward unit normal, and the patch's tint. */
-enum synth_tint synth_surface_at(
-	const struct synth_surface *s, double a, double b, double point[3], double normal[3]);
-
 /* How far the surface reaches in direction d: the greatest d . p of its points. */
 double synth_surface_reach(const struct synth_surface *s, const double d[3]);
-
-/* 1 where the surface is the same from all sides: nothing but frustums about the vertical through the origin.
- */
-int synth_surface_is_round(const struct synth_surface *s);
 
 #endif

@@ -1,13 +1,11 @@
 #include "synth/synth_sentences.h"
 
-#include "synth/frames.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 /* How hard a sentence was to find decides what is asked of it. */
-enum { TRIES_OF_STAGE = 4000, ANCHOR_TRIES = 6, CLAUSE_TRIES = 40, RELATION_TRIES = 6 };
+enum { TRIES_OF_STAGE = 4000, ANCHOR_TRIES = 6, CLAUSE_TRIES = 40, RELATION_TRIES = 6, MAX_CLAUSES = 3 };
 enum stage {
 	STAGE_FINE,	/* of the wanted length, and nothing said before */
 	STAGE_LENGTH,	/* of any length */
@@ -20,130 +18,133 @@ enum stage {
 static const double mean_words = 13.6;
 static const int usual_words[] = {9, 10, 11, 11, 12, 12, 13, 13, 14, 14, 15, 16, 17, 18, 19};
 
-enum { USUAL = sizeof usual_words / sizeof *usual_words, SLOTS = 8 };
+enum { USUAL = sizeof usual_words / sizeof *usual_words };
 
 /* A sentence in the making. */
 struct draft {
 	struct synth_sentence s;
-	const struct synth_word *words[SLOTS]; /* of the frame's slots in order; NULL for %K, %Z and %R */
-	const struct synth_word *hue, *noun;
-	const struct synth_layout *layout;
+	const struct synth_wordings *w;
+	const struct synth_viewpoint *v;
 	struct rng *rng;
 	enum stage stage;
-	int is_test, fitting;
+	int is_test, among[SYNTH_MAX_OBJECTS];
 };
 
-static int append(char *text, size_t size, const char *more)
-{
-	size_t used = strlen(text), extra = strlen(more);
-
-	if (used + extra >= size)
-		return -1;
-	memcpy(text + used, more, extra + 1);
-	return 0;
-}
-
-static int append_plural(char *text, size_t size, const char *noun)
-{
-	size_t n = strlen(noun);
-
-	return append(text, size, noun) || append(text, size, noun[n - 1] == 'x' ? "es" : "s");
-}
-
-static int count_fitting(const struct synth_layout *l, const struct synth_meaning *m)
+/* among (n) gets the verdicts of the target's words. Returns how many objects they fit. */
+static int judge_words(const struct synth_phrase *p, const struct synth_viewpoint *v, int *among)
 {
 	int n = 0;
 
-	for (int i = 0; i < l->n; i++)
-		n += synth_meaning_fits(m, &l->objects[i]);
+	for (int i = 0; i < v->n; i++) {
+		among[i] = synth_sense_judge(&p->sense, &v->objects[i]);
+		n += among[i] > 0;
+	}
 	return n;
 }
 
-int synth_sentence_judge(const struct synth_sentence *s, const struct synth_layout *l, int i)
+/* With the verdicts of the target's words known. */
+static int judge_with(
+	const struct synth_sentence *s, const struct synth_viewpoint *v, int i, const int *among)
 {
-	int verdict = 1;
+	int verdict = among[i];
 
-	if (!synth_meaning_fits(&s->meaning, &l->objects[i]))
-		return -1;
-	for (int k = 0; k < s->clause_count; k++) {
-		int one = synth_clause_judge(l, &s->clauses[k], i, &s->meaning);
+	for (int k = 0; k < s->clause_count && verdict >= 0; k++) {
+		int one = synth_relation_judge(v, &s->clauses[k].is, i, among);
 		verdict = one < verdict ? one : verdict;
 	}
 	return verdict;
 }
 
-static int means_only_its_object(const struct synth_sentence *s, const struct synth_layout *l)
+int synth_sentence_judge(const struct synth_sentence *s, const struct synth_viewpoint *v, int i)
 {
-	for (int i = 0; i < l->n; i++)
-		if (i != s->object && synth_sentence_judge(s, l, i) >= 0)
+	int among[SYNTH_MAX_OBJECTS];
+
+	judge_words(&s->phrases[0], v, among);
+	return judge_with(s, v, i, among);
+}
+
+static int means_only_its_object(const struct draft *d)
+{
+	for (int i = 0; i < d->v->n; i++)
+		if (i != d->s.object && judge_with(&d->s, d->v, i, d->among) >= 0)
 			return 0;
 	return 1;
 }
 
-/* A short name for an object that no other has: "the red mug", with its size or finish where that helps. */
-static int append_anchor(struct draft *d, int anchor)
+/* Says a random word for a slot in a phrase, one that is true of an object; -1 where there is none. */
+static int say_word(struct draft *d, int phrase, char slot, int object)
+{
+	static const char slots[] = "SFMCN";
+	const char *at = strchr(slots, slot);
+	enum synth_word w = at ? (enum synth_word)(at - slots) : SYNTH_NOUN;
+	const struct synth_query q = {
+		.list = slot == 'G' ? SYNTH_GROUPS : synth_words_of(w), .of = &d->v->objects[object]};
+	const struct synth_row *row = synth_draw(d->w, &q, d->rng);
+
+	if (!row)
+		return -1;
+	synth_say(&d->s.phrases[phrase], w, row);
+	return 0;
+}
+
+/* A short name for an object that no other has: "the red mug", with its size or finish where that helps. The
+ * phrase, or -1. */
+static int name_anchor(struct draft *d, int object)
 {
 	static const char *const kinds[ANCHOR_TRIES] = {"N", "CN", "CN", "SCN", "FCN", "SFCN"};
-	const struct synth_layout *l = d->layout;
+	int among[SYNTH_MAX_OBJECTS], phrase = synth_add_phrase(&d->s);
 
 	for (int i = (int)rng_below(d->rng, 2); i < ANCHOR_TRIES; i++) {
-		struct synth_meaning m = synth_meaning_any();
-		char text[96] = "the";
-		for (const char *k = kinds[i]; *k; k++) {
-			const struct synth_word *w =
-				synth_word_choose((enum synth_word_kind) * k, &l->objects[anchor], d->rng);
-			synth_meaning_add(&m, w);
-			append(text, sizeof text, " ");
-			append(text, sizeof text, w->text);
-		}
-		if (count_fitting(l, &m) == 1)
-			return append(d->s.text, sizeof d->s.text, text);
+		d->s.phrase_count = phrase;
+		synth_add_phrase(&d->s);
+		for (const char *slot = kinds[i]; *slot; slot++)
+			say_word(d, phrase, *slot, object);
+		if (judge_words(&d->s.phrases[phrase], d->v, among) == 1)
+			return phrase;
 	}
 	return -1;
 }
 
-/* Nobody says of a thing that it is on the table unless another one like it is not. */
-static int is_worth_saying(const struct draft *d, const struct synth_clause *c)
+static int is_of_table(const struct synth_row *kind)
 {
-	int worth = c->relation != SYNTH_ON_TABLE;
+	return kind->relation == PARSE_ON && !kind->anchors;
+}
 
-	for (int i = 0; i < d->layout->n; i++)
-		worth |= d->layout->objects[i].on >= 0 &&
-			 synth_meaning_fits(&d->s.meaning, &d->layout->objects[i]);
+/* Nobody says of a thing that it is on the table unless another one like it is not. */
+static int is_worth_saying(const struct draft *d, const struct synth_row *kind)
+{
+	int worth = !is_of_table(kind);
+
+	for (int i = 0; i < d->v->n; i++)
+		worth |= d->v->objects[i].on >= 0 && d->among[i] > 0;
 	return worth;
 }
 
-/* Relations that say nearly the same: "the farthest one of the two, farthest from us". */
-static int say_alike(enum synth_relation a, enum synth_relation b)
+/* The direction that a relation without anchors speaks of; -1: none. */
+static int direction(const struct synth_row *kind)
 {
-	static const char direction[SYNTH_RELATIONS] = {[SYNTH_LEFT_SIDE] = 'l',
-		[SYNTH_LEFTMOST] = 'l',
-		[SYNTH_LEFT_ONE] = 'l',
-		[SYNTH_RIGHT_SIDE] = 'r',
-		[SYNTH_RIGHTMOST] = 'r',
-		[SYNTH_RIGHT_ONE] = 'r',
-		[SYNTH_FRONT_SIDE] = 'f',
-		[SYNTH_NEAREST_US] = 'f',
-		[SYNTH_NEAR_ONE] = 'f',
-		[SYNTH_BACK_SIDE] = 'b',
-		[SYNTH_FARTHEST_US] = 'b',
-		[SYNTH_FAR_ONE] = 'b',
-		[SYNTH_MIDDLE] = 'm',
-		[SYNTH_MIDDLE_ONE] = 'm'};
+	if (kind->anchors > 0 || synth_relation_is_size(kind->relation) || is_of_table(kind))
+		return -1;
+	return kind->relation == PARSE_NEAR  ? PARSE_FRONT
+	       : kind->relation == PARSE_FAR ? PARSE_BEHIND
+					     : (int)kind->relation;
+}
 
-	return a == b || (direction[a] && direction[a] == direction[b]);
+/* Relations that say nearly the same: "the farthest one of the two, farthest from us". */
+static int say_alike(const struct synth_row *a, const struct synth_row *b)
+{
+	return a == b || (direction(a) >= 0 && direction(a) == direction(b));
 }
 
 /* 1 where the clause tells the object from one that the sentence so far may mean as well, or none is left. */
-static int helps(const struct draft *d, const struct synth_clause *c)
+static int helps(const struct draft *d, const struct synth_relation *r)
 {
-	const struct synth_sentence *s = &d->s;
 	int rivals = 0;
 
-	for (int i = 0; i < d->layout->n; i++) {
-		if (i == s->object || synth_sentence_judge(s, d->layout, i) < 0)
+	for (int i = 0; i < d->v->n; i++) {
+		if (i == d->s.object || judge_with(&d->s, d->v, i, d->among) < 0)
 			continue;
-		if (synth_clause_judge(d->layout, c, i, &s->meaning) < 0)
+		if (synth_relation_judge(d->v, r, i, d->among) < 0)
 			return 1;
 		rivals++;
 	}
@@ -154,41 +155,44 @@ static int helps(const struct draft *d, const struct synth_clause *c)
 static int holds(const struct draft *d, const struct synth_clause *c)
 {
 	const struct synth_sentence *s = &d->s;
+	const struct synth_relation *r = &c->is;
 
-	if (c->a == s->object || c->b == s->object || (c->a >= 0 && c->a == c->b))
+	if (r->a == s->object || r->b == s->object || (r->a >= 0 && r->a == r->b))
 		return 0;
 	for (int i = 0; i < s->clause_count; i++)
-		if (say_alike(s->clauses[i].relation, c->relation) || (c->a >= 0 && s->clauses[i].a == c->a))
+		if (say_alike(s->clauses[i].kind, c->kind) || (r->a >= 0 && s->clauses[i].is.a == r->a))
 			return 0;
-	return is_worth_saying(d, c) &&
-	       synth_clause_judge(d->layout, c, s->object, &s->meaning) >= (d->stage < STAGE_ARGUABLE) &&
-	       (d->stage < STAGE_REPEATED || helps(d, c));
+	return is_worth_saying(d, c->kind) &&
+	       synth_relation_judge(d->v, r, s->object, d->among) >= (d->stage < STAGE_ARGUABLE) &&
+	       (d->stage < STAGE_REPEATED || helps(d, r));
 }
 
 /* Another object for a relation: any, but of a stack the one that it can only be. */
-static int choose_other(const struct draft *d, enum synth_relation relation)
+static int choose_other(const struct draft *d, enum parse_relation relation)
 {
-	const struct synth_layout *l = d->layout;
+	const struct synth_object *o = d->v->objects;
 	int load = 0;
 
-	if (relation == SYNTH_ON && l->objects[d->s.object].on >= 0)
-		return l->objects[d->s.object].on;
-	while (load < l->n && l->objects[load].on != d->s.object)
+	if (relation == PARSE_ON && o[d->s.object].on >= 0)
+		return o[d->s.object].on;
+	while (load < d->v->n && o[load].on != d->s.object)
 		load++;
-	return relation == SYNTH_UNDER && load < l->n ? load : (int)rng_below(d->rng, (uint32_t)l->n);
+	return relation == PARSE_BELOW && load < d->v->n ? load : (int)rng_below(d->rng, (uint32_t)d->v->n);
 }
 
 /* A clause that is true of the object; -1 where none was met. */
-static int choose_clause(struct draft *d, char slot, struct synth_clause *c)
+static int choose_clause(struct draft *d, const char *slot, struct synth_clause *c)
 {
+	const struct synth_query q = {.list = SYNTH_RELATIONS, .forms = slot};
+
 	for (int i = 0; i < CLAUSE_TRIES; i++) {
-		*c = (struct synth_clause){.relation = synth_relation_choose(slot, d->rng), .a = -1, .b = -1};
-		int has_other = c->relation <= SYNTH_BETWEEN;
-		for (int k = 0; k < (has_other ? RELATION_TRIES : 1); k++) {
-			if (has_other)
-				c->a = choose_other(d, c->relation);
-			if (c->relation == SYNTH_BETWEEN)
-				c->b = choose_other(d, c->relation);
+		const struct synth_row *kind = synth_draw(d->w, &q, d->rng);
+		*c = (struct synth_clause){.kind = kind, .is = {kind->relation, kind->degree, -1, -1}};
+		for (int k = 0; k < (kind->anchors > 0 ? RELATION_TRIES : 1); k++) {
+			if (kind->anchors > 0)
+				c->is.a = choose_other(d, kind->relation);
+			if (kind->anchors > 1)
+				c->is.b = choose_other(d, kind->relation);
 			if (holds(d, c))
 				return 0;
 		}
@@ -196,82 +200,54 @@ static int choose_clause(struct draft *d, char slot, struct synth_clause *c)
 	return -1;
 }
 
-static int append_clause(struct draft *d, char slot)
+/* Adds a clause for a slot, "R" or "Z", with its wording and the names of its objects. */
+static int add_clause(struct draft *d, const char *slot)
 {
 	struct synth_sentence *s = &d->s;
 	struct synth_clause c;
 
-	if (s->clause_count == SYNTH_CLAUSES || choose_clause(d, slot, &c))
+	if (s->clause_count == MAX_CLAUSES || choose_clause(d, slot, &c))
 		return -1;
-	for (const char *p = synth_wording(c.relation, d->is_test, d->rng); *p; p++) {
-		char letter[2] = {*p, 0};
-		if (*p != '%') {
-			if (append(s->text, sizeof s->text, letter))
-				return -1;
-		} else if (append_anchor(d, *++p == 'A' ? c.a : c.b)) {
+	const struct synth_query q = {.list = d->is_test ? SYNTH_SAID_TEST : SYNTH_SAID, .like = c.kind};
+	c.said = synth_draw(d->w, &q, d->rng);
+	for (; c.anchor_count < c.kind->anchors; c.anchor_count++) {
+		c.anchors[c.anchor_count] = name_anchor(d, c.anchor_count ? c.is.b : c.is.a);
+		if (c.anchors[c.anchor_count] < 0)
 			return -1;
-		}
 	}
-	s->clauses[s->clause_count++] = c;
+	s->clauses[synth_add_clause(s, 0, c.is.relation, c.is.degree)] = c;
 	return 0;
 }
 
-/* The words of the noun phrase, before anything is written: comparisons and numbers depend on all of them. */
+/* The words of the noun phrase, before any relation: comparisons and numbers depend on all of them. */
 static int choose_words(struct draft *d, const char *frame)
 {
-	struct synth_sentence *s = &d->s;
-	int n = 0;
-
-	for (const char *p = frame; *p; p++) {
-		if (*p != '%')
-			continue;
-		p++;
-		if (strchr("KZR", *p)) {
-			d->words[n++] = NULL;
-			continue;
-		}
-		enum synth_word_kind kind = *p == 'P' ? SYNTH_NOUN : (enum synth_word_kind) * p;
-		const struct synth_word *w = synth_word_choose(kind, &d->layout->objects[s->object], d->rng);
-		if (!w)
+	for (const char *p = strchr(frame, '%'); p; p = strchr(p + 1, '%'))
+		if (!strchr("KZR", p[1]) && say_word(d, 0, p[1], d->s.object))
 			return -1;
-		synth_meaning_add(&s->meaning, w);
-		if (kind == SYNTH_HUE)
-			d->hue = w;
-		if (kind == SYNTH_NOUN)
-			d->noun = w;
-		d->words[n++] = w;
-	}
-	d->fitting = count_fitting(d->layout, &s->meaning);
+	d->s.phrases[0].group = judge_words(&d->s.phrases[0], d->v, d->among);
 	return 0;
 }
 
 static int fill(struct draft *d, const char *frame)
 {
-	static const char *const numbers[] = {"two", "three", "four", "five", "six"};
-	struct synth_sentence *s = &d->s;
-	size_t size = sizeof s->text;
-	int slot = 0, bad = choose_words(d, frame);
+	char longer[96];
+	int group, bad = choose_words(d, frame);
 
-	for (const char *p = frame; *p && !bad; p++) {
-		char letter[2] = {*p, 0};
-		if (*p != '%') {
-			bad = append(s->text, size, letter);
-			continue;
-		}
-		const struct synth_word *w = d->words[slot++];
-		if (*++p == 'R' || *p == 'Z')
-			bad = append_clause(d, *p);
-		else if (*p == 'K')
-			bad = d->fitting < 2 || d->fitting > 6 ||
-			      append(s->text, size, numbers[d->fitting - 2]);
+	for (const char *p = strchr(frame, '%'); p && !bad; p = strchr(p + 1, '%')) {
+		group = d->s.phrases[0].group;
+		if (p[1] == 'R' || p[1] == 'Z')
+			bad = add_clause(d, p[1] == 'R' ? "R" : "Z");
 		else
-			bad = *p == 'P' ? append_plural(s->text, size, w->text)
-					: append(s->text, size, w->text);
+			bad = p[1] == 'K' && (group < 2 || group > 6);
 	}
 	/* One more where words are hard to find. */
-	if (!bad && d->stage >= STAGE_REPEATED && !means_only_its_object(s, d->layout))
-		bad = append(s->text, size, ", ") || append_clause(d, 'R');
-	return bad ? -1 : 0;
+	if (!bad && d->stage >= STAGE_REPEATED && !means_only_its_object(d)) {
+		bad = add_clause(d, "R");
+		snprintf(longer, sizeof longer, "%s, %%R", frame);
+		frame = longer;
+	}
+	return bad || synth_write(&d->s, frame, NULL, d->rng) ? -1 : 0;
 }
 
 /* 1 where one of the sentences so far already says the same of the same other object. */
@@ -280,13 +256,13 @@ static int repeats(const struct synth_sentence *s, const struct synth_sentence *
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < earlier[i].clause_count; j++)
 			for (int k = 0; k < s->clause_count; k++)
-				if (earlier[i].clauses[j].relation == s->clauses[k].relation &&
-					earlier[i].clauses[j].a == s->clauses[k].a)
+				if (earlier[i].clauses[j].kind == s->clauses[k].kind &&
+					earlier[i].clauses[j].is.a == s->clauses[k].is.a)
 					return 1;
 	return 0;
 }
 
-static int count_words(const char *text)
+int synth_count_words(const char *text)
 {
 	int n = 1;
 
@@ -295,100 +271,109 @@ static int count_words(const char *text)
 	return n;
 }
 
-/* What the sentences of an object have used up. */
-struct described {
-	unsigned frames; /* training ones, a bit each */
-	const struct synth_word *hues[SYNTH_SENTENCES], *nouns[SYNTH_SENTENCES];
-};
-
 /* "black" of "jet black". */
-static const char *basic_colour(const struct synth_word *hue)
+static const char *basic_colour(const struct synth_sentence *s)
 {
-	const char *space = strrchr(hue->text, ' ');
+	const char *colour = s->phrases[0].words[SYNTH_COLOUR_WORD],
+		   *space = colour ? strrchr(colour, ' ') : NULL;
 
-	return space ? space + 1 : hue->text;
+	return space ? space + 1 : colour;
 }
 
-static int has_pair(const char *text, const struct synth_word *hue, const struct synth_word *noun)
+/* The noun, but no word for several shapes. */
+static const char *own_noun(const struct synth_sentence *s)
+{
+	return *s->phrases[0].plural ? s->phrases[0].words[SYNTH_NOUN] : NULL;
+}
+
+/* 1 where a text has the colour word and the noun of a sentence together. */
+static int has_pair(const char *text, const struct synth_sentence *of)
 {
 	char pair[64];
 
-	snprintf(pair, sizeof pair, "%s %s", basic_colour(hue), noun->text);
+	snprintf(pair, sizeof pair, "%s %s", basic_colour(of), own_noun(of));
 	return strstr(text, pair) != NULL;
 }
 
-/* 1 where the draft's colour word and noun occur together in one of the n earlier sentences, be it of another
- * object, or those of an earlier one in the draft. */
-static int is_pair_known(
-	const struct draft *d, const struct described *so_far, const struct synth_sentence *earlier, int n)
+/* 1 where the sentence's colour word and noun occur together in one of the n earlier ones of the object, or
+ * those of an earlier one in it. */
+static int is_pair_known(const struct synth_sentence *s, const struct synth_sentence *earlier, int n)
 {
-	int has_own = d->hue && d->noun;
+	int has_own = basic_colour(s) && own_noun(s);
 
 	for (int i = 0; i < n; i++) {
-		const struct synth_word *hue = so_far->hues[i], *noun = so_far->nouns[i];
-		if (has_own && has_pair(earlier[i].text, d->hue, d->noun))
+		if (has_own && has_pair(earlier[i].text, s))
 			return 1;
-		if (!hue || !noun)
+		if (!basic_colour(&earlier[i]) || !own_noun(&earlier[i]))
 			continue;
-		if (has_pair(d->s.text, hue, noun) ||
-			(has_own && noun == d->noun && !strcmp(basic_colour(hue), basic_colour(d->hue))))
+		if (has_pair(s->text, &earlier[i]) ||
+			(has_own && own_noun(&earlier[i]) == own_noun(s) &&
+				!strcmp(basic_colour(&earlier[i]), basic_colour(s))))
 			return 1;
 	}
 	return 0;
 }
 
-/* Sentence number `done` of an object, of about `wanted` words. */
-static int say(struct synth_sentence *out, int done, struct described *so_far, int object, int wanted,
-	const struct synth_layout *l, struct rng *r)
+/* Appends sentence number `done` of an object, of about `wanted` words; frames: those that its training
+ * sentences have had. Returns the number of words, 0 where none was found, or -1 with *e set. */
+static int say(struct synth_sentences *list, int object, int done, const struct synth_row **frames,
+	int wanted, const struct synth_viewpoint *v, struct rng *r, struct err *e)
 {
 	int is_test = done >= SYNTH_TRAIN_SENTENCES;
+	const struct synth_query q = {.list = is_test ? SYNTH_TEST : SYNTH_TRAIN};
 
 	for (int tries = 0; tries < STAGES * TRIES_OF_STAGE; tries++) {
+		const struct synth_sentence *earlier = list->items + list->n - done;
 		enum stage stage = (enum stage)(tries / TRIES_OF_STAGE);
-		struct draft d = {.s = {.object = object, .meaning = synth_meaning_any()},
-			.layout = l,
+		struct draft d = {.s = {.object = object, .view = -1, .objects = (uint64_t)1 << object},
+			.w = &list->wordings,
+			.v = v,
 			.rng = r,
 			.is_test = is_test,
 			.stage = stage};
-		int f = (int)rng_below(r, (uint32_t)synth_frame_count(is_test));
-		if ((!is_test && so_far->frames >> f & 1) || fill(&d, synth_frame(is_test, f)))
+		int is_used = 0;
+		const struct synth_row *frame = synth_draw(d.w, &q, r);
+		synth_add_phrase(&d.s);
+		for (int k = 0; k < done; k++)
+			is_used |= frames[k] == frame;
+		if (is_used || fill(&d, frame->text))
 			continue;
-		int words = count_words(d.s.text);
+		int words = synth_count_words(d.s.text);
 		if (words < SYNTH_MIN_WORDS || words > SYNTH_MAX_WORDS ||
-			(is_test && is_pair_known(&d, so_far, out, done)) ||
+			(is_test && is_pair_known(&d.s, earlier, done)) ||
 			(stage < STAGE_LENGTH && (words < wanted - 1 || words > wanted + 1)) ||
-			(stage < STAGE_REPEATED && repeats(&d.s, out, done)) ||
-			!means_only_its_object(&d.s, l))
+			(stage < STAGE_REPEATED && repeats(&d.s, earlier, done)) ||
+			!means_only_its_object(&d))
 			continue;
-		if (!is_test)
-			so_far->frames |= 1u << f;
-		so_far->hues[done] = d.hue;
-		so_far->nouns[done] = d.noun;
+		frames[done] = frame;
 		d.s.split = is_test ? SPLIT_TEST : SPLIT_TRAIN;
-		snprintf(d.s.ref, sizeof d.s.ref, "%s-%d", l->objects[object].ref, done + 1);
-		out[done] = d.s;
-		return words;
+		snprintf(d.s.ref, sizeof d.s.ref, "%s-%d", v->objects[object].ref, done + 1);
+		return synth_sentences_add(list, &d.s, e) ? -1 : words;
 	}
-	return -1;
+	return 0;
 }
 
 int synth_sentences_make(
-	struct synth_sentence *sentences, const struct synth_layout *l, uint64_t seed, struct err *e)
+	struct synth_sentences *list, const struct synth_viewpoint *v, uint64_t seed, struct err *e)
 {
 	struct rng r;
 	double owed = 0; /* words that the sentences so far are short of the mean */
 
+	*list = (struct synth_sentences){0};
 	rng_seed(&r, seed, SYNTH_STREAM_SENTENCES);
-	for (int i = 0; i < l->n; i++) {
-		struct described so_far = {0};
+	if (synth_wordings_load(&list->wordings, 0, e))
+		return -1;
+	for (int i = 0; i < v->n; i++) {
+		const struct synth_row *frames[SYNTH_SENTENCES];
 		for (int k = 0; k < SYNTH_SENTENCES; k++) {
 			int wanted = usual_words[rng_below(&r, USUAL)] + (int)lrint(owed / 2);
-			int words =
-				say(sentences + (size_t)i * SYNTH_SENTENCES, k, &so_far, i, wanted, l, &r);
+			int words = say(list, i, k, frames, wanted, v, &r, e);
 			if (words < 0)
+				return -1;
+			if (!words)
 				return err_set(e, ERR_CHECK,
 					"seed %llu: the %s cannot be told apart in words; try another seed",
-					(unsigned long long)seed, l->objects[i].name);
+					(unsigned long long)seed, v->objects[i].name);
 			owed += mean_words - words;
 		}
 	}

@@ -3,39 +3,25 @@
 #ifndef SYNTH_SYNTH_SENTENCES_H
 #define SYNTH_SYNTH_SENTENCES_H
 
-#include "base/err.h"
-#include "geom/camera.h"
-#include "synth/relations.h"
-
-#include <stdint.h>
+#include "synth/sentence.h"
 
 enum {
 	SYNTH_TRAIN_SENTENCES = 4,
 	SYNTH_SENTENCES = 5, /* an object; the last is for testing */
 	SYNTH_MIN_WORDS = 7,
 	SYNTH_MAX_WORDS = 22,
-	SYNTH_CLAUSES = 3,
 };
 
-struct synth_sentence {
-	int object;
-	enum camera_split split;
-	char ref[SYNTH_NAME + 12]; /* "red-mug-1" */
-	char text[256];
-	/* What the text says, for checking it. */
-	struct synth_meaning meaning;
-	int clause_count;
-	struct synth_clause clauses[SYNTH_CLAUSES];
-};
-
-/* sentences (n objects, SYNTH_SENTENCES), of 13.6 words on average. A test sentence has a frame and wordings
- * of relations that no training sentence has, and no pair of colour word and noun that a training sentence of
- * its object has. Returns 0, or -1 with *e set (ERR_CHECK) where some object cannot be told apart in words;
- * another seed then helps. */
+/* Items (n objects, SYNTH_SENTENCES), of 13.6 words on average, with objects for a and b of their relations.
+ * A test sentence has a frame and wordings of relations that no training sentence has, and no pair of colour
+ * word and noun that a training sentence of its object has. Returns 0, or -1 with *e set (ERR_CHECK) where
+ * some object cannot be told apart in words; another seed then helps. After either *list may be freed. */
 int synth_sentences_make(
-	struct synth_sentence *sentences, const struct synth_layout *l, uint64_t seed, struct err *e);
+	struct synth_sentences *list, const struct synth_viewpoint *v, uint64_t seed, struct err *e);
 
-/* As synth_clause_judge, for the whole sentence. */
-int synth_sentence_judge(const struct synth_sentence *s, const struct synth_layout *l, int i);
+/* As synth_relation_judge, for the whole sentence. */
+int synth_sentence_judge(const struct synth_sentence *s, const struct synth_viewpoint *v, int i);
+
+int synth_count_words(const char *text);
 
 #endif

@@ -4,180 +4,112 @@
 
 #include <string.h>
 
-#define BIT(x) (1u << (x))
-
-static const struct synth_unseen_sense anything = {~0u, ~0u, ~0u, ~0u, 0, 0, 0};
-
-static int is_likely(struct synth_unseen_draft *d, int in_hundred)
+static int is_likely(struct synth_draft *d, int in_hundred)
 {
 	return (int)rng_below(d->rng, 100) < in_hundred;
 }
 
-/* -1 where there is no room. */
-static int new_phrase(struct synth_unseen_draft *d)
+static void say_word(struct synth_draft *d, struct synth_phrase *p, enum synth_word w, int object)
 {
-	struct synth_unseen *x = &d->x;
+	const struct synth_query q = {
+		.list = synth_words_of(w), .of = &d->v->objects[object], .is_stepwise = w == SYNTH_NOUN};
 
-	if (x->phrase_count == SYNTH_UNSEEN_PHRASES)
-		return -1;
-	x->phrases[x->phrase_count] =
-		(struct synth_unseen_phrase){.noun = "", .plural = "", .count = PARSE_ONE, .sense = anything};
-	return x->phrase_count++;
-}
-
-static void add_colour(struct synth_unseen_draft *d, struct synth_unseen_phrase *p, enum synth_colour c)
-{
-	p->colour = synth_unseen_hue(c, d->rng);
-	p->sense.colours = BIT(c);
-	p->sense.maybe_colours = 0;
-}
-
-static void add_noun(struct synth_unseen_draft *d, struct synth_unseen_phrase *p, enum synth_shape s)
-{
-	const struct synth_unseen_noun *n = synth_unseen_noun(s, d->rng);
-
-	p->noun = n->one;
-	p->plural = n->many;
-	p->sense.shapes = n->shapes;
-	p->sense.maybe_shapes = n->maybe;
-}
-
-static void add_word(struct synth_unseen_phrase *p, const char *word)
-{
-	p->words[p->word_count++] = word;
+	synth_say(p, w, synth_draw(d->w, &q, d->rng));
 }
 
 /* Random true words for an object: so many in a hundred say colour, finish and size. */
-static void describe(struct synth_unseen_draft *d, int phrase, int object, int colour, int finish, int size)
+static void describe(struct synth_draft *d, int phrase, int object, int colour, int finish, int size)
 {
-	struct synth_unseen_phrase *p = &d->x.phrases[phrase];
-	const struct synth_object *o = &d->stand->objects[object];
+	struct synth_phrase *p = &d->s.phrases[phrase];
+	const struct synth_object *o = &d->v->objects[object];
 
-	add_noun(d, p, o->shape);
-	if (o->size != SYNTH_MEDIUM && is_likely(d, size)) {
-		p->size = synth_unseen_size(o->size, d->rng);
-		p->sense.sizes = BIT(o->size);
-		p->sense.maybe_sizes = BIT(SYNTH_MEDIUM);
-	}
-	if (o->finish != SYNTH_PLAIN && is_likely(d, finish)) {
-		add_word(p, synth_unseen_finish(o->finish, d->rng));
-		p->sense.finishes = BIT(o->finish);
-	}
+	say_word(d, p, SYNTH_NOUN, object);
+	if (o->size != SYNTH_MEDIUM && is_likely(d, size))
+		say_word(d, p, SYNTH_SIZE_WORD, object);
+	if (o->finish != SYNTH_PLAIN && is_likely(d, finish))
+		say_word(d, p, SYNTH_FINISH_WORD, object);
 	if (is_likely(d, colour))
-		add_colour(d, p, o->colour);
+		say_word(d, p, SYNTH_COLOUR_WORD, object);
+	/* A colour that is there is called by its name. */
+	p->sense.maybe[SYNTH_COLOUR] = 0;
 }
 
 /* A phrase that means that object alone, as briefly as a few tries find. -1: none. */
-static int name_anchor(struct synth_unseen_draft *d, int object)
+static int name_anchor(struct synth_draft *d, int object)
 {
-	int phrase = new_phrase(d);
+	int phrase = synth_add_phrase(&d->s);
 	uint64_t set;
 
 	for (int i = 0; i < 6 && phrase >= 0; i++) {
-		d->x.phrases[phrase] = (struct synth_unseen_phrase){
-			.noun = "", .plural = "", .count = PARSE_ONE, .sense = anything};
+		d->s.phrase_count = phrase;
+		synth_add_phrase(&d->s);
 		describe(d, phrase, object, 30 * i + 20, 15 * i, 0);
-		if (!synth_unseen_resolve(d->stand, &d->x, phrase, 0, &set) && set == (uint64_t)1 << object)
+		if (!synth_resolve(d->v, &d->s, phrase, 0, &set) && set == (uint64_t)1 << object)
 			return phrase;
 	}
 	return -1;
 }
 
-static int add_clause(
-	struct synth_unseen_draft *d, int phrase, enum parse_relation r, enum parse_degree degree)
+static int word_clause(struct synth_draft *d, int clause, int anchors, const char *forms)
 {
-	struct synth_unseen *x = &d->x;
-	struct synth_unseen_phrase *p = &x->phrases[phrase];
+	struct synth_clause *c = &d->s.clauses[clause];
+	const struct synth_row like = {
+		.relation = c->is.relation, .degree = c->is.degree, .anchors = anchors};
+	const struct synth_query q = {.list = SYNTH_SAID, .like = &like, .forms = forms, .is_stepwise = 1};
 
-	if (x->clause_count == SYNTH_UNSEEN_CLAUSES || p->clause_count == SYNTH_UNSEEN_LIST)
-		return -1;
-	x->clauses[x->clause_count] = (struct synth_unseen_clause){.relation = r, .degree = degree};
-	p->clauses[p->clause_count++] = x->clause_count;
-	return x->clause_count++;
+	c->said = synth_draw(d->w, &q, d->rng);
+	return c->said ? 0 : -1;
 }
 
-static int word_clause(struct synth_unseen_draft *d, int clause, int anchors, const char *forms)
+static int other_object(struct synth_draft *d, int object)
 {
-	struct synth_unseen_clause *c = &d->x.clauses[clause];
-	const struct synth_unseen_wording *w =
-		synth_unseen_wording(c->relation, c->degree, anchors, forms, d->rng);
-
-	if (!w)
-		return -1;
-	c->text = w->text;
-	c->form = w->form;
-	return 0;
-}
-
-static int other_object(struct synth_unseen_draft *d, int object)
-{
-	int o = (int)rng_below(d->rng, (uint32_t)d->stand->n - 1);
+	int o = (int)rng_below(d->rng, (uint32_t)d->v->n - 1);
 
 	return o + (o >= object);
 }
 
-/* What stands on it, or it stands on, for the relations that speak of that. */
-static int stacked_object(const struct synth_stand *s, enum parse_relation r, int object)
+/* An object for a relation of `object`: any, but of a stack the one that it can only be. -1: none. */
+static int choose_other(struct synth_draft *d, enum parse_relation r, int object)
 {
 	if (r == PARSE_ON)
-		return s->objects[object].on;
-	for (int i = 0; i < s->n; i++)
-		if (s->objects[i].on == object)
+		return d->v->objects[object].on;
+	if (r != PARSE_BELOW && r != PARSE_SUPPORTS)
+		return other_object(d, object);
+	for (int i = 0; i < d->v->n; i++)
+		if (d->v->objects[i].on == object)
 			return i;
 	return -1;
 }
 
-static int add_viewer(struct synth_unseen_draft *d, struct synth_unseen_clause *c)
+static int add_viewer(struct synth_draft *d, struct synth_clause *c)
 {
-	int phrase = new_phrase(d);
+	int phrase = synth_add_phrase(&d->s);
 
 	if (phrase < 0)
 		return -1;
-	d->x.phrases[phrase].viewer = 1;
-	d->x.phrases[phrase].noun = strrchr(c->text, ' ') + 1;
+	d->s.phrases[phrase].viewer = 1;
+	d->s.phrases[phrase].words[SYNTH_NOUN] = strrchr(c->said->text, ' ') + 1;
 	c->anchors[c->anchor_count++] = phrase;
 	return 0;
 }
 
 /* Anchors a clause on what stands there; `depth` more hops. */
-static int add_relation(struct synth_unseen_draft *d, int phrase, int object, int depth, const char *forms)
+static int add_relation(struct synth_draft *d, int phrase, int object, int depth, const char *forms)
 {
-	static const struct {
-		enum parse_relation relation;
-		enum parse_degree degree;
-		int anchors, often;
-	} kinds[] = {{PARSE_LEFT, PARSE_PLAIN, 1, 6}, {PARSE_RIGHT, PARSE_PLAIN, 1, 6},
-		{PARSE_FRONT, PARSE_PLAIN, 1, 5}, {PARSE_BEHIND, PARSE_PLAIN, 1, 5},
-		{PARSE_NEAR, PARSE_PLAIN, 1, 6}, {PARSE_BETWEEN, PARSE_PLAIN, 2, 4},
-		{PARSE_ON, PARSE_PLAIN, 1, 3}, {PARSE_BELOW, PARSE_PLAIN, 1, 2},
-		{PARSE_SUPPORTS, PARSE_PLAIN, 1, 3}, {PARSE_NEAR, PARSE_MOST, 1, 3},
-		{PARSE_FAR, PARSE_MOST, 1, 2}, {PARSE_NEAR, PARSE_MOST, -1, 2},
-		{PARSE_FAR, PARSE_MOST, -1, 1}, {PARSE_LEFT, PARSE_PLAIN, 0, 1},
-		{PARSE_RIGHT, PARSE_PLAIN, 0, 1}, {PARSE_FRONT, PARSE_PLAIN, 0, 1},
-		{PARSE_BEHIND, PARSE_PLAIN, 0, 1}, {PARSE_MIDDLE, PARSE_PLAIN, 0, 1}};
-	int sum = 0, k = -1;
+	const struct synth_query q = {.list = SYNTH_RELATIONS, .forms = depth ? "1" : NULL};
+	const struct synth_row *kind = synth_draw(d->w, &q, d->rng);
+	int clause = synth_add_clause(&d->s, phrase, kind->relation, kind->degree);
 
-	for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-		sum += depth && kinds[i].anchors != 1 ? 0 : kinds[i].often;
-	int at = (int)rng_below(d->rng, (uint32_t)sum);
-	while (at >= 0) {
-		k++;
-		at -= depth && kinds[k].anchors != 1 ? 0 : kinds[k].often;
-	}
-	int clause = add_clause(d, phrase, kinds[k].relation, kinds[k].degree);
-	if (clause < 0 || word_clause(d, clause, kinds[k].anchors, forms))
+	if (clause < 0 || word_clause(d, clause, kind->anchors, forms))
 		return -1;
-	struct synth_unseen_clause *c = &d->x.clauses[clause];
-	if (kinds[k].anchors < 0)
+	struct synth_clause *c = &d->s.clauses[clause];
+	if (kind->anchors < 0)
 		return add_viewer(d, c);
-	for (int i = 0; i < kinds[k].anchors; i++) {
-		int is_stack = c->relation == PARSE_ON || c->relation == PARSE_BELOW ||
-			       c->relation == PARSE_SUPPORTS;
-		int other =
-			is_stack ? stacked_object(d->stand, c->relation, object) : other_object(d, object);
+	for (int i = 0; i < kind->anchors; i++) {
+		int other = choose_other(d, kind->relation, object);
 		if (other < 0)
 			return -1;
-		int anchor = depth ? new_phrase(d) : name_anchor(d, other);
+		int anchor = depth ? synth_add_phrase(&d->s) : name_anchor(d, other);
 		if (anchor < 0)
 			return -1;
 		c->anchors[c->anchor_count++] = anchor;
@@ -190,258 +122,236 @@ static int add_relation(struct synth_unseen_draft *d, int phrase, int object, in
 	return 0;
 }
 
-static int target(struct synth_unseen_draft *d, int object, int colour, int finish, int size)
-{
-	d->x.phrase_count = d->x.clause_count = 0;
-	new_phrase(d);
-	describe(d, 0, object, colour, finish, size);
-	return 0;
-}
-
 /* "the red one", "the blue thing" */
-static void blur_noun(struct synth_unseen_draft *d, int with_one)
+static void blur_noun(struct synth_draft *d, int with_one)
 {
-	struct synth_unseen_phrase *p = &d->x.phrases[0];
-	int one = with_one && rng_below(d->rng, 2);
+	struct synth_phrase *p = &d->s.phrases[0];
+	int is_one = with_one && rng_below(d->rng, 2), is_thing = !is_one && rng_below(d->rng, 2);
 
-	p->noun = one ? "" : rng_below(d->rng, 2) ? "thing" : "object";
-	p->plural = one ? "" : p->noun[0] == 't' ? "things" : "objects";
-	p->sense.shapes = ~0u;
-	p->sense.maybe_shapes = 0;
+	p->words[SYNTH_NOUN] = is_one ? "" : is_thing ? "thing" : "object";
+	p->plural = is_one ? "" : is_thing ? "things" : "objects";
+	p->sense.surely[SYNTH_SHAPE] = ~0U;
+	p->sense.maybe[SYNTH_SHAPE] = 0;
 }
 
-static int build_relation(struct synth_unseen_draft *d, int object, int two_hop)
+/* Starts with the target: so many in a hundred say its colour and finish, and of those that say its colour so
+ * many no shape. */
+static void target(struct synth_draft *d, int object, int colour, int finish, int blurred)
+{
+	synth_add_phrase(&d->s);
+	describe(d, 0, object, colour, finish, 0);
+	if (blurred && d->s.phrases[0].words[SYNTH_COLOUR_WORD] && is_likely(d, blurred))
+		blur_noun(d, 0);
+}
+
+static int build_relation(struct synth_draft *d, int object, int two_hop)
 {
 	int two = !two_hop && is_likely(d, 12);
 
-	target(d, object, 55, 25, 12);
-	if (d->x.phrases[0].colour && is_likely(d, 12))
+	synth_add_phrase(&d->s);
+	describe(d, 0, object, 55, 25, 12);
+	if (d->s.phrases[0].words[SYNTH_COLOUR_WORD] && is_likely(d, 12))
 		blur_noun(d, 1);
 	if (!two_hop && is_likely(d, 8))
 		return 0;
 	return add_relation(d, 0, object, two_hop, "phw") || (two && add_relation(d, 0, object, 0, "phw"));
 }
 
-static int build_not(struct synth_unseen_draft *d, int object)
+static int build_not(struct synth_draft *d, int object)
 {
 	target(d, object, 60, 20, 0);
 	if (add_relation(d, 0, other_object(d, object), 0, "p"))
 		return -1;
-	d->x.clauses[0].negated = 1;
-	return d->x.clauses[0].degree != PARSE_PLAIN ? -1 : 0;
+	d->s.clauses[0].negated = 1;
+	return d->s.clauses[0].is.degree != PARSE_PLAIN ? -1 : 0;
 }
 
 /* A phrase for another object of the target's shape, told by its colour, finish or a relation. */
-static int leave_out(struct synth_unseen_draft *d, int object, int is_named)
+static int leave_out(struct synth_draft *d, int object, int is_named)
 {
-	int phrase = new_phrase(d);
+	int phrase = synth_add_phrase(&d->s);
 
 	if (phrase < 0)
 		return -1;
-	struct synth_unseen_phrase *p = &d->x.phrases[phrase], *t = &d->x.phrases[0];
+	struct synth_phrase *p = &d->s.phrases[phrase], *t = &d->s.phrases[0];
 	describe(d, phrase, object, 70, 20, 0);
-	p->noun = is_named ? t->noun : "";
+	p->words[SYNTH_NOUN] = is_named ? t->words[SYNTH_NOUN] : "";
 	p->plural = is_named ? t->plural : "";
-	p->sense.shapes = t->sense.shapes;
-	p->sense.maybe_shapes = t->sense.maybe_shapes;
-	if (!p->colour && !p->word_count && !p->size && add_relation(d, phrase, object, 0, "p"))
+	p->sense.surely[SYNTH_SHAPE] = t->sense.surely[SYNTH_SHAPE];
+	p->sense.maybe[SYNTH_SHAPE] = t->sense.maybe[SYNTH_SHAPE];
+	if (!p->words[SYNTH_COLOUR_WORD] && !p->words[SYNTH_FINISH_WORD] &&
+		add_relation(d, phrase, object, 0, "p"))
 		return -1;
 	return phrase;
 }
 
-static int build_except(struct synth_unseen_draft *d, enum synth_unseen_build b, int object)
+static int build_except(struct synth_draft *d, enum synth_list b, int object)
 {
-	int n = b == SYNTH_BUILD_NEITHER ? 2 : 1, is_other = strstr(d->fill.frame, "other %N") != NULL;
+	struct synth_phrase *p = &d->s.phrases[0];
 
-	target(d, object, b == SYNTH_BUILD_EXCEPT ? 30 : 0, 0, 0);
-	for (int i = 0; i < n; i++) {
-		int phrase = leave_out(d, other_object(d, object), rng_below(d->rng, 2) != 0);
+	target(d, object, b == SYNTH_EXCEPT ? 30 : 0, 0, 0);
+	while (p->except_count < (b == SYNTH_NEITHER ? 2 : 1)) {
+		int is_named = rng_below(d->rng, 2) != 0,
+		    phrase = leave_out(d, other_object(d, object), is_named);
 		if (phrase < 0)
 			return -1;
-		struct synth_unseen_phrase *p = &d->x.phrases[0];
-		p->except[p->except_count++] = d->fill.left_out[i] = phrase;
+		p->except[p->except_count++] = phrase;
 	}
-	if (is_other)
-		add_word(&d->x.phrases[0], "other");
-	d->x.phrases[0].count = b == SYNTH_BUILD_EXCEPT ? PARSE_ALL : PARSE_ONE;
+	if (strstr(d->frame, "other %N"))
+		p->words[SYNTH_FINISH_WORD] = "other";
+	p->count = b == SYNTH_EXCEPT ? PARSE_ALL : PARSE_ONE;
 	return 0;
 }
 
-static int build_nothing(struct synth_unseen_draft *d, int object)
+static int build_nothing(struct synth_draft *d, int object)
 {
 	target(d, object, 50, 10, 0);
-	int clause = add_clause(d, 0, PARSE_SUPPORTS, PARSE_PLAIN), phrase = new_phrase(d);
-	struct synth_unseen_clause *c = &d->x.clauses[clause];
+	struct synth_clause *c = &d->s.clauses[synth_add_clause(&d->s, 0, PARSE_SUPPORTS, PARSE_PLAIN)];
 	c->negated = 1;
-	c->anchors[c->anchor_count++] = phrase;
-	d->x.phrases[phrase].is_anything = 1;
+	c->anchors[c->anchor_count++] = synth_add_phrase(&d->s);
+	d->s.phrases[1].is_anything = 1;
 	return 0;
 }
 
-static int build_ordinal(struct synth_unseen_draft *d, int object)
+static const enum parse_relation ends[] = {
+	PARSE_LEFT, PARSE_RIGHT, PARSE_LEFT, PARSE_RIGHT, PARSE_FRONT, PARSE_BEHIND, PARSE_MIDDLE};
+enum { ENDS = sizeof ends / sizeof *ends - 1 };
+
+static int build_ordinal(struct synth_draft *d, int object)
 {
-	static const enum parse_relation ends[] = {
-		PARSE_LEFT, PARSE_RIGHT, PARSE_LEFT, PARSE_RIGHT, PARSE_FRONT, PARSE_BEHIND};
-
-	target(d, object, 35, 5, 0);
-	if (d->x.phrases[0].colour && is_likely(d, 25))
-		blur_noun(d, 0);
-	d->x.phrases[0].ordinal = 2 + (int)rng_below(d->rng, 3);
-	d->x.phrases[0].from = ends[rng_below(d->rng, sizeof ends / sizeof *ends)];
+	target(d, object, 35, 5, 25);
+	d->s.phrases[0].ordinal = 2 + (int)rng_below(d->rng, 3);
+	d->s.phrases[0].from = ends[rng_below(d->rng, ENDS)];
 	return 0;
 }
 
-static int build_ranked(struct synth_unseen_draft *d, int object, const enum parse_relation *relations, int n,
+static int build_ranked(struct synth_draft *d, int object, const enum parse_relation *relations, int n,
 	enum parse_degree degree)
 {
-	target(d, object, 45, 5, 0);
-	if (d->x.phrases[0].colour && is_likely(d, 20))
-		blur_noun(d, 0);
-	int clause = add_clause(d, 0, relations[rng_below(d->rng, (uint32_t)n)], degree);
-	d->x.phrases[0].of_several = strstr(d->fill.frame, "of all the %P") != NULL;
-	return word_clause(d, clause, 0, strstr(d->fill.frame, "%C") ? "c" : "p");
+	target(d, object, 45, 5, 20);
+	int clause = synth_add_clause(&d->s, 0, relations[rng_below(d->rng, (uint32_t)n)], degree);
+	d->s.phrases[0].of_several = strstr(d->frame, "of all the %P") != NULL;
+	return word_clause(d, clause, 0, strstr(d->frame, "%Z") ? "c" : "p");
 }
 
-static int build_group(struct synth_unseen_draft *d, int object)
+static int build_group(struct synth_draft *d, int object)
 {
-	static const enum parse_relation where[] = {
-		PARSE_LEFT, PARSE_RIGHT, PARSE_LEFT, PARSE_RIGHT, PARSE_FRONT, PARSE_BEHIND, PARSE_MIDDLE};
-
-	if (build_ranked(d, object, where, 7, PARSE_MORE))
+	if (build_ranked(d, object, ends, ENDS + 1, PARSE_MORE))
 		return -1;
-	d->x.phrases[0].group = 2 + (d->x.clauses[0].relation == PARSE_MIDDLE || is_likely(d, 25));
+	d->s.phrases[0].group = 2 + (d->s.clauses[0].is.relation == PARSE_MIDDLE || is_likely(d, 25));
 	/* "the left one" compares, but does not say so. */
-	d->x.clauses[0].degree = PARSE_PLAIN;
+	d->s.clauses[0].is.degree = PARSE_PLAIN;
 	return 0;
 }
 
-/* Nobody speaks of a tall plate. */
-static int has_height(enum synth_shape s)
-{
-	return s == SYNTH_BOTTLE || s == SYNTH_CONE || s == SYNTH_CYLINDER || s == SYNTH_MUG ||
-	       s == SYNTH_BOX;
-}
-
-static int build_compared(struct synth_unseen_draft *d, enum synth_unseen_build b, int object)
+static int build_compared(struct synth_draft *d, enum synth_list b, int object)
 {
 	static const enum parse_relation sizes[] = {PARSE_LARGER, PARSE_SMALLER, PARSE_TALLER, PARSE_SHORTER};
+	enum synth_shape s = d->v->objects[object].shape;
+	/* Nobody speaks of a tall plate. */
+	int is_flat = s == SYNTH_PLATE || s == SYNTH_BOOK || s == SYNTH_BOWL || s == SYNTH_BALL;
 
-	if (build_ranked(d, object, sizes, has_height(d->stand->objects[object].shape) ? 4 : 2,
-		    b == SYNTH_BUILD_MOST ? PARSE_MOST : PARSE_MORE))
+	if (build_ranked(d, object, sizes, is_flat ? 2 : 4, b == SYNTH_MOST ? PARSE_MOST : PARSE_MORE))
 		return -1;
-	if (b == SYNTH_BUILD_PAIR)
-		d->x.phrases[0].group = 2;
-	if (b == SYNTH_BUILD_THAN) {
+	if (b == SYNTH_PAIR)
+		d->s.phrases[0].group = 2;
+	if (b == SYNTH_THAN) {
 		int anchor = name_anchor(d, other_object(d, object));
 		if (anchor < 0)
 			return -1;
-		struct synth_unseen_clause *c = &d->x.clauses[0];
-		c->anchors[c->anchor_count++] = anchor;
+		d->s.clauses[0].anchors[d->s.clauses[0].anchor_count++] = anchor;
 	}
 	return 0;
 }
 
-static int build_several(struct synth_unseen_draft *d, enum synth_unseen_build b, int object)
+static int build_several(struct synth_draft *d, enum synth_list b, int object)
 {
-	target(d, object, 55, 0, 0);
-	if (d->x.phrases[0].colour && is_likely(d, 30))
-		blur_noun(d, 0);
-	d->x.phrases[0].count = b == SYNTH_BUILD_ALL ? PARSE_ALL : 2 + (int)rng_below(d->rng, 2);
+	target(d, object, 55, 0, 30);
+	d->s.phrases[0].count = b == SYNTH_ALL ? PARSE_ALL : 2 + (int)rng_below(d->rng, 2);
 	return is_likely(d, 50) && add_relation(d, 0, object, 0, "phw") ? -1 : 0;
 }
 
-static int build_also(struct synth_unseen_draft *d, int object)
+static int build_also(struct synth_draft *d, int object)
 {
+	struct synth_phrase *p = &d->s.phrases[0];
+
 	target(d, object, 60, 20, 0);
-	int phrase = name_anchor(d, other_object(d, object));
-	if (phrase < 0)
-		return -1;
-	struct synth_unseen_phrase *p = &d->x.phrases[0];
-	p->also[p->also_count++] = d->fill.left_out[0] = phrase;
-	return 0;
+	p->also[0] = name_anchor(d, other_object(d, object));
+	p->also_count = 1;
+	return p->also[0] < 0 ? -1 : 0;
 }
 
-static int build_function(struct synth_unseen_draft *d, int object)
+static int build_function(struct synth_draft *d, int object)
 {
-	const struct synth_unseen_use *use = synth_unseen_use(d->stand->objects[object].shape, d->rng);
+	const struct synth_query q = {.list = SYNTH_USES, .of = &d->v->objects[object], .is_stepwise = 1};
+	const struct synth_row *use = synth_draw(d->w, &q, d->rng);
 
 	if (!use)
 		return -1;
 	target(d, object, 50, 15, 0);
 	blur_noun(d, 0);
-	struct synth_unseen_clause *c = &d->x.clauses[add_clause(d, 0, PARSE_OTHER, PARSE_PLAIN)];
-	for (; c->word_count < 2 && use->words[c->word_count]; c->word_count++)
-		c->words[c->word_count] = use->words[c->word_count];
-	c->does = use->shapes;
-	c->may_do = use->maybe;
-	d->fill.use = use->text;
+	d->s.clauses[synth_add_clause(&d->s, 0, PARSE_OTHER, PARSE_PLAIN)].said = use;
 	return 0;
 }
 
-int synth_unseen_build(struct synth_unseen_draft *d, enum synth_unseen_build b, int object, int two_hop)
+int synth_unseen_build(struct synth_draft *d, enum synth_list b, int object, int two_hop)
 {
-	static const enum parse_relation ends[] = {
-		PARSE_LEFT, PARSE_RIGHT, PARSE_LEFT, PARSE_RIGHT, PARSE_FRONT, PARSE_BEHIND};
-	int frame = (int)rng_below(d->rng, (uint32_t)synth_unseen_frame_count(b));
+	const struct synth_query q = {.list = b};
 
-	d->fill = (struct synth_unseen_fill){.frame = synth_unseen_frame(b, frame), .left_out = {-1, -1}};
+	d->frame = synth_draw(d->w, &q, d->rng)->text;
 	switch (b) {
-	case SYNTH_BUILD_PLAIN:
-	case SYNTH_BUILD_CHATTY:
+	case SYNTH_PLAINLY:
+	case SYNTH_CHATTY:
 		return build_relation(d, object, two_hop);
-	case SYNTH_BUILD_NOT:
+	case SYNTH_NOT:
 		return build_not(d, object);
-	case SYNTH_BUILD_OTHER:
-	case SYNTH_BUILD_NEITHER:
-	case SYNTH_BUILD_EXCEPT:
+	case SYNTH_OTHER:
+	case SYNTH_NEITHER:
+	case SYNTH_EXCEPT:
 		return build_except(d, b, object);
-	case SYNTH_BUILD_NOTHING:
+	case SYNTH_NOTHING:
 		return build_nothing(d, object);
-	case SYNTH_BUILD_ORDINAL:
+	case SYNTH_ORDINAL:
 		return build_ordinal(d, object);
-	case SYNTH_BUILD_EXTREME:
-		return build_ranked(d, object, ends, 6, PARSE_MOST);
-	case SYNTH_BUILD_GROUP:
+	case SYNTH_EXTREME:
+		return build_ranked(d, object, ends, ENDS, PARSE_MOST);
+	case SYNTH_OF_GROUP:
 		return build_group(d, object);
-	case SYNTH_BUILD_MOST:
-	case SYNTH_BUILD_PAIR:
-	case SYNTH_BUILD_THAN:
+	case SYNTH_MOST:
+	case SYNTH_PAIR:
+	case SYNTH_THAN:
 		return build_compared(d, b, object);
-	case SYNTH_BUILD_ALL:
-	case SYNTH_BUILD_COUNT:
+	case SYNTH_ALL:
+	case SYNTH_COUNT:
 		return build_several(d, b, object);
-	case SYNTH_BUILD_ALSO:
+	case SYNTH_ALSO:
 		return build_also(d, object);
-	case SYNTH_BUILD_FUNCTION:
+	case SYNTH_FUNCTION:
 		return build_function(d, object);
 	default:
 		return -1;
 	}
 }
 
-int synth_unseen_build_absent(struct synth_unseen_draft *d, int object)
+int synth_unseen_build_absent(struct synth_draft *d, enum synth_list build, int object)
 {
-	enum synth_unseen_build b = rng_below(d->rng, 2) ? SYNTH_BUILD_PLAIN : SYNTH_BUILD_CHATTY;
-	const struct synth_stand *s = d->stand;
 	int how = (int)rng_below(d->rng, 3);
 
-	if (synth_unseen_build(d, b, object, 0))
+	if (synth_unseen_build(d, build, object, 0))
 		return -1;
-	struct synth_unseen_phrase *p = &d->x.phrases[0];
+	struct synth_phrase *p = &d->s.phrases[0];
 	if (how == 0) { /* something that is in no scene */
-		const struct synth_unseen_noun *n = synth_unseen_foreign(d->rng);
-		p->noun = n->one;
-		p->plural = n->many;
-		p->sense.shapes = p->sense.maybe_shapes = 0;
-		p->word_count = 0;
-		p->size = NULL;
-		p->sense.finishes = p->sense.sizes = ~0u;
+		const struct synth_query q = {.list = SYNTH_FOREIGN};
+		p->words[SYNTH_FINISH_WORD] = p->words[SYNTH_SIZE_WORD] = NULL;
+		p->sense.surely[SYNTH_FINISH] = p->sense.surely[SYNTH_SIZE] = ~0U;
+		synth_say(p, SYNTH_NOUN, synth_draw(d->w, &q, d->rng));
 	} else if (how == 1) { /* a colour that another thing has */
-		enum synth_colour c = s->objects[other_object(d, object)].colour;
-		add_colour(d, p, c);
-		p->sense.maybe_colours = synth_unseen_near_hues(c);
-		return *p->noun && strcmp(p->noun, "thing") && strcmp(p->noun, "object") ? 0 : -1;
-	} else if (!d->x.clause_count) { /* a relation that does not hold */
+		p->sense.surely[SYNTH_COLOUR] = ~0U;
+		say_word(d, p, SYNTH_COLOUR_WORD, other_object(d, object));
+		return *p->plural && strcmp(p->plural, "things") != 0 && strcmp(p->plural, "objects") != 0
+			       ? 0
+			       : -1;
+	} else if (!d->s.clause_count) { /* a relation that does not hold */
 		return -1;
 	}
 	return 0;

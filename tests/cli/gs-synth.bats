@@ -341,13 +341,3 @@ named() {
 	[ "$(overlap out/whole.jsonl .miou)" = 1 ]
 	[ "$(overlap out/truth.jsonl '.miou > 0.6 and .miou < 0.99')" = true ]
 }
-
-@test "-v prints the statistics" {
-	run small --scene diner -v -o out
-	[ "$status" = 0 ]
-	[ "${lines[0]}" = "gs-synth: 12 objects: 6 in 2 groups of look-alikes, 2 on others; 3000 Gaussians" ] ||
-		[ "${lines[0]}" = "gs-synth: 12 objects: 6 in 3 groups of look-alikes, 2 on others; 3000 Gaussians" ]
-	[[ ${lines[3]} = "gs-synth: quantile "*"95%" ]]
-	[[ ${lines[8]} = "gs-synth: training  "* ]]
-	[ "$(wc -l <out/statistics.json)" = 1 ]
-}

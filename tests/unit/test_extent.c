@@ -5,7 +5,7 @@
 #include "base/rng.h"
 #include "geom/rotation.h"
 #include "lift/extent.h"
-#include "synth/true_boxes.h"
+#include "synth/objects.h"
 
 enum { MOST = 4000 };
 
@@ -268,10 +268,11 @@ static void true_boxes_are_tight(void)
 			synth_object_surface(&s, o.shape);
 			synth_object_boxes(&o, &boxes[0], &boxes[1]);
 			for (int i = 0; i < 300 * 300; i++) {
-				double p[3], normal[3];
-				synth_surface_at(
-					&s, (i % 300 + 0.5) / 300, (i / 300 + 0.5) / 300.0, p, normal);
-				synth_object_place(&o, p, p);
+				struct synth_spot spot;
+				double p[3];
+				synth_surface_spot(
+					&s, (i % 300 + 0.5) / 300, (i / 300 + 0.5) / 300.0, 0, &spot);
+				synth_object_place(&o, spot.point, p);
 				for (int b = 0; b < 2; b++)
 					for (int k = 0; k < 3; k++) {
 						const double *axis = boxes[b].axes[k], *c = boxes[b].centre;
@@ -287,8 +288,9 @@ static void true_boxes_are_tight(void)
 				for (int k = 0; k < 3; k++)
 					CHECK(most[b][k] > 0.9 && most[b][k] < 1 + 1e-9 &&
 							least[b][k] < -0.9 && least[b][k] > -1 - 1e-9,
-						"%s, box %d, axis %d: %g to %g", synth_shape_name(o.shape), b,
-						k, least[b][k], most[b][k]);
+						"%s, box %d, axis %d: %g to %g",
+						synth_value_name(SYNTH_SHAPE, (int)o.shape), b, k,
+						least[b][k], most[b][k]);
 		}
 }
 

@@ -18,12 +18,14 @@ static void ball_is_covered_evenly(void)
 	enum { N = 40000, BANDS = 8 };
 	struct synth_surface s;
 	int bands[BANDS] = {0}, inwards = 0;
-	double point[3], normal[3], r = 0.38, worst = 0;
+	struct synth_spot spot;
+	const double *point = spot.point, *normal = spot.normal;
+	double r = 0.38, worst = 0;
 
 	synth_object_surface(&s, SYNTH_BALL);
 	CHECK(fabs(s.area - 4 * 3.14159265358979 * r * r) < 0.01 * s.area, "area %g", s.area);
 	for (int i = 0; i < N; i++) {
-		synth_surface_at(&s, (i + 0.5) / N, fmod(0.618033988749 * i, 1), point, normal);
+		synth_surface_spot(&s, (i + 0.5) / N, fmod(0.618033988749 * i, 1), 0, &spot);
 		double dz = point[2] - r,
 		       outwards = point[0] * normal[0] + point[1] * normal[1] + dz * normal[2];
 		inwards += outwards < 0.9 * r;
@@ -45,11 +47,13 @@ static void shapes_keep_their_measures(void)
 		for (int k = 0; k < 8; k++) {
 			const struct synth_object *o = &objects[k];
 			struct synth_surface s;
-			double point[3], normal[3], far = 0, high = 0, low = 1, bad_normal = 0;
+			struct synth_spot spot;
+			const double *point = spot.point, *normal = spot.normal;
+			double far = 0, high = 0, low = 1, bad_normal = 0;
 			synth_object_surface(&s, o->shape);
 			for (int i = 0; i < 4000; i++) {
-				synth_surface_at(
-					&s, (i + 0.5) / 4000, fmod(0.618033988749 * i, 1), point, normal);
+				synth_surface_spot(
+					&s, (i + 0.5) / 4000, fmod(0.618033988749 * i, 1), 0, &spot);
 				far = fmax(far, o->scale * hypot(point[0], point[1]));
 				high = fmax(high, o->scale * point[2]);
 				low = fmin(low, point[2]);
@@ -142,7 +146,7 @@ static void cameras_see_the_table(void)
 	CHECK(worst < 1e-12, "rotations are off by %g", worst);
 	CHECK(tests == 5, "%d test views", tests);
 	CHECK(seen > 25 * 8 * 9 / 10, "%d of 200 object middles are in the picture", seen);
-	synth_cameras_reference(&c, right, away);
+	synth_cameras_reference(&c, (double[3]){0}, right, away);
 	CHECK(fabs(hypot(right[0], right[1]) - 1) < 1e-12 &&
 			fabs(right[0] * away[0] + right[1] * away[1]) < 1e-12,
 		"the reference directions are a frame");

@@ -1,10 +1,10 @@
-/* The faulty detector of a synthetic scene: outlines, habits, and how well its masks can be selected. */
+/* The faulty detector of a synthetic scene: outlines, errors, and how well its masks can be selected. */
 #include "unit.h"
 
 #include "mask/select.h"
 #include "synth/arrange.h"
 #include "synth/cameras.h"
-#include "synth/candidates.h"
+#include "synth/detector.h"
 #include "synth/outline.h"
 
 enum { H = 90, W = 120 };
@@ -71,10 +71,10 @@ static void detector_depends_on_the_view_alone(void)
 	for (int i = 0; i + 1 < N; i++) /* the last one is hidden */
 		draw_disc(truth + (size_t)i * H * W, 15 + 28 * i, 45, 12);
 	for (int i = 0; i < N; i++) {
-		CHECK(d.habits.mistaken[i][0] != i && d.habits.neighbours[i] != i,
+		CHECK(d.errors.mistaken[i][0] != i && d.errors.neighbours[i] != i,
 			"object %d is mistaken for another", i);
 		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
-			confused += d.habits.of[i][k] == SYNTH_HABIT_CONFUSED;
+			confused += d.errors.of[i][k] == SYNTH_ERROR_CONFUSED;
 	}
 	CHECK(confused > 0 && confused < N * SYNTH_TRAIN_SENTENCES / 2, "%d confused sentences", confused);
 	for (int view = 0; view < 6; view++) {
@@ -106,17 +106,22 @@ struct made {
 	const struct synth_preset *preset;
 	int n;
 	struct synth_object objects[SYNTH_MAX_OBJECTS];
-	struct synth_sentence sentences[SYNTH_MAX_OBJECTS * SYNTH_SENTENCES];
+	struct synth_sentences sentences;
 	struct cameras cameras;
 	struct synth_detector detector;
 };
 
+static void free_made(struct made *m)
+{
+	synth_sentences_free(&m->sentences);
+	cameras_free(&m->cameras);
+}
+
 static int make(struct made *m, int number, uint64_t seed)
 {
 	struct synth_table table;
-	struct synth_layout layout;
+	struct synth_viewpoint v;
 	struct err e = {0};
-	double right[2], away[2];
 
 	m->preset = synth_preset(number);
 	m->n = m->preset->objects;
@@ -131,20 +136,19 @@ static int make(struct made *m, int number, uint64_t seed)
 	synth_arrange(m->objects, m->n, &table, m->preset, seed);
 	if (!CHECK(!synth_cameras_make(&m->cameras, &options, &table, &e), "%s", e.message))
 		return -1;
-	synth_cameras_reference(&m->cameras, right, away);
-	synth_layout_make(&layout, m->objects, m->n, &table, right, away);
-	if (!CHECK(!synth_sentences_make(m->sentences, &layout, seed, &e), "%s", e.message)) {
-		cameras_free(&m->cameras);
+	synth_viewpoint_reference(&v, m->objects, m->n, &table, &m->cameras, 0);
+	if (!CHECK(!synth_sentences_make(&m->sentences, &v, seed, &e), "%s", e.message)) {
+		free_made(m);
 		return -1;
 	}
-	synth_detector_make(&m->detector, m->objects, m->n, m->sentences, m->preset->severity, seed);
+	synth_detector_make(&m->detector, m->objects, m->n, m->sentences.items, m->preset->severity, seed);
 	return 0;
 }
 
 static int is_named(const struct synth_sentence *s, int other)
 {
 	for (int k = 0; k < s->clause_count; k++)
-		if (s->clauses[k].a == other || s->clauses[k].b == other)
+		if (s->clauses[k].is.a == other || s->clauses[k].is.b == other)
 			return 1;
 	return 0;
 }
@@ -157,15 +161,15 @@ static void a_severe_detector_is_misled(void)
 
 	if (make(&m, 1, 3))
 		return;
-	const struct synth_habits *h = &m.detector.habits;
+	const struct synth_errors *h = &m.detector.errors;
 	for (int i = 0; i < m.n; i++) {
 		int count = 0, trap = -1, is_tempting = 0;
 		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
 			int other = h->mistaken[i][k];
 			CHECK(other != i && other >= 0 && other < m.n, "object %d is mistaken for %d", i,
 				other);
-			is_tempting |= is_named(&m.sentences[i * SYNTH_SENTENCES + k], other);
-			if (h->of[i][k] != SYNTH_HABIT_CONFUSED && h->of[i][k] != SYNTH_HABIT_GUESSING)
+			is_tempting |= is_named(&m.sentences.items[i * SYNTH_SENTENCES + k], other);
+			if (h->of[i][k] != SYNTH_ERROR_CONFUSED && h->of[i][k] != SYNTH_ERROR_GUESSING)
 				continue;
 			torn += trap >= 0 && trap != other;
 			trap = other;
@@ -188,18 +192,18 @@ static void a_severe_detector_is_misled(void)
 		if (m.objects[i].on >= 0)
 			CHECK(h->neighbours[i] == m.objects[i].on,
 				"object %d is joined with what it stands on", i);
-	cameras_free(&m.cameras);
+	free_made(&m);
 }
 
 /* A test sentence is understood as one of its object's training sentences is, not always the same one. */
-static void test_sentences_have_habits(void)
+static void test_sentences_have_errors(void)
 {
 	static struct made m;
 	int places[SYNTH_TRAIN_SENTENCES] = {0};
 
 	if (make(&m, 2, 5))
 		return;
-	const struct synth_habits *h = &m.detector.habits;
+	const struct synth_errors *h = &m.detector.errors;
 	for (int i = 0; i < m.n; i++) {
 		int found = 0;
 		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
@@ -211,7 +215,7 @@ static void test_sentences_have_habits(void)
 	}
 	for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
 		CHECK(places[k] > 0 && places[k] < m.n, "%d of %d are as sentence %d", places[k], m.n, k);
-	cameras_free(&m.cameras);
+	free_made(&m);
 }
 
 /* What a view shows of balls in the things' places, the near ones over the far. */
@@ -293,7 +297,7 @@ static void selection_gains_as_in_the_paper(void)
 					pairs += select_all(&m, &found, truth, sums);
 				masks_free(&found);
 			}
-			cameras_free(&m.cameras);
+			free_made(&m);
 		}
 	double top1 = sums[0] / pairs, iou = sums[1] / pairs, ciou = sums[2] / pairs;
 	CHECK(top1 > 0.38 && top1 < 0.50, "top1 %g", top1);
@@ -307,7 +311,7 @@ int main(void)
 	outlines_change_as_asked();
 	detector_depends_on_the_view_alone();
 	a_severe_detector_is_misled();
-	test_sentences_have_habits();
+	test_sentences_have_errors();
 	selection_gains_as_in_the_paper();
 	return unit_end();
 }

@@ -3,7 +3,6 @@
 
 #include "synth/arrange.h"
 #include "synth/cameras.h"
-#include "synth/frames.h"
 #include "synth/synth_sentences.h"
 
 enum { SEEDS = 12, H = 90, W = 120 };
@@ -11,16 +10,19 @@ enum { SEEDS = 12, H = 90, W = 120 };
 static const int counts[] = {2, 3, 5, 8, 24};
 
 struct relation_case {
-	enum synth_relation relation;
-	int a, b, of, verdict;
+	struct synth_relation relation;
+	int of, verdict;
 };
 
-static void judge_all(const struct synth_layout *l, const struct synth_meaning *among,
+static void judge_all(const struct synth_viewpoint *v, const struct synth_sense *sense,
 	const struct relation_case *cases, size_t n, const char *what)
 {
+	int among[SYNTH_MAX_OBJECTS];
+
+	for (int i = 0; i < v->n; i++)
+		among[i] = synth_sense_judge(sense, &v->objects[i]);
 	for (size_t i = 0; i < n; i++) {
-		struct synth_clause c = {cases[i].relation, cases[i].a, cases[i].b};
-		int verdict = synth_clause_judge(l, &c, cases[i].of, among);
+		int verdict = synth_relation_judge(v, &cases[i].relation, cases[i].of, among);
 		CHECK(verdict == cases[i].verdict, "%s, case %zu: %d", what, i, verdict);
 	}
 }
@@ -32,55 +34,54 @@ static void relations_are_judged(void)
 		{.on = -1}, {.x = -1, .on = -1}, {.x = 1, .on = -1}, {.y = -1, .on = -1}, {.y = 1, .on = -1}};
 	enum { MIDDLE, LEFT, RIGHT, FRONT, BACK };
 	struct synth_table t = {2, 2};
-	struct synth_layout l;
-	struct synth_meaning any = synth_meaning_any();
+	struct synth_viewpoint v;
 	static const struct relation_case cases[] = {
-		{SYNTH_LEFT_OF, MIDDLE, -1, LEFT, 1},
-		{SYNTH_LEFT_OF, MIDDLE, -1, RIGHT, -1},
-		{SYNTH_LEFT_OF, MIDDLE, -1, BACK, -1},
-		{SYNTH_LEFT_OF, BACK, -1, LEFT, 0},
-		{SYNTH_RIGHT_OF, MIDDLE, -1, RIGHT, 1},
-		{SYNTH_RIGHT_OF, LEFT, -1, LEFT, -1},
-		{SYNTH_IN_FRONT_OF, MIDDLE, -1, FRONT, 1},
-		{SYNTH_IN_FRONT_OF, MIDDLE, -1, BACK, -1},
-		{SYNTH_BEHIND, MIDDLE, -1, BACK, 1},
-		{SYNTH_BEHIND, MIDDLE, -1, FRONT, -1},
-		{SYNTH_NEXT_TO, MIDDLE, -1, LEFT, -1},
-		{SYNTH_BETWEEN, LEFT, RIGHT, MIDDLE, 1},
-		{SYNTH_BETWEEN, LEFT, RIGHT, BACK, -1},
-		{SYNTH_BETWEEN, LEFT, RIGHT, LEFT, -1},
-		{SYNTH_NEAREST_TO, LEFT, -1, MIDDLE, 1},
-		{SYNTH_NEAREST_TO, LEFT, -1, RIGHT, -1},
-		{SYNTH_FARTHEST_FROM, LEFT, -1, RIGHT, 1},
-		{SYNTH_FARTHEST_FROM, MIDDLE, -1, RIGHT, 0},
-		{SYNTH_LEFT_SIDE, -1, -1, LEFT, 1},
-		{SYNTH_LEFT_SIDE, -1, -1, MIDDLE, -1},
-		{SYNTH_RIGHT_SIDE, -1, -1, RIGHT, 1},
-		{SYNTH_FRONT_SIDE, -1, -1, FRONT, 1},
-		{SYNTH_BACK_SIDE, -1, -1, FRONT, -1},
-		{SYNTH_MIDDLE, -1, -1, MIDDLE, 1},
-		{SYNTH_MIDDLE, -1, -1, LEFT, 0},
-		{SYNTH_LEFTMOST, -1, -1, LEFT, 1},
-		{SYNTH_RIGHTMOST, -1, -1, RIGHT, 1},
-		{SYNTH_RIGHTMOST, -1, -1, MIDDLE, -1},
-		{SYNTH_NEAREST_US, -1, -1, FRONT, 1},
-		{SYNTH_NEAREST_US, -1, -1, LEFT, -1},
-		{SYNTH_FARTHEST_US, -1, -1, BACK, 1},
-		{SYNTH_FARTHEST_US, -1, -1, FRONT, -1},
-		{SYNTH_LEFT_ONE, -1, -1, LEFT, 1},
-		{SYNTH_RIGHT_ONE, -1, -1, LEFT, -1},
-		{SYNTH_NEAR_ONE, -1, -1, FRONT, 1},
-		{SYNTH_FAR_ONE, -1, -1, FRONT, -1},
-		{SYNTH_MIDDLE_ONE, -1, -1, MIDDLE, 0}, /* of five */
-		{SYNTH_ON_TABLE, -1, -1, LEFT, 1},
+		{{PARSE_LEFT, PARSE_PLAIN, MIDDLE, -1}, LEFT, 1},
+		{{PARSE_LEFT, PARSE_PLAIN, MIDDLE, -1}, RIGHT, -1},
+		{{PARSE_LEFT, PARSE_PLAIN, MIDDLE, -1}, BACK, -1},
+		{{PARSE_LEFT, PARSE_PLAIN, BACK, -1}, LEFT, 0},
+		{{PARSE_RIGHT, PARSE_PLAIN, MIDDLE, -1}, RIGHT, 1},
+		{{PARSE_RIGHT, PARSE_PLAIN, LEFT, -1}, LEFT, -1},
+		{{PARSE_FRONT, PARSE_PLAIN, MIDDLE, -1}, FRONT, 1},
+		{{PARSE_FRONT, PARSE_PLAIN, MIDDLE, -1}, BACK, -1},
+		{{PARSE_BEHIND, PARSE_PLAIN, MIDDLE, -1}, BACK, 1},
+		{{PARSE_BEHIND, PARSE_PLAIN, MIDDLE, -1}, FRONT, -1},
+		{{PARSE_NEAR, PARSE_PLAIN, MIDDLE, -1}, LEFT, -1},
+		{{PARSE_BETWEEN, PARSE_PLAIN, LEFT, RIGHT}, MIDDLE, 1},
+		{{PARSE_BETWEEN, PARSE_PLAIN, LEFT, RIGHT}, BACK, -1},
+		{{PARSE_BETWEEN, PARSE_PLAIN, LEFT, RIGHT}, LEFT, -1},
+		{{PARSE_NEAR, PARSE_MOST, LEFT, -1}, MIDDLE, 1},
+		{{PARSE_NEAR, PARSE_MOST, LEFT, -1}, RIGHT, -1},
+		{{PARSE_FAR, PARSE_MOST, LEFT, -1}, RIGHT, 1},
+		{{PARSE_FAR, PARSE_MOST, MIDDLE, -1}, RIGHT, 0},
+		{{PARSE_LEFT, PARSE_PLAIN, -1, -1}, LEFT, 1},
+		{{PARSE_LEFT, PARSE_PLAIN, -1, -1}, MIDDLE, -1},
+		{{PARSE_RIGHT, PARSE_PLAIN, -1, -1}, RIGHT, 1},
+		{{PARSE_FRONT, PARSE_PLAIN, -1, -1}, FRONT, 1},
+		{{PARSE_BEHIND, PARSE_PLAIN, -1, -1}, FRONT, -1},
+		{{PARSE_MIDDLE, PARSE_PLAIN, -1, -1}, MIDDLE, 1},
+		{{PARSE_MIDDLE, PARSE_PLAIN, -1, -1}, LEFT, 0},
+		{{PARSE_LEFT, PARSE_MOST, -1, -1}, LEFT, 1},
+		{{PARSE_RIGHT, PARSE_MOST, -1, -1}, RIGHT, 1},
+		{{PARSE_RIGHT, PARSE_MOST, -1, -1}, MIDDLE, -1},
+		{{PARSE_NEAR, PARSE_MOST, -1, -1}, FRONT, 1},
+		{{PARSE_NEAR, PARSE_MOST, -1, -1}, LEFT, -1},
+		{{PARSE_FAR, PARSE_MOST, -1, -1}, BACK, 1},
+		{{PARSE_FAR, PARSE_MOST, -1, -1}, FRONT, -1},
+		{{PARSE_LEFT, PARSE_MORE, -1, -1}, LEFT, 1},
+		{{PARSE_RIGHT, PARSE_MORE, -1, -1}, LEFT, -1},
+		{{PARSE_FRONT, PARSE_MORE, -1, -1}, FRONT, 1},
+		{{PARSE_BEHIND, PARSE_MORE, -1, -1}, FRONT, -1},
+		{{PARSE_MIDDLE, PARSE_MORE, -1, -1}, MIDDLE, 0}, /* of five */
+		{{PARSE_ON, PARSE_PLAIN, -1, -1}, LEFT, 1},
 	};
 
-	synth_layout_make(&l, o, 5, &t, (double[2]){1, 0}, (double[2]){0, 1});
-	judge_all(&l, &any, cases, sizeof cases / sizeof *cases, "cross");
+	synth_viewpoint_make(&v, o, 5, &t, (double[3]){0}, (double[2]){1, 0}, (double[2]){0, 1}, 0);
+	judge_all(&v, &synth_anything, cases, sizeof cases / sizeof *cases, "cross");
 	/* From the other side of the table left is right. */
-	synth_layout_make(&l, o, 5, &t, (double[2]){-1, 0}, (double[2]){0, -1});
-	struct synth_clause c = {SYNTH_LEFT_OF, MIDDLE, -1};
-	CHECK(synth_clause_judge(&l, &c, RIGHT, &any) == 1, "left depends on the viewpoint");
+	synth_viewpoint_make(&v, o, 5, &t, (double[3]){0}, (double[2]){-1, 0}, (double[2]){0, -1}, 0);
+	struct synth_relation r = {PARSE_LEFT, PARSE_PLAIN, MIDDLE, -1};
+	CHECK(synth_relation_judge(&v, &r, RIGHT, NULL) == 1, "left depends on the viewpoint");
 }
 
 /* A ball on a mug on a plate; another mug beside the plate; a third, larger one at the left; a book. From -y.
@@ -97,85 +98,123 @@ static void stacks_are_judged(void)
 		[BOOK] = {.shape = SYNTH_BOOK, .x = 1.5, .y = -1, .on = -1, .radius = 0.5, .height = 0.2},
 	};
 	static const struct relation_case cases[] = {
-		{SYNTH_ON, PLATE, -1, CARRIED, 1}, {SYNTH_ON, PLATE, -1, BALL, 0}, /* by way of the mug */
-		{SYNTH_ON, CARRIED, -1, BALL, 1}, {SYNTH_ON, PLATE, -1, BESIDE, -1},
-		{SYNTH_ON, CARRIED, -1, PLATE, -1}, {SYNTH_UNDER, CARRIED, -1, PLATE, 1},
-		{SYNTH_UNDER, BALL, -1, PLATE, 0}, {SYNTH_UNDER, PLATE, -1, CARRIED, -1},
-		{SYNTH_ON_TABLE, -1, -1, PLATE, 1}, {SYNTH_ON_TABLE, -1, -1, CARRIED, -1},
-		{SYNTH_RIGHT_OF, PLATE, -1, CARRIED, 0}, /* on its right part */
-		{SYNTH_RIGHT_OF, PLATE, -1, BESIDE, 1}, {SYNTH_LEFT_OF, PLATE, -1, CARRIED, -1},
-		{SYNTH_NEXT_TO, PLATE, -1, CARRIED, 0}, {SYNTH_NEXT_TO, PLATE, -1, BESIDE, 1},
-		{SYNTH_BETWEEN, PLATE, BESIDE, CARRIED, 0},
-		{SYNTH_BETWEEN, CARRIED, BALL, BESIDE, 0}, /* nothing is between two in one place */
+		{{PARSE_ON, PARSE_PLAIN, PLATE, -1}, CARRIED, 1},
+		{{PARSE_ON, PARSE_PLAIN, PLATE, -1}, BALL, 0}, /* by way of the mug */
+		{{PARSE_ON, PARSE_PLAIN, CARRIED, -1}, BALL, 1},
+		{{PARSE_ON, PARSE_PLAIN, PLATE, -1}, BESIDE, -1},
+		{{PARSE_ON, PARSE_PLAIN, CARRIED, -1}, PLATE, -1},
+		{{PARSE_BELOW, PARSE_PLAIN, CARRIED, -1}, PLATE, 1},
+		{{PARSE_BELOW, PARSE_PLAIN, BALL, -1}, PLATE, 0},
+		{{PARSE_BELOW, PARSE_PLAIN, PLATE, -1}, CARRIED, -1},
+		{{PARSE_ON, PARSE_PLAIN, -1, -1}, PLATE, 1}, {{PARSE_ON, PARSE_PLAIN, -1, -1}, CARRIED, -1},
+		{{PARSE_RIGHT, PARSE_PLAIN, PLATE, -1}, CARRIED, 0}, /* on its right part */
+		{{PARSE_RIGHT, PARSE_PLAIN, PLATE, -1}, BESIDE, 1},
+		{{PARSE_LEFT, PARSE_PLAIN, PLATE, -1}, CARRIED, -1},
+		{{PARSE_NEAR, PARSE_PLAIN, PLATE, -1}, CARRIED, 0},
+		{{PARSE_NEAR, PARSE_PLAIN, PLATE, -1}, BESIDE, 1},
+		{{PARSE_BETWEEN, PARSE_PLAIN, PLATE, BESIDE}, CARRIED, 0},
+		{{PARSE_BETWEEN, PARSE_PLAIN, CARRIED, BALL}, BESIDE,
+			0}, /* nothing is between two in one place */
 	};
 	static const struct relation_case of_mugs[] = {
-		{SYNTH_NEAREST_TO, PLATE, -1, CARRIED, 0},
-		{SYNTH_NEAREST_TO, PLATE, -1, BESIDE, 0}, /* or is it the one on the plate? */
-		{SYNTH_NEAREST_TO, BOOK, -1, BESIDE, 1},
-		{SYNTH_NEAREST_TO, BOOK, -1, CARRIED, -1},
-		{SYNTH_LEFT_ONE, -1, -1, LEFT, 1},
-		{SYNTH_LEFT_ONE, -1, -1, CARRIED, -1},
-		{SYNTH_RIGHT_ONE, -1, -1, BESIDE, 1},
-		{SYNTH_NEAR_ONE, -1, -1, LEFT, 1},
-		{SYNTH_FAR_ONE, -1, -1, CARRIED, 0}, /* as far as the one beside it */
-		{SYNTH_MIDDLE_ONE, -1, -1, CARRIED, 0},
-		{SYNTH_MIDDLE_ONE, -1, -1, LEFT, -1},
-		{SYNTH_LARGEST, -1, -1, LEFT, 1},
-		{SYNTH_LARGEST, -1, -1, CARRIED, -1},
-		{SYNTH_SMALLEST, -1, -1, LEFT, -1},
-		{SYNTH_SMALLEST, -1, -1, CARRIED, 0}, /* two are alike */
-		{SYNTH_TALLEST, -1, -1, LEFT, 1},
-		{SYNTH_TALLEST, -1, -1, BESIDE, -1},
+		{{PARSE_NEAR, PARSE_MOST, PLATE, -1}, CARRIED, 0},
+		{{PARSE_NEAR, PARSE_MOST, PLATE, -1}, BESIDE, 0}, /* or is it the one on the plate? */
+		{{PARSE_NEAR, PARSE_MOST, BOOK, -1}, BESIDE, 1},
+		{{PARSE_NEAR, PARSE_MOST, BOOK, -1}, CARRIED, -1},
+		{{PARSE_LEFT, PARSE_MORE, -1, -1}, LEFT, 1},
+		{{PARSE_LEFT, PARSE_MORE, -1, -1}, CARRIED, -1},
+		{{PARSE_RIGHT, PARSE_MORE, -1, -1}, BESIDE, 1},
+		{{PARSE_FRONT, PARSE_MORE, -1, -1}, LEFT, 1},
+		{{PARSE_BEHIND, PARSE_MORE, -1, -1}, CARRIED, 0}, /* as far as the one beside it */
+		{{PARSE_MIDDLE, PARSE_MORE, -1, -1}, CARRIED, 0},
+		{{PARSE_MIDDLE, PARSE_MORE, -1, -1}, LEFT, -1},
+		{{PARSE_LARGER, PARSE_MOST, -1, -1}, LEFT, 1},
+		{{PARSE_LARGER, PARSE_MOST, -1, -1}, CARRIED, -1},
+		{{PARSE_SMALLER, PARSE_MOST, -1, -1}, LEFT, -1},
+		{{PARSE_SMALLER, PARSE_MOST, -1, -1}, CARRIED, 0}, /* two are alike */
+		{{PARSE_TALLER, PARSE_MOST, -1, -1}, LEFT, 1},
+		{{PARSE_TALLER, PARSE_MOST, -1, -1}, BESIDE, -1},
 	};
 	static const struct relation_case of_all[] = {
-		{SYNTH_LARGEST, -1, -1, LEFT, 0}, /* in bulk, but the plate is as wide */
-		{SYNTH_TALLEST, -1, -1, LEFT, 1},
-		{SYNTH_TALLEST, -1, -1, BALL, -1},
+		{{PARSE_LARGER, PARSE_MOST, -1, -1}, LEFT, 0}, /* in bulk, but the plate is as wide */
+		{{PARSE_TALLER, PARSE_MOST, -1, -1}, LEFT, 1},
+		{{PARSE_TALLER, PARSE_MOST, -1, -1}, BALL, -1},
 	};
 	static const struct relation_case of_balls[] = {
-		{SYNTH_LARGEST, -1, -1, BALL, 0},					/* of one */
-		{SYNTH_LEFT_ONE, -1, -1, BALL, 0}, {SYNTH_RIGHTMOST, -1, -1, BALL, -1}, /* of everything */
+		{{PARSE_LARGER, PARSE_MOST, -1, -1}, BALL, 0}, /* of one */
+		{{PARSE_LEFT, PARSE_MORE, -1, -1}, BALL, 0},
+		{{PARSE_RIGHT, PARSE_MOST, -1, -1}, BALL, -1}, /* of everything */
 	};
 	struct synth_table t = {2, 2};
-	struct synth_layout l;
-	struct synth_meaning any = synth_meaning_any(), mugs = any, balls = any;
+	struct synth_viewpoint v;
+	struct synth_sense mugs = synth_anything, balls = synth_anything;
 
-	mugs.shapes = 1u << SYNTH_MUG;
-	balls.shapes = 1u << SYNTH_BALL;
-	synth_layout_make(&l, o, N, &t, (double[2]){1, 0}, (double[2]){0, 1});
-	judge_all(&l, &any, cases, sizeof cases / sizeof *cases, "stack");
-	judge_all(&l, &mugs, of_mugs, sizeof of_mugs / sizeof *of_mugs, "mugs");
-	judge_all(&l, &any, of_all, sizeof of_all / sizeof *of_all, "all");
-	judge_all(&l, &balls, of_balls, sizeof of_balls / sizeof *of_balls, "balls");
+	mugs.surely[SYNTH_SHAPE] = 1U << SYNTH_MUG;
+	balls.surely[SYNTH_SHAPE] = 1U << SYNTH_BALL;
+	synth_viewpoint_make(&v, o, N, &t, (double[3]){0}, (double[2]){1, 0}, (double[2]){0, 1}, 0);
+	judge_all(&v, &synth_anything, cases, sizeof cases / sizeof *cases, "stack");
+	judge_all(&v, &mugs, of_mugs, sizeof of_mugs / sizeof *of_mugs, "mugs");
+	judge_all(&v, &synth_anything, of_all, sizeof of_all / sizeof *of_all, "all");
+	judge_all(&v, &balls, of_balls, sizeof of_balls / sizeof *of_balls, "balls");
 	/* The mug at the right moved to the other side: the carried one is now amid the three. */
 	o[BESIDE].y = 0.8;
 	o[BESIDE].x = 2.2;
 	o[LEFT].y = -0.8;
-	synth_layout_make(&l, o, N, &t, (double[2]){1, 0}, (double[2]){0, 1});
-	struct synth_clause c = {SYNTH_MIDDLE_ONE, -1, -1};
-	CHECK(synth_clause_judge(&l, &c, CARRIED, &mugs) == 1, "the middle one of three mugs");
-	CHECK(synth_layout_stands_on(&l, BALL, PLATE) && !synth_layout_stands_on(&l, PLATE, BALL),
+	synth_viewpoint_make(&v, o, N, &t, (double[3]){0}, (double[2]){1, 0}, (double[2]){0, 1}, 0);
+	static const struct relation_case middle = {{PARSE_MIDDLE, PARSE_MORE, -1, -1}, CARRIED, 1};
+	judge_all(&v, &mugs, &middle, 1, "the middle one of three mugs");
+	CHECK(synth_stands_on(o, BALL, PLATE) && !synth_stands_on(o, PLATE, BALL),
 		"the ball stands on the plate by way of the mug");
 }
 
 /* No frame and no wording of a test sentence is one of a training sentence. */
 static void test_words_are_new(void)
 {
-	struct rng r;
-	int shared = 0;
+	struct synth_wordings w;
+	struct err e = {0};
 
-	rng_seed(&r, 1, 1);
-	CHECK(synth_frame_count(0) <= SYNTH_MAX_FRAMES, "%d frames", synth_frame_count(0));
-	for (int i = 0; i < synth_frame_count(0); i++)
-		for (int k = 0; k < synth_frame_count(1); k++)
-			shared += !strcmp(synth_frame(0, i), synth_frame(1, k));
-	for (int relation = 0; relation < SYNTH_RELATIONS; relation++)
-		for (int i = 0; i < 200; i++)
-			shared += synth_wording((enum synth_relation)relation, 0, &r) ==
-					  synth_wording((enum synth_relation)relation, 1, &r) ||
-				  !strcmp(synth_wording((enum synth_relation)relation, 0, &r),
-					  synth_wording((enum synth_relation)relation, 1, &r));
-	CHECK(!shared, "%d frames or wordings are in both", shared);
+	if (!CHECK(!synth_wordings_load(&w, 0, &e), "%s", e.message))
+		return;
+	for (int i = 0; i < w.n; i++)
+		for (int k = 0; k < i; k++) {
+			const struct synth_row *a = &w.rows[k], *b = &w.rows[i];
+			int both = (a->list == SYNTH_TRAIN && b->list == SYNTH_TEST) ||
+				   (a->list == SYNTH_SAID && b->list == SYNTH_SAID_TEST);
+			CHECK(!both || strcmp(a->text, b->text), "'%s' is in both", a->text);
+		}
+	synth_wordings_free(&w);
+}
+
+/* Every row of the data is understood. */
+static void rows_are_known(int is_unseen)
+{
+	int lists[SYNTH_LISTS] = {0};
+	struct synth_wordings w;
+	struct err e = {0};
+
+	if (!CHECK(!synth_wordings_load(&w, is_unseen, &e), "%s", e.message))
+		return;
+	for (int i = 0; i < w.n; i++) {
+		const struct synth_row *r = &w.rows[i];
+		if (!CHECK(r->list < SYNTH_LISTS && *r->text && r->weight > 0, "'%s'", r->text))
+			continue;
+		lists[r->list]++;
+		if (r->list < SYNTH_FRAMES)
+			for (const char *p = strchr(r->text, '%'); p; p = strchr(p + 1, '%'))
+				CHECK(p[1] && strchr("SFMCNQGTPRWZVLAXYKOEUI", p[1]), "'%s'", r->text);
+		else if (r->list == SYNTH_KINDS)
+			CHECK(r->frames < SYNTH_FRAMES, "'%s'", r->text);
+		else if (r->list < SYNTH_SIZES_SAID)
+			CHECK((int)r->relation >= 0 && r->anchors >= -1 && r->anchors <= 2 && r->form &&
+					strchr(r->list == SYNTH_RELATIONS ? "RZ01v2" : "phwc", r->form),
+				"'%s'", r->text);
+		else
+			CHECK(r->list == SYNTH_FOREIGN || r->surely, "'%s'", r->text);
+	}
+	CHECK(lists[SYNTH_NOUNS] && lists[SYNTH_RELATIONS] && lists[SYNTH_SAID], "lists are missing");
+	for (int list = SYNTH_PLAINLY; list < SYNTH_FRAMES; list++)
+		CHECK(!lists[list] == !is_unseen, "%d frames of list %d", lists[list], list);
+	synth_wordings_free(&w);
 }
 
 static int shares_words(const char *text, const struct synth_sentence *with, const struct synth_object *o)
@@ -183,7 +222,8 @@ static int shares_words(const char *text, const struct synth_sentence *with, con
 	/* The pair "colour noun" in its plainest form; synonyms are covered by the generator's own rule. */
 	char pair[64];
 
-	snprintf(pair, sizeof pair, "%s %s", synth_colour_name(o->colour), synth_shape_name(o->shape));
+	snprintf(pair, sizeof pair, "%s %s", synth_value_name(SYNTH_COLOUR, (int)o->colour),
+		synth_value_name(SYNTH_SHAPE, (int)o->shape));
 	return strstr(text, pair) && strstr(with->text, pair);
 }
 
@@ -192,25 +232,27 @@ struct tally {
 	int sentences, words, with_relation, arguable;
 };
 
-static int is_wrong(const struct synth_sentence *s, const struct synth_layout *l)
+static int is_wrong(const struct synth_sentence *s, const struct synth_viewpoint *v)
 {
 	int others = 0;
 
-	for (int k = 0; k < l->n; k++)
-		others += k != s->object && synth_sentence_judge(s, l, k) >= 0;
-	return others || synth_sentence_judge(s, l, s->object) < 0;
+	for (int k = 0; k < v->n; k++)
+		others += k != s->object && synth_sentence_judge(s, v, k) >= 0;
+	return others || synth_sentence_judge(s, v, s->object) < 0;
 }
 
-static int is_on_wrong_side(const struct synth_sentence *s, const struct synth_layout *l)
+static int is_on_wrong_side(const struct synth_sentence *s, const struct synth_viewpoint *v)
 {
 	int wrong = 0;
 
 	for (int k = 0; k < s->clause_count; k++) {
-		const struct synth_clause *q = &s->clauses[k];
-		if (q->relation == SYNTH_LEFT_OF)
-			wrong += l->u[s->object] >= l->u[q->a] || !strstr(s->text, "left");
-		if (q->relation == SYNTH_BEHIND)
-			wrong += l->v[s->object] <= l->v[q->a];
+		const struct synth_relation *r = &s->clauses[k].is;
+		if (r->degree != PARSE_PLAIN || r->a < 0)
+			continue;
+		if (r->relation == PARSE_LEFT)
+			wrong += v->u[s->object] >= v->u[r->a] || !strstr(s->text, "left");
+		if (r->relation == PARSE_BEHIND)
+			wrong += v->v[s->object] <= v->v[r->a];
 	}
 	return wrong;
 }
@@ -218,9 +260,9 @@ static int is_on_wrong_side(const struct synth_sentence *s, const struct synth_l
 static void sentences_of(uint64_t seed, int n, struct tally *t)
 {
 	struct synth_object o[SYNTH_MAX_OBJECTS];
-	static struct synth_sentence s[SYNTH_MAX_OBJECTS * SYNTH_SENTENCES];
+	struct synth_sentences list = {0};
 	struct synth_table table;
-	struct synth_layout l;
+	struct synth_viewpoint v;
 	struct cameras c;
 	struct err e = {0};
 	const struct synth_preset *preset = synth_preset(n % SYNTH_PRESETS);
@@ -231,7 +273,6 @@ static void sentences_of(uint64_t seed, int n, struct tally *t)
 		.width = W,
 		.height = H,
 		.gaussians = 1000};
-	double right[2], away[2];
 	int wrong = 0, false_side = 0, same = 0, length = 0, shared = 0, total = n * SYNTH_SENTENCES;
 
 	/* Of few, three may stand so that there are no words for them. */
@@ -241,23 +282,24 @@ static void sentences_of(uint64_t seed, int n, struct tally *t)
 		synth_arrange(o, n, &table, preset, options.seed);
 		if (synth_cameras_make(&c, &options, &table, &e))
 			return;
-		synth_cameras_reference(&c, right, away);
+		synth_viewpoint_reference(&v, o, n, &table, &c, 0);
 		cameras_free(&c);
-		synth_layout_make(&l, o, n, &table, right, away);
-		is_impossible = synth_sentences_make(s, &l, options.seed, &e);
+		synth_sentences_free(&list);
+		is_impossible = synth_sentences_make(&list, &v, options.seed, &e);
 	}
-	if (!CHECK(!is_impossible, "%s", e.message))
+	const struct synth_sentence *s = list.items;
+	if (!CHECK(!is_impossible && (int)list.n == total, "%s", e.message)) {
+		synth_sentences_free(&list);
 		return;
+	}
 	for (int i = 0; i < total; i++) {
-		int words = 1;
-		for (const char *p = s[i].text; *p; p++)
-			words += *p == ' ';
+		int words = synth_count_words(s[i].text);
 		t->sentences++;
 		t->words += words;
 		t->with_relation += s[i].clause_count > 0;
-		t->arguable += synth_sentence_judge(&s[i], &l, s[i].object) == 0;
-		wrong += is_wrong(&s[i], &l);
-		false_side += is_on_wrong_side(&s[i], &l);
+		t->arguable += synth_sentence_judge(&s[i], &v, s[i].object) == 0;
+		wrong += is_wrong(&s[i], &v);
+		false_side += is_on_wrong_side(&s[i], &v);
 		length +=
 			words < SYNTH_MIN_WORDS || words > SYNTH_MAX_WORDS || strchr(s[i].text, '%') != NULL;
 		for (int k = 0; k < i; k++) {
@@ -272,6 +314,7 @@ static void sentences_of(uint64_t seed, int n, struct tally *t)
 	CHECK(!wrong && !false_side && !same && !length && !shared,
 		"seed %d, %d objects: %d wrong, %d on the wrong side, %d twice, %d too short or long, %d not new",
 		(int)seed, n, wrong, false_side, same, length, shared);
+	synth_sentences_free(&list);
 }
 
 static void sentences_are_as_people_write(void)
@@ -300,6 +343,8 @@ int main(void)
 	relations_are_judged();
 	stacks_are_judged();
 	test_words_are_new();
+	rows_are_known(0);
+	rows_are_known(1);
 	sentences_are_as_people_write();
 	return unit_end();
 }

@@ -1,4 +1,4 @@
-#include "synth/habits.h"
+#include "synth/detector_errors.h"
 
 #include <math.h>
 
@@ -27,11 +27,11 @@ static void shuffled(uint32_t *order, int n, struct rng *r)
 
 /* Most objects have a confused sentence, three in four a guessing one too: by rank rather than by lot,
  * so that few objects have their share of faults too. */
-static void choose_mild(struct synth_habits *h, const struct synth_object *objects, int n, struct rng *r)
+static void choose_mild(struct synth_errors *h, const struct synth_object *objects, int n, struct rng *r)
 {
-	static const enum synth_habit usual[10] = {SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD,
-		SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_PART, SYNTH_HABIT_PART,
-		SYNTH_HABIT_UNION, SYNTH_HABIT_UNION};
+	static const enum synth_error usual[10] = {SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_NONE,
+		SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_PART, SYNTH_ERROR_PART,
+		SYNTH_ERROR_UNION, SYNTH_ERROR_UNION};
 	uint32_t by_rank[SYNTH_MAX_OBJECTS], order[SYNTH_TRAIN_SENTENCES];
 
 	shuffled(by_rank, n, r);
@@ -40,12 +40,12 @@ static void choose_mild(struct synth_habits *h, const struct synth_object *objec
 		int confused = share < 0.85, guessing = share < 0.75;
 		shuffled(order, SYNTH_TRAIN_SENTENCES, r);
 		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
-			enum synth_habit habit = usual[rng_below(r, 10)];
+			enum synth_error error = usual[rng_below(r, 10)];
 			if (k < confused)
-				habit = SYNTH_HABIT_CONFUSED;
+				error = SYNTH_ERROR_CONFUSED;
 			else if (k < confused + guessing)
-				habit = SYNTH_HABIT_GUESSING;
-			h->of[by_rank[rank]][order[k]] = habit;
+				error = SYNTH_ERROR_GUESSING;
+			h->of[by_rank[rank]][order[k]] = error;
 		}
 	}
 	for (int i = 0; i < n; i++) {
@@ -70,10 +70,10 @@ static double temptation(
 	const struct synth_object *own = &objects[s->object], *other = &objects[j];
 	double pull = 0.5 * likeness(own, other) - 0.1 * distance(own, other) + 0.8 * rng_uniform(r);
 
-	if (synth_meaning_fits(&s->meaning, other))
+	if (synth_sense_judge(&s->phrases[0].sense, other) > 0)
 		pull += 2;
 	for (int k = 0; k < s->clause_count; k++)
-		if (s->clauses[k].a == j || s->clauses[k].b == j)
+		if (s->clauses[k].is.a == j || s->clauses[k].is.b == j)
 			pull += 2.5;
 	return pull + 1.5 * log(fmax(2 * other->radius, other->height) / fmax(2 * own->radius, own->height));
 }
@@ -114,12 +114,12 @@ static int strongest(const double *pulls, int n, int i)
 
 /* `trapped` of the sentences of object i, those that tempt the most, mislead to the thing that most tempts
  * all four. The detector is sure of every other one. */
-static void mislead(struct synth_habits *h, int i, const struct synth_object *objects, int n,
+static void mislead(struct synth_errors *h, int i, const struct synth_object *objects, int n,
 	const struct synth_sentence *sentences, int trapped, struct rng *r)
 {
-	static const enum synth_habit usual[10] = {SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD,
-		SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_GOOD, SYNTH_HABIT_PART, SYNTH_HABIT_UNION,
-		SYNTH_HABIT_UNION, SYNTH_HABIT_GROUP};
+	static const enum synth_error usual[10] = {SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_NONE,
+		SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_PART, SYNTH_ERROR_UNION,
+		SYNTH_ERROR_UNION, SYNTH_ERROR_GROUP};
 	double pulls[SYNTH_TRAIN_SENTENCES][SYNTH_MAX_OBJECTS], sums[SYNTH_MAX_OBJECTS] = {0};
 
 	for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
@@ -135,18 +135,18 @@ static void mislead(struct synth_habits *h, int i, const struct synth_object *ob
 		int k = -1;
 		for (int m = 0; m < SYNTH_TRAIN_SENTENCES; m++) {
 			int is_taken =
-				h->of[i][m] == SYNTH_HABIT_CONFUSED || h->of[i][m] == SYNTH_HABIT_GUESSING;
+				h->of[i][m] == SYNTH_ERROR_CONFUSED || h->of[i][m] == SYNTH_ERROR_GUESSING;
 			if (!is_taken && (k < 0 || pulls[m][trap] > pulls[k][trap]))
 				k = m;
 		}
-		h->of[i][k] = count % 2 ? SYNTH_HABIT_GUESSING : SYNTH_HABIT_CONFUSED;
+		h->of[i][k] = count % 2 ? SYNTH_ERROR_GUESSING : SYNTH_ERROR_CONFUSED;
 		h->mistaken[i][k] = trap;
 	}
 }
 
 /* Of two in five objects most sentences mislead to one and the same other object, of two in five half of
  * them. */
-static void choose_severe(struct synth_habits *h, const struct synth_object *objects, int n,
+static void choose_severe(struct synth_errors *h, const struct synth_object *objects, int n,
 	const struct synth_sentence *sentences, struct rng *r)
 {
 	int by_rank[SYNTH_MAX_OBJECTS];
@@ -159,7 +159,7 @@ static void choose_severe(struct synth_habits *h, const struct synth_object *obj
 	}
 }
 
-void synth_habits_test(struct synth_habits *h, int n, struct rng *r)
+void synth_errors_test(struct synth_errors *h, int n, struct rng *r)
 {
 	for (int i = 0; i < n; i++)
 		for (int k = SYNTH_TRAIN_SENTENCES; k < SYNTH_SENTENCES; k++) {
@@ -169,10 +169,10 @@ void synth_habits_test(struct synth_habits *h, int n, struct rng *r)
 		}
 }
 
-void synth_habits_make(struct synth_habits *h, const struct synth_object *objects, int n,
+void synth_errors_make(struct synth_errors *h, const struct synth_object *objects, int n,
 	const struct synth_sentence *sentences, enum synth_severity severity, struct rng *r)
 {
-	*h = (struct synth_habits){0};
+	*h = (struct synth_errors){0};
 	if (severity == SYNTH_MILD)
 		choose_mild(h, objects, n, r);
 	else

@@ -1,4 +1,4 @@
-#include "synth/candidates.h"
+#include "synth/detector.h"
 
 #include "base/mem.h"
 #include "synth/outline.h"
@@ -24,7 +24,7 @@ enum fault {
 
 /* A kind of detector: its faults, and how its confidence comes about. */
 static const struct {
-	int rates[SYNTH_HABITS][FAULTS]; /* how often a sentence of each habit has each fault, in percent */
+	int rates[SYNTH_ERRORS][FAULTS]; /* how often a sentence of each error has each fault, in percent */
 	double score, quality, noise;	 /* confidence is score + quality * IoU, with noise */
 	/* The same where another object is shown: what such a sentence adds, the noise, and how ragged the
 	 * outline is over that of the right one. What draws the eye is outlined well. */
@@ -32,11 +32,11 @@ static const struct {
 	/* A thing of less than this share of the picture is found seldom, and with less confidence. */
 	double faint;
 } kinds[SYNTH_SEVERITIES] = {
-	[SYNTH_MILD] = {.rates = {[SYNTH_HABIT_GOOD] = {72, 7, 8, 7, 1, 5},
-				[SYNTH_HABIT_CONFUSED] = {14, 75, 3, 3, 1, 4},
-				[SYNTH_HABIT_GUESSING] = {22, 68, 3, 3, 1, 3},
-				[SYNTH_HABIT_PART] = {42, 8, 40, 4, 1, 5},
-				[SYNTH_HABIT_UNION] = {42, 8, 4, 40, 1, 5}},
+	[SYNTH_MILD] = {.rates = {[SYNTH_ERROR_NONE] = {72, 7, 8, 7, 1, 5},
+				[SYNTH_ERROR_CONFUSED] = {14, 75, 3, 3, 1, 4},
+				[SYNTH_ERROR_GUESSING] = {22, 68, 3, 3, 1, 3},
+				[SYNTH_ERROR_PART] = {42, 8, 40, 4, 1, 5},
+				[SYNTH_ERROR_UNION] = {42, 8, 4, 40, 1, 5}},
 		.score = 0.30,
 		.quality = 0.40,
 		.noise = 0.12,
@@ -44,12 +44,12 @@ static const struct {
 		.guessing = 0.05,
 		.wrong_noise = 0.12,
 		.wrong_rag = 1},
-	[SYNTH_SEVERE] = {.rates = {[SYNTH_HABIT_GOOD] = {74, 6, 6, 5, 1, 5, 3},
-				  [SYNTH_HABIT_CONFUSED] = {11, 78, 3, 3, 1, 3, 1},
-				  [SYNTH_HABIT_GUESSING] = {11, 77, 3, 3, 1, 3, 2},
-				  [SYNTH_HABIT_PART] = {40, 6, 42, 3, 1, 6, 2},
-				  [SYNTH_HABIT_UNION] = {40, 6, 3, 42, 1, 5, 3},
-				  [SYNTH_HABIT_GROUP] = {36, 8, 3, 3, 1, 4, 45}},
+	[SYNTH_SEVERE] = {.rates = {[SYNTH_ERROR_NONE] = {74, 6, 6, 5, 1, 5, 3},
+				  [SYNTH_ERROR_CONFUSED] = {11, 78, 3, 3, 1, 3, 1},
+				  [SYNTH_ERROR_GUESSING] = {11, 77, 3, 3, 1, 3, 2},
+				  [SYNTH_ERROR_PART] = {40, 6, 42, 3, 1, 6, 2},
+				  [SYNTH_ERROR_UNION] = {40, 6, 3, 42, 1, 5, 3},
+				  [SYNTH_ERROR_GROUP] = {36, 8, 3, 3, 1, 4, 45}},
 		.score = 0.45,
 		.quality = 0.15,
 		.noise = 0.05,
@@ -69,14 +69,14 @@ void synth_detector_make(struct synth_detector *d, const struct synth_object *ob
 		.seed = seed, .severity = severity, .n = n, .objects = objects, .sentences = sentences};
 	rng_seed(&r, seed, SYNTH_STREAM_FAULTS);
 	synth_noise_make(&d->noise, &r);
-	synth_habits_make(&d->habits, objects, n, sentences, severity, &r);
-	rng_seed(&r, seed, SYNTH_STREAM_TEST_HABITS);
-	synth_habits_test(&d->habits, n, &r);
+	synth_errors_make(&d->errors, objects, n, sentences, severity, &r);
+	rng_seed(&r, seed, SYNTH_STREAM_TEST_ERRORS);
+	synth_errors_test(&d->errors, n, &r);
 }
 
-static enum fault choose_fault(const struct synth_detector *d, enum synth_habit habit, struct rng *r)
+static enum fault choose_fault(const struct synth_detector *d, enum synth_error error, struct rng *r)
 {
-	const int *rates = kinds[d->severity].rates[habit];
+	const int *rates = kinds[d->severity].rates[error];
 	int at = (int)rng_below(r, 100), f = 0;
 
 	while (at >= rates[f])
@@ -131,7 +131,7 @@ static int draw(struct detection *v, int object, int other, enum fault f, struct
 	}
 	memcpy(v->mask, shown(v, f == FAULT_OTHER ? other : object), v->pixels);
 	if (f == FAULT_UNION)
-		join(v, d->habits.neighbours[object]);
+		join(v, d->errors.neighbours[object]);
 	for (int j = 0; j < d->n && f == FAULT_GROUP; j++)
 		if (synth_look_alike(&d->objects[object], &d->objects[j]))
 			join(v, j);
@@ -152,14 +152,14 @@ static double faintness(const struct detection *v, int object)
 }
 
 /* Confidence follows quality, loosely; a confused sentence is often surer than a right one. */
-static double choose_score(struct detection *v, int object, enum fault f, enum synth_habit habit)
+static double choose_score(struct detection *v, int object, enum fault f, enum synth_error error)
 {
 	double quality = iou(v->mask, shown(v, object), v->pixels), luck = rng_normal(&v->rng);
 	double score = kinds[v->d->severity].score + kinds[v->d->severity].quality * quality;
 
 	if (f == FAULT_OTHER)
 		score += kinds[v->d->severity].wrong_noise * luck +
-			 (habit == SYNTH_HABIT_CONFUSED ? kinds[v->d->severity].confused
+			 (error == SYNTH_ERROR_CONFUSED ? kinds[v->d->severity].confused
 							: kinds[v->d->severity].guessing);
 	else
 		score += kinds[v->d->severity].noise * luck - 0.15 * faintness(v, object);
@@ -185,10 +185,10 @@ static int put(struct masks *out, struct detection *v, int object, int sentence,
 /* What goes wrong this time. A hidden object is not found, but at times something else is; a small or mostly
  * hidden one is found seldom. */
 static enum fault meet_fault(
-	struct detection *v, int object, int other, enum synth_habit habit, int is_hidden)
+	struct detection *v, int object, int other, enum synth_error error, int is_hidden)
 {
 	struct rng *r = &v->rng;
-	enum fault f = choose_fault(v->d, habit, r);
+	enum fault f = choose_fault(v->d, error, r);
 
 	if (is_hidden)
 		return rng_below(r, 100) < 65 ? FAULT_MISSING : FAULT_OTHER;
@@ -201,20 +201,20 @@ static enum fault meet_fault(
 
 static int detect_sentence(struct masks *out, struct detection *v, int object, int sentence, struct err *e)
 {
-	enum synth_habit habit = v->d->habits.of[object][sentence];
-	int other = v->d->habits.mistaken[object][sentence];
+	enum synth_error error = v->d->errors.of[object][sentence];
+	int other = v->d->errors.mistaken[object][sentence];
 	int is_hidden = synth_outline_area(shown(v, object), v->pixels) < SMALLEST;
 	int count = rng_below(&v->rng, 100) < 30 ? 2 : 1;
 
 	for (int i = 0; i < count; i++) {
-		enum fault f = meet_fault(v, object, other, habit, is_hidden);
+		enum fault f = meet_fault(v, object, other, error, is_hidden);
 		if (f == FAULT_MISSING)
 			return 0;
 		if (draw(v, object, other, f, e))
 			return -1;
 		if (f != FAULT_EMPTY && !synth_outline_area(v->mask, v->pixels))
 			return 0;
-		double score = choose_score(v, object, f, is_hidden ? SYNTH_HABIT_GUESSING : habit);
+		double score = choose_score(v, object, f, is_hidden ? SYNTH_ERROR_GUESSING : error);
 		if (i)
 			score = fmax(0.2, score - 0.1);
 		if (put(out, v, object, sentence, score, e))

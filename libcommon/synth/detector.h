@@ -1,11 +1,11 @@
 /* Candidate masks as a text-prompted detector and segmenter gives them: ragged, partial, joined with a
  * neighbour, missing, and for some sentences an object that was never meant, with confidence. */
-#ifndef SYNTH_CANDIDATES_H
-#define SYNTH_CANDIDATES_H
+#ifndef SYNTH_DETECTOR_H
+#define SYNTH_DETECTOR_H
 
 #include "base/err.h"
 #include "mask/mask.h"
-#include "synth/habits.h"
+#include "synth/detector_errors.h"
 #include "synth/noise.h"
 
 #include <stddef.h>
@@ -17,7 +17,7 @@ struct synth_detector {
 	int n; /* objects */
 	const struct synth_object *objects;
 	const struct synth_sentence *sentences;
-	struct synth_habits habits;
+	struct synth_errors errors;
 	struct synth_noise noise;
 };
 
