@@ -28,7 +28,7 @@ enum choose_part {
 	CHOOSE_KNOWLEDGE, /* what words mean besides: WordNet, and lang/kinds.h */
 	CHOOSE_ALIKE,	  /* look-alikes share words */
 	CHOOSE_COLOURS,
-	CHOOSE_SURFACES,  /* "striped", "shiny": what the Gaussians show of that (ask/object_surface.h) */
+	CHOOSE_SURFACES,  /* "striped", "shiny": what the Gaussians show of that (places/object_surface.h) */
 	CHOOSE_SIZES,	  /* "large" */
 	CHOOSE_RELATIONS, /* other clauses, and ordinals */
 	CHOOSE_EXCEPT,	  /* "but not the red one", "of the jar and the tin" */

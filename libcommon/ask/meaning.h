@@ -9,7 +9,7 @@
 #ifndef ASK_MEANING_H
 #define ASK_MEANING_H
 
-#include "ask/arrangement.h"
+#include "places/arrangement.h"
 #include "ask/vocabulary.h"
 
 enum meaning_kind {

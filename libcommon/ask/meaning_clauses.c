@@ -1,8 +1,8 @@
 /* Clauses: how what a phrase means stands to its anchors, and in which order of all that fits. */
 #include "ask/constants.h"
 #include "ask/meaning_private.h"
-#include "ask/relate.h"
-#include "ask/resting.h"
+#include "places/relate.h"
+#include "places/resting.h"
 #include "lang/colours.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Looks that are compared: "the darkest", "the second shiniest", "greener than the mat". */
 #include "ask/constants.h"
 #include "ask/meaning_private.h"
-#include "ask/relate.h"
+#include "places/relate.h"
 #include "lang/compared.h"
 #include "lang/finish.h"
 

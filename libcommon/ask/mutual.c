@@ -3,7 +3,7 @@
 #include "ask/meaning_private.h"
 
 #include "ask/constants.h"
-#include "ask/relate.h"
+#include "places/pairs.h"
 
 #include <string.h>
 
@@ -39,7 +39,7 @@ static int is_far(const struct parse *p)
 
 static double apart(const struct arrangement *a, size_t i, size_t k)
 {
-	return relate_gap(&a->objects[i], &a->objects[k]) / a->spacing;
+	return pair_gap(&a->objects[i], &a->objects[k]) / a->spacing;
 }
 
 /* Marks the two that fit about as well as any and are nearest, or farthest; returns how far apart they are.

@@ -3,7 +3,7 @@
 #ifndef ASK_VOCABULARY_H
 #define ASK_VOCABULARY_H
 
-#include "ask/arrangement.h"
+#include "places/arrangement.h"
 #include "base/err.h"
 #include "lang/parser.h"
 #include "lang/things.h"

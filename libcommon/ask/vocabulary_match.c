@@ -3,17 +3,13 @@
 #include "ask/vocabulary_private.h"
 #include "base/dot.h"
 #include "base/largest.h"
+#include "base/logistic.h"
 #include "lang/colours.h"
 #include "lang/finish.h"
 #include "lang/kinds.h"
 
 #include <math.h>
 #include <string.h>
-
-static double step(double x)
-{
-	return 1 / (1 + exp(-fmin(fmax(x, -40), 40)));
-}
 
 /* Whether a word is a word of a name: 2 the last one that is no number, 1 another. */
 static int is_in_name(const char *word, const char *name)
@@ -37,7 +33,7 @@ static int is_in_name(const char *word, const char *name)
 /* What the cosine of two words of a role is worth. */
 static double worth(double cosine, double half, double soft)
 {
-	return step((cosine - half) / soft);
+	return logistic((cosine - half) / soft);
 }
 
 /* What is known besides of a noun and the one of this kind that a thing is called by. */

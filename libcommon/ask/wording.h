@@ -15,7 +15,7 @@
 #ifndef ASK_WORDING_H
 #define ASK_WORDING_H
 
-#include "ask/arrangement.h"
+#include "places/arrangement.h"
 #include "ask/vocabulary.h"
 #include "base/err.h"
 
