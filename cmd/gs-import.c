@@ -2,8 +2,8 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cmd/import/import.h"
-#include "formats/colmap.h"
-#include "formats/dataparser.h"
+#include "formats/cameras/colmap.h"
+#include "formats/cameras/dataparser.h"
 
 #include <stdlib.h>
 #include <string.h>

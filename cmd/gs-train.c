@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cmd/train/fitting.h"
-#include "formats/colmap.h"
+#include "formats/cameras/colmap.h"
 
 #include <string.h>
 

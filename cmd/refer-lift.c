@@ -2,8 +2,8 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cmd/lift/lifting.h"
-#include "formats/dataparser.h"
-#include "formats/lifted.h"
+#include "formats/cameras/dataparser.h"
+#include "formats/scene/lifted.h"
 
 #include <string.h>
 

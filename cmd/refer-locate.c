@@ -6,7 +6,7 @@
 #include "cmd/render/locating.h"
 #include "cmd/text/questions.h"
 #include "cmd/render/showing.h"
-#include "formats/anysplats.h"
+#include "formats/splats/anysplats.h"
 
 #include <string.h>
 

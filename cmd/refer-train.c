@@ -2,7 +2,7 @@
 #include "cli/cli.h"
 #include "cli/stop.h"
 #include "cmd/train/learn.h"
-#include "formats/checkpoint.h"
+#include "formats/scene/checkpoint.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-# The weights of text-parse, from example sentences, marked ones (formats/marked.md) and, if given, from other people's readings.
+# The weights of text-parse, from example sentences, marked ones (formats/records/marked.md) and, if given, from other people's readings.
 #
 #   make -f pipelines/parse.mk [READINGS=readings.jsonl READINGS_SENTENCES=sentences.jsonl] [OUT=work/parse]
 #

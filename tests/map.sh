@@ -16,13 +16,15 @@ function wrong(text) {
 	bad = 1
 }
 
-# The room of a path: libcommon/base/err.h, base/err.h and cmd/render/draw.h are in base, base and jobs. "": none.
+# The room of a path: libcommon/base/err.h and base/err.h are in base, cmd/render/draw.h in cmd/render, all of formats/WING in formats. "": none.
 function room_of(path, part, n) {
 	n = split(path, part, "/")
 	if (part[1] == "libcommon")
 		return n == 3 ? part[2] : ""
 	if (part[1] == "cmd" && n == 3)
 		return "cmd/" part[2]
+	if (part[1] == "formats")
+		return n == 3 ? "formats" : ""
 	return n == 2 ? part[1] : ""
 }
 

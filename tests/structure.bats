@@ -129,10 +129,10 @@ breaks() {
 }
 
 @test "every format's header names its page, and every page that is named exists" {
-	for header in formats/*.h; do
-		grep -qE 'formats/[a-z0-9_-]+\.md' "$header" || { echo "names no page: $header"; false; }
+	for header in formats/*/*.h; do
+		grep -qE 'formats/[a-z0-9_/-]+\.md' "$header" || { echo "names no page: $header"; false; }
 	done
-	grep -ohE 'formats/[a-z0-9_-]+\.md' formats/*.h cmd/*/*.h man/* | sort -u | all_exist
+	grep -ohE 'formats/[a-z0-9_/-]+\.md' formats/*/*.h cmd/*/*.h man/* | sort -u | all_exist
 }
 
 @test "every tool has a manual page and tests" {

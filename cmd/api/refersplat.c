@@ -8,7 +8,7 @@
 #include "cmd/ask/answer_picture.h"
 #include "cmd/ask/asking.h"
 #include "cmd/text/questions.h"
-#include "formats/parses.h"
+#include "formats/records/parses.h"
 #include "geom/rotation.h"
 
 #include <stdio.h>

@@ -75,7 +75,7 @@ REFERSPLAT_API int refersplat_load_camera(struct refersplat *r, const char *file
 REFERSPLAT_API int refersplat_get_object(struct refersplat *r, size_t i, struct refersplat_object *object);
 REFERSPLAT_API int refersplat_get_view(struct refersplat *r, size_t i, struct refersplat_view *view);
 
-/* A sentence taken apart: *json is a line of JSON, formats/parses.md. Good until the next
+/* A sentence taken apart: *json is a line of JSON, formats/records/parses.md. Good until the next
  * refersplat_parse. */
 REFERSPLAT_API int refersplat_parse(struct refersplat *r, const char *sentence, const char **json);
 

@@ -1,7 +1,7 @@
 #include "cmd/ask/answer_picture.h"
 
 #include "base/mem.h"
-#include "formats/png.h"
+#include "formats/images/png.h"
 #include "mask/caption.h"
 #include "mask/overlay.h"
 #include "answer/answer.h"

@@ -1,7 +1,7 @@
 /* A picture of an answer: the scene in the view that shows it best, the things tinted and outlined, and words
  * below. */
-#ifndef CMD_JOBS_ANSWER_PICTURE_H
-#define CMD_JOBS_ANSWER_PICTURE_H
+#ifndef CMD_ASK_ANSWER_PICTURE_H
+#define CMD_ASK_ANSWER_PICTURE_H
 
 #include "base/err.h"
 #include "cmd/ask/asking.h"

@@ -1,6 +1,6 @@
 /* Answers of refer-ask for a person or a program to read. */
-#ifndef CMD_JOBS_ANSWER_WORDS_H
-#define CMD_JOBS_ANSWER_WORDS_H
+#ifndef CMD_ASK_ANSWER_WORDS_H
+#define CMD_ASK_ANSWER_WORDS_H
 
 #include "base/err.h"
 #include "cmd/ask/answer_picture.h"

@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cmd/run/object_extents.h"
-#include "formats/camerafile.h"
+#include "formats/cameras/camerafile.h"
 
 #include <math.h>
 #include <stdio.h>

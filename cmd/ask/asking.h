@@ -1,6 +1,6 @@
 /* A lifted scene that is asked one question after the other, with everything loaded once: refer-ask. */
-#ifndef CMD_JOBS_ASKING_H
-#define CMD_JOBS_ASKING_H
+#ifndef CMD_ASK_ASKING_H
+#define CMD_ASK_ASKING_H
 
 #include "ask/choose.h"
 #include "base/err.h"
@@ -9,7 +9,7 @@
 #include "cmd/text/encode.h"
 #include "cmd/ask/explain.h"
 #include "cmd/run/run_folder.h"
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 #include "lift/extent.h"
 
 struct asking_options {

@@ -1,6 +1,6 @@
 /* How a thing could be called: the shortest description by which the scene's own choice finds it again. */
-#ifndef CMD_JOBS_CALLING_H
-#define CMD_JOBS_CALLING_H
+#ifndef CMD_ASK_CALLING_H
+#define CMD_ASK_CALLING_H
 
 #include "base/err.h"
 #include "base/report.h"

@@ -1,6 +1,6 @@
 /* How far two things are apart: questions such as "how far is the mug from the plate?". */
-#ifndef CMD_JOBS_DISTANCE_H
-#define CMD_JOBS_DISTANCE_H
+#ifndef CMD_ASK_DISTANCE_H
+#define CMD_ASK_DISTANCE_H
 
 #include "base/err.h"
 #include "base/report.h"

@@ -1,6 +1,6 @@
 /* Why a sentence means what it means among a scene's objects, or nothing: refer-ask. */
-#ifndef CMD_JOBS_EXPLAIN_H
-#define CMD_JOBS_EXPLAIN_H
+#ifndef CMD_ASK_EXPLAIN_H
+#define CMD_ASK_EXPLAIN_H
 
 #include "ask/meaning.h"
 #include "lang/parse.h"

@@ -1,6 +1,6 @@
 /* A parse in its own words: a phrase, then its clauses with their anchors in brackets. */
-#ifndef CMD_JOBS_PARSE_WORDS_H
-#define CMD_JOBS_PARSE_WORDS_H
+#ifndef CMD_ASK_PARSE_WORDS_H
+#define CMD_ASK_PARSE_WORDS_H
 
 #include "lang/parse.h"
 

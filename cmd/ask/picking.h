@@ -1,6 +1,6 @@
 /* The thing under a pixel, or in a box, of a view: refer-ask --point and --box. */
-#ifndef CMD_JOBS_PICKING_H
-#define CMD_JOBS_PICKING_H
+#ifndef CMD_ASK_PICKING_H
+#define CMD_ASK_PICKING_H
 
 #include "base/err.h"
 #include "cmd/ask/asking.h"

@@ -1,6 +1,6 @@
 /* The reply to a question, to a question about a distance, or to a place in a view: refer-ask. */
-#ifndef CMD_JOBS_REPLY_H
-#define CMD_JOBS_REPLY_H
+#ifndef CMD_ASK_REPLY_H
+#define CMD_ASK_REPLY_H
 
 #include "base/err.h"
 #include "base/report.h"

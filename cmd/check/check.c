@@ -5,9 +5,9 @@
 #include "cmd/check/check_arrays.h"
 #include "cmd/check/check_folder.h"
 #include "cmd/check/check_records.h"
-#include "formats/anysplats.h"
-#include "formats/json.h"
-#include "formats/jsonl.h"
+#include "formats/splats/anysplats.h"
+#include "formats/records/json.h"
+#include "formats/records/jsonl.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -68,8 +68,7 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 	    is_frames = cJSON_HasObjectItem(first, "frames");
 	int is_mask = cJSON_HasObjectItem(first, "segmentation") || cJSON_HasObjectItem(first, "path");
 	int is_box = cJSON_HasObjectItem(first, "oriented");
-	int is_parse = cJSON_IsObject(cJSON_GetObjectItemCaseSensitive(first, "target"));
-	if (got == 1 && !is_sentence && !is_parse && !is_mask && !is_frames && !is_box)
+	if (got == 1 && !is_sentence && !is_mask && !is_frames && !is_box)
 		got = jsonl_err(
 			&j, e, "neither a sentence (key 'text') nor a mask (key 'segmentation' or 'path')");
 	else if (got < 0 && e->code == ERR_FORMAT && !start_again(path, &ignored))
@@ -82,8 +81,6 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 		return -1;
 	if (is_frames)
 		return check_cameras(c, path, "nerfstudio cameras", e);
-	if (is_parse)
-		return check_parses(c, path, e);
 	if (is_box && !is_sentence && !is_mask)
 		return check_boxes(c, path, e);
 	return is_sentence ? check_sentences(c, path, e) : check_masks(c, path, e);

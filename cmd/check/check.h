@@ -1,11 +1,11 @@
 /* Says what a file of the suite is, by its content, and whether it is well-formed. Reads with the format's
  * own reader, so what passes here is what the tools accept. */
-#ifndef CMD_JOBS_CHECK_H
-#define CMD_JOBS_CHECK_H
+#ifndef CMD_CHECK_CHECK_H
+#define CMD_CHECK_CHECK_H
 
 #include "base/err.h"
-#include "formats/fingerprint.h"
-#include "formats/safetensors.h"
+#include "formats/arrays/fingerprint.h"
+#include "formats/arrays/safetensors.h"
 
 enum { CHECK_MAX_FACTS = 6 };
 

@@ -1,17 +1,17 @@
 #include "cmd/check/check_arrays.h"
 
 #include "cmd/check/check_records.h"
-#include "formats/anysplats.h"
-#include "formats/camerafile.h"
-#include "formats/features.h"
-#include "formats/lifted.h"
-#include "formats/model.h"
-#include "formats/npz.h"
-#include "formats/parser_weights.h"
-#include "formats/png.h"
-#include "formats/selection.h"
-#include "formats/text.h"
-#include "formats/weights.h"
+#include "formats/splats/anysplats.h"
+#include "formats/cameras/camerafile.h"
+#include "formats/scene/features.h"
+#include "formats/scene/lifted.h"
+#include "formats/scene/model.h"
+#include "formats/arrays/npz.h"
+#include "formats/encoders/parser_weights.h"
+#include "formats/images/png.h"
+#include "formats/scene/selection.h"
+#include "formats/scene/text.h"
+#include "formats/scene/weights.h"
 
 #include <stdlib.h>
 

@@ -1,10 +1,10 @@
 /* What cmd/check/check.h says of files of arrays and of cameras: each reads a whole file with its format's
  * reader, and adds what it counted. Return 0, or -1 with *e. */
-#ifndef CMD_JOBS_CHECK_ARRAYS_H
-#define CMD_JOBS_CHECK_ARRAYS_H
+#ifndef CMD_CHECK_CHECK_ARRAYS_H
+#define CMD_CHECK_CHECK_ARRAYS_H
 
 #include "cmd/check/check.h"
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 
 /* Those of ours, whose kind is known already. */
 int check_splats(struct check *c, const char *path, struct err *e);

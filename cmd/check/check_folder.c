@@ -4,8 +4,8 @@
 #include "base/mem.h"
 #include "cmd/check/check_arrays.h"
 #include "cmd/check/check_records.h"
-#include "formats/colmap.h"
-#include "formats/weights.h"
+#include "formats/cameras/colmap.h"
+#include "formats/scene/weights.h"
 
 #include <dirent.h>
 #include <stdlib.h>

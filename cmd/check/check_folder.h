@@ -1,6 +1,6 @@
 /* What cmd/check/check.h says of folders: a scene, a COLMAP model, the weights of gs-weigh. */
-#ifndef CMD_JOBS_CHECK_FOLDER_H
-#define CMD_JOBS_CHECK_FOLDER_H
+#ifndef CMD_CHECK_CHECK_FOLDER_H
+#define CMD_CHECK_CHECK_FOLDER_H
 
 #include "cmd/check/check.h"
 

@@ -1,12 +1,11 @@
-/* The records of gs-check: sentences, parses, masks and boxes, each read by its own reader and counted. */
+/* The records of gs-check: sentences, masks and boxes, each read by its own reader and counted. */
 #include "cmd/check/check_records.h"
 
 #include "base/mem.h"
 #include "base/names.h"
-#include "formats/boxes.h"
-#include "formats/masks.h"
-#include "formats/parses.h"
-#include "formats/sentences.h"
+#include "formats/records/boxes.h"
+#include "formats/records/masks.h"
+#include "formats/records/sentences.h"
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -26,22 +25,6 @@ static int add_names(struct check *c, const char *fact, const void *items, size_
 		return -1;
 	check_add(c, fact, (long long)names_count(&names));
 	names_free(&names);
-	return 0;
-}
-
-int check_parses(struct check *c, const char *path, struct err *e)
-{
-	struct parse_set s;
-	size_t clauses = 0;
-
-	if (parses_read(&s, path, e))
-		return -1;
-	c->kind = "parses";
-	for (size_t i = 0; i < s.n; i++)
-		clauses += (size_t)s.records[i].parse.clause_count;
-	check_add(c, "parses", (long long)s.n);
-	check_add(c, "clauses", (long long)clauses);
-	parses_free(&s);
 	return 0;
 }
 

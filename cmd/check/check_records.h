@@ -1,7 +1,7 @@
-/* What cmd/check/check.h says of JSON Lines (formats/jsonl.md): each reads a whole file with its format's
- * reader, and adds the kind and what it counted. Return 0, or -1 with *e. */
-#ifndef CMD_JOBS_CHECK_RECORDS_H
-#define CMD_JOBS_CHECK_RECORDS_H
+/* What cmd/check/check.h says of JSON Lines (formats/records/jsonl.md): each reads a whole file with its
+ * format's reader, and adds the kind and what it counted. Return 0, or -1 with *e. */
+#ifndef CMD_CHECK_CHECK_RECORDS_H
+#define CMD_CHECK_CHECK_RECORDS_H
 
 #include "cmd/check/check.h"
 
@@ -9,7 +9,6 @@
 void check_add(struct check *c, const char *name, long long value);
 
 int check_sentences(struct check *c, const char *path, struct err *e);
-int check_parses(struct check *c, const char *path, struct err *e);
 int check_masks(struct check *c, const char *path, struct err *e);
 int check_boxes(struct check *c, const char *path, struct err *e);
 

@@ -1,7 +1,7 @@
 #include "cmd/feature/feature_components.h"
 
 #include "base/mem.h"
-#include "formats/safetensors.h"
+#include "formats/arrays/safetensors.h"
 #include "nn/linear.h"
 
 #include <math.h>

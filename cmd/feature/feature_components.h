@@ -1,10 +1,11 @@
-/* Lifted features told by their first principal components: feature-lift --components. formats/features.md.
+/* Lifted features told by their first principal components: feature-lift --components.
+ * formats/scene/features.md.
  */
-#ifndef CMD_JOBS_FEATURE_COMPONENTS_H
-#define CMD_JOBS_FEATURE_COMPONENTS_H
+#ifndef CMD_FEATURE_FEATURE_COMPONENTS_H
+#define CMD_FEATURE_FEATURE_COMPONENTS_H
 
 #include "base/err.h"
-#include "formats/features.h"
+#include "formats/scene/features.h"
 #include "lift/components.h"
 
 struct feature_components {

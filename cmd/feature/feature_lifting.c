@@ -2,9 +2,9 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/features.h"
-#include "formats/safetensors.h"
-#include "formats/weights.h"
+#include "formats/scene/features.h"
+#include "formats/arrays/safetensors.h"
+#include "formats/scene/weights.h"
 
 #include <stdio.h>
 #include <stdlib.h>

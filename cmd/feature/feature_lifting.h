@@ -1,12 +1,13 @@
-/* Features or labels of a scene's views, lifted onto its Gaussians: feature-lift. formats/features.md. */
-#ifndef CMD_JOBS_FEATURE_LIFTING_H
-#define CMD_JOBS_FEATURE_LIFTING_H
+/* Features or labels of a scene's views, lifted onto its Gaussians: feature-lift. formats/scene/features.md.
+ */
+#ifndef CMD_FEATURE_FEATURE_LIFTING_H
+#define CMD_FEATURE_FEATURE_LIFTING_H
 
 #include "base/err.h"
 #include "base/report.h"
 #include "cmd/feature/feature_components.h"
 #include "cmd/feature/feature_maps.h"
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 #include "lift/lift_features.h"
 #include "lift/lift_labels.h"
 

@@ -1,16 +1,16 @@
 /* What 2D models say of a scene's training views: maps of features, segments with a feature each, labels, or
- * masks with the vector of a text each; and which pixel has which. formats/features.md. */
-#ifndef CMD_JOBS_FEATURE_MAPS_H
-#define CMD_JOBS_FEATURE_MAPS_H
+ * masks with the vector of a text each; and which pixel has which. formats/scene/features.md. */
+#ifndef CMD_FEATURE_FEATURE_MAPS_H
+#define CMD_FEATURE_FEATURE_MAPS_H
 
 #include "base/err.h"
 #include "base/names.h"
 #include "base/report.h"
-#include "formats/masks.h"
-#include "formats/npy.h"
-#include "formats/npz.h"
-#include "formats/scene.h"
-#include "formats/text.h"
+#include "formats/records/masks.h"
+#include "formats/arrays/npy.h"
+#include "formats/arrays/npz.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/text.h"
 #include "mask/mask_index.h"
 
 #include <stddef.h>

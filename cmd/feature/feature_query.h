@@ -1,16 +1,16 @@
 /* Which Gaussians of lifted features sentences select, by the rules of several systems: feature-query.
- * formats/selection.md. */
-#ifndef CMD_JOBS_FEATURE_QUERY_H
-#define CMD_JOBS_FEATURE_QUERY_H
+ * formats/scene/selection.md. */
+#ifndef CMD_FEATURE_FEATURE_QUERY_H
+#define CMD_FEATURE_FEATURE_QUERY_H
 
 #include "base/err.h"
 #include "base/report.h"
 #include "cmd/feature/query_vectors.h"
-#include "formats/features.h"
-#include "formats/lifted.h"
-#include "formats/scene.h"
-#include "formats/selection.h"
-#include "formats/text.h"
+#include "formats/scene/features.h"
+#include "formats/scene/lifted.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/selection.h"
+#include "formats/scene/text.h"
 #include "mask/mask.h"
 
 #include <stddef.h>

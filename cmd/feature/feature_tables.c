@@ -1,8 +1,8 @@
 #include "cmd/feature/feature_tables.h"
 
 #include "base/mem.h"
-#include "formats/features.h"
-#include "formats/png.h"
+#include "formats/scene/features.h"
+#include "formats/images/png.h"
 #include "lift/source_weights.h"
 #include "mask/rle.h"
 

@@ -1,6 +1,6 @@
 /* The files of a view that feature_maps reads: their tables of features, and which row each pixel has. */
-#ifndef CMD_JOBS_FEATURE_TABLES_H
-#define CMD_JOBS_FEATURE_TABLES_H
+#ifndef CMD_FEATURE_FEATURE_TABLES_H
+#define CMD_FEATURE_FEATURE_TABLES_H
 
 #include "cmd/feature/feature_maps.h"
 

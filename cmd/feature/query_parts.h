@@ -1,7 +1,7 @@
 /* The two kinds of rules of cmd/feature/feature_query: by the cosines of vectors of texts, and by examples of
  * what is meant. */
-#ifndef CMD_JOBS_QUERY_PARTS_H
-#define CMD_JOBS_QUERY_PARTS_H
+#ifndef CMD_FEATURE_QUERY_PARTS_H
+#define CMD_FEATURE_QUERY_PARTS_H
 
 #include "cmd/feature/feature_query.h"
 

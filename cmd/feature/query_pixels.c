@@ -5,7 +5,7 @@
 #include "answer/peak.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/masks.h"
+#include "formats/records/masks.h"
 #include "lift/query_rules.h"
 #include "splat/render.h"
 

@@ -3,8 +3,8 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/path.h"
-#include "formats/npz.h"
-#include "formats/safetensors.h"
+#include "formats/arrays/npz.h"
+#include "formats/arrays/safetensors.h"
 #include "lift/query_rules.h"
 
 #include <math.h>

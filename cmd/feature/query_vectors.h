@@ -1,9 +1,9 @@
-/* Vectors of texts, as any encoder makes them: rows of a file. formats/selection.md. */
-#ifndef CMD_JOBS_QUERY_VECTORS_H
-#define CMD_JOBS_QUERY_VECTORS_H
+/* Vectors of texts, as any encoder makes them: rows of a file. formats/scene/selection.md. */
+#ifndef CMD_FEATURE_QUERY_VECTORS_H
+#define CMD_FEATURE_QUERY_VECTORS_H
 
 #include "base/err.h"
-#include "formats/text.h"
+#include "formats/scene/text.h"
 
 #include <stddef.h>
 

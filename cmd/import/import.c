@@ -2,9 +2,9 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/anysplats.h"
-#include "formats/camerafile.h"
-#include "formats/dataparser.h"
+#include "formats/splats/anysplats.h"
+#include "formats/cameras/camerafile.h"
+#include "formats/cameras/dataparser.h"
 #include "geom/lens.h"
 #include "geom/views.h"
 #include "splat/near.h"

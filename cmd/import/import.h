@@ -1,14 +1,14 @@
-/* A scene folder from a trained 3DGS .ply and its cameras: gs-import. formats/scene.md,
- * formats/camerafile.md. */
-#ifndef CMD_JOBS_IMPORT_H
-#define CMD_JOBS_IMPORT_H
+/* A scene folder from a trained 3DGS .ply and its cameras: gs-import. formats/scene/scene.md,
+ * formats/cameras/camerafile.md. */
+#ifndef CMD_IMPORT_IMPORT_H
+#define CMD_IMPORT_IMPORT_H
 
 #include "base/err.h"
 #include "base/report.h"
 #include "cmd/import/point_frame.h"
 #include "cmd/import/resemblance.h"
-#include "formats/gaussian_rows.h"
-#include "formats/scene.h"
+#include "formats/splats/gaussian_rows.h"
+#include "formats/scene/scene.h"
 
 #include <stddef.h>
 

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/quantile.h"
-#include "formats/points.h"
+#include "formats/cameras/points.h"
 
 #include <math.h>
 #include <stdint.h>

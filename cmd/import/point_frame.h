@@ -1,9 +1,9 @@
 /* Whether splats lie where the points of their cameras' reconstruction do: gs-import. */
-#ifndef CMD_JOBS_POINT_FRAME_H
-#define CMD_JOBS_POINT_FRAME_H
+#ifndef CMD_IMPORT_POINT_FRAME_H
+#define CMD_IMPORT_POINT_FRAME_H
 
 #include "base/err.h"
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 
 /* Splats were trained from these points, so that each has the other near in the frame of both, if only those
  * that were not cut away: the larger share of either that has one of the other within a twentieth of the

@@ -1,10 +1,10 @@
 /* Whether a scene looks as its photographs do, through its cameras: gs-import. */
-#ifndef CMD_JOBS_RESEMBLANCE_H
-#define CMD_JOBS_RESEMBLANCE_H
+#ifndef CMD_IMPORT_RESEMBLANCE_H
+#define CMD_IMPORT_RESEMBLANCE_H
 
 #include "base/err.h"
 #include "base/report.h"
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 
 #include <stddef.h>
 

@@ -1,7 +1,7 @@
 #include "cmd/import/transforming.h"
 
 #include "base/mem.h"
-#include "formats/camerafile.h"
+#include "formats/cameras/camerafile.h"
 #include "geom/neighbours.h"
 #include "geom/up.h"
 

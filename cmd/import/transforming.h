@@ -1,6 +1,6 @@
 /* Splats of any format, cut and moved: gs-transform. */
-#ifndef CMD_JOBS_TRANSFORMING_H
-#define CMD_JOBS_TRANSFORMING_H
+#ifndef CMD_IMPORT_TRANSFORMING_H
+#define CMD_IMPORT_TRANSFORMING_H
 
 #include "base/err.h"
 #include "splat/move.h"
@@ -16,8 +16,8 @@ struct transforming {
 	double scale;
 	const char *known;   /* X0,Y0,Z0,X1,Y1,Z1=LENGTH in place of scale: two points and how far they are
 				apart;   NULL: scale */
-	const char *up_from; /* cameras, a file or folder (formats/camerafile.h): what is up for them becomes
-				-y; NULL: not */
+	const char *up_from; /* cameras, a file or folder (formats/cameras/camerafile.h): what is up for them
+				becomes -y; NULL: not */
 };
 
 struct transforming_count {

@@ -3,8 +3,8 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
-#include "formats/png.h"
-#include "formats/scene.h"
+#include "formats/images/png.h"
+#include "formats/scene/scene.h"
 #include "geom/lens.h"
 #include "mask/mask.h"
 

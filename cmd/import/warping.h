@@ -1,7 +1,7 @@
 /* Between the photographs of lenses that distort and the views of a scene, which are pinholes: masks and
  * pictures, each pixel that of the other that shows the same, none where there is none. geom/lens.h. */
-#ifndef CMD_JOBS_WARPING_H
-#define CMD_JOBS_WARPING_H
+#ifndef CMD_IMPORT_WARPING_H
+#define CMD_IMPORT_WARPING_H
 
 #include "base/err.h"
 #include "geom/camera.h"

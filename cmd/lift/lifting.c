@@ -3,8 +3,8 @@
 #include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/weights.h"
-#include "formats/weights_pack.h"
+#include "formats/scene/weights.h"
+#include "formats/scene/weights_pack.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,17 +1,17 @@
 /* The objects that sentences name, lifted onto the Gaussians from their masks: what refer-lift reads, which
- * mask is of which object, and the model that comes of it. formats/lifted.md. */
-#ifndef CMD_JOBS_LIFTING_H
-#define CMD_JOBS_LIFTING_H
+ * mask is of which object, and the model that comes of it. formats/scene/lifted.md. */
+#ifndef CMD_LIFT_LIFTING_H
+#define CMD_LIFT_LIFTING_H
 
 #include "ask/disambiguate.h"
 #include "base/err.h"
 #include "base/names.h"
 #include "base/report.h"
-#include "formats/lifted.h"
-#include "formats/masks.h"
-#include "formats/parser_weights.h"
-#include "formats/scene.h"
-#include "formats/text.h"
+#include "formats/scene/lifted.h"
+#include "formats/records/masks.h"
+#include "formats/encoders/parser_weights.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/text.h"
 #include "lift/lift_objects.h"
 #include "mask/mask_index.h"
 

@@ -1,12 +1,12 @@
 /* The masks of objects, out of the candidates that a detector found for their sentences: pseudomask-select.
- * formats/masks.md. */
-#ifndef CMD_JOBS_PSEUDOMASKS_H
-#define CMD_JOBS_PSEUDOMASKS_H
+ * formats/records/masks.md. */
+#ifndef CMD_LIFT_PSEUDOMASKS_H
+#define CMD_LIFT_PSEUDOMASKS_H
 
 #include "base/err.h"
 #include "base/report.h"
-#include "formats/masks.h"
-#include "formats/scene.h"
+#include "formats/records/masks.h"
+#include "formats/scene/scene.h"
 #include "lift/propagate.h"
 #include "lift/regions.h"
 #include "mask/pool.h"

@@ -5,8 +5,8 @@
 #include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/precision.h"
-#include "formats/weights.h"
+#include "formats/arrays/precision.h"
+#include "formats/scene/weights.h"
 #include "splat/prune.h"
 #include "splat/render.h"
 

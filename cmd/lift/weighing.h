@@ -1,11 +1,11 @@
-/* The blend weights of a scene's views, rendered, pruned and written: gs-weigh. formats/weights.md. */
-#ifndef CMD_JOBS_WEIGHING_H
-#define CMD_JOBS_WEIGHING_H
+/* The blend weights of a scene's views, rendered, pruned and written: gs-weigh. formats/scene/weights.md. */
+#ifndef CMD_LIFT_WEIGHING_H
+#define CMD_LIFT_WEIGHING_H
 
 #include "base/err.h"
 #include "base/report.h"
-#include "formats/precision.h"
-#include "formats/scene.h"
+#include "formats/arrays/precision.h"
+#include "formats/scene/scene.h"
 
 enum { WEIGHING_TRAIN, WEIGHING_TEST, WEIGHING_ALL };
 

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/threads.h"
-#include "formats/weights.h"
+#include "formats/scene/weights.h"
 #include "splat/prune.h"
 
 #include <omp.h>

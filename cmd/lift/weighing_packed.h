@@ -1,10 +1,10 @@
-/* A view's weights rendered, pruned and packed part by part (formats/weights.md, "Packed"): a part stays in
- * the processor's cache, where the whole matrix takes a hundred megabytes. */
-#ifndef CMD_JOBS_WEIGHING_PACKED_H
-#define CMD_JOBS_WEIGHING_PACKED_H
+/* A view's weights rendered, pruned and packed part by part (formats/scene/weights.md, "Packed"): a part
+ * stays in the processor's cache, where the whole matrix takes a hundred megabytes. */
+#ifndef CMD_LIFT_WEIGHING_PACKED_H
+#define CMD_LIFT_WEIGHING_PACKED_H
 
 #include "base/err.h"
-#include "formats/weights_pack.h"
+#include "formats/scene/weights_pack.h"
 #include "geom/camera.h"
 #include "splat/render.h"
 

@@ -5,10 +5,10 @@
 #include "base/name.h"
 #include "cmd/masks/pictures.h"
 #include "cmd/import/warping.h"
-#include "formats/jsonl.h"
-#include "formats/masks.h"
-#include "formats/png.h"
-#include "formats/scene.h"
+#include "formats/records/jsonl.h"
+#include "formats/records/masks.h"
+#include "formats/images/png.h"
+#include "formats/scene/scene.h"
 #include "geom/views.h"
 
 #include <math.h>

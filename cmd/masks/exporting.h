@@ -1,6 +1,7 @@
-/* Mask records as other programs have them: COCO's JSON, and a PNG for each mask. formats/annotations.md. */
-#ifndef CMD_JOBS_EXPORTING_H
-#define CMD_JOBS_EXPORTING_H
+/* Mask records as other programs have them: COCO's JSON, and a PNG for each mask.
+ * formats/records/annotations.md. */
+#ifndef CMD_MASKS_EXPORTING_H
+#define CMD_MASKS_EXPORTING_H
 
 #include "base/err.h"
 #include "base/names.h"

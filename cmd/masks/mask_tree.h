@@ -1,7 +1,7 @@
 /* A folder of masks as pictures, DIR/VIEW/NAME.png, as mask-export --png writes it and as 3D-OVS has its
- * segmentations. formats/annotations.md. */
-#ifndef CMD_JOBS_MASK_TREE_H
-#define CMD_JOBS_MASK_TREE_H
+ * segmentations. formats/records/annotations.md. */
+#ifndef CMD_MASKS_MASK_TREE_H
+#define CMD_MASKS_MASK_TREE_H
 
 #include "base/err.h"
 

@@ -4,10 +4,10 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "cmd/masks/mask_tree.h"
-#include "formats/annotations.h"
-#include "formats/jsonl.h"
-#include "formats/masks.h"
-#include "formats/png.h"
+#include "formats/records/annotations.h"
+#include "formats/records/jsonl.h"
+#include "formats/records/masks.h"
+#include "formats/images/png.h"
 
 #include <math.h>
 #include <stdlib.h>

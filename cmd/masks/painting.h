@@ -1,7 +1,7 @@
 /* Photographs that a person painted over, a colour for each thing, or labelled, as mask records: mask-import.
  */
-#ifndef CMD_JOBS_PAINTING_H
-#define CMD_JOBS_PAINTING_H
+#ifndef CMD_MASKS_PAINTING_H
+#define CMD_MASKS_PAINTING_H
 
 #include "base/err.h"
 #include "base/report.h"
@@ -11,7 +11,7 @@
 #include <stddef.h>
 
 /* Whether what is read is a painted picture, whose colours need names: neither labels nor records, by their
- * endings, nor a folder (formats/annotations.md). */
+ * endings, nor a folder (formats/records/annotations.md). */
 int painting_needs_names(const char *path);
 
 /* A mask record for each label of a JSON file, for each record of a file of them, for each picture of a

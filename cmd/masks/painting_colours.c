@@ -5,7 +5,7 @@
 #include "base/name.h"
 #include "base/names.h"
 #include "base/path.h"
-#include "formats/png.h"
+#include "formats/images/png.h"
 #include "geom/views.h"
 
 #include <math.h>

@@ -2,8 +2,8 @@
 
 #include "base/mem.h"
 #include "base/name.h"
-#include "formats/jsonl.h"
-#include "formats/png.h"
+#include "formats/records/jsonl.h"
+#include "formats/images/png.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Which colour is what in a painted photograph: the file of names of mask-import. */
-#ifndef CMD_JOBS_PAINTING_NAMES_H
-#define CMD_JOBS_PAINTING_NAMES_H
+#ifndef CMD_MASKS_PAINTING_NAMES_H
+#define CMD_MASKS_PAINTING_NAMES_H
 
 #include "base/err.h"
 

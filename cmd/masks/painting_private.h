@@ -1,11 +1,11 @@
 /* What the parts of cmd/masks/painting.h share: painting_colours.c has pictures of colours, painting.c the
  * rest. */
-#ifndef CMD_JOBS_PAINTING_PRIVATE_H
-#define CMD_JOBS_PAINTING_PRIVATE_H
+#ifndef CMD_MASKS_PAINTING_PRIVATE_H
+#define CMD_MASKS_PAINTING_PRIVATE_H
 
 #include "cmd/masks/painting.h"
-#include "formats/annotations.h"
-#include "formats/masks.h"
+#include "formats/records/annotations.h"
+#include "formats/records/masks.h"
 
 /* The record of a mask, which is freed. Where it goes: the lens's photograph to the view. */
 int painting_put(struct mask *mask, struct warping *w, const char *path, FILE *out, struct err *e);

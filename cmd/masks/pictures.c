@@ -3,8 +3,8 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
-#include "formats/npy.h"
-#include "formats/png.h"
+#include "formats/arrays/npy.h"
+#include "formats/images/png.h"
 #include "mask/caption.h"
 #include "mask/overlay.h"
 

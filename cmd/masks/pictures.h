@@ -1,7 +1,8 @@
-/* What refer-render draws for a person to look at: a picture for each view and sentence. formats/pictures.md.
+/* What refer-render draws for a person to look at: a picture for each view and sentence.
+ * formats/images/pictures.md.
  */
-#ifndef CMD_JOBS_PICTURES_H
-#define CMD_JOBS_PICTURES_H
+#ifndef CMD_MASKS_PICTURES_H
+#define CMD_MASKS_PICTURES_H
 
 #include "base/err.h"
 

@@ -5,7 +5,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cmd/render/overlay_words.h"
-#include "formats/masks.h"
+#include "formats/records/masks.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* The masks of a request's sentences in views of the scene, and pictures of them: refer-render.
- * formats/masks.md, formats/pictures.md. */
-#ifndef CMD_JOBS_DRAW_H
-#define CMD_JOBS_DRAW_H
+ * formats/records/masks.md, formats/images/pictures.md. */
+#ifndef CMD_RENDER_DRAW_H
+#define CMD_RENDER_DRAW_H
 
 #include "base/err.h"
 #include "base/report.h"

@@ -5,8 +5,8 @@
 #include "base/name.h"
 #include "cmd/run/object_extents.h"
 #include "cmd/render/showing.h"
-#include "formats/boxes.h"
-#include "formats/ply.h"
+#include "formats/records/boxes.h"
+#include "formats/splats/ply.h"
 #include "lift/labels.h"
 
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cmd/run/object_extents.h"
-#include "formats/boxes.h"
+#include "formats/records/boxes.h"
 #include "geom/up.h"
 
 #include <stdlib.h>

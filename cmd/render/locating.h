@@ -1,6 +1,6 @@
 /* Where the answers to sentences are, and of several things each by itself. */
-#ifndef CMD_JOBS_LOCATING_H
-#define CMD_JOBS_LOCATING_H
+#ifndef CMD_RENDER_LOCATING_H
+#define CMD_RENDER_LOCATING_H
 
 #include "answer/locate.h"
 #include "cmd/render/request.h"
@@ -15,7 +15,7 @@ struct locating {
  */
 int locating_find(struct locating *r, double up[3], struct err *e);
 
-/* A line for each sentence, formats/boxes.md; "-" is stdout. */
+/* A line for each sentence, formats/records/boxes.md; "-" is stdout. */
 int locating_write(const struct locating *r, const char *path, struct err *e);
 
 /* With its request. */

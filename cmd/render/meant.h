@@ -1,8 +1,8 @@
 /* What a sentence's record says that it means, and whether an answer is that. */
-#ifndef CMD_JOBS_MEANT_H
-#define CMD_JOBS_MEANT_H
+#ifndef CMD_RENDER_MEANT_H
+#define CMD_RENDER_MEANT_H
 
-#include "formats/text.h"
+#include "formats/scene/text.h"
 #include "lift/lifted_model.h"
 
 #include <cjson/cJSON.h>

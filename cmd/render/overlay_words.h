@@ -1,6 +1,6 @@
 /* The two lines of words under an overlay: the sentence, and the answer. */
-#ifndef CMD_JOBS_OVERLAY_WORDS_H
-#define CMD_JOBS_OVERLAY_WORDS_H
+#ifndef CMD_RENDER_OVERLAY_WORDS_H
+#define CMD_RENDER_OVERLAY_WORDS_H
 
 #include "cmd/render/request.h"
 

@@ -1,15 +1,15 @@
 /* What refer-render and refer-locate have in common: a scene, encoded sentences about it, a model, and what
  * the model answers to the sentences that were chosen. */
-#ifndef CMD_JOBS_REQUEST_H
-#define CMD_JOBS_REQUEST_H
+#ifndef CMD_RENDER_REQUEST_H
+#define CMD_RENDER_REQUEST_H
 
 #include "answer/responses.h"
 #include "ask/choose.h"
 #include "places/viewpoint.h"
 #include "base/err.h"
 #include "cmd/run/anymodel.h"
-#include "formats/scene.h"
-#include "formats/text.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/text.h"
 
 #include <stddef.h>
 

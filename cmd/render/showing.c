@@ -4,9 +4,9 @@
 #include "base/mem.h"
 #include "cmd/ask/answer_words.h"
 #include "cmd/run/object_extents.h"
-#include "formats/anysplats.h"
-#include "formats/ply.h"
-#include "formats/splat.h"
+#include "formats/splats/anysplats.h"
+#include "formats/splats/ply.h"
+#include "formats/splats/splat.h"
 #include "splat/visibility.h"
 
 #include <stdlib.h>

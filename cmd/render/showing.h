@@ -1,6 +1,6 @@
 /* A scene with the things of a sentence or a question painted, alone, or taken away: refer-locate. */
-#ifndef CMD_JOBS_SHOWING_H
-#define CMD_JOBS_SHOWING_H
+#ifndef CMD_RENDER_SHOWING_H
+#define CMD_RENDER_SHOWING_H
 
 #include "answer/locate.h"
 #include "base/err.h"

@@ -1,6 +1,6 @@
 /* Answers that a run folder has no file of: a scene of photographs that were painted has no test views. */
-#ifndef CMD_JOBS_REPORT_ANSWERS_H
-#define CMD_JOBS_REPORT_ANSWERS_H
+#ifndef CMD_REPORT_REPORT_ANSWERS_H
+#define CMD_REPORT_REPORT_ANSWERS_H
 
 #include "base/err.h"
 #include "base/report.h"

@@ -1,6 +1,6 @@
 /* JSON in a page. */
-#ifndef CMD_JOBS_REPORT_JSON_H
-#define CMD_JOBS_REPORT_JSON_H
+#ifndef CMD_REPORT_REPORT_JSON_H
+#define CMD_REPORT_REPORT_JSON_H
 
 #include "base/err.h"
 

@@ -1,8 +1,8 @@
 #include "cmd/report/report_logs.h"
 
 #include "base/file.h"
-#include "formats/jsonl.h"
-#include "formats/safetensors.h"
+#include "formats/records/jsonl.h"
+#include "formats/arrays/safetensors.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* What a run folder says of how it was made: times, losses, settings. */
-#ifndef CMD_JOBS_REPORT_LOGS_H
-#define CMD_JOBS_REPORT_LOGS_H
+#ifndef CMD_REPORT_REPORT_LOGS_H
+#define CMD_REPORT_REPORT_LOGS_H
 
 #include "base/err.h"
 
@@ -10,8 +10,8 @@
  * {"step","seconds","mib","command"}; the numbers are absent where the log does not end with them. */
 cJSON *report_steps(const char *run, struct err *e);
 
-/* The training logs (formats/trainlog.md): a list of {"stage","lines":[[iteration,bce,contrast,loss],...],
- * "held":[[iteration,bce,iou],...]}. */
+/* The training logs (formats/records/trainlog.md): a list of
+ * {"stage","lines":[[iteration,bce,contrast,loss],...], "held":[[iteration,bce,iou],...]}. */
 cJSON *report_losses(const char *run, struct err *e);
 
 /* The metadata of the run's files: a list of {"file","metadata":{...}}, without checksums and long lists. All

@@ -1,6 +1,6 @@
 /* Outlines of masks as paths of SVG, each text once. */
-#ifndef CMD_JOBS_REPORT_OUTLINES_H
-#define CMD_JOBS_REPORT_OUTLINES_H
+#ifndef CMD_REPORT_REPORT_OUTLINES_H
+#define CMD_REPORT_REPORT_OUTLINES_H
 
 #include "base/err.h"
 #include "mask/rle.h"

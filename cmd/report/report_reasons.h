@@ -1,6 +1,6 @@
 /* What sentences mean among the lifted objects, and why. */
-#ifndef CMD_JOBS_REPORT_REASONS_H
-#define CMD_JOBS_REPORT_REASONS_H
+#ifndef CMD_REPORT_REPORT_REASONS_H
+#define CMD_REPORT_REPORT_REASONS_H
 
 #include "base/err.h"
 #include "cmd/ask/explain.h"

@@ -1,13 +1,13 @@
 /* What a run folder of the pipelines holds, as refer-report reads it. */
-#ifndef CMD_JOBS_REPORT_RUN_H
-#define CMD_JOBS_REPORT_RUN_H
+#ifndef CMD_REPORT_REPORT_RUN_H
+#define CMD_REPORT_REPORT_RUN_H
 
 #include "base/err.h"
 #include "base/report.h"
 #include "cmd/run/anymodel.h"
 #include "cmd/score/score_masks.h"
-#include "formats/scene.h"
-#include "formats/text.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/text.h"
 #include "score/score.h"
 
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* The sentences of a run, each with its answers, as the page has them. */
-#ifndef CMD_JOBS_REPORT_SENTENCES_H
-#define CMD_JOBS_REPORT_SENTENCES_H
+#ifndef CMD_REPORT_REPORT_SENTENCES_H
+#define CMD_REPORT_REPORT_SENTENCES_H
 
 #include "base/err.h"
 #include "cmd/report/report_outlines.h"

@@ -1,7 +1,7 @@
 #include "cmd/report/report_splats.h"
 
 #include "base/mem.h"
-#include "formats/splat.h"
+#include "formats/splats/splat.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 /* The Gaussians that a viewer shows: those of each lifted object side by side, and the rest. */
-#ifndef CMD_JOBS_REPORT_SPLATS_H
-#define CMD_JOBS_REPORT_SPLATS_H
+#ifndef CMD_REPORT_REPORT_SPLATS_H
+#define CMD_REPORT_REPORT_SPLATS_H
 
 #include "base/err.h"
 #include "cmd/report/report_run.h"
@@ -15,7 +15,8 @@ struct report_splats {
 	size_t groups;	/* the rest, then each object of the lifted model */
 	size_t *counts; /* (groups) */
 	size_t n;	/* that are shown */
-	uint8_t *bytes; /* (32,n): all first bytes of .splat (formats/splat.md), then all second ones, ... */
+	uint8_t *bytes; /* (32,n): all first bytes of .splat (formats/splats/splat.md), then all second ones,
+			   ... */
 };
 
 /* At most r->options->splats of them, those that cover most. Lengths keep 15 bits in positions and 7 in

@@ -1,7 +1,7 @@
 /* The scene as splats in a page, with what shows them: Spark (sparkjs.dev, MIT) on three.js (MIT), which
  * `make viewer` fetches. */
-#ifndef CMD_JOBS_REPORT_VIEWER_H
-#define CMD_JOBS_REPORT_VIEWER_H
+#ifndef CMD_REPORT_REPORT_VIEWER_H
+#define CMD_REPORT_REPORT_VIEWER_H
 
 #include "base/err.h"
 #include "base/report.h"

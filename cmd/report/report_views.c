@@ -3,9 +3,9 @@
 #include "base/base64.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/jpeg.h"
+#include "formats/images/jpeg.h"
 #include "cmd/import/warping.h"
-#include "formats/png.h"
+#include "formats/images/png.h"
 #include "splat/render.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Small pictures of views, as they stand in a page. */
-#ifndef CMD_JOBS_REPORT_VIEWS_H
-#define CMD_JOBS_REPORT_VIEWS_H
+#ifndef CMD_REPORT_REPORT_VIEWS_H
+#define CMD_REPORT_REPORT_VIEWS_H
 
 #include "base/err.h"
 #include "base/report.h"

@@ -1,7 +1,7 @@
 /* A run folder as one page of HTML: refer-report. The page's text is report_page.html; what it shows stands
  * in it as JSON. */
-#ifndef CMD_JOBS_REPORTING_H
-#define CMD_JOBS_REPORTING_H
+#ifndef CMD_REPORT_REPORTING_H
+#define CMD_REPORT_REPORTING_H
 
 #include "base/err.h"
 #include "base/report.h"

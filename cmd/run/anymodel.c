@@ -3,8 +3,8 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
-#include "formats/lifted.h"
-#include "formats/safetensors.h"
+#include "formats/scene/lifted.h"
+#include "formats/arrays/safetensors.h"
 
 #include <stdlib.h>
 #include <stddef.h>

@@ -1,15 +1,15 @@
-/* A model of any kind, told by the file: trained (formats/model.md), lifted (formats/lifted.md), or what was
- * selected for each sentence (formats/selection.md). */
-#ifndef CMD_JOBS_ANYMODEL_H
-#define CMD_JOBS_ANYMODEL_H
+/* A model of any kind, told by the file: trained (formats/scene/model.md), lifted (formats/scene/lifted.md),
+ * or what was selected for each sentence (formats/scene/selection.md). */
+#ifndef CMD_RUN_ANYMODEL_H
+#define CMD_RUN_ANYMODEL_H
 
 #include "answer/responses.h"
 #include "base/err.h"
-#include "formats/model.h"
-#include "formats/parser_weights.h"
-#include "formats/scene.h"
-#include "formats/selection.h"
-#include "formats/text.h"
+#include "formats/scene/model.h"
+#include "formats/encoders/parser_weights.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/selection.h"
+#include "formats/scene/text.h"
 #include "lift/lifted_model.h"
 
 struct anymodel {

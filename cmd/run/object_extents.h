@@ -1,9 +1,9 @@
 /* Where each lifted object of a scene is. */
-#ifndef CMD_JOBS_OBJECT_EXTENTS_H
-#define CMD_JOBS_OBJECT_EXTENTS_H
+#ifndef CMD_RUN_OBJECT_EXTENTS_H
+#define CMD_RUN_OBJECT_EXTENTS_H
 
 #include "base/err.h"
-#include "formats/boxes.h"
+#include "formats/records/boxes.h"
 #include "geom/camera.h"
 #include "lift/extent.h"
 #include "lift/lifted_model.h"

@@ -1,6 +1,6 @@
 /* The files of a folder that pipelines/lift.mk made, by their usual places. */
-#ifndef CMD_JOBS_RUN_FOLDER_H
-#define CMD_JOBS_RUN_FOLDER_H
+#ifndef CMD_RUN_RUN_FOLDER_H
+#define CMD_RUN_RUN_FOLDER_H
 
 #include "base/err.h"
 

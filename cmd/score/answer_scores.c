@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/number.h"
-#include "formats/jsonl.h"
+#include "formats/records/jsonl.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
-/* Scores of answers to sentences, what miou-score --answers writes. formats/scores.md. */
-#ifndef CMD_JOBS_ANSWER_SCORES_H
-#define CMD_JOBS_ANSWER_SCORES_H
+/* Scores of answers to sentences, what miou-score --answers writes. formats/records/scores.md. */
+#ifndef CMD_SCORE_ANSWER_SCORES_H
+#define CMD_SCORE_ANSWER_SCORES_H
 
 #include "base/err.h"
 #include "cmd/score/score_masks.h"
-#include "formats/sentences.h"
+#include "formats/records/sentences.h"
 #include "score/score_answers.h"
 
 struct answer_scores {

@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/jsonl.h"
+#include "formats/records/jsonl.h"
 #include "mask/mask_index.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
-/* Scores of boxes, what miou-score --boxes writes. formats/boxes.md. */
-#ifndef CMD_JOBS_BOX_SCORES_H
-#define CMD_JOBS_BOX_SCORES_H
+/* Scores of boxes, what miou-score --boxes writes. formats/records/boxes.md. */
+#ifndef CMD_SCORE_BOX_SCORES_H
+#define CMD_SCORE_BOX_SCORES_H
 
 #include "base/err.h"
-#include "formats/boxes.h"
+#include "formats/records/boxes.h"
 #include "score/box_score.h"
 
 struct box_scores {

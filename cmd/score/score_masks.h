@@ -1,9 +1,9 @@
 /* Files of masks as scoring takes them: names of one record at most, so that it is clear what belongs to
- * what. formats/masks.md. */
-#ifndef CMD_JOBS_SCORE_MASKS_H
-#define CMD_JOBS_SCORE_MASKS_H
+ * what. formats/records/masks.md. */
+#ifndef CMD_SCORE_SCORE_MASKS_H
+#define CMD_SCORE_SCORE_MASKS_H
 
-#include "formats/masks.h"
+#include "formats/records/masks.h"
 
 struct score_masks {
 	const char *path; /* the caller's */

@@ -1,12 +1,12 @@
 /* The tables of miou-score that need other files beside the masks: by what sentences say, and by how much of
- * an object is seen. formats/scores.md. */
-#ifndef CMD_JOBS_SCORE_TABLES_H
-#define CMD_JOBS_SCORE_TABLES_H
+ * an object is seen. formats/records/scores.md. */
+#ifndef CMD_SCORE_SCORE_TABLES_H
+#define CMD_SCORE_SCORE_TABLES_H
 
 #include "base/err.h"
 #include "cmd/score/score_masks.h"
-#include "formats/scores.h"
-#include "formats/sentences.h"
+#include "formats/records/scores.h"
+#include "formats/records/sentences.h"
 #include "score/score_rows.h"
 
 #include <stddef.h>

@@ -1,13 +1,13 @@
 /* What miou-score reads, put together, and the scores that come of it: of masks, of answers, of boxes.
- * formats/scores.md. */
-#ifndef CMD_JOBS_SCORING_H
-#define CMD_JOBS_SCORING_H
+ * formats/records/scores.md. */
+#ifndef CMD_SCORE_SCORING_H
+#define CMD_SCORE_SCORING_H
 
 #include "base/err.h"
 #include "base/report.h"
 #include "cmd/score/score_masks.h"
-#include "formats/scores.h"
-#include "formats/sentences.h"
+#include "formats/records/scores.h"
+#include "formats/records/sentences.h"
 
 /* NULL where one was not named; the first two always are. */
 struct scoring_files {

@@ -1,7 +1,7 @@
 /* A synthetic benchmark: made until all of it can be seen and told apart in words, then written: gs-synth.
- * formats/synth.md. */
-#ifndef CMD_JOBS_BENCHMARK_H
-#define CMD_JOBS_BENCHMARK_H
+ * formats/scene/synth.md. */
+#ifndef CMD_SYNTH_BENCHMARK_H
+#define CMD_SYNTH_BENCHMARK_H
 
 #include "base/err.h"
 #include "base/report.h"

@@ -1,6 +1,6 @@
-/* The folder of a synthetic benchmark, as gs-synth makes it. formats/synth.md. */
-#ifndef CMD_JOBS_SYNTH_FOLDER_H
-#define CMD_JOBS_SYNTH_FOLDER_H
+/* The folder of a synthetic benchmark, as gs-synth makes it. formats/scene/synth.md. */
+#ifndef CMD_SYNTH_SYNTH_FOLDER_H
+#define CMD_SYNTH_SYNTH_FOLDER_H
 
 #include "base/err.h"
 #include "base/file.h"

@@ -1,6 +1,7 @@
-/* The files of the unseen split of a synthetic benchmark: sentences and their parses. formats/synth.md. */
-#ifndef CMD_JOBS_SYNTH_UNSEEN_H
-#define CMD_JOBS_SYNTH_UNSEEN_H
+/* The files of the unseen split of a synthetic benchmark: sentences and their parses. formats/scene/synth.md.
+ */
+#ifndef CMD_SYNTH_SYNTH_UNSEEN_H
+#define CMD_SYNTH_SYNTH_UNSEEN_H
 
 #include "base/err.h"
 #include "geom/camera.h"

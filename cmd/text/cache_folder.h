@@ -1,6 +1,6 @@
 /* Where make puts what it fetches. */
-#ifndef CMD_JOBS_CACHE_FOLDER_H
-#define CMD_JOBS_CACHE_FOLDER_H
+#ifndef CMD_TEXT_CACHE_FOLDER_H
+#define CMD_TEXT_CACHE_FOLDER_H
 
 #include "base/err.h"
 

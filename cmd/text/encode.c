@@ -1,7 +1,7 @@
 #include "cmd/text/encode.h"
 
 #include "base/mem.h"
-#include "formats/masks.h"
+#include "formats/records/masks.h"
 
 #include <math.h>
 #include <stdlib.h>

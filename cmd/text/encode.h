@@ -1,12 +1,12 @@
-/* Sentences to word vectors by a language encoder: text-encode. formats/text.md. */
-#ifndef CMD_JOBS_ENCODE_H
-#define CMD_JOBS_ENCODE_H
+/* Sentences to word vectors by a language encoder: text-encode. formats/scene/text.md. */
+#ifndef CMD_TEXT_ENCODE_H
+#define CMD_TEXT_ENCODE_H
 
 #include "base/err.h"
 #include "base/report.h"
 #include "cmd/text/encoder.h"
-#include "formats/sentences.h"
-#include "formats/text.h"
+#include "formats/records/sentences.h"
+#include "formats/scene/text.h"
 #include "nn/wordpiece.h"
 
 #include <stddef.h>

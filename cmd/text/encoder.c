@@ -2,8 +2,8 @@
 
 #include "base/file.h"
 #include "cmd/text/cache_folder.h"
-#include "formats/merges.h"
-#include "formats/vocab.h"
+#include "formats/encoders/merges.h"
+#include "formats/encoders/vocab.h"
 
 #include <stdlib.h>
 

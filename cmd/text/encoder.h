@@ -1,11 +1,11 @@
 /* A language encoder, of one of two kinds: a BERT or CLIP's text tower, with its vocabulary. */
-#ifndef CMD_JOBS_ENCODER_H
-#define CMD_JOBS_ENCODER_H
+#ifndef CMD_TEXT_ENCODER_H
+#define CMD_TEXT_ENCODER_H
 
 #include "base/err.h"
-#include "formats/bert_model.h"
-#include "formats/clip_model.h"
-#include "formats/fingerprint.h"
+#include "formats/encoders/bert_model.h"
+#include "formats/encoders/clip_model.h"
+#include "formats/arrays/fingerprint.h"
 #include "nn/bpe.h"
 #include "nn/wordpiece.h"
 

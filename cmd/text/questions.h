@@ -1,6 +1,6 @@
 /* Questions, one a line, from a pipe or a terminal. */
-#ifndef CMD_JOBS_QUESTIONS_H
-#define CMD_JOBS_QUESTIONS_H
+#ifndef CMD_TEXT_QUESTIONS_H
+#define CMD_TEXT_QUESTIONS_H
 
 #include "base/err.h"
 

@@ -6,12 +6,12 @@
 #include "cmd/import/warping.h"
 #include "fit/fit.h"
 #include "fit/start.h"
-#include "formats/anysplats.h"
-#include "formats/camerafile.h"
-#include "formats/colmap.h"
-#include "formats/colmap_points.h"
-#include "formats/ply.h"
-#include "formats/trainlog.h"
+#include "formats/splats/anysplats.h"
+#include "formats/cameras/camerafile.h"
+#include "formats/cameras/colmap.h"
+#include "formats/cameras/colmap_points.h"
+#include "formats/splats/ply.h"
+#include "formats/records/trainlog.h"
 #include "geom/lens.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* A 3DGS scene trained from photographs and their cameras: gs-train. */
-#ifndef CMD_JOBS_FITTING_H
-#define CMD_JOBS_FITTING_H
+#ifndef CMD_TRAIN_FITTING_H
+#define CMD_TRAIN_FITTING_H
 
 #include "base/err.h"
 #include "base/report.h"

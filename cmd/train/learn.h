@@ -1,15 +1,15 @@
 /* One stage of training, from files to the model: reads, goes on from a checkpoint, takes the steps, logs
- * them, writes. refer-train. formats/training.md. */
-#ifndef CMD_JOBS_LEARN_H
-#define CMD_JOBS_LEARN_H
+ * them, writes. refer-train. formats/scene/training.md. */
+#ifndef CMD_TRAIN_LEARN_H
+#define CMD_TRAIN_LEARN_H
 
 #include "base/err.h"
 #include "base/file.h"
 #include "base/report.h"
 #include "cmd/train/training.h"
-#include "formats/checkpoint.h"
-#include "formats/precision.h"
-#include "formats/trainlog.h"
+#include "formats/scene/checkpoint.h"
+#include "formats/arrays/precision.h"
+#include "formats/records/trainlog.h"
 #include "train/divergence.h"
 #include "train/trainer.h"
 

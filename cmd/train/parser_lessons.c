@@ -3,9 +3,9 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/rng.h"
-#include "formats/jsonl.h"
-#include "formats/parses.h"
-#include "formats/text.h"
+#include "formats/records/jsonl.h"
+#include "formats/records/parses.h"
+#include "formats/scene/text.h"
 #include "lang/examples.h"
 #include "lang/marked.h"
 

@@ -1,10 +1,10 @@
 /* What parse-train learns from: the generator's example sentences, and people's with marks
- * (formats/marked.md). */
-#ifndef CMD_JOBS_PARSER_LESSONS_H
-#define CMD_JOBS_PARSER_LESSONS_H
+ * (formats/records/marked.md). */
+#ifndef CMD_TRAIN_PARSER_LESSONS_H
+#define CMD_TRAIN_PARSER_LESSONS_H
 
 #include "base/err.h"
-#include "formats/text.h"
+#include "formats/scene/text.h"
 #include "lang/parser_school.h"
 
 /* Writes n example sentences (JSON Lines), of the wordings for training or for testing. Returns 0, or -1 with
@@ -12,7 +12,8 @@
 int parser_examples_write(const char *path, long long n, int is_test, long long seed, struct err *e);
 
 /* Writes the sentences of a file of marked ones (JSON Lines), or the parses that their marks stand for
- * (formats/parses.md), whose words are spelt as where they were encoded (NULL: as without an encoder). */
+ * (formats/records/parses.md), whose words are spelt as where they were encoded (NULL: as without an
+ * encoder). */
 int parser_marked_write(
 	const char *path, const char *encoded, int is_parses, const char *output, struct err *e);
 

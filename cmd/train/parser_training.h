@@ -1,7 +1,7 @@
 /* The weights of text-parse, learnt from the project's own example sentences and from readings of others:
- * parse-train. formats/parser_weights.md, formats/readings.md. */
-#ifndef CMD_JOBS_PARSER_TRAINING_H
-#define CMD_JOBS_PARSER_TRAINING_H
+ * parse-train. formats/encoders/parser_weights.md, formats/records/readings.md. */
+#ifndef CMD_TRAIN_PARSER_TRAINING_H
+#define CMD_TRAIN_PARSER_TRAINING_H
 
 #include "base/err.h"
 #include "base/report.h"

@@ -4,8 +4,8 @@
 #include "base/mem.h"
 #include "base/names.h"
 #include "cmd/train/training_masks.h"
-#include "formats/lifted.h"
-#include "formats/model.h"
+#include "formats/scene/lifted.h"
+#include "formats/scene/model.h"
 #include "mask/bits.h"
 
 #include <stddef.h>

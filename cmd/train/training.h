@@ -1,15 +1,15 @@
 /* What refer-train reads, put together: scene, weights, text and masks, checked against each other.
- * formats/training.md. */
-#ifndef CMD_JOBS_TRAINING_H
-#define CMD_JOBS_TRAINING_H
+ * formats/scene/training.md. */
+#ifndef CMD_TRAIN_TRAINING_H
+#define CMD_TRAIN_TRAINING_H
 
 #include "base/err.h"
 #include "base/report.h"
 #include "cmd/train/training_views.h"
-#include "formats/checkpoint.h"
-#include "formats/precision.h"
-#include "formats/scene.h"
-#include "formats/text.h"
+#include "formats/scene/checkpoint.h"
+#include "formats/arrays/precision.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/text.h"
 #include "train/supervision.h"
 #include "train/trainer.h"
 

@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
-#include "formats/masks.h"
+#include "formats/records/masks.h"
 
 #include <stddef.h>
 #include <stdlib.h>

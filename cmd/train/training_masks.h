@@ -1,6 +1,6 @@
-/* The masks that a training learns from, and with them its views. formats/training.md. */
-#ifndef CMD_JOBS_TRAINING_MASKS_H
-#define CMD_JOBS_TRAINING_MASKS_H
+/* The masks that a training learns from, and with them its views. formats/scene/training.md. */
+#ifndef CMD_TRAIN_TRAINING_MASKS_H
+#define CMD_TRAIN_TRAINING_MASKS_H
 
 #include "cmd/train/training.h"
 

@@ -1,11 +1,11 @@
 /* The weights of the views that refer-train learns from: each is in memory only while it is read, and known
  * by its sizes and its checksum. */
-#ifndef CMD_JOBS_TRAINING_VIEWS_H
-#define CMD_JOBS_TRAINING_VIEWS_H
+#ifndef CMD_TRAIN_TRAINING_VIEWS_H
+#define CMD_TRAIN_TRAINING_VIEWS_H
 
 #include "base/err.h"
-#include "formats/scene.h"
-#include "formats/weights.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/weights.h"
 #include "train/train.h"
 #include "train/view_source.h"
 

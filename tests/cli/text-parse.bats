@@ -64,7 +64,7 @@ not() { ! "$@"; }
 
 @test "weights of an older version are refused, as they are of another network" {
 	encode "the wug on the dax"
-	sed 's/"version":"5"/"version":"4"/' "$BATS_TEST_DIRNAME/../../formats/parser_default.safetensors" >old
+	sed 's/"version":"5"/"version":"4"/' "$BATS_TEST_DIRNAME/../../formats/encoders/parser_default.safetensors" >old
 	says 3 'text-parse: old: refer.parser version 4 is older than this program reads (5)' "$BIN/text-parse" --parser old text
 }
 
