@@ -1,6 +1,6 @@
 /* What the noun of a phrase says of each object, or the noun that it leaves out. */
 #include "ask/constants.h"
-#include "ask/meaning_private.h"
+#include "ask/judge_words.h"
 #include "lang/colours.h"
 
 #include <math.h>
@@ -81,7 +81,7 @@ static int is_shape(const struct parse *p, const struct parse_phrase *f, int hea
 	return f->noun.n == 1 && meaning_word_is(&p->words[head], shapes) && !parse_word_is(p, head + 1, of);
 }
 
-void meaning_judge_noun(struct meaning *m, int phrase)
+void judge_noun(struct meaning *m, int phrase)
 {
 	const struct parse *p = m->sentence->parse;
 	const struct parse_phrase *f = &p->phrases[phrase];
@@ -101,11 +101,11 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	for (size_t o = 0; o < n && is_any; o++)
 		match[o] = fmax(match[o], VAGUE_LEAST);
 	if (colour_word(p->words[head].lemma) >= 0 && largest(match, n) < 0.5) { /* "something orange" */
-		meaning_judge_colour(m, phrase, head);
+		judge_colour(m, phrase, head);
 		return;
 	}
 	if (largest(match, n) < 0.5 && is_said_of_something(m, head, m->scratch + 8 * n)) {
-		meaning_judge_attribute(m, phrase, head, ATTRIBUTE_LEAST);
+		judge_attribute(m, phrase, head, ATTRIBUTE_LEAST);
 		return;
 	}
 	value = meaning_add_part(m, phrase, MEANING_NOUN, head);
@@ -119,5 +119,5 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 		/* another thing that is called so speaks against it */
 		there[o] = match[o] * match[o] / fmax(best, 1e-9);
 	}
-	meaning_take_part(m, &m->parts[m->part_count - 1]);
+	meaning_take_part(m);
 }
