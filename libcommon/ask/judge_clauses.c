@@ -129,6 +129,17 @@ static int is_size(const struct parse_clause *c)
 	return c->degree == PARSE_PLAIN && c->relation >= PARSE_LARGER && c->relation <= PARSE_WIDER;
 }
 
+static enum relate_width width_of(const struct parse *p, const struct parse_phrase *f)
+{
+	int directions = 0;
+
+	for (int k = 0; k < f->clauses.n; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		directions += c->relation <= PARSE_BEHIND && !c->negated ? c->anchors.n : 0;
+	}
+	return f->count != PARSE_ONE ? RELATE_HALF_PLANE : directions > 1 ? RELATE_WIDE : RELATE_NARROW;
+}
+
 /* value (O) of a clause that has places in it; returns how far its anchors are known. */
 static double judge_relation(
 	struct meaning *m, int phrase, const struct parse_clause *c, const double *fit, double *value)
@@ -139,8 +150,7 @@ static double judge_relation(
 	const struct parse *p = m->sentence->parse;
 	struct relate_anchor anchors[ANCHORS];
 	const struct parse_phrase *f = &p->phrases[phrase];
-	const enum relate_width width = f->count != PARSE_ONE ? RELATE_HALF_PLANE : RELATE_NARROW;
-	struct relation r = {c->relation, c->degree, width, 0, 0, anchors};
+	struct relation r = {c->relation, c->degree, width_of(p, f), 0, 0, anchors};
 	double known = 1;
 
 	if (counted_by(p, f, counts_along) == c)
