@@ -1,6 +1,6 @@
 #include "cmd/ask/calling.h"
 
-#include "ask/arrangement.h"
+#include "places/arrangement.h"
 #include "lang/colours.h"
 
 #include <ctype.h>

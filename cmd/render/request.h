@@ -5,7 +5,7 @@
 
 #include "answer/responses.h"
 #include "ask/choose.h"
-#include "ask/viewpoint.h"
+#include "places/viewpoint.h"
 #include "base/err.h"
 #include "cmd/run/anymodel.h"
 #include "formats/scene/scene.h"

@@ -1,5 +1,5 @@
-/* Where objects of known shapes begin and end (ask/object_span.h). */
-#include "ask/object_span.h"
+/* Where objects of known shapes begin and end (places/object_span.h). */
+#include "places/object_span.h"
 #include "unit.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* What made surfaces look like (ask/object_surface.h). */
-#include "ask/object_surface.h"
+/* What made surfaces look like (places/object_surface.h). */
+#include "places/object_surface.h"
 #include "lang/finish.h"
 #include "unit.h"
 

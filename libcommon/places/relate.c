@@ -1,7 +1,8 @@
-#include "ask/relate.h"
+#include "places/relate.h"
 
-#include "ask/constants.h"
+#include "places/pairs.h"
 #include "base/largest.h"
+#include "base/logistic.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,128 +10,17 @@
 
 enum { RANKS = 32 }; /* "the 32nd from the left" and all after it are one */
 
-static double step(double x)
-{
-	return 1 / (1 + exp(-fmin(fmax(x, -40), 40)));
-}
+/* Of half the objects' extent: where the left side begins. */
+static const double side_least = 0.15, side_soft = 0.1;
+/* How wrong it is to say of a thing on another that it is on the table. */
+static const double on_the_rest = 0.5;
+/* Differences that are told apart: of lengths, as shares of the spacing, and of natural logarithms of sizes;
+ * of what is "as tall as" another; of what lies on both sides of the middle. */
+static const double best_soft = 0.04, best_soft_size = 0.06, as_large_soft = 0.25, middle_soft = 0.03;
 
 static const struct arranged *at(const struct arrangement *a, size_t i)
 {
 	return i < a->n ? &a->objects[i] : &a->viewer;
-}
-
-/* How much of the smaller foot lies within the other. */
-static double feet_overlap(const struct arranged *p, const struct arranged *q)
-{
-	double common = 1, own = 1, other = 1;
-
-	for (int k = 0; k < 2; k++) {
-		common *= fmax(0, fmin(p->high[k], q->high[k]) - fmax(p->low[k], q->low[k]));
-		own *= p->high[k] - p->low[k];
-		other *= q->high[k] - q->low[k];
-	}
-	own = fmin(own, other);
-	return own > 0 ? common / own : 0;
-}
-
-double relate_stands_on(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
-{
-	return step((feet_overlap(p, q) - 0.4) / 0.1) *
-	       step((p->centre[2] - q->centre[2]) / (0.02 * a->spacing)) *
-	       exp(-fmax(0, (p->low[2] - q->high[2]) / a->spacing - TOUCHING) / 0.1);
-}
-
-double relate_gap(const struct arranged *p, const struct arranged *q)
-{
-	double sum = 0;
-
-	for (int k = 0; k < 3; k++) {
-		double d = fmax(0, fmax(p->low[k] - q->high[k], q->low[k] - p->high[k]));
-		sum += d * d;
-	}
-	return sqrt(sum);
-}
-
-static double level_distance(const struct arranged *p, const struct arranged *q)
-{
-	return hypot(p->centre[0] - q->centre[0], p->centre[1] - q->centre[1]);
-}
-
-/* p is on the way `main` of q, and not too far aside. */
-static double on_side(const struct arrangement *a, const struct arranged *p, const struct arranged *q,
-	double main, double aside, enum relate_width width)
-{
-	const double there = step((main / a->spacing - APART_LEAST) / APART_SOFT);
-	const double along = main / (hypot(main, aside) + 1e-9 * a->spacing),
-		     up = p->centre[2] - q->centre[2];
-	const double distance = hypot(level_distance(p, q), up);
-
-	if (width == RELATE_HALF_PLANE)
-		return there;
-	const double straight = step((along - SIDEWAYS_LEAST) / SIDEWAYS_SOFT);
-	const double aslant = width == RELATE_WIDE ? SIDEWAYS_WIDE : SIDEWAYS_ELSE;
-	return there * (aslant + (1 - aslant) * straight) * exp(-NEARBY * distance / a->spacing) *
-	       (1 - relate_stands_on(a, p, q)) * (1 - relate_stands_on(a, q, p));
-}
-
-static double near(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
-{
-	const double x = relate_gap(p, q) / (NEXT_TO * a->spacing);
-
-	return 1 / (1 + x * x);
-}
-
-/* p is in q: on top of it in plan, and not above its rim. */
-static double inside(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
-{
-	return step((feet_overlap(p, q) - 0.6) / 0.1) * step((q->high[2] - p->low[2]) / (0.03 * a->spacing)) *
-	       step((arranged_bulk(a, q) - arranged_bulk(a, p)) / 0.1);
-}
-
-static double pair(const struct arrangement *a, enum parse_relation relation, enum relate_width width,
-	const struct arranged *p, const struct arranged *q)
-{
-	const double s = a->spacing, right = p->side - q->side;
-	const double away = p->centre[1] - q->centre[1] + LOW_IS_NEAR * (p->low[2] - q->low[2]);
-	double loose;
-
-	switch (relation) {
-	case PARSE_LEFT:
-		return on_side(a, p, q, -right, away, width);
-	case PARSE_RIGHT:
-		return on_side(a, p, q, right, away, width);
-	case PARSE_FRONT:
-		return on_side(a, p, q, -away, right, width);
-	case PARSE_BEHIND:
-		return on_side(a, p, q, away, right, width);
-	case PARSE_NEAR:
-	case PARSE_WITH:
-		return near(a, p, q);
-	case PARSE_FAR:
-		return step((level_distance(p, q) / s - FAR_FROM) / 0.2);
-	case PARSE_ON:
-		return fmax(relate_stands_on(a, p, q), inside(a, p, q));
-	case PARSE_INSIDE:
-		return fmax(inside(a, p, q), 0.7 * relate_stands_on(a, p, q));
-	case PARSE_SUPPORTS:
-		return fmax(relate_stands_on(a, q, p), inside(a, q, p));
-	case PARSE_BELOW:
-		loose = 0.5 * step((q->centre[2] - p->centre[2]) / (0.03 * s) - 2) *
-			exp(-level_distance(p, q) / (0.5 * s));
-		return fmax(relate_stands_on(a, q, p), loose);
-	case PARSE_ABOVE:
-		loose = step((p->low[2] - q->high[2] + 0.1 * s) / (0.03 * s)) *
-			exp(-level_distance(p, q) / (0.7 * s));
-		return fmax(relate_stands_on(a, p, q), loose);
-	case PARSE_ACROSS:
-		return step((level_distance(p, q) / s - FAR_FROM) / 0.2);
-	case PARSE_MIDDLE:
-	case PARSE_CORNER:
-	case PARSE_WALL:
-		return near(a, p, q);
-	default:
-		return 0.5;
-	}
 }
 
 /* How far a thing is from who looks: some mean the way to it, others how far back it is. */
@@ -187,7 +77,7 @@ static int is_size(enum parse_relation r)
 
 static double soft_of(enum parse_relation r)
 {
-	return is_size(r) ? BEST_SOFT_SIZE : BEST_SOFT;
+	return is_size(r) ? best_soft_size : best_soft;
 }
 
 /* out[o]: that exactly k - 1 of the others that fit have a smaller key. `but` counts for none. */
@@ -204,7 +94,7 @@ static void rank(const struct arrangement *a, const double *key, const double *f
 		for (size_t i = 0; i < a->n; i++) {
 			if (i == o || i == but || !a->objects[i].is_there)
 				continue;
-			const double before = fit[i] / most * step((key[o] - key[i]) / soft);
+			const double before = fit[i] / most * logistic((key[o] - key[i]) / soft);
 			for (int j = k - 1; j > 0; j--)
 				few[j] = few[j] * (1 - before) + few[j - 1] * before;
 			few[0] *= 1 - before;
@@ -255,9 +145,9 @@ static double is_middle(const struct arrangement *a, const double *fit, size_t o
 				continue;
 			const double d = (axis ? a->objects[o].centre[1] - a->objects[k].centre[1]
 					       : a->objects[o].side - a->objects[k].side) /
-					 (APART_SOFT * a->spacing);
-			none_before *= 1 - fit[k] / most * step(d);
-			none_after *= 1 - fit[k] / most * step(-d);
+					 (middle_soft * a->spacing);
+			none_before *= 1 - fit[k] / most * logistic(d);
+			none_after *= 1 - fit[k] / most * logistic(-d);
 		}
 		best = fmax(best, (1 - none_before) * (1 - none_after));
 	}
@@ -266,7 +156,7 @@ static double is_middle(const struct arrangement *a, const double *fit, size_t o
 
 static double on_half(double place)
 {
-	return step((place - SIDE_LEAST) / SIDE_SOFT);
+	return logistic((place - side_least) / side_soft);
 }
 
 /* Of the scene as a whole, or of the objects' sizes. */
@@ -322,7 +212,7 @@ static void sized(const struct arrangement *a, enum parse_relation relation, con
 	const double deviation = sqrt(fmax(square / fmax(weight, 1) - mean * mean, 1e-4));
 	(void)fit;
 	for (size_t o = 0; o < a->n; o++)
-		out[o] = step(-(key[o] - mean) / (0.5 * deviation) + 0.5);
+		out[o] = logistic(-(key[o] - mean) / (0.5 * deviation) + 0.5);
 }
 
 /* Where nothing is named: "the left one", "on the left" is the leftmost of those that fit or on the left
@@ -346,11 +236,11 @@ static void by_itself(
 	}
 	if (r->kind == PARSE_ON && r->count) { /* on the table itself, rather than on a thing that is on it */
 		for (size_t o = 0; o < a->n; o++) {
-			out[o] = 1 - ON_THE_REST * a->objects[o].raised;
+			out[o] = 1;
 			for (size_t i = 0; i < a->n; i++)
 				if (i != o && a->objects[i].is_there)
 					out[o] = fmin(
-						out[o], 1 - ON_THE_REST * relate_stands_on(a, &a->objects[o],
+						out[o], 1 - on_the_rest * pair_stands_on(a, &a->objects[o],
 										  &a->objects[i]));
 		}
 		return;
@@ -374,18 +264,6 @@ static double weight_of(const struct arrangement *a, const struct relate_anchor 
 	return at(a, i)->is_there ? x * x * x : 0;
 }
 
-static double between(const struct arrangement *a, const struct arranged *o, const struct arranged *p,
-	const struct arranged *q)
-{
-	const double x = q->centre[0] - p->centre[0], y = q->centre[1] - p->centre[1];
-	const double length = hypot(x, y) + 1e-9 * a->spacing;
-	const double u = o->centre[0] - p->centre[0], v = o->centre[1] - p->centre[1];
-	const double along = (u * x + v * y) / (length * length), aside = fabs(u * y - v * x) / length;
-
-	return step((along - 0.1) / 0.05) * step((0.9 - along) / 0.05) *
-	       exp(-0.5 * pow(aside / (0.25 * length + 0.1 * a->spacing), 2));
-}
-
 static void between_pairs(const struct arrangement *a, const struct relate_anchor *first,
 	const struct relate_anchor *second, double *out)
 {
@@ -396,8 +274,8 @@ static void between_pairs(const struct arrangement *a, const struct relate_ancho
 			const double p = weight_of(a, first, i) * weight_of(a, second, k);
 			for (size_t o = 0; p > 1e-3 && o < a->n; o++)
 				if (o != i && o != k)
-					out[o] = fmax(
-						out[o], p * between(a, &a->objects[o], at(a, i), at(a, k)));
+					out[o] = fmax(out[o],
+						p * pair_between(a, &a->objects[o], at(a, i), at(a, k)));
 		}
 }
 
@@ -412,9 +290,9 @@ static void compare(const struct arrangement *a, const struct relation *r, size_
 		for (size_t o = 0; o < a->n; o++)
 			key[o] = (r->kind == PARSE_FAR || r->kind == PARSE_BEHIND ? -1 : 1) *
 				 (i == a->n ? away_from_viewer(a, &a->objects[o])
-					    : level_distance(&a->objects[o], q)) /
+					    : pair_distance(&a->objects[o], q)) /
 				 a->spacing;
-		rank(a, key, fit, r->place, BEST_SOFT, i, out);
+		rank(a, key, fit, r->place, best_soft, i, out);
 		return;
 	}
 	for (size_t o = 0; o < a->n; o++)
@@ -422,9 +300,9 @@ static void compare(const struct arrangement *a, const struct relation *r, size_
 	if (r->degree == PARSE_MOST && !is_size(r->kind))
 		rank(a, key, fit, r->place, soft_of(r->kind), i, out);
 	for (size_t o = 0; o < a->n; o++) {
-		const double more = step((key_of(a, r->kind, q) - key[o]) / soft_of(r->kind) - 1);
+		const double more = logistic((key_of(a, r->kind, q) - key[o]) / soft_of(r->kind) - 1);
 		const double side = r->kind <= PARSE_BELOW
-					    ? pair(a, r->kind, RELATE_HALF_PLANE, &a->objects[o], q)
+					    ? pair_fits(a, r->kind, RELATE_HALF_PLANE, &a->objects[o], q)
 					    : more;
 		out[o] = r->degree == PARSE_MOST && !is_size(r->kind) ? out[o] * side : side;
 	}
@@ -434,14 +312,14 @@ static void compare(const struct arrangement *a, const struct relation *r, size_
 static double is_as(const struct arrangement *a, enum parse_relation size, const struct arranged *o,
 	const struct arranged *q)
 {
-	return exp(-fabs(key_of(a, size, o) - key_of(a, size, q)) / AS_LARGE_SOFT);
+	return exp(-fabs(key_of(a, size, o) - key_of(a, size, q)) / as_large_soft);
 }
 
 /* "left of", "as tall as": of an anchor that is q. */
 static double plainly(const struct arrangement *a, const struct relation *r, const struct arranged *o,
 	const struct arranged *q)
 {
-	return is_size(r->kind) ? is_as(a, r->kind, o, q) : pair(a, r->kind, r->width, o, q);
+	return is_size(r->kind) ? is_as(a, r->kind, o, q) : pair_fits(a, r->kind, r->width, o, q);
 }
 
 /* Of one anchor: the best of what it may be, or all of what it is. */

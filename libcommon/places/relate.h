@@ -1,11 +1,10 @@
 /* How well each object fits a relation to others, as people mean it from a viewpoint. Every judgement is a
  * number in [0,1] that changes smoothly with where things are, so that a relation that holds by a hair weighs
  * little. */
-#ifndef ASK_RELATE_H
-#define ASK_RELATE_H
+#ifndef PLACES_RELATE_H
+#define PLACES_RELATE_H
 
-#include "ask/arrangement.h"
-#include "lang/parse.h"
+#include "places/pairs.h"
 
 /* A phrase that a relation is to: how likely each object, and last the viewer, is to be it. */
 struct relate_anchor {
@@ -14,10 +13,6 @@ struct relate_anchor {
 	int is_every;	 /* all that fit ("taller than the cups"), not one of them */
 	int is_other;	 /* the thing itself is one of those that fit: "than the other cups" */
 };
-
-/* How much of the plane is left of, behind ... a thing: what lies near that direction; more of it, where two
- * such relations together tell; or half of it ("everything left of the plate"), however far away. */
-enum relate_width { RELATE_NARROW, RELATE_WIDE, RELATE_HALF_PLANE };
 
 struct relation {
 	enum parse_relation kind;
@@ -41,11 +36,5 @@ void relate_rank(const struct arrangement *a, enum parse_relation from, int k, c
 
 /* The same by a key of the caller's, in units of what is told apart: the smallest is the first. */
 void relate_rank_by(const struct arrangement *a, const double *key, int k, const double *fit, double *out);
-
-/* p stands on q, in [0,1]. */
-double relate_stands_on(const struct arrangement *a, const struct arranged *p, const struct arranged *q);
-
-/* Between their boxes: 0 where they touch. */
-double relate_gap(const struct arranged *p, const struct arranged *q);
 
 #endif

@@ -1,6 +1,6 @@
 /* Where a sentence is said: what left, right, front and behind are seen from. */
-#ifndef ASK_VIEWPOINT_H
-#define ASK_VIEWPOINT_H
+#ifndef PLACES_VIEWPOINT_H
+#define PLACES_VIEWPOINT_H
 
 #include "geom/camera.h"
 
@@ -11,6 +11,13 @@ struct viewpoint {
 	int is_facing;	 /* from there, but looking level at `faced`: "when facing the window" */
 	double faced[3];
 };
+
+/* axes: the rows right, away and up, of which the last is the scene's up; eye: where they are seen from. The
+ * usual viewpoint is the mean of the training cameras' centres (of all, where none is for training), looking
+ * level along the mean of their directions. middle: of the objects. What is nearer than `least` to right
+ * above or below is no direction to turn to. */
+void viewpoint_axes(const struct viewpoint *v, const struct cameras *cameras, const double middle[3],
+	double least, double axes[3][3], double eye[3]);
 
 int viewpoint_is_same(const struct viewpoint *a, const struct viewpoint *b);
 

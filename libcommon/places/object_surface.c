@@ -1,4 +1,4 @@
-#include "ask/object_surface.h"
+#include "places/object_surface.h"
 
 #include "base/mem.h"
 #include "base/quantile.h"

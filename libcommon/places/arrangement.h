@@ -1,10 +1,10 @@
 /* Where lifted objects are and what they look like, as seen from a viewpoint. What people say of left, right,
  * front and back is meant from there. */
-#ifndef ASK_ARRANGEMENT_H
-#define ASK_ARRANGEMENT_H
+#ifndef PLACES_ARRANGEMENT_H
+#define PLACES_ARRANGEMENT_H
 
-#include "ask/object_surface.h"
-#include "ask/viewpoint.h"
+#include "places/object_surface.h"
+#include "places/viewpoint.h"
 #include "base/err.h"
 #include "base/quantile.h"
 #include "geom/camera.h"
@@ -17,12 +17,10 @@ struct arranged {
 	int in_sight; /* 0: the viewpoint is a picture, and the centre is outside of it */
 	/* Axes: 0 to the right, 1 away from the viewer, 2 up; scene units, the origin at the middle of the
 	 * objects. */
-	double low[3], high[3]; /* box: ask/object_span.h along each axis */
+	double low[3], high[3]; /* box: places/object_span.h along each axis */
 	double centre[3];	/* of the box */
-	double raised; /* how far it stands higher than most, on something that has no name (ask/resting.h) */
-	double side;   /* how far right it looks: centre[0], or, in a picture, in perspective */
-	double lab[3]; /* mean colour, CIE L*a*b* (D65) */
-	double spread[3]; /* standard deviation of the colour: of stripes, or of light and shade */
+	double side;		/* how far right it looks: centre[0], or, in a picture, in perspective */
+	double lab[3];		/* mean colour, CIE L*a*b* (D65) */
 	double colours[COLOUR_WORDS]; /* part of it that people would call so (lang/colours.h) */
 	struct surface surface;
 };
@@ -52,18 +50,12 @@ struct arrangement {
 int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,
 	const struct cameras *cameras, struct err *e);
 
-/* The same seen from elsewhere. VIEWPOINT_USUAL is the mean of the training cameras' centres (of all, where
- * none is for training), looking level along the mean of their directions. */
+/* The same seen from elsewhere. */
 void arrangement_look(struct arrangement *a, const struct viewpoint *from);
 
 /* Where an object is in the scene, whatever it is seen from: the mean of its points. 0: it has none. */
 int arrangement_where(const struct arrangement *a, size_t object, double at[3]);
 void arrangement_free(struct arrangement *a);
-
-/* Whether two objects are the same to look at, but for where they are: 0 where they are, and less the more
- * they differ in mean colour (by 8 of L*a*b*), in its spread (by 4) and in size (by 15%): -1/2 of the sum of
- * the squares. */
-double arrangement_alike(const struct arrangement *a, size_t i, size_t k);
 
 /* The logarithm of a length, which may be 0, and the mean of those of a box. */
 double arranged_length(const struct arrangement *a, double length);

@@ -1,4 +1,4 @@
-#include "ask/object_span.h"
+#include "places/object_span.h"
 
 #include <math.h>
 

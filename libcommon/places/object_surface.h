@@ -1,7 +1,7 @@
 /* What the Gaussians of an object show of its surface: one colour, stripes or spots, and whether it shines.
  * Light and shade are no pattern: they change a colour's brightness alone, and slowly. */
-#ifndef ASK_OBJECT_SURFACE_H
-#define ASK_OBJECT_SURFACE_H
+#ifndef PLACES_OBJECT_SURFACE_H
+#define PLACES_OBJECT_SURFACE_H
 
 #include "base/err.h"
 

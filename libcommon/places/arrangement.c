@@ -1,9 +1,9 @@
-#include "ask/arrangement.h"
+#include "places/arrangement.h"
 
-#include "ask/object_span.h"
-#include "ask/resting.h"
+#include "places/object_span.h"
 #include "base/mem.h"
 #include "geom/up.h"
+#include "geom/vector.h"
 #include "lang/colours.h"
 #include "lift/extent.h"
 
@@ -13,7 +13,6 @@
 
 enum { POINTS = 2048 }; /* of an object, at most about so many */
 static const double most_weight = 4;
-static const double alike_colour = 8, alike_spread = 4, alike_size = 0.15;
 static const double no_direction = 0.1, nothing = 1e-6; /* of the spacing */
 static const double degree0 = 0.28209479177387814;	/* the spherical harmonic of degree 0 */
 
@@ -24,47 +23,6 @@ void arrangement_free(struct arrangement *a)
 	free(a->points);
 	free(a->along);
 	*a = (struct arrangement){0};
-}
-
-static double dot(const double a[3], const double b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static int is_looked_from(const struct cameras *c, size_t i)
-{
-	int any = 0;
-
-	for (size_t k = 0; k < c->n; k++)
-		any |= c->views[k].split == SPLIT_TRAIN;
-	return !any || c->views[i].split == SPLIT_TRAIN;
-}
-
-/* Level axes in the world (rows: right, away, up) with `away` along a direction. */
-static void level_axes(const double up[3], const double direction[3], double axes[3][3])
-{
-	double away[3], rise = dot(direction, up), length;
-
-	for (int k = 0; k < 3; k++)
-		away[k] = direction[k] - rise * up[k];
-	length = sqrt(dot(away, away));
-	if (!(length > 1e-9)) { /* straight down, or no camera: any level direction */
-		const double other[3] = {fabs(up[0]) < 0.9, fabs(up[0]) >= 0.9, 0};
-		cross(up, other, away);
-		length = sqrt(dot(away, away));
-	}
-	for (int k = 0; k < 3; k++)
-		away[k] /= length;
-	cross(away, up, axes[0]);
-	memcpy(axes[1], away, sizeof away);
-	memcpy(axes[2], up, 3 * sizeof *up);
 }
 
 /* Where the objects are, roughly: the mean of their points. */
@@ -91,62 +49,6 @@ int arrangement_where(const struct arrangement *a, size_t object, double at[3])
 	for (int k = 0; k < 3 && weight > 0; k++)
 		at[k] /= weight;
 	return weight > 0;
-}
-
-/* The mean of the cameras that the scene is usually looked at from. */
-static void look_usual(const struct cameras *c, double eye[3], double away[3])
-{
-	double count = 0;
-
-	memset(eye, 0, 3 * sizeof *eye);
-	memset(away, 0, 3 * sizeof *away);
-	for (size_t i = 0; i < c->n; i++) {
-		double centre[3];
-		if (!is_looked_from(c, i))
-			continue;
-		camera_centre(&c->views[i], centre);
-		for (int k = 0; k < 3; k++) {
-			away[k] += c->views[i].world_to_camera[2][k];
-			eye[k] += centre[k];
-		}
-		count++;
-	}
-	for (int k = 0; k < 3; k++)
-		eye[k] /= count > 0 ? count : 1;
-}
-
-/* Turns to a point, unless it is right above or below, nearer than `least`: that is no direction. */
-static void turn_to(
-	const double point[3], const double eye[3], const double up[3], double least, double away[3])
-{
-	double to[3];
-
-	for (int k = 0; k < 3; k++)
-		to[k] = point[k] - eye[k];
-	const double rise = dot(to, up);
-	if (dot(to, to) - rise * rise > least * least)
-		memcpy(away, to, sizeof to);
-}
-
-/* Axes and centre of the viewpoint. */
-static void look(const struct arrangement *a, const struct viewpoint *from, double axes[3][3], double eye[3])
-{
-	const double least = no_direction * a->spacing;
-	double away[3], up[3], middle[3];
-
-	cameras_up(a->cameras, up);
-	look_usual(a->cameras, eye, away);
-	if (from->kind == VIEWPOINT_CAMERA) {
-		camera_centre(from->camera, eye);
-		memcpy(away, from->camera->world_to_camera[2], sizeof away);
-	} else if (from->kind == VIEWPOINT_POINT) {
-		memcpy(eye, from->point, 3 * sizeof *eye);
-		find_middle(a, middle);
-		turn_to(middle, eye, up, least, away);
-	}
-	if (from->is_facing)
-		turn_to(from->faced, eye, up, least, away);
-	level_axes(up, away, axes);
 }
 
 /* How much of the object a Gaussian makes up: what it covers, seen from anywhere. */
@@ -223,7 +125,6 @@ static int take_looks(struct arranged *o, const struct splats *s, const struct e
 		colour_lab(rgb, lab);
 		for (size_t k = 0; k < 3; k++) {
 			o->lab[k] += weight[i] / total * lab[k];
-			o->spread[k] += weight[i] / total * lab[k] * lab[k];
 		}
 		colour_call(lab, weight[i] / total, o->colours);
 		const float *mean = s->means + 3 * (size_t)own->ids[i];
@@ -231,8 +132,6 @@ static int take_looks(struct arranged *o, const struct splats *s, const struct e
 			{mean[0], mean[1], mean[2]}, {lab[0], lab[1], lab[2]}, weight[i]};
 		o->surface.view_dependence += weight[i] / total * view_dependence(s, sh) / 9;
 	}
-	for (size_t k = 0; k < 3; k++)
-		o->spread[k] = sqrt(fmax(o->spread[k] - o->lab[k] * o->lab[k], 0));
 	o->surface.view_dependence = sqrt(o->surface.view_dependence);
 	return surface_find(&o->surface, points, n, up, e);
 }
@@ -292,7 +191,7 @@ static void take_box(struct arrangement *a, size_t o, double axes[3][3])
 	for (int k = 0; k < 3 && n; k++) {
 		for (size_t i = 0; i < n; i++) {
 			const struct arranged_point *p = &a->points[a->begin[o] + i];
-			a->along[i] = (struct quantile_item){dot(axes[k], p->at), p->weight};
+			a->along[i] = (struct quantile_item){vector_dot(axes[k], p->at), p->weight};
 		}
 		const struct object_span span = object_span(a->along, n, k == 2);
 		to->low[k] = span.low;
@@ -371,19 +270,19 @@ static void find_spacing(struct arrangement *a)
 
 void arrangement_look(struct arrangement *a, const struct viewpoint *from)
 {
-	double axes[3][3], eye[3];
+	double axes[3][3], eye[3], middle[3];
 
-	look(a, from, axes, eye);
+	find_middle(a, middle);
+	viewpoint_axes(from, a->cameras, middle, no_direction * a->spacing, axes, eye);
 	a->viewer.is_there = 1;
 	for (int k = 0; k < 3; k++)
-		a->viewer.centre[k] = dot(axes[k], eye);
+		a->viewer.centre[k] = vector_dot(axes[k], eye);
 	for (size_t o = 0; o < a->n; o++)
 		take_box(a, o, axes);
 	if (from->kind == VIEWPOINT_CAMERA)
 		see(a, from->camera, axes, from->is_facing);
 	centre_all(a);
 	find_spacing(a);
-	resting_find(a);
 }
 
 int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,
@@ -414,36 +313,6 @@ int arrangement_make(struct arrangement *a, const struct lifted *l, const struct
 double arranged_length(const struct arrangement *a, double length)
 {
 	return log(fmax(length, nothing * a->spacing));
-}
-
-/* Lengths of the box: the shorter and the longer one on the ground, and the height. */
-static void lengths(const struct arrangement *a, const struct arranged *o, double out[3])
-{
-	const double wide = o->high[0] - o->low[0], deep = o->high[1] - o->low[1];
-
-	out[0] = arranged_length(a, fmin(wide, deep));
-	out[1] = arranged_length(a, fmax(wide, deep));
-	out[2] = arranged_length(a, o->high[2] - o->low[2]);
-}
-
-double arrangement_alike(const struct arrangement *a, size_t i, size_t k)
-{
-	const struct arranged *p = &a->objects[i], *q = &a->objects[k];
-	double x[3], y[3], sum = 0;
-
-	if (i == k)
-		return 0;
-	if (!p->is_there || !q->is_there)
-		return -INFINITY;
-	lengths(a, p, x);
-	lengths(a, q, y);
-	for (int d = 0; d < 3; d++) {
-		const double colour = (p->lab[d] - q->lab[d]) / alike_colour,
-			     spread = (p->spread[d] - q->spread[d]) / alike_spread,
-			     size = (x[d] - y[d]) / alike_size;
-		sum += colour * colour + spread * spread + size * size;
-	}
-	return -0.5 * sum;
 }
 
 double arranged_bulk(const struct arrangement *a, const struct arranged *o)

@@ -1,6 +1,6 @@
 /* Where an object begins and ends along an axis. */
-#ifndef ASK_OBJECT_SPAN_H
-#define ASK_OBJECT_SPAN_H
+#ifndef PLACES_OBJECT_SPAN_H
+#define PLACES_OBJECT_SPAN_H
 
 #include "base/quantile.h"
 

@@ -1,0 +1,146 @@
+#include "ask/usage.h"
+
+#include "ask/constants.h"
+#include "ask/meaning.h"
+#include "base/logistic.h"
+#include "lang/closed.h"
+#include "lang/purpose.h"
+#include "lang/tokens.h"
+
+#include <string.h>
+
+static const double not_there = -100; /* the score of what has no Gaussians */
+
+/* "the shiny thing": what is said of a thing of no name. */
+static int is_before_generic(const struct parse *p, int word)
+{
+	while (++word < p->word_count) {
+		const int closed = closed_find(p->words[word].text);
+		if (closed >= 0 && closed_words[closed].class == CLOSED_GENERIC)
+			return 1;
+		if (closed >= 0 && closed_words[closed].class != CLOSED_ATTRIBUTE &&
+			closed_words[closed].class != CLOSED_SIZE)
+			return 0;
+	}
+	return 0;
+}
+
+/* Whether a part holds whatever the sentence is about: a colour, a size, a place by something that is known.
+ */
+static int is_kept(const struct meaning *m, const struct meaning_part *part)
+{
+	const struct parse *p = m->sentence->parse;
+
+	if (part->phrase || part->kind == MEANING_NOUN)
+		return 0;
+	if (part->kind == MEANING_ATTRIBUTE)
+		return is_before_generic(p, part->index);
+	if (part->kind != MEANING_CLAUSE)
+		return 1;
+	const struct parse_clause *c = &p->clauses[part->index];
+	const int is_of_scene = c->relation <= PARSE_BEHIND || c->degree != PARSE_PLAIN ||
+				(c->relation >= PARSE_CORNER && c->relation <= PARSE_FLOOR);
+	const int is_place = c->relation < PARSE_WITH && c->relation != PARSE_INSIDE;
+	if (!is_place || c->negated || (!c->anchors.n && !is_of_scene))
+		return 0;
+	for (int k = 0; k < c->anchors.n; k++)
+		if (m->known[c->anchors.item[k]] < 0.5 || !p->phrases[c->anchors.item[k]].noun.n)
+			return 0;
+	return 1;
+}
+
+/* told marks the words that tell of the use, as a sentence; counts, of these, those that are not of grammar.
+ */
+static void mark_words(const struct meaning *m, char *told, char *counts)
+{
+	const struct parse *p = m->sentence->parse;
+
+	for (int w = 0; w < p->word_count; w++) {
+		told[w] = (char)!is_before_generic(p, w);
+		counts[w] = (char)(told[w] && purpose_is_content(p, w));
+	}
+}
+
+int usage_says_more(const struct meaning *m)
+{
+	for (size_t k = 0; k < m->part_count; k++)
+		if (is_kept(m, &m->parts[k]))
+			return 1;
+	return 0;
+}
+
+/* parts (O): the logarithms of what the sentence says besides. */
+static void add_parts(const struct meaning *m, double *parts)
+{
+	const size_t n = objects_of(m);
+
+	memset(parts, 0, n * sizeof *parts);
+	for (size_t k = 0; k < m->part_count; k++)
+		for (size_t o = 0; o < n && is_kept(m, &m->parts[k]); o++)
+			parts[o] += PURPOSE_PARTS * log(fmax(m->parts[k].value[o], 1e-6));
+}
+
+/* Whether a thing is asked for by its name: one that is here, or "is there a spoon?". */
+static int is_by_name(const struct meaning *m, int head)
+{
+	static const char *const there[] = {"there", "is", "'s", NULL};
+	const struct parse *p = m->sentence->parse;
+
+	return head >= 0 && (m->known[0] >= PURPOSE_NOUN ||
+				    (head > 1 && closed_is(p->words[head - 1].text, CLOSED_DETERMINER) &&
+					    parse_word_is(p, head - 2, there)));
+}
+
+/* Whether a word is of what the target is said to be near, under ... */
+static int is_of_anchor(const struct parse *p, int word)
+{
+	const struct parse_list *clauses = &p->phrases[0].clauses;
+
+	for (int k = 0; k < clauses->n; k++) {
+		const struct parse_clause *c = &p->clauses[clauses->item[k]];
+		for (int j = 0; c->relation < PARSE_SUPPORTS && j < c->anchors.n; j++) {
+			const struct parse_phrase *f = &p->phrases[c->anchors.item[j]];
+			if (parse_list_has(&f->noun, word) || parse_list_has(&f->attributes, word))
+				return 1;
+		}
+	}
+	return 0;
+}
+
+/* Whether the words that count say more than a name and a place: "where is the teddy bear by the window?"
+ * does not. */
+static int says_more_than_name(const struct parse *p, const char *counts)
+{
+	const struct parse_list *noun = &p->phrases[0].noun;
+
+	for (int w = 0; w < p->word_count; w++)
+		if (counts[w] && !parse_list_has(noun, w) && !(noun->n && is_of_anchor(p, w)))
+			return 1;
+	return 0;
+}
+
+double usage_judge(const struct meaning *m, double *score, double *scratch)
+{
+	const struct parse *p = m->sentence->parse;
+	const size_t n = objects_of(m);
+	double *about = scratch, *use = scratch + n, *parts = scratch + 2 * n, any;
+	char told[TOKENS_MOST], counts[TOKENS_MOST];
+
+	if (is_by_name(m, meaning_head_of(p, &p->phrases[0])))
+		return 0;
+	mark_words(m, told, counts);
+	vocabulary_about(m->vocabulary, m->sentence, counts, about);
+	add_parts(m, parts);
+	const int is_said = purpose_is_said(p);
+	if (!vocabulary_for(m->vocabulary, m->sentence, told, about, use, &any) ||
+		!memchr(counts, 1, (size_t)p->word_count) || (!is_said && !says_more_than_name(p, counts)))
+		return 0;
+	for (size_t o = 0; o < n; o++)
+		score[o] = m->arrangement->objects[o].is_there
+				   ? PURPOSE_USE * use[o] + PURPOSE_NAME * about[o] + parts[o]
+				   : not_there;
+	const size_t o = best_of(score, n);
+	const double sure = PURPOSE_SURE * (use[o] - any) + PURPOSE_SURE_NAME * about[o] +
+			    PURPOSE_SURE_PARTS * parts[o] + (is_said ? PURPOSE_SAID : PURPOSE_UNSAID);
+	return sure < 0 && !is_said ? 0 : logistic(sure);
+}
