@@ -5,6 +5,7 @@
 #include "base/names.h"
 #include "cmd/lift/left_out.h"
 #include "cmd/train/training_masks.h"
+#include "formats/records/masks.h"
 #include "formats/scene/lifted.h"
 #include "formats/scene/model.h"
 #include "mask/bits.h"
@@ -195,6 +196,7 @@ static int read_all(struct training *t, const struct training_files *from, doubl
 	if (!t->sentences)
 		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(from->text));
 	if (training_read_masks(t, from->weights, from->masks, to, e) ||
+		masks_check_refs(&t->masks.masks, from->masks, t->text.refs, t->text.objects, t->text.n, e) ||
 		supervision_link(
 			&t->masks, t->refs, t->object_names, t->sentences, t->views.views, t->views.n, e))
 		return -1;
