@@ -74,6 +74,10 @@ static void note_cameras(
 	for (size_t i = 0; i < c->n; i++)
 		test += c->views[i].split == SPLIT_TEST;
 	cli_note(cli, 1, "%s: %zu views, %zu of them for testing", file_name(path), c->n, test);
+	if (!files.images)
+		cli_note(cli, 0,
+			"%s: without --images the sizes of the photographs, how EXIF turns them, and whether the scene looks like them are not checked; masks of another shape, and masks that show no one scene, are refused by pseudomask-select, refer-lift and refer-train",
+			file_name(path));
 	if (files.images && found->missing)
 		cli_warn(cli, "%s: no photograph for %zu of %zu views", files.images, found->missing, c->n);
 	const int is_alike = !r->views || r->typical >= RESEMBLANCE_LEAST;

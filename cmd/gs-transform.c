@@ -68,6 +68,17 @@ static void note(const struct cli *cli, const struct splats *s, const struct row
 	cli_note(cli, 1, "%zu Gaussians are written", s->n);
 }
 
+static int warn_loss(
+	const struct cli *cli, const struct splats *s, const double offset[3], int to, struct err *e)
+{
+	char text[ANYSPLATS_LOSS];
+	const int found = anysplats_loss(s, offset, (enum anysplats_format)to, text, e);
+
+	if (found > 0)
+		cli_warn(cli, "%s: %s", cli->output, text);
+	return found < 0;
+}
+
 int main(int argc, char **argv)
 {
 	struct splats s = {0};
@@ -87,7 +98,8 @@ int main(int argc, char **argv)
 	cli_refuse_overwrite(&cli, "SPLATS up-from", "output", NULL);
 	int bad = anysplats_read(&s, offset, &report, cli.operands[0], &e) ||
 		  transforming_do(&s, offset, &options, &left_out, &e) ||
-		  anysplats_write(&s, offset, to, (int)spz_version, cli.output, &e);
+		  anysplats_write(&s, offset, to, (int)spz_version, cli.output, &e) ||
+		  warn_loss(&cli, &s, offset, to, &e);
 	if (!bad)
 		note(&cli, &s, &report, &left_out);
 	splats_free(&s);

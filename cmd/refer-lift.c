@@ -1,6 +1,7 @@
 /* refer-lift: objects lifted onto the Gaussians from their masks, in closed form. */
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cmd/lift/left_out.h"
 #include "cmd/lift/lifting.h"
 #include "formats/cameras/dataparser.h"
 #include "formats/scene/lifted.h"
@@ -34,24 +35,6 @@ static const struct cli_tool tool = {.name = "refer-lift",
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT,
 	.output_arg = "MODEL"};
 
-/* Masks that show no one scene are an error: nothing that is lifted of them is right. */
-static int check_left_out(const struct lifting *l, const struct cli *c, struct err *e)
-{
-	double fit;
-
-	if (lift_left_out(&l->lift, l->model.objects, &fit, e))
-		return -1;
-	if (!(fit < LIFT_LEFT_OUT_FINE))
-		return 0;
-	err_set(e, ERR_FORMAT,
-		"%s: what masks show in one view is not where those of other views show it (by %.2f, at least %.2g is right): are they of other views, or of turned photographs, or are the cameras of %s in another frame than its splats? " DATAPARSER_WAY_OUT,
-		file_name(options.files.masks), fit, LIFT_LEFT_OUT_FINE, options.files.scene);
-	if (fit < LIFT_LEFT_OUT_LEAST)
-		return -1;
-	cli_warn(c, "%s", e->message);
-	return 0;
-}
-
 static int run(struct lifting *l, const struct cli *c, struct err *e)
 {
 	const struct lifted *model = &l->model;
@@ -67,7 +50,7 @@ static int run(struct lifting *l, const struct cli *c, struct err *e)
 	cli_note(c, 1,
 		"%zu objects, %lld Gaussians with a share in one; agreement of the masks %.3f; %zu changed places",
 		model->objects, (long long)model->indptr[model->objects], confidence, moved);
-	if (check_left_out(l, c, e))
+	if (left_out_check(&l->lift, model->objects, options.files.masks, options.files.scene, &to.report, e))
 		return -1;
 	if (model->objects && !memchr(l->is_fixed, 1, model->objects) && confidence < LIFT_AGREEMENT_LEAST)
 		cli_warn(c,

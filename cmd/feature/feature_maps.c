@@ -136,7 +136,9 @@ static int find_masks(struct feature_maps *m, const struct report *to, struct er
 	size_t *views = NULL;
 
 	int bad = masks_read_lines(&m->set, &lines, o->masks, e) ||
-		  (o->text && text_read(&m->text, o->text, e)) ||
+		  (o->text && (text_read(&m->text, o->text, e) ||
+				      masks_check_refs(&m->set, o->masks, m->text.refs, m->text.objects,
+					      m->text.n, e))) ||
 		  !(views = mem_alloc(m->set.n, sizeof *views, "masks", e)) ||
 		  masks_views(&m->set, lines, o->masks, c, views, to, e) ||
 		  mask_index_make(&m->index, m->set.items, m->set.n, MASK_BY_OBJECT, e) ||

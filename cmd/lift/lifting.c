@@ -75,7 +75,8 @@ static int add_masks(struct lifting *l, const char *path, const struct report *t
 static int load(struct lifting *l, const struct report *to, struct err *e)
 {
 	if (scene_read(&l->scene, l->files->scene, e) || text_read(&l->text, l->files->text, e) ||
-		add_masks(l, l->files->masks, to, e))
+		add_masks(l, l->files->masks, to, e) ||
+		masks_check_refs(&l->set, l->files->masks, l->text.refs, l->text.objects, l->text.n, e))
 		return -1;
 	l->own = l->set.n;
 	if (l->files->spare && add_masks(l, l->files->spare, to, e))

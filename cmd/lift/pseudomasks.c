@@ -3,6 +3,7 @@
 #include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
+#include "cmd/lift/left_out.h"
 #include "formats/scene/weights.h"
 #include "splat/weights_pack.h"
 #include "mask/select.h"
@@ -15,7 +16,8 @@ static int put_mask(FILE *out, struct mask m, double score, struct err *e)
 	/* a mask without a sentence serves all of its object's */
 	if (m.object)
 		m.ref = NULL;
-	m.score = score;
+	if (!isnan(m.score)) /* a person's stays one */
+		m.score = score;
 	return masks_put(out, &m, e);
 }
 
@@ -89,7 +91,19 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 	return bad;
 }
 
-static int lift_regions(struct by_views *b, struct err *e)
+/* Regions are the same in all views whatever the candidates are of. */
+static int check_candidates(const struct pseudomasks *w, const struct report *to, struct err *e)
+{
+	struct lift_objects surest;
+	const int bad = regions_surest(&w->regions, &surest, e) ||
+			left_out_check(&surest, w->regions.object_count, w->options->candidates,
+				w->options->scene, to, e);
+
+	regions_surest_free(&surest);
+	return bad;
+}
+
+static int lift_regions(struct by_views *b, const struct report *to, struct err *e)
 {
 	struct pseudomasks *w = b->w;
 	const size_t views = w->scene.cameras.n;
@@ -97,7 +111,8 @@ static int lift_regions(struct by_views *b, struct err *e)
 	struct regions *r = &w->regions;
 
 	return regions_init(r, &w->pool, w->views, views, w->scene.splats.n, w->options->min_score, e) ||
-			       each_run(&by, views, e) || regions_grow(r, e) || regions_assign(r, e)
+			       each_run(&by, views, e) || regions_grow(r, e) || check_candidates(w, to, e) ||
+			       regions_assign(r, e)
 		       ? -1
 		       : 0;
 }
@@ -180,6 +195,16 @@ static int put_spare(const struct pseudomasks *w, size_t view, struct err *e)
 	return bad;
 }
 
+/* What a person drew of an object in a view, which no region replaces; NULL where there is not one mask. */
+static const struct rle *drawn(const struct pseudomasks *w, const struct mask *first, const char *view)
+{
+	size_t begin, end;
+
+	mask_index_object(&w->pool.index, view, mask_object(first), &begin, &end);
+	const struct mask *m = end - begin == 1 ? &w->set.items[w->pool.index.keys[begin].at] : NULL;
+	return m && isnan(m->score) ? &m->rle : NULL;
+}
+
 /* Writes all masks of a view but empty ones. */
 static int put_view(void *context, size_t view, struct err *e)
 {
@@ -191,13 +216,16 @@ static int put_view(void *context, size_t view, struct err *e)
 	w->seen += s->masks != NULL;
 	w->rendered += s->rendered;
 	for (size_t i = 0; i < shown_count(w) && s->masks && !bad; i++) {
-		if (!rle_area(&s->masks[i]))
-			continue;
-		struct mask m = w->options->method == PSEUDOMASK_SCENE ? w->set.items[w->regions.objects[i]]
-								       : *w->propagation.starts[i].mask;
+		const int is_region = w->options->method == PSEUDOMASK_SCENE;
+		struct mask m =
+			is_region ? w->set.items[w->regions.objects[i]] : *w->propagation.starts[i].mask;
+		const struct rle *own = is_region ? drawn(w, &m, w->scene.cameras.views[view].name) : NULL;
 		m.view = w->scene.cameras.views[view].name;
 		m.visible = NAN; /* the candidate's is of its own view */
-		m.rle = s->masks[i];
+		m.score = own ? NAN : m.score;
+		m.rle = own ? *own : s->masks[i];
+		if (!rle_area(&m.rle))
+			continue;
 		w->masks++;
 		bad = put_mask(w->out, m, s->scores[i], e);
 	}
@@ -231,7 +259,7 @@ static int put_all(struct by_views *b, const struct report *to, struct err *e)
 	const struct each by = {b, each_workers(views), show_view, put_view};
 	const int is_scene = w->options->method == PSEUDOMASK_SCENE;
 
-	if (is_scene ? lift_regions(b, e) : lift_carried(w, e))
+	if (is_scene ? lift_regions(b, to, e) : lift_carried(w, e))
 		return -1;
 	const size_t found = is_scene ? w->regions.region_count : w->propagation.count;
 	if (found && each_run(&by, views, e))

@@ -76,15 +76,21 @@ int showing_write(
 }
 
 static int write_scene(const struct asking *a, const struct asking_answer *found, enum locate_show show,
-	const char *path, size_t *taken, struct err *e)
+	const char *path, size_t *taken, const struct report *to, struct err *e)
 {
+	const enum anysplats_format format = (enum anysplats_format)anysplats_format_of(path);
+	char text[ANYSPLATS_LOSS];
+	int lost = 0;
 	const struct scene *scene = &a->scene;
 	struct splats shown = {0};
 	struct showing w = {0};
 	int bad = showing_open(&w, scene, &a->model.lifted, a->extents, e) ||
 		  showing_things(&shown, &w, found->things, found->count, show, e) ||
-		  anysplats_write(&shown, scene->offset, (enum anysplats_format)anysplats_format_of(path),
-			  ANYSPLATS_SPZ_VERSION, path, e);
+		  (lost = anysplats_loss(&shown, scene->offset, format, text, e)) < 0 ||
+		  anysplats_write(&shown, scene->offset, format, ANYSPLATS_SPZ_VERSION, path, e);
+
+	if (!bad && lost)
+		report_warn(to, "%s: %s", path, text);
 
 	for (size_t i = 0; i < scene->splats.n && !bad; i++)
 		*taken += w.of[i] != 0;
@@ -106,7 +112,7 @@ int showing_ask(const struct asking_options *o, const char *question, enum locat
 		const struct answer_told told = {.asking = &a, .answer = &found, .question = question};
 		answer_caption(&told, caption, sizeof caption);
 		bad = !found.count ? err_set(e, ERR_CHECK, "nothing here is that: %s", found.reason)
-				   : write_scene(&a, &found, show, path, &taken, e);
+				   : write_scene(&a, &found, show, path, &taken, to, e);
 		if (!bad && fprintf(out, "%s: %zu of %zu Gaussians\n", caption, taken, a.scene.splats.n) < 0)
 			bad = err_errno(e, "stdout");
 		asking_answer_free(&found);

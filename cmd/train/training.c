@@ -3,7 +3,9 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
+#include "cmd/lift/left_out.h"
 #include "cmd/train/training_masks.h"
+#include "formats/records/masks.h"
 #include "formats/scene/lifted.h"
 #include "formats/scene/model.h"
 #include "mask/bits.h"
@@ -118,6 +120,56 @@ static int read_lifted(struct training *t, const struct training_files *from, st
 					  file_name(from->lifted), file_name(from->text));
 }
 
+/* What an object's first mask shows in a view. */
+static int lift_view(struct training *t, struct lift_objects *l, size_t v, struct err *e)
+{
+	const struct camera *c = &t->views.cameras[v];
+	const struct train_view *view = &t->views.views[v];
+	const size_t n = (size_t)view->count, pixels = view->weights.pixels;
+	const struct view_source from = training_views_source(&t->views);
+	struct view_matrix w = {.height = c->height, .width = c->width, .gaussians = l->gaussians};
+	struct mask *shown = mem_zalloc(n, sizeof *shown, "masks", e);
+	struct lift_mask *masks = mem_alloc(n, sizeof *masks, "masks", e);
+	uint8_t *bytes = mem_alloc(pixels, 1, "masks", e);
+	size_t count = 0;
+	int bad = !shown || !masks || !bytes;
+
+	/* An object has the number of its first sentence, and later sentences do not rise. */
+	for (size_t k = 0; k < n && !bad; k++) {
+		const size_t object = (size_t)t->objects[view->sentences[k]];
+		if (count && masks[count - 1].object >= object)
+			continue;
+		bits_expand(view->masks[k], 0, pixels, bytes);
+		bad = rle_encode(&shown[count].rle, bytes, c->height, c->width, e);
+		masks[count] = (struct lift_mask){&shown[count], object};
+		count += !bad;
+	}
+	if (!bad && count && !(bad = from.open(from.context, v, &w.rows, e))) {
+		bad = lift_objects_view(l, v, &w, masks, count, e);
+		from.close(from.context, v);
+	}
+	while (count)
+		rle_free(&shown[--count].rle);
+	free(shown);
+	free(masks);
+	free(bytes);
+	return bad;
+}
+
+/* Hours of training on masks that show no one scene would come to nothing. */
+static int check_masks(
+	struct training *t, const struct training_files *from, const struct report *to, struct err *e)
+{
+	struct lift_objects l;
+
+	int bad = lift_objects_init(&l, t->scene.splats.n, t->sentences, t->views.n, e);
+	for (size_t v = 0; v < t->views.n && !bad; v++)
+		bad = lift_view(t, &l, v, e);
+	bad = bad || left_out_check(&l, t->sentences, from->masks, from->scene, to, e);
+	lift_objects_free(&l);
+	return bad ? -1 : 0;
+}
+
 static int hold_out(
 	struct training *t, const struct training_files *from, double share, uint64_t seed, struct err *e)
 {
@@ -144,6 +196,7 @@ static int read_all(struct training *t, const struct training_files *from, doubl
 	if (!t->sentences)
 		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(from->text));
 	if (training_read_masks(t, from->weights, from->masks, to, e) ||
+		masks_check_refs(&t->masks.masks, from->masks, t->text.refs, t->text.objects, t->text.n, e) ||
 		supervision_link(
 			&t->masks, t->refs, t->object_names, t->sentences, t->views.views, t->views.n, e))
 		return -1;
@@ -153,7 +206,7 @@ static int read_all(struct training *t, const struct training_files *from, doubl
 		return err_set(e, ERR_FORMAT,
 			"%s: no mask of a training view is of a training sentence of %s",
 			file_name(from->masks), file_name(from->text));
-	if (read_lifted(t, from, e) || hold_out(t, from, share, seed, e))
+	if (check_masks(t, from, to, e) || read_lifted(t, from, e) || hold_out(t, from, share, seed, e))
 		return -1;
 	make_checksum(t);
 	return 0;

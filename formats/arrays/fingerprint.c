@@ -14,9 +14,11 @@ static struct fingerprint fingerprint_of(uint64_t hash)
 	return f;
 }
 
-struct fingerprint fingerprint_scene(const float *means, size_t n)
+struct fingerprint fingerprint_scene(const struct splats *s)
 {
-	return fingerprint_of(hash64(means, 3 * n * sizeof *means, 0));
+	const uint64_t hash = hash64(s->means, 3 * s->n * sizeof *s->means, 0);
+
+	return fingerprint_of(s->near == SPLATS_NEAR ? hash : hash64(&s->near, sizeof s->near, hash));
 }
 
 struct fingerprint fingerprint_camera(const struct camera *c)

@@ -10,6 +10,7 @@
 #include "nn/bpe.h"
 #include "nn/clip.h"
 #include "nn/wordpiece.h"
+#include "splat/splats.h"
 
 #include <stddef.h>
 
@@ -23,8 +24,8 @@ struct origin {
 	struct fingerprint scene, encoder;
 };
 
-/* Of a scene: its means (n,3), in their order. */
-struct fingerprint fingerprint_scene(const float *means, size_t n);
+/* Of a scene: its means, in their order, and its near plane where that is not 3DGS's. */
+struct fingerprint fingerprint_scene(const struct splats *s);
 /* Of a view: image size, intrinsics and pose. */
 struct fingerprint fingerprint_camera(const struct camera *c);
 /* Of an encoder: its sizes, weights, vocabulary and merges, and whether words are taken from the vocabulary

@@ -274,6 +274,24 @@ int masks_find_view(
 	return name ? 0 : -1;
 }
 
+int masks_check_refs(const struct masks *set, const char *path, char *const *refs, char *const *objects,
+	size_t sentences, struct err *e)
+{
+	struct names names;
+	int bad = names_make(&names, refs, sizeof *refs, 0, sentences, e);
+
+	for (size_t i = 0; i < set->n && !bad; i++) {
+		const struct mask *m = &set->items[i];
+		const size_t at = m->ref ? names_find(&names, m->ref) : NAMES_NONE;
+		if (at != NAMES_NONE && m->object && *objects[at] && strcmp(m->object, objects[at]))
+			bad = err_set(e, ERR_FORMAT,
+				"%s: a mask of view '%s' is of object '%s', but its ref '%s' is a sentence of '%s': leave out the key that is wrong",
+				file_name(path), m->view, m->object, m->ref, objects[at]);
+	}
+	names_free(&names);
+	return bad ? -1 : 0;
+}
+
 /* Leaves out the masks of views that the scene lacks: COLMAP may have left photographs out. Of all masks it
  * is an error. */
 static int leave_out(struct masks *set, long *lines, size_t *views, const char *path,

@@ -32,6 +32,11 @@ int masks_check_shape(const struct mask *m, const char *of, int height, int widt
 int masks_find_view(
 	struct mask *m, const struct names *names, const struct cameras *c, size_t *at, struct err *e);
 
+/* 0 where none of the records of a file is of a sentence (its ref) and says another object than that
+ * (objects; "" says nothing), else ERR_FORMAT: which of them is wrong no tool can know. */
+int masks_check_refs(const struct masks *set, const char *path, char *const *refs, char *const *objects,
+	size_t sentences, struct err *e);
+
 /* views (n): the number of each record's view, which the record then names as the scene does
  * (view_is_called). Masks of views that the scene lacks are left out, with a warning; ERR_FORMAT where that
  * leaves none, or a mask has not the shape of its view. With NULL (and no report) nothing is left out, and

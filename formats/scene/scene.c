@@ -40,16 +40,17 @@ static int check_values(const struct splats *s, const char *path, struct err *e)
 	return 0;
 }
 
-/* The means say it; the file's own word of it, where there is one, must be the same. */
+/* The means and the near plane say it; the file's own word of it, where there is one, must be the same. */
 static int take_fingerprint(struct scene *s, const struct safetensors *st, struct err *e)
 {
 	struct fingerprint own;
 
-	s->fingerprint = fingerprint_scene(s->splats.means, s->splats.n);
+	s->fingerprint = fingerprint_scene(&s->splats);
 	if (fingerprint_read(&own, st, "scene", e))
 		return -1;
 	if (*own.hex && strcmp(own.hex, s->fingerprint.hex))
-		return err_set(e, ERR_FORMAT, "%s: metadata 'scene' is %s, but the means have %s", st->path,
+		return err_set(e, ERR_FORMAT,
+			"%s: metadata 'scene' is %s, but the means and the near plane have %s", st->path,
 			own.hex, s->fingerprint.hex);
 	return 0;
 }

@@ -76,7 +76,7 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 {
 	const struct splats *p = &s->splats;
 	int64_t n = (int64_t)p->n;
-	const struct fingerprint own = fingerprint_scene(p->means, p->n);
+	const struct fingerprint own = fingerprint_scene(p);
 	char offset[128], near[32];
 	struct st_tensor tensors[] = {
 		st_matrix("means", ST_F32, n, 3, p->means),

@@ -33,4 +33,9 @@ enum { ANYSPLATS_SPZ_VERSION = 3 }; /* where none is asked for */
 int anysplats_write(const struct splats *s, const double offset[3], enum anysplats_format format,
 	int spz_version, const char *path, struct err *e);
 
+/* What of the Gaussians a format loses that shows: 1 and *text, 0, or -1 with *e set for want of memory. */
+enum { ANYSPLATS_LOSS = 400 };
+int anysplats_loss(const struct splats *s, const double offset[3], enum anysplats_format format,
+	char text[ANYSPLATS_LOSS], struct err *e);
+
 #endif

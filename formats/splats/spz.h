@@ -49,4 +49,7 @@ int spz_read_map(struct splats *s, double offset[3], struct rows_report *report,
  * *e set. */
 int spz_write(const struct splats *s, const double offset[3], int version, const char *path, struct err *e);
 
+/* The fraction bits of a coordinate that spz_write chooses; -1 where the farthest has no room. */
+int spz_fraction(const struct splats *s, const double offset[3]);
+
 #endif

@@ -9,22 +9,37 @@
 #include <zlib.h>
 #include <zstd.h>
 
-/* Coordinates get as many fraction bits as leave room for the farthest mean; more than these say nothing.
+/* Coordinates get as many fraction bits as leave room for the farthest mean; more than these say nothing, but
+ * in scenes of a unit so large that most Gaussians are smaller than so many steps.
  * Harmonics are rounded to 5 bits of degree 1 and 4 of the others, as the format's own library does: noise
  * does not compress. */
-enum { FRACTION_MOST = 16, STEP_DEGREE_1 = 8, STEP_REST = 16, ZSTD_LEVEL = 12 };
+enum {
+	FRACTION_USUAL = 16,
+	FRACTION_MOST = 24,
+	STEPS = 32,
+	STEP_DEGREE_1 = 8,
+	STEP_REST = 16,
+	ZSTD_LEVEL = 12
+};
 
 static unsigned char to_byte(double x)
 {
 	return (unsigned char)lrint(fmin(fmax(x, 0), 255));
 }
 
-/* As many as leave the farthest coordinate within 23 bits and a sign; -1 where none do. */
-static int choose_fraction(const struct splats *s, const double offset[3])
+int spz_fraction(const struct splats *s, const double offset[3])
 {
 	double farthest = 0;
-	int bits = FRACTION_MOST;
+	int bits = FRACTION_USUAL;
 
+	for (size_t large = 0; bits < FRACTION_MOST; bits++, large = 0) {
+		for (size_t i = 0; i < s->n; i++) {
+			const float *scale = s->scales + 3 * i;
+			large += ldexp((double)fmaxf(fmaxf(scale[0], scale[1]), scale[2]), bits) >= STEPS;
+		}
+		if (2 * large >= s->n)
+			break;
+	}
 	for (size_t i = 0; i < 3 * s->n; i++)
 		farthest = fmax(farthest, fabs((double)s->means[i] + offset[i % 3]));
 	while (bits >= 0 && ldexp(farthest, bits) >= (1 << 23) - 1)
@@ -205,7 +220,7 @@ int spz_write(const struct splats *s, const double offset[3], int version, const
 
 	while ((f.degree + 1) * (f.degree + 1) < s->sh_coefficients)
 		f.degree++;
-	f.fraction_bits = choose_fraction(s, offset);
+	f.fraction_bits = spz_fraction(s, offset);
 	if (f.fraction_bits < 0 || s->n > UINT32_MAX)
 		return err_set(e, ERR_FORMAT,
 			"%s: means beyond 8388606, or more than 4294967295 Gaussians, do not fit an .spz",

@@ -340,7 +340,7 @@ int cli_fail(const struct cli *c, const struct err *e)
 
 static void print_note(const struct cli *c, int level, const char *format, va_list ap)
 {
-	if (c->verbose < level)
+	if (c->verbose < level || (c->quiet && !level))
 		return;
 	fprintf(stderr, "%s: ", c->tool->name);
 	vfprintf(stderr, format, ap);

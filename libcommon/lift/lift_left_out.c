@@ -1,7 +1,7 @@
 /* Whether masks of different views show one scene: each mask is compared with what the other views' masks
  * lifted of its object. With its own among them it would agree with itself. No picture is drawn: a mask is
  * what it shows of each Gaussian. */
-#include "lift/lift_objects.h"
+#include "lift/lift_private.h"
 
 #include "base/mem.h"
 #include "base/quantile.h"
@@ -90,6 +90,39 @@ static double compare(
 	return either > 0 ? both / either : -1;
 }
 
+/* Compares the masks of an object, each of which then votes by the square of how well it fits: found gets how
+ * well. Returns of how many masks that is known. */
+static size_t compare_all(struct lift_objects *l, size_t object, struct room *r, double *found)
+{
+	size_t n = 0;
+	double vote;
+
+	gather(l, object, r);
+	const double level = level_of(r);
+	for (size_t v = 0; v < l->view_count; v++) {
+		const struct lift_view *at = &l->views[v];
+		const struct shares *row = row_of(at, object, &vote);
+		const double one = row ? compare(at, row, vote, level, r) : -1;
+		if (one >= 0)
+			at->agreement[row - at->rows] = found[n++] = one;
+	}
+	while (r->count)
+		r->place[r->who[--r->count]] = -1;
+	return n;
+}
+
+static void revote(struct lift_objects *l, size_t object)
+{
+	double vote;
+
+	for (size_t v = 0; v < l->view_count; v++) {
+		const struct lift_view *at = &l->views[v];
+		const struct shares *row = row_of(at, object, &vote);
+		if (row)
+			at->vote[row - at->rows] = lift_vote(at->agreement[row - at->rows]);
+	}
+}
+
 static int rising(const void *a, const void *b)
 {
 	const double x = *(const double *)a, y = *(const double *)b;
@@ -97,7 +130,7 @@ static int rising(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-int lift_left_out(const struct lift_objects *l, size_t named, double *agreement, struct err *e)
+int lift_left_out(struct lift_objects *l, size_t named, double *agreement, struct err *e)
 {
 	size_t most = 0, n = 0;
 	struct room r = {.who = mem_alloc(l->gaussians, sizeof *r.who, "shares", e),
@@ -113,17 +146,11 @@ int lift_left_out(const struct lift_objects *l, size_t named, double *agreement,
 	for (size_t i = 0; i < l->gaussians && !bad; i++)
 		r.place[i] = -1;
 	for (size_t o = 0; o < named && !bad; o++) {
-		double vote;
-		gather(l, o, &r);
-		const double level = level_of(&r);
-		for (size_t v = 0; v < l->view_count; v++) {
-			const struct shares *row = row_of(&l->views[v], o, &vote);
-			const double one = row ? compare(&l->views[v], row, vote, level, &r) : -1;
-			if (one >= 0)
-				found[n++] = one;
+		for (int round = l->round; round < LIFT_ROUNDS; round++) {
+			compare_all(l, o, &r, found + n);
+			revote(l, o);
 		}
-		while (r.count)
-			r.place[r.who[--r.count]] = -1;
+		n += compare_all(l, o, &r, found + n);
 	}
 	if (n)
 		qsort(found, n, sizeof *found, rising);

@@ -6,8 +6,6 @@
 
 #include <stdlib.h>
 
-/* So that the masks of an object that another one has taken over still vote, all alike. */
-static const float LEAST_VOTE = 0.01f;
 /* What rounds to nothing in a file, formats/scene/lifted.md. */
 static const float LEAST_SHARE = 0.5f / 255;
 
@@ -112,16 +110,22 @@ int lift_objects_view(struct lift_objects *l, size_t at, const struct view_matri
 	return fill_bits(v, masks, n, w->height, w->width, e) || make_rows(v, w, e) ? -1 : 0;
 }
 
+float lift_vote(double agreement)
+{
+	/* so that the masks of an object that another one has taken over still vote, all alike */
+	const float least = 0.01f, squared = (float)(agreement * agreement);
+
+	return squared > least ? squared : least;
+}
+
 int lift_objects_vote(struct lift_objects *l, size_t at, const struct view_matrix *w, struct err *e)
 {
 	struct lift_view *v = &l->views[at];
 
 	if (lift_agreement(l, v, w, v->agreement, e))
 		return -1;
-	for (size_t k = 0; k < v->n; k++) {
-		const float squared = (float)(v->agreement[k] * v->agreement[k]);
-		v->vote[k] = squared > LEAST_VOTE ? squared : LEAST_VOTE;
-	}
+	for (size_t k = 0; k < v->n; k++)
+		v->vote[k] = lift_vote(v->agreement[k]);
 	return 0;
 }
 

@@ -96,11 +96,11 @@ int lift_objects_vote(struct lift_objects *l, size_t at, const struct view_matri
 /* Ends a round. Returns 0, or -1 with *e set for want of memory. */
 int lift_objects_settle(struct lift_objects *l, struct err *e);
 
-/* After the last round: how far each mask of the first `named` objects is what the other views' masks lifted
- * of its object, soft intersection over union of what they show of each Gaussian; the median over the masks
- * that can be compared, NAN where these are fewer than LIFT_LEFT_OUT_MASKS. Returns 0, or -1 with *e set for
- * want of memory. */
-int lift_left_out(const struct lift_objects *l, size_t named, double *agreement, struct err *e);
+/* After the last round, or instead of rounds after lift_objects_view alone, when it finds votes itself: how
+ * far each mask of the first `named` objects is what the other views' masks lifted of its object, soft
+ * intersection over union of what they show of each Gaussian; the median over the masks that can be compared,
+ * NAN where these are fewer than LIFT_LEFT_OUT_MASKS. Returns 0, or -1 with *e set for want of memory. */
+int lift_left_out(struct lift_objects *l, size_t named, double *agreement, struct err *e);
 
 /* After the last round: gaussians, objects, confidence, indptr, index and share of a zeroed model, whose
  * names and sentences are the caller's to fill. Returns 0, or -1 with *e set and *to as it can be freed. */

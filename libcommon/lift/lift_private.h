@@ -13,4 +13,7 @@ int lift_agreement(const struct lift_objects *l, const struct lift_view *v, cons
  */
 int lift_shares(struct lift_objects *l, int is_last, struct err *e);
 
+/* The vote of a mask that agrees so far. */
+float lift_vote(double agreement);
+
 #endif

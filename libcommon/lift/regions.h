@@ -33,6 +33,7 @@
 #define LIFT_REGIONS_H
 
 #include "base/err.h"
+#include "lift/lift_objects.h"
 #include "lift/seen.h"
 #include "lift/shares.h"
 #include "mask/pool.h"
@@ -104,6 +105,11 @@ int regions_lift(struct regions *r, size_t view, const struct view_matrix *w, st
 
 /* Grows the regions, after all views are lifted. */
 int regions_grow(struct regions *r, struct err *e);
+
+/* The surest candidate of each object in each view, for lift_left_out, after regions_grow; its rows are r's.
+ * Returns 0, or -1 with *e set; regions_surest_free after either. */
+int regions_surest(const struct regions *r, struct lift_objects *to, struct err *e);
+void regions_surest_free(struct lift_objects *l);
 
 /* Gives each object its region, and finds the spare ones, after regions_grow. */
 int regions_assign(struct regions *r, struct err *e);

@@ -49,7 +49,7 @@ double rle_iou(const struct rle *a, const struct rle *b);
 
 /* Whether a mask or another map of h x w can be of a picture of height x width: sides that a resize rounds,
  * cuts or raises are less than one pixel of the smaller off, so |h width - w height| is at most the larger
- * sum of sides; the picture's own sides exchanged are another shape always. */
+ * sum of sides, or 0.5% of h width; the picture's own sides exchanged are another shape always. */
 int rle_has_shape(int64_t h, int64_t w, int64_t height, int64_t width);
 
 /* Returns 0 where it can, else -1 with ERR_FORMAT and no file name: "a mask of 3x4, but NAME is 4x3 ...". */

@@ -147,6 +147,30 @@ Try 'gs-transform --help'." "$BIN/gs-transform" -o - s.ply
 	[ "$(tail -c +$((size + 12)) out.ply | od -An -w24 -tf8 -N 24 | tr -s ' ')" = " 1 0 50" ]
 }
 
+@test "what a format loses of very small, large and far scenes is told" {
+	"$BIN/gs-synth" -q --objects 2 --views 2 --size 32x24 --gaussians 1000 -o made
+	lost() { # FILE WHAT OPTION...
+		local file=$1 what=$2
+		shift 2
+		try -o "$file" "$@" made/point_cloud.ply 2>err
+		[[ $(cat err) == "gs-transform: warning: $file: "$what ]] || { cat err; return 1; }
+	}
+	small="*Gaussians are not within 4.5e-05 to 380, all that .spz has, and become larger or smaller: give the scene another unit with --scale, or write a .ply"
+	off="places are rounded to steps of 0.*, and half of the Gaussians are smaller than 0.*: move the scene to the origin *"
+	lost x.spz "$small" --scale 0.001
+	lost x.spz "$small" --scale 100000
+	lost x.spz "$off" --translate 1000000,0,0
+	lost x.splat "$off" --translate 1000000,0,0
+	for kept in "x.spz 1" "x.sog 1" "x.sog 0.001" "x.sog 1000" "x.splat 0.001" "x.splat 1000" "x.ply 0.001" "x.glb 1000"; do
+		set -- $kept
+		[ -z "$(try --scale "$2" -o "$1" made/point_cloud.ply 2>&1)" ]
+	done
+	[ -z "$(try --translate 1000000,0,0 -o x.glb made/point_cloud.ply 2>&1)" ]
+	# smaller Gaussians, more fraction bits
+	try -q --scale 0.005 -o small.spz made/point_cloud.ply
+	[ "$(gunzip -c <small.spz | od -An -tu1 -j13 -N1)" -gt 16 ]
+}
+
 @test "mistakes" {
 	for text in 1,2,3 1,2,3,4,5 a,2,3,4,5,6 2,0,0,1,1,1 '1,2,3,4,5, 6' 1,2,3,4,5,6,7 1,2,3,4,5,nan; do
 		mistake "--crop: '$text' is not X0,Y0,Z0,X1,Y1,Z1, the least values first" --crop "$text"

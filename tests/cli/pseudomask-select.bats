@@ -79,7 +79,8 @@ strays() { ls | grep -v -x candidates.jsonl || true; }
 	[ "${lines[0]}" = '{"view":"v2","object":"cup","score":1,"segmentation":{"size":[1,6],"counts":"132"}}' ]
 	# (1 + 1.2/3.3 + 0.5/0.6) / 3
 	[[ "${lines[1]}" =~ ^'{"view":"v1","object":"cup","score":0.7323232323232'[0-9]+',"segmentation":{"size":[1,6],"counts":"231"}}'$ ]]
-	[ "${lines[2]}" = '{"view":"v2","object":"jar","score":1,"segmentation":{"size":[1,6],"counts":"51"}}' ]
+	# a person's, who gave no score, stays a person's
+	[ "${lines[2]}" = '{"view":"v2","object":"jar","segmentation":{"size":[1,6],"counts":"51"}}' ]
 }
 
 @test "ciou is the default" {
@@ -99,8 +100,7 @@ strays() { ls | grep -v -x candidates.jsonl || true; }
 	run "$BIN/pseudomask-select" --method top1 candidates.jsonl
 	[ "$status" -eq 0 ]
 	[ "${lines[1]}" = '{"view":"v1","object":"cup","score":0.9,"segmentation":{"size":[1,6],"counts":"132"}}' ]
-	# without a score it is 1
-	[[ "${lines[2]}" == '{"view":"v2","object":"jar","score":1,'* ]]
+	[[ "${lines[2]}" == '{"view":"v2","object":"jar","segmentation":'* ]]
 }
 
 @test "min-score cuts strictly and -v counts what it cost" {
@@ -269,7 +269,7 @@ truth_of() { jq -c "select(.view == \"$1\") | .score = 0.9" "$BATS_FILE_TMPDIR/t
 	of 2 < two | jq -c '.object = "thing" | .score = 0.95'
 	of 1 < two | jq -c 'del(.object, .score) | .ref = "lone"'; } > some.jsonl
 	first -o out some.jsonl
-	[ "$(jq -c 'select(.view == "view_000") | [.object, .ref, .score]' out | tr '\n' ' ')" = '["thing",null,0.95] [null,"lone",1] ' ]
+	[ "$(jq -c 'select(.view == "view_000") | [.object, .ref, .score]' out | tr '\n' ' ')" = '["thing",null,0.95] [null,"lone",null] ' ]
 	cmp <(jq -c 'select(.view == "view_000" and .object) | .segmentation' out) <(of 2 < two | jq -c .segmentation)
 }
 
@@ -382,6 +382,29 @@ scene() {
 	jq -e -s 'all(.segmentation.size == [72, 96] and (has("ref") | not) and .score > 0 and .score <= 1)' regions
 	quality() { "$BIN/miou-score" --json -q --predicted-views --truth synth/truth.jsonl "$1" | jq .miou; }
 	jq -n -e "$(quality regions) > $(quality votes) + 0.1"
+}
+
+@test "scene: what a person drew stays as it is, and a person's" {
+	# the first object's mask of one view is a part of it
+	jq -c 'del(.score) | select(.view != "view_004")' "$BATS_FILE_TMPDIR/truth.jsonl" | of_both |
+		jq -c 'if .view == "view_001" then .segmentation.counts = [0,1,6911] else . end' >drawn
+	scene -o out drawn
+	[ "$("$BIN/miou-score" --json -q --truth drawn out | jq .miou)" = 1 ]
+	jq -e -s 'all(has("score") | not)' out
+}
+
+@test "scene: candidates of other views, or of cameras in another frame, are refused" {
+	jq -c '.view |= "view_00\([1, 2, 3, 5, 4, 0][ltrimstr("view_00") | tonumber])"' "$BATS_FILE_TMPDIR/candidates.jsonl" >next
+	run scene -q -o out next
+	[ "$status" = 3 ]
+	[[ "$output" == "pseudomask-select: next: what masks show in one view is not where those of other views show it (by 0."* ]]
+	"$BIN/gs-transform" -q --translate 0.3,-0.2,0.1 --rotate 0.9,0.2,0.3,0.1 --scale 0.4 -o s.ply synth/point_cloud.ply
+	"$BIN/gs-import" -q --cameras synth/sparse/0 --test-views view_004 -o scene s.ply
+	"$BIN/gs-weigh" -q -o weights scene
+	run "$BIN/pseudomask-select" -q --scene scene --weights weights -o out "$BATS_FILE_TMPDIR/candidates.jsonl"
+	[ "$status" = 3 ]
+	[[ "$output" == "pseudomask-select: $BATS_FILE_TMPDIR/candidates.jsonl: what masks show in one view is not where "*"are the cameras of scene in another frame than its splats? "* ]]
+	[ ! -e out ]
 }
 
 @test "scene: a confusion that votes get wrong, and the other object's masks that it is settled with" {

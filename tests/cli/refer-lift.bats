@@ -86,6 +86,16 @@ not() { ! "$@"; }
 		"$made/sentences.jsonl" | paste -sd' ')" = "$(tensor model object d4)" ]
 }
 
+@test "a mask of one object's sentence that says it is of another is refused" {
+	jq -c --arg r "$(jq -r .ref "$made/sentences.jsonl" | head -n 1)" '.ref = $r | .object = "another"' masks.jsonl | head -n 1 >both
+	says="both: a mask of view 'view_00"?"' is of object 'another', but its ref '"*"' is a sentence of '"*"': leave out the key that is wrong"
+	for tool in refer-lift refer-train feature-lift; do
+		run "$BIN/$tool" --scene scene --weights "$made/weights" --text text.safetensors --masks both -o model
+		[ "$status" = 3 ] && [[ "$output" == "$tool: "$says ]] || { echo "$output"; false; }
+	done
+	[ ! -e model ]
+}
+
 @test "masks of other views are refused" {
 	jq -c '.view |= "view_00\((ltrimstr("view_00") | tonumber + 2) % 6)"' masks.jsonl >next
 	run lift -q --masks next -o model

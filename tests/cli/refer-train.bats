@@ -401,6 +401,14 @@ cut_short() {
 	tail -n 1 err | grep -qE '^refer-train: [0-9.]+ s, peak memory [0-9.]+ MiB$'
 }
 
+@test "masks of other views are refused" {
+	jq -c '.view |= "view_00\((ltrimstr("view_00") | tonumber + 2) % 5)"' masks.jsonl >next
+	run train --masks next -o model
+	[ "$status" = 3 ]
+	[[ "$output" == "refer-train: next: what masks show in one view is not where those of other views show it (by 0."*", at least 0.35 is right): are they of other views, "* ]]
+	[ ! -e model ]
+}
+
 @test "usage errors" {
 	try=$'\n'"Try 'refer-train --help'."
 	says 2 "refer-train: --scene, --weights, --text and --masks are required$try" "$BIN/refer-train" -o m

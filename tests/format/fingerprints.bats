@@ -192,5 +192,16 @@ first_view() { head -n 1 masks.jsonl | jq -r .view; }
 		"$BIN/gs-check" text.safetensors
 	own=$(meta scene/splats.safetensors scene)
 	LC_ALL=C sed -i "s/\"scene\":\"$own\"/\"scene\":\"0123456789abcdef\"/" scene/splats.safetensors
-	says 1 "scene/splats.safetensors: metadata 'scene' is 0123456789abcdef, but the means have $own" "$BIN/gs-check" scene
+	says 1 "scene/splats.safetensors: metadata 'scene' is 0123456789abcdef, but the means and the near plane have $own" "$BIN/gs-check" scene
+}
+
+@test "weights of the same Gaussians with another near plane are refused" {
+	LC_ALL=C sed -i 's/"near":"0.2./"near":"0.99/' scene/splats.safetensors
+	[[ "$(meta scene/splats.safetensors near)" == 0.99* ]]
+	"$BIN/gs-check" scene >line && false
+	grep -q "^scene/splats.safetensors: metadata 'scene' is .*, but the means and the near plane have " line
+	forgets scene/splats.safetensors
+	run "$BIN/refer-lift" --scene scene --weights weights --text text.safetensors --masks masks.jsonl -o out/model
+	[ "$status" = 3 ]
+	[[ "$output" == "refer-lift: weights/"*": is of another scene than scene"* ]]
 }

@@ -277,7 +277,8 @@ static int side(int full, double scale, int how)
 static void test_shapes(void)
 {
 	static const int others[][4] = {{160, 120, 120, 160}, {53, 40, 120, 160}, {101, 100, 100, 101},
-		{120, 120, 120, 160}, {118, 160, 120, 160}, {1088, 1920, 1080, 1920}, {90, 160, 120, 160}};
+		{120, 120, 120, 160}, {118, 160, 120, 160}, {1088, 1920, 1080, 1920}, {484, 640, 968, 1296},
+		{90, 160, 120, 160}};
 	struct rng rng;
 	struct err e = {0};
 	int refused = 0;
@@ -292,6 +293,8 @@ static void test_shapes(void)
 			   !rle_has_shape(side(h, a, how), side(w, a, how), side(h, b, how), side(w, b, how));
 	}
 	CHECK(!refused, "%d resized pictures", refused);
+	CHECK(rle_has_shape(480, 640, 968, 1296) && rle_has_shape(968, 1296, 480, 640),
+		"resized by two factors");
 	for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
 		const int *o = others[i];
 		CHECK(rle_check_shape("a mask", o[0], o[1], "the view", o[2], o[3], &e) &&
