@@ -232,8 +232,8 @@ static int put_member(const struct parser_weights *w, int member, struct making 
 	return 0;
 }
 
-int parser_weights_write(const struct parser_weights *w, const char *path, const char *options,
-	long long seed, const char *source, struct err *e)
+int parser_weights_write(
+	const struct parser_weights *w, const char *path, long long seed, const char *source, struct err *e)
 {
 	struct making m = {0};
 	char seed_text[32];
@@ -243,7 +243,7 @@ int parser_weights_write(const struct parser_weights *w, const char *path, const
 		bad = put_member(k, members++, &m, e);
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
 	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "5"}, {"tool", "parse-train"},
-		{"options", options}, {"seed", seed_text}, {"source", source},
+		{"options", ""}, {"seed", seed_text}, {"source", source},
 		{"encoder", w->encoder[0] ? w->encoder : NULL}};
 	if (!bad)
 		bad = safetensors_write(path, m.tensors, (size_t)m.n, meta, sizeof meta / sizeof *meta, e);
