@@ -5,7 +5,7 @@
 int main(int argc, char **argv)
 {
 	struct parser_training_options o = {
-		.epochs = 5, .members = 2, .source = "the marked sentences of refersplat"};
+		.epochs = 10, .members = 2, .source = "the marked sentences of refersplat"};
 	int is_parses = 0, is_sentences = 0;
 	const struct cli_option options[] = {
 		{"text", 0, CLI_STRING, &o.text, "TEXT", "the sentences of MARKED, encoded", 0, 0},
@@ -13,7 +13,7 @@ int main(int argc, char **argv)
 			"write the sentences of MARKED (JSON Lines) instead of learning", 0, 0},
 		{"parses", 0, CLI_FLAG, &is_parses, NULL,
 			"write the parses that the marks of MARKED stand for instead of learning", 0, 0},
-		{"epochs", 0, CLI_INT, &o.epochs, "N", "passes over the sentences (default 5)", 1, 1000},
+		{"epochs", 0, CLI_INT, &o.epochs, "N", "passes over the sentences (default 10)", 1, 1000},
 		{"members", 0, CLI_INT, &o.members, "N",
 			"networks that learn from other starts; their scores are averaged (default 2)", 1, 8},
 		{"source", 0, CLI_STRING, &o.source, "TEXT",

@@ -98,18 +98,18 @@ static int take_member(struct parser_weights *w, int member, const struct safete
 	return 0;
 }
 
-/* Older ones are of another network, or were learnt on the encoder's last layer. */
+/* Older ones are of another network. */
 static int need_version(const struct safetensors *st, struct err *e)
 {
 	const char *version;
 
-	if (safetensors_need_format(st, "refer.parser", 5, e))
+	if (safetensors_need_format(st, "refer.parser", 6, e))
 		return -1;
 	version = safetensors_meta(st, "version");
-	return !strcmp(version, "5")
+	return !strcmp(version, "6")
 		       ? 0
 		       : err_set(e, ERR_FORMAT,
-				 "%s: refer.parser version %s is older than this program reads (5)", st->path,
+				 "%s: refer.parser version %s is older than this program reads (6)", st->path,
 				 version);
 }
 
@@ -242,7 +242,7 @@ int parser_weights_write(
 	for (const struct parser_weights *k = w; k && members < PARSER_MEMBERS && !bad; k = k->next)
 		bad = put_member(k, members++, &m, e);
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
-	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "5"}, {"tool", "parse-train"},
+	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "6"}, {"tool", "parse-train"},
 		{"options", ""}, {"seed", seed_text}, {"source", source},
 		{"encoder", w->encoder[0] ? w->encoder : NULL}};
 	if (!bad)

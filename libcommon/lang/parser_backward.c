@@ -79,8 +79,6 @@ static double arc_loss(const struct parser_weights *w, struct parser_weights *dw
 			dw->root[NET_ARC] += g;
 		else
 			dw->distance[parser_distance(i, j)] += g;
-		if (b->features[first + i].head == j)
-			dw->agree[j < 0] += g;
 	}
 	return loss;
 }
@@ -138,8 +136,6 @@ static void embed_back(struct parser_weights *dw, const struct parser_batch *b, 
 				d[k] = 0;
 		}
 		add_to(dw->closed + b->features[r].closed * NET_HIDDEN, d);
-		add_to(dw->role + b->features[r].role * NET_HIDDEN, d);
-		add_to(dw->relation + b->features[r].relation * NET_HIDDEN, d);
 		add_to(dw->pause + b->features[r].pause * NET_HIDDEN, d);
 	}
 	linear_backward(NULL, dw->vector, dw->vector_bias, dh, b->x, NULL, (size_t)b->rows, (size_t)dw->width,

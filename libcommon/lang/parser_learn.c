@@ -16,7 +16,6 @@ static const double rate = 0.002, dropout = 0.33, dropout_state = 0.2;
 int parser_sample_make(struct parser_sample *s, const struct tokens *t, const struct analysis *right,
 	const float *pieces, int piece_count, int width, struct err *e)
 {
-	struct analysis grammar;
 	size_t n = (size_t)t->n;
 
 	*s = (struct parser_sample){.n = t->n};
@@ -27,8 +26,7 @@ int parser_sample_make(struct parser_sample *s, const struct tokens *t, const st
 		parser_sample_free(s);
 		return -1;
 	}
-	grammar_analyse(&grammar, t);
-	parser_features_take(s->features, t, &grammar);
+	parser_features_take(s->features, t);
 	if (right)
 		memcpy(s->right, right->word, n * sizeof *s->right);
 	parser_vectors_of_words(t, pieces, piece_count, width, s->vectors);

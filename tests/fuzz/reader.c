@@ -25,7 +25,6 @@
 #include "formats/parses.h"
 #include "formats/png.h"
 #include "formats/points.h"
-#include "formats/readings.h"
 #include "formats/safetensors.h"
 #include "formats/scene.h"
 #include "formats/selection.h"
@@ -64,7 +63,6 @@ SIMPLE(model, struct model, model_read, model_free)
 SIMPLE(npy, struct npy_file, npy_open, npy_close)
 SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
 SIMPLE(parses, struct parse_set, parses_read, parses_free)
-SIMPLE(readings, struct reading_set, readings_read, readings_free)
 SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
 SIMPLE(selection, struct selection, selection_read, selection_free)
 SIMPLE(cameras, struct cameras, scene_read_cameras_file, cameras_free)
@@ -305,7 +303,6 @@ static const struct target {
 	{"parses", try_parses, {0}, 0},
 	{"ply", try_scene, {0}, 0},
 	{"points", try_points, {"points3D.bin", "points3D.txt", "points3D.ply"}, 0},
-	{"readings", try_readings, {0}, 0},
 	{"safetensors", try_safetensors, {0}, 0},
 	{"scene", try_folder, {"cameras.json", "splats.safetensors"}, 0},
 	{"selection", try_selection, {0}, 0},
