@@ -27,13 +27,13 @@ COMPILE_TEST = $(COMPILE) -Wno-missing-prototypes -Dmain=main_of_$(basename $(no
 LINK = $(CC) $(CFLAGS) $(OPENMP) $(LDFLAGS)
 
 TOOLS := $(patsubst cmd/%.c,%,$(wildcard cmd/*.c))
-SOURCES := $(wildcard libcommon/*/*.c formats/*.c cmd/jobs/*.c)
+SOURCES := $(wildcard libcommon/*/*.c formats/*/*.c cmd/*/*.c)
 OBJECTS := $(SOURCES:%.c=$(BUILD)/obj/%.o)
 LIBRARY := $(BUILD)/librefersplat.a
 BINARIES := $(TOOLS:%=$(BUILD)/bin/%)
 COMPLETIONS := $(TOOLS:%=$(BUILD)/completion/bash/%) $(TOOLS:%=$(BUILD)/completion/zsh/_%)
 # librefersplat, as other programs link it: $(LIBRARY) has all that the tools use.
-PUBLIC := $(BUILD)/obj/cmd/jobs/refersplat.o
+PUBLIC := $(BUILD)/obj/cmd/api/refersplat.o
 SONAME := librefersplat.so.0
 SHARED := $(BUILD)/lib/librefersplat.so.$(VERSION)
 STATIC := $(BUILD)/lib/librefersplat.a
@@ -43,7 +43,7 @@ UNIT_OBJECTS := $(UNIT_HELPERS:%.c=$(BUILD)/obj/%.o)
 STABILITY := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard tests/stability/*.c))
 BENCHES := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/bench_*.c tests/bench/fit_*.c))
 FUZZERS := $(patsubst tests/fuzz/%.c,$(BUILD)/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
-C_FILES = $(wildcard cmd/*.c cmd/jobs/*.[ch] libcommon/*/*.[ch] formats/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch] tests/bench/*.[ch] tests/stability/*.[ch])
+C_FILES = $(wildcard cmd/*.c cmd/*/*.[ch] libcommon/*/*.[ch] formats/*/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch] tests/bench/*.[ch] tests/stability/*.[ch])
 MAN_PAGES := $(wildcard man/*.[137])
 
 # What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
@@ -83,15 +83,15 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
 	$(COMPILE) -MMD -MP -c -o $@ $<
 
 # The default weights of the parser are in the library.
-$(BUILD)/obj/formats/parser_weights.o: formats/parser_default.safetensors
+$(BUILD)/obj/formats/parser_weights.o: formats/encoders/parser_default.safetensors
 
 # So is what is known of everyday things.
 $(BUILD)/obj/libcommon/lang/things.o: libcommon/lang/things.tsv
 $(BUILD)/obj/libcommon/lang/things_vectors.o: libcommon/lang/things.vectors
 
 # So are the page of refer-report and its viewer.
-$(BUILD)/obj/cmd/jobs/reporting.o: cmd/jobs/report_page.html
-$(BUILD)/obj/cmd/jobs/report_viewer.o: cmd/jobs/report_viewer.js
+$(BUILD)/obj/cmd/report/reporting.o: cmd/report/report_page.html
+$(BUILD)/obj/cmd/report/report_viewer.o: cmd/report/report_viewer.js
 
 $(LIBRARY): $(OBJECTS)
 	@rm -f $@
@@ -287,7 +287,7 @@ install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 	install -m 644 $(TOOLS:%=$(BUILD)/completion/bash/%) "$(DESTDIR)$(PREFIX)/share/bash-completion/completions"
 	install -m 644 $(TOOLS:%=$(BUILD)/completion/zsh/_%) "$(DESTDIR)$(PREFIX)/share/zsh/site-functions"
 	install -d "$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(PREFIX)/include" "$(DESTDIR)$(PREFIX)/share/man/man3"
-	install -m 644 cmd/jobs/refersplat.h "$(DESTDIR)$(PREFIX)/include"
+	install -m 644 cmd/api/refersplat.h "$(DESTDIR)$(PREFIX)/include"
 	install -m 644 $(STATIC) $(SHARED) "$(DESTDIR)$(LIBDIR)"
 	ln -sf $(notdir $(SHARED)) "$(DESTDIR)$(LIBDIR)/$(SONAME)"
 	ln -sf $(SONAME) "$(DESTDIR)$(LIBDIR)/librefersplat.so"
@@ -298,6 +298,9 @@ install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 	install -m 755 pipelines/encoder.sh "$(DESTDIR)$(PREFIX)/bin/refersplat-encoder"
 	install -m 644 README.md "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
 	install -m 644 $(wildcard formats/*.md) "$(DESTDIR)$(PREFIX)/share/doc/refersplat/formats"
+	for wing in $(wildcard formats/*/); do \
+		install -d "$(DESTDIR)$(PREFIX)/share/doc/refersplat/$$wing" && \
+		install -m 644 $$wing*.md "$(DESTDIR)$(PREFIX)/share/doc/refersplat/$$wing" || exit; done
 	for page in $(MAN_PAGES); do install -m 644 $$page "$(DESTDIR)$(PREFIX)/share/man/man$${page##*.}" || exit; done
 	for file in $(filter-out pipelines/marked,$(wildcard pipelines/*)); do \
 		mode=644; [ ! -x $$file ] || mode=755; \

@@ -1,7 +1,7 @@
 /* feature-lift: what 2D models say of a scene's views, lifted onto its Gaussians. */
 #include "base/path.h"
 #include "cli/cli.h"
-#include "cmd/jobs/feature_lifting.h"
+#include "cmd/feature/feature_lifting.h"
 
 #define DEFAULT_MEMORY 1024
 #define MOST_MEMORY 16777216

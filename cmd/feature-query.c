@@ -1,7 +1,7 @@
 /* feature-query: which Gaussians sentences select, by lifted features or labels. */
 #include "answer/peak.h"
 #include "cli/cli.h"
-#include "cmd/jobs/feature_query.h"
+#include "cmd/feature/feature_query.h"
 
 #include <math.h>
 

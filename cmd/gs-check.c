@@ -1,6 +1,6 @@
 /* gs-check: says whether files of the suite are well-formed, and what is in them. */
 #include "cli/cli.h"
-#include "cmd/jobs/check.h"
+#include "cmd/check/check.h"
 
 #include <cjson/cJSON.h>
 #include <ctype.h>

@@ -1,9 +1,9 @@
 /* gs-import: makes a scene folder from a trained 3DGS scene and its cameras. */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cmd/jobs/import.h"
-#include "formats/colmap.h"
-#include "formats/dataparser.h"
+#include "cmd/import/import.h"
+#include "formats/cameras/colmap.h"
+#include "formats/cameras/dataparser.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* gs-synth: a synthetic table-top benchmark, laid out as a person's own data would be. */
 #include "cli/cli.h"
-#include "cmd/jobs/benchmark.h"
+#include "cmd/synth/benchmark.h"
 #include "synth/statistics.h"
 
 #include <string.h>

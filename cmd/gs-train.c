@@ -1,8 +1,8 @@
 /* gs-train: trains a 3DGS scene from photographs and their cameras. */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cmd/jobs/fitting.h"
-#include "formats/colmap.h"
+#include "cmd/train/fitting.h"
+#include "formats/cameras/colmap.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* gs-transform: splats from one format into another, cut and moved. */
 #include "cli/cli.h"
-#include "cmd/jobs/transforming.h"
-#include "formats/anysplats.h"
+#include "cmd/import/transforming.h"
+#include "formats/splats/anysplats.h"
 
 #include <stdlib.h>
 #include <string.h>

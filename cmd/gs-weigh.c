@@ -1,7 +1,7 @@
 /* gs-weigh: the blend weights of a scene's views. */
 #include "cli/cli.h"
-#include "cmd/jobs/weighing.h"
-#include "formats/scene.h"
+#include "cmd/lift/weighing.h"
+#include "formats/scene/scene.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* mask-export: mask records as COCO's JSON, and as pictures. */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cmd/jobs/exporting.h"
+#include "cmd/masks/exporting.h"
 
 static const char *scene, *png;
 static int distort;

@@ -1,6 +1,6 @@
 /* mask-import: photographs that a person painted over or labelled, as mask records. */
 #include "cli/cli.h"
-#include "cmd/jobs/painting.h"
+#include "cmd/masks/painting.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* miou-score: how well predicted masks match the true ones. */
 #include "cli/cli.h"
-#include "cmd/jobs/scoring.h"
-#include "formats/scores.h"
+#include "cmd/score/scoring.h"
+#include "formats/records/scores.h"
 
 #include <string.h>
 

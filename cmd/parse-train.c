@@ -1,6 +1,6 @@
 /* Learns the weights of text-parse from sentences with marks. */
 #include "cli/cli.h"
-#include "cmd/jobs/parser_training.h"
+#include "cmd/train/parser_training.h"
 
 int main(int argc, char **argv)
 {

@@ -1,7 +1,7 @@
 /* pseudomask-select: an object's masks in the views, of the candidates that a detector found for its
  * sentences. */
 #include "cli/cli.h"
-#include "cmd/jobs/pseudomasks.h"
+#include "cmd/lift/pseudomasks.h"
 
 /* Where --method is not given. */
 enum { METHOD_DEFAULT = PSEUDOMASK_SCENE + 1 };

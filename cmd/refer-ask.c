@@ -1,9 +1,9 @@
 /* refer-ask: what a question about a lifted scene means, in words. */
 #include "cli/cli.h"
-#include "cmd/jobs/answer_words.h"
-#include "cmd/jobs/asking.h"
-#include "cmd/jobs/questions.h"
-#include "cmd/jobs/reply.h"
+#include "cmd/ask/answer_words.h"
+#include "cmd/ask/asking.h"
+#include "cmd/text/questions.h"
+#include "cmd/ask/reply.h"
 #include "answer/responses.h"
 
 #include <stdio.h>

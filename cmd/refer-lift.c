@@ -1,9 +1,9 @@
 /* refer-lift: objects lifted onto the Gaussians from their masks, in closed form. */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cmd/jobs/lifting.h"
-#include "formats/dataparser.h"
-#include "formats/lifted.h"
+#include "cmd/lift/lifting.h"
+#include "formats/cameras/dataparser.h"
+#include "formats/scene/lifted.h"
 
 #include <string.h>
 

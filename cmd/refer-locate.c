@@ -2,11 +2,11 @@
  * other programs. */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cmd/jobs/labelling.h"
-#include "cmd/jobs/locating.h"
-#include "cmd/jobs/questions.h"
-#include "cmd/jobs/showing.h"
-#include "formats/anysplats.h"
+#include "cmd/render/labelling.h"
+#include "cmd/render/locating.h"
+#include "cmd/text/questions.h"
+#include "cmd/render/showing.h"
+#include "formats/splats/anysplats.h"
 
 #include <string.h>
 

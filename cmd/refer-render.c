@@ -2,8 +2,8 @@
 #include "answer/peak.h"
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cmd/jobs/draw.h"
-#include "cmd/jobs/request.h"
+#include "cmd/render/draw.h"
+#include "cmd/render/request.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "cmd/jobs/reporting.h"
+#include "cmd/report/reporting.h"
 
 #include <stdlib.h>
 

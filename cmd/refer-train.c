@@ -1,8 +1,8 @@
 /* refer-train: learns the referring model of a scene from masks (one stage of the method). */
 #include "cli/cli.h"
 #include "cli/stop.h"
-#include "cmd/jobs/learn.h"
-#include "formats/checkpoint.h"
+#include "cmd/train/learn.h"
+#include "formats/scene/checkpoint.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Sentences to word vectors, by a BERT or CLIP's text tower. */
 #include "base/path.h"
 #include "cli/cli.h"
-#include "cmd/jobs/encode.h"
+#include "cmd/text/encode.h"
 
 #include <stdio.h>
 #include <stdlib.h>

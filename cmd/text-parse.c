@@ -1,9 +1,9 @@
 /* Sentences taken apart: who is meant, and how it stands to what. */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "formats/parser_weights.h"
-#include "formats/parses.h"
-#include "formats/text.h"
+#include "formats/encoders/parser_weights.h"
+#include "formats/records/parses.h"
+#include "formats/scene/text.h"
 #include "lang/parser.h"
 
 #include <omp.h>

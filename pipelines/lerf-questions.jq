@@ -1,4 +1,4 @@
-# The table of what miou-score --answers says of questions (formats/scores.md), in percent: a row for those that mean one thing, several and none,
+# The table of what miou-score --answers says of questions (formats/records/scores.md), in percent: a row for those that mean one thing, several and none,
 # then the figures of GRES over all.
 #	jq -r -f lerf-questions.jq questions.json
 def percent: if . == null then "-" else . * 1000 | round / 10 | tostring | if test("[.]") then . else . + ".0" end end;

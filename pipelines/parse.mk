@@ -1,4 +1,4 @@
-# The weights of text-parse, from marked sentences (formats/marked.md).
+# The weights of text-parse, from marked sentences (formats/records/marked.md).
 #
 #   make -f pipelines/parse.mk [OUT=work/parse]
 #

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The include matrix of the rooms: how often files of the room at the left include files of the room above, with each room's
-# lines and its share of all. usage: tests/map.sh [--check] [ROOT]
+# The rooms from the highest floor down: each room's lines and its share of all, and how often its files include files of which
+# other rooms. usage: tests/map.sh [--check] [ROOT]
 # --check prints instead what breaks tests/floors, and fails where anything does: an include that the table does not allow,
 # a file in no room of the table, two files of one name in different rooms, a table that is not in the order of its floors.
 set -eu
@@ -16,13 +16,15 @@ function wrong(text) {
 	bad = 1
 }
 
-# The room of a path: libcommon/base/err.h, base/err.h and cmd/jobs/draw.h are in base, base and jobs. "": none.
+# The room of a path: libcommon/base/err.h and base/err.h are in base, cmd/render/draw.h in cmd/render, all of formats/WING in formats. "": none.
 function room_of(path, part, n) {
 	n = split(path, part, "/")
 	if (part[1] == "libcommon")
 		return n == 3 ? part[2] : ""
 	if (part[1] == "cmd" && n == 3)
-		return part[2] == "jobs" ? "jobs" : ""
+		return "cmd/" part[2]
+	if (part[1] == "formats")
+		return n == 3 ? "formats" : ""
 	return n == 2 ? part[1] : ""
 }
 
@@ -72,15 +74,12 @@ BEGIN {
 END {
 	if (check)
 		exit bad
-	printf "%-9s%7s%6s ", "", "lines", "share"
-	for (i = 1; i <= rooms; i++)
-		printf "%8s", room[i]
-	print ""
 	for (i = rooms; i > 0; i--) {
-		printf "%-9s%7d%5.1f%% ", room[i], lines[room[i]], all ? 100 * lines[room[i]] / all : 0
-		for (k = 1; k <= i; k++)
-			printf "%8s", count[room[i], room[k]] ? count[room[i], room[k]] : "."
+		printf "%-12s%7d%6.1f%%", room[i], lines[room[i]], all ? 100 * lines[room[i]] / all : 0
+		for (k = 1; k < i; k++)
+			if (count[room[i], room[k]])
+				printf "  %s %d", room[k], count[room[i], room[k]]
 		print ""
 	}
-	printf "%-9s%7d\n", "all", all
+	printf "%-12s%7d\n", "all", all
 }'

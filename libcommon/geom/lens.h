@@ -1,5 +1,5 @@
 /* Lenses that distort, in COLMAP's camera models, and the pinhole that sees what such a camera does. A ray is
- * (x/z, y/z) in the camera's frame. formats/colmap.md has the models. */
+ * (x/z, y/z) in the camera's frame. formats/cameras/colmap.md has the models. */
 #ifndef GEOM_LENS_H
 #define GEOM_LENS_H
 

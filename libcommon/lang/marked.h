@@ -1,5 +1,5 @@
 /* Sentences with marks behind their words that say what each is: people's sentences to learn a parser from.
- * formats/marked.md.
+ * formats/records/marked.md.
  *
  *   "the small/P1:smaller mug/T on/P2:on the plate/A2" */
 #ifndef LANG_MARKED_H

@@ -3,7 +3,7 @@
  * on, whose anchor is the phrase "plate" with a clause left, whose anchor is the phrase "red book". English.
  *
  * A parse is flat: phrases and clauses are arrays, and refer to one another by index. Phrase 0 is the target;
- * every other phrase is reached from it. formats/parses.md shows the same as JSON. */
+ * every other phrase is reached from it. formats/records/parses.md shows the same as JSON. */
 #ifndef LANG_PARSE_H
 #define LANG_PARSE_H
 

@@ -31,7 +31,7 @@ enum {
 /* One slab; the order is that of the file. */
 struct parser_weights {
 	int width;	  /* of the encoder */
-	char encoder[17]; /* its fingerprint (formats/fingerprint.h); "": not known */
+	char encoder[17]; /* its fingerprint (formats/arrays/fingerprint.h); "": not known */
 	size_t count;
 	float *slab;
 	float *vector, *vector_bias; /* (H,width), (H) */

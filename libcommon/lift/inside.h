@@ -5,7 +5,7 @@
  * thing, and its INSIDE_VOTERS nearest of the thing's own are nearer than as many of others that views show:
  * what stands in a bowl, or is under a foot, has its own surface nearest. The hull is what INSIDE_DIRECTIONS
  * half-spaces have in common, each with all but INSIDE_TRIM of the thing's Gaussians, INSIDE_REACH times as
- * large. formats/boxes.md says how these were chosen. */
+ * large. formats/records/boxes.md says how these were chosen. */
 #ifndef LIFT_INSIDE_H
 #define LIFT_INSIDE_H
 

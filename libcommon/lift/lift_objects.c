@@ -8,7 +8,7 @@
 
 /* So that the masks of an object that another one has taken over still vote, all alike. */
 static const float LEAST_VOTE = 0.01f;
-/* What rounds to nothing in a file, formats/lifted.md. */
+/* What rounds to nothing in a file, formats/scene/lifted.md. */
 static const float LEAST_SHARE = 0.5f / 255;
 
 int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, size_t views, struct err *e)

@@ -1,5 +1,5 @@
-/* A view's blend weights by tiles of pixels, as a packed file has them (formats/weights.md): what needs a
- * pass over them and no rows of pixels is spared those, which take five times the memory. */
+/* A view's blend weights by tiles of pixels, as a packed file has them (formats/scene/weights.md): what needs
+ * a pass over them and no rows of pixels is spared those, which take five times the memory. */
 #ifndef SPLAT_VIEW_TILES_H
 #define SPLAT_VIEW_TILES_H
 

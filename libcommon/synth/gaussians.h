@@ -1,5 +1,5 @@
 /* A scene's Gaussians, alike in kind to those of a trained one: needles and flakes, many of them faint, a few
- * large, some astray. formats/synth.md has the figures. */
+ * large, some astray. formats/scene/synth.md has the figures. */
 #ifndef SYNTH_GAUSSIANS_H
 #define SYNTH_GAUSSIANS_H
 

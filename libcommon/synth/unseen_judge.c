@@ -1,5 +1,6 @@
 /* The margins. Directions are judged both on the table and by bearing, sizes both by bulk and by the longest
- * extent, so that whoever looks or measures otherwise finds the same object. Units: formats/synth.md. */
+ * extent, so that whoever looks or measures otherwise finds the same object. Units: formats/scene/synth.md.
+ */
 #include "synth/unseen_judge.h"
 
 #include <math.h>

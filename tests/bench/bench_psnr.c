@@ -1,6 +1,6 @@
 /* bench_psnr SCENE OTHER: how alike two scenes of the same cameras look: the mean and the least PSNR in dB of
  * every fourth view, at a quarter of its size. */
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 #include "splat/render.h"
 
 #include <math.h>

@@ -19,7 +19,7 @@
  * tiles are rendered where a part of the Gaussians may show, as for an object of a lifted model: those
  *nearest to one of them. */
 #include "base/mem.h"
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 #include "splat/render.h"
 #include "splat/view.h"
 #include "synth/synth_scene.h"

@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "formats/npy.h"
+#include "formats/arrays/npy.h"
 
 #include <math.h>
 #include <stdlib.h>

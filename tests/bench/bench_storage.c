@@ -9,9 +9,9 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/rng.h"
-#include "formats/model.h"
-#include "formats/scene.h"
-#include "formats/text.h"
+#include "formats/scene/model.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/text.h"
 
 #include <math.h>
 #include <stdio.h>

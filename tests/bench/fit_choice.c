@@ -11,11 +11,11 @@
 #include "ask/choose.h"
 #include "base/mem.h"
 #include "cli/cli.h"
-#include "formats/lifted.h"
-#include "formats/parser_weights.h"
-#include "formats/scene.h"
-#include "formats/sentences.h"
-#include "formats/text.h"
+#include "formats/scene/lifted.h"
+#include "formats/encoders/parser_weights.h"
+#include "formats/scene/scene.h"
+#include "formats/records/sentences.h"
+#include "formats/scene/text.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
  * `make -f pipelines/parse.mk things` makes both. OUT (lang/things_vectors.h) has for each line the mean of
  * its uses' directions. */
 #include "base/mem.h"
-#include "formats/text.h"
+#include "formats/scene/text.h"
 #include "lang/things.h"
 
 #include <inttypes.h>

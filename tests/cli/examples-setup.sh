@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the folder in which the EXAMPLES of the manual pages run. usage: examples-setup.sh DIR BIN
-# It holds a small synthetic scene (formats/synth.md) and what each tool makes of it, under the names that the manual pages
+# It holds a small synthetic scene (formats/scene/synth.md) and what each tool makes of it, under the names that the manual pages
 # use: scene, weights, text.safetensors, masks.jsonl, model.safetensors, pred.jsonl, whole.jsonl; kitchen, laid out as
 # pipelines/lift.mk does; view_001.png, a painted photograph; new-camera.json, a camera of its own; labels.json; encoder, a tiny BERT, clip, a tiny CLIP, clip-features.safetensors, features of its width, and cache, which has it where `make encoder` would put one.
 set -eu

@@ -135,7 +135,7 @@ interrupted() {
 	[ -e out/truth.jsonl ]
 }
 
-@test "the folder holds what formats/synth.md says" {
+@test "the folder holds what formats/scene/synth.md says" {
 	small -o out
 	[ "$(cd out && find . -type f | LC_ALL=C sort | tr '\n' ' ')" = "./boxes.jsonl ./candidates.jsonl ./candidates.test.jsonl ./images/view_000.png \
 ./images/view_001.png ./images/view_002.png ./images/view_003.png ./images/view_004.png ./parses.unseen.jsonl \

@@ -56,7 +56,7 @@ refuses() {
 not() { ! "$@"; }
 
 @test "sentences of the parser's own encoder without its middle layer are refused" {
-	own=$(meta "$BATS_TEST_DIRNAME/../../formats/parser_default.safetensors" encoder)
+	own=$(meta "$BATS_TEST_DIRNAME/../../formats/encoders/parser_default.safetensors" encoder)
 	"$BIN/text-encode" -q --words static --model "$made/encoder" -o text.safetensors "$made/sentences.jsonl"
 	lift -o model # another encoder's may lack it
 	sed -i "s/$(meta text.safetensors encoder)/$own/" text.safetensors

@@ -288,7 +288,7 @@ yellow bowl.ply" ]
 	[ -n "$python" ] || skip "no python3 with NumPy"
 	"$BIN/refer-locate" --all --scene scene --model "$made/kitchen/lifted/model.safetensors" --ply labelled.ply -o /dev/null
 	{
-		sed -n '/^    import numpy/,/^$/s/^    //p' "$BATS_TEST_DIRNAME/../../formats/ply.md"
+		sed -n '/^    import numpy/,/^$/s/^    //p' "$BATS_TEST_DIRNAME/../../formats/splats/ply.md"
 		echo 'print(len(scene), " ".join(str(x) for x in scene["label"]))'
 	} >read.py
 	[ "$("$python" read.py)" = "1000 $(last_property labelled.ply | tr '\n' ' ' | sed 's/ $//')" ]

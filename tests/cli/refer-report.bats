@@ -86,9 +86,9 @@ not() { ! "$@"; }
 	not grep -F '<script>alert' run/report.html
 	not grep -F '<!-- thing' run/report.html
 	# the page's own scripts, and no others
-	[ "$(grep -c '<script' run/report.html)" = "$(grep -c '<script' "$BATS_TEST_DIRNAME/../../cmd/jobs/report_page.html")" ]
+	[ "$(grep -c '<script' run/report.html)" = "$(grep -c '<script' "$BATS_TEST_DIRNAME/../../cmd/report/report_page.html")" ]
 	# no data get into the page as markup
-	not grep -nE 'innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(' "$BATS_TEST_DIRNAME/../../cmd/jobs/report_page.html"
+	not grep -nE 'innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(' "$BATS_TEST_DIRNAME/../../cmd/report/report_page.html"
 }
 
 @test "the page is one small file that fetches nothing" {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/bert_model.md broken once. Types, prefixes, old names and shapes: tests/unit/test_bert.c.
+# Each rule of formats/encoders/bert_model.md broken once. Types, prefixes, old names and shapes: tests/unit/test_bert.c.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

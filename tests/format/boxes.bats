@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/boxes.md broken once, and how boxes are scored.
+# Each rule of formats/records/boxes.md broken once, and how boxes are scored.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
@@ -21,7 +21,7 @@ refuses() {
 score() { "$BIN/miou-score" --boxes --truth truth "$@"; }
 
 @test "the examples of the page" {
-	sed -n '/^## Example/,$s/^    //p' "$BATS_TEST_DIRNAME/../../formats/boxes.md" >x
+	sed -n '/^## Example/,$s/^    //p' "$BATS_TEST_DIRNAME/../../formats/records/boxes.md" >x
 	says 0 'x: ok: boxes, 1 boxes, 2 objects, 1 empty' "$BIN/gs-check" x
 }
 

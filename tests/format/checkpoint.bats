@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# formats/checkpoint.md: what goes on with a training. Rules of every safetensors file are in safetensors.bats; that
+# formats/scene/checkpoint.md: what goes on with a training. Rules of every safetensors file are in safetensors.bats; that
 # resuming gives the same bytes, and which options are another training's, in cli/refer-train.bats.
 
 setup_file() {

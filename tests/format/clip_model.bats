@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/clip_model.md broken once. Types and prefixes: tests/unit/test_clip.c.
+# Each rule of formats/encoders/clip_model.md broken once. Types and prefixes: tests/unit/test_clip.c.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/colmap.md broken once, in text models. Binary ones are in tests/unit/test_colmap.c.
+# Each rule of formats/cameras/colmap.md broken once, in text models. Binary ones are in tests/unit/test_colmap.c.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/features.md broken once. What feature-lift reads: cli/feature-lift.bats. The container: safetensors.bats.
+# Each rule of formats/scene/features.md broken once. What feature-lift reads: cli/feature-lift.bats. The container: safetensors.bats.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Files of different scenes, cameras and encoders are not mixed, whatever their counts: formats/safetensors.md, "Fingerprints".
+# Files of different scenes, cameras and encoders are not mixed, whatever their counts: formats/arrays/safetensors.md, "Fingerprints".
 
 setup_file() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Files of other programs, as formats/foreign.md has them: each is named for what it is, with the way out.
+# Files of other programs, as formats/records/foreign.md has them: each is named for what it is, with the way out.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/glb.md broken once, in files that are put together here. Round trips and cuts at every byte are in
+# Each rule of formats/splats/glb.md broken once, in files that are put together here. Round trips and cuts at every byte are in
 # tests/unit/test_glb.c.
 
 setup() {

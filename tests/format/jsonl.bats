@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# What formats/jsonl.md says of every file of records. The keys have tests of their own: sentences.bats, masks.bats and
+# What formats/records/jsonl.md says of every file of records. The keys have tests of their own: sentences.bats, masks.bats and
 # boxes.bats. The limit of a line is in many.bats.
 
 setup() {

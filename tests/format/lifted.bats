@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/lifted.md broken once. Round trip: tests/unit/test_lifted.c. The container: safetensors.bats.
+# Each rule of formats/scene/lifted.md broken once. Round trip: tests/unit/test_lifted.c. The container: safetensors.bats.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Mask records: formats/masks.md, row by row.
+# Mask records: formats/records/masks.md, row by row.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

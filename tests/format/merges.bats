@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/merges.md broken once. How texts are cut: tests/unit/test_bpe.c.
+# Each rule of formats/encoders/merges.md broken once. How texts are cut: tests/unit/test_bpe.c.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

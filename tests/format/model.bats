@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# formats/model.md: what a model of a scene holds. Rules of every safetensors file are in safetensors.bats.
+# formats/scene/model.md: what a model of a scene holds. Rules of every safetensors file are in safetensors.bats.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

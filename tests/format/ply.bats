@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/ply.md, of the container as of its contents, broken once. Binary layouts, cuts at every byte, what is left out and
+# Each rule of formats/splats/ply.md, of the container as of its contents, broken once. Binary layouts, cuts at every byte, what is left out and
 # recentring are in tests/unit/test_ply.c.
 
 setup() {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/safetensors.md broken once. The bytes that we write are held by tests/unit/test_safetensors.c.
+# Each rule of formats/arrays/safetensors.md broken once. The bytes that we write are held by tests/unit/test_safetensors.c.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,9 +1,9 @@
 #!/usr/bin/env bats
-# Scores: formats/scores.md.
+# Scores: formats/records/scores.md.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
-	PAGE=$BATS_TEST_DIRNAME/../../formats/scores.md
+	PAGE=$BATS_TEST_DIRNAME/../../formats/records/scores.md
 	load files
 	cd "$BATS_TEST_TMPDIR"
 	files

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/sog.md broken once, in a copy of tests/golden/sog. What it means, and zips, are in tests/unit/test_sog.c.
+# Each rule of formats/splats/sog.md broken once, in a copy of tests/golden/sog. What it means, and zips, are in tests/unit/test_sog.c.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

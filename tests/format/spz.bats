@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/spz.md broken once, in files that are put together here byte by byte. Round trips and cuts at every byte are in
+# Each rule of formats/splats/spz.md broken once, in files that are put together here byte by byte. Round trips and cuts at every byte are in
 # tests/unit/test_spz.c.
 
 setup() {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/transforms.md broken once.
+# Each rule of formats/cameras/transforms.md broken once.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Each rule of formats/weights.md broken once.
+# Each rule of formats/scene/weights.md broken once.
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -3,7 +3,7 @@
  * trained models, whose least size is over the driver's, and folders, a COLMAP model among them. */
 #include "fuzz.h"
 
-#include "cmd/jobs/check.h"
+#include "cmd/check/check.h"
 
 #define SEED(text)                                                                                           \
 	{                                                                                                    \

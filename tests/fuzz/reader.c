@@ -4,34 +4,33 @@
  * is zeros that are not in the input, so that inputs stay small. Built by `make fuzz`;
  * REFERSPLAT_FUZZ_SEED=FILE has the checkpoint's target write a seed first. */
 #include "base/file.h"
-#include "cmd/jobs/check.h"
-#include "formats/annotations.h"
-#include "formats/anysplats.h"
-#include "formats/bert_model.h"
-#include "formats/boxes.h"
-#include "formats/camerafile.h"
-#include "formats/checkpoint.h"
-#include "formats/clip_model.h"
-#include "formats/colmap.h"
-#include "formats/dataparser.h"
-#include "formats/features.h"
-#include "formats/lifted.h"
-#include "formats/masks.h"
-#include "formats/merges.h"
-#include "formats/model.h"
-#include "formats/npy.h"
-#include "formats/npz.h"
-#include "formats/parser_weights.h"
-#include "formats/parses.h"
-#include "formats/png.h"
-#include "formats/points.h"
-#include "formats/safetensors.h"
-#include "formats/scene.h"
-#include "formats/selection.h"
-#include "formats/sentences.h"
-#include "formats/text.h"
-#include "formats/vocab.h"
-#include "formats/weights.h"
+#include "cmd/check/check.h"
+#include "formats/records/annotations.h"
+#include "formats/splats/anysplats.h"
+#include "formats/encoders/bert_model.h"
+#include "formats/records/boxes.h"
+#include "formats/cameras/camerafile.h"
+#include "formats/scene/checkpoint.h"
+#include "formats/encoders/clip_model.h"
+#include "formats/cameras/colmap.h"
+#include "formats/cameras/dataparser.h"
+#include "formats/scene/features.h"
+#include "formats/scene/lifted.h"
+#include "formats/records/masks.h"
+#include "formats/encoders/merges.h"
+#include "formats/scene/model.h"
+#include "formats/arrays/npy.h"
+#include "formats/arrays/npz.h"
+#include "formats/encoders/parser_weights.h"
+#include "formats/images/png.h"
+#include "formats/cameras/points.h"
+#include "formats/arrays/safetensors.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/selection.h"
+#include "formats/records/sentences.h"
+#include "formats/scene/text.h"
+#include "formats/encoders/vocab.h"
+#include "formats/scene/weights.h"
 #include "geom/lens.h"
 
 #include <fcntl.h>
@@ -62,7 +61,6 @@ SIMPLE(masks, struct masks, masks_read, masks_free)
 SIMPLE(model, struct model, model_read, model_free)
 SIMPLE(npy, struct npy_file, npy_open, npy_close)
 SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
-SIMPLE(parses, struct parse_set, parses_read, parses_free)
 SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
 SIMPLE(selection, struct selection, selection_read, selection_free)
 SIMPLE(cameras, struct cameras, scene_read_cameras_file, cameras_free)
@@ -300,7 +298,6 @@ static const struct target {
 	{"npy", try_npy, {0}, 0},
 	{"npz", try_npz, {0}, 0},
 	{"parser", try_parser, {0}, 1},
-	{"parses", try_parses, {0}, 0},
 	{"ply", try_scene, {0}, 0},
 	{"points", try_points, {"points3D.bin", "points3D.txt", "points3D.ply"}, 0},
 	{"safetensors", try_safetensors, {0}, 0},

@@ -86,7 +86,6 @@ first 3 sentences.jsonl some.jsonl
 first 3 masks.jsonl some-masks.jsonl
 first 3 boxes.jsonl some-boxes.jsonl
 text-encode -q --model encoder -o some.safetensors some.jsonl
-text-parse -q -o some-parses.jsonl some.safetensors
 refer-lift -q --scene scene --weights weights --text some.safetensors --masks masks.jsonl -o some-lifted.safetensors
 gs-weigh -q --split all -o few/whole few
 pseudomask-select -q -o few-masks.jsonl small/candidates.jsonl
@@ -166,10 +165,8 @@ tail -c +$((29 + json)) few.glb >numbers.bin
 folder gltf scene.gltf numbers.bin
 seed npy response/view_000/*.npy
 seed npz "$golden"/npz/*.npz
-cp "$here/formats/parser_default.safetensors" parser.safetensors
+cp "$here/formats/encoders/parser_default.safetensors" parser.safetensors
 seed_cut parser 64 parser.safetensors
-split -l 1 some-parses.jsonl parse-
-seed parses parse-*
 seed ply few.ply packed.ply
 seed safetensors few-lifted.safetensors few/weights/view_000.safetensors "$golden/good/small.safetensors"
 folder scene few/cameras.json few/splats.safetensors
@@ -210,7 +207,6 @@ for target in "$dir"/*/; do
 	merges) set -- merges.c vocab.c ;;
 	npz) set -- npz.c npy.c ;;
 	parser) set -- parser_weights.c ;;
-	parses) set -- parses_read.c ;;
 	ply) set -- ply.c plyfile.c plypacked.c ;;
 	glb | gltf) set -- glb.c glb_container.c ;;
 	sog) set -- sog.c archive.c ;;
@@ -219,8 +215,9 @@ for target in "$dir"/*/; do
 	check) set -- scene.c weights.c text.c lifted.c features.c selection.c masks.c boxes.c sentences.c ;;
 	*) set -- "${target%-*}.c" ;;
 	esac
+	set -- "$@" safetensors.c json.c
 	{
-		grep -oh '"[A-Za-z_0-9.]\{2,24\}"' "$@" safetensors.c json.c || true
+		grep -oh '"[A-Za-z_0-9.]\{2,24\}"' ${@/#/*\/} || true
 		printf '%s\n' '"null"' '"true"' '"-1"' '"1e308"' '"99999999999999999999"' '"4294967296"' '"\xff\xff\xff\xff"' '"\x00\x00\x00\x80"' '"nan"' \
 			'"[[[["' '"\x5cu0000"'
 	} | sort -u >"$dir/$target.dict"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""feature-lift in NumPy: the weighted mean of the views' features, by the definition of formats/features.md.
+"""feature-lift in NumPy: the weighted mean of the views' features, by the definition of formats/scene/features.md.
 
     feature_lift.py compare WEIGHTS MAPS FEATURES    in float64; prints the largest difference from a file of feature-lift, exit 1 above what its numbers allow
     feature_lift.py time WEIGHTS MAPS [OUT]          in float32; prints seconds, MiB and the order of evaluation as JSON, and saves the means in OUT

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""feature-query --pixels in NumPy and float64, by formats/selection.md: the masks and peaks of one view.
+"""feature-query --pixels in NumPy and float64, by formats/scene/selection.md: the masks and peaks of one view.
 
     query_pixels.py WEIGHTS_OF_VIEW FEATURES TEXT SPLIT CANONICAL|- LEAST SMOOTH MASKS
 

@@ -28,10 +28,10 @@ fetch() { PATH=$PWD/bin:$PATH XDG_CACHE_HOME=$PWD/cache "$@"; }
 @test "tools, pages of manual and formats, and pipelines" {
 	for tool in refer-ask gs-import refersplat-encoder; do [ -x "$to/bin/$tool" ]; done
 	[ -e "$to/share/man/man1/refer-ask.1" ] && [ -e "$to/share/man/man7/refersplat.7" ]
-	for page in "$ROOT"/formats/*.md; do cmp "$page" "$to/share/doc/refersplat/formats/$(basename "$page")"; done
+	(cd "$ROOT" && for page in formats/*.md formats/*/*.md; do cmp "$page" "$to/share/doc/refersplat/$page" || exit; done)
 	[ -x "$to/share/refersplat/pipelines/report.sh" ]
 	[ -e "$to/share/man/man3/librefersplat.3" ] && [ -e "$to/share/bash-completion/completions/gs-import" ]
-	cmp "$ROOT/cmd/jobs/refersplat.h" "$to/include/refersplat.h"
+	cmp "$ROOT/cmd/api/refersplat.h" "$to/include/refersplat.h"
 	make -f "$to/share/refersplat/pipelines/lift.mk" help | grep -q '^SCALE '
 	make -n -f "$to/share/refersplat/pipelines/parse.mk" BIN="$to/bin" BERT="$ROOT/tests/golden/bert" OUT="$BATS_TEST_TMPDIR" all test >parse
 	grep -q "^gzip -cdf $to/share/refersplat/pipelines/marked/learn/.* >" parse

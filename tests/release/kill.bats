@@ -1,6 +1,6 @@
 #!/usr/bin/env bats
 # Two kills of each tool, of the many that tests/kill.sh is for.
-# Parts: libcommon/base/(file|temporary|finish|signals|overwrite).* libcommon/cli/.* formats/checkpoint.*
+# Parts: libcommon/base/(file|temporary|finish|signals|overwrite).* libcommon/cli/.* formats/scene/checkpoint.*
 
 @test "a tool that is killed leaves nothing in the way of the next run, which writes the same bytes" {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

@@ -1,6 +1,6 @@
 #!/usr/bin/env bats
 # pipelines/lerf.mk on miniatures in the layouts of Ref-LERF, LERF-OVS and 3D-OVS, made from a small synthetic scene.
-# Parts: pipelines/(lerf|ref-lerf|lift|two-stage|common).* formats/annotations.*
+# Parts: pipelines/(lerf|ref-lerf|lift|two-stage|common).* formats/records/annotations.*
 
 setup_file() {
 	export BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

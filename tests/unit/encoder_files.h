@@ -2,7 +2,7 @@
 #ifndef UNIT_ENCODER_FILES_H
 #define UNIT_ENCODER_FILES_H
 
-#include "formats/safetensors.h"
+#include "formats/arrays/safetensors.h"
 
 #include <stddef.h>
 

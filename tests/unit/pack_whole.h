@@ -2,7 +2,7 @@
 #ifndef PACK_WHOLE_H
 #define PACK_WHOLE_H
 
-#include "formats/weights_pack.h"
+#include "formats/scene/weights_pack.h"
 
 /* CSR over the pixels, of Gaussians below `gaussians`. Returns 0, or -1 with *e set; weights_pack_free after
  * either. */

@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "base/number.h"
 #include "base/rng.h"
-#include "formats/safetensors.h"
+#include "formats/arrays/safetensors.h"
 
 /* The first outputs of the PCG32 reference program pcg32-demo, seeded with 42 and 54. */
 static void rng_known_answers(void)

@@ -3,10 +3,10 @@
 #include "encoder_files.h"
 #include "unit.h"
 
-#include "formats/bert_model.h"
-#include "formats/safetensors.h"
-#include "formats/sentences.h"
-#include "formats/vocab.h"
+#include "formats/encoders/bert_model.h"
+#include "formats/arrays/safetensors.h"
+#include "formats/records/sentences.h"
+#include "formats/encoders/vocab.h"
 
 #include <omp.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
  * does, which looks for the best pair anew after each merge. Run from the repository's root. */
 #include "unit.h"
 
-#include "formats/merges.h"
+#include "formats/encoders/merges.h"
 #include "nn/bpe_private.h"
 
 #define GOLDEN "tests/golden/clip"

@@ -3,9 +3,9 @@
 #include "encoder_files.h"
 #include "unit.h"
 
-#include "formats/clip_model.h"
-#include "formats/merges.h"
-#include "formats/sentences.h"
+#include "formats/encoders/clip_model.h"
+#include "formats/encoders/merges.h"
+#include "formats/records/sentences.h"
 
 #include <omp.h>
 #include <unistd.h>

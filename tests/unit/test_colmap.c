@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/rng.h"
-#include "formats/colmap.h"
+#include "formats/cameras/colmap.h"
 #include "geom/lens.h"
 
 #include <fcntl.h>

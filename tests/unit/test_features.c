@@ -1,7 +1,7 @@
 /* refer.features and its numbers: what is written comes back, to the bit. */
 #include "unit.h"
 
-#include "formats/features.h"
+#include "formats/scene/features.h"
 
 #include <unistd.h>
 

@@ -2,7 +2,7 @@
 #include "unit.h"
 
 #include "base/rng.h"
-#include "formats/glb.h"
+#include "formats/splats/glb.h"
 
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
 #include "unit.h"
 
-#include "formats/lifted.h"
+#include "formats/scene/lifted.h"
 
 #include <unistd.h>
 

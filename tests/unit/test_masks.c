@@ -1,5 +1,5 @@
 /* Mask records in memory: round trips, and input cut or changed at every byte. */
-#include "formats/masks.h"
+#include "formats/records/masks.h"
 #include "mask_help.h"
 #include "unit.h"
 

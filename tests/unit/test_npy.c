@@ -1,4 +1,4 @@
-#include "formats/npy.h"
+#include "formats/arrays/npy.h"
 #include "unit.h"
 
 #include <unistd.h>

@@ -3,7 +3,7 @@
 #include "base/rng.h"
 #include "lang/analysis.h"
 #include "lang/closed.h"
-#include "formats/parser_weights.h"
+#include "formats/encoders/parser_weights.h"
 #include "lang/marked.h"
 #include "lang/parser.h"
 #include "lang/parser_learn.h"

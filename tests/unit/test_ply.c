@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/rng.h"
-#include "formats/ply.h"
+#include "formats/splats/ply.h"
 
 #include <float.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 #include "unit.h"
 
-#include "formats/ply.h"
+#include "formats/splats/ply.h"
 
 #include <stdint.h>
 #include <unistd.h>

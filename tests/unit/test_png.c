@@ -1,7 +1,7 @@
 /* PNG and JPEG: what we write comes back, other people's kinds are read, broken ones are refused. */
 #include "base/rng.h"
-#include "formats/jpeg.h"
-#include "formats/png.h"
+#include "formats/images/jpeg.h"
+#include "formats/images/png.h"
 #include "unit.h"
 
 #include <png.h>

@@ -2,7 +2,7 @@
 #include "unit.h"
 
 #include "base/rng.h"
-#include "formats/precision.h"
+#include "formats/arrays/precision.h"
 
 #include <float.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 #include "unit.h"
 
 #include "base/cpu.h"
-#include "formats/scene.h"
+#include "formats/scene/scene.h"
 #include "render_compare.h"
 #include "splat/render.h"
 #include "splat/sh.h"

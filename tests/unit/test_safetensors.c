@@ -2,7 +2,7 @@
  * by tests/format/safetensors.bats. */
 #include "unit.h"
 
-#include "formats/safetensors.h"
+#include "formats/arrays/safetensors.h"
 
 #include <unistd.h>
 

@@ -2,7 +2,7 @@
 #include "unit.h"
 
 #include "answer/responses.h"
-#include "formats/selection.h"
+#include "formats/scene/selection.h"
 
 #include <unistd.h>
 

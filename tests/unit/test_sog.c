@@ -4,8 +4,8 @@
 
 #include "base/file.h"
 #include "base/rng.h"
-#include "formats/ply.h"
-#include "formats/sog.h"
+#include "formats/splats/ply.h"
+#include "formats/splats/sog.h"
 
 #include <minizip/zip.h>
 #include <unistd.h>

@@ -1,10 +1,10 @@
-/* .sog written and read back within the bounds of formats/sog.md; its codebooks and palettes beside naive
- * ones. */
+/* .sog written and read back within the bounds of formats/splats/sog.md; its codebooks and palettes beside
+ * naive ones. */
 #include "unit.h"
 
 #include "base/rng.h"
-#include "formats/sog.h"
-#include "formats/sog_palette.h"
+#include "formats/splats/sog.h"
+#include "formats/splats/sog_palette.h"
 
 #include <unistd.h>
 

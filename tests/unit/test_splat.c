@@ -1,7 +1,7 @@
-/* The bytes of a .splat: formats/splat.md. */
+/* The bytes of a .splat: formats/splats/splat.md. */
 #include "unit.h"
 
-#include "formats/splat.h"
+#include "formats/splats/splat.h"
 
 #include <unistd.h>
 

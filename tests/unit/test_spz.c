@@ -1,8 +1,9 @@
-/* .spz written and read back in each version, within the bounds of formats/spz.md; files that are cut off. */
+/* .spz written and read back in each version, within the bounds of formats/splats/spz.md; files that are cut
+ * off. */
 #include "unit.h"
 
 #include "base/rng.h"
-#include "formats/spz.h"
+#include "formats/splats/spz.h"
 
 #include <unistd.h>
 

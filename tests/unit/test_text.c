@@ -1,8 +1,8 @@
 #include "unit.h"
 
 #include "base/utf8.h"
-#include "formats/metalist.h"
-#include "formats/text.h"
+#include "formats/arrays/metalist.h"
+#include "formats/scene/text.h"
 
 #include <unistd.h>
 

@@ -4,7 +4,7 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
-#include "formats/checkpoint.h"
+#include "formats/scene/checkpoint.h"
 #include "mask/bits.h"
 #include "splat/backproject.h"
 #include "train/trainer.h"

@@ -1,0 +1,151 @@
+#include "cmd/ask/answer_picture.h"
+
+#include "base/mem.h"
+#include "formats/images/png.h"
+#include "mask/caption.h"
+#include "mask/overlay.h"
+#include "answer/answer.h"
+#include "splat/render.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Views are compared at this size of their longer side, in pixels. */
+enum { LOOK_SIDE = 200 };
+
+int answer_responses(
+	struct responses *to, const struct lifted *l, const size_t *things, size_t count, struct err *e)
+{
+	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
+
+	*to = (struct responses){.answers = 1};
+	to->responses = mem_alloc(l->gaussians, sizeof *to->responses, "responses", e);
+	to->lifts = mem_zalloc(1, sizeof *to->lifts, "responses", e);
+	int bad = !own || !to->responses || !to->lifts;
+	for (size_t k = 0; k < count && !bad; k++) {
+		lifted_responses(l, things[k], k ? own : to->responses);
+		for (size_t i = 0; i < l->gaussians && k; i++)
+			to->responses[i] = fmaxf(to->responses[i], own[i]);
+	}
+	free(own);
+	return bad || render_pack(to->responses, l->gaussians, 1, e) ? -1 : 0;
+}
+
+struct looks {
+	double *worth; /* of each view */
+};
+
+static int look(void *data, const struct answer *a, struct err *e)
+{
+	const struct looks *l = data;
+	const int h = a->camera->height, w = a->camera->width;
+	size_t covered = 0;
+	int is_cut = 0;
+
+	(void)e;
+	for (int y = 0; y < h; y++)
+		for (int x = 0; x < w; x++) {
+			const int on = a->mask[(size_t)y * (size_t)w + (size_t)x];
+			covered += (size_t)on;
+			is_cut |= on && (!y || !x || y == h - 1 || x == w - 1);
+		}
+	l->worth[a->view] = (double)covered / ((double)h * w) * (is_cut ? 0.5 : 1);
+	return 0;
+}
+
+static int ignore(void *data, size_t view, struct err *e)
+{
+	(void)data, (void)view, (void)e;
+	return 0;
+}
+
+static int best_view(
+	const struct asking *a, const struct answer_question *q, const struct camera **view, struct err *e)
+{
+	const struct cameras *c = &a->scene.cameras;
+	struct looks l = {mem_zalloc(c->n, sizeof *l.worth, "views", e)};
+	struct camera *small = mem_alloc(c->n, sizeof *small, "views", e);
+	const struct answer_calls calls = {&l, look, ignore};
+
+	for (size_t v = 0; v < c->n && small; v++) {
+		const struct camera *from = &c->views[v];
+		const int longer = from->width > from->height ? from->width : from->height;
+		int width, height;
+		camera_scaled_size(
+			from, longer > LOOK_SIDE ? (double)LOOK_SIDE / longer : 1, &width, &height);
+		small[v] = camera_resize(from, width, height);
+	}
+	int bad = !l.worth || !small || answer_all(q, small, c->n, &calls, e);
+	size_t best = 0;
+	for (size_t v = 1; v < c->n && !bad; v++)
+		best = l.worth[v] > l.worth[best] ? v : best;
+	*view = &c->views[best];
+	free(l.worth);
+	free(small);
+	return bad ? -1 : 0;
+}
+
+struct page {
+	const char *const *words, *path;
+	struct answer_drawn *drawn;
+};
+
+/* The rectangle around the mask. */
+static void bound(const struct answer *a, struct answer_drawn *drawn)
+{
+	const int h = a->camera->height, w = a->camera->width;
+
+	drawn->low[0] = w;
+	drawn->low[1] = h;
+	drawn->high[0] = drawn->high[1] = 0;
+	for (int y = 0; y < h; y++)
+		for (int x = 0; x < w; x++) {
+			if (!a->mask[(size_t)y * (size_t)w + (size_t)x])
+				continue;
+			drawn->low[0] = x < drawn->low[0] ? x : drawn->low[0];
+			drawn->low[1] = y < drawn->low[1] ? y : drawn->low[1];
+			drawn->high[0] = x >= drawn->high[0] ? x + 1 : drawn->high[0];
+			drawn->high[1] = y + 1;
+		}
+}
+
+static int put_page(void *data, const struct answer *a, struct err *e)
+{
+	const struct page *page = data;
+	const int h = a->camera->height, w = a->camera->width, line = caption_height(w);
+	const size_t bytes = 3 * (size_t)h * (size_t)w;
+	uint8_t *rgb = mem_alloc((size_t)h + 2 * (size_t)line, 3 * (size_t)w, page->path, e);
+
+	if (!rgb)
+		return -1;
+	for (size_t i = 0; i < bytes; i++)
+		rgb[i] = (uint8_t)lrintf(255 * a->rgb[i]);
+	overlay_draw(rgb, a->mask, h, w);
+	bound(a, page->drawn);
+	for (int k = 0; k < 2; k++)
+		caption_draw(rgb, w, h + k * line, page->words[k]);
+	const int bad = png_write(page->path, rgb, h + 2 * line, w, 3, e);
+	free(rgb);
+	return bad;
+}
+
+int answer_picture(const struct asking *a, const struct asking_answer *answer, const char *const words[2],
+	const char *path, struct answer_drawn *drawn, struct err *e)
+{
+	struct responses responses;
+	struct answer_question q = {.splats = &a->scene.splats, .responses = &responses};
+	struct page page = {words, path, drawn};
+	const struct answer_calls calls = {&page, put_page, ignore};
+
+	if (!drawn->view && !a->scene.cameras.n)
+		return err_set(e, ERR_FORMAT, "%s: has no view to draw", a->files.scene);
+	int bad = answer_responses(&responses, &a->model.lifted, answer->things, answer->count, e) ||
+		  (!drawn->view && best_view(a, &q, &drawn->view, e));
+	if (!bad) {
+		q.wants_rgb = 1;
+		bad = answer_all(&q, drawn->view, 1, &calls, e);
+	}
+	responses_free(&responses);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,291 @@
+#include "cmd/ask/asking.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "cmd/run/object_extents.h"
+#include "formats/cameras/camerafile.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int read_all(struct asking *a, struct err *e)
+{
+	const struct run_folder *f = &a->files;
+
+	if (run_folder_find(&a->files, a->options->run, &a->options->given, e) ||
+		scene_read(&a->scene, f->scene, e) || anymodel_read(&a->model, f->model, e))
+		return -1;
+	if (!a->model.is_lifted)
+		return err_set(e, ERR_FORMAT, "%s: is a %s; questions need one of refer-lift", f->model,
+			a->model.is_selection ? "selection" : "trained model");
+	return encoder_read(&a->encoder, f->encoder, 0, e);
+}
+
+static int check_fit(const struct asking *a, struct err *e)
+{
+	const struct lifted *l = &a->model.lifted;
+	const struct origin *o = &a->model.origin;
+	const struct run_folder *f = &a->files;
+
+	if (anymodel_check_scene(&a->model, f->model, &a->scene, f->scene, e))
+		return -1;
+	if (l->width != encoder_width(&a->encoder))
+		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, the encoder %s makes %d",
+			f->model, l->width, f->encoder, encoder_width(&a->encoder));
+	return parser_weights_need_middle(&a->model.weights, f->model, l->middle, &o->encoder, e) ||
+	       fingerprint_check("encoder", f->model, &o->encoder, f->encoder, &a->encoder.fingerprint, e);
+}
+
+int asking_read_camera(struct asking *a, const char *path, struct err *e)
+{
+	struct cameras read;
+
+	if (camerafile_read(&read, path, e))
+		return -1;
+	if (camerafile_need_pinholes(&read, path, NULL, e)) {
+		cameras_free(&read);
+		return -1;
+	}
+	if (read.n > 1) {
+		err_set(e, ERR_FORMAT, "%s: has %zu views; --camera takes one", file_name(path), read.n);
+		cameras_free(&read);
+		return -1;
+	}
+	cameras_shift(&read, a->scene.offset);
+	cameras_free(&a->given);
+	a->given = read;
+	return 0;
+}
+
+static int find_viewpoint(struct asking *a, struct err *e)
+{
+	const char *text = a->options->viewpoint;
+
+	a->from = (struct viewpoint){.kind = VIEWPOINT_USUAL};
+	if (!text && a->given.n)
+		a->from = (struct viewpoint){.kind = VIEWPOINT_CAMERA, .camera = a->given.views};
+	if (text && viewpoint_read(&a->from, text, &a->scene.cameras, a->scene.offset))
+		return err_set(e, ERR_USAGE, "--viewpoint: '%s' is no view and no x,y,z", text);
+	return 0;
+}
+
+static int find_extents(struct asking *a, struct err *e)
+{
+	a->extents = object_extents(&a->model.lifted, &a->scene.splats, &a->scene.cameras, e);
+	return a->extents ? 0 : -1;
+}
+
+static int make_chooser(struct asking *a, struct err *e)
+{
+	struct list_name name;
+	unsigned parts;
+
+	if (choose_without(a->options->without, &parts, &name))
+		return err_set(e, ERR_USAGE, "--without: no part '%.*s'", (int)name.length, name.text);
+	a->parser = (struct parser){.weights = &a->model.weights, .encoder = a->encoder.fingerprint.hex};
+	a->of = (struct choose_scene){&a->model.lifted, &a->scene.splats, &a->scene.cameras, &a->parser, 1};
+	a->chooser = chooser_make(&a->of, parts, e);
+	return a->chooser ? 0 : -1;
+}
+
+int asking_open(struct asking *a, const struct asking_options *options, struct err *e)
+{
+	a->options = options;
+	return read_all(a, e) || check_fit(a, e) ||
+			       (options->camera && asking_read_camera(a, options->camera, e)) ||
+			       find_viewpoint(a, e) || make_chooser(a, e) || find_extents(a, e)
+		       ? -1
+		       : 0;
+}
+
+void asking_close(struct asking *a)
+{
+	object_extents_free(a->extents, a->model.lifted.objects);
+	chooser_free(a->chooser);
+	encoding_free(&a->ahead);
+	encoder_free(&a->encoder);
+	anymodel_free(&a->model);
+	cameras_free(&a->given);
+	scene_free(&a->scene);
+	run_folder_free(&a->files);
+}
+
+/* What the choice's watch gets to. */
+struct watched {
+	struct asking_answer *answer;
+	const char *question;
+	int is_explained, is_out_of_memory;
+};
+
+static void watch(void *data, size_t i, const struct meaning *m)
+{
+	struct watched *w = data;
+
+	(void)i;
+	for (size_t o = 0; o < m->arrangement->n; o++)
+		memcpy(w->answer->centres[o], m->arrangement->objects[o].centre,
+			sizeof w->answer->centres[o]);
+	w->answer->has_centres = 1;
+	const struct explained x = {m, m->sentence->parse, w->question};
+	explain_refusal(&x, w->answer->reason);
+	if (w->is_explained && !(w->answer->explained = explain_meaning(&x)))
+		w->is_out_of_memory = 1;
+}
+
+int asking_answer_make(struct asking_answer *answer, size_t objects, struct err *e)
+{
+	*answer = (struct asking_answer){.runner_up = ASKING_NONE};
+	answer->things = mem_alloc(objects, sizeof *answer->things, "answer", e);
+	answer->probability = mem_zalloc(objects, sizeof *answer->probability, "answer", e);
+	answer->centres = mem_zalloc(objects, sizeof *answer->centres, "answer", e);
+	return answer->things && answer->probability && answer->centres ? 0 : -1;
+}
+
+void asking_answer_free(struct asking_answer *answer)
+{
+	free(answer->things);
+	free(answer->probability);
+	free(answer->centres);
+	cJSON_Delete(answer->explained);
+}
+
+/* Whether object o is told before another: the likelier one, and of two as likely by name. */
+static int is_before(const struct asking_answer *answer, char *const *names, size_t o, size_t other)
+{
+	const double own = answer->probability[o], theirs = answer->probability[other];
+
+	return own > theirs || (own == theirs && strcmp(names[o], names[other]) < 0);
+}
+
+/* The chosen objects, likeliest first, and the likeliest of the others. */
+static void sort_things(struct asking_answer *answer, char *const *names, const char *chosen, size_t objects)
+{
+	for (size_t o = 0; o < objects; o++) {
+		if (!chosen[o]) {
+			if (answer->runner_up == ASKING_NONE ||
+				is_before(answer, names, o, answer->runner_up))
+				answer->runner_up = o;
+			continue;
+		}
+		size_t k = answer->count++;
+		for (; k && is_before(answer, names, o, answer->things[k - 1]); k--)
+			answer->things[k] = answer->things[k - 1];
+		answer->things[k] = o;
+	}
+}
+
+/* By sentence r of the text. */
+static int choose_answer(struct asking *a, const struct text *t, size_t r, struct watched *w, struct err *e)
+{
+	const size_t objects = a->model.lifted.objects;
+	const struct choose_sentence sentence = {t->texts[r], t->pieces[r],
+		t->words + (size_t)t->offsets[r] * (size_t)t->width, text_middle(t, r),
+		(size_t)(t->offsets[r + 1] - t->offsets[r]), a->from, NULL};
+	const struct choose_watch watching = {w, watch};
+	float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
+	char *chosen = mem_alloc(objects, 1, "answer", e);
+	struct choice choice;
+	int bad = !probability || !chosen ||
+		  choose_with(a->chooser, &sentence, 1, &choice, probability, chosen, &watching, e);
+
+	if (!bad) {
+		w->answer->there = choice.there;
+		w->answer->is_by_wording = choice.is_by_wording;
+		w->answer->is_by_purpose = choice.is_by_purpose;
+		for (size_t o = 0; o < objects; o++)
+			w->answer->probability[o] = choice.there * (double)probability[o];
+		if (choice.there < a->options->least)
+			memset(chosen, 0, objects);
+		sort_things(w->answer, a->model.lifted.names, chosen, objects);
+	}
+	free(probability);
+	free(chosen);
+	return bad ? -1 : 0;
+}
+
+void asking_expect(struct asking *a, const char *const *questions, size_t n)
+{
+	struct err e;
+	char ref[32];
+	int bad = 0;
+
+	encoding_free(&a->ahead);
+	a->ahead = (struct encoding){0};
+	for (size_t i = 0; i < n && !bad; i++) {
+		snprintf(ref, sizeof ref, "%zu", i);
+		bad = sentences_add(&a->ahead.sentences, ref, "?", questions[i], &e);
+	}
+	if (!n || (!bad && !encode(&a->ahead, &a->encoder, &report_silent, &e)))
+		return;
+	encoding_free(&a->ahead);
+	a->ahead = (struct encoding){0};
+}
+
+/* The sentence of a->ahead that the question is; their number where there is none, or where the encoder may
+ * have cut it, which is said when it is encoded alone. */
+static size_t find_ahead(const struct asking *a, const char *question)
+{
+	const struct text *t = &a->ahead.text;
+	size_t r = 0;
+
+	while (r < t->n && strcmp(t->texts[r], question) != 0)
+		r++;
+	if (r < t->n && (size_t)(t->offsets[r + 1] - t->offsets[r]) + 2 >= encoder_positions(&a->encoder))
+		return t->n;
+	return r;
+}
+
+int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
+	struct err *e)
+{
+	struct watched w = {.answer = answer, .question = question, .is_explained = a->options->is_explained};
+	struct encoding alone = {0};
+	const struct text *text = &a->ahead.text;
+	size_t r = find_ahead(a, question);
+	int bad = asking_answer_make(answer, a->model.lifted.objects, e);
+
+	if (!bad && r == text->n) {
+		text = &alone.text;
+		r = 0;
+		bad = sentences_add(&alone.sentences, "1", "?", question, e) ||
+		      encode(&alone, &a->encoder, to, e);
+	}
+	if (!bad)
+		snprintf(answer->reason, sizeof answer->reason, "the %s",
+			text->offsets[r + 1] > text->offsets[r] ? "model has no objects"
+								: "question has no words");
+	if (!bad)
+		bad = choose_answer(a, text, r, &w, e);
+	if (!bad && w.is_out_of_memory)
+		bad = err_set(e, ERR_SYSTEM, "explanation: out of memory");
+	encoding_free(&alone);
+	if (bad)
+		asking_answer_free(answer);
+	return bad ? -1 : 0;
+}
+
+size_t asking_nearest(const struct asking *a, size_t object, double *distance)
+{
+	size_t nearest = ASKING_NONE;
+
+	for (size_t o = 0; o < a->model.lifted.objects; o++) {
+		const double *x = a->extents[object].turned.centre, *y = a->extents[o].turned.centre;
+		const double d = hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
+		if (o == object || !a->extents[o].n || !a->extents[object].n ||
+			(nearest != ASKING_NONE && d >= *distance))
+			continue;
+		nearest = o;
+		*distance = d;
+	}
+	return nearest;
+}
+
+const struct camera *asking_view(const struct asking *a, const char *name)
+{
+	for (size_t v = 0; v < a->scene.cameras.n; v++)
+		if (!strcmp(a->scene.cameras.views[v].name, name))
+			return &a->scene.cameras.views[v];
+	return a->given.n && !strcmp(a->given.views[0].name, name) ? a->given.views : NULL;
+}

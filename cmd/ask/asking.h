@@ -1,0 +1,82 @@
+/* A lifted scene that is asked one question after the other, with everything loaded once: refer-ask. */
+#ifndef CMD_ASK_ASKING_H
+#define CMD_ASK_ASKING_H
+
+#include "ask/choose.h"
+#include "base/err.h"
+#include "base/report.h"
+#include "cmd/run/anymodel.h"
+#include "cmd/text/encode.h"
+#include "cmd/ask/explain.h"
+#include "cmd/run/run_folder.h"
+#include "formats/scene/scene.h"
+#include "lift/extent.h"
+
+struct asking_options {
+	const char *run;	 /* the folder */
+	struct run_folder given; /* files in place of the folder's */
+	const char *viewpoint;	 /* VIEW or x,y,z; NULL: the usual one */
+	const char *camera;	 /* a file of one camera that is not in the scene; NULL: none */
+	const char *without;	 /* PART,... as choose_without takes it; may be NULL */
+	double least;		 /* a question less likely to mean anything is refused */
+	int is_explained;
+};
+
+struct asking {
+	const struct asking_options *options;
+	struct run_folder files;
+	struct scene scene;
+	struct anymodel model;
+	struct encoder encoder;
+	struct parser parser;
+	struct choose_scene of;
+	struct chooser *chooser;
+	struct viewpoint from;
+	struct cameras given;	/* the one of options->camera; else none */
+	struct encoding ahead;	/* questions that were encoded before they are asked; asking_expect */
+	struct extent *extents; /* (objects) where each is, without the scene's offset */
+};
+
+/* Reads all; *a is zeroed before and may not move after. Returns 0, or -1 with *e set (ERR_USAGE: an option
+ * is at fault); after either asking_close. */
+int asking_open(struct asking *a, const struct asking_options *options, struct err *e);
+void asking_close(struct asking *a);
+
+/* A file of one camera that is not in the scene, brought into its frame: a->given, in place of an earlier
+ * one. Returns 0, or -1 with *e set and a->given as it was. */
+int asking_read_camera(struct asking *a, const char *path, struct err *e);
+
+#define ASKING_NONE ((size_t)-1)
+
+struct asking_answer {
+	size_t count, *things;	     /* the objects that are meant, likeliest first; 0: refused */
+	size_t runner_up;	     /* the likeliest other object; ASKING_NONE */
+	double there;		     /* P that the question means anything that is here */
+	int is_by_purpose;	     /* what the thing is for told */
+	int is_by_wording;	     /* the parse told nothing, the wording alone did */
+	double *probability;	     /* (objects) that each is meant, or one of those meant */
+	char reason[EXPLAIN_REASON]; /* of a refusal */
+	double (*centres)[3];	     /* (objects) to the right, away and up, as seen from the viewpoint */
+	int has_centres;
+	cJSON *explained; /* of explain_meaning; NULL where it was not asked for */
+};
+
+/* Encodes questions that are about to be asked all at once, which takes less time than one by one. No answer
+ * changes, and nothing is said: what goes wrong is said when the question is asked. */
+void asking_expect(struct asking *a, const char *const *questions, size_t n);
+
+/* Answers a question; warns where it is too long for the encoder. asking_answer_free after success. */
+int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
+	struct err *e);
+/* An answer of nothing, as asking_ask begins with: 0, or -1 with *e set. asking_answer_free after either. */
+int asking_answer_make(struct asking_answer *answer, size_t objects, struct err *e);
+void asking_answer_free(struct asking_answer *answer);
+
+/* The object whose box is nearest to that of an object, by their centres, and how far away that is;
+ * ASKING_NONE where there is no other. */
+size_t asking_nearest(const struct asking *a, size_t object, double *distance);
+
+/* The view of that name, the given camera among them; NULL where there is none. */
+const struct camera *asking_view(const struct asking *a, const char *name);
+
+#endif

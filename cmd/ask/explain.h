@@ -1,0 +1,36 @@
+/* Why a sentence means what it means among a scene's objects, or nothing: refer-ask. */
+#ifndef CMD_ASK_EXPLAIN_H
+#define CMD_ASK_EXPLAIN_H
+
+#include "ask/meaning.h"
+#include "lang/parse.h"
+
+#include <cjson/cJSON.h>
+#include <stddef.h>
+#include <stdio.h>
+
+enum { EXPLAIN_REASON = 256, EXPLAIN_MOST = 6 /* candidates that are shown */ };
+
+/* A sentence that was judged. m->sentence is not looked at: it may be gone when a watch of choose() is
+ * called. */
+struct explained {
+	const struct meaning *meaning;
+	const struct parse *parse;
+	const char *text;
+};
+
+/* Why a sentence means nothing here, in words that end a sentence. Cut where it is too long.
+ */
+void explain_refusal(const struct explained *x, char reason[EXPLAIN_REASON]);
+
+/* {"parse":"the mug, left of (the
+ * bowl)","confidence":0.9,"unexplained":["..."],"candidates":[{"name":"mug","fit":0.8,
+ * "parts":[{"part":"noun","words":"mug","value":1}]}],"anchors":[{"words":"the
+ * bowl","name":"bowl","there":0.9}]}; the best EXPLAIN_MOST candidates come first. cJSON_Delete it; NULL
+ * where memory is out. */
+cJSON *explain_meaning(const struct explained *x);
+
+/* The same as lines of text. */
+void explain_put(const cJSON *explained, FILE *out);
+
+#endif

@@ -1,0 +1,75 @@
+/* Which Gaussians of lifted features sentences select, by the rules of several systems: feature-query.
+ * formats/scene/selection.md. */
+#ifndef CMD_FEATURE_FEATURE_QUERY_H
+#define CMD_FEATURE_FEATURE_QUERY_H
+
+#include "base/err.h"
+#include "base/report.h"
+#include "cmd/feature/query_vectors.h"
+#include "formats/scene/features.h"
+#include "formats/scene/lifted.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/selection.h"
+#include "formats/scene/text.h"
+#include "mask/mask.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum query_rule { RULE_COSINE, RULE_RELEVANCY, RULE_HYPERPLANE, RULE_IDENTITY };
+
+/* Beside SPLIT_TRAIN and SPLIT_TEST. */
+enum { QUERY_ALL = 2, QUERY_MAX_LEVELS = 8 };
+
+/* Thresholds as published: LERF's and LangSplat's on relevancies, Gaussian Grouping's on groups. */
+#define QUERY_RELEVANT 0.5
+#define QUERY_RELEVANT_RELATIVE 0.4
+#define QUERY_INSIDE 0.7
+
+/* Examples of either kind that a hyperplane is fitted to, at most; evenly taken. */
+enum { QUERY_POSITIVES = 1000, QUERY_NEGATIVES = 2000 };
+
+struct feature_query_options {
+	const char *const *features; /* files: the levels of a field */
+	size_t levels;
+	const char *text, *vectors, *canonical, *against, *positives; /* all but the text may be NULL */
+	int sentences;						      /* of which split; QUERY_ALL */
+	int rule;
+	double threshold; /* NaN: as published */
+	int is_relative;  /* the threshold is on LangSplat's scale */
+	const char
+		*pixels;  /* a scene, in whose test views the rule is for pixels; NULL: it is for Gaussians */
+	double least;	  /* pixels whose feature is shorter have none */
+	long long smooth; /* window of the mean of relevancies in pixels; 1: as they are */
+};
+
+struct feature_query {
+	const struct feature_query_options *options;
+	double threshold;
+	struct features features[QUERY_MAX_LEVELS];
+	size_t levels;
+	struct text text;
+	size_t count, *which; /* (count) the sentences, as indices in text */
+	uint64_t **marks;     /* (count) of Gaussians that are selected (lift/marks.h) */
+	/* of rules by vectors: those of the sentences, then rivals or canonical phrases */
+	struct query_vectors vectors;
+	size_t *group; /* (vectors.n) sentences of one object are a group */
+	size_t *level; /* (count) that was chosen */
+	/* of rules by examples */
+	struct lifted lifted;
+	size_t *object; /* (count) of lifted */
+	/* of rules for pixels: the scene, and what each of its test views shows of each sentence */
+	struct scene scene;
+	size_t view_count, *views; /* (view_count) of scene.cameras */
+	struct mask *shown;	   /* (view_count,count) without names */
+};
+
+/* Reads the files, and selects. *q is zeroed before; *options stays the caller's. Returns 0, or -1 with *e
+ * set; feature_query_free in any case. */
+int feature_query_make(struct feature_query *q, const struct feature_query_options *options,
+	const struct report *to, struct err *e);
+/* The selection, or the masks. */
+int feature_query_write(const struct feature_query *q, const char *path, struct err *e);
+void feature_query_free(struct feature_query *q);
+
+#endif

@@ -1,0 +1,227 @@
+#include "cmd/import/import.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/splats/anysplats.h"
+#include "formats/cameras/camerafile.h"
+#include "formats/cameras/dataparser.h"
+#include "geom/lens.h"
+#include "geom/views.h"
+#include "splat/near.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char every[] = "every:";
+
+static int by_image(const void *a, const void *b)
+{
+	const struct camera *x = *(struct camera *const *)a, *y = *(struct camera *const *)b;
+
+	return strcmp(x->image, y->image);
+}
+
+/* 0, N, 2N ... in the order of the photographs' whole paths, as 3DGS and gsplat hold out every 8th. */
+static int split_every(struct cameras *c, const char *test_views, struct err *e)
+{
+	const char *text = test_views + strlen(every);
+	char *end;
+	unsigned long n = strtoul(text, &end, 10);
+
+	if (text[0] < '0' || text[0] > '9' || *end || n < 1 || n > 1000000000)
+		return err_set(e, ERR_USAGE, "--test-views: '%s' is not every:N with N from 1 to 1000000000",
+			test_views);
+	struct camera **sorted = mem_alloc(c->n, sizeof *sorted, "views", e);
+	if (!sorted)
+		return -1;
+	for (size_t i = 0; i < c->n; i++)
+		sorted[i] = &c->views[i];
+	qsort(sorted, c->n, sizeof *sorted, by_image);
+	for (size_t i = 0; i < c->n; i++)
+		sorted[i]->split = i % n ? SPLIT_TRAIN : SPLIT_TEST;
+	free(sorted);
+	return 0;
+}
+
+static int split_names(struct cameras *c, const char *test_views, struct err *e)
+{
+	char *is_test = mem_zalloc(c->n, 1, "views", e);
+	int bad = is_test ? cameras_mark(c, test_views, "--test-views", is_test, e) : -1;
+
+	for (size_t i = 0; i < c->n && !bad; i++)
+		c->views[i].split = is_test[i] ? SPLIT_TEST : SPLIT_TRAIN;
+	free(is_test);
+	return bad;
+}
+
+/* What is beside SPLATS or, where 3DGS put it into point_cloud/iteration_N, in the folder of the trained
+ * model. */
+static char *find_beside(const char *splats, struct err *e)
+{
+	char *dir = file_dir(splats, e), *found = dir ? camerafile_find(dir, e) : NULL;
+	const char *slash = dir ? strrchr(dir, '/') : NULL;
+
+	if (dir && !found && !strncmp(slash ? slash + 1 : dir, "iteration_", 10)) {
+		struct err ignored;
+		char *model = file_join(dir, "../..", "", e);
+		found = model ? camerafile_find(model, &ignored) : NULL;
+		free(model);
+	}
+	free(dir);
+	return found;
+}
+
+static int check_images(const char *images_path, struct err *e)
+{
+	if (!images_path || file_is_dir(images_path))
+		return 0;
+	errno = file_exists(images_path) ? ENOTDIR : ENOENT;
+	return err_errno(e, "%s", images_path);
+}
+
+/* The trained splats in a folder of 3DGS: those of the last iteration. */
+static char *find_in_folder(const char *folder, struct err *e)
+{
+	char *inner = file_join(folder, "point_cloud", "", e), *found = NULL;
+	const char *const places[] = {inner, folder};
+	long most = -1;
+
+	for (int i = 0; i < 2 && inner && !found; i++) {
+		DIR *dir = opendir(places[i]);
+		for (struct dirent *d = dir ? readdir(dir) : NULL; d; d = readdir(dir)) {
+			const long n = strncmp(d->d_name, "iteration_", 10) ? -1 : atol(d->d_name + 10);
+			if (n <= most)
+				continue;
+			most = n;
+			free(found);
+			char *parent = file_join(places[i], d->d_name, "", e);
+			found = parent ? file_join(parent, "point_cloud.ply", "", e) : NULL;
+			free(parent);
+		}
+		if (dir)
+			closedir(dir);
+	}
+	if (inner && !found)
+		found = file_join(folder, "point_cloud.ply", "", e);
+	free(inner);
+	return found;
+}
+
+char *import_find_splats(const char *path, struct err *e)
+{
+	if (!strcmp(path, "-") || !file_is_dir(path))
+		return mem_strdup(path, e);
+	char *found = file_join(path, "meta.json", "", e); /* of SOG */
+	if (!found || file_exists(found))
+		return found;
+	free(found);
+	found = find_in_folder(path, e);
+	if (found && !file_exists(found)) {
+		err_set(e, ERR_FORMAT,
+			"%s: no trained splats in this folder: no point_cloud/iteration_N/point_cloud.ply, as 3DGS writes them, and no point_cloud.ply",
+			path);
+		free(found);
+		return NULL;
+	}
+	return found;
+}
+
+/* So that a file that is missing is said to be so before cameras are looked for beside it. */
+static int check_splats(const char *path, struct err *e)
+{
+	return strcmp(path, "-") && !file_exists(path) ? err_errno(e, "%s", path) : 0;
+}
+
+char *import_find_cameras(const struct import_options *o, struct err *e)
+{
+	if (check_images(o->images, e) || check_splats(o->splats, e))
+		return NULL;
+	if (o->cameras)
+		return file_is_dir(o->cameras) ? camerafile_find(o->cameras, e) : mem_strdup(o->cameras, e);
+	char *found = find_beside(o->splats, e);
+	if (!found && e->code == ERR_FORMAT) {
+		const struct err reason = *e;
+		err_set(e, ERR_USAGE, "--cameras is not given, and %s", reason.message);
+	}
+	return found;
+}
+
+int import_split(struct cameras *c, const char *test_views, struct err *e)
+{
+	if (!test_views)
+		return 0;
+	return strncmp(test_views, every, strlen(every)) ? split_names(c, test_views, e)
+							 : split_every(c, test_views, e);
+}
+
+/* Pinholes, whatever the photographs' lenses. */
+static int read_cameras(struct cameras *c, const struct import_options *o, const char *cameras, struct err *e)
+{
+	if (camerafile_read(c, cameras, e) ||
+		(!o->undistort && camerafile_need_pinholes(c, cameras, o->images, e)))
+		return -1;
+	cameras_undistort(c);
+	for (size_t i = 0; i < c->n; i++) {
+		const char *fault = view_fault(&c->views[i]);
+		if (fault)
+			return err_set(e, ERR_FORMAT, "%s: view '%s', undistorted: %s", file_name(cameras),
+				c->views[i].name, fault);
+	}
+	return 0;
+}
+
+/* Into the frame that nerfstudio trained in, where it says how; else the cameras should be in that of the
+ * splats. */
+static int move(struct scene *s, const char *splats, const char *cameras, double *near,
+	const struct report *to, struct err *e)
+{
+	e->code = ERR_NONE;
+	char *path = dataparser_find(splats, cameras, e);
+	int bad = !path && (e->code != ERR_NONE || point_frame_find(near, s, cameras, e));
+
+	if (path) {
+		report_note(to, 1, "%s: cameras are moved by it", path);
+		bad = dataparser_move(&s->cameras, path, cameras, e);
+	}
+	free(path);
+	return bad ? -1 : 0;
+}
+
+/* For the scene's metadata. No paths: a scene's bytes do not depend on where its sources were. */
+static char *describe_options(const char *test_views, struct err *e)
+{
+	size_t bytes = (test_views ? strlen(test_views) : 0) + 16;
+	char *text = mem_alloc(bytes, 1, "options", e);
+
+	if (text)
+		snprintf(
+			text, bytes, "%s%s", test_views ? "--test-views " : "", test_views ? test_views : "");
+	return text;
+}
+
+int import_scene(struct scene *s, struct rows_report *report, const struct import_options *o,
+	const char *cameras, const char *folder, struct import_found *found, const struct report *to,
+	struct err *e)
+{
+	*found = (struct import_found){.near = 1};
+	/* Cameras first: what is wrong with them, or with a name of a view, is said before the splats, which
+	 * take longer. */
+	if (read_cameras(&s->cameras, o, cameras, e) || import_split(&s->cameras, o->test_views, e) ||
+		anysplats_read(&s->splats, s->offset, report, o->splats, e))
+		return -1;
+	if (!s->splats.n)
+		return err_set(e, ERR_FORMAT, "%s: holds no Gaussians", file_name(o->splats));
+	if (move(s, o->splats, cameras, &found->near, to, e))
+		return -1;
+	cameras_shift(&s->cameras, s->offset);
+	char *metadata = describe_options(o->test_views, e);
+	int bad = !metadata || near_find(&s->splats, &s->cameras, e) || file_make_dir(folder, e) ||
+		  camerafile_images(&s->cameras, o->images, folder, &found->missing, e) ||
+		  (o->images && resemblance_find(&found->resemblance, s, folder, to, e)) ||
+		  scene_write(s, folder, metadata, e);
+	free(metadata);
+	return bad ? -1 : 0;
+}

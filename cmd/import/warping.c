@@ -1,0 +1,169 @@
+#include "cmd/import/warping.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/names.h"
+#include "formats/images/png.h"
+#include "formats/scene/scene.h"
+#include "geom/lens.h"
+#include "mask/mask.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int warping_open(struct warping *w, enum warp way, const char *scene, struct err *e)
+{
+	*w = (struct warping){.way = way};
+	char *path = way == WARP_NONE ? NULL : file_join(scene, "cameras.json", "", e);
+	const int bad = way != WARP_NONE && (!path || scene_read_cameras_file(&w->cameras, path, e));
+
+	free(path);
+	return bad ? -1 : 0;
+}
+
+void warping_free(struct warping *w)
+{
+	cameras_free(&w->cameras);
+	free(w->map);
+	free(w->from);
+	free(w->to);
+}
+
+static const struct camera *find_view(const struct warping *w, const char *view)
+{
+	for (size_t i = 0; i < w->cameras.n; i++)
+		if (!strcmp(w->cameras.views[i].name, view))
+			return &w->cameras.views[i];
+	return NULL;
+}
+
+/* A mask that was undistorted already has the other's size. */
+static int check_shape(const struct warping *w, const struct camera *c, const struct rle *mask, struct err *e)
+{
+	const int is_back = w->way == WARP_TO_PHOTOGRAPH;
+	const int height[2] = {c->lens.height, c->height}, width[2] = {c->lens.width, c->width};
+	const int is_other = mask->height == height[!is_back] && mask->width == width[!is_back] &&
+			     (mask->height != height[is_back] || mask->width != width[is_back]);
+
+	if ((int64_t)mask->height * mask->width > INT32_MAX)
+		return err_set(e, ERR_FORMAT, "view '%s': a mask of %dx%d has more than %d pixels", c->name,
+			mask->width, mask->height, INT32_MAX);
+	if (is_other)
+		return err_set(e, ERR_FORMAT,
+			"view '%s': a mask of %dx%d, but its %s is %dx%d: it is %s already", c->name,
+			mask->width, mask->height, is_back ? "pinhole" : "photograph", width[is_back],
+			height[is_back], is_back ? "distorted" : "undistorted");
+	return mask_check_shape(c->name, mask, is_back ? "its pinhole" : "its photograph", height[is_back],
+		width[is_back], e);
+}
+
+/* Cameras with one lens share a map. */
+static int make_map(struct warping *w, const struct camera *c, int rows, int columns, struct err *e)
+{
+	const int is_back = w->way == WARP_TO_PHOTOGRAPH;
+	const size_t height = (size_t)(is_back ? c->lens.height : c->height),
+		     width = (size_t)(is_back ? c->lens.width : c->width);
+
+	if (w->of && w->rows == rows && w->columns == columns && lens_is_same(&w->of->lens, &c->lens) &&
+		w->of->width == c->width && w->of->height == c->height && w->of->fx == c->fx &&
+		w->of->fy == c->fy && w->of->cx == c->cx && w->of->cy == c->cy)
+		return 0;
+	w->of = NULL;
+	if (mem_room((void **)&w->map, &w->map_room, height * width, sizeof *w->map, "masks", e) ||
+		mem_room((void **)&w->to, &w->to_room, height * width, 1, "masks", e))
+		return -1;
+	(is_back ? lens_map_to_photograph : lens_map_to_view)(&c->lens, c, rows, columns, w->map);
+	w->of = c;
+	w->rows = rows;
+	w->columns = columns;
+	return 0;
+}
+
+static int refuse_view(const struct warping *w, const char *view, struct err *e)
+{
+	const struct cameras *c = &w->cameras;
+	struct names names;
+	char few[NAMES_FEW];
+
+	if (names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e))
+		return -1;
+	err_set(e, ERR_FORMAT, "view '%s' is not in the scene%s", view, names_few(&names, few));
+	names_free(&names);
+	return -1;
+}
+
+int warping_mask(struct warping *w, const char *view, struct rle *mask, struct err *e)
+{
+	const struct camera *c = w->way == WARP_NONE ? NULL : find_view(w, view);
+	struct rle made;
+
+	if (w->way == WARP_NONE)
+		return 0;
+	if (!c)
+		return refuse_view(w, view, e);
+	if (!c->lens.model)
+		return mask_check_shape(view, mask, "the view", c->height, c->width, e);
+	if (check_shape(w, c, mask, e) || make_map(w, c, mask->height, mask->width, e) ||
+		mem_room((void **)&w->from, &w->from_room, (size_t)mask->height * (size_t)mask->width, 1,
+			"masks", e))
+		return -1;
+	const int height = w->way == WARP_TO_VIEW ? c->height : c->lens.height,
+		  width = w->way == WARP_TO_VIEW ? c->width : c->lens.width;
+	rle_decode(mask, w->from);
+	for (size_t p = 0; p < (size_t)height * (size_t)width; p++)
+		w->to[p] = w->map[p] >= 0 && w->from[w->map[p]];
+	if (rle_encode(&made, w->to, height, width, e))
+		return -1;
+	rle_free(mask);
+	*mask = made;
+	return 0;
+}
+
+static int undistort(const struct camera *c, uint8_t **rgb, int *height, int *width, struct err *e)
+{
+	const size_t pixels = (size_t)c->height * (size_t)c->width;
+	int32_t *map = mem_alloc(pixels, sizeof *map, "photograph", e);
+	uint8_t *to = map ? mem_zalloc(pixels, 3, "photograph", e) : NULL;
+
+	if (to) {
+		lens_map_to_view(&c->lens, c, *height, *width, map);
+		for (size_t p = 0; p < pixels; p++)
+			if (map[p] >= 0)
+				memcpy(to + 3 * p, *rgb + 3 * (size_t)map[p], 3);
+	}
+	free(map);
+	free(*rgb);
+	*rgb = to;
+	*height = c->height;
+	*width = c->width;
+	return to ? 0 : -1;
+}
+
+/* A quarter turn clockwise. */
+static int turn(uint8_t **rgb, int *height, int *width, struct err *e)
+{
+	const size_t h = (size_t)*height, w = (size_t)*width;
+	uint8_t *to = mem_alloc(h * w, 3, "photograph", e);
+
+	for (size_t y = 0; to && y < h; y++)
+		for (size_t x = 0; x < w; x++)
+			memcpy(to + 3 * (x * h + h - 1 - y), *rgb + 3 * (y * w + x), 3);
+	free(*rgb);
+	*rgb = to;
+	*height = (int)w;
+	*width = (int)h;
+	return to ? 0 : -1;
+}
+
+int warping_read_photograph(const struct camera *c, const char *folder, int turns, uint8_t **rgb, int *height,
+	int *width, struct err *e)
+{
+	char *path = file_join(folder, c->image, "", e);
+	int bad = !path || image_read_rgb(path, rgb, height, width, e);
+
+	for (; !bad && turns; turns--)
+		bad = turn(rgb, height, width, e);
+	free(path);
+	return bad || (c->lens.model && undistort(c, rgb, height, width, e)) ? -1 : 0;
+}

@@ -1,0 +1,145 @@
+/* Pictures that have a colour for each thing: a mask for each colour that has a name. */
+#include "cmd/masks/painting_private.h"
+
+#include "base/mem.h"
+#include "base/name.h"
+#include "base/names.h"
+#include "base/path.h"
+#include "formats/images/png.h"
+#include "geom/views.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A warning where more of a picture than this is of a colour that is neither black nor white and has no name.
+ */
+static const double unnamed_share = 0.001;
+
+/* The view of a picture: its file name without the ending, and without that of the photograph, which COLMAP's
+ * names of masks have before it. */
+static char *view_of(const char *path, struct err *e)
+{
+	int length;
+	const char *last = path_last(path, &length);
+	char *stem = mem_strdup(last, e), *dot;
+
+	if (!stem)
+		return NULL;
+	stem[length] = 0;
+	dot = strrchr(stem, '.');
+	if (dot && dot > stem)
+		*dot = 0;
+	stem[view_stem(stem)] = 0;
+	char *view = name_to_view(stem, e);
+	free(stem);
+	return view;
+}
+
+struct picture_read {
+	const char *path;
+	char *view;
+	int height, width;
+	uint32_t *paint;
+	uint8_t *mask;
+};
+
+/* The mask of a colour, if any pixel has it: its record. */
+static int put_name(
+	struct picture_read *p, struct painting_name *name, struct warping *w, FILE *out, struct err *e)
+{
+	struct mask mask = {.view = p->view, .object = name->name, .score = NAN, .visible = NAN};
+	const size_t pixels = (size_t)p->height * (size_t)p->width;
+	size_t covered = 0;
+
+	for (size_t at = 0; at < pixels; at++)
+		covered += p->mask[at] = p->paint[at] == name->colour;
+	if (!covered)
+		return 0;
+	name->is_seen = 1;
+	if (rle_encode(&mask.rle, p->mask, p->height, p->width, e))
+		return -1;
+	return painting_put(&mask, w, p->path, out, e);
+}
+
+static int by_value(const void *a, const void *b)
+{
+	const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* Colours that cover much and have no name: a slip of the painter or of the file of names. */
+static int warn_unnamed(const struct picture_read *p, const struct painting_names *names,
+	const struct report *to, struct err *e)
+{
+	const size_t pixels = (size_t)p->height * (size_t)p->width;
+	uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
+
+	if (!sorted)
+		return -1;
+	for (size_t at = 0; at < pixels; at++)
+		sorted[at] = p->paint[at];
+	qsort(sorted, pixels, sizeof *sorted, by_value);
+	for (size_t first = 0, end; first < pixels; first = end) {
+		for (end = first; end < pixels && sorted[end] == sorted[first];)
+			end++;
+		const double share = (double)(end - first) / (double)pixels;
+		const uint32_t colour = sorted[first];
+		if (share <= unnamed_share || !colour || colour == 0xffffff || colour == PNG_PAINT_NONE ||
+			painting_names_find(names, colour))
+			continue;
+		if (colour & PNG_PAINT_NUMBER)
+			report_warn(to, "%s: %u, %.1f%% of it, has no name", p->path,
+				(unsigned)(colour ^ PNG_PAINT_NUMBER), 100 * share);
+		else
+			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path, (unsigned)colour,
+				100 * share);
+	}
+	free(sorted);
+	return 0;
+}
+
+int painting_put_colours(struct painting_names *names, const char *path, struct warping *w, FILE *out,
+	const struct report *to, struct err *e)
+{
+	struct picture_read p = {.path = path};
+	int bad = png_read_paint(path, &p.paint, &p.height, &p.width, e) || !(p.view = view_of(path, e)) ||
+		  !(p.mask = mem_alloc((size_t)p.height, (size_t)p.width, path, e)) ||
+		  warn_unnamed(&p, names, to, e);
+
+	for (size_t i = 0; i < names->n && !bad; i++)
+		bad = put_name(&p, &names->items[i], w, out, e);
+	free(p.view);
+	free(p.paint);
+	free(p.mask);
+	return bad ? -1 : 0;
+}
+
+int painting_two_pictures(const char *earlier, const char *later, const char *view, struct err *e)
+{
+	return err_set(e, ERR_FORMAT,
+		"%s: of view '%s', and so is %s, of another folder's picture: name pictures as their views are in the scene, or import them one by one",
+		later, view, earlier);
+}
+
+int painting_check_shared(const char *const *pictures, size_t count, struct err *e)
+{
+	char **views = mem_zalloc(count, sizeof *views, "views", e);
+	struct names names = {0};
+	size_t earlier;
+	int bad = !views;
+
+	for (size_t i = 0; i < count && !bad; i++)
+		if (painting_needs_names(pictures[i]))
+			bad = !(views[i] = view_of(pictures[i], e));
+	bad = bad || names_make(&names, views, sizeof *views, 0, count, e);
+	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
+	if (twice != NAMES_NONE)
+		bad = painting_two_pictures(pictures[earlier], pictures[twice], views[twice], e);
+	names_free(&names);
+	for (size_t i = 0; views && i < count; i++)
+		free(views[i]);
+	free(views);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,54 @@
+/* The masks of a request's sentences in views of the scene, and pictures of them: refer-render.
+ * formats/records/masks.md, formats/images/pictures.md. */
+#ifndef CMD_RENDER_DRAW_H
+#define CMD_RENDER_DRAW_H
+
+#include "base/err.h"
+#include "base/report.h"
+#include "cmd/masks/pictures.h"
+#include "cmd/render/request.h"
+#include "geom/camera.h"
+#include "mask/mask.h"
+
+#include <stddef.h>
+#include <stdio.h>
+
+struct draw_options {
+	int split;	   /* the views of which split; REQUEST_ALL */
+	const char *views; /* NAME,...: these views instead; NULL: of the split */
+	int size[2];	   /* of the masks: width and height; 0: the view's times scale (0: 1) */
+	double scale;
+	int is_amodal;	/* outlines of whole objects */
+	long long peak; /* the window of answer/peak.h where records have peaks; 0: they have none */
+	int is_each;	/* all sentences are said in the view that is drawn */
+	struct pictures pictures;
+};
+
+struct drawing {
+	const struct draw_options *options;
+	struct request *request;
+	size_t view_count;
+	struct camera *views; /* (view_count) at the size of the masks; names are the scene's */
+	/* While it goes on: */
+	const struct report *to;
+	FILE *out;
+	size_t first;	       /* of the views: the first that is rendered now */
+	struct splats *wholes; /* (answers) for outlines, else without Gaussians */
+	struct mask *shown;    /* (views that are rendered now, answers) unnamed, until they are written; each
+				  with its place */
+};
+
+/* Chooses the views of a request that has been read: d->views; there may be none. *d is zeroed before, and
+ * both others stay the caller's. Returns 0, or -1 with *e set (ERR_USAGE: an option is at fault); after
+ * either drawing_free is in order. */
+int draw_choose(
+	struct drawing *d, const struct draw_options *options, struct request *request, struct err *e);
+
+/* Asks the model and writes the masks to a file ("-": stdout), view after view in the order of the sentences,
+ * and the pictures. from: where sentences are said, as request_answer takes it. */
+int draw(struct drawing *d, const struct viewpoint *from, const char *path, const struct report *to,
+	struct err *e);
+
+void drawing_free(struct drawing *d);
+
+#endif

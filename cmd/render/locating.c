@@ -1,0 +1,101 @@
+#include "cmd/render/locating.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "cmd/run/object_extents.h"
+#include "formats/records/boxes.h"
+#include "geom/up.h"
+
+#include <stdlib.h>
+
+void locating_free(struct locating *r)
+{
+	for (size_t k = 0; r->answers && k < r->request.responses.answers; k++)
+		extent_free(&r->answers[k].extent);
+	if (r->objects)
+		object_extents_free(r->objects, r->request.model.lifted.objects);
+	free(r->answers);
+	request_free(&r->request);
+}
+
+static size_t parts_of(const struct responses *a, size_t answer)
+{
+	const size_t n = a->begin ? a->begin[answer + 1] - a->begin[answer] : 0;
+
+	return n > 1 ? n : 0;
+}
+
+/* The objects, where an answer is of several. */
+static int find_objects(struct locating *r, struct err *e)
+{
+	const struct request *q = &r->request;
+	int has_several = 0;
+
+	for (size_t k = 0; k < q->responses.answers; k++)
+		has_several |= parts_of(&q->responses, k) > 0;
+	if (!has_several)
+		return 0;
+	r->objects = object_extents(&q->model.lifted, &q->scene.splats, &q->scene.cameras, e);
+	return r->objects ? 0 : -1;
+}
+
+int locating_find(struct locating *r, double up[3], struct err *e)
+{
+	struct request *q = &r->request;
+
+	r->answers = mem_zalloc(q->responses.answers, sizeof *r->answers, "objects", e);
+	if (!r->answers)
+		return -1;
+	cameras_up(&q->scene.cameras, up);
+	return locate_all(r->answers, &q->responses, &q->scene.splats, up, e) || find_objects(r, e);
+}
+
+/* parts gets the objects of an answer that is of several; to be freed. */
+static int make_parts(const struct locating *r, size_t answer, struct box_record **parts, struct err *e)
+{
+	const struct responses *a = &r->request.responses;
+	const size_t n = parts_of(a, answer);
+
+	*parts = mem_zalloc(n, sizeof **parts, "objects", e);
+	for (size_t i = 0; i < n && *parts; i++) {
+		const size_t o = a->objects[a->begin[answer] + i];
+		(*parts)[i] = object_extents_record(
+			&r->objects[o], r->request.scene.offset, r->request.model.lifted.confidence[o]);
+		(*parts)[i].object = r->request.model.lifted.names[o];
+	}
+	return *parts ? 0 : -1;
+}
+
+static int put(const struct locating *r, size_t i, FILE *out, struct err *e)
+{
+	const struct request *q = &r->request;
+	const size_t answer = q->responses.answer[i];
+	const struct located *l = &r->answers[answer];
+	const struct extent *x = &l->extent;
+	const struct box_gaussians of = {x->n, x->ids};
+	struct box_record *parts, record;
+
+	if (make_parts(r, answer, &parts, e))
+		return -1;
+	record =
+		object_extents_record(x, q->scene.offset, q->responses.sure ? q->responses.sure[i] : l->sure);
+	record.ref = q->text.refs[q->refs[i]];
+	record.object = (char *)text_object(&q->text, q->refs[i]);
+	record.parts = parts;
+	record.part_count = parts_of(&q->responses, answer);
+	const int bad = boxes_put(out, &record, &of, e);
+	free(parts);
+	return bad;
+}
+
+int locating_write(const struct locating *r, const char *path, struct err *e)
+{
+	struct file_out out;
+	int bad = 0;
+
+	if (file_out_open(&out, path, e))
+		return -1;
+	for (size_t i = 0; i < r->request.count && !bad; i++)
+		bad = put(r, i, out.stream, e);
+	return file_out_end(&out, bad, e);
+}

@@ -1,0 +1,77 @@
+/* What refer-render and refer-locate have in common: a scene, encoded sentences about it, a model, and what
+ * the model answers to the sentences that were chosen. */
+#ifndef CMD_RENDER_REQUEST_H
+#define CMD_RENDER_REQUEST_H
+
+#include "answer/responses.h"
+#include "ask/choose.h"
+#include "ask/viewpoint.h"
+#include "base/err.h"
+#include "cmd/run/anymodel.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/text.h"
+
+#include <stddef.h>
+
+/* Beside SPLIT_TRAIN and SPLIT_TEST. */
+enum { REQUEST_ALL = 2 };
+
+struct request_options {
+	const char *scene, *text, *model; /* files */
+	int sentences;			  /* of which split; REQUEST_ALL */
+	const char *refs;		  /* NAME,...: these sentences instead; NULL: of the split */
+	int is_plain;			  /* trained models: responses as they are, not calibrated */
+	double least;			  /* lifted models: see answer/responses.h, */
+	const char *without;		  /* and PART,... as choose_without takes it; may be NULL */
+	int wants_parts;		  /* and answer/responses.h */
+	const char *viewpoint;		  /* VIEW or x,y,z; NULL: each sentence's own */
+};
+
+#define REQUEST_DEFAULTS                                                                                     \
+	{                                                                                                    \
+		.sentences = REQUEST_ALL, .least = RESPONSES_LEAST                                           \
+	}
+
+/* Rows of a tool's table of options (cli/cli.h), for a struct request_options o. */
+#define REQUEST_FILES(o)                                                                                     \
+	{"scene", 0, CLI_STRING, &(o).scene, "SCENE", "scene folder of gs-import (required)", 0, 0},         \
+		{"text", 0, CLI_STRING, &(o).text, "TEXT", "sentences encoded by text-encode (required)", 0, \
+			0},                                                                                  \
+	{                                                                                                    \
+		"model", 0, CLI_STRING, &(o).model, "MODEL",                                                 \
+			"model of refer-train or refer-lift (required)", 0, 0                                \
+	}
+#define REQUEST_SENTENCES(o)                                                                                 \
+	{"sentences", 0, CLI_CHOICE, &(o).sentences, "train|test|all", "which sentences (default all)", 0,   \
+		0},                                                                                          \
+	{                                                                                                    \
+		"refs", 0, CLI_STRING, &(o).refs, "REF,...", "these sentences instead of a split", 0, 0      \
+	}
+
+struct request {
+	const struct request_options *options;
+	struct scene scene;
+	struct text text;
+	struct anymodel model;
+	size_t count, *refs; /* (count) the sentences, as indices in text */
+	unsigned parts;	     /* of choose() */
+	struct responses responses;
+};
+
+/* Reads the files. *r is zeroed before; options stay the caller's. All return 0, or -1 with *e set, ERR_USAGE
+ * where an option is at fault; after any request_free is in order. */
+int request_read(struct request *r, const struct request_options *options, struct err *e);
+
+/* Which sentences: r->refs. There may be none. */
+int request_choose(struct request *r, struct err *e);
+
+/* --viewpoint, which must have been given. */
+int request_viewpoint(const struct request *r, struct viewpoint *from, struct err *e);
+
+/* The answers to the sentences, in place of earlier ones. from: where all are said; NULL: each at its own
+ * view, or the usual one. */
+int request_answer(struct request *r, const struct viewpoint *from, struct err *e);
+
+void request_free(struct request *r);
+
+#endif

@@ -1,0 +1,126 @@
+#include "cmd/report/report_reasons.h"
+
+#include "base/mem.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct choosing {
+	const struct report_run *run;
+	const struct text *text;
+	struct report_reason *reasons;
+	struct choose_sentence *sentences; /* (n) */
+	struct choice *choices;
+	float *probability; /* (n, objects) */
+	char *chosen;
+	int is_out_of_memory;
+};
+
+static struct viewpoint viewpoint_of(const struct choosing *c, size_t i)
+{
+	const struct cameras *all = &c->run->scene.cameras;
+	const char *view = c->text->views ? c->text->views[i] : "";
+
+	for (size_t v = 0; v < all->n && *view; v++)
+		if (!strcmp(all->views[v].name, view))
+			return (struct viewpoint){.kind = VIEWPOINT_CAMERA, .camera = &all->views[v]};
+	return (struct viewpoint){.kind = VIEWPOINT_USUAL};
+}
+
+static void watch(void *data, size_t i, const struct meaning *m)
+{
+	struct choosing *c = data;
+	const struct explained x = {m, m->sentence->parse, c->text->texts[i]};
+
+	explain_refusal(&x, c->reasons[i].refusal);
+	if (!(c->reasons[i].explained = explain_meaning(&x)))
+		c->is_out_of_memory = 1;
+}
+
+static int choose_all(struct choosing *c, struct err *e)
+{
+	const struct lifted *l = &c->run->lifted.lifted;
+	const struct text *t = c->text;
+	const struct parser parser = {.weights = &c->run->lifted.weights, .encoder = t->encoder.hex};
+	const struct choose_scene of = {l, &c->run->scene.splats, &c->run->scene.cameras, &parser, 1};
+	const struct choose_watch watching = {c, watch};
+
+	if (!(c->sentences = mem_alloc(t->n, sizeof *c->sentences, "sentences", e)) ||
+		!(c->choices = mem_alloc(t->n, sizeof *c->choices, "sentences", e)) ||
+		!(c->probability = mem_alloc(t->n, l->objects * sizeof *c->probability, "sentences", e)) ||
+		!(c->chosen = mem_alloc(t->n, l->objects, "sentences", e)))
+		return -1;
+	for (size_t i = 0; i < t->n; i++)
+		c->sentences[i] = (struct choose_sentence){.text = t->texts[i],
+			.pieces = t->pieces ? t->pieces[i] : NULL,
+			.vectors = t->words + (size_t)t->offsets[i] * (size_t)t->width,
+			.middle = text_middle(t, i),
+			.words = (size_t)(t->offsets[i + 1] - t->offsets[i]),
+			.from = viewpoint_of(c, i)};
+	return choose(
+		&of, c->sentences, t->n, CHOOSE_ALL, c->choices, c->probability, c->chosen, &watching, e);
+}
+
+/* The likeliest object that is chosen, or not chosen; objects where there is none. Takes it off the chosen.
+ */
+static size_t take_best(const float *probability, char *chosen, int is_chosen, size_t objects)
+{
+	size_t best = objects;
+
+	for (size_t o = 0; o < objects; o++)
+		if (chosen[o] == is_chosen && (best == objects || probability[o] > probability[best]))
+			best = o;
+	if (best < objects)
+		chosen[best] = 2;
+	return best;
+}
+
+static int take_answer(struct choosing *c, size_t i)
+{
+	const struct lifted *l = &c->run->lifted.lifted;
+	const float *probability = c->probability + i * l->objects;
+	char *chosen = c->chosen + i * l->objects;
+	struct report_reason *to = &c->reasons[i];
+	size_t o;
+	int fine = (to->answer = cJSON_CreateArray()) != NULL;
+
+	to->there = c->choices[i].there;
+	to->is_by_wording = c->choices[i].is_by_wording;
+	if (to->there < RESPONSES_LEAST)
+		memset(chosen, 0, l->objects);
+	while (fine && (o = take_best(probability, chosen, 1, l->objects)) < l->objects)
+		fine = cJSON_AddItemToArray(to->answer, cJSON_CreateString(l->names[o]));
+	if ((o = take_best(probability, chosen, 0, l->objects)) < l->objects) {
+		to->runner_up = l->names[o];
+		to->runner_up_chance = to->there * (double)probability[o];
+	}
+	return fine ? 0 : -1;
+}
+
+int report_reasons(
+	const struct report_run *r, const struct report_set *s, struct report_reason *reasons, struct err *e)
+{
+	struct choosing c = {.run = r, .text = &s->text, .reasons = reasons};
+	int bad;
+
+	if (s->text.width != r->lifted.lifted.width)
+		return err_set(e, ERR_FORMAT, "%s: is of sentences of another width than those of the run",
+			r->lifted_path);
+	bad = choose_all(&c, e);
+	for (size_t i = 0; i < s->text.n && !bad; i++)
+		if (take_answer(&c, i) || c.is_out_of_memory)
+			bad = err_set(e, ERR_SYSTEM, "explanation: out of memory");
+	free(c.sentences);
+	free(c.choices);
+	free(c.probability);
+	free(c.chosen);
+	return bad ? -1 : 0;
+}
+
+void report_reasons_free(struct report_reason *reasons, size_t n)
+{
+	for (size_t i = 0; reasons && i < n; i++) {
+		cJSON_Delete(reasons[i].answer);
+		cJSON_Delete(reasons[i].explained);
+	}
+}

@@ -1,0 +1,169 @@
+#include "cmd/run/anymodel.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/names.h"
+#include "formats/scene/lifted.h"
+#include "formats/arrays/safetensors.h"
+
+#include <stdlib.h>
+#include <stddef.h>
+#include <string.h>
+
+int anymodel_read(struct anymodel *m, const char *path, struct err *e)
+{
+	struct safetensors st;
+	int bad;
+
+	*m = (struct anymodel){0};
+	if (safetensors_open(&st, path, e))
+		return -1;
+	const char *format = safetensors_meta(&st, "format");
+	m->is_lifted = format && !strcmp(format, "refer.lifted");
+	m->is_selection = format && !strcmp(format, "refer.selection");
+	if (m->is_selection)
+		bad = selection_take(&m->selection, &st, e);
+	else if (m->is_lifted)
+		bad = lifted_take(&m->lifted, &m->origin, &st, e) || parser_weights_default(&m->weights, e);
+	else if (!format || strcmp(format, "refer.model"))
+		bad = err_set(e, ERR_FORMAT,
+			"%s: format is '%s', expected 'refer.model', 'refer.lifted' or 'refer.selection'",
+			st.path, format ? format : "");
+	else
+		bad = model_take(&m->trained, &st, e);
+	if (!bad && m->is_selection)
+		m->origin.scene = m->selection.scene;
+	else if (!bad && !m->is_lifted)
+		m->origin = m->trained.origin;
+	safetensors_close(&st);
+	return bad ? -1 : 0;
+}
+
+void anymodel_free(struct anymodel *m)
+{
+	model_free(&m->trained);
+	lifted_free(&m->lifted);
+	selection_free(&m->selection);
+	parser_weights_free(&m->weights);
+	*m = (struct anymodel){0};
+}
+
+int anymodel_check_scene(const struct anymodel *m, const char *model, const struct scene *scene,
+	const char *scene_path, struct err *e)
+{
+	const size_t gaussians = m->is_selection ? m->selection.gaussians
+				 : m->is_lifted	 ? m->lifted.gaussians
+						 : m->trained.scene_gaussians;
+
+	if (gaussians != scene->splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", model,
+			gaussians, scene_path, scene->splats.n);
+	return fingerprint_check("scene", model, &m->origin.scene, scene_path, &scene->fingerprint, e);
+}
+
+static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, struct err *e)
+{
+	const char *model = file_name(q->model_path), *text = file_name(q->text_path);
+	const int width = m->is_lifted ? m->lifted.width : m->trained.layout.text_width;
+
+	if (anymodel_check_scene(m, model, q->scene, q->scene_path, e))
+		return -1;
+	if (!m->is_selection && width != q->text->width)
+		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, %s has %d", model, width,
+			text, q->text->width);
+	if (fingerprint_check("encoder", text, &q->text->encoder, model, &m->origin.encoder, e))
+		return -1;
+	if (m->is_lifted && !q->text->pieces)
+		return err_set(e, ERR_FORMAT,
+			"%s: no word pieces, which %s asks for: encode its sentences again", text, model);
+	return m->is_lifted &&
+	       (parser_weights_need_middle(&m->weights, model, m->lifted.middle, &m->origin.encoder, e) ||
+		       parser_weights_need_middle(&m->weights, text, q->text->middle, &q->text->encoder, e));
+}
+
+/* Where each sentence is said: from (q->count). */
+static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from, struct err *e)
+{
+	const struct cameras *c = &q->scene->cameras;
+	struct names names;
+	int bad = 0;
+
+	if (names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e))
+		return -1;
+	for (size_t i = 0; i < q->count && !bad; i++) {
+		const char *view = q->text->views ? q->text->views[q->which[i]] : "";
+		from[i] = q->from ? *q->from : (struct viewpoint){.kind = VIEWPOINT_USUAL};
+		if (q->from || !*view)
+			continue;
+		const size_t v = names_find(&names, view);
+		if (v == NAMES_NONE)
+			bad = err_set(e, ERR_FORMAT,
+				"%s: sentence '%s' is of view '%s', which %s does not have",
+				file_name(q->text_path), q->text->refs[q->which[i]], view, q->scene_path);
+		else
+			from[i] = (struct viewpoint){.kind = VIEWPOINT_CAMERA, .camera = &c->views[v]};
+	}
+	names_free(&names);
+	return bad;
+}
+
+static int answer_lifted(const struct lifted *l, const struct anymodel_ask *q, struct responses_question *of,
+	struct responses *a, struct err *e)
+{
+	struct viewpoint *from = mem_alloc(q->count, sizeof *from, "sentences", e);
+
+	of->from = from;
+	const int bad =
+		!from || find_viewpoints(q, from, e) || responses_lifted(a, l, of, q->parts, q->least, e);
+	free(from);
+	return bad ? -1 : 0;
+}
+
+/* The sentences' rows of a selection, by ref. */
+static int answer_selected(
+	const struct selection *s, const struct anymodel_ask *q, struct responses *a, struct err *e)
+{
+	const struct responses_selection of = {s->gaussians, s->indptr, s->index};
+	size_t *row = mem_alloc(q->count, sizeof *row, "sentences", e);
+	struct names refs = {0};
+	int bad = !row || names_make(&refs, s->refs, sizeof *s->refs, 0, s->n, e);
+
+	for (size_t i = 0; i < q->count && !bad; i++) {
+		const char *ref = q->text->refs[q->which[i]];
+		row[i] = names_find(&refs, ref);
+		if (row[i] == NAMES_NONE)
+			bad = err_set(e, ERR_FORMAT, "%s: has nothing for ref '%s' of %s",
+				file_name(q->model_path), ref, file_name(q->text_path));
+	}
+	bad = bad || responses_selected(a, &of, row, q->count, e);
+	names_free(&refs);
+	free(row);
+	return bad ? -1 : 0;
+}
+
+int anymodel_answer(
+	const struct anymodel *m, const struct anymodel_ask *q, struct responses *a, struct err *e)
+{
+	const struct model *t = &m->trained;
+	const float *means = q->scene->splats.means;
+	const struct parser parser = {.weights = &m->weights, .encoder = q->text->encoder.hex};
+	struct responses_question of = {&q->scene->splats, &q->scene->cameras, q->text->offsets,
+		q->text->words, q->text->middle, q->text->texts, q->text->pieces, NULL, &parser, q->which,
+		q->count, q->text->refs, file_name(q->model_path), q->wants_parts};
+	struct rows rows = {0};
+
+	*a = (struct responses){0};
+	if (check_fit(m, q, e))
+		return -1;
+	if (m->is_selection)
+		return answer_selected(&m->selection, q, a, e);
+	if (m->is_lifted)
+		return answer_lifted(&m->lifted, q, &of, a, e);
+	if (model_rows(t, means, &rows, e))
+		return -1;
+	const struct respond_model respond = {
+		&t->layout, t->similarity, &rows, t->features, t->parameters, means, t->low, t->high};
+	int bad = responses_trained(a, &respond, &of, q->wants_calibration, e);
+	rows_free(&rows);
+	return bad;
+}

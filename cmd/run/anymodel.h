@@ -1,0 +1,52 @@
+/* A model of any kind, told by the file: trained (formats/scene/model.md), lifted (formats/scene/lifted.md),
+ * or what was selected for each sentence (formats/scene/selection.md). */
+#ifndef CMD_RUN_ANYMODEL_H
+#define CMD_RUN_ANYMODEL_H
+
+#include "answer/responses.h"
+#include "base/err.h"
+#include "formats/scene/model.h"
+#include "formats/encoders/parser_weights.h"
+#include "formats/scene/scene.h"
+#include "formats/scene/selection.h"
+#include "formats/scene/text.h"
+#include "lift/lifted_model.h"
+
+struct anymodel {
+	int is_lifted, is_selection; /* neither: trained */
+	struct model trained;
+	struct lifted lifted;
+	struct selection selection;
+	struct origin origin;	       /* the scene and the encoder that it was made with */
+	struct parser_weights weights; /* of the sentences' parser, for a lifted model: the default ones */
+};
+
+/* ERR_FORMAT where the file is malformed, or of another kind. */
+int anymodel_read(struct anymodel *m, const char *path, struct err *e);
+void anymodel_free(struct anymodel *m);
+
+/* ERR_FORMAT where it is not of this scene; the names are for messages. */
+int anymodel_check_scene(const struct anymodel *m, const char *model, const struct scene *scene,
+	const char *scene_path, struct err *e);
+
+struct anymodel_ask {
+	const struct scene *scene;
+	const struct text *text;
+	const char *model_path, *scene_path, *text_path; /* for messages */
+	const size_t *which;				 /* (count) the sentences */
+	size_t count;
+	int wants_calibration; /* of trained models, and the next are of lifted ones: see answer/responses.h
+				*/
+	unsigned parts;
+	double least;
+	int wants_parts;
+	const struct viewpoint
+		*from; /* where all sentences are said; NULL: each of the view that it names, if any */
+};
+
+/* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text does not fit or
+ * is of another encoder, or a selection has none of a sentence. */
+int anymodel_answer(
+	const struct anymodel *m, const struct anymodel_ask *q, struct responses *a, struct err *e);
+
+#endif

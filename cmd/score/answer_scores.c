@@ -1,0 +1,175 @@
+#include "cmd/score/answer_scores.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/number.h"
+#include "formats/records/jsonl.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const target_names[ANSWER_TARGETS] = {"all", "one", "several", "none"};
+static const char *const no_kind = "(unknown)";
+
+static int order_strings(const void *a, const void *b)
+{
+	return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+static int list_kinds(struct answer_scores *s, struct err *e)
+{
+	size_t n = 0;
+
+	s->kinds = mem_alloc(s->answers.n, sizeof *s->kinds, "kinds", e);
+	if (!s->kinds)
+		return -1;
+	for (size_t i = 0; i < s->answers.n; i++) {
+		const char *kind = s->answers.items[i].sentence->kind;
+		s->kinds[i] = kind ? kind : "";
+	}
+	qsort(s->kinds, s->answers.n, sizeof *s->kinds, order_strings);
+	for (size_t i = 0; i < s->answers.n; i++)
+		if (!n || strcmp(s->kinds[n - 1], s->kinds[i]))
+			s->kinds[n++] = s->kinds[i];
+	s->kind_count = n;
+	return 0;
+}
+
+int answer_scores_make(struct answer_scores *s, const struct sentences *sentences,
+	const struct score_masks *truth, const struct score_masks *predictions, struct err *e)
+{
+	*s = (struct answer_scores){
+		.sentences = mem_alloc(sentences->n, sizeof *s->sentences, "sentences", e)};
+	if (!s->sentences)
+		return -1;
+	for (size_t i = 0; i < sentences->n; i++) {
+		struct sentence *one = &sentences->items[i];
+		s->sentences[i] = (struct answer_sentence){.ref = one->ref,
+			.kind = one->kind,
+			.view = one->view,
+			.object_count = one->has_objects ? one->object_count : 1,
+			.objects = one->has_objects ? one->objects : &one->object,
+			.view_count = one->view_count,
+			.views = one->views};
+	}
+	int bad = answers_make(&s->answers, s->sentences, sentences->n, truth->set.items, truth->n,
+		predictions->set.items, predictions->n, e);
+	if (!bad && !s->answers.n)
+		bad = err_set(e, ERR_FORMAT,
+			"%s: shows nothing that a sentence means: there is nothing to score",
+			file_name(truth->path));
+	bad = bad || list_kinds(s, e);
+	if (bad)
+		answer_scores_free(s);
+	return bad ? -1 : 0;
+}
+
+void answer_scores_free(struct answer_scores *s)
+{
+	answers_free(&s->answers);
+	free(s->sentences);
+	free(s->kinds);
+	*s = (struct answer_scores){0};
+}
+
+static void text_row(FILE *out, const struct answer_score *s, const char *name)
+{
+	const double figures[] = {s->right, s->miou, s->oiou, s->refused, s->f1[0], s->f1[1]};
+
+	fprintf(out, "%5zu", s->pairs);
+	for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
+		if (s->pairs)
+			fprintf(out, " %7.2f %%", 100 * figures[i]);
+		else
+			fprintf(out, " %9s", "-");
+	fprintf(out, "  %s\n", name);
+}
+
+static void text_accuracy(FILE *out, const char *name, double x)
+{
+	if (isnan(x))
+		fprintf(out, "%-12s %6s\n", name, "-");
+	else
+		fprintf(out, "%-12s %6.2f %%\n", name, 100 * x);
+}
+
+static int put_text(FILE *out, const void *scores, struct err *e)
+{
+	const struct answer_scores *s = scores;
+	static const char *const head = "pairs %9s %9s %9s %9s %9s %9s  %s\n";
+	struct answer_score row;
+	double none, some;
+
+	(void)e;
+	answer_target_accuracy(&none, &some, &s->answers);
+	fprintf(out, head, "right", "mIoU", "oIoU", "refused", "F1@0.25", "F1@0.5", "means");
+	for (int i = 0; i < ANSWER_TARGETS; i++) {
+		answer_score_sum(&row, &s->answers, (enum answer_targets)i, NULL);
+		text_row(out, &row, target_names[i]);
+	}
+	fputc('\n', out);
+	fprintf(out, head, "right", "mIoU", "oIoU", "refused", "F1@0.25", "F1@0.5", "kind");
+	for (size_t i = 0; i < s->kind_count; i++) {
+		answer_score_sum(&row, &s->answers, ANSWER_ANY, s->kinds[i]);
+		text_row(out, &row, *s->kinds[i] ? s->kinds[i] : no_kind);
+	}
+	answer_score_sum(&row, &s->answers, ANSWER_ANY, NULL);
+	fputc('\n', out);
+	text_accuracy(out, "N-acc", none);
+	text_accuracy(out, "T-acc", some);
+	fprintf(out, "missing      %6zu\nout of sight %6zu\n", row.missing, s->answers.out_of_sight);
+	return 0;
+}
+
+static void json_number(FILE *out, const char *key, double x, int is_there)
+{
+	char text[NUMBER_SIZE];
+
+	fprintf(out, ",\"%s\":%s", key, is_there ? number_text(text, x) : "null");
+}
+
+static int json_row(
+	FILE *out, const char *before, const struct answer_score *s, const char *name, struct err *e)
+{
+	if (jsonl_put_string(out, before, name, e))
+		return -1;
+	fprintf(out, ":{\"pairs\":%zu", s->pairs);
+	json_number(out, "right", s->right, s->pairs > 0);
+	json_number(out, "miou", s->miou, s->pairs > 0);
+	json_number(out, "oiou", s->oiou, s->pairs > 0);
+	json_number(out, "refused", s->refused, s->pairs > 0);
+	json_number(out, "f1_25", s->f1[0], s->pairs > 0);
+	json_number(out, "f1_50", s->f1[1], s->pairs > 0);
+	fprintf(out, ",\"missing\":%zu}", s->missing);
+	return 0;
+}
+
+static int put_json(FILE *out, const void *scores, struct err *e)
+{
+	const struct answer_scores *s = scores;
+	struct answer_score row;
+	double none, some;
+
+	for (int i = 0; i < ANSWER_TARGETS; i++) {
+		answer_score_sum(&row, &s->answers, (enum answer_targets)i, NULL);
+		if (json_row(out, i ? "," : "{", &row, target_names[i], e))
+			return -1;
+	}
+	answer_target_accuracy(&none, &some, &s->answers);
+	json_number(out, "n_acc", none, !isnan(none));
+	json_number(out, "t_acc", some, !isnan(some));
+	fprintf(out, ",\"out_of_sight\":%zu,\"kinds\":", s->answers.out_of_sight);
+	for (size_t i = 0; i < s->kind_count; i++) {
+		answer_score_sum(&row, &s->answers, ANSWER_ANY, s->kinds[i]);
+		if (json_row(out, i ? "," : "{", &row, *s->kinds[i] ? s->kinds[i] : no_kind, e))
+			return -1;
+	}
+	fputs("}}\n", out);
+	return 0;
+}
+
+int answer_scores_write(const struct answer_scores *s, const char *path, int is_json, struct err *e)
+{
+	return file_out_put(path, is_json ? put_json : put_text, s, e);
+}

@@ -1,0 +1,149 @@
+#include "cmd/score/scoring.h"
+
+#include "base/file.h"
+#include "cmd/score/answer_scores.h"
+#include "cmd/score/box_scores.h"
+#include "cmd/score/score_tables.h"
+#include "score/score_choice.h"
+#include "score/score_join.h"
+
+int scoring_read(struct scoring *in, const struct scoring_files *p, int is_partial, struct err *e)
+{
+	in->files = p;
+	return score_masks_read(&in->truth, p->truth, e) ||
+			       score_masks_read(&in->predictions, p->predictions, e) ||
+			       (p->other && score_masks_read(&in->other, p->other, e)) ||
+			       (p->whole && score_masks_read(&in->whole, p->whole, e)) ||
+			       (p->sentences && sentences_read(&in->sentences, p->sentences, e)) ||
+			       score_masks_check(&in->truth, &in->truth, e) ||
+			       score_masks_check(&in->predictions, &in->truth, e) ||
+			       score_masks_check(&in->other, &in->truth, e) ||
+			       score_masks_check(&in->whole, &in->truth, e) ||
+			       (is_partial && score_keep_views(in->truth.set.items, &in->truth.n,
+						      in->predictions.set.items, in->predictions.n,
+						      in->other.set.items, in->other.n, e))
+		       ? -1
+		       : 0;
+}
+
+void scoring_free(struct scoring *in)
+{
+	score_masks_free(&in->predictions);
+	score_masks_free(&in->truth);
+	score_masks_free(&in->other);
+	score_masks_free(&in->whole);
+	sentences_free(&in->sentences);
+}
+
+static void tell_left_out(
+	const struct report *to, const struct score_pairs *pairs, const struct score_masks *predictions)
+{
+	report_note(to, 1, "%zu predictions of views without truth were left out", pairs->unlabelled);
+	if (pairs->unmatched)
+		report_warn(to,
+			"%s: %zu predictions of labelled views match no truth's ref or object and were left out",
+			file_name(predictions->path), pairs->unmatched);
+}
+
+/* Matched, measured and sorted pairs of the predictions and, with --compare, of the others beside them. The
+ * figures of all are summed before they are sorted, so that no object's name changes their last digit. */
+static int pair_up(const struct report *to, const struct scoring *in, int is_compared,
+	struct score_pairs *pairs, struct score_pairs *others, struct score *sum, struct score *other_sum,
+	struct err *e)
+{
+	const struct score_masks *t = &in->truth;
+
+	if (score_match(pairs, t->set.items, t->n, in->predictions.set.items, in->predictions.n, e) ||
+		(is_compared &&
+			(score_match(others, t->set.items, t->n, in->other.set.items, in->other.n, e) ||
+				score_join(pairs, others, e))) ||
+		score_measure_all(pairs, e) || score_measure_all(others, e) ||
+		score_choices(pairs, in->truth.set.items, in->truth.n, e) ||
+		score_choices(others, in->truth.set.items, in->truth.n, e))
+		return -1;
+	score_sum(sum, pairs->items, pairs->n);
+	score_sum(other_sum, others->items, others->n);
+	if (!sum->pairs)
+		return err_set(e, ERR_FORMAT, "%s: no mask with anything in it: there is nothing to score",
+			file_name(in->truth.path));
+	score_sort(pairs->items, pairs->n);
+	score_sort(others->items, others->n);
+	tell_left_out(to, pairs, &in->predictions);
+	if (is_compared)
+		tell_left_out(to, others, &in->other);
+	return 0;
+}
+
+/* The tables of --sentences and --whole. */
+static int by_group(const struct report *to, struct scores *s, const struct score_sample *sample,
+	const struct scoring *in, struct err *e)
+{
+	size_t no_sentence = 0, no_whole = 0;
+
+	if ((s->has_relations && score_relations(s, sample, &in->sentences, &no_sentence, e)) ||
+		(s->has_visibility && score_visibility(s, sample, &in->truth, &in->whole, &no_whole, e)))
+		return -1;
+	if (no_sentence)
+		report_warn(to, "%s: %zu pairs have no sentence there", file_name(in->files->sentences),
+			no_sentence);
+	if (no_whole)
+		report_warn(to, "%s: %zu masks of the truth have no whole there", file_name(in->whole.path),
+			no_whole);
+	return 0;
+}
+
+int scoring_pairs(const struct scoring *in, struct scores *s, const struct report *to, struct err *e)
+{
+	struct score_pairs pairs = {0}, others = {0};
+	struct score sum, other_sum;
+	int bad = pair_up(to, in, s->is_compared, &pairs, &others, &sum, &other_sum, e);
+	const struct score_sample sample = {
+		pairs.n, pairs.items, s->is_compared ? others.items : NULL, s->how};
+
+	bad = bad || score_row_make(&s->all, "", &sample, e) ||
+	      score_table_objects(&s->objects, &sample, e) || by_group(to, s, &sample, in, e);
+	if (!bad) {
+		s->all.score = sum;
+		s->all.other.score = other_sum;
+	}
+	score_pairs_free(&pairs);
+	score_pairs_free(&others);
+	return bad;
+}
+
+int scoring_boxes(const struct scoring_files *files, const char *path, int is_json, double *miou,
+	const struct report *to, struct err *e)
+{
+	struct box_scores s;
+
+	if (box_scores_read(&s, files->truth, files->predictions, e))
+		return -1;
+	if (s.unmatched)
+		report_warn(to, "%s: %zu boxes match no truth's ref or object and were left out",
+			file_name(files->predictions), s.unmatched);
+	*miou = s.all.aligned.iou;
+	int bad = box_scores_write(&s, path, is_json, e);
+	box_scores_free(&s);
+	return bad;
+}
+
+int scoring_answers(const struct scoring *in, const char *path, int is_json, double *right,
+	const struct report *to, struct err *e)
+{
+	struct answer_scores s;
+	struct answer_score all;
+
+	if (answer_scores_make(&s, &in->sentences, &in->truth, &in->predictions, e))
+		return -1;
+	if (s.answers.unknown)
+		report_warn(to, "%s: %zu sentences mean an object that %s does not have",
+			file_name(in->files->sentences), s.answers.unknown, file_name(in->files->truth));
+	if (s.answers.unmatched)
+		report_warn(to, "%s: %zu predictions have no sentence's ref and were left out",
+			file_name(in->files->predictions), s.answers.unmatched);
+	answer_score_sum(&all, &s.answers, ANSWER_ANY, NULL);
+	*right = all.right;
+	int bad = answer_scores_write(&s, path, is_json, e);
+	answer_scores_free(&s);
+	return bad;
+}

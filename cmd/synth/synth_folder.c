@@ -1,0 +1,275 @@
+#include "cmd/synth/synth_folder.h"
+
+#include "base/mem.h"
+#include "cmd/synth/synth_unseen.h"
+#include "formats/records/boxes.h"
+#include "formats/cameras/colmap.h"
+#include "formats/records/masks.h"
+#include "formats/splats/ply.h"
+#include "formats/images/png.h"
+#include "synth/outline.h"
+#include "synth/true_boxes.h"
+#include "synth/truth.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static int open_in(struct file_out *out, const char *dir, const char *name, struct err *e)
+{
+	char *path = file_join(dir, name, "", e);
+	int bad = !path || file_out_open(out, path, e) ? -1 : 0;
+
+	free(path);
+	return bad;
+}
+
+/* Makes the folder of the photographs and tells each camera the name of its own. */
+static int name_photographs(const struct synth_folder *f, struct err *e)
+{
+	char *images = file_join(f->dir, "images", "", e);
+	int bad = images ? 0 : -1;
+
+	if (!bad && file_make_dir(images, e))
+		bad = err_prefix(e, images);
+	for (size_t i = 0; i < f->scene->cameras.n && !bad; i++) {
+		struct camera *c = &f->scene->cameras.views[i];
+		c->image = file_join(images, c->name, ".png", e);
+		bad = c->image ? 0 : -1;
+	}
+	free(images);
+	return bad;
+}
+
+static int write_model(const struct synth_folder *f, struct err *e)
+{
+	static const double offset[3] = {0};
+	char *ply = file_join(f->dir, "point_cloud.ply", "", e);
+	char *sparse = file_join(f->dir, "sparse/0", "", e);
+	int bad = -1;
+
+	if (ply && sparse && !ply_write(&f->scene->splats, offset, ply, e))
+		bad = colmap_write_text(&f->scene->cameras, sparse, e);
+	free(ply);
+	free(sparse);
+	return bad;
+}
+
+/* Texts, names and refs are made of letters, digits, commas, hyphens and spaces: JSON needs no escapes for
+ * them. */
+static int write_sentences(const struct synth_folder *f, struct err *e)
+{
+	int n = f->scene->object_count * SYNTH_SENTENCES;
+	struct file_out out = {0};
+
+	if (open_in(&out, f->dir, "sentences.jsonl", e))
+		return -1;
+	for (int i = 0; i < n; i++) {
+		const struct synth_sentence *s = &f->sentences[i];
+		fprintf(out.stream, "{\"ref\":\"%s\",\"object\":\"%s\",\"text\":\"%s\",\"split\":\"%s\"}\n",
+			s->ref, f->scene->objects[s->object].name, s->text,
+			s->split == SPLIT_TEST ? "test" : "train");
+	}
+	return file_out_commit(&out, e);
+}
+
+static int write_boxes(const struct synth_folder *f, struct err *e)
+{
+	struct file_out out = {0};
+	int bad = open_in(&out, f->dir, "boxes.jsonl", e);
+
+	if (bad)
+		return -1;
+	for (int i = 0; i < f->scene->object_count && !bad; i++) {
+		struct synth_object *o = &f->scene->objects[i];
+		struct box_record r = {.object = o->name, .score = NAN};
+		synth_object_boxes(o, &r.aligned, &r.turned);
+		bad = boxes_put(out.stream, &r, NULL, e);
+	}
+	if (!bad)
+		return file_out_commit(&out, e);
+	file_out_abort(&out);
+	return -1;
+}
+
+/* One line, as --test-views takes it. */
+static int write_test_views(const struct synth_folder *f, struct err *e)
+{
+	struct file_out out = {0};
+	const char *comma = "";
+
+	if (open_in(&out, f->dir, "test-views", e))
+		return -1;
+	for (size_t i = 0; i < f->scene->cameras.n; i++) {
+		const struct camera *c = &f->scene->cameras.views[i];
+		if (c->split == SPLIT_TEST) {
+			fprintf(out.stream, "%s%s", comma, c->name);
+			comma = ",";
+		}
+	}
+	fputc('\n', out.stream);
+	return file_out_commit(&out, e);
+}
+
+int synth_folder_begin(struct synth_folder *f, struct err *e)
+{
+	return name_photographs(f, e) || write_model(f, e) || write_sentences(f, e) ||
+			       synth_unseen_files(
+				       f->dir, f->unseen, f->scene->objects, &f->scene->cameras, e) ||
+			       write_test_views(f, e) || write_boxes(f, e) ||
+			       open_in(&f->candidates, f->dir, "candidates.jsonl", e) ||
+			       open_in(&f->test_candidates, f->dir, "candidates.test.jsonl", e) ||
+			       open_in(&f->truth, f->dir, "truth.jsonl", e) ||
+			       open_in(&f->whole, f->dir, "whole.jsonl", e)
+		       ? -1
+		       : 0;
+}
+
+static int write_photograph(
+	const struct synth_folder *f, const struct camera *c, const struct render_view *view, struct err *e)
+{
+	static const float background[3] = {0.6f, 0.62f, 0.65f};
+	size_t values = 3 * (size_t)c->width * (size_t)c->height;
+	float *rgb = mem_alloc(values, sizeof *rgb, "photograph", e);
+	uint8_t *bytes = mem_alloc(values, 1, "photograph", e);
+	int bad = !rgb || !bytes || render_colors(view, &f->scene->splats, c, background, rgb, e) ? -1 : 0;
+
+	if (!bad) {
+		for (size_t i = 0; i < values; i++)
+			bytes[i] = (uint8_t)lrintf(255 * rgb[i]);
+		bad = png_write(c->image, bytes, c->height, c->width, 3, e);
+	}
+	free(rgb);
+	free(bytes);
+	return bad;
+}
+
+static int put_masks(
+	const struct synth_folder *f, FILE *to, const struct camera *c, const uint8_t *masks, struct err *e)
+{
+	size_t pixels = (size_t)c->width * (size_t)c->height;
+	int bad = 0;
+
+	for (int i = 0; i < f->scene->object_count && !bad; i++) {
+		struct mask m = {
+			.view = c->name, .object = f->scene->objects[i].name, .score = NAN, .visible = NAN};
+		bad = rle_encode(&m.rle, masks + (size_t)i * pixels, c->height, c->width, e) ||
+		      masks_put(to, &m, e);
+		rle_free(&m.rle);
+	}
+	return bad ? -1 : 0;
+}
+
+/* What the detector finds: for the training sentences in a training view, for all in a test view. */
+static int put_candidates(
+	struct synth_folder *f, int number, const struct camera *c, const uint8_t *masks, struct err *e)
+{
+	struct masks found = {0};
+	const int is_test = c->split == SPLIT_TEST;
+	FILE *to = is_test ? f->test_candidates.stream : f->candidates.stream;
+	int bad = synth_detect(&found, f->detector, number, c->name,
+		is_test ? SYNTH_SENTENCES : SYNTH_TRAIN_SENTENCES, masks, c->height, c->width, e);
+
+	for (size_t i = 0; i < found.n && !bad; i++)
+		bad = masks_put(to, &found.items[i], e);
+	masks_free(&found);
+	return bad;
+}
+
+static void count_visible(
+	struct synth_folder *f, const struct camera *c, const uint8_t *visible, const uint8_t *whole)
+{
+	size_t pixels = (size_t)c->width * (size_t)c->height;
+
+	for (int i = 0; i < f->scene->object_count; i++)
+		synth_statistics_see(f->statistics, c->split,
+			synth_outline_area(visible + (size_t)i * pixels, pixels),
+			synth_outline_area(whole + (size_t)i * pixels, pixels));
+}
+
+int synth_folder_view(struct synth_folder *f, int number, struct err *e)
+{
+	const struct camera *c = &f->scene->cameras.views[number];
+	size_t pixels = (size_t)c->width * (size_t)c->height, n = (size_t)f->scene->object_count;
+	uint8_t *visible = mem_alloc(n, pixels, "truth", e), *whole = mem_alloc(n, pixels, "truth", e);
+	struct render_view *view = visible && whole ? render_prepare(&f->scene->splats, c, e) : NULL;
+	int bad = !view || write_photograph(f, c, view, e) ||
+		  synth_truth_visible(f->scene, view, pixels, visible, e) ||
+		  synth_truth_whole(f->scene, c, whole, e) || put_masks(f, f->truth.stream, c, visible, e) ||
+		  put_masks(f, f->whole.stream, c, whole, e) || put_candidates(f, number, c, visible, e);
+
+	if (!bad)
+		count_visible(f, c, visible, whole);
+	if (view)
+		render_free(view);
+	free(visible);
+	free(whole);
+	return bad ? -1 : 0;
+}
+
+static void put_quantiles(FILE *to, const char *name, const double *quantiles)
+{
+	fprintf(to, ",\"%s\":[", name);
+	for (int i = 0; i < SYNTH_QUANTILES; i++)
+		fprintf(to, "%s%.4g", i ? "," : "", quantiles[i]);
+	fputc(']', to);
+}
+
+static void put_visibility(FILE *to, const char *name, const struct synth_visibility *v)
+{
+	fprintf(to, "\"%s\":{\"pairs\":%ld,\"outside\":%ld", name, v->pairs, v->outside);
+	for (int i = 0; i < SYNTH_BANDS; i++)
+		fprintf(to, ",\"%s\":%.4f", synth_statistics_band(i),
+			v->pairs ? (double)v->bands[i] / (double)v->pairs : 0);
+	fputc('}', to);
+}
+
+static int write_statistics(const struct synth_folder *f, struct err *e)
+{
+	const struct synth_statistics *s = f->statistics;
+	struct file_out out = {0};
+	const char *comma = "";
+
+	if (open_in(&out, f->dir, "statistics.json", e))
+		return -1;
+	int sentences = s->sentences[SPLIT_TRAIN] + s->sentences[SPLIT_TEST];
+	fprintf(out.stream,
+		"{\"scene\":\"%s\",\"objects\":%d,\"alike\":%d,\"alike_groups\":%d,\"stacked\":%d,"
+		"\"sentences\":{\"train\":%d,\"test\":%d},\"words\":{\"train\":%.2f,\"test\":%.2f},"
+		"\"relations\":{",
+		f->scene->preset->name, s->objects, s->alike, s->alike_groups, s->stacked,
+		s->sentences[SPLIT_TRAIN], s->sentences[SPLIT_TEST], s->words[SPLIT_TRAIN],
+		s->words[SPLIT_TEST]);
+	for (int r = 0; r < SYNTH_RELATIONS; r++) {
+		fprintf(out.stream, "%s\"%s\":%.4f", comma, synth_statistics_relation((enum synth_relation)r),
+			(double)s->relations[r] / sentences);
+		comma = ",";
+	}
+	fprintf(out.stream, "},\"views\":{\"train\":%d,\"test\":%d},\"gaussians\":%zu", s->views[SPLIT_TRAIN],
+		s->views[SPLIT_TEST], s->gaussians);
+	put_quantiles(out.stream, "opacity", s->opacity);
+	put_quantiles(out.stream, "aspect", s->aspect);
+	put_quantiles(out.stream, "size", s->size);
+	fputs(",\"visibility\":{", out.stream);
+	put_visibility(out.stream, "train", &s->visibility[SPLIT_TRAIN]);
+	fputc(',', out.stream);
+	put_visibility(out.stream, "test", &s->visibility[SPLIT_TEST]);
+	fputs("}}\n", out.stream);
+	return file_out_commit(&out, e);
+}
+
+int synth_folder_end(struct synth_folder *f, struct err *e)
+{
+	return file_out_commit(&f->candidates, e) || file_out_commit(&f->test_candidates, e) ||
+			       file_out_commit(&f->truth, e) || file_out_commit(&f->whole, e) ||
+			       write_statistics(f, e)
+		       ? -1
+		       : 0;
+}
+
+void synth_folder_abort(struct synth_folder *f)
+{
+	file_out_abort(&f->candidates);
+	file_out_abort(&f->test_candidates);
+	file_out_abort(&f->truth);
+	file_out_abort(&f->whole);
+}

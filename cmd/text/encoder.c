@@ -1,0 +1,124 @@
+#include "cmd/text/encoder.h"
+
+#include "base/file.h"
+#include "cmd/text/cache_folder.h"
+#include "formats/encoders/merges.h"
+#include "formats/encoders/vocab.h"
+
+#include <stdlib.h>
+
+char *encoder_default(struct err *e)
+{
+	char *dir = cache_folder("encoder", e);
+
+	if (!dir || file_is_dir(dir))
+		return dir;
+	err_set(e, ERR_SYSTEM,
+		"%s: no encoder there: 'refersplat-encoder' fetches one, in a checkout 'make encoder'", dir);
+	free(dir);
+	return NULL;
+}
+
+/* Ids index the embedding, so none may lie past it. */
+static int check_vocab(const struct vocab *v, int words, const char *dir, struct err *e)
+{
+	for (size_t i = 0; i < v->n; i++)
+		if (v->entries[i].id >= words)
+			return err_set(e, ERR_FORMAT, "%s: token '%s' has id %d, but vocab_size is %d", dir,
+				v->entries[i].token, v->entries[i].id, words);
+	return 0;
+}
+
+static int read_bert(struct encoder *x, const char *dir, struct err *e)
+{
+	if (vocab_read(&x->vocab, dir, e) || bert_model_read(&x->bert, dir, e) ||
+		check_vocab(&x->vocab, x->bert.words, dir, e))
+		return -1;
+	x->fingerprint = fingerprint_encoder(&x->bert, &x->vocab, x->is_static);
+	return 0;
+}
+
+static int read_clip(struct encoder *x, const char *dir, struct err *e)
+{
+	if (clip_model_read(&x->clip, dir, e) || merges_read(&x->bpe, dir, x->clip.words, e) ||
+		check_vocab(&x->bpe.vocab, x->clip.words, dir, e))
+		return -1;
+	x->fingerprint = fingerprint_clip(&x->clip, &x->bpe, x->is_static);
+	return 0;
+}
+
+int encoder_read(struct encoder *x, const char *dir, int is_static, struct err *e)
+{
+	x->is_static = is_static;
+	x->is_clip = clip_model_is(dir);
+	return x->is_clip ? read_clip(x, dir, e) : read_bert(x, dir, e);
+}
+
+void encoder_free(struct encoder *x)
+{
+	bert_free(&x->bert);
+	vocab_free(&x->vocab);
+	clip_free(&x->clip);
+	bpe_free(&x->bpe);
+}
+
+int encoder_width(const struct encoder *x)
+{
+	if (!x->is_clip)
+		return x->bert.body.width;
+	return x->is_static ? x->clip.body.width : clip_width(&x->clip);
+}
+
+size_t encoder_positions(const struct encoder *x)
+{
+	return (size_t)(x->is_clip ? x->clip.positions : x->bert.positions);
+}
+
+int32_t encoder_first(const struct encoder *x)
+{
+	return x->is_clip ? x->bpe.start : x->vocab.special[WORDPIECE_CLS];
+}
+
+int32_t encoder_last(const struct encoder *x)
+{
+	return x->is_clip ? x->bpe.end : x->vocab.special[WORDPIECE_SEP];
+}
+
+int encoder_pools(const struct encoder *x)
+{
+	return x->is_clip && !x->is_static;
+}
+
+int encoder_cut(const struct encoder *x, const char *text, struct wordpieces *out, struct err *e)
+{
+	return x->is_clip ? bpe_encode(&x->bpe, text, out, e) : wordpiece_encode(&x->vocab, text, out, e);
+}
+
+char *encoder_print(const struct encoder *x, const int32_t *ids, size_t n, struct err *e)
+{
+	return x->is_clip ? merges_print(&x->bpe, ids, n, e) : vocab_print(&x->vocab, ids, n, e);
+}
+
+int encoder_has_middle(const struct encoder *x)
+{
+	return !x->is_clip && !x->is_static;
+}
+
+int encoder_scratch(const struct encoder *x, size_t rows, size_t longest, size_t *floats)
+{
+	return x->is_clip ? clip_scratch(&x->clip, rows, longest, floats)
+			  : bert_scratch(&x->bert, rows, longest, floats);
+}
+
+void encoder_forward(const struct encoder *x, const int32_t *ids, const size_t *starts, size_t n, float *out,
+	float *middle, float *scratch)
+{
+	if (x->is_static && x->is_clip)
+		clip_static(&x->clip, ids + starts[0], starts[n] - starts[0], out);
+	else if (x->is_static)
+		bert_static(&x->bert, ids + starts[0], starts[n] - starts[0], out);
+	else if (x->is_clip)
+		clip_forward(&x->clip, ids, starts, n, out, scratch);
+	else
+		bert_forward(&x->bert, ids, starts, n, out, middle, scratch);
+}

@@ -1,0 +1,251 @@
+#include "cmd/train/training.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/names.h"
+#include "cmd/train/training_masks.h"
+#include "formats/scene/lifted.h"
+#include "formats/scene/model.h"
+#include "mask/bits.h"
+
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+/* An object is known by the first training sentence that names it. */
+static int number_objects(struct training *t, struct err *e)
+{
+	struct names names;
+
+	if (names_make(&names, t->object_names, sizeof *t->object_names, 0, t->sentences, e))
+		return -1;
+	for (size_t k = 0; k < t->sentences; k++)
+		t->objects[k] = (int)names_find(&names, t->object_names[k]);
+	names_free(&names);
+	return 0;
+}
+
+/* The training sentences of the text, packed. */
+static int pack_sentences(struct training *t, struct err *e)
+{
+	const struct text *text = &t->text;
+	const size_t width = (size_t)text->width;
+
+	t->offsets = mem_zalloc(text->n + 1, sizeof *t->offsets, "sentences", e);
+	t->words = mem_alloc((size_t)text->offsets[text->n], width * sizeof(float), "words", e);
+	t->objects = mem_alloc(text->n, sizeof *t->objects, "sentences", e);
+	t->refs = mem_alloc(text->n, sizeof *t->refs, "sentences", e);
+	t->object_names = mem_alloc(text->n, sizeof *t->object_names, "sentences", e);
+	if (!t->offsets || !t->words || !t->objects || !t->refs || !t->object_names)
+		return -1;
+	for (size_t r = 0; r < text->n; r++) {
+		const int64_t from = text->offsets[r], count = text->offsets[r + 1] - from;
+		if (text->splits[r] != SPLIT_TRAIN)
+			continue;
+		if (!count) {
+			t->left_out++;
+			continue;
+		}
+		const size_t k = t->sentences++;
+		t->refs[k] = text->refs[r];
+		t->object_names[k] = text->objects[r];
+		memcpy(t->words + (size_t)t->offsets[k] * width, text->words + (size_t)from * width,
+			sizeof(float) * (size_t)count * width);
+		t->offsets[k + 1] = t->offsets[k] + count;
+	}
+	return number_objects(t, e);
+}
+
+static uint32_t add_checksum(uint32_t sum, const void *data, size_t bytes)
+{
+	return (uint32_t)crc32_z(sum, data, bytes);
+}
+
+static void make_checksum(struct training *t)
+{
+	uint32_t sum = 0;
+
+	sum = add_checksum(sum, t->scene.splats.means, sizeof(float) * 3 * t->scene.splats.n);
+	sum = add_checksum(
+		sum, t->words, sizeof(float) * (size_t)t->offsets[t->sentences] * (size_t)t->text.width);
+	sum = add_checksum(sum, t->offsets, sizeof *t->offsets * (t->sentences + 1));
+	sum = add_checksum(sum, t->objects, sizeof *t->objects * t->sentences);
+	for (size_t v = 0; v < t->views.n; v++) {
+		const struct train_view *view = &t->views.views[v];
+		const struct training_view *read = &t->views.read[v];
+		sum = (uint32_t)crc32_combine(sum, read->sum, (z_off_t)read->bytes);
+		sum = add_checksum(sum, view->sentences, sizeof(int) * (size_t)view->count);
+		for (int i = 0; i < view->count; i++)
+			sum = add_checksum(sum, view->masks[i], bits_bytes(view->weights.pixels));
+	}
+	for (size_t o = 0; o < t->lifted.objects; o++) /* all of them with the 0 that ends them */
+		sum = add_checksum(sum, t->lifted.names[o], strlen(t->lifted.names[o]) + 1);
+	if (t->lifted.objects) {
+		const size_t shares = (size_t)t->lifted.indptr[t->lifted.objects];
+		sum = add_checksum(sum, t->lifted.indptr, sizeof(int64_t) * (t->lifted.objects + 1));
+		sum = add_checksum(sum, t->lifted.index, sizeof(int32_t) * shares);
+		sum = add_checksum(sum, t->lifted.share, sizeof(float) * shares);
+	}
+	t->checksum = sum;
+}
+
+/* What a warm start is fitted to. */
+static int read_lifted(struct training *t, const struct training_files *from, struct err *e)
+{
+	struct origin origin;
+	struct names names;
+	size_t r;
+
+	if (!from->lifted)
+		return 0;
+	if (lifted_read(&t->lifted, &origin, from->lifted, e))
+		return -1;
+	if (t->lifted.gaussians != t->scene.splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu",
+			file_name(from->lifted), t->lifted.gaussians, from->scene, t->scene.splats.n);
+	if (fingerprint_check(
+		    "scene", file_name(from->lifted), &origin.scene, from->scene, &t->scene.fingerprint, e) ||
+		names_make(&names, t->lifted.names, sizeof *t->lifted.names, 0, t->lifted.objects, e))
+		return -1;
+	for (r = 0; r < t->sentences; r++)
+		if (names_find(&names, t->object_names[r]) != NAMES_NONE)
+			break;
+	names_free(&names);
+	return r < t->sentences ? 0
+				: err_set(e, ERR_FORMAT, "%s: has no object of a training sentence of %s",
+					  file_name(from->lifted), file_name(from->text));
+}
+
+static int hold_out(
+	struct training *t, const struct training_files *from, double share, uint64_t seed, struct err *e)
+{
+	if (share > 0 &&
+		held_out_choose(t->views.views, t->views.n, t->objects, t->sentences, share, seed, e))
+		return e->code == ERR_FORMAT ? err_prefix(e, file_name(from->masks)) : -1;
+	for (size_t v = 0; v < t->views.n; v++) {
+		t->pairs += (size_t)t->views.views[v].count;
+		t->held += (size_t)t->views.views[v].held;
+	}
+	return 0;
+}
+
+static int read_all(struct training *t, const struct training_files *from, double share, uint64_t seed,
+	const struct report *to, struct err *e)
+{
+	size_t pairs = 0;
+
+	if (scene_read(&t->scene, from->scene, e))
+		return -1;
+	splats_keep_means(&t->scene.splats);
+	if (text_read(&t->text, from->text, e) || pack_sentences(t, e))
+		return -1;
+	if (!t->sentences)
+		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(from->text));
+	if (training_read_masks(t, from->weights, from->masks, to, e) ||
+		supervision_link(
+			&t->masks, t->refs, t->object_names, t->sentences, t->views.views, t->views.n, e))
+		return -1;
+	for (size_t v = 0; v < t->views.n; v++)
+		pairs += (size_t)t->views.views[v].count;
+	if (!pairs)
+		return err_set(e, ERR_FORMAT,
+			"%s: no mask of a training view is of a training sentence of %s",
+			file_name(from->masks), file_name(from->text));
+	if (read_lifted(t, from, e) || hold_out(t, from, share, seed, e))
+		return -1;
+	make_checksum(t);
+	return 0;
+}
+
+int training_read(struct training *t, const struct training_files *from, double share, uint64_t seed,
+	const struct report *to, struct err *e)
+{
+	*t = (struct training){0};
+	int bad = read_all(t, from, share, seed, to, e);
+	if (bad)
+		training_free(t);
+	return bad;
+}
+
+struct trainer_source training_source(struct training *t, const struct row_views_room *room)
+{
+	return (struct trainer_source){.means = t->scene.splats.means,
+		.cameras = t->views.cameras,
+		.scene_gaussians = t->scene.splats.n,
+		.text_width = t->text.width,
+		.sentences = t->sentences,
+		.offsets = t->offsets,
+		.words = t->words,
+		.objects = t->objects,
+		.views = training_views_source(&t->views),
+		.pixels = t->views.pixels,
+		.weight = t->views.weight,
+		.room = *room,
+		.lifted = t->lifted.objects ? &t->lifted : NULL,
+		.object_names = t->object_names};
+}
+
+/* The scene and the encoder that it is of. */
+static struct origin origin_of(const struct training *t)
+{
+	return (struct origin){t->scene.fingerprint, t->text.encoder};
+}
+
+struct checkpoint_of training_identity(
+	const struct training *t, const struct training_files *from, const struct trainer_options *o)
+{
+	struct checkpoint_of of = {
+		.origin = origin_of(t), .scene_path = from->scene, .text_path = file_name(from->text)};
+
+	checkpoint_identity(of.identity, o, t->checksum);
+	return of;
+}
+
+int training_write(const struct training *t, const struct trainer *learned, enum refer_similarity similarity,
+	enum precision precision, const char *path, const char *options, long long seed, struct err *e)
+{
+	long iteration;
+	const float *values = trainer_result(learned, &iteration);
+	const struct model m = {.layout = learned->layout,
+		.similarity = similarity,
+		.precision = precision,
+		.origin = origin_of(t),
+		.scene_gaussians = t->scene.splats.n,
+		.n = learned->rows.n,
+		.has_leaves = learned->octree.n > 0,
+		.learning = learned->learning,
+		.ids = learned->ids,
+		.octree = learned->octree,
+		.features = trainer_features(learned, values, e),
+		.parameters = (float *)values, /* a model that is read owns them */
+		.low = {learned->low[0], learned->low[1], learned->low[2]},
+		.high = {learned->high[0], learned->high[1], learned->high[2]}};
+	char text[CHECKPOINT_IDENTITY + 64];
+
+	if (!m.features)
+		return -1;
+	snprintf(text, sizeof text, "--iterations %ld --precision %s %s", iteration,
+		precision_name(precision), options);
+	int bad = model_write(&m, path, text, seed, e);
+	free(m.features);
+	return bad;
+}
+
+void training_free(struct training *t)
+{
+	if (t->views.views)
+		supervision_unlink(t->views.views, t->views.n);
+	training_views_free(&t->views);
+	supervision_free(&t->masks);
+	lifted_free(&t->lifted);
+	scene_free(&t->scene);
+	text_free(&t->text);
+	free(t->offsets);
+	free(t->words);
+	free(t->objects);
+	free(t->refs);
+	free(t->object_names);
+	*t = (struct training){0};
+}

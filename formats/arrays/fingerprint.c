@@ -1,0 +1,115 @@
+#include "formats/arrays/fingerprint.h"
+
+#include "base/hash.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static struct fingerprint fingerprint_of(uint64_t hash)
+{
+	struct fingerprint f;
+
+	snprintf(f.hex, sizeof f.hex, "%016" PRIx64, hash);
+	return f;
+}
+
+struct fingerprint fingerprint_scene(const float *means, size_t n)
+{
+	return fingerprint_of(hash64(means, 3 * n * sizeof *means, 0));
+}
+
+struct fingerprint fingerprint_camera(const struct camera *c)
+{
+	double numbers[6 + 16] = {c->width, c->height, c->fx, c->fy, c->cx, c->cy};
+
+	memcpy(numbers + 6, c->world_to_camera, sizeof c->world_to_camera);
+	for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+		numbers[i] += 0.0; /* -0 becomes 0 */
+	return fingerprint_of(hash64(numbers, sizeof numbers, 0));
+}
+
+/* A sum, as the order in which a file lists its tokens means nothing. */
+static uint64_t hash_vocabulary(const struct vocab *v)
+{
+	uint64_t sum = 0;
+
+	for (size_t i = 0; i < v->n; i++)
+		sum += hash64(v->entries[i].token, strlen(v->entries[i].token), (uint64_t)v->entries[i].id);
+	return sum;
+}
+
+struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab *v, int is_static)
+{
+	const struct transformer *t = &b->body;
+	const int64_t sizes[] = {b->words, b->positions, b->types, t->width, t->heads, t->inner,
+		t->layer_count, (int64_t)t->activation, is_static};
+	const uint64_t vocabulary = hash_vocabulary(v);
+
+	uint64_t hash = hash64(sizes, sizeof sizes, 0);
+	hash = hash64(&t->eps, sizeof t->eps, hash);
+	hash = bert_hash(b, hash);
+	return fingerprint_of(hash64(&vocabulary, sizeof vocabulary, hash));
+}
+
+/* The same of merges, wherever the table has them. */
+static uint64_t hash_merges(const struct bpe *b)
+{
+	uint64_t sum = 0;
+
+	for (size_t i = 0; i < b->slots; i++)
+		if (b->table[i].left >= 0) {
+			const struct bpe_merge *m = &b->table[i];
+			const int64_t merge[] = {m->left, m->right, m->id, m->rank};
+			sum += hash64(merge, sizeof merge, 0);
+		}
+	return sum;
+}
+
+struct fingerprint fingerprint_clip(const struct clip *c, const struct bpe *b, int is_static)
+{
+	const struct transformer *t = &c->body;
+	const int64_t sizes[] = {c->words, c->positions, c->projected, t->width, t->heads, t->inner,
+		t->layer_count, (int64_t)t->activation, is_static};
+	const uint64_t vocabulary[] = {hash_vocabulary(&b->vocab), hash_merges(b)};
+
+	uint64_t hash = hash64(sizes, sizeof sizes, 0);
+	hash = hash64(&t->eps, sizeof t->eps, hash);
+	hash = clip_hash(c, hash);
+	return fingerprint_of(hash64(vocabulary, sizeof vocabulary, hash));
+}
+
+int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const char *key, struct err *e)
+{
+	const char *text = safetensors_meta(st, key);
+
+	*f = (struct fingerprint){""};
+	if (!text)
+		return 0;
+	if (strlen(text) != sizeof f->hex - 1 || strspn(text, "0123456789abcdef") != sizeof f->hex - 1)
+		return err_set(e, ERR_FORMAT, "%s: metadata '%s' is '%s', not 16 hexadecimal digits",
+			st->path, key, text);
+	memcpy(f->hex, text, sizeof f->hex);
+	return 0;
+}
+
+int origin_read(struct origin *o, const struct safetensors *st, struct err *e)
+{
+	return fingerprint_read(&o->scene, st, "scene", e) || fingerprint_read(&o->encoder, st, "encoder", e)
+		       ? -1
+		       : 0;
+}
+
+const char *fingerprint_text(const struct fingerprint *f)
+{
+	return *f->hex ? f->hex : NULL;
+}
+
+int fingerprint_check(const char *what, const char *path, const struct fingerprint *mine, const char *other,
+	const struct fingerprint *theirs, struct err *e)
+{
+	if (!*mine->hex || !*theirs->hex || !strcmp(mine->hex, theirs->hex))
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: is of another %s than %s (%s, not %s)", path, what, other,
+		mine->hex, theirs->hex);
+}

@@ -1,0 +1,48 @@
+/* Fingerprints: what a file was made from, so that files of different scenes, cameras or encoders are not
+ * mixed. formats/arrays/safetensors.md says what each is a hash of. */
+#ifndef FORMATS_FINGERPRINT_H
+#define FORMATS_FINGERPRINT_H
+
+#include "base/err.h"
+#include "formats/arrays/safetensors.h"
+#include "geom/camera.h"
+#include "nn/bert.h"
+#include "nn/bpe.h"
+#include "nn/clip.h"
+#include "nn/wordpiece.h"
+
+#include <stddef.h>
+
+struct fingerprint {
+	char hex[17]; /* 16 hexadecimal digits; "" where it is not known: of files that were made before there
+			 were any */
+};
+
+/* What a model or a training is of: keys `scene` and `encoder`. */
+struct origin {
+	struct fingerprint scene, encoder;
+};
+
+/* Of a scene: its means (n,3), in their order. */
+struct fingerprint fingerprint_scene(const float *means, size_t n);
+/* Of a view: image size, intrinsics and pose. */
+struct fingerprint fingerprint_camera(const struct camera *c);
+/* Of an encoder: its sizes, weights, vocabulary and merges, and whether words are taken from the vocabulary
+ * as they are. */
+struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab *v, int is_static);
+struct fingerprint fingerprint_clip(const struct clip *c, const struct bpe *b, int is_static);
+
+/* The metadata value `key`. ERR_FORMAT where there is one that is not 16 lower-case hexadecimal digits. */
+int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const char *key, struct err *e);
+
+int origin_read(struct origin *o, const struct safetensors *st, struct err *e);
+
+/* The value to write as metadata: NULL, which leaves the key out, where it is not known. */
+const char *fingerprint_text(const struct fingerprint *f);
+
+/* 0 where `mine` of the file `path` is that of the file `other`, or one of them is not known. Else
+ * ERR_FORMAT: "PATH: is of another WHAT than OTHER (HEX, not HEX)". */
+int fingerprint_check(const char *what, const char *path, const struct fingerprint *mine, const char *other,
+	const struct fingerprint *theirs, struct err *e);
+
+#endif

@@ -1,0 +1,64 @@
+/* NumPy .npy arrays, versions 1.0 and 2.0: any of numbers are read, float32 are written.
+ * formats/arrays/npy.md. */
+#ifndef FORMATS_NPY_H
+#define FORMATS_NPY_H
+
+#include "base/err.h"
+#include "base/file.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { NPY_MAX_DIMS = 8 };
+
+struct npy {
+	int dims;		    /* 0: a single number */
+	size_t shape[NPY_MAX_DIMS]; /* row-major */
+	size_t count;		    /* product of the shape */
+	float *values;		    /* (count); owned */
+};
+
+/* Reads a whole file or pipe ("-" is stdin): version 1.0 or 2.0, '<f4', C order. */
+int npy_read(struct npy *a, const char *path, struct err *e);
+void npy_free(struct npy *a);
+
+/* A file of whatever numbers, in place: nothing is read before it is asked for. */
+enum npy_type {
+	NPY_F16,
+	NPY_F32,
+	NPY_F64,
+	NPY_U8, /* this one and those after it: whole numbers */
+	NPY_I8,
+	NPY_U16,
+	NPY_I16,
+	NPY_U32,
+	NPY_I32,
+	NPY_I64,
+	NPY_TYPES
+};
+
+struct npy_file {
+	int dims;
+	size_t shape[NPY_MAX_DIMS];
+	size_t count;
+	enum npy_type type;
+	const unsigned char *data; /* (count) little-endian, at any alignment */
+	struct file_map map;
+};
+
+/* C order, little-endian. Returns 0, or -1 with *e set and nothing to close. */
+int npy_open(struct npy_file *a, const char *path, struct err *e);
+/* The same of bytes in memory, which are a's from then on, also on failure; messages call them `name`. */
+int npy_open_bytes(struct npy_file *a, char *data, size_t len, const char *name, struct err *e);
+void npy_close(struct npy_file *a);
+
+/* Whether its type has whole numbers only. */
+int npy_is_whole(const struct npy_file *a);
+double npy_value(const struct npy_file *a, size_t i);
+/* out (n): the values from `first` on. */
+void npy_floats(const struct npy_file *a, size_t first, size_t n, float *out);
+
+/* Appears whole. "-" is stdout. dims in 0 to NPY_MAX_DIMS. */
+int npy_write(const char *path, const float *values, const size_t *shape, int dims, struct err *e);
+
+#endif

@@ -1,0 +1,35 @@
+/* NumPy's .npz: arrays in a zip. formats/arrays/npy.md. */
+#ifndef FORMATS_NPZ_H
+#define FORMATS_NPZ_H
+
+#include "base/names.h"
+#include "formats/arrays/archive.h"
+#include "formats/arrays/npy.h"
+
+struct npz {
+	char *path;
+	struct archive zip; /* points to itself: a struct npz is not copied */
+	size_t n;
+	struct archive_entry *entries; /* "NAME.npy" each */
+	struct names index;
+};
+
+/* Returns 0, or -1 with *e set and nothing to close. */
+int npz_open(struct npz *z, const char *path, struct err *e);
+void npz_close(struct npz *z);
+
+/* Whether it has the array "NAME" + "SUFFIX". */
+int npz_has(const struct npz *z, const char *name, const char *suffix, struct err *e);
+
+/* Opens that array, in memory; npy_close it. *called (may be NULL): how messages name it, "FILE: NAME.npy";
+ * free() it. Returns 0, or -1 with *e. */
+int npz_array(struct npz *z, const char *name, const char *suffix, struct npy_file *a, char **called,
+	struct err *e);
+
+/* Opens the array of that place among the entries, as npz_array does. */
+int npz_entry(struct npz *z, size_t place, struct npy_file *a, struct err *e);
+
+/* The first of these names that an array has; NULL with *e where none has. */
+const char *npz_main(const struct npz *z, const char *const *names, size_t n, struct err *e);
+
+#endif

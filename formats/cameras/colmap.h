@@ -1,0 +1,25 @@
+/* COLMAP sparse models: cameras and images, binary or text. The points are not read.
+ * formats/cameras/colmap.md. */
+#ifndef FORMATS_COLMAP_H
+#define FORMATS_COLMAP_H
+
+#include "base/err.h"
+#include "geom/camera.h"
+
+/* What may be read of a model's folder. */
+#define COLMAP_PARTS "cameras.bin|cameras.txt|images.bin|images.txt"
+
+/* 1 where dir holds cameras.bin and images.bin, or cameras.txt and images.txt. */
+int colmap_is_model(const char *dir);
+
+/* Reads the model in dir (binary where both are there). Views are checked, named and sorted by views_finish;
+ * `image` is the model's image name, all are SPLIT_TRAIN. A camera that distorts has its lens, and the
+ * photograph's size and intrinsics: cameras_undistort makes it a pinhole. Returns 0, or -1 with *e and *c
+ * zeroed. */
+int colmap_read(struct cameras *c, const char *dir, struct err *e);
+
+/* Makes dir and writes cameras.txt (PINHOLE; views with the same intrinsics share a camera), images.txt
+ * (named by the file name of `image`, or `name` where that is NULL) and an empty points3D.txt. */
+int colmap_write_text(const struct cameras *c, const char *dir, struct err *e);
+
+#endif

@@ -1,0 +1,157 @@
+#include "formats/encoders/bert_model.h"
+
+#include "base/file.h"
+#include "formats/records/json.h"
+#include "formats/encoders/pretrained.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static int read_activation(struct bert *b, const cJSON *config, const char *path, struct err *e)
+{
+	static const struct pretrained_activation known[] = {{"gelu", TRANSFORMER_GELU},
+		{"gelu_new", TRANSFORMER_GELU_TANH}, {"gelu_pytorch_tanh", TRANSFORMER_GELU_TANH},
+		{"relu", TRANSFORMER_RELU}};
+
+	return pretrained_activation(config, known, sizeof known / sizeof *known,
+		"gelu, gelu_new, gelu_pytorch_tanh or relu", NULL, &b->body.activation, path, e);
+}
+
+static int read_keys(struct bert *b, const cJSON *config, const char *path, struct err *e)
+{
+	static const char *const names[] = {"hidden_size", "num_attention_heads", "max_position_embeddings"};
+	struct transformer *t = &b->body;
+
+	if (!cJSON_IsObject(config))
+		return err_set(e, ERR_FORMAT, "%s: not a JSON object", path);
+	if (pretrained_is(config, "model_type", "bert", path, e) ||
+		pretrained_is(config, "position_embedding_type", "absolute", path, e) ||
+		pretrained_int(config, "vocab_size", 10000000, 0, &b->words, path, e) ||
+		pretrained_int(config, names[0], 65536, 0, &t->width, path, e) ||
+		pretrained_int(config, "num_hidden_layers", 1000, 0, &t->layer_count, path, e) ||
+		pretrained_int(config, names[1], 65536, 0, &t->heads, path, e) ||
+		pretrained_int(config, "intermediate_size", 1 << 20, 0, &t->inner, path, e) ||
+		pretrained_int(config, names[2], 1 << 20, 0, &b->positions, path, e) ||
+		pretrained_int(config, "type_vocab_size", 65536, 0, &b->types, path, e) ||
+		read_activation(b, config, path, e))
+		return -1;
+	return pretrained_sizes(t, b->positions, names, path, e) ||
+			       pretrained_eps(config, 1e-12, &t->eps, path, e)
+		       ? -1
+		       : 0;
+}
+
+static int read_config(struct bert *b, const char *dir, struct err *e)
+{
+	char *path = file_join(dir, "config.json", "", e);
+	cJSON *config = path ? json_read(path, e) : NULL;
+	int bad = config ? read_keys(b, config, path, e) : -1;
+
+	cJSON_Delete(config);
+	free(path);
+	return bad;
+}
+
+/* Where the tensors come from, and the names that this file gives them. */
+struct source {
+	struct safetensors st;
+	const char *prefix;	   /* "bert." or "" */
+	const char *scale, *shift; /* "weight" and "bias"; "gamma" and "beta" in old checkpoints */
+	struct err *e;
+};
+
+/* The tensor `name`.`part`, a vector of `columns` where rows is 0. */
+static int load(struct source *s, const char *name, const char *part, float *out, int rows, int columns)
+{
+	char full[256];
+
+	snprintf(full, sizeof full, "%s%s.%s", s->prefix, name, part);
+	return pretrained_load(&s->st, full, out, rows, columns, s->e);
+}
+
+static int load_linear(struct source *s, const char *layer, const char *name,
+	const struct transformer_linear *l, int in, int out)
+{
+	char full[128];
+
+	snprintf(full, sizeof full, "%s%s", layer, name);
+	return load(s, full, "weight", l->weight, out, in) || load(s, full, "bias", l->bias, 0, out) ? -1 : 0;
+}
+
+static int load_norm(
+	struct source *s, const char *layer, const char *name, const struct transformer_norm *n, int width)
+{
+	char full[128];
+
+	snprintf(full, sizeof full, "%s%s", layer, name);
+	return load(s, full, s->scale, n->scale, 0, width) || load(s, full, s->shift, n->shift, 0, width) ? -1
+													  : 0;
+}
+
+static int load_layer(struct source *s, const struct bert *b, int i)
+{
+	static const struct transformer_layer none;
+	const struct transformer_layer *l = b->body.layers ? &b->body.layers[i] : &none;
+	int width = b->body.width, inner = b->body.inner;
+	char at[64];
+
+	snprintf(at, sizeof at, "encoder.layer.%d.", i);
+	int bad = load_linear(s, at, "attention.self.query", &l->query, width, width) ||
+		  load_linear(s, at, "attention.self.key", &l->key, width, width) ||
+		  load_linear(s, at, "attention.self.value", &l->value, width, width) ||
+		  load_linear(s, at, "attention.output.dense", &l->attention_out, width, width) ||
+		  load_norm(s, at, "attention.output.LayerNorm", &l->attention_norm, width) ||
+		  load_linear(s, at, "intermediate.dense", &l->inner, width, inner) ||
+		  load_linear(s, at, "output.dense", &l->outer, inner, width) ||
+		  load_norm(s, at, "output.LayerNorm", &l->norm, width);
+	return bad ? -1 : 0;
+}
+
+static void find_names(struct source *s)
+{
+	if (safetensors_find(&s->st, "bert.embeddings.word_embeddings.weight"))
+		s->prefix = "bert.";
+	if (safetensors_find(
+		    &s->st, *s->prefix ? "bert.embeddings.LayerNorm.gamma" : "embeddings.LayerNorm.gamma")) {
+		s->scale = "gamma";
+		s->shift = "beta";
+	}
+}
+
+static int load_tensors(struct source *s, const struct bert *b)
+{
+	if (load(s, "embeddings.word_embeddings", "weight", b->word, b->words, b->body.width) ||
+		load(s, "embeddings.position_embeddings", "weight", b->position, b->positions,
+			b->body.width) ||
+		load(s, "embeddings.token_type_embeddings", "weight", b->type, b->types, b->body.width) ||
+		load_norm(s, "", "embeddings.LayerNorm", &b->norm, b->body.width))
+		return -1;
+	for (int i = 0; i < b->body.layer_count; i++)
+		if (load_layer(s, b, i))
+			return -1;
+	return 0;
+}
+
+/* That the file has all tensors is known before memory is taken for them. */
+static int load_all(struct source *s, struct bert *b)
+{
+	find_names(s);
+	return load_tensors(s, b) || bert_alloc(b, s->e) || load_tensors(s, b) ? -1 : 0;
+}
+
+int bert_model_read(struct bert *b, const char *dir, struct err *e)
+{
+	struct source s = {.prefix = "", .scale = "weight", .shift = "bias", .e = e};
+	int bad = -1;
+
+	*b = (struct bert){0};
+	if (read_config(b, dir, e))
+		return -1;
+	if (!pretrained_open(&s.st, dir, NULL, e)) {
+		bad = load_all(&s, b);
+		safetensors_close(&s.st);
+	}
+	if (bad)
+		bert_free(b);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,347 @@
+#include "formats/encoders/clip_model.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/records/json.h"
+#include "formats/encoders/pretrained.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define OPEN_CLIP "open_clip_config.json"
+static const char *const names[] = {"hidden_size", "num_attention_heads", "max_position_embeddings"};
+
+static const cJSON *member(const cJSON *object, const char *key)
+{
+	return cJSON_GetObjectItemCaseSensitive(object, key);
+}
+
+static int is_text(const cJSON *item, const char *text)
+{
+	return cJSON_IsString(item) && !strcmp(item->valuestring, text);
+}
+
+static int is_of_clip(const cJSON *config)
+{
+	const cJSON *type = member(config, "model_type");
+
+	return is_text(type, "clip") || is_text(type, "clip_text_model");
+}
+
+/* Whether a file is a configuration of a CLIP as HuggingFace writes it. */
+static int is_config(const char *path)
+{
+	struct err e = {0};
+	cJSON *config = file_exists(path) ? json_read(path, &e) : NULL;
+	const int is = is_of_clip(config);
+
+	cJSON_Delete(config);
+	return is;
+}
+
+/* DIR/config.json, where it is of a CLIP, or DIR/open_clip_config.json, where there is one; *is_open says
+ * which. NULL with *e set where there is neither. */
+static char *find_config(const char *dir, int *is_open, struct err *e)
+{
+	char *usual = file_join(dir, "config.json", "", e), *other = file_join(dir, OPEN_CLIP, "", e);
+	const int is_usual = usual && is_config(usual);
+
+	*is_open = !is_usual && usual && other && file_exists(other);
+	if (usual && other && !is_usual && !*is_open)
+		err_set(e, ERR_FORMAT, "%s: key 'model_type' is not \"clip\" or \"clip_text_model\"", usual);
+	free(is_usual ? other : usual);
+	if (is_usual || *is_open)
+		return is_usual ? usual : other;
+	free(other);
+	return NULL;
+}
+
+int clip_model_is(const char *dir)
+{
+	struct err e = {0};
+	int is_open;
+	char *path = find_config(dir, &is_open, &e);
+	const int is = path != NULL;
+
+	free(path);
+	return is;
+}
+
+/* What a configuration says beside the sizes. */
+struct kind {
+	int is_projected; /* the weights must have a projection */
+	int width;	  /* of it */
+	int is_open;	  /* the configuration is OpenCLIP's */
+};
+
+static int read_activation(struct clip *c, const cJSON *config, const char *path, struct err *e)
+{
+	static const struct pretrained_activation known[] = {
+		{"quick_gelu", TRANSFORMER_QUICK_GELU}, {"gelu", TRANSFORMER_GELU}};
+
+	return pretrained_activation(
+		config, known, 2, "quick_gelu or gelu", "quick_gelu", &c->body.activation, path, e);
+}
+
+/* HuggingFace's: of the text tower alone, or of both with the text tower's in `text_config`. Keys that are
+ * absent have the values of CLIP ViT-B/32. */
+static int read_keys(struct clip *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
+{
+	const cJSON *nested = member(config, "text_config"), *text = cJSON_IsObject(nested) ? nested : config;
+	const cJSON *own = member(config, "projection_dim");
+	struct transformer *t = &c->body;
+
+	kind->is_projected = is_text(member(config, "model_type"), "clip") ||
+			     is_text(cJSON_GetArrayItem(member(config, "architectures"), 0),
+				     "CLIPTextModelWithProjection");
+	return pretrained_int(text, "vocab_size", 10000000, 49408, &c->words, path, e) ||
+			       pretrained_int(text, names[0], 65536, 512, &t->width, path, e) ||
+			       pretrained_int(
+				       text, "num_hidden_layers", 1000, 12, &t->layer_count, path, e) ||
+			       pretrained_int(text, names[1], 65536, 8, &t->heads, path, e) ||
+			       pretrained_int(text, "intermediate_size", 1 << 20, 2048, &t->inner, path, e) ||
+			       pretrained_int(text, names[2], 1 << 20, 77, &c->positions, path, e) ||
+			       pretrained_int(own ? config : text, "projection_dim", 65536, 512, &kind->width,
+				       path, e) ||
+			       read_activation(c, text, path, e) ||
+			       pretrained_sizes(t, c->positions, names, path, e) ||
+			       pretrained_eps(text, 1e-5, &t->eps, path, e)
+		       ? -1
+		       : 0;
+}
+
+/* OpenCLIP's own; what it does not say is as in its code. */
+static int read_open_keys(
+	struct clip *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
+{
+	static const char *const own[] = {"width", "heads", "context_length"};
+	static const char *const refused[] = {"hf_model_name", "hf_tokenizer_name", "embed_cls",
+		"no_causal_mask", "pool_type", "mlp_ratio", "act_kwargs", "norm_kwargs"};
+	const cJSON *model = cJSON_IsObject(member(config, "model_cfg")) ? member(config, "model_cfg")
+									 : config,
+		    *text = member(model, "text_cfg");
+	struct transformer *t = &c->body;
+
+	if (!cJSON_IsObject(text))
+		return err_set(e, ERR_FORMAT, "%s: key 'text_cfg' is not an object", path);
+	for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
+		if (member(text, refused[i]))
+			return err_set(e, ERR_FORMAT, "%s: key '%s': text towers of this kind are not read",
+				path, refused[i]);
+	if (pretrained_int(model, "embed_dim", 65536, 0, &kind->width, path, e) ||
+		pretrained_int(text, "vocab_size", 10000000, 49408, &c->words, path, e) ||
+		pretrained_int(text, own[0], 65536, 512, &t->width, path, e) ||
+		pretrained_int(text, "layers", 1000, 12, &t->layer_count, path, e) ||
+		pretrained_int(text, own[1], 65536, 8, &t->heads, path, e) ||
+		pretrained_int(text, own[2], 1 << 20, 77, &c->positions, path, e))
+		return -1;
+	t->inner = 4 * t->width;
+	t->eps = 1e-5;
+	t->activation = cJSON_IsTrue(member(model, "quick_gelu")) ? TRANSFORMER_QUICK_GELU : TRANSFORMER_GELU;
+	kind->is_projected = 1;
+	return pretrained_sizes(t, c->positions, own, path, e);
+}
+
+static int read_config(struct clip *c, struct kind *kind, const char *dir, struct err *e)
+{
+	int bad = -1;
+	char *path = find_config(dir, &kind->is_open, e);
+	cJSON *config = path ? json_read(path, e) : NULL;
+
+	if (config && !cJSON_IsObject(config))
+		err_set(e, ERR_FORMAT, "%s: not a JSON object", path);
+	else if (config)
+		bad = kind->is_open ? read_open_keys(c, kind, config, path, e)
+				    : read_keys(c, kind, config, path, e);
+	cJSON_Delete(config);
+	free(path);
+	return bad;
+}
+
+/* The names that a program gives the tensors, after a prefix. Layers' begin with `layer`, their number and a
+ * point. */
+struct layout {
+	const char *prefix, *word, *position, *layer, *norm, *projection;
+	const char *attention_norm, *attention_out, *inner, *outer, *feed_norm; /* of a layer */
+	int is_joined; /* query, key and value are one tensor, and the projection is transposed */
+};
+
+#define HUGGING_FACE                                                                                         \
+	"embeddings.token_embedding.weight", "embeddings.position_embedding.weight", "encoder.layers.",      \
+		"final_layer_norm", "text_projection.weight", "layer_norm1", "self_attn.out_proj",           \
+		"mlp.fc1", "mlp.fc2", "layer_norm2", 0
+#define OPEN_CLIP_NAMES                                                                                      \
+	"token_embedding.weight", "positional_embedding", "transformer.resblocks.", "ln_final",              \
+		"text_projection", "ln_1", "attn.out_proj", "mlp.c_fc", "mlp.c_proj", "ln_2", 1
+
+static const struct layout layouts[] = {
+	{"text_model.", HUGGING_FACE}, {"", HUGGING_FACE}, {"", OPEN_CLIP_NAMES}, {"text.", OPEN_CLIP_NAMES}};
+
+struct source {
+	struct safetensors st;
+	const struct layout *layout;
+	struct err *e;
+};
+
+enum { NAME = 160 };
+
+static void name_tensor(
+	char full[NAME], const struct source *s, const char *at, const char *name, const char *part)
+{
+	snprintf(full, NAME, "%s%s%s%s", s->layout->prefix, at, name, part);
+}
+
+static const struct layout *find_layout(const struct safetensors *st)
+{
+	char full[NAME];
+
+	for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
+		snprintf(full, sizeof full, "%s%s", layouts[i].prefix, layouts[i].word);
+		if (safetensors_find(st, full))
+			return &layouts[i];
+	}
+	return layouts;
+}
+
+static int load(struct source *s, const char *at, const char *name, const char *part, float *out, int rows,
+	int columns)
+{
+	char full[NAME];
+
+	name_tensor(full, s, at, name, part);
+	return pretrained_load(&s->st, full, out, rows, columns, s->e);
+}
+
+static int load_linear(struct source *s, const char *at, const char *name, const struct transformer_linear *l,
+	int in, int out)
+{
+	return load(s, at, name, ".weight", l->weight, out, in) || load(s, at, name, ".bias", l->bias, 0, out)
+		       ? -1
+		       : 0;
+}
+
+static int load_norm(
+	struct source *s, const char *at, const char *name, const struct transformer_norm *n, int width)
+{
+	return load(s, at, name, ".weight", n->scale, 0, width) ||
+			       load(s, at, name, ".bias", n->shift, 0, width)
+		       ? -1
+		       : 0;
+}
+
+/* Query, key and value: thirds of a tensor, or three. */
+static int load_attention(struct source *s, const char *at, const struct transformer_layer *l, int width)
+{
+	static const char *const apart[] = {"self_attn.q_proj", "self_attn.k_proj", "self_attn.v_proj"};
+	const struct transformer_linear *const parts[] = {&l->query, &l->key, &l->value};
+	char weight[NAME], bias[NAME];
+	int bad = 0;
+
+	name_tensor(weight, s, at, "attn.in_proj", "_weight");
+	name_tensor(bias, s, at, "attn.in_proj", "_bias");
+	for (int i = 0; i < 3 && !bad; i++)
+		bad = s->layout->is_joined ? pretrained_load_part(&s->st, weight, parts[i]->weight, 3 * width,
+						     i * width, width, width, s->e) ||
+						     pretrained_load_part(&s->st, bias, parts[i]->bias,
+							     3 * width, i * width, width, 0, s->e)
+					   : load_linear(s, at, apart[i], parts[i], width, width);
+	return bad;
+}
+
+static int load_layer(struct source *s, const struct clip *c, int i)
+{
+	static const struct transformer_layer none;
+	const struct transformer_layer *l = c->body.layers ? &c->body.layers[i] : &none;
+	const struct layout *n = s->layout;
+	int width = c->body.width, inner = c->body.inner;
+	char at[64];
+
+	snprintf(at, sizeof at, "%s%d.", n->layer, i);
+	return load_norm(s, at, n->attention_norm, &l->attention_norm, width) ||
+			       load_attention(s, at, l, width) ||
+			       load_linear(s, at, n->attention_out, &l->attention_out, width, width) ||
+			       load_norm(s, at, n->feed_norm, &l->norm, width) ||
+			       load_linear(s, at, n->inner, &l->inner, width, inner) ||
+			       load_linear(s, at, n->outer, &l->outer, inner, width)
+		       ? -1
+		       : 0;
+}
+
+/* HuggingFace's has no prefix; OpenCLIP's has, and is (width,projected). */
+static void name_projection(char full[NAME], const struct source *s)
+{
+	snprintf(full, NAME, "%s%s", s->layout->is_joined ? s->layout->prefix : "", s->layout->projection);
+}
+
+static int load_projection(struct source *s, const struct clip *c)
+{
+	const int rows = c->projected, columns = c->body.width;
+	char full[NAME];
+
+	name_projection(full, s);
+	if (!s->layout->is_joined)
+		return pretrained_load(&s->st, full, c->projection, rows, columns, s->e);
+	float *turned = mem_alloc((size_t)rows * (size_t)columns, sizeof *turned, "encoder", s->e);
+	const int bad = !turned || pretrained_load(&s->st, full, turned, columns, rows, s->e);
+	for (int r = 0; r < rows && !bad; r++)
+		for (int k = 0; k < columns; k++)
+			c->projection[(size_t)r * (size_t)columns + (size_t)k] =
+				turned[(size_t)k * (size_t)rows + (size_t)r];
+	free(turned);
+	return bad ? -1 : 0;
+}
+
+/* Whether there is a projection, of the right size. */
+static int find_projection(struct source *s, struct clip *c, const struct kind *kind)
+{
+	char full[NAME];
+	int sides[2] = {kind->width, c->body.width};
+
+	name_projection(full, s);
+	if (!kind->is_projected && !safetensors_find(&s->st, full))
+		return 0;
+	c->projected = kind->width;
+	const int turned = s->layout->is_joined;
+	return pretrained_need(&s->st, full, sides[turned], sides[!turned], s->e) ? 0 : -1;
+}
+
+/* All but the projection. */
+static int load_body(struct source *s, const struct clip *c)
+{
+	if (load(s, s->layout->word, "", "", c->word, c->words, c->body.width) ||
+		load(s, s->layout->position, "", "", c->position, c->positions, c->body.width))
+		return -1;
+	for (int i = 0; i < c->body.layer_count; i++)
+		if (load_layer(s, c, i))
+			return -1;
+	return load_norm(s, "", s->layout->norm, &c->norm, c->body.width);
+}
+
+/* That the file has all tensors is known before memory is taken for them. */
+static int load_all(struct source *s, struct clip *c, const struct kind *kind)
+{
+	s->layout = find_layout(&s->st);
+	return load_body(s, c) || find_projection(s, c, kind) || clip_alloc(c, s->e) || load_body(s, c) ||
+			       (c->projected && load_projection(s, c))
+		       ? -1
+		       : 0;
+}
+
+int clip_model_read(struct clip *c, const char *dir, struct err *e)
+{
+	struct source s = {.e = e};
+	struct kind kind = {0};
+	int bad = -1;
+
+	*c = (struct clip){.body = {.is_causal = 1, .is_norm_first = 1}};
+	if (read_config(c, &kind, dir, e))
+		return -1;
+	if (!pretrained_open(&s.st, dir, kind.is_open ? "open_clip_model.safetensors" : NULL, e)) {
+		bad = load_all(&s, c, &kind);
+		safetensors_close(&s.st);
+	}
+	if (bad)
+		clip_free(c);
+	return bad ? -1 : 0;
+}

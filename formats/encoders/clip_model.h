@@ -1,0 +1,18 @@
+/* The folder of a CLIP's text tower: a configuration and safetensors weights, as HuggingFace or OpenCLIP
+ * stores them. formats/encoders/clip_model.md. */
+#ifndef FORMATS_CLIP_MODEL_H
+#define FORMATS_CLIP_MODEL_H
+
+#include "base/err.h"
+#include "nn/clip.h"
+
+/* What is read of the folder beside what a BERT has (BERT_MODEL_PARTS), the tokenizer's files with it. */
+#define CLIP_MODEL_PARTS "open_clip_config.json|vocab.json|merges.txt|*.txt.gz"
+
+/* Whether the folder's config.json is of a CLIP, or it has an open_clip_config.json. */
+int clip_model_is(const char *dir);
+
+/* Reads the configuration, and the weights as bert_model_read. Release with clip_free. */
+int clip_model_read(struct clip *c, const char *dir, struct err *e);
+
+#endif

@@ -1,0 +1,266 @@
+#include "formats/encoders/parser_weights.h"
+
+#include "base/embed.h"
+#include "base/mem.h"
+#include "formats/arrays/fingerprint.h"
+#include "formats/arrays/safetensors.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The default weights are part of the program, so that every tool has them:
+ * formats/encoders/parser_default.safetensors. */
+EMBED(parser_default, "formats/encoders/parser_default.safetensors");
+extern const unsigned char parser_default_begin[], parser_default_end[];
+
+enum { NAME_LENGTH = 40, TENSORS_MOST = 2 * PARSER_MEMBERS * PARSER_PARTS };
+
+/* A file in the making. */
+struct making {
+	int n;
+	struct st_tensor tensors[TENSORS_MOST];
+	char names[TENSORS_MOST][NAME_LENGTH];
+	int8_t *whole[PARSER_MEMBERS]; /* of the matrices, and what a row's are to be multiplied by */
+	float *factor[PARSER_MEMBERS];
+	uint16_t *half[PARSER_MEMBERS]; /* of the vectors */
+};
+
+/* "vector.weight" of the first member, "1.vector.weight" of the next; tail: "", or ".scale" for the factors
+ * of a matrix's rows. */
+static const char *name_of(char out[NAME_LENGTH], int member, const char *part, const char *tail)
+{
+	if (member)
+		snprintf(out, NAME_LENGTH, "%d.%s%s", member, part, tail);
+	else
+		snprintf(out, NAME_LENGTH, "%s%s", part, tail);
+	return out;
+}
+
+static int take_matrix(
+	const struct safetensors *st, int member, const struct parser_part *p, float *out, struct err *e)
+{
+	char name[NAME_LENGTH], scale[NAME_LENGTH];
+	const size_t rows = p->rows, columns = p->columns;
+	const int64_t shape[2] = {(int64_t)rows, (int64_t)columns};
+	const struct st_tensor *t =
+		safetensors_need(st, name_of(name, member, p->name, ""), ST_I8, 2, shape, e);
+	const struct st_tensor *f =
+		t ? safetensors_need(st, name_of(scale, member, p->name, ".scale"), ST_F32, 1, shape, e)
+		  : NULL;
+
+	if (!f)
+		return -1;
+	const int8_t *whole = t->data;
+	const float *factor = f->data;
+	for (size_t r = 0; r < rows; r++) {
+		if (!isfinite(factor[r]))
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path, scale, r);
+		for (size_t c = 0; c < columns; c++)
+			out[r * columns + c] = factor[r] * (float)whole[r * columns + c];
+	}
+	return 0;
+}
+
+static int take_vector(
+	const struct safetensors *st, int member, const struct parser_part *p, float *out, struct err *e)
+{
+	char name[NAME_LENGTH];
+	const size_t n = p->rows;
+
+	name_of(name, member, p->name, "");
+	const struct st_tensor *t = safetensors_need(st, name, ST_F16, 1, (int64_t[]){(int64_t)n}, e);
+
+	if (!t || safetensors_to_float(t, out, n, e))
+		return -1;
+	for (size_t k = 0; k < n; k++)
+		if (!isfinite(out[k]))
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path, name, k);
+	return 0;
+}
+
+/* *w has been made. */
+static int take_member(struct parser_weights *w, int member, const struct safetensors *st, struct err *e)
+{
+	struct parser_part parts[PARSER_PARTS];
+	float *at = w->slab;
+
+	parser_parts(w->width, parts);
+	for (int i = 0; i < PARSER_PARTS; i++) {
+		const struct parser_part *p = &parts[i];
+		if (p->columns ? take_matrix(st, member, p, at, e) : take_vector(st, member, p, at, e))
+			return -1;
+		at += p->rows * (p->columns ? p->columns : 1);
+	}
+	return 0;
+}
+
+/* Older ones are of another network. */
+static int need_version(const struct safetensors *st, struct err *e)
+{
+	const char *version;
+
+	if (safetensors_need_format(st, "refer.parser", 6, e))
+		return -1;
+	version = safetensors_meta(st, "version");
+	return !strcmp(version, "6")
+		       ? 0
+		       : err_set(e, ERR_FORMAT,
+				 "%s: refer.parser version %s is older than this program reads (6)", st->path,
+				 version);
+}
+
+static int take_tensors(struct parser_weights *w, const struct safetensors *st, struct err *e)
+{
+	const struct st_tensor *t;
+	struct fingerprint encoder;
+	char name[NAME_LENGTH];
+
+	if (need_version(st, e) ||
+		!(t = safetensors_need(st, "vector.weight", ST_I8, 2, (int64_t[]){NET_HIDDEN, -1}, e)))
+		return -1;
+	if (t->shape[1] < 1 || t->shape[1] > 65536)
+		return err_set(e, ERR_FORMAT, "%s: tensor 'vector.weight': width %lld is not in 1 to 65536",
+			st->path, (long long)t->shape[1]);
+	const int width = (int)t->shape[1];
+	if (fingerprint_read(&encoder, st, "encoder", e) || parser_weights_make(w, width, e))
+		return -1;
+	memcpy(w->encoder, encoder.hex, sizeof w->encoder);
+	for (int member = 0;; member++) {
+		if (take_member(w, member, st, e))
+			return -1;
+		if (member + 1 == PARSER_MEMBERS ||
+			!safetensors_find(st, name_of(name, member + 1, "vector.weight", "")))
+			return 0;
+		w->next = mem_zalloc(1, sizeof *w->next, "parser's weights", e);
+		if (!w->next || parser_weights_make(w->next, width, e))
+			return -1;
+		w = w->next;
+	}
+}
+
+static int take(struct parser_weights *w, struct safetensors *st, struct err *e)
+{
+	int bad = take_tensors(w, st, e);
+
+	safetensors_close(st);
+	if (bad)
+		parser_weights_free(w);
+	return bad;
+}
+
+int parser_weights_read(struct parser_weights *w, const char *path, struct err *e)
+{
+	struct safetensors st;
+
+	*w = (struct parser_weights){0};
+	return safetensors_open(&st, path, e) ? -1 : take(w, &st, e);
+}
+
+int parser_weights_default(struct parser_weights *w, struct err *e)
+{
+	struct safetensors st;
+
+	*w = (struct parser_weights){0};
+	return safetensors_open_bytes(&st, "the parser's own weights", parser_default_begin,
+		       (size_t)(parser_default_end - parser_default_begin), e)
+		       ? -1
+		       : take(w, &st, e);
+}
+
+/* The next tensor of a file in the making, of values that stay the caller's. */
+static struct st_tensor *next_tensor(struct making *m, enum st_dtype type, const void *data, int64_t rows)
+{
+	struct st_tensor *t = &m->tensors[m->n];
+
+	*t = (struct st_tensor){
+		.name = m->names[m->n], .dtype = type, .dims = 1, .shape = {rows}, .data = data};
+	m->n++;
+	return t;
+}
+
+/* A row's largest number is 127 times its factor. */
+static void round_matrix(const float *x, size_t rows, size_t columns, int8_t *whole, float *factor)
+{
+	for (size_t r = 0; r < rows; r++) {
+		float most = 0;
+		for (size_t c = 0; c < columns; c++)
+			most = fmaxf(most, fabsf(x[r * columns + c]));
+		factor[r] = most / 127;
+		for (size_t c = 0; c < columns; c++)
+			whole[r * columns + c] =
+				(int8_t)(most > 0 ? lrintf(x[r * columns + c] / factor[r]) : 0);
+	}
+}
+
+static int put_member(const struct parser_weights *w, int member, struct making *m, struct err *e)
+{
+	struct parser_part parts[PARSER_PARTS];
+	size_t rows = 0;
+
+	parser_parts(w->width, parts);
+	for (int i = 0; i < PARSER_PARTS; i++)
+		rows += parts[i].columns ? parts[i].rows : 0;
+	int8_t *whole = m->whole[member] = mem_alloc(w->count, sizeof *whole, "parser's weights", e);
+	uint16_t *half = m->half[member] = mem_alloc(w->count, sizeof *half, "parser's weights", e);
+	float *factor = m->factor[member] = mem_alloc(rows, sizeof *factor, "parser's weights", e);
+	const float *from = w->slab;
+	if (!whole || !half || !factor)
+		return -1;
+	for (int i = 0; i < PARSER_PARTS; i++) {
+		const size_t n = parts[i].rows, columns = parts[i].columns;
+		name_of(m->names[m->n], member, parts[i].name, "");
+		if (columns) {
+			struct st_tensor *t = next_tensor(m, ST_I8, whole, (int64_t)n);
+			t->dims = 2;
+			t->shape[1] = (int64_t)columns;
+			name_of(m->names[m->n], member, parts[i].name, ".scale");
+			next_tensor(m, ST_F32, factor, (int64_t)n);
+			round_matrix(from, n, columns, whole, factor);
+			whole += n * columns;
+			factor += n;
+			from += n * columns;
+		} else {
+			next_tensor(m, ST_F16, half, (int64_t)n);
+			for (size_t k = 0; k < n; k++)
+				*half++ = st_float_to_half(*from++);
+		}
+	}
+	return 0;
+}
+
+int parser_weights_write(
+	const struct parser_weights *w, const char *path, long long seed, const char *source, struct err *e)
+{
+	struct making m = {0};
+	char seed_text[32];
+	int members = 0, bad = 0;
+
+	for (const struct parser_weights *k = w; k && members < PARSER_MEMBERS && !bad; k = k->next)
+		bad = put_member(k, members++, &m, e);
+	snprintf(seed_text, sizeof seed_text, "%lld", seed);
+	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "6"}, {"tool", "parse-train"},
+		{"options", ""}, {"seed", seed_text}, {"source", source},
+		{"encoder", w->encoder[0] ? w->encoder : NULL}};
+	if (!bad)
+		bad = safetensors_write(path, m.tensors, (size_t)m.n, meta, sizeof meta / sizeof *meta, e);
+	for (int k = 0; k < members; k++) {
+		free(m.whole[k]);
+		free(m.half[k]);
+		free(m.factor[k]);
+	}
+	return bad ? -1 : 0;
+}
+
+int parser_weights_need_middle(const struct parser_weights *w, const char *path, const float *middle,
+	const struct fingerprint *encoder, struct err *e)
+{
+	if (middle || strcmp(w->encoder, encoder->hex) != 0)
+		return 0;
+	return err_set(e, ERR_FORMAT,
+		"%s: tensor 'middle' is missing, by which sentences are taken apart: make the file anew",
+		path);
+}

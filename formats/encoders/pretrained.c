@@ -1,0 +1,168 @@
+#include "formats/encoders/pretrained.h"
+
+#include "base/file.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int pretrained_int(
+	const cJSON *config, const char *key, int max, int usual, int *out, const char *path, struct err *e)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(config, key);
+	double v = cJSON_IsNumber(item) ? item->valuedouble : item ? 0 : usual;
+
+	if (!(v >= 1 && v <= max) || v != floor(v))
+		return err_set(
+			e, ERR_FORMAT, "%s: key '%s' is not a whole number from 1 to %d", path, key, max);
+	*out = (int)v;
+	return 0;
+}
+
+int pretrained_is(const cJSON *config, const char *key, const char *wanted, const char *path, struct err *e)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(config, key);
+
+	if (!item || (cJSON_IsString(item) && !strcmp(item->valuestring, wanted)))
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: key '%s' is not \"%s\"", path, key, wanted);
+}
+
+int pretrained_activation(const cJSON *config, const struct pretrained_activation *known, size_t n,
+	const char *list, const char *usual, enum transformer_activation *out, const char *path,
+	struct err *e)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(config, "hidden_act");
+	const char *name = cJSON_IsString(item) ? item->valuestring : !item && usual ? usual : "";
+
+	for (size_t i = 0; i < n; i++)
+		if (!strcmp(known[i].name, name)) {
+			*out = known[i].activation;
+			return 0;
+		}
+	return err_set(e, ERR_FORMAT, "%s: key 'hidden_act' is '%s', not %s", path, name, list);
+}
+
+int pretrained_eps(const cJSON *config, double usual, double *out, const char *path, struct err *e)
+{
+	const cJSON *eps = cJSON_GetObjectItemCaseSensitive(config, "layer_norm_eps");
+
+	*out = eps ? eps->valuedouble : usual;
+	if ((eps && !cJSON_IsNumber(eps)) || !(*out >= 0 && *out <= 1))
+		return err_set(e, ERR_FORMAT, "%s: key 'layer_norm_eps' is not a number from 0 to 1", path);
+	return 0;
+}
+
+int pretrained_sizes(const struct transformer *t, int positions, const char *const names[3], const char *path,
+	struct err *e)
+{
+	if (t->width % t->heads)
+		return err_set(e, ERR_FORMAT, "%s: %s %d is not a multiple of %s %d", path, names[0],
+			t->width, names[1], t->heads);
+	if (positions < 3)
+		return err_set(
+			e, ERR_FORMAT, "%s: %s %d leaves no room for words", path, names[2], positions);
+	return 0;
+}
+
+/* The path of the weights: DIR/model.safetensors or the only *.safetensors. NULL with *e set. */
+static char *find_weights(const char *dir, struct err *e)
+{
+	static const char ending[] = ".safetensors";
+	char *path = file_join(dir, "model.safetensors", "", e), *only = NULL;
+	size_t count = 0;
+	struct dirent *entry;
+
+	if (!path || file_exists(path))
+		return path;
+	free(path);
+	DIR *list = opendir(dir);
+	if (!list) {
+		err_errno(e, "%s", dir);
+		return NULL;
+	}
+	while ((entry = readdir(list))) {
+		size_t len = strlen(entry->d_name);
+		if (len < sizeof ending || strcmp(entry->d_name + len - (sizeof ending - 1), ending) ||
+			count++)
+			continue;
+		only = file_join(dir, entry->d_name, "", e);
+		if (!only)
+			break;
+	}
+	closedir(list);
+	if (count == 1)
+		return only;
+	free(only);
+	if (count)
+		err_set(e, ERR_FORMAT, "%s: has %zu *.safetensors files and none is model.safetensors", dir,
+			count);
+	else
+		err_set(e, ERR_SYSTEM, "%s: has no *.safetensors file", dir);
+	return NULL;
+}
+
+int pretrained_open(struct safetensors *st, const char *dir, const char *first, struct err *e)
+{
+	char *path = first ? file_join(dir, first, "", e) : NULL;
+
+	if (!path || !file_exists(path)) {
+		free(path);
+		path = find_weights(dir, e);
+	}
+	const int bad = !path || safetensors_open(st, path, e);
+
+	free(path);
+	return bad ? -1 : 0;
+}
+
+const struct st_tensor *pretrained_need(
+	const struct safetensors *st, const char *name, int rows, int columns, struct err *e)
+{
+	const int64_t shape[2] = {rows, columns};
+	const struct st_tensor *t = safetensors_find(st, name);
+	const int is_other = t && (t->dtype == ST_F16 || t->dtype == ST_BF16 || t->dtype == ST_F64);
+
+	return safetensors_need(
+		st, name, is_other ? t->dtype : ST_F32, rows ? 2 : 1, rows ? shape : shape + 1, e);
+}
+
+/* count numbers of the tensor from place `first` on. */
+static int load(const struct safetensors *st, const struct st_tensor *t, size_t first, size_t count,
+	float *out, struct err *e)
+{
+	struct st_tensor part = *t;
+
+	if (!out)
+		return 0;
+	part.data = (const char *)t->data + first * st_dtype_size(t->dtype);
+	part.bytes = count * st_dtype_size(t->dtype);
+	part.dims = 1;
+	part.shape[0] = (int64_t)count;
+	if (safetensors_to_float(&part, out, count, e))
+		return -1;
+	for (size_t i = 0; i < count; i++)
+		if (!isfinite(out[i]))
+			return err_set(e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path,
+				t->name, first + i);
+	return 0;
+}
+
+int pretrained_load(
+	const struct safetensors *st, const char *name, float *out, int rows, int columns, struct err *e)
+{
+	const struct st_tensor *t = pretrained_need(st, name, rows, columns, e);
+
+	return t ? load(st, t, 0, (size_t)columns * (rows ? (size_t)rows : 1), out, e) : -1;
+}
+
+int pretrained_load_part(const struct safetensors *st, const char *name, float *out, int of, int first,
+	int rows, int columns, struct err *e)
+{
+	const struct st_tensor *t =
+		columns ? pretrained_need(st, name, of, columns, e) : pretrained_need(st, name, 0, of, e);
+	const size_t each = columns ? (size_t)columns : 1;
+
+	return t ? load(st, t, (size_t)first * each, (size_t)rows * each, out, e) : -1;
+}

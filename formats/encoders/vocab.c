@@ -1,0 +1,183 @@
+#include "formats/encoders/vocab.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/utf8.h"
+#include "formats/records/json.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A member that, if it is there at all, must be this boolean. */
+static int need_flag(
+	const cJSON *object, const char *key, int wanted, const char *path, const char *where, struct err *e)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+
+	if (!item || cJSON_IsNull(item) || (wanted ? cJSON_IsTrue(item) : cJSON_IsFalse(item)))
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: %s: '%s' is not %s: only uncased BERT tokenizers are read", path,
+		where, key, wanted ? "true" : "false");
+}
+
+/* A member that must be this string; `may_miss` allows it to be absent. */
+static int need_string(const cJSON *object, const char *key, const char *wanted, int may_miss,
+	const char *path, const char *where, struct err *e)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+
+	if ((may_miss && !item) || (cJSON_IsString(item) && !strcmp(item->valuestring, wanted)))
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: %s: '%s' is not \"%s\": only uncased BERT tokenizers are read",
+		path, where, key, wanted);
+}
+
+static int check_kind(const cJSON *root, const char *path, struct err *e)
+{
+	const cJSON *normalizer = cJSON_GetObjectItemCaseSensitive(root, "normalizer");
+	const cJSON *splitter = cJSON_GetObjectItemCaseSensitive(root, "pre_tokenizer");
+	const cJSON *model = cJSON_GetObjectItemCaseSensitive(root, "model");
+	const cJSON *longest = cJSON_GetObjectItemCaseSensitive(model, "max_input_chars_per_word");
+
+	if (need_string(normalizer, "type", "BertNormalizer", 0, path, "normalizer", e) ||
+		need_flag(normalizer, "clean_text", 1, path, "normalizer", e) ||
+		need_flag(normalizer, "handle_chinese_chars", 1, path, "normalizer", e) ||
+		need_flag(normalizer, "strip_accents", 1, path, "normalizer", e) ||
+		need_flag(normalizer, "lowercase", 1, path, "normalizer", e) ||
+		need_string(splitter, "type", "BertPreTokenizer", 0, path, "pre_tokenizer", e) ||
+		need_string(model, "type", "WordPiece", 1, path, "model", e) ||
+		need_string(model, "unk_token", "[UNK]", 1, path, "model", e) ||
+		need_string(model, "continuing_subword_prefix", "##", 1, path, "model", e))
+		return -1;
+	if (longest && longest->valuedouble != WORDPIECE_LONGEST)
+		return err_set(e, ERR_FORMAT, "%s: model: 'max_input_chars_per_word' is not %d", path,
+			WORDPIECE_LONGEST);
+	return 0;
+}
+
+static int add_token(struct vocab *v, const char *token, double id, const char *path, struct err *e)
+{
+	if (utf8_check(token, strlen(token)) < strlen(token))
+		return err_set(e, ERR_FORMAT, "%s: token with id %.0f is not UTF-8", path, id);
+	if (!(id >= 0 && id < INT32_MAX) || id != floor(id))
+		return err_set(
+			e, ERR_FORMAT, "%s: token '%s': its id is not a whole number from 0", path, token);
+	int added = vocab_add(v, token, (int32_t)id, e);
+	return added > 0 ? err_set(e, ERR_FORMAT, "%s: token '%s' appears twice", path, token) : added;
+}
+
+int vocab_add_all(struct vocab *v, const cJSON *tokens, const char *path, struct err *e)
+{
+	const cJSON *entry;
+	int bad = 0;
+
+	for (entry = tokens->child; entry && !bad; entry = entry->next)
+		bad = add_token(v, entry->string, cJSON_IsNumber(entry) ? entry->valuedouble : -1, path, e);
+	return bad;
+}
+
+static int read_tokenizer(struct vocab *v, const char *path, struct err *e)
+{
+	cJSON *root = json_read(path, e);
+	int bad = root ? check_kind(root, path, e) : -1;
+
+	if (!bad) {
+		const cJSON *model = cJSON_GetObjectItemCaseSensitive(root, "model");
+		const cJSON *tokens = cJSON_GetObjectItemCaseSensitive(model, "vocab");
+		bad = cJSON_IsObject(tokens)
+			      ? vocab_add_all(v, tokens, path, e)
+			      : err_set(e, ERR_FORMAT, "%s: model: 'vocab' is not an object", path);
+	}
+	cJSON_Delete(root);
+	return bad;
+}
+
+/* One token a line; its id is the line's number from 0. */
+static int read_list(struct vocab *v, const char *path, struct err *e)
+{
+	char *text;
+	size_t len, line = 0;
+	int bad = 0;
+
+	if (file_read(path, &text, &len, e))
+		return -1;
+	if (strlen(text) < len)
+		bad = err_set(e, ERR_FORMAT, "%s: a NUL byte at offset %zu", path, strlen(text));
+	for (char *at = text, *next; *at && !bad; at = next, line++) {
+		size_t size = strcspn(at, "\n");
+		next = at + size + (at[size] == '\n');
+		at[size] = 0;
+		if (size && at[size - 1] == '\r')
+			at[size - 1] = 0;
+		if (utf8_check(at, strlen(at)) < strlen(at))
+			bad = err_set(e, ERR_FORMAT, "%s:%zu: not UTF-8", path, line + 1);
+		else if ((bad = vocab_add(v, at, (int32_t)line, e)) > 0)
+			bad = err_set(e, ERR_FORMAT, "%s:%zu: token '%s' appears twice", path, line + 1, at);
+	}
+	free(text);
+	return bad;
+}
+
+/* tokenizer_config.json says of a vocab.txt whether it is cased. */
+static int check_config(const char *dir, struct err *e)
+{
+	char *path = file_join(dir, "tokenizer_config.json", "", e);
+	int bad = path ? 0 : -1;
+
+	if (path && file_exists(path)) {
+		cJSON *root = json_read(path, e);
+		bad = !root || need_flag(root, "do_lower_case", 1, path, "tokenizer", e) ||
+		      need_flag(root, "strip_accents", 1, path, "tokenizer", e) ||
+		      need_flag(root, "tokenize_chinese_chars", 1, path, "tokenizer", e);
+		cJSON_Delete(root);
+	}
+	free(path);
+	return bad ? -1 : 0;
+}
+
+int vocab_read(struct vocab *v, const char *dir, struct err *e)
+{
+	char *json = file_join(dir, "tokenizer.json", "", e), *list = file_join(dir, "vocab.txt", "", e);
+	const char *missing, *path = json;
+	int bad = -1;
+
+	*v = (struct vocab){0};
+	if (!json || !list)
+		goto done;
+	if (file_exists(json)) {
+		bad = read_tokenizer(v, json, e);
+	} else if (file_exists(list)) {
+		path = list;
+		bad = read_list(v, list, e) || check_config(dir, e);
+	} else if (!file_is_dir(dir)) {
+		err_errno(e, "%s", dir);
+	} else {
+		err_set(e, ERR_SYSTEM, "%s: has neither tokenizer.json nor vocab.txt", dir);
+	}
+	if (!bad && (missing = vocab_finish(v)))
+		bad = err_set(e, ERR_FORMAT, "%s: token '%s' is missing", path, missing);
+done:
+	free(json);
+	free(list);
+	if (bad)
+		vocab_free(v);
+	return bad ? -1 : 0;
+}
+
+char *vocab_print(const struct vocab *v, const int32_t *ids, size_t n, struct err *e)
+{
+	char *text = NULL;
+	size_t length;
+	FILE *stream = open_memstream(&text, &length);
+
+	for (size_t i = 0; stream && i < n; i++)
+		fprintf(stream, "%s%s", i ? " " : "", vocab_token(v, ids[i]));
+	if (!stream || fclose(stream)) {
+		err_errno(e, "pieces");
+		free(text);
+		return NULL;
+	}
+	return text;
+}

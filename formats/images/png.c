@@ -1,0 +1,335 @@
+#include "formats/images/png_private.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/images/jpeg.h"
+
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { DEFLATE_RATIO = 1032 /* what a byte of deflate can become at most */ };
+
+int picture_check_size(const char *path, const char *kind, size_t width, size_t height, struct err *e)
+{
+	if (width <= PICTURE_PIXELS_MAX / (height ? height : 1))
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: %s: %zux%zu pixels, more than %d altogether", path, kind, width,
+		height, PICTURE_PIXELS_MAX);
+}
+
+int picture_check_bytes(const char *path, const char *kind, size_t width, size_t height, uint64_t least,
+	FILE *in, struct err *e)
+{
+	struct stat st;
+
+	if (fstat(fileno(in), &st) || !S_ISREG(st.st_mode) || least <= (uint64_t)st.st_size)
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: %s: %zux%zu pixels do not fit a file of %lld bytes", path, kind,
+		width, height, (long long)st.st_size);
+}
+
+_Noreturn void png_job_error(png_structp png, png_const_charp message)
+{
+	struct png_job *job = png_get_error_ptr(png);
+
+	/* an allocation of ours or a failed write has said more already */
+	if (job->e->code == ERR_NONE)
+		err_set(job->e, ERR_FORMAT, "%s: PNG: %s", job->path, message);
+	png_longjmp(png, 1);
+}
+
+void png_job_warning(png_structp png, png_const_charp message)
+{
+	(void)png;
+	(void)message;
+}
+
+static void read_bytes(png_structp png, png_bytep data, size_t len)
+{
+	struct png_job *job = png_get_error_ptr(png);
+	FILE *in = png_get_io_ptr(png);
+
+	if (fread(data, 1, len, in) == len)
+		return;
+	if (ferror(in))
+		err_errno(job->e, "%s", job->path);
+	else
+		err_set(job->e, ERR_FORMAT, "%s: PNG: the file ends too early", job->path);
+	png_error(png, "read");
+}
+
+static void release(struct png_job *job)
+{
+	free(job->raw);
+	free(job->rows);
+	job->raw = NULL;
+	job->rows = NULL;
+}
+
+/* Of labels, whose palette and greys are not made colours, what is transparent. */
+static void take_clear(struct png_job *job)
+{
+	png_bytep alpha = NULL;
+	png_color_16p grey = NULL;
+	int n = 0;
+
+	memset(job->palette_alpha, 255, sizeof job->palette_alpha);
+	job->grey_clear = -1;
+	if (!png_get_tRNS(job->png, job->info, &alpha, &n, &grey))
+		return;
+	if (png_get_color_type(job->png, job->info) != PNG_COLOR_TYPE_PALETTE)
+		job->grey_clear = grey->gray;
+	else if (alpha)
+		memcpy(job->palette_alpha, alpha, (size_t)n);
+}
+
+/* Everything that may jump: nothing here owns memory that `job` does not know of. */
+static int decode(struct png_job *job, FILE *in)
+{
+	if (setjmp(png_jmpbuf(job->png)))
+		return -1;
+	png_set_read_fn(job->png, in, read_bytes);
+	png_set_user_limits(job->png, PNG_SIDE_MAX, PNG_SIDE_MAX);
+	png_read_info(job->png, job->info);
+	const size_t width = png_get_image_width(job->png, job->info),
+		     height = png_get_image_height(job->png, job->info);
+	const uint64_t packed = (uint64_t)png_get_rowbytes(job->png, job->info) * height / DEFLATE_RATIO;
+	if (picture_check_size(job->path, "PNG", width, height, job->e) ||
+		picture_check_bytes(job->path, "PNG", width, height, packed, in, job->e))
+		return -1;
+	const int type = png_get_color_type(job->png, job->info);
+	if (job->is_labels && type != PNG_COLOR_TYPE_PALETTE && type & PNG_COLOR_MASK_COLOR)
+		return err_set(job->e, ERR_FORMAT, "%s: PNG: has colours, not numbers of labels", job->path);
+	take_clear(job);
+	if (job->is_labels)
+		png_set_packing(job->png);
+	else
+		png_set_expand(job->png);
+	if (job->is_rgb) {
+		png_set_strip_alpha(job->png);
+		png_set_strip_16(job->png);
+	}
+	png_set_interlace_handling(job->png);
+	png_read_update_info(job->png, job->info);
+	job->height = (int)png_get_image_height(job->png, job->info);
+	job->width = (int)png_get_image_width(job->png, job->info);
+	job->channels = png_get_channels(job->png, job->info);
+	job->depth = png_get_bit_depth(job->png, job->info);
+	job->row_bytes = png_get_rowbytes(job->png, job->info);
+	job->raw = mem_alloc((size_t)job->height, job->row_bytes, job->path, job->e);
+	job->rows = mem_alloc((size_t)job->height, sizeof *job->rows, job->path, job->e);
+	if (!job->raw || !job->rows)
+		return -1;
+	for (int y = 0; y < job->height; y++)
+		job->rows[y] = job->raw + (size_t)y * job->row_bytes;
+	png_read_image(job->png, job->rows);
+	png_read_end(job->png, NULL);
+	return 0;
+}
+
+/* The whole image as 8 or 16 bit (big-endian) samples of 1 or 3 channels, and one of alpha where there is
+ * some. release() it in any case. */
+static int read_raw(struct png_job *job, FILE *in)
+{
+	job->e->code = ERR_NONE;
+	job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, png_job_error, png_job_warning);
+	if (job->png)
+		job->info = png_create_info_struct(job->png);
+	int bad = job->info ? decode(job, in) : err_set(job->e, ERR_SYSTEM, "%s: out of memory", job->path);
+	png_destroy_read_struct(&job->png, &job->info, NULL);
+	return bad;
+}
+
+/* Sample k of a pixel. */
+static unsigned sample(const struct png_job *job, size_t pixel, int k)
+{
+	const size_t at = pixel % (size_t)job->width * (size_t)job->channels + (size_t)k;
+	const uint8_t *row = job->rows[pixel / (size_t)job->width];
+
+	return job->depth == 16 ? (unsigned)row[2 * at] << 8 | row[2 * at + 1] : row[at];
+}
+
+static size_t pixels_of(const struct png_job *job)
+{
+	return (size_t)job->height * (size_t)job->width;
+}
+
+/* The least alpha of what is not transparent: half of the largest, since soft edges and what a soft rubber
+ * leaves are less, and all that is painted may be pale. 0 without alpha. */
+static unsigned least_alpha(const struct png_job *job)
+{
+	unsigned most = 0;
+
+	if (job->channels % 2)
+		return 0;
+	for (size_t i = 0, n = pixels_of(job); i < n; i++) {
+		const unsigned alpha = sample(job, i, job->channels - 1);
+		most = alpha > most ? alpha : most;
+	}
+	return most / 2 + 1;
+}
+
+static int is_clear(const struct png_job *job, size_t pixel, unsigned least)
+{
+	return least && sample(job, pixel, job->channels - 1) < least;
+}
+
+/* Opens, reads with the job's settings, and makes room for a value of so many bytes for each pixel: NULL with
+ * *e, then too release() it. */
+static void *read_pixels(struct png_job *job, const char *path, size_t bytes)
+{
+	FILE *in = file_open(path, job->e);
+	void *out = NULL;
+
+	job->path = file_name(path);
+	if (!in)
+		return NULL;
+	const int first = getc(in);
+	ungetc(first, in);
+	if (first == 0xff)
+		err_set(job->e, ERR_FORMAT,
+			"%s: a JPEG, whose colours are not quite those that were painted: save it as PNG",
+			job->path);
+	else if (!read_raw(job, in))
+		out = mem_alloc(pixels_of(job), bytes, job->path, job->e);
+	file_close(in);
+	return out;
+}
+
+int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e)
+{
+	struct png_job job = {.e = e};
+	uint8_t *mask = read_pixels(&job, path, 1);
+
+	if (mask) {
+		const int colours = job.channels - !(job.channels % 2);
+		const unsigned least = least_alpha(&job);
+		for (size_t i = 0, n = pixels_of(&job); i < n; i++) {
+			unsigned any = 0;
+			for (int k = 0; k < colours; k++)
+				any |= sample(&job, i, k);
+			mask[i] = any && !is_clear(&job, i, least);
+		}
+		*pixels = mask;
+		*height = job.height;
+		*width = job.width;
+	}
+	release(&job);
+	return mask ? 0 : -1;
+}
+
+int png_read_labels(const char *path, int32_t **labels, int *height, int *width, struct err *e)
+{
+	struct png_job job = {.e = e, .is_labels = 1};
+	int32_t *out = read_pixels(&job, path, sizeof *out);
+
+	if (out) {
+		const unsigned least = least_alpha(&job);
+		for (size_t i = 0, n = pixels_of(&job); i < n; i++) {
+			const unsigned label = sample(&job, i, 0);
+			const int is_none = is_clear(&job, i, least) || (int)label == job.grey_clear ||
+					    (label < 256 && !job.palette_alpha[label]);
+			out[i] = is_none ? -1 : (int32_t)label;
+		}
+	}
+	*labels = out;
+	*height = job.height;
+	*width = job.width;
+	release(&job);
+	return out ? 0 : -1;
+}
+
+/* Whether samples of 16 bits are 8 bits said twice, as programs write a picture of 8 bits. */
+static int is_doubled(const struct png_job *job, size_t pixel, int colours)
+{
+	int is = 1;
+
+	for (int k = 0; k < colours; k++)
+		is = is && sample(job, pixel, k) % 257 == 0;
+	return is;
+}
+
+int png_read_paint(const char *path, uint32_t **paint, int *height, int *width, struct err *e)
+{
+	struct png_job job = {.e = e};
+	uint32_t *out = read_pixels(&job, path, sizeof *out);
+
+	if (out) {
+		const int is_wide = job.depth == 16, colours = job.channels < 3 ? 1 : 3;
+		const unsigned least = least_alpha(&job), shift = is_wide ? 8 : 0;
+		const size_t n = pixels_of(&job);
+		int is_number = 0;
+		for (size_t i = 0; i < n && is_wide && colours == 1; i++)
+			is_number = is_number || !is_doubled(&job, i, 1);
+		for (size_t i = 0; i < n; i++) {
+			const unsigned first = sample(&job, i, 0);
+			if (is_clear(&job, i, least) || (is_wide && colours == 3 && !is_doubled(&job, i, 3)))
+				out[i] = PNG_PAINT_NONE;
+			else if (colours == 1)
+				out[i] = png_paint_number(is_number ? first : first >> shift);
+			else
+				out[i] = (uint32_t)(first >> shift << 16 | sample(&job, i, 1) >> shift << 8 |
+						    sample(&job, i, 2) >> shift);
+		}
+		*height = job.height;
+		*width = job.width;
+	}
+	*paint = out;
+	release(&job);
+	return out ? 0 : -1;
+}
+
+uint32_t png_paint_number(uint32_t number)
+{
+	return number > 255 ? PNG_PAINT_NUMBER | number : number * 0x010101;
+}
+
+static int read_png_rgb(const char *path, FILE *in, uint8_t **rgb, int *height, int *width, struct err *e)
+{
+	struct png_job job = {.path = path, .e = e, .is_rgb = 1};
+	uint8_t *out = NULL;
+
+	if (!read_raw(&job, in))
+		out = mem_alloc((size_t)job.height * (size_t)job.width, 3, path, e);
+	if (out) {
+		size_t step = (size_t)job.channels, next = step == 3;
+		uint8_t *q = out;
+		for (size_t y = 0; y < (size_t)job.height; y++)
+			for (size_t x = 0; x < (size_t)job.width; x++, q += 3)
+				for (size_t k = 0; k < 3; k++)
+					q[k] = job.rows[y][x * step + k * next];
+		*rgb = out;
+		*height = job.height;
+		*width = job.width;
+	}
+	release(&job);
+	return out ? 0 : -1;
+}
+
+int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, struct err *e)
+{
+	const char *name = file_name(path);
+	FILE *in = file_open(path, e);
+	int bad;
+
+	if (!in)
+		return -1;
+	/* one byte tells the two apart, and one byte can be put back on a pipe */
+	int first = getc(in);
+	if (first != EOF)
+		ungetc(first, in);
+	if (first == 0x89)
+		bad = read_png_rgb(name, in, rgb, height, width, e);
+	else if (first == 0xff)
+		bad = jpeg_read_rgb(name, in, rgb, height, width, e);
+	else if (first != EOF)
+		bad = err_set(e, ERR_FORMAT, "%s: neither PNG nor JPEG: begins with byte 0x%02x", name,
+			(unsigned)first);
+	else
+		bad = ferror(in) ? err_errno(e, "%s", name)
+				 : err_set(e, ERR_FORMAT, "%s: an empty file, not an image", name);
+	file_close(in);
+	return bad;
+}

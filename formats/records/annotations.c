@@ -1,0 +1,242 @@
+#include "formats/records/annotations_private.h"
+
+#include "base/base64.h"
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/path.h"
+#include "base/textfile.h"
+#include "formats/records/foreign.h"
+#include "formats/images/png.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void annotations_free(struct annotations *a)
+{
+	for (size_t i = 0; i < a->n; i++) {
+		free(a->items[i].view);
+		free(a->items[i].name);
+		free(a->items[i].ref);
+		rle_free(&a->items[i].mask);
+		mask_place_free(a->items[i].boxes);
+	}
+	free(a->items);
+	free(a->view);
+	free(a->picture);
+	for (size_t i = 0; i < a->left_count; i++)
+		free(a->left_out[i].kind);
+	free(a->left_out);
+	*a = (struct annotations){0};
+}
+
+static int read_shape(struct reading *r, const cJSON *shape, const char *view, struct err *e)
+{
+	const cJSON *points = cJSON_GetObjectItemCaseSensitive(shape, "points");
+	const char *label, *type = "polygon";
+	size_t count;
+
+	if (json_string(shape, "label", 1, &label, r->where, e) < 0 ||
+		json_string(shape, "shape_type", 0, &type, r->where, e) < 0 ||
+		reading_points(r, points, &count, e))
+		return -1;
+	if (!strcmp(type, "mask"))
+		return err_set(e, ERR_FORMAT,
+			"%s: a shape of type 'mask'; polygons, rectangles and circles are read", r->where);
+	return reading_draw_shape(r, type, count, view, label, e);
+}
+
+/* LabelMe says the size of a picture that it also holds, or that lies beside it. A smaller or larger copy
+ * will do there, and of a JPEG one that is turned, as cameras say in it that they were. */
+static int check_picture(struct reading *r, const cJSON *root, struct err *e)
+{
+	const cJSON *data = cJSON_GetObjectItemCaseSensitive(root, "imageData");
+	const int is_held = cJSON_IsString(data) && *data->valuestring;
+	const char *picture = r->to->picture;
+	enum picture_kind kind = PICTURE_NONE;
+	int height = 0, width = 0;
+	size_t n = 0;
+	void *bytes = is_held ? base64_bytes(data->valuestring, &n, e) : NULL;
+
+	if (is_held && !bytes)
+		return -1;
+	const int is_beside =
+		!is_held && file_exists(picture) && !file_is_dir(picture) && !file_is_pipe(picture);
+	FILE *in = n ? fmemopen(bytes, n, "rb") : is_beside ? fopen(picture, "rb") : NULL;
+	if (in) {
+		kind = picture_size(in, &height, &width);
+		fclose(in);
+	}
+	free(bytes);
+	const int is_turned = kind == PICTURE_JPEG && rle_has_shape(width, height, r->height, r->width);
+	if (kind == PICTURE_NONE || (height == r->height && width == r->width) ||
+		(!is_held && (is_turned || rle_has_shape(height, width, r->height, r->width))))
+		return 0;
+	return err_set(e, ERR_FORMAT,
+		"%s: imageWidth and imageHeight are %dx%d, but %s is %dx%d: the labels are of another picture",
+		r->where, r->width, r->height, is_held ? "the picture in imageData" : picture, width, height);
+}
+
+static int read_labelme(struct reading *r, const cJSON *root, struct err *e)
+{
+	const cJSON *shapes = cJSON_GetObjectItemCaseSensitive(root, "shapes"), *shape;
+	const char *image;
+	size_t i = 0;
+
+	if (json_string(root, "imagePath", 1, &image, r->where, e) < 0 ||
+		reading_size(r, root, "imageHeight", "imageWidth", e))
+		return -1;
+	const char *view = reading_picture(r, r->path, image, e);
+	int bad = !view || check_picture(r, root, e);
+	cJSON_ArrayForEach(shape, shapes)
+	{
+		snprintf(r->where, WHERE, "%s: shape %zu", r->path, i++);
+		bad = bad || read_shape(r, shape, view, e);
+	}
+	return bad ? -1 : 0;
+}
+
+/* The "bbox" of an object, [left, top, right, bottom], where it has one. */
+static int take_box(struct reading *r, const cJSON *object, struct annotation *on, struct err *e)
+{
+	const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, "bbox");
+	size_t count;
+
+	if (!cJSON_IsArray(list))
+		return 0;
+	if (reading_points(r, list, &count, e))
+		return -1;
+	if (count != 2)
+		return err_set(e, ERR_FORMAT, "%s: key 'bbox' is not two corners", r->where);
+	if (!on->boxes && !(on->boxes = mask_place_new(e)))
+		return -1;
+	return mask_place_add_box(on->boxes, r->points, e);
+}
+
+/* ISAT's, as LERF-OVS has it: a polygon of each object. */
+static int read_object(struct reading *r, const cJSON *object, const char *view, struct err *e)
+{
+	const char *name;
+	size_t count;
+
+	if (json_string(object, "category", 1, &name, r->where, e) < 0 ||
+		reading_points(r, cJSON_GetObjectItemCaseSensitive(object, "segmentation"), &count, e))
+		return -1;
+	struct annotation *on = reading_find(r, view, name, e);
+	return on && !reading_draw(r, on, count, e) ? take_box(r, object, on, e) : -1;
+}
+
+static int read_isat(struct reading *r, const cJSON *root, struct err *e)
+{
+	const cJSON *info = cJSON_GetObjectItemCaseSensitive(root, "info"), *object;
+	const char *image;
+	size_t i = 0;
+
+	if (json_string(info, "name", 1, &image, r->where, e) < 0 ||
+		reading_size(r, info, "height", "width", e))
+		return -1;
+	const char *view = reading_picture(r, r->path, image, e);
+	int bad = !view;
+	cJSON_ArrayForEach(object, cJSON_GetObjectItemCaseSensitive(root, "objects"))
+	{
+		snprintf(r->where, WHERE, "%s: object %zu", r->path, i++);
+		bad = bad || read_object(r, object, view, e);
+	}
+	return bad ? -1 : 0;
+}
+
+/* Draws a PNG's mask of a name: Ref-LERF has it in the folder gt_mask beside that of the labels. */
+static int read_mask_picture(struct reading *r, const char *folder, const char *picture, const char *view,
+	const char *name, struct err *e)
+{
+	if (path_leaves(picture))
+		return err_set(e, ERR_FORMAT, "%s: key 'segmentation': '%.200s' is not in the folder gt_mask",
+			r->where, picture);
+	char *path = file_join(folder, picture, "", e);
+	uint8_t *pixels = NULL;
+	struct rle mask = {0};
+	int bad = !path || png_read_mask(path, &pixels, &r->height, &r->width, e) ||
+		  rle_encode(&mask, pixels, r->height, r->width, e);
+	struct annotation *on = bad ? NULL : reading_find(r, view, name, e);
+
+	bad = !on || reading_unite(r, on, &mask, e);
+	free(path);
+	free(pixels);
+	rle_free(&mask);
+	return bad ? -1 : 0;
+}
+
+static int read_ref_lerf(
+	struct reading *r, const cJSON *root, const cJSON *objects, const char *json, struct err *e)
+{
+	const cJSON *object;
+	const char *image, *name, *picture;
+	size_t i = 0;
+
+	if (json_string(cJSON_GetObjectItemCaseSensitive(root, "info"), "name", 1, &image, r->where, e) < 0)
+		return -1;
+	char *view = reading_view(image, e), *folder = file_dir(json, e),
+	     *masks = folder ? file_join(folder, "../gt_mask", "", e) : NULL;
+	int bad = !view || !masks;
+	cJSON_ArrayForEach(object, objects)
+	{
+		snprintf(r->where, WHERE, "%s: object %zu", r->path, i++);
+		bad = bad || json_string(object, "category", 1, &name, r->where, e) < 0 ||
+		      json_string(object, "segmentation", 1, &picture, r->where, e) < 0 ||
+		      read_mask_picture(r, masks, picture, view, name, e);
+	}
+	free(view);
+	free(folder);
+	free(masks);
+	return bad ? -1 : 0;
+}
+
+/* Ref-LERF's objects, whose outlines are pictures; NULL where the file is none of its. */
+static const cJSON *ref_lerf_objects(const cJSON *root)
+{
+	const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, "object");
+
+	if (!list)
+		list = cJSON_GetObjectItemCaseSensitive(root, "objects");
+	return cJSON_IsArray(list) &&
+			       cJSON_IsString(cJSON_GetObjectItemCaseSensitive(list->child, "segmentation"))
+		       ? list
+		       : NULL;
+}
+
+static int read_any(struct reading *r, const cJSON *root, const char *path, struct err *e)
+{
+	const cJSON *pictures = ref_lerf_objects(root);
+	const int is_labelme = cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "shapes"));
+
+	snprintf(r->where, WHERE, "%s", r->path);
+	r->to->is_layered = is_labelme;
+	if (is_labelme)
+		return read_labelme(r, root, e);
+	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "annotations")))
+		return reading_annotations(r, root, e);
+	if (pictures)
+		return read_ref_lerf(r, root, pictures, path, e);
+	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "objects")))
+		return read_isat(r, root, e);
+	return foreign_json(root, r->path, e)
+		       ? -1
+		       : err_set(e, ERR_FORMAT,
+				 "%s: no labels: neither LabelMe's JSON (shapes) nor COCO's (annotations) nor ISAT's or Ref-LERF's (objects)",
+				 r->path);
+}
+
+int annotations_read(struct annotations *a, const char *path, struct err *e)
+{
+	struct reading r = {.to = a, .path = file_name(path), .score = NAN};
+	cJSON *root = json_read(path, e);
+
+	*a = (struct annotations){0};
+	const int bad = !root || read_any(&r, root, path, e);
+	cJSON_Delete(root);
+	free(r.flips);
+	free(r.mask);
+	free(r.points);
+	return bad ? textfile_note(path, e) : 0;
+}

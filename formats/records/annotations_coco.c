@@ -1,0 +1,266 @@
+/* COCO's annotations, and those of Grounded-SAM-2's detections. */
+#include "formats/records/annotations_private.h"
+
+#include "base/mem.h"
+#include "base/name.h"
+#include "base/names.h"
+#include "geom/views.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The item of a list whose "id" is that number, or NULL. */
+static const cJSON *with_id(const cJSON *list, const cJSON *id)
+{
+	const cJSON *item;
+
+	cJSON_ArrayForEach(item, list)
+	{
+		const cJSON *own = cJSON_GetObjectItemCaseSensitive(item, "id");
+		if (cJSON_IsNumber(own) && cJSON_IsNumber(id) && own->valuedouble == id->valuedouble)
+			return item;
+	}
+	return NULL;
+}
+
+static int take_runs(struct rle *rle, const cJSON *counts, int height, int width, struct err *e)
+{
+	const cJSON *item;
+	size_t n = 0;
+
+	if (cJSON_IsString(counts))
+		return rle_from_string(rle, counts->valuestring, height, width, e);
+	uint32_t *runs = mem_alloc((size_t)cJSON_GetArraySize(counts), sizeof *runs, "mask", e);
+	if (!runs)
+		return -1;
+	cJSON_ArrayForEach(item, counts) runs[n++] =
+		cJSON_IsNumber(item) && item->valuedouble >= 0 && item->valuedouble <= UINT32_MAX
+			? (uint32_t)item->valuedouble
+			: UINT32_MAX;
+	const int bad = rle_from_runs(rle, runs, n, height, width, e);
+	free(runs);
+	return bad;
+}
+
+/* Run lengths say whose size they are of themselves. */
+static int check_size(const struct reading *r, const cJSON *size, struct err *e)
+{
+	const cJSON *h = cJSON_GetArrayItem(size, 0), *w = cJSON_GetArrayItem(size, 1);
+
+	if (!cJSON_IsArray(size) || cJSON_GetArraySize(size) != 2 || !cJSON_IsNumber(h) || !cJSON_IsNumber(w))
+		return err_set(e, ERR_FORMAT, "%s: key 'segmentation.size' is not [height,width]", r->where);
+	if (h->valuedouble == r->height && w->valuedouble == r->width)
+		return 0;
+	return err_set(e, ERR_FORMAT,
+		"%s: key 'segmentation.size' is %gx%g, but its picture is %dx%d (width x height)%s", r->where,
+		w->valuedouble, h->valuedouble, r->width, r->height,
+		h->valuedouble == r->width && w->valuedouble == r->height
+			? ": height and width are exchanged in one of them"
+			: "");
+}
+
+static int draw_runs(struct reading *r, struct annotation *on, const cJSON *segmentation, struct err *e)
+{
+	const cJSON *counts = cJSON_GetObjectItemCaseSensitive(segmentation, "counts");
+	struct rle rle;
+
+	if (check_size(r, cJSON_GetObjectItemCaseSensitive(segmentation, "size"), e))
+		return -1;
+
+	if (take_runs(&rle, counts, r->height, r->width, e)) {
+		const struct err inner = *e;
+		return inner.code == ERR_FORMAT
+			       ? err_set(e, ERR_FORMAT, "%s: %.300s", r->where, inner.message)
+			       : -1;
+	}
+	const int bad = reading_unite(r, on, &rle, e);
+	rle_free(&rle);
+	return bad;
+}
+
+/* Polygons, of which all are parts of the thing, or run lengths. */
+static int read_segmentation(
+	struct reading *r, const cJSON *item, const char *view, const char *name, struct err *e)
+{
+	const cJSON *segmentation = cJSON_GetObjectItemCaseSensitive(item, "segmentation"), *polygon;
+	const cJSON *counts = cJSON_GetObjectItemCaseSensitive(segmentation, "counts");
+	struct annotation *on = NULL;
+	size_t count, before;
+
+	if (!cJSON_GetArraySize(segmentation)) {
+		const int is_box = cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(item, "bbox"));
+		return reading_leave_out(r,
+			is_box ? "boxes (key 'bbox') without an outline" : "annotations without an outline",
+			e);
+	}
+	if (!(on = reading_find(r, view, name, e)))
+		return -1;
+	if (counts)
+		return draw_runs(r, on, segmentation, e);
+	before = on->shapes;
+	cJSON_ArrayForEach(polygon, segmentation)
+	{
+		if (!cJSON_IsArray(polygon))
+			return err_set(e, ERR_FORMAT,
+				"%s: key 'segmentation' is neither polygons nor run lengths", r->where);
+		if (reading_points(r, polygon, &count, e) || reading_draw(r, on, count, e))
+			return -1;
+	}
+	on->shapes = on->shapes > before ? before + 1 : before;
+	return 0;
+}
+
+/* "score": a number, or a list with one, as Grounded-SAM-2 writes it. */
+static int read_score(struct reading *r, const cJSON *item, struct err *e)
+{
+	const cJSON *score = cJSON_GetObjectItemCaseSensitive(item, "score");
+
+	if (cJSON_GetArraySize(score) == 1)
+		score = score->child;
+	r->score = NAN;
+	if (!score || cJSON_IsNull(score))
+		return 0;
+	if (!cJSON_IsNumber(score) || !isfinite(score->valuedouble))
+		return err_set(e, ERR_FORMAT, "%s: key 'score' is not a finite number", r->where);
+	r->score = score->valuedouble;
+	return 0;
+}
+
+/* The annotation that was read last gets the sentence that the detector was given, where the file says it. */
+static int read_ref(struct reading *r, const cJSON *item, size_t before, struct err *e)
+{
+	struct annotations *a = r->to;
+	const char *ref = NULL;
+	char fault[NAME_FAULT];
+
+	if (isnan(r->score) || a->n == before)
+		return 0;
+	if (json_string(item, "ref", 0, &ref, r->where, e) < 0)
+		return -1;
+	const char *reason = ref ? name_fault(ref, NAME_DATA, fault) : NULL;
+	if (reason)
+		return err_set(e, ERR_FORMAT, "%s: key 'ref' %s", r->where, reason);
+	return ref && !(a->items[a->n - 1].ref = mem_strdup(ref, e)) ? -1 : 0;
+}
+
+static int read_mask(struct reading *r, const cJSON *item, const char *view, const char *name, struct err *e)
+{
+	const size_t before = r->to->n;
+	const int bad = read_score(r, item, e) || read_segmentation(r, item, view, name, e) ||
+			read_ref(r, item, before, e);
+
+	r->score = NAN;
+	return bad ? -1 : 0;
+}
+
+/* The views of all pictures, as gs-import names those of photographs of these paths. */
+struct coco {
+	size_t n;
+	char **files, **views;
+};
+
+static void coco_free(struct coco *c)
+{
+	for (size_t i = 0; i < c->n; i++) {
+		free(c->files[i]);
+		free(c->views[i]);
+	}
+	free(c->files);
+	free(c->views);
+}
+
+static int check_twice(const struct reading *r, const struct coco *c, struct err *e)
+{
+	struct names names;
+	size_t earlier;
+
+	if (names_make(&names, c->files, sizeof *c->files, 0, c->n, e))
+		return -1;
+	const size_t twice = names_twice(&names, &earlier);
+	names_free(&names);
+	return twice == NAMES_NONE
+		       ? 0
+		       : err_set(e, ERR_FORMAT,
+				 "%s: images %zu and %zu have one file_name, '%.300s': their labels would be of one view",
+				 r->path, earlier, twice, c->files[twice]);
+}
+
+static int name_views(struct reading *r, const cJSON *images, struct coco *c, struct err *e)
+{
+	const cJSON *image;
+	const size_t n = (size_t)cJSON_GetArraySize(images);
+
+	c->files = mem_zalloc(n, sizeof *c->files, "images", e);
+	c->views = mem_zalloc(n, sizeof *c->views, "images", e);
+	if (!c->files || !c->views)
+		return -1;
+	cJSON_ArrayForEach(image, images)
+	{
+		const char *file;
+		snprintf(r->where, WHERE, "%s: image %zu", r->path, c->n);
+		if (json_string(image, "file_name", 1, &file, r->where, e) < 0 ||
+			!(c->files[c->n++] = mem_strdup(file, e)))
+			return -1;
+		for (char *p = c->files[c->n - 1]; *p; p++)
+			*p = *p == '\\' ? '/' : *p;
+	}
+	return check_twice(r, c, e) || views_name((const char *const *)c->files, c->n, c->views, r->path, e)
+		       ? -1
+		       : 0;
+}
+
+static int read_annotation(
+	struct reading *r, const struct coco *c, const cJSON *root, const cJSON *item, struct err *e)
+{
+	const cJSON *images = cJSON_GetObjectItemCaseSensitive(root, "images"), *before;
+	const cJSON *image = with_id(images, cJSON_GetObjectItemCaseSensitive(item, "image_id"));
+	const cJSON *category = with_id(cJSON_GetObjectItemCaseSensitive(root, "categories"),
+		cJSON_GetObjectItemCaseSensitive(item, "category_id"));
+	const char *name;
+	size_t at = 0;
+
+	if (!image || !category)
+		return err_set(e, ERR_FORMAT, "%s: no %s has its '%s'", r->where,
+			image ? "category" : "image", image ? "category_id" : "image_id");
+	for (before = images->child; before != image; before = before->next)
+		at++;
+	return json_string(category, "name", 1, &name, r->where, e) < 0 ||
+			       reading_size(r, image, "height", "width", e) ||
+			       read_mask(r, item, c->views[at], name, e)
+		       ? -1
+		       : 0;
+}
+
+/* Grounded-SAM-2's: one picture, and what was found in it. */
+static int read_found(struct reading *r, const cJSON *root, const cJSON *item, struct err *e)
+{
+	const char *file, *name;
+
+	if (json_string(root, "image_path", 1, &file, r->where, e) < 0 ||
+		json_string(item, "class_name", 1, &name, r->where, e) < 0 ||
+		reading_size(r, root, "img_height", "img_width", e))
+		return -1;
+	const char *view = reading_picture(r, "", file, e);
+	return view ? read_mask(r, item, view, name, e) : -1;
+}
+
+int reading_annotations(struct reading *r, const cJSON *root, struct err *e)
+{
+	const int is_found = cJSON_GetObjectItemCaseSensitive(root, "image_path") != NULL;
+	const cJSON *item;
+	struct coco c = {0};
+	size_t i = 0;
+	r->to->is_layered = 1;
+	int bad = !is_found && name_views(r, cJSON_GetObjectItemCaseSensitive(root, "images"), &c, e);
+
+	cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "annotations"))
+	{
+		snprintf(r->where, WHERE, "%s: annotation %zu", r->path, i++);
+		bad = bad ||
+		      (is_found ? read_found(r, root, item, e) : read_annotation(r, &c, root, item, e));
+	}
+	coco_free(&c);
+	return bad ? -1 : 0;
+}

@@ -1,0 +1,118 @@
+#include "formats/records/json.h"
+
+#include "base/file.h"
+#include "base/textfile.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e)
+{
+	const char *stop = NULL;
+	cJSON *value = NULL;
+
+	if (strlen(text) != len)
+		err_set(e, ERR_FORMAT, "%s: not JSON: a NUL byte at offset %zu", name, strlen(text));
+	else if (!(value = cJSON_ParseWithOpts(text, &stop, 1)))
+		err_set(e, ERR_FORMAT, "%s: not JSON at offset %td", name, stop ? stop - text : (ptrdiff_t)0);
+	if (value && json_has_nul(text)) {
+		cJSON_Delete(value);
+		value = NULL;
+		err_set(e, ERR_FORMAT, "%s: a NUL character (\\u0000) in a string", name);
+	}
+	return value;
+}
+
+cJSON *json_read(const char *path, struct err *e)
+{
+	char *text;
+	size_t len;
+
+	if (textfile_read(path, &text, &len, e))
+		return NULL;
+	cJSON *value = json_parse(text, len, file_name(path), e);
+	free(text);
+	return value;
+}
+
+int json_has_nul(const char *json)
+{
+	for (const char *p = strchr(json, '\\'); p && p[1]; p = strchr(p + 2, '\\'))
+		if (!strncmp(p, "\\u0000", 6))
+			return 1;
+	return 0;
+}
+
+static const cJSON *member(const cJSON *object, const char *key)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+
+	return cJSON_IsNull(item) ? NULL : item;
+}
+
+static int err_missing(const char *key, int need, const char *where, struct err *e)
+{
+	return need ? err_set(e, ERR_FORMAT, "%s: key '%s' is missing", where, key) : 0;
+}
+
+int json_number(
+	const cJSON *object, const char *key, int need, double *value, const char *where, struct err *e)
+{
+	const cJSON *item = member(object, key);
+
+	if (!item)
+		return err_missing(key, need, where, e);
+	if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
+		return err_set(e, ERR_FORMAT, "%s: key '%s' is not a number", where, key);
+	*value = item->valuedouble;
+	return 1;
+}
+
+int json_string(
+	const cJSON *object, const char *key, int need, const char **value, const char *where, struct err *e)
+{
+	const cJSON *item = member(object, key);
+
+	if (!item)
+		return err_missing(key, need, where, e);
+	if (!cJSON_IsString(item))
+		return err_set(e, ERR_FORMAT, "%s: key '%s' is not a string", where, key);
+	*value = item->valuestring;
+	return 1;
+}
+
+/* `count` numbers of an array, 0 where they are. */
+static int get_numbers(const cJSON *array, int count, double *values)
+{
+	const cJSON *item = cJSON_IsArray(array) ? array->child : NULL;
+
+	for (int i = 0; i < count; i++, item = item->next) {
+		if (!item || !cJSON_IsNumber(item) || !isfinite(item->valuedouble))
+			return -1;
+		values[i] = item->valuedouble;
+	}
+	return item ? -1 : 0;
+}
+
+int json_matrix(const cJSON *object, const char *key, int rows, int columns, double *values,
+	const char *where, struct err *e)
+{
+	const cJSON *item = member(object, key), *row = cJSON_IsArray(item) ? item->child : NULL;
+	int bad = 0;
+
+	if (!item)
+		return err_missing(key, 1, where, e);
+	if (!columns) {
+		if (get_numbers(item, rows, values))
+			return err_set(e, ERR_FORMAT, "%s: key '%s' is not %d numbers", where, key, rows);
+		return 0;
+	}
+	for (int r = 0; !bad && r < rows; r++) {
+		bad = !row || get_numbers(row, columns, values + r * columns);
+		row = bad ? row : row->next;
+	}
+	if (bad || row)
+		return err_set(e, ERR_FORMAT, "%s: key '%s' is not %dx%d numbers", where, key, rows, columns);
+	return 0;
+}

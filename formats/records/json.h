@@ -1,0 +1,34 @@
+/* Whole JSON files, and members of their objects with messages that say where. formats/records/json.md. */
+#ifndef FORMATS_JSON_H
+#define FORMATS_JSON_H
+
+#include "base/err.h"
+
+#include <cjson/cJSON.h>
+#include <stddef.h>
+
+/* The value in a file ("-" is stdin): cJSON_Delete it. NULL with *e set ("path: not JSON at offset N"). */
+cJSON *json_read(const char *path, struct err *e);
+
+/* The same of `len` bytes in memory and a NUL after them; name is for messages. */
+cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e);
+
+/* 1 where a string in JSON that was parsed has the escape \u0000, at which cJSON silently ends the string. */
+int json_has_nul(const char *json);
+
+/* A number member, finite. Returns 1 and *value, 0 where it is absent or null (an error if `need`), -1 with
+ * *e
+ * ("WHERE: key 'k' ..."). */
+int json_number(
+	const cJSON *object, const char *key, int need, double *value, const char *where, struct err *e);
+
+/* A string member: as json_number. *value belongs to the object. */
+int json_string(
+	const cJSON *object, const char *key, int need, const char **value, const char *where, struct err *e);
+
+/* A member that is an array of `rows` arrays of `columns` finite numbers, or of `rows` numbers where columns
+ * is 0. Returns 0, or -1 with *e. */
+int json_matrix(const cJSON *object, const char *key, int rows, int columns, double *values,
+	const char *where, struct err *e);
+
+#endif

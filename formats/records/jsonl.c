@@ -1,0 +1,230 @@
+#include "formats/records/jsonl.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/name.h"
+#include "base/textfile.h"
+#include "formats/records/foreign.h"
+#include "formats/records/json.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/types.h>
+
+int jsonl_open(struct jsonl *j, const char *path, struct err *e)
+{
+	*j = (struct jsonl){.path = file_name(path)};
+	j->in = file_open(path, e);
+	return j->in ? 0 : -1;
+}
+
+void jsonl_close(struct jsonl *j)
+{
+	file_close(j->in);
+	free(j->line);
+	free(j->text);
+	*j = (struct jsonl){0};
+}
+
+int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
+{
+	char reason[512];
+	va_list ap;
+
+	va_start(ap, format);
+	vsnprintf(reason, sizeof reason, format, ap);
+	va_end(ap);
+	return err_set(e, ERR_FORMAT, "%s:%ld: %s", j->path, j->line_number, reason);
+}
+
+static ssize_t read_line(struct jsonl *j, struct err *e);
+
+/* After `used` bytes of UTF-16 in j->line: reads on from all of the text as UTF-8. */
+static int decode_rest(struct jsonl *j, size_t used, struct err *e)
+{
+	size_t got = used;
+
+	while (got) {
+		if (mem_grow((void **)&j->line, &j->capacity, used + 65536 + 1, 1, j->path, e))
+			return -1;
+		used += got = fread(j->line + used, 1, j->capacity - used - 1, j->in);
+	}
+	if (ferror(j->in))
+		return err_errno(e, "%s", j->path);
+	j->line[used] = 0;
+	j->text = j->line;
+	j->line = NULL;
+	j->capacity = 0;
+	if (textfile_decode(&j->text, &used, j->path, e))
+		return -1;
+	FILE *in = fmemopen(j->text, used ? used : 1, "r"); /* of no text, the NUL after it */
+	if (!in)
+		return err_errno(e, "%s", j->path);
+	file_close(j->in);
+	j->in = in;
+	return 0;
+}
+
+/* The next line, with a NUL after it: its length, 0 at the end, -1 with *e. Nothing of a line that is too
+ * long is kept beyond the limit. */
+static ssize_t read_line(struct jsonl *j, struct err *e)
+{
+	void *block = j->line;
+	size_t len = 0;
+	int byte = 0;
+
+	while (byte != '\n' && (byte = getc_unlocked(j->in)) != EOF) {
+		if (len == JSONL_LINE_MAX) {
+			j->line_number++;
+			return jsonl_err(j, e, "a line of more than %d bytes", JSONL_LINE_MAX);
+		}
+		if (len + 2 > j->capacity && mem_grow(&block, &j->capacity, len + 2, 1, j->path, e))
+			return -1;
+		j->line = block;
+		j->line[len++] = (char)byte;
+	}
+	if (ferror(j->in))
+		return err_errno(e, "%s", j->path);
+	if (len)
+		j->line[len] = 0;
+	const int is_first = !j->line_number && !j->text;
+	if (is_first && textfile_is_wide(j->line, len))
+		return decode_rest(j, len, e) ? -1 : read_line(j, e);
+	if (is_first && textfile_decode(&j->line, &len, j->path, e))
+		return -1;
+	return (ssize_t)len;
+}
+
+/* The next line that is not blank: its length, 0 at the end, -1 with *e. */
+static ssize_t next_line(struct jsonl *j, struct err *e)
+{
+	const size_t peeked = j->peeked;
+
+	j->peeked = 0;
+	while (!peeked) {
+		ssize_t len = read_line(j, e);
+		if (len <= 0)
+			return len;
+		j->line_number++;
+		if ((size_t)len != strlen(j->line))
+			return jsonl_err(j, e, "a NUL byte at column %zu", strlen(j->line) + 1);
+		if (strspn(j->line, " \t\r\n") < (size_t)len)
+			return len;
+	}
+	return (ssize_t)peeked;
+}
+
+int jsonl_peek(struct jsonl *j, struct err *e)
+{
+	const ssize_t len = next_line(j, e);
+
+	j->peeked = len > 0 ? (size_t)len : 0;
+	return len < 0 ? -1 : len > 0;
+}
+
+/* A file of another program, which is one JSON value over many lines, or on the first. */
+static int check_foreign(const struct jsonl *j, const cJSON *first, struct err *e)
+{
+	struct err ignored;
+	cJSON *whole = first ? NULL : json_read(j->path, &ignored);
+	const int bad = foreign_json(first ? first : whole, j->path, e);
+
+	cJSON_Delete(whole);
+	return bad;
+}
+
+int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
+{
+	const char *stop = NULL;
+	ssize_t len = next_line(j, e);
+
+	if (len <= 0)
+		return (int)len;
+	const int is_first = !j->records++;
+	*object = cJSON_ParseWithOpts(j->line, &stop, 1);
+	if (is_first && check_foreign(j, *object, e)) {
+		cJSON_Delete(*object);
+		*object = NULL;
+		return -1;
+	}
+	if (!*object)
+		return jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);
+	const int is_cut = json_has_nul(j->line);
+	if (cJSON_IsObject(*object) && !is_cut)
+		return 1;
+	cJSON_Delete(*object);
+	*object = NULL;
+	return jsonl_err(j, e, is_cut ? "a NUL character (\\u0000) in a string" : "not a JSON object");
+}
+
+int jsonl_text(struct jsonl *j, struct err *e)
+{
+	ssize_t len = next_line(j, e);
+
+	if (len <= 0)
+		return (int)len;
+	while (len && strchr("\r\n", j->line[len - 1]))
+		j->line[--len] = 0;
+	return 1;
+}
+
+int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, int need, const char **value,
+	struct err *e)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+
+	if (!item || cJSON_IsNull(item)) {
+		if (need)
+			return jsonl_err(j, e, "key '%s' is missing", key);
+		return 0;
+	}
+	if (!cJSON_IsString(item))
+		return jsonl_err(j, e, "key '%s' is not a string", key);
+	*value = item->valuestring;
+	return 1;
+}
+
+int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum name_kind kind, int need,
+	char **name, struct err *e)
+{
+	const char *text = NULL;
+	char fault[NAME_FAULT];
+
+	if (jsonl_string(j, object, key, need, &text, e) < 0)
+		return -1;
+	if (!text)
+		return 0;
+	const char *reason = name_fault(text, kind, fault);
+	if (reason)
+		return jsonl_err(j, e, "key '%s' %s", key, reason);
+	*name = name_copy(text, e);
+	return *name ? 0 : -1;
+}
+
+int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, double *number, struct err *e)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+
+	*number = NAN;
+	if (!item || cJSON_IsNull(item))
+		return 0;
+	if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
+		return jsonl_err(j, e, "key '%s' is not a finite number", key);
+	*number = item->valuedouble;
+	return 0;
+}
+
+int jsonl_put_string(FILE *out, const char *before, const char *text, struct err *e)
+{
+	cJSON *item = cJSON_CreateString(text);
+	char *escaped = item ? cJSON_PrintUnformatted(item) : NULL;
+
+	cJSON_Delete(item);
+	if (!escaped)
+		return err_set(e, ERR_SYSTEM, "record: out of memory");
+	fprintf(out, "%s%s", before, escaped);
+	cJSON_free(escaped);
+	return 0;
+}

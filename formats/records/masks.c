@@ -1,0 +1,413 @@
+#include "formats/records/masks.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/number.h"
+#include "base/path.h"
+#include "formats/images/png.h"
+#include "geom/views.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Gives a key's error its file and line. */
+static int key_err(const struct jsonl *j, struct err *e, const char *key)
+{
+	struct err inner = *e;
+
+	if (inner.code != ERR_FORMAT)
+		return -1;
+	return jsonl_err(j, e, "key '%s': %s", key, inner.message);
+}
+
+static int read_visible(const struct jsonl *j, const cJSON *object, double *visible, struct err *e)
+{
+	if (jsonl_number(j, object, "visible", visible, e))
+		return -1;
+	if (*visible < 0 || *visible > 1)
+		return jsonl_err(j, e, "key 'visible' is not within 0 to 1");
+	return 0;
+}
+
+/* A list of so many finite numbers. */
+static int read_list_of(const cJSON *list, double *values, int n)
+{
+	const cJSON *item = list ? list->child : NULL;
+
+	if (!cJSON_IsArray(list) || cJSON_GetArraySize(list) != n)
+		return -1;
+	for (int i = 0; i < n; i++, item = item->next) {
+		if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
+			return -1;
+		values[i] = item->valuedouble;
+	}
+	return 0;
+}
+
+static int read_boxes(const struct jsonl *j, const cJSON *boxes, struct mask_place *place, struct err *e)
+{
+	const cJSON *item;
+	double box[4];
+	size_t i = 0;
+
+	if (!cJSON_IsArray(boxes))
+		return jsonl_err(j, e, "key 'boxes' is not a list");
+	cJSON_ArrayForEach(item, boxes)
+	{
+		if (read_list_of(item, box, 4))
+			return jsonl_err(j, e, "key 'boxes': item %zu is not [left,top,right,bottom]", i);
+		if (mask_place_add_box(place, box, e))
+			return -1;
+		i++;
+	}
+	return 0;
+}
+
+static int read_place(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
+{
+	const cJSON *peak = cJSON_GetObjectItemCaseSensitive(object, "peak"),
+		    *boxes = cJSON_GetObjectItemCaseSensitive(object, "boxes");
+
+	if ((!peak || cJSON_IsNull(peak)) && (!boxes || cJSON_IsNull(boxes)))
+		return 0;
+	if (!(m->place = mask_place_new(e)))
+		return -1;
+	if (peak && !cJSON_IsNull(peak)) {
+		if (read_list_of(peak, m->place->peak, 2))
+			return jsonl_err(j, e, "key 'peak' is not [column,row]");
+		m->place->has_peak = 1;
+	}
+	return boxes && !cJSON_IsNull(boxes) ? read_boxes(j, boxes, m->place, e) : 0;
+}
+
+/* COCO's uncompressed list of lengths. */
+static int read_list(
+	const struct jsonl *j, const cJSON *list, struct rle *mask, int height, int width, struct err *e)
+{
+	const cJSON *item;
+	size_t i = 0;
+	uint32_t *runs = mem_alloc((size_t)cJSON_GetArraySize(list), sizeof *runs, "mask", e);
+
+	if (!runs)
+		return -1;
+	cJSON_ArrayForEach(item, list)
+	{
+		double x = item->valuedouble;
+		if (!cJSON_IsNumber(item) || !(x >= 0 && x <= UINT32_MAX) || x != floor(x)) {
+			free(runs);
+			return jsonl_err(j, e,
+				"key 'segmentation.counts': item %zu is not a whole number in 0 to %lld", i,
+				(long long)UINT32_MAX);
+		}
+		runs[i++] = (uint32_t)x;
+	}
+	int bad = rle_from_runs(mask, runs, i, height, width, e);
+	free(runs);
+	return bad ? key_err(j, e, "segmentation.counts") : 0;
+}
+
+static int read_segmentation(
+	const struct jsonl *j, const cJSON *segmentation, struct rle *mask, struct err *e)
+{
+	const cJSON *size = cJSON_GetObjectItemCaseSensitive(segmentation, "size");
+	const cJSON *counts = cJSON_GetObjectItemCaseSensitive(segmentation, "counts");
+	const cJSON *h = cJSON_GetArrayItem(size, 0), *w = cJSON_GetArrayItem(size, 1);
+
+	if (!cJSON_IsObject(segmentation))
+		return jsonl_err(j, e, "key 'segmentation' is not an object");
+	if (!cJSON_IsArray(size) || cJSON_GetArraySize(size) != 2 || !cJSON_IsNumber(h) || !cJSON_IsNumber(w))
+		return jsonl_err(j, e, "key 'segmentation.size' is not [height,width]");
+	/* within int, or not a size anyway; the fraction is lost only where valuedouble differs */
+	if (h->valuedouble != h->valueint || w->valuedouble != w->valueint)
+		return jsonl_err(j, e, "key 'segmentation.size' is not two whole numbers");
+	if (rle_check_size(h->valueint, w->valueint, e))
+		return key_err(j, e, "segmentation.size");
+	if (cJSON_IsArray(counts))
+		return read_list(j, counts, mask, h->valueint, w->valueint, e);
+	if (!cJSON_IsString(counts))
+		return jsonl_err(j, e, "key 'segmentation.counts' is not a string or a list");
+	if (rle_from_string(mask, counts->valuestring, h->valueint, w->valueint, e))
+		return key_err(j, e, "segmentation.counts");
+	return 0;
+}
+
+static int read_image(const struct jsonl *j, const char *name, struct rle *mask, struct err *e)
+{
+	uint8_t *pixels;
+	int height, width, bad = -1;
+
+	if (j->in != stdin && path_leaves(name))
+		return jsonl_err(j, e, "key 'path': '%.200s' is not in the folder of this file", name);
+	char *dir = file_dir(j->path, e);
+	char *path = dir ? file_join(dir, name, "", e) : NULL;
+
+	if (path && !png_read_mask(path, &pixels, &height, &width, e)) {
+		bad = rle_encode(mask, pixels, height, width, e);
+		free(pixels);
+		if (bad)
+			key_err(j, e, "path");
+	}
+	free(dir);
+	free(path);
+	return bad;
+}
+
+static int read_names(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
+{
+	char *names[3] = {NULL, NULL, NULL};
+	const int bad = jsonl_name(j, object, "view", NAME_VIEW, 1, &names[0], e) ||
+			jsonl_name(j, object, "ref", NAME_DATA, 0, &names[1], e) ||
+			jsonl_name(j, object, "object", NAME_DATA, 0, &names[2], e);
+
+	m->view = names[0];
+	m->ref = names[1];
+	m->object = names[2];
+	return bad;
+}
+
+static int read_record(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
+{
+	const cJSON *segmentation = cJSON_GetObjectItemCaseSensitive(object, "segmentation");
+	const char *path = NULL;
+
+	if (read_names(j, object, m, e) || jsonl_number(j, object, "score", &m->score, e) ||
+		read_visible(j, object, &m->visible, e) || read_place(j, object, m, e))
+		return -1;
+	if (!m->ref && !m->object)
+		return jsonl_err(j, e, "neither key 'ref' nor key 'object'");
+	if (jsonl_string(j, object, "path", 0, &path, e) < 0)
+		return -1;
+	if (cJSON_IsNull(segmentation))
+		segmentation = NULL;
+	if (segmentation && path)
+		return jsonl_err(j, e, "both key 'segmentation' and key 'path'");
+	if (path)
+		return read_image(j, path, &m->rle, e);
+	if (!segmentation)
+		return jsonl_err(j, e, "neither key 'segmentation' nor key 'path'");
+	return read_segmentation(j, segmentation, &m->rle, e);
+}
+
+int masks_next(struct jsonl *j, struct mask *m, struct err *e)
+{
+	cJSON *object;
+
+	*m = (struct mask){0};
+	int got = jsonl_next(j, &object, e);
+	if (got <= 0)
+		return got;
+	int bad = read_record(j, object, m, e);
+	cJSON_Delete(object);
+	if (!bad)
+		return 1;
+	mask_free(m);
+	return -1;
+}
+
+int masks_read_lines(struct masks *set, long **lines, const char *path, struct err *e)
+{
+	struct jsonl j;
+	struct mask m;
+	size_t capacity = 0;
+	int got;
+
+	*set = (struct masks){0};
+	*lines = NULL;
+	if (jsonl_open(&j, path, e))
+		return -1;
+	while ((got = masks_next(&j, &m, e)) > 0) {
+		if (masks_add(set, &m, e) ||
+			mem_grow((void **)lines, &capacity, set->n, sizeof **lines, j.path, e)) {
+			got = -1;
+			break;
+		}
+		(*lines)[set->n - 1] = j.line_number;
+	}
+	jsonl_close(&j);
+	if (!got)
+		return 0;
+	masks_free(set);
+	free(*lines);
+	*lines = NULL;
+	return -1;
+}
+
+int masks_read(struct masks *set, const char *path, struct err *e)
+{
+	long *lines;
+	int bad = masks_read_lines(set, &lines, path, e);
+
+	free(lines);
+	return bad;
+}
+
+int masks_pool(struct pool *p, const struct masks *set, const long *lines, const char *path, struct err *e)
+{
+	size_t bad, first;
+
+	if (pool_make(p, set->items, set->n, e))
+		return -1;
+	if (!pool_check_sizes(p, &bad, &first))
+		return 0;
+	pool_free(p);
+	const struct mask *a = &set->items[bad], *b = &set->items[first];
+	return err_set(e, ERR_FORMAT, "%s:%ld: a mask of %dx%d, but view '%s' has %dx%d on line %ld",
+		file_name(path), lines[bad], a->rle.width, a->rle.height, a->view, b->rle.width,
+		b->rle.height, lines[first]);
+}
+
+int masks_check_shape(const struct mask *m, const char *of, int height, int width, const char *path,
+	long line, struct err *e)
+{
+	char where[1024];
+
+	if (!mask_check_shape(m->view, &m->rle, of, height, width, e))
+		return 0;
+	snprintf(where, sizeof where, "%s:%ld", file_name(path), line);
+	return err_prefix(e, where);
+}
+
+int masks_find_view(
+	struct mask *m, const struct names *names, const struct cameras *c, size_t *at, struct err *e)
+{
+	int is_so = 0;
+
+	*at = names_find(names, m->view);
+	for (size_t v = 0; v < c->n && *at == NAMES_NONE; v++)
+		if ((is_so = view_is_called(&c->views[v], m->view, e)) > 0)
+			*at = v;
+		else if (is_so < 0)
+			return -1;
+	if (is_so <= 0)
+		return 0;
+	char *name = mem_strdup(c->views[*at].name, e);
+	free((char *)m->view);
+	m->view = name;
+	return name ? 0 : -1;
+}
+
+/* Leaves out the masks of views that the scene lacks: COLMAP may have left photographs out. Of all masks it
+ * is an error. */
+static int leave_out(struct masks *set, long *lines, size_t *views, const char *path,
+	const struct names *names, const struct report *to, struct err *e)
+{
+	char few[NAMES_FEW];
+	size_t kept = 0, first = set->n;
+
+	for (size_t i = 0; i < set->n; i++)
+		first = views[i] == NAMES_NONE && first == set->n ? i : first;
+	for (size_t i = 0; i < set->n; i++)
+		kept += views[i] != NAMES_NONE;
+	if (kept == set->n)
+		return 0;
+	if (!kept)
+		return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%.300s'%s",
+			file_name(path), lines[first], set->items[first].view, names_few(names, few));
+	report_warn(to,
+		"%s:%ld: the scene has no view '%.300s': %zu of %zu masks, of views that it lacks, are left out",
+		file_name(path), lines[first], set->items[first].view, set->n - kept, set->n);
+	kept = 0;
+	for (size_t i = 0; i < set->n; i++) {
+		if (views[i] == NAMES_NONE) {
+			mask_free(&set->items[i]);
+			continue;
+		}
+		set->items[kept] = set->items[i];
+		lines[kept] = lines[i];
+		views[kept++] = views[i];
+	}
+	set->n = kept;
+	return 0;
+}
+
+int masks_views(struct masks *set, long *lines, const char *path, const struct cameras *cameras,
+	size_t *views, const struct report *to, struct err *e)
+{
+	struct names names;
+	int bad = names_make(
+		&names, cameras->views, sizeof *cameras->views, offsetof(struct camera, name), cameras->n, e);
+
+	for (size_t i = 0; i < set->n && !bad; i++) {
+		size_t at;
+		bad = masks_find_view(&set->items[i], &names, cameras, &at, e);
+		if (views)
+			views[i] = at;
+		if (!bad && at != NAMES_NONE && (views || !cameras->views[at].lens.model))
+			bad = masks_check_shape(&set->items[i], "the view", cameras->views[at].height,
+				cameras->views[at].width, path, lines[i], e);
+	}
+	bad = bad || (views && set->n && leave_out(set, lines, views, path, &names, to, e));
+	names_free(&names);
+	return bad ? -1 : 0;
+}
+
+static void put_number(FILE *out, const char *before, double x)
+{
+	char text[NUMBER_SIZE];
+
+	fprintf(out, "%s%s", before, number_text(text, x));
+}
+
+/* Whole numbers without an exponent, as pixels are counted. */
+static void put_numbers(FILE *out, const char *before, const double *x, int n)
+{
+	for (int i = 0; i < n; i++)
+		if (x[i] == floor(x[i]) && fabs(x[i]) < 1e9)
+			fprintf(out, "%s%.0f", i ? "," : before, x[i] + 0.0);
+		else
+			put_number(out, i ? "," : before, x[i]);
+	fputc(']', out);
+}
+
+static void put_place(FILE *out, const struct mask_place *p)
+{
+	if (p->has_peak)
+		put_numbers(out, ",\"peak\":[", p->peak, 2);
+	for (size_t i = 0; i < p->box_count; i++)
+		put_numbers(out, i ? ",[" : ",\"boxes\":[[", p->boxes[i], 4);
+	if (p->box_count)
+		fputc(']', out);
+}
+
+/* What is known of a mask but whose it is. */
+static int put_shape(FILE *out, const struct mask *m, struct err *e)
+{
+	char *counts = rle_to_string(&m->rle, e);
+
+	if (!counts)
+		return -1;
+	if (!isnan(m->score))
+		put_number(out, ",\"score\":", m->score);
+	if (!isnan(m->visible))
+		put_number(out, ",\"visible\":", m->visible);
+	if (m->place)
+		put_place(out, m->place);
+	fprintf(out, ",\"segmentation\":{\"size\":[%d,%d],\"counts\":", m->rle.height, m->rle.width);
+	const int bad = jsonl_put_string(out, "", counts, e);
+	fputc('}', out);
+	free(counts);
+	return bad;
+}
+
+int masks_put_parts(FILE *out, const struct mask *m, const struct mask *parts, size_t n, struct err *e)
+{
+	if (jsonl_put_string(out, "{\"view\":", m->view, e) ||
+		(m->ref && jsonl_put_string(out, ",\"ref\":", m->ref, e)) ||
+		(m->object && jsonl_put_string(out, ",\"object\":", m->object, e)) || put_shape(out, m, e))
+		return -1;
+	for (size_t k = 0; k < n; k++) {
+		if (jsonl_put_string(
+			    out, k ? "},{\"object\":" : ",\"parts\":[{\"object\":", parts[k].object, e) ||
+			put_shape(out, &parts[k], e))
+			return -1;
+	}
+	fputs(n ? "}]}\n" : "}\n", out);
+	return ferror(out) ? err_errno(e, "write") : 0;
+}
+
+int masks_put(FILE *out, const struct mask *m, struct err *e)
+{
+	return masks_put_parts(out, m, NULL, 0, e);
+}

@@ -1,0 +1,48 @@
+/* Mask records (JSON Lines): candidates, pseudo masks, predictions and truth alike. formats/records/masks.md.
+ */
+#ifndef FORMATS_MASKS_H
+#define FORMATS_MASKS_H
+
+#include "base/err.h"
+#include "base/names.h"
+#include "base/report.h"
+#include "formats/records/jsonl.h"
+#include "geom/camera.h"
+#include "mask/mask.h"
+#include "mask/pool.h"
+
+#include <stdio.h>
+
+/* The next record of a stream, mask_free it: 1, 0 at the end, -1 with *e ("path:LINE: key '...': ..."). A
+ * "path" member names a PNG relative to the JSONL file's folder (nonzero is foreground). */
+int masks_next(struct jsonl *j, struct mask *m, struct err *e);
+
+/* All records of a file; "-" is stdin. masks_free them. */
+int masks_read(struct masks *set, const char *path, struct err *e);
+/* As masks_read; *lines (n) gets the line of each record. free() it. */
+int masks_read_lines(struct masks *set, long **lines, const char *path, struct err *e);
+
+/* The records of a file pooled. ERR_FORMAT where masks of a view differ in size. */
+int masks_pool(struct pool *p, const struct masks *set, const long *lines, const char *path, struct err *e);
+/* 0 where a mask, of a line of a file, has the shape of what it is of: mask_check_shape. */
+int masks_check_shape(const struct mask *m, const char *of, int height, int width, const char *path,
+	long line, struct err *e);
+/* *at: the view of a scene, whose names (names) are these, that a mask is of by its name or by its
+ * photograph's (view_is_called), which the mask then has; NAMES_NONE where there is none. */
+int masks_find_view(
+	struct mask *m, const struct names *names, const struct cameras *c, size_t *at, struct err *e);
+
+/* views (n): the number of each record's view, which the record then names as the scene does
+ * (view_is_called). Masks of views that the scene lacks are left out, with a warning; ERR_FORMAT where that
+ * leaves none, or a mask has not the shape of its view. With NULL (and no report) nothing is left out, and
+ * masks of photographs that a lens distorts are not compared. */
+int masks_views(struct masks *set, long *lines, const char *path, const struct cameras *cameras,
+	size_t *views, const struct report *to, struct err *e);
+
+/* One line. Keys in the order view, ref, object, score, visible, peak, boxes, segmentation; absent ones left
+ * out. */
+int masks_put(FILE *out, const struct mask *m, struct err *e);
+/* The same with a key "parts": objects of the parts' object, score, visible and segmentation. */
+int masks_put_parts(FILE *out, const struct mask *m, const struct mask *parts, size_t n, struct err *e);
+
+#endif

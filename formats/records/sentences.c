@@ -1,0 +1,243 @@
+#include "formats/records/sentences.h"
+
+#include "base/mem.h"
+#include "base/names.h"
+#include "base/utf8.h"
+#include "formats/records/jsonl.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void sentence_free(struct sentence *s)
+{
+	for (size_t i = 0; i < s->view_count; i++)
+		free(s->views[i]);
+	for (size_t i = 0; i < s->object_count; i++)
+		free(s->objects[i]);
+	free(s->views);
+	free(s->objects);
+	free(s->view);
+	free(s->kind);
+	free(s->ref);
+	free(s->object);
+	free(s->text);
+}
+
+void sentences_free(struct sentences *s)
+{
+	for (size_t i = 0; i < s->n; i++)
+		sentence_free(&s->items[i]);
+	free(s->items);
+	*s = (struct sentences){0};
+}
+
+static char *copy_text(const struct jsonl *j, const char *value, struct err *e)
+{
+	size_t len = strlen(value), bad = utf8_check(value, len);
+
+	if (bad < len) {
+		jsonl_err(j, e, "key 'text' is not UTF-8 at byte %zu", bad + 1);
+		return NULL;
+	}
+	return mem_strdup(value, e);
+}
+
+static char *copy_item(
+	const struct jsonl *j, const char *key, enum name_kind kind, const char *value, struct err *e)
+{
+	char fault[NAME_FAULT];
+	const char *reason = name_fault(value, kind, fault);
+
+	if (reason) {
+		jsonl_err(j, e, "key '%s': item '%s' %s", key, value, reason);
+		return NULL;
+	}
+	return name_copy(value, e);
+}
+
+/* A list of strings that may be absent or null: then *strings stays NULL. */
+static int read_list(char ***strings, size_t *n, const struct jsonl *j, const cJSON *object, const char *key,
+	enum name_kind kind, struct err *e)
+{
+	const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, key), *item;
+
+	if (!list || cJSON_IsNull(list))
+		return 0;
+	if (!cJSON_IsArray(list))
+		return jsonl_err(j, e, "key '%s' is not a list", key);
+	*strings = mem_zalloc((size_t)cJSON_GetArraySize(list), sizeof **strings, j->path, e);
+	if (!*strings)
+		return -1;
+	cJSON_ArrayForEach(item, list)
+	{
+		if (!cJSON_IsString(item))
+			return jsonl_err(j, e, "key '%s' holds something other than strings", key);
+		(*strings)[*n] = copy_item(j, key, kind, item->valuestring, e);
+		if (!(*strings)[*n])
+			return -1;
+		++*n;
+	}
+	return 0;
+}
+
+static int read_objects(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+{
+	if (read_list(&s->objects, &s->object_count, j, object, "objects", NAME_DATA, e))
+		return -1;
+	s->has_objects = s->objects != NULL;
+	for (size_t i = 0; i < s->object_count; i++)
+		for (size_t k = 0; k < i; k++)
+			if (!strcmp(s->objects[i], s->objects[k]))
+				return jsonl_err(j, e, "key 'objects' names '%s' twice", s->objects[i]);
+	return 0;
+}
+
+/* The name of the target: where it is not given, that of the only object. What teaches has one. */
+static int read_target(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+{
+	const int is_free = s->has_objects && (s->object_count == 1 || s->split == SPLIT_TEST);
+	const char *only = s->object_count == 1 ? s->objects[0] : "";
+
+	if (jsonl_name(j, object, "object", NAME_DATA, !is_free, &s->object, e))
+		return -1;
+	if (s->object && s->object_count == 1 && strcmp(s->object, only))
+		return jsonl_err(
+			j, e, "key 'object' is '%s', but the one of 'objects' '%s'", s->object, only);
+	if (!s->object)
+		s->object = mem_strdup(only, e);
+	return s->object ? 0 : -1;
+}
+
+static int read_one(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+{
+	const char *text, *split = "train";
+
+	if (jsonl_name(j, object, "ref", NAME_DATA, 1, &s->ref, e) ||
+		jsonl_string(j, object, "split", 0, &split, e) < 0)
+		return -1;
+	if (strcmp(split, "train") && strcmp(split, "test"))
+		return jsonl_err(j, e, "key 'split' is '%s', not 'train' or 'test'", split);
+	s->split = !strcmp(split, "test") ? SPLIT_TEST : SPLIT_TRAIN;
+	if (read_objects(s, j, object, e) || read_target(s, j, object, e) ||
+		jsonl_string(j, object, "text", 1, &text, e) < 0)
+		return -1;
+	s->text = copy_text(j, text, e);
+	return !s->text || read_list(&s->views, &s->view_count, j, object, "views", NAME_VIEW, e) ||
+			       jsonl_name(j, object, "view", NAME_VIEW, 0, &s->view, e) ||
+			       jsonl_name(j, object, "kind", NAME_DATA, 0, &s->kind, e)
+		       ? -1
+		       : 0;
+}
+
+static int check_unique(const struct sentences *s, const long *lines, const char *path, struct err *e)
+{
+	struct names refs;
+	size_t earlier;
+
+	if (names_make(&refs, s->items, sizeof *s->items, offsetof(struct sentence, ref), s->n, e))
+		return -1;
+	const size_t twice = names_twice(&refs, &earlier);
+	names_free(&refs);
+	return twice == NAMES_NONE ? 0
+				   : err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", path,
+					     lines[twice], s->items[twice].ref, lines[earlier]);
+}
+
+static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
+{
+	long *lines = NULL;
+	size_t capacity = 0, line_capacity = 0;
+	cJSON *object;
+	int got;
+
+	while ((got = jsonl_next(j, &object, e)) > 0) {
+		struct sentence one = {0};
+		int bad = read_one(&one, j, object, e) ||
+			  mem_grow((void **)&s->items, &capacity, s->n + 1, sizeof *s->items, j->path, e) ||
+			  mem_grow((void **)&lines, &line_capacity, s->n + 1, sizeof *lines, j->path, e);
+		cJSON_Delete(object);
+		if (bad) {
+			sentence_free(&one);
+			free(lines);
+			return -1;
+		}
+		lines[s->n] = j->line_number;
+		s->items[s->n++] = one;
+	}
+	if (!got && !s->n)
+		got = err_set(e, ERR_FORMAT, "%s: holds no sentences", j->path);
+	if (!got)
+		got = check_unique(s, lines, j->path, e);
+	free(lines);
+	return got;
+}
+
+static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)
+{
+	size_t capacity = 0;
+	char ref[24];
+	int got;
+
+	while ((got = jsonl_text(j, e)) > 0) {
+		if (mem_grow((void **)&s->items, &capacity, s->n + 1, sizeof *s->items, j->path, e))
+			return -1;
+		struct sentence *one = &s->items[s->n++];
+		*one = (struct sentence){.split = SPLIT_TEST};
+		const size_t len = strlen(j->line), bad = utf8_check(j->line, len);
+		if (bad < len)
+			return jsonl_err(j, e, "not UTF-8 at byte %zu", bad + 1);
+		snprintf(ref, sizeof ref, "%ld", j->line_number);
+		if (!(one->ref = mem_strdup(ref, e)) || !(one->object = mem_strdup("?", e)) ||
+			!(one->text = mem_strdup(j->line, e)))
+			return -1;
+	}
+	return got;
+}
+
+/* Whether the file's text begins as JSON may; -1 with *e. */
+static int is_json(struct jsonl *j, struct err *e)
+{
+	const int got = jsonl_peek(j, e);
+
+	return got < 0 ? -1 : !got || strchr("{[\"", j->line[strspn(j->line, " \t")]);
+}
+
+static int read_file(struct sentences *s, const char *path, int is_any, struct err *e)
+{
+	struct jsonl j;
+
+	*s = (struct sentences){0};
+	if (jsonl_open(&j, path, e))
+		return -1;
+	const int json = is_any ? is_json(&j, e) : 1;
+	int bad = json < 0 ? -1 : json ? read_all(s, &j, e) : read_plain(s, &j, e);
+	jsonl_close(&j);
+	if (bad)
+		sentences_free(s);
+	return bad;
+}
+
+int sentences_read(struct sentences *s, const char *path, struct err *e)
+{
+	return read_file(s, path, 0, e);
+}
+
+int sentences_read_any(struct sentences *s, const char *path, struct err *e)
+{
+	return read_file(s, path, 1, e);
+}
+
+int sentences_add(struct sentences *s, const char *ref, const char *object, const char *text, struct err *e)
+{
+	size_t capacity = s->n;
+
+	if (mem_grow((void **)&s->items, &capacity, s->n + 1, sizeof *s->items, "sentences", e))
+		return -1;
+	struct sentence *one = &s->items[s->n++];
+	*one = (struct sentence){0};
+	one->ref = mem_strdup(ref, e);
+	one->object = one->ref ? mem_strdup(object, e) : NULL;
+	one->text = one->object ? mem_strdup(text, e) : NULL;
+	return one->text ? 0 : -1;
+}

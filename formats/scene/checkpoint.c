@@ -1,0 +1,186 @@
+#include "formats/scene/checkpoint.h"
+
+#include "base/mem.h"
+#include "base/number.h"
+#include "formats/arrays/safetensors.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { ARRAYS = 4, NUMBERS = 2 };
+
+/* The last one, and best_score, where something is held out and was evaluated. */
+static const char *const names[ARRAYS] = {"values", "first_moment", "second_moment", "best"};
+
+void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_options *o, uint32_t inputs)
+{
+	char temperature[NUMBER_SIZE], lambda[NUMBER_SIZE], features[NUMBER_SIZE], mlps[NUMBER_SIZE],
+		tolerance[NUMBER_SIZE], share[NUMBER_SIZE], hold_out[NUMBER_SIZE];
+
+	snprintf(text, CHECKPOINT_IDENTITY,
+		"--interaction %s --similarity %s --contrast %s --feature-width %lld --temperature %s --lambda %s --feature-rate %s --mlp-rate %s "
+		"--batch %lld --negatives %lld --tolerance %s --share %s --init-iterations %lld --hold-out %s --seed %lld, inputs %08x",
+		refer_interaction_name(o->interaction), refer_similarity_name(o->similarity),
+		refer_contrast_name(o->contrast), o->feature_width, number_text(temperature, o->temperature),
+		number_text(lambda, o->lambda), number_text(features, o->rates.features),
+		number_text(mlps, o->rates.mlps), o->batch, o->negatives,
+		number_text(tolerance, o->tolerance), number_text(share, o->share), o->warm,
+		number_text(hold_out, o->hold_out), o->seed, (unsigned)inputs);
+}
+
+char *checkpoint_path(const char *model, struct err *e)
+{
+	const size_t bytes = strlen(model) + sizeof ".checkpoint";
+	char *path = mem_alloc(bytes, 1, model, e);
+
+	if (path)
+		snprintf(path, bytes, "%s.checkpoint", model);
+	return path;
+}
+
+int checkpoint_write(
+	const struct train_state *t, const char *path, const struct checkpoint_of *of, struct err *e)
+{
+	const int has_best = t->best.values && t->best.iteration;
+	const float *arrays[ARRAYS] = {t->values, t->m, t->v, t->best.values};
+	const double losses[3] = {t->sum.bce, t->sum.contrast, t->sum.total};
+	struct st_tensor tensors[NUMBERS + ARRAYS] = {
+		{.name = "losses", .dtype = ST_F64, .dims = 1, .shape = {3}, .data = losses}};
+	char iteration[32], best[32], since[32];
+	const struct st_meta meta[] = {{"format", "refer.checkpoint"}, {"version", "1"},
+		{"tool", "refer-train"}, {"iteration", iteration}, {"identity", of->identity},
+		{"scene", fingerprint_text(&of->origin.scene)},
+		{"encoder", fingerprint_text(&of->origin.encoder)},
+		{"best_iteration", has_best ? best : NULL}, {"evaluations_since", has_best ? since : NULL}};
+	size_t n = 1;
+
+	if (has_best)
+		tensors[n++] = (struct st_tensor){.name = "best_score",
+			.dtype = ST_F64,
+			.dims = 1,
+			.shape = {1},
+			.data = &t->best.score};
+	for (int i = 0; i < ARRAYS - !has_best; i++)
+		tensors[n++] = (struct st_tensor){.name = names[i],
+			.dtype = ST_F32,
+			.dims = 1,
+			.shape = {(int64_t)t->count},
+			.data = arrays[i]};
+	snprintf(iteration, sizeof iteration, "%ld", t->iteration);
+	snprintf(best, sizeof best, "%ld", t->best.iteration);
+	snprintf(since, sizeof since, "%ld", t->best.since);
+	return safetensors_write(path, tensors, n, meta, sizeof meta / sizeof *meta, e);
+}
+
+static int read_array(float *to, size_t count, const struct safetensors *st, const char *name, struct err *e)
+{
+	const struct st_tensor *tensor =
+		safetensors_need(st, name, ST_F32, 1, (int64_t[]){(int64_t)count}, e);
+
+	if (!tensor)
+		return -1;
+	memcpy(to, tensor->data, tensor->bytes);
+	for (size_t i = 0; i < count; i++)
+		if (!isfinite(to[i]))
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path, name, i);
+	return 0;
+}
+
+/* A tensor of `count` finite doubles, at most 3. */
+static int read_numbers(double *to, int count, const struct safetensors *st, const char *name, struct err *e)
+{
+	const struct st_tensor *tensor = safetensors_need(st, name, ST_F64, 1, (int64_t[]){count}, e);
+
+	if (!tensor)
+		return -1;
+	memcpy(to, tensor->data, tensor->bytes);
+	for (int i = 0; i < count; i++)
+		if (!isfinite(to[i]))
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor '%s': item %d is not finite", st->path, name, i);
+	return 0;
+}
+
+/* The best state, which a checkpoint has from the first evaluation on. */
+static int read_best(struct train_state *t, const struct safetensors *st, long long iteration, struct err *e)
+{
+	long long best, since;
+
+	if (!t->best.values || !safetensors_meta(st, "best_iteration"))
+		return 0;
+	if (safetensors_meta_int(st, "best_iteration", 1, iteration, &best, e) ||
+		safetensors_meta_int(st, "evaluations_since", 0, LONG_MAX, &since, e) ||
+		read_numbers(&t->best.score, 1, st, "best_score", e) ||
+		read_array(t->best.values, t->count, st, "best", e))
+		return -1;
+	t->best.iteration = (long)best;
+	t->best.since = (long)since;
+	return 0;
+}
+
+/* That it is of this training: of this scene and encoder, which have messages of their own, with these
+ * options and inputs. */
+static int check_training(const struct safetensors *st, const struct checkpoint_of *of, struct err *e)
+{
+	struct origin own;
+
+	if (origin_read(&own, st, e) ||
+		fingerprint_check("scene", st->path, &own.scene, of->scene_path, &of->origin.scene, e) ||
+		fingerprint_check("encoder", st->path, &own.encoder, of->text_path, &of->origin.encoder, e))
+		return -1;
+	const char *identity = safetensors_meta(st, "identity");
+	if (!identity || strcmp(identity, of->identity))
+		return err_set(e, ERR_FORMAT,
+			"%s: is of another training (its options or inputs differ); remove it or train without --resume",
+			st->path);
+	return 0;
+}
+
+static int read_state(
+	struct train_state *t, const struct safetensors *st, const struct checkpoint_of *of, struct err *e)
+{
+	float *arrays[] = {t->values, t->m, t->v};
+	long long iteration;
+	double losses[3];
+
+	if (safetensors_need_format(st, "refer.checkpoint", 1, e) || check_training(st, of, e))
+		return -1;
+	if (safetensors_meta_int(st, "iteration", 1, LONG_MAX, &iteration, e))
+		return -1;
+	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+		if (read_array(arrays[i], t->count, st, names[i], e))
+			return -1;
+	for (size_t i = 0; i < t->count; i++)
+		if (t->v[i] < 0)
+			return err_set(e, ERR_FORMAT, "%s: tensor 'second_moment': item %zu is negative",
+				st->path, i);
+	if (read_numbers(losses, 3, st, "losses", e) || read_best(t, st, iteration, e))
+		return -1;
+	t->sum = (struct step_losses){losses[0], losses[1], losses[2]};
+	t->iteration = (long)iteration;
+	return 0;
+}
+
+int checkpoint_read(struct train_state *t, const char *path, const struct checkpoint_of *of, struct err *e)
+{
+	struct safetensors st;
+
+	if (safetensors_open(&st, path, e))
+		return -1;
+	int bad = read_state(t, &st, of, e);
+	safetensors_close(&st);
+	return bad;
+}
+
+int checkpoint_resume(struct train_state *t, const char *path, const struct checkpoint_of *of, long long most,
+	struct err *e)
+{
+	if (checkpoint_read(t, path, of, e))
+		return -1;
+	return t->iteration > most ? err_set(e, ERR_FORMAT, "%s: has %ld steps, more than the %lld asked for",
+					     path, t->iteration, most)
+				   : 0;
+}

@@ -1,0 +1,219 @@
+#include "formats/scene/features.h"
+
+#include "base/number.h"
+#include "nn/linear.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Version 2 is one with components, of which at most so many are expanded at a time. */
+enum { VERSION_READ = 2, EXPANDED = FEATURES_MAX_COMPONENTS };
+
+static int check_numbers(const struct features *f, struct err *e)
+{
+	const char *path = f->file.path;
+
+	for (size_t i = 0; i < f->gaussians; i++) {
+		if (!(f->reliability[i] >= 0 && f->reliability[i] <= 1))
+			return err_set(e, ERR_FORMAT, "%s: tensor 'reliability': item %zu is not in 0 to 1",
+				path, i);
+		if (!(f->weight[i] >= 0 && isfinite(f->weight[i])))
+			return err_set(e, ERR_FORMAT, "%s: tensor 'weight': item %zu is not a number from 0",
+				path, i);
+		if (f->labels && f->labels[i] < -1)
+			return err_set(e, ERR_FORMAT, "%s: tensor 'labels': item %zu is %d, below -1", path,
+				i, (int)f->labels[i]);
+		if (f->labels && f->labels[i] > FEATURES_MAX_LABEL)
+			return err_set(e, ERR_FORMAT, "%s: tensor 'labels': item %zu is %d, above %d", path,
+				i, (int)f->labels[i], FEATURES_MAX_LABEL);
+	}
+	return 0;
+}
+
+/* Half floats and floats alike are not finite where all bits of the exponent are set. */
+static int check_finite(const struct features *f, struct err *e)
+{
+	const size_t count = f->gaussians * (f->components ? f->components : f->channels);
+	const uint16_t *half = f->values;
+	const float *single = f->values;
+
+	for (size_t i = 0; i < count; i++)
+		if (f->is_half ? (half[i] & 0x7c00) == 0x7c00 : !isfinite(single[i]))
+			return err_set(e, ERR_FORMAT, "%s: tensor 'features': item %zu is not finite",
+				f->file.path, i);
+	return 0;
+}
+
+static int read_labels(struct features *f, struct err *e)
+{
+	const int64_t n[] = {(int64_t)f->gaussians};
+	const struct st_tensor *labels = safetensors_need(&f->file, "labels", ST_I32, 1, n, e);
+
+	f->labels = labels ? labels->data : NULL;
+	return labels ? 0 : -1;
+}
+
+static int check_floats(const struct st_tensor *t, const char *path, size_t count, struct err *e)
+{
+	const float *x = t->data;
+
+	for (size_t i = 0; i < count; i++)
+		if (!isfinite(x[i]))
+			return err_set(
+				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", path, t->name, i);
+	return 0;
+}
+
+/* The features that were found are components of others. */
+static int read_components(struct features *f, struct err *e)
+{
+	const int64_t shape[] = {(int64_t)f->channels, -1};
+	const struct st_tensor *basis = safetensors_need(&f->file, "basis", ST_F32, 2, shape, e);
+
+	if (!basis)
+		return -1;
+	if (f->channels > FEATURES_MAX_COMPONENTS)
+		return err_set(e, ERR_FORMAT, "%s: tensor 'features': %zu components, not 1 to %d",
+			f->file.path, f->channels, FEATURES_MAX_COMPONENTS);
+	if (basis->shape[1] < (int64_t)f->channels || basis->shape[1] > FEATURES_MAX_CHANNELS)
+		return err_set(e, ERR_FORMAT, "%s: tensor 'basis': %lld channels, not %zu to %d",
+			f->file.path, (long long)basis->shape[1], f->channels, FEATURES_MAX_CHANNELS);
+	const struct st_tensor *mean = safetensors_need(&f->file, "mean", ST_F32, 1, &basis->shape[1], e);
+	if (!mean)
+		return -1;
+	f->components = f->channels;
+	f->channels = (size_t)basis->shape[1];
+	f->basis = basis->data;
+	f->mean = mean->data;
+	return check_floats(basis, f->file.path, f->components * f->channels, e) ||
+			       check_floats(mean, f->file.path, f->channels, e)
+		       ? -1
+		       : 0;
+}
+
+static int read_features(struct features *f, struct err *e)
+{
+	const int64_t shape[] = {(int64_t)f->gaussians, -1};
+	const struct st_tensor *t = safetensors_find(&f->file, "features");
+
+	if (!t)
+		return err_set(e, ERR_FORMAT, "%s: tensor 'features' or 'labels' is missing", f->file.path);
+	f->is_half = t->dtype == ST_F16;
+	t = safetensors_need(&f->file, "features", f->is_half ? ST_F16 : ST_F32, 2, shape, e);
+	if (!t)
+		return -1;
+	if (t->shape[1] < 1 || t->shape[1] > FEATURES_MAX_CHANNELS)
+		return err_set(e, ERR_FORMAT, "%s: tensor 'features': %lld channels, not 1 to %d",
+			f->file.path, (long long)t->shape[1], FEATURES_MAX_CHANNELS);
+	f->channels = (size_t)t->shape[1];
+	f->values = t->data;
+	return check_finite(f, e) || (safetensors_find(&f->file, "basis") && read_components(f, e)) ? -1 : 0;
+}
+
+static int read_all(struct features *f, struct err *e)
+{
+	const struct safetensors *st = &f->file;
+	long long gaussians = 0;
+
+	if (safetensors_need_format(st, "refer.features", VERSION_READ, e) ||
+		safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e) ||
+		fingerprint_read(&f->scene, st, "scene", e))
+		return -1;
+	f->gaussians = (size_t)gaussians;
+	const int64_t n[] = {gaussians};
+	const struct st_tensor *reliability = safetensors_need(st, "reliability", ST_F32, 1, n, e);
+	const struct st_tensor *weight = reliability ? safetensors_need(st, "weight", ST_F32, 1, n, e) : NULL;
+	if (!weight)
+		return -1;
+	f->reliability = reliability->data;
+	f->weight = weight->data;
+	if (safetensors_find(st, "labels") ? read_labels(f, e) : read_features(f, e))
+		return -1;
+	return check_numbers(f, e);
+}
+
+int features_open(struct features *f, const char *path, struct err *e)
+{
+	*f = (struct features){0};
+	if (safetensors_open(&f->file, path, e))
+		return -1;
+	if (!read_all(f, e))
+		return 0;
+	features_close(f);
+	return -1;
+}
+
+void features_close(struct features *f)
+{
+	safetensors_close(&f->file);
+	*f = (struct features){0};
+}
+
+/* out (n): numbers of the file from one on. */
+static void stored_floats(const struct features *f, size_t from, size_t n, float *out)
+{
+	const uint16_t *half = f->values;
+
+	if (!f->is_half)
+		memcpy(out, (const float *)f->values + from, n * sizeof *out);
+	else
+		for (size_t i = 0; i < n; i++)
+			out[i] = st_half_to_float(half[from + i]);
+}
+
+/* out (n,C): the features that the components of Gaussians from `first` on stand for. */
+static void expand(const struct features *f, size_t first, size_t n, float *out)
+{
+	const struct linear_matrix basis = {f->basis, f->channels, 1};
+	float y[EXPANDED];
+	const size_t most = EXPANDED / f->components;
+
+	for (size_t from = 0; from < n; from += most) {
+		const size_t rows = n - from < most ? n - from : most;
+		stored_floats(f, (first + from) * f->components, rows * f->components, y);
+		linear_product(out + from * f->channels, f->channels, f->mean, 0,
+			(struct linear_matrix){y, f->components, 1}, basis, rows, f->channels, f->components);
+	}
+	for (size_t i = 0; i < n; i++)
+		if (!(f->weight[first + i] > 0))
+			memset(out + i * f->channels, 0, f->channels * sizeof *out);
+}
+
+void features_floats(const struct features *f, size_t first, size_t n, float *out)
+{
+	if (f->components)
+		expand(f, first, n, out);
+	else
+		stored_floats(f, first * f->channels, n * f->channels, out);
+}
+
+int features_write(const struct features *f, const char *path, const char *options, struct err *e)
+{
+	const int64_t n = (int64_t)f->gaussians, c = (int64_t)f->channels, k = (int64_t)f->components;
+	const struct st_tensor tensors[] = {
+		f->labels ? (struct st_tensor){.name = "labels",
+				    .dtype = ST_I32,
+				    .dims = 1,
+				    .shape = {n},
+				    .data = f->labels}
+			  : (struct st_tensor){.name = "features",
+				    .dtype = f->is_half ? ST_F16 : ST_F32,
+				    .dims = 2,
+				    .shape = {n, k ? k : c},
+				    .data = f->values},
+		{.name = "reliability", .dtype = ST_F32, .dims = 1, .shape = {n}, .data = f->reliability},
+		{.name = "weight", .dtype = ST_F32, .dims = 1, .shape = {n}, .data = f->weight},
+		{.name = "basis", .dtype = ST_F32, .dims = 2, .shape = {k, c}, .data = f->basis},
+		{.name = "mean", .dtype = ST_F32, .dims = 1, .shape = {c}, .data = f->mean},
+	};
+	char gaussians[24], error[NUMBER_SIZE];
+
+	snprintf(gaussians, sizeof gaussians, "%lld", (long long)n);
+	const struct st_meta meta[] = {{"format", "refer.features"}, {"version", k ? "2" : "1"},
+		{"tool", "feature-lift"}, {"options", options}, {"seed", "0"}, {"gaussians", gaussians},
+		{"scene", fingerprint_text(&f->scene)}, {"error", number_text(error, f->error)}};
+	const size_t tensor_count = sizeof tensors / sizeof *tensors, meta_count = sizeof meta / sizeof *meta;
+	return safetensors_write(
+		path, tensors, k ? tensor_count : tensor_count - 2, meta, k ? meta_count : meta_count - 1, e);
+}

@@ -1,0 +1,40 @@
+/* features.safetensors (refer.features): what pictures say of each Gaussian, features or labels.
+ * formats/scene/features.md. */
+#ifndef FORMATS_FEATURES_H
+#define FORMATS_FEATURES_H
+
+#include "base/err.h"
+#include "formats/arrays/fingerprint.h"
+#include "formats/arrays/safetensors.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Memory is taken for as many labels as the largest one says. */
+enum { FEATURES_MAX_CHANNELS = 65536, FEATURES_MAX_COMPONENTS = 4096, FEATURES_MAX_LABEL = (1 << 24) - 1 };
+
+struct features {
+	size_t gaussians, channels; /* channels: 0 where there are labels in place of features */
+	const void *values;	    /* (N,C), or of components (N,K); float32 or, with is_half, half floats */
+	int is_half;
+	/* Where features are told by components: a seen Gaussian's is mean + its K numbers times basis. */
+	size_t components;	   /* K; 0: they are not */
+	const float *mean, *basis; /* (C); (K,C) row-major */
+	double error;		   /* what that changed, as a share of the features; written and not read */
+	const int32_t *labels;	   /* (N), or NULL; -1: unseen */
+	const float *reliability;  /* (N) in [0,1] */
+	const float *weight;	   /* (N) sum of blend weights; 0: unseen */
+	struct fingerprint scene;
+	struct safetensors file; /* of one that was read: keeps the map alive */
+};
+
+/* Maps and checks a file. Returns 0, or -1 with *e set and nothing to close. */
+int features_open(struct features *f, const char *path, struct err *e);
+void features_close(struct features *f);
+
+/* out (n,C): the features from Gaussian `first` on. */
+void features_floats(const struct features *f, size_t first, size_t n, float *out);
+
+int features_write(const struct features *f, const char *path, const char *options, struct err *e);
+
+#endif

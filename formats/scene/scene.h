@@ -1,0 +1,31 @@
+/* A scene folder: splats.safetensors (refer.splats) and cameras.json. formats/scene/scene.md has the tables.
+ */
+#ifndef FORMATS_SCENE_H
+#define FORMATS_SCENE_H
+
+#include "base/err.h"
+#include "formats/arrays/fingerprint.h"
+#include "geom/camera.h"
+#include "splat/splats.h"
+
+struct scene {
+	char *path; /* the folder that was read, as it was named; else NULL */
+	struct splats splats;
+	struct fingerprint fingerprint; /* of splats.means; set by the readers */
+	struct cameras cameras;
+	double offset[3]; /* world = means + offset: what the import subtracted */
+};
+
+/* Reads and checks both files. Messages name the file and the tensor or key. */
+int scene_read(struct scene *s, const char *dir, struct err *e);
+void scene_free(struct scene *s);
+
+/* One of the files. scene_read_splats sets splats, fingerprint and offset of a zeroed *s. */
+int scene_read_splats(struct scene *s, const char *path, struct err *e);
+int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e);
+
+/* Makes dir and writes both files, each appearing whole. `options` goes into the metadata (a tool's own
+ * choice). */
+int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e);
+
+#endif

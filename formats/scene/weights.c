@@ -1,0 +1,428 @@
+#include "formats/scene/weights.h"
+
+#include "base/mem.h"
+#include "formats/scene/weights_pack.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A zstd block of 4 bytes may repeat one 131,072 times. */
+enum { VERSION_READ = 3, MAX_SIDE = 65536, LEVELS = 255, RATIO = 32768 };
+
+static const char *const stream_names[WEIGHTS_STREAMS] = {"ids", "maps", "levels"};
+
+static int check_indptr(const struct weights *w, int64_t pixels, int64_t nnz, struct err *e)
+{
+	const char *path = w->file.path;
+
+	if (w->indptr[0])
+		return err_set(e, ERR_FORMAT, "%s: tensor 'indptr': begins with %lld, not 0", path,
+			(long long)w->indptr[0]);
+	for (int64_t p = 0; p < pixels; p++)
+		if (w->indptr[p + 1] < w->indptr[p])
+			return err_set(e, ERR_FORMAT, "%s: tensor 'indptr': falls after pixel %lld", path,
+				(long long)p);
+	if (w->indptr[pixels] != nnz)
+		return err_set(e, ERR_FORMAT,
+			"%s: tensor 'indptr': ends with %lld, but there are %lld weights", path,
+			(long long)w->indptr[pixels], (long long)nnz);
+	return 0;
+}
+
+/* 1 where every item, a whole number or a float's bits, is 0 to limit, which is below 2^31. There is no
+ * branch in the loop, so that it runs as fast as memory. */
+static int all_within(const void *data, int64_t n, uint32_t limit)
+{
+	const unsigned char *at = data;
+	uint32_t outside = 0;
+
+	for (int64_t i = 0; i < n; i++) {
+		uint32_t item;
+		memcpy(&item, at + 4 * i, 4);
+		outside |= item | (limit - item);
+	}
+	return !(outside >> 31);
+}
+
+/* Floats from 0 to 1 have the bits of a whole number from 0 to that of 1; only -0 is another one that is
+ * fine. */
+static int64_t find_not_share(const float *x, int64_t n)
+{
+	const float one = 1;
+	uint32_t limit;
+
+	memcpy(&limit, &one, 4);
+	if (all_within(x, n, limit))
+		return -1;
+	for (int64_t i = 0; i < n; i++)
+		if (!(x[i] >= 0 && x[i] <= 1))
+			return i;
+	return -1;
+}
+
+static int check_values(const struct weights *w, int64_t pixels, int64_t nnz, struct err *e)
+{
+	const char *path = w->file.path;
+	int64_t at;
+
+	if (!all_within(w->index, nnz, (uint32_t)w->gaussians - 1))
+		for (int64_t i = 0; i < nnz; i++)
+			if (w->index[i] < 0 || w->index[i] >= w->gaussians)
+				return err_set(e, ERR_FORMAT,
+					"%s: tensor 'index': entry %lld is %d, not in 0 to %lld", path,
+					(long long)i, (int)w->index[i], (long long)w->gaussians - 1);
+	if ((at = find_not_share(w->weight, nnz)) >= 0)
+		return err_set(e, ERR_FORMAT, "%s: tensor 'weight': entry %lld is %g, not in 0 to 1", path,
+			(long long)at, (double)w->weight[at]);
+	if ((at = find_not_share(w->dropped, pixels)) >= 0)
+		return err_set(e, ERR_FORMAT, "%s: tensor 'dropped': pixel %lld has %g, not in 0 to 1", path,
+			(long long)at, (double)w->dropped[at]);
+	return 0;
+}
+
+/* Float weights stay where they are; others become floats of our own. */
+static int read_weight(struct weights *w, int64_t nnz, struct err *e)
+{
+	const struct st_tensor *t = safetensors_find(&w->file, "weight");
+
+	if (t && t->dtype == ST_F16)
+		w->precision = PRECISION_F16;
+	if (t && t->dtype == ST_U8)
+		w->precision = PRECISION_U8;
+	t = safetensors_need(&w->file, "weight", precision_dtype(w->precision), 1, &nnz, e);
+	if (!t)
+		return -1;
+	w->weight = t->data;
+	if (w->precision == PRECISION_F32)
+		return 0;
+	w->weight = w->owned = mem_alloc((size_t)nnz, sizeof *w->owned, w->file.path, e);
+	if (!w->owned)
+		return -1;
+	if (w->precision == PRECISION_F16)
+		return safetensors_to_float(t, w->owned, (size_t)nnz, e);
+	const uint8_t *levels = t->data;
+	for (int64_t i = 0; i < nnz; i++)
+		w->owned[i] = (float)levels[i] / LEVELS;
+	return 0;
+}
+
+/* Packed weights as rows of pixels, or as tiles. */
+static int unpack(struct weights *w, const struct weights_pack *pack, int as_tiles, struct err *e)
+{
+	if (!w->room)
+		w->room = mem_zalloc(1, sizeof *w->room, w->file.path, e);
+	if (!w->room || (as_tiles ? weights_unpack_tiles : weights_unpack)(
+				pack, w->width, w->height, w->gaussians, w->file.path, w->room, e))
+		return -1;
+	if (as_tiles) {
+		w->tiles = &w->room->tiles;
+		return 0;
+	}
+	w->indptr = w->room->indptr;
+	w->index = w->room->index;
+	w->weight = w->room->weight;
+	return 0;
+}
+
+/* Packed weights become arrays of our own. */
+static int read_packed(struct weights *w, int64_t pixels, int as_tiles, struct err *e)
+{
+	const int64_t any = -1, streams = WEIGHTS_STREAMS;
+	const struct st_tensor *sizes = safetensors_need(&w->file, "sizes", ST_I64, 1, &streams, e),
+			       *dropped = sizes ? safetensors_need(&w->file, "dropped", ST_U8, 1, &pixels, e)
+						: NULL;
+	const char *version = safetensors_meta(&w->file, "version");
+	struct weights_pack pack = {0};
+
+	if (strcmp(version, "3"))
+		return err_set(e, ERR_FORMAT,
+			"%s: refer.weights, packed, version %s is older than this program reads (3)",
+			w->file.path, version);
+	for (int s = 0; s < WEIGHTS_STREAMS && dropped; s++) {
+		const struct st_tensor *t = safetensors_need(&w->file, stream_names[s], ST_U8, 1, &any, e);
+		const int64_t bytes = ((const int64_t *)sizes->data)[s];
+		if (!t)
+			return -1;
+		if (bytes < 0 || bytes / RATIO > (int64_t)t->bytes)
+			return err_set(e, ERR_FORMAT, "%s: tensor 'sizes': %lld bytes cannot be in '%s'",
+				w->file.path, (long long)bytes, stream_names[s]);
+		pack.bytes[s] = (size_t)bytes;
+		pack.packed[s] = t->bytes;
+		pack.data[s] = (uint8_t *)(size_t)t->data;
+	}
+	w->precision = PRECISION_U8;
+	w->is_packed = 1;
+	w->owned_dropped =
+		dropped ? mem_alloc((size_t)pixels, sizeof *w->owned_dropped, w->file.path, e) : NULL;
+	if (!w->owned_dropped || unpack(w, &pack, as_tiles, e))
+		return -1;
+	for (int64_t p = 0; p < pixels; p++)
+		w->owned_dropped[p] = (float)((const uint8_t *)dropped->data)[p] / LEVELS;
+	w->dropped = w->owned_dropped;
+	return 0;
+}
+
+static int read_all(struct weights *w, int as_tiles, struct err *e)
+{
+	const struct safetensors *st = &w->file;
+	const struct st_tensor *indptr, *index, *dropped;
+	long long width = 0, height = 0, gaussians = 0;
+
+	if (safetensors_need_format(st, "refer.weights", VERSION_READ, e) ||
+		safetensors_meta_int(st, "width", 1, MAX_SIDE, &width, e) ||
+		safetensors_meta_int(st, "height", 1, MAX_SIDE, &height, e) ||
+		safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e))
+		return -1;
+	w->width = (int)width;
+	w->height = (int)height;
+	w->gaussians = gaussians;
+	if (fingerprint_read(&w->scene, st, "scene", e) || fingerprint_read(&w->camera, st, "camera", e))
+		return -1;
+	int64_t pixels = width * height, any = -1, ends = pixels + 1;
+	if (safetensors_find(st, "maps"))
+		return read_packed(w, pixels, as_tiles, e);
+	if (!(indptr = safetensors_need(st, "indptr", ST_I64, 1, &ends, e)) ||
+		!(index = safetensors_need(st, "index", ST_I32, 1, &any, e)) ||
+		!(dropped = safetensors_need(st, "dropped", ST_F32, 1, &pixels, e)) ||
+		read_weight(w, index->shape[0], e))
+		return -1;
+	w->indptr = indptr->data;
+	w->index = index->data;
+	w->dropped = dropped->data;
+	return check_indptr(w, pixels, index->shape[0], e) || check_values(w, pixels, index->shape[0], e) ? -1
+													  : 0;
+}
+
+static int open_file(
+	struct weights *w, struct weights_room *room, const char *path, int as_tiles, struct err *e)
+{
+	*w = (struct weights){.room = room, .is_lent = room != NULL};
+	if (!safetensors_open(&w->file, path, e) && !read_all(w, as_tiles, e))
+		return 0;
+	weights_close(w);
+	return -1;
+}
+
+int weights_open_file(struct weights *w, const char *path, struct err *e)
+{
+	return open_file(w, NULL, path, 0, e);
+}
+
+/* That they are of this scene, and of this camera at the size that they have. */
+static int check_origin(const struct weights *w, const struct scene *scene, size_t view, struct err *e)
+{
+	const struct camera sized = camera_resize(&scene->cameras.views[view], w->width, w->height);
+	const struct fingerprint camera = fingerprint_camera(&sized);
+	const char *path = w->file.path;
+
+	if (w->gaussians != (int64_t)scene->splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, %s has %zu", path,
+			(long long)w->gaussians, scene->path, scene->splats.n);
+	if (fingerprint_check("scene", path, &w->scene, scene->path, &scene->fingerprint, e))
+		return -1;
+	char *cameras = file_join(scene->path, "cameras.json", "", e);
+	int bad = !cameras || fingerprint_check("camera", path, &w->camera, cameras, &camera, e);
+	free(cameras);
+	return bad ? -1 : 0;
+}
+
+static int open_view(struct weights *w, struct weights_room *room, const char *dir, const struct scene *scene,
+	size_t view, int as_tiles, struct err *e)
+{
+	char *path = file_join(dir, scene->cameras.views[view].name, ".safetensors", e);
+
+	*w = (struct weights){0};
+	int bad = path ? open_file(w, room, path, as_tiles, e) : -1;
+	if (!bad && (bad = check_origin(w, scene, view, e)))
+		weights_close(w);
+	free(path);
+	return bad;
+}
+
+int weights_open(struct weights *w, const char *dir, const struct scene *scene, size_t view, struct err *e)
+{
+	return open_view(w, NULL, dir, scene, view, 0, e);
+}
+
+int weights_open_in(struct weights *w, struct weights_room *room, const char *dir, const struct scene *scene,
+	size_t view, struct err *e)
+{
+	return open_view(w, room, dir, scene, view, 0, e);
+}
+
+int weights_open_tiles(struct weights *w, struct weights_room *room, const char *dir,
+	const struct scene *scene, size_t view, struct err *e)
+{
+	return open_view(w, room, dir, scene, view, 1, e);
+}
+
+int weights_exist(const char *dir, const char *view, struct err *e)
+{
+	char *path = file_join(dir, view, ".safetensors", e);
+	int found = path ? file_exists(path) : -1;
+
+	free(path);
+	return found;
+}
+
+void weights_close(struct weights *w)
+{
+	safetensors_close(&w->file);
+	free(w->owned);
+	if (w->room && !w->is_lent) {
+		weights_room_free(w->room);
+		free(w->room);
+	}
+	free(w->owned_dropped);
+	*w = (struct weights){0};
+}
+
+struct view_weights weights_view(const struct weights *w)
+{
+	return (struct view_weights){
+		(size_t)w->width * (size_t)w->height, (size_t)w->gaussians, w->indptr, w->index, w->weight};
+}
+
+struct view_matrix weights_matrix(const struct weights *w)
+{
+	return (struct view_matrix){w->height, w->width, (size_t)w->gaussians, weights_view(w), w->tiles};
+}
+
+/* The weights as the file has them: its own, or a converted copy in *owned. */
+static const void *convert(const struct weights *w, int64_t nnz, void **owned, struct err *e)
+{
+	if (w->precision == PRECISION_F32)
+		return w->weight;
+	*owned = mem_alloc((size_t)nnz, st_dtype_size(precision_dtype(w->precision)), "weights", e);
+	if (*owned && w->precision == PRECISION_F16)
+		for (int64_t i = 0; i < nnz; i++)
+			((uint16_t *)*owned)[i] = st_float_to_half(w->weight[i]);
+	else if (*owned)
+		for (int64_t i = 0; i < nnz; i++)
+			((uint8_t *)*owned)[i] = (uint8_t)(w->weight[i] * LEVELS + 0.5f);
+	return *owned;
+}
+
+/* The file's tensors: the weights as they are, or packed. Data that are made are its own. */
+struct written {
+	struct st_tensor tensors[5];
+	size_t n;
+	int64_t sizes[WEIGHTS_STREAMS];
+	void *converted;
+	uint8_t *dropped;
+};
+
+static void put(struct written *t, const char *name, enum st_dtype dtype, int64_t length, const void *data)
+{
+	t->tensors[t->n++] =
+		(struct st_tensor){.name = name, .dtype = dtype, .dims = 1, .shape = {length}, .data = data};
+}
+
+static int put_plain(struct written *t, const struct weights *w, int64_t pixels, struct err *e)
+{
+	const int64_t nnz = w->indptr[pixels];
+	const void *data = convert(w, nnz, &t->converted, e);
+
+	if (!data)
+		return -1;
+	put(t, "indptr", ST_I64, pixels + 1, w->indptr);
+	put(t, "index", ST_I32, nnz, w->index);
+	put(t, "dropped", ST_F32, pixels, w->dropped);
+	put(t, "weight", precision_dtype(w->precision), nnz, data);
+	return 0;
+}
+
+static int put_packed(struct written *t, const struct weights *w, int64_t pixels, struct err *e)
+{
+	t->dropped = mem_alloc((size_t)pixels, 1, "weights", e);
+	if (!t->dropped)
+		return -1;
+	for (int64_t p = 0; p < pixels; p++)
+		t->dropped[p] = (uint8_t)(w->dropped[p] * LEVELS + 0.5f);
+	for (int s = 0; s < WEIGHTS_STREAMS; s++)
+		t->sizes[s] = (int64_t)w->pack->bytes[s];
+	put(t, "sizes", ST_I64, WEIGHTS_STREAMS, t->sizes);
+	for (int s = 0; s < WEIGHTS_STREAMS; s++)
+		put(t, stream_names[s], ST_U8, (int64_t)w->pack->packed[s], w->pack->data[s]);
+	put(t, "dropped", ST_U8, pixels, t->dropped);
+	return 0;
+}
+
+int weights_write(
+	const struct weights *w, const char *dir, const char *view, const char *options, struct err *e)
+{
+	const int64_t pixels = (int64_t)w->width * w->height;
+	char *path = file_join(dir, view, ".safetensors", e), width[16], height[16], gaussians[24];
+	struct written t = {0};
+	int bad = !path || (w->pack ? put_packed : put_plain)(&t, w, pixels, e);
+
+	snprintf(width, sizeof width, "%d", w->width);
+	snprintf(height, sizeof height, "%d", w->height);
+	snprintf(gaussians, sizeof gaussians, "%lld", (long long)w->gaussians);
+	struct st_meta meta[] = {{"format", "refer.weights"}, {"version", w->pack ? "3" : "1"},
+		{"tool", "gs-weigh"}, {"options", options}, {"seed", "0"}, {"view", view}, {"width", width},
+		{"height", height}, {"gaussians", gaussians}, {"scene", fingerprint_text(&w->scene)},
+		{"camera", fingerprint_text(&w->camera)}};
+	bad = bad || safetensors_write(path, t.tensors, t.n, meta, sizeof meta / sizeof *meta, e);
+	free(path);
+	free(t.converted);
+	free(t.dropped);
+	return bad ? -1 : 0;
+}
+
+/* Where no training view has weights, the folder is another one than was meant. */
+static int check_missing(const char *dir, size_t missing, size_t training, struct err *e)
+{
+	return training && missing == training
+		       ? err_set(e, ERR_SYSTEM, "%s: has no weights of a training view", dir)
+		       : 0;
+}
+
+int weights_mark(const char *dir, const struct cameras *cameras, char *there, size_t *missing, struct err *e)
+{
+	size_t training = 0;
+
+	*missing = 0;
+	for (size_t v = 0; v < cameras->n; v++) {
+		there[v] = 0;
+		if (cameras->views[v].split != SPLIT_TRAIN)
+			continue;
+		training++;
+		int found = weights_exist(dir, cameras->views[v].name, e);
+		if (found < 0)
+			return -1;
+		there[v] = (char)found;
+		*missing += !found;
+	}
+	return check_missing(dir, *missing, training, e);
+}
+
+int weights_each(const char *dir, const struct scene *scene, int (*needs)(const void *context, size_t view),
+	int (*visit)(void *context, size_t view, const struct weights *w, struct err *e), void *context,
+	size_t *missing, struct err *e)
+{
+	size_t training = 0;
+
+	*missing = 0;
+	for (size_t v = 0; v < scene->cameras.n; v++) {
+		const struct camera *camera = &scene->cameras.views[v];
+		struct weights w = {0};
+		if (camera->split != SPLIT_TRAIN)
+			continue;
+		training++;
+		const int found = weights_exist(dir, camera->name, e);
+		const int is_needed = !needs || needs(context, v);
+		if (found < 0 || (found && is_needed && weights_open(&w, dir, scene, v, e)))
+			return -1;
+		*missing += !found;
+		if (!found)
+			continue;
+		const int bad = visit(context, v, is_needed ? &w : NULL, e);
+		weights_close(&w);
+		if (bad)
+			return -1;
+	}
+	return check_missing(dir, *missing, training, e);
+}

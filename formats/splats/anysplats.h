@@ -1,0 +1,36 @@
+/* Trained scenes in any file that can be read. formats/splats/anysplats.md. */
+#ifndef FORMATS_ANYSPLATS_H
+#define FORMATS_ANYSPLATS_H
+
+#include "base/err.h"
+#include "formats/splats/gaussian_rows.h"
+#include "splat/splats.h"
+
+/* Reads a .ply, .spz, SOG, .glb or .splat ("-" is stdin): by how the file begins; .splat, which begins with a
+ * Gaussian, and SOG's meta.json by their names. As ply_read. */
+int anysplats_read(
+	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e);
+
+/* Whether a file is SOG's meta.json, by its name. */
+int anysplats_is_meta(const char *path);
+
+/* What can be written. */
+enum anysplats_format {
+	ANYSPLATS_PLY,
+	ANYSPLATS_SPLAT,
+	ANYSPLATS_SPZ,
+	ANYSPLATS_GLB,
+	ANYSPLATS_SOG,
+	ANYSPLATS_FORMATS
+};
+
+/* The format that a name ends with; -1 where it is none. */
+int anysplats_format_of(const char *path);
+
+enum { ANYSPLATS_SPZ_VERSION = 3 }; /* where none is asked for */
+
+/* Writes means + offset; spz_version is 2 to 4. "-" is stdout. Returns 0, or -1 with *e set. */
+int anysplats_write(const struct splats *s, const double offset[3], enum anysplats_format format,
+	int spz_version, const char *path, struct err *e);
+
+#endif

@@ -1,0 +1,222 @@
+#include "formats/splats/ply.h"
+
+#include "base/file.h"
+#include "base/little.h"
+#include "base/mem.h"
+#include "formats/records/foreign.h"
+#include "formats/splats/gaussian_rows.h"
+#include "formats/splats/plyfile.h"
+#include "formats/splats/plypacked.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A reader's slots: the properties every 3DGS file has, in this order, then f_rest_0 and on. */
+static const char *const fixed_names[ROW_REST] = {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
+	"scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"};
+
+struct layout {
+	long slot[ROW_MAX]; /* property index of each */
+	int rest;	    /* number of f_rest properties: 3 (K-1) */
+};
+
+/* Where the rows come from: the usual layout, or packed ones, which are unpacked to that of fixed_names. */
+struct source {
+	struct plyfile *file;
+	const struct plyfile_element *vertex;
+	struct layout layout;
+	int is_packed;
+	struct plypacked packed;
+	double *row; /* in the file's order; unused where packed */
+};
+
+static int find_layout(
+	struct layout *l, const struct plyfile *f, const struct plyfile_element *el, struct err *e)
+{
+	char name[32];
+
+	for (int i = 0; i < ROW_REST; i++) {
+		l->slot[i] = plyfile_need(f, el, fixed_names[i], e);
+		if (l->slot[i] < 0)
+			return -1;
+	}
+	l->rest = 0;
+	for (size_t i = 0; i < el->n; i++)
+		l->rest += !strncmp(el->properties[i].name, "f_rest_", 7);
+	if (l->rest != 0 && l->rest != 9 && l->rest != 24 && l->rest != ROW_REST_MAX)
+		return err_set(
+			e, ERR_FORMAT, "%s: %d f_rest properties, expected 0, 9, 24 or 45", f->path, l->rest);
+	for (int i = 0; i < l->rest; i++) {
+		snprintf(name, sizeof name, "f_rest_%d", i);
+		l->slot[ROW_REST + i] = plyfile_need(f, el, name, e);
+		if (l->slot[ROW_REST + i] < 0)
+			return -1;
+	}
+	return 0;
+}
+
+/* `chunks` is the offset of the element of that name, where there is one. Release with close_source in any
+ * case. */
+static int open_source(struct source *in, struct plyfile *f, const struct plyfile_element *vertex,
+	size_t chunks, struct err *e)
+{
+	*in = (struct source){.file = f, .vertex = vertex, .is_packed = plypacked_is(f)};
+	if (in->is_packed) {
+		if (plypacked_open(&in->packed, f, vertex, chunks, e))
+			return -1;
+		in->layout.rest = in->packed.rest;
+		return 0;
+	}
+	if (find_layout(&in->layout, f, vertex, e) || plyfile_check_rows(f, vertex, e))
+		return -1;
+	in->row = mem_alloc(vertex->n, sizeof *in->row, f->path, e);
+	return in->row ? 0 : -1;
+}
+
+static void close_source(struct source *in)
+{
+	plypacked_close(&in->packed);
+	free(in->row);
+}
+
+static int next_row(void *reader, size_t row, double *values, struct err *e)
+{
+	struct source *in = reader;
+
+	if (in->is_packed) {
+		if (plypacked_row(&in->packed, in->file, in->vertex, row, values, e))
+			return -1;
+		values[ROW_OPACITY] = gaussian_logit(values[ROW_OPACITY]);
+		return 0;
+	}
+	if (plyfile_row(in->file, in->vertex, row, in->row, e))
+		return -1;
+	for (int i = 0; i < ROW_REST + in->layout.rest; i++)
+		values[i] = in->row[in->layout.slot[i]];
+	return 0;
+}
+
+/* The rows of the element `vertex`, which is next. */
+static int read_vertices(struct splats *s, double offset[3], struct rows_report *report, struct plyfile *f,
+	const struct plyfile_element *vertex, size_t chunks, struct err *e)
+{
+	struct source in;
+
+	if (foreign_vertices(f, vertex, e))
+		return -1;
+	int bad = open_source(&in, f, vertex, chunks, e);
+	if (!bad) {
+		const struct gaussian_rows rows = {f->path, vertex->rows, in.layout.rest, next_row, &in};
+		bad = gaussian_rows_read(s, offset, report, &rows, e);
+	}
+	close_source(&in);
+	return bad;
+}
+
+/* All elements in the file's order. */
+static int read_elements(
+	struct splats *s, double offset[3], struct rows_report *report, struct plyfile *f, struct err *e)
+{
+	const struct plyfile_element *vertex = plyfile_find(f, "vertex");
+	size_t chunks = 0;
+	int bad = 0;
+
+	if (!vertex)
+		return err_set(e, ERR_FORMAT, "%s: no element 'vertex'", f->path);
+	for (size_t i = 0; !bad && i < f->n; i++) {
+		const struct plyfile_element *el = &f->elements[i];
+		if (!strcmp(el->name, "chunk"))
+			chunks = f->at;
+		bad = el == vertex ? read_vertices(s, offset, report, f, vertex, chunks, e)
+				   : plyfile_skip(f, el, e);
+	}
+	return bad || plyfile_end(f, e) ? -1 : 0;
+}
+
+int ply_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
+	struct file_map *map, struct err *e)
+{
+	struct rows_report local = {0};
+	struct plyfile f;
+
+	*s = (struct splats){0};
+	if (report)
+		*report = local;
+	if (plyfile_open(&f, name, map, e))
+		return -1;
+	int bad = read_elements(s, offset, &local, &f, e);
+	plyfile_close(&f);
+	if (bad)
+		splats_free(s);
+	if (bad || !report)
+		free(local.dropped);
+	else
+		*report = local;
+	return bad;
+}
+
+int ply_read(struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e)
+{
+	struct file_map map;
+
+	*s = (struct splats){0};
+	if (report)
+		*report = (struct rows_report){0};
+	return file_map(path, &map, e) ? -1 : ply_read_map(s, offset, report, file_name(path), &map, e);
+}
+
+static void put_header(FILE *out, const struct splats *s, const char *mean_type, int has_labels)
+{
+	int rest = 3 * (s->sh_coefficients - 1);
+
+	fprintf(out, "ply\nformat binary_little_endian 1.0\nelement vertex %zu\n", s->n);
+	for (int k = 0; k < 3; k++)
+		fprintf(out, "property %s %c\n", mean_type, "xyz"[k]);
+	fputs("property float nx\nproperty float ny\nproperty float nz\n", out);
+	for (int k = 0; k < 3; k++)
+		fprintf(out, "property float f_dc_%d\n", k);
+	for (int k = 0; k < rest; k++)
+		fprintf(out, "property float f_rest_%d\n", k);
+	for (int k = ROW_OPACITY; k < ROW_REST; k++)
+		fprintf(out, "property float %s\n", fixed_names[k]);
+	fputs(has_labels ? "property int label\nend_header\n" : "end_header\n", out);
+}
+
+int ply_write(const struct splats *s, const double offset[3], const char *path, struct err *e)
+{
+	return ply_write_labelled(s, offset, NULL, path, e);
+}
+
+int ply_write_labelled(const struct splats *s, const double offset[3], const int32_t *labels,
+	const char *path, struct err *e)
+{
+	unsigned char bytes[3 * 8 + (3 + ROW_MAX + 1) * 4];
+	double row[ROW_MAX];
+	const int rest = 3 * (s->sh_coefficients - 1);
+	int is_far = offset[0] != 0 || offset[1] != 0 || offset[2] != 0;
+	struct file_out out;
+
+	if (file_out_open(&out, path, e))
+		return -1;
+	put_header(out.stream, s, is_far ? "double" : "float", labels != NULL);
+	for (size_t i = 0; i < s->n; i++) {
+		unsigned char *p = bytes;
+		gaussian_row_of(s, i, row);
+		for (int k = 0; k < 3; k++)
+			p = is_far ? little_put_f64(p, row[ROW_MEAN + k] + offset[k])
+				   : little_put_f32(p, row[ROW_MEAN + k]);
+		for (int k = 0; k < 3; k++)
+			p = little_put_f32(p, 0);
+		for (int k = ROW_DC; k < ROW_OPACITY; k++)
+			p = little_put_f32(p, row[k]);
+		for (int k = 0; k < rest; k++)
+			p = little_put_f32(p, row[ROW_REST + k]);
+		for (int k = ROW_OPACITY; k < ROW_REST; k++)
+			p = little_put_f32(p, row[k]);
+		if (labels)
+			p = little_put(p, (uint32_t)labels[i], 4);
+		fwrite(bytes, 1, (size_t)(p - bytes), out.stream);
+	}
+	return file_out_commit(&out, e);
+}

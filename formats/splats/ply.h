@@ -1,0 +1,30 @@
+/* 3DGS .ply scenes. formats/splats/ply.md. */
+#ifndef FORMATS_PLY_H
+#define FORMATS_PLY_H
+
+#include "base/err.h"
+#include "base/file.h"
+#include "formats/splats/gaussian_rows.h"
+#include "splat/splats.h"
+
+#include <stdint.h>
+
+/* Reads a 3DGS .ply ("-" is stdin; binary of either byte order, or ascii; or PlayCanvas's packed form):
+ * activations applied (scales exp, opacity sigmoid), means minus `offset`, which is chosen here by the rule
+ * in ply.md (0 for scenes near the origin) and returned. Quaternions keep their length unless it is extreme
+ * (ply.md). `report` may be NULL. Returns 0, or -1 with *e set, *s zeroed and report->dropped NULL. */
+int ply_read(struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e);
+
+/* The same of a file that is in memory, which is released in any case; `name` is for messages. */
+int ply_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
+	struct file_map *map, struct err *e);
+
+/* Writes the usual 3DGS layout (x y z nx ny nz f_dc f_rest opacity scale rot), binary little-endian, with
+ * activations undone. x y z are float, or double where offset is not 0. "-" is stdout. */
+int ply_write(const struct splats *s, const double offset[3], const char *path, struct err *e);
+
+/* The same with a last property, int label, of each Gaussian: labels (N). */
+int ply_write_labelled(const struct splats *s, const double offset[3], const int32_t *labels,
+	const char *path, struct err *e);
+
+#endif

@@ -1,0 +1,435 @@
+#include "formats/splats/plyfile.h"
+
+#include "base/mem.h"
+#include "base/names.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { HEADER_LIMIT = 1 << 20 };
+
+static const struct {
+	const char *name, *sized_name;
+	size_t size;
+} types[PLY_TYPES] = {
+	[PLY_I8] = {"char", "int8", 1},
+	[PLY_U8] = {"uchar", "uint8", 1},
+	[PLY_I16] = {"short", "int16", 2},
+	[PLY_U16] = {"ushort", "uint16", 2},
+	[PLY_I32] = {"int", "int32", 4},
+	[PLY_U32] = {"uint", "uint32", 4},
+	[PLY_F32] = {"float", "float32", 4},
+	[PLY_F64] = {"double", "float64", 8},
+};
+
+/* The next word of a line, cut off in place; "" at its end. */
+static char *next_word(char **line)
+{
+	char *word = *line + strspn(*line, " \t\r"), *end = word + strcspn(word, " \t\r");
+
+	*line = *end ? end + 1 : end;
+	*end = 0;
+	return word;
+}
+
+static int find_type(const char *word)
+{
+	for (int t = 0; t < PLY_TYPES; t++)
+		if (!strcmp(word, types[t].name) || !strcmp(word, types[t].sized_name))
+			return t;
+	return -1;
+}
+
+static int read_format(struct plyfile *f, char *line, int number, struct err *e)
+{
+	static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+	const char *name = next_word(&line), *version = next_word(&line);
+
+	for (int i = 0; i < 3; i++)
+		if (!strcmp(name, names[i]) && !strcmp(version, "1.0")) {
+			f->encoding = (enum plyfile_encoding)i;
+			return 0;
+		}
+	return err_set(e, ERR_FORMAT,
+		"%s:%d: format '%.40s %.40s' is not ascii, binary_little_endian or binary_big_endian 1.0",
+		f->path, number, name, version);
+}
+
+static int read_element(struct plyfile *f, char *line, int number, struct err *e)
+{
+	void *block = f->elements;
+	const char *name = next_word(&line), *count = next_word(&line);
+	size_t rows = 0;
+
+	if (!*name || !*count || count[strspn(count, "0123456789")])
+		return err_set(e, ERR_FORMAT, "%s:%d: not 'element NAME COUNT'", f->path, number);
+	for (const char *p = count; *p; p++)
+		if (mem_size(rows, 10, &rows) || (rows += (size_t)(*p - '0')) > PTRDIFF_MAX)
+			return err_set(e, ERR_FORMAT,
+				"%s:%d: element '%.80s': %.40s rows do not fit in memory", f->path, number,
+				name, count);
+	if (mem_grow(&block, &f->capacity, f->n + 1, sizeof *f->elements, f->path, e))
+		return -1;
+	f->elements = block;
+	f->elements[f->n++] = (struct plyfile_element){.name = name, .line = number, .rows = rows};
+	return 0;
+}
+
+static int read_property(struct plyfile *f, char *line, int number, struct err *e)
+{
+	struct plyfile_element *el = f->n ? &f->elements[f->n - 1] : NULL;
+	struct plyfile_property p = {.line = number};
+	const char *word = next_word(&line);
+	int type, count_type = PLY_U8;
+
+	if (!el)
+		return err_set(e, ERR_FORMAT, "%s:%d: property before any element", f->path, number);
+	p.is_list = !strcmp(word, "list");
+	if (p.is_list) {
+		word = next_word(&line);
+		count_type = find_type(word);
+		if (count_type < 0 || count_type >= PLY_F32)
+			return err_set(e, ERR_FORMAT, "%s:%d: list count type '%.40s' is not an integer type",
+				f->path, number, word);
+		word = next_word(&line);
+	}
+	type = find_type(word);
+	if (type < 0)
+		return err_set(e, ERR_FORMAT,
+			"%s:%d: property type '%.40s' is unknown: export the scene with floats where it was made",
+			f->path, number, word);
+	p.type = (enum plyfile_type)type;
+	p.count_type = (enum plyfile_type)count_type;
+	p.name = next_word(&line);
+	if (!*p.name)
+		return err_set(e, ERR_FORMAT, "%s:%d: property without a name", f->path, number);
+	void *block = el->properties;
+	if (mem_grow(&block, &el->capacity, el->n + 1, sizeof p, f->path, e))
+		return -1;
+	el->properties = block;
+	el->properties[el->n++] = p;
+	el->has_list |= p.is_list;
+	/* In ascii the shortest value is a digit and the blank after it (the last one may lack that: see
+	 * check_rows). */
+	el->min_bytes += f->encoding == PLY_ASCII ? 2 : types[p.is_list ? p.count_type : p.type].size;
+	return 0;
+}
+
+/* Whether text begins with one of the words, in any case. */
+static int begins(const char *text, const char *const *words, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		if (!strncasecmp(text, words[i], strlen(words[i])))
+			return 1;
+	return 0;
+}
+
+/* Trainers say so how a scene is to be rendered; the last one counts. */
+static void note_mode(struct plyfile *f, const char *comment)
+{
+	static const char *const keys[] = {"SplatRenderMode", "antialias", "train_flags"},
+				 *const values[] = {"mip", "antialias", "1", "true", "yes", "on", "2dgs"};
+	const char *value = comment + strcspn(comment, " \t\r:=");
+
+	value += strspn(value, " \t\r:=");
+	if (begins(comment, keys, 3))
+		f->mode = !*value || begins(value, values, 7) ? comment : NULL;
+}
+
+/* One header line: 1 for end_header. */
+static int read_line(struct plyfile *f, char *line, int number, struct err *e)
+{
+	const char *word = next_word(&line);
+
+	if (number == 2) {
+		if (strcmp(word, "format"))
+			return err_set(e, ERR_FORMAT, "%s:2: the second line is not 'format'", f->path);
+		return read_format(f, line, number, e);
+	}
+	if (!strcmp(word, "comment") || !strcmp(word, "obj_info"))
+		note_mode(f, line + strspn(line, " \t"));
+	if (!*word || !strcmp(word, "comment") || !strcmp(word, "obj_info"))
+		return 0;
+	if (!strcmp(word, "element"))
+		return read_element(f, line, number, e);
+	if (!strcmp(word, "property"))
+		return read_property(f, line, number, e);
+	if (!strcmp(word, "end_header"))
+		return 1;
+	return err_set(e, ERR_FORMAT, "%s:%d: header line '%.40s' is unknown", f->path, number, word);
+}
+
+/* The first place whose name an earlier one has, or NAMES_NONE; -1 with *e. */
+static int find_twice(const void *items, size_t stride, size_t offset, size_t n, size_t *twice, struct err *e)
+{
+	struct names names;
+	size_t earlier;
+
+	if (names_make(&names, items, stride, offset, n, e))
+		return -1;
+	*twice = names_twice(&names, &earlier);
+	names_free(&names);
+	return 0;
+}
+
+/* Elements have different names, and the properties of each. */
+static int check_unique(const struct plyfile *f, struct err *e)
+{
+	size_t twice;
+
+	if (find_twice(f->elements, sizeof *f->elements, offsetof(struct plyfile_element, name), f->n, &twice,
+		    e))
+		return -1;
+	if (twice != NAMES_NONE)
+		return err_set(e, ERR_FORMAT, "%s:%d: element '%.80s' appears twice", f->path,
+			f->elements[twice].line, f->elements[twice].name);
+	for (size_t i = 0; i < f->n; i++) {
+		const struct plyfile_element *el = &f->elements[i];
+		if (find_twice(el->properties, sizeof *el->properties,
+			    offsetof(struct plyfile_property, name), el->n, &twice, e))
+			return -1;
+		if (twice != NAMES_NONE)
+			return err_set(e, ERR_FORMAT, "%s:%d: property '%.80s' appears twice", f->path,
+				el->properties[twice].line, el->properties[twice].name);
+	}
+	return 0;
+}
+
+static int read_header(struct plyfile *f, struct err *e)
+{
+	const char *data = (const char *)f->map.data;
+	size_t len = f->map.len < HEADER_LIMIT ? f->map.len : HEADER_LIMIT, at = 0;
+
+	if (len < 4 || memcmp(data, "ply", 3) ||
+		(data[3] != '\n' && memcmp(data, "ply\r\n", len < 5 ? len : 5)))
+		return err_set(e, ERR_FORMAT, "%s: not a PLY file: the first line is not 'ply'", f->path);
+	f->header = mem_alloc(len + 1, 1, f->path, e);
+	if (!f->header)
+		return -1;
+	memcpy(f->header, data, len);
+	f->header[len] = 0;
+	for (int number = 1;; number++) {
+		const char *newline = memchr(data + at, '\n', len - at);
+		if (!newline)
+			return err_set(e, ERR_FORMAT, "%s:%d: the header has no end_header", f->path, number);
+		char *line = f->header + at;
+		size_t line_len = (size_t)(newline - data) - at;
+		line[line_len] = 0;
+		at += line_len + 1;
+		if (strlen(line) != line_len)
+			return err_set(e, ERR_FORMAT, "%s:%d: a NUL byte in the header", f->path, number);
+		if (number == 1)
+			continue;
+		int state = read_line(f, line, number, e);
+		if (state < 0)
+			return -1;
+		if (state)
+			break;
+	}
+	f->at = at;
+	return check_unique(f, e);
+}
+
+int plyfile_open(struct plyfile *f, const char *name, struct file_map *map, struct err *e)
+{
+	*f = (struct plyfile){.path = name, .map = *map};
+	*map = (struct file_map){0};
+	if (!read_header(f, e))
+		return 0;
+	plyfile_close(f);
+	return -1;
+}
+
+void plyfile_close(struct plyfile *f)
+{
+	for (size_t i = 0; i < f->n; i++)
+		free(f->elements[i].properties);
+	free(f->elements);
+	free(f->header);
+	file_unmap(&f->map);
+	*f = (struct plyfile){0};
+}
+
+const struct plyfile_element *plyfile_find(const struct plyfile *f, const char *element)
+{
+	for (size_t i = 0; i < f->n; i++)
+		if (!strcmp(f->elements[i].name, element))
+			return &f->elements[i];
+	return NULL;
+}
+
+long plyfile_property(const struct plyfile_element *el, const char *name)
+{
+	for (size_t i = 0; i < el->n; i++)
+		if (!strcmp(el->properties[i].name, name))
+			return (long)i;
+	return -1;
+}
+
+long plyfile_need(const struct plyfile *f, const struct plyfile_element *el, const char *name, struct err *e)
+{
+	long i = plyfile_property(el, name);
+
+	if (i < 0)
+		return err_set(
+			e, ERR_FORMAT, "%s: element '%.80s' has no property '%s'", f->path, el->name, name);
+	if (el->properties[i].is_list)
+		return err_set(e, ERR_FORMAT, "%s: property '%s' is a list", f->path, name);
+	return i;
+}
+
+int plyfile_check_rows(const struct plyfile *f, const struct plyfile_element *el, struct err *e)
+{
+	size_t bytes, left = f->map.len - f->at;
+
+	if (f->encoding == PLY_ASCII)
+		left++; /* no blank is needed after the file's last value */
+	if (mem_size(el->rows, el->min_bytes, &bytes) || bytes > left)
+		return err_set(e, ERR_FORMAT,
+			"%s: element '%.80s': %zu rows of %s%zu bytes from offset %zu do not fit a file of %zu",
+			f->path, el->name, el->rows,
+			el->has_list || f->encoding == PLY_ASCII ? "at least " : "", el->min_bytes, f->at,
+			f->map.len);
+	return 0;
+}
+
+static int err_short(const struct plyfile *f, const struct plyfile_element *el, size_t row, struct err *e)
+{
+	return err_set(e, ERR_FORMAT,
+		"%s: element '%.80s': the file ends at offset %zu, within row %zu of %zu", f->path, el->name,
+		f->map.len, row, el->rows);
+}
+
+static double decode(const unsigned char *p, enum plyfile_type type, int is_big)
+{
+	size_t size = types[type].size;
+	uint64_t bits = 0;
+	float single;
+	double wide;
+
+	for (size_t i = 0; i < size; i++)
+		bits |= (uint64_t)p[i] << 8 * (is_big ? size - 1 - i : i);
+	switch (type) {
+	case PLY_I8:
+		return (int8_t)bits;
+	case PLY_I16:
+		return (int16_t)bits;
+	case PLY_I32:
+		return (int32_t)bits;
+	case PLY_F32: {
+		uint32_t low = (uint32_t)bits;
+		memcpy(&single, &low, 4);
+		return single;
+	}
+	case PLY_F64:
+		memcpy(&wide, &bits, 8);
+		return wide;
+	default:
+		return (double)bits;
+	}
+}
+
+static int is_blank(unsigned char c)
+{
+	return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+/* The next value at f->at: 0, or -1 with *e. */
+static int next_value(struct plyfile *f, const struct plyfile_element *el, size_t row, enum plyfile_type type,
+	double *value, struct err *e)
+{
+	const unsigned char *data = f->map.data;
+	char word[64], *end;
+	size_t len = 0;
+
+	if (f->encoding != PLY_ASCII) {
+		if (types[type].size > f->map.len - f->at)
+			return err_short(f, el, row, e);
+		*value = decode(data + f->at, type, f->encoding == PLY_BIG);
+		f->at += types[type].size;
+		return 0;
+	}
+	while (f->at < f->map.len && is_blank(data[f->at]))
+		f->at++;
+	if (f->at == f->map.len)
+		return err_short(f, el, row, e);
+	while (f->at + len < f->map.len && len < sizeof word - 1 && !is_blank(data[f->at + len])) {
+		word[len] = (char)data[f->at + len];
+		len++;
+	}
+	word[len] = 0;
+	*value = strtod(word, &end);
+	if (end == word || *end || len == sizeof word - 1)
+		return err_set(e, ERR_FORMAT, "%s: element '%.80s', row %zu: no number at offset %zu",
+			f->path, el->name, row, f->at);
+	f->at += len;
+	return 0;
+}
+
+/* Passes over the `count` items of a list. */
+static int skip_items(struct plyfile *f, const struct plyfile_element *el, size_t row, enum plyfile_type type,
+	double count, struct err *e)
+{
+	double unused;
+
+	if (!(count >= 0 && count <= 4294967295.0) || count != floor(count))
+		return err_set(e, ERR_FORMAT,
+			"%s: element '%.80s', row %zu: a list of %g items, before offset %zu", f->path,
+			el->name, row, count, f->at);
+	if (f->encoding == PLY_ASCII) {
+		for (size_t i = 0; i < (size_t)count; i++)
+			if (next_value(f, el, row, type, &unused, e))
+				return -1;
+		return 0;
+	}
+	if ((size_t)count > (f->map.len - f->at) / types[type].size)
+		return err_short(f, el, row, e);
+	f->at += (size_t)count * types[type].size;
+	return 0;
+}
+
+int plyfile_row(
+	struct plyfile *f, const struct plyfile_element *el, size_t row, double *values, struct err *e)
+{
+	for (size_t i = 0; i < el->n; i++) {
+		const struct plyfile_property *p = &el->properties[i];
+		if (next_value(f, el, row, p->is_list ? p->count_type : p->type, &values[i], e) ||
+			(p->is_list && skip_items(f, el, row, p->type, values[i], e)))
+			return -1;
+	}
+	return 0;
+}
+
+int plyfile_skip(struct plyfile *f, const struct plyfile_element *el, struct err *e)
+{
+	if (!el->n)
+		return 0;
+	if (plyfile_check_rows(f, el, e))
+		return -1;
+	if (!el->has_list && f->encoding != PLY_ASCII) {
+		f->at += el->rows * el->min_bytes;
+		return 0;
+	}
+	double *values = mem_alloc(el->n, sizeof *values, f->path, e);
+	int bad = values ? 0 : -1;
+	for (size_t i = 0; !bad && i < el->rows; i++)
+		bad = plyfile_row(f, el, i, values, e);
+	free(values);
+	return bad;
+}
+
+int plyfile_end(const struct plyfile *f, struct err *e)
+{
+	size_t at = f->at;
+
+	while (f->encoding == PLY_ASCII && at < f->map.len && is_blank(f->map.data[at]))
+		at++;
+	if (at < f->map.len)
+		return err_set(e, ERR_FORMAT, "%s: %zu bytes after the last element, from offset %zu",
+			f->path, f->map.len - at, at);
+	return 0;
+}

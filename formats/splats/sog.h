@@ -1,0 +1,24 @@
+/* SOG version 2: Gaussians in images. formats/splats/sog.md. */
+#ifndef FORMATS_SOG_H
+#define FORMATS_SOG_H
+
+#include "base/err.h"
+#include "base/file.h"
+#include "formats/splats/gaussian_rows.h"
+#include "splat/splats.h"
+
+/* Whether a file begins as a zip. */
+int sog_is(const struct file_map *map);
+
+/* Reads a zip that is in memory, which is released in any case; as ply_read_map. */
+int sog_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
+	struct file_map *map, struct err *e);
+
+/* Reads meta.json and the images beside it. */
+int sog_read_meta(
+	struct splats *s, double offset[3], struct rows_report *report, const char *meta, struct err *e);
+
+/* Writes a zip. Means are s->means + offset. "-" is stdout. Returns 0, or -1 with *e set. */
+int sog_write(const struct splats *s, const double offset[3], const char *path, struct err *e);
+
+#endif

@@ -1,0 +1,27 @@
+/* What .sog files number their values by: a codebook of single numbers, a palette of rows of them. Both are
+ * found without chance, so that the same scene makes the same file. formats/splats/sog.md. */
+#ifndef FORMATS_SOG_PALETTE_H
+#define FORMATS_SOG_PALETTE_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { SOG_CODES = 256 };
+
+/* Numbers that stand for values (n): codes get SOG_CODES of them, rising. Where there are not more different
+ * values, they are these; else each is the mean of the values that are nearest to it, and the squared error
+ * is about the least. Returns 0, or -1 with *e set. */
+int sog_codebook(double codes[SOG_CODES], const float *values, size_t n, struct err *e);
+
+/* The nearest of the codes. */
+int sog_code(const double codes[SOG_CODES], double value);
+
+/* Rows that stand for rows (n, width): centres (k, width), k at most `most`, and for each row its centre.
+ * The set with the largest squared error is cut in two, at the mean of the column with the largest variance,
+ * until there are `most` sets or none has an error. Returns 0, or -1 with *e set. */
+int sog_palette(float *centres, size_t *k, uint16_t *labels, const float *rows, size_t n, size_t width,
+	size_t most, struct err *e);
+
+#endif

@@ -1,0 +1,104 @@
+#include "formats/splats/splat.h"
+
+#include "base/file.h"
+#include "base/little.h"
+#include "base/mem.h"
+#include "splat/sh.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct place {
+	double size; /* volume times opacity */
+	size_t gaussian;
+};
+
+static int largest_first(const void *a, const void *b)
+{
+	const struct place *x = a, *y = b;
+
+	if (x->size != y->size)
+		return x->size > y->size ? -1 : 1;
+	return (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
+}
+
+static unsigned char to_byte(double x)
+{
+	return (unsigned char)lrint(fmin(fmax(x, 0), 255));
+}
+
+static int next_row(void *reader, size_t row, double *values, struct err *e)
+{
+	const struct file_map *map = reader;
+	const unsigned char *p = map->data + SPLAT_BYTES * row;
+
+	(void)e;
+	for (int k = 0; k < 3; k++) {
+		values[ROW_MEAN + k] = little_get_f32(p + 4 * k);
+		values[ROW_SCALE + k] = log((double)little_get_f32(p + 12 + 4 * k));
+		values[ROW_DC + k] = (p[24 + k] / 255.0 - 0.5) / SH_C0;
+	}
+	values[ROW_OPACITY] = gaussian_logit(p[27] / 255.0);
+	for (int k = 0; k < 4; k++)
+		values[ROW_ROT + k] = (p[28 + k] - 128) / 128.0;
+	return 0;
+}
+
+int splat_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
+	struct file_map *map, struct err *e)
+{
+	const struct gaussian_rows rows = {name, map->len / SPLAT_BYTES, 0, next_row, map};
+	int bad = map->len % SPLAT_BYTES != 0;
+
+	*s = (struct splats){0};
+	if (bad)
+		err_set(e, ERR_FORMAT, "%s: %zu bytes are not a whole number of Gaussians of %d", name,
+			map->len, SPLAT_BYTES);
+	else
+		bad = gaussian_rows_read(s, offset, report, &rows, e);
+	file_unmap(map);
+	return bad ? -1 : 0;
+}
+
+void splat_pack(unsigned char bytes[SPLAT_BYTES], const struct splats *s, size_t i)
+{
+	unsigned char *p = bytes;
+	const float *sh = s->sh + 3 * (size_t)s->sh_coefficients * i, *q = s->quats + 4 * i;
+	const double w = q[0], x = q[1], y = q[2], z = q[3], length = sqrt(w * w + x * x + y * y + z * z);
+
+	for (size_t k = 0; k < 3; k++)
+		p = little_put_f32(p, s->means[3 * i + k]);
+	for (size_t k = 0; k < 3; k++)
+		p = little_put_f32(p, s->scales[3 * i + k]);
+	for (int c = 0; c < 3; c++)
+		*p++ = to_byte(255 * (0.5 + SH_C0 * (double)sh[c]));
+	*p++ = to_byte(255 * (double)s->opacities[i]);
+	for (int k = 0; k < 4; k++)
+		*p++ = to_byte(128 + 128 * (double)q[k] / length);
+}
+
+int splat_write(const struct splats *s, const double offset[3], const char *path, struct err *e)
+{
+	struct place *places = mem_alloc(s->n, sizeof *places, "splats", e);
+	struct file_out out;
+
+	if (!places)
+		return -1;
+	for (size_t i = 0; i < s->n; i++) {
+		const float *scale = s->scales + 3 * i;
+		places[i] =
+			(struct place){(double)scale[0] * scale[1] * scale[2] * (double)s->opacities[i], i};
+	}
+	qsort(places, s->n, sizeof *places, largest_first);
+	int bad = file_out_open(&out, path, e);
+	for (size_t i = 0; i < s->n && !bad; i++) {
+		unsigned char record[SPLAT_BYTES];
+		splat_pack(record, s, places[i].gaussian);
+		for (size_t k = 0; k < 3; k++)
+			little_put_f32(
+				record + 4 * k, (double)s->means[3 * places[i].gaussian + k] + offset[k]);
+		fwrite(record, 1, sizeof record, out.stream);
+	}
+	free(places);
+	return bad ? -1 : file_out_commit(&out, e);
+}
