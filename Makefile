@@ -313,7 +313,7 @@ install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 		install -m $$mode $$file "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines" || exit; done
 	for part in learn test; do \
 		install -d "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines/marked/$$part" && \
-		install -m 644 pipelines/marked/$$part/*.txt "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines/marked/$$part" || exit; done
+		install -m 644 pipelines/marked/$$part/*.txt* "$(DESTDIR)$(PREFIX)/share/refersplat/pipelines/marked/$$part" || exit; done
 
 uninstall: ## remove what install put there
 	rm -f $(TOOLS:%="$(DESTDIR)$(PREFIX)/bin/%") $(TOOLS:%="$(DESTDIR)$(PREFIX)/share/bash-completion/completions/%") \

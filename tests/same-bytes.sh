@@ -90,9 +90,10 @@ synthetic() {
 		run "box-score-$model" miou-score --boxes --truth boxes.jsonl "locate-$model.jsonl"
 	done
 	run whole miou-score --truth truth.jsonl --whole whole.jsonl amodal-lifted.jsonl
-	run examples parse-train -q --write 60 -o examples.jsonl
-	run encode-examples text-encode -q --model "$bert" -o examples examples.jsonl
-	run learn parse-train -q --epochs 1 -o parser examples
+	printf '%s\n' 'the small/P1:smaller mug/T on/P2:on the plate/A2' 'the red/a box/T near/P1:near the lamp/A1, not the kettle/X' >marked
+	run marked parse-train -q --sentences -o marked.jsonl marked
+	run encode-marked text-encode -q --model "$bert" -o marked.text marked.jsonl
+	run learn parse-train -q --epochs 2 --text marked.text -o parser marked
 	cd ..
 }
 

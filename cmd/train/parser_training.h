@@ -1,5 +1,4 @@
-/* The weights of text-parse, learnt from the project's own example sentences and from readings of others:
- * parse-train. formats/encoders/parser_weights.md, formats/records/readings.md. */
+/* The weights of text-parse, learnt from sentences with marks (formats/records/marked.md): parse-train. */
 #ifndef CMD_TRAIN_PARSER_TRAINING_H
 #define CMD_TRAIN_PARSER_TRAINING_H
 
@@ -7,21 +6,21 @@
 #include "base/report.h"
 
 struct parser_training_options {
-	const char *examples;		/* the encoded example sentences */
-	const char *marked;		/* people's sentences with marks; NULL: none */
-	const char *marked_text;	/* their encoded sentences */
-	const char *readings;		/* learn from these too; NULL: none */
-	const char *readings_text;	/* their encoded sentences */
-	const char *output;		/* weights, or parses where there are folds; "-" is stdout */
-	const char *source;		/* what the weights say that they were learnt from */
-	long long epochs, rounds, seed; /* the seed is that of the examples, too */
-	long long members;		/* networks, whose scores are averaged */
-	long long folds;		/* 0, or cross-validate in so many parts */
-	int is_blind;			/* the network is not told what the grammar says */
+	const char *marked; /* sentences with marks */
+	const char *text;   /* the same, encoded */
+	const char *output;
+	const char *source; /* what the weights say that they were learnt from */
+	long long epochs, seed;
+	long long members; /* networks, whose scores are averaged */
 };
 
-/* Learns, and writes the weights; with folds the parses of the readings' sentences instead, each by weights
- * that saw no sentence of its part. Returns 0, or -1 with *e set. */
+/* Learns, and writes the weights. Returns 0, or -1 with *e set. */
 int parser_train(const struct parser_training_options *o, const struct report *to, struct err *e);
+
+/* Writes the sentences of a file of marked ones (JSON Lines), or the parses that their marks stand for
+ * (formats/records/parses.md), whose words are spelt as where they were encoded (NULL: as without an encoder).
+ * Likewise. */
+int parser_marked_write(
+	const char *marked, const char *encoded, int is_parses, const char *output, struct err *e);
 
 #endif

@@ -91,18 +91,18 @@ static int take_member(struct parser_weights *w, int member, const struct safete
 	return 0;
 }
 
-/* Older ones are of another network, or were learnt on the encoder's last layer. */
+/* Older ones are of another network. */
 static int need_version(const struct safetensors *st, struct err *e)
 {
 	const char *version;
 
-	if (safetensors_need_format(st, "refer.parser", 5, e))
+	if (safetensors_need_format(st, "refer.parser", 6, e))
 		return -1;
 	version = safetensors_meta(st, "version");
-	return !strcmp(version, "5")
+	return !strcmp(version, "6")
 		       ? 0
 		       : err_set(e, ERR_FORMAT,
-				 "%s: refer.parser version %s is older than this program reads (5)", st->path,
+				 "%s: refer.parser version %s is older than this program reads (6)", st->path,
 				 version);
 }
 
@@ -224,8 +224,8 @@ static int put_member(const struct parser_weights *w, int member, struct making 
 	return 0;
 }
 
-int parser_weights_write(const struct parser_weights *w, const char *path, const char *options,
-	long long seed, const char *source, struct err *e)
+int parser_weights_write(
+	const struct parser_weights *w, const char *path, long long seed, const char *source, struct err *e)
 {
 	struct making m = {0};
 	char seed_text[32];
@@ -234,8 +234,8 @@ int parser_weights_write(const struct parser_weights *w, const char *path, const
 	for (const struct parser_weights *k = w; k && members < PARSER_MEMBERS && !bad; k = k->next)
 		bad = put_member(k, members++, &m, e);
 	snprintf(seed_text, sizeof seed_text, "%lld", seed);
-	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "5"}, {"tool", "parse-train"},
-		{"options", options}, {"seed", seed_text}, {"source", source},
+	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "6"}, {"tool", "parse-train"},
+		{"options", ""}, {"seed", seed_text}, {"source", source},
 		{"encoder", w->encoder[0] ? w->encoder : NULL}};
 	if (!bad)
 		bad = safetensors_write(path, m.tensors, (size_t)m.n, meta, sizeof meta / sizeof *meta, e);

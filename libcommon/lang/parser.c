@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int learnt_analyse(struct analysis *a, const struct tokens *t, const struct analysis *grammar,
-	const struct parser *parser, const struct parser_vectors *v, double *sure, struct err *e)
+static int learnt_analyse(struct analysis *a, const struct tokens *t, const struct parser *parser,
+	const struct parser_vectors *v, double *sure, struct err *e)
 {
 	const struct parser_weights *w = parser->weights;
 	struct parser_batch b;
@@ -19,9 +19,7 @@ static int learnt_analyse(struct analysis *a, const struct tokens *t, const stru
 	vectors = mem_alloc((size_t)t->n, sizeof *vectors * (size_t)w->width, "word vectors", e);
 	if (vectors) {
 		parser_vectors_of_words(t, v->vectors, v->count, w->width, vectors);
-		parser_features_take(features, t, grammar);
-		if (parser->is_blind)
-			parser_features_blank(features, t->n);
+		parser_features_take(features, t);
 		parser_batch_add(&b, features, vectors, t->n, w->width);
 		parser_forward(w, &b);
 		parser_decode(w, &b, 0, t, a, sure);
@@ -77,7 +75,7 @@ int parse_sentence(struct parse *p, const struct parser *parser, const char *tex
 	grammar_analyse(&grammar, &t);
 	if (!are_mine(parser, v) || !t.n)
 		a = grammar;
-	else if (learnt_analyse(&a, &t, &grammar, parser, v, &sure, e))
+	else if (learnt_analyse(&a, &t, parser, v, &sure, e))
 		return -1;
 	analysis_mend(&a, &grammar, &t);
 	if (parse_build(p, &a, &t, e))

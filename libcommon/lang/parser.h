@@ -11,7 +11,6 @@ struct parser {
 	const char *const *known; /* words spelt right besides the closed ones: a scene's vocabulary */
 	int known_count;
 	const char *encoder; /* fingerprint of what made the vectors; NULL or "": not known */
-	int is_blind;	     /* the network is not told what the grammar says: for a comparison */
 };
 
 /* What the encoder's middle layer made of the sentence; zeroed where there is none. What a word is to its

@@ -1,180 +1,176 @@
+/* Samples, the loop over them (shuffled, in batches, one step of Adam for each) and the networks that learn
+ * at once. */
 #include "lang/parser_learn.h"
 
 #include "base/mem.h"
-#include "nn/linear.h"
-#include "nn/loss.h"
+#include "nn/adam.h"
 
-#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-void parser_weights_begin(struct parser_weights *w, struct rng *r)
-{
-	struct parser_part parts[PARSER_PARTS];
-	float *p = w->slab;
+/* The rate is a first guess, not searched. The shares of units dropped are, of few tried values, those that
+ * took the most of other writers' marked sentences apart rightly. */
+enum { BATCH = 16 }; /* sentences in a step */
+static const double rate = 0.002, dropout = 0.33, dropout_state = 0.2;
 
-	parser_parts(w->width, parts);
-	for (int i = 0; i < PARSER_PARTS; i++) {
-		size_t n = parts[i].rows * (parts[i].columns ? parts[i].columns : 1);
-		/* tables of words are sums' terms: small */
-		double most = !parts[i].columns			     ? 0
-			      : p >= w->closed && p < w->ahead.input ? 0.1
-								     : sqrt(3.0 / (double)parts[i].columns);
-		for (size_t k = 0; k < n; k++)
-			p[k] = (float)rng_range(r, -most, most + (most > 0 ? 0 : 1e-30));
-		p += n;
-	}
-	for (int k = 0; k < NET_ARC; k++)
-		w->root[k] = (float)rng_range(r, -0.3, 0.3);
-}
-
-int parser_scratch_make(
-	struct parser_batch *b, int capacity, int sentences, const struct parser_weights *w, struct err *e)
+int parser_sample_make(struct parser_sample *s, const struct tokens *t, const struct analysis *right,
+	const float *pieces, int piece_count, int width, struct err *e)
 {
-	if (parser_batch_make(b, capacity, sentences, w, e))
+	size_t n = (size_t)t->n;
+
+	*s = (struct parser_sample){.n = t->n};
+	s->features = mem_alloc(n, sizeof *s->features, "sample", e);
+	s->right = mem_alloc(n, sizeof *s->right, "sample", e);
+	s->vectors = mem_alloc(n, sizeof *s->vectors * (size_t)width, "sample", e);
+	if (!s->features || !s->right || !s->vectors) {
+		parser_sample_free(s);
 		return -1;
-	b->scratch = mem_alloc(lstm_scratch(&w->ahead, sentences), sizeof *b->scratch, "parser", e);
-	if (b->scratch)
-		return 0;
-	parser_batch_free(b);
-	return -1;
-}
-
-/* Cross-entropy of n logits against `right`; d gets its gradient times `scale`. */
-static double entropy(const float *x, int n, int right, float *d, double scale)
-{
-	float most;
-	const double sum = loss_exp_sum(x, (size_t)n, &most);
-
-	for (int i = 0; i < n; i++)
-		d[i] += (float)(scale * (exp((double)(x[i] - most)) / sum - (i == right)));
-	return scale * (most + log(sum) - x[right]);
-}
-
-static int has_head(enum word_role r)
-{
-	return r == ROLE_ANCHOR || r == ROLE_PREDICATE || r == ROLE_NAME || r == ROLE_ATTRIBUTE ||
-	       r == ROLE_EXCEPT;
-}
-
-static double arc_loss(const struct parser_weights *w, struct parser_weights *dw,
-	const struct parser_batch *b, int sentence, int i, int right, struct parser_batch *d, double scale)
-{
-	int first = b->start[sentence], n = b->start[sentence + 1] - first;
-	float scores[TOKENS_MOST + 1], ds[TOKENS_MOST + 1] = {0};
-	const float inverse = 1 / sqrtf(NET_ARC), *dependent = b->dependent + (size_t)(first + i) * NET_ARC;
-	float *ddependent = d->dependent + (size_t)(first + i) * NET_ARC;
-	double loss;
-
-	parser_arcs(w, b, sentence, i, scores);
-	loss = entropy(scores, n + 1, right + 1, ds, scale);
-	for (int j = -1; j < n; j++) {
-		const float *head = j < 0 ? w->root : b->head + (size_t)(first + j) * NET_ARC;
-		float *dhead = j < 0 ? dw->root : d->head + (size_t)(first + j) * NET_ARC, g = ds[j + 1];
-		for (int k = 0; k < NET_ARC; k++) {
-			ddependent[k] += g * inverse * head[k];
-			dhead[k] += g * inverse * dependent[k];
-		}
-		if (j < 0)
-			dw->root[NET_ARC] += g;
-		else
-			dw->distance[parser_distance(i, j)] += g;
-		if (b->features[first + i].head == j)
-			dw->agree[j < 0] += g;
 	}
-	return loss;
+	parser_features_take(s->features, t);
+	if (right)
+		memcpy(s->right, right->word, n * sizeof *s->right);
+	parser_vectors_of_words(t, pieces, piece_count, width, s->vectors);
+	return 0;
 }
 
-static double negation_loss(float x, int right, float *d, double scale)
+void parser_sample_free(struct parser_sample *s)
 {
-	double p = 1 / (1 + exp(-(double)x));
-
-	*d += (float)(scale * (p - right));
-	return scale * (fmax(x, 0) - x * right + log1p(exp(-fabs((double)x))));
+	free(s->features);
+	free(s->right);
+	free(s->vectors);
+	*s = (struct parser_sample){0};
 }
 
-static double losses(const struct parser_weights *w, struct parser_weights *dw, const struct parser_batch *b,
-	const struct analysis_word *const *lessons, struct parser_batch *d)
-{
-	double loss = 0, scale = 1.0 / (b->rows ? b->rows : 1);
+struct learning {
+	struct parser_batch batch, scratch;
+	struct parser_weights gradient;
+	float *moments;
+	uint32_t *order;
+	const struct analysis_word **right;
+};
 
-	for (int s = 0; s < b->sentences; s++) {
-		const struct analysis_word *a = lessons[s];
-		for (int i = 0; i < b->start[s + 1] - b->start[s]; i++) {
-			const float *out = b->out + (size_t)(b->start[s] + i) * NET_OUT;
-			float *dout = d->out + (size_t)(b->start[s] + i) * NET_OUT;
-			enum word_role r = a[i].role;
-			if (r == ROLES)
-				continue;
-			loss += entropy(out, ROLES, (int)r, dout, scale);
-			if (r == ROLE_PREDICATE) {
-				loss += entropy(out + ROLES, PARSE_RELATIONS, (int)a[i].relation,
-					dout + ROLES, scale);
-				loss += negation_loss(out[ROLES + PARSE_RELATIONS], a[i].negated,
-					dout + ROLES + PARSE_RELATIONS, scale);
-			}
-			if (has_head(r))
-				loss += arc_loss(w, dw, b, s, i, a[i].head, d, scale);
-		}
+static int state_make(struct learning *s, int width, size_t count, size_t n, struct err *e)
+{
+	*s = (struct learning){0};
+	s->moments = mem_zalloc(2 * count, sizeof *s->moments, "parser's moments", e);
+	s->order = mem_alloc(n, sizeof *s->order, "order", e);
+	s->right = mem_alloc((size_t)BATCH, sizeof *s->right, "samples", e);
+	if (!s->moments || !s->order || !s->right || parser_weights_make(&s->gradient, width, e) ||
+		parser_batch_make(&s->batch, BATCH * TOKENS_MOST, BATCH, &s->gradient, e) ||
+		parser_scratch_make(&s->scratch, BATCH * TOKENS_MOST, BATCH, &s->gradient, e))
+		return -1;
+	s->batch.keep = mem_alloc((size_t)BATCH * TOKENS_MOST * NET_HIDDEN, sizeof(float), "dropout", e);
+	s->batch.keep_state = mem_alloc((size_t)BATCH * TOKENS_MOST * NET_STATE, sizeof(float), "dropout", e);
+	return s->batch.keep && s->batch.keep_state ? 0 : -1;
+}
+
+static void state_free(struct learning *s)
+{
+	parser_batch_free(&s->batch);
+	parser_batch_free(&s->scratch);
+	parser_weights_free(&s->gradient);
+	free(s->moments);
+	free(s->order);
+	free(s->right);
+}
+
+static void drop(float *keep, size_t n, double share, struct rng *r)
+{
+	for (size_t i = 0; i < n; i++)
+		keep[i] = rng_u32(r) < share * 4294967296.0 ? 0 : (float)(1 / (1 - share));
+}
+
+/* Some closed words are hidden, so that the vectors learn to do without them. */
+static void hide(struct parser_batch *b, double share, struct rng *r)
+{
+	for (int i = 0; i < b->rows; i++)
+		if (rng_u32(r) < share * 4294967296.0)
+			b->features[i].closed = NET_CLOSED - 1;
+}
+
+/* What the step's samples add to the gradient: the loss. */
+static double take_batch(const struct parser_weights *w, struct learning *s,
+	const struct parser_sample *const *samples, size_t from, size_t to, struct rng *r)
+{
+	parser_batch_clear(&s->batch);
+	for (size_t k = from; k < to; k++) {
+		const struct parser_sample *x = samples[s->order[k]];
+		s->right[s->batch.sentences] = x->right;
+		parser_batch_add(&s->batch, x->features, x->vectors, x->n, w->width);
 	}
-	return loss;
+	drop(s->batch.keep, (size_t)s->batch.rows * NET_HIDDEN, dropout, r);
+	drop(s->batch.keep_state, (size_t)s->batch.rows * NET_STATE, dropout_state, r);
+	hide(&s->batch, 0.1, r);
+	parser_forward(w, &s->batch);
+	memset(s->gradient.slab, 0, sizeof(float) * w->count);
+	s->scratch.rows = s->batch.rows;
+	return parser_backward(w, &s->gradient, &s->batch, s->right, &s->scratch);
 }
 
-static void add_to(float *table, const float *d)
+static int learn_from(const struct parser_learning *l, struct parser_weights *w, int member,
+	const struct parser_sample *const *samples, size_t n, struct rng *r, struct err *e)
 {
-	for (int k = 0; k < NET_HIDDEN; k++)
-		table[k] += d[k];
-}
+	struct learning s;
+	const size_t steps = (n + BATCH - 1) / BATCH;
+	size_t step = 0;
+	int bad = state_make(&s, w->width, w->count, n, e);
 
-static void embed_back(struct parser_weights *dw, const struct parser_batch *b, float *dh)
-{
-	for (int r = 0; r < b->rows; r++) {
-		float *d = dh + (size_t)r * NET_HIDDEN;
-		for (int k = 0; k < NET_HIDDEN; k++) {
-			size_t at = (size_t)r * NET_HIDDEN + (size_t)k;
-			if (b->keep)
-				d[k] *= b->keep[at];
-			if (!(b->first[at] > 0))
-				d[k] = 0;
+	for (size_t i = 0; i < n && !bad; i++)
+		s.order[i] = (uint32_t)i;
+	for (int epoch = 0; epoch < l->epochs && !bad; epoch++) {
+		double loss = 0;
+		rng_shuffle(r, s.order, (uint32_t)n);
+		for (size_t at = 0; at < n; at += BATCH) {
+			loss += take_batch(w, &s, samples, at, at + BATCH < n ? at + BATCH : n, r);
+			step++;
+			double left = 1 - (double)step / (double)(steps * (size_t)l->epochs + 1);
+			adam_step(w->slab, s.gradient.slab, s.moments, s.moments + w->count, w->count,
+				rate * left, 0.9, 0.99, 1e-8, (long)step);
 		}
-		add_to(dw->closed + b->features[r].closed * NET_HIDDEN, d);
-		add_to(dw->role + b->features[r].role * NET_HIDDEN, d);
-		add_to(dw->relation + b->features[r].relation * NET_HIDDEN, d);
-		add_to(dw->pause + b->features[r].pause * NET_HIDDEN, d);
+		if (l->progress)
+			l->progress(l->context, member, epoch, loss / (double)steps);
 	}
-	linear_backward(NULL, dw->vector, dw->vector_bias, dh, b->x, NULL, (size_t)b->rows, (size_t)dw->width,
-		NET_HIDDEN);
+	state_free(&s);
+	return bad;
 }
 
-double parser_backward(const struct parser_weights *w, struct parser_weights *dw,
-	const struct parser_batch *b, const struct analysis_word *const *lessons, struct parser_batch *d)
+/* One network, by itself, so that the number of threads changes nothing. */
+static int learn(const struct parser_learning *l, struct parser_weights *w, int member, struct err *e)
 {
-	const struct lstm_sequences ahead = {b->start, b->sentences, 0}, back = {b->start, b->sentences, 1};
-	const size_t rows = (size_t)b->rows, h = rows * NET_HIDDEN;
-	float *dh = d->h, *part = d->first;
-	double loss;
+	const struct parser_sample **samples = mem_alloc(l->sample_count, sizeof *samples, "samples", e);
+	struct rng r;
+	size_t n = 0;
 
-	memset(d->out, 0, sizeof(float) * rows * NET_OUT);
-	memset(d->dependent, 0, sizeof(float) * rows * NET_ARC);
-	memset(d->head, 0, sizeof(float) * rows * NET_ARC);
-	loss = losses(w, dw, b, lessons, d);
-	linear_backward(dh, dw->out, dw->out_bias, d->out, b->h, w->out, rows, NET_HIDDEN, NET_OUT);
-	linear_backward(part, dw->dependent, dw->dependent_bias, d->dependent, b->h, w->dependent, rows,
-		NET_HIDDEN, NET_ARC);
-	for (size_t i = 0; i < h; i++)
-		dh[i] += part[i];
-	linear_backward(part, dw->head, dw->head_bias, d->head, b->h, w->head, rows, NET_HIDDEN, NET_ARC);
-	for (size_t i = 0; i < h; i++)
-		dh[i] += part[i];
-	for (size_t i = 0; i < h; i++)
-		part[i] = b->grown[i] > 0 ? dh[i] : 0;
-	linear_backward(
-		d->state, dw->down, dw->down_bias, part, b->state, w->down, rows, NET_STATE, NET_HIDDEN);
-	for (size_t i = 0; b->keep_state && i < rows * NET_STATE; i++)
-		d->state[i] *= b->keep_state[i];
-	lstm_backward(
-		&w->ahead, &dw->ahead, &ahead, b->first, &b->ahead, d->state, NET_STATE, dh, d->scratch);
-	lstm_backward(&w->back, &dw->back, &back, b->first, &b->back, d->state + NET_UNITS, NET_STATE, dh,
-		d->scratch);
-	embed_back(dw, b, dh);
-	return loss;
+	if (!samples)
+		return -1;
+	rng_seed(&r, l->seed + (unsigned long long)member * 1000, 7);
+	parser_weights_begin(w, &r);
+	for (size_t i = 0; i < l->sample_count; i++)
+		if (l->samples[i].n)
+			samples[n++] = &l->samples[i];
+	const int bad = learn_from(l, w, member, samples, n, &r, e);
+	free(samples);
+	return bad;
+}
+
+int parser_learn(const struct parser_learning *l, struct parser_weights *w, struct err *e)
+{
+	struct parser_weights *members[PARSER_MEMBERS];
+	struct err errors[PARSER_MEMBERS] = {{0}};
+	int n = 0, bad = 0;
+
+	for (struct parser_weights *next; w && n < PARSER_MEMBERS; w = next) {
+		next = w->next;
+		w->next = NULL; /* learns alone */
+		members[n++] = w;
+	}
+#pragma omp parallel for schedule(dynamic) reduction(| : bad)
+	for (int k = 0; k < n; k++)
+		bad |= learn(l, members[k], k, &errors[k]) != 0;
+	for (int k = 0; k + 1 < n; k++)
+		members[k]->next = members[k + 1];
+	for (int k = n; k-- > 0;)
+		if (errors[k].message[0])
+			*e = errors[k];
+	return bad ? -1 : 0;
 }

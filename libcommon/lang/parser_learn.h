@@ -14,12 +14,11 @@ int parser_scratch_make(
 
 /* Adds to dw the gradient of the loss, and returns the loss: the sum over words of the cross-entropies of
  * role, and where it has them head, relation and negation, divided by the number of words. b holds
- * parser_forward's results. lessons: what each sentence's words should be, an array a sentence; a word whose
+ * parser_forward's results. right: what each sentence's words should be, an array a sentence; a word whose
  * role is ROLES is not learnt from. scratch is of the shape of b, its contents are lost, and so is what b
  * holds of the lstms. */
 double parser_backward(const struct parser_weights *w, struct parser_weights *dw,
-	const struct parser_batch *b, const struct analysis_word *const *lessons,
-	struct parser_batch *scratch);
+	const struct parser_batch *b, const struct analysis_word *const *right, struct parser_batch *scratch);
 
 /* A sentence to learn from. */
 struct parser_sample {
@@ -33,18 +32,18 @@ int parser_sample_make(struct parser_sample *s, const struct tokens *t, const st
 	const float *pieces, int piece_count, int width, struct err *e);
 void parser_sample_free(struct parser_sample *s);
 
-struct parser_course {
-	int epochs, batch;		     /* sentences in a step */
-	double rate, dropout, dropout_state; /* the share of h0 and of s that is dropped */
-	int member;			     /* for progress: which network it is */
-	/* said of each epoch; may be NULL */
+struct parser_learning {
+	const struct parser_sample *samples; /* (sample_count) */
+	size_t sample_count;
+	int epochs;
+	unsigned long long seed;
+	/* said of each epoch, of several members at once, one at a time; may be NULL */
 	void (*progress)(void *context, int member, int epoch, double loss);
 	void *context;
 };
 
-/* Adam from the weights as they are, the rate falling to zero; samples in the order of r. The same bytes for
- * any number of threads. */
-int parser_learn(struct parser_weights *w, const struct parser_sample *const *samples, size_t n,
-	const struct parser_course *course, struct rng *r, struct err *e);
+/* All members of w learn, each by itself from its own start, on several threads at once: Adam, the rate
+ * falling to zero. The same bytes for any number of threads. */
+int parser_learn(const struct parser_learning *l, struct parser_weights *w, struct err *e);
 
 #endif

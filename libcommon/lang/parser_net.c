@@ -14,8 +14,6 @@ void parser_parts(int width, struct parser_part parts[PARSER_PARTS])
 		{"vector.weight", NET_HIDDEN, (size_t)width},
 		{"vector.bias", NET_HIDDEN, 0},
 		{"closed", NET_CLOSED, NET_HIDDEN},
-		{"role", ROLES, NET_HIDDEN},
-		{"relation", PARSE_RELATIONS + 1, NET_HIDDEN},
 		{"pause", NET_PAUSES, NET_HIDDEN},
 		{"ahead.input", 4 * NET_UNITS, NET_HIDDEN},
 		{"ahead.recurrent", NET_UNITS, 4 * NET_UNITS},
@@ -33,7 +31,6 @@ void parser_parts(int width, struct parser_part parts[PARSER_PARTS])
 		{"head.bias", NET_ARC, 0},
 		{"root", NET_ARC + 1, 0},
 		{"distance", NET_DISTANCES, 0},
-		{"agree", 2, 0},
 	};
 
 	memcpy(parts, all, sizeof all);
@@ -42,11 +39,10 @@ void parser_parts(int width, struct parser_part parts[PARSER_PARTS])
 int parser_weights_make(struct parser_weights *w, int width, struct err *e)
 {
 	struct parser_part parts[PARSER_PARTS];
-	float **const at[PARSER_PARTS] = {&w->vector, &w->vector_bias, &w->closed, &w->role, &w->relation,
-		&w->pause, &w->ahead.input, &w->ahead.recurrent, &w->ahead.bias, &w->back.input,
-		&w->back.recurrent, &w->back.bias, &w->down, &w->down_bias, &w->out, &w->out_bias,
-		&w->dependent, &w->dependent_bias, &w->head, &w->head_bias, &w->root, &w->distance,
-		&w->agree};
+	float **const at[PARSER_PARTS] = {&w->vector, &w->vector_bias, &w->closed, &w->pause, &w->ahead.input,
+		&w->ahead.recurrent, &w->ahead.bias, &w->back.input, &w->back.recurrent, &w->back.bias,
+		&w->down, &w->down_bias, &w->out, &w->out_bias, &w->dependent, &w->dependent_bias, &w->head,
+		&w->head_bias, &w->root, &w->distance};
 
 	*w = (struct parser_weights){.width = width,
 		.ahead = {.in = NET_HIDDEN, .units = NET_UNITS},
@@ -133,27 +129,14 @@ void parser_batch_clear(struct parser_batch *b)
 	b->rows = b->sentences = 0;
 }
 
-void parser_features_take(struct parser_features *f, const struct tokens *t, const struct analysis *grammar)
+void parser_features_take(struct parser_features *f, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
 		const struct token *w = &t->word[i];
-		const struct analysis_word *g = &grammar->word[i];
 		f[i] = (struct parser_features){.closed = w->closed < 0 ? NET_CLOSED - 1 : w->closed,
-			.role = (int)g->role,
-			.relation = g->role == ROLE_PREDICATE ? (int)g->relation : PARSE_RELATIONS,
 			.pause = w->before		     ? (int)w->before
 				 : strcmp(w->text, w->lemma) ? NET_PAUSES - 1
-							     : 0,
-			.head = g->head};
-	}
-}
-
-void parser_features_blank(struct parser_features *f, int n)
-{
-	for (int i = 0; i < n; i++) {
-		f[i].role = ROLE_NONE;
-		f[i].relation = PARSE_RELATIONS;
-		f[i].head = ROOT;
+							     : 0};
 	}
 }
 
@@ -191,8 +174,6 @@ static void embed(const struct parser_weights *w, struct parser_batch *b)
 	for (int r = 0; r < b->rows; r++) {
 		float *h = b->first + (size_t)r * NET_HIDDEN;
 		add_row(h, w->closed + b->features[r].closed * NET_HIDDEN);
-		add_row(h, w->role + b->features[r].role * NET_HIDDEN);
-		add_row(h, w->relation + b->features[r].relation * NET_HIDDEN);
 		add_row(h, w->pause + b->features[r].pause * NET_HIDDEN);
 		for (int d = 0; d < NET_HIDDEN; d++) {
 			h[d] = h[d] > 0 ? h[d] : 0;
@@ -252,8 +233,7 @@ static void score_arcs(const struct parser_weights *w, const struct parser_batch
 	int sentence, int i, float *scores)
 {
 	const size_t at = member * (size_t)b->capacity * NET_ARC;
-	const int first = b->start[sentence], n = b->start[sentence + 1] - first,
-		  grammar = b->features[first + i].head;
+	const int first = b->start[sentence], n = b->start[sentence + 1] - first;
 	const float *dependent = b->dependent + at + (size_t)(first + i) * NET_ARC;
 	const float scale = 1 / sqrtf(NET_ARC);
 
@@ -264,8 +244,6 @@ static void score_arcs(const struct parser_weights *w, const struct parser_batch
 			sum += dependent[k] * head[k];
 		sum *= scale;
 		sum += j < 0 ? w->root[NET_ARC] : w->distance[parser_distance(i, j)];
-		if (grammar == j)
-			sum += w->agree[j < 0];
 		scores[j + 1] = member ? scores[j + 1] + sum : sum;
 	}
 }

@@ -1,11 +1,11 @@
 /* The learnt parser: what each word is, what it hangs on, and which relation it says, from the encoder's word
- * vectors, its closed-class word and what the grammar thinks of it.
+ * vectors and its closed-class word.
  *
- *   h0 = relu(Wv x + b + E[closed] + E[grammar's role] + E[grammar's relation] + E[pause])
+ *   h0 = relu(Wv x + b + E[closed] + E[pause])
  *   s  = [lstm of h0 from the first word on, lstm from the last word back]      (nn/lstm.h)
  *   h  = h0 + relu(D s + d)
  *   roles, relations, negation: linear in h
- *   arc(i,j) = (A h_i + a) . (B h_j + b) / sqrt K + distance[j - i] + agree [the grammar hangs i on j]
+ *   arc(i,j) = (A h_i + a) . (B h_j + b) / sqrt K + distance[j - i]
  *
  * with x the mean of the word's pieces. After Dozat and Manning (2017), "Deep biaffine attention for neural
  * dependency parsing"; ROOT is a j of its own. */
@@ -35,8 +35,7 @@ struct parser_weights {
 	size_t count;
 	float *slab;
 	float *vector, *vector_bias; /* (H,width), (H) */
-	float *closed, *role, *relation,
-		*pause; /* (NET_CLOSED,H), (ROLES,H), (PARSE_RELATIONS + 1,H), (NET_PAUSES,H) */
+	float *closed, *pause;	     /* (NET_CLOSED,H), (NET_PAUSES,H) */
 	struct lstm ahead, back;
 	float *down, *down_bias;	   /* (H,2U), (H) */
 	float *out, *out_bias;		   /* (ROLES + PARSE_RELATIONS + 1, H): roles, relations, negated */
@@ -44,7 +43,6 @@ struct parser_weights {
 	float *head, *head_bias;	   /* (K,H), (K) */
 	float *root;			   /* (K) and a bias */
 	float *distance;		   /* (NET_DISTANCES) */
-	float *agree;			   /* (2): with the grammar's head; and where that is ROOT */
 	struct parser_weights *next;	   /* another member, learnt from another start: their scores are
 					      averaged; NULL; owned */
 };
@@ -54,7 +52,7 @@ struct parser_part {
 	const char *name;
 	size_t rows, columns;
 };
-enum { PARSER_PARTS = 23, PARSER_MEMBERS = 8 /* at most */ };
+enum { PARSER_PARTS = 20, PARSER_MEMBERS = 8 /* at most */ };
 void parser_parts(int width, struct parser_part parts[PARSER_PARTS]);
 
 /* Zeroed. parser_weights_free frees. */
@@ -63,8 +61,7 @@ void parser_weights_free(struct parser_weights *w);
 
 /* What is known of a word besides its vector. */
 struct parser_features {
-	int closed, role, relation, pause;
-	int head; /* that the grammar gives it, in its sentence */
+	int closed, pause;
 };
 
 /* Several sentences, one after the other. */
@@ -93,10 +90,7 @@ void parser_batch_clear(struct parser_batch *b);
 void parser_batch_add(
 	struct parser_batch *b, const struct parser_features *f, const float *vectors, int n, int width);
 
-/* As if the grammar had said nothing: for a comparison. */
-void parser_features_blank(struct parser_features *f, int n);
-
-void parser_features_take(struct parser_features *f, const struct tokens *t, const struct analysis *grammar);
+void parser_features_take(struct parser_features *f, const struct tokens *t);
 
 void parser_forward(const struct parser_weights *w, struct parser_batch *b);
 

@@ -23,7 +23,7 @@ missing_input() {
 		gs-weigh -o out none
 		text-encode --model none -o out none
 		text-parse -o out none
-		parse-train -o out none
+		parse-train --text none -o out none
 		pseudomask-select -o out none
 		mask-import --names none -o out none
 		mask-export -o out none

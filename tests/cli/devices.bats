@@ -10,6 +10,7 @@ setup_file() {
 	"$BATS_TEST_DIRNAME/examples-setup.sh" in "$BIN"
 	(cd in && "$BIN/feature-lift" -q --scene scene --weights weights --masks masks.jsonl -o labels.safetensors &&
 		mv kitchen/lifted/model.safetensors lifted.safetensors && cp lifted.safetensors kitchen/lifted/model.safetensors)
+	echo 'the wug/T' >in/marked
 	"${CC:-cc}" -shared -fPIC -o failing.so "$BATS_TEST_DIRNAME/failing.c" -ldl
 }
 
@@ -32,7 +33,7 @@ commands() {
 		gs-transform --format glb -o out point_cloud.ply
 		text-encode --quiet --model encoder -o out sentences.jsonl
 		text-parse --quiet -o out text.safetensors
-		parse-train --write 50 -o out
+		parse-train --sentences -o out marked
 		pseudomask-select -o out candidates.jsonl
 		mask-import -o out labels.json
 		mask-export -o out truth.jsonl

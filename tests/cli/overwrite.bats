@@ -102,11 +102,10 @@ locate() { refuses "$1" refer-locate --scene scene --text text.safetensors --mod
 	refuses "-o text.safetensors would overwrite TEXT text.safetensors" text-parse -o text.safetensors text.safetensors
 	refuses "-o encoder/vocab.txt would overwrite --parser encoder/vocab.txt" text-parse --parser encoder/vocab.txt \
 		-o encoder/vocab.txt text.safetensors
-	refuses "-o text.safetensors would overwrite TEXT text.safetensors" parse-train -o text.safetensors text.safetensors
-	refuses "-o sentences.jsonl would overwrite --readings sentences.jsonl" parse-train --readings sentences.jsonl \
-		--readings-text text.safetensors -o sentences.jsonl lifted.safetensors
-	refuses "-o text.safetensors would overwrite --readings-text text.safetensors" parse-train --readings sentences.jsonl \
-		--readings-text text.safetensors -o text.safetensors lifted.safetensors
+	refuses "-o sentences.jsonl would overwrite MARKED sentences.jsonl" parse-train --text text.safetensors \
+		-o sentences.jsonl sentences.jsonl
+	refuses "-o text.safetensors would overwrite --text text.safetensors" parse-train --text text.safetensors \
+		-o text.safetensors sentences.jsonl
 	for file in text.safetensors scene/splats.safetensors lifted/model.safetensors; do
 		refuses "--picture kitchen/$file would be among the files of RUN kitchen" refer-ask --encoder encoder -o kitchen/$file kitchen box
 	done

@@ -64,8 +64,8 @@ not() { ! "$@"; }
 
 @test "weights of an older version are refused, as they are of another network" {
 	encode "the wug on the dax"
-	sed 's/"version":"5"/"version":"4"/' "$BATS_TEST_DIRNAME/../../formats/encoders/parser_default.safetensors" >old
-	says 3 'text-parse: old: refer.parser version 4 is older than this program reads (5)' "$BIN/text-parse" --parser old text
+	sed 's/"version":"6"/"version":"5"/' "$BATS_TEST_DIRNAME/../../formats/encoders/parser_default.safetensors" >old
+	says 3 'text-parse: old: refer.parser version 5 is older than this program reads (6)' "$BIN/text-parse" --parser old text
 }
 
 @test "spans are characters, not bytes" {
@@ -99,5 +99,4 @@ not() { ! "$@"; }
 	encode "$long" "$(printf '\u732b on the \U0001F600 box')" "$(printf '(%.0s' {1..500})"
 	"$BIN/text-parse" -q text >out
 	[ "$(wc -l <out)" = 3 ]
-	"$BIN/gs-check" out
 }

@@ -21,7 +21,6 @@
 #include "formats/records/annotations.h"
 #include "formats/records/boxes.h"
 #include "formats/records/masks.h"
-#include "formats/records/readings.h"
 #include "formats/records/sentences.h"
 #include "formats/scene/checkpoint.h"
 #include "formats/scene/features.h"
@@ -62,7 +61,6 @@ SIMPLE(masks, struct masks, masks_read, masks_free)
 SIMPLE(model, struct model, model_read, model_free)
 SIMPLE(npy, struct npy, npy_open, npy_close)
 SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
-SIMPLE(readings, struct reading_set, readings_read, readings_free)
 SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
 SIMPLE(selection, struct selection, selection_read, selection_free)
 SIMPLE(cameras, struct cameras, scene_read_cameras_file, cameras_free)
@@ -302,7 +300,6 @@ static const struct target {
 	{"parser", try_parser, {0}, 1},
 	{"ply", try_scene, {0}, 0},
 	{"points", try_points, {"points3D.bin", "points3D.txt", "points3D.ply"}, 0},
-	{"readings", try_readings, {0}, 0},
 	{"safetensors", try_safetensors, {0}, 0},
 	{"scene", try_folder, {"cameras.json", "splats.safetensors"}, 0},
 	{"selection", try_selection, {0}, 0},

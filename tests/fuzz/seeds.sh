@@ -86,7 +86,6 @@ first 3 sentences.jsonl some.jsonl
 first 3 masks.jsonl some-masks.jsonl
 first 3 boxes.jsonl some-boxes.jsonl
 text-encode -q --model encoder -o some.safetensors some.jsonl
-parse-train -q --write 5 -o some-readings.jsonl
 refer-lift -q --scene scene --weights weights --text some.safetensors --masks masks.jsonl -o some-lifted.safetensors
 gs-weigh -q --split all -o few/whole few
 pseudomask-select -q -o few-masks.jsonl small/candidates.jsonl
@@ -169,7 +168,6 @@ seed npz "$golden"/npz/*.npz
 cp "$here/formats/encoders/parser_default.safetensors" parser.safetensors
 seed_cut parser 64 parser.safetensors
 seed ply few.ply packed.ply
-seed readings some-readings.jsonl
 seed safetensors few-lifted.safetensors few/weights/view_000.safetensors "$golden/good/small.safetensors"
 folder scene few/cameras.json few/splats.safetensors
 seed selection some-selection.safetensors

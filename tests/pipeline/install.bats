@@ -34,8 +34,8 @@ fetch() { PATH=$PWD/bin:$PATH XDG_CACHE_HOME=$PWD/cache "$@"; }
 	cmp "$ROOT/cmd/api/refersplat.h" "$to/include/refersplat.h"
 	make -f "$to/share/refersplat/pipelines/lift.mk" help | grep -q '^SCALE '
 	make -n -f "$to/share/refersplat/pipelines/parse.mk" BIN="$to/bin" BERT="$ROOT/tests/golden/bert" OUT="$BATS_TEST_TMPDIR" all test >parse
-	grep -q "^cat $to/share/refersplat/pipelines/marked/learn/.* >" parse
-	grep -q "^cat $to/share/refersplat/pipelines/marked/test/.* >" parse
+	grep -q "^gzip -cdf $to/share/refersplat/pipelines/marked/learn/.* >" parse
+	grep -q "^gzip -cdf $to/share/refersplat/pipelines/marked/test/.* >" parse
 }
 
 @test "make uninstall takes all of it away" {
