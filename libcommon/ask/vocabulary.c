@@ -235,7 +235,7 @@ int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
 
 static int are_akin(const struct vocabulary_kind *a, const struct vocabulary_kind *b)
 {
-	return a == b || wordnet_fits(&a->noun, &b->noun, 0) > 0 || wordnet_fits(&b->noun, &a->noun, 0) > 0 ||
+	return a == b || wordnet_fits(&a->noun, &b->noun) > 0 || wordnet_fits(&b->noun, &a->noun) > 0 ||
 	       kinds_share(a->lemma, b->lemma) || things_share(&a->things, &b->things);
 }
 

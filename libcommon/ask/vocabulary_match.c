@@ -9,6 +9,8 @@
 #include "lang/kinds.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Whether a word is a word of a name: 2 the last one that is no number, 1 another. */
@@ -40,12 +42,10 @@ static double worth(double cosine, double half, double soft)
 static double knowledge(const struct vocabulary *v, const struct vocabulary_kind *word,
 	const struct vocabulary_kind *kind, int is_general)
 {
-	const double x = WORDNET_WORTH * wordnet_fits(&word->noun, &kind->noun, is_general);
-	const int is_same =
-		v->has_knowledge && !is_general &&
-		(kinds_share(word->lemma, kind->lemma) || things_share(&word->things, &kind->things));
-
-	return is_same ? fmax(x, KINDS_WORTH) : x;
+	const double x = WORDNET_WORTH * wordnet_fits(&word->noun, &kind->noun);
+	if (!v->has_knowledge || is_general)
+		return x;
+	return fmax(x, things_share(&word->things, &kind->things) ? KINDS_WORTH : kinds_share(word->lemma, kind->lemma));
 }
 
 /* "toy" of one cylinder may be said of another one. general (O): what general nouns of each object fit. */
@@ -82,6 +82,56 @@ static double holds(const struct vocabulary *v, const struct vocabulary_kind *wo
 				 ? knowledge(v, word, &v->kinds[v->content_kinds[object]], 0)
 				 : 1;
 	return CONTENT_WORTH * x;
+}
+
+/* The noun of two words that ends at word w, as WordNet and the table of things have it, where they do: "tea bag". */
+static int find_compound(const struct parse *p, int w, struct vocabulary_kind *to, char *lemma, size_t size)
+{
+	const struct parse_list *noun = NULL;
+
+	for (int i = 0; i < p->phrase_count && !noun; i++)
+		if (p->phrases[i].noun.n > 1 && p->phrases[i].noun.item[p->phrases[i].noun.n - 1] == w)
+			noun = &p->phrases[i].noun;
+	if (!noun || snprintf(lemma, size, "%s %s", p->words[noun->item[noun->n - 2]].lemma, p->words[w].lemma) >= (int)size)
+		return -1;
+	things_find(&to->things, lemma);
+	*strchr(lemma, ' ') = '_';
+	wordnet_find(&to->noun, lemma);
+	*strchr(lemma, '_') = ' ';
+	to->lemma = lemma;
+	return to->things.n || to->noun.n ? noun->item[noun->n - 2] : -1;
+}
+
+/* Whether a word is said of an object: in its name, or of it in a sentence. */
+static int is_said_of(const struct vocabulary *v, const char *lemma, size_t object)
+{
+	if (v->has_names && is_in_name(lemma, v->lifted->names[object]))
+		return 1;
+	for (size_t i = 0; i < v->n; i++)
+		if (v->items[i].object == object && v->items[i].sentence != v->without && v->items[i].role <= VOCABULARY_ATTRIBUTE &&
+			!strcmp(v->items[i].lemma, lemma))
+			return 1;
+	return 0;
+}
+
+/* A kind that has a name of two words is another thing than what its second word alone names: a tea bag in a
+ * room with a red bag. */
+static void judge_compound(struct vocabulary *v, const struct parse *p, int w, double *match)
+{
+	char lemma[80];
+	struct vocabulary_kind known = {0};
+	const int first = v->has_knowledge ? find_compound(p, w, &known, lemma, sizeof lemma) : -1;
+
+	for (size_t o = 0; o < v->lifted->objects && first >= 0; o++) {
+		if (is_said_of(v, p->words[first].lemma, o))
+			continue;
+		match[o] *= getenv("CW") ? atof(getenv("CW")) : 0.3;
+		if (v->has_names)
+			match[o] = fmax(match[o], knowledge(v, &known, &v->kinds[v->head_kinds[o]], 0));
+		for (size_t i = 0; i < v->n; i++)
+			if (v->items[i].object == o && v->items[i].role == VOCABULARY_NOUN && v->items[i].sentence != v->without)
+				match[o] = fmax(match[o], knowledge(v, &known, &v->kinds[v->items[i].kind], v->items[i].is_general));
+	}
 }
 
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
@@ -123,6 +173,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 	}
 	share_general(v, v->other, match);
 	share_kin(v, v->other, match);
+	judge_compound(v, s->parse, w, match);
 }
 
 /* The match of an object that is called by a kind's name, where such things usually have what a word says. */

@@ -3,6 +3,7 @@
 #include "lang/kinds.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const groups[] = {
@@ -135,8 +136,9 @@ int kinds_hold(const char *lemma)
 	return 0;
 }
 
-int kinds_share(const char *a, const char *b)
+double kinds_share(const char *a, const char *b)
 {
+	double best = 0;
 	char x[40], y[40];
 
 	if (!*a || !*b || strlen(a) > 32 || strlen(b) > 32 || strchr(a, ' ') || strchr(b, ' '))
@@ -144,7 +146,9 @@ int kinds_share(const char *a, const char *b)
 	snprintf(x, sizeof x, " %s ", a);
 	snprintf(y, sizeof y, " %s ", b);
 	for (size_t i = 0; i < sizeof groups / sizeof *groups; i++)
-		if (strstr(groups[i], x) && strstr(groups[i], y))
-			return 1;
-	return 0;
+		if (strstr(groups[i], x) && strstr(groups[i], y)) {
+			double v = i < 11 ? 0.85 : getenv("KL") ? atof(getenv("KL")) : 0.45;
+			best = v > best ? v : best;
+		}
+	return best;
 }

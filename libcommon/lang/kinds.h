@@ -17,6 +17,6 @@ int kinds_have(const char *lemma);
 int kinds_hold(const char *lemma);
 
 /* Whether two lemmas are in one group. */
-int kinds_share(const char *a, const char *b);
+double kinds_share(const char *a, const char *b);
 
 #endif
