@@ -117,15 +117,13 @@ lift.lift-sizes = plain
 ask.lift-sizes = --without relations,except
 lift.lift-colours = plain
 ask.lift-colours = --without relations,except,sizes
-lift.lift-alike = plain
-ask.lift-alike = --without relations,except,sizes,colours,surfaces
 lift.lift-names = plain
-ask.lift-names = --without relations,except,sizes,colours,surfaces,alike
+ask.lift-names = --without relations,except,sizes,colours,surfaces
 lift.lift-words = plain
-ask.lift-words = --without relations,except,sizes,colours,surfaces,alike,names
+ask.lift-words = --without relations,except,sizes,colours,surfaces,names
 lift.lift-sentence = plain
-ask.lift-sentence = --without relations,except,sizes,colours,surfaces,alike,names,words,knowledge,wording,purpose
-parts := words names knowledge alike colours surfaces sizes relations except sentence wording purpose
+ask.lift-sentence = --without relations,except,sizes,colours,surfaces,names,words,knowledge,purpose
+parts := words names knowledge colours surfaces sizes relations except sentence purpose
 $(foreach p,$(parts),$(eval lift.lift-but-$(p) = full)$(eval ask.lift-but-$(p) = --without $(p)))
 encoders := $(foreach b,$(BERTS),$(firstword $(subst =, ,$(b))))
 $(foreach b,$(BERTS),$(eval dir.$(firstword $(subst =, ,$(b))) := $(lastword $(subst =, ,$(b)))))
@@ -144,7 +142,7 @@ steps := none-half none none-double half both double
 second := both two two-chosen two-pooled two-pooled3d onscene two-lifted
 exact := none none-exact pcmi pcmi-exact gtcl gtcl-exact both both-exact two two-exact two-lifted two-lifted-exact
 sentences := both two
-lifted := both two onscene warmed lift-sentence lift-words lift-names lift-alike lift-colours lift-sizes lift-relations lift lift-voted $(foreach p,$(parts),lift-but-$(p))
+lifted := both two onscene warmed lift-sentence lift-words lift-names lift-colours lift-sizes lift-relations lift lift-voted $(foreach p,$(parts),lift-but-$(p))
 hard := two warmed lift-relations lift
 space := lift
 unseen := lift

@@ -107,9 +107,6 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e)
 
 	if (a->explained)
 		explain_put(a->explained, out);
-	if (a->explained && a->is_by_wording)
-		fputs("  answered by the wording alone: its words are those of this thing's sentences\n",
-			out);
 	if (a->explained && a->is_by_purpose)
 		fputs("  answered by what the thing is for\n", out);
 	if (!a->count)
@@ -240,8 +237,7 @@ static int add_answer(cJSON *to, const struct answer_told *t)
 		if (!second || !add_name(second, t, a->runner_up))
 			return 0;
 	}
-	if ((a->is_by_wording || a->is_by_purpose) &&
-		!cJSON_AddStringToObject(to, "by", a->is_by_wording ? "wording" : "purpose"))
+	if (a->is_by_purpose && !cJSON_AddStringToObject(to, "by", "purpose"))
 		return 0;
 	if (!a->count && !cJSON_AddStringToObject(to, "reason", a->reason))
 		return 0;

@@ -192,7 +192,6 @@ static int choose_answer(struct asking *a, const struct text *t, size_t r, struc
 
 	if (!bad) {
 		w->answer->there = choice.there;
-		w->answer->is_by_wording = choice.is_by_wording;
 		w->answer->is_by_purpose = choice.is_by_purpose;
 		for (size_t o = 0; o < objects; o++)
 			w->answer->probability[o] = choice.there * (double)probability[o];

@@ -53,7 +53,6 @@ struct asking_answer {
 	size_t runner_up;	     /* the likeliest other object; ASKING_NONE */
 	double there;		     /* P that the question means anything that is here */
 	int is_by_purpose;	     /* what the thing is for told */
-	int is_by_wording;	     /* the parse told nothing, the wording alone did */
 	double *probability;	     /* (objects) that each is meant, or one of those meant */
 	char reason[EXPLAIN_REASON]; /* of a refusal */
 	double (*centres)[3];	     /* (objects) to the right, away and up, as seen from the viewpoint */

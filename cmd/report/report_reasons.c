@@ -85,7 +85,6 @@ static int take_answer(struct choosing *c, size_t i)
 	int fine = (to->answer = cJSON_CreateArray()) != NULL;
 
 	to->there = c->choices[i].there;
-	to->is_by_wording = c->choices[i].is_by_wording;
 	if (to->there < RESPONSES_LEAST)
 		memset(chosen, 0, l->objects);
 	while (fine && (o = take_best(probability, chosen, 1, l->objects)) < l->objects)

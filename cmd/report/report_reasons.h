@@ -13,7 +13,6 @@ struct report_reason {
 	double there;		 /* P that anything is meant */
 	const char *runner_up;	 /* the likeliest other object, the model's; NULL */
 	double runner_up_chance; /* of it to be meant */
-	int is_by_wording;	 /* the wording alone told */
 };
 
 /* reasons (s->text.n), zeroed before: of each sentence of a set that the lifted model answered. Returns 0, or

@@ -116,7 +116,6 @@ static int add_reason(cJSON *to, const struct report_reason *r)
 	return report_add(to, "answer", cJSON_Duplicate(r->answer, 1)) &&
 	       report_add(to, "there", number(r->there)) &&
 	       report_add(to, "refusal", cJSON_CreateString(r->refusal)) &&
-	       report_add(to, "by_wording", cJSON_CreateBool(r->is_by_wording)) &&
 	       (!r->runner_up || (report_add(to, "runner_up", cJSON_CreateString(r->runner_up)) &&
 					 report_add(to, "runner_up_chance", number(r->runner_up_chance)))) &&
 	       (!r->explained || report_add(to, "explained", cJSON_Duplicate(r->explained, 1)));

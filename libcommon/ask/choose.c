@@ -1,8 +1,7 @@
 #include "ask/choose.h"
 
 #include "ask/constants.h"
-#include "ask/purposes.h"
-#include "ask/wording.h"
+#include "ask/usage.h"
 #include "base/largest.h"
 #include "base/mem.h"
 
@@ -12,8 +11,8 @@
 
 int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
 {
-	static const char *const names[CHOOSE_PARTS] = {"words", "names", "knowledge", "alike", "colours",
-		"surfaces", "sizes", "relations", "except", "sentence", "wording", "purpose"};
+	static const char *const names[CHOOSE_PARTS] = {"words", "names", "knowledge", "colours", "surfaces",
+		"sizes", "relations", "except", "sentence", "purpose"};
 
 	*parts = CHOOSE_ALL;
 	while (list_next(&list, unknown)) {
@@ -37,10 +36,8 @@ struct chooser {
 	struct arrangement arrangement;
 	struct viewpoint from; /* of the arrangement */
 	struct meaning meaning;
-	struct wording wording;
 	double *score, *whole; /* (O) */
 	double *purpose;       /* (4 O) scratch */
-	double *looks;	       /* (O,O) */
 };
 
 static int has(const struct chooser *c, enum choose_part p)
@@ -67,57 +64,15 @@ static void look_from(struct chooser *c, const struct viewpoint *from)
 	c->from = *from;
 }
 
-/* How far the anchors of a phrase are there: what is said to be on the green plate where no plate is green.
- */
-static double anchors_there(const struct meaning *m, const struct parse *p, int phrase, int depth)
-{
-	const size_t n = m->arrangement->n;
-	const struct parse_phrase *f = &p->phrases[phrase];
-	double there = 1;
-
-	for (int k = 0; k < f->clauses.n && depth < 8; k++) {
-		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
-		for (int j = 0; j < c->anchors.n; j++) {
-			const int a = c->anchors.item[j];
-			const double best = largest(m->there + (size_t)a * n, n);
-			if (p->phrases[a].viewer || p->phrases[a].scene || c->relation == PARSE_OTHER ||
-				c->relation == PARSE_WITH)
-				continue;
-			/* an unknown thing may well be there, without a name */
-			there = fmin(there, fmax(best, m->known[a] < 0.5 ? UNKNOWN_ANCHOR : 0));
-			there = fmin(there, anchors_there(m, p, a, depth + 1));
-		}
-	}
-	return there;
-}
-
-/* Whether a phrase says nothing that tells objects apart: "anything with a battery", where of none is known
- * whether it has one. Of "the thing with a battery" what comes nearest is as good a guess as any. anchors:
- * how far its anchors are there. */
-static int tells_nothing(const struct meaning *m, const struct parse *p, int phrase, double anchors)
-{
-	const size_t n = m->arrangement->n;
-	const double *fit = m->fit + (size_t)phrase * (n + 1), most = largest(fit, n);
-
-	if (meaning_is_empty(m, phrase) && p->phrases[phrase].count != PARSE_ALL)
-		return n > 1;
-	if (anchors == 1 && (p->phrases[phrase].count == PARSE_ONE || !m->unknown))
-		return 0;
-	for (size_t o = 0; o < n; o++)
-		if (fit[o] < SAME_FIT * most)
-			return 0;
-	return n > 1;
-}
-
 /* P that what a phrase means is there, where object o fits it best. */
 static double presence(const struct chooser *c, const struct parse *p, int phrase, size_t o)
 {
 	const struct meaning *m = &c->meaning;
 	const double own = m->there[(size_t)phrase * m->arrangement->n + o];
-	const double anchors = anchors_there(m, p, phrase, 0);
-	const double x = PRESENCE_BASE + PRESENCE_OWN * log(fmax(own, 1e-6)) +
-			 PRESENCE_ANCHORS * log(fmax(anchors, 1e-6)) - PRESENCE_UNKNOWN * (double)m->unknown -
-			 (tells_nothing(m, p, phrase, anchors) ? PRESENCE_NOTHING : 0);
+	const int is_nothing =
+		meaning_is_empty(m, phrase) && p->phrases[phrase].count != PARSE_ALL && m->arrangement->n > 1;
+	const double x = PRESENCE_BASE + PRESENCE_OWN * log(fmax(own, 1e-6)) -
+			 PRESENCE_UNKNOWN * (double)m->unknown - (is_nothing ? PRESENCE_NOTHING : 0);
 
 	return 1 / (1 + exp(-x));
 }
@@ -141,8 +96,6 @@ static double choose_phrase(struct chooser *c, const struct parse *p, int phrase
 			      (has(c, CHOOSE_SENTENCE) ? SENTENCE_WEIGHT * c->whole[o] : 0);
 	const size_t best = best_of(c->score, n);
 	const double top = fit[best], there = presence(c, p, phrase, best);
-	if (p->phrases[0].also.n && f->count < 0 && there < PART_THERE) /* "and all the airpods" */
-		return there;
 	if (f->count == PARSE_ONE) {
 		for (size_t o = 0; o < n; o++)
 			c->score[o] *= sharpness(c);
@@ -181,61 +134,12 @@ static void choose_whole(struct chooser *c, double *row, char *chosen)
 	chosen[best_of(row, n)] = 1;
 }
 
-/* What the clauses of the target leave to object o; is_so: nothing of its noun, colour and place is
- * contradicted. A noun is where another thing is called so. */
-static double clauses_leave(const struct meaning *m, size_t o, int *is_so)
-{
-	const double least[MEANING_KINDS] = {[MEANING_NOUN] = m->known[0] > GENERIC_THERE ? WORDING_NOUN : 0,
-		[MEANING_COLOUR] = WORDING_COLOUR_SO,
-		[MEANING_CLAUSE] = WORDING_CLAUSE};
-	double left = 1;
-
-	*is_so = 1;
-	for (size_t k = 0; k < m->part_count; k++) {
-		const struct meaning_part *part = &m->parts[k];
-		if (part->phrase)
-			continue;
-		left *= part->kind == MEANING_CLAUSE ? part->value[o] : 1;
-		*is_so &= part->value[o] >= least[part->kind];
-	}
-	return left;
-}
-
-/* A sentence that means one thing, and that its parse finds nothing for: the object that its wording is
- * nearest to, unless nothing or another thing is called nearly so, or what is said of its colour or place is
- * not so. */
-static void choose_wording(
-	struct chooser *c, const struct vocabulary_sentence *s, struct choice *to, double *row, char *chosen)
-{
-	const size_t n = c->arrangement.n;
-	const double there = wording_judge(&c->wording, s, c->score);
-	int is_so;
-
-	const double known = c->meaning.known[0];
-	if (there < WORDING_LEAST || there <= to->there || known < WORDING_NOUN)
-		return;
-	for (size_t o = 0; o < n; o++)
-		c->score[o] += log(fmax(clauses_leave(&c->meaning, o, &is_so), 1e-6));
-	const size_t best = best_of(c->score, n);
-	clauses_leave(&c->meaning, best, &is_so);
-	if (!is_so || (known > GENERIC_THERE && !chosen[best]))
-		return;
-	memcpy(row, c->score, n * sizeof *row);
-	softmax(row, n);
-	memset(chosen, 0, n);
-	chosen[best] = 1;
-	to->there = there;
-	to->is_by_wording = 1;
-	to->is_by_purpose = 0;
-}
-
 /* A sentence that says what a thing is for: the object of which that is most likely; several: and what
- * is of its kind or nearly as likely. */
+ * is nearly as likely. */
 static void choose_purpose(struct chooser *c, int several, struct choice *to, double *row, char *chosen)
 {
 	const size_t n = c->arrangement.n;
-	const int is_lost = to->there >= PARSE_LEAST && largest(row, n) < PURPOSE_LOST;
-	const double there = purposes_judge(&c->meaning, is_lost, c->score, c->purpose);
+	const double there = usage_judge(&c->meaning, c->score, c->purpose);
 
 	if (there <= 0)
 		return;
@@ -244,8 +148,7 @@ static void choose_purpose(struct chooser *c, int several, struct choice *to, do
 	memset(chosen, 0, n);
 	const size_t best = best_of(row, n);
 	for (size_t o = 0; o < n; o++)
-		chosen[o] = o == best || (several && (c->vocabulary.kin[best * n + o] ||
-							     c->score[o] > c->score[best] - PURPOSE_SEVERAL));
+		chosen[o] = o == best || (several && c->score[o] > c->score[best] - PURPOSE_SEVERAL);
 	to->there = there;
 	to->is_by_purpose = 1;
 	to->is_several = several;
@@ -310,13 +213,10 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 		to->there = fmax(to->there, choose_phrase(c, p, p->phrases[0].also.item[k], row, chosen));
 	const struct parse_phrase *target = &p->phrases[0];
 	const int may_be_purpose =
-		to->there < PARSE_LEAST || (!target->noun.n && !purposes_says_more(&c->meaning));
+		to->there < PARSE_LEAST || (!target->noun.n && !usage_says_more(&c->meaning));
 	if (has(c, CHOOSE_PURPOSE) && may_be_purpose && !target->also.n && !target->except.n &&
 		!target->ordinal && target->count <= PARSE_ONE)
 		choose_purpose(c, target->count == PARSE_ALL, to, row, chosen);
-	if (has(c, CHOOSE_WORDING) && !to->is_several && !p->phrases[0].except.n && !p->phrases[0].ordinal &&
-		to->there < PARSE_LEAST)
-		choose_wording(c, s, to, row, chosen);
 	return 0;
 }
 
@@ -356,19 +256,6 @@ static int choose_one(struct chooser *c, const struct choose_sentence *from, str
 	return bad;
 }
 
-/* How far objects share what is said of them: things of one name that look the same. */
-static void find_looks(struct chooser *c)
-{
-	const size_t n = c->arrangement.n;
-
-	for (size_t i = 0; i < n; i++)
-		for (size_t k = 0; k < n; k++)
-			c->looks[i * n + k] =
-				vocabulary_shares_noun(&c->vocabulary, i, k)
-					? exp(LOOKS_WORTH * arrangement_alike(&c->arrangement, i, k))
-					: 0;
-}
-
 /* Words of the scene's own sentences and names are spelt right. */
 static int know_words(struct chooser *c, struct err *e)
 {
@@ -393,17 +280,12 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	c->score = mem_alloc(objects, sizeof *c->score, "choice", e);
 	c->whole = mem_alloc(objects, sizeof *c->whole, "choice", e);
 	c->purpose = mem_alloc(objects, 4 * sizeof *c->purpose, "choice", e);
-	c->looks = mem_alloc(objects, objects * sizeof *c->looks, "choice", e);
-	if (!c->score || !c->whole || !c->purpose || !c->looks ||
+	if (!c->score || !c->whole || !c->purpose ||
 		arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
 		vocabulary_make(&c->vocabulary, s->lifted, s->parser, e) || know_words(c, e))
 		return -1;
-	if (has(c, CHOOSE_WORDING) && wording_make(&c->wording, &c->vocabulary, &c->arrangement, e))
-		return -1;
-	find_looks(c);
 	c->meaning = (struct meaning){.arrangement = &c->arrangement,
 		.vocabulary = &c->vocabulary,
-		.looks = has(c, CHOOSE_ALIKE) ? c->looks : NULL,
 		.has_surfaces = has(c, CHOOSE_SURFACES),
 		.naming = s->naming};
 	if (!has(c, CHOOSE_WORDS))
@@ -430,12 +312,10 @@ void chooser_free(struct chooser *c)
 	if (c->vocabulary.lifted)
 		vocabulary_free(&c->vocabulary);
 	meaning_free(&c->meaning);
-	wording_free(&c->wording);
 	free(c->words);
 	free(c->score);
 	free(c->whole);
 	free(c->purpose);
-	free(c->looks);
 	free(c);
 }
 

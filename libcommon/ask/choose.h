@@ -6,11 +6,9 @@
  * sentence means what it meant.
  *
  * The sentence means nothing that was lifted with the probability 1 - P: P goes by how far the thing that
- * fits best is known to be what is said (its noun, its colours, its relations), how far the anchors are
- * there, and how many words say something that is said of nothing. Where that is little and the wording alone
- * is near to that of one object's training sentences (ask/wording.h), it means that object. A sentence
- * that says only what the thing is for means the one that ask/purposes.h finds. All constants are in
- * ask/constants.def. */
+ * fits best is known to be what is said (its noun, its colours, its relations), and how many words say
+ * something that is said of nothing. A sentence that says only what the thing is for means the one that
+ * ask/usage.h finds. All constants are in ask/constants.def. */
 #ifndef ASK_CHOOSE_H
 #define ASK_CHOOSE_H
 
@@ -26,14 +24,12 @@ enum choose_part {
 	CHOOSE_WORDS,	  /* nouns and attributes */
 	CHOOSE_NAMES,	  /* the objects' names are nouns too */
 	CHOOSE_KNOWLEDGE, /* what words mean besides: WordNet, and lang/kinds.h */
-	CHOOSE_ALIKE,	  /* look-alikes share words */
 	CHOOSE_COLOURS,
 	CHOOSE_SURFACES,  /* "striped", "shiny": what the Gaussians show of that (places/object_surface.h) */
 	CHOOSE_SIZES,	  /* "large" */
 	CHOOSE_RELATIONS, /* other clauses, and ordinals */
 	CHOOSE_EXCEPT,	  /* "but not the red one", "of the jar and the tin" */
 	CHOOSE_SENTENCE,
-	CHOOSE_WORDING, /* what the wording alone is nearest to, where the parse finds nothing */
 	CHOOSE_PURPOSE, /* what a thing is for, of sentences that say that */
 	CHOOSE_PARTS
 };
@@ -66,7 +62,6 @@ struct choose_scene {
 struct choice {
 	double there;	   /* P that the sentence means anything that was lifted */
 	int is_several;	   /* it may mean more than one object */
-	int is_by_wording; /* the parse found nothing, and the wording alone told (CHOOSE_WORDING) */
 	int is_by_purpose; /* what the thing is for told (CHOOSE_PURPOSE) */
 };
 

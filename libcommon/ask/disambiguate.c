@@ -30,9 +30,8 @@ static int judge(const struct lifted *l, size_t named, const char *is_fixed, con
 {
 	const size_t n = l->objects;
 
-	if (choose(scene, sentences, l->sentences,
-		    CHOOSE_ALL & ~(1U << CHOOSE_SENTENCE | 1U << CHOOSE_WORDING), choices, probability,
-		    chosen, NULL, e))
+	if (choose(scene, sentences, l->sentences, CHOOSE_ALL & ~(1U << CHOOSE_SENTENCE), choices,
+		    probability, chosen, NULL, e))
 		return -1;
 	memset(value, 0, n * n * sizeof *value);
 	for (size_t r = 0; r < l->sentences; r++) {

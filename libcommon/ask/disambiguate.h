@@ -13,8 +13,8 @@
  * with the largest sum over sentences of log(p + 0.003), p of ask/choose.h without its part `sentence`, at
  * most one lot of Gaussians to an object; again, as anchors move with their objects, until nothing changes,
  * four times at most. An object's own words fit its own Gaussians best, so that only things that look the
- * same change places: what is seen of a look that a sentence tells ("striped", places/object_surface.h) counts,
- * other words hardly.
+ * same change places: what is seen of a look that a sentence tells ("striped", places/object_surface.h)
+ * counts, other words hardly.
  *
  * Only the first `named` objects are. The others, which have the name "" and no sentences, are regions that a
  * detector took for no object, or for one that has another: lots that an object may have in place of its own,

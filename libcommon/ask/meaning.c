@@ -56,7 +56,7 @@ static void take_whole(struct meaning *m, int phrase)
 
 	if (head < 0 || m->known[phrase] >= 0.5 || p->phrases[phrase].viewer || meaning_is_scene(m, phrase))
 		return;
-	vocabulary_has(m->vocabulary, m->sentence, head, has);
+	vocabulary_has(m->vocabulary, m->sentence, head, 0, has);
 	if (largest(has, n) < 0.5)
 		return;
 	m->known[phrase] = PART_WORTH * largest(has, n);
@@ -104,14 +104,11 @@ static void judge_phrase(struct meaning *m, int phrase, int depth)
 		meaning_judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);
 	for (int k = 0; k < f->attributes.n; k++)
 		meaning_judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
-	meaning_judge_clauses(m, phrase, f, fit, AT_ONCE, 0);
+	meaning_judge_clauses(m, phrase, f, fit, AT_ONCE);
 	for (int k = 0; k < f->except.n; k++)
 		meaning_judge_except(m, phrase, f->except.item[k]);
 	meaning_judge_among(m, phrase);
-	meaning_keep_group(m, phrase);
 	meaning_judge_order(m, phrase);
-	if (!phrase)
-		meaning_keep_mutual(m, fit, m->scratch);
 	for (size_t o = 0; o < n; o++)
 		fit[o] *= m->arrangement->objects[o].in_sight ? 1 : OUT_OF_SIGHT;
 }

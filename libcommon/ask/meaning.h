@@ -36,10 +36,9 @@ struct meaning_part {
 struct meaning {
 	const struct arrangement *arrangement;
 	struct vocabulary *vocabulary;
-	unsigned without;    /* a bit 1 << meaning_kind for each kind of part that counts for nothing */
-	const double *looks; /* (O,O): how far two objects share what is said of them; NULL: not at all */
-	int has_surfaces;    /* whether what Gaussians show of a look counts */
-	double naming;	     /* the power of nouns and attributes that are no colours; 1 */
+	unsigned without; /* a bit 1 << meaning_kind for each kind of part that counts for nothing */
+	int has_surfaces; /* whether what Gaussians show of a look counts */
+	double naming;	  /* the power of nouns and attributes that are no colours; 1 */
 
 	/* Of the sentence that was judged last. */
 	const struct vocabulary_sentence *sentence;

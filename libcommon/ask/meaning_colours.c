@@ -1,7 +1,6 @@
 /* What words of colour say of each object, or of a part of it. */
 #include "ask/constants.h"
 #include "ask/meaning_private.h"
-#include "lang/closed.h"
 #include "lang/colours.h"
 
 #include <string.h>
@@ -24,18 +23,6 @@ static int colour_before(const struct parse *p, int word)
 	return -1;
 }
 
-/* "blue-green" is teal. */
-static int is_blue_green(const struct parse *p, int word)
-{
-	static const char *const blue[] = {"blue", "bluish", NULL};
-	static const char *const green[] = {"green", "greenish", NULL};
-
-	return word + 1 < p->word_count &&
-	       ((meaning_word_is(&p->words[word], blue) && meaning_word_is(&p->words[word + 1], green)) ||
-		       (meaning_word_is(&p->words[word], green) &&
-			       meaning_word_is(&p->words[word + 1], blue)));
-}
-
 /* What a colour is of that a phrase has after another one: "the brown cup with white stripes". */
 enum coloured { OF_THING, OF_PART_PERHAPS, OF_PART };
 
@@ -44,9 +31,6 @@ static enum coloured coloured_by(const struct parse *p, const struct parse_phras
 	static const char *const with[] = {"with", "w", "having", NULL};
 	enum coloured of = OF_THING;
 
-	if (parse_word_is(p, word + 1, closed_at_end) &&
-		(parse_word_is(p, word + 2, closed_ends) || parse_word_is(p, word + 3, closed_ends)))
-		return OF_PART; /* "green at the bottom" */
 	for (int i = word - 1; i >= 0; i--) {
 		if (parse_list_has(&f->attributes, i)) {
 			if (of != OF_THING && colour_word(p->words[i].lemma) >= 0)
@@ -58,27 +42,6 @@ static enum coloured coloured_by(const struct parse *p, const struct parse_phras
 	return OF_THING;
 }
 
-/* Whether a phrase names what a surface is marked with. */
-static int is_marking(const struct parse *p, const struct parse_phrase *f)
-{
-	static const char *const markings[] = {"band", "bit", "blob", "blotch", "check", "dot", "fleck",
-		"freckle", "hoop", "line", "marking", "patch", "pattern", "ring", "speck", "speckle",
-		"splash", "splodge", "splotch", "spot", "streak", "stripe", "swirl", NULL};
-	const int head = meaning_head_of(p, f);
-
-	return head >= 0 && meaning_word_is(&p->words[head], markings);
-}
-
-/* Whether a part is all that one sees of a thing: "a book with a red cover". */
-static int is_outside(const struct parse *p, const struct parse_phrase *f)
-{
-	static const char *const outsides[] = {"binding", "body", "coating", "colour", "color", "cover",
-		"exterior", "finish", "fur", "glaze", "outside", "paint", "skin", "surface", NULL};
-	const int head = meaning_head_of(p, f);
-
-	return head >= 0 && meaning_word_is(&p->words[head], outsides);
-}
-
 /* "With a yellow scarf": a colour that nothing here has, or is said to have, speaks against its being there.
  */
 void meaning_judge_part_colours(struct meaning *m, int phrase, const struct parse_clause *c, double *value)
@@ -88,13 +51,11 @@ void meaning_judge_part_colours(struct meaning *m, int phrase, const struct pars
 
 	for (int k = 0; k < c->anchors.n; k++) {
 		const struct parse_phrase *f = &p->phrases[c->anchors.item[k]];
-		const int counts = m->known[c->anchors.item[k]] < 0.5 || is_marking(p, f);
+		const int counts = m->known[c->anchors.item[k]] < 0.5;
 		for (int a = 0; a < f->attributes.n && counts; a++) {
 			const char *word = p->words[f->attributes.item[a]].lemma;
 			const int is_colour =
-				is_outside(p, f)
-					? vocabulary_colour(m->vocabulary, m->arrangement, word, match)
-					: vocabulary_part_colour(m->vocabulary, m->arrangement, word, match);
+				vocabulary_part_colour(m->vocabulary, m->arrangement, word, match);
 			for (size_t o = 0; o < objects_of(m) && is_colour; o++) {
 				value[o] *= PART_COLOUR_LEAST + (1 - PART_COLOUR_LEAST) * match[o];
 				there[o] *= c->negated
@@ -121,10 +82,6 @@ void meaning_judge_colour(struct meaning *m, int phrase, int word)
 	double *value = meaning_add_part(m, phrase, MEANING_COLOUR, word), *there = there_of(m, phrase);
 	memset(value, 0, n * sizeof *value);
 	m->vocabulary->of_several = p->phrases[phrase].count != PARSE_ONE;
-	if (is_blue_green(p, word)) {
-		vocabulary_colour(m->vocabulary, m->arrangement, "teal", match);
-		memcpy(value, match, n * sizeof *value);
-	}
 	for (; word >= 0; word = colour_after(p, word)) {
 		if (of == OF_PART)
 			vocabulary_part_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match);

@@ -29,39 +29,15 @@ static int is_after(const struct parse *p, const struct parse_phrase *f, struct 
 	return words.begin < f->span.begin;
 }
 
-/* "Two plates there ... the one that is near": the word of several things that were spoken of before and
- * found no place, where something is called so; or -1. */
-static int kind_left_over(struct meaning *m, const struct parse_phrase *target)
+/* "Not the orange plate, the other one": the word of the kind that was spoken of before, or -1. */
+static int kind_before(const struct parse *p, const struct parse_phrase *target)
 {
-	const struct parse *p = m->sentence->parse;
-	double *match = m->scratch + objects_of(m);
-
-	for (int k = p->unexplained.n - 1; k >= 0; k--) {
-		const struct parse_word *w = &p->words[p->unexplained.item[k]];
-		if (!is_after(p, target, w->span) || !strcmp(w->text, w->lemma))
-			continue;
-		vocabulary_noun(m->vocabulary, m->sentence, p->unexplained.item[k], match);
-		if (largest(match, objects_of(m)) >= KIND_SPOKEN_OF)
-			return p->unexplained.item[k];
-	}
-	return -1;
-}
-
-/* "Not the orange plate, the other one": the word of the kind that was spoken of before, or -1. is_alike: it
- * is of that colour too, as in "not the left orange plate, the other one". */
-static int kind_before(struct meaning *m, const struct parse_phrase *target, int *is_alike)
-{
-	const struct parse *p = m->sentence->parse;
-
-	*is_alike = 1;
 	for (int k = 0; k < target->except.n; k++) {
 		const struct parse_phrase *f = &p->phrases[target->except.item[k]];
-		if (!is_after(p, target, f->span))
-			continue;
-		*is_alike = f->clauses.n > 0;
-		return meaning_head_of(p, f);
+		if (is_after(p, target, f->span))
+			return meaning_head_of(p, f);
 	}
-	return kind_left_over(m, target);
+	return -1;
 }
 
 /* Whether a word that nothing is called by is said of something: "striped" of "neither purple nor striped".
@@ -110,11 +86,11 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	const struct parse *p = m->sentence->parse;
 	const struct parse_phrase *f = &p->phrases[phrase];
 	const size_t n = objects_of(m);
-	int head = meaning_head_of(p, f), is_alike = 0;
+	int head = meaning_head_of(p, f);
 	double *value, *there = there_of(m, phrase), *match = m->scratch + n;
 
-	if (head < 0 && is_elliptic(p, f))
-		head = phrase ? meaning_head_of(p, &p->phrases[0]) : kind_before(m, f, &is_alike);
+	if (head < 0 && !phrase && is_elliptic(p, f))
+		head = kind_before(p, f);
 	for (size_t o = 0; o < n; o++)
 		there[o] = GENERIC_THERE;
 	m->known[phrase] = GENERIC_THERE;
@@ -133,18 +109,15 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 		return;
 	}
 	value = meaning_add_part(m, phrase, MEANING_NOUN, head);
-	const double best = fmax(0, largest(match, n)), most = fmax(best, match[n]);
+	const double best = fmax(0, largest(match, n));
 	/* of several things each has to be called so as well as another is */
 	const double power = f->count == PARSE_ONE || is_any ? 0 : NOUN_SEVERAL;
 	m->known[phrase] = best;
 	for (size_t o = 0; o < n; o++) {
-		const double x = match[o] * pow(match[o] / fmax(most, 1e-9), power);
-		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * x * x / fmax(most, 1e-9);
+		const double x = match[o] * pow(match[o] / fmax(best, 1e-9), power);
+		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * x * x / fmax(best, 1e-9);
 		/* another thing that is called so speaks against it */
-		there[o] = match[o] * pow(match[o] / fmax(best, 1e-9), NOUN_ELSEWHERE) *
-			   (most > best ? best / most : 1);
+		there[o] = match[o] * match[o] / fmax(best, 1e-9);
 	}
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
-	if (is_alike && head > 0 && colour_word(p->words[head - 1].lemma) >= 0)
-		meaning_judge_colour(m, phrase, head - 1);
 }

@@ -1,6 +1,6 @@
 /* What the parts of ask/meaning.h share: meaning.c has phrases, meaning_clauses.c how they stand to one
  * another, meaning_nouns.c, meaning_colours.c and meaning_words.c their words, meaning_sets.c what is left
- * out or chosen from, meaning_compared.c looks that are compared, mutual.c what stands to each other.
+ * out or chosen from, meaning_compared.c looks that are compared.
  */
 #ifndef ASK_MEANING_PRIVATE_H
 #define ASK_MEANING_PRIVATE_H
@@ -64,10 +64,9 @@ int meaning_is_scene(const struct meaning *m, int phrase);
 /* When a clause is judged: what compares with all else that fits has to wait for it. */
 enum meaning_turn { AT_ONCE, BY_PLACE, BY_DEGREE };
 
-/* The clauses of that turn. Those of the place as a whole are the thing's: "everything on the shelf that is
- * left of the lamp". f: the phrase or that place; fit: what is compared. */
+/* The clauses of that turn. fit: what is compared. */
 void meaning_judge_clauses(struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit,
-	enum meaning_turn turn, int depth);
+	enum meaning_turn turn);
 
 /* What orders those that fit so far, each by itself. */
 void meaning_judge_order(struct meaning *m, int phrase);
@@ -88,14 +87,5 @@ void meaning_judge_except(struct meaning *m, int phrase, int except);
 
 /* And that it is one of several that are named: "of the jar, the tin and the box the tallest". */
 void meaning_judge_among(struct meaning *m, int phrase);
-
-/* "of the two cups": only the best two are compared. */
-void meaning_keep_group(struct meaning *m, int phrase);
-
-/* Whether several are meant that stand to each other somehow. */
-int meaning_is_mutual(const struct parse *p);
-
-/* The target's fit: those that are nearest to each other stay, if that is said. marked (O) is scratch. */
-void meaning_keep_mutual(struct meaning *m, double *fit, double *marked);
 
 #endif

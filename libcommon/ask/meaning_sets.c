@@ -11,13 +11,8 @@ void meaning_judge_except(struct meaning *m, int phrase, int except)
 	const double *fit = fit_of(m, except), most = fmax(largest(fit, n), 1e-9);
 	double *value = meaning_add_part(m, phrase, MEANING_EXCEPT, except), *there = there_of(m, phrase);
 
-	/* "not the red one" leaves out all that are red, but "not the one by the door" only one */
-	const int is_kind = !m->sentence->parse->phrases[except].clauses.n;
 	for (size_t o = 0; o < n; o++) {
-		const double x = m->known[except] * fit[o] / most;
-		value[o] =
-			1 - (1 - EXCEPT_LEAST) *
-				    (is_kind ? fmax(x, 1 / (1 + exp((EXCEPT_HALF - x) / EXCEPT_SOFT))) : x);
+		value[o] = 1 - (1 - EXCEPT_LEAST) * m->known[except] * fit[o] / most;
 		there[o] *= value[o];
 	}
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
@@ -43,23 +38,4 @@ void meaning_judge_among(struct meaning *m, int phrase)
 		there[o] *= is_there;
 	}
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
-}
-
-void meaning_keep_group(struct meaning *m, int phrase)
-{
-	const int group = m->sentence->parse->phrases[phrase].group;
-	const size_t n = objects_of(m);
-	double *fit = fit_of(m, phrase), *left = m->scratch, limit = 0;
-
-	/* where names hardly tell, it is in doubt which things are the cups */
-	if (group < 2 || (size_t)group >= n || m->naming != 1)
-		return;
-	memcpy(left, fit, n * sizeof *fit);
-	for (int k = 0; k < group; k++) {
-		const size_t best = best_of(left, n);
-		limit = left[best];
-		left[best] = -1;
-	}
-	for (size_t o = 0; o < n; o++)
-		fit[o] *= fit[o] < limit ? GROUP_ELSE : 1;
 }

@@ -4,24 +4,9 @@
 #include "lang/closed.h"
 #include "lang/colours.h"
 #include "lang/finish.h"
-#include "lang/purpose.h"
-#include "lang/tokens.h"
 
 #include <math.h>
 #include <string.h>
-
-/* Objects that look the same share what is said of them. */
-static void share_looks(const struct meaning *m, double *match)
-{
-	const size_t n = objects_of(m);
-	double *own = m->scratch;
-
-	memcpy(own, match, n * sizeof *own);
-	for (size_t o = 0; o < n && m->looks; o++)
-		for (size_t k = 0; k < n; k++)
-			if (match[o] >= 0)
-				match[o] = fmax(match[o], own[k] * m->looks[o * n + k]);
-}
 
 int meaning_word_is(const struct parse_word *w, const char *const *list)
 {
@@ -114,18 +99,15 @@ void meaning_judge_attribute(struct meaning *m, int phrase, int word, double lea
 		meaning_judge_colour(m, phrase, word);
 		return;
 	}
-	double *value = meaning_add_part(m, phrase, MEANING_ATTRIBUTE, word), *there = there_of(m, phrase);
+	double *value = meaning_add_part(m, phrase, MEANING_ATTRIBUTE, word);
 	vocabulary_attribute(m->vocabulary, m->sentence, word, value);
-	share_looks(m, value);
 	add_seen(m, word, value);
-	const double most = fmax(0, largest(value, n)), gone = look_of(m, word) < 0 ? 0 : LOOK_THERE;
+	const double most = fmax(0, largest(value, n));
 	m->unknown += most < 0.5;
-	for (size_t o = 0; o < n; o++) {
-		there[o] *= 1 + gone * fmin(0, value[o]);
+	for (size_t o = 0; o < n; o++)
 		value[o] = (value[o] < 0 ? least * (1 + (1 - OPPOSITE) * value[o])
 					 : least + (1 - least) * value[o]) /
 			   (least + (1 - least) * most);
-	}
 	meaning_take_part(m, &m->parts[m->part_count - 1]);
 	judge_surface(m, phrase, word);
 }
@@ -143,41 +125,10 @@ void meaning_judge_said(struct meaning *m, const struct parse_clause *c, double 
 		const int head = meaning_head_of(p, &p->phrases[c->anchors.item[k]]);
 		if (head < 0)
 			continue;
-		vocabulary_clause(m->vocabulary, m->sentence, head, c->relation, match);
+		vocabulary_has(m->vocabulary, m->sentence, head, 1, match);
 		for (size_t o = 0; o < n; o++)
 			said[o] = fmax(said[o], match[o]);
 	}
-}
-
-/* What a thing is for says what it is about: "the one you boil water in". */
-static void judge_about(struct meaning *m, double *value)
-{
-	const struct parse *p = m->sentence->parse;
-	const size_t n = objects_of(m);
-	double *about = m->scratch + n;
-	char counts[TOKENS_MOST];
-
-	for (int w = 0; w < p->word_count; w++)
-		counts[w] = (char)purpose_is_content(p, w);
-	vocabulary_about(m->vocabulary, m->sentence, counts, about);
-	for (size_t o = 0; o < n; o++)
-		value[o] *= exp(ABOUT_WORTH * about[o]);
-	const double most = fmax(largest(value, n), 1e-12);
-	for (size_t o = 0; o < n; o++)
-		value[o] /= most;
-}
-
-/* How far objects have what an anchor of "with a lid" or "with a lid on it" names. 0 where the clause or the
- * anchor is none such, or no object is said or known to have it. */
-static int judge_part(struct meaning *m, const struct parse_clause *c, int anchor, double *match)
-{
-	const struct parse *p = m->sentence->parse;
-
-	if (anchor < 0 || (c->relation != PARSE_WITH && c->relation != PARSE_SUPPORTS))
-		return 0;
-	vocabulary_has(
-		m->vocabulary, m->sentence, meaning_head_of(p, &p->phrases[c->anchors.item[anchor]]), match);
-	return largest(match, objects_of(m)) >= 0.5;
 }
 
 /* What a thing does, is for, or has: any word of it may be said of an object. */
@@ -185,7 +136,7 @@ double meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, 
 {
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
-	double *match = m->scratch + n, *use = m->scratch + 8 * n;
+	double *match = m->scratch + n;
 	int words = 0;
 
 	for (size_t o = 0; o < n; o++)
@@ -196,15 +147,10 @@ double meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, 
 					 : meaning_head_of(p, &p->phrases[c->anchors.item[k - c->words.n]]);
 		if (word < 0)
 			continue;
-		memset(use, 0, n * sizeof *use);
-		if (!judge_part(m, c, k - c->words.n, match) &&
-			!vocabulary_colour(m->vocabulary, m->arrangement, p->words[word].lemma, match)) {
-			vocabulary_attribute(m->vocabulary, m->sentence, word, match);
-			add_seen(m, word, match);
-			vocabulary_use(m->vocabulary, m->sentence, word, use);
-		}
+		vocabulary_attribute(m->vocabulary, m->sentence, word, match);
+		add_seen(m, word, match);
 		for (size_t o = 0; o < n; o++)
-			value[o] += fmax(fmax(match[o], USE_WORTH * use[o]), 0);
+			value[o] += fmax(match[o], 0);
 		words++;
 	}
 	const double most = fmax(0, largest(value, n));
@@ -213,7 +159,5 @@ double meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, 
 		value[o] = !words	? 1
 			   : c->negated ? fmin(value[o], 1)
 					: (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most);
-	if (words && c->relation == PARSE_OTHER)
-		judge_about(m, value);
 	return most;
 }

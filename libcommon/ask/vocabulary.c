@@ -1,7 +1,6 @@
 #include "ask/vocabulary_private.h"
 
 #include "ask/constants.h"
-#include "base/dot.h"
 #include "base/mem.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
@@ -142,7 +141,6 @@ static int add_kind(struct vocabulary *v, const char *lemma, size_t *kind, struc
 	to->lemma = lemma;
 	to->uses.n = to->parts.n = -1;
 	wordnet_find_thing(&to->noun, lemma);
-	wordnet_find_adjective(&to->adjective, lemma);
 	things_find(&to->things, lemma);
 	to->finish = finish_of(lemma);
 	return 0;
@@ -161,7 +159,7 @@ static int add_item(struct vocabulary *v, size_t r, int word, enum vocabulary_ro
 			"vocabulary", e))
 		return -1;
 	struct vocabulary_item *item = &v->items[v->n];
-	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0, 0, 0, 0};
+	*item = (struct vocabulary_item){role, (size_t)l->object[r], r, w->lemma, relation, 0, 0, 0};
 	if (add_kind(v, w->lemma, &item->kind, e))
 		return -1;
 	vocabulary_word_vector(v, w, vectors_of(l, r), v->vectors + width * v->n++);
@@ -216,21 +214,17 @@ static int read_sentences(struct vocabulary *v, const struct parser *parser, str
 	return bad ? -1 : 0;
 }
 
-static int share_noun(const struct vocabulary *v, size_t a, size_t b, int may_be_general)
+/* Whether two objects were called by one noun that is not general. */
+static int share_noun(const struct vocabulary *v, size_t a, size_t b)
 {
 	for (size_t i = 0; i < v->n; i++)
 		for (size_t k = 0; k < v->n && v->items[i].object == a && v->items[i].role == VOCABULARY_NOUN;
 			k++)
 			if (v->items[k].object == b && v->items[k].role == VOCABULARY_NOUN &&
 				v->items[k].kind == v->items[i].kind &&
-				(may_be_general || !(v->items[i].is_general || v->items[k].is_general)))
+				!(v->items[i].is_general || v->items[k].is_general))
 				return 1;
 	return 0;
-}
-
-int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b)
-{
-	return share_noun(v, a, b, 1);
 }
 
 static int are_akin(const struct vocabulary_kind *a, const struct vocabulary_kind *b)
@@ -280,22 +274,6 @@ static void mark_general(struct vocabulary *v)
 	}
 }
 
-static void count_calls(struct vocabulary *v)
-{
-	const struct lifted *l = v->lifted;
-
-	for (size_t i = 0; i < v->n; i++) {
-		struct vocabulary_item *a = &v->items[i];
-		float called = 0, all = 0;
-		for (size_t k = 0; k < v->n && a->role == VOCABULARY_NOUN; k++)
-			called += v->items[k].role == VOCABULARY_NOUN && v->items[k].object == a->object &&
-				  v->items[k].kind == a->kind;
-		for (size_t r = 0; r < l->sentences; r++)
-			all += (size_t)l->object[r] == a->object;
-		a->often = fminf(called / all, 1);
-	}
-}
-
 /* Which objects are of one kind: 2 called by one noun that is not general, 1 their names end alike. */
 static int find_kin(struct vocabulary *v, struct err *e)
 {
@@ -305,7 +283,7 @@ static int find_kin(struct vocabulary *v, struct err *e)
 	for (size_t o = 0; o < n && v->kin; o++)
 		for (size_t k = 0; k < n; k++)
 			v->kin[o * n + k] =
-				(char)(share_noun(v, o, k, 0)
+				(char)(share_noun(v, o, k)
 						? 2
 						: *v->heads[o] && v->head_kinds[o] == v->head_kinds[k]);
 	return v->kin ? 0 : -1;
@@ -390,8 +368,7 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 {
 	const size_t width = (size_t)l->width;
 
-	*v = (struct vocabulary){
-		.lifted = l, .has_names = 1, .has_knowledge = 1, .has_said = 1, .without = l->sentences};
+	*v = (struct vocabulary){.lifted = l, .has_names = 1, .has_knowledge = 1, .has_said = 1};
 	v->parses = mem_zalloc(l->sentences, sizeof *v->parses, "vocabulary", e);
 	v->mean = mem_zalloc(width, sizeof *v->mean, "vocabulary", e);
 	v->sentence_mean = mem_zalloc(width, sizeof *v->sentence_mean, "vocabulary", e);
@@ -410,7 +387,6 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	if (read_names(v, e) || read_sentences(v, parser, e))
 		return -1;
 	mark_general(v);
-	count_calls(v);
 	if (find_about(v, e) || find_kin(v, e) || vocabulary_find_lines(v, parser, e))
 		return -1;
 	for (size_t r = 0; r < l->sentences; r++)

@@ -34,22 +34,15 @@ struct vocabulary_item {
 	size_t kind;		      /* into kinds */
 	int is_of_name;		      /* of the object's noun: "earbud" and "case" */
 	int is_general; /* a noun that is above another one of the same object: "container" of a bowl */
-	float often;	/* of VOCABULARY_NOUN: the share of the object's sentences that call it so */
 };
 
 /* What is known of a lemma. */
 struct vocabulary_kind {
 	const char *lemma;
 	struct wordnet_noun noun;
-	struct wordnet_adjective adjective;
 	struct things_rows things;
 	int finish;		 /* finish_of */
 	struct uses uses, parts; /* found when they are first asked for; n < 0 before */
-};
-
-/* A line of lang/things.h. */
-struct vocabulary_line {
-	int row, is_part; /* is_part: of what things of another line have */
 };
 
 struct vocabulary {
@@ -72,7 +65,6 @@ struct vocabulary {
 	int has_said;	 /* whether colours and relations that training sentences give an object count: 1,
 			    likewise */
 	int of_several;	 /* whether a colour is asked of each of several things: 0, for the caller to set */
-	size_t without;	 /* the training sentence whose words do not count, for the caller to set; R: none */
 	double *scratch; /* (width) */
 	float *about;	 /* (O,width) of length 1: of each object's nouns */
 	float *word;	 /* (width) */
@@ -81,7 +73,7 @@ struct vocabulary {
 	struct things_vectors things;
 	/* Object o is lines line_begin[o] to line_begin[o + 1] of the table, those from line_named[o] on by
 	 * its name alone. */
-	struct vocabulary_line *lines;
+	int *lines;
 	size_t *line_begin, *line_named; /* (O+1) */
 	size_t line_count, line_capacity;
 	float *cosine; /* (things.lines) of the sentence that was asked last */
@@ -91,27 +83,19 @@ struct vocabulary {
 int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct parser *parser, struct err *e);
 void vocabulary_free(struct vocabulary *v);
 
-/* match (O + 1): how likely an object is called by word w of a sentence, in [0,1]: 1 where its name or a
- * training sentence calls it so; what WordNet thinks of the two nouns; what the cosine of their vectors is
- * worth; or GENERAL_WORTH of what a general noun fits another object of its kind. The last is of the best
- * thing that training sentences name and that is no object: "on the shelf". */
+/* match (O): how likely an object is called by word w of a sentence, in [0,1]: 1 where its name or a training
+ * sentence calls it so; what WordNet and lang/kinds.h think of the two nouns; what the cosine of their
+ * vectors is worth. */
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* match (O): how far an object is said to be what a word says, as an attribute or in any other way, in [0,1];
  * below 0, to -1, where it is said to be the opposite. */
 void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
-/* match (O): the best cosine of a word with one by which training sentences call or describe an object, but
- * for places, 0 where there is none, or WORDING_NAME where it is a word of the object's name. */
-void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
-
-/* match (O) in [0,1]: that a training sentence says that the object has what word w names: a screen of the
- * laptop. */
-void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
-
-/* match (O) in [0,1]: that a training sentence has the object in a like relation to what word w names. */
-void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
-	enum parse_relation relation, double *match);
+/* match (O) in [0,1]: that a training sentence says that the object has what word w names, a screen of the
+ * laptop; with or_place also where it is in any relation to that: on the shelf. */
+void vocabulary_has(
+	struct vocabulary *v, const struct vocabulary_sentence *s, int w, int or_place, double *match);
 
 /* match (O) in [0,1]: that what an object is called is for what word w says ("drink"), by WordNet's glosses.
  */
@@ -136,9 +120,6 @@ int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, c
 /* The same of any part of an object. */
 int vocabulary_part_colour(
 	const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit);
-
-/* Whether two objects were called by one noun. */
-int vocabulary_shares_noun(const struct vocabulary *v, size_t a, size_t b);
 
 /* match (O): the best cosine of the mean of a sentence's pieces with that of an object's training sentences,
  * -1 where it has none. Returns the object of the training sentence of the same text, or O; text may be NULL.

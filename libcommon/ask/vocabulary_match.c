@@ -48,17 +48,6 @@ static double knowledge(const struct vocabulary *v, const struct vocabulary_kind
 	return fmax(x, things_share(&word->things, &kind->things) ? KINDS_WORTH : kinds_share(word->lemma, kind->lemma));
 }
 
-/* "toy" of one cylinder may be said of another one. general (O): what general nouns of each object fit. */
-static void share_general(const struct vocabulary *v, const double *general, double *match)
-{
-	const size_t n = v->lifted->objects;
-
-	for (size_t o = 0; o < n; o++)
-		for (size_t k = 0; k < n && general[o] > 0; k++)
-			if (v->kin[o * n + k] > !v->has_names)
-				match[k] = fmax(match[k], GENERAL_WORTH * general[o]);
-}
-
 /* What one mug is called, another may be called too. match (O) in and out; own (O) is scratch. */
 static void share_kin(const struct vocabulary *v, double *own, double *match)
 {
@@ -148,30 +137,23 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 	}
 	for (size_t o = 0; o < objects; o++) {
 		const int named = v->has_names ? is_in_name(word->lemma, l->names[o]) : 0;
-		match[o] = named == 2 ? 1 : named ? NAME_PART : 0;
+		match[o] = named == 2;
 		if (v->has_names && named < 2)
 			match[o] = fmax(fmax(match[o], holds(v, &known, o)),
 				knowledge(v, &known, &v->kinds[v->head_kinds[o]], 0));
 	}
-	match[objects] = 0;
-	memset(v->other, 0, objects * sizeof *v->other);
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
-		if (item->sentence == v->without ||
-			(item->role != VOCABULARY_NOUN && item->role != VOCABULARY_ANCHOR))
+		if (item->role != VOCABULARY_NOUN)
 			continue;
 		const int is_same = !strcmp(word->lemma, item->lemma);
-		double x = is_same ? CALLED_ONCE + (1 - CALLED_ONCE) * (double)item->often : 0;
+		double x = is_same;
 		if (!is_same) {
 			x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
 			x = fmax(x, knowledge(v, &known, &v->kinds[item->kind], item->is_general));
 		}
-		double *to = &match[item->role == VOCABULARY_NOUN ? item->object : objects];
-		*to = fmax(*to, x);
-		if (item->is_general)
-			v->other[item->object] = fmax(v->other[item->object], x);
+		match[item->object] = fmax(match[item->object], x);
 	}
-	share_general(v, v->other, match);
 	share_kin(v, v->other, match);
 	judge_compound(v, s->parse, w, match);
 }
@@ -199,7 +181,7 @@ static void add_usual(struct vocabulary *v, const char *lemma, double *match)
 		take_usual(v, v->head_kinds[o], &word, &match[o]);
 	for (size_t i = 0; i < v->n && word.n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
-		if (item->role == VOCABULARY_NOUN && item->sentence != v->without && !item->is_general)
+		if (item->role == VOCABULARY_NOUN && !item->is_general)
 			take_usual(v, item->kind, &word, &match[item->object]);
 	}
 }
@@ -217,22 +199,16 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 	const struct parse_word *word = &s->parse->words[w];
 	const size_t width = (size_t)l->width;
 	const int finish = v->has_knowledge ? finish_of(word->lemma) : -1;
-	struct wordnet_adjective adjective;
 
 	vocabulary_word_vector(v, word, s->vectors, v->word);
-	adjective.n = 0;
-	if (v->has_knowledge)
-		wordnet_find_adjective(&adjective, word->lemma);
 	for (size_t o = 0; o < l->objects; o++)
 		match[o] = v->has_names && is_in_name(word->lemma, l->names[o]) ? 1 : 0;
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
 		double *to = &match[item->object], x;
-		if (item->sentence == v->without || says_place(item))
+		if (says_place(item))
 			continue;
 		x = item->role == VOCABULARY_ATTRIBUTE ? finish_fits(finish, v->kinds[item->kind].finish) : 0;
-		if (x == 0 && item->role == VOCABULARY_ATTRIBUTE)
-			x = wordnet_adjectives_fit(&adjective, &v->kinds[item->kind].adjective);
 		if (x == 0)
 			x = worth(dot_float(v->word, v->vectors + i * width, width), ATTRIBUTE_HALF,
 				ATTRIBUTE_SOFT);
@@ -244,61 +220,8 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 	add_usual(v, word->lemma, match);
 }
 
-void vocabulary_cosine(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
-{
-	const struct lifted *l = v->lifted;
-	const struct parse_word *word = &s->parse->words[w];
-	const size_t width = (size_t)l->width;
-
-	vocabulary_word_vector(v, word, s->vectors, v->word);
-	for (size_t o = 0; o < l->objects; o++)
-		match[o] = -1;
-	for (size_t i = 0; i < v->n; i++) {
-		const struct vocabulary_item *item = &v->items[i];
-		if (item->sentence == v->without || says_place(item))
-			continue;
-		match[item->object] =
-			fmax(match[item->object], dot_float(v->word, v->vectors + i * width, width));
-	}
-	for (size_t o = 0; o < l->objects; o++) {
-		match[o] = match[o] < -0.999 ? 0 : match[o];
-		if (v->has_names && is_in_name(word->lemma, l->names[o]))
-			match[o] = fmax(match[o], WORDING_NAME);
-	}
-}
-
-/* What a training sentence's relation says of another: on a shelf is above it. */
-static int is_like(enum parse_relation said, enum parse_relation meant)
-{
-	static const unsigned on = 1U << PARSE_ON | 1U << PARSE_ABOVE | 1U << PARSE_INSIDE;
-	static const unsigned near = 1U << PARSE_NEAR | 1U << PARSE_WITH;
-
-	return said == meant || ((on >> said & 1) && (on >> meant & 1)) ||
-	       ((near >> said & 1) && (near >> meant & 1)) ||
-	       ((1U << PARSE_NEAR | 1U << PARSE_OTHER) >> meant & 1);
-}
-
-void vocabulary_clause(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
-	enum parse_relation relation, double *match)
-{
-	const struct lifted *l = v->lifted;
-	const struct parse_word *word = &s->parse->words[w];
-	const size_t width = (size_t)l->width;
-
-	vocabulary_word_vector(v, word, s->vectors, v->word);
-	memset(match, 0, l->objects * sizeof *match);
-	for (size_t i = 0; i < v->n && v->has_said; i++) {
-		const struct vocabulary_item *item = &v->items[i];
-		if (item->sentence == v->without || item->role != VOCABULARY_ANCHOR ||
-			!is_like(item->relation, relation))
-			continue;
-		double x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
-		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
-		match[item->object] = fmax(match[item->object], x);
-	}
-}
-
-void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
+void vocabulary_has(
+	struct vocabulary *v, const struct vocabulary_sentence *s, int w, int or_place, double *match)
 {
 	const struct parse_word *word = &s->parse->words[w];
 	const size_t width = (size_t)v->lifted->width;
@@ -307,13 +230,14 @@ void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, i
 	memset(match, 0, v->lifted->objects * sizeof *match);
 	for (size_t i = 0; i < v->n && v->has_said; i++) {
 		const struct vocabulary_item *item = &v->items[i];
-		if (item->sentence == v->without || item->role != VOCABULARY_ANCHOR || says_place(item))
+		if (item->role != VOCABULARY_ANCHOR || (says_place(item) && !or_place))
 			continue;
 		double x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
 		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
 		match[item->object] = fmax(match[item->object], x);
 	}
-	add_usual(v, word->lemma, match);
+	if (!or_place)
+		add_usual(v, word->lemma, match);
 }
 
 /* A colour that an object's name begins with, as "red bag" does, is said as often as NAME_COLOUR sentences
@@ -333,31 +257,23 @@ static double name_says(const char *name, int colour, double *like)
 }
 
 /* fit (O): how many of the training sentences that say a colour of an object say one like this: one of them
- * may have been misread. What is said of a part of it counts less. other (O): how many say another one. */
+ * may have been misread. other (O): how many say another one. */
 static void said_colours(const struct vocabulary *v, int colour, double *fit, double *other)
 {
 	const struct lifted *l = v->lifted;
 
 	for (size_t o = 0; o < l->objects; o++) {
-		double like = 0, part = 0;
+		double like = 0;
 		double all = v->has_names && v->has_said ? name_says(l->names[o], colour, &like) : 0;
 		for (size_t i = 0; i < v->n && v->has_said; i++) {
 			const struct vocabulary_item *item = &v->items[i];
-			const int said =
-				item->object == o && item->sentence != v->without && !says_place(item)
-					? colour_word(item->lemma)
-					: -1;
-			if (said < 0)
-				continue;
-			const double alike = colour_words_alike(said, colour);
-			if (item->role == VOCABULARY_ATTRIBUTE) {
-				like += alike;
-				all++;
-			} else {
-				part = fmax(part, PART_COLOUR * alike);
-			}
+			const int said = item->object == o && item->role == VOCABULARY_ATTRIBUTE
+						 ? colour_word(item->lemma)
+						 : -1;
+			like += said < 0 ? 0 : colour_words_alike(said, colour);
+			all += said >= 0;
 		}
-		fit[o] = fmax(all > 0 ? like / all : 0, part);
+		fit[o] = all > 0 ? like / all : 0;
 		other[o] = all > 0 ? 1 - like / all : 0;
 	}
 }
@@ -390,9 +306,7 @@ static double says_colour(const struct vocabulary *v, size_t object, int colour)
 
 	for (size_t i = 0; i < v->n && v->has_said; i++) {
 		const struct vocabulary_item *item = &v->items[i];
-		const int said = item->object == object && item->sentence != v->without && !says_place(item)
-					 ? colour_word(item->lemma)
-					 : -1;
+		const int said = item->object == object && !says_place(item) ? colour_word(item->lemma) : -1;
 		most = said < 0 ? most : fmax(most, colour_words_alike(said, colour));
 	}
 	return most;
@@ -422,8 +336,6 @@ size_t vocabulary_whole(
 		match[o] = -1;
 	for (size_t r = 0; r < l->sentences; r++) {
 		const size_t o = (size_t)l->object[r];
-		if (r == v->without)
-			continue;
 		match[o] = fmax(match[o], dot_float(v->word, v->sentences + r * width, width));
 		if (text && same == l->objects && !strcmp(text, l->texts[r]))
 			same = o;

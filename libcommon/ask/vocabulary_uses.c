@@ -33,7 +33,7 @@ void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, i
 		match[o] = kind_fits(v, v->head_kinds[o], &word);
 	for (size_t i = 0; i < v->n && word.n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
-		if (item->role == VOCABULARY_NOUN && item->sentence != v->without && !item->is_general)
+		if (item->role == VOCABULARY_NOUN && !item->is_general)
 			match[item->object] = fmax(match[item->object], kind_fits(v, item->kind, &word));
 	}
 }
@@ -48,53 +48,20 @@ void vocabulary_about(
 		match[o] = dot_float(v->word, v->about + o * width, width);
 }
 
-/* Adds a line of the table to an object's, once; is_part: of something that it has. */
-static int add_line(struct vocabulary *v, size_t object, int row, int is_part, struct err *e)
-{
-	size_t k = v->line_begin[object];
-
-	while (k < v->line_count && v->lines[k].row != row)
-		k++;
-	if (k < v->line_count) {
-		v->lines[k].is_part &= is_part;
-		return 0;
-	}
-	if (mem_grow((void **)&v->lines, &v->line_capacity, v->line_count + 1, sizeof *v->lines, "vocabulary",
-		    e))
-		return -1;
-	v->lines[v->line_count++] = (struct vocabulary_line){row, is_part};
-	return 0;
-}
-
-/* Adds the lines of what things of a line have: of the keyboard of a laptop. */
-static int add_parts(struct vocabulary *v, size_t object, int row, struct err *e)
-{
-	size_t length, n;
-	const char *text = things_text(row, THINGS_HAS, &length);
-	const char *const end = text + length;
-
-	for (; text < end; text += n + 2) {
-		const char *comma = memchr(text, ',', (size_t)(end - text));
-		char part[LONGEST_NAME];
-		struct things_rows rows;
-		n = (size_t)((comma ? comma : end) - text);
-		if (n >= sizeof part)
-			continue;
-		memcpy(part, text, n);
-		part[n] = 0;
-		things_find(&rows, part);
-		for (int i = 0; i < rows.n; i++)
-			if (add_line(v, object, rows.row[i], 1, e))
-				return -1;
-	}
-	return 0;
-}
-
+/* Adds lines of the table to an object's, each once. */
 static int add_lines(struct vocabulary *v, size_t object, const struct things_rows *rows, struct err *e)
 {
-	for (int i = 0; i < rows->n; i++)
-		if (add_line(v, object, rows->row[i], 0, e) || add_parts(v, object, rows->row[i], e))
+	for (int i = 0; i < rows->n; i++) {
+		size_t k = v->line_begin[object];
+		while (k < v->line_count && v->lines[k] != rows->row[i])
+			k++;
+		if (k < v->line_count)
+			continue;
+		if (mem_grow((void **)&v->lines, &v->line_capacity, v->line_count + 1, sizeof *v->lines,
+			    "vocabulary", e))
 			return -1;
+		v->lines[v->line_count++] = rows->row[i];
+	}
 	return 0;
 }
 
@@ -168,8 +135,7 @@ int vocabulary_for(struct vocabulary *v, const struct vocabulary_sentence *s, co
 			     end = v->has_names ? v->line_begin[o + 1] : v->line_named[o];
 		match[o] = begin < end ? -1 : USE_BY_NAME * about[o] + USE_OF_ANY;
 		for (size_t k = begin; k < end; k++)
-			match[o] = fmax(match[o],
-				(double)v->cosine[v->lines[k].row] - (v->lines[k].is_part ? USE_OF_PART : 0));
+			match[o] = fmax(match[o], (double)v->cosine[v->lines[k]]);
 	}
 	return 1;
 }

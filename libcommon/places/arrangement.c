@@ -1,7 +1,6 @@
 #include "places/arrangement.h"
 
 #include "places/object_span.h"
-#include "places/resting.h"
 #include "base/mem.h"
 #include "geom/up.h"
 #include "geom/vector.h"
@@ -14,7 +13,6 @@
 
 enum { POINTS = 2048 }; /* of an object, at most about so many */
 static const double most_weight = 4;
-static const double alike_colour = 8, alike_spread = 4, alike_size = 0.15;
 static const double no_direction = 0.1, nothing = 1e-6; /* of the spacing */
 static const double degree0 = 0.28209479177387814;	/* the spherical harmonic of degree 0 */
 
@@ -127,7 +125,6 @@ static int take_looks(struct arranged *o, const struct splats *s, const struct e
 		colour_lab(rgb, lab);
 		for (size_t k = 0; k < 3; k++) {
 			o->lab[k] += weight[i] / total * lab[k];
-			o->spread[k] += weight[i] / total * lab[k] * lab[k];
 		}
 		colour_call(lab, weight[i] / total, o->colours);
 		const float *mean = s->means + 3 * (size_t)own->ids[i];
@@ -135,8 +132,6 @@ static int take_looks(struct arranged *o, const struct splats *s, const struct e
 			{mean[0], mean[1], mean[2]}, {lab[0], lab[1], lab[2]}, weight[i]};
 		o->surface.view_dependence += weight[i] / total * view_dependence(s, sh) / 9;
 	}
-	for (size_t k = 0; k < 3; k++)
-		o->spread[k] = sqrt(fmax(o->spread[k] - o->lab[k] * o->lab[k], 0));
 	o->surface.view_dependence = sqrt(o->surface.view_dependence);
 	return surface_find(&o->surface, points, n, up, e);
 }
@@ -288,7 +283,6 @@ void arrangement_look(struct arrangement *a, const struct viewpoint *from)
 		see(a, from->camera, axes, from->is_facing);
 	centre_all(a);
 	find_spacing(a);
-	resting_find(a);
 }
 
 int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,
@@ -319,36 +313,6 @@ int arrangement_make(struct arrangement *a, const struct lifted *l, const struct
 double arranged_length(const struct arrangement *a, double length)
 {
 	return log(fmax(length, nothing * a->spacing));
-}
-
-/* Lengths of the box: the shorter and the longer one on the ground, and the height. */
-static void lengths(const struct arrangement *a, const struct arranged *o, double out[3])
-{
-	const double wide = o->high[0] - o->low[0], deep = o->high[1] - o->low[1];
-
-	out[0] = arranged_length(a, fmin(wide, deep));
-	out[1] = arranged_length(a, fmax(wide, deep));
-	out[2] = arranged_length(a, o->high[2] - o->low[2]);
-}
-
-double arrangement_alike(const struct arrangement *a, size_t i, size_t k)
-{
-	const struct arranged *p = &a->objects[i], *q = &a->objects[k];
-	double x[3], y[3], sum = 0;
-
-	if (i == k)
-		return 0;
-	if (!p->is_there || !q->is_there)
-		return -INFINITY;
-	lengths(a, p, x);
-	lengths(a, q, y);
-	for (int d = 0; d < 3; d++) {
-		const double colour = (p->lab[d] - q->lab[d]) / alike_colour,
-			     spread = (p->spread[d] - q->spread[d]) / alike_spread,
-			     size = (x[d] - y[d]) / alike_size;
-		sum += colour * colour + spread * spread + size * size;
-	}
-	return -0.5 * sum;
 }
 
 double arranged_bulk(const struct arrangement *a, const struct arranged *o)

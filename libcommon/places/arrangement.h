@@ -19,11 +19,8 @@ struct arranged {
 	 * objects. */
 	double low[3], high[3]; /* box: places/object_span.h along each axis */
 	double centre[3];	/* of the box */
-	double raised; /* how far it stands higher than most, on something that has no name (places/resting.h)
-			*/
-	double side;   /* how far right it looks: centre[0], or, in a picture, in perspective */
-	double lab[3]; /* mean colour, CIE L*a*b* (D65) */
-	double spread[3]; /* standard deviation of the colour: of stripes, or of light and shade */
+	double side;		/* how far right it looks: centre[0], or, in a picture, in perspective */
+	double lab[3];		/* mean colour, CIE L*a*b* (D65) */
 	double colours[COLOUR_WORDS]; /* part of it that people would call so (lang/colours.h) */
 	struct surface surface;
 };
@@ -59,11 +56,6 @@ void arrangement_look(struct arrangement *a, const struct viewpoint *from);
 /* Where an object is in the scene, whatever it is seen from: the mean of its points. 0: it has none. */
 int arrangement_where(const struct arrangement *a, size_t object, double at[3]);
 void arrangement_free(struct arrangement *a);
-
-/* Whether two objects are the same to look at, but for where they are: 0 where they are, and less the more
- * they differ in mean colour (by 8 of L*a*b*), in its spread (by 4) and in size (by 15%): -1/2 of the sum of
- * the squares. */
-double arrangement_alike(const struct arrangement *a, size_t i, size_t k);
 
 /* The logarithm of a length, which may be 0, and the mean of those of a box. */
 double arranged_length(const struct arrangement *a, double length);

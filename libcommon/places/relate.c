@@ -236,7 +236,7 @@ static void by_itself(
 	}
 	if (r->kind == PARSE_ON && r->count) { /* on the table itself, rather than on a thing that is on it */
 		for (size_t o = 0; o < a->n; o++) {
-			out[o] = 1 - on_the_rest * a->objects[o].raised;
+			out[o] = 1;
 			for (size_t i = 0; i < a->n; i++)
 				if (i != o && a->objects[i].is_there)
 					out[o] = fmin(

@@ -122,8 +122,7 @@ enum {
 	SURFACES = 1 << CHOOSE_SURFACES,
 	SIZES = 1 << CHOOSE_SIZES,
 	RELATIONS = 1 << CHOOSE_RELATIONS,
-	SENTENCE = 1 << CHOOSE_SENTENCE,
-	WORDING = 1 << CHOOSE_WORDING
+	SENTENCE = 1 << CHOOSE_SENTENCE
 };
 
 /* The best of a sentence whose words are so. */

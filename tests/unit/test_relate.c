@@ -1,7 +1,6 @@
 /* Relations between objects, on a made-up table, and where lifted objects are. */
 #include "places/arrangement.h"
 #include "places/relate.h"
-#include "places/resting.h"
 #include "lang/wordnet.h"
 #include "unit.h"
 
@@ -174,50 +173,6 @@ static void every_anchor(void)
 	CHECK(out[TALL] > 0.9, "taller than the other: %g", out[TALL]);
 }
 
-/* A jar on a shelf that is no object: it stands high, on nothing; a cup on a tray does not. */
-static void unnamed_shelf(void)
-{
-	struct quantile_item along[OBJECTS];
-
-	table.along = along;
-	lay_table();
-	resting_find(&table);
-	for (int o = 0; o < OBJECTS; o++)
-		CHECK(table.objects[o].raised < 0.01, "%d is raised by %g on a table", o,
-			table.objects[o].raised);
-	resting_relate(&table, PARSE_ON, out);
-	for (int o = 0; o < OBJECTS; o++)
-		CHECK(fabs(out[o] - 0.5) < 0.02, "no shelf: %g", out[o]);
-	put(BACK, 0.2, 4, 3, 1.2, 1); /* the jar, above what stands behind */
-	put(CUP, 0, 0, 3, 0.8, 1.1);
-	put(TRAY, 0, 0, 0, 2, 3);
-	resting_find(&table);
-	CHECK(table.objects[BACK].raised > 0.9, "the jar: %g", table.objects[BACK].raised);
-	CHECK(table.objects[CUP].raised < 0.1, "what stands on a thing: %g", table.objects[CUP].raised);
-	resting_relate(&table, PARSE_ON, out);
-	for (int o = 0; o < OBJECTS; o++)
-		CHECK(o == BACK ? out[o] > 0.8 : out[o] < 0.3, "%d on the shelf: %g", o, out[o]);
-	resting_relate(&table, PARSE_BELOW, out);
-	for (int o = 0; o < OBJECTS; o++)
-		CHECK(o == TALL || out[o] < out[TALL], "%d is below it rather: %g, %g", o, out[o], out[TALL]);
-	resting_relate(&table, PARSE_LEFT, out);
-	CHECK(out[BACK] == out[FRONT], "nothing is known of what is left of it");
-	for (int o = 0; o < OBJECTS; o++)
-		objects[o].is_there = 0;
-	resting_find(&table);
-	for (int o = 0; o < OBJECTS; o++)
-		CHECK(table.objects[o].raised == 0, "what is not there");
-	lay_table();
-}
-
-static void holders(void)
-{
-	CHECK(resting_holds("shelf") && !resting_holds("mouse") && !resting_holds("rectangle"), "by itself");
-	if (wordnet_is_there())
-		CHECK(resting_holds("windowsill") && resting_holds("mantelpiece") && !resting_holds("table"),
-			"by what it is a kind of");
-}
-
 static void nobody_there(void)
 {
 	objects[LEFT].is_there = 0;
@@ -284,10 +239,6 @@ static void arrangement(void)
 		a.viewer.centre[0], a.viewer.centre[1]);
 	CHECK(fabs(a.spacing - 6) < 0.2, "spacing %g", a.spacing);
 	CHECK(a.objects[0].lab[1] > 50 && a.objects[1].lab[2] < -50, "red and blue");
-	CHECK(arrangement_alike(&a, 0, 0) == 0 && arrangement_alike(&a, 0, 1) < -50, "alike: %g",
-		arrangement_alike(&a, 0, 1));
-	CHECK(arrangement_alike(&a, 0, 1) == arrangement_alike(&a, 1, 0), "alike both ways");
-	CHECK(arrangement_alike(&a, 0, 2) == -INFINITY, "like nothing");
 	CHECK(a.objects[0].colours[colour_word("red")] > 0.5 &&
 			a.objects[0].colours[colour_word("blue")] < 0.01,
 		"red is called %g red", a.objects[0].colours[colour_word("red")]);
@@ -319,8 +270,6 @@ int main(void)
 	comparisons();
 	ranks();
 	every_anchor();
-	unnamed_shelf();
-	holders();
 	nobody_there();
 	arrangement();
 	return unit_end();

@@ -1,4 +1,4 @@
-#include "ask/purposes.h"
+#include "ask/usage.h"
 
 #include "ask/constants.h"
 #include "ask/meaning_private.h"
@@ -49,34 +49,14 @@ static int is_kept(const struct meaning *m, const struct meaning_part *part)
 	return 1;
 }
 
-/* Whether a word is of an anchor of a place. */
-static int is_of_place(const struct meaning *m, int word)
-{
-	const struct parse *p = m->sentence->parse;
-
-	for (size_t k = 0; k < m->part_count; k++) {
-		const struct meaning_part *part = &m->parts[k];
-		if (part->kind != MEANING_CLAUSE || !is_kept(m, part))
-			continue;
-		const struct parse_clause *c = &p->clauses[part->index];
-		for (int j = 0; j < c->anchors.n; j++) {
-			const struct parse_span *s = &p->phrases[c->anchors.item[j]].span;
-			if (p->words[word].span.begin >= s->begin && p->words[word].span.end <= s->end)
-				return 1;
-		}
-	}
-	return 0;
-}
-
-/* told marks all words but those of places and colours: what is told of the use, as a sentence; counts, of
- * these, the words that are not of grammar. */
+/* told marks the words that tell of the use, as a sentence; counts, of these, those that are not of grammar.
+ */
 static void mark_words(const struct meaning *m, char *told, char *counts)
 {
 	const struct parse *p = m->sentence->parse;
 
 	for (int w = 0; w < p->word_count; w++) {
-		told[w] = (char)(!is_of_place(m, w) && !is_before_generic(p, w) &&
-				 colour_word(p->words[w].lemma) < 0);
+		told[w] = (char)!is_before_generic(p, w);
 		counts[w] = (char)(told[w] && purpose_is_content(p, w));
 	}
 }
@@ -100,7 +80,7 @@ static void add_words(const struct meaning *m, const char *counts, double *words
 	}
 }
 
-int purposes_says_more(const struct meaning *m)
+int usage_says_more(const struct meaning *m)
 {
 	for (size_t k = 0; k < m->part_count; k++)
 		if (is_kept(m, &m->parts[k]))
@@ -158,79 +138,40 @@ static int says_more_than_name(const struct parse *p, const char *counts)
 	return 0;
 }
 
-/* What is known of a sentence, by object where (O). */
-struct purpose {
-	int is_said;	  /* that it is one by its form, or that it says nothing else */
-	int is_known;	  /* what things are for */
-	double *about;	  /* (O) the cosine with its nouns */
-	double *words;	  /* (O) its words in glosses and uses */
-	double *use, any; /* (O) of vocabulary_for */
-	double *parts;	  /* (O) what is said besides: logarithms */
+/* What is known of a sentence of use, by object (O). */
+struct usage {
+	double *about;	  /* the cosine with its nouns */
+	double *words;	  /* its words in glosses and uses */
+	double *use, any; /* of vocabulary_for */
+	double *parts;	  /* what is said besides: logarithms */
 };
 
-/* counts marks the words that count; scratch (O). */
-static void find_purpose(
-	struct purpose *u, const struct meaning *m, int is_lost, char *counts, double *scratch)
-{
-	const struct parse *p = m->sentence->parse;
-	char told[TOKENS_MOST];
-
-	mark_words(m, told, counts);
-	add_words(m, counts, u->words, scratch);
-	vocabulary_about(m->vocabulary, m->sentence, counts, u->about);
-	add_parts(m, u->parts);
-	u->is_known = vocabulary_for(m->vocabulary, m->sentence, told, u->about, u->use, &u->any);
-	u->is_said = purpose_is_said(p) || (is_lost && says_more_than_name(p, counts));
-}
-
-/* Whether any word tells of something: none of "all of them" does. */
-static int tells(const struct parse *p, const char *counts)
-{
-	return p->word_count && memchr(counts, 1, (size_t)p->word_count);
-}
-
-/* By its form; by more words than a name has; or as its noun is of nothing that one could point at: "where
- * the countries are". */
-static int may_be_purpose(const struct purpose *u, const struct parse *p, int head, const char *counts)
-{
-	return u->is_said || (u->is_known ? says_more_than_name(p, counts)
-					  : head >= 0 && !uses_names_thing(p->words[head].lemma));
-}
-
-static double fit_of_object(const struct purpose *u, size_t o)
-{
-	const double fit = u->is_known ? PURPOSE_USE * u->use[o] + PURPOSE_NAME * u->about[o] +
-						 PURPOSE_WORD * u->words[o]
-				       : PURPOSE_ABOUT * u->about[o] + PURPOSE_WORDS * u->words[o];
-
-	return fit + u->parts[o];
-}
-
-/* log odds that object o, which fits best, is meant. */
-static double sureness(const struct purpose *u, size_t o)
-{
-	return u->is_known ? PURPOSE_SURE * (u->use[o] - u->any) + PURPOSE_SURE_NAME * u->about[o] +
-				     PURPOSE_SURE_WORD * u->words[o] + PURPOSE_SURE_PARTS * u->parts[o] +
-				     (u->is_said ? PURPOSE_SAID : PURPOSE_UNSAID)
-			   : PURPOSE_THERE * fit_of_object(u, o) + PURPOSE_BASE;
-}
-
-double purposes_judge(const struct meaning *m, int is_lost, double *score, double *scratch)
+double usage_judge(const struct meaning *m, double *score, double *scratch)
 {
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
-	const int head = meaning_head_of(p, &p->phrases[0]);
-	struct purpose u = {
+	struct usage u = {
 		.about = scratch, .words = scratch + n, .use = scratch + 2 * n, .parts = scratch + 3 * n};
-	char counts[TOKENS_MOST];
+	char told[TOKENS_MOST], counts[TOKENS_MOST];
 
-	if (is_by_name(m, head))
+	if (is_by_name(m, meaning_head_of(p, &p->phrases[0])))
 		return 0;
-	find_purpose(&u, m, is_lost, counts, score);
-	if (!tells(p, counts) || !may_be_purpose(&u, p, head, counts))
+	mark_words(m, told, counts);
+	add_words(m, counts, u.words, score);
+	vocabulary_about(m->vocabulary, m->sentence, counts, u.about);
+	add_parts(m, u.parts);
+	const int is_said = purpose_is_said(p);
+	if (!vocabulary_for(m->vocabulary, m->sentence, told, u.about, u.use, &u.any) ||
+		!memchr(counts, 1, (size_t)p->word_count) || (!is_said && !says_more_than_name(p, counts)))
 		return 0;
 	for (size_t o = 0; o < n; o++)
-		score[o] = m->arrangement->objects[o].is_there ? fit_of_object(&u, o) : not_there;
-	const double sure = sureness(&u, best_of(score, n));
-	return sure < 0 && u.is_known && !u.is_said ? 0 : 1 / (1 + exp(-sure));
+		score[o] = m->arrangement->objects[o].is_there
+				   ? PURPOSE_USE * u.use[o] + PURPOSE_NAME * u.about[o] +
+					     PURPOSE_WORD * u.words[o] + u.parts[o]
+				   : not_there;
+	const size_t o = best_of(score, n);
+	const double sure = PURPOSE_SURE * (u.use[o] - u.any) + PURPOSE_SURE_NAME * u.about[o] +
+			    PURPOSE_SURE_WORD * u.words[o] + PURPOSE_SURE_PARTS * u.parts[o] +
+			    (is_said ? PURPOSE_SAID : PURPOSE_UNSAID);
+	return sure < 0 && !is_said ? 0 : 1 / (1 + exp(-sure));
 }

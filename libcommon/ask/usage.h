@@ -2,17 +2,16 @@
  * it: by how near its words are to the uses of such things (lang/things_vectors.h) and to the object's nouns;
  * by its words in the glosses of those nouns; and by the colours and places that its parse has. The thing is
  * here if the sentence is nearly as near to its uses as to those of all everyday things together. */
-#ifndef ASK_PURPOSES_H
-#define ASK_PURPOSES_H
+#ifndef ASK_USAGE_H
+#define ASK_USAGE_H
 
 #include "ask/meaning.h"
 
 /* score (O): logarithms of what fits, for a softmax; scratch (4 O). Returns P that the best of them is meant,
- * 0 where no use is said. m: the sentence is judged. is_lost: its parse tells nothing, so that what it is
- * about is all there is. */
-double purposes_judge(const struct meaning *m, int is_lost, double *score, double *scratch);
+ * 0 where no use is said. m: the sentence is judged. */
+double usage_judge(const struct meaning *m, double *score, double *scratch);
 
 /* Whether the parse tells of colours or places besides: "the red thing you drink from". */
-int purposes_says_more(const struct meaning *m);
+int usage_says_more(const struct meaning *m);
 
 #endif
