@@ -14,7 +14,8 @@
 #include <wn.h>
 
 enum { DEEPEST = 10, ADJECTIVE_SENSES = 4 };
-/* What a sense counts that those texts do not have, how much less each rarer one, and one of nothing that can be seen. */
+/* What a sense counts that those texts do not have, how much less each rarer one, and one of nothing that can
+ * be seen. */
 static const double UNSEEN = 0.5, RARER = 0.8, ABSTRACT = 0.1;
 
 /* A question about a scene looks up thousands of words, each by some twenty seeks. */
@@ -69,7 +70,8 @@ static int is_kind_of(const struct wordnet_noun *noun, int sense, long synset)
 	return 0;
 }
 
-/* How often a sense was meant in the texts that WordNet's makers have read, where it is of what can be seen. */
+/* How often a sense was meant in the texts that WordNet's makers have read, where it is of what can be seen.
+ */
 static void weigh(struct wordnet_noun *to, const char *lemma, int senses)
 {
 	static long physical;
@@ -80,7 +82,8 @@ static void weigh(struct wordnet_noun *to, const char *lemma, int senses)
 	if (!physical && synsets_of("physical_entity", NOUN, &physical, 1) < 1)
 		return;
 	for (int i = 0; i < senses; i++) {
-		chance[i] = (counts[i] + UNSEEN * pow(RARER, i)) * (is_kind_of(to, i, physical) ? 1 : ABSTRACT);
+		chance[i] =
+			(counts[i] + UNSEEN * pow(RARER, i)) * (is_kind_of(to, i, physical) ? 1 : ABSTRACT);
 		all += chance[i];
 	}
 	for (int i = 0; i < senses; i++)
@@ -224,7 +227,8 @@ double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *
 			continue;
 		for (int k = 0; k < known->n; k++)
 			if (word->up[i].synset == known->up[k].synset && known->up[k].depth <= STEPS_UP)
-				best[known->up[k].sense] = fmax(best[known->up[k].sense], pow(per_step_up, known->up[k].depth));
+				best[known->up[k].sense] =
+					fmax(best[known->up[k].sense], pow(per_step_up, known->up[k].depth));
 		for (int k = 0; k < WORDNET_SENSES; k++)
 			sum += word->chance[word->up[i].sense] * known->chance[k] * best[k];
 	}
