@@ -1,8 +1,10 @@
 #include "ask/choose.h"
 
 #include "ask/constants.h"
+#include "ask/judge.h"
 #include "ask/usage.h"
 #include "base/largest.h"
+#include "base/logistic.h"
 #include "base/mem.h"
 
 #include <math.h>
@@ -37,7 +39,7 @@ struct chooser {
 	struct viewpoint from; /* of the arrangement */
 	struct meaning meaning;
 	double *score, *whole; /* (O) */
-	double *purpose;       /* (4 O) scratch */
+	double *purpose;       /* (3 O) scratch */
 };
 
 static int has(const struct chooser *c, enum choose_part p)
@@ -74,7 +76,7 @@ static double presence(const struct chooser *c, const struct parse *p, int phras
 	const double x = PRESENCE_BASE + PRESENCE_OWN * log(fmax(own, 1e-6)) -
 			 PRESENCE_UNKNOWN * (double)m->unknown - (is_nothing ? PRESENCE_NOTHING : 0);
 
-	return 1 / (1 + exp(-x));
+	return logistic(x);
 }
 
 /* How sure differences of fit make: as is found by likelihood, but plainly where it is in doubt which object
@@ -198,12 +200,12 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 	if (!from->parse && parse_sentence(own, &c->parser, from->text, &vectors, e))
 		return -1;
 	*s = (struct vocabulary_sentence){p, from->vectors, from->words};
-	if (meaning_judge(&c->meaning, s, e))
+	if (judge_sentence(&c->meaning, s, e))
 		return -1;
 	struct viewpoint said = from->from;
 	if (says_from(c, p, &said)) {
 		look_from(c, &said);
-		if (meaning_judge(&c->meaning, s, e))
+		if (judge_sentence(&c->meaning, s, e))
 			return -1;
 	}
 	memset(row, 0, l->objects * sizeof *row);
@@ -279,7 +281,7 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	*c = (struct chooser){.scene = s, .parts = parts, .from = {.kind = VIEWPOINT_USUAL}};
 	c->score = mem_alloc(objects, sizeof *c->score, "choice", e);
 	c->whole = mem_alloc(objects, sizeof *c->whole, "choice", e);
-	c->purpose = mem_alloc(objects, 4 * sizeof *c->purpose, "choice", e);
+	c->purpose = mem_alloc(objects, 3 * sizeof *c->purpose, "choice", e);
 	if (!c->score || !c->whole || !c->purpose ||
 		arrangement_make(&c->arrangement, s->lifted, s->splats, s->cameras, e) ||
 		vocabulary_make(&c->vocabulary, s->lifted, s->parser, e) || know_words(c, e))

@@ -6,7 +6,7 @@
  * sentence means what it meant.
  *
  * The sentence means nothing that was lifted with the probability 1 - P: P goes by how far the thing that
- * fits best is known to be what is said (its noun, its colours, its relations), and how many words say
+ * fits best is known to be what is said (its noun, its colours, its relations), and by how many words say
  * something that is said of nothing. A sentence that says only what the thing is for means the one that
  * ask/usage.h finds. All constants are in ask/constants.def. */
 #ifndef ASK_CHOOSE_H

@@ -1,16 +1,11 @@
-/* What a parsed sentence means among a scene's objects: for each of its phrases, how well each object fits
- * it.
- *
- * A phrase is judged part by part: its noun, its attributes, its clauses, what it leaves out, what it is one
- * of, and then what orders the things that fit so far: superlatives, comparatives, ordinals. A clause's
- * anchors are phrases themselves and are judged first. Each part gives every object a number in [0,1], and a
- * phrase's fit is their product. How far the best object fits at all, where parts that nothing speaks for or
- * against are left aside, is what the presence of the thing goes by. */
+/* What was judged of a sentence among a scene's objects: how well each object fits each of its phrases, part
+ * by part. */
 #ifndef ASK_MEANING_H
 #define ASK_MEANING_H
 
 #include "places/arrangement.h"
 #include "ask/vocabulary.h"
+#include "base/largest.h"
 
 enum meaning_kind {
 	MEANING_NOUN,
@@ -54,13 +49,49 @@ struct meaning {
 	double *values, *scratch; /* of the parts; (9 O + 9) */
 };
 
-/* Judges a sentence. Returns 0, or -1 with *e set. */
-int meaning_judge(struct meaning *m, const struct vocabulary_sentence *s, struct err *e);
+static inline size_t objects_of(const struct meaning *m)
+{
+	return m->arrangement->n;
+}
+
+static inline double *fit_of(const struct meaning *m, int phrase)
+{
+	return m->fit + (size_t)phrase * (objects_of(m) + 1);
+}
+
+static inline double *there_of(const struct meaning *m, int phrase)
+{
+	return m->there + (size_t)phrase * objects_of(m);
+}
+
+/* Room for what is judged of a sentence, of which nothing is judged yet. Returns 0, or -1 with *e set. */
+int meaning_begin(struct meaning *m, const struct vocabulary_sentence *s, struct err *e);
 
 /* Frees what it made for itself. */
 void meaning_free(struct meaning *m);
 
+/* The next part's values (O). */
+double *meaning_add_part(struct meaning *m, int phrase, enum meaning_kind kind, int index);
+
+/* The phrase's fit takes in the values of the part that was added last. */
+void meaning_take_part(struct meaning *m);
+
 /* Whether nothing at all was said of what a phrase means: "where is it?" */
 int meaning_is_empty(const struct meaning *m, int phrase);
+
+/* Whether a word, or its lemma, is in a list that ends in NULL. */
+int meaning_word_is(const struct parse_word *w, const char *const *list);
+
+/* Whether a word of the phrase is. */
+int meaning_has_word(const struct parse *p, const struct parse_phrase *f, const char *const *list);
+
+/* The word that names the kind of thing, or -1: "something", "the red one". */
+int meaning_head_of(const struct parse *p, const struct parse_phrase *f);
+
+/* "the other cups", "anything else". */
+int meaning_is_other(const struct parse *p, const struct parse_phrase *f);
+
+/* The place as a whole, unless something is called so. */
+int meaning_is_scene(const struct meaning *m, int phrase);
 
 #endif

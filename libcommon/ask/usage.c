@@ -1,9 +1,9 @@
 #include "ask/usage.h"
 
 #include "ask/constants.h"
-#include "ask/meaning_private.h"
+#include "ask/meaning.h"
+#include "base/logistic.h"
 #include "lang/closed.h"
-#include "lang/colours.h"
 #include "lang/purpose.h"
 #include "lang/tokens.h"
 
@@ -41,7 +41,7 @@ static int is_kept(const struct meaning *m, const struct meaning_part *part)
 	const int is_of_scene = c->relation <= PARSE_BEHIND || c->degree != PARSE_PLAIN ||
 				(c->relation >= PARSE_CORNER && c->relation <= PARSE_FLOOR);
 	const int is_place = c->relation < PARSE_WITH && c->relation != PARSE_INSIDE;
-	if ((!is_place && !meaning_compares_looks(p, c)) || c->negated || (!c->anchors.n && !is_of_scene))
+	if (!is_place || c->negated || (!c->anchors.n && !is_of_scene))
 		return 0;
 	for (int k = 0; k < c->anchors.n; k++)
 		if (m->known[c->anchors.item[k]] < 0.5 || !p->phrases[c->anchors.item[k]].noun.n)
@@ -58,25 +58,6 @@ static void mark_words(const struct meaning *m, char *told, char *counts)
 	for (int w = 0; w < p->word_count; w++) {
 		told[w] = (char)!is_before_generic(p, w);
 		counts[w] = (char)(told[w] && purpose_is_content(p, w));
-	}
-}
-
-/* words (O): what the words that count give, summed; the less the more things here a word is of. Squares, as
- * half a match is mostly by a rare sense of the word. */
-static void add_words(const struct meaning *m, const char *counts, double *words, double *match)
-{
-	const size_t n = objects_of(m);
-
-	memset(words, 0, n * sizeof *words);
-	for (int w = 0; w < m->sentence->parse->word_count; w++) {
-		if (!counts[w])
-			continue;
-		vocabulary_use(m->vocabulary, m->sentence, w, match);
-		double all = 0;
-		for (size_t o = 0; o < n; o++)
-			all += match[o] * match[o];
-		for (size_t o = 0; o < n; o++)
-			words[o] += match[o] * match[o] / sqrt(fmax(1, all));
 	}
 }
 
@@ -138,40 +119,28 @@ static int says_more_than_name(const struct parse *p, const char *counts)
 	return 0;
 }
 
-/* What is known of a sentence of use, by object (O). */
-struct usage {
-	double *about;	  /* the cosine with its nouns */
-	double *words;	  /* its words in glosses and uses */
-	double *use, any; /* of vocabulary_for */
-	double *parts;	  /* what is said besides: logarithms */
-};
-
 double usage_judge(const struct meaning *m, double *score, double *scratch)
 {
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
-	struct usage u = {
-		.about = scratch, .words = scratch + n, .use = scratch + 2 * n, .parts = scratch + 3 * n};
+	double *about = scratch, *use = scratch + n, *parts = scratch + 2 * n, any;
 	char told[TOKENS_MOST], counts[TOKENS_MOST];
 
 	if (is_by_name(m, meaning_head_of(p, &p->phrases[0])))
 		return 0;
 	mark_words(m, told, counts);
-	add_words(m, counts, u.words, score);
-	vocabulary_about(m->vocabulary, m->sentence, counts, u.about);
-	add_parts(m, u.parts);
+	vocabulary_about(m->vocabulary, m->sentence, counts, about);
+	add_parts(m, parts);
 	const int is_said = purpose_is_said(p);
-	if (!vocabulary_for(m->vocabulary, m->sentence, told, u.about, u.use, &u.any) ||
+	if (!vocabulary_for(m->vocabulary, m->sentence, told, about, use, &any) ||
 		!memchr(counts, 1, (size_t)p->word_count) || (!is_said && !says_more_than_name(p, counts)))
 		return 0;
 	for (size_t o = 0; o < n; o++)
 		score[o] = m->arrangement->objects[o].is_there
-				   ? PURPOSE_USE * u.use[o] + PURPOSE_NAME * u.about[o] +
-					     PURPOSE_WORD * u.words[o] + u.parts[o]
+				   ? PURPOSE_USE * use[o] + PURPOSE_NAME * about[o] + parts[o]
 				   : not_there;
 	const size_t o = best_of(score, n);
-	const double sure = PURPOSE_SURE * (u.use[o] - u.any) + PURPOSE_SURE_NAME * u.about[o] +
-			    PURPOSE_SURE_WORD * u.words[o] + PURPOSE_SURE_PARTS * u.parts[o] +
-			    (is_said ? PURPOSE_SAID : PURPOSE_UNSAID);
-	return sure < 0 && !is_said ? 0 : 1 / (1 + exp(-sure));
+	const double sure = PURPOSE_SURE * (use[o] - any) + PURPOSE_SURE_NAME * about[o] +
+			    PURPOSE_SURE_PARTS * parts[o] + (is_said ? PURPOSE_SAID : PURPOSE_UNSAID);
+	return sure < 0 && !is_said ? 0 : logistic(sure);
 }

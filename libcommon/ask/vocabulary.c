@@ -139,7 +139,7 @@ static int add_kind(struct vocabulary *v, const char *lemma, size_t *kind, struc
 		return -1;
 	struct vocabulary_kind *to = &v->kinds[v->kind_count++];
 	to->lemma = lemma;
-	to->uses.n = to->parts.n = -1;
+	to->parts.n = -1;
 	naming_of_thing(&to->naming, lemma);
 	to->finish = finish_of(lemma);
 	return 0;

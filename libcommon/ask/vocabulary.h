@@ -39,8 +39,8 @@ struct vocabulary_item {
 struct vocabulary_kind {
 	const char *lemma;
 	struct naming naming;
-	int finish;		 /* finish_of */
-	struct uses uses, parts; /* found when they are first asked for; n < 0 before */
+	int finish;	   /* finish_of */
+	struct uses parts; /* found when they are first asked for; n < 0 before */
 };
 
 struct vocabulary {
@@ -94,10 +94,6 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
  * laptop; with or_place also where it is in any relation to that: on the shelf. */
 void vocabulary_has(
 	struct vocabulary *v, const struct vocabulary_sentence *s, int w, int or_place, double *match);
-
-/* match (O) in [0,1]: that what an object is called is for what word w says ("drink"), by WordNet's glosses.
- */
-void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* match (O): the cosine of the mean of a sentence's words that count (a char of each word) with the nouns
  * that training sentences call an object by, 0 where there is none: what the sentence is about, whatever it

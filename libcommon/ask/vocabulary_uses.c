@@ -10,34 +10,6 @@
 
 enum { LONGEST_NAME = 64 };
 
-/* How far things of a kind are for what a word says. */
-static double kind_fits(struct vocabulary *v, size_t kind, const struct uses *word)
-{
-	struct vocabulary_kind *k = &v->kinds[kind];
-
-	if (k->uses.n < 0)
-		uses_of_thing(&k->uses, k->lemma);
-	return uses_fit(&k->uses, word);
-}
-
-void vocabulary_use(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
-{
-	const struct lifted *l = v->lifted;
-	struct uses word;
-
-	memset(match, 0, l->objects * sizeof *match);
-	if (!v->has_knowledge)
-		return;
-	uses_of_word(&word, s->parse->words[w].lemma);
-	for (size_t o = 0; o < l->objects && word.n && v->has_names; o++)
-		match[o] = kind_fits(v, v->head_kinds[o], &word);
-	for (size_t i = 0; i < v->n && word.n; i++) {
-		const struct vocabulary_item *item = &v->items[i];
-		if (item->role == VOCABULARY_NOUN && !item->is_general)
-			match[item->object] = fmax(match[item->object], kind_fits(v, item->kind, &word));
-	}
-}
-
 void vocabulary_about(
 	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, double *match)
 {

@@ -3,7 +3,7 @@
 # at a time, each with no sentence but its name; a list has a name and a sentence a line. Then the sentences of the next
 # fourteen are asked: how many are refused (some are of use for what is here too). usage: tests/bench/purposes.sh [PARTS]; PARTS as
 # refer-render --without
-#	LIST=purposes   the list, tests/bench/LIST.tsv: purposes, situations (both were looked at, and constants of ask/purposes.h
+#	LIST=purposes   the list, tests/bench/LIST.tsv: purposes, situations (both were looked at, and constants of ask/usage.h
 #			fitted to them) or situations-kept, which nobody read
 #	BIN=build/bin   the tools
 #	BERT            folder of the language encoder

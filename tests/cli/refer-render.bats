@@ -374,7 +374,7 @@ png/$test_view/yellow-bowl-1.png " ]
 
 @test "--without leaves parts of the choice out, and knows their names" {
 	lifted
-	ask --without names,alike,colours,sizes,relations,sentence --refs first -o pred.jsonl
+	ask --without names,colours,sizes,relations,sentence --refs first -o pred.jsonl
 	ask --refs first -o all.jsonl
 	[ "$(areas <pred.jsonl)" = "$(areas <all.jsonl)" ]
 	not cmp -s pred.jsonl all.jsonl

@@ -1,6 +1,9 @@
 /* Clauses: how what a phrase means stands to its anchors, and in which order of all that fits. */
 #include "ask/constants.h"
-#include "ask/meaning_private.h"
+#include "ask/judge_clauses.h"
+#include "ask/judge_words.h"
+#include "lang/compared.h"
+#include "lang/finish.h"
 #include "places/relate.h"
 
 #include <math.h>
@@ -8,7 +11,79 @@
 
 enum { ANCHORS = 16 }; /* more anchors of a clause are not looked at */
 
-static enum meaning_turn turn_of(const struct parse_clause *c)
+/* Whether a clause compares looks: "darkest", "shinier than the kettle". */
+static int compares_looks(const struct parse *p, const struct parse_clause *c)
+{
+	char base[COMPARED_LENGTH];
+	const char *word = c->words.n == 1 ? p->words[c->words.item[0]].text : "";
+
+	return c->relation == PARSE_OTHER && c->degree != PARSE_PLAIN &&
+	       (compared_of(word, base) != PARSE_PLAIN || compared_look(word) != COMPARED_NONE);
+}
+
+/* How much an object looks as a word says, in units of what is told apart; 0 where such looks do not count.
+ */
+static double look_of(
+	const struct meaning *m, const struct arranged *o, enum compared_look look, const char *base)
+{
+	if (look == COMPARED_FINISH ? !m->has_surfaces : m->without >> MEANING_COLOUR & 1)
+		return 0;
+	switch (look) {
+	case COMPARED_DARK:
+		return -o->lab[0] / COMPARED_LIGHTNESS;
+	case COMPARED_BRIGHT:
+		return o->lab[0] / COMPARED_LIGHTNESS;
+	case COMPARED_COLOURFUL:
+		return hypot(o->lab[1], o->lab[2]) / COMPARED_LIGHTNESS;
+	case COMPARED_FINISH:
+		return surface_fits(&o->surface, finish_of(base)) / COMPARED_SHARE;
+	default:
+		return 0;
+	}
+}
+
+/* key (O): the less, the more an object looks so; what sentences say of it where that cannot be seen. */
+static void find_keys(struct meaning *m, int word, double *key)
+{
+	char base[COMPARED_LENGTH];
+	const char *text = m->sentence->parse->words[word].text;
+	const char *adjective = compared_of(text, base) == PARSE_PLAIN ? text : base;
+	const enum compared_look look = compared_look(adjective);
+
+	if (look == COMPARED_COLOUR)
+		vocabulary_colour(m->vocabulary, m->arrangement, adjective, key);
+	else if (look == COMPARED_NONE || look == COMPARED_FINISH)
+		vocabulary_attribute(m->vocabulary, m->sentence, word, key);
+	else
+		memset(key, 0, objects_of(m) * sizeof *key);
+	m->unknown += look == COMPARED_NONE && largest(key, objects_of(m)) < 0.5;
+	for (size_t o = 0; o < objects_of(m); o++)
+		key[o] = -key[o] / COMPARED_SHARE - look_of(m, &m->arrangement->objects[o], look, adjective);
+}
+
+/* value (O) of such a clause among those that fit, the place-th of them. */
+static void judge_compared(
+	struct meaning *m, const struct parse_clause *c, int place, const double *fit, double *value)
+{
+	const size_t n = objects_of(m);
+	const int anchor = c->anchors.n && m->known[c->anchors.item[0]] >= 0.5 ? c->anchors.item[0] : -1;
+	const double *than = anchor < 0 || c->degree == PARSE_MOST ? NULL : fit_of(m, anchor);
+	double *key = m->scratch + 3 * n;
+
+	find_keys(m, c->words.item[0], key);
+	if (!than || meaning_is_other(m->sentence->parse, &m->sentence->parse->phrases[anchor])) {
+		relate_rank_by(m->arrangement, key, place, fit, value);
+		return;
+	}
+	const size_t best = best_of(than, n);
+	for (size_t o = 0; o < n; o++)
+		value[o] = o == best ? 0 : 1 / (1 + exp(fmin(key[o] - key[best] + 1, 40)));
+}
+
+/* When a clause is judged: what compares with all else that fits has to wait for it. */
+enum turn { AT_ONCE, BY_PLACE, BY_DEGREE };
+
+static enum turn turn_of(const struct parse_clause *c)
 {
 	const int is_place = c->relation != PARSE_OTHER && c->relation != PARSE_WITH;
 
@@ -41,19 +116,6 @@ static const struct parse_clause *counted_by(
 	return NULL;
 }
 
-/* The place as a whole, unless something is called so. */
-int meaning_is_scene(const struct meaning *m, int phrase)
-{
-	static const char *const places[] = {"table", "tabletop", "desk", "desktop", "countertop", "picture",
-		"photo", "image", "scene", "room", "shot", "frame", "view", "floor", "ground", "surface",
-		NULL};
-	const struct parse *p = m->sentence->parse;
-	const int head = meaning_head_of(p, &p->phrases[phrase]);
-
-	return p->phrases[phrase].scene ||
-	       (head >= 0 && m->known[phrase] < 0.5 && meaning_word_is(&p->words[head], places));
-}
-
 /* "with nothing on it", "by itself". */
 static int is_of_anything(const struct parse_clause *c)
 {
@@ -67,6 +129,17 @@ static int is_size(const struct parse_clause *c)
 	return c->degree == PARSE_PLAIN && c->relation >= PARSE_LARGER && c->relation <= PARSE_WIDER;
 }
 
+static enum relate_width width_of(const struct parse *p, const struct parse_phrase *f)
+{
+	int directions = 0;
+
+	for (int k = 0; k < f->clauses.n; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		directions += c->relation <= PARSE_BEHIND && !c->negated ? c->anchors.n : 0;
+	}
+	return f->count != PARSE_ONE ? RELATE_HALF_PLANE : directions > 1 ? RELATE_WIDE : RELATE_NARROW;
+}
+
 /* value (O) of a clause that has places in it; returns how far its anchors are known. */
 static double judge_relation(
 	struct meaning *m, int phrase, const struct parse_clause *c, const double *fit, double *value)
@@ -77,8 +150,7 @@ static double judge_relation(
 	const struct parse *p = m->sentence->parse;
 	struct relate_anchor anchors[ANCHORS];
 	const struct parse_phrase *f = &p->phrases[phrase];
-	const enum relate_width width = f->count != PARSE_ONE ? RELATE_HALF_PLANE : RELATE_NARROW;
-	struct relation r = {c->relation, c->degree, width, 0, 0, anchors};
+	struct relation r = {c->relation, c->degree, width_of(p, f), 0, 0, anchors};
 	double known = 1;
 
 	if (counted_by(p, f, counts_along) == c)
@@ -119,25 +191,24 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	const struct parse_phrase *f = &p->phrases[phrase];
 	const size_t n = objects_of(m);
 
-	if (meaning_compares_looks(p, c)) {
-		meaning_judge_compared(
-			m, c, counted_by(p, f, counts_along) == c ? f->ordinal : 1, fit, value);
+	if (compares_looks(p, c)) {
+		judge_compared(m, c, counted_by(p, f, counts_along) == c ? f->ordinal : 1, fit, value);
 		return;
 	}
 	if (c->relation == PARSE_OTHER) {
-		meaning_judge_predicate(m, c, value);
+		judge_predicate(m, c, value);
 		return;
 	}
 	const double known = judge_relation(m, phrase, c, fit, value);
 	/* what carries or holds something that is nothing here has it: "the one with its screen on" */
 	if (c->relation == PARSE_WITH || (c->relation == PARSE_SUPPORTS && c->anchors.n && known < 0.5)) {
-		meaning_judge_predicate(m, c, said);
+		judge_predicate(m, c, said);
 		for (size_t o = 0; o < n; o++)
 			value[o] = fmax(said[o], known * value[o]);
-		meaning_judge_part_colours(m, phrase, c, value);
+		judge_part_colours(m, phrase, c, value);
 		return;
 	}
-	meaning_judge_said(m, c, said);
+	judge_said(m, c, said);
 	for (size_t o = 0; o < n; o++)
 		value[o] = fmax(known * value[o] + (1 - known) * UNKNOWN_RELATION,
 			(1 - known) * SAID_WORTH * said[o]);
@@ -181,7 +252,7 @@ static void judge_clause(struct meaning *m, int phrase, int clause, const double
 		value[o] = least + (1 - least) * x;
 		there[o] *= is_size(c) ? 1 : value[o] / (value[o] + soft) * (1 + soft);
 	}
-	meaning_take_part(m, &m->parts[m->part_count - 1]);
+	meaning_take_part(m);
 }
 
 static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
@@ -205,7 +276,7 @@ static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
 		/* "the second penguin" where there is but one */
 		there_of(m, phrase)[o] *= value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
 	}
-	meaning_take_part(m, &m->parts[m->part_count - 1]);
+	meaning_take_part(m);
 }
 
 /* "around", and nothing is there that it is around; "in" of "what you boil water in". */
@@ -216,10 +287,11 @@ static int says_nothing(const struct parse_clause *c)
 	return may_be && c->degree == PARSE_PLAIN && !c->anchors.n && !c->negated;
 }
 
-void meaning_judge_clauses(struct meaning *m, int phrase, const struct parse_phrase *f, const double *fit,
-	enum meaning_turn turn)
+/* The clauses of a turn. fit: what is compared. */
+static void judge_turn(struct meaning *m, int phrase, const double *fit, enum turn turn)
 {
 	const struct parse *p = m->sentence->parse;
+	const struct parse_phrase *f = &p->phrases[phrase];
 
 	for (int k = 0; k < f->clauses.n; k++) {
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
@@ -228,8 +300,12 @@ void meaning_judge_clauses(struct meaning *m, int phrase, const struct parse_phr
 	}
 }
 
-/* What orders those that fit so far, each by itself. */
-void meaning_judge_order(struct meaning *m, int phrase)
+void judge_clauses(struct meaning *m, int phrase)
+{
+	judge_turn(m, phrase, fit_of(m, phrase), AT_ONCE);
+}
+
+void judge_order(struct meaning *m, int phrase)
 {
 	const struct parse *p = m->sentence->parse;
 	const struct parse_phrase *f = &p->phrases[phrase];
@@ -239,11 +315,11 @@ void meaning_judge_order(struct meaning *m, int phrase)
 
 	for (size_t o = 0; o < n; o++)
 		before[o] = fit[o] * fit[o] * m->arrangement->objects[o].in_sight;
-	meaning_judge_clauses(m, phrase, f, before, BY_PLACE);
+	judge_turn(m, phrase, before, BY_PLACE);
 	/* what fits half as well is hardly one of them: "the littlest grey thing" */
 	for (size_t o = 0; o < n; o++)
 		before[o] *= sqrt(before[o]);
-	meaning_judge_clauses(m, phrase, f, before, BY_DEGREE);
+	judge_turn(m, phrase, before, BY_DEGREE);
 	if (f->ordinal)
 		judge_ordinal(m, phrase, before);
 }

@@ -1,6 +1,6 @@
 /* What the noun of a phrase says of each object, or the noun that it leaves out. */
 #include "ask/constants.h"
-#include "ask/meaning_private.h"
+#include "ask/judge_words.h"
 #include "lang/colours.h"
 
 #include <math.h>
@@ -93,7 +93,7 @@ static int is_colour(const struct parse *p, int head)
 	return !rows.n || !parse_word_is(p, head - 1, articles);
 }
 
-void meaning_judge_noun(struct meaning *m, int phrase)
+void judge_noun(struct meaning *m, int phrase)
 {
 	const struct parse *p = m->sentence->parse;
 	const struct parse_phrase *f = &p->phrases[phrase];
@@ -113,11 +113,11 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 	for (size_t o = 0; o < n && is_any; o++)
 		match[o] = fmax(match[o], VAGUE_LEAST);
 	if (is_colour(p, head) && largest(match, n) < 0.5) {
-		meaning_judge_colour(m, phrase, head);
+		judge_colour(m, phrase, head);
 		return;
 	}
 	if (largest(match, n) < 0.5 && is_said_of_something(m, head, m->scratch + 8 * n)) {
-		meaning_judge_attribute(m, phrase, head, ATTRIBUTE_LEAST);
+		judge_attribute(m, phrase, head, ATTRIBUTE_LEAST);
 		return;
 	}
 	value = meaning_add_part(m, phrase, MEANING_NOUN, head);
@@ -131,5 +131,5 @@ void meaning_judge_noun(struct meaning *m, int phrase)
 		/* another thing that is called so speaks against it */
 		there[o] = match[o] * match[o] / fmax(best, 1e-9);
 	}
-	meaning_take_part(m, &m->parts[m->part_count - 1]);
+	meaning_take_part(m);
 }

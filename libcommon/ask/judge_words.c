@@ -1,61 +1,11 @@
-/* What the words of a phrase say of each object: its attributes, and what it does or has. */
+#include "ask/judge_words.h"
+
 #include "ask/constants.h"
-#include "ask/meaning_private.h"
-#include "lang/closed.h"
 #include "lang/colours.h"
 #include "lang/finish.h"
 
 #include <math.h>
 #include <string.h>
-
-int meaning_word_is(const struct parse_word *w, const char *const *list)
-{
-	for (; *list; list++)
-		if (!strcmp(w->text, *list) || !strcmp(w->lemma, *list))
-			return 1;
-	return 0;
-}
-
-/* The word that names the kind of thing, or -1: "something", "the red one". */
-int meaning_head_of(const struct parse *p, const struct parse_phrase *f)
-{
-	static const char *const generic[] = {"thing", "object", "item", "one", "something", "anything",
-		"everything", "stuff", "what", "whatever", "which", "who", "whoever", "thingy", "other",
-		"another", "piece", NULL};
-	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
-
-	return head >= 0 && (meaning_word_is(&p->words[head], generic) ||
-				    closed_is(p->words[head].text, CLOSED_BE))
-		       ? -1
-		       : head;
-}
-
-int meaning_has_word(const struct parse *p, const struct parse_phrase *f, const char *const *list)
-{
-	for (int w = 0; w < p->word_count; w++)
-		if (p->words[w].span.begin >= f->span.begin && p->words[w].span.end <= f->span.end &&
-			meaning_word_is(&p->words[w], list))
-			return 1;
-	return 0;
-}
-
-/* "the other cups", "anything else". */
-int meaning_is_other(const struct parse *p, const struct parse_phrase *f)
-{
-	static const char *const other[] = {"other", "others", "else", "rest", "remaining", NULL};
-
-	return meaning_has_word(p, f, other);
-}
-
-/* "bright", "dark" or "light" before a colour is of the colour. */
-static int is_shade(const struct parse *p, int word)
-{
-	static const char *const shades[] = {
-		"bright", "dark", "light", "pale", "deep", "vivid", "soft", "royal", "pure", "jet", NULL};
-
-	return word + 1 < p->word_count && meaning_word_is(&p->words[word], shades) &&
-	       colour_word(p->words[word + 1].lemma) >= 0;
-}
 
 /* The look that a word is of, where what Gaussians show of it counts; -1: none. */
 static int look_of(const struct meaning *m, int word)
@@ -86,17 +36,15 @@ static void judge_surface(struct meaning *m, int phrase, int word)
 	for (size_t o = 0; o < objects_of(m); o++)
 		value[o] = pow(SURFACE_UNLIKE,
 			0.5 - 0.5 * surface_fits(&m->arrangement->objects[o].surface, finish));
-	meaning_take_part(m, &m->parts[m->part_count - 1]);
+	meaning_take_part(m);
 }
 
-void meaning_judge_attribute(struct meaning *m, int phrase, int word, double least)
+void judge_attribute(struct meaning *m, int phrase, int word, double least)
 {
 	const size_t n = objects_of(m);
 
-	if (is_shade(m->sentence->parse, word))
-		return;
 	if (colour_word(m->sentence->parse->words[word].lemma) >= 0) {
-		meaning_judge_colour(m, phrase, word);
+		judge_colour(m, phrase, word);
 		return;
 	}
 	double *value = meaning_add_part(m, phrase, MEANING_ATTRIBUTE, word);
@@ -108,13 +56,13 @@ void meaning_judge_attribute(struct meaning *m, int phrase, int word, double lea
 		value[o] = (value[o] < 0 ? least * (1 + (1 - OPPOSITE) * value[o])
 					 : least + (1 - least) * value[o]) /
 			   (least + (1 - least) * most);
-	meaning_take_part(m, &m->parts[m->part_count - 1]);
+	meaning_take_part(m);
 	judge_surface(m, phrase, word);
 }
 
 /* A part that is, or fits, no object, but that training sentences may tell of: "with a handle", "on the
  * shelf". */
-void meaning_judge_said(struct meaning *m, const struct parse_clause *c, double *said)
+void judge_said(struct meaning *m, const struct parse_clause *c, double *said)
 {
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
@@ -132,7 +80,7 @@ void meaning_judge_said(struct meaning *m, const struct parse_clause *c, double 
 }
 
 /* What a thing does, is for, or has: any word of it may be said of an object. */
-double meaning_judge_predicate(struct meaning *m, const struct parse_clause *c, double *value)
+double judge_predicate(struct meaning *m, const struct parse_clause *c, double *value)
 {
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);

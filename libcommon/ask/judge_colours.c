@@ -1,6 +1,6 @@
 /* What words of colour say of each object, or of a part of it. */
 #include "ask/constants.h"
-#include "ask/meaning_private.h"
+#include "ask/judge_words.h"
 #include "lang/colours.h"
 
 #include <string.h>
@@ -44,7 +44,7 @@ static enum coloured coloured_by(const struct parse *p, const struct parse_phras
 
 /* "With a yellow scarf": a colour that nothing here has, or is said to have, speaks against its being there.
  */
-void meaning_judge_part_colours(struct meaning *m, int phrase, const struct parse_clause *c, double *value)
+void judge_part_colours(struct meaning *m, int phrase, const struct parse_clause *c, double *value)
 {
 	const struct parse *p = m->sentence->parse;
 	double *match = m->scratch + objects_of(m), *there = there_of(m, phrase);
@@ -68,7 +68,7 @@ void meaning_judge_part_colours(struct meaning *m, int phrase, const struct pars
 
 /* How far objects are of the colour of a word, and of those right after it that are colours too: "salmon
  * pink" and "black and white" are either. Nothing where the word before it has done so. */
-void meaning_judge_colour(struct meaning *m, int phrase, int word)
+void judge_colour(struct meaning *m, int phrase, int word)
 {
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
@@ -95,5 +95,5 @@ void meaning_judge_colour(struct meaning *m, int phrase, int word)
 		value[o] = least + (1 - least) * value[o];
 		there[o] *= value[o];
 	}
-	meaning_take_part(m, &m->parts[m->part_count - 1]);
+	meaning_take_part(m);
 }

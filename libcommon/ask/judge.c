@@ -1,0 +1,133 @@
+#include "ask/judge.h"
+
+#include "ask/constants.h"
+#include "ask/judge_clauses.h"
+#include "ask/judge_words.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DEPTH = 16 }; /* deeper nesting is not looked at */
+
+/* The phrase's fit takes in a phrase that is left out. */
+static void judge_except(struct meaning *m, int phrase, int except)
+{
+	const size_t n = objects_of(m);
+	const double *fit = fit_of(m, except), most = fmax(largest(fit, n), 1e-9);
+	double *value = meaning_add_part(m, phrase, MEANING_EXCEPT, except), *there = there_of(m, phrase);
+
+	for (size_t o = 0; o < n; o++) {
+		value[o] = 1 - (1 - EXCEPT_LEAST) * m->known[except] * fit[o] / most;
+		there[o] *= value[o];
+	}
+	meaning_take_part(m);
+}
+
+/* And that it is one of several that are named: "of the jar, the tin and the box the tallest". */
+static void judge_among(struct meaning *m, int phrase)
+{
+	const struct parse_list *among = &m->sentence->parse->phrases[phrase].among;
+	const size_t n = objects_of(m);
+
+	if (!among->n)
+		return;
+	double *value = meaning_add_part(m, phrase, MEANING_AMONG, -1), *there = there_of(m, phrase);
+	for (size_t o = 0; o < n; o++) {
+		double is = 0, is_there = 0;
+		for (int k = 0; k < among->n; k++) {
+			const int i = among->item[k];
+			const double *fit = fit_of(m, i);
+			is = fmax(is, m->known[i] * fit[o] / fmax(largest(fit, n), 1e-9));
+			is_there = fmax(is_there, there_of(m, i)[o]);
+		}
+		value[o] = GROUP_ELSE + (1 - GROUP_ELSE) * fmin(is, 1);
+		there[o] *= is_there;
+	}
+	meaning_take_part(m);
+}
+
+/* What is no thing here, but a part of one, is where that is: "in front of the screen". */
+static void take_whole(struct meaning *m, int phrase)
+{
+	const struct parse *p = m->sentence->parse;
+	const int head = meaning_head_of(p, &p->phrases[phrase]);
+	const size_t n = objects_of(m);
+	double *has = m->scratch + n;
+
+	if (head < 0 || m->known[phrase] >= 0.5 || p->phrases[phrase].viewer || meaning_is_scene(m, phrase))
+		return;
+	vocabulary_has(m->vocabulary, m->sentence, head, 0, has);
+	if (largest(has, n) < 0.5)
+		return;
+	m->known[phrase] = PART_WORTH * largest(has, n);
+	for (size_t o = 0; o < n; o++)
+		there_of(m, phrase)[o] = fit_of(m, phrase)[o] =
+			m->arrangement->objects[o].is_there ? PART_WORTH * has[o] : 0;
+}
+
+static void judge_phrase(struct meaning *m, int phrase, int depth);
+
+/* The phrases that a phrase needs, before it. */
+static void judge_below(struct meaning *m, const struct parse_phrase *f, int depth)
+{
+	const struct parse *p = m->sentence->parse;
+
+	for (int k = 0; k < f->clauses.n; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		for (int j = 0; j < c->anchors.n; j++) {
+			judge_phrase(m, c->anchors.item[j], depth + 1);
+			if (c->relation < PARSE_SUPPORTS)
+				take_whole(m, c->anchors.item[j]);
+		}
+	}
+	for (int k = 0; k < f->except.n; k++)
+		judge_phrase(m, f->except.item[k], depth + 1);
+	for (int k = 0; k < f->among.n; k++)
+		judge_phrase(m, f->among.item[k], depth + 1);
+}
+
+static void judge_phrase(struct meaning *m, int phrase, int depth)
+{
+	const struct parse *p = m->sentence->parse;
+	const struct parse_phrase *f = &p->phrases[phrase];
+	const size_t n = objects_of(m);
+	double *fit = fit_of(m, phrase);
+
+	if (m->done[phrase])
+		return;
+	m->done[phrase] = 1;
+	for (size_t o = 0; o <= n; o++)
+		fit[o] = f->viewer ? o == n : o < n && m->arrangement->objects[o].is_there;
+	judge_noun(m, phrase);
+	if (f->viewer || depth > DEPTH)
+		return;
+	judge_below(m, f, depth);
+	for (int k = 0; k + 1 < f->noun.n; k++)
+		judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);
+	for (int k = 0; k < f->attributes.n; k++)
+		judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
+	judge_clauses(m, phrase);
+	for (int k = 0; k < f->except.n; k++)
+		judge_except(m, phrase, f->except.item[k]);
+	judge_among(m, phrase);
+	judge_order(m, phrase);
+	for (size_t o = 0; o < n; o++)
+		fit[o] *= m->arrangement->objects[o].in_sight ? 1 : OUT_OF_SIGHT;
+}
+
+int judge_sentence(struct meaning *m, const struct vocabulary_sentence *s, struct err *e)
+{
+	const struct parse *p = s->parse;
+
+	if (meaning_begin(m, s, e))
+		return -1;
+	judge_phrase(m, 0, 0);
+	for (int k = 0; k < p->phrases[0].also.n; k++)
+		judge_phrase(m, p->phrases[0].also.item[k], 0);
+	/* what is faced, or where the speaker stands, says nothing of what is meant */
+	const size_t unknown = m->unknown;
+	if (p->view != PARSE_VIEW_NONE && p->view_phrase > 0)
+		judge_phrase(m, p->view_phrase, 0);
+	m->unknown = unknown;
+	return 0;
+}
