@@ -87,6 +87,7 @@ $(BUILD)/obj/formats/parser_weights.o: formats/encoders/parser_default.safetenso
 
 # So is what is known of everyday things.
 $(BUILD)/obj/libcommon/lang/things.o: libcommon/lang/things.tsv
+$(BUILD)/obj/libcommon/lang/kinds.o: libcommon/lang/kinds.tsv
 $(BUILD)/obj/libcommon/lang/things_vectors.o: libcommon/lang/things.vectors
 
 # So are the words of synthetic sentences.

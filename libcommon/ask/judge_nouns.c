@@ -81,6 +81,18 @@ static int is_shape(const struct parse *p, const struct parse_phrase *f, int hea
 	return f->noun.n == 1 && meaning_word_is(&p->words[head], shapes) && !parse_word_is(p, head + 1, of);
 }
 
+/* "Something orange" is any thing of that colour; "the orange" is a fruit. */
+static int is_colour(const struct parse *p, int head)
+{
+	static const char *const articles[] = {"a", "an", "any", "my", "the", "your", NULL};
+	struct things_rows rows;
+
+	if (colour_word(p->words[head].lemma) < 0)
+		return 0;
+	things_find(&rows, p->words[head].lemma);
+	return !rows.n || !parse_word_is(p, head - 1, articles);
+}
+
 void judge_noun(struct meaning *m, int phrase)
 {
 	const struct parse *p = m->sentence->parse;
@@ -100,7 +112,7 @@ void judge_noun(struct meaning *m, int phrase)
 	const int is_any = is_vague(&p->words[head]) || (is_shape(p, f, head) && largest(match, n) < 0.5);
 	for (size_t o = 0; o < n && is_any; o++)
 		match[o] = fmax(match[o], VAGUE_LEAST);
-	if (colour_word(p->words[head].lemma) >= 0 && largest(match, n) < 0.5) { /* "something orange" */
+	if (is_colour(p, head) && largest(match, n) < 0.5) {
 		judge_colour(m, phrase, head);
 		return;
 	}

@@ -140,8 +140,7 @@ static int add_kind(struct vocabulary *v, const char *lemma, size_t *kind, struc
 	struct vocabulary_kind *to = &v->kinds[v->kind_count++];
 	to->lemma = lemma;
 	to->parts.n = -1;
-	wordnet_find_thing(&to->noun, lemma);
-	things_find(&to->things, lemma);
+	naming_of_thing(&to->naming, lemma);
 	to->finish = finish_of(lemma);
 	return 0;
 }
@@ -229,8 +228,8 @@ static int share_noun(const struct vocabulary *v, size_t a, size_t b)
 
 static int are_akin(const struct vocabulary_kind *a, const struct vocabulary_kind *b)
 {
-	return a == b || wordnet_fits(&a->noun, &b->noun, 0) > 0 || wordnet_fits(&b->noun, &a->noun, 0) > 0 ||
-	       kinds_share(a->lemma, b->lemma) || things_share(&a->things, &b->things);
+	return a == b || naming_fits(&a->naming, &b->naming, 0) > 0 ||
+	       naming_fits(&b->naming, &a->naming, 0) > 0;
 }
 
 /* Whether two objects were called by other nouns than this one, and none of them are akin. */
@@ -266,8 +265,8 @@ static void mark_general(struct vocabulary *v)
 			if (b->role != VOCABULARY_NOUN)
 				continue;
 			if (b->object == a->object)
-				a->is_general =
-					wordnet_is_above(&v->kinds[a->kind].noun, &v->kinds[b->kind].noun);
+				a->is_general = wordnet_is_above(
+					&v->kinds[a->kind].naming.noun, &v->kinds[b->kind].naming.noun);
 			else if (b->kind == a->kind)
 				a->is_general = differ_but_for(v, a->object, b->object, a->kind);
 		}

@@ -6,10 +6,9 @@
 #include "places/arrangement.h"
 #include "base/err.h"
 #include "lang/parser.h"
-#include "lang/things.h"
+#include "lang/naming.h"
 #include "lang/things_vectors.h"
 #include "lang/uses.h"
-#include "lang/wordnet.h"
 #include "lift/lifted_model.h"
 
 /* A sentence and what is known of it. */
@@ -39,8 +38,7 @@ struct vocabulary_item {
 /* What is known of a lemma. */
 struct vocabulary_kind {
 	const char *lemma;
-	struct wordnet_noun noun;
-	struct things_rows things;
+	struct naming naming;
 	int finish;	   /* finish_of */
 	struct uses parts; /* found when they are first asked for; n < 0 before */
 };

@@ -6,9 +6,10 @@
 #include "base/logistic.h"
 #include "lang/colours.h"
 #include "lang/finish.h"
-#include "lang/kinds.h"
+#include "lang/naming.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Whether a word is a word of a name: 2 the last one that is no number, 1 another. */
@@ -37,15 +38,9 @@ static double worth(double cosine, double half, double soft)
 }
 
 /* What is known besides of a noun and the one of this kind that a thing is called by. */
-static double knowledge(const struct vocabulary *v, const struct vocabulary_kind *word,
-	const struct vocabulary_kind *kind, int is_general)
+static double knowledge(const struct vocabulary *v, const struct naming *word, size_t kind, int is_general)
 {
-	const double x = WORDNET_WORTH * wordnet_fits(&word->noun, &kind->noun, is_general);
-	const int is_same =
-		v->has_knowledge && !is_general &&
-		(kinds_share(word->lemma, kind->lemma) || things_share(&word->things, &kind->things));
-
-	return is_same ? fmax(x, KINDS_WORTH) : x;
+	return v->has_knowledge ? naming_fits(word, &v->kinds[kind].naming, is_general) : 0;
 }
 
 /* What one mug is called, another may be called too. match (O) in and out; own (O) is scratch. */
@@ -61,16 +56,63 @@ static void share_kin(const struct vocabulary *v, double *own, double *match)
 }
 
 /* How far a word is of what a thing holds by its name: the eraser of an "eraser box". */
-static double holds(const struct vocabulary *v, const struct vocabulary_kind *word, size_t object)
+static double holds(const struct vocabulary *v, const struct naming *word, size_t object)
 {
 	const char *content = v->contents[object];
 
 	if (!*content || colour_word(content) >= 0)
 		return 0;
-	const double x = strcmp(word->lemma, content) != 0
-				 ? knowledge(v, word, &v->kinds[v->content_kinds[object]], 0)
-				 : 1;
+	const double x =
+		strcmp(word->lemma, content) != 0 ? knowledge(v, word, v->content_kinds[object], 0) : 1;
 	return CONTENT_WORTH * x;
+}
+
+/* The first word of a noun of two that ends at word w and that is known as one, such as "tea bag"; or -1. */
+static int find_compound(const struct parse *p, int w, struct naming *to, char *lemma, size_t size)
+{
+	for (int i = 0; i < p->phrase_count; i++) {
+		const struct parse_list *noun = &p->phrases[i].noun;
+		if (noun->n < 2 || noun->item[noun->n - 1] != w)
+			continue;
+		const int first = noun->item[noun->n - 2];
+		snprintf(lemma, size, "%s %s", p->words[first].lemma, p->words[w].lemma);
+		naming_of_word(to, lemma);
+		return naming_is_known(to) ? first : -1;
+	}
+	return -1;
+}
+
+/* Whether a word is said of an object: in its name, or of it in a sentence. */
+static int is_said_of(const struct vocabulary *v, const char *lemma, size_t object)
+{
+	if (v->has_names && is_in_name(lemma, v->lifted->names[object]))
+		return 1;
+	for (size_t i = 0; i < v->n; i++)
+		if (v->items[i].object == object && v->items[i].role <= VOCABULARY_ATTRIBUTE &&
+			!strcmp(v->items[i].lemma, lemma))
+			return 1;
+	return 0;
+}
+
+/* A kind that has a name of two words is another thing than what its second word alone names: a tea bag in a
+ * room with a red bag. */
+static void judge_compound(struct vocabulary *v, const struct parse *p, int w, double *match)
+{
+	char lemma[80];
+	struct naming known;
+	const int first = v->has_knowledge ? find_compound(p, w, &known, lemma, sizeof lemma) : -1;
+
+	for (size_t o = 0; o < v->lifted->objects && first >= 0; o++) {
+		if (is_said_of(v, p->words[first].lemma, o))
+			continue;
+		match[o] *= COMPOUND_WORTH;
+		if (v->has_names)
+			match[o] = fmax(match[o], knowledge(v, &known, v->head_kinds[o], 0));
+		for (size_t i = 0; i < v->n; i++)
+			if (v->items[i].object == o && v->items[i].role == VOCABULARY_NOUN)
+				match[o] = fmax(match[o],
+					knowledge(v, &known, v->items[i].kind, v->items[i].is_general));
+	}
 }
 
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
@@ -78,19 +120,17 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 	const struct lifted *l = v->lifted;
 	const struct parse_word *word = &s->parse->words[w];
 	const size_t width = (size_t)l->width, objects = l->objects;
-	struct vocabulary_kind known = {.lemma = word->lemma};
+	struct naming known = {0};
 
 	vocabulary_word_vector(v, word, s->vectors, v->word);
-	if (v->has_knowledge) {
-		wordnet_find(&known.noun, word->lemma);
-		things_find(&known.things, word->lemma);
-	}
+	if (v->has_knowledge)
+		naming_of_word(&known, word->lemma);
 	for (size_t o = 0; o < objects; o++) {
 		const int named = v->has_names ? is_in_name(word->lemma, l->names[o]) : 0;
 		match[o] = named == 2;
 		if (v->has_names && named < 2)
 			match[o] = fmax(fmax(match[o], holds(v, &known, o)),
-				knowledge(v, &known, &v->kinds[v->head_kinds[o]], 0));
+				knowledge(v, &known, v->head_kinds[o], 0));
 	}
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
@@ -100,11 +140,12 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		double x = is_same;
 		if (!is_same) {
 			x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
-			x = fmax(x, knowledge(v, &known, &v->kinds[item->kind], item->is_general));
+			x = fmax(x, knowledge(v, &known, item->kind, item->is_general));
 		}
 		match[item->object] = fmax(match[item->object], x);
 	}
 	share_kin(v, v->other, match);
+	judge_compound(v, s->parse, w, match);
 }
 
 /* The match of an object that is called by a kind's name, where such things usually have what a word says. */

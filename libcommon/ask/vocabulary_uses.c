@@ -71,13 +71,13 @@ int vocabulary_find_lines(struct vocabulary *v, const struct parser *parser, str
 		for (size_t i = 0; i < v->n; i++) {
 			const struct vocabulary_item *item = &v->items[i];
 			if (item->object == o && item->role == VOCABULARY_NOUN && !item->is_general &&
-				add_lines(v, o, &v->kinds[item->kind].things, e))
+				add_lines(v, o, &v->kinds[item->kind].naming.things, e))
 				return -1;
 		}
 		v->line_named[o] = v->line_count;
 		find_name(l->names[o], &rows);
 		if (add_lines(v, o, &rows, e) ||
-			(*v->contents[o] && add_lines(v, o, &v->kinds[v->content_kinds[o]].things, e)))
+			(*v->contents[o] && add_lines(v, o, &v->kinds[v->content_kinds[o]].naming.things, e)))
 			return -1;
 	}
 	v->line_begin[l->objects] = v->line_count;

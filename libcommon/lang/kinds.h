@@ -1,14 +1,13 @@
-/* Everyday nouns by which people call things of one kind or one shape, which WordNet, a hierarchy of senses,
- * does not have near one another: a block, a cube and a box; a drum and a cylinder. English. */
+/* Groups of everyday nouns (kinds.tsv): by which people call things of one shape, such as a block, a cube and
+ * a box, or of one look and use, such as a jug and a kettle. WordNet, a hierarchy of senses, does not have
+ * them near one another. English. */
 #ifndef LANG_KINDS_H
 #define LANG_KINDS_H
 
-#include <stddef.h>
-
 enum { KINDS_LENGTH = 32 }; /* of the longest noun with its 0 */
 
-/* The nouns of a group with a space around each; NULL past the last group. */
-const char *kinds_group(size_t group);
+/* Steps through all nouns: *at is 0 before the first. 0 after the last. */
+int kinds_next(long *at, char noun[KINDS_LENGTH]);
 
 /* Whether a lemma is in any group. */
 int kinds_have(const char *lemma);
@@ -16,7 +15,8 @@ int kinds_have(const char *lemma);
 /* Whether things called so hold others: a jar of tea is a jar, and an eraser box has an eraser. */
 int kinds_hold(const char *lemma);
 
-/* Whether two lemmas are in one group. */
-int kinds_share(const char *a, const char *b);
+/* The chance that what is called by one lemma is called by the other, as their group has it; 0 where they
+ * share none. */
+double kinds_share(const char *a, const char *b);
 
 #endif

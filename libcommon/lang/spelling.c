@@ -92,21 +92,10 @@ static int is_known(const char *word, const char *lemma, const char *const *know
 	       compared_of(word, base) != PARSE_PLAIN;
 }
 
-/* One of the nouns of a group, or its plural. */
-static int is_slip_of_group(const struct suspect *s, const char *group)
+static int find_right(const struct suspect *s, const char *const *known, int known_count)
 {
 	char noun[KINDS_LENGTH];
 
-	for (const char *p = group + 1; *p; p += strcspn(p, " ") + 1) {
-		snprintf(noun, sizeof noun, "%.*s", (int)strcspn(p, " "), p);
-		if (is_slip_of_noun(s, noun))
-			return 1;
-	}
-	return 0;
-}
-
-static int find_right(const struct suspect *s, const char *const *known, int known_count)
-{
 	for (int i = 0; i < known_count; i++)
 		if (is_slip_of_noun(s, known[i]))
 			return 1;
@@ -116,8 +105,8 @@ static int find_right(const struct suspect *s, const char *const *known, int kno
 	for (int i = 0; i < COLOUR_WORDS; i++)
 		if (is_slip_of(s, colour_name(i)))
 			return 1;
-	for (size_t g = 0; kinds_group(g); g++)
-		if (is_slip_of_group(s, kinds_group(g)))
+	for (long at = 0; kinds_next(&at, noun);)
+		if (is_slip_of_noun(s, noun))
 			return 1;
 	return 0;
 }

@@ -22,6 +22,22 @@ int synsets_of(const char *lemma, int pos, long *synsets, int most)
 	return n;
 }
 
+void synsets_counts(const char *lemma, int pos, int *counts, int n)
+{
+	char word[128];
+	const size_t length = strlen(lemma);
+
+	memset(counts, 0, (size_t)n * sizeof *counts);
+	if (!n || length >= sizeof word)
+		return;
+	memcpy(word, lemma, length + 1);
+	IndexPtr index = index_lookup(word, pos);
+	for (int i = 0; index && i < n; i++)
+		counts[i] = GetTagcnt(index, i + 1);
+	if (index)
+		free_index(index);
+}
+
 SynsetPtr synsets_read(int pos, long synset)
 {
 	static char none[] = "";

@@ -10,6 +10,9 @@
  * is no database. */
 int synsets_of(const char *lemma, int pos, long *synsets, int most);
 
+/* counts (n): how often each of the first n synsets was meant in the texts that were tagged. */
+void synsets_counts(const char *lemma, int pos, int *counts, int n);
+
 /* One synset, NULL where it cannot be read; free_synset it. */
 SynsetPtr synsets_read(int pos, long synset);
 

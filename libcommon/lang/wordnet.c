@@ -14,6 +14,9 @@
 #include <wn.h>
 
 enum { DEEPEST = 10, ADJECTIVE_SENSES = 4 };
+/* What a sense counts that those texts do not have, how much less each rarer one, and one of nothing that can
+ * be seen. */
+static const double UNSEEN = 0.5, RARER = 0.8, ABSTRACT = 0.1;
 
 /* A question about a scene looks up thousands of words, each by some twenty seeks. */
 static void map_files(void)
@@ -58,6 +61,35 @@ static void climb(struct wordnet_noun *to, long synset, int depth, int sense)
 		free_synset(s);
 }
 
+/* Whether a sense of a noun is a kind of a synset. */
+static int is_kind_of(const struct wordnet_noun *noun, int sense, long synset)
+{
+	for (int i = 0; i < noun->n; i++)
+		if (noun->up[i].sense == sense && noun->up[i].synset == synset)
+			return 1;
+	return 0;
+}
+
+/* How often a sense was meant in the texts that WordNet's makers have read, where it is of what can be seen.
+ */
+static void weigh(struct wordnet_noun *to, const char *lemma, int senses)
+{
+	static long physical;
+	double all = 0, chance[WORDNET_SENSES] = {0};
+	int counts[WORDNET_SENSES];
+
+	synsets_counts(lemma, NOUN, counts, senses);
+	if (!physical && synsets_of("physical_entity", NOUN, &physical, 1) < 1)
+		return;
+	for (int i = 0; i < senses; i++) {
+		chance[i] =
+			(counts[i] + UNSEEN * pow(RARER, i)) * (is_kind_of(to, i, physical) ? 1 : ABSTRACT);
+		all += chance[i];
+	}
+	for (int i = 0; i < senses; i++)
+		to->chance[i] = (float)(chance[i] / all);
+}
+
 static void find(struct wordnet_noun *to, const char *lemma)
 {
 	long senses[WORDNET_SENSES];
@@ -66,6 +98,7 @@ static void find(struct wordnet_noun *to, const char *lemma)
 	to->n = 0;
 	for (int i = 0; i < n; i++)
 		climb(to, senses[i], 0, i);
+	weigh(to, lemma, n);
 }
 
 /* Sentences of a scene say the same words again and again: the last noun of each hash is kept. */
@@ -86,15 +119,6 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma)
 		memcpy(kept[at].lemma, lemma, length + 1);
 	}
 	*to = kept[at].noun;
-}
-
-/* Whether a sense of a noun is a kind of a synset. */
-static int is_kind_of(const struct wordnet_noun *noun, int sense, long synset)
-{
-	for (int i = 0; i < noun->n; i++)
-		if (noun->up[i].sense == sense && noun->up[i].synset == synset)
-			return 1;
-	return 0;
 }
 
 void wordnet_find_thing(struct wordnet_noun *to, const char *lemma)
@@ -189,25 +213,26 @@ int wordnet_is_noun(const char *lemma)
 }
 #endif
 
-/* A step up or down, and a rarer sense, each make it so much less likely. */
-static const double per_step_up = 0.96, per_step_down = 0.93, per_sense = 0.9;
-enum { STEPS_UP = 9, STEPS_DOWN = 4 };
+/* How much less likely each step up makes it. */
+static const double per_step_up = 0.96;
+enum { STEPS_UP = 9 };
 
-double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known, int is_general)
+double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known)
 {
-	double best = 0;
+	double sum = 0;
 
-	for (int i = 0; i < word->n; i++)
-		for (int k = 0; k < known->n; k++) {
-			/* one of them is above the other */
-			const int up = known->up[k].depth, down = word->up[i].depth;
-			if (word->up[i].synset != known->up[k].synset || (up && down) || up > STEPS_UP ||
-				down > (is_general ? 0 : STEPS_DOWN))
-				continue;
-			best = fmax(best, pow(per_step_up, up) * pow(per_step_down, down) *
-						  pow(per_sense, word->up[i].sense + known->up[k].sense));
-		}
-	return best;
+	for (int i = 0; i < word->n; i++) {
+		double best[WORDNET_SENSES] = {0};
+		if (word->up[i].depth)
+			continue;
+		for (int k = 0; k < known->n; k++)
+			if (word->up[i].synset == known->up[k].synset && known->up[k].depth <= STEPS_UP)
+				best[known->up[k].sense] =
+					fmax(best[known->up[k].sense], pow(per_step_up, known->up[k].depth));
+		for (int k = 0; k < WORDNET_SENSES; k++)
+			sum += word->chance[word->up[i].sense] * known->chance[k] * best[k];
+	}
+	return sum;
 }
 
 int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun *word)

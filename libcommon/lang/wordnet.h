@@ -15,6 +15,7 @@ struct wordnet_noun {
 		short depth; /* 0: the noun's own sense; 1: what that is a kind of; ... */
 		short sense; /* 0: the commonest */
 	} up[WORDNET_UP];
+	float chance[WORDNET_SENSES]; /* of each sense, where a thing is spoken of; their sum is 1 */
 };
 
 /* Whether there is a database. */
@@ -29,10 +30,10 @@ void wordnet_find_thing(struct wordnet_noun *to, const char *lemma);
 /* Whether the lemma is a noun that is known: wordnet_find without what it is a kind of. */
 int wordnet_is_noun(const char *lemma);
 
-/* Whether a thing called `known` may be called `word`, in [0,1]: 1 for the same sense, less for what it is a
- * kind of ("vessel" for a mug) or what is a kind of it ("hardback" for a book), the less the more steps away
- * and the rarer the sense; 0 otherwise. Where `known` is general, its kinds do not count. */
-double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known, int is_general);
+/* The chance that a thing called `known` may be called `word`, in [0,1]: over the senses that both may have,
+ * that they are one sense, or that `word` is what the other is a kind of ("vessel" for a mug), which counts
+ * the less the more steps away. What is only a kind of it ("hardback" for a book) does not name it. */
+double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known);
 
 /* Whether some sense of a noun is what a sense of the other is a kind of. */
 int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun *word);

@@ -1,0 +1,47 @@
+#include "lang/naming.h"
+
+#include "lang/kinds.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* What is known is sometimes not what is said: of WordNet's synonyms, and of names in one line. */
+static const double of_wordnet = 0.95, of_line = 0.85;
+
+static void find(struct naming *to, const char *lemma, void (*noun)(struct wordnet_noun *, const char *))
+{
+	char joined[128];
+
+	snprintf(joined, sizeof joined, "%s", lemma);
+	for (char *p = joined; (p = strchr(p, ' '));)
+		*p = '_';
+	to->lemma = lemma;
+	noun(&to->noun, joined);
+	things_find(&to->things, lemma);
+}
+
+void naming_of_word(struct naming *to, const char *lemma)
+{
+	find(to, lemma, wordnet_find);
+}
+
+void naming_of_thing(struct naming *to, const char *lemma)
+{
+	find(to, lemma, wordnet_find_thing);
+}
+
+int naming_is_known(const struct naming *n)
+{
+	return n->noun.n || n->things.n;
+}
+
+double naming_fits(const struct naming *word, const struct naming *known, int is_general)
+{
+	const double x = of_wordnet * wordnet_fits(&word->noun, &known->noun);
+
+	if (is_general)
+		return x;
+	return fmax(x, things_share(&word->things, &known->things) ? of_line
+								   : kinds_share(word->lemma, known->lemma));
+}
