@@ -18,8 +18,8 @@ struct parser_training_options {
 int parser_train(const struct parser_training_options *o, const struct report *to, struct err *e);
 
 /* Writes the sentences of a file of marked ones (JSON Lines), or the parses that their marks stand for
- * (formats/records/parses.md), whose words are spelt as where they were encoded (NULL: as without an encoder).
- * Likewise. */
+ * (formats/records/parses.md), whose words are spelt as where they were encoded (NULL: as without an
+ * encoder). Likewise. */
 int parser_marked_write(
 	const char *marked, const char *encoded, int is_parses, const char *output, struct err *e);
 

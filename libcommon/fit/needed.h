@@ -29,8 +29,8 @@ int fit_judge_all(struct fit *f, const struct fit_judges *by, double *psnr, doub
 int fit_evaluate(struct fit *f, const struct fit_judges *by, double progress, int *is_due, double *psnr,
 	double *ssim, struct err *e);
 
-/* Leaves out as many as it can, up to half, those that the photographs show least first, for at most FIT_PRUNE_LOSS.
- * Returns 0, or -1 with *e set. */
+/* Leaves out as many as it can, up to half, those that the photographs show least first, for at most
+ * FIT_PRUNE_LOSS. Returns 0, or -1 with *e set. */
 int fit_prune(struct fit *f, const struct fit_judges *by, struct err *e);
 
 #endif
