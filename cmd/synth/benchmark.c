@@ -1,7 +1,6 @@
 #include "cmd/synth/benchmark.h"
 
 #include "cmd/synth/synth_folder.h"
-#include "synth/cameras.h"
 
 enum { ATTEMPTS = 20 };
 

@@ -8,7 +8,7 @@
 #include "formats/splats/ply.h"
 #include "formats/images/png.h"
 #include "synth/outline.h"
-#include "synth/truth.h"
+#include "synth/synth_scene.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -216,7 +216,7 @@ static void put_visibility(FILE *to, const char *name, const struct synth_visibi
 {
 	fprintf(to, "\"%s\":{\"pairs\":%ld,\"outside\":%ld", name, v->pairs, v->outside);
 	for (int i = 0; i < SYNTH_BANDS; i++)
-		fprintf(to, ",\"%s\":%.4f", synth_statistics_band(i),
+		fprintf(to, ",\"%s\":%.4f", synth_bands[i],
 			v->pairs ? (double)v->bands[i] / (double)v->pairs : 0);
 	fputc('}', to);
 }

@@ -32,6 +32,17 @@ uint32_t rng_below(struct rng *r, uint32_t n)
 	}
 }
 
+int rng_draw(struct rng *r, const int *weights, int n)
+{
+	int sum = 0, i = 0;
+
+	for (int k = 0; k < n; k++)
+		sum += weights[k];
+	for (int at = (int)rng_below(r, (uint32_t)sum); at >= weights[i]; i++)
+		at -= weights[i];
+	return i;
+}
+
 double rng_uniform(struct rng *r)
 {
 	uint64_t high = rng_u32(r) >> 5, low = rng_u32(r) >> 6;

@@ -12,6 +12,7 @@ struct rng {
 void rng_seed(struct rng *r, uint64_t seed, uint64_t stream);
 uint32_t rng_u32(struct rng *r);
 uint32_t rng_below(struct rng *r, uint32_t n);		  /* uniform in [0,n), without bias; n > 0 */
+int rng_draw(struct rng *r, const int *weights, int n);	  /* an index, as often as its weight says */
 double rng_uniform(struct rng *r);			  /* [0,1), 53 bits */
 double rng_range(struct rng *r, double low, double high); /* [low,high) */
 double rng_normal(struct rng *r); /* mean 0, variance 1; Box-Muller, two draws a call */

@@ -1,4 +1,4 @@
-#include "synth/arrange.h"
+#include "synth/presets.h"
 
 #include "base/rng.h"
 
@@ -20,29 +20,16 @@ static void name_objects(struct synth_object *objects, int n)
 		struct synth_object *o = &objects[i];
 		int count = 1;
 		for (int j = 0; j < i; j++)
-			count += objects[j].shape == o->shape && objects[j].colour == o->colour;
+			count += synth_look_alike(&objects[j], o);
 		const char *colour = synth_value_name(SYNTH_COLOUR, (int)o->colour);
 		const char *shape = synth_value_name(SYNTH_SHAPE, (int)o->shape);
-		if (count == 1) {
-			snprintf(o->name, sizeof o->name, "%s %s", colour, shape);
-			snprintf(o->ref, sizeof o->ref, "%s-%s", colour, shape);
-		} else {
-			snprintf(o->name, sizeof o->name, "%s %s %d", colour, shape, count);
-			snprintf(o->ref, sizeof o->ref, "%s-%s-%d", colour, shape, count);
-		}
+		int end = snprintf(o->name, sizeof o->name, "%s %s", colour, shape);
+		if (count > 1)
+			snprintf(o->name + end, sizeof o->name - (size_t)end, " %d", count);
+		memcpy(o->ref, o->name, sizeof o->ref);
+		for (char *p = strchr(o->ref, ' '); p; p = strchr(p, ' '))
+			*p = '-';
 	}
-}
-
-/* An index, as often as its lots say. */
-static int draw(const int *lots, int n, struct rng *r)
-{
-	int sum = 0, i = 0;
-
-	for (int k = 0; k < n; k++)
-		sum += lots[k];
-	for (int at = (int)rng_below(r, (uint32_t)sum); at >= lots[i]; i++)
-		at -= lots[i];
-	return i;
 }
 
 static enum synth_finish draw_finish(struct rng *r)
@@ -51,7 +38,7 @@ static enum synth_finish draw_finish(struct rng *r)
 	static const int lots[SYNTH_FINISHES] = {
 		[SYNTH_PLAIN] = 8, [SYNTH_SHINY] = 6, [SYNTH_STRIPED] = 3, [SYNTH_SPECKLED] = 3};
 
-	return (enum synth_finish)draw(lots, SYNTH_FINISHES, r);
+	return (enum synth_finish)rng_draw(r, lots, SYNTH_FINISHES);
 }
 
 /* Objects in the making: those of one kind are of one group. */
@@ -72,7 +59,7 @@ static void draw_kind(struct heap *h, int i, const struct synth_preset *preset, 
 
 	do {
 		int kinds = 0, same_shape = 0;
-		o->shape = (enum synth_shape)draw(preset->shapes, SYNTH_SHAPES, r);
+		o->shape = (enum synth_shape)rng_draw(r, preset->shapes, SYNTH_SHAPES);
 		o->colour = (enum synth_colour)rng_below(r, SYNTH_COLOURS);
 		is_new = 1;
 		for (int j = 0; j < i; j++) {
@@ -80,11 +67,11 @@ static void draw_kind(struct heap *h, int i, const struct synth_preset *preset, 
 				continue;
 			kinds++;
 			same_shape += h->objects[j].shape == o->shape;
-			is_new &= h->objects[j].shape != o->shape || h->objects[j].colour != o->colour;
+			is_new &= !synth_look_alike(&h->objects[j], o);
 		}
 		is_new &= same_shape <= kinds / 3;
 	} while (!is_new);
-	o->size = (enum synth_size)draw(preset->sizes, SYNTH_SIZES, r);
+	o->size = (enum synth_size)rng_draw(r, preset->sizes, SYNTH_SIZES);
 	o->finish = draw_finish(r);
 }
 

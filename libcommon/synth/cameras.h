@@ -24,4 +24,14 @@ void synth_cameras_aim(struct camera *c, const double centre[3], const double ta
  * middle. right and away are its unit directions in the plane of the table. */
 void synth_cameras_reference(const struct cameras *c, double centre[3], double right[2], double away[2]);
 
+/* Whether the training cameras see enough: each object at least half visible to at least a third of them.
+ * Returns 0; -1 with *e set (ERR_CHECK: the name of one that is not). */
+int synth_cameras_check(const struct cameras *c, const struct synth_object *objects, int n, struct err *e);
+
+/* Moves the test cameras of *c: low, and so placed that over all (test view, object) pairs about the share
+ * o->preset->hidden is less than half visible, a quarter of those hardly at all, and next to none out of
+ * sight; no camera is where another is. Does nothing where that share is 0. Returns 0, or -1 with *e set. */
+int synth_cameras_hide(struct cameras *c, const struct synth_options *o, const struct synth_object *objects,
+	const struct synth_table *table, struct err *e);
+
 #endif

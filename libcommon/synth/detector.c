@@ -32,56 +32,32 @@ static const struct {
 	/* A thing of less than this share of the picture is found seldom, and with less confidence. */
 	double faint;
 } kinds[SYNTH_SEVERITIES] = {
-	[SYNTH_MILD] = {.rates = {[SYNTH_ERROR_NONE] = {72, 7, 8, 7, 1, 5},
+	[SYNTH_MILD] = {{[SYNTH_ERROR_NONE] = {72, 7, 8, 7, 1, 5},
 				[SYNTH_ERROR_CONFUSED] = {14, 75, 3, 3, 1, 4},
 				[SYNTH_ERROR_GUESSING] = {22, 68, 3, 3, 1, 3},
 				[SYNTH_ERROR_PART] = {42, 8, 40, 4, 1, 5},
 				[SYNTH_ERROR_UNION] = {42, 8, 4, 40, 1, 5}},
-		.score = 0.30,
-		.quality = 0.40,
-		.noise = 0.12,
-		.confused = 0.54,
-		.guessing = 0.05,
-		.wrong_noise = 0.12,
-		.wrong_rag = 1},
-	[SYNTH_SEVERE] = {.rates = {[SYNTH_ERROR_NONE] = {74, 6, 6, 5, 1, 5, 3},
+		0.30, 0.40, 0.12, 0.54, 0.05, 0.12, 1, 0},
+	[SYNTH_SEVERE] = {{[SYNTH_ERROR_NONE] = {74, 6, 6, 5, 1, 5, 3},
 				  [SYNTH_ERROR_CONFUSED] = {11, 78, 3, 3, 1, 3, 1},
 				  [SYNTH_ERROR_GUESSING] = {11, 77, 3, 3, 1, 3, 2},
 				  [SYNTH_ERROR_PART] = {40, 6, 42, 3, 1, 6, 2},
 				  [SYNTH_ERROR_UNION] = {40, 6, 3, 42, 1, 5, 3},
 				  [SYNTH_ERROR_GROUP] = {36, 8, 3, 3, 1, 4, 45}},
-		.score = 0.45,
-		.quality = 0.15,
-		.noise = 0.05,
-		.confused = 0.15,
-		.guessing = -0.07,
-		.wrong_noise = 0.16,
-		.wrong_rag = 0.43,
-		.faint = 0.004},
+		0.45, 0.15, 0.05, 0.15, -0.07, 0.16, 0.43, 0.004},
 };
 
 void synth_detector_make(struct synth_detector *d, const struct synth_object *objects, int n,
 	const struct synth_sentence *sentences, enum synth_severity severity, uint64_t seed)
 {
-	struct rng r;
+	struct rng r, r_test;
 
 	*d = (struct synth_detector){
 		.seed = seed, .severity = severity, .n = n, .objects = objects, .sentences = sentences};
 	rng_seed(&r, seed, SYNTH_STREAM_FAULTS);
 	synth_noise_make(&d->noise, &r);
-	synth_errors_make(&d->errors, objects, n, sentences, severity, &r);
-	rng_seed(&r, seed, SYNTH_STREAM_TEST_ERRORS);
-	synth_errors_test(&d->errors, n, &r);
-}
-
-static enum fault choose_fault(const struct synth_detector *d, enum synth_error error, struct rng *r)
-{
-	const int *rates = kinds[d->severity].rates[error];
-	int at = (int)rng_below(r, 100), f = 0;
-
-	while (at >= rates[f])
-		at -= rates[f++];
-	return (enum fault)f;
+	rng_seed(&r_test, seed, SYNTH_STREAM_TEST_ERRORS);
+	synth_errors_make(&d->errors, objects, n, sentences, severity, &r, &r_test);
 }
 
 /* One view at work. */
@@ -188,7 +164,7 @@ static enum fault meet_fault(
 	struct detection *v, int object, int other, enum synth_error error, int is_hidden)
 {
 	struct rng *r = &v->rng;
-	enum fault f = choose_fault(v->d, error, r);
+	enum fault f = (enum fault)rng_draw(r, kinds[v->d->severity].rates[error], FAULTS);
 
 	if (is_hidden)
 		return rng_below(r, 100) < 65 ? FAULT_MISSING : FAULT_OTHER;

@@ -5,11 +5,36 @@
 
 #include "base/err.h"
 #include "mask/mask.h"
-#include "synth/detector_errors.h"
 #include "synth/noise.h"
+#include "synth/presets.h"
+#include "synth/synth_sentences.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* What goes wrong with a sentence, the same in every view. */
+enum synth_error {
+	SYNTH_ERROR_NONE,
+	SYNTH_ERROR_CONFUSED, /* in most views another object, and sure of it */
+	SYNTH_ERROR_GUESSING, /* the same, but not sure */
+	SYNTH_ERROR_PART,     /* often a part only */
+	SYNTH_ERROR_UNION,    /* often with a neighbour */
+	SYNTH_ERROR_GROUP,    /* often all that are alike */
+	SYNTH_ERRORS
+};
+
+struct synth_errors {
+	enum synth_error of[SYNTH_MAX_OBJECTS][SYNTH_SENTENCES];
+	int mistaken[SYNTH_MAX_OBJECTS][SYNTH_SENTENCES]; /* what a confused sentence finds */
+	int neighbours[SYNTH_MAX_OBJECTS]; /* what it stands on or carries, else the nearest on the table */
+};
+
+/* sentences (n objects, SYNTH_SENTENCES). A severe detector takes the objects that a sentence names beside
+ * its own, and those that fit its noun phrase, for what it means. Each test sentence gets what one of its
+ * object's training sentences gets. */
+void synth_errors_make(struct synth_errors *h, const struct synth_object *objects, int n,
+	const struct synth_sentence *sentences, enum synth_severity severity, struct rng *r,
+	struct rng *r_test);
 
 struct synth_detector {
 	uint64_t seed;

@@ -1,11 +1,8 @@
-#include "synth/detector_errors.h"
+/* What a detector gets wrong of a scene in every view alike: which sentences it misunderstands, and what it
+ * takes for their object. */
+#include "synth/detector.h"
 
 #include <math.h>
-
-int synth_look_alike(const struct synth_object *a, const struct synth_object *b)
-{
-	return a->shape == b->shape && a->colour == b->colour;
-}
 
 static int likeness(const struct synth_object *a, const struct synth_object *b)
 {
@@ -25,14 +22,25 @@ static void shuffled(uint32_t *order, int n, struct rng *r)
 	rng_shuffle(r, order, (uint32_t)n);
 }
 
-/* Most objects have a confused sentence, three in four a guessing one too: by rank rather than by lot,
- * so that few objects have their share of faults too. */
+/* The object but i that pulls the most. */
+static int strongest(const double *pulls, int n, int i)
+{
+	int best = i ? 0 : 1;
+
+	for (int j = 0; j < n; j++)
+		if (j != i && pulls[j] > pulls[best])
+			best = j;
+	return best;
+}
+
+/* Most objects have a confused sentence, three in four a guessing one too: by rank rather than by lot, so
+ * that few objects have their share of faults too. */
 static void choose_mild(struct synth_errors *h, const struct synth_object *objects, int n, struct rng *r)
 {
-	static const enum synth_error usual[10] = {SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_NONE,
-		SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_PART, SYNTH_ERROR_PART,
-		SYNTH_ERROR_UNION, SYNTH_ERROR_UNION};
+	static const int usual[SYNTH_ERRORS] = {
+		[SYNTH_ERROR_NONE] = 6, [SYNTH_ERROR_PART] = 2, [SYNTH_ERROR_UNION] = 2};
 	uint32_t by_rank[SYNTH_MAX_OBJECTS], order[SYNTH_TRAIN_SENTENCES];
+	double pulls[SYNTH_MAX_OBJECTS];
 
 	shuffled(by_rank, n, r);
 	for (int rank = 0; rank < n; rank++) {
@@ -40,25 +48,18 @@ static void choose_mild(struct synth_errors *h, const struct synth_object *objec
 		int confused = share < 0.85, guessing = share < 0.75;
 		shuffled(order, SYNTH_TRAIN_SENTENCES, r);
 		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
-			enum synth_error error = usual[rng_below(r, 10)];
-			if (k < confused)
-				error = SYNTH_ERROR_CONFUSED;
-			else if (k < confused + guessing)
-				error = SYNTH_ERROR_GUESSING;
-			h->of[by_rank[rank]][order[k]] = error;
+			int error = rng_draw(r, usual, SYNTH_ERRORS);
+			h->of[by_rank[rank]][order[k]] = k < confused		   ? SYNTH_ERROR_CONFUSED
+							 : k < confused + guessing ? SYNTH_ERROR_GUESSING
+										   : (enum synth_error)error;
 		}
 	}
 	for (int i = 0; i < n; i++) {
-		double best = -INFINITY;
-		for (int j = 0; j < n; j++) {
-			double like =
+		for (int j = 0; j < n; j++)
+			pulls[j] =
 				likeness(&objects[i], &objects[j]) - 0.1 * distance(&objects[i], &objects[j]);
-			if (j == i || like <= best)
-				continue;
-			best = like;
-			for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
-				h->mistaken[i][k] = j;
-		}
+		for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++)
+			h->mistaken[i][k] = strongest(pulls, n, i);
 	}
 }
 
@@ -78,38 +79,20 @@ static double temptation(
 	return pull + 1.5 * log(fmax(2 * other->radius, other->height) / fmax(2 * own->radius, own->height));
 }
 
-static int is_unique(const struct synth_object *objects, int n, int i)
-{
-	for (int j = 0; j < n; j++)
-		if (j != i && synth_look_alike(&objects[i], &objects[j]))
-			return 0;
-	return 1;
-}
-
 /* Object numbers, the harder first: those with look-alikes, and small ones, but not only they. */
 static void rank_by_difficulty(int *by_rank, const struct synth_object *objects, int n, struct rng *r)
 {
 	double difficulty[SYNTH_MAX_OBJECTS];
 
 	for (int i = 0; i < n; i++) {
-		difficulty[i] = rng_uniform(r) + 0.3 * !is_unique(objects, n, i) +
-				0.2 * (objects[i].size == SYNTH_SMALL);
-		int at = i;
+		int at = i, has_alike = 0;
+		for (int j = 0; j < n; j++)
+			has_alike |= j != i && synth_look_alike(&objects[i], &objects[j]);
+		difficulty[i] = rng_uniform(r) + 0.3 * has_alike + 0.2 * (objects[i].size == SYNTH_SMALL);
 		for (; at > 0 && difficulty[by_rank[at - 1]] < difficulty[i]; at--)
 			by_rank[at] = by_rank[at - 1];
 		by_rank[at] = i;
 	}
-}
-
-/* The object that tempts the most: pulls (n) are those of one sentence of object i, or of all four. */
-static int strongest(const double *pulls, int n, int i)
-{
-	int best = i ? 0 : 1;
-
-	for (int j = 0; j < n; j++)
-		if (j != i && pulls[j] > pulls[best])
-			best = j;
-	return best;
 }
 
 /* `trapped` of the sentences of object i, those that tempt the most, mislead to the thing that most tempts
@@ -117,9 +100,10 @@ static int strongest(const double *pulls, int n, int i)
 static void mislead(struct synth_errors *h, int i, const struct synth_object *objects, int n,
 	const struct synth_sentence *sentences, int trapped, struct rng *r)
 {
-	static const enum synth_error usual[10] = {SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_NONE,
-		SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_NONE, SYNTH_ERROR_PART, SYNTH_ERROR_UNION,
-		SYNTH_ERROR_UNION, SYNTH_ERROR_GROUP};
+	static const int usual[SYNTH_ERRORS] = {[SYNTH_ERROR_NONE] = 6,
+		[SYNTH_ERROR_PART] = 1,
+		[SYNTH_ERROR_UNION] = 2,
+		[SYNTH_ERROR_GROUP] = 1};
 	double pulls[SYNTH_TRAIN_SENTENCES][SYNTH_MAX_OBJECTS], sums[SYNTH_MAX_OBJECTS] = {0};
 
 	for (int k = 0; k < SYNTH_TRAIN_SENTENCES; k++) {
@@ -127,7 +111,7 @@ static void mislead(struct synth_errors *h, int i, const struct synth_object *ob
 			pulls[k][j] = temptation(&sentences[i * SYNTH_SENTENCES + k], objects, j, r);
 			sums[j] += pulls[k][j];
 		}
-		h->of[i][k] = usual[rng_below(r, 10)];
+		h->of[i][k] = (enum synth_error)rng_draw(r, usual, SYNTH_ERRORS);
 		h->mistaken[i][k] = strongest(pulls[k], n, i);
 	}
 	int trap = strongest(sums, n, i);
@@ -159,34 +143,28 @@ static void choose_severe(struct synth_errors *h, const struct synth_object *obj
 	}
 }
 
-void synth_errors_test(struct synth_errors *h, int n, struct rng *r)
-{
-	for (int i = 0; i < n; i++)
-		for (int k = SYNTH_TRAIN_SENTENCES; k < SYNTH_SENTENCES; k++) {
-			const uint32_t like = rng_below(r, SYNTH_TRAIN_SENTENCES);
-			h->of[i][k] = h->of[i][like];
-			h->mistaken[i][k] = h->mistaken[i][like];
-		}
-}
-
 void synth_errors_make(struct synth_errors *h, const struct synth_object *objects, int n,
-	const struct synth_sentence *sentences, enum synth_severity severity, struct rng *r)
+	const struct synth_sentence *sentences, enum synth_severity severity, struct rng *r,
+	struct rng *r_test)
 {
+	double pulls[SYNTH_MAX_OBJECTS];
+
 	*h = (struct synth_errors){0};
 	if (severity == SYNTH_MILD)
 		choose_mild(h, objects, n, r);
 	else
 		choose_severe(h, objects, n, sentences, r);
 	for (int i = 0; i < n; i++) {
-		double nearest = INFINITY;
-		for (int j = 0; j < n; j++) {
-			/* One on the other touch, however far apart their middles are. */
-			int touches = objects[i].on == j || objects[j].on == i;
-			double gap = touches ? -1 : distance(&objects[i], &objects[j]);
-			if (j != i && gap < nearest) {
-				nearest = gap;
-				h->neighbours[i] = j;
-			}
+		for (int k = SYNTH_TRAIN_SENTENCES; k < SYNTH_SENTENCES; k++) {
+			const uint32_t like = rng_below(r_test, SYNTH_TRAIN_SENTENCES);
+			h->of[i][k] = h->of[i][like];
+			h->mistaken[i][k] = h->mistaken[i][like];
 		}
+		/* One on the other touch, however far apart their middles are. */
+		for (int j = 0; j < n; j++)
+			pulls[j] = objects[i].on == j || objects[j].on == i
+					   ? 1
+					   : -distance(&objects[i], &objects[j]);
+		h->neighbours[i] = strongest(pulls, n, i);
 	}
 }

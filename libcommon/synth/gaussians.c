@@ -1,4 +1,4 @@
-#include "synth/gaussians.h"
+#include "synth/synth_scene.h"
 
 #include "base/mem.h"
 #include "base/rng.h"

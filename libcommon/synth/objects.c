@@ -68,6 +68,11 @@ const char *synth_value_name(enum synth_property p, int value)
 	return names[p][value];
 }
 
+int synth_look_alike(const struct synth_object *a, const struct synth_object *b)
+{
+	return a->shape == b->shape && a->colour == b->colour;
+}
+
 /* What is turned about the vertical: (radius, height) from below. */
 static const struct {
 	enum synth_shape shape;

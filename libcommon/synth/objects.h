@@ -104,6 +104,9 @@ void synth_object_place(const struct synth_object *o, const double point[3], dou
 int synth_object_value(const struct synth_object *o, enum synth_property p);
 const char *synth_value_name(enum synth_property p, int value);
 
+/* 1 where b has a's shape and colour. */
+int synth_look_alike(const struct synth_object *a, const struct synth_object *b);
+
 /* The smallest box along the world's axes, and the one that is turned with the object: along its sides, or a
  * mug's handle. What is round all about fits every turn, and has both the same. */
 void synth_object_boxes(const struct synth_object *o, struct box *aligned, struct box *along_sides);

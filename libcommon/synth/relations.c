@@ -60,7 +60,7 @@ static double distance(const struct synth_viewpoint *s, int i, int j)
 	return hypot(s->u[i] - s->u[j], s->v[i] - s->v[j]);
 }
 
-int synth_stands_on(const struct synth_object *objects, int i, int a)
+static int stands_on(const struct synth_object *objects, int i, int a)
 {
 	for (i = objects[i].on; i >= 0; i = objects[i].on)
 		if (i == a)
@@ -70,7 +70,7 @@ int synth_stands_on(const struct synth_object *objects, int i, int a)
 
 static int are_stacked(const struct synth_viewpoint *s, int i, int j)
 {
-	return synth_stands_on(s->objects, i, j) || synth_stands_on(s->objects, j, i);
+	return stands_on(s->objects, i, j) || stands_on(s->objects, j, i);
 }
 
 /* What stands on a thing is hardly "beside" it, but who is to say. */
@@ -243,10 +243,10 @@ static int judge_place(const struct synth_viewpoint *s, const struct synth_relat
 	case PARSE_BETWEEN:
 		return r->b < 0 ? 0 : between(s, i, r->a, r->b);
 	case PARSE_ON:
-		return verdict(s->objects[i].on == r->a, !synth_stands_on(s->objects, i, r->a));
+		return verdict(s->objects[i].on == r->a, !stands_on(s->objects, i, r->a));
 	case PARSE_BELOW:
 	case PARSE_SUPPORTS:
-		return verdict(s->objects[r->a].on == i, !synth_stands_on(s->objects, r->a, i));
+		return verdict(s->objects[r->a].on == i, !stands_on(s->objects, r->a, i));
 	default:
 		return 0;
 	}

@@ -50,7 +50,4 @@ int synth_relation_compare(const struct synth_viewpoint *s, enum parse_relation 
 
 int synth_relation_is_size(enum parse_relation r);
 
-/* 1 where object i stands on object a, or on what stands on it. */
-int synth_stands_on(const struct synth_object *objects, int i, int a);
-
 #endif

@@ -129,34 +129,6 @@ static void put_first(struct writer *w, const char *forms)
 	put_wording(w, c, 1);
 }
 
-static void put_number(struct writer *w, int n)
-{
-	static const char *const numbers[] = {"two", "three", "four", "five", "six"};
-
-	w->is_bad |= n < 2 || n > 6;
-	if (!w->is_bad)
-		put(w, numbers[n - 2]);
-}
-
-static void put_ordinal(struct writer *w, int k)
-{
-	static const char *const ordinals[][2] = {{"second", "2nd"}, {"third", "3rd"}, {"fourth", "4th"}};
-
-	w->is_bad |= k < 2 || k > 4;
-	if (!w->is_bad)
-		put(w, ordinals[k - 2][rng_below(w->rng, 5) == 0]);
-}
-
-/* The adjective of the target's next clause. */
-static void put_adjective(struct writer *w, const struct synth_phrase *p)
-{
-	const struct synth_clause *c = &w->s->clauses[p->clauses[w->next]];
-
-	w->is_bad |= w->next++ >= p->clause_count || c->said->form != 'c';
-	if (!w->is_bad)
-		put(w, c->said->text);
-}
-
 /* The first clause's first anchor; from now on it is "it". */
 static void put_named(struct writer *w, const struct synth_phrase *p)
 {
@@ -172,6 +144,8 @@ static void put_named(struct writer *w, const struct synth_phrase *p)
 static void put_slot(struct writer *w, char slot)
 {
 	static const char words[] = "SFMCNG";
+	static const char *const numbers[] = {"two", "three", "four", "five", "six"};
+	static const char *const ordinals[][2] = {{"second", "2nd"}, {"third", "3rd"}, {"fourth", "4th"}};
 	const struct synth_phrase *p = &w->s->phrases[0];
 	const char *word = strchr(words, slot);
 	int k;
@@ -209,16 +183,16 @@ static void put_slot(struct writer *w, char slot)
 		put_phrase(w, &w->s->phrases[p->except_count ? p->except[k] : p->also[k]], 0);
 		break;
 	case 'K':
-		put_number(w, p->group ? p->group : p->count);
+		put(w, numbers[(p->group ? p->group : p->count) - 2]);
 		break;
 	case 'O':
-		put_ordinal(w, p->ordinal);
+		put(w, ordinals[p->ordinal - 2][rng_below(w->rng, 5) == 0]);
 		break;
 	case 'E':
 		put(w, p->from == PARSE_BEHIND ? "back" : parse_relation_name(p->from));
 		break;
 	case 'Z':
-		put_adjective(w, p);
+		put(w, w->s->clauses[p->clauses[w->next++]].said->text);
 		break;
 	case 'U':
 		put(w, w->s->clauses[p->clauses[0]].said->text);
@@ -226,11 +200,6 @@ static void put_slot(struct writer *w, char slot)
 	default: /* I */
 		put(w, w->inner);
 	}
-}
-
-static int starts_with_vowel(const char *word)
-{
-	return *word && strchr("aeiou", *word) != NULL;
 }
 
 /* No spaces before stops or at the end, or twice; "an" before a vowel. */
@@ -243,8 +212,7 @@ static void tidy(char *text)
 		if (*p == ' ' && (!p[1] || strchr(" ,?.", p[1])))
 			continue;
 		*to++ = *p;
-		int is_word = p == from || p[-1] == ' ';
-		if (is_word && *p == 'a' && p[1] == ' ' && starts_with_vowel(p + 2))
+		if ((p == from || p[-1] == ' ') && !strncmp(p, "a ", 2) && p[2] && strchr("aeiou", p[2]))
 			*to++ = 'n';
 	}
 	*to = 0;

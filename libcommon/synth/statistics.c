@@ -4,13 +4,9 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-const char *synth_statistics_band(int band)
-{
-	static const char *const names[SYNTH_BANDS] = {"0", "<0.15", "0.15-0.5", "0.5-0.85", ">=0.85"};
-
-	return names[band];
-}
+const char *const synth_bands[SYNTH_BANDS] = {"0", "<0.15", "0.15-0.5", "0.5-0.85", ">=0.85"};
 
 static void count_objects(struct synth_statistics *s, const struct synth_object *objects, int n)
 {
@@ -18,23 +14,12 @@ static void count_objects(struct synth_statistics *s, const struct synth_object 
 	for (int i = 0; i < n; i++) {
 		int earlier = 0, later = 0;
 		for (int j = 0; j < n; j++)
-			if (j != i && objects[j].shape == objects[i].shape &&
-				objects[j].colour == objects[i].colour)
+			if (j != i && synth_look_alike(&objects[i], &objects[j]))
 				*(j < i ? &earlier : &later) += 1;
 		s->alike += earlier + later > 0;
 		s->alike_groups += !earlier && later;
 		s->stacked += objects[i].on >= 0;
 	}
-}
-
-static void count_sentences(struct synth_statistics *s, const struct synth_sentences *list)
-{
-	for (size_t i = 0; i < list->n; i++) {
-		s->sentences[list->items[i].split]++;
-		s->words[list->items[i].split] += synth_count_words(list->items[i].text);
-	}
-	for (int k = 0; k < SYNTH_SPLITS; k++)
-		s->words[k] /= s->sentences[k] ? s->sentences[k] : 1;
 }
 
 double synth_statistics_share(const struct synth_sentences *sentences, const struct synth_row *relation)
@@ -74,8 +59,7 @@ static int measure_gaussians(struct synth_statistics *s, const struct splats *p,
 	if (!values)
 		return -1;
 	s->gaussians = p->n;
-	for (size_t i = 0; i < p->n; i++)
-		values[i] = p->opacities[i];
+	memcpy(values, p->opacities, p->n * sizeof *values);
 	take_quantiles(values, p->n, s->opacity);
 	for (int size = 0; size < 2; size++) {
 		for (size_t i = 0; i < p->n; i++) {
@@ -95,7 +79,13 @@ int synth_statistics_make(struct synth_statistics *s, const struct synth_scene *
 {
 	*s = (struct synth_statistics){0};
 	count_objects(s, scene->objects, scene->object_count);
-	count_sentences(s, sentences);
+	for (size_t i = 0; i < sentences->n; i++) {
+		enum camera_split split = sentences->items[i].split;
+		s->sentences[split]++;
+		s->words[split] += synth_count_words(sentences->items[i].text);
+	}
+	for (int k = 0; k < SYNTH_SPLITS; k++)
+		s->words[k] /= s->sentences[k] ? s->sentences[k] : 1;
 	for (size_t i = 0; i < scene->cameras.n; i++)
 		s->views[scene->cameras.views[i].split]++;
 	return measure_gaussians(s, &scene->splats, e);

@@ -3,7 +3,6 @@
 #define SYNTH_STATISTICS_H
 
 #include "base/err.h"
-#include "synth/relations.h"
 #include "synth/synth_scene.h"
 #include "synth/synth_sentences.h"
 
@@ -42,7 +41,6 @@ void synth_statistics_see(struct synth_statistics *s, enum camera_split split, s
 /* The share of sentences that have a relation (a row of RELATIONS). */
 double synth_statistics_share(const struct synth_sentences *sentences, const struct synth_row *relation);
 
-/* "0", "<0.15", "0.15-0.5", "0.5-0.85", ">=0.85". */
-const char *synth_statistics_band(int band);
+extern const char *const synth_bands[SYNTH_BANDS]; /* their names: "0", "<0.15" ... */
 
 #endif

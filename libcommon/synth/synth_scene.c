@@ -1,10 +1,8 @@
 #include "synth/synth_scene.h"
 
 #include "base/mem.h"
-#include "synth/arrange.h"
+#include "synth/presets.h"
 #include "synth/cameras.h"
-#include "synth/gaussians.h"
-#include "synth/hiding.h"
 
 #include <stdlib.h>
 
@@ -17,8 +15,8 @@ int synth_scene_make(struct synth_scene *s, const struct synth_options *o, struc
 		goto fail;
 	synth_arrange(s->objects, o->objects, &s->table, o->preset, o->seed);
 	if (!synth_cameras_make(&s->cameras, o, &s->table, e) &&
-		!synth_hiding_check(&s->cameras, s->objects, o->objects, e) &&
-		!synth_hiding_cameras(&s->cameras, o, s->objects, &s->table, e) &&
+		!synth_cameras_check(&s->cameras, s->objects, o->objects, e) &&
+		!synth_cameras_hide(&s->cameras, o, s->objects, &s->table, e) &&
 		!synth_gaussians_make(s, o->seed, e))
 		return 0;
 fail:

@@ -5,8 +5,8 @@
 
 #include "base/err.h"
 #include "geom/camera.h"
+#include "splat/render.h"
 #include "splat/splats.h"
-#include "synth/objects.h"
 #include "synth/presets.h"
 
 #include <stddef.h>
@@ -34,5 +34,18 @@ struct synth_scene {
  * views; another seed then helps. */
 int synth_scene_make(struct synth_scene *s, const struct synth_options *o, struct err *e);
 void synth_scene_free(struct synth_scene *s);
+
+/* Fills s->splats (allocated), owner and first: Gaussians alike in kind to those of a trained scene, needles
+ * and flakes, many of them faint, a few large, some astray (formats/scene/synth.md). What there is to be seen
+ * depends on the seed alone, how fine it is on their number. Returns 0, or -1 with *e set. */
+int synth_gaussians_make(struct synth_scene *s, uint64_t seed, struct err *e);
+
+/* masks (object_count,P) gets 1 where the object's share of the pixel's blend weights, sum of w_i over its
+ * own Gaussians, is above one half. Hidden parts are therefore 0. Returns 0, or -1 with *e set. */
+int synth_truth_visible(const struct synth_scene *s, const struct render_view *view, size_t pixels,
+	uint8_t *masks, struct err *e);
+
+/* The same as if nothing else were there: the object's own Gaussians rendered alone. */
+int synth_truth_whole(const struct synth_scene *s, const struct camera *c, uint8_t *masks, struct err *e);
 
 #endif

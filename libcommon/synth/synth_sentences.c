@@ -55,14 +55,6 @@ static int judge_with(
 	return verdict;
 }
 
-int synth_sentence_judge(const struct synth_sentence *s, const struct synth_viewpoint *v, int i)
-{
-	int among[SYNTH_MAX_OBJECTS];
-
-	judge_words(&s->phrases[0], v, among);
-	return judge_with(s, v, i, among);
-}
-
 static int means_only_its_object(const struct draft *d)
 {
 	for (int i = 0; i < d->v->n; i++)

@@ -19,9 +19,6 @@ enum {
 int synth_sentences_make(
 	struct synth_sentences *list, const struct synth_viewpoint *v, uint64_t seed, struct err *e);
 
-/* As synth_relation_judge, for the whole sentence. */
-int synth_sentence_judge(const struct synth_sentence *s, const struct synth_viewpoint *v, int i);
-
 int synth_count_words(const char *text);
 
 #endif

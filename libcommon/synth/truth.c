@@ -1,4 +1,4 @@
-#include "synth/truth.h"
+#include "synth/synth_scene.h"
 
 #include "base/mem.h"
 

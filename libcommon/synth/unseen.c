@@ -3,7 +3,6 @@
 #include "base/mem.h"
 #include "synth/cameras.h"
 #include "synth/occlusion.h"
-#include "synth/unseen_build.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -123,14 +122,14 @@ static int draft(struct maker *m, enum synth_unseen_kind kind, const struct synt
 {
 	const struct synth_query q = {.list = SYNTH_KINDS, .text = synth_unseen_kind_name(kind)};
 	int is_absent = kind == SYNTH_UNSEEN_ABSENT;
-	enum synth_list build = synth_draw(&m->list->wordings, &q, &m->rng)->frames;
 
 	*d = (struct synth_draft){.w = &m->list->wordings,
 		.v = v,
 		.rng = &m->rng,
+		.build = synth_draw(&m->list->wordings, &q, &m->rng)->frames,
 		.s = {.kind = kind, .view = -1, .split = SPLIT_TEST, .object = object}};
-	if ((is_absent ? synth_unseen_build_absent(d, build, object)
-		       : synth_unseen_build(d, build, object, kind == SYNTH_UNSEEN_TWO_HOP)) ||
+	if ((is_absent ? synth_unseen_build_absent(d)
+		       : synth_unseen_build(d, kind == SYNTH_UNSEEN_TWO_HOP)) ||
 		synth_resolve(v, &d->s, 0, is_absent, &d->s.objects) || is_absent != !d->s.objects ||
 		(d->s.objects & ~v->visible))
 		return -1;

@@ -29,4 +29,21 @@ int synth_unseen_make(struct synth_sentences *list, const struct synth_object *o
 /* "plain", "chatty", "two-hop" ... */
 const char *synth_unseen_kind_name(int kind);
 
+/* An unseen sentence in the making: random phrases and clauses, to be judged and put into words. */
+struct synth_draft {
+	const struct synth_wordings *w;
+	const struct synth_viewpoint *v;
+	struct rng *rng;
+	enum synth_list build;	 /* of frames */
+	struct synth_sentence s; /* about its object */
+	const char *frame;
+};
+
+/* A random sentence of the build and a frame for it; -1 where one does not fit the other. Whether it means
+ * one thing, or its object, is not said. two_hop: an anchor has a clause. */
+int synth_unseen_build(struct synth_draft *d, int two_hop);
+
+/* The same of something that is not there. */
+int synth_unseen_build_absent(struct synth_draft *d);
+
 #endif

@@ -1,6 +1,6 @@
 /* Each build takes an object, describes it with random words, and adds what the build is about. Nothing here
  * looks whether the result is true: most is not, and is thrown away by who judges it. */
-#include "synth/unseen_build.h"
+#include "synth/unseen.h"
 
 #include <string.h>
 
@@ -61,11 +61,17 @@ static int word_clause(struct synth_draft *d, int clause, int anchors, const cha
 	return c->said ? 0 : -1;
 }
 
-static int other_object(struct synth_draft *d, int object)
+/* Any but that. */
+static int another(struct synth_draft *d, int object)
 {
 	int o = (int)rng_below(d->rng, (uint32_t)d->v->n - 1);
 
 	return o + (o >= object);
+}
+
+static int other_object(struct synth_draft *d)
+{
+	return another(d, d->s.object);
 }
 
 /* An object for a relation of `object`: any, but of a stack the one that it can only be. -1: none. */
@@ -74,7 +80,7 @@ static int choose_other(struct synth_draft *d, enum parse_relation r, int object
 	if (r == PARSE_ON)
 		return d->v->objects[object].on;
 	if (r != PARSE_BELOW && r != PARSE_SUPPORTS)
-		return other_object(d, object);
+		return another(d, object);
 	for (int i = 0; i < d->v->n; i++)
 		if (d->v->objects[i].on == object)
 			return i;
@@ -134,21 +140,10 @@ static void blur_noun(struct synth_draft *d, int with_one)
 	p->sense.maybe[SYNTH_SHAPE] = 0;
 }
 
-/* Starts with the target: so many in a hundred say its colour and finish, and of those that say its colour so
- * many no shape. */
-static void target(struct synth_draft *d, int object, int colour, int finish, int blurred)
+static int build_relation(struct synth_draft *d, int two_hop)
 {
-	synth_add_phrase(&d->s);
-	describe(d, 0, object, colour, finish, 0);
-	if (blurred && d->s.phrases[0].words[SYNTH_COLOUR_WORD] && is_likely(d, blurred))
-		blur_noun(d, 0);
-}
+	int two = !two_hop && is_likely(d, 12), object = d->s.object;
 
-static int build_relation(struct synth_draft *d, int object, int two_hop)
-{
-	int two = !two_hop && is_likely(d, 12);
-
-	synth_add_phrase(&d->s);
 	describe(d, 0, object, 55, 25, 12);
 	if (d->s.phrases[0].words[SYNTH_COLOUR_WORD] && is_likely(d, 12))
 		blur_noun(d, 1);
@@ -157,10 +152,9 @@ static int build_relation(struct synth_draft *d, int object, int two_hop)
 	return add_relation(d, 0, object, two_hop, "phw") || (two && add_relation(d, 0, object, 0, "phw"));
 }
 
-static int build_not(struct synth_draft *d, int object)
+static int build_not(struct synth_draft *d)
 {
-	target(d, object, 60, 20, 0);
-	if (add_relation(d, 0, other_object(d, object), 0, "p"))
+	if (add_relation(d, 0, other_object(d), 0, "p"))
 		return -1;
 	d->s.clauses[0].negated = 1;
 	return d->s.clauses[0].is.degree != PARSE_PLAIN ? -1 : 0;
@@ -185,27 +179,24 @@ static int leave_out(struct synth_draft *d, int object, int is_named)
 	return phrase;
 }
 
-static int build_except(struct synth_draft *d, enum synth_list b, int object)
+static int build_except(struct synth_draft *d)
 {
 	struct synth_phrase *p = &d->s.phrases[0];
 
-	target(d, object, b == SYNTH_EXCEPT ? 30 : 0, 0, 0);
-	while (p->except_count < (b == SYNTH_NEITHER ? 2 : 1)) {
-		int is_named = rng_below(d->rng, 2) != 0,
-		    phrase = leave_out(d, other_object(d, object), is_named);
+	while (p->except_count < (d->build == SYNTH_NEITHER ? 2 : 1)) {
+		int is_named = rng_below(d->rng, 2) != 0, phrase = leave_out(d, other_object(d), is_named);
 		if (phrase < 0)
 			return -1;
 		p->except[p->except_count++] = phrase;
 	}
 	if (strstr(d->frame, "other %N"))
 		p->words[SYNTH_FINISH_WORD] = "other";
-	p->count = b == SYNTH_EXCEPT ? PARSE_ALL : PARSE_ONE;
+	p->count = d->build == SYNTH_EXCEPT ? PARSE_ALL : PARSE_ONE;
 	return 0;
 }
 
-static int build_nothing(struct synth_draft *d, int object)
+static int build_nothing(struct synth_draft *d)
 {
-	target(d, object, 50, 10, 0);
 	struct synth_clause *c = &d->s.clauses[synth_add_clause(&d->s, 0, PARSE_SUPPORTS, PARSE_PLAIN)];
 	c->negated = 1;
 	c->anchors[c->anchor_count++] = synth_add_phrase(&d->s);
@@ -217,127 +208,117 @@ static const enum parse_relation ends[] = {
 	PARSE_LEFT, PARSE_RIGHT, PARSE_LEFT, PARSE_RIGHT, PARSE_FRONT, PARSE_BEHIND, PARSE_MIDDLE};
 enum { ENDS = sizeof ends / sizeof *ends - 1 };
 
-static int build_ordinal(struct synth_draft *d, int object)
+static int build_ordinal(struct synth_draft *d)
 {
-	target(d, object, 35, 5, 25);
 	d->s.phrases[0].ordinal = 2 + (int)rng_below(d->rng, 3);
 	d->s.phrases[0].from = ends[rng_below(d->rng, ENDS)];
 	return 0;
 }
 
-static int build_ranked(struct synth_draft *d, int object, const enum parse_relation *relations, int n,
-	enum parse_degree degree)
-{
-	target(d, object, 45, 5, 20);
-	int clause = synth_add_clause(&d->s, 0, relations[rng_below(d->rng, (uint32_t)n)], degree);
-	d->s.phrases[0].of_several = strstr(d->frame, "of all the %P") != NULL;
-	return word_clause(d, clause, 0, strstr(d->frame, "%Z") ? "c" : "p");
-}
-
-static int build_group(struct synth_draft *d, int object)
-{
-	if (build_ranked(d, object, ends, ENDS + 1, PARSE_MORE))
-		return -1;
-	d->s.phrases[0].group = 2 + (d->s.clauses[0].is.relation == PARSE_MIDDLE || is_likely(d, 25));
-	/* "the left one" compares, but does not say so. */
-	d->s.clauses[0].is.degree = PARSE_PLAIN;
-	return 0;
-}
-
-static int build_compared(struct synth_draft *d, enum synth_list b, int object)
+/* "the leftmost", "the left one of the two", "the biggest", "the bigger of the two", "bigger than that" */
+static int build_ranked(struct synth_draft *d)
 {
 	static const enum parse_relation sizes[] = {PARSE_LARGER, PARSE_SMALLER, PARSE_TALLER, PARSE_SHORTER};
-	enum synth_shape s = d->v->objects[object].shape;
+	enum synth_shape shape = d->v->objects[d->s.object].shape;
+	int is_group = d->build == SYNTH_OF_GROUP, is_size = !is_group && d->build != SYNTH_EXTREME;
 	/* Nobody speaks of a tall plate. */
-	int is_flat = s == SYNTH_PLATE || s == SYNTH_BOOK || s == SYNTH_BOWL || s == SYNTH_BALL;
+	int is_flat =
+		shape == SYNTH_PLATE || shape == SYNTH_BOOK || shape == SYNTH_BOWL || shape == SYNTH_BALL;
+	uint32_t at = rng_below(d->rng, is_size ? (is_flat ? 2 : 4) : is_group ? ENDS + 1 : ENDS);
+	int is_most = d->build == SYNTH_EXTREME || d->build == SYNTH_MOST;
+	int clause =
+		synth_add_clause(&d->s, 0, is_size ? sizes[at] : ends[at], is_most ? PARSE_MOST : PARSE_MORE);
+	struct synth_phrase *p = &d->s.phrases[0];
+	struct synth_clause *c = &d->s.clauses[clause];
 
-	if (build_ranked(d, object, sizes, is_flat ? 2 : 4, b == SYNTH_MOST ? PARSE_MOST : PARSE_MORE))
+	p->of_several = strstr(d->frame, "of all the %P") != NULL;
+	if (word_clause(d, clause, 0, strstr(d->frame, "%Z") ? "c" : "p"))
 		return -1;
-	if (b == SYNTH_PAIR)
-		d->s.phrases[0].group = 2;
-	if (b == SYNTH_THAN) {
-		int anchor = name_anchor(d, other_object(d, object));
-		if (anchor < 0)
-			return -1;
-		d->s.clauses[0].anchors[d->s.clauses[0].anchor_count++] = anchor;
+	if (d->build == SYNTH_PAIR)
+		p->group = 2;
+	if (is_group) {
+		p->group = 2 + (c->is.relation == PARSE_MIDDLE || is_likely(d, 25));
+		/* "the left one" compares, but does not say so. */
+		c->is.degree = PARSE_PLAIN;
 	}
-	return 0;
+	if (d->build == SYNTH_THAN)
+		c->anchors[c->anchor_count++] = name_anchor(d, other_object(d));
+	return c->anchor_count && c->anchors[0] < 0 ? -1 : 0;
 }
 
-static int build_several(struct synth_draft *d, enum synth_list b, int object)
+static int build_several(struct synth_draft *d)
 {
-	target(d, object, 55, 0, 30);
-	d->s.phrases[0].count = b == SYNTH_ALL ? PARSE_ALL : 2 + (int)rng_below(d->rng, 2);
-	return is_likely(d, 50) && add_relation(d, 0, object, 0, "phw") ? -1 : 0;
+	d->s.phrases[0].count = d->build == SYNTH_ALL ? PARSE_ALL : 2 + (int)rng_below(d->rng, 2);
+	return is_likely(d, 50) && add_relation(d, 0, d->s.object, 0, "phw") ? -1 : 0;
 }
 
-static int build_also(struct synth_draft *d, int object)
+static int build_also(struct synth_draft *d)
 {
 	struct synth_phrase *p = &d->s.phrases[0];
 
-	target(d, object, 60, 20, 0);
-	p->also[0] = name_anchor(d, other_object(d, object));
+	p->also[0] = name_anchor(d, other_object(d));
 	p->also_count = 1;
 	return p->also[0] < 0 ? -1 : 0;
 }
 
-static int build_function(struct synth_draft *d, int object)
+static int build_function(struct synth_draft *d)
 {
-	const struct synth_query q = {.list = SYNTH_USES, .of = &d->v->objects[object], .is_stepwise = 1};
+	const struct synth_query q = {
+		.list = SYNTH_USES, .of = &d->v->objects[d->s.object], .is_stepwise = 1};
 	const struct synth_row *use = synth_draw(d->w, &q, d->rng);
 
 	if (!use)
 		return -1;
-	target(d, object, 50, 15, 0);
+	describe(d, 0, d->s.object, 50, 15, 0);
 	blur_noun(d, 0);
 	d->s.clauses[synth_add_clause(&d->s, 0, PARSE_OTHER, PARSE_PLAIN)].said = use;
 	return 0;
 }
 
-int synth_unseen_build(struct synth_draft *d, enum synth_list b, int object, int two_hop)
+/* What a build adds to the target, and how many in a hundred targets say their colour and their finish, and
+ * of those with a colour no shape. */
+static const struct {
+	int (*add)(struct synth_draft *d);
+	int colour, finish, blurred;
+} builds[SYNTH_FRAMES] = {
+	[SYNTH_NOT] = {build_not, 60, 20, 0},
+	[SYNTH_OTHER] = {build_except, 0, 0, 0},
+	[SYNTH_NOTHING] = {build_nothing, 50, 10, 0},
+	[SYNTH_NEITHER] = {build_except, 0, 0, 0},
+	[SYNTH_ORDINAL] = {build_ordinal, 35, 5, 25},
+	[SYNTH_EXTREME] = {build_ranked, 45, 5, 20},
+	[SYNTH_OF_GROUP] = {build_ranked, 45, 5, 20},
+	[SYNTH_MOST] = {build_ranked, 45, 5, 20},
+	[SYNTH_PAIR] = {build_ranked, 45, 5, 20},
+	[SYNTH_THAN] = {build_ranked, 45, 5, 20},
+	[SYNTH_ALL] = {build_several, 55, 0, 30},
+	[SYNTH_COUNT] = {build_several, 55, 0, 30},
+	[SYNTH_ALSO] = {build_also, 60, 20, 0},
+	[SYNTH_EXCEPT] = {build_except, 30, 0, 0},
+};
+
+int synth_unseen_build(struct synth_draft *d, int two_hop)
 {
-	const struct synth_query q = {.list = b};
+	const struct synth_query q = {.list = d->build};
+	int blurred = builds[d->build].blurred;
 
 	d->frame = synth_draw(d->w, &q, d->rng)->text;
-	switch (b) {
-	case SYNTH_PLAINLY:
-	case SYNTH_CHATTY:
-		return build_relation(d, object, two_hop);
-	case SYNTH_NOT:
-		return build_not(d, object);
-	case SYNTH_OTHER:
-	case SYNTH_NEITHER:
-	case SYNTH_EXCEPT:
-		return build_except(d, b, object);
-	case SYNTH_NOTHING:
-		return build_nothing(d, object);
-	case SYNTH_ORDINAL:
-		return build_ordinal(d, object);
-	case SYNTH_EXTREME:
-		return build_ranked(d, object, ends, ENDS, PARSE_MOST);
-	case SYNTH_OF_GROUP:
-		return build_group(d, object);
-	case SYNTH_MOST:
-	case SYNTH_PAIR:
-	case SYNTH_THAN:
-		return build_compared(d, b, object);
-	case SYNTH_ALL:
-	case SYNTH_COUNT:
-		return build_several(d, b, object);
-	case SYNTH_ALSO:
-		return build_also(d, object);
-	case SYNTH_FUNCTION:
-		return build_function(d, object);
-	default:
-		return -1;
-	}
+	synth_add_phrase(&d->s);
+	if (d->build == SYNTH_FUNCTION)
+		return build_function(d);
+	if (!builds[d->build].add)
+		return build_relation(d, two_hop);
+	describe(d, 0, d->s.object, builds[d->build].colour, builds[d->build].finish, 0);
+	if (blurred && d->s.phrases[0].words[SYNTH_COLOUR_WORD] && is_likely(d, blurred))
+		blur_noun(d, 0);
+	return builds[d->build].add(d);
 }
 
-int synth_unseen_build_absent(struct synth_draft *d, enum synth_list build, int object)
+int synth_unseen_build_absent(struct synth_draft *d)
 {
 	int how = (int)rng_below(d->rng, 3);
 
-	if (synth_unseen_build(d, build, object, 0))
+	if (synth_unseen_build(d, 0))
 		return -1;
 	struct synth_phrase *p = &d->s.phrases[0];
 	if (how == 0) { /* something that is in no scene */
@@ -347,7 +328,7 @@ int synth_unseen_build_absent(struct synth_draft *d, enum synth_list build, int 
 		synth_say(p, SYNTH_NOUN, synth_draw(d->w, &q, d->rng));
 	} else if (how == 1) { /* a colour that another thing has */
 		p->sense.surely[SYNTH_COLOUR] = ~0U;
-		say_word(d, p, SYNTH_COLOUR_WORD, other_object(d, object));
+		say_word(d, p, SYNTH_COLOUR_WORD, other_object(d));
 		return *p->plural && strcmp(p->plural, "things") != 0 && strcmp(p->plural, "objects") != 0
 			       ? 0
 			       : -1;

@@ -2,11 +2,10 @@
 #include "unit.h"
 
 #include "base/mem.h"
-#include "synth/arrange.h"
+#include "synth/presets.h"
 #include "synth/cameras.h"
 #include "synth/synth_scene.h"
 #include "synth/synth_sentences.h"
-#include "synth/truth.h"
 
 enum { SEEDS = 12, H = 90, W = 120 };
 

@@ -2,7 +2,7 @@
 #include "unit.h"
 
 #include "mask/select.h"
-#include "synth/arrange.h"
+#include "synth/presets.h"
 #include "synth/cameras.h"
 #include "synth/detector.h"
 #include "synth/outline.h"

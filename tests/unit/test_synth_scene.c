@@ -2,12 +2,11 @@
 #include "unit.h"
 
 #include "base/mem.h"
-#include "synth/arrange.h"
+#include "synth/presets.h"
 #include "synth/cameras.h"
-#include "synth/hiding.h"
 #include "synth/occlusion.h"
 #include "synth/statistics.h"
-#include "synth/truth.h"
+#include "synth/synth_scene.h"
 
 enum { SEEDS = 4, H = 91, W = 123 };
 
@@ -173,7 +172,7 @@ static void test_views_hide_things(void)
 			struct err e = {0};
 			synth_arrange(objects, o.objects, &t, o.preset, o.seed);
 			if (!CHECK(!synth_cameras_make(&c, &o, &t, &e) &&
-					    !synth_hiding_cameras(&c, &o, objects, &t, &e) &&
+					    !synth_cameras_hide(&c, &o, objects, &t, &e) &&
 					    !synth_occlusion_make(&occlusion, objects, o.objects, &e),
 				    "%s", e.message))
 				return;
@@ -220,12 +219,12 @@ static void hidden_training_objects_are_found(void)
 	objects[0].scale = 0.2; /* so small that it is inside the first box */
 	if (!CHECK(!synth_cameras_make(&c, &o, &t, &e), "%s", e.message))
 		return;
-	CHECK(synth_hiding_check(&c, objects, 3, &e) && e.code == ERR_CHECK &&
+	CHECK(synth_cameras_check(&c, objects, 3, &e) && e.code == ERR_CHECK &&
 			!strcmp(e.message, "the red ball is hidden in most training views"),
 		"'%s'", e.message);
 	objects[0].x = -1.2;
 	objects[0].scale = 0.75;
-	CHECK(!synth_hiding_check(&c, objects, 3, &e), "%s", e.message);
+	CHECK(!synth_cameras_check(&c, objects, 3, &e), "%s", e.message);
 	cameras_free(&c);
 }
 
@@ -358,7 +357,7 @@ static void statistics_count(void)
 	const struct synth_visibility *v = &s.visibility[SPLIT_TEST];
 	CHECK(v->outside == 1 && v->pairs == 7, "%ld outside, %ld pairs", v->outside, v->pairs);
 	for (int i = 0; i < SYNTH_BANDS; i++)
-		CHECK(v->bands[i] == bands[i], "band %s: %ld", synth_statistics_band(i), v->bands[i]);
+		CHECK(v->bands[i] == bands[i], "band %s: %ld", synth_bands[i], v->bands[i]);
 	CHECK(!s.visibility[SPLIT_TRAIN].pairs, "training was not seen");
 }
 

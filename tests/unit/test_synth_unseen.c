@@ -3,7 +3,7 @@
 #include "unit.h"
 
 #include "base/mem.h"
-#include "synth/arrange.h"
+#include "synth/presets.h"
 #include "synth/cameras.h"
 #include "synth/unseen.h"
 

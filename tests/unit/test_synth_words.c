@@ -1,7 +1,7 @@
 /* What the sentences of a synthetic scene say: relations on layouts made by hand, and whole descriptions. */
 #include "unit.h"
 
-#include "synth/arrange.h"
+#include "synth/presets.h"
 #include "synth/cameras.h"
 #include "synth/synth_sentences.h"
 
@@ -163,8 +163,6 @@ static void stacks_are_judged(void)
 	synth_viewpoint_make(&v, o, N, &t, (double[3]){0}, (double[2]){1, 0}, (double[2]){0, 1}, 0);
 	static const struct relation_case middle = {{PARSE_MIDDLE, PARSE_MORE, -1, -1}, CARRIED, 1};
 	judge_all(&v, &mugs, &middle, 1, "the middle one of three mugs");
-	CHECK(synth_stands_on(o, BALL, PLATE) && !synth_stands_on(o, PLATE, BALL),
-		"the ball stands on the plate by way of the mug");
 }
 
 /* No frame and no wording of a test sentence is one of a training sentence. */
@@ -232,13 +230,28 @@ struct tally {
 	int sentences, words, with_relation, arguable;
 };
 
+/* The verdict of a whole sentence about object i. */
+static int sentence_judge(const struct synth_sentence *s, const struct synth_viewpoint *v, int i)
+{
+	int among[SYNTH_MAX_OBJECTS];
+
+	for (int k = 0; k < v->n; k++)
+		among[k] = synth_sense_judge(&s->phrases[0].sense, &v->objects[k]);
+	int verdict = among[i];
+	for (int k = 0; k < s->clause_count; k++) {
+		int one = synth_relation_judge(v, &s->clauses[k].is, i, among);
+		verdict = one < verdict ? one : verdict;
+	}
+	return verdict;
+}
+
 static int is_wrong(const struct synth_sentence *s, const struct synth_viewpoint *v)
 {
 	int others = 0;
 
 	for (int k = 0; k < v->n; k++)
-		others += k != s->object && synth_sentence_judge(s, v, k) >= 0;
-	return others || synth_sentence_judge(s, v, s->object) < 0;
+		others += k != s->object && sentence_judge(s, v, k) >= 0;
+	return others || sentence_judge(s, v, s->object) < 0;
 }
 
 static int is_on_wrong_side(const struct synth_sentence *s, const struct synth_viewpoint *v)
@@ -297,7 +310,7 @@ static void sentences_of(uint64_t seed, int n, struct tally *t)
 		t->sentences++;
 		t->words += words;
 		t->with_relation += s[i].clause_count > 0;
-		t->arguable += synth_sentence_judge(&s[i], &v, s[i].object) == 0;
+		t->arguable += sentence_judge(&s[i], &v, s[i].object) == 0;
 		wrong += is_wrong(&s[i], &v);
 		false_side += is_on_wrong_side(&s[i], &v);
 		length +=
