@@ -7,5 +7,5 @@
 	cd "$BATS_TEST_TMPDIR"
 	"$BATS_TEST_DIRNAME/../invariance.sh" "$BIN" >out 2>err || { cat out err; false; }
 	[ ! -s err ] || { cat err; false; }
-	[ "$(grep -c ' of 200 ' out)" = 16 ]
+	[ "$(grep -c ' of 200 ' out)" = 15 ]
 }
