@@ -129,14 +129,14 @@ refuses() {
 		printf '%s\n' ply 'format ascii 1.0' 'element vertex 3'
 		printf 'property float %s\n' x y z f_dc_{0..2} f_rest_{0..8} opacity scale_{0..2} rot_{0..3}
 		echo end_header
-		# Its harmonics of degree 1, which are not looked at in the first steps, are of no photograph.
-		awk '{ print $2, $3, $4, 0, 0, 0, "1e25 1e25 1e25 1e25 1e25 1e25 1e25 1e25 1e25", 2, -2, -2, -2, 1, 0, 0, 0 }' <<<"$points"
+		# Its harmonics of degree 1, which are not looked at in the first steps, are of no photograph: from any side some are too bright.
+		awk '{ x = NR % 2 ? "1e25" : "-1e25"; print $2, $3, $4, 0, 0, 0, x, x, x, x, x, x, x, x, x, 2, -2, -2, -2, 1, 0, 0, 0 }' <<<"$points"
 	} >bad.ply
 	run try --init bad.ply --degree 1 --iterations 400
 	[ "$status" = 3 ]
 	[[ $output =~ ^"gs-train: out.ply: training diverged: the loss of step "([0-9]+)" is "[-+.a-z0-9]+"; the file has the scene of step "([0-9]+)"; try a lower --degree, fewer --gaussians, or points in place of --init"$ ]]
 	[ "${BASH_REMATCH[1]}" -ge 40 ]
-	[ "${BASH_REMATCH[2]}" -lt "${BASH_REMATCH[1]}" ]
+	[ "${BASH_REMATCH[2]}" -le 40 ]
 	"$BIN/gs-check" out.ply
 	! ls | grep -q tmp
 }
