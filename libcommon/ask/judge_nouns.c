@@ -44,10 +44,7 @@ static int kind_before(const struct parse *p, const struct parse_phrase *target)
  */
 static int is_said_of_something(struct meaning *m, int word, double *match)
 {
-	struct wordnet_adjective adjective;
-
-	wordnet_find_adjective(&adjective, m->sentence->parse->words[word].lemma);
-	if (!adjective.n)
+	if (!wordnet_is_adjective(m->sentence->parse->words[word].lemma))
 		return 0;
 	vocabulary_attribute(m->vocabulary, m->sentence, word, match);
 	return largest(match, objects_of(m)) > ATTRIBUTE_SAID;

@@ -8,7 +8,7 @@
 #include "lang/parser.h"
 #include "lang/naming.h"
 #include "lang/things_vectors.h"
-#include "lang/uses.h"
+#include "lang/parts.h"
 #include "lift/lifted_model.h"
 
 /* A sentence and what is known of it. */
@@ -39,8 +39,8 @@ struct vocabulary_item {
 struct vocabulary_kind {
 	const char *lemma;
 	struct naming naming;
-	int finish;	   /* finish_of */
-	struct uses parts; /* found when they are first asked for; n < 0 before */
+	int finish;	    /* finish_of */
+	struct parts parts; /* found when they are first asked for; n < 0 before */
 };
 
 struct vocabulary {

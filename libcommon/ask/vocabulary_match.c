@@ -149,24 +149,24 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 }
 
 /* The match of an object that is called by a kind's name, where such things usually have what a word says. */
-static void take_usual(struct vocabulary *v, size_t kind, const struct uses *word, double *match)
+static void take_usual(struct vocabulary *v, size_t kind, const struct parts *word, double *match)
 {
 	struct vocabulary_kind *k = &v->kinds[kind];
 
 	if (k->parts.n < 0)
-		uses_parts(&k->parts, k->lemma);
+		parts_usual(&k->parts, k->lemma);
 	if (*match >= 0)
-		*match = fmax(*match, USUAL_WORTH * uses_fit(&k->parts, word));
+		*match = fmax(*match, USUAL_WORTH * parts_share(&k->parts, word));
 }
 
 /* What is known to be usual of things that are called so: a laptop has a battery. */
 static void add_usual(struct vocabulary *v, const char *lemma, double *match)
 {
-	struct uses word;
+	struct parts word;
 
 	if (!v->has_knowledge)
 		return;
-	uses_word(&word, lemma);
+	parts_of_word(&word, lemma);
 	for (size_t o = 0; o < v->lifted->objects && word.n && v->has_names; o++)
 		take_usual(v, v->head_kinds[o], &word, &match[o]);
 	for (size_t i = 0; i < v->n && word.n; i++) {

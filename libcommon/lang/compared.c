@@ -44,14 +44,11 @@ enum adjective { NONE, MEASURE, LOOK, OTHER };
 
 static enum adjective adjective_of(const char *base)
 {
-	struct wordnet_adjective known;
-
 	if (is_measure(base))
 		return MEASURE;
 	if (compared_look(base) != COMPARED_NONE)
 		return LOOK;
-	wordnet_find_adjective(&known, base);
-	return known.n ? OTHER : NONE;
+	return wordnet_is_adjective(base) ? OTHER : NONE;
 }
 
 /* What is left of a word without -er or -est becomes an adjective: "shini" shiny, "pal" pale, "redd" red. */
@@ -79,7 +76,6 @@ enum parse_degree compared_of(const char *word, char *base)
 	const size_t n = strlen(word);
 	const int is_most = n > 5 && !strcmp(word + n - 3, "est"),
 		  is_more = n > 4 && !strcmp(word + n - 2, "er");
-	struct wordnet_adjective whole;
 
 	if ((!is_most && !is_more) || n >= COMPARED_LENGTH - 1 || closed_find(word) >= 0 ||
 		colour_word(word) >= 0)
@@ -89,8 +85,10 @@ enum parse_degree compared_of(const char *word, char *base)
 	const enum adjective found = find_base(base);
 	if (found == LOOK)
 		return is_most ? PARSE_MOST : PARSE_MORE;
-	wordnet_find_adjective(&whole, word); /* "modest" is no more of "mod", and no forest is fore */
-	return found == OTHER && is_most && !whole.n && !wordnet_is_noun(word) ? PARSE_MOST : PARSE_PLAIN;
+	/* "modest" is no more of "mod", and no forest is fore */
+	return found == OTHER && is_most && !wordnet_is_adjective(word) && !wordnet_is_noun(word)
+		       ? PARSE_MOST
+		       : PARSE_PLAIN;
 }
 
 enum parse_degree compared_at(const struct tokens *t, int i)

@@ -115,7 +115,6 @@ int spelling_repair(const char *word, const char *const *known, int known_count,
 {
 	char lemma[TOKEN_LENGTH];
 	struct suspect s = {word, 6, right};
-	struct wordnet_adjective adjective;
 
 	if (strlen(word) < 3 || strlen(word) > SPELLING_LENGTH - 3 || isdigit((unsigned char)word[0]))
 		return 0;
@@ -124,8 +123,5 @@ int spelling_repair(const char *word, const char *const *known, int known_count,
 		return 0;
 	if (wordnet_is_there() && !wordnet_is_noun(lemma))
 		s.least = 5;
-	if (!find_right(&s, known, known_count))
-		return 0;
-	wordnet_find_adjective(&adjective, word); /* an adjective is none */
-	return !adjective.n;
+	return find_right(&s, known, known_count) && !wordnet_is_adjective(word); /* an adjective is none */
 }

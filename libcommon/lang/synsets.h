@@ -1,5 +1,5 @@
 /* Reading WordNet's synsets (sets of words with one meaning, known by their offset) through libwordnet, for
- * lang/wordnet.c and lang/uses.c. Only where the program is built with it. */
+ * lang/wordnet.c. Only where the program is built with it. */
 #ifndef LANG_SYNSETS_H
 #define LANG_SYNSETS_H
 

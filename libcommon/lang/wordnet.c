@@ -13,7 +13,7 @@
 #include <unistd.h>
 #include <wn.h>
 
-enum { DEEPEST = 10, ADJECTIVE_SENSES = 4 };
+enum { DEEPEST = 10 };
 /* What a sense counts that those texts do not have, how much less each rarer one, and one of nothing that can
  * be seen. */
 static const double UNSEEN = 0.5, RARER = 0.8, ABSTRACT = 0.1;
@@ -79,8 +79,8 @@ static void weigh(struct wordnet_noun *to, const char *lemma, int senses)
 	int counts[WORDNET_SENSES];
 
 	synsets_counts(lemma, NOUN, counts, senses);
-	if (!physical && synsets_of("physical_entity", NOUN, &physical, 1) < 1)
-		return;
+	if (!physical)
+		synsets_of("physical_entity", NOUN, &physical, 1);
 	for (int i = 0; i < senses; i++) {
 		chance[i] =
 			(counts[i] + UNSEEN * pow(RARER, i)) * (is_kind_of(to, i, physical) ? 1 : ABSTRACT);
@@ -144,50 +144,17 @@ int wordnet_is_noun(const char *lemma)
 	return synsets_of(lemma, NOUN, &sense, 1) > 0;
 }
 
-static void add_near(struct wordnet_adjective *to, long synset, int distance)
+int wordnet_is_adjective(const char *lemma)
 {
-	for (int i = 0; i < to->n; i++)
-		if (to->near[i].synset == synset)
-			return;
-	if (to->n == WORDNET_NEAR)
-		return;
-	to->near[to->n].synset = synset;
-	to->near[to->n++].distance = (short)distance;
-}
+	long sense;
 
-/* Adds what is similar or opposite to the adjectives so far, from the i-th on. */
-static void add_around(struct wordnet_adjective *to, int i, int distance)
-{
-	SynsetPtr s = synsets_read(ADJ, to->near[i].synset);
-
-	for (int k = 0; s && k < s->ptrcount; k++) {
-		if (s->ptrtyp[k] == SIMPTR)
-			add_near(to, s->ptroff[k], distance);
-		else if (s->ptrtyp[k] == ANTPTR && s->ppos[k] == ADJ)
-			add_near(to, s->ptroff[k], -1);
-	}
-	if (s)
-		free_synset(s);
-}
-
-void wordnet_find_adjective(struct wordnet_adjective *to, const char *lemma)
-{
-	long senses[ADJECTIVE_SENSES];
-	const int n = synsets_of(lemma, ADJ, senses, ADJECTIVE_SENSES);
-
-	to->n = 0;
-	for (int i = 0; i < n; i++)
-		add_near(to, senses[i], 0);
-	for (int distance = 1, done = 0; distance <= 2; distance++)
-		for (const int before = to->n; done < before; done++)
-			if (to->near[done].distance >= 0)
-				add_around(to, done, distance);
+	return synsets_of(lemma, ADJ, &sense, 1) > 0;
 }
 #else
-void wordnet_find_adjective(struct wordnet_adjective *to, const char *lemma)
+int wordnet_is_adjective(const char *lemma)
 {
 	(void)lemma;
-	to->n = 0;
+	return 0;
 }
 
 int wordnet_is_there(void)
@@ -243,22 +210,4 @@ int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun
 				above->up[i].synset == word->up[k].synset)
 				return 1;
 	return 0;
-}
-
-double wordnet_adjectives_fit(const struct wordnet_adjective *word, const struct wordnet_adjective *known)
-{
-	static const double by_distance[] = {1, 0.9, 0.3, 0.1, 0};
-	double best = 0, opposite = 0;
-
-	for (int i = 0; i < word->n; i++)
-		for (int k = 0; k < known->n; k++) {
-			const int p = word->near[i].distance, q = known->near[k].distance;
-			if (word->near[i].synset != known->near[k].synset)
-				continue;
-			if (p >= 0 && q >= 0)
-				best = fmax(best, by_distance[p + q]);
-			else if (p * q < 0 || p == 0 || q == 0)
-				opposite = fmax(opposite, by_distance[(p > 0 ? p : 0) + (q > 0 ? q : 0)]);
-		}
-	return best >= opposite ? best : -opposite;
 }

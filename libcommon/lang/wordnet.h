@@ -15,7 +15,7 @@ struct wordnet_noun {
 		short depth; /* 0: the noun's own sense; 1: what that is a kind of; ... */
 		short sense; /* 0: the commonest */
 	} up[WORDNET_UP];
-	float chance[WORDNET_SENSES]; /* of each sense, where a thing is spoken of; their sum is 1 */
+	float chance[WORDNET_SENSES]; /* of each sense, where a thing is spoken of; their sum is at most 1 */
 };
 
 /* Whether there is a database. */
@@ -38,21 +38,7 @@ double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *
 /* Whether some sense of a noun is what a sense of the other is a kind of. */
 int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun *word);
 
-enum { WORDNET_NEAR = 48 };
-
-/* The senses of an adjective: its own, those that are similar to them, and those that are opposite. */
-struct wordnet_adjective {
-	int n;
-	struct {
-		long synset;
-		short distance; /* 0 own, 1 similar, 2 similar to what is similar; -1 the opposite */
-	} near[WORDNET_NEAR];
-};
-
-void wordnet_find_adjective(struct wordnet_adjective *to, const char *lemma);
-
-/* How far what is `known` is also `word`, from 1 (the same) over 0 (nothing is known) to -1 (the opposite).
- */
-double wordnet_adjectives_fit(const struct wordnet_adjective *word, const struct wordnet_adjective *known);
+/* Whether the lemma is an adjective that is known. */
+int wordnet_is_adjective(const char *lemma);
 
 #endif

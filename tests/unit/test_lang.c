@@ -6,7 +6,7 @@
 #include "lang/naming.h"
 #include "lang/spelling.h"
 #include "lang/things.h"
-#include "lang/uses.h"
+#include "lang/parts.h"
 #include "lang/wordnet.h"
 #include "unit.h"
 
@@ -141,18 +141,14 @@ static void things(void)
 
 static void parts_of_things(void)
 {
-	struct uses laptop, mug, word;
+	struct parts laptop, mug, word;
 
-	uses_parts(&laptop, "laptop");
-	uses_parts(&mug, "mug");
-	uses_word(&word, "battery");
-	CHECK(uses_fit(&laptop, &word) == 1 && uses_fit(&mug, &word) == 0, "a battery");
-	uses_parts(&mug, "nothing of the kind");
+	parts_usual(&laptop, "laptop");
+	parts_usual(&mug, "mug");
+	parts_of_word(&word, "battery");
+	CHECK(parts_share(&laptop, &word) && !parts_share(&mug, &word), "a battery");
+	parts_usual(&mug, "nothing of the kind");
 	CHECK(mug.n == 0, "nothing is known of it");
-	CHECK(uses_names_thing("mug") && uses_names_thing("chromebook") && uses_names_thing("racket"),
-		"things");
-	CHECK(!wordnet_is_there() || (!uses_names_thing("weather") && !uses_names_thing("referee")),
-		"no things");
 }
 
 static double fits(const char *word, const char *known)
@@ -184,15 +180,6 @@ static double fits_thing(const char *word, const char *called)
 	return wordnet_fits(&a, &b);
 }
 
-static double is_so(const char *word, const char *known)
-{
-	struct wordnet_adjective a, b;
-
-	wordnet_find_adjective(&a, word);
-	wordnet_find_adjective(&b, known);
-	return wordnet_adjectives_fit(&a, &b);
-}
-
 static void wordnet(void)
 {
 	struct wordnet_noun noun;
@@ -202,7 +189,7 @@ static void wordnet(void)
 	wordnet_find(&noun, "qqqqq");
 	CHECK(noun.n == 0 && fits("qqqqq", "qqqqq") == 0, "no noun");
 	if (!wordnet_is_there()) {
-		CHECK(fits("book", "book") == 0 && is_so("shiny", "shiny") == 0,
+		CHECK(fits("book", "book") == 0 && !wordnet_is_adjective("shiny"),
 			"without WordNet nothing is known");
 		return;
 	}
@@ -220,9 +207,8 @@ static void wordnet(void)
 	CHECK(names("wok", "pan") > 0.5 && names("pan", "wok") > 0.5 && names("pillar", "tube") > 0.8,
 		"of one look, of one shape: %g, %g", names("wok", "pan"), names("pillar", "tube"));
 	CHECK(names("oven", "fan") == 0 && names("lorry", "piano") == 0, "other things");
-	CHECK(is_so("shiny", "glossy") == 1 && is_so("stripy", "striped") == 1, "the same");
-	CHECK(is_so("shiny", "matt") < -0.5 && is_so("small", "large") == -1, "the opposite");
-	CHECK(is_so("wooden", "plastic") == 0, "neither");
+	CHECK(wordnet_is_adjective("shiny") && !wordnet_is_adjective("kettle") && !wordnet_is_adjective(""),
+		"adjectives");
 }
 
 static void repairs(const char *word, const char *expected)
@@ -255,33 +241,9 @@ static void spelling(void)
 		repairs("crates", NULL);
 }
 
-/* A kettle boils, one reads a book and sips from a cup, and not the other way round. */
-static void uses(void)
-{
-	static const char *const pairs[][3] = {
-		{"kettle", "boil", "book"}, {"book", "read", "kettle"}, {"cup", "sip", "book"}};
-
-	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
-		struct uses thing, word, other;
-		uses_of_thing(&thing, pairs[i][0]);
-		uses_of_word(&word, pairs[i][1]);
-		uses_of_thing(&other, pairs[i][2]);
-		CHECK(uses_fit(&thing, &word) > uses_fit(&other, &word) || !wordnet_is_there(),
-			"%s, to %s: %g, %s %g", pairs[i][0], pairs[i][1], uses_fit(&thing, &word),
-			pairs[i][2], uses_fit(&other, &word));
-		CHECK(thing.n <= USES_STEMS && word.n <= USES_STEMS, "too many stems");
-	}
-	struct uses none;
-	uses_of_thing(&none, "");
-	CHECK(!none.n, "nothing is for nothing");
-	uses_of_word(&none, "put");
-	CHECK(!none.n, "to put says nothing of what a thing is for");
-}
-
 int main(void)
 {
 	spelling();
-	uses();
 	colours();
 	kinds();
 	comparisons();
