@@ -98,6 +98,24 @@ static void named_colours(void)
 	memcpy(names, old, sizeof old);
 }
 
+/* A noun of two words that is known as one is another kind than its second word alone names, unless the first
+ * is said of the thing; an article makes a thing of a word that is a colour too. */
+static void kinds_of_two_words(void)
+{
+	if (!wordnet_is_there())
+		return;
+	ask("the mug", CHOOSE_ALL);
+	CHECK(choice.there > 0.5, "a mug is there: %g", choice.there);
+	ask("the beer mug", CHOOSE_ALL);
+	const double beer = choice.there;
+	ask("the ballot box", CHOOSE_ALL);
+	CHECK(beer < 0.5 && choice.there < 0.5, "another kind: %g, %g", beer, choice.there);
+	ask("the red thing", CHOOSE_ALL);
+	CHECK(choice.there > 0.5, "something red: %g", choice.there);
+	ask("the cherry", CHOOSE_ALL);
+	CHECK(choice.there < 0.5, "a fruit: %g", choice.there);
+}
+
 /* What is left out may be an attribute alone; "the other one" is of the kind that was spoken of. */
 static void left_out(void)
 {
@@ -524,6 +542,7 @@ int main(void)
 	sides();
 	twins();
 	spare();
+	kinds_of_two_words();
 	parts();
 	by_itself();
 	counted();
