@@ -315,7 +315,7 @@ static int say(struct synth_sentences *list, int object, int done, const struct 
 	const struct synth_query q = {.list = is_test ? SYNTH_TEST : SYNTH_TRAIN};
 
 	for (int tries = 0; tries < STAGES * TRIES_OF_STAGE; tries++) {
-		const struct synth_sentence *earlier = list->items + list->n - done;
+		const struct synth_sentence *earlier = done ? list->items + list->n - done : NULL;
 		enum stage stage = (enum stage)(tries / TRIES_OF_STAGE);
 		struct draft d = {.s = {.object = object, .view = -1, .objects = (uint64_t)1 << object},
 			.w = &list->wordings,
