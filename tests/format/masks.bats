@@ -16,7 +16,7 @@ refuses() {
 
 # reads EXPECTED SEGMENTATION: what comes out for that mask
 reads() {
-	says 0 "{\"view\":\"v\",\"object\":\"o\",\"score\":1,\"segmentation\":$1}" \
+	says 0 "{\"view\":\"v\",\"object\":\"o\",\"segmentation\":$1}" \
 		"$BIN/pseudomask-select" <(echo "{\"view\":\"v\",\"object\":\"o\",$2}")
 }
 
@@ -59,7 +59,7 @@ reads() {
 	echo iVBORw0KGgoAAAANSUhEUgAAAAMAAAACCAAAAAC4HznGAAAADklEQVR4nGNgYGRgAGIAABAAAxdBlLwAAAAASUVORK5CYII= |
 		base64 -d >sub/m.png
 	echo '{"view":"v","object":"o","path":"m.png"}' >sub/x.jsonl
-	says 0 '{"view":"v","object":"o","score":1,"segmentation":{"size":[2,3],"counts":"222"}}' \
+	says 0 '{"view":"v","object":"o","segmentation":{"size":[2,3],"counts":"222"}}' \
 		"$BIN/pseudomask-select" sub/x.jsonl
 	(cd sub && "$BIN/pseudomask-select" <x.jsonl | grep -q '"counts":"222"')
 	echo "{\"view\":\"v\",\"object\":\"o\",\"path\":\"$PWD/sub/m.png\"}" | "$BIN/pseudomask-select" | grep -q '"counts":"222"'
