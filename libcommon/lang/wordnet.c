@@ -13,10 +13,10 @@
 #include <unistd.h>
 #include <wn.h>
 
-enum { DEEPEST = 10 };
+enum { DEEPEST = 10, THINGS = 4 };
 /* What a sense counts that those texts do not have, how much less each rarer one, and one of nothing that can
  * be seen. */
-static const double UNSEEN = 0.5, RARER = 0.8, ABSTRACT = 0.1;
+static const double UNSEEN = 0.5, RARER = 0.8, NO_THING = 0.1;
 
 /* A question about a scene looks up thousands of words, each by some twenty seeks. */
 static void map_files(void)
@@ -70,24 +70,37 @@ static int is_kind_of(const struct wordnet_noun *noun, int sense, long synset)
 	return 0;
 }
 
-/* How often a sense was meant in the texts that WordNet's makers have read, where it is of what can be seen.
- */
+/* Whether a sense is of what can be on a table. */
+static int is_thing(const struct wordnet_noun *noun, int sense)
+{
+	static const char *const tops[THINGS] = {"artifact", "animal", "plant", "food"};
+	static long top[THINGS];
+
+	for (int i = 0; i < THINGS; i++) {
+		long senses[2];
+		if (!top[i]) {
+			const int n = synsets_of(tops[i], NOUN, senses, 2);
+			top[i] = senses[n > 1 && i == 2]; /* a plant is a factory first */
+		}
+		if (is_kind_of(noun, sense, top[i]))
+			return 1;
+	}
+	return 0;
+}
+
+/* How often a sense was meant in the texts that WordNet's makers have read, where it is of a thing. */
 static void weigh(struct wordnet_noun *to, const char *lemma, int senses)
 {
-	static long physical;
 	double all = 0, chance[WORDNET_SENSES] = {0};
 	int counts[WORDNET_SENSES];
 
 	synsets_counts(lemma, NOUN, counts, senses);
-	if (!physical)
-		synsets_of("physical_entity", NOUN, &physical, 1);
 	for (int i = 0; i < senses; i++) {
-		chance[i] =
-			(counts[i] + UNSEEN * pow(RARER, i)) * (is_kind_of(to, i, physical) ? 1 : ABSTRACT);
+		chance[i] = (counts[i] + UNSEEN * pow(RARER, i)) * (is_thing(to, i) ? 1 : NO_THING);
 		all += chance[i];
 	}
-	for (int i = 0; i < senses; i++)
-		to->chance[i] = (float)(chance[i] / all);
+	for (int i = 0; i < WORDNET_SENSES; i++)
+		to->chance[i] = senses ? (float)(chance[i] / all) : 0;
 }
 
 static void find(struct wordnet_noun *to, const char *lemma)
@@ -180,25 +193,22 @@ int wordnet_is_noun(const char *lemma)
 }
 #endif
 
-/* How much less likely each step up makes it. */
-static const double per_step_up = 0.96;
+/* A step up, and a rarer sense of the word that asks, each make it so much less likely. */
+static const double per_step_up = 0.96, per_sense = 0.9;
 enum { STEPS_UP = 9 };
 
 double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known)
 {
-	double sum = 0;
+	double best[WORDNET_SENSES] = {0}, sum = 0;
 
-	for (int i = 0; i < word->n; i++) {
-		double best[WORDNET_SENSES] = {0};
-		if (word->up[i].depth)
-			continue;
-		for (int k = 0; k < known->n; k++)
+	for (int i = 0; i < word->n; i++)
+		for (int k = 0; k < known->n && !word->up[i].depth; k++)
 			if (word->up[i].synset == known->up[k].synset && known->up[k].depth <= STEPS_UP)
-				best[known->up[k].sense] =
-					fmax(best[known->up[k].sense], pow(per_step_up, known->up[k].depth));
-		for (int k = 0; k < WORDNET_SENSES; k++)
-			sum += word->chance[word->up[i].sense] * known->chance[k] * best[k];
-	}
+				best[known->up[k].sense] = fmax(
+					best[known->up[k].sense], pow(per_step_up, known->up[k].depth) *
+									  pow(per_sense, word->up[i].sense));
+	for (int k = 0; k < WORDNET_SENSES; k++)
+		sum += (double)known->chance[k] * best[k];
 	return sum;
 }
 

@@ -30,9 +30,10 @@ void wordnet_find_thing(struct wordnet_noun *to, const char *lemma);
 /* Whether the lemma is a noun that is known: wordnet_find without what it is a kind of. */
 int wordnet_is_noun(const char *lemma);
 
-/* The chance that a thing called `known` may be called `word`, in [0,1]: over the senses that both may have,
- * that they are one sense, or that `word` is what the other is a kind of ("vessel" for a mug), which counts
- * the less the more steps away. What is only a kind of it ("hardback" for a book) does not name it. */
+/* The chance that a thing called `known` may be called `word`, in [0,1]: over the senses of `known`, that a
+ * sense of `word` is the same or what it is a kind of ("vessel" for a mug). That counts the less the more
+ * steps away, and the rarer that sense of `word`. What is only a kind of it ("hardback"
+ * for a book) does not name it. */
 double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *known);
 
 /* Whether some sense of a noun is what a sense of the other is a kind of. */

@@ -202,6 +202,10 @@ static void wordnet(void)
 			fits("table", "chair") == 0,
 		"what a thing is a kind of names it, a kind of it and a sister do not: %g",
 		fits("furniture", "chair"));
+	CHECK(names("container", "mug") > 0.5 && names("vessel", "bowl") > 0.3 &&
+			names("toilet", "kettle") < 0.1,
+		"the sense that is of a thing: %g, %g, %g", names("container", "mug"),
+		names("vessel", "bowl"), names("toilet", "kettle"));
 	CHECK(fits("lamp", "laptop") == 0, "a lamp is no laptop");
 	CHECK(names("throne", "stool") < 0.3, "a rare sense: %g", names("throne", "stool"));
 	CHECK(names("wok", "pan") > 0.5 && names("pan", "wok") > 0.5 && names("pillar", "tube") > 0.8,
