@@ -7,8 +7,8 @@
 
 enum { JUDGES_MOST = 16, BISECTIONS = 7 };
 #define EVALUATE_EVERY 0.05
-#define GAIN_LEAST 0.05 /* dB from one evaluation to the next */
-#define GAINS_FROM 0.4	/* progress: before, images grow and PSNR with them */
+#define GAIN_LEAST 0.05	     /* dB from one evaluation to the next */
+#define GAINS_FROM 0.4	     /* progress: before, images grow and PSNR with them */
 #define LOGIT_NONE (-100.0f) /* of a Gaussian that no view shows */
 
 struct rank {
