@@ -54,7 +54,9 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e)
 		cJSON_Delete(root);
 	}
 	if (!bad && !c->n)
-		bad = err_set(e, ERR_FORMAT, "%s: no views", name);
+		bad = err_set(e, ERR_FORMAT,
+			"%s: no views: a COLMAP model has them in images.bin or images.txt, a transforms.json in its frames",
+			name);
 	if (bad)
 		cameras_free(c);
 	return bad ? textfile_note(path, e) : 0;

@@ -44,8 +44,9 @@ static int find_layout(
 	for (size_t i = 0; i < el->n; i++)
 		l->rest += !strncmp(el->properties[i].name, "f_rest_", 7);
 	if (l->rest != 0 && l->rest != 9 && l->rest != 24 && l->rest != ROW_REST_MAX)
-		return err_set(
-			e, ERR_FORMAT, "%s: %d f_rest properties, expected 0, 9, 24 or 45", f->path, l->rest);
+		return err_set(e, ERR_FORMAT,
+			"%s: %d f_rest properties, expected 0, 9, 24 or 45: harmonics of degree 0 to 3",
+			f->path, l->rest);
 	for (int i = 0; i < l->rest; i++) {
 		snprintf(name, sizeof name, "f_rest_%d", i);
 		l->slot[ROW_REST + i] = plyfile_need(f, el, name, e);

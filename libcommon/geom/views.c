@@ -28,7 +28,7 @@ const char *view_fault(const struct camera *c)
 	if (!isfinite(c->cx) || !isfinite(c->cy))
 		return "its principal point is not finite";
 	if (!camera_is_rigid(c))
-		return "its pose is not a rotation and a translation";
+		return "its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?";
 	return NULL;
 }
 
