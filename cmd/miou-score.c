@@ -1,7 +1,6 @@
 /* miou-score: how well predicted masks match the true ones. */
 #include "cli/cli.h"
 #include "cmd/score/scoring.h"
-#include "cmd/score/scores.h"
 
 #include <string.h>
 

@@ -1,9 +1,8 @@
 /* refer-ask: what a question about a lifted scene means, in words. */
 #include "cli/cli.h"
-#include "cmd/ask/answer_words.h"
+#include "cmd/ask/reply.h"
 #include "cmd/ask/asking.h"
 #include "cmd/text/questions.h"
-#include "cmd/ask/reply.h"
 #include "answer/responses.h"
 
 #include <stdio.h>

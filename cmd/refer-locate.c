@@ -2,10 +2,8 @@
  * other programs. */
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cmd/render/labelling.h"
 #include "cmd/render/locating.h"
 #include "cmd/text/questions.h"
-#include "cmd/render/showing.h"
 #include "formats/splats/anysplats.h"
 
 #include <string.h>

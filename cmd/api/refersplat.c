@@ -5,7 +5,7 @@
 #include "answer/answer.h"
 #include "base/mem.h"
 #include "base/report.h"
-#include "cmd/ask/answer_picture.h"
+#include "cmd/ask/reply.h"
 #include "cmd/ask/asking.h"
 #include "cmd/text/questions.h"
 #include "formats/records/parses.h"

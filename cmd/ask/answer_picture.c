@@ -1,4 +1,4 @@
-#include "cmd/ask/answer_picture.h"
+#include "cmd/ask/reply.h"
 
 #include "base/mem.h"
 #include "formats/images/png.h"

@@ -1,4 +1,4 @@
-#include "cmd/ask/answer_words.h"
+#include "cmd/ask/reply.h"
 
 #include "base/number.h"
 #include <math.h>

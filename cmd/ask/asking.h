@@ -5,12 +5,24 @@
 #include "ask/choose.h"
 #include "base/err.h"
 #include "base/report.h"
+#include "cmd/ask/explain.h"
 #include "cmd/run/anymodel.h"
 #include "cmd/text/encode.h"
-#include "cmd/ask/explain.h"
-#include "cmd/run/run_folder.h"
 #include "formats/scene/scene.h"
 #include "lift/extent.h"
+
+/* The files of a folder that pipelines/lift.mk made, by their usual places. */
+
+struct run_folder {
+	char *scene, *model, *encoder;
+};
+
+/* The scene, RUN/scene; the lifted model, RUN/lifted/model.safetensors; and the encoder, encoder_default's;
+ * but for those of `given` that are not NULL. Copies. ERR_SYSTEM where
+ * the folder or one of them is not there: the message says what makes it. Returns 0, or -1 with *e set;
+ * run_folder_free after either. */
+int run_folder_find(struct run_folder *f, const char *run, const struct run_folder *given, struct err *e);
+void run_folder_free(struct run_folder *f);
 
 struct asking_options {
 	const char *run;	 /* the folder */

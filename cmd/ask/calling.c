@@ -1,11 +1,10 @@
-#include "cmd/ask/calling.h"
+#include "cmd/ask/reply.h"
 
 #include "places/arrangement.h"
 #include "lang/colours.h"
 
 #include <ctype.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

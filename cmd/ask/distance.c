@@ -1,11 +1,10 @@
-#include "cmd/ask/distance.h"
+#include "cmd/ask/reply.h"
 
 #include "lang/closed.h"
 #include "lang/tokens.h"
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

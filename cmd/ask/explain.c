@@ -2,7 +2,6 @@
 #include "cmd/ask/explain.h"
 
 #include "base/largest.h"
-#include "cmd/ask/parse_words.h"
 
 #include <math.h>
 #include <string.h>

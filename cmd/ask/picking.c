@@ -1,10 +1,9 @@
-#include "cmd/ask/picking.h"
+#include "cmd/ask/reply.h"
 
 #include "base/mem.h"
 #include "splat/render.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,7 +1,5 @@
 #include "cmd/ask/reply.h"
 
-#include "cmd/ask/picking.h"
-
 static int draw(struct answer_told *t, const char *path, struct err *e)
 {
 	char caption[256];

@@ -2,9 +2,6 @@
 
 #include "base/file.h"
 #include "base/path.h"
-#include "cmd/check/check_arrays.h"
-#include "cmd/check/check_folder.h"
-#include "cmd/check/check_records.h"
 #include "formats/splats/anysplats.h"
 #include "formats/records/json.h"
 #include "formats/records/jsonl.h"

@@ -1,6 +1,5 @@
-#include "cmd/check/check_arrays.h"
+#include "cmd/check/check.h"
 
-#include "cmd/check/check_records.h"
 #include "formats/splats/anysplats.h"
 #include "formats/cameras/camerafile.h"
 #include "formats/scene/features.h"

@@ -1,9 +1,7 @@
-#include "cmd/check/check_folder.h"
+#include "cmd/check/check.h"
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/check/check_arrays.h"
-#include "cmd/check/check_records.h"
 #include "formats/cameras/colmap.h"
 #include "formats/scene/weights.h"
 

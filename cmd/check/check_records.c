@@ -1,5 +1,5 @@
 /* The records of gs-check: sentences, masks and boxes, each read by its own reader and counted. */
-#include "cmd/check/check_records.h"
+#include "cmd/check/check.h"
 
 #include "base/mem.h"
 #include "base/names.h"

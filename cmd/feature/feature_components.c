@@ -1,4 +1,4 @@
-#include "cmd/feature/feature_components.h"
+#include "cmd/feature/feature_lifting.h"
 
 #include "base/half.h"
 #include "base/mem.h"

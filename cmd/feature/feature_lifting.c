@@ -4,7 +4,6 @@
 #include "base/half.h"
 #include "base/mem.h"
 #include "formats/arrays/safetensors.h"
-#include "formats/scene/features.h"
 #include "formats/scene/weights.h"
 
 #include <stdio.h>

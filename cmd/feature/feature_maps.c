@@ -1,9 +1,8 @@
-#include "cmd/feature/feature_maps.h"
+#include "cmd/feature/feature_lifting.h"
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/path.h"
-#include "cmd/feature/feature_tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>

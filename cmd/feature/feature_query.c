@@ -2,11 +2,9 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/feature/query_parts.h"
 #include "lift/marks.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 static int is_by_vectors(const struct feature_query *q)

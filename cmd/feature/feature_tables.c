@@ -1,7 +1,6 @@
-#include "cmd/feature/feature_tables.h"
+#include "cmd/feature/feature_lifting.h"
 
 #include "base/mem.h"
-#include "formats/scene/features.h"
 #include "formats/images/png.h"
 #include "lift/source_weights.h"
 #include "mask/rle.h"

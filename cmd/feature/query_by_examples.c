@@ -1,6 +1,6 @@
 /* Hyperplane and identity: what a sentence means is shown by the Gaussians of an object that was lifted from
  * masks, the one of the training sentence whose vector is nearest to the sentence's. */
-#include "cmd/feature/query_parts.h"
+#include "cmd/feature/feature_query.h"
 
 #include "base/dot.h"
 #include "base/file.h"

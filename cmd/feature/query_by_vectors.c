@@ -1,6 +1,6 @@
 /* Cosine and relevancy: all Gaussians' features against all vectors, a block of Gaussians at a time. A block
  * is a whole number of words of the marks, so that no two threads write one. */
-#include "cmd/feature/query_parts.h"
+#include "cmd/feature/feature_query.h"
 
 #include "base/file.h"
 #include "base/mem.h"

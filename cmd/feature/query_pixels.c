@@ -1,6 +1,6 @@
 /* Cosine and relevancy as they are published: for the pixels of a rendered feature map. A view's features are
  * blended some channels at a time, and only their inner products with the vectors and their length stay. */
-#include "cmd/feature/query_parts.h"
+#include "cmd/feature/feature_query.h"
 
 #include "answer/peak.h"
 #include "base/file.h"

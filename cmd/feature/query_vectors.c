@@ -1,4 +1,4 @@
-#include "cmd/feature/query_vectors.h"
+#include "cmd/feature/feature_query.h"
 
 #include "base/file.h"
 #include "base/mem.h"

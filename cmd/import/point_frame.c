@@ -1,8 +1,7 @@
-#include "cmd/import/point_frame.h"
+#include "cmd/import/import.h"
 
 #include "base/mem.h"
 #include "base/quantile.h"
-#include "cmd/import/points.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-#include "cmd/import/points.h"
+#include "cmd/import/import.h"
 
 #include "base/file.h"
 #include "base/mem.h"

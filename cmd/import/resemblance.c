@@ -1,4 +1,4 @@
-#include "cmd/import/resemblance.h"
+#include "cmd/import/import.h"
 
 #include "base/mem.h"
 #include "cmd/import/warping.h"

@@ -7,7 +7,6 @@
 #include "splat/weights_pack.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 

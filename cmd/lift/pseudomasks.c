@@ -6,7 +6,6 @@
 #include "cmd/lift/left_out.h"
 #include "formats/scene/weights.h"
 #include "splat/weights_pack.h"
-#include "mask/select.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,14 +1,10 @@
 #include "cmd/lift/weighing.h"
 
-#include "cmd/lift/weighing_packed.h"
-
 #include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/arrays/precision.h"
 #include "formats/scene/weights.h"
 #include "splat/prune.h"
-#include "splat/render.h"
 
 #include <math.h>
 #include <omp.h>

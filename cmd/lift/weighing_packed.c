@@ -1,4 +1,4 @@
-#include "cmd/lift/weighing_packed.h"
+#include "cmd/lift/weighing.h"
 
 #include "base/mem.h"
 #include "base/threads.h"

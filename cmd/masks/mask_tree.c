@@ -1,4 +1,4 @@
-#include "cmd/masks/mask_tree.h"
+#include "cmd/masks/painting.h"
 
 #include "base/file.h"
 #include "base/mem.h"

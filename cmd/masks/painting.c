@@ -1,12 +1,9 @@
-#include "cmd/masks/painting_private.h"
+#include "cmd/masks/painting.h"
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
-#include "cmd/masks/mask_tree.h"
-#include "formats/records/annotations.h"
 #include "formats/records/jsonl.h"
-#include "formats/records/masks.h"
 #include "formats/images/png.h"
 
 #include <math.h>

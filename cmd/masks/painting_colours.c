@@ -1,5 +1,5 @@
 /* Pictures that have a colour for each thing: a mask for each colour that has a name. */
-#include "cmd/masks/painting_private.h"
+#include "cmd/masks/painting.h"
 
 #include "base/mem.h"
 #include "base/name.h"

@@ -1,4 +1,4 @@
-#include "cmd/masks/painting_names.h"
+#include "cmd/masks/painting.h"
 
 #include "base/mem.h"
 #include "base/name.h"

@@ -4,7 +4,6 @@
 #include "answer/peak.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/render/overlay_words.h"
 #include "formats/records/masks.h"
 
 #include <stdlib.h>

@@ -1,10 +1,9 @@
-#include "cmd/render/labelling.h"
+#include "cmd/render/locating.h"
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
 #include "cmd/run/object_extents.h"
-#include "cmd/render/showing.h"
 #include "formats/records/boxes.h"
 #include "formats/splats/ply.h"
 #include "lift/labels.h"

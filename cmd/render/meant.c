@@ -1,4 +1,4 @@
-#include "cmd/render/meant.h"
+#include "cmd/render/request.h"
 
 #include <string.h>
 

@@ -1,11 +1,9 @@
-#include "cmd/render/overlay_words.h"
+#include "cmd/render/draw.h"
 
 #include "base/number.h"
-#include "cmd/render/meant.h"
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Appends, as far as there is room. */

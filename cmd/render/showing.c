@@ -1,8 +1,8 @@
-#include "cmd/render/showing.h"
+#include "cmd/render/locating.h"
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/ask/answer_words.h"
+#include "cmd/ask/reply.h"
 #include "cmd/run/object_extents.h"
 #include "formats/splats/anysplats.h"
 #include "formats/splats/ply.h"

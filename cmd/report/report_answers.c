@@ -1,4 +1,4 @@
-#include "cmd/report/report_answers.h"
+#include "cmd/report/reporting.h"
 
 #include "answer/answer.h"
 #include "base/mem.h"

@@ -1,4 +1,4 @@
-#include "cmd/report/report_json.h"
+#include "cmd/report/reporting.h"
 
 #include <stdlib.h>
 

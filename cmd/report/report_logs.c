@@ -1,10 +1,9 @@
-#include "cmd/report/report_logs.h"
+#include "cmd/report/reporting.h"
 
 #include "base/file.h"
 #include "formats/records/jsonl.h"
 #include "formats/arrays/safetensors.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

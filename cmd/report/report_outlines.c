@@ -1,10 +1,9 @@
-#include "cmd/report/report_outlines.h"
+#include "cmd/report/reporting.h"
 
 #include "base/hash.h"
 #include "base/mem.h"
 #include "mask/trace.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

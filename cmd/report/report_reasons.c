@@ -1,4 +1,4 @@
-#include "cmd/report/report_reasons.h"
+#include "cmd/report/reporting.h"
 
 #include "base/mem.h"
 

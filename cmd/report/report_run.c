@@ -1,10 +1,9 @@
 /* A folder may lack anything but the scene and one set of answers. What is there is found by its usual name
  * (pipelines/two-stage.mk, lift.mk). */
-#include "cmd/report/report_run.h"
+#include "cmd/report/reporting.h"
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/report/report_answers.h"
 #include "score/score_choice.h"
 
 #include <stdlib.h>

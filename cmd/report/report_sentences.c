@@ -1,9 +1,7 @@
-#include "cmd/report/report_sentences.h"
+#include "cmd/report/reporting.h"
 
 #include "base/mem.h"
-#include "cmd/render/meant.h"
-#include "cmd/report/report_json.h"
-#include "cmd/report/report_reasons.h"
+#include "cmd/render/request.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "cmd/report/report_splats.h"
+#include "cmd/report/reporting.h"
 
 #include "base/mem.h"
 #include "formats/splats/splat.h"

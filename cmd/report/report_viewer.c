@@ -1,14 +1,12 @@
 /* Modules and splats stand in the page packed (zlib) and as base64, in scripts of no language;
  * report_viewer.js unpacks them when the scene is first looked at. */
-#include "cmd/report/report_viewer.h"
+#include "cmd/report/reporting.h"
 
 #include "base/base64.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/text/cache_folder.h"
+#include "cmd/text/encode.h"
 #include "cmd/run/object_extents.h"
-#include "cmd/report/report_json.h"
-#include "cmd/report/report_splats.h"
 #include "geom/up.h"
 
 #include <math.h>

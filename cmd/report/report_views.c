@@ -1,4 +1,4 @@
-#include "cmd/report/report_views.h"
+#include "cmd/report/reporting.h"
 
 #include "base/base64.h"
 #include "base/file.h"

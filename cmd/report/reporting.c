@@ -3,14 +3,7 @@
 
 #include "base/file.h"
 #include "base/path.h"
-#include "cmd/report/report_json.h"
-#include "cmd/report/report_logs.h"
-#include "cmd/report/report_outlines.h"
-#include "cmd/report/report_sentences.h"
-#include "cmd/report/report_views.h"
-#include "cmd/report/report_viewer.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

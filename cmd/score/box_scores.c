@@ -1,4 +1,4 @@
-#include "cmd/score/box_scores.h"
+#include "cmd/score/scoring.h"
 
 #include "base/file.h"
 #include "base/mem.h"

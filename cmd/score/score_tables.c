@@ -1,4 +1,4 @@
-#include "cmd/score/score_tables.h"
+#include "cmd/score/scoring.h"
 
 #include "base/mem.h"
 #include "score/score_groups.h"

@@ -1,4 +1,4 @@
-#include "cmd/score/scores.h"
+#include "cmd/score/scoring.h"
 
 #include "base/file.h"
 #include "base/number.h"

@@ -1,9 +1,6 @@
 #include "cmd/score/scoring.h"
 
 #include "base/file.h"
-#include "cmd/score/answer_scores.h"
-#include "cmd/score/box_scores.h"
-#include "cmd/score/score_tables.h"
 #include "score/score_choice.h"
 #include "score/score_join.h"
 

@@ -1,14 +1,12 @@
-#include "cmd/synth/synth_folder.h"
+#include "cmd/synth/benchmark.h"
 
 #include "base/mem.h"
-#include "cmd/synth/synth_unseen.h"
 #include "formats/records/boxes.h"
 #include "formats/cameras/colmap.h"
 #include "formats/records/masks.h"
 #include "formats/splats/ply.h"
 #include "formats/images/png.h"
 #include "synth/outline.h"
-#include "synth/synth_scene.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,6 @@
 /* Texts, names and refs hold letters, digits, apostrophes, stops, hyphens and spaces: JSON needs no escapes
  * for them. */
-#include "cmd/synth/synth_unseen.h"
-
-#include "base/file.h"
+#include "cmd/synth/benchmark.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "cmd/text/cache_folder.h"
+#include "cmd/text/encode.h"
 
 #include "base/file.h"
 

@@ -1,7 +1,6 @@
-#include "cmd/text/encoder.h"
+#include "cmd/text/encode.h"
 
 #include "base/file.h"
-#include "cmd/text/cache_folder.h"
 #include "formats/encoders/merges.h"
 #include "formats/encoders/vocab.h"
 

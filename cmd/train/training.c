@@ -1,16 +1,13 @@
 #include "cmd/train/training.h"
 
-#include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
 #include "cmd/lift/left_out.h"
-#include "cmd/train/training_masks.h"
 #include "formats/records/masks.h"
 #include "formats/scene/lifted.h"
 #include "formats/scene/model.h"
 #include "mask/bits.h"
 
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,11 +1,9 @@
-#include "cmd/train/training_masks.h"
+#include "cmd/train/training.h"
 
-#include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
 #include "formats/records/masks.h"
 
-#include <stddef.h>
 #include <stdlib.h>
 
 /* What the masks are read with. */

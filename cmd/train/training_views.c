@@ -1,4 +1,4 @@
-#include "cmd/train/training_views.h"
+#include "cmd/train/training.h"
 
 #include "base/mem.h"
 #include "splat/backproject.h"
