@@ -1,11 +1,11 @@
 /* gs-check: says whether files of the suite are well-formed, and what is in them. */
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/check/check.h"
 
 #include <cjson/cJSON.h>
 #include <ctype.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const struct cli_tool tool = {
@@ -101,12 +101,11 @@ static int print_json(const char *name, const struct check *c, const char *reaso
 	} else {
 		cJSON_AddStringToObject(object, "reason", reason);
 	}
-	char *text = cJSON_PrintUnformatted(object);
+	SCOPED char *text = cJSON_PrintUnformatted(object);
 	cJSON_Delete(object);
 	if (!text)
 		return -1;
 	printf("%s\n", text);
-	free(text);
 	return 0;
 }
 

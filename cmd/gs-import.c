@@ -1,5 +1,6 @@
 /* gs-import: makes a scene folder from a trained 3DGS scene and its cameras. */
 #include "base/file.h"
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/import/import.h"
 #include "formats/cameras/colmap.h"
@@ -119,11 +120,11 @@ static int run(
 
 int main(int argc, char **argv)
 {
-	struct scene s = {0};
+	SCOPED_BY(scene_free) struct scene s = {0};
 	struct rows_report report = {0};
 	struct err e = {0};
 	struct cli cli;
-	char *cameras = NULL;
+	SCOPED char *cameras = NULL;
 
 	cli_parse(&cli, &tool, argc, argv);
 	if (!strcmp(cli.output, "-"))
@@ -137,9 +138,7 @@ int main(int argc, char **argv)
 		return cli_fail(&cli, &e);
 	files.splats = cli.operands[0] = splats;
 	int bad = run(&cli, &s, &report, &cameras, &e);
-	scene_free(&s);
 	free(report.dropped);
-	free(cameras);
 	free(splats);
 	return bad ? cli_fail(&cli, &e) : cli_done(&cli);
 }

@@ -1,10 +1,10 @@
 /* gs-transform: splats from one format into another, cut and moved. */
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/import/transforming.h"
 #include "formats/splats/anysplats.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static struct transforming options = {.scale = 1};
 static int format;
@@ -81,7 +81,7 @@ static int warn_loss(
 
 int main(int argc, char **argv)
 {
-	struct splats s = {0};
+	SCOPED_BY(splats_free) struct splats s = {0};
 	struct rows_report report = {0};
 	struct transforming_count left_out;
 	struct err e = {0};
@@ -102,7 +102,6 @@ int main(int argc, char **argv)
 		  warn_loss(&cli, &s, offset, to, &e);
 	if (!bad)
 		note(&cli, &s, &report, &left_out);
-	splats_free(&s);
 	free(report.dropped);
 	return bad ? cli_fail(&cli, &e) : cli_done(&cli);
 }

@@ -1,4 +1,5 @@
 /* gs-weigh: the blend weights of a scene's views. */
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/lift/weighing.h"
 #include "formats/scene/scene.h"
@@ -33,7 +34,7 @@ int main(int argc, char **argv)
 		.max_operands = 1,
 		.output_arg = "WEIGHTS",
 		.needs_output = 1};
-	struct scene scene;
+	SCOPED_BY(scene_free) struct scene scene = {0};
 	struct err e = {0};
 	struct cli_report to;
 	struct cli cli;
@@ -48,6 +49,5 @@ int main(int argc, char **argv)
 	if (scene_read(&scene, cli.operands[0], &e))
 		return cli_fail(&cli, &e);
 	int bad = weigh(&scene, &o, cli_report(&to, &cli), &e);
-	scene_free(&scene);
 	return bad ? cli_fail(&cli, &e) : cli_done(&cli);
 }

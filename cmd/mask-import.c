@@ -1,4 +1,5 @@
 /* mask-import: photographs that a person painted over or labelled, as mask records. */
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/masks/painting.h"
 
@@ -27,7 +28,7 @@ static const struct cli_tool tool = {.name = "mask-import",
 /* No picture and no file of names is written over. */
 static void check(const struct cli *c)
 {
-	struct cli_file *files = calloc((size_t)c->operand_count + 1, sizeof *files);
+	SCOPED struct cli_file *files = calloc((size_t)c->operand_count + 1, sizeof *files);
 
 	for (int i = 0; i < c->operand_count && !names_path; i++)
 		if (painting_needs_names(c->operands[i]))
@@ -35,7 +36,6 @@ static void check(const struct cli *c)
 	for (int i = 0; files && i < c->operand_count; i++)
 		files[i] = (struct cli_file){"picture", c->operands[i], CLI_READS, NULL};
 	cli_refuse_overwrite(c, "names undistort:cameras.json", "output", files);
-	free(files);
 }
 
 int main(int argc, char **argv)

@@ -4,8 +4,6 @@
 #include "cli/cli.h"
 #include "cmd/report/reporting.h"
 
-#include <stdlib.h>
-
 static const char *output;
 static struct report_options options = {.views = 12, .width = 480, .splats = 200000};
 
@@ -35,7 +33,7 @@ static const struct cli_tool tool = {.name = "refer-report",
 static int run(const struct cli *c, struct err *e)
 {
 	struct cli_report to;
-	char *path = output ? mem_strdup(output, e) : file_join(options.run, "report.html", "", e);
+	SCOPED char *path = output ? mem_strdup(output, e) : file_join(options.run, "report.html", "", e);
 
 	if (!path)
 		return -1;
@@ -45,7 +43,6 @@ static int run(const struct cli *c, struct err *e)
 	const int bad = reporting_write(&options, path, cli_report(&to, c), e);
 	if (!bad && !output)
 		cli_note(c, 1, "made %s", path);
-	free(path);
 	return bad;
 }
 

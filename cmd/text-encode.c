@@ -1,10 +1,10 @@
 /* Sentences to word vectors, by a BERT or CLIP's text tower. */
+#include "base/mem.h"
 #include "base/path.h"
 #include "cli/cli.h"
 #include "cmd/text/encode.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 static struct {
 	const char *model;
@@ -50,9 +50,9 @@ static int run(const struct cli *c, struct encoding *x, struct encoder *with, st
 
 int main(int argc, char **argv)
 {
-	struct encoding x = {0};
+	SCOPED_BY(encoding_free) struct encoding x = {0};
 	struct encoder with = {0};
-	char *usual = NULL;
+	SCOPED char *usual = NULL;
 	struct err e = {0};
 	struct cli c;
 
@@ -62,8 +62,6 @@ int main(int argc, char **argv)
 	cli_refuse_terminal(&c);
 	cli_refuse_overwrite(&c, "SENTENCES model:" ENCODER_PARTS, "output", NULL);
 	const int bad = run(&c, &x, &with, &e);
-	encoding_free(&x);
 	encoder_free(&with);
-	free(usual);
 	return bad ? cli_fail(&c, &e) : cli_done(&c);
 }

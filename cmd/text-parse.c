@@ -1,5 +1,6 @@
 /* Sentences taken apart: who is meant, and how it stands to what. */
 #include "base/file.h"
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "formats/encoders/parser_weights.h"
 #include "formats/records/parses.h"
@@ -14,14 +15,13 @@ static int put_parses(const struct parser *parser, const struct text *t, FILE *o
 {
 	for (size_t r = 0; r < t->n; r++) {
 		struct parser_vectors v = {.width = t->width};
-		struct parse p;
+		SCOPED_BY(parse_free) struct parse p = {0};
 		if (t->pieces)
 			v = (struct parser_vectors){t->pieces[r], text_middle(t, r),
 				(int)(t->offsets[r + 1] - t->offsets[r]), t->width};
 		if (parse_sentence(&p, parser, t->texts[r], &v, e))
 			return -1;
 		int bad = parses_put(out, t->refs[r], t->texts[r], &p, e);
-		parse_free(&p);
 		if (bad)
 			return -1;
 	}
@@ -34,7 +34,7 @@ static int run(const struct cli *c, const char *weights, enum method method, str
 {
 	struct parser parser = {0};
 	struct parser_weights w = {0};
-	struct text t = {0};
+	SCOPED_BY(text_free) struct text t = {0};
 	struct file_out out = {0};
 	int bad;
 
@@ -56,7 +56,6 @@ static int run(const struct cli *c, const char *weights, enum method method, str
 				    : "of another encoder than the parser's weights");
 	bad = file_out_open(&out, c->output, e) ||
 	      file_out_end(&out, put_parses(&parser, &t, out.stream, e), e);
-	text_free(&t);
 	parser_weights_free(&w);
 	return bad;
 }

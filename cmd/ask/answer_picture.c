@@ -9,7 +9,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Views are compared at this size of their longer side, in pixels. */
 enum { LOOK_SIDE = 200 };
@@ -17,7 +16,7 @@ enum { LOOK_SIDE = 200 };
 int answer_responses(
 	struct responses *to, const struct lifted *l, const size_t *things, size_t count, struct err *e)
 {
-	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
+	SCOPED float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
 
 	*to = (struct responses){.answers = 1};
 	to->responses = mem_alloc(l->gaussians, sizeof *to->responses, "responses", e);
@@ -28,7 +27,6 @@ int answer_responses(
 		for (size_t i = 0; i < l->gaussians && k; i++)
 			to->responses[i] = fmaxf(to->responses[i], own[i]);
 	}
-	free(own);
 	return bad || render_pack(to->responses, l->gaussians, 1, e) ? -1 : 0;
 }
 
@@ -65,7 +63,7 @@ static int best_view(
 {
 	const struct cameras *c = &a->scene.cameras;
 	struct looks l = {mem_zalloc(c->n, sizeof *l.worth, "views", e)};
-	struct camera *small = mem_alloc(c->n, sizeof *small, "views", e);
+	SCOPED struct camera *small = mem_alloc(c->n, sizeof *small, "views", e);
 	const struct answer_calls calls = {&l, look, ignore};
 
 	for (size_t v = 0; v < c->n && small; v++) {
@@ -82,7 +80,6 @@ static int best_view(
 		best = l.worth[v] > l.worth[best] ? v : best;
 	*view = &c->views[best];
 	free(l.worth);
-	free(small);
 	return bad ? -1 : 0;
 }
 
@@ -115,7 +112,7 @@ static int put_page(void *data, const struct answer *a, struct err *e)
 	const struct page *page = data;
 	const int h = a->camera->height, w = a->camera->width, line = caption_height(w);
 	const size_t bytes = 3 * (size_t)h * (size_t)w;
-	uint8_t *rgb = mem_alloc((size_t)h + 2 * (size_t)line, 3 * (size_t)w, page->path, e);
+	SCOPED uint8_t *rgb = mem_alloc((size_t)h + 2 * (size_t)line, 3 * (size_t)w, page->path, e);
 
 	if (!rgb)
 		return -1;
@@ -125,15 +122,13 @@ static int put_page(void *data, const struct answer *a, struct err *e)
 	bound(a, page->drawn);
 	for (int k = 0; k < 2; k++)
 		caption_draw(rgb, w, h + k * line, page->words[k]);
-	const int bad = png_write(page->path, rgb, h + 2 * line, w, 3, e);
-	free(rgb);
-	return bad;
+	return png_write(page->path, rgb, h + 2 * line, w, 3, e);
 }
 
 int answer_picture(const struct asking *a, const struct asking_answer *answer, const char *const words[2],
 	const char *path, struct answer_drawn *drawn, struct err *e)
 {
-	struct responses responses;
+	SCOPED_BY(responses_free) struct responses responses = {0};
 	struct answer_question q = {.splats = &a->scene.splats, .responses = &responses};
 	struct page page = {words, path, drawn};
 	const struct answer_calls calls = {&page, put_page, ignore};
@@ -146,6 +141,5 @@ int answer_picture(const struct asking *a, const struct asking_answer *answer, c
 		q.wants_rgb = 1;
 		bad = answer_all(&q, drawn->view, 1, &calls, e);
 	}
-	responses_free(&responses);
 	return bad ? -1 : 0;
 }

@@ -2,7 +2,6 @@
 
 #include "base/number.h"
 #include <math.h>
-#include <string.h>
 
 /* Where one object is, seen from another: by the axis along which their centres are farthest apart. */
 static const char *side_of(const struct asking_answer *a, size_t object, size_t other)

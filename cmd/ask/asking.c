@@ -183,8 +183,8 @@ static int choose_answer(struct asking *a, const struct text *t, size_t r, struc
 		t->words + (size_t)t->offsets[r] * (size_t)t->width, text_middle(t, r),
 		(size_t)(t->offsets[r + 1] - t->offsets[r]), a->from, NULL};
 	const struct choose_watch watching = {w, watch};
-	float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
-	char *chosen = mem_alloc(objects, 1, "answer", e);
+	SCOPED float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
+	SCOPED char *chosen = mem_alloc(objects, 1, "answer", e);
 	struct choice choice;
 	int bad = !probability || !chosen ||
 		  choose_with(a->chooser, &sentence, 1, &choice, probability, chosen, &watching, e);
@@ -198,8 +198,6 @@ static int choose_answer(struct asking *a, const struct text *t, size_t r, struc
 			memset(chosen, 0, objects);
 		sort_things(w->answer, a->model.lifted.names, chosen, objects);
 	}
-	free(probability);
-	free(chosen);
 	return bad ? -1 : 0;
 }
 
@@ -239,7 +237,7 @@ int asking_ask(struct asking *a, const char *question, struct asking_answer *ans
 	struct err *e)
 {
 	struct watched w = {.answer = answer, .question = question, .is_explained = a->options->is_explained};
-	struct encoding alone = {0};
+	SCOPED_BY(encoding_free) struct encoding alone = {0};
 	const struct text *text = &a->ahead.text;
 	size_t r = find_ahead(a, question);
 	int bad = asking_answer_make(answer, a->model.lifted.objects, e);
@@ -258,7 +256,6 @@ int asking_ask(struct asking *a, const char *question, struct asking_answer *ans
 		bad = choose_answer(a, text, r, &w, e);
 	if (!bad && w.is_out_of_memory)
 		bad = err_set(e, ERR_SYSTEM, "explanation: out of memory");
-	encoding_free(&alone);
 	if (bad)
 		asking_answer_free(answer);
 	return bad ? -1 : 0;

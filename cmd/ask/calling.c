@@ -3,9 +3,7 @@
 #include "places/arrangement.h"
 #include "lang/colours.h"
 
-#include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { NEIGHBOURS = 4, WORD = 96 };

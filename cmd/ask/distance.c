@@ -4,8 +4,6 @@
 #include "lang/tokens.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Whether a word is one of several, of which NULL is the last. */

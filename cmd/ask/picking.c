@@ -37,7 +37,7 @@ static int take_numbers(const char *text, double *x, int count)
 
 static int find_view(struct region *r, const struct asking *a, const char *text, size_t length, struct err *e)
 {
-	char *name = mem_alloc(length + 1, 1, "view", e);
+	SCOPED char *name = mem_alloc(length + 1, 1, "view", e);
 
 	if (!name)
 		return -1;
@@ -47,7 +47,6 @@ static int find_view(struct region *r, const struct asking *a, const char *text,
 	const int bad =
 		r->camera ? 0
 			  : err_set(e, ERR_USAGE, "%s: no view '%s'", r->is_box ? "--box" : "--point", name);
-	free(name);
 	return bad;
 }
 

@@ -3,7 +3,6 @@
 #include "base/file.h"
 #include "base/mem.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 

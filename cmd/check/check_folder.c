@@ -11,7 +11,7 @@
 
 static int check_scene(struct check *c, const char *path, struct err *e)
 {
-	struct scene s;
+	SCOPED_BY(scene_free) struct scene s = {0};
 
 	if (scene_read(&s, path, e))
 		return -1;
@@ -19,14 +19,13 @@ static int check_scene(struct check *c, const char *path, struct err *e)
 	c->scene = s.fingerprint;
 	check_add_splats(c, &s.splats);
 	check_add_views(c, &s.cameras);
-	scene_free(&s);
 	return 0;
 }
 
 /* One view of a folder, which is of the scene that the folder's first one with a fingerprint is of. */
 static int add_view_weights(struct check *c, const char *file, char **first, long long *total, struct err *e)
 {
-	struct weights w;
+	SCOPED_BY(weights_close) struct weights w = {0};
 
 	if (weights_open_file(&w, file, e))
 		return -1;
@@ -37,7 +36,6 @@ static int add_view_weights(struct check *c, const char *file, char **first, lon
 		bad = *first ? 0 : -1;
 	}
 	*total += (long long)w.indptr[(int64_t)w.width * w.height];
-	weights_close(&w);
 	return bad;
 }
 
@@ -46,7 +44,7 @@ static int add_weights(
 	struct check *c, const char *path, struct dirent **names, int n, long long *views, struct err *e)
 {
 	long long total = 0;
-	char *first = NULL;
+	SCOPED char *first = NULL;
 	int bad = 0;
 
 	*views = 0;
@@ -54,12 +52,10 @@ static int add_weights(
 		const char *dot = strrchr(names[i]->d_name, '.');
 		if (!dot || strcmp(dot, ".safetensors"))
 			continue;
-		char *file = file_join(path, names[i]->d_name, "", e);
+		SCOPED char *file = file_join(path, names[i]->d_name, "", e);
 		bad = file ? add_view_weights(c, file, &first, &total, e) : -1;
-		free(file);
 		++*views;
 	}
-	free(first);
 	if (bad)
 		return -1;
 	c->kind = "weights";
@@ -72,16 +68,15 @@ static int add_weights(
 int check_folder(struct check *c, const char *path, struct err *e)
 {
 	static const char *const parts[] = {"splats.safetensors", "cameras.json"};
-	struct dirent **names = NULL;
+	SCOPED struct dirent **names = NULL;
 	long long views = 0;
 	int found = 0;
 
 	for (int i = 0; i < 2; i++) {
-		char *part = file_join(path, parts[i], "", e);
+		SCOPED char *part = file_join(path, parts[i], "", e);
 		if (!part)
 			return -1;
 		found |= file_exists(part) << i;
-		free(part);
 	}
 	if (found == 3)
 		return check_scene(c, path, e);
@@ -95,7 +90,6 @@ int check_folder(struct check *c, const char *path, struct err *e)
 	int bad = add_weights(c, path, names, n, &views, e);
 	for (int i = 0; i < n; i++)
 		free(names[i]);
-	free(names);
 	if (!bad && !views)
 		return err_set(e, ERR_FORMAT, "%s: not a scene, COLMAP model or folder of weights", path);
 	return bad;

@@ -8,7 +8,6 @@
 #include "formats/records/sentences.h"
 
 #include <stddef.h>
-#include <stdlib.h>
 
 void check_add(struct check *c, const char *name, long long value)
 {
@@ -19,12 +18,11 @@ void check_add(struct check *c, const char *name, long long value)
 static int add_names(struct check *c, const char *fact, const void *items, size_t stride, size_t offset,
 	size_t n, struct err *e)
 {
-	struct names names;
+	SCOPED_BY(names_free) struct names names = {0};
 
 	if (names_make(&names, items, stride, offset, n, e))
 		return -1;
 	check_add(c, fact, (long long)names_count(&names));
-	names_free(&names);
 	return 0;
 }
 
@@ -48,7 +46,7 @@ static const char **sentence_objects(const struct sentences *s, size_t *n, struc
 
 int check_sentences(struct check *c, const char *path, struct err *e)
 {
-	struct sentences s;
+	SCOPED_BY(sentences_free) struct sentences s = {0};
 	size_t test = 0;
 
 	if (sentences_read(&s, path, e))
@@ -59,16 +57,13 @@ int check_sentences(struct check *c, const char *path, struct err *e)
 	check_add(c, "training sentences", (long long)(s.n - test));
 	check_add(c, "test sentences", (long long)test);
 	size_t n;
-	const char **names = sentence_objects(&s, &n, e);
-	int bad = !names || add_names(c, "objects", names, sizeof *names, 0, n, e);
-	free(names);
-	sentences_free(&s);
-	return bad ? -1 : 0;
+	SCOPED const char **names = sentence_objects(&s, &n, e);
+	return !names || add_names(c, "objects", names, sizeof *names, 0, n, e) ? -1 : 0;
 }
 
 int check_masks(struct check *c, const char *path, struct err *e)
 {
-	struct masks set;
+	SCOPED_BY(masks_free) struct masks set = {0};
 	size_t same = 0;
 
 	if (masks_read(&set, path, e))
@@ -82,15 +77,16 @@ int check_masks(struct check *c, const char *path, struct err *e)
 	}
 	check_add(c, "masks", (long long)set.n);
 	const size_t stride = sizeof *set.items;
-	int bad = add_names(c, "views", set.items, stride, offsetof(struct mask, view), set.n, e) ||
-		  add_names(c, "objects", set.items, stride, offsetof(struct mask, object), set.n, e);
-	masks_free(&set);
-	return bad ? -1 : 0;
+	return add_names(c, "views", set.items, stride, offsetof(struct mask, view), set.n, e) ||
+			       add_names(c, "objects", set.items, stride, offsetof(struct mask, object),
+				       set.n, e)
+		       ? -1
+		       : 0;
 }
 
 int check_boxes(struct check *c, const char *path, struct err *e)
 {
-	struct box_set set;
+	SCOPED_BY(boxes_free) struct box_set set = {0};
 	size_t empty = 0;
 
 	if (boxes_read(&set, path, e))
@@ -102,6 +98,5 @@ int check_boxes(struct check *c, const char *path, struct err *e)
 	int bad = add_names(c, "objects", set.records, sizeof *set.records,
 		offsetof(struct box_record, object), set.n, e);
 	check_add(c, "empty", (long long)empty);
-	boxes_free(&set);
 	return bad ? -1 : 0;
 }

@@ -3,7 +3,6 @@
 #include "base/file.h"
 #include "base/half.h"
 #include "base/mem.h"
-#include "formats/arrays/safetensors.h"
 #include "formats/scene/weights.h"
 
 #include <stdio.h>
@@ -54,7 +53,7 @@ static int add_view(struct feature_lifting *l, size_t view, const struct weights
 static int all_views(struct feature_lifting *l, struct err *e)
 {
 	const char *folder = l->options->weights;
-	char *has_weights = mem_alloc(l->scene.cameras.n, 1, "views", e);
+	SCOPED char *has_weights = mem_alloc(l->scene.cameras.n, 1, "views", e);
 	size_t missing = 0;
 	int bad = !has_weights || weights_mark(folder, &l->scene.cameras, has_weights, &missing, e);
 
@@ -70,7 +69,6 @@ static int all_views(struct feature_lifting *l, struct err *e)
 			weights_close(&w);
 		}
 	}
-	free(has_weights);
 	if (!bad && missing && !l->first)
 		report_warn(l->to, "%s: %zu training views have no weights, and their features do not count",
 			folder, missing);

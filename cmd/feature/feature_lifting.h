@@ -4,7 +4,6 @@
 #define CMD_FEATURE_FEATURE_LIFTING_H
 
 #include "base/err.h"
-#include "base/names.h"
 #include "base/report.h"
 #include "formats/arrays/npy.h"
 #include "formats/arrays/npz.h"

@@ -17,10 +17,8 @@ static int has_file(
 	if (m->npz)
 		return strcmp(ending, ".npy") ? 0 : npz_has(m->npz, view, suffix, e);
 	snprintf(name, sizeof name, "%s%s", suffix, ending);
-	char *path = file_join(m->options->folder, view, name, e);
-	const int found = path ? file_exists(path) : -1;
-	free(path);
-	return found;
+	SCOPED char *path = file_join(m->options->folder, view, name, e);
+	return path ? file_exists(path) : -1;
 }
 
 /* The kind of files that a view has: 0, or -1 with *e. */
@@ -98,7 +96,7 @@ static int find_files(struct feature_maps *m, const struct report *to, struct er
 static int find_rows(struct feature_maps *m, const struct report *to, struct err *e)
 {
 	const struct feature_maps_options *o = m->options;
-	struct names refs = {0}, objects = {0};
+	SCOPED_BY(names_free) struct names refs = {0}, objects = {0};
 	size_t unknown = 0, labels = 0;
 	char **names = o->text ? m->text.objects : mem_alloc(m->set.n, sizeof *names, "masks", e);
 
@@ -120,8 +118,6 @@ static int find_rows(struct feature_maps *m, const struct report *to, struct err
 	if (unknown)
 		report_warn(to, "%s: %zu masks are of no sentence of %s", file_name(o->masks), unknown,
 			file_name(o->text));
-	names_free(&refs);
-	names_free(&objects);
 	if (!o->text)
 		free(names);
 	return bad ? -1 : 0;
@@ -131,8 +127,8 @@ static int find_masks(struct feature_maps *m, const struct report *to, struct er
 {
 	const struct feature_maps_options *o = m->options;
 	const struct cameras *c = &m->scene->cameras;
-	long *lines = NULL;
-	size_t *views = NULL;
+	SCOPED long *lines = NULL;
+	SCOPED size_t *views = NULL;
 
 	int bad = masks_read_lines(&m->set, &lines, o->masks, e) ||
 		  (o->text && (text_read(&m->text, o->text, e) ||
@@ -146,8 +142,6 @@ static int find_masks(struct feature_maps *m, const struct report *to, struct er
 		m->is_there[v] = c->views[v].split == SPLIT_TRAIN;
 	m->kind = o->text ? MAPS_MASKS : MAPS_MASK_LABELS;
 	m->channels = (size_t)m->text.width;
-	free(lines);
-	free(views);
 	return bad ? -1 : 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/scene/selection.h"
 #include "lift/marks.h"
 
 #include <math.h>

@@ -8,7 +8,6 @@
 #include "formats/scene/features.h"
 #include "formats/scene/lifted.h"
 #include "formats/scene/scene.h"
-#include "formats/scene/selection.h"
 #include "formats/scene/text.h"
 #include "mask/mask.h"
 

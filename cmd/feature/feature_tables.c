@@ -107,13 +107,12 @@ static int open_table(
 
 int feature_tables_channels(const struct feature_maps *m, size_t view, size_t *channels, struct err *e)
 {
-	struct npy t;
+	SCOPED_BY(npy_close) struct npy t = {0};
 
 	if (m->kind != MAPS_CELLS && m->kind != MAPS_SEGMENTS)
 		return 0;
 	if (open_table(m, view, &t, channels, e))
 		return -1;
-	npy_close(&t);
 	return 0;
 }
 
@@ -186,8 +185,8 @@ static int open_features(const struct feature_maps *m, size_t view, int height, 
 static int open_labels(const struct feature_maps *m, size_t view, int height, int width,
 	struct feature_sources *s, struct err *e)
 {
-	char *path = view_path(m, view, ".png", e);
-	int32_t *labels = NULL;
+	SCOPED char *path = view_path(m, view, ".png", e);
+	SCOPED int32_t *labels = NULL;
 	int own[2];
 
 	const int bad = !path || png_read_labels(path, &labels, &own[0], &own[1], e) ||
@@ -197,8 +196,6 @@ static int open_labels(const struct feature_maps *m, size_t view, int height, in
 		for (size_t p = 0, n = (size_t)height * (size_t)width; p < n; p++)
 			s->raw[p] = labels[s->raw[p]];
 	}
-	free(labels);
-	free(path);
 	return bad ? -1 : 0;
 }
 
@@ -239,7 +236,7 @@ static int paint_masks(const struct feature_maps *m, size_t view, int height, in
 	size_t begin, end;
 
 	mask_index_view(&m->index, m->scene->cameras.views[view].name, &begin, &end);
-	struct painted *order = mem_alloc(end - begin, sizeof *order, "masks", e);
+	SCOPED struct painted *order = mem_alloc(end - begin, sizeof *order, "masks", e);
 	int bad = !order || mem_room((void **)&s->mask, &s->mask_room, pixels, 1, "mask", e);
 	for (size_t k = begin; k < end && order; k++) {
 		const size_t at = m->index.keys[k].at;
@@ -251,7 +248,6 @@ static int paint_masks(const struct feature_maps *m, size_t view, int height, in
 		s->raw[p] = m->kind == MAPS_MASKS ? -1 : 0;
 	for (size_t k = 0; k < end - begin && !bad; k++)
 		bad = paint(m, order[k].at, height, width, s, e);
-	free(order);
 	return bad ? -1 : 0;
 }
 
@@ -306,7 +302,7 @@ int feature_maps_features(const struct feature_maps *m, const struct feature_sou
 #pragma omp parallel reduction(min : bad) reduction(| : is_out)
 	{
 		struct err own;
-		float *row = mem_alloc(m->channels, sizeof *row, "features", &own);
+		SCOPED float *row = mem_alloc(m->channels, sizeof *row, "features", &own);
 		is_out = !row;
 #pragma omp for schedule(static)
 		for (size_t k = 0; k < s->count; k++) {
@@ -318,7 +314,6 @@ int feature_maps_features(const struct feature_maps *m, const struct feature_sou
 			if (isnan(factor[k]) && k < bad)
 				bad = k;
 		}
-		free(row);
 	}
 	if (is_out)
 		return err_set(e, ERR_SYSTEM, "features: out of memory");

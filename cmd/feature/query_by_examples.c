@@ -10,7 +10,6 @@
 #include "lift/query_rules.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static int check_lifted(const struct feature_query *q, const struct origin *origin, struct err *e)
@@ -47,8 +46,8 @@ static int find_objects(struct feature_query *q, struct err *e)
 {
 	const struct lifted *l = &q->lifted;
 	const size_t width = (size_t)l->width;
-	float *mean = mem_alloc(width, sizeof *mean, "sentences", e);
-	double *best = mem_alloc(q->count, sizeof *best, "sentences", e);
+	SCOPED float *mean = mem_alloc(width, sizeof *mean, "sentences", e);
+	SCOPED double *best = mem_alloc(q->count, sizeof *best, "sentences", e);
 
 	q->object = mem_alloc(q->count, sizeof *q->object, "sentences", e);
 	const int bad = !mean || !best || !q->object;
@@ -66,8 +65,6 @@ static int find_objects(struct feature_query *q, struct err *e)
 			q->object[i] = (size_t)l->object[r];
 		}
 	}
-	free(mean);
-	free(best);
 	return bad ? -1 : 0;
 }
 
@@ -112,9 +109,9 @@ static int by_hyperplane(const struct feature_query *q, const char *inside, char
 	}
 	if (!positive || positive == seen)
 		return 0;
-	float *examples = mem_alloc(
+	SCOPED float *examples = mem_alloc(
 		(size_t)QUERY_POSITIVES + QUERY_NEGATIVES, channels * sizeof *examples, "examples", e);
-	double *plane = mem_alloc(channels + 1, sizeof *plane, "hyperplane", e);
+	SCOPED double *plane = mem_alloc(channels + 1, sizeof *plane, "hyperplane", e);
 	int bad = !examples || !plane;
 	if (!bad) {
 		const size_t first = take_examples(f, inside, 1, positive, QUERY_POSITIVES, examples);
@@ -128,8 +125,6 @@ static int by_hyperplane(const struct feature_query *q, const char *inside, char
 		features_floats(f, i, 1, examples);
 		selected[i] = hyperplane_side(plane, examples, channels) > 0;
 	}
-	free(examples);
-	free(plane);
 	return bad ? -1 : 0;
 }
 
@@ -140,11 +135,10 @@ static int by_identity(const struct feature_query *q, const char *inside, char *
 
 	for (size_t i = 0; i < f->gaussians; i++)
 		most = f->labels[i] > most ? f->labels[i] : most;
-	double *sums = mem_alloc((size_t)most + 1, 2 * sizeof *sums, "labels", e);
+	SCOPED double *sums = mem_alloc((size_t)most + 1, 2 * sizeof *sums, "labels", e);
 	if (sums)
 		query_identity(f->labels, f->weight, inside, f->gaussians, q->threshold, sums,
 			(size_t)most + 1, selected);
-	free(sums);
 	return sums ? 0 : -1;
 }
 
@@ -152,7 +146,7 @@ static int by_identity(const struct feature_query *q, const char *inside, char *
 static int answer_object(struct feature_query *q, size_t object, struct err *e)
 {
 	const size_t n = q->features[0].gaussians;
-	char *inside = NULL, *selected = NULL;
+	SCOPED char *inside = NULL, *selected = NULL;
 	int is_meant = 0, bad = 0;
 
 	for (size_t i = 0; i < q->count; i++)
@@ -169,8 +163,6 @@ static int answer_object(struct feature_query *q, size_t object, struct err *e)
 		for (size_t k = 0; k < n && q->object[i] == object; k++)
 			if (selected[k])
 				marks_add(q->marks[i], k);
-	free(inside);
-	free(selected);
 	return bad ? -1 : 0;
 }
 

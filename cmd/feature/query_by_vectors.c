@@ -37,16 +37,14 @@ static int join(struct feature_query *q, const float *all, const struct query_ve
 /* Sentences of one object are a group, and all else is its own. */
 static int find_groups(struct feature_query *q, struct err *e)
 {
-	const char **names = mem_alloc(q->count, sizeof *names, "sentences", e);
-	struct names index = {0};
+	SCOPED const char **names = mem_alloc(q->count, sizeof *names, "sentences", e);
+	SCOPED_BY(names_free) struct names index = {0};
 
 	for (size_t i = 0; i < q->count && names; i++)
 		names[i] = text_object(&q->text, q->which[i]);
 	const int bad = !names || names_make(&index, names, sizeof *names, 0, q->count, e);
 	for (size_t i = 0; i < q->vectors.n && !bad; i++)
 		q->group[i] = i < q->count && names[i] ? names_find(&index, names[i]) : i;
-	names_free(&index);
-	free(names);
 	return bad ? -1 : 0;
 }
 
@@ -106,17 +104,14 @@ static int run(struct pass *p, struct err *e)
 #pragma omp parallel reduction(| : is_out)
 	{
 		struct err own;
-		float *features = mem_alloc(BLOCK * channels, sizeof *features, "features", &own);
-		float *cosines = mem_alloc(BLOCK * q->vectors.n, sizeof *cosines, "cosines", &own);
-		char *selected = mem_alloc(q->count, 1, "selection", &own);
+		SCOPED float *features = mem_alloc(BLOCK * channels, sizeof *features, "features", &own);
+		SCOPED float *cosines = mem_alloc(BLOCK * q->vectors.n, sizeof *cosines, "cosines", &own);
+		SCOPED char *selected = mem_alloc(q->count, 1, "selection", &own);
 		is_out = !features || !cosines || !selected;
 #pragma omp for schedule(dynamic)
 		for (size_t b = 0; b < blocks; b++)
 			if (features && cosines && selected)
 				use_block(p, b, features, cosines, selected);
-		free(features);
-		free(cosines);
-		free(selected);
 	}
 	return is_out ? err_set(e, ERR_SYSTEM, "cosines: out of memory") : 0;
 }
@@ -197,8 +192,8 @@ static int by_relevancy(struct feature_query *q, struct err *e)
 
 	if (mem_size(blocks_of(q), q->count, &count))
 		return err_set(e, ERR_SYSTEM, "relevancies do not fit in memory");
-	double *threshold = mem_alloc(q->count, sizeof *threshold, "relevancies", e);
-	double *best = mem_alloc(q->count, sizeof *best, "relevancies", e);
+	SCOPED double *threshold = mem_alloc(q->count, sizeof *threshold, "relevancies", e);
+	SCOPED double *best = mem_alloc(q->count, sizeof *best, "relevancies", e);
 	struct pass p = {.q = q,
 		.least = mem_alloc(count, sizeof *p.least, "relevancies", e),
 		.most = mem_alloc(count, sizeof *p.most, "relevancies", e),
@@ -210,8 +205,6 @@ static int by_relevancy(struct feature_query *q, struct err *e)
 	p.use = take_relevant;
 	for (p.level = 0; p.level < q->levels && !bad; p.level++)
 		bad = run(&p, e);
-	free(threshold);
-	free(best);
 	free(p.least);
 	free(p.most);
 	return bad ? -1 : 0;

@@ -3,7 +3,6 @@
 #include "cmd/feature/feature_query.h"
 
 #include "answer/peak.h"
-#include "base/file.h"
 #include "base/mem.h"
 #include "formats/records/masks.h"
 #include "lift/query_rules.h"
@@ -55,14 +54,13 @@ static int pack(struct pixels *p, struct err *e)
 {
 	const struct features *f = &p->q->features[p->level];
 	const size_t n = f->gaussians, channels = f->channels;
-	float *row = mem_alloc(channels, sizeof *row, "features", e);
+	SCOPED float *row = mem_alloc(channels, sizeof *row, "features", e);
 
 	for (size_t i = 0; i < n && row; i++) {
 		features_floats(f, i, 1, row);
 		for (size_t c = 0; c < channels; c++)
 			p->packed[c * n + i] = row[c];
 	}
-	free(row);
 	return row ? render_pack(p->packed, n, (int)channels, e) : -1;
 }
 

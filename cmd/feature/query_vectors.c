@@ -51,14 +51,13 @@ static int read_npz(struct query_vectors *v, const char *path, size_t channels, 
 	static const char *const names[] = {"vectors", "arr_0"};
 	struct npz z;
 	struct npy a;
-	char *called = NULL;
+	SCOPED char *called = NULL;
 
 	if (npz_open(&z, path, e))
 		return -1;
 	const char *name = npz_main(&z, names, sizeof names / sizeof *names, e);
 	const int bad =
 		!name || npz_array(&z, name, "", &a, &called, e) || take_array(v, &a, called, channels, e);
-	free(called);
 	npz_close(&z);
 	return bad ? -1 : 0;
 }
@@ -85,7 +84,7 @@ static const struct st_tensor *find_tensor(const struct safetensors *st, struct 
 
 static int read_safetensors(struct query_vectors *v, const char *path, size_t channels, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 
 	if (safetensors_open(&st, path, e))
 		return -1;
@@ -93,7 +92,6 @@ static int read_safetensors(struct query_vectors *v, const char *path, size_t ch
 	int bad = !t || take_shape(v, (size_t)t->shape[0], (size_t)t->shape[1], channels, st.path, e);
 	if (!bad && safetensors_to_float(t, v->values, v->n * channels, e))
 		bad = err_prefix(e, st.path);
-	safetensors_close(&st);
 	return bad ? -1 : 0;
 }
 

@@ -40,7 +40,7 @@ static int find_share(const struct grid *g, const float *points, size_t n, const
 	double *share, struct err *e)
 {
 	const size_t step = (n + SAMPLES - 1) / SAMPLES;
-	uint64_t *cubes = mem_alloc(m, sizeof *cubes, "points", e);
+	SCOPED uint64_t *cubes = mem_alloc(m, sizeof *cubes, "points", e);
 	size_t near = 0, all = 0;
 
 	if (!cubes)
@@ -56,7 +56,6 @@ static int find_share(const struct grid *g, const float *points, size_t n, const
 		}
 		near += (size_t)found;
 	}
-	free(cubes);
 	*share = fmax(*share, (double)near / (double)all);
 	return 0;
 }
@@ -64,7 +63,7 @@ static int find_share(const struct grid *g, const float *points, size_t n, const
 /* The points' middle, and cubes of a part of the distance from it that half of them have. */
 static int make_grid(struct grid *g, const float *points, size_t n, struct err *e)
 {
-	struct quantile_item *items = mem_alloc(n, sizeof *items, "points", e);
+	SCOPED struct quantile_item *items = mem_alloc(n, sizeof *items, "points", e);
 
 	for (int k = 0; k < 4 && items; k++) {
 		for (size_t i = 0; i < n; i++) {
@@ -81,7 +80,6 @@ static int make_grid(struct grid *g, const float *points, size_t n, struct err *
 		else
 			g->side = half / PARTS;
 	}
-	free(items);
 	return items ? 0 : -1;
 }
 

@@ -6,7 +6,6 @@
 #include "formats/splats/plyfile.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct points {
@@ -29,7 +28,7 @@ static int add(struct points *to, const double *at, struct err *e)
 
 static int read_colmap(struct points *to, const char *folder, struct err *e)
 {
-	struct colmap_points p;
+	SCOPED_BY(colmap_points_free) struct colmap_points p = {0};
 	struct err why;
 	int bad = 0;
 
@@ -38,7 +37,6 @@ static int read_colmap(struct points *to, const char *folder, struct err *e)
 	}
 	for (size_t i = 0; i < p.n && !bad; i++)
 		bad = add(to, p.places + 3 * i, e);
-	colmap_points_free(&p);
 	return bad;
 }
 
@@ -68,11 +66,11 @@ int points_read(float **points, size_t *n, const char *cameras, const double off
 {
 	static const char *const names[] = {"points3D.ply", "sparse_pc.ply", "input.ply"};
 	struct points to = {.offset = offset};
-	char *folder = file_is_dir(cameras) ? mem_strdup(cameras, e) : file_dir(cameras, e);
+	SCOPED char *folder = file_is_dir(cameras) ? mem_strdup(cameras, e) : file_dir(cameras, e);
 	int bad = !folder || (strcmp(cameras, "-") && read_colmap(&to, folder, e));
 
 	for (size_t i = 0; !bad && !to.n && strcmp(cameras, "-") && i < sizeof names / sizeof *names; i++) {
-		char *path = file_join(folder, names[i], "", e);
+		SCOPED char *path = file_join(folder, names[i], "", e);
 		struct file_map map = {0};
 		struct err ignored;
 		bad = !path;
@@ -80,9 +78,7 @@ int points_read(float **points, size_t *n, const char *cameras, const double off
 			bad = read_ply(&to, &map, e) != 0;
 			file_unmap(&map);
 		}
-		free(path);
 	}
-	free(folder);
 	*points = to.items;
 	*n = to.n;
 	return bad ? -1 : 0;

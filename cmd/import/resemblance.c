@@ -97,7 +97,7 @@ static int compare(const struct scene *s, const struct camera *full, const uint8
 static int compare_file(struct resemblance *r, const struct scene *s, const struct camera *c,
 	const char *folder, int turns, double *correlation, const struct report *to, struct err *e)
 {
-	uint8_t *rgb = NULL;
+	SCOPED uint8_t *rgb = NULL;
 	int height, width;
 	struct err why;
 
@@ -107,9 +107,7 @@ static int compare_file(struct resemblance *r, const struct scene *s, const stru
 			r->why = why;
 		return 1;
 	}
-	const int bad = compare(s, c, rgb, height, width, correlation, e);
-	free(rgb);
-	return bad;
+	return compare(s, c, rgb, height, width, correlation, e);
 }
 
 /* As it is, and where it is not alike, turned: what is like the view then is not upright. */

@@ -75,12 +75,12 @@ static int check_covered(
 	if (covered >= WEIGHING_COVERED || !s->splats.n)
 		return 0;
 	for (size_t i = 0; i < s->cameras.n; i++) {
-		char *path = in_split(&s->cameras.views[i], o->split)
-				     ? file_join(o->folder, s->cameras.views[i].name, ".safetensors", e)
-				     : NULL;
+		SCOPED char *path =
+			in_split(&s->cameras.views[i], o->split)
+				? file_join(o->folder, s->cameras.views[i].name, ".safetensors", e)
+				: NULL;
 		if (path)
 			remove(path);
-		free(path);
 	}
 	return err_set(e, ERR_FORMAT,
 		"%s: its splats are seen in none of %zu views (in at most %.2g%% of the pixels of one): the cameras are in another frame than the splats, or of another scene; import it with the cameras that it was trained with",

@@ -29,7 +29,7 @@ struct named {
 static int number(size_t *count, size_t *numbers, const struct mask **first, const struct masks *masks,
 	const char *(*name_of)(const struct mask *m), struct err *e)
 {
-	struct named *named = mem_alloc(masks->n, sizeof *named, "masks", e);
+	SCOPED struct named *named = mem_alloc(masks->n, sizeof *named, "masks", e);
 	struct names names;
 
 	for (size_t i = 0; named && i < masks->n; i++)
@@ -45,7 +45,6 @@ static int number(size_t *count, size_t *numbers, const struct mask **first, con
 		}
 		names_free(&names);
 	}
-	free(named);
 	return bad ? -1 : 0;
 }
 
@@ -69,11 +68,8 @@ static int check_sizes(const struct exporting *x, struct err *e)
 
 static int read_cameras(struct exporting *x, const char *scene, struct err *e)
 {
-	char *path = file_join(scene, "cameras.json", "", e);
-	const int bad = !path || scene_read_cameras_file(&x->cameras, path, e);
-
-	free(path);
-	return bad ? -1 : 0;
+	SCOPED char *path = file_join(scene, "cameras.json", "", e);
+	return !path || scene_read_cameras_file(&x->cameras, path, e) ? -1 : 0;
 }
 
 static int distort_masks(struct exporting *x, const char *scene, struct err *e)
@@ -93,13 +89,12 @@ static int distort_masks(struct exporting *x, const char *scene, struct err *e)
 int exporting_read(struct exporting *x, const char *masks, const char *scene, int distort, struct err *e)
 {
 	x->path = file_name(masks);
-	long *lines = NULL;
+	SCOPED long *lines = NULL;
 	const int bad = masks_read_lines(&x->masks, &lines, masks, e) ||
 			(scene && read_cameras(x, scene, e)) ||
 			(distort ? distort_masks(x, scene, e)
 				 : masks_views(&x->masks, lines, masks, &x->cameras, NULL, NULL, e));
 
-	free(lines);
 	if (bad)
 		return -1;
 	const size_t n = x->masks.n;
@@ -134,14 +129,11 @@ static const char *file_of(const char *image, const char *view, struct err *e)
 	const char *from = view_base(image);
 
 	for (;;) {
-		char *stem = mem_strdup(from, e), *whole = stem ? name_to_view(from, e) : NULL;
+		SCOPED char *stem = mem_strdup(from, e), *whole = stem ? name_to_view(from, e) : NULL;
 		if (stem)
 			stem[view_stem(stem)] = 0;
-		char *name = whole ? name_to_view(stem, e) : NULL;
+		SCOPED char *name = whole ? name_to_view(stem, e) : NULL;
 		const int is_out = !name, is_it = name && (!strcmp(name, view) || !strcmp(whole, view));
-		free(stem);
-		free(whole);
-		free(name);
 		if (is_out || is_it)
 			return is_out ? NULL : from;
 		if (from == image)
@@ -215,7 +207,7 @@ static void put_bounds(FILE *out, const struct rle *r)
 static int put_annotation(const struct exporting *x, size_t i, FILE *out, struct err *e)
 {
 	const struct mask *m = &x->masks.items[i];
-	char *counts = rle_to_string(&m->rle, e);
+	SCOPED char *counts = rle_to_string(&m->rle, e);
 	int bad = !counts;
 
 	if (!bad) {
@@ -231,7 +223,6 @@ static int put_annotation(const struct exporting *x, size_t i, FILE *out, struct
 		bad = jsonl_put_string(out, ",\"counts\":", counts, e);
 		fputs("}}", out);
 	}
-	free(counts);
 	return bad ? -1 : 0;
 }
 
@@ -285,7 +276,7 @@ int exporting_write_pngs(const struct exporting *x, const char *dir, struct err 
 		const struct mask *m = &x->masks.items[i];
 		if (picture_check_size(x->path, png_name(m), (size_t)m->rle.width, (size_t)m->rle.height, e))
 			return -1;
-		uint8_t *pixels = mem_alloc((size_t)m->rle.height, (size_t)m->rle.width, x->path, e);
+		SCOPED uint8_t *pixels = mem_alloc((size_t)m->rle.height, (size_t)m->rle.width, x->path, e);
 		const struct picture one = {.view = m->view,
 			.ref = png_name(m),
 			.height = m->rle.height,
@@ -294,7 +285,6 @@ int exporting_write_pngs(const struct exporting *x, const char *dir, struct err 
 		if (pixels)
 			rle_decode(&m->rle, pixels);
 		bad = !pixels || pictures_put(&to, &one, e);
-		free(pixels);
 	}
 	return bad;
 }

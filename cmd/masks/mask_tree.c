@@ -102,9 +102,9 @@ static int walk_views(struct walk *w, struct err *e)
 	struct dirent **names;
 	const int n = list(w->dir, &names, e);
 	const size_t most = n < 0 ? 0 : (size_t)n;
-	char **paths = mem_zalloc(most, sizeof *paths, "views", e),
-	     **views = mem_zalloc(most, sizeof *views, "views", e);
-	const char **files = mem_zalloc(most, sizeof *files, "views", e);
+	SCOPED char **paths = mem_zalloc(most, sizeof *paths, "views", e),
+		    **views = mem_zalloc(most, sizeof *views, "views", e);
+	SCOPED const char **files = mem_zalloc(most, sizeof *files, "views", e);
 	int bad = n < 0 || !paths || !views || !files;
 	size_t count = 0;
 
@@ -121,23 +121,16 @@ static int walk_views(struct walk *w, struct err *e)
 		free(paths[i]);
 		free(views[i]);
 	}
-	free(paths);
-	free(views);
-	free(files);
 	free_list(names, n);
 	return bad ? -1 : 0;
 }
 
 static int read_classes(struct walk *w, struct err *e)
 {
-	char *path = file_join(w->dir, "classes.txt", "", e), *text = NULL;
+	SCOPED char *path = file_join(w->dir, "classes.txt", "", e), *text = NULL;
 	size_t length;
-	const int bad = !path || (file_exists(path) && (textfile_read(path, &text, &length, e) ||
-							       !(w->classes = name_copy(text, e))));
-
-	free(path);
-	free(text);
-	return bad;
+	return !path || (file_exists(path) && (textfile_read(path, &text, &length, e) ||
+						      !(w->classes = name_copy(text, e))));
 }
 
 int mask_tree_each(const char *dir, mask_tree_put *put, void *to, struct err *e)

@@ -109,7 +109,7 @@ static int put_labelled(struct putting *p, const char *path, struct err *e)
 static int put_records(const char *path, struct warping *w, FILE *out, size_t *count, struct err *e)
 {
 	struct mask mask;
-	struct jsonl j;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	int got;
 
 	if (jsonl_open(&j, path, e))
@@ -130,7 +130,6 @@ static int put_records(const char *path, struct warping *w, FILE *out, size_t *c
 			break;
 		++*count;
 	}
-	jsonl_close(&j);
 	return got;
 }
 

@@ -74,7 +74,7 @@ static int warn_unnamed(const struct picture_read *p, const struct painting_name
 	const struct report *to, struct err *e)
 {
 	const size_t pixels = (size_t)p->height * (size_t)p->width;
-	uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
+	SCOPED uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
 
 	if (!sorted)
 		return -1;
@@ -96,7 +96,6 @@ static int warn_unnamed(const struct picture_read *p, const struct painting_name
 			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path, (unsigned)colour,
 				100 * share);
 	}
-	free(sorted);
 	return 0;
 }
 
@@ -125,8 +124,8 @@ int painting_two_pictures(const char *earlier, const char *later, const char *vi
 
 int painting_check_shared(const char *const *pictures, size_t count, struct err *e)
 {
-	char **views = mem_zalloc(count, sizeof *views, "views", e);
-	struct names names = {0};
+	SCOPED char **views = mem_zalloc(count, sizeof *views, "views", e);
+	SCOPED_BY(names_free) struct names names = {0};
 	size_t earlier;
 	int bad = !views;
 
@@ -137,9 +136,7 @@ int painting_check_shared(const char *const *pictures, size_t count, struct err 
 	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
 	if (twice != NAMES_NONE)
 		bad = painting_two_pictures(pictures[earlier], pictures[twice], views[twice], e);
-	names_free(&names);
 	for (size_t i = 0; views && i < count; i++)
 		free(views[i]);
-	free(views);
 	return bad ? -1 : 0;
 }

@@ -74,7 +74,7 @@ static int add_name(struct painting_names *names, const struct jsonl *j, struct 
 
 int painting_names_read(struct painting_names *names, const char *path, struct err *e)
 {
-	struct jsonl j;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	int got;
 
 	*names = (struct painting_names){0};
@@ -87,6 +87,5 @@ int painting_names_read(struct painting_names *names, const char *path, struct e
 		}
 	if (!got && !names->n)
 		got = err_set(e, ERR_FORMAT, "%s: holds no names", j.path);
-	jsonl_close(&j);
 	return got;
 }

@@ -24,7 +24,7 @@ static int add_view(struct drawing *d, const struct camera *view, struct err *e)
 int draw_choose(struct drawing *d, const struct draw_options *options, struct request *request, struct err *e)
 {
 	const struct cameras *from = &request->scene.cameras;
-	char *chosen = mem_zalloc(from->n, 1, "views", e);
+	SCOPED char *chosen = mem_zalloc(from->n, 1, "views", e);
 
 	d->options = options;
 	d->request = request;
@@ -35,7 +35,6 @@ int draw_choose(struct drawing *d, const struct draw_options *options, struct re
 				   : options->split == REQUEST_ALL ||
 					     (int)from->views[i].split == options->split)
 			bad = add_view(d, &from->views[i], e);
-	free(chosen);
 	return bad ? -1 : 0;
 }
 
@@ -136,14 +135,13 @@ static int put_view(void *data, size_t view, struct err *e)
 	struct drawing *d = data;
 	const struct request *r = d->request;
 	struct mask *shown = d->shown + view * r->responses.answers;
-	struct mask *parts = mem_alloc(r->model.lifted.objects, sizeof *parts, "masks", e);
+	SCOPED struct mask *parts = mem_alloc(r->model.lifted.objects, sizeof *parts, "masks", e);
 	int bad = !parts;
 
 	for (size_t i = 0; i < r->count && !bad; i++)
 		bad = put_sentence(d, i, view, shown, parts, e);
 	for (size_t k = 0; k < r->responses.answers; k++)
 		mask_free(&shown[k]);
-	free(parts);
 	report_step(d->to, (double)(d->first + view) + 1, NULL);
 	return bad;
 }

@@ -41,11 +41,10 @@ static int write_one(const struct showing *w, size_t object, const char *dir, st
 {
 	char *name = name_to_file(w->lifted->names[object], e),
 	     *path = name ? file_join(dir, name, ".ply", e) : NULL;
-	struct splats alone = {0};
+	SCOPED_BY(splats_free) struct splats alone = {0};
 	const int bad = !path || showing_things(&alone, w, &object, 1, LOCATE_ISOLATED, e) ||
 			ply_write(&alone, w->scene->offset, path, e);
 
-	splats_free(&alone);
 	free(path);
 	free(name);
 	return bad ? -1 : 0;

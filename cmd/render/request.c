@@ -17,7 +17,7 @@ int request_read(struct request *r, const struct request_options *options, struc
 int request_choose(struct request *r, struct err *e)
 {
 	const struct request_options *o = r->options;
-	char *chosen = mem_zalloc(r->text.n, 1, "sentences", e);
+	SCOPED char *chosen = mem_zalloc(r->text.n, 1, "sentences", e);
 	struct list_name name;
 	int bad = !chosen || !(r->refs = mem_alloc(r->text.n, sizeof *r->refs, "sentences", e)) ||
 		  (o->refs && text_mark(&r->text, o->refs, "--refs", chosen, e));
@@ -28,7 +28,6 @@ int request_choose(struct request *r, struct err *e)
 		if (o->refs ? chosen[i]
 			    : o->sentences == REQUEST_ALL || (int)r->text.splits[i] == o->sentences)
 			r->refs[r->count++] = i;
-	free(chosen);
 	return bad ? -1 : 0;
 }
 

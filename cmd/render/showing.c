@@ -65,13 +65,12 @@ static int show_answer(struct splats *to, const struct locating *r, enum locate_
 int showing_write(
 	const struct locating *r, enum locate_show show, const char *ply, const char *splat, struct err *e)
 {
-	struct splats shown;
+	SCOPED_BY(splats_free) struct splats shown = {0};
 
 	if (show_answer(&shown, r, show, e))
 		return -1;
 	int bad = (ply && ply_write(&shown, r->request.scene.offset, ply, e)) ||
 		  (splat && splat_write(&shown, (double[3]){0}, splat, e));
-	splats_free(&shown);
 	return bad ? -1 : 0;
 }
 
@@ -82,7 +81,7 @@ static int write_scene(const struct asking *a, const struct asking_answer *found
 	char text[ANYSPLATS_LOSS];
 	int lost = 0;
 	const struct scene *scene = &a->scene;
-	struct splats shown = {0};
+	SCOPED_BY(splats_free) struct splats shown = {0};
 	struct showing w = {0};
 	int bad = showing_open(&w, scene, &a->model.lifted, a->extents, e) ||
 		  showing_things(&shown, &w, found->things, found->count, show, e) ||
@@ -94,7 +93,6 @@ static int write_scene(const struct asking *a, const struct asking_answer *found
 
 	for (size_t i = 0; i < scene->splats.n && !bad; i++)
 		*taken += w.of[i] != 0;
-	splats_free(&shown);
 	showing_free(&w);
 	return bad ? -1 : 0;
 }

@@ -64,7 +64,7 @@ static int put_masks(struct report_set *s, const struct collecting *c, const str
 
 static int ask(const struct report_run *r, const struct text *t, struct responses *a, struct err *e)
 {
-	size_t *which = mem_alloc(t->n, sizeof *which, "sentences", e);
+	SCOPED size_t *which = mem_alloc(t->n, sizeof *which, "sentences", e);
 	const struct anymodel_ask q = {.scene = &r->scene,
 		.text = t,
 		.model_path = r->lifted_path,
@@ -79,9 +79,7 @@ static int ask(const struct report_run *r, const struct text *t, struct response
 		return -1;
 	for (size_t i = 0; i < t->n; i++)
 		which[i] = i;
-	const int bad = anymodel_answer(&r->lifted, &q, a, e);
-	free(which);
-	return bad;
+	return anymodel_answer(&r->lifted, &q, a, e);
 }
 
 int report_answer(const struct report_run *r, struct report_set *s, const struct report *to, struct err *e)
@@ -89,7 +87,7 @@ int report_answer(const struct report_run *r, struct report_set *s, const struct
 	struct camera views[MOST_VIEWS];
 	const size_t most = r->options->views < MOST_VIEWS ? (size_t)r->options->views : MOST_VIEWS;
 	const size_t n = cameras_spread(&r->scene.cameras, most, (int)r->options->width, views);
-	struct responses a = {0};
+	SCOPED_BY(responses_free) struct responses a = {0};
 	struct collecting c = {to, &a, NULL};
 	const struct answer_question q = {.splats = &r->scene.splats, .responses = &a};
 	const struct answer_calls calls = {&c, keep_mask, step};
@@ -103,6 +101,5 @@ int report_answer(const struct report_run *r, struct report_set *s, const struct
 	for (size_t k = 0; c.shown && k < n * a.answers; k++)
 		rle_free(&c.shown[k]);
 	free(c.shown);
-	responses_free(&a);
 	return bad ? -1 : 0;
 }

@@ -1,6 +1,7 @@
 #include "cmd/report/reporting.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "formats/records/jsonl.h"
 #include "formats/arrays/safetensors.h"
 
@@ -26,11 +27,10 @@ static char *read_log(const char *run, const char *step, const char *suffix)
 	struct err ignored;
 	size_t length;
 	char *text = NULL, *dir = file_join(run, "log", "", &ignored);
-	char *path = dir ? file_join(dir, step, suffix, &ignored) : NULL;
+	SCOPED char *path = dir ? file_join(dir, step, suffix, &ignored) : NULL;
 
 	if (!path || !file_exists(path) || file_read(path, &text, &length, &ignored))
 		text = NULL;
-	free(path);
 	free(dir);
 	return text;
 }
@@ -60,14 +60,13 @@ cJSON *report_steps(const char *run, struct err *e)
 	int fine = 1;
 
 	for (size_t k = 0; k < sizeof steps / sizeof *steps && fine; k++) {
-		char *log = read_log(run, steps[k], ""), *command = read_log(run, steps[k], ".command");
+		SCOPED char *log = read_log(run, steps[k], ""),
+			    *command = read_log(run, steps[k], ".command");
 		cJSON *one = log ? cJSON_CreateObject() : NULL;
 		if (log)
 			fine = cJSON_AddItemToArray(list, one) &&
 			       cJSON_AddStringToObject(one, "step", steps[k]) && add_cost(one, log) &&
 			       (!command || cJSON_AddStringToObject(one, "command", command));
-		free(log);
-		free(command);
 	}
 	return finish(list, fine, e);
 }
@@ -93,7 +92,7 @@ static int read_losses(cJSON *to, const char *path, struct err *e)
 										    "held_iou", NULL};
 	cJSON *lines = cJSON_AddArrayToObject(to, "lines"), *helds = cJSON_AddArrayToObject(to, "held");
 	cJSON *line;
-	struct jsonl j;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	int got, fine = 1;
 
 	if (jsonl_open(&j, path, e))
@@ -103,7 +102,6 @@ static int read_losses(cJSON *to, const char *path, struct err *e)
 		fine = add_numbers(is_held ? helds : lines, line, is_held ? held : own);
 		cJSON_Delete(line);
 	}
-	jsonl_close(&j);
 	return fine ? got : err_set(e, ERR_SYSTEM, "page: out of memory");
 }
 
@@ -129,7 +127,7 @@ cJSON *report_losses(const char *run, struct err *e)
 
 static int add_metadata(cJSON *to, const char *path, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 	int fine = 1;
 
 	if (safetensors_open(&st, path, e))
@@ -139,7 +137,6 @@ static int add_metadata(cJSON *to, const char *path, struct err *e)
 		if (strncmp(m->key, "crc32.", 6) && strlen(m->value) <= LONGEST)
 			fine = cJSON_AddStringToObject(to, m->key, m->value) != NULL;
 	}
-	safetensors_close(&st);
 	if (!fine)
 		err_set(e, ERR_SYSTEM, "page: out of memory");
 	return fine;
@@ -154,13 +151,12 @@ cJSON *report_settings(const char *run, struct err *e)
 	int fine = 1;
 
 	for (size_t k = 0; k < sizeof files / sizeof *files && fine; k++) {
-		char *path = file_join(run, files[k], "", e);
+		SCOPED char *path = file_join(run, files[k], "", e);
 		cJSON *one = path && file_exists(path) ? cJSON_CreateObject() : NULL;
 		if (one)
 			fine = cJSON_AddItemToArray(list, one) &&
 			       cJSON_AddStringToObject(one, "file", files[k]) &&
 			       add_metadata(cJSON_AddObjectToObject(one, "metadata"), path, e);
-		free(path);
 	}
 	return finish(list, fine, e);
 }

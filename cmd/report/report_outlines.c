@@ -36,7 +36,7 @@ static char *trace_path(const struct rle *mask, int height, int width, struct er
 {
 	struct rle small = {0};
 	struct trace t = {0};
-	uint8_t *pixels = mem_alloc((size_t)height, (size_t)width, "mask", e);
+	SCOPED uint8_t *pixels = mem_alloc((size_t)height, (size_t)width, "mask", e);
 	char *path = NULL;
 
 	if (pixels && !rle_resize(&small, mask, height, width, e)) {
@@ -45,7 +45,6 @@ static char *trace_path(const struct rle *mask, int height, int width, struct er
 	}
 	trace_free(&t);
 	rle_free(&small);
-	free(pixels);
 	return path;
 }
 

@@ -39,13 +39,11 @@ static int read_scene(struct report_run *r, struct err *e)
 
 	if (!file_exists(run))
 		return err_set(e, ERR_SYSTEM, "%s: No such file or directory", run);
-	char *path = part(r, "scene", e);
+	SCOPED char *path = part(r, "scene", e);
 	if (!path)
 		return err_set(e, ERR_SYSTEM,
 			"%s: no scene in it: 'make -f pipelines/lift.mk SCENE=%s ...' makes one", run, run);
-	const int bad = scene_read(&r->scene, path, e);
-	free(path);
-	return bad;
+	return scene_read(&r->scene, path, e);
 }
 
 static int read_lifted(struct report_run *r, struct err *e)
@@ -103,7 +101,8 @@ static int score_set(const struct report_run *r, struct report_set *s, struct er
 static int read_set(struct report_run *r, size_t place, struct err *e)
 {
 	struct report_set *s = &r->sets[r->set_count];
-	char *text = part(r, places[place].text, e), *masks = text ? part(r, places[place].masks, e) : NULL;
+	SCOPED char *text = part(r, places[place].text, e),
+		    *masks = text ? part(r, places[place].masks, e) : NULL;
 	int bad = 0;
 
 	if (text && masks) {
@@ -114,8 +113,6 @@ static int read_set(struct report_run *r, size_t place, struct err *e)
 		bad = bad || (r->truth_path && score_set(r, s, e));
 		s->masks.path = NULL;
 	}
-	free(text);
-	free(masks);
 	return bad ? -1 : 0;
 }
 

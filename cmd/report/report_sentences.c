@@ -4,7 +4,6 @@
 #include "cmd/render/request.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct card {
@@ -177,7 +176,7 @@ static cJSON *set_of(
 	const struct report_run *r, const struct report_set *s, struct report_outlines *o, struct err *e)
 {
 	const int is_lifted = r->has_lifted && !strcmp(s->way, "lifted");
-	struct report_reason *reasons = mem_zalloc(s->text.n, sizeof *reasons, "sentences", e);
+	SCOPED struct report_reason *reasons = mem_zalloc(s->text.n, sizeof *reasons, "sentences", e);
 	struct card c = {.run = r, .set = s, .outlines = o};
 	cJSON *one = cJSON_CreateObject(), *list = cJSON_CreateArray();
 	int bad = !reasons || (is_lifted && report_reasons(r, s, reasons, e)) ||
@@ -188,7 +187,6 @@ static cJSON *set_of(
 			    (!s->sum.pairs || add_score(one, &s->sum))))
 		bad = err_set(e, ERR_SYSTEM, "page: out of memory");
 	report_reasons_free(reasons, s->text.n);
-	free(reasons);
 	if (bad)
 		cJSON_Delete(list);
 	else if (report_add(one, "sentences", list))

@@ -30,7 +30,7 @@ static int by_group(const void *a, const void *b)
 static int find_groups(const struct report_run *r, size_t *groups, struct err *e)
 {
 	const struct lifted *l = &r->lifted.lifted;
-	float *best = mem_zalloc(r->scene.splats.n, sizeof *best, "splats", e);
+	SCOPED float *best = mem_zalloc(r->scene.splats.n, sizeof *best, "splats", e);
 
 	if (!best)
 		return -1;
@@ -42,7 +42,6 @@ static int find_groups(const struct report_run *r, size_t *groups, struct err *e
 			best[i] = l->share[k];
 			groups[i] = 1 + o;
 		}
-	free(best);
 	return 0;
 }
 
@@ -89,8 +88,8 @@ static void pack(struct report_splats *to, const struct splats *s, const struct 
 int report_splats_make(struct report_splats *s, const struct report_run *r, struct err *e)
 {
 	const struct splats *from = &r->scene.splats;
-	size_t *groups = mem_zalloc(from->n, sizeof *groups, "splats", e);
-	struct shown *shown = mem_alloc(from->n, sizeof *shown, "splats", e);
+	SCOPED size_t *groups = mem_zalloc(from->n, sizeof *groups, "splats", e);
+	SCOPED struct shown *shown = mem_alloc(from->n, sizeof *shown, "splats", e);
 
 	*s = (struct report_splats){.groups = 1 + (r->has_lifted ? r->lifted.lifted.objects : 0)};
 	s->counts = mem_zalloc(s->groups, sizeof *s->counts, "splats", e);
@@ -103,8 +102,6 @@ int report_splats_make(struct report_splats *s, const struct report_run *r, stru
 	}
 	if (!bad)
 		pack(s, from, shown);
-	free(groups);
-	free(shown);
 	return bad ? -1 : 0;
 }
 

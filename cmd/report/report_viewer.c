@@ -10,7 +10,6 @@
 #include "geom/up.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <zlib.h>
 
 __asm__(".section .rodata\n"
@@ -34,8 +33,8 @@ static const struct {
 static int put_packed(FILE *out, const char *attributes, const void *bytes, size_t n, struct err *e)
 {
 	uLongf length = compressBound((uLong)n);
-	uint8_t *packed = mem_alloc(length, 1, "viewer", e);
-	char *text = NULL;
+	SCOPED uint8_t *packed = mem_alloc(length, 1, "viewer", e);
+	SCOPED char *text = NULL;
 
 	if (packed && compress2(packed, &length, bytes, (uLong)n, Z_BEST_COMPRESSION) != Z_OK)
 		err_set(e, ERR_SYSTEM, "viewer: cannot be packed");
@@ -43,21 +42,18 @@ static int put_packed(FILE *out, const char *attributes, const void *bytes, size
 		text = base64_text("", packed, length, e);
 	if (text)
 		fprintf(out, "<script type=\"text/plain\" %s>%s</script>\n", attributes, text);
-	free(packed);
-	free(text);
 	return text ? 0 : -1;
 }
 
 static int put_modules(FILE *out, const char *dir, struct err *e)
 {
 	for (size_t k = 0; k < sizeof modules / sizeof *modules; k++) {
-		char *path = file_join(dir, modules[k].file, "", e), *bytes = NULL, attributes[80];
+		SCOPED char *path = file_join(dir, modules[k].file, "", e), *bytes = NULL;
+		char attributes[80];
 		size_t n;
 		snprintf(attributes, sizeof attributes, "data-module=\"%s\"", modules[k].name);
 		const int bad =
 			!path || file_read(path, &bytes, &n, e) || put_packed(out, attributes, bytes, n, e);
-		free(path);
-		free(bytes);
 		if (bad)
 			return -1;
 	}
@@ -131,13 +127,11 @@ static int add_licences(cJSON *to, const char *dir, struct err *e)
 	int bad = 0;
 
 	for (size_t k = 0; k < 2 && !bad; k++) {
-		char *path = file_join(dir, files[k], "", e), *text = NULL;
+		SCOPED char *path = file_join(dir, files[k], "", e), *text = NULL;
 		size_t n;
 		bad = !path || file_read(path, &text, &n, e);
 		if (!bad && !cJSON_AddItemToArray(list, cJSON_CreateString(text)))
 			bad = err_set(e, ERR_SYSTEM, "viewer: out of memory");
-		free(path);
-		free(text);
 	}
 	return bad ? -1 : 0;
 }
@@ -184,7 +178,7 @@ int report_viewer_put(FILE *out, const struct report_run *r, const struct report
 
 	if (r->options->is_plain)
 		return 0;
-	char *dir = given ? mem_strdup(given, e) : cache_folder("viewer", e);
+	SCOPED char *dir = given ? mem_strdup(given, e) : cache_folder("viewer", e);
 	if (!dir)
 		return given ? -1 : 0;
 	int bad = 0;
@@ -192,6 +186,5 @@ int report_viewer_put(FILE *out, const struct report_run *r, const struct report
 		bad = put_viewer(out, r, dir, e);
 	else
 		report_note(to, 1, "%s: no viewer there: 'make viewer' fetches one", dir);
-	free(dir);
 	return bad;
 }

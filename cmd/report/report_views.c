@@ -5,7 +5,6 @@
 #include "base/mem.h"
 #include "formats/images/jpeg.h"
 #include "cmd/import/warping.h"
-#include "formats/images/png.h"
 #include "splat/render.h"
 
 #include <math.h>
@@ -58,7 +57,7 @@ static int shrink(struct picture_rgb *p, int height, int width, struct err *e)
 static int read_photograph(const struct report_run *r, const struct camera *c, struct picture_rgb *p,
 	const struct report *to, struct err *e)
 {
-	char *path = c->image ? file_join(r->scene.path, c->image, "", e) : NULL;
+	SCOPED char *path = c->image ? file_join(r->scene.path, c->image, "", e) : NULL;
 	int found = 0;
 
 	if (path && file_exists(path)) {
@@ -66,7 +65,6 @@ static int read_photograph(const struct report_run *r, const struct camera *c, s
 		if (!found)
 			report_warn(to, "%s; the view is rendered instead", e->message);
 	}
-	free(path);
 	return found;
 }
 
@@ -74,7 +72,7 @@ static int render(const struct report_run *r, const struct camera *c, struct pic
 {
 	const size_t n = 3 * (size_t)c->height * (size_t)c->width;
 	struct render_view *v = render_prepare(&r->scene.splats, c, e);
-	float *rgb = mem_alloc(n, sizeof *rgb, "picture", e);
+	SCOPED float *rgb = mem_alloc(n, sizeof *rgb, "picture", e);
 	const float black[3] = {0};
 
 	p->rgb = mem_alloc(n, 1, "picture", e);
@@ -83,7 +81,6 @@ static int render(const struct report_run *r, const struct camera *c, struct pic
 	const int bad = !v || !rgb || !p->rgb || render_colors(v, &r->scene.splats, c, black, rgb, e);
 	for (size_t i = 0; i < n && !bad; i++)
 		p->rgb[i] = (uint8_t)lrintf(255 * rgb[i]);
-	free(rgb);
 	render_free(v);
 	return bad ? -1 : 0;
 }
@@ -106,7 +103,7 @@ static cJSON *view_of(
 	struct picture_rgb p = {0};
 	const int is_photograph = read_photograph(r, c, &p, to, e);
 	const int bad = is_photograph ? shrink(&p, c->height, c->width, e) : render(r, c, &p, e);
-	char *text = bad ? NULL : picture_text(&p, c->name, e);
+	SCOPED char *text = bad ? NULL : picture_text(&p, c->name, e);
 	cJSON *view = cJSON_CreateObject();
 
 	free(p.rgb);
@@ -118,7 +115,6 @@ static cJSON *view_of(
 		   cJSON_AddStringToObject(view, "picture", text);
 	if (text && !fine)
 		err_set(e, ERR_SYSTEM, "page: out of memory");
-	free(text);
 	if (fine)
 		return view;
 	cJSON_Delete(view);

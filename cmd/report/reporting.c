@@ -2,6 +2,7 @@
 #include "cmd/report/reporting.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/path.h"
 
 #include <stdlib.h>
@@ -36,16 +37,12 @@ static int add_scene(cJSON *page, const struct report_run *r)
 /* The folder's own name, also where it is called "." */
 static int add_name(cJSON *page, const char *run)
 {
-	char *full = realpath(run, NULL);
+	SCOPED char *full = realpath(run, NULL);
 	int length;
 	const char *last = path_last(full ? full : run, &length);
-	char *name = strndup(last, (size_t)length);
-	const int fine = name && cJSON_AddStringToObject(page, "name", name) &&
-			 cJSON_AddStringToObject(page, "version", VERSION);
-
-	free(name);
-	free(full);
-	return fine;
+	SCOPED char *name = strndup(last, (size_t)length);
+	return name && cJSON_AddStringToObject(page, "name", name) &&
+	       cJSON_AddStringToObject(page, "version", VERSION);
 }
 
 /* What the page shows, but for the viewer. */

@@ -12,7 +12,7 @@
 
 int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 	int bad;
 
 	*m = (struct anymodel){0};
@@ -35,7 +35,6 @@ int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 		m->origin.scene = m->selection.scene;
 	else if (!bad && !m->is_lifted)
 		m->origin = m->trained.origin;
-	safetensors_close(&st);
 	return bad ? -1 : 0;
 }
 
@@ -85,7 +84,7 @@ static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, str
 static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from, struct err *e)
 {
 	const struct cameras *c = &q->scene->cameras;
-	struct names names;
+	SCOPED_BY(names_free) struct names names = {0};
 	int bad = 0;
 
 	if (names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e))
@@ -103,7 +102,6 @@ static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from,
 		else
 			from[i] = (struct viewpoint){.kind = VIEWPOINT_CAMERA, .camera = &c->views[v]};
 	}
-	names_free(&names);
 	return bad;
 }
 
@@ -124,8 +122,8 @@ static int answer_selected(
 	const struct selection *s, const struct anymodel_ask *q, struct responses *a, struct err *e)
 {
 	const struct responses_selection of = {s->gaussians, s->indptr, s->index};
-	size_t *row = mem_alloc(q->count, sizeof *row, "sentences", e);
-	struct names refs = {0};
+	SCOPED size_t *row = mem_alloc(q->count, sizeof *row, "sentences", e);
+	SCOPED_BY(names_free) struct names refs = {0};
 	int bad = !row || names_make(&refs, s->refs, sizeof *s->refs, 0, s->n, e);
 
 	for (size_t i = 0; i < q->count && !bad; i++) {
@@ -136,8 +134,6 @@ static int answer_selected(
 				file_name(q->model_path), ref, file_name(q->text_path));
 	}
 	bad = bad || responses_selected(a, &of, row, q->count, e);
-	names_free(&refs);
-	free(row);
 	return bad ? -1 : 0;
 }
 

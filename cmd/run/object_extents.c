@@ -10,8 +10,8 @@ static int find_one(
 {
 	const size_t first = (size_t)l->indptr[object], n = (size_t)l->indptr[object + 1] - first;
 	struct err ignored;
-	int32_t *ids = mem_alloc(n, sizeof *ids, "object", &ignored);
-	float *responses = mem_alloc(n, sizeof *responses, "object", &ignored);
+	SCOPED int32_t *ids = mem_alloc(n, sizeof *ids, "object", &ignored);
+	SCOPED float *responses = mem_alloc(n, sizeof *responses, "object", &ignored);
 	size_t count = 0;
 
 	for (size_t i = 0; i < n && ids && responses; i++) {
@@ -21,10 +21,7 @@ static int find_one(
 		ids[count] = l->index[first + i];
 		responses[count++] = response;
 	}
-	int bad = !ids || !responses || extent_find(to, s, ids, responses, count, up, &ignored);
-	free(ids);
-	free(responses);
-	return bad;
+	return !ids || !responses || extent_find(to, s, ids, responses, count, up, &ignored);
 }
 
 struct extent *object_extents(

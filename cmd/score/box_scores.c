@@ -58,8 +58,8 @@ static int make(
 {
 	const size_t n = s->truth.n;
 	struct mask_lookup of = {0};
-	struct mask *names = boxes_names(&s->truth, e);
-	char *is_met = mem_zalloc(n, 1, "boxes", e);
+	SCOPED struct mask *names = boxes_names(&s->truth, e);
+	SCOPED char *is_met = mem_zalloc(n, 1, "boxes", e);
 	int bad = -1;
 
 	s->pairs = mem_alloc(n + predictions->n, sizeof *s->pairs, "boxes", e);
@@ -72,18 +72,15 @@ static int make(
 				     file_name(truth_path));
 	}
 	mask_lookup_free(&of);
-	free(names);
-	free(is_met);
 	return bad;
 }
 
 int box_scores_read(struct box_scores *s, const char *truth, const char *predictions, struct err *e)
 {
-	struct box_set p = {0};
+	SCOPED_BY(boxes_free) struct box_set p = {0};
 
 	*s = (struct box_scores){0};
 	int bad = boxes_read(&s->truth, truth, e) || boxes_read(&p, predictions, e) || make(s, &p, truth, e);
-	boxes_free(&p);
 	if (bad)
 		box_scores_free(s);
 	return bad ? -1 : 0;

@@ -1,6 +1,7 @@
 #include "cmd/score/score_masks.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/names.h"
 #include "mask/mask_index.h"
 
@@ -46,7 +47,7 @@ int score_masks_read(struct score_masks *s, const char *path, struct err *e)
 int score_masks_check(const struct score_masks *s, const struct score_masks *truth, struct err *e)
 {
 	const struct mask *of = truth->set.items;
-	struct names views;
+	SCOPED_BY(names_free) struct names views = {0};
 	int bad = names_make(&views, of, sizeof *of, offsetof(struct mask, view), truth->n, e);
 
 	for (size_t i = 0; i < s->n && !bad; i++) {
@@ -55,6 +56,5 @@ int score_masks_check(const struct score_masks *s, const struct score_masks *tru
 			bad = masks_check_shape(&s->set.items[i], "its truth", of[at].rle.height,
 				of[at].rle.width, s->path, s->lines[i], e);
 	}
-	names_free(&views);
 	return bad;
 }

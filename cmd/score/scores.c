@@ -4,7 +4,6 @@
 #include "base/number.h"
 
 #include <cjson/cJSON.h>
-#include <stdlib.h>
 #include <string.h>
 
 void scores_free(struct scores *s)

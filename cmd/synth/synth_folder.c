@@ -9,21 +9,17 @@
 #include "synth/outline.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static int open_in(struct file_out *out, const char *dir, const char *name, struct err *e)
 {
-	char *path = file_join(dir, name, "", e);
-	int bad = !path || file_out_open(out, path, e) ? -1 : 0;
-
-	free(path);
-	return bad;
+	SCOPED char *path = file_join(dir, name, "", e);
+	return !path || file_out_open(out, path, e) ? -1 : 0;
 }
 
 /* Makes the folder of the photographs and tells each camera the name of its own. */
 static int name_photographs(const struct synth_folder *f, struct err *e)
 {
-	char *images = file_join(f->dir, "images", "", e);
+	SCOPED char *images = file_join(f->dir, "images", "", e);
 	int bad = images ? 0 : -1;
 
 	if (!bad && file_make_dir(images, e))
@@ -33,21 +29,18 @@ static int name_photographs(const struct synth_folder *f, struct err *e)
 		c->image = file_join(images, c->name, ".png", e);
 		bad = c->image ? 0 : -1;
 	}
-	free(images);
 	return bad;
 }
 
 static int write_model(const struct synth_folder *f, struct err *e)
 {
 	static const double offset[3] = {0};
-	char *ply = file_join(f->dir, "point_cloud.ply", "", e);
-	char *sparse = file_join(f->dir, "sparse/0", "", e);
+	SCOPED char *ply = file_join(f->dir, "point_cloud.ply", "", e);
+	SCOPED char *sparse = file_join(f->dir, "sparse/0", "", e);
 	int bad = -1;
 
 	if (ply && sparse && !ply_write(&f->scene->splats, offset, ply, e))
 		bad = colmap_write_text(&f->scene->cameras, sparse, e);
-	free(ply);
-	free(sparse);
 	return bad;
 }
 
@@ -125,8 +118,8 @@ static int write_photograph(
 {
 	static const float background[3] = {0.6f, 0.62f, 0.65f};
 	size_t values = 3 * (size_t)c->width * (size_t)c->height;
-	float *rgb = mem_alloc(values, sizeof *rgb, "photograph", e);
-	uint8_t *bytes = mem_alloc(values, 1, "photograph", e);
+	SCOPED float *rgb = mem_alloc(values, sizeof *rgb, "photograph", e);
+	SCOPED uint8_t *bytes = mem_alloc(values, 1, "photograph", e);
 	int bad = !rgb || !bytes || render_colors(view, &f->scene->splats, c, background, rgb, e) ? -1 : 0;
 
 	if (!bad) {
@@ -134,8 +127,6 @@ static int write_photograph(
 			bytes[i] = (uint8_t)lrintf(255 * rgb[i]);
 		bad = png_write(c->image, bytes, c->height, c->width, 3, e);
 	}
-	free(rgb);
-	free(bytes);
 	return bad;
 }
 
@@ -159,7 +150,7 @@ static int put_masks(
 static int put_candidates(
 	struct synth_folder *f, int number, const struct camera *c, const uint8_t *masks, struct err *e)
 {
-	struct masks found = {0};
+	SCOPED_BY(masks_free) struct masks found = {0};
 	const int is_test = c->split == SPLIT_TEST;
 	FILE *to = is_test ? f->test_candidates.stream : f->candidates.stream;
 	int bad = synth_detect(&found, f->detector, number, c->name,
@@ -167,7 +158,6 @@ static int put_candidates(
 
 	for (size_t i = 0; i < found.n && !bad; i++)
 		bad = masks_put(to, &found.items[i], e);
-	masks_free(&found);
 	return bad;
 }
 
@@ -186,7 +176,7 @@ int synth_folder_view(struct synth_folder *f, int number, struct err *e)
 {
 	const struct camera *c = &f->scene->cameras.views[number];
 	size_t pixels = (size_t)c->width * (size_t)c->height, n = (size_t)f->scene->object_count;
-	uint8_t *visible = mem_alloc(n, pixels, "truth", e), *whole = mem_alloc(n, pixels, "truth", e);
+	SCOPED uint8_t *visible = mem_alloc(n, pixels, "truth", e), *whole = mem_alloc(n, pixels, "truth", e);
 	struct render_view *view = visible && whole ? render_prepare(&f->scene->splats, c, e) : NULL;
 	int bad = !view || write_photograph(f, c, view, e) ||
 		  synth_truth_visible(f->scene, view, pixels, visible, e) ||
@@ -197,8 +187,6 @@ int synth_folder_view(struct synth_folder *f, int number, struct err *e)
 		count_visible(f, c, visible, whole);
 	if (view)
 		render_free(view);
-	free(visible);
-	free(whole);
 	return bad ? -1 : 0;
 }
 

@@ -2,7 +2,8 @@
  * for them. */
 #include "cmd/synth/benchmark.h"
 
-#include <stdlib.h>
+#include "base/mem.h"
+
 #include <string.h>
 
 /* Words with spaces between. */
@@ -158,11 +159,8 @@ static void put_sentence(FILE *to, const struct synth_sentence *x, const struct 
 
 static int open_in(struct file_out *out, const char *dir, const char *name, struct err *e)
 {
-	char *path = file_join(dir, name, "", e);
-	int bad = !path || file_out_open(out, path, e) ? -1 : 0;
-
-	free(path);
-	return bad;
+	SCOPED char *path = file_join(dir, name, "", e);
+	return !path || file_out_open(out, path, e) ? -1 : 0;
 }
 
 int synth_unseen_files(const char *dir, const struct synth_sentences *list,

@@ -1,6 +1,7 @@
 #include "cmd/text/encode.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 
 #include <stdlib.h>
 
@@ -13,9 +14,8 @@ char *cache_folder(const char *name, struct err *e)
 		err_set(e, ERR_USAGE, "no %s is named, and HOME is not set", name);
 		return NULL;
 	}
-	char *dir = has_cache ? file_join(cache, "refersplat", "", e)
-			      : file_join(home, ".cache/refersplat", "", e);
+	SCOPED char *dir = has_cache ? file_join(cache, "refersplat", "", e)
+				     : file_join(home, ".cache/refersplat", "", e);
 	char *path = dir ? file_join(dir, name, "", e) : NULL;
-	free(dir);
 	return path;
 }

@@ -57,7 +57,7 @@ static int add_masks(struct training *t, const char *path, struct mask_reading *
 {
 	struct err reason;
 	struct mask m;
-	struct jsonl j;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	size_t later = 0;
 	int more;
 
@@ -68,7 +68,6 @@ static int add_masks(struct training *t, const char *path, struct mask_reading *
 			more = -1;
 			break;
 		}
-	jsonl_close(&j);
 	if (more || !supervision_index(&t->masks, &later, &reason))
 		return more;
 	if (reason.code != ERR_FORMAT)
