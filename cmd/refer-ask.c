@@ -179,6 +179,7 @@ int main(int argc, char **argv)
 		CLI_SCENE " model camera encoder:" ENCODER_PARTS " RUN:scene|lifted|*.safetensors", "picture",
 		NULL);
 	options.asking.run = c.operands[0];
+	options.asking.is_json = c.json;
 	const int bad = run(&c, &a, &status, &e);
 	asking_close(&a);
 	return bad ? cli_fail(&c, &e) : (cli_done(&c), status);

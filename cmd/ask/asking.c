@@ -115,7 +115,8 @@ void asking_close(struct asking *a)
 struct watched {
 	struct asking_answer *answer;
 	const char *question;
-	int is_explained, is_out_of_memory;
+	const struct asking_options *options;
+	int is_out_of_memory;
 };
 
 static void watch(void *data, size_t i, const struct meaning *m)
@@ -129,7 +130,7 @@ static void watch(void *data, size_t i, const struct meaning *m)
 	w->answer->has_centres = 1;
 	const struct explained x = {m, m->sentence->parse, w->question};
 	explain_refusal(&x, w->answer->reason);
-	if (w->is_explained && !(w->answer->explained = explain_meaning(&x)))
+	if (w->options->is_explained && !(w->answer->explained = explain_meaning(&x, w->options->is_json)))
 		w->is_out_of_memory = 1;
 }
 
@@ -147,7 +148,7 @@ void asking_answer_free(struct asking_answer *answer)
 	free(answer->things);
 	free(answer->probability);
 	free(answer->centres);
-	cJSON_Delete(answer->explained);
+	free(answer->explained);
 }
 
 /* Whether object o is told before another: the likelier one, and of two as likely by name. */
@@ -236,7 +237,7 @@ static size_t find_ahead(const struct asking *a, const char *question)
 int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
 	struct err *e)
 {
-	struct watched w = {.answer = answer, .question = question, .is_explained = a->options->is_explained};
+	struct watched w = {.answer = answer, .question = question, .options = a->options};
 	SCOPED_BY(encoding_free) struct encoding alone = {0};
 	const struct text *text = &a->ahead.text;
 	size_t r = find_ahead(a, question);

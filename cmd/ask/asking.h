@@ -25,13 +25,13 @@ int run_folder_find(struct run_folder *f, const char *run, const struct run_fold
 void run_folder_free(struct run_folder *f);
 
 struct asking_options {
-	const char *run;	 /* the folder */
-	struct run_folder given; /* files in place of the folder's */
-	const char *viewpoint;	 /* VIEW or x,y,z; NULL: the usual one */
-	const char *camera;	 /* a file of one camera that is not in the scene; NULL: none */
-	const char *without;	 /* PART,... as choose_without takes it; may be NULL */
-	double least;		 /* a question less likely to mean anything is refused */
-	int is_explained;
+	const char *run;	   /* the folder */
+	struct run_folder given;   /* files in place of the folder's */
+	const char *viewpoint;	   /* VIEW or x,y,z; NULL: the usual one */
+	const char *camera;	   /* a file of one camera that is not in the scene; NULL: none */
+	const char *without;	   /* PART,... as choose_without takes it; may be NULL */
+	double least;		   /* a question less likely to mean anything is refused */
+	int is_explained, is_json; /* explanations are JSON, else lines of text */
 };
 
 struct asking {
@@ -69,7 +69,7 @@ struct asking_answer {
 	char reason[EXPLAIN_REASON]; /* of a refusal */
 	double (*centres)[3];	     /* (objects) to the right, away and up, as seen from the viewpoint */
 	int has_centres;
-	cJSON *explained; /* of explain_meaning; NULL where it was not asked for */
+	char *explained; /* of explain_meaning; NULL where it was not asked for */
 };
 
 /* Encodes questions that are about to be asked all at once, which takes less time than one by one. No answer

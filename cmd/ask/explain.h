@@ -5,7 +5,6 @@
 #include "ask/meaning.h"
 #include "lang/parse.h"
 
-#include <cjson/cJSON.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -45,11 +44,8 @@ void explain_refusal(const struct explained *x, char reason[EXPLAIN_REASON]);
 /* {"parse":"the mug, left of (the
  * bowl)","confidence":0.9,"unexplained":["..."],"candidates":[{"name":"mug","fit":0.8,
  * "parts":[{"part":"noun","words":"mug","value":1}]}],"anchors":[{"words":"the
- * bowl","name":"bowl","there":0.9}]}; the best EXPLAIN_MOST candidates come first. cJSON_Delete it; NULL
- * where memory is out. */
-cJSON *explain_meaning(const struct explained *x);
-
-/* The same as lines of text. */
-void explain_put(const cJSON *explained, FILE *out);
+ * bowl","name":"bowl","there":0.9}]}; the best EXPLAIN_MOST candidates come first. Or the same as
+ * lines of text, where is_json is 0. free() it; NULL where memory is out. */
+char *explain_meaning(const struct explained *x, int is_json);
 
 #endif

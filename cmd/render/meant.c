@@ -12,38 +12,31 @@ cJSON *meant_names(const struct text *t, size_t sentence)
 	return object ? cJSON_CreateStringArray(&object, 1) : NULL;
 }
 
-static int has_name(const cJSON *list, const char *name)
+/* The object that a model calls so; `objects` where there is none. */
+static size_t find_object(const struct lifted *l, const char *name)
 {
-	const cJSON *one;
+	size_t o = 0;
 
-	cJSON_ArrayForEach(one, list) if (!strcmp(cJSON_GetStringValue(one), name)) return 1;
-	return 0;
+	while (o < l->objects && strcmp(l->names[o], name))
+		o++;
+	return o;
 }
 
-/* Whether the model has all objects of these names. */
-static int are_known(const struct lifted *l, const cJSON *names)
+int meant_is(const cJSON *meant, const struct lifted *l, const size_t *things, size_t count)
 {
 	const cJSON *one;
+	int found = 0;
 
-	cJSON_ArrayForEach(one, names)
+	cJSON_ArrayForEach(one, meant)
 	{
-		size_t o = 0;
-		while (o < l->objects && strcmp(l->names[o], cJSON_GetStringValue(one)))
-			o++;
-		if (o == l->objects)
-			return 0;
+		const char *name = cJSON_GetStringValue(one);
+		if (find_object(l, name) == l->objects)
+			return -1;
+		size_t k = 0;
+		while (k < count && strcmp(l->names[things[k]], name))
+			k++;
+		found += k < count;
 	}
-	return 1;
-}
-
-int meant_is(const cJSON *meant, const struct lifted *l, const cJSON *answered)
-{
-	const cJSON *one;
-
-	if (!meant || !are_known(l, meant))
-		return -1;
-	if (cJSON_GetArraySize(meant) != cJSON_GetArraySize(answered))
-		return 0;
-	cJSON_ArrayForEach(one, meant) if (!has_name(answered, cJSON_GetStringValue(one))) return 0;
-	return 1;
+	const int n = cJSON_GetArraySize(meant);
+	return meant ? found == n && (size_t)n == count : -1;
 }

@@ -21,14 +21,11 @@ static void say(char *out, size_t size, const char *format, ...)
 static int is_right(const struct request *r, size_t i)
 {
 	const struct responses *a = &r->responses;
-	const size_t k = a->answer[i];
-	cJSON *names = meant_names(&r->text, r->refs[i]), *answered = cJSON_CreateArray();
+	const size_t *begin = a->begin + a->answer[i];
+	cJSON *names = meant_names(&r->text, r->refs[i]);
+	const int right = meant_is(names, &r->model.lifted, a->objects + begin[0], begin[1] - begin[0]);
 
-	for (size_t at = a->begin[k]; at < a->begin[k + 1]; at++)
-		cJSON_AddItemToArray(answered, cJSON_CreateString(r->model.lifted.names[a->objects[at]]));
-	const int right = meant_is(names, &r->model.lifted, answered);
 	cJSON_Delete(names);
-	cJSON_Delete(answered);
 	return right;
 }
 

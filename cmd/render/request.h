@@ -81,8 +81,8 @@ void request_free(struct request *r);
 /* The names that a sentence's record has for what it means; cJSON_Delete. NULL where it says nothing. */
 cJSON *meant_names(const struct text *t, size_t sentence);
 
-/* 1 where the names answered are those meant and no others, 0 where they are not, -1 where nothing is said
- * (meant is NULL) or the model does not have all that is meant. */
-int meant_is(const cJSON *meant, const struct lifted *l, const cJSON *answered);
+/* 1 where things, objects of a model, are called what is meant, and no others are among them, 0 where they
+ * are not, -1 where nothing is said (meant is NULL) or the model does not have all that is meant. */
+int meant_is(const cJSON *meant, const struct lifted *l, const size_t *things, size_t count);
 
 #endif

@@ -69,19 +69,6 @@ int report_outline(struct report_outlines *o, const struct rle *mask, int height
 	return 0;
 }
 
-cJSON *report_outlines_list(const struct report_outlines *o)
-{
-	cJSON *list = cJSON_CreateArray();
-	int fine = list != NULL;
-
-	for (size_t i = 0; i < o->n && fine; i++)
-		fine = cJSON_AddItemToArray(list, cJSON_CreateString(o->items[i].path));
-	if (fine)
-		return list;
-	cJSON_Delete(list);
-	return NULL;
-}
-
 void report_outlines_free(struct report_outlines *o)
 {
 	for (size_t i = 0; i < o->n; i++)

@@ -33,7 +33,7 @@ static void watch(void *data, size_t i, const struct meaning *m)
 	const struct explained x = {m, m->sentence->parse, c->text->texts[i]};
 
 	explain_refusal(&x, c->reasons[i].refusal);
-	if (!(c->reasons[i].explained = explain_meaning(&x)))
+	if (!(c->reasons[i].explained = explain_meaning(&x, 1)))
 		c->is_out_of_memory = 1;
 }
 
@@ -75,25 +75,26 @@ static size_t take_best(const float *probability, char *chosen, int is_chosen, s
 	return best;
 }
 
-static int take_answer(struct choosing *c, size_t i)
+static int take_answer(struct choosing *c, size_t i, struct err *e)
 {
 	const struct lifted *l = &c->run->lifted.lifted;
 	const float *probability = c->probability + i * l->objects;
 	char *chosen = c->chosen + i * l->objects;
 	struct report_reason *to = &c->reasons[i];
 	size_t o;
-	int fine = (to->answer = cJSON_CreateArray()) != NULL;
 
+	if (!(to->things = mem_alloc(l->objects, sizeof *to->things, "answer", e)))
+		return -1;
 	to->there = c->choices[i].there;
 	if (to->there < RESPONSES_LEAST)
 		memset(chosen, 0, l->objects);
-	while (fine && (o = take_best(probability, chosen, 1, l->objects)) < l->objects)
-		fine = cJSON_AddItemToArray(to->answer, cJSON_CreateString(l->names[o]));
+	while ((o = take_best(probability, chosen, 1, l->objects)) < l->objects)
+		to->things[to->count++] = o;
 	if ((o = take_best(probability, chosen, 0, l->objects)) < l->objects) {
 		to->runner_up = l->names[o];
 		to->runner_up_chance = to->there * (double)probability[o];
 	}
-	return fine ? 0 : -1;
+	return 0;
 }
 
 int report_reasons(
@@ -107,8 +108,8 @@ int report_reasons(
 			r->lifted_path);
 	bad = choose_all(&c, e);
 	for (size_t i = 0; i < s->text.n && !bad; i++)
-		if (take_answer(&c, i) || c.is_out_of_memory)
-			bad = err_set(e, ERR_SYSTEM, "explanation: out of memory");
+		bad = c.is_out_of_memory ? err_set(e, ERR_SYSTEM, "explanation: out of memory")
+					 : take_answer(&c, i, e);
 	free(c.sentences);
 	free(c.choices);
 	free(c.probability);
@@ -119,7 +120,7 @@ int report_reasons(
 void report_reasons_free(struct report_reason *reasons, size_t n)
 {
 	for (size_t i = 0; reasons && i < n; i++) {
-		cJSON_Delete(reasons[i].answer);
-		cJSON_Delete(reasons[i].explained);
+		free(reasons[i].things);
+		free(reasons[i].explained);
 	}
 }

@@ -61,98 +61,101 @@ static int put_modules(FILE *out, const char *dir, struct err *e)
 }
 
 /* To six digits of the largest. */
-static cJSON *numbers(const double *x, int n)
+static void put_numbers(struct jsontext *to, const char *key, const double x[3])
 {
-	double rounded[3], most = 0;
+	double most = 0;
 
-	for (int k = 0; k < n; k++)
+	for (int k = 0; k < 3; k++)
 		most = fmax(most, fabs(x[k]));
 	const double digits = most > 0 ? pow(10, 5 - floor(log10(most))) : 1;
-	for (int k = 0; k < n; k++)
-		rounded[k] = round(x[k] * digits) / digits;
-	return cJSON_CreateDoubleArray(rounded, n);
+	jsontext_open(to, key, '[');
+	for (int k = 0; k < 3; k++)
+		jsontext_number(to, NULL, round(x[k] * digits) / digits);
+	jsontext_close(to, ']');
 }
 
-static int add_box(cJSON *to, const struct box *b)
+static void put_box(struct jsontext *to, const struct box *b)
 {
-	cJSON *box = cJSON_AddObjectToObject(to, "box"), *axes = cJSON_AddArrayToObject(box, "axes");
-	int fine = report_add(box, "centre", numbers(b->centre, 3)) &&
-		   report_add(box, "half", numbers(b->half, 3));
-
-	for (int k = 0; k < 3 && fine; k++)
-		fine = cJSON_AddItemToArray(axes, numbers(b->axes[k], 3));
-	return fine;
+	jsontext_open(to, "box", '{');
+	jsontext_open(to, "axes", '[');
+	for (int k = 0; k < 3; k++)
+		put_numbers(to, NULL, b->axes[k]);
+	jsontext_close(to, ']');
+	put_numbers(to, "centre", b->centre);
+	put_numbers(to, "half", b->half);
+	jsontext_close(to, '}');
 }
 
-static int add_groups(
-	cJSON *to, const struct report_run *r, const struct report_splats *s, const struct extent *extents)
+static void put_groups(struct jsontext *to, const struct report_run *r, const struct report_splats *s,
+	const struct extent *extents)
 {
-	cJSON *list = cJSON_AddArrayToObject(to, "groups");
-	int fine = list != NULL;
-
-	for (size_t g = 0; g < s->groups && fine; g++) {
-		cJSON *one = cJSON_CreateObject();
-		fine = cJSON_AddItemToArray(list, one) &&
-		       cJSON_AddNumberToObject(one, "count", (double)s->counts[g]);
-		if (g && fine)
-			fine = cJSON_AddStringToObject(one, "name", r->lifted.lifted.names[g - 1]) &&
-			       (!extents[g - 1].n || add_box(one, &extents[g - 1].turned));
+	jsontext_open(to, "groups", '[');
+	for (size_t g = 0; g < s->groups; g++) {
+		jsontext_open(to, NULL, '{');
+		jsontext_number(to, "count", (double)s->counts[g]);
+		if (g)
+			jsontext_string(to, "name", r->lifted.lifted.names[g - 1]);
+		if (g && extents[g - 1].n)
+			put_box(to, &extents[g - 1].turned);
+		jsontext_close(to, '}');
 	}
-	return fine;
+	jsontext_close(to, ']');
 }
 
 /* Where the viewer begins: the first view that has a picture. */
-static int add_camera(cJSON *to, const struct report_run *r)
+static void put_camera(struct jsontext *to, const struct report_run *r)
 {
 	const struct camera *c = r->shown_count ? &r->shown[0] : NULL;
-	cJSON *camera = cJSON_AddObjectToObject(to, "camera");
 	double centre[3], up[3];
 
+	jsontext_open(to, "camera", '{');
+	if (c) {
+		camera_centre(c, centre);
+		jsontext_string(to, "name", c->name);
+		put_numbers(to, "centre", centre);
+		put_numbers(to, "forward", c->world_to_camera[2]);
+		jsontext_number(to, "tan_x", round(5e4 * c->width / c->fx) / 1e5);
+		jsontext_number(to, "tan_y", round(5e4 * c->height / c->fy) / 1e5);
+	}
+	jsontext_close(to, '}');
 	cameras_up(&r->scene.cameras, up);
-	if (!report_add(to, "up", numbers(up, 3)) || !c)
-		return camera != NULL;
-	camera_centre(c, centre);
-	return cJSON_AddStringToObject(camera, "name", c->name) &&
-	       report_add(camera, "centre", numbers(centre, 3)) &&
-	       report_add(camera, "forward", numbers(c->world_to_camera[2], 3)) &&
-	       report_add(camera, "tan_x", cJSON_CreateNumber(round(5e4 * c->width / c->fx) / 1e5)) &&
-	       report_add(camera, "tan_y", cJSON_CreateNumber(round(5e4 * c->height / c->fy) / 1e5));
+	put_numbers(to, "up", up);
 }
 
 /* Both ask to be handed on with their licences. */
-static int add_licences(cJSON *to, const char *dir, struct err *e)
+static int put_licences(struct jsontext *to, const char *dir, struct err *e)
 {
 	static const char *const files[] = {"LICENSE.spark", "LICENSE.three"};
-	cJSON *list = cJSON_AddArrayToObject(to, "licences");
-	int bad = 0;
 
-	for (size_t k = 0; k < 2 && !bad; k++) {
+	jsontext_open(to, "licences", '[');
+	for (size_t k = 0; k < 2; k++) {
 		SCOPED char *path = file_join(dir, files[k], "", e), *text = NULL;
 		size_t n;
-		bad = !path || file_read(path, &text, &n, e);
-		if (!bad && !cJSON_AddItemToArray(list, cJSON_CreateString(text)))
-			bad = err_set(e, ERR_SYSTEM, "viewer: out of memory");
+		if (!path || file_read(path, &text, &n, e))
+			return -1;
+		jsontext_string(to, NULL, text);
 	}
-	return bad ? -1 : 0;
+	jsontext_close(to, ']');
+	return 0;
 }
 
 static int put_scene(FILE *out, const struct report_run *r, const struct report_splats *s,
 	const struct extent *extents, const char *dir, struct err *e)
 {
-	cJSON *scene = cJSON_CreateObject();
-	int bad = !cJSON_AddNumberToObject(scene, "count", (double)s->n) ||
-		  !cJSON_AddNumberToObject(scene, "most", (double)r->options->splats) ||
-		  !cJSON_AddNumberToObject(scene, "all", (double)r->scene.splats.n) ||
-		  !cJSON_AddNumberToObject(
-			  scene, "least_opacity", round(1e4 * (double)REPORT_LEAST_OPACITY) / 1e4) ||
-		  !add_groups(scene, r, s, extents) || !add_camera(scene, r);
+	struct jsontext to = {.out = out, .is_page = 1};
 
-	bad = bad ? err_set(e, ERR_SYSTEM, "viewer: out of memory") : add_licences(scene, dir, e);
 	fputs("<script type=\"application/json\" id=\"scene\">", out);
-	bad = bad || report_json_put(out, scene, e);
+	jsontext_open(&to, NULL, '{');
+	jsontext_number(&to, "count", (double)s->n);
+	jsontext_number(&to, "most", (double)r->options->splats);
+	jsontext_number(&to, "all", (double)r->scene.splats.n);
+	jsontext_rounded(&to, "least_opacity", (double)REPORT_LEAST_OPACITY);
+	put_groups(&to, r, s, extents);
+	put_camera(&to, r);
+	const int bad = put_licences(&to, dir, e);
+	jsontext_close(&to, '}');
 	fputs("</script>\n", out);
-	cJSON_Delete(scene);
-	return bad ? -1 : 0;
+	return bad;
 }
 
 static int put_viewer(FILE *out, const struct report_run *r, const char *dir, struct err *e)

@@ -97,43 +97,38 @@ static char *picture_text(const struct picture_rgb *p, const char *name, struct 
 	return text;
 }
 
-static cJSON *view_of(
-	const struct report_run *r, const struct camera *c, const struct report *to, struct err *e)
+static int put_view(struct jsontext *to, const struct report_run *r, const struct camera *c,
+	const struct report *told, struct err *e)
 {
 	struct picture_rgb p = {0};
-	const int is_photograph = read_photograph(r, c, &p, to, e);
+	const int is_photograph = read_photograph(r, c, &p, told, e);
 	const int bad = is_photograph ? shrink(&p, c->height, c->width, e) : render(r, c, &p, e);
 	SCOPED char *text = bad ? NULL : picture_text(&p, c->name, e);
-	cJSON *view = cJSON_CreateObject();
 
 	free(p.rgb);
-	int fine = text && cJSON_AddStringToObject(view, "name", c->name) &&
-		   cJSON_AddStringToObject(view, "split", c->split == SPLIT_TEST ? "test" : "train") &&
-		   cJSON_AddNumberToObject(view, "width", c->width) &&
-		   cJSON_AddNumberToObject(view, "height", c->height) &&
-		   cJSON_AddBoolToObject(view, "photograph", is_photograph) &&
-		   cJSON_AddStringToObject(view, "picture", text);
-	if (text && !fine)
-		err_set(e, ERR_SYSTEM, "page: out of memory");
-	if (fine)
-		return view;
-	cJSON_Delete(view);
-	return NULL;
+	if (!text)
+		return -1;
+	jsontext_open(to, NULL, '{');
+	jsontext_string(to, "name", c->name);
+	jsontext_string(to, "split", c->split == SPLIT_TEST ? "test" : "train");
+	jsontext_number(to, "width", c->width);
+	jsontext_number(to, "height", c->height);
+	jsontext_flag(to, "photograph", is_photograph);
+	jsontext_string(to, "picture", text);
+	jsontext_close(to, '}');
+	return 0;
 }
 
-cJSON *report_views(const struct report_run *r, const struct report *to, struct err *e)
+int report_views(struct jsontext *to, const struct report_run *r, const struct report *told, struct err *e)
 {
-	cJSON *list = cJSON_CreateArray();
-
-	report_start(to, "pictures", (double)r->shown_count);
+	jsontext_open(to, "views", '[');
+	report_start(told, "pictures", (double)r->shown_count);
 	for (size_t v = 0; v < r->shown_count; v++) {
-		cJSON *view = view_of(r, &r->shown[v], to, e);
-		if (!view || !cJSON_AddItemToArray(list, view)) {
-			cJSON_Delete(list);
-			return NULL;
-		}
-		report_step(to, (double)v + 1, NULL);
+		if (put_view(to, r, &r->shown[v], told, e))
+			return -1;
+		report_step(told, (double)v + 1, NULL);
 	}
-	report_end(to);
-	return list;
+	report_end(told);
+	jsontext_close(to, ']');
+	return 0;
 }

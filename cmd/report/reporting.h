@@ -4,6 +4,7 @@
 #define CMD_REPORT_REPORTING_H
 
 #include "base/err.h"
+#include "base/jsontext.h"
 #include "base/report.h"
 #include "cmd/ask/explain.h"
 #include "cmd/run/anymodel.h"
@@ -13,7 +14,6 @@
 #include "mask/rle.h"
 #include "score/score.h"
 
-#include <cjson/cJSON.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -68,28 +68,19 @@ void report_run_free(struct report_run *r);
  * pictures. Returns 0, or -1 with *e set. */
 int report_answer(const struct report_run *r, struct report_set *s, const struct report *to, struct err *e);
 
-/* JSON in a page. */
-
-/* Adds a member, which is the object's then. 0 where memory is out, for the value too, which is freed. */
-int report_add(cJSON *to, const char *key, cJSON *value);
-
-/* Writes it inside a script: what could end the script, or begin a comment, is escaped. Returns 0, or -1 with
- * *e set. */
-int report_json_put(FILE *out, const cJSON *value, struct err *e);
-
 /* What a run folder says of how it was made: times, losses, settings. */
 
 /* The steps that the pipelines logged, in the order in which they are done: a list of
  * {"step","seconds","mib","command"}; the numbers are absent where the log does not end with them. */
-cJSON *report_steps(const char *run, struct err *e);
+void report_steps(struct jsontext *to, const char *run);
 
 /* The training logs (formats/records/trainlog.md): a list of
  * {"stage","lines":[[iteration,bce,contrast,loss],...], "held":[[iteration,bce,iou],...]}. */
-cJSON *report_losses(const char *run, struct err *e);
+int report_losses(struct jsontext *to, const char *run, struct err *e);
 
-/* The metadata of the run's files: a list of {"file","metadata":{...}}, without checksums and long lists. All
- * return NULL with *e set. */
-cJSON *report_settings(const char *run, struct err *e);
+/* The metadata of the run's files: a list of {"file","metadata":{...}}, without checksums and long lists.
+ * Both return 0, or -1 with *e set. */
+int report_settings(struct jsontext *to, const char *run, struct err *e);
 
 /* Outlines of masks as paths of SVG, each text once. */
 
@@ -106,15 +97,13 @@ struct report_outlines {
 int report_outline(struct report_outlines *o, const struct rle *mask, int height, int width, size_t *index,
 	struct err *e);
 
-/* All as a list of strings; NULL where memory is out. */
-cJSON *report_outlines_list(const struct report_outlines *o);
 void report_outlines_free(struct report_outlines *o);
 
 /* What sentences mean among the lifted objects, and why. */
 
 struct report_reason {
-	cJSON *answer; /* the names of the objects that are meant, likeliest first; none: refused */
-	cJSON *explained;
+	size_t count, *things; /* the objects that are meant, likeliest first; none: refused */
+	char *explained;       /* JSON, of explain_meaning */
 	char refusal[EXPLAIN_REASON];
 	double there;		 /* P that anything is meant */
 	const char *runner_up;	 /* the likeliest other object, the model's; NULL */
@@ -132,9 +121,10 @@ void report_reasons_free(struct report_reason *reasons, size_t n);
 /* One object for each set: {"way","name","score":{...},"sentences":[...]}; "score" where there is truth. Of a
  * sentence: "ref", "text", "said" (the objects it means, where it says so), "answer", "runner_up", "there",
  * "sure", "iou", "pairs", "right" (null: not known), "refusal", "explained", and "views", a list of
- * [view, mask, truth or -1, iou or null], where mask and truth are places in the outlines. NULL with *e set.
- */
-cJSON *report_sentences(const struct report_run *r, struct report_outlines *o, struct err *e);
+ * [view, mask, truth or -1, iou or null], where mask and truth are places in the outlines. Returns 0, or -1
+ * with *e set. */
+int report_sentences(
+	struct jsontext *to, const struct report_run *r, struct report_outlines *o, struct err *e);
 
 /* The Gaussians that a viewer shows: those of each lifted object side by side, and the rest. */
 
@@ -165,8 +155,8 @@ int report_viewer_put(FILE *out, const struct report_run *r, const struct report
 
 /* A list of {"name","split","width","height","photograph","picture"}, one for each view that is shown: its
  * photograph, or the scene rendered where there is none, as a data URI of a JPEG. Warns of photographs that
- * cannot be read. NULL with *e set. */
-cJSON *report_views(const struct report_run *r, const struct report *to, struct err *e);
+ * cannot be read. Returns 0, or -1 with *e set. */
+int report_views(struct jsontext *to, const struct report_run *r, const struct report *told, struct err *e);
 
 /* Writes the page of a run to a file ("-": stdout). Returns 0, or -1 with *e set. */
 int reporting_write(
