@@ -38,21 +38,21 @@ static void check(const struct cli *c)
 	cli_refuse_overwrite(c, "names undistort:cameras.json", "output", files);
 }
 
+static int run(const struct cli *c, const struct report *to, struct err *e)
+{
+	SCOPED_BY(painting_names_free) struct painting_names names = {0};
+	SCOPED_BY(warping_free) struct warping warping = {0};
+
+	check(c);
+	return (names_path && painting_names_read(&names, names_path, e)) ||
+			       warping_open(&warping, undistort ? WARP_TO_VIEW : WARP_NONE, undistort, e) ||
+			       painting_write(&names, c->operands, (size_t)c->operand_count, &warping,
+				       c->output, to, e)
+		       ? -1
+		       : 0;
+}
+
 int main(int argc, char **argv)
 {
-	struct painting_names names = {0};
-	struct warping warping = {0};
-	struct cli_report to;
-	struct cli c;
-	struct err e = {0};
-
-	cli_parse(&c, &tool, argc, argv);
-	check(&c);
-	const int bad = (names_path && painting_names_read(&names, names_path, &e)) ||
-			warping_open(&warping, undistort ? WARP_TO_VIEW : WARP_NONE, undistort, &e) ||
-			painting_write(&names, c.operands, (size_t)c.operand_count, &warping, c.output,
-				cli_report(&to, &c), &e);
-	warping_free(&warping);
-	painting_names_free(&names);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

@@ -1,4 +1,5 @@
 /* refer-ask: what a question about a lifted scene means, in words. */
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/ask/reply.h"
 #include "cmd/ask/asking.h"
@@ -135,7 +136,7 @@ static int answer_lines(const struct cli *c, struct asking *a, int *status, stru
 	return n;
 }
 
-static int run(const struct cli *c, struct asking *a, int *status, struct err *e)
+static int ask(const struct cli *c, struct asking *a, int *status, struct err *e)
 {
 	struct question q = {0};
 
@@ -166,21 +167,22 @@ static void check(const struct cli *c)
 		cli_usage(c, "--camera - and %s cannot both be stdin", is_one ? "--model" : "the questions");
 }
 
-int main(int argc, char **argv)
+static int run(const struct cli *c, const struct report *to, struct err *e)
 {
-	struct asking a = {0};
-	struct cli c;
-	struct err e = {0};
+	SCOPED_BY(asking_close) struct asking a = {0};
 	int status = 0;
 
-	cli_parse(&c, &tool, argc, argv);
-	check(&c);
-	cli_refuse_overwrite(&c,
+	(void)to;
+	check(c);
+	cli_refuse_overwrite(c,
 		CLI_SCENE " model camera encoder:" ENCODER_PARTS " RUN:scene|lifted|*.safetensors", "picture",
 		NULL);
-	options.asking.run = c.operands[0];
-	options.asking.is_json = c.json;
-	const int bad = run(&c, &a, &status, &e);
-	asking_close(&a);
-	return bad ? cli_fail(&c, &e) : (cli_done(&c), status);
+	options.asking.run = c->operands[0];
+	options.asking.is_json = c->json;
+	return ask(c, &a, &status, e) ? -1 : status;
+}
+
+int main(int argc, char **argv)
+{
+	return cli_main(&tool, argc, argv, run);
 }

@@ -6,7 +6,6 @@
 #include "lang/parse.h"
 
 #include <stddef.h>
-#include <stdio.h>
 
 /* A parse in its own words: a phrase, then its clauses with their anchors in brackets. */
 
