@@ -6,6 +6,13 @@
 #include <math.h>
 #include <string.h>
 
+enum { DISTANCE_SPLITS = 8, DISTANCE_TEXT = 2048 };
+
+/* The two things that a distance may be asked between, as the question has them. */
+struct distance_ends {
+	char text[2][DISTANCE_TEXT]; /* the second is empty where the first means both: "the two mugs" */
+};
+
 /* Whether a word is one of several, of which NULL is the last. */
 static int is_one_of(const struct token *w, const char *const *words)
 {
@@ -86,7 +93,10 @@ static int is_plural(const struct tokens *t, int begin, int end)
 	return 0;
 }
 
-int distance_take(const char *question, struct distance_ends ends[DISTANCE_SPLITS])
+/* The ways to read a question as one about a distance: "how far is A from B", "distance between A and B",
+ * "how far apart are A and B"; several, where A or B has such a word too. Returns how many, 0 where it is
+ * none. */
+static int distance_take(const char *question, struct distance_ends ends[DISTANCE_SPLITS])
 {
 	static const char *const adverbs[] = {"away", "apart", "off", "it", "there", NULL};
 	static const char *const leads[] = {"between", "from", "of", "to", NULL};

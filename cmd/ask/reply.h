@@ -45,18 +45,6 @@ int calling_find(struct asking *a, size_t object, struct calling *to, double (*c
 
 /* How far two things are apart: questions such as "how far is the mug from the plate?". */
 
-enum { DISTANCE_SPLITS = 8, DISTANCE_TEXT = 2048 };
-
-/* The two things that a distance may be asked between, as the question has them. */
-struct distance_ends {
-	char text[2][DISTANCE_TEXT]; /* the second is empty where the first means both: "the two mugs" */
-};
-
-/* The ways to read a question as one about a distance: "how far is A from B", "distance between A and B",
- * "how far apart are A and B"; several, where A or B has such a word too. Returns how many, 0 where it is
- * none. */
-int distance_take(const char *question, struct distance_ends ends[DISTANCE_SPLITS]);
-
 struct distance {
 	int is_asked;	     /* the question is one about a distance */
 	double gap, centres; /* between the boxes, 0 where they touch, and between their centres */

@@ -31,9 +31,6 @@ struct painting_names {
 int painting_names_read(struct painting_names *names, const char *path, struct err *e);
 void painting_names_free(struct painting_names *names);
 
-/* The name of a colour, or NULL. */
-const struct painting_name *painting_names_find(const struct painting_names *names, uint32_t colour);
-
 /* Whether what is read is a painted picture, whose colours need names: neither labels nor records, by their
  * endings, nor a folder (formats/records/annotations.md). */
 int painting_needs_names(const char *path);

@@ -13,7 +13,6 @@
 #include "score/score_rows.h"
 
 #include <stddef.h>
-#include <stdio.h>
 
 /* Scores: what miou-score writes, as text, JSON or CSV. formats/records/scores.md. */
 
@@ -31,7 +30,6 @@ struct scores {
 /* Frees the tables. */
 void scores_free(struct scores *s);
 
-int scores_put(FILE *out, const struct scores *s, enum scores_form form, struct err *e);
 /* The same into a file; "-" is stdout. */
 int scores_write(const struct scores *s, const char *path, enum scores_form form, struct err *e);
 
@@ -74,13 +72,6 @@ int box_scores_write(const struct box_scores *s, const char *path, int is_json, 
 
 /* The tables of miou-score that need other files beside the masks: by what sentences say, and by how much of
  * an object is seen. formats/records/scores.md. */
-
-/* Make the table of relations, or of visibility, of a sample of pairs; *unknown gets how many pairs have no
- * sentence, or masks of the truth no whole. Return 0, or -1 with *e set. */
-int score_relations(struct scores *s, const struct score_sample *sample, const struct sentences *sentences,
-	size_t *unknown, struct err *e);
-int score_visibility(struct scores *s, const struct score_sample *sample, const struct score_masks *truth,
-	const struct score_masks *whole, size_t *unknown, struct err *e);
 
 /* NULL where one was not named; the first two always are. */
 struct scoring_files {

@@ -44,12 +44,7 @@ struct training_views {
 };
 
 /* Room for every view of the scene, none of them yet. Returns 0, or -1 with *e set; free after either. */
-int training_views_init(
-	struct training_views *t, const struct scene *scene, const char *folder, struct err *e);
 void training_views_free(struct training_views *t);
-
-/* Reads a view of the scene's, the next one. Returns as training_views_init. */
-int training_views_add(struct training_views *t, size_t camera, struct err *e);
 
 /* They as a source; *t stays where it is. */
 struct view_source training_views_source(struct training_views *t);
