@@ -1,14 +1,11 @@
 #include "cmd/ask/reply.h"
 
 #include "base/mem.h"
-#include "formats/images/png.h"
-#include "mask/caption.h"
-#include "mask/overlay.h"
+#include "cmd/masks/pictures.h"
 #include "answer/answer.h"
 #include "splat/render.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Views are compared at this size of their longer side, in pixels. */
 enum { LOOK_SIDE = 200 };
@@ -30,14 +27,11 @@ int answer_responses(
 	return bad || render_pack(to->responses, l->gaussians, 1, e) ? -1 : 0;
 }
 
-struct looks {
-	double *worth; /* of each view */
-};
-
+/* data: how much each view is worth. */
 static int look(void *data, const struct answer *a, struct err *e)
 {
-	const struct looks *l = data;
 	const int h = a->camera->height, w = a->camera->width;
+	double *worth = data;
 	size_t covered = 0;
 	int is_cut = 0;
 
@@ -48,7 +42,7 @@ static int look(void *data, const struct answer *a, struct err *e)
 			covered += (size_t)on;
 			is_cut |= on && (!y || !x || y == h - 1 || x == w - 1);
 		}
-	l->worth[a->view] = (double)covered / ((double)h * w) * (is_cut ? 0.5 : 1);
+	worth[a->view] = (double)covered / ((double)h * w) * (is_cut ? 0.5 : 1);
 	return 0;
 }
 
@@ -62,9 +56,10 @@ static int best_view(
 	const struct asking *a, const struct answer_question *q, const struct camera **view, struct err *e)
 {
 	const struct cameras *c = &a->scene.cameras;
-	struct looks l = {mem_zalloc(c->n, sizeof *l.worth, "views", e)};
+	SCOPED double *worth = mem_zalloc(c->n, sizeof *worth, "views", e);
 	SCOPED struct camera *small = mem_alloc(c->n, sizeof *small, "views", e);
-	const struct answer_calls calls = {&l, look, ignore};
+	const struct answer_calls calls = {worth, look, ignore};
+	size_t best = 0;
 
 	for (size_t v = 0; v < c->n && small; v++) {
 		const struct camera *from = &c->views[v];
@@ -74,13 +69,12 @@ static int best_view(
 			from, longer > LOOK_SIDE ? (double)LOOK_SIDE / longer : 1, &width, &height);
 		small[v] = camera_resize(from, width, height);
 	}
-	int bad = !l.worth || !small || answer_all(q, small, c->n, &calls, e);
-	size_t best = 0;
-	for (size_t v = 1; v < c->n && !bad; v++)
-		best = l.worth[v] > l.worth[best] ? v : best;
+	if (!worth || !small || answer_all(q, small, c->n, &calls, e))
+		return -1;
+	for (size_t v = 1; v < c->n; v++)
+		best = worth[v] > worth[best] ? v : best;
 	*view = &c->views[best];
-	free(l.worth);
-	return bad ? -1 : 0;
+	return 0;
 }
 
 struct page {
@@ -110,19 +104,14 @@ static void bound(const struct answer *a, struct answer_drawn *drawn)
 static int put_page(void *data, const struct answer *a, struct err *e)
 {
 	const struct page *page = data;
-	const int h = a->camera->height, w = a->camera->width, line = caption_height(w);
-	const size_t bytes = 3 * (size_t)h * (size_t)w;
-	SCOPED uint8_t *rgb = mem_alloc((size_t)h + 2 * (size_t)line, 3 * (size_t)w, page->path, e);
+	const struct picture one = {.height = a->camera->height,
+		.width = a->camera->width,
+		.mask = a->mask,
+		.rgb = a->rgb,
+		.words = {page->words[0], page->words[1]}};
 
-	if (!rgb)
-		return -1;
-	for (size_t i = 0; i < bytes; i++)
-		rgb[i] = (uint8_t)lrintf(255 * a->rgb[i]);
-	overlay_draw(rgb, a->mask, h, w);
 	bound(a, page->drawn);
-	for (int k = 0; k < 2; k++)
-		caption_draw(rgb, w, h + k * line, page->words[k]);
-	return png_write(page->path, rgb, h + 2 * line, w, 3, e);
+	return picture_overlay(page->path, &one, e);
 }
 
 int answer_picture(const struct asking *a, const struct asking_answer *answer, const char *const words[2],

@@ -2,25 +2,6 @@
 
 #include "base/jsontext.h"
 #include "base/number.h"
-#include <math.h>
-
-/* Where one object is, seen from another: by the axis along which their centres are farthest apart. */
-static const char *side_of(const struct asking_answer *a, size_t object, size_t other)
-{
-	static const char *const sides[3][2] = {
-		{"to the left of", "to the right of"}, {"in front of", "behind"}, {"below", "above"}};
-	double most = 0;
-	int axis = 0;
-
-	for (int k = 0; k < 3; k++) {
-		const double d = a->centres[object][k] - a->centres[other][k];
-		if (fabs(d) > fabs(most)) {
-			most = d;
-			axis = k;
-		}
-	}
-	return sides[axis][most > 0];
-}
 
 static void put_percent(FILE *out, double p)
 {
@@ -66,7 +47,8 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 		put_percent(out, t->answer->probability[second]);
 	}
 	if (nearest != ASKING_NONE)
-		fprintf(out, "; %.3g %s %s", distance, side_of(t->answer, object, nearest), names[nearest]);
+		fprintf(out, "; %.3g %s %s", distance,
+			asking_side(t->answer->centres[object], t->answer->centres[nearest]), names[nearest]);
 	if (a->extents[object].n)
 		fprintf(out, "; centre %.3g %.3g %.3g, size %.3g x %.3g x %.3g high",
 			b->centre[0] + a->scene.offset[0], b->centre[1] + a->scene.offset[1],
@@ -152,7 +134,7 @@ static void put_place(struct jsontext *to, const struct answer_told *t, size_t o
 	jsontext_open(to, "nearest", '{');
 	jsontext_string(to, "name", a->model.lifted.names[nearest]);
 	put_length(to, "distance", distance);
-	jsontext_string(to, "side", side_of(t->answer, object, nearest));
+	jsontext_string(to, "side", asking_side(t->answer->centres[object], t->answer->centres[nearest]));
 	jsontext_close(to, '}');
 }
 

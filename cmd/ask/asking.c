@@ -278,6 +278,17 @@ size_t asking_nearest(const struct asking *a, size_t object, double *distance)
 	return nearest;
 }
 
+const char *asking_side(const double centre[3], const double other[3])
+{
+	static const char *const sides[3][2] = {
+		{"to the left of", "to the right of"}, {"in front of", "behind"}, {"below", "above"}};
+	int axis = 0;
+
+	for (int k = 1; k < 3; k++)
+		axis = fabs(centre[k] - other[k]) > fabs(centre[axis] - other[axis]) ? k : axis;
+	return sides[axis][centre[axis] > other[axis]];
+}
+
 const struct camera *asking_view(const struct asking *a, const char *name)
 {
 	for (size_t v = 0; v < a->scene.cameras.n; v++)

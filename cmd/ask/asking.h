@@ -87,6 +87,10 @@ void asking_answer_free(struct asking_answer *answer);
  * ASKING_NONE where there is no other. */
 size_t asking_nearest(const struct asking *a, size_t object, double *distance);
 
+/* Where a thing is, seen from another: "behind", by the axis along which their centres, of an answer, are
+ * farthest apart. */
+const char *asking_side(const double centre[3], const double other[3]);
+
 /* The view of that name, the given camera among them; NULL where there is none. */
 const struct camera *asking_view(const struct asking *a, const char *name);
 

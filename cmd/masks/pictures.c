@@ -52,7 +52,7 @@ static int put_sigmoid(const char *path, const struct picture *one, struct err *
 	return png_write16(path, grey, one->height, one->width, e);
 }
 
-static int put_overlay(const char *path, const struct picture *one, struct err *e)
+int picture_overlay(const char *path, const struct picture *one, struct err *e)
 {
 	const size_t bytes = 3 * (size_t)one->width * (size_t)one->height;
 	const int line = caption_height(one->width), height = one->height + 2 * line;
@@ -75,7 +75,7 @@ int pictures_put(const struct pictures *p, const struct picture *one, struct err
 		int (*put)(const char *path, const struct picture *one, struct err *e);
 	} kinds[] = {{p->masks, ".png", put_mask},
 		{p->responses, p->is_npy ? ".npy" : ".png", p->is_npy ? put_numbers : put_sigmoid},
-		{p->overlays, ".png", put_overlay}};
+		{p->overlays, ".png", picture_overlay}};
 
 	for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
 		if (!kinds[i].dir)
