@@ -123,7 +123,7 @@ int refersplat_get_object(struct refersplat *r, size_t i, struct refersplat_obje
 		return end(r, -1);
 	if (i >= l->objects)
 		return end(r, err_set(&r->err, ERR_CHECK, "no object %zu, of %zu", i, l->objects));
-	const struct extent *x = &r->asking.extents[i];
+	const struct extent *x = &r->asking.model.extents[i];
 	object->name = l->names[i];
 	object->confidence = l->confidence[i];
 	object->count = x->n;

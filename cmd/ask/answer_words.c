@@ -36,7 +36,7 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 {
 	const struct asking *a = t->asking;
 	char **names = a->model.lifted.names;
-	const struct box *b = &a->extents[object].turned;
+	const struct box *b = &a->model.extents[object].turned;
 	double distance;
 	const size_t nearest = asking_nearest(a, object, &distance), second = t->answer->runner_up;
 
@@ -49,7 +49,7 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 	if (nearest != ASKING_NONE)
 		fprintf(out, "; %.3g %s %s", distance,
 			asking_side(t->answer->centres[object], t->answer->centres[nearest]), names[nearest]);
-	if (a->extents[object].n)
+	if (a->model.extents[object].n)
 		fprintf(out, "; centre %.3g %.3g %.3g, size %.3g x %.3g x %.3g high",
 			b->centre[0] + a->scene.offset[0], b->centre[1] + a->scene.offset[1],
 			b->centre[2] + a->scene.offset[2], 2 * b->half[0], 2 * b->half[1], 2 * b->half[2]);
@@ -118,7 +118,7 @@ static void put_name(struct jsontext *to, const struct answer_told *t, size_t ob
 static void put_place(struct jsontext *to, const struct answer_told *t, size_t object)
 {
 	const struct asking *a = t->asking;
-	const struct extent *x = &a->extents[object];
+	const struct extent *x = &a->model.extents[object];
 	double distance;
 	const size_t nearest = asking_nearest(a, object, &distance);
 

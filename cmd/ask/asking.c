@@ -2,7 +2,6 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/run/object_extents.h"
 #include "formats/cameras/camerafile.h"
 
 #include <math.h>
@@ -70,12 +69,6 @@ static int find_viewpoint(struct asking *a, struct err *e)
 	return 0;
 }
 
-static int find_extents(struct asking *a, struct err *e)
-{
-	a->extents = object_extents(&a->model.lifted, &a->scene.splats, &a->scene.cameras, e);
-	return a->extents ? 0 : -1;
-}
-
 static int make_chooser(struct asking *a, struct err *e)
 {
 	struct list_name name;
@@ -94,14 +87,14 @@ int asking_open(struct asking *a, const struct asking_options *options, struct e
 	a->options = options;
 	return read_all(a, e) || check_fit(a, e) ||
 			       (options->camera && asking_read_camera(a, options->camera, e)) ||
-			       find_viewpoint(a, e) || make_chooser(a, e) || find_extents(a, e)
+			       find_viewpoint(a, e) || make_chooser(a, e) ||
+			       anymodel_place(&a->model, &a->scene, e)
 		       ? -1
 		       : 0;
 }
 
 void asking_close(struct asking *a)
 {
-	object_extents_free(a->extents, a->model.lifted.objects);
 	chooser_free(a->chooser);
 	encoding_free(&a->ahead);
 	encoder_free(&a->encoder);
@@ -267,9 +260,10 @@ size_t asking_nearest(const struct asking *a, size_t object, double *distance)
 	size_t nearest = ASKING_NONE;
 
 	for (size_t o = 0; o < a->model.lifted.objects; o++) {
-		const double *x = a->extents[object].turned.centre, *y = a->extents[o].turned.centre;
+		const double *x = a->model.extents[object].turned.centre,
+			     *y = a->model.extents[o].turned.centre;
 		const double d = hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
-		if (o == object || !a->extents[o].n || !a->extents[object].n ||
+		if (o == object || !a->model.extents[o].n || !a->model.extents[object].n ||
 			(nearest != ASKING_NONE && d >= *distance))
 			continue;
 		nearest = o;

@@ -9,7 +9,6 @@
 #include "cmd/run/anymodel.h"
 #include "cmd/text/encode.h"
 #include "formats/scene/scene.h"
-#include "lift/extent.h"
 
 /* The files of a folder that pipelines/lift.mk made, by their usual places. */
 
@@ -44,9 +43,8 @@ struct asking {
 	struct choose_scene of;
 	struct chooser *chooser;
 	struct viewpoint from;
-	struct cameras given;	/* the one of options->camera; else none */
-	struct encoding ahead;	/* questions that were encoded before they are asked; asking_expect */
-	struct extent *extents; /* (objects) where each is, without the scene's offset */
+	struct cameras given;  /* the one of options->camera; else none */
+	struct encoding ahead; /* questions that were encoded before they are asked; asking_expect */
 };
 
 /* Reads all; *a is zeroed before and may not move after. Returns 0, or -1 with *e set (ERR_USAGE: an option

@@ -203,8 +203,8 @@ static int take_pair(struct asking_answer *answer, struct distance *d, struct pa
 		answer->probability[p->ends[k]] = p->of[p->count == 2 ? k : 0].probability[p->ends[k]];
 	}
 	answer->count = 2;
-	x = &a->extents[p->ends[0]].turned;
-	y = &a->extents[p->ends[1]].turned;
+	x = &a->model.extents[p->ends[0]].turned;
+	y = &a->model.extents[p->ends[1]].turned;
 	d->gap = box_gap(x, y);
 	d->centres = hypot(
 		hypot(x->centre[0] - y->centre[0], x->centre[1] - y->centre[1]), x->centre[2] - y->centre[2]);

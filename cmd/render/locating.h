@@ -17,7 +17,6 @@
 struct locating {
 	struct request request;	 /* answered by the caller */
 	struct located *answers; /* (answers) */
-	struct extent *objects;	 /* of a lifted model, (O); NULL where no answer is of several */
 };
 
 /* up gets the direction that was taken for it. Returns 0, or -1 with *e set; locating_free is then in order.
@@ -36,8 +35,7 @@ void locating_free(struct locating *r);
 struct labelling {
 	struct scene scene;
 	struct anymodel model;
-	struct extent *extents; /* (objects) */
-	int32_t *labels;	/* (N) as lift/labels.h has them */
+	int32_t *labels; /* (N) as lift/labels.h has them */
 };
 
 /* Reads both files; *r is zeroed before. ERR_FORMAT where the model is not lifted, or not of the scene.
@@ -56,19 +54,17 @@ int labelling_write(const struct labelling *r, const char *path, struct err *e);
 
 /* What the request's only sentence means, as .ply and .splat; NULL: not. */
 int showing_write(
-	const struct locating *r, enum locate_show show, const char *ply, const char *splat, struct err *e);
+	struct locating *r, enum locate_show show, const char *ply, const char *splat, struct err *e);
 
-/* The things of a lifted model, by their numbers: showing_open once, showing_things for each scene, which
- * splats_free releases. */
+/* The things of a lifted model that is placed, by their numbers: showing_open once, showing_things for each
+ * scene, which splats_free releases. */
 struct showing {
 	const struct scene *scene;
-	const struct lifted *lifted;
-	const struct extent *extents;
+	const struct anymodel *model;
 	float *most; /* splat/visibility.h */
 	char *of;
 };
-int showing_open(struct showing *w, const struct scene *scene, const struct lifted *lifted,
-	const struct extent *extents, struct err *e);
+int showing_open(struct showing *w, const struct scene *scene, const struct anymodel *model, struct err *e);
 int showing_things(struct splats *to, const struct showing *w, const size_t *things, size_t count,
 	enum locate_show show, struct err *e);
 void showing_free(struct showing *w);

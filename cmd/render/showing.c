@@ -3,7 +3,6 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "cmd/ask/reply.h"
-#include "cmd/run/object_extents.h"
 #include "formats/splats/anysplats.h"
 #include "formats/splats/ply.h"
 #include "formats/splats/splat.h"
@@ -11,13 +10,12 @@
 
 #include <stdlib.h>
 
-int showing_open(struct showing *w, const struct scene *scene, const struct lifted *lifted,
-	const struct extent *extents, struct err *e)
+int showing_open(struct showing *w, const struct scene *scene, const struct anymodel *model, struct err *e)
 {
 	const size_t n = scene->splats.n;
 
 	*w = (struct showing){
-		scene, lifted, extents, mem_alloc(n, sizeof(float), "scene", e), mem_alloc(n, 1, "scene", e)};
+		scene, model, mem_alloc(n, sizeof(float), "scene", e), mem_alloc(n, 1, "scene", e)};
 	return !w->most || !w->of || visibility_most(&scene->splats, &scene->cameras, w->most, e) ? -1 : 0;
 }
 
@@ -33,37 +31,30 @@ int showing_things(struct splats *to, const struct showing *w, const size_t *thi
 	const struct splats *s = &w->scene->splats;
 
 	*to = (struct splats){0};
-	return locate_things(w->of, w->lifted, w->extents, things, count, show, s, w->most, e) ||
-			       locate_show(to, s, w->of, show, e)
+	return locate_things(w->of, &w->model->lifted, w->model->extents, things, count, show, s, w->most,
+		       e) || locate_show(to, s, w->of, show, e)
 		       ? -1
 		       : 0;
 }
 
 /* Of the only sentence. */
-static int show_answer(struct splats *to, const struct locating *r, enum locate_show show, struct err *e)
+static int show_answer(struct splats *to, struct locating *r, enum locate_show show, struct err *e)
 {
-	const struct request *q = &r->request;
+	struct request *q = &r->request;
 	const struct responses *a = &q->responses;
 	const size_t k = a->answer[0], first = a->begin ? a->begin[k] : 0;
-	struct extent *extents = NULL;
-	struct showing w = {0};
-	int bad = (a->begin && !(extents = object_extents(
-					 &q->model.lifted, &q->scene.splats, &q->scene.cameras, e))) ||
-		  showing_open(&w, &q->scene, &q->model.lifted, extents, e);
+	SCOPED_BY(showing_free) struct showing w = {0};
 
-	*to = (struct splats){0};
-	if (!bad && a->begin)
-		bad = showing_things(to, &w, a->objects + first, a->begin[k + 1] - first, show, e);
-	else if (!bad)
-		bad = locate_answer(w.of, a, k, &r->answers[k].extent, show, &q->scene.splats, w.most, e) ||
-		      locate_show(to, &q->scene.splats, w.of, show, e);
-	showing_free(&w);
-	object_extents_free(extents, q->model.lifted.objects);
-	return bad ? -1 : 0;
+	if (anymodel_place(&q->model, &q->scene, e) || showing_open(&w, &q->scene, &q->model, e))
+		return -1;
+	if (a->begin)
+		return showing_things(to, &w, a->objects + first, a->begin[k + 1] - first, show, e);
+	return locate_answer(w.of, a, k, &r->answers[k].extent, show, &q->scene.splats, w.most, e) ||
+	       locate_show(to, &q->scene.splats, w.of, show, e);
 }
 
 int showing_write(
-	const struct locating *r, enum locate_show show, const char *ply, const char *splat, struct err *e)
+	struct locating *r, enum locate_show show, const char *ply, const char *splat, struct err *e)
 {
 	SCOPED_BY(splats_free) struct splats shown = {0};
 
@@ -83,7 +74,7 @@ static int write_scene(const struct asking *a, const struct asking_answer *found
 	const struct scene *scene = &a->scene;
 	SCOPED_BY(splats_free) struct splats shown = {0};
 	struct showing w = {0};
-	int bad = showing_open(&w, scene, &a->model.lifted, a->extents, e) ||
+	int bad = showing_open(&w, scene, &a->model, e) ||
 		  showing_things(&shown, &w, found->things, found->count, show, e) ||
 		  (lost = anysplats_loss(&shown, scene->offset, format, text, e)) < 0 ||
 		  anysplats_write(&shown, scene->offset, format, ANYSPLATS_SPZ_VERSION, path, e);

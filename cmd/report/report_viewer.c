@@ -5,7 +5,6 @@
 #include "base/base64.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/run/object_extents.h"
 #include "cmd/text/encode.h"
 #include "formats/splats/splat.h"
 #include "geom/up.h"
@@ -208,9 +207,10 @@ static void put_box(struct jsontext *to, const struct box *b)
 	jsontext_close(to, '}');
 }
 
-static void put_groups(struct jsontext *to, const struct report_run *r, const struct report_splats *s,
-	const struct extent *extents)
+static void put_groups(struct jsontext *to, const struct report_run *r, const struct report_splats *s)
 {
+	const struct extent *extents = r->lifted.extents;
+
 	jsontext_open(to, "groups", '[');
 	for (size_t g = 0; g < s->groups; g++) {
 		jsontext_open(to, NULL, '{');
@@ -261,8 +261,8 @@ static int put_licences(struct jsontext *to, const char *dir, struct err *e)
 	return 0;
 }
 
-static int put_scene(FILE *out, const struct report_run *r, const struct report_splats *s,
-	const struct extent *extents, const char *dir, struct err *e)
+static int put_scene(
+	FILE *out, const struct report_run *r, const struct report_splats *s, const char *dir, struct err *e)
 {
 	struct jsontext to = {.out = out, .is_page = 1};
 
@@ -272,7 +272,7 @@ static int put_scene(FILE *out, const struct report_run *r, const struct report_
 	jsontext_number(&to, "most", (double)r->options->splats);
 	jsontext_number(&to, "all", (double)r->scene.splats.n);
 	jsontext_rounded(&to, "least_opacity", (double)REPORT_LEAST_OPACITY);
-	put_groups(&to, r, s, extents);
+	put_groups(&to, r, s);
 	put_camera(&to, r);
 	const int bad = put_licences(&to, dir, e);
 	jsontext_close(&to, '}');
@@ -280,24 +280,19 @@ static int put_scene(FILE *out, const struct report_run *r, const struct report_
 	return bad;
 }
 
-static int put_viewer(FILE *out, const struct report_run *r, const char *dir, struct err *e)
+static int put_viewer(FILE *out, struct report_run *r, const char *dir, struct err *e)
 {
-	struct report_splats s = {0};
-	struct extent *extents = NULL;
-	const struct lifted *l = &r->lifted.lifted;
-	int bad = report_splats_make(&s, r, e) ||
-		  (r->has_lifted && !(extents = object_extents(l, &r->scene.splats, &r->scene.cameras, e))) ||
-		  put_modules(out, dir, e) || put_scene(out, r, &s, extents, dir, e) ||
-		  put_packed(out, "id=\"splats\"", s.bytes, 32 * s.n, e);
+	SCOPED_BY(report_splats_free) struct report_splats s = {0};
 
-	if (!bad)
-		fprintf(out, "<script>\n%s</script>\n", report_viewer_begin);
-	object_extents_free(extents, l->objects);
-	report_splats_free(&s);
-	return bad ? -1 : 0;
+	if (report_splats_make(&s, r, e) || anymodel_place(&r->lifted, &r->scene, e) ||
+		put_modules(out, dir, e) || put_scene(out, r, &s, dir, e) ||
+		put_packed(out, "id=\"splats\"", s.bytes, 32 * s.n, e))
+		return -1;
+	fprintf(out, "<script>\n%s</script>\n", report_viewer_begin);
+	return 0;
 }
 
-int report_viewer_put(FILE *out, const struct report_run *r, const struct report *to, struct err *e)
+int report_viewer_put(FILE *out, struct report_run *r, const struct report *to, struct err *e)
 {
 	const char *given = r->options->viewer;
 

@@ -88,8 +88,7 @@ static char *make_data(const struct report_run *r, const struct report *told, st
 	return NULL;
 }
 
-static int put_page(
-	FILE *out, const struct report_run *r, const char *made, const struct report *to, struct err *e)
+static int put_page(FILE *out, struct report_run *r, const char *made, const struct report *to, struct err *e)
 {
 	const char *data = strstr(report_page_begin, data_mark),
 		   *viewer = strstr(report_page_begin, viewer_mark);

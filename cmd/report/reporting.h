@@ -131,7 +131,7 @@ int report_sentences(
 
 /* Writes the scripts of the viewer, and nothing where there is none: r->options->is_plain, or no viewer is
  * named and none has been fetched, which is told. Returns 0, or -1 with *e set. */
-int report_viewer_put(FILE *out, const struct report_run *r, const struct report *to, struct err *e);
+int report_viewer_put(FILE *out, struct report_run *r, const struct report *to, struct err *e);
 
 /* Small pictures of views, as they stand in a page. */
 
