@@ -58,7 +58,7 @@ static const struct cli_tool tool = {.name = "refer-ask",
 static int answer(const struct cli *c, struct asking *a, const char *question, int *refused, struct err *e)
 {
 	const double start = cli_seconds();
-	struct asking_answer found;
+	SCOPED_BY(asking_answer_free) struct asking_answer found = {0};
 	struct answer_told told;
 	struct cli_report to;
 
@@ -68,7 +68,6 @@ static int answer(const struct cli *c, struct asking *a, const char *question, i
 	int bad = c->json ? answer_put_json(&told, stdout, e) : answer_put_words(&told, stdout, e);
 	if (!bad && fflush(stdout))
 		bad = err_errno(e, "stdout");
-	asking_answer_free(&found);
 	cli_note(c, 1, "answered in %.3f s", cli_seconds() - start);
 	return bad ? -1 : 0;
 }

@@ -36,7 +36,6 @@ static void forget_answer(struct refersplat *r)
 	asking_answer_free(&r->answer);
 	free(r->objects);
 	free(r->probabilities);
-	r->answer = (struct asking_answer){0};
 	r->objects = NULL;
 	r->probabilities = NULL;
 }
@@ -235,11 +234,7 @@ int refersplat_ask(
 		return end(r, -1);
 	r->asking.from =
 		(struct viewpoint){.kind = view ? VIEWPOINT_CAMERA : VIEWPOINT_USUAL, .camera = from};
-	if (asking_ask(&r->asking, q.text, &r->answer, &report_silent, &r->err)) {
-		r->answer = (struct asking_answer){0};
-		return end(r, -1);
-	}
-	if (copy_answer(r, answer))
+	if (asking_ask(&r->asking, q.text, &r->answer, &report_silent, &r->err) || copy_answer(r, answer))
 		return end(r, -1);
 	return answer->count ? REFERSPLAT_OK : end(r, err_set(&r->err, ERR_CHECK, "%s", answer->reason));
 }

@@ -142,6 +142,7 @@ void asking_answer_free(struct asking_answer *answer)
 	free(answer->probability);
 	free(answer->centres);
 	free(answer->explained);
+	*answer = (struct asking_answer){0};
 }
 
 /* Whether object o is told before another: the likelier one, and of two as likely by name. */
@@ -234,25 +235,21 @@ int asking_ask(struct asking *a, const char *question, struct asking_answer *ans
 	SCOPED_BY(encoding_free) struct encoding alone = {0};
 	const struct text *text = &a->ahead.text;
 	size_t r = find_ahead(a, question);
-	int bad = asking_answer_make(answer, a->model.lifted.objects, e);
 
-	if (!bad && r == text->n) {
+	if (asking_answer_make(answer, a->model.lifted.objects, e))
+		return -1;
+	if (r == text->n) {
 		text = &alone.text;
 		r = 0;
-		bad = sentences_add(&alone.sentences, "1", "?", question, e) ||
-		      encode(&alone, &a->encoder, to, e);
+		if (sentences_add(&alone.sentences, "1", "?", question, e) ||
+			encode(&alone, &a->encoder, to, e))
+			return -1;
 	}
-	if (!bad)
-		snprintf(answer->reason, sizeof answer->reason, "the %s",
-			text->offsets[r + 1] > text->offsets[r] ? "model has no objects"
-								: "question has no words");
-	if (!bad)
-		bad = choose_answer(a, text, r, &w, e);
-	if (!bad && w.is_out_of_memory)
-		bad = err_set(e, ERR_SYSTEM, "explanation: out of memory");
-	if (bad)
-		asking_answer_free(answer);
-	return bad ? -1 : 0;
+	snprintf(answer->reason, sizeof answer->reason, "the %s",
+		text->offsets[r + 1] > text->offsets[r] ? "model has no objects" : "question has no words");
+	if (choose_answer(a, text, r, &w, e))
+		return -1;
+	return w.is_out_of_memory ? err_set(e, ERR_SYSTEM, "explanation: out of memory") : 0;
 }
 
 size_t asking_nearest(const struct asking *a, size_t object, double *distance)

@@ -74,7 +74,7 @@ struct asking_answer {
  * changes, and nothing is said: what goes wrong is said when the question is asked. */
 void asking_expect(struct asking *a, const char *const *questions, size_t n);
 
-/* Answers a question; warns where it is too long for the encoder. asking_answer_free after success. */
+/* Answers a question; warns where it is too long for the encoder. asking_answer_free after either. */
 int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
 	struct err *e);
 /* An answer of nothing, as asking_ask begins with: 0, or -1 with *e set. asking_answer_free after either. */

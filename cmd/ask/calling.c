@@ -1,5 +1,6 @@
 #include "cmd/ask/reply.h"
 
+#include "base/mem.h"
 #include "places/arrangement.h"
 #include "lang/colours.h"
 
@@ -41,7 +42,7 @@ static void take_words(const char *name, char *words, char *last)
 /* Asks a description; the best that means the object alone stays. */
 __attribute__((format(printf, 3, 4))) static int try(struct trial *t, struct err *e, const char *format, ...)
 {
-	struct asking_answer a;
+	SCOPED_BY(asking_answer_free) struct asking_answer a = {0};
 	char text[CALLING_TEXT];
 	va_list args;
 
@@ -55,7 +56,6 @@ __attribute__((format(printf, 3, 4))) static int try(struct trial *t, struct err
 		memcpy(t->best.text, text, sizeof text);
 		t->best.probability = p;
 	}
-	asking_answer_free(&a);
 	return 0;
 }
 
@@ -165,7 +165,7 @@ int calling_find(struct asking *a, size_t object, struct calling *to, double (*c
 {
 	static int (*const kinds[])(struct trial *, struct err *) = {
 		try_noun, try_name, try_colours, try_superlatives, try_noun_beside, try_name_beside};
-	struct arrangement places;
+	SCOPED_BY(arrangement_free) struct arrangement places = {0};
 	struct trial t = {a, report, &places, object, "", "", {"", 0}};
 	int bad = 0;
 
@@ -178,7 +178,6 @@ int calling_find(struct asking *a, size_t object, struct calling *to, double (*c
 		bad = kinds[k](&t, e);
 	for (size_t o = 0; centres && o < places.n; o++)
 		memcpy(centres[o], places.objects[o].centre, sizeof *centres);
-	arrangement_free(&places);
 	*to = t.best;
 	return bad ? -1 : 0;
 }

@@ -145,11 +145,9 @@ static int ask_pair(struct asking *a, const struct distance_ends *ends, struct p
 {
 	*p = (struct pair){0};
 	for (int k = 0; k < 2 && *ends->text[k]; k++) {
-		if (asking_ask(a, ends->text[k], &p->of[k], to, e)) {
-			pair_free(p);
-			return -1;
-		}
 		p->count++;
+		if (asking_ask(a, ends->text[k], &p->of[k], to, e))
+			return -1;
 	}
 	for (int k = 0; k < 2; k++) {
 		const struct asking_answer *of = &p->of[p->count == 2 ? k : 0];
@@ -187,10 +185,8 @@ static int take_pair(struct asking_answer *answer, struct distance *d, struct pa
 {
 	const struct box *x, *y;
 
-	if (asking_answer_make(answer, a->model.lifted.objects, e)) {
-		asking_answer_free(answer);
+	if (asking_answer_make(answer, a->model.lifted.objects, e))
 		return -1;
-	}
 	for (size_t o = 0; o < a->model.lifted.objects; o++)
 		memcpy(answer->centres[o], p->of[0].centres[o], sizeof *answer->centres);
 	d->probability = answer->there = p->probability;

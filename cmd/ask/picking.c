@@ -180,22 +180,17 @@ int picking_find(const struct asking *a, const char *text, int is_box, struct as
 {
 	const size_t objects = a->model.lifted.objects;
 	struct region r = {.is_box = is_box};
-	struct shown s;
+	SCOPED_BY(shown_free) struct shown s = {0};
 
 	*answer = (struct asking_answer){.runner_up = ASKING_NONE};
-	if (take_region(&r, a, text, e))
+	if (take_region(&r, a, text, e) || shown_make(&s, a, r.camera, e) ||
+		asking_answer_make(answer, objects, e) || look(&s, &r, answer->probability, e))
 		return -1;
-	int bad = shown_make(&s, a, r.camera, e) || asking_answer_make(answer, objects, e);
-	if (!bad && !(bad = look(&s, &r, answer->probability, e))) {
-		if (is_box)
-			weigh_box(&s, objects, answer->probability);
-		if (objects)
-			choose_thing(&s, objects, answer);
-		snprintf(answer->reason, sizeof answer->reason, "no thing that was lifted is seen there");
-		*view = r.camera;
-	}
-	shown_free(&s);
-	if (bad)
-		asking_answer_free(answer);
-	return bad ? -1 : 0;
+	if (is_box)
+		weigh_box(&s, objects, answer->probability);
+	if (objects)
+		choose_thing(&s, objects, answer);
+	snprintf(answer->reason, sizeof answer->reason, "no thing that was lifted is seen there");
+	*view = r.camera;
+	return 0;
 }

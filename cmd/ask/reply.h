@@ -54,7 +54,7 @@ struct distance {
 /* Answers a question about a distance: of the ways to read it the one in which both things are likeliest. The
  * things of the answer are the two, in the question's order, or none, and then its reason says what was not
  * found. Of another question *d is zeroed, and nothing else done. Returns 0, or -1 with *e set;
- * asking_answer_free after success where d->is_asked. */
+ * asking_answer_free after either. */
 int distance_ask(struct asking *a, const char *question, struct asking_answer *answer, struct distance *d,
 	const struct report *to, struct err *e);
 
@@ -87,7 +87,7 @@ void answer_caption(const struct answer_told *t, char *to, size_t room);
  * left and the top: *view gets the view. Of a pixel, an object's probability is its share of the pixel's
  * blend weight; of a box, how much of the box is the object times how much of the object is in it, as a part
  * of the sum over all objects. One object is meant, or none where no object's mask is there. ERR_USAGE where
- * text names no place in a view. Returns 0, or -1 with *e set; asking_answer_free after success. */
+ * text names no place in a view. Returns 0, or -1 with *e set; asking_answer_free after either. */
 int picking_find(const struct asking *a, const char *text, int is_box, struct asking_answer *answer,
 	const struct camera **view, struct err *e);
 
@@ -97,7 +97,7 @@ struct reply_options {
 };
 
 /* *told becomes the reply to what is asked, with found as its answer, and is drawn where anything is found.
- * Returns 0, or -1 with *e set (ERR_USAGE: a place is at fault); asking_answer_free(found) after success. */
+ * Returns 0, or -1 with *e set (ERR_USAGE: a place is at fault); asking_answer_free(found) after either. */
 int reply_make(struct answer_told *told, struct asking_answer *found, struct asking *a, const char *question,
 	const struct reply_options *o, const struct report *to, struct err *e);
 

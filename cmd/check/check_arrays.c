@@ -91,7 +91,7 @@ int check_text(struct check *c, const char *path, struct err *e)
 
 int check_model(struct check *c, const char *path, struct err *e)
 {
-	struct model m;
+	SCOPED_BY(model_free) struct model m = {0};
 
 	if (model_read(&m, path, e))
 		return -1;
@@ -102,7 +102,6 @@ int check_model(struct check *c, const char *path, struct err *e)
 	check_add(c, "parameters", (long long)m.layout.count);
 	c->scene = m.origin.scene;
 	c->encoder = m.origin.encoder;
-	model_free(&m);
 	return 0;
 }
 

@@ -89,13 +89,10 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 /* Regions are the same in all views whatever the candidates are of. */
 static int check_candidates(const struct pseudomasks *w, const struct report *to, struct err *e)
 {
-	struct lift_objects surest;
-	const int bad = regions_surest(&w->regions, &surest, e) ||
-			left_out_check(&surest, w->regions.object_count, w->options->candidates,
-				w->options->scene, to, e);
-
-	regions_surest_free(&surest);
-	return bad;
+	SCOPED_BY(regions_surest_free) struct lift_objects surest = {0};
+	return regions_surest(&w->regions, &surest, e) ||
+	       left_out_check(
+		       &surest, w->regions.object_count, w->options->candidates, w->options->scene, to, e);
 }
 
 static int lift_regions(struct by_views *b, const struct report *to, struct err *e)

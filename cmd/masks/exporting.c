@@ -67,7 +67,7 @@ static int read_cameras(struct exporting *x, const char *scene, struct err *e)
 
 static int distort_masks(struct exporting *x, const char *scene, struct err *e)
 {
-	struct warping w;
+	SCOPED_BY(warping_free) struct warping w = {0};
 	int bad = warping_open(&w, WARP_TO_PHOTOGRAPH, scene, e);
 
 	for (size_t i = 0; i < x->masks.n && !bad; i++) {
@@ -75,7 +75,6 @@ static int distort_masks(struct exporting *x, const char *scene, struct err *e)
 		if (bad && e->code == ERR_FORMAT)
 			err_prefix(e, x->path);
 	}
-	warping_free(&w);
 	return bad;
 }
 
@@ -83,12 +82,9 @@ int exporting_read(struct exporting *x, const char *masks, const char *scene, in
 {
 	x->path = file_name(masks);
 	SCOPED long *lines = NULL;
-	const int bad = masks_read_lines(&x->masks, &lines, masks, e) ||
-			(scene && read_cameras(x, scene, e)) ||
-			(distort ? distort_masks(x, scene, e)
-				 : masks_views(&x->masks, lines, masks, &x->cameras, NULL, NULL, e));
-
-	if (bad)
+	if (masks_read_lines(&x->masks, &lines, masks, e) || (scene && read_cameras(x, scene, e)) ||
+		(distort ? distort_masks(x, scene, e)
+			 : masks_views(&x->masks, lines, masks, &x->cameras, NULL, NULL, e)))
 		return -1;
 	const size_t n = x->masks.n;
 	x->view_of = mem_alloc(n, sizeof *x->view_of, x->path, e);

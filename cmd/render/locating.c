@@ -53,14 +53,13 @@ static int write_one(const struct showing *w, size_t object, const char *dir, st
 
 int labelling_write_each(const struct labelling *r, const char *dir, struct err *e)
 {
-	struct showing w;
+	SCOPED_BY(showing_free) struct showing w = {0};
 
 	if (file_make_dir(dir, e))
 		return -1;
 	int bad = showing_open(&w, &r->scene, &r->model, e);
 	for (size_t o = 0; o < r->model.lifted.objects && !bad; o++)
 		bad = write_one(&w, o, dir, e);
-	showing_free(&w);
 	return bad ? -1 : 0;
 }
 

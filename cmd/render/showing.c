@@ -73,39 +73,37 @@ static int write_scene(const struct asking *a, const struct asking_answer *found
 	int lost = 0;
 	const struct scene *scene = &a->scene;
 	SCOPED_BY(splats_free) struct splats shown = {0};
-	struct showing w = {0};
-	int bad = showing_open(&w, scene, &a->model, e) ||
-		  showing_things(&shown, &w, found->things, found->count, show, e) ||
-		  (lost = anysplats_loss(&shown, scene->offset, format, text, e)) < 0 ||
-		  anysplats_write(&shown, scene->offset, format, ANYSPLATS_SPZ_VERSION, path, e);
+	SCOPED_BY(showing_free) struct showing w = {0};
 
-	if (!bad && lost)
+	if (showing_open(&w, scene, &a->model, e) ||
+		showing_things(&shown, &w, found->things, found->count, show, e) ||
+		(lost = anysplats_loss(&shown, scene->offset, format, text, e)) < 0 ||
+		anysplats_write(&shown, scene->offset, format, ANYSPLATS_SPZ_VERSION, path, e))
+		return -1;
+	if (lost)
 		report_warn(to, "%s: %s", path, text);
-
-	for (size_t i = 0; i < scene->splats.n && !bad; i++)
+	for (size_t i = 0; i < scene->splats.n; i++)
 		*taken += w.of[i] != 0;
-	showing_free(&w);
-	return bad ? -1 : 0;
+	return 0;
 }
 
 int showing_ask(const struct asking_options *o, const char *question, enum locate_show show, const char *path,
 	FILE *out, const struct report *to, struct err *e)
 {
-	struct asking_answer found;
-	struct asking a = {0};
+	SCOPED_BY(asking_close) struct asking a = {0};
+	SCOPED_BY(asking_answer_free) struct asking_answer found = {0};
+	const struct answer_told told = {.asking = &a, .answer = &found, .question = question};
 	char caption[256];
 	size_t taken = 0;
-	int bad = file_out_probe(path, e) || asking_open(&a, o, e) || asking_ask(&a, question, &found, to, e);
 
-	if (!bad) {
-		const struct answer_told told = {.asking = &a, .answer = &found, .question = question};
-		answer_caption(&told, caption, sizeof caption);
-		bad = !found.count ? err_set(e, ERR_CHECK, "nothing here is that: %s", found.reason)
-				   : write_scene(&a, &found, show, path, &taken, to, e);
-		if (!bad && fprintf(out, "%s: %zu of %zu Gaussians\n", caption, taken, a.scene.splats.n) < 0)
-			bad = err_errno(e, "stdout");
-		asking_answer_free(&found);
-	}
-	asking_close(&a);
-	return bad ? -1 : 0;
+	if (file_out_probe(path, e) || asking_open(&a, o, e) || asking_ask(&a, question, &found, to, e))
+		return -1;
+	answer_caption(&told, caption, sizeof caption);
+	if (!found.count)
+		return err_set(e, ERR_CHECK, "nothing here is that: %s", found.reason);
+	if (write_scene(&a, &found, show, path, &taken, to, e))
+		return -1;
+	return fprintf(out, "%s: %zu of %zu Gaussians\n", caption, taken, a.scene.splats.n) < 0
+		       ? err_errno(e, "stdout")
+		       : 0;
 }

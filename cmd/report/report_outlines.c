@@ -34,8 +34,8 @@ static char *path_of(const struct trace *t, struct err *e)
 
 static char *trace_path(const struct rle *mask, int height, int width, struct err *e)
 {
-	struct rle small = {0};
-	struct trace t = {0};
+	SCOPED_BY(rle_free) struct rle small = {0};
+	SCOPED_BY(trace_free) struct trace t = {0};
 	SCOPED uint8_t *pixels = mem_alloc((size_t)height, (size_t)width, "mask", e);
 	char *path = NULL;
 
@@ -43,8 +43,6 @@ static char *trace_path(const struct rle *mask, int height, int width, struct er
 		rle_decode(&small, pixels);
 		path = trace_mask(&t, pixels, height, width, e) ? NULL : path_of(&t, e);
 	}
-	trace_free(&t);
-	rle_free(&small);
 	return path;
 }
 

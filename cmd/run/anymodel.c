@@ -202,7 +202,7 @@ int anymodel_answer(
 	struct responses_question of = {&q->scene->splats, &q->scene->cameras, q->text->offsets,
 		q->text->words, q->text->middle, q->text->texts, q->text->pieces, NULL, &parser, q->which,
 		q->count, q->text->refs, file_name(q->model_path), q->wants_parts};
-	struct rows rows = {0};
+	SCOPED_BY(rows_free) struct rows rows = {0};
 
 	*a = (struct responses){0};
 	if (check_fit(m, q, e))
@@ -215,7 +215,5 @@ int anymodel_answer(
 		return -1;
 	const struct respond_model respond = {
 		&t->layout, t->similarity, &rows, t->features, t->parameters, means, t->low, t->high};
-	int bad = responses_trained(a, &respond, &of, q->wants_calibration, e);
-	rows_free(&rows);
-	return bad;
+	return responses_trained(a, &respond, &of, q->wants_calibration, e);
 }

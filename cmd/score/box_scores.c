@@ -57,7 +57,7 @@ static int make(
 	struct box_scores *s, const struct box_set *predictions, const char *truth_path, struct err *e)
 {
 	const size_t n = s->truth.n;
-	struct mask_lookup of = {0};
+	SCOPED_BY(mask_lookup_free) struct mask_lookup of = {0};
 	SCOPED struct mask *names = boxes_names(&s->truth, e);
 	SCOPED char *is_met = mem_zalloc(n, 1, "boxes", e);
 	int bad = -1;
@@ -71,7 +71,6 @@ static int make(
 			   : err_set(e, ERR_FORMAT, "%s: no box at all: there is nothing to score",
 				     file_name(truth_path));
 	}
-	mask_lookup_free(&of);
 	return bad;
 }
 

@@ -184,7 +184,7 @@ static int by_group(const struct report *to, struct scores *s, const struct scor
 
 int scoring_pairs(const struct scoring *in, struct scores *s, const struct report *to, struct err *e)
 {
-	struct score_pairs pairs = {0}, others = {0};
+	SCOPED_BY(score_pairs_free) struct score_pairs pairs = {0}, others = {0};
 	struct score sum, other_sum;
 	int bad = pair_up(to, in, s->is_compared, &pairs, &others, &sum, &other_sum, e);
 	const struct score_sample sample = {
@@ -196,15 +196,13 @@ int scoring_pairs(const struct scoring *in, struct scores *s, const struct repor
 		s->all.score = sum;
 		s->all.other.score = other_sum;
 	}
-	score_pairs_free(&pairs);
-	score_pairs_free(&others);
 	return bad;
 }
 
 int scoring_boxes(const struct scoring_files *files, const char *path, int is_json, double *miou,
 	const struct report *to, struct err *e)
 {
-	struct box_scores s;
+	SCOPED_BY(box_scores_free) struct box_scores s = {0};
 
 	if (box_scores_read(&s, files->truth, files->predictions, e))
 		return -1;
@@ -212,15 +210,13 @@ int scoring_boxes(const struct scoring_files *files, const char *path, int is_js
 		report_warn(to, "%s: %zu boxes match no truth's ref or object and were left out",
 			file_name(files->predictions), s.unmatched);
 	*miou = s.all.aligned.iou;
-	int bad = box_scores_write(&s, path, is_json, e);
-	box_scores_free(&s);
-	return bad;
+	return box_scores_write(&s, path, is_json, e);
 }
 
 int scoring_answers(const struct scoring *in, const char *path, int is_json, double *right,
 	const struct report *to, struct err *e)
 {
-	struct answer_scores s;
+	SCOPED_BY(answer_scores_free) struct answer_scores s = {0};
 	struct answer_score all;
 
 	if (answer_scores_make(&s, &in->sentences, &in->truth, &in->predictions, e))
@@ -233,7 +229,5 @@ int scoring_answers(const struct scoring *in, const char *path, int is_json, dou
 			file_name(in->files->predictions), s.answers.unmatched);
 	answer_score_sum(&all, &s.answers, ANSWER_ANY, NULL);
 	*right = all.right;
-	int bad = answer_scores_write(&s, path, is_json, e);
-	answer_scores_free(&s);
-	return bad;
+	return answer_scores_write(&s, path, is_json, e);
 }

@@ -6,7 +6,6 @@
 #include "base/err.h"
 #include "base/file.h"
 #include "base/report.h"
-#include "geom/camera.h"
 #include "synth/detector.h"
 #include "synth/statistics.h"
 #include "synth/synth_scene.h"
@@ -39,12 +38,9 @@ int synth_folder_end(struct synth_folder *f, struct err *e);
 /* Removes outputs that are still open. */
 void synth_folder_abort(struct synth_folder *f);
 
-/* The files of the unseen split of a synthetic benchmark: sentences and their parses. formats/scene/synth.md.
- */
-
-/* Writes DIR/unseen.jsonl and DIR/parses.unseen.jsonl. */
-int synth_unseen_files(const char *dir, const struct synth_sentences *list,
-	const struct synth_object *objects, const struct cameras *cameras, struct err *e);
+/* The unseen split, of a struct synth_folder: unseen.jsonl, and parses.unseen.jsonl. Return 0. */
+int synth_unseen_put(FILE *out, const void *folder, struct err *e);
+int synth_unseen_put_parses(FILE *out, const void *folder, struct err *e);
 
 struct benchmark {
 	struct synth_options options; /* the caller's, but for the seed */

@@ -16,6 +16,14 @@ static int open_in(struct file_out *out, const char *dir, const char *name, stru
 	return !path || file_out_open(out, path, e) ? -1 : 0;
 }
 
+static int put_file(const struct synth_folder *f, const char *name,
+	int (*put)(FILE *out, const void *folder, struct err *e), struct err *e)
+{
+	SCOPED char *path = file_join(f->dir, name, "", e);
+
+	return path ? file_out_put(path, put, f, e) : -1;
+}
+
 /* Makes the folder of the photographs and tells each camera the name of its own. */
 static int name_photographs(const struct synth_folder *f, struct err *e)
 {
@@ -46,65 +54,58 @@ static int write_model(const struct synth_folder *f, struct err *e)
 
 /* Texts, names and refs are made of letters, digits, commas, hyphens and spaces: JSON needs no escapes for
  * them. */
-static int write_sentences(const struct synth_folder *f, struct err *e)
+static int put_sentences(FILE *out, const void *folder, struct err *e)
 {
-	struct file_out out = {0};
+	const struct synth_folder *f = folder;
 
-	if (open_in(&out, f->dir, "sentences.jsonl", e))
-		return -1;
+	(void)e;
 	for (size_t i = 0; i < f->sentences->n; i++) {
 		const struct synth_sentence *s = &f->sentences->items[i];
-		fprintf(out.stream, "{\"ref\":\"%s\",\"object\":\"%s\",\"text\":\"%s\",\"split\":\"%s\"}\n",
-			s->ref, f->scene->objects[s->object].name, s->text,
+		fprintf(out, "{\"ref\":\"%s\",\"object\":\"%s\",\"text\":\"%s\",\"split\":\"%s\"}\n", s->ref,
+			f->scene->objects[s->object].name, s->text,
 			s->split == SPLIT_TEST ? "test" : "train");
 	}
-	return file_out_commit(&out, e);
+	return 0;
 }
 
-static int write_boxes(const struct synth_folder *f, struct err *e)
+static int put_boxes(FILE *out, const void *folder, struct err *e)
 {
-	struct file_out out = {0};
-	int bad = open_in(&out, f->dir, "boxes.jsonl", e);
+	const struct synth_folder *f = folder;
+	int bad = 0;
 
-	if (bad)
-		return -1;
 	for (int i = 0; i < f->scene->object_count && !bad; i++) {
 		struct synth_object *o = &f->scene->objects[i];
 		struct box_record r = {.object = o->name, .score = NAN};
 		synth_object_boxes(o, &r.aligned, &r.turned);
-		bad = boxes_put(out.stream, &r, NULL, e);
+		bad = boxes_put(out, &r, NULL, e);
 	}
-	if (!bad)
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+	return bad;
 }
 
 /* One line, as --test-views takes it. */
-static int write_test_views(const struct synth_folder *f, struct err *e)
+static int put_test_views(FILE *out, const void *folder, struct err *e)
 {
-	struct file_out out = {0};
+	const struct cameras *c = &((const struct synth_folder *)folder)->scene->cameras;
 	const char *comma = "";
 
-	if (open_in(&out, f->dir, "test-views", e))
-		return -1;
-	for (size_t i = 0; i < f->scene->cameras.n; i++) {
-		const struct camera *c = &f->scene->cameras.views[i];
-		if (c->split == SPLIT_TEST) {
-			fprintf(out.stream, "%s%s", comma, c->name);
+	(void)e;
+	for (size_t i = 0; i < c->n; i++)
+		if (c->views[i].split == SPLIT_TEST) {
+			fprintf(out, "%s%s", comma, c->views[i].name);
 			comma = ",";
 		}
-	}
-	fputc('\n', out.stream);
-	return file_out_commit(&out, e);
+	fputc('\n', out);
+	return 0;
 }
 
 int synth_folder_begin(struct synth_folder *f, struct err *e)
 {
-	return name_photographs(f, e) || write_model(f, e) || write_sentences(f, e) ||
-			       synth_unseen_files(
-				       f->dir, f->unseen, f->scene->objects, &f->scene->cameras, e) ||
-			       write_test_views(f, e) || write_boxes(f, e) ||
+	return name_photographs(f, e) || write_model(f, e) ||
+			       put_file(f, "sentences.jsonl", put_sentences, e) ||
+			       put_file(f, "unseen.jsonl", synth_unseen_put, e) ||
+			       put_file(f, "parses.unseen.jsonl", synth_unseen_put_parses, e) ||
+			       put_file(f, "test-views", put_test_views, e) ||
+			       put_file(f, "boxes.jsonl", put_boxes, e) ||
 			       open_in(&f->candidates, f->dir, "candidates.jsonl", e) ||
 			       open_in(&f->test_candidates, f->dir, "candidates.test.jsonl", e) ||
 			       open_in(&f->truth, f->dir, "truth.jsonl", e) ||
@@ -207,15 +208,14 @@ static void put_visibility(FILE *to, const char *name, const struct synth_visibi
 	fputc('}', to);
 }
 
-static int write_statistics(const struct synth_folder *f, struct err *e)
+static int put_statistics(FILE *out, const void *folder, struct err *e)
 {
+	const struct synth_folder *f = folder;
 	const struct synth_statistics *s = f->statistics;
-	struct file_out out = {0};
 	const char *comma = "";
 
-	if (open_in(&out, f->dir, "statistics.json", e))
-		return -1;
-	fprintf(out.stream,
+	(void)e;
+	fprintf(out,
 		"{\"scene\":\"%s\",\"objects\":%d,\"alike\":%d,\"alike_groups\":%d,\"stacked\":%d,"
 		"\"sentences\":{\"train\":%d,\"test\":%d},\"words\":{\"train\":%.2f,\"test\":%.2f},"
 		"\"relations\":{",
@@ -226,28 +226,28 @@ static int write_statistics(const struct synth_folder *f, struct err *e)
 	for (int i = 0; i < w->n; i++) {
 		if (w->rows[i].list != SYNTH_RELATIONS)
 			continue;
-		fprintf(out.stream, "%s\"%s\":%.4f", comma, w->rows[i].text,
+		fprintf(out, "%s\"%s\":%.4f", comma, w->rows[i].text,
 			synth_statistics_share(f->sentences, &w->rows[i]));
 		comma = ",";
 	}
-	fprintf(out.stream, "},\"views\":{\"train\":%d,\"test\":%d},\"gaussians\":%zu", s->views[SPLIT_TRAIN],
+	fprintf(out, "},\"views\":{\"train\":%d,\"test\":%d},\"gaussians\":%zu", s->views[SPLIT_TRAIN],
 		s->views[SPLIT_TEST], s->gaussians);
-	put_quantiles(out.stream, "opacity", s->opacity);
-	put_quantiles(out.stream, "aspect", s->aspect);
-	put_quantiles(out.stream, "size", s->size);
-	fputs(",\"visibility\":{", out.stream);
-	put_visibility(out.stream, "train", &s->visibility[SPLIT_TRAIN]);
-	fputc(',', out.stream);
-	put_visibility(out.stream, "test", &s->visibility[SPLIT_TEST]);
-	fputs("}}\n", out.stream);
-	return file_out_commit(&out, e);
+	put_quantiles(out, "opacity", s->opacity);
+	put_quantiles(out, "aspect", s->aspect);
+	put_quantiles(out, "size", s->size);
+	fputs(",\"visibility\":{", out);
+	put_visibility(out, "train", &s->visibility[SPLIT_TRAIN]);
+	fputc(',', out);
+	put_visibility(out, "test", &s->visibility[SPLIT_TEST]);
+	fputs("}}\n", out);
+	return 0;
 }
 
 int synth_folder_end(struct synth_folder *f, struct err *e)
 {
 	return file_out_commit(&f->candidates, e) || file_out_commit(&f->test_candidates, e) ||
 			       file_out_commit(&f->truth, e) || file_out_commit(&f->whole, e) ||
-			       write_statistics(f, e)
+			       put_file(f, "statistics.json", put_statistics, e)
 		       ? -1
 		       : 0;
 }

@@ -152,13 +152,12 @@ static int lift_view(struct training *t, struct lift_objects *l, size_t v, struc
 static int check_masks(
 	struct training *t, const struct training_files *from, const struct report *to, struct err *e)
 {
-	struct lift_objects l;
+	SCOPED_BY(lift_objects_free) struct lift_objects l = {0};
 
 	int bad = lift_objects_init(&l, t->scene.splats.n, t->sentences, t->views.n, e);
 	for (size_t v = 0; v < t->views.n && !bad; v++)
 		bad = lift_view(t, &l, v, e);
 	bad = bad || left_out_check(&l, t->sentences, from->masks, from->scene, to, e);
-	lift_objects_free(&l);
 	return bad ? -1 : 0;
 }
 
