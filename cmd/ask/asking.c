@@ -181,19 +181,18 @@ static int choose_answer(struct asking *a, const struct text *t, size_t r, struc
 	SCOPED float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
 	SCOPED char *chosen = mem_alloc(objects, 1, "answer", e);
 	struct choice choice;
-	int bad = !probability || !chosen ||
-		  choose_with(a->chooser, &sentence, 1, &choice, probability, chosen, &watching, e);
 
-	if (!bad) {
-		w->answer->there = choice.there;
-		w->answer->is_by_purpose = choice.is_by_purpose;
-		for (size_t o = 0; o < objects; o++)
-			w->answer->probability[o] = choice.there * (double)probability[o];
-		if (choice.there < a->options->least)
-			memset(chosen, 0, objects);
-		sort_things(w->answer, a->model.lifted.names, chosen, objects);
-	}
-	return bad ? -1 : 0;
+	if (!probability || !chosen ||
+		choose_with(a->chooser, &sentence, 1, &choice, probability, chosen, &watching, e))
+		return -1;
+	w->answer->there = choice.there;
+	w->answer->is_by_purpose = choice.is_by_purpose;
+	for (size_t o = 0; o < objects; o++)
+		w->answer->probability[o] = choice.there * (double)probability[o];
+	if (choice.there < a->options->least)
+		memset(chosen, 0, objects);
+	sort_things(w->answer, a->model.lifted.names, chosen, objects);
+	return 0;
 }
 
 void asking_expect(struct asking *a, const char *const *questions, size_t n)

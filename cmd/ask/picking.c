@@ -44,10 +44,8 @@ static int find_view(struct region *r, const struct asking *a, const char *text,
 	memcpy(name, text, length);
 	name[length] = 0;
 	r->camera = asking_view(a, name);
-	const int bad =
-		r->camera ? 0
-			  : err_set(e, ERR_USAGE, "%s: no view '%s'", r->is_box ? "--box" : "--point", name);
-	return bad;
+	return r->camera ? 0
+			 : err_set(e, ERR_USAGE, "%s: no view '%s'", r->is_box ? "--box" : "--point", name);
 }
 
 static int take_region(struct region *r, const struct asking *a, const char *text, struct err *e)

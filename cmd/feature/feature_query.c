@@ -223,26 +223,28 @@ static void print_options(const struct feature_query *q, char *to, size_t size)
 static int write_selection(const struct feature_query *q, const char *path, struct err *e)
 {
 	const size_t n = q->features[0].gaussians;
-	struct selection s = {.gaussians = n, .n = q->count, .scene = q->features[0].scene};
 	char options[96];
 	size_t items = 0;
 
 	for (size_t i = 0; i < q->count; i++)
 		items += marks_count(q->marks[i], n);
-	s.refs = mem_alloc(q->count, sizeof *s.refs, "sentences", e);
-	s.indptr = mem_zalloc(q->count + 1, sizeof *s.indptr, "selection", e);
-	s.index = mem_alloc(items, sizeof *s.index, "selection", e);
-	int bad = !s.refs || !s.indptr || !s.index;
-	for (size_t i = 0; i < q->count && !bad; i++) {
-		s.refs[i] = q->text.refs[q->which[i]];
-		s.indptr[i + 1] = s.indptr[i] + (int64_t)marks_take(q->marks[i], n, s.index + s.indptr[i]);
+	SCOPED char **refs = mem_alloc(q->count, sizeof *refs, "sentences", e);
+	SCOPED int64_t *indptr = mem_zalloc(q->count + 1, sizeof *indptr, "selection", e);
+	SCOPED int32_t *index = mem_alloc(items, sizeof *index, "selection", e);
+	if (!refs || !indptr || !index)
+		return -1;
+	for (size_t i = 0; i < q->count; i++) {
+		refs[i] = q->text.refs[q->which[i]];
+		indptr[i + 1] = indptr[i] + (int64_t)marks_take(q->marks[i], n, index + indptr[i]);
 	}
+	const struct selection s = {.gaussians = n,
+		.n = q->count,
+		.refs = refs,
+		.indptr = indptr,
+		.index = index,
+		.scene = q->features[0].scene};
 	print_options(q, options, sizeof options);
-	bad = bad || selection_write(&s, path, options, e);
-	free(s.refs);
-	free(s.indptr);
-	free(s.index);
-	return bad ? -1 : 0;
+	return selection_write(&s, path, options, e);
 }
 
 int feature_query_write(const struct feature_query *q, const char *path, struct err *e)

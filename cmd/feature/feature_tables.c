@@ -73,36 +73,31 @@ static int open_array(const struct feature_maps *m, size_t view, const char *suf
 	if (m->npz)
 		return npz_array(m->npz, m->scene->cameras.views[view].name, suffix, t, called, e);
 	snprintf(ending, sizeof ending, "%s.npy", suffix);
-	char *path = view_path(m, view, ending, e), *packed = view_path(m, view, ".npz", e);
+	char *path = *called = view_path(m, view, ending, e);
+	SCOPED char *packed = view_path(m, view, ".npz", e);
 	if (path && packed && !*suffix && !file_exists(path) && file_exists(packed)) {
-		const int bad = open_packed(packed, t, called, e);
 		free(path);
-		free(packed);
-		return bad;
+		*called = NULL;
+		return open_packed(packed, t, called, e);
 	}
-	const int bad = !path || !packed || npy_open(t, path, e);
-	free(packed);
-	if (bad)
-		free(path);
-	else
-		*called = path;
-	return bad ? -1 : 0;
+	return !path || !packed || npy_open(t, path, e);
 }
 
 static int open_table(
 	const struct feature_maps *m, size_t view, struct npy *t, size_t *channels, struct err *e)
 {
 	const int is_map = m->kind == MAPS_CELLS;
-	char *called;
-	int bad = open_array(m, view, is_map ? "" : "_f", t, &called, e);
+	SCOPED char *called = NULL;
 
-	if (!bad && (bad = check_table(t, is_map ? 3 : 2, called, e) ||
-			    (is_map && check_shape(m, view, called, t->shape[0], t->shape[1], e))))
-		npy_close(t);
-	if (!bad)
+	if (open_array(m, view, is_map ? "" : "_f", t, &called, e))
+		return -1;
+	if (!check_table(t, is_map ? 3 : 2, called, e) &&
+		(!is_map || !check_shape(m, view, called, t->shape[0], t->shape[1], e))) {
 		*channels = t->shape[t->dims - 1];
-	free(called);
-	return bad ? -1 : 0;
+		return 0;
+	}
+	npy_close(t);
+	return -1;
 }
 
 int feature_tables_channels(const struct feature_maps *m, size_t view, size_t *channels, struct err *e)
@@ -151,16 +146,11 @@ static int read_ids(const struct feature_maps *m, size_t view, const struct npy 
 static int open_segments(const struct feature_maps *m, size_t view, int height, int width,
 	struct feature_sources *s, struct err *e)
 {
-	struct npy ids;
-	char *called;
-	int bad = open_array(m, view, "_s", &ids, &called, e);
+	SCOPED_BY(npy_close) struct npy ids = {0};
+	SCOPED char *called = NULL;
 
-	if (!bad) {
-		bad = read_ids(m, view, &ids, called, height, width, s, e);
-		npy_close(&ids);
-	}
-	free(called);
-	return bad ? -1 : 0;
+	return open_array(m, view, "_s", &ids, &called, e) ||
+	       read_ids(m, view, &ids, called, height, width, s, e);
 }
 
 static int open_features(const struct feature_maps *m, size_t view, int height, int width,
@@ -189,14 +179,13 @@ static int open_labels(const struct feature_maps *m, size_t view, int height, in
 	SCOPED int32_t *labels = NULL;
 	int own[2];
 
-	const int bad = !path || png_read_labels(path, &labels, &own[0], &own[1], e) ||
-			check_shape(m, view, path, own[0], own[1], e);
-	if (!bad) {
-		source_cells(s->raw, height, width, (size_t)own[0], (size_t)own[1]);
-		for (size_t p = 0, n = (size_t)height * (size_t)width; p < n; p++)
-			s->raw[p] = labels[s->raw[p]];
-	}
-	return bad ? -1 : 0;
+	if (!path || png_read_labels(path, &labels, &own[0], &own[1], e) ||
+		check_shape(m, view, path, own[0], own[1], e))
+		return -1;
+	source_cells(s->raw, height, width, (size_t)own[0], (size_t)own[1]);
+	for (size_t p = 0, n = (size_t)height * (size_t)width; p < n; p++)
+		s->raw[p] = labels[s->raw[p]];
+	return 0;
 }
 
 /* Order of painting: the surest mask is on top, of equally sure ones the later. */

@@ -146,24 +146,24 @@ static int by_identity(const struct feature_query *q, const char *inside, char *
 static int answer_object(struct feature_query *q, size_t object, struct err *e)
 {
 	const size_t n = q->features[0].gaussians;
-	SCOPED char *inside = NULL, *selected = NULL;
-	int is_meant = 0, bad = 0;
+	int is_meant = 0;
 
 	for (size_t i = 0; i < q->count; i++)
 		is_meant |= q->object[i] == object;
 	if (!is_meant)
 		return 0;
-	bad = !(inside = mem_alloc(n, 1, "Gaussians", e)) || !(selected = mem_alloc(n, 1, "Gaussians", e));
-	if (!bad) {
-		find_inside(q, object, inside);
-		bad = q->options->rule == RULE_HYPERPLANE ? by_hyperplane(q, inside, selected, e)
-							  : by_identity(q, inside, selected, e);
-	}
-	for (size_t i = 0; i < q->count && !bad; i++)
+	SCOPED char *inside = mem_alloc(n, 1, "Gaussians", e);
+	SCOPED char *selected = mem_alloc(n, 1, "Gaussians", e);
+	if (!inside || !selected)
+		return -1;
+	find_inside(q, object, inside);
+	if ((q->options->rule == RULE_HYPERPLANE ? by_hyperplane : by_identity)(q, inside, selected, e))
+		return -1;
+	for (size_t i = 0; i < q->count; i++)
 		for (size_t k = 0; k < n && q->object[i] == object; k++)
 			if (selected[k])
 				marks_add(q->marks[i], k);
-	return bad ? -1 : 0;
+	return 0;
 }
 
 int query_by_examples(struct feature_query *q, const struct report *to, struct err *e)

@@ -194,20 +194,20 @@ static int by_relevancy(struct feature_query *q, struct err *e)
 		return err_set(e, ERR_SYSTEM, "relevancies do not fit in memory");
 	SCOPED double *threshold = mem_alloc(q->count, sizeof *threshold, "relevancies", e);
 	SCOPED double *best = mem_alloc(q->count, sizeof *best, "relevancies", e);
-	struct pass p = {.q = q,
-		.least = mem_alloc(count, sizeof *p.least, "relevancies", e),
-		.most = mem_alloc(count, sizeof *p.most, "relevancies", e),
-		.threshold = threshold};
+	SCOPED float *least = mem_alloc(count, sizeof *least, "relevancies", e);
+	SCOPED float *most = mem_alloc(count, sizeof *most, "relevancies", e);
+	struct pass p = {.q = q, .least = least, .most = most, .threshold = threshold};
 	q->level = mem_zalloc(q->count, sizeof *q->level, "sentences", e);
-	int bad = !threshold || !best || !p.least || !p.most || !q->level;
-	for (p.level = 0; p.level < q->levels && !bad; p.level++)
-		bad = choose_level(&p, threshold, best, e);
+	if (!threshold || !best || !least || !most || !q->level)
+		return -1;
+	for (p.level = 0; p.level < q->levels; p.level++)
+		if (choose_level(&p, threshold, best, e))
+			return -1;
 	p.use = take_relevant;
-	for (p.level = 0; p.level < q->levels && !bad; p.level++)
-		bad = run(&p, e);
-	free(p.least);
-	free(p.most);
-	return bad ? -1 : 0;
+	for (p.level = 0; p.level < q->levels; p.level++)
+		if (run(&p, e))
+			return -1;
+	return 0;
 }
 
 int query_by_vectors(struct feature_query *q, struct err *e)

@@ -168,19 +168,18 @@ int point_frame_find(double *share, const struct scene *s, const char *cameras, 
 	const float *means = s->splats.means;
 	const size_t m = s->splats.n;
 	struct grid g = {0};
-	float *points;
+	SCOPED float *points = NULL;
 	size_t n;
 
 	*share = 1;
-	int bad = points_read(&points, &n, cameras, s->offset, e);
-	if (!bad && n >= LEAST && m >= LEAST) {
-		bad = make_grid(&g, points, n, e);
-		if (!bad && g.side > 0) {
-			*share = 0;
-			bad = find_share(&g, points, n, means, m, share, e) ||
-			      find_share(&g, means, m, points, n, share, e);
-		}
-	}
-	free(points);
-	return bad ? -1 : 0;
+	if (points_read(&points, &n, cameras, s->offset, e))
+		return -1;
+	if (n < LEAST || m < LEAST)
+		return 0;
+	if (make_grid(&g, points, n, e))
+		return -1;
+	if (!(g.side > 0))
+		return 0;
+	*share = 0;
+	return find_share(&g, points, n, means, m, share, e) || find_share(&g, means, m, points, n, share, e);
 }

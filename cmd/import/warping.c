@@ -14,11 +14,10 @@
 int warping_open(struct warping *w, enum warp way, const char *scene, struct err *e)
 {
 	*w = (struct warping){.way = way};
-	char *path = way == WARP_NONE ? NULL : file_join(scene, "cameras.json", "", e);
-	const int bad = way != WARP_NONE && (!path || scene_read_cameras_file(&w->cameras, path, e));
-
-	free(path);
-	return bad ? -1 : 0;
+	if (way == WARP_NONE)
+		return 0;
+	SCOPED char *path = file_join(scene, "cameras.json", "", e);
+	return path ? scene_read_cameras_file(&w->cameras, path, e) : -1;
 }
 
 void warping_free(struct warping *w)

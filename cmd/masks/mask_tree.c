@@ -42,30 +42,23 @@ static int is_class(const char *classes, const char *name)
 
 static int walk_picture(struct walk *w, const char *folder, const char *view, const char *file, struct err *e)
 {
-	char *stem = path_ends(file, ".png") ? mem_strdup(file, e) : NULL;
+	SCOPED char *stem = path_ends(file, ".png") ? mem_strdup(file, e) : NULL;
 
-	if (!path_ends(file, ".png"))
-		return 0;
-	if (stem)
-		stem[strlen(stem) - 4] = 0;
-	if (stem && stem[view_stem(stem)]) {
-		err_set(e, ERR_FORMAT,
+	if (!stem)
+		return path_ends(file, ".png") ? -1 : 0;
+	stem[strlen(stem) - 4] = 0;
+	if (stem[view_stem(stem)])
+		return err_set(e, ERR_FORMAT,
 			"%s/%s: the mask of a photograph, as COLMAP names them, not of a thing: give such pictures by themselves, with --names",
 			folder, file);
-		free(stem);
+	SCOPED char *name = name_from_file(stem, e);
+	SCOPED char *path = name ? file_join(folder, file, "", e) : NULL;
+	if (!path)
 		return -1;
-	}
-	char *name = stem ? name_from_file(stem, e) : NULL,
-	     *path = name ? file_join(folder, file, "", e) : NULL;
-	int bad = !path;
-	if (path && is_class(w->classes, name)) {
-		w->pictures++;
-		bad = w->put(w->to, path, view, name, e);
-	}
-	free(stem);
-	free(name);
-	free(path);
-	return bad;
+	if (!is_class(w->classes, name))
+		return 0;
+	w->pictures++;
+	return w->put(w->to, path, view, name, e);
 }
 
 /* What a folder has, in order of names: their count, or -1 with *e. free() all. */

@@ -160,23 +160,20 @@ static int put_tree_mask(void *to, const char *path, const char *view, const cha
 	struct mask mask = {.view = view, .object = name, .score = NAN, .visible = NAN};
 	char fault[NAME_FAULT];
 	const char *reason = name_fault(name, NAME_DATA, fault);
-	uint8_t *pixels;
+	SCOPED uint8_t *pixels = NULL;
 	int height, width;
 
 	if (reason)
 		return err_set(e, ERR_FORMAT, "%s: the name %s", path, reason);
-	if (png_read_mask(path, &pixels, &height, &width, e))
+	if (png_read_mask(path, &pixels, &height, &width, e) ||
+		rle_encode(&mask.rle, pixels, height, width, e))
 		return -1;
-	int bad = rle_encode(&mask.rle, pixels, height, width, e);
-	free(pixels);
-	if (bad)
-		return -1;
-	if (!rle_area(&mask.rle)) {
-		rle_free(&mask.rle);
-		return 0;
+	if (rle_area(&mask.rle)) {
+		p->count++;
+		return painting_put(&mask, p->w, path, p->out, e);
 	}
-	p->count++;
-	return painting_put(&mask, p->w, path, p->out, e);
+	rle_free(&mask.rle);
+	return 0;
 }
 
 static int put_any(struct putting *p, const char *path, struct err *e)

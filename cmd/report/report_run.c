@@ -118,25 +118,20 @@ static int read_set(struct report_run *r, size_t place, struct err *e)
 
 static int read_sets(struct report_run *r, const struct report *to, struct err *e)
 {
-	int bad = 0;
-
-	for (size_t k = 0; k < REPORT_SETS && !bad; k++)
-		bad = read_set(r, k, e);
-	if (bad || r->set_count)
-		return bad;
-	char *text = part(r, "text.safetensors", e);
-	if (!r->has_lifted || !text) {
-		free(text);
+	for (size_t k = 0; k < REPORT_SETS; k++)
+		if (read_set(r, k, e))
+			return -1;
+	if (r->set_count)
+		return 0;
+	SCOPED char *text = part(r, "text.safetensors", e);
+	if (!r->has_lifted || !text)
 		return err_set(e, ERR_SYSTEM,
 			"%s: no answers in it: 'make -f pipelines/lift.mk SCENE=%s ...' makes some",
 			r->options->run, r->options->run);
-	}
 	r->set_count = 1;
 	r->sets[0] = (struct report_set){.way = "lifted", .name = "train"};
-	bad = text_read(&r->sets[0].text, text, e) || report_answer(r, &r->sets[0], to, e) ||
-	      (r->truth_path && score_set(r, &r->sets[0], e));
-	free(text);
-	return bad ? -1 : 0;
+	return text_read(&r->sets[0].text, text, e) || report_answer(r, &r->sets[0], to, e) ||
+	       (r->truth_path && score_set(r, &r->sets[0], e));
 }
 
 /* How much a view is worth a picture: 2 where there is truth of it, 1 where there are answers. */

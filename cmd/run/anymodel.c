@@ -14,7 +14,6 @@
 int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 {
 	SCOPED_BY(safetensors_close) struct safetensors st = {0};
-	int bad;
 
 	*m = (struct anymodel){0};
 	if (safetensors_open(&st, path, e))
@@ -22,21 +21,16 @@ int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 	const char *format = safetensors_meta(&st, "format");
 	m->is_lifted = format && !strcmp(format, "refer.lifted");
 	m->is_selection = format && !strcmp(format, "refer.selection");
-	if (m->is_selection)
-		bad = selection_take(&m->selection, &st, e);
-	else if (m->is_lifted)
-		bad = lifted_take(&m->lifted, &m->origin, &st, e) || parser_weights_default(&m->weights, e);
-	else if (!format || strcmp(format, "refer.model"))
-		bad = err_set(e, ERR_FORMAT,
+	if (m->is_lifted)
+		return lifted_take(&m->lifted, &m->origin, &st, e) || parser_weights_default(&m->weights, e);
+	if (!m->is_selection && (!format || strcmp(format, "refer.model")))
+		return err_set(e, ERR_FORMAT,
 			"%s: format is '%s', expected 'refer.model', 'refer.lifted' or 'refer.selection'",
 			st.path, format ? format : "");
-	else
-		bad = model_take(&m->trained, &st, e);
-	if (!bad && m->is_selection)
-		m->origin.scene = m->selection.scene;
-	else if (!bad && !m->is_lifted)
-		m->origin = m->trained.origin;
-	return bad ? -1 : 0;
+	if (m->is_selection ? selection_take(&m->selection, &st, e) : model_take(&m->trained, &st, e))
+		return -1;
+	m->origin = m->is_selection ? (struct origin){.scene = m->selection.scene} : m->trained.origin;
+	return 0;
 }
 
 void anymodel_free(struct anymodel *m)

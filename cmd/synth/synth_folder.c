@@ -28,16 +28,17 @@ static int put_file(const struct synth_folder *f, const char *name,
 static int name_photographs(const struct synth_folder *f, struct err *e)
 {
 	SCOPED char *images = file_join(f->dir, "images", "", e);
-	int bad = images ? 0 : -1;
 
-	if (!bad && file_make_dir(images, e))
-		bad = err_prefix(e, images);
-	for (size_t i = 0; i < f->scene->cameras.n && !bad; i++) {
+	if (!images)
+		return -1;
+	if (file_make_dir(images, e))
+		return err_prefix(e, images);
+	for (size_t i = 0; i < f->scene->cameras.n; i++) {
 		struct camera *c = &f->scene->cameras.views[i];
-		c->image = file_join(images, c->name, ".png", e);
-		bad = c->image ? 0 : -1;
+		if (!(c->image = file_join(images, c->name, ".png", e)))
+			return -1;
 	}
-	return bad;
+	return 0;
 }
 
 static int write_model(const struct synth_folder *f, struct err *e)

@@ -113,36 +113,37 @@ struct mask_reading {
 static int add_mask(
 	struct training *t, const struct jsonl *j, struct mask *m, struct mask_reading *r, struct err *e)
 {
+	SCOPED_BY(mask_free) struct mask own = *m;
 	const size_t n = t->masks.masks.n;
 	char few[NAMES_FEW];
 	size_t place;
-	int bad = masks_find_view(m, &r->names, &t->scene.cameras, &place, e);
-	const int is_unknown = !bad && place == NAMES_NONE;
-	const struct camera *c = t->scene.cameras.views + (bad || is_unknown ? 0 : place);
 
-	if (is_unknown && !r->unknown++)
-		jsonl_err(j, &r->why, "key 'view': the scene has no view '%s'%s", m->view,
-			names_few(&r->names, few));
-	if (!is_unknown)
-		bad = bad ||
-		      masks_check_shape(m, "the view", c->height, c->width, j->path, j->line_number, e);
-	t->test_masks += !bad && !is_unknown && c->split == SPLIT_TEST;
-	if (bad || is_unknown || c->split == SPLIT_TEST) {
-		mask_free(m);
-		return bad ? -1 : 0;
+	if (masks_find_view(&own, &r->names, &t->scene.cameras, &place, e))
+		return -1;
+	if (place == NAMES_NONE) {
+		if (!r->unknown++)
+			jsonl_err(j, &r->why, "key 'view': the scene has no view '%s'%s", own.view,
+				names_few(&r->names, few));
+		return 0;
 	}
+	const struct camera *c = &t->scene.cameras.views[place];
+	if (masks_check_shape(&own, "the view", c->height, c->width, j->path, j->line_number, e))
+		return -1;
+	t->test_masks += c->split == SPLIT_TEST;
+	if (c->split == SPLIT_TEST)
+		return 0;
 	long *view = &r->view_of[place];
 	if (*view < 0) {
 		*view = (long)t->views.n;
-		bad = training_views_add(&t->views, place, e);
+		if (training_views_add(&t->views, place, e))
+			return -1;
 	}
-	bad = bad || mem_grow((void **)&r->lines, &r->capacity, n + 1, sizeof *r->lines, "masks", e);
-	if (bad) {
-		mask_free(m);
+	if (mem_grow((void **)&r->lines, &r->capacity, n + 1, sizeof *r->lines, "masks", e))
 		return -1;
-	}
 	r->lines[n] = j->line_number;
 	const struct camera *sized = &t->views.cameras[*view];
+	*m = own;
+	own = (struct mask){0};
 	return supervision_add(&t->masks, (size_t)*view, sized->width, sized->height, m, e);
 }
 
