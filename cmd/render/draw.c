@@ -127,7 +127,7 @@ static int put_sentence(const struct drawing *d, size_t i, size_t view, const st
 	m.object = text_object(&r->text, r->refs[i]);
 	if (r->responses.sure)
 		m.score = rle_area(&m.rle) ? r->responses.sure[i] : 0;
-	return masks_put_parts(d->out, &m, parts, list_parts(r, shown, answer, parts), e);
+	return d->put(d->data, &m, parts, list_parts(r, shown, answer, parts), e);
 }
 
 static int put_view(void *data, size_t view, struct err *e)
@@ -183,6 +183,20 @@ static int render_all(struct drawing *d, const struct viewpoint *from, struct er
 	return bad;
 }
 
+int draw_each(struct drawing *d, const struct viewpoint *from, const struct report *to, struct err *e)
+{
+	d->to = to;
+	report_start(to, "views", (double)d->view_count);
+	const int bad = render_all(d, from, e);
+	report_end(to);
+	return bad;
+}
+
+static int put_line(void *out, const struct mask *m, const struct mask *parts, size_t n, struct err *e)
+{
+	return masks_put_parts(out, m, parts, n, e);
+}
+
 int draw(struct drawing *d, const struct viewpoint *from, const char *path, const struct report *to,
 	struct err *e)
 {
@@ -190,12 +204,9 @@ int draw(struct drawing *d, const struct viewpoint *from, const char *path, cons
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	d->to = to;
-	d->out = out.stream;
-	report_start(to, "views", (double)d->view_count);
-	int bad = render_all(d, from, e);
-	report_end(to);
-	return file_out_end(&out, bad, e);
+	d->put = put_line;
+	d->data = out.stream;
+	return file_out_end(&out, draw_each(d, from, to, e), e);
 }
 
 void drawing_free(struct drawing *d)
