@@ -1,7 +1,6 @@
 #include "cmd/train/training.h"
 
 #include "base/mem.h"
-#include "base/names.h"
 #include "formats/records/masks.h"
 #include "splat/backproject.h"
 
@@ -99,102 +98,51 @@ struct view_source training_views_source(struct training_views *t)
 	return s;
 }
 
-/* What the masks are read with. */
-struct mask_reading {
-	struct names names; /* of the scene's views */
-	long *view_of;	    /* (the scene's views) the training view, or -1 */
-	size_t capacity;
-	long *lines;	/* of each mask that was kept */
-	size_t unknown; /* masks of views that the scene lacks */
-	struct err why; /* the first of them */
-};
-
-/* One mask, taken over: its view's weights are read when it is the first of the view. */
-static int add_mask(
-	struct training *t, const struct jsonl *j, struct mask *m, struct mask_reading *r, struct err *e)
+/* One mask, taken over: its view's weights are read when it is the first of the view. view_of (the scene's
+ * views): 1 + the training view, or 0. */
+static int add_mask(struct training *t, struct mask *m, size_t place, size_t *view_of, struct err *e)
 {
-	SCOPED_BY(mask_free) struct mask own = *m;
-	const size_t n = t->masks.masks.n;
-	char few[NAMES_FEW];
-	size_t place;
+	struct mask own = *m;
 
-	if (masks_find_view(&own, &r->names, &t->scene.cameras, &place, e))
-		return -1;
-	if (place == NAMES_NONE) {
-		if (!r->unknown++)
-			jsonl_err(j, &r->why, "key 'view': the scene has no view '%s'%s", own.view,
-				names_few(&r->names, few));
-		return 0;
-	}
-	const struct camera *c = &t->scene.cameras.views[place];
-	if (masks_check_shape(&own, "the view", c->height, c->width, j->path, j->line_number, e))
-		return -1;
-	t->test_masks += c->split == SPLIT_TEST;
-	if (c->split == SPLIT_TEST)
-		return 0;
-	long *view = &r->view_of[place];
-	if (*view < 0) {
-		*view = (long)t->views.n;
+	if (!view_of[place]) {
 		if (training_views_add(&t->views, place, e))
 			return -1;
+		view_of[place] = t->views.n;
 	}
-	if (mem_grow((void **)&r->lines, &r->capacity, n + 1, sizeof *r->lines, "masks", e))
-		return -1;
-	r->lines[n] = j->line_number;
-	const struct camera *sized = &t->views.cameras[*view];
-	*m = own;
-	own = (struct mask){0};
-	return supervision_add(&t->masks, (size_t)*view, sized->width, sized->height, m, e);
-}
-
-static int add_masks(struct training *t, const char *path, struct mask_reading *r, struct err *e)
-{
-	struct err reason;
-	struct mask m;
-	SCOPED_BY(jsonl_close) struct jsonl j = {0};
-	size_t later = 0;
-	int more;
-
-	if (jsonl_open(&j, path, e))
-		return -1;
-	while ((more = masks_next(&j, &m, e)) == 1)
-		if (add_mask(t, &j, &m, r, e)) {
-			more = -1;
-			break;
-		}
-	if (more || !supervision_index(&t->masks, &later, &reason))
-		return more;
-	if (reason.code != ERR_FORMAT)
-		return err_set(e, reason.code, "%s", reason.message);
-	return err_set(e, ERR_FORMAT, "%s:%ld: %s", file_name(path), r->lines[later], reason.message);
-}
-
-/* Masks of views that the scene lacks are left out, unless all are. */
-static int check_unknown(
-	const struct training *t, const struct mask_reading *r, const struct report *to, struct err *e)
-{
-	if (!r->unknown)
-		return 0;
-	if (!t->masks.masks.n && !t->test_masks)
-		return err_set(e, ERR_FORMAT, "%s", r->why.message);
-	report_warn(to, "%s: %zu masks, of views that it lacks, are left out", r->why.message, r->unknown);
-	return 0;
+	const size_t view = view_of[place] - 1;
+	const struct camera *sized = &t->views.cameras[view];
+	*m = (struct mask){0};
+	return supervision_add(&t->masks, view, sized->width, sized->height, &own, e);
 }
 
 int training_read_masks(
 	struct training *t, const char *weights, const char *path, const struct report *to, struct err *e)
 {
-	const size_t count = t->scene.cameras.n;
-	struct mask_reading r = {.view_of = mem_alloc(count, sizeof *r.view_of, "views", e)};
+	const struct cameras *c = &t->scene.cameras;
+	SCOPED_BY(masks_free) struct masks set = {0};
+	SCOPED long *lines = NULL;
+	struct err reason;
+	size_t later = 0;
 
-	int bad = !r.view_of || training_views_init(&t->views, &t->scene, weights, e) ||
-		  names_make(&r.names, t->scene.cameras.views, sizeof *t->scene.cameras.views,
-			  offsetof(struct camera, name), count, e);
-	for (size_t v = 0; v < count && !bad; v++)
-		r.view_of[v] = -1;
-	bad = bad || add_masks(t, path, &r, e) || check_unknown(t, &r, to, e);
-	names_free(&r.names);
-	free(r.view_of);
-	free(r.lines);
-	return bad ? -1 : 0;
+	if (masks_read_lines(&set, &lines, path, e))
+		return -1;
+	SCOPED size_t *views = mem_alloc(set.n, sizeof *views, "masks", e);
+	SCOPED size_t *view_of = mem_zalloc(c->n, sizeof *view_of, "views", e);
+	if (!views || !view_of || masks_views(&set, lines, path, c, views, to, e) ||
+		training_views_init(&t->views, &t->scene, weights, e))
+		return -1;
+	for (size_t i = 0; i < set.n; i++) {
+		if (c->views[views[i]].split == SPLIT_TEST) {
+			t->test_masks++;
+			continue;
+		}
+		lines[t->masks.masks.n] = lines[i];
+		if (add_mask(t, &set.items[i], views[i], view_of, e))
+			return -1;
+	}
+	if (!supervision_index(&t->masks, &later, &reason))
+		return 0;
+	if (reason.code != ERR_FORMAT)
+		return err_set(e, reason.code, "%s", reason.message);
+	return err_set(e, ERR_FORMAT, "%s:%ld: %s", file_name(path), lines[later], reason.message);
 }
