@@ -38,22 +38,17 @@ static int check_fit(const struct asking *a, struct err *e)
 
 int asking_read_camera(struct asking *a, const char *path, struct err *e)
 {
-	struct cameras read;
+	SCOPED_BY(cameras_free) struct cameras read = {0};
 
-	if (camerafile_read(&read, path, e))
+	if (camerafile_read(&read, path, e) || camerafile_need_pinholes(&read, path, NULL, e))
 		return -1;
-	if (camerafile_need_pinholes(&read, path, NULL, e)) {
-		cameras_free(&read);
-		return -1;
-	}
-	if (read.n > 1) {
-		err_set(e, ERR_FORMAT, "%s: has %zu views; --camera takes one", file_name(path), read.n);
-		cameras_free(&read);
-		return -1;
-	}
+	if (read.n > 1)
+		return err_set(
+			e, ERR_FORMAT, "%s: has %zu views; --camera takes one", file_name(path), read.n);
 	cameras_shift(&read, a->scene.offset);
-	cameras_free(&a->given);
+	const struct cameras earlier = a->given;
 	a->given = read;
+	read = earlier;
 	return 0;
 }
 
@@ -170,13 +165,21 @@ static void sort_things(struct asking_answer *answer, char *const *names, const 
 	}
 }
 
+struct choose_sentence asking_sentence(const struct text *t, size_t r, struct viewpoint from)
+{
+	return (struct choose_sentence){.text = t->texts[r],
+		.pieces = t->pieces ? t->pieces[r] : NULL,
+		.vectors = t->words + (size_t)t->offsets[r] * (size_t)t->width,
+		.middle = text_middle(t, r),
+		.words = (size_t)(t->offsets[r + 1] - t->offsets[r]),
+		.from = from};
+}
+
 /* By sentence r of the text. */
 static int choose_answer(struct asking *a, const struct text *t, size_t r, struct watched *w, struct err *e)
 {
 	const size_t objects = a->model.lifted.objects;
-	const struct choose_sentence sentence = {t->texts[r], t->pieces[r],
-		t->words + (size_t)t->offsets[r] * (size_t)t->width, text_middle(t, r),
-		(size_t)(t->offsets[r + 1] - t->offsets[r]), a->from, NULL};
+	const struct choose_sentence sentence = asking_sentence(t, r, a->from);
 	const struct choose_watch watching = {w, watch};
 	SCOPED float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
 	SCOPED char *chosen = mem_alloc(objects, 1, "answer", e);

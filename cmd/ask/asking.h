@@ -56,6 +56,9 @@ void asking_close(struct asking *a);
  * one. Returns 0, or -1 with *e set and a->given as it was. */
 int asking_read_camera(struct asking *a, const char *path, struct err *e);
 
+/* Sentence r of a text as the choice takes it, said from there. */
+struct choose_sentence asking_sentence(const struct text *t, size_t r, struct viewpoint from);
+
 #define ASKING_NONE ((size_t)-1)
 
 struct asking_answer {

@@ -121,14 +121,11 @@ static int tell_all(struct feature_components *c, const struct features *f, stru
 int feature_components_make(
 	struct feature_components *c, const struct features *f, size_t count, struct err *e)
 {
-	size_t bytes;
+	const size_t bytes = count * (f->is_half ? sizeof(uint16_t) : sizeof(float));
 
 	*c = (struct feature_components){0};
-	if (mem_size(count, f->is_half ? sizeof(uint16_t) : sizeof(float), &bytes))
-		return err_set(e, ERR_SYSTEM, "components do not fit in memory");
-	const int bad = find(c, f, count, e) ||
-			!(c->values = mem_zalloc(f->gaussians, bytes, "components", e)) || tell_all(c, f, e);
-	if (bad)
-		feature_components_free(c);
-	return bad ? -1 : 0;
+	return find(c, f, count, e) || !(c->values = mem_zalloc(f->gaussians, bytes, "components", e)) ||
+			       tell_all(c, f, e)
+		       ? -1
+		       : 0;
 }

@@ -31,7 +31,7 @@ struct feature_components {
 };
 
 /* The components of seen Gaussians' features, of a sample of them where there are many. Returns 0, or -1 with
- * *e set and nothing to free. */
+ * *e set; feature_components_free after either. */
 int feature_components_make(
 	struct feature_components *c, const struct features *f, size_t count, struct err *e);
 void feature_components_free(struct feature_components *c);

@@ -16,14 +16,10 @@
 static int take_shape(
 	struct query_vectors *v, size_t n, size_t found, size_t channels, const char *path, struct err *e)
 {
-	size_t bytes;
-
 	if (found != channels)
 		return err_set(e, ERR_FORMAT, "%s: vectors of %zu channels, the features have %zu", path,
 			found, channels);
-	if (mem_size(channels, sizeof *v->values, &bytes))
-		return err_set(e, ERR_SYSTEM, "%s: vectors do not fit in memory", path);
-	*v = (struct query_vectors){n, channels, mem_alloc(n, bytes, "vectors", e)};
+	*v = (struct query_vectors){n, channels, mem_alloc(n, channels * sizeof *v->values, "vectors", e)};
 	return v->values ? 0 : -1;
 }
 

@@ -17,11 +17,8 @@ enum { BLOCK = 1024 };
 static int join(struct feature_query *q, const float *all, const struct query_vectors *more, size_t channels,
 	struct err *e)
 {
-	const size_t n = q->count + more->n;
-	size_t bytes;
+	const size_t n = q->count + more->n, bytes = channels * sizeof *q->vectors.values;
 
-	if (mem_size(channels, sizeof *q->vectors.values, &bytes))
-		return err_set(e, ERR_SYSTEM, "vectors do not fit in memory");
 	q->vectors = (struct query_vectors){n, channels, mem_alloc(n, bytes, "vectors", e)};
 	q->group = mem_alloc(n, sizeof *q->group, "vectors", e);
 	if (!q->vectors.values || !q->group)

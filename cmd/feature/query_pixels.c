@@ -274,13 +274,10 @@ static int answer_all(struct pixels *p, const struct report *to, struct err *e)
 int query_by_pixels(struct feature_query *q, const struct report *to, struct err *e)
 {
 	struct pixels p = {.q = q};
-	size_t bytes;
 
 	if (query_read_vectors(q, e) || choose_views(q, e))
 		return -1;
-	if (mem_size(q->vectors.channels, sizeof *p.packed, &bytes))
-		return err_set(e, ERR_SYSTEM, "features do not fit in memory");
-	p.packed = mem_alloc(q->scene.splats.n, bytes, "features", e);
+	p.packed = mem_alloc(q->scene.splats.n, q->vectors.channels * sizeof *p.packed, "features", e);
 	const int bad = !p.packed || answer_all(&p, to, e);
 	report_end(to);
 	free(p.packed);

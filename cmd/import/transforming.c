@@ -174,18 +174,18 @@ static int rising(const void *a, const void *b)
 static int drop_strays(struct splats *s, struct err *e)
 {
 	SCOPED char *kept = mem_alloc(s->n, 1, "splats", e);
-	float *far = mem_alloc(s->n, 2 * sizeof *far, "splats", e), *sorted = far ? far + s->n : NULL;
-	int bad = !kept || !far || neighbours_find(s->means, s->n, NEIGHBOUR, far, e);
+	SCOPED float *far = mem_alloc(s->n, 2 * sizeof *far, "splats", e);
 
-	if (!bad && s->n) {
-		memcpy(sorted, far, s->n * sizeof *far);
-		qsort(sorted, s->n, sizeof *sorted, rising);
-		for (size_t i = 0; i < s->n; i++)
-			kept[i] = far[i] <= STRAY * sorted[s->n / 2];
-		bad = keep(s, kept, e);
-	}
-	free(far);
-	return bad ? -1 : 0;
+	if (!kept || !far || neighbours_find(s->means, s->n, NEIGHBOUR, far, e))
+		return -1;
+	if (!s->n)
+		return 0;
+	float *sorted = far + s->n;
+	memcpy(sorted, far, s->n * sizeof *far);
+	qsort(sorted, s->n, sizeof *sorted, rising);
+	for (size_t i = 0; i < s->n; i++)
+		kept[i] = far[i] <= STRAY * sorted[s->n / 2];
+	return keep(s, kept, e);
 }
 
 int transforming_do(struct splats *s, double offset[3], const struct transforming *o,

@@ -160,19 +160,19 @@ static int report_view(void *context, size_t at, struct err *e)
 static int weigh_views(struct weighing *of, struct err *e)
 {
 	const struct each by = {of, each_workers(of->n), weigh_view, report_view};
+	SCOPED struct weighed *done = mem_alloc(of->n, sizeof *done, "views", e);
+	SCOPED struct room *rooms = mem_zalloc((size_t)by.workers, sizeof *rooms, "views", e);
 	double covered = 0;
 
-	of->done = mem_alloc(of->n, sizeof *of->done, "views", e);
-	of->rooms = mem_zalloc((size_t)by.workers, sizeof *of->rooms, "views", e);
+	of->done = done;
+	of->rooms = rooms;
 	report_start(of->to, "views", (double)of->n);
-	const int bad = !of->done || !of->rooms || each_run(&by, of->n, e);
+	const int bad = !done || !rooms || each_run(&by, of->n, e);
 	report_end(of->to);
-	for (int k = 0; k < by.workers && of->rooms; k++) {
-		covered = fmax(covered, of->rooms[k].covered);
-		room_free(&of->rooms[k]);
+	for (int k = 0; k < by.workers && rooms; k++) {
+		covered = fmax(covered, rooms[k].covered);
+		room_free(&rooms[k]);
 	}
-	free(of->done);
-	free(of->rooms);
 	return bad || check_covered(of->scene, of->options, of->n, covered, e) ? -1 : 0;
 }
 

@@ -9,7 +9,6 @@ struct choosing {
 	const struct report_run *run;
 	const struct text *text;
 	struct report_reason *reasons;
-	struct choose_sentence *sentences; /* (n) */
 	struct choice *choices;
 	float *probability; /* (n, objects) */
 	char *chosen;
@@ -44,21 +43,15 @@ static int choose_all(struct choosing *c, struct err *e)
 	const struct parser parser = {.weights = &c->run->lifted.weights, .encoder = t->encoder.hex};
 	const struct choose_scene of = {l, &c->run->scene.splats, &c->run->scene.cameras, &parser, 1};
 	const struct choose_watch watching = {c, watch};
+	SCOPED struct choose_sentence *sentences = mem_alloc(t->n, sizeof *sentences, "sentences", e);
 
-	if (!(c->sentences = mem_alloc(t->n, sizeof *c->sentences, "sentences", e)) ||
-		!(c->choices = mem_alloc(t->n, sizeof *c->choices, "sentences", e)) ||
+	if (!sentences || !(c->choices = mem_alloc(t->n, sizeof *c->choices, "sentences", e)) ||
 		!(c->probability = mem_alloc(t->n, l->objects * sizeof *c->probability, "sentences", e)) ||
 		!(c->chosen = mem_alloc(t->n, l->objects, "sentences", e)))
 		return -1;
 	for (size_t i = 0; i < t->n; i++)
-		c->sentences[i] = (struct choose_sentence){.text = t->texts[i],
-			.pieces = t->pieces ? t->pieces[i] : NULL,
-			.vectors = t->words + (size_t)t->offsets[i] * (size_t)t->width,
-			.middle = text_middle(t, i),
-			.words = (size_t)(t->offsets[i + 1] - t->offsets[i]),
-			.from = viewpoint_of(c, i)};
-	return choose(
-		&of, c->sentences, t->n, CHOOSE_ALL, c->choices, c->probability, c->chosen, &watching, e);
+		sentences[i] = asking_sentence(t, i, viewpoint_of(c, i));
+	return choose(&of, sentences, t->n, CHOOSE_ALL, c->choices, c->probability, c->chosen, &watching, e);
 }
 
 /* The likeliest object that is chosen, or not chosen; objects where there is none. Takes it off the chosen.
@@ -110,7 +103,6 @@ int report_reasons(
 	for (size_t i = 0; i < s->text.n && !bad; i++)
 		bad = c.is_out_of_memory ? err_set(e, ERR_SYSTEM, "explanation: out of memory")
 					 : take_answer(&c, i, e);
-	free(c.sentences);
 	free(c.choices);
 	free(c.probability);
 	free(c.chosen);

@@ -63,21 +63,19 @@ static int read_lifted(struct report_run *r, struct err *e)
 static int find_truth(struct report_run *r, struct err *e)
 {
 	static const char before[] = " --truth ";
-	char *path, *command = NULL, *at;
+	SCOPED char *path = NULL, *command = NULL;
 	size_t length;
-	int bad = 0;
 
 	if (r->options->truth)
 		return (r->truth_path = mem_strdup(r->options->truth, e)) ? 0 : -1;
 	if (!(path = part(r, "log/score.command", e)))
 		return 0;
-	bad = file_read(path, &command, &length, e);
-	at = bad ? NULL : strstr(command, before);
+	if (file_read(path, &command, &length, e))
+		return -1;
+	const char *at = strstr(command, before);
 	if (at && at[sizeof before - 1] && file_exists(at + sizeof before - 1))
-		bad = !(r->truth_path = mem_strdup(at + sizeof before - 1, e));
-	free(command);
-	free(path);
-	return bad ? -1 : 0;
+		return (r->truth_path = mem_strdup(at + sizeof before - 1, e)) ? 0 : -1;
+	return 0;
 }
 
 /* Scores a set as `miou-score --predicted-views` does; every set has its own views. */
@@ -163,13 +161,11 @@ static int choose_views(struct report_run *r, struct err *e)
 {
 	const struct cameras *c = &r->scene.cameras;
 	const size_t most = (size_t)r->options->views;
-	int *worths = mem_alloc(c->n, sizeof *worths, "views", e);
+	SCOPED int *worths = mem_alloc(c->n, sizeof *worths, "views", e);
 	size_t of[3] = {0}, take[3] = {0}, at[3] = {0}, taken[3] = {0};
 
-	if (!worths || !(r->shown = mem_alloc(c->n, sizeof *r->shown, "views", e))) {
-		free(worths);
+	if (!worths || !(r->shown = mem_alloc(c->n, sizeof *r->shown, "views", e)))
 		return -1;
-	}
 	for (size_t v = 0; v < c->n; v++)
 		of[worths[v] = worth(r, c->views[v].name)]++;
 	take[2] = of[2] < most ? of[2] : most;
@@ -181,7 +177,6 @@ static int choose_views(struct report_run *r, struct err *e)
 		taken[w]++;
 		r->shown[r->shown_count++] = picture_of(&c->views[v], r->options->width);
 	}
-	free(worths);
 	return 0;
 }
 

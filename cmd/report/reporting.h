@@ -6,6 +6,7 @@
 #include "base/err.h"
 #include "base/jsontext.h"
 #include "base/report.h"
+#include "cmd/ask/asking.h"
 #include "cmd/ask/explain.h"
 #include "cmd/run/anymodel.h"
 #include "cmd/score/score_masks.h"
