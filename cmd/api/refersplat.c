@@ -246,18 +246,12 @@ static int copy_mask(void *data, const struct answer *a, struct err *e)
 	return 0;
 }
 
-static int ignore(void *data, size_t view, struct err *e)
-{
-	(void)data, (void)view, (void)e;
-	return 0;
-}
-
 static int draw_mask(struct refersplat *r, const struct camera *view, const size_t *things, size_t count,
 	unsigned char *mask)
 {
 	SCOPED_BY(responses_free) struct responses responses = {0};
 	const struct answer_question q = {.splats = &r->asking.scene.splats, .responses = &responses};
-	const struct answer_calls calls = {mask, copy_mask, ignore};
+	const struct answer_calls calls = {mask, copy_mask, NULL};
 	return answer_responses(&responses, &r->asking.model.lifted, things, count, &r->err) ||
 	       answer_all(&q, view, 1, &calls, &r->err);
 }

@@ -46,19 +46,13 @@ static int look(void *data, const struct answer *a, struct err *e)
 	return 0;
 }
 
-static int ignore(void *data, size_t view, struct err *e)
-{
-	(void)data, (void)view, (void)e;
-	return 0;
-}
-
 static int best_view(
 	const struct asking *a, const struct answer_question *q, const struct camera **view, struct err *e)
 {
 	const struct cameras *c = &a->scene.cameras;
 	SCOPED double *worth = mem_zalloc(c->n, sizeof *worth, "views", e);
 	SCOPED struct camera *small = mem_alloc(c->n, sizeof *small, "views", e);
-	const struct answer_calls calls = {worth, look, ignore};
+	const struct answer_calls calls = {worth, look, NULL};
 	size_t best = 0;
 
 	for (size_t v = 0; v < c->n && small; v++) {
@@ -120,7 +114,7 @@ int answer_picture(const struct asking *a, const struct asking_answer *answer, c
 	SCOPED_BY(responses_free) struct responses responses = {0};
 	struct answer_question q = {.splats = &a->scene.splats, .responses = &responses};
 	struct page page = {words, path, drawn};
-	const struct answer_calls calls = {&page, put_page, ignore};
+	const struct answer_calls calls = {&page, put_page, NULL};
 
 	if (!drawn->view && !a->scene.cameras.n)
 		return err_set(e, ERR_FORMAT, "%s: has no view to draw", a->files.scene);
