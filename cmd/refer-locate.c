@@ -77,6 +77,7 @@ static int locate(struct locating *r, const struct cli *c, struct err *e)
 static int label(const struct cli *c, struct err *e)
 {
 	SCOPED_BY(labelling_free) struct labelling r = {0};
+
 	return labelling_open(&r, options.request.scene, options.request.model, e) ||
 			       (options.each && labelling_write_each(&r, options.each, e)) ||
 			       (options.ply && labelling_write_scene(&r, options.ply, e)) ||
@@ -149,6 +150,7 @@ static void check(const struct cli *c)
 static int answer(const struct cli *c, struct err *e)
 {
 	SCOPED_BY(locating_free) struct locating r = {0};
+
 	return locate(&r, c, e) ||
 			       ((options.ply || options.splat) &&
 				       showing_write(&r, (enum locate_show)options.show, options.ply,

@@ -187,14 +187,9 @@ void feature_sources_free(struct feature_sources *s)
 static int make_room(struct feature_sources *s, size_t pixels, size_t rows, struct err *e)
 {
 	return mem_room((void **)&s->source, &s->pixel_room, pixels, sizeof *s->source, "pixels", e) ||
-			       mem_room((void **)&s->place, &s->place_room, rows, sizeof *s->place, "sources",
-				       e) ||
-			       mem_room((void **)&s->row, &s->row_room, pixels + 1, sizeof *s->row, "sources",
-				       e) ||
-			       mem_room((void **)&s->label, &s->label_room, pixels + 1, sizeof *s->label,
-				       "sources", e)
-		       ? -1
-		       : 0;
+	       mem_room((void **)&s->place, &s->place_room, rows, sizeof *s->place, "sources", e) ||
+	       mem_room((void **)&s->row, &s->row_room, pixels + 1, sizeof *s->row, "sources", e) ||
+	       mem_room((void **)&s->label, &s->label_room, pixels + 1, sizeof *s->label, "sources", e);
 }
 
 /* Sources for the rows that a pixel has, in the order of the rows; the last one, where it is wanted, for

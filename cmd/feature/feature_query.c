@@ -113,6 +113,7 @@ int query_vectors_read(struct query_vectors *v, const char *path, size_t channel
 	const int bad = path_ends(path, ".npy")	  ? read_npy(v, path, channels, e)
 			: path_ends(path, ".npz") ? read_npz(v, path, channels, e)
 						  : read_safetensors(v, path, channels, e);
+
 	return finish(v, bad, path, e);
 }
 

@@ -135,6 +135,7 @@ static int pixel_map_make(struct pixel_map *m, size_t n, struct err *e)
 	*m = (struct pixel_map){mem_alloc(n, sizeof *m->values, "map", e),
 		mem_alloc(n, sizeof *m->mean, "map", e), mem_alloc(n, sizeof *m->room, "map", e),
 		mem_alloc(n, 1, "map", e)};
+
 	return m->values && m->mean && m->room && m->mask ? 0 : -1;
 }
 

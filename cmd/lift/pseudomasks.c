@@ -90,6 +90,7 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 static int check_candidates(const struct pseudomasks *w, const struct report *to, struct err *e)
 {
 	SCOPED_BY(regions_surest_free) struct lift_objects surest = {0};
+
 	return regions_surest(&w->regions, &surest, e) ||
 	       left_out_check(
 		       &surest, w->regions.object_count, w->options->candidates, w->options->scene, to, e);
@@ -103,10 +104,8 @@ static int lift_regions(struct by_views *b, const struct report *to, struct err 
 	struct regions *r = &w->regions;
 
 	return regions_init(r, &w->pool, w->views, views, w->scene.splats.n, w->options->min_score, e) ||
-			       each_run(&by, views, e) || regions_grow(r, e) || check_candidates(w, to, e) ||
-			       regions_assign(r, e)
-		       ? -1
-		       : 0;
+	       each_run(&by, views, e) || regions_grow(r, e) || check_candidates(w, to, e) ||
+	       regions_assign(r, e);
 }
 
 /* weights: NULL where regions do not need them. */

@@ -62,6 +62,7 @@ static int check_sizes(const struct exporting *x, struct err *e)
 static int read_cameras(struct exporting *x, const char *scene, struct err *e)
 {
 	SCOPED char *path = file_join(scene, "cameras.json", "", e);
+
 	return !path || scene_read_cameras_file(&x->cameras, path, e) ? -1 : 0;
 }
 

@@ -98,10 +98,9 @@ static int check_picture(struct putting *p, struct annotations *a, const char *p
 static int put_labelled(struct putting *p, const char *path, struct err *e)
 {
 	SCOPED_BY(annotations_free) struct annotations a = {0};
+
 	return annotations_read(&a, path, e) || check_picture(p, &a, path, e) || painting_layers(&a, e) ||
-			       put_labels(&a, path, p->w, p->out, &p->count, p->to, e)
-		       ? -1
-		       : 0;
+	       put_labels(&a, path, p->w, p->out, &p->count, p->to, e);
 }
 
 /* *count grows by the records. */

@@ -88,13 +88,11 @@ static int score_visibility(struct scores *s, const struct score_sample *sample,
 {
 	const uint32_t always = ((uint32_t)1 << SCORE_SEEN_UNKNOWN) - 1;
 	SCOPED uint32_t *sets = mem_alloc(sample->n, sizeof *sets, "pairs", e);
+
 	return !sets ||
-			       score_seen(sets, sample->pairs, sample->n, truth->set.items, truth->n,
-				       whole->set.items, whole->n, unknown, e) ||
-			       score_table_groups(
-				       &s->visibility, sample, sets, score_seen_name, SCORE_SEEN, always, e)
-		       ? -1
-		       : 0;
+	       score_seen(sets, sample->pairs, sample->n, truth->set.items, truth->n, whole->set.items,
+		       whole->n, unknown, e) ||
+	       score_table_groups(&s->visibility, sample, sets, score_seen_name, SCORE_SEEN, always, e);
 }
 
 int scoring_read(struct scoring *in, const struct scoring_files *p, int is_partial, struct err *e)

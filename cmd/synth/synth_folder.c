@@ -13,6 +13,7 @@
 static int open_in(struct file_out *out, const char *dir, const char *name, struct err *e)
 {
 	SCOPED char *path = file_join(dir, name, "", e);
+
 	return !path || file_out_open(out, path, e) ? -1 : 0;
 }
 
