@@ -5,7 +5,7 @@
  * REFERSPLAT_FUZZ_SEED=FILE has the checkpoint's target write a seed first. */
 #include "base/file.h"
 #include "cmd/check/check.h"
-#include "cmd/import/points.h"
+#include "cmd/import/import.h"
 #include "formats/arrays/npy.h"
 #include "formats/arrays/npz.h"
 #include "formats/arrays/safetensors.h"

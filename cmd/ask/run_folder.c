@@ -1,10 +1,8 @@
-#include "cmd/run/run_folder.h"
+#include "cmd/ask/asking.h"
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/text/encode.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 
