@@ -33,7 +33,7 @@ int archive_open_zip(struct archive *a, const char *name, struct file_map *map, 
 	if (a->zip)
 		return 0;
 	archive_close(a);
-	return err_set(e, ERR_FORMAT, "%s: not a zip, or its end is missing", name);
+	return err_file(e, name, "not a zip, or its end is missing");
 }
 
 void archive_open_folder(struct archive *a, const char *folder)
@@ -58,11 +58,10 @@ static int read_current(struct archive *a, const char *file, char **data, size_t
 	if (unzGetCurrentFileInfo64(a->zip, &info, NULL, 0, NULL, 0, NULL, 0) != UNZ_OK ||
 		info.compressed_size > a->map.len ||
 		mem_size((size_t)info.compressed_size, DEFLATE_RATIO, &most) || info.uncompressed_size > most)
-		return err_set(
-			e, ERR_FORMAT, "%s: file '%.80s' in the zip has impossible sizes", a->name, file);
+		return err_file(e, a->name, "file '%.80s' in the zip has impossible sizes", file);
 	*len = (size_t)info.uncompressed_size;
 	if (unzOpenCurrentFile(a->zip) != UNZ_OK)
-		return err_set(e, ERR_FORMAT, "%s: file '%.80s' in the zip cannot be read", a->name, file);
+		return err_file(e, a->name, "file '%.80s' in the zip cannot be read", file);
 	*data = mem_alloc(*len + 1, 1, file, e);
 	if (!*data) {
 		unzCloseCurrentFile(a->zip);
@@ -78,15 +77,14 @@ static int read_current(struct archive *a, const char *file, char **data, size_t
 		return 0;
 	free(*data);
 	*data = NULL;
-	return err_set(e, ERR_FORMAT, "%s: file '%.80s' in the zip is damaged", a->name, file);
+	return err_file(e, a->name, "file '%.80s' in the zip is damaged", file);
 }
 
 int archive_read(struct archive *a, const char *file, char **data, size_t *len, struct err *e)
 {
 	*data = NULL;
 	if (!*file || strchr(file, '/') || !strcmp(file, "..") || !strcmp(file, "."))
-		return err_set(e, ERR_FORMAT, "%s: '%.80s' is not the name of a file beside meta.json",
-			a->name, file);
+		return err_file(e, a->name, "'%.80s' is not the name of a file beside meta.json", file);
 	if (a->folder) {
 		char *path = file_join(a->folder, file, "", e);
 		const int bad = !path || file_read(path, data, len, e);
@@ -94,7 +92,7 @@ int archive_read(struct archive *a, const char *file, char **data, size_t *len, 
 		return bad ? -1 : 0;
 	}
 	if (unzLocateFile(a->zip, file, 1) != UNZ_OK)
-		return err_set(e, ERR_FORMAT, "%s: no file '%.80s' in the zip", a->name, file);
+		return err_file(e, a->name, "no file '%.80s' in the zip", file);
 	return read_current(a, file, data, len, e);
 }
 
@@ -109,7 +107,7 @@ static int add_entry(
 
 	if (unzGetCurrentFileInfo64(a->zip, &info, name, NAME_ROOM, NULL, 0, NULL, 0) != UNZ_OK ||
 		unzGetFilePos64(a->zip, &at) != UNZ_OK)
-		return err_set(e, ERR_FORMAT, "%s: the zip's directory is damaged", a->name);
+		return err_file(e, a->name, "the zip's directory is damaged");
 	if (mem_grow((void **)entries, capacity, *n + 1, sizeof **entries, a->name, e))
 		return -1;
 	char *copy = mem_strdup(name, e);
@@ -128,7 +126,7 @@ int archive_list(struct archive *a, struct archive_entry **entries, size_t *n, s
 	for (*n = 0; at == UNZ_OK && !bad; at = unzGoToNextFile(a->zip))
 		bad = add_entry(a, entries, &capacity, n, e);
 	if (!bad && at != UNZ_END_OF_LIST_OF_FILE)
-		bad = err_set(e, ERR_FORMAT, "%s: the zip's directory is damaged", a->name);
+		bad = err_file(e, a->name, "the zip's directory is damaged");
 	if (bad) {
 		archive_free_entries(*entries, *n);
 		*entries = NULL;
@@ -151,6 +149,6 @@ int archive_read_entry(
 
 	*data = NULL;
 	if (unzGoToFilePos64(a->zip, &at) != UNZ_OK)
-		return err_set(e, ERR_FORMAT, "%s: the zip's directory is damaged", a->name);
+		return err_file(e, a->name, "the zip's directory is damaged");
 	return read_current(a, entry->name, data, len, e);
 }

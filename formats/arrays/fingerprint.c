@@ -88,17 +88,15 @@ int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const 
 	if (!text)
 		return 0;
 	if (strlen(text) != sizeof f->hex - 1 || strspn(text, "0123456789abcdef") != sizeof f->hex - 1)
-		return err_set(e, ERR_FORMAT, "%s: metadata '%s' is '%s', not 16 hexadecimal digits",
-			st->path, key, text);
+		return err_file(e, st->path, "metadata '%s' is '%s', not 16 hexadecimal digits", key, text);
 	memcpy(f->hex, text, sizeof f->hex);
 	return 0;
 }
 
 int origin_read(struct origin *o, const struct safetensors *st, struct err *e)
 {
-	return fingerprint_read(&o->scene, st, "scene", e) || fingerprint_read(&o->encoder, st, "encoder", e)
-		       ? -1
-		       : 0;
+	return -(fingerprint_read(&o->scene, st, "scene", e) ||
+		 fingerprint_read(&o->encoder, st, "encoder", e));
 }
 
 const char *fingerprint_text(const struct fingerprint *f)
@@ -111,6 +109,6 @@ int fingerprint_check(const char *what, const char *path, const struct fingerpri
 {
 	if (!*mine->hex || !*theirs->hex || !strcmp(mine->hex, theirs->hex))
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: is of another %s than %s (%s, not %s)", path, what, other,
-		mine->hex, theirs->hex);
+	return err_file(
+		e, path, "is of another %s than %s (%s, not %s)", what, other, mine->hex, theirs->hex);
 }

@@ -47,12 +47,11 @@ char **metalist_read(const struct safetensors *st, const char *key, size_t n, co
 	size_t used;
 
 	if (!list || !cJSON_IsArray(list))
-		err_set(e, ERR_FORMAT, "%s: metadata '%s' is not a JSON list", st->path, key);
+		err_file(e, st->path, "metadata '%s' is not a JSON list", key);
 	else if (json_has_nul(value))
-		err_set(e, ERR_FORMAT, "%s: metadata '%s': a NUL character (\\u0000) in a string", st->path,
-			key);
+		err_file(e, st->path, "metadata '%s': a NUL character (\\u0000) in a string", key);
 	else if ((size_t)cJSON_GetArraySize(list) != n)
-		err_set(e, ERR_FORMAT, "%s: metadata '%s' has %d entries for %zu %s", st->path, key,
+		err_file(e, st->path, "metadata '%s' has %d entries for %zu %s", key,
 			cJSON_GetArraySize(list), n, of);
 	else if (!(strings = take_strings(list, &used, reason)))
 		err_set(e, *reason ? ERR_FORMAT : ERR_SYSTEM, "%s: metadata '%s': %s", st->path, key,
@@ -102,8 +101,7 @@ int metalist_check_names(
 	for (size_t i = 0; i < n; i++) {
 		const char *reason = name_fault(strings[i], NAME_DATA, fault);
 		if (reason && (*strings[i] || !may_be_empty))
-			return err_set(
-				e, ERR_FORMAT, "%s: metadata '%s': entry %zu %s", path, key, i, reason);
+			return err_file(e, path, "metadata '%s': entry %zu %s", key, i, reason);
 	}
 	return 0;
 }
@@ -126,8 +124,7 @@ int metalist_check_unique(char *const *strings, size_t n, const char *key, const
 		qsort(sorted, n, sizeof *sorted, by_name);
 	for (size_t i = 1; i < n && !bad; i++)
 		if (!strcmp(sorted[i - 1], sorted[i]))
-			bad = err_set(
-				e, ERR_FORMAT, "%s: metadata '%s': '%s' appears twice", path, key, sorted[i]);
+			bad = err_file(e, path, "metadata '%s': '%s' appears twice", key, sorted[i]);
 	free(sorted);
 	return bad;
 }
@@ -141,8 +138,7 @@ int64_t *metalist_offsets(
 		*n = offsets ? *n - 1 : 0;
 		return offsets;
 	}
-	err_set(e, ERR_FORMAT, "%s: tensor '%s': has %zu entries, expected 1 more than %s", st->path, name,
-		*n, of);
+	err_file(e, st->path, "tensor '%s': has %zu entries, expected 1 more than %s", name, *n, of);
 	free(offsets);
 	*n = 0;
 	return NULL;
@@ -155,9 +151,9 @@ int metalist_check_index(const int32_t *index, const int64_t *indptr, size_t n, 
 		for (int64_t k = indptr[r]; k < indptr[r + 1]; k++)
 			if (index[k] < 0 || (size_t)index[k] >= limit ||
 				(k > indptr[r] && index[k] <= index[k - 1]))
-				return err_set(e, ERR_FORMAT,
-					"%s: tensor 'index': item %lld does not rise within 0 to %lld, in %s %zu",
-					path, (long long)k, (long long)limit - 1, of, r);
+				return err_file(e, path,
+					"tensor 'index': item %lld does not rise within 0 to %lld, in %s %zu",
+					(long long)k, (long long)limit - 1, of, r);
 	return 0;
 }
 
@@ -165,15 +161,15 @@ int metalist_check_offsets(const char *name, const int64_t *offsets, size_t n, i
 	const char *path, struct err *e)
 {
 	if (offsets[0] != 0)
-		return err_set(e, ERR_FORMAT, "%s: tensor '%s': begins with %lld, expected 0", path, name,
-			(long long)offsets[0]);
+		return err_file(
+			e, path, "tensor '%s': begins with %lld, expected 0", name, (long long)offsets[0]);
 	for (size_t i = 0; i < n; i++)
 		if (offsets[i + 1] < offsets[i])
-			return err_set(e, ERR_FORMAT, "%s: tensor '%s': falls from %lld to %lld at entry %zu",
-				path, name, (long long)offsets[i], (long long)offsets[i + 1], i + 1);
+			return err_file(e, path, "tensor '%s': falls from %lld to %lld at entry %zu", name,
+				(long long)offsets[i], (long long)offsets[i + 1], i + 1);
 	if (offsets[n] != count)
-		return err_set(e, ERR_FORMAT, "%s: tensor '%s': ends with %lld, but there are %lld %s", path,
-			name, (long long)offsets[n], (long long)count, of);
+		return err_file(e, path, "tensor '%s': ends with %lld, but there are %lld %s", name,
+			(long long)offsets[n], (long long)count, of);
 	return 0;
 }
 
@@ -184,14 +180,14 @@ int metalist_check_pieces(
 		int64_t count = 0, words = offsets[i + 1] - offsets[i];
 		for (const char *c = pieces[i]; *c; c++) {
 			if (*c == ' ' && (c == pieces[i] || c[1] == ' ' || !c[1]))
-				return err_set(e, ERR_FORMAT,
-					"%s: metadata 'pieces': entry %zu does not have one space between pieces, and none around",
-					path, i);
+				return err_file(e, path,
+					"metadata 'pieces': entry %zu does not have one space between pieces, and none around",
+					i);
 			count += *c != ' ' && (c[1] == ' ' || !c[1]);
 		}
 		if (count != words)
-			return err_set(e, ERR_FORMAT,
-				"%s: metadata 'pieces': entry %zu has %lld pieces for %lld words", path, i,
+			return err_file(e, path,
+				"metadata 'pieces': entry %zu has %lld pieces for %lld words", i,
 				(long long)count, (long long)words);
 	}
 	return 0;

@@ -71,10 +71,8 @@ static int read_entry(struct npz *z, size_t place, struct npy *a, const char *fu
 	char *data = NULL;
 	size_t len = 0;
 
-	return archive_read_entry(&z->zip, &z->entries[place], &data, &len, e) ||
-			       npy_open_bytes(a, data, len, full, e)
-		       ? -1
-		       : 0;
+	return -(archive_read_entry(&z->zip, &z->entries[place], &data, &len, e) ||
+		 npy_open_bytes(a, data, len, full, e));
 }
 
 int npz_entry(struct npz *z, size_t place, struct npy *a, struct err *e)
@@ -98,7 +96,7 @@ int npz_array(
 	size_t place = 0;
 	int bad = !full || find(z, name, suffix, &place, e);
 	if (!bad && place == NAMES_NONE)
-		bad = err_set(e, ERR_FORMAT, "%s: is not there", full);
+		bad = err_file(e, full, "is not there");
 	bad = bad || read_entry(z, place, a, full, e);
 	if (bad || !called)
 		free(full);
@@ -114,6 +112,6 @@ const char *npz_main(const struct npz *z, const char *const *names, size_t n, st
 		if (has)
 			return has > 0 ? names[i] : NULL;
 	}
-	err_set(e, ERR_FORMAT, "%s: has no array '%s' or '%s'", z->path, names[0], names[n - 1]);
+	err_file(e, z->path, "has no array '%s' or '%s'", names[0], names[n - 1]);
 	return NULL;
 }

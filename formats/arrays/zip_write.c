@@ -40,7 +40,7 @@ int zip_write_file(struct zip_write *z, const char *name, const void *bytes, siz
 	const int i = z->n++;
 
 	if (z->at + length > UINT32_MAX - (1 << 16))
-		return err_set(e, ERR_FORMAT, "%s: does not fit a zip of 4 GiB", z->path);
+		return err_file(e, z->path, "does not fit a zip of 4 GiB");
 	snprintf(z->files[i].name, sizeof z->files[i].name, "%s", name);
 	z->files[i].crc = (uint32_t)crc32_z(0, bytes, length);
 	z->files[i].size = (uint32_t)length;

@@ -25,9 +25,8 @@ static cJSON *read_json(const char *path, struct err *e)
 	if (strchr("{[", text[strspn(text, " \t\r\n")]))
 		root = json_parse(text, len, name, e);
 	else if (!foreign_file(name, FOREIGN_CAMERAS, text, len, e))
-		err_set(e, ERR_FORMAT,
-			"%s: neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json",
-			name);
+		err_file(e, name,
+			"neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json");
 	free(text);
 	return root;
 }
@@ -43,8 +42,8 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e)
 		bad = colmap_read(c, path, e);
 	} else {
 		root = read_json(path, e);
-		const cJSON *frames = cJSON_GetObjectItemCaseSensitive(root, "frames"),
-			    *image = cJSON_GetObjectItemCaseSensitive(root ? root->child : NULL, "img_name");
+		const cJSON *frames = json_get(root, "frames"),
+			    *image = json_get(root ? root->child : NULL, "img_name");
 		if (root && !frames && !image && foreign_json(root, name, e))
 			bad = -1;
 		else if (cJSON_IsArray(root))
@@ -54,7 +53,7 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e)
 		cJSON_Delete(root);
 	}
 	if (!bad && !c->n)
-		bad = err_set(e, ERR_FORMAT, "%s: no views", name);
+		bad = err_file(e, name, "no views");
 	if (bad)
 		cameras_free(c);
 	return bad ? textfile_note(path, e) : 0;
@@ -71,10 +70,10 @@ int camerafile_need_pinholes(const struct cameras *c, const char *path, const ch
 	const struct camera *v = &c->views[i];
 	const char *model = lens_model_name(v->lens.model);
 	if (!file_is_dir(path))
-		return err_set(e, ERR_FORMAT,
-			"%s: view '%s': camera model %s distorts: gs-import --undistort takes the pinhole of the same view",
-			file_name(path), v->name, model);
-	return err_set(e, ERR_FORMAT,
-		"%s: view '%s': camera model %s distorts: gs-import --undistort takes the pinhole of the same view, and so does 'colmap image_undistorter --image_path %s --input_path %s --output_path undistorted'",
-		file_name(path), v->name, model, images ? images : "IMAGES", path);
+		return err_file(e, file_name(path),
+			"view '%s': camera model %s distorts: gs-import --undistort takes the pinhole of the same view",
+			v->name, model);
+	return err_file(e, file_name(path),
+		"view '%s': camera model %s distorts: gs-import --undistort takes the pinhole of the same view, and so does 'colmap image_undistorter --image_path %s --input_path %s --output_path undistorted'",
+		v->name, model, images ? images : "IMAGES", path);
 }

@@ -21,8 +21,7 @@ static int read_view(struct camera *c, const cJSON *item, const char *where, str
 		json_matrix(item, "rotation", 3, 3, rows, where, e))
 		return -1;
 	if (view_set_size(c, width, height))
-		return err_set(e, ERR_FORMAT, "%s: size %gx%g is not whole numbers in 1 to 65536", where,
-			width, height);
+		return err_file(e, where, "size %gx%g is not whole numbers in 1 to 65536", width, height);
 	c->cx = width / 2;
 	c->cy = height / 2;
 	/* The file has camera to world. */
@@ -42,7 +41,7 @@ int cameras3dgs_parse(struct cameras *c, const cJSON *list, const char *path, st
 
 	*c = (struct cameras){0};
 	if (!cJSON_IsArray(list))
-		return err_set(e, ERR_FORMAT, "%s: not a list of cameras", path);
+		return err_file(e, path, "not a list of cameras");
 	c->views = mem_zalloc((size_t)cJSON_GetArraySize(list), sizeof *c->views, path, e);
 	if (!c->views)
 		return -1;

@@ -27,11 +27,11 @@ int colmap_set_camera(struct colmap_entry *c, const struct lens_model *m, double
 
 	for (int i = 0; i < n; i++)
 		if (!isfinite(lens.parameters[i] = params[i]))
-			return err_set(e, ERR_FORMAT, "%s: camera %lu: parameter %d is not finite", path,
-				(unsigned long)c->id, i);
+			return err_file(
+				e, path, "camera %lu: parameter %d is not finite", (unsigned long)c->id, i);
 	if (view_set_size(&c->camera, width, height))
-		return err_set(e, ERR_FORMAT, "%s: camera %lu: size %gx%g is not whole numbers in 1 to 65536",
-			path, (unsigned long)c->id, width, height);
+		return err_file(e, path, "camera %lu: size %gx%g is not whole numbers in 1 to 65536",
+			(unsigned long)c->id, width, height);
 	lens.width = c->camera.width;
 	lens.height = c->camera.height;
 	c->camera.fx = params[0];
@@ -68,8 +68,7 @@ int colmap_sort_entries(struct colmap_entries *all, const char *path, struct err
 		qsort(all->items, all->n, sizeof *all->items, by_id);
 	for (size_t i = 0; i + 1 < all->n; i++)
 		if (all->items[i].id == all->items[i + 1].id)
-			return err_set(e, ERR_FORMAT, "%s: camera %lu appears twice", path,
-				(unsigned long)all->items[i].id);
+			return err_file(e, path, "camera %lu appears twice", (unsigned long)all->items[i].id);
 	return 0;
 }
 
@@ -83,11 +82,10 @@ int colmap_add_view(struct cameras *c, size_t *capacity, const struct colmap_ent
 	const struct colmap_entry *l = all->n ? bsearch(&key, all->items, all->n, sizeof key, by_id) : NULL;
 
 	if (!l)
-		return err_set(e, ERR_FORMAT, "%s: image '%.200s': no camera %lu in the model", path, image,
-			(unsigned long)camera);
+		return err_file(
+			e, path, "image '%.200s': no camera %lu in the model", image, (unsigned long)camera);
 	if (!isfinite(length) || length < 1e-12)
-		return err_set(
-			e, ERR_FORMAT, "%s: image '%.200s': its rotation is zero or not finite", path, image);
+		return err_file(e, path, "image '%.200s': its rotation is zero or not finite", image);
 	double w = pose[0] / length, x = pose[1] / length, y = pose[2] / length, z = pose[3] / length;
 	double m[4][4] = {
 		{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), pose[4]},
@@ -114,8 +112,8 @@ static const unsigned char *take(
 	struct cursor *in, size_t bytes, const char *what, uint64_t index, struct err *e)
 {
 	if (bytes > in->map.len - in->at) {
-		err_set(e, ERR_FORMAT, "%s: the file ends at offset %zu, within %s %llu", in->path,
-			in->map.len, what, (unsigned long long)index);
+		err_file(e, in->path, "the file ends at offset %zu, within %s %llu", in->map.len, what,
+			(unsigned long long)index);
 		return NULL;
 	}
 	in->at += bytes;
@@ -129,13 +127,12 @@ static int open_binary(struct cursor *in, const char *path, size_t entry, uint64
 	if (file_map(path, &in->map, e))
 		return -1;
 	if (in->map.len < 8)
-		return err_set(
-			e, ERR_FORMAT, "%s: %zu bytes, too short for a COLMAP file", path, in->map.len);
+		return err_file(e, path, "%zu bytes, too short for a COLMAP file", in->map.len);
 	*count = little_get(in->map.data, 8);
 	in->at = 8;
 	if (*count > (in->map.len - 8) / entry)
-		return err_set(e, ERR_FORMAT, "%s: %llu entries at offset 0 do not fit a file of %zu bytes",
-			path, (unsigned long long)*count, in->map.len);
+		return err_file(e, path, "%llu entries at offset 0 do not fit a file of %zu bytes",
+			(unsigned long long)*count, in->map.len);
 	return 0;
 }
 
@@ -143,8 +140,8 @@ static int check_end(const struct cursor *in, struct err *e)
 {
 	if (in->at == in->map.len)
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: %zu bytes after the last entry, from offset %zu", in->path,
-		in->map.len - in->at, in->at);
+	return err_file(
+		e, in->path, "%zu bytes after the last entry, from offset %zu", in->map.len - in->at, in->at);
 }
 
 static int read_cameras_binary(struct colmap_entries *all, struct cursor *in, const char *path, struct err *e)
@@ -163,8 +160,8 @@ static int read_cameras_binary(struct colmap_entries *all, struct cursor *in, co
 		const struct lens_model *model = lens_model_numbered(id);
 		double width = (double)little_get(p + 8, 8), height = (double)little_get(p + 16, 8);
 		if (!model)
-			return err_set(e, ERR_FORMAT, "%s: camera %lu: model id %ld at offset %zu is unknown",
-				path, (unsigned long)l.id, (long)(int32_t)id, in->at - 20);
+			return err_file(e, path, "camera %lu: model id %ld at offset %zu is unknown",
+				(unsigned long)l.id, (long)(int32_t)id, in->at - 20);
 		p = take(in, 8 * (size_t)lens_model_parameters(model), "camera entry", i, e);
 		if (!p)
 			return -1;

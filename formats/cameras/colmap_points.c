@@ -17,9 +17,9 @@ static int add(struct colmap_points *p, size_t *room, const double place[3], con
 
 	for (int k = 0; k < 3; k++)
 		if (!isfinite(place[k]) || !(color[k] >= 0 && color[k] <= 255))
-			return err_set(e, ERR_FORMAT,
-				"%s: point %zu: its place is not finite, or its colour not within 0 to 255",
-				path, p->n);
+			return err_file(e, path,
+				"point %zu: its place is not finite, or its colour not within 0 to 255",
+				p->n);
 	if (mem_grow((void **)&p->places, &places, p->n + 1, 3 * sizeof *p->places, path, e) ||
 		mem_grow((void **)&p->colors, &colors, p->n + 1, 3, path, e))
 		return -1;
@@ -52,9 +52,8 @@ static int read_binary(struct colmap_points *p, const char *path, struct err *e)
 		if (map.len - at >= ENTRY)
 			views = little_get(entry + ENTRY - 8, 8);
 		if (map.len - at < ENTRY || views > (map.len - at - ENTRY) / 8) {
-			bad = err_set(e, ERR_FORMAT,
-				"%s: the file ends at offset %zu, within point %llu of %llu", path, map.len,
-				(unsigned long long)i, (unsigned long long)n);
+			bad = err_file(e, path, "the file ends at offset %zu, within point %llu of %llu",
+				map.len, (unsigned long long)i, (unsigned long long)n);
 			break;
 		}
 		for (size_t k = 0; k < 3; k++) {
@@ -65,7 +64,7 @@ static int read_binary(struct colmap_points *p, const char *path, struct err *e)
 		at += ENTRY + 8 * (size_t)views;
 	}
 	if (!bad && map.len < 8)
-		bad = err_set(e, ERR_FORMAT, "%s: %zu bytes, too short for a COLMAP file", path, map.len);
+		bad = err_file(e, path, "%zu bytes, too short for a COLMAP file", map.len);
 	file_unmap(&map);
 	return bad;
 }

@@ -71,7 +71,7 @@ static int open_text(struct lines *in, const char *path, struct err *e)
 		return -1;
 	in->next = in->text;
 	if (strlen(in->text) != len)
-		return err_set(e, ERR_FORMAT, "%s: a NUL byte at offset %zu", path, strlen(in->text));
+		return err_file(e, path, "a NUL byte at offset %zu", strlen(in->text));
 	return 0;
 }
 
@@ -99,10 +99,8 @@ static int read_camera_text(
 				in->number, lens_model_name(model), n, i);
 	if (line[strspn(line, " \t")])
 		return err_set(e, ERR_FORMAT, "%s:%ld: more than %d parameters", path, in->number, n);
-	return colmap_set_camera(&l, model, size[0], size[1], params, path, e) ||
-			       colmap_add_entry(all, &l, path, e)
-		       ? -1
-		       : 0;
+	return -(colmap_set_camera(&l, model, size[0], size[1], params, path, e) ||
+		 colmap_add_entry(all, &l, path, e));
 }
 
 static int read_cameras_text(struct colmap_entries *all, struct lines *in, const char *path, struct err *e)
@@ -200,9 +198,9 @@ static int read_images_text(struct cameras *c, const struct colmap_entries *all,
 		may_be_points = 1;
 	}
 	if (in->images_line && in->images != c->n)
-		return err_set(e, ERR_FORMAT,
-			"%s: has %zu images, but line %ld says %lu: is the file whole? If so, take that line out",
-			path, c->n, in->images_line, in->images);
+		return err_file(e, path,
+			"has %zu images, but line %ld says %lu: is the file whole? If so, take that line out",
+			c->n, in->images_line, in->images);
 	return 0;
 }
 

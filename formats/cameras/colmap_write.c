@@ -79,8 +79,7 @@ int colmap_write_text(const struct cameras *c, const char *dir, struct err *e)
 {
 	if (file_make_dir(dir, e))
 		return -1;
-	return write_part(c, dir, "cameras", put_cameras, e) || write_part(c, dir, "images", put_images, e) ||
-			       write_part(c, dir, "points3D", put_points, e)
-		       ? -1
-		       : 0;
+	return -(write_part(c, dir, "cameras", put_cameras, e) ||
+		 write_part(c, dir, "images", put_images, e) ||
+		 write_part(c, dir, "points3D", put_points, e));
 }

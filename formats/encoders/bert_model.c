@@ -23,7 +23,7 @@ static int read_keys(struct bert *b, const cJSON *config, const char *path, stru
 	struct transformer *t = &b->body;
 
 	if (!cJSON_IsObject(config))
-		return err_set(e, ERR_FORMAT, "%s: not a JSON object", path);
+		return err_file(e, path, "not a JSON object");
 	if (pretrained_is(config, "model_type", "bert", path, e) ||
 		pretrained_is(config, "position_embedding_type", "absolute", path, e) ||
 		pretrained_int(config, "vocab_size", 10000000, 0, &b->words, path, e) ||
@@ -35,10 +35,8 @@ static int read_keys(struct bert *b, const cJSON *config, const char *path, stru
 		pretrained_int(config, "type_vocab_size", 65536, 0, &b->types, path, e) ||
 		read_activation(b, config, path, e))
 		return -1;
-	return pretrained_sizes(t, b->positions, names, path, e) ||
-			       pretrained_eps(config, 1e-12, &t->eps, path, e)
-		       ? -1
-		       : 0;
+	return -(pretrained_sizes(t, b->positions, names, path, e) ||
+		 pretrained_eps(config, 1e-12, &t->eps, path, e));
 }
 
 static int read_config(struct bert *b, const char *dir, struct err *e)
@@ -103,7 +101,7 @@ static int load_tensors(struct pretrained *s, const struct bert *b)
 static int load_all(struct pretrained *s, struct bert *b)
 {
 	find_names(s);
-	return load_tensors(s, b) || bert_alloc(b, s->e) || load_tensors(s, b) ? -1 : 0;
+	return -(load_tensors(s, b) || bert_alloc(b, s->e) || load_tensors(s, b));
 }
 
 int bert_model_read(struct bert *b, const char *dir, struct err *e)

@@ -14,7 +14,7 @@ static const char *const names[] = {"hidden_size", "num_attention_heads", "max_p
 
 static const cJSON *member(const cJSON *object, const char *key)
 {
-	return cJSON_GetObjectItemCaseSensitive(object, key);
+	return json_get(object, key);
 }
 
 static int is_text(const cJSON *item, const char *text)
@@ -49,7 +49,7 @@ static char *find_config(const char *dir, int *is_open, struct err *e)
 
 	*is_open = !is_usual && usual && other && file_exists(other);
 	if (usual && other && !is_usual && !*is_open)
-		err_set(e, ERR_FORMAT, "%s: key 'model_type' is not \"clip\" or \"clip_text_model\"", usual);
+		err_file(e, usual, "key 'model_type' is not \"clip\" or \"clip_text_model\"");
 	free(is_usual ? other : usual);
 	if (is_usual || *is_open)
 		return is_usual ? usual : other;
@@ -95,20 +95,15 @@ static int read_keys(struct clip *c, struct kind *kind, const cJSON *config, con
 	kind->is_projected = is_text(member(config, "model_type"), "clip") ||
 			     is_text(cJSON_GetArrayItem(member(config, "architectures"), 0),
 				     "CLIPTextModelWithProjection");
-	return pretrained_int(text, "vocab_size", 10000000, 49408, &c->words, path, e) ||
-			       pretrained_int(text, names[0], 65536, 512, &t->width, path, e) ||
-			       pretrained_int(
-				       text, "num_hidden_layers", 1000, 12, &t->layer_count, path, e) ||
-			       pretrained_int(text, names[1], 65536, 8, &t->heads, path, e) ||
-			       pretrained_int(text, "intermediate_size", 1 << 20, 2048, &t->inner, path, e) ||
-			       pretrained_int(text, names[2], 1 << 20, 77, &c->positions, path, e) ||
-			       pretrained_int(own ? config : text, "projection_dim", 65536, 512, &kind->width,
-				       path, e) ||
-			       read_activation(c, text, path, e) ||
-			       pretrained_sizes(t, c->positions, names, path, e) ||
-			       pretrained_eps(text, 1e-5, &t->eps, path, e)
-		       ? -1
-		       : 0;
+	return -(pretrained_int(text, "vocab_size", 10000000, 49408, &c->words, path, e) ||
+		 pretrained_int(text, names[0], 65536, 512, &t->width, path, e) ||
+		 pretrained_int(text, "num_hidden_layers", 1000, 12, &t->layer_count, path, e) ||
+		 pretrained_int(text, names[1], 65536, 8, &t->heads, path, e) ||
+		 pretrained_int(text, "intermediate_size", 1 << 20, 2048, &t->inner, path, e) ||
+		 pretrained_int(text, names[2], 1 << 20, 77, &c->positions, path, e) ||
+		 pretrained_int(own ? config : text, "projection_dim", 65536, 512, &kind->width, path, e) ||
+		 read_activation(c, text, path, e) || pretrained_sizes(t, c->positions, names, path, e) ||
+		 pretrained_eps(text, 1e-5, &t->eps, path, e));
 }
 
 /* OpenCLIP's own; what it does not say is as in its code. */
@@ -124,11 +119,11 @@ static int read_open_keys(
 	struct transformer *t = &c->body;
 
 	if (!cJSON_IsObject(text))
-		return err_set(e, ERR_FORMAT, "%s: key 'text_cfg' is not an object", path);
+		return err_file(e, path, "key 'text_cfg' is not an object");
 	for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
 		if (member(text, refused[i]))
-			return err_set(e, ERR_FORMAT, "%s: key '%s': text towers of this kind are not read",
-				path, refused[i]);
+			return err_file(
+				e, path, "key '%s': text towers of this kind are not read", refused[i]);
 	if (pretrained_int(model, "embed_dim", 65536, 0, &kind->width, path, e) ||
 		pretrained_int(text, "vocab_size", 10000000, 49408, &c->words, path, e) ||
 		pretrained_int(text, own[0], 65536, 512, &t->width, path, e) ||
@@ -150,7 +145,7 @@ static int read_config(struct clip *c, struct kind *kind, const char *dir, struc
 	cJSON *config = path ? json_read(path, e) : NULL;
 
 	if (config && !cJSON_IsObject(config))
-		err_set(e, ERR_FORMAT, "%s: not a JSON object", path);
+		err_file(e, path, "not a JSON object");
 	else if (config)
 		bad = kind->is_open ? read_open_keys(c, kind, config, path, e)
 				    : read_keys(c, kind, config, path, e);
@@ -223,15 +218,12 @@ static int load_layer(struct source *s, const struct clip *c, int i)
 	char at[64];
 
 	snprintf(at, sizeof at, "%s%d.", n->layer, i);
-	return pretrained_norm(&s->from, at, n->attention_norm, &l->attention_norm, width) ||
-			       load_attention(s, at, l, width) ||
-			       pretrained_linear(
-				       &s->from, at, n->attention_out, &l->attention_out, width, width) ||
-			       pretrained_norm(&s->from, at, n->feed_norm, &l->norm, width) ||
-			       pretrained_linear(&s->from, at, n->inner, &l->inner, width, inner) ||
-			       pretrained_linear(&s->from, at, n->outer, &l->outer, inner, width)
-		       ? -1
-		       : 0;
+	return -(pretrained_norm(&s->from, at, n->attention_norm, &l->attention_norm, width) ||
+		 load_attention(s, at, l, width) ||
+		 pretrained_linear(&s->from, at, n->attention_out, &l->attention_out, width, width) ||
+		 pretrained_norm(&s->from, at, n->feed_norm, &l->norm, width) ||
+		 pretrained_linear(&s->from, at, n->inner, &l->inner, width, inner) ||
+		 pretrained_linear(&s->from, at, n->outer, &l->outer, inner, width));
 }
 
 /* HuggingFace's has no prefix; OpenCLIP's has, and is (width,projected). */
@@ -291,10 +283,8 @@ static int load_all(struct source *s, struct clip *c, const struct kind *kind)
 {
 	s->layout = find_layout(&s->from.st);
 	s->from.prefix = s->layout->prefix;
-	return load_body(s, c) || find_projection(s, c, kind) || clip_alloc(c, s->from.e) ||
-			       load_body(s, c) || (c->projected && load_projection(s, c))
-		       ? -1
-		       : 0;
+	return -(load_body(s, c) || find_projection(s, c, kind) || clip_alloc(c, s->from.e) ||
+		 load_body(s, c) || (c->projected && load_projection(s, c)));
 }
 
 int clip_model_read(struct clip *c, const char *dir, struct err *e)

@@ -71,8 +71,7 @@ static int take_vector(
 	name_of(name, member, p->name, "");
 	const struct st_tensor *t = safetensors_need(st, name, ST_F16, 1, (int64_t[]){(int64_t)n}, e);
 
-	return !t || safetensors_to_float(t, out, n, e) || safetensors_check_finite(st, name, out, n, e) ? -1
-													 : 0;
+	return -(!t || safetensors_to_float(t, out, n, e) || safetensors_check_finite(st, name, out, n, e));
 }
 
 /* *w has been made. */
@@ -101,8 +100,7 @@ static int need_version(const struct safetensors *st, struct err *e)
 	version = safetensors_meta(st, "version");
 	return !strcmp(version, "6")
 		       ? 0
-		       : err_set(e, ERR_FORMAT,
-				 "%s: refer.parser version %s is older than this program reads (6)", st->path,
+		       : err_file(e, st->path, "refer.parser version %s is older than this program reads (6)",
 				 version);
 }
 
@@ -116,8 +114,8 @@ static int take_tensors(struct parser_weights *w, const struct safetensors *st, 
 		!(t = safetensors_need(st, "vector.weight", ST_I8, 2, (int64_t[]){NET_HIDDEN, -1}, e)))
 		return -1;
 	if (t->shape[1] < 1 || t->shape[1] > 65536)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'vector.weight': width %lld is not in 1 to 65536",
-			st->path, (long long)t->shape[1]);
+		return err_file(e, st->path, "tensor 'vector.weight': width %lld is not in 1 to 65536",
+			(long long)t->shape[1]);
 	const int width = (int)t->shape[1];
 	if (fingerprint_read(&encoder, st, "encoder", e) || parser_weights_make(w, width, e))
 		return -1;
@@ -252,7 +250,6 @@ int parser_weights_need_middle(const struct parser_weights *w, const char *path,
 {
 	if (middle || strcmp(w->encoder, encoder->hex) != 0)
 		return 0;
-	return err_set(e, ERR_FORMAT,
-		"%s: tensor 'middle' is missing, by which sentences are taken apart: make the file anew",
-		path);
+	return err_file(e, path,
+		"tensor 'middle' is missing, by which sentences are taken apart: make the file anew");
 }

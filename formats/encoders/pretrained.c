@@ -1,6 +1,7 @@
 #include "formats/encoders/pretrained.h"
 
 #include "base/file.h"
+#include "formats/records/json.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -11,30 +12,29 @@
 int pretrained_int(
 	const cJSON *config, const char *key, int max, int usual, int *out, const char *path, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(config, key);
+	const cJSON *item = json_get(config, key);
 	double v = cJSON_IsNumber(item) ? item->valuedouble : item ? 0 : usual;
 
 	if (!(v >= 1 && v <= max) || v != floor(v))
-		return err_set(
-			e, ERR_FORMAT, "%s: key '%s' is not a whole number from 1 to %d", path, key, max);
+		return err_file(e, path, "key '%s' is not a whole number from 1 to %d", key, max);
 	*out = (int)v;
 	return 0;
 }
 
 int pretrained_is(const cJSON *config, const char *key, const char *wanted, const char *path, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(config, key);
+	const cJSON *item = json_get(config, key);
 
 	if (!item || (cJSON_IsString(item) && !strcmp(item->valuestring, wanted)))
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: key '%s' is not \"%s\"", path, key, wanted);
+	return err_file(e, path, "key '%s' is not \"%s\"", key, wanted);
 }
 
 int pretrained_activation(const cJSON *config, const struct pretrained_activation *known, size_t n,
 	const char *list, const char *usual, enum transformer_activation *out, const char *path,
 	struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(config, "hidden_act");
+	const cJSON *item = json_get(config, "hidden_act");
 	const char *name = cJSON_IsString(item) ? item->valuestring : !item && usual ? usual : "";
 
 	for (size_t i = 0; i < n; i++)
@@ -42,16 +42,16 @@ int pretrained_activation(const cJSON *config, const struct pretrained_activatio
 			*out = known[i].activation;
 			return 0;
 		}
-	return err_set(e, ERR_FORMAT, "%s: key 'hidden_act' is '%s', not %s", path, name, list);
+	return err_file(e, path, "key 'hidden_act' is '%s', not %s", name, list);
 }
 
 int pretrained_eps(const cJSON *config, double usual, double *out, const char *path, struct err *e)
 {
-	const cJSON *eps = cJSON_GetObjectItemCaseSensitive(config, "layer_norm_eps");
+	const cJSON *eps = json_get(config, "layer_norm_eps");
 
 	*out = eps ? eps->valuedouble : usual;
 	if ((eps && !cJSON_IsNumber(eps)) || !(*out >= 0 && *out <= 1))
-		return err_set(e, ERR_FORMAT, "%s: key 'layer_norm_eps' is not a number from 0 to 1", path);
+		return err_file(e, path, "key 'layer_norm_eps' is not a number from 0 to 1");
 	return 0;
 }
 
@@ -59,11 +59,10 @@ int pretrained_sizes(const struct transformer *t, int positions, const char *con
 	struct err *e)
 {
 	if (t->width % t->heads)
-		return err_set(e, ERR_FORMAT, "%s: %s %d is not a multiple of %s %d", path, names[0],
-			t->width, names[1], t->heads);
+		return err_file(
+			e, path, "%s %d is not a multiple of %s %d", names[0], t->width, names[1], t->heads);
 	if (positions < 3)
-		return err_set(
-			e, ERR_FORMAT, "%s: %s %d leaves no room for words", path, names[2], positions);
+		return err_file(e, path, "%s %d leaves no room for words", names[2], positions);
 	return 0;
 }
 
@@ -97,8 +96,7 @@ static char *find_weights(const char *dir, struct err *e)
 		return only;
 	free(only);
 	if (count)
-		err_set(e, ERR_FORMAT, "%s: has %zu *.safetensors files and none is model.safetensors", dir,
-			count);
+		err_file(e, dir, "has %zu *.safetensors files and none is model.safetensors", count);
 	else
 		err_set(e, ERR_SYSTEM, "%s: has no *.safetensors file", dir);
 	return NULL;
@@ -143,8 +141,8 @@ static int load(
 		return -1;
 	for (size_t i = 0; i < count; i++)
 		if (!isfinite(out[i]))
-			return err_set(from->e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite",
-				from->st.path, t->name, first + i);
+			return err_file(from->e, from->st.path, "tensor '%s': item %zu is not finite",
+				t->name, first + i);
 	return 0;
 }
 
@@ -163,19 +161,15 @@ int pretrained_load(struct pretrained *from, const char *at, const char *name, c
 int pretrained_linear(struct pretrained *from, const char *at, const char *name,
 	const struct transformer_linear *l, int in, int out)
 {
-	return pretrained_load(from, at, name, ".weight", l->weight, out, in) ||
-			       pretrained_load(from, at, name, ".bias", l->bias, 0, out)
-		       ? -1
-		       : 0;
+	return -(pretrained_load(from, at, name, ".weight", l->weight, out, in) ||
+		 pretrained_load(from, at, name, ".bias", l->bias, 0, out));
 }
 
 int pretrained_norm(struct pretrained *from, const char *at, const char *name,
 	const struct transformer_norm *n, int width)
 {
-	return pretrained_load(from, at, name, from->scale, n->scale, 0, width) ||
-			       pretrained_load(from, at, name, from->shift, n->shift, 0, width)
-		       ? -1
-		       : 0;
+	return -(pretrained_load(from, at, name, from->scale, n->scale, 0, width) ||
+		 pretrained_load(from, at, name, from->shift, n->shift, 0, width));
 }
 
 int pretrained_load_part(struct pretrained *from, const char *at, const char *name, float *out, int of,

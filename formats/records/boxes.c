@@ -30,7 +30,7 @@ void boxes_free(struct box_set *s)
 /* 1 where the value is there, and not null. */
 static int has(const cJSON *object, const char *key)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+	const cJSON *item = json_get(object, key);
 
 	return item && !cJSON_IsNull(item);
 }
@@ -38,7 +38,7 @@ static int has(const cJSON *object, const char *key)
 static int read_turned(
 	const struct jsonl *j, const cJSON *object, struct box *b, const char *where, struct err *e)
 {
-	const cJSON *o = cJSON_GetObjectItemCaseSensitive(object, "oriented");
+	const cJSON *o = json_get(object, "oriented");
 	double q[4], size[3], m[3][3];
 
 	if (!cJSON_IsObject(o))
@@ -132,7 +132,7 @@ int boxes_read(struct box_set *s, const char *path, struct err *e)
 	int bad = jsonl_records(
 		&j, sizeof *s->records, read_record, record_free, (void **)&s->records, &s->n, &lines, e);
 	if (!bad && !s->n)
-		bad = err_set(e, ERR_FORMAT, "%s: holds no boxes", file_name(path));
+		bad = err_file(e, file_name(path), "holds no boxes");
 	bad = bad || check_unique(s, lines, file_name(path), e);
 	jsonl_close(&j);
 	free(lines);

@@ -1,6 +1,7 @@
 #include "formats/records/foreign.h"
 
 #include "base/path.h"
+#include "formats/records/json.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -118,13 +119,13 @@ int foreign_say(const char *name, const char *what, const char *way_out, struct 
 		else
 			text[n++] = *way_out;
 	text[n] = 0;
-	return err_set(e, ERR_FORMAT, "%s: %s: %s", name, what, text);
+	return err_file(e, name, "%s: %s", what, text);
 }
 
 static int has_members(const cJSON *object, const struct kind *k)
 {
 	for (int i = 0; i < MEMBERS && k->members[i]; i++)
-		if (!cJSON_GetObjectItemCaseSensitive(object, k->members[i]))
+		if (!json_get(object, k->members[i]))
 			return 0;
 	return 1;
 }

@@ -212,7 +212,7 @@ int jsonl_text(struct jsonl *j, struct err *e)
 int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, int need, const char **value,
 	struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+	const cJSON *item = json_get(object, key);
 
 	if (!item || cJSON_IsNull(item)) {
 		if (need)
@@ -244,7 +244,7 @@ int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum
 
 int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, double *number, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+	const cJSON *item = json_get(object, key);
 
 	*number = NAN;
 	if (!item || cJSON_IsNull(item))

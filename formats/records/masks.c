@@ -53,8 +53,7 @@ static int read_boxes(const struct jsonl *j, const cJSON *boxes, struct mask_pla
 
 static int read_place(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
 {
-	const cJSON *peak = cJSON_GetObjectItemCaseSensitive(object, "peak"),
-		    *boxes = cJSON_GetObjectItemCaseSensitive(object, "boxes");
+	const cJSON *peak = json_get(object, "peak"), *boxes = json_get(object, "boxes");
 
 	if ((!peak || cJSON_IsNull(peak)) && (!boxes || cJSON_IsNull(boxes)))
 		return 0;
@@ -97,8 +96,8 @@ static int read_list(
 static int read_segmentation(
 	const struct jsonl *j, const cJSON *segmentation, struct rle *mask, struct err *e)
 {
-	const cJSON *size = cJSON_GetObjectItemCaseSensitive(segmentation, "size");
-	const cJSON *counts = cJSON_GetObjectItemCaseSensitive(segmentation, "counts");
+	const cJSON *size = json_get(segmentation, "size");
+	const cJSON *counts = json_get(segmentation, "counts");
 	const cJSON *h = cJSON_GetArrayItem(size, 0), *w = cJSON_GetArrayItem(size, 1);
 
 	if (!cJSON_IsObject(segmentation))
@@ -155,7 +154,7 @@ static int read_names(const struct jsonl *j, const cJSON *object, struct mask *m
 
 static int read_record(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
 {
-	const cJSON *segmentation = cJSON_GetObjectItemCaseSensitive(object, "segmentation");
+	const cJSON *segmentation = json_get(object, "segmentation");
 	const char *path = NULL;
 
 	if (read_names(j, object, m, e) || jsonl_number(j, object, "score", &m->score, e) ||
@@ -284,9 +283,9 @@ int masks_check_refs(const struct masks *set, const char *path, char *const *ref
 		const struct mask *m = &set->items[i];
 		const size_t at = m->ref ? names_find(&names, m->ref) : NAMES_NONE;
 		if (at != NAMES_NONE && m->object && *objects[at] && strcmp(m->object, objects[at]))
-			bad = err_set(e, ERR_FORMAT,
-				"%s: a mask of view '%s' is of object '%s', but its ref '%s' is a sentence of '%s': leave out the key that is wrong",
-				file_name(path), m->view, m->object, m->ref, objects[at]);
+			bad = err_file(e, file_name(path),
+				"a mask of view '%s' is of object '%s', but its ref '%s' is a sentence of '%s': leave out the key that is wrong",
+				m->view, m->object, m->ref, objects[at]);
 	}
 	names_free(&names);
 	return bad ? -1 : 0;

@@ -86,8 +86,7 @@ static int read_numbers(double *to, int count, const struct safetensors *st, con
 	memcpy(to, tensor->data, tensor->bytes);
 	for (int i = 0; i < count; i++)
 		if (!isfinite(to[i]))
-			return err_set(
-				e, ERR_FORMAT, "%s: tensor '%s': item %d is not finite", st->path, name, i);
+			return err_file(e, st->path, "tensor '%s': item %d is not finite", name, i);
 	return 0;
 }
 
@@ -120,9 +119,8 @@ static int check_training(const struct safetensors *st, const struct checkpoint_
 		return -1;
 	const char *identity = safetensors_meta(st, "identity");
 	if (!identity || strcmp(identity, of->identity))
-		return err_set(e, ERR_FORMAT,
-			"%s: is of another training (its options or inputs differ); remove it or train without --resume",
-			st->path);
+		return err_file(e, st->path,
+			"is of another training (its options or inputs differ); remove it or train without --resume");
 	return 0;
 }
 
@@ -142,8 +140,7 @@ static int read_state(
 			return -1;
 	for (size_t i = 0; i < t->count; i++)
 		if (t->v[i] < 0)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'second_moment': item %zu is negative",
-				st->path, i);
+			return err_file(e, st->path, "tensor 'second_moment': item %zu is negative", i);
 	if (read_numbers(losses, 3, st, "losses", e) || read_best(t, st, iteration, e))
 		return -1;
 	t->sum = (struct step_losses){losses[0], losses[1], losses[2]};
@@ -167,7 +164,7 @@ int checkpoint_resume(struct train_state *t, const char *path, const struct chec
 {
 	if (checkpoint_read(t, path, of, e))
 		return -1;
-	return t->iteration > most ? err_set(e, ERR_FORMAT, "%s: has %ld steps, more than the %lld asked for",
-					     path, t->iteration, most)
-				   : 0;
+	return t->iteration > most
+		       ? err_file(e, path, "has %ld steps, more than the %lld asked for", t->iteration, most)
+		       : 0;
 }

@@ -17,17 +17,15 @@ static int check_numbers(const struct features *f, struct err *e)
 
 	for (size_t i = 0; i < f->gaussians; i++) {
 		if (!(f->reliability[i] >= 0 && f->reliability[i] <= 1))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'reliability': item %zu is not in 0 to 1",
-				path, i);
+			return err_file(e, path, "tensor 'reliability': item %zu is not in 0 to 1", i);
 		if (!(f->weight[i] >= 0 && isfinite(f->weight[i])))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'weight': item %zu is not a number from 0",
-				path, i);
+			return err_file(e, path, "tensor 'weight': item %zu is not a number from 0", i);
 		if (f->labels && f->labels[i] < -1)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'labels': item %zu is %d, below -1", path,
-				i, (int)f->labels[i]);
+			return err_file(
+				e, path, "tensor 'labels': item %zu is %d, below -1", i, (int)f->labels[i]);
 		if (f->labels && f->labels[i] > FEATURES_MAX_LABEL)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'labels': item %zu is %d, above %d", path,
-				i, (int)f->labels[i], FEATURES_MAX_LABEL);
+			return err_file(e, path, "tensor 'labels': item %zu is %d, above %d", i,
+				(int)f->labels[i], FEATURES_MAX_LABEL);
 	}
 	return 0;
 }
@@ -41,8 +39,7 @@ static int check_finite(const struct features *f, struct err *e)
 
 	for (size_t i = 0; i < count; i++)
 		if (f->is_half ? (half[i] & 0x7c00) == 0x7c00 : !isfinite(single[i]))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'features': item %zu is not finite",
-				f->file.path, i);
+			return err_file(e, f->file.path, "tensor 'features': item %zu is not finite", i);
 	return 0;
 }
 
@@ -64,11 +61,11 @@ static int read_components(struct features *f, struct err *e)
 	if (!basis)
 		return -1;
 	if (f->channels > FEATURES_MAX_COMPONENTS)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'features': %zu components, not 1 to %d",
-			f->file.path, f->channels, FEATURES_MAX_COMPONENTS);
+		return err_file(e, f->file.path, "tensor 'features': %zu components, not 1 to %d",
+			f->channels, FEATURES_MAX_COMPONENTS);
 	if (basis->shape[1] < (int64_t)f->channels || basis->shape[1] > FEATURES_MAX_CHANNELS)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'basis': %lld channels, not %zu to %d",
-			f->file.path, (long long)basis->shape[1], f->channels, FEATURES_MAX_CHANNELS);
+		return err_file(e, f->file.path, "tensor 'basis': %lld channels, not %zu to %d",
+			(long long)basis->shape[1], f->channels, FEATURES_MAX_CHANNELS);
 	const struct st_tensor *mean = safetensors_need(&f->file, "mean", ST_F32, 1, &basis->shape[1], e);
 	if (!mean)
 		return -1;
@@ -76,10 +73,8 @@ static int read_components(struct features *f, struct err *e)
 	f->channels = (size_t)basis->shape[1];
 	f->basis = basis->data;
 	f->mean = mean->data;
-	return safetensors_check_finite(&f->file, "basis", f->basis, f->components * f->channels, e) ||
-			       safetensors_check_finite(&f->file, "mean", f->mean, f->channels, e)
-		       ? -1
-		       : 0;
+	return -(safetensors_check_finite(&f->file, "basis", f->basis, f->components * f->channels, e) ||
+		 safetensors_check_finite(&f->file, "mean", f->mean, f->channels, e));
 }
 
 static int read_features(struct features *f, struct err *e)
@@ -88,17 +83,17 @@ static int read_features(struct features *f, struct err *e)
 	const struct st_tensor *t = safetensors_find(&f->file, "features");
 
 	if (!t)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'features' or 'labels' is missing", f->file.path);
+		return err_file(e, f->file.path, "tensor 'features' or 'labels' is missing");
 	f->is_half = t->dtype == ST_F16;
 	t = safetensors_need(&f->file, "features", f->is_half ? ST_F16 : ST_F32, 2, shape, e);
 	if (!t)
 		return -1;
 	if (t->shape[1] < 1 || t->shape[1] > FEATURES_MAX_CHANNELS)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'features': %lld channels, not 1 to %d",
-			f->file.path, (long long)t->shape[1], FEATURES_MAX_CHANNELS);
+		return err_file(e, f->file.path, "tensor 'features': %lld channels, not 1 to %d",
+			(long long)t->shape[1], FEATURES_MAX_CHANNELS);
 	f->channels = (size_t)t->shape[1];
 	f->values = t->data;
-	return check_finite(f, e) || (safetensors_find(&f->file, "basis") && read_components(f, e)) ? -1 : 0;
+	return -(check_finite(f, e) || (safetensors_find(&f->file, "basis") && read_components(f, e)));
 }
 
 static int read_all(struct features *f, struct err *e)

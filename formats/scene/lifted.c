@@ -25,14 +25,12 @@ static int read_shares(struct lifted *l, const struct safetensors *st, struct er
 	for (size_t k = 0; k < count; k++) {
 		const int step = ((const uint8_t *)share->data)[k];
 		if (!step)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'share': item %zu is 0", st->path, k);
+			return err_file(e, st->path, "tensor 'share': item %zu is 0", k);
 		l->share[k] = (float)step / SHARE_STEPS;
 	}
-	return metalist_check_offsets("indptr", l->indptr, l->objects, (int64_t)count, "shares", st->path,
-		       e) || metalist_check_index(l->index, l->indptr, l->objects, l->gaussians, "object",
-				     st->path, e)
-		       ? -1
-		       : 0;
+	return -(metalist_check_offsets(
+			 "indptr", l->indptr, l->objects, (int64_t)count, "shares", st->path, e) ||
+		 metalist_check_index(l->index, l->indptr, l->objects, l->gaussians, "object", st->path, e));
 }
 
 static int read_objects(struct lifted *l, const struct safetensors *st, struct err *e)
@@ -44,14 +42,10 @@ static int read_objects(struct lifted *l, const struct safetensors *st, struct e
 		return -1;
 	for (size_t o = 0; o < l->objects; o++)
 		if (!(l->confidence[o] >= 0 && l->confidence[o] <= 1))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'confidence': item %zu is not in 0 to 1",
-				st->path, o);
+			return err_file(e, st->path, "tensor 'confidence': item %zu is not in 0 to 1", o);
 	l->names = metalist_read(st, "names", l->objects, "objects", e);
-	return !l->names || metalist_check_names(l->names, l->objects, 0, "names", st->path, e) ||
-			       metalist_check_unique(l->names, l->objects, "names", st->path, e) ||
-			       read_shares(l, st, e)
-		       ? -1
-		       : 0;
+	return -(!l->names || metalist_check_names(l->names, l->objects, 0, "names", st->path, e) ||
+		 metalist_check_unique(l->names, l->objects, "names", st->path, e) || read_shares(l, st, e));
 }
 
 /* Words by one of the encoder's layers, of `rows` and the width. NULL with *e. */
@@ -77,7 +71,7 @@ static int read_words(struct lifted *l, const struct safetensors *st, struct err
 	if (!words)
 		return -1;
 	if (words->shape[1] < 1 || words->shape[1] > MAX_WIDTH)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'words': width %lld is not in 1 to %d", st->path,
+		return err_file(e, st->path, "tensor 'words': width %lld is not in 1 to %d",
 			(long long)words->shape[1], MAX_WIDTH);
 	const size_t rows = (size_t)words->shape[0];
 	l->width = (int)words->shape[1];
@@ -99,8 +93,8 @@ static int read_sentences(struct lifted *l, const struct safetensors *st, struct
 		return -1;
 	for (size_t r = 0; r < l->sentences; r++)
 		if (l->object[r] < 0 || (size_t)l->object[r] >= l->objects)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'object': item %zu is %d, of %zu objects",
-				st->path, r, l->object[r], l->objects);
+			return err_file(e, st->path, "tensor 'object': item %zu is %d, of %zu objects", r,
+				l->object[r], l->objects);
 	if (read_words(l, st, e) || !(l->texts = metalist_read(st, "texts", l->sentences, "sentences", e)) ||
 		!(l->pieces = metalist_read(st, "pieces", l->sentences, "sentences", e)))
 		return -1;

@@ -29,7 +29,7 @@ static int read_choice(
 
 	*value = text ? parse(text) : -1;
 	if (*value < 0)
-		return err_set(e, ERR_FORMAT, "%s: metadata '%s' is '%s'", st->path, key, text ? text : "");
+		return err_file(e, st->path, "metadata '%s' is '%s'", key, text ? text : "");
 	return 0;
 }
 
@@ -42,10 +42,10 @@ static int read_bounds(struct model *m, const struct safetensors *st, struct err
 		sscanf(text, "[[%lf,%lf,%lf],[%lf,%lf,%lf]]%n", &m->low[0], &m->low[1], &m->low[2],
 			&m->high[0], &m->high[1], &m->high[2], &end) != 6 ||
 		!end || text[end])
-		return err_set(e, ERR_FORMAT, "%s: metadata 'bounds' is not two corners", st->path);
+		return err_file(e, st->path, "metadata 'bounds' is not two corners");
 	for (int k = 0; k < 3; k++)
 		if (!isfinite(m->low[k]) || !isfinite(m->high[k]) || !(m->low[k] < m->high[k]))
-			return err_set(e, ERR_FORMAT, "%s: metadata 'bounds' is not low < high", st->path);
+			return err_file(e, st->path, "metadata 'bounds' is not low < high");
 	return 0;
 }
 
@@ -58,9 +58,8 @@ static int read_ids(struct model *m, const struct safetensors *st, struct err *e
 	for (size_t i = 0; i < m->n; i++)
 		if (m->ids[i] < 0 || (size_t)m->ids[i] >= m->scene_gaussians ||
 			(i && m->ids[i] <= m->ids[i - 1]))
-			return err_set(e, ERR_FORMAT,
-				"%s: tensor 'ids': item %zu does not rise within 0 to %lld", st->path, i,
-				(long long)m->scene_gaussians - 1);
+			return err_file(e, st->path, "tensor 'ids': item %zu does not rise within 0 to %lld",
+				i, (long long)m->scene_gaussians - 1);
 	return 0;
 }
 
@@ -73,11 +72,10 @@ static int read_root(struct octree *t, const struct safetensors *st, struct err 
 		sscanf(text, "[[%lf,%lf,%lf],%lf]%n", &t->low[0], &t->low[1], &t->low[2], &t->edge, &end) !=
 			4 ||
 		!end || text[end])
-		return err_set(e, ERR_FORMAT, "%s: metadata 'root' is not a corner and an edge", st->path);
+		return err_file(e, st->path, "metadata 'root' is not a corner and an edge");
 	if (!isfinite(t->low[0]) || !isfinite(t->low[1]) || !isfinite(t->low[2]) || !isfinite(t->edge) ||
 		!(t->edge > 0))
-		return err_set(
-			e, ERR_FORMAT, "%s: metadata 'root' is not finite with an edge above 0", st->path);
+		return err_file(e, st->path, "metadata 'root' is not finite with an edge above 0");
 	return 0;
 }
 
@@ -97,9 +95,8 @@ static int read_learning(struct model *m, const struct safetensors *st, struct e
 	for (size_t i = 0; i < 8 * bits_bytes(n); i++)
 		if (bits[i / 8] >> i % 8 & 1) {
 			if (i >= n)
-				return err_set(e, ERR_FORMAT,
-					"%s: tensor 'learning': bit %zu is set, of %zu Gaussians", st->path,
-					i, n);
+				return err_file(e, st->path,
+					"tensor 'learning': bit %zu is set, of %zu Gaussians", i, n);
 			m->ids[m->learning++] = (int32_t)i;
 		}
 	return 0;
@@ -115,8 +112,8 @@ static int read_leaves(struct model *m, const struct safetensors *st, struct err
 		return -1;
 	m->octree.n = m->n;
 	if (octree_check(&m->octree, &bad))
-		return err_set(e, ERR_FORMAT,
-			"%s: tensor 'leaves': item %zu is not a leaf after the one before", st->path, bad);
+		return err_file(
+			e, st->path, "tensor 'leaves': item %zu is not a leaf after the one before", bad);
 	return read_learning(m, st, e);
 }
 
@@ -196,8 +193,8 @@ static int read_width(const struct model *m, const struct safetensors *st, const
 	if (!first)
 		return -1;
 	if (first->shape[1] < 1 || first->shape[1] > most)
-		return err_set(e, ERR_FORMAT, "%s: tensor '%s': %lld columns, expected 1 to %d", st->path,
-			name, (long long)first->shape[1], most);
+		return err_file(e, st->path, "tensor '%s': %lld columns, expected 1 to %d", name,
+			(long long)first->shape[1], most);
 	return (int)first->shape[1];
 }
 
@@ -214,10 +211,8 @@ static int read_all(struct model *m, const struct safetensors *st, struct err *e
 		return -1;
 	m->similarity = (enum refer_similarity)similarity;
 	refer_layout_init(&m->layout, (enum refer_interaction)interaction, text, feature);
-	return origin_read(&m->origin, st, e) || read_bounds(m, st, e) || read_rows(m, st, e) ||
-			       read_features(m, st, e) || read_parameters(m, st, e)
-		       ? -1
-		       : 0;
+	return -(origin_read(&m->origin, st, e) || read_bounds(m, st, e) || read_rows(m, st, e) ||
+		 read_features(m, st, e) || read_parameters(m, st, e));
 }
 
 int model_take(struct model *m, const struct safetensors *st, struct err *e)

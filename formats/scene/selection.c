@@ -26,14 +26,10 @@ static int read_tensors(struct selection *s, const struct safetensors *st, struc
 		return -1;
 	s->refs = metalist_read(st, "refs", n, "sentences", e);
 	s->n = s->refs ? n : 0;
-	return !s->refs || metalist_check_names(s->refs, n, 0, "refs", st->path, e) ||
-			       metalist_check_unique(s->refs, n, "refs", st->path, e) ||
-			       metalist_check_offsets(
-				       "indptr", s->indptr, n, (int64_t)items, "items", st->path, e) ||
-			       metalist_check_index(
-				       s->index, s->indptr, n, s->gaussians, "sentence", st->path, e)
-		       ? -1
-		       : 0;
+	return -(!s->refs || metalist_check_names(s->refs, n, 0, "refs", st->path, e) ||
+		 metalist_check_unique(s->refs, n, "refs", st->path, e) ||
+		 metalist_check_offsets("indptr", s->indptr, n, (int64_t)items, "items", st->path, e) ||
+		 metalist_check_index(s->index, s->indptr, n, s->gaussians, "sentence", st->path, e));
 }
 
 int selection_take(struct selection *s, const struct safetensors *st, struct err *e)

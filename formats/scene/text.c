@@ -59,9 +59,9 @@ static int read_splits(struct text *t, const struct safetensors *st, struct err 
 		if (t->splits && !bad) {
 			t->splits[i] = strcmp(names[i], "test") ? SPLIT_TRAIN : SPLIT_TEST;
 			if (strcmp(names[i], "test") && strcmp(names[i], "train"))
-				bad = err_set(e, ERR_FORMAT,
-					"%s: metadata 'splits': entry %zu is '%s', not 'train' or 'test'",
-					st->path, i, names[i]);
+				bad = err_file(e, st->path,
+					"metadata 'splits': entry %zu is '%s', not 'train' or 'test'", i,
+					names[i]);
 		}
 		free(names[i]);
 	}
@@ -90,7 +90,7 @@ static int read_tensors(struct text *t, const struct safetensors *st, struct err
 		!(words = safetensors_need(st, "words", ST_F32, 2, (int64_t[]){-1, -1}, e)))
 		return -1;
 	if (words->shape[1] < 1 || words->shape[1] > 65536)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'words': width %lld is not in 1 to 65536", st->path,
+		return err_file(e, st->path, "tensor 'words': width %lld is not in 1 to 65536",
 			(long long)words->shape[1]);
 	const size_t rows = (size_t)words->shape[0];
 	t->width = (int)words->shape[1];
@@ -118,9 +118,8 @@ static int check_lists(const struct text *t, const char *path, struct err *e)
 		struct err own;
 		char **names = *t->object_lists[i] ? metalist_parse(t->object_lists[i], &n, &own) : NULL;
 		if (!names && *t->object_lists[i])
-			return err_set(e, ERR_FORMAT,
-				"%s: metadata 'object_lists': entry %zu is not a JSON list of names", path,
-				i);
+			return err_file(
+				e, path, "metadata 'object_lists': entry %zu is not a JSON list of names", i);
 		if (names)
 			metalist_free(names, n);
 	}

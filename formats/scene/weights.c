@@ -17,15 +17,12 @@ static int check_indptr(const struct weights *w, int64_t pixels, int64_t nnz, st
 	const char *path = w->file.path;
 
 	if (w->indptr[0])
-		return err_set(e, ERR_FORMAT, "%s: tensor 'indptr': begins with %lld, not 0", path,
-			(long long)w->indptr[0]);
+		return err_file(e, path, "tensor 'indptr': begins with %lld, not 0", (long long)w->indptr[0]);
 	for (int64_t p = 0; p < pixels; p++)
 		if (w->indptr[p + 1] < w->indptr[p])
-			return err_set(e, ERR_FORMAT, "%s: tensor 'indptr': falls after pixel %lld", path,
-				(long long)p);
+			return err_file(e, path, "tensor 'indptr': falls after pixel %lld", (long long)p);
 	if (w->indptr[pixels] != nnz)
-		return err_set(e, ERR_FORMAT,
-			"%s: tensor 'indptr': ends with %lld, but there are %lld weights", path,
+		return err_file(e, path, "tensor 'indptr': ends with %lld, but there are %lld weights",
 			(long long)w->indptr[pixels], (long long)nnz);
 	return 0;
 }
@@ -69,15 +66,14 @@ static int check_values(const struct weights *w, int64_t pixels, int64_t nnz, st
 	if (!all_within(w->index, nnz, (uint32_t)w->gaussians - 1))
 		for (int64_t i = 0; i < nnz; i++)
 			if (w->index[i] < 0 || w->index[i] >= w->gaussians)
-				return err_set(e, ERR_FORMAT,
-					"%s: tensor 'index': entry %lld is %d, not in 0 to %lld", path,
+				return err_file(e, path, "tensor 'index': entry %lld is %d, not in 0 to %lld",
 					(long long)i, (int)w->index[i], (long long)w->gaussians - 1);
 	if ((at = find_not_share(w->weight, nnz)) >= 0)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'weight': entry %lld is %g, not in 0 to 1", path,
-			(long long)at, (double)w->weight[at]);
+		return err_file(e, path, "tensor 'weight': entry %lld is %g, not in 0 to 1", (long long)at,
+			(double)w->weight[at]);
 	if ((at = find_not_share(w->dropped, pixels)) >= 0)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'dropped': pixel %lld has %g, not in 0 to 1", path,
-			(long long)at, (double)w->dropped[at]);
+		return err_file(e, path, "tensor 'dropped': pixel %lld has %g, not in 0 to 1", (long long)at,
+			(double)w->dropped[at]);
 	return 0;
 }
 
@@ -136,9 +132,8 @@ static int read_packed(struct weights *w, int64_t pixels, int as_tiles, struct e
 	struct weights_pack pack = {0};
 
 	if (strcmp(version, "3"))
-		return err_set(e, ERR_FORMAT,
-			"%s: refer.weights, packed, version %s is older than this program reads (3)",
-			w->file.path, version);
+		return err_file(e, w->file.path,
+			"refer.weights, packed, version %s is older than this program reads (3)", version);
 	for (int s = 0; s < WEIGHTS_STREAMS && dropped; s++) {
 		const struct st_tensor *t =
 			safetensors_need(&w->file, weights_stream_name[s], ST_U8, 1, &any, e);
@@ -146,8 +141,8 @@ static int read_packed(struct weights *w, int64_t pixels, int as_tiles, struct e
 		if (!t)
 			return -1;
 		if (bytes < 0 || bytes / RATIO > (int64_t)t->bytes)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'sizes': %lld bytes cannot be in '%s'",
-				w->file.path, (long long)bytes, weights_stream_name[s]);
+			return err_file(e, w->file.path, "tensor 'sizes': %lld bytes cannot be in '%s'",
+				(long long)bytes, weights_stream_name[s]);
 		pack.bytes[s] = (size_t)bytes;
 		pack.packed[s] = t->bytes;
 		pack.data[s] = (uint8_t *)(size_t)t->data;
@@ -191,8 +186,7 @@ static int read_all(struct weights *w, int as_tiles, struct err *e)
 	w->indptr = indptr->data;
 	w->index = index->data;
 	w->dropped = dropped->data;
-	return check_indptr(w, pixels, index->shape[0], e) || check_values(w, pixels, index->shape[0], e) ? -1
-													  : 0;
+	return -(check_indptr(w, pixels, index->shape[0], e) || check_values(w, pixels, index->shape[0], e));
 }
 
 static int open_file(
@@ -218,7 +212,7 @@ static int check_origin(const struct weights *w, const struct scene *scene, size
 	const char *path = w->file.path;
 
 	if (w->gaussians != (int64_t)scene->splats.n)
-		return err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, %s has %zu", path,
+		return err_file(e, path, "is of a scene of %lld Gaussians, %s has %zu",
 			(long long)w->gaussians, scene->path, scene->splats.n);
 	if (fingerprint_check("scene", path, &w->scene, scene->path, &scene->fingerprint, e))
 		return -1;

@@ -44,8 +44,7 @@ static int find_layout(
 	for (size_t i = 0; i < el->n; i++)
 		l->rest += !strncmp(el->properties[i].name, "f_rest_", 7);
 	if (l->rest != 0 && l->rest != 9 && l->rest != 24 && l->rest != ROW_REST_MAX)
-		return err_set(
-			e, ERR_FORMAT, "%s: %d f_rest properties, expected 0, 9, 24 or 45", f->path, l->rest);
+		return err_file(e, f->path, "%d f_rest properties, expected 0, 9, 24 or 45", l->rest);
 	for (int i = 0; i < l->rest; i++) {
 		snprintf(name, sizeof name, "f_rest_%d", i);
 		l->slot[ROW_REST + i] = plyfile_need(f, el, name, e);
@@ -122,7 +121,7 @@ static int read_elements(
 	int bad = 0;
 
 	if (!vertex)
-		return err_set(e, ERR_FORMAT, "%s: no element 'vertex'", f->path);
+		return err_file(e, f->path, "no element 'vertex'");
 	for (size_t i = 0; !bad && i < f->n; i++) {
 		const struct plyfile_element *el = &f->elements[i];
 		if (!strcmp(el->name, "chunk"))
@@ -130,7 +129,7 @@ static int read_elements(
 		bad = el == vertex ? read_vertices(s, offset, report, f, vertex, chunks, e)
 				   : plyfile_skip(f, el, e);
 	}
-	return bad || plyfile_end(f, e) ? -1 : 0;
+	return -(bad || plyfile_end(f, e));
 }
 
 int ply_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,

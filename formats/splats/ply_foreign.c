@@ -36,9 +36,9 @@ static int check_types(const struct plyfile *f, const struct plyfile_element *ve
 	for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
 		const long at = plyfile_property(vertex, names[i]);
 		if (at >= 0 && vertex->properties[at].type < PLY_F32 && !vertex->properties[at].is_list)
-			return err_set(e, ERR_FORMAT,
-				"%s: property '%s' has whole numbers, half floats or codes of a packed scene: export it with floats where it was made",
-				f->path, names[i]);
+			return err_file(e, f->path,
+				"property '%s' has whole numbers, half floats or codes of a packed scene: export it with floats where it was made",
+				names[i]);
 	}
 	return 0;
 }
@@ -55,14 +55,14 @@ int ply_check_foreign(const struct plyfile *f, const struct plyfile_element *ver
 			return foreign_say(f->path, layouts[i].what, layouts[i].way_out, e);
 	if (plyfile_property(vertex, "x") >= 0 && plyfile_property(vertex, "scale_0") < 0 &&
 		plyfile_property(vertex, "rot_0") < 0 && plyfile_property(vertex, "packed_position") < 0)
-		return err_set(e, ERR_FORMAT,
-			"%s: a %s, not a trained scene: it has points without scale and rotation; 3D Gaussian Splatting trains a scene from them, point_cloud/iteration_N/point_cloud.ply",
-			f->path, face && face->rows ? "mesh" : "point cloud");
+		return err_file(e, f->path,
+			"a %s, not a trained scene: it has points without scale and rotation; 3D Gaussian Splatting trains a scene from them, point_cloud/iteration_N/point_cloud.ply",
+			face && face->rows ? "mesh" : "point cloud");
 	if (f->mode) {
 		snprintf(mode, sizeof mode, "%.*s", (int)strcspn(f->mode, "\r"), f->mode);
-		return err_set(e, ERR_FORMAT,
-			"%s: trained for another way of rendering ('%s'), which would be wrong here: train it without that mode",
-			f->path, mode);
+		return err_file(e, f->path,
+			"trained for another way of rendering ('%s'), which would be wrong here: train it without that mode",
+			mode);
 	}
 	return check_types(f, vertex, e);
 }

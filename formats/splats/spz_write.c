@@ -154,8 +154,8 @@ static int write_gzip(struct spz *f, size_t len, FILE *out, struct err *e)
 
 	put_header(f->bytes, f);
 	if (len > (uInt)-1)
-		return err_set(e, ERR_FORMAT, "%s: %zu Gaussians are too many for version %d of .spz",
-			f->name, f->n, f->version);
+		return err_file(
+			e, f->name, "%zu Gaussians are too many for version %d of .spz", f->n, f->version);
 	z.avail_in = (uInt)len;
 	if (deflateInit2(&z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, 16 + MAX_WBITS, 9, Z_DEFAULT_STRATEGY) !=
 		Z_OK)
@@ -222,9 +222,8 @@ int spz_write(const struct splats *s, const double offset[3], int version, const
 		f.degree++;
 	f.fraction_bits = spz_fraction(s, offset);
 	if (f.fraction_bits < 0 || s->n > UINT32_MAX)
-		return err_set(e, ERR_FORMAT,
-			"%s: means beyond 8388606, or more than 4294967295 Gaussians, do not fit an .spz",
-			f.name);
+		return err_file(e, f.name,
+			"means beyond 8388606, or more than 4294967295 Gaussians, do not fit an .spz");
 	int bad = pack(&f, s, offset, room, &len, e) || file_out_open(&out, path, e);
 	if (!bad) {
 		bad = version < 4 ? write_gzip(&f, len, out.stream, e) : write_plain(&f, out.stream, e);
