@@ -99,6 +99,12 @@ int origin_read(struct origin *o, const struct safetensors *st, struct err *e)
 		 fingerprint_read(&o->encoder, st, "encoder", e));
 }
 
+void origin_put(struct arrays_out *out, const struct origin *o)
+{
+	arrays_out_text(out, "scene", fingerprint_text(&o->scene));
+	arrays_out_text(out, "encoder", fingerprint_text(&o->encoder));
+}
+
 const char *fingerprint_text(const struct fingerprint *f)
 {
 	return *f->hex ? f->hex : NULL;

@@ -4,7 +4,7 @@
 #define FORMATS_FINGERPRINT_H
 
 #include "base/err.h"
-#include "formats/arrays/safetensors.h"
+#include "formats/arrays/arrays_out.h"
 #include "geom/camera.h"
 #include "nn/bert.h"
 #include "nn/bpe.h"
@@ -37,6 +37,7 @@ struct fingerprint fingerprint_clip(const struct clip *c, const struct bpe *b, i
 int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const char *key, struct err *e);
 
 int origin_read(struct origin *o, const struct safetensors *st, struct err *e);
+void origin_put(struct arrays_out *out, const struct origin *o);
 
 /* The value to write as metadata: NULL, which leaves the key out, where it is not known. */
 const char *fingerprint_text(const struct fingerprint *f);

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { ARRAYS = 4, NUMBERS = 2 };
+enum { ARRAYS = 4 };
 
 /* The last one, and best_score, where something is held out and was evaluated. */
 static const char *const names[ARRAYS] = {"values", "first_moment", "second_moment", "best"};
@@ -46,23 +46,21 @@ int checkpoint_write(
 	const int has_best = t->best.values && t->best.iteration;
 	const float *arrays[ARRAYS] = {t->values, t->m, t->v, t->best.values};
 	const double losses[3] = {t->sum.bce, t->sum.contrast, t->sum.total};
-	struct st_tensor tensors[NUMBERS + ARRAYS] = {st_vector("losses", ST_F64, 3, losses)};
-	char iteration[32], best[32], since[32];
-	const struct st_meta meta[] = {{"format", "refer.checkpoint"}, {"version", "1"},
-		{"tool", "refer-train"}, {"iteration", iteration}, {"identity", of->identity},
-		{"scene", fingerprint_text(&of->origin.scene)},
-		{"encoder", fingerprint_text(&of->origin.encoder)},
-		{"best_iteration", has_best ? best : NULL}, {"evaluations_since", has_best ? since : NULL}};
-	size_t n = 1;
+	struct arrays_out out;
 
-	if (has_best)
-		tensors[n++] = st_vector("best_score", ST_F64, 1, &t->best.score);
+	arrays_out_begin(&out, path, "refer.checkpoint", "1", "refer-train", NULL, 0, e);
+	arrays_out_text(&out, "iteration", arrays_out_print(&out, "%ld", t->iteration));
+	arrays_out_text(&out, "identity", of->identity);
+	origin_put(&out, &of->origin);
+	arrays_out_put(&out, st_vector("losses", ST_F64, 3, losses));
+	if (has_best) {
+		arrays_out_text(&out, "best_iteration", arrays_out_print(&out, "%ld", t->best.iteration));
+		arrays_out_text(&out, "evaluations_since", arrays_out_print(&out, "%ld", t->best.since));
+		arrays_out_put(&out, st_vector("best_score", ST_F64, 1, &t->best.score));
+	}
 	for (int i = 0; i < ARRAYS - !has_best; i++)
-		tensors[n++] = st_vector(names[i], ST_F32, (int64_t)t->count, arrays[i]);
-	snprintf(iteration, sizeof iteration, "%ld", t->iteration);
-	snprintf(best, sizeof best, "%ld", t->best.iteration);
-	snprintf(since, sizeof since, "%ld", t->best.since);
-	return safetensors_write(path, tensors, n, meta, sizeof meta / sizeof *meta, e);
+		arrays_out_put(&out, st_vector(names[i], ST_F32, (int64_t)t->count, arrays[i]));
+	return arrays_out_end(&out);
 }
 
 static int read_array(float *to, size_t count, const struct safetensors *st, const char *name, struct err *e)

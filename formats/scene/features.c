@@ -5,7 +5,6 @@
 #include "nn/linear.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Version 2 is one with components, of which at most so many are expanded at a time. */
@@ -176,19 +175,21 @@ void features_floats(const struct features *f, size_t first, size_t n, float *ou
 int features_write(const struct features *f, const char *path, const char *options, struct err *e)
 {
 	const int64_t n = (int64_t)f->gaussians, c = (int64_t)f->channels, k = (int64_t)f->components;
-	const struct st_tensor tensors[] = {
-		f->labels ? st_vector("labels", ST_I32, n, f->labels)
-			  : st_matrix("features", f->is_half ? ST_F16 : ST_F32, n, k ? k : c, f->values),
-		st_vector("reliability", ST_F32, n, f->reliability),
-		st_vector("weight", ST_F32, n, f->weight), st_matrix("basis", ST_F32, k, c, f->basis),
-		st_vector("mean", ST_F32, c, f->mean)};
-	char gaussians[24], error[NUMBER_SIZE];
+	struct arrays_out out;
 
-	snprintf(gaussians, sizeof gaussians, "%lld", (long long)n);
-	const struct st_meta meta[] = {{"format", "refer.features"}, {"version", k ? "2" : "1"},
-		{"tool", "feature-lift"}, {"options", options}, {"seed", "0"}, {"gaussians", gaussians},
-		{"scene", fingerprint_text(&f->scene)}, {"error", number_text(error, f->error)}};
-	const size_t tensor_count = sizeof tensors / sizeof *tensors, meta_count = sizeof meta / sizeof *meta;
-	return safetensors_write(
-		path, tensors, k ? tensor_count : tensor_count - 2, meta, k ? meta_count : meta_count - 1, e);
+	arrays_out_begin(&out, path, "refer.features", k ? "2" : "1", "feature-lift", options, 0, e);
+	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%zu", f->gaussians));
+	arrays_out_text(&out, "scene", fingerprint_text(&f->scene));
+	arrays_out_put(&out,
+		f->labels ? st_vector("labels", ST_I32, n, f->labels)
+			  : st_matrix("features", f->is_half ? ST_F16 : ST_F32, n, k ? k : c, f->values));
+	arrays_out_put(&out, st_vector("reliability", ST_F32, n, f->reliability));
+	arrays_out_put(&out, st_vector("weight", ST_F32, n, f->weight));
+	if (k) {
+		char error[NUMBER_SIZE];
+		arrays_out_text(&out, "error", arrays_out_print(&out, "%s", number_text(error, f->error)));
+		arrays_out_put(&out, st_matrix("basis", ST_F32, k, c, f->basis));
+		arrays_out_put(&out, st_vector("mean", ST_F32, c, f->mean));
+	}
+	return arrays_out_end(&out);
 }

@@ -6,9 +6,7 @@
 #include "formats/arrays/safetensors.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { VERSION_READ = 1, SHARE_STEPS = 255, MAX_WIDTH = 65536 };
 
@@ -129,82 +127,50 @@ int lifted_read(struct lifted *l, struct origin *origin, const char *path, struc
 }
 
 /* All above 0, or 0 where it may be, and at most 1. */
-static int check_parts(
-	const float *x, size_t n, int may_be_0, const char *name, const char *path, struct err *e)
+static void check_parts(struct arrays_out *out, const float *x, size_t n, int may_be_0, const char *name)
 {
-	for (size_t k = 0; k < n; k++)
+	for (size_t k = 0; k < n && !out->bad; k++)
 		if (!((x[k] > 0 || (may_be_0 && x[k] >= 0)) && x[k] <= 1))
-			return err_set(
-				e, ERR_CHECK, "%s: tensor '%s': item %zu is %g", path, name, k, (double)x[k]);
-	return 0;
+			out->bad = err_set(out->e, ERR_CHECK, "%s: tensor '%s': item %zu is %g", out->path,
+				name, k, (double)x[k]);
 }
 
 /* Shares in whole steps; the least is one, as a Gaussian with none is not listed. */
-static uint8_t *pack_shares(const struct lifted *l, const char *path, struct err *e)
+static void put_shares(struct arrays_out *out, const struct lifted *l)
 {
 	const size_t count = (size_t)l->indptr[l->objects];
-	uint8_t *steps = mem_alloc(count, 1, path, e);
+	uint8_t *steps = arrays_out_memory(out, count, 1);
 
 	for (size_t k = 0; k < count && steps; k++) {
 		const long step = lrintf(l->share[k] * SHARE_STEPS);
 		steps[k] = (uint8_t)(step < 1 ? 1 : step);
 	}
-	return steps;
-}
-
-static int write_all(const struct lifted *l, const struct origin *origin, const uint8_t *share,
-	const struct precision_matrix *words, const struct precision_matrix *middle, const char *path,
-	const char *options, struct err *e)
-{
-	const int64_t objects = (int64_t)l->objects, sentences = (int64_t)l->sentences;
-	const int64_t count = l->indptr[objects];
-	struct st_tensor tensors[8] = {st_vector("indptr", ST_I64, objects + 1, l->indptr),
-		st_vector("offsets", ST_I64, sentences + 1, l->offsets),
-		st_vector("index", ST_I32, count, l->index),
-		st_vector("object", ST_I32, sentences, l->object),
-		st_vector("confidence", ST_F32, objects, l->confidence), words->tensors[0],
-		st_vector("share", ST_U8, count, share)};
-	const size_t used = l->middle ? 8 : 7;
-	char *names = metalist_print(l->names, l->objects), *texts = metalist_print(l->texts, l->sentences);
-	char *pieces = metalist_print(l->pieces, l->sentences), gaussians[32];
-	int bad;
-
-	if (l->middle)
-		tensors[7] = middle->tensors[0];
-	snprintf(gaussians, sizeof gaussians, "%zu", l->gaussians);
-	if (names && texts && pieces) {
-		const struct st_meta meta[] = {{"format", "refer.lifted"}, {"version", "1"},
-			{"tool", "refer-lift"}, {"options", options}, {"seed", "0"}, {"gaussians", gaussians},
-			{"scene", fingerprint_text(&origin->scene)},
-			{"encoder", fingerprint_text(&origin->encoder)}, {"names", names}, {"texts", texts},
-			{"pieces", pieces}};
-		bad = safetensors_write(path, tensors, used, meta, sizeof meta / sizeof *meta, e);
-	} else {
-		bad = err_set(e, ERR_SYSTEM, "%s: out of memory", path);
-	}
-	free(names);
-	free(texts);
-	free(pieces);
-	return bad;
+	arrays_out_put(out, st_vector("share", ST_U8, (int64_t)count, steps));
 }
 
 int lifted_write(const struct lifted *l, const struct origin *origin, const char *path, const char *options,
 	struct err *e)
 {
-	struct precision_matrix words = {0}, middle = {0};
-	uint8_t *share = NULL;
-	int bad = check_parts(l->confidence, l->objects, 1, "confidence", path, e) ||
-		  check_parts(l->share, (size_t)l->indptr[l->objects], 0, "share", path, e) ||
-		  !(share = pack_shares(l, path, e)) ||
-		  precision_put(&words, "words", PRECISION_F16, PRECISION_ROWS,
-			  (size_t)l->offsets[l->sentences], (size_t)l->width, l->words, path, e) ||
-		  (l->middle &&
-			  precision_put(&middle, "middle", PRECISION_F16, PRECISION_ROWS,
-				  (size_t)l->offsets[l->sentences], (size_t)l->width, l->middle, path, e)) ||
-		  write_all(l, origin, share, &words, &middle, path, options, e);
+	const int64_t objects = (int64_t)l->objects, sentences = (int64_t)l->sentences;
+	const size_t rows = (size_t)l->offsets[sentences], width = (size_t)l->width;
+	struct arrays_out out;
 
-	precision_free(&words);
-	precision_free(&middle);
-	free(share);
-	return bad ? -1 : 0;
+	arrays_out_begin(&out, path, "refer.lifted", "1", "refer-lift", options, 0, e);
+	check_parts(&out, l->confidence, l->objects, 1, "confidence");
+	check_parts(&out, l->share, (size_t)l->indptr[objects], 0, "share");
+	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%zu", l->gaussians));
+	origin_put(&out, origin);
+	arrays_out_list(&out, "names", l->names, l->objects);
+	arrays_out_list(&out, "texts", l->texts, l->sentences);
+	arrays_out_list(&out, "pieces", l->pieces, l->sentences);
+	arrays_out_put(&out, st_vector("indptr", ST_I64, objects + 1, l->indptr));
+	arrays_out_put(&out, st_vector("offsets", ST_I64, sentences + 1, l->offsets));
+	arrays_out_put(&out, st_vector("index", ST_I32, l->indptr[objects], l->index));
+	arrays_out_put(&out, st_vector("object", ST_I32, sentences, l->object));
+	arrays_out_put(&out, st_vector("confidence", ST_F32, objects, l->confidence));
+	precision_put(&out, "words", PRECISION_F16, PRECISION_ROWS, rows, width, l->words);
+	put_shares(&out, l);
+	if (l->middle)
+		precision_put(&out, "middle", PRECISION_F16, PRECISION_ROWS, rows, width, l->middle);
+	return arrays_out_end(&out);
 }

@@ -4,7 +4,6 @@
 #include "formats/arrays/safetensors.h"
 #include "mask/bits.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -243,97 +242,57 @@ int model_rows(const struct model *m, const float *means, struct rows *rows, str
 		       : rows_of_ids(rows, m->ids, m->n, m->scene_gaussians, e);
 }
 
-/* The tensors of a model, while they are written. */
-struct parts {
-	struct st_tensor tensors[2 + 3 * (1 + REFER_TENSORS)];
-	size_t n;
-	uint8_t *learning; /* bits */
-	struct precision_matrix features, weights[REFER_TENSORS];
-};
-
-static void add_matrix(struct parts *p, const struct precision_matrix *m)
-{
-	for (int i = 0; i < m->count; i++)
-		p->tensors[p->n++] = m->tensors[i];
-}
-
-static int add_parameters(struct parts *p, const struct model *m, const char *path, struct err *e)
-{
-	for (int t = 0; t < REFER_TENSORS; t++) {
-		const int rows = m->layout.tensors[t].rows, columns = m->layout.tensors[t].columns;
-		const char *name = m->layout.tensors[t].name;
-		const float *from = m->parameters + m->layout.tensors[t].offset;
-		if (!rows)
-			continue;
-		if (!is_vector(t)) {
-			if (precision_put(&p->weights[t], name, m->precision, PRECISION_ROWS, (size_t)rows,
-				    (size_t)columns, from, path, e))
-				return -1;
-			add_matrix(p, &p->weights[t]);
-			continue;
-		}
-		if (precision_check(from, (size_t)rows, FLT_MAX, path, name, e))
-			return -1;
-		p->tensors[p->n++] = st_vector(name, ST_F32, rows, from);
-	}
-	return 0;
-}
-
 /* Which Gaussians have a row, where it is the leaf's that they lie in. */
-static int add_learning(struct parts *p, const struct model *m, const char *path, struct err *e)
+static void put_learning(struct arrays_out *out, const struct model *m)
 {
 	const size_t bytes = bits_bytes(m->scene_gaussians);
+	uint8_t *bits = arrays_out_memory(out, bytes, 1);
 
-	if (!m->has_leaves || !m->ids)
-		return 0;
-	p->learning = mem_zalloc(bytes, 1, path, e);
-	if (!p->learning)
-		return -1;
-	for (size_t i = 0; i < m->learning; i++)
-		p->learning[m->ids[i] / 8] |= (uint8_t)(1 << m->ids[i] % 8);
-	p->tensors[p->n++] = st_vector("learning", ST_U8, (int64_t)bytes, p->learning);
-	return 0;
+	if (bits)
+		memset(bits, 0, bytes);
+	for (size_t i = 0; i < m->learning && bits; i++)
+		bits[m->ids[i] / 8] |= (uint8_t)(1 << m->ids[i] % 8);
+	arrays_out_put(out, st_vector("learning", ST_U8, (int64_t)bytes, bits));
 }
 
-static int add_tensors(struct parts *p, const struct model *m, const char *path, struct err *e)
+static void put_tensors(struct arrays_out *out, const struct model *m)
 {
-	p->tensors[p->n++] = m->has_leaves ? st_vector("leaves", ST_I64, (int64_t)m->n, m->octree.codes)
-					   : st_vector("ids", ST_I32, (int64_t)m->n, m->ids);
-	if (add_learning(p, m, path, e) ||
-		precision_put(&p->features, "features", m->precision, PRECISION_COLUMNS, m->n,
-			(size_t)m->layout.feature_width, m->features, path, e))
-		return -1;
-	add_matrix(p, &p->features);
-	return add_parameters(p, m, path, e);
+	arrays_out_put(out, m->has_leaves ? st_vector("leaves", ST_I64, (int64_t)m->n, m->octree.codes)
+					  : st_vector("ids", ST_I32, (int64_t)m->n, m->ids));
+	if (m->has_leaves && m->ids)
+		put_learning(out, m);
+	precision_put(out, "features", m->precision, PRECISION_COLUMNS, m->n, (size_t)m->layout.feature_width,
+		m->features);
+	for (int t = 0; t < REFER_TENSORS; t++) {
+		const size_t rows = (size_t)m->layout.tensors[t].rows,
+			     columns = (size_t)m->layout.tensors[t].columns;
+		const float *from = m->parameters + m->layout.tensors[t].offset;
+		if (rows && is_vector(t))
+			precision_put_vector(out, m->layout.tensors[t].name, rows, from);
+		else if (rows)
+			precision_put(out, m->layout.tensors[t].name, m->precision, PRECISION_ROWS, rows,
+				columns, from);
+	}
 }
 
 int model_write(const struct model *m, const char *path, const char *options, long long seed, struct err *e)
 {
-	struct parts *p = mem_zalloc(1, sizeof *p, path, e);
-	char bounds[256], root[128], gaussians[32], seed_text[32];
+	const double *low = m->low, *high = m->high, *root = m->octree.low;
+	struct arrays_out out;
 
-	if (!p)
-		return -1;
-	snprintf(bounds, sizeof bounds, "[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]]", m->low[0], m->low[1],
-		m->low[2], m->high[0], m->high[1], m->high[2]);
-	snprintf(root, sizeof root, "[[%.17g,%.17g,%.17g],%.17g]", m->octree.low[0], m->octree.low[1],
-		m->octree.low[2], m->octree.edge);
-	snprintf(gaussians, sizeof gaussians, "%zu", m->scene_gaussians);
-	snprintf(seed_text, sizeof seed_text, "%lld", seed);
-	const struct st_meta meta[] = {{"format", "refer.model"}, {"version", "3"}, {"tool", "refer-train"},
-		{"options", options}, {"seed", seed_text},
-		{"interaction", refer_interaction_name(m->layout.interaction)},
-		{"similarity", refer_similarity_name(m->similarity)},
-		{"precision", precision_name(m->precision)}, {"gaussians", gaussians},
-		{"scene", fingerprint_text(&m->origin.scene)},
-		{"encoder", fingerprint_text(&m->origin.encoder)}, {"bounds", bounds},
-		{"root", m->has_leaves ? root : NULL}};
-	int bad = add_tensors(p, m, path, e) ||
-		  safetensors_write(path, p->tensors, p->n, meta, sizeof meta / sizeof *meta, e);
-	precision_free(&p->features);
-	for (int t = 0; t < REFER_TENSORS; t++)
-		precision_free(&p->weights[t]);
-	free(p->learning);
-	free(p);
-	return bad ? -1 : 0;
+	arrays_out_begin(&out, path, "refer.model", "3", "refer-train", options, seed, e);
+	arrays_out_text(&out, "interaction", refer_interaction_name(m->layout.interaction));
+	arrays_out_text(&out, "similarity", refer_similarity_name(m->similarity));
+	arrays_out_text(&out, "precision", precision_name(m->precision));
+	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%zu", m->scene_gaussians));
+	origin_put(&out, &m->origin);
+	arrays_out_text(&out, "bounds",
+		arrays_out_print(&out, "[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]]", low[0], low[1], low[2],
+			high[0], high[1], high[2]));
+	if (m->has_leaves)
+		arrays_out_text(&out, "root",
+			arrays_out_print(&out, "[[%.17g,%.17g,%.17g],%.17g]", root[0], root[1], root[2],
+				m->octree.edge));
+	put_tensors(&out, m);
+	return arrays_out_end(&out);
 }

@@ -1,6 +1,6 @@
 /* Writing of scene folders. */
 #include "base/file.h"
-#include "formats/arrays/safetensors.h"
+#include "formats/arrays/arrays_out.h"
 #include "formats/scene/scene.h"
 #include "geom/lens.h"
 
@@ -72,35 +72,35 @@ static int write_cameras(const struct cameras *c, const char *path, struct err *
 	return file_out_commit(&out, e);
 }
 
-int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e)
+static int write_splats(const struct scene *s, const char *path, const char *options, struct err *e)
 {
 	const struct splats *p = &s->splats;
-	int64_t n = (int64_t)p->n;
+	const int64_t n = (int64_t)p->n;
 	const struct fingerprint own = fingerprint_scene(p);
-	char offset[128], near[32];
-	struct st_tensor tensors[] = {
-		st_matrix("means", ST_F32, n, 3, p->means),
-		st_matrix("scales", ST_F32, n, 3, p->scales),
-		st_matrix("quats", ST_F32, n, 4, p->quats),
-		st_vector("opacities", ST_F32, n, p->opacities),
-		{.name = "sh",
-			.dtype = ST_F32,
-			.dims = 3,
-			.shape = {n, p->sh_coefficients, 3},
-			.data = p->sh},
-	};
-	struct st_meta meta[] = {{"format", "refer.splats"}, {"version", "1"}, {"tool", "gs-import"},
-		{"options", options}, {"seed", "0"}, {"offset", offset}, {"scene", own.hex}, {"near", near}};
-	const size_t keys = sizeof meta / sizeof *meta - (p->near == SPLATS_NEAR);
+	struct arrays_out out;
 
-	snprintf(near, sizeof near, "%.17g", p->near);
-	snprintf(offset, sizeof offset, "[%.17g,%.17g,%.17g]", s->offset[0], s->offset[1], s->offset[2]);
+	arrays_out_begin(&out, path, "refer.splats", "1", "gs-import", options, 0, e);
+	arrays_out_text(&out, "offset",
+		arrays_out_print(&out, "[%.17g,%.17g,%.17g]", s->offset[0], s->offset[1], s->offset[2]));
+	arrays_out_text(&out, "scene", own.hex);
+	if (p->near != SPLATS_NEAR)
+		arrays_out_text(&out, "near", arrays_out_print(&out, "%.17g", p->near));
+	arrays_out_put(&out, st_matrix("means", ST_F32, n, 3, p->means));
+	arrays_out_put(&out, st_matrix("scales", ST_F32, n, 3, p->scales));
+	arrays_out_put(&out, st_matrix("quats", ST_F32, n, 4, p->quats));
+	arrays_out_put(&out, st_vector("opacities", ST_F32, n, p->opacities));
+	arrays_out_put(&out, (struct st_tensor){"sh", ST_F32, 3, {n, p->sh_coefficients, 3}, p->sh, 0});
+	return arrays_out_end(&out);
+}
+
+int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e)
+{
 	if (file_make_dir(dir, e))
 		return -1;
 	char *splats = file_join(dir, "splats.safetensors", "", e),
 	     *cameras = file_join(dir, "cameras.json", "", e);
-	int bad = !splats || !cameras || safetensors_write(splats, tensors, 5, meta, keys, e) ||
-		  write_cameras(&s->cameras, cameras, e);
+	const int bad = !splats || !cameras || write_splats(s, splats, options, e) ||
+			write_cameras(&s->cameras, cameras, e);
 	free(splats);
 	free(cameras);
 	return bad ? -1 : 0;

@@ -1,9 +1,9 @@
 #include "formats/scene/selection.h"
 
 #include "base/mem.h"
+#include "formats/arrays/arrays_out.h"
 #include "formats/arrays/metalist.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,17 +62,13 @@ int selection_read(struct selection *s, const char *path, struct err *e)
 int selection_write(const struct selection *s, const char *path, const char *options, struct err *e)
 {
 	const int64_t n = (int64_t)s->n;
-	const struct st_tensor tensors[] = {st_vector("indptr", ST_I64, n + 1, s->indptr),
-		st_vector("index", ST_I32, s->indptr[n], s->index)};
-	char *refs = metalist_print(s->refs, s->n), gaussians[24];
+	struct arrays_out out;
 
-	if (!refs)
-		return err_set(e, ERR_SYSTEM, "%s: out of memory", path);
-	snprintf(gaussians, sizeof gaussians, "%zu", s->gaussians);
-	const struct st_meta meta[] = {{"format", "refer.selection"}, {"version", "1"},
-		{"tool", "feature-query"}, {"options", options}, {"seed", "0"}, {"gaussians", gaussians},
-		{"scene", fingerprint_text(&s->scene)}, {"refs", refs}};
-	const int bad = safetensors_write(path, tensors, 2, meta, sizeof meta / sizeof *meta, e);
-	free(refs);
-	return bad;
+	arrays_out_begin(&out, path, "refer.selection", "1", "feature-query", options, 0, e);
+	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%zu", s->gaussians));
+	arrays_out_text(&out, "scene", fingerprint_text(&s->scene));
+	arrays_out_list(&out, "refs", s->refs, s->n);
+	arrays_out_put(&out, st_vector("indptr", ST_I64, n + 1, s->indptr));
+	arrays_out_put(&out, st_vector("index", ST_I32, s->indptr[n], s->index));
+	return arrays_out_end(&out);
 }

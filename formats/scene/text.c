@@ -160,49 +160,35 @@ int text_read(struct text *t, const char *path, struct err *e)
 	return bad ? -1 : 0;
 }
 
-static char *print_splits(const struct text *t, struct err *e)
+static void put_splits(struct arrays_out *out, const struct text *t)
 {
 	static char train[] = "train", test[] = "test";
-	char **names = mem_alloc(t->n, sizeof *names, "splits", e), *text;
+	char **names = arrays_out_memory(out, t->n, sizeof *names);
 
-	if (!names)
-		return NULL;
-	for (size_t i = 0; i < t->n; i++)
+	for (size_t i = 0; i < t->n && names; i++)
 		names[i] = t->splits[i] == SPLIT_TEST ? test : train;
-	text = metalist_print(names, t->n);
-	free(names);
-	return text;
+	arrays_out_list(out, "splits", names, t->n);
 }
 
 int text_write(const struct text *t, const char *path, const char *options, struct err *e)
 {
-	int64_t n = (int64_t)t->n;
-	const struct st_tensor tensors[] = {st_matrix("words", ST_F32, t->offsets[n], t->width, t->words),
-		st_vector("offsets", ST_I64, n + 1, t->offsets),
-		st_matrix("sentences", ST_F32, n, t->width, t->sentences),
-		st_matrix("middle", ST_F32, t->offsets[n], t->width, t->middle)};
-	/* In the order of formats/scene/text.md; those that are NULL are left out. */
-	char **const lists[] = {
-		t->refs, t->objects, t->texts, NULL, t->pieces, t->object_lists, t->views, t->kinds};
-	static const char *const keys[] = {
-		"refs", "objects", "texts", "splits", "pieces", "object_lists", "views", "kinds"};
-	enum { LISTS = sizeof keys / sizeof *keys, SPLITS = 3, FIXED = 6 };
-	struct st_meta meta[FIXED + LISTS] = {{"format", "refer.text"}, {"version", "1"},
-		{"tool", "text-encode"}, {"options", options}, {"seed", "0"},
-		{"encoder", fingerprint_text(&t->encoder)}};
-	char *printed[LISTS] = {0};
-	int used = FIXED, bad = 0;
+	const int64_t n = (int64_t)t->n, words = t->offsets[n];
+	struct arrays_out out;
 
-	for (int i = 0; i < LISTS && !bad; i++) {
-		if (i != SPLITS && !lists[i])
-			continue;
-		printed[i] = i == SPLITS ? print_splits(t, e) : metalist_print(lists[i], t->n);
-		if (!printed[i])
-			bad = err_set(e, ERR_SYSTEM, "%s: out of memory", path);
-		meta[used++] = (struct st_meta){keys[i], printed[i]};
-	}
-	bad = bad || safetensors_write(path, tensors, t->middle ? 4 : 3, meta, (size_t)used, e);
-	for (int i = 0; i < LISTS; i++)
-		free(printed[i]);
-	return bad ? -1 : 0;
+	arrays_out_begin(&out, path, "refer.text", "1", "text-encode", options, 0, e);
+	arrays_out_text(&out, "encoder", fingerprint_text(&t->encoder));
+	arrays_out_list(&out, "refs", t->refs, t->n);
+	arrays_out_list(&out, "objects", t->objects, t->n);
+	arrays_out_list(&out, "texts", t->texts, t->n);
+	put_splits(&out, t);
+	arrays_out_list(&out, "pieces", t->pieces, t->n);
+	arrays_out_list(&out, "object_lists", t->object_lists, t->n);
+	arrays_out_list(&out, "views", t->views, t->n);
+	arrays_out_list(&out, "kinds", t->kinds, t->n);
+	arrays_out_put(&out, st_matrix("words", ST_F32, words, t->width, t->words));
+	arrays_out_put(&out, st_vector("offsets", ST_I64, n + 1, t->offsets));
+	arrays_out_put(&out, st_matrix("sentences", ST_F32, n, t->width, t->sentences));
+	if (t->middle)
+		arrays_out_put(&out, st_matrix("middle", ST_F32, words, t->width, t->middle));
+	return arrays_out_end(&out);
 }
