@@ -4,8 +4,10 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/names.h"
+#include "formats/arrays/arrays_out.h"
 #include "formats/arrays/safetensors.h"
 #include "formats/records/json.h"
+#include "formats/records/jsonl.h"
 #include "geom/lens.h"
 #include "geom/views.h"
 
@@ -102,79 +104,22 @@ done:
 	return bad;
 }
 
-/* A number, or an ERR_FORMAT that names the view and key. */
-static int view_number(
-	const cJSON *view, const char *key, const char *path, int index, double *out, struct err *e)
-{
-	const cJSON *v = json_get(view, key);
-
-	if (!cJSON_IsNumber(v) || !isfinite(v->valuedouble))
-		return err_file(e, path, "view %d: key '%s' is not a number", index, key);
-	*out = v->valuedouble;
-	return 0;
-}
-
-/* A rotation and a translation, nothing else. */
-static int check_rigid(const struct camera *c, const char *path, int index, struct err *e)
-{
-	const double(*m)[4] = (const double(*)[4])c->world_to_camera;
-
-	if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] != 1)
-		return err_file(e, path, "view %d: world_to_camera's last row is not 0 0 0 1", index);
-	for (int a = 0; a < 3; a++)
-		for (int b = 0; b < 3; b++) {
-			const double *x = m[a], *y = m[b];
-			double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-			if (fabs(dot - (a == b)) > 1e-4)
-				return err_file(e, path, "view %d: world_to_camera is not a rotation", index);
-		}
-	double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-		     m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-		     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-	if (det < 0)
-		return err_file(e, path, "view %d: world_to_camera is a reflection", index);
-	return 0;
-}
-
-static int read_pose(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
-{
-	const cJSON *rows = json_get(view, "world_to_camera"), *row = NULL;
-	int r = 0;
-
-	if (cJSON_GetArraySize(rows) != 4)
-		return err_file(e, path, "view %d: key 'world_to_camera' is not 4x4", index);
-	cJSON_ArrayForEach(row, rows)
-	{
-		if (cJSON_GetArraySize(row) != 4)
-			return err_file(e, path, "view %d: key 'world_to_camera' is not 4x4", index);
-		for (int k = 0; k < 4; k++) {
-			const cJSON *v = cJSON_GetArrayItem(row, k);
-			if (!cJSON_IsNumber(v) || !isfinite(v->valuedouble))
-				return err_file(e, path, "view %d: world_to_camera[%d][%d] is not a number",
-					index, r, k);
-			c->world_to_camera[r][k] = v->valuedouble;
-		}
-		r++;
-	}
-	return check_rigid(c, path, index, e);
-}
-
-static int read_name(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
+static int read_name(struct camera *c, const cJSON *view, const char *where, struct err *e)
 {
 	const cJSON *name = json_get(view, "name");
 	char fault[NAME_FAULT];
 
 	if (!cJSON_IsString(name))
-		return err_file(e, path, "view %d: key 'name' is not a string", index);
+		return err_file(e, where, "key 'name' is not a string");
 	const char *reason = name_fault(name->valuestring, NAME_VIEW, fault);
 	if (reason)
-		return err_file(e, path, "view %d: key 'name' %s", index, reason);
+		return err_file(e, where, "key 'name' %s", reason);
 	c->name = name_copy(name->valuestring, e);
 	return c->name ? 0 : -1;
 }
 
 /* The photograph's camera, where it is not the view's pinhole. */
-static int read_lens(struct lens *l, const cJSON *view, const char *path, int index, struct err *e)
+static int read_lens(struct lens *l, const cJSON *view, const char *of, struct err *e)
 {
 	const cJSON *lens = json_get(view, "lens");
 	const char *model;
@@ -183,7 +128,7 @@ static int read_lens(struct lens *l, const cJSON *view, const char *path, int in
 
 	if (!lens || cJSON_IsNull(lens))
 		return 0;
-	snprintf(where, sizeof where, "%s: view %d: key 'lens'", path, index);
+	snprintf(where, sizeof where, "%.480s: key 'lens'", of);
 	if (json_string(lens, "model", 1, &model, where, e) < 0 ||
 		json_number(lens, "width", 1, &width, where, e) < 0 ||
 		json_number(lens, "height", 1, &height, where, e) < 0)
@@ -203,47 +148,33 @@ static int read_lens(struct lens *l, const cJSON *view, const char *path, int in
 	return 0;
 }
 
-/* A string that may be absent. */
-static int read_path(
-	char **to, const cJSON *view, const char *key, const char *path, int index, struct err *e)
-{
-	const cJSON *value = json_get(view, key);
-
-	if (!value || cJSON_IsNull(value))
-		return 0;
-	if (!cJSON_IsString(value))
-		return err_file(e, path, "view %d: key '%s' is not a string", index, key);
-	return (*to = mem_strdup(value->valuestring, e)) ? 0 : -1;
-}
-
-static int read_view(struct camera *c, const cJSON *view, const char *path, int index, struct err *e)
+static int read_view(struct camera *c, const cJSON *view, const char *where, struct err *e)
 {
 	const cJSON *split = json_get(view, "split");
-	double width = 0, height = 0;
-	const struct {
-		const char *key;
-		double *to;
-	} numbers[] = {{"width", &width}, {"height", &height}, {"fx", &c->fx}, {"fy", &c->fy}, {"cx", &c->cx},
-		{"cy", &c->cy}};
+	const char *image = NULL, *source = NULL;
+	double width, height;
 
-	if (read_name(c, view, path, index, e))
-		return -1;
-	for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-		if (view_number(view, numbers[i].key, path, index, numbers[i].to, e))
-			return -1;
-	if (read_pose(c, view, path, index, e) || read_lens(&c->lens, view, path, index, e))
+	if (read_name(c, view, where, e) || json_number(view, "width", 1, &width, where, e) < 0 ||
+		json_number(view, "height", 1, &height, where, e) < 0 ||
+		json_number(view, "fx", 1, &c->fx, where, e) < 0 ||
+		json_number(view, "fy", 1, &c->fy, where, e) < 0 ||
+		json_number(view, "cx", 1, &c->cx, where, e) < 0 ||
+		json_number(view, "cy", 1, &c->cy, where, e) < 0 ||
+		json_matrix(view, "world_to_camera", 4, 4, c->world_to_camera[0], where, e) ||
+		read_lens(&c->lens, view, where, e) || json_string(view, "image", 0, &image, where, e) < 0 ||
+		json_string(view, "source", 0, &source, where, e) < 0)
 		return -1;
 	if (view_set_size(c, width, height))
-		return err_file(e, path, "view %d: size %gx%g is not whole numbers in 1 to 65536", index,
-			width, height);
-	if (!(c->fx > 0 && c->fy > 0))
-		return err_file(e, path, "view %d: focal length is not positive", index);
+		return err_file(e, where, "size %gx%g is not whole numbers in 1 to 65536", width, height);
+	const char *fault = view_fault(c);
+	if (fault)
+		return err_file(e, where, "%s", fault);
 	if (!cJSON_IsString(split) ||
 		(strcmp(split->valuestring, "train") && strcmp(split->valuestring, "test")))
-		return err_file(e, path, "view %d: key 'split' is not \"train\" or \"test\"", index);
+		return err_file(e, where, "key 'split' is not \"train\" or \"test\"");
 	c->split = !strcmp(split->valuestring, "test") ? SPLIT_TEST : SPLIT_TRAIN;
-	return read_path(&c->image, view, "image", path, index, e) ||
-	       read_path(&c->source, view, "source", path, index, e);
+	return -((image && !(c->image = mem_strdup(image, e))) ||
+		 (source && !(c->source = mem_strdup(source, e))));
 }
 
 static int check_unique(const struct cameras *c, const char *path, struct err *e)
@@ -260,6 +191,7 @@ static int check_unique(const struct cameras *c, const char *path, struct err *e
 static int read_views(struct cameras *c, const cJSON *list, const char *path, struct err *e)
 {
 	const cJSON *view;
+	char where[512];
 
 	if (!cJSON_IsArray(list))
 		return err_file(e, path, "not a list of views");
@@ -268,8 +200,8 @@ static int read_views(struct cameras *c, const cJSON *list, const char *path, st
 		return -1;
 	cJSON_ArrayForEach(view, list)
 	{
-		struct camera *one = &c->views[c->n++];
-		if (read_view(one, view, path, (int)c->n - 1, e))
+		snprintf(where, sizeof where, "%.480s: view %zu", path, c->n);
+		if (read_view(&c->views[c->n++], view, where, e))
 			return -1;
 	}
 	return check_unique(c, path, e);
@@ -316,4 +248,84 @@ void scene_free(struct scene *s)
 	splats_free(&s->splats);
 	cameras_free(&s->cameras);
 	*s = (struct scene){0};
+}
+
+static void put_lens(FILE *out, const struct lens *l)
+{
+	fprintf(out, ",\n  \"lens\":{\"model\":\"%s\",\"width\":%d,\"height\":%d,\"parameters\":",
+		lens_model_name(l->model), l->width, l->height);
+	for (int i = 0; i < lens_model_parameters(l->model); i++)
+		fprintf(out, "%c%.17g", i ? ',' : '[', l->parameters[i]);
+	fputs("]}", out);
+}
+
+static int put_view(FILE *out, const struct camera *c, struct err *e)
+{
+	if (jsonl_put_string(out, "{\"name\":", c->name, e))
+		return -1;
+	fprintf(out,
+		",\"width\":%d,\"height\":%d,\"fx\":%.17g,\"fy\":%.17g,\"cx\":%.17g,\"cy\":%.17g,\n"
+		"  \"world_to_camera\":[",
+		c->width, c->height, c->fx, c->fy, c->cx, c->cy);
+	for (int r = 0; r < 4; r++) {
+		const double *row = c->world_to_camera[r];
+		fprintf(out, "%s[%.17g,%.17g,%.17g,%.17g]", r ? "," : "", row[0], row[1], row[2], row[3]);
+	}
+	fprintf(out, "],\n  \"split\":\"%s\",\"image\":", c->split == SPLIT_TEST ? "test" : "train");
+	if (!c->image)
+		fputs("null", out);
+	const int bad = (c->image && jsonl_put_string(out, "", c->image, e)) ||
+			(c->source && jsonl_put_string(out, ",\"source\":", c->source, e));
+	if (c->lens.model)
+		put_lens(out, &c->lens);
+	fputs("}", out);
+	return bad;
+}
+
+static int put_cameras(FILE *out, const void *cameras, struct err *e)
+{
+	const struct cameras *c = cameras;
+	int bad = 0;
+
+	fputs("[", out);
+	for (size_t i = 0; i < c->n && !bad; i++) {
+		fputs(i ? ",\n " : "\n ", out);
+		bad = put_view(out, &c->views[i], e);
+	}
+	fputs("\n]\n", out);
+	return bad;
+}
+
+static int write_splats(const struct scene *s, const char *path, const char *options, struct err *e)
+{
+	const struct splats *p = &s->splats;
+	const int64_t n = (int64_t)p->n;
+	const struct fingerprint own = fingerprint_scene(p);
+	struct arrays_out out;
+
+	arrays_out_begin(&out, path, "refer.splats", "1", "gs-import", options, 0, e);
+	arrays_out_text(&out, "offset",
+		arrays_out_print(&out, "[%.17g,%.17g,%.17g]", s->offset[0], s->offset[1], s->offset[2]));
+	arrays_out_text(&out, "scene", own.hex);
+	if (p->near != SPLATS_NEAR)
+		arrays_out_text(&out, "near", arrays_out_print(&out, "%.17g", p->near));
+	arrays_out_put(&out, st_matrix("means", ST_F32, n, 3, p->means));
+	arrays_out_put(&out, st_matrix("scales", ST_F32, n, 3, p->scales));
+	arrays_out_put(&out, st_matrix("quats", ST_F32, n, 4, p->quats));
+	arrays_out_put(&out, st_vector("opacities", ST_F32, n, p->opacities));
+	arrays_out_put(&out, (struct st_tensor){"sh", ST_F32, 3, {n, p->sh_coefficients, 3}, p->sh, 0});
+	return arrays_out_end(&out);
+}
+
+int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e)
+{
+	if (file_make_dir(dir, e))
+		return -1;
+	char *splats = file_join(dir, "splats.safetensors", "", e),
+	     *cameras = file_join(dir, "cameras.json", "", e);
+	const int bad = !splats || !cameras || write_splats(s, splats, options, e) ||
+			file_out_put(cameras, put_cameras, &s->cameras, e);
+	free(splats);
+	free(cameras);
+	return bad ? -1 : 0;
 }

@@ -2,7 +2,7 @@
  * formats/splats/sog.md. */
 #include "base/little.h"
 #include "base/mem.h"
-#include "formats/arrays/zip_write.h"
+#include "formats/arrays/archive.h"
 #include "formats/images/webp.h"
 #include "formats/splats/sog.h"
 #include "splat/gaussian_rows.h"
