@@ -21,6 +21,17 @@ size_t arrays_in_count(struct arrays_in *in, const char *key)
 	return in->bad ? 0 : (size_t)count;
 }
 
+const void *arrays_in_place(
+	struct arrays_in *in, const char *name, enum st_dtype dtype, int64_t n, size_t *count)
+{
+	const struct st_tensor *t = in->bad ? NULL : safetensors_need(in->st, name, dtype, 1, &n, in->e);
+
+	in->bad |= !t;
+	if (count)
+		*count = t ? (size_t)t->shape[0] : 0;
+	return t ? t->data : NULL;
+}
+
 void *arrays_in_vector(struct arrays_in *in, const char *name, enum st_dtype dtype, int64_t n, size_t *count)
 {
 	void *copy = in->bad ? NULL : safetensors_copy(in->st, name, dtype, 1, &n, count, in->e);

@@ -24,7 +24,10 @@ void arrays_in_begin(
 /* A whole number from 0 to INT32_MAX in the metadata. */
 size_t arrays_in_count(struct arrays_in *in, const char *key);
 
-/* A copy of a vector of n items (-1: any), and in *count (may be NULL) how many. */
+/* A vector of n items (-1: any) where it lies in the file, and in *count (may be NULL) how many. */
+const void *arrays_in_place(
+	struct arrays_in *in, const char *name, enum st_dtype dtype, int64_t n, size_t *count);
+/* The same as a copy; free() it. */
 void *arrays_in_vector(struct arrays_in *in, const char *name, enum st_dtype dtype, int64_t n, size_t *count);
 
 /* A copy of a float32 matrix, all of it finite. */

@@ -46,26 +46,17 @@ static int parse_3dgs(struct cameras *c, const cJSON *list, const char *path, st
 {
 	const cJSON *item;
 	char where[512];
-	int bad = 0;
 
-	*c = (struct cameras){0};
-	if (!cJSON_IsArray(list))
-		return err_file(e, path, "not a list of cameras");
 	c->views = mem_zalloc((size_t)cJSON_GetArraySize(list), sizeof *c->views, path, e);
 	if (!c->views)
 		return -1;
 	cJSON_ArrayForEach(item, list)
 	{
 		snprintf(where, sizeof where, "%s: camera %zu", path, c->n);
-		bad = read_view(&c->views[c->n++], item, where, e);
-		if (bad)
-			break;
+		if (read_view(&c->views[c->n++], item, where, e))
+			return -1;
 	}
-	if (!bad)
-		bad = views_finish(c, path, e);
-	if (bad)
-		cameras_free(c);
-	return bad;
+	return views_finish(c, path, e);
 }
 
 /* JSON, or what else the file is. */

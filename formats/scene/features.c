@@ -2,6 +2,7 @@
 
 #include "base/half.h"
 #include "base/number.h"
+#include "formats/arrays/arrays_in.h"
 #include "nn/linear.h"
 
 #include <math.h>
@@ -42,15 +43,6 @@ static int check_finite(const struct features *f, struct err *e)
 	return 0;
 }
 
-static int read_labels(struct features *f, struct err *e)
-{
-	const int64_t n[] = {(int64_t)f->gaussians};
-	const struct st_tensor *labels = safetensors_need(&f->file, "labels", ST_I32, 1, n, e);
-
-	f->labels = labels ? labels->data : NULL;
-	return labels ? 0 : -1;
-}
-
 /* The features that were found are components of others. */
 static int read_components(struct features *f, struct err *e)
 {
@@ -65,14 +57,13 @@ static int read_components(struct features *f, struct err *e)
 	if (basis->shape[1] < (int64_t)f->channels || basis->shape[1] > FEATURES_MAX_CHANNELS)
 		return err_file(e, f->file.path, "tensor 'basis': %lld channels, not %zu to %d",
 			(long long)basis->shape[1], f->channels, FEATURES_MAX_CHANNELS);
-	const struct st_tensor *mean = safetensors_need(&f->file, "mean", ST_F32, 1, &basis->shape[1], e);
-	if (!mean)
-		return -1;
 	f->components = f->channels;
 	f->channels = (size_t)basis->shape[1];
 	f->basis = basis->data;
-	f->mean = mean->data;
-	return -(safetensors_check_finite(&f->file, "basis", f->basis, f->components * f->channels, e) ||
+	struct arrays_in in = {&f->file, e, 0};
+	f->mean = arrays_in_place(&in, "mean", ST_F32, basis->shape[1], NULL);
+	return -(in.bad ||
+		 safetensors_check_finite(&f->file, "basis", f->basis, f->components * f->channels, e) ||
 		 safetensors_check_finite(&f->file, "mean", f->mean, f->channels, e));
 }
 
@@ -98,23 +89,17 @@ static int read_features(struct features *f, struct err *e)
 static int read_all(struct features *f, struct err *e)
 {
 	const struct safetensors *st = &f->file;
-	long long gaussians = 0;
+	const int is_labels = safetensors_find(st, "labels") != NULL;
+	struct arrays_in in;
 
-	if (safetensors_need_format(st, "refer.features", VERSION_READ, e) ||
-		safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e) ||
-		fingerprint_read(&f->scene, st, "scene", e))
-		return -1;
-	f->gaussians = (size_t)gaussians;
-	const int64_t n[] = {gaussians};
-	const struct st_tensor *reliability = safetensors_need(st, "reliability", ST_F32, 1, n, e);
-	const struct st_tensor *weight = reliability ? safetensors_need(st, "weight", ST_F32, 1, n, e) : NULL;
-	if (!weight)
-		return -1;
-	f->reliability = reliability->data;
-	f->weight = weight->data;
-	if (safetensors_find(st, "labels") ? read_labels(f, e) : read_features(f, e))
-		return -1;
-	return check_numbers(f, e);
+	arrays_in_begin(&in, st, "refer.features", VERSION_READ, e);
+	f->gaussians = arrays_in_count(&in, "gaussians");
+	in.bad = in.bad || fingerprint_read(&f->scene, st, "scene", e);
+	const int64_t n = (int64_t)f->gaussians;
+	f->reliability = arrays_in_place(&in, "reliability", ST_F32, n, NULL);
+	f->weight = arrays_in_place(&in, "weight", ST_F32, n, NULL);
+	f->labels = is_labels ? arrays_in_place(&in, "labels", ST_I32, n, NULL) : NULL;
+	return -(in.bad || (!is_labels && read_features(f, e)) || check_numbers(f, e));
 }
 
 int features_open(struct features *f, const char *path, struct err *e)

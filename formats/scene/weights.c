@@ -2,6 +2,7 @@
 
 #include "base/half.h"
 #include "base/mem.h"
+#include "formats/arrays/arrays_in.h"
 #include "splat/weights_pack.h"
 
 #include <math.h>
@@ -122,71 +123,59 @@ static int unpack(struct weights *w, const struct weights_pack *pack, int as_til
 }
 
 /* Packed weights become arrays of our own. */
-static int read_packed(struct weights *w, int64_t pixels, int as_tiles, struct err *e)
+static int read_packed(struct weights *w, struct arrays_in *in, int64_t pixels, int as_tiles)
 {
-	const int64_t any = -1, streams = WEIGHTS_STREAMS;
-	const struct st_tensor *sizes = safetensors_need(&w->file, "sizes", ST_I64, 1, &streams, e),
-			       *dropped = sizes ? safetensors_need(&w->file, "dropped", ST_U8, 1, &pixels, e)
-						: NULL;
-	const char *version = safetensors_meta(&w->file, "version");
+	const int64_t *sizes = arrays_in_place(in, "sizes", ST_I64, WEIGHTS_STREAMS, NULL);
+	const uint8_t *dropped = arrays_in_place(in, "dropped", ST_U8, pixels, NULL);
+	const char *version = safetensors_meta(in->st, "version");
 	struct weights_pack pack = {0};
 
-	if (strcmp(version, "3"))
-		return err_file(e, w->file.path,
+	if (!in->bad && strcmp(version, "3"))
+		return err_file(in->e, w->file.path,
 			"refer.weights, packed, version %s is older than this program reads (3)", version);
-	for (int s = 0; s < WEIGHTS_STREAMS && dropped; s++) {
-		const struct st_tensor *t =
-			safetensors_need(&w->file, weights_stream_name[s], ST_U8, 1, &any, e);
-		const int64_t bytes = ((const int64_t *)sizes->data)[s];
-		if (!t)
-			return -1;
-		if (bytes < 0 || bytes / RATIO > (int64_t)t->bytes)
-			return err_file(e, w->file.path, "tensor 'sizes': %lld bytes cannot be in '%s'",
-				(long long)bytes, weights_stream_name[s]);
-		pack.bytes[s] = (size_t)bytes;
-		pack.packed[s] = t->bytes;
-		pack.data[s] = (uint8_t *)(size_t)t->data;
+	for (int s = 0; s < WEIGHTS_STREAMS && !in->bad; s++) {
+		const void *data = arrays_in_place(in, weights_stream_name[s], ST_U8, -1, &pack.packed[s]);
+		if (data && (sizes[s] < 0 || sizes[s] / RATIO > (int64_t)pack.packed[s]))
+			in->bad =
+				err_file(in->e, w->file.path, "tensor 'sizes': %lld bytes cannot be in '%s'",
+					(long long)sizes[s], weights_stream_name[s]);
+		pack.bytes[s] = (size_t)sizes[s];
+		pack.data[s] = (uint8_t *)(size_t)data;
 	}
 	w->precision = PRECISION_U8;
 	w->is_packed = 1;
-	w->owned_dropped =
-		dropped ? mem_alloc((size_t)pixels, sizeof *w->owned_dropped, w->file.path, e) : NULL;
-	if (!w->owned_dropped || unpack(w, &pack, as_tiles, e))
+	w->dropped = w->owned_dropped =
+		in->bad ? NULL : mem_alloc((size_t)pixels, sizeof *w->owned_dropped, w->file.path, in->e);
+	if (!w->owned_dropped || unpack(w, &pack, as_tiles, in->e))
 		return -1;
 	for (int64_t p = 0; p < pixels; p++)
-		w->owned_dropped[p] = (float)((const uint8_t *)dropped->data)[p] / LEVELS;
-	w->dropped = w->owned_dropped;
+		w->owned_dropped[p] = (float)dropped[p] / LEVELS;
 	return 0;
 }
 
 static int read_all(struct weights *w, int as_tiles, struct err *e)
 {
 	const struct safetensors *st = &w->file;
-	const struct st_tensor *indptr, *index, *dropped;
-	long long width = 0, height = 0, gaussians = 0;
+	struct arrays_in in;
+	long long width = 0, height = 0;
+	size_t nnz;
 
-	if (safetensors_need_format(st, "refer.weights", VERSION_READ, e) ||
-		safetensors_meta_int(st, "width", 1, MAX_SIDE, &width, e) ||
-		safetensors_meta_int(st, "height", 1, MAX_SIDE, &height, e) ||
-		safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e))
-		return -1;
+	arrays_in_begin(&in, st, "refer.weights", VERSION_READ, e);
+	in.bad = in.bad || safetensors_meta_int(st, "width", 1, MAX_SIDE, &width, e) ||
+		 safetensors_meta_int(st, "height", 1, MAX_SIDE, &height, e);
 	w->width = (int)width;
 	w->height = (int)height;
-	w->gaussians = gaussians;
-	if (fingerprint_read(&w->scene, st, "scene", e) || fingerprint_read(&w->camera, st, "camera", e))
-		return -1;
-	int64_t pixels = width * height, any = -1, ends = pixels + 1;
+	w->gaussians = (int64_t)arrays_in_count(&in, "gaussians");
+	in.bad = in.bad || fingerprint_read(&w->scene, st, "scene", e) ||
+		 fingerprint_read(&w->camera, st, "camera", e);
+	const int64_t pixels = width * height;
 	if (safetensors_find(st, "maps"))
-		return read_packed(w, pixels, as_tiles, e);
-	if (!(indptr = safetensors_need(st, "indptr", ST_I64, 1, &ends, e)) ||
-		!(index = safetensors_need(st, "index", ST_I32, 1, &any, e)) ||
-		!(dropped = safetensors_need(st, "dropped", ST_F32, 1, &pixels, e)) ||
-		read_weight(w, index->shape[0], e))
-		return -1;
-	w->indptr = indptr->data;
-	w->index = index->data;
-	w->dropped = dropped->data;
-	return -(check_indptr(w, pixels, index->shape[0], e) || check_values(w, pixels, index->shape[0], e));
+		return read_packed(w, &in, pixels, as_tiles);
+	w->indptr = arrays_in_place(&in, "indptr", ST_I64, pixels + 1, NULL);
+	w->index = arrays_in_place(&in, "index", ST_I32, -1, &nnz);
+	w->dropped = arrays_in_place(&in, "dropped", ST_F32, pixels, NULL);
+	return -(in.bad || read_weight(w, (int64_t)nnz, e) || check_indptr(w, pixels, (int64_t)nnz, e) ||
+		 check_values(w, pixels, (int64_t)nnz, e));
 }
 
 static int open_file(

@@ -10,22 +10,8 @@
 static const struct {
 	const char *has, *lacks, *what, *way_out;
 } layouts[] = {
-	{"filter_3D", NULL,
-		"a scene of Mip-Splatting (property 'filter_3D'), which 3DGS's rendering gets wrong",
-		"its 'python create_fused_ply.py -m MODEL --output_ply fused.ply' makes one that is right"},
-	{"f_anchor_feat_0", NULL, "anchors of Scaffold-GS, which its networks make Gaussians of",
-		FOREIGN_TRAIN},
-	{"f_offset_0", NULL, "anchors of Scaffold-GS, which its networks make Gaussians of", FOREIGN_TRAIN},
-	{"trbf_center", NULL, "Gaussians that move (property 'trbf_center')", FOREIGN_TRAIN},
-	{"scale_t", NULL, "Gaussians that move (property 'scale_t')", FOREIGN_TRAIN},
-	{"binding_0", NULL, "Gaussians that a mesh moves (property 'binding_0')", FOREIGN_TRAIN},
-	{"beta", NULL, "kernels that are no Gaussians (property 'beta')", FOREIGN_TRAIN},
-	{"scale_1", "scale_2", "flat Gaussians of 2DGS, with two scales, which are rendered in another way",
-		FOREIGN_TRAIN},
-	{"f_0", "f_dc_0", "features of SAGA without colours (property 'f_0')",
-		"give its scene_point_cloud.ply"},
-	{"red", "f_dc_0", "Gaussians with colours in place of spherical harmonics (property 'red')",
-		"'ns-export gaussian-splat --ply-color-mode sh_coeffs' writes these"},
+#define FOREIGN_PLY(...) {__VA_ARGS__},
+#include "formats/records/foreign.def"
 };
 
 /* Codes where 3DGS has floats: half floats, or quantised. */
