@@ -1,4 +1,4 @@
-#include "synth/synth_sentences.h"
+#include "synth/sentence.h"
 
 #include <math.h>
 #include <stdio.h>
