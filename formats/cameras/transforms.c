@@ -1,5 +1,6 @@
 #include "formats/cameras/transforms.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "formats/records/json.h"
 #include "geom/lens.h"
@@ -171,11 +172,6 @@ static int read_frame(
 	return c->image ? 0 : -1;
 }
 
-static int by_text(const void *a, const void *b)
-{
-	return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
 /* Adds a list of file paths: 1 where it is there. */
 static int add_names(struct names *names, const cJSON *root, const char *key, const char *path, struct err *e)
 {
@@ -198,7 +194,7 @@ static int add_names(struct names *names, const cJSON *root, const char *key, co
 		names->n++;
 	}
 	if (names->n)
-		qsort(names->items, names->n, sizeof *names->items, by_text);
+		qsort(names->items, names->n, sizeof *names->items, compare_string);
 	return 1;
 }
 
@@ -211,7 +207,7 @@ static void free_names(struct names *names)
 
 static int is_named(const struct names *names, const char *image)
 {
-	return names->n && bsearch(&image, names->items, names->n, sizeof *names->items, by_text);
+	return names->n && bsearch(&image, names->items, names->n, sizeof *names->items, compare_string);
 }
 
 /* Test views are those listed as such, and where there is a list of training views also those that it lacks.
