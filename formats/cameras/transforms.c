@@ -175,9 +175,9 @@ static int read_frame(
 /* Adds a list of file paths: 1 where it is there. */
 static int add_names(struct names *names, const cJSON *root, const char *key, const char *path, struct err *e)
 {
-	const cJSON *list = json_get(root, key), *item;
+	const cJSON *list = json_member(root, key), *item;
 
-	if (!list || cJSON_IsNull(list))
+	if (!list)
 		return 0;
 	if (!cJSON_IsArray(list))
 		return err_file(e, path, "key '%s' is not a list", key);

@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/names.h"
+#include "formats/records/masks.h"
 #include "geom/views.h"
 
 #include <math.h>
@@ -23,25 +24,6 @@ static const cJSON *with_id(const cJSON *list, const cJSON *id)
 			return item;
 	}
 	return NULL;
-}
-
-static int take_runs(struct rle *rle, const cJSON *counts, int height, int width, struct err *e)
-{
-	const cJSON *item;
-	size_t n = 0;
-
-	if (cJSON_IsString(counts))
-		return rle_from_string(rle, counts->valuestring, height, width, e);
-	uint32_t *runs = mem_alloc((size_t)cJSON_GetArraySize(counts), sizeof *runs, "mask", e);
-	if (!runs)
-		return -1;
-	cJSON_ArrayForEach(item, counts) runs[n++] =
-		cJSON_IsNumber(item) && item->valuedouble >= 0 && item->valuedouble <= UINT32_MAX
-			? (uint32_t)item->valuedouble
-			: UINT32_MAX;
-	const int bad = rle_from_runs(rle, runs, n, height, width, e);
-	free(runs);
-	return bad;
 }
 
 /* Run lengths say whose size they are of themselves. */
@@ -68,11 +50,8 @@ static int draw_runs(struct reading *r, struct annotation *on, const cJSON *segm
 
 	if (check_size(r, json_get(segmentation, "size"), e))
 		return -1;
-
-	if (take_runs(&rle, counts, r->height, r->width, e)) {
-		const struct err inner = *e;
-		return inner.code == ERR_FORMAT ? err_file(e, r->where, "%.300s", inner.message) : -1;
-	}
+	if (masks_take_counts(&rle, counts, r->height, r->width, r->where, e))
+		return -1;
 	const int bad = reading_unite(r, on, &rle, e);
 	rle_free(&rle);
 	return bad;

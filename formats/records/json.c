@@ -44,13 +44,6 @@ int json_has_nul(const char *json)
 	return 0;
 }
 
-static const cJSON *member(const cJSON *object, const char *key)
-{
-	const cJSON *item = json_get(object, key);
-
-	return cJSON_IsNull(item) ? NULL : item;
-}
-
 static int err_missing(const char *key, int need, const char *where, struct err *e)
 {
 	return need ? err_file(e, where, "key '%s' is missing", key) : 0;
@@ -59,7 +52,7 @@ static int err_missing(const char *key, int need, const char *where, struct err 
 int json_number(
 	const cJSON *object, const char *key, int need, double *value, const char *where, struct err *e)
 {
-	const cJSON *item = member(object, key);
+	const cJSON *item = json_member(object, key);
 
 	if (!item)
 		return err_missing(key, need, where, e);
@@ -72,7 +65,7 @@ int json_number(
 int json_string(
 	const cJSON *object, const char *key, int need, const char **value, const char *where, struct err *e)
 {
-	const cJSON *item = member(object, key);
+	const cJSON *item = json_member(object, key);
 
 	if (!item)
 		return err_missing(key, need, where, e);
@@ -97,7 +90,7 @@ int json_numbers(const cJSON *array, int count, double *values)
 int json_matrix(const cJSON *object, const char *key, int rows, int columns, double *values,
 	const char *where, struct err *e)
 {
-	const cJSON *item = member(object, key), *row = cJSON_IsArray(item) ? item->child : NULL;
+	const cJSON *item = json_member(object, key), *row = cJSON_IsArray(item) ? item->child : NULL;
 	int bad = 0;
 
 	if (!item)

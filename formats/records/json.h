@@ -22,6 +22,14 @@ static inline cJSON *json_get(const cJSON *object, const char *key)
 	return cJSON_GetObjectItemCaseSensitive(object, key);
 }
 
+/* The same, and NULL too where it is null. */
+static inline cJSON *json_member(const cJSON *object, const char *key)
+{
+	cJSON *item = json_get(object, key);
+
+	return cJSON_IsNull(item) ? NULL : item;
+}
+
 /* A number member, finite. Returns 1 and *value, 0 where it is absent or null (an error if `need`), -1 with
  * *e
  * ("WHERE: key 'k' ..."). */

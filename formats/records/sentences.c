@@ -63,9 +63,9 @@ static char *copy_item(
 static int read_list(char ***strings, size_t *n, const struct jsonl *j, const cJSON *object, const char *key,
 	enum name_kind kind, struct err *e)
 {
-	const cJSON *list = json_get(object, key), *item;
+	const cJSON *list = json_member(object, key), *item;
 
-	if (!list || cJSON_IsNull(list))
+	if (!list)
 		return 0;
 	if (!cJSON_IsArray(list))
 		return jsonl_err(j, e, "key '%s' is not a list", key);
@@ -118,13 +118,13 @@ static int read_one(const struct jsonl *j, const cJSON *object, void *record, st
 	const char *text, *split = "train";
 
 	if (jsonl_name(j, object, "ref", NAME_DATA, 1, &s->ref, e) ||
-		jsonl_string(j, object, "split", 0, &split, e) < 0)
+		json_string(object, "split", 0, &split, j->where, e) < 0)
 		return -1;
 	if (strcmp(split, "train") && strcmp(split, "test"))
 		return jsonl_err(j, e, "key 'split' is '%s', not 'train' or 'test'", split);
 	s->split = !strcmp(split, "test") ? SPLIT_TEST : SPLIT_TRAIN;
 	if (read_objects(s, j, object, e) || read_target(s, j, object, e) ||
-		jsonl_string(j, object, "text", 1, &text, e) < 0)
+		json_string(object, "text", 1, &text, j->where, e) < 0)
 		return -1;
 	s->text = copy_text(j, text, e);
 	return -(!s->text || read_list(&s->views, &s->view_count, j, object, "views", NAME_VIEW, e) ||

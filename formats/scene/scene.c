@@ -121,12 +121,12 @@ static int read_name(struct camera *c, const cJSON *view, const char *where, str
 /* The photograph's camera, where it is not the view's pinhole. */
 static int read_lens(struct lens *l, const cJSON *view, const char *of, struct err *e)
 {
-	const cJSON *lens = json_get(view, "lens");
+	const cJSON *lens = json_member(view, "lens");
 	const char *model;
 	double width, height;
 	char where[512];
 
-	if (!lens || cJSON_IsNull(lens))
+	if (!lens)
 		return 0;
 	snprintf(where, sizeof where, "%.480s: key 'lens'", of);
 	if (json_string(lens, "model", 1, &model, where, e) < 0 ||

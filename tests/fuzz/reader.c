@@ -250,13 +250,13 @@ static void try_npz(const char *path)
 
 	if (npz_open(&z, path, &e))
 		return;
-	for (size_t i = 0; i < z.n; i++) {
-		const size_t len = strlen(z.entries[i].name);
+	for (size_t i = 0; i < z.zip.n; i++) {
+		const size_t len = strlen(z.zip.entries[i].name);
 		if (len < sizeof ".npy")
 			continue;
-		z.entries[i].name[len - 4] = 0;
-		char *name = strdup(z.entries[i].name);
-		z.entries[i].name[len - 4] = '.';
+		z.zip.entries[i].name[len - 4] = 0;
+		char *name = strdup(z.zip.entries[i].name);
+		z.zip.entries[i].name[len - 4] = '.';
 		if (name && !npz_array(&z, name, "", &a, NULL, &e))
 			npy_close(&a);
 		free(name);
