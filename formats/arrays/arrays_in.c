@@ -40,6 +40,15 @@ void *arrays_in_vector(struct arrays_in *in, const char *name, enum st_dtype dty
 	return copy;
 }
 
+void arrays_in_fill(struct arrays_in *in, const char *name, float *to, size_t n)
+{
+	const float *from = arrays_in_place(in, name, ST_F32, (int64_t)n, NULL);
+
+	in->bad = !from || safetensors_check_finite(in->st, name, from, n, in->e);
+	if (from)
+		memcpy(to, from, n * sizeof *to);
+}
+
 float *arrays_in_floats(struct arrays_in *in, const char *name, size_t rows, int columns)
 {
 	const int64_t shape[] = {(int64_t)rows, columns};

@@ -30,6 +30,9 @@ const void *arrays_in_place(
 /* The same as a copy; free() it. */
 void *arrays_in_vector(struct arrays_in *in, const char *name, enum st_dtype dtype, int64_t n, size_t *count);
 
+/* n float32 numbers, all of them finite, into `to`. */
+void arrays_in_fill(struct arrays_in *in, const char *name, float *to, size_t n);
+
 /* A copy of a float32 matrix, all of it finite. */
 float *arrays_in_floats(struct arrays_in *in, const char *name, size_t rows, int columns);
 

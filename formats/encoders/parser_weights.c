@@ -4,7 +4,7 @@
 #include "base/half.h"
 #include "base/mem.h"
 #include "formats/arrays/fingerprint.h"
-#include "formats/arrays/safetensors.h"
+#include "formats/arrays/arrays_in.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@
 EMBED(parser_default, "formats/encoders/parser_default.safetensors");
 extern const unsigned char parser_default_begin[], parser_default_end[];
 
-enum { NAME_LENGTH = 40 };
+enum { NAME_LENGTH = 40, VERSION_READ = 6 };
 
 /* "vector.weight" of the first member, "1.vector.weight" of the next; tail: "", or ".scale" for the factors
  * of a matrix's rows. */
@@ -80,34 +80,20 @@ static int take_member(struct parser_weights *w, int member, const struct safete
 	return 0;
 }
 
-/* Older ones are of another network. */
-static int need_version(const struct safetensors *st, struct err *e)
-{
-	const char *version;
-
-	if (safetensors_need_format(st, "refer.parser", 6, e))
-		return -1;
-	version = safetensors_meta(st, "version");
-	return !strcmp(version, "6")
-		       ? 0
-		       : err_file(e, st->path, "refer.parser version %s is older than this program reads (6)",
-				 version);
-}
-
 static int take_tensors(struct parser_weights *w, const struct safetensors *st, struct err *e)
 {
-	const struct st_tensor *t;
 	struct fingerprint encoder;
+	struct arrays_in in;
 	char name[NAME_LENGTH];
+	size_t rows;
 
-	if (need_version(st, e) ||
-		!(t = safetensors_need(st, "vector.weight", ST_I8, 2, (int64_t[]){NET_HIDDEN, -1}, e)))
-		return -1;
-	if (t->shape[1] < 1 || t->shape[1] > 65536)
-		return err_file(e, st->path, "tensor 'vector.weight': width %lld is not in 1 to 65536",
-			(long long)t->shape[1]);
-	const int width = (int)t->shape[1];
-	if (fingerprint_read(&encoder, st, "encoder", e) || parser_weights_make(w, width, e))
+	arrays_in_begin(&in, st, "refer.parser", VERSION_READ, e);
+	const char *version = safetensors_meta(st, "version");
+	if (!in.bad && atoi(version) < VERSION_READ) /* of another network */
+		return err_file(e, st->path, "refer.parser version %s is older than this program reads (%d)",
+			version, VERSION_READ);
+	const int width = arrays_in_width(&in, "vector.weight", ST_I8, &rows);
+	if (in.bad || fingerprint_read(&encoder, st, "encoder", e) || parser_weights_make(w, width, e))
 		return -1;
 	memcpy(w->encoder, encoder.hex, sizeof w->encoder);
 	for (int member = 0;; member++) {

@@ -54,50 +54,47 @@ static int take_fingerprint(struct scene *s, const struct safetensors *st, struc
 	return 0;
 }
 
-int scene_read_splats(struct scene *s, const char *path, struct err *e)
+static int take_splats(struct scene *s, const struct safetensors *st, struct err *e)
 {
-	struct safetensors st;
+	const char *offset = safetensors_meta(st, "offset"), *near = safetensors_meta(st, "near");
 	const struct st_tensor *t[5];
-	int bad = -1;
-
-	if (safetensors_open(&st, path, e))
-		return -1;
-	if (safetensors_need_format(&st, "refer.splats", 1, e) ||
-		!(t[0] = safetensors_need(&st, "means", ST_F32, 2, (int64_t[]){-1, 3}, e)))
-		goto done;
-	int64_t n = t[0]->shape[0];
-	if (!(t[1] = safetensors_need(&st, "scales", ST_F32, 2, (int64_t[]){n, 3}, e)) ||
-		!(t[2] = safetensors_need(&st, "quats", ST_F32, 2, (int64_t[]){n, 4}, e)) ||
-		!(t[3] = safetensors_need(&st, "opacities", ST_F32, 1, (int64_t[]){n}, e)) ||
-		!(t[4] = safetensors_need(&st, "sh", ST_F32, 3, (int64_t[]){n, -1, 3}, e)))
-		goto done;
-	int64_t k = t[4]->shape[1];
-	if (k != 1 && k != 4 && k != 9 && k != 16) {
-		err_file(e, path, "tensor 'sh': %lld coefficients, expected 1, 4, 9 or 16", (long long)k);
-		goto done;
-	}
-	const char *offset = safetensors_meta(&st, "offset");
-	if (offset &&
-		(sscanf(offset, "[%lf,%lf,%lf]", &s->offset[0], &s->offset[1], &s->offset[2]) != 3 ||
-			!isfinite(s->offset[0]) || !isfinite(s->offset[1]) || !isfinite(s->offset[2]))) {
-		err_file(e, path, "metadata 'offset' is not three numbers");
-		goto done;
-	}
-	if (splats_alloc(&s->splats, (size_t)n, (int)k, e))
-		goto done;
-	const char *near = safetensors_meta(&st, "near");
 	char after;
+
+	if (safetensors_need_format(st, "refer.splats", 1, e) ||
+		!(t[0] = safetensors_need(st, "means", ST_F32, 2, (int64_t[]){-1, 3}, e)))
+		return -1;
+	const int64_t n = t[0]->shape[0];
+	if (!(t[1] = safetensors_need(st, "scales", ST_F32, 2, (int64_t[]){n, 3}, e)) ||
+		!(t[2] = safetensors_need(st, "quats", ST_F32, 2, (int64_t[]){n, 4}, e)) ||
+		!(t[3] = safetensors_need(st, "opacities", ST_F32, 1, (int64_t[]){n}, e)) ||
+		!(t[4] = safetensors_need(st, "sh", ST_F32, 3, (int64_t[]){n, -1, 3}, e)))
+		return -1;
+	const int64_t k = t[4]->shape[1];
+	if (k != 1 && k != 4 && k != 9 && k != 16)
+		return err_file(
+			e, st->path, "tensor 'sh': %lld coefficients, expected 1, 4, 9 or 16", (long long)k);
+	if (offset && (sscanf(offset, "[%lf,%lf,%lf]", &s->offset[0], &s->offset[1], &s->offset[2]) != 3 ||
+			      !isfinite(s->offset[0]) || !isfinite(s->offset[1]) || !isfinite(s->offset[2])))
+		return err_file(e, st->path, "metadata 'offset' is not three numbers");
+	if (splats_alloc(&s->splats, (size_t)n, (int)k, e))
+		return -1;
 	if (near && (sscanf(near, "%lf%c", &s->splats.near, &after) != 1 || !(s->splats.near > 0) ||
-			    !isfinite(s->splats.near))) {
-		err_file(e, path, "metadata 'near' is not a number above 0");
-		goto done;
-	}
+			    !isfinite(s->splats.near)))
+		return err_file(e, st->path, "metadata 'near' is not a number above 0");
 	float *to[5] = {
 		s->splats.means, s->splats.scales, s->splats.quats, s->splats.opacities, s->splats.sh};
 	for (int i = 0; i < 5; i++)
 		memcpy(to[i], t[i]->data, t[i]->bytes);
-	bad = check_values(&s->splats, path, e) || take_fingerprint(s, &st, e) ? -1 : 0;
-done:
+	return -(check_values(&s->splats, st->path, e) || take_fingerprint(s, st, e));
+}
+
+int scene_read_splats(struct scene *s, const char *path, struct err *e)
+{
+	struct safetensors st;
+
+	if (safetensors_open(&st, path, e))
+		return -1;
+	const int bad = take_splats(s, &st, e);
 	safetensors_close(&st);
 	if (bad)
 		splats_free(&s->splats);

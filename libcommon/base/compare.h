@@ -1,4 +1,5 @@
-/* What qsort and bsearch order by: numbers that rise, and strings (of an array of pointers) by their bytes. */
+/* What qsort and bsearch order by: numbers that rise, and strings (of an array of pointers) by their bytes.
+ */
 #ifndef BASE_COMPARE_H
 #define BASE_COMPARE_H
 
