@@ -41,23 +41,6 @@ static uint64_t hash_vocabulary(const struct vocab *v)
 	return sum;
 }
 
-/* The sizes of an encoder: three of its own, and those of its body. */
-static uint64_t hash_sizes(int words, int positions, int own, const struct transformer *t, int is_static)
-{
-	const int64_t sizes[] = {words, positions, own, t->width, t->heads, t->inner, t->layer_count,
-		(int64_t)t->activation, is_static};
-
-	return hash64(&t->eps, sizeof t->eps, hash64(sizes, sizeof sizes, 0));
-}
-
-struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab *v, int is_static)
-{
-	const uint64_t vocabulary = hash_vocabulary(v);
-	const uint64_t sizes = hash_sizes(b->words, b->positions, b->types, &b->body, is_static);
-
-	return fingerprint_of(hash64(&vocabulary, sizeof vocabulary, bert_hash(b, sizes)));
-}
-
 /* The same of merges, wherever the table has them. */
 static uint64_t hash_merges(const struct bpe *b)
 {
@@ -72,12 +55,18 @@ static uint64_t hash_merges(const struct bpe *b)
 	return sum;
 }
 
-struct fingerprint fingerprint_clip(const struct clip *c, const struct bpe *b, int is_static)
+struct fingerprint fingerprint_encoder(
+	const struct text_tower *t, const struct vocab *v, const struct bpe *merges, int is_static)
 {
-	const uint64_t vocabulary[] = {hash_vocabulary(&b->vocab), hash_merges(b)};
-	const uint64_t sizes = hash_sizes(c->words, c->positions, c->projected, &c->body, is_static);
+	const struct transformer *body = &t->body;
+	const int64_t sizes[] = {t->words, t->positions, body->is_norm_first ? t->projected : t->types,
+		body->width, body->heads, body->inner, body->layer_count, (int64_t)body->activation,
+		is_static};
+	const uint64_t vocabulary[] = {hash_vocabulary(v), merges ? hash_merges(merges) : 0};
+	const uint64_t seed = hash64(&body->eps, sizeof body->eps, hash64(sizes, sizeof sizes, 0));
 
-	return fingerprint_of(hash64(vocabulary, sizeof vocabulary, clip_hash(c, sizes)));
+	return fingerprint_of(
+		hash64(vocabulary, (merges ? 2 : 1) * sizeof *vocabulary, text_tower_hash(t, seed)));
 }
 
 int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const char *key, struct err *e)

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static int read_activation(struct bert *b, const cJSON *config, const char *path, struct err *e)
+static int read_activation(struct text_tower *b, const cJSON *config, const char *path, struct err *e)
 {
 	static const struct pretrained_activation known[] = {{"gelu", TRANSFORMER_GELU},
 		{"gelu_new", TRANSFORMER_GELU_TANH}, {"gelu_pytorch_tanh", TRANSFORMER_GELU_TANH},
@@ -17,7 +17,7 @@ static int read_activation(struct bert *b, const cJSON *config, const char *path
 		"gelu, gelu_new, gelu_pytorch_tanh or relu", NULL, &b->body.activation, path, e);
 }
 
-static int read_keys(struct bert *b, const cJSON *config, const char *path, struct err *e)
+static int read_keys(struct text_tower *b, const cJSON *config, const char *path, struct err *e)
 {
 	static const char *const names[] = {"hidden_size", "num_attention_heads", "max_position_embeddings"};
 	struct transformer *t = &b->body;
@@ -39,7 +39,7 @@ static int read_keys(struct bert *b, const cJSON *config, const char *path, stru
 		 pretrained_eps(config, 1e-12, &t->eps, path, e));
 }
 
-static int read_config(struct bert *b, const char *dir, struct err *e)
+static int read_config(struct text_tower *b, const char *dir, struct err *e)
 {
 	char *path = file_join(dir, "config.json", "", e);
 	cJSON *config = path ? json_read(path, e) : NULL;
@@ -50,7 +50,7 @@ static int read_config(struct bert *b, const char *dir, struct err *e)
 	return bad;
 }
 
-static int load_layer(struct pretrained *s, const struct bert *b, int i)
+static int load_layer(struct pretrained *s, const struct text_tower *b, int i)
 {
 	static const struct transformer_layer none;
 	const struct transformer_layer *l = b->body.layers ? &b->body.layers[i] : &none;
@@ -81,7 +81,7 @@ static void find_names(struct pretrained *s)
 	}
 }
 
-static int load_tensors(struct pretrained *s, const struct bert *b)
+static int load_tensors(struct pretrained *s, const struct text_tower *b)
 {
 	static const char at[] = "embeddings.";
 	const int width = b->body.width;
@@ -98,18 +98,18 @@ static int load_tensors(struct pretrained *s, const struct bert *b)
 }
 
 /* That the file has all tensors is known before memory is taken for them. */
-static int load_all(struct pretrained *s, struct bert *b)
+static int load_all(struct pretrained *s, struct text_tower *b)
 {
 	find_names(s);
-	return -(load_tensors(s, b) || bert_alloc(b, s->e) || load_tensors(s, b));
+	return -(load_tensors(s, b) || text_tower_alloc(b, s->e) || load_tensors(s, b));
 }
 
-int bert_model_read(struct bert *b, const char *dir, struct err *e)
+int bert_model_read(struct text_tower *b, const char *dir, struct err *e)
 {
 	struct pretrained s = {.prefix = "", .scale = ".weight", .shift = ".bias", .e = e};
 	int bad = -1;
 
-	*b = (struct bert){0};
+	*b = (struct text_tower){0};
 	if (read_config(b, dir, e))
 		return -1;
 	if (!pretrained_open(&s.st, dir, NULL, e)) {
@@ -117,6 +117,6 @@ int bert_model_read(struct bert *b, const char *dir, struct err *e)
 		safetensors_close(&s.st);
 	}
 	if (bad)
-		bert_free(b);
+		text_tower_free(b);
 	return bad ? -1 : 0;
 }

@@ -75,7 +75,7 @@ struct kind {
 	int is_open;	  /* the configuration is OpenCLIP's */
 };
 
-static int read_activation(struct clip *c, const cJSON *config, const char *path, struct err *e)
+static int read_activation(struct text_tower *c, const cJSON *config, const char *path, struct err *e)
 {
 	static const struct pretrained_activation known[] = {
 		{"quick_gelu", TRANSFORMER_QUICK_GELU}, {"gelu", TRANSFORMER_GELU}};
@@ -86,7 +86,8 @@ static int read_activation(struct clip *c, const cJSON *config, const char *path
 
 /* HuggingFace's: of the text tower alone, or of both with the text tower's in `text_config`. Keys that are
  * absent have the values of CLIP ViT-B/32. */
-static int read_keys(struct clip *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
+static int read_keys(
+	struct text_tower *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
 {
 	const cJSON *nested = member(config, "text_config"), *text = cJSON_IsObject(nested) ? nested : config;
 	const cJSON *own = member(config, "projection_dim");
@@ -108,7 +109,7 @@ static int read_keys(struct clip *c, struct kind *kind, const cJSON *config, con
 
 /* OpenCLIP's own; what it does not say is as in its code. */
 static int read_open_keys(
-	struct clip *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
+	struct text_tower *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
 {
 	static const char *const own[] = {"width", "heads", "context_length"};
 	static const char *const refused[] = {"hf_model_name", "hf_tokenizer_name", "embed_cls",
@@ -138,7 +139,7 @@ static int read_open_keys(
 	return pretrained_sizes(t, c->positions, own, path, e);
 }
 
-static int read_config(struct clip *c, struct kind *kind, const char *dir, struct err *e)
+static int read_config(struct text_tower *c, struct kind *kind, const char *dir, struct err *e)
 {
 	int bad = -1;
 	char *path = find_config(dir, &kind->is_open, e);
@@ -209,7 +210,7 @@ static int load_attention(struct source *s, const char *at, const struct transfo
 	return bad;
 }
 
-static int load_layer(struct source *s, const struct clip *c, int i)
+static int load_layer(struct source *s, const struct text_tower *c, int i)
 {
 	static const struct transformer_layer none;
 	const struct transformer_layer *l = c->body.layers ? &c->body.layers[i] : &none;
@@ -232,7 +233,7 @@ static const char *projection_prefix(const struct source *s)
 	return s->layout->is_joined ? s->layout->prefix : "";
 }
 
-static int load_projection(struct source *s, const struct clip *c)
+static int load_projection(struct source *s, const struct text_tower *c)
 {
 	const int rows = c->projected, columns = c->body.width;
 	struct pretrained from = s->from;
@@ -252,7 +253,7 @@ static int load_projection(struct source *s, const struct clip *c)
 }
 
 /* Whether there is a projection, of the right size. */
-static int find_projection(struct source *s, struct clip *c, const struct kind *kind)
+static int find_projection(struct source *s, struct text_tower *c, const struct kind *kind)
 {
 	char full[NAME];
 	int sides[2] = {kind->width, c->body.width};
@@ -266,7 +267,7 @@ static int find_projection(struct source *s, struct clip *c, const struct kind *
 }
 
 /* All but the projection. */
-static int load_body(struct source *s, const struct clip *c)
+static int load_body(struct source *s, const struct text_tower *c)
 {
 	if (pretrained_load(&s->from, "", s->layout->word, "", c->word, c->words, c->body.width) ||
 		pretrained_load(
@@ -279,21 +280,21 @@ static int load_body(struct source *s, const struct clip *c)
 }
 
 /* That the file has all tensors is known before memory is taken for them. */
-static int load_all(struct source *s, struct clip *c, const struct kind *kind)
+static int load_all(struct source *s, struct text_tower *c, const struct kind *kind)
 {
 	s->layout = find_layout(&s->from.st);
 	s->from.prefix = s->layout->prefix;
-	return -(load_body(s, c) || find_projection(s, c, kind) || clip_alloc(c, s->from.e) ||
+	return -(load_body(s, c) || find_projection(s, c, kind) || text_tower_alloc(c, s->from.e) ||
 		 load_body(s, c) || (c->projected && load_projection(s, c)));
 }
 
-int clip_model_read(struct clip *c, const char *dir, struct err *e)
+int clip_model_read(struct text_tower *c, const char *dir, struct err *e)
 {
 	struct source s = {.from = {.scale = ".weight", .shift = ".bias", .e = e}};
 	struct kind kind = {0};
 	int bad = -1;
 
-	*c = (struct clip){.body = {.is_causal = 1, .is_norm_first = 1}};
+	*c = (struct text_tower){.body = {.is_causal = 1, .is_norm_first = 1}};
 	if (read_config(c, &kind, dir, e))
 		return -1;
 	if (!pretrained_open(&s.from.st, dir, kind.is_open ? "open_clip_model.safetensors" : NULL, e)) {
@@ -301,6 +302,6 @@ int clip_model_read(struct clip *c, const char *dir, struct err *e)
 		safetensors_close(&s.from.st);
 	}
 	if (bad)
-		clip_free(c);
+		text_tower_free(c);
 	return bad ? -1 : 0;
 }

@@ -70,8 +70,8 @@ SIMPLE(text, struct text, text_read, text_free)
 SIMPLE(weights, struct weights, weights_open_file, weights_close)
 SIMPLE(colmap, struct cameras, colmap_read, cameras_free)
 SIMPLE(folder, struct scene, scene_read, scene_free)
-SIMPLE(bert, struct bert, bert_model_read, bert_free)
-SIMPLE(clip, struct clip, clip_model_read, clip_free)
+SIMPLE(bert, struct text_tower, bert_model_read, text_tower_free)
+SIMPLE(clip, struct text_tower, clip_model_read, text_tower_free)
 
 static const char text_to_cut[] = "The red cup's 10 plates, caf\xc3\xa9!";
 
