@@ -148,38 +148,88 @@ static int load(
 
 enum { NAME = 256 };
 
-int pretrained_load(struct pretrained *from, const char *at, const char *name, const char *part, float *out,
-	int rows, int columns)
-{
-	char full[NAME];
-
-	snprintf(full, sizeof full, "%s%s%s%s", from->prefix, at, name, part);
-	const struct st_tensor *t = pretrained_need(&from->st, full, rows, columns, from->e);
-	return t ? load(from, t, 0, (size_t)columns * (rows ? (size_t)rows : 1), out) : -1;
-}
-
-int pretrained_linear(struct pretrained *from, const char *at, const char *name,
-	const struct transformer_linear *l, int in, int out)
-{
-	return -(pretrained_load(from, at, name, ".weight", l->weight, out, in) ||
-		 pretrained_load(from, at, name, ".bias", l->bias, 0, out));
-}
-
-int pretrained_norm(struct pretrained *from, const char *at, const char *name,
-	const struct transformer_norm *n, int width)
-{
-	return -(pretrained_load(from, at, name, from->scale, n->scale, 0, width) ||
-		 pretrained_load(from, at, name, from->shift, n->shift, 0, width));
-}
-
-int pretrained_load_part(struct pretrained *from, const char *at, const char *name, float *out, int of,
-	int first, int rows, int columns)
+/* The tensor `at``name``part`: its next `rows` from `first` on, of (of,columns), or of (of) where columns is
+ * 0. */
+static int load_part(struct pretrained *from, const char *at, const char *name, const char *part, float *out,
+	int of, int first, int rows, int columns)
 {
 	const size_t each = columns ? (size_t)columns : 1;
 	char full[NAME];
 
-	snprintf(full, sizeof full, "%s%s%s", from->prefix, at, name);
+	snprintf(full, sizeof full, "%s%s%s%s", from->prefix, at, name, part);
 	const struct st_tensor *t =
 		pretrained_need(&from->st, full, columns ? of : 0, columns ? columns : of, from->e);
 	return t ? load(from, t, (size_t)first * each, (size_t)rows * each, out) : -1;
+}
+
+int pretrained_load(struct pretrained *from, const char *name, float *out, int rows, int columns)
+{
+	return rows ? load_part(from, "", name, "", out, rows, 0, rows, columns)
+		    : load_part(from, "", name, "", out, columns, 0, columns, 0);
+}
+
+static int load_linear(struct pretrained *from, const char *at, const char *name,
+	const struct transformer_linear *l, int in, int out)
+{
+	return -(load_part(from, at, name, ".weight", l->weight, out, 0, out, in) ||
+		 load_part(from, at, name, ".bias", l->bias, out, 0, out, 0));
+}
+
+static int load_norm(struct pretrained *from, const char *at, const char *name,
+	const struct transformer_norm *n, int width)
+{
+	return -(load_part(from, at, name, from->scale, n->scale, width, 0, width, 0) ||
+		 load_part(from, at, name, from->shift, n->shift, width, 0, width, 0));
+}
+
+/* Query, key and value: thirds of a tensor, or three. */
+static int load_attention(
+	struct pretrained *from, const char *at, const struct transformer_layer *l, int width)
+{
+	const struct transformer_linear *const parts[] = {&l->query, &l->key, &l->value};
+	const char *const *names = from->names->attention;
+	int bad = 0;
+
+	for (int i = 0; i < 3 && !bad; i++)
+		if (names[2])
+			bad = load_linear(from, at, names[i], parts[i], width, width);
+		else
+			bad = load_part(from, at, names[0], "", parts[i]->weight, 3 * width, i * width, width,
+				      width) ||
+			      load_part(
+				      from, at, names[1], "", parts[i]->bias, 3 * width, i * width, width, 0);
+	return bad;
+}
+
+static int load_layer(struct pretrained *from, const struct text_tower *t, int i)
+{
+	static const struct transformer_layer none;
+	const struct transformer_layer *l = t->body.layers ? &t->body.layers[i] : &none;
+	const struct pretrained_names *n = from->names;
+	const int width = t->body.width, inner = t->body.inner;
+	char at[64];
+
+	snprintf(at, sizeof at, "%s%d.", n->layer, i);
+	return -(load_attention(from, at, l, width) ||
+		 load_linear(from, at, n->attention_out, &l->attention_out, width, width) ||
+		 load_norm(from, at, n->attention_norm, &l->attention_norm, width) ||
+		 load_linear(from, at, n->inner, &l->inner, width, inner) ||
+		 load_linear(from, at, n->outer, &l->outer, inner, width) ||
+		 load_norm(from, at, n->feed_norm, &l->norm, width));
+}
+
+int pretrained_tower(struct pretrained *from, const struct text_tower *t)
+{
+	const struct pretrained_names *n = from->names;
+	const int width = t->body.width;
+
+	if (pretrained_load(from, n->word, t->word, t->words, width) ||
+		pretrained_load(from, n->position, t->position, t->positions, width) ||
+		(n->type && pretrained_load(from, n->type, t->type, t->types, width)) ||
+		load_norm(from, "", n->norm, &t->norm, width))
+		return -1;
+	for (int i = 0; i < t->body.layer_count; i++)
+		if (load_layer(from, t, i))
+			return -1;
+	return 0;
 }
