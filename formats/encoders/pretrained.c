@@ -210,9 +210,11 @@ static int load_layer(struct pretrained *from, const struct text_tower *t, int i
 	char at[64];
 
 	snprintf(at, sizeof at, "%s%d.", n->layer, i);
-	return -(load_attention(from, at, l, width) ||
+	const int is_first = t->body.is_norm_first;
+	return -((is_first && load_norm(from, at, n->attention_norm, &l->attention_norm, width)) ||
+		 load_attention(from, at, l, width) ||
 		 load_linear(from, at, n->attention_out, &l->attention_out, width, width) ||
-		 load_norm(from, at, n->attention_norm, &l->attention_norm, width) ||
+		 (!is_first && load_norm(from, at, n->attention_norm, &l->attention_norm, width)) ||
 		 load_linear(from, at, n->inner, &l->inner, width, inner) ||
 		 load_linear(from, at, n->outer, &l->outer, inner, width) ||
 		 load_norm(from, at, n->feed_norm, &l->norm, width));

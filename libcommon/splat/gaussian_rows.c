@@ -165,9 +165,9 @@ static int read_and_shift(struct splats *s, double offset[3], struct rows_report
 		s->means[i] = (float)(means[i] - offset[i % 3]);
 	free(means);
 	if (!bad && n && !s->n)
-		return err_set(e, ERR_FORMAT,
-			"%s: none of its %zu Gaussians can be used: %zu have a value that is not finite, %zu a zero quaternion",
-			from->path, n, report->not_finite, report->zero_quat);
+		return err_file(e, from->path,
+			"none of its %zu Gaussians can be used: %zu have a value that is not finite, %zu a zero quaternion",
+			n, report->not_finite, report->zero_quat);
 	return -bad;
 }
 
