@@ -57,14 +57,15 @@ static void keep(struct fitting *f)
 
 static int draw_preview(struct fitting *f, struct err *e)
 {
-	const struct camera *c = &f->judges.first->camera[0];
+	const struct photograph *p = f->in.tested ? f->in.photographs + f->in.learned : f->judges.first;
+	const struct camera *c = &p->camera[0];
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 	struct photo_loss l;
 	char name[32];
 
 	if (!f->options->preview)
 		return 0;
-	if (fit_judge(&f->fit, f->judges.first, &l, e))
+	if (fit_judge(&f->fit, p, &l, e))
 		return -1;
 	snprintf(name, sizeof name, "%08ld", (long)f->fit.state.iteration);
 	uint8_t *rgb = mem_alloc(pixels, 3, "picture", e);
@@ -99,7 +100,7 @@ static int look(struct fitting *f, double progress, struct err *e)
 		return -1;
 	keep(f);
 	report_note(f->to, 2, "step %ld: %zu Gaussians, %s PSNR %.2f dB, SSIM %.4f",
-		(long)fit->state.iteration, fit->gaussians.n, f->in.tested ? "held-out" : "training", psnr,
+		(long)fit->state.iteration, fit->gaussians.n, f->in.held_out ? "held-out" : "training", psnr,
 		ssim);
 	if ((size_t)fit->state.most < most && !fit->state.is_pruned)
 		report_note(f->to, 1, "step %ld: more than %zu Gaussians gain nothing",
@@ -174,7 +175,7 @@ static int check_start(struct fitting *f, struct err *e)
 static int finish(struct fitting *f, struct err *e)
 {
 	const size_t n = f->fit.gaussians.n;
-	const struct fit_judges tested = {f->judges.first, f->in.tested, 1};
+	const struct fit_judges tested = {f->in.photographs + f->in.learned, f->in.tested, 1};
 	char *kept = mem_alloc(n, 1, "Gaussians", e);
 	struct splats s = {0};
 	double psnr, ssim;
@@ -267,12 +268,12 @@ static int run(struct fitting *f, struct err *e)
 	report_note(f->to, 1,
 		"%zu photographs to learn from, %zu to test with, %zu Gaussians to begin with, extent %.4g, size %.4g",
 		in->learned, in->tested, in->gaussians.n, in->extent, in->size);
-	f->judges = in->tested ? fit_judges_of(in->photographs + in->learned, in->tested)
-			       : fit_judges_of(in->photographs, in->learned);
+	f->judges = fit_judges_of(in->photographs + (in->held_out ? in->learned - in->held_out : 0),
+		in->held_out ? in->held_out : in->learned);
 	int bad = file_out_claim(&claim, o->output, e);
 	bad = bad || (o->checkpoint_path && file_out_probe(o->checkpoint_path, e)) ||
 	      (o->preview && file_make_dir(o->preview, e)) ||
-	      fit_open(&f->fit, &in->gaussians, &options, in->photographs, in->learned, e) ||
+	      fit_open(&f->fit, &in->gaussians, &options, in->photographs, in->learned, in->held_out, e) ||
 	      check_start(f, e) || expose(f, e) || resume(f, e) ||
 	      trainlog_open(&f->log, o->log, (long)f->fit.state.iteration, e);
 	const struct fit_gaussians *g = &f->fit.gaussians;

@@ -77,7 +77,7 @@ static double train(const struct conditions *with, size_t *n)
 	for (size_t i = 0; i < 3 * s.n; i++)
 		g.at[FIT_VALUE][FIT_SH][i] = -0.8f;
 	g.splats.near = 0.01 * with->unit;
-	if (fit_open(&f, &g, &o, p, VIEWS - 1, &e) || (with->is_exposed && fit_expose(&f, 0, &spread, &e)))
+	if (fit_open(&f, &g, &o, p, VIEWS - 1, 0, &e) || (with->is_exposed && fit_expose(&f, 0, &spread, &e)))
 		abort();
 	const struct fit_judges by = fit_judges_of(p + VIEWS - 1, 1);
 	for (int i = 0; i < STEPS; i++) {
