@@ -17,8 +17,9 @@
 #include <stdlib.h>
 #include <zlib.h>
 
-/* Each eighth photograph is held out where there are so many that its neighbours show what it does. */
-enum { RANDOM_POINTS = 20000, HELD_OUT_FROM = 40, HELD_OUT_EVERY = 8 };
+/* Each eighth photograph, but not many more than 16, is held out where there are so many that its neighbours
+ * show what it does. */
+enum { RANDOM_POINTS = 20000, HELD_OUT_FROM = 40, HELD_OUT_EVERY = 8, HELD_OUT_MOST = 16 };
 enum part { LEARNED, HELD_OUT, TESTED, PARTS };
 
 static int read_cameras(struct fitting_input *f, struct err *e)
@@ -93,8 +94,9 @@ static void assign(const struct fitting_input *f, uint8_t *part)
 		part[i] = !c->image ? PARTS : c->split == SPLIT_TEST ? TESTED : LEARNED;
 		all += part[i] == LEARNED;
 	}
+	const size_t every = all > HELD_OUT_EVERY * HELD_OUT_MOST ? all / HELD_OUT_MOST : HELD_OUT_EVERY;
 	for (size_t i = 0; i < f->cameras.n && all >= HELD_OUT_FROM; i++)
-		if (part[i] == LEARNED && ++at % HELD_OUT_EVERY == 0)
+		if (part[i] == LEARNED && ++at % every == 0)
 			part[i] = HELD_OUT;
 }
 
