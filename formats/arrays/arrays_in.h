@@ -1,7 +1,7 @@
 /* What readers of our safetensors files take out of them: copies of tensors and lists of strings, checked as
  * they are taken. The first thing that is wrong stays in *e, what follows is passed over and gives NULL or 0,
  * and `bad` is set: a reader looks at that once. Messages: "PATH: tensor 'NAME' ...", "PATH: metadata 'KEY'
- * ...". */
+ * ...". formats/arrays/safetensors.md. */
 #ifndef FORMATS_ARRAYS_IN_H
 #define FORMATS_ARRAYS_IN_H
 
