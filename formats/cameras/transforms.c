@@ -198,13 +198,6 @@ static int add_names(struct names *names, const cJSON *root, const char *key, co
 	return 1;
 }
 
-static void free_names(struct names *names)
-{
-	for (size_t i = 0; i < names->n; i++)
-		free(names->items[i]);
-	free(names->items);
-}
-
 static int is_named(const struct names *names, const char *image)
 {
 	return names->n && bsearch(&image, names->items, names->n, sizeof *names->items, compare_string);
@@ -224,8 +217,8 @@ static int read_splits(struct cameras *c, const cJSON *root, const char *path, s
 		if (is_named(&test, v->image) || (has_train && !is_named(&train, v->image)))
 			v->split = SPLIT_TEST;
 	}
-	free_names(&train);
-	free_names(&test);
+	mem_free_strings(train.items, train.n);
+	mem_free_strings(test.items, test.n);
 	return -bad;
 }
 

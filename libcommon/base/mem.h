@@ -25,4 +25,7 @@ int mem_room(void **block, size_t *capacity, size_t need, size_t size, const cha
 /* A copy of a string, NULL with *e set when memory is out. */
 char *mem_strdup(const char *text, struct err *e);
 
+/* Frees n strings and the array of them, which may be NULL. */
+void mem_free_strings(char **strings, size_t n);
+
 #endif
