@@ -183,12 +183,11 @@ static int add_names(struct names *names, const cJSON *root, const char *key, co
 		return err_file(e, path, "key '%s' is not a list", key);
 	cJSON_ArrayForEach(item, list)
 	{
-		void *block = names->items;
 		if (!cJSON_IsString(item))
 			return err_file(e, path, "key '%s' is not a list of strings", key);
-		if (mem_grow(&block, &names->capacity, names->n + 1, sizeof *names->items, path, e))
+		if (mem_grow((void **)&names->items, &names->capacity, names->n + 1, sizeof *names->items,
+			    path, e))
 			return -1;
-		names->items = block;
 		if (!(names->items[names->n] = view_image(item->valuestring, e)))
 			return -1;
 		names->n++;
