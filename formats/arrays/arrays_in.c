@@ -1,5 +1,6 @@
 #include "formats/arrays/arrays_in.h"
 
+#include "base/mem.h"
 #include "base/name.h"
 #include "base/names.h"
 #include "formats/arrays/metalist.h"
@@ -129,7 +130,7 @@ char **arrays_in_list(struct arrays_in *in, const char *key, size_t n, const cha
 			in->e, in->st->path, "metadata '%s' has %zu entries for %zu %s", key, used, n, of);
 	if (!in->bad)
 		return strings;
-	metalist_free(strings, used);
+	mem_free_strings(strings, used);
 	return NULL;
 }
 

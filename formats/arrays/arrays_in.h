@@ -1,7 +1,7 @@
 /* What readers of our safetensors files take out of them: copies of tensors and lists of strings, checked as
  * they are taken. The first thing that is wrong stays in *e, what follows is passed over and gives NULL or 0,
  * and `bad` is set: a reader looks at that once. Messages: "PATH: tensor 'NAME' ...", "PATH: metadata 'KEY'
- * ...". */
+ * ...". formats/arrays/safetensors.md. */
 #ifndef FORMATS_ARRAYS_IN_H
 #define FORMATS_ARRAYS_IN_H
 
@@ -49,7 +49,7 @@ void arrays_in_check_offsets(struct arrays_in *in, const char *name, const int64
 void arrays_in_check_index(struct arrays_in *in, const int32_t *index, const int64_t *indptr, size_t n,
 	size_t limit, const char *of);
 
-/* A list of strings, one for each of n `of` ("sentences"): metalist_free. */
+/* A list of strings, one for each of n `of` ("sentences"): mem_free_strings. */
 char **arrays_in_list(struct arrays_in *in, const char *key, size_t n, const char *of);
 
 /* They are names of refs or objects (base/name.h), or empty where they may be; no two are the same. */

@@ -5,15 +5,7 @@
 #include "formats/records/json.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-void metalist_free(char **strings, size_t n)
-{
-	for (size_t i = 0; strings && i < n; i++)
-		free(strings[i]);
-	free(strings);
-}
 
 char **metalist_parse(const char *text, size_t *n, char reason[METALIST_REASON])
 {
@@ -37,7 +29,7 @@ char **metalist_parse(const char *text, size_t *n, char reason[METALIST_REASON])
 			++*n;
 			continue;
 		}
-		metalist_free(strings, *n);
+		mem_free_strings(strings, *n);
 		strings = NULL;
 	}
 	cJSON_Delete(list);

@@ -47,11 +47,8 @@ int colmap_set_camera(struct colmap_entry *c, const struct lens_model *m, double
 int colmap_add_entry(
 	struct colmap_entries *all, const struct colmap_entry *c, const char *path, struct err *e)
 {
-	void *block = all->items;
-
-	if (mem_grow(&block, &all->capacity, all->n + 1, sizeof *c, path, e))
+	if (mem_grow((void **)&all->items, &all->capacity, all->n + 1, sizeof *c, path, e))
 		return -1;
-	all->items = block;
 	all->items[all->n++] = *c;
 	return 0;
 }
@@ -76,7 +73,6 @@ int colmap_sort_entries(struct colmap_entries *all, const char *path, struct err
 int colmap_add_view(struct cameras *c, size_t *capacity, const struct colmap_entries *all,
 	const double pose[7], uint32_t camera, const char *image, const char *path, struct err *e)
 {
-	void *block = c->views;
 	struct camera v;
 	double length = sqrt(pose[0] * pose[0] + pose[1] * pose[1] + pose[2] * pose[2] + pose[3] * pose[3]);
 	struct colmap_entry key = {.id = camera};
@@ -99,11 +95,10 @@ int colmap_add_view(struct cameras *c, size_t *capacity, const struct colmap_ent
 	v.image = view_image(image, e);
 	if (!v.image)
 		return -1;
-	if (mem_grow(&block, capacity, c->n + 1, sizeof v, path, e)) {
+	if (mem_grow((void **)&c->views, capacity, c->n + 1, sizeof v, path, e)) {
 		free(v.image);
 		return -1;
 	}
-	c->views = block;
 	c->views[c->n++] = v;
 	return 0;
 }

@@ -183,12 +183,11 @@ static int add_names(struct names *names, const cJSON *root, const char *key, co
 		return err_file(e, path, "key '%s' is not a list", key);
 	cJSON_ArrayForEach(item, list)
 	{
-		void *block = names->items;
 		if (!cJSON_IsString(item))
 			return err_file(e, path, "key '%s' is not a list of strings", key);
-		if (mem_grow(&block, &names->capacity, names->n + 1, sizeof *names->items, path, e))
+		if (mem_grow((void **)&names->items, &names->capacity, names->n + 1, sizeof *names->items,
+			    path, e))
 			return -1;
-		names->items = block;
 		if (!(names->items[names->n] = view_image(item->valuestring, e)))
 			return -1;
 		names->n++;
@@ -196,13 +195,6 @@ static int add_names(struct names *names, const cJSON *root, const char *key, co
 	if (names->n)
 		qsort(names->items, names->n, sizeof *names->items, compare_string);
 	return 1;
-}
-
-static void free_names(struct names *names)
-{
-	for (size_t i = 0; i < names->n; i++)
-		free(names->items[i]);
-	free(names->items);
 }
 
 static int is_named(const struct names *names, const char *image)
@@ -224,8 +216,8 @@ static int read_splits(struct cameras *c, const cJSON *root, const char *path, s
 		if (is_named(&test, v->image) || (has_train && !is_named(&train, v->image)))
 			v->split = SPLIT_TEST;
 	}
-	free_names(&train);
-	free_names(&test);
+	mem_free_strings(train.items, train.n);
+	mem_free_strings(test.items, test.n);
 	return -bad;
 }
 

@@ -140,12 +140,8 @@ struct coco {
 
 static void coco_free(struct coco *c)
 {
-	for (size_t i = 0; i < c->n; i++) {
-		free(c->files[i]);
-		free(c->views[i]);
-	}
-	free(c->files);
-	free(c->views);
+	mem_free_strings(c->files, c->n);
+	mem_free_strings(c->views, c->n);
 }
 
 static int check_twice(const struct reading *r, const struct coco *c, struct err *e)

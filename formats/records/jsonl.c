@@ -71,7 +71,6 @@ static int decode_rest(struct jsonl *j, size_t used, struct err *e)
  * long is kept beyond the limit. */
 static ssize_t read_line(struct jsonl *j, struct err *e)
 {
-	void *block = j->line;
 	size_t len = 0;
 	int byte = 0;
 
@@ -80,9 +79,9 @@ static ssize_t read_line(struct jsonl *j, struct err *e)
 			j->line_number++;
 			return jsonl_err(j, e, "a line of more than %d bytes", JSONL_LINE_MAX);
 		}
-		if (len + 2 > j->capacity && mem_grow(&block, &j->capacity, len + 2, 1, j->path, e))
+		if (len + 2 > j->capacity &&
+			mem_grow((void **)&j->line, &j->capacity, len + 2, 1, j->path, e))
 			return -1;
-		j->line = block;
 		j->line[len++] = (char)byte;
 	}
 	if (ferror(j->in))

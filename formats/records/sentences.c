@@ -14,12 +14,8 @@ static void sentence_free(void *record)
 {
 	const struct sentence *s = record;
 
-	for (size_t i = 0; i < s->view_count; i++)
-		free(s->views[i]);
-	for (size_t i = 0; i < s->object_count; i++)
-		free(s->objects[i]);
-	free(s->views);
-	free(s->objects);
+	mem_free_strings(s->views, s->view_count);
+	mem_free_strings(s->objects, s->object_count);
 	free(s->view);
 	free(s->kind);
 	free(s->ref);

@@ -12,7 +12,7 @@ enum { VERSION_READ = 1 };
 
 void selection_free(struct selection *s)
 {
-	metalist_free(s->refs, s->n);
+	mem_free_strings(s->refs, s->n);
 	free(s->indptr);
 	free(s->index);
 	*s = (struct selection){0};

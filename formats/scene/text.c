@@ -12,18 +12,18 @@
 
 void text_free_more(struct text *t)
 {
-	metalist_free(t->object_lists, t->n);
-	metalist_free(t->views, t->n);
-	metalist_free(t->kinds, t->n);
+	mem_free_strings(t->object_lists, t->n);
+	mem_free_strings(t->views, t->n);
+	mem_free_strings(t->kinds, t->n);
 	t->object_lists = t->views = t->kinds = NULL;
 }
 
 void text_free(struct text *t)
 {
-	metalist_free(t->refs, t->n);
-	metalist_free(t->objects, t->n);
-	metalist_free(t->texts, t->n);
-	metalist_free(t->pieces, t->n);
+	mem_free_strings(t->refs, t->n);
+	mem_free_strings(t->objects, t->n);
+	mem_free_strings(t->texts, t->n);
+	mem_free_strings(t->pieces, t->n);
 	text_free_more(t);
 	free(t->offsets);
 	free(t->words);
@@ -60,7 +60,7 @@ static void read_splits(struct text *t, struct arrays_in *in)
 			in->bad = err_file(in->e, in->st->path,
 				"metadata 'splits': entry %zu is '%s', not 'train' or 'test'", i, names[i]);
 	}
-	metalist_free(names, t->n);
+	mem_free_strings(names, t->n);
 }
 
 /* A list that may not be there: then it is NULL. */
@@ -79,7 +79,7 @@ static void check_lists(const struct text *t, struct arrays_in *in)
 		if (!names && *t->object_lists[i])
 			in->bad = err_file(in->e, in->st->path,
 				"metadata 'object_lists': entry %zu is not a JSON list of names", i);
-		metalist_free(names, n);
+		mem_free_strings(names, n);
 	}
 }
 

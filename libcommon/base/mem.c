@@ -91,3 +91,10 @@ char *mem_strdup(const char *text, struct err *e)
 		memcpy(copy, text, bytes);
 	return copy;
 }
+
+void mem_free_strings(char **strings, size_t n)
+{
+	for (size_t i = 0; strings && i < n; i++)
+		free(strings[i]);
+	free(strings);
+}

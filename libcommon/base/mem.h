@@ -42,4 +42,7 @@ static inline void mem_free_at(void *address)
 	free(block);
 }
 
+/* Frees n strings and the array of them, which may be NULL. */
+void mem_free_strings(char **strings, size_t n);
+
 #endif

@@ -96,11 +96,9 @@ struct builder {
 
 static int add_leaf(struct builder *b, int level, uint64_t code)
 {
-	void *block = b->tree->codes;
-
-	if (mem_grow(&block, &b->capacity, b->tree->n + 1, sizeof *b->tree->codes, "octree", b->err))
+	if (mem_grow((void **)&b->tree->codes, &b->capacity, b->tree->n + 1, sizeof *b->tree->codes, "octree",
+		    b->err))
 		return -1;
-	b->tree->codes = block;
 	b->tree->codes[b->tree->n++] = (int64_t)((uint64_t)1 << 3 * level | code);
 	return 0;
 }

@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#define PI 3.14159265358979323846
+
 static inline double vector_dot(const double a[3], const double b[3])
 {
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -12,6 +14,15 @@ static inline double vector_dot(const double a[3], const double b[3])
 static inline double vector_length(const double a[3])
 {
 	return sqrt(vector_dot(a, a));
+}
+
+/* To length 1. */
+static inline void vector_normalise(double a[3])
+{
+	double length = vector_length(a);
+
+	for (int k = 0; k < 3; k++)
+		a[k] /= length;
 }
 
 /* out = a x b; `out` may not be either. */

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/quantile.h"
 #include "geom/rotation.h"
+#include "geom/vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -15,8 +16,6 @@ enum {
 	CELL_BITS = 21,	  /* of a cell's place along an axis */
 	NEIGHBOURS = 13	  /* of 26: the others have this cell as theirs */
 };
-
-static const double pi = 3.14159265358979323846;
 
 /* The object's Gaussians, and room for what is made of them. */
 struct cloud {
@@ -102,11 +101,8 @@ static void axes_at(const double up[3], double angle, double axes[3][3])
 	k = fabs(up[2]) < fabs(up[k]) - 1e-9 ? 2 : k;
 	for (int d = 0; d < 3; d++)
 		level[d] = (d == k) - up[k] * up[d];
-	const double length = sqrt(level[0] * level[0] + level[1] * level[1] + level[2] * level[2]);
-	for (int d = 0; d < 3; d++)
-		level[d] /= length;
-	for (int d = 0; d < 3; d++)
-		other[d] = up[(d + 1) % 3] * level[(d + 2) % 3] - up[(d + 2) % 3] * level[(d + 1) % 3];
+	vector_normalise(level);
+	vector_cross(up, level, other);
 	for (int d = 0; d < 3; d++) {
 		axes[0][d] = cos(angle) * level[d] + sin(angle) * other[d];
 		axes[1][d] = cos(angle) * other[d] - sin(angle) * level[d];
@@ -120,14 +116,14 @@ static struct box turned_box(const struct cloud *c, const double up[3])
 	double axes[3][3], least = INFINITY, level = 0, angle = 0;
 
 	for (int i = 0; i < TURNS; i++) {
-		axes_at(up, i * pi / 2 / TURNS, axes);
+		axes_at(up, i * PI / 2 / TURNS, axes);
 		const struct box b = box_along(c, step, axes, 1);
 		const double foot = b.half[0] * b.half[1];
 		if (!i)
 			level = foot;
 		if (foot < least) {
 			least = foot;
-			angle = i * pi / 2 / TURNS;
+			angle = i * PI / 2 / TURNS;
 		}
 	}
 	axes_at(up, least < (1 - EXTENT_GAIN) * level ? angle : 0, axes);

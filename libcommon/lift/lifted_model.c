@@ -1,19 +1,14 @@
 #include "lift/lifted_model.h"
 
-#include <stdlib.h>
+#include "base/mem.h"
 
-static void strings_free(char **strings, size_t n)
-{
-	for (size_t i = 0; strings && i < n; i++)
-		free(strings[i]);
-	free(strings);
-}
+#include <stdlib.h>
 
 void lifted_free(struct lifted *l)
 {
-	strings_free(l->names, l->objects);
-	strings_free(l->texts, l->sentences);
-	strings_free(l->pieces, l->sentences);
+	mem_free_strings(l->names, l->objects);
+	mem_free_strings(l->texts, l->sentences);
+	mem_free_strings(l->pieces, l->sentences);
 	free(l->confidence);
 	free(l->indptr);
 	free(l->index);

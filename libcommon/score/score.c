@@ -28,11 +28,10 @@ static int add_pair(struct match *m, size_t t, const struct mask *prediction, st
 {
 	const struct mask *truth = &m->truth[t];
 	const char *object = truth->object ? truth->object : prediction ? prediction->object : NULL;
-	void *items = m->pairs->items;
 
-	if (mem_grow(&items, &m->pairs->capacity, m->pairs->n + 1, sizeof *m->pairs->items, "pairs", e))
+	if (mem_grow((void **)&m->pairs->items, &m->pairs->capacity, m->pairs->n + 1, sizeof *m->pairs->items,
+		    "pairs", e))
 		return -1;
-	m->pairs->items = items;
 	m->pairs->items[m->pairs->n] = (struct score_pair){.object = object ? object : truth->ref,
 		.ref = prediction ? prediction->ref : NULL,
 		.truth_index = t,

@@ -135,11 +135,8 @@ int score_row_make(struct score_row *row, const char *name, const struct score_s
 
 static int table_add(struct score_table *t, const char *name, const struct score_sample *s, struct err *e)
 {
-	void *rows = t->rows;
-
-	if (mem_grow(&rows, &t->capacity, t->n + 1, sizeof *t->rows, "scores", e))
+	if (mem_grow((void **)&t->rows, &t->capacity, t->n + 1, sizeof *t->rows, "scores", e))
 		return -1;
-	t->rows = rows;
 	if (score_row_make(&t->rows[t->n], name, s, e))
 		return -1;
 	t->n++;

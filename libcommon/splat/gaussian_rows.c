@@ -113,12 +113,11 @@ void gaussian_rows_none(struct splats *s, struct rows_report *report)
 static int note_dropped(
 	struct rows_report *report, size_t *capacity, size_t row, enum verdict why, struct err *e)
 {
-	void *block = report->dropped;
 	size_t used = report->not_finite + report->zero_quat;
 
-	if (mem_grow(&block, capacity, used + 1, sizeof *report->dropped, "left-out Gaussians", e))
+	if (mem_grow((void **)&report->dropped, capacity, used + 1, sizeof *report->dropped,
+		    "left-out Gaussians", e))
 		return -1;
-	report->dropped = block;
 	report->dropped[used] = row;
 	if (why == NOT_FINITE)
 		report->not_finite++;

@@ -1,12 +1,11 @@
 #include "synth/presets.h"
 
 #include "base/rng.h"
+#include "geom/vector.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 enum {
 	STACK_TRIES = 2000, /* of drawing a support and its load at random */

@@ -10,25 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
-static void normalise(double a[3])
-{
-	double length = vector_length(a);
-
-	for (int k = 0; k < 3; k++)
-		a[k] /= length;
-}
-
 void synth_cameras_aim(struct camera *c, const double centre[3], const double target[3], double roll)
 {
 	double forward[3], right[3], down[3], up[3] = {0, 0, 1}, cosine = cos(roll), sine = sin(roll);
 
 	for (int k = 0; k < 3; k++)
 		forward[k] = target[k] - centre[k];
-	normalise(forward);
+	vector_normalise(forward);
 	vector_cross(forward, up, right);
-	normalise(right);
+	vector_normalise(right);
 	vector_cross(forward, right, down);
 	for (int k = 0; k < 3; k++) {
 		c->world_to_camera[0][k] = cosine * right[k] + sine * down[k];

@@ -10,8 +10,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define PI 3.14159265358979323846
-
 /* With its middle so many deviations inside an edge, the edge is where an opaque Gaussian begins to fade. */
 static const double inside = 1.1;
 
@@ -209,9 +207,7 @@ static void lay(struct work *w, const struct coat *c, struct grain g, double spa
 		along[k] = cos(turn) * tangent[k] + sin(turn) * aside[k];
 		mean[k] = point[k] - g.thick * normal[k];
 	}
-	double length = vector_length(tilted);
-	for (int k = 0; k < 3; k++)
-		tilted[k] /= length;
+	vector_normalise(tilted);
 	put(w, c->owner, mean, &g, tilted, along, rgb, c->gloss);
 }
 

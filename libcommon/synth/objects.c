@@ -1,9 +1,9 @@
 #include "synth/objects.h"
 
+#include "geom/vector.h"
+
 #include <math.h>
 #include <stddef.h>
-
-#define PI 3.14159265358979323846
 
 static const char *const names[SYNTH_PROPERTIES][SYNTH_COLOURS + 1] = {
 	{"ball", "box", "cylinder", "cone", "mug", "bowl", "plate", "book", "bottle"},

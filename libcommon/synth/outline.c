@@ -1,12 +1,11 @@
 #include "synth/outline.h"
 
 #include "base/mem.h"
+#include "geom/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 struct box {
 	int top, left, height, width;

@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-#define PI 3.14159265358979323846
-
 static void add(struct synth_surface *s, struct synth_patch p)
 {
 	if (s->n == SYNTH_PATCHES || !(p.area > 0))

@@ -1,5 +1,6 @@
 #include "unit.h"
 
+#include "base/mem.h"
 #include "base/utf8.h"
 #include "formats/arrays/metalist.h"
 #include "formats/scene/text.h"
@@ -70,7 +71,7 @@ static void check_object_lists(const struct text *t)
 		char **names = object_list(t, i, &n, &has);
 		CHECK(names && n == expected[i].n && has == expected[i].has, "list %zu: %zu, %d", i, n, has);
 		CHECK(!n || !strcmp(names[0], "cup"), "a name of list %zu differs", i);
-		metalist_free(names, n);
+		mem_free_strings(names, n);
 	}
 }
 
