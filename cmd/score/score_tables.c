@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-int score_relations(struct scores *s, const struct score_sample *sample, const struct sentences *sentences,
+int score_relations(struct scores *s, const struct score_sample *sample, const struct parses *sentences,
 	size_t *unknown, struct err *e)
 {
 	struct score_sentence *list = mem_alloc(sentences->n, sizeof *list, "sentences", e);
@@ -14,7 +14,7 @@ int score_relations(struct scores *s, const struct score_sample *sample, const s
 	int bad = !list || !sets;
 
 	for (size_t i = 0; i < sentences->n && !bad; i++)
-		list[i] = (struct score_sentence){sentences->items[i].ref, sentences->items[i].text};
+		list[i] = (struct score_sentence){sentences->items[i].ref, sentences->items[i].set};
 	score_saying_names(names);
 	bad = bad || score_sayings(sets, sample->pairs, sample->n, list, sentences->n, unknown, e) ||
 	      score_table_groups(&s->relations, sample, sets, names, SCORE_SAYINGS, 0, e);

@@ -15,6 +15,7 @@ int scoring_read(struct scoring *in, const struct scoring_files *p, int is_parti
 			       (p->other && score_masks_read(&in->other, p->other, e)) ||
 			       (p->whole && score_masks_read(&in->whole, p->whole, e)) ||
 			       (p->sentences && sentences_read(&in->sentences, p->sentences, e)) ||
+			       (p->parses && parses_read(&in->parses, p->parses, e)) ||
 			       score_masks_check(&in->truth, &in->truth, e) ||
 			       score_masks_check(&in->predictions, &in->truth, e) ||
 			       score_masks_check(&in->other, &in->truth, e) ||
@@ -33,6 +34,7 @@ void scoring_free(struct scoring *in)
 	score_masks_free(&in->other);
 	score_masks_free(&in->whole);
 	sentences_free(&in->sentences);
+	parses_free(&in->parses);
 }
 
 static void tell_left_out(
@@ -74,17 +76,17 @@ static int pair_up(const struct report *to, const struct scoring *in, int is_com
 	return 0;
 }
 
-/* The tables of --sentences and --whole. */
+/* The tables of --parses and --whole. */
 static int by_group(const struct report *to, struct scores *s, const struct score_sample *sample,
 	const struct scoring *in, struct err *e)
 {
 	size_t no_sentence = 0, no_whole = 0;
 
-	if ((s->has_relations && score_relations(s, sample, &in->sentences, &no_sentence, e)) ||
+	if ((s->has_relations && score_relations(s, sample, &in->parses, &no_sentence, e)) ||
 		(s->has_visibility && score_visibility(s, sample, &in->truth, &in->whole, &no_whole, e)))
 		return -1;
 	if (no_sentence)
-		report_warn(to, "%s: %zu pairs have no sentence there", file_name(in->files->sentences),
+		report_warn(to, "%s: %zu pairs have no sentence there", file_name(in->files->parses),
 			no_sentence);
 	if (no_whole)
 		report_warn(to, "%s: %zu masks of the truth have no whole there", file_name(in->whole.path),
