@@ -5,6 +5,7 @@
 #include "formats/records/parses.h"
 #include "formats/scene/text.h"
 #include "lang/parser.h"
+#include "lang/rules.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -30,9 +31,9 @@ static int put_parses(const struct parser *parser, const struct text *t, FILE *o
 
 enum method { BOTH, GRAMMAR };
 
-static int run(const struct cli *c, const char *weights, enum method method, struct err *e)
+static int run(const struct cli *c, const char *weights, enum method method, unsigned without, struct err *e)
 {
-	struct parser parser = {0};
+	struct parser parser = {.without = without};
 	struct parser_weights w = {0};
 	struct text t = {0};
 	struct file_out out = {0};
@@ -63,13 +64,16 @@ static int run(const struct cli *c, const char *weights, enum method method, str
 
 int main(int argc, char **argv)
 {
-	const char *weights = NULL;
+	const char *weights = NULL, *list = NULL;
 	int method = BOTH;
 	const struct cli_option options[] = {
 		{"parser", 0, CLI_STRING, &weights, "PARSER",
 			"weights of the learnt parser (default: those that come with the program)", 0, 0},
 		{"method", 0, CLI_CHOICE, &method, "both|grammar",
 			"grammar and what was learnt on word vectors, or grammar alone (default both)", 0, 0},
+		{"without", 0, CLI_STRING, &list, "RULE,...",
+			"leave out rules: isnt, way, viewer, over_by, corner, doubled, empty, compared, group, content, one_of, members, companion",
+			0, 0},
 		{0},
 	};
 	const struct cli_tool tool = {
@@ -82,11 +86,15 @@ int main(int argc, char **argv)
 		.max_operands = 1,
 	};
 	struct err e = {0};
+	struct list_name unknown;
+	unsigned without;
 	struct cli c;
 
 	cli_parse(&c, &tool, argc, argv);
+	if (rules_without(list, &without, &unknown))
+		cli_usage(&c, "--without: '%.*s' is no rule", (int)unknown.length, unknown.text);
 	cli_refuse_overwrite(&c, "TEXT parser", "output", NULL);
 	/* a sentence is too little to share among threads */
 	omp_set_num_threads(1);
-	return run(&c, weights, (enum method)method, &e) ? cli_fail(&c, &e) : cli_done(&c);
+	return run(&c, weights, (enum method)method, without, &e) ? cli_fail(&c, &e) : cli_done(&c);
 }

@@ -1,4 +1,5 @@
-/* Words of the closed classes. The table is libcommon/lang/closed.tsv, of which the build makes initialisers. */
+/* Words of the closed classes. The table is libcommon/lang/closed.tsv, of which the build makes initialisers.
+ */
 #include "lang/closed.h"
 
 #include <string.h>
@@ -6,8 +7,6 @@
 const struct closed_word closed_words[] = {
 #include "lang/closed.inc"
 };
-const char *const closed_ends[] = {"top", "bottom", "base", "tip", "rim", NULL};
-const char *const closed_at_end[] = {"at", "on", "round", "around", "near", NULL};
 
 const int closed_count = sizeof closed_words / sizeof *closed_words;
 

@@ -40,9 +40,6 @@ extern const struct closed_word closed_words[];
 extern const int closed_count; /* at most CLOSED_MOST */
 enum { CLOSED_MOST = 576 };
 
-/* Ends of a thing, and what stands before them: "at the bottom". Both end in NULL. */
-extern const char *const closed_ends[], *const closed_at_end[];
-
 /* Its index or -1. */
 int closed_find(const char *text);
 /* Whether it is a word of the class. */

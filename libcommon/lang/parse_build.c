@@ -6,6 +6,7 @@
 #include "lang/colours.h"
 #include "lang/compared.h"
 #include "lang/parse_private.h"
+#include "lang/rules.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -301,7 +302,7 @@ static int add_clauses(struct build *b)
 }
 
 /* Whether a word is one of a predicate's. */
-static int is_told_on(const struct build *b, int j)
+static int is_of_use(const struct build *b, int j)
 {
 	while (j > 0 && tells_on(b, j))
 		j--;
@@ -324,7 +325,7 @@ static int add_others(struct build *b)
 			bad = parse_list_add(
 				&p->phrases[owner < 0 ? 0 : owner].except, b->phrase_of[i], b->e);
 		} else if (r == ROLE_NONE && b->t->word[i].closed < 0 && !says_nothing(b->t, i) &&
-			   !is_told_on(b, i)) {
+			   !is_of_use(b, i)) {
 			bad = parse_list_add(&p->unexplained, i, b->e);
 		}
 		if (bad)
@@ -354,7 +355,8 @@ static void find_view(struct build *b)
 	}
 }
 
-int parse_build(struct parse *p, const struct analysis *a, const struct tokens *t, struct err *e)
+int parse_build(
+	struct parse *p, const struct analysis *a, const struct tokens *t, unsigned without, struct err *e)
 {
 	struct build b = {.p = p, .a = a, .t = t, .e = e, .from = -1};
 
@@ -363,7 +365,7 @@ int parse_build(struct parse *p, const struct analysis *a, const struct tokens *
 		parse_free(p);
 		return -1;
 	}
-	parse_counts(&b);
+	parse_counts(&b, rule_counts(without, RULE_group));
 	parse_ordinals(&b);
 	if (add_clauses(&b) || add_others(&b)) {
 		parse_free(p);
@@ -371,7 +373,7 @@ int parse_build(struct parse *p, const struct analysis *a, const struct tokens *
 	}
 	find_view(&b);
 	p->confidence = t->n ? 1 - (double)p->unexplained.n / t->n : 0;
-	if (parse_settle(p, e)) {
+	if (parse_apply_rules(p, without, e)) {
 		parse_free(p);
 		return -1;
 	}

@@ -1,9 +1,95 @@
-/* The other half of what closed-class words settle (analysis_mend.c): places. */
+/* Rules that settle, whatever a learnt parser makes of the words, what closed-class words say: how something
+ * looks or does not, who looks, and places. lang/rules.def has them. */
 #include "lang/analysis.h"
 #include "lang/closed.h"
+#include "lang/compared.h"
+#include "lang/rules.h"
 
 /* Words between two predicates of one place. */
 enum { PLACE_REACH = 4 };
+
+/* The noun that the words from i on stand before as adjectives do, or -1. */
+static int noun_after(const struct analysis *a, const struct tokens *t, int i)
+{
+	for (int j = i + 1; j < t->n && !t->word[j].before; j++) {
+		enum word_role r = a->word[j].role;
+		if (role_is_phrase(r))
+			return j;
+		if (r != ROLE_ATTRIBUTE && r != ROLE_NAME && tokens_class(t, j) != CLOSED_SIZE &&
+			tokens_class(t, j) != CLOSED_ATTRIBUTE)
+			return -1;
+	}
+	return -1;
+}
+
+/* "the door that isn't brown": brown ones are left out. */
+static void take_isnt(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i + 1 < t->n; i++) {
+		const int next = tokens_class(t, i + 1) == CLOSED_ADVERB ? i + 2 : i + 1;
+		if (tokens_class(t, i) == CLOSED_NEGATION && !tokens_is(t, i, "no") &&
+			!tokens_is(t, i, "without") && next < t->n && !t->word[next].before &&
+			a->word[next].role == ROLE_ATTRIBUTE && a->word[next].head < next &&
+			noun_after(a, t, next) < 0)
+			a->word[next].role = ROLE_EXCEPT;
+	}
+}
+
+/* The last of the words from i on that stand together as a noun and what describes it, or -1. */
+static int noun_of_run(const struct analysis *a, const struct tokens *t, int i)
+{
+	int last = -1;
+
+	for (; i < t->n && !t->word[i].before; i++) {
+		const int class = tokens_class(t, i);
+		if (class >= 0 && class != CLOSED_ATTRIBUTE && class != CLOSED_SIZE &&
+			class != CLOSED_GENERIC)
+			break;
+		last = class != CLOSED_ATTRIBUTE && class != CLOSED_SIZE ? i : last;
+		if (role_is_phrase(a->word[i].role))
+			return i;
+	}
+	return last;
+}
+
+/* "an empty plate", "the plates are still empty": they carry nothing. */
+static void take_empty(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		const int verb = tokens_class(t, i - 1) == CLOSED_ADVERB || tokens_is(t, i - 1, "still")
+					 ? i - 2
+					 : i - 1;
+		const int is_said = a->word[i].role == ROLE_ATTRIBUTE || a->word[i].role == ROLE_NAME ||
+				    (a->word[i].role == ROLE_NONE && tokens_class(t, verb) == CLOSED_BE);
+		if (tokens_is(t, i, "empty") && is_said)
+			a->word[i] =
+				(struct analysis_word){ROLE_PREDICATE, a->word[i].head, PARSE_SUPPORTS, 1};
+	}
+}
+
+/* Whether a word is said of something as a look or a size. */
+static int is_said_of_looks(const struct analysis_word *w)
+{
+	return w->role == ROLE_ATTRIBUTE || w->role == ROLE_NAME || w->role == ROLE_TARGET ||
+	       (w->role == ROLE_PREDICATE && w->relation >= PARSE_LARGER && w->relation <= PARSE_WIDER);
+}
+
+/* "the darkest", "the most colourful one", "shinier than the tin": no sizes, but looks that are compared. */
+static void take_compared(struct analysis *a, const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++) {
+		const struct analysis_word w = a->word[i];
+		if (!is_said_of_looks(&w) || compared_at(t, i) == PARSE_PLAIN)
+			continue;
+		const int is_of_target = w.head >= 0 && a->word[w.head].role == ROLE_TARGET;
+		a->word[i] = (struct analysis_word){ROLE_PREDICATE, is_of_target ? ROOT : w.head, PARSE_OTHER,
+			w.role == ROLE_PREDICATE && w.negated};
+		const int start = tokens_class(t, i + 2) == CLOSED_DETERMINER ? i + 3 : i + 2;
+		const int noun = tokens_is(t, i + 1, "than") ? noun_of_run(a, t, start) : -1;
+		if (noun >= 0 && a->word[noun].role == ROLE_NONE)
+			a->word[noun] = (struct analysis_word){.role = ROLE_ANCHOR, .head = i};
+	}
+}
 
 static int is_viewer(const struct tokens *t, int i)
 {
@@ -12,7 +98,7 @@ static int is_viewer(const struct tokens *t, int i)
 }
 
 /* "the one closest to us". */
-static void mend_viewer(struct analysis *a, const struct tokens *t)
+static void take_viewer(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
 		if (a->word[i].role != ROLE_NONE || !is_viewer(t, i) ||
@@ -52,7 +138,7 @@ static void take_predicate(struct analysis *a, const struct analysis *grammar, i
 }
 
 /* "the greatest distance to the sofa" is farthest from it, whatever became of the words. */
-static void mend_ways(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
+static void take_way(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
 {
 	static const char *const far[] = {
 		"longest", "greatest", "largest", "biggest", "furthest", "farthest"};
@@ -81,21 +167,6 @@ static void mend_ways(struct analysis *a, const struct analysis *grammar, const 
 	}
 }
 
-/* "in the background" is at the back, and "in the foreground" in front. */
-static void mend_grounds(struct analysis *a, const struct tokens *t)
-{
-	for (int i = 0; i < t->n; i++) {
-		struct analysis_word *w = &a->word[i];
-		const int is_back = tokens_is(t, i, "background");
-		if ((!is_back && !tokens_is(t, i, "foreground")) ||
-			(w->role != ROLE_NONE && w->role != ROLE_PREDICATE))
-			continue;
-		if (w->role == ROLE_NONE)
-			*w = (struct analysis_word){.role = ROLE_PREDICATE, .head = ROOT};
-		w->relation = is_back ? PARSE_BEHIND : PARSE_FRONT;
-	}
-}
-
 /* The last predicate between words i and j with nothing but words that say nothing after it, or -1. */
 static int last_predicate(const struct analysis *a, const struct tokens *t, int i, int j)
 {
@@ -106,7 +177,7 @@ static int last_predicate(const struct analysis *a, const struct tokens *t, int 
 }
 
 /* "over by the sink" is by it. */
-static void mend_over_by(struct analysis *a, const struct tokens *t)
+static void take_over_by(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
 		const int first = a->word[i].role == ROLE_ANCHOR ? a->word[i].head : i;
@@ -136,7 +207,7 @@ static int way_to_corner(const struct tokens *t, int i)
 }
 
 /* "in the back right corner" is at the back, on the right and in a corner. */
-static void mend_corner(struct analysis *a, const struct tokens *t)
+static void take_corner(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 1; i < t->n; i++) {
 		const int is_plain = analysis_is_predicate(a, i) && a->word[i].relation == PARSE_CORNER &&
@@ -178,7 +249,7 @@ static int is_of_room(enum parse_relation r)
 }
 
 /* "on the very top" is one place, as are "right next to" and "closest to the corner". */
-static void mend_doubled(struct analysis *a, const struct tokens *t)
+static void take_doubled(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
 		const int j = analysis_is_predicate(a, i) ? next_place(a, t, i) : -1;
@@ -194,33 +265,24 @@ static void mend_doubled(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "in the middle between the jug and the bowl", "in the middle, between them": is between the two. */
-static void mend_between(struct analysis *a, const struct tokens *t)
+void analysis_apply_rules(
+	struct analysis *a, const struct analysis *grammar, const struct tokens *t, unsigned without)
 {
-	for (int i = 1; i < t->n; i++) {
-		int p = i - 1;
-		if (a->word[i].role != ROLE_PREDICATE || a->word[i].relation != PARSE_BETWEEN ||
-			!analysis_has_anchor(a, i))
-			continue;
-		while (p > 0 && a->word[p].role == ROLE_NONE)
-			p--;
-		if (a->word[p].role != ROLE_PREDICATE || a->word[p].head != a->word[i].head)
-			continue;
-		for (int j = i + 1; j < t->n && p == i - 1; j++)
-			if (a->word[j].role == ROLE_ANCHOR && a->word[j].head == p)
-				a->word[j].head = i;
-		if (a->word[p].relation == PARSE_MIDDLE && !analysis_has_anchor(a, p))
-			analysis_give_up(&a->word[p]);
-	}
-}
-
-void analysis_places(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
-{
-	mend_ways(a, grammar, t);
-	mend_viewer(a, t);
-	mend_grounds(a, t);
-	mend_over_by(a, t);
-	mend_between(a, t);
-	mend_corner(a, t);
-	mend_doubled(a, t);
+	if (rule_counts(without, RULE_isnt))
+		take_isnt(a, t);
+	if (rule_counts(without, RULE_way))
+		take_way(a, grammar, t);
+	if (rule_counts(without, RULE_viewer))
+		take_viewer(a, t);
+	if (rule_counts(without, RULE_over_by))
+		take_over_by(a, t);
+	if (rule_counts(without, RULE_corner))
+		take_corner(a, t);
+	if (rule_counts(without, RULE_doubled))
+		take_doubled(a, t);
+	if (rule_counts(without, RULE_empty))
+		take_empty(a, t);
+	if (rule_counts(without, RULE_compared))
+		take_compared(a, t);
+	analysis_repair(a);
 }
