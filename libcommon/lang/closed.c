@@ -25,6 +25,14 @@ int closed_is(const char *text, enum closed_class class)
 	return closed >= 0 && closed_words[closed].class == class;
 }
 
+int closed_class_of(const struct parse *p, int word)
+{
+	if (word < 0 || word >= p->word_count)
+		return -1;
+	const int closed = closed_find(p->words[word].text);
+	return closed < 0 ? CLOSED_CLASSES : (int)closed_words[closed].class;
+}
+
 enum parse_relation closed_inverse(enum parse_relation r)
 {
 	static const enum parse_relation pairs[][2] = {{PARSE_LEFT, PARSE_RIGHT}, {PARSE_FRONT, PARSE_BEHIND},

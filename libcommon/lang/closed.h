@@ -45,6 +45,9 @@ int closed_find(const char *text);
 /* Whether it is a word of the class. */
 int closed_is(const char *text, enum closed_class class);
 
+/* The class of a parse's word, CLOSED_CLASSES of one of the open classes, -1 where there is no such word. */
+int closed_class_of(const struct parse *p, int word);
+
 /* The relation the other way round: left for right, supports for on. */
 enum parse_relation closed_inverse(enum parse_relation r);
 

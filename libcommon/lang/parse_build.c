@@ -11,13 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int tail(const char *w, const char *end)
-{
-	size_t n = strlen(w), m = strlen(end);
-
-	return n > m + 2 && !strcmp(w + n - m, end);
-}
-
 static int add_words(struct build *b)
 {
 	struct parse *p = b->p;
@@ -179,9 +172,9 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	if (c == CLOSED_PLACE || c == CLOSED_SIZE) {
 		if (build_value(t, i))
 			return (enum parse_degree)build_value(t, i);
-	} else if (tail(w, "est") || tail(w, "most")) {
+	} else if (token_ends(w, "est", 3) || token_ends(w, "most", 3)) {
 		return PARSE_MOST;
-	} else if (tail(w, "er") && tokens_is(t, i + 1, "than")) {
+	} else if (token_ends(w, "er", 3) && tokens_is(t, i + 1, "than")) {
 		return PARSE_MORE;
 	}
 	for (int j = i - 1; j >= 0 && j >= i - 3; j--) {

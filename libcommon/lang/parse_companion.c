@@ -87,11 +87,9 @@ static int phrase_within(const struct parse *p, int from, int to)
 /* Whether a word among from..to-1 is of one of the classes, bits. */
 static int has_class(const struct parse *p, int from, int to, unsigned classes)
 {
-	for (int w = from; w < to; w++) {
-		const int closed = closed_find(p->words[w].text);
-		if (closed >= 0 && classes >> closed_words[closed].class & 1)
+	for (int w = from; w < to; w++)
+		if (classes >> closed_class_of(p, w) & 1)
 			return 1;
-	}
 	return 0;
 }
 

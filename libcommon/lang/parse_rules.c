@@ -4,28 +4,13 @@
 #include "lang/kinds.h"
 #include "lang/rules.h"
 
-#include <stdlib.h>
-#include <string.h>
-
-static int is(const struct parse *p, int word, const char *text)
-{
-	return word >= 0 && word < p->word_count && !strcmp(p->words[word].text, text);
-}
-
-static int class_of(const struct parse *p, int word)
-{
-	const int closed = word >= 0 && word < p->word_count ? closed_find(p->words[word].text) : -1;
-
-	return closed < 0 ? -1 : (int)closed_words[closed].class;
-}
-
 /* "the first two hooks" are two, but "of my two coats the second" is one of two. */
 static void take_one_of(const struct parse *p, struct parse_phrase *f)
 {
 	if (!f->ordinal || f->count == PARSE_ONE)
 		return;
 	for (int w = 0; w + 1 < p->word_count; w++)
-		if (class_of(p, w) == CLOSED_ORDINAL && class_of(p, w + 1) == CLOSED_NUMBER)
+		if (closed_class_of(p, w) == CLOSED_ORDINAL && closed_class_of(p, w + 1) == CLOSED_NUMBER)
 			return;
 	f->group = f->group ? f->group : f->count;
 	f->count = PARSE_ONE;
@@ -34,9 +19,10 @@ static void take_one_of(const struct parse *p, struct parse_phrase *f)
 /* A jar of tea is a jar: what fills it only says which. */
 static void take_content(const struct parse *p, struct parse_phrase *f)
 {
+	static const char *const of[] = {"of", NULL};
 	const int content = f->noun.n ? f->noun.item[f->noun.n - 1] : 0;
 
-	for (int k = 0; k < f->attributes.n && is(p, content - 1, "of"); k++) {
+	for (int k = 0; k < f->attributes.n && parse_word_is(p, content - 1, of); k++) {
 		int *const word = &f->attributes.item[k];
 		if (*word == content - 2 && kinds_hold(p->words[*word].lemma)) {
 			f->noun.item[f->noun.n - 1] = *word;
