@@ -72,7 +72,7 @@ int main(int argc, char **argv)
 		{"method", 0, CLI_CHOICE, &method, "both|grammar",
 			"grammar and what was learnt on word vectors, or grammar alone (default both)", 0, 0},
 		{"without", 0, CLI_STRING, &list, "RULE,...",
-			"leave out rules: isnt, way, viewer, over_by, corner, doubled, empty, compared, group, content, one_of, members, companion",
+			"leave out rules: isnt, viewer, over_by, corner, doubled, empty, compared, group, content, one_of, members, companion",
 			0, 0},
 		{0},
 	};

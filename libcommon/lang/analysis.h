@@ -49,10 +49,8 @@ void grammar_analyse(struct analysis *a, const struct tokens *t);
 /* Makes every head one that its role may have, without a circle; what then hangs on nothing hangs on ROOT. */
 void analysis_repair(struct analysis *a);
 
-/* The rules of lang/rules.def that are of an analysis, but those that are left out. grammar: what
- * grammar_analyse made. */
-void analysis_apply_rules(
-	struct analysis *a, const struct analysis *grammar, const struct tokens *t, unsigned without);
+/* The rules of lang/rules.def that are of an analysis, but those that are left out. */
+void analysis_apply_rules(struct analysis *a, const struct tokens *t, unsigned without);
 
 /* Whether there is such a word and it is a predicate. */
 int analysis_is_predicate(const struct analysis *a, int i);

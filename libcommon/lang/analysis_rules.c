@@ -116,57 +116,6 @@ static void take_viewer(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* The predicate of words i to i + 4, or -1. */
-static int predicate_from(const struct analysis *a, int i)
-{
-	for (int j = i; j < a->n && j <= i + 4; j++)
-		if (a->word[j].role == ROLE_PREDICATE)
-			return j;
-	return -1;
-}
-
-/* Takes over a predicate of the grammar's, with its anchors and what describes them. */
-static void take_predicate(struct analysis *a, const struct analysis *grammar, int predicate)
-{
-	a->word[predicate] = grammar->word[predicate];
-	for (int i = predicate + 1; i < a->n; i++) {
-		const struct analysis_word *w = &grammar->word[i];
-		if (w->head == predicate || (w->head > predicate && w->role != ROLE_PREDICATE &&
-						    grammar->word[w->head].head == predicate))
-			a->word[i] = *w;
-	}
-}
-
-/* "the greatest distance to the sofa" is farthest from it, whatever became of the words. */
-static void take_way(struct analysis *a, const struct analysis *grammar, const struct tokens *t)
-{
-	static const char *const far[] = {
-		"longest", "greatest", "largest", "biggest", "furthest", "farthest"};
-	static const char *const near[] = {"shortest", "least", "smallest"};
-
-	for (int i = 0; i + 1 < t->n; i++) {
-		int r = -1, at;
-		if (!tokens_is(t, i + 1, "way") && !tokens_is(t, i + 1, "distance"))
-			continue;
-		for (size_t k = 0; k < sizeof far / sizeof *far; k++)
-			r = tokens_is(t, i, far[k]) ? PARSE_FAR : r;
-		for (size_t k = 0; k < sizeof near / sizeof *near; k++)
-			r = tokens_is(t, i, near[k]) ? PARSE_NEAR : r;
-		if (r >= 0 && predicate_from(a, i) < 0 && (at = predicate_from(grammar, i)) >= 0)
-			take_predicate(a, grammar, at);
-		at = r >= 0 ? predicate_from(a, i) : -1;
-		if (at < 0)
-			continue;
-		const struct analysis_word predicate = a->word[at];
-		analysis_give_up(&a->word[at]);
-		a->word[i] = predicate;
-		a->word[i].relation = (enum parse_relation)r;
-		for (int j = 0; j < t->n; j++)
-			if (a->word[j].role == ROLE_ANCHOR && a->word[j].head == at)
-				a->word[j].head = i;
-	}
-}
-
 /* The last predicate between words i and j with nothing but words that say nothing after it, or -1. */
 static int last_predicate(const struct analysis *a, const struct tokens *t, int i, int j)
 {
@@ -265,13 +214,10 @@ static void take_doubled(struct analysis *a, const struct tokens *t)
 	}
 }
 
-void analysis_apply_rules(
-	struct analysis *a, const struct analysis *grammar, const struct tokens *t, unsigned without)
+void analysis_apply_rules(struct analysis *a, const struct tokens *t, unsigned without)
 {
 	if (rule_counts(without, RULE_isnt))
 		take_isnt(a, t);
-	if (rule_counts(without, RULE_way))
-		take_way(a, grammar, t);
 	if (rule_counts(without, RULE_viewer))
 		take_viewer(a, t);
 	if (rule_counts(without, RULE_over_by))

@@ -44,16 +44,15 @@ int parse_sentence(struct parse *p, const struct parser *parser, const char *tex
 	const struct parser_vectors *v, struct err *e)
 {
 	struct tokens t;
-	struct analysis a, grammar;
+	struct analysis a;
 	double sure = 1;
 
 	tokens_take(&t, text, v ? v->pieces : NULL, parser->known, parser->known_count);
-	grammar_analyse(&grammar, &t);
 	if (!are_mine(parser, v) || !t.n)
-		a = grammar;
+		grammar_analyse(&a, &t);
 	else if (learnt_analyse(&a, &t, parser, v, &sure, e))
 		return -1;
-	analysis_apply_rules(&a, &grammar, &t, parser->without);
+	analysis_apply_rules(&a, &t, parser->without);
 	if (parse_build(p, &a, &t, parser->without, e))
 		return -1;
 	p->confidence *= sure;

@@ -103,40 +103,9 @@ static int asks_for(const struct parse *p)
 	       next != CLOSED_PLACE && next != CLOSED_HAVE && next != -1;
 }
 
-/* "sweep the floor with it". */
-static int ends_in_it(const struct parse *p)
-{
-	static const char *const it[] = {"it", "them", "this", "that", NULL};
-	static const char *const ways[] = {
-		"with", "in", "on", "from", "into", "of", "to", "by", "through", "off", NULL};
-	const int n = p->word_count;
-
-	if (!parse_word_is(p, n - 1, it) || !parse_word_is(p, n - 2, ways))
-		return 0;
-	for (int i = 0; i < n - 2; i++)
-		if (closed_class_of(p, i) == CLOSED_HAVE || closed_class_of(p, i) == CLOSED_WITH ||
-			closed_class_of(p, i) == CLOSED_NEGATION)
-			return 0;
-	return 1;
-}
-
-/* "keeps the rain off". */
-static int begins_with_verb(const struct parse *p)
-{
-	static const char *const it[] = {"it", "that", "which", NULL};
-	int i = first_word(p);
-
-	while (parse_word_is(p, i, it) || closed_class_of(p, i) == CLOSED_GENERIC)
-		i++;
-	const int next = closed_class_of(p, i + 1);
-	return is_open(p, i) && token_ends(p->words[i].text, "s", 2) &&
-	       !token_ends(p->words[i].text, "ss", 2) && strcmp(p->words[i].lemma, p->words[i].text) != 0 &&
-	       (next == CLOSED_DETERMINER || next == CLOSED_PRONOUN || next == CLOSED_CLASSES);
-}
-
 int purpose_is_said(const struct parse *p)
 {
-	return says_doing(p) || says_for(p) || asks_for(p) || ends_in_it(p) || begins_with_verb(p);
+	return says_doing(p) || says_for(p) || asks_for(p);
 }
 
 int purpose_is_content(const struct parse *p, int word)

@@ -33,12 +33,11 @@ static inline struct analysis made(const struct tokens *t, const char *roles, en
 static inline struct analysis ruled(const char *text, const char *roles, enum parse_relation relation)
 {
 	struct tokens t;
-	struct analysis a, grammar;
+	struct analysis a;
 
 	tokens_take(&t, text, NULL, NULL, 0);
-	grammar_analyse(&grammar, &t);
 	a = made(&t, roles, relation);
-	analysis_apply_rules(&a, &grammar, &t, 0);
+	analysis_apply_rules(&a, &t, 0);
 	return a;
 }
 

@@ -415,8 +415,8 @@ static void purposes_are_told(void)
 {
 	static const char *const yes[] = {"what you slice bread with", "something to sew with",
 		"for digging holes", "the one used for fishing", "how would I shave?", "where the eggs go",
-		"dig the garden with it", "let's cook some rice", "keeps the wind off",
-		"I need to saw this plank", "people sail across the lake on it", "the thing for soup"};
+		"let's cook some rice", "I need to saw this plank", "people sail across the lake on it",
+		"the thing for soup"};
 	static const char *const no[] = {"the saw", "a saw left of the plank", "where is the saw?",
 		"could you lift it", "what stands by the wall", "I mean the saw", "where did I leave it",
 		"the saw with a plank on it", "the plank is under it", "it has a plank on it", "", "it"};
