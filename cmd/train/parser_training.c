@@ -68,7 +68,8 @@ static int put_parse(void *out, const struct marked_sentence *s, struct err *e)
 	char ref[32];
 
 	snprintf(ref, sizeof ref, "m%zu", s->number);
-	int bad = parse_build(&p, &s->analysis, &s->tokens, 0, e) || parses_put(out, ref, s->marked.text, &p, e);
+	int bad = parse_build(&p, &s->analysis, &s->tokens, 0, e) ||
+		  parses_put(out, ref, s->marked.text, &p, e);
 	parse_free(&p);
 	return bad ? -1 : 0;
 }
