@@ -64,7 +64,7 @@ ASAN_BUILD = $(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CC=cla
 
 # gcc has omp.h where clang's own OpenMP is not installed.
 CLANG_FLAGS = -idirafter $$(gcc -print-file-name=include)
-TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. -std=c11 -fopenmp $(CLANG_FLAGS)
+TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. -I$(BUILD)/tables -std=c11 -fopenmp $(CLANG_FLAGS)
 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
@@ -84,6 +84,17 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
 
 # The default weights of the parser are in the library.
 $(BUILD)/obj/formats/parser_weights.o: formats/encoders/parser_default.safetensors
+
+# So are tables of words, as C.
+TABLES := $(BUILD)/tables/lang/closed.inc $(BUILD)/tables/lang/colours.inc
+$(BUILD)/tables/lang/closed.inc: libcommon/lang/closed.tsv
+	@mkdir -p $(@D)
+	awk -F '\t' '!/^#/ { printf "\t{\"%s\", CLOSED_%s, %s, %s},\n", $$1, toupper($$2), $$3 == "-" ? -1 : "PARSE_" toupper($$3), $$4 }' $< >$@
+$(BUILD)/tables/lang/colours.inc: libcommon/lang/colours.tsv
+	@mkdir -p $(@D)
+	awk -F '\t' '!/^#/ { printf NF == 4 ? "COLOUR(\"%s\", %s, %s, %s)\n" : "ALIKE(\"%s\", \"%s\")\n", $$1, $$2, $$3, $$4 }' $< >$@
+$(BUILD)/obj/libcommon/lang/closed.o $(BUILD)/obj/libcommon/lang/colours.o: CPPFLAGS += -I$(BUILD)/tables
+$(BUILD)/obj/libcommon/lang/closed.o $(BUILD)/obj/libcommon/lang/colours.o: $(TABLES)
 
 # So is what is known of everyday things.
 $(BUILD)/obj/libcommon/lang/things.o: libcommon/lang/things.tsv
@@ -279,7 +290,7 @@ TIDY_FILES = $(filter-out tests/%,$(filter %.c,$(C_FILES)))
 ANALYZE ?= $(filter $(TIDY_FILES),$(shell tests/changed.sh))
 tidy = printf '%s\n' $(2) | xargs -r -P $(JOBS) -n 4 sh -c 'clang-tidy --quiet $(1) "$$@" -- $(TIDY_FLAGS)' tidy
 
-lint-tidy:
+lint-tidy: $(TABLES)
 	@$(call tidy,--checks=-clang-analyzer-*,$(filter-out $(ANALYZE),$(TIDY_FILES)))
 	@$(call tidy,,$(ANALYZE))
 

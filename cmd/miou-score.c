@@ -7,7 +7,7 @@
 
 static void check_paths(const struct cli *c, const struct scoring_files *p)
 {
-	const char *all[] = {p->truth, p->predictions, p->other, p->sentences, p->whole};
+	const char *all[] = {p->truth, p->predictions, p->other, p->sentences, p->parses, p->whole};
 	int stdins = 0;
 
 	if (!p->truth)
@@ -33,7 +33,9 @@ static const struct cli_option options[] = {
 	{"compare", 0, CLI_STRING, &paths.other, "OTHER",
 		"other predictions of the same truth: which are better, pair by pair", 0, 0},
 	{"sentences", 0, CLI_STRING, &paths.sentences, "FILE",
-		"a row for each relation that the sentences speak of", 0, 0},
+		"of --answers: which objects each sentence means", 0, 0},
+	{"parses", 0, CLI_STRING, &paths.parses, "FILE",
+		"a row for each relation that sentences speak of, as text-parse takes them apart", 0, 0},
 	{"whole", 0, CLI_STRING, &paths.whole, "FILE",
 		"masks as if nothing hid the objects: a row for each range of what is seen", 0, 0},
 	{"bootstrap", 0, CLI_INT, &resamples, "N",
@@ -64,14 +66,16 @@ static void check(const struct cli *c)
 	check_paths(c, &paths);
 	if (c->json && is_csv)
 		cli_usage(c, "--json and --csv exclude each other");
-	if (is_boxes && (is_partial || paths.other || paths.sentences || paths.whole || resamples || is_csv))
+	if (is_boxes && (is_partial || paths.other || paths.sentences || paths.parses || paths.whole ||
+				resamples || is_csv))
 		cli_usage(c, "--boxes goes with --truth, --json and --fail-under only");
-	if (is_answers && !paths.sentences)
-		cli_usage(c, "--answers needs --sentences");
-	if (is_answers && (is_boxes || paths.other || paths.whole || resamples || is_csv))
+	if (is_answers != (paths.sentences != NULL))
+		cli_usage(c,
+			is_answers ? "--answers needs --sentences" : "--sentences goes with --answers only");
+	if (is_answers && (is_boxes || paths.other || paths.parses || paths.whole || resamples || is_csv))
 		cli_usage(c,
 			"--answers goes with --truth, --sentences, --predicted-views, --json and --fail-under only");
-	cli_refuse_overwrite(c, "PREDICTIONS truth compare sentences whole", "output", NULL);
+	cli_refuse_overwrite(c, "PREDICTIONS truth compare sentences parses whole", "output", NULL);
 }
 
 /* *reached gets the figure of --fail-under. */
@@ -81,7 +85,7 @@ static int score(const struct cli *c, double *reached, const struct report *to, 
 	const struct bootstrap how = {(size_t)resamples, confidence, (uint64_t)c->seed};
 	SCOPED_BY(scores_free)
 	struct scores s = {.is_compared = paths.other != NULL,
-		.has_relations = paths.sentences != NULL,
+		.has_relations = paths.parses != NULL,
 		.has_visibility = paths.whole != NULL,
 		.how = resamples ? &how : NULL};
 	const enum scores_form form = is_csv ? SCORES_CSV : c->json ? SCORES_JSON : SCORES_TEXT;

@@ -6,6 +6,7 @@
 #include "formats/records/parses.h"
 #include "formats/scene/text.h"
 #include "lang/parser.h"
+#include "lang/rules.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -30,7 +31,7 @@ static int put_parses(const struct parser *parser, const struct text *t, FILE *o
 
 enum { BOTH, GRAMMAR };
 
-static const char *weights;
+static const char *weights, *list;
 static int method = BOTH;
 
 static const struct cli_option options[] = {
@@ -38,6 +39,9 @@ static const struct cli_option options[] = {
 		"weights of the learnt parser (default: those that come with the program)", 0, 0},
 	{"method", 0, CLI_CHOICE, &method, "both|grammar",
 		"grammar and what was learnt on word vectors, or grammar alone (default both)", 0, 0},
+	{"without", 0, CLI_STRING, &list, "RULE,...",
+		"leave out rules: isnt, viewer, over_by, corner, doubled, empty, compared, group, content, one_of, members, companion",
+		0, 0},
 	{0},
 };
 
@@ -51,10 +55,11 @@ static const struct cli_tool tool = {
 	.max_operands = 1,
 };
 
-static int parse_all(const struct cli *c, const char *path, struct parser_weights *w, struct err *e)
+static int parse_all(
+	const struct cli *c, const char *path, struct parser_weights *w, unsigned without, struct err *e)
 {
 	SCOPED_BY(text_free) struct text t = {0};
-	struct parser parser = {.weights = method == BOTH ? w : NULL};
+	struct parser parser = {.weights = method == BOTH ? w : NULL, .without = without};
 	struct file_out out;
 
 	if (method == BOTH && (weights ? parser_weights_read(w, weights, e) : parser_weights_default(w, e)))
@@ -76,12 +81,16 @@ static int parse_all(const struct cli *c, const char *path, struct parser_weight
 static int run(const struct cli *c, const struct report *to, struct err *e)
 {
 	SCOPED_BY(parser_weights_free) struct parser_weights w = {0};
+	struct list_name unknown;
+	unsigned without;
 
 	(void)to;
+	if (rules_without(list, &without, &unknown))
+		cli_usage(c, "--without: '%.*s' is no rule", (int)unknown.length, unknown.text);
 	cli_refuse_overwrite(c, "TEXT parser", "output", NULL);
 	/* a sentence is too little to share among threads */
 	omp_set_num_threads(1);
-	return parse_all(c, c->operand_count ? c->operands[0] : "-", &w, e);
+	return parse_all(c, c->operand_count ? c->operands[0] : "-", &w, without, e);
 }
 
 int main(int argc, char **argv)

@@ -177,6 +177,8 @@ $(1)/weights/complete: $(1)/scene/cameras.json $(1)/log/weigh.options
 $(1)/text/contextual.safetensors: $(1)/data/made-by $(1)/log/contextual.options
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/contextual,text-encode --model $(BERT) -o $$@ $(1)/data/sentences.jsonl)
+$(1)/text/parses.jsonl: $(1)/text/contextual.safetensors
+	$(tool)text-parse -o $$@ $$<
 $(1)/text/static.safetensors: $(1)/data/made-by $(1)/log/static.options
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/static,text-encode --words static --model $(BERT) -o $$@ $(1)/data/sentences.jsonl)
@@ -231,9 +233,9 @@ options_of = --iterations $(or $(steps.$(1)),$(ITERATIONS)) $(TRAIN) $(run.$(1))
 
 # $(call score_rule,FOLDER/RUN)
 define score_rule
-$(1)/%.csv: $(1)/%.jsonl
+$(1)/%.csv: $(1)/%.jsonl $(dir $(1))text/parses.jsonl
 	$(tool)miou-score --csv --quiet --predicted-views --truth $(dir $(1))data/truth.jsonl --whole $(dir $(1))data/whole.jsonl \
-		--sentences $(dir $(1))data/sentences.jsonl -o $$@ $$<
+		--parses $(dir $(1))text/parses.jsonl -o $$@ $$<
 endef
 
 # $(call run_rules,FOLDER,SEED,RUN)

@@ -66,7 +66,7 @@ static int score_masks_check(const struct score_masks *s, const struct score_mas
 }
 
 static int score_relations(struct scores *s, const struct score_sample *sample,
-	const struct sentences *sentences, size_t *unknown, struct err *e)
+	const struct parses *sentences, size_t *unknown, struct err *e)
 {
 	SCOPED struct score_sentence *list = mem_alloc(sentences->n, sizeof *list, "sentences", e);
 	SCOPED uint32_t *sets = mem_alloc(sample->n, sizeof *sets, "pairs", e);
@@ -74,7 +74,7 @@ static int score_relations(struct scores *s, const struct score_sample *sample,
 	int bad = !list || !sets;
 
 	for (size_t i = 0; i < sentences->n && !bad; i++)
-		list[i] = (struct score_sentence){sentences->items[i].ref, sentences->items[i].text};
+		list[i] = (struct score_sentence){sentences->items[i].ref, sentences->items[i].set};
 	score_saying_names(names);
 	bad = bad || score_sayings(sets, sample->pairs, sample->n, list, sentences->n, unknown, e) ||
 	      score_table_groups(&s->relations, sample, sets, names, SCORE_SAYINGS, 0, e);
@@ -103,6 +103,7 @@ int scoring_read(struct scoring *in, const struct scoring_files *p, int is_parti
 			       (p->other && score_masks_read(&in->other, p->other, e)) ||
 			       (p->whole && score_masks_read(&in->whole, p->whole, e)) ||
 			       (p->sentences && sentences_read(&in->sentences, p->sentences, e)) ||
+			       (p->parses && parses_read(&in->parses, p->parses, e)) ||
 			       score_masks_check(&in->truth, &in->truth, e) ||
 			       score_masks_check(&in->predictions, &in->truth, e) ||
 			       score_masks_check(&in->other, &in->truth, e) ||
@@ -121,6 +122,7 @@ void scoring_free(struct scoring *in)
 	score_masks_free(&in->other);
 	score_masks_free(&in->whole);
 	sentences_free(&in->sentences);
+	parses_free(&in->parses);
 }
 
 static void tell_left_out(
@@ -162,17 +164,17 @@ static int pair_up(const struct report *to, const struct scoring *in, int is_com
 	return 0;
 }
 
-/* The tables of --sentences and --whole. */
+/* The tables of --parses and --whole. */
 static int by_group(const struct report *to, struct scores *s, const struct score_sample *sample,
 	const struct scoring *in, struct err *e)
 {
 	size_t no_sentence = 0, no_whole = 0;
 
-	if ((s->has_relations && score_relations(s, sample, &in->sentences, &no_sentence, e)) ||
+	if ((s->has_relations && score_relations(s, sample, &in->parses, &no_sentence, e)) ||
 		(s->has_visibility && score_visibility(s, sample, &in->truth, &in->whole, &no_whole, e)))
 		return -1;
 	if (no_sentence)
-		report_warn(to, "%s: %zu pairs have no sentence there", file_name(in->files->sentences),
+		report_warn(to, "%s: %zu pairs have no sentence there", file_name(in->files->parses),
 			no_sentence);
 	if (no_whole)
 		report_warn(to, "%s: %zu masks of the truth have no whole there", file_name(in->whole.path),

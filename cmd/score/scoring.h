@@ -7,6 +7,7 @@
 #include "base/report.h"
 #include "cmd/score/score_masks.h"
 #include "formats/records/boxes.h"
+#include "formats/records/parses.h"
 #include "formats/records/sentences.h"
 #include "score/box_score.h"
 #include "score/score_answers.h"
@@ -75,13 +76,14 @@ int box_scores_write(const struct box_scores *s, const char *path, int is_json, 
 
 /* NULL where one was not named; the first two always are. */
 struct scoring_files {
-	const char *predictions, *truth, *other, *sentences, *whole;
+	const char *predictions, *truth, *other, *sentences, *parses, *whole;
 };
 
 struct scoring {
 	const struct scoring_files *files;
 	struct score_masks predictions, truth, other, whole;
 	struct sentences sentences;
+	struct parses parses;
 };
 
 /* Reads the files of masks and sentences. is_partial: views without a prediction do not count. *in is zeroed

@@ -67,7 +67,7 @@ static int put_parse(void *out, const struct marked_sentence *s, struct err *e)
 	char ref[32];
 
 	snprintf(ref, sizeof ref, "m%zu", s->number);
-	return parse_build(&p, &s->analysis, &s->tokens, e) || parses_put(out, ref, s->marked.text, &p, e);
+	return parse_build(&p, &s->analysis, &s->tokens, 0, e) || parses_put(out, ref, s->marked.text, &p, e);
 }
 
 int parser_marked_write(

@@ -1,8 +1,11 @@
 #include "formats/records/parses.h"
 
+#include "base/names.h"
 #include "formats/records/json.h"
+#include "formats/records/jsonl.h"
 #include "lang/colours.h"
 
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -223,4 +226,66 @@ int parses_put(FILE *out, const char *ref, const char *text, const struct parse 
 	fprintf(out, "%s\n", line);
 	cJSON_free(line);
 	return 0;
+}
+
+static void release(void *record)
+{
+	free(((struct parse_relations *)record)->ref);
+}
+
+void parses_free(struct parses *p)
+{
+	for (size_t i = 0; i < p->n; i++)
+		release(&p->items[i]);
+	free(p->items);
+	*p = (struct parses){0};
+}
+
+/* The relations of a value and of all in it; what add_relation writes, read back. */
+static unsigned relations_in(const cJSON *value)
+{
+	const cJSON *name = cJSON_GetObjectItemCaseSensitive(value, "relation"), *item;
+	const int contact = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(value, "contact"));
+	int r = cJSON_IsString(name) ? parse_relation_find(name->valuestring) : -1;
+	unsigned set = 0;
+
+	if (contact)
+		r = r == PARSE_ABOVE ? PARSE_ON : r == PARSE_BELOW ? PARSE_SUPPORTS : r;
+	if (r >= 0)
+		set = 1U << r;
+	cJSON_ArrayForEach(item, value) set |= relations_in(item);
+	return set;
+}
+
+static int read_one(const struct jsonl *j, const cJSON *object, void *record, struct err *e)
+{
+	struct parse_relations *p = record;
+
+	if (jsonl_name(j, object, "ref", NAME_DATA, 1, &p->ref, e))
+		return -1;
+	if (!cJSON_IsObject(cJSON_GetObjectItemCaseSensitive(object, "target")))
+		return jsonl_err(j, e, "key 'target' is missing: text-parse writes such records");
+	p->set = relations_in(object);
+	return 0;
+}
+
+int parses_read(struct parses *p, const char *path, struct err *e)
+{
+	struct jsonl j;
+	long *lines = NULL;
+	size_t twice, earlier;
+
+	*p = (struct parses){0};
+	if (jsonl_open(&j, path, e))
+		return -1;
+	int bad = jsonl_records(
+			  &j, sizeof *p->items, read_one, release, (void **)&p->items, &p->n, &lines, e) ||
+		  names_find_twice(p->items, sizeof *p->items, offsetof(struct parse_relations, ref), p->n,
+			  &twice, &earlier, e);
+	if (!bad && twice != NAMES_NONE)
+		bad = err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", path, lines[twice],
+			p->items[twice].ref, lines[earlier]);
+	free(lines);
+	jsonl_close(&j);
+	return bad ? -1 : 0;
 }

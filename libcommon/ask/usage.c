@@ -15,11 +15,10 @@ static const double not_there = -100; /* the score of what has no Gaussians */
 static int is_before_generic(const struct parse *p, int word)
 {
 	while (++word < p->word_count) {
-		const int closed = closed_find(p->words[word].text);
-		if (closed >= 0 && closed_words[closed].class == CLOSED_GENERIC)
+		const int class = closed_class_of(p, word);
+		if (class == CLOSED_GENERIC)
 			return 1;
-		if (closed >= 0 && closed_words[closed].class != CLOSED_ATTRIBUTE &&
-			closed_words[closed].class != CLOSED_SIZE)
+		if (class != CLOSED_ATTRIBUTE && class != CLOSED_SIZE && class != CLOSED_CLASSES)
 			return 0;
 	}
 	return 0;
@@ -49,15 +48,16 @@ static int is_kept(const struct meaning *m, const struct meaning_part *part)
 	return 1;
 }
 
-/* told marks the words that tell of the use, as a sentence; counts, of these, those that are not of grammar.
+/* use_words marks the words that tell of the use, as a sentence; counts, of these, those that are not of
+ * grammar.
  */
-static void mark_words(const struct meaning *m, char *told, char *counts)
+static void mark_words(const struct meaning *m, char *use_words, char *counts)
 {
 	const struct parse *p = m->sentence->parse;
 
 	for (int w = 0; w < p->word_count; w++) {
-		told[w] = (char)!is_before_generic(p, w);
-		counts[w] = (char)(told[w] && purpose_is_content(p, w));
+		use_words[w] = (char)!is_before_generic(p, w);
+		counts[w] = (char)(use_words[w] && purpose_is_content(p, w));
 	}
 }
 
@@ -124,15 +124,15 @@ double usage_judge(const struct meaning *m, double *score, double *scratch)
 	const struct parse *p = m->sentence->parse;
 	const size_t n = objects_of(m);
 	double *about = scratch, *use = scratch + n, *parts = scratch + 2 * n, any;
-	char told[TOKENS_MOST], counts[TOKENS_MOST];
+	char use_words[TOKENS_MOST], counts[TOKENS_MOST];
 
 	if (is_by_name(m, meaning_head_of(p, &p->phrases[0])))
 		return 0;
-	mark_words(m, told, counts);
+	mark_words(m, use_words, counts);
 	vocabulary_about(m->vocabulary, m->sentence, counts, about);
 	add_parts(m, parts);
 	const int is_said = purpose_is_said(p);
-	if (!vocabulary_for(m->vocabulary, m->sentence, told, about, use, &any) ||
+	if (!vocabulary_for(m->vocabulary, m->sentence, use_words, about, use, &any) ||
 		!memchr(counts, 1, (size_t)p->word_count) || (!is_said && !says_more_than_name(p, counts)))
 		return 0;
 	for (size_t o = 0; o < n; o++)

@@ -49,21 +49,8 @@ void grammar_analyse(struct analysis *a, const struct tokens *t);
 /* Makes every head one that its role may have, without a circle; what then hangs on nothing hangs on ROOT. */
 void analysis_repair(struct analysis *a);
 
-/* What closed-class words settle whatever was made of them: what is denied of looks, what a look is said of,
- * and places. grammar: what grammar_analyse made. */
-void analysis_mend(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
-
-/* A part of analysis_mend: what is denied. */
-void analysis_denied(struct analysis *a, const struct tokens *t);
-
-/* Another: who looks, corners, places that are said twice. */
-void analysis_places(struct analysis *a, const struct analysis *grammar, const struct tokens *t);
-
-/* Another: what "it" is, what stands by itself, "a book behind it". */
-void analysis_it(struct analysis *a, const struct tokens *t);
-
-/* Another: where a thing shall be put. */
-void analysis_command(struct analysis *a, const struct tokens *t);
+/* The rules of lang/rules.def that are of an analysis, but those that are left out. */
+void analysis_apply_rules(struct analysis *a, const struct tokens *t, unsigned without);
 
 /* Whether there is such a word and it is a predicate. */
 int analysis_is_predicate(const struct analysis *a, int i);
@@ -71,20 +58,16 @@ int analysis_is_predicate(const struct analysis *a, int i);
 int analysis_has_anchor(const struct analysis *a, int predicate);
 
 /* The parse that an analysis stands for; -1 only where memory is out. Degrees, counts, ordinals, groups and
- * views are told from the words themselves. */
-int parse_build(struct parse *p, const struct analysis *a, const struct tokens *t, struct err *e);
+ * views are told from the words themselves. without: the rules of lang/rules.h that do not count. */
+int parse_build(
+	struct parse *p, const struct analysis *a, const struct tokens *t, unsigned without, struct err *e);
 
-/* What the words of a built parse tell besides: "the taller of those three vases" is a vase. -1 only where
- * memory is out. */
-int parse_settle(struct parse *p, struct err *e);
+/* The rules that are of a built parse. Likewise. */
+int parse_apply_rules(struct parse *p, unsigned without, struct err *e);
 
-/* A part of parse_settle: "the tray and what is on it" are two. Likewise. */
-int parse_carried(struct parse *p, struct err *e);
-
-/* A part of parse_settle: the jar on one side and the tin on the other. Likewise. */
-int parse_between(struct parse *p, struct err *e);
-
-/* A part of parse_settle: "two boxes, the red one and the one by the door". Likewise. */
+/* Two of these: "the tray and what is on it" are two; "two boxes, the red one and the one by the door".
+ * Likewise. */
+int parse_companion(struct parse *p, struct err *e);
 int parse_members(struct parse *p, struct err *e);
 
 #endif

@@ -40,13 +40,13 @@ extern const struct closed_word closed_words[];
 extern const int closed_count; /* at most CLOSED_MOST */
 enum { CLOSED_MOST = 576 };
 
-/* Ends of a thing, and what stands before them: "at the bottom". Both end in NULL. */
-extern const char *const closed_ends[], *const closed_at_end[];
-
 /* Its index or -1. */
 int closed_find(const char *text);
 /* Whether it is a word of the class. */
 int closed_is(const char *text, enum closed_class class);
+
+/* The class of a parse's word, CLOSED_CLASSES of one of the open classes, -1 where there is no such word. */
+int closed_class_of(const struct parse *p, int word);
 
 /* The relation the other way round: left for right, supports for on. */
 enum parse_relation closed_inverse(enum parse_relation r);

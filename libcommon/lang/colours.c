@@ -3,60 +3,17 @@
 #include <math.h>
 #include <string.h>
 
+/* The words of libcommon/lang/colours.tsv; the build makes these lines of it. */
+#define ALIKE(word, other)
+#define COLOUR(word, r, g, b) {word, {r, g, b}},
 static const struct {
 	const char *word;
 	unsigned char rgb[3];
 } colours[COLOUR_WORDS] = {
-	{"black", {20, 20, 20}},
-	{"white", {240, 240, 240}},
-	{"grey", {128, 128, 128}},
-	{"gray", {128, 128, 128}},
-	{"silver", {180, 180, 185}},
-	{"red", {200, 25, 30}},
-	{"crimson", {185, 20, 45}},
-	{"scarlet", {215, 35, 20}},
-	{"maroon", {110, 15, 25}},
-	{"burgundy", {110, 15, 40}},
-	{"orange", {245, 130, 20}},
-	{"tangerine", {245, 135, 20}},
-	{"yellow", {245, 215, 30}},
-	{"lemon", {245, 225, 50}},
-	{"gold", {215, 170, 40}},
-	{"golden", {215, 170, 40}},
-	{"green", {40, 140, 50}},
-	{"emerald", {20, 150, 80}},
-	{"olive", {115, 115, 30}},
-	{"lime", {130, 210, 40}},
-	{"mint", {160, 225, 185}},
-	{"turquoise", {50, 190, 180}},
-	{"teal", {10, 125, 125}},
-	{"aqua", {50, 190, 190}},
-	{"cyan", {30, 200, 215}},
-	{"blue", {35, 70, 190}},
-	{"navy", {20, 30, 90}},
-	{"cobalt", {20, 70, 175}},
-	{"azure", {50, 130, 230}},
-	{"purple", {120, 40, 145}},
-	{"violet", {130, 60, 190}},
-	{"plum", {120, 45, 120}},
-	{"lilac", {190, 150, 205}},
-	{"lavender", {190, 160, 220}},
-	{"magenta", {205, 30, 150}},
-	{"pink", {240, 150, 185}},
-	{"rose", {235, 120, 150}},
-	{"salmon", {245, 140, 120}},
-	{"brown", {115, 70, 35}},
-	{"chocolate", {90, 50, 25}},
-	{"chestnut", {130, 65, 45}},
-	{"tan", {205, 170, 125}},
-	{"beige", {225, 205, 170}},
-	{"cream", {245, 235, 205}},
-	{"bronze", {165, 115, 55}},
-	{"copper", {180, 105, 60}},
-	{"chrome", {170, 175, 180}},
-	{"steel", {150, 155, 160}},
-	{"metallic", {160, 160, 165}},
+#include "lang/colours.inc"
 };
+#undef ALIKE
+#undef COLOUR
 
 const char *colour_name(int word)
 {
@@ -64,12 +21,11 @@ const char *colour_name(int word)
 }
 
 /* Other words, and the one of colours[] that looks the same. */
-static const char *const others[][2] = {{"reddish", "red"}, {"bluish", "blue"}, {"blueish", "blue"},
-	{"greenish", "green"}, {"yellowish", "yellow"}, {"orangey", "orange"}, {"pinkish", "pink"},
-	{"purplish", "purple"}, {"brownish", "brown"}, {"greyish", "grey"}, {"grayish", "grey"},
-	{"whitish", "white"}, {"blackish", "black"}, {"silvery", "silver"}, {"rosy", "rose"},
-	{"ebony", "black"}, {"ivory", "cream"}, {"khaki", "olive"}, {"mauve", "lilac"},
-	{"fuchsia", "magenta"}, {"indigo", "navy"}};
+#define ALIKE(word, other) {word, other},
+#define COLOUR(word, r, g, b)
+static const char *const others[][2] = {
+#include "lang/colours.inc"
+};
 
 int colour_word(const char *word)
 {

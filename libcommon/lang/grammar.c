@@ -18,13 +18,6 @@ struct state {
 	int except, view, also;
 };
 
-static int ends_in(const char *w, const char *tail)
-{
-	size_t n = strlen(w), m = strlen(tail);
-
-	return n > m + 2 && !strcmp(w + n - m, tail);
-}
-
 /* An open word that may be a noun. */
 static int is_open(const struct tokens *t, int i)
 {
@@ -36,7 +29,7 @@ static int is_verb(const struct tokens *t, int i)
 {
 	const char *w = t->word[i].text;
 
-	return (ends_in(w, "ing") || ends_in(w, "ed")) && i + 1 < t->n &&
+	return (token_ends(w, "ing", 3) || token_ends(w, "ed", 3)) && i + 1 < t->n &&
 	       (tokens_class(t, i + 1) == CLOSED_PLACE || tokens_class(t, i + 1) == CLOSED_DETERMINER ||
 		       tokens_class(t, i + 1) == CLOSED_PREPOSITION || tokens_class(t, i + 1) == CLOSED_WITH);
 }

@@ -6,16 +6,10 @@
 #include "lang/colours.h"
 #include "lang/compared.h"
 #include "lang/parse_private.h"
+#include "lang/rules.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static int tail(const char *w, const char *end)
-{
-	size_t n = strlen(w), m = strlen(end);
-
-	return n > m + 2 && !strcmp(w + n - m, end);
-}
 
 static int add_words(struct build *b)
 {
@@ -178,9 +172,9 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	if (c == CLOSED_PLACE || c == CLOSED_SIZE) {
 		if (build_value(t, i))
 			return (enum parse_degree)build_value(t, i);
-	} else if (tail(w, "est") || tail(w, "most")) {
+	} else if (token_ends(w, "est", 3) || token_ends(w, "most", 3)) {
 		return PARSE_MOST;
-	} else if (tail(w, "er") && tokens_is(t, i + 1, "than")) {
+	} else if (token_ends(w, "er", 3) && tokens_is(t, i + 1, "than")) {
 		return PARSE_MORE;
 	}
 	for (int j = i - 1; j >= 0 && j >= i - 3; j--) {
@@ -301,7 +295,7 @@ static int add_clauses(struct build *b)
 }
 
 /* Whether a word is one of a predicate's. */
-static int is_told_on(const struct build *b, int j)
+static int is_of_use(const struct build *b, int j)
 {
 	while (j > 0 && tells_on(b, j))
 		j--;
@@ -324,7 +318,7 @@ static int add_others(struct build *b)
 			bad = parse_list_add(
 				&p->phrases[owner < 0 ? 0 : owner].except, b->phrase_of[i], b->e);
 		} else if (r == ROLE_NONE && b->t->word[i].closed < 0 && !says_nothing(b->t, i) &&
-			   !is_told_on(b, i)) {
+			   !is_of_use(b, i)) {
 			bad = parse_list_add(&p->unexplained, i, b->e);
 		}
 		if (bad)
@@ -354,7 +348,8 @@ static void find_view(struct build *b)
 	}
 }
 
-int parse_build(struct parse *p, const struct analysis *a, const struct tokens *t, struct err *e)
+int parse_build(
+	struct parse *p, const struct analysis *a, const struct tokens *t, unsigned without, struct err *e)
 {
 	struct build b = {.p = p, .a = a, .t = t, .e = e, .from = -1};
 
@@ -363,7 +358,7 @@ int parse_build(struct parse *p, const struct analysis *a, const struct tokens *
 		parse_free(p);
 		return -1;
 	}
-	parse_counts(&b);
+	parse_counts(&b, rule_counts(without, RULE_group));
 	parse_ordinals(&b);
 	if (add_clauses(&b) || add_others(&b)) {
 		parse_free(p);
@@ -371,7 +366,7 @@ int parse_build(struct parse *p, const struct analysis *a, const struct tokens *
 	}
 	find_view(&b);
 	p->confidence = t->n ? 1 - (double)p->unexplained.n / t->n : 0;
-	if (parse_settle(p, e)) {
+	if (parse_apply_rules(p, without, e)) {
 		parse_free(p);
 		return -1;
 	}

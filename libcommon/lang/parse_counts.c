@@ -102,21 +102,6 @@ static int is_one(const struct build *b, int i)
 	return !is_number || tokens_is_any(t, before, which);
 }
 
-/* "Two satchels, and mine's the satchel with the strap": one of them is named. */
-static int names_again(const struct build *b, int i)
-{
-	static const char *const again[] = {"the", "that", "this", "my", "which", "whichever", NULL};
-	const struct tokens *t = b->t;
-
-	if (strcmp(t->word[i].lemma, t->word[b->noun].lemma) != 0 || build_is_plural(t, i) ||
-		!build_is_plural(t, b->noun) || b->a->word[i].role != ROLE_NONE)
-		return 0;
-	for (int j = i - 1; j > b->noun && j >= i - 3 && !t->word[j + 1].before; j--)
-		if (tokens_is_any(t, j, again))
-			return tokens_class(t, j - 1) != CLOSED_NEGATION;
-	return 0;
-}
-
 /* "Give me the other", "but mine is by the door"; "those are mine" picks none. */
 static int picks(const struct tokens *t, int i)
 {
@@ -140,12 +125,9 @@ static void find_group(struct build *b)
 		return;
 	for (int i = b->noun + 1; i < t->n; i++) {
 		is_later |= t->word[i].before == PAUSE_STOP;
-		const int is_target = b->a->word[i].role == ROLE_TARGET && !tokens_is(t, i, "ones") &&
-				      !build_is_plural(t, i);
 		if (is_left_out(b, i) || (f->count == PARSE_ALL && !is_later))
 			continue;
-		if (is_target || tokens_is(t, i, "whichever") || compares_later(b, i) || is_one(b, i) ||
-			names_again(b, i) || picks(t, i)) {
+		if (tokens_is(t, i, "whichever") || compares_later(b, i) || is_one(b, i) || picks(t, i)) {
 			f->group = f->count;
 			f->count = PARSE_ONE;
 			return;
@@ -153,56 +135,13 @@ static void find_group(struct build *b)
 	}
 }
 
-/* "Spoons, both of them", "of the five keys the two on the nail". */
-static void count_late(struct build *b)
-{
-	static const char *const them[] = {"them", "those", "these", NULL};
-	const struct tokens *t = b->t;
-	struct parse_phrase *f = &b->p->phrases[0];
-
-	if (f->count == PARSE_ONE && !f->group)
-		return;
-	for (int i = b->noun + 1; i < t->n; i++) {
-		if (tokens_class(t, i) != CLOSED_NUMBER || build_value(t, i) == PARSE_ONE)
-			continue;
-		const int is_of_them = tokens_is(t, i + 1, "of") && tokens_is_any(t, i + 2, them);
-		const int is_alone = f->group > build_value(t, i) && build_value(t, i) > 0 &&
-				     tokens_is(t, i - 1, "the") &&
-				     (i + 1 == t->n || tokens_class(t, i + 1) == CLOSED_PREPOSITION ||
-					     tokens_class(t, i + 1) == CLOSED_PLACE);
-		if (!is_of_them && !is_alone)
-			continue;
-		f->count = build_value(t, i);
-		f->group = 0;
-		return;
-	}
-}
-
-/* "What is on the plates? I need both." */
-static void count_again(struct build *b)
-{
-	struct parse_phrase *f = &b->p->phrases[0];
-	int begin = 0;
-
-	for (int i = 1; i < b->t->n; i++)
-		begin = b->t->word[i].before == PAUSE_STOP ? i : begin;
-	for (int i = begin; i < b->t->n && begin && f->count == PARSE_ONE && !f->group; i++) {
-		const int is_last = i + 1 == b->t->n || tokens_class(b->t, i + 1) == CLOSED_PREPOSITION;
-		if (is_last && tokens_is(b->t, i, "both"))
-			f->count = 2;
-		else if (is_last && tokens_is(b->t, i, "all"))
-			f->count = PARSE_ALL;
-	}
-}
-
-void parse_counts(struct build *b)
+void parse_counts(struct build *b, int groups)
 {
 	for (int k = 0; k < b->p->phrase_count; k++)
 		b->p->phrases[k].count = PARSE_ONE;
 	for (int i = 0; i < b->t->n; i++)
 		if (b->phrase_of[i] > 0 || (b->phrase_of[i] == 0 && i == b->noun))
 			count_phrase(b, i, &b->p->phrases[b->phrase_of[i]]);
-	find_group(b);
-	count_late(b);
-	count_again(b);
+	if (groups)
+		find_group(b);
 }

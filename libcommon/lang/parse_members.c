@@ -1,5 +1,4 @@
-/* What is told one by one: "two boxes, the red one on the shelf and the one by the door", and both sides of a
- * thing. */
+/* What is named one by one: "two boxes, the red one on the shelf and the one by the door". */
 #include "lang/analysis.h"
 #include "lang/closed.h"
 
@@ -77,40 +76,4 @@ int parse_members(struct parse *p, struct err *e)
 		if (take_common(&p->phrases[f->also.item[k]], f, e))
 			return -1;
 	return turn(p, e);
-}
-
-/* Whether a clause lacks what else it is between. */
-static int is_half_between(const struct parse *p, const struct parse_clause *c)
-{
-	return c->relation == PARSE_BETWEEN && c->anchors.n == 1 && !c->negated &&
-	       p->phrases[c->anchors.item[0]].count == PARSE_ONE;
-}
-
-/* "The mug with the jar on one side and the tin on the other" is between the two, whether the tin was taken
- * for a further target or for what it is between once more. */
-int parse_between(struct parse *p, struct err *e)
-{
-	struct parse_phrase *f = &p->phrases[0];
-	struct parse_clause *half = NULL;
-
-	for (int k = 0; k < f->clauses.n; k++) {
-		struct parse_clause *c = &p->clauses[f->clauses.item[k]];
-		if (!is_half_between(p, c))
-			continue;
-		if (half && half->anchors.n == 1) {
-			if (parse_list_join(&half->anchors, &c->anchors, e))
-				return -1;
-			f->clauses.item[k] = f->clauses.item[--f->clauses.n];
-			return 0;
-		}
-		half = c;
-	}
-	for (int k = 0; half && k < f->also.n; k++) {
-		const int other = f->also.item[k];
-		if (p->phrases[other].span.begin < half->span.begin || p->phrases[other].clauses.n)
-			continue;
-		f->also.item[k] = f->also.item[--f->also.n];
-		return parse_list_add(&half->anchors, other, e);
-	}
-	return 0;
 }

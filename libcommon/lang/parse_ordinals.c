@@ -22,14 +22,6 @@ static enum parse_relation counted_from(struct build *b)
 	return PARSE_OTHER;
 }
 
-/* "first find the box", "first, you": it tells the order of what is done. */
-static int tells_step(const struct tokens *t, int i)
-{
-	return tokens_is(t, i, "first") && i + 1 < t->n &&
-	       (t->word[i + 1].before || tokens_class(t, i + 1) == CLOSED_REQUEST ||
-		       tokens_class(t, i + 1) == CLOSED_PRONOUN);
-}
-
 /* Words that go on with an ordinal by itself: "third from", "second in". */
 static int goes_on(const struct tokens *t, int i)
 {
@@ -102,24 +94,12 @@ static int counts_alone(const struct tokens *t, int i)
 	       tokens_class(t, i - 1) != CLOSED_CONJUNCTION;
 }
 
-/* "every last one", "first aid", "third floor", "second to none". */
-static int is_idiom(const struct tokens *t, int i)
-{
-	static const char *const names[] = {"aid", "floor", NULL};
-	const int is_denied = !t->word[i].before && tokens_class(t, i - 1) == CLOSED_NEGATION;
-
-	return tokens_is(t, i - 1, "every") || tokens_is_any(t, i + 1, names) || is_denied ||
-	       (tokens_is(t, i + 1, "to") && tokens_is(t, i + 2, "none"));
-}
-
 /* What the ordinal at word i counts, as a phrase, or -1. */
 static int owner_of(const struct build *b, int i)
 {
-	int is_alone = 0, owner;
+	int is_alone = 0;
+	const int owner = counted_by(b, i, &is_alone);
 
-	if (tells_step(b->t, i) || is_idiom(b->t, i))
-		return -1;
-	owner = counted_by(b, i, &is_alone);
 	return is_alone ? (counts_alone(b->t, i) ? 0 : -1) : owner;
 }
 
@@ -134,17 +114,6 @@ static int number_after(const struct tokens *t, int i)
 										    : 0;
 }
 
-/* "the last but one", "the last but two". */
-static int but_of(const struct tokens *t, int i)
-{
-	for (int j = i + 1; j <= i + 2; j++)
-		if (tokens_is(t, j, "but"))
-			return tokens_is(t, j + 1, "one")		 ? 1
-			       : tokens_class(t, j + 1) == CLOSED_NUMBER ? build_value(t, j + 1)
-									 : 0;
-	return 0;
-}
-
 void parse_ordinals(struct build *b)
 {
 	const struct tokens *t = b->t;
@@ -154,7 +123,6 @@ void parse_ordinals(struct build *b)
 		if (tokens_class(t, i) == CLOSED_ORDINAL) {
 			owner = owner_of(b, i);
 			value = build_value(t, i);
-			value -= value < 0 ? but_of(t, i) : 0;
 		}
 		if (!value || owner < 0)
 			continue;

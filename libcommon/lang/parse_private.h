@@ -65,8 +65,8 @@ static inline int build_is_way(const struct tokens *t, int i)
 	       build_end(t, first + 2) != PARSE_OTHER;
 }
 
-/* How many things each phrase means, and of how many. */
-void parse_counts(struct build *b);
+/* How many things each phrase means, and of how many, where `groups` also by what comes later. */
+void parse_counts(struct build *b, int groups);
 
 /* "The second from the left". b->from gets the place word that it counts from. */
 void parse_ordinals(struct build *b);

@@ -40,45 +40,20 @@ static int are_mine(const struct parser *parser, const struct parser_vectors *v)
 	       !strcmp(w->encoder, parser->encoder);
 }
 
-/* Where what is said begins anew after "no, wait" or "scratch that" that ends before word i; else 0. */
-static int corrected_at(const struct tokens *t, int i)
-{
-	static const char *const sorry[] = {"sorry", "correction", "oops", NULL};
-	static const char *const no[] = {"no", "nope", NULL};
-	const int is_wait = (tokens_is_any(t, i - 2, no) && tokens_is(t, i - 1, "wait")) ||
-			    (tokens_is(t, i - 2, "wait") && tokens_is_any(t, i - 1, no));
-
-	return i > 2 && (is_wait || tokens_is_any(t, i - 1, sorry) ||
-				(tokens_is(t, i - 2, "scratch") && tokens_is(t, i - 1, "that")));
-}
-
-/* Who corrects himself means what he says last. */
-static void take_correction(struct tokens *t)
-{
-	int from = 0;
-
-	for (int i = 3; i + 2 <= t->n; i++)
-		from = corrected_at(t, i) ? i : from;
-	memmove(t->word, t->word + from, sizeof *t->word * (size_t)(t->n - from));
-	t->n -= from;
-}
-
 int parse_sentence(struct parse *p, const struct parser *parser, const char *text,
 	const struct parser_vectors *v, struct err *e)
 {
 	struct tokens t;
-	struct analysis a, grammar;
+	struct analysis a;
 	double sure = 1;
 
 	tokens_take(&t, text, v ? v->pieces : NULL, parser->known, parser->known_count);
-	take_correction(&t);
-	grammar_analyse(&grammar, &t);
 	if (!are_mine(parser, v) || !t.n)
-		a = grammar;
+		grammar_analyse(&a, &t);
 	else if (learnt_analyse(&a, &t, parser, v, &sure, e))
 		return -1;
-	analysis_mend(&a, &grammar, &t);
-	if (parse_build(p, &a, &t, e))
+	analysis_apply_rules(&a, &t, parser->without);
+	if (parse_build(p, &a, &t, parser->without, e))
 		return -1;
 	p->confidence *= sure;
 	return 0;

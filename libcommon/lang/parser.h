@@ -10,6 +10,7 @@ struct parser {
 	const struct parser_weights *weights; /* NULL: grammar alone */
 	const char *const *known; /* words spelt right besides the closed ones: a scene's vocabulary */
 	int known_count;
+	unsigned without;    /* rules that do not count (lang/rules.h); 0 */
 	const char *encoder; /* fingerprint of what made the vectors; NULL or "": not known */
 };
 

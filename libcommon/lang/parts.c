@@ -1,6 +1,7 @@
 #include "lang/parts.h"
 
 #include "lang/things.h"
+#include "lang/tokens.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -17,13 +18,6 @@ int parts_share(const struct parts *thing, const struct parts *word)
 
 enum { LONGEST = 24 };
 
-static int ends(const char *w, size_t n, const char *tail)
-{
-	const size_t m = strlen(tail);
-
-	return n > m + 2 && !strcmp(w + n - m, tail);
-}
-
 /* "drinking" and "drinks" become "drink", "served" and "serve" "serv", "thrown" "throw". */
 static void stem(char *w)
 {
@@ -31,12 +25,12 @@ static void stem(char *w)
 	size_t n = strlen(w);
 
 	for (size_t i = 0; i < sizeof tails / sizeof *tails; i++)
-		if (ends(w, n, tails[i])) {
+		if (token_ends(w, tails[i], 3)) {
 			n -= strlen(tails[i]);
 			break;
 		}
 	w[n] = 0;
-	if (ends(w, n, "wn"))
+	if (token_ends(w, "wn", 3))
 		w[--n] = 0;
 	if (n > 3 && w[n - 1] == 'e')
 		w[--n] = 0;

@@ -2,28 +2,13 @@
 
 #include "lang/closed.h"
 #include "lang/colours.h"
+#include "lang/tokens.h"
 
 #include <string.h>
 
-/* The class of a word, CLOSED_CLASSES of one of the open classes, -1 where there is no word. */
-static int class_of(const struct parse *p, int i)
-{
-	if (i < 0 || i >= p->word_count)
-		return -1;
-	const int closed = closed_find(p->words[i].text);
-	return closed < 0 ? CLOSED_CLASSES : (int)closed_words[closed].class;
-}
-
 static int is_open(const struct parse *p, int i)
 {
-	return class_of(p, i) == CLOSED_CLASSES;
-}
-
-static int ends_in(const char *word, const char *tail)
-{
-	const size_t n = strlen(word), m = strlen(tail);
-
-	return n > m + 1 && !strcmp(word + n - m, tail);
+	return closed_class_of(p, i) == CLOSED_CLASSES;
 }
 
 static int asks_before(const struct parse *p, int word)
@@ -48,17 +33,19 @@ static int after_doer(const struct parse *p, int i)
 		  is_us = parse_word_is(p, i - 1, let) && parse_word_is(p, i, us);
 	int verb = i + 1;
 
-	if (class_of(p, i - 1) == CLOSED_AUXILIARY && !is_us && !asks_before(p, i)) /* "could you lift it" */
+	if (closed_class_of(p, i - 1) == CLOSED_AUXILIARY && !is_us &&
+		!asks_before(p, i)) /* "could you lift it" */
 		return i;
-	const int is_one = is_us || (parse_word_is(p, i, one) && class_of(p, i + 1) == CLOSED_AUXILIARY);
+	const int is_one =
+		is_us || (parse_word_is(p, i, one) && closed_class_of(p, i + 1) == CLOSED_AUXILIARY);
 	if (parse_word_is(p, i - 1, did) || (!is_self && !is_one && !parse_word_is(p, i, doers)))
 		return i;
-	while (class_of(p, verb) == CLOSED_AUXILIARY || class_of(p, verb) == CLOSED_HAVE ||
-		class_of(p, verb) == CLOSED_ADVERB ||
-		(class_of(p, verb) == CLOSED_REQUEST && parse_word_is(p, verb + 1, to)) ||
+	while (closed_class_of(p, verb) == CLOSED_AUXILIARY || closed_class_of(p, verb) == CLOSED_HAVE ||
+		closed_class_of(p, verb) == CLOSED_ADVERB ||
+		(closed_class_of(p, verb) == CLOSED_REQUEST && parse_word_is(p, verb + 1, to)) ||
 		parse_word_is(p, verb, to))
 		verb++;
-	return is_self && verb == i + 1 && class_of(p, i - 1) != CLOSED_AUXILIARY ? i : verb;
+	return is_self && verb == i + 1 && closed_class_of(p, i - 1) != CLOSED_AUXILIARY ? i : verb;
 }
 
 static int says_doing(const struct parse *p)
@@ -80,15 +67,15 @@ static int says_for(const struct parse *p)
 
 	for (int i = 0; i < p->word_count; i++) {
 		if (parse_word_is(p, i, purposes) && is_open(p, i + 1) &&
-			ends_in(p->words[i + 1].text, "ing"))
+			token_ends(p->words[i + 1].text, "ing", 2))
 			return 1;
 		if (parse_word_is(p, i, purposes) && is_open(p, i + 1) &&
-			class_of(p, i - 1) == CLOSED_GENERIC)
+			closed_class_of(p, i - 1) == CLOSED_GENERIC)
 			return 1;
 		if (parse_word_is(p, i, used) && parse_word_is(p, i + 1, to))
 			return 1;
 		if (parse_word_is(p, i, to) && is_open(p, i + 1) &&
-			(!i || class_of(p, i - 1) == CLOSED_GENERIC || parse_word_is(p, i - 1, any)))
+			(!i || closed_class_of(p, i - 1) == CLOSED_GENERIC || parse_word_is(p, i - 1, any)))
 			return 1;
 	}
 	return 0;
@@ -98,8 +85,8 @@ static int first_word(const struct parse *p)
 {
 	int i = 0;
 
-	while (class_of(p, i) == CLOSED_REQUEST || class_of(p, i) == CLOSED_CONJUNCTION ||
-		class_of(p, i) == CLOSED_ADVERB)
+	while (closed_class_of(p, i) == CLOSED_REQUEST || closed_class_of(p, i) == CLOSED_CONJUNCTION ||
+		closed_class_of(p, i) == CLOSED_ADVERB)
 		i++;
 	return i;
 }
@@ -108,48 +95,17 @@ static int first_word(const struct parse *p)
 static int asks_for(const struct parse *p)
 {
 	static const char *const begins[] = {"what", "where", "how", NULL};
-	const int i = first_word(p), next = class_of(p, i + 1);
+	const int i = first_word(p), next = closed_class_of(p, i + 1);
 	const int asks_who = next == CLOSED_AUXILIARY &&
-			     (class_of(p, i + 2) == CLOSED_PRONOUN || after_doer(p, i + 2) > i + 2);
+			     (closed_class_of(p, i + 2) == CLOSED_PRONOUN || after_doer(p, i + 2) > i + 2);
 
 	return parse_word_is(p, i, begins) && !asks_who && next != CLOSED_BE && next != CLOSED_POSE &&
 	       next != CLOSED_PLACE && next != CLOSED_HAVE && next != -1;
 }
 
-/* "sweep the floor with it". */
-static int ends_in_it(const struct parse *p)
-{
-	static const char *const it[] = {"it", "them", "this", "that", NULL};
-	static const char *const ways[] = {
-		"with", "in", "on", "from", "into", "of", "to", "by", "through", "off", NULL};
-	const int n = p->word_count;
-
-	if (!parse_word_is(p, n - 1, it) || !parse_word_is(p, n - 2, ways))
-		return 0;
-	for (int i = 0; i < n - 2; i++)
-		if (class_of(p, i) == CLOSED_HAVE || class_of(p, i) == CLOSED_WITH ||
-			class_of(p, i) == CLOSED_NEGATION)
-			return 0;
-	return 1;
-}
-
-/* "keeps the rain off". */
-static int begins_with_verb(const struct parse *p)
-{
-	static const char *const it[] = {"it", "that", "which", NULL};
-	int i = first_word(p);
-
-	while (parse_word_is(p, i, it) || class_of(p, i) == CLOSED_GENERIC)
-		i++;
-	const int next = class_of(p, i + 1);
-	return is_open(p, i) && ends_in(p->words[i].text, "s") && !ends_in(p->words[i].text, "ss") &&
-	       strcmp(p->words[i].lemma, p->words[i].text) != 0 &&
-	       (next == CLOSED_DETERMINER || next == CLOSED_PRONOUN || next == CLOSED_CLASSES);
-}
-
 int purpose_is_said(const struct parse *p)
 {
-	return says_doing(p) || says_for(p) || asks_for(p) || ends_in_it(p) || begins_with_verb(p);
+	return says_doing(p) || says_for(p) || asks_for(p);
 }
 
 int purpose_is_content(const struct parse *p, int word)

@@ -1,5 +1,5 @@
 /* Sentences that say what a thing is for, or does, and not what it is: "what you drink from", "for cutting
- * paper", "keeps the rain off". */
+ * paper". */
 #ifndef LANG_PURPOSE_H
 #define LANG_PURPOSE_H
 

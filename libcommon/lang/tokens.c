@@ -8,11 +8,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static int ends(const char *w, const char *tail)
+int token_ends(const char *word, const char *tail, size_t stem)
 {
-	size_t n = strlen(w), m = strlen(tail);
+	const size_t n = strlen(word), m = strlen(tail);
 
-	return n > m && !strcmp(w + n - m, tail);
+	return n >= m + stem && !strcmp(word + n - m, tail);
 }
 
 /* A copy of a text in a buffer of `room` bytes. */
@@ -43,7 +43,7 @@ void token_lemma(const char *word, char *out)
 	if (n < 4)
 		return;
 	for (size_t i = 0; i < sizeof tails / sizeof *tails; i++)
-		if (ends(word, tails[i][0])) {
+		if (token_ends(word, tails[i][0], 1)) {
 			put(out + n - strlen(tails[i][0]), tails[i][1], strlen(tails[i][0]) + 1);
 			return;
 		}
@@ -98,7 +98,7 @@ static int clitic(const char *word)
 	for (size_t i = 0; i < sizeof bare_s / sizeof *bare_s; i++)
 		if (!strcmp(word, bare_s[i]))
 			return (int)n - 1;
-	if (ends(word, "n't"))
+	if (token_ends(word, "n't", 1))
 		return (int)n - 3;
 	for (size_t i = n; i-- > 1;)
 		if (word[i] == '\'' && n - i <= 3)

@@ -42,6 +42,9 @@ int tokens_is(const struct tokens *t, int i, const char *text);
 /* Whether it is one of the words, of which NULL is the last. */
 int tokens_is_any(const struct tokens *t, int i, const char *const *words);
 
+/* Whether a word ends so, after at least `stem` bytes. */
+int token_ends(const char *word, const char *tail, size_t stem);
+
 /* Singular of a noun ("boxes", "shelves", "mice"); others as they are. out holds TOKEN_LENGTH bytes. */
 void token_lemma(const char *word, char *out);
 

@@ -10,8 +10,8 @@ const char *const score_seen_name[SCORE_SEEN] = {"<0.15", "0.15-0.5", "0.5-0.85"
 
 void score_saying_names(const char *names[SCORE_SAYINGS])
 {
-	for (int r = 0; r < RELATIONS; r++)
-		names[r] = relation_name[r];
+	for (int r = 0; r < PARSE_RELATIONS; r++)
+		names[r] = parse_relation_name((enum parse_relation)r);
 	names[SCORE_SAYS_NONE] = "(none)";
 	names[SCORE_SAYS_UNKNOWN] = "(unknown)";
 }
@@ -38,7 +38,7 @@ int score_sayings(uint32_t *sets, const struct score_pair *pairs, size_t pair_n,
 	if (!list)
 		return -1;
 	for (size_t i = 0; i < n; i++) {
-		uint32_t set = relations_of(sentences[i].text);
+		const uint32_t set = sentences[i].relations;
 		list[i] = (struct saying){sentences[i].ref, set ? set : (uint32_t)1 << SCORE_SAYS_NONE};
 	}
 	qsort(list, n, sizeof *list, order_sayings);

@@ -3,19 +3,20 @@
 #ifndef SCORE_SCORE_GROUPS_H
 #define SCORE_SCORE_GROUPS_H
 
-#include "lang/relation_words.h"
+#include "lang/parse.h"
 #include "score/score.h"
 
 /* After the relations themselves. */
 enum {
-	SCORE_SAYS_NONE = RELATIONS, /* a sentence without any */
-	SCORE_SAYS_UNKNOWN,	     /* no ref, or none that the sentences have */
+	SCORE_SAYS_NONE = PARSE_RELATIONS, /* a sentence without any */
+	SCORE_SAYS_UNKNOWN,		   /* no ref, or none that the sentences have */
 	SCORE_SAYINGS
 };
 void score_saying_names(const char *names[SCORE_SAYINGS]);
 
 struct score_sentence {
-	const char *ref, *text; /* refs are unique */
+	const char *ref;    /* unique */
+	uint32_t relations; /* a bit 1 << enum parse_relation for each that it speaks of */
 };
 
 /* Fills sets (pair_n) by the sentence of the prediction's ref, else of the truth's; 0 for pairs with nothing

@@ -12,7 +12,7 @@ awk '{ exit !($1 > 0.5) }' /proc/loadavg && echo "This machine is busy with some
 for part in $parts; do
 	script=tests/bench/$part.sh
 	case $part in run | common) script= ;; esac
-	[ -f "$script" ] || { echo "bench: no part '$part'; there are: peer step render threads memory chain features readers formats views knobs" >&2; exit 2; }
+	[ -f "$script" ] || { echo "bench: no part '$part'; there are: peer step render threads memory chain features readers formats views knobs rules" >&2; exit 2; }
 	started=$SECONDS
 	bash "$script" || failed=1
 	echo "($part: $((SECONDS - started)) s)"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Usage: [BIN=build/bin] [BERT=DIR] [DATA=DIR/desk] tests/bench/said.sh SET
+# Usage: [BIN=build/bin] [BERT=DIR] [DATA=DIR/desk] [KEEP=DIR] tests/bench/said.sh SET
 #
 # Asks the sentences of tests/bench/said/SET: of scenes of gs-synth that are made and lifted here (SCENE-SEED.jsonl) and, with
 # DATA, of a desk in the layout of pipelines/desk.mk (desk.jsonl). They were written from the pictures and a table of the
@@ -8,6 +8,8 @@
 #
 # Prints, for each file and in all, how many were answered with exactly the meant objects: of those that mean one thing (plain and
 # chatty rewordings, new ones), several, and nothing that is there. At last what was believed of the answers to those that mean one thing.
+#
+# With KEEP the scenes, their weights and their selected masks stay in DIR for the next run, which lifts them again.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
@@ -16,15 +18,21 @@ BERT=${BERT:-${XDG_CACHE_HOME:-$HOME/.cache}/refersplat/encoder}
 [ $# = 1 ] && [ -d "$here/said/$1" ] || { sed -n 's/^# Usage: //p' "$0" >&2; exit 2; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+scenes=${KEEP:-$work}
 
-# make_scene NAME: $work/NAME, lifted
+# make_scene NAME: $scenes/NAME, lifted; what is made of sentences is made again
 make_scene() {
-	local raw=$work/raw.$1
-	"$BIN/gs-synth" -q --scene "${1%-*}" --seed "${1#*-}" -o "$raw"
-	make -s -f "$here/../../pipelines/lift.mk" BIN="$BIN" BERT="$BERT" SCENE="$work/$1" SPLATS="$raw/point_cloud.ply" CAMERAS="$raw/sparse/0" \
-		IMAGES="$raw/images" SENTENCES="$raw/sentences.jsonl" CANDIDATES="$raw/candidates.jsonl" TEST_VIEWS="$(cat "$raw/test-views")" \
-		"$work/$1/lifted/model.safetensors" >/dev/null
-	rm -rf "$raw"
+	local raw=$scenes/raw.$1 scale=0.3333
+	if [ "$1" = desk ]; then
+		raw=$DATA scale=0.5
+	elif [ ! -d "$raw" ]; then
+		"$BIN/gs-synth" -q --scene "${1%-*}" --seed "${1#*-}" -o "$raw"
+	fi
+	rm -f "$scenes/$1/lifted/model.safetensors"
+	make -s -f "$here/../../pipelines/lift.mk" BIN="$BIN" BERT="$BERT" SCENE="$scenes/$1" SPLATS="$raw/point_cloud.ply" CAMERAS="$raw/sparse/0" \
+		IMAGES="$raw/images" SENTENCES="$raw/sentences.jsonl" CANDIDATES="$raw/candidates.jsonl" SCALE=$scale \
+		TEST_VIEWS="$(cat "$raw/test-views" 2>/dev/null || echo input_0001,input_0009,input_0017,input_0025)" \
+		"$scenes/$1/lifted/model.safetensors" >/dev/null
 }
 
 # count FILE...: a row of right/asked from records with `got`
@@ -38,21 +46,16 @@ count() {
 printf 'file\tplain\tchatty\tnew\tone thing\tseveral\tnothing there\n'
 for file in "$here/said/$1"/*.jsonl; do
 	name=$(basename "$file" .jsonl)
-	if [ "$name" != desk ]; then
-		make_scene "$name"
-	elif [ -n "${DATA:-}" ]; then
-		make -s -f "$here/../../pipelines/desk.mk" lift BIN="$BIN" BERT="$BERT" DATA="$DATA" OUT="$work/desk" >/dev/null
-	else
-		continue
-	fi
+	[ "$name" != desk ] || [ -n "${DATA:-}" ] || continue
+	make_scene "$name"
 	jq -r .text "$file" >"$work/questions"
 	# 1: one of them has no answer
-	"$BIN/refer-ask" -q --json --encoder "$BERT" "$work/$name" <"$work/questions" >"$work/replies" || [ $? = 1 ]
+	"$BIN/refer-ask" -q --json --encoder "$BERT" "$scenes/$name" <"$work/questions" >"$work/replies" || [ $? = 1 ]
 	jq -c --slurpfile replies "$work/replies" --slurpfile asked "$file" -n '
 		range($asked | length) as $i | $asked[$i] + ($replies[$i] | {got: (if .answered then [.things[].name] | sort else [] end), belief: .things[0].probability})
 		| .right = (.got == (.objects | sort))' >"$work/$name.answers"
 	printf '%s\t%s\n' "$name" "$(count "$work/$name.answers")"
-	rm -rf "${work:?}/$name"
+	[ -n "${KEEP:-}" ] || rm -rf "${work:?}/$name" "$work/raw.$name"
 done
 printf 'all\t%s\n' "$(count "$work"/*.answers)"
 jq -rs 'map(select((.objects | length == 1) and .got != [])) | def percent: . * 1000 | round / 10;

@@ -229,9 +229,10 @@ make_scene() {
 	local o v r n
 	mkdir -p ../scene && cd ../scene
 	for o in 0 1 2 3 4 5; do
-		echo "{\"ref\":\"o$o-0\",\"object\":\"obj$o\",\"text\":\"the cup right by the box on the table\"}"
-		echo "{\"ref\":\"o$o-1\",\"object\":\"obj$o\",\"text\":\"${1:-the red cup}\"}"
-	done >sentences.jsonl
+		# of the cup near the box that is on the table, and of the red cup
+		echo "{\"ref\":\"o$o-0\",\"target\":{\"noun\":\"cup\"},\"clauses\":[{\"relation\":\"near\",\"anchors\":[{\"noun\":\"box\",\"clauses\":[{\"relation\":\"above\",\"contact\":true}]}]}]}"
+		echo "{\"ref\":\"o$o-1\",\"target\":{\"noun\":\"cup\",\"words\":[\"red\"]}}"
+	done >parses.jsonl
 	for o in 0 1 2 3 4 5; do
 		for v in 1 2 3; do
 			n=$((4 + o + v))
@@ -295,7 +296,7 @@ make_scene() {
 @test "the number of threads changes no byte" {
 	make_scene
 	for form in --json --csv -q; do
-		all="$form --truth truth.jsonl --bootstrap 2000 --compare other.jsonl --sentences sentences.jsonl --whole whole.jsonl pred.jsonl"
+		all="$form --truth truth.jsonl --bootstrap 2000 --compare other.jsonl --parses parses.jsonl --whole whole.jsonl pred.jsonl"
 		cmp <("$BIN/miou-score" --threads 1 $all) <("$BIN/miou-score" --threads 2 $all)
 	done
 }
@@ -371,36 +372,47 @@ make_scene() {
 	[ ! -e ../out ]
 }
 
-@test "--sentences: a row for each relation that occurs" {
+@test "--parses: a row for each relation that occurs" {
 	make_scene
-	run --separate-stderr "$BIN/miou-score" --truth truth.jsonl --sentences sentences.jsonl pred.jsonl
+	run --separate-stderr "$BIN/miou-score" --truth truth.jsonl --parses parses.jsonl pred.jsonl
 	[ "$status" -eq 0 ]
 	[ -z "$stderr" ]
 	diff - <(echo "$output" | sed -n '/relation/,$p' | sed 's/[0-9.]* %/N/') <<-END
 	pairs     mIoU  relation
-	   18  N  next to
 	   18  N  on
+	   18  N  near
 	   18  N  (none)
 	END
 	# the same figures as of those sentences alone
 	grep -e '-0"' pred.jsonl >first.jsonl
-	[ "$("$BIN/miou-score" --json --truth truth.jsonl --sentences sentences.jsonl pred.jsonl | jq -c '.relations.on')" = \
+	[ "$("$BIN/miou-score" --json --truth truth.jsonl --parses parses.jsonl pred.jsonl | jq -c '.relations.on')" = \
 		"$("$BIN/miou-score" --json --truth truth.jsonl first.jsonl | jq -c '{pairs,miou,oiou,p25,p50,p75,right,missing}')" ]
 }
 
-@test "--sentences: pairs without one are a row, and told" {
+@test "--parses: pairs without one are a row, and told" {
 	make_scene
-	sed -i '/o3-/d' sentences.jsonl
-	run --separate-stderr "$BIN/miou-score" --json --truth truth.jsonl --sentences sentences.jsonl pred.jsonl
+	sed -i '/o3-/d' parses.jsonl
+	run --separate-stderr "$BIN/miou-score" --json --truth truth.jsonl --parses parses.jsonl pred.jsonl
 	[ "$status" -eq 0 ]
-	[ "$stderr" = "miou-score: warning: sentences.jsonl: 6 pairs have no sentence there" ]
+	[ "$stderr" = "miou-score: warning: parses.jsonl: 6 pairs have no sentence there" ]
 	echo "$output" | jq -e '.relations["(unknown)"].pairs == 6 and .relations.on.pairs == 15'
-	run "$BIN/miou-score" --truth truth.jsonl --sentences truth.jsonl -o ../out pred.jsonl
+	run "$BIN/miou-score" --truth truth.jsonl --parses truth.jsonl -o ../out pred.jsonl
 	[ "$status" -eq 3 ]
 	[ "$output" = "miou-score: truth.jsonl:1: key 'ref' is missing" ]
-	run "$BIN/miou-score" --truth truth.jsonl --sentences nowhere.jsonl -o ../out pred.jsonl
+	echo '{"ref":"o3-0","text":"the cup"}' >sentences.jsonl
+	run "$BIN/miou-score" --truth truth.jsonl --parses sentences.jsonl -o ../out pred.jsonl
+	[ "$status" -eq 3 ]
+	[ "$output" = "miou-score: sentences.jsonl:1: key 'target' is missing: text-parse writes such records" ]
+	head -n 1 parses.jsonl >>parses.jsonl
+	run "$BIN/miou-score" --truth truth.jsonl --parses parses.jsonl -o ../out pred.jsonl
+	[ "$status" -eq 3 ]
+	[ "$output" = "miou-score: parses.jsonl:11: ref 'o0-0' is already on line 1" ]
+	run "$BIN/miou-score" --truth truth.jsonl --parses nowhere.jsonl -o ../out pred.jsonl
 	[ "$status" -eq 4 ]
 	[ "$output" = "miou-score: nowhere.jsonl: No such file or directory" ]
+	run "$BIN/miou-score" --truth truth.jsonl --sentences sentences.jsonl pred.jsonl
+	[ "$status" -eq 2 ]
+	[ "${lines[0]}" = "miou-score: --sentences goes with --answers only" ]
 	[ ! -e ../out ]
 }
 
@@ -433,9 +445,9 @@ make_scene() {
 	run --separate-stderr "$BIN/miou-score" --json --truth truth.jsonl --whole whole.jsonl pred.jsonl
 	[ "$stderr" = "miou-score: warning: whole.jsonl: 1 masks of the truth have no whole there" ]
 	echo "$output" | jq -e '.empty_truth == 2 and .visibility["(unknown)"].pairs == 2'
-	run "$BIN/miou-score" --truth truth.jsonl --whole sentences.jsonl -o ../out pred.jsonl
+	run "$BIN/miou-score" --truth truth.jsonl --whole parses.jsonl -o ../out pred.jsonl
 	[ "$status" -eq 3 ]
-	[ "$output" = "miou-score: sentences.jsonl:1: key 'view' is missing" ]
+	[ "$output" = "miou-score: parses.jsonl:1: key 'view' is missing" ]
 	[ ! -e ../out ]
 }
 
@@ -443,11 +455,11 @@ make_scene() {
 	make_scene
 	cmp <("$BIN/miou-score" --truth truth.jsonl --compare other.jsonl pred.jsonl) \
 		<("$BIN/miou-score" --truth truth.jsonl --compare - pred.jsonl <other.jsonl)
-	cmp <("$BIN/miou-score" --truth truth.jsonl --sentences sentences.jsonl pred.jsonl) \
-		<("$BIN/miou-score" --truth truth.jsonl --sentences - pred.jsonl <sentences.jsonl)
+	cmp <("$BIN/miou-score" --truth truth.jsonl --parses parses.jsonl pred.jsonl) \
+		<("$BIN/miou-score" --truth truth.jsonl --parses - pred.jsonl <parses.jsonl)
 	cmp <("$BIN/miou-score" --truth truth.jsonl --whole whole.jsonl pred.jsonl) \
 		<("$BIN/miou-score" --truth truth.jsonl --whole - pred.jsonl <whole.jsonl)
-	for option in --compare --sentences --whole; do
+	for option in --compare --parses --whole; do
 		run "$BIN/miou-score" --truth truth.jsonl $option - <pred.jsonl
 		[ "$status" -eq 2 ]
 		[ "${lines[0]}" = "miou-score: only one file can be stdin" ]

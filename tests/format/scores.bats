@@ -31,7 +31,7 @@ keys() { sed -n "/^| $1 |/,/^\$/p" "$PAGE" | sed -n 's/^| \(`.*`\) | .*/\1/p' | 
 }
 
 @test "JSON has the keys of the page, in its order" {
-	"$BIN/miou-score" -q --json --bootstrap 10 --compare other.jsonl --sentences sentences.jsonl --whole whole.jsonl \
+	"$BIN/miou-score" -q --json --bootstrap 10 --compare other.jsonl --parses parses.jsonl --whole whole.jsonl \
 		--truth truth.jsonl <(sed 's/"segmentation"/"peak":[0,0],&/' pred.jsonl) >all.json
 	diff <(keys key) <(jq -r 'keys_unsorted[]' all.json)
 	[ "$(jq -r '.objects["cup, red"] | keys_unsorted[]' all.json | xargs)" = "pairs miou miou_low miou_high resampled units compare" ]
@@ -65,7 +65,7 @@ keys() { sed -n "/^| $1 |/,/^\$/p" "$PAGE" | sed -n 's/^| \(`.*`\) | .*/\1/p' | 
 }
 
 @test "CSV has the figures of JSON" {
-	all="-q --bootstrap 100 --compare other.jsonl --sentences sentences.jsonl --whole whole.jsonl --truth truth.jsonl pred.jsonl"
+	all="-q --bootstrap 100 --compare other.jsonl --parses parses.jsonl --whole whole.jsonl --truth truth.jsonl pred.jsonl"
 	"$BIN/miou-score" --json $all | jq -r 'def row: [.pairs, .miou, .miou_low, .miou_high, .compare.miou, .compare.difference, .compare.p, .compare.worse];
 		row, (.objects[] | row), (.relations[] | row), (.visibility[] | row) | map(if . == null then "" else . * 1e9 | round end) | join(" ")' >json
 	"$BIN/miou-score" --csv $all | sed '1d; s/"[^"]*"/x/' | awk -F, '{

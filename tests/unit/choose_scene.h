@@ -3,7 +3,7 @@
 #define CHOOSE_SCENE_H
 
 #include "ask/choose.h"
-#include "mend_help.h"
+#include "rules_help.h"
 #include "unit.h"
 
 #include <math.h>

@@ -415,8 +415,8 @@ static void purposes_are_told(void)
 {
 	static const char *const yes[] = {"what you slice bread with", "something to sew with",
 		"for digging holes", "the one used for fishing", "how would I shave?", "where the eggs go",
-		"dig the garden with it", "let's cook some rice", "keeps the wind off",
-		"I need to saw this plank", "people sail across the lake on it", "the thing for soup"};
+		"let's cook some rice", "I need to saw this plank", "people sail across the lake on it",
+		"the thing for soup"};
 	static const char *const no[] = {"the saw", "a saw left of the plank", "where is the saw?",
 		"could you lift it", "what stands by the wall", "I mean the saw", "where did I leave it",
 		"the saw with a plank on it", "the plank is under it", "it has a plank on it", "", "it"};
@@ -452,7 +452,7 @@ static void content_says_which(void)
 		f->noun = (struct parse_list){1, head};
 		f->attributes = (struct parse_list){1, said};
 		f->clauses.n = f->except.n = 0;
-		CHECK(!parse_settle(&p, &e) && !strcmp(p.words[head[0]].lemma, cases[i][1]), "%s: %s",
+		CHECK(!parse_apply_rules(&p, 0, &e) && !strcmp(p.words[head[0]].lemma, cases[i][1]), "%s: %s",
 			cases[i][0], p.words[head[0]].lemma);
 		CHECK(head[0] + said[0] == 4, "both words are kept");
 		*f = kept;

@@ -198,7 +198,7 @@ static void test_tables(void)
 static void test_sayings(void)
 {
 	const struct score_sentence sentences[] = {
-		{"r3", "red"}, {"r1", "left of it"}, {"r2", "between the two, on the table"}};
+		{"r3", 0}, {"r1", 1u << PARSE_LEFT}, {"r2", 1u << PARSE_BETWEEN | 1u << PARSE_ON}};
 	const struct mask bare = {.object = "o"}, truth_2 = {.ref = "r2"}, truth_3 = {.ref = "r3"};
 	const struct score_pair pairs[] = {{.ref = "r1", .truth = &truth_3}, {.truth = &truth_2},
 		{.ref = "r3", .truth = &bare}, {.ref = "r4", .truth = &bare}, {.truth = &bare},
@@ -209,14 +209,13 @@ static void test_sayings(void)
 	struct err e;
 
 	CHECK(!score_sayings(sets, pairs, 6, sentences, 3, &unknown, &e) && unknown == 2, "%zu", unknown);
-	CHECK(sets[0] == 1u << RELATION_LEFT, "the prediction's ref before the truth's");
-	CHECK(sets[1] == (1u << RELATION_BETWEEN | 1u << RELATION_ON), "the truth's");
+	CHECK(sets[0] == 1u << PARSE_LEFT, "the prediction's ref before the truth's");
+	CHECK(sets[1] == (1u << PARSE_BETWEEN | 1u << PARSE_ON), "the truth's");
 	CHECK(sets[2] == 1u << SCORE_SAYS_NONE, "no relation");
 	CHECK(sets[3] == 1u << SCORE_SAYS_UNKNOWN && sets[4] == sets[3], "no sentence");
 	CHECK(sets[5] == 0, "nothing in its truth");
 	score_saying_names(names);
-	CHECK(!strcmp(names[RELATION_NEXT_TO], "next to") && !strcmp(names[SCORE_SAYS_UNKNOWN], "(unknown)"),
-		"names");
+	CHECK(!strcmp(names[PARSE_NEAR], "near") && !strcmp(names[SCORE_SAYS_UNKNOWN], "(unknown)"), "names");
 }
 
 static void test_seen(void)

@@ -9,7 +9,7 @@
 /* Where such a thing is spoken of: the first word of "and" and the first one after it, the word of its place,
  * and whether it is said the other way round ("what it stands on"); the phrases that have the words of the
  * first thing and of the second, -1 where that has no name. */
-struct carried {
+struct companion {
 	int joint, from, place, is_round, first, second;
 };
 
@@ -46,7 +46,7 @@ static int is_by_it(const struct parse *p, int place)
 }
 
 /* The place of a thing that is spoken of from word `from` on: 1 and *c, or 0. */
-static int find_place(const struct parse *p, int from, struct carried *c)
+static int find_place(const struct parse *p, int from, struct companion *c)
 {
 	static const char *const they[] = {"it", "they", NULL};
 	const int last = p->word_count - 1;
@@ -87,23 +87,21 @@ static int phrase_within(const struct parse *p, int from, int to)
 /* Whether a word among from..to-1 is of one of the classes, bits. */
 static int has_class(const struct parse *p, int from, int to, unsigned classes)
 {
-	for (int w = from; w < to; w++) {
-		const int closed = closed_find(p->words[w].text);
-		if (closed >= 0 && classes >> closed_words[closed].class & 1)
+	for (int w = from; w < to; w++)
+		if (classes >> closed_class_of(p, w) & 1)
 			return 1;
-	}
 	return 0;
 }
 
 /* "There's the laptop, and the cable behind it" tells where the cable is; so does what comes after a pause.
  */
-static int is_told(const struct parse *p, const struct carried *c)
+static int says_where(const struct parse *p, const struct companion *c)
 {
-	static const char *const told[] = {
+	static const char *const tells[] = {
 		"there", "here", "see", "spot", "locate", "start", "where", "know", NULL};
 
 	for (int w = 0; w < c->joint; w++)
-		if (parse_word_is(p, w, told))
+		if (parse_word_is(p, w, tells))
 			return 1;
 	for (int w = c->joint; w < c->place; w++)
 		if (p->words[w + 1].span.begin > p->words[w].span.end + 1)
@@ -112,7 +110,7 @@ static int is_told(const struct parse *p, const struct carried *c)
 }
 
 /* Whether both things are named, and nothing else can be what "it" is. */
-static int are_named(const struct parse *p, const struct carried *c)
+static int are_named(const struct parse *p, const struct companion *c)
 {
 	const unsigned has = 1U << CLOSED_WITH | 1U << CLOSED_HAVE;
 
@@ -123,7 +121,7 @@ static int are_named(const struct parse *p, const struct carried *c)
 		       1U << CLOSED_BE | 1U << CLOSED_REQUEST);
 }
 
-static int find_carried(const struct parse *p, struct carried *c)
+static int find_companion(const struct parse *p, struct companion *c)
 {
 	static const char *const the[] = {"the", "all", "also", NULL};
 	static const char *const things[] = {
@@ -139,7 +137,7 @@ static int find_carried(const struct parse *p, struct carried *c)
 			head++;
 		c->first = c->second = -1;
 		const int is_named = !parse_word_is(p, head, things);
-		if (!find_place(p, head + !is_named, c) || is_told(p, c))
+		if (!find_place(p, head + !is_named, c) || says_where(p, c))
 			continue;
 		if (!is_named)
 			return 1;
@@ -215,7 +213,7 @@ static int take_words(const struct parse *p, struct parse_phrase *to, const stru
 }
 
 /* The target is the first thing: its words before "and". Returns 0 and *is_so, or -1. */
-static int settle_first(struct parse *p, const struct carried *c, int *is_so, struct err *e)
+static int take_first(struct parse *p, const struct companion *c, int *is_so, struct err *e)
 {
 	struct parse_phrase *f = &p->phrases[0];
 
@@ -235,7 +233,7 @@ static int settle_first(struct parse *p, const struct carried *c, int *is_so, st
 }
 
 /* Of the second thing where that has no name: "the thing under it" is one. */
-static int count_second(const struct parse *p, const struct carried *c)
+static int count_second(const struct parse *p, const struct companion *c)
 {
 	static const char *const one[] = {"thing", "something", NULL};
 	int is_one = c->is_round;
@@ -245,20 +243,20 @@ static int count_second(const struct parse *p, const struct carried *c)
 	return is_one ? PARSE_ONE : PARSE_ALL;
 }
 
-int parse_carried(struct parse *p, struct err *e)
+int parse_companion(struct parse *p, struct err *e)
 {
-	struct carried c;
+	struct companion c;
 	int is_so;
 
 	const struct parse_list *also = &p->phrases[0].also;
-	if (!find_carried(p, &c) || also->n > 1 ||
+	if (!find_companion(p, &c) || also->n > 1 ||
 		(c.second < 0 && also->n && p->phrases[also->item[0]].noun.n && p->phrases[0].noun.n))
 		return 0;
 	const int named = c.second >= 0 ? p->phrases[c.second].count : 0;
 	struct parse_phrase words = {0};
 	if (c.second >= 0 && take_words(p, &words, &p->phrases[c.second], c.from, c.place, e))
 		return -1;
-	const int bad = settle_first(p, &c, &is_so, e) || (is_so && make_room(p, e));
+	const int bad = take_first(p, &c, &is_so, e) || (is_so && make_room(p, e));
 	if (bad || !is_so) {
 		free(words.noun.item);
 		free(words.attributes.item);

@@ -1,7 +1,7 @@
-/* Analyses that were made wrong by hand, and what they become (lang/analysis_mend.c). Checks are counted by
- * the test that includes this. */
-#ifndef MEND_HELP_H
-#define MEND_HELP_H
+/* Analyses that were made wrong by hand, and what they become by the rules (lang/rules.def). Checks are
+ * counted by the test that includes this. */
+#ifndef RULES_HELP_H
+#define RULES_HELP_H
 
 #include "lang/analysis.h"
 #include "unit.h"
@@ -29,24 +29,23 @@ static inline struct analysis made(const struct tokens *t, const char *roles, en
 	return a;
 }
 
-/* That analysis once it is mended. */
-static inline struct analysis mended(const char *text, const char *roles, enum parse_relation relation)
+/* That analysis after the rules. */
+static inline struct analysis ruled(const char *text, const char *roles, enum parse_relation relation)
 {
 	struct tokens t;
-	struct analysis a, grammar;
+	struct analysis a;
 
 	tokens_take(&t, text, NULL, NULL, 0);
-	grammar_analyse(&grammar, &t);
 	a = made(&t, roles, relation);
-	analysis_mend(&a, &grammar, &t);
+	analysis_apply_rules(&a, &t, 0);
 	return a;
 }
 
 /* A word's role and head are so then, and its relation where it is a predicate. */
-static inline void mends(const char *text, const char *roles, enum parse_relation relation, int word,
+static inline void rules_make(const char *text, const char *roles, enum parse_relation relation, int word,
 	enum word_role role, int head, enum parse_relation now)
 {
-	const struct analysis a = mended(text, roles, relation);
+	const struct analysis a = ruled(text, roles, relation);
 
 	CHECK(a.word[word].role == role && a.word[word].head == head, "'%s': word %d has role %d of %d", text,
 		word, a.word[word].role, a.word[word].head);
@@ -63,7 +62,7 @@ static inline struct parse built(const char *text, const char *roles, enum parse
 
 	tokens_take(&t, text, NULL, NULL, 0);
 	const struct analysis a = made(&t, roles, relation);
-	CHECK(!parse_build(&p, &a, &t, &e), "'%s'", text);
+	CHECK(!parse_build(&p, &a, &t, 0, &e), "'%s'", text);
 	return p;
 }
 
