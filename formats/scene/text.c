@@ -9,21 +9,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-void text_free_more(struct text *t)
-{
-	metalist_free(t->object_lists, t->n);
-	metalist_free(t->views, t->n);
-	metalist_free(t->kinds, t->n);
-	t->object_lists = t->views = t->kinds = NULL;
-}
-
 void text_free(struct text *t)
 {
 	metalist_free(t->refs, t->n);
 	metalist_free(t->objects, t->n);
 	metalist_free(t->texts, t->n);
 	metalist_free(t->pieces, t->n);
-	text_free_more(t);
+	metalist_free(t->object_lists, t->n);
+	metalist_free(t->views, t->n);
+	metalist_free(t->kinds, t->n);
 	free(t->offsets);
 	free(t->words);
 	free(t->middle);
