@@ -78,4 +78,9 @@ cJSON *meant_names(const struct text *t, size_t sentence);
  * are not, -1 where nothing is said (meant is NULL) or the model does not have all that is meant. */
 int meant_is(const cJSON *meant, const struct lifted *l, const size_t *things, size_t count);
 
+/* out: of the request's sentence i, with the score that its mask has, what was answered: the names of a
+ * lifted model's things, and whether they are the ones that the sentence's record names, where the model
+ * knows these. What has no room is cut. */
+void overlay_words(const struct request *r, size_t i, double score, char *out, size_t size);
+
 #endif
