@@ -8,8 +8,10 @@
 # SCENE       folder for everything that is made (required)
 # PHOTOS      folder of the photographs, of one camera, or a video, for which ffmpeg is needed (required)
 # FPS         photographs that are taken of a second of a video; default 2
-# MATCHER     which photographs COLMAP compares: exhaustive, each with each, or sequential, with the next ones; default
-#             exhaustive, and sequential for a video
+# MATCHER     which photographs COLMAP compares: exhaustive, each with each, or sequential, in the order of their names (2 before
+#             10), with the next ten, those 16, 32, 64 ... later, and some from the whole of it with one another; default
+#             exhaustive for at most 80 photographs, and sequential for more and for a video
+# SIZE        photographs are shrunk to at most so many pixels across before COLMAP looks at them; default 1600
 # FIT         more options for gs-train, with blanks between them; default --scale 0.5 --test-views every:8
 # MASKS, NAMES, SENTENCES, CANDIDATES, TRUTH, TEST_VIEWS, BERT   as lift.mk has them
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
@@ -24,11 +26,13 @@ FPS ?= 2
 FIT ?= --scale 0.5 --test-views every:8
 lifted_by := MASKS NAMES SENTENCES CANDIDATES TRUTH TEST_VIEWS
 include $(here)common.mk
-$(call check,SCENE PHOTOS,SCENE PHOTOS,FPS MATCHER FIT $(lifted_by) BERT BIN V)
-$(call check_plain,FPS MATCHER)
+export QT_QPA_PLATFORM := offscreen
+SIZE ?= 1600
+$(call check,SCENE PHOTOS,SCENE PHOTOS,FPS MATCHER SIZE FIT $(lifted_by) BERT BIN V)
+$(call check_plain,FPS MATCHER SIZE)
 
 is_video := $(if $(wildcard $(PHOTOS)/.),,1)
-MATCHER ?= $(if $(is_video),sequential,exhaustive)
+MATCHER ?= $(if $(is_video)$(word 81,$(wildcard $(PHOTOS)/*)),sequential,exhaustive)
 $(if $(filter exhaustive sequential,$(MATCHER)),,$(error $(called): MATCHER is '$(MATCHER)', and exhaustive or sequential are what it can be))
 images := $(if $(is_video),$(SCENE)/photos,$(PHOTOS))
 colmap := $(SCENE)/colmap
@@ -45,9 +49,21 @@ $(hide)mkdir -p $(SCENE)/log $(@D) && begin=$$(date +%s) && { { $(2); } >$(SCENE
 endef
 needs = $(hide)command -v $(1) >/dev/null || { echo "$(called): $(1) is not installed: run 'make deps-photos' in $(here).., or $(2)" >&2; exit 4; }
 
+# Of the photographs in order, those that are compared: two that are near, or a power of two apart, or both of an even choice of 30.
+pairs = /[.]/ { name[++n] = $$0 } \
+	END { every = int((n + 29) / 30); \
+		for (i = 1; i < n; i++) for (j = i + 1; j <= n; j++) { \
+			for (far = j - i; far % 2 == 0; far /= 2); \
+			if (j - i <= 10 || far == 1 || i % every + j % every == 0) print name[i], name[j] } }
+say.exhaustive = each photograph with each; MATCHER=sequential takes less time where they were taken one after another
+say.sequential = each photograph with those taken near it; where they are in no order, MATCHER=exhaustive does better and takes longer
+
 command.features = colmap feature_extractor --database_path $(colmap)/database.db --image_path $(images) --ImageReader.single_camera 1 \
-	--ImageReader.camera_model OPENCV --SiftExtraction.use_gpu 0
-command.matches = colmap $(MATCHER)_matcher --database_path $(colmap)/database.db --SiftMatching.use_gpu 0
+	--ImageReader.camera_model OPENCV --SiftExtraction.use_gpu 0 --SiftExtraction.max_image_size $(SIZE) --SiftExtraction.max_num_features 4096
+command.exhaustive = colmap exhaustive_matcher --database_path $(colmap)/database.db --SiftMatching.use_gpu 0
+command.sequential = ls -v $(images) | awk '$(pairs)' >$(colmap)/pairs && colmap matches_importer --database_path $(colmap)/database.db \
+	--match_type pairs --match_list_path $(colmap)/pairs --SiftMatching.use_gpu 0
+command.matches = $(command.$(MATCHER))
 command.mapper = colmap mapper --database_path $(colmap)/database.db --image_path $(images) --output_path $(colmap)/sparse
 command.fit = gs-train --cameras $(colmap)/model --images $(images) $(call options,FIT) --resume -v -o $(splats)
 command.frames = ffmpeg -nostdin -y -i $(PHOTOS) -vf fps=$(FPS) -qscale:v 2 $(SCENE)/photos/frame_%05d.jpg
@@ -76,11 +92,12 @@ $(SCENE)/photos/complete: $(PHOTOS) $(SCENE)/log/frames.command
 $(colmap)/features: $(if $(is_video),$(SCENE)/photos/complete,$(wildcard $(PHOTOS)/*)) $(SCENE)/log/features.command
 	$(call needs,colmap,give gs-train a model of another program)
 	@rm -rf $(colmap)
-	$(call step,features,QT_QPA_PLATFORM=offscreen $(command.features))
+	$(call step,features,$(command.features))
 	@touch $@
 
 $(colmap)/matches: $(colmap)/features $(SCENE)/log/matches.command
-	$(call step,matches,QT_QPA_PLATFORM=offscreen $(command.matches))
+	@echo "matches: $(say.$(MATCHER))"
+	$(call step,matches,$(command.matches))
 	@touch $@
 
 # Of several models the one with most photographs.

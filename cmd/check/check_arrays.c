@@ -197,15 +197,15 @@ int check_npz(struct check *c, const char *path, struct err *e)
 
 	if (npz_open(&z, path, e))
 		return -1;
-	for (size_t i = 0; i < z.n && !bad; i++) {
+	for (size_t i = 0; i < z.zip.n && !bad; i++) {
 		struct npy a;
-		if (!(bad = npz_entry(&z, i, &a, e))) {
+		if (!(bad = npz_entry(&z, i, &a, NULL, e))) {
 			values += (long long)a.count;
 			npy_close(&a);
 		}
 	}
 	c->kind = "npz";
-	check_add(c, "arrays", (long long)z.n);
+	check_add(c, "arrays", (long long)z.zip.n);
 	check_add(c, "values", values);
 	npz_close(&z);
 	return bad;

@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/quantile.h"
-#include "formats/cameras/colmap_points.h"
+#include "formats/cameras/colmap.h"
 #include "formats/splats/plyfile.h"
 
 #include <math.h>

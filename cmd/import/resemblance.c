@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "cmd/import/warping.h"
+#include "mask/shrink.h"
 #include "splat/render.h"
 
 #include <math.h>
@@ -9,27 +10,6 @@
 
 /* Views that are compared, their longer side in pixels, and how far a pixel's blurred self reaches. */
 enum { VIEWS = 8, SIDE = 160, REACH = 8 };
-
-/* Grey of an 8-bit picture at a smaller size, each pixel the mean of those that it covers. */
-static void shrink(const uint8_t *rgb, int from_height, int from_width, float *grey, int height, int width)
-{
-	for (int y = 0; y < height; y++)
-		for (int x = 0; x < width; x++) {
-			const int top = (int)((long)y * from_height / height),
-				  left = (int)((long)x * from_width / width);
-			const int bottom = (int)((long)(y + 1) * from_height / height),
-				  right = (int)((long)(x + 1) * from_width / width);
-			double sum = 0;
-			long n = 0;
-			for (int i = top; i < bottom || i == top; i++)
-				for (int k = left; k < right || k == left; k++, n++) {
-					const uint8_t *p =
-						rgb + 3 * ((size_t)i * (size_t)from_width + (size_t)k);
-					sum += p[0] + p[1] + p[2];
-				}
-			grey[(size_t)y * (size_t)width + (size_t)x] = (float)(sum / (double)n);
-		}
-}
 
 /* Takes from each pixel the mean of those around it. */
 static void sharpen(const float *grey, float *out, int height, int width)
@@ -73,7 +53,8 @@ static int compare(const struct scene *s, const struct camera *full, const uint8
 	const struct camera small = camera_resize(full, w, h);
 	const size_t pixels = (size_t)w * (size_t)h;
 	SCOPED float *room = mem_alloc(pixels, 6 * sizeof *room, "pictures", e);
-	struct render_view *view = room ? render_prepare(&s->splats, &small, e) : NULL;
+	SCOPED uint8_t *shown = room ? shrink_picture(rgb, height, width, h, w, e) : NULL;
+	struct render_view *view = shown ? render_prepare(&s->splats, &small, e) : NULL;
 	const int bad = !view || render_colors(view, &s->splats, &small, (const float[3]){0}, room, e);
 	render_free(view);
 	if (bad)
@@ -82,7 +63,8 @@ static int compare(const struct scene *s, const struct camera *full, const uint8
 	for (size_t i = 0; i < pixels; i++)
 		grey[i] = room[3 * i] + room[3 * i + 1] + room[3 * i + 2];
 	sharpen(grey, rendered, h, w);
-	shrink(rgb, height, width, grey, h, w);
+	for (size_t i = 0; i < pixels; i++)
+		grey[i] = (float)(shown[3 * i] + shown[3 * i + 1] + shown[3 * i + 2]);
 	sharpen(grey, seen, h, w);
 	*correlation = correlate(rendered, seen, pixels);
 	return 0;

@@ -8,6 +8,7 @@
 #include "geom/lens.h"
 #include "mask/mask.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -117,18 +118,38 @@ int warping_mask(struct warping *w, const char *view, struct rle *mask, struct e
 	return 0;
 }
 
+/* Of the four pixels around a place, the nearer the more; pixel i has its centre at i + 0.5. */
+static void sample(const uint8_t *rgb, int height, int width, double x, double y, uint8_t *to)
+{
+	const double left = fmin(fmax(x - 0.5, 0), width - 1), top = fmin(fmax(y - 0.5, 0), height - 1);
+	const size_t x0 = (size_t)left, y0 = (size_t)top, w = (size_t)width, x1 = x0 + (x0 + 1 < w),
+		     y1 = y0 + (y0 + 1 < (size_t)height);
+	const double right = left - (double)x0, below = top - (double)y0;
+
+	for (size_t k = 0; k < 3; k++) {
+		const double a = rgb[3 * (y0 * w + x0) + k], b = rgb[3 * (y0 * w + x1) + k],
+			     c = rgb[3 * (y1 * w + x0) + k], d = rgb[3 * (y1 * w + x1) + k];
+		const double high = a + right * (b - a), low = c + right * (d - c);
+		to[k] = (uint8_t)(high + below * (low - high) + 0.5);
+	}
+}
+
 static int undistort(const struct camera *c, uint8_t **rgb, int *height, int *width, struct err *e)
 {
-	const size_t pixels = (size_t)c->height * (size_t)c->width;
-	SCOPED int32_t *map = mem_alloc(pixels, sizeof *map, "photograph", e);
-	uint8_t *to = map ? mem_zalloc(pixels, 3, "photograph", e) : NULL;
+	const struct lens *l = &c->lens;
+	const double across = (double)*width / l->width, down = (double)*height / l->height;
+	uint8_t *to = mem_zalloc((size_t)c->height * (size_t)c->width, 3, "photograph", e);
 
-	if (to) {
-		lens_map_to_view(&c->lens, c, *height, *width, map);
-		for (size_t p = 0; p < pixels; p++)
-			if (map[p] >= 0)
-				memcpy(to + 3 * p, *rgb + 3 * (size_t)map[p], 3);
-	}
+#pragma omp parallel for schedule(static)
+	for (int y = 0; y < (to ? c->height : 0); y++)
+		for (int x = 0; x < c->width; x++) {
+			const double ray[2] = {(x + 0.5 - c->cx) / c->fx, (y + 0.5 - c->cy) / c->fy};
+			double at[2];
+			if (!lens_project(l, ray, at) && at[0] >= 0 && at[0] < l->width && at[1] >= 0 &&
+				at[1] < l->height)
+				sample(*rgb, *height, *width, at[0] * across, at[1] * down,
+					to + 3 * ((size_t)y * (size_t)c->width + (size_t)x));
+		}
 	free(*rgb);
 	*rgb = to;
 	*height = c->height;

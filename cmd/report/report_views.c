@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "formats/images/jpeg.h"
 #include "cmd/import/warping.h"
+#include "mask/shrink.h"
 #include "splat/render.h"
 
 #include <math.h>
@@ -17,40 +18,13 @@ struct picture_rgb {
 	uint8_t *rgb;
 };
 
-/* to (width,3) the mean of rows [top,bottom) over as many columns as a new pixel covers. */
-static void mean_row(const struct picture_rgb *from, int top, int bottom, uint8_t *to, int width)
-{
-	for (int x = 0; x < width; x++) {
-		const int left = (int)((int64_t)x * from->width / width);
-		const int right = (int)(((int64_t)x + 1) * from->width / width),
-			  end = right > left ? right : left + 1;
-		uint32_t sum[3] = {0}, n = (uint32_t)((bottom - top) * (end - left));
-		for (int row = top; row < bottom; row++)
-			for (int column = left; column < end; column++)
-				for (int k = 0; k < 3; k++)
-					sum[k] += from->rgb[3 * ((size_t)row * (size_t)from->width +
-									(size_t)column) +
-							    (size_t)k];
-		for (int k = 0; k < 3; k++)
-			to[3 * x + k] = (uint8_t)((sum[k] + n / 2) / n);
-	}
-}
-
-/* Another size, by the mean of the pixels that a new one covers. */
 static int shrink(struct picture_rgb *p, int height, int width, struct err *e)
 {
-	uint8_t *to = mem_alloc((size_t)height, 3 * (size_t)width, "picture", e);
+	uint8_t *to = shrink_picture(p->rgb, p->height, p->width, height, width, e);
 
-	if (!to)
-		return -1;
-	for (int y = 0; y < height; y++) {
-		const int top = (int)((int64_t)y * p->height / height);
-		const int bottom = (int)(((int64_t)y + 1) * p->height / height);
-		mean_row(p, top, bottom > top ? bottom : top + 1, to + 3 * (size_t)y * (size_t)width, width);
-	}
 	free(p->rgb);
 	*p = (struct picture_rgb){height, width, to};
-	return 0;
+	return to ? 0 : -1;
 }
 
 /* 1 where the view has a photograph that can be read. */

@@ -26,11 +26,10 @@ char *cache_folder(const char *name, struct err *e);
 #define ENCODER_PARTS BERT_MODEL_PARTS "|" CLIP_MODEL_PARTS
 
 struct encoder {
-	int is_clip; /* clip and bpe, else bert and vocab */
+	int is_clip; /* bpe, else vocab */
 	struct vocab vocab;
-	struct bert bert;
 	struct bpe bpe;
-	struct clip clip;
+	struct text_tower tower;
 	int is_static; /* vectors as the vocabulary has them, not as the sentence makes them */
 	struct fingerprint fingerprint; /* of all of it */
 };
@@ -65,8 +64,8 @@ char *encoder_print(const struct encoder *x, const int32_t *ids, size_t n, struc
  * does. */
 int encoder_has_middle(const struct encoder *x);
 
-/* As bert_scratch and bert_forward, or what the vocabulary has where x->is_static. middle is NULL where it is
- * not wanted, or where there is none. */
+/* As text_tower_scratch and text_tower_forward, or what the vocabulary has where x->is_static. middle is NULL
+ * where it is not wanted, or where there is none. */
 int encoder_scratch(const struct encoder *x, size_t rows, size_t longest, size_t *floats);
 void encoder_forward(const struct encoder *x, const int32_t *ids, const size_t *starts, size_t n, float *out,
 	float *middle, float *scratch);

@@ -27,7 +27,6 @@ struct fitting {
 	const struct report *to;
 	struct fitting_input in;
 	struct fit fit;
-	struct fit_judges judges;
 	struct trainlog log;
 	float *good; /* the parameters at the last evaluation */
 	size_t good_n;
@@ -57,14 +56,15 @@ static void keep(struct fitting *f)
 
 static int draw_preview(struct fitting *f, struct err *e)
 {
-	const struct camera *c = &f->judges.first->camera[0];
+	const struct photograph *p = f->in.photographs + (f->in.tested ? f->in.learned : 0);
+	const struct camera *c = &p->camera[0];
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 	struct photo_loss l;
 	char name[32];
 
 	if (!f->options->preview)
 		return 0;
-	if (fit_judge(&f->fit, f->judges.first, &l, e))
+	if (fit_judge(&f->fit, p, &l, e))
 		return -1;
 	snprintf(name, sizeof name, "%08ld", (long)f->fit.state.iteration);
 	uint8_t *rgb = mem_alloc(pixels, 3, "picture", e);
@@ -77,7 +77,7 @@ static int draw_preview(struct fitting *f, struct err *e)
 	return bad ? -1 : 0;
 }
 
-/* What is due at some progress besides a step. */
+/* What is due after a step, at the progress that it was taken at, besides what records it. */
 static int look(struct fitting *f, double progress, struct err *e)
 {
 	struct fit *fit = &f->fit;
@@ -85,13 +85,16 @@ static int look(struct fitting *f, double progress, struct err *e)
 	double psnr, ssim;
 	int is_due;
 
+	if (!(fit->last.total < LOSS_MOST))
+		return err_set(e, ERR_CHECK, "training diverged: the loss of step %ld is %.3g",
+			(long)fit->state.iteration, fit->last.total);
 	if (!fit->state.is_pruned && progress >= FIT_PRUNED) {
-		if (fit_check(fit, e) || fit_prune(fit, &f->judges, e))
+		if (fit_check(fit, e) || fit_prune(fit, e))
 			return -1;
 		report_note(f->to, 1, "step %ld: %zu of %zu Gaussians add nothing and are left out",
 			(long)fit->state.iteration, n - fit->gaussians.n, n);
 	}
-	if (fit_evaluate(fit, &f->judges, progress, &is_due, &psnr, &ssim, e))
+	if (fit_evaluate(fit, progress, &is_due, &psnr, &ssim, e))
 		return -1;
 	if (!is_due)
 		return 0;
@@ -99,7 +102,7 @@ static int look(struct fitting *f, double progress, struct err *e)
 		return -1;
 	keep(f);
 	report_note(f->to, 2, "step %ld: %zu Gaussians, %s PSNR %.2f dB, SSIM %.4f",
-		(long)fit->state.iteration, fit->gaussians.n, f->in.tested ? "held-out" : "training", psnr,
+		(long)fit->state.iteration, fit->gaussians.n, f->in.held_out ? "held-out" : "training", psnr,
 		ssim);
 	if ((size_t)fit->state.most < most && !fit->state.is_pruned)
 		report_note(f->to, 1, "step %ld: more than %zu Gaussians gain nothing",
@@ -117,9 +120,6 @@ static int record(struct fitting *f, struct err *e)
 	struct fit_state *s = &f->fit.state;
 	const long done = (long)s->iteration;
 
-	if (!(f->fit.last.total < LOSS_MOST))
-		return err_set(e, ERR_CHECK, "training diverged: the loss of step %ld is %.3g", done,
-			f->fit.last.total);
 	if (done % TRAINLOG_EVERY == 0) {
 		const double psnr = fit_psnr(s->squares / TRAINLOG_EVERY);
 		snprintf(f->note, sizeof f->note, "%zu Gaussians, PSNR %.2f", f->fit.gaussians.n, psnr);
@@ -147,7 +147,7 @@ static int take_steps(struct fitting *f, struct err *e)
 	f->begin = seconds() - s->spent;
 	report_start(f->to, is_timed ? "seconds" : "steps", all);
 	while (done < all && !bad) {
-		bad = look(f, done / all, e) || fit_step(&f->fit, done / all, e) || record(f, e);
+		bad = fit_step(&f->fit, done / all, e) || look(f, done / all, e) || record(f, e);
 		done = is_timed ? seconds() - f->begin : (double)s->iteration;
 		report_step(f->to, done, *f->note ? f->note : NULL);
 	}
@@ -174,11 +174,11 @@ static int check_start(struct fitting *f, struct err *e)
 static int finish(struct fitting *f, struct err *e)
 {
 	const size_t n = f->fit.gaussians.n;
-	const struct fit_judges tested = {f->judges.first, f->in.tested, 1};
+	const struct photograph *tested = f->in.photographs + f->in.learned;
 	char *kept = mem_alloc(n, 1, "Gaussians", e);
 	struct splats s = {0};
 	double psnr, ssim;
-	int bad = !kept || fit_judge_all(&f->fit, &tested, &psnr, &ssim, e) ||
+	int bad = !kept || fit_judge_all(&f->fit, tested, f->in.tested, &psnr, &ssim, e) ||
 		  fit_shown(&f->fit, 0, kept, NULL, e) ||
 		  fit_gaussians_give(&f->fit.gaussians, kept, &s, e) ||
 		  ply_write(&s, f->in.offset, f->options->output, e);
@@ -186,14 +186,14 @@ static int finish(struct fitting *f, struct err *e)
 	if (!bad)
 		report_note(f->to, 1, "%ld steps, %zu Gaussians, of which %zu are shown and written",
 			(long)f->fit.state.iteration, n, s.n);
-	for (size_t i = 0; i < tested.n && !bad; i++) {
+	for (size_t i = 0; i < f->in.tested && !bad; i++) {
 		struct photo_loss l;
-		bad = fit_judge(&f->fit, &tested.first[i], &l, e);
-		report_note(f->to, 2, "%s: PSNR %.2f dB, SSIM %.4f", tested.first[i].camera[0].name,
+		bad = fit_judge(&f->fit, &tested[i], &l, e);
+		report_note(f->to, 2, "%s: PSNR %.2f dB, SSIM %.4f", tested[i].camera[0].name,
 			fit_psnr(l.squares), l.ssim);
 	}
-	if (!bad && tested.n)
-		report_note(f->to, 1, "%zu test views: PSNR %.2f dB, SSIM %.4f", tested.n, psnr, ssim);
+	if (!bad && f->in.tested)
+		report_note(f->to, 1, "%zu test views: PSNR %.2f dB, SSIM %.4f", f->in.tested, psnr, ssim);
 	splats_free(&s);
 	free(kept);
 	return bad ? -1 : 0;
@@ -267,12 +267,10 @@ static int run(struct fitting *f, struct err *e)
 	report_note(f->to, 1,
 		"%zu photographs to learn from, %zu to test with, %zu Gaussians to begin with, extent %.4g, size %.4g",
 		in->learned, in->tested, in->gaussians.n, in->extent, in->size);
-	f->judges = in->tested ? fit_judges_of(in->photographs + in->learned, in->tested)
-			       : fit_judges_of(in->photographs, in->learned);
 	int bad = file_out_claim(&claim, o->output, e);
 	bad = bad || (o->checkpoint_path && file_out_probe(o->checkpoint_path, e)) ||
 	      (o->preview && file_make_dir(o->preview, e)) ||
-	      fit_open(&f->fit, &in->gaussians, &options, in->photographs, in->learned, e) ||
+	      fit_open(&f->fit, &in->gaussians, &options, in->photographs, in->learned, in->held_out, e) ||
 	      check_start(f, e) || expose(f, e) || resume(f, e) ||
 	      trainlog_open(&f->log, o->log, (long)f->fit.state.iteration, e);
 	const struct fit_gaussians *g = &f->fit.gaussians;

@@ -8,7 +8,6 @@
 #include "fit/start.h"
 #include "formats/cameras/camerafile.h"
 #include "formats/cameras/colmap.h"
-#include "formats/cameras/colmap_points.h"
 #include "formats/images/png.h"
 #include "formats/splats/anysplats.h"
 #include "geom/lens.h"
@@ -18,7 +17,10 @@
 #include <stdlib.h>
 #include <zlib.h>
 
-enum { RANDOM_POINTS = 20000 };
+/* Each eighth photograph, but not many more than 16, is held out where there are so many that its neighbours
+ * show what it does. */
+enum { RANDOM_POINTS = 20000, HELD_OUT_FROM = 40, HELD_OUT_EVERY = 8, HELD_OUT_MOST = 16 };
+enum part { LEARNED, HELD_OUT, TESTED, PARTS };
 
 static int read_cameras(struct fitting_input *f, struct err *e)
 {
@@ -82,29 +84,52 @@ static int read_ignored(
 	return bad ? -1 : 0;
 }
 
+/* part (cameras.n): what each photograph is for; PARTS: there is none. */
+static void assign(const struct fitting_input *f, uint8_t *part)
+{
+	size_t all = 0, at = 0;
+
+	for (size_t i = 0; i < f->cameras.n; i++) {
+		const struct camera *c = &f->cameras.views[i];
+		part[i] = !c->image ? PARTS : c->split == SPLIT_TEST ? TESTED : LEARNED;
+		all += part[i] == LEARNED;
+	}
+	const size_t every = all > HELD_OUT_EVERY * HELD_OUT_MOST ? all / HELD_OUT_MOST : HELD_OUT_EVERY;
+	for (size_t i = 0; i < f->cameras.n && all >= HELD_OUT_FROM; i++)
+		if (part[i] == LEARNED && ++at % every == 0)
+			part[i] = HELD_OUT;
+}
+
 static int read_photographs(struct fitting_input *f, struct err *e)
 {
 	const size_t n = f->cameras.n;
+	uint8_t *part = mem_alloc(n, 1, "photographs", e);
+	size_t number[PARTS] = {0}, done = 0;
 	int bad = 0;
 
 	f->photographs = mem_zalloc(n, sizeof *f->photographs, "photographs", e);
 	f->seen = mem_alloc(n, sizeof *f->seen, "photographs", e);
-	if (!f->photographs || !f->seen)
-		return -1;
+	if (part && f->photographs && f->seen)
+		assign(f, part);
+	else
+		bad = -1;
 	report_start(f->to, "photographs", (double)n);
-	for (int split = SPLIT_TRAIN; split <= SPLIT_TEST; split++)
+	for (int k = 0; k < PARTS; k++)
 		for (size_t i = 0; i < n && !bad; i++) {
 			const struct camera *c = &f->cameras.views[i];
-			if (!c->image || (int)c->split != split)
+			if (part[i] != k)
 				continue;
-			if (split == SPLIT_TRAIN)
-				f->seen[f->learned] = c;
-			struct photograph *p = &f->photographs[f->learned + f->tested];
-			bad = read_photograph(f, c, p, e) || read_ignored(f, c, p, e);
-			*(split == SPLIT_TRAIN ? &f->learned : &f->tested) += 1;
-			report_step(f->to, (double)(f->learned + f->tested), NULL);
+			f->seen[done] = c;
+			bad = read_photograph(f, c, &f->photographs[done], e) ||
+			      read_ignored(f, c, &f->photographs[done], e);
+			number[k]++;
+			report_step(f->to, (double)++done, NULL);
 		}
 	report_end(f->to);
+	free(part);
+	f->held_out = number[HELD_OUT];
+	f->learned = number[LEARNED] + f->held_out;
+	f->tested = number[TESTED];
 	if (!bad && !f->learned)
 		bad = err_set(e, ERR_FORMAT, "%s: every view with a photograph is kept for testing",
 			file_name(f->path));

@@ -12,8 +12,9 @@ struct fitting_input {
 	char *path; /* of the cameras */
 	struct cameras cameras;
 	double offset[3];
-	struct photograph *photographs; /* (cameras.n) first those to learn from, then those to test with */
-	size_t learned, tested;
+	struct photograph *photographs; /* (cameras.n) those to learn from, those held out last, and then
+					   those to test with */
+	size_t learned, held_out, tested;
 	const struct camera **seen; /* (learned) */
 	struct fit_gaussians gaussians;
 	double extent, size;

@@ -92,13 +92,8 @@ int trainlog_put_fit(
 int trainlog_put_judged(
 	struct trainlog *l, long iteration, size_t gaussians, double psnr, double ssim, struct err *e)
 {
-	if (l->stream &&
-		(fprintf(l->stream,
-			 "{\"iteration\":%ld,\"gaussians\":%zu,\"judged_psnr\":%.9g,\"judged_ssim\":%.9g}\n",
-			 iteration, gaussians, psnr, ssim) < 0 ||
-			fflush(l->stream)))
-		return err_errno(e, "%s", file_name(l->path));
-	return 0;
+	return put(l, e, "{\"iteration\":%ld,\"gaussians\":%zu,\"judged_psnr\":%.9g,\"judged_ssim\":%.9g}\n",
+		iteration, gaussians, psnr, ssim);
 }
 
 int trainlog_close(struct trainlog *l, struct err *e)

@@ -32,12 +32,13 @@ static const double level_ends[FIT_LEVELS - 1] = {0.35, 0.1}, degree_begins[3] =
 #define GROW_END 0.85
 
 int fit_open(struct fit *f, struct fit_gaussians *g, const struct fit_options *o,
-	const struct photograph *photographs, size_t views, struct err *e)
+	const struct photograph *photographs, size_t views, size_t held_out, struct err *e)
 {
 	*f = (struct fit){.options = *o,
 		.gaussians = *g,
 		.photographs = photographs,
 		.views = views,
+		.held_out = held_out,
 		.state = {.first = (int64_t)g->n, .most = (int64_t)g->capacity}};
 	*g = (struct fit_gaussians){0};
 	f->order = mem_alloc(views, sizeof *f->order, "views", e);
@@ -71,6 +72,12 @@ void fit_close(struct fit *f)
 	free(f->dead);
 	free(f->image);
 	*f = (struct fit){0};
+}
+
+/* How many are learned from. */
+static size_t learned(const struct fit *f)
+{
+	return f->views - (f->state.is_pruned ? 0 : f->held_out);
 }
 
 double fit_psnr(double squares)
@@ -143,7 +150,7 @@ int fit_judge(struct fit *f, const struct photograph *p, struct photo_loss *l, s
 	fit_gaussians_activate(&f->gaussians);
 	if (render(f, &p->camera[0], f->gaussians.degree, e))
 		return -1;
-	if (exposure && p >= f->photographs && p < f->photographs + f->views)
+	if (exposure && p >= f->photographs && p < f->photographs + learned(f))
 		exposure = f->exposures.values + (size_t)(p - f->photographs) * EXPOSURE_WIDTH;
 	else if (exposure)
 		exposure_nearest(exposure, f->image, p->rgb[0], pixels);
@@ -242,7 +249,7 @@ static int grow_now(struct fit *f, double progress, struct err *e)
 
 int fit_step(struct fit *f, double progress, struct err *e)
 {
-	const size_t turn = (size_t)f->state.iteration % f->views;
+	const size_t views = learned(f), turn = (size_t)f->state.iteration % views;
 	const double mean_rate = f->options.extent * RATE_MEAN * pow(RATE_MEAN_END / RATE_MEAN, progress);
 	int level = FIT_LEVELS - 1, degree = 0;
 
@@ -251,7 +258,7 @@ int fit_step(struct fit *f, double progress, struct err *e)
 	while (degree < f->gaussians.degree && progress >= degree_begins[degree])
 		degree++;
 	if (!turn)
-		rng_shuffle(&f->state.rng, f->order, (uint32_t)f->views);
+		rng_shuffle(&f->state.rng, f->order, (uint32_t)views);
 	const struct photograph *p = &f->photographs[f->order[turn]];
 	fit_gaussians_activate(&f->gaussians);
 	if (render(f, &p->camera[level], degree, e) || back(f, p, level, degree, progress, e))

@@ -44,6 +44,7 @@ struct fit {
 	struct fit_gaussians gaussians;
 	const struct photograph *photographs; /* (views) to learn from; the caller's */
 	size_t views;
+	size_t held_out; /* the last so many are learned from only once the scene is pruned */
 
 	struct fit_state state;
 	struct exposures exposures; /* (views), or none */
@@ -64,7 +65,7 @@ struct fit {
 /* A fit of the Gaussians in *g, which become its own; in the end there are as many as it has room for.
  * Returns 0, or -1 with *e set; fit_close after either. */
 int fit_open(struct fit *f, struct fit_gaussians *g, const struct fit_options *o,
-	const struct photograph *photographs, size_t views, struct err *e);
+	const struct photograph *photographs, size_t views, size_t held_out, struct err *e);
 void fit_close(struct fit *f);
 
 /* A step on one photograph. progress, from 0 to 1 and never less than before, is how much of the training is

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { JUDGES_MOST = 16, BISECTIONS = 7 };
+enum { BISECTIONS = 7 };
 #define EVALUATE_EVERY 0.05
 #define GAIN_LEAST 0.05	     /* dB from one evaluation to the next */
 #define GAINS_FROM 0.4	     /* progress: before, images grow and PSNR with them */
@@ -16,35 +16,35 @@ struct rank {
 	uint32_t i;
 };
 
-struct fit_judges fit_judges_of(const struct photograph *first, size_t n)
-{
-	const size_t stride = (n + JUDGES_MOST - 1) / JUDGES_MOST;
-
-	return (struct fit_judges){first, stride ? (n + stride - 1) / stride : 0, stride};
-}
-
-int fit_judge_all(struct fit *f, const struct fit_judges *by, double *psnr, double *ssim, struct err *e)
+int fit_judge_all(
+	struct fit *f, const struct photograph *first, size_t n, double *psnr, double *ssim, struct err *e)
 {
 	*psnr = *ssim = 0;
-	for (size_t i = 0; i < by->n; i++) {
+	for (size_t i = 0; i < n; i++) {
 		struct photo_loss l;
-		if (fit_judge(f, by->first + i * by->stride, &l, e))
+		if (fit_judge(f, first + i, &l, e))
 			return -1;
-		*psnr += fit_psnr(l.squares) / (double)by->n;
-		*ssim += l.ssim / (double)by->n;
+		*psnr += fit_psnr(l.squares) / (double)n;
+		*ssim += l.ssim / (double)n;
 	}
 	return 0;
 }
 
-int fit_evaluate(struct fit *f, const struct fit_judges *by, double progress, int *is_due, double *psnr,
-	double *ssim, struct err *e)
+static int judge(struct fit *f, double *psnr, double *ssim, struct err *e)
+{
+	const size_t n = f->held_out ? f->held_out : f->views;
+
+	return fit_judge_all(f, f->photographs + f->views - n, n, psnr, ssim, e);
+}
+
+int fit_evaluate(struct fit *f, double progress, int *is_due, double *psnr, double *ssim, struct err *e)
 {
 	struct fit_state *s = &f->state;
 
 	*is_due = progress >= s->judged + EVALUATE_EVERY;
 	if (!*is_due)
 		return 0;
-	if (fit_judge_all(f, by, psnr, ssim, e))
+	if (judge(f, psnr, ssim, e))
 		return -1;
 	if (progress >= GAINS_FROM && s->psnr > 0 && *psnr < s->psnr + GAIN_LEAST &&
 		(size_t)s->most > f->gaussians.n)
@@ -76,8 +76,8 @@ static int rank(struct fit *f, struct rank *ranks, char *kept, struct err *e)
 }
 
 /* PSNR without the first `removed` of the ranks. */
-static int judge_without(struct fit *f, const struct fit_judges *by, const struct rank *ranks, size_t removed,
-	const float *logits, double *psnr, struct err *e)
+static int judge_without(struct fit *f, const struct rank *ranks, size_t removed, const float *logits,
+	double *psnr, struct err *e)
 {
 	float *logit = f->gaussians.at[FIT_VALUE][FIT_LOGIT];
 	double ssim;
@@ -85,24 +85,23 @@ static int judge_without(struct fit *f, const struct fit_judges *by, const struc
 	memcpy(logit, logits, f->gaussians.n * sizeof *logit);
 	for (size_t k = 0; k < removed; k++)
 		logit[ranks[k].i] = LOGIT_NONE;
-	const int bad = fit_judge_all(f, by, psnr, &ssim, e);
+	const int bad = judge(f, psnr, &ssim, e);
 	memcpy(logit, logits, f->gaussians.n * sizeof *logit);
 	return bad;
 }
 
-static int prune(struct fit *f, const struct fit_judges *by, struct rank *ranks, char *kept, float *logits,
-	struct err *e)
+static int prune(struct fit *f, struct rank *ranks, char *kept, float *logits, struct err *e)
 {
 	const size_t n = f->gaussians.n;
 	size_t low = 0, high = n / 2;
 	double whole, psnr;
 
 	memcpy(logits, f->gaussians.at[FIT_VALUE][FIT_LOGIT], n * sizeof *logits);
-	if (rank(f, ranks, kept, e) || judge_without(f, by, ranks, 0, logits, &whole, e))
+	if (rank(f, ranks, kept, e) || judge_without(f, ranks, 0, logits, &whole, e))
 		return -1;
 	for (int k = 0; k < BISECTIONS && low + 1 < high; k++) {
 		const size_t middle = low + (high - low) / 2;
-		if (judge_without(f, by, ranks, middle, logits, &psnr, e))
+		if (judge_without(f, ranks, middle, logits, &psnr, e))
 			return -1;
 		*(psnr >= whole - FIT_PRUNE_LOSS ? &low : &high) = middle;
 	}
@@ -115,13 +114,13 @@ static int prune(struct fit *f, const struct fit_judges *by, struct rank *ranks,
 	return 0;
 }
 
-int fit_prune(struct fit *f, const struct fit_judges *by, struct err *e)
+int fit_prune(struct fit *f, struct err *e)
 {
 	const size_t n = f->gaussians.n;
 	struct rank *ranks = mem_alloc(n, sizeof *ranks, "Gaussians", e);
 	char *kept = mem_alloc(n, 1, "Gaussians", e);
 	float *logits = mem_alloc(n, sizeof *logits, "Gaussians", e);
-	const int bad = !ranks || !kept || !logits || prune(f, by, ranks, kept, logits, e);
+	const int bad = !ranks || !kept || !logits || prune(f, ranks, kept, logits, e);
 
 	free(ranks);
 	free(kept);

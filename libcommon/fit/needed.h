@@ -11,26 +11,17 @@
 /* What may be lost by pruning, dB. */
 #define FIT_PRUNE_LOSS 0.1
 
-/* The photographs by which a scene is judged: every stride-th from first on. */
-struct fit_judges {
-	const struct photograph *first;
-	size_t n, stride;
-};
+/* Means of PSNR and SSIM of these photographs. Returns 0, or -1 with *e set. */
+int fit_judge_all(
+	struct fit *f, const struct photograph *first, size_t n, double *psnr, double *ssim, struct err *e);
 
-/* At most 16 of n photographs, evenly spread. */
-struct fit_judges fit_judges_of(const struct photograph *first, size_t n);
-
-/* Means of PSNR and SSIM. Returns 0, or -1 with *e set. */
-int fit_judge_all(struct fit *f, const struct fit_judges *by, double *psnr, double *ssim, struct err *e);
-
-/* Judges, once for each twentieth of the progress; *is_due gets whether it was. Growing ends where so little
- * was gained since the last time, in full size, that more Gaussians do not pay. Returns 0, or -1 with *e set.
- */
-int fit_evaluate(struct fit *f, const struct fit_judges *by, double progress, int *is_due, double *psnr,
-	double *ssim, struct err *e);
+/* Judges by the photographs held out, or by all where none is, once for each twentieth of the progress;
+ * *is_due gets whether it was. Growing ends where so little was gained since the last time, in full size,
+ * that more Gaussians do not pay. Returns 0, or -1 with *e set. */
+int fit_evaluate(struct fit *f, double progress, int *is_due, double *psnr, double *ssim, struct err *e);
 
 /* Leaves out as many as it can, up to half, those that the photographs show least first, for at most
  * FIT_PRUNE_LOSS. Returns 0, or -1 with *e set. */
-int fit_prune(struct fit *f, const struct fit_judges *by, struct err *e);
+int fit_prune(struct fit *f, struct err *e);
 
 #endif

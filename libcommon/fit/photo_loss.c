@@ -16,9 +16,9 @@ enum { REACH = 5, TAPS = 2 * REACH + 1 };
 #define SSIM_C1 1e-4f /* 0.01^2 */
 #define SSIM_C2 9e-4f /* 0.03^2 */
 
-/* e^(-x^2 / 4.5), with sum 1 */
-static const float window[TAPS] = {0.00102838f, 0.00759876f, 0.03600078f, 0.10936069f, 0.21300554f,
-	0.26601172f, 0.21300554f, 0.10936069f, 0.03600078f, 0.00759876f, 0.00102838f};
+/* e^(-x^2 / 4.5), with sum 1 over both sides: the second is the first mirrored */
+static const float window[REACH + 1] = {
+	0.00102838f, 0.00759876f, 0.03600078f, 0.10936069f, 0.21300554f, 0.26601172f};
 
 #if defined(__x86_64__) && defined(__GLIBC__)
 #define CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
@@ -30,25 +30,26 @@ static const float window[TAPS] = {0.00102838f, 0.00759876f, 0.03600078f, 0.1093
 CLONES static void filter_row(const float *restrict in, float *restrict out, int n)
 {
 	for (int i = 0; i < n; i++) {
-		float sum = 0;
-		for (int t = 0; t < TAPS; t++)
-			sum += window[t] * in[i + t - REACH];
+		float sum = window[REACH] * in[i];
+		for (int t = 0; t < REACH; t++)
+			sum += window[t] * (in[i + t - REACH] + in[i + REACH - t]);
 		out[i] = sum;
 	}
 }
 
-/* The same over rows: row y of a plane whose rows are `width` long. */
-CLONES static void filter_column(
-	const float *restrict plane, float *restrict out, int y, int height, int width)
+/* The same over rows: row y of a plane whose rows are `width` long; `none` is a row of zeros. */
+CLONES static void filter_column(const float *restrict plane, const float *restrict none, float *restrict out,
+	int y, int height, int width)
 {
-	memset(out, 0, (size_t)width * sizeof *out);
-	for (int t = 0; t < TAPS; t++) {
-		const int from = y + t - REACH;
-		if (from < 0 || from >= height)
-			continue;
-		const float *row = plane + (size_t)from * (size_t)width;
-		for (int x = 0; x < width; x++)
-			out[x] += window[t] * row[x];
+	const float *rows[TAPS];
+
+	for (int t = 0, from = y - REACH; t < TAPS; t++, from++)
+		rows[t] = from < 0 || from >= height ? none : plane + (size_t)from * (size_t)width;
+	for (int x = 0; x < width; x++) {
+		float sum = window[REACH] * rows[REACH][x];
+		for (int t = 0; t < REACH; t++)
+			sum += window[t] * (rows[t][x] + rows[TAPS - 1 - t][x]);
+		out[x] = sum;
 	}
 }
 
@@ -82,6 +83,7 @@ struct channel {
 	float *y;	    /* both (P) */
 	float *filtered[5]; /* (P) along rows, and then, from slope 0 to 2, slopes that are filtered */
 	float *slopes[3];   /* (P) */
+	const float *none;  /* (width) zeros */
 	double *rows;	    /* (3,height) sums of a row */
 };
 
@@ -113,7 +115,7 @@ static void score_row(const struct channel *c, int y, float *row)
 
 	for (int k = 0; k < 5; k++) {
 		of[k] = row + (size_t)k * (size_t)n;
-		filter_column(c->filtered[k], of[k], y, c->height, n);
+		filter_column(c->filtered[k], c->none, of[k], y, c->height, n);
 	}
 	c->rows[y] = ssim_row(of[0], of[1], of[2], of[3], of[4], row + 5 * (size_t)n, n);
 	for (int k = 0; k < 3; k++)
@@ -136,7 +138,7 @@ static void gradient_row(const struct channel *c, int y, float *row, float *grad
 	const float per = 1 / (3 * (float)n * (float)c->height);
 
 	for (int k = 0; k < 3; k++)
-		filter_column(c->filtered[k], row + (size_t)k * n, y, c->height, c->width);
+		filter_column(c->filtered[k], c->none, row + (size_t)k * n, y, c->height, c->width);
 	for (size_t i = 0; i < n; i++) {
 		const float a = c->x[at + i], b = c->y[at + i];
 		const float ssim = row[i] + 2 * a * row[n + i] + b * row[2 * n + i];
@@ -199,19 +201,22 @@ int photo_loss(struct photo_loss *l, const float *image, const uint8_t *photogra
 
 	*l = (struct photo_loss){0};
 	if (mem_room((void **)&room->planes, &room->plane_room,
-		    9 * pixels + (size_t)threads_available() * row, sizeof *room->planes, "image", e) ||
+		    9 * pixels + (size_t)threads_available() * row + (size_t)width, sizeof *room->planes,
+		    "image", e) ||
 		mem_room((void **)&room->rows, &room->row_room, 3 * (size_t)height, sizeof *room->rows,
 			"image", e))
 		return -1;
 	for (size_t k = 0; k < 3; k++) {
 		struct channel c = {.height = height, .width = width, .y = room->planes, .rows = room->rows};
 		c.x = image + k * pixels;
+		c.none = memset(room->planes + 9 * pixels, 0, (size_t)width * sizeof *room->planes);
 		for (size_t i = 0; i < 8; i++)
 			*(i < 5 ? &c.filtered[i] : &c.slopes[i - 5]) = room->planes + (i + 1) * pixels;
 #pragma omp parallel for schedule(static)
 		for (size_t p = 0; p < pixels; p++)
 			c.y[p] = (float)photograph[3 * p + k] * (1.0f / 255);
-		channel_loss(&c, room->planes + 9 * pixels, row, gradient ? gradient + k * pixels : NULL, l);
+		channel_loss(&c, room->planes + 9 * pixels + width, row,
+			gradient ? gradient + k * pixels : NULL, l);
 	}
 	const double n = 3 * (double)pixels;
 	l->l1 /= n;

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define OPACITY 0.1f
+#define OPACITY 0.5f /* 3DGS-MCMC's; 3DGS has 0.1 */
 enum { NEIGHBOURS = 3 };
 
 static void find_mean(const struct camera *const *cameras, size_t n, double mean[3])

@@ -36,6 +36,19 @@ photos() { make -s -f "$ROOT/pipelines/photos.mk" BIN="$BIN" SCENE=out PHOTOS=ma
 	[ "$(wc -l <called)" = 3 ]
 }
 
+@test "in sequence, photographs are compared with those of near numbers, and from time to time with all" {
+	mkdir many
+	for i in {1..135}; do : >many/$i.jpg; done
+	run photos PHOTOS=many FIT= # which ends at gs-train: these are no photographs
+	[[ $output == *"matches: each photograph with those taken near it; "* ]]
+	grep -q '^matches_importer .*--match_type pairs --match_list_path out/colmap/pairs ' called
+	for pair in '1.jpg 2.jpg' '9.jpg 10.jpg' '9.jpg 19.jpg' '9.jpg 25.jpg' '5.jpg 133.jpg' '5.jpg 120.jpg'; do grep -qx "$pair" out/colmap/pairs; done
+	! grep -qx '9.jpg 21.jpg' out/colmap/pairs
+	[ "$(wc -l <out/colmap/pairs)" -lt 2000 ]
+	run photos MATCHER=some
+	[[ $output == *"MATCHER is 'some', and exhaustive or sequential are what it can be"* ]]
+}
+
 @test "a program that is not there is named, with the way out" {
 	rm stub/colmap
 	mkdir empty

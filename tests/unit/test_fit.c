@@ -401,7 +401,7 @@ static void learns(void)
 		fit_gaussians_take(&first[k], &s);
 		for (size_t i = 0; i < 600; i++)
 			first[k].at[FIT_VALUE][FIT_SH][i] = 0;
-		if (fit_open(&f, &first[k], &o, photographs, 3, &e) ||
+		if (fit_open(&f, &first[k], &o, photographs, 3, 0, &e) ||
 			fit_judge(&f, &photographs[3], &before, &e))
 			abort();
 		for (int i = 0; i < 100; i++)

@@ -77,15 +77,13 @@ static double train(const struct conditions *with, size_t *n)
 	for (size_t i = 0; i < 3 * s.n; i++)
 		g.at[FIT_VALUE][FIT_SH][i] = -0.8f;
 	g.splats.near = 0.01 * with->unit;
-	if (fit_open(&f, &g, &o, p, VIEWS - 1, &e) || (with->is_exposed && fit_expose(&f, 0, &spread, &e)))
+	if (fit_open(&f, &g, &o, p, VIEWS - 1, 0, &e) || (with->is_exposed && fit_expose(&f, 0, &spread, &e)))
 		abort();
-	const struct fit_judges by = fit_judges_of(p + VIEWS - 1, 1);
 	for (int i = 0; i < STEPS; i++) {
 		const double progress = (double)i / STEPS;
-		if (!f.state.is_pruned && progress >= FIT_PRUNED && fit_prune(&f, &by, &e))
+		if (!f.state.is_pruned && progress >= FIT_PRUNED && fit_prune(&f, &e))
 			abort();
-		CHECK(!fit_evaluate(&f, &by, progress, &is_due, &psnr, &ssim, &e) &&
-				!fit_step(&f, progress, &e),
+		CHECK(!fit_evaluate(&f, progress, &is_due, &psnr, &ssim, &e) && !fit_step(&f, progress, &e),
 			"step %d: %s", i, e.message);
 	}
 	exposures_free(&f.exposures); /* so that the view is judged as it is */
