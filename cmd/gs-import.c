@@ -12,16 +12,13 @@
 static struct import_options files;
 
 static const struct cli_option options[] = {
-	{"cameras", 0, CLI_STRING, &files.cameras, "PATH",
-		"COLMAP model, 3DGS cameras.json, transforms.json, or their folder (default: beside SPLATS)",
-		0, 0},
-	{"images", 0, CLI_STRING, &files.images, "DIR", "folder of the photographs, to be named in the scene",
-		0, 0},
-	{"test-views", 0, CLI_STRING, &files.test_views, "NAMES",
-		"views kept for testing: NAME,... or every:N (default: the camera file's, else none)", 0, 0},
-	{"undistort", 0, CLI_FLAG, &files.undistort, NULL,
-		"where a camera distorts, make the view the pinhole of the same view, and keep the lens beside it",
-		0, 0},
+	CLI_TEXT("cameras", &files.cameras, "PATH",
+		"COLMAP model, 3DGS cameras.json, transforms.json, or their folder (default: beside SPLATS)"),
+	CLI_TEXT("images", &files.images, "DIR", "folder of the photographs, to be named in the scene"),
+	CLI_TEXT("test-views", &files.test_views, "NAMES",
+		"views kept for testing: NAME,... or every:N (default: the camera file's, else none)"),
+	CLI_SWITCH("undistort", &files.undistort,
+		"where a camera distorts, make the view the pinhole of the same view, and keep the lens beside it"),
 	{0},
 };
 

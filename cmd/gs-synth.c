@@ -10,8 +10,7 @@ static long long objects, views, gaussians;
 static int number, size[2];
 
 static const struct cli_option options[] = {
-	{"scene", 0, CLI_CHOICE, &number, "table|diner|toys|tea|kitchen", "what is made (default table)", 0,
-		0},
+	CLI_ONE_OF("scene", &number, "table|diner|toys|tea|kitchen", "what is made (default table)"),
 	{"objects", 0, CLI_INT, &objects, "K", "objects (default: the scene's; of the table 8)",
 		SYNTH_MIN_OBJECTS, SYNTH_MAX_OBJECTS},
 	{"views", 0, CLI_INT, &views, "V",

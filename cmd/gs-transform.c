@@ -11,22 +11,20 @@ static int format;
 static long long spz_version = ANYSPLATS_SPZ_VERSION;
 
 static const struct cli_option table[] = {
-	{"format", 0, CLI_CHOICE, &format, "auto|ply|splat|spz|glb|sog",
-		"what to write (default: as FILE is called)", 0, 0},
+	CLI_ONE_OF("format", &format, "auto|ply|splat|spz|glb|sog",
+		"what to write (default: as FILE is called)"),
 	{"spz-version", 0, CLI_INT, &spz_version, "N", "version of .spz to write, 2 to 4 (default 3)", 2, 4},
-	{"crop", 0, CLI_STRING, &options.crop, "X0,Y0,Z0,X1,Y1,Z1", "keep what is within this box", 0, 0},
-	{"drop-strays", 0, CLI_FLAG, &options.drop_strays, NULL,
-		"leave out Gaussians that are far from all others", 0, 0},
+	CLI_TEXT("crop", &options.crop, "X0,Y0,Z0,X1,Y1,Z1", "keep what is within this box"),
+	CLI_SWITCH("drop-strays", &options.drop_strays, "leave out Gaussians that are far from all others"),
 	{"scale", 0, CLI_REAL, &options.scale, "S", "make everything S times as large, about the origin",
 		1e-9, 1e9},
-	{"known", 0, CLI_STRING, &options.known, "X0,Y0,Z0,X1,Y1,Z1=LENGTH",
-		"in place of --scale: two points, and how far they are apart when all is done", 0, 0},
-	{"up-from", 0, CLI_STRING, &options.up_from, "CAMERAS",
-		"level the scene: what is up for these cameras, which people hold level, becomes -y, as viewers have it",
-		0, 0},
-	{"rotate", 0, CLI_STRING, &options.rotate, "W,X,Y,Z|X,Y,Z:DEGREES",
-		"turn about the origin: a quaternion, or an axis and an angle", 0, 0},
-	{"translate", 0, CLI_STRING, &options.translate, "X,Y,Z", "shift by so much", 0, 0},
+	CLI_TEXT("known", &options.known, "X0,Y0,Z0,X1,Y1,Z1=LENGTH",
+		"in place of --scale: two points, and how far they are apart when all is done"),
+	CLI_TEXT("up-from", &options.up_from, "CAMERAS",
+		"level the scene: what is up for these cameras, which people hold level, becomes -y, as viewers have it"),
+	CLI_TEXT("rotate", &options.rotate, "W,X,Y,Z|X,Y,Z:DEGREES",
+		"turn about the origin: a quaternion, or an axis and an angle"),
+	CLI_TEXT("translate", &options.translate, "X,Y,Z", "shift by so much"),
 	{0},
 };
 

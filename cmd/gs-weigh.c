@@ -10,16 +10,14 @@ static struct weighing_options o = {.scale = 1};
 static int precision;
 
 static const struct cli_option table[] = {
-	{"split", 0, CLI_CHOICE, &o.split, "train|test|all", "the views to weigh (default train)", 0, 0},
+	CLI_ONE_OF("split", &o.split, "train|test|all", "the views to weigh (default train)"),
 	{"scale", 0, CLI_REAL, &o.scale, "S", "render at round(W S) x round(H S), 0.001 to 1 (default 1)",
 		0.001, 1},
 	{"tolerance", 0, CLI_REAL, &o.tolerance, "T",
 		"leave out the smallest weights of a pixel, up to this share of its weight (default 0)", 0,
 		0.999},
-	{"precision", 0, CLI_CHOICE, &precision, PRECISION_CHOICES, "how weights are stored (default f32)", 0,
-		0},
-	{"packed", 0, CLI_FLAG, &o.is_packed, NULL, "store weights as u8, and packed: a fifth of its bytes",
-		0, 0},
+	CLI_ONE_OF("precision", &precision, PRECISION_CHOICES, "how weights are stored (default f32)"),
+	CLI_SWITCH("packed", &o.is_packed, "store weights as u8, and packed: a fifth of its bytes"),
 	{0},
 };
 

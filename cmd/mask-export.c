@@ -8,14 +8,11 @@ static const char *scene, *png;
 static int distort;
 
 static const struct cli_option table[] = {
-	{"scene", 0, CLI_STRING, &scene, "SCENE",
-		"scene folder, whose photographs' names the JSON gets (default: VIEW.png)", 0, 0},
-	{"distort", 0, CLI_FLAG, &distort, NULL,
-		"make masks of views whose photographs' lens distorts masks of the photographs (needs --scene)",
-		0, 0},
-	{"png", 0, CLI_STRING, &png, "DIR", "also write each mask as DIR/VIEW/NAME.png, white on black", 0,
-		0},
-	{0}};
+	CLI_TEXT("scene", &scene, "SCENE",
+		"scene folder, whose photographs' names the JSON gets (default: VIEW.png)"),
+	CLI_SWITCH("distort", &distort,
+		"make masks of views whose photographs' lens distorts masks of the photographs (needs --scene)"),
+	CLI_TEXT("png", &png, "DIR", "also write each mask as DIR/VIEW/NAME.png, white on black"), {0}};
 
 static const struct cli_tool tool = {.name = "mask-export",
 	.operands = "[MASKS]",

@@ -8,12 +8,10 @@
 static const char *names_path, *undistort;
 
 static const struct cli_option table[] = {
-	{"names", 0, CLI_STRING, &names_path, "NAMES",
-		"text, a line for each thing: its colour #rrggbb, or its grey or number, 0 to 65535, and its name (needed for pictures)",
-		0, 0},
-	{"undistort", 0, CLI_STRING, &undistort, "SCENE",
-		"make masks of photographs whose lens distorts masks of the views of SCENE, of gs-import --undistort",
-		0, 0},
+	CLI_TEXT("names", &names_path, "NAMES",
+		"text, a line for each thing: its colour #rrggbb, or its grey or number, 0 to 65535, and its name (needed for pictures)"),
+	CLI_TEXT("undistort", &undistort, "SCENE",
+		"make masks of photographs whose lens distorts masks of the views of SCENE, of gs-import --undistort"),
 	{0}};
 
 static const struct cli_tool tool = {.name = "mask-import",

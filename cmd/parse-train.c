@@ -7,15 +7,15 @@ static struct parser_training_options o = {
 static int is_parses, is_sentences;
 
 static const struct cli_option options[] = {
-	{"text", 0, CLI_STRING, &o.text, "TEXT", "the sentences of MARKED, encoded", 0, 0},
-	{"sentences", 0, CLI_FLAG, &is_sentences, NULL,
-		"write the sentences of MARKED (JSON Lines) instead of learning", 0, 0},
-	{"parses", 0, CLI_FLAG, &is_parses, NULL,
-		"write the parses that the marks of MARKED stand for instead of learning", 0, 0},
+	CLI_TEXT("text", &o.text, "TEXT", "the sentences of MARKED, encoded"),
+	CLI_SWITCH(
+		"sentences", &is_sentences, "write the sentences of MARKED (JSON Lines) instead of learning"),
+	CLI_SWITCH("parses", &is_parses,
+		"write the parses that the marks of MARKED stand for instead of learning"),
 	{"epochs", 0, CLI_INT, &o.epochs, "N", "passes over the sentences (default 10)", 1, 1000},
 	{"members", 0, CLI_INT, &o.members, "N",
 		"networks that learn from other starts; their scores are averaged (default 2)", 1, 8},
-	{"source", 0, CLI_STRING, &o.source, "TEXT", "what the weights say that they were learnt from", 0, 0},
+	CLI_TEXT("source", &o.source, "TEXT", "what the weights say that they were learnt from"),
 	{0},
 };
 

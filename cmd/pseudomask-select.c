@@ -10,16 +10,15 @@ enum { METHOD_DEFAULT = PSEUDOMASK_SCENE + 1 };
 static struct pseudomask_options o = {.method = METHOD_DEFAULT, .min_score = 0.3};
 
 static const struct cli_option options[] = {
-	{"method", 0, CLI_CHOICE, &o.method, "ciou|iou|top1|first|scene",
-		"confidence-weighted IoU votes, IoU votes, the most confident; the first view's, carried to all others; or the object's region in the scene (default: scene where --scene and --weights are given, else ciou)",
-		0, 0},
+	CLI_ONE_OF("method", &o.method, "ciou|iou|top1|first|scene",
+		"confidence-weighted IoU votes, IoU votes, the most confident; the first view's, carried to all others; or the object's region in the scene (default: scene where --scene and --weights are given, else ciou)"),
 	{"min-score", 0, CLI_REAL, &o.min_score, "G",
 		"leave out candidates with no more confidence (default 0.3)", 0, 1},
-	{"scene", 0, CLI_STRING, &o.scene, "SCENE", "for scene and first: the scene's folder", 0, 0},
-	{"weights", 0, CLI_STRING, &o.weights, "WEIGHTS",
-		"for scene and first: the folder of its training views' blend weights", 0, 0},
-	{"spare", 0, CLI_STRING, &o.spare, "FILE",
-		"for scene: also write masks of regions that are of no object, for refer-lift", 0, 0},
+	CLI_TEXT("scene", &o.scene, "SCENE", "for scene and first: the scene's folder"),
+	CLI_TEXT("weights", &o.weights, "WEIGHTS",
+		"for scene and first: the folder of its training views' blend weights"),
+	CLI_TEXT("spare", &o.spare, "FILE",
+		"for scene: also write masks of regions that are of no object, for refer-lift"),
 	{0},
 };
 

@@ -15,18 +15,14 @@ static struct {
 } options;
 
 static const struct cli_option table[] = {
-	{"scene", 0, CLI_STRING, &options.files.scene, "SCENE", "scene folder of gs-import (required)", 0, 0},
-	{"weights", 0, CLI_STRING, &options.files.weights, "WEIGHTS", "folder of gs-weigh (required)", 0, 0},
-	{"text", 0, CLI_STRING, &options.files.text, "TEXT", "sentences encoded by text-encode (required)", 0,
-		0},
-	{"masks", 0, CLI_STRING, &options.files.masks, "MASKS", "masks of pseudomask-select (required)", 0,
-		0},
-	{"spare", 0, CLI_STRING, &options.files.spare, "FILE",
-		"masks of regions that an object may have instead, of pseudomask-select --spare; not looked at with --names masks",
-		0, 0},
-	{"names", 0, CLI_CHOICE, &options.is_as_masked, "sentences|masks",
-		"which of several alike an object is: as sentences say, where its masks have scores (default), or as masks do",
-		0, 0},
+	CLI_TEXT("scene", &options.files.scene, "SCENE", "scene folder of gs-import (required)"),
+	CLI_TEXT("weights", &options.files.weights, "WEIGHTS", "folder of gs-weigh (required)"),
+	CLI_TEXT("text", &options.files.text, "TEXT", "sentences encoded by text-encode (required)"),
+	CLI_TEXT("masks", &options.files.masks, "MASKS", "masks of pseudomask-select (required)"),
+	CLI_TEXT("spare", &options.files.spare, "FILE",
+		"masks of regions that an object may have instead, of pseudomask-select --spare; not looked at with --names masks"),
+	CLI_ONE_OF("names", &options.is_as_masked, "sentences|masks",
+		"which of several alike an object is: as sentences say, where its masks have scores (default), or as masks do"),
 	{0}};
 
 static const struct cli_tool tool = {.name = "refer-lift",

@@ -8,13 +8,13 @@ static const char *output;
 static struct report_options options = {.views = 12, .width = 480, .splats = 200000};
 
 static const struct cli_option table[] = {
-	{"truth", 0, CLI_STRING, &options.truth, "TRUTH",
-		"true masks (default: those that the pipeline scored against, if any)", 0, 0},
+	CLI_TEXT("truth", &options.truth, "TRUTH",
+		"true masks (default: those that the pipeline scored against, if any)"),
 	{"views", 0, CLI_INT, &options.views, "N", "show so many views at most (default 12)", 1, 1000},
 	{"width", 0, CLI_INT, &options.width, "N", "width of the pictures in pixels (default 480)", 16, 4096},
-	{"viewer", 0, CLI_STRING, &options.viewer, "DIR",
-		"folder of the viewer of splats (default: where 'make viewer' puts it)", 0, 0},
-	{"no-viewer", 0, CLI_FLAG, &options.is_plain, NULL, "leave the viewer out", 0, 0},
+	CLI_TEXT("viewer", &options.viewer, "DIR",
+		"folder of the viewer of splats (default: where 'make viewer' puts it)"),
+	CLI_SWITCH("no-viewer", &options.is_plain, "leave the viewer out"),
 	{"splats", 0, CLI_INT, &options.splats, "N",
 		"Gaussians in the viewer at most, those that cover most (default 200000)", 1, 10000000},
 	{"output", 'o', CLI_STRING, &output, "FILE", "where to write; - is stdout (default RUN/report.html)",

@@ -12,13 +12,12 @@ static struct {
 } options;
 
 static const struct cli_option table[] = {
-	{"model", 0, CLI_STRING, &options.model, "DIR",
-		"the encoder's folder: config.json, a tokenizer and *.safetensors (default: where 'make encoder' puts it)",
-		0, 0},
-	{"words", 0, CLI_CHOICE, &options.is_static, "contextual|static",
-		"as the sentence makes them or the vocabulary has them (default contextual)", 0, 0},
-	{"names", 0, CLI_FLAG, &options.is_of_masks, NULL,
-		"the input is mask records: encode the names of their objects, as training sentences", 0, 0},
+	CLI_TEXT("model", &options.model, "DIR",
+		"the encoder's folder: config.json, a tokenizer and *.safetensors (default: where 'make encoder' puts it)"),
+	CLI_ONE_OF("words", &options.is_static, "contextual|static",
+		"as the sentence makes them or the vocabulary has them (default contextual)"),
+	CLI_SWITCH("names", &options.is_of_masks,
+		"the input is mask records: encode the names of their objects, as training sentences"),
 	{0}};
 
 static const struct cli_tool tool = {.name = "text-encode",

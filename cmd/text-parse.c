@@ -35,13 +35,12 @@ static const char *weights, *list;
 static int method = BOTH;
 
 static const struct cli_option options[] = {
-	{"parser", 0, CLI_STRING, &weights, "PARSER",
-		"weights of the learnt parser (default: those that come with the program)", 0, 0},
-	{"method", 0, CLI_CHOICE, &method, "both|grammar",
-		"grammar and what was learnt on word vectors, or grammar alone (default both)", 0, 0},
-	{"without", 0, CLI_STRING, &list, "RULE,...",
-		"leave out rules: isnt, viewer, over_by, corner, doubled, empty, compared, group, content, one_of, members, companion",
-		0, 0},
+	CLI_TEXT("parser", &weights, "PARSER",
+		"weights of the learnt parser (default: those that come with the program)"),
+	CLI_ONE_OF("method", &method, "both|grammar",
+		"grammar and what was learnt on word vectors, or grammar alone (default both)"),
+	CLI_TEXT("without", &list, "RULE,...",
+		"leave out rules: isnt, viewer, over_by, corner, doubled, empty, compared, group, content, one_of, members, companion"),
 	{0},
 };
 

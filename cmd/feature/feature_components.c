@@ -93,7 +93,8 @@ static int tell_all(struct feature_components *c, const struct features *f, stru
 {
 	const size_t n = f->gaussians, blocks = (n + BLOCK - 1) / BLOCK,
 		     width = 2 * c->of.channels + c->of.count;
-	double *sums = mem_zalloc(blocks, 2 * sizeof *sums, "components", e), square = 0, off = 0;
+	SCOPED double *sums = mem_zalloc(blocks, 2 * sizeof *sums, "components", e);
+	double square = 0, off = 0;
 	int is_out = 0;
 
 	if (!sums)
@@ -113,7 +114,6 @@ static int tell_all(struct feature_components *c, const struct features *f, stru
 		square += sums[2 * b];
 		off += sums[2 * b + 1];
 	}
-	free(sums);
 	c->error = square > 0 ? sqrt(off / square) : 0;
 	return is_out ? err_set(e, ERR_SYSTEM, "components: out of memory") : 0;
 }

@@ -84,7 +84,8 @@ static int split_names(struct cameras *c, const char *test_views, struct err *e)
  * model. */
 static char *find_beside(const char *splats, struct err *e)
 {
-	char *dir = file_dir(splats, e), *found = dir ? find_cameras_in(dir, e) : NULL;
+	SCOPED char *dir = file_dir(splats, e);
+	char *found = dir ? find_cameras_in(dir, e) : NULL;
 	const char *slash = dir ? strrchr(dir, '/') : NULL;
 
 	if (dir && !found && !strncmp(slash ? slash + 1 : dir, "iteration_", 10)) {
@@ -92,7 +93,6 @@ static char *find_beside(const char *splats, struct err *e)
 		SCOPED char *model = file_join(dir, "../..", "", e);
 		found = model ? find_cameras_in(model, &ignored) : NULL;
 	}
-	free(dir);
 	return found;
 }
 

@@ -1,6 +1,7 @@
 #include "cmd/import/photographs.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/name.h"
 #include "base/path.h"
 #include "base/utf8.h"
@@ -23,10 +24,11 @@ static char *try_file(const char *dir, const char *name, const char *suffix, str
 /* The folder is the user's, the name another program's: it cannot lead out of the folder. */
 static char *find_image(const char *dir, const char *image, struct err *e)
 {
-	const int leaves = path_leaves(image);
 	static const char *const suffixes[] = {"", ".jpg", ".JPG", ".jpeg", ".JPEG", ".png", ".PNG"};
-	size_t tries = image[view_stem(image)] ? 1 : sizeof suffixes / sizeof *suffixes;
-	char *path = NULL, *decomposed = name_decomposed(image, e);
+	const size_t tries = image[view_stem(image)] ? 1 : sizeof suffixes / sizeof *suffixes;
+	const int leaves = path_leaves(image);
+	SCOPED char *decomposed = name_decomposed(image, e);
+	char *path = NULL;
 
 	for (size_t i = 0; decomposed && !path && i < 2 * tries; i++) {
 		const char *name = i % 2 ? decomposed : image, *suffix = suffixes[i / 2];
@@ -34,7 +36,6 @@ static char *find_image(const char *dir, const char *image, struct err *e)
 		if (!path)
 			path = try_file(dir, view_base(name), suffix, e);
 	}
-	free(decomposed);
 	return path;
 }
 

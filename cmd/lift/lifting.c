@@ -59,8 +59,8 @@ static int add_masks(struct lifting *l, const char *path, const struct report *t
 
 	if (masks_read_lines(&set, &lines, path, e))
 		return -1;
-	int bad = mem_grow((void **)&l->views, &l->view_capacity, l->set.n + set.n, sizeof *l->views, "masks",
-			  e) ||
+	int bad = mem_grow((void **)&l->views, &l->view_capacity, l->set.n + set.n + 1, sizeof *l->views,
+			  "masks", e) ||
 		  masks_views(&set, lines, path, &l->scene.cameras, l->views + l->set.n, to, e);
 	while (taken < set.n && !bad)
 		bad = masks_add(&l->set, &set.items[taken++], e);

@@ -106,18 +106,16 @@ static char *view_of(const char *path, struct err *e)
 {
 	int length;
 	const char *last = path_last(path, &length);
-	char *stem = mem_strdup(last, e), *dot;
+	SCOPED char *stem = mem_strdup(last, e);
 
 	if (!stem)
 		return NULL;
 	stem[length] = 0;
-	dot = strrchr(stem, '.');
+	char *dot = strrchr(stem, '.');
 	if (dot && dot > stem)
 		*dot = 0;
 	stem[view_stem(stem)] = 0;
-	char *view = name_to_view(stem, e);
-	free(stem);
-	return view;
+	return name_to_view(stem, e);
 }
 
 struct picture_read {

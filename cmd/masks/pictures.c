@@ -14,13 +14,10 @@
 /* DIR/VIEW/REF + suffix, with the folder made. free() it; NULL with *e set. */
 static char *make_path(const char *dir, const struct picture *one, const char *suffix, struct err *e)
 {
-	char *folder = file_join(dir, one->view, "", e), *name = name_to_file(one->ref, e), *path = NULL;
+	SCOPED char *folder = file_join(dir, one->view, "", e);
+	SCOPED char *name = name_to_file(one->ref, e);
 
-	if (folder && name && !file_make_dir(folder, e))
-		path = file_join(folder, name, suffix, e);
-	free(folder);
-	free(name);
-	return path;
+	return folder && name && !file_make_dir(folder, e) ? file_join(folder, name, suffix, e) : NULL;
 }
 
 static int put_mask(const char *path, const struct picture *one, struct err *e)

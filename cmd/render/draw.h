@@ -55,11 +55,4 @@ int draw(struct drawing *d, const struct viewpoint *from, const char *path, cons
 
 void drawing_free(struct drawing *d);
 
-/* The two lines of words under an overlay: the sentence, and the answer. */
-
-/* out: of the request's sentence i, with the score that its mask has, what was answered: the names of a
- * lifted model's things, and whether they are the ones that the sentence's record names, where the model
- * knows these. What has no room is cut. */
-void overlay_words(const struct request *r, size_t i, double score, char *out, size_t size);
-
 #endif

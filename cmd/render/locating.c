@@ -40,15 +40,12 @@ int labelling_write_scene(const struct labelling *r, const char *path, struct er
 
 static int write_one(const struct showing *w, size_t object, const char *dir, struct err *e)
 {
-	char *name = name_to_file(w->model->lifted.names[object], e),
-	     *path = name ? file_join(dir, name, ".ply", e) : NULL;
+	SCOPED char *name = name_to_file(w->model->lifted.names[object], e);
+	SCOPED char *path = name ? file_join(dir, name, ".ply", e) : NULL;
 	SCOPED_BY(splats_free) struct splats alone = {0};
-	const int bad = !path || showing_things(&alone, w, &object, 1, LOCATE_ISOLATED, e) ||
-			ply_write(&alone, w->scene->offset, path, e);
 
-	free(path);
-	free(name);
-	return bad ? -1 : 0;
+	return !path || showing_things(&alone, w, &object, 1, LOCATE_ISOLATED, e) ||
+	       ply_write(&alone, w->scene->offset, path, e);
 }
 
 int labelling_write_each(const struct labelling *r, const char *dir, struct err *e)

@@ -3,7 +3,6 @@
 #include "base/list.h"
 #include "base/mem.h"
 #include "base/number.h"
-#include "cmd/render/draw.h"
 
 #include <math.h>
 #include <stdarg.h>

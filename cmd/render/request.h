@@ -36,19 +36,12 @@ struct request_options {
 
 /* Rows of a tool's table of options (cli/cli.h), for a struct request_options o. */
 #define REQUEST_FILES(o)                                                                                     \
-	{"scene", 0, CLI_STRING, &(o).scene, "SCENE", "scene folder of gs-import (required)", 0, 0},         \
-		{"text", 0, CLI_STRING, &(o).text, "TEXT", "sentences encoded by text-encode (required)", 0, \
-			0},                                                                                  \
-	{                                                                                                    \
-		"model", 0, CLI_STRING, &(o).model, "MODEL",                                                 \
-			"model of refer-train or refer-lift (required)", 0, 0                                \
-	}
+	CLI_TEXT("scene", &(o).scene, "SCENE", "scene folder of gs-import (required)"),                      \
+		CLI_TEXT("text", &(o).text, "TEXT", "sentences encoded by text-encode (required)"),          \
+		CLI_TEXT("model", &(o).model, "MODEL", "model of refer-train or refer-lift (required)")
 #define REQUEST_SENTENCES(o)                                                                                 \
-	{"sentences", 0, CLI_CHOICE, &(o).sentences, "train|test|all", "which sentences (default all)", 0,   \
-		0},                                                                                          \
-	{                                                                                                    \
-		"refs", 0, CLI_STRING, &(o).refs, "REF,...", "these sentences instead of a split", 0, 0      \
-	}
+	CLI_ONE_OF("sentences", &(o).sentences, "train|test|all", "which sentences (default all)"),          \
+		CLI_TEXT("refs", &(o).refs, "REF,...", "these sentences instead of a split")
 
 struct request {
 	const struct request_options *options;
@@ -84,5 +77,10 @@ cJSON *meant_names(const struct text *t, size_t sentence);
 /* 1 where things, objects of a model, are called what is meant, and no others are among them, 0 where they
  * are not, -1 where nothing is said (meant is NULL) or the model does not have all that is meant. */
 int meant_is(const cJSON *meant, const struct lifted *l, const size_t *things, size_t count);
+
+/* out: of the request's sentence i, with the score that its mask has, what was answered: the names of a
+ * lifted model's things, and whether they are the ones that the sentence's record names, where the model
+ * knows these. What has no room is cut. */
+void overlay_words(const struct request *r, size_t i, double score, char *out, size_t size);
 
 #endif

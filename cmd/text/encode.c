@@ -101,27 +101,27 @@ static int tokenise(const struct report *to, struct encoding_tokens *t, const st
 	return 0;
 }
 
-/* Room for everything but the sentences' names, which are borrowed. */
 static int alloc_text(
 	struct text *out, const struct sentences *s, const struct encoding_tokens *t, struct err *e)
 {
-	size_t n = s->n;
+	const size_t n = out->n = s->n;
 
-	out->n = n;
 	out->offsets = mem_alloc(n + 1, sizeof *out->offsets, "offsets", e);
-	out->refs = mem_alloc(n, sizeof *out->refs, "refs", e);
-	out->objects = mem_alloc(n, sizeof *out->objects, "objects", e);
-	out->texts = mem_alloc(n, sizeof *out->texts, "texts", e);
+	out->refs = mem_zalloc(n, sizeof *out->refs, "refs", e);
+	out->objects = mem_zalloc(n, sizeof *out->objects, "objects", e);
+	out->texts = mem_zalloc(n, sizeof *out->texts, "texts", e);
 	out->splits = mem_alloc(n, sizeof *out->splits, "splits", e);
 	if (!out->offsets || !out->refs || !out->objects || !out->texts || !out->splits)
 		return -1;
 	for (size_t i = 0; i <= n; i++)
 		out->offsets[i] = (int64_t)(t->starts[i] - 2 * i);
 	for (size_t i = 0; i < n; i++) {
-		out->refs[i] = s->items[i].ref;
-		out->objects[i] = s->items[i].object;
-		out->texts[i] = s->items[i].text;
-		out->splits[i] = s->items[i].split;
+		const struct sentence *one = &s->items[i];
+		if (!(out->refs[i] = mem_strdup(one->ref, e)) ||
+			!(out->objects[i] = mem_strdup(one->object, e)) ||
+			!(out->texts[i] = mem_strdup(one->text, e)))
+			return -1;
+		out->splits[i] = one->split;
 	}
 	return 0;
 }
@@ -152,22 +152,6 @@ static int keep_pieces(
 			return -1;
 	}
 	return 0;
-}
-
-static void free_text(struct text *out)
-{
-	for (size_t i = 0; out->pieces && i < out->n; i++)
-		free(out->pieces[i]);
-	text_free_more(out);
-	free(out->pieces);
-	free(out->offsets);
-	free(out->refs);
-	free(out->objects);
-	free(out->texts);
-	free(out->splits);
-	free(out->words);
-	free(out->middle);
-	free(out->sentences);
 }
 
 /* The sentences from `first` on that one pass takes: at least one, at most ROWS_AT_ONCE tokens if there are
@@ -316,7 +300,7 @@ int encode(struct encoding *x, const struct encoder *with, const struct report *
 
 void encoding_free(struct encoding *x)
 {
-	free_text(&x->text);
+	text_free(&x->text);
 	free(x->tokens.pieces.ids);
 	free(x->tokens.starts);
 	sentences_free(&x->sentences);

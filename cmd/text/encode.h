@@ -77,7 +77,7 @@ struct encoding {
 		struct wordpieces pieces;
 		size_t *starts; /* (sentences.n + 1) */
 	} tokens;
-	struct text text; /* its strings are those of sentences */
+	struct text text;
 };
 
 /* Reads x->sentences: sentences_read_any's, or the names of the objects of mask records as training

@@ -88,6 +88,14 @@ struct taking {
 	size_t count;
 };
 
+static void taking_free(struct taking *t)
+{
+	for (size_t i = 0; i < t->count; i++)
+		parser_sample_free(&t->samples[i]);
+	free(t->samples);
+	text_free(&t->text);
+}
+
 static int take(void *context, const struct marked_sentence *s, struct err *e)
 {
 	struct taking *to = context;
@@ -134,24 +142,19 @@ static int make_members(struct parser_weights *w, int width, long long members, 
 
 int parser_train(const struct parser_training_options *o, const struct report *to, struct err *e)
 {
-	struct taking t = {0};
+	SCOPED_BY(taking_free) struct taking t = {0};
 	SCOPED_BY(parser_weights_free) struct parser_weights w = {0};
-	int bad = take_samples(&t, o, e) || make_members(&w, t.text.width, o->members, e);
+
+	if (take_samples(&t, o, e) || make_members(&w, t.text.width, o->members, e))
+		return -1;
 	const struct parser_learning learning = {.samples = t.samples,
 		.sample_count = t.count,
 		.epochs = (int)o->epochs,
 		.seed = (unsigned long long)o->seed,
 		.progress = say,
 		.context = (void *)to};
-
-	bad = bad || parser_learn(&learning, &w, e);
-	if (!bad) {
-		memcpy(w.encoder, t.text.encoder.hex, sizeof w.encoder);
-		bad = parser_weights_write(&w, o->output, o->seed, o->source, e);
-	}
-	for (size_t i = 0; i < t.count; i++)
-		parser_sample_free(&t.samples[i]);
-	free(t.samples);
-	text_free(&t.text);
-	return bad ? -1 : 0;
+	if (parser_learn(&learning, &w, e))
+		return -1;
+	memcpy(w.encoder, t.text.encoder.hex, sizeof w.encoder);
+	return parser_weights_write(&w, o->output, o->seed, o->source, e);
 }

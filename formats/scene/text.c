@@ -10,21 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-void text_free_more(struct text *t)
-{
-	mem_free_strings(t->object_lists, t->n);
-	mem_free_strings(t->views, t->n);
-	mem_free_strings(t->kinds, t->n);
-	t->object_lists = t->views = t->kinds = NULL;
-}
-
 void text_free(struct text *t)
 {
-	mem_free_strings(t->refs, t->n);
-	mem_free_strings(t->objects, t->n);
-	mem_free_strings(t->texts, t->n);
-	mem_free_strings(t->pieces, t->n);
-	text_free_more(t);
+	char **const lists[] = {
+		t->refs, t->objects, t->texts, t->pieces, t->object_lists, t->views, t->kinds};
+
+	for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+		mem_free_strings(lists[i], t->n);
 	free(t->offsets);
 	free(t->words);
 	free(t->middle);

@@ -32,7 +32,6 @@ struct text {
 
 int text_read(struct text *t, const char *path, struct err *e);
 int text_write(const struct text *t, const char *path, const char *options, struct err *e);
-void text_free_more(struct text *t);
 void text_free(struct text *t);
 
 /* The words of a sentence by the middle layer; NULL where the file has none. */

@@ -29,6 +29,20 @@ struct cli_option {
 	double min, max; /* CLI_INT, CLI_REAL, CLI_SIZE; both 0: any */
 };
 
+/* Rows of a table, for those that have no short name and no range. */
+#define CLI_TEXT(name, value, arg, help)                                                                     \
+	{                                                                                                    \
+		name, 0, CLI_STRING, value, arg, help, 0, 0                                                  \
+	}
+#define CLI_SWITCH(name, value, help)                                                                        \
+	{                                                                                                    \
+		name, 0, CLI_FLAG, value, NULL, help, 0, 0                                                   \
+	}
+#define CLI_ONE_OF(name, value, choices, help)                                                               \
+	{                                                                                                    \
+		name, 0, CLI_CHOICE, value, choices, help, 0, 0                                              \
+	}
+
 /* Options that every tool may have; a tool names those it honours. -h and -V are always there. */
 enum {
 	CLI_VERBOSE = 1, /* -v --verbose; -vv is 2 */
