@@ -55,24 +55,21 @@ static int compare(const struct scene *s, const struct camera *full, const uint8
 	struct render_view *view = render_prepare(&s->splats, &small, e);
 	float *room = view ? mem_alloc(pixels, 6 * sizeof *room, "pictures", e) : NULL;
 	uint8_t *shown = room ? shrink_picture(rgb, height, width, h, w, e) : NULL;
-	if (!shown || render_colors(view, &s->splats, &small, (const float[3]){0}, room, e)) {
-		render_free(view);
-		free(room);
-		free(shown);
-		return -1;
+	const int bad = !shown || render_colors(view, &s->splats, &small, (const float[3]){0}, room, e);
+	if (!bad) {
+		float *grey = room + 3 * pixels, *rendered = grey + pixels, *seen = rendered + pixels;
+		for (size_t i = 0; i < pixels; i++)
+			grey[i] = room[3 * i] + room[3 * i + 1] + room[3 * i + 2];
+		sharpen(grey, rendered, h, w);
+		for (size_t i = 0; i < pixels; i++)
+			grey[i] = (float)(shown[3 * i] + shown[3 * i + 1] + shown[3 * i + 2]);
+		sharpen(grey, seen, h, w);
+		*correlation = correlate(rendered, seen, pixels);
 	}
-	float *grey = room + 3 * pixels, *rendered = grey + pixels, *seen = rendered + pixels;
-	for (size_t i = 0; i < pixels; i++)
-		grey[i] = room[3 * i] + room[3 * i + 1] + room[3 * i + 2];
-	sharpen(grey, rendered, h, w);
-	for (size_t i = 0; i < pixels; i++)
-		grey[i] = (float)(shown[3 * i] + shown[3 * i + 1] + shown[3 * i + 2]);
-	sharpen(grey, seen, h, w);
-	*correlation = correlate(rendered, seen, pixels);
 	render_free(view);
 	free(room);
 	free(shown);
-	return 0;
+	return bad ? -1 : 0;
 }
 
 /* The photograph after so many quarter turns. One that cannot be read is none: 1, and r says why of the
