@@ -72,7 +72,7 @@ static int make_map(struct warping *w, const struct camera *c, int rows, int col
 	if (mem_room((void **)&w->map, &w->map_room, height * width, sizeof *w->map, "masks", e) ||
 		mem_room((void **)&w->to, &w->to_room, height * width, 1, "masks", e))
 		return -1;
-	(is_back ? lens_map_to_photograph : lens_map_to_view)(&c->lens, c, rows, columns, w->map);
+	lens_map(&c->lens, c, is_back, rows, columns, w->map);
 	w->of = c;
 	w->rows = rows;
 	w->columns = columns;

@@ -137,14 +137,17 @@ static int read_photographs(struct fitting_input *f, struct err *e)
 }
 
 /* Where there are none, points are drawn around the cameras. */
-static int make_points(struct fitting_input *f, struct colmap_points *p, struct rng *rng, struct err *e)
+static int make_points(struct fitting_input *f, struct colmap_points *p, struct err *e)
 {
+	struct rng rng;
+
+	rng_seed(&rng, (uint64_t)f->options->seed, 1);
 	p->n = RANDOM_POINTS;
 	p->places = mem_alloc(p->n, 3 * sizeof *p->places, "points", e);
 	p->colors = mem_alloc(p->n, 3, "points", e);
 	if (!p->places || !p->colors)
 		return -1;
-	start_points(f->seen, f->learned, p->places, p->colors, p->n, rng);
+	start_points(f->seen, f->learned, p->places, p->colors, p->n, &rng);
 	report_warn(f->to, "%s: no points to begin with: %zu are taken at random", file_name(f->path), p->n);
 	return 0;
 }
@@ -155,12 +158,9 @@ static int start_from_points(struct fitting_input *f, struct err *e)
 	const struct fitting_options *o = f->options;
 	struct colmap_points p = {0};
 	float *places = NULL;
-	struct rng rng;
-
-	rng_seed(&rng, (uint64_t)o->seed, 1);
 	int bad = (o->points || file_is_dir(f->path)) &&
 		  colmap_points_read(&p, o->points ? o->points : f->path, e);
-	bad = bad || (!p.n && make_points(f, &p, &rng, e)) || gaussian_offset(f->offset, p.places, p.n, e) ||
+	bad = bad || (!p.n && make_points(f, &p, e)) || gaussian_offset(f->offset, p.places, p.n, e) ||
 	      fit_gaussians_alloc(&f->gaussians, o->gaussians ? (size_t)o->gaussians : start_number(p.n),
 		      (int)o->degree, e) ||
 	      !(places = mem_alloc(p.n, 3 * sizeof *places, "points", e));
@@ -170,7 +170,7 @@ static int start_from_points(struct fitting_input *f, struct err *e)
 		cameras_shift(&f->cameras, f->offset);
 		f->extent = start_extent(f->seen, f->learned, places, p.n);
 		f->size = start_size(f->seen, f->learned, places, p.n);
-		bad = start_at_points(&f->gaussians, places, p.colors, p.n, &rng, e);
+		bad = start_at_points(&f->gaussians, places, p.colors, p.n, e);
 	}
 	free(places);
 	colmap_points_free(&p);

@@ -145,15 +145,19 @@ static int lose(struct fit *f, const struct photograph *p, int level, const floa
 int fit_judge(struct fit *f, const struct photograph *p, struct photo_loss *l, struct err *e)
 {
 	const size_t pixels = (size_t)p->camera[0].width * (size_t)p->camera[0].height;
-	float nearest[EXPOSURE_WIDTH], *exposure = f->exposures.n ? nearest : NULL;
+	const int is_own = p >= f->photographs && p < f->photographs + f->views;
+	float nearest[EXPOSURE_WIDTH],
+		*exposure = f->exposures.n && is_own
+				    ? f->exposures.values + (size_t)(p - f->photographs) * EXPOSURE_WIDTH
+				    : nearest;
 
 	fit_gaussians_activate(&f->gaussians);
 	if (render(f, &p->camera[0], f->gaussians.degree, e))
 		return -1;
-	if (exposure && p >= f->photographs && p < f->photographs + learned(f))
-		exposure = f->exposures.values + (size_t)(p - f->photographs) * EXPOSURE_WIDTH;
-	else if (exposure)
+	/* with what is nearest a view that is held out begins when it is learned from */
+	if (f->exposures.n && !(is_own && p < f->photographs + learned(f)))
 		exposure_nearest(exposure, f->image, p->rgb[0], pixels);
+	exposure = f->exposures.n ? exposure : NULL;
 	return lose(f, p, 0, show(f, p, 0, exposure), NULL, l, e);
 }
 

@@ -76,25 +76,13 @@ size_t start_number(size_t points)
 	return points < 2000 ? 20000 : points > 50000 ? 500000 : 10 * points;
 }
 
-/* Which of n points have room. */
-static char *choose(size_t n, size_t room, struct rng *rng, struct err *e)
-{
-	char *chosen = mem_alloc(n, 1, "points", e);
-
-	for (size_t i = 0; i < n && chosen; i++) {
-		chosen[i] = rng_uniform(rng) * (double)(n - i) < (double)room;
-		room -= chosen[i] != 0;
-	}
-	return chosen;
-}
-
-int start_at_points(struct fit_gaussians *g, const float *points, const uint8_t *colors, size_t n,
-	struct rng *rng, struct err *e)
+int start_at_points(
+	struct fit_gaussians *g, const float *points, const uint8_t *colors, size_t n, struct err *e)
 {
 	float *const *to = g->at[FIT_VALUE];
-	char *chosen = choose(n, g->capacity - g->n, rng, e);
+	const size_t room = g->capacity - g->n < n ? g->capacity - g->n : n;
 	float *far = mem_zalloc(n, 2 * sizeof *far, "points", e);
-	int bad = !chosen || !far;
+	int bad = !far;
 
 	for (int k = 1; k <= NEIGHBOURS && !bad; k++) {
 		bad = neighbours_find(points, n, k, far + n, e) != 0;
@@ -105,7 +93,7 @@ int start_at_points(struct fit_gaussians *g, const float *points, const uint8_t 
 		const size_t at = g->n;
 		/* alone, or on top of another */
 		const float scale = isfinite(far[i]) ? sqrtf(fmaxf(far[i], 1e-14f)) : 0.1f;
-		if (!chosen[i])
+		if ((i + 1) * room / n == i * room / n)
 			continue;
 		memcpy(to[FIT_MEAN] + 3 * at, points + 3 * i, 3 * sizeof(float));
 		for (size_t k = 0; k < 3; k++) {
@@ -116,7 +104,6 @@ int start_at_points(struct fit_gaussians *g, const float *points, const uint8_t 
 		to[FIT_LOGIT][at] = logf(OPACITY / (1 - OPACITY));
 		g->n++;
 	}
-	free(chosen);
 	free(far);
 	return bad ? -1 : 0;
 }

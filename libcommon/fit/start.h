@@ -17,10 +17,10 @@ double start_extent(const struct camera *const *cameras, size_t n, const float *
  */
 double start_size(const struct camera *const *cameras, size_t n, const float *points, size_t points_n);
 
-/* One at each point (n,3), as large as its three neighbours are near, of its colour (n,3). What has no room
- * is left out at random. Returns 0, or -1 with *e set. */
-int start_at_points(struct fit_gaussians *g, const float *points, const uint8_t *colors, size_t n,
-	struct rng *rng, struct err *e);
+/* One at each point (n,3), as large as its three neighbours are near, of its colour (n,3). Where there is
+ * room for fewer, some are left out, evenly. Returns 0, or -1 with *e set. */
+int start_at_points(
+	struct fit_gaussians *g, const float *points, const uint8_t *colors, size_t n, struct err *e);
 
 /* n points for a scene that has none: in the cameras' box, made three times as large, and grey. */
 void start_points(const struct camera *const *cameras, size_t cameras_n, double *points, uint8_t *colors,

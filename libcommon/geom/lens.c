@@ -399,29 +399,20 @@ static int32_t place(double x, double y, int width, int height, int rows, int co
 									 : -1;
 }
 
-void lens_map_to_view(const struct lens *l, const struct camera *c, int rows, int columns, int32_t *map)
+void lens_map(const struct lens *l, const struct camera *c, int is_back, int rows, int columns, int32_t *map)
 {
+	const int width = is_back ? l->width : c->width, height = is_back ? l->height : c->height;
+
 #pragma omp parallel for schedule(static)
-	for (int y = 0; y < c->height; y++)
-		for (int x = 0; x < c->width; x++) {
+	for (int y = 0; y < height; y++)
+		for (int x = 0; x < width; x++) {
 			const double ray[2] = {(x + 0.5 - c->cx) / c->fx, (y + 0.5 - c->cy) / c->fy};
 			double pixel[2];
-			map[(size_t)y * (size_t)c->width + (size_t)x] =
-				lens_project(l, ray, pixel)
+			map[(size_t)y * (size_t)width + (size_t)x] =
+				(is_back ? to_view(l, c, x + 0.5, y + 0.5, pixel)
+					 : lens_project(l, ray, pixel))
 					? -1
-					: place(pixel[0], pixel[1], l->width, l->height, rows, columns);
-		}
-}
-
-void lens_map_to_photograph(const struct lens *l, const struct camera *c, int rows, int columns, int32_t *map)
-{
-#pragma omp parallel for schedule(static)
-	for (int y = 0; y < l->height; y++)
-		for (int x = 0; x < l->width; x++) {
-			double pixel[2];
-			map[(size_t)y * (size_t)l->width + (size_t)x] =
-				to_view(l, c, x + 0.5, y + 0.5, pixel)
-					? -1
-					: place(pixel[0], pixel[1], c->width, c->height, rows, columns);
+					: place(pixel[0], pixel[1], is_back ? c->width : l->width,
+						  is_back ? c->height : l->height, rows, columns);
 		}
 }

@@ -39,13 +39,9 @@ void lens_pinhole(const struct lens *l, struct camera *c);
 /* The same for all cameras that have a lens. */
 void cameras_undistort(struct cameras *c);
 
-/* For each pixel of the view c (height,width) the pixel of its photograph that it shows, or -1. The
- * photograph has another size of the same shape: rows, columns. */
-void lens_map_to_view(const struct lens *l, const struct camera *c, int rows, int columns, int32_t *map);
-
-/* For each pixel of the photograph (l->height,l->width) the pixel of the view c at rows x columns that shows
- * the same, or -1. */
-void lens_map_to_photograph(
-	const struct lens *l, const struct camera *c, int rows, int columns, int32_t *map);
+/* For each pixel of the view c (height,width) that of its photograph, rows x columns, that it shows, or -1;
+ * or, where is_back is not 0, for each of the photograph (l->height,l->width) that of the view, rows x
+ * columns. */
+void lens_map(const struct lens *l, const struct camera *c, int is_back, int rows, int columns, int32_t *map);
 
 #endif

@@ -3,7 +3,7 @@
 # or points were spoilt. The test views' photographs never are. usage: tests/bench/fit_cases.sh BIN FIT_GAIN [STEPS]
 # FIT_GAIN is build/bench/fit_gain. The status is 1 where a training fails or a number that it writes is not finite.
 set -u
-bin=$(cd "$1" && pwd) gain=$(realpath "$2") steps=${3:-600}
+here=$(cd "$(dirname "$0")" && pwd) bin=$(cd "$1" && pwd) gain=$(realpath "$2") steps=${3:-600}
 PATH=$bin:$PATH
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -11,11 +11,7 @@ cd "$work" || exit 1
 for seed in 1 9; do
 	gs-synth -q --seed $seed --objects 6 --views 41 --size 160x120 --gaussians 6000 -o from$seed || exit 1
 done
-# A point at every tenth of the true Gaussians, of its colour.
-width=$(($(grep -ac '^property float' from1/point_cloud.ply) * 4))
-tail -c +$(($(grep -abo end_header from1/point_cloud.ply | head -n 1 | cut -d: -f1) + 12)) from1/point_cloud.ply | od -A n -v -t f4 -w$width |
-	awk 'function byte(x) { x = int(255 * (0.5 + 0.28209479 * x)); return x < 0 ? 0 : x > 255 ? 255 : x }
-		NR % 10 == 1 { print NR, $1, $2, $3, byte($7), byte($8), byte($9), 0.5 }' >from1/sparse/0/points3D.txt
+"$here/points.sh" from1
 training=($(ls from1/images | awk 'NR % 8 != 1'))
 failed=0
 

@@ -196,8 +196,8 @@ static void try_lenses(struct cameras *c)
 		if (!l->model)
 			continue;
 		lens_pinhole(l, &c->views[i]);
-		lens_map_to_view(l, &c->views[i], SIDE, SIDE, map);
-		lens_map_to_photograph(l, &c->views[i], SIDE, SIDE, map);
+		lens_map(l, &c->views[i], 0, SIDE, SIDE, map);
+		lens_map(l, &c->views[i], 1, SIDE, SIDE, map);
 	}
 }
 

@@ -218,7 +218,7 @@ static void masks(void)
 					photograph[(size_t)py * (size_t)l.width + (size_t)px] = 1;
 			}
 		size_t both = 0, either = 0;
-		lens_map_to_view(&l, &c, l.height, l.width, map);
+		lens_map(&l, &c, 0, l.height, l.width, map);
 		for (size_t p = 0; p < pixels; p++) {
 			const int drawn = disc(((double)(p % (size_t)c.width) + 0.5 - c.cx) / c.fx,
 				((double)(p / (size_t)c.width) + 0.5 - c.cy) / c.fy);
@@ -229,7 +229,7 @@ static void masks(void)
 		CHECK((double)both / (double)either > 0.97, "%s: IoU %g in the view", rows[i].name,
 			(double)both / (double)either);
 		both = either = 0;
-		lens_map_to_photograph(&l, &c, c.height, c.width, map);
+		lens_map(&l, &c, 1, c.height, c.width, map);
 		for (size_t p = 0; p < all; p++) {
 			const int now = map[p] >= 0 && view[map[p]];
 			both += now && photograph[p];
