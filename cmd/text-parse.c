@@ -40,7 +40,7 @@ static const struct cli_option options[] = {
 	CLI_ONE_OF("method", &method, "both|grammar",
 		"grammar and what was learnt on word vectors, or grammar alone (default both)"),
 	CLI_TEXT("without", &list, "RULE,...",
-		"leave out rules: isnt, viewer, over_by, corner, doubled, empty, compared, group, content, one_of, members, companion"),
+		"leave out rules: isnt, viewer, over_by, corner, doubled, empty, who, compared, group, content, one_of, members, companion"),
 	{0},
 };
 

@@ -26,6 +26,20 @@ static void looks(void)
 		"an empty vase: role %d", a.word[1].role);
 }
 
+/* Whoever has the scarf is meant, where no anchor has been found. */
+static void who(void)
+{
+	static const char said[] = "who is wearing the yellow scarf";
+
+	rules_make(said, ". . P . a T", PARSE_WITH, 0, ROLE_TARGET, ROOT, 0);
+	rules_make(said, ". . P . a T", PARSE_WITH, 2, ROLE_PREDICATE, ROOT, PARSE_WITH);
+	rules_make(said, ". . P . a T", PARSE_WITH, 4, ROLE_ATTRIBUTE, 5, 0);
+	rules_make(said, ". . P . a T", PARSE_WITH, 5, ROLE_ANCHOR, 2, 0);
+	rules_make("who has a scarf on", ". . . T P", PARSE_SUPPORTS, 3, ROLE_ANCHOR, 4, 0);
+	rules_make("who hides under the tray", ". . P . T", PARSE_BELOW, 4, ROLE_ANCHOR, 2, 0);
+	rules_make("the man who has a scarf", ". T . P1 . A3", PARSE_WITH, 1, ROLE_TARGET, ROOT, 0);
+}
+
 static void places(void)
 {
 	rules_make("the lamp over by the sink", ". T P P . A2", PARSE_NEAR, 5, ROLE_ANCHOR, 3, 0);
@@ -144,6 +158,7 @@ int main(void)
 	left_out();
 	second_things();
 	looks();
+	who();
 	places();
 	counted();
 	return unit_end();
