@@ -88,10 +88,11 @@ locate() { refuses "$1" refer-locate --scene scene --text text.safetensors --mod
 		--weights weights --spare candidates.jsonl -o masks candidates.jsonl
 	refuses "-o sentences.jsonl would overwrite SENTENCES sentences.jsonl" text-encode --model encoder -o sentences.jsonl sentences.jsonl
 	refuses "-o encoder/vocab.txt would be among the files of --model encoder" text-encode --model encoder -o encoder/vocab.txt sentences.jsonl
-	for option in --truth --compare --sentences --whole; do
+	for option in --truth --compare --sentences --parses --whole; do
 		cp truth.jsonl other.jsonl
 		before=$(state)
 		args=(--truth truth.jsonl)
+		[ $option != --sentences ] || args+=(--answers)
 		[ $option != --truth ] || args=()
 		refuses "-o other.jsonl would overwrite $option other.jsonl" miou-score "${args[@]}" $option other.jsonl -o other.jsonl pred.jsonl
 	done
