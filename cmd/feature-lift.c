@@ -1,4 +1,5 @@
 /* feature-lift: what 2D models say of a scene's views, lifted onto its Gaussians. */
+#include "base/mem.h"
 #include "base/path.h"
 #include "cli/cli.h"
 #include "cmd/feature/feature_lifting.h"
@@ -38,20 +39,6 @@ static const struct cli_tool tool = {.name = "feature-lift",
 	.max_operands = 1,
 	.output_arg = "FEATURES"};
 
-static int run(struct feature_lifting *l, const struct cli *c, struct err *e)
-{
-	struct cli_report to;
-
-	if (feature_lifting_make(l, &options, cli_report(&to, c), e))
-		return -1;
-	cli_note(c, 1, "%zu of %zu Gaussians are seen, and %zu more are not reliable", l->seen,
-		l->scene.splats.n, l->pruned);
-	if (options.components)
-		cli_note(c, 1, "%lld components of %zu channels: features are off by %.3g %% of their length",
-			options.components, l->maps.channels, 100 * l->components.error);
-	return feature_lifting_write(l, c->output, e);
-}
-
 static void check(const struct cli *c)
 {
 	if (!options.scene || !options.weights)
@@ -68,15 +55,22 @@ static void check(const struct cli *c)
 	cli_refuse_terminal(c);
 }
 
+static int run(const struct cli *c, const struct report *to, struct err *e)
+{
+	SCOPED_BY(feature_lifting_free) struct feature_lifting l = {0};
+
+	check(c);
+	if (feature_lifting_make(&l, &options, to, e))
+		return -1;
+	cli_note(c, 1, "%zu of %zu Gaussians are seen, and %zu more are not reliable", l.seen,
+		l.scene.splats.n, l.pruned);
+	if (options.components)
+		cli_note(c, 1, "%lld components of %zu channels: features are off by %.3g %% of their length",
+			options.components, l.maps.channels, 100 * l.components.error);
+	return feature_lifting_write(&l, c->output, e);
+}
+
 int main(int argc, char **argv)
 {
-	struct feature_lifting l = {0};
-	struct cli c;
-	struct err e = {0};
-
-	cli_parse(&c, &tool, argc, argv);
-	check(&c);
-	const int bad = run(&l, &c, &e);
-	feature_lifting_free(&l);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

@@ -1,4 +1,5 @@
 /* feature-query: which Gaussians sentences select, by lifted features or labels. */
+#include "base/mem.h"
 #include "answer/peak.h"
 #include "cli/cli.h"
 #include "cmd/feature/feature_query.h"
@@ -74,25 +75,18 @@ static void check(const struct cli *c)
 	cli_refuse_terminal(c);
 }
 
-static int run(struct feature_query *q, const struct cli *c, struct err *e)
+static int run(const struct cli *c, const struct report *to, struct err *e)
 {
-	struct cli_report to;
+	SCOPED_BY(feature_query_free) struct feature_query q = {0};
 
-	if (feature_query_make(q, &options, cli_report(&to, c), e))
+	check(c);
+	if (feature_query_make(&q, &options, to, e))
 		return -1;
-	cli_note(c, 1, "%zu sentences", q->count);
-	return feature_query_write(q, c->output, e);
+	cli_note(c, 1, "%zu sentences", q.count);
+	return feature_query_write(&q, c->output, e);
 }
 
 int main(int argc, char **argv)
 {
-	struct feature_query q = {0};
-	struct cli c;
-	struct err e = {0};
-
-	cli_parse(&c, &tool, argc, argv);
-	check(&c);
-	const int bad = run(&q, &c, &e);
-	feature_query_free(&q);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

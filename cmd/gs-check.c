@@ -1,11 +1,10 @@
 /* gs-check: says whether files of the suite are well-formed, and what is in them. */
+#include "base/jsontext.h"
 #include "cli/cli.h"
 #include "cmd/check/check.h"
 
-#include <cjson/cJSON.h>
 #include <ctype.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const struct cli_tool tool = {
@@ -53,61 +52,55 @@ static void print_text(const char *name, const struct check *c)
 	}
 }
 
-static cJSON *listing_json(const struct safetensors *st)
+static void put_listing(struct jsontext *to, const struct safetensors *st)
 {
-	cJSON *list = cJSON_CreateArray();
-
+	jsontext_open(to, "list", '[');
 	for (size_t i = 0; i < st->n; i++) {
 		const struct st_tensor *t = &st->tensors[i];
-		cJSON *item = cJSON_CreateObject(), *shape = cJSON_CreateArray();
-		cJSON_AddStringToObject(item, "name", t->name);
-		cJSON_AddStringToObject(item, "dtype", st_dtype_name(t->dtype));
+		jsontext_open(to, NULL, '{');
+		jsontext_string(to, "name", t->name);
+		jsontext_string(to, "dtype", st_dtype_name(t->dtype));
+		jsontext_open(to, "shape", '[');
 		for (int d = 0; d < t->dims; d++)
-			cJSON_AddItemToArray(shape, cJSON_CreateNumber((double)t->shape[d]));
-		cJSON_AddItemToObject(item, "shape", shape);
-		cJSON_AddItemToArray(list, item);
+			jsontext_number(to, NULL, (double)t->shape[d]);
+		jsontext_close(to, ']');
+		jsontext_close(to, '}');
 	}
-	return list;
+	jsontext_close(to, ']');
 }
 
-/* One object a line; c is NULL where the file is malformed, for the reason given. Returns -1 when memory is
- * out. */
-static int print_json(const char *name, const struct check *c, const char *reason)
+/* One object a line; c is NULL where the file is malformed, for the reason given. */
+static void print_json(const char *name, const struct check *c, const char *reason)
 {
-	cJSON *object = cJSON_CreateObject();
+	struct jsontext j = {.out = stdout}, *to = &j;
+	char key[64];
 
-	cJSON_AddStringToObject(object, "file", name);
-	cJSON_AddBoolToObject(object, "ok", c != NULL);
-	if (c) {
-		cJSON_AddStringToObject(object, "kind", c->kind);
-		if (c->precision)
-			cJSON_AddStringToObject(object, "precision", c->precision);
-		if (c->width) {
-			cJSON_AddNumberToObject(object, "width", c->width);
-			cJSON_AddNumberToObject(object, "height", c->height);
-		}
-		for (int i = 0; i < c->n; i++) {
-			char key[64];
-			snprintf(key, sizeof key, "%s", c->facts[i].name);
-			for (char *p = key; *p; p++)
-				*p = *p == ' ' ? '_' : *p;
-			cJSON_AddNumberToObject(object, key, (double)c->facts[i].value);
-		}
-		for (int i = 0; i < FINGERPRINTS; i++)
-			if (fingerprint(c, i))
-				cJSON_AddStringToObject(object, fingerprint_names[i], fingerprint(c, i));
-		if (c->listing.n)
-			cJSON_AddItemToObject(object, "list", listing_json(&c->listing));
-	} else {
-		cJSON_AddStringToObject(object, "reason", reason);
+	jsontext_open(to, NULL, '{');
+	jsontext_string(to, "file", name);
+	jsontext_flag(to, "ok", c != NULL);
+	if (reason)
+		jsontext_string(to, "reason", reason);
+	if (c)
+		jsontext_string(to, "kind", c->kind);
+	if (c && c->precision)
+		jsontext_string(to, "precision", c->precision);
+	if (c && c->width) {
+		jsontext_number(to, "width", c->width);
+		jsontext_number(to, "height", c->height);
 	}
-	char *text = cJSON_PrintUnformatted(object);
-	cJSON_Delete(object);
-	if (!text)
-		return -1;
-	printf("%s\n", text);
-	free(text);
-	return 0;
+	for (int i = 0; c && i < c->n; i++) {
+		snprintf(key, sizeof key, "%s", c->facts[i].name);
+		for (char *p = key; *p; p++)
+			*p = *p == ' ' ? '_' : *p;
+		jsontext_number(to, key, (double)c->facts[i].value);
+	}
+	for (int i = 0; c && i < FINGERPRINTS; i++)
+		if (fingerprint(c, i))
+			jsontext_string(to, fingerprint_names[i], fingerprint(c, i));
+	if (c && c->listing.n)
+		put_listing(to, &c->listing);
+	jsontext_close(to, '}');
+	putchar('\n');
 }
 
 /* Checks and prints one operand; the exit status that it alone would have. */
@@ -116,7 +109,6 @@ static int check_one(const struct cli *cli, const char *path, struct err *e)
 	const char *name = strcmp(path, "-") ? path : "stdin";
 	size_t len = strlen(name);
 	struct check c;
-	int bad = 0;
 
 	if ((name != path && check_spool(e)) || check_file(&c, path, e)) {
 		if (e->code != ERR_FORMAT)
@@ -124,34 +116,32 @@ static int check_one(const struct cli *cli, const char *path, struct err *e)
 		/* The message begins with the path, or with that of the scene folder's file at fault. */
 		int is_named = !strncmp(e->message, name, len) && strchr(":/", e->message[len]);
 		if (cli->json)
-			bad = print_json(name, NULL, e->message);
+			print_json(name, NULL, e->message);
 		else
 			printf("%s%s%s\n", is_named ? "" : name, is_named ? "" : ": ", e->message);
-		return bad ? ERR_SYSTEM : ERR_CHECK;
+		return ERR_CHECK;
 	}
 	if (cli->json)
-		bad = print_json(name, &c, NULL);
+		print_json(name, &c, NULL);
 	else
 		print_text(name, &c);
 	check_free(&c);
-	return bad ? ERR_SYSTEM : 0;
+	return 0;
+}
+
+static int run(const struct cli *c, const struct report *to, struct err *e)
+{
+	int worst = 0;
+
+	(void)to;
+	for (int i = 0; i < c->operand_count; i++) {
+		int status = check_one(c, c->operands[i], e);
+		worst = status > worst ? status : worst;
+	}
+	return fflush(stdout) || ferror(stdout) ? err_errno(e, "stdout") : worst;
 }
 
 int main(int argc, char **argv)
 {
-	struct cli cli;
-	struct err e = {0};
-	int worst = 0;
-
-	cli_parse(&cli, &tool, argc, argv);
-	for (int i = 0; i < cli.operand_count; i++) {
-		int status = check_one(&cli, cli.operands[i], &e);
-		worst = status > worst ? status : worst;
-	}
-	if (fflush(stdout) || ferror(stdout)) {
-		err_errno(&e, "stdout");
-		return cli_fail(&cli, &e);
-	}
-	cli_done(&cli);
-	return worst;
+	return cli_main(&tool, argc, argv, run);
 }

@@ -1,5 +1,6 @@
 /* gs-import: makes a scene folder from a trained 3DGS scene and its cameras. */
 #include "base/file.h"
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/import/import.h"
 #include "formats/cameras/colmap.h"
@@ -100,46 +101,39 @@ static void note_cameras(
 			files.images, r->typical, r->views, RESEMBLANCE_LEAST, file_name(path));
 }
 
-static int run(
-	const struct cli *cli, struct scene *s, struct rows_report *report, char **cameras, struct err *e)
+static int import(const struct cli *cli, char *splats, const struct report *to, struct err *e)
 {
+	SCOPED_BY(scene_free) struct scene s = {0};
+	struct rows_report rows = {0};
 	struct import_found found;
-	struct cli_report to;
 
-	*cameras = import_find_cameras(&files, e);
-	if (!*cameras)
+	files.splats = cli->operands[0] = splats;
+	SCOPED char *cameras = import_find_cameras(&files, e);
+	if (!cameras)
 		return -1;
-	refuse_overwrite(cli, *cameras);
-	if (import_scene(s, report, &files, *cameras, cli->output, &found, cli_report(&to, cli), e))
-		return -1;
-	note_splats(cli, s, report, files.splats);
-	note_cameras(cli, &s->cameras, *cameras, &found);
-	return 0;
+	refuse_overwrite(cli, cameras);
+	const int bad = import_scene(&s, &rows, &files, cameras, cli->output, &found, to, e);
+	if (!bad) {
+		note_splats(cli, &s, &rows, files.splats);
+		note_cameras(cli, &s.cameras, cameras, &found);
+	}
+	free(rows.dropped);
+	return bad;
+}
+
+static int run(const struct cli *cli, const struct report *to, struct err *e)
+{
+	if (!strcmp(cli->output, "-"))
+		cli_usage(cli, "-o: a scene is a folder and cannot go to stdout");
+	if (!files.cameras && !strcmp(cli->operands[0], "-"))
+		cli_usage(cli, "--cameras is required where SPLATS is stdin");
+	if (files.cameras && !strcmp(files.cameras, "-") && !strcmp(cli->operands[0], "-"))
+		cli_usage(cli, "--cameras and SPLATS cannot both be stdin");
+	SCOPED char *splats = import_find_splats(cli->operands[0], e);
+	return splats ? import(cli, splats, to, e) : -1;
 }
 
 int main(int argc, char **argv)
 {
-	struct scene s = {0};
-	struct rows_report report = {0};
-	struct err e = {0};
-	struct cli cli;
-	char *cameras = NULL;
-
-	cli_parse(&cli, &tool, argc, argv);
-	if (!strcmp(cli.output, "-"))
-		cli_usage(&cli, "-o: a scene is a folder and cannot go to stdout");
-	if (!files.cameras && !strcmp(cli.operands[0], "-"))
-		cli_usage(&cli, "--cameras is required where SPLATS is stdin");
-	if (files.cameras && !strcmp(files.cameras, "-") && !strcmp(cli.operands[0], "-"))
-		cli_usage(&cli, "--cameras and SPLATS cannot both be stdin");
-	char *splats = import_find_splats(cli.operands[0], &e);
-	if (!splats)
-		return cli_fail(&cli, &e);
-	files.splats = cli.operands[0] = splats;
-	int bad = run(&cli, &s, &report, &cameras, &e);
-	scene_free(&s);
-	free(report.dropped);
-	free(cameras);
-	free(splats);
-	return bad ? cli_fail(&cli, &e) : cli_done(&cli);
+	return cli_main(&tool, argc, argv, run);
 }

@@ -1,53 +1,55 @@
 /* gs-synth: a synthetic table-top benchmark, laid out as a person's own data would be. */
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/synth/benchmark.h"
 #include "synth/synth_scene.h"
 
 #include <string.h>
 
-int main(int argc, char **argv)
-{
-	long long objects = 0, views = 0, gaussians = 0;
-	int number = 0, size[2] = {0};
-	struct benchmark b = {0};
-	struct cli_report to;
-	struct cli c;
-	struct err e = {0};
-	const struct cli_option options[] = {
-		{"scene", 0, CLI_CHOICE, &number, "table|diner|toys|tea|kitchen",
-			"what is made (default table)", 0, 0},
-		{"objects", 0, CLI_INT, &objects, "K", "objects (default: the scene's; of the table 8)",
-			SYNTH_MIN_OBJECTS, SYNTH_MAX_OBJECTS},
-		{"views", 0, CLI_INT, &views, "V",
-			"views for training and testing (default: the scene's; of the table 25)",
-			SYNTH_MIN_VIEWS, SYNTH_MAX_VIEWS},
-		{"size", 0, CLI_SIZE, size, "WxH",
-			"size of the photographs in pixels (default 492x364; of the table 320x240)", 16,
-			4096},
-		{"gaussians", 0, CLI_INT, &gaussians, "N", "Gaussians (default 60000; of the table 20000)",
-			1000, 10000000},
-		{0},
-	};
-	const struct cli_tool tool = {
-		.name = "gs-synth",
-		.operands = "-o DIR",
-		.summary =
-			"Make a synthetic table-top scene with photographs, sentences, candidate masks and their truth.",
-		.options = options,
-		.common = CLI_OUTPUT | CLI_SEED | CLI_THREADS | CLI_VERBOSE | CLI_QUIET,
-		.output_arg = "DIR",
-		.needs_output = 1,
-	};
+static long long objects, views, gaussians;
+static int number, size[2];
 
-	cli_parse(&c, &tool, argc, argv);
-	if (!strcmp(c.output, "-"))
-		cli_usage(&c, "-o must name a folder");
+static const struct cli_option options[] = {
+	{"scene", 0, CLI_CHOICE, &number, "table|diner|toys|tea|kitchen", "what is made (default table)", 0,
+		0},
+	{"objects", 0, CLI_INT, &objects, "K", "objects (default: the scene's; of the table 8)",
+		SYNTH_MIN_OBJECTS, SYNTH_MAX_OBJECTS},
+	{"views", 0, CLI_INT, &views, "V",
+		"views for training and testing (default: the scene's; of the table 25)", SYNTH_MIN_VIEWS,
+		SYNTH_MAX_VIEWS},
+	{"size", 0, CLI_SIZE, size, "WxH",
+		"size of the photographs in pixels (default 492x364; of the table 320x240)", 16, 4096},
+	{"gaussians", 0, CLI_INT, &gaussians, "N", "Gaussians (default 60000; of the table 20000)", 1000,
+		10000000},
+	{0},
+};
+
+static const struct cli_tool tool = {
+	.name = "gs-synth",
+	.operands = "-o DIR",
+	.summary =
+		"Make a synthetic table-top scene with photographs, sentences, candidate masks and their truth.",
+	.options = options,
+	.common = CLI_OUTPUT | CLI_SEED | CLI_THREADS | CLI_VERBOSE | CLI_QUIET,
+	.output_arg = "DIR",
+	.needs_output = 1,
+};
+
+static int run(const struct cli *c, const struct report *to, struct err *e)
+{
+	SCOPED_BY(benchmark_free) struct benchmark b = {0};
 	const struct synth_preset *p = synth_preset(number);
+
+	if (!strcmp(c->output, "-"))
+		cli_usage(c, "-o must name a folder");
 	b.options = (struct synth_options){p, 0, objects ? (int)objects : p->objects,
 		views ? (int)views : p->views, size[0] ? size[0] : p->width, size[0] ? size[1] : p->height,
 		gaussians ? (size_t)gaussians : p->gaussians};
-	int bad = benchmark_make(&b, number, (uint64_t)c.seed, &e) ||
-		  benchmark_write(&b, c.output, cli_report(&to, &c), &e);
-	benchmark_free(&b);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	return benchmark_make(&b, number, (uint64_t)c->seed, e) || benchmark_write(&b, c->output, to, e) ? -1
+													 : 0;
+}
+
+int main(int argc, char **argv)
+{
+	return cli_main(&tool, argc, argv, run);
 }

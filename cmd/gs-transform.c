@@ -1,10 +1,10 @@
 /* gs-transform: splats from one format into another, cut and moved. */
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/import/transforming.h"
 #include "formats/splats/anysplats.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static struct transforming options = {.scale = 1};
 static int format;
@@ -79,30 +79,32 @@ static int warn_loss(
 	return found < 0;
 }
 
-int main(int argc, char **argv)
+static int run(const struct cli *c, const struct report *to, struct err *e)
 {
-	struct splats s = {0};
-	struct rows_report report = {0};
+	SCOPED_BY(splats_free) struct splats s = {0};
+	struct rows_report rows = {0};
 	struct transforming_count left_out;
-	struct err e = {0};
-	struct cli cli;
+	const enum anysplats_format format_to = choose_format(c);
 	double offset[3];
 
-	cli_parse(&cli, &tool, argc, argv);
-	const enum anysplats_format to = choose_format(&cli);
+	(void)to;
 	if (options.known && options.scale != 1)
-		cli_usage(&cli, "--known and --scale do not go together");
-	if (transforming_check(&options, &e))
-		cli_usage(&cli, "%s", e.message);
-	cli_refuse_terminal(&cli);
-	cli_refuse_overwrite(&cli, "SPLATS up-from", "output", NULL);
-	int bad = anysplats_read(&s, offset, &report, cli.operands[0], &e) ||
-		  transforming_do(&s, offset, &options, &left_out, &e) ||
-		  anysplats_write(&s, offset, to, (int)spz_version, cli.output, &e) ||
-		  warn_loss(&cli, &s, offset, to, &e);
+		cli_usage(c, "--known and --scale do not go together");
+	if (transforming_check(&options, e))
+		cli_usage(c, "%s", e->message);
+	cli_refuse_terminal(c);
+	cli_refuse_overwrite(c, "SPLATS up-from", "output", NULL);
+	const int bad = anysplats_read(&s, offset, &rows, c->operands[0], e) ||
+			transforming_do(&s, offset, &options, &left_out, e) ||
+			anysplats_write(&s, offset, format_to, (int)spz_version, c->output, e) ||
+			warn_loss(c, &s, offset, format_to, e);
 	if (!bad)
-		note(&cli, &s, &report, &left_out);
-	splats_free(&s);
-	free(report.dropped);
-	return bad ? cli_fail(&cli, &e) : cli_done(&cli);
+		note(c, &s, &rows, &left_out);
+	free(rows.dropped);
+	return bad ? -1 : 0;
+}
+
+int main(int argc, char **argv)
+{
+	return cli_main(&tool, argc, argv, run);
 }

@@ -1,5 +1,6 @@
 /* mask-export: mask records as COCO's JSON, and as pictures. */
 #include "base/file.h"
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/masks/exporting.h"
 
@@ -23,26 +24,24 @@ static const struct cli_tool tool = {.name = "mask-export",
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_OUTPUT,
 	.max_operands = 1};
 
-static int run(const struct cli *c, struct err *e)
+static int run(const struct cli *c, const struct report *to, struct err *e)
 {
-	struct exporting x = {0};
+	SCOPED_BY(exporting_free) struct exporting x = {0};
 	struct file_out out;
-	const int bad = exporting_read(&x, c->operand_count ? c->operands[0] : "-", scene, distort, e) ||
-			(png && exporting_write_pngs(&x, png, e)) || file_out_open(&out, c->output, e) ||
-			file_out_end(&out, exporting_put_coco(&x, out.stream, e), e);
 
-	exporting_free(&x);
-	return bad ? -1 : 0;
+	(void)to;
+	if (distort && !scene)
+		cli_usage(c, "--distort needs --scene SCENE");
+	cli_refuse_overwrite(c, "MASKS scene:cameras.json", "output png:*.png", NULL);
+	return exporting_read(&x, c->operand_count ? c->operands[0] : "-", scene, distort, e) ||
+			       (png && exporting_write_pngs(&x, png, e)) ||
+			       file_out_open(&out, c->output, e) ||
+			       file_out_end(&out, exporting_put_coco(&x, out.stream, e), e)
+		       ? -1
+		       : 0;
 }
 
 int main(int argc, char **argv)
 {
-	struct cli c;
-	struct err e = {0};
-
-	cli_parse(&c, &tool, argc, argv);
-	if (distort && !scene)
-		cli_usage(&c, "--distort needs --scene SCENE");
-	cli_refuse_overwrite(&c, "MASKS scene:cameras.json", "output png:*.png", NULL);
-	return run(&c, &e) ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

@@ -1,4 +1,5 @@
 /* mask-import: photographs that a person painted over or labelled, as mask records. */
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/masks/painting.h"
 
@@ -27,7 +28,7 @@ static const struct cli_tool tool = {.name = "mask-import",
 /* No picture and no file of names is written over. */
 static void check(const struct cli *c)
 {
-	struct cli_file *files = calloc((size_t)c->operand_count + 1, sizeof *files);
+	SCOPED struct cli_file *files = calloc((size_t)c->operand_count + 1, sizeof *files);
 
 	for (int i = 0; i < c->operand_count && !names_path; i++)
 		if (painting_needs_names(c->operands[i]))
@@ -35,24 +36,23 @@ static void check(const struct cli *c)
 	for (int i = 0; files && i < c->operand_count; i++)
 		files[i] = (struct cli_file){"picture", c->operands[i], CLI_READS, NULL};
 	cli_refuse_overwrite(c, "names undistort:cameras.json", "output", files);
-	free(files);
+}
+
+static int run(const struct cli *c, const struct report *to, struct err *e)
+{
+	SCOPED_BY(painting_names_free) struct painting_names names = {0};
+	SCOPED_BY(warping_free) struct warping warping = {0};
+
+	check(c);
+	return (names_path && painting_names_read(&names, names_path, e)) ||
+			       warping_open(&warping, undistort ? WARP_TO_VIEW : WARP_NONE, undistort, e) ||
+			       painting_write(&names, c->operands, (size_t)c->operand_count, &warping,
+				       c->output, to, e)
+		       ? -1
+		       : 0;
 }
 
 int main(int argc, char **argv)
 {
-	struct painting_names names = {0};
-	struct warping warping = {0};
-	struct cli_report to;
-	struct cli c;
-	struct err e = {0};
-
-	cli_parse(&c, &tool, argc, argv);
-	check(&c);
-	const int bad = (names_path && painting_names_read(&names, names_path, &e)) ||
-			warping_open(&warping, undistort ? WARP_TO_VIEW : WARP_NONE, undistort, &e) ||
-			painting_write(&names, c.operands, (size_t)c.operand_count, &warping, c.output,
-				cli_report(&to, &c), &e);
-	warping_free(&warping);
-	painting_names_free(&names);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

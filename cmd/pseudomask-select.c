@@ -1,55 +1,57 @@
 /* pseudomask-select: an object's masks in the views, of the candidates that a detector found for its
  * sentences. */
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/lift/pseudomasks.h"
 
 /* Where --method is not given. */
 enum { METHOD_DEFAULT = PSEUDOMASK_SCENE + 1 };
 
+static struct pseudomask_options o = {.method = METHOD_DEFAULT, .min_score = 0.3};
+
+static const struct cli_option options[] = {
+	{"method", 0, CLI_CHOICE, &o.method, "ciou|iou|top1|first|scene",
+		"confidence-weighted IoU votes, IoU votes, the most confident; the first view's, carried to all others; or the object's region in the scene (default: scene where --scene and --weights are given, else ciou)",
+		0, 0},
+	{"min-score", 0, CLI_REAL, &o.min_score, "G",
+		"leave out candidates with no more confidence (default 0.3)", 0, 1},
+	{"scene", 0, CLI_STRING, &o.scene, "SCENE", "for scene and first: the scene's folder", 0, 0},
+	{"weights", 0, CLI_STRING, &o.weights, "WEIGHTS",
+		"for scene and first: the folder of its training views' blend weights", 0, 0},
+	{"spare", 0, CLI_STRING, &o.spare, "FILE",
+		"for scene: also write masks of regions that are of no object, for refer-lift", 0, 0},
+	{0},
+};
+
+static const struct cli_tool tool = {
+	.name = "pseudomask-select",
+	.operands = "[CANDIDATES]",
+	.summary = "Pick an object's mask in each view: the candidate its sentences agree on.",
+	.options = options,
+	.common = CLI_OUTPUT | CLI_THREADS | CLI_VERBOSE | CLI_QUIET,
+	.max_operands = 1,
+};
+
+static int run(const struct cli *c, const struct report *to, struct err *e)
+{
+	SCOPED_BY(pseudomasks_free) struct pseudomasks w = {0};
+
+	o.candidates = c->operand_count ? c->operands[0] : "-";
+	o.method = o.method != METHOD_DEFAULT ? o.method
+		   : o.scene || o.weights     ? PSEUDOMASK_SCENE
+					      : SELECT_CIOU;
+	if (o.method >= PSEUDOMASK_FIRST && (!o.scene || !o.weights))
+		cli_usage(c, "--method %s needs --scene SCENE and --weights WEIGHTS",
+			o.method == PSEUDOMASK_FIRST ? "first" : "scene");
+	if (o.method < PSEUDOMASK_FIRST && (o.scene || o.weights))
+		cli_usage(c, "%s is for --method scene and first", o.scene ? "--scene" : "--weights");
+	if (o.method != PSEUDOMASK_SCENE && o.spare)
+		cli_usage(c, "--spare is for --method scene");
+	cli_refuse_overwrite(c, "CANDIDATES " CLI_SCENE " " CLI_WEIGHTS, "output spare", NULL);
+	return pseudomasks_write(&w, &o, c->output, to, e);
+}
+
 int main(int argc, char **argv)
 {
-	struct pseudomask_options chosen = {.method = METHOD_DEFAULT, .min_score = 0.3};
-	struct pseudomask_options *o = &chosen;
-	struct pseudomasks w = {0};
-	const struct cli_option options[] = {
-		{"method", 0, CLI_CHOICE, &o->method, "ciou|iou|top1|first|scene",
-			"confidence-weighted IoU votes, IoU votes, the most confident; the first view's, carried to all others; or the object's region in the scene (default: scene where --scene and --weights are given, else ciou)",
-			0, 0},
-		{"min-score", 0, CLI_REAL, &o->min_score, "G",
-			"leave out candidates with no more confidence (default 0.3)", 0, 1},
-		{"scene", 0, CLI_STRING, &o->scene, "SCENE", "for scene and first: the scene's folder", 0, 0},
-		{"weights", 0, CLI_STRING, &o->weights, "WEIGHTS",
-			"for scene and first: the folder of its training views' blend weights", 0, 0},
-		{"spare", 0, CLI_STRING, &o->spare, "FILE",
-			"for scene: also write masks of regions that are of no object, for refer-lift", 0, 0},
-		{0},
-	};
-	const struct cli_tool tool = {
-		.name = "pseudomask-select",
-		.operands = "[CANDIDATES]",
-		.summary = "Pick an object's mask in each view: the candidate its sentences agree on.",
-		.options = options,
-		.common = CLI_OUTPUT | CLI_THREADS | CLI_VERBOSE | CLI_QUIET,
-		.max_operands = 1,
-	};
-	struct cli_report to;
-	struct cli c;
-	struct err e;
-
-	cli_parse(&c, &tool, argc, argv);
-	o->candidates = c.operand_count ? c.operands[0] : "-";
-	o->method = o->method != METHOD_DEFAULT ? o->method
-		    : o->scene || o->weights	? PSEUDOMASK_SCENE
-						: SELECT_CIOU;
-	if (o->method >= PSEUDOMASK_FIRST && (!o->scene || !o->weights))
-		cli_usage(&c, "--method %s needs --scene SCENE and --weights WEIGHTS",
-			o->method == PSEUDOMASK_FIRST ? "first" : "scene");
-	if (o->method < PSEUDOMASK_FIRST && (o->scene || o->weights))
-		cli_usage(&c, "%s is for --method scene and first", o->scene ? "--scene" : "--weights");
-	if (o->method != PSEUDOMASK_SCENE && o->spare)
-		cli_usage(&c, "--spare is for --method scene");
-	cli_refuse_overwrite(&c, "CANDIDATES " CLI_SCENE " " CLI_WEIGHTS, "output spare", NULL);
-	int bad = pseudomasks_write(&w, o, c.output, cli_report(&to, &c), &e);
-	pseudomasks_free(&w);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

@@ -1,9 +1,9 @@
 /* refer-ask: what a question about a lifted scene means, in words. */
+#include "base/mem.h"
 #include "cli/cli.h"
-#include "cmd/ask/answer_words.h"
+#include "cmd/ask/reply.h"
 #include "cmd/ask/asking.h"
 #include "cmd/text/questions.h"
-#include "cmd/ask/reply.h"
 #include "answer/responses.h"
 
 #include <stdio.h>
@@ -58,7 +58,7 @@ static const struct cli_tool tool = {.name = "refer-ask",
 static int answer(const struct cli *c, struct asking *a, const char *question, int *refused, struct err *e)
 {
 	const double start = cli_seconds();
-	struct asking_answer found;
+	SCOPED_BY(asking_answer_free) struct asking_answer found = {0};
 	struct answer_told told;
 	struct cli_report to;
 
@@ -68,7 +68,6 @@ static int answer(const struct cli *c, struct asking *a, const char *question, i
 	int bad = c->json ? answer_put_json(&told, stdout, e) : answer_put_words(&told, stdout, e);
 	if (!bad && fflush(stdout))
 		bad = err_errno(e, "stdout");
-	asking_answer_free(&found);
 	cli_note(c, 1, "answered in %.3f s", cli_seconds() - start);
 	return bad ? -1 : 0;
 }
@@ -136,7 +135,7 @@ static int answer_lines(const struct cli *c, struct asking *a, int *status, stru
 	return n;
 }
 
-static int run(const struct cli *c, struct asking *a, int *status, struct err *e)
+static int ask(const struct cli *c, struct asking *a, int *status, struct err *e)
 {
 	struct question q = {0};
 
@@ -167,20 +166,22 @@ static void check(const struct cli *c)
 		cli_usage(c, "--camera - and %s cannot both be stdin", is_one ? "--model" : "the questions");
 }
 
-int main(int argc, char **argv)
+static int run(const struct cli *c, const struct report *to, struct err *e)
 {
-	struct asking a = {0};
-	struct cli c;
-	struct err e = {0};
+	SCOPED_BY(asking_close) struct asking a = {0};
 	int status = 0;
 
-	cli_parse(&c, &tool, argc, argv);
-	check(&c);
-	cli_refuse_overwrite(&c,
+	(void)to;
+	check(c);
+	cli_refuse_overwrite(c,
 		CLI_SCENE " model camera encoder:" ENCODER_PARTS " RUN:scene|lifted|*.safetensors", "picture",
 		NULL);
-	options.asking.run = c.operands[0];
-	const int bad = run(&c, &a, &status, &e);
-	asking_close(&a);
-	return bad ? cli_fail(&c, &e) : (cli_done(&c), status);
+	options.asking.run = c->operands[0];
+	options.asking.is_json = c->json;
+	return ask(c, &a, &status, e) ? -1 : status;
+}
+
+int main(int argc, char **argv)
+{
+	return cli_main(&tool, argc, argv, run);
 }

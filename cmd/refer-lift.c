@@ -1,5 +1,6 @@
 /* refer-lift: objects lifted onto the Gaussians from their masks, in closed form. */
 #include "base/file.h"
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/lift/left_out.h"
 #include "cmd/lift/lifting.h"
@@ -35,22 +36,20 @@ static const struct cli_tool tool = {.name = "refer-lift",
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT,
 	.output_arg = "MODEL"};
 
-static int run(struct lifting *l, const struct cli *c, struct err *e)
+static int lift(struct lifting *l, const struct cli *c, const struct report *to, struct err *e)
 {
 	const struct lifted *model = &l->model;
-	struct cli_report to;
 	double confidence = 0;
 	size_t moved;
 
-	if (lifting_read(l, &options.files, cli_report(&to, c), e) ||
-		lifting_make(l, options.is_as_masked, &moved, &to.report, e))
+	if (lifting_read(l, &options.files, to, e) || lifting_make(l, options.is_as_masked, &moved, to, e))
 		return -1;
 	for (size_t o = 0; o < model->objects; o++)
 		confidence += (double)model->confidence[o] / (double)model->objects;
 	cli_note(c, 1,
 		"%zu objects, %lld Gaussians with a share in one; agreement of the masks %.3f; %zu changed places",
 		model->objects, (long long)model->indptr[model->objects], confidence, moved);
-	if (left_out_check(&l->lift, model->objects, options.files.masks, options.files.scene, &to.report, e))
+	if (left_out_check(&l->lift, model->objects, options.files.masks, options.files.scene, to, e))
 		return -1;
 	if (model->objects && !memchr(l->is_fixed, 1, model->objects) && confidence < LIFT_AGREEMENT_LEAST)
 		cli_warn(c,
@@ -62,21 +61,21 @@ static int run(struct lifting *l, const struct cli *c, struct err *e)
 		model, &origin, c->output, options.is_as_masked ? "--names masks" : "--names sentences", e);
 }
 
-int main(int argc, char **argv)
+static int run(const struct cli *c, const struct report *to, struct err *e)
 {
 	const struct lifting_files *f = &options.files;
-	struct lifting l = {0};
-	struct cli c;
-	struct err e = {0};
+	SCOPED_BY(lifting_free) struct lifting l = {0};
 
-	cli_parse(&c, &tool, argc, argv);
 	if (!f->scene || !f->weights || !f->text || !f->masks)
-		cli_usage(&c, "--scene, --weights, --text and --masks are required");
-	cli_refuse_overwrite(&c, CLI_SCENE " " CLI_WEIGHTS " text masks spare", "output", NULL);
-	cli_refuse_terminal(&c);
+		cli_usage(c, "--scene, --weights, --text and --masks are required");
+	cli_refuse_overwrite(c, CLI_SCENE " " CLI_WEIGHTS " text masks spare", "output", NULL);
+	cli_refuse_terminal(c);
 	if (options.is_as_masked)
 		options.files.spare = NULL;
-	int bad = run(&l, &c, &e);
-	lifting_free(&l);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	return lift(&l, c, to, e);
+}
+
+int main(int argc, char **argv)
+{
+	return cli_main(&tool, argc, argv, run);
 }

@@ -1,11 +1,10 @@
 /* refer-locate: where in space the objects of sentences, or all objects, are, and the scene with them for
  * other programs. */
 #include "base/file.h"
+#include "base/mem.h"
 #include "cli/cli.h"
-#include "cmd/render/labelling.h"
 #include "cmd/render/locating.h"
 #include "cmd/text/questions.h"
-#include "cmd/render/showing.h"
 #include "formats/splats/anysplats.h"
 
 #include <string.h>
@@ -77,14 +76,14 @@ static int locate(struct locating *r, const struct cli *c, struct err *e)
 /* Every object, without sentences. */
 static int label(const struct cli *c, struct err *e)
 {
-	struct labelling r = {0};
-	const int bad = labelling_open(&r, options.request.scene, options.request.model, e) ||
-			(options.each && labelling_write_each(&r, options.each, e)) ||
-			(options.ply && labelling_write_scene(&r, options.ply, e)) ||
-			labelling_write(&r, c->output, e);
+	SCOPED_BY(labelling_free) struct labelling r = {0};
 
-	labelling_free(&r);
-	return bad ? -1 : 0;
+	return labelling_open(&r, options.request.scene, options.request.model, e) ||
+			       (options.each && labelling_write_each(&r, options.each, e)) ||
+			       (options.ply && labelling_write_scene(&r, options.ply, e)) ||
+			       labelling_write(&r, c->output, e)
+		       ? -1
+		       : 0;
 }
 
 static void check_all(const struct cli *c)
@@ -117,7 +116,7 @@ static enum locate_show check_run(const struct cli *c)
 	return (enum locate_show)(k[LOCATE_ISOLATED] + 2 * k[LOCATE_REMOVED]);
 }
 
-static int show(const struct cli *c, struct err *e)
+static int show(const struct cli *c, const struct report *to, struct err *e)
 {
 	const struct request_options *o = &options.request;
 	const enum locate_show how = check_run(c);
@@ -126,11 +125,10 @@ static int show(const struct cli *c, struct err *e)
 		.viewpoint = o->viewpoint,
 		.least = o->least};
 	struct question q = {0};
-	struct cli_report to;
 
 	if (!question_take(&q, c->operands[1]))
 		return err_set(e, ERR_FORMAT, "the question %s", q.fault);
-	return showing_ask(&ask, q.text, how, c->output, stdout, cli_report(&to, c), e);
+	return showing_ask(&ask, q.text, how, c->output, stdout, to, e);
 }
 
 static void check(const struct cli *c)
@@ -151,24 +149,26 @@ static void check(const struct cli *c)
 
 static int answer(const struct cli *c, struct err *e)
 {
-	struct locating r = {0};
-	const int bad = locate(&r, c, e) ||
-			((options.ply || options.splat) && showing_write(&r, (enum locate_show)options.show,
-								   options.ply, options.splat, e)) ||
-			locating_write(&r, c->output, e);
+	SCOPED_BY(locating_free) struct locating r = {0};
 
-	locating_free(&r);
-	return bad ? -1 : 0;
+	return locate(&r, c, e) ||
+			       ((options.ply || options.splat) &&
+				       showing_write(&r, (enum locate_show)options.show, options.ply,
+					       options.splat, e)) ||
+			       locating_write(&r, c->output, e)
+		       ? -1
+		       : 0;
+}
+
+static int run(const struct cli *c, const struct report *to, struct err *e)
+{
+	if (c->operand_count)
+		return show(c, to, e);
+	check(c);
+	return options.is_all ? label(c, e) : answer(c, e);
 }
 
 int main(int argc, char **argv)
 {
-	struct cli c;
-	struct err e = {0};
-
-	cli_parse(&c, &tool, argc, argv);
-	if (c.operand_count)
-		return show(&c, &e) ? cli_fail(&c, &e) : cli_done(&c);
-	check(&c);
-	return (options.is_all ? label(&c, &e) : answer(&c, &e)) ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

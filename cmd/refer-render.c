@@ -1,6 +1,7 @@
 /* refer-render: the masks of sentences in any view, from a model. */
 #include "answer/peak.h"
 #include "base/file.h"
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/render/draw.h"
 #include "cmd/render/request.h"
@@ -53,24 +54,6 @@ static const struct cli_tool tool = {.name = "refer-render",
 	.options = table,
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT};
 
-static int run(struct request *r, struct drawing *d, const struct cli *c, struct err *e)
-{
-	const int has_viewpoint = options.request.viewpoint && !options.draw.is_each;
-	struct cli_report to;
-	struct viewpoint from;
-
-	if (request_read(r, &options.request, e) || draw_choose(d, &options.draw, r, e) ||
-		request_choose(r, e))
-		return -1;
-	if (!d->view_count || !r->count)
-		cli_warn(c, "%s: no %s in this split",
-			d->view_count ? file_name(options.request.text) : options.request.scene,
-			d->view_count ? "sentence" : "view");
-	if (has_viewpoint && request_viewpoint(r, &from, e))
-		return -1;
-	return draw(d, has_viewpoint ? &from : NULL, c->output, cli_report(&to, c), e);
-}
-
 static void check(const struct cli *c)
 {
 	const struct request_options *o = &options.request;
@@ -86,17 +69,27 @@ static void check(const struct cli *c)
 	options.draw.is_each = o->viewpoint && !strcmp(o->viewpoint, "each");
 }
 
+static int run(const struct cli *c, const struct report *to, struct err *e)
+{
+	SCOPED_BY(request_free) struct request r = {0};
+	SCOPED_BY(drawing_free) struct drawing d = {0};
+	struct viewpoint from;
+
+	check(c);
+	const int has_viewpoint = options.request.viewpoint && !options.draw.is_each;
+	if (request_read(&r, &options.request, e) || draw_choose(&d, &options.draw, &r, e) ||
+		request_choose(&r, e))
+		return -1;
+	if (!d.view_count || !r.count)
+		cli_warn(c, "%s: no %s in this split",
+			d.view_count ? file_name(options.request.text) : options.request.scene,
+			d.view_count ? "sentence" : "view");
+	if (has_viewpoint && request_viewpoint(&r, &from, e))
+		return -1;
+	return draw(&d, has_viewpoint ? &from : NULL, c->output, to, e);
+}
+
 int main(int argc, char **argv)
 {
-	struct request r = {0};
-	struct drawing d = {0};
-	struct cli c;
-	struct err e = {0};
-
-	cli_parse(&c, &tool, argc, argv);
-	check(&c);
-	int bad = run(&r, &d, &c, &e);
-	drawing_free(&d);
-	request_free(&r);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

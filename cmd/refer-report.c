@@ -4,8 +4,6 @@
 #include "cli/cli.h"
 #include "cmd/report/reporting.h"
 
-#include <stdlib.h>
-
 static const char *output;
 static struct report_options options = {.views = 12, .width = 480, .splats = 200000};
 
@@ -32,31 +30,24 @@ static const struct cli_tool tool = {.name = "refer-report",
 	.min_operands = 1,
 	.max_operands = 1};
 
-static int run(const struct cli *c, struct err *e)
+static int run(const struct cli *c, const struct report *to, struct err *e)
 {
-	struct cli_report to;
-	char *path = output ? mem_strdup(output, e) : file_join(options.run, "report.html", "", e);
-
-	if (!path)
-		return -1;
+	options.run = c->operands[0];
+	SCOPED char *path = output ? mem_strdup(output, e) : file_join(options.run, "report.html", "", e);
 	const struct cli_file files[] = {{"the page", path, CLI_WRITES, NULL},
 		{"RUN", options.run, CLI_READS, "scene|lifted|stage1|stage2|log|*.safetensors|*.jsonl"}, {0}};
+
+	if (options.viewer && options.is_plain)
+		cli_usage(c, "--viewer and --no-viewer exclude each other");
 	cli_refuse_overwrite(c, "truth", "", files);
-	const int bad = reporting_write(&options, path, cli_report(&to, c), e);
-	if (!bad && !output)
+	if (!path || reporting_write(&options, path, to, e))
+		return -1;
+	if (!output)
 		cli_note(c, 1, "made %s", path);
-	free(path);
-	return bad;
+	return 0;
 }
 
 int main(int argc, char **argv)
 {
-	struct cli c;
-	struct err e = {0};
-
-	cli_parse(&c, &tool, argc, argv);
-	if (options.viewer && options.is_plain)
-		cli_usage(&c, "--viewer and --no-viewer exclude each other");
-	options.run = c.operands[0];
-	return run(&c, &e) ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

@@ -1,7 +1,7 @@
 /* refer-train: learns the referring model of a scene from masks (one stage of the method). */
 #include "cli/cli.h"
 #include "cli/stop.h"
-#include "cmd/train/learn.h"
+#include "cmd/train/training.h"
 #include "formats/scene/checkpoint.h"
 
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /* Sentences to word vectors, by a BERT or CLIP's text tower. */
+#include "base/mem.h"
 #include "base/path.h"
 #include "cli/cli.h"
 #include "cmd/text/encode.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 static struct {
 	const char *model;
@@ -29,10 +29,10 @@ static const struct cli_tool tool = {.name = "text-encode",
 	.common = CLI_VERBOSE | CLI_QUIET | CLI_THREADS | CLI_OUTPUT,
 	.max_operands = 1};
 
-static int run(const struct cli *c, struct encoding *x, struct encoder *with, struct err *e)
+static int encode_all(
+	const struct cli *c, struct encoding *x, struct encoder *with, const struct report *to, struct err *e)
 {
 	const struct text *t = &x->text;
-	struct cli_report to;
 	char record[512];
 	int length;
 	const char *name =
@@ -41,29 +41,26 @@ static int run(const struct cli *c, struct encoding *x, struct encoder *with, st
 	snprintf(record, sizeof record, "--model %.*s%s", length, name,
 		options.is_static ? " --words static" : "");
 	if (encoding_read(x, c->operand_count ? c->operands[0] : "-", options.is_of_masks, e) ||
-		encoder_read(with, options.model, options.is_static, e) ||
-		encode(x, with, cli_report(&to, c), e))
+		encoder_read(with, options.model, options.is_static, e) || encode(x, with, to, e))
 		return -1;
 	cli_note(c, 1, "%zu sentences, %lld words of width %d", t->n, (long long)t->offsets[t->n], t->width);
 	return text_write(t, c->output, record, e);
 }
 
+static int run(const struct cli *c, const struct report *to, struct err *e)
+{
+	SCOPED_BY(encoding_free) struct encoding x = {0};
+	SCOPED_BY(encoder_free) struct encoder with = {0};
+	SCOPED char *usual = options.model ? NULL : encoder_default(e);
+
+	if (!options.model && !(options.model = usual))
+		return -1;
+	cli_refuse_terminal(c);
+	cli_refuse_overwrite(c, "SENTENCES model:" ENCODER_PARTS, "output", NULL);
+	return encode_all(c, &x, &with, to, e);
+}
+
 int main(int argc, char **argv)
 {
-	struct encoding x = {0};
-	struct encoder with = {0};
-	char *usual = NULL;
-	struct err e = {0};
-	struct cli c;
-
-	cli_parse(&c, &tool, argc, argv);
-	if (!options.model && !(options.model = usual = encoder_default(&e)))
-		return cli_fail(&c, &e);
-	cli_refuse_terminal(&c);
-	cli_refuse_overwrite(&c, "SENTENCES model:" ENCODER_PARTS, "output", NULL);
-	const int bad = run(&c, &x, &with, &e);
-	encoding_free(&x);
-	encoder_free(&with);
-	free(usual);
-	return bad ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

@@ -1,5 +1,6 @@
 /* Sentences taken apart: who is meant, and how it stands to what. */
 #include "base/file.h"
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "formats/encoders/parser_weights.h"
 #include "formats/records/parses.h"
@@ -14,79 +15,76 @@ static int put_parses(const struct parser *parser, const struct text *t, FILE *o
 {
 	for (size_t r = 0; r < t->n; r++) {
 		struct parser_vectors v = {.width = t->width};
-		struct parse p;
+		SCOPED_BY(parse_free) struct parse p = {0};
 		if (t->pieces)
 			v = (struct parser_vectors){t->pieces[r], text_middle(t, r),
 				(int)(t->offsets[r + 1] - t->offsets[r]), t->width};
 		if (parse_sentence(&p, parser, t->texts[r], &v, e))
 			return -1;
 		int bad = parses_put(out, t->refs[r], t->texts[r], &p, e);
-		parse_free(&p);
 		if (bad)
 			return -1;
 	}
 	return 0;
 }
 
-enum method { BOTH, GRAMMAR };
+enum { BOTH, GRAMMAR };
 
-static int run(const struct cli *c, const char *weights, enum method method, struct err *e)
+static const char *weights;
+static int method = BOTH;
+
+static const struct cli_option options[] = {
+	{"parser", 0, CLI_STRING, &weights, "PARSER",
+		"weights of the learnt parser (default: those that come with the program)", 0, 0},
+	{"method", 0, CLI_CHOICE, &method, "both|grammar",
+		"grammar and what was learnt on word vectors, or grammar alone (default both)", 0, 0},
+	{0},
+};
+
+static const struct cli_tool tool = {
+	.name = "text-parse",
+	.operands = "[TEXT]",
+	.summary =
+		"Take encoded sentences (text.safetensors; stdin by default) apart into parses (JSON Lines).",
+	.options = options,
+	.common = CLI_VERBOSE | CLI_QUIET | CLI_OUTPUT,
+	.max_operands = 1,
+};
+
+static int parse_all(const struct cli *c, const char *path, struct parser_weights *w, struct err *e)
 {
-	struct parser parser = {0};
-	struct parser_weights w = {0};
-	struct text t = {0};
-	struct file_out out = {0};
-	int bad;
+	SCOPED_BY(text_free) struct text t = {0};
+	struct parser parser = {.weights = method == BOTH ? w : NULL};
+	struct file_out out;
 
-	if (method == BOTH) {
-		if (weights ? parser_weights_read(&w, weights, e) : parser_weights_default(&w, e))
-			return -1;
-		parser.weights = &w;
-	}
-	if (text_read(&t, c->operand_count ? c->operands[0] : "-", e)) {
-		parser_weights_free(&w);
+	if (method == BOTH && (weights ? parser_weights_read(w, weights, e) : parser_weights_default(w, e)))
 		return -1;
-	}
+	if (text_read(&t, path, e))
+		return -1;
 	parser.encoder = t.encoder.hex;
-	const int is_other = *w.encoder && *t.encoder.hex && strcmp(w.encoder, t.encoder.hex);
-	if (parser.weights && (!t.pieces || !t.middle || t.width != w.width || is_other))
-		cli_warn(c, "%s: %s: by grammar alone", file_name(c->operand_count ? c->operands[0] : "-"),
+	const int is_other = *w->encoder && *t.encoder.hex && strcmp(w->encoder, t.encoder.hex);
+	if (parser.weights && (!t.pieces || !t.middle || t.width != w->width || is_other))
+		cli_warn(c, "%s: %s: by grammar alone", file_name(path),
 			!t.pieces   ? "has no word pieces"
 			: !t.middle ? "has no tensor 'middle'"
 				    : "of another encoder than the parser's weights");
-	bad = file_out_open(&out, c->output, e) ||
-	      file_out_end(&out, put_parses(&parser, &t, out.stream, e), e);
-	text_free(&t);
-	parser_weights_free(&w);
-	return bad;
+	if (file_out_open(&out, c->output, e))
+		return -1;
+	return file_out_end(&out, put_parses(&parser, &t, out.stream, e), e);
+}
+
+static int run(const struct cli *c, const struct report *to, struct err *e)
+{
+	SCOPED_BY(parser_weights_free) struct parser_weights w = {0};
+
+	(void)to;
+	cli_refuse_overwrite(c, "TEXT parser", "output", NULL);
+	/* a sentence is too little to share among threads */
+	omp_set_num_threads(1);
+	return parse_all(c, c->operand_count ? c->operands[0] : "-", &w, e);
 }
 
 int main(int argc, char **argv)
 {
-	const char *weights = NULL;
-	int method = BOTH;
-	const struct cli_option options[] = {
-		{"parser", 0, CLI_STRING, &weights, "PARSER",
-			"weights of the learnt parser (default: those that come with the program)", 0, 0},
-		{"method", 0, CLI_CHOICE, &method, "both|grammar",
-			"grammar and what was learnt on word vectors, or grammar alone (default both)", 0, 0},
-		{0},
-	};
-	const struct cli_tool tool = {
-		.name = "text-parse",
-		.operands = "[TEXT]",
-		.summary =
-			"Take encoded sentences (text.safetensors; stdin by default) apart into parses (JSON Lines).",
-		.options = options,
-		.common = CLI_VERBOSE | CLI_QUIET | CLI_OUTPUT,
-		.max_operands = 1,
-	};
-	struct err e = {0};
-	struct cli c;
-
-	cli_parse(&c, &tool, argc, argv);
-	cli_refuse_overwrite(&c, "TEXT parser", "output", NULL);
-	/* a sentence is too little to share among threads */
-	omp_set_num_threads(1);
-	return run(&c, weights, (enum method)method, &e) ? cli_fail(&c, &e) : cli_done(&c);
+	return cli_main(&tool, argc, argv, run);
 }

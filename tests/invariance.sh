@@ -147,9 +147,8 @@ renamed() {
 }
 renamed names 1 Z e é Ω Ж а 見
 row names 1 equal 0 'names of the views'
-# Regions grow from four views of each object, spread over their names.
 renamed others ю а 見 é Ω 9 z Ζ
-row others 1 0.97 0.2 'names of the views, and so their order'
+row others 1 equal 0 'names of the views, and so their order'
 again gaussians
 awk '!rows { print; rows = /^end_header/; next } { row[n++] = $0 } END { for (i = 0; i < n; i++) print row[i * 7919 % n] }' \
 	base/point_cloud.ply >gaussians/point_cloud.ply

@@ -5,7 +5,7 @@
 #include "answer/answer.h"
 #include "base/mem.h"
 #include "base/report.h"
-#include "cmd/ask/answer_picture.h"
+#include "cmd/ask/reply.h"
 #include "cmd/ask/asking.h"
 #include "cmd/text/questions.h"
 #include "formats/records/parses.h"
@@ -36,7 +36,6 @@ static void forget_answer(struct refersplat *r)
 	asking_answer_free(&r->answer);
 	free(r->objects);
 	free(r->probabilities);
-	r->answer = (struct asking_answer){0};
 	r->objects = NULL;
 	r->probabilities = NULL;
 }
@@ -123,7 +122,7 @@ int refersplat_get_object(struct refersplat *r, size_t i, struct refersplat_obje
 		return end(r, -1);
 	if (i >= l->objects)
 		return end(r, err_set(&r->err, ERR_CHECK, "no object %zu, of %zu", i, l->objects));
-	const struct extent *x = &r->asking.extents[i];
+	const struct extent *x = &r->asking.model.extents[i];
 	object->name = l->names[i];
 	object->confidence = l->confidence[i];
 	object->count = x->n;
@@ -182,18 +181,16 @@ static int parse_text(char **line, const struct asking *a, const struct text *t,
 {
 	const struct parser_vectors v = {
 		t->pieces ? t->pieces[0] : NULL, t->middle, (int)t->offsets[1], t->width};
-	struct parse p;
+	SCOPED_BY(parse_free) struct parse p = {0};
 
 	if (parse_sentence(&p, &a->parser, t->texts[0], &v, e))
 		return -1;
-	const int bad = print_parse(line, t, &p, e);
-	parse_free(&p);
-	return bad;
+	return print_parse(line, t, &p, e);
 }
 
 int refersplat_parse(struct refersplat *r, const char *sentence, const char **json)
 {
-	struct encoding x = {0};
+	SCOPED_BY(encoding_free) struct encoding x = {0};
 	struct question q;
 
 	*json = NULL;
@@ -202,7 +199,6 @@ int refersplat_parse(struct refersplat *r, const char *sentence, const char **js
 	int bad = take_question(r, &q, sentence) || sentences_add(&x.sentences, "1", "?", q.text, &r->err) ||
 		  encode(&x, &r->asking.encoder, &report_silent, &r->err) ||
 		  parse_text(&r->json, &r->asking, &x.text, &r->err);
-	encoding_free(&x);
 	*json = bad ? NULL : r->json;
 	return end(r, bad);
 }
@@ -238,11 +234,7 @@ int refersplat_ask(
 		return end(r, -1);
 	r->asking.from =
 		(struct viewpoint){.kind = view ? VIEWPOINT_CAMERA : VIEWPOINT_USUAL, .camera = from};
-	if (asking_ask(&r->asking, q.text, &r->answer, &report_silent, &r->err)) {
-		r->answer = (struct asking_answer){0};
-		return end(r, -1);
-	}
-	if (copy_answer(r, answer))
+	if (asking_ask(&r->asking, q.text, &r->answer, &report_silent, &r->err) || copy_answer(r, answer))
 		return end(r, -1);
 	return answer->count ? REFERSPLAT_OK : end(r, err_set(&r->err, ERR_CHECK, "%s", answer->reason));
 }
@@ -254,23 +246,14 @@ static int copy_mask(void *data, const struct answer *a, struct err *e)
 	return 0;
 }
 
-static int ignore(void *data, size_t view, struct err *e)
-{
-	(void)data, (void)view, (void)e;
-	return 0;
-}
-
 static int draw_mask(struct refersplat *r, const struct camera *view, const size_t *things, size_t count,
 	unsigned char *mask)
 {
-	struct responses responses;
+	SCOPED_BY(responses_free) struct responses responses = {0};
 	const struct answer_question q = {.splats = &r->asking.scene.splats, .responses = &responses};
-	const struct answer_calls calls = {mask, copy_mask, ignore};
-	const int bad = answer_responses(&responses, &r->asking.model.lifted, things, count, &r->err) ||
-			answer_all(&q, view, 1, &calls, &r->err);
-
-	responses_free(&responses);
-	return bad;
+	const struct answer_calls calls = {mask, copy_mask, NULL};
+	return answer_responses(&responses, &r->asking.model.lifted, things, count, &r->err) ||
+	       answer_all(&q, view, 1, &calls, &r->err);
 }
 
 /* things gets the objects, all of which are there. */
@@ -289,13 +272,12 @@ int refersplat_mask(
 	struct refersplat *r, const char *name, const int *objects, size_t count, unsigned char *mask)
 {
 	const struct camera *view = begin(r) ? NULL : find_view(r, name);
-	size_t *things = view ? mem_alloc(count, sizeof *things, "mask", &r->err) : NULL;
+	SCOPED size_t *things = view ? mem_alloc(count, sizeof *things, "mask", &r->err) : NULL;
 	int bad = !things || take_objects(r, things, objects, count);
 
 	if (!bad && count)
 		bad = draw_mask(r, view, things, count, mask);
 	else if (!bad)
 		memset(mask, 0, (size_t)view->width * (size_t)view->height);
-	free(things);
 	return end(r, bad);
 }

@@ -1,15 +1,11 @@
-#include "cmd/ask/answer_picture.h"
+#include "cmd/ask/reply.h"
 
 #include "base/mem.h"
-#include "formats/images/png.h"
-#include "mask/caption.h"
-#include "mask/overlay.h"
+#include "cmd/masks/pictures.h"
 #include "answer/answer.h"
 #include "splat/render.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Views are compared at this size of their longer side, in pixels. */
 enum { LOOK_SIDE = 200 };
@@ -17,7 +13,7 @@ enum { LOOK_SIDE = 200 };
 int answer_responses(
 	struct responses *to, const struct lifted *l, const size_t *things, size_t count, struct err *e)
 {
-	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
+	SCOPED float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
 
 	*to = (struct responses){.answers = 1};
 	to->responses = mem_alloc(l->gaussians, sizeof *to->responses, "responses", e);
@@ -28,18 +24,14 @@ int answer_responses(
 		for (size_t i = 0; i < l->gaussians && k; i++)
 			to->responses[i] = fmaxf(to->responses[i], own[i]);
 	}
-	free(own);
 	return bad || render_pack(to->responses, l->gaussians, 1, e) ? -1 : 0;
 }
 
-struct looks {
-	double *worth; /* of each view */
-};
-
+/* data: how much each view is worth. */
 static int look(void *data, const struct answer *a, struct err *e)
 {
-	const struct looks *l = data;
 	const int h = a->camera->height, w = a->camera->width;
+	double *worth = data;
 	size_t covered = 0;
 	int is_cut = 0;
 
@@ -50,13 +42,7 @@ static int look(void *data, const struct answer *a, struct err *e)
 			covered += (size_t)on;
 			is_cut |= on && (!y || !x || y == h - 1 || x == w - 1);
 		}
-	l->worth[a->view] = (double)covered / ((double)h * w) * (is_cut ? 0.5 : 1);
-	return 0;
-}
-
-static int ignore(void *data, size_t view, struct err *e)
-{
-	(void)data, (void)view, (void)e;
+	worth[a->view] = (double)covered / ((double)h * w) * (is_cut ? 0.5 : 1);
 	return 0;
 }
 
@@ -64,9 +50,10 @@ static int best_view(
 	const struct asking *a, const struct answer_question *q, const struct camera **view, struct err *e)
 {
 	const struct cameras *c = &a->scene.cameras;
-	struct looks l = {mem_zalloc(c->n, sizeof *l.worth, "views", e)};
-	struct camera *small = mem_alloc(c->n, sizeof *small, "views", e);
-	const struct answer_calls calls = {&l, look, ignore};
+	SCOPED double *worth = mem_zalloc(c->n, sizeof *worth, "views", e);
+	SCOPED struct camera *small = mem_alloc(c->n, sizeof *small, "views", e);
+	const struct answer_calls calls = {worth, look, NULL};
+	size_t best = 0;
 
 	for (size_t v = 0; v < c->n && small; v++) {
 		const struct camera *from = &c->views[v];
@@ -76,14 +63,12 @@ static int best_view(
 			from, longer > LOOK_SIDE ? (double)LOOK_SIDE / longer : 1, &width, &height);
 		small[v] = camera_resize(from, width, height);
 	}
-	int bad = !l.worth || !small || answer_all(q, small, c->n, &calls, e);
-	size_t best = 0;
-	for (size_t v = 1; v < c->n && !bad; v++)
-		best = l.worth[v] > l.worth[best] ? v : best;
+	if (!worth || !small || answer_all(q, small, c->n, &calls, e))
+		return -1;
+	for (size_t v = 1; v < c->n; v++)
+		best = worth[v] > worth[best] ? v : best;
 	*view = &c->views[best];
-	free(l.worth);
-	free(small);
-	return bad ? -1 : 0;
+	return 0;
 }
 
 struct page {
@@ -113,30 +98,23 @@ static void bound(const struct answer *a, struct answer_drawn *drawn)
 static int put_page(void *data, const struct answer *a, struct err *e)
 {
 	const struct page *page = data;
-	const int h = a->camera->height, w = a->camera->width, line = caption_height(w);
-	const size_t bytes = 3 * (size_t)h * (size_t)w;
-	uint8_t *rgb = mem_alloc((size_t)h + 2 * (size_t)line, 3 * (size_t)w, page->path, e);
+	const struct picture one = {.height = a->camera->height,
+		.width = a->camera->width,
+		.mask = a->mask,
+		.rgb = a->rgb,
+		.words = {page->words[0], page->words[1]}};
 
-	if (!rgb)
-		return -1;
-	for (size_t i = 0; i < bytes; i++)
-		rgb[i] = (uint8_t)lrintf(255 * a->rgb[i]);
-	overlay_draw(rgb, a->mask, h, w);
 	bound(a, page->drawn);
-	for (int k = 0; k < 2; k++)
-		caption_draw(rgb, w, h + k * line, page->words[k]);
-	const int bad = png_write(page->path, rgb, h + 2 * line, w, 3, e);
-	free(rgb);
-	return bad;
+	return picture_overlay(page->path, &one, e);
 }
 
 int answer_picture(const struct asking *a, const struct asking_answer *answer, const char *const words[2],
 	const char *path, struct answer_drawn *drawn, struct err *e)
 {
-	struct responses responses;
+	SCOPED_BY(responses_free) struct responses responses = {0};
 	struct answer_question q = {.splats = &a->scene.splats, .responses = &responses};
 	struct page page = {words, path, drawn};
-	const struct answer_calls calls = {&page, put_page, ignore};
+	const struct answer_calls calls = {&page, put_page, NULL};
 
 	if (!drawn->view && !a->scene.cameras.n)
 		return err_set(e, ERR_FORMAT, "%s: has no view to draw", a->files.scene);
@@ -146,6 +124,5 @@ int answer_picture(const struct asking *a, const struct asking_answer *answer, c
 		q.wants_rgb = 1;
 		bad = answer_all(&q, drawn->view, 1, &calls, e);
 	}
-	responses_free(&responses);
 	return bad ? -1 : 0;
 }

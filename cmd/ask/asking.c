@@ -2,11 +2,9 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/run/object_extents.h"
 #include "formats/cameras/camerafile.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,22 +38,17 @@ static int check_fit(const struct asking *a, struct err *e)
 
 int asking_read_camera(struct asking *a, const char *path, struct err *e)
 {
-	struct cameras read;
+	SCOPED_BY(cameras_free) struct cameras read = {0};
 
-	if (camerafile_read(&read, path, e))
+	if (camerafile_read(&read, path, e) || camerafile_need_pinholes(&read, path, NULL, e))
 		return -1;
-	if (camerafile_need_pinholes(&read, path, NULL, e)) {
-		cameras_free(&read);
-		return -1;
-	}
-	if (read.n > 1) {
-		err_set(e, ERR_FORMAT, "%s: has %zu views; --camera takes one", file_name(path), read.n);
-		cameras_free(&read);
-		return -1;
-	}
+	if (read.n > 1)
+		return err_set(
+			e, ERR_FORMAT, "%s: has %zu views; --camera takes one", file_name(path), read.n);
 	cameras_shift(&read, a->scene.offset);
-	cameras_free(&a->given);
+	const struct cameras earlier = a->given;
 	a->given = read;
+	read = earlier;
 	return 0;
 }
 
@@ -69,12 +62,6 @@ static int find_viewpoint(struct asking *a, struct err *e)
 	if (text && viewpoint_read(&a->from, text, &a->scene.cameras, a->scene.offset))
 		return err_set(e, ERR_USAGE, "--viewpoint: '%s' is no view and no x,y,z", text);
 	return 0;
-}
-
-static int find_extents(struct asking *a, struct err *e)
-{
-	a->extents = object_extents(&a->model.lifted, &a->scene.splats, &a->scene.cameras, e);
-	return a->extents ? 0 : -1;
 }
 
 static int make_chooser(struct asking *a, struct err *e)
@@ -95,14 +82,14 @@ int asking_open(struct asking *a, const struct asking_options *options, struct e
 	a->options = options;
 	return read_all(a, e) || check_fit(a, e) ||
 			       (options->camera && asking_read_camera(a, options->camera, e)) ||
-			       find_viewpoint(a, e) || make_chooser(a, e) || find_extents(a, e)
+			       find_viewpoint(a, e) || make_chooser(a, e) ||
+			       anymodel_place(&a->model, &a->scene, e)
 		       ? -1
 		       : 0;
 }
 
 void asking_close(struct asking *a)
 {
-	object_extents_free(a->extents, a->model.lifted.objects);
 	chooser_free(a->chooser);
 	encoding_free(&a->ahead);
 	encoder_free(&a->encoder);
@@ -116,7 +103,8 @@ void asking_close(struct asking *a)
 struct watched {
 	struct asking_answer *answer;
 	const char *question;
-	int is_explained, is_out_of_memory;
+	const struct asking_options *options;
+	int is_out_of_memory;
 };
 
 static void watch(void *data, size_t i, const struct meaning *m)
@@ -130,7 +118,7 @@ static void watch(void *data, size_t i, const struct meaning *m)
 	w->answer->has_centres = 1;
 	const struct explained x = {m, m->sentence->parse, w->question};
 	explain_refusal(&x, w->answer->reason);
-	if (w->is_explained && !(w->answer->explained = explain_meaning(&x)))
+	if (w->options->is_explained && !(w->answer->explained = explain_meaning(&x, w->options->is_json)))
 		w->is_out_of_memory = 1;
 }
 
@@ -148,7 +136,8 @@ void asking_answer_free(struct asking_answer *answer)
 	free(answer->things);
 	free(answer->probability);
 	free(answer->centres);
-	cJSON_Delete(answer->explained);
+	free(answer->explained);
+	*answer = (struct asking_answer){0};
 }
 
 /* Whether object o is told before another: the likelier one, and of two as likely by name. */
@@ -176,32 +165,37 @@ static void sort_things(struct asking_answer *answer, char *const *names, const 
 	}
 }
 
+struct choose_sentence asking_sentence(const struct text *t, size_t r, struct viewpoint from)
+{
+	return (struct choose_sentence){.text = t->texts[r],
+		.pieces = t->pieces ? t->pieces[r] : NULL,
+		.vectors = t->words + (size_t)t->offsets[r] * (size_t)t->width,
+		.middle = text_middle(t, r),
+		.words = (size_t)(t->offsets[r + 1] - t->offsets[r]),
+		.from = from};
+}
+
 /* By sentence r of the text. */
 static int choose_answer(struct asking *a, const struct text *t, size_t r, struct watched *w, struct err *e)
 {
 	const size_t objects = a->model.lifted.objects;
-	const struct choose_sentence sentence = {t->texts[r], t->pieces[r],
-		t->words + (size_t)t->offsets[r] * (size_t)t->width, text_middle(t, r),
-		(size_t)(t->offsets[r + 1] - t->offsets[r]), a->from, NULL};
+	const struct choose_sentence sentence = asking_sentence(t, r, a->from);
 	const struct choose_watch watching = {w, watch};
-	float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
-	char *chosen = mem_alloc(objects, 1, "answer", e);
+	SCOPED float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
+	SCOPED char *chosen = mem_alloc(objects, 1, "answer", e);
 	struct choice choice;
-	int bad = !probability || !chosen ||
-		  choose_with(a->chooser, &sentence, 1, &choice, probability, chosen, &watching, e);
 
-	if (!bad) {
-		w->answer->there = choice.there;
-		w->answer->is_by_purpose = choice.is_by_purpose;
-		for (size_t o = 0; o < objects; o++)
-			w->answer->probability[o] = choice.there * (double)probability[o];
-		if (choice.there < a->options->least)
-			memset(chosen, 0, objects);
-		sort_things(w->answer, a->model.lifted.names, chosen, objects);
-	}
-	free(probability);
-	free(chosen);
-	return bad ? -1 : 0;
+	if (!probability || !chosen ||
+		choose_with(a->chooser, &sentence, 1, &choice, probability, chosen, &watching, e))
+		return -1;
+	w->answer->there = choice.there;
+	w->answer->is_by_purpose = choice.is_by_purpose;
+	for (size_t o = 0; o < objects; o++)
+		w->answer->probability[o] = choice.there * (double)probability[o];
+	if (choice.there < a->options->least)
+		memset(chosen, 0, objects);
+	sort_things(w->answer, a->model.lifted.names, chosen, objects);
+	return 0;
 }
 
 void asking_expect(struct asking *a, const char *const *questions, size_t n)
@@ -239,30 +233,25 @@ static size_t find_ahead(const struct asking *a, const char *question)
 int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
 	struct err *e)
 {
-	struct watched w = {.answer = answer, .question = question, .is_explained = a->options->is_explained};
-	struct encoding alone = {0};
+	struct watched w = {.answer = answer, .question = question, .options = a->options};
+	SCOPED_BY(encoding_free) struct encoding alone = {0};
 	const struct text *text = &a->ahead.text;
 	size_t r = find_ahead(a, question);
-	int bad = asking_answer_make(answer, a->model.lifted.objects, e);
 
-	if (!bad && r == text->n) {
+	if (asking_answer_make(answer, a->model.lifted.objects, e))
+		return -1;
+	if (r == text->n) {
 		text = &alone.text;
 		r = 0;
-		bad = sentences_add(&alone.sentences, "1", "?", question, e) ||
-		      encode(&alone, &a->encoder, to, e);
+		if (sentences_add(&alone.sentences, "1", "?", question, e) ||
+			encode(&alone, &a->encoder, to, e))
+			return -1;
 	}
-	if (!bad)
-		snprintf(answer->reason, sizeof answer->reason, "the %s",
-			text->offsets[r + 1] > text->offsets[r] ? "model has no objects"
-								: "question has no words");
-	if (!bad)
-		bad = choose_answer(a, text, r, &w, e);
-	if (!bad && w.is_out_of_memory)
-		bad = err_set(e, ERR_SYSTEM, "explanation: out of memory");
-	encoding_free(&alone);
-	if (bad)
-		asking_answer_free(answer);
-	return bad ? -1 : 0;
+	snprintf(answer->reason, sizeof answer->reason, "the %s",
+		text->offsets[r + 1] > text->offsets[r] ? "model has no objects" : "question has no words");
+	if (choose_answer(a, text, r, &w, e))
+		return -1;
+	return w.is_out_of_memory ? err_set(e, ERR_SYSTEM, "explanation: out of memory") : 0;
 }
 
 size_t asking_nearest(const struct asking *a, size_t object, double *distance)
@@ -270,15 +259,27 @@ size_t asking_nearest(const struct asking *a, size_t object, double *distance)
 	size_t nearest = ASKING_NONE;
 
 	for (size_t o = 0; o < a->model.lifted.objects; o++) {
-		const double *x = a->extents[object].turned.centre, *y = a->extents[o].turned.centre;
+		const double *x = a->model.extents[object].turned.centre,
+			     *y = a->model.extents[o].turned.centre;
 		const double d = hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
-		if (o == object || !a->extents[o].n || !a->extents[object].n ||
+		if (o == object || !a->model.extents[o].n || !a->model.extents[object].n ||
 			(nearest != ASKING_NONE && d >= *distance))
 			continue;
 		nearest = o;
 		*distance = d;
 	}
 	return nearest;
+}
+
+const char *asking_side(const double centre[3], const double other[3])
+{
+	static const char *const sides[3][2] = {
+		{"to the left of", "to the right of"}, {"in front of", "behind"}, {"below", "above"}};
+	int axis = 0;
+
+	for (int k = 1; k < 3; k++)
+		axis = fabs(centre[k] - other[k]) > fabs(centre[axis] - other[axis]) ? k : axis;
+	return sides[axis][centre[axis] > other[axis]];
 }
 
 const struct camera *asking_view(const struct asking *a, const char *name)

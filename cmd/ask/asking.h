@@ -5,21 +5,32 @@
 #include "ask/choose.h"
 #include "base/err.h"
 #include "base/report.h"
+#include "cmd/ask/explain.h"
 #include "cmd/run/anymodel.h"
 #include "cmd/text/encode.h"
-#include "cmd/ask/explain.h"
-#include "cmd/run/run_folder.h"
 #include "formats/scene/scene.h"
-#include "lift/extent.h"
+
+/* The files of a folder that pipelines/lift.mk made, by their usual places. */
+
+struct run_folder {
+	char *scene, *model, *encoder;
+};
+
+/* The scene, RUN/scene; the lifted model, RUN/lifted/model.safetensors; and the encoder, encoder_default's;
+ * but for those of `given` that are not NULL. Copies. ERR_SYSTEM where
+ * the folder or one of them is not there: the message says what makes it. Returns 0, or -1 with *e set;
+ * run_folder_free after either. */
+int run_folder_find(struct run_folder *f, const char *run, const struct run_folder *given, struct err *e);
+void run_folder_free(struct run_folder *f);
 
 struct asking_options {
-	const char *run;	 /* the folder */
-	struct run_folder given; /* files in place of the folder's */
-	const char *viewpoint;	 /* VIEW or x,y,z; NULL: the usual one */
-	const char *camera;	 /* a file of one camera that is not in the scene; NULL: none */
-	const char *without;	 /* PART,... as choose_without takes it; may be NULL */
-	double least;		 /* a question less likely to mean anything is refused */
-	int is_explained;
+	const char *run;	   /* the folder */
+	struct run_folder given;   /* files in place of the folder's */
+	const char *viewpoint;	   /* VIEW or x,y,z; NULL: the usual one */
+	const char *camera;	   /* a file of one camera that is not in the scene; NULL: none */
+	const char *without;	   /* PART,... as choose_without takes it; may be NULL */
+	double least;		   /* a question less likely to mean anything is refused */
+	int is_explained, is_json; /* explanations are JSON, else lines of text */
 };
 
 struct asking {
@@ -32,9 +43,8 @@ struct asking {
 	struct choose_scene of;
 	struct chooser *chooser;
 	struct viewpoint from;
-	struct cameras given;	/* the one of options->camera; else none */
-	struct encoding ahead;	/* questions that were encoded before they are asked; asking_expect */
-	struct extent *extents; /* (objects) where each is, without the scene's offset */
+	struct cameras given;  /* the one of options->camera; else none */
+	struct encoding ahead; /* questions that were encoded before they are asked; asking_expect */
 };
 
 /* Reads all; *a is zeroed before and may not move after. Returns 0, or -1 with *e set (ERR_USAGE: an option
@@ -45,6 +55,9 @@ void asking_close(struct asking *a);
 /* A file of one camera that is not in the scene, brought into its frame: a->given, in place of an earlier
  * one. Returns 0, or -1 with *e set and a->given as it was. */
 int asking_read_camera(struct asking *a, const char *path, struct err *e);
+
+/* Sentence r of a text as the choice takes it, said from there. */
+struct choose_sentence asking_sentence(const struct text *t, size_t r, struct viewpoint from);
 
 #define ASKING_NONE ((size_t)-1)
 
@@ -57,14 +70,14 @@ struct asking_answer {
 	char reason[EXPLAIN_REASON]; /* of a refusal */
 	double (*centres)[3];	     /* (objects) to the right, away and up, as seen from the viewpoint */
 	int has_centres;
-	cJSON *explained; /* of explain_meaning; NULL where it was not asked for */
+	char *explained; /* of explain_meaning; NULL where it was not asked for */
 };
 
 /* Encodes questions that are about to be asked all at once, which takes less time than one by one. No answer
  * changes, and nothing is said: what goes wrong is said when the question is asked. */
 void asking_expect(struct asking *a, const char *const *questions, size_t n);
 
-/* Answers a question; warns where it is too long for the encoder. asking_answer_free after success. */
+/* Answers a question; warns where it is too long for the encoder. asking_answer_free after either. */
 int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
 	struct err *e);
 /* An answer of nothing, as asking_ask begins with: 0, or -1 with *e set. asking_answer_free after either. */
@@ -74,6 +87,10 @@ void asking_answer_free(struct asking_answer *answer);
 /* The object whose box is nearest to that of an object, by their centres, and how far away that is;
  * ASKING_NONE where there is no other. */
 size_t asking_nearest(const struct asking *a, size_t object, double *distance);
+
+/* Where a thing is, seen from another: "behind", by the axis along which their centres, of an answer, are
+ * farthest apart. */
+const char *asking_side(const double centre[3], const double other[3]);
 
 /* The view of that name, the given camera among them; NULL where there is none. */
 const struct camera *asking_view(const struct asking *a, const char *name);

@@ -1,12 +1,10 @@
-#include "cmd/ask/calling.h"
+#include "cmd/ask/reply.h"
 
+#include "base/mem.h"
 #include "places/arrangement.h"
 #include "lang/colours.h"
 
-#include <ctype.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { NEIGHBOURS = 4, WORD = 96 };
@@ -42,64 +40,55 @@ static void take_words(const char *name, char *words, char *last)
 }
 
 /* Asks a description; the best that means the object alone stays. */
-static int try(struct trial *t, const char *text, struct err *e)
+__attribute__((format(printf, 3, 4))) static int try(struct trial *t, struct err *e, const char *format, ...)
 {
-	struct asking_answer a;
+	SCOPED_BY(asking_answer_free) struct asking_answer a = {0};
+	char text[CALLING_TEXT];
+	va_list args;
 
+	va_start(args, format);
+	vsnprintf(text, sizeof text, format, args);
+	va_end(args);
 	if (asking_ask(t->asking, text, &a, t->report, e))
 		return -1;
 	const double p = a.count == 1 && a.things[0] == t->object ? a.probability[t->object] : 0;
 	if (p >= least && p > t->best.probability) {
-		snprintf(t->best.text, sizeof t->best.text, "%s", text);
+		memcpy(t->best.text, text, sizeof text);
 		t->best.probability = p;
 	}
-	asking_answer_free(&a);
 	return 0;
 }
 
 static int try_noun(struct trial *t, struct err *e)
 {
-	char text[CALLING_TEXT];
-
-	snprintf(text, sizeof text, "the %s", t->noun);
-	return try(t, text, e);
+	return try(t, e, "the %s", t->noun);
 }
 
 static int try_name(struct trial *t, struct err *e)
 {
-	char text[CALLING_TEXT];
-
-	snprintf(text, sizeof text, "the %s", t->name);
-	return strcmp(t->name, t->noun) ? try(t, text, e) : 0;
+	return strcmp(t->name, t->noun) ? try(t, e, "the %s", t->name) : 0;
 }
 
 static int try_colours(struct trial *t, struct err *e)
 {
 	const double *share = t->places->objects[t->object].colours;
-	char text[CALLING_TEXT];
+	int bad = 0;
 
-	for (int c = 0; c < COLOUR_WORDS; c++) {
-		if (share[c] < colour_share || strstr(t->name, colour_name(c)))
-			continue;
-		snprintf(text, sizeof text, "the %s %s", colour_name(c), t->noun);
-		if (try(t, text, e))
-			return -1;
-	}
-	return 0;
+	for (int c = 0; c < COLOUR_WORDS && !bad; c++)
+		if (share[c] >= colour_share && !strstr(t->name, colour_name(c)))
+			bad = try(t, e, "the %s %s", colour_name(c), t->noun);
+	return bad;
 }
 
 static int try_superlatives(struct trial *t, struct err *e)
 {
 	static const char *const words[] = {"leftmost", "rightmost", "largest", "smallest", "tallest",
 		"highest", "lowest", "nearest", "farthest"};
-	char text[CALLING_TEXT];
+	int bad = 0;
 
-	for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-		snprintf(text, sizeof text, "the %s %s", words[i], t->noun);
-		if (try(t, text, e))
-			return -1;
-	}
-	return 0;
+	for (size_t i = 0; i < sizeof words / sizeof *words && !bad; i++)
+		bad = try(t, e, "the %s %s", words[i], t->noun);
+	return bad;
 }
 
 /* Whether no other object has this name, apart from its number. */
@@ -145,27 +134,20 @@ static int find_neighbours(const struct trial *t, size_t nearest[NEIGHBOURS])
 /* "what" beside each neighbour, on the side where it is. */
 static int try_beside(struct trial *t, const char *what, struct err *e)
 {
-	static const char *const sides[3][2] = {
-		{"to the left of", "to the right of"}, {"in front of", "behind"}, {"below", "above"}};
 	size_t nearest[NEIGHBOURS];
 	const int n = find_neighbours(t, nearest);
-	char text[CALLING_TEXT], name[WORD], last[WORD];
+	char name[WORD], last[WORD];
+	int bad = 0;
 
 	for (int i = 0; i < n; i++) {
-		const double *x = t->places->objects[t->object].centre,
-			     *y = t->places->objects[nearest[i]].centre;
-		int axis = 0;
-		for (int k = 1; k < 3; k++)
-			axis = fabs(x[k] - y[k]) > fabs(x[axis] - y[axis]) ? k : axis;
-		const char *const near[] = {sides[axis][x[axis] > y[axis]], "on", "next to"};
+		const char *const near[] = {asking_side(t->places->objects[t->object].centre,
+						    t->places->objects[nearest[i]].centre),
+			"on", "next to"};
 		take_words(t->asking->model.lifted.names[nearest[i]], name, last);
-		for (size_t k = 0; k < sizeof near / sizeof *near; k++) {
-			snprintf(text, sizeof text, "the %s %s the %s", what, near[k], name);
-			if (try(t, text, e))
-				return -1;
-		}
+		for (size_t k = 0; k < sizeof near / sizeof *near && !bad; k++)
+			bad = try(t, e, "the %s %s the %s", what, near[k], name);
 	}
-	return 0;
+	return bad;
 }
 
 static int try_noun_beside(struct trial *t, struct err *e)
@@ -183,7 +165,7 @@ int calling_find(struct asking *a, size_t object, struct calling *to, double (*c
 {
 	static int (*const kinds[])(struct trial *, struct err *) = {
 		try_noun, try_name, try_colours, try_superlatives, try_noun_beside, try_name_beside};
-	struct arrangement places;
+	SCOPED_BY(arrangement_free) struct arrangement places = {0};
 	struct trial t = {a, report, &places, object, "", "", {"", 0}};
 	int bad = 0;
 
@@ -196,7 +178,6 @@ int calling_find(struct asking *a, size_t object, struct calling *to, double (*c
 		bad = kinds[k](&t, e);
 	for (size_t o = 0; centres && o < places.n; o++)
 		memcpy(centres[o], places.objects[o].centre, sizeof *centres);
-	arrangement_free(&places);
 	*to = t.best;
 	return bad ? -1 : 0;
 }

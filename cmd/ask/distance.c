@@ -1,13 +1,17 @@
-#include "cmd/ask/distance.h"
+#include "cmd/ask/reply.h"
 
 #include "lang/closed.h"
 #include "lang/tokens.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+enum { DISTANCE_SPLITS = 8, DISTANCE_TEXT = 2048 };
+
+/* The two things that a distance may be asked between, as the question has them. */
+struct distance_ends {
+	char text[2][DISTANCE_TEXT]; /* the second is empty where the first means both: "the two mugs" */
+};
 
 /* Whether a word is one of several, of which NULL is the last. */
 static int is_one_of(const struct token *w, const char *const *words)
@@ -89,7 +93,10 @@ static int is_plural(const struct tokens *t, int begin, int end)
 	return 0;
 }
 
-int distance_take(const char *question, struct distance_ends ends[DISTANCE_SPLITS])
+/* The ways to read a question as one about a distance: "how far is A from B", "distance between A and B",
+ * "how far apart are A and B"; several, where A or B has such a word too. Returns how many, 0 where it is
+ * none. */
+static int distance_take(const char *question, struct distance_ends ends[DISTANCE_SPLITS])
 {
 	static const char *const adverbs[] = {"away", "apart", "off", "it", "there", NULL};
 	static const char *const leads[] = {"between", "from", "of", "to", NULL};
@@ -138,11 +145,9 @@ static int ask_pair(struct asking *a, const struct distance_ends *ends, struct p
 {
 	*p = (struct pair){0};
 	for (int k = 0; k < 2 && *ends->text[k]; k++) {
-		if (asking_ask(a, ends->text[k], &p->of[k], to, e)) {
-			pair_free(p);
-			return -1;
-		}
 		p->count++;
+		if (asking_ask(a, ends->text[k], &p->of[k], to, e))
+			return -1;
 	}
 	for (int k = 0; k < 2; k++) {
 		const struct asking_answer *of = &p->of[p->count == 2 ? k : 0];
@@ -180,10 +185,8 @@ static int take_pair(struct asking_answer *answer, struct distance *d, struct pa
 {
 	const struct box *x, *y;
 
-	if (asking_answer_make(answer, a->model.lifted.objects, e)) {
-		asking_answer_free(answer);
+	if (asking_answer_make(answer, a->model.lifted.objects, e))
 		return -1;
-	}
 	for (size_t o = 0; o < a->model.lifted.objects; o++)
 		memcpy(answer->centres[o], p->of[0].centres[o], sizeof *answer->centres);
 	d->probability = answer->there = p->probability;
@@ -196,8 +199,8 @@ static int take_pair(struct asking_answer *answer, struct distance *d, struct pa
 		answer->probability[p->ends[k]] = p->of[p->count == 2 ? k : 0].probability[p->ends[k]];
 	}
 	answer->count = 2;
-	x = &a->extents[p->ends[0]].turned;
-	y = &a->extents[p->ends[1]].turned;
+	x = &a->model.extents[p->ends[0]].turned;
+	y = &a->model.extents[p->ends[1]].turned;
 	d->gap = box_gap(x, y);
 	d->centres = hypot(
 		hypot(x->centre[0] - y->centre[0], x->centre[1] - y->centre[1]), x->centre[2] - y->centre[2]);

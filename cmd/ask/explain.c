@@ -1,11 +1,11 @@
 /* A candidate's parts are those of the target that were judged, each with what it gave. */
 #include "cmd/ask/explain.h"
 
+#include "base/jsontext.h"
 #include "base/largest.h"
-#include "cmd/ask/parse_words.h"
 
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
 /* The words of a part of the sentence. */
 static void add_part(struct parse_words *w, const struct explained *x, const struct meaning_part *part)
@@ -130,12 +130,14 @@ void explain_refusal(const struct explained *x, char reason[EXPLAIN_REASON])
 	}
 }
 
-static int add_number(cJSON *to, const char *key, double x)
+static double rounded(double x)
 {
-	return cJSON_AddNumberToObject(to, key, round(x * 1e4) / 1e4) != NULL;
+	return round(x * 1e4) / 1e4;
 }
 
-static int add_words_of(cJSON *to, const struct explained *x, const struct meaning_part *part)
+/* The words of a part, and what kind it is. */
+static const char *part_words(
+	char words[EXPLAIN_REASON], const struct explained *x, const struct meaning_part *part)
 {
 	static const char *const kinds[MEANING_KINDS] = {[MEANING_NOUN] = "noun",
 		[MEANING_ATTRIBUTE] = "attribute",
@@ -146,35 +148,20 @@ static int add_words_of(cJSON *to, const struct explained *x, const struct meani
 		[MEANING_EXCEPT] = "except",
 		[MEANING_AMONG] = "among",
 		[MEANING_ORDINAL] = "ordinal"};
-	char buffer[EXPLAIN_REASON] = "";
-	struct parse_words w = {buffer, 0, sizeof buffer};
+	struct parse_words w = {words, 0, EXPLAIN_REASON};
 
+	*words = 0;
 	add_part(&w, x, part);
-	return cJSON_AddStringToObject(to, "part", kinds[part->kind]) &&
-	       (!*buffer || cJSON_AddStringToObject(to, "words", buffer));
+	return kinds[part->kind];
 }
 
-static int add_parts(cJSON *list, const struct explained *x, size_t o)
+/* The objects that fit best: shown gets so many. */
+static size_t find_candidates(const struct meaning *m, size_t shown[EXPLAIN_MOST])
 {
-	const struct meaning *m = x->meaning;
-	for (size_t k = 0; k < m->part_count; k++) {
-		cJSON *one = m->parts[k].phrase ? NULL : cJSON_CreateObject();
-		if (m->parts[k].phrase)
-			continue;
-		if (!cJSON_AddItemToArray(list, one) || !add_words_of(one, x, &m->parts[k]) ||
-			!add_number(one, "value", m->parts[k].value[o]))
-			return 0;
-	}
-	return 1;
-}
-
-static int add_candidates(cJSON *list, const struct explained *x)
-{
-	const struct meaning *m = x->meaning;
 	const size_t n = m->arrangement->n;
-	size_t shown[EXPLAIN_MOST], count = 0;
+	size_t count = 0;
 
-	while (count < EXPLAIN_MOST && count < n) {
+	for (; count < EXPLAIN_MOST && count < n; count++) {
 		size_t next = n;
 		for (size_t o = 0; o < n; o++) {
 			size_t k = 0;
@@ -183,107 +170,124 @@ static int add_candidates(cJSON *list, const struct explained *x)
 			if (k == count && (next == n || m->fit[o] > m->fit[next]))
 				next = o;
 		}
-		cJSON *one = cJSON_CreateObject();
-		if (!cJSON_AddItemToArray(list, one) ||
-			!cJSON_AddStringToObject(one, "name", m->vocabulary->lifted->names[next]) ||
-			!add_number(one, "fit", m->fit[next]) ||
-			!add_parts(cJSON_AddArrayToObject(one, "parts"), x, next))
-			return 0;
-		shown[count++] = next;
+		shown[count] = next;
 	}
-	return 1;
+	return count;
 }
 
-/* Every phrase but the target and who looks: which object fits it best. */
-static int add_anchors(cJSON *list, const struct explained *x)
+/* The next phrase that is neither the target nor who looks, its words, and the object that fits it best. Its
+ * number, or -1. */
+static int next_anchor(const struct explained *x, int phrase, char words[EXPLAIN_REASON], size_t *best)
 {
 	const struct meaning *m = x->meaning;
-	const char *text = x->text;
 	const struct parse *p = x->parse;
-	const size_t n = m->arrangement->n;
+	struct parse_words w = {words, 0, EXPLAIN_REASON};
 
-	for (int a = 1; a < p->phrase_count; a++) {
-		char buffer[EXPLAIN_REASON] = "";
-		struct parse_words w = {buffer, 0, sizeof buffer};
-		if (!m->done[a] || p->phrases[a].viewer || p->phrases[a].scene)
+	for (phrase++; phrase < p->phrase_count; phrase++) {
+		if (!m->done[phrase] || p->phrases[phrase].viewer || p->phrases[phrase].scene)
 			continue;
-		const size_t best = best_of(m->fit + (size_t)a * (n + 1), n);
-		cJSON *one = cJSON_CreateObject();
-		parse_words_phrase(&w, p, text, a);
-		if (!cJSON_AddItemToArray(list, one) || !cJSON_AddStringToObject(one, "words", buffer) ||
-			!cJSON_AddStringToObject(one, "name", m->vocabulary->lifted->names[best]) ||
-			!add_number(one, "there", m->there[(size_t)a * n + best]))
-			return 0;
+		*best = best_of(m->fit + (size_t)phrase * (m->arrangement->n + 1), m->arrangement->n);
+		*words = 0;
+		parse_words_phrase(&w, p, x->text, phrase);
+		return phrase;
 	}
-	return 1;
+	return -1;
 }
 
-static int add_unexplained(cJSON *list, const struct parse *p)
+static void put_json(FILE *out, const struct explained *x, const char *parse)
 {
-	int fine = list != NULL;
+	const struct meaning *m = x->meaning;
+	char *const *names = m->vocabulary->lifted->names;
+	const struct parse_list *unexplained = &x->parse->unexplained;
+	struct jsontext to = {.out = out};
+	char words[EXPLAIN_REASON];
+	size_t shown[EXPLAIN_MOST], best;
+	const size_t count = find_candidates(m, shown);
 
-	for (int k = 0; k < p->unexplained.n && fine; k++)
-		fine = cJSON_AddItemToArray(list, cJSON_CreateString(p->words[p->unexplained.item[k]].text));
-	return fine;
+	jsontext_open(&to, NULL, '{');
+	jsontext_string(&to, "parse", parse);
+	jsontext_rounded(&to, "confidence", x->parse->confidence);
+	jsontext_open(&to, "unexplained", '[');
+	for (int k = 0; k < unexplained->n; k++)
+		jsontext_string(&to, NULL, x->parse->words[unexplained->item[k]].text);
+	jsontext_close(&to, ']');
+	jsontext_open(&to, "candidates", '[');
+	for (size_t i = 0; i < count; i++) {
+		jsontext_open(&to, NULL, '{');
+		jsontext_string(&to, "name", names[shown[i]]);
+		jsontext_rounded(&to, "fit", m->fit[shown[i]]);
+		jsontext_open(&to, "parts", '[');
+		for (size_t k = 0; k < m->part_count; k++) {
+			if (m->parts[k].phrase)
+				continue;
+			jsontext_open(&to, NULL, '{');
+			jsontext_string(&to, "part", part_words(words, x, &m->parts[k]));
+			if (*words)
+				jsontext_string(&to, "words", words);
+			jsontext_rounded(&to, "value", m->parts[k].value[shown[i]]);
+			jsontext_close(&to, '}');
+		}
+		jsontext_close(&to, ']');
+		jsontext_close(&to, '}');
+	}
+	jsontext_close(&to, ']');
+	jsontext_open(&to, "anchors", '[');
+	for (int a = 0; (a = next_anchor(x, a, words, &best)) > 0;) {
+		jsontext_open(&to, NULL, '{');
+		jsontext_string(&to, "words", words);
+		jsontext_string(&to, "name", names[best]);
+		jsontext_rounded(&to, "there", m->there[(size_t)a * m->arrangement->n + best]);
+		jsontext_close(&to, '}');
+	}
+	jsontext_close(&to, ']');
+	jsontext_close(&to, '}');
 }
 
-cJSON *explain_meaning(const struct explained *x)
+static void put_lines(FILE *out, const struct explained *x, const char *parse)
 {
-	const char *text = x->text;
-	const struct parse *p = x->parse;
-	char buffer[4 * EXPLAIN_REASON] = "";
-	struct parse_words w = {buffer, 0, sizeof buffer};
-	cJSON *all = cJSON_CreateObject();
+	const struct meaning *m = x->meaning;
+	char *const *names = m->vocabulary->lifted->names;
+	const struct parse_list *unexplained = &x->parse->unexplained;
+	char words[EXPLAIN_REASON];
+	size_t shown[EXPLAIN_MOST], best;
+	const size_t count = find_candidates(m, shown);
 
-	parse_words_tree(&w, p, text, 0, 0);
-	if (cJSON_AddStringToObject(all, "parse", buffer) && add_number(all, "confidence", p->confidence) &&
-		add_unexplained(cJSON_AddArrayToObject(all, "unexplained"), p) &&
-		add_candidates(cJSON_AddArrayToObject(all, "candidates"), x) &&
-		add_anchors(cJSON_AddArrayToObject(all, "anchors"), x))
-		return all;
-	cJSON_Delete(all);
+	fprintf(out, "  parse (%.2f): %s\n", rounded(x->parse->confidence), parse);
+	for (int k = 0; k < unexplained->n; k++)
+		fprintf(out, "%s %s%s",
+			k ? "," : "  not understood:", x->parse->words[unexplained->item[k]].text,
+			k + 1 < unexplained->n ? "" : "\n");
+	for (int a = 0; (a = next_anchor(x, a, words, &best)) > 0;)
+		fprintf(out, "  '%s' is %s (%.2f)\n", words, names[best],
+			rounded(m->there[(size_t)a * m->arrangement->n + best]));
+	for (size_t i = 0; i < count; i++) {
+		const char *before = ":";
+		fprintf(out, "  fit %.3f %s", rounded(m->fit[shown[i]]), names[shown[i]]);
+		for (size_t k = 0; k < m->part_count; k++) {
+			if (m->parts[k].phrase)
+				continue;
+			const char *kind = part_words(words, x, &m->parts[k]);
+			fprintf(out, "%s %s%s%s %.2f", before, kind, *words ? " " : "", words,
+				rounded(m->parts[k].value[shown[i]]));
+			before = ";";
+		}
+		fputc('\n', out);
+	}
+}
+
+char *explain_meaning(const struct explained *x, int is_json)
+{
+	char parse[4 * EXPLAIN_REASON] = "", *text = NULL;
+	struct parse_words w = {parse, 0, sizeof parse};
+	size_t length;
+	FILE *out = open_memstream(&text, &length);
+
+	if (!out)
+		return NULL;
+	parse_words_tree(&w, x->parse, x->text, 0, 0);
+	(is_json ? put_json : put_lines)(out, x, parse);
+	if (!fclose(out))
+		return text;
+	free(text);
 	return NULL;
-}
-
-static const char *string_of(const cJSON *object, const char *key)
-{
-	const char *value = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, key));
-
-	return value ? value : "";
-}
-
-static double number_of(const cJSON *object, const char *key)
-{
-	return cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(object, key));
-}
-
-static void put_parts(const cJSON *parts, FILE *out)
-{
-	const cJSON *part;
-
-	cJSON_ArrayForEach(part, parts)
-	{
-		const char *words = string_of(part, "words");
-		fprintf(out, "%s %s%s%s %.2f", part == parts->child ? ":" : ";", string_of(part, "part"),
-			*words ? " " : "", words, number_of(part, "value"));
-	}
-	fputc('\n', out);
-}
-
-void explain_put(const cJSON *explained, FILE *out)
-{
-	const cJSON *one, *list = cJSON_GetObjectItemCaseSensitive(explained, "unexplained");
-
-	fprintf(out, "  parse (%.2f): %s\n", number_of(explained, "confidence"),
-		string_of(explained, "parse"));
-	cJSON_ArrayForEach(one, list) fprintf(out, "%s %s%s", one == list->child ? "  not understood:" : ",",
-		cJSON_GetStringValue(one), one->next ? "" : "\n");
-	cJSON_ArrayForEach(one, cJSON_GetObjectItemCaseSensitive(explained, "anchors"))
-		fprintf(out, "  '%s' is %s (%.2f)\n", string_of(one, "words"), string_of(one, "name"),
-			number_of(one, "there"));
-	cJSON_ArrayForEach(one, cJSON_GetObjectItemCaseSensitive(explained, "candidates"))
-	{
-		fprintf(out, "  fit %.3f %s", number_of(one, "fit"), string_of(one, "name"));
-		put_parts(cJSON_GetObjectItemCaseSensitive(one, "parts"), out);
-	}
 }

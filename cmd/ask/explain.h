@@ -5,9 +5,26 @@
 #include "ask/meaning.h"
 #include "lang/parse.h"
 
-#include <cjson/cJSON.h>
 #include <stddef.h>
-#include <stdio.h>
+
+/* A parse in its own words: a phrase, then its clauses with their anchors in brackets. */
+
+/* Text of a limited length; what has no room is left out, at a character's end. */
+struct parse_words {
+	char *to;
+	size_t n, room;
+};
+
+void parse_words_bytes(struct parse_words *w, const char *from, size_t n);
+void parse_words_add(struct parse_words *w, const char *text);
+
+/* Of the sentence `text`: a phrase, one of its clauses, a phrase with all that hangs on it (depth 0 at
+ * first), and its noun. */
+void parse_words_phrase(struct parse_words *w, const struct parse *p, const char *text, int phrase);
+void parse_words_clause(
+	struct parse_words *w, const struct parse *p, const char *text, const struct parse_clause *c);
+void parse_words_tree(struct parse_words *w, const struct parse *p, const char *text, int phrase, int depth);
+void parse_words_noun(struct parse_words *w, const struct parse *p, int phrase);
 
 enum { EXPLAIN_REASON = 256, EXPLAIN_MOST = 6 /* candidates that are shown */ };
 
@@ -26,11 +43,8 @@ void explain_refusal(const struct explained *x, char reason[EXPLAIN_REASON]);
 /* {"parse":"the mug, left of (the
  * bowl)","confidence":0.9,"unexplained":["..."],"candidates":[{"name":"mug","fit":0.8,
  * "parts":[{"part":"noun","words":"mug","value":1}]}],"anchors":[{"words":"the
- * bowl","name":"bowl","there":0.9}]}; the best EXPLAIN_MOST candidates come first. cJSON_Delete it; NULL
- * where memory is out. */
-cJSON *explain_meaning(const struct explained *x);
-
-/* The same as lines of text. */
-void explain_put(const cJSON *explained, FILE *out);
+ * bowl","name":"bowl","there":0.9}]}; the best EXPLAIN_MOST candidates come first. Or the same as
+ * lines of text, where is_json is 0. free() it; NULL where memory is out. */
+char *explain_meaning(const struct explained *x, int is_json);
 
 #endif

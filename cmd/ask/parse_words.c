@@ -1,4 +1,4 @@
-#include "cmd/ask/parse_words.h"
+#include "cmd/ask/explain.h"
 
 #include "base/utf8.h"
 

@@ -1,10 +1,9 @@
-#include "cmd/ask/picking.h"
+#include "cmd/ask/reply.h"
 
 #include "base/mem.h"
 #include "splat/render.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,18 +37,15 @@ static int take_numbers(const char *text, double *x, int count)
 
 static int find_view(struct region *r, const struct asking *a, const char *text, size_t length, struct err *e)
 {
-	char *name = mem_alloc(length + 1, 1, "view", e);
+	SCOPED char *name = mem_alloc(length + 1, 1, "view", e);
 
 	if (!name)
 		return -1;
 	memcpy(name, text, length);
 	name[length] = 0;
 	r->camera = asking_view(a, name);
-	const int bad =
-		r->camera ? 0
-			  : err_set(e, ERR_USAGE, "%s: no view '%s'", r->is_box ? "--box" : "--point", name);
-	free(name);
-	return bad;
+	return r->camera ? 0
+			 : err_set(e, ERR_USAGE, "%s: no view '%s'", r->is_box ? "--box" : "--point", name);
 }
 
 static int take_region(struct region *r, const struct asking *a, const char *text, struct err *e)
@@ -182,22 +178,17 @@ int picking_find(const struct asking *a, const char *text, int is_box, struct as
 {
 	const size_t objects = a->model.lifted.objects;
 	struct region r = {.is_box = is_box};
-	struct shown s;
+	SCOPED_BY(shown_free) struct shown s = {0};
 
 	*answer = (struct asking_answer){.runner_up = ASKING_NONE};
-	if (take_region(&r, a, text, e))
+	if (take_region(&r, a, text, e) || shown_make(&s, a, r.camera, e) ||
+		asking_answer_make(answer, objects, e) || look(&s, &r, answer->probability, e))
 		return -1;
-	int bad = shown_make(&s, a, r.camera, e) || asking_answer_make(answer, objects, e);
-	if (!bad && !(bad = look(&s, &r, answer->probability, e))) {
-		if (is_box)
-			weigh_box(&s, objects, answer->probability);
-		if (objects)
-			choose_thing(&s, objects, answer);
-		snprintf(answer->reason, sizeof answer->reason, "no thing that was lifted is seen there");
-		*view = r.camera;
-	}
-	shown_free(&s);
-	if (bad)
-		asking_answer_free(answer);
-	return bad ? -1 : 0;
+	if (is_box)
+		weigh_box(&s, objects, answer->probability);
+	if (objects)
+		choose_thing(&s, objects, answer);
+	snprintf(answer->reason, sizeof answer->reason, "no thing that was lifted is seen there");
+	*view = r.camera;
+	return 0;
 }

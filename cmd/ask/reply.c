@@ -1,7 +1,5 @@
 #include "cmd/ask/reply.h"
 
-#include "cmd/ask/picking.h"
-
 static int draw(struct answer_told *t, const char *path, struct err *e)
 {
 	char caption[256];
@@ -29,10 +27,7 @@ static int pick(struct answer_told *t, struct asking_answer *found, struct askin
 	t->is_picked = 1;
 	if (picking_find(a, t->question, is_box, found, &t->drawn.view, e))
 		return -1;
-	if (!found->count || !calling_find(a, found->things[0], &t->calling, found->centres, to, e))
-		return 0;
-	asking_answer_free(found);
-	return -1;
+	return found->count ? calling_find(a, found->things[0], &t->calling, found->centres, to, e) : 0;
 }
 
 int reply_make(struct answer_told *told, struct asking_answer *found, struct asking *a, const char *question,
@@ -43,8 +38,5 @@ int reply_make(struct answer_told *told, struct asking_answer *found, struct ask
 	*told = (struct answer_told){.asking = a, .answer = found, .question = place ? place : question};
 	if (place ? pick(told, found, a, !o->point, to, e) : answer(told, found, a, to, e))
 		return -1;
-	if (!o->picture || !found->count || !draw(told, o->picture, e))
-		return 0;
-	asking_answer_free(found);
-	return -1;
+	return o->picture && found->count ? draw(told, o->picture, e) : 0;
 }

@@ -1,10 +1,8 @@
 #include "cmd/check/check.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/path.h"
-#include "cmd/check/check_arrays.h"
-#include "cmd/check/check_folder.h"
-#include "cmd/check/check_records.h"
 #include "formats/splats/anysplats.h"
 #include "formats/records/json.h"
 #include "formats/records/jsonl.h"
@@ -57,7 +55,7 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
  * lines. */
 static int check_objects(struct check *c, const char *path, struct err *e)
 {
-	struct jsonl j;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	struct err ignored;
 	cJSON *first = NULL, *whole = NULL;
 
@@ -76,7 +74,6 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 	is_frames |= cJSON_HasObjectItem(whole, "frames");
 	cJSON_Delete(whole);
 	cJSON_Delete(first);
-	jsonl_close(&j);
 	if ((got < 0 && !is_frames) || start_again(path, e))
 		return -1;
 	if (is_frames)

@@ -1,6 +1,6 @@
-#include "cmd/check/check_arrays.h"
+#include "cmd/check/check.h"
 
-#include "cmd/check/check_records.h"
+#include "base/mem.h"
 #include "formats/splats/anysplats.h"
 #include "formats/cameras/camerafile.h"
 #include "formats/scene/features.h"
@@ -40,31 +40,29 @@ void check_add_views(struct check *c, const struct cameras *views)
 
 int check_splats(struct check *c, const char *path, struct err *e)
 {
-	struct scene s = {0};
+	SCOPED_BY(scene_free) struct scene s = {0};
 
 	if (scene_read_splats(&s, path, e))
 		return -1;
 	c->scene = s.fingerprint;
 	check_add_splats(c, &s.splats);
-	scene_free(&s);
 	return 0;
 }
 
 int check_scene_cameras(struct check *c, const char *path, struct err *e)
 {
-	struct cameras views;
+	SCOPED_BY(cameras_free) struct cameras views = {0};
 
 	if (scene_read_cameras_file(&views, path, e))
 		return -1;
 	c->kind = "scene cameras";
 	check_add_views(c, &views);
-	cameras_free(&views);
 	return 0;
 }
 
 int check_weights(struct check *c, const char *path, struct err *e)
 {
-	struct weights w;
+	SCOPED_BY(weights_close) struct weights w = {0};
 
 	if (weights_open_file(&w, path, e))
 		return -1;
@@ -75,13 +73,12 @@ int check_weights(struct check *c, const char *path, struct err *e)
 	c->camera = w.camera;
 	check_add(c, "weights", (long long)w.indptr[(int64_t)w.width * w.height]);
 	check_add(c, "gaussians of the scene", (long long)w.gaussians);
-	weights_close(&w);
 	return 0;
 }
 
 int check_text(struct check *c, const char *path, struct err *e)
 {
-	struct text t;
+	SCOPED_BY(text_free) struct text t = {0};
 
 	if (text_read(&t, path, e))
 		return -1;
@@ -89,13 +86,12 @@ int check_text(struct check *c, const char *path, struct err *e)
 	check_add(c, "words", (long long)t.offsets[t.n]);
 	check_add(c, "columns", t.width);
 	c->encoder = t.encoder;
-	text_free(&t);
 	return 0;
 }
 
 int check_model(struct check *c, const char *path, struct err *e)
 {
-	struct model m;
+	SCOPED_BY(model_free) struct model m = {0};
 
 	if (model_read(&m, path, e))
 		return -1;
@@ -106,13 +102,12 @@ int check_model(struct check *c, const char *path, struct err *e)
 	check_add(c, "parameters", (long long)m.layout.count);
 	c->scene = m.origin.scene;
 	c->encoder = m.origin.encoder;
-	model_free(&m);
 	return 0;
 }
 
 int check_lifted(struct check *c, const char *path, struct err *e)
 {
-	struct lifted l;
+	SCOPED_BY(lifted_free) struct lifted l = {0};
 	struct origin origin;
 
 	if (lifted_read(&l, &origin, path, e))
@@ -125,13 +120,12 @@ int check_lifted(struct check *c, const char *path, struct err *e)
 	check_add(c, "words", (long long)l.offsets[l.sentences]);
 	check_add(c, "columns", l.width);
 	check_add(c, "gaussians of the scene", (long long)l.gaussians);
-	lifted_free(&l);
 	return 0;
 }
 
 int check_features(struct check *c, const char *path, struct err *e)
 {
-	struct features f;
+	SCOPED_BY(features_close) struct features f = {0};
 
 	if (features_open(&f, path, e))
 		return -1;
@@ -151,13 +145,12 @@ int check_features(struct check *c, const char *path, struct err *e)
 	check_add(c, "seen", (long long)seen);
 	if (f.labels)
 		check_add(c, "labels", (long long)labels);
-	features_close(&f);
 	return 0;
 }
 
 int check_selection(struct check *c, const char *path, struct err *e)
 {
-	struct selection s;
+	SCOPED_BY(selection_free) struct selection s = {0};
 
 	if (selection_read(&s, path, e))
 		return -1;
@@ -165,13 +158,12 @@ int check_selection(struct check *c, const char *path, struct err *e)
 	check_add(c, "sentences", (long long)s.n);
 	check_add(c, "items", (long long)s.indptr[s.n]);
 	check_add(c, "gaussians of the scene", (long long)s.gaussians);
-	selection_free(&s);
 	return 0;
 }
 
 int check_anysplats(struct check *c, const char *path, const char *kind, struct err *e)
 {
-	struct splats s;
+	SCOPED_BY(splats_free) struct splats s = {0};
 	struct rows_report report;
 	double offset[3];
 
@@ -182,20 +174,18 @@ int check_anysplats(struct check *c, const char *path, const char *kind, struct 
 	if (report.read > s.n)
 		check_add(c, "unusable gaussians", (long long)(report.read - s.n));
 	free(report.dropped);
-	splats_free(&s);
 	return 0;
 }
 
 int check_npy(struct check *c, const char *path, struct err *e)
 {
-	struct npy a;
+	SCOPED_BY(npy_close) struct npy a = {0};
 
 	if (npy_open(&a, path, e))
 		return -1;
 	c->kind = "npy";
 	check_add(c, "dimensions", a.dims);
 	check_add(c, "values", (long long)a.count);
-	npy_close(&a);
 	return 0;
 }
 
@@ -207,15 +197,15 @@ int check_npz(struct check *c, const char *path, struct err *e)
 
 	if (npz_open(&z, path, e))
 		return -1;
-	for (size_t i = 0; i < z.n && !bad; i++) {
+	for (size_t i = 0; i < z.zip.n && !bad; i++) {
 		struct npy a;
-		if (!(bad = npz_entry(&z, i, &a, e))) {
+		if (!(bad = npz_entry(&z, i, &a, NULL, e))) {
 			values += (long long)a.count;
 			npy_close(&a);
 		}
 	}
 	c->kind = "npz";
-	check_add(c, "arrays", (long long)z.n);
+	check_add(c, "arrays", (long long)z.zip.n);
 	check_add(c, "values", values);
 	npz_close(&z);
 	return bad;
@@ -223,12 +213,11 @@ int check_npz(struct check *c, const char *path, struct err *e)
 
 int check_parser(struct check *c, const char *path, struct err *e)
 {
-	struct parser_weights w;
+	SCOPED_BY(parser_weights_free) struct parser_weights w = {0};
 
 	if (parser_weights_read(&w, path, e))
 		return -1;
 	check_add(c, "parameters", (long long)w.count);
-	parser_weights_free(&w);
 	return 0;
 }
 
@@ -245,12 +234,11 @@ int check_image(struct check *c, const char *path, struct err *e)
 
 int check_cameras(struct check *c, const char *path, const char *kind, struct err *e)
 {
-	struct cameras views;
+	SCOPED_BY(cameras_free) struct cameras views = {0};
 
 	if (camerafile_read(&views, path, e))
 		return -1;
 	c->kind = kind;
 	check_add_views(c, &views);
-	cameras_free(&views);
 	return 0;
 }

@@ -1,8 +1,7 @@
-#include "cmd/feature/feature_components.h"
+#include "cmd/feature/feature_lifting.h"
 
 #include "base/half.h"
 #include "base/mem.h"
-#include "formats/arrays/safetensors.h"
 #include "nn/linear.h"
 
 #include <math.h>
@@ -40,13 +39,11 @@ static int find(struct feature_components *c, const struct features *f, size_t c
 	for (size_t i = 0; i < f->gaussians; i++)
 		seen += f->weight[i] > 0;
 	const size_t room = seen < most ? seen : most;
-	float *rows = mem_alloc(room, f->channels * sizeof *rows, "features", e);
+	SCOPED float *rows = mem_alloc(room, f->channels * sizeof *rows, "features", e);
 	if (!rows)
 		return -1;
 	const size_t n = take_sample(f, seen, room, rows);
-	const int bad = components_find(&c->of, rows, n, f->channels, count, e);
-	free(rows);
-	return bad;
+	return components_find(&c->of, rows, n, f->channels, count, e);
 }
 
 /* Gaussians are told in blocks of so many. */
@@ -104,14 +101,13 @@ static int tell_all(struct feature_components *c, const struct features *f, stru
 #pragma omp parallel reduction(| : is_out)
 	{
 		struct err own;
-		float *x = mem_alloc(BLOCK * width, sizeof *x, "features", &own);
+		SCOPED float *x = mem_alloc(BLOCK * width, sizeof *x, "features", &own);
 		is_out = !x;
 #pragma omp for schedule(dynamic)
 		for (size_t b = 0; b < blocks; b++)
 			if (x)
 				tell(c, f, BLOCK * b, n - BLOCK * b < BLOCK ? n - BLOCK * b : BLOCK, x,
 					sums + 2 * b);
-		free(x);
 	}
 	for (size_t b = 0; b < blocks; b++) {
 		square += sums[2 * b];
@@ -125,14 +121,11 @@ static int tell_all(struct feature_components *c, const struct features *f, stru
 int feature_components_make(
 	struct feature_components *c, const struct features *f, size_t count, struct err *e)
 {
-	size_t bytes;
+	const size_t bytes = count * (f->is_half ? sizeof(uint16_t) : sizeof(float));
 
 	*c = (struct feature_components){0};
-	if (mem_size(count, f->is_half ? sizeof(uint16_t) : sizeof(float), &bytes))
-		return err_set(e, ERR_SYSTEM, "components do not fit in memory");
-	const int bad = find(c, f, count, e) ||
-			!(c->values = mem_zalloc(f->gaussians, bytes, "components", e)) || tell_all(c, f, e);
-	if (bad)
-		feature_components_free(c);
-	return bad ? -1 : 0;
+	return find(c, f, count, e) || !(c->values = mem_zalloc(f->gaussians, bytes, "components", e)) ||
+			       tell_all(c, f, e)
+		       ? -1
+		       : 0;
 }

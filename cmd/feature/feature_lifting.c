@@ -3,8 +3,6 @@
 #include "base/file.h"
 #include "base/half.h"
 #include "base/mem.h"
-#include "formats/arrays/safetensors.h"
-#include "formats/scene/features.h"
 #include "formats/scene/weights.h"
 
 #include <stdio.h>
@@ -54,28 +52,25 @@ static int add_view(struct feature_lifting *l, size_t view, const struct weights
 /* Those that have weights; these are read only where there are features or labels too. */
 static int all_views(struct feature_lifting *l, struct err *e)
 {
+	const struct cameras *c = &l->scene.cameras;
 	const char *folder = l->options->weights;
-	char *has_weights = mem_alloc(l->scene.cameras.n, 1, "views", e);
+	SCOPED char *has_weights = mem_alloc(c->n, 1, "views", e);
 	size_t missing = 0;
-	int bad = !has_weights || weights_mark(folder, &l->scene.cameras, has_weights, &missing, e);
 
-	for (size_t v = 0; v < l->scene.cameras.n && !bad; v++) {
-		struct weights w;
-		if (!has_weights[v])
-			continue;
-		report_step(l->to, (double)++l->done, l->scene.cameras.views[v].name);
-		if (!l->maps.is_there[v])
-			continue;
-		if (!(bad = weights_open(&w, folder, &l->scene, v, e))) {
-			bad = add_view(l, v, &w, e);
-			weights_close(&w);
-		}
+	if (!has_weights || weights_mark(folder, c, has_weights, &missing, e))
+		return -1;
+	for (size_t v = 0; v < c->n; v++) {
+		SCOPED_BY(weights_close) struct weights w = {0};
+		if (has_weights[v])
+			report_step(l->to, (double)++l->done, c->views[v].name);
+		if (has_weights[v] && l->maps.is_there[v] &&
+			(weights_open(&w, folder, &l->scene, v, e) || add_view(l, v, &w, e)))
+			return -1;
 	}
-	free(has_weights);
-	if (!bad && missing && !l->first)
+	if (missing && !l->first)
 		report_warn(l->to, "%s: %zu training views have no weights, and their features do not count",
 			folder, missing);
-	return bad ? -1 : 0;
+	return 0;
 }
 
 /* The block's means into their columns. */

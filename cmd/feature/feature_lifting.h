@@ -5,11 +5,107 @@
 
 #include "base/err.h"
 #include "base/report.h"
-#include "cmd/feature/feature_components.h"
-#include "cmd/feature/feature_maps.h"
+#include "formats/arrays/npy.h"
+#include "formats/arrays/npz.h"
+#include "formats/records/masks.h"
+#include "formats/scene/features.h"
 #include "formats/scene/scene.h"
+#include "formats/scene/text.h"
+#include "lift/components.h"
 #include "lift/lift_features.h"
 #include "lift/lift_labels.h"
+#include "mask/mask_index.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Lifted features told by their first principal components: feature-lift --components.
+ * formats/scene/features.md.
+ */
+
+struct feature_components {
+	struct components of;
+	void *values; /* (N,K) as the features that they stand for: half floats or floats; owned */
+	double error; /* root of the sum of squared differences over that of squares, over the seen Gaussians
+		       */
+};
+
+/* The components of seen Gaussians' features, of a sample of them where there are many. Returns 0, or -1 with
+ * *e set; feature_components_free after either. */
+int feature_components_make(
+	struct feature_components *c, const struct features *f, size_t count, struct err *e);
+void feature_components_free(struct feature_components *c);
+
+/* What 2D models say of a scene's training views: maps of features, segments with a feature each, labels, or
+ * masks with the vector of a text each; and which pixel has which. formats/scene/features.md. */
+
+struct feature_maps_options {
+	const char *folder;	  /* VIEW.npy or .npz, VIEW_f.npy and VIEW_s.npy, or VIEW.png, or an .npz of
+				     such arrays; NULL: masks */
+	const char *masks, *text; /* text NULL: the masks' objects are labels */
+	long long level;	  /* of segments */
+	int is_zero;		  /* pixels without a feature count as zero, else not at all */
+};
+
+enum feature_maps_kind { MAPS_NONE, MAPS_CELLS, MAPS_SEGMENTS, MAPS_LABELS, MAPS_MASKS, MAPS_MASK_LABELS };
+
+struct feature_maps {
+	const struct feature_maps_options *options;
+	const struct scene *scene;
+	enum feature_maps_kind kind;
+	char *is_there;	 /* (views) the view has files of this kind, or masks */
+	size_t channels; /* 0: labels */
+	struct npz *npz; /* of all views; NULL: there is a folder */
+	/* of masks */
+	struct masks set;
+	struct mask_index index;
+	struct text text;
+	int32_t *row; /* (set.n) of the text, or the label of the object; -1: none */
+};
+
+/* A view's sources (lift/source_weights.h): one for each feature or label that a pixel has. */
+struct feature_sources {
+	int32_t *source; /* (P) */
+	size_t count;
+	size_t *row; /* (count) of the table; FEATURES_ZERO: zero */
+	int32_t *label;
+	struct npy table; /* of features, open until the next view; not of masks and labels */
+	/* room that views share */
+	size_t pixel_room, row_room, label_room, place_room;
+	int32_t *place;
+	int32_t *raw; /* (P) the row of each pixel, -1: none */
+	size_t raw_room;
+	uint8_t *mask;
+	size_t mask_room;
+};
+#define FEATURES_ZERO SIZE_MAX
+
+/* Reads the masks, or looks for files of the training views. Warns of what does not count. *m is zeroed
+ * before, and the others stay the caller's. Returns 0, or -1 with *e; feature_maps_free in any case. */
+int feature_maps_find(struct feature_maps *m, const struct feature_maps_options *options,
+	const struct scene *scene, const struct report *to, struct err *e);
+void feature_maps_free(struct feature_maps *m);
+
+/* The sources of a view that is there, for weights of that size. Of a struct that is zeroed, or has another
+ * view. Returns 0, or -1 with *e; feature_sources_free in any case. */
+int feature_maps_view(
+	struct feature_maps *m, size_t view, int height, int width, struct feature_sources *s, struct err *e);
+void feature_sources_free(struct feature_sources *s);
+
+/* features (count,n): the channels from `first` on of each source; factor (count): 1 over the length with all
+ * channels, or 0. ERR_FORMAT where a number is not finite. Returns 0, or -1 with *e. */
+int feature_maps_features(const struct feature_maps *m, const struct feature_sources *s, size_t first,
+	size_t n, float *features, double *factor, struct err *e);
+
+/* The files of a view that feature_maps reads: their tables of features, and which row each pixel has. */
+
+/* How many channels the view's features have; 0 for labels. Returns 0, or -1 with *e. */
+int feature_tables_channels(const struct feature_maps *m, size_t view, size_t *channels, struct err *e);
+
+/* Opens s->table, and s->raw (height,width) gets the row of each pixel, of *rows. Returns 0, or -1 with *e.
+ */
+int feature_tables_open(const struct feature_maps *m, size_t view, int height, int width,
+	struct feature_sources *s, size_t *rows, struct err *e);
 
 struct feature_lifting_options {
 	const char *scene, *weights;

@@ -1,9 +1,8 @@
-#include "cmd/feature/feature_maps.h"
+#include "cmd/feature/feature_lifting.h"
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/path.h"
-#include "cmd/feature/feature_tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,10 +17,8 @@ static int has_file(
 	if (m->npz)
 		return strcmp(ending, ".npy") ? 0 : npz_has(m->npz, view, suffix, e);
 	snprintf(name, sizeof name, "%s%s", suffix, ending);
-	char *path = file_join(m->options->folder, view, name, e);
-	const int found = path ? file_exists(path) : -1;
-	free(path);
-	return found;
+	SCOPED char *path = file_join(m->options->folder, view, name, e);
+	return path ? file_exists(path) : -1;
 }
 
 /* The kind of files that a view has: 0, or -1 with *e. */
@@ -99,7 +96,7 @@ static int find_files(struct feature_maps *m, const struct report *to, struct er
 static int find_rows(struct feature_maps *m, const struct report *to, struct err *e)
 {
 	const struct feature_maps_options *o = m->options;
-	struct names refs = {0}, objects = {0};
+	SCOPED_BY(names_free) struct names refs = {0}, objects = {0};
 	size_t unknown = 0, labels = 0;
 	char **names = o->text ? m->text.objects : mem_alloc(m->set.n, sizeof *names, "masks", e);
 
@@ -121,8 +118,6 @@ static int find_rows(struct feature_maps *m, const struct report *to, struct err
 	if (unknown)
 		report_warn(to, "%s: %zu masks are of no sentence of %s", file_name(o->masks), unknown,
 			file_name(o->text));
-	names_free(&refs);
-	names_free(&objects);
 	if (!o->text)
 		free(names);
 	return bad ? -1 : 0;
@@ -132,8 +127,8 @@ static int find_masks(struct feature_maps *m, const struct report *to, struct er
 {
 	const struct feature_maps_options *o = m->options;
 	const struct cameras *c = &m->scene->cameras;
-	long *lines = NULL;
-	size_t *views = NULL;
+	SCOPED long *lines = NULL;
+	SCOPED size_t *views = NULL;
 
 	int bad = masks_read_lines(&m->set, &lines, o->masks, e) ||
 		  (o->text && (text_read(&m->text, o->text, e) ||
@@ -147,8 +142,6 @@ static int find_masks(struct feature_maps *m, const struct report *to, struct er
 		m->is_there[v] = c->views[v].split == SPLIT_TRAIN;
 	m->kind = o->text ? MAPS_MASKS : MAPS_MASK_LABELS;
 	m->channels = (size_t)m->text.width;
-	free(lines);
-	free(views);
 	return bad ? -1 : 0;
 }
 
@@ -194,14 +187,9 @@ void feature_sources_free(struct feature_sources *s)
 static int make_room(struct feature_sources *s, size_t pixels, size_t rows, struct err *e)
 {
 	return mem_room((void **)&s->source, &s->pixel_room, pixels, sizeof *s->source, "pixels", e) ||
-			       mem_room((void **)&s->place, &s->place_room, rows, sizeof *s->place, "sources",
-				       e) ||
-			       mem_room((void **)&s->row, &s->row_room, pixels + 1, sizeof *s->row, "sources",
-				       e) ||
-			       mem_room((void **)&s->label, &s->label_room, pixels + 1, sizeof *s->label,
-				       "sources", e)
-		       ? -1
-		       : 0;
+	       mem_room((void **)&s->place, &s->place_room, rows, sizeof *s->place, "sources", e) ||
+	       mem_room((void **)&s->row, &s->row_room, pixels + 1, sizeof *s->row, "sources", e) ||
+	       mem_room((void **)&s->label, &s->label_room, pixels + 1, sizeof *s->label, "sources", e);
 }
 
 /* Sources for the rows that a pixel has, in the order of the rows; the last one, where it is wanted, for

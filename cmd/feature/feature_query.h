@@ -5,16 +5,32 @@
 
 #include "base/err.h"
 #include "base/report.h"
-#include "cmd/feature/query_vectors.h"
 #include "formats/scene/features.h"
 #include "formats/scene/lifted.h"
 #include "formats/scene/scene.h"
-#include "formats/scene/selection.h"
 #include "formats/scene/text.h"
 #include "mask/mask.h"
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+
+/* Vectors of texts, as any encoder makes them: rows of a file. formats/scene/selection.md. */
+
+struct query_vectors {
+	size_t n, channels;
+	float *values; /* (n,channels), brought to length 1; owned */
+};
+
+/* The vectors of the sentences in a file of text-encode, else of the one two-dimensional tensor of floats in
+ * a safetensors file, or those of a .npy file, or of the array vectors, else arr_0, of a .npz file.
+ * ERR_FORMAT where there are other than `channels` of them for each. Returns 0, or -1 with *e set and nothing
+ * to free. */
+int query_vectors_read(struct query_vectors *v, const char *path, size_t channels, struct err *e);
+/* The same of the sentences of a text that was read from a path. */
+int query_vectors_of_text(
+	struct query_vectors *v, const struct text *text, const char *path, size_t channels, struct err *e);
+void query_vectors_free(struct query_vectors *v);
 
 enum query_rule { RULE_COSINE, RULE_RELEVANCY, RULE_HYPERPLANE, RULE_IDENTITY };
 
@@ -71,5 +87,20 @@ int feature_query_make(struct feature_query *q, const struct feature_query_optio
 /* The selection, or the masks. */
 int feature_query_write(const struct feature_query *q, const char *path, struct err *e);
 void feature_query_free(struct feature_query *q);
+
+/* The two kinds of rules of cmd/feature/feature_query: by the cosines of vectors of texts, and by examples of
+ * what is meant. */
+
+/* Each reads what else its rules need, and fills q->marks. Returns 0, or -1 with *e set. */
+int query_by_vectors(struct feature_query *q, struct err *e);
+int query_by_examples(struct feature_query *q, const struct report *to, struct err *e);
+
+/* q->vectors and q->group of the rules by vectors. Returns 0, or -1 with *e set. */
+int query_read_vectors(struct feature_query *q, struct err *e);
+
+/* The same by vectors for the pixels of rendered features: q->shown. */
+int query_by_pixels(struct feature_query *q, const struct report *to, struct err *e);
+/* Mask records of q (a struct feature_query), view after view. */
+int query_put_masks(FILE *out, const void *q, struct err *e);
 
 #endif

@@ -1,7 +1,6 @@
-#include "cmd/feature/feature_tables.h"
+#include "cmd/feature/feature_lifting.h"
 
 #include "base/mem.h"
-#include "formats/scene/features.h"
 #include "formats/images/png.h"
 #include "lift/source_weights.h"
 #include "mask/rle.h"
@@ -74,47 +73,41 @@ static int open_array(const struct feature_maps *m, size_t view, const char *suf
 	if (m->npz)
 		return npz_array(m->npz, m->scene->cameras.views[view].name, suffix, t, called, e);
 	snprintf(ending, sizeof ending, "%s.npy", suffix);
-	char *path = view_path(m, view, ending, e), *packed = view_path(m, view, ".npz", e);
+	char *path = *called = view_path(m, view, ending, e);
+	SCOPED char *packed = view_path(m, view, ".npz", e);
 	if (path && packed && !*suffix && !file_exists(path) && file_exists(packed)) {
-		const int bad = open_packed(packed, t, called, e);
 		free(path);
-		free(packed);
-		return bad;
+		*called = NULL;
+		return open_packed(packed, t, called, e);
 	}
-	const int bad = !path || !packed || npy_open(t, path, e);
-	free(packed);
-	if (bad)
-		free(path);
-	else
-		*called = path;
-	return bad ? -1 : 0;
+	return !path || !packed || npy_open(t, path, e);
 }
 
 static int open_table(
 	const struct feature_maps *m, size_t view, struct npy *t, size_t *channels, struct err *e)
 {
 	const int is_map = m->kind == MAPS_CELLS;
-	char *called;
-	int bad = open_array(m, view, is_map ? "" : "_f", t, &called, e);
+	SCOPED char *called = NULL;
 
-	if (!bad && (bad = check_table(t, is_map ? 3 : 2, called, e) ||
-			    (is_map && check_shape(m, view, called, t->shape[0], t->shape[1], e))))
-		npy_close(t);
-	if (!bad)
+	if (open_array(m, view, is_map ? "" : "_f", t, &called, e))
+		return -1;
+	if (!check_table(t, is_map ? 3 : 2, called, e) &&
+		(!is_map || !check_shape(m, view, called, t->shape[0], t->shape[1], e))) {
 		*channels = t->shape[t->dims - 1];
-	free(called);
-	return bad ? -1 : 0;
+		return 0;
+	}
+	npy_close(t);
+	return -1;
 }
 
 int feature_tables_channels(const struct feature_maps *m, size_t view, size_t *channels, struct err *e)
 {
-	struct npy t;
+	SCOPED_BY(npy_close) struct npy t = {0};
 
 	if (m->kind != MAPS_CELLS && m->kind != MAPS_SEGMENTS)
 		return 0;
 	if (open_table(m, view, &t, channels, e))
 		return -1;
-	npy_close(&t);
 	return 0;
 }
 
@@ -153,16 +146,11 @@ static int read_ids(const struct feature_maps *m, size_t view, const struct npy 
 static int open_segments(const struct feature_maps *m, size_t view, int height, int width,
 	struct feature_sources *s, struct err *e)
 {
-	struct npy ids;
-	char *called;
-	int bad = open_array(m, view, "_s", &ids, &called, e);
+	SCOPED_BY(npy_close) struct npy ids = {0};
+	SCOPED char *called = NULL;
 
-	if (!bad) {
-		bad = read_ids(m, view, &ids, called, height, width, s, e);
-		npy_close(&ids);
-	}
-	free(called);
-	return bad ? -1 : 0;
+	return open_array(m, view, "_s", &ids, &called, e) ||
+	       read_ids(m, view, &ids, called, height, width, s, e);
 }
 
 static int open_features(const struct feature_maps *m, size_t view, int height, int width,
@@ -187,20 +175,17 @@ static int open_features(const struct feature_maps *m, size_t view, int height, 
 static int open_labels(const struct feature_maps *m, size_t view, int height, int width,
 	struct feature_sources *s, struct err *e)
 {
-	char *path = view_path(m, view, ".png", e);
-	int32_t *labels = NULL;
+	SCOPED char *path = view_path(m, view, ".png", e);
+	SCOPED int32_t *labels = NULL;
 	int own[2];
 
-	const int bad = !path || png_read_labels(path, &labels, &own[0], &own[1], e) ||
-			check_shape(m, view, path, own[0], own[1], e);
-	if (!bad) {
-		source_cells(s->raw, height, width, (size_t)own[0], (size_t)own[1]);
-		for (size_t p = 0, n = (size_t)height * (size_t)width; p < n; p++)
-			s->raw[p] = labels[s->raw[p]];
-	}
-	free(labels);
-	free(path);
-	return bad ? -1 : 0;
+	if (!path || png_read_labels(path, &labels, &own[0], &own[1], e) ||
+		check_shape(m, view, path, own[0], own[1], e))
+		return -1;
+	source_cells(s->raw, height, width, (size_t)own[0], (size_t)own[1]);
+	for (size_t p = 0, n = (size_t)height * (size_t)width; p < n; p++)
+		s->raw[p] = labels[s->raw[p]];
+	return 0;
 }
 
 /* Order of painting: the surest mask is on top, of equally sure ones the later. */
@@ -240,7 +225,7 @@ static int paint_masks(const struct feature_maps *m, size_t view, int height, in
 	size_t begin, end;
 
 	mask_index_view(&m->index, m->scene->cameras.views[view].name, &begin, &end);
-	struct painted *order = mem_alloc(end - begin, sizeof *order, "masks", e);
+	SCOPED struct painted *order = mem_alloc(end - begin, sizeof *order, "masks", e);
 	int bad = !order || mem_room((void **)&s->mask, &s->mask_room, pixels, 1, "mask", e);
 	for (size_t k = begin; k < end && order; k++) {
 		const size_t at = m->index.keys[k].at;
@@ -252,7 +237,6 @@ static int paint_masks(const struct feature_maps *m, size_t view, int height, in
 		s->raw[p] = m->kind == MAPS_MASKS ? -1 : 0;
 	for (size_t k = 0; k < end - begin && !bad; k++)
 		bad = paint(m, order[k].at, height, width, s, e);
-	free(order);
 	return bad ? -1 : 0;
 }
 
@@ -307,7 +291,7 @@ int feature_maps_features(const struct feature_maps *m, const struct feature_sou
 #pragma omp parallel reduction(min : bad) reduction(| : is_out)
 	{
 		struct err own;
-		float *row = mem_alloc(m->channels, sizeof *row, "features", &own);
+		SCOPED float *row = mem_alloc(m->channels, sizeof *row, "features", &own);
 		is_out = !row;
 #pragma omp for schedule(static)
 		for (size_t k = 0; k < s->count; k++) {
@@ -319,7 +303,6 @@ int feature_maps_features(const struct feature_maps *m, const struct feature_sou
 			if (isnan(factor[k]) && k < bad)
 				bad = k;
 		}
-		free(row);
 	}
 	if (is_out)
 		return err_set(e, ERR_SYSTEM, "features: out of memory");

@@ -1,6 +1,6 @@
 /* Hyperplane and identity: what a sentence means is shown by the Gaussians of an object that was lifted from
  * masks, the one of the training sentence whose vector is nearest to the sentence's. */
-#include "cmd/feature/query_parts.h"
+#include "cmd/feature/feature_query.h"
 
 #include "base/dot.h"
 #include "base/file.h"
@@ -10,7 +10,6 @@
 #include "lift/query_rules.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static int check_lifted(const struct feature_query *q, const struct origin *origin, struct err *e)
@@ -25,9 +24,7 @@ static int check_lifted(const struct feature_query *q, const struct origin *orig
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, %s has %d", path,
 			q->lifted.width, text, q->text.width);
 	return fingerprint_check("scene", path, &origin->scene, f->file.path, &f->scene, e) ||
-			       fingerprint_check("encoder", text, &q->text.encoder, path, &origin->encoder, e)
-		       ? -1
-		       : 0;
+	       fingerprint_check("encoder", text, &q->text.encoder, path, &origin->encoder, e);
 }
 
 /* The mean of a training sentence's words, of length 1. */
@@ -47,8 +44,8 @@ static int find_objects(struct feature_query *q, struct err *e)
 {
 	const struct lifted *l = &q->lifted;
 	const size_t width = (size_t)l->width;
-	float *mean = mem_alloc(width, sizeof *mean, "sentences", e);
-	double *best = mem_alloc(q->count, sizeof *best, "sentences", e);
+	SCOPED float *mean = mem_alloc(width, sizeof *mean, "sentences", e);
+	SCOPED double *best = mem_alloc(q->count, sizeof *best, "sentences", e);
 
 	q->object = mem_alloc(q->count, sizeof *q->object, "sentences", e);
 	const int bad = !mean || !best || !q->object;
@@ -66,8 +63,6 @@ static int find_objects(struct feature_query *q, struct err *e)
 			q->object[i] = (size_t)l->object[r];
 		}
 	}
-	free(mean);
-	free(best);
 	return bad ? -1 : 0;
 }
 
@@ -112,9 +107,9 @@ static int by_hyperplane(const struct feature_query *q, const char *inside, char
 	}
 	if (!positive || positive == seen)
 		return 0;
-	float *examples = mem_alloc(
+	SCOPED float *examples = mem_alloc(
 		(size_t)QUERY_POSITIVES + QUERY_NEGATIVES, channels * sizeof *examples, "examples", e);
-	double *plane = mem_alloc(channels + 1, sizeof *plane, "hyperplane", e);
+	SCOPED double *plane = mem_alloc(channels + 1, sizeof *plane, "hyperplane", e);
 	int bad = !examples || !plane;
 	if (!bad) {
 		const size_t first = take_examples(f, inside, 1, positive, QUERY_POSITIVES, examples);
@@ -128,8 +123,6 @@ static int by_hyperplane(const struct feature_query *q, const char *inside, char
 		features_floats(f, i, 1, examples);
 		selected[i] = hyperplane_side(plane, examples, channels) > 0;
 	}
-	free(examples);
-	free(plane);
 	return bad ? -1 : 0;
 }
 
@@ -140,11 +133,10 @@ static int by_identity(const struct feature_query *q, const char *inside, char *
 
 	for (size_t i = 0; i < f->gaussians; i++)
 		most = f->labels[i] > most ? f->labels[i] : most;
-	double *sums = mem_alloc((size_t)most + 1, 2 * sizeof *sums, "labels", e);
+	SCOPED double *sums = mem_alloc((size_t)most + 1, 2 * sizeof *sums, "labels", e);
 	if (sums)
 		query_identity(f->labels, f->weight, inside, f->gaussians, q->threshold, sums,
 			(size_t)most + 1, selected);
-	free(sums);
 	return sums ? 0 : -1;
 }
 
@@ -152,26 +144,24 @@ static int by_identity(const struct feature_query *q, const char *inside, char *
 static int answer_object(struct feature_query *q, size_t object, struct err *e)
 {
 	const size_t n = q->features[0].gaussians;
-	char *inside = NULL, *selected = NULL;
-	int is_meant = 0, bad = 0;
+	int is_meant = 0;
 
 	for (size_t i = 0; i < q->count; i++)
 		is_meant |= q->object[i] == object;
 	if (!is_meant)
 		return 0;
-	bad = !(inside = mem_alloc(n, 1, "Gaussians", e)) || !(selected = mem_alloc(n, 1, "Gaussians", e));
-	if (!bad) {
-		find_inside(q, object, inside);
-		bad = q->options->rule == RULE_HYPERPLANE ? by_hyperplane(q, inside, selected, e)
-							  : by_identity(q, inside, selected, e);
-	}
-	for (size_t i = 0; i < q->count && !bad; i++)
+	SCOPED char *inside = mem_alloc(n, 1, "Gaussians", e);
+	SCOPED char *selected = mem_alloc(n, 1, "Gaussians", e);
+	if (!inside || !selected)
+		return -1;
+	find_inside(q, object, inside);
+	if ((q->options->rule == RULE_HYPERPLANE ? by_hyperplane : by_identity)(q, inside, selected, e))
+		return -1;
+	for (size_t i = 0; i < q->count; i++)
 		for (size_t k = 0; k < n && q->object[i] == object; k++)
 			if (selected[k])
 				marks_add(q->marks[i], k);
-	free(inside);
-	free(selected);
-	return bad ? -1 : 0;
+	return 0;
 }
 
 int query_by_examples(struct feature_query *q, const struct report *to, struct err *e)

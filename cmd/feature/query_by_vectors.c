@@ -1,6 +1,6 @@
 /* Cosine and relevancy: all Gaussians' features against all vectors, a block of Gaussians at a time. A block
  * is a whole number of words of the marks, so that no two threads write one. */
-#include "cmd/feature/query_parts.h"
+#include "cmd/feature/feature_query.h"
 
 #include "base/file.h"
 #include "base/mem.h"
@@ -9,7 +9,6 @@
 #include "nn/linear.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { BLOCK = 1024 };
@@ -18,11 +17,8 @@ enum { BLOCK = 1024 };
 static int join(struct feature_query *q, const float *all, const struct query_vectors *more, size_t channels,
 	struct err *e)
 {
-	const size_t n = q->count + more->n;
-	size_t bytes;
+	const size_t n = q->count + more->n, bytes = channels * sizeof *q->vectors.values;
 
-	if (mem_size(channels, sizeof *q->vectors.values, &bytes))
-		return err_set(e, ERR_SYSTEM, "vectors do not fit in memory");
 	q->vectors = (struct query_vectors){n, channels, mem_alloc(n, bytes, "vectors", e)};
 	q->group = mem_alloc(n, sizeof *q->group, "vectors", e);
 	if (!q->vectors.values || !q->group)
@@ -37,16 +33,14 @@ static int join(struct feature_query *q, const float *all, const struct query_ve
 /* Sentences of one object are a group, and all else is its own. */
 static int find_groups(struct feature_query *q, struct err *e)
 {
-	const char **names = mem_alloc(q->count, sizeof *names, "sentences", e);
-	struct names index = {0};
+	SCOPED const char **names = mem_alloc(q->count, sizeof *names, "sentences", e);
+	SCOPED_BY(names_free) struct names index = {0};
 
 	for (size_t i = 0; i < q->count && names; i++)
 		names[i] = text_object(&q->text, q->which[i]);
 	const int bad = !names || names_make(&index, names, sizeof *names, 0, q->count, e);
 	for (size_t i = 0; i < q->vectors.n && !bad; i++)
 		q->group[i] = i < q->count && names[i] ? names_find(&index, names[i]) : i;
-	names_free(&index);
-	free(names);
 	return bad ? -1 : 0;
 }
 
@@ -56,17 +50,17 @@ int query_read_vectors(struct feature_query *q, struct err *e)
 	const size_t channels = q->features[0].channels;
 	const char *more = o->rule == RULE_COSINE ? o->against : o->canonical;
 	const char *path = o->vectors ? o->vectors : o->text;
-	struct query_vectors all = {0}, rivals = {0};
+	SCOPED_BY(query_vectors_free) struct query_vectors all = {0}, rivals = {0};
 
-	int bad = (o->vectors ? query_vectors_read(&all, path, channels, e)
-			      : query_vectors_of_text(&all, &q->text, path, channels, e)) ||
-		  (all.n != q->text.n && err_set(e, ERR_FORMAT, "%s: has %zu vectors, %s has %zu sentences",
-						 file_name(path), all.n, file_name(o->text), q->text.n)) ||
-		  (more && query_vectors_read(&rivals, more, channels, e)) ||
-		  join(q, all.values, &rivals, channels, e) || find_groups(q, e);
-	query_vectors_free(&all);
-	query_vectors_free(&rivals);
-	return bad ? -1 : 0;
+	return (o->vectors ? query_vectors_read(&all, path, channels, e)
+			   : query_vectors_of_text(&all, &q->text, path, channels, e)) ||
+			       (all.n != q->text.n &&
+				       err_set(e, ERR_FORMAT, "%s: has %zu vectors, %s has %zu sentences",
+					       file_name(path), all.n, file_name(o->text), q->text.n)) ||
+			       (more && query_vectors_read(&rivals, more, channels, e)) ||
+			       join(q, all.values, &rivals, channels, e) || find_groups(q, e)
+		       ? -1
+		       : 0;
 }
 
 /* What is done with a Gaussian's cosines (vectors.n). */
@@ -106,17 +100,14 @@ static int run(struct pass *p, struct err *e)
 #pragma omp parallel reduction(| : is_out)
 	{
 		struct err own;
-		float *features = mem_alloc(BLOCK * channels, sizeof *features, "features", &own);
-		float *cosines = mem_alloc(BLOCK * q->vectors.n, sizeof *cosines, "cosines", &own);
-		char *selected = mem_alloc(q->count, 1, "selection", &own);
+		SCOPED float *features = mem_alloc(BLOCK * channels, sizeof *features, "features", &own);
+		SCOPED float *cosines = mem_alloc(BLOCK * q->vectors.n, sizeof *cosines, "cosines", &own);
+		SCOPED char *selected = mem_alloc(q->count, 1, "selection", &own);
 		is_out = !features || !cosines || !selected;
 #pragma omp for schedule(dynamic)
 		for (size_t b = 0; b < blocks; b++)
 			if (features && cosines && selected)
 				use_block(p, b, features, cosines, selected);
-		free(features);
-		free(cosines);
-		free(selected);
 	}
 	return is_out ? err_set(e, ERR_SYSTEM, "cosines: out of memory") : 0;
 }
@@ -197,24 +188,22 @@ static int by_relevancy(struct feature_query *q, struct err *e)
 
 	if (mem_size(blocks_of(q), q->count, &count))
 		return err_set(e, ERR_SYSTEM, "relevancies do not fit in memory");
-	double *threshold = mem_alloc(q->count, sizeof *threshold, "relevancies", e);
-	double *best = mem_alloc(q->count, sizeof *best, "relevancies", e);
-	struct pass p = {.q = q,
-		.least = mem_alloc(count, sizeof *p.least, "relevancies", e),
-		.most = mem_alloc(count, sizeof *p.most, "relevancies", e),
-		.threshold = threshold};
+	SCOPED double *threshold = mem_alloc(q->count, sizeof *threshold, "relevancies", e);
+	SCOPED double *best = mem_alloc(q->count, sizeof *best, "relevancies", e);
+	SCOPED float *least = mem_alloc(count, sizeof *least, "relevancies", e);
+	SCOPED float *most = mem_alloc(count, sizeof *most, "relevancies", e);
+	struct pass p = {.q = q, .least = least, .most = most, .threshold = threshold};
 	q->level = mem_zalloc(q->count, sizeof *q->level, "sentences", e);
-	int bad = !threshold || !best || !p.least || !p.most || !q->level;
-	for (p.level = 0; p.level < q->levels && !bad; p.level++)
-		bad = choose_level(&p, threshold, best, e);
+	if (!threshold || !best || !least || !most || !q->level)
+		return -1;
+	for (p.level = 0; p.level < q->levels; p.level++)
+		if (choose_level(&p, threshold, best, e))
+			return -1;
 	p.use = take_relevant;
-	for (p.level = 0; p.level < q->levels && !bad; p.level++)
-		bad = run(&p, e);
-	free(threshold);
-	free(best);
-	free(p.least);
-	free(p.most);
-	return bad ? -1 : 0;
+	for (p.level = 0; p.level < q->levels; p.level++)
+		if (run(&p, e))
+			return -1;
+	return 0;
 }
 
 int query_by_vectors(struct feature_query *q, struct err *e)

@@ -1,9 +1,8 @@
 /* Cosine and relevancy as they are published: for the pixels of a rendered feature map. A view's features are
  * blended some channels at a time, and only their inner products with the vectors and their length stay. */
-#include "cmd/feature/query_parts.h"
+#include "cmd/feature/feature_query.h"
 
 #include "answer/peak.h"
-#include "base/file.h"
 #include "base/mem.h"
 #include "formats/records/masks.h"
 #include "lift/query_rules.h"
@@ -55,14 +54,13 @@ static int pack(struct pixels *p, struct err *e)
 {
 	const struct features *f = &p->q->features[p->level];
 	const size_t n = f->gaussians, channels = f->channels;
-	float *row = mem_alloc(channels, sizeof *row, "features", e);
+	SCOPED float *row = mem_alloc(channels, sizeof *row, "features", e);
 
 	for (size_t i = 0; i < n && row; i++) {
 		features_floats(f, i, 1, row);
 		for (size_t c = 0; c < channels; c++)
 			p->packed[c * n + i] = row[c];
 	}
-	free(row);
 	return row ? render_pack(p->packed, n, (int)channels, e) : -1;
 }
 
@@ -137,6 +135,7 @@ static int pixel_map_make(struct pixel_map *m, size_t n, struct err *e)
 	*m = (struct pixel_map){mem_alloc(n, sizeof *m->values, "map", e),
 		mem_alloc(n, sizeof *m->mean, "map", e), mem_alloc(n, sizeof *m->room, "map", e),
 		mem_alloc(n, 1, "map", e)};
+
 	return m->values && m->mean && m->room && m->mask ? 0 : -1;
 }
 
@@ -276,13 +275,10 @@ static int answer_all(struct pixels *p, const struct report *to, struct err *e)
 int query_by_pixels(struct feature_query *q, const struct report *to, struct err *e)
 {
 	struct pixels p = {.q = q};
-	size_t bytes;
 
 	if (query_read_vectors(q, e) || choose_views(q, e))
 		return -1;
-	if (mem_size(q->vectors.channels, sizeof *p.packed, &bytes))
-		return err_set(e, ERR_SYSTEM, "features do not fit in memory");
-	p.packed = mem_alloc(q->scene.splats.n, bytes, "features", e);
+	p.packed = mem_alloc(q->scene.splats.n, q->vectors.channels * sizeof *p.packed, "features", e);
 	const int bad = !p.packed || answer_all(&p, to, e);
 	report_end(to);
 	free(p.packed);

@@ -59,7 +59,7 @@ static int split_every(struct cameras *c, const char *test_views, struct err *e)
 	if (text[0] < '0' || text[0] > '9' || *end || n < 1 || n > 1000000000)
 		return err_set(e, ERR_USAGE, "--test-views: '%s' is not every:N with N from 1 to 1000000000",
 			test_views);
-	struct camera **sorted = mem_alloc(c->n, sizeof *sorted, "views", e);
+	SCOPED struct camera **sorted = mem_alloc(c->n, sizeof *sorted, "views", e);
 	if (!sorted)
 		return -1;
 	for (size_t i = 0; i < c->n; i++)
@@ -67,18 +67,16 @@ static int split_every(struct cameras *c, const char *test_views, struct err *e)
 	qsort(sorted, c->n, sizeof *sorted, by_image);
 	for (size_t i = 0; i < c->n; i++)
 		sorted[i]->split = i % n ? SPLIT_TRAIN : SPLIT_TEST;
-	free(sorted);
 	return 0;
 }
 
 static int split_names(struct cameras *c, const char *test_views, struct err *e)
 {
-	char *is_test = mem_zalloc(c->n, 1, "views", e);
+	SCOPED char *is_test = mem_zalloc(c->n, 1, "views", e);
 	int bad = is_test ? cameras_mark(c, test_views, "--test-views", is_test, e) : -1;
 
 	for (size_t i = 0; i < c->n && !bad; i++)
 		c->views[i].split = is_test[i] ? SPLIT_TEST : SPLIT_TRAIN;
-	free(is_test);
 	return bad;
 }
 
@@ -91,9 +89,8 @@ static char *find_beside(const char *splats, struct err *e)
 
 	if (dir && !found && !strncmp(slash ? slash + 1 : dir, "iteration_", 10)) {
 		struct err ignored;
-		char *model = file_join(dir, "../..", "", e);
+		SCOPED char *model = file_join(dir, "../..", "", e);
 		found = model ? find_cameras_in(model, &ignored) : NULL;
-		free(model);
 	}
 	free(dir);
 	return found;
@@ -122,9 +119,8 @@ static char *find_in_folder(const char *folder, struct err *e)
 				continue;
 			most = n;
 			free(found);
-			char *parent = file_join(places[i], d->d_name, "", e);
+			SCOPED char *parent = file_join(places[i], d->d_name, "", e);
 			found = parent ? file_join(parent, "point_cloud.ply", "", e) : NULL;
-			free(parent);
 		}
 		if (dir)
 			closedir(dir);
@@ -204,14 +200,13 @@ static int move(struct scene *s, const char *splats, const char *cameras, double
 	const struct report *to, struct err *e)
 {
 	e->code = ERR_NONE;
-	char *path = dataparser_find(splats, cameras, e);
+	SCOPED char *path = dataparser_find(splats, cameras, e);
 	int bad = !path && (e->code != ERR_NONE || point_frame_find(near, s, cameras, e));
 
 	if (path) {
 		report_note(to, 1, "%s: cameras are moved by it", path);
 		bad = dataparser_move(&s->cameras, path, cameras, e);
 	}
-	free(path);
 	return bad ? -1 : 0;
 }
 
@@ -242,11 +237,11 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	if (move(s, o->splats, cameras, &found->near, to, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
-	char *metadata = describe_options(o->test_views, e);
-	int bad = !metadata || near_find(&s->splats, &s->cameras, e) || file_make_dir(folder, e) ||
-		  photographs_find(&s->cameras, o->images, folder, &found->missing, e) ||
-		  (o->images && resemblance_find(&found->resemblance, s, folder, to, e)) ||
-		  scene_write(s, folder, metadata, e);
-	free(metadata);
-	return bad ? -1 : 0;
+	SCOPED char *metadata = describe_options(o->test_views, e);
+	return !metadata || near_find(&s->splats, &s->cameras, e) || file_make_dir(folder, e) ||
+			       photographs_find(&s->cameras, o->images, folder, &found->missing, e) ||
+			       (o->images && resemblance_find(&found->resemblance, s, folder, to, e)) ||
+			       scene_write(s, folder, metadata, e)
+		       ? -1
+		       : 0;
 }

@@ -1,4 +1,4 @@
-#include "cmd/import/resemblance.h"
+#include "cmd/import/import.h"
 
 #include "base/mem.h"
 #include "cmd/import/warping.h"
@@ -52,24 +52,22 @@ static int compare(const struct scene *s, const struct camera *full, const uint8
 	camera_scaled_size(full, longer > SIDE ? (double)SIDE / longer : 1, &w, &h);
 	const struct camera small = camera_resize(full, w, h);
 	const size_t pixels = (size_t)w * (size_t)h;
-	struct render_view *view = render_prepare(&s->splats, &small, e);
-	float *room = view ? mem_alloc(pixels, 6 * sizeof *room, "pictures", e) : NULL;
-	uint8_t *shown = room ? shrink_picture(rgb, height, width, h, w, e) : NULL;
-	const int bad = !shown || render_colors(view, &s->splats, &small, (const float[3]){0}, room, e);
-	if (!bad) {
-		float *grey = room + 3 * pixels, *rendered = grey + pixels, *seen = rendered + pixels;
-		for (size_t i = 0; i < pixels; i++)
-			grey[i] = room[3 * i] + room[3 * i + 1] + room[3 * i + 2];
-		sharpen(grey, rendered, h, w);
-		for (size_t i = 0; i < pixels; i++)
-			grey[i] = (float)(shown[3 * i] + shown[3 * i + 1] + shown[3 * i + 2]);
-		sharpen(grey, seen, h, w);
-		*correlation = correlate(rendered, seen, pixels);
-	}
+	SCOPED float *room = mem_alloc(pixels, 6 * sizeof *room, "pictures", e);
+	SCOPED uint8_t *shown = room ? shrink_picture(rgb, height, width, h, w, e) : NULL;
+	struct render_view *view = shown ? render_prepare(&s->splats, &small, e) : NULL;
+	const int bad = !view || render_colors(view, &s->splats, &small, (const float[3]){0}, room, e);
 	render_free(view);
-	free(room);
-	free(shown);
-	return bad ? -1 : 0;
+	if (bad)
+		return -1;
+	float *grey = room + 3 * pixels, *rendered = grey + pixels, *seen = rendered + pixels;
+	for (size_t i = 0; i < pixels; i++)
+		grey[i] = room[3 * i] + room[3 * i + 1] + room[3 * i + 2];
+	sharpen(grey, rendered, h, w);
+	for (size_t i = 0; i < pixels; i++)
+		grey[i] = (float)(shown[3 * i] + shown[3 * i + 1] + shown[3 * i + 2]);
+	sharpen(grey, seen, h, w);
+	*correlation = correlate(rendered, seen, pixels);
+	return 0;
 }
 
 /* The photograph after so many quarter turns. One that cannot be read is none: 1, and r says why of the
@@ -78,7 +76,7 @@ static int compare(const struct scene *s, const struct camera *full, const uint8
 static int compare_file(struct resemblance *r, const struct scene *s, const struct camera *c,
 	const char *folder, int turns, double *correlation, const struct report *to, struct err *e)
 {
-	uint8_t *rgb = NULL;
+	SCOPED uint8_t *rgb = NULL;
 	int height, width;
 	struct err why;
 
@@ -88,9 +86,7 @@ static int compare_file(struct resemblance *r, const struct scene *s, const stru
 			r->why = why;
 		return 1;
 	}
-	const int bad = compare(s, c, rgb, height, width, correlation, e);
-	free(rgb);
-	return bad;
+	return compare(s, c, rgb, height, width, correlation, e);
 }
 
 /* As it is, and where it is not alike, turned: what is like the view then is not upright. */

@@ -110,12 +110,11 @@ static void level(const double up[3], double quat[4])
 
 static int find_up(const struct transforming *o, double up[3], struct err *e)
 {
-	struct cameras cameras;
+	SCOPED_BY(cameras_free) struct cameras cameras = {0};
 
 	if (camerafile_read(&cameras, o->up_from, e))
 		return -1;
 	cameras_up(&cameras, up);
-	cameras_free(&cameras);
 	return 0;
 }
 
@@ -153,7 +152,7 @@ static int keep(struct splats *s, const char *kept, struct err *e)
 /* Leaves out what is outside the box; the box's faces are inside. */
 static int crop(struct splats *s, const double offset[3], const double box[6], struct err *e)
 {
-	char *kept = mem_alloc(s->n, 1, "splats", e);
+	SCOPED char *kept = mem_alloc(s->n, 1, "splats", e);
 
 	for (size_t i = 0; kept && i < s->n; i++) {
 		kept[i] = 1;
@@ -162,9 +161,7 @@ static int crop(struct splats *s, const double offset[3], const double box[6], s
 			kept[i] &= x >= box[k] && x <= box[k + 3];
 		}
 	}
-	const int bad = !kept || keep(s, kept, e);
-	free(kept);
-	return bad ? -1 : 0;
+	return !kept || keep(s, kept, e) ? -1 : 0;
 }
 
 static int rising(const void *a, const void *b)
@@ -176,20 +173,19 @@ static int rising(const void *a, const void *b)
 
 static int drop_strays(struct splats *s, struct err *e)
 {
-	char *kept = mem_alloc(s->n, 1, "splats", e);
-	float *far = mem_alloc(s->n, 2 * sizeof *far, "splats", e), *sorted = far ? far + s->n : NULL;
-	int bad = !kept || !far || neighbours_find(s->means, s->n, NEIGHBOUR, far, e);
+	SCOPED char *kept = mem_alloc(s->n, 1, "splats", e);
+	SCOPED float *far = mem_alloc(s->n, 2 * sizeof *far, "splats", e);
 
-	if (!bad && s->n) {
-		memcpy(sorted, far, s->n * sizeof *far);
-		qsort(sorted, s->n, sizeof *sorted, rising);
-		for (size_t i = 0; i < s->n; i++)
-			kept[i] = far[i] <= STRAY * sorted[s->n / 2];
-		bad = keep(s, kept, e);
-	}
-	free(kept);
-	free(far);
-	return bad ? -1 : 0;
+	if (!kept || !far || neighbours_find(s->means, s->n, NEIGHBOUR, far, e))
+		return -1;
+	if (!s->n)
+		return 0;
+	float *sorted = far + s->n;
+	memcpy(sorted, far, s->n * sizeof *far);
+	qsort(sorted, s->n, sizeof *sorted, rising);
+	for (size_t i = 0; i < s->n; i++)
+		kept[i] = far[i] <= STRAY * sorted[s->n / 2];
+	return keep(s, kept, e);
 }
 
 int transforming_do(struct splats *s, double offset[3], const struct transforming *o,

@@ -15,11 +15,10 @@
 int warping_open(struct warping *w, enum warp way, const char *scene, struct err *e)
 {
 	*w = (struct warping){.way = way};
-	char *path = way == WARP_NONE ? NULL : file_join(scene, "cameras.json", "", e);
-	const int bad = way != WARP_NONE && (!path || scene_read_cameras_file(&w->cameras, path, e));
-
-	free(path);
-	return bad ? -1 : 0;
+	if (way == WARP_NONE)
+		return 0;
+	SCOPED char *path = file_join(scene, "cameras.json", "", e);
+	return path ? scene_read_cameras_file(&w->cameras, path, e) : -1;
 }
 
 void warping_free(struct warping *w)
@@ -83,13 +82,12 @@ static int make_map(struct warping *w, const struct camera *c, int rows, int col
 static int refuse_view(const struct warping *w, const char *view, struct err *e)
 {
 	const struct cameras *c = &w->cameras;
-	struct names names;
+	SCOPED_BY(names_free) struct names names = {0};
 	char few[NAMES_FEW];
 
 	if (names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e))
 		return -1;
 	err_set(e, ERR_FORMAT, "view '%s' is not in the scene%s", view, names_few(&names, few));
-	names_free(&names);
 	return -1;
 }
 
@@ -178,11 +176,10 @@ static int turn(uint8_t **rgb, int *height, int *width, struct err *e)
 int warping_read_photograph(const struct camera *c, const char *folder, int turns, uint8_t **rgb, int *height,
 	int *width, struct err *e)
 {
-	char *path = file_join(folder, c->image, "", e);
+	SCOPED char *path = file_join(folder, c->image, "", e);
 	int bad = !path || image_read_rgb(path, rgb, height, width, e);
 
 	for (; !bad && turns; turns--)
 		bad = turn(rgb, height, width, e);
-	free(path);
 	return bad || (c->lens.model && undistort(c, rgb, height, width, e)) ? -1 : 0;
 }

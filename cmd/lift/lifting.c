@@ -7,7 +7,6 @@
 #include "splat/weights_pack.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -169,7 +168,7 @@ static int find_spare(struct lifting *l, struct err *e)
 	const size_t n = l->set.n - l->own;
 	const struct mask *masks = l->set.items + l->own;
 	size_t *number = l->mask_object + l->own;
-	struct names regions;
+	SCOPED_BY(names_free) struct names regions = {0};
 
 	if (names_make(&regions, masks, sizeof *masks, offsetof(struct mask, object), n, e))
 		return -1;
@@ -184,7 +183,6 @@ static int find_spare(struct lifting *l, struct err *e)
 	for (size_t i = 0; i < n; i++)
 		if (!l->is_there[l->views[l->own + i]])
 			number[i] = LIFTING_NONE;
-	names_free(&regions);
 	return 0;
 }
 
@@ -224,7 +222,7 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 	struct lifting *l = r->l;
 	struct lift_mask *masks = r->masks + (size_t)worker * l->set.n;
 	const size_t n = masks_of_view(l, view, masks);
-	struct weights weights;
+	SCOPED_BY(weights_close) struct weights weights = {0};
 
 	if (!n)
 		return 0;
@@ -232,10 +230,8 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 		    &weights, &r->rooms[worker], WEIGHTS_TILES, l->files->weights, &l->scene, view, e))
 		return -1;
 	const struct view_matrix w = weights_matrix(&weights);
-	const int bad = r->round ? lift_objects_vote(&l->lift, view, &w, e)
-				 : lift_objects_view(&l->lift, view, &w, masks, n, e);
-	weights_close(&weights);
-	return bad;
+	return r->round ? lift_objects_vote(&l->lift, view, &w, e)
+			: lift_objects_view(&l->lift, view, &w, masks, n, e);
 }
 
 static int step(void *context, size_t view, struct err *e)

@@ -6,7 +6,6 @@
 #include "cmd/lift/left_out.h"
 #include "formats/scene/weights.h"
 #include "splat/weights_pack.h"
-#include "mask/select.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -40,14 +39,12 @@ static int put_winners(const struct pseudomasks *w, const struct report *to, str
 static int lift_source(struct pseudomasks *w, size_t source, struct err *e)
 {
 	const size_t view = w->propagation.sources[source].view;
-	struct weights weights;
+	SCOPED_BY(weights_close) struct weights weights = {0};
 
 	if (weights_open(&weights, w->options->weights, &w->scene, view, e))
 		return -1;
 	const struct view_weights blend = weights_view(&weights);
-	int bad = propagate_lift(&w->propagation, source, &blend, weights.height, weights.width, e);
-	weights_close(&weights);
-	return bad;
+	return propagate_lift(&w->propagation, source, &blend, weights.height, weights.width, e);
 }
 
 static int lift_carried(struct pseudomasks *w, struct err *e)
@@ -78,7 +75,7 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 {
 	const struct by_views *b = context;
 	const struct pseudomasks *w = b->w;
-	struct weights weights;
+	SCOPED_BY(weights_close) struct weights weights = {0};
 
 	if (!b->is_there[view])
 		return 0;
@@ -86,21 +83,17 @@ static int lift_view(void *context, int worker, size_t view, struct err *e)
 		    &weights, &b->rooms[worker], WEIGHTS_TILES, w->options->weights, &w->scene, view, e))
 		return -1;
 	const struct view_matrix blend = weights_matrix(&weights);
-	const int bad = regions_lift(&b->w->regions, view, &blend, e);
-	weights_close(&weights);
-	return bad;
+	return regions_lift(&b->w->regions, view, &blend, e);
 }
 
 /* Regions are the same in all views whatever the candidates are of. */
 static int check_candidates(const struct pseudomasks *w, const struct report *to, struct err *e)
 {
-	struct lift_objects surest;
-	const int bad = regions_surest(&w->regions, &surest, e) ||
-			left_out_check(&surest, w->regions.object_count, w->options->candidates,
-				w->options->scene, to, e);
+	SCOPED_BY(regions_surest_free) struct lift_objects surest = {0};
 
-	regions_surest_free(&surest);
-	return bad;
+	return regions_surest(&w->regions, &surest, e) ||
+	       left_out_check(
+		       &surest, w->regions.object_count, w->options->candidates, w->options->scene, to, e);
 }
 
 static int lift_regions(struct by_views *b, const struct report *to, struct err *e)
@@ -111,10 +104,8 @@ static int lift_regions(struct by_views *b, const struct report *to, struct err 
 	struct regions *r = &w->regions;
 
 	return regions_init(r, &w->pool, w->views, views, w->scene.splats.n, w->options->min_score, e) ||
-			       each_run(&by, views, e) || regions_grow(r, e) || check_candidates(w, to, e) ||
-			       regions_assign(r, e)
-		       ? -1
-		       : 0;
+	       each_run(&by, views, e) || regions_grow(r, e) || check_candidates(w, to, e) ||
+	       regions_assign(r, e);
 }
 
 /* weights: NULL where regions do not need them. */
@@ -163,16 +154,16 @@ static int show_view(void *context, int worker, size_t view, struct err *e)
 	const struct pseudomasks *w = b->w;
 	const int needs = w->options->method != PSEUDOMASK_SCENE || regions_need_weights(&w->regions, view);
 	struct shown *to = &b->shown[view];
-	struct weights weights = {0};
+	SCOPED_BY(weights_close) struct weights weights = {0};
 
 	if (!b->is_there[view])
 		return 0;
 	to->masks = mem_zalloc(shown_count(w), sizeof *to->masks, "masks", e);
 	to->scores = mem_alloc(shown_count(w), sizeof *to->scores, "masks", e);
-	const int bad = !to->masks || !to->scores || (needs && open_weights(b, &weights, worker, view, e)) ||
-			render(w, view, needs ? &weights : NULL, to, e);
-	weights_close(&weights);
-	return bad ? -1 : 0;
+	return !to->masks || !to->scores || (needs && open_weights(b, &weights, worker, view, e)) ||
+			       render(w, view, needs ? &weights : NULL, to, e)
+		       ? -1
+		       : 0;
 }
 
 /* Writes what candidates show of the spare regions. */

@@ -1,14 +1,10 @@
 #include "cmd/lift/weighing.h"
 
-#include "cmd/lift/weighing_packed.h"
-
 #include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "formats/arrays/precision.h"
 #include "formats/scene/weights.h"
 #include "splat/prune.h"
-#include "splat/render.h"
 
 #include <math.h>
 #include <omp.h>
@@ -79,12 +75,12 @@ static int check_covered(
 	if (covered >= WEIGHING_COVERED || !s->splats.n)
 		return 0;
 	for (size_t i = 0; i < s->cameras.n; i++) {
-		char *path = in_split(&s->cameras.views[i], o->split)
-				     ? file_join(o->folder, s->cameras.views[i].name, ".safetensors", e)
-				     : NULL;
+		SCOPED char *path =
+			in_split(&s->cameras.views[i], o->split)
+				? file_join(o->folder, s->cameras.views[i].name, ".safetensors", e)
+				: NULL;
 		if (path)
 			remove(path);
-		free(path);
 	}
 	return err_set(e, ERR_FORMAT,
 		"%s: its splats are seen in none of %zu views (in at most %.2g%% of the pixels of one): the cameras are in another frame than the splats, or of another scene; import it with the cameras that it was trained with",
@@ -164,19 +160,19 @@ static int report_view(void *context, size_t at, struct err *e)
 static int weigh_views(struct weighing *of, struct err *e)
 {
 	const struct each by = {of, each_workers(of->n), weigh_view, report_view};
+	SCOPED struct weighed *done = mem_alloc(of->n, sizeof *done, "views", e);
+	SCOPED struct room *rooms = mem_zalloc((size_t)by.workers, sizeof *rooms, "views", e);
 	double covered = 0;
 
-	of->done = mem_alloc(of->n, sizeof *of->done, "views", e);
-	of->rooms = mem_zalloc((size_t)by.workers, sizeof *of->rooms, "views", e);
+	of->done = done;
+	of->rooms = rooms;
 	report_start(of->to, "views", (double)of->n);
-	const int bad = !of->done || !of->rooms || each_run(&by, of->n, e);
+	const int bad = !done || !rooms || each_run(&by, of->n, e);
 	report_end(of->to);
-	for (int k = 0; k < by.workers && of->rooms; k++) {
-		covered = fmax(covered, of->rooms[k].covered);
-		room_free(&of->rooms[k]);
+	for (int k = 0; k < by.workers && rooms; k++) {
+		covered = fmax(covered, rooms[k].covered);
+		room_free(&rooms[k]);
 	}
-	free(of->done);
-	free(of->rooms);
 	return bad || check_covered(of->scene, of->options, of->n, covered, e) ? -1 : 0;
 }
 

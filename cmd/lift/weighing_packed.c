@@ -1,4 +1,4 @@
-#include "cmd/lift/weighing_packed.h"
+#include "cmd/lift/weighing.h"
 
 #include "base/mem.h"
 #include "base/threads.h"
@@ -174,7 +174,7 @@ int weigh_packed(struct weighed_packed *to, const struct render_view *v, const s
 {
 	const int count = (c->height + VIEW_TILE - 1) / VIEW_TILE,
 		  parts = (count + TILE_ROWS - 1) / TILE_ROWS, threads = threads_available();
-	struct counted *counted = mem_zalloc((size_t)parts, sizeof *counted, "weights", e);
+	SCOPED struct counted *counted = mem_zalloc((size_t)parts, sizeof *counted, "weights", e);
 	int bad = !counted || make_rows(to, count, e) || make_rooms(to, threads, gaussians, e);
 	const struct packing p = {v, c->width, c->height, tolerance, dropped, to->rows, counted};
 
@@ -184,6 +184,5 @@ int weigh_packed(struct weighed_packed *to, const struct render_view *v, const s
 		to->weights += counted[k].weights;
 		to->covered += counted[k].covered;
 	}
-	free(counted);
 	return bad ? -1 : 0;
 }

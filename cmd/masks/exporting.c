@@ -1,11 +1,11 @@
 #include "cmd/masks/exporting.h"
 
 #include "base/file.h"
+#include "base/jsontext.h"
 #include "base/mem.h"
 #include "base/name.h"
 #include "cmd/masks/pictures.h"
 #include "cmd/import/warping.h"
-#include "formats/records/jsonl.h"
 #include "formats/records/masks.h"
 #include "formats/images/png.h"
 #include "formats/scene/scene.h"
@@ -21,32 +21,24 @@ static const char *png_name(const struct mask *m)
 	return m->ref ? m->ref : m->object;
 }
 
-struct named {
-	const char *name;
-};
-
 /* Numbers different names in the order in which they first come: number (n), and the first item of each. */
 static int number(size_t *count, size_t *numbers, const struct mask **first, const struct masks *masks,
 	const char *(*name_of)(const struct mask *m), struct err *e)
 {
-	struct named *named = mem_alloc(masks->n, sizeof *named, "masks", e);
-	struct names names;
+	SCOPED const char **named = mem_alloc(masks->n, sizeof *named, "masks", e);
+	SCOPED_BY(names_free) struct names names = {0};
 
 	for (size_t i = 0; named && i < masks->n; i++)
-		named[i].name = name_of(&masks->items[i]);
-	int bad =
-		!named || names_make(&names, named, sizeof *named, offsetof(struct named, name), masks->n, e);
-	if (!bad) {
-		for (size_t i = 0; i < masks->n; i++) {
-			const size_t place = names_find(&names, named[i].name);
-			numbers[i] = place == i ? *count : numbers[place];
-			if (place == i)
-				first[(*count)++] = &masks->items[i];
-		}
-		names_free(&names);
+		named[i] = name_of(&masks->items[i]);
+	if (!named || names_make(&names, named, sizeof *named, 0, masks->n, e))
+		return -1;
+	for (size_t i = 0; i < masks->n; i++) {
+		const size_t place = names_find(&names, named[i]);
+		numbers[i] = place == i ? *count : numbers[place];
+		if (place == i)
+			first[(*count)++] = &masks->items[i];
 	}
-	free(named);
-	return bad ? -1 : 0;
+	return 0;
 }
 
 static const char *view_of(const struct mask *m)
@@ -69,16 +61,14 @@ static int check_sizes(const struct exporting *x, struct err *e)
 
 static int read_cameras(struct exporting *x, const char *scene, struct err *e)
 {
-	char *path = file_join(scene, "cameras.json", "", e);
-	const int bad = !path || scene_read_cameras_file(&x->cameras, path, e);
+	SCOPED char *path = file_join(scene, "cameras.json", "", e);
 
-	free(path);
-	return bad ? -1 : 0;
+	return !path || scene_read_cameras_file(&x->cameras, path, e) ? -1 : 0;
 }
 
 static int distort_masks(struct exporting *x, const char *scene, struct err *e)
 {
-	struct warping w;
+	SCOPED_BY(warping_free) struct warping w = {0};
 	int bad = warping_open(&w, WARP_TO_PHOTOGRAPH, scene, e);
 
 	for (size_t i = 0; i < x->masks.n && !bad; i++) {
@@ -86,21 +76,16 @@ static int distort_masks(struct exporting *x, const char *scene, struct err *e)
 		if (bad && e->code == ERR_FORMAT)
 			err_prefix(e, x->path);
 	}
-	warping_free(&w);
 	return bad;
 }
 
 int exporting_read(struct exporting *x, const char *masks, const char *scene, int distort, struct err *e)
 {
 	x->path = file_name(masks);
-	long *lines = NULL;
-	const int bad = masks_read_lines(&x->masks, &lines, masks, e) ||
-			(scene && read_cameras(x, scene, e)) ||
-			(distort ? distort_masks(x, scene, e)
-				 : masks_views(&x->masks, lines, masks, &x->cameras, NULL, NULL, e));
-
-	free(lines);
-	if (bad)
+	SCOPED long *lines = NULL;
+	if (masks_read_lines(&x->masks, &lines, masks, e) || (scene && read_cameras(x, scene, e)) ||
+		(distort ? distort_masks(x, scene, e)
+			 : masks_views(&x->masks, lines, masks, &x->cameras, NULL, NULL, e)))
 		return -1;
 	const size_t n = x->masks.n;
 	x->view_of = mem_alloc(n, sizeof *x->view_of, x->path, e);
@@ -134,14 +119,11 @@ static const char *file_of(const char *image, const char *view, struct err *e)
 	const char *from = view_base(image);
 
 	for (;;) {
-		char *stem = mem_strdup(from, e), *whole = stem ? name_to_view(from, e) : NULL;
+		SCOPED char *stem = mem_strdup(from, e), *whole = stem ? name_to_view(from, e) : NULL;
 		if (stem)
 			stem[view_stem(stem)] = 0;
-		char *name = whole ? name_to_view(stem, e) : NULL;
+		SCOPED char *name = whole ? name_to_view(stem, e) : NULL;
 		const int is_out = !name, is_it = name && (!strcmp(name, view) || !strcmp(whole, view));
-		free(stem);
-		free(whole);
-		free(name);
 		if (is_out || is_it)
 			return is_out ? NULL : from;
 		if (from == image)
@@ -153,7 +135,7 @@ static const char *file_of(const char *image, const char *view, struct err *e)
 }
 
 /* The photograph of a view, as the scene has it; else the view's name as a PNG. */
-static int put_file_name(const struct exporting *x, FILE *out, const char *view, struct err *e)
+static int put_file_name(const struct exporting *x, struct jsontext *to, const char *view, struct err *e)
 {
 	char name[4096];
 	const char *image = NULL;
@@ -165,82 +147,93 @@ static int put_file_name(const struct exporting *x, FILE *out, const char *view,
 		return -1;
 	if (!image)
 		snprintf(name, sizeof name, "%s.png", view);
-	return jsonl_put_string(out, ",\"file_name\":", image ? image : name, e);
-}
-
-static int put_images(const struct exporting *x, FILE *out, struct err *e)
-{
-	fputs("{\"images\":[", out);
-	for (size_t v = 0; v < x->views; v++) {
-		const struct mask *m = x->first_of_view[v];
-		fprintf(out, "%s{\"id\":%zu,\"width\":%d,\"height\":%d", v ? "," : "", v + 1, m->rle.width,
-			m->rle.height);
-		if (put_file_name(x, out, m->view, e))
-			return -1;
-		fputc('}', out);
-	}
-	fputs("],\"categories\":[", out);
-	for (size_t o = 0; o < x->objects; o++) {
-		fprintf(out, "%s{\"id\":%zu", o ? "," : "", o + 1);
-		if (jsonl_put_string(out, ",\"name\":", mask_object(x->first_of_object[o]), e))
-			return -1;
-		fputc('}', out);
-	}
-	fputs("],\"annotations\":[", out);
+	jsontext_string(to, "file_name", image ? image : name);
 	return 0;
 }
 
 /* left, top, width, height; 0 of an empty mask. */
-static void put_bounds(FILE *out, const struct rle *r)
+static void put_bounds(struct jsontext *to, const struct rle *r)
 {
 	size_t low[2] = {SIZE_MAX, SIZE_MAX}, high[2] = {0}, at = 0;
 	const size_t height = (size_t)r->height;
+	char text[96];
 
 	for (size_t k = 0; k < r->n; at += r->runs[k++]) {
 		if (k % 2 == 0 || !r->runs[k])
 			continue;
 		const size_t last = at + r->runs[k] - 1, is_long = at / height != last / height;
 		const size_t from[2] = {at / height, is_long ? 0 : at % height},
-			     to[2] = {last / height, is_long ? height - 1 : last % height};
+			     until[2] = {last / height, is_long ? height - 1 : last % height};
 		for (int d = 0; d < 2; d++) {
 			low[d] = from[d] < low[d] ? from[d] : low[d];
-			high[d] = to[d] + 1 > high[d] ? to[d] + 1 : high[d];
+			high[d] = until[d] + 1 > high[d] ? until[d] + 1 : high[d];
 		}
 	}
 	if (!high[0])
 		low[0] = low[1] = 0;
-	fprintf(out, ",\"bbox\":[%zu,%zu,%zu,%zu]", low[0], low[1], high[0] - low[0], high[1] - low[1]);
+	snprintf(text, sizeof text, "[%zu,%zu,%zu,%zu]", low[0], low[1], high[0] - low[0], high[1] - low[1]);
+	jsontext_raw(to, "bbox", text);
 }
 
-static int put_annotation(const struct exporting *x, size_t i, FILE *out, struct err *e)
+static int put_annotation(const struct exporting *x, size_t i, struct jsontext *to, struct err *e)
 {
 	const struct mask *m = &x->masks.items[i];
-	char *counts = rle_to_string(&m->rle, e);
-	int bad = !counts;
+	SCOPED char *counts = rle_to_string(&m->rle, e);
+	char score[32];
 
-	if (!bad) {
-		fprintf(out, "%s{\"id\":%zu,\"image_id\":%zu,\"category_id\":%zu,\"iscrowd\":0,\"area\":%zu",
-			i ? "," : "", i + 1, x->view_of[i] + 1, x->object_of[i] + 1, rle_area(&m->rle));
-		put_bounds(out, &m->rle);
-		if (!isnan(m->score))
-			fprintf(out, ",\"score\":%.6g", m->score);
-		bad = m->ref && jsonl_put_string(out, ",\"ref\":", m->ref, e);
-	}
-	if (!bad) {
-		fprintf(out, ",\"segmentation\":{\"size\":[%d,%d]", m->rle.height, m->rle.width);
-		bad = jsonl_put_string(out, ",\"counts\":", counts, e);
-		fputs("}}", out);
-	}
-	free(counts);
-	return bad ? -1 : 0;
+	if (!counts)
+		return -1;
+	jsontext_open(to, NULL, '{');
+	jsontext_number(to, "id", (double)(i + 1));
+	jsontext_number(to, "image_id", (double)(x->view_of[i] + 1));
+	jsontext_number(to, "category_id", (double)(x->object_of[i] + 1));
+	jsontext_number(to, "iscrowd", 0);
+	jsontext_number(to, "area", (double)rle_area(&m->rle));
+	put_bounds(to, &m->rle);
+	snprintf(score, sizeof score, "%.6g", m->score);
+	if (!isnan(m->score))
+		jsontext_raw(to, "score", score);
+	if (m->ref)
+		jsontext_string(to, "ref", m->ref);
+	jsontext_open(to, "segmentation", '{');
+	jsontext_open(to, "size", '[');
+	jsontext_number(to, NULL, m->rle.height);
+	jsontext_number(to, NULL, m->rle.width);
+	jsontext_close(to, ']');
+	jsontext_string(to, "counts", counts);
+	jsontext_close(to, '}');
+	jsontext_close(to, '}');
+	return 0;
 }
 
 int exporting_put_coco(const struct exporting *x, FILE *out, struct err *e)
 {
-	if (put_images(x, out, e))
-		return -1;
+	struct jsontext j = {.out = out}, *to = &j;
+
+	jsontext_open(to, NULL, '{');
+	jsontext_open(to, "images", '[');
+	for (size_t v = 0; v < x->views; v++) {
+		const struct mask *m = x->first_of_view[v];
+		jsontext_open(to, NULL, '{');
+		jsontext_number(to, "id", (double)(v + 1));
+		jsontext_number(to, "width", m->rle.width);
+		jsontext_number(to, "height", m->rle.height);
+		if (put_file_name(x, to, m->view, e))
+			return -1;
+		jsontext_close(to, '}');
+	}
+	jsontext_close(to, ']');
+	jsontext_open(to, "categories", '[');
+	for (size_t o = 0; o < x->objects; o++) {
+		jsontext_open(to, NULL, '{');
+		jsontext_number(to, "id", (double)(o + 1));
+		jsontext_string(to, "name", mask_object(x->first_of_object[o]));
+		jsontext_close(to, '}');
+	}
+	jsontext_close(to, ']');
+	jsontext_open(to, "annotations", '[');
 	for (size_t i = 0; i < x->masks.n; i++)
-		if (put_annotation(x, i, out, e))
+		if (put_annotation(x, i, to, e))
 			return -1;
 	fputs("]}\n", out);
 	return ferror(out) ? err_errno(e, "write") : 0;
@@ -249,31 +242,22 @@ int exporting_put_coco(const struct exporting *x, FILE *out, struct err *e)
 /* Whether two masks would be one file: names may have no line's end. */
 static int check_files(const struct exporting *x, struct err *e)
 {
-	struct text_name {
-		char *name;
-	} *files = mem_zalloc(x->masks.n, sizeof *files, x->path, e);
-	struct names names;
-	int bad = !files;
+	const size_t n = x->masks.n;
+	SCOPED char **files = mem_zalloc(n, sizeof *files, x->path, e);
+	SCOPED_BY(names_free) struct names names = {0};
 	size_t earlier;
+	int bad = !files;
 
-	for (size_t i = 0; i < x->masks.n && !bad; i++) {
-		const struct mask *m = &x->masks.items[i];
-		bad = !(files[i].name = file_join(m->view, "\n", png_name(m), e));
-	}
-	bad = bad ||
-	      names_make(&names, files, sizeof *files, offsetof(struct text_name, name), x->masks.n, e);
-	if (!bad) {
-		const size_t twice = names_twice(&names, &earlier);
-		if (twice != NAMES_NONE)
-			bad = err_set(e, ERR_FORMAT,
-				"%s: view '%s' has two masks of '%s', which would be one PNG", x->path,
-				x->masks.items[twice].view, png_name(&x->masks.items[twice]));
-		names_free(&names);
-	}
-	for (size_t i = 0; files && i < x->masks.n; i++)
-		free(files[i].name);
-	free(files);
-	return bad ? -1 : 0;
+	for (size_t i = 0; i < n && !bad; i++)
+		bad = !(files[i] = file_join(x->masks.items[i].view, "\n", png_name(&x->masks.items[i]), e));
+	bad = bad || names_make(&names, files, sizeof *files, 0, n, e);
+	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
+	if (twice != NAMES_NONE)
+		bad = err_set(e, ERR_FORMAT, "%s: view '%s' has two masks of '%s', which would be one PNG",
+			x->path, x->masks.items[twice].view, png_name(&x->masks.items[twice]));
+	for (size_t i = 0; files && i < n; i++)
+		free(files[i]);
+	return bad;
 }
 
 int exporting_write_pngs(const struct exporting *x, const char *dir, struct err *e)
@@ -285,7 +269,7 @@ int exporting_write_pngs(const struct exporting *x, const char *dir, struct err 
 		const struct mask *m = &x->masks.items[i];
 		if (picture_check_size(x->path, png_name(m), (size_t)m->rle.width, (size_t)m->rle.height, e))
 			return -1;
-		uint8_t *pixels = mem_alloc((size_t)m->rle.height, (size_t)m->rle.width, x->path, e);
+		SCOPED uint8_t *pixels = mem_alloc((size_t)m->rle.height, (size_t)m->rle.width, x->path, e);
 		const struct picture one = {.view = m->view,
 			.ref = png_name(m),
 			.height = m->rle.height,
@@ -294,7 +278,6 @@ int exporting_write_pngs(const struct exporting *x, const char *dir, struct err 
 		if (pixels)
 			rle_decode(&m->rle, pixels);
 		bad = !pixels || pictures_put(&to, &one, e);
-		free(pixels);
 	}
 	return bad;
 }

@@ -4,7 +4,6 @@
 #define CMD_MASKS_EXPORTING_H
 
 #include "base/err.h"
-#include "base/names.h"
 #include "geom/camera.h"
 #include "mask/mask.h"
 

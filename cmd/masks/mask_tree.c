@@ -1,4 +1,4 @@
-#include "cmd/masks/mask_tree.h"
+#include "cmd/masks/painting.h"
 
 #include "base/file.h"
 #include "base/mem.h"
@@ -42,30 +42,23 @@ static int is_class(const char *classes, const char *name)
 
 static int walk_picture(struct walk *w, const char *folder, const char *view, const char *file, struct err *e)
 {
-	char *stem = path_ends(file, ".png") ? mem_strdup(file, e) : NULL;
+	SCOPED char *stem = path_ends(file, ".png") ? mem_strdup(file, e) : NULL;
 
-	if (!path_ends(file, ".png"))
-		return 0;
-	if (stem)
-		stem[strlen(stem) - 4] = 0;
-	if (stem && stem[view_stem(stem)]) {
-		err_set(e, ERR_FORMAT,
+	if (!stem)
+		return path_ends(file, ".png") ? -1 : 0;
+	stem[strlen(stem) - 4] = 0;
+	if (stem[view_stem(stem)])
+		return err_set(e, ERR_FORMAT,
 			"%s/%s: the mask of a photograph, as COLMAP names them, not of a thing: give such pictures by themselves, with --names",
 			folder, file);
-		free(stem);
+	SCOPED char *name = name_from_file(stem, e);
+	SCOPED char *path = name ? file_join(folder, file, "", e) : NULL;
+	if (!path)
 		return -1;
-	}
-	char *name = stem ? name_from_file(stem, e) : NULL,
-	     *path = name ? file_join(folder, file, "", e) : NULL;
-	int bad = !path;
-	if (path && is_class(w->classes, name)) {
-		w->pictures++;
-		bad = w->put(w->to, path, view, name, e);
-	}
-	free(stem);
-	free(name);
-	free(path);
-	return bad;
+	if (!is_class(w->classes, name))
+		return 0;
+	w->pictures++;
+	return w->put(w->to, path, view, name, e);
 }
 
 /* What a folder has, in order of names: their count, or -1 with *e. free() all. */
@@ -102,9 +95,9 @@ static int walk_views(struct walk *w, struct err *e)
 	struct dirent **names;
 	const int n = list(w->dir, &names, e);
 	const size_t most = n < 0 ? 0 : (size_t)n;
-	char **paths = mem_zalloc(most, sizeof *paths, "views", e),
-	     **views = mem_zalloc(most, sizeof *views, "views", e);
-	const char **files = mem_zalloc(most, sizeof *files, "views", e);
+	SCOPED char **paths = mem_zalloc(most, sizeof *paths, "views", e),
+		    **views = mem_zalloc(most, sizeof *views, "views", e);
+	SCOPED const char **files = mem_zalloc(most, sizeof *files, "views", e);
 	int bad = n < 0 || !paths || !views || !files;
 	size_t count = 0;
 
@@ -121,23 +114,16 @@ static int walk_views(struct walk *w, struct err *e)
 		free(paths[i]);
 		free(views[i]);
 	}
-	free(paths);
-	free(views);
-	free(files);
 	free_list(names, n);
 	return bad ? -1 : 0;
 }
 
 static int read_classes(struct walk *w, struct err *e)
 {
-	char *path = file_join(w->dir, "classes.txt", "", e), *text = NULL;
+	SCOPED char *path = file_join(w->dir, "classes.txt", "", e), *text = NULL;
 	size_t length;
-	const int bad = !path || (file_exists(path) && (textfile_read(path, &text, &length, e) ||
-							       !(w->classes = name_copy(text, e))));
-
-	free(path);
-	free(text);
-	return bad;
+	return !path || (file_exists(path) && (textfile_read(path, &text, &length, e) ||
+						      !(w->classes = name_copy(text, e))));
 }
 
 int mask_tree_each(const char *dir, mask_tree_put *put, void *to, struct err *e)

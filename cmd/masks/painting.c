@@ -1,12 +1,9 @@
-#include "cmd/masks/painting_private.h"
+#include "cmd/masks/painting.h"
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
-#include "cmd/masks/mask_tree.h"
-#include "formats/records/annotations.h"
 #include "formats/records/jsonl.h"
-#include "formats/records/masks.h"
 #include "formats/images/png.h"
 
 #include <math.h>
@@ -100,19 +97,17 @@ static int check_picture(struct putting *p, struct annotations *a, const char *p
 
 static int put_labelled(struct putting *p, const char *path, struct err *e)
 {
-	struct annotations a;
-	const int bad = annotations_read(&a, path, e) || check_picture(p, &a, path, e) ||
-			painting_layers(&a, e) || put_labels(&a, path, p->w, p->out, &p->count, p->to, e);
+	SCOPED_BY(annotations_free) struct annotations a = {0};
 
-	annotations_free(&a);
-	return bad ? -1 : 0;
+	return annotations_read(&a, path, e) || check_picture(p, &a, path, e) || painting_layers(&a, e) ||
+	       put_labels(&a, path, p->w, p->out, &p->count, p->to, e);
 }
 
 /* *count grows by the records. */
 static int put_records(const char *path, struct warping *w, FILE *out, size_t *count, struct err *e)
 {
 	struct mask mask;
-	struct jsonl j;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	int got;
 
 	if (jsonl_open(&j, path, e))
@@ -133,7 +128,6 @@ static int put_records(const char *path, struct warping *w, FILE *out, size_t *c
 			break;
 		++*count;
 	}
-	jsonl_close(&j);
 	return got;
 }
 
@@ -165,23 +159,20 @@ static int put_tree_mask(void *to, const char *path, const char *view, const cha
 	struct mask mask = {.view = view, .object = name, .score = NAN, .visible = NAN};
 	char fault[NAME_FAULT];
 	const char *reason = name_fault(name, NAME_DATA, fault);
-	uint8_t *pixels;
+	SCOPED uint8_t *pixels = NULL;
 	int height, width;
 
 	if (reason)
 		return err_set(e, ERR_FORMAT, "%s: the name %s", path, reason);
-	if (png_read_mask(path, &pixels, &height, &width, e))
+	if (png_read_mask(path, &pixels, &height, &width, e) ||
+		rle_encode(&mask.rle, pixels, height, width, e))
 		return -1;
-	int bad = rle_encode(&mask.rle, pixels, height, width, e);
-	free(pixels);
-	if (bad)
-		return -1;
-	if (!rle_area(&mask.rle)) {
-		rle_free(&mask.rle);
-		return 0;
+	if (rle_area(&mask.rle)) {
+		p->count++;
+		return painting_put(&mask, p->w, path, p->out, e);
 	}
-	p->count++;
-	return painting_put(&mask, p->w, path, p->out, e);
+	rle_free(&mask.rle);
+	return 0;
 }
 
 static int put_any(struct putting *p, const char *path, struct err *e)

@@ -1,16 +1,100 @@
 /* Pictures that have a colour for each thing: a mask for each colour that has a name. */
-#include "cmd/masks/painting_private.h"
+#include "cmd/masks/painting.h"
 
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/names.h"
 #include "base/path.h"
 #include "formats/images/png.h"
+#include "formats/records/jsonl.h"
 #include "geom/views.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+void painting_names_free(struct painting_names *names)
+{
+	for (size_t i = 0; i < names->n; i++)
+		free(names->items[i].name);
+	free(names->items);
+	*names = (struct painting_names){0};
+}
+
+/* "#rrggbb" or "0" to "65535" at the beginning of a line: where it ends, or NULL. */
+static char *take_colour(char *text, uint32_t *colour)
+{
+	const int is_hex = *text == '#';
+	char *end, *digits = text + is_hex;
+	const size_t n = strspn(digits, is_hex ? "0123456789abcdefABCDEF" : "0123456789");
+	const unsigned long value = strtoul(digits, &end, is_hex ? 16 : 10);
+
+	if (end != digits + n || (is_hex ? n != 6 : !n || value > 65535 || n > (value > 255 ? 5 : 3)) ||
+		!strchr(" \t", *end))
+		return NULL;
+	*colour = is_hex ? (uint32_t)value : png_paint_number((uint32_t)value);
+	return end;
+}
+
+/* The name of a colour, or NULL. */
+static const struct painting_name *painting_names_find(const struct painting_names *names, uint32_t colour)
+{
+	for (size_t i = 0; i < names->n; i++)
+		if (names->items[i].colour == colour)
+			return &names->items[i];
+	return NULL;
+}
+
+static int has_name(const struct painting_names *names, const char *name)
+{
+	for (size_t i = 0; i < names->n; i++)
+		if (!strcmp(names->items[i].name, name))
+			return 1;
+	return 0;
+}
+
+static int add_name(struct painting_names *names, const struct jsonl *j, struct err *e)
+{
+	char *text = j->line + strspn(j->line, " \t"), fault[NAME_FAULT];
+	uint32_t colour;
+	char *name = take_colour(text, &colour);
+
+	if (!name)
+		return jsonl_err(j, e, "does not begin with #rrggbb or 0 to 65535, and a blank");
+	name += strspn(name, " \t");
+	for (size_t n = strlen(name); n && strchr(" \t", name[n - 1]); n--)
+		name[n - 1] = 0;
+	const char *reason = name_fault(name, NAME_DATA, fault);
+	if (reason)
+		return jsonl_err(j, e, "the name %s", reason);
+	if (painting_names_find(names, colour))
+		return jsonl_err(j, e, "its colour or number has a name already");
+	if (has_name(names, name))
+		return jsonl_err(j, e, "the name '%s' has a colour already", name);
+	if (mem_grow(
+		    (void **)&names->items, &names->capacity, names->n + 1, sizeof *names->items, j->path, e))
+		return -1;
+	names->items[names->n] = (struct painting_name){colour, mem_strdup(name, e), 0};
+	return names->items[names->n].name ? (int)(names->n++, 0) : -1;
+}
+
+int painting_names_read(struct painting_names *names, const char *path, struct err *e)
+{
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
+	int got;
+
+	*names = (struct painting_names){0};
+	if (jsonl_open(&j, path, e))
+		return -1;
+	while ((got = jsonl_text(&j, e)) > 0)
+		if (add_name(names, &j, e)) {
+			got = -1;
+			break;
+		}
+	if (!got && !names->n)
+		got = err_set(e, ERR_FORMAT, "%s: holds no names", j.path);
+	return got;
+}
 
 /* A warning where more of a picture than this is of a colour that is neither black nor white and has no name.
  */
@@ -74,7 +158,7 @@ static int warn_unnamed(const struct picture_read *p, const struct painting_name
 	const struct report *to, struct err *e)
 {
 	const size_t pixels = (size_t)p->height * (size_t)p->width;
-	uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
+	SCOPED uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
 
 	if (!sorted)
 		return -1;
@@ -96,7 +180,6 @@ static int warn_unnamed(const struct picture_read *p, const struct painting_name
 			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path, (unsigned)colour,
 				100 * share);
 	}
-	free(sorted);
 	return 0;
 }
 
@@ -125,8 +208,8 @@ int painting_two_pictures(const char *earlier, const char *later, const char *vi
 
 int painting_check_shared(const char *const *pictures, size_t count, struct err *e)
 {
-	char **views = mem_zalloc(count, sizeof *views, "views", e);
-	struct names names = {0};
+	SCOPED char **views = mem_zalloc(count, sizeof *views, "views", e);
+	SCOPED_BY(names_free) struct names names = {0};
 	size_t earlier;
 	int bad = !views;
 
@@ -137,9 +220,7 @@ int painting_check_shared(const char *const *pictures, size_t count, struct err 
 	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
 	if (twice != NAMES_NONE)
 		bad = painting_two_pictures(pictures[earlier], pictures[twice], views[twice], e);
-	names_free(&names);
 	for (size_t i = 0; views && i < count; i++)
 		free(views[i]);
-	free(views);
 	return bad ? -1 : 0;
 }

@@ -1,7 +1,7 @@
 /* Outlines that a person drew go on beneath what lies on the thing: the smaller of two is on top, and the
  * larger does not have its pixels. Two names of one thing, and a part that its name says to be one, overlap.
  */
-#include "cmd/masks/painting_private.h"
+#include "cmd/masks/painting.h"
 
 #include "base/mem.h"
 
@@ -76,7 +76,7 @@ static int put_under(struct layer *under, const struct layer *top, struct err *e
 
 int painting_layers(struct annotations *a, struct err *e)
 {
-	struct layer *layers = mem_zalloc(a->n, sizeof *layers, "labels", e);
+	SCOPED struct layer *layers = mem_zalloc(a->n, sizeof *layers, "labels", e);
 	size_t n = 0;
 	int bad = !layers;
 
@@ -98,6 +98,5 @@ int painting_layers(struct annotations *a, struct err *e)
 		rle_free(&layers[i].of->mask);
 		layers[i].of->mask = layers[i].left;
 	}
-	free(layers);
 	return bad ? -1 : 0;
 }

@@ -9,9 +9,7 @@
 #include "mask/overlay.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* DIR/VIEW/REF + suffix, with the folder made. free() it; NULL with *e set. */
 static char *make_path(const char *dir, const struct picture *one, const char *suffix, struct err *e)
@@ -28,15 +26,13 @@ static char *make_path(const char *dir, const struct picture *one, const char *s
 static int put_mask(const char *path, const struct picture *one, struct err *e)
 {
 	const size_t pixels = (size_t)one->width * (size_t)one->height;
-	uint8_t *grey = mem_alloc(pixels, 1, path, e);
+	SCOPED uint8_t *grey = mem_alloc(pixels, 1, path, e);
 
 	if (!grey)
 		return -1;
 	for (size_t p = 0; p < pixels; p++)
 		grey[p] = one->mask[p] ? 255 : 0;
-	int bad = png_write(path, grey, one->height, one->width, 1, e);
-	free(grey);
-	return bad;
+	return png_write(path, grey, one->height, one->width, 1, e);
 }
 
 static int put_numbers(const char *path, const struct picture *one, struct err *e)
@@ -47,22 +43,20 @@ static int put_numbers(const char *path, const struct picture *one, struct err *
 static int put_sigmoid(const char *path, const struct picture *one, struct err *e)
 {
 	const size_t pixels = (size_t)one->width * (size_t)one->height;
-	uint16_t *grey = mem_alloc(pixels, sizeof *grey, path, e);
+	SCOPED uint16_t *grey = mem_alloc(pixels, sizeof *grey, path, e);
 
 	if (!grey)
 		return -1;
 	for (size_t p = 0; p < pixels; p++)
 		grey[p] = (uint16_t)lrintf(65535 / (1 + expf(-one->image[p])));
-	int bad = png_write16(path, grey, one->height, one->width, e);
-	free(grey);
-	return bad;
+	return png_write16(path, grey, one->height, one->width, e);
 }
 
-static int put_overlay(const char *path, const struct picture *one, struct err *e)
+int picture_overlay(const char *path, const struct picture *one, struct err *e)
 {
 	const size_t bytes = 3 * (size_t)one->width * (size_t)one->height;
 	const int line = caption_height(one->width), height = one->height + 2 * line;
-	uint8_t *copy = mem_alloc((size_t)height, 3 * (size_t)one->width, path, e);
+	SCOPED uint8_t *copy = mem_alloc((size_t)height, 3 * (size_t)one->width, path, e);
 
 	if (!copy)
 		return -1;
@@ -71,9 +65,7 @@ static int put_overlay(const char *path, const struct picture *one, struct err *
 	overlay_draw(copy, one->mask, one->height, one->width);
 	for (int k = 0; k < 2; k++)
 		caption_draw(copy, one->width, one->height + k * line, one->words[k]);
-	int bad = png_write(path, copy, height, one->width, 3, e);
-	free(copy);
-	return bad;
+	return png_write(path, copy, height, one->width, 3, e);
 }
 
 int pictures_put(const struct pictures *p, const struct picture *one, struct err *e)
@@ -83,14 +75,13 @@ int pictures_put(const struct pictures *p, const struct picture *one, struct err
 		int (*put)(const char *path, const struct picture *one, struct err *e);
 	} kinds[] = {{p->masks, ".png", put_mask},
 		{p->responses, p->is_npy ? ".npy" : ".png", p->is_npy ? put_numbers : put_sigmoid},
-		{p->overlays, ".png", put_overlay}};
+		{p->overlays, ".png", picture_overlay}};
 
 	for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
 		if (!kinds[i].dir)
 			continue;
-		char *path = make_path(kinds[i].dir, one, kinds[i].suffix, e);
+		SCOPED char *path = make_path(kinds[i].dir, one, kinds[i].suffix, e);
 		int bad = path ? kinds[i].put(path, one, e) : -1;
-		free(path);
 		if (bad)
 			return -1;
 	}

@@ -28,4 +28,8 @@ struct picture {
 /* Writes DIR/VIEW/REF.png (.npy) of each kind, each appearing whole; makes the folders. */
 int pictures_put(const struct pictures *p, const struct picture *one, struct err *e);
 
+/* An overlay alone: the colours with the mask over them, and its words below. Returns 0, or -1 with *e set.
+ */
+int picture_overlay(const char *path, const struct picture *one, struct err *e);
+
 #endif

@@ -4,7 +4,6 @@
 #include "answer/peak.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/render/overlay_words.h"
 #include "formats/records/masks.h"
 
 #include <stdlib.h>
@@ -25,7 +24,7 @@ static int add_view(struct drawing *d, const struct camera *view, struct err *e)
 int draw_choose(struct drawing *d, const struct draw_options *options, struct request *request, struct err *e)
 {
 	const struct cameras *from = &request->scene.cameras;
-	char *chosen = mem_zalloc(from->n, 1, "views", e);
+	SCOPED char *chosen = mem_zalloc(from->n, 1, "views", e);
 
 	d->options = options;
 	d->request = request;
@@ -36,7 +35,6 @@ int draw_choose(struct drawing *d, const struct draw_options *options, struct re
 				   : options->split == REQUEST_ALL ||
 					     (int)from->views[i].split == options->split)
 			bad = add_view(d, &from->views[i], e);
-	free(chosen);
 	return bad ? -1 : 0;
 }
 
@@ -129,7 +127,7 @@ static int put_sentence(const struct drawing *d, size_t i, size_t view, const st
 	m.object = text_object(&r->text, r->refs[i]);
 	if (r->responses.sure)
 		m.score = rle_area(&m.rle) ? r->responses.sure[i] : 0;
-	return masks_put_parts(d->out, &m, parts, list_parts(r, shown, answer, parts), e);
+	return d->put(d->data, &m, parts, list_parts(r, shown, answer, parts), e);
 }
 
 static int put_view(void *data, size_t view, struct err *e)
@@ -137,14 +135,13 @@ static int put_view(void *data, size_t view, struct err *e)
 	struct drawing *d = data;
 	const struct request *r = d->request;
 	struct mask *shown = d->shown + view * r->responses.answers;
-	struct mask *parts = mem_alloc(r->model.lifted.objects, sizeof *parts, "masks", e);
+	SCOPED struct mask *parts = mem_alloc(r->model.lifted.objects, sizeof *parts, "masks", e);
 	int bad = !parts;
 
 	for (size_t i = 0; i < r->count && !bad; i++)
 		bad = put_sentence(d, i, view, shown, parts, e);
 	for (size_t k = 0; k < r->responses.answers; k++)
 		mask_free(&shown[k]);
-	free(parts);
 	report_step(d->to, (double)(d->first + view) + 1, NULL);
 	return bad;
 }
@@ -186,6 +183,20 @@ static int render_all(struct drawing *d, const struct viewpoint *from, struct er
 	return bad;
 }
 
+int draw_each(struct drawing *d, const struct viewpoint *from, const struct report *to, struct err *e)
+{
+	d->to = to;
+	report_start(to, "views", (double)d->view_count);
+	const int bad = render_all(d, from, e);
+	report_end(to);
+	return bad;
+}
+
+static int put_line(void *out, const struct mask *m, const struct mask *parts, size_t n, struct err *e)
+{
+	return masks_put_parts(out, m, parts, n, e);
+}
+
 int draw(struct drawing *d, const struct viewpoint *from, const char *path, const struct report *to,
 	struct err *e)
 {
@@ -193,12 +204,9 @@ int draw(struct drawing *d, const struct viewpoint *from, const char *path, cons
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	d->to = to;
-	d->out = out.stream;
-	report_start(to, "views", (double)d->view_count);
-	int bad = render_all(d, from, e);
-	report_end(to);
-	return file_out_end(&out, bad, e);
+	d->put = put_line;
+	d->data = out.stream;
+	return file_out_end(&out, draw_each(d, from, to, e), e);
 }
 
 void drawing_free(struct drawing *d)

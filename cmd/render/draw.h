@@ -11,7 +11,6 @@
 #include "mask/mask.h"
 
 #include <stddef.h>
-#include <stdio.h>
 
 struct draw_options {
 	int split;	   /* the views of which split; REQUEST_ALL */
@@ -31,7 +30,9 @@ struct drawing {
 	struct camera *views; /* (view_count) at the size of the masks; names are the scene's */
 	/* While it goes on: */
 	const struct report *to;
-	FILE *out;
+	/* gets the record of a sentence in a view, and of its parts (n), which are not its own */
+	int (*put)(void *data, const struct mask *m, const struct mask *parts, size_t n, struct err *e);
+	void *data;
 	size_t first;	       /* of the views: the first that is rendered now */
 	struct splats *wholes; /* (answers) for outlines, else without Gaussians */
 	struct mask *shown;    /* (views that are rendered now, answers) unnamed, until they are written; each
@@ -44,11 +45,21 @@ struct drawing {
 int draw_choose(
 	struct drawing *d, const struct draw_options *options, struct request *request, struct err *e);
 
-/* Asks the model and writes the masks to a file ("-": stdout), view after view in the order of the sentences,
- * and the pictures. from: where sentences are said, as request_answer takes it. */
+/* Asks the model, and hands each mask to d->put, view after view in the order of the sentences. from: where
+ * sentences are said, as request_answer takes it. */
+int draw_each(struct drawing *d, const struct viewpoint *from, const struct report *to, struct err *e);
+
+/* Asks the model and writes the masks to a file ("-": stdout), and the pictures. */
 int draw(struct drawing *d, const struct viewpoint *from, const char *path, const struct report *to,
 	struct err *e);
 
 void drawing_free(struct drawing *d);
+
+/* The two lines of words under an overlay: the sentence, and the answer. */
+
+/* out: of the request's sentence i, with the score that its mask has, what was answered: the names of a
+ * lifted model's things, and whether they are the ones that the sentence's record names, where the model
+ * knows these. What has no room is cut. */
+void overlay_words(const struct request *r, size_t i, double score, char *out, size_t size);
 
 #endif

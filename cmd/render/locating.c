@@ -2,18 +2,91 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/run/object_extents.h"
+#include "base/name.h"
 #include "formats/records/boxes.h"
+#include "formats/splats/ply.h"
 #include "geom/up.h"
+#include "lift/labels.h"
 
 #include <stdlib.h>
+
+int labelling_open(struct labelling *r, const char *scene, const char *model, struct err *e)
+{
+	if (scene_read(&r->scene, scene, e) || anymodel_read(&r->model, model, e))
+		return -1;
+	if (!r->model.is_lifted)
+		return err_set(e, ERR_FORMAT, "%s: is a trained model; --all needs one of refer-lift",
+			file_name(model));
+	if (anymodel_check_scene(&r->model, file_name(model), &r->scene, scene, e))
+		return -1;
+	r->labels = mem_alloc(r->scene.splats.n, sizeof *r->labels, "labels", e);
+	return !r->labels || anymodel_place(&r->model, &r->scene, e) ||
+			       labels_find(r->labels, &r->model.lifted, r->model.extents, e)
+		       ? -1
+		       : 0;
+}
+
+void labelling_free(struct labelling *r)
+{
+	free(r->labels);
+	anymodel_free(&r->model);
+	scene_free(&r->scene);
+}
+
+int labelling_write_scene(const struct labelling *r, const char *path, struct err *e)
+{
+	return ply_write_labelled(&r->scene.splats, r->scene.offset, r->labels, path, e);
+}
+
+static int write_one(const struct showing *w, size_t object, const char *dir, struct err *e)
+{
+	char *name = name_to_file(w->model->lifted.names[object], e),
+	     *path = name ? file_join(dir, name, ".ply", e) : NULL;
+	SCOPED_BY(splats_free) struct splats alone = {0};
+	const int bad = !path || showing_things(&alone, w, &object, 1, LOCATE_ISOLATED, e) ||
+			ply_write(&alone, w->scene->offset, path, e);
+
+	free(path);
+	free(name);
+	return bad ? -1 : 0;
+}
+
+int labelling_write_each(const struct labelling *r, const char *dir, struct err *e)
+{
+	SCOPED_BY(showing_free) struct showing w = {0};
+
+	if (file_make_dir(dir, e))
+		return -1;
+	int bad = showing_open(&w, &r->scene, &r->model, e);
+	for (size_t o = 0; o < r->model.lifted.objects && !bad; o++)
+		bad = write_one(&w, o, dir, e);
+	return bad ? -1 : 0;
+}
+
+int labelling_write(const struct labelling *r, const char *path, struct err *e)
+{
+	const struct lifted *l = &r->model.lifted;
+	struct file_out out;
+	int bad = 0;
+
+	if (file_out_open(&out, path, e))
+		return -1;
+	for (size_t o = 0; o < l->objects && !bad; o++) {
+		const struct extent *x = &r->model.extents[o];
+		const struct box_gaussians of = {x->n, x->ids};
+		struct box_record record = anymodel_box(x, r->scene.offset, l->confidence[o]);
+		record.object = l->names[o];
+		record.label = (int)o + 1;
+		labels_colour(record.label, record.colour);
+		bad = boxes_put(out.stream, &record, &of, e);
+	}
+	return file_out_end(&out, bad, e);
+}
 
 void locating_free(struct locating *r)
 {
 	for (size_t k = 0; r->answers && k < r->request.responses.answers; k++)
 		extent_free(&r->answers[k].extent);
-	if (r->objects)
-		object_extents_free(r->objects, r->request.model.lifted.objects);
 	free(r->answers);
 	request_free(&r->request);
 }
@@ -28,15 +101,14 @@ static size_t parts_of(const struct responses *a, size_t answer)
 /* The objects, where an answer is of several. */
 static int find_objects(struct locating *r, struct err *e)
 {
-	const struct request *q = &r->request;
+	struct request *q = &r->request;
 	int has_several = 0;
 
 	for (size_t k = 0; k < q->responses.answers; k++)
 		has_several |= parts_of(&q->responses, k) > 0;
 	if (!has_several)
 		return 0;
-	r->objects = object_extents(&q->model.lifted, &q->scene.splats, &q->scene.cameras, e);
-	return r->objects ? 0 : -1;
+	return anymodel_place(&q->model, &q->scene, e);
 }
 
 int locating_find(struct locating *r, double up[3], struct err *e)
@@ -59,8 +131,8 @@ static int make_parts(const struct locating *r, size_t answer, struct box_record
 	*parts = mem_zalloc(n, sizeof **parts, "objects", e);
 	for (size_t i = 0; i < n && *parts; i++) {
 		const size_t o = a->objects[a->begin[answer] + i];
-		(*parts)[i] = object_extents_record(
-			&r->objects[o], r->request.scene.offset, r->request.model.lifted.confidence[o]);
+		(*parts)[i] = anymodel_box(&r->request.model.extents[o], r->request.scene.offset,
+			r->request.model.lifted.confidence[o]);
 		(*parts)[i].object = r->request.model.lifted.names[o];
 	}
 	return *parts ? 0 : -1;
@@ -77,8 +149,7 @@ static int put(const struct locating *r, size_t i, FILE *out, struct err *e)
 
 	if (make_parts(r, answer, &parts, e))
 		return -1;
-	record =
-		object_extents_record(x, q->scene.offset, q->responses.sure ? q->responses.sure[i] : l->sure);
+	record = anymodel_box(x, q->scene.offset, q->responses.sure ? q->responses.sure[i] : l->sure);
 	record.ref = q->text.refs[q->refs[i]];
 	record.object = (char *)text_object(&q->text, q->refs[i]);
 	record.parts = parts;

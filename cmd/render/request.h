@@ -5,12 +5,14 @@
 
 #include "answer/responses.h"
 #include "ask/choose.h"
-#include "places/viewpoint.h"
 #include "base/err.h"
 #include "cmd/run/anymodel.h"
 #include "formats/scene/scene.h"
 #include "formats/scene/text.h"
+#include "lift/lifted_model.h"
+#include "places/viewpoint.h"
 
+#include <cjson/cJSON.h>
 #include <stddef.h>
 
 /* Beside SPLIT_TRAIN and SPLIT_TEST. */
@@ -73,5 +75,14 @@ int request_viewpoint(const struct request *r, struct viewpoint *from, struct er
 int request_answer(struct request *r, const struct viewpoint *from, struct err *e);
 
 void request_free(struct request *r);
+
+/* What a sentence's record says that it means, and whether an answer is that. */
+
+/* The names that a sentence's record has for what it means; cJSON_Delete. NULL where it says nothing. */
+cJSON *meant_names(const struct text *t, size_t sentence);
+
+/* 1 where things, objects of a model, are called what is meant, and no others are among them, 0 where they
+ * are not, -1 where nothing is said (meant is NULL) or the model does not have all that is meant. */
+int meant_is(const cJSON *meant, const struct lifted *l, const size_t *things, size_t count);
 
 #endif

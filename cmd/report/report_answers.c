@@ -1,108 +1,54 @@
-#include "cmd/report/report_answers.h"
+#include "cmd/report/reporting.h"
 
-#include "answer/answer.h"
 #include "base/mem.h"
+#include "cmd/render/draw.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { MOST_VIEWS = 6 };
 
-struct collecting {
-	const struct report *to;
-	const struct responses *responses;
-	struct rle *shown; /* (views, answers) */
-};
-
-static int keep_mask(void *data, const struct answer *a, struct err *e)
+/* data: the set whose masks grow by a copy. */
+static int keep_mask(void *data, const struct mask *m, const struct mask *parts, size_t n, struct err *e)
 {
-	const struct collecting *c = data;
-	struct rle *to = &c->shown[a->view * c->responses->answers + a->answer];
+	struct report_set *s = data;
+	struct mask own = {.score = m->score, .visible = NAN};
 
-	return rle_encode(to, a->mask, a->camera->height, a->camera->width, e);
-}
-
-static int step(void *data, size_t view, struct err *e)
-{
-	const struct collecting *c = data;
-
-	(void)e;
-	report_step(c->to, (double)view + 1, NULL);
-	return 0;
-}
-
-static int put_mask(struct report_set *s, size_t sentence, const char *view, const struct rle *mask,
-	double score, struct err *e)
-{
-	const char *object = text_object(&s->text, sentence);
-	struct mask own = {.score = rle_area(mask) ? score : 0, .visible = NAN};
-
-	own.view = mem_strdup(view, e);
-	own.ref = mem_strdup(s->text.refs[sentence], e);
-	own.object = object ? mem_strdup(object, e) : NULL;
-	if (!own.view || !own.ref || (object && !own.object) ||
-		rle_from_runs(&own.rle, mask->runs, mask->n, mask->height, mask->width, e)) {
+	(void)parts, (void)n;
+	own.view = mem_strdup(m->view, e);
+	own.ref = mem_strdup(m->ref, e);
+	own.object = m->object ? mem_strdup(m->object, e) : NULL;
+	if (!own.view || !own.ref || (m->object && !own.object) ||
+		rle_from_runs(&own.rle, m->rle.runs, m->rle.n, m->rle.height, m->rle.width, e)) {
 		mask_free(&own);
 		return -1;
 	}
+	s->masks.n++;
 	return masks_add(&s->masks.set, &own, e);
-}
-
-static int put_masks(struct report_set *s, const struct collecting *c, const struct camera *views,
-	size_t view_count, struct err *e)
-{
-	const struct responses *a = c->responses;
-
-	for (size_t v = 0; v < view_count; v++)
-		for (size_t i = 0; i < s->text.n; i++)
-			if (put_mask(s, i, views[v].name, &c->shown[v * a->answers + a->answer[i]],
-				    a->sure[i], e))
-				return -1;
-	s->masks.n = s->masks.set.n;
-	return 0;
-}
-
-static int ask(const struct report_run *r, const struct text *t, struct responses *a, struct err *e)
-{
-	size_t *which = mem_alloc(t->n, sizeof *which, "sentences", e);
-	const struct anymodel_ask q = {.scene = &r->scene,
-		.text = t,
-		.model_path = r->lifted_path,
-		.scene_path = r->scene.path,
-		.text_path = "text.safetensors",
-		.which = which,
-		.count = t->n,
-		.parts = CHOOSE_ALL,
-		.least = RESPONSES_LEAST};
-
-	if (!which)
-		return -1;
-	for (size_t i = 0; i < t->n; i++)
-		which[i] = i;
-	const int bad = anymodel_answer(&r->lifted, &q, a, e);
-	free(which);
-	return bad;
 }
 
 int report_answer(const struct report_run *r, struct report_set *s, const struct report *to, struct err *e)
 {
-	struct camera views[MOST_VIEWS];
 	const size_t most = r->options->views < MOST_VIEWS ? (size_t)r->options->views : MOST_VIEWS;
-	const size_t n = cameras_spread(&r->scene.cameras, most, (int)r->options->width, views);
-	struct responses a = {0};
-	struct collecting c = {to, &a, NULL};
-	const struct answer_question q = {.splats = &r->scene.splats, .responses = &a};
-	const struct answer_calls calls = {&c, keep_mask, step};
+	const struct request_options options = {.scene = r->scene.path,
+		.text = "text.safetensors",
+		.model = r->lifted_path,
+		.least = RESPONSES_LEAST};
+	const struct draw_options how = {0};
+	struct camera views[MOST_VIEWS];
+	SCOPED size_t *refs = mem_alloc(s->text.n, sizeof *refs, "sentences", e);
+	/* what is read stays the run's */
+	struct request q = {&options, r->scene, s->text, r->lifted, s->text.n, refs, CHOOSE_ALL, {0}};
+	struct drawing d = {.options = &how, .request = &q, .put = keep_mask, .data = s};
 
-	if (ask(r, &s->text, &a, e))
+	if (!refs)
 		return -1;
-	report_start(to, "views", (double)n);
-	int bad = !(c.shown = mem_zalloc(n * a.answers, sizeof *c.shown, "masks", e)) ||
-		  answer_all(&q, views, n, &calls, e) || put_masks(s, &c, views, n, e);
-	report_end(to);
-	for (size_t k = 0; c.shown && k < n * a.answers; k++)
-		rle_free(&c.shown[k]);
-	free(c.shown);
-	responses_free(&a);
-	return bad ? -1 : 0;
+	for (size_t i = 0; i < s->text.n; i++)
+		refs[i] = i;
+	d.view_count = cameras_spread(&r->scene.cameras, most, (int)r->options->width, views);
+	d.views = views;
+	const int bad = draw_each(&d, NULL, to, e);
+	d.views = NULL;
+	drawing_free(&d);
+	responses_free(&q.responses);
+	return bad;
 }

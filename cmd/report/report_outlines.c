@@ -1,10 +1,9 @@
-#include "cmd/report/report_outlines.h"
+#include "cmd/report/reporting.h"
 
 #include "base/hash.h"
 #include "base/mem.h"
 #include "mask/trace.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,18 +34,15 @@ static char *path_of(const struct trace *t, struct err *e)
 
 static char *trace_path(const struct rle *mask, int height, int width, struct err *e)
 {
-	struct rle small = {0};
-	struct trace t = {0};
-	uint8_t *pixels = mem_alloc((size_t)height, (size_t)width, "mask", e);
+	SCOPED_BY(rle_free) struct rle small = {0};
+	SCOPED_BY(trace_free) struct trace t = {0};
+	SCOPED uint8_t *pixels = mem_alloc((size_t)height, (size_t)width, "mask", e);
 	char *path = NULL;
 
 	if (pixels && !rle_resize(&small, mask, height, width, e)) {
 		rle_decode(&small, pixels);
 		path = trace_mask(&t, pixels, height, width, e) ? NULL : path_of(&t, e);
 	}
-	trace_free(&t);
-	rle_free(&small);
-	free(pixels);
 	return path;
 }
 
@@ -69,19 +65,6 @@ int report_outline(struct report_outlines *o, const struct rle *mask, int height
 	}
 	o->items[o->n++] = (struct report_outline){path, hash};
 	return 0;
-}
-
-cJSON *report_outlines_list(const struct report_outlines *o)
-{
-	cJSON *list = cJSON_CreateArray();
-	int fine = list != NULL;
-
-	for (size_t i = 0; i < o->n && fine; i++)
-		fine = cJSON_AddItemToArray(list, cJSON_CreateString(o->items[i].path));
-	if (fine)
-		return list;
-	cJSON_Delete(list);
-	return NULL;
 }
 
 void report_outlines_free(struct report_outlines *o)

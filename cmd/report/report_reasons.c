@@ -1,4 +1,4 @@
-#include "cmd/report/report_reasons.h"
+#include "cmd/report/reporting.h"
 
 #include "base/mem.h"
 
@@ -9,7 +9,6 @@ struct choosing {
 	const struct report_run *run;
 	const struct text *text;
 	struct report_reason *reasons;
-	struct choose_sentence *sentences; /* (n) */
 	struct choice *choices;
 	float *probability; /* (n, objects) */
 	char *chosen;
@@ -33,7 +32,7 @@ static void watch(void *data, size_t i, const struct meaning *m)
 	const struct explained x = {m, m->sentence->parse, c->text->texts[i]};
 
 	explain_refusal(&x, c->reasons[i].refusal);
-	if (!(c->reasons[i].explained = explain_meaning(&x)))
+	if (!(c->reasons[i].explained = explain_meaning(&x, 1)))
 		c->is_out_of_memory = 1;
 }
 
@@ -44,21 +43,15 @@ static int choose_all(struct choosing *c, struct err *e)
 	const struct parser parser = {.weights = &c->run->lifted.weights, .encoder = t->encoder.hex};
 	const struct choose_scene of = {l, &c->run->scene.splats, &c->run->scene.cameras, &parser, 1};
 	const struct choose_watch watching = {c, watch};
+	SCOPED struct choose_sentence *sentences = mem_alloc(t->n, sizeof *sentences, "sentences", e);
 
-	if (!(c->sentences = mem_alloc(t->n, sizeof *c->sentences, "sentences", e)) ||
-		!(c->choices = mem_alloc(t->n, sizeof *c->choices, "sentences", e)) ||
+	if (!sentences || !(c->choices = mem_alloc(t->n, sizeof *c->choices, "sentences", e)) ||
 		!(c->probability = mem_alloc(t->n, l->objects * sizeof *c->probability, "sentences", e)) ||
 		!(c->chosen = mem_alloc(t->n, l->objects, "sentences", e)))
 		return -1;
 	for (size_t i = 0; i < t->n; i++)
-		c->sentences[i] = (struct choose_sentence){.text = t->texts[i],
-			.pieces = t->pieces ? t->pieces[i] : NULL,
-			.vectors = t->words + (size_t)t->offsets[i] * (size_t)t->width,
-			.middle = text_middle(t, i),
-			.words = (size_t)(t->offsets[i + 1] - t->offsets[i]),
-			.from = viewpoint_of(c, i)};
-	return choose(
-		&of, c->sentences, t->n, CHOOSE_ALL, c->choices, c->probability, c->chosen, &watching, e);
+		sentences[i] = asking_sentence(t, i, viewpoint_of(c, i));
+	return choose(&of, sentences, t->n, CHOOSE_ALL, c->choices, c->probability, c->chosen, &watching, e);
 }
 
 /* The likeliest object that is chosen, or not chosen; objects where there is none. Takes it off the chosen.
@@ -75,25 +68,26 @@ static size_t take_best(const float *probability, char *chosen, int is_chosen, s
 	return best;
 }
 
-static int take_answer(struct choosing *c, size_t i)
+static int take_answer(struct choosing *c, size_t i, struct err *e)
 {
 	const struct lifted *l = &c->run->lifted.lifted;
 	const float *probability = c->probability + i * l->objects;
 	char *chosen = c->chosen + i * l->objects;
 	struct report_reason *to = &c->reasons[i];
 	size_t o;
-	int fine = (to->answer = cJSON_CreateArray()) != NULL;
 
+	if (!(to->things = mem_alloc(l->objects, sizeof *to->things, "answer", e)))
+		return -1;
 	to->there = c->choices[i].there;
 	if (to->there < RESPONSES_LEAST)
 		memset(chosen, 0, l->objects);
-	while (fine && (o = take_best(probability, chosen, 1, l->objects)) < l->objects)
-		fine = cJSON_AddItemToArray(to->answer, cJSON_CreateString(l->names[o]));
+	while ((o = take_best(probability, chosen, 1, l->objects)) < l->objects)
+		to->things[to->count++] = o;
 	if ((o = take_best(probability, chosen, 0, l->objects)) < l->objects) {
 		to->runner_up = l->names[o];
 		to->runner_up_chance = to->there * (double)probability[o];
 	}
-	return fine ? 0 : -1;
+	return 0;
 }
 
 int report_reasons(
@@ -107,9 +101,8 @@ int report_reasons(
 			r->lifted_path);
 	bad = choose_all(&c, e);
 	for (size_t i = 0; i < s->text.n && !bad; i++)
-		if (take_answer(&c, i) || c.is_out_of_memory)
-			bad = err_set(e, ERR_SYSTEM, "explanation: out of memory");
-	free(c.sentences);
+		bad = c.is_out_of_memory ? err_set(e, ERR_SYSTEM, "explanation: out of memory")
+					 : take_answer(&c, i, e);
 	free(c.choices);
 	free(c.probability);
 	free(c.chosen);
@@ -119,7 +112,7 @@ int report_reasons(
 void report_reasons_free(struct report_reason *reasons, size_t n)
 {
 	for (size_t i = 0; reasons && i < n; i++) {
-		cJSON_Delete(reasons[i].answer);
-		cJSON_Delete(reasons[i].explained);
+		free(reasons[i].things);
+		free(reasons[i].explained);
 	}
 }

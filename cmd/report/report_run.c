@@ -1,10 +1,9 @@
 /* A folder may lack anything but the scene and one set of answers. What is there is found by its usual name
  * (pipelines/two-stage.mk, lift.mk). */
-#include "cmd/report/report_run.h"
+#include "cmd/report/reporting.h"
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/report/report_answers.h"
 #include "score/score_choice.h"
 
 #include <stdlib.h>
@@ -40,13 +39,11 @@ static int read_scene(struct report_run *r, struct err *e)
 
 	if (!file_exists(run))
 		return err_set(e, ERR_SYSTEM, "%s: No such file or directory", run);
-	char *path = part(r, "scene", e);
+	SCOPED char *path = part(r, "scene", e);
 	if (!path)
 		return err_set(e, ERR_SYSTEM,
 			"%s: no scene in it: 'make -f pipelines/lift.mk SCENE=%s ...' makes one", run, run);
-	const int bad = scene_read(&r->scene, path, e);
-	free(path);
-	return bad;
+	return scene_read(&r->scene, path, e);
 }
 
 static int read_lifted(struct report_run *r, struct err *e)
@@ -66,21 +63,19 @@ static int read_lifted(struct report_run *r, struct err *e)
 static int find_truth(struct report_run *r, struct err *e)
 {
 	static const char before[] = " --truth ";
-	char *path, *command = NULL, *at;
+	SCOPED char *path = NULL, *command = NULL;
 	size_t length;
-	int bad = 0;
 
 	if (r->options->truth)
 		return (r->truth_path = mem_strdup(r->options->truth, e)) ? 0 : -1;
 	if (!(path = part(r, "log/score.command", e)))
 		return 0;
-	bad = file_read(path, &command, &length, e);
-	at = bad ? NULL : strstr(command, before);
+	if (file_read(path, &command, &length, e))
+		return -1;
+	const char *at = strstr(command, before);
 	if (at && at[sizeof before - 1] && file_exists(at + sizeof before - 1))
-		bad = !(r->truth_path = mem_strdup(at + sizeof before - 1, e));
-	free(command);
-	free(path);
-	return bad ? -1 : 0;
+		return (r->truth_path = mem_strdup(at + sizeof before - 1, e)) ? 0 : -1;
+	return 0;
 }
 
 /* Scores a set as `miou-score --predicted-views` does; every set has its own views. */
@@ -104,7 +99,8 @@ static int score_set(const struct report_run *r, struct report_set *s, struct er
 static int read_set(struct report_run *r, size_t place, struct err *e)
 {
 	struct report_set *s = &r->sets[r->set_count];
-	char *text = part(r, places[place].text, e), *masks = text ? part(r, places[place].masks, e) : NULL;
+	SCOPED char *text = part(r, places[place].text, e),
+		    *masks = text ? part(r, places[place].masks, e) : NULL;
 	int bad = 0;
 
 	if (text && masks) {
@@ -115,32 +111,25 @@ static int read_set(struct report_run *r, size_t place, struct err *e)
 		bad = bad || (r->truth_path && score_set(r, s, e));
 		s->masks.path = NULL;
 	}
-	free(text);
-	free(masks);
 	return bad ? -1 : 0;
 }
 
 static int read_sets(struct report_run *r, const struct report *to, struct err *e)
 {
-	int bad = 0;
-
-	for (size_t k = 0; k < REPORT_SETS && !bad; k++)
-		bad = read_set(r, k, e);
-	if (bad || r->set_count)
-		return bad;
-	char *text = part(r, "text.safetensors", e);
-	if (!r->has_lifted || !text) {
-		free(text);
+	for (size_t k = 0; k < REPORT_SETS; k++)
+		if (read_set(r, k, e))
+			return -1;
+	if (r->set_count)
+		return 0;
+	SCOPED char *text = part(r, "text.safetensors", e);
+	if (!r->has_lifted || !text)
 		return err_set(e, ERR_SYSTEM,
 			"%s: no answers in it: 'make -f pipelines/lift.mk SCENE=%s ...' makes some",
 			r->options->run, r->options->run);
-	}
 	r->set_count = 1;
 	r->sets[0] = (struct report_set){.way = "lifted", .name = "train"};
-	bad = text_read(&r->sets[0].text, text, e) || report_answer(r, &r->sets[0], to, e) ||
-	      (r->truth_path && score_set(r, &r->sets[0], e));
-	free(text);
-	return bad ? -1 : 0;
+	return text_read(&r->sets[0].text, text, e) || report_answer(r, &r->sets[0], to, e) ||
+	       (r->truth_path && score_set(r, &r->sets[0], e));
 }
 
 /* How much a view is worth a picture: 2 where there is truth of it, 1 where there are answers. */
@@ -172,13 +161,11 @@ static int choose_views(struct report_run *r, struct err *e)
 {
 	const struct cameras *c = &r->scene.cameras;
 	const size_t most = (size_t)r->options->views;
-	int *worths = mem_alloc(c->n, sizeof *worths, "views", e);
+	SCOPED int *worths = mem_alloc(c->n, sizeof *worths, "views", e);
 	size_t of[3] = {0}, take[3] = {0}, at[3] = {0}, taken[3] = {0};
 
-	if (!worths || !(r->shown = mem_alloc(c->n, sizeof *r->shown, "views", e))) {
-		free(worths);
+	if (!worths || !(r->shown = mem_alloc(c->n, sizeof *r->shown, "views", e)))
 		return -1;
-	}
 	for (size_t v = 0; v < c->n; v++)
 		of[worths[v] = worth(r, c->views[v].name)]++;
 	take[2] = of[2] < most ? of[2] : most;
@@ -190,7 +177,6 @@ static int choose_views(struct report_run *r, struct err *e)
 		taken[w]++;
 		r->shown[r->shown_count++] = picture_of(&c->views[v], r->options->width);
 	}
-	free(worths);
 	return 0;
 }
 

@@ -1,19 +1,137 @@
 /* Modules and splats stand in the page packed (zlib) and as base64, in scripts of no language;
  * report_viewer.js unpacks them when the scene is first looked at. */
-#include "cmd/report/report_viewer.h"
+#include "cmd/report/reporting.h"
 
 #include "base/base64.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/text/cache_folder.h"
-#include "cmd/run/object_extents.h"
-#include "cmd/report/report_json.h"
-#include "cmd/report/report_splats.h"
+#include "cmd/text/encode.h"
+#include "formats/splats/splat.h"
 #include "geom/up.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <zlib.h>
+
+/* Gaussians of less opacity are not shown: an eye hardly sees them, and they are many. */
+#define REPORT_LEAST_OPACITY 0.03f
+
+struct report_splats {
+	size_t groups;	/* the rest, then each object of the lifted model */
+	size_t *counts; /* (groups) */
+	size_t n;	/* that are shown */
+	uint8_t *bytes; /* (32,n): all first bytes of .splat (formats/splats/splat.md), then all second ones,
+			   ... */
+};
+
+struct shown {
+	size_t gaussian, group;
+	double size; /* opacity times area */
+};
+
+static int largest_first(const void *a, const void *b)
+{
+	const struct shown *x = a, *y = b;
+
+	if (x->size != y->size)
+		return x->size > y->size ? -1 : 1;
+	return (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
+}
+
+static int by_group(const void *a, const void *b)
+{
+	const struct shown *x = a, *y = b;
+
+	return x->group != y->group ? (x->group > y->group) - (x->group < y->group) : largest_first(a, b);
+}
+
+/* groups (N): 1 + the object that has most of each Gaussian, where that is more than LIFTED_CUT; else 0. */
+static int find_groups(const struct report_run *r, size_t *groups, struct err *e)
+{
+	const struct lifted *l = &r->lifted.lifted;
+	SCOPED float *best = mem_zalloc(r->scene.splats.n, sizeof *best, "splats", e);
+
+	if (!best)
+		return -1;
+	for (size_t o = 0; r->has_lifted && o < l->objects; o++)
+		for (int64_t k = l->indptr[o]; k < l->indptr[o + 1]; k++) {
+			const size_t i = (size_t)l->index[k];
+			if (l->share[k] <= LIFTED_CUT || l->share[k] <= best[i])
+				continue;
+			best[i] = l->share[k];
+			groups[i] = 1 + o;
+		}
+	return 0;
+}
+
+/* Those that are seen, the largest first. Returns how many. */
+static size_t find_shown(const struct splats *s, const size_t *groups, struct shown *shown)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < s->n; i++) {
+		const float *scale = s->scales + 3 * i;
+		const double a = (double)scale[0], b = (double)scale[1], c = (double)scale[2];
+		const double area =
+			a * b > a * c ? (a * b > b * c ? a * b : b * c) : (a * c > b * c ? a * c : b * c);
+		if (s->opacities[i] >= REPORT_LEAST_OPACITY)
+			shown[n++] = (struct shown){i, groups[i], area * (double)s->opacities[i]};
+	}
+	qsort(shown, n, sizeof *shown, largest_first);
+	return n;
+}
+
+/* Drops the low bits of a float's mantissa. */
+static void round_float(unsigned char *bytes, int zeros)
+{
+	for (int k = 0; k < zeros; k++)
+		bytes[k] = 0;
+}
+
+static void pack(struct report_splats *to, const struct splats *s, const struct shown *shown)
+{
+	unsigned char one[SPLAT_BYTES];
+
+	for (size_t i = 0; i < to->n; i++) {
+		splat_pack(one, s, shown[i].gaussian);
+		for (int k = 0; k < 3; k++) {
+			round_float(one + 4 * k, 1);
+			round_float(one + 12 + 4 * k, 2);
+		}
+		for (size_t k = 0; k < SPLAT_BYTES; k++)
+			to->bytes[k * to->n + i] = one[k];
+		to->counts[shown[i].group]++;
+	}
+}
+
+static int report_splats_make(struct report_splats *s, const struct report_run *r, struct err *e)
+{
+	const struct splats *from = &r->scene.splats;
+	SCOPED size_t *groups = mem_zalloc(from->n, sizeof *groups, "splats", e);
+	SCOPED struct shown *shown = mem_alloc(from->n, sizeof *shown, "splats", e);
+
+	*s = (struct report_splats){.groups = 1 + (r->has_lifted ? r->lifted.lifted.objects : 0)};
+	s->counts = mem_zalloc(s->groups, sizeof *s->counts, "splats", e);
+	int bad = !groups || !shown || !s->counts || find_groups(r, groups, e);
+	if (!bad) {
+		const size_t n = find_shown(from, groups, shown), most = (size_t)r->options->splats;
+		s->n = n < most ? n : most;
+		qsort(shown, s->n, sizeof *shown, by_group);
+		bad = !(s->bytes = mem_alloc(s->n, SPLAT_BYTES, "splats", e));
+	}
+	if (!bad)
+		pack(s, from, shown);
+	return bad ? -1 : 0;
+}
+
+/* At most r->options->splats of them, those that cover most. Lengths keep 15 bits in positions and 7 in
+ * sizes, as what is 0 packs well. Returns 0, or -1 with *e set; report_splats_free after either. */
+static void report_splats_free(struct report_splats *s)
+{
+	free(s->counts);
+	free(s->bytes);
+	*s = (struct report_splats){0};
+}
 
 __asm__(".section .rodata\n"
 	".globl report_viewer_begin\nreport_viewer_begin:\n"
@@ -36,8 +154,8 @@ static const struct {
 static int put_packed(FILE *out, const char *attributes, const void *bytes, size_t n, struct err *e)
 {
 	uLongf length = compressBound((uLong)n);
-	uint8_t *packed = mem_alloc(length, 1, "viewer", e);
-	char *text = NULL;
+	SCOPED uint8_t *packed = mem_alloc(length, 1, "viewer", e);
+	SCOPED char *text = NULL;
 
 	if (packed && compress2(packed, &length, bytes, (uLong)n, Z_BEST_COMPRESSION) != Z_OK)
 		err_set(e, ERR_SYSTEM, "viewer: cannot be packed");
@@ -45,21 +163,18 @@ static int put_packed(FILE *out, const char *attributes, const void *bytes, size
 		text = base64_text("", packed, length, e);
 	if (text)
 		fprintf(out, "<script type=\"text/plain\" %s>%s</script>\n", attributes, text);
-	free(packed);
-	free(text);
 	return text ? 0 : -1;
 }
 
 static int put_modules(FILE *out, const char *dir, struct err *e)
 {
 	for (size_t k = 0; k < sizeof modules / sizeof *modules; k++) {
-		char *path = file_join(dir, modules[k].file, "", e), *bytes = NULL, attributes[80];
+		SCOPED char *path = file_join(dir, modules[k].file, "", e), *bytes = NULL;
+		char attributes[80];
 		size_t n;
 		snprintf(attributes, sizeof attributes, "data-module=\"%s\"", modules[k].name);
 		const int bad =
 			!path || file_read(path, &bytes, &n, e) || put_packed(out, attributes, bytes, n, e);
-		free(path);
-		free(bytes);
 		if (bad)
 			return -1;
 	}
@@ -67,126 +182,123 @@ static int put_modules(FILE *out, const char *dir, struct err *e)
 }
 
 /* To six digits of the largest. */
-static cJSON *numbers(const double *x, int n)
+static void put_numbers(struct jsontext *to, const char *key, const double x[3])
 {
-	double rounded[3], most = 0;
+	double most = 0;
 
-	for (int k = 0; k < n; k++)
+	for (int k = 0; k < 3; k++)
 		most = fmax(most, fabs(x[k]));
 	const double digits = most > 0 ? pow(10, 5 - floor(log10(most))) : 1;
-	for (int k = 0; k < n; k++)
-		rounded[k] = round(x[k] * digits) / digits;
-	return cJSON_CreateDoubleArray(rounded, n);
+	jsontext_open(to, key, '[');
+	for (int k = 0; k < 3; k++)
+		jsontext_number(to, NULL, round(x[k] * digits) / digits);
+	jsontext_close(to, ']');
 }
 
-static int add_box(cJSON *to, const struct box *b)
+static void put_box(struct jsontext *to, const struct box *b)
 {
-	cJSON *box = cJSON_AddObjectToObject(to, "box"), *axes = cJSON_AddArrayToObject(box, "axes");
-	int fine = report_add(box, "centre", numbers(b->centre, 3)) &&
-		   report_add(box, "half", numbers(b->half, 3));
-
-	for (int k = 0; k < 3 && fine; k++)
-		fine = cJSON_AddItemToArray(axes, numbers(b->axes[k], 3));
-	return fine;
+	jsontext_open(to, "box", '{');
+	jsontext_open(to, "axes", '[');
+	for (int k = 0; k < 3; k++)
+		put_numbers(to, NULL, b->axes[k]);
+	jsontext_close(to, ']');
+	put_numbers(to, "centre", b->centre);
+	put_numbers(to, "half", b->half);
+	jsontext_close(to, '}');
 }
 
-static int add_groups(
-	cJSON *to, const struct report_run *r, const struct report_splats *s, const struct extent *extents)
+static void put_groups(struct jsontext *to, const struct report_run *r, const struct report_splats *s)
 {
-	cJSON *list = cJSON_AddArrayToObject(to, "groups");
-	int fine = list != NULL;
+	const struct extent *extents = r->lifted.extents;
 
-	for (size_t g = 0; g < s->groups && fine; g++) {
-		cJSON *one = cJSON_CreateObject();
-		fine = cJSON_AddItemToArray(list, one) &&
-		       cJSON_AddNumberToObject(one, "count", (double)s->counts[g]);
-		if (g && fine)
-			fine = cJSON_AddStringToObject(one, "name", r->lifted.lifted.names[g - 1]) &&
-			       (!extents[g - 1].n || add_box(one, &extents[g - 1].turned));
+	jsontext_open(to, "groups", '[');
+	for (size_t g = 0; g < s->groups; g++) {
+		jsontext_open(to, NULL, '{');
+		jsontext_number(to, "count", (double)s->counts[g]);
+		if (g)
+			jsontext_string(to, "name", r->lifted.lifted.names[g - 1]);
+		if (g && extents[g - 1].n)
+			put_box(to, &extents[g - 1].turned);
+		jsontext_close(to, '}');
 	}
-	return fine;
+	jsontext_close(to, ']');
 }
 
 /* Where the viewer begins: the first view that has a picture. */
-static int add_camera(cJSON *to, const struct report_run *r)
+static void put_camera(struct jsontext *to, const struct report_run *r)
 {
 	const struct camera *c = r->shown_count ? &r->shown[0] : NULL;
-	cJSON *camera = cJSON_AddObjectToObject(to, "camera");
 	double centre[3], up[3];
 
+	jsontext_open(to, "camera", '{');
+	if (c) {
+		camera_centre(c, centre);
+		jsontext_string(to, "name", c->name);
+		put_numbers(to, "centre", centre);
+		put_numbers(to, "forward", c->world_to_camera[2]);
+		jsontext_number(to, "tan_x", round(5e4 * c->width / c->fx) / 1e5);
+		jsontext_number(to, "tan_y", round(5e4 * c->height / c->fy) / 1e5);
+	}
+	jsontext_close(to, '}');
 	cameras_up(&r->scene.cameras, up);
-	if (!report_add(to, "up", numbers(up, 3)) || !c)
-		return camera != NULL;
-	camera_centre(c, centre);
-	return cJSON_AddStringToObject(camera, "name", c->name) &&
-	       report_add(camera, "centre", numbers(centre, 3)) &&
-	       report_add(camera, "forward", numbers(c->world_to_camera[2], 3)) &&
-	       report_add(camera, "tan_x", cJSON_CreateNumber(round(5e4 * c->width / c->fx) / 1e5)) &&
-	       report_add(camera, "tan_y", cJSON_CreateNumber(round(5e4 * c->height / c->fy) / 1e5));
+	put_numbers(to, "up", up);
 }
 
 /* Both ask to be handed on with their licences. */
-static int add_licences(cJSON *to, const char *dir, struct err *e)
+static int put_licences(struct jsontext *to, const char *dir, struct err *e)
 {
 	static const char *const files[] = {"LICENSE.spark", "LICENSE.three"};
-	cJSON *list = cJSON_AddArrayToObject(to, "licences");
-	int bad = 0;
 
-	for (size_t k = 0; k < 2 && !bad; k++) {
-		char *path = file_join(dir, files[k], "", e), *text = NULL;
+	jsontext_open(to, "licences", '[');
+	for (size_t k = 0; k < 2; k++) {
+		SCOPED char *path = file_join(dir, files[k], "", e), *text = NULL;
 		size_t n;
-		bad = !path || file_read(path, &text, &n, e);
-		if (!bad && !cJSON_AddItemToArray(list, cJSON_CreateString(text)))
-			bad = err_set(e, ERR_SYSTEM, "viewer: out of memory");
-		free(path);
-		free(text);
+		if (!path || file_read(path, &text, &n, e))
+			return -1;
+		jsontext_string(to, NULL, text);
 	}
-	return bad ? -1 : 0;
+	jsontext_close(to, ']');
+	return 0;
 }
 
-static int put_scene(FILE *out, const struct report_run *r, const struct report_splats *s,
-	const struct extent *extents, const char *dir, struct err *e)
+static int put_scene(
+	FILE *out, const struct report_run *r, const struct report_splats *s, const char *dir, struct err *e)
 {
-	cJSON *scene = cJSON_CreateObject();
-	int bad = !cJSON_AddNumberToObject(scene, "count", (double)s->n) ||
-		  !cJSON_AddNumberToObject(scene, "most", (double)r->options->splats) ||
-		  !cJSON_AddNumberToObject(scene, "all", (double)r->scene.splats.n) ||
-		  !cJSON_AddNumberToObject(
-			  scene, "least_opacity", round(1e4 * (double)REPORT_LEAST_OPACITY) / 1e4) ||
-		  !add_groups(scene, r, s, extents) || !add_camera(scene, r);
+	struct jsontext to = {.out = out, .is_page = 1};
 
-	bad = bad ? err_set(e, ERR_SYSTEM, "viewer: out of memory") : add_licences(scene, dir, e);
 	fputs("<script type=\"application/json\" id=\"scene\">", out);
-	bad = bad || report_json_put(out, scene, e);
+	jsontext_open(&to, NULL, '{');
+	jsontext_number(&to, "count", (double)s->n);
+	jsontext_number(&to, "most", (double)r->options->splats);
+	jsontext_number(&to, "all", (double)r->scene.splats.n);
+	jsontext_rounded(&to, "least_opacity", (double)REPORT_LEAST_OPACITY);
+	put_groups(&to, r, s);
+	put_camera(&to, r);
+	const int bad = put_licences(&to, dir, e);
+	jsontext_close(&to, '}');
 	fputs("</script>\n", out);
-	cJSON_Delete(scene);
-	return bad ? -1 : 0;
+	return bad;
 }
 
-static int put_viewer(FILE *out, const struct report_run *r, const char *dir, struct err *e)
+static int put_viewer(FILE *out, struct report_run *r, const char *dir, struct err *e)
 {
-	struct report_splats s = {0};
-	struct extent *extents = NULL;
-	const struct lifted *l = &r->lifted.lifted;
-	int bad = report_splats_make(&s, r, e) ||
-		  (r->has_lifted && !(extents = object_extents(l, &r->scene.splats, &r->scene.cameras, e))) ||
-		  put_modules(out, dir, e) || put_scene(out, r, &s, extents, dir, e) ||
-		  put_packed(out, "id=\"splats\"", s.bytes, 32 * s.n, e);
+	SCOPED_BY(report_splats_free) struct report_splats s = {0};
 
-	if (!bad)
-		fprintf(out, "<script>\n%s</script>\n", report_viewer_begin);
-	object_extents_free(extents, l->objects);
-	report_splats_free(&s);
-	return bad ? -1 : 0;
+	if (report_splats_make(&s, r, e) || anymodel_place(&r->lifted, &r->scene, e) ||
+		put_modules(out, dir, e) || put_scene(out, r, &s, dir, e) ||
+		put_packed(out, "id=\"splats\"", s.bytes, 32 * s.n, e))
+		return -1;
+	fprintf(out, "<script>\n%s</script>\n", report_viewer_begin);
+	return 0;
 }
 
-int report_viewer_put(FILE *out, const struct report_run *r, const struct report *to, struct err *e)
+int report_viewer_put(FILE *out, struct report_run *r, const struct report *to, struct err *e)
 {
 	const char *given = r->options->viewer;
 
 	if (r->options->is_plain)
 		return 0;
-	char *dir = given ? mem_strdup(given, e) : cache_folder("viewer", e);
+	SCOPED char *dir = given ? mem_strdup(given, e) : cache_folder("viewer", e);
 	if (!dir)
 		return given ? -1 : 0;
 	int bad = 0;
@@ -194,6 +306,5 @@ int report_viewer_put(FILE *out, const struct report_run *r, const struct report
 		bad = put_viewer(out, r, dir, e);
 	else
 		report_note(to, 1, "%s: no viewer there: 'make viewer' fetches one", dir);
-	free(dir);
 	return bad;
 }

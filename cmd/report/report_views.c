@@ -1,11 +1,10 @@
-#include "cmd/report/report_views.h"
+#include "cmd/report/reporting.h"
 
 #include "base/base64.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/images/jpeg.h"
 #include "cmd/import/warping.h"
-#include "formats/images/png.h"
 #include "mask/shrink.h"
 #include "splat/render.h"
 
@@ -32,7 +31,7 @@ static int shrink(struct picture_rgb *p, int height, int width, struct err *e)
 static int read_photograph(const struct report_run *r, const struct camera *c, struct picture_rgb *p,
 	const struct report *to, struct err *e)
 {
-	char *path = c->image ? file_join(r->scene.path, c->image, "", e) : NULL;
+	SCOPED char *path = c->image ? file_join(r->scene.path, c->image, "", e) : NULL;
 	int found = 0;
 
 	if (path && file_exists(path)) {
@@ -40,7 +39,6 @@ static int read_photograph(const struct report_run *r, const struct camera *c, s
 		if (!found)
 			report_warn(to, "%s; the view is rendered instead", e->message);
 	}
-	free(path);
 	return found;
 }
 
@@ -48,7 +46,7 @@ static int render(const struct report_run *r, const struct camera *c, struct pic
 {
 	const size_t n = 3 * (size_t)c->height * (size_t)c->width;
 	struct render_view *v = render_prepare(&r->scene.splats, c, e);
-	float *rgb = mem_alloc(n, sizeof *rgb, "picture", e);
+	SCOPED float *rgb = mem_alloc(n, sizeof *rgb, "picture", e);
 	const float black[3] = {0};
 
 	p->rgb = mem_alloc(n, 1, "picture", e);
@@ -57,7 +55,6 @@ static int render(const struct report_run *r, const struct camera *c, struct pic
 	const int bad = !v || !rgb || !p->rgb || render_colors(v, &r->scene.splats, c, black, rgb, e);
 	for (size_t i = 0; i < n && !bad; i++)
 		p->rgb[i] = (uint8_t)lrintf(255 * rgb[i]);
-	free(rgb);
 	render_free(v);
 	return bad ? -1 : 0;
 }
@@ -74,44 +71,38 @@ static char *picture_text(const struct picture_rgb *p, const char *name, struct 
 	return text;
 }
 
-static cJSON *view_of(
-	const struct report_run *r, const struct camera *c, const struct report *to, struct err *e)
+static int put_view(struct jsontext *to, const struct report_run *r, const struct camera *c,
+	const struct report *told, struct err *e)
 {
 	struct picture_rgb p = {0};
-	const int is_photograph = read_photograph(r, c, &p, to, e);
+	const int is_photograph = read_photograph(r, c, &p, told, e);
 	const int bad = is_photograph ? shrink(&p, c->height, c->width, e) : render(r, c, &p, e);
-	char *text = bad ? NULL : picture_text(&p, c->name, e);
-	cJSON *view = cJSON_CreateObject();
+	SCOPED char *text = bad ? NULL : picture_text(&p, c->name, e);
 
 	free(p.rgb);
-	int fine = text && cJSON_AddStringToObject(view, "name", c->name) &&
-		   cJSON_AddStringToObject(view, "split", c->split == SPLIT_TEST ? "test" : "train") &&
-		   cJSON_AddNumberToObject(view, "width", c->width) &&
-		   cJSON_AddNumberToObject(view, "height", c->height) &&
-		   cJSON_AddBoolToObject(view, "photograph", is_photograph) &&
-		   cJSON_AddStringToObject(view, "picture", text);
-	if (text && !fine)
-		err_set(e, ERR_SYSTEM, "page: out of memory");
-	free(text);
-	if (fine)
-		return view;
-	cJSON_Delete(view);
-	return NULL;
+	if (!text)
+		return -1;
+	jsontext_open(to, NULL, '{');
+	jsontext_string(to, "name", c->name);
+	jsontext_string(to, "split", c->split == SPLIT_TEST ? "test" : "train");
+	jsontext_number(to, "width", c->width);
+	jsontext_number(to, "height", c->height);
+	jsontext_flag(to, "photograph", is_photograph);
+	jsontext_string(to, "picture", text);
+	jsontext_close(to, '}');
+	return 0;
 }
 
-cJSON *report_views(const struct report_run *r, const struct report *to, struct err *e)
+int report_views(struct jsontext *to, const struct report_run *r, const struct report *told, struct err *e)
 {
-	cJSON *list = cJSON_CreateArray();
-
-	report_start(to, "pictures", (double)r->shown_count);
+	jsontext_open(to, "views", '[');
+	report_start(told, "pictures", (double)r->shown_count);
 	for (size_t v = 0; v < r->shown_count; v++) {
-		cJSON *view = view_of(r, &r->shown[v], to, e);
-		if (!view || !cJSON_AddItemToArray(list, view)) {
-			cJSON_Delete(list);
-			return NULL;
-		}
-		report_step(to, (double)v + 1, NULL);
+		if (put_view(to, r, &r->shown[v], told, e))
+			return -1;
+		report_step(told, (double)v + 1, NULL);
 	}
-	report_end(to);
-	return list;
+	report_end(told);
+	jsontext_close(to, ']');
+	return 0;
 }

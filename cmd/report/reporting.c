@@ -2,15 +2,9 @@
 #include "cmd/report/reporting.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/path.h"
-#include "cmd/report/report_json.h"
-#include "cmd/report/report_logs.h"
-#include "cmd/report/report_outlines.h"
-#include "cmd/report/report_sentences.h"
-#include "cmd/report/report_views.h"
-#include "cmd/report/report_viewer.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,62 +19,76 @@ extern const char report_page_begin[];
 /* Where the data and the viewer stand in the page. */
 static const char data_mark[] = "{{data}}", viewer_mark[] = "{{viewer}}";
 
-static int add_scene(cJSON *page, const struct report_run *r)
+static void put_scene(struct jsontext *to, const struct report_run *r)
 {
 	const struct cameras *c = &r->scene.cameras;
-	cJSON *scene = cJSON_AddObjectToObject(page, "scene");
 	size_t tests = 0;
 
 	for (size_t v = 0; v < c->n; v++)
 		tests += c->views[v].split == SPLIT_TEST;
-	return cJSON_AddNumberToObject(scene, "gaussians", (double)r->scene.splats.n) &&
-	       cJSON_AddNumberToObject(scene, "views", (double)c->n) &&
-	       cJSON_AddNumberToObject(scene, "test_views", (double)tests) &&
-	       (!r->has_lifted ||
-		       cJSON_AddNumberToObject(scene, "objects", (double)r->lifted.lifted.objects));
+	jsontext_open(to, "scene", '{');
+	jsontext_number(to, "gaussians", (double)r->scene.splats.n);
+	jsontext_number(to, "views", (double)c->n);
+	jsontext_number(to, "test_views", (double)tests);
+	if (r->has_lifted)
+		jsontext_number(to, "objects", (double)r->lifted.lifted.objects);
+	jsontext_close(to, '}');
 }
 
 /* The folder's own name, also where it is called "." */
-static int add_name(cJSON *page, const char *run)
+static void put_name(struct jsontext *to, const char *run)
 {
-	char *full = realpath(run, NULL);
+	SCOPED char *full = realpath(run, NULL);
 	int length;
 	const char *last = path_last(full ? full : run, &length);
-	char *name = strndup(last, (size_t)length);
-	const int fine = name && cJSON_AddStringToObject(page, "name", name) &&
-			 cJSON_AddStringToObject(page, "version", VERSION);
+	SCOPED char *name = strndup(last, (size_t)length);
 
-	free(name);
-	free(full);
-	return fine;
+	jsontext_string(to, "name", name ? name : "");
+	jsontext_string(to, "version", VERSION);
 }
 
 /* What the page shows, but for the viewer. */
-static cJSON *page_of(const struct report_run *r, const struct report *to, struct err *e)
+static int put_data(FILE *out, const struct report_run *r, const struct report *told, struct err *e)
 {
 	const char *run = r->options->run;
-	struct report_outlines outlines = {0};
-	cJSON *page = cJSON_CreateObject();
+	SCOPED_BY(report_outlines_free) struct report_outlines outlines = {0};
+	struct jsontext to = {.out = out, .is_page = 1};
 
-	*e = (struct err){0};
-	const int fine = add_name(page, run) && add_scene(page, r) &&
-			 report_add(page, "views", report_views(r, to, e)) &&
-			 report_add(page, "sets", report_sentences(r, &outlines, e)) &&
-			 report_add(page, "outlines", report_outlines_list(&outlines)) &&
-			 report_add(page, "losses", report_losses(run, e)) &&
-			 report_add(page, "steps", report_steps(run, e)) &&
-			 report_add(page, "settings", report_settings(run, e));
-	report_outlines_free(&outlines);
-	if (fine)
-		return page;
-	if (!e->code)
-		err_set(e, ERR_SYSTEM, "page: out of memory");
-	cJSON_Delete(page);
+	jsontext_open(&to, NULL, '{');
+	put_name(&to, run);
+	put_scene(&to, r);
+	if (report_views(&to, r, told, e) || report_sentences(&to, r, &outlines, e))
+		return -1;
+	jsontext_open(&to, "outlines", '[');
+	for (size_t i = 0; i < outlines.n; i++)
+		jsontext_string(&to, NULL, outlines.items[i].path);
+	jsontext_close(&to, ']');
+	if (report_losses(&to, run, e))
+		return -1;
+	report_steps(&to, run);
+	if (report_settings(&to, run, e))
+		return -1;
+	jsontext_close(&to, '}');
+	return 0;
+}
+
+/* The same in memory, so that a page that fails is not begun; free() it. NULL with *e set. */
+static char *make_data(const struct report_run *r, const struct report *told, struct err *e)
+{
+	char *data = NULL;
+	size_t length;
+	FILE *out = open_memstream(&data, &length);
+	int bad = !out || put_data(out, r, told, e);
+
+	if (out && fclose(out))
+		bad = err_set(e, ERR_SYSTEM, "page: out of memory");
+	if (!bad)
+		return data;
+	free(data);
 	return NULL;
 }
 
-static int put_page(
-	FILE *out, const struct report_run *r, const cJSON *page, const struct report *to, struct err *e)
+static int put_page(FILE *out, struct report_run *r, const char *made, const struct report *to, struct err *e)
 {
 	const char *data = strstr(report_page_begin, data_mark),
 		   *viewer = strstr(report_page_begin, viewer_mark);
@@ -88,8 +96,7 @@ static int put_page(
 	if (!data || !viewer || viewer < data)
 		return err_set(e, ERR_SYSTEM, "the page has no place for its data");
 	fwrite(report_page_begin, 1, (size_t)(data - report_page_begin), out);
-	if (report_json_put(out, page, e))
-		return -1;
+	fputs(made, out);
 	data += sizeof data_mark - 1;
 	fwrite(data, 1, (size_t)(viewer - data), out);
 	if (report_viewer_put(out, r, to, e))
@@ -98,29 +105,16 @@ static int put_page(
 	return 0;
 }
 
-static int write_page(const struct report_run *r, const char *path, const struct report *to, struct err *e)
-{
-	cJSON *page = page_of(r, to, e);
-	struct file_out out;
-
-	if (!page || file_out_open(&out, path, e)) {
-		cJSON_Delete(page);
-		return -1;
-	}
-	int bad = put_page(out.stream, r, page, to, e);
-	cJSON_Delete(page);
-	if (!bad)
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
-}
-
 int reporting_write(
 	const struct report_options *options, const char *path, const struct report *to, struct err *e)
 {
-	struct report_run r = {0};
-	const int bad = report_run_read(&r, options, to, e) || write_page(&r, path, to, e);
+	SCOPED_BY(report_run_free) struct report_run r = {0};
+	struct file_out out;
 
-	report_run_free(&r);
-	return bad ? -1 : 0;
+	if (report_run_read(&r, options, to, e))
+		return -1;
+	SCOPED char *data = make_data(&r, to, e);
+	if (!data || file_out_open(&out, path, e))
+		return -1;
+	return file_out_end(&out, put_page(out.stream, &r, data, to, e), e);
 }

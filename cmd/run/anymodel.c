@@ -5,6 +5,7 @@
 #include "base/names.h"
 #include "formats/scene/lifted.h"
 #include "formats/arrays/safetensors.h"
+#include "geom/up.h"
 
 #include <stdlib.h>
 #include <stddef.h>
@@ -12,8 +13,7 @@
 
 int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 {
-	struct safetensors st;
-	int bad;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 
 	*m = (struct anymodel){0};
 	if (safetensors_open(&st, path, e))
@@ -21,26 +21,23 @@ int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 	const char *format = safetensors_meta(&st, "format");
 	m->is_lifted = format && !strcmp(format, "refer.lifted");
 	m->is_selection = format && !strcmp(format, "refer.selection");
-	if (m->is_selection)
-		bad = selection_take(&m->selection, &st, e);
-	else if (m->is_lifted)
-		bad = lifted_take(&m->lifted, &m->origin, &st, e) || parser_weights_default(&m->weights, e);
-	else if (!format || strcmp(format, "refer.model"))
-		bad = err_set(e, ERR_FORMAT,
+	if (m->is_lifted)
+		return lifted_take(&m->lifted, &m->origin, &st, e) || parser_weights_default(&m->weights, e);
+	if (!m->is_selection && (!format || strcmp(format, "refer.model")))
+		return err_set(e, ERR_FORMAT,
 			"%s: format is '%s', expected 'refer.model', 'refer.lifted' or 'refer.selection'",
 			st.path, format ? format : "");
-	else
-		bad = model_take(&m->trained, &st, e);
-	if (!bad && m->is_selection)
-		m->origin.scene = m->selection.scene;
-	else if (!bad && !m->is_lifted)
-		m->origin = m->trained.origin;
-	safetensors_close(&st);
-	return bad ? -1 : 0;
+	if (m->is_selection ? selection_take(&m->selection, &st, e) : model_take(&m->trained, &st, e))
+		return -1;
+	m->origin = m->is_selection ? (struct origin){.scene = m->selection.scene} : m->trained.origin;
+	return 0;
 }
 
 void anymodel_free(struct anymodel *m)
 {
+	for (size_t o = 0; m->extents && o < m->lifted.objects; o++)
+		extent_free(&m->extents[o]);
+	free(m->extents);
 	model_free(&m->trained);
 	lifted_free(&m->lifted);
 	selection_free(&m->selection);
@@ -59,6 +56,58 @@ int anymodel_check_scene(const struct anymodel *m, const char *model, const stru
 		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", model,
 			gaussians, scene_path, scene->splats.n);
 	return fingerprint_check("scene", model, &m->origin.scene, scene_path, &scene->fingerprint, e);
+}
+
+static int find_one(
+	struct extent *to, const struct lifted *l, size_t object, const struct splats *s, const double up[3])
+{
+	const size_t first = (size_t)l->indptr[object], n = (size_t)l->indptr[object + 1] - first;
+	struct err ignored;
+	SCOPED int32_t *ids = mem_alloc(n, sizeof *ids, "object", &ignored);
+	SCOPED float *responses = mem_alloc(n, sizeof *responses, "object", &ignored);
+	size_t count = 0;
+
+	for (size_t i = 0; i < n && ids && responses; i++) {
+		const float response = l->share[first + i] - LIFTED_CUT;
+		if (!(response > 0))
+			continue;
+		ids[count] = l->index[first + i];
+		responses[count++] = response;
+	}
+	return !ids || !responses || extent_find(to, s, ids, responses, count, up, &ignored);
+}
+
+int anymodel_place(struct anymodel *m, const struct scene *scene, struct err *e)
+{
+	const size_t n = m->lifted.objects;
+	double up[3];
+	int bad = 0;
+
+	if (m->extents || !m->is_lifted)
+		return 0;
+	if (!(m->extents = mem_zalloc(n, sizeof *m->extents, "objects", e)))
+		return -1;
+	cameras_up(&scene->cameras, up);
+#pragma omp parallel for schedule(dynamic) reduction(| : bad)
+	for (size_t o = 0; o < n; o++)
+		bad |= find_one(&m->extents[o], &m->lifted, o, &scene->splats, up) != 0;
+	return bad ? err_set(e, ERR_SYSTEM, "objects: out of memory") : 0;
+}
+
+static void move(struct box *b, const double by[3])
+{
+	for (int k = 0; k < 3; k++)
+		b->centre[k] += by[k];
+}
+
+struct box_record anymodel_box(const struct extent *x, const double offset[3], double sure)
+{
+	struct box_record record = {
+		.score = x->n ? sure : 0, .is_empty = !x->n, .aligned = x->aligned, .turned = x->turned};
+
+	move(&record.aligned, offset);
+	move(&record.turned, offset);
+	return record;
 }
 
 static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, struct err *e)
@@ -85,7 +134,7 @@ static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, str
 static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from, struct err *e)
 {
 	const struct cameras *c = &q->scene->cameras;
-	struct names names;
+	SCOPED_BY(names_free) struct names names = {0};
 	int bad = 0;
 
 	if (names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e))
@@ -103,7 +152,6 @@ static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from,
 		else
 			from[i] = (struct viewpoint){.kind = VIEWPOINT_CAMERA, .camera = &c->views[v]};
 	}
-	names_free(&names);
 	return bad;
 }
 
@@ -124,8 +172,8 @@ static int answer_selected(
 	const struct selection *s, const struct anymodel_ask *q, struct responses *a, struct err *e)
 {
 	const struct responses_selection of = {s->gaussians, s->indptr, s->index};
-	size_t *row = mem_alloc(q->count, sizeof *row, "sentences", e);
-	struct names refs = {0};
+	SCOPED size_t *row = mem_alloc(q->count, sizeof *row, "sentences", e);
+	SCOPED_BY(names_free) struct names refs = {0};
 	int bad = !row || names_make(&refs, s->refs, sizeof *s->refs, 0, s->n, e);
 
 	for (size_t i = 0; i < q->count && !bad; i++) {
@@ -136,8 +184,6 @@ static int answer_selected(
 				file_name(q->model_path), ref, file_name(q->text_path));
 	}
 	bad = bad || responses_selected(a, &of, row, q->count, e);
-	names_free(&refs);
-	free(row);
 	return bad ? -1 : 0;
 }
 
@@ -150,7 +196,7 @@ int anymodel_answer(
 	struct responses_question of = {&q->scene->splats, &q->scene->cameras, q->text->offsets,
 		q->text->words, q->text->middle, q->text->texts, q->text->pieces, NULL, &parser, q->which,
 		q->count, q->text->refs, file_name(q->model_path), q->wants_parts};
-	struct rows rows = {0};
+	SCOPED_BY(rows_free) struct rows rows = {0};
 
 	*a = (struct responses){0};
 	if (check_fit(m, q, e))
@@ -163,7 +209,5 @@ int anymodel_answer(
 		return -1;
 	const struct respond_model respond = {
 		&t->layout, t->similarity, &rows, t->features, t->parameters, means, t->low, t->high};
-	int bad = responses_trained(a, &respond, &of, q->wants_calibration, e);
-	rows_free(&rows);
-	return bad;
+	return responses_trained(a, &respond, &of, q->wants_calibration, e);
 }

@@ -10,6 +10,8 @@
 #include "formats/scene/scene.h"
 #include "formats/scene/selection.h"
 #include "formats/scene/text.h"
+#include "formats/records/boxes.h"
+#include "lift/extent.h"
 #include "lift/lifted_model.h"
 
 struct anymodel {
@@ -19,6 +21,7 @@ struct anymodel {
 	struct selection selection;
 	struct origin origin;	       /* the scene and the encoder that it was made with */
 	struct parser_weights weights; /* of the sentences' parser, for a lifted model: the default ones */
+	struct extent *extents;	       /* (objects) of a lifted model, of anymodel_place; else NULL */
 };
 
 /* ERR_FORMAT where the file is malformed, or of another kind. */
@@ -28,6 +31,11 @@ void anymodel_free(struct anymodel *m);
 /* ERR_FORMAT where it is not of this scene; the names are for messages. */
 int anymodel_check_scene(const struct anymodel *m, const char *model, const struct scene *scene,
 	const char *scene_path, struct err *e);
+
+/* Where each lifted object is, in the frame of the splats: m->extents. Returns 0, or -1 with *e set. */
+int anymodel_place(struct anymodel *m, const struct scene *scene, struct err *e);
+/* The boxes of an object in the world, means + offset, with the score `sure`; without names. */
+struct box_record anymodel_box(const struct extent *x, const double offset[3], double sure);
 
 struct anymodel_ask {
 	const struct scene *scene;

@@ -1,9 +1,9 @@
-#include "cmd/score/answer_scores.h"
+#include "cmd/score/scoring.h"
 
 #include "base/file.h"
+#include "base/jsontext.h"
 #include "base/mem.h"
 #include "base/number.h"
-#include "formats/records/jsonl.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -122,48 +122,48 @@ static int put_text(FILE *out, const void *scores, struct err *e)
 	return 0;
 }
 
-static void json_number(FILE *out, const char *key, double x, int is_there)
+/* The fewest digits that read back as the same number. */
+static void put_number(struct jsontext *to, const char *key, double x, int is_there)
 {
 	char text[NUMBER_SIZE];
 
-	fprintf(out, ",\"%s\":%s", key, is_there ? number_text(text, x) : "null");
+	jsontext_raw(to, key, is_there ? number_text(text, x) : "null");
 }
 
-static int json_row(
-	FILE *out, const char *before, const struct answer_score *s, const char *name, struct err *e)
+static void put_row(struct jsontext *to, const struct answer_score *s, const char *name)
 {
-	if (jsonl_put_string(out, before, name, e))
-		return -1;
-	fprintf(out, ":{\"pairs\":%zu", s->pairs);
-	json_number(out, "right", s->right, s->pairs > 0);
-	json_number(out, "miou", s->miou, s->pairs > 0);
-	json_number(out, "oiou", s->oiou, s->pairs > 0);
-	json_number(out, "refused", s->refused, s->pairs > 0);
-	json_number(out, "f1_25", s->f1[0], s->pairs > 0);
-	json_number(out, "f1_50", s->f1[1], s->pairs > 0);
-	fprintf(out, ",\"missing\":%zu}", s->missing);
-	return 0;
+	static const char *const keys[] = {"right", "miou", "oiou", "refused", "f1_25", "f1_50"};
+	const double figures[] = {s->right, s->miou, s->oiou, s->refused, s->f1[0], s->f1[1]};
+
+	jsontext_open(to, name, '{');
+	jsontext_number(to, "pairs", (double)s->pairs);
+	for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
+		put_number(to, keys[i], figures[i], s->pairs > 0);
+	jsontext_number(to, "missing", (double)s->missing);
+	jsontext_close(to, '}');
 }
 
 static int put_json(FILE *out, const void *scores, struct err *e)
 {
 	const struct answer_scores *s = scores;
+	struct jsontext to = {.out = out};
 	struct answer_score row;
 	double none, some;
 
+	(void)e;
+	jsontext_open(&to, NULL, '{');
 	for (int i = 0; i < ANSWER_TARGETS; i++) {
 		answer_score_sum(&row, &s->answers, (enum answer_targets)i, NULL);
-		if (json_row(out, i ? "," : "{", &row, target_names[i], e))
-			return -1;
+		put_row(&to, &row, target_names[i]);
 	}
 	answer_target_accuracy(&none, &some, &s->answers);
-	json_number(out, "n_acc", none, !isnan(none));
-	json_number(out, "t_acc", some, !isnan(some));
-	fprintf(out, ",\"out_of_sight\":%zu,\"kinds\":", s->answers.out_of_sight);
+	put_number(&to, "n_acc", none, !isnan(none));
+	put_number(&to, "t_acc", some, !isnan(some));
+	jsontext_number(&to, "out_of_sight", (double)s->answers.out_of_sight);
+	jsontext_open(&to, "kinds", '{');
 	for (size_t i = 0; i < s->kind_count; i++) {
 		answer_score_sum(&row, &s->answers, ANSWER_ANY, s->kinds[i]);
-		if (json_row(out, i ? "," : "{", &row, *s->kinds[i] ? s->kinds[i] : no_kind, e))
-			return -1;
+		put_row(&to, &row, *s->kinds[i] ? s->kinds[i] : no_kind);
 	}
 	fputs("}}\n", out);
 	return 0;

@@ -1,8 +1,8 @@
-#include "cmd/score/box_scores.h"
+#include "cmd/score/scoring.h"
 
 #include "base/file.h"
+#include "base/jsontext.h"
 #include "base/mem.h"
-#include "formats/records/jsonl.h"
 #include "mask/mask_index.h"
 
 #include <math.h>
@@ -57,9 +57,9 @@ static int make(
 	struct box_scores *s, const struct box_set *predictions, const char *truth_path, struct err *e)
 {
 	const size_t n = s->truth.n;
-	struct mask_lookup of = {0};
-	struct mask *names = boxes_names(&s->truth, e);
-	char *is_met = mem_zalloc(n, 1, "boxes", e);
+	SCOPED_BY(mask_lookup_free) struct mask_lookup of = {0};
+	SCOPED struct mask *names = boxes_names(&s->truth, e);
+	SCOPED char *is_met = mem_zalloc(n, 1, "boxes", e);
 	int bad = -1;
 
 	s->pairs = mem_alloc(n + predictions->n, sizeof *s->pairs, "boxes", e);
@@ -71,19 +71,15 @@ static int make(
 			   : err_set(e, ERR_FORMAT, "%s: no box at all: there is nothing to score",
 				     file_name(truth_path));
 	}
-	mask_lookup_free(&of);
-	free(names);
-	free(is_met);
 	return bad;
 }
 
 int box_scores_read(struct box_scores *s, const char *truth, const char *predictions, struct err *e)
 {
-	struct box_set p = {0};
+	SCOPED_BY(boxes_free) struct box_set p = {0};
 
 	*s = (struct box_scores){0};
 	int bad = boxes_read(&s->truth, truth, e) || boxes_read(&p, predictions, e) || make(s, &p, truth, e);
-	boxes_free(&p);
 	if (bad)
 		box_scores_free(s);
 	return bad ? -1 : 0;
@@ -139,42 +135,50 @@ static int put_text(FILE *out, const void *scores, struct err *e)
 	return 0;
 }
 
-static void json_figures(FILE *out, const char *key, const struct box_figures *f)
+/* To six digits. */
+static void put_number(struct jsontext *to, const char *key, double x)
 {
-	fprintf(out, "\"%s\":{\"miou\":%.6g,\"p25\":%.6g,\"p50\":%.6g}", key, f->iou, f->p25, f->p50);
+	char text[32];
+
+	snprintf(text, sizeof text, "%.6g", x);
+	jsontext_raw(to, key, isnan(x) ? "null" : text);
 }
 
-static void json_number(FILE *out, const char *before, double x)
+static void put_figures(struct jsontext *to, const char *key, const struct box_figures *f)
 {
-	if (isnan(x))
-		fprintf(out, "%snull", before);
-	else
-		fprintf(out, "%s%.6g", before, x);
+	jsontext_open(to, key, '{');
+	put_number(to, "miou", f->iou);
+	put_number(to, "p25", f->p25);
+	put_number(to, "p50", f->p50);
+	jsontext_close(to, '}');
 }
 
 static int put_json(FILE *out, const void *scores, struct err *e)
 {
 	const struct box_scores *s = scores;
-	const struct box_score *all = &s->all;
+	struct jsontext to = {.out = out};
 
-	fputc('{', out);
-	json_figures(out, "aligned", &all->aligned);
-	fputc(',', out);
-	json_figures(out, "oriented", &all->turned);
-	json_number(out, ",\"centre\":", all->distance);
-	json_number(out, ",\"centre_relative\":", all->relative);
-	fprintf(out, ",\"pairs\":%zu,\"missing\":%zu,\"empty\":%zu,\"empty_truth\":%zu,\"objects\":", s->n,
-		all->missing, all->empty, s->empty_truth);
+	(void)e;
+	jsontext_open(&to, NULL, '{');
+	put_figures(&to, "aligned", &s->all.aligned);
+	put_figures(&to, "oriented", &s->all.turned);
+	put_number(&to, "centre", s->all.distance);
+	put_number(&to, "centre_relative", s->all.relative);
+	jsontext_number(&to, "pairs", (double)s->n);
+	jsontext_number(&to, "missing", (double)s->all.missing);
+	jsontext_number(&to, "empty", (double)s->all.empty);
+	jsontext_number(&to, "empty_truth", (double)s->empty_truth);
+	jsontext_open(&to, "objects", '{');
 	for (size_t i = 0, n; i < s->n; i += n) {
 		struct box_score one;
 		n = same_name(s, i);
 		box_score_sum(&one, s->pairs + i, n);
-		if (jsonl_put_string(out, i ? "," : "{", s->pairs[i].name, e))
-			return -1;
-		fprintf(out, ":{\"pairs\":%zu,\"aligned\":%.6g,\"oriented\":%.6g", n, one.aligned.iou,
-			one.turned.iou);
-		json_number(out, ",\"centre_relative\":", one.relative);
-		fputc('}', out);
+		jsontext_open(&to, s->pairs[i].name, '{');
+		jsontext_number(&to, "pairs", (double)n);
+		put_number(&to, "aligned", one.aligned.iou);
+		put_number(&to, "oriented", one.turned.iou);
+		put_number(&to, "centre_relative", one.relative);
+		jsontext_close(&to, '}');
 	}
 	fputs("}}\n", out);
 	return 0;

@@ -16,10 +16,6 @@ struct score_masks {
  * error: "FILE:LINE: view 'V', ref 'R' is on line N already". */
 int score_masks_read(struct score_masks *s, const char *path, struct err *e);
 
-/* ERR_FORMAT where a mask of a view has another shape than the first mask that `truth` has of it: before
- * anything reorders either. */
-int score_masks_check(const struct score_masks *s, const struct score_masks *truth, struct err *e);
-
 /* Harmless on a zeroed struct. */
 void score_masks_free(struct score_masks *s);
 

@@ -1,10 +1,10 @@
-#include "cmd/score/scores.h"
+#include "cmd/score/scoring.h"
 
 #include "base/file.h"
+#include "base/jsontext.h"
 #include "base/number.h"
 
-#include <cjson/cJSON.h>
-#include <stdlib.h>
+#include <math.h>
 #include <string.h>
 
 void scores_free(struct scores *s)
@@ -139,120 +139,123 @@ static void put_text(FILE *out, const struct scores *s)
 		text_section(out, s, &sections[i]);
 }
 
-/* JSON. Each function returns 1, or 0 where memory is out. */
-
-static int add_number(cJSON *to, const char *key, double x)
-{
-	return cJSON_AddNumberToObject(to, key, x) != NULL;
-}
+/* JSON */
 
 /* A figure that there is only where something was scored. */
-static int add_figure(cJSON *to, const char *key, double x, const struct score_row *row)
+static void put_figure(struct jsontext *to, const char *key, double x, const struct score_row *row)
 {
-	return row->score.pairs ? add_number(to, key, x) : cJSON_AddNullToObject(to, key) != NULL;
+	jsontext_number(to, key, row->score.pairs ? x : NAN);
 }
 
-static int add_precisions(cJSON *to, const struct score *s, const struct score_row *row)
+static void put_precisions(struct jsontext *to, const struct score *s, const struct score_row *row)
 {
-	return add_figure(to, "p25", s->precision[0], row) && add_figure(to, "p50", s->precision[1], row) &&
-	       add_figure(to, "p75", s->precision[2], row) && add_figure(to, "right", s->right, row);
+	put_figure(to, "p25", s->precision[0], row);
+	put_figure(to, "p50", s->precision[1], row);
+	put_figure(to, "p75", s->precision[2], row);
+	put_figure(to, "right", s->right, row);
 }
 
 /* A key for either end; null where there is no interval. */
-static int add_interval(
-	cJSON *to, const char *low, const char *high, const struct interval *i, const struct score_row *row)
+static void put_interval(struct jsontext *to, const char *low, const char *high, const struct interval *i,
+	const struct score_row *row)
 {
-	if (!row->unit)
-		return cJSON_AddNullToObject(to, low) && cJSON_AddNullToObject(to, high);
-	return add_number(to, low, i->low) && add_number(to, high, i->high);
+	jsontext_number(to, low, row->unit ? i->low : NAN);
+	jsontext_number(to, high, row->unit ? i->high : NAN);
 }
 
-static int add_intervals(cJSON *to, const struct interval *miou, const struct interval *oiou,
+static void put_intervals(struct jsontext *to, const struct interval *miou, const struct interval *oiou,
 	const struct score_row *row, int is_full)
 {
-	return add_interval(to, "miou_low", "miou_high", miou, row) &&
-	       (!is_full || add_interval(to, "oiou_low", "oiou_high", oiou, row));
+	put_interval(to, "miou_low", "miou_high", miou, row);
+	if (is_full)
+		put_interval(to, "oiou_low", "oiou_high", oiou, row);
 }
 
-static int add_units(cJSON *to, const struct score_row *row)
+static void put_units(struct jsontext *to, const struct score_row *row)
 {
-	if (!row->unit)
-		return cJSON_AddNullToObject(to, "resampled") != NULL;
-	return cJSON_AddStringToObject(to, "resampled", score_unit_name[row->unit]) &&
-	       add_number(to, "units", (double)row->units);
+	if (!row->unit) {
+		jsontext_raw(to, "resampled", "null");
+		return;
+	}
+	jsontext_string(to, "resampled", score_unit_name[row->unit]);
+	jsontext_number(to, "units", (double)row->units);
 }
 
-static int add_compared(cJSON *to, const struct scores *s, const struct score_row *row)
+static void put_compared(struct jsontext *to, const struct scores *s, const struct score_row *row)
 {
 	const struct score_compared *c = &row->other;
-	cJSON *o = cJSON_AddObjectToObject(to, "compare");
-	int is_whole = add_figure(o, "miou", c->score.miou, row) &&
-		       add_figure(o, "oiou", c->score.oiou, row) && add_precisions(o, &c->score, row) &&
-		       add_number(o, "missing", (double)c->score.missing) &&
-		       add_figure(o, "difference", c->difference, row) &&
-		       add_number(o, "better", (double)c->better) &&
-		       add_number(o, "worse", (double)c->worse) && add_number(o, "equal", (double)c->equal);
-	if (!s->how)
-		return is_whole;
-	return is_whole && add_intervals(o, &c->miou, &c->oiou, row, 1) &&
-	       add_interval(o, "difference_low", "difference_high", &c->range, row) &&
-	       (row->unit ? add_number(o, "p", c->p) : cJSON_AddNullToObject(o, "p") != NULL);
+
+	jsontext_open(to, "compare", '{');
+	put_figure(to, "miou", c->score.miou, row);
+	put_figure(to, "oiou", c->score.oiou, row);
+	put_precisions(to, &c->score, row);
+	jsontext_number(to, "missing", (double)c->score.missing);
+	put_figure(to, "difference", c->difference, row);
+	jsontext_number(to, "better", (double)c->better);
+	jsontext_number(to, "worse", (double)c->worse);
+	jsontext_number(to, "equal", (double)c->equal);
+	if (s->how) {
+		put_intervals(to, &c->miou, &c->oiou, row, 1);
+		put_interval(to, "difference_low", "difference_high", &c->range, row);
+		jsontext_number(to, "p", row->unit ? c->p : NAN);
+	}
+	jsontext_close(to, '}');
 }
 
-static int add_row(cJSON *to, const struct scores *s, const struct score_row *row, int is_full)
+static void put_row(struct jsontext *to, const struct scores *s, const struct score_row *row, int is_full)
 {
-	cJSON *o = cJSON_AddObjectToObject(to, row->name);
-
-	return add_number(o, "pairs", (double)row->score.pairs) &&
-	       add_figure(o, "miou", row->score.miou, row) &&
-	       (!is_full ||
-		       (add_figure(o, "oiou", row->score.oiou, row) && add_precisions(o, &row->score, row) &&
-			       add_number(o, "missing", (double)row->score.missing))) &&
-	       (!s->how || (add_intervals(o, &row->miou, &row->oiou, row, is_full) && add_units(o, row))) &&
-	       (!s->is_compared || add_compared(o, s, row));
+	jsontext_open(to, row->name, '{');
+	jsontext_number(to, "pairs", (double)row->score.pairs);
+	put_figure(to, "miou", row->score.miou, row);
+	if (is_full) {
+		put_figure(to, "oiou", row->score.oiou, row);
+		put_precisions(to, &row->score, row);
+		jsontext_number(to, "missing", (double)row->score.missing);
+	}
+	if (s->how) {
+		put_intervals(to, &row->miou, &row->oiou, row, is_full);
+		put_units(to, row);
+	}
+	if (s->is_compared)
+		put_compared(to, s, row);
+	jsontext_close(to, '}');
 }
 
-static int add_all(cJSON *root, const struct scores *s)
+static void put_json(FILE *out, const struct scores *s)
 {
 	const struct score *all = &s->all.score;
+	struct jsontext j = {.out = out}, *to = &j;
 	struct section sections[SECTIONS];
 	const int n = sections_of(sections, s);
-	int is_whole = add_number(root, "miou", all->miou) && add_number(root, "oiou", all->oiou) &&
-		       add_precisions(root, all, &s->all) &&
-		       (!all->peaks || (add_number(root, "peak_in_box", all->in_box) &&
-					       add_number(root, "peak_in_mask", all->in_mask))) &&
-		       add_number(root, "pairs", (double)all->pairs) &&
-		       add_number(root, "empty_truth", (double)all->empty_truth) &&
-		       add_number(root, "missing", (double)all->missing);
 
-	if (s->how)
-		is_whole = is_whole && add_intervals(root, &s->all.miou, &s->all.oiou, &s->all, 1) &&
-			   add_units(root, &s->all) &&
-			   add_number(root, "resamples", (double)s->how->resamples) &&
-			   add_number(root, "confidence", s->how->confidence) &&
-			   add_number(root, "seed", (double)s->how->seed);
-	if (s->is_compared)
-		is_whole = is_whole && add_compared(root, s, &s->all);
-	for (int i = 0; i < n; i++) {
-		cJSON *o = cJSON_AddObjectToObject(root, sections[i].key);
-		for (size_t r = 0; r < sections[i].table->n && is_whole; r++)
-			is_whole = add_row(o, s, &sections[i].table->rows[r], sections[i].is_full);
-		is_whole = is_whole && o;
+	jsontext_open(to, NULL, '{');
+	jsontext_number(to, "miou", all->miou);
+	jsontext_number(to, "oiou", all->oiou);
+	put_precisions(to, all, &s->all);
+	if (all->peaks) {
+		jsontext_number(to, "peak_in_box", all->in_box);
+		jsontext_number(to, "peak_in_mask", all->in_mask);
 	}
-	return is_whole;
-}
-
-static int put_json(FILE *out, const struct scores *s, struct err *e)
-{
-	cJSON *root = cJSON_CreateObject();
-	char *text = add_all(root, s) ? cJSON_PrintUnformatted(root) : NULL;
-
-	cJSON_Delete(root);
-	if (!text)
-		return err_set(e, ERR_SYSTEM, "scores: out of memory");
-	fprintf(out, "%s\n", text);
-	cJSON_free(text);
-	return 0;
+	jsontext_number(to, "pairs", (double)all->pairs);
+	jsontext_number(to, "empty_truth", (double)all->empty_truth);
+	jsontext_number(to, "missing", (double)all->missing);
+	if (s->how) {
+		put_intervals(to, &s->all.miou, &s->all.oiou, &s->all, 1);
+		put_units(to, &s->all);
+		jsontext_number(to, "resamples", (double)s->how->resamples);
+		jsontext_number(to, "confidence", s->how->confidence);
+		jsontext_number(to, "seed", (double)s->how->seed);
+	}
+	if (s->is_compared)
+		put_compared(to, s, &s->all);
+	for (int i = 0; i < n; i++) {
+		jsontext_open(to, sections[i].key, '{');
+		for (size_t r = 0; r < sections[i].table->n; r++)
+			put_row(to, s, &sections[i].table->rows[r], sections[i].is_full);
+		jsontext_close(to, '}');
+	}
+	jsontext_close(to, '}');
+	fputc('\n', out);
 }
 
 /* CSV */
@@ -329,22 +332,12 @@ static void put_csv(FILE *out, const struct scores *s)
 			csv_row(out, s, sections[i].row, &sections[i].table->rows[r]);
 }
 
-int scores_put(FILE *out, const struct scores *s, enum scores_form form, struct err *e)
-{
-	if (form == SCORES_JSON)
-		return put_json(out, s, e);
-	if (form == SCORES_CSV)
-		put_csv(out, s);
-	else
-		put_text(out, s);
-	return 0;
-}
-
 int scores_write(const struct scores *s, const char *path, enum scores_form form, struct err *e)
 {
 	struct file_out out;
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	return file_out_end(&out, scores_put(out.stream, s, form, e), e);
+	(form == SCORES_JSON ? put_json : form == SCORES_CSV ? put_csv : put_text)(out.stream, s);
+	return file_out_end(&out, 0, e);
 }

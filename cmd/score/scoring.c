@@ -1,11 +1,99 @@
 #include "cmd/score/scoring.h"
 
 #include "base/file.h"
-#include "cmd/score/answer_scores.h"
-#include "cmd/score/box_scores.h"
-#include "cmd/score/score_tables.h"
+#include "base/mem.h"
+#include "base/names.h"
+#include "cmd/score/score_masks.h"
+#include "mask/mask_index.h"
 #include "score/score_choice.h"
+#include "score/score_groups.h"
 #include "score/score_join.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+
+void score_masks_free(struct score_masks *s)
+{
+	masks_free(&s->set);
+	free(s->lines);
+	s->lines = NULL;
+}
+
+static int check_twice(const struct score_masks *s, struct err *e)
+{
+	struct mask_index x;
+	size_t earlier, later;
+
+	if (mask_index_make(&x, s->set.items, s->n, MASK_BY_REF, e))
+		return -1;
+	const int found = mask_index_twice(&x, &earlier, &later);
+	mask_index_free(&x);
+	if (!found)
+		return 0;
+	const struct mask *m = &s->set.items[later];
+	return err_set(e, ERR_FORMAT, "%s:%ld: view '%s', %s '%s' is on line %ld already", file_name(s->path),
+		s->lines[later], m->view, m->ref ? "ref" : "object", m->ref ? m->ref : m->object,
+		s->lines[earlier]);
+}
+
+int score_masks_read(struct score_masks *s, const char *path, struct err *e)
+{
+	*s = (struct score_masks){.path = path};
+	if (masks_read_lines(&s->set, &s->lines, path, e))
+		return -1;
+	s->n = s->set.n;
+	int bad = check_twice(s, e);
+	if (bad)
+		score_masks_free(s);
+	return bad;
+}
+
+/* ERR_FORMAT where a mask of a view has another shape than the first mask that `truth` has of it: before
+ * anything reorders either. */
+static int score_masks_check(const struct score_masks *s, const struct score_masks *truth, struct err *e)
+{
+	const struct mask *of = truth->set.items;
+	SCOPED_BY(names_free) struct names views = {0};
+	int bad = names_make(&views, of, sizeof *of, offsetof(struct mask, view), truth->n, e);
+
+	for (size_t i = 0; i < s->n && !bad; i++) {
+		const size_t at = names_find(&views, s->set.items[i].view);
+		if (at != NAMES_NONE)
+			bad = masks_check_shape(&s->set.items[i], "its truth", of[at].rle.height,
+				of[at].rle.width, s->path, s->lines[i], e);
+	}
+	return bad;
+}
+
+static int score_relations(struct scores *s, const struct score_sample *sample,
+	const struct sentences *sentences, size_t *unknown, struct err *e)
+{
+	SCOPED struct score_sentence *list = mem_alloc(sentences->n, sizeof *list, "sentences", e);
+	SCOPED uint32_t *sets = mem_alloc(sample->n, sizeof *sets, "pairs", e);
+	const char *names[SCORE_SAYINGS];
+	int bad = !list || !sets;
+
+	for (size_t i = 0; i < sentences->n && !bad; i++)
+		list[i] = (struct score_sentence){sentences->items[i].ref, sentences->items[i].text};
+	score_saying_names(names);
+	bad = bad || score_sayings(sets, sample->pairs, sample->n, list, sentences->n, unknown, e) ||
+	      score_table_groups(&s->relations, sample, sets, names, SCORE_SAYINGS, 0, e);
+	return bad ? -1 : 0;
+}
+
+/* Make the table of relations, or of visibility, of a sample of pairs; *unknown gets how many pairs have no
+ * sentence, or masks of the truth no whole. Return 0, or -1 with *e set. */
+static int score_visibility(struct scores *s, const struct score_sample *sample,
+	const struct score_masks *truth, const struct score_masks *whole, size_t *unknown, struct err *e)
+{
+	const uint32_t always = ((uint32_t)1 << SCORE_SEEN_UNKNOWN) - 1;
+	SCOPED uint32_t *sets = mem_alloc(sample->n, sizeof *sets, "pairs", e);
+
+	return !sets ||
+	       score_seen(sets, sample->pairs, sample->n, truth->set.items, truth->n, whole->set.items,
+		       whole->n, unknown, e) ||
+	       score_table_groups(&s->visibility, sample, sets, score_seen_name, SCORE_SEEN, always, e);
+}
 
 int scoring_read(struct scoring *in, const struct scoring_files *p, int is_partial, struct err *e)
 {
@@ -94,7 +182,7 @@ static int by_group(const struct report *to, struct scores *s, const struct scor
 
 int scoring_pairs(const struct scoring *in, struct scores *s, const struct report *to, struct err *e)
 {
-	struct score_pairs pairs = {0}, others = {0};
+	SCOPED_BY(score_pairs_free) struct score_pairs pairs = {0}, others = {0};
 	struct score sum, other_sum;
 	int bad = pair_up(to, in, s->is_compared, &pairs, &others, &sum, &other_sum, e);
 	const struct score_sample sample = {
@@ -106,15 +194,13 @@ int scoring_pairs(const struct scoring *in, struct scores *s, const struct repor
 		s->all.score = sum;
 		s->all.other.score = other_sum;
 	}
-	score_pairs_free(&pairs);
-	score_pairs_free(&others);
 	return bad;
 }
 
 int scoring_boxes(const struct scoring_files *files, const char *path, int is_json, double *miou,
 	const struct report *to, struct err *e)
 {
-	struct box_scores s;
+	SCOPED_BY(box_scores_free) struct box_scores s = {0};
 
 	if (box_scores_read(&s, files->truth, files->predictions, e))
 		return -1;
@@ -122,15 +208,13 @@ int scoring_boxes(const struct scoring_files *files, const char *path, int is_js
 		report_warn(to, "%s: %zu boxes match no truth's ref or object and were left out",
 			file_name(files->predictions), s.unmatched);
 	*miou = s.all.aligned.iou;
-	int bad = box_scores_write(&s, path, is_json, e);
-	box_scores_free(&s);
-	return bad;
+	return box_scores_write(&s, path, is_json, e);
 }
 
 int scoring_answers(const struct scoring *in, const char *path, int is_json, double *right,
 	const struct report *to, struct err *e)
 {
-	struct answer_scores s;
+	SCOPED_BY(answer_scores_free) struct answer_scores s = {0};
 	struct answer_score all;
 
 	if (answer_scores_make(&s, &in->sentences, &in->truth, &in->predictions, e))
@@ -143,7 +227,5 @@ int scoring_answers(const struct scoring *in, const char *path, int is_json, dou
 			file_name(in->files->predictions), s.answers.unmatched);
 	answer_score_sum(&all, &s.answers, ANSWER_ANY, NULL);
 	*right = all.right;
-	int bad = answer_scores_write(&s, path, is_json, e);
-	answer_scores_free(&s);
-	return bad;
+	return answer_scores_write(&s, path, is_json, e);
 }

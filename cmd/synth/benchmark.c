@@ -1,7 +1,5 @@
 #include "cmd/synth/benchmark.h"
 
-#include "cmd/synth/synth_folder.h"
-
 enum { ATTEMPTS = 20 };
 
 static int make_once(struct benchmark *b, struct err *e)

@@ -1,119 +1,113 @@
-#include "cmd/synth/synth_folder.h"
+#include "cmd/synth/benchmark.h"
 
 #include "base/mem.h"
-#include "cmd/synth/synth_unseen.h"
 #include "formats/records/boxes.h"
 #include "formats/cameras/colmap.h"
 #include "formats/records/masks.h"
 #include "formats/splats/ply.h"
 #include "formats/images/png.h"
 #include "synth/outline.h"
-#include "synth/synth_scene.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static int open_in(struct file_out *out, const char *dir, const char *name, struct err *e)
 {
-	char *path = file_join(dir, name, "", e);
-	int bad = !path || file_out_open(out, path, e) ? -1 : 0;
+	SCOPED char *path = file_join(dir, name, "", e);
 
-	free(path);
-	return bad;
+	return !path || file_out_open(out, path, e) ? -1 : 0;
+}
+
+static int put_file(const struct synth_folder *f, const char *name,
+	int (*put)(FILE *out, const void *folder, struct err *e), struct err *e)
+{
+	SCOPED char *path = file_join(f->dir, name, "", e);
+
+	return path ? file_out_put(path, put, f, e) : -1;
 }
 
 /* Makes the folder of the photographs and tells each camera the name of its own. */
 static int name_photographs(const struct synth_folder *f, struct err *e)
 {
-	char *images = file_join(f->dir, "images", "", e);
-	int bad = images ? 0 : -1;
+	SCOPED char *images = file_join(f->dir, "images", "", e);
 
-	if (!bad && file_make_dir(images, e))
-		bad = err_prefix(e, images);
-	for (size_t i = 0; i < f->scene->cameras.n && !bad; i++) {
+	if (!images)
+		return -1;
+	if (file_make_dir(images, e))
+		return err_prefix(e, images);
+	for (size_t i = 0; i < f->scene->cameras.n; i++) {
 		struct camera *c = &f->scene->cameras.views[i];
-		c->image = file_join(images, c->name, ".png", e);
-		bad = c->image ? 0 : -1;
+		if (!(c->image = file_join(images, c->name, ".png", e)))
+			return -1;
 	}
-	free(images);
-	return bad;
+	return 0;
 }
 
 static int write_model(const struct synth_folder *f, struct err *e)
 {
 	static const double offset[3] = {0};
-	char *ply = file_join(f->dir, "point_cloud.ply", "", e);
-	char *sparse = file_join(f->dir, "sparse/0", "", e);
+	SCOPED char *ply = file_join(f->dir, "point_cloud.ply", "", e);
+	SCOPED char *sparse = file_join(f->dir, "sparse/0", "", e);
 	int bad = -1;
 
 	if (ply && sparse && !ply_write(&f->scene->splats, offset, ply, e))
 		bad = colmap_write_text(&f->scene->cameras, sparse, e);
-	free(ply);
-	free(sparse);
 	return bad;
 }
 
 /* Texts, names and refs are made of letters, digits, commas, hyphens and spaces: JSON needs no escapes for
  * them. */
-static int write_sentences(const struct synth_folder *f, struct err *e)
+static int put_sentences(FILE *out, const void *folder, struct err *e)
 {
-	struct file_out out = {0};
+	const struct synth_folder *f = folder;
 
-	if (open_in(&out, f->dir, "sentences.jsonl", e))
-		return -1;
+	(void)e;
 	for (size_t i = 0; i < f->sentences->n; i++) {
 		const struct synth_sentence *s = &f->sentences->items[i];
-		fprintf(out.stream, "{\"ref\":\"%s\",\"object\":\"%s\",\"text\":\"%s\",\"split\":\"%s\"}\n",
-			s->ref, f->scene->objects[s->object].name, s->text,
+		fprintf(out, "{\"ref\":\"%s\",\"object\":\"%s\",\"text\":\"%s\",\"split\":\"%s\"}\n", s->ref,
+			f->scene->objects[s->object].name, s->text,
 			s->split == SPLIT_TEST ? "test" : "train");
 	}
-	return file_out_commit(&out, e);
+	return 0;
 }
 
-static int write_boxes(const struct synth_folder *f, struct err *e)
+static int put_boxes(FILE *out, const void *folder, struct err *e)
 {
-	struct file_out out = {0};
-	int bad = open_in(&out, f->dir, "boxes.jsonl", e);
+	const struct synth_folder *f = folder;
+	int bad = 0;
 
-	if (bad)
-		return -1;
 	for (int i = 0; i < f->scene->object_count && !bad; i++) {
 		struct synth_object *o = &f->scene->objects[i];
 		struct box_record r = {.object = o->name, .score = NAN};
 		synth_object_boxes(o, &r.aligned, &r.turned);
-		bad = boxes_put(out.stream, &r, NULL, e);
+		bad = boxes_put(out, &r, NULL, e);
 	}
-	if (!bad)
-		return file_out_commit(&out, e);
-	file_out_abort(&out);
-	return -1;
+	return bad;
 }
 
 /* One line, as --test-views takes it. */
-static int write_test_views(const struct synth_folder *f, struct err *e)
+static int put_test_views(FILE *out, const void *folder, struct err *e)
 {
-	struct file_out out = {0};
+	const struct cameras *c = &((const struct synth_folder *)folder)->scene->cameras;
 	const char *comma = "";
 
-	if (open_in(&out, f->dir, "test-views", e))
-		return -1;
-	for (size_t i = 0; i < f->scene->cameras.n; i++) {
-		const struct camera *c = &f->scene->cameras.views[i];
-		if (c->split == SPLIT_TEST) {
-			fprintf(out.stream, "%s%s", comma, c->name);
+	(void)e;
+	for (size_t i = 0; i < c->n; i++)
+		if (c->views[i].split == SPLIT_TEST) {
+			fprintf(out, "%s%s", comma, c->views[i].name);
 			comma = ",";
 		}
-	}
-	fputc('\n', out.stream);
-	return file_out_commit(&out, e);
+	fputc('\n', out);
+	return 0;
 }
 
 int synth_folder_begin(struct synth_folder *f, struct err *e)
 {
-	return name_photographs(f, e) || write_model(f, e) || write_sentences(f, e) ||
-			       synth_unseen_files(
-				       f->dir, f->unseen, f->scene->objects, &f->scene->cameras, e) ||
-			       write_test_views(f, e) || write_boxes(f, e) ||
+	return name_photographs(f, e) || write_model(f, e) ||
+			       put_file(f, "sentences.jsonl", put_sentences, e) ||
+			       put_file(f, "unseen.jsonl", synth_unseen_put, e) ||
+			       put_file(f, "parses.unseen.jsonl", synth_unseen_put_parses, e) ||
+			       put_file(f, "test-views", put_test_views, e) ||
+			       put_file(f, "boxes.jsonl", put_boxes, e) ||
 			       open_in(&f->candidates, f->dir, "candidates.jsonl", e) ||
 			       open_in(&f->test_candidates, f->dir, "candidates.test.jsonl", e) ||
 			       open_in(&f->truth, f->dir, "truth.jsonl", e) ||
@@ -127,8 +121,8 @@ static int write_photograph(
 {
 	static const float background[3] = {0.6f, 0.62f, 0.65f};
 	size_t values = 3 * (size_t)c->width * (size_t)c->height;
-	float *rgb = mem_alloc(values, sizeof *rgb, "photograph", e);
-	uint8_t *bytes = mem_alloc(values, 1, "photograph", e);
+	SCOPED float *rgb = mem_alloc(values, sizeof *rgb, "photograph", e);
+	SCOPED uint8_t *bytes = mem_alloc(values, 1, "photograph", e);
 	int bad = !rgb || !bytes || render_colors(view, &f->scene->splats, c, background, rgb, e) ? -1 : 0;
 
 	if (!bad) {
@@ -136,8 +130,6 @@ static int write_photograph(
 			bytes[i] = (uint8_t)lrintf(255 * rgb[i]);
 		bad = png_write(c->image, bytes, c->height, c->width, 3, e);
 	}
-	free(rgb);
-	free(bytes);
 	return bad;
 }
 
@@ -161,7 +153,7 @@ static int put_masks(
 static int put_candidates(
 	struct synth_folder *f, int number, const struct camera *c, const uint8_t *masks, struct err *e)
 {
-	struct masks found = {0};
+	SCOPED_BY(masks_free) struct masks found = {0};
 	const int is_test = c->split == SPLIT_TEST;
 	FILE *to = is_test ? f->test_candidates.stream : f->candidates.stream;
 	int bad = synth_detect(&found, f->detector, number, c->name,
@@ -169,7 +161,6 @@ static int put_candidates(
 
 	for (size_t i = 0; i < found.n && !bad; i++)
 		bad = masks_put(to, &found.items[i], e);
-	masks_free(&found);
 	return bad;
 }
 
@@ -188,7 +179,7 @@ int synth_folder_view(struct synth_folder *f, int number, struct err *e)
 {
 	const struct camera *c = &f->scene->cameras.views[number];
 	size_t pixels = (size_t)c->width * (size_t)c->height, n = (size_t)f->scene->object_count;
-	uint8_t *visible = mem_alloc(n, pixels, "truth", e), *whole = mem_alloc(n, pixels, "truth", e);
+	SCOPED uint8_t *visible = mem_alloc(n, pixels, "truth", e), *whole = mem_alloc(n, pixels, "truth", e);
 	struct render_view *view = visible && whole ? render_prepare(&f->scene->splats, c, e) : NULL;
 	int bad = !view || write_photograph(f, c, view, e) ||
 		  synth_truth_visible(f->scene, view, pixels, visible, e) ||
@@ -199,8 +190,6 @@ int synth_folder_view(struct synth_folder *f, int number, struct err *e)
 		count_visible(f, c, visible, whole);
 	if (view)
 		render_free(view);
-	free(visible);
-	free(whole);
 	return bad ? -1 : 0;
 }
 
@@ -221,15 +210,14 @@ static void put_visibility(FILE *to, const char *name, const struct synth_visibi
 	fputc('}', to);
 }
 
-static int write_statistics(const struct synth_folder *f, struct err *e)
+static int put_statistics(FILE *out, const void *folder, struct err *e)
 {
+	const struct synth_folder *f = folder;
 	const struct synth_statistics *s = f->statistics;
-	struct file_out out = {0};
 	const char *comma = "";
 
-	if (open_in(&out, f->dir, "statistics.json", e))
-		return -1;
-	fprintf(out.stream,
+	(void)e;
+	fprintf(out,
 		"{\"scene\":\"%s\",\"objects\":%d,\"alike\":%d,\"alike_groups\":%d,\"stacked\":%d,"
 		"\"sentences\":{\"train\":%d,\"test\":%d},\"words\":{\"train\":%.2f,\"test\":%.2f},"
 		"\"relations\":{",
@@ -240,28 +228,28 @@ static int write_statistics(const struct synth_folder *f, struct err *e)
 	for (int i = 0; i < w->n; i++) {
 		if (w->rows[i].list != SYNTH_RELATIONS)
 			continue;
-		fprintf(out.stream, "%s\"%s\":%.4f", comma, w->rows[i].text,
+		fprintf(out, "%s\"%s\":%.4f", comma, w->rows[i].text,
 			synth_statistics_share(f->sentences, &w->rows[i]));
 		comma = ",";
 	}
-	fprintf(out.stream, "},\"views\":{\"train\":%d,\"test\":%d},\"gaussians\":%zu", s->views[SPLIT_TRAIN],
+	fprintf(out, "},\"views\":{\"train\":%d,\"test\":%d},\"gaussians\":%zu", s->views[SPLIT_TRAIN],
 		s->views[SPLIT_TEST], s->gaussians);
-	put_quantiles(out.stream, "opacity", s->opacity);
-	put_quantiles(out.stream, "aspect", s->aspect);
-	put_quantiles(out.stream, "size", s->size);
-	fputs(",\"visibility\":{", out.stream);
-	put_visibility(out.stream, "train", &s->visibility[SPLIT_TRAIN]);
-	fputc(',', out.stream);
-	put_visibility(out.stream, "test", &s->visibility[SPLIT_TEST]);
-	fputs("}}\n", out.stream);
-	return file_out_commit(&out, e);
+	put_quantiles(out, "opacity", s->opacity);
+	put_quantiles(out, "aspect", s->aspect);
+	put_quantiles(out, "size", s->size);
+	fputs(",\"visibility\":{", out);
+	put_visibility(out, "train", &s->visibility[SPLIT_TRAIN]);
+	fputc(',', out);
+	put_visibility(out, "test", &s->visibility[SPLIT_TEST]);
+	fputs("}}\n", out);
+	return 0;
 }
 
 int synth_folder_end(struct synth_folder *f, struct err *e)
 {
 	return file_out_commit(&f->candidates, e) || file_out_commit(&f->test_candidates, e) ||
 			       file_out_commit(&f->truth, e) || file_out_commit(&f->whole, e) ||
-			       write_statistics(f, e)
+			       put_file(f, "statistics.json", put_statistics, e)
 		       ? -1
 		       : 0;
 }

@@ -1,10 +1,7 @@
 /* Texts, names and refs hold letters, digits, apostrophes, stops, hyphens and spaces: JSON needs no escapes
  * for them. */
-#include "cmd/synth/synth_unseen.h"
+#include "cmd/synth/benchmark.h"
 
-#include "base/file.h"
-
-#include <stdlib.h>
 #include <string.h>
 
 /* Words with spaces between. */
@@ -158,27 +155,22 @@ static void put_sentence(FILE *to, const struct synth_sentence *x, const struct 
 	fputs("}\n", to);
 }
 
-static int open_in(struct file_out *out, const char *dir, const char *name, struct err *e)
+int synth_unseen_put(FILE *out, const void *folder, struct err *e)
 {
-	char *path = file_join(dir, name, "", e);
-	int bad = !path || file_out_open(out, path, e) ? -1 : 0;
+	const struct synth_folder *f = folder;
 
-	free(path);
-	return bad;
+	(void)e;
+	for (size_t i = 0; i < f->unseen->n; i++)
+		put_sentence(out, &f->unseen->items[i], f->scene->objects, &f->scene->cameras);
+	return 0;
 }
 
-int synth_unseen_files(const char *dir, const struct synth_sentences *list,
-	const struct synth_object *objects, const struct cameras *cameras, struct err *e)
+int synth_unseen_put_parses(FILE *out, const void *folder, struct err *e)
 {
-	struct file_out sentences = {0}, parses = {0};
+	const struct synth_folder *f = folder;
 
-	if (open_in(&sentences, dir, "unseen.jsonl", e))
-		return -1;
-	for (size_t i = 0; i < list->n; i++)
-		put_sentence(sentences.stream, &list->items[i], objects, cameras);
-	if (file_out_commit(&sentences, e) || open_in(&parses, dir, "parses.unseen.jsonl", e))
-		return -1;
-	for (size_t i = 0; i < list->n; i++)
-		put_parse(parses.stream, &list->items[i]);
-	return file_out_commit(&parses, e);
+	(void)e;
+	for (size_t i = 0; i < f->unseen->n; i++)
+		put_parse(out, &f->unseen->items[i]);
+	return 0;
 }

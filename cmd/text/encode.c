@@ -55,13 +55,12 @@ static int take_more(struct text *t, const struct sentences *s, struct err *e)
 
 	for (size_t i = 0; i < s->n && !bad; i++) {
 		const struct sentence *one = &s->items[i];
-		char *list = one->has_objects ? metalist_print(one->objects, one->object_count) : NULL;
+		SCOPED char *list = one->has_objects ? metalist_print(one->objects, one->object_count) : NULL;
 		if (one->has_objects && !list)
 			bad = err_set(e, ERR_SYSTEM, "objects: out of memory");
 		bad = bad || (list && set_entry(&t->object_lists, s->n, i, list, e)) ||
 		      (one->view && set_entry(&t->views, s->n, i, one->view, e)) ||
 		      (one->kind && set_entry(&t->kinds, s->n, i, one->kind, e));
-		free(list);
 	}
 	return bad ? -1 : 0;
 }
@@ -239,7 +238,7 @@ static int make_words(struct text *out, const struct encoder *with, const struct
 	const struct report *to, struct err *e)
 {
 	size_t width = (size_t)out->width, most, longest, floats;
-	float *scratch = NULL, *vectors = NULL, *middle = NULL;
+	SCOPED float *scratch = NULL, *vectors = NULL, *middle = NULL;
 	int bad = 0;
 
 	find_sizes(t, out->n, &most, &longest);
@@ -262,9 +261,6 @@ static int make_words(struct text *out, const struct encoder *with, const struct
 		report_step(to, (double)end, NULL);
 	}
 	report_end(to);
-	free(scratch);
-	free(vectors);
-	free(middle);
 	return bad || (encoder_pools(with) ? check_finite(out, e) : take_means(out, e)) ? -1 : 0;
 }
 
@@ -281,7 +277,7 @@ static int has_sentence(const struct sentences *s, const char *ref)
 static int read_names(struct sentences *s, const char *path, struct err *e)
 {
 	struct mask one;
-	struct jsonl j;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	int got;
 
 	if (jsonl_open(&j, path, e))
@@ -297,7 +293,6 @@ static int read_names(struct sentences *s, const char *path, struct err *e)
 	}
 	if (!got && !s->n)
 		got = err_set(e, ERR_FORMAT, "%s: names no objects", j.path);
-	jsonl_close(&j);
 	return got;
 }
 

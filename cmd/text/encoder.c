@@ -1,11 +1,26 @@
-#include "cmd/text/encoder.h"
+#include "cmd/text/encode.h"
 
 #include "base/file.h"
-#include "cmd/text/cache_folder.h"
+#include "base/mem.h"
 #include "formats/encoders/merges.h"
 #include "formats/encoders/vocab.h"
 
 #include <stdlib.h>
+
+char *cache_folder(const char *name, struct err *e)
+{
+	const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+	const int has_cache = cache && *cache;
+
+	if (!has_cache && !(home && *home)) {
+		err_set(e, ERR_USAGE, "no %s is named, and HOME is not set", name);
+		return NULL;
+	}
+	SCOPED char *dir = has_cache ? file_join(cache, "refersplat", "", e)
+				     : file_join(home, ".cache/refersplat", "", e);
+	char *path = dir ? file_join(dir, name, "", e) : NULL;
+	return path;
+}
 
 char *encoder_default(struct err *e)
 {
@@ -31,19 +46,19 @@ static int check_vocab(const struct vocab *v, int words, const char *dir, struct
 
 static int read_bert(struct encoder *x, const char *dir, struct err *e)
 {
-	if (vocab_read(&x->vocab, dir, e) || bert_model_read(&x->bert, dir, e) ||
-		check_vocab(&x->vocab, x->bert.words, dir, e))
+	if (vocab_read(&x->vocab, dir, e) || bert_model_read(&x->tower, dir, e) ||
+		check_vocab(&x->vocab, x->tower.words, dir, e))
 		return -1;
-	x->fingerprint = fingerprint_encoder(&x->bert, &x->vocab, x->is_static);
+	x->fingerprint = fingerprint_encoder(&x->tower, &x->vocab, NULL, x->is_static);
 	return 0;
 }
 
 static int read_clip(struct encoder *x, const char *dir, struct err *e)
 {
-	if (clip_model_read(&x->clip, dir, e) || merges_read(&x->bpe, dir, x->clip.words, e) ||
-		check_vocab(&x->bpe.vocab, x->clip.words, dir, e))
+	if (clip_model_read(&x->tower, dir, e) || merges_read(&x->bpe, dir, x->tower.words, e) ||
+		check_vocab(&x->bpe.vocab, x->tower.words, dir, e))
 		return -1;
-	x->fingerprint = fingerprint_clip(&x->clip, &x->bpe, x->is_static);
+	x->fingerprint = fingerprint_encoder(&x->tower, &x->bpe.vocab, &x->bpe, x->is_static);
 	return 0;
 }
 
@@ -56,22 +71,19 @@ int encoder_read(struct encoder *x, const char *dir, int is_static, struct err *
 
 void encoder_free(struct encoder *x)
 {
-	bert_free(&x->bert);
+	text_tower_free(&x->tower);
 	vocab_free(&x->vocab);
-	clip_free(&x->clip);
 	bpe_free(&x->bpe);
 }
 
 int encoder_width(const struct encoder *x)
 {
-	if (!x->is_clip)
-		return x->bert.body.width;
-	return x->is_static ? x->clip.body.width : clip_width(&x->clip);
+	return x->is_static ? x->tower.body.width : text_tower_width(&x->tower);
 }
 
 size_t encoder_positions(const struct encoder *x)
 {
-	return (size_t)(x->is_clip ? x->clip.positions : x->bert.positions);
+	return (size_t)x->tower.positions;
 }
 
 int32_t encoder_first(const struct encoder *x)
@@ -106,19 +118,14 @@ int encoder_has_middle(const struct encoder *x)
 
 int encoder_scratch(const struct encoder *x, size_t rows, size_t longest, size_t *floats)
 {
-	return x->is_clip ? clip_scratch(&x->clip, rows, longest, floats)
-			  : bert_scratch(&x->bert, rows, longest, floats);
+	return text_tower_scratch(&x->tower, rows, longest, floats);
 }
 
 void encoder_forward(const struct encoder *x, const int32_t *ids, const size_t *starts, size_t n, float *out,
 	float *middle, float *scratch)
 {
-	if (x->is_static && x->is_clip)
-		clip_static(&x->clip, ids + starts[0], starts[n] - starts[0], out);
-	else if (x->is_static)
-		bert_static(&x->bert, ids + starts[0], starts[n] - starts[0], out);
-	else if (x->is_clip)
-		clip_forward(&x->clip, ids, starts, n, out, scratch);
+	if (x->is_static)
+		text_tower_static(&x->tower, ids + starts[0], starts[n] - starts[0], out);
 	else
-		bert_forward(&x->bert, ids, starts, n, out, middle, scratch);
+		text_tower_forward(&x->tower, ids, starts, n, out, middle, scratch);
 }

@@ -8,7 +8,6 @@
 #include "fit/start.h"
 #include "formats/cameras/camerafile.h"
 #include "formats/cameras/colmap.h"
-#include "formats/cameras/colmap_points.h"
 #include "formats/images/png.h"
 #include "formats/splats/anysplats.h"
 #include "geom/lens.h"

@@ -1,6 +1,5 @@
-#include "cmd/train/learn.h"
+#include "cmd/train/training.h"
 
-#include "base/file.h"
 #include "base/mem.h"
 
 #include <stdio.h>

@@ -27,7 +27,7 @@ static int each_marked(const char *path, const struct text *text,
 	struct err *e)
 {
 	static struct marked_sentence s;
-	struct jsonl j;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	int got, bad = 0;
 
 	if (jsonl_open(&j, path, e))
@@ -50,7 +50,6 @@ static int each_marked(const char *path, const struct text *text,
 			bad = with(context, &s, e);
 		s.number++;
 	}
-	jsonl_close(&j);
 	return bad || got < 0 ? -1 : 0;
 }
 
@@ -64,25 +63,22 @@ static int put_sentence(void *out, const struct marked_sentence *s, struct err *
 
 static int put_parse(void *out, const struct marked_sentence *s, struct err *e)
 {
-	struct parse p = {0};
+	SCOPED_BY(parse_free) struct parse p = {0};
 	char ref[32];
 
 	snprintf(ref, sizeof ref, "m%zu", s->number);
-	int bad = parse_build(&p, &s->analysis, &s->tokens, e) || parses_put(out, ref, s->marked.text, &p, e);
-	parse_free(&p);
-	return bad ? -1 : 0;
+	return parse_build(&p, &s->analysis, &s->tokens, e) || parses_put(out, ref, s->marked.text, &p, e);
 }
 
 int parser_marked_write(
 	const char *marked, const char *encoded, int is_parses, const char *output, struct err *e)
 {
-	struct text text = {0};
+	SCOPED_BY(text_free) struct text text = {0};
 	struct file_out out = {0};
 	int bad = (encoded && text_read(&text, encoded, e)) || file_out_open(&out, output, e);
 
 	bad = bad || each_marked(marked, encoded ? &text : NULL, is_parses ? put_parse : put_sentence,
 			     out.stream, e);
-	text_free(&text);
 	return file_out_end(&out, bad, e);
 }
 
@@ -139,7 +135,7 @@ static int make_members(struct parser_weights *w, int width, long long members, 
 int parser_train(const struct parser_training_options *o, const struct report *to, struct err *e)
 {
 	struct taking t = {0};
-	struct parser_weights w = {0};
+	SCOPED_BY(parser_weights_free) struct parser_weights w = {0};
 	int bad = take_samples(&t, o, e) || make_members(&w, t.text.width, o->members, e);
 	const struct parser_learning learning = {.samples = t.samples,
 		.sample_count = t.count,
@@ -153,7 +149,6 @@ int parser_train(const struct parser_training_options *o, const struct report *t
 		memcpy(w.encoder, t.text.encoder.hex, sizeof w.encoder);
 		bad = parser_weights_write(&w, o->output, o->seed, o->source, e);
 	}
-	parser_weights_free(&w);
 	for (size_t i = 0; i < t.count; i++)
 		parser_sample_free(&t.samples[i]);
 	free(t.samples);

@@ -1,16 +1,13 @@
 #include "cmd/train/training.h"
 
-#include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
 #include "cmd/lift/left_out.h"
-#include "cmd/train/training_masks.h"
 #include "formats/records/masks.h"
 #include "formats/scene/lifted.h"
 #include "formats/scene/model.h"
 #include "mask/bits.h"
 
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,13 +16,12 @@
 /* An object is known by the first training sentence that names it. */
 static int number_objects(struct training *t, struct err *e)
 {
-	struct names names;
+	SCOPED_BY(names_free) struct names names = {0};
 
 	if (names_make(&names, t->object_names, sizeof *t->object_names, 0, t->sentences, e))
 		return -1;
 	for (size_t k = 0; k < t->sentences; k++)
 		t->objects[k] = (int)names_find(&names, t->object_names[k]);
-	names_free(&names);
 	return 0;
 }
 
@@ -97,7 +93,7 @@ static void make_checksum(struct training *t)
 static int read_lifted(struct training *t, const struct training_files *from, struct err *e)
 {
 	struct origin origin;
-	struct names names;
+	SCOPED_BY(names_free) struct names names = {0};
 	size_t r;
 
 	if (!from->lifted)
@@ -114,7 +110,6 @@ static int read_lifted(struct training *t, const struct training_files *from, st
 	for (r = 0; r < t->sentences; r++)
 		if (names_find(&names, t->object_names[r]) != NAMES_NONE)
 			break;
-	names_free(&names);
 	return r < t->sentences ? 0
 				: err_set(e, ERR_FORMAT, "%s: has no object of a training sentence of %s",
 					  file_name(from->lifted), file_name(from->text));
@@ -128,9 +123,9 @@ static int lift_view(struct training *t, struct lift_objects *l, size_t v, struc
 	const size_t n = (size_t)view->count, pixels = view->weights.pixels;
 	const struct view_source from = training_views_source(&t->views);
 	struct view_matrix w = {.height = c->height, .width = c->width, .gaussians = l->gaussians};
-	struct mask *shown = mem_zalloc(n, sizeof *shown, "masks", e);
-	struct lift_mask *masks = mem_alloc(n, sizeof *masks, "masks", e);
-	uint8_t *bytes = mem_alloc(pixels, 1, "masks", e);
+	SCOPED struct mask *shown = mem_zalloc(n, sizeof *shown, "masks", e);
+	SCOPED struct lift_mask *masks = mem_alloc(n, sizeof *masks, "masks", e);
+	SCOPED uint8_t *bytes = mem_alloc(pixels, 1, "masks", e);
 	size_t count = 0;
 	int bad = !shown || !masks || !bytes;
 
@@ -150,9 +145,6 @@ static int lift_view(struct training *t, struct lift_objects *l, size_t v, struc
 	}
 	while (count)
 		rle_free(&shown[--count].rle);
-	free(shown);
-	free(masks);
-	free(bytes);
 	return bad;
 }
 
@@ -160,13 +152,12 @@ static int lift_view(struct training *t, struct lift_objects *l, size_t v, struc
 static int check_masks(
 	struct training *t, const struct training_files *from, const struct report *to, struct err *e)
 {
-	struct lift_objects l;
+	SCOPED_BY(lift_objects_free) struct lift_objects l = {0};
 
 	int bad = lift_objects_init(&l, t->scene.splats.n, t->sentences, t->views.n, e);
 	for (size_t v = 0; v < t->views.n && !bad; v++)
 		bad = lift_view(t, &l, v, e);
 	bad = bad || left_out_check(&l, t->sentences, from->masks, from->scene, to, e);
-	lift_objects_free(&l);
 	return bad ? -1 : 0;
 }
 

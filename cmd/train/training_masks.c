@@ -1,109 +1,148 @@
-#include "cmd/train/training_masks.h"
+#include "cmd/train/training.h"
 
-#include "base/file.h"
 #include "base/mem.h"
-#include "base/names.h"
 #include "formats/records/masks.h"
+#include "splat/backproject.h"
 
-#include <stddef.h>
+#include <libdeflate.h>
 #include <stdlib.h>
 
-/* What the masks are read with. */
-struct mask_reading {
-	struct names names; /* of the scene's views */
-	long *view_of;	    /* (the scene's views) the training view, or -1 */
-	size_t capacity;
-	long *lines;	/* of each mask that was kept */
-	size_t unknown; /* masks of views that the scene lacks */
-	struct err why; /* the first of them */
-};
-
-/* One mask, taken over: its view's weights are read when it is the first of the view. */
-static int add_mask(
-	struct training *t, const struct jsonl *j, struct mask *m, struct mask_reading *r, struct err *e)
+static int training_views_init(
+	struct training_views *t, const struct scene *scene, const char *folder, struct err *e)
 {
-	const size_t n = t->masks.masks.n;
-	char few[NAMES_FEW];
-	size_t place;
-	int bad = masks_find_view(m, &r->names, &t->scene.cameras, &place, e);
-	const int is_unknown = !bad && place == NAMES_NONE;
-	const struct camera *c = t->scene.cameras.views + (bad || is_unknown ? 0 : place);
+	const size_t n = scene->cameras.n;
 
-	if (is_unknown && !r->unknown++)
-		jsonl_err(j, &r->why, "key 'view': the scene has no view '%s'%s", m->view,
-			names_few(&r->names, few));
-	if (!is_unknown)
-		bad = bad ||
-		      masks_check_shape(m, "the view", c->height, c->width, j->path, j->line_number, e);
-	t->test_masks += !bad && !is_unknown && c->split == SPLIT_TEST;
-	if (bad || is_unknown || c->split == SPLIT_TEST) {
-		mask_free(m);
-		return bad ? -1 : 0;
-	}
-	long *view = &r->view_of[place];
-	if (*view < 0) {
-		*view = (long)t->views.n;
-		bad = training_views_add(&t->views, place, e);
-	}
-	bad = bad || mem_grow((void **)&r->lines, &r->capacity, n + 1, sizeof *r->lines, "masks", e);
-	if (bad) {
-		mask_free(m);
-		return -1;
-	}
-	r->lines[n] = j->line_number;
-	const struct camera *sized = &t->views.cameras[*view];
-	return supervision_add(&t->masks, (size_t)*view, sized->width, sized->height, m, e);
+	*t = (struct training_views){.scene = scene, .folder = folder};
+	t->views = mem_zalloc(n, sizeof *t->views, "views", e);
+	t->read = mem_zalloc(n, sizeof *t->read, "views", e);
+	t->cameras = mem_zalloc(n, sizeof *t->cameras, "views", e);
+	t->weight = mem_zalloc(scene->splats.n, sizeof *t->weight, "weight", e);
+	return t->views && t->read && t->cameras && t->weight ? 0 : -1;
 }
 
-static int add_masks(struct training *t, const char *path, struct mask_reading *r, struct err *e)
+void training_views_free(struct training_views *t)
 {
-	struct err reason;
-	struct mask m;
-	struct jsonl j;
-	size_t later = 0;
-	int more;
-
-	if (jsonl_open(&j, path, e))
-		return -1;
-	while ((more = masks_next(&j, &m, e)) == 1)
-		if (add_mask(t, &j, &m, r, e)) {
-			more = -1;
-			break;
-		}
-	jsonl_close(&j);
-	if (more || !supervision_index(&t->masks, &later, &reason))
-		return more;
-	if (reason.code != ERR_FORMAT)
-		return err_set(e, reason.code, "%s", reason.message);
-	return err_set(e, ERR_FORMAT, "%s:%ld: %s", file_name(path), r->lines[later], reason.message);
+	for (size_t v = 0; v < t->n; v++)
+		weights_close(&t->read[v].file);
+	free(t->views);
+	free(t->read);
+	free(t->cameras);
+	free(t->weight);
+	*t = (struct training_views){0};
 }
 
-/* Masks of views that the scene lacks are left out, unless all are. */
-static int check_unknown(
-	const struct training *t, const struct mask_reading *r, const struct report *to, struct err *e)
+static void add_sum(struct training_view *v, const void *data, size_t bytes)
 {
-	if (!r->unknown)
-		return 0;
-	if (!t->masks.masks.n && !t->test_masks)
-		return err_set(e, ERR_FORMAT, "%s", r->why.message);
-	report_warn(to, "%s: %zu masks, of views that it lacks, are left out", r->why.message, r->unknown);
+	v->sum = libdeflate_crc32(v->sum, data, bytes);
+	v->bytes += bytes;
+}
+
+static void sum_up(struct training_view *v, const struct view_weights *w)
+{
+	const size_t count = (size_t)w->indptr[w->pixels];
+
+	add_sum(v, w->indptr, sizeof *w->indptr * (w->pixels + 1));
+	add_sum(v, w->index, sizeof *w->index * count);
+	add_sum(v, w->weight, sizeof *w->weight * count);
+}
+
+/* Reads a view of the scene's, the next one. Returns as training_views_init. */
+static int training_views_add(struct training_views *t, size_t camera, struct err *e)
+{
+	struct training_view *v = &t->read[t->n];
+	struct train_view *view = &t->views[t->n];
+
+	if (weights_open(&v->file, t->folder, t->scene, camera, e))
+		return -1;
+	v->at = camera;
+	t->cameras[t->n++] = camera_resize(&t->scene->cameras.views[camera], v->file.width, v->file.height);
+	view->weights = weights_view(&v->file);
+	sum_up(v, &view->weights);
+	backproject_weight(&view->weights, t->weight);
+	view->weights =
+		(struct view_weights){view->weights.pixels, view->weights.gaussians, NULL, NULL, NULL};
+	t->pixels = view->weights.pixels > t->pixels ? view->weights.pixels : t->pixels;
+	weights_close(&v->file);
 	return 0;
+}
+
+static int open_view(void *context, size_t view, struct view_weights *w, struct err *e)
+{
+	struct training_views *t = context;
+	struct training_view *v = &t->read[view], again = {0};
+
+	if (weights_open(&v->file, t->folder, t->scene, v->at, e))
+		return -1;
+	*w = weights_view(&v->file);
+	sum_up(&again, w);
+	if (w->pixels == t->views[view].weights.pixels && again.bytes == v->bytes && again.sum == v->sum)
+		return 0;
+	err_set(e, ERR_SYSTEM, "%s: changed while it was learned from", v->file.file.path);
+	weights_close(&v->file);
+	return -1;
+}
+
+static void close_view(void *context, size_t view)
+{
+	struct training_views *t = context;
+
+	weights_close(&t->read[view].file);
+}
+
+struct view_source training_views_source(struct training_views *t)
+{
+	struct view_source s = {t->views, t->n, open_view, close_view, t, 0};
+
+	for (size_t v = 0; v < t->n; v++)
+		s.largest = t->read[v].bytes > s.largest ? t->read[v].bytes : s.largest;
+	return s;
+}
+
+/* One mask, taken over: its view's weights are read when it is the first of the view. view_of (the scene's
+ * views): 1 + the training view, or 0. */
+static int add_mask(struct training *t, struct mask *m, size_t place, size_t *view_of, struct err *e)
+{
+	struct mask own = *m;
+
+	if (!view_of[place]) {
+		if (training_views_add(&t->views, place, e))
+			return -1;
+		view_of[place] = t->views.n;
+	}
+	const size_t view = view_of[place] - 1;
+	const struct camera *sized = &t->views.cameras[view];
+	*m = (struct mask){0};
+	return supervision_add(&t->masks, view, sized->width, sized->height, &own, e);
 }
 
 int training_read_masks(
 	struct training *t, const char *weights, const char *path, const struct report *to, struct err *e)
 {
-	const size_t count = t->scene.cameras.n;
-	struct mask_reading r = {.view_of = mem_alloc(count, sizeof *r.view_of, "views", e)};
+	const struct cameras *c = &t->scene.cameras;
+	SCOPED_BY(masks_free) struct masks set = {0};
+	SCOPED long *lines = NULL;
+	struct err reason;
+	size_t later = 0;
 
-	int bad = !r.view_of || training_views_init(&t->views, &t->scene, weights, e) ||
-		  names_make(&r.names, t->scene.cameras.views, sizeof *t->scene.cameras.views,
-			  offsetof(struct camera, name), count, e);
-	for (size_t v = 0; v < count && !bad; v++)
-		r.view_of[v] = -1;
-	bad = bad || add_masks(t, path, &r, e) || check_unknown(t, &r, to, e);
-	names_free(&r.names);
-	free(r.view_of);
-	free(r.lines);
-	return bad ? -1 : 0;
+	if (masks_read_lines(&set, &lines, path, e))
+		return -1;
+	SCOPED size_t *views = mem_alloc(set.n, sizeof *views, "masks", e);
+	SCOPED size_t *view_of = mem_zalloc(c->n, sizeof *view_of, "views", e);
+	if (!views || !view_of || masks_views(&set, lines, path, c, views, to, e) ||
+		training_views_init(&t->views, &t->scene, weights, e))
+		return -1;
+	for (size_t i = 0; i < set.n; i++) {
+		if (c->views[views[i]].split == SPLIT_TEST) {
+			t->test_masks++;
+			continue;
+		}
+		lines[t->masks.masks.n] = lines[i];
+		if (add_mask(t, &set.items[i], views[i], view_of, e))
+			return -1;
+	}
+	if (!supervision_index(&t->masks, &later, &reason))
+		return 0;
+	if (reason.code != ERR_FORMAT)
+		return err_set(e, reason.code, "%s", reason.message);
+	return err_set(e, ERR_FORMAT, "%s:%ld: %s", file_name(path), lines[later], reason.message);
 }

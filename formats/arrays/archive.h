@@ -4,14 +4,26 @@
 
 #include "base/err.h"
 #include "base/file.h"
+#include "base/names.h"
 
 #include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* A file of a zip, and where the zip's directory has it. */
+struct archive_entry {
+	char *name;
+	unsigned long long place, number;
+};
 
 struct archive {
 	const char *name;    /* as messages name it */
 	const char *folder;  /* the files are there; NULL: in a zip */
 	void *zip;	     /* minizip's */
 	struct file_map map; /* of the zip */
+	size_t n, room;
+	struct archive_entry *entries; /* (n) all files of a zip, in its order */
+	struct names index;	       /* of their names */
 };
 
 /* A zip that is in memory, which is the archive's from then on; released on failure. Returns 0, or -1 with
@@ -27,18 +39,28 @@ void archive_close(struct archive *a);
  */
 int archive_read(struct archive *a, const char *file, char **data, size_t *len, struct err *e);
 
-/* A file of a zip, and where the zip's directory has it. */
-struct archive_entry {
-	char *name;
-	unsigned long long place, number;
+/* The same of one of the entries. */
+int archive_read_entry(struct archive *a, size_t entry, char **data, size_t *len, struct err *e);
+
+/* A zip of a few files as they are, written without going back, so that it can go into a pipe. */
+enum { ZIP_FILES_MOST = 16, ZIP_NAME_MOST = 32 };
+
+struct zip_write {
+	FILE *out;
+	const char *path; /* for messages */
+	uint64_t at;
+	int n;
+	struct {
+		char name[ZIP_NAME_MOST];
+		uint32_t crc, size, at;
+	} files[ZIP_FILES_MOST];
 };
 
-/* All files of a zip, in its order; archive_free_entries. Returns 0, or -1 with *e. */
-int archive_list(struct archive *a, struct archive_entry **entries, size_t *n, struct err *e);
-void archive_free_entries(struct archive_entry *entries, size_t n);
+void zip_write_start(struct zip_write *z, FILE *out, const char *path);
 
-/* As archive_read. */
-int archive_read_entry(
-	struct archive *a, const struct archive_entry *entry, char **data, size_t *len, struct err *e);
+/* Returns 0, or -1 with *e set: ERR_FORMAT where it would be more than 4 GiB. */
+int zip_write_file(struct zip_write *z, const char *name, const void *bytes, size_t length, struct err *e);
+/* The list of files, which ends it. */
+int zip_write_end(struct zip_write *z, struct err *e);
 
 #endif

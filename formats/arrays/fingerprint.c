@@ -41,23 +41,6 @@ static uint64_t hash_vocabulary(const struct vocab *v)
 	return sum;
 }
 
-/* The sizes of an encoder: three of its own, and those of its body. */
-static uint64_t hash_sizes(int words, int positions, int own, const struct transformer *t, int is_static)
-{
-	const int64_t sizes[] = {words, positions, own, t->width, t->heads, t->inner, t->layer_count,
-		(int64_t)t->activation, is_static};
-
-	return hash64(&t->eps, sizeof t->eps, hash64(sizes, sizeof sizes, 0));
-}
-
-struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab *v, int is_static)
-{
-	const uint64_t vocabulary = hash_vocabulary(v);
-	const uint64_t sizes = hash_sizes(b->words, b->positions, b->types, &b->body, is_static);
-
-	return fingerprint_of(hash64(&vocabulary, sizeof vocabulary, bert_hash(b, sizes)));
-}
-
 /* The same of merges, wherever the table has them. */
 static uint64_t hash_merges(const struct bpe *b)
 {
@@ -72,12 +55,18 @@ static uint64_t hash_merges(const struct bpe *b)
 	return sum;
 }
 
-struct fingerprint fingerprint_clip(const struct clip *c, const struct bpe *b, int is_static)
+struct fingerprint fingerprint_encoder(
+	const struct text_tower *t, const struct vocab *v, const struct bpe *merges, int is_static)
 {
-	const uint64_t vocabulary[] = {hash_vocabulary(&b->vocab), hash_merges(b)};
-	const uint64_t sizes = hash_sizes(c->words, c->positions, c->projected, &c->body, is_static);
+	const struct transformer *body = &t->body;
+	const int64_t sizes[] = {t->words, t->positions, body->is_norm_first ? t->projected : t->types,
+		body->width, body->heads, body->inner, body->layer_count, (int64_t)body->activation,
+		is_static};
+	const uint64_t vocabulary[] = {hash_vocabulary(v), merges ? hash_merges(merges) : 0};
+	const uint64_t seed = hash64(&body->eps, sizeof body->eps, hash64(sizes, sizeof sizes, 0));
 
-	return fingerprint_of(hash64(vocabulary, sizeof vocabulary, clip_hash(c, sizes)));
+	return fingerprint_of(
+		hash64(vocabulary, (merges ? 2 : 1) * sizeof *vocabulary, text_tower_hash(t, seed)));
 }
 
 int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const char *key, struct err *e)
@@ -88,17 +77,21 @@ int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const 
 	if (!text)
 		return 0;
 	if (strlen(text) != sizeof f->hex - 1 || strspn(text, "0123456789abcdef") != sizeof f->hex - 1)
-		return err_set(e, ERR_FORMAT, "%s: metadata '%s' is '%s', not 16 hexadecimal digits",
-			st->path, key, text);
+		return err_file(e, st->path, "metadata '%s' is '%s', not 16 hexadecimal digits", key, text);
 	memcpy(f->hex, text, sizeof f->hex);
 	return 0;
 }
 
 int origin_read(struct origin *o, const struct safetensors *st, struct err *e)
 {
-	return fingerprint_read(&o->scene, st, "scene", e) || fingerprint_read(&o->encoder, st, "encoder", e)
-		       ? -1
-		       : 0;
+	return -(fingerprint_read(&o->scene, st, "scene", e) ||
+		 fingerprint_read(&o->encoder, st, "encoder", e));
+}
+
+void origin_put(struct arrays_out *out, const struct origin *o)
+{
+	arrays_out_text(out, "scene", fingerprint_text(&o->scene));
+	arrays_out_text(out, "encoder", fingerprint_text(&o->encoder));
 }
 
 const char *fingerprint_text(const struct fingerprint *f)
@@ -111,6 +104,6 @@ int fingerprint_check(const char *what, const char *path, const struct fingerpri
 {
 	if (!*mine->hex || !*theirs->hex || !strcmp(mine->hex, theirs->hex))
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: is of another %s than %s (%s, not %s)", path, what, other,
-		mine->hex, theirs->hex);
+	return err_file(
+		e, path, "is of another %s than %s (%s, not %s)", what, other, mine->hex, theirs->hex);
 }

@@ -4,11 +4,10 @@
 #define FORMATS_FINGERPRINT_H
 
 #include "base/err.h"
-#include "formats/arrays/safetensors.h"
+#include "formats/arrays/arrays_out.h"
 #include "geom/camera.h"
-#include "nn/bert.h"
 #include "nn/bpe.h"
-#include "nn/clip.h"
+#include "nn/text_tower.h"
 #include "nn/wordpiece.h"
 #include "splat/splats.h"
 
@@ -28,15 +27,16 @@ struct origin {
 struct fingerprint fingerprint_scene(const struct splats *s);
 /* Of a view: image size, intrinsics and pose. */
 struct fingerprint fingerprint_camera(const struct camera *c);
-/* Of an encoder: its sizes, weights, vocabulary and merges, and whether words are taken from the vocabulary
- * as they are. */
-struct fingerprint fingerprint_encoder(const struct bert *b, const struct vocab *v, int is_static);
-struct fingerprint fingerprint_clip(const struct clip *c, const struct bpe *b, int is_static);
+/* Of an encoder: its sizes, weights, vocabulary and merges (NULL: it has none), and whether words are taken
+ * from the vocabulary as they are. */
+struct fingerprint fingerprint_encoder(
+	const struct text_tower *t, const struct vocab *v, const struct bpe *merges, int is_static);
 
 /* The metadata value `key`. ERR_FORMAT where there is one that is not 16 lower-case hexadecimal digits. */
 int fingerprint_read(struct fingerprint *f, const struct safetensors *st, const char *key, struct err *e);
 
 int origin_read(struct origin *o, const struct safetensors *st, struct err *e);
+void origin_put(struct arrays_out *out, const struct origin *o);
 
 /* The value to write as metadata: NULL, which leaves the key out, where it is not known. */
 const char *fingerprint_text(const struct fingerprint *f);

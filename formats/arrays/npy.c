@@ -40,7 +40,7 @@ struct walk {
 
 static int walk_err(const struct walk *w, const char *reason)
 {
-	return err_set(w->e, ERR_FORMAT, "%s: header, offset %zu: %s", w->path, w->at, reason);
+	return err_file(w->e, w->path, "header, offset %zu: %s", w->at, reason);
 }
 
 static void skip_blank(struct walk *w)
@@ -188,27 +188,24 @@ static int read_bytes(struct npy *a, const char *data, size_t len, const char *p
 	size_t begin = FIXED_BYTES, bytes;
 
 	if (len < FIXED_BYTES || memcmp(data, MAGIC, sizeof MAGIC))
-		return err_set(e, ERR_FORMAT, "%s: not a .npy file: it does not begin with \\x93NUMPY", path);
+		return err_file(e, path, "not a .npy file: it does not begin with \\x93NUMPY");
 	if ((u[6] != 1 && u[6] != 2) || u[7])
-		return err_set(
-			e, ERR_FORMAT, "%s: offset 6: version %d.%d, expected 1.0 or 2.0", path, u[6], u[7]);
+		return err_file(e, path, "offset 6: version %d.%d, expected 1.0 or 2.0", u[6], u[7]);
 	size_t header = u[8] | (size_t)u[9] << 8;
 	if (u[6] == 2) {
 		begin = FIXED_BYTES + 2;
 		if (len < begin)
-			return err_set(
-				e, ERR_FORMAT, "%s: offset %zu: the file ends inside the header", path, len);
+			return err_file(e, path, "offset %zu: the file ends inside the header", len);
 		header |= (size_t)u[10] << 16 | (size_t)u[11] << 24;
 	}
 	if (len - begin < header)
-		return err_set(e, ERR_FORMAT, "%s: offset %zu: the file ends inside the header", path, len);
+		return err_file(e, path, "offset %zu: the file ends inside the header", len);
 	struct walk w = {path, data, begin, begin + header, e};
 	if (read_header(&w, a))
 		return -1;
 	const size_t have = len - begin - header, size = types[a->type].size;
 	if (mem_size(a->count, size, &bytes) || bytes != have)
-		return err_set(e, ERR_FORMAT,
-			"%s: offset %zu: %zu bytes of data, the shape has %zu values of %zu", path,
+		return err_file(e, path, "offset %zu: %zu bytes of data, the shape has %zu values of %zu",
 			begin + header, have, a->count, size);
 	a->data = u + begin + header;
 	return 0;

@@ -10,52 +10,32 @@ int npz_open(struct npz *z, const char *path, struct err *e)
 {
 	struct file_map map;
 
-	*z = (struct npz){0};
-	if (!(z->path = mem_strdup(path, e)) || file_map(path, &map, e)) {
-		free(z->path);
-		return -1;
-	}
-	if (archive_open_zip(&z->zip, z->path, &map, e)) {
-		free(z->path);
-		return -1;
-	}
-	if (!archive_list(&z->zip, &z->entries, &z->n, e) &&
-		!names_make(&z->index, z->entries, sizeof *z->entries, offsetof(struct archive_entry, name),
-			z->n, e))
+	*z = (struct npz){.path = mem_strdup(path, e)};
+	if (z->path && !file_map(path, &map, e) && !archive_open_zip(&z->zip, z->path, &map, e))
 		return 0;
-	npz_close(z);
+	free(z->path);
 	return -1;
 }
 
 void npz_close(struct npz *z)
 {
-	names_free(&z->index);
-	archive_free_entries(z->entries, z->n);
 	archive_close(&z->zip);
 	free(z->path);
 	*z = (struct npz){0};
 }
 
-/* "NAMESUFFIX.npy", after the archive's path if there is one. */
-static char *join(const char *path, const char *name, const char *suffix, struct err *e)
-{
-	const size_t room = strlen(path) + strlen(name) + strlen(suffix) + sizeof ": .npy";
-	char *out = mem_alloc(room, 1, "array", e);
-
-	if (out)
-		snprintf(out, room, "%s%s%s%s.npy", path, *path ? ": " : "", name, suffix);
-	return out;
-}
-
-/* Its place, or NAMES_NONE; -1 where memory is out. */
+/* The place of "NAMESUFFIX.npy", or NAMES_NONE; -1 where memory is out. */
 static int find(const struct npz *z, const char *name, const char *suffix, size_t *place, struct err *e)
 {
-	char *file = join("", name, suffix, e);
+	const size_t room = strlen(name) + strlen(suffix) + sizeof ".npy";
+	char *file = mem_alloc(room, 1, "array", e);
 
-	if (file)
-		*place = names_find(&z->index, file);
+	if (!file)
+		return -1;
+	snprintf(file, room, "%s%s.npy", name, suffix);
+	*place = names_find(&z->zip.index, file);
 	free(file);
-	return file ? 0 : -1;
+	return 0;
 }
 
 int npz_has(const struct npz *z, const char *name, const char *suffix, struct err *e)
@@ -65,46 +45,34 @@ int npz_has(const struct npz *z, const char *name, const char *suffix, struct er
 	return find(z, name, suffix, &place, e) ? -1 : place != NAMES_NONE;
 }
 
-/* Messages call it `full`. */
-static int read_entry(struct npz *z, size_t place, struct npy *a, const char *full, struct err *e)
+int npz_entry(struct npz *z, size_t place, struct npy *a, char **called, struct err *e)
 {
-	char *data = NULL;
+	const char *file = z->zip.entries[place].name;
+	const size_t room = strlen(z->path) + strlen(file) + sizeof ": ";
+	char *full = mem_alloc(room, 1, "array", e), *data = NULL;
 	size_t len = 0;
 
-	return archive_read_entry(&z->zip, &z->entries[place], &data, &len, e) ||
-			       npy_open_bytes(a, data, len, full, e)
-		       ? -1
-		       : 0;
-}
-
-int npz_entry(struct npz *z, size_t place, struct npy *a, struct err *e)
-{
-	const char *file = z->entries[place].name;
-	const size_t room = strlen(z->path) + strlen(file) + sizeof ": ";
-	char *full = mem_alloc(room, 1, "array", e);
-
-	if (!full)
-		return -1;
-	snprintf(full, room, "%s: %s", z->path, file);
-	const int bad = read_entry(z, place, a, full, e);
-	free(full);
-	return bad;
-}
-
-int npz_array(
-	struct npz *z, const char *name, const char *suffix, struct npy *a, char **called, struct err *e)
-{
-	char *full = join(z->path, name, suffix, e);
-	size_t place = 0;
-	int bad = !full || find(z, name, suffix, &place, e);
-	if (!bad && place == NAMES_NONE)
-		bad = err_set(e, ERR_FORMAT, "%s: is not there", full);
-	bad = bad || read_entry(z, place, a, full, e);
+	if (full)
+		snprintf(full, room, "%s: %s", z->path, file);
+	const int bad = !full || archive_read_entry(&z->zip, place, &data, &len, e) ||
+			npy_open_bytes(a, data, len, full, e);
 	if (bad || !called)
 		free(full);
 	else
 		*called = full;
 	return bad ? -1 : 0;
+}
+
+int npz_array(
+	struct npz *z, const char *name, const char *suffix, struct npy *a, char **called, struct err *e)
+{
+	size_t place;
+
+	if (find(z, name, suffix, &place, e))
+		return -1;
+	if (place == NAMES_NONE)
+		return err_file(e, z->path, "%s%s.npy: is not there", name, suffix);
+	return npz_entry(z, place, a, called, e);
 }
 
 const char *npz_main(const struct npz *z, const char *const *names, size_t n, struct err *e)
@@ -114,6 +82,6 @@ const char *npz_main(const struct npz *z, const char *const *names, size_t n, st
 		if (has)
 			return has > 0 ? names[i] : NULL;
 	}
-	err_set(e, ERR_FORMAT, "%s: has no array '%s' or '%s'", z->path, names[0], names[n - 1]);
+	err_file(e, z->path, "has no array '%s' or '%s'", names[0], names[n - 1]);
 	return NULL;
 }

@@ -2,16 +2,12 @@
 #ifndef FORMATS_NPZ_H
 #define FORMATS_NPZ_H
 
-#include "base/names.h"
 #include "formats/arrays/archive.h"
 #include "formats/arrays/npy.h"
 
 struct npz {
 	char *path;
-	struct archive zip; /* points to itself: a struct npz is not copied */
-	size_t n;
-	struct archive_entry *entries; /* "NAME.npy" each */
-	struct names index;
+	struct archive zip; /* of files "NAME.npy"; points to itself: a struct npz is not copied */
 };
 
 /* Returns 0, or -1 with *e set and nothing to close. */
@@ -27,7 +23,7 @@ int npz_array(
 	struct npz *z, const char *name, const char *suffix, struct npy *a, char **called, struct err *e);
 
 /* Opens the array of that place among the entries, as npz_array does. */
-int npz_entry(struct npz *z, size_t place, struct npy *a, struct err *e);
+int npz_entry(struct npz *z, size_t place, struct npy *a, char **called, struct err *e);
 
 /* The first of these names that an array has; NULL with *e where none has. */
 const char *npz_main(const struct npz *z, const char *const *names, size_t n, struct err *e);

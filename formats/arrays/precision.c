@@ -36,18 +36,20 @@ enum st_dtype precision_dtype(enum precision p)
 	return precisions[p].dtype;
 }
 
-int precision_check(const float *x, size_t n, double limit, const char *path, const char *name, struct err *e)
+/* All numbers to be written are within +-limit. */
+static void check(struct arrays_out *out, const float *x, size_t n, double limit, const char *name)
 {
-	for (size_t i = 0; i < n; i++) {
+	for (size_t i = 0; i < n && !out->bad; i++) {
 		if (fabs((double)x[i]) <= limit)
 			continue;
 		if (!isfinite(x[i]))
-			return err_set(
-				e, ERR_CHECK, "%s: tensor '%s': item %zu is not finite", path, name, i);
-		return err_set(e, ERR_CHECK, "%s: tensor '%s': item %zu is %g, too large for this precision",
-			path, name, i, (double)x[i]);
+			out->bad = err_set(out->e, ERR_CHECK, "%s: tensor '%s': item %zu is not finite",
+				out->path, name, i);
+		else
+			out->bad = err_set(out->e, ERR_CHECK,
+				"%s: tensor '%s': item %zu is %g, too large for this precision", out->path,
+				name, i, (double)x[i]);
 	}
-	return 0;
 }
 
 /* The ranges of the groups of x, as low and step. */
@@ -83,52 +85,42 @@ static void quantise(const float *x, size_t rows, size_t columns, enum precision
 		}
 }
 
-/* Half floats, or levels with their low and step, in memory of the matrix's own. */
-static int convert(struct precision_matrix *m, const char *name, enum precision p, enum precision_group group,
-	size_t rows, size_t columns, const float *x, const char *path, struct err *e)
+void precision_put(struct arrays_out *out, const char *name, enum precision p, enum precision_group group,
+	size_t rows, size_t columns, const float *x)
 {
 	const size_t count = rows * columns, groups = group == PRECISION_ROWS ? rows : columns;
-	const size_t floats = p == PRECISION_U8 ? 2 * groups + (count + 3) / 4 : (count + 1) / 2;
-
-	m->owned = mem_alloc(floats, sizeof(float), path, e);
-	if (!m->owned)
-		return -1;
-	if (p == PRECISION_F16) {
-		uint16_t *half = (uint16_t *)m->owned;
-		for (size_t i = 0; i < count; i++)
-			half[i] = half_of_float(x[i]);
-		m->tensors[0].data = half;
-		return 0;
-	}
-	float *low = m->owned, *step = low + groups;
-	uint8_t *q = (uint8_t *)(step + groups);
-	find_ranges(x, rows, columns, group, low, step);
-	quantise(x, rows, columns, group, low, step, q);
-	snprintf(m->low, sizeof m->low, "%s.low", name);
-	snprintf(m->step, sizeof m->step, "%s.step", name);
-	m->tensors[0].data = q;
 	const int64_t down = group == PRECISION_ROWS ? (int64_t)rows : 1;
 	const int64_t across = group == PRECISION_ROWS ? 1 : (int64_t)columns;
-	m->tensors[1] = st_matrix(m->low, ST_F32, down, across, low);
-	m->tensors[2] = st_matrix(m->step, ST_F32, down, across, step);
-	m->count = 3;
-	return 0;
+	const void *data = x;
+
+	check(out, x, count, precisions[p].limit, name);
+	float *low = p == PRECISION_U8 ? arrays_out_memory(out, 2 * groups, sizeof *low) : NULL;
+	if (p == PRECISION_F16) {
+		uint16_t *half = arrays_out_memory(out, count, sizeof *half);
+		for (size_t i = 0; i < count && half; i++)
+			half[i] = half_of_float(x[i]);
+		data = half;
+	} else if (p == PRECISION_U8) {
+		uint8_t *q = arrays_out_memory(out, count, 1);
+		if (q) {
+			find_ranges(x, rows, columns, group, low, low + groups);
+			quantise(x, rows, columns, group, low, low + groups, q);
+		}
+		data = q;
+	}
+	arrays_out_put(out, st_matrix(name, precisions[p].dtype, (int64_t)rows, (int64_t)columns, data));
+	if (p == PRECISION_U8 && !out->bad) {
+		arrays_out_put(
+			out, st_matrix(arrays_out_print(out, "%s.low", name), ST_F32, down, across, low));
+		arrays_out_put(out, st_matrix(arrays_out_print(out, "%s.step", name), ST_F32, down, across,
+					    low + groups));
+	}
 }
 
-int precision_put(struct precision_matrix *m, const char *name, enum precision p, enum precision_group group,
-	size_t rows, size_t columns, const float *x, const char *path, struct err *e)
+void precision_put_vector(struct arrays_out *out, const char *name, size_t n, const float *x)
 {
-	*m = (struct precision_matrix){.count = 1};
-	m->tensors[0] = st_matrix(name, precisions[p].dtype, (int64_t)rows, (int64_t)columns, x);
-	if (precision_check(x, rows * columns, precisions[p].limit, path, name, e))
-		return -1;
-	return p == PRECISION_F32 ? 0 : convert(m, name, p, group, rows, columns, x, path, e);
-}
-
-void precision_free(struct precision_matrix *m)
-{
-	free(m->owned);
-	m->owned = NULL;
+	check(out, x, n, FLT_MAX, name);
+	arrays_out_put(out, st_vector(name, ST_F32, (int64_t)n, x));
 }
 
 /* NAME.low or NAME.step: finite, one for each group. */

@@ -4,7 +4,7 @@
 #define FORMATS_PRECISION_H
 
 #include "base/err.h"
-#include "formats/arrays/safetensors.h"
+#include "formats/arrays/arrays_out.h"
 
 #include <stddef.h>
 
@@ -28,29 +28,18 @@ enum st_dtype precision_dtype(enum precision p);
 /* What the numbers of a matrix have a low and a step in common with. */
 enum precision_group { PRECISION_ROWS, PRECISION_COLUMNS };
 
-/* A matrix to be written: `count` tensors, whose data belong to it, or to the caller (f32). */
-struct precision_matrix {
-	struct st_tensor
-		tensors[3]; /* NAME; with u8 also NAME.low and NAME.step, F32 [rows,1] or [1,columns] */
-	int count;
-	float *owned;
-	char low[64], step[64];
-};
-
-/* x (rows,columns) becomes tensors of that name (at most 50 characters). ERR_CHECK with `path` where a number
- * is not finite or too large for the precision. Free in any case. */
-int precision_put(struct precision_matrix *m, const char *name, enum precision p, enum precision_group group,
-	size_t rows, size_t columns, const float *x, const char *path, struct err *e);
-void precision_free(struct precision_matrix *m);
+/* Puts x (rows,columns), which must last until the end, as tensors of that name: with u8 also NAME.low and
+ * NAME.step, F32 [rows,1] or [1,columns]. ERR_CHECK where a number is not finite or too large for the
+ * precision. */
+void precision_put(struct arrays_out *out, const char *name, enum precision p, enum precision_group group,
+	size_t rows, size_t columns, const float *x);
 
 /* The numbers of a matrix of exactly that shape, as float32; errors as safetensors_need's, and ERR_FORMAT
  * where one is not finite. */
 int precision_get(const struct safetensors *st, const char *name, enum precision p,
 	enum precision_group group, size_t rows, size_t columns, float *x, struct err *e);
 
-/* 0 where all n numbers to be written are within +-limit, else -1 with *e (ERR_CHECK, "path: tensor 'name':
- * item I is ..."). */
-int precision_check(
-	const float *x, size_t n, double limit, const char *path, const char *name, struct err *e);
+/* Numbers to be written as they are, all of them finite: else ERR_CHECK, as above. */
+void precision_put_vector(struct arrays_out *out, const char *name, size_t n, const float *x);
 
 #endif

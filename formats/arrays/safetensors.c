@@ -40,37 +40,35 @@ static int read_entry(struct st_tensor *t, const cJSON *item, const char *path, 
 	*t = (struct st_tensor){.name = item->string};
 	if (!cJSON_IsString(dtype) || !cJSON_IsArray(shape) || !cJSON_IsArray(range) ||
 		cJSON_GetArraySize(range) != 2)
-		return err_set(
-			e, ERR_FORMAT, "%s: tensor '%s': needs dtype, shape and data_offsets", path, t->name);
+		return err_file(e, path, "tensor '%s': needs dtype, shape and data_offsets", t->name);
 	for (known = 0; known < ST_DTYPES; known++)
 		if (!strcmp(dtypes[known].name, dtype->valuestring))
 			break;
 	if (known == ST_DTYPES)
-		return err_set(e, ERR_FORMAT, "%s: tensor '%s': dtype '%s' is not supported", path, t->name,
-			dtype->valuestring);
+		return err_file(
+			e, path, "tensor '%s': dtype '%s' is not supported", t->name, dtype->valuestring);
 	t->dtype = (enum st_dtype)known;
 	for (const cJSON *d = shape->child; d; d = d->next) {
 		double v = cJSON_IsNumber(d) ? d->valuedouble : -1;
 		if (!(v >= 0 && v <= 9007199254740992.0) || v != floor(v) || t->dims == ST_MAX_DIMS)
-			return err_set(e, ERR_FORMAT, "%s: tensor '%s': bad shape", path, t->name);
+			return err_file(e, path, "tensor '%s': bad shape", t->name);
 		t->shape[t->dims++] = (int64_t)v;
 		if (mem_size(count, (size_t)v, &count))
-			return err_set(e, ERR_FORMAT, "%s: tensor '%s': shape overflows", path, t->name);
+			return err_file(e, path, "tensor '%s': shape overflows", t->name);
 	}
 	double begin = range->child->valuedouble, end = range->child->next->valuedouble;
 	if (!cJSON_IsNumber(range->child) || !cJSON_IsNumber(range->child->next) || !(begin >= 0) ||
 		!(end >= begin) || begin != floor(begin) || end != floor(end))
-		return err_set(e, ERR_FORMAT, "%s: tensor '%s': bad data_offsets", path, t->name);
+		return err_file(e, path, "tensor '%s': bad data_offsets", t->name);
 	if (end > (double)data_len)
-		return err_set(e, ERR_FORMAT,
-			"%s: tensor '%s': ends at data offset %.0f but the file has %zu data bytes", path,
-			t->name, end, data_len);
+		return err_file(e, path,
+			"tensor '%s': ends at data offset %.0f but the file has %zu data bytes", t->name, end,
+			data_len);
 	t->data = data + (size_t)begin;
 	t->bytes = (size_t)end - (size_t)begin;
 	if (mem_size(count, dtypes[known].size, &bytes) || bytes != t->bytes)
-		return err_set(e, ERR_FORMAT,
-			"%s: tensor '%s': %zu bytes of data do not fit its shape and type", path, t->name,
-			t->bytes);
+		return err_file(e, path, "tensor '%s': %zu bytes of data do not fit its shape and type",
+			t->name, t->bytes);
 	return 0;
 }
 
@@ -80,8 +78,7 @@ static int read_meta(struct safetensors *st, const cJSON *meta, struct err *e)
 
 	for (const cJSON *m = meta->child; m; m = m->next, n++)
 		if (!cJSON_IsString(m))
-			return err_set(
-				e, ERR_FORMAT, "%s: __metadata__ '%s' is not a string", st->path, m->string);
+			return err_file(e, st->path, "__metadata__ '%s' is not a string", m->string);
 	st->meta = mem_zalloc(n, sizeof *st->meta, st->path, e);
 	if (!st->meta)
 		return -1;
@@ -117,8 +114,7 @@ static int sort_tensors(struct safetensors *st, struct err *e)
 		return -1;
 	const size_t twice = names_twice(&st->tensor_names, &earlier);
 	if (twice != NAMES_NONE)
-		return err_set(
-			e, ERR_FORMAT, "%s: tensor '%s' appears twice", st->path, st->tensors[twice].name);
+		return err_file(e, st->path, "tensor '%s' appears twice", st->tensors[twice].name);
 	names_free(&st->tensor_names);
 	qsort(st->tensors, st->n, sizeof *st->tensors, by_offset);
 	return names_make(&st->tensor_names, st->tensors, sizeof *st->tensors,
@@ -134,13 +130,12 @@ static int check_layout(
 		const struct st_tensor *t = &st->tensors[i];
 		size_t begin = (size_t)((const unsigned char *)t->data - data);
 		if (begin != at)
-			return err_set(e, ERR_FORMAT,
-				"%s: tensor '%s': begins at data offset %zu, expected %zu", st->path, t->name,
-				begin, at);
+			return err_file(e, st->path, "tensor '%s': begins at data offset %zu, expected %zu",
+				t->name, begin, at);
 		at += t->bytes;
 	}
 	if (at != data_len)
-		return err_set(e, ERR_FORMAT, "%s: %zu bytes after the last tensor", st->path, data_len - at);
+		return err_file(e, st->path, "%zu bytes after the last tensor", data_len - at);
 	return 0;
 }
 
@@ -157,8 +152,8 @@ static int check_crcs(const struct safetensors *st, struct err *e)
 			continue;
 		snprintf(actual, sizeof actual, "%08x", libdeflate_crc32(0, t->data, t->bytes));
 		if (strcmp(expected, actual))
-			return err_set(e, ERR_FORMAT, "%s: tensor '%s': crc32 is %s, the header says %s",
-				st->path, t->name, actual, expected);
+			return err_file(e, st->path, "tensor '%s': crc32 is %s, the header says %s", t->name,
+				actual, expected);
 	}
 	return 0;
 }
@@ -169,14 +164,14 @@ static int read_header(struct safetensors *st, const cJSON *root, size_t header_
 	size_t data_len = st->map.len - 8 - header_len;
 
 	if (!cJSON_IsObject(root))
-		return err_set(e, ERR_FORMAT, "%s: header at offset 8 is not a JSON object", st->path);
+		return err_file(e, st->path, "header at offset 8 is not a JSON object");
 	st->tensors = mem_zalloc((size_t)cJSON_GetArraySize(root), sizeof *st->tensors, st->path, e);
 	if (!st->tensors)
 		return -1;
 	for (const cJSON *item = root->child; item; item = item->next) {
 		if (!strcmp(item->string, "__metadata__")) {
 			if (!cJSON_IsObject(item) || st->meta)
-				return err_set(e, ERR_FORMAT, "%s: __metadata__ is not one object", st->path);
+				return err_file(e, st->path, "__metadata__ is not one object");
 			if (read_meta(st, item, e))
 				return -1;
 			continue;
@@ -189,7 +184,7 @@ static int read_header(struct safetensors *st, const cJSON *root, size_t header_
 			return -1;
 		st->n++;
 	}
-	return sort_tensors(st, e) || check_layout(st, data, data_len, e) || check_crcs(st, e) ? -1 : 0;
+	return -(sort_tensors(st, e) || check_layout(st, data, data_len, e) || check_crcs(st, e));
 }
 
 /* Reads what st->map holds; closes on failure. */
@@ -199,28 +194,27 @@ static int read_map(struct safetensors *st, struct err *e)
 	cJSON *root = NULL;
 
 	if (st->map.len < 8) {
-		err_set(e, ERR_FORMAT, "%s: %zu bytes, too short for a safetensors file", st->path,
-			st->map.len);
+		err_file(e, st->path, "%zu bytes, too short for a safetensors file", st->map.len);
 		goto fail;
 	}
 	header_len = little_get(st->map.data, 8);
 	if (header_len > st->map.len - 8 || header_len > 100000000) {
-		err_set(e, ERR_FORMAT,
-			"%s: header of %llu bytes does not fit a file of %zu: not safetensors, or cut short",
-			st->path, (unsigned long long)header_len, st->map.len);
+		err_file(e, st->path,
+			"header of %llu bytes does not fit a file of %zu: not safetensors, or cut short",
+			(unsigned long long)header_len, st->map.len);
 		goto fail;
 	}
 	const char *stop = NULL;
 	root = cJSON_ParseWithLengthOpts((const char *)st->map.data + 8, (size_t)header_len, &stop, 0);
 	if (!root) {
-		err_set(e, ERR_FORMAT, "%s: header is not JSON at offset %td", st->path,
+		err_file(e, st->path, "header is not JSON at offset %td",
 			stop ? stop - (const char *)st->map.data : 8);
 		goto fail;
 	}
 	for (const char *end = (const char *)st->map.data + 8 + header_len; stop < end; stop++)
 		if (*stop != ' ') {
-			err_set(e, ERR_FORMAT, "%s: header has something after its JSON at offset %td",
-				st->path, stop - (const char *)st->map.data);
+			err_file(e, st->path, "header has something after its JSON at offset %td",
+				stop - (const char *)st->map.data);
 			goto fail;
 		}
 	if (read_header(st, root, (size_t)header_len, e))

@@ -21,9 +21,8 @@ int safetensors_meta_int(const struct safetensors *st, const char *key, long lon
 	*value = text ? strtoll(text, &end, 10) : 0;
 	if (!text || (*text != '-' && (*text < '0' || *text > '9')) || end == text || *end || errno ||
 		*value < low || *value > high)
-		return err_set(e, ERR_FORMAT,
-			"%s: metadata '%s' is '%s', not a whole number from %lld to %lld", st->path, key,
-			text ? text : "", low, high);
+		return err_file(e, st->path, "metadata '%s' is '%s', not a whole number from %lld to %lld",
+			key, text ? text : "", low, high);
 	return 0;
 }
 
@@ -49,7 +48,7 @@ const struct st_tensor *safetensors_need(const struct safetensors *st, const cha
 	int same;
 
 	if (!t) {
-		err_set(e, ERR_FORMAT, "%s: tensor '%s' is missing", st->path, name);
+		err_file(e, st->path, "tensor '%s' is missing", name);
 		return NULL;
 	}
 	same = t->dtype == dtype && t->dims == dims;
@@ -59,8 +58,8 @@ const struct st_tensor *safetensors_need(const struct safetensors *st, const cha
 		return t;
 	shape_text(want, sizeof want, dims, shape);
 	shape_text(have, sizeof have, t->dims, t->shape);
-	err_set(e, ERR_FORMAT, "%s: tensor '%s': is %s%s, expected %s%s", st->path, name,
-		st_dtype_name(t->dtype), have, st_dtype_name(dtype), want);
+	err_file(e, st->path, "tensor '%s': is %s%s, expected %s%s", name, st_dtype_name(t->dtype), have,
+		st_dtype_name(dtype), want);
 	return NULL;
 }
 
@@ -82,8 +81,7 @@ int safetensors_check_finite(
 {
 	for (size_t i = 0; i < n; i++)
 		if (!isfinite(x[i]))
-			return err_set(
-				e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite", st->path, name, i);
+			return err_file(e, st->path, "tensor '%s': item %zu is not finite", name, i);
 	return 0;
 }
 
@@ -93,22 +91,19 @@ int safetensors_need_format(const struct safetensors *st, const char *format, in
 	char *end;
 
 	if (!have || strcmp(have, format))
-		return err_set(e, ERR_FORMAT, "%s: format is '%s', expected '%s'", st->path, have ? have : "",
-			format);
+		return err_file(e, st->path, "format is '%s', expected '%s'", have ? have : "", format);
 	long v = text ? strtol(text, &end, 10) : 0;
 	if (v < 1 || *end)
-		return err_set(e, ERR_FORMAT, "%s: version is '%s', not a number from 1", st->path,
-			text ? text : "");
+		return err_file(e, st->path, "version is '%s', not a number from 1", text ? text : "");
 	if (v > version)
-		return err_set(e, ERR_FORMAT, "%s: %s version %ld is newer than this program reads (%d)",
-			st->path, format, v, version);
+		return err_file(e, st->path, "%s version %ld is newer than this program reads (%d)", format,
+			v, version);
 	for (size_t i = 0; i < st->n; i++) {
 		const struct st_tensor *t = &st->tensors[i];
 		size_t at = (size_t)((const unsigned char *)t->data - st->map.data);
 		if (t->bytes && at % st_dtype_size(t->dtype))
-			return err_set(e, ERR_FORMAT,
-				"%s: tensor '%s': at offset %zu, not aligned to its type", st->path, t->name,
-				at);
+			return err_file(e, st->path, "tensor '%s': at offset %zu, not aligned to its type",
+				t->name, at);
 	}
 	return 0;
 }

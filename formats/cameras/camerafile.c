@@ -1,16 +1,63 @@
 #include "formats/cameras/camerafile.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/textfile.h"
-#include "formats/cameras/cameras3dgs.h"
 #include "formats/cameras/colmap.h"
 #include "formats/cameras/transforms.h"
 #include "formats/records/foreign.h"
 #include "formats/records/json.h"
 #include "geom/lens.h"
+#include "geom/views.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+static int read_view(struct camera *c, const cJSON *item, const char *where, struct err *e)
+{
+	const char *image = NULL;
+	double width, height, rows[9], centre[3], rotation[3][3];
+
+	if (json_string(item, "img_name", 1, &image, where, e) < 0 ||
+		json_number(item, "width", 1, &width, where, e) < 0 ||
+		json_number(item, "height", 1, &height, where, e) < 0 ||
+		json_number(item, "fx", 1, &c->fx, where, e) < 0 ||
+		json_number(item, "fy", 1, &c->fy, where, e) < 0 ||
+		json_matrix(item, "position", 3, 0, centre, where, e) ||
+		json_matrix(item, "rotation", 3, 3, rows, where, e))
+		return -1;
+	if (view_set_size(c, width, height))
+		return err_file(e, where, "size %gx%g is not whole numbers in 1 to 65536", width, height);
+	c->cx = width / 2;
+	c->cy = height / 2;
+	/* The file has camera to world. */
+	for (int r = 0; r < 3; r++)
+		for (int k = 0; k < 3; k++)
+			rotation[r][k] = rows[3 * k + r];
+	camera_set_centre(c, rotation, centre);
+	c->image = view_image(image, e);
+	return c->image ? 0 : -1;
+}
+
+/* The cameras.json of 3DGS: formats/cameras/cameras3dgs.md. */
+static int parse_3dgs(struct cameras *c, const cJSON *list, const char *path, struct err *e)
+{
+	const cJSON *item;
+	char where[512];
+
+	c->views = mem_zalloc((size_t)cJSON_GetArraySize(list), sizeof *c->views, path, e);
+	if (!c->views)
+		return -1;
+	cJSON_ArrayForEach(item, list)
+	{
+		snprintf(where, sizeof where, "%s: camera %zu", path, c->n);
+		if (read_view(&c->views[c->n++], item, where, e))
+			return -1;
+	}
+	return views_finish(c, path, e);
+}
 
 /* JSON, or what else the file is. */
 static cJSON *read_json(const char *path, struct err *e)
@@ -25,9 +72,8 @@ static cJSON *read_json(const char *path, struct err *e)
 	if (strchr("{[", text[strspn(text, " \t\r\n")]))
 		root = json_parse(text, len, name, e);
 	else if (!foreign_file(name, FOREIGN_CAMERAS, text, len, e))
-		err_set(e, ERR_FORMAT,
-			"%s: neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json",
-			name);
+		err_file(e, name,
+			"neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json");
 	free(text);
 	return root;
 }
@@ -43,18 +89,19 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e)
 		bad = colmap_read(c, path, e);
 	} else {
 		root = read_json(path, e);
-		const cJSON *frames = cJSON_GetObjectItemCaseSensitive(root, "frames"),
-			    *image = cJSON_GetObjectItemCaseSensitive(root ? root->child : NULL, "img_name");
+		const cJSON *frames = json_get(root, "frames"),
+			    *image = json_get(root ? root->child : NULL, "img_name");
 		if (root && !frames && !image && foreign_json(root, name, e))
 			bad = -1;
 		else if (cJSON_IsArray(root))
-			bad = cameras3dgs_parse(c, root, name, e);
+			bad = parse_3dgs(c, root, name, e);
 		else if (root)
 			bad = transforms_parse(c, root, name, e);
 		cJSON_Delete(root);
 	}
 	if (!bad && !c->n)
-		bad = err_set(e, ERR_FORMAT, "%s: no views", name);
+		bad = err_file(e, name,
+			"no views: a COLMAP model has them in images.bin or images.txt, a transforms.json in its frames");
 	if (bad)
 		cameras_free(c);
 	return bad ? textfile_note(path, e) : 0;
@@ -71,10 +118,10 @@ int camerafile_need_pinholes(const struct cameras *c, const char *path, const ch
 	const struct camera *v = &c->views[i];
 	const char *model = lens_model_name(v->lens.model);
 	if (!file_is_dir(path))
-		return err_set(e, ERR_FORMAT,
-			"%s: view '%s': camera model %s distorts: gs-import --undistort takes the pinhole of the same view",
-			file_name(path), v->name, model);
-	return err_set(e, ERR_FORMAT,
-		"%s: view '%s': camera model %s distorts: gs-import --undistort takes the pinhole of the same view, and so does 'colmap image_undistorter --image_path %s --input_path %s --output_path undistorted'",
-		file_name(path), v->name, model, images ? images : "IMAGES", path);
+		return err_file(e, file_name(path),
+			"view '%s': camera model %s distorts: gs-import --undistort takes the pinhole of the same view",
+			v->name, model);
+	return err_file(e, file_name(path),
+		"view '%s': camera model %s distorts: gs-import --undistort takes the pinhole of the same view, and so does 'colmap image_undistorter --image_path %s --input_path %s --output_path undistorted'",
+		v->name, model, images ? images : "IMAGES", path);
 }

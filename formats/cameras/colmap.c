@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/little.h"
 #include "base/mem.h"
+#include "base/textfile.h"
 #include "geom/lens.h"
 #include "geom/views.h"
 
@@ -27,11 +28,11 @@ int colmap_set_camera(struct colmap_entry *c, const struct lens_model *m, double
 
 	for (int i = 0; i < n; i++)
 		if (!isfinite(lens.parameters[i] = params[i]))
-			return err_set(e, ERR_FORMAT, "%s: camera %lu: parameter %d is not finite", path,
-				(unsigned long)c->id, i);
+			return err_file(
+				e, path, "camera %lu: parameter %d is not finite", (unsigned long)c->id, i);
 	if (view_set_size(&c->camera, width, height))
-		return err_set(e, ERR_FORMAT, "%s: camera %lu: size %gx%g is not whole numbers in 1 to 65536",
-			path, (unsigned long)c->id, width, height);
+		return err_file(e, path, "camera %lu: size %gx%g is not whole numbers in 1 to 65536",
+			(unsigned long)c->id, width, height);
 	lens.width = c->camera.width;
 	lens.height = c->camera.height;
 	c->camera.fx = params[0];
@@ -68,8 +69,7 @@ int colmap_sort_entries(struct colmap_entries *all, const char *path, struct err
 		qsort(all->items, all->n, sizeof *all->items, by_id);
 	for (size_t i = 0; i + 1 < all->n; i++)
 		if (all->items[i].id == all->items[i + 1].id)
-			return err_set(e, ERR_FORMAT, "%s: camera %lu appears twice", path,
-				(unsigned long)all->items[i].id);
+			return err_file(e, path, "camera %lu appears twice", (unsigned long)all->items[i].id);
 	return 0;
 }
 
@@ -83,11 +83,10 @@ int colmap_add_view(struct cameras *c, size_t *capacity, const struct colmap_ent
 	const struct colmap_entry *l = all->n ? bsearch(&key, all->items, all->n, sizeof key, by_id) : NULL;
 
 	if (!l)
-		return err_set(e, ERR_FORMAT, "%s: image '%.200s': no camera %lu in the model", path, image,
-			(unsigned long)camera);
+		return err_file(
+			e, path, "image '%.200s': no camera %lu in the model", image, (unsigned long)camera);
 	if (!isfinite(length) || length < 1e-12)
-		return err_set(
-			e, ERR_FORMAT, "%s: image '%.200s': its rotation is zero or not finite", path, image);
+		return err_file(e, path, "image '%.200s': its rotation is zero or not finite", image);
 	double w = pose[0] / length, x = pose[1] / length, y = pose[2] / length, z = pose[3] / length;
 	double m[4][4] = {
 		{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), pose[4]},
@@ -114,8 +113,8 @@ static const unsigned char *take(
 	struct cursor *in, size_t bytes, const char *what, uint64_t index, struct err *e)
 {
 	if (bytes > in->map.len - in->at) {
-		err_set(e, ERR_FORMAT, "%s: the file ends at offset %zu, within %s %llu", in->path,
-			in->map.len, what, (unsigned long long)index);
+		err_file(e, in->path, "the file ends at offset %zu, within %s %llu", in->map.len, what,
+			(unsigned long long)index);
 		return NULL;
 	}
 	in->at += bytes;
@@ -129,13 +128,12 @@ static int open_binary(struct cursor *in, const char *path, size_t entry, uint64
 	if (file_map(path, &in->map, e))
 		return -1;
 	if (in->map.len < 8)
-		return err_set(
-			e, ERR_FORMAT, "%s: %zu bytes, too short for a COLMAP file", path, in->map.len);
+		return err_file(e, path, "%zu bytes, too short for a COLMAP file", in->map.len);
 	*count = little_get(in->map.data, 8);
 	in->at = 8;
 	if (*count > (in->map.len - 8) / entry)
-		return err_set(e, ERR_FORMAT, "%s: %llu entries at offset 0 do not fit a file of %zu bytes",
-			path, (unsigned long long)*count, in->map.len);
+		return err_file(e, path, "%llu entries at offset 0 do not fit a file of %zu bytes",
+			(unsigned long long)*count, in->map.len);
 	return 0;
 }
 
@@ -143,8 +141,8 @@ static int check_end(const struct cursor *in, struct err *e)
 {
 	if (in->at == in->map.len)
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: %zu bytes after the last entry, from offset %zu", in->path,
-		in->map.len - in->at, in->at);
+	return err_file(
+		e, in->path, "%zu bytes after the last entry, from offset %zu", in->map.len - in->at, in->at);
 }
 
 static int read_cameras_binary(struct colmap_entries *all, struct cursor *in, const char *path, struct err *e)
@@ -163,8 +161,8 @@ static int read_cameras_binary(struct colmap_entries *all, struct cursor *in, co
 		const struct lens_model *model = lens_model_numbered(id);
 		double width = (double)little_get(p + 8, 8), height = (double)little_get(p + 16, 8);
 		if (!model)
-			return err_set(e, ERR_FORMAT, "%s: camera %lu: model id %ld at offset %zu is unknown",
-				path, (unsigned long)l.id, (long)(int32_t)id, in->at - 20);
+			return err_file(e, path, "camera %lu: model id %ld at offset %zu is unknown",
+				(unsigned long)l.id, (long)(int32_t)id, in->at - 20);
 		p = take(in, 8 * (size_t)lens_model_parameters(model), "camera entry", i, e);
 		if (!p)
 			return -1;
@@ -255,4 +253,118 @@ int colmap_read(struct cameras *c, const char *dir, struct err *e)
 	free(cameras);
 	free(images);
 	return bad ? -1 : 0;
+}
+
+static int add_point(struct colmap_points *p, size_t *room, const double place[3], const double color[3],
+	const char *path, struct err *e)
+{
+	size_t places = *room, colors = *room;
+
+	for (int k = 0; k < 3; k++)
+		if (!isfinite(place[k]) || !(color[k] >= 0 && color[k] <= 255))
+			return err_file(e, path,
+				"point %zu: its place is not finite, or its colour not within 0 to 255",
+				p->n);
+	if (mem_grow((void **)&p->places, &places, p->n + 1, 3 * sizeof *p->places, path, e) ||
+		mem_grow((void **)&p->colors, &colors, p->n + 1, 3, path, e))
+		return -1;
+	*room = places < colors ? places : colors;
+	for (size_t k = 0; k < 3; k++) {
+		p->places[3 * p->n + k] = place[k];
+		p->colors[3 * p->n + k] = (uint8_t)color[k];
+	}
+	p->n++;
+	return 0;
+}
+
+/* How many, and for each: id (u64), place (3 f64), colour (3 u8), error (f64), how many views (u64) with 8
+ * bytes each. */
+enum { ENTRY = 8 + 24 + 3 + 8 + 8 };
+
+static int read_points_binary(struct colmap_points *p, const char *path, struct err *e)
+{
+	struct file_map map;
+	size_t room = 0, at = 8;
+	int bad = 0;
+
+	if (file_map(path, &map, e))
+		return -1;
+	const uint64_t n = map.len < 8 ? 0 : little_get(map.data, 8);
+	for (uint64_t i = 0; i < n && !bad; i++) {
+		double place[3], color[3];
+		uint64_t views = 0;
+		const unsigned char *entry = map.data + at;
+		if (map.len - at >= ENTRY)
+			views = little_get(entry + ENTRY - 8, 8);
+		if (map.len - at < ENTRY || views > (map.len - at - ENTRY) / 8) {
+			bad = err_file(e, path, "the file ends at offset %zu, within point %llu of %llu",
+				map.len, (unsigned long long)i, (unsigned long long)n);
+			break;
+		}
+		for (size_t k = 0; k < 3; k++) {
+			place[k] = little_get_f64(entry + 8 + 8 * k);
+			color[k] = entry[32 + k];
+		}
+		bad = add_point(p, &room, place, color, path, e);
+		at += ENTRY + 8 * (size_t)views;
+	}
+	if (!bad && map.len < 8)
+		bad = err_file(e, path, "%zu bytes, too short for a COLMAP file", map.len);
+	file_unmap(&map);
+	return bad;
+}
+
+/* Lines of POINT3D_ID X Y Z R G B ERROR and more. */
+static int read_points_text(struct colmap_points *p, const char *path, struct err *e)
+{
+	char *text = NULL;
+	size_t length, room = 0;
+	long number = 0;
+	int bad = textfile_read(path, &text, &length, e);
+
+	for (char *line = text; !bad && *line; number++) {
+		char *end = line + strcspn(line, "\n"), *next = end + (*end != 0);
+		double v[7];
+		*end = 0;
+		line += strspn(line, " \t\r");
+		int fields = 0;
+		for (char *after = line; *line && *line != '#' && fields < 7; fields++) {
+			v[fields] = strtod(line, &after);
+			if (after == line)
+				break;
+			line = after;
+		}
+		if (fields == 7)
+			bad = add_point(p, &room, v + 1, v + 4, path, e);
+		else if (*line && *line != '#')
+			bad = err_set(e, ERR_FORMAT, "%s:%ld: not 'ID X Y Z R G B ERROR'", path, number + 1);
+		line = next;
+	}
+	free(text);
+	return bad;
+}
+
+int colmap_points_read(struct colmap_points *p, const char *dir, struct err *e)
+{
+	static const char *const suffixes[] = {".bin", ".txt"};
+	int bad = 0;
+
+	*p = (struct colmap_points){0};
+	for (int i = 0; i < 2 && !bad && !p->n; i++) {
+		char *path = file_join(dir, "points3D", suffixes[i], e);
+		bad = path ? 0 : -1;
+		if (path && file_exists(path))
+			bad = i ? read_points_text(p, path, e) : read_points_binary(p, path, e);
+		free(path);
+	}
+	if (bad)
+		colmap_points_free(p);
+	return bad ? -1 : 0;
+}
+
+void colmap_points_free(struct colmap_points *p)
+{
+	free(p->places);
+	free(p->colors);
+	*p = (struct colmap_points){0};
 }

@@ -40,8 +40,7 @@ static int check_rotation(double m[3][3], const char *name, const char *key, str
 		for (int k = 0; k < 3; k++) {
 			const double product = m[i][0] * m[k][0] + m[i][1] * m[k][1] + m[i][2] * m[k][2];
 			if (fabs(product - (i == k)) > 1e-3)
-				return err_set(e, ERR_FORMAT, "%s: key '%s' is not a rotation and a shift",
-					name, key);
+				return err_file(e, name, "key '%s' is not a rotation and a shift", key);
 		}
 	return 0;
 }
@@ -50,7 +49,7 @@ static int check_rotation(double m[3][3], const char *name, const char *key, str
 static int read_move(struct move *m, const cJSON *root, const char *matrix, const char *scale, int need,
 	const char *name, struct err *e)
 {
-	const cJSON *rows = cJSON_GetObjectItemCaseSensitive(root, matrix);
+	const cJSON *rows = json_get(root, matrix);
 	double values[4][4];
 
 	*m = (struct move){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0}, 1};
@@ -65,7 +64,7 @@ static int read_move(struct move *m, const cJSON *root, const char *matrix, cons
 	if (json_number(root, scale, need, &m->scale, name, e) < 0 ||
 		check_rotation(m->rotation, name, matrix, e))
 		return -1;
-	return m->scale > 0 ? 0 : err_set(e, ERR_FORMAT, "%s: key '%s' is not positive", name, scale);
+	return m->scale > 0 ? 0 : err_file(e, name, "key '%s' is not positive", scale);
 }
 
 /* What nerfstudio did after the frame of the transforms.json: the file tells of both steps as one, m = now o

@@ -1,5 +1,6 @@
 #include "formats/cameras/transforms.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "formats/records/json.h"
 #include "geom/lens.h"
@@ -39,9 +40,9 @@ static int check_coefficients(int is_full, const double *k, const char *where, s
 {
 	for (int i = 3; i < 6 && !is_full; i++)
 		if (k[i] != 0)
-			return err_set(e, ERR_FORMAT,
-				"%s: key 'k%d': %g, which is read with camera_model FULL_OPENCV only", where,
-				i + 1, k[i]);
+			return err_file(e, where,
+				"key 'k%d': %g, which is read with camera_model FULL_OPENCV only", i + 1,
+				k[i]);
 	return 0;
 }
 
@@ -83,10 +84,9 @@ static int read_lens(
 		if (!strcmp(model, perspective[i]))
 			break;
 	if (model && i == sizeof perspective / sizeof *perspective)
-		return err_set(e, ERR_FORMAT, "%s: key 'camera_model': '%.40s' is not a perspective camera",
-			where, model);
-	const int is_fisheye = (model && !strcmp(model, "OPENCV_FISHEYE")) ||
-			       cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(root, "is_fisheye"));
+		return err_file(e, where, "key 'camera_model': '%.40s' is not a perspective camera", model);
+	const int is_fisheye =
+		(model && !strcmp(model, "OPENCV_FISHEYE")) || cJSON_IsTrue(json_get(root, "is_fisheye"));
 	if (read_distortion(&l, frame, root, is_fisheye, model && !strcmp(model, "FULL_OPENCV"), where, e))
 		return -1;
 	if (lens_is_distorted(&l))
@@ -107,8 +107,7 @@ static int read_focal(const cJSON *frame, const cJSON *root, const char *focal, 
 	got = either_number(frame, root, angle, &radians, where, e);
 	if (got > 0) {
 		if (!(radians > 0 && radians < 3.14159))
-			return err_set(e, ERR_FORMAT, "%s: key '%s': %g is not an angle in (0, pi)", where,
-				angle, radians);
+			return err_file(e, where, "key '%s': %g is not an angle in (0, pi)", angle, radians);
 		*out = extent / 2 / tan(radians / 2);
 	}
 	return got;
@@ -117,8 +116,7 @@ static int read_focal(const cJSON *frame, const cJSON *root, const char *focal, 
 /* Whether there are focal lengths in pixels, which Blender's files do not have. */
 static int has_focal(const cJSON *frame, const cJSON *root)
 {
-	return cJSON_GetObjectItemCaseSensitive(frame, "fl_x") ||
-	       cJSON_GetObjectItemCaseSensitive(root, "fl_x");
+	return json_get(frame, "fl_x") || json_get(root, "fl_x");
 }
 
 static int read_intrinsics(
@@ -131,17 +129,16 @@ static int read_intrinsics(
 		either_number(frame, root, "h", &height, where, e) < 0)
 		return -1;
 	if ((width == 0 || height == 0) && !has_focal(frame, root))
-		return err_set(e, ERR_FORMAT,
-			"%s: key '%s' is missing, as in Blender's transforms: jq '. + {w: 800, h: 800}' adds the size of the photographs",
-			where, width == 0 ? "w" : "h");
+		return err_file(e, where,
+			"key '%s' is missing, as in Blender's transforms: jq '. + {w: 800, h: 800}' adds the size of the photographs",
+			width == 0 ? "w" : "h");
 	if (width == 0 || height == 0)
-		return err_set(e, ERR_FORMAT, "%s: key '%s' is missing", where, width == 0 ? "w" : "h");
+		return err_file(e, where, "key '%s' is missing", width == 0 ? "w" : "h");
 	if (view_set_size(c, width, height))
-		return err_set(e, ERR_FORMAT, "%s: size %gx%g is not whole numbers in 1 to 65536", where,
-			width, height);
+		return err_file(e, where, "size %gx%g is not whole numbers in 1 to 65536", width, height);
 	got = read_focal(frame, root, "fl_x", "camera_angle_x", width, &c->fx, where, e);
 	if (got <= 0)
-		return got ? -1 : err_set(e, ERR_FORMAT, "%s: neither 'fl_x' nor 'camera_angle_x'", where);
+		return got ? -1 : err_file(e, where, "neither 'fl_x' nor 'camera_angle_x'");
 	c->fy = c->fx;
 	c->cx = width / 2;
 	c->cy = height / 2;
@@ -155,7 +152,7 @@ static int read_intrinsics(
 static int read_frame(
 	struct camera *c, const cJSON *frame, const cJSON *root, const char *where, struct err *e)
 {
-	const cJSON *matrix = cJSON_GetObjectItemCaseSensitive(frame, "transform_matrix");
+	const cJSON *matrix = json_get(frame, "transform_matrix");
 	int rows = cJSON_GetArraySize(matrix) == 3 ? 3 : 4; /* the last row is optional */
 	double m[4][4] = {[3] = {0, 0, 0, 1}}, rotation[3][3];
 	const char *image = NULL;
@@ -165,8 +162,7 @@ static int read_frame(
 		json_matrix(frame, "transform_matrix", rows, 4, m[0], where, e))
 		return -1;
 	if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] != 1)
-		return err_set(
-			e, ERR_FORMAT, "%s: key 'transform_matrix': the last row is not 0 0 0 1", where);
+		return err_file(e, where, "key 'transform_matrix': the last row is not 0 0 0 1");
 	/* Camera to world, y up and z backward: the second and third axis change sign (0 does not). */
 	for (int r = 0; r < 3; r++)
 		for (int k = 0; k < 3; k++)
@@ -176,25 +172,20 @@ static int read_frame(
 	return c->image ? 0 : -1;
 }
 
-static int by_text(const void *a, const void *b)
-{
-	return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
 /* Adds a list of file paths: 1 where it is there. */
 static int add_names(struct names *names, const cJSON *root, const char *key, const char *path, struct err *e)
 {
-	const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, key), *item;
+	const cJSON *list = json_member(root, key), *item;
 
-	if (!list || cJSON_IsNull(list))
+	if (!list)
 		return 0;
 	if (!cJSON_IsArray(list))
-		return err_set(e, ERR_FORMAT, "%s: key '%s' is not a list", path, key);
+		return err_file(e, path, "key '%s' is not a list", key);
 	cJSON_ArrayForEach(item, list)
 	{
 		void *block = names->items;
 		if (!cJSON_IsString(item))
-			return err_set(e, ERR_FORMAT, "%s: key '%s' is not a list of strings", path, key);
+			return err_file(e, path, "key '%s' is not a list of strings", key);
 		if (mem_grow(&block, &names->capacity, names->n + 1, sizeof *names->items, path, e))
 			return -1;
 		names->items = block;
@@ -203,7 +194,7 @@ static int add_names(struct names *names, const cJSON *root, const char *key, co
 		names->n++;
 	}
 	if (names->n)
-		qsort(names->items, names->n, sizeof *names->items, by_text);
+		qsort(names->items, names->n, sizeof *names->items, compare_string);
 	return 1;
 }
 
@@ -216,7 +207,7 @@ static void free_names(struct names *names)
 
 static int is_named(const struct names *names, const char *image)
 {
-	return names->n && bsearch(&image, names->items, names->n, sizeof *names->items, by_text);
+	return names->n && bsearch(&image, names->items, names->n, sizeof *names->items, compare_string);
 }
 
 /* Test views are those listed as such, and where there is a list of training views also those that it lacks.
@@ -248,7 +239,7 @@ static cJSON *common_members(const cJSON *root, const char *path, struct err *e)
 	int is_whole = common != NULL;
 
 	for (size_t i = 0; i < sizeof keys / sizeof *keys && is_whole; i++) {
-		cJSON *item = cJSON_GetObjectItemCaseSensitive(root, keys[i]);
+		cJSON *item = json_get(root, keys[i]);
 		is_whole = !item || cJSON_AddItemReferenceToObject(common, keys[i], item);
 	}
 	if (is_whole)
@@ -275,15 +266,14 @@ static int read_frames(
 
 int transforms_parse(struct cameras *c, const cJSON *root, const char *path, struct err *e)
 {
-	const cJSON *frames = cJSON_GetObjectItemCaseSensitive(root, "frames");
+	const cJSON *frames = json_get(root, "frames");
 
 	*c = (struct cameras){0};
 	if (!frames)
-		return err_set(e, ERR_FORMAT,
-			"%s: neither a transforms.json, which has a key 'frames', nor a 3DGS cameras.json, which is a list",
-			path);
+		return err_file(e, path,
+			"neither a transforms.json, which has a key 'frames', nor a 3DGS cameras.json, which is a list");
 	if (!cJSON_IsArray(frames))
-		return err_set(e, ERR_FORMAT, "%s: key 'frames' is not a list", path);
+		return err_file(e, path, "key 'frames' is not a list");
 	c->views = mem_zalloc((size_t)cJSON_GetArraySize(frames), sizeof *c->views, path, e);
 	if (!c->views)
 		return -1;

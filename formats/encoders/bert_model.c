@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static int read_activation(struct bert *b, const cJSON *config, const char *path, struct err *e)
+static int read_activation(struct text_tower *b, const cJSON *config, const char *path, struct err *e)
 {
 	static const struct pretrained_activation known[] = {{"gelu", TRANSFORMER_GELU},
 		{"gelu_new", TRANSFORMER_GELU_TANH}, {"gelu_pytorch_tanh", TRANSFORMER_GELU_TANH},
@@ -17,31 +17,29 @@ static int read_activation(struct bert *b, const cJSON *config, const char *path
 		"gelu, gelu_new, gelu_pytorch_tanh or relu", NULL, &b->body.activation, path, e);
 }
 
-static int read_keys(struct bert *b, const cJSON *config, const char *path, struct err *e)
+static int read_keys(struct text_tower *b, const cJSON *config, const char *path, struct err *e)
 {
-	static const char *const names[] = {"hidden_size", "num_attention_heads", "max_position_embeddings"};
+	static const char *const keys[] = {"hidden_size", "num_attention_heads", "max_position_embeddings"};
 	struct transformer *t = &b->body;
 
 	if (!cJSON_IsObject(config))
-		return err_set(e, ERR_FORMAT, "%s: not a JSON object", path);
+		return err_file(e, path, "not a JSON object");
 	if (pretrained_is(config, "model_type", "bert", path, e) ||
 		pretrained_is(config, "position_embedding_type", "absolute", path, e) ||
 		pretrained_int(config, "vocab_size", 10000000, 0, &b->words, path, e) ||
-		pretrained_int(config, names[0], 65536, 0, &t->width, path, e) ||
+		pretrained_int(config, keys[0], 65536, 0, &t->width, path, e) ||
 		pretrained_int(config, "num_hidden_layers", 1000, 0, &t->layer_count, path, e) ||
-		pretrained_int(config, names[1], 65536, 0, &t->heads, path, e) ||
+		pretrained_int(config, keys[1], 65536, 0, &t->heads, path, e) ||
 		pretrained_int(config, "intermediate_size", 1 << 20, 0, &t->inner, path, e) ||
-		pretrained_int(config, names[2], 1 << 20, 0, &b->positions, path, e) ||
+		pretrained_int(config, keys[2], 1 << 20, 0, &b->positions, path, e) ||
 		pretrained_int(config, "type_vocab_size", 65536, 0, &b->types, path, e) ||
 		read_activation(b, config, path, e))
 		return -1;
-	return pretrained_sizes(t, b->positions, names, path, e) ||
-			       pretrained_eps(config, 1e-12, &t->eps, path, e)
-		       ? -1
-		       : 0;
+	return -(pretrained_sizes(t, b->positions, keys, path, e) ||
+		 pretrained_eps(config, 1e-12, &t->eps, path, e));
 }
 
-static int read_config(struct bert *b, const char *dir, struct err *e)
+static int read_config(struct text_tower *b, const char *dir, struct err *e)
 {
 	char *path = file_join(dir, "config.json", "", e);
 	cJSON *config = path ? json_read(path, e) : NULL;
@@ -52,24 +50,17 @@ static int read_config(struct bert *b, const char *dir, struct err *e)
 	return bad;
 }
 
-static int load_layer(struct pretrained *s, const struct bert *b, int i)
-{
-	static const struct transformer_layer none;
-	const struct transformer_layer *l = b->body.layers ? &b->body.layers[i] : &none;
-	int width = b->body.width, inner = b->body.inner;
-	char at[64];
-
-	snprintf(at, sizeof at, "encoder.layer.%d.", i);
-	int bad = pretrained_linear(s, at, "attention.self.query", &l->query, width, width) ||
-		  pretrained_linear(s, at, "attention.self.key", &l->key, width, width) ||
-		  pretrained_linear(s, at, "attention.self.value", &l->value, width, width) ||
-		  pretrained_linear(s, at, "attention.output.dense", &l->attention_out, width, width) ||
-		  pretrained_norm(s, at, "attention.output.LayerNorm", &l->attention_norm, width) ||
-		  pretrained_linear(s, at, "intermediate.dense", &l->inner, width, inner) ||
-		  pretrained_linear(s, at, "output.dense", &l->outer, inner, width) ||
-		  pretrained_norm(s, at, "output.LayerNorm", &l->norm, width);
-	return bad ? -1 : 0;
-}
+static const struct pretrained_names names = {.word = "embeddings.word_embeddings.weight",
+	.position = "embeddings.position_embeddings.weight",
+	.type = "embeddings.token_type_embeddings.weight",
+	.layer = "encoder.layer.",
+	.norm = "embeddings.LayerNorm",
+	.attention = {"attention.self.query", "attention.self.key", "attention.self.value"},
+	.attention_norm = "attention.output.LayerNorm",
+	.attention_out = "attention.output.dense",
+	.inner = "intermediate.dense",
+	.outer = "output.dense",
+	.feed_norm = "output.LayerNorm"};
 
 /* Names have a prefix or none; those of old checkpoints' norms are others. */
 static void find_names(struct pretrained *s)
@@ -83,35 +74,19 @@ static void find_names(struct pretrained *s)
 	}
 }
 
-static int load_tensors(struct pretrained *s, const struct bert *b)
-{
-	static const char at[] = "embeddings.";
-	const int width = b->body.width;
-
-	if (pretrained_load(s, at, "word_embeddings", ".weight", b->word, b->words, width) ||
-		pretrained_load(s, at, "position_embeddings", ".weight", b->position, b->positions, width) ||
-		pretrained_load(s, at, "token_type_embeddings", ".weight", b->type, b->types, width) ||
-		pretrained_norm(s, at, "LayerNorm", &b->norm, width))
-		return -1;
-	for (int i = 0; i < b->body.layer_count; i++)
-		if (load_layer(s, b, i))
-			return -1;
-	return 0;
-}
-
 /* That the file has all tensors is known before memory is taken for them. */
-static int load_all(struct pretrained *s, struct bert *b)
+static int load_all(struct pretrained *s, struct text_tower *b)
 {
 	find_names(s);
-	return load_tensors(s, b) || bert_alloc(b, s->e) || load_tensors(s, b) ? -1 : 0;
+	return -(pretrained_tower(s, b) || text_tower_alloc(b, s->e) || pretrained_tower(s, b));
 }
 
-int bert_model_read(struct bert *b, const char *dir, struct err *e)
+int bert_model_read(struct text_tower *b, const char *dir, struct err *e)
 {
-	struct pretrained s = {.prefix = "", .scale = ".weight", .shift = ".bias", .e = e};
+	struct pretrained s = {.prefix = "", .names = &names, .scale = ".weight", .shift = ".bias", .e = e};
 	int bad = -1;
 
-	*b = (struct bert){0};
+	*b = (struct text_tower){0};
 	if (read_config(b, dir, e))
 		return -1;
 	if (!pretrained_open(&s.st, dir, NULL, e)) {
@@ -119,6 +94,6 @@ int bert_model_read(struct bert *b, const char *dir, struct err *e)
 		safetensors_close(&s.st);
 	}
 	if (bad)
-		bert_free(b);
+		text_tower_free(b);
 	return bad ? -1 : 0;
 }

@@ -4,13 +4,13 @@
 #define FORMATS_BERT_MODEL_H
 
 #include "base/err.h"
-#include "nn/bert.h"
+#include "nn/text_tower.h"
 
 /* What is read of the folder, the tokenizer's files with it. */
 #define BERT_MODEL_PARTS "config.json|tokenizer.json|tokenizer_config.json|vocab.txt|*.safetensors"
 
 /* Reads DIR/config.json and DIR/model.safetensors or, where there is none, the only *.safetensors in DIR.
- * Weights may be F32, F16, BF16 or F64. Release with bert_free. */
-int bert_model_read(struct bert *b, const char *dir, struct err *e);
+ * Weights may be F32, F16, BF16 or F64. Release with text_tower_free. */
+int bert_model_read(struct text_tower *b, const char *dir, struct err *e);
 
 #endif

@@ -14,7 +14,7 @@ static const char *const names[] = {"hidden_size", "num_attention_heads", "max_p
 
 static const cJSON *member(const cJSON *object, const char *key)
 {
-	return cJSON_GetObjectItemCaseSensitive(object, key);
+	return json_get(object, key);
 }
 
 static int is_text(const cJSON *item, const char *text)
@@ -49,7 +49,7 @@ static char *find_config(const char *dir, int *is_open, struct err *e)
 
 	*is_open = !is_usual && usual && other && file_exists(other);
 	if (usual && other && !is_usual && !*is_open)
-		err_set(e, ERR_FORMAT, "%s: key 'model_type' is not \"clip\" or \"clip_text_model\"", usual);
+		err_file(e, usual, "key 'model_type' is not \"clip\" or \"clip_text_model\"");
 	free(is_usual ? other : usual);
 	if (is_usual || *is_open)
 		return is_usual ? usual : other;
@@ -75,7 +75,7 @@ struct kind {
 	int is_open;	  /* the configuration is OpenCLIP's */
 };
 
-static int read_activation(struct clip *c, const cJSON *config, const char *path, struct err *e)
+static int read_activation(struct text_tower *c, const cJSON *config, const char *path, struct err *e)
 {
 	static const struct pretrained_activation known[] = {
 		{"quick_gelu", TRANSFORMER_QUICK_GELU}, {"gelu", TRANSFORMER_GELU}};
@@ -86,7 +86,8 @@ static int read_activation(struct clip *c, const cJSON *config, const char *path
 
 /* HuggingFace's: of the text tower alone, or of both with the text tower's in `text_config`. Keys that are
  * absent have the values of CLIP ViT-B/32. */
-static int read_keys(struct clip *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
+static int read_keys(
+	struct text_tower *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
 {
 	const cJSON *nested = member(config, "text_config"), *text = cJSON_IsObject(nested) ? nested : config;
 	const cJSON *own = member(config, "projection_dim");
@@ -95,25 +96,20 @@ static int read_keys(struct clip *c, struct kind *kind, const cJSON *config, con
 	kind->is_projected = is_text(member(config, "model_type"), "clip") ||
 			     is_text(cJSON_GetArrayItem(member(config, "architectures"), 0),
 				     "CLIPTextModelWithProjection");
-	return pretrained_int(text, "vocab_size", 10000000, 49408, &c->words, path, e) ||
-			       pretrained_int(text, names[0], 65536, 512, &t->width, path, e) ||
-			       pretrained_int(
-				       text, "num_hidden_layers", 1000, 12, &t->layer_count, path, e) ||
-			       pretrained_int(text, names[1], 65536, 8, &t->heads, path, e) ||
-			       pretrained_int(text, "intermediate_size", 1 << 20, 2048, &t->inner, path, e) ||
-			       pretrained_int(text, names[2], 1 << 20, 77, &c->positions, path, e) ||
-			       pretrained_int(own ? config : text, "projection_dim", 65536, 512, &kind->width,
-				       path, e) ||
-			       read_activation(c, text, path, e) ||
-			       pretrained_sizes(t, c->positions, names, path, e) ||
-			       pretrained_eps(text, 1e-5, &t->eps, path, e)
-		       ? -1
-		       : 0;
+	return -(pretrained_int(text, "vocab_size", 10000000, 49408, &c->words, path, e) ||
+		 pretrained_int(text, names[0], 65536, 512, &t->width, path, e) ||
+		 pretrained_int(text, "num_hidden_layers", 1000, 12, &t->layer_count, path, e) ||
+		 pretrained_int(text, names[1], 65536, 8, &t->heads, path, e) ||
+		 pretrained_int(text, "intermediate_size", 1 << 20, 2048, &t->inner, path, e) ||
+		 pretrained_int(text, names[2], 1 << 20, 77, &c->positions, path, e) ||
+		 pretrained_int(own ? config : text, "projection_dim", 65536, 512, &kind->width, path, e) ||
+		 read_activation(c, text, path, e) || pretrained_sizes(t, c->positions, names, path, e) ||
+		 pretrained_eps(text, 1e-5, &t->eps, path, e));
 }
 
 /* OpenCLIP's own; what it does not say is as in its code. */
 static int read_open_keys(
-	struct clip *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
+	struct text_tower *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
 {
 	static const char *const own[] = {"width", "heads", "context_length"};
 	static const char *const refused[] = {"hf_model_name", "hf_tokenizer_name", "embed_cls",
@@ -124,11 +120,11 @@ static int read_open_keys(
 	struct transformer *t = &c->body;
 
 	if (!cJSON_IsObject(text))
-		return err_set(e, ERR_FORMAT, "%s: key 'text_cfg' is not an object", path);
+		return err_file(e, path, "key 'text_cfg' is not an object");
 	for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
 		if (member(text, refused[i]))
-			return err_set(e, ERR_FORMAT, "%s: key '%s': text towers of this kind are not read",
-				path, refused[i]);
+			return err_file(
+				e, path, "key '%s': text towers of this kind are not read", refused[i]);
 	if (pretrained_int(model, "embed_dim", 65536, 0, &kind->width, path, e) ||
 		pretrained_int(text, "vocab_size", 10000000, 49408, &c->words, path, e) ||
 		pretrained_int(text, own[0], 65536, 512, &t->width, path, e) ||
@@ -143,14 +139,14 @@ static int read_open_keys(
 	return pretrained_sizes(t, c->positions, own, path, e);
 }
 
-static int read_config(struct clip *c, struct kind *kind, const char *dir, struct err *e)
+static int read_config(struct text_tower *c, struct kind *kind, const char *dir, struct err *e)
 {
 	int bad = -1;
 	char *path = find_config(dir, &kind->is_open, e);
 	cJSON *config = path ? json_read(path, e) : NULL;
 
 	if (config && !cJSON_IsObject(config))
-		err_set(e, ERR_FORMAT, "%s: not a JSON object", path);
+		err_file(e, path, "not a JSON object");
 	else if (config)
 		bad = kind->is_open ? read_open_keys(c, kind, config, path, e)
 				    : read_keys(c, kind, config, path, e);
@@ -159,33 +155,22 @@ static int read_config(struct clip *c, struct kind *kind, const char *dir, struc
 	return bad;
 }
 
-/* The names that a program gives the tensors, after a prefix. Layers' begin with `layer`, their number and a
- * point. */
-struct layout {
-	const char *prefix, *word, *position, *layer, *norm, *projection;
-	const char *attention_norm, *attention_out, *inner, *outer, *feed_norm; /* of a layer */
-	int is_joined; /* query, key and value are one tensor, and the projection is transposed */
-};
-
 #define HUGGING_FACE                                                                                         \
-	"embeddings.token_embedding.weight", "embeddings.position_embedding.weight", "encoder.layers.",      \
-		"final_layer_norm", "text_projection.weight", "layer_norm1", "self_attn.out_proj",           \
-		"mlp.fc1", "mlp.fc2", "layer_norm2", 0
+	"embeddings.token_embedding.weight", "embeddings.position_embedding.weight", NULL,                   \
+		"encoder.layers.", "final_layer_norm", "text_projection.weight",                             \
+		{"self_attn.q_proj", "self_attn.k_proj", "self_attn.v_proj"}, "layer_norm1",                 \
+		"self_attn.out_proj", "mlp.fc1", "mlp.fc2", "layer_norm2"
 #define OPEN_CLIP_NAMES                                                                                      \
-	"token_embedding.weight", "positional_embedding", "transformer.resblocks.", "ln_final",              \
-		"text_projection", "ln_1", "attn.out_proj", "mlp.c_fc", "mlp.c_proj", "ln_2", 1
+	"token_embedding.weight", "positional_embedding", NULL, "transformer.resblocks.", "ln_final",        \
+		"text_projection", {"attn.in_proj_weight", "attn.in_proj_bias", NULL}, "ln_1",               \
+		"attn.out_proj", "mlp.c_fc", "mlp.c_proj", "ln_2"
 
-static const struct layout layouts[] = {
+static const struct pretrained_names layouts[] = {
 	{"text_model.", HUGGING_FACE}, {"", HUGGING_FACE}, {"", OPEN_CLIP_NAMES}, {"text.", OPEN_CLIP_NAMES}};
-
-struct source {
-	struct pretrained from;
-	const struct layout *layout;
-};
 
 enum { NAME = 160 };
 
-static const struct layout *find_layout(const struct safetensors *st)
+static const struct pretrained_names *find_layout(const struct safetensors *st)
 {
 	char full[NAME];
 
@@ -197,60 +182,24 @@ static const struct layout *find_layout(const struct safetensors *st)
 	return layouts;
 }
 
-/* Query, key and value: thirds of a tensor, or three. */
-static int load_attention(struct source *s, const char *at, const struct transformer_layer *l, int width)
+/* Whether query, key and value are one tensor: then the projection has a prefix, as HuggingFace's has not,
+ * and is (width,projected). */
+static int is_open_clip(const struct pretrained *s)
 {
-	static const char *const apart[] = {"self_attn.q_proj", "self_attn.k_proj", "self_attn.v_proj"};
-	const struct transformer_linear *const parts[] = {&l->query, &l->key, &l->value};
-	int bad = 0;
-
-	for (int i = 0; i < 3 && !bad; i++)
-		bad = s->layout->is_joined
-			      ? pretrained_load_part(&s->from, at, "attn.in_proj_weight", parts[i]->weight,
-					3 * width, i * width, width, width) ||
-					pretrained_load_part(&s->from, at, "attn.in_proj_bias",
-						parts[i]->bias, 3 * width, i * width, width, 0)
-			      : pretrained_linear(&s->from, at, apart[i], parts[i], width, width);
-	return bad;
+	return !s->names->attention[2];
 }
 
-static int load_layer(struct source *s, const struct clip *c, int i)
-{
-	static const struct transformer_layer none;
-	const struct transformer_layer *l = c->body.layers ? &c->body.layers[i] : &none;
-	const struct layout *n = s->layout;
-	int width = c->body.width, inner = c->body.inner;
-	char at[64];
-
-	snprintf(at, sizeof at, "%s%d.", n->layer, i);
-	return pretrained_norm(&s->from, at, n->attention_norm, &l->attention_norm, width) ||
-			       load_attention(s, at, l, width) ||
-			       pretrained_linear(
-				       &s->from, at, n->attention_out, &l->attention_out, width, width) ||
-			       pretrained_norm(&s->from, at, n->feed_norm, &l->norm, width) ||
-			       pretrained_linear(&s->from, at, n->inner, &l->inner, width, inner) ||
-			       pretrained_linear(&s->from, at, n->outer, &l->outer, inner, width)
-		       ? -1
-		       : 0;
-}
-
-/* HuggingFace's has no prefix; OpenCLIP's has, and is (width,projected). */
-static const char *projection_prefix(const struct source *s)
-{
-	return s->layout->is_joined ? s->layout->prefix : "";
-}
-
-static int load_projection(struct source *s, const struct clip *c)
+static int load_projection(const struct pretrained *s, const struct text_tower *c)
 {
 	const int rows = c->projected, columns = c->body.width;
-	struct pretrained from = s->from;
+	struct pretrained from = *s;
 
-	from.prefix = projection_prefix(s);
-	if (!s->layout->is_joined)
-		return pretrained_load(&from, "", s->layout->projection, "", c->projection, rows, columns);
+	if (!is_open_clip(s)) {
+		from.prefix = "";
+		return pretrained_load(&from, s->names->projection, c->projection, rows, columns);
+	}
 	float *turned = mem_alloc((size_t)rows * (size_t)columns, sizeof *turned, "encoder", from.e);
-	const int bad =
-		!turned || pretrained_load(&from, "", s->layout->projection, "", turned, columns, rows);
+	const int bad = !turned || pretrained_load(&from, s->names->projection, turned, columns, rows);
 	for (int r = 0; r < rows && !bad; r++)
 		for (int k = 0; k < columns; k++)
 			c->projection[(size_t)r * (size_t)columns + (size_t)k] =
@@ -260,57 +209,41 @@ static int load_projection(struct source *s, const struct clip *c)
 }
 
 /* Whether there is a projection, of the right size. */
-static int find_projection(struct source *s, struct clip *c, const struct kind *kind)
+static int find_projection(const struct pretrained *s, struct text_tower *c, const struct kind *kind)
 {
+	const int turned = is_open_clip(s), sides[2] = {kind->width, c->body.width};
 	char full[NAME];
-	int sides[2] = {kind->width, c->body.width};
 
-	snprintf(full, sizeof full, "%s%s", projection_prefix(s), s->layout->projection);
-	if (!kind->is_projected && !safetensors_find(&s->from.st, full))
+	snprintf(full, sizeof full, "%s%s", turned ? s->prefix : "", s->names->projection);
+	if (!kind->is_projected && !safetensors_find(&s->st, full))
 		return 0;
 	c->projected = kind->width;
-	const int turned = s->layout->is_joined;
-	return pretrained_need(&s->from.st, full, sides[turned], sides[!turned], s->from.e) ? 0 : -1;
-}
-
-/* All but the projection. */
-static int load_body(struct source *s, const struct clip *c)
-{
-	if (pretrained_load(&s->from, "", s->layout->word, "", c->word, c->words, c->body.width) ||
-		pretrained_load(
-			&s->from, "", s->layout->position, "", c->position, c->positions, c->body.width))
-		return -1;
-	for (int i = 0; i < c->body.layer_count; i++)
-		if (load_layer(s, c, i))
-			return -1;
-	return pretrained_norm(&s->from, "", s->layout->norm, &c->norm, c->body.width);
+	return pretrained_need(&s->st, full, sides[turned], sides[!turned], s->e) ? 0 : -1;
 }
 
 /* That the file has all tensors is known before memory is taken for them. */
-static int load_all(struct source *s, struct clip *c, const struct kind *kind)
+static int load_all(struct pretrained *s, struct text_tower *c, const struct kind *kind)
 {
-	s->layout = find_layout(&s->from.st);
-	s->from.prefix = s->layout->prefix;
-	return load_body(s, c) || find_projection(s, c, kind) || clip_alloc(c, s->from.e) ||
-			       load_body(s, c) || (c->projected && load_projection(s, c))
-		       ? -1
-		       : 0;
+	s->names = find_layout(&s->st);
+	s->prefix = s->names->prefix;
+	return -(pretrained_tower(s, c) || find_projection(s, c, kind) || text_tower_alloc(c, s->e) ||
+		 pretrained_tower(s, c) || (c->projected && load_projection(s, c)));
 }
 
-int clip_model_read(struct clip *c, const char *dir, struct err *e)
+int clip_model_read(struct text_tower *c, const char *dir, struct err *e)
 {
-	struct source s = {.from = {.scale = ".weight", .shift = ".bias", .e = e}};
+	struct pretrained s = {.scale = ".weight", .shift = ".bias", .e = e};
 	struct kind kind = {0};
 	int bad = -1;
 
-	*c = (struct clip){.body = {.is_causal = 1, .is_norm_first = 1}};
+	*c = (struct text_tower){.body = {.is_causal = 1, .is_norm_first = 1}};
 	if (read_config(c, &kind, dir, e))
 		return -1;
-	if (!pretrained_open(&s.from.st, dir, kind.is_open ? "open_clip_model.safetensors" : NULL, e)) {
+	if (!pretrained_open(&s.st, dir, kind.is_open ? "open_clip_model.safetensors" : NULL, e)) {
 		bad = load_all(&s, c, &kind);
-		safetensors_close(&s.from.st);
+		safetensors_close(&s.st);
 	}
 	if (bad)
-		clip_free(c);
+		text_tower_free(c);
 	return bad ? -1 : 0;
 }

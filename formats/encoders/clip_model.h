@@ -4,7 +4,7 @@
 #define FORMATS_CLIP_MODEL_H
 
 #include "base/err.h"
-#include "nn/clip.h"
+#include "nn/text_tower.h"
 
 /* What is read of the folder beside what a BERT has (BERT_MODEL_PARTS), the tokenizer's files with it. */
 #define CLIP_MODEL_PARTS "open_clip_config.json|vocab.json|merges.txt|*.txt.gz"
@@ -12,7 +12,7 @@
 /* Whether the folder's config.json is of a CLIP, or it has an open_clip_config.json. */
 int clip_model_is(const char *dir);
 
-/* Reads the configuration, and the weights as bert_model_read. Release with clip_free. */
-int clip_model_read(struct clip *c, const char *dir, struct err *e);
+/* Reads the configuration, and the weights as bert_model_read. Release with text_tower_free. */
+int clip_model_read(struct text_tower *c, const char *dir, struct err *e);
 
 #endif

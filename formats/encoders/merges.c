@@ -37,7 +37,7 @@ static int fail(const struct list *l, size_t i, const char *reason, struct err *
 {
 	if (l->is_of_lines)
 		return err_set(e, ERR_FORMAT, "%s:%zu: %s", l->path, l->first + i, reason);
-	return err_set(e, ERR_FORMAT, "%s: merge %zu: %s", l->path, i, reason);
+	return err_file(e, l->path, "merge %zu: %s", i, reason);
 }
 
 /* Cuts "left right" in two. */
@@ -62,7 +62,7 @@ static int list_lines(struct list *l, size_t len, size_t most, struct err *e)
 	int bad = 0;
 
 	if (strlen(l->text) < len)
-		return err_set(e, ERR_FORMAT, "%s: a NUL byte at offset %zu", l->path, strlen(l->text));
+		return err_file(e, l->path, "a NUL byte at offset %zu", strlen(l->text));
 	l->is_of_lines = l->first = 1;
 	for (char *at = l->text, *next; *at && l->n < most && !bad; at = next) {
 		const size_t size = strcspn(at, "\n");
@@ -82,7 +82,7 @@ static int read_file(struct list *l, size_t most, struct err *e)
 {
 	size_t len;
 
-	return file_read(l->path, &l->text, &len, e) || list_lines(l, len, most, e) ? -1 : 0;
+	return -(file_read(l->path, &l->text, &len, e) || list_lines(l, len, most, e));
 }
 
 /* All that an open gzip stream has, and a NUL after it; *len of it. */
@@ -94,14 +94,14 @@ static int inflate_text(struct list *l, gzFile in, size_t *len, struct err *e)
 
 	do {
 		if (*len >= MOST_TEXT)
-			return err_set(e, ERR_FORMAT, "%s: more than %d bytes of merges", l->path, MOST_TEXT);
+			return err_file(e, l->path, "more than %d bytes of merges", MOST_TEXT);
 		if (mem_grow((void **)&l->text, &capacity, *len + STEP + 1, 1, l->path, e))
 			return -1;
 		got = gzread(in, l->text + *len, STEP);
 		*len += got > 0 ? (size_t)got : 0;
 	} while (got > 0);
 	l->text[*len] = 0;
-	return got < 0 ? err_set(e, ERR_FORMAT, "%s: the gzip stream is damaged", l->path) : 0;
+	return got < 0 ? err_file(e, l->path, "the gzip stream is damaged") : 0;
 }
 
 static int read_gzip(struct list *l, size_t most, struct err *e)
@@ -113,8 +113,8 @@ static int read_gzip(struct list *l, size_t most, struct err *e)
 		return err_errno(e, "%s", l->path);
 	const int bad = inflate_text(l, in, &len, e);
 	if (gzclose(in) == Z_BUF_ERROR && !bad)
-		return err_set(e, ERR_FORMAT, "%s: the gzip stream is damaged", l->path);
-	return bad || list_lines(l, len, most, e) ? -1 : 0;
+		return err_file(e, l->path, "the gzip stream is damaged");
+	return -(bad || list_lines(l, len, most, e));
 }
 
 /* "left right" or ["left","right"]: cJSON's own strings, cut in two. */
@@ -155,7 +155,7 @@ static int finish(struct bpe *b, const char *vocabulary, const struct list *l, s
 	char missing[BPE_MISSING];
 
 	if (bpe_finish(b, missing))
-		return err_set(e, ERR_FORMAT, "%s: token '%s' is missing", vocabulary, missing);
+		return err_file(e, vocabulary, "token '%s' is missing", missing);
 	return add_merges(b, l, e);
 }
 
@@ -167,7 +167,7 @@ static int read_two(struct bpe *b, const char *vocabulary, const char *merges, s
 	int bad = !root;
 
 	if (root && !cJSON_IsObject(root))
-		bad = err_set(e, ERR_FORMAT, "%s: not a JSON object", vocabulary);
+		bad = err_file(e, vocabulary, "not a JSON object");
 	bad = bad || vocab_add_all(&b->vocab, root, vocabulary, e) || read_file(&l, SIZE_MAX, e) ||
 	      finish(b, vocabulary, &l, e);
 	list_free(&l);
@@ -177,14 +177,13 @@ static int read_two(struct bpe *b, const char *vocabulary, const char *merges, s
 
 static int is_lowercase(const cJSON *normalizer)
 {
-	const cJSON *type = cJSON_GetObjectItemCaseSensitive(normalizer, "type"),
-		    *all = cJSON_GetObjectItemCaseSensitive(normalizer, "normalizers"), *one;
+	const cJSON *type = json_get(normalizer, "type"), *all = json_get(normalizer, "normalizers"), *one;
 
 	if (cJSON_IsString(type) && !strcmp(type->valuestring, "Lowercase"))
 		return 1;
 	cJSON_ArrayForEach(one, all)
 	{
-		type = cJSON_GetObjectItemCaseSensitive(one, "type");
+		type = json_get(one, "type");
 		if (cJSON_IsString(type) && !strcmp(type->valuestring, "Lowercase"))
 			return 1;
 	}
@@ -195,30 +194,28 @@ static int is_lowercase(const cJSON *normalizer)
 static int need_string(const cJSON *model, const char *key, const char *wanted, int may_miss,
 	const char *path, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(model, key);
+	const cJSON *item = json_get(model, key);
 
 	if ((may_miss && (!item || cJSON_IsNull(item))) ||
 		(cJSON_IsString(item) && !strcmp(item->valuestring, wanted)))
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: model: '%s' is not \"%s\": only CLIP's tokenizers are read", path,
-		key, wanted);
+	return err_file(e, path, "model: '%s' is not \"%s\": only CLIP's tokenizers are read", key, wanted);
 }
 
 static int check_kind(const cJSON *root, const char *path, struct err *e)
 {
-	const cJSON *model = cJSON_GetObjectItemCaseSensitive(root, "model");
+	const cJSON *model = json_get(root, "model");
 
 	if (need_string(model, "type", "BPE", 1, path, e) ||
 		need_string(model, "end_of_word_suffix", BPE_LAST, 0, path, e) ||
 		need_string(model, "continuing_subword_prefix", "", 1, path, e))
 		return -1;
-	if (!is_lowercase(cJSON_GetObjectItemCaseSensitive(root, "normalizer")))
-		return err_set(e, ERR_FORMAT,
-			"%s: normalizer: no 'Lowercase': only CLIP's tokenizers are read", path);
-	if (!cJSON_IsObject(cJSON_GetObjectItemCaseSensitive(model, "vocab")))
-		return err_set(e, ERR_FORMAT, "%s: model: 'vocab' is not an object", path);
-	if (!cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(model, "merges")))
-		return err_set(e, ERR_FORMAT, "%s: model: 'merges' is not a list", path);
+	if (!is_lowercase(json_get(root, "normalizer")))
+		return err_file(e, path, "normalizer: no 'Lowercase': only CLIP's tokenizers are read");
+	if (!cJSON_IsObject(json_get(model, "vocab")))
+		return err_file(e, path, "model: 'vocab' is not an object");
+	if (!cJSON_IsArray(json_get(model, "merges")))
+		return err_file(e, path, "model: 'merges' is not a list");
 	return 0;
 }
 
@@ -226,12 +223,12 @@ static int read_tokenizer(struct bpe *b, const char *path, struct err *e)
 {
 	struct list l = {.path = path};
 	cJSON *root = json_read(path, e);
-	const cJSON *model = cJSON_GetObjectItemCaseSensitive(root, "model"), *merge;
+	const cJSON *model = json_get(root, "model"), *merge;
 	int bad = !root || check_kind(root, path, e) ||
-		  vocab_add_all(&b->vocab, cJSON_GetObjectItemCaseSensitive(model, "vocab"), path, e);
+		  vocab_add_all(&b->vocab, json_get(model, "vocab"), path, e);
 
 	if (!bad)
-		cJSON_ArrayForEach(merge, cJSON_GetObjectItemCaseSensitive(model, "merges"))
+		cJSON_ArrayForEach(merge, json_get(model, "merges"))
 		{
 			if ((bad = list_item(&l, merge, e)))
 				break;
@@ -269,7 +266,7 @@ static int make_vocabulary(struct bpe *b, const struct list *l, struct err *e)
 			const struct err reason = *e;
 			fail(l, i, reason.message, e);
 		}
-	return bad || add_next(b, BPE_START, "", e) || add_next(b, BPE_END, "", e) ? -1 : 0;
+	return -(bad || add_next(b, BPE_START, "", e) || add_next(b, BPE_END, "", e));
 }
 
 /* Merges alone. */
@@ -297,7 +294,7 @@ static int read_any(struct bpe *b, const struct parts *p, const char *dir, int w
 	if (file_exists(p->tokenizer))
 		return read_tokenizer(b, p->tokenizer, e);
 	if (file_exists(p->vocabulary))
-		return err_set(e, ERR_FORMAT, "%s: has vocab.json, but no merges.txt", dir);
+		return err_file(e, dir, "has vocab.json, but no merges.txt");
 	if (file_exists(p->merges))
 		return read_list(b, p->merges, words, 0, e);
 	if (file_exists(p->list))

@@ -4,7 +4,7 @@
 #include "base/half.h"
 #include "base/mem.h"
 #include "formats/arrays/fingerprint.h"
-#include "formats/arrays/safetensors.h"
+#include "formats/arrays/arrays_in.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,17 +16,7 @@
 EMBED(parser_default, "formats/encoders/parser_default.safetensors");
 extern const unsigned char parser_default_begin[], parser_default_end[];
 
-enum { NAME_LENGTH = 40, TENSORS_MOST = 2 * PARSER_MEMBERS * PARSER_PARTS };
-
-/* A file in the making. */
-struct making {
-	int n;
-	struct st_tensor tensors[TENSORS_MOST];
-	char names[TENSORS_MOST][NAME_LENGTH];
-	int8_t *whole[PARSER_MEMBERS]; /* of the matrices, and what a row's are to be multiplied by */
-	float *factor[PARSER_MEMBERS];
-	uint16_t *half[PARSER_MEMBERS]; /* of the vectors */
-};
+enum { NAME_LENGTH = 40, VERSION_READ = 6 };
 
 /* "vector.weight" of the first member, "1.vector.weight" of the next; tail: "", or ".scale" for the factors
  * of a matrix's rows. */
@@ -71,8 +61,7 @@ static int take_vector(
 	name_of(name, member, p->name, "");
 	const struct st_tensor *t = safetensors_need(st, name, ST_F16, 1, (int64_t[]){(int64_t)n}, e);
 
-	return !t || safetensors_to_float(t, out, n, e) || safetensors_check_finite(st, name, out, n, e) ? -1
-													 : 0;
+	return -(!t || safetensors_to_float(t, out, n, e) || safetensors_check_finite(st, name, out, n, e));
 }
 
 /* *w has been made. */
@@ -91,35 +80,20 @@ static int take_member(struct parser_weights *w, int member, const struct safete
 	return 0;
 }
 
-/* Older ones are of another network. */
-static int need_version(const struct safetensors *st, struct err *e)
-{
-	const char *version;
-
-	if (safetensors_need_format(st, "refer.parser", 6, e))
-		return -1;
-	version = safetensors_meta(st, "version");
-	return !strcmp(version, "6")
-		       ? 0
-		       : err_set(e, ERR_FORMAT,
-				 "%s: refer.parser version %s is older than this program reads (6)", st->path,
-				 version);
-}
-
 static int take_tensors(struct parser_weights *w, const struct safetensors *st, struct err *e)
 {
-	const struct st_tensor *t;
 	struct fingerprint encoder;
+	struct arrays_in in;
 	char name[NAME_LENGTH];
+	size_t rows;
 
-	if (need_version(st, e) ||
-		!(t = safetensors_need(st, "vector.weight", ST_I8, 2, (int64_t[]){NET_HIDDEN, -1}, e)))
-		return -1;
-	if (t->shape[1] < 1 || t->shape[1] > 65536)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'vector.weight': width %lld is not in 1 to 65536",
-			st->path, (long long)t->shape[1]);
-	const int width = (int)t->shape[1];
-	if (fingerprint_read(&encoder, st, "encoder", e) || parser_weights_make(w, width, e))
+	arrays_in_begin(&in, st, "refer.parser", VERSION_READ, e);
+	const char *version = safetensors_meta(st, "version");
+	if (!in.bad && atoi(version) < VERSION_READ) /* of another network */
+		return err_file(e, st->path, "refer.parser version %s is older than this program reads (%d)",
+			version, VERSION_READ);
+	const int width = arrays_in_width(&in, "vector.weight", ST_I8, &rows);
+	if (in.bad || fingerprint_read(&encoder, st, "encoder", e) || parser_weights_make(w, width, e))
 		return -1;
 	memcpy(w->encoder, encoder.hex, sizeof w->encoder);
 	for (int member = 0;; member++) {
@@ -164,16 +138,6 @@ int parser_weights_default(struct parser_weights *w, struct err *e)
 		       : take(w, &st, e);
 }
 
-/* The next tensor of a file in the making, of values that stay the caller's. */
-static struct st_tensor *next_tensor(struct making *m, enum st_dtype type, const void *data, int64_t rows)
-{
-	struct st_tensor *t = &m->tensors[m->n];
-
-	*t = st_vector(m->names[m->n], type, rows, data);
-	m->n++;
-	return t;
-}
-
 /* A row's largest number is 127 times its factor. */
 static void round_matrix(const float *x, size_t rows, size_t columns, int8_t *whole, float *factor)
 {
@@ -188,63 +152,46 @@ static void round_matrix(const float *x, size_t rows, size_t columns, int8_t *wh
 	}
 }
 
-static int put_member(const struct parser_weights *w, int member, struct making *m, struct err *e)
+static void put_part(struct arrays_out *out, int member, const struct parser_part *p, const float *from)
 {
-	struct parser_part parts[PARSER_PARTS];
-	size_t rows = 0;
+	const size_t n = p->rows, columns = p->columns;
+	char name[NAME_LENGTH];
+	const char *own = arrays_out_print(out, "%s", name_of(name, member, p->name, "")),
+		   *scale = arrays_out_print(out, "%s", name_of(name, member, p->name, ".scale"));
 
-	parser_parts(w->width, parts);
-	for (int i = 0; i < PARSER_PARTS; i++)
-		rows += parts[i].columns ? parts[i].rows : 0;
-	int8_t *whole = m->whole[member] = mem_alloc(w->count, sizeof *whole, "parser's weights", e);
-	uint16_t *half = m->half[member] = mem_alloc(w->count, sizeof *half, "parser's weights", e);
-	float *factor = m->factor[member] = mem_alloc(rows, sizeof *factor, "parser's weights", e);
-	const float *from = w->slab;
-	if (!whole || !half || !factor)
-		return -1;
-	for (int i = 0; i < PARSER_PARTS; i++) {
-		const size_t n = parts[i].rows, columns = parts[i].columns;
-		name_of(m->names[m->n], member, parts[i].name, "");
-		if (columns) {
-			struct st_tensor *t = next_tensor(m, ST_I8, whole, (int64_t)n);
-			t->dims = 2;
-			t->shape[1] = (int64_t)columns;
-			name_of(m->names[m->n], member, parts[i].name, ".scale");
-			next_tensor(m, ST_F32, factor, (int64_t)n);
+	if (columns) {
+		int8_t *whole = arrays_out_memory(out, n * columns, sizeof *whole);
+		float *factor = arrays_out_memory(out, n, sizeof *factor);
+		if (factor)
 			round_matrix(from, n, columns, whole, factor);
-			whole += n * columns;
-			factor += n;
-			from += n * columns;
-		} else {
-			next_tensor(m, ST_F16, half, (int64_t)n);
-			for (size_t k = 0; k < n; k++)
-				*half++ = half_of_float(*from++);
-		}
+		arrays_out_put(out, st_matrix(own, ST_I8, (int64_t)n, (int64_t)columns, whole));
+		arrays_out_put(out, st_vector(scale, ST_F32, (int64_t)n, factor));
+	} else {
+		uint16_t *half = arrays_out_memory(out, n, sizeof *half);
+		for (size_t k = 0; k < n && half; k++)
+			half[k] = half_of_float(from[k]);
+		arrays_out_put(out, st_vector(own, ST_F16, (int64_t)n, half));
 	}
-	return 0;
 }
 
 int parser_weights_write(
 	const struct parser_weights *w, const char *path, long long seed, const char *source, struct err *e)
 {
-	struct making m = {0};
-	char seed_text[32];
-	int members = 0, bad = 0;
+	struct parser_part parts[PARSER_PARTS];
+	struct arrays_out out;
 
-	for (const struct parser_weights *k = w; k && members < PARSER_MEMBERS && !bad; k = k->next)
-		bad = put_member(k, members++, &m, e);
-	snprintf(seed_text, sizeof seed_text, "%lld", seed);
-	const struct st_meta meta[] = {{"format", "refer.parser"}, {"version", "6"}, {"tool", "parse-train"},
-		{"options", ""}, {"seed", seed_text}, {"source", source},
-		{"encoder", w->encoder[0] ? w->encoder : NULL}};
-	if (!bad)
-		bad = safetensors_write(path, m.tensors, (size_t)m.n, meta, sizeof meta / sizeof *meta, e);
-	for (int k = 0; k < members; k++) {
-		free(m.whole[k]);
-		free(m.half[k]);
-		free(m.factor[k]);
+	arrays_out_begin(&out, path, "refer.parser", "6", "parse-train", "", seed, e);
+	arrays_out_text(&out, "source", source);
+	arrays_out_text(&out, "encoder", w->encoder[0] ? w->encoder : NULL);
+	for (int member = 0; w && member < PARSER_MEMBERS; member++, w = w->next) {
+		const float *from = w->slab;
+		parser_parts(w->width, parts);
+		for (int i = 0; i < PARSER_PARTS; i++) {
+			put_part(&out, member, &parts[i], from);
+			from += parts[i].rows * (parts[i].columns ? parts[i].columns : 1);
+		}
 	}
-	return bad ? -1 : 0;
+	return arrays_out_end(&out);
 }
 
 int parser_weights_need_middle(const struct parser_weights *w, const char *path, const float *middle,
@@ -252,7 +199,6 @@ int parser_weights_need_middle(const struct parser_weights *w, const char *path,
 {
 	if (middle || strcmp(w->encoder, encoder->hex) != 0)
 		return 0;
-	return err_set(e, ERR_FORMAT,
-		"%s: tensor 'middle' is missing, by which sentences are taken apart: make the file anew",
-		path);
+	return err_file(e, path,
+		"tensor 'middle' is missing, by which sentences are taken apart: make the file anew");
 }

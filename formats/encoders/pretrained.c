@@ -1,6 +1,7 @@
 #include "formats/encoders/pretrained.h"
 
 #include "base/file.h"
+#include "formats/records/json.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -11,30 +12,29 @@
 int pretrained_int(
 	const cJSON *config, const char *key, int max, int usual, int *out, const char *path, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(config, key);
+	const cJSON *item = json_get(config, key);
 	double v = cJSON_IsNumber(item) ? item->valuedouble : item ? 0 : usual;
 
 	if (!(v >= 1 && v <= max) || v != floor(v))
-		return err_set(
-			e, ERR_FORMAT, "%s: key '%s' is not a whole number from 1 to %d", path, key, max);
+		return err_file(e, path, "key '%s' is not a whole number from 1 to %d", key, max);
 	*out = (int)v;
 	return 0;
 }
 
 int pretrained_is(const cJSON *config, const char *key, const char *wanted, const char *path, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(config, key);
+	const cJSON *item = json_get(config, key);
 
 	if (!item || (cJSON_IsString(item) && !strcmp(item->valuestring, wanted)))
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: key '%s' is not \"%s\"", path, key, wanted);
+	return err_file(e, path, "key '%s' is not \"%s\"", key, wanted);
 }
 
 int pretrained_activation(const cJSON *config, const struct pretrained_activation *known, size_t n,
 	const char *list, const char *usual, enum transformer_activation *out, const char *path,
 	struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(config, "hidden_act");
+	const cJSON *item = json_get(config, "hidden_act");
 	const char *name = cJSON_IsString(item) ? item->valuestring : !item && usual ? usual : "";
 
 	for (size_t i = 0; i < n; i++)
@@ -42,16 +42,16 @@ int pretrained_activation(const cJSON *config, const struct pretrained_activatio
 			*out = known[i].activation;
 			return 0;
 		}
-	return err_set(e, ERR_FORMAT, "%s: key 'hidden_act' is '%s', not %s", path, name, list);
+	return err_file(e, path, "key 'hidden_act' is '%s', not %s", name, list);
 }
 
 int pretrained_eps(const cJSON *config, double usual, double *out, const char *path, struct err *e)
 {
-	const cJSON *eps = cJSON_GetObjectItemCaseSensitive(config, "layer_norm_eps");
+	const cJSON *eps = json_get(config, "layer_norm_eps");
 
 	*out = eps ? eps->valuedouble : usual;
 	if ((eps && !cJSON_IsNumber(eps)) || !(*out >= 0 && *out <= 1))
-		return err_set(e, ERR_FORMAT, "%s: key 'layer_norm_eps' is not a number from 0 to 1", path);
+		return err_file(e, path, "key 'layer_norm_eps' is not a number from 0 to 1");
 	return 0;
 }
 
@@ -59,11 +59,10 @@ int pretrained_sizes(const struct transformer *t, int positions, const char *con
 	struct err *e)
 {
 	if (t->width % t->heads)
-		return err_set(e, ERR_FORMAT, "%s: %s %d is not a multiple of %s %d", path, names[0],
-			t->width, names[1], t->heads);
+		return err_file(
+			e, path, "%s %d is not a multiple of %s %d", names[0], t->width, names[1], t->heads);
 	if (positions < 3)
-		return err_set(
-			e, ERR_FORMAT, "%s: %s %d leaves no room for words", path, names[2], positions);
+		return err_file(e, path, "%s %d leaves no room for words", names[2], positions);
 	return 0;
 }
 
@@ -97,8 +96,7 @@ static char *find_weights(const char *dir, struct err *e)
 		return only;
 	free(only);
 	if (count)
-		err_set(e, ERR_FORMAT, "%s: has %zu *.safetensors files and none is model.safetensors", dir,
-			count);
+		err_file(e, dir, "has %zu *.safetensors files and none is model.safetensors", count);
 	else
 		err_set(e, ERR_SYSTEM, "%s: has no *.safetensors file", dir);
 	return NULL;
@@ -143,49 +141,97 @@ static int load(
 		return -1;
 	for (size_t i = 0; i < count; i++)
 		if (!isfinite(out[i]))
-			return err_set(from->e, ERR_FORMAT, "%s: tensor '%s': item %zu is not finite",
-				from->st.path, t->name, first + i);
+			return err_file(from->e, from->st.path, "tensor '%s': item %zu is not finite",
+				t->name, first + i);
 	return 0;
 }
 
 enum { NAME = 256 };
 
-int pretrained_load(struct pretrained *from, const char *at, const char *name, const char *part, float *out,
-	int rows, int columns)
-{
-	char full[NAME];
-
-	snprintf(full, sizeof full, "%s%s%s%s", from->prefix, at, name, part);
-	const struct st_tensor *t = pretrained_need(&from->st, full, rows, columns, from->e);
-	return t ? load(from, t, 0, (size_t)columns * (rows ? (size_t)rows : 1), out) : -1;
-}
-
-int pretrained_linear(struct pretrained *from, const char *at, const char *name,
-	const struct transformer_linear *l, int in, int out)
-{
-	return pretrained_load(from, at, name, ".weight", l->weight, out, in) ||
-			       pretrained_load(from, at, name, ".bias", l->bias, 0, out)
-		       ? -1
-		       : 0;
-}
-
-int pretrained_norm(struct pretrained *from, const char *at, const char *name,
-	const struct transformer_norm *n, int width)
-{
-	return pretrained_load(from, at, name, from->scale, n->scale, 0, width) ||
-			       pretrained_load(from, at, name, from->shift, n->shift, 0, width)
-		       ? -1
-		       : 0;
-}
-
-int pretrained_load_part(struct pretrained *from, const char *at, const char *name, float *out, int of,
-	int first, int rows, int columns)
+/* The tensor `at``name``part`: its next `rows` from `first` on, of (of,columns), or of (of) where columns is
+ * 0. */
+static int load_part(struct pretrained *from, const char *at, const char *name, const char *part, float *out,
+	int of, int first, int rows, int columns)
 {
 	const size_t each = columns ? (size_t)columns : 1;
 	char full[NAME];
 
-	snprintf(full, sizeof full, "%s%s%s", from->prefix, at, name);
+	snprintf(full, sizeof full, "%s%s%s%s", from->prefix, at, name, part);
 	const struct st_tensor *t =
 		pretrained_need(&from->st, full, columns ? of : 0, columns ? columns : of, from->e);
 	return t ? load(from, t, (size_t)first * each, (size_t)rows * each, out) : -1;
+}
+
+int pretrained_load(struct pretrained *from, const char *name, float *out, int rows, int columns)
+{
+	return rows ? load_part(from, "", name, "", out, rows, 0, rows, columns)
+		    : load_part(from, "", name, "", out, columns, 0, columns, 0);
+}
+
+static int load_linear(struct pretrained *from, const char *at, const char *name,
+	const struct transformer_linear *l, int in, int out)
+{
+	return -(load_part(from, at, name, ".weight", l->weight, out, 0, out, in) ||
+		 load_part(from, at, name, ".bias", l->bias, out, 0, out, 0));
+}
+
+static int load_norm(struct pretrained *from, const char *at, const char *name,
+	const struct transformer_norm *n, int width)
+{
+	return -(load_part(from, at, name, from->scale, n->scale, width, 0, width, 0) ||
+		 load_part(from, at, name, from->shift, n->shift, width, 0, width, 0));
+}
+
+/* Query, key and value: thirds of a tensor, or three. */
+static int load_attention(
+	struct pretrained *from, const char *at, const struct transformer_layer *l, int width)
+{
+	const struct transformer_linear *const parts[] = {&l->query, &l->key, &l->value};
+	const char *const *names = from->names->attention;
+	int bad = 0;
+
+	for (int i = 0; i < 3 && !bad; i++)
+		if (names[2])
+			bad = load_linear(from, at, names[i], parts[i], width, width);
+		else
+			bad = load_part(from, at, names[0], "", parts[i]->weight, 3 * width, i * width, width,
+				      width) ||
+			      load_part(
+				      from, at, names[1], "", parts[i]->bias, 3 * width, i * width, width, 0);
+	return bad;
+}
+
+static int load_layer(struct pretrained *from, const struct text_tower *t, int i)
+{
+	static const struct transformer_layer none;
+	const struct transformer_layer *l = t->body.layers ? &t->body.layers[i] : &none;
+	const struct pretrained_names *n = from->names;
+	const int width = t->body.width, inner = t->body.inner;
+	char at[64];
+
+	snprintf(at, sizeof at, "%s%d.", n->layer, i);
+	const int is_first = t->body.is_norm_first;
+	return -((is_first && load_norm(from, at, n->attention_norm, &l->attention_norm, width)) ||
+		 load_attention(from, at, l, width) ||
+		 load_linear(from, at, n->attention_out, &l->attention_out, width, width) ||
+		 (!is_first && load_norm(from, at, n->attention_norm, &l->attention_norm, width)) ||
+		 load_linear(from, at, n->inner, &l->inner, width, inner) ||
+		 load_linear(from, at, n->outer, &l->outer, inner, width) ||
+		 load_norm(from, at, n->feed_norm, &l->norm, width));
+}
+
+int pretrained_tower(struct pretrained *from, const struct text_tower *t)
+{
+	const struct pretrained_names *n = from->names;
+	const int width = t->body.width;
+
+	if (pretrained_load(from, n->word, t->word, t->words, width) ||
+		pretrained_load(from, n->position, t->position, t->positions, width) ||
+		(n->type && pretrained_load(from, n->type, t->type, t->types, width)) ||
+		load_norm(from, "", n->norm, &t->norm, width))
+		return -1;
+	for (int i = 0; i < t->body.layer_count; i++)
+		if (load_layer(from, t, i))
+			return -1;
+	return 0;
 }

@@ -5,7 +5,7 @@
 
 #include "base/err.h"
 #include "formats/arrays/safetensors.h"
-#include "nn/transformer.h"
+#include "nn/text_tower.h"
 
 #include <cjson/cJSON.h>
 
@@ -41,27 +41,30 @@ int pretrained_open(struct safetensors *st, const char *dir, const char *first, 
 const struct st_tensor *pretrained_need(
 	const struct safetensors *st, const char *name, int rows, int columns, struct err *e);
 
-/* Where tensors come from, and how the file names them. */
+/* How a program names the tensors of a tower, after a prefix. Layers' begin with `layer`, their number and a
+ * point. */
+struct pretrained_names {
+	const char *prefix, *word, *position, *type, *layer, *norm,
+		*projection;	  /* type NULL: there is none */
+	const char *attention[3]; /* of a layer: query, key and value; where the third is NULL all in one */
+	const char *attention_norm, *attention_out, *inner, *outer, *feed_norm;
+};
+
+/* Where tensors come from. */
 struct pretrained {
 	struct safetensors st;
-	const char *prefix;	   /* of all names */
+	const char *prefix;
+	const struct pretrained_names *names;
 	const char *scale, *shift; /* of a norm: ".weight" and ".bias" */
 	struct err *e;
 };
 
-/* The numbers of the tensor `at``name``part`, all of them finite, into out (rows,columns), or (columns) where
- * rows is 0. Where out is NULL the tensor is only looked for, as by pretrained_need: so a reader looks for
- * all of them before it takes memory for them. */
-int pretrained_load(struct pretrained *from, const char *at, const char *name, const char *part, float *out,
-	int rows, int columns);
-int pretrained_linear(struct pretrained *from, const char *at, const char *name,
-	const struct transformer_linear *l, int in, int out);
-int pretrained_norm(struct pretrained *from, const char *at, const char *name,
-	const struct transformer_norm *n, int width);
+/* The numbers of a tensor, all of them finite, into out (rows,columns), or (columns) where rows is 0. Where
+ * out is NULL the tensor is only looked for, as by pretrained_need: so a reader looks for all of them before
+ * it takes memory for them. */
+int pretrained_load(struct pretrained *from, const char *name, float *out, int rows, int columns);
 
-/* The part of a tensor that begins at row `first` of (of,columns), or at place `first` of (of) where columns
- * is 0: its next `rows`. */
-int pretrained_load_part(struct pretrained *from, const char *at, const char *name, float *out, int of,
-	int first, int rows, int columns);
+/* All of a tower but the projection, in the same way: only looked for, before t has memory. */
+int pretrained_tower(struct pretrained *from, const struct text_tower *t);
 
 #endif

@@ -14,32 +14,32 @@
 static int need_flag(
 	const cJSON *object, const char *key, int wanted, const char *path, const char *where, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+	const cJSON *item = json_get(object, key);
 
 	if (!item || cJSON_IsNull(item) || (wanted ? cJSON_IsTrue(item) : cJSON_IsFalse(item)))
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: %s: '%s' is not %s: only uncased BERT tokenizers are read", path,
-		where, key, wanted ? "true" : "false");
+	return err_file(e, path, "%s: '%s' is not %s: only uncased BERT tokenizers are read", where, key,
+		wanted ? "true" : "false");
 }
 
 /* A member that must be this string; `may_miss` allows it to be absent. */
 static int need_string(const cJSON *object, const char *key, const char *wanted, int may_miss,
 	const char *path, const char *where, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+	const cJSON *item = json_get(object, key);
 
 	if ((may_miss && !item) || (cJSON_IsString(item) && !strcmp(item->valuestring, wanted)))
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: %s: '%s' is not \"%s\": only uncased BERT tokenizers are read",
-		path, where, key, wanted);
+	return err_file(
+		e, path, "%s: '%s' is not \"%s\": only uncased BERT tokenizers are read", where, key, wanted);
 }
 
 static int check_kind(const cJSON *root, const char *path, struct err *e)
 {
-	const cJSON *normalizer = cJSON_GetObjectItemCaseSensitive(root, "normalizer");
-	const cJSON *splitter = cJSON_GetObjectItemCaseSensitive(root, "pre_tokenizer");
-	const cJSON *model = cJSON_GetObjectItemCaseSensitive(root, "model");
-	const cJSON *longest = cJSON_GetObjectItemCaseSensitive(model, "max_input_chars_per_word");
+	const cJSON *normalizer = json_get(root, "normalizer");
+	const cJSON *splitter = json_get(root, "pre_tokenizer");
+	const cJSON *model = json_get(root, "model");
+	const cJSON *longest = json_get(model, "max_input_chars_per_word");
 
 	if (need_string(normalizer, "type", "BertNormalizer", 0, path, "normalizer", e) ||
 		need_flag(normalizer, "clean_text", 1, path, "normalizer", e) ||
@@ -52,20 +52,18 @@ static int check_kind(const cJSON *root, const char *path, struct err *e)
 		need_string(model, "continuing_subword_prefix", "##", 1, path, "model", e))
 		return -1;
 	if (longest && longest->valuedouble != WORDPIECE_LONGEST)
-		return err_set(e, ERR_FORMAT, "%s: model: 'max_input_chars_per_word' is not %d", path,
-			WORDPIECE_LONGEST);
+		return err_file(e, path, "model: 'max_input_chars_per_word' is not %d", WORDPIECE_LONGEST);
 	return 0;
 }
 
 static int add_token(struct vocab *v, const char *token, double id, const char *path, struct err *e)
 {
 	if (utf8_check(token, strlen(token)) < strlen(token))
-		return err_set(e, ERR_FORMAT, "%s: token with id %.0f is not UTF-8", path, id);
+		return err_file(e, path, "token with id %.0f is not UTF-8", id);
 	if (!(id >= 0 && id < INT32_MAX) || id != floor(id))
-		return err_set(
-			e, ERR_FORMAT, "%s: token '%s': its id is not a whole number from 0", path, token);
+		return err_file(e, path, "token '%s': its id is not a whole number from 0", token);
 	int added = vocab_add(v, token, (int32_t)id, e);
-	return added > 0 ? err_set(e, ERR_FORMAT, "%s: token '%s' appears twice", path, token) : added;
+	return added > 0 ? err_file(e, path, "token '%s' appears twice", token) : added;
 }
 
 int vocab_add_all(struct vocab *v, const cJSON *tokens, const char *path, struct err *e)
@@ -84,11 +82,10 @@ static int read_tokenizer(struct vocab *v, const char *path, struct err *e)
 	int bad = root ? check_kind(root, path, e) : -1;
 
 	if (!bad) {
-		const cJSON *model = cJSON_GetObjectItemCaseSensitive(root, "model");
-		const cJSON *tokens = cJSON_GetObjectItemCaseSensitive(model, "vocab");
-		bad = cJSON_IsObject(tokens)
-			      ? vocab_add_all(v, tokens, path, e)
-			      : err_set(e, ERR_FORMAT, "%s: model: 'vocab' is not an object", path);
+		const cJSON *model = json_get(root, "model");
+		const cJSON *tokens = json_get(model, "vocab");
+		bad = cJSON_IsObject(tokens) ? vocab_add_all(v, tokens, path, e)
+					     : err_file(e, path, "model: 'vocab' is not an object");
 	}
 	cJSON_Delete(root);
 	return bad;
@@ -104,7 +101,7 @@ static int read_list(struct vocab *v, const char *path, struct err *e)
 	if (file_read(path, &text, &len, e))
 		return -1;
 	if (strlen(text) < len)
-		bad = err_set(e, ERR_FORMAT, "%s: a NUL byte at offset %zu", path, strlen(text));
+		bad = err_file(e, path, "a NUL byte at offset %zu", strlen(text));
 	for (char *at = text, *next; *at && !bad; at = next, line++) {
 		size_t size = strcspn(at, "\n");
 		next = at + size + (at[size] == '\n');
@@ -157,7 +154,7 @@ int vocab_read(struct vocab *v, const char *dir, struct err *e)
 		err_set(e, ERR_SYSTEM, "%s: has neither tokenizer.json nor vocab.txt", dir);
 	}
 	if (!bad && (missing = vocab_finish(v)))
-		bad = err_set(e, ERR_FORMAT, "%s: token '%s' is missing", path, missing);
+		bad = err_file(e, path, "token '%s' is missing", missing);
 done:
 	free(json);
 	free(list);

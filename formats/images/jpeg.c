@@ -62,7 +62,8 @@ static int decode(struct jpeg_job *job, FILE *in)
 					 pixels / PIXELS_A_BYTE, in, job->e))
 		return -1;
 	if (jpeg->jpeg_color_space == JCS_CMYK || jpeg->jpeg_color_space == JCS_YCCK)
-		return err_set(job->e, ERR_FORMAT, "%s: JPEG: CMYK colours are not supported", job->name);
+		return err_file(job->e, job->name,
+			"JPEG: CMYK colours are not supported ('mogrify -colorspace sRGB' converts them)");
 	jpeg->out_color_space = JCS_RGB;
 	jpeg->dct_method = JDCT_ISLOW;
 	jpeg_start_decompress(jpeg);

@@ -15,8 +15,8 @@ int picture_check_size(const char *path, const char *kind, size_t width, size_t 
 {
 	if (width <= PICTURE_PIXELS_MAX / (height ? height : 1))
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: %s: %zux%zu pixels, more than %d altogether", path, kind, width,
-		height, PICTURE_PIXELS_MAX);
+	return err_file(e, path, "%s: %zux%zu pixels, more than %d altogether", kind, width, height,
+		PICTURE_PIXELS_MAX);
 }
 
 int picture_check_bytes(const char *path, const char *kind, size_t width, size_t height, uint64_t least,
@@ -26,8 +26,8 @@ int picture_check_bytes(const char *path, const char *kind, size_t width, size_t
 
 	if (fstat(fileno(in), &st) || !S_ISREG(st.st_mode) || least <= (uint64_t)st.st_size)
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: %s: %zux%zu pixels do not fit a file of %lld bytes", path, kind,
-		width, height, (long long)st.st_size);
+	return err_file(e, path, "%s: %zux%zu pixels do not fit a file of %lld bytes", kind, width, height,
+		(long long)st.st_size);
 }
 
 _Noreturn void png_job_error(png_structp png, png_const_charp message)
@@ -36,7 +36,7 @@ _Noreturn void png_job_error(png_structp png, png_const_charp message)
 
 	/* an allocation of ours or a failed write has said more already */
 	if (job->e->code == ERR_NONE)
-		err_set(job->e, ERR_FORMAT, "%s: PNG: %s", job->path, message);
+		err_file(job->e, job->path, "PNG: %s", message);
 	png_longjmp(png, 1);
 }
 
@@ -56,7 +56,7 @@ static void read_bytes(png_structp png, png_bytep data, size_t len)
 	if (ferror(in))
 		err_errno(job->e, "%s", job->path);
 	else
-		err_set(job->e, ERR_FORMAT, "%s: PNG: the file ends too early", job->path);
+		err_file(job->e, job->path, "PNG: the file ends too early");
 	png_error(png, "read");
 }
 
@@ -101,7 +101,7 @@ static int decode(struct png_job *job, FILE *in)
 		return -1;
 	const int type = png_get_color_type(job->png, job->info);
 	if (job->is_labels && type != PNG_COLOR_TYPE_PALETTE && type & PNG_COLOR_MASK_COLOR)
-		return err_set(job->e, ERR_FORMAT, "%s: PNG: has colours, not numbers of labels", job->path);
+		return err_file(job->e, job->path, "PNG: has colours, not numbers of labels");
 	take_clear(job);
 	if (job->is_labels)
 		png_set_packing(job->png);
@@ -189,9 +189,8 @@ static void *read_pixels(struct png_job *job, const char *path, size_t bytes)
 	const int first = getc(in);
 	ungetc(first, in);
 	if (first == 0xff)
-		err_set(job->e, ERR_FORMAT,
-			"%s: a JPEG, whose colours are not quite those that were painted: save it as PNG",
-			job->path);
+		err_file(job->e, job->path,
+			"a JPEG, whose colours are not quite those that were painted: save it as PNG");
 	else if (!read_raw(job, in))
 		out = mem_alloc(pixels_of(job), bytes, job->path, job->e);
 	file_close(in);
@@ -325,11 +324,10 @@ int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, str
 	else if (first == 0xff)
 		bad = jpeg_read_rgb(name, in, rgb, height, width, e);
 	else if (first != EOF)
-		bad = err_set(e, ERR_FORMAT, "%s: neither PNG nor JPEG: begins with byte 0x%02x", name,
-			(unsigned)first);
+		bad = err_file(e, name, "neither PNG nor JPEG: begins with byte 0x%02x", (unsigned)first);
 	else
 		bad = ferror(in) ? err_errno(e, "%s", name)
-				 : err_set(e, ERR_FORMAT, "%s: an empty file, not an image", name);
+				 : err_file(e, name, "an empty file, not an image");
 	file_close(in);
 	return bad;
 }

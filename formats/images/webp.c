@@ -13,15 +13,14 @@ int webp_decode(struct webp *to, const char *data, size_t len, size_t pixels, co
 	WebPBitstreamFeatures seen;
 
 	if (WebPGetFeatures(bytes, len, &seen) != VP8_STATUS_OK || seen.has_animation)
-		return err_set(e, ERR_FORMAT, "%s: file '%.80s' is not a WebP image", name, file);
+		return err_file(e, name, "file '%.80s' is not a WebP image", file);
 	if (seen.format != LOSSLESS)
-		return err_set(e, ERR_FORMAT, "%s: image '%.80s' is not lossless, so its values are wrong",
-			name, file);
+		return err_file(e, name, "image '%.80s' is not lossless, so its values are wrong", file);
 	if ((size_t)seen.width * (size_t)seen.height > pixels)
-		return err_set(e, ERR_FORMAT, "%s: image '%.80s' has %dx%d pixels, more than %zu", name, file,
-			seen.width, seen.height, pixels);
+		return err_file(e, name, "image '%.80s' has %dx%d pixels, more than %zu", file, seen.width,
+			seen.height, pixels);
 	to->rgba = WebPDecodeRGBA(bytes, len, &to->width, &to->height);
-	return to->rgba ? 0 : err_set(e, ERR_FORMAT, "%s: image '%.80s' is damaged", name, file);
+	return to->rgba ? 0 : err_file(e, name, "image '%.80s' is damaged", file);
 }
 
 void webp_free(struct webp *w)

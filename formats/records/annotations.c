@@ -33,7 +33,7 @@ void annotations_free(struct annotations *a)
 
 static int read_shape(struct reading *r, const cJSON *shape, const char *view, struct err *e)
 {
-	const cJSON *points = cJSON_GetObjectItemCaseSensitive(shape, "points");
+	const cJSON *points = json_get(shape, "points");
 	const char *label, *type = "polygon";
 	size_t count;
 
@@ -42,8 +42,8 @@ static int read_shape(struct reading *r, const cJSON *shape, const char *view, s
 		reading_points(r, points, &count, e))
 		return -1;
 	if (!strcmp(type, "mask"))
-		return err_set(e, ERR_FORMAT,
-			"%s: a shape of type 'mask'; polygons, rectangles and circles are read", r->where);
+		return err_file(
+			e, r->where, "a shape of type 'mask'; polygons, rectangles and circles are read");
 	return reading_draw_shape(r, type, count, view, label, e);
 }
 
@@ -51,7 +51,7 @@ static int read_shape(struct reading *r, const cJSON *shape, const char *view, s
  * will do there, and of a JPEG one that is turned, as cameras say in it that they were. */
 static int check_picture(struct reading *r, const cJSON *root, struct err *e)
 {
-	const cJSON *data = cJSON_GetObjectItemCaseSensitive(root, "imageData");
+	const cJSON *data = json_get(root, "imageData");
 	const int is_held = cJSON_IsString(data) && *data->valuestring;
 	const char *picture = r->to->picture;
 	enum picture_kind kind = PICTURE_NONE;
@@ -73,14 +73,14 @@ static int check_picture(struct reading *r, const cJSON *root, struct err *e)
 	if (kind == PICTURE_NONE || (height == r->height && width == r->width) ||
 		(!is_held && (is_turned || rle_has_shape(height, width, r->height, r->width))))
 		return 0;
-	return err_set(e, ERR_FORMAT,
-		"%s: imageWidth and imageHeight are %dx%d, but %s is %dx%d: the labels are of another picture",
-		r->where, r->width, r->height, is_held ? "the picture in imageData" : picture, width, height);
+	return err_file(e, r->where,
+		"imageWidth and imageHeight are %dx%d, but %s is %dx%d: the labels are of another picture",
+		r->width, r->height, is_held ? "the picture in imageData" : picture, width, height);
 }
 
 static int read_labelme(struct reading *r, const cJSON *root, struct err *e)
 {
-	const cJSON *shapes = cJSON_GetObjectItemCaseSensitive(root, "shapes"), *shape;
+	const cJSON *shapes = json_get(root, "shapes"), *shape;
 	const char *image;
 	size_t i = 0;
 
@@ -100,7 +100,7 @@ static int read_labelme(struct reading *r, const cJSON *root, struct err *e)
 /* The "bbox" of an object, [left, top, right, bottom], where it has one. */
 static int take_box(struct reading *r, const cJSON *object, struct annotation *on, struct err *e)
 {
-	const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, "bbox");
+	const cJSON *list = json_get(object, "bbox");
 	size_t count;
 
 	if (!cJSON_IsArray(list))
@@ -108,7 +108,7 @@ static int take_box(struct reading *r, const cJSON *object, struct annotation *o
 	if (reading_points(r, list, &count, e))
 		return -1;
 	if (count != 2)
-		return err_set(e, ERR_FORMAT, "%s: key 'bbox' is not two corners", r->where);
+		return err_file(e, r->where, "key 'bbox' is not two corners");
 	if (!on->boxes && !(on->boxes = mask_place_new(e)))
 		return -1;
 	return mask_place_add_box(on->boxes, r->points, e);
@@ -121,7 +121,7 @@ static int read_object(struct reading *r, const cJSON *object, const char *view,
 	size_t count;
 
 	if (json_string(object, "category", 1, &name, r->where, e) < 0 ||
-		reading_points(r, cJSON_GetObjectItemCaseSensitive(object, "segmentation"), &count, e))
+		reading_points(r, json_get(object, "segmentation"), &count, e))
 		return -1;
 	struct annotation *on = reading_find(r, view, name, e);
 	return on && !reading_draw(r, on, count, e) ? take_box(r, object, on, e) : -1;
@@ -129,7 +129,7 @@ static int read_object(struct reading *r, const cJSON *object, const char *view,
 
 static int read_isat(struct reading *r, const cJSON *root, struct err *e)
 {
-	const cJSON *info = cJSON_GetObjectItemCaseSensitive(root, "info"), *object;
+	const cJSON *info = json_get(root, "info"), *object;
 	const char *image;
 	size_t i = 0;
 
@@ -138,7 +138,7 @@ static int read_isat(struct reading *r, const cJSON *root, struct err *e)
 		return -1;
 	const char *view = reading_picture(r, r->path, image, e);
 	int bad = !view;
-	cJSON_ArrayForEach(object, cJSON_GetObjectItemCaseSensitive(root, "objects"))
+	cJSON_ArrayForEach(object, json_get(root, "objects"))
 	{
 		snprintf(r->where, WHERE, "%s: object %zu", r->path, i++);
 		bad = bad || read_object(r, object, view, e);
@@ -151,8 +151,8 @@ static int read_mask_picture(struct reading *r, const char *folder, const char *
 	const char *name, struct err *e)
 {
 	if (path_leaves(picture))
-		return err_set(e, ERR_FORMAT, "%s: key 'segmentation': '%.200s' is not in the folder gt_mask",
-			r->where, picture);
+		return err_file(
+			e, r->where, "key 'segmentation': '%.200s' is not in the folder gt_mask", picture);
 	char *path = file_join(folder, picture, "", e);
 	uint8_t *pixels = NULL;
 	struct rle mask = {0};
@@ -174,7 +174,7 @@ static int read_ref_lerf(
 	const char *image, *name, *picture;
 	size_t i = 0;
 
-	if (json_string(cJSON_GetObjectItemCaseSensitive(root, "info"), "name", 1, &image, r->where, e) < 0)
+	if (json_string(json_get(root, "info"), "name", 1, &image, r->where, e) < 0)
 		return -1;
 	char *view = reading_view(image, e), *folder = file_dir(json, e),
 	     *masks = folder ? file_join(folder, "../gt_mask", "", e) : NULL;
@@ -195,36 +195,32 @@ static int read_ref_lerf(
 /* Ref-LERF's objects, whose outlines are pictures; NULL where the file is none of its. */
 static const cJSON *ref_lerf_objects(const cJSON *root)
 {
-	const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, "object");
+	const cJSON *list = json_get(root, "object");
 
 	if (!list)
-		list = cJSON_GetObjectItemCaseSensitive(root, "objects");
-	return cJSON_IsArray(list) &&
-			       cJSON_IsString(cJSON_GetObjectItemCaseSensitive(list->child, "segmentation"))
-		       ? list
-		       : NULL;
+		list = json_get(root, "objects");
+	return cJSON_IsArray(list) && cJSON_IsString(json_get(list->child, "segmentation")) ? list : NULL;
 }
 
 static int read_any(struct reading *r, const cJSON *root, const char *path, struct err *e)
 {
 	const cJSON *pictures = ref_lerf_objects(root);
-	const int is_labelme = cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "shapes"));
+	const int is_labelme = cJSON_IsArray(json_get(root, "shapes"));
 
 	snprintf(r->where, WHERE, "%s", r->path);
 	r->to->is_layered = is_labelme;
 	if (is_labelme)
 		return read_labelme(r, root, e);
-	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "annotations")))
+	if (cJSON_IsArray(json_get(root, "annotations")))
 		return reading_annotations(r, root, e);
 	if (pictures)
 		return read_ref_lerf(r, root, pictures, path, e);
-	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "objects")))
+	if (cJSON_IsArray(json_get(root, "objects")))
 		return read_isat(r, root, e);
 	return foreign_json(root, r->path, e)
 		       ? -1
-		       : err_set(e, ERR_FORMAT,
-				 "%s: no labels: neither LabelMe's JSON (shapes) nor COCO's (annotations) nor ISAT's or Ref-LERF's (objects)",
-				 r->path);
+		       : err_file(e, r->path,
+				 "no labels: neither LabelMe's JSON (shapes) nor COCO's (annotations) nor ISAT's or Ref-LERF's (objects)");
 }
 
 int annotations_read(struct annotations *a, const char *path, struct err *e)

@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/names.h"
+#include "formats/records/masks.h"
 #include "geom/views.h"
 
 #include <math.h>
@@ -18,30 +19,11 @@ static const cJSON *with_id(const cJSON *list, const cJSON *id)
 
 	cJSON_ArrayForEach(item, list)
 	{
-		const cJSON *own = cJSON_GetObjectItemCaseSensitive(item, "id");
+		const cJSON *own = json_get(item, "id");
 		if (cJSON_IsNumber(own) && cJSON_IsNumber(id) && own->valuedouble == id->valuedouble)
 			return item;
 	}
 	return NULL;
-}
-
-static int take_runs(struct rle *rle, const cJSON *counts, int height, int width, struct err *e)
-{
-	const cJSON *item;
-	size_t n = 0;
-
-	if (cJSON_IsString(counts))
-		return rle_from_string(rle, counts->valuestring, height, width, e);
-	uint32_t *runs = mem_alloc((size_t)cJSON_GetArraySize(counts), sizeof *runs, "mask", e);
-	if (!runs)
-		return -1;
-	cJSON_ArrayForEach(item, counts) runs[n++] =
-		cJSON_IsNumber(item) && item->valuedouble >= 0 && item->valuedouble <= UINT32_MAX
-			? (uint32_t)item->valuedouble
-			: UINT32_MAX;
-	const int bad = rle_from_runs(rle, runs, n, height, width, e);
-	free(runs);
-	return bad;
 }
 
 /* Run lengths say whose size they are of themselves. */
@@ -50,11 +32,11 @@ static int check_size(const struct reading *r, const cJSON *size, struct err *e)
 	const cJSON *h = cJSON_GetArrayItem(size, 0), *w = cJSON_GetArrayItem(size, 1);
 
 	if (!cJSON_IsArray(size) || cJSON_GetArraySize(size) != 2 || !cJSON_IsNumber(h) || !cJSON_IsNumber(w))
-		return err_set(e, ERR_FORMAT, "%s: key 'segmentation.size' is not [height,width]", r->where);
+		return err_file(e, r->where, "key 'segmentation.size' is not [height,width]");
 	if (h->valuedouble == r->height && w->valuedouble == r->width)
 		return 0;
-	return err_set(e, ERR_FORMAT,
-		"%s: key 'segmentation.size' is %gx%g, but its picture is %dx%d (width x height)%s", r->where,
+	return err_file(e, r->where,
+		"key 'segmentation.size' is %gx%g, but its picture is %dx%d (width x height)%s",
 		w->valuedouble, h->valuedouble, r->width, r->height,
 		h->valuedouble == r->width && w->valuedouble == r->height
 			? ": height and width are exchanged in one of them"
@@ -63,18 +45,13 @@ static int check_size(const struct reading *r, const cJSON *size, struct err *e)
 
 static int draw_runs(struct reading *r, struct annotation *on, const cJSON *segmentation, struct err *e)
 {
-	const cJSON *counts = cJSON_GetObjectItemCaseSensitive(segmentation, "counts");
+	const cJSON *counts = json_get(segmentation, "counts");
 	struct rle rle;
 
-	if (check_size(r, cJSON_GetObjectItemCaseSensitive(segmentation, "size"), e))
+	if (check_size(r, json_get(segmentation, "size"), e))
 		return -1;
-
-	if (take_runs(&rle, counts, r->height, r->width, e)) {
-		const struct err inner = *e;
-		return inner.code == ERR_FORMAT
-			       ? err_set(e, ERR_FORMAT, "%s: %.300s", r->where, inner.message)
-			       : -1;
-	}
+	if (masks_take_counts(&rle, counts, r->height, r->width, r->where, e))
+		return -1;
 	const int bad = reading_unite(r, on, &rle, e);
 	rle_free(&rle);
 	return bad;
@@ -84,13 +61,13 @@ static int draw_runs(struct reading *r, struct annotation *on, const cJSON *segm
 static int read_segmentation(
 	struct reading *r, const cJSON *item, const char *view, const char *name, struct err *e)
 {
-	const cJSON *segmentation = cJSON_GetObjectItemCaseSensitive(item, "segmentation"), *polygon;
-	const cJSON *counts = cJSON_GetObjectItemCaseSensitive(segmentation, "counts");
+	const cJSON *segmentation = json_get(item, "segmentation"), *polygon;
+	const cJSON *counts = json_get(segmentation, "counts");
 	struct annotation *on = NULL;
 	size_t count, before;
 
 	if (!cJSON_GetArraySize(segmentation)) {
-		const int is_box = cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(item, "bbox"));
+		const int is_box = cJSON_GetArraySize(json_get(item, "bbox"));
 		return reading_leave_out(r,
 			is_box ? "boxes (key 'bbox') without an outline" : "annotations without an outline",
 			e);
@@ -103,8 +80,8 @@ static int read_segmentation(
 	cJSON_ArrayForEach(polygon, segmentation)
 	{
 		if (!cJSON_IsArray(polygon))
-			return err_set(e, ERR_FORMAT,
-				"%s: key 'segmentation' is neither polygons nor run lengths", r->where);
+			return err_file(
+				e, r->where, "key 'segmentation' is neither polygons nor run lengths");
 		if (reading_points(r, polygon, &count, e) || reading_draw(r, on, count, e))
 			return -1;
 	}
@@ -115,7 +92,7 @@ static int read_segmentation(
 /* "score": a number, or a list with one, as Grounded-SAM-2 writes it. */
 static int read_score(struct reading *r, const cJSON *item, struct err *e)
 {
-	const cJSON *score = cJSON_GetObjectItemCaseSensitive(item, "score");
+	const cJSON *score = json_get(item, "score");
 
 	if (cJSON_GetArraySize(score) == 1)
 		score = score->child;
@@ -123,7 +100,7 @@ static int read_score(struct reading *r, const cJSON *item, struct err *e)
 	if (!score || cJSON_IsNull(score))
 		return 0;
 	if (!cJSON_IsNumber(score) || !isfinite(score->valuedouble))
-		return err_set(e, ERR_FORMAT, "%s: key 'score' is not a finite number", r->where);
+		return err_file(e, r->where, "key 'score' is not a finite number");
 	r->score = score->valuedouble;
 	return 0;
 }
@@ -141,7 +118,7 @@ static int read_ref(struct reading *r, const cJSON *item, size_t before, struct 
 		return -1;
 	const char *reason = ref ? name_fault(ref, NAME_DATA, fault) : NULL;
 	if (reason)
-		return err_set(e, ERR_FORMAT, "%s: key 'ref' %s", r->where, reason);
+		return err_file(e, r->where, "key 'ref' %s", reason);
 	return ref && !(a->items[a->n - 1].ref = mem_strdup(ref, e)) ? -1 : 0;
 }
 
@@ -179,9 +156,9 @@ static int check_twice(const struct reading *r, const struct coco *c, struct err
 		return -1;
 	return twice == NAMES_NONE
 		       ? 0
-		       : err_set(e, ERR_FORMAT,
-				 "%s: images %zu and %zu have one file_name, '%.300s': their labels would be of one view",
-				 r->path, earlier, twice, c->files[twice]);
+		       : err_file(e, r->path,
+				 "images %zu and %zu have one file_name, '%.300s': their labels would be of one view",
+				 earlier, twice, c->files[twice]);
 }
 
 static int name_views(struct reading *r, const cJSON *images, struct coco *c, struct err *e)
@@ -203,31 +180,26 @@ static int name_views(struct reading *r, const cJSON *images, struct coco *c, st
 		for (char *p = c->files[c->n - 1]; *p; p++)
 			*p = *p == '\\' ? '/' : *p;
 	}
-	return check_twice(r, c, e) || views_name((const char *const *)c->files, c->n, c->views, r->path, e)
-		       ? -1
-		       : 0;
+	return -(check_twice(r, c, e) ||
+		 views_name((const char *const *)c->files, c->n, c->views, r->path, e));
 }
 
 static int read_annotation(
 	struct reading *r, const struct coco *c, const cJSON *root, const cJSON *item, struct err *e)
 {
-	const cJSON *images = cJSON_GetObjectItemCaseSensitive(root, "images"), *before;
-	const cJSON *image = with_id(images, cJSON_GetObjectItemCaseSensitive(item, "image_id"));
-	const cJSON *category = with_id(cJSON_GetObjectItemCaseSensitive(root, "categories"),
-		cJSON_GetObjectItemCaseSensitive(item, "category_id"));
+	const cJSON *images = json_get(root, "images"), *before;
+	const cJSON *image = with_id(images, json_get(item, "image_id"));
+	const cJSON *category = with_id(json_get(root, "categories"), json_get(item, "category_id"));
 	const char *name;
 	size_t at = 0;
 
 	if (!image || !category)
-		return err_set(e, ERR_FORMAT, "%s: no %s has its '%s'", r->where,
-			image ? "category" : "image", image ? "category_id" : "image_id");
+		return err_file(e, r->where, "no %s has its '%s'", image ? "category" : "image",
+			image ? "category_id" : "image_id");
 	for (before = images->child; before != image; before = before->next)
 		at++;
-	return json_string(category, "name", 1, &name, r->where, e) < 0 ||
-			       reading_size(r, image, "height", "width", e) ||
-			       read_mask(r, item, c->views[at], name, e)
-		       ? -1
-		       : 0;
+	return -(json_string(category, "name", 1, &name, r->where, e) < 0 ||
+		 reading_size(r, image, "height", "width", e) || read_mask(r, item, c->views[at], name, e));
 }
 
 /* Grounded-SAM-2's: one picture, and what was found in it. */
@@ -245,14 +217,14 @@ static int read_found(struct reading *r, const cJSON *root, const cJSON *item, s
 
 int reading_annotations(struct reading *r, const cJSON *root, struct err *e)
 {
-	const int is_found = cJSON_GetObjectItemCaseSensitive(root, "image_path") != NULL;
+	const int is_found = json_get(root, "image_path") != NULL;
 	const cJSON *item;
 	struct coco c = {0};
 	size_t i = 0;
 	r->to->is_layered = 1;
-	int bad = !is_found && name_views(r, cJSON_GetObjectItemCaseSensitive(root, "images"), &c, e);
+	int bad = !is_found && name_views(r, json_get(root, "images"), &c, e);
 
-	cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "annotations"))
+	cJSON_ArrayForEach(item, json_get(root, "annotations"))
 	{
 		snprintf(r->where, WHERE, "%s: annotation %zu", r->path, i++);
 		bad = bad ||

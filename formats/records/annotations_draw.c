@@ -80,8 +80,7 @@ int reading_size(struct reading *r, const cJSON *object, const char *height, con
 		return -1;
 	if (h != floor(h) || w != floor(w) || fabs(h) > RLE_MAX_SIDE || fabs(w) > RLE_MAX_SIDE ||
 		rle_check_size((int64_t)h, (int64_t)w, e))
-		return err_set(
-			e, ERR_FORMAT, "%s: %s and %s are no size of a picture", r->where, height, width);
+		return err_file(e, r->where, "%s and %s are no size of a picture", height, width);
 	if (picture_check_size(r->where, "the picture", (size_t)w, (size_t)h, e))
 		return -1;
 	r->height = (int)h;
@@ -105,7 +104,7 @@ struct annotation *reading_find(struct reading *r, const char *view, const char 
 			a->items[i].mask.width == r->width)
 			return &a->items[i];
 	if (reason) {
-		err_set(e, ERR_FORMAT, "%s: the label %s", r->where, reason);
+		err_file(e, r->where, "the label %s", reason);
 		return NULL;
 	}
 	if (mem_grow((void **)&a->items, &a->capacity, a->n + 1, sizeof *a->items, "annotations", e))
@@ -137,7 +136,7 @@ int reading_points(struct reading *r, const cJSON *list, size_t *count, struct e
 		const cJSON *x = is_flat ? item : item->child;
 		if (!is_coordinate(x) ||
 			(!is_flat && (cJSON_GetArraySize(item) != 2 || !is_coordinate(x->next))))
-			return err_set(e, ERR_FORMAT, "%s: a point is not two numbers%s", r->where,
+			return err_file(e, r->where, "a point is not two numbers%s",
 				cJSON_GetArraySize(item) > 2
 					? ", but a list of more: is the outline nested too deep?"
 					: "");
@@ -146,7 +145,7 @@ int reading_points(struct reading *r, const cJSON *list, size_t *count, struct e
 			r->points[at++] = x->next->valuedouble;
 	}
 	*count = at / 2;
-	return at % 2 ? err_set(e, ERR_FORMAT, "%s: a point is not two numbers", r->where) : 0;
+	return at % 2 ? err_file(e, r->where, "a point is not two numbers") : 0;
 }
 
 /* The corners of a rectangle, or of what stands for a circle by its middle and a point on it, in place of two
@@ -205,15 +204,15 @@ static int check_points(struct reading *r, size_t count, struct err *e)
 		const double x = r->points[2 * i], y = r->points[2 * i + 1];
 		is_share = is_share && x >= 0 && x <= 1 && y >= 0 && y <= 1;
 		if (x < least || y < least || x > r->width - least || y > r->height - least)
-			return err_set(e, ERR_FORMAT,
-				"%s: its point %g,%g is outside the picture, %dx%d (width x height): is it of a picture of another size?",
-				r->where, x, y, r->width, r->height);
+			return err_file(e, r->where,
+				"its point %g,%g is outside the picture, %dx%d (width x height): is it of a picture of another size?",
+				x, y, r->width, r->height);
 	}
 	return !is_share
 		       ? 0
-		       : err_set(e, ERR_FORMAT,
-				 "%s: all its points are within one pixel of the picture, %dx%d: are they shares of it, not pixels?",
-				 r->where, r->width, r->height);
+		       : err_file(e, r->where,
+				 "all its points are within one pixel of the picture, %dx%d: are they shares of it, not pixels?",
+				 r->width, r->height);
 }
 
 static int fill(struct reading *r, struct annotation *on, size_t count, struct err *e)

@@ -27,24 +27,16 @@ void boxes_free(struct box_set *s)
 	*s = (struct box_set){0};
 }
 
-/* 1 where the value is there, and not null. */
-static int has(const cJSON *object, const char *key)
+static int read_turned(const struct jsonl *j, const cJSON *object, struct box *b, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
-
-	return item && !cJSON_IsNull(item);
-}
-
-static int read_turned(
-	const struct jsonl *j, const cJSON *object, struct box *b, const char *where, struct err *e)
-{
-	const cJSON *o = cJSON_GetObjectItemCaseSensitive(object, "oriented");
+	const cJSON *o = json_get(object, "oriented");
 	double q[4], size[3], m[3][3];
 
 	if (!cJSON_IsObject(o))
 		return jsonl_err(j, e, "key 'oriented' is not an object");
-	if (json_matrix(o, "centre", 3, 0, b->centre, where, e) ||
-		json_matrix(o, "quat", 4, 0, q, where, e) || json_matrix(o, "size", 3, 0, size, where, e))
+	if (json_matrix(o, "centre", 3, 0, b->centre, j->where, e) ||
+		json_matrix(o, "quat", 4, 0, q, j->where, e) ||
+		json_matrix(o, "size", 3, 0, size, j->where, e))
 		return -1;
 	double length = hypot(hypot(q[0], q[1]), hypot(q[2], q[3]));
 	if (!(fabs(length - 1) < 1e-3))
@@ -62,21 +54,20 @@ static int read_turned(
 
 static int read_boxes(const struct jsonl *j, const cJSON *object, struct box_record *r, struct err *e)
 {
-	char where[1024];
 	double low[3], high[3];
 
-	r->is_empty = !has(object, "min") && !has(object, "max") && !has(object, "oriented");
+	r->is_empty = !json_member(object, "min") && !json_member(object, "max") &&
+		      !json_member(object, "oriented");
 	if (r->is_empty)
 		return 0;
-	snprintf(where, sizeof where, "%s:%ld", j->path, j->line_number);
-	if (json_matrix(object, "min", 3, 0, low, where, e) ||
-		json_matrix(object, "max", 3, 0, high, where, e))
+	if (json_matrix(object, "min", 3, 0, low, j->where, e) ||
+		json_matrix(object, "max", 3, 0, high, j->where, e))
 		return -1;
 	for (int k = 0; k < 3; k++)
 		if (low[k] > high[k])
 			return jsonl_err(j, e, "key 'min' is above 'max'");
 	r->aligned = box_between(low, high);
-	return read_turned(j, object, &r->turned, where, e);
+	return read_turned(j, object, &r->turned, e);
 }
 
 static int read_record(const struct jsonl *j, const cJSON *object, void *record, struct err *e)
@@ -132,7 +123,7 @@ int boxes_read(struct box_set *s, const char *path, struct err *e)
 	int bad = jsonl_records(
 		&j, sizeof *s->records, read_record, record_free, (void **)&s->records, &s->n, &lines, e);
 	if (!bad && !s->n)
-		bad = err_set(e, ERR_FORMAT, "%s: holds no boxes", file_name(path));
+		bad = err_file(e, file_name(path), "holds no boxes");
 	bad = bad || check_unique(s, lines, file_name(path), e);
 	jsonl_close(&j);
 	free(lines);

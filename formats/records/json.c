@@ -13,13 +13,13 @@ cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e)
 	cJSON *value = NULL;
 
 	if (strlen(text) != len)
-		err_set(e, ERR_FORMAT, "%s: not JSON: a NUL byte at offset %zu", name, strlen(text));
+		err_file(e, name, "not JSON: a NUL byte at offset %zu", strlen(text));
 	else if (!(value = cJSON_ParseWithOpts(text, &stop, 1)))
-		err_set(e, ERR_FORMAT, "%s: not JSON at offset %td", name, stop ? stop - text : (ptrdiff_t)0);
+		err_file(e, name, "not JSON at offset %td", stop ? stop - text : (ptrdiff_t)0);
 	if (value && json_has_nul(text)) {
 		cJSON_Delete(value);
 		value = NULL;
-		err_set(e, ERR_FORMAT, "%s: a NUL character (\\u0000) in a string", name);
+		err_file(e, name, "a NUL character (\\u0000) in a string");
 	}
 	return value;
 }
@@ -44,27 +44,20 @@ int json_has_nul(const char *json)
 	return 0;
 }
 
-static const cJSON *member(const cJSON *object, const char *key)
-{
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
-
-	return cJSON_IsNull(item) ? NULL : item;
-}
-
 static int err_missing(const char *key, int need, const char *where, struct err *e)
 {
-	return need ? err_set(e, ERR_FORMAT, "%s: key '%s' is missing", where, key) : 0;
+	return need ? err_file(e, where, "key '%s' is missing", key) : 0;
 }
 
 int json_number(
 	const cJSON *object, const char *key, int need, double *value, const char *where, struct err *e)
 {
-	const cJSON *item = member(object, key);
+	const cJSON *item = json_member(object, key);
 
 	if (!item)
 		return err_missing(key, need, where, e);
 	if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
-		return err_set(e, ERR_FORMAT, "%s: key '%s' is not a number", where, key);
+		return err_file(e, where, "key '%s' is not a number", key);
 	*value = item->valuedouble;
 	return 1;
 }
@@ -72,12 +65,12 @@ int json_number(
 int json_string(
 	const cJSON *object, const char *key, int need, const char **value, const char *where, struct err *e)
 {
-	const cJSON *item = member(object, key);
+	const cJSON *item = json_member(object, key);
 
 	if (!item)
 		return err_missing(key, need, where, e);
 	if (!cJSON_IsString(item))
-		return err_set(e, ERR_FORMAT, "%s: key '%s' is not a string", where, key);
+		return err_file(e, where, "key '%s' is not a string", key);
 	*value = item->valuestring;
 	return 1;
 }
@@ -97,14 +90,14 @@ int json_numbers(const cJSON *array, int count, double *values)
 int json_matrix(const cJSON *object, const char *key, int rows, int columns, double *values,
 	const char *where, struct err *e)
 {
-	const cJSON *item = member(object, key), *row = cJSON_IsArray(item) ? item->child : NULL;
+	const cJSON *item = json_member(object, key), *row = cJSON_IsArray(item) ? item->child : NULL;
 	int bad = 0;
 
 	if (!item)
 		return err_missing(key, 1, where, e);
 	if (!columns) {
 		if (json_numbers(item, rows, values))
-			return err_set(e, ERR_FORMAT, "%s: key '%s' is not %d numbers", where, key, rows);
+			return err_file(e, where, "key '%s' is not %d numbers", key, rows);
 		return 0;
 	}
 	for (int r = 0; !bad && r < rows; r++) {
@@ -112,6 +105,6 @@ int json_matrix(const cJSON *object, const char *key, int rows, int columns, dou
 		row = bad ? row : row->next;
 	}
 	if (bad || row)
-		return err_set(e, ERR_FORMAT, "%s: key '%s' is not %dx%d numbers", where, key, rows, columns);
+		return err_file(e, where, "key '%s' is not %dx%d numbers", key, rows, columns);
 	return 0;
 }

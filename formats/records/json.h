@@ -16,6 +16,20 @@ cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e)
 /* 1 where a string in JSON that was parsed has the escape \u0000, at which cJSON silently ends the string. */
 int json_has_nul(const char *json);
 
+/* A member of an object, or NULL. */
+static inline cJSON *json_get(const cJSON *object, const char *key)
+{
+	return cJSON_GetObjectItemCaseSensitive(object, key);
+}
+
+/* The same, and NULL too where it is null. */
+static inline cJSON *json_member(const cJSON *object, const char *key)
+{
+	cJSON *item = json_get(object, key);
+
+	return cJSON_IsNull(item) ? NULL : item;
+}
+
 /* A number member, finite. Returns 1 and *value, 0 where it is absent or null (an error if `need`), -1 with
  * *e
  * ("WHERE: key 'k' ..."). */

@@ -143,6 +143,7 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 	if (len <= 0)
 		return (int)len;
 	const int is_first = !j->records++;
+	snprintf(j->where, sizeof j->where, "%s:%ld", j->path, j->line_number);
 	*object = cJSON_ParseWithOpts(j->line, &stop, 1);
 	if (is_first && check_foreign(j, *object, e)) {
 		cJSON_Delete(*object);
@@ -209,29 +210,13 @@ int jsonl_text(struct jsonl *j, struct err *e)
 	return 1;
 }
 
-int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, int need, const char **value,
-	struct err *e)
-{
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
-
-	if (!item || cJSON_IsNull(item)) {
-		if (need)
-			return jsonl_err(j, e, "key '%s' is missing", key);
-		return 0;
-	}
-	if (!cJSON_IsString(item))
-		return jsonl_err(j, e, "key '%s' is not a string", key);
-	*value = item->valuestring;
-	return 1;
-}
-
 int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum name_kind kind, int need,
 	char **name, struct err *e)
 {
 	const char *text = NULL;
 	char fault[NAME_FAULT];
 
-	if (jsonl_string(j, object, key, need, &text, e) < 0)
+	if (json_string(object, key, need, &text, j->where, e) < 0)
 		return -1;
 	if (!text)
 		return 0;
@@ -244,15 +229,8 @@ int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum
 
 int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, double *number, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
-
 	*number = NAN;
-	if (!item || cJSON_IsNull(item))
-		return 0;
-	if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
-		return jsonl_err(j, e, "key '%s' is not a finite number", key);
-	*number = item->valuedouble;
-	return 0;
+	return -(json_number(object, key, 0, number, j->where, e) < 0);
 }
 
 int jsonl_put_string(FILE *out, const char *before, const char *text, struct err *e)

@@ -13,6 +13,7 @@ enum { JSONL_LINE_MAX = 64 << 20 }; /* bytes */
 struct jsonl {
 	FILE *in;
 	const char *path; /* as messages name it */
+	char where[1024]; /* of the object last returned, "path:LINE", for json_string and its like */
 	char *line;
 	char *text; /* where the file is UTF-16: all of it as UTF-8, which `in` reads */
 	size_t capacity;
@@ -46,11 +47,6 @@ int jsonl_records(struct jsonl *j, size_t size,
 /* Sets ERR_FORMAT with "path:LINE: reason". Always returns -1. */
 int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
-
-/* A string member. Returns 1 and *value (owned by the object), 0 where it is absent or null, -1 with *e where
- * it is not a string or, if `need`, absent. */
-int jsonl_string(const struct jsonl *j, const cJSON *object, const char *key, int need, const char **value,
-	struct err *e);
 
 /* A copy of a name in *name, which stays as it was where the key is absent or null. What base/name.h does not
  * take as a name is an error. Returns 0, or -1 with *e. */

@@ -14,13 +14,11 @@
 #include <string.h>
 
 /* Gives a key's error its file and line. */
-static int key_err(const struct jsonl *j, struct err *e, const char *key)
+static int key_err(struct err *e, const char *where, const char *key)
 {
-	struct err inner = *e;
+	const struct err inner = *e;
 
-	if (inner.code != ERR_FORMAT)
-		return -1;
-	return jsonl_err(j, e, "key '%s': %s", key, inner.message);
+	return inner.code == ERR_FORMAT ? err_file(e, where, "key '%s': %s", key, inner.message) : -1;
 }
 
 static int read_visible(const struct jsonl *j, const cJSON *object, double *visible, struct err *e)
@@ -53,52 +51,58 @@ static int read_boxes(const struct jsonl *j, const cJSON *boxes, struct mask_pla
 
 static int read_place(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
 {
-	const cJSON *peak = cJSON_GetObjectItemCaseSensitive(object, "peak"),
-		    *boxes = cJSON_GetObjectItemCaseSensitive(object, "boxes");
+	const cJSON *peak = json_member(object, "peak"), *boxes = json_member(object, "boxes");
 
-	if ((!peak || cJSON_IsNull(peak)) && (!boxes || cJSON_IsNull(boxes)))
+	if (!peak && !boxes)
 		return 0;
 	if (!(m->place = mask_place_new(e)))
 		return -1;
-	if (peak && !cJSON_IsNull(peak)) {
+	if (peak) {
 		if (json_numbers(peak, 2, m->place->peak))
 			return jsonl_err(j, e, "key 'peak' is not [column,row]");
 		m->place->has_peak = 1;
 	}
-	return boxes && !cJSON_IsNull(boxes) ? read_boxes(j, boxes, m->place, e) : 0;
+	return boxes ? read_boxes(j, boxes, m->place, e) : 0;
 }
 
-/* COCO's uncompressed list of lengths. */
-static int read_list(
-	const struct jsonl *j, const cJSON *list, struct rle *mask, int height, int width, struct err *e)
+int masks_take_counts(
+	struct rle *mask, const cJSON *counts, int height, int width, const char *where, struct err *e)
 {
+	const int is_list = cJSON_IsArray(counts);
 	const cJSON *item;
-	size_t i = 0;
-	uint32_t *runs = mem_alloc((size_t)cJSON_GetArraySize(list), sizeof *runs, "mask", e);
+	size_t n = 0;
+	int bad = 0;
 
-	if (!runs)
+	if (!is_list && !cJSON_IsString(counts))
+		return err_file(e, where, "key 'segmentation.counts' is not a string or a list");
+	uint32_t *runs =
+		is_list ? mem_alloc((size_t)cJSON_GetArraySize(counts), sizeof *runs, "mask", e) : NULL;
+	if (is_list && !runs)
 		return -1;
-	cJSON_ArrayForEach(item, list)
+	cJSON_ArrayForEach(item, counts)
 	{
-		double x = item->valuedouble;
+		const double x = item->valuedouble;
 		if (!cJSON_IsNumber(item) || !(x >= 0 && x <= UINT32_MAX) || x != floor(x)) {
 			free(runs);
-			return jsonl_err(j, e,
-				"key 'segmentation.counts': item %zu is not a whole number in 0 to %lld", i,
+			return err_file(e, where,
+				"key 'segmentation.counts': item %zu is not a whole number in 0 to %lld", n,
 				(long long)UINT32_MAX);
 		}
-		runs[i++] = (uint32_t)x;
+		runs[n++] = (uint32_t)x;
 	}
-	int bad = rle_from_runs(mask, runs, i, height, width, e);
+	if (is_list)
+		bad = !runs || rle_from_runs(mask, runs, n, height, width, e);
+	else
+		bad = rle_from_string(mask, counts->valuestring, height, width, e);
 	free(runs);
-	return bad ? key_err(j, e, "segmentation.counts") : 0;
+	return bad ? key_err(e, where, "segmentation.counts") : 0;
 }
 
 static int read_segmentation(
 	const struct jsonl *j, const cJSON *segmentation, struct rle *mask, struct err *e)
 {
-	const cJSON *size = cJSON_GetObjectItemCaseSensitive(segmentation, "size");
-	const cJSON *counts = cJSON_GetObjectItemCaseSensitive(segmentation, "counts");
+	const cJSON *size = json_get(segmentation, "size");
+	const cJSON *counts = json_get(segmentation, "counts");
 	const cJSON *h = cJSON_GetArrayItem(size, 0), *w = cJSON_GetArrayItem(size, 1);
 
 	if (!cJSON_IsObject(segmentation))
@@ -109,14 +113,8 @@ static int read_segmentation(
 	if (h->valuedouble != h->valueint || w->valuedouble != w->valueint)
 		return jsonl_err(j, e, "key 'segmentation.size' is not two whole numbers");
 	if (rle_check_size(h->valueint, w->valueint, e))
-		return key_err(j, e, "segmentation.size");
-	if (cJSON_IsArray(counts))
-		return read_list(j, counts, mask, h->valueint, w->valueint, e);
-	if (!cJSON_IsString(counts))
-		return jsonl_err(j, e, "key 'segmentation.counts' is not a string or a list");
-	if (rle_from_string(mask, counts->valuestring, h->valueint, w->valueint, e))
-		return key_err(j, e, "segmentation.counts");
-	return 0;
+		return key_err(e, j->where, "segmentation.size");
+	return masks_take_counts(mask, counts, h->valueint, w->valueint, j->where, e);
 }
 
 static int read_image(const struct jsonl *j, const char *name, struct rle *mask, struct err *e)
@@ -133,7 +131,7 @@ static int read_image(const struct jsonl *j, const char *name, struct rle *mask,
 		bad = rle_encode(mask, pixels, height, width, e);
 		free(pixels);
 		if (bad)
-			key_err(j, e, "path");
+			key_err(e, j->where, "path");
 	}
 	free(dir);
 	free(path);
@@ -155,7 +153,7 @@ static int read_names(const struct jsonl *j, const cJSON *object, struct mask *m
 
 static int read_record(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
 {
-	const cJSON *segmentation = cJSON_GetObjectItemCaseSensitive(object, "segmentation");
+	const cJSON *segmentation = json_member(object, "segmentation");
 	const char *path = NULL;
 
 	if (read_names(j, object, m, e) || jsonl_number(j, object, "score", &m->score, e) ||
@@ -163,10 +161,8 @@ static int read_record(const struct jsonl *j, const cJSON *object, struct mask *
 		return -1;
 	if (!m->ref && !m->object)
 		return jsonl_err(j, e, "neither key 'ref' nor key 'object'");
-	if (jsonl_string(j, object, "path", 0, &path, e) < 0)
+	if (json_string(object, "path", 0, &path, j->where, e) < 0)
 		return -1;
-	if (cJSON_IsNull(segmentation))
-		segmentation = NULL;
 	if (segmentation && path)
 		return jsonl_err(j, e, "both key 'segmentation' and key 'path'");
 	if (path)
@@ -284,9 +280,9 @@ int masks_check_refs(const struct masks *set, const char *path, char *const *ref
 		const struct mask *m = &set->items[i];
 		const size_t at = m->ref ? names_find(&names, m->ref) : NAMES_NONE;
 		if (at != NAMES_NONE && m->object && *objects[at] && strcmp(m->object, objects[at]))
-			bad = err_set(e, ERR_FORMAT,
-				"%s: a mask of view '%s' is of object '%s', but its ref '%s' is a sentence of '%s': leave out the key that is wrong",
-				file_name(path), m->view, m->object, m->ref, objects[at]);
+			bad = err_file(e, file_name(path),
+				"a mask of view '%s' is of object '%s', but its ref '%s' is a sentence of '%s': leave out the key that is wrong",
+				m->view, m->object, m->ref, objects[at]);
 	}
 	names_free(&names);
 	return bad ? -1 : 0;

@@ -22,6 +22,11 @@ int masks_read(struct masks *set, const char *path, struct err *e);
 /* As masks_read; *lines (n) gets the line of each record. free() it. */
 int masks_read_lines(struct masks *set, long **lines, const char *path, struct err *e);
 
+/* COCO's run lengths of a mask of that size, a string or a list: the key 'segmentation.counts' of an object,
+ * which messages call `where`. Returns 0, or -1 with *e set. */
+int masks_take_counts(
+	struct rle *mask, const cJSON *counts, int height, int width, const char *where, struct err *e);
+
 /* The records of a file pooled. ERR_FORMAT where masks of a view differ in size. */
 int masks_pool(struct pool *p, const struct masks *set, const long *lines, const char *path, struct err *e);
 /* 0 where a mask, of a line of a file, has the shape of what it is of: mask_check_shape. */

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/names.h"
 #include "base/utf8.h"
+#include "formats/records/json.h"
 #include "formats/records/jsonl.h"
 
 #include <stddef.h>
@@ -62,9 +63,9 @@ static char *copy_item(
 static int read_list(char ***strings, size_t *n, const struct jsonl *j, const cJSON *object, const char *key,
 	enum name_kind kind, struct err *e)
 {
-	const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, key), *item;
+	const cJSON *list = json_member(object, key), *item;
 
-	if (!list || cJSON_IsNull(list))
+	if (!list)
 		return 0;
 	if (!cJSON_IsArray(list))
 		return jsonl_err(j, e, "key '%s' is not a list", key);
@@ -117,20 +118,18 @@ static int read_one(const struct jsonl *j, const cJSON *object, void *record, st
 	const char *text, *split = "train";
 
 	if (jsonl_name(j, object, "ref", NAME_DATA, 1, &s->ref, e) ||
-		jsonl_string(j, object, "split", 0, &split, e) < 0)
+		json_string(object, "split", 0, &split, j->where, e) < 0)
 		return -1;
 	if (strcmp(split, "train") && strcmp(split, "test"))
 		return jsonl_err(j, e, "key 'split' is '%s', not 'train' or 'test'", split);
 	s->split = !strcmp(split, "test") ? SPLIT_TEST : SPLIT_TRAIN;
 	if (read_objects(s, j, object, e) || read_target(s, j, object, e) ||
-		jsonl_string(j, object, "text", 1, &text, e) < 0)
+		json_string(object, "text", 1, &text, j->where, e) < 0)
 		return -1;
 	s->text = copy_text(j, text, e);
-	return !s->text || read_list(&s->views, &s->view_count, j, object, "views", NAME_VIEW, e) ||
-			       jsonl_name(j, object, "view", NAME_VIEW, 0, &s->view, e) ||
-			       jsonl_name(j, object, "kind", NAME_DATA, 0, &s->kind, e)
-		       ? -1
-		       : 0;
+	return -(!s->text || read_list(&s->views, &s->view_count, j, object, "views", NAME_VIEW, e) ||
+		 jsonl_name(j, object, "view", NAME_VIEW, 0, &s->view, e) ||
+		 jsonl_name(j, object, "kind", NAME_DATA, 0, &s->kind, e));
 }
 
 static int check_unique(const struct sentences *s, const long *lines, const char *path, struct err *e)
@@ -152,7 +151,7 @@ static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 		j, sizeof *s->items, read_one, sentence_free, (void **)&s->items, &s->n, &lines, e);
 
 	if (!bad && !s->n)
-		bad = err_set(e, ERR_FORMAT, "%s: holds no sentences", j->path);
+		bad = err_file(e, j->path, "holds no sentences");
 	bad = bad || check_unique(s, lines, j->path, e);
 	free(lines);
 	return bad ? -1 : 0;

@@ -2,14 +2,14 @@
 
 #include "base/mem.h"
 #include "base/number.h"
-#include "formats/arrays/safetensors.h"
+#include "formats/arrays/arrays_in.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { ARRAYS = 4, NUMBERS = 2 };
+enum { ARRAYS = 4 };
 
 /* The last one, and best_score, where something is held out and was evaluated. */
 static const char *const names[ARRAYS] = {"values", "first_moment", "second_moment", "best"};
@@ -46,66 +46,41 @@ int checkpoint_write(
 	const int has_best = t->best.values && t->best.iteration;
 	const float *arrays[ARRAYS] = {t->values, t->m, t->v, t->best.values};
 	const double losses[3] = {t->sum.bce, t->sum.contrast, t->sum.total};
-	struct st_tensor tensors[NUMBERS + ARRAYS] = {st_vector("losses", ST_F64, 3, losses)};
-	char iteration[32], best[32], since[32];
-	const struct st_meta meta[] = {{"format", "refer.checkpoint"}, {"version", "1"},
-		{"tool", "refer-train"}, {"iteration", iteration}, {"identity", of->identity},
-		{"scene", fingerprint_text(&of->origin.scene)},
-		{"encoder", fingerprint_text(&of->origin.encoder)},
-		{"best_iteration", has_best ? best : NULL}, {"evaluations_since", has_best ? since : NULL}};
-	size_t n = 1;
+	struct arrays_out out;
 
-	if (has_best)
-		tensors[n++] = st_vector("best_score", ST_F64, 1, &t->best.score);
+	arrays_out_begin(&out, path, "refer.checkpoint", "1", "refer-train", NULL, 0, e);
+	arrays_out_text(&out, "iteration", arrays_out_print(&out, "%ld", t->iteration));
+	arrays_out_text(&out, "identity", of->identity);
+	origin_put(&out, &of->origin);
+	arrays_out_put(&out, st_vector("losses", ST_F64, 3, losses));
+	if (has_best) {
+		arrays_out_text(&out, "best_iteration", arrays_out_print(&out, "%ld", t->best.iteration));
+		arrays_out_text(&out, "evaluations_since", arrays_out_print(&out, "%ld", t->best.since));
+		arrays_out_put(&out, st_vector("best_score", ST_F64, 1, &t->best.score));
+	}
 	for (int i = 0; i < ARRAYS - !has_best; i++)
-		tensors[n++] = st_vector(names[i], ST_F32, (int64_t)t->count, arrays[i]);
-	snprintf(iteration, sizeof iteration, "%ld", t->iteration);
-	snprintf(best, sizeof best, "%ld", t->best.iteration);
-	snprintf(since, sizeof since, "%ld", t->best.since);
-	return safetensors_write(path, tensors, n, meta, sizeof meta / sizeof *meta, e);
+		arrays_out_put(&out, st_vector(names[i], ST_F32, (int64_t)t->count, arrays[i]));
+	return arrays_out_end(&out);
 }
 
-static int read_array(float *to, size_t count, const struct safetensors *st, const char *name, struct err *e)
+/* Finite doubles, at most 3. */
+static void read_numbers(struct arrays_in *in, const char *name, double *to, int count)
 {
-	const struct st_tensor *tensor =
-		safetensors_need(st, name, ST_F32, 1, (int64_t[]){(int64_t)count}, e);
+	const double *from = arrays_in_place(in, name, ST_F64, count, NULL);
 
-	if (!tensor)
-		return -1;
-	memcpy(to, tensor->data, tensor->bytes);
-	return safetensors_check_finite(st, name, to, count, e);
+	for (int i = 0; i < count && !in->bad; i++)
+		if (!isfinite(to[i] = from[i]))
+			in->bad =
+				err_file(in->e, in->st->path, "tensor '%s': item %d is not finite", name, i);
 }
 
-/* A tensor of `count` finite doubles, at most 3. */
-static int read_numbers(double *to, int count, const struct safetensors *st, const char *name, struct err *e)
+/* A whole number of the metadata, as a long. */
+static long read_count(struct arrays_in *in, const char *key, long long least, long long most)
 {
-	const struct st_tensor *tensor = safetensors_need(st, name, ST_F64, 1, (int64_t[]){count}, e);
+	long long count = 0;
 
-	if (!tensor)
-		return -1;
-	memcpy(to, tensor->data, tensor->bytes);
-	for (int i = 0; i < count; i++)
-		if (!isfinite(to[i]))
-			return err_set(
-				e, ERR_FORMAT, "%s: tensor '%s': item %d is not finite", st->path, name, i);
-	return 0;
-}
-
-/* The best state, which a checkpoint has from the first evaluation on. */
-static int read_best(struct train_state *t, const struct safetensors *st, long long iteration, struct err *e)
-{
-	long long best, since;
-
-	if (!t->best.values || !safetensors_meta(st, "best_iteration"))
-		return 0;
-	if (safetensors_meta_int(st, "best_iteration", 1, iteration, &best, e) ||
-		safetensors_meta_int(st, "evaluations_since", 0, LONG_MAX, &since, e) ||
-		read_numbers(&t->best.score, 1, st, "best_score", e) ||
-		read_array(t->best.values, t->count, st, "best", e))
-		return -1;
-	t->best.iteration = (long)best;
-	t->best.since = (long)since;
-	return 0;
+	in->bad = in->bad || safetensors_meta_int(in->st, key, least, most, &count, in->e);
+	return (long)count;
 }
 
 /* That it is of this training: of this scene and encoder, which have messages of their own, with these
@@ -120,9 +95,8 @@ static int check_training(const struct safetensors *st, const struct checkpoint_
 		return -1;
 	const char *identity = safetensors_meta(st, "identity");
 	if (!identity || strcmp(identity, of->identity))
-		return err_set(e, ERR_FORMAT,
-			"%s: is of another training (its options or inputs differ); remove it or train without --resume",
-			st->path);
+		return err_file(e, st->path,
+			"is of another training (its options or inputs differ); remove it or train without --resume");
 	return 0;
 }
 
@@ -130,24 +104,29 @@ static int read_state(
 	struct train_state *t, const struct safetensors *st, const struct checkpoint_of *of, struct err *e)
 {
 	float *arrays[] = {t->values, t->m, t->v};
-	long long iteration;
 	double losses[3];
+	struct arrays_in in;
 
-	if (safetensors_need_format(st, "refer.checkpoint", 1, e) || check_training(st, of, e))
-		return -1;
-	if (safetensors_meta_int(st, "iteration", 1, LONG_MAX, &iteration, e))
-		return -1;
+	arrays_in_begin(&in, st, "refer.checkpoint", 1, e);
+	in.bad = in.bad || check_training(st, of, e);
+	const long iteration = read_count(&in, "iteration", 1, LONG_MAX);
 	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-		if (read_array(arrays[i], t->count, st, names[i], e))
-			return -1;
-	for (size_t i = 0; i < t->count; i++)
+		arrays_in_fill(&in, names[i], arrays[i], t->count);
+	for (size_t i = 0; i < t->count && !in.bad; i++)
 		if (t->v[i] < 0)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'second_moment': item %zu is negative",
-				st->path, i);
-	if (read_numbers(losses, 3, st, "losses", e) || read_best(t, st, iteration, e))
+			in.bad = err_file(e, st->path, "tensor 'second_moment': item %zu is negative", i);
+	read_numbers(&in, "losses", losses, 3);
+	/* The best state, which a checkpoint has from the first evaluation on. */
+	if (t->best.values && safetensors_meta(st, "best_iteration")) {
+		t->best.iteration = read_count(&in, "best_iteration", 1, iteration);
+		t->best.since = read_count(&in, "evaluations_since", 0, LONG_MAX);
+		read_numbers(&in, "best_score", &t->best.score, 1);
+		arrays_in_fill(&in, "best", t->best.values, t->count);
+	}
+	if (in.bad)
 		return -1;
 	t->sum = (struct step_losses){losses[0], losses[1], losses[2]};
-	t->iteration = (long)iteration;
+	t->iteration = iteration;
 	return 0;
 }
 
@@ -167,7 +146,7 @@ int checkpoint_resume(struct train_state *t, const char *path, const struct chec
 {
 	if (checkpoint_read(t, path, of, e))
 		return -1;
-	return t->iteration > most ? err_set(e, ERR_FORMAT, "%s: has %ld steps, more than the %lld asked for",
-					     path, t->iteration, most)
-				   : 0;
+	return t->iteration > most
+		       ? err_file(e, path, "has %ld steps, more than the %lld asked for", t->iteration, most)
+		       : 0;
 }

@@ -2,10 +2,10 @@
 
 #include "base/half.h"
 #include "base/number.h"
+#include "formats/arrays/arrays_in.h"
 #include "nn/linear.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Version 2 is one with components, of which at most so many are expanded at a time. */
@@ -17,17 +17,15 @@ static int check_numbers(const struct features *f, struct err *e)
 
 	for (size_t i = 0; i < f->gaussians; i++) {
 		if (!(f->reliability[i] >= 0 && f->reliability[i] <= 1))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'reliability': item %zu is not in 0 to 1",
-				path, i);
+			return err_file(e, path, "tensor 'reliability': item %zu is not in 0 to 1", i);
 		if (!(f->weight[i] >= 0 && isfinite(f->weight[i])))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'weight': item %zu is not a number from 0",
-				path, i);
+			return err_file(e, path, "tensor 'weight': item %zu is not a number from 0", i);
 		if (f->labels && f->labels[i] < -1)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'labels': item %zu is %d, below -1", path,
-				i, (int)f->labels[i]);
+			return err_file(
+				e, path, "tensor 'labels': item %zu is %d, below -1", i, (int)f->labels[i]);
 		if (f->labels && f->labels[i] > FEATURES_MAX_LABEL)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'labels': item %zu is %d, above %d", path,
-				i, (int)f->labels[i], FEATURES_MAX_LABEL);
+			return err_file(e, path, "tensor 'labels': item %zu is %d, above %d", i,
+				(int)f->labels[i], FEATURES_MAX_LABEL);
 	}
 	return 0;
 }
@@ -41,18 +39,8 @@ static int check_finite(const struct features *f, struct err *e)
 
 	for (size_t i = 0; i < count; i++)
 		if (f->is_half ? (half[i] & 0x7c00) == 0x7c00 : !isfinite(single[i]))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'features': item %zu is not finite",
-				f->file.path, i);
+			return err_file(e, f->file.path, "tensor 'features': item %zu is not finite", i);
 	return 0;
-}
-
-static int read_labels(struct features *f, struct err *e)
-{
-	const int64_t n[] = {(int64_t)f->gaussians};
-	const struct st_tensor *labels = safetensors_need(&f->file, "labels", ST_I32, 1, n, e);
-
-	f->labels = labels ? labels->data : NULL;
-	return labels ? 0 : -1;
 }
 
 /* The features that were found are components of others. */
@@ -64,22 +52,19 @@ static int read_components(struct features *f, struct err *e)
 	if (!basis)
 		return -1;
 	if (f->channels > FEATURES_MAX_COMPONENTS)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'features': %zu components, not 1 to %d",
-			f->file.path, f->channels, FEATURES_MAX_COMPONENTS);
+		return err_file(e, f->file.path, "tensor 'features': %zu components, not 1 to %d",
+			f->channels, FEATURES_MAX_COMPONENTS);
 	if (basis->shape[1] < (int64_t)f->channels || basis->shape[1] > FEATURES_MAX_CHANNELS)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'basis': %lld channels, not %zu to %d",
-			f->file.path, (long long)basis->shape[1], f->channels, FEATURES_MAX_CHANNELS);
-	const struct st_tensor *mean = safetensors_need(&f->file, "mean", ST_F32, 1, &basis->shape[1], e);
-	if (!mean)
-		return -1;
+		return err_file(e, f->file.path, "tensor 'basis': %lld channels, not %zu to %d",
+			(long long)basis->shape[1], f->channels, FEATURES_MAX_CHANNELS);
 	f->components = f->channels;
 	f->channels = (size_t)basis->shape[1];
 	f->basis = basis->data;
-	f->mean = mean->data;
-	return safetensors_check_finite(&f->file, "basis", f->basis, f->components * f->channels, e) ||
-			       safetensors_check_finite(&f->file, "mean", f->mean, f->channels, e)
-		       ? -1
-		       : 0;
+	struct arrays_in in = {&f->file, e, 0};
+	f->mean = arrays_in_place(&in, "mean", ST_F32, basis->shape[1], NULL);
+	return -(in.bad ||
+		 safetensors_check_finite(&f->file, "basis", f->basis, f->components * f->channels, e) ||
+		 safetensors_check_finite(&f->file, "mean", f->mean, f->channels, e));
 }
 
 static int read_features(struct features *f, struct err *e)
@@ -88,39 +73,33 @@ static int read_features(struct features *f, struct err *e)
 	const struct st_tensor *t = safetensors_find(&f->file, "features");
 
 	if (!t)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'features' or 'labels' is missing", f->file.path);
+		return err_file(e, f->file.path, "tensor 'features' or 'labels' is missing");
 	f->is_half = t->dtype == ST_F16;
 	t = safetensors_need(&f->file, "features", f->is_half ? ST_F16 : ST_F32, 2, shape, e);
 	if (!t)
 		return -1;
 	if (t->shape[1] < 1 || t->shape[1] > FEATURES_MAX_CHANNELS)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'features': %lld channels, not 1 to %d",
-			f->file.path, (long long)t->shape[1], FEATURES_MAX_CHANNELS);
+		return err_file(e, f->file.path, "tensor 'features': %lld channels, not 1 to %d",
+			(long long)t->shape[1], FEATURES_MAX_CHANNELS);
 	f->channels = (size_t)t->shape[1];
 	f->values = t->data;
-	return check_finite(f, e) || (safetensors_find(&f->file, "basis") && read_components(f, e)) ? -1 : 0;
+	return -(check_finite(f, e) || (safetensors_find(&f->file, "basis") && read_components(f, e)));
 }
 
 static int read_all(struct features *f, struct err *e)
 {
 	const struct safetensors *st = &f->file;
-	long long gaussians = 0;
+	const int is_labels = safetensors_find(st, "labels") != NULL;
+	struct arrays_in in;
 
-	if (safetensors_need_format(st, "refer.features", VERSION_READ, e) ||
-		safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e) ||
-		fingerprint_read(&f->scene, st, "scene", e))
-		return -1;
-	f->gaussians = (size_t)gaussians;
-	const int64_t n[] = {gaussians};
-	const struct st_tensor *reliability = safetensors_need(st, "reliability", ST_F32, 1, n, e);
-	const struct st_tensor *weight = reliability ? safetensors_need(st, "weight", ST_F32, 1, n, e) : NULL;
-	if (!weight)
-		return -1;
-	f->reliability = reliability->data;
-	f->weight = weight->data;
-	if (safetensors_find(st, "labels") ? read_labels(f, e) : read_features(f, e))
-		return -1;
-	return check_numbers(f, e);
+	arrays_in_begin(&in, st, "refer.features", VERSION_READ, e);
+	f->gaussians = arrays_in_count(&in, "gaussians");
+	in.bad = in.bad || fingerprint_read(&f->scene, st, "scene", e);
+	const int64_t n = (int64_t)f->gaussians;
+	f->reliability = arrays_in_place(&in, "reliability", ST_F32, n, NULL);
+	f->weight = arrays_in_place(&in, "weight", ST_F32, n, NULL);
+	f->labels = is_labels ? arrays_in_place(&in, "labels", ST_I32, n, NULL) : NULL;
+	return -(in.bad || (!is_labels && read_features(f, e)) || check_numbers(f, e));
 }
 
 int features_open(struct features *f, const char *path, struct err *e)
@@ -181,19 +160,21 @@ void features_floats(const struct features *f, size_t first, size_t n, float *ou
 int features_write(const struct features *f, const char *path, const char *options, struct err *e)
 {
 	const int64_t n = (int64_t)f->gaussians, c = (int64_t)f->channels, k = (int64_t)f->components;
-	const struct st_tensor tensors[] = {
-		f->labels ? st_vector("labels", ST_I32, n, f->labels)
-			  : st_matrix("features", f->is_half ? ST_F16 : ST_F32, n, k ? k : c, f->values),
-		st_vector("reliability", ST_F32, n, f->reliability),
-		st_vector("weight", ST_F32, n, f->weight), st_matrix("basis", ST_F32, k, c, f->basis),
-		st_vector("mean", ST_F32, c, f->mean)};
-	char gaussians[24], error[NUMBER_SIZE];
+	struct arrays_out out;
 
-	snprintf(gaussians, sizeof gaussians, "%lld", (long long)n);
-	const struct st_meta meta[] = {{"format", "refer.features"}, {"version", k ? "2" : "1"},
-		{"tool", "feature-lift"}, {"options", options}, {"seed", "0"}, {"gaussians", gaussians},
-		{"scene", fingerprint_text(&f->scene)}, {"error", number_text(error, f->error)}};
-	const size_t tensor_count = sizeof tensors / sizeof *tensors, meta_count = sizeof meta / sizeof *meta;
-	return safetensors_write(
-		path, tensors, k ? tensor_count : tensor_count - 2, meta, k ? meta_count : meta_count - 1, e);
+	arrays_out_begin(&out, path, "refer.features", k ? "2" : "1", "feature-lift", options, 0, e);
+	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%zu", f->gaussians));
+	arrays_out_text(&out, "scene", fingerprint_text(&f->scene));
+	arrays_out_put(&out,
+		f->labels ? st_vector("labels", ST_I32, n, f->labels)
+			  : st_matrix("features", f->is_half ? ST_F16 : ST_F32, n, k ? k : c, f->values));
+	arrays_out_put(&out, st_vector("reliability", ST_F32, n, f->reliability));
+	arrays_out_put(&out, st_vector("weight", ST_F32, n, f->weight));
+	if (k) {
+		char error[NUMBER_SIZE];
+		arrays_out_text(&out, "error", arrays_out_print(&out, "%s", number_text(error, f->error)));
+		arrays_out_put(&out, st_matrix("basis", ST_F32, k, c, f->basis));
+		arrays_out_put(&out, st_vector("mean", ST_F32, c, f->mean));
+	}
+	return arrays_out_end(&out);
 }

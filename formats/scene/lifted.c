@@ -1,125 +1,91 @@
 #include "formats/scene/lifted.h"
 
 #include "base/mem.h"
-#include "formats/arrays/metalist.h"
+#include "formats/arrays/arrays_in.h"
 #include "formats/arrays/precision.h"
 #include "formats/arrays/safetensors.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-enum { VERSION_READ = 1, SHARE_STEPS = 255, MAX_WIDTH = 65536 };
+enum { VERSION_READ = 1, SHARE_STEPS = 255 };
 
-static int read_shares(struct lifted *l, const struct safetensors *st, struct err *e)
+static void read_shares(struct lifted *l, struct arrays_in *in)
 {
-	size_t count;
+	size_t count = 0;
 
-	if (!(l->index = safetensors_copy(st, "index", ST_I32, 1, (int64_t[]){-1}, &count, e)))
-		return -1;
-	const struct st_tensor *share =
-		safetensors_need(st, "share", ST_U8, 1, (int64_t[]){(int64_t)count}, e);
-	if (!share || !(l->share = mem_alloc(count, sizeof *l->share, st->path, e)))
-		return -1;
-	for (size_t k = 0; k < count; k++) {
-		const int step = ((const uint8_t *)share->data)[k];
-		if (!step)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'share': item %zu is 0", st->path, k);
-		l->share[k] = (float)step / SHARE_STEPS;
+	l->index = arrays_in_vector(in, "index", ST_I32, -1, &count);
+	uint8_t *steps = arrays_in_vector(in, "share", ST_U8, (int64_t)count, NULL);
+	l->share = steps ? mem_alloc(count, sizeof *l->share, in->st->path, in->e) : NULL;
+	in->bad |= !l->share;
+	for (size_t k = 0; k < count && !in->bad; k++) {
+		if (!steps[k])
+			in->bad = err_file(in->e, in->st->path, "tensor 'share': item %zu is 0", k);
+		l->share[k] = (float)steps[k] / SHARE_STEPS;
 	}
-	return metalist_check_offsets("indptr", l->indptr, l->objects, (int64_t)count, "shares", st->path,
-		       e) || metalist_check_index(l->index, l->indptr, l->objects, l->gaussians, "object",
-				     st->path, e)
-		       ? -1
-		       : 0;
+	free(steps);
+	arrays_in_check_offsets(in, "indptr", l->indptr, l->objects, count, "shares");
+	arrays_in_check_index(in, l->index, l->indptr, l->objects, l->gaussians, "object");
 }
 
-static int read_objects(struct lifted *l, const struct safetensors *st, struct err *e)
+static void read_objects(struct lifted *l, struct arrays_in *in)
 {
-	if (!(l->indptr = metalist_offsets(st, "indptr", "objects", &l->objects, e)))
-		return -1;
-	const int64_t shape[] = {(int64_t)l->objects};
-	if (!(l->confidence = safetensors_copy(st, "confidence", ST_F32, 1, shape, NULL, e)))
-		return -1;
-	for (size_t o = 0; o < l->objects; o++)
+	l->indptr = arrays_in_offsets(in, "indptr", "objects", &l->objects);
+	l->confidence = arrays_in_vector(in, "confidence", ST_F32, (int64_t)l->objects, NULL);
+	for (size_t o = 0; o < l->objects && !in->bad; o++)
 		if (!(l->confidence[o] >= 0 && l->confidence[o] <= 1))
-			return err_set(e, ERR_FORMAT, "%s: tensor 'confidence': item %zu is not in 0 to 1",
-				st->path, o);
-	l->names = metalist_read(st, "names", l->objects, "objects", e);
-	return !l->names || metalist_check_names(l->names, l->objects, 0, "names", st->path, e) ||
-			       metalist_check_unique(l->names, l->objects, "names", st->path, e) ||
-			       read_shares(l, st, e)
-		       ? -1
-		       : 0;
+			in->bad = err_file(
+				in->e, in->st->path, "tensor 'confidence': item %zu is not in 0 to 1", o);
+	l->names = arrays_in_list(in, "names", l->objects, "objects");
+	arrays_in_check_names(in, l->names, l->objects, 0, "names");
+	arrays_in_check_unique(in, l->names, l->objects, "names");
+	read_shares(l, in);
 }
 
-/* Words by one of the encoder's layers, of `rows` and the width. NULL with *e. */
-static float *read_layer(
-	const struct lifted *l, const struct safetensors *st, const char *name, size_t rows, struct err *e)
+/* Words by one of the encoder's layers, of `rows` and the width. */
+static float *read_layer(const struct lifted *l, struct arrays_in *in, const char *name, size_t rows)
 {
 	const size_t width = (size_t)l->width;
-	float *to = NULL;
+	float *to = in->bad ? NULL : mem_alloc(rows, width * sizeof *to, in->st->path, in->e);
 
-	if (safetensors_need(st, name, ST_F16, 2, (int64_t[]){(int64_t)rows, l->width}, e))
-		to = mem_alloc(rows, width * sizeof *to, st->path, e);
-	if (to && precision_get(st, name, PRECISION_F16, PRECISION_ROWS, rows, width, to, e)) {
-		free(to);
-		return NULL;
-	}
+	in->bad = !to || precision_get(in->st, name, PRECISION_F16, PRECISION_ROWS, rows, width, to, in->e);
 	return to;
 }
 
-static int read_words(struct lifted *l, const struct safetensors *st, struct err *e)
+static void read_sentences(struct lifted *l, struct arrays_in *in)
 {
-	const struct st_tensor *words = safetensors_need(st, "words", ST_F16, 2, (int64_t[]){-1, -1}, e);
+	size_t words;
 
-	if (!words)
-		return -1;
-	if (words->shape[1] < 1 || words->shape[1] > MAX_WIDTH)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'words': width %lld is not in 1 to %d", st->path,
-			(long long)words->shape[1], MAX_WIDTH);
-	const size_t rows = (size_t)words->shape[0];
-	l->width = (int)words->shape[1];
-	if (!(l->words = read_layer(l, st, "words", rows, e)) ||
-		metalist_check_offsets(
-			"offsets", l->offsets, l->sentences, (int64_t)rows, "words", st->path, e))
-		return -1;
-	if (safetensors_find(st, "middle") && !(l->middle = read_layer(l, st, "middle", rows, e)))
-		return -1;
-	return 0;
-}
-
-static int read_sentences(struct lifted *l, const struct safetensors *st, struct err *e)
-{
-	if (!(l->offsets = metalist_offsets(st, "offsets", "sentences", &l->sentences, e)))
-		return -1;
-	const int64_t shape[] = {(int64_t)l->sentences};
-	if (!(l->object = safetensors_copy(st, "object", ST_I32, 1, shape, NULL, e)))
-		return -1;
-	for (size_t r = 0; r < l->sentences; r++)
+	l->offsets = arrays_in_offsets(in, "offsets", "sentences", &l->sentences);
+	l->object = arrays_in_vector(in, "object", ST_I32, (int64_t)l->sentences, NULL);
+	for (size_t r = 0; r < l->sentences && !in->bad; r++)
 		if (l->object[r] < 0 || (size_t)l->object[r] >= l->objects)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'object': item %zu is %d, of %zu objects",
-				st->path, r, l->object[r], l->objects);
-	if (read_words(l, st, e) || !(l->texts = metalist_read(st, "texts", l->sentences, "sentences", e)) ||
-		!(l->pieces = metalist_read(st, "pieces", l->sentences, "sentences", e)))
-		return -1;
-	return metalist_check_pieces(l->pieces, l->offsets, l->sentences, st->path, e);
+			in->bad = err_file(in->e, in->st->path,
+				"tensor 'object': item %zu is %d, of %zu objects", r, l->object[r],
+				l->objects);
+	l->width = arrays_in_width(in, "words", ST_F16, &words);
+	l->words = read_layer(l, in, "words", words);
+	arrays_in_check_offsets(in, "offsets", l->offsets, l->sentences, words, "words");
+	if (safetensors_find(in->st, "middle"))
+		l->middle = read_layer(l, in, "middle", words);
+	l->texts = arrays_in_list(in, "texts", l->sentences, "sentences");
+	l->pieces = arrays_in_list(in, "pieces", l->sentences, "sentences");
+	arrays_in_check_pieces(in, l->pieces, l->offsets, l->sentences);
 }
 
 int lifted_take(struct lifted *l, struct origin *origin, const struct safetensors *st, struct err *e)
 {
-	long long gaussians = 0;
+	struct arrays_in in;
 
 	*l = (struct lifted){0};
-	int bad = safetensors_need_format(st, "refer.lifted", VERSION_READ, e) ||
-		  safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e) ||
-		  origin_read(origin, st, e);
-	l->gaussians = (size_t)gaussians;
-	bad = bad || read_objects(l, st, e) || read_sentences(l, st, e);
-	if (bad)
+	arrays_in_begin(&in, st, "refer.lifted", VERSION_READ, e);
+	l->gaussians = arrays_in_count(&in, "gaussians");
+	in.bad = in.bad || origin_read(origin, st, e);
+	read_objects(l, &in);
+	read_sentences(l, &in);
+	if (in.bad)
 		lifted_free(l);
-	return bad ? -1 : 0;
+	return in.bad ? -1 : 0;
 }
 
 int lifted_read(struct lifted *l, struct origin *origin, const char *path, struct err *e)
@@ -135,82 +101,50 @@ int lifted_read(struct lifted *l, struct origin *origin, const char *path, struc
 }
 
 /* All above 0, or 0 where it may be, and at most 1. */
-static int check_parts(
-	const float *x, size_t n, int may_be_0, const char *name, const char *path, struct err *e)
+static void check_parts(struct arrays_out *out, const float *x, size_t n, int may_be_0, const char *name)
 {
-	for (size_t k = 0; k < n; k++)
+	for (size_t k = 0; k < n && !out->bad; k++)
 		if (!((x[k] > 0 || (may_be_0 && x[k] >= 0)) && x[k] <= 1))
-			return err_set(
-				e, ERR_CHECK, "%s: tensor '%s': item %zu is %g", path, name, k, (double)x[k]);
-	return 0;
+			out->bad = err_set(out->e, ERR_CHECK, "%s: tensor '%s': item %zu is %g", out->path,
+				name, k, (double)x[k]);
 }
 
 /* Shares in whole steps; the least is one, as a Gaussian with none is not listed. */
-static uint8_t *pack_shares(const struct lifted *l, const char *path, struct err *e)
+static void put_shares(struct arrays_out *out, const struct lifted *l)
 {
 	const size_t count = (size_t)l->indptr[l->objects];
-	uint8_t *steps = mem_alloc(count, 1, path, e);
+	uint8_t *steps = arrays_out_memory(out, count, 1);
 
 	for (size_t k = 0; k < count && steps; k++) {
 		const long step = lrintf(l->share[k] * SHARE_STEPS);
 		steps[k] = (uint8_t)(step < 1 ? 1 : step);
 	}
-	return steps;
-}
-
-static int write_all(const struct lifted *l, const struct origin *origin, const uint8_t *share,
-	const struct precision_matrix *words, const struct precision_matrix *middle, const char *path,
-	const char *options, struct err *e)
-{
-	const int64_t objects = (int64_t)l->objects, sentences = (int64_t)l->sentences;
-	const int64_t count = l->indptr[objects];
-	struct st_tensor tensors[8] = {st_vector("indptr", ST_I64, objects + 1, l->indptr),
-		st_vector("offsets", ST_I64, sentences + 1, l->offsets),
-		st_vector("index", ST_I32, count, l->index),
-		st_vector("object", ST_I32, sentences, l->object),
-		st_vector("confidence", ST_F32, objects, l->confidence), words->tensors[0],
-		st_vector("share", ST_U8, count, share)};
-	const size_t used = l->middle ? 8 : 7;
-	char *names = metalist_print(l->names, l->objects), *texts = metalist_print(l->texts, l->sentences);
-	char *pieces = metalist_print(l->pieces, l->sentences), gaussians[32];
-	int bad;
-
-	if (l->middle)
-		tensors[7] = middle->tensors[0];
-	snprintf(gaussians, sizeof gaussians, "%zu", l->gaussians);
-	if (names && texts && pieces) {
-		const struct st_meta meta[] = {{"format", "refer.lifted"}, {"version", "1"},
-			{"tool", "refer-lift"}, {"options", options}, {"seed", "0"}, {"gaussians", gaussians},
-			{"scene", fingerprint_text(&origin->scene)},
-			{"encoder", fingerprint_text(&origin->encoder)}, {"names", names}, {"texts", texts},
-			{"pieces", pieces}};
-		bad = safetensors_write(path, tensors, used, meta, sizeof meta / sizeof *meta, e);
-	} else {
-		bad = err_set(e, ERR_SYSTEM, "%s: out of memory", path);
-	}
-	free(names);
-	free(texts);
-	free(pieces);
-	return bad;
+	arrays_out_put(out, st_vector("share", ST_U8, (int64_t)count, steps));
 }
 
 int lifted_write(const struct lifted *l, const struct origin *origin, const char *path, const char *options,
 	struct err *e)
 {
-	struct precision_matrix words = {0}, middle = {0};
-	uint8_t *share = NULL;
-	int bad = check_parts(l->confidence, l->objects, 1, "confidence", path, e) ||
-		  check_parts(l->share, (size_t)l->indptr[l->objects], 0, "share", path, e) ||
-		  !(share = pack_shares(l, path, e)) ||
-		  precision_put(&words, "words", PRECISION_F16, PRECISION_ROWS,
-			  (size_t)l->offsets[l->sentences], (size_t)l->width, l->words, path, e) ||
-		  (l->middle &&
-			  precision_put(&middle, "middle", PRECISION_F16, PRECISION_ROWS,
-				  (size_t)l->offsets[l->sentences], (size_t)l->width, l->middle, path, e)) ||
-		  write_all(l, origin, share, &words, &middle, path, options, e);
+	const int64_t objects = (int64_t)l->objects, sentences = (int64_t)l->sentences;
+	const size_t rows = (size_t)l->offsets[sentences], width = (size_t)l->width;
+	struct arrays_out out;
 
-	precision_free(&words);
-	precision_free(&middle);
-	free(share);
-	return bad ? -1 : 0;
+	arrays_out_begin(&out, path, "refer.lifted", "1", "refer-lift", options, 0, e);
+	check_parts(&out, l->confidence, l->objects, 1, "confidence");
+	check_parts(&out, l->share, (size_t)l->indptr[objects], 0, "share");
+	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%zu", l->gaussians));
+	origin_put(&out, origin);
+	arrays_out_list(&out, "names", l->names, l->objects);
+	arrays_out_list(&out, "texts", l->texts, l->sentences);
+	arrays_out_list(&out, "pieces", l->pieces, l->sentences);
+	arrays_out_put(&out, st_vector("indptr", ST_I64, objects + 1, l->indptr));
+	arrays_out_put(&out, st_vector("offsets", ST_I64, sentences + 1, l->offsets));
+	arrays_out_put(&out, st_vector("index", ST_I32, l->indptr[objects], l->index));
+	arrays_out_put(&out, st_vector("object", ST_I32, sentences, l->object));
+	arrays_out_put(&out, st_vector("confidence", ST_F32, objects, l->confidence));
+	precision_put(&out, "words", PRECISION_F16, PRECISION_ROWS, rows, width, l->words);
+	put_shares(&out, l);
+	if (l->middle)
+		precision_put(&out, "middle", PRECISION_F16, PRECISION_ROWS, rows, width, l->middle);
+	return arrays_out_end(&out);
 }

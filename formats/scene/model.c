@@ -1,10 +1,9 @@
 #include "formats/scene/model.h"
 
 #include "base/mem.h"
-#include "formats/arrays/safetensors.h"
+#include "formats/arrays/arrays_in.h"
 #include "mask/bits.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,124 +20,100 @@ void model_free(struct model *m)
 	*m = (struct model){0};
 }
 
-/* A metadata value that `parse` knows, or an error that names the key. */
-static int read_choice(
-	const struct safetensors *st, const char *key, int (*parse)(const char *), int *value, struct err *e)
+/* A metadata value that `parse` knows. */
+static int read_choice(struct arrays_in *in, const char *key, int (*parse)(const char *))
 {
-	const char *text = safetensors_meta(st, key);
+	const char *text = safetensors_meta(in->st, key);
+	const int value = text ? parse(text) : -1;
 
-	*value = text ? parse(text) : -1;
-	if (*value < 0)
-		return err_set(e, ERR_FORMAT, "%s: metadata '%s' is '%s'", st->path, key, text ? text : "");
-	return 0;
+	if (value < 0 && !in->bad)
+		in->bad = err_file(in->e, in->st->path, "metadata '%s' is '%s'", key, text ? text : "");
+	return value;
 }
 
-static int read_bounds(struct model *m, const struct safetensors *st, struct err *e)
+static void read_bounds(struct model *m, struct arrays_in *in)
 {
-	const char *text = safetensors_meta(st, "bounds");
-	int end = 0;
+	const char *text = safetensors_meta(in->st, "bounds");
+	int end = 0, is_fine = 1;
 
+	if (in->bad)
+		return;
 	if (!text ||
 		sscanf(text, "[[%lf,%lf,%lf],[%lf,%lf,%lf]]%n", &m->low[0], &m->low[1], &m->low[2],
 			&m->high[0], &m->high[1], &m->high[2], &end) != 6 ||
-		!end || text[end])
-		return err_set(e, ERR_FORMAT, "%s: metadata 'bounds' is not two corners", st->path);
+		!end || text[end]) {
+		in->bad = err_file(in->e, in->st->path, "metadata 'bounds' is not two corners");
+		return;
+	}
 	for (int k = 0; k < 3; k++)
-		if (!isfinite(m->low[k]) || !isfinite(m->high[k]) || !(m->low[k] < m->high[k]))
-			return err_set(e, ERR_FORMAT, "%s: metadata 'bounds' is not low < high", st->path);
-	return 0;
+		is_fine &= isfinite(m->low[k]) && isfinite(m->high[k]) && m->low[k] < m->high[k];
+	if (!is_fine)
+		in->bad = err_file(in->e, in->st->path, "metadata 'bounds' is not low < high");
 }
 
 /* The Gaussians of the scene that have a row of features each. */
-static int read_ids(struct model *m, const struct safetensors *st, struct err *e)
+static void read_ids(struct model *m, struct arrays_in *in)
 {
-	if (!(m->ids = safetensors_copy(st, "ids", ST_I32, 1, (int64_t[]){-1}, &m->n, e)))
-		return -1;
+	m->ids = arrays_in_vector(in, "ids", ST_I32, -1, &m->n);
 	m->learning = m->n;
-	for (size_t i = 0; i < m->n; i++)
+	for (size_t i = 0; i < m->n && !in->bad; i++)
 		if (m->ids[i] < 0 || (size_t)m->ids[i] >= m->scene_gaussians ||
 			(i && m->ids[i] <= m->ids[i - 1]))
-			return err_set(e, ERR_FORMAT,
-				"%s: tensor 'ids': item %zu does not rise within 0 to %lld", st->path, i,
+			in->bad = err_file(in->e, in->st->path,
+				"tensor 'ids': item %zu does not rise within 0 to %lld", i,
 				(long long)m->scene_gaussians - 1);
-	return 0;
 }
 
-static int read_root(struct octree *t, const struct safetensors *st, struct err *e)
+static void read_root(struct octree *t, struct arrays_in *in)
 {
-	const char *text = safetensors_meta(st, "root");
+	const char *text = safetensors_meta(in->st, "root");
 	int end = 0;
 
+	if (in->bad)
+		return;
 	if (!text ||
 		sscanf(text, "[[%lf,%lf,%lf],%lf]%n", &t->low[0], &t->low[1], &t->low[2], &t->edge, &end) !=
 			4 ||
 		!end || text[end])
-		return err_set(e, ERR_FORMAT, "%s: metadata 'root' is not a corner and an edge", st->path);
-	if (!isfinite(t->low[0]) || !isfinite(t->low[1]) || !isfinite(t->low[2]) || !isfinite(t->edge) ||
-		!(t->edge > 0))
-		return err_set(
-			e, ERR_FORMAT, "%s: metadata 'root' is not finite with an edge above 0", st->path);
-	return 0;
+		in->bad = err_file(in->e, in->st->path, "metadata 'root' is not a corner and an edge");
+	else if (!isfinite(t->low[0]) || !isfinite(t->low[1]) || !isfinite(t->low[2]) || !isfinite(t->edge) ||
+		 !(t->edge > 0))
+		in->bad = err_file(in->e, in->st->path, "metadata 'root' is not finite with an edge above 0");
 }
 
 /* The Gaussians that have a row, of those in the leaves: a bit of each of the scene's. Before version 3 there
  * were none, and all in a leaf had its row. */
-static int read_learning(struct model *m, const struct safetensors *st, struct err *e)
+static void read_learning(struct model *m, struct arrays_in *in)
 {
 	const size_t n = m->scene_gaussians;
-	const int64_t bytes[] = {(int64_t)bits_bytes(n)};
+	const uint8_t *bits = arrays_in_place(in, "learning", ST_U8, (int64_t)bits_bytes(n), NULL);
 
-	if (!safetensors_find(st, "learning"))
-		return 0;
-	const struct st_tensor *t = safetensors_need(st, "learning", ST_U8, 1, bytes, e);
-	if (!t || !(m->ids = mem_alloc(n, sizeof *m->ids, st->path, e)))
-		return -1;
-	const uint8_t *bits = t->data;
-	for (size_t i = 0; i < 8 * bits_bytes(n); i++)
-		if (bits[i / 8] >> i % 8 & 1) {
-			if (i >= n)
-				return err_set(e, ERR_FORMAT,
-					"%s: tensor 'learning': bit %zu is set, of %zu Gaussians", st->path,
-					i, n);
+	m->ids = bits ? mem_alloc(n, sizeof *m->ids, in->st->path, in->e) : NULL;
+	in->bad |= !m->ids;
+	for (size_t i = 0; i < 8 * bits_bytes(n) && !in->bad; i++) {
+		if (!(bits[i / 8] >> i % 8 & 1))
+			continue;
+		if (i < n)
 			m->ids[m->learning++] = (int32_t)i;
-		}
-	return 0;
+		else
+			in->bad = err_file(in->e, in->st->path,
+				"tensor 'learning': bit %zu is set, of %zu Gaussians", i, n);
+	}
 }
 
 /* The leaves whose Gaussians share a row of features. */
-static int read_leaves(struct model *m, const struct safetensors *st, struct err *e)
+static void read_leaves(struct model *m, struct arrays_in *in)
 {
-	size_t bad;
+	size_t wrong;
 
-	if (!(m->octree.codes = safetensors_copy(st, "leaves", ST_I64, 1, (int64_t[]){-1}, &m->n, e)) ||
-		read_root(&m->octree, st, e))
-		return -1;
+	m->octree.codes = arrays_in_vector(in, "leaves", ST_I64, -1, &m->n);
 	m->octree.n = m->n;
-	if (octree_check(&m->octree, &bad))
-		return err_set(e, ERR_FORMAT,
-			"%s: tensor 'leaves': item %zu is not a leaf after the one before", st->path, bad);
-	return read_learning(m, st, e);
-}
-
-static int read_rows(struct model *m, const struct safetensors *st, struct err *e)
-{
-	long long scene;
-
-	if (safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &scene, e))
-		return -1;
-	m->scene_gaussians = (size_t)scene;
-	m->has_leaves = safetensors_find(st, "leaves") != NULL;
-	return m->has_leaves ? read_leaves(m, st, e) : read_ids(m, st, e);
-}
-
-static int read_features(struct model *m, const struct safetensors *st, struct err *e)
-{
-	const size_t width = (size_t)m->layout.feature_width;
-
-	m->features = mem_alloc(m->n, sizeof(float) * width, st->path, e);
-	return m->features ? precision_get(st, "features", m->precision, PRECISION_COLUMNS, m->n, width,
-				     m->features, e)
-			   : -1;
+	read_root(&m->octree, in);
+	if (!in->bad && octree_check(&m->octree, &wrong))
+		in->bad = err_file(in->e, in->st->path,
+			"tensor 'leaves': item %zu is not a leaf after the one before", wrong);
+	if (safetensors_find(in->st, "learning"))
+		read_learning(m, in);
 }
 
 /* Vectors are few numbers, and exact whatever the precision. */
@@ -147,77 +122,63 @@ static int is_vector(int tensor)
 	return tensor % 2 || tensor >= NORM_WEIGHT;
 }
 
-static int read_parameters(struct model *m, const struct safetensors *st, struct err *e)
+static void read_parameters(struct model *m, struct arrays_in *in)
 {
-	m->parameters = mem_alloc(m->layout.count, sizeof(float), st->path, e);
-	if (!m->parameters)
-		return -1;
-	for (int t = 0; t < REFER_TENSORS; t++) {
-		const int rows = m->layout.tensors[t].rows, columns = m->layout.tensors[t].columns;
+	m->parameters = in->bad ? NULL : mem_alloc(m->layout.count, sizeof(float), in->st->path, in->e);
+	in->bad |= !m->parameters;
+	for (int t = 0; t < REFER_TENSORS && !in->bad; t++) {
+		const size_t rows = (size_t)m->layout.tensors[t].rows,
+			     columns = (size_t)m->layout.tensors[t].columns;
 		const char *name = m->layout.tensors[t].name;
 		float *to = m->parameters + m->layout.tensors[t].offset;
-		if (!rows)
-			continue;
-		if (!is_vector(t)) {
-			if (precision_get(st, name, m->precision, PRECISION_ROWS, (size_t)rows,
-				    (size_t)columns, to, e))
-				return -1;
-			continue;
+		if (rows && !is_vector(t)) {
+			in->bad = precision_get(
+				in->st, name, m->precision, PRECISION_ROWS, rows, columns, to, in->e);
+		} else if (rows) {
+			arrays_in_fill(in, name, to, rows);
 		}
-		const struct st_tensor *tensor = safetensors_need(st, name, ST_F32, 1, (int64_t[]){rows}, e);
-		if (!tensor)
-			return -1;
-		memcpy(to, tensor->data, tensor->bytes);
-		if (safetensors_check_finite(st, name, to, (size_t)rows, e))
-			return -1;
 	}
-	return 0;
 }
 
-/* Version 1 had single precision only, and no word of it. */
-static int read_precision(struct model *m, const struct safetensors *st, struct err *e)
+/* What the first layer of a network takes, which all other shapes follow from: 1 to `most` columns. */
+static int read_width(const struct model *m, struct arrays_in *in, const char *name, int rows, int most)
 {
-	int precision = PRECISION_F32;
-
-	if (safetensors_meta(st, "precision") && read_choice(st, "precision", precision_parse, &precision, e))
-		return -1;
-	m->precision = (enum precision)precision;
-	return 0;
-}
-
-/* What the first layer of a network takes, which all other shapes follow from: 1 to `most` columns; -1 with
- * *e. */
-static int read_width(const struct model *m, const struct safetensors *st, const char *name, int rows,
-	int most, struct err *e)
-{
+	const int64_t shape[] = {rows, -1};
 	const struct st_tensor *first =
-		safetensors_need(st, name, precision_dtype(m->precision), 2, (int64_t[]){rows, -1}, e);
+		in->bad ? NULL
+			: safetensors_need(in->st, name, precision_dtype(m->precision), 2, shape, in->e);
 
-	if (!first)
-		return -1;
-	if (first->shape[1] < 1 || first->shape[1] > most)
-		return err_set(e, ERR_FORMAT, "%s: tensor '%s': %lld columns, expected 1 to %d", st->path,
-			name, (long long)first->shape[1], most);
-	return (int)first->shape[1];
+	in->bad |= !first;
+	if (first && (first->shape[1] < 1 || first->shape[1] > most))
+		in->bad = err_file(in->e, in->st->path, "tensor '%s': %lld columns, expected 1 to %d", name,
+			(long long)first->shape[1], most);
+	return in->bad ? 0 : (int)first->shape[1];
 }
 
 static int read_all(struct model *m, const struct safetensors *st, struct err *e)
 {
-	int interaction, similarity, text, feature;
+	struct arrays_in in;
 
-	if (safetensors_need_format(st, "refer.model", VERSION_READ, e) ||
-		read_choice(st, "interaction", refer_interaction_parse, &interaction, e) ||
-		read_choice(st, "similarity", refer_similarity_parse, &similarity, e) ||
-		read_precision(m, st, e) ||
-		(text = read_width(m, st, "text.0.weight", REFER_T1, 65536, e)) < 0 ||
-		(feature = read_width(m, st, "feature.0.weight", REFER_XH, REFER_MAX_X, e)) < 0)
+	arrays_in_begin(&in, st, "refer.model", VERSION_READ, e);
+	const int interaction = read_choice(&in, "interaction", refer_interaction_parse);
+	m->similarity = (enum refer_similarity)read_choice(&in, "similarity", refer_similarity_parse);
+	/* Version 1 had single precision only, and no word of it. */
+	if (safetensors_meta(st, "precision"))
+		m->precision = (enum precision)read_choice(&in, "precision", precision_parse);
+	const int text = read_width(m, &in, "text.0.weight", REFER_T1, 65536),
+		  feature = read_width(m, &in, "feature.0.weight", REFER_XH, REFER_MAX_X);
+	if (in.bad || origin_read(&m->origin, st, e))
 		return -1;
-	m->similarity = (enum refer_similarity)similarity;
 	refer_layout_init(&m->layout, (enum refer_interaction)interaction, text, feature);
-	return origin_read(&m->origin, st, e) || read_bounds(m, st, e) || read_rows(m, st, e) ||
-			       read_features(m, st, e) || read_parameters(m, st, e)
-		       ? -1
-		       : 0;
+	read_bounds(m, &in);
+	m->scene_gaussians = arrays_in_count(&in, "gaussians");
+	m->has_leaves = safetensors_find(st, "leaves") != NULL;
+	(m->has_leaves ? read_leaves : read_ids)(m, &in);
+	m->features = in.bad ? NULL : mem_alloc(m->n, (size_t)feature * sizeof *m->features, st->path, e);
+	in.bad = !m->features || precision_get(st, "features", m->precision, PRECISION_COLUMNS, m->n,
+					 (size_t)feature, m->features, e);
+	read_parameters(m, &in);
+	return in.bad ? -1 : 0;
 }
 
 int model_take(struct model *m, const struct safetensors *st, struct err *e)
@@ -248,97 +209,57 @@ int model_rows(const struct model *m, const float *means, struct rows *rows, str
 		       : rows_of_ids(rows, m->ids, m->n, m->scene_gaussians, e);
 }
 
-/* The tensors of a model, while they are written. */
-struct parts {
-	struct st_tensor tensors[2 + 3 * (1 + REFER_TENSORS)];
-	size_t n;
-	uint8_t *learning; /* bits */
-	struct precision_matrix features, weights[REFER_TENSORS];
-};
-
-static void add_matrix(struct parts *p, const struct precision_matrix *m)
-{
-	for (int i = 0; i < m->count; i++)
-		p->tensors[p->n++] = m->tensors[i];
-}
-
-static int add_parameters(struct parts *p, const struct model *m, const char *path, struct err *e)
-{
-	for (int t = 0; t < REFER_TENSORS; t++) {
-		const int rows = m->layout.tensors[t].rows, columns = m->layout.tensors[t].columns;
-		const char *name = m->layout.tensors[t].name;
-		const float *from = m->parameters + m->layout.tensors[t].offset;
-		if (!rows)
-			continue;
-		if (!is_vector(t)) {
-			if (precision_put(&p->weights[t], name, m->precision, PRECISION_ROWS, (size_t)rows,
-				    (size_t)columns, from, path, e))
-				return -1;
-			add_matrix(p, &p->weights[t]);
-			continue;
-		}
-		if (precision_check(from, (size_t)rows, FLT_MAX, path, name, e))
-			return -1;
-		p->tensors[p->n++] = st_vector(name, ST_F32, rows, from);
-	}
-	return 0;
-}
-
 /* Which Gaussians have a row, where it is the leaf's that they lie in. */
-static int add_learning(struct parts *p, const struct model *m, const char *path, struct err *e)
+static void put_learning(struct arrays_out *out, const struct model *m)
 {
 	const size_t bytes = bits_bytes(m->scene_gaussians);
+	uint8_t *bits = arrays_out_memory(out, bytes, 1);
 
-	if (!m->has_leaves || !m->ids)
-		return 0;
-	p->learning = mem_zalloc(bytes, 1, path, e);
-	if (!p->learning)
-		return -1;
-	for (size_t i = 0; i < m->learning; i++)
-		p->learning[m->ids[i] / 8] |= (uint8_t)(1 << m->ids[i] % 8);
-	p->tensors[p->n++] = st_vector("learning", ST_U8, (int64_t)bytes, p->learning);
-	return 0;
+	if (bits)
+		memset(bits, 0, bytes);
+	for (size_t i = 0; i < m->learning && bits; i++)
+		bits[m->ids[i] / 8] |= (uint8_t)(1 << m->ids[i] % 8);
+	arrays_out_put(out, st_vector("learning", ST_U8, (int64_t)bytes, bits));
 }
 
-static int add_tensors(struct parts *p, const struct model *m, const char *path, struct err *e)
+static void put_tensors(struct arrays_out *out, const struct model *m)
 {
-	p->tensors[p->n++] = m->has_leaves ? st_vector("leaves", ST_I64, (int64_t)m->n, m->octree.codes)
-					   : st_vector("ids", ST_I32, (int64_t)m->n, m->ids);
-	if (add_learning(p, m, path, e) ||
-		precision_put(&p->features, "features", m->precision, PRECISION_COLUMNS, m->n,
-			(size_t)m->layout.feature_width, m->features, path, e))
-		return -1;
-	add_matrix(p, &p->features);
-	return add_parameters(p, m, path, e);
+	arrays_out_put(out, m->has_leaves ? st_vector("leaves", ST_I64, (int64_t)m->n, m->octree.codes)
+					  : st_vector("ids", ST_I32, (int64_t)m->n, m->ids));
+	if (m->has_leaves && m->ids)
+		put_learning(out, m);
+	precision_put(out, "features", m->precision, PRECISION_COLUMNS, m->n, (size_t)m->layout.feature_width,
+		m->features);
+	for (int t = 0; t < REFER_TENSORS; t++) {
+		const size_t rows = (size_t)m->layout.tensors[t].rows,
+			     columns = (size_t)m->layout.tensors[t].columns;
+		const float *from = m->parameters + m->layout.tensors[t].offset;
+		if (rows && is_vector(t))
+			precision_put_vector(out, m->layout.tensors[t].name, rows, from);
+		else if (rows)
+			precision_put(out, m->layout.tensors[t].name, m->precision, PRECISION_ROWS, rows,
+				columns, from);
+	}
 }
 
 int model_write(const struct model *m, const char *path, const char *options, long long seed, struct err *e)
 {
-	struct parts *p = mem_zalloc(1, sizeof *p, path, e);
-	char bounds[256], root[128], gaussians[32], seed_text[32];
+	const double *low = m->low, *high = m->high, *root = m->octree.low;
+	struct arrays_out out;
 
-	if (!p)
-		return -1;
-	snprintf(bounds, sizeof bounds, "[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]]", m->low[0], m->low[1],
-		m->low[2], m->high[0], m->high[1], m->high[2]);
-	snprintf(root, sizeof root, "[[%.17g,%.17g,%.17g],%.17g]", m->octree.low[0], m->octree.low[1],
-		m->octree.low[2], m->octree.edge);
-	snprintf(gaussians, sizeof gaussians, "%zu", m->scene_gaussians);
-	snprintf(seed_text, sizeof seed_text, "%lld", seed);
-	const struct st_meta meta[] = {{"format", "refer.model"}, {"version", "3"}, {"tool", "refer-train"},
-		{"options", options}, {"seed", seed_text},
-		{"interaction", refer_interaction_name(m->layout.interaction)},
-		{"similarity", refer_similarity_name(m->similarity)},
-		{"precision", precision_name(m->precision)}, {"gaussians", gaussians},
-		{"scene", fingerprint_text(&m->origin.scene)},
-		{"encoder", fingerprint_text(&m->origin.encoder)}, {"bounds", bounds},
-		{"root", m->has_leaves ? root : NULL}};
-	int bad = add_tensors(p, m, path, e) ||
-		  safetensors_write(path, p->tensors, p->n, meta, sizeof meta / sizeof *meta, e);
-	precision_free(&p->features);
-	for (int t = 0; t < REFER_TENSORS; t++)
-		precision_free(&p->weights[t]);
-	free(p->learning);
-	free(p);
-	return bad ? -1 : 0;
+	arrays_out_begin(&out, path, "refer.model", "3", "refer-train", options, seed, e);
+	arrays_out_text(&out, "interaction", refer_interaction_name(m->layout.interaction));
+	arrays_out_text(&out, "similarity", refer_similarity_name(m->similarity));
+	arrays_out_text(&out, "precision", precision_name(m->precision));
+	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%zu", m->scene_gaussians));
+	origin_put(&out, &m->origin);
+	arrays_out_text(&out, "bounds",
+		arrays_out_print(&out, "[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]]", low[0], low[1], low[2],
+			high[0], high[1], high[2]));
+	if (m->has_leaves)
+		arrays_out_text(&out, "root",
+			arrays_out_print(&out, "[[%.17g,%.17g,%.17g],%.17g]", root[0], root[1], root[2],
+				m->octree.edge));
+	put_tensors(&out, m);
+	return arrays_out_end(&out);
 }

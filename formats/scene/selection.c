@@ -1,9 +1,10 @@
 #include "formats/scene/selection.h"
 
 #include "base/mem.h"
+#include "formats/arrays/arrays_in.h"
+#include "formats/arrays/arrays_out.h"
 #include "formats/arrays/metalist.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,38 +18,25 @@ void selection_free(struct selection *s)
 	*s = (struct selection){0};
 }
 
-static int read_tensors(struct selection *s, const struct safetensors *st, struct err *e)
-{
-	size_t n, items;
-
-	if (!(s->indptr = metalist_offsets(st, "indptr", "sentences", &n, e)) ||
-		!(s->index = safetensors_copy(st, "index", ST_I32, 1, (int64_t[]){-1}, &items, e)))
-		return -1;
-	s->refs = metalist_read(st, "refs", n, "sentences", e);
-	s->n = s->refs ? n : 0;
-	return !s->refs || metalist_check_names(s->refs, n, 0, "refs", st->path, e) ||
-			       metalist_check_unique(s->refs, n, "refs", st->path, e) ||
-			       metalist_check_offsets(
-				       "indptr", s->indptr, n, (int64_t)items, "items", st->path, e) ||
-			       metalist_check_index(
-				       s->index, s->indptr, n, s->gaussians, "sentence", st->path, e)
-		       ? -1
-		       : 0;
-}
-
 int selection_take(struct selection *s, const struct safetensors *st, struct err *e)
 {
-	long long gaussians = 0;
+	struct arrays_in in;
+	size_t items;
 
 	*s = (struct selection){0};
-	int bad = safetensors_need_format(st, "refer.selection", VERSION_READ, e) ||
-		  safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e) ||
-		  fingerprint_read(&s->scene, st, "scene", e);
-	s->gaussians = (size_t)gaussians;
-	bad = bad || read_tensors(s, st, e);
-	if (bad)
+	arrays_in_begin(&in, st, "refer.selection", VERSION_READ, e);
+	s->gaussians = arrays_in_count(&in, "gaussians");
+	in.bad = in.bad || fingerprint_read(&s->scene, st, "scene", e);
+	s->indptr = arrays_in_offsets(&in, "indptr", "sentences", &s->n);
+	s->index = arrays_in_vector(&in, "index", ST_I32, -1, &items);
+	s->refs = arrays_in_list(&in, "refs", s->n, "sentences");
+	arrays_in_check_names(&in, s->refs, s->n, 0, "refs");
+	arrays_in_check_unique(&in, s->refs, s->n, "refs");
+	arrays_in_check_offsets(&in, "indptr", s->indptr, s->n, items, "items");
+	arrays_in_check_index(&in, s->index, s->indptr, s->n, s->gaussians, "sentence");
+	if (in.bad)
 		selection_free(s);
-	return bad ? -1 : 0;
+	return in.bad ? -1 : 0;
 }
 
 int selection_read(struct selection *s, const char *path, struct err *e)
@@ -66,17 +54,13 @@ int selection_read(struct selection *s, const char *path, struct err *e)
 int selection_write(const struct selection *s, const char *path, const char *options, struct err *e)
 {
 	const int64_t n = (int64_t)s->n;
-	const struct st_tensor tensors[] = {st_vector("indptr", ST_I64, n + 1, s->indptr),
-		st_vector("index", ST_I32, s->indptr[n], s->index)};
-	char *refs = metalist_print(s->refs, s->n), gaussians[24];
+	struct arrays_out out;
 
-	if (!refs)
-		return err_set(e, ERR_SYSTEM, "%s: out of memory", path);
-	snprintf(gaussians, sizeof gaussians, "%zu", s->gaussians);
-	const struct st_meta meta[] = {{"format", "refer.selection"}, {"version", "1"},
-		{"tool", "feature-query"}, {"options", options}, {"seed", "0"}, {"gaussians", gaussians},
-		{"scene", fingerprint_text(&s->scene)}, {"refs", refs}};
-	const int bad = safetensors_write(path, tensors, 2, meta, sizeof meta / sizeof *meta, e);
-	free(refs);
-	return bad;
+	arrays_out_begin(&out, path, "refer.selection", "1", "feature-query", options, 0, e);
+	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%zu", s->gaussians));
+	arrays_out_text(&out, "scene", fingerprint_text(&s->scene));
+	arrays_out_list(&out, "refs", s->refs, s->n);
+	arrays_out_put(&out, st_vector("indptr", ST_I64, n + 1, s->indptr));
+	arrays_out_put(&out, st_vector("index", ST_I32, s->indptr[n], s->index));
+	return arrays_out_end(&out);
 }

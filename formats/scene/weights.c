@@ -2,6 +2,7 @@
 
 #include "base/half.h"
 #include "base/mem.h"
+#include "formats/arrays/arrays_in.h"
 #include "splat/weights_pack.h"
 
 #include <math.h>
@@ -17,15 +18,12 @@ static int check_indptr(const struct weights *w, int64_t pixels, int64_t nnz, st
 	const char *path = w->file.path;
 
 	if (w->indptr[0])
-		return err_set(e, ERR_FORMAT, "%s: tensor 'indptr': begins with %lld, not 0", path,
-			(long long)w->indptr[0]);
+		return err_file(e, path, "tensor 'indptr': begins with %lld, not 0", (long long)w->indptr[0]);
 	for (int64_t p = 0; p < pixels; p++)
 		if (w->indptr[p + 1] < w->indptr[p])
-			return err_set(e, ERR_FORMAT, "%s: tensor 'indptr': falls after pixel %lld", path,
-				(long long)p);
+			return err_file(e, path, "tensor 'indptr': falls after pixel %lld", (long long)p);
 	if (w->indptr[pixels] != nnz)
-		return err_set(e, ERR_FORMAT,
-			"%s: tensor 'indptr': ends with %lld, but there are %lld weights", path,
+		return err_file(e, path, "tensor 'indptr': ends with %lld, but there are %lld weights",
 			(long long)w->indptr[pixels], (long long)nnz);
 	return 0;
 }
@@ -69,15 +67,14 @@ static int check_values(const struct weights *w, int64_t pixels, int64_t nnz, st
 	if (!all_within(w->index, nnz, (uint32_t)w->gaussians - 1))
 		for (int64_t i = 0; i < nnz; i++)
 			if (w->index[i] < 0 || w->index[i] >= w->gaussians)
-				return err_set(e, ERR_FORMAT,
-					"%s: tensor 'index': entry %lld is %d, not in 0 to %lld", path,
+				return err_file(e, path, "tensor 'index': entry %lld is %d, not in 0 to %lld",
 					(long long)i, (int)w->index[i], (long long)w->gaussians - 1);
 	if ((at = find_not_share(w->weight, nnz)) >= 0)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'weight': entry %lld is %g, not in 0 to 1", path,
-			(long long)at, (double)w->weight[at]);
+		return err_file(e, path, "tensor 'weight': entry %lld is %g, not in 0 to 1", (long long)at,
+			(double)w->weight[at]);
 	if ((at = find_not_share(w->dropped, pixels)) >= 0)
-		return err_set(e, ERR_FORMAT, "%s: tensor 'dropped': pixel %lld has %g, not in 0 to 1", path,
-			(long long)at, (double)w->dropped[at]);
+		return err_file(e, path, "tensor 'dropped': pixel %lld has %g, not in 0 to 1", (long long)at,
+			(double)w->dropped[at]);
 	return 0;
 }
 
@@ -126,73 +123,59 @@ static int unpack(struct weights *w, const struct weights_pack *pack, int as_til
 }
 
 /* Packed weights become arrays of our own. */
-static int read_packed(struct weights *w, int64_t pixels, int as_tiles, struct err *e)
+static int read_packed(struct weights *w, struct arrays_in *in, int64_t pixels, int as_tiles)
 {
-	const int64_t any = -1, streams = WEIGHTS_STREAMS;
-	const struct st_tensor *sizes = safetensors_need(&w->file, "sizes", ST_I64, 1, &streams, e),
-			       *dropped = sizes ? safetensors_need(&w->file, "dropped", ST_U8, 1, &pixels, e)
-						: NULL;
-	const char *version = safetensors_meta(&w->file, "version");
+	const int64_t *sizes = arrays_in_place(in, "sizes", ST_I64, WEIGHTS_STREAMS, NULL);
+	const uint8_t *dropped = arrays_in_place(in, "dropped", ST_U8, pixels, NULL);
+	const char *version = safetensors_meta(in->st, "version");
 	struct weights_pack pack = {0};
 
-	if (strcmp(version, "3"))
-		return err_set(e, ERR_FORMAT,
-			"%s: refer.weights, packed, version %s is older than this program reads (3)",
-			w->file.path, version);
-	for (int s = 0; s < WEIGHTS_STREAMS && dropped; s++) {
-		const struct st_tensor *t =
-			safetensors_need(&w->file, weights_stream_name[s], ST_U8, 1, &any, e);
-		const int64_t bytes = ((const int64_t *)sizes->data)[s];
-		if (!t)
-			return -1;
-		if (bytes < 0 || bytes / RATIO > (int64_t)t->bytes)
-			return err_set(e, ERR_FORMAT, "%s: tensor 'sizes': %lld bytes cannot be in '%s'",
-				w->file.path, (long long)bytes, weights_stream_name[s]);
-		pack.bytes[s] = (size_t)bytes;
-		pack.packed[s] = t->bytes;
-		pack.data[s] = (uint8_t *)(size_t)t->data;
+	if (!in->bad && strcmp(version, "3"))
+		return err_file(in->e, w->file.path,
+			"refer.weights, packed, version %s is older than this program reads (3)", version);
+	for (int s = 0; s < WEIGHTS_STREAMS && !in->bad; s++) {
+		const void *data = arrays_in_place(in, weights_stream_name[s], ST_U8, -1, &pack.packed[s]);
+		if (data && (sizes[s] < 0 || sizes[s] / RATIO > (int64_t)pack.packed[s]))
+			in->bad =
+				err_file(in->e, w->file.path, "tensor 'sizes': %lld bytes cannot be in '%s'",
+					(long long)sizes[s], weights_stream_name[s]);
+		pack.bytes[s] = (size_t)sizes[s];
+		pack.data[s] = (uint8_t *)(size_t)data;
 	}
 	w->precision = PRECISION_U8;
 	w->is_packed = 1;
-	w->owned_dropped =
-		dropped ? mem_alloc((size_t)pixels, sizeof *w->owned_dropped, w->file.path, e) : NULL;
-	if (!w->owned_dropped || unpack(w, &pack, as_tiles, e))
+	w->dropped = w->owned_dropped =
+		in->bad ? NULL : mem_alloc((size_t)pixels, sizeof *w->owned_dropped, w->file.path, in->e);
+	if (!w->owned_dropped || unpack(w, &pack, as_tiles, in->e))
 		return -1;
 	for (int64_t p = 0; p < pixels; p++)
-		w->owned_dropped[p] = (float)((const uint8_t *)dropped->data)[p] / LEVELS;
-	w->dropped = w->owned_dropped;
+		w->owned_dropped[p] = (float)dropped[p] / LEVELS;
 	return 0;
 }
 
 static int read_all(struct weights *w, int as_tiles, struct err *e)
 {
 	const struct safetensors *st = &w->file;
-	const struct st_tensor *indptr, *index, *dropped;
-	long long width = 0, height = 0, gaussians = 0;
+	struct arrays_in in;
+	long long width = 0, height = 0;
+	size_t nnz;
 
-	if (safetensors_need_format(st, "refer.weights", VERSION_READ, e) ||
-		safetensors_meta_int(st, "width", 1, MAX_SIDE, &width, e) ||
-		safetensors_meta_int(st, "height", 1, MAX_SIDE, &height, e) ||
-		safetensors_meta_int(st, "gaussians", 0, INT32_MAX, &gaussians, e))
-		return -1;
+	arrays_in_begin(&in, st, "refer.weights", VERSION_READ, e);
+	in.bad = in.bad || safetensors_meta_int(st, "width", 1, MAX_SIDE, &width, e) ||
+		 safetensors_meta_int(st, "height", 1, MAX_SIDE, &height, e);
 	w->width = (int)width;
 	w->height = (int)height;
-	w->gaussians = gaussians;
-	if (fingerprint_read(&w->scene, st, "scene", e) || fingerprint_read(&w->camera, st, "camera", e))
-		return -1;
-	int64_t pixels = width * height, any = -1, ends = pixels + 1;
+	w->gaussians = (int64_t)arrays_in_count(&in, "gaussians");
+	in.bad = in.bad || fingerprint_read(&w->scene, st, "scene", e) ||
+		 fingerprint_read(&w->camera, st, "camera", e);
+	const int64_t pixels = width * height;
 	if (safetensors_find(st, "maps"))
-		return read_packed(w, pixels, as_tiles, e);
-	if (!(indptr = safetensors_need(st, "indptr", ST_I64, 1, &ends, e)) ||
-		!(index = safetensors_need(st, "index", ST_I32, 1, &any, e)) ||
-		!(dropped = safetensors_need(st, "dropped", ST_F32, 1, &pixels, e)) ||
-		read_weight(w, index->shape[0], e))
-		return -1;
-	w->indptr = indptr->data;
-	w->index = index->data;
-	w->dropped = dropped->data;
-	return check_indptr(w, pixels, index->shape[0], e) || check_values(w, pixels, index->shape[0], e) ? -1
-													  : 0;
+		return read_packed(w, &in, pixels, as_tiles);
+	w->indptr = arrays_in_place(&in, "indptr", ST_I64, pixels + 1, NULL);
+	w->index = arrays_in_place(&in, "index", ST_I32, -1, &nnz);
+	w->dropped = arrays_in_place(&in, "dropped", ST_F32, pixels, NULL);
+	return -(in.bad || read_weight(w, (int64_t)nnz, e) || check_indptr(w, pixels, (int64_t)nnz, e) ||
+		 check_values(w, pixels, (int64_t)nnz, e));
 }
 
 static int open_file(
@@ -218,7 +201,7 @@ static int check_origin(const struct weights *w, const struct scene *scene, size
 	const char *path = w->file.path;
 
 	if (w->gaussians != (int64_t)scene->splats.n)
-		return err_set(e, ERR_FORMAT, "%s: is of a scene of %lld Gaussians, %s has %zu", path,
+		return err_file(e, path, "is of a scene of %lld Gaussians, %s has %zu",
 			(long long)w->gaussians, scene->path, scene->splats.n);
 	if (fingerprint_check("scene", path, &w->scene, scene->path, &scene->fingerprint, e))
 		return -1;
@@ -299,4 +282,66 @@ int weights_mark(const char *dir, const struct cameras *cameras, char *there, si
 	return training && *missing == training
 		       ? err_set(e, ERR_SYSTEM, "%s: has no weights of a training view", dir)
 		       : 0;
+}
+
+static uint8_t level(float weight)
+{
+	return (uint8_t)(weight * LEVELS + 0.5f);
+}
+
+static void put_plain(struct arrays_out *out, const struct weights *w, int64_t pixels)
+{
+	const int64_t nnz = w->indptr[pixels];
+	const enum st_dtype dtype = precision_dtype(w->precision);
+	void *own = w->precision == PRECISION_F32 ? NULL
+						  : arrays_out_memory(out, (size_t)nnz, st_dtype_size(dtype));
+
+	for (int64_t i = 0; i < nnz && own; i++)
+		if (w->precision == PRECISION_F16)
+			((uint16_t *)own)[i] = half_of_float(w->weight[i]);
+		else
+			((uint8_t *)own)[i] = level(w->weight[i]);
+	arrays_out_put(out, st_vector("indptr", ST_I64, pixels + 1, w->indptr));
+	arrays_out_put(out, st_vector("index", ST_I32, nnz, w->index));
+	arrays_out_put(out, st_vector("dropped", ST_F32, pixels, w->dropped));
+	arrays_out_put(out, st_vector("weight", dtype, nnz, own ? own : w->weight));
+}
+
+static void put_packed(struct arrays_out *out, const struct weights *w, int64_t pixels)
+{
+	uint8_t *dropped = arrays_out_memory(out, (size_t)pixels, 1);
+	int64_t *sizes = arrays_out_memory(out, WEIGHTS_STREAMS, sizeof *sizes);
+
+	if (!dropped || !sizes)
+		return;
+	for (int64_t p = 0; p < pixels; p++)
+		dropped[p] = level(w->dropped[p]);
+	for (int s = 0; s < WEIGHTS_STREAMS; s++)
+		sizes[s] = (int64_t)w->pack->bytes[s];
+	arrays_out_put(out, st_vector("sizes", ST_I64, WEIGHTS_STREAMS, sizes));
+	for (int s = 0; s < WEIGHTS_STREAMS; s++)
+		arrays_out_put(out, st_vector(weights_stream_name[s], ST_U8, (int64_t)w->pack->packed[s],
+					    w->pack->data[s]));
+	arrays_out_put(out, st_vector("dropped", ST_U8, pixels, dropped));
+}
+
+int weights_write(
+	const struct weights *w, const char *dir, const char *view, const char *options, struct err *e)
+{
+	char *path = file_join(dir, view, ".safetensors", e);
+	struct arrays_out out;
+
+	if (!path)
+		return -1;
+	arrays_out_begin(&out, path, "refer.weights", w->pack ? "3" : "1", "gs-weigh", options, 0, e);
+	arrays_out_text(&out, "view", view);
+	arrays_out_text(&out, "width", arrays_out_print(&out, "%d", w->width));
+	arrays_out_text(&out, "height", arrays_out_print(&out, "%d", w->height));
+	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%lld", (long long)w->gaussians));
+	arrays_out_text(&out, "scene", fingerprint_text(&w->scene));
+	arrays_out_text(&out, "camera", fingerprint_text(&w->camera));
+	(w->pack ? put_packed : put_plain)(&out, w, (int64_t)w->width * w->height);
+	const int bad = arrays_out_end(&out);
+	free(path);
+	return bad;
 }

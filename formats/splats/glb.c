@@ -28,12 +28,12 @@ static const cJSON *find_primitive(const struct glb *f, int *mesh, struct err *e
 	const cJSON *found = NULL, *of_mesh, *primitive;
 	int count = 0, i = 0;
 
-	cJSON_ArrayForEach(of_mesh, cJSON_GetObjectItemCaseSensitive(f->root, "meshes"))
+	cJSON_ArrayForEach(of_mesh, json_get(f->root, "meshes"))
 	{
-		cJSON_ArrayForEach(primitive, cJSON_GetObjectItemCaseSensitive(of_mesh, "primitives"))
+		cJSON_ArrayForEach(primitive, json_get(of_mesh, "primitives"))
 		{
-			const cJSON *extensions = cJSON_GetObjectItemCaseSensitive(primitive, "extensions");
-			if (!cJSON_GetObjectItemCaseSensitive(extensions, GLB_EXTENSION))
+			const cJSON *extensions = json_get(primitive, "extensions");
+			if (!json_get(extensions, GLB_EXTENSION))
 				continue;
 			found = primitive;
 			*mesh = i;
@@ -43,7 +43,7 @@ static const cJSON *find_primitive(const struct glb *f, int *mesh, struct err *e
 	}
 	if (count == 1)
 		return found;
-	err_set(e, ERR_FORMAT, "%s: %d primitives with " GLB_EXTENSION ", expected 1%s", f->name, count,
+	err_file(e, f->name, "%d primitives with " GLB_EXTENSION ", expected 1%s", count,
 		count ? "" : ": it is no scene of Gaussians");
 	return NULL;
 }
@@ -53,12 +53,12 @@ static int check_required(const struct glb *f, struct err *e)
 {
 	const cJSON *name;
 
-	cJSON_ArrayForEach(name, cJSON_GetObjectItemCaseSensitive(f->root, "extensionsRequired"))
+	cJSON_ArrayForEach(name, json_get(f->root, "extensionsRequired"))
 	{
 		const char *text = cJSON_GetStringValue(name);
 		if (!text || strcmp(text, GLB_EXTENSION))
-			return err_set(e, ERR_FORMAT, "%s: needs the extension '%.80s', which is not read",
-				f->name, text ? text : "?");
+			return err_file(e, f->name, "needs the extension '%.80s', which is not read",
+				text ? text : "?");
 	}
 	return 0;
 }
@@ -67,20 +67,18 @@ static int check_required(const struct glb *f, struct err *e)
 static int check_key(const struct glb *f, const cJSON *object, const char *key, const char *expected,
 	const char *also, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+	const cJSON *item = json_get(object, key);
 	const char *text = cJSON_GetStringValue(item);
 
 	if (!item || (text && (!strcmp(text, expected) || !strcmp(text, also))))
 		return 0;
-	return err_set(e, ERR_FORMAT, "%s: key '%s' is '%.80s', expected '%s'", f->name, key,
-		text ? text : "?", expected);
+	return err_file(e, f->name, "key '%s' is '%.80s', expected '%s'", key, text ? text : "?", expected);
 }
 
 static int check_primitive(const struct glb *f, const cJSON *primitive, struct err *e)
 {
-	const cJSON *extension = cJSON_GetObjectItemCaseSensitive(
-			    cJSON_GetObjectItemCaseSensitive(primitive, "extensions"), GLB_EXTENSION),
-		    *packed = cJSON_GetObjectItemCaseSensitive(extension, "extensions");
+	const cJSON *extension = json_get(json_get(primitive, "extensions"), GLB_EXTENSION),
+		    *packed = json_get(extension, "extensions");
 	char at[256];
 	double mode = 4;
 
@@ -88,16 +86,13 @@ static int check_primitive(const struct glb *f, const cJSON *primitive, struct e
 	if (json_number(primitive, "mode", 0, &mode, at, e) < 0)
 		return -1;
 	if (mode != 0)
-		return err_set(
-			e, ERR_FORMAT, "%s: the primitive's mode is %g, expected 0 (points)", f->name, mode);
+		return err_file(e, f->name, "the primitive's mode is %g, expected 0 (points)", mode);
 	if (cJSON_GetArraySize(packed))
-		return err_set(e, ERR_FORMAT, "%s: Gaussians of the extension '%.80s', which is not read",
-			f->name, packed->child->string);
-	return check_key(f, extension, "kernel", "ellipse", "ellipse", e) ||
-			       check_key(f, extension, "projection", "perspective", "perspective", e) ||
-			       check_key(f, extension, "colorSpace", "srgb_rec709_display", "BT.709", e)
-		       ? -1
-		       : 0;
+		return err_file(e, f->name, "Gaussians of the extension '%.80s', which is not read",
+			packed->child->string);
+	return -(check_key(f, extension, "kernel", "ellipse", "ellipse", e) ||
+		 check_key(f, extension, "projection", "perspective", "perspective", e) ||
+		 check_key(f, extension, "colorSpace", "srgb_rec709_display", "BT.709", e));
 }
 
 /* An attribute that has to be there, of all Gaussians. */
@@ -107,22 +102,21 @@ static int need(struct source *in, const cJSON *primitive, const char *name, int
 	if (glb_attribute(&in->file, primitive, name, width, components, v, e))
 		return -1;
 	if (!v->data && !v->n)
-		return err_set(e, ERR_FORMAT, "%s: no attribute %s", in->file.name, name);
+		return err_file(e, in->file.name, "no attribute %s", name);
 	if (v->n != in->means.n)
-		return err_set(e, ERR_FORMAT, "%s: %s: %zu items for %zu Gaussians", in->file.name, name,
-			v->n, in->means.n);
+		return err_file(e, in->file.name, "%s: %zu items for %zu Gaussians", name, v->n, in->means.n);
 	return 0;
 }
 
 /* Harmonics of whole degrees, as many as there are. */
 static int find_harmonics(struct source *in, const cJSON *primitive, struct err *e)
 {
-	const cJSON *attributes = cJSON_GetObjectItemCaseSensitive(primitive, "attributes");
+	const cJSON *attributes = json_get(primitive, "attributes");
 	char name[64];
 
 	for (int degree = 0, k = 0; degree <= SH_DEGREE_MOST; degree++) {
 		snprintf(name, sizeof name, GLB_EXTENSION ":SH_DEGREE_%d_COEF_0", degree);
-		if (degree && !cJSON_GetObjectItemCaseSensitive(attributes, name))
+		if (degree && !json_get(attributes, name))
 			return 0;
 		for (int c = 0; c <= 2 * degree; c++, k++) {
 			snprintf(name, sizeof name, GLB_EXTENSION ":SH_DEGREE_%d_COEF_%d", degree, c);
@@ -141,16 +135,12 @@ static int find_attributes(struct source *in, const cJSON *primitive, struct err
 
 	if (glb_attribute(&in->file, primitive, "POSITION", 3, COMPONENT(F32), &in->means, e))
 		return -1;
-	return need(in, primitive, "POSITION", 3, COMPONENT(F32), &in->means, e) ||
-			       need(in, primitive, GLB_EXTENSION ":SCALE", 3, signed_ones | unsigned_ones,
-				       &in->scales, e) ||
-			       need(in, primitive, GLB_EXTENSION ":ROTATION", 4, signed_ones, &in->quats,
-				       e) ||
-			       need(in, primitive, GLB_EXTENSION ":OPACITY", 1, unsigned_ones, &in->opacities,
-				       e) ||
-			       find_harmonics(in, primitive, e)
-		       ? -1
-		       : 0;
+	return -(
+		need(in, primitive, "POSITION", 3, COMPONENT(F32), &in->means, e) ||
+		need(in, primitive, GLB_EXTENSION ":SCALE", 3, signed_ones | unsigned_ones, &in->scales, e) ||
+		need(in, primitive, GLB_EXTENSION ":ROTATION", 4, signed_ones, &in->quats, e) ||
+		need(in, primitive, GLB_EXTENSION ":OPACITY", 1, unsigned_ones, &in->opacities, e) ||
+		find_harmonics(in, primitive, e));
 }
 
 /* From x, y, z, w, after half a turn about z. */
@@ -170,10 +160,10 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 	for (int k = 0; k < 3; k++) {
 		const double scale = glb_value(&in->scales, row, k);
 		if (scale < 0)
-			return err_set(e, ERR_FORMAT,
-				"%s: Gaussian %zu: a scale of %g: drafts of " GLB_EXTENSION
+			return err_file(e, in->file.name,
+				"Gaussian %zu: a scale of %g: drafts of " GLB_EXTENSION
 				" had logarithms, which are not read",
-				in->file.name, row, scale);
+				row, scale);
 		values[ROW_MEAN + k] = signs[k] * (glb_value(&in->means, row, k) + in->before[k]);
 		values[ROW_SCALE + k] = log(scale);
 		values[ROW_DC + k] = glb_value(&in->sh[0], row, k);

@@ -30,14 +30,14 @@ static int next_chunk(const struct glb *f, size_t *at, uint32_t type, const unsi
 	const size_t left = f->map->len - *at;
 
 	if (left < GLB_CHUNK)
-		return err_set(e, ERR_FORMAT, "%s: no chunk at offset %zu", f->name, *at);
+		return err_file(e, f->name, "no chunk at offset %zu", *at);
 	*length = (size_t)little_get(f->map->data + *at, 4);
 	if (little_get(f->map->data + *at + 4, 4) != type)
-		return err_set(e, ERR_FORMAT, "%s: the chunk at offset %zu is not of type %s", f->name, *at,
+		return err_file(e, f->name, "the chunk at offset %zu is not of type %s", *at,
 			type == GLB_JSON ? "JSON" : "BIN");
 	if (*length > left - GLB_CHUNK)
-		return err_set(e, ERR_FORMAT, "%s: a chunk of %zu from offset %zu does not fit a file of %zu",
-			f->name, *length, *at, f->map->len);
+		return err_file(e, f->name, "a chunk of %zu from offset %zu does not fit a file of %zu",
+			*length, *at, f->map->len);
 	*data = f->map->data + *at + GLB_CHUNK;
 	*at += GLB_CHUNK + *length;
 	return 0;
@@ -75,14 +75,13 @@ static void decode_uri(char *uri)
 /* The file of buffer 0, beside the .gltf. */
 static int open_numbers(struct glb *f, struct err *e)
 {
-	const cJSON *buffer = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(f->root, "buffers"), 0);
-	const char *uri = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(buffer, "uri"));
+	const cJSON *buffer = cJSON_GetArrayItem(json_get(f->root, "buffers"), 0);
+	const char *uri = cJSON_GetStringValue(json_get(buffer, "uri"));
 
 	if (!uri)
-		return err_set(e, ERR_FORMAT, "%s: buffer 0 has no file: key 'uri' is missing", f->name);
+		return err_file(e, f->name, "buffer 0 has no file: key 'uri' is missing");
 	if (!strncmp(uri, "data:", 5) || strstr(uri, "://"))
-		return err_set(e, ERR_FORMAT, "%s: buffer 0 is '%.20s...', not a file beside this one",
-			f->name, uri);
+		return err_file(e, f->name, "buffer 0 is '%.20s...', not a file beside this one", uri);
 	char *name = mem_strdup(uri, e), *folder = file_dir(f->name, e);
 	if (name)
 		decode_uri(name);
@@ -90,8 +89,7 @@ static int open_numbers(struct glb *f, struct err *e)
 	char *path = name && folder && !leaves ? file_join(folder, name, "", e) : NULL;
 	const int bad = !path || file_map(path, &f->numbers, e);
 	if (leaves)
-		err_set(e, ERR_FORMAT, "%s: buffer 0 is '%.200s', not in the folder of this file", f->name,
-			name);
+		err_file(e, f->name, "buffer 0 is '%.200s', not in the folder of this file", name);
 	free(name);
 	free(folder);
 	free(path);
@@ -119,14 +117,14 @@ int glb_open(struct glb *f, const char *name, const struct file_map *map, struct
 	if (!glb_is(map) && path_ends(name, ".gltf"))
 		return open_gltf(f, e);
 	if (map->len < GLB_HEADER)
-		return err_set(e, ERR_FORMAT, "%s: %zu bytes, the header has %d", name, map->len, GLB_HEADER);
+		return err_file(e, name, "%zu bytes, the header has %d", map->len, GLB_HEADER);
 	if (!glb_is(map))
-		return err_set(e, ERR_FORMAT, "%s: not a .glb: it does not begin with 'glTF'", name);
+		return err_file(e, name, "not a .glb: it does not begin with 'glTF'");
 	if (little_get(map->data + 4, 4) != 2)
-		return err_set(e, ERR_FORMAT, "%s: version %u of glTF, expected 2", name,
-			(unsigned)little_get(map->data + 4, 4));
+		return err_file(
+			e, name, "version %u of glTF, expected 2", (unsigned)little_get(map->data + 4, 4));
 	if (little_get(map->data + 8, 4) != map->len)
-		return err_set(e, ERR_FORMAT, "%s: has %zu bytes, its header says %u", name, map->len,
+		return err_file(e, name, "has %zu bytes, its header says %u", map->len,
 			(unsigned)little_get(map->data + 8, 4));
 	if (next_chunk(f, &at, GLB_JSON, &json, &length, e) ||
 		(at < map->len && next_chunk(f, &at, GLB_BIN, &f->bin, &f->bin_length, e)))
@@ -144,7 +142,7 @@ void glb_close(struct glb *f)
 static int get_count(const struct glb *f, const cJSON *object, const char *key, int need, size_t *value,
 	const char *what, struct err *e)
 {
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+	const cJSON *item = json_get(object, key);
 	const double x = cJSON_IsNumber(item) ? item->valuedouble : -1;
 
 	if (!item && !need) {
@@ -152,8 +150,7 @@ static int get_count(const struct glb *f, const cJSON *object, const char *key, 
 		return 0;
 	}
 	if (!(x >= 0 && x <= 0x1p53 && x == floor(x)))
-		return err_set(
-			e, ERR_FORMAT, "%s: %s: key '%s' is not a whole number from 0", f->name, what, key);
+		return err_file(e, f->name, "%s: key '%s' is not a whole number from 0", what, key);
 	*value = (size_t)x;
 	return 0;
 }
@@ -161,11 +158,11 @@ static int get_count(const struct glb *f, const cJSON *object, const char *key, 
 /* Item i of one of the root's lists. */
 static const cJSON *item_of(const struct glb *f, const char *list, size_t i, struct err *e)
 {
-	const cJSON *items = cJSON_GetObjectItemCaseSensitive(f->root, list),
+	const cJSON *items = json_get(f->root, list),
 		    *item = i <= INT32_MAX ? cJSON_GetArrayItem(items, (int)i) : NULL;
 
 	if (!cJSON_IsObject(item))
-		err_set(e, ERR_FORMAT, "%s: no item %zu in '%s'", f->name, i, list);
+		err_file(e, f->name, "no item %zu in '%s'", i, list);
 	return cJSON_IsObject(item) ? item : NULL;
 }
 
@@ -190,18 +187,16 @@ static int find_bytes(
 		get_count(f, view, "byteLength", 1, &length, name, e) ||
 		get_count(f, view, "byteStride", 0, &v->stride, name, e))
 		return -1;
-	if (buffer || cJSON_GetObjectItemCaseSensitive(view, "extensions"))
-		return err_set(
-			e, ERR_FORMAT, "%s: %s: its bytes are not in the file as they are", f->name, name);
+	if (buffer || json_get(view, "extensions"))
+		return err_file(e, f->name, "%s: its bytes are not in the file as they are", name);
 	v->stride = v->stride ? v->stride : item;
 	if (begin > f->bin_length || length > f->bin_length - begin)
-		return err_set(e, ERR_FORMAT,
-			"%s: %s: %zu bytes from offset %zu do not fit a binary chunk of %zu", f->name, name,
-			length, begin, f->bin_length);
+		return err_file(e, f->name, "%s: %zu bytes from offset %zu do not fit a binary chunk of %zu",
+			name, length, begin, f->bin_length);
 	if (!item || v->stride < item || from > length ||
 		(v->n && (length - from < item || (length - from - item) / v->stride < v->n - 1)))
-		return err_set(e, ERR_FORMAT, "%s: %s: %zu items of %zu bytes do not fit %zu", f->name, name,
-			v->n, v->stride, length - (from > length ? length : from));
+		return err_file(e, f->name, "%s: %zu items of %zu bytes do not fit %zu", name, v->n,
+			v->stride, length - (from > length ? length : from));
 	v->data = f->bin + begin + from;
 	return 0;
 }
@@ -210,11 +205,11 @@ int glb_attribute(const struct glb *f, const cJSON *primitive, const char *name,
 	unsigned components, struct glb_values *v, struct err *e)
 {
 	static const char *const types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
-	const cJSON *attributes = cJSON_GetObjectItemCaseSensitive(primitive, "attributes");
+	const cJSON *attributes = json_get(primitive, "attributes");
 	size_t index = 0, component = 0;
 
 	*v = (struct glb_values){.width = width};
-	if (!cJSON_GetObjectItemCaseSensitive(attributes, name))
+	if (!json_get(attributes, name))
 		return 0;
 	if (get_count(f, attributes, name, 1, &index, "attributes", e))
 		return -1;
@@ -222,15 +217,15 @@ int glb_attribute(const struct glb *f, const cJSON *primitive, const char *name,
 	if (!accessor || get_count(f, accessor, "count", 1, &v->n, name, e) ||
 		get_count(f, accessor, "componentType", 1, &component, name, e))
 		return -1;
-	const char *type = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(accessor, "type"));
+	const char *type = cJSON_GetStringValue(json_get(accessor, "type"));
 	if (!type || strcmp(type, types[width]))
-		return err_set(e, ERR_FORMAT, "%s: %s: is of type %.40s, expected %s", f->name, name,
-			type ? type : "none", types[width]);
-	v->is_normalized = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(accessor, "normalized"));
+		return err_file(e, f->name, "%s: is of type %.40s, expected %s", name, type ? type : "none",
+			types[width]);
+	v->is_normalized = cJSON_IsTrue(json_get(accessor, "normalized"));
 	if (component < GLB_I8 || component > GLB_F32 || !(components >> (component - GLB_I8) & 1))
-		return err_set(e, ERR_FORMAT, "%s: %s: has components of type %zu", f->name, name, component);
-	if (cJSON_GetObjectItemCaseSensitive(accessor, "sparse"))
-		return err_set(e, ERR_FORMAT, "%s: %s: is sparse", f->name, name);
+		return err_file(e, f->name, "%s: has components of type %zu", name, component);
+	if (json_get(accessor, "sparse"))
+		return err_file(e, f->name, "%s: is sparse", name);
 	v->component = (int)component;
 	return find_bytes(f, accessor, name, v, e);
 }
@@ -270,7 +265,7 @@ static int read_node(const struct glb *f, const cJSON *node, int i, double m[3][
 	} parts[] = {{"translation", 3, shift}, {"rotation", 4, quat}, {"scale", 3, scale}};
 
 	snprintf(at, sizeof at, "%.200s: node %d", f->name, i);
-	if (cJSON_GetObjectItemCaseSensitive(node, "matrix")) {
+	if (json_get(node, "matrix")) {
 		if (json_matrix(node, "matrix", 16, 0, columns, at, e))
 			return -1;
 		for (int r = 0; r < 3; r++)
@@ -279,11 +274,11 @@ static int read_node(const struct glb *f, const cJSON *node, int i, double m[3][
 		return 0;
 	}
 	for (int k = 0; k < 3; k++)
-		if (cJSON_GetObjectItemCaseSensitive(node, parts[k].key) &&
+		if (json_get(node, parts[k].key) &&
 			json_matrix(node, parts[k].key, parts[k].n, 0, parts[k].to, at, e))
 			return -1;
 	if (quat[0] == 0 && quat[1] == 0 && quat[2] == 0 && quat[3] == 0)
-		return err_set(e, ERR_FORMAT, "%s: key 'rotation' is zero", at);
+		return err_file(e, at, "key 'rotation' is zero");
 	for (int k = 0; k < 4; k++)
 		wxyz[k] = quat[(k + 3) % 4];
 	rotation_of_quat(wxyz, rotation);
@@ -316,14 +311,14 @@ static int find_node(const struct glb *f, int child, int mesh, int *count)
 	int i = 0, found = -1;
 
 	*count = 0;
-	cJSON_ArrayForEach(node, cJSON_GetObjectItemCaseSensitive(f->root, "nodes"))
+	cJSON_ArrayForEach(node, json_get(f->root, "nodes"))
 	{
 		int is_it = 0;
 		if (child < 0) {
-			item = cJSON_GetObjectItemCaseSensitive(node, "mesh");
+			item = json_get(node, "mesh");
 			is_it = cJSON_IsNumber(item) && item->valuedouble == mesh;
 		} else {
-			cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(node, "children")) is_it |=
+			cJSON_ArrayForEach(item, json_get(node, "children")) is_it |=
 				cJSON_IsNumber(item) && item->valuedouble == child;
 		}
 		*count += is_it;
@@ -355,9 +350,8 @@ static int take_apart(struct glb_place *place, double m[3][4], const struct glb 
 			is_even &= fabs(dot) < evenness;
 		}
 	return is_even ? 0
-		       : err_set(e, ERR_FORMAT,
-				 "%s: node %d: is mirrored or scaled unevenly, which Gaussians cannot be",
-				 f->name, node);
+		       : err_file(e, f->name,
+				 "node %d: is mirrored or scaled unevenly, which Gaussians cannot be", node);
 }
 
 int glb_find_place(struct glb_place *place, const struct glb *f, int mesh, struct err *e)
@@ -366,15 +360,14 @@ int glb_find_place(struct glb_place *place, const struct glb *f, int mesh, struc
 	int count, first = find_node(f, -1, mesh, &count);
 
 	if (count > 1)
-		return err_set(
-			e, ERR_FORMAT, "%s: the Gaussians are in %d places, expected one", f->name, count);
+		return err_file(e, f->name, "the Gaussians are in %d places, expected one", count);
 	for (int node = first, depth = 0; node >= 0; node = find_node(f, node, 0, &count)) {
 		const cJSON *item = item_of(f, "nodes", (size_t)node, e);
 		if (!item || read_node(f, item, node, own, e))
 			return -1;
 		if (depth++ == DEPTH_MOST)
-			return err_set(e, ERR_FORMAT, "%s: node %d: more than %d nodes above a node", f->name,
-				first, DEPTH_MOST);
+			return err_file(
+				e, f->name, "node %d: more than %d nodes above a node", first, DEPTH_MOST);
 		put_under(m, own);
 	}
 	return take_apart(place, m, f, first, e);

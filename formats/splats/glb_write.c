@@ -193,8 +193,8 @@ int glb_write(const struct splats *s, const double offset[3], const char *path, 
 	size_t length = 0;
 
 	if (s->n > (UINT32_MAX - (1 << 16)) / row)
-		return err_set(e, ERR_FORMAT, "%s: %zu Gaussians of %zu bytes do not fit a .glb, of 4 GiB",
-			file_name(path), s->n, row);
+		return err_file(e, file_name(path), "%zu Gaussians of %zu bytes do not fit a .glb, of 4 GiB",
+			s->n, row);
 	char *json = make_json(&length, s, offset, attributes, n, s->n * row, path, e);
 	if (!json || file_out_open(&out, path, e)) {
 		free(json);

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/little.h"
 #include "base/mem.h"
+#include "formats/records/foreign.h"
 #include "formats/splats/plyfile.h"
 #include "formats/splats/plypacked.h"
 #include "splat/gaussian_rows.h"
@@ -44,8 +45,8 @@ static int find_layout(
 	for (size_t i = 0; i < el->n; i++)
 		l->rest += !strncmp(el->properties[i].name, "f_rest_", 7);
 	if (l->rest != 0 && l->rest != 9 && l->rest != 24 && l->rest != ROW_REST_MAX)
-		return err_set(
-			e, ERR_FORMAT, "%s: %d f_rest properties, expected 0, 9, 24 or 45", f->path, l->rest);
+		return err_file(e, f->path,
+			"%d f_rest properties, expected 0, 9, 24 or 45: harmonics of degree 0 to 3", l->rest);
 	for (int i = 0; i < l->rest; i++) {
 		snprintf(name, sizeof name, "f_rest_%d", i);
 		l->slot[ROW_REST + i] = plyfile_need(f, el, name, e);
@@ -96,13 +97,61 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 	return 0;
 }
 
+/* Properties of a .ply's vertices that one method writes, and 3DGS does not, or the other way round. */
+static const struct {
+	const char *has, *lacks, *what, *way_out;
+} layouts[] = {
+#define FOREIGN_PLY(...) {__VA_ARGS__},
+#include "formats/records/foreign.def"
+};
+
+/* Codes where 3DGS has floats: half floats, or quantised. */
+static int check_types(const struct plyfile *f, const struct plyfile_element *vertex, struct err *e)
+{
+	static const char *const names[] = {"f_dc_0", "opacity", "scale_0"};
+
+	for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+		const long at = plyfile_property(vertex, names[i]);
+		if (at >= 0 && vertex->properties[at].type < PLY_F32 && !vertex->properties[at].is_list)
+			return err_file(e, f->path,
+				"property '%s' has whole numbers, half floats or codes of a packed scene: export it with floats where it was made",
+				names[i]);
+	}
+	return 0;
+}
+
+/* What other methods than 3DGS write into a .ply, told by its properties. formats/records/foreign.md. */
+static int check_foreign(const struct plyfile *f, const struct plyfile_element *vertex, struct err *e)
+{
+	const struct plyfile_element *face = plyfile_find(f, "face");
+	char mode[128];
+
+	for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
+		if (plyfile_property(vertex, layouts[i].has) >= 0 &&
+			(!layouts[i].lacks || plyfile_property(vertex, layouts[i].lacks) < 0) &&
+			(!layouts[i].lacks || plyfile_property(vertex, "rot_0") >= 0))
+			return foreign_say(f->path, layouts[i].what, layouts[i].way_out, e);
+	if (plyfile_property(vertex, "x") >= 0 && plyfile_property(vertex, "scale_0") < 0 &&
+		plyfile_property(vertex, "rot_0") < 0 && plyfile_property(vertex, "packed_position") < 0)
+		return err_file(e, f->path,
+			"a %s, not a trained scene: it has points without scale and rotation; 3D Gaussian Splatting trains a scene from them, point_cloud/iteration_N/point_cloud.ply",
+			face && face->rows ? "mesh" : "point cloud");
+	if (f->mode) {
+		snprintf(mode, sizeof mode, "%.*s", (int)strcspn(f->mode, "\r"), f->mode);
+		return err_file(e, f->path,
+			"trained for another way of rendering ('%s'), which would be wrong here: train it without that mode",
+			mode);
+	}
+	return check_types(f, vertex, e);
+}
+
 /* The rows of the element `vertex`, which is next. */
 static int read_vertices(struct splats *s, double offset[3], struct rows_report *report, struct plyfile *f,
 	const struct plyfile_element *vertex, size_t chunks, struct err *e)
 {
 	struct source in;
 
-	if (ply_check_foreign(f, vertex, e))
+	if (check_foreign(f, vertex, e))
 		return -1;
 	int bad = open_source(&in, f, vertex, chunks, e);
 	if (!bad) {
@@ -122,7 +171,7 @@ static int read_elements(
 	int bad = 0;
 
 	if (!vertex)
-		return err_set(e, ERR_FORMAT, "%s: no element 'vertex'", f->path);
+		return err_file(e, f->path, "no element 'vertex'");
 	for (size_t i = 0; !bad && i < f->n; i++) {
 		const struct plyfile_element *el = &f->elements[i];
 		if (!strcmp(el->name, "chunk"))
@@ -130,7 +179,7 @@ static int read_elements(
 		bad = el == vertex ? read_vertices(s, offset, report, f, vertex, chunks, e)
 				   : plyfile_skip(f, el, e);
 	}
-	return bad || plyfile_end(f, e) ? -1 : 0;
+	return -(bad || plyfile_end(f, e));
 }
 
 int ply_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,

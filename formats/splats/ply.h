@@ -17,12 +17,6 @@
 int ply_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e);
 
-/* A .ply whose rows are not those of a 3DGS scene that can be rendered: -1 with *e, what it is and the way
- * out. */
-struct plyfile;
-struct plyfile_element;
-int ply_check_foreign(const struct plyfile *f, const struct plyfile_element *vertex, struct err *e);
-
 /* Writes the usual 3DGS layout (x y z nx ny nz f_dc f_rest opacity scale rot), binary little-endian, with
  * activations undone. x y z are float, or double where offset is not 0. "-" is stdout. */
 int ply_write(const struct splats *s, const double offset[3], const char *path, struct err *e);

@@ -148,7 +148,9 @@ static int read_line(struct plyfile *f, char *line, int number, struct err *e)
 	if (number == 2)
 		return !strcmp(word, "format")
 			       ? read_format(f, line, number, e)
-			       : err_set(e, ERR_FORMAT, "%s:2: the second line is not 'format'", f->path);
+			       : err_set(e, ERR_FORMAT,
+					 "%s:2: the second line is not 'format ...' (comments come after it)",
+					 f->path);
 	const int is_comment = !strcmp(word, "comment") || !strcmp(word, "obj_info");
 	if (is_comment)
 		note_mode(f, line + strspn(line, " \t"));
@@ -193,7 +195,7 @@ static int read_header(struct plyfile *f, struct err *e)
 
 	if (len < 4 || memcmp(data, "ply", 3) ||
 		(data[3] != '\n' && memcmp(data, "ply\r\n", len < 5 ? len : 5)))
-		return err_set(e, ERR_FORMAT, "%s: not a PLY file: the first line is not 'ply'", f->path);
+		return err_file(e, f->path, "not a PLY file: the first line is not 'ply' and nothing else");
 	f->header = mem_alloc(len + 1, 1, f->path, e);
 	if (!f->header)
 		return -1;
@@ -262,9 +264,8 @@ long plyfile_need(const struct plyfile *f, const struct plyfile_element *el, con
 	long i = plyfile_property(el, name);
 
 	if (i < 0)
-		return err_set(
-			e, ERR_FORMAT, "%s: element '%.80s' has no property '%s'", f->path, el->name, name);
+		return err_file(e, f->path, "element '%.80s' has no property '%s'", el->name, name);
 	if (el->properties[i].is_list)
-		return err_set(e, ERR_FORMAT, "%s: property '%s' is a list", f->path, name);
+		return err_file(e, f->path, "property '%s' is a list", name);
 	return i;
 }

@@ -14,19 +14,17 @@ int plyfile_check_rows(const struct plyfile *f, const struct plyfile_element *el
 	if (f->encoding == PLY_ASCII)
 		left++; /* no blank is needed after the file's last value */
 	if (mem_size(el->rows, el->min_bytes, &bytes) || bytes > left)
-		return err_set(e, ERR_FORMAT,
-			"%s: element '%.80s': %zu rows of %s%zu bytes from offset %zu do not fit a file of %zu",
-			f->path, el->name, el->rows,
-			el->has_list || f->encoding == PLY_ASCII ? "at least " : "", el->min_bytes, f->at,
-			f->map.len);
+		return err_file(e, f->path,
+			"element '%.80s': %zu rows of %s%zu bytes from offset %zu do not fit a file of %zu",
+			el->name, el->rows, el->has_list || f->encoding == PLY_ASCII ? "at least " : "",
+			el->min_bytes, f->at, f->map.len);
 	return 0;
 }
 
 static int err_short(const struct plyfile *f, const struct plyfile_element *el, size_t row, struct err *e)
 {
-	return err_set(e, ERR_FORMAT,
-		"%s: element '%.80s': the file ends at offset %zu, within row %zu of %zu", f->path, el->name,
-		f->map.len, row, el->rows);
+	return err_file(e, f->path, "element '%.80s': the file ends at offset %zu, within row %zu of %zu",
+		el->name, f->map.len, row, el->rows);
 }
 
 static double decode(const unsigned char *p, enum plyfile_type type, int is_big)
@@ -79,8 +77,8 @@ static int next_value(struct plyfile *f, const struct plyfile_element *el, size_
 	word[len] = 0;
 	*value = strtod(word, &end);
 	if (end == word || *end || len == sizeof word - 1)
-		return err_set(e, ERR_FORMAT, "%s: element '%.80s', row %zu: no number at offset %zu",
-			f->path, el->name, row, f->at);
+		return err_file(e, f->path, "element '%.80s', row %zu: no number at offset %zu", el->name,
+			row, f->at);
 	f->at += len;
 	return 0;
 }
@@ -92,8 +90,7 @@ static int skip_items(struct plyfile *f, const struct plyfile_element *el, size_
 	double unused;
 
 	if (!(count >= 0 && count <= 4294967295.0) || count != floor(count))
-		return err_set(e, ERR_FORMAT,
-			"%s: element '%.80s', row %zu: a list of %g items, before offset %zu", f->path,
+		return err_file(e, f->path, "element '%.80s', row %zu: a list of %g items, before offset %zu",
 			el->name, row, count, f->at);
 	if (f->encoding == PLY_ASCII) {
 		for (size_t i = 0; i < (size_t)count; i++)
@@ -144,7 +141,7 @@ int plyfile_end(const struct plyfile *f, struct err *e)
 	while (f->encoding == PLY_ASCII && at < f->map.len && isspace(f->map.data[at]))
 		at++;
 	if (at < f->map.len)
-		return err_set(e, ERR_FORMAT, "%s: %zu bytes after the last element, from offset %zu",
-			f->path, f->map.len - at, at);
+		return err_file(
+			e, f->path, "%zu bytes after the last element, from offset %zu", f->map.len - at, at);
 	return 0;
 }

@@ -36,7 +36,7 @@ static int find_packed(
 		if (p->slot[i] < 0)
 			return -1;
 		if (vertex->properties[p->slot[i]].type != PLY_U32)
-			return err_set(e, ERR_FORMAT, "%s: property '%s' is not uint", f->path, names[i]);
+			return err_file(e, f->path, "property '%s' is not uint", names[i]);
 	}
 	return 0;
 }
@@ -50,7 +50,7 @@ static int read_chunks(struct plypacked *p, const struct plyfile *f, const struc
 	int has_color, bad = 0;
 
 	if (!chunk || chunk > vertex)
-		return err_set(e, ERR_FORMAT, "%s: no element 'chunk' before element 'vertex'", f->path);
+		return err_file(e, f->path, "no element 'chunk' before element 'vertex'");
 	has_color = plyfile_property(chunk, bound_names[BOUNDS_COLOR]) >= 0;
 	for (int i = 0; i < (has_color ? PLYPACKED_BOUNDS : BOUNDS_COLOR); i++) {
 		slot[i] = plyfile_need(f, chunk, bound_names[i], e);
@@ -59,8 +59,8 @@ static int read_chunks(struct plypacked *p, const struct plyfile *f, const struc
 	}
 	p->chunks = chunk->rows;
 	if (p->chunks < vertex->rows / CHUNK_ROWS + (vertex->rows % CHUNK_ROWS != 0))
-		return err_set(e, ERR_FORMAT, "%s: %zu chunks of %d for %zu Gaussians", f->path, p->chunks,
-			CHUNK_ROWS, vertex->rows);
+		return err_file(e, f->path, "%zu chunks of %d for %zu Gaussians", p->chunks, CHUNK_ROWS,
+			vertex->rows);
 	rows.at = at;
 	p->bounds = mem_alloc(p->chunks, PLYPACKED_BOUNDS * sizeof *p->bounds, "chunks", e);
 	double *row = mem_alloc(chunk->n, sizeof *row, "chunks", e);
@@ -88,19 +88,18 @@ static int find_sh(
 	if (!p->sh)
 		return 0;
 	if (p->sh != vertex + 1)
-		return err_set(e, ERR_FORMAT, "%s: element 'sh' does not follow element 'vertex'", f->path);
+		return err_file(e, f->path, "element 'sh' does not follow element 'vertex'");
 	if (p->sh->rows != vertex->rows)
-		return err_set(e, ERR_FORMAT, "%s: element 'sh' has %zu rows for %zu Gaussians", f->path,
-			p->sh->rows, vertex->rows);
+		return err_file(
+			e, f->path, "element 'sh' has %zu rows for %zu Gaussians", p->sh->rows, vertex->rows);
 	if (p->sh->n != 9 && p->sh->n != 24 && p->sh->n != 45)
-		return err_set(e, ERR_FORMAT, "%s: element 'sh' has %zu properties, expected 9, 24 or 45",
-			f->path, p->sh->n);
+		return err_file(
+			e, f->path, "element 'sh' has %zu properties, expected 9, 24 or 45", p->sh->n);
 	for (size_t i = 0; i < p->sh->n; i++) {
 		const struct plyfile_property *one = &p->sh->properties[i];
 		snprintf(name, sizeof name, "f_rest_%zu", i);
 		if (strcmp(one->name, name) != 0 || one->is_list || one->type != PLY_U8)
-			return err_set(e, ERR_FORMAT, "%s: element 'sh': property %zu is not uchar %s",
-				f->path, i, name);
+			return err_file(e, f->path, "element 'sh': property %zu is not uchar %s", i, name);
 	}
 	p->rest = (int)p->sh->n;
 	p->sh_rows = *f;
@@ -113,7 +112,7 @@ int plypacked_open(struct plypacked *p, const struct plyfile *f, const struct pl
 {
 	*p = (struct plypacked){0};
 	if (f->encoding == PLY_ASCII || vertex->has_list)
-		return err_set(e, ERR_FORMAT, "%s: packed Gaussians in ascii or with lists", f->path);
+		return err_file(e, f->path, "packed Gaussians in ascii or with lists");
 	if (find_packed(p, f, vertex, e) || plyfile_check_rows(f, vertex, e) ||
 		read_chunks(p, f, vertex, chunks, e) || find_sh(p, f, vertex, e))
 		return -1;

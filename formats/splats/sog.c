@@ -49,19 +49,18 @@ static const char *where(const struct sog *f, const char *part, char text[static
 static int read_codebook(
 	const struct sog *f, const cJSON *part, const char *key, struct codebook *c, struct err *e)
 {
-	const cJSON *list = cJSON_GetObjectItemCaseSensitive(part, "codebook"), *item;
+	const cJSON *list = json_get(part, "codebook"), *item;
 	char at[320];
 
 	c->n = cJSON_GetArraySize(list);
 	if (c->n < 1 || c->n > CODES)
-		return err_set(e, ERR_FORMAT, "%s: key 'codebook' is not a list of 1 to %d numbers",
-			where(f, key, at), CODES);
+		return err_file(
+			e, where(f, key, at), "key 'codebook' is not a list of 1 to %d numbers", CODES);
 	int i = 0;
 	cJSON_ArrayForEach(item, list)
 	{
 		if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
-			return err_set(
-				e, ERR_FORMAT, "%s: codebook[%d] is not a number", where(f, key, at), i);
+			return err_file(e, where(f, key, at), "codebook[%d] is not a number", i);
 		c->values[i++] = item->valuedouble;
 	}
 	return 0;
@@ -71,26 +70,25 @@ static int read_codebook(
 static int read_image(
 	struct sog *f, const cJSON *part, const char *key, int i, int image, size_t pixels, struct err *e)
 {
-	const cJSON *file = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(part, "files"), i);
+	const cJSON *file = cJSON_GetArrayItem(json_get(part, "files"), i);
 	struct webp *to = &f->images[image];
 	char at[320], *data;
 	size_t len;
 
 	if (!cJSON_IsString(file))
-		return err_set(e, ERR_FORMAT, "%s: key 'files' has no name %d", where(f, key, at), i);
+		return err_file(e, where(f, key, at), "key 'files' has no name %d", i);
 	if (archive_read(&f->files, file->valuestring, &data, &len, e))
 		return -1;
 	const size_t most = image == CENTROIDS ? (size_t)PALETTE_MOST * 15 : 4 * f->n + SPARE_PIXELS;
 	int bad = 0;
 	if (image == MEANS_LOW && f->n / GAUSSIANS_A_BYTE > len)
-		bad = err_set(e, ERR_FORMAT, "%s: %zu Gaussians do not fit %zu packed bytes of means",
-			f->name, f->n, len);
+		bad = err_file(e, f->name, "%zu Gaussians do not fit %zu packed bytes of means", f->n, len);
 	bad = bad || webp_decode(to, data, len, most, f->name, file->valuestring, e);
 	free(data);
 	if (bad)
 		return -1;
 	if ((size_t)to->width * (size_t)to->height < pixels)
-		return err_set(e, ERR_FORMAT, "%s: image '%.80s' has %dx%d pixels for %zu values", f->name,
+		return err_file(e, f->name, "image '%.80s' has %dx%d pixels for %zu values",
 			file->valuestring, to->width, to->height, pixels);
 	return 0;
 }
@@ -106,16 +104,15 @@ static int read_palette(struct sog *f, const cJSON *part, struct err *e)
 		json_number(part, "count", 1, &count, at, e) < 0 || read_codebook(f, part, "shN", &f->sh, e))
 		return -1;
 	if (bands != 1 && bands != 2 && bands != 3)
-		return err_set(e, ERR_FORMAT, "%s: %g bands, expected 1 to 3", at, bands);
+		return err_file(e, at, "%g bands, expected 1 to 3", bands);
 	if (!(count >= 1 && count <= PALETTE_MOST && count == floor(count)))
-		return err_set(
-			e, ERR_FORMAT, "%s: a palette of %g, expected 1 to %d", at, count, PALETTE_MOST);
+		return err_file(e, at, "a palette of %g, expected 1 to %d", count, PALETTE_MOST);
 	f->per_channel = ((int)bands + 1) * ((int)bands + 1) - 1;
 	f->palette = (size_t)count;
 	if (read_image(f, part, "shN", 0, CENTROIDS, 1, e) || read_image(f, part, "shN", 1, LABELS, f->n, e))
 		return -1;
 	if (f->images[CENTROIDS].width != PALETTE_ROW * f->per_channel)
-		return err_set(e, ERR_FORMAT, "%s: %d pixels a row of the palette, expected %d", at,
+		return err_file(e, at, "%d pixels a row of the palette, expected %d",
 			f->images[CENTROIDS].width, PALETTE_ROW * f->per_channel);
 	return 0;
 }
@@ -130,28 +127,24 @@ static int read_header(struct sog *f, const cJSON *meta, struct err *e)
 	if (has_version < 0)
 		return -1;
 	if (version != 2)
-		return err_set(e, ERR_FORMAT, "%s: %s of SOG, expected version 2", at,
+		return err_file(e, at, "%s of SOG, expected version 2",
 			has_version ? "another version" : "version 1");
-	if (cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(meta, "antialias")))
-		return err_set(e, ERR_FORMAT,
-			"%s: trained for another way of rendering ('antialias'), which would be wrong here: train it without that mode",
-			at);
+	if (cJSON_IsTrue(json_get(meta, "antialias")))
+		return err_file(e, at,
+			"trained for another way of rendering ('antialias'), which would be wrong here: train it without that mode");
 	if (json_number(meta, "count", 1, &count, at, e) < 0)
 		return -1;
 	if (!(count >= 0 && count <= UINT32_MAX && count == floor(count)))
-		return err_set(
-			e, ERR_FORMAT, "%s: key 'count' is not a whole number from 0 to 4294967295", at);
+		return err_file(e, at, "key 'count' is not a whole number from 0 to 4294967295");
 	f->n = (size_t)count;
 	return 0;
 }
 
 static int read_parts(struct sog *f, const cJSON *meta, struct err *e)
 {
-	const cJSON *means = cJSON_GetObjectItemCaseSensitive(meta, "means"),
-		    *scales = cJSON_GetObjectItemCaseSensitive(meta, "scales"),
-		    *quats = cJSON_GetObjectItemCaseSensitive(meta, "quats"),
-		    *colors = cJSON_GetObjectItemCaseSensitive(meta, "sh0"),
-		    *rest = cJSON_GetObjectItemCaseSensitive(meta, "shN");
+	const cJSON *means = json_get(meta, "means"), *scales = json_get(meta, "scales"),
+		    *quats = json_get(meta, "quats"), *colors = json_get(meta, "sh0"),
+		    *rest = json_get(meta, "shN");
 	char at[320];
 
 	where(f, "means", at);
@@ -182,9 +175,8 @@ static int unpack_quat(const struct sog *f, size_t row, double *wxyz, struct err
 	double rest = 1;
 
 	if (largest < 0)
-		return err_set(e, ERR_FORMAT,
-			"%s: Gaussian %zu: the rotation's last byte is %d, expected 252 to 255", f->name, row,
-			p[3]);
+		return err_file(e, f->name,
+			"Gaussian %zu: the rotation's last byte is %d, expected 252 to 255", row, p[3]);
 	for (int k = 0; k < 4; k++) {
 		if (k == largest)
 			continue;
@@ -206,8 +198,8 @@ static int unpack_sh(const struct sog *f, size_t row, double *rest, struct err *
 	const size_t label = p[0] | (size_t)p[1] << 8, at = label / PALETTE_ROW;
 
 	if (label >= f->palette || at >= (size_t)f->images[CENTROIDS].height)
-		return err_set(e, ERR_FORMAT, "%s: Gaussian %zu: label %zu of a palette of %zu", f->name, row,
-			label, f->palette);
+		return err_file(
+			e, f->name, "Gaussian %zu: label %zu of a palette of %zu", row, label, f->palette);
 	p = pixel(f, CENTROIDS, label * (size_t)f->per_channel);
 	for (int k = 0; k < f->per_channel; k++, p += 4)
 		for (int c = 0; c < 3; c++)

@@ -2,7 +2,7 @@
  * formats/splats/sog.md. */
 #include "base/little.h"
 #include "base/mem.h"
-#include "formats/arrays/zip_write.h"
+#include "formats/arrays/archive.h"
 #include "formats/images/webp.h"
 #include "formats/splats/sog.h"
 #include "splat/gaussian_rows.h"
@@ -304,15 +304,13 @@ static int write_meta(struct writing *w, struct err *e)
 static int write_all(struct writing *w, struct err *e)
 {
 	find_bounds(w);
-	return find_order(w, e) || make_codebooks(w, e) || write_image(w, "means_l.webp", put_mean_low, e) ||
-			       write_image(w, "means_u.webp", put_mean_high, e) ||
-			       write_image(w, "scales.webp", put_scale, e) ||
-			       write_image(w, "quats.webp", put_quat, e) ||
-			       write_image(w, "sh0.webp", put_colour, e) ||
-			       (w->s->n && w->s->sh_coefficients > 1 && write_harmonics(w, e)) ||
-			       write_meta(w, e) || zip_write_end(&w->zip, e)
-		       ? -1
-		       : 0;
+	return -(find_order(w, e) || make_codebooks(w, e) ||
+		 write_image(w, "means_l.webp", put_mean_low, e) ||
+		 write_image(w, "means_u.webp", put_mean_high, e) ||
+		 write_image(w, "scales.webp", put_scale, e) || write_image(w, "quats.webp", put_quat, e) ||
+		 write_image(w, "sh0.webp", put_colour, e) ||
+		 (w->s->n && w->s->sh_coefficients > 1 && write_harmonics(w, e)) || write_meta(w, e) ||
+		 zip_write_end(&w->zip, e));
 }
 
 int sog_write(const struct splats *s, const double offset[3], const char *path, struct err *e)
@@ -321,8 +319,7 @@ int sog_write(const struct splats *s, const double offset[3], const char *path, 
 	struct file_out out;
 
 	if (s->n > (size_t)GAUSSIANS_MOST)
-		return err_set(
-			e, ERR_FORMAT, "%s: %zu Gaussians do not fit the images of a .sog", w.name, s->n);
+		return err_file(e, w.name, "%zu Gaussians do not fit the images of a .sog", s->n);
 	if (file_out_open(&out, path, e))
 		return -1;
 	zip_write_start(&w.zip, out.stream, w.name);

@@ -52,8 +52,8 @@ int splat_read_map(struct splats *s, double offset[3], struct rows_report *repor
 
 	*s = (struct splats){0};
 	if (bad)
-		err_set(e, ERR_FORMAT, "%s: %zu bytes are not a whole number of Gaussians of %d", name,
-			map->len, SPLAT_BYTES);
+		err_file(e, name, "%zu bytes are not a whole number of Gaussians of %d", map->len,
+			SPLAT_BYTES);
 	else
 		bad = gaussian_rows_read(s, offset, report, &rows, e);
 	file_unmap(map);

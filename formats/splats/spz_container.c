@@ -50,8 +50,7 @@ void spz_place(struct spz *f, const unsigned char *p)
 static int take_coordinates(struct spz *f, unsigned system, struct err *e)
 {
 	if (system < 1 || system > COORDINATES_PLAIN)
-		return err_set(e, ERR_FORMAT, "%s: coordinate system %u of an extension is not 1 to 8",
-			f->name, system);
+		return err_file(e, f->name, "coordinate system %u of an extension is not 1 to 8", system);
 	system--;
 	f->axes = (system & 1 ? 0 : FLIP_X) | (system & 2 ? FLIP_Y : 0) | (system & 4 ? 0 : FLIP_Z);
 	return 0;
@@ -63,7 +62,7 @@ static int read_extensions(struct spz *f, const unsigned char *p, size_t len, st
 	while (len) {
 		const size_t bytes = len < 8 ? 0 : (size_t)little_get(p + 4, 4);
 		if (len < 8 || bytes > len - 8)
-			return err_set(e, ERR_FORMAT, "%s: an extension is cut off", f->name);
+			return err_file(e, f->name, "an extension is cut off");
 		if (little_get(p, 4) == COORDINATES && bytes >= 4 &&
 			take_coordinates(f, (unsigned)little_get(p + 8, 4), e))
 			return -1;
@@ -79,24 +78,21 @@ static int read_header(struct spz *f, const unsigned char *h, struct err *e)
 	const uint64_t version = little_get(h + 4, 4);
 
 	if (little_get(h, 4) != SPZ_MAGIC)
-		return err_set(e, ERR_FORMAT, "%s: not an .spz file: it does not begin with 'NGSP'", f->name);
+		return err_file(e, f->name, "not an .spz file: it does not begin with 'NGSP'");
 	if (version < SPZ_OLDEST || version > SPZ_LATEST)
-		return err_set(e, ERR_FORMAT, "%s: version %llu of .spz, expected 2 to 4", f->name,
-			(unsigned long long)version);
+		return err_file(
+			e, f->name, "version %llu of .spz, expected 2 to 4", (unsigned long long)version);
 	f->version = (int)version;
 	f->n = (size_t)little_get(h + 8, 4);
 	f->degree = h[12];
 	f->fraction_bits = h[13];
 	if (f->degree > 3)
-		return err_set(e, ERR_FORMAT, "%s: spherical harmonics of degree %d, expected 0 to 3",
-			f->name, f->degree);
+		return err_file(e, f->name, "spherical harmonics of degree %d, expected 0 to 3", f->degree);
 	if (f->fraction_bits > 24)
-		return err_set(e, ERR_FORMAT, "%s: %d fraction bits in coordinates of 24", f->name,
-			f->fraction_bits);
+		return err_file(e, f->name, "%d fraction bits in coordinates of 24", f->fraction_bits);
 	if (h[14] & FLAG_ANTIALIASED)
-		return err_set(e, ERR_FORMAT,
-			"%s: trained for another way of rendering (antialiased, as Mip-Splatting), which would be wrong here: train it without that mode",
-			f->name);
+		return err_file(e, f->name,
+			"trained for another way of rendering (antialiased, as Mip-Splatting), which would be wrong here: train it without that mode");
 	return take_coordinates(f, COORDINATES_DEFAULT, e);
 }
 
@@ -109,8 +105,8 @@ static int make_room(struct spz *f, size_t compressed, size_t ratio, struct err 
 	if (mem_size(compressed, ratio, &most))
 		most = SIZE_MAX;
 	if (mem_size(f->n, row, &total) || total > most)
-		return err_set(e, ERR_FORMAT, "%s: %zu Gaussians of %zu bytes do not fit %zu packed bytes",
-			f->name, f->n, row, compressed);
+		return err_file(e, f->name, "%zu Gaussians of %zu bytes do not fit %zu packed bytes", f->n,
+			row, compressed);
 	f->bytes = mem_alloc(total, 1, f->name, e);
 	if (!f->bytes)
 		return -1;
@@ -132,7 +128,7 @@ static long long inflate_some(struct spz *f, z_stream *z, unsigned char *to, siz
 		got += want - z->avail_out;
 	}
 	if (status != Z_OK && status != Z_STREAM_END)
-		return err_set(e, ERR_FORMAT, "%s: %s, after %zu bytes of contents", f->name,
+		return err_file(e, f->name, "%s, after %zu bytes of contents",
 			status == Z_BUF_ERROR ? "the gzip stream is cut off" : "the gzip stream is damaged",
 			(size_t)z->total_out);
 	return (long long)got;
@@ -147,7 +143,7 @@ static int inflate_rest(struct spz *f, z_stream *z, int has_extensions, struct e
 	if (got < 0)
 		return -1;
 	if (got == sizeof rest || (got && !has_extensions) || z->avail_in)
-		return err_set(e, ERR_FORMAT, "%s: more than %zu Gaussians", f->name, f->n);
+		return err_file(e, f->name, "more than %zu Gaussians", f->n);
 	return has_extensions ? read_extensions(f, rest, (size_t)got, e) : 0;
 }
 
@@ -159,11 +155,11 @@ static int open_inflated(struct spz *f, z_stream *z, size_t packed, struct err *
 	if (got < 0)
 		return -1;
 	if (got < GZIP_HEADER)
-		return err_set(e, ERR_FORMAT, "%s: %lld bytes of contents, the header has 16", f->name, got);
+		return err_file(e, f->name, "%lld bytes of contents, the header has 16", got);
 	if (read_header(f, header, e))
 		return -1;
 	if (f->version > 3)
-		return err_set(e, ERR_FORMAT, "%s: version %d of .spz in gzip", f->name, f->version);
+		return err_file(e, f->name, "version %d of .spz in gzip", f->version);
 	if (make_room(f, packed, DEFLATE_RATIO, e))
 		return -1;
 	const size_t total = f->n * spz_row(f);
@@ -171,7 +167,7 @@ static int open_inflated(struct spz *f, z_stream *z, size_t packed, struct err *
 	if (arrays < 0)
 		return -1;
 	if ((size_t)arrays < total)
-		return err_set(e, ERR_FORMAT, "%s: %lld bytes of contents, %zu Gaussians have %zu", f->name,
+		return err_file(e, f->name, "%lld bytes of contents, %zu Gaussians have %zu",
 			arrays + GZIP_HEADER, f->n, total + GZIP_HEADER);
 	return inflate_rest(f, z, header[14] & FLAG_EXTENSIONS, e);
 }
@@ -181,8 +177,7 @@ static int open_gzip(struct spz *f, const struct file_map *map, struct err *e)
 	z_stream z = {.next_in = (Bytef *)(uintptr_t)map->data};
 
 	if (map->len > (uInt)-1)
-		return err_set(e, ERR_FORMAT, "%s: %zu bytes, more than a gzip stream of .spz can have",
-			f->name, map->len);
+		return err_file(e, f->name, "%zu bytes, more than a gzip stream of .spz can have", map->len);
 	z.avail_in = (uInt)map->len;
 	if (inflateInit2(&z, 16 + MAX_WBITS) != Z_OK)
 		return err_set(e, ERR_SYSTEM, "%s: out of memory", f->name);
@@ -203,23 +198,23 @@ static int unpack_streams(struct spz *f, const struct file_map *map, size_t tabl
 			continue;
 		const uint64_t packed = little_get(row, 8), unpacked = little_get(row + 8, 8);
 		if (unpacked != bytes)
-			return err_set(e, ERR_FORMAT, "%s: stream %d has %llu bytes, %zu Gaussians have %zu",
-				f->name, i, (unsigned long long)unpacked, f->n, bytes);
+			return err_file(e, f->name, "stream %d has %llu bytes, %zu Gaussians have %zu", i,
+				(unsigned long long)unpacked, f->n, bytes);
 		if (packed > map->len - at)
-			return err_set(e, ERR_FORMAT,
-				"%s: stream %d of %llu bytes from offset %zu does not fit a file of %zu",
-				f->name, i, (unsigned long long)packed, at, map->len);
+			return err_file(e, f->name,
+				"stream %d of %llu bytes from offset %zu does not fit a file of %zu", i,
+				(unsigned long long)packed, at, map->len);
 		unsigned char *to = f->bytes + (f->part[i] - f->bytes);
 		const size_t got = ZSTD_decompress(to, bytes, map->data + at, (size_t)packed);
 		if (ZSTD_isError(got) || got != bytes)
-			return err_set(e, ERR_FORMAT, "%s: stream %d is damaged: %s", f->name, i,
+			return err_file(e, f->name, "stream %d is damaged: %s", i,
 				ZSTD_isError(got) ? ZSTD_getErrorName(got) : "it is too short");
 		at += (size_t)packed;
 		row += TABLE_ROW;
 	}
 	if (at != map->len)
-		return err_set(e, ERR_FORMAT, "%s: %zu bytes after the last stream, from offset %zu", f->name,
-			map->len - at, at);
+		return err_file(
+			e, f->name, "%zu bytes after the last stream, from offset %zu", map->len - at, at);
 	return 0;
 }
 
@@ -229,19 +224,18 @@ static int open_plain(struct spz *f, const struct file_map *map, struct err *e)
 	int wanted = 0;
 
 	if (map->len < PLAIN_HEADER)
-		return err_set(e, ERR_FORMAT, "%s: %zu bytes, the header has 32", f->name, map->len);
+		return err_file(e, f->name, "%zu bytes, the header has 32", map->len);
 	if (read_header(f, h, e))
 		return -1;
 	if (f->version < 4)
-		return err_set(e, ERR_FORMAT, "%s: version %d of .spz without gzip", f->name, f->version);
+		return err_file(e, f->name, "version %d of .spz without gzip", f->version);
 	const size_t streams = h[15], table = (size_t)little_get(h + 16, 4);
 	for (int i = 0; i < SPZ_PARTS; i++)
 		wanted += f->n && spz_width(f, (enum spz_part)i);
 	if (streams != (size_t)wanted)
-		return err_set(e, ERR_FORMAT, "%s: %zu streams, expected %d", f->name, streams, wanted);
+		return err_file(e, f->name, "%zu streams, expected %d", streams, wanted);
 	if (table < PLAIN_HEADER || table > map->len || streams * TABLE_ROW > map->len - table)
-		return err_set(e, ERR_FORMAT,
-			"%s: a table of %zu streams at offset %zu does not fit a file of %zu", f->name,
+		return err_file(e, f->name, "a table of %zu streams at offset %zu does not fit a file of %zu",
 			streams, table, map->len);
 	if (h[14] & FLAG_EXTENSIONS && read_extensions(f, h + PLAIN_HEADER, table - PLAIN_HEADER, e))
 		return -1;

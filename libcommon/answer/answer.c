@@ -137,7 +137,7 @@ static void queue_put(struct queue *q, size_t i, int bad, const struct err *why)
 	}
 	q->ready[i] = !bad;
 	for (struct err e; q->next < q->failed && q->ready[q->next]; q->next++)
-		if (q->calls->done(q->calls->data, q->next, &e)) {
+		if (q->calls->done && q->calls->done(q->calls->data, q->next, &e)) {
 			q->failed = q->next;
 			*q->e = e;
 		}

@@ -40,7 +40,7 @@ struct answer_calls {
 	void *data;
 	/* One answer. Called by several threads at once, but for a view by one, answer after answer. */
 	int (*each)(void *data, const struct answer *a, struct err *e);
-	/* All of a view's answers were given: called for one view after the other, in order. */
+	/* All of a view's answers were given: called for one view after the other, in order. May be NULL. */
 	int (*done)(void *data, size_t view, struct err *e);
 }; /* both return 0, or -1 with *e set */
 

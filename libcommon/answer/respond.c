@@ -65,10 +65,8 @@ static int answering_init(struct answering *a, const struct respond_model *m, co
 		.longest = longest,
 		.batch = 1};
 	panels_pack(m->features, rows, width, a->panels);
-	return forward_init(&a->forward, &setup, e) || text_mlp_init(&a->words, m->layout, sentences, offsets,
-							       words, TEXT_MLP_ANSWERING, e)
-		       ? -1
-		       : 0;
+	return -(forward_init(&a->forward, &setup, e) ||
+		 text_mlp_init(&a->words, m->layout, sentences, offsets, words, TEXT_MLP_ANSWERING, e));
 }
 
 /* a->response gets the responses of the rows to one sentence. */

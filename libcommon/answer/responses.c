@@ -41,9 +41,9 @@ static int check_finite(const float *responses, const struct responses_question 
 	for (size_t i = 0; i < q->count; i++)
 		for (size_t k = 0; k < n; k++)
 			if (!isfinite(responses[i * n + k]))
-				return err_set(e, ERR_FORMAT,
-					"%s: the responses to ref '%s' are not finite: its weights are too large",
-					q->model_path, q->refs[q->which[i]]);
+				return err_file(e, q->model_path,
+					"the responses to ref '%s' are not finite: its weights are too large",
+					q->refs[q->which[i]]);
 	return 0;
 }
 

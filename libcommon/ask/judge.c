@@ -9,15 +9,34 @@
 
 enum { DEPTH = 16 }; /* deeper nesting is not looked at */
 
+/* How far it is known which thing a phrase means that is left out: not by its relation to what is nothing
+ * here, nor where nothing is as it says. */
+static double known_except(const struct meaning *m, int except)
+{
+	const struct parse *p = m->sentence->parse;
+	const struct parse_list *clauses = &p->phrases[except].clauses;
+	double known = m->known[except];
+
+	for (int k = 0; k < clauses->n; k++) {
+		const struct parse_clause *c = &p->clauses[clauses->item[k]];
+		for (int j = 0; j < c->anchors.n; j++)
+			if (!meaning_is_scene(m, c->anchors.item[j]))
+				known = fmin(known, UNKNOWN_RELATION + (1 - UNKNOWN_RELATION) *
+									       m->known[c->anchors.item[j]]);
+	}
+	return known;
+}
+
 /* The phrase's fit takes in a phrase that is left out. */
 static void judge_except(struct meaning *m, int phrase, int except)
 {
 	const size_t n = objects_of(m);
 	const double *fit = fit_of(m, except), most = fmax(largest(fit, n), 1e-9);
+	const double known = known_except(m, except);
 	double *value = meaning_add_part(m, phrase, MEANING_EXCEPT, except), *there = there_of(m, phrase);
 
 	for (size_t o = 0; o < n; o++) {
-		value[o] = 1 - (1 - EXCEPT_LEAST) * m->known[except] * fit[o] / most;
+		value[o] = 1 - (1 - EXCEPT_LEAST) * known * fit[o] / most;
 		there[o] *= value[o];
 	}
 	meaning_take_part(m);

@@ -209,9 +209,10 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 		return;
 	}
 	judge_said(m, c, said);
+	/* nothing is beside what is not here: a denial of it is true */
+	const double unknown = c->negated ? 0 : UNKNOWN_RELATION;
 	for (size_t o = 0; o < n; o++)
-		value[o] = fmax(known * value[o] + (1 - known) * UNKNOWN_RELATION,
-			(1 - known) * SAID_WORTH * said[o]);
+		value[o] = fmax(known * value[o] + (1 - known) * unknown, (1 - known) * SAID_WORTH * said[o]);
 }
 
 /* How far an object is itself an anchor of a clause: "not beside the mug" is not said of the mug. */

@@ -25,6 +25,17 @@ int err_set(struct err *e, enum err_code code, const char *format, ...)
 	return -1;
 }
 
+int err_file(struct err *e, const char *path, const char *format, ...)
+{
+	char reason[sizeof e->message];
+	va_list ap;
+
+	va_start(ap, format);
+	vsnprintf(reason, sizeof reason, format, ap);
+	va_end(ap);
+	return err_set(e, ERR_FORMAT, "%s: %s", path, reason);
+}
+
 int err_errno(struct err *e, const char *format, ...)
 {
 	int saved = errno;

@@ -20,6 +20,9 @@ struct err {
  * one line whatever names it quotes. Always returns -1, so `return err_set(...)` fails. */
 int err_set(struct err *e, enum err_code code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
+/* Of a file that is malformed: ERR_FORMAT, "PATH: " and the reason. */
+int err_file(struct err *e, const char *path, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
 /* As err_set with ERR_SYSTEM; appends ": " and the text of errno. */
 int err_errno(struct err *e, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -5,6 +5,8 @@
 #include "base/err.h"
 
 #include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* *out = a*b; returns 0, or -1 where the product does not fit (then *out is untouched). */
 int mem_size(size_t a, size_t b, size_t *out);
@@ -24,5 +26,20 @@ int mem_room(void **block, size_t *capacity, size_t need, size_t size, const cha
 
 /* A copy of a string, NULL with *e set when memory is out. */
 char *mem_strdup(const char *text, struct err *e);
+
+/* Before a local's declaration that has an initialiser: what it owns is released wherever its block is left.
+ * `SCOPED char *path = file_join(...);` for memory, and for what has a function of its address,
+ * `SCOPED_BY(scene_free) struct scene s = {0};`. */
+#define SCOPED_BY(release) __attribute__((cleanup(release)))
+#define SCOPED SCOPED_BY(mem_free_at)
+
+/* free() of the pointer at an address, whatever it points to. */
+static inline void mem_free_at(void *address)
+{
+	void *block;
+
+	memcpy(&block, address, sizeof block);
+	free(block);
+}
 
 #endif

@@ -69,9 +69,8 @@ int textfile_decode(char **text, size_t *len, const char *name, struct err *e)
 	while (at < *len) {
 		if (next_wide(*text, *len, &at, order, &c)) {
 			free(out);
-			return err_set(e, ERR_FORMAT,
-				"%s: UTF-16 that is cut within a character at offset %zu: save it as UTF-8",
-				name, at);
+			return err_file(e, name,
+				"UTF-16 that is cut within a character at offset %zu: save it as UTF-8", at);
 		}
 		if (c != 0xfeff)
 			used += utf8_put(out + used, c);

@@ -468,3 +468,18 @@ const struct report *cli_report(struct cli_report *r, const struct cli *c)
 		r, report_a_note, report_a_warning, report_a_start, report_a_step, report_an_end};
 	return &r->report;
 }
+
+int cli_main(const struct cli_tool *tool, int argc, char **argv,
+	int (*run)(const struct cli *c, const struct report *to, struct err *e))
+{
+	struct err e = {0};
+	struct cli_report to;
+	struct cli c;
+
+	cli_parse(&c, tool, argc, argv);
+	const int status = run(&c, cli_report(&to, &c), &e);
+	if (status < 0)
+		return cli_fail(&c, &e);
+	cli_done(&c);
+	return status;
+}

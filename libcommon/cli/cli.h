@@ -103,6 +103,11 @@ struct cli_report {
 };
 const struct report *cli_report(struct cli_report *r, const struct cli *c);
 
+/* A whole tool: parses, and calls `run`, which checks what a table cannot state, and works. It returns 0, the
+ * exit status of a check that was false, or -1 with *e set. Returns the exit status. */
+int cli_main(const struct cli_tool *tool, int argc, char **argv,
+	int (*run)(const struct cli *c, const struct report *to, struct err *e));
+
 /* Monotonic seconds. */
 double cli_seconds(void);
 

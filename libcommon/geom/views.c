@@ -28,7 +28,7 @@ const char *view_fault(const struct camera *c)
 	if (!isfinite(c->cx) || !isfinite(c->cy))
 		return "its principal point is not finite";
 	if (!camera_is_rigid(c))
-		return "its pose is not a rotation and a translation";
+		return "its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?";
 	return NULL;
 }
 
@@ -123,8 +123,8 @@ static int lengthen_shared(struct entry *entries, size_t n, const char *path, st
 	for (size_t i = 0; i + 1 < n; i++)
 		if (!strcmp(entries[i].view.name, entries[i + 1].view.name)) {
 			if (entries[i].level == ESCAPED_PATH && entries[i + 1].level == ESCAPED_PATH)
-				return err_set(e, ERR_FORMAT, "%s: two views have the name '%s'", path,
-					entries[i].view.name);
+				return err_file(
+					e, path, "two views have the name '%s'", entries[i].view.name);
 			entries[i].is_shared = entries[i + 1].is_shared = was_shared = 1;
 		}
 	for (size_t i = 0; i < n; i++) {
@@ -144,8 +144,7 @@ static int name_entries(struct entry *entries, size_t n, const char *path, struc
 		if (set_name(&entries[i].view, FILE_STEM, e))
 			return -1;
 		if (!*entries[i].view.name)
-			return err_set(e, ERR_FORMAT, "%s: image '%s' gives no view name", path,
-				entries[i].view.image);
+			return err_file(e, path, "image '%s' gives no view name", entries[i].view.image);
 	}
 	while (state > 0)
 		state = lengthen_shared(entries, n, path, e);
@@ -163,7 +162,7 @@ int views_finish(struct cameras *c, const char *path, struct err *e)
 		entries[i].view = c->views[i];
 		const char *fault = view_fault(&c->views[i]);
 		if (fault && !bad)
-			bad = err_set(e, ERR_FORMAT, "%s: view '%s': %s", path, c->views[i].image, fault);
+			bad = err_file(e, path, "view '%s': %s", c->views[i].image, fault);
 	}
 	bad = bad || name_entries(entries, c->n, path, e);
 	for (size_t i = 0; i < c->n; i++) {

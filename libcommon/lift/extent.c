@@ -311,7 +311,7 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 		mem_alloc(room, sizeof(struct quantile_item), "object", e)};
 	char *kept = mem_alloc(room, 1, "object", e);
 
-	*x = (struct extent){.ids = mem_alloc(room, sizeof *ids, "object", e)};
+	*x = (struct extent){.ids = mem_alloc(room, sizeof *ids, "object", e), .weight = c.weight};
 	int bad = !c.means || !c.spread || !c.weight || !c.items || !kept || !x->ids ? -1 : 0;
 	if (!bad && n) {
 		memcpy(x->ids, ids, n * sizeof *ids);
@@ -326,7 +326,6 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 	}
 	free(c.means);
 	free(c.spread);
-	free(c.weight);
 	free(c.items);
 	free(kept);
 	if (bad)
@@ -337,5 +336,6 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 void extent_free(struct extent *x)
 {
 	free(x->ids);
+	free(x->weight);
 	*x = (struct extent){0};
 }

@@ -30,6 +30,7 @@
 struct extent {
 	size_t n;
 	int32_t *ids;	    /* (n) the Gaussians that are no strays, in the order in which they were given */
+	double *weight;	    /* (n) w: how far each is the object's alone, 0 to 1 */
 	struct box aligned; /* along the axes of the means; zeroed where n is 0 */
 	struct box turned;  /* its third axis is up, its foot the smallest rectangle (see EXTENT_GAIN) */
 };

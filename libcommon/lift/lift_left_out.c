@@ -3,6 +3,7 @@
  * what it shows of each Gaussian. */
 #include "lift/lift_private.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "base/quantile.h"
 
@@ -123,13 +124,6 @@ static void revote(struct lift_objects *l, size_t object)
 	}
 }
 
-static int rising(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 int lift_left_out(struct lift_objects *l, size_t named, double *agreement, struct err *e)
 {
 	size_t most = 0, n = 0;
@@ -153,7 +147,7 @@ int lift_left_out(struct lift_objects *l, size_t named, double *agreement, struc
 		n += compare_all(l, o, &r, found + n);
 	}
 	if (n)
-		qsort(found, n, sizeof *found, rising);
+		qsort(found, n, sizeof *found, compare_double);
 	*agreement = n >= LIFT_LEFT_OUT_MASKS ? quantile_sorted(found, n, 0.5) : NAN;
 	free(r.who);
 	free(r.place);

@@ -107,7 +107,7 @@ int lift_objects_view(struct lift_objects *l, size_t at, const struct view_matri
 		v->starts[v->n++] = k;
 	}
 	v->starts[v->n] = n;
-	return fill_bits(v, masks, n, w->height, w->width, e) || make_rows(v, w, e) ? -1 : 0;
+	return -(fill_bits(v, masks, n, w->height, w->width, e) || make_rows(v, w, e));
 }
 
 float lift_vote(double agreement)

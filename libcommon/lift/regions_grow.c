@@ -9,7 +9,7 @@
 #define SEEN 0.05		    /* pixels of weight from which a view says what a Gaussian is */
 #define EXPLAINED 0.6		    /* agreement from which a candidate is of a region that there is */
 #define SAME 0.75		    /* overlap from which two regions are one */
-enum { STEPS = 3, SEED_VIEWS = 4 }; /* of each object, spread over its views */
+enum { STEPS = 3, SEED_VIEWS = 4 }; /* of each object, spread over how much they show */
 
 /* A region in the making. */
 struct growth {
@@ -252,18 +252,43 @@ static int is_seed(const struct regions *r, size_t witness, size_t object)
 	return w->object == object && w->candidate != REGIONS_NONE && r->candidates[w->candidate].shares.n;
 }
 
-/* The views that an object's regions are grown from. Returns how many: views (SEED_VIEWS). */
-static size_t find_views(const struct regions *r, size_t object, size_t *all, size_t *views)
+/* An object's surest seed in a view. */
+struct start {
+	const struct regions_witness *first;
+	double area; /* share of the picture */
+};
+
+static double picture_share(const struct rle *m)
+{
+	return (double)rle_area(m) / ((double)m->height * (double)m->width);
+}
+
+static int order_starts(const void *a, const void *b)
+{
+	const struct start *p = a, *q = b;
+	const int order = mask_order(p->first->mask, q->first->mask);
+
+	if (p->area != q->area)
+		return p->area < q->area ? -1 : 1;
+	return order ? order : (p->first > q->first) - (p->first < q->first);
+}
+
+/* Where an object's regions are grown from: views that show it small and large, whatever their names and
+ * order are. Returns how many: the first of *starts (views). */
+static size_t find_starts(const struct regions *r, size_t object, struct start *starts)
 {
 	size_t n = 0, found = 0;
 
 	for (size_t i = 0; i < r->witness_count; i++)
-		if (is_seed(r, i, object) && (!n || all[n - 1] != r->witnesses[i].view))
-			all[n++] = r->witnesses[i].view;
+		if (is_seed(r, i, object) && (!n || starts[n - 1].first->view != r->witnesses[i].view))
+			starts[n++] =
+				(struct start){&r->witnesses[i], picture_share(&r->witnesses[i].mask->rle)};
+	if (n)
+		qsort(starts, n, sizeof *starts, order_starts);
 	for (size_t k = 0; k < SEED_VIEWS && n; k++) {
-		const size_t view = all[k * (n - 1) / (SEED_VIEWS - 1)];
-		if (!found || views[found - 1] != view)
-			views[found++] = view;
+		const size_t at = k * (n - 1) / (SEED_VIEWS - 1);
+		if (at >= found)
+			starts[found++] = starts[at];
 	}
 	return found;
 }
@@ -289,23 +314,22 @@ static void name_objects(const struct regions *r, struct named *named)
 		qsort(named, r->object_count, sizeof *named, order_names);
 }
 
-static int grow_object(struct regions *r, struct growth *g, size_t object, float *explained,
-	const double *total, struct err *e)
+static int grow_object(struct regions *r, struct growth *g, size_t object, struct start *starts,
+	float *explained, const double *total, struct err *e)
 {
-	size_t views[SEED_VIEWS];
-	const size_t n = find_views(r, object, g->before, views);
+	const size_t n = find_starts(r, object, starts);
 
-	for (size_t i = 0, at = 0; i < r->witness_count && at < n; i++) {
-		const struct regions_witness *w = &r->witnesses[i];
-		while (at < n && views[at] < w->view)
-			at++;
-		if (at == n || views[at] != w->view || !is_seed(r, i, object) || g->is_tried[w->candidate] ||
-			explained[w->candidate] >= (float)EXPLAINED)
-			continue;
-		g->is_tried[w->candidate] = 1;
-		if (grow(g, r, w->candidate) && !is_known(g, r, total) && keep(r, &g->region, explained, e))
-			return -1;
-	}
+	for (size_t k = 0; k < n; k++)
+		for (const struct regions_witness *w = starts[k].first;
+			w < r->witnesses + r->witness_count && w->view == starts[k].first->view; w++) {
+			if (!is_seed(r, (size_t)(w - r->witnesses), object) || g->is_tried[w->candidate] ||
+				explained[w->candidate] >= (float)EXPLAINED)
+				continue;
+			g->is_tried[w->candidate] = 1;
+			if (grow(g, r, w->candidate) && !is_known(g, r, total) &&
+				keep(r, &g->region, explained, e))
+				return -1;
+		}
 	return 0;
 }
 
@@ -317,18 +341,20 @@ int regions_grow(struct regions *r, struct err *e)
 	float *explained = mem_zalloc(r->count, sizeof *explained, "regions", e);
 	double *total = mem_zalloc(r->gaussians, sizeof *total, "regions", e);
 	struct named *named = mem_alloc(r->object_count, sizeof *named, "regions", e);
-	int bad = !explained || !total || !named || growth_make(&g, r, e);
+	struct start *starts = mem_alloc(r->views, sizeof *starts, "regions", e);
+	int bad = !explained || !total || !named || !starts || growth_make(&g, r, e);
 
 	for (size_t v = 0; v < r->views && !bad; v++)
 		seen_add(&r->seen[v], r->gaussians, total);
 	if (!bad) {
 		name_objects(r, named);
 		for (size_t i = 0; i < r->object_count && !bad; i++)
-			bad = grow_object(r, &g, named[i].object, explained, total, e);
+			bad = grow_object(r, &g, named[i].object, starts, explained, total, e);
 		growth_free(&g);
 	}
 	free(explained);
 	free(total);
+	free(starts);
 	free(named);
 	return bad ? -1 : 0;
 }

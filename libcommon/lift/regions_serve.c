@@ -8,6 +8,8 @@
 #include <stdlib.h>
 
 #define CHANCE 0.02 /* share of a sentence's candidates that is found by accident */
+#define DOUBT 1.0   /* confidence that a sentence has in nothing, so that one candidate tells less than many \
+		     */
 
 /* The region that a candidate shows, or REGIONS_NONE. */
 static size_t find_region(const struct regions *r, size_t candidate)
@@ -41,8 +43,8 @@ static int find_shares(const struct regions *r, double *share, struct err *e)
 			share[at->sentence * r->region_count + best] += score;
 	}
 	for (size_t s = 0; s < r->sentence_count; s++)
-		for (size_t i = 0; i < r->region_count && total[s] > 0; i++)
-			share[s * r->region_count + i] /= total[s];
+		for (size_t i = 0; i < r->region_count; i++)
+			share[s * r->region_count + i] /= total[s] + DOUBT;
 	free(total);
 	return 0;
 }

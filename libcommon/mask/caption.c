@@ -4,6 +4,10 @@
 
 #include <string.h>
 
+const uint8_t caption_font[CAPTION_GLYPHS][CAPTION_HEIGHT] = {
+#include "mask/caption_font.def"
+};
+
 /* Pixels of the picture for one of the font. */
 static int scale_of(int width)
 {

@@ -50,8 +50,7 @@ int bpe_finish(struct bpe *b, char missing[BPE_MISSING])
 			find_token(b, token, &b->bytes[1][byte], missing))
 			return -1;
 	}
-	return find_token(b, BPE_START, &b->start, missing) || find_token(b, BPE_END, &b->end, missing) ? -1
-													: 0;
+	return -(find_token(b, BPE_START, &b->start, missing) || find_token(b, BPE_END, &b->end, missing));
 }
 
 static size_t slot_of(const struct bpe *b, int32_t left, int32_t right)

@@ -87,9 +87,9 @@ static int find_own(struct extent *x, const struct lifted *l, size_t object, con
 	int bad = !ids || !shares;
 
 	for (size_t i = begin; i < begin + room && !bad; i++)
-		if (l->share[i] > 0.5F && size_of(s, (size_t)l->index[i]) > 0) {
+		if (l->share[i] > (float)LIFTED_CUT && size_of(s, (size_t)l->index[i]) > 0) {
 			ids[n] = l->index[i];
-			shares[n++] = l->share[i];
+			shares[n++] = l->share[i] - (float)LIFTED_CUT;
 		}
 	bad = bad || extent_find(x, s, ids, shares, n, up, e);
 	free(ids);
@@ -158,8 +158,8 @@ static int take_points(struct arrangement *a, size_t o, const struct lifted *l, 
 		bad = take_looks(&a->objects[o], s, &own, step, weight, up, points, e);
 		for (size_t i = 0; i < own.n; i += step) {
 			const float *mean = s->means + 3 * (size_t)own.ids[i];
-			a->points[a->begin[o + 1]++] =
-				(struct arranged_point){{mean[0], mean[1], mean[2]}, weight[i]};
+			a->points[a->begin[o + 1]++] = (struct arranged_point){
+				{mean[0], mean[1], mean[2]}, weight[i] * own.weight[i]};
 		}
 	}
 	free(weight);

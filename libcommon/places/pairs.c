@@ -103,6 +103,7 @@ double pair_fits(const struct arrangement *a, enum parse_relation relation, enum
 		return on_side(a, p, q, away, right, width);
 	case PARSE_NEAR:
 	case PARSE_WITH:
+	case PARSE_BETWEEN: /* of it and what is nothing here */
 		return near(a, p, q);
 	case PARSE_FAR:
 		return logistic((pair_distance(p, q) / s - far_from) / 0.2);

@@ -383,7 +383,7 @@ void relate(
 			by_itself(a, r, fit, key, out);
 		else
 			relate_rank(a, r->kind, r->place ? r->place : 1, fit, key, out);
-	} else if (r->kind == PARSE_BETWEEN ||
+	} else if ((r->kind == PARSE_BETWEEN && (count > 1 || named[0]->is_every)) ||
 		   (r->kind == PARSE_MIDDLE && (count > 1 || named[0]->is_every))) {
 		memset(out, 0, a->n * sizeof *out);
 		between_pairs(a, named[0], named[count > 1], out);

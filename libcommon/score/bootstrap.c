@@ -1,5 +1,6 @@
 #include "score/bootstrap.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "base/quantile.h"
 #include "base/rng.h"
@@ -26,13 +27,6 @@ static struct rng resample_rng(const struct bootstrap *how, size_t resample)
 
 	rng_seed(&r, mixed(how->seed + 0x9e3779b97f4a7c15u * (resample + 1)), resample);
 	return r;
-}
-
-static int order_numbers(const void *a, const void *b)
-{
-	const double *p = a, *q = b;
-
-	return (*p > *q) - (*p < *q);
 }
 
 static void draw(double *ratios, size_t stride, const double *sums, size_t n, size_t k, struct rng *r)
@@ -65,7 +59,7 @@ int bootstrap_ratios(struct interval *intervals, const double *sums, size_t n, s
 	}
 	for (size_t j = 0; j < k; j++) {
 		double *one = ratios + j * how->resamples;
-		qsort(one, how->resamples, sizeof *one, order_numbers);
+		qsort(one, how->resamples, sizeof *one, compare_double);
 		intervals[j].low = quantile_sorted(one, how->resamples, (1 - how->confidence) / 2);
 		intervals[j].high = quantile_sorted(one, how->resamples, (1 + how->confidence) / 2);
 	}

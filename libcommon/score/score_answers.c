@@ -1,5 +1,6 @@
 #include "score/score_answers.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "mask/mask_index.h"
 
@@ -35,11 +36,6 @@ static void truth_free(struct truth *t)
 	free(t->names);
 }
 
-static int order_strings(const void *a, const void *b)
-{
-	return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
 /* Of several masks of one object in a view the one without ref, else the first. */
 static void list_objects(struct truth *t, const struct mask *truth, const struct mask_index *x)
 {
@@ -59,7 +55,7 @@ static void list_objects(struct truth *t, const struct mask *truth, const struct
 		t->views[t->view_count - 1].end = t->n;
 	}
 	if (t->name_count)
-		qsort(t->names, t->name_count, sizeof *t->names, order_strings);
+		qsort(t->names, t->name_count, sizeof *t->names, compare_string);
 }
 
 static int truth_make(struct truth *t, const struct mask *truth, size_t n, struct err *e)
@@ -226,7 +222,7 @@ static void count_unknown(
 		for (size_t k = 0; k < sentences[i].object_count; k++) {
 			const char *name = sentences[i].objects[k];
 			is_unknown |= !t->name_count ||
-				      !bsearch(&name, t->names, t->name_count, sizeof name, order_strings);
+				      !bsearch(&name, t->names, t->name_count, sizeof name, compare_string);
 		}
 		a->unknown += (size_t)is_unknown;
 	}
@@ -242,10 +238,10 @@ static int count_unmatched(struct answers *a, const struct answer_sentence *sent
 	for (size_t i = 0; i < n; i++)
 		refs[i] = sentences[i].ref;
 	if (n)
-		qsort(refs, n, sizeof *refs, order_strings);
+		qsort(refs, n, sizeof *refs, compare_string);
 	for (size_t i = 0; i < prediction_n; i++)
 		a->unmatched += !predictions[i].ref ||
-				!bsearch(&predictions[i].ref, refs, n, sizeof *refs, order_strings);
+				!bsearch(&predictions[i].ref, refs, n, sizeof *refs, compare_string);
 	free(refs);
 	return 0;
 }

@@ -1,5 +1,6 @@
 #include "splat/gaussian_rows.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 
 #include <float.h>
@@ -74,13 +75,6 @@ static enum verdict put_gaussian(struct splats *s, size_t i, double *mean, int r
 	return KEEP;
 }
 
-static int by_value(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 /* The rule of ply.md: far from the origin, compared with the scene's own size, means an offset. */
 int gaussian_offset(double offset[3], const double *means, size_t n, struct err *e)
 {
@@ -97,7 +91,7 @@ int gaussian_offset(double offset[3], const double *means, size_t n, struct err 
 		count = 0;
 		for (size_t i = 0; i < n; i += step)
 			sorted[count++] = means[3 * i + (size_t)k];
-		qsort(sorted, count, sizeof *sorted, by_value);
+		qsort(sorted, count, sizeof *sorted, compare_double);
 		median[k] = sorted[count / 2];
 		spread = fmax(spread, sorted[count - 1 - count / 4] - sorted[count / 4]);
 		far = fmax(far, fabs(median[k]));
@@ -171,9 +165,9 @@ static int read_and_shift(struct splats *s, double offset[3], struct rows_report
 		s->means[i] = (float)(means[i] - offset[i % 3]);
 	free(means);
 	if (!bad && n && !s->n)
-		return err_set(e, ERR_FORMAT,
-			"%s: none of its %zu Gaussians can be used: %zu have a value that is not finite, %zu a zero quaternion",
-			from->path, n, report->not_finite, report->zero_quat);
+		return err_file(e, from->path,
+			"none of its %zu Gaussians can be used: %zu have a value that is not finite, %zu a zero quaternion",
+			n, report->not_finite, report->zero_quat);
 	return -bad;
 }
 

@@ -1,5 +1,6 @@
 #include "splat/palette.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 
 #include <math.h>
@@ -9,13 +10,6 @@
 /* Lloyd's iterations: after these the codes of a real scene move by less than a hundredth of their distance.
  */
 enum { ITERATIONS = 30, BINS = 4096 };
-
-static int rising(const void *a, const void *b)
-{
-	const float x = *(const float *)a, y = *(const float *)b;
-
-	return (x > y) - (x < y);
-}
 
 int palette_code(const double codes[PALETTE_CODES], double value)
 {
@@ -170,7 +164,7 @@ int palette_codebook(double codes[PALETTE_CODES], const float *values, size_t n,
 
 	if (sums) {
 		memcpy(sorted, values, n * sizeof *sorted);
-		qsort(sorted, n, sizeof *sorted, rising);
+		qsort(sorted, n, sizeof *sorted, compare_float);
 		sums[0] = 0;
 		for (size_t i = 0; i < n; i++)
 			sums[i + 1] = sums[i] + (double)sorted[i];

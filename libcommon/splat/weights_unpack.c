@@ -23,8 +23,7 @@ struct unpacking {
 
 static int broken(const struct unpacking *u, struct err *e)
 {
-	return err_set(e, ERR_FORMAT, "%s: packed weights are broken, after byte %zu of their Gaussians",
-		u->path, u->at);
+	return err_file(e, u->path, "packed weights are broken, after byte %zu of their Gaussians", u->at);
 }
 
 static int make_room(uint8_t **data, size_t *room, size_t bytes, const char *path, struct err *e)
@@ -256,11 +255,11 @@ int weights_unpack_tiles(const struct weights_pack *p, int width, int height, in
 	to->tiles.height = height;
 	to->tiles.across = (width + VIEW_TILE - 1) / VIEW_TILE;
 	to->tiles.down = (height + VIEW_TILE - 1) / VIEW_TILE;
-	return decompress_all(&u, p, e) || take_all(&u, e) ? -1 : 0;
+	return -(decompress_all(&u, p, e) || take_all(&u, e));
 }
 
 int weights_unpack(const struct weights_pack *p, int width, int height, int64_t gaussians, const char *path,
 	struct weights_room *to, struct err *e)
 {
-	return weights_unpack_tiles(p, width, height, gaussians, path, to, e) || fill(to, path, e) ? -1 : 0;
+	return -(weights_unpack_tiles(p, width, height, gaussians, path, to, e) || fill(to, path, e));
 }

@@ -270,3 +270,18 @@ void synth_arrange(struct synth_object *objects, int n, struct synth_table *tabl
 	place_loads(&h);
 	name_objects(objects, n);
 }
+
+static const struct synth_preset presets[SYNTH_PRESETS] = {
+#include "synth/presets.def"
+};
+
+const struct synth_preset *synth_preset(int number)
+{
+	return number >= 0 && number < SYNTH_PRESETS ? &presets[number] : NULL;
+}
+
+uint64_t synth_preset_seed(int number, uint64_t seed, int attempt)
+{
+	/* Odd constants far from small seeds: the golden ratio's, and one of splitmix64's. */
+	return seed + (uint64_t)number * 0x9e3779b97f4a7c15u + (uint64_t)attempt * 0xbf58476d1ce4e5b9u;
+}

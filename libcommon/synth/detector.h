@@ -7,7 +7,7 @@
 #include "mask/mask.h"
 #include "synth/noise.h"
 #include "synth/presets.h"
-#include "synth/synth_sentences.h"
+#include "synth/sentence.h"
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,5 +1,6 @@
 #include "synth/statistics.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 
 #include <math.h>
@@ -35,19 +36,12 @@ double synth_statistics_share(const struct synth_sentences *sentences, const str
 	return (double)n / (double)sentences->n;
 }
 
-static int compare(const void *a, const void *b)
-{
-	float x = *(const float *)a, y = *(const float *)b;
-
-	return (x > y) - (x < y);
-}
-
 /* Sorts the values. */
 static void take_quantiles(float *values, size_t n, double quantiles[SYNTH_QUANTILES])
 {
 	static const double at[SYNTH_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
-	qsort(values, n, sizeof *values, compare);
+	qsort(values, n, sizeof *values, compare_float);
 	for (int k = 0; k < SYNTH_QUANTILES; k++)
 		quantiles[k] = (double)values[(size_t)(at[k] * (double)(n - 1) + 0.5)];
 }

@@ -4,7 +4,7 @@
 
 #include "base/err.h"
 #include "synth/synth_scene.h"
-#include "synth/synth_sentences.h"
+#include "synth/sentence.h"
 
 #include <stddef.h>
 

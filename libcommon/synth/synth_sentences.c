@@ -1,4 +1,4 @@
-#include "synth/synth_sentences.h"
+#include "synth/sentence.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -239,7 +239,7 @@ static int fill(struct draft *d, const char *frame)
 		snprintf(longer, sizeof longer, "%s, %%R", frame);
 		frame = longer;
 	}
-	return bad || synth_write(&d->s, frame, NULL, d->rng) ? -1 : 0;
+	return -(bad || synth_write(&d->s, frame, NULL, d->rng));
 }
 
 /* 1 where one of the sentences so far already says the same of the same other object. */

@@ -1,5 +1,5 @@
 /* Sentences in a wording of their own, for testing what takes sentences apart: words, frames and ways of
- * turning a sentence round are kept apart from those of synth/synth_sentences.h. What is kept means the same
+ * turning a sentence round are kept apart from those of synth/sentence.h. What is kept means the same
  * objects to anybody by a margin, and its parse and its objects are exact. */
 #ifndef SYNTH_UNSEEN_H
 #define SYNTH_UNSEEN_H

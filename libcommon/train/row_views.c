@@ -112,7 +112,7 @@ int row_views_make(struct row_views *r, const struct rows *rows, const struct vi
 		r->views[v] = from->views[v];
 		r->views[v].weights = (struct view_weights){.pixels = from->views[v].weights.pixels};
 	}
-	return each_run(&by, r->n, e) || make_room(&m, e) ? -1 : 0;
+	return -(each_run(&by, r->n, e) || make_room(&m, e));
 }
 
 void row_views_free(struct row_views *r)

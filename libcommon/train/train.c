@@ -1,5 +1,6 @@
 #include "train/train.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "base/rng.h"
 #include "nn/adam.h"
@@ -48,13 +49,6 @@ int train_active_set(const double *weight, size_t scene_gaussians, double tolera
 	return 0;
 }
 
-static int by_value(const void *a, const void *b)
-{
-	float x = *(const float *)a, y = *(const float *)b;
-
-	return (x > y) - (x < y);
-}
-
 int train_bounds(
 	const float *means, const int32_t *ids, size_t n, double low[3], double high[3], struct err *e)
 {
@@ -65,7 +59,7 @@ int train_bounds(
 	for (int k = 0; k < 3; k++) {
 		for (size_t i = 0; i < n; i++)
 			axis[i] = means[3 * (size_t)ids[i] + (size_t)k];
-		qsort(axis, n, sizeof *axis, by_value);
+		qsort(axis, n, sizeof *axis, compare_float);
 		low[k] = n ? (double)axis[n / 100] : 0;
 		high[k] = n ? (double)axis[n - 1 - n / 100] : 0;
 		if (!(high[k] > low[k])) {

@@ -43,10 +43,8 @@ static int choose_rows(
 			 : rows_of_ids(&t->rows, t->ids, t->learning, n, e))
 		return -1;
 	t->position = mem_alloc(t->rows.n, 3 * sizeof(float), "positions", e);
-	return !t->position || train_bounds(from->means, t->ids, t->learning, t->low, t->high, e) ||
-			       rows_positions(&t->rows, from->means, t->low, t->high, t->position, e)
-		       ? -1
-		       : 0;
+	return -(!t->position || train_bounds(from->means, t->ids, t->learning, t->low, t->high, e) ||
+		 rows_positions(&t->rows, from->means, t->low, t->high, t->position, e));
 }
 
 /* The rows; what a warm start fits them to; the views over them. */

@@ -36,7 +36,7 @@ score() { "$BIN/miou-score" --boxes --truth truth "$@"; }
 }
 
 @test "numbers" {
-	refuses "3: key 'score' is not a finite number" "{\"ref\":\"a\",\"score\":\"x\",$unit}"
+	refuses "3: key 'score' is not a number" "{\"ref\":\"a\",\"score\":\"x\",$unit}"
 	refuses "3: key 'min' is missing" "{\"ref\":\"a\",\"max\":[1,1,1],$turned}"
 	refuses "3: key 'max' is missing" "{\"ref\":\"a\",\"min\":[1,1,1],\"max\":null,$turned}"
 	refuses "3: key 'min' is not 3 numbers" "{\"ref\":\"a\",\"min\":[0,0],\"max\":[1,1,1],$turned}"

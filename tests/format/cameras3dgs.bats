@@ -59,7 +59,7 @@ refused() {
 	says 3 "gs-import: cameras.json: view 'b': its focal length is not positive" import
 	for rotation in '[[1,0,0],[0,1,0],[0,0,-1]]' '[[2,0,0],[0,1,0],[0,0,1]]' '[[0,0,0],[0,0,0],[0,0,0]]'; do
 		printf '[%s]' "$(camera3dgs "rotation=$rotation")" >cameras.json
-		says 3 "gs-import: cameras.json: view 'b': its pose is not a rotation and a translation" import
+		says 3 "gs-import: cameras.json: view 'b': its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?" import
 	done
 	printf '[%s,%s]' "$(camera3dgs)" "$(camera3dgs)" >cameras.json
 	says 3 "gs-import: cameras.json: two views have the name 'b'" import
@@ -75,7 +75,7 @@ refused() {
 	printf '5' >cameras.json
 	says 3 "gs-import: cameras.json: neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json" import
 	printf '[]' >cameras.json
-	says 3 "gs-import: cameras.json: no views" import
+	says 3 "gs-import: cameras.json: no views: a COLMAP model has them in images.bin or images.txt, a transforms.json in its frames" import
 	printf '[7]' >cameras.json
 	says 3 "gs-import: cameras.json: camera 0: key 'img_name' is missing" import
 }

@@ -55,7 +55,7 @@ bad_image() {
 		says 3 "gs-import: model/images.txt: image 'b.jpg': its rotation is zero or not finite" import
 	done
 	printf '1 1 0 0 0 inf 0 0 1 b.jpg\n' >model/images.txt
-	says 3 "gs-import: model/images.txt: view 'b.jpg': its pose is not a rotation and a translation" import
+	says 3 "gs-import: model/images.txt: view 'b.jpg': its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?" import
 }
 
 @test "CR LF, CR, blank lines and comments between entries; names with blanks" {
@@ -150,7 +150,7 @@ bad_image() {
 	printf '# images\n\0' >model/images.txt
 	says 3 "gs-import: model/images.txt: a NUL byte at offset 9" import
 	printf '# images\n' >model/images.txt
-	says 3 "gs-import: model: no views" import
+	says 3 "gs-import: model: no views: a COLMAP model has them in images.bin or images.txt, a transforms.json in its frames" import
 }
 
 @test "binary files that cannot be" {

@@ -56,7 +56,7 @@ refused() {
 		a.json|JSON, not splats: cameras are for --cameras, and SOG's JSON is called meta.json
 	END
 	echo x >other
-	no_splats other "not a PLY file: the first line is not 'ply'"
+	no_splats other "not a PLY file: the first line is not 'ply' and nothing else"
 }
 
 @test "a .ply of points, a mesh, and scenes that are to be rendered in another way" {

@@ -36,13 +36,13 @@ header() {
 @test "not a PLY file" {
 	for text in '' p ply plx 'ply ' 'plyformat'; do
 		printf '%s' "$text" >s.ply
-		refused "not a PLY file: the first line is not 'ply'"
+		refused "not a PLY file: the first line is not 'ply' and nothing else"
 	done
 }
 
 @test "the format line" {
 	printf 'ply\ncomment x\nformat ascii 1.0\n' >s.ply
-	says 3 "gs-import: s.ply:2: the second line is not 'format'" import s.ply
+	says 3 "gs-import: s.ply:2: the second line is not 'format ...' (comments come after it)" import s.ply
 	for format in '' ascii 'ascii 1.1' 'binary 1.0' 'binary_middle_endian 1.0'; do
 		printf 'ply\nformat %s\nend_header\n' "$format" >s.ply
 		read -r name version <<<"$format"
@@ -92,7 +92,7 @@ header() {
 @test "spherical harmonics that are not a full degree" {
 	for count in 1 8 10 44 46; do
 		ply_header 0 "$ply_names $(printf 'f_rest_%d ' $(seq 0 $((count - 1))))" >s.ply
-		refused "$count f_rest properties, expected 0, 9, 24 or 45"
+		refused "$count f_rest properties, expected 0, 9, 24 or 45: harmonics of degree 0 to 3"
 	done
 	ply_header 0 "$ply_names $(printf 'f_rest_%d ' 0 1 2 3 4 5 6 7 9)" >s.ply
 	refused "element 'vertex' has no property 'f_rest_8'"

@@ -114,7 +114,7 @@ not() { ! "$@"; }
 
 @test "each key of a view missing or of a wrong type" {
 	for key in width height fx fy cx cy; do
-		bad_view "key '$key' is not a number" $key=
+		bad_view "key '$key' is missing" $key=
 		bad_view "key '$key' is not a number" $key='"4"'
 	done
 	for name in '' 1 null; do
@@ -147,19 +147,19 @@ not() { ! "$@"; }
 	bad_view "size 0x3 is not whole numbers in 1 to 65536" width=0
 	bad_view "size 4x3.5 is not whole numbers in 1 to 65536" height=3.5
 	bad_view "size 65537x3 is not whole numbers in 1 to 65536" width=65537
-	bad_view "focal length is not positive" fx=0
-	bad_view "focal length is not positive" fy=-5
+	bad_view "its focal length is not positive" fx=0
+	bad_view "its focal length is not positive" fy=-5
 }
 
 @test "poses that are not rigid" {
-	bad_view "key 'world_to_camera' is not 4x4" world_to_camera=
-	bad_view "key 'world_to_camera' is not 4x4" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,1,2]]'
-	bad_view "key 'world_to_camera' is not 4x4" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,1],[0,0,0,1]]'
-	bad_view "world_to_camera[1][2] is not a number" world_to_camera='[[1,0,0,0],[0,1,"0",0],[0,0,1,2],[0,0,0,1]]'
-	bad_view "world_to_camera is not a rotation" world_to_camera='[[2,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]'
-	bad_view "world_to_camera is not a rotation" world_to_camera='[[1,0,0,0],[1,0,0,0],[0,0,1,2],[0,0,0,1]]'
-	bad_view "world_to_camera is a reflection" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,-1,2],[0,0,0,1]]'
-	bad_view "world_to_camera's last row is not 0 0 0 1" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,1,1]]'
+	bad_view "key 'world_to_camera' is missing" world_to_camera=
+	bad_view "key 'world_to_camera' is not 4x4 numbers" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,1,2]]'
+	bad_view "key 'world_to_camera' is not 4x4 numbers" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,1],[0,0,0,1]]'
+	bad_view "key 'world_to_camera' is not 4x4 numbers" world_to_camera='[[1,0,0,0],[0,1,"0",0],[0,0,1,2],[0,0,0,1]]'
+	bad_view "its pose is not a rotation and a translation" world_to_camera='[[2,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]'
+	bad_view "its pose is not a rotation and a translation" world_to_camera='[[1,0,0,0],[1,0,0,0],[0,0,1,2],[0,0,0,1]]'
+	bad_view "its pose is not a rotation and a translation" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,-1,2],[0,0,0,1]]'
+	bad_view "its pose is not a rotation and a translation" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,1,1]]'
 }
 
 @test "splats.safetensors and cameras.json cut at every length" {

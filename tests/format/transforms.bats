@@ -103,7 +103,7 @@ lens() {
 		says 3 "gs-import: transforms.json: key 'frames' is not a list" import
 	done
 	transforms frames=[] >transforms.json
-	says 3 "gs-import: transforms.json: no views" import
+	says 3 "gs-import: transforms.json: no views: a COLMAP model has them in images.bin or images.txt, a transforms.json in its frames" import
 }
 
 @test "values out of range" {
@@ -113,7 +113,7 @@ lens() {
 	bad_frame "key 'transform_matrix': the last row is not 0 0 0 1" \
 		transform_matrix='[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]'
 	transforms "frames=[$(frame 'transform_matrix=[[1,0,0,0],[0,1,0,0],[0,0,2,0],[0,0,0,1]]')]" >transforms.json
-	says 3 "gs-import: transforms.json: view 'images/b.png': its pose is not a rotation and a translation" import
+	says 3 "gs-import: transforms.json: view 'images/b.png': its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?" import
 	transforms fl_x=-5 >transforms.json
 	says 3 "gs-import: transforms.json: view 'images/b.png': its focal length is not positive" import
 }

@@ -5,7 +5,7 @@
  * REFERSPLAT_FUZZ_SEED=FILE has the checkpoint's target write a seed first. */
 #include "base/file.h"
 #include "cmd/check/check.h"
-#include "cmd/import/points.h"
+#include "cmd/import/import.h"
 #include "formats/arrays/npy.h"
 #include "formats/arrays/npz.h"
 #include "formats/arrays/safetensors.h"
@@ -70,8 +70,8 @@ SIMPLE(text, struct text, text_read, text_free)
 SIMPLE(weights, struct weights, weights_open_file, weights_close)
 SIMPLE(colmap, struct cameras, colmap_read, cameras_free)
 SIMPLE(folder, struct scene, scene_read, scene_free)
-SIMPLE(bert, struct bert, bert_model_read, bert_free)
-SIMPLE(clip, struct clip, clip_model_read, clip_free)
+SIMPLE(bert, struct text_tower, bert_model_read, text_tower_free)
+SIMPLE(clip, struct text_tower, clip_model_read, text_tower_free)
 
 static const char text_to_cut[] = "The red cup's 10 plates, caf\xc3\xa9!";
 
@@ -250,13 +250,13 @@ static void try_npz(const char *path)
 
 	if (npz_open(&z, path, &e))
 		return;
-	for (size_t i = 0; i < z.n; i++) {
-		const size_t len = strlen(z.entries[i].name);
+	for (size_t i = 0; i < z.zip.n; i++) {
+		const size_t len = strlen(z.zip.entries[i].name);
 		if (len < sizeof ".npy")
 			continue;
-		z.entries[i].name[len - 4] = 0;
-		char *name = strdup(z.entries[i].name);
-		z.entries[i].name[len - 4] = '.';
+		z.zip.entries[i].name[len - 4] = 0;
+		char *name = strdup(z.zip.entries[i].name);
+		z.zip.entries[i].name[len - 4] = '.';
 		if (name && !npz_array(&z, name, "", &a, NULL, &e))
 			npy_close(&a);
 		free(name);

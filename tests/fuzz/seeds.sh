@@ -200,7 +200,7 @@ for target in "$dir"/*/; do
 	target=$(basename "$target")
 	case ${target%-*} in
 	image) set -- png.c jpeg.c ;;
-	camerafile) set -- camerafile.c cameras3dgs.c transforms.c ;;
+	camerafile) set -- camerafile.c transforms.c ;;
 	cameras | splats | scene) set -- scene.c ;;
 	bert) set -- bert_model.c pretrained.c ;;
 	clip) set -- clip_model.c pretrained.c ;;

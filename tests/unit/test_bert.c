@@ -16,8 +16,8 @@
 static char work[] = "/tmp/test_bert.XXXXXX";
 
 /* All vectors of the sentence, those of [CLS] and [SEP] too: (*n, width). free() them. */
-static float *encode(
-	const struct bert *b, const struct vocab *v, const char *text, struct wordpieces *ids, size_t *n)
+static float *encode(const struct text_tower *b, const struct vocab *v, const char *text,
+	struct wordpieces *ids, size_t *n)
 {
 	struct wordpieces words = {0};
 	struct err e = {0};
@@ -32,15 +32,15 @@ static float *encode(
 	ids->ids[keep + 1] = v->special[WORDPIECE_SEP];
 	ids->n = *n = keep + 2;
 	free(words.ids);
-	CHECK(!bert_scratch(b, *n, *n, &floats), "scratch");
+	CHECK(!text_tower_scratch(b, *n, *n, &floats), "scratch");
 	float *scratch = malloc(floats * sizeof *scratch),
 	      *out = malloc(*n * (size_t)b->body.width * sizeof *out);
-	bert_forward(b, ids->ids, (size_t[]){0, *n}, 1, out, NULL, scratch);
+	text_tower_forward(b, ids->ids, (size_t[]){0, *n}, 1, out, NULL, scratch);
 	free(scratch);
 	return out;
 }
 
-static void golden_sentences(const struct bert *b, const struct vocab *v)
+static void golden_sentences(const struct text_tower *b, const struct vocab *v)
 {
 	struct sentences s;
 	struct safetensors expected;
@@ -84,7 +84,7 @@ static void golden_sentences(const struct bert *b, const struct vocab *v)
 
 /* Sequences side by side, from any place on, give the bytes that each gives alone; and so do all thread
  * counts. */
-static void side_by_side(const struct bert *b)
+static void side_by_side(const struct text_tower *b)
 {
 	enum { N = 4, TOKENS = 60 };
 	int32_t ids[TOKENS];
@@ -92,29 +92,29 @@ static void side_by_side(const struct bert *b)
 	float *all = malloc(TOKENS * width * sizeof *all), *one = malloc(TOKENS * width * sizeof *one);
 	float *middle = malloc(TOKENS * width * sizeof *middle),
 	      *half = malloc(TOKENS * width * sizeof *half);
-	struct bert first = *b; /* the first half of the layers alone */
+	struct text_tower first = *b; /* the first half of the layers alone */
 	int threads = omp_get_max_threads();
 
 	for (int i = 0; i < TOKENS; i++)
 		ids[i] = (i * 37 + 11) % b->words;
-	bert_scratch(b, TOKENS, TOKENS, &floats);
+	text_tower_scratch(b, TOKENS, TOKENS, &floats);
 	float *scratch = malloc(floats * sizeof *scratch);
 	omp_set_num_threads(3);
-	bert_forward(b, ids, starts, N, all, middle, scratch);
+	text_tower_forward(b, ids, starts, N, all, middle, scratch);
 	omp_set_num_threads(1);
 	for (int s = 0; s < N; s++) {
 		size_t n = starts[s + 1] - starts[s];
 		size_t at = (starts[s] - starts[0]) * width;
-		bert_forward(b, ids, starts + s, 1, one, half, scratch);
+		text_tower_forward(b, ids, starts + s, 1, one, half, scratch);
 		CHECK(same_bytes(one, all + at, n * width * sizeof *one), "sequence %d", s);
 		CHECK(same_bytes(half, middle + at, n * width * sizeof *one), "sequence %d, middle", s);
-		bert_forward(b, ids, starts + s, 1, one, NULL, scratch);
+		text_tower_forward(b, ids, starts + s, 1, one, NULL, scratch);
 		CHECK(same_bytes(one, all + at, n * width * sizeof *one), "sequence %d without its middle",
 			s);
 	}
 	first.body.layer_count = transformer_middle(&b->body);
 	CHECK(first.body.layer_count > 0, "no layers before the middle");
-	bert_forward(&first, ids, starts, N, one, NULL, scratch);
+	text_tower_forward(&first, ids, starts, N, one, NULL, scratch);
 	CHECK(same_bytes(one, middle, (starts[N] - starts[0]) * width * sizeof *one), "half of the layers");
 	omp_set_num_threads(threads);
 	free(all);
@@ -166,7 +166,7 @@ static void write_variant(
 }
 
 /* The same numbers as any float type, with and without "bert.", with gamma and beta. */
-static void stored_otherwise(const struct bert *golden)
+static void stored_otherwise(const struct text_tower *golden)
 {
 	static const struct {
 		enum st_dtype dtype;
@@ -177,7 +177,7 @@ static void stored_otherwise(const struct bert *golden)
 
 	for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
 		struct err e = {0};
-		struct bert b;
+		struct text_tower b;
 		write_variant(variants[i].dtype, variants[i].prefix, variants[i].is_old, NULL, NULL);
 		if (!CHECK(!bert_model_read(&b, work, &e), "variant %zu: %s", i, e.message))
 			continue;
@@ -188,14 +188,14 @@ static void stored_otherwise(const struct bert *golden)
 		CHECK(same_bytes(b.body.layers[0].outer.weight, golden->body.layers[0].outer.weight,
 			      24 * 40 * 4),
 			"variant %zu: outer", i);
-		bert_free(&b);
+		text_tower_free(&b);
 	}
 }
 
 static void refused(const char *leave_out, const char *bend, const char *expected)
 {
 	struct err e = {0};
-	struct bert b;
+	struct text_tower b;
 	char message[512];
 
 	write_variant(ST_F16, "", 0, leave_out, bend);
@@ -226,7 +226,7 @@ static void published_figures(void)
 {
 	static const double published[3] = {0.0676569, 0.0634959, 0.0487131};
 	const char *dir = getenv("REFER_BERT");
-	struct bert b;
+	struct text_tower b;
 	struct vocab v;
 	struct err e = {0};
 	double pooled[384] = {0}, square = 0;
@@ -254,13 +254,13 @@ static void published_figures(void)
 		free(x);
 		free(ids.ids);
 	}
-	bert_free(&b);
+	text_tower_free(&b);
 	vocab_free(&v);
 }
 
 int main(void)
 {
-	struct bert b;
+	struct text_tower b;
 	struct vocab v;
 	struct err e = {0};
 
@@ -281,7 +281,7 @@ int main(void)
 	unlink(in_work("weights.safetensors"));
 	unlink(in_work("vocab.txt"));
 	rmdir(work);
-	bert_free(&b);
+	text_tower_free(&b);
 	vocab_free(&v);
 	return unit_end();
 }

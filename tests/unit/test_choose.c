@@ -150,6 +150,12 @@ static void sets(void)
 	/* what is left out is all of its kind, unless it is told which; what is unknown is nothing */
 	CHECK(set_of("all things except the mug") == (4 | 8), "%x", set_of("all things except the mug"));
 	CHECK(set_of("all things except the zeppelin") == 15, "%x", set_of("all things except the zeppelin"));
+	/* what is nothing here leaves nothing out, and nothing is beside it */
+	static const char *const denied[] = {"the box but not the one by the zeppelin",
+		"the box that is not next to the zeppelin", "the box between the tin and the zeppelin"};
+	for (size_t i = 0; i < sizeof denied / sizeof *denied; i++)
+		CHECK(set_of(denied[i]) == 4 && choice.there > 0.5, "'%s': %x, %g", denied[i],
+			set_of(denied[i]), choice.there);
 	CHECK(set_of("all mugs that are not on the table") == 0 || choice.there < 0.5, "%x, %g",
 		set_of("all mugs that are not on the table"), choice.there);
 	CHECK(set_of("whatever is behind the tin") == (1 | 2 | 4), "%x",

@@ -23,21 +23,21 @@ static char *in_work(const char *name)
 	return path;
 }
 
-/* All vectors of n ids: (n, clip_width). free() them. */
-static float *forward(const struct clip *c, const int32_t *ids, size_t n)
+/* All vectors of n ids: (n, text_tower_width). free() them. */
+static float *forward(const struct text_tower *c, const int32_t *ids, size_t n)
 {
 	size_t floats = 0;
 
-	CHECK(!clip_scratch(c, n, n, &floats), "scratch");
+	CHECK(!text_tower_scratch(c, n, n, &floats), "scratch");
 	float *scratch = malloc(floats * sizeof *scratch),
-	      *out = malloc(n * (size_t)clip_width(c) * sizeof *out);
-	clip_forward(c, ids, (size_t[]){0, n}, 1, out, scratch);
+	      *out = malloc(n * (size_t)text_tower_width(c) * sizeof *out);
+	text_tower_forward(c, ids, (size_t[]){0, n}, 1, out, NULL, scratch);
 	free(scratch);
 	return out;
 }
 
 /* The tokens of a text between start and end, cut to what the tower takes. */
-static void cut(const struct clip *c, const struct bpe *b, const char *text, struct wordpieces *ids)
+static void cut(const struct text_tower *c, const struct bpe *b, const char *text, struct wordpieces *ids)
 {
 	struct err e = {0};
 	struct wordpieces words = {0};
@@ -61,9 +61,9 @@ struct expected {
 static double worst_word, worst_sentence;
 
 static void one_sentence(
-	const struct clip *c, const struct bpe *b, const char *text, const struct expected *x, size_t i)
+	const struct text_tower *c, const struct bpe *b, const char *text, const struct expected *x, size_t i)
 {
-	const size_t width = (size_t)clip_width(c), first = (size_t)number_at(x->offsets, i),
+	const size_t width = (size_t)text_tower_width(c), first = (size_t)number_at(x->offsets, i),
 		     n = (size_t)number_at(x->offsets, i + 1) - first;
 	struct wordpieces ids;
 	size_t wrong = 0, last = 0;
@@ -87,7 +87,7 @@ static void one_sentence(
 	free(ids.ids);
 }
 
-static void golden_sentences(const struct clip *c, const struct bpe *b)
+static void golden_sentences(const struct text_tower *c, const struct bpe *b)
 {
 	struct sentences s;
 	struct expected x;
@@ -111,20 +111,20 @@ static void golden_sentences(const struct clip *c, const struct bpe *b)
 
 /* Sequences side by side give the bytes that each gives alone, with any threads; and a token does not see
  * those after it. */
-static void side_by_side(const struct clip *c)
+static void side_by_side(const struct text_tower *c)
 {
 	enum { N = 4, TOKENS = 60 };
 	int32_t ids[TOKENS];
-	size_t starts[N + 1] = {5, 7, 20, 20, TOKENS}, width = (size_t)clip_width(c), floats;
+	size_t starts[N + 1] = {5, 7, 20, 20, TOKENS}, width = (size_t)text_tower_width(c), floats;
 	float *all = malloc(TOKENS * width * sizeof *all);
 	int threads = omp_get_max_threads();
 
 	for (int i = 0; i < TOKENS; i++)
 		ids[i] = (i * 37 + 11) % c->words;
-	CHECK(!clip_scratch(c, TOKENS, TOKENS, &floats), "scratch");
+	CHECK(!text_tower_scratch(c, TOKENS, TOKENS, &floats), "scratch");
 	float *scratch = malloc(floats * sizeof *scratch);
 	omp_set_num_threads(3);
-	clip_forward(c, ids, starts, N, all, scratch);
+	text_tower_forward(c, ids, starts, N, all, NULL, scratch);
 	omp_set_num_threads(1);
 	for (int s = 0; s < N; s++) {
 		size_t n = starts[s + 1] - starts[s];
@@ -143,19 +143,19 @@ static void side_by_side(const struct clip *c)
 	free(scratch);
 }
 
-static int same_tower(const struct clip *a, const struct clip *b)
+static int same_tower(const struct text_tower *a, const struct text_tower *b)
 {
 	return a->words == b->words && a->positions == b->positions && a->projected == b->projected &&
 	       a->body.width == b->body.width && a->body.inner == b->body.inner &&
 	       a->body.heads == b->body.heads && a->body.activation == b->body.activation &&
 	       same_bytes(&a->body.eps, &b->body.eps, sizeof a->body.eps) &&
-	       clip_hash(a, 1) == clip_hash(b, 1);
+	       text_tower_hash(a, 1) == text_tower_hash(b, 1);
 }
 
 /* The layouts have the same numbers and the same tokens. */
-static void other_layout(const struct clip *c, const struct bpe *b)
+static void other_layout(const struct text_tower *c, const struct bpe *b)
 {
-	struct clip same;
+	struct text_tower same;
 	struct bpe list;
 	struct err e = {0};
 
@@ -167,7 +167,7 @@ static void other_layout(const struct clip *c, const struct bpe *b)
 	for (size_t i = 0; i < b->vocab.n && i < list.vocab.n; i++)
 		CHECK(!strcmp(vocab_token(&b->vocab, (int32_t)i), vocab_token(&list.vocab, (int32_t)i)),
 			"token %zu", i);
-	clip_free(&same);
+	text_tower_free(&same);
 	bpe_free(&list);
 }
 
@@ -197,7 +197,7 @@ static void write_variant(const char *file, enum st_dtype dtype, const char *fro
 }
 
 /* The same numbers as any float type, and with other prefixes. */
-static void stored_otherwise(const struct clip *golden)
+static void stored_otherwise(const struct text_tower *golden)
 {
 	static const struct {
 		const char *file, *from, *to;
@@ -210,18 +210,18 @@ static void stored_otherwise(const struct clip *golden)
 	CHECK(!copy_file(GOLDEN "/config.json", in_work("config.json")), "copy");
 	for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
 		struct err e = {0};
-		struct clip c;
+		struct text_tower c;
 		write_variant(variants[i].file, variants[i].dtype, variants[i].from, variants[i].to);
 		if (!CHECK(!clip_model_read(&c, work, &e), "variant %zu: %s", i, e.message))
 			continue;
 		CHECK(same_tower(golden, &c), "variant %zu", i);
-		clip_free(&c);
+		text_tower_free(&c);
 	}
 }
 
 int main(void)
 {
-	struct clip c;
+	struct text_tower c;
 	struct bpe b;
 	struct err e = {0};
 
@@ -237,7 +237,7 @@ int main(void)
 	unlink(in_work("config.json"));
 	unlink(in_work("weights.safetensors"));
 	rmdir(work);
-	clip_free(&c);
+	text_tower_free(&c);
 	bpe_free(&b);
 	return unit_end();
 }

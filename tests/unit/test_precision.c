@@ -15,16 +15,14 @@ static char path[] = "/tmp/test_precision.XXXXXX";
 static int through(enum precision p, enum precision_group group, size_t rows, size_t columns, const float *x,
 	float *y, struct err *e)
 {
-	const struct st_meta meta = {"format", "test"};
-	struct precision_matrix m;
+	struct arrays_out out;
 	struct safetensors st;
-	int bad = precision_put(&m, "x", p, group, rows, columns, x, path, e) ||
-		  safetensors_write(path, m.tensors, (size_t)m.count, &meta, 1, e);
 
-	precision_free(&m);
-	if (bad || safetensors_open(&st, path, e))
+	arrays_out_begin(&out, path, "test", NULL, NULL, NULL, 0, e);
+	precision_put(&out, "x", p, group, rows, columns, x);
+	if (arrays_out_end(&out) || safetensors_open(&st, path, e))
 		return -1;
-	bad = precision_get(&st, "x", p, group, rows, columns, y, e);
+	int bad = precision_get(&st, "x", p, group, rows, columns, y, e);
 	safetensors_close(&st);
 	return bad;
 }

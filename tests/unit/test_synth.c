@@ -5,7 +5,7 @@
 #include "synth/presets.h"
 #include "synth/cameras.h"
 #include "synth/synth_scene.h"
-#include "synth/synth_sentences.h"
+#include "synth/sentence.h"
 
 enum { SEEDS = 12, H = 90, W = 120 };
 

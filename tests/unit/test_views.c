@@ -97,7 +97,7 @@ static void faults(void)
 	c.views[0].world_to_camera[2][2] = -1; /* a reflection */
 	CHECK(views_finish(&c, "file", &e) &&
 			!strcmp(e.message,
-				"file: view 'a.jpg': its pose is not a rotation and a translation"),
+				"file: view 'a.jpg': its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?"),
 		"%s", e.message);
 	struct camera *v = &c.views[0];
 	v->world_to_camera[2][2] = 1.001;

@@ -1,0 +1,27 @@
+/* What qsort and bsearch order by: numbers that rise, and strings (of an array of pointers) by their bytes.
+ */
+#ifndef BASE_COMPARE_H
+#define BASE_COMPARE_H
+
+#include <string.h>
+
+static inline int compare_float(const void *a, const void *b)
+{
+	const float x = *(const float *)a, y = *(const float *)b;
+
+	return (x > y) - (x < y);
+}
+
+static inline int compare_double(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+static inline int compare_string(const void *a, const void *b)
+{
+	return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+#endif
