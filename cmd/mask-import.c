@@ -3,8 +3,6 @@
 #include "cli/cli.h"
 #include "cmd/masks/painting.h"
 
-#include <stdlib.h>
-
 static const char *names_path, *undistort;
 
 static const struct cli_option table[] = {
@@ -26,7 +24,9 @@ static const struct cli_tool tool = {.name = "mask-import",
 /* No picture and no file of names is written over. */
 static void check(const struct cli *c)
 {
-	SCOPED struct cli_file *files = calloc((size_t)c->operand_count + 1, sizeof *files);
+	struct err ignored;
+	SCOPED struct cli_file *files =
+		mem_zalloc((size_t)c->operand_count + 1, sizeof *files, "files", &ignored);
 
 	for (int i = 0; i < c->operand_count && !names_path; i++)
 		if (painting_needs_names(c->operands[i]))

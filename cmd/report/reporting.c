@@ -41,9 +41,10 @@ static void put_name(struct jsontext *to, const char *run)
 	SCOPED char *full = realpath(run, NULL);
 	int length;
 	const char *last = path_last(full ? full : run, &length);
-	SCOPED char *name = strndup(last, (size_t)length);
+	char name[256];
 
-	jsontext_string(to, "name", name ? name : "");
+	snprintf(name, sizeof name, "%.*s", length, last);
+	jsontext_string(to, "name", name);
 	jsontext_string(to, "version", VERSION);
 }
 

@@ -56,7 +56,9 @@ const char *arrays_out_print(struct arrays_out *out, const char *format, ...)
 	const int length = vsnprintf(text, sizeof text, format, ap);
 	va_end(ap);
 	char *copy = arrays_out_memory(out, (size_t)length + 1, 1);
-	return copy ? strcpy(copy, text) : NULL;
+	if (copy)
+		snprintf(copy, (size_t)length + 1, "%s", text);
+	return copy;
 }
 
 void arrays_out_list(struct arrays_out *out, const char *key, char *const *strings, size_t n)

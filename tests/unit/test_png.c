@@ -301,7 +301,8 @@ static void test_jpeg(void)
 	free(rgb);
 	put_jpeg(JCS_CMYK, 4);
 	CHECK(image_read_rgb(path, &rgb, &h, &w, &e) &&
-			strstr(e.message, ": JPEG: CMYK colours are not supported ('mogrify -colorspace sRGB' converts them)"),
+			strstr(e.message,
+				": JPEG: CMYK colours are not supported ('mogrify -colorspace sRGB' converts them)"),
 		"%s", e.message);
 	put_jpeg(JCS_RGB, 3);
 	size_t len = slurp(bytes, sizeof bytes);
