@@ -41,7 +41,7 @@ not() { ! "$@"; }
 		done
 	done
 	printf '{"w":40,"h":30,"fl_x":50,"frames":[]}' | iconv -t UTF-16 >t.json
-	says 1 "t.json: no views (read as UTF-16)" "$BIN/gs-check" t.json
+	says 1 "t.json: no views: a COLMAP model has them in images.bin or images.txt, a transforms.json in its frames (read as UTF-16)" "$BIN/gs-check" t.json
 }
 
 @test "lines are counted with the blank ones" {

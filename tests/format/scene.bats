@@ -156,10 +156,10 @@ not() { ! "$@"; }
 	bad_view "key 'world_to_camera' is not 4x4 numbers" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,1,2]]'
 	bad_view "key 'world_to_camera' is not 4x4 numbers" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,1],[0,0,0,1]]'
 	bad_view "key 'world_to_camera' is not 4x4 numbers" world_to_camera='[[1,0,0,0],[0,1,"0",0],[0,0,1,2],[0,0,0,1]]'
-	bad_view "its pose is not a rotation and a translation" world_to_camera='[[2,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]'
-	bad_view "its pose is not a rotation and a translation" world_to_camera='[[1,0,0,0],[1,0,0,0],[0,0,1,2],[0,0,0,1]]'
-	bad_view "its pose is not a rotation and a translation" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,-1,2],[0,0,0,1]]'
-	bad_view "its pose is not a rotation and a translation" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,1,1]]'
+	bad_view "its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?" world_to_camera='[[2,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]'
+	bad_view "its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?" world_to_camera='[[1,0,0,0],[1,0,0,0],[0,0,1,2],[0,0,0,1]]'
+	bad_view "its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,-1,2],[0,0,0,1]]'
+	bad_view "its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?" world_to_camera='[[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,1,1]]'
 }
 
 @test "splats.safetensors and cameras.json cut at every length" {
