@@ -85,7 +85,7 @@ synthetic() {
 	cp masks-ciou masks
 	models 60 1
 	for model in lifted trained held; do
-		run "score-$model" miou-score --truth truth.jsonl --predicted-views --sentences sentences --bootstrap 50 --json "render-$model.jsonl"
+		run "score-$model" miou-score --truth truth.jsonl --predicted-views --parses parses.jsonl --bootstrap 50 --json "render-$model.jsonl"
 		run "text-score-$model" miou-score --truth truth.jsonl --compare render-lifted-masks.jsonl --bootstrap 50 "render-$model.jsonl"
 		run "box-score-$model" miou-score --boxes --truth boxes.jsonl "locate-$model.jsonl"
 	done

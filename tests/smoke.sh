@@ -38,8 +38,9 @@ done <<-'END'
 	refer-locate -q --all --scene scene --model lifted.safetensors --ply labelled.ply --each objects -o labels.jsonl
 	mask-export -q --scene scene --png tree -o coco.json masks.jsonl
 	refer-train -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl --init lifted.safetensors --init-iterations 2 --iterations 4 --hold-out 0.2 -o model3.safetensors
+	text-parse -q -o parses.jsonl text.safetensors
 	miou-score --truth truth.jsonl pred.jsonl
-	miou-score --csv --truth truth.jsonl --bootstrap 20 --compare masks2.jsonl --sentences sentences.jsonl --whole whole.jsonl pred.jsonl
+	miou-score --csv --truth truth.jsonl --bootstrap 20 --compare masks2.jsonl --parses parses.jsonl --whole whole.jsonl pred.jsonl
 END
 echo "$passed passed, $failed failed"
 [ $failed = 0 ] && [ $passed != 0 ]
