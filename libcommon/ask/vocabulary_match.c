@@ -94,18 +94,24 @@ static int is_said_of(const struct vocabulary *v, const char *lemma, size_t obje
 	return 0;
 }
 
-/* A kind that has a name of two words is another thing than what its second word alone names: a tea bag in a
- * room with a red bag. */
+/* A kind that has a name of two words is another thing than what its second word alone names, a tea bag in a
+ * room with a red bag, unless it is a kind of that, as a water bottle is of a bottle that nothing is said of.
+ */
 static void judge_compound(struct vocabulary *v, const struct parse *p, int w, double *match)
 {
 	char lemma[80];
-	struct naming known;
+	struct naming known, second;
 	const int first = v->has_knowledge ? find_compound(p, w, &known, lemma, sizeof lemma) : -1;
+
+	naming_of_word(&second, p->words[w].lemma);
+	const int is_kind = first >= 0 && wordnet_is_above(&second.noun, &known.noun);
 
 	for (size_t o = 0; o < v->lifted->objects && first >= 0; o++) {
 		if (is_said_of(v, p->words[first].lemma, o))
 			continue;
-		match[o] *= COMPOUND_WORTH;
+		const char *content = v->contents[o];
+		const int is_plain = !*content || colour_word(content) >= 0;
+		match[o] *= is_kind && is_plain ? KIND_WORTH : COMPOUND_WORTH;
 		if (v->has_names)
 			match[o] = fmax(match[o], knowledge(v, &known, v->head_kinds[o], 0));
 		for (size_t i = 0; i < v->n; i++)
