@@ -9,8 +9,8 @@
 
 enum { DEPTH = 16 }; /* deeper nesting is not looked at */
 
-/* How far it is known which thing a phrase means that is left out: not by its relation to what is nothing
- * here, nor where nothing is as it says. */
+/* How far it is known which thing a phrase means that is left out: half, where it is told by its relation to
+ * what is nothing here. */
 static double known_except(const struct meaning *m, int except)
 {
 	const struct parse *p = m->sentence->parse;

@@ -103,10 +103,11 @@ static void judge_compound(struct vocabulary *v, const struct parse *p, int w, d
 	struct naming known, second;
 	const int first = v->has_knowledge ? find_compound(p, w, &known, lemma, sizeof lemma) : -1;
 
+	if (first < 0)
+		return;
 	naming_of_word(&second, p->words[w].lemma);
-	const int is_kind = first >= 0 && wordnet_is_above(&second.noun, &known.noun);
-
-	for (size_t o = 0; o < v->lifted->objects && first >= 0; o++) {
+	const int is_kind = wordnet_is_above(&second.noun, &known.noun);
+	for (size_t o = 0; o < v->lifted->objects; o++) {
 		if (is_said_of(v, p->words[first].lemma, o))
 			continue;
 		const char *content = v->contents[o];

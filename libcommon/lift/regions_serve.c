@@ -8,9 +8,8 @@
 #include <stdlib.h>
 
 #define CHANCE 0.02 /* share of a sentence's candidates that is found by accident */
-#define DOUBT                                                                                                \
-	1.0 /* confidence that a sentence has in nothing, so that one candidate tells less than many         \
-	     */
+/* The confidence that each sentence has in nothing, so that one candidate tells less than many. */
+#define DOUBT 1.0
 
 /* The region that a candidate shows, or REGIONS_NONE. */
 static size_t find_region(const struct regions *r, size_t candidate)
