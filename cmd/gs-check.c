@@ -1,5 +1,6 @@
 /* gs-check: says whether files of the suite are well-formed, and what is in them. */
 #include "base/jsontext.h"
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/check/check.h"
 
@@ -108,7 +109,7 @@ static int check_one(const struct cli *cli, const char *path, struct err *e)
 {
 	const char *name = strcmp(path, "-") ? path : "stdin";
 	size_t len = strlen(name);
-	struct check c;
+	SCOPED_BY(check_free) struct check c = {0};
 
 	if ((name != path && check_spool(e)) || check_file(&c, path, e)) {
 		if (e->code != ERR_FORMAT)
@@ -125,7 +126,6 @@ static int check_one(const struct cli *cli, const char *path, struct err *e)
 		print_json(name, &c, NULL);
 	else
 		print_text(name, &c);
-	check_free(&c);
 	return 0;
 }
 

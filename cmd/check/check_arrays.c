@@ -191,7 +191,7 @@ int check_npy(struct check *c, const char *path, struct err *e)
 
 int check_npz(struct check *c, const char *path, struct err *e)
 {
-	struct npz z;
+	SCOPED_BY(npz_close) struct npz z = {0};
 	long long values = 0;
 	int bad = 0;
 
@@ -207,7 +207,6 @@ int check_npz(struct check *c, const char *path, struct err *e)
 	c->kind = "npz";
 	check_add(c, "arrays", (long long)z.zip.n);
 	check_add(c, "values", values);
-	npz_close(&z);
 	return bad;
 }
 
@@ -223,11 +222,10 @@ int check_parser(struct check *c, const char *path, struct err *e)
 
 int check_image(struct check *c, const char *path, struct err *e)
 {
-	uint8_t *rgb;
+	SCOPED uint8_t *rgb = NULL;
 
 	if (image_read_rgb(path, &rgb, &c->height, &c->width, e))
 		return -1;
-	free(rgb);
 	c->kind = "image";
 	return 0;
 }

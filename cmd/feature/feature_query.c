@@ -47,7 +47,7 @@ static int read_npy(struct query_vectors *v, const char *path, size_t channels, 
 static int read_npz(struct query_vectors *v, const char *path, size_t channels, struct err *e)
 {
 	static const char *const names[] = {"vectors", "arr_0"};
-	struct npz z;
+	SCOPED_BY(npz_close) struct npz z = {0};
 	struct npy a;
 	SCOPED char *called = NULL;
 
@@ -56,7 +56,6 @@ static int read_npz(struct query_vectors *v, const char *path, size_t channels, 
 	const char *name = npz_main(&z, names, sizeof names / sizeof *names, e);
 	const int bad =
 		!name || npz_array(&z, name, "", &a, &called, e) || take_array(v, &a, called, channels, e);
-	npz_close(&z);
 	return bad ? -1 : 0;
 }
 

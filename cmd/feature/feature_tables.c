@@ -53,14 +53,12 @@ static int check_table(const struct npy *t, int dims, const char *path, struct e
 static int open_packed(const char *file, struct npy *t, char **called, struct err *e)
 {
 	static const char *const names[] = {"features", "arr_0"};
-	struct npz z;
+	SCOPED_BY(npz_close) struct npz z = {0};
 
 	if (npz_open(&z, file, e))
 		return -1;
 	const char *name = npz_main(&z, names, 2, e);
-	const int bad = !name || npz_array(&z, name, "", t, called, e);
-	npz_close(&z);
-	return bad ? -1 : 0;
+	return !name || npz_array(&z, name, "", t, called, e) ? -1 : 0;
 }
 
 /* The view's array with this suffix, and how messages name it. */

@@ -241,13 +241,12 @@ static int answer_view(struct pixels *p, struct err *e)
 		return -1;
 #pragma omp parallel reduction(| : is_bad)
 	{
-		struct pixel_map m;
+		SCOPED_BY(pixel_map_free) struct pixel_map m = {0};
 		struct err own;
 		is_bad = pixel_map_make(&m, p->n, &own) != 0;
 #pragma omp for schedule(dynamic)
 		for (size_t i = 0; i < q->count; i++)
 			is_bad |= is_bad || answer_sentence(p, i, &m, &own);
-		pixel_map_free(&m);
 	}
 	return is_bad ? err_set(e, ERR_SYSTEM, "masks: out of memory") : 0;
 }

@@ -57,13 +57,12 @@ int photographs_find(struct cameras *c, const char *images, const char *scene, s
 	*missing = 0;
 	for (size_t i = 0; i < c->n; i++) {
 		struct camera *v = &c->views[i];
-		char *path = images ? find_image(images, v->image, e) : NULL;
+		SCOPED char *path = images ? find_image(images, v->image, e) : NULL;
 		free(v->image);
 		v->image = NULL;
 		if (path) {
 			*e = (struct err){0};
 			v->image = image_path(scene, path, e);
-			free(path);
 			if (!v->image && e->code)
 				return -1;
 		}

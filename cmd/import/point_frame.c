@@ -35,9 +35,8 @@ static int read_colmap(struct points *to, const char *folder, struct err *e)
 	struct err why;
 	int bad = 0;
 
-	if (colmap_points_read(&p, folder, &why)) {
+	if (colmap_points_read(&p, folder, &why))
 		return why.code == ERR_SYSTEM ? err_set(e, why.code, "%s", why.message) : 0;
-	}
 	for (size_t i = 0; i < p.n && !bad; i++)
 		bad = add(to, p.places + 3 * i, e);
 	return bad;
@@ -45,7 +44,7 @@ static int read_colmap(struct points *to, const char *folder, struct err *e)
 
 static int read_ply(struct points *to, struct file_map *map, struct err *e)
 {
-	struct plyfile f;
+	SCOPED_BY(plyfile_close) struct plyfile f = {0};
 	struct err ignored;
 	double row[64];
 	int bad = 0;
@@ -61,7 +60,6 @@ static int read_ply(struct points *to, struct file_map *map, struct err *e)
 			break;
 		bad = add(to, (const double[]){row[x], row[y], row[z]}, e);
 	}
-	plyfile_close(&f);
 	return bad;
 }
 

@@ -54,7 +54,7 @@ static int add_sentences(
 static int add_masks(struct lifting *l, const char *path, const struct report *to, struct err *e)
 {
 	struct masks set;
-	long *lines;
+	SCOPED long *lines = NULL;
 	size_t taken = 0;
 
 	if (masks_read_lines(&set, &lines, path, e))
@@ -67,7 +67,6 @@ static int add_masks(struct lifting *l, const char *path, const struct report *t
 	while (taken < set.n)
 		mask_free(&set.items[taken++]);
 	free(set.items);
-	free(lines);
 	return bad ? -1 : 0;
 }
 

@@ -61,13 +61,12 @@ static int render(const struct report_run *r, const struct camera *c, struct pic
 
 static char *picture_text(const struct picture_rgb *p, const char *name, struct err *e)
 {
-	uint8_t *bytes;
+	SCOPED uint8_t *bytes = NULL;
 	size_t n;
 
 	if (jpeg_encode(name, p->rgb, p->height, p->width, QUALITY, &bytes, &n, e))
 		return NULL;
 	char *text = base64_text("data:image/jpeg;base64,", bytes, n, e);
-	free(bytes);
 	return text;
 }
 

@@ -21,13 +21,12 @@ void score_masks_free(struct score_masks *s)
 
 static int check_twice(const struct score_masks *s, struct err *e)
 {
-	struct mask_index x;
+	SCOPED_BY(mask_index_free) struct mask_index x = {0};
 	size_t earlier, later;
 
 	if (mask_index_make(&x, s->set.items, s->n, MASK_BY_REF, e))
 		return -1;
 	const int found = mask_index_twice(&x, &earlier, &later);
-	mask_index_free(&x);
 	if (!found)
 		return 0;
 	const struct mask *m = &s->set.items[later];

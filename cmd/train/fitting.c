@@ -67,14 +67,11 @@ static int draw_preview(struct fitting *f, struct err *e)
 	if (fit_judge(&f->fit, p, &l, e))
 		return -1;
 	snprintf(name, sizeof name, "%08ld", (long)f->fit.state.iteration);
-	uint8_t *rgb = mem_alloc(pixels, 3, "picture", e);
-	char *path = file_join(f->options->preview, name, ".png", e);
+	SCOPED uint8_t *rgb = mem_alloc(pixels, 3, "picture", e);
+	SCOPED char *path = file_join(f->options->preview, name, ".png", e);
 	for (size_t i = 0; rgb && i < 3 * pixels; i++)
 		rgb[i] = (uint8_t)(255 * fminf(fmaxf(f->fit.image[i % 3 * pixels + i / 3], 0), 1) + 0.5f);
-	const int bad = !rgb || !path || png_write(path, rgb, c->height, c->width, 3, e);
-	free(rgb);
-	free(path);
-	return bad ? -1 : 0;
+	return !rgb || !path || png_write(path, rgb, c->height, c->width, 3, e) ? -1 : 0;
 }
 
 /* What is due after a step, at the progress that it was taken at, besides what records it. */
@@ -159,7 +156,7 @@ static int take_steps(struct fitting *f, struct err *e)
 static int check_start(struct fitting *f, struct err *e)
 {
 	const size_t n = f->fit.gaussians.n;
-	char *kept = mem_alloc(n, 1, "Gaussians", e);
+	SCOPED char *kept = mem_alloc(n, 1, "Gaussians", e);
 	int bad = !kept || fit_shown(&f->fit, FIT_LEVELS - 1, kept, NULL, e);
 
 	if (!bad && !memchr(kept, 1, n))
@@ -167,7 +164,6 @@ static int check_start(struct fitting *f, struct err *e)
 			"%s: no photograph shows any of the %zu %s to begin with: they must be in the cameras' frame, before a camera, and farther from it than its near plane, which is at %.3g here",
 			fitting_input_start(&f->in), n, f->options->init ? "Gaussians" : "points",
 			f->fit.gaussians.splats.near);
-	free(kept);
 	return bad ? -1 : 0;
 }
 
@@ -175,8 +171,8 @@ static int finish(struct fitting *f, struct err *e)
 {
 	const size_t n = f->fit.gaussians.n;
 	const struct photograph *tested = f->in.photographs + f->in.learned;
-	char *kept = mem_alloc(n, 1, "Gaussians", e);
-	struct splats s = {0};
+	SCOPED char *kept = mem_alloc(n, 1, "Gaussians", e);
+	SCOPED_BY(splats_free) struct splats s = {0};
 	double psnr, ssim;
 	int bad = !kept || fit_judge_all(&f->fit, tested, f->in.tested, &psnr, &ssim, e) ||
 		  fit_shown(&f->fit, 0, kept, NULL, e) ||
@@ -194,8 +190,6 @@ static int finish(struct fitting *f, struct err *e)
 	}
 	if (!bad && f->in.tested)
 		report_note(f->to, 1, "%zu test views: PSNR %.2f dB, SSIM %.4f", f->in.tested, psnr, ssim);
-	splats_free(&s);
-	free(kept);
 	return bad ? -1 : 0;
 }
 
@@ -259,7 +253,7 @@ static int run(struct fitting *f, struct err *e)
 {
 	const struct fitting_options *o = f->options;
 	struct fitting_input *in = &f->in;
-	struct file_out claim;
+	SCOPED_BY(file_out_abort) struct file_out claim = {0};
 
 	if (fitting_input_read(in, e))
 		return -1;
@@ -283,7 +277,6 @@ static int run(struct fitting *f, struct err *e)
 	}
 	if (!bad && f->is_own)
 		unlink(o->checkpoint_path);
-	file_out_abort(&claim);
 	return bad ? -1 : 0;
 }
 

@@ -1,5 +1,6 @@
 #include "cmd/train/fitting_checkpoint.h"
 
+#include "base/mem.h"
 #include "formats/arrays/safetensors.h"
 
 #include <string.h>
@@ -68,11 +69,9 @@ static int read_state(struct fit *f, const struct safetensors *st, const char *i
 
 int fitting_checkpoint_read(struct fit *f, const char *path, const char *identity, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 
 	if (safetensors_open(&st, path, e))
 		return -1;
-	int bad = read_state(f, &st, identity, e);
-	safetensors_close(&st);
-	return bad;
+	return read_state(f, &st, identity, e);
 }

@@ -49,7 +49,7 @@ static int read_cameras(struct fitting_input *f, struct err *e)
 static int read_photograph(
 	struct fitting_input *f, const struct camera *c, struct photograph *p, struct err *e)
 {
-	uint8_t *rgb = NULL;
+	SCOPED uint8_t *rgb = NULL;
 	int height, width;
 
 	if (warping_read_photograph(c, ".", 0, &rgb, &height, &width, e))
@@ -58,7 +58,6 @@ static int read_photograph(
 			  ? err_set(e, ERR_FORMAT, "%s: %dx%d, which is not the shape of its camera, %dx%d",
 				    c->image, width, height, c->width, c->height)
 			  : photograph_make(p, c, f->options->scale, rgb, height, width, e);
-	free(rgb);
 	return bad ? -1 : 0;
 }
 
@@ -66,9 +65,9 @@ static int read_photograph(
 static int read_ignored(
 	const struct fitting_input *f, const struct camera *c, struct photograph *p, struct err *e)
 {
-	uint8_t *mask = NULL;
+	SCOPED uint8_t *mask = NULL;
 	int height, width, bad = 0;
-	char *path = f->options->ignore ? file_join(f->options->ignore, c->name, ".png", e) : NULL;
+	SCOPED char *path = f->options->ignore ? file_join(f->options->ignore, c->name, ".png", e) : NULL;
 
 	if (f->options->ignore && !path)
 		return -1;
@@ -79,8 +78,6 @@ static int read_ignored(
 			width, height, c->width, c->height);
 	else if (!bad && mask)
 		bad = photograph_ignore(p, mask, height, width, e);
-	free(mask);
-	free(path);
 	return bad ? -1 : 0;
 }
 
@@ -156,8 +153,8 @@ static int make_points(struct fitting_input *f, struct colmap_points *p, struct 
 static int start_from_points(struct fitting_input *f, struct err *e)
 {
 	const struct fitting_options *o = f->options;
-	struct colmap_points p = {0};
-	float *places = NULL;
+	SCOPED_BY(colmap_points_free) struct colmap_points p = {0};
+	SCOPED float *places = NULL;
 	int bad = (o->points || file_is_dir(f->path)) &&
 		  colmap_points_read(&p, o->points ? o->points : f->path, e);
 	bad = bad || (!p.n && make_points(f, &p, e)) || gaussian_offset(f->offset, p.places, p.n, e) ||
@@ -172,15 +169,13 @@ static int start_from_points(struct fitting_input *f, struct err *e)
 		f->size = start_size(f->seen, f->learned, places, p.n);
 		bad = start_at_points(&f->gaussians, places, p.colors, p.n, e);
 	}
-	free(places);
-	colmap_points_free(&p);
 	return bad ? -1 : 0;
 }
 
 static int start_from_scene(struct fitting_input *f, struct err *e)
 {
 	const struct fitting_options *o = f->options;
-	struct splats s = {0};
+	SCOPED_BY(splats_free) struct splats s = {0};
 	int bad = anysplats_read(&s, f->offset, NULL, o->init, e);
 
 	bad = bad || fit_gaussians_alloc(&f->gaussians,
@@ -191,7 +186,6 @@ static int start_from_scene(struct fitting_input *f, struct err *e)
 		f->size = start_size(f->seen, f->learned, s.means, s.n);
 		fit_gaussians_take(&f->gaussians, &s);
 	}
-	splats_free(&s);
 	return bad ? -1 : 0;
 }
 

@@ -128,10 +128,8 @@ int archive_read(struct archive *a, const char *file, char **data, size_t *len, 
 	if (!*file || strchr(file, '/') || !strcmp(file, "..") || !strcmp(file, "."))
 		return err_file(e, a->name, "'%.80s' is not the name of a file beside meta.json", file);
 	if (a->folder) {
-		char *path = file_join(a->folder, file, "", e);
-		const int bad = !path || file_read(path, data, len, e);
-		free(path);
-		return bad ? -1 : 0;
+		SCOPED char *path = file_join(a->folder, file, "", e);
+		return !path || file_read(path, data, len, e) ? -1 : 0;
 	}
 	const size_t entry = names_find(&a->index, file);
 	if (entry == NAMES_NONE)

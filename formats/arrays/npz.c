@@ -13,7 +13,7 @@ int npz_open(struct npz *z, const char *path, struct err *e)
 	*z = (struct npz){.path = mem_strdup(path, e)};
 	if (z->path && !file_map(path, &map, e) && !archive_open_zip(&z->zip, z->path, &map, e))
 		return 0;
-	free(z->path);
+	npz_close(z);
 	return -1;
 }
 
@@ -28,13 +28,12 @@ void npz_close(struct npz *z)
 static int find(const struct npz *z, const char *name, const char *suffix, size_t *place, struct err *e)
 {
 	const size_t room = strlen(name) + strlen(suffix) + sizeof ".npy";
-	char *file = mem_alloc(room, 1, "array", e);
+	SCOPED char *file = mem_alloc(room, 1, "array", e);
 
 	if (!file)
 		return -1;
 	snprintf(file, room, "%s%s.npy", name, suffix);
 	*place = names_find(&z->zip.index, file);
-	free(file);
 	return 0;
 }
 

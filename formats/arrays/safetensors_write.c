@@ -77,7 +77,7 @@ int safetensors_write(const char *path, const struct st_tensor *tensors, size_t 
 	size_t meta_count, struct err *e)
 {
 	static const char spaces[64] = "                                                                ";
-	size_t *order = mem_alloc(n, sizeof *order, path, e);
+	SCOPED size_t *order = mem_alloc(n, sizeof *order, path, e);
 	struct file_out out = {0};
 	size_t k = 0;
 
@@ -87,16 +87,11 @@ int safetensors_write(const char *path, const struct st_tensor *tensors, size_t 
 		for (size_t i = 0; i < n; i++)
 			if (st_dtype_size(tensors[i].dtype) == size)
 				order[k++] = i;
-	char *header = make_header(tensors, order, n, meta, meta_count, e);
-	if (!header) {
-		free(order);
+	SCOPED char *header = make_header(tensors, order, n, meta, meta_count, e);
+	if (!header)
 		return err_prefix(e, path);
-	}
-	if (file_out_open(&out, path, e)) {
-		free(order);
-		free(header);
+	if (file_out_open(&out, path, e))
 		return -1;
-	}
 	size_t used = strlen(header), padded = (used + 8 + 63) / 64 * 64 - 8;
 	unsigned char length[8];
 	little_put(length, padded, 8);
@@ -104,7 +99,5 @@ int safetensors_write(const char *path, const struct st_tensor *tensors, size_t 
 		put(&out, length, 8, e) || put(&out, header, used, e) || put(&out, spaces, padded - used, e);
 	for (k = 0; k < n && !bad; k++)
 		bad = put(&out, tensors[order[k]].data, tensor_bytes(&tensors[order[k]]), e);
-	free(order);
-	free(header);
 	return file_out_end(&out, bad, e);
 }

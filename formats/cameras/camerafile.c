@@ -64,7 +64,7 @@ static cJSON *read_json(const char *path, struct err *e)
 {
 	const char *name = file_name(path);
 	cJSON *root = NULL;
-	char *text;
+	SCOPED char *text = NULL;
 	size_t len;
 
 	if (textfile_read(path, &text, &len, e))
@@ -74,7 +74,6 @@ static cJSON *read_json(const char *path, struct err *e)
 	else if (!foreign_file(name, FOREIGN_CAMERAS, text, len, e))
 		err_file(e, name,
 			"neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json");
-	free(text);
 	return root;
 }
 

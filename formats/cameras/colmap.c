@@ -278,7 +278,7 @@ enum { ENTRY = 8 + 24 + 3 + 8 + 8 };
 
 static int read_points_binary(struct colmap_points *p, const char *path, struct err *e)
 {
-	struct file_map map;
+	SCOPED_BY(file_unmap) struct file_map map = {0};
 	size_t room = 0, at = 8;
 	int bad = 0;
 
@@ -305,7 +305,6 @@ static int read_points_binary(struct colmap_points *p, const char *path, struct 
 	}
 	if (!bad && map.len < 8)
 		bad = err_file(e, path, "%zu bytes, too short for a COLMAP file", map.len);
-	file_unmap(&map);
 	return bad;
 }
 
@@ -346,11 +345,10 @@ int colmap_points_read(struct colmap_points *p, const char *dir, struct err *e)
 
 	*p = (struct colmap_points){0};
 	for (int i = 0; i < 2 && !bad && !p->n; i++) {
-		char *path = file_join(dir, "points3D", suffixes[i], e);
+		SCOPED char *path = file_join(dir, "points3D", suffixes[i], e);
 		bad = path ? 0 : -1;
 		if (path && file_exists(path))
 			bad = i ? read_points_text(p, path, e) : read_points_binary(p, path, e);
-		free(path);
 	}
 	if (bad)
 		colmap_points_free(p);

@@ -2,6 +2,7 @@
 #include "formats/cameras/colmap_private.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/textfile.h"
 #include "formats/cameras/colmap.h"
 #include "geom/rotation.h"
@@ -275,7 +276,7 @@ static void put_points(FILE *out, const struct cameras *c)
 static int write_part(const struct cameras *c, const char *dir, const char *name,
 	void (*put)(FILE *out, const struct cameras *c), struct err *e)
 {
-	char *path = file_join(dir, name, ".txt", e);
+	SCOPED char *path = file_join(dir, name, ".txt", e);
 	struct file_out out;
 	int bad = -1;
 
@@ -283,7 +284,6 @@ static int write_part(const struct cameras *c, const char *dir, const char *name
 		put(out.stream, c);
 		bad = file_out_commit(&out, e);
 	}
-	free(path);
 	return bad;
 }
 

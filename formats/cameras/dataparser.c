@@ -1,6 +1,7 @@
 #include "formats/cameras/dataparser.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "formats/records/json.h"
 
 #include <math.h>
@@ -17,10 +18,9 @@ struct move {
 /* The file in the folder of another one. */
 static char *find_beside(const char *path, struct err *e)
 {
-	char *dir = file_is_dir(path) ? file_join(path, "", "", e) : file_dir(path, e);
+	SCOPED char *dir = file_is_dir(path) ? file_join(path, "", "", e) : file_dir(path, e);
 	char *found = dir ? file_join(dir, file, "", e) : NULL;
 
-	free(dir);
 	if (found && file_exists(found))
 		return found;
 	free(found);

@@ -1,6 +1,7 @@
 #include "formats/encoders/bert_model.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "formats/encoders/pretrained.h"
 #include "formats/records/json.h"
 
@@ -41,12 +42,11 @@ static int read_keys(struct text_tower *b, const cJSON *config, const char *path
 
 static int read_config(struct text_tower *b, const char *dir, struct err *e)
 {
-	char *path = file_join(dir, "config.json", "", e);
+	SCOPED char *path = file_join(dir, "config.json", "", e);
 	cJSON *config = path ? json_read(path, e) : NULL;
 	int bad = config ? read_keys(b, config, path, e) : -1;
 
 	cJSON_Delete(config);
-	free(path);
 	return bad;
 }
 

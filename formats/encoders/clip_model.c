@@ -61,10 +61,9 @@ int clip_model_is(const char *dir)
 {
 	struct err e = {0};
 	int is_open;
-	char *path = find_config(dir, &is_open, &e);
+	SCOPED char *path = find_config(dir, &is_open, &e);
 	const int is = path != NULL;
 
-	free(path);
 	return is;
 }
 
@@ -142,7 +141,7 @@ static int read_open_keys(
 static int read_config(struct text_tower *c, struct kind *kind, const char *dir, struct err *e)
 {
 	int bad = -1;
-	char *path = find_config(dir, &kind->is_open, e);
+	SCOPED char *path = find_config(dir, &kind->is_open, e);
 	cJSON *config = path ? json_read(path, e) : NULL;
 
 	if (config && !cJSON_IsObject(config))
@@ -151,7 +150,6 @@ static int read_config(struct text_tower *c, struct kind *kind, const char *dir,
 		bad = kind->is_open ? read_open_keys(c, kind, config, path, e)
 				    : read_keys(c, kind, config, path, e);
 	cJSON_Delete(config);
-	free(path);
 	return bad;
 }
 
@@ -198,13 +196,12 @@ static int load_projection(const struct pretrained *s, const struct text_tower *
 		from.prefix = "";
 		return pretrained_load(&from, s->names->projection, c->projection, rows, columns);
 	}
-	float *turned = mem_alloc((size_t)rows * (size_t)columns, sizeof *turned, "encoder", from.e);
+	SCOPED float *turned = mem_alloc((size_t)rows * (size_t)columns, sizeof *turned, "encoder", from.e);
 	const int bad = !turned || pretrained_load(&from, s->names->projection, turned, columns, rows);
 	for (int r = 0; r < rows && !bad; r++)
 		for (int k = 0; k < columns; k++)
 			c->projection[(size_t)r * (size_t)columns + (size_t)k] =
 				turned[(size_t)k * (size_t)rows + (size_t)r];
-	free(turned);
 	return bad ? -1 : 0;
 }
 

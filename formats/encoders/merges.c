@@ -162,7 +162,7 @@ static int finish(struct bpe *b, const char *vocabulary, const struct list *l, s
 /* vocab.json, and merges.txt beside it. */
 static int read_two(struct bpe *b, const char *vocabulary, const char *merges, struct err *e)
 {
-	struct list l = {.path = merges};
+	SCOPED_BY(list_free) struct list l = {.path = merges};
 	cJSON *root = json_read(vocabulary, e);
 	int bad = !root;
 
@@ -170,7 +170,6 @@ static int read_two(struct bpe *b, const char *vocabulary, const char *merges, s
 		bad = err_file(e, vocabulary, "not a JSON object");
 	bad = bad || vocab_add_all(&b->vocab, root, vocabulary, e) || read_file(&l, SIZE_MAX, e) ||
 	      finish(b, vocabulary, &l, e);
-	list_free(&l);
 	cJSON_Delete(root);
 	return bad ? -1 : 0;
 }
@@ -221,7 +220,7 @@ static int check_kind(const cJSON *root, const char *path, struct err *e)
 
 static int read_tokenizer(struct bpe *b, const char *path, struct err *e)
 {
-	struct list l = {.path = path};
+	SCOPED_BY(list_free) struct list l = {.path = path};
 	cJSON *root = json_read(path, e);
 	const cJSON *model = json_get(root, "model"), *merge;
 	int bad = !root || check_kind(root, path, e) ||
@@ -234,7 +233,6 @@ static int read_tokenizer(struct bpe *b, const char *path, struct err *e)
 				break;
 		}
 	bad = bad || finish(b, path, &l, e);
-	list_free(&l);
 	cJSON_Delete(root);
 	return bad ? -1 : 0;
 }
@@ -273,12 +271,11 @@ static int make_vocabulary(struct bpe *b, const struct list *l, struct err *e)
 static int read_list(struct bpe *b, const char *path, int words, int is_gzip, struct err *e)
 {
 	enum { OTHERS = 2 * BPE_BYTES + 2 };
-	struct list l = {.path = path};
+	SCOPED_BY(list_free) struct list l = {.path = path};
 	const size_t most = words > OTHERS ? (size_t)(words - OTHERS) : 0;
 	const int bad = (is_gzip ? read_gzip(&l, most, e) : read_file(&l, most, e)) ||
 			make_vocabulary(b, &l, e) || finish(b, path, &l, e);
 
-	list_free(&l);
 	return bad ? -1 : 0;
 }
 
@@ -327,10 +324,9 @@ char *merges_print(const struct bpe *b, const int32_t *ids, size_t n, struct err
 	int bad = !stream;
 
 	for (size_t i = 0; i < n && !bad; i++) {
-		char *piece = bpe_read(b, ids[i], i ? ids[i - 1] : -1, e);
+		SCOPED char *piece = bpe_read(b, ids[i], i ? ids[i - 1] : -1, e);
 		if (!piece || fprintf(stream, "%s%s", i ? " " : "", piece) < 0)
 			bad = -1;
-		free(piece);
 	}
 	if (!stream || fclose(stream) || bad) {
 		err_set(e, ERR_SYSTEM, "pieces: out of memory");

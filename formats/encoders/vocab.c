@@ -120,7 +120,7 @@ static int read_list(struct vocab *v, const char *path, struct err *e)
 /* tokenizer_config.json says of a vocab.txt whether it is cased. */
 static int check_config(const char *dir, struct err *e)
 {
-	char *path = file_join(dir, "tokenizer_config.json", "", e);
+	SCOPED char *path = file_join(dir, "tokenizer_config.json", "", e);
 	int bad = path ? 0 : -1;
 
 	if (path && file_exists(path)) {
@@ -130,7 +130,6 @@ static int check_config(const char *dir, struct err *e)
 		      need_flag(root, "tokenize_chinese_chars", 1, path, "tokenizer", e);
 		cJSON_Delete(root);
 	}
-	free(path);
 	return bad ? -1 : 0;
 }
 

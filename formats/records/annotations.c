@@ -57,7 +57,7 @@ static int check_picture(struct reading *r, const cJSON *root, struct err *e)
 	enum picture_kind kind = PICTURE_NONE;
 	int height = 0, width = 0;
 	size_t n = 0;
-	void *bytes = is_held ? base64_bytes(data->valuestring, &n, e) : NULL;
+	SCOPED void *bytes = is_held ? base64_bytes(data->valuestring, &n, e) : NULL;
 
 	if (is_held && !bytes)
 		return -1;
@@ -68,7 +68,6 @@ static int check_picture(struct reading *r, const cJSON *root, struct err *e)
 		kind = picture_size(in, &height, &width);
 		fclose(in);
 	}
-	free(bytes);
 	const int is_turned = kind == PICTURE_JPEG && rle_has_shape(width, height, r->height, r->width);
 	if (kind == PICTURE_NONE || (height == r->height && width == r->width) ||
 		(!is_held && (is_turned || rle_has_shape(height, width, r->height, r->width))))
@@ -153,18 +152,14 @@ static int read_mask_picture(struct reading *r, const char *folder, const char *
 	if (path_leaves(picture))
 		return err_file(
 			e, r->where, "key 'segmentation': '%.200s' is not in the folder gt_mask", picture);
-	char *path = file_join(folder, picture, "", e);
-	uint8_t *pixels = NULL;
-	struct rle mask = {0};
+	SCOPED char *path = file_join(folder, picture, "", e);
+	SCOPED uint8_t *pixels = NULL;
+	SCOPED_BY(rle_free) struct rle mask = {0};
 	int bad = !path || png_read_mask(path, &pixels, &r->height, &r->width, e) ||
 		  rle_encode(&mask, pixels, r->height, r->width, e);
 	struct annotation *on = bad ? NULL : reading_find(r, view, name, e);
 
-	bad = !on || reading_unite(r, on, &mask, e);
-	free(path);
-	free(pixels);
-	rle_free(&mask);
-	return bad ? -1 : 0;
+	return !on || reading_unite(r, on, &mask, e) ? -1 : 0;
 }
 
 static int read_ref_lerf(

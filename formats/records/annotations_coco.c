@@ -46,15 +46,13 @@ static int check_size(const struct reading *r, const cJSON *size, struct err *e)
 static int draw_runs(struct reading *r, struct annotation *on, const cJSON *segmentation, struct err *e)
 {
 	const cJSON *counts = json_get(segmentation, "counts");
-	struct rle rle;
+	SCOPED_BY(rle_free) struct rle rle = {0};
 
 	if (check_size(r, json_get(segmentation, "size"), e))
 		return -1;
 	if (masks_take_counts(&rle, counts, r->height, r->width, r->where, e))
 		return -1;
-	const int bad = reading_unite(r, on, &rle, e);
-	rle_free(&rle);
-	return bad;
+	return reading_unite(r, on, &rle, e);
 }
 
 /* Polygons, of which all are parts of the thing, or run lengths. */
@@ -215,7 +213,7 @@ int reading_annotations(struct reading *r, const cJSON *root, struct err *e)
 {
 	const int is_found = json_get(root, "image_path") != NULL;
 	const cJSON *item;
-	struct coco c = {0};
+	SCOPED_BY(coco_free) struct coco c = {0};
 	size_t i = 0;
 	r->to->is_layered = 1;
 	int bad = !is_found && name_views(r, json_get(root, "images"), &c, e);
@@ -226,6 +224,5 @@ int reading_annotations(struct reading *r, const cJSON *root, struct err *e)
 		bad = bad ||
 		      (is_found ? read_found(r, root, item, e) : read_annotation(r, &c, root, item, e));
 	}
-	coco_free(&c);
 	return bad ? -1 : 0;
 }

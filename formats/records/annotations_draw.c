@@ -22,14 +22,12 @@ static const double edge_share = 0.02;
 char *reading_view(const char *image, struct err *e)
 {
 	const char *base = strrchr(image, '\\');
-	char *stem = mem_strdup(view_base(base ? base + 1 : image), e);
+	SCOPED char *stem = mem_strdup(view_base(base ? base + 1 : image), e);
 
 	if (!stem)
 		return NULL;
 	stem[view_stem(stem)] = 0;
-	char *view = name_to_view(stem, e);
-	free(stem);
-	return view;
+	return name_to_view(stem, e);
 }
 
 /* Takes ".", and ".." with what is before it, out of a path. */
@@ -217,14 +215,13 @@ static int check_points(struct reading *r, size_t count, struct err *e)
 
 static int fill(struct reading *r, struct annotation *on, size_t count, struct err *e)
 {
-	struct rle mask;
+	SCOPED_BY(rle_free) struct rle mask = {0};
 
 	memset(r->mask, 0, (size_t)r->height * (size_t)r->width);
 	polygon_fill(r->mask, r->flips, r->height, r->width, r->points, count);
 	if (rle_encode(&mask, r->mask, r->height, r->width, e))
 		return -1;
 	const int bad = reading_unite(r, on, &mask, e);
-	rle_free(&mask);
 	on->is_outline = 1;
 	return bad;
 }

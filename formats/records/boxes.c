@@ -95,7 +95,7 @@ struct mask *boxes_names(const struct box_set *s, struct err *e)
 
 static int check_unique(const struct box_set *s, const long *lines, const char *path, struct err *e)
 {
-	struct mask *names = boxes_names(s, e);
+	SCOPED struct mask *names = boxes_names(s, e);
 	struct mask_index x;
 	size_t earlier, later;
 	int bad = !names || mask_index_make(&x, names, s->n, MASK_BY_REF, e);
@@ -108,14 +108,13 @@ static int check_unique(const struct box_set *s, const long *lines, const char *
 				lines[later], names[later].ref ? "ref" : "object",
 				names[later].ref ? names[later].ref : names[later].object, lines[earlier]);
 	}
-	free(names);
 	return bad ? -1 : 0;
 }
 
 int boxes_read(struct box_set *s, const char *path, struct err *e)
 {
-	struct jsonl j;
-	long *lines;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
+	SCOPED long *lines = NULL;
 
 	*s = (struct box_set){0};
 	if (jsonl_open(&j, path, e))
@@ -125,8 +124,6 @@ int boxes_read(struct box_set *s, const char *path, struct err *e)
 	if (!bad && !s->n)
 		bad = err_file(e, file_name(path), "holds no boxes");
 	bad = bad || check_unique(s, lines, file_name(path), e);
-	jsonl_close(&j);
-	free(lines);
 	if (bad)
 		boxes_free(s);
 	return bad ? -1 : 0;

@@ -1,6 +1,7 @@
 #include "formats/records/json.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/textfile.h"
 
 #include <math.h>
@@ -26,14 +27,12 @@ cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e)
 
 cJSON *json_read(const char *path, struct err *e)
 {
-	char *text;
+	SCOPED char *text = NULL;
 	size_t len;
 
 	if (textfile_read(path, &text, &len, e))
 		return NULL;
-	cJSON *value = json_parse(text, len, file_name(path), e);
-	free(text);
-	return value;
+	return json_parse(text, len, file_name(path), e);
 }
 
 int json_has_nul(const char *json)

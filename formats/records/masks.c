@@ -124,8 +124,8 @@ static int read_image(const struct jsonl *j, const char *name, struct rle *mask,
 
 	if (j->in != stdin && path_leaves(name))
 		return jsonl_err(j, e, "key 'path': '%.200s' is not in the folder of this file", name);
-	char *dir = file_dir(j->path, e);
-	char *path = dir ? file_join(dir, name, "", e) : NULL;
+	SCOPED char *dir = file_dir(j->path, e);
+	SCOPED char *path = dir ? file_join(dir, name, "", e) : NULL;
 
 	if (path && !png_read_mask(path, &pixels, &height, &width, e)) {
 		bad = rle_encode(mask, pixels, height, width, e);
@@ -133,8 +133,6 @@ static int read_image(const struct jsonl *j, const char *name, struct rle *mask,
 		if (bad)
 			key_err(e, j->where, "path");
 	}
-	free(dir);
-	free(path);
 	return bad;
 }
 
@@ -190,7 +188,7 @@ int masks_next(struct jsonl *j, struct mask *m, struct err *e)
 
 int masks_read_lines(struct masks *set, long **lines, const char *path, struct err *e)
 {
-	struct jsonl j;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	struct mask m;
 	size_t capacity = 0;
 	int got;
@@ -207,7 +205,6 @@ int masks_read_lines(struct masks *set, long **lines, const char *path, struct e
 		}
 		(*lines)[set->n - 1] = j.line_number;
 	}
-	jsonl_close(&j);
 	if (!got)
 		return 0;
 	masks_free(set);
@@ -218,10 +215,9 @@ int masks_read_lines(struct masks *set, long **lines, const char *path, struct e
 
 int masks_read(struct masks *set, const char *path, struct err *e)
 {
-	long *lines;
+	SCOPED long *lines = NULL;
 	int bad = masks_read_lines(set, &lines, path, e);
 
-	free(lines);
 	return bad;
 }
 
@@ -273,7 +269,7 @@ int masks_find_view(
 int masks_check_refs(const struct masks *set, const char *path, char *const *refs, char *const *objects,
 	size_t sentences, struct err *e)
 {
-	struct names names;
+	SCOPED_BY(names_free) struct names names = {0};
 	int bad = names_make(&names, refs, sizeof *refs, 0, sentences, e);
 
 	for (size_t i = 0; i < set->n && !bad; i++) {
@@ -284,7 +280,6 @@ int masks_check_refs(const struct masks *set, const char *path, char *const *ref
 				"a mask of view '%s' is of object '%s', but its ref '%s' is a sentence of '%s': leave out the key that is wrong",
 				m->view, m->object, m->ref, objects[at]);
 	}
-	names_free(&names);
 	return bad ? -1 : 0;
 }
 
@@ -325,7 +320,7 @@ static int leave_out(struct masks *set, long *lines, size_t *views, const char *
 int masks_views(struct masks *set, long *lines, const char *path, const struct cameras *cameras,
 	size_t *views, const struct report *to, struct err *e)
 {
-	struct names names;
+	SCOPED_BY(names_free) struct names names = {0};
 	int bad = names_make(
 		&names, cameras->views, sizeof *cameras->views, offsetof(struct camera, name), cameras->n, e);
 
@@ -338,9 +333,7 @@ int masks_views(struct masks *set, long *lines, const char *path, const struct c
 			bad = masks_check_shape(&set->items[i], "the view", cameras->views[at].height,
 				cameras->views[at].width, path, lines[i], e);
 	}
-	bad = bad || (views && set->n && leave_out(set, lines, views, path, &names, to, e));
-	names_free(&names);
-	return bad ? -1 : 0;
+	return bad || (views && set->n && leave_out(set, lines, views, path, &names, to, e)) ? -1 : 0;
 }
 
 static void put_number(FILE *out, const char *before, double x)
@@ -374,7 +367,7 @@ static void put_place(FILE *out, const struct mask_place *p)
 /* What is known of a mask but whose it is. */
 static int put_shape(FILE *out, const struct mask *m, struct err *e)
 {
-	char *counts = rle_to_string(&m->rle, e);
+	SCOPED char *counts = rle_to_string(&m->rle, e);
 
 	if (!counts)
 		return -1;
@@ -387,7 +380,6 @@ static int put_shape(FILE *out, const struct mask *m, struct err *e)
 	fprintf(out, ",\"segmentation\":{\"size\":[%d,%d],\"counts\":", m->rle.height, m->rle.width);
 	const int bad = jsonl_put_string(out, "", counts, e);
 	fputc('}', out);
-	free(counts);
 	return bad;
 }
 
@@ -397,12 +389,11 @@ int masks_put_parts(FILE *out, const struct mask *m, const struct mask *parts, s
 		(m->ref && jsonl_put_string(out, ",\"ref\":", m->ref, e)) ||
 		(m->object && jsonl_put_string(out, ",\"object\":", m->object, e)) || put_shape(out, m, e))
 		return -1;
-	for (size_t k = 0; k < n; k++) {
+	for (size_t k = 0; k < n; k++)
 		if (jsonl_put_string(
 			    out, k ? "},{\"object\":" : ",\"parts\":[{\"object\":", parts[k].object, e) ||
 			put_shape(out, &parts[k], e))
 			return -1;
-	}
 	fputs(n ? "}]}\n" : "}\n", out);
 	return ferror(out) ? err_errno(e, "write") : 0;
 }

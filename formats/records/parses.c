@@ -1,5 +1,6 @@
 #include "formats/records/parses.h"
 
+#include "base/mem.h"
 #include "base/names.h"
 #include "formats/records/json.h"
 #include "formats/records/jsonl.h"
@@ -38,18 +39,16 @@ static void add_span(const struct writer *w, cJSON *o, struct parse_span s)
 static void add_noun(const struct writer *w, cJSON *o, const struct parse_list *noun)
 {
 	size_t length = 1;
-	char *text;
 
 	for (int i = 0; i < noun->n; i++)
 		length += strlen(w->p->words[noun->item[i]].text) + 1;
-	text = calloc(length, 1);
+	SCOPED char *text = calloc(length, 1);
 	if (!text)
 		return;
 	for (int i = 0, at = 0; i < noun->n; i++)
 		at += snprintf(text + at, length - (size_t)at, "%s%s", i ? " " : "",
 			w->p->words[noun->item[i]].text);
 	cJSON_AddStringToObject(o, "noun", text);
-	free(text);
 }
 
 static void add_words(const struct writer *w, cJSON *o, const char *key, const struct parse_list *list)
@@ -271,8 +270,8 @@ static int read_one(const struct jsonl *j, const cJSON *object, void *record, st
 
 int parses_read(struct parses *p, const char *path, struct err *e)
 {
-	struct jsonl j;
-	long *lines = NULL;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
+	SCOPED long *lines = NULL;
 	size_t twice, earlier;
 
 	*p = (struct parses){0};
@@ -285,7 +284,5 @@ int parses_read(struct parses *p, const char *path, struct err *e)
 	if (!bad && twice != NAMES_NONE)
 		bad = err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", path, lines[twice],
 			p->items[twice].ref, lines[earlier]);
-	free(lines);
-	jsonl_close(&j);
 	return bad ? -1 : 0;
 }

@@ -142,15 +142,13 @@ static int check_unique(const struct sentences *s, const long *lines, const char
 
 static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 {
-	long *lines;
+	SCOPED long *lines = NULL;
 	int bad = jsonl_records(
 		j, sizeof *s->items, read_one, sentence_free, (void **)&s->items, &s->n, &lines, e);
 
 	if (!bad && !s->n)
 		bad = err_file(e, j->path, "holds no sentences");
-	bad = bad || check_unique(s, lines, j->path, e);
-	free(lines);
-	return bad ? -1 : 0;
+	return bad || check_unique(s, lines, j->path, e) ? -1 : 0;
 }
 
 static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)
@@ -185,14 +183,13 @@ static int is_json(struct jsonl *j, struct err *e)
 
 static int read_file(struct sentences *s, const char *path, int is_any, struct err *e)
 {
-	struct jsonl j;
+	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 
 	*s = (struct sentences){0};
 	if (jsonl_open(&j, path, e))
 		return -1;
 	const int json = is_any ? is_json(&j, e) : 1;
 	int bad = json < 0 ? -1 : json ? read_all(s, &j, e) : read_plain(s, &j, e);
-	jsonl_close(&j);
 	if (bad)
 		sentences_free(s);
 	return bad;

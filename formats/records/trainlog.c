@@ -1,5 +1,7 @@
 #include "formats/records/trainlog.h"
 
+#include "base/mem.h"
+
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +11,7 @@
 /* Where the lines up to an iteration end. Only whole lines count. */
 static long find_end(FILE *in, long iteration)
 {
-	char *line = NULL;
+	SCOPED char *line = NULL;
 	size_t capacity = 0;
 	ssize_t length;
 	long at = 0, end = 0, own;
@@ -20,7 +22,6 @@ static long find_end(FILE *in, long iteration)
 			own <= iteration)
 			end = at;
 	}
-	free(line);
 	return end;
 }
 

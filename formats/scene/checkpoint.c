@@ -132,13 +132,11 @@ static int read_state(
 
 int checkpoint_read(struct train_state *t, const char *path, const struct checkpoint_of *of, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 
 	if (safetensors_open(&st, path, e))
 		return -1;
-	int bad = read_state(t, &st, of, e);
-	safetensors_close(&st);
-	return bad;
+	return read_state(t, &st, of, e);
 }
 
 int checkpoint_resume(struct train_state *t, const char *path, const struct checkpoint_of *of, long long most,

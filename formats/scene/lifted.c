@@ -15,7 +15,7 @@ static void read_shares(struct lifted *l, struct arrays_in *in)
 	size_t count = 0;
 
 	l->index = arrays_in_vector(in, "index", ST_I32, -1, &count);
-	uint8_t *steps = arrays_in_vector(in, "share", ST_U8, (int64_t)count, NULL);
+	SCOPED uint8_t *steps = arrays_in_vector(in, "share", ST_U8, (int64_t)count, NULL);
 	l->share = steps ? mem_alloc(count, sizeof *l->share, in->st->path, in->e) : NULL;
 	in->bad |= !l->share;
 	for (size_t k = 0; k < count && !in->bad; k++) {
@@ -23,7 +23,6 @@ static void read_shares(struct lifted *l, struct arrays_in *in)
 			in->bad = err_file(in->e, in->st->path, "tensor 'share': item %zu is 0", k);
 		l->share[k] = (float)steps[k] / SHARE_STEPS;
 	}
-	free(steps);
 	arrays_in_check_offsets(in, "indptr", l->indptr, l->objects, count, "shares");
 	arrays_in_check_index(in, l->index, l->indptr, l->objects, l->gaussians, "object");
 }
@@ -90,14 +89,12 @@ int lifted_take(struct lifted *l, struct origin *origin, const struct safetensor
 
 int lifted_read(struct lifted *l, struct origin *origin, const char *path, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 
 	*l = (struct lifted){0};
 	if (safetensors_open(&st, path, e))
 		return -1;
-	int bad = lifted_take(l, origin, &st, e);
-	safetensors_close(&st);
-	return bad;
+	return lifted_take(l, origin, &st, e);
 }
 
 /* All above 0, or 0 where it may be, and at most 1. */

@@ -192,14 +192,12 @@ int model_take(struct model *m, const struct safetensors *st, struct err *e)
 
 int model_read(struct model *m, const char *path, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 
 	*m = (struct model){0};
 	if (safetensors_open(&st, path, e))
 		return -1;
-	int bad = model_take(m, &st, e);
-	safetensors_close(&st);
-	return bad;
+	return model_take(m, &st, e);
 }
 
 int model_rows(const struct model *m, const float *means, struct rows *rows, struct err *e)

@@ -90,12 +90,11 @@ static int take_splats(struct scene *s, const struct safetensors *st, struct err
 
 int scene_read_splats(struct scene *s, const char *path, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 
 	if (safetensors_open(&st, path, e))
 		return -1;
 	const int bad = take_splats(s, &st, e);
-	safetensors_close(&st);
 	if (bad)
 		splats_free(&s->splats);
 	return bad;
@@ -218,20 +217,18 @@ int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 
 static int read_cameras(struct cameras *c, const char *dir, struct err *e)
 {
-	char *path = file_join(dir, "cameras.json", "", e);
+	SCOPED char *path = file_join(dir, "cameras.json", "", e);
 	int bad = path ? scene_read_cameras_file(c, path, e) : -1;
 
-	free(path);
 	return bad;
 }
 
 int scene_read(struct scene *s, const char *dir, struct err *e)
 {
-	char *path = file_join(dir, "splats.safetensors", "", e);
+	SCOPED char *path = file_join(dir, "splats.safetensors", "", e);
 
 	*s = (struct scene){0};
 	int bad = path ? scene_read_splats(s, path, e) : -1;
-	free(path);
 	if (bad || !(s->path = mem_strdup(dir, e)) || read_cameras(&s->cameras, dir, e)) {
 		scene_free(s);
 		return -1;

@@ -41,14 +41,12 @@ int selection_take(struct selection *s, const struct safetensors *st, struct err
 
 int selection_read(struct selection *s, const char *path, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 
 	*s = (struct selection){0};
 	if (safetensors_open(&st, path, e))
 		return -1;
-	const int bad = selection_take(s, &st, e);
-	safetensors_close(&st);
-	return bad;
+	return selection_take(s, &st, e);
 }
 
 int selection_write(const struct selection *s, const char *path, const char *options, struct err *e)

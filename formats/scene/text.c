@@ -94,7 +94,7 @@ static void read_names(struct text *t, struct arrays_in *in)
 
 int text_read(struct text *t, const char *path, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 	struct arrays_in in;
 	size_t words;
 
@@ -111,7 +111,6 @@ int text_read(struct text *t, const char *path, struct err *e)
 	arrays_in_check_offsets(&in, "offsets", t->offsets, t->n, words, "words");
 	read_names(t, &in);
 	const int bad = in.bad || fingerprint_read(&t->encoder, &st, "encoder", e);
-	safetensors_close(&st);
 	if (bad)
 		text_free(t);
 	return bad ? -1 : 0;

@@ -205,22 +205,19 @@ static int check_origin(const struct weights *w, const struct scene *scene, size
 			(long long)w->gaussians, scene->path, scene->splats.n);
 	if (fingerprint_check("scene", path, &w->scene, scene->path, &scene->fingerprint, e))
 		return -1;
-	char *cameras = file_join(scene->path, "cameras.json", "", e);
-	int bad = !cameras || fingerprint_check("camera", path, &w->camera, cameras, &camera, e);
-	free(cameras);
-	return bad ? -1 : 0;
+	SCOPED char *cameras = file_join(scene->path, "cameras.json", "", e);
+	return !cameras || fingerprint_check("camera", path, &w->camera, cameras, &camera, e) ? -1 : 0;
 }
 
 int weights_open_in(struct weights *w, struct weights_room *room, enum weights_form form, const char *dir,
 	const struct scene *scene, size_t view, struct err *e)
 {
-	char *path = file_join(dir, scene->cameras.views[view].name, ".safetensors", e);
+	SCOPED char *path = file_join(dir, scene->cameras.views[view].name, ".safetensors", e);
 
 	*w = (struct weights){0};
 	int bad = path ? open_file(w, room, path, form == WEIGHTS_TILES, e) : -1;
 	if (!bad && (bad = check_origin(w, scene, view, e)))
 		weights_close(w);
-	free(path);
 	return bad;
 }
 
@@ -232,10 +229,9 @@ int weights_open(struct weights *w, const char *dir, const struct scene *scene, 
 /* 1 where DIR/VIEW.safetensors is there, 0 where it is not, -1 with *e. */
 static int is_there(const char *dir, const char *view, struct err *e)
 {
-	char *path = file_join(dir, view, ".safetensors", e);
+	SCOPED char *path = file_join(dir, view, ".safetensors", e);
 	int found = path ? file_exists(path) : -1;
 
-	free(path);
 	return found;
 }
 
@@ -328,7 +324,7 @@ static void put_packed(struct arrays_out *out, const struct weights *w, int64_t 
 int weights_write(
 	const struct weights *w, const char *dir, const char *view, const char *options, struct err *e)
 {
-	char *path = file_join(dir, view, ".safetensors", e);
+	SCOPED char *path = file_join(dir, view, ".safetensors", e);
 	struct arrays_out out;
 
 	if (!path)
@@ -341,7 +337,5 @@ int weights_write(
 	arrays_out_text(&out, "scene", fingerprint_text(&w->scene));
 	arrays_out_text(&out, "camera", fingerprint_text(&w->camera));
 	(w->pack ? put_packed : put_plain)(&out, w, (int64_t)w->width * w->height);
-	const int bad = arrays_out_end(&out);
-	free(path);
-	return bad;
+	return arrays_out_end(&out);
 }

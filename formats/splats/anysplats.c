@@ -27,7 +27,7 @@ int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e)
 {
 	const char *name = file_name(path);
-	struct file_map map;
+	SCOPED_BY(file_unmap) struct file_map map = {0};
 
 	gaussian_rows_none(s, report);
 	if (anysplats_is_meta(path))
@@ -36,10 +36,8 @@ int anysplats_read(
 		return -1;
 	const int is_ply = map.len >= 4 && (!memcmp(map.data, "ply\n", 4) || !memcmp(map.data, "ply\r", 4));
 	if (!is_ply && !spz_is(&map) && !glb_is(&map) &&
-		foreign_file(name, FOREIGN_SPLATS, map.data, map.len, e)) {
-		file_unmap(&map);
+		foreign_file(name, FOREIGN_SPLATS, map.data, map.len, e))
 		return -1;
-	}
 	if (!is_ply && (spz_is(&map) || path_ends(name, ".spz")))
 		return spz_read_map(s, offset, report, name, &map, e);
 	if (!is_ply && path_ends(name, ".splat"))

@@ -45,14 +45,13 @@ static int next_chunk(const struct glb *f, size_t *at, uint32_t type, const unsi
 
 static int parse_json(struct glb *f, const unsigned char *data, size_t length, struct err *e)
 {
-	char *text = malloc(length + 1);
+	SCOPED char *text = malloc(length + 1);
 
 	if (!text)
 		return err_set(e, ERR_SYSTEM, "%s: out of memory", f->name);
 	memcpy(text, data, length);
 	text[length] = 0;
 	f->root = json_parse(text, length, f->name, e);
-	free(text);
 	return f->root ? 0 : -1;
 }
 
@@ -86,13 +85,12 @@ static int open_numbers(struct glb *f, struct err *e)
 	if (name)
 		decode_uri(name);
 	const int leaves = name && path_leaves(name);
-	char *path = name && folder && !leaves ? file_join(folder, name, "", e) : NULL;
+	SCOPED char *path = name && folder && !leaves ? file_join(folder, name, "", e) : NULL;
 	const int bad = !path || file_map(path, &f->numbers, e);
 	if (leaves)
 		err_file(e, f->name, "buffer 0 is '%.200s', not in the folder of this file", name);
 	free(name);
 	free(folder);
-	free(path);
 	f->bin = f->numbers.data;
 	f->bin_length = f->numbers.len;
 	return bad ? -1 : 0;

@@ -195,11 +195,9 @@ int glb_write(const struct splats *s, const double offset[3], const char *path, 
 	if (s->n > (UINT32_MAX - (1 << 16)) / row)
 		return err_file(e, file_name(path), "%zu Gaussians of %zu bytes do not fit a .glb, of 4 GiB",
 			s->n, row);
-	char *json = make_json(&length, s, offset, attributes, n, s->n * row, path, e);
-	if (!json || file_out_open(&out, path, e)) {
-		free(json);
+	SCOPED char *json = make_json(&length, s, offset, attributes, n, s->n * row, path, e);
+	if (!json || file_out_open(&out, path, e))
 		return -1;
-	}
 	put_word(out.stream, GLB_MAGIC);
 	put_word(out.stream, 2);
 	put_word(out.stream, GLB_HEADER + 2 * GLB_CHUNK + length + s->n * row);
@@ -209,6 +207,5 @@ int glb_write(const struct splats *s, const double offset[3], const char *path, 
 	put_word(out.stream, s->n * row);
 	put_word(out.stream, GLB_BIN);
 	put_numbers(out.stream, s, attributes, n);
-	free(json);
 	return file_out_commit(&out, e);
 }

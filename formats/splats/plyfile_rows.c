@@ -126,11 +126,10 @@ int plyfile_skip(struct plyfile *f, const struct plyfile_element *el, struct err
 		f->at += el->rows * el->min_bytes;
 		return 0;
 	}
-	double *values = mem_alloc(el->n, sizeof *values, f->path, e);
+	SCOPED double *values = mem_alloc(el->n, sizeof *values, f->path, e);
 	int bad = values ? 0 : -1;
 	for (size_t i = 0; !bad && i < el->rows; i++)
 		bad = plyfile_row(f, el, i, values, e);
-	free(values);
 	return bad;
 }
 

@@ -63,7 +63,7 @@ static int read_chunks(struct plypacked *p, const struct plyfile *f, const struc
 			vertex->rows);
 	rows.at = at;
 	p->bounds = mem_alloc(p->chunks, PLYPACKED_BOUNDS * sizeof *p->bounds, "chunks", e);
-	double *row = mem_alloc(chunk->n, sizeof *row, "chunks", e);
+	SCOPED double *row = mem_alloc(chunk->n, sizeof *row, "chunks", e);
 	if (!p->bounds || !row)
 		bad = -1;
 	for (size_t i = 0; !bad && i < p->chunks; i++) {
@@ -75,7 +75,6 @@ static int read_chunks(struct plypacked *p, const struct plyfile *f, const struc
 			to[k] = is_given ? row[slot[k]] : (double)(k >= BOUNDS_COLOR + 3);
 		}
 	}
-	free(row);
 	return bad;
 }
 

@@ -229,7 +229,7 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 static int read_all(
 	struct sog *f, struct splats *s, double offset[3], struct rows_report *report, struct err *e)
 {
-	char *text = NULL;
+	SCOPED char *text = NULL;
 	size_t len;
 	cJSON *meta = NULL;
 
@@ -243,7 +243,6 @@ static int read_all(
 		bad = gaussian_rows_read(s, offset, report, &rows, e);
 	}
 	cJSON_Delete(meta);
-	free(text);
 	for (int i = 0; i < IMAGES; i++)
 		webp_free(&f->images[i]);
 	archive_close(&f->files);
@@ -263,13 +262,11 @@ int sog_read_meta(
 	struct splats *s, double offset[3], struct rows_report *report, const char *meta, struct err *e)
 {
 	struct sog f = {0};
-	char *folder = file_dir(meta, e);
+	SCOPED char *folder = file_dir(meta, e);
 
 	gaussian_rows_none(s, report);
 	if (!folder)
 		return -1;
 	archive_open_folder(&f.files, folder);
-	const int bad = read_all(&f, s, offset, report, e);
-	free(folder);
-	return bad;
+	return read_all(&f, s, offset, report, e);
 }

@@ -187,7 +187,7 @@ static void put_colour(const struct writing *w, size_t i, unsigned char *pixel)
 static int make_codebooks(struct writing *w, struct err *e)
 {
 	const size_t n = w->s->n;
-	float *values = mem_alloc(n, 3 * sizeof *values, w->name, e);
+	SCOPED float *values = mem_alloc(n, 3 * sizeof *values, w->name, e);
 	int bad = !values;
 
 	for (size_t i = 0; i < 3 * n && !bad; i++)
@@ -195,9 +195,7 @@ static int make_codebooks(struct writing *w, struct err *e)
 	bad = bad || palette_codebook(w->scales, values, 3 * n, e);
 	for (size_t i = 0; i < 3 * n && !bad; i++)
 		values[i] = sh_of(w, i / 3)[i % 3];
-	bad = bad || palette_codebook(w->colours, values, 3 * n, e);
-	free(values);
-	return bad;
+	return bad || palette_codebook(w->colours, values, 3 * n, e);
 }
 
 static int write_labels(struct writing *w, const uint16_t *labels, struct err *e)
@@ -243,7 +241,7 @@ static int write_harmonics(struct writing *w, struct err *e)
 	const size_t n = w->s->n, width = 3 * ((size_t)w->s->sh_coefficients - 1), most = palette_size(n);
 	float *rows = mem_alloc(n, width * sizeof *rows, w->name, e),
 	      *centres = rows ? mem_alloc(most, width * sizeof *centres, w->name, e) : NULL;
-	uint16_t *labels = centres ? mem_alloc(n, sizeof *labels, w->name, e) : NULL;
+	SCOPED uint16_t *labels = centres ? mem_alloc(n, sizeof *labels, w->name, e) : NULL;
 	int bad = !labels;
 
 	for (size_t i = 0; i < n && !bad; i++)
@@ -252,7 +250,6 @@ static int write_harmonics(struct writing *w, struct err *e)
 	      write_labels(w, labels, e) || write_centres(w, centres, e);
 	free(rows);
 	free(centres);
-	free(labels);
 	return bad;
 }
 
@@ -288,17 +285,15 @@ static void print_meta(FILE *out, const struct writing *w)
 
 static int write_meta(struct writing *w, struct err *e)
 {
-	char *text = NULL;
+	SCOPED char *text = NULL;
 	size_t length;
 	FILE *out = open_memstream(&text, &length);
 
 	if (!out)
 		return err_errno(e, "%s", w->name);
 	print_meta(out, w);
-	const int bad = fclose(out) ? err_errno(e, "%s", w->name)
-				    : zip_write_file(&w->zip, "meta.json", text, length, e);
-	free(text);
-	return bad;
+	return fclose(out) ? err_errno(e, "%s", w->name)
+			   : zip_write_file(&w->zip, "meta.json", text, length, e);
 }
 
 static int write_all(struct writing *w, struct err *e)

@@ -79,7 +79,7 @@ void splat_pack(unsigned char bytes[SPLAT_BYTES], const struct splats *s, size_t
 
 int splat_write(const struct splats *s, const double offset[3], const char *path, struct err *e)
 {
-	struct place *places = mem_alloc(s->n, sizeof *places, "splats", e);
+	SCOPED struct place *places = mem_alloc(s->n, sizeof *places, "splats", e);
 	struct file_out out;
 
 	if (!places)
@@ -99,6 +99,5 @@ int splat_write(const struct splats *s, const double offset[3], const char *path
 				record + 4 * k, (double)s->means[3 * places[i].gaussian + k] + offset[k]);
 		fwrite(record, 1, sizeof record, out.stream);
 	}
-	free(places);
 	return bad ? -1 : file_out_commit(&out, e);
 }

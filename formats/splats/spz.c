@@ -93,7 +93,7 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 int spz_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e)
 {
-	struct spz f;
+	SCOPED_BY(spz_close) struct spz f = {0};
 
 	gaussian_rows_none(s, report);
 	int bad = spz_open(&f, name, map, e);
@@ -102,9 +102,7 @@ int spz_read_map(struct splats *s, double offset[3], struct rows_report *report,
 		return -1;
 	const int rest = 3 * ((f.degree + 1) * (f.degree + 1) - 1);
 	const struct gaussian_rows rows = {f.name, f.n, rest, next_row, &f};
-	bad = gaussian_rows_read(s, offset, report, &rows, e);
-	spz_close(&f);
-	return bad;
+	return gaussian_rows_read(s, offset, report, &rows, e);
 }
 
 /* Coordinates get as many fraction bits as leave room for the farthest mean; more than these say nothing, but
@@ -296,7 +294,7 @@ static int write_plain(struct spz *f, FILE *out, struct err *e)
 		most += ZSTD_compressBound(bytes);
 		streams += bytes != 0;
 	}
-	unsigned char *all = mem_zalloc(most, 1, f->name, e);
+	SCOPED unsigned char *all = mem_zalloc(most, 1, f->name, e);
 	if (!all)
 		return -1;
 	put_header(all, f);
@@ -305,13 +303,12 @@ static int write_plain(struct spz *f, FILE *out, struct err *e)
 	const unsigned char *end = pack_streams(f, all + 32, all + 32 + 16 * streams, all + most, e);
 	if (end)
 		fwrite(all, 1, (size_t)(end - all), out);
-	free(all);
 	return end ? 0 : -1;
 }
 
 int spz_write(const struct splats *s, const double offset[3], int version, const char *path, struct err *e)
 {
-	struct spz f = {.name = file_name(path), .version = version, .n = s->n};
+	SCOPED_BY(spz_close) struct spz f = {.name = file_name(path), .version = version, .n = s->n};
 	const size_t room = version < 4 ? 16 : 0;
 	struct file_out out;
 	size_t len = 0;
@@ -327,6 +324,5 @@ int spz_write(const struct splats *s, const double offset[3], int version, const
 		bad = version < 4 ? write_gzip(&f, len, out.stream, e) : write_plain(&f, out.stream, e);
 		bad = file_out_end(&out, bad, e);
 	}
-	spz_close(&f);
 	return bad ? -1 : 0;
 }

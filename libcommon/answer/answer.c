@@ -149,7 +149,7 @@ static void answer_some(struct queue *queue, const struct answer_question *q, co
 {
 #pragma omp parallel num_threads(threads) if (threads > 1)
 	{
-		struct room room = {0};
+		SCOPED_BY(room_free) struct room room = {0};
 #pragma omp for schedule(dynamic)
 		for (size_t i = begin; i < end; i++) {
 			struct err e;
@@ -162,7 +162,6 @@ static void answer_some(struct queue *queue, const struct answer_question *q, co
 #pragma omp critical(answer_queue)
 			queue_put(queue, i, bad, &e);
 		}
-		room_free(&room);
 	}
 }
 
@@ -188,12 +187,11 @@ int answer_all(const struct answer_question *q, const struct camera *cameras, si
 	const int threads = threads_available();
 	struct queue queue = {.calls = calls, .ready = mem_zalloc(n, 1, "views", e), .failed = n, .e = e};
 	const int is_all = q->wants_rgb || q->wants_images;
-	uint8_t *is_wanted = is_all ? NULL : find_wanted(q, e);
+	SCOPED uint8_t *is_wanted = is_all ? NULL : find_wanted(q, e);
 	double most = 0;
 
 	if (!queue.ready || (!is_all && !is_wanted)) {
 		free(queue.ready);
-		free(is_wanted);
 		return -1;
 	}
 	for (size_t i = 0; i < n; i++)
@@ -203,6 +201,5 @@ int answer_all(const struct answer_question *q, const struct camera *cameras, si
 	answer_some(&queue, q, is_wanted, cameras, 0, together, threads);
 	answer_some(&queue, q, is_wanted, cameras, together, n, 1);
 	free(queue.ready);
-	free(is_wanted);
 	return queue.failed < n ? -1 : 0;
 }

@@ -45,7 +45,7 @@ static int render_all(const struct splats *s, const struct camera *views, int n,
 
 	for (int i = 0; i < n && !bad; i++) {
 		const size_t own = (size_t)views[i].width * (size_t)views[i].height;
-		float *own_images = mem_alloc(count, own * sizeof *own_images, "images", e);
+		SCOPED float *own_images = mem_alloc(count, own * sizeof *own_images, "images", e);
 		bad = !own_images;
 		if (!bad && v)
 			bad = render_again(v, s, &views[i], e);
@@ -56,7 +56,6 @@ static int render_all(const struct splats *s, const struct camera *views, int n,
 			for (size_t r = 0; r < count; r++)
 				memcpy(images + r * pixels + at, own_images + r * own, own * sizeof *images);
 		}
-		free(own_images);
 		at += own;
 	}
 	render_free(v);

@@ -16,8 +16,8 @@ static int locate_one(struct located *to, const struct responses *a, size_t answ
 	const double up[3])
 {
 	struct err ignored;
-	int32_t *ids = mem_alloc(s->n, sizeof *ids, "object", &ignored);
-	float *responses = mem_alloc(s->n, sizeof *responses, "object", &ignored);
+	SCOPED int32_t *ids = mem_alloc(s->n, sizeof *ids, "object", &ignored);
+	SCOPED float *responses = mem_alloc(s->n, sizeof *responses, "object", &ignored);
 	double sum = 0;
 	int bad = -1;
 
@@ -28,8 +28,6 @@ static int locate_one(struct located *to, const struct responses *a, size_t answ
 		to->sure = n ? sum / (double)n : 0;
 		bad = extent_find(&to->extent, s, ids, responses, n, up, &ignored);
 	}
-	free(ids);
-	free(responses);
 	return bad;
 }
 
@@ -113,8 +111,8 @@ int locate_things(char *of, const struct lifted *l, const struct extent *extents
 int locate_answer(char *of, const struct responses *a, size_t answer, const struct extent *x,
 	enum locate_show show, const struct splats *s, const float *most, struct err *e)
 {
-	int32_t *ids = mem_alloc(s->n, sizeof *ids, "object", e);
-	float *responses = mem_alloc(s->n, sizeof *responses, "object", e);
+	SCOPED int32_t *ids = mem_alloc(s->n, sizeof *ids, "object", e);
+	SCOPED float *responses = mem_alloc(s->n, sizeof *responses, "object", e);
 	const size_t n = ids && responses ? responses_gaussians(a, s->n, answer, ids, responses) : 0;
 	int bad = !ids || !responses;
 
@@ -123,16 +121,13 @@ int locate_answer(char *of, const struct responses *a, size_t answer, const stru
 		of[ids[i]] = 1;
 	if (show == LOCATE_ISOLATED)
 		only_of_extent(of, x, s->n);
-	bad = bad || inside_take(of, x, s, most, NULL, e);
-	free(ids);
-	free(responses);
-	return bad ? -1 : 0;
+	return bad || inside_take(of, x, s, most, NULL, e) ? -1 : 0;
 }
 
 int locate_show(
 	struct splats *to, const struct splats *s, const char *of, enum locate_show show, struct err *e)
 {
-	char *kept = mem_alloc(s->n, 1, "scene", e);
+	SCOPED char *kept = mem_alloc(s->n, 1, "scene", e);
 
 	*to = (struct splats){0};
 	if (!kept)
@@ -143,6 +138,5 @@ int locate_show(
 	for (size_t i = 0; i < s->n && !bad && show == LOCATE_COLOURED; i++)
 		if (of[i])
 			paint_one(to->sh + 3 * (size_t)s->sh_coefficients * i, s->sh_coefficients);
-	free(kept);
 	return bad;
 }

@@ -54,7 +54,7 @@ void peak_mean(const float *image, int height, int width, int window, double *ro
 int peak_find(const float *image, int height, int width, int window, int *x, int *y, struct err *e)
 {
 	const size_t pixels = (size_t)height * (size_t)width;
-	double *sums = mem_alloc(2 * pixels, sizeof *sums, "peak", e);
+	SCOPED double *sums = mem_alloc(2 * pixels, sizeof *sums, "peak", e);
 	size_t best = 0;
 	int is_any = 0;
 
@@ -68,7 +68,6 @@ int peak_find(const float *image, int height, int width, int window, int *x, int
 		sum_windows(sums, sums + pixels, height, width, window);
 	for (size_t p = 1; p < pixels && is_any; p++)
 		best = sums[p] > sums[best] ? p : best;
-	free(sums);
 	*x = (int)(best % (size_t)width);
 	*y = (int)(best / (size_t)width);
 	return is_any;

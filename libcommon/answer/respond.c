@@ -89,7 +89,7 @@ int respond_all(const struct respond_model *m, const int64_t *offsets, const flo
 	const size_t *which, size_t count, float *out, struct err *e)
 {
 	const size_t gaussians = m->rows->gaussians;
-	struct answering a = {0};
+	SCOPED_BY(answering_free) struct answering a = {0};
 	size_t sentences;
 	int longest;
 
@@ -105,7 +105,6 @@ int respond_all(const struct respond_model *m, const int64_t *offsets, const flo
 		answer_sentence(&a, m->parameters, which[i]);
 		rows_spread(m->rows, a.response, out + i * gaussians);
 	}
-	answering_free(&a);
 	return bad;
 }
 

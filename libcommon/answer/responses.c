@@ -180,7 +180,7 @@ static size_t find_set(struct sets *s, const char *chosen)
 static int list_objects(struct responses *a, struct sets *s, int wants_parts, struct err *e)
 {
 	const size_t most = s->n + (wants_parts ? s->objects : 0), meant = s->n;
-	char *one = mem_zalloc(s->objects, 1, "answers", e);
+	SCOPED char *one = mem_zalloc(s->objects, 1, "answers", e);
 
 	a->begin = mem_zalloc(most + 1, sizeof *a->begin, "answers", e);
 	a->objects = mem_alloc(most, s->objects * sizeof *a->objects, "answers", e);
@@ -199,7 +199,6 @@ static int list_objects(struct responses *a, struct sets *s, int wants_parts, st
 		}
 		a->begin[k + 1] = at;
 	}
-	free(one);
 	return bad ? -1 : 0;
 }
 
@@ -222,19 +221,18 @@ static void union_of(const struct lifted *l, const char *chosen, float *own, flo
 
 static int take_answers(struct responses *a, const struct lifted *l, const struct sets *s, struct err *e)
 {
-	float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
+	SCOPED float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
 	int bad = !own || alloc_answers(a, s->n, l->gaussians, e);
 
 	for (size_t k = 0; k < s->n && !bad; k++)
 		union_of(l, s->chosen + k * s->objects, own, a->responses + k * l->gaussians);
-	free(own);
 	return bad ? -1 : render_pack(a->responses, l->gaussians, (int)s->n, e);
 }
 
 static int ask_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
 	unsigned parts, double least, struct err *e)
 {
-	struct meant m = {0};
+	SCOPED_BY(meant_free) struct meant m = {0};
 	struct sets sets = {
 		.objects = l->objects, .chosen = mem_alloc(q->count + l->objects, l->objects, "answers", e)};
 
@@ -245,7 +243,6 @@ static int ask_lifted(struct responses *a, const struct lifted *l, const struct 
 	for (size_t i = 0; i < q->count && !bad; i++)
 		a->answer[i] = find_set(&sets, m.chosen + i * l->objects);
 	bad = bad || list_objects(a, &sets, q->wants_parts, e) || take_answers(a, l, &sets, e);
-	meant_free(&m);
 	free(sets.chosen);
 	return bad ? -1 : 0;
 }
@@ -314,7 +311,7 @@ static int take_whole(const struct responses *a, size_t answer, const struct spl
 int responses_wholes(const struct responses *a, const struct splats *s, const struct cameras *cameras,
 	struct splats *wholes, struct err *e)
 {
-	char *in_sight = mem_alloc(s->n, 1, "Gaussians", e);
+	SCOPED char *in_sight = mem_alloc(s->n, 1, "Gaussians", e);
 	size_t done = 0;
 
 	if (in_sight && !visibility_find(s, cameras, in_sight, e))
@@ -322,7 +319,6 @@ int responses_wholes(const struct responses *a, const struct splats *s, const st
 			done++;
 	else
 		done = SIZE_MAX;
-	free(in_sight);
 	if (done == a->answers)
 		return 0;
 	for (size_t k = 0; done != SIZE_MAX && k < done; k++)

@@ -322,13 +322,12 @@ static int is_no_file(const char *path)
 
 int file_out_probe(const char *path, struct err *e)
 {
-	struct file_out out;
+	SCOPED_BY(file_out_abort) struct file_out out = {0};
 
 	if (is_no_file(path))
 		return 0;
 	if (file_out_open(&out, path, e))
 		return -1;
-	file_out_abort(&out);
 	return 0;
 }
 

@@ -84,12 +84,11 @@ size_t names_twice(const struct names *names, size_t *earlier)
 int names_find_twice(const void *items, size_t stride, size_t offset, size_t n, size_t *twice,
 	size_t *earlier, struct err *e)
 {
-	struct names names;
+	SCOPED_BY(names_free) struct names names = {0};
 
 	if (names_make(&names, items, stride, offset, n, e))
 		return -1;
 	*twice = names_twice(&names, earlier);
-	names_free(&names);
 	return 0;
 }
 
@@ -119,7 +118,7 @@ int names_mark(const void *items, size_t stride, size_t offset, size_t n, const 
 	const char *option, const char *what, char *chosen, struct err *e)
 {
 	struct list_name name;
-	struct names names = {0};
+	SCOPED_BY(names_free) struct names names = {0};
 	char *copy = list ? name_copy(list, e) : NULL;
 	const char *rest = copy;
 	int bad = (list && !copy) || names_make(&names, items, stride, offset, n, e);
@@ -133,7 +132,6 @@ int names_mark(const void *items, size_t stride, size_t offset, size_t n, const 
 		else
 			chosen[place] = 1;
 	}
-	names_free(&names);
 	free(copy);
 	return bad ? -1 : 0;
 }

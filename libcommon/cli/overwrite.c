@@ -1,6 +1,7 @@
 #include "cli/overwrite.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/path.h"
 #include "cli/cli.h"
 
@@ -71,11 +72,10 @@ static int is_listed(const struct cli *c, const char *file, const struct cli_fil
 		struct err e;
 		if (!parts_meet(entry->d_name, folder->parts))
 			continue;
-		char *path = file_join(folder->path, entry->d_name, "", &e);
+		SCOPED char *path = file_join(folder->path, entry->d_name, "", &e);
 		if (!path)
 			fail(c, &e);
 		found = is_same(c, file, path);
-		free(path);
 	}
 	if (dir)
 		closedir(dir);

@@ -161,7 +161,7 @@ int octree_build(struct octree *t, const struct octree_points *p, double price, 
 		t->edge = fmax(t->edge, high[k] - t->low[k]);
 	if (!(t->edge > 0))
 		t->edge = 1;
-	struct entry *entries = mem_alloc(p->n, sizeof *entries, "octree", e);
+	SCOPED struct entry *entries = mem_alloc(p->n, sizeof *entries, "octree", e);
 	if (!entries)
 		return -1;
 	for (size_t i = 0; i < p->n; i++)
@@ -171,7 +171,6 @@ int octree_build(struct octree *t, const struct octree_points *p, double price, 
 	struct moments all;
 	double error;
 	int bad = p->n ? add_cube(&b, entries, p->n, 0, 0, &all, &error) : 0;
-	free(entries);
 	if (bad)
 		octree_free(t);
 	return bad;
@@ -217,7 +216,7 @@ int octree_check(const struct octree *t, size_t *bad)
 
 int octree_find(const struct octree *t, const float *means, size_t count, int32_t *leaf, struct err *e)
 {
-	uint64_t *first = mem_alloc(t->n, sizeof *first, "octree", e);
+	SCOPED uint64_t *first = mem_alloc(t->n, sizeof *first, "octree", e);
 
 	if (!first)
 		return -1;
@@ -238,6 +237,5 @@ int octree_find(const struct octree *t, const float *means, size_t count, int32_
 				  ? (int32_t)(from - 1)
 				  : -1;
 	}
-	free(first);
 	return 0;
 }

@@ -109,16 +109,13 @@ int grow(struct fit_gaussians *g, const uint8_t *dead, size_t wanted, struct rng
 {
 	wanted = wanted < g->capacity ? wanted : g->capacity;
 	const size_t all = wanted > g->n ? wanted : g->n;
-	double *cumulative = mem_alloc(g->n, sizeof *cumulative, "Gaussians", e);
-	uint32_t *originals = mem_alloc(all, sizeof *originals, "Gaussians", e);
-	uint16_t *copies = mem_zalloc(g->n, sizeof *copies, "Gaussians", e);
+	SCOPED double *cumulative = mem_alloc(g->n, sizeof *cumulative, "Gaussians", e);
+	SCOPED uint32_t *originals = mem_alloc(all, sizeof *originals, "Gaussians", e);
+	SCOPED uint16_t *copies = mem_zalloc(g->n, sizeof *copies, "Gaussians", e);
 	const int bad = !cumulative || !originals || !copies;
 
 	if (!bad && g->n && accumulate(g, dead, cumulative) > 0)
 		place(g, dead, wanted, cumulative, originals, copies, rng);
-	free(cumulative);
-	free(originals);
-	free(copies);
 	return bad ? -1 : 0;
 }
 

@@ -64,14 +64,13 @@ static int compare(const void *a, const void *b)
 static int rank(struct fit *f, struct rank *ranks, char *kept, struct err *e)
 {
 	const size_t n = f->gaussians.n;
-	float *worth = mem_alloc(n, sizeof *worth, "Gaussians", e);
+	SCOPED float *worth = mem_alloc(n, sizeof *worth, "Gaussians", e);
 	int bad = !worth || fit_shown(f, 0, kept, worth, e);
 
 	for (size_t i = 0; i < n && !bad; i++)
 		ranks[i] = (struct rank){worth[i], (uint32_t)i};
 	if (!bad)
 		qsort(ranks, n, sizeof *ranks, compare);
-	free(worth);
 	return bad ? -1 : 0;
 }
 
@@ -117,13 +116,10 @@ static int prune(struct fit *f, struct rank *ranks, char *kept, float *logits, s
 int fit_prune(struct fit *f, struct err *e)
 {
 	const size_t n = f->gaussians.n;
-	struct rank *ranks = mem_alloc(n, sizeof *ranks, "Gaussians", e);
-	char *kept = mem_alloc(n, 1, "Gaussians", e);
-	float *logits = mem_alloc(n, sizeof *logits, "Gaussians", e);
+	SCOPED struct rank *ranks = mem_alloc(n, sizeof *ranks, "Gaussians", e);
+	SCOPED char *kept = mem_alloc(n, 1, "Gaussians", e);
+	SCOPED float *logits = mem_alloc(n, sizeof *logits, "Gaussians", e);
 	const int bad = !ranks || !kept || !logits || prune(f, ranks, kept, logits, e);
 
-	free(ranks);
-	free(kept);
-	free(logits);
 	return bad ? -1 : 0;
 }

@@ -81,7 +81,7 @@ int start_at_points(
 {
 	float *const *to = g->at[FIT_VALUE];
 	const size_t room = g->capacity - g->n < n ? g->capacity - g->n : n;
-	float *far = mem_zalloc(n, 2 * sizeof *far, "points", e);
+	SCOPED float *far = mem_zalloc(n, 2 * sizeof *far, "points", e);
 	int bad = !far;
 
 	for (int k = 1; k <= NEIGHBOURS && !bad; k++) {
@@ -104,6 +104,5 @@ int start_at_points(
 		to[FIT_LOGIT][at] = logf(OPACITY / (1 - OPACITY));
 		g->n++;
 	}
-	free(far);
 	return bad ? -1 : 0;
 }

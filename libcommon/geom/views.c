@@ -95,14 +95,13 @@ static int set_name(struct camera *c, enum level level, struct err *e)
 
 	from += from < end && *from == '/';
 	len = (size_t)(end - from);
-	char *part = mem_alloc(len + 1, 1, "view name", e);
+	SCOPED char *part = mem_alloc(len + 1, 1, "view name", e);
 	if (!part)
 		return -1;
 	memcpy(part, from, len);
 	part[len] = 0;
 	free(c->name);
 	c->name = level == ESCAPED_PATH ? name_to_file(part, e) : name_to_view(part, e);
-	free(part);
 	return c->name ? 0 : -1;
 }
 
@@ -153,7 +152,7 @@ static int name_entries(struct entry *entries, size_t n, const char *path, struc
 
 int views_finish(struct cameras *c, const char *path, struct err *e)
 {
-	struct entry *entries = mem_zalloc(c->n, sizeof *entries, "views", e);
+	SCOPED struct entry *entries = mem_zalloc(c->n, sizeof *entries, "views", e);
 
 	if (!entries)
 		return -1;
@@ -172,7 +171,6 @@ int views_finish(struct cameras *c, const char *path, struct err *e)
 			!bad && entries[i].level == FILE_STEM && view_base(v->image) != v->image;
 		bad = bad || (lacks_folders && !(v->source = mem_strdup(v->image, e)));
 	}
-	free(entries);
 	return bad ? -1 : 0;
 }
 
@@ -182,20 +180,18 @@ int view_is_called(const struct camera *c, const char *name, struct err *e)
 
 	for (const char *from = c->source; from && !is_so; from = strchr(from, '/')) {
 		from += *from == '/';
-		char *part = mem_strdup(from, e);
+		SCOPED char *part = mem_strdup(from, e);
 		if (part)
 			part[view_stem(part)] = 0;
-		char *called = part ? name_to_view(part, e) : NULL;
+		SCOPED char *called = part ? name_to_view(part, e) : NULL;
 		is_so = called ? !strcmp(called, name) : -1;
-		free(called);
-		free(part);
 	}
 	return is_so;
 }
 
 int views_name(const char *const *images, size_t n, char **names, const char *path, struct err *e)
 {
-	struct entry *entries = mem_zalloc(n, sizeof *entries, "views", e);
+	SCOPED struct entry *entries = mem_zalloc(n, sizeof *entries, "views", e);
 
 	if (!entries)
 		return -1;
@@ -207,6 +203,5 @@ int views_name(const char *const *images, size_t n, char **names, const char *pa
 			free(entries[i].view.name);
 		else
 			names[entries[i].place] = entries[i].view.name;
-	free(entries);
 	return bad ? -1 : 0;
 }

@@ -161,8 +161,8 @@ static int find_basis(struct components *c, const double *covariance, struct err
 {
 	const size_t channels = c->channels, m = c->count + MORE < channels ? c->count + MORE : channels;
 	double *q = mem_alloc(2 * m * channels, sizeof *q, "components", e);
-	double *t = mem_alloc(2 * m * m, sizeof *t, "components", e);
-	char *taken = mem_zalloc(m, 1, "components", e);
+	SCOPED double *t = mem_alloc(2 * m * m, sizeof *t, "components", e);
+	SCOPED char *taken = mem_zalloc(m, 1, "components", e);
 	struct rng r;
 
 	if (q && t && taken) {
@@ -181,15 +181,13 @@ static int find_basis(struct components *c, const double *covariance, struct err
 	}
 	const int bad = !q || !t || !taken;
 	free(q);
-	free(t);
-	free(taken);
 	return bad ? -1 : 0;
 }
 
 int components_find(
 	struct components *c, const float *rows, size_t n, size_t channels, size_t count, struct err *e)
 {
-	double *covariance = mem_alloc(channels, channels * sizeof *covariance, "components", e);
+	SCOPED double *covariance = mem_alloc(channels, channels * sizeof *covariance, "components", e);
 
 	*c = (struct components){channels, count, mem_alloc(channels, sizeof *c->mean, "components", e),
 		mem_alloc(count, channels * sizeof *c->basis, "components", e)};
@@ -199,7 +197,6 @@ int components_find(
 		find_covariance(rows, n, channels, c->mean, covariance);
 		bad = find_basis(c, covariance, e);
 	}
-	free(covariance);
 	if (bad)
 		components_free(c);
 	return bad ? -1 : 0;

@@ -238,9 +238,9 @@ static int find_strays(const struct cloud *c, char *kept, struct err *e)
 	memset(kept, 1, c->n);
 	if (!(side > 0))
 		return 0;
-	struct cell *cells = mem_alloc(c->n, sizeof *cells, "cells", e);
-	size_t *parent = mem_alloc(c->n, sizeof *parent, "cells", e);
-	double *sums = mem_zalloc(c->n, sizeof *sums, "cells", e);
+	SCOPED struct cell *cells = mem_alloc(c->n, sizeof *cells, "cells", e);
+	SCOPED size_t *parent = mem_alloc(c->n, sizeof *parent, "cells", e);
+	SCOPED double *sums = mem_zalloc(c->n, sizeof *sums, "cells", e);
 	int bad = !cells || !parent || !sums ? -1 : 0;
 	if (!bad) {
 		make_cells(c, cells, side, low);
@@ -253,9 +253,6 @@ static int find_strays(const struct cloud *c, char *kept, struct err *e)
 		for (size_t i = 0; i < c->n; i++)
 			kept[cells[i].gaussian] = sums[root(parent, i)] >= EXTENT_PART * best;
 	}
-	free(cells);
-	free(parent);
-	free(sums);
 	return bad;
 }
 
@@ -305,7 +302,7 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 		mem_alloc(room, 9 * sizeof(double), "object", e),
 		mem_alloc(room, sizeof(double), "object", e),
 		mem_alloc(room, sizeof(struct quantile_item), "object", e)};
-	char *kept = mem_alloc(room, 1, "object", e);
+	SCOPED char *kept = mem_alloc(room, 1, "object", e);
 
 	*x = (struct extent){.ids = mem_alloc(room, sizeof *ids, "object", e), .weight = c.weight};
 	int bad = !c.means || !c.spread || !c.weight || !c.items || !kept || !x->ids ? -1 : 0;
@@ -323,7 +320,6 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 	free(c.means);
 	free(c.spread);
 	free(c.items);
-	free(kept);
 	if (bad)
 		extent_free(x);
 	return bad;

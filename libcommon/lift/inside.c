@@ -74,7 +74,7 @@ struct near {
 static int gather(struct near *r, const struct hull *h, const char *taken, const struct splats *s,
 	const float *most, const char *others, struct err *e)
 {
-	char *side = mem_alloc(s->n, 1, "object", e);
+	SCOPED char *side = mem_alloc(s->n, 1, "object", e);
 	int bad = !side;
 
 	if (bad)
@@ -101,7 +101,6 @@ static int gather(struct near *r, const struct hull *h, const char *taken, const
 		if (side[i] == UNSURE)
 			r->unsure[at] = i;
 	}
-	free(side);
 	return bad ? -1 : 0;
 }
 
@@ -125,7 +124,7 @@ static int vote(char *taken, struct near *r, struct err *e)
 int inside_take(char *taken, const struct extent *x, const struct splats *s, const float *most,
 	const char *others, struct err *e)
 {
-	struct quantile_item *items;
+	SCOPED struct quantile_item *items = NULL;
 	struct near r = {0};
 	struct hull h;
 
@@ -134,7 +133,6 @@ int inside_take(char *taken, const struct extent *x, const struct splats *s, con
 	if (!(items = mem_alloc(x->n, sizeof *items, "object", e)))
 		return -1;
 	make_hull(&h, x, s, items);
-	free(items);
 	const int bad = gather(&r, &h, taken, s, most, others, e) || vote(taken, &r, e);
 	for (int k = 0; k < SIDES; k++)
 		free(r.points[k]);

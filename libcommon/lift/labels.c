@@ -27,7 +27,7 @@ static void label_one(
 
 int labels_find(int32_t *labels, const struct lifted *l, const struct extent *extents, struct err *e)
 {
-	float *largest = mem_zalloc(l->gaussians, sizeof *largest, "labels", e);
+	SCOPED float *largest = mem_zalloc(l->gaussians, sizeof *largest, "labels", e);
 
 	if (!largest)
 		return -1;
@@ -35,7 +35,6 @@ int labels_find(int32_t *labels, const struct lifted *l, const struct extent *ex
 		labels[i] = 0;
 	for (size_t o = 0; o < l->objects; o++)
 		label_one(labels, largest, l, o, &extents[o]);
-	free(largest);
 	return 0;
 }
 

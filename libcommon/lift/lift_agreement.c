@@ -174,7 +174,7 @@ static int take_rows(const struct work *work, struct overlap *overlaps, struct e
 #pragma omp parallel reduction(| : failed)
 	{
 		struct err mine;
-		struct drawn d;
+		SCOPED_BY(drawn_free) struct drawn d = {0};
 		failed = drawn_make(&d, n, &mine) != 0;
 #pragma omp for schedule(dynamic)
 		for (int row = 0; row < work->down; row++) {
@@ -186,7 +186,6 @@ static int take_rows(const struct work *work, struct overlap *overlaps, struct e
 #pragma omp critical
 			*e = mine;
 		}
-		drawn_free(&d);
 	}
 	return failed ? -1 : 0;
 }
@@ -218,7 +217,7 @@ int lift_agreement(const struct lift_objects *l, const struct lift_view *v, cons
 	struct work work = {l, v, w, (w->width + VIEW_TILE - 1) / VIEW_TILE,
 		(w->height + VIEW_TILE - 1) / VIEW_TILE,
 		.slots = mem_alloc(l->objects, sizeof *work.slots, "masks", e)};
-	struct overlap *overlaps = mem_zalloc((size_t)work.down, v->n * sizeof *overlaps, "masks", e);
+	SCOPED struct overlap *overlaps = mem_zalloc((size_t)work.down, v->n * sizeof *overlaps, "masks", e);
 	int bad = !work.slots || !overlaps;
 
 	for (size_t o = 0; o < l->objects && !bad; o++)
@@ -231,6 +230,5 @@ int lift_agreement(const struct lift_objects *l, const struct lift_view *v, cons
 	for (size_t k = 0; k < v->n && !bad; k++)
 		agreement[k] = agreement_of(&work, overlaps, k);
 	free(work.slots);
-	free(overlaps);
 	return bad ? -1 : 0;
 }

@@ -135,7 +135,7 @@ int lift_left_out(struct lift_objects *l, size_t named, double *agreement, struc
 
 	for (size_t v = 0; v < l->view_count; v++)
 		most += l->views[v].n;
-	double *found = mem_alloc(most, sizeof *found, "shares", e);
+	SCOPED double *found = mem_alloc(most, sizeof *found, "shares", e);
 	const int bad = !r.who || !r.place || !r.in || !r.all || !r.own || !found;
 	for (size_t i = 0; i < l->gaussians && !bad; i++)
 		r.place[i] = -1;
@@ -154,6 +154,5 @@ int lift_left_out(struct lift_objects *l, size_t named, double *agreement, struc
 	free(r.in);
 	free(r.all);
 	free(r.own);
-	free(found);
 	return bad ? -1 : 0;
 }

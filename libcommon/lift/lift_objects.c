@@ -60,14 +60,13 @@ static int fill_bits(
 #pragma omp parallel for schedule(dynamic) reduction(| : failed)
 	for (size_t k = 0; k < n; k++) {
 		struct err mine;
-		uint8_t *pixels = mem_alloc((size_t)height * (size_t)width, 1, "masks", &mine);
+		SCOPED uint8_t *pixels = mem_alloc((size_t)height * (size_t)width, 1, "masks", &mine);
 		if (!pixels || rle_decode_at(&masks[k].mask->rle, height, width, pixels, &mine)) {
 			failed = 1;
 #pragma omp critical
 			*e = mine;
 		} else
 			bits_pack_tiles(pixels, height, width, v->bits + k * tiles);
-		free(pixels);
 	}
 	return failed ? -1 : 0;
 }
@@ -75,14 +74,12 @@ static int fill_bits(
 /* What the view and each object's masks show. */
 static int make_rows(struct lift_view *v, const struct view_matrix *w, struct err *e)
 {
-	struct shares_masks *masks = mem_alloc(v->n, sizeof *masks, "masks", e);
+	SCOPED struct shares_masks *masks = mem_alloc(v->n, sizeof *masks, "masks", e);
 
 	for (size_t k = 0; k < v->n && masks; k++)
 		masks[k] = (struct shares_masks){v->bits + v->starts[k] * bits_tiles(w->height, w->width),
 			v->starts[k + 1] - v->starts[k]};
-	const int bad = !masks || shares_make(v->weight, v->rows, w, masks, v->n, e);
-	free(masks);
-	return bad ? -1 : 0;
+	return !masks || shares_make(v->weight, v->rows, w, masks, v->n, e) ? -1 : 0;
 }
 
 int lift_objects_view(struct lift_objects *l, size_t at, const struct view_matrix *w,

@@ -71,13 +71,11 @@ static int make_row(struct lift_objects *l, size_t object, struct sums *s, doubl
 	shares_free(row);
 	sum_inside(l, object, s);
 	const size_t n = marks_count(s->marks, l->gaussians);
-	double *weight = mem_zalloc(n, sizeof *weight, "shares", e);
+	SCOPED double *weight = mem_zalloc(n, sizeof *weight, "shares", e);
 	*row = (struct shares){.index = mem_alloc(n, sizeof *row->index, "shares", e),
 		.share = mem_alloc(n, sizeof *row->share, "shares", e)};
-	if (!weight || !row->index || !row->share) {
-		free(weight);
+	if (!weight || !row->index || !row->share)
 		return -1;
-	}
 	row->n = marks_take(s->marks, l->gaussians, row->index);
 	sum_weight(l, object, row->index, n, weight);
 	for (size_t k = 0; k < n; k++) {
@@ -86,7 +84,6 @@ static int make_row(struct lift_objects *l, size_t object, struct sums *s, doubl
 		*inside = 0;
 	}
 	*level = find_level(row, weight);
-	free(weight);
 	return 0;
 }
 
@@ -149,7 +146,7 @@ static void finish(struct lift_objects *l, const double *levels)
 
 int lift_shares(struct lift_objects *l, int is_last, struct err *e)
 {
-	double *levels = mem_alloc(l->objects, sizeof *levels, "shares", e);
+	SCOPED double *levels = mem_alloc(l->objects, sizeof *levels, "shares", e);
 	const int bad = !levels || make_rows(l, levels, e);
 
 	if (!bad)
@@ -159,6 +156,5 @@ int lift_shares(struct lift_objects *l, int is_last, struct err *e)
 	for (size_t i = 0; i < l->gaussians && !bad && !is_last; i++)
 		if (l->claims[i].object != LIFT_NOBODY)
 			l->claims[i].share = scale(l->claims[i].share, levels[l->claims[i].object]);
-	free(levels);
 	return bad ? -1 : 0;
 }

@@ -52,9 +52,8 @@ int propagate_init(struct propagation *c, const struct pool *p, const size_t *vi
 	c->starts = mem_alloc(p->n, sizeof *c->starts, "masks", e);
 	c->order = mem_alloc(p->n, sizeof *c->order, "masks", e);
 	c->sources = mem_alloc(p->n, sizeof *c->sources, "masks", e);
-	struct place *places = mem_alloc(p->n, sizeof *places, "masks", e);
+	SCOPED struct place *places = mem_alloc(p->n, sizeof *places, "masks", e);
 	if (!c->starts || !c->order || !c->sources || !places) {
-		free(places);
 		propagate_free(c);
 		return -1;
 	}
@@ -70,7 +69,6 @@ int propagate_init(struct propagation *c, const struct pool *p, const size_t *vi
 				(struct propagate_source){.view = places[i].view, .begin = i};
 		c->sources[c->source_count - 1].count++;
 	}
-	free(places);
 	return 0;
 }
 

@@ -338,10 +338,10 @@ int regions_grow(struct regions *r, struct err *e)
 	struct growth g;
 
 	regions_settle(r);
-	float *explained = mem_zalloc(r->count, sizeof *explained, "regions", e);
-	double *total = mem_zalloc(r->gaussians, sizeof *total, "regions", e);
-	struct named *named = mem_alloc(r->object_count, sizeof *named, "regions", e);
-	struct start *starts = mem_alloc(r->views, sizeof *starts, "regions", e);
+	SCOPED float *explained = mem_zalloc(r->count, sizeof *explained, "regions", e);
+	SCOPED double *total = mem_zalloc(r->gaussians, sizeof *total, "regions", e);
+	SCOPED struct named *named = mem_alloc(r->object_count, sizeof *named, "regions", e);
+	SCOPED struct start *starts = mem_alloc(r->views, sizeof *starts, "regions", e);
 	int bad = !explained || !total || !named || !starts || growth_make(&g, r, e);
 
 	for (size_t v = 0; v < r->views && !bad; v++)
@@ -352,9 +352,5 @@ int regions_grow(struct regions *r, struct err *e)
 			bad = grow_object(r, &g, named[i].object, starts, explained, total, e);
 		growth_free(&g);
 	}
-	free(explained);
-	free(total);
-	free(starts);
-	free(named);
 	return bad ? -1 : 0;
 }

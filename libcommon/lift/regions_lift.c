@@ -34,14 +34,13 @@ static size_t common(const struct shapes *s, size_t a, size_t b)
 static int fill_shape(
 	struct shapes *s, size_t k, const struct rle *mask, int height, int width, struct err *e)
 {
-	uint8_t *mine = mem_alloc((size_t)height * (size_t)width, 1, "masks", e);
+	SCOPED uint8_t *mine = mem_alloc((size_t)height * (size_t)width, 1, "masks", e);
 	const int bad = !mine || rle_decode_at(mask, height, width, mine, e);
 
 	if (!bad) {
 		bits_pack_tiles(mine, height, width, s->bits + k * s->tiles);
 		s->area[k] = common(s, k, k);
 	}
-	free(mine);
 	return bad;
 }
 
@@ -136,9 +135,9 @@ static size_t add_candidates(
 static int lift(struct seen *seen, struct regions_candidate *c, size_t n, const struct view_matrix *w,
 	const struct shapes *s, const size_t *from, struct err *e)
 {
-	float *weight = mem_alloc(w->gaussians, sizeof *weight, "views", e);
-	struct shares *rows = mem_alloc(n, sizeof *rows, "masks", e);
-	struct shares_masks *masks = mem_alloc(n, sizeof *masks, "masks", e);
+	SCOPED float *weight = mem_alloc(w->gaussians, sizeof *weight, "views", e);
+	SCOPED struct shares *rows = mem_alloc(n, sizeof *rows, "masks", e);
+	SCOPED struct shares_masks *masks = mem_alloc(n, sizeof *masks, "masks", e);
 	int bad = !weight || !rows || !masks;
 
 	for (size_t k = 0; k < n && !bad; k++)
@@ -149,27 +148,21 @@ static int lift(struct seen *seen, struct regions_candidate *c, size_t n, const 
 		for (size_t i = 0; i < rows[k].n; i++)
 			c[k].mass += (double)rows[k].share[i];
 	}
-	bad = bad || seen_make(seen, weight, w->gaussians, e);
-	free(weight);
-	free(rows);
-	free(masks);
-	return bad ? -1 : 0;
+	return bad || seen_make(seen, weight, w->gaussians, e) ? -1 : 0;
 }
 
 static int lift_masks(struct regions *r, size_t view, const struct view_matrix *w, const struct shapes *s,
 	size_t first, size_t *n, struct err *e)
 {
-	size_t *from = mem_alloc(s->n, sizeof *from, "masks", e);
+	SCOPED size_t *from = mem_alloc(s->n, sizeof *from, "masks", e);
 
 	*n = from ? add_candidates(r, first, r->witnesses + first, s, from) : 0;
-	const int bad = !from || lift(&r->seen[view], &r->candidates[first], *n, w, s, from, e);
-	free(from);
-	return bad ? -1 : 0;
+	return !from || lift(&r->seen[view], &r->candidates[first], *n, w, s, from, e) ? -1 : 0;
 }
 
 int regions_lift(struct regions *r, size_t view, const struct view_matrix *w, struct err *e)
 {
-	struct shapes s = {0};
+	SCOPED_BY(shapes_free) struct shapes s = {0};
 	size_t begin = 0, end, n = 0;
 
 	while (begin < r->witness_count && r->witnesses[begin].view < view)
@@ -179,7 +172,6 @@ int regions_lift(struct regions *r, size_t view, const struct view_matrix *w, st
 	const int bad = shapes_make(&s, r->witnesses + begin, end - begin, w->height, w->width, e) ||
 			lift_masks(r, view, w, &s, begin, &n, e);
 	r->ranges[view] = (struct regions_range){begin, begin + n};
-	shapes_free(&s);
 	return bad ? -1 : 0;
 }
 

@@ -28,7 +28,7 @@ static size_t find_region(const struct regions *r, size_t candidate)
 /* share (sentences,regions): of each sentence's candidates, by confidence, in each region. */
 static int find_shares(const struct regions *r, double *share, struct err *e)
 {
-	double *total = mem_zalloc(r->sentence_count, sizeof *total, "regions", e);
+	SCOPED double *total = mem_zalloc(r->sentence_count, sizeof *total, "regions", e);
 
 	if (!total)
 		return -1;
@@ -45,7 +45,6 @@ static int find_shares(const struct regions *r, double *share, struct err *e)
 	for (size_t s = 0; s < r->sentence_count; s++)
 		for (size_t i = 0; i < r->region_count; i++)
 			share[s * r->region_count + i] /= total[s] + DOUBT;
-	free(total);
 	return 0;
 }
 
@@ -79,10 +78,10 @@ static void fill_field(
 int regions_assign(struct regions *r, struct err *e)
 {
 	const size_t columns = r->region_count + r->object_count, n = r->gaussians;
-	double *share = mem_zalloc(r->sentence_count, r->region_count * sizeof *share, "regions", e);
-	double *value = mem_zalloc(r->object_count, columns * sizeof *value, "regions", e);
-	uint8_t *has_support = mem_zalloc(r->object_count, columns, "regions", e);
-	struct regions_sums sums;
+	SCOPED double *share = mem_zalloc(r->sentence_count, r->region_count * sizeof *share, "regions", e);
+	SCOPED double *value = mem_zalloc(r->object_count, columns * sizeof *value, "regions", e);
+	SCOPED uint8_t *has_support = mem_zalloc(r->object_count, columns, "regions", e);
+	SCOPED_BY(regions_sums_free) struct regions_sums sums = {0};
 	r->served = mem_alloc(r->object_count, sizeof *r->served, "regions", e);
 	r->field = mem_zalloc(
 		backproject_groups(r->object_count) * VIEW_GROUP, n * sizeof *r->field, "regions", e);
@@ -93,18 +92,12 @@ int regions_assign(struct regions *r, struct err *e)
 		find_values(r, share, columns, value, has_support);
 		bad = assignment_best(value, r->object_count, columns, r->served, e);
 	}
-	for (size_t o = 0; o < r->object_count && !bad; o++) {
+	for (size_t o = 0; o < r->object_count && !bad; o++)
 		if (!has_support[o * columns + r->served[o]])
 			r->served[o] = REGIONS_NONE;
 		else
 			fill_field(r, o, &r->regions[r->served[o]], &sums);
-	}
-	bad = bad || regions_find_spare(r, share, e);
-	free(share);
-	free(value);
-	free(has_support);
-	regions_sums_free(&sums);
-	return bad ? -1 : 0;
+	return bad || regions_find_spare(r, share, e) ? -1 : 0;
 }
 
 /* Those of a small thing agree less in all views, so that only a comparison with the others tells. */

@@ -44,9 +44,9 @@ static double find_support(const struct regions *r, const double *share, size_t 
 
 int regions_find_spare(struct regions *r, const double *share, struct err *e)
 {
-	uint8_t *owned = mem_zalloc(r->gaussians, sizeof *owned, "regions", e);
-	double *total = mem_zalloc(r->gaussians, sizeof *total, "regions", e);
-	double *support = mem_alloc(r->region_count, sizeof *support, "regions", e);
+	SCOPED uint8_t *owned = mem_zalloc(r->gaussians, sizeof *owned, "regions", e);
+	SCOPED double *total = mem_zalloc(r->gaussians, sizeof *total, "regions", e);
+	SCOPED double *support = mem_alloc(r->region_count, sizeof *support, "regions", e);
 	r->spare = mem_alloc(r->region_count, sizeof *r->spare, "regions", e);
 	const int bad = !owned || !total || !support || !r->spare;
 
@@ -65,9 +65,6 @@ int regions_find_spare(struct regions *r, const double *share, struct err *e)
 		}
 		support[best] = 0;
 	}
-	free(owned);
-	free(total);
-	free(support);
 	return bad ? -1 : 0;
 }
 

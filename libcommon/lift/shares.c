@@ -130,7 +130,7 @@ static int make_rows(struct shares *rows, const struct view_matrix *w, const str
 #pragma omp parallel reduction(| : failed) if (count > 1)
 	{
 		struct err mine;
-		struct sums s;
+		SCOPED_BY(sums_free) struct sums s = {0};
 		failed = sums_make(&s, w, &mine) != 0;
 #pragma omp for schedule(dynamic)
 		for (size_t k = 0; k < count; k++)
@@ -139,7 +139,6 @@ static int make_rows(struct shares *rows, const struct view_matrix *w, const str
 #pragma omp critical
 			*e = mine;
 		}
-		sums_free(&s);
 	}
 	return failed ? -1 : 0;
 }
@@ -147,7 +146,7 @@ static int make_rows(struct shares *rows, const struct view_matrix *w, const str
 static int weigh_tiles(float *weight, size_t gaussians, const struct tile_levels *levels, struct err *e)
 {
 	const struct view_tiles *t = levels->tiles;
-	uint64_t *sum = mem_zalloc(gaussians, sizeof *sum, "views", e);
+	SCOPED uint64_t *sum = mem_zalloc(gaussians, sizeof *sum, "views", e);
 
 	if (!sum)
 		return -1;
@@ -155,27 +154,25 @@ static int weigh_tiles(float *weight, size_t gaussians, const struct tile_levels
 		sum[t->ids[i]] += levels->total[i];
 	for (size_t i = 0; i < gaussians; i++)
 		weight[i] = (float)((double)sum[i] / 255);
-	free(sum);
 	return 0;
 }
 
 static int weigh_rows(float *weight, const struct view_weights *w, struct err *e)
 {
-	double *sum = mem_zalloc(w->gaussians, sizeof *sum, "views", e);
+	SCOPED double *sum = mem_zalloc(w->gaussians, sizeof *sum, "views", e);
 
 	if (!sum)
 		return -1;
 	backproject_weight(w, sum);
 	for (size_t i = 0; i < w->gaussians; i++)
 		weight[i] = (float)sum[i];
-	free(sum);
 	return 0;
 }
 
 int shares_make(float *weight, struct shares *rows, const struct view_matrix *w,
 	const struct shares_masks *masks, size_t count, struct err *e)
 {
-	struct tile_levels levels = {0};
+	SCOPED_BY(tile_levels_free) struct tile_levels levels = {0};
 
 	for (size_t k = 0; k < count; k++)
 		rows[k] = (struct shares){0};
@@ -185,7 +182,6 @@ int shares_make(float *weight, struct shares *rows, const struct view_matrix *w,
 			make_rows(rows, w, &levels, masks, count, e);
 	for (size_t k = 0; k < count && bad; k++)
 		shares_free(&rows[k]);
-	tile_levels_free(&levels);
 	return bad ? -1 : 0;
 }
 

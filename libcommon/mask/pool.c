@@ -38,14 +38,12 @@ static int order_groups(const void *a, const void *b)
 /* Groups are those of keys that follow each other; the first of an object's groups names the object. */
 static int make_groups(struct pool *p, struct err *e)
 {
-	const struct mask_key **first = mem_alloc(p->n, sizeof *first, "candidates", e);
-	size_t *object = mem_alloc(p->n, sizeof *object, "candidates", e); /* of a group's first candidate */
+	SCOPED const struct mask_key **first = mem_alloc(p->n, sizeof *first, "candidates", e);
+	/* of a group's first candidate */
+	SCOPED size_t *object = mem_alloc(p->n, sizeof *object, "candidates", e);
 
-	if (!first || !object) {
-		free(first);
-		free(object);
+	if (!first || !object)
 		return -1;
-	}
 	for (size_t i = 0; i < p->n; i++) {
 		const struct mask_key *key = &p->index.keys[i];
 		if (!i || mask_key_order(key, key - 1)) {
@@ -64,8 +62,6 @@ static int make_groups(struct pool *p, struct err *e)
 			i && !order_names(first[i], first[i - 1]) ? object[first[i - 1]->at] : first[i]->at;
 	for (size_t i = 0; i < p->group_count; i++)
 		p->groups[i].object = object[p->groups[i].first];
-	free(first);
-	free(object);
 	return 0;
 }
 

@@ -351,12 +351,11 @@ int rle_fit(struct rle_fitted *f, const struct rle *like, struct err *e)
 
 int rle_decode_at(const struct rle *r, int height, int width, uint8_t *mask, struct err *e)
 {
-	struct rle_fitted f = {.own = r};
+	SCOPED_BY(rle_fitted_free) struct rle_fitted f = {.own = r};
 	const int bad = rle_fit(&f, &(struct rle){.height = height, .width = width}, e);
 
 	if (!bad)
 		rle_decode(f.now, mask);
-	rle_fitted_free(&f);
 	return bad;
 }
 

@@ -27,7 +27,7 @@ uint8_t *shrink_picture(const uint8_t *rgb, int height, int width, int rows, int
 	const size_t n = 3 * (size_t)columns;
 	const double step = (double)height / rows;
 	uint8_t *to = mem_alloc((size_t)rows, n, "picture", e);
-	float *sums = to ? mem_alloc(n, sizeof *sums, "picture", e) : NULL;
+	SCOPED float *sums = to ? mem_alloc(n, sizeof *sums, "picture", e) : NULL;
 
 	for (int y = 0; y < rows && sums; y++) {
 		const double top = y * step, bottom = (y + 1) * step;
@@ -44,6 +44,5 @@ uint8_t *shrink_picture(const uint8_t *rgb, int height, int width, int rows, int
 		free(to);
 		return NULL;
 	}
-	free(sums);
 	return to;
 }

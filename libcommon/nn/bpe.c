@@ -87,15 +87,13 @@ static int grow_table(struct bpe *b, struct err *e)
 static int32_t find_joined(const struct bpe *b, const char *left, const char *right)
 {
 	const size_t first = strlen(left), second = strlen(right);
-	char *joined = malloc(first + second + 1);
+	SCOPED char *joined = malloc(first + second + 1);
 
 	if (!joined)
 		return -2;
 	memcpy(joined, left, first);
 	memcpy(joined + first, right, second + 1);
-	const int32_t id = vocab_find(&b->vocab, joined, first + second);
-	free(joined);
-	return id;
+	return vocab_find(&b->vocab, joined, first + second);
 }
 
 int bpe_add_merge(struct bpe *b, const char *left, const char *right, struct err *e)

@@ -173,7 +173,7 @@ static size_t word_end(const struct bpe *b, const char *text, size_t len, size_t
 static char *clean(const char *text, size_t *length, struct err *e)
 {
 	size_t len, n = 0;
-	char *composed = unicode_compose(text, &len, e);
+	SCOPED char *composed = unicode_compose(text, &len, e);
 	/* no character's lower case takes more than twice its bytes */
 	char *out = composed ? mem_alloc(2 * len + 1, 1, "text", e) : NULL;
 
@@ -186,7 +186,6 @@ static char *clean(const char *text, size_t *length, struct err *e)
 	if (out)
 		out[n] = 0;
 	*length = n;
-	free(composed);
 	return out;
 }
 
@@ -214,10 +213,9 @@ int bpe_encode(const struct bpe *b, const char *text, struct wordpieces *out, st
 {
 	struct word w = {0};
 	size_t len;
-	char *cleaned = clean(text, &len, e);
+	SCOPED char *cleaned = clean(text, &len, e);
 	const int bad = !cleaned || encode_clean(b, &w, cleaned, len, out, e);
 
-	free(cleaned);
 	free(w.symbols);
 	free(w.heap);
 	return bad ? -1 : 0;

@@ -95,7 +95,7 @@ char *unicode_compose(const char *text, size_t *length, struct err *e)
 	const size_t len = strlen(text);
 	size_t at = 0, kept = 0;
 	utf8proc_uint8_t *out = NULL;
-	char *well = mem_alloc(len + 1, 1, "text", e);
+	SCOPED char *well = mem_alloc(len + 1, 1, "text", e);
 
 	while (well && at < len) {
 		const size_t begin = at;
@@ -108,7 +108,6 @@ char *unicode_compose(const char *text, size_t *length, struct err *e)
 					: 0;
 	if (well && n < 0)
 		err_set(e, ERR_SYSTEM, "text: %s", utf8proc_errmsg(n));
-	free(well);
 	*length = n > 0 ? (size_t)n : 0;
 	return n < 0 ? NULL : (char *)out;
 }

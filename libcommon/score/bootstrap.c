@@ -94,12 +94,11 @@ int bootstrap_sign_test(
 	double *p, const double *differences, size_t n, const struct bootstrap *how, struct err *e)
 {
 	double *values = mem_alloc(n, sizeof *values, "differences", e), sum = 0, size = 0;
-	unsigned char *is_far = mem_alloc(how->resamples, 1, "resamples", e);
+	SCOPED unsigned char *is_far = mem_alloc(how->resamples, 1, "resamples", e);
 	size_t kept = 0, count = 0;
 
 	if (!values || !is_far) {
 		free(values);
-		free(is_far);
 		return -1;
 	}
 	for (size_t i = 0; i < n; i++) {
@@ -122,6 +121,5 @@ int bootstrap_sign_test(
 		count += is_far[b];
 	*p = is_exact ? (double)count / (double)patterns : (double)(count + 1) / (double)(patterns + 1);
 	free(values);
-	free(is_far);
 	return 0;
 }

@@ -129,7 +129,7 @@ int score_measure(struct score_pair *pair, struct err *e)
 {
 	const struct rle *truth = &pair->truth->rle;
 	const size_t truth_area = rle_area(truth);
-	struct rle_fitted f = {0};
+	SCOPED_BY(rle_fitted_free) struct rle_fitted f = {0};
 
 	pair->intersection = 0;
 	if (pair->prediction) {
@@ -142,7 +142,6 @@ int score_measure(struct score_pair *pair, struct err *e)
 	pair->is_empty = !truth_area;
 	pair->either = f.area + truth_area - pair->intersection;
 	pair->iou = pair->either ? (double)pair->intersection / (double)pair->either : 1;
-	rle_fitted_free(&f);
 	return 0;
 }
 

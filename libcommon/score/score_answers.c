@@ -60,7 +60,7 @@ static void list_objects(struct truth *t, const struct mask *truth, const struct
 
 static int truth_make(struct truth *t, const struct mask *truth, size_t n, struct err *e)
 {
-	struct mask_index x;
+	SCOPED_BY(mask_index_free) struct mask_index x = {0};
 
 	*t = (struct truth){.views = mem_alloc(n, sizeof *t->views, "views", e),
 		.items = mem_alloc(n, sizeof *t->items, "masks", e),
@@ -68,7 +68,6 @@ static int truth_make(struct truth *t, const struct mask *truth, size_t n, struc
 	if (!t->views || !t->items || !t->names || mask_index_make(&x, truth, n, MASK_BY_OBJECT, e))
 		return -1;
 	list_objects(t, truth, &x);
-	mask_index_free(&x);
 	return 0;
 }
 
@@ -117,9 +116,8 @@ static int add_object(
 		return 0;
 	m->meant++;
 	const struct rle *all = m->all.n ? &m->all : o->mask;
-	struct rle_fitted own = {.own = o->mask};
+	SCOPED_BY(rle_fitted_free) struct rle_fitted own = {.own = o->mask};
 	const int bad = rle_fit(&own, all, e) || rle_unite(&more, all, own.now, e);
-	rle_fitted_free(&own);
 	if (bad)
 		return -1;
 	rle_free(&m->all);
@@ -153,7 +151,7 @@ static int measure(
 	struct answer *a, const struct truth *t, const struct view *v, const struct rle *p, struct err *e)
 {
 	struct measure m = {0};
-	struct rle_fitted f = {.own = p};
+	SCOPED_BY(rle_fitted_free) struct rle_fitted f = {.own = p};
 	int bad = v->begin == v->end && rle_fit(&f, p, e);
 
 	for (size_t i = v->begin; i < v->end && !bad; i++) {
@@ -163,7 +161,6 @@ static int measure(
 	bad = bad || (m.all.n && rle_fit(&f, &m.all, e));
 	if (!bad)
 		judge(a, &m, &f);
-	rle_fitted_free(&f);
 	rle_free(&m.all);
 	return bad ? -1 : 0;
 }
@@ -231,7 +228,7 @@ static void count_unknown(
 static int count_unmatched(struct answers *a, const struct answer_sentence *sentences, size_t n,
 	const struct mask *predictions, size_t prediction_n, struct err *e)
 {
-	const char **refs = mem_alloc(n, sizeof *refs, "sentences", e);
+	SCOPED const char **refs = mem_alloc(n, sizeof *refs, "sentences", e);
 
 	if (!refs)
 		return -1;
@@ -242,7 +239,6 @@ static int count_unmatched(struct answers *a, const struct answer_sentence *sent
 	for (size_t i = 0; i < prediction_n; i++)
 		a->unmatched += !predictions[i].ref ||
 				!bsearch(&predictions[i].ref, refs, n, sizeof *refs, compare_string);
-	free(refs);
 	return 0;
 }
 
@@ -250,8 +246,8 @@ int answers_make(struct answers *a, const struct answer_sentence *sentences, siz
 	const struct mask *truth, size_t truth_n, const struct mask *predictions, size_t prediction_n,
 	struct err *e)
 {
-	struct mask_index refs = {0};
-	struct truth t = {0};
+	SCOPED_BY(mask_index_free) struct mask_index refs = {0};
+	SCOPED_BY(truth_free) struct truth t = {0};
 
 	*a = (struct answers){0};
 	int bad = truth_make(&t, truth, truth_n, e) ||
@@ -261,8 +257,6 @@ int answers_make(struct answers *a, const struct answer_sentence *sentences, siz
 		bad = answer_one(a, &t, &sentences[i], predictions, &refs, e);
 	if (!bad)
 		count_unknown(a, &t, sentences, n);
-	mask_index_free(&refs);
-	truth_free(&t);
 	if (bad)
 		answers_free(a);
 	return bad ? -1 : 0;

@@ -1,5 +1,6 @@
 #include "score/score_choice.h"
 
+#include "base/mem.h"
 #include "mask/mask_index.h"
 
 #include <stddef.h>
@@ -10,29 +11,26 @@ static int judge(struct score_pair *p, const struct mask *truth, const struct ma
 	size_t end, struct err *e)
 {
 	const char *own = mask_object(p->truth);
-	struct rle_fitted f = {.own = &p->prediction->rle};
+	SCOPED_BY(rle_fitted_free) struct rle_fitted f = {.own = &p->prediction->rle};
 
 	p->is_right = p->intersection > 0;
 	for (size_t i = begin; i < end && p->is_right; i++) {
 		const struct mask *other = &truth[keys[i].at];
 		if (!strcmp(mask_object(other), own))
 			continue;
-		if (rle_fit(&f, &other->rle, e)) {
-			rle_fitted_free(&f);
+		if (rle_fit(&f, &other->rle, e))
 			return -1;
-		}
 		size_t both = rle_intersection(f.now, &other->rle);
 		if (both)
 			p->is_right = p->iou > (double)both / (double)(f.area + rle_area(&other->rle) - both);
 	}
-	rle_fitted_free(&f);
 	return 0;
 }
 
 int score_choices(struct score_pairs *pairs, const struct mask *truth, size_t n, struct err *e)
 {
 	const ptrdiff_t count = (ptrdiff_t)pairs->n;
-	struct mask_index views;
+	SCOPED_BY(mask_index_free) struct mask_index views = {0};
 	ptrdiff_t first_bad = count;
 
 	if (mask_index_make(&views, truth, n, MASK_BY_REF, e))
@@ -54,6 +52,5 @@ int score_choices(struct score_pairs *pairs, const struct mask *truth, size_t n,
 			*e = own;
 		}
 	}
-	mask_index_free(&views);
 	return first_bad < count ? -1 : 0;
 }

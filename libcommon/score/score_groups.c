@@ -32,7 +32,7 @@ static int order_sayings(const void *a, const void *b)
 int score_sayings(uint32_t *sets, const struct score_pair *pairs, size_t pair_n,
 	const struct score_sentence *sentences, size_t n, size_t *unknown, struct err *e)
 {
-	struct saying *list = mem_alloc(n, sizeof *list, "sentences", e);
+	SCOPED struct saying *list = mem_alloc(n, sizeof *list, "sentences", e);
 
 	*unknown = 0;
 	if (!list)
@@ -54,7 +54,6 @@ int score_sayings(uint32_t *sets, const struct score_pair *pairs, size_t pair_n,
 		sets[i] = found ? found->set : (uint32_t)1 << SCORE_SAYS_UNKNOWN;
 		*unknown += !found;
 	}
-	free(list);
 	return 0;
 }
 
@@ -69,12 +68,11 @@ static int group_of(double seen)
 /* The group of one truth that has something in it. */
 static int judge(int *group, const struct rle *truth, const struct rle *whole, struct err *e)
 {
-	struct rle_fitted f = {.own = whole};
+	SCOPED_BY(rle_fitted_free) struct rle_fitted f = {.own = whole};
 
 	if (rle_fit(&f, truth, e))
 		return -1;
 	*group = f.area ? group_of((double)rle_area(truth) / (double)f.area) : SCORE_SEEN_UNKNOWN;
-	rle_fitted_free(&f);
 	return 0;
 }
 
@@ -101,16 +99,14 @@ static int judge_all(uint32_t *seen, const struct mask *truth, size_t truth_n, c
 int score_seen(uint32_t *sets, const struct score_pair *pairs, size_t pair_n, const struct mask *truth,
 	size_t truth_n, const struct mask *wholes, size_t n, size_t *unknown, struct err *e)
 {
-	struct mask_lookup lookup;
+	SCOPED_BY(mask_lookup_free) struct mask_lookup lookup = {0};
 
 	*unknown = 0;
 	if (mask_lookup_make(&lookup, wholes, n, e))
 		return -1;
-	uint32_t *seen = mem_alloc(truth_n, sizeof *seen, "masks", e);
+	SCOPED uint32_t *seen = mem_alloc(truth_n, sizeof *seen, "masks", e);
 	const int bad = !seen || judge_all(seen, truth, truth_n, wholes, &lookup, unknown, e);
 	for (size_t i = 0; i < pair_n && !bad; i++)
 		sets[i] = seen[pairs[i].truth_index];
-	mask_lookup_free(&lookup);
-	free(seen);
 	return bad ? -1 : 0;
 }

@@ -179,7 +179,7 @@ static size_t choose(
 int score_table_groups(struct score_table *t, const struct score_sample *s, const uint32_t *sets,
 	const char *const *names, size_t count, uint32_t always, struct err *e)
 {
-	struct score_pair *own = mem_alloc(s->n, sizeof *own, "pairs", e);
+	SCOPED struct score_pair *own = mem_alloc(s->n, sizeof *own, "pairs", e);
 	struct score_pair *other = mem_alloc(s->other ? s->n : 0, sizeof *other, "pairs", e);
 	int bad = !own || !other;
 
@@ -192,7 +192,6 @@ int score_table_groups(struct score_table *t, const struct score_sample *s, cons
 		if (one.n || always & bit)
 			bad = table_add(t, names[g], &one, e);
 	}
-	free(own);
 	free(other);
 	if (bad)
 		score_table_free(t);

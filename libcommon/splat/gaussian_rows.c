@@ -84,7 +84,7 @@ int gaussian_offset(double offset[3], const double *means, size_t n, struct err 
 	memset(offset, 0, 3 * sizeof *offset);
 	if (!n)
 		return 0;
-	double *sorted = mem_alloc((n + step - 1) / step, sizeof *sorted, "means", e);
+	SCOPED double *sorted = mem_alloc((n + step - 1) / step, sizeof *sorted, "means", e);
 	if (!sorted)
 		return -1;
 	for (int k = 0; k < 3; k++) {
@@ -96,7 +96,6 @@ int gaussian_offset(double offset[3], const double *means, size_t n, struct err 
 		spread = fmax(spread, sorted[count - 1 - count / 4] - sorted[count / 4]);
 		far = fmax(far, fabs(median[k]));
 	}
-	free(sorted);
 	const double unit = spread > 0 && spread < 1 ? exp2(floor(log2(spread))) : 1;
 	for (int k = 0; far > 16 * fmax(spread, unit) && k < 3; k++)
 		offset[k] = round(median[k] / unit) * unit + 0.0; /* no -0 */
@@ -158,11 +157,10 @@ static int read_and_shift(struct splats *s, double offset[3], struct rows_report
 		return err_set(e, ERR_SYSTEM, "%s: %zu Gaussians do not fit in memory", from->path, n);
 	if (splats_alloc(s, n, 1 + from->rest / 3, e))
 		return -1;
-	double *means = mem_alloc(n, 3 * sizeof *means, "means", e);
+	SCOPED double *means = mem_alloc(n, 3 * sizeof *means, "means", e);
 	int bad = !means || read_all(s, means, report, from, e) || gaussian_offset(offset, means, s->n, e);
 	for (size_t i = 0; !bad && i < 3 * s->n; i++)
 		s->means[i] = (float)(means[i] - offset[i % 3]);
-	free(means);
 	if (!bad && n && !s->n)
 		return err_file(e, from->path,
 			"none of its %zu Gaussians can be used: %zu have a value that is not finite, %zu a zero quaternion",

@@ -115,7 +115,7 @@ static struct between look(const struct splats *s, const struct camera *c, doubl
 static int look_all(const struct splats *s, const struct cameras *cameras, double low, double high,
 	struct between *all, struct err *e)
 {
-	struct between *views = mem_alloc(cameras->n, sizeof *views, "views", e);
+	SCOPED struct between *views = mem_alloc(cameras->n, sizeof *views, "views", e);
 
 	*all = (struct between){.last = low};
 	if (!views)
@@ -127,7 +127,6 @@ static int look_all(const struct splats *s, const struct cameras *cameras, doubl
 		all->last = fmax(all->last, views[v].last);
 		all->covers += views[v].covers / (double)cameras->n;
 	}
-	free(views);
 	return 0;
 }
 

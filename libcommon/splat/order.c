@@ -109,7 +109,7 @@ static int settle_run(struct order_item *items, size_t n, const struct projected
 		}
 		return 0;
 	}
-	struct exact *run = mem_alloc(n, sizeof *run, "depth order", e);
+	SCOPED struct exact *run = mem_alloc(n, sizeof *run, "depth order", e);
 	if (!run)
 		return -1;
 	for (size_t i = 0; i < n; i++)
@@ -117,7 +117,6 @@ static int settle_run(struct order_item *items, size_t n, const struct projected
 	qsort(run, n, sizeof *run, by_depth);
 	for (size_t i = 0; i < n; i++)
 		items[i] = run[i].item;
-	free(run);
 	return 0;
 }
 
@@ -177,7 +176,7 @@ struct order_item *order_sort(struct order_item *items, struct order_item *spare
 {
 	const int threads = threads_available();
 	const struct digits d = choose_digits(items, n);
-	uint32_t *counts = mem_alloc((size_t)threads * DIGITS, sizeof *counts, "depth order", e);
+	SCOPED uint32_t *counts = mem_alloc((size_t)threads * DIGITS, sizeof *counts, "depth order", e);
 
 	if (!counts)
 		return NULL;
@@ -187,7 +186,6 @@ struct order_item *order_sort(struct order_item *items, struct order_item *spare
 		items = spare;
 		spare = swap;
 	}
-	free(counts);
 	if (settle(items, n, d, p, threads, e))
 		return NULL;
 	return items;

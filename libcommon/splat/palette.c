@@ -133,7 +133,7 @@ static void fill_bins(struct partition *p, const float *sorted, size_t n)
 /* The means of the best sets. An empty one has the code after it. */
 static int cut_best(double codes[PALETTE_CODES], const float *sorted, size_t n, struct err *e)
 {
-	struct partition *p = mem_alloc(1, sizeof *p, "codebook", e);
+	SCOPED struct partition *p = mem_alloc(1, sizeof *p, "codebook", e);
 	int end = BINS;
 
 	if (!p)
@@ -153,14 +153,13 @@ static int cut_best(double codes[PALETTE_CODES], const float *sorted, size_t n, 
 						       : (double)sorted[n - 1];
 		end = start;
 	}
-	free(p);
 	return 0;
 }
 
 int palette_codebook(double codes[PALETTE_CODES], const float *values, size_t n, struct err *e)
 {
-	float *sorted = mem_alloc(n, sizeof *sorted, "codebook", e);
-	double *sums = sorted ? mem_alloc(n + 1, sizeof *sums, "codebook", e) : NULL;
+	SCOPED float *sorted = mem_alloc(n, sizeof *sorted, "codebook", e);
+	SCOPED double *sums = sorted ? mem_alloc(n + 1, sizeof *sums, "codebook", e) : NULL;
 
 	if (sums) {
 		memcpy(sorted, values, n * sizeof *sorted);
@@ -175,8 +174,6 @@ int palette_codebook(double codes[PALETTE_CODES], const float *values, size_t n,
 		for (int i = 0; i < ITERATIONS && !bad; i++)
 			improve(codes, sorted, sums, n);
 	}
-	free(sorted);
-	free(sums);
 	return bad ? -1 : 0;
 }
 

@@ -170,7 +170,7 @@ int prune_weights(struct render_weights *w, size_t pixels, double tolerance, dou
 {
 	const size_t room = longest_row(w, pixels) + 1; /* a list is written one past its end */
 	const int32_t bits = bits_from(least);
-	uint32_t *lists = mem_alloc(room, (size_t)omp_get_max_threads() * sizeof *lists, "pruning", e);
+	SCOPED uint32_t *lists = mem_alloc(room, (size_t)omp_get_max_threads() * sizeof *lists, "pruning", e);
 
 	if (!lists)
 		return -1;
@@ -178,7 +178,6 @@ int prune_weights(struct render_weights *w, size_t pixels, double tolerance, dou
 	for (size_t p = 0; p < pixels; p++)
 		dropped[p] = mark_row(w->weight + w->indptr[p], (size_t)(w->indptr[p + 1] - w->indptr[p]),
 			tolerance, bits, lists + room * (size_t)omp_get_thread_num());
-	free(lists);
 	close_gaps(w, pixels);
 	return 0;
 }

@@ -51,7 +51,7 @@ static void interleave(const float *values, size_t n, int first, int now, float 
 int render_pack(float *values, size_t n, int channels, struct err *e)
 {
 	const size_t most = (size_t)group_size(channels, 0);
-	float *some = channels > 1 ? mem_alloc(n, most * sizeof *some, "values", e) : NULL;
+	SCOPED float *some = channels > 1 ? mem_alloc(n, most * sizeof *some, "values", e) : NULL;
 
 	if (channels > 1 && !some)
 		return -1;
@@ -60,7 +60,6 @@ int render_pack(float *values, size_t n, int channels, struct err *e)
 		interleave(values, n, first, now, some);
 		memcpy(values + (size_t)first * n, some, n * (size_t)now * sizeof *some);
 	}
-	free(some);
 	return 0;
 }
 
@@ -84,7 +83,7 @@ int render_values(const struct render_view *v, const float *values, int channels
 		render_packed(v, values, 1, out, transmittance);
 		return 0;
 	}
-	float *some = mem_alloc(v->gaussians, most * sizeof *some, "values", e);
+	SCOPED float *some = mem_alloc(v->gaussians, most * sizeof *some, "values", e);
 	if (!some)
 		return -1;
 	for (int first = 0; first < channels; first += RENDER_GROUP) {
@@ -92,7 +91,6 @@ int render_values(const struct render_view *v, const float *values, int channels
 		interleave(values, v->gaussians, first, now, some);
 		render_packed(v, some, now, out + (size_t)first * pixels, transmittance);
 	}
-	free(some);
 	return 0;
 }
 

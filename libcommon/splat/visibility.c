@@ -22,7 +22,7 @@ static int look(struct render_view **v, struct render_weights *w, const struct s
 int visibility_most(const struct splats *s, const struct cameras *cameras, float *most, struct err *e)
 {
 	struct render_view *v = NULL;
-	struct render_weights w = {0};
+	SCOPED_BY(render_weights_free) struct render_weights w = {0};
 	struct camera views[VISIBILITY_VIEWS];
 	const size_t n = cameras_spread(cameras, VISIBILITY_VIEWS, VISIBILITY_SIDE, views);
 	int bad = 0;
@@ -31,18 +31,16 @@ int visibility_most(const struct splats *s, const struct cameras *cameras, float
 		most[i] = n ? 0 : 1;
 	for (size_t i = 0; i < n && !bad; i++)
 		bad = look(&v, &w, s, &views[i], most, e);
-	render_weights_free(&w);
 	render_free(v);
 	return bad ? -1 : 0;
 }
 
 int visibility_find(const struct splats *s, const struct cameras *cameras, char *in_sight, struct err *e)
 {
-	float *most = mem_alloc(s->n, sizeof *most, "weights", e);
+	SCOPED float *most = mem_alloc(s->n, sizeof *most, "weights", e);
 	const int bad = !most || visibility_most(s, cameras, most, e);
 
 	for (size_t i = 0; i < s->n && !bad; i++)
 		in_sight[i] = most[i] > 0 && most[i] >= VISIBILITY_LEAST * s->opacities[i];
-	free(most);
 	return bad ? -1 : 0;
 }

@@ -128,7 +128,7 @@ static enum look judge(int visible, int whole)
 int synth_cameras_check(const struct cameras *c, const struct synth_object *objects, int n, struct err *e)
 {
 	int visible[SYNTH_MAX_OBJECTS], whole[SYNTH_MAX_OBJECTS], clear[SYNTH_MAX_OBJECTS] = {0}, views = 0;
-	struct synth_occlusion occlusion;
+	SCOPED_BY(synth_occlusion_free) struct synth_occlusion occlusion = {0};
 
 	if (synth_occlusion_make(&occlusion, objects, n, e))
 		return -1;
@@ -140,7 +140,6 @@ int synth_cameras_check(const struct cameras *c, const struct synth_object *obje
 		for (int k = 0; k < n; k++)
 			clear[k] += judge(visible[k], whole[k]) == LOOK_CLEAR;
 	}
-	synth_occlusion_free(&occlusion);
 	for (int k = 0; k < n; k++)
 		if (3 * clear[k] < views)
 			return err_set(
@@ -224,15 +223,15 @@ int synth_cameras_hide(struct cameras *c, const struct synth_options *o, const s
 	const struct synth_table *table, struct err *e)
 {
 	int visible[SYNTH_MAX_OBJECTS], whole[SYNTH_MAX_OBJECTS], n = 0;
-	struct synth_occlusion occlusion;
+	SCOPED_BY(synth_occlusion_free) struct synth_occlusion occlusion = {0};
 	struct rng r;
 
 	if (!(o->preset->hidden > 0))
 		return 0;
 	if (synth_occlusion_make(&occlusion, objects, o->objects, e))
 		return -1;
-	struct place *pool = mem_alloc(POOL, sizeof *pool, "camera places", e);
-	int *chosen = mem_zalloc(c->n, sizeof *chosen, "camera places", e);
+	SCOPED struct place *pool = mem_alloc(POOL, sizeof *pool, "camera places", e);
+	SCOPED int *chosen = mem_zalloc(c->n, sizeof *chosen, "camera places", e);
 	int bad = pool && chosen ? 0 : -1;
 	rng_seed(&r, o->seed, SYNTH_STREAM_HIDING);
 	for (int i = 0; i < POOL && !bad; i++) {
@@ -252,8 +251,5 @@ int synth_cameras_hide(struct cameras *c, const struct synth_options *o, const s
 		if (c->views[i].split == SPLIT_TEST)
 			memcpy(c->views[i].world_to_camera, pool[chosen[next++]].camera.world_to_camera,
 				sizeof c->views[i].world_to_camera);
-	free(pool);
-	free(chosen);
-	synth_occlusion_free(&occlusion);
 	return bad;
 }

@@ -373,7 +373,7 @@ static void put_all(struct work *w)
 
 int synth_gaussians_make(struct synth_scene *s, uint64_t seed, struct err *e)
 {
-	struct work *w = mem_zalloc(1, sizeof *w, "scene", e);
+	SCOPED struct work *w = mem_zalloc(1, sizeof *w, "scene", e);
 
 	if (!w)
 		return -1;
@@ -382,6 +382,5 @@ int synth_gaussians_make(struct synth_scene *s, uint64_t seed, struct err *e)
 	synth_noise_make(&w->texture, &w->rng);
 	rng_seed(&w->rng, seed, SYNTH_STREAM_GAUSSIANS);
 	put_all(w);
-	free(w);
 	return 0;
 }

@@ -71,13 +71,10 @@ int synth_outline_rag(uint8_t *mask, int height, int width, double rag, double s
 	if (!area)
 		return 0;
 	size_t h = (size_t)b.height, w = (size_t)b.width;
-	float *soft = mem_alloc(h * w, sizeof *soft, "soft mask", e);
-	float *line = mem_alloc(h + w, sizeof *line, "mask line", e);
-	if (!soft || !line) {
-		free(soft);
-		free(line);
+	SCOPED float *soft = mem_alloc(h * w, sizeof *soft, "soft mask", e);
+	SCOPED float *line = mem_alloc(h + w, sizeof *line, "mask line", e);
+	if (!soft || !line)
 		return -1;
-	}
 	for (size_t i = 0; i < h; i++)
 		for (size_t j = 0; j < w; j++)
 			soft[i * w + j] =
@@ -96,8 +93,6 @@ int synth_outline_rag(uint8_t *mask, int height, int width, double rag, double s
 			mask[((size_t)b.top + i) * (size_t)width + (size_t)b.left + j] =
 				soft[i * w + j] > 0.5 + shrink + rag * shaken;
 		}
-	free(soft);
-	free(line);
 	return 0;
 }
 

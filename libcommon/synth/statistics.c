@@ -48,7 +48,7 @@ static void take_quantiles(float *values, size_t n, double quantiles[SYNTH_QUANT
 
 static int measure_gaussians(struct synth_statistics *s, const struct splats *p, struct err *e)
 {
-	float *values = mem_alloc(p->n, sizeof *values, "statistics", e);
+	SCOPED float *values = mem_alloc(p->n, sizeof *values, "statistics", e);
 
 	if (!values)
 		return -1;
@@ -64,7 +64,6 @@ static int measure_gaussians(struct synth_statistics *s, const struct splats *p,
 		}
 		take_quantiles(values, p->n, size ? s->size : s->aspect);
 	}
-	free(values);
 	return 0;
 }
 

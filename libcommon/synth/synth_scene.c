@@ -77,7 +77,7 @@ static int see_alone(const struct synth_scene *s, int object, const struct camer
 		.quats = all->quats + 4 * from,
 		.opacities = all->opacities + from,
 		.sh = all->sh + 3 * (size_t)all->sh_coefficients * from};
-	float *share = mem_alloc(pixels, sizeof *share, "object shares", e);
+	SCOPED float *share = mem_alloc(pixels, sizeof *share, "object shares", e);
 	struct render_view *view = share ? render_prepare(&own, c, e) : NULL;
 	int bad = !view || render_values(view, ones, 1, share, NULL, e) ? -1 : 0;
 
@@ -85,14 +85,13 @@ static int see_alone(const struct synth_scene *s, int object, const struct camer
 		mask[p] = share[p] > 0.5f;
 	if (view)
 		render_free(view);
-	free(share);
 	return bad;
 }
 
 int synth_truth_whole(const struct synth_scene *s, const struct camera *c, uint8_t *masks, struct err *e)
 {
 	size_t pixels = (size_t)c->width * (size_t)c->height;
-	float *ones = mem_alloc(s->splats.n, sizeof *ones, "object indicators", e);
+	SCOPED float *ones = mem_alloc(s->splats.n, sizeof *ones, "object indicators", e);
 	int failed = 0;
 
 	if (!ones)
@@ -109,6 +108,5 @@ int synth_truth_whole(const struct synth_scene *s, const struct camera *c, uint8
 			*e = own;
 		}
 	}
-	free(ones);
 	return failed ? -1 : 0;
 }

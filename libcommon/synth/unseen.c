@@ -42,7 +42,7 @@ static int make_places(struct places *s, const struct synth_object *objects, int
 	const struct synth_table *table, const struct cameras *cameras, struct err *e)
 {
 	int visible[SYNTH_MAX_OBJECTS], whole[SYNTH_MAX_OBJECTS];
-	struct synth_occlusion occlusion;
+	SCOPED_BY(synth_occlusion_free) struct synth_occlusion occlusion = {0};
 
 	synth_viewpoint_reference(&s->reference, objects, n, table, cameras, 1);
 	if (synth_occlusion_make(&occlusion, objects, n, e))
@@ -66,7 +66,6 @@ static int make_places(struct places *s, const struct synth_object *objects, int
 				<< k;
 		s->camera[s->n++] = (int)i;
 	}
-	synth_occlusion_free(&occlusion);
 	return 0;
 }
 

@@ -54,7 +54,7 @@ static void part_view(struct train_view *v, const uint32_t *pairs, const char *i
 /* is_held (n) gets `count` random ones. */
 static int draw(char *is_held, size_t n, size_t count, uint64_t seed, struct err *e)
 {
-	uint32_t *order = mem_alloc(n, sizeof *order, "held-out pairs", e);
+	SCOPED uint32_t *order = mem_alloc(n, sizeof *order, "held-out pairs", e);
 	struct rng r;
 
 	if (!order)
@@ -65,18 +65,17 @@ static int draw(char *is_held, size_t n, size_t count, uint64_t seed, struct err
 	rng_shuffle(&r, order, (uint32_t)n);
 	for (size_t k = 0; k < count; k++)
 		is_held[order[k]] = 1;
-	free(order);
 	return 0;
 }
 
 int held_out_choose(struct train_view *views, size_t view_count, const int *objects, size_t sentences,
 	double share, uint64_t seed, struct err *e)
 {
-	uint32_t *seen = mem_alloc(sentences, sizeof *seen, "held-out pairs", e);
-	uint32_t *pairs = mem_alloc(view_count, sentences * sizeof *pairs, "held-out pairs", e);
-	char *is_held = mem_zalloc(view_count, sentences, "held-out pairs", e);
-	int *kept = mem_alloc(sentences, sizeof *kept, "held-out pairs", e);
-	const uint8_t **masks = mem_alloc(sentences, sizeof *masks, "held-out pairs", e);
+	SCOPED uint32_t *seen = mem_alloc(sentences, sizeof *seen, "held-out pairs", e);
+	SCOPED uint32_t *pairs = mem_alloc(view_count, sentences * sizeof *pairs, "held-out pairs", e);
+	SCOPED char *is_held = mem_zalloc(view_count, sentences, "held-out pairs", e);
+	SCOPED int *kept = mem_alloc(sentences, sizeof *kept, "held-out pairs", e);
+	SCOPED const uint8_t **masks = mem_alloc(sentences, sizeof *masks, "held-out pairs", e);
 	int bad = !seen || !pairs || !is_held || !kept || !masks;
 
 	if (!bad) {
@@ -87,11 +86,6 @@ int held_out_choose(struct train_view *views, size_t view_count, const int *obje
 	}
 	for (size_t v = 0; v < view_count && !bad; v++)
 		part_view(&views[v], pairs + v * sentences, is_held, kept, masks);
-	free(seen);
-	free(pairs);
-	free(is_held);
-	free(kept);
-	free(masks);
 	return bad ? -1 : 0;
 }
 
@@ -117,7 +111,7 @@ static void make_order(struct held_out *h, const int *objects, size_t sentences,
 int held_out_init(struct held_out *h, const struct view_source *views, const int *objects, size_t sentences,
 	size_t rows, struct err *e)
 {
-	char *is_held = mem_zalloc(sentences, 1, "held-out pairs", e);
+	SCOPED char *is_held = mem_zalloc(sentences, 1, "held-out pairs", e);
 
 	*h = (struct held_out){.views = *views, .rows = rows, .threads = omp_get_max_threads()};
 	h->order = mem_alloc(sentences, sizeof *h->order, "held-out pairs", e);
@@ -129,7 +123,6 @@ int held_out_init(struct held_out *h, const struct view_source *views, const int
 		h->masks = mem_alloc(h->pixels, (size_t)h->threads, "held-out pairs", e);
 		h->scores = mem_alloc(views->n, sizeof *h->scores, "held-out pairs", e);
 	}
-	free(is_held);
 	if (!h->response || !h->images || !h->masks || !h->scores) {
 		held_out_free(h);
 		return -1;

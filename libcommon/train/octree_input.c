@@ -89,8 +89,8 @@ int octree_input_signatures(const struct view_source *views, const int *objects,
 
 	for (size_t v = 0; v < views->n; v++)
 		pixels = views->views[v].weights.pixels > pixels ? views->views[v].weights.pixels : pixels;
-	float *at = mem_alloc(pixels, K * sizeof *at, "signatures", e);
-	float *sum = mem_zalloc(
+	SCOPED float *at = mem_alloc(pixels, K * sizeof *at, "signatures", e);
+	SCOPED float *sum = mem_zalloc(
 		scene_gaussians, backproject_groups(K) * VIEW_GROUP * sizeof *sum, "signatures", e);
 	const int bad = !at || !sum || add_views(views, objects, at, sum, e);
 	for (size_t i = 0; i < scene_gaussians && !bad; i++)
@@ -98,7 +98,5 @@ int octree_input_signatures(const struct view_source *views, const int *objects,
 			signature[i * K + k] = weight[i] > 0 ? sum[backproject_index(scene_gaussians, k, i)] /
 								       (float)weight[i]
 							     : 0;
-	free(at);
-	free(sum);
 	return bad ? -1 : 0;
 }

@@ -70,7 +70,7 @@ static int grow(struct supervision *s, struct err *e)
 static int fill_bits(struct supervision_bits *b, int width, int height, const struct rle *mask, struct err *e)
 {
 	const size_t pixels = (size_t)width * (size_t)height;
-	uint8_t *bytes = mem_alloc((size_t)width, (size_t)height, "mask", e);
+	SCOPED uint8_t *bytes = mem_alloc((size_t)width, (size_t)height, "mask", e);
 	int bad = -1;
 
 	b->bytes = bits_bytes(pixels);
@@ -80,7 +80,6 @@ static int fill_bits(struct supervision_bits *b, int width, int height, const st
 		b->hash = hash(b->view, b->bits, b->bytes);
 		bad = 0;
 	}
-	free(bytes);
 	return bad;
 }
 
@@ -162,14 +161,13 @@ static int link_view(const struct supervision *s, const char *const *refs, const
 int supervision_link(const struct supervision *s, const char *const *refs, const char *const *objects,
 	size_t sentences, struct train_view *views, size_t view_count, struct err *e)
 {
-	const char **names = mem_zalloc(view_count, sizeof *names, "views", e);
+	SCOPED const char **names = mem_zalloc(view_count, sizeof *names, "views", e);
 	int bad = !names;
 
 	for (size_t i = 0; i < s->masks.n && !bad; i++)
 		names[s->bits[i].view] = s->masks.items[i].view;
 	for (size_t v = 0; v < view_count && !bad; v++)
 		bad = link_view(s, refs, objects, sentences, names[v], &views[v], e);
-	free(names);
 	return bad ? -1 : 0;
 }
 

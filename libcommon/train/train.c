@@ -23,11 +23,10 @@ int train_active_set(const double *weight, size_t scene_gaussians, double tolera
 	struct err *e)
 {
 	double(*total)[2] = mem_alloc(scene_gaussians, sizeof *total, "active set", e), all = 0, left_out = 0;
-	unsigned char *dropped = mem_zalloc(scene_gaussians, 1, "active set", e);
+	SCOPED unsigned char *dropped = mem_zalloc(scene_gaussians, 1, "active set", e);
 
 	if (!total || !dropped) {
 		free(total);
-		free(dropped);
 		return -1;
 	}
 	for (size_t i = 0; i < scene_gaussians; i++) {
@@ -45,14 +44,13 @@ int train_active_set(const double *weight, size_t scene_gaussians, double tolera
 		if (!dropped[i])
 			ids[(*n)++] = (int32_t)i;
 	free(total);
-	free(dropped);
 	return 0;
 }
 
 int train_bounds(
 	const float *means, const int32_t *ids, size_t n, double low[3], double high[3], struct err *e)
 {
-	float *axis = mem_alloc(n, sizeof *axis, "bounds", e);
+	SCOPED float *axis = mem_alloc(n, sizeof *axis, "bounds", e);
 
 	if (!axis)
 		return -1;
@@ -67,7 +65,6 @@ int train_bounds(
 			high[k] += 1;
 		}
 	}
-	free(axis);
 	return 0;
 }
 

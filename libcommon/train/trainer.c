@@ -10,8 +10,8 @@ static int build_octree(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
 	const size_t n = from->scene_gaussians, k = OCTREE_SIGNATURE;
-	float *finest = mem_alloc(n, sizeof *finest, "octree", e);
-	float *signature = mem_alloc(n, k * sizeof *signature, "octree", e);
+	SCOPED float *finest = mem_alloc(n, sizeof *finest, "octree", e);
+	SCOPED float *signature = mem_alloc(n, k * sizeof *signature, "octree", e);
 	int bad = !finest || !signature ||
 		  octree_input_signatures(&from->views, from->objects, n, from->weight, signature, e);
 
@@ -21,8 +21,6 @@ static int build_octree(
 			t->learning, from->means, t->ids, finest, from->weight, signature};
 		bad = octree_build(&t->octree, &points, o->share * (double)from->views.n, e);
 	}
-	free(finest);
-	free(signature);
 	return bad ? -1 : 0;
 }
 
@@ -65,14 +63,11 @@ static int make_rows(
 static int init_features(struct trainer *t, uint64_t seed, struct err *e)
 {
 	const int width = t->layout.feature_width;
-	float *x = mem_alloc(t->rows.n, (size_t)width * sizeof *x, "features", e);
+	SCOPED float *x = mem_alloc(t->rows.n, (size_t)width * sizeof *x, "features", e);
 
-	if (!x || warm_start_features(&t->warm, width, seed, x, e)) {
-		free(x);
+	if (!x || warm_start_features(&t->warm, width, seed, x, e))
 		return -1;
-	}
 	panels_pack(x, t->rows.n, width, train_state_x(&t->state));
-	free(x);
 	return 0;
 }
 

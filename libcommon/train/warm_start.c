@@ -27,7 +27,7 @@ static int match(struct warm_start *w, const struct warm_start_source *from, lon
 	const size_t objects = from->lifted->objects;
 	size_t *number =
 		mem_zalloc(objects, sizeof *number, "warm start", e); /* + 1; 0: not matched so far */
-	struct names names = {0};
+	SCOPED_BY(names_free) struct names names = {0};
 
 	if (!number || names_make(&names, from->lifted->names, sizeof(char *), 0, objects, e)) {
 		free(number);
@@ -44,7 +44,6 @@ static int match(struct warm_start *w, const struct warm_start_source *from, lon
 		}
 		numbers[r] = (long)number[o] - 1;
 	}
-	names_free(&names);
 	free(number);
 	return 0;
 }
@@ -70,19 +69,16 @@ static int make_shares(
 	struct warm_start *w, const struct warm_start_source *from, const size_t *lifted, struct err *e)
 {
 	const struct rows *rows = from->rows;
-	double *all = mem_zalloc(rows->n, 2 * sizeof *all, "shares", e);
+	SCOPED double *all = mem_zalloc(rows->n, 2 * sizeof *all, "shares", e);
 
 	w->share = mem_alloc(w->objects, rows->n * sizeof *w->share, "shares", e);
-	if (!all || !w->share) {
-		free(all);
+	if (!all || !w->share)
 		return -1;
-	}
 	for (size_t i = 0; i < rows->gaussians; i++)
 		if (rows->of[i] >= 0)
 			all[rows->of[i]] += from->weight[i];
 	for (size_t k = 0; k < w->objects; k++)
 		find_shares(from, lifted[k], all, all + rows->n, w->share + k * rows->n);
-	free(all);
 	return 0;
 }
 
@@ -139,15 +135,13 @@ static int make_masks(struct warm_start *w, const struct warm_start_source *from
 	const long *numbers, struct err *e)
 {
 	const size_t pixels = w->view.weights.pixels, bytes = bits_bytes(pixels);
-	uint8_t *mask = mem_alloc(pixels, 1, "warm start", e);
+	SCOPED uint8_t *mask = mem_alloc(pixels, 1, "warm start", e);
 
 	w->bits = mem_alloc(w->objects, bytes, "warm start", e);
 	w->view.sentences = mem_alloc(from->sentences, sizeof *w->view.sentences, "warm start", e);
 	w->view.masks = mem_alloc(from->sentences, sizeof *w->view.masks, "warm start", e);
-	if (!mask || !w->bits || !w->view.sentences || !w->view.masks) {
-		free(mask);
+	if (!mask || !w->bits || !w->view.sentences || !w->view.masks)
 		return -1;
-	}
 	for (size_t k = 0; k < w->objects; k++) {
 		for (size_t i = 0; i < pixels; i++)
 			mask[i] = w->share[k * rows + (size_t)w->index[i]] > cut;
@@ -158,7 +152,6 @@ static int make_masks(struct warm_start *w, const struct warm_start_source *from
 			w->view.sentences[w->view.count] = (int)r;
 			w->view.masks[w->view.count++] = w->bits + (size_t)numbers[r] * bytes;
 		}
-	free(mask);
 	return 0;
 }
 
@@ -166,16 +159,14 @@ int warm_start_init(struct warm_start *w, const struct warm_start_source *from, 
 	uint64_t seed, struct err *e)
 {
 	const size_t rows = from->rows->n;
-	long *numbers = mem_alloc(from->sentences, sizeof *numbers, "warm start", e);
-	size_t *lifted = mem_alloc(from->sentences, sizeof *lifted, "warm start", e);
+	SCOPED long *numbers = mem_alloc(from->sentences, sizeof *numbers, "warm start", e);
+	SCOPED size_t *lifted = mem_alloc(from->sentences, sizeof *lifted, "warm start", e);
 	int bad = !numbers || !lifted;
 
 	*w = (struct warm_start){0};
 	bad = bad || match(w, from, numbers, lifted, e) || make_shares(w, from, lifted, e) ||
 	      make_pixels(w, rows, e) || make_masks(w, from, rows, numbers, e) ||
 	      train_order_init(&w->order, &w->view, 1, WARM_START_BATCH, from->sentences, negatives, seed, e);
-	free(numbers);
-	free(lifted);
 	if (bad)
 		warm_start_free(w);
 	return bad ? -1 : 0;
