@@ -6,7 +6,6 @@
 
 #include <ctype.h>
 #include <stdio.h>
-#include <string.h>
 
 static const struct cli_tool tool = {
 	.name = "gs-check",

@@ -6,9 +6,6 @@
 #include "formats/cameras/colmap.h"
 #include "formats/cameras/dataparser.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 static struct import_options files;
 
 static const struct cli_option options[] = {

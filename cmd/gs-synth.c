@@ -4,8 +4,6 @@
 #include "cmd/synth/benchmark.h"
 #include "synth/synth_scene.h"
 
-#include <string.h>
-
 static long long objects, views, gaussians;
 static int number, size[2];
 

@@ -4,8 +4,6 @@
 #include "cmd/import/transforming.h"
 #include "formats/splats/anysplats.h"
 
-#include <stdlib.h>
-
 static struct transforming options = {.scale = 1};
 static int format;
 static long long spz_version = ANYSPLATS_SPZ_VERSION;

@@ -4,8 +4,6 @@
 #include "cmd/lift/weighing.h"
 #include "formats/scene/scene.h"
 
-#include <string.h>
-
 static struct weighing_options o = {.scale = 1};
 static int precision;
 

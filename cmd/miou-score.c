@@ -3,8 +3,6 @@
 #include "cli/cli.h"
 #include "cmd/score/scoring.h"
 
-#include <string.h>
-
 static void check_paths(const struct cli *c, const struct scoring_files *p)
 {
 	const char *all[] = {p->truth, p->predictions, p->other, p->sentences, p->parses, p->whole};

@@ -7,7 +7,6 @@
 #include "answer/responses.h"
 
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 /* Questions that wait together are encoded together: 200 of them take 5.3 s one by one, 3.5 by four, 3.0 by

@@ -7,8 +7,6 @@
 #include "formats/cameras/dataparser.h"
 #include "formats/scene/lifted.h"
 
-#include <string.h>
-
 static struct {
 	struct lifting_files files;
 	int is_as_masked;

@@ -7,8 +7,6 @@
 #include "cmd/text/questions.h"
 #include "formats/splats/anysplats.h"
 
-#include <string.h>
-
 static struct {
 	struct request_options request;
 	const char *ply, *splat, *each, *encoder;

@@ -6,8 +6,6 @@
 #include "cmd/render/draw.h"
 #include "cmd/render/request.h"
 
-#include <string.h>
-
 static struct {
 	struct request_options request;
 	struct draw_options draw;

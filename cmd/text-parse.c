@@ -10,7 +10,6 @@
 
 #include <omp.h>
 #include <stdio.h>
-#include <string.h>
 
 static int put_parses(const struct parser *parser, const struct text *t, FILE *out, struct err *e)
 {

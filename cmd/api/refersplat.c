@@ -12,8 +12,6 @@
 #include "geom/rotation.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 struct refersplat {
 	struct err err;

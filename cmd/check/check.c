@@ -8,7 +8,6 @@
 #include "formats/records/jsonl.h"
 
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 /* Reading starts again at the beginning; only stdin keeps its place between readers. */

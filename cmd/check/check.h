@@ -1,7 +1,6 @@
 /* Says what a file of the suite is, by its content, and whether it is well-formed. Reads with the format's
  * own reader, so what passes here is what the tools accept. */
-#ifndef CMD_CHECK_CHECK_H
-#define CMD_CHECK_CHECK_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
@@ -75,5 +74,3 @@ void check_add_views(struct check *c, const struct cameras *views);
 
 /* Checks all that is in it. Returns 0, or -1 with *e. */
 int check_folder(struct check *c, const char *path, struct err *e);
-
-#endif

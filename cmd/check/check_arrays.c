@@ -13,8 +13,6 @@
 #include "formats/scene/text.h"
 #include "formats/scene/weights.h"
 
-#include <stdlib.h>
-
 void check_add_splats(struct check *c, const struct splats *s)
 {
 	check_add(c, "gaussians", (long long)s->n);

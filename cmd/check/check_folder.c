@@ -10,9 +10,6 @@
 #include "formats/scene/weights.h"
 
 #include <dirent.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* The records of gs-check: sentences, masks and boxes, each read by its own reader and counted. */
 void check_add(struct check *c, const char *name, long long value)

@@ -5,7 +5,6 @@
 #include "nn/linear.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Of more Gaussians so many are looked at, evenly over all, or fewer of wide features: 128 MiB. */
 enum { SAMPLE = 32768, SAMPLE_NUMBERS = 1 << 25 };

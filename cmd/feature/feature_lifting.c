@@ -6,8 +6,6 @@
 #include "formats/scene/weights.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define MEBIBYTE 1048576.0
 
@@ -248,10 +246,7 @@ void feature_lifting_free(struct feature_lifting *l)
 {
 	scene_free(&l->scene);
 	feature_maps_free(&l->maps);
-	free(l->values);
-	free(l->labels);
-	free(l->reliability);
-	free(l->weight);
+	mem_free_all(l->values, l->labels, l->reliability, l->weight);
 	feature_sources_free(&l->sources);
 	source_weights_free(&l->weights);
 	lift_features_free(&l->features);

@@ -1,7 +1,6 @@
 /* Features or labels of a scene's views, lifted onto its Gaussians: feature-lift. formats/scene/features.md.
  */
-#ifndef CMD_FEATURE_FEATURE_LIFTING_H
-#define CMD_FEATURE_FEATURE_LIFTING_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -143,5 +142,3 @@ int feature_lifting_make(struct feature_lifting *l, const struct feature_lifting
 	const struct report *to, struct err *e);
 int feature_lifting_write(const struct feature_lifting *l, const char *path, struct err *e);
 void feature_lifting_free(struct feature_lifting *l);
-
-#endif

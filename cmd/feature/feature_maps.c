@@ -5,8 +5,6 @@
 #include "base/path.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* 1 where the folder has VIEW and the suffix, or the .npz has it, 0 where not, -1 with *e. */
 static int has_file(
@@ -175,12 +173,7 @@ void feature_maps_free(struct feature_maps *m)
 void feature_sources_free(struct feature_sources *s)
 {
 	npy_close(&s->table);
-	free(s->source);
-	free(s->row);
-	free(s->label);
-	free(s->place);
-	free(s->raw);
-	free(s->mask);
+	mem_free_all(s->source, s->row, s->label, s->place, s->raw, s->mask);
 	*s = (struct feature_sources){0};
 }
 

@@ -10,8 +10,6 @@
 #include "lift/query_rules.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static int take_shape(
 	struct query_vectors *v, size_t n, size_t found, size_t channels, const char *path, struct err *e)
@@ -257,11 +255,7 @@ void feature_query_free(struct feature_query *q)
 	text_free(&q->text);
 	query_vectors_free(&q->vectors);
 	lifted_free(&q->lifted);
-	free(q->which);
-	free(q->marks);
-	free(q->group);
-	free(q->level);
-	free(q->object);
+	mem_free_all(q->which, q->marks, q->group, q->level, q->object);
 	for (size_t k = 0; q->shown && k < q->view_count * q->count; k++)
 		mask_free(&q->shown[k]);
 	free(q->shown);

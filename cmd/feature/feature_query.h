@@ -1,7 +1,6 @@
 /* Which Gaussians of lifted features sentences select, by the rules of several systems: feature-query.
  * formats/scene/selection.md. */
-#ifndef CMD_FEATURE_FEATURE_QUERY_H
-#define CMD_FEATURE_FEATURE_QUERY_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -102,5 +101,3 @@ int query_read_vectors(struct feature_query *q, struct err *e);
 int query_by_pixels(struct feature_query *q, const struct report *to, struct err *e);
 /* Mask records of q (a struct feature_query), view after view. */
 int query_put_masks(FILE *out, const void *q, struct err *e);
-
-#endif

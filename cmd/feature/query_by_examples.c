@@ -10,7 +10,6 @@
 #include "lift/query_rules.h"
 
 #include <math.h>
-#include <string.h>
 
 static int check_lifted(const struct feature_query *q, const struct origin *origin, struct err *e)
 {

@@ -9,7 +9,6 @@
 #include "nn/linear.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { BLOCK = 1024 };
 

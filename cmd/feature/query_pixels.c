@@ -9,8 +9,6 @@
 #include "splat/render.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 struct pixels {
 	struct feature_query *q;
@@ -124,10 +122,7 @@ struct pixel_map {
 
 static void pixel_map_free(struct pixel_map *m)
 {
-	free(m->values);
-	free(m->mean);
-	free(m->room);
-	free(m->mask);
+	mem_free_all(m->values, m->mean, m->room, m->mask);
 }
 
 static int pixel_map_make(struct pixel_map *m, size_t n, struct err *e)
@@ -280,10 +275,7 @@ int query_by_pixels(struct feature_query *q, const struct report *to, struct err
 	p.packed = mem_alloc(q->scene.splats.n, q->vectors.channels * sizeof *p.packed, "features", e);
 	const int bad = !p.packed || answer_all(&p, to, e);
 	report_end(to);
-	free(p.packed);
-	free(p.images);
-	free(p.cosines);
-	free(p.length);
+	mem_free_all(p.packed, p.images, p.cosines, p.length);
 	return bad ? -1 : 0;
 }
 

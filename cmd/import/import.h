@@ -1,7 +1,6 @@
 /* A scene folder from a trained 3DGS .ply and its cameras: gs-import. formats/scene/scene.md,
  * formats/cameras/camerafile.md. */
-#ifndef CMD_IMPORT_IMPORT_H
-#define CMD_IMPORT_IMPORT_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -83,5 +82,3 @@ char *import_find_splats(const char *path, struct err *e);
 int import_scene(struct scene *s, struct rows_report *report, const struct import_options *o,
 	const char *cameras, const char *folder, struct import_found *found, const struct report *to,
 	struct err *e);
-
-#endif

@@ -7,9 +7,6 @@
 #include "base/utf8.h"
 #include "geom/views.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* The path of a file that exists, or NULL. *e is set only when memory is out. */
 static char *try_file(const char *dir, const char *name, const char *suffix, struct err *e)
 {

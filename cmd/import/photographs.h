@@ -1,6 +1,5 @@
 /* The photographs of cameras, as a foreign file calls them, in a folder. formats/cameras/camerafile.md. */
-#ifndef CMD_PHOTOGRAPHS_H
-#define CMD_PHOTOGRAPHS_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -11,5 +10,3 @@
  * *missing is how many were not found. */
 int photographs_find(
 	struct cameras *c, const char *images, const char *scene, size_t *missing, struct err *e);
-
-#endif

@@ -8,8 +8,6 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 struct points {
 	float *items; /* (n,3) */

@@ -6,7 +6,6 @@
 #include "splat/render.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Views that are compared, their longer side in pixels, and how far a pixel's blurred self reaches. */
 enum { VIEWS = 8, SIDE = 160, REACH = 8 };

@@ -6,8 +6,6 @@
 #include "geom/up.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A stray's eighth neighbour is this many times as far as that of the middle Gaussian. Of the 116,268
  * Gaussians of a real desk 1.6% are strays. */

@@ -1,6 +1,5 @@
 /* Splats of any format, cut and moved: gs-transform. */
-#ifndef CMD_IMPORT_TRANSFORMING_H
-#define CMD_IMPORT_TRANSFORMING_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/move.h"
@@ -33,5 +32,3 @@ int transforming_check(const struct transforming *o, struct err *e);
  * or -1 with *e set; *s is the caller's to free in any case. */
 int transforming_do(struct splats *s, double offset[3], const struct transforming *o,
 	struct transforming_count *left_out, struct err *e);
-
-#endif

@@ -9,8 +9,6 @@
 #include "mask/mask.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 int warping_open(struct warping *w, enum warp way, const char *scene, struct err *e)
 {
@@ -24,9 +22,7 @@ int warping_open(struct warping *w, enum warp way, const char *scene, struct err
 void warping_free(struct warping *w)
 {
 	cameras_free(&w->cameras);
-	free(w->map);
-	free(w->from);
-	free(w->to);
+	mem_free_all(w->map, w->from, w->to);
 }
 
 static const struct camera *find_view(const struct warping *w, const char *view)

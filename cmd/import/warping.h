@@ -1,7 +1,6 @@
 /* Between the photographs of lenses that distort and the views of a scene, which are pinholes: masks and
  * pictures, each pixel that of the other that shows the same, none where there is none. geom/lens.h. */
-#ifndef CMD_IMPORT_WARPING_H
-#define CMD_IMPORT_WARPING_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -38,5 +37,3 @@ int warping_mask(struct warping *w, const char *view, struct rle *mask, struct e
  * rgb (height,width,3); free() it. c->image is there. Returns 0, or -1 with *e set. */
 int warping_read_photograph(const struct camera *c, const char *folder, int turns, uint8_t **rgb, int *height,
 	int *width, struct err *e);
-
-#endif

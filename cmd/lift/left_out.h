@@ -1,6 +1,5 @@
 /* Whether masks show one scene, told to who runs the tool. */
-#ifndef CMD_LIFT_LEFT_OUT_H
-#define CMD_LIFT_LEFT_OUT_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -13,5 +12,3 @@
  * folder. Returns 0, or -1 with *e set. */
 int left_out_check(struct lift_objects *l, size_t named, const char *masks, const char *scene,
 	const struct report *to, struct err *e);
-
-#endif

@@ -7,8 +7,6 @@
 #include "splat/weights_pack.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Gives lifted objects their names, and the sentences of a text with pieces: object (t->n) has the one that
  * each names, or LIFTING_NONE where it stays out. *l can be freed in any case. */
@@ -338,17 +336,10 @@ void lifting_free(struct lifting *l)
 	text_free(&l->text);
 	masks_free(&l->set);
 	mask_index_free(&l->index);
-	free(l->views);
-	free(l->sentence_object);
-	free(l->mask_object);
+	mem_free_all(l->views, l->sentence_object, l->mask_object);
 	names_free(&l->refs);
 	names_free(&l->objects_of);
-	free(l->trained);
-	free(l->is_fixed);
-	free(l->found);
-	free(l->is_shown);
-	free(l->names);
-	free(l->is_there);
+	mem_free_all(l->trained, l->is_fixed, l->found, l->is_shown, l->names, l->is_there);
 	lift_objects_free(&l->lift);
 	lifted_free(&l->model);
 	parser_weights_free(&l->weights);

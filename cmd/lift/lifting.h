@@ -1,7 +1,6 @@
 /* The objects that sentences name, lifted onto the Gaussians from their masks: what refer-lift reads, which
  * mask is of which object, and the model that comes of it. formats/scene/lifted.md. */
-#ifndef CMD_LIFT_LIFTING_H
-#define CMD_LIFT_LIFTING_H
+#pragma once
 
 #include "ask/disambiguate.h"
 #include "base/err.h"
@@ -60,5 +59,3 @@ int lifting_read(
 int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struct report *to, struct err *e);
 
 void lifting_free(struct lifting *l);
-
-#endif

@@ -8,7 +8,6 @@
 #include "splat/weights_pack.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static int put_mask(FILE *out, struct mask m, double score, struct err *e)
 {
@@ -282,9 +281,7 @@ static int put_views(struct pseudomasks *w, const struct report *to, struct err 
 		shown_free(&b.shown[v], shown_count(w));
 	for (int i = 0; i < EACH_WORKERS && b.rooms; i++)
 		weights_room_free(&b.rooms[i]);
-	free(b.rooms);
-	free(b.is_there);
-	free(b.shown);
+	mem_free_all(b.rooms, b.is_there, b.shown);
 	return bad ? -1 : 0;
 }
 

@@ -1,7 +1,6 @@
 /* The masks of objects, out of the candidates that a detector found for their sentences: pseudomask-select.
  * formats/records/masks.md. */
-#ifndef CMD_LIFT_PSEUDOMASKS_H
-#define CMD_LIFT_PSEUDOMASKS_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -44,5 +43,3 @@ struct pseudomasks {
 int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *options, const char *path,
 	const struct report *to, struct err *e);
 void pseudomasks_free(struct pseudomasks *w);
-
-#endif

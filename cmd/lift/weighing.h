@@ -1,6 +1,5 @@
 /* The blend weights of a scene's views, rendered, pruned and written: gs-weigh. formats/scene/weights.md. */
-#ifndef CMD_LIFT_WEIGHING_H
-#define CMD_LIFT_WEIGHING_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -54,5 +53,3 @@ int weigh_packed(struct weighed_packed *to, const struct render_view *v, const s
 
 /* How many of the pixels are more scene than background. */
 size_t weighing_cover(const float *transmittance, size_t pixels);
-
-#endif

@@ -6,8 +6,6 @@
 #include "splat/prune.h"
 
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
 	PART_WIDTH = 4 * RENDER_PART, /* pixels: their weights take half a megabyte */

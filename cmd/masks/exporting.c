@@ -12,9 +12,6 @@
 #include "geom/views.h"
 
 #include <math.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char *png_name(const struct mask *m)
 {
@@ -104,10 +101,7 @@ int exporting_read(struct exporting *x, const char *masks, const char *scene, in
 
 void exporting_free(struct exporting *x)
 {
-	free(x->view_of);
-	free(x->object_of);
-	free(x->first_of_view);
-	free(x->first_of_object);
+	mem_free_all(x->view_of, x->object_of, x->first_of_view, x->first_of_object);
 	masks_free(&x->masks);
 	cameras_free(&x->cameras);
 }

@@ -1,7 +1,6 @@
 /* Mask records as other programs have them: COCO's JSON, and a PNG for each mask.
  * formats/records/annotations.md. */
-#ifndef CMD_MASKS_EXPORTING_H
-#define CMD_MASKS_EXPORTING_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -30,5 +29,3 @@ int exporting_put_coco(const struct exporting *x, FILE *out, struct err *e);
 /* DIR/VIEW/NAME.png of each, white on black; its sentence's name, else its object's. ERR_FORMAT, before
  * anything is written, where two would be one file. */
 int exporting_write_pngs(const struct exporting *x, const char *dir, struct err *e);
-
-#endif

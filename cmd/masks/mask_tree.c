@@ -8,8 +8,6 @@
 #include "geom/views.h"
 
 #include <dirent.h>
-#include <stdlib.h>
-#include <string.h>
 
 struct walk {
 	const char *dir;

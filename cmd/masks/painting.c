@@ -7,8 +7,6 @@
 #include "formats/images/png.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 int painting_put(struct mask *mask, struct warping *w, const char *path, FILE *out, struct err *e)
@@ -219,9 +217,7 @@ int painting_write(struct painting_names *names, const char *const *pictures, si
 	p.out = out.stream;
 	const int bad = put_all(&p, pictures, count, e);
 	for (size_t i = 0; i < p.labelled_count; i++) {
-		free(p.labelled[i].view);
-		free(p.labelled[i].picture);
-		free(p.labelled[i].file);
+		mem_free_all(p.labelled[i].view, p.labelled[i].picture, p.labelled[i].file);
 	}
 	free(p.labelled);
 	return file_out_end(&out, bad, e);

@@ -1,7 +1,6 @@
 /* Photographs that a person painted over, a colour for each thing, or labelled, as mask records: mask-import.
  */
-#ifndef CMD_MASKS_PAINTING_H
-#define CMD_MASKS_PAINTING_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -71,5 +70,3 @@ int painting_check_shared(const char *const *pictures, size_t count, struct err 
 
 /* That error, of two files; always -1. */
 int painting_two_pictures(const char *earlier, const char *later, const char *view, struct err *e);
-
-#endif

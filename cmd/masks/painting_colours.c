@@ -10,8 +10,6 @@
 #include "geom/views.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 void painting_names_free(struct painting_names *names)
 {
@@ -191,9 +189,7 @@ int painting_put_colours(struct painting_names *names, const char *path, struct 
 
 	for (size_t i = 0; i < names->n && !bad; i++)
 		bad = put_name(&p, &names->items[i], w, out, e);
-	free(p.view);
-	free(p.paint);
-	free(p.mask);
+	mem_free_all(p.view, p.paint, p.mask);
 	return bad ? -1 : 0;
 }
 

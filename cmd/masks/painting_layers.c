@@ -6,8 +6,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 /* An outline that covers more than this share of a larger one is of the same thing under another name. */

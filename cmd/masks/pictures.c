@@ -9,7 +9,6 @@
 #include "mask/overlay.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* DIR/VIEW/REF + suffix, with the folder made. free() it; NULL with *e set. */
 static char *make_path(const char *dir, const struct picture *one, const char *suffix, struct err *e)

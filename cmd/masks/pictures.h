@@ -1,8 +1,7 @@
 /* What refer-render draws for a person to look at: a picture for each view and sentence.
  * formats/images/pictures.md.
  */
-#ifndef CMD_MASKS_PICTURES_H
-#define CMD_MASKS_PICTURES_H
+#pragma once
 
 #include "base/err.h"
 
@@ -31,5 +30,3 @@ int pictures_put(const struct pictures *p, const struct picture *one, struct err
 /* An overlay alone: the colours with the mask over them, and its words below. Returns 0, or -1 with *e set.
  */
 int picture_overlay(const char *path, const struct picture *one, struct err *e);
-
-#endif

@@ -6,8 +6,6 @@
 #include "base/mem.h"
 #include "formats/records/masks.h"
 
-#include <stdlib.h>
-
 static int add_view(struct drawing *d, const struct camera *view, struct err *e)
 {
 	const struct draw_options *o = d->options;

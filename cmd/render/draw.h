@@ -1,7 +1,6 @@
 /* The masks of a request's sentences in views of the scene, and pictures of them: refer-render.
  * formats/records/masks.md, formats/images/pictures.md. */
-#ifndef CMD_RENDER_DRAW_H
-#define CMD_RENDER_DRAW_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -54,5 +53,3 @@ int draw(struct drawing *d, const struct viewpoint *from, const char *path, cons
 	struct err *e);
 
 void drawing_free(struct drawing *d);
-
-#endif

@@ -8,8 +8,6 @@
 #include "geom/up.h"
 #include "lift/labels.h"
 
-#include <stdlib.h>
-
 int labelling_open(struct labelling *r, const char *scene, const char *model, struct err *e)
 {
 	if (scene_read(&r->scene, scene, e) || anymodel_read(&r->model, model, e))

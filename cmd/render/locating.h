@@ -1,6 +1,5 @@
 /* Where the answers to sentences are, and of several things each by itself. */
-#ifndef CMD_RENDER_LOCATING_H
-#define CMD_RENDER_LOCATING_H
+#pragma once
 
 #include "answer/locate.h"
 #include "base/err.h"
@@ -73,5 +72,3 @@ void showing_free(struct showing *w);
  * what was meant. ERR_CHECK where nothing is meant: nothing is written. All return 0, or -1 with *e set. */
 int showing_ask(const struct asking_options *o, const char *question, enum locate_show show, const char *path,
 	FILE *out, const struct report *to, struct err *e);
-
-#endif

@@ -6,8 +6,6 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 
 cJSON *meant_names(const struct text *t, size_t sentence)
 {

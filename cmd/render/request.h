@@ -1,7 +1,6 @@
 /* What refer-render and refer-locate have in common: a scene, encoded sentences about it, a model, and what
  * the model answers to the sentences that were chosen. */
-#ifndef CMD_RENDER_REQUEST_H
-#define CMD_RENDER_REQUEST_H
+#pragma once
 
 #include "answer/responses.h"
 #include "ask/choose.h"
@@ -82,5 +81,3 @@ int meant_is(const cJSON *meant, const struct lifted *l, const size_t *things, s
  * lifted model's things, and whether they are the ones that the sentence's record names, where the model
  * knows these. What has no room is cut. */
 void overlay_words(const struct request *r, size_t i, double score, char *out, size_t size);
-
-#endif

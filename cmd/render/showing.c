@@ -8,8 +8,6 @@
 #include "formats/splats/splat.h"
 #include "splat/visibility.h"
 
-#include <stdlib.h>
-
 int showing_open(struct showing *w, const struct scene *scene, const struct anymodel *model, struct err *e)
 {
 	const size_t n = scene->splats.n;

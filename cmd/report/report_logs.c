@@ -6,7 +6,6 @@
 #include "formats/arrays/safetensors.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Metadata longer than this are lists of sentences and names. */
 enum { LONGEST = 300 };

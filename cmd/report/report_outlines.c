@@ -4,9 +4,6 @@
 #include "base/mem.h"
 #include "mask/trace.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Sides are level and upright by turns, the last one up to where the line began. */
 static char *path_of(const struct trace *t, struct err *e)
 {

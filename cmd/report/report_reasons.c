@@ -2,9 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 struct choosing {
 	const struct report_run *run;
 	const struct text *text;
@@ -103,9 +100,7 @@ int report_reasons(
 	for (size_t i = 0; i < s->text.n && !bad; i++)
 		bad = c.is_out_of_memory ? err_set(e, ERR_SYSTEM, "explanation: out of memory")
 					 : take_answer(&c, i, e);
-	free(c.choices);
-	free(c.probability);
-	free(c.chosen);
+	mem_free_all(c.choices, c.probability, c.chosen);
 	return bad ? -1 : 0;
 }
 

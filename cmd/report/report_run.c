@@ -6,9 +6,6 @@
 #include "base/mem.h"
 #include "score/score_choice.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Where each set of answers is, and the sentences that it answers. */
 static const struct {
 	const char *way, *name, *text, *masks;
@@ -204,7 +201,5 @@ void report_run_free(struct report_run *r)
 	score_masks_free(&r->truth);
 	anymodel_free(&r->lifted);
 	scene_free(&r->scene);
-	free(r->lifted_path);
-	free(r->truth_path);
-	free(r->shown);
+	mem_free_all(r->lifted_path, r->truth_path, r->shown);
 }

@@ -4,7 +4,6 @@
 #include "cmd/render/request.h"
 
 #include <math.h>
-#include <string.h>
 
 struct card {
 	const struct report_run *run;

@@ -10,7 +10,6 @@
 #include "geom/up.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <zlib.h>
 
 /* Gaussians of less opacity are not shown: an eye hardly sees them, and they are many. */

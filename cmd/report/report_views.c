@@ -9,7 +9,6 @@
 #include "splat/render.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { QUALITY = 78 };
 

@@ -5,9 +5,6 @@
 #include "base/mem.h"
 #include "base/path.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* The page, with a byte of 0 after it: the assembler puts it in. */
 __asm__(".section .rodata\n"
 	".globl report_page_begin\nreport_page_begin:\n"

@@ -7,10 +7,6 @@
 #include "formats/arrays/safetensors.h"
 #include "geom/up.h"
 
-#include <stdlib.h>
-#include <stddef.h>
-#include <string.h>
-
 int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 {
 	SCOPED_BY(safetensors_close) struct safetensors st = {0};

@@ -1,7 +1,6 @@
 /* A model of any kind, told by the file: trained (formats/scene/model.md), lifted (formats/scene/lifted.md),
  * or what was selected for each sentence (formats/scene/selection.md). */
-#ifndef CMD_RUN_ANYMODEL_H
-#define CMD_RUN_ANYMODEL_H
+#pragma once
 
 #include "answer/responses.h"
 #include "base/err.h"
@@ -56,5 +55,3 @@ struct anymodel_ask {
  * is of another encoder, or a selection has none of a sentence. */
 int anymodel_answer(
 	const struct anymodel *m, const struct anymodel_ask *q, struct responses *a, struct err *e);
-
-#endif

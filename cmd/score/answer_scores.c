@@ -6,8 +6,6 @@
 #include "base/number.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char *const target_names[ANSWER_TARGETS] = {"all", "one", "several", "none"};
 static const char *const no_kind = "(unknown)";

@@ -6,8 +6,6 @@
 #include "mask/mask_index.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static int by_object(const void *a, const void *b)
 {

@@ -1,7 +1,6 @@
 /* Files of masks as scoring takes them: names of one record at most, so that it is clear what belongs to
  * what. formats/records/masks.md. */
-#ifndef CMD_SCORE_SCORE_MASKS_H
-#define CMD_SCORE_SCORE_MASKS_H
+#pragma once
 
 #include "formats/records/masks.h"
 
@@ -18,5 +17,3 @@ int score_masks_read(struct score_masks *s, const char *path, struct err *e);
 
 /* Harmless on a zeroed struct. */
 void score_masks_free(struct score_masks *s);
-
-#endif

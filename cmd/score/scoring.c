@@ -3,14 +3,10 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
-#include "cmd/score/score_masks.h"
 #include "mask/mask_index.h"
 #include "score/score_choice.h"
 #include "score/score_groups.h"
 #include "score/score_join.h"
-
-#include <stddef.h>
-#include <stdlib.h>
 
 void score_masks_free(struct score_masks *s)
 {

@@ -1,7 +1,6 @@
 /* What miou-score reads, put together, and the scores that come of it: of masks, of answers, of boxes.
  * formats/records/scores.md. */
-#ifndef CMD_SCORE_SCORING_H
-#define CMD_SCORE_SCORING_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -103,5 +102,3 @@ int scoring_answers(const struct scoring *in, const char *path, int is_json, dou
 /* The same for files of boxes; *miou gets the mean IoU of aligned boxes. */
 int scoring_boxes(const struct scoring_files *files, const char *path, int is_json, double *miou,
 	const struct report *to, struct err *e);
-
-#endif

@@ -1,7 +1,6 @@
 /* A synthetic benchmark: made until all of it can be seen and told apart in words, then written: gs-synth.
  * formats/scene/synth.md. */
-#ifndef CMD_SYNTH_BENCHMARK_H
-#define CMD_SYNTH_BENCHMARK_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -55,5 +54,3 @@ struct benchmark {
 int benchmark_make(struct benchmark *b, int number, uint64_t seed, struct err *e);
 int benchmark_write(struct benchmark *b, const char *folder, const struct report *to, struct err *e);
 void benchmark_free(struct benchmark *b);
-
-#endif

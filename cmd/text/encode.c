@@ -5,8 +5,6 @@
 #include "formats/records/masks.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Tokens in one forward pass: enough to keep the products busy, little memory. */
 enum { ROWS_AT_ONCE = 1024 };

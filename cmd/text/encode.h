@@ -1,6 +1,5 @@
 /* Sentences to word vectors by a language encoder: text-encode. formats/scene/text.md. */
-#ifndef CMD_TEXT_ENCODE_H
-#define CMD_TEXT_ENCODE_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -89,5 +88,3 @@ int encoding_read(struct encoding *x, const char *path, int is_of_masks, struct 
  */
 int encode(struct encoding *x, const struct encoder *with, const struct report *to, struct err *e);
 void encoding_free(struct encoding *x);
-
-#endif

@@ -5,8 +5,6 @@
 #include "formats/encoders/merges.h"
 #include "formats/encoders/vocab.h"
 
-#include <stdlib.h>
-
 char *cache_folder(const char *name, struct err *e)
 {
 	const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");

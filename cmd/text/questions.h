@@ -1,6 +1,5 @@
 /* Questions, one a line, from a pipe or a terminal. */
-#ifndef CMD_TEXT_QUESTIONS_H
-#define CMD_TEXT_QUESTIONS_H
+#pragma once
 
 #include "base/err.h"
 
@@ -32,5 +31,3 @@ int question_waits(struct questions *from);
 
 /* The same of a text. Returns 1 where it is a question, 0 where it is blank or faulty: q->fault says why. */
 int question_take(struct question *q, const char *text);
-
-#endif

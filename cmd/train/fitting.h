@@ -1,6 +1,5 @@
 /* A 3DGS scene trained from photographs and their cameras: gs-train. */
-#ifndef CMD_TRAIN_FITTING_H
-#define CMD_TRAIN_FITTING_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -31,5 +30,3 @@ struct fitting_options {
 
 /* Trains and writes the scene. Returns 0, or -1 with *e set. */
 int fit_scene(const struct fitting_options *o, const struct report *to, struct err *e);
-
-#endif

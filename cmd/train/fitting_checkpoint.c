@@ -3,8 +3,6 @@
 #include "base/mem.h"
 #include "formats/arrays/safetensors.h"
 
-#include <string.h>
-
 #define FORMAT "gs.checkpoint"
 enum { STATE = sizeof(struct fit_state) / sizeof(int64_t) };
 

@@ -1,7 +1,6 @@
 /* The state of an unfinished gs-train, from which it goes on to the same bytes: formats/scene/checkpoint.md.
  */
-#ifndef CMD_TRAIN_FITTING_CHECKPOINT_H
-#define CMD_TRAIN_FITTING_CHECKPOINT_H
+#pragma once
 
 #include "fit/fit.h"
 
@@ -11,5 +10,3 @@ int fitting_checkpoint_write(struct fit *f, const char *path, const char *identi
 /* Fills a fit that has been opened on the same input. Returns 0, or -1 with *e set: ERR_FORMAT where the file
  * is of another training. */
 int fitting_checkpoint_read(struct fit *f, const char *path, const char *identity, struct err *e);
-
-#endif

@@ -14,7 +14,6 @@
 #include "splat/near.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <zlib.h>
 
 /* Each eighth photograph, but not many more than 16, is held out where there are so many that its neighbours

@@ -1,6 +1,5 @@
 /* What gs-train learns from: photographs with their cameras, and the Gaussians that training begins with. */
-#ifndef CMD_TRAIN_FITTING_INPUT_H
-#define CMD_TRAIN_FITTING_INPUT_H
+#pragma once
 
 #include "cmd/train/fitting.h"
 #include "fit/parameters.h"
@@ -27,5 +26,3 @@ void fitting_input_free(struct fitting_input *f);
 
 /* The name, for messages, of what the first Gaussians came from. */
 const char *fitting_input_start(const struct fitting_input *f);
-
-#endif

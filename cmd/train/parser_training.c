@@ -10,8 +10,6 @@
 #include "lang/parser_learn.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A marked sentence, with what its marks say of its words. */
 struct marked_sentence {

@@ -1,6 +1,5 @@
 /* The weights of text-parse, learnt from sentences with marks (formats/records/marked.md): parse-train. */
-#ifndef CMD_TRAIN_PARSER_TRAINING_H
-#define CMD_TRAIN_PARSER_TRAINING_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -22,5 +21,3 @@ int parser_train(const struct parser_training_options *o, const struct report *t
  * encoder). Likewise. */
 int parser_marked_write(
 	const char *marked, const char *encoded, int is_parses, const char *output, struct err *e);
-
-#endif

@@ -9,8 +9,6 @@
 #include "mask/bits.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <zlib.h>
 
 /* An object is known by the first training sentence that names it. */
@@ -286,10 +284,6 @@ void training_free(struct training *t)
 	lifted_free(&t->lifted);
 	scene_free(&t->scene);
 	text_free(&t->text);
-	free(t->offsets);
-	free(t->words);
-	free(t->objects);
-	free(t->refs);
-	free(t->object_names);
+	mem_free_all(t->offsets, t->words, t->objects, t->refs, t->object_names);
 	*t = (struct training){0};
 }

@@ -1,7 +1,6 @@
 /* What refer-train reads, put together: scene, weights, text and masks, checked against each other.
  * formats/scene/training.md. */
-#ifndef CMD_TRAIN_TRAINING_H
-#define CMD_TRAIN_TRAINING_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -130,5 +129,3 @@ struct learning {
  * or the loss is too high for one. */
 int learn(struct learning *l, const struct learning_options *options, const struct report *to, struct err *e);
 void learning_free(struct learning *l);
-
-#endif

@@ -5,7 +5,6 @@
 #include "splat/backproject.h"
 
 #include <libdeflate.h>
-#include <stdlib.h>
 
 static int training_views_init(
 	struct training_views *t, const struct scene *scene, const char *folder, struct err *e)
@@ -24,10 +23,7 @@ void training_views_free(struct training_views *t)
 {
 	for (size_t v = 0; v < t->n; v++)
 		weights_close(&t->read[v].file);
-	free(t->views);
-	free(t->read);
-	free(t->cameras);
-	free(t->weight);
+	mem_free_all(t->views, t->read, t->cameras, t->weight);
 	*t = (struct training_views){0};
 }
 

@@ -7,10 +7,6 @@
 #include "base/mem.h"
 
 #include <minizip/unzip.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <zlib.h>
 
 /* What a byte of deflate can become at most. */

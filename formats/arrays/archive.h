@@ -1,6 +1,5 @@
 /* Files that lie together, in a zip or in a folder: formats/splats/sog.md, formats/arrays/npy.md. */
-#ifndef FORMATS_ARCHIVE_H
-#define FORMATS_ARCHIVE_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -62,5 +61,3 @@ void zip_write_start(struct zip_write *z, FILE *out, const char *path);
 int zip_write_file(struct zip_write *z, const char *name, const void *bytes, size_t length, struct err *e);
 /* The list of files, which ends it. */
 int zip_write_end(struct zip_write *z, struct err *e);
-
-#endif

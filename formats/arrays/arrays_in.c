@@ -5,9 +5,6 @@
 #include "base/names.h"
 #include "formats/arrays/metalist.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 void arrays_in_begin(
 	struct arrays_in *in, const struct safetensors *st, const char *format, int version, struct err *e)
 {

@@ -2,8 +2,7 @@
  * they are taken. The first thing that is wrong stays in *e, what follows is passed over and gives NULL or 0,
  * and `bad` is set: a reader looks at that once. Messages: "PATH: tensor 'NAME' ...", "PATH: metadata 'KEY'
  * ...". formats/arrays/safetensors.md. */
-#ifndef FORMATS_ARRAYS_IN_H
-#define FORMATS_ARRAYS_IN_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/safetensors.h"
@@ -60,5 +59,3 @@ void arrays_in_check_unique(struct arrays_in *in, char *const *strings, size_t n
 /* Metadata 'pieces': string i has offsets[i+1] - offsets[i] pieces, with one space between and none around.
  */
 void arrays_in_check_pieces(struct arrays_in *in, char *const *pieces, const int64_t *offsets, size_t n);
-
-#endif

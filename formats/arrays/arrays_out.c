@@ -5,8 +5,6 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 void arrays_out_begin(struct arrays_out *out, const char *path, const char *format, const char *version,
 	const char *tool, const char *options, long long seed, struct err *e)
@@ -85,8 +83,6 @@ int arrays_out_end(struct arrays_out *out)
 		   safetensors_write(out->path, out->tensors, out->n, out->meta, out->meta_count, out->e);
 	for (size_t i = 0; i < out->owned_count; i++)
 		free(out->owned[i]);
-	free(out->owned);
-	free(out->tensors);
-	free(out->meta);
+	mem_free_all(out->owned, out->tensors, out->meta);
 	return out->bad ? -1 : 0;
 }

@@ -1,8 +1,7 @@
 /* A safetensors file in the making: metadata and tensors are put into it one after another, with the memory
  * of what is made for it. Once something goes wrong the rest is passed over, and arrays_out_end fails.
  * formats/arrays/safetensors.md. */
-#ifndef FORMATS_ARRAYS_OUT_H
-#define FORMATS_ARRAYS_OUT_H
+#pragma once
 
 #include "formats/arrays/safetensors.h"
 
@@ -36,5 +35,3 @@ void *arrays_out_memory(struct arrays_out *out, size_t n, size_t size);
 
 /* Writes the file, unless something went wrong, and releases all memory. Returns 0, or -1 with *e. */
 int arrays_out_end(struct arrays_out *out);
-
-#endif

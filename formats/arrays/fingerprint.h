@@ -1,7 +1,6 @@
 /* Fingerprints: what a file was made from, so that files of different scenes, cameras or encoders are not
  * mixed. formats/arrays/safetensors.md says what each is a hash of. */
-#ifndef FORMATS_FINGERPRINT_H
-#define FORMATS_FINGERPRINT_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/arrays_out.h"
@@ -45,5 +44,3 @@ const char *fingerprint_text(const struct fingerprint *f);
  * ERR_FORMAT: "PATH: is of another WHAT than OTHER (HEX, not HEX)". */
 int fingerprint_check(const char *what, const char *path, const struct fingerprint *mine, const char *other,
 	const struct fingerprint *theirs, struct err *e);
-
-#endif

@@ -5,7 +5,6 @@
 #include "formats/records/json.h"
 
 #include <stdio.h>
-#include <string.h>
 
 char **metalist_parse(const char *text, size_t *n, char reason[METALIST_REASON])
 {

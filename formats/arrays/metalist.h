@@ -1,7 +1,6 @@
 /* Lists of strings as text: a JSON list each, as metadata of safetensors are strings
  * (formats/arrays/safetensors.md). */
-#ifndef FORMATS_METALIST_H
-#define FORMATS_METALIST_H
+#pragma once
 
 #include <stddef.h>
 
@@ -12,5 +11,3 @@ char *metalist_print(char *const *strings, size_t n);
  * memory is out. Of no strings it is not NULL. */
 enum { METALIST_REASON = 64 };
 char **metalist_parse(const char *text, size_t *n, char reason[METALIST_REASON]);
-
-#endif

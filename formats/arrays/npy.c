@@ -3,12 +3,8 @@
 #include "base/half.h"
 #include "base/little.h"
 #include "base/mem.h"
-#include "formats/arrays/safetensors.h"
 
 #include <ctype.h>
-#include <errno.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char MAGIC[6] = "\x93NUMPY";
 enum {

@@ -1,7 +1,6 @@
 /* NumPy .npy arrays, versions 1.0 and 2.0: any of numbers are read, float32 are written.
  * formats/arrays/npy.md. */
-#ifndef FORMATS_NPY_H
-#define FORMATS_NPY_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -47,5 +46,3 @@ void npy_floats(const struct npy *a, size_t first, size_t n, float *out);
 
 /* Appears whole. "-" is stdout. dims in 0 to NPY_MAX_DIMS. */
 int npy_write(const char *path, const float *values, const size_t *shape, int dims, struct err *e);
-
-#endif

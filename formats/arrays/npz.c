@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 int npz_open(struct npz *z, const char *path, struct err *e)
 {

@@ -1,6 +1,5 @@
 /* NumPy's .npz: arrays in a zip. formats/arrays/npy.md. */
-#ifndef FORMATS_NPZ_H
-#define FORMATS_NPZ_H
+#pragma once
 
 #include "formats/arrays/archive.h"
 #include "formats/arrays/npy.h"
@@ -27,5 +26,3 @@ int npz_entry(struct npz *z, size_t place, struct npy *a, char **called, struct 
 
 /* The first of these names that an array has; NULL with *e where none has. */
 const char *npz_main(const struct npz *z, const char *const *names, size_t n, struct err *e);
-
-#endif

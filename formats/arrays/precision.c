@@ -1,7 +1,6 @@
 #include "formats/arrays/precision.h"
 
 #include "base/half.h"
-#include "base/mem.h"
 
 #include <float.h>
 #include <math.h>

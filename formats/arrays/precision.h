@@ -1,7 +1,6 @@
 /* Matrices of numbers as tensors of a safetensors file: exact, or in fewer bits. formats/scene/model.md has
  * the bytes. */
-#ifndef FORMATS_PRECISION_H
-#define FORMATS_PRECISION_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/arrays_out.h"
@@ -41,5 +40,3 @@ int precision_get(const struct safetensors *st, const char *name, enum precision
 
 /* Numbers to be written as they are, all of them finite: else ERR_CHECK, as above. */
 void precision_put_vector(struct arrays_out *out, const char *name, size_t n, const float *x);
-
-#endif

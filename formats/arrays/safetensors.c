@@ -6,9 +6,6 @@
 #include <cjson/cJSON.h>
 #include <libdeflate.h>
 #include <math.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const struct {
 	const char *name;
@@ -260,9 +257,7 @@ void safetensors_close(struct safetensors *st)
 	}
 	names_free(&st->tensor_names);
 	names_free(&st->meta_keys);
-	free(st->tensors);
-	free(st->meta);
-	free(st->path);
+	mem_free_all(st->tensors, st->meta, st->path);
 	if (!st->is_borrowed)
 		file_unmap(&st->map);
 	*st = (struct safetensors){0};

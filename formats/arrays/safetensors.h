@@ -1,7 +1,6 @@
 /* safetensors: named arrays in one file. Ours carry a crc32 for each tensor; foreign ones are read too.
  * formats/arrays/safetensors.md describes the bytes. */
-#ifndef FORMATS_SAFETENSORS_H
-#define FORMATS_SAFETENSORS_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -118,5 +117,3 @@ char *st_crc_key(const char *tensor, struct err *e);
 /* Size of one item, and the name ("F32"). */
 size_t st_dtype_size(enum st_dtype t);
 const char *st_dtype_name(enum st_dtype t);
-
-#endif

@@ -8,8 +8,6 @@
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 int safetensors_meta_int(const struct safetensors *st, const char *key, long long low, long long high,
 	long long *value, struct err *e)

@@ -5,8 +5,6 @@
 
 #include <cjson/cJSON.h>
 #include <libdeflate.h>
-#include <stdlib.h>
-#include <string.h>
 
 char *st_crc_key(const char *tensor, struct err *e)
 {

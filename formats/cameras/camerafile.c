@@ -10,10 +10,7 @@
 #include "geom/lens.h"
 #include "geom/views.h"
 
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static int read_view(struct camera *c, const cJSON *item, const char *where, struct err *e)
 {

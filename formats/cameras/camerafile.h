@@ -1,6 +1,5 @@
 /* A trained scene's cameras, in whichever foreign format they are. formats/cameras/camerafile.md. */
-#ifndef FORMATS_CAMERAFILE_H
-#define FORMATS_CAMERAFILE_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -13,5 +12,3 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e);
 /* Refuses cameras that distort (ERR_FORMAT), and says the ways out; images is the folder of their
  * photographs, or NULL. Returns 0, or -1 with *e. */
 int camerafile_need_pinholes(const struct cameras *c, const char *path, const char *images, struct err *e);
-
-#endif

@@ -8,10 +8,7 @@
 #include "geom/views.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A place in a binary file. */
 struct cursor {
@@ -244,9 +241,7 @@ int colmap_read(struct cameras *c, const char *dir, struct err *e)
 		bad = views_finish(c, images, e);
 	if (bad)
 		cameras_free(c);
-	free(all.items);
-	free(cameras);
-	free(images);
+	mem_free_all(all.items, cameras, images);
 	return bad ? -1 : 0;
 }
 

@@ -1,7 +1,6 @@
 /* COLMAP sparse models: cameras and images, and points, binary or text.
  * formats/cameras/colmap.md. */
-#ifndef FORMATS_COLMAP_H
-#define FORMATS_COLMAP_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -36,5 +35,3 @@ struct colmap_points {
  * *p zeroed. */
 int colmap_points_read(struct colmap_points *p, const char *dir, struct err *e);
 void colmap_points_free(struct colmap_points *p);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the readers of COLMAP's two forms share: colmap.c has the binary one and the folder, colmap_text.c the
  * other. formats/cameras/colmap.md. */
-#ifndef FORMATS_COLMAP_PRIVATE_H
-#define FORMATS_COLMAP_PRIVATE_H
+#pragma once
 
 #include "formats/cameras/colmap.h"
 #include "geom/lens.h"
@@ -34,5 +33,3 @@ int colmap_add_view(struct cameras *c, size_t *capacity, const struct colmap_ent
 /* cameras.txt and images.txt. */
 int colmap_read_text(struct cameras *c, struct colmap_entries *all, const char *cameras, const char *images,
 	struct err *e);
-
-#endif

@@ -5,8 +5,6 @@
 #include "formats/records/json.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char file[] = "dataparser_transforms.json";
 

@@ -1,7 +1,6 @@
 /* nerfstudio's dataparser_transforms.json: how the frame that it trains in came from that of its cameras.
  * formats/cameras/dataparser.md. */
-#ifndef FORMATS_DATAPARSER_H
-#define FORMATS_DATAPARSER_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -17,5 +16,3 @@ char *dataparser_find(const char *splats, const char *cameras, struct err *e);
 /* Moves cameras, which were read from the file `cameras`, into the frame that the file at path tells of.
  * Returns 0, or -1 with *e set. */
 int dataparser_move(struct cameras *c, const char *path, const char *cameras, struct err *e);
-
-#endif

@@ -1,7 +1,6 @@
 /* nerfstudio's transforms.json (and its ancestors'): cameras in OpenGL axes. formats/cameras/transforms.md.
  */
-#ifndef FORMATS_TRANSFORMS_H
-#define FORMATS_TRANSFORMS_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -12,5 +11,3 @@
  * file_path, the split is the file's where it has one. Lens distortion is refused unless it is 0. Returns 0,
  * or -1 with *e and *c zeroed. */
 int transforms_parse(struct cameras *c, const cJSON *root, const char *path, struct err *e);
-
-#endif

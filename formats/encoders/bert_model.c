@@ -6,7 +6,6 @@
 #include "formats/records/json.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 static int read_activation(struct text_tower *b, const cJSON *config, const char *path, struct err *e)
 {

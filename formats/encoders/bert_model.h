@@ -1,7 +1,6 @@
 /* A BERT encoder's folder: config.json and safetensors weights, as HuggingFace stores them.
  * formats/encoders/bert_model.md. */
-#ifndef FORMATS_BERT_MODEL_H
-#define FORMATS_BERT_MODEL_H
+#pragma once
 
 #include "base/err.h"
 #include "nn/text_tower.h"
@@ -12,5 +11,3 @@
 /* Reads DIR/config.json and DIR/model.safetensors or, where there is none, the only *.safetensors in DIR.
  * Weights may be F32, F16, BF16 or F64. Release with text_tower_free. */
 int bert_model_read(struct text_tower *b, const char *dir, struct err *e);
-
-#endif

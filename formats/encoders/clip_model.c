@@ -6,8 +6,6 @@
 #include "formats/records/json.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define OPEN_CLIP "open_clip_config.json"
 static const char *const names[] = {"hidden_size", "num_attention_heads", "max_position_embeddings"};

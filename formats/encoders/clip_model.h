@@ -1,7 +1,6 @@
 /* The folder of a CLIP's text tower: a configuration and safetensors weights, as HuggingFace or OpenCLIP
  * stores them. formats/encoders/clip_model.md. */
-#ifndef FORMATS_CLIP_MODEL_H
-#define FORMATS_CLIP_MODEL_H
+#pragma once
 
 #include "base/err.h"
 #include "nn/text_tower.h"
@@ -14,5 +13,3 @@ int clip_model_is(const char *dir);
 
 /* Reads the configuration, and the weights as bert_model_read. Release with text_tower_free. */
 int clip_model_read(struct text_tower *c, const char *dir, struct err *e);
-
-#endif

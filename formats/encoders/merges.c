@@ -7,8 +7,6 @@
 #include "formats/records/json.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <zlib.h>
 
 #define OPEN_CLIP_LIST "bpe_simple_vocab_16e6.txt.gz"
@@ -307,10 +305,7 @@ int merges_read(struct bpe *b, const char *dir, int words, struct err *e)
 	*b = (struct bpe){0};
 	const int bad =
 		!p.vocabulary || !p.merges || !p.tokenizer || !p.list || read_any(b, &p, dir, words, e);
-	free(p.vocabulary);
-	free(p.merges);
-	free(p.tokenizer);
-	free(p.list);
+	mem_free_all(p.vocabulary, p.merges, p.tokenizer, p.list);
 	if (bad)
 		bpe_free(b);
 	return bad ? -1 : 0;

@@ -1,7 +1,6 @@
 /* The vocabulary and merges of a CLIP: vocab.json with merges.txt, tokenizer.json, or OpenCLIP's list of
  * merges. formats/encoders/merges.md. */
-#ifndef FORMATS_MERGES_H
-#define FORMATS_MERGES_H
+#pragma once
 
 #include "base/err.h"
 #include "nn/bpe.h"
@@ -12,5 +11,3 @@ int merges_read(struct bpe *b, const char *dir, int words, struct err *e);
 
 /* n ids written out as word pieces (bpe_read) with a space between; free() it. NULL when memory is out. */
 char *merges_print(const struct bpe *b, const int32_t *ids, size_t n, struct err *e);
-
-#endif

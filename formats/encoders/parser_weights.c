@@ -3,13 +3,10 @@
 #include "base/embed.h"
 #include "base/half.h"
 #include "base/mem.h"
-#include "formats/arrays/fingerprint.h"
 #include "formats/arrays/arrays_in.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* The default weights are part of the program, so that every tool has them:
  * formats/encoders/parser_default.safetensors. */

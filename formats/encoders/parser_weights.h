@@ -1,6 +1,5 @@
 /* parser.safetensors (refer.parser): the weights of the learnt parser. formats/encoders/parser_weights.md. */
-#ifndef FORMATS_PARSER_WEIGHTS_H
-#define FORMATS_PARSER_WEIGHTS_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
@@ -18,5 +17,3 @@ int parser_weights_write(
  * its sentences would be taken apart by grammar alone. middle: those words, or NULL. */
 int parser_weights_need_middle(const struct parser_weights *w, const char *path, const float *middle,
 	const struct fingerprint *encoder, struct err *e);
-
-#endif

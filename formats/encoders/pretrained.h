@@ -1,7 +1,6 @@
 /* What the readers of encoders' folders share: keys of a configuration and tensors of the weights, with
  * messages that name them. formats/encoders/bert_model.md, formats/encoders/clip_model.md. */
-#ifndef FORMATS_PRETRAINED_H
-#define FORMATS_PRETRAINED_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/safetensors.h"
@@ -66,5 +65,3 @@ int pretrained_load(struct pretrained *from, const char *name, float *out, int r
 
 /* All of a tower but the projection, in the same way: only looked for, before t has memory. */
 int pretrained_tower(struct pretrained *from, const struct text_tower *t);
-
-#endif

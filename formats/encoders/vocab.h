@@ -1,6 +1,5 @@
 /* The vocabulary of an uncased BERT: tokenizer.json or vocab.txt. formats/encoders/vocab.md. */
-#ifndef FORMATS_VOCAB_H
-#define FORMATS_VOCAB_H
+#pragma once
 
 #include "base/err.h"
 #include "nn/wordpiece.h"
@@ -16,5 +15,3 @@ int vocab_add_all(struct vocab *v, const cJSON *tokens, const char *path, struct
 
 /* n ids of the vocabulary written out as tokens with a space between; free() it. NULL when memory is out. */
 char *vocab_print(const struct vocab *v, const int32_t *ids, size_t n, struct err *e);
-
-#endif

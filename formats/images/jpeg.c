@@ -4,8 +4,6 @@
 #include "formats/images/png.h"
 
 #include <setjmp.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <jpeglib.h>
 #include <jerror.h>

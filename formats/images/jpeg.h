@@ -1,7 +1,6 @@
 /* JPEG images through libjpeg: formats/images/jpeg.md. formats/images/png.h has the function that tells PNG
  * from JPEG. */
-#ifndef FORMATS_JPEG_H
-#define FORMATS_JPEG_H
+#pragma once
 
 #include "base/err.h"
 
@@ -16,5 +15,3 @@ int jpeg_read_rgb(const char *name, FILE *in, uint8_t **rgb, int *height, int *w
  * Returns 0, or -1 with *e set; `name` is the picture's name in messages. */
 int jpeg_encode(const char *name, const uint8_t *rgb, int height, int width, int quality, uint8_t **bytes,
 	size_t *count, struct err *e);
-
-#endif

@@ -5,8 +5,6 @@
 #include "formats/images/jpeg.h"
 
 #include <setjmp.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 enum { DEFLATE_RATIO = 1032 /* what a byte of deflate can become at most */ };

@@ -1,7 +1,6 @@
 /* PNG images through libpng (formats/images/png.md), JPEG through libjpeg (formats/images/jpeg.md). Errors
  * name the file. */
-#ifndef FORMATS_PNG_H
-#define FORMATS_PNG_H
+#pragma once
 
 #include "base/err.h"
 
@@ -47,5 +46,3 @@ int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, str
 /* All appear whole. channels 1 or 3, row-major. The 16-bit one is grey, native-endian values in memory. */
 int png_write(const char *path, const uint8_t *pixels, int height, int width, int channels, struct err *e);
 int png_write16(const char *path, const uint16_t *grey, int height, int width, struct err *e);
-
-#endif

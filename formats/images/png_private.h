@@ -1,6 +1,5 @@
 /* What reading (png.c) and writing (png_write.c) of formats/images/png.h share. formats/images/png.md. */
-#ifndef FORMATS_PNG_PRIVATE_H
-#define FORMATS_PNG_PRIVATE_H
+#pragma once
 
 #include "formats/images/png.h"
 
@@ -27,5 +26,3 @@ struct png_job {
 /* libpng's error and warning functions: the first jumps to the place that png_jmpbuf has. */
 _Noreturn void png_job_error(png_structp png, png_const_charp message);
 void png_job_warning(png_structp png, png_const_charp message);
-
-#endif

@@ -1,6 +1,5 @@
 /* Lossless WebP: what SOG keeps its numbers in. formats/splats/sog.md. */
-#ifndef FORMATS_WEBP_H
-#define FORMATS_WEBP_H
+#pragma once
 
 #include "base/err.h"
 
@@ -25,5 +24,3 @@ enum { WEBP_SIDE_MOST = 16383 };
 int webp_encode(unsigned char **bytes, size_t *length, const unsigned char *rgba, int width, int height,
 	const char *name, struct err *e);
 void webp_release(unsigned char *bytes);
-
-#endif

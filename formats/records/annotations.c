@@ -10,21 +10,15 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 void annotations_free(struct annotations *a)
 {
 	for (size_t i = 0; i < a->n; i++) {
-		free(a->items[i].view);
-		free(a->items[i].name);
-		free(a->items[i].ref);
+		mem_free_all(a->items[i].view, a->items[i].name, a->items[i].ref);
 		rle_free(&a->items[i].mask);
 		mask_place_free(a->items[i].boxes);
 	}
-	free(a->items);
-	free(a->view);
-	free(a->picture);
+	mem_free_all(a->items, a->view, a->picture);
 	for (size_t i = 0; i < a->left_count; i++)
 		free(a->left_out[i].kind);
 	free(a->left_out);
@@ -181,9 +175,7 @@ static int read_ref_lerf(
 		      json_string(object, "segmentation", 1, &picture, r->where, e) < 0 ||
 		      read_mask_picture(r, masks, picture, view, name, e);
 	}
-	free(view);
-	free(folder);
-	free(masks);
+	mem_free_all(view, folder, masks);
 	return bad ? -1 : 0;
 }
 
@@ -226,8 +218,6 @@ int annotations_read(struct annotations *a, const char *path, struct err *e)
 	*a = (struct annotations){0};
 	const int bad = !root || read_any(&r, root, path, e);
 	cJSON_Delete(root);
-	free(r.flips);
-	free(r.mask);
-	free(r.points);
+	mem_free_all(r.flips, r.mask, r.points);
 	return bad ? textfile_note(path, e) : 0;
 }

@@ -1,7 +1,6 @@
 /* Annotations of other programs as masks: JSON of LabelMe, COCO, ISAT, Ref-LERF and Grounded-SAM-2.
  * formats/records/annotations.md. */
-#ifndef FORMATS_ANNOTATIONS_H
-#define FORMATS_ANNOTATIONS_H
+#pragma once
 
 #include "base/err.h"
 #include "mask/mask_place.h"
@@ -39,5 +38,3 @@ struct annotations {
 /* Reads any of them ("-" is stdin). Returns 0, or -1 with *e ("path: shape 3: ..."); free after either. */
 int annotations_read(struct annotations *a, const char *path, struct err *e);
 void annotations_free(struct annotations *a);
-
-#endif

@@ -9,8 +9,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* The item of a list whose "id" is that number, or NULL. */
 static const cJSON *with_id(const cJSON *list, const cJSON *id)

@@ -1,8 +1,7 @@
 /* What the parts of formats/records/annotations.h share: annotations_draw.c makes masks of shapes,
  * annotations_coco.c reads COCO's and Grounded-SAM-2's files, annotations.c the rest.
  * formats/records/annotations.md. */
-#ifndef FORMATS_ANNOTATIONS_PRIVATE_H
-#define FORMATS_ANNOTATIONS_PRIVATE_H
+#pragma once
 
 #include "formats/records/annotations.h"
 #include "formats/records/json.h"
@@ -56,5 +55,3 @@ const char *reading_picture(struct reading *r, const char *json, const char *ima
 
 /* COCO's annotations, or Grounded-SAM-2's. */
 int reading_annotations(struct reading *r, const cJSON *root, struct err *e);
-
-#endif

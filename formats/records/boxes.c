@@ -8,8 +8,6 @@
 #include "mask/mask_index.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static void record_free(void *record)
 {

@@ -1,6 +1,5 @@
 /* Where objects are in space (JSON Lines). formats/records/boxes.md. */
-#ifndef FORMATS_BOXES_H
-#define FORMATS_BOXES_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/box.h"
@@ -44,5 +43,3 @@ struct box_gaussians {
 /* One line. `of` may be NULL: the record then says nothing of Gaussians. Its parts have an object, a score
  * and boxes. */
 int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of, struct err *e);
-
-#endif

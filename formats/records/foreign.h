@@ -2,8 +2,7 @@
  * formats/records/foreign.md has all of them. Each function returns 0 where it does not know the file, or -1
  * with *e set (ERR_FORMAT).
  */
-#ifndef FORMATS_FOREIGN_H
-#define FORMATS_FOREIGN_H
+#pragma once
 
 #include "base/err.h"
 
@@ -19,5 +18,3 @@ int foreign_file(const char *name, enum foreign_place place, const void *data, s
 /* ERR_FORMAT, "NAME: WHAT: WAY OUT", in which %s is the name, and %b that without its ending: -1. */
 int foreign_say(const char *name, const char *what, const char *way_out, struct err *e);
 #define FOREIGN_TRAIN "give a scene that 3D Gaussian Splatting trained"
-
-#endif

@@ -5,8 +5,6 @@
 #include "base/textfile.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e)
 {

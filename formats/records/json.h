@@ -1,6 +1,5 @@
 /* Whole JSON files, and members of their objects with messages that say where. formats/records/json.md. */
-#ifndef FORMATS_JSON_H
-#define FORMATS_JSON_H
+#pragma once
 
 #include "base/err.h"
 
@@ -47,5 +46,3 @@ int json_matrix(const cJSON *object, const char *key, int rows, int columns, dou
 
 /* `count` finite numbers of an array, no more and no fewer: 0, or -1. */
 int json_numbers(const cJSON *array, int count, double *values);
-
-#endif

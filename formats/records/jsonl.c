@@ -2,15 +2,12 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "base/name.h"
 #include "base/textfile.h"
 #include "formats/records/foreign.h"
 #include "formats/records/json.h"
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/types.h>
 
 int jsonl_open(struct jsonl *j, const char *path, struct err *e)

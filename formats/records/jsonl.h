@@ -1,6 +1,5 @@
 /* JSON Lines: one object a line, read as a stream. formats/records/jsonl.md. */
-#ifndef FORMATS_JSONL_H
-#define FORMATS_JSONL_H
+#pragma once
 
 #include "base/err.h"
 #include "base/name.h"
@@ -58,5 +57,3 @@ int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, do
 
 /* Writes `before`, then the text as a JSON string. Returns 0, or -1 with *e. */
 int jsonl_put_string(FILE *out, const char *before, const char *text, struct err *e);
-
-#endif

@@ -9,9 +9,6 @@
 #include "geom/views.h"
 
 #include <math.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Gives a key's error its file and line. */
 static int key_err(struct err *e, const char *where, const char *key)

@@ -1,7 +1,6 @@
 /* Mask records (JSON Lines): candidates, pseudo masks, predictions and truth alike. formats/records/masks.md.
  */
-#ifndef FORMATS_MASKS_H
-#define FORMATS_MASKS_H
+#pragma once
 
 #include "base/err.h"
 #include "base/names.h"
@@ -54,5 +53,3 @@ int masks_views(struct masks *set, long *lines, const char *path, const struct c
 int masks_put(FILE *out, const struct mask *m, struct err *e);
 /* The same with a key "parts": objects of the parts' object, score, visible and segmentation. */
 int masks_put_parts(FILE *out, const struct mask *m, const struct mask *parts, size_t n, struct err *e);
-
-#endif

@@ -6,11 +6,6 @@
 #include "formats/records/jsonl.h"
 #include "lang/colours.h"
 
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 struct writer {
 	const struct parse *p;
 	const char *text;

@@ -1,6 +1,5 @@
 /* parses.jsonl: sentences taken apart, one a line (JSON Lines). formats/records/parses.md. */
-#ifndef FORMATS_PARSES_H
-#define FORMATS_PARSES_H
+#pragma once
 
 #include "base/err.h"
 #include "lang/parse.h"
@@ -24,5 +23,3 @@ struct parses {
 };
 int parses_read(struct parses *p, const char *path, struct err *e);
 void parses_free(struct parses *p);
-
-#endif

@@ -6,21 +6,13 @@
 #include "formats/records/json.h"
 #include "formats/records/jsonl.h"
 
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
 static void sentence_free(void *record)
 {
 	const struct sentence *s = record;
 
 	mem_free_strings(s->views, s->view_count);
 	mem_free_strings(s->objects, s->object_count);
-	free(s->view);
-	free(s->kind);
-	free(s->ref);
-	free(s->object);
-	free(s->text);
+	mem_free_all(s->view, s->kind, s->ref, s->object, s->text);
 }
 
 void sentences_free(struct sentences *s)

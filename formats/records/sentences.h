@@ -1,6 +1,5 @@
 /* Sentences (JSON Lines). formats/records/sentences.md. */
-#ifndef FORMATS_SENTENCES_H
-#define FORMATS_SENTENCES_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -34,5 +33,3 @@ int sentences_read_any(struct sentences *s, const char *path, struct err *e);
 /* Appends a training sentence; copies. 0, or -1 with *e. */
 int sentences_add(struct sentences *s, const char *ref, const char *object, const char *text, struct err *e);
 void sentences_free(struct sentences *s);
-
-#endif

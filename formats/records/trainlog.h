@@ -1,6 +1,5 @@
 /* Training logs: how the losses went, JSON Lines. formats/records/trainlog.md. */
-#ifndef FORMATS_TRAINLOG_H
-#define FORMATS_TRAINLOG_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -36,5 +35,3 @@ int trainlog_put_judged(
 
 /* Closes in any case, also a log that was not opened. */
 int trainlog_close(struct trainlog *l, struct err *e);
-
-#endif

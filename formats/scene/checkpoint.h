@@ -1,7 +1,6 @@
 /* Training checkpoints (refer.checkpoint): everything that continues a training to the same bytes.
  * formats/scene/checkpoint.md. */
-#ifndef FORMATS_CHECKPOINT_H
-#define FORMATS_CHECKPOINT_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
@@ -33,5 +32,3 @@ int checkpoint_read(struct train_state *t, const char *path, const struct checkp
 /* The same; ERR_FORMAT also where it has more steps than `most`. */
 int checkpoint_resume(struct train_state *t, const char *path, const struct checkpoint_of *of, long long most,
 	struct err *e);
-
-#endif

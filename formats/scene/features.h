@@ -1,7 +1,6 @@
 /* features.safetensors (refer.features): what pictures say of each Gaussian, features or labels.
  * formats/scene/features.md. */
-#ifndef FORMATS_FEATURES_H
-#define FORMATS_FEATURES_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
@@ -36,5 +35,3 @@ void features_close(struct features *f);
 void features_floats(const struct features *f, size_t first, size_t n, float *out);
 
 int features_write(const struct features *f, const char *path, const char *options, struct err *e);
-
-#endif

@@ -3,10 +3,8 @@
 #include "base/mem.h"
 #include "formats/arrays/arrays_in.h"
 #include "formats/arrays/precision.h"
-#include "formats/arrays/safetensors.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { VERSION_READ = 1, SHARE_STEPS = 255 };
 

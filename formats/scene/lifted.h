@@ -1,6 +1,5 @@
 /* model.safetensors (refer.lifted): objects lifted onto the Gaussians. formats/scene/lifted.md. */
-#ifndef FORMATS_LIFTED_H
-#define FORMATS_LIFTED_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
@@ -14,5 +13,3 @@ int lifted_take(struct lifted *l, struct origin *origin, const struct safetensor
 /* Shares are kept to 1/255, words as float16. ERR_CHECK where a number is not finite, or too large. */
 int lifted_write(const struct lifted *l, const struct origin *origin, const char *path, const char *options,
 	struct err *e);
-
-#endif

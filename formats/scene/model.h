@@ -1,6 +1,5 @@
 /* model.safetensors (refer.model): a trained referring model. formats/scene/model.md. */
-#ifndef FORMATS_MODEL_H
-#define FORMATS_MODEL_H
+#pragma once
 
 #include "base/err.h"
 #include "field/referring_model.h"
@@ -38,5 +37,3 @@ void model_free(struct model *m);
 /* Which row serves each Gaussian of the scene (scene_gaussians), whose means are means (scene_gaussians,3).
  */
 int model_rows(const struct model *m, const float *means, struct rows *rows, struct err *e);
-
-#endif

@@ -13,10 +13,7 @@
 
 #include <cjson/cJSON.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static int check_values(const struct splats *s, const char *path, struct err *e)
 {

@@ -1,7 +1,6 @@
 /* A scene folder: splats.safetensors (refer.splats) and cameras.json. formats/scene/scene.md has the tables.
  */
-#ifndef FORMATS_SCENE_H
-#define FORMATS_SCENE_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
@@ -27,5 +26,3 @@ int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e);
 /* Makes dir and writes both files, each appearing whole. `options` goes into the metadata (a tool's own
  * choice). */
 int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e);
-
-#endif

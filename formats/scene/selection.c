@@ -3,10 +3,6 @@
 #include "base/mem.h"
 #include "formats/arrays/arrays_in.h"
 #include "formats/arrays/arrays_out.h"
-#include "formats/arrays/metalist.h"
-
-#include <stdlib.h>
-#include <string.h>
 
 enum { VERSION_READ = 1 };
 

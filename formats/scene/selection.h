@@ -1,7 +1,6 @@
 /* selection.safetensors (refer.selection): the Gaussians that each sentence selects.
  * formats/scene/selection.md. */
-#ifndef FORMATS_SELECTION_H
-#define FORMATS_SELECTION_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
@@ -25,5 +24,3 @@ int selection_read(struct selection *s, const char *path, struct err *e);
 void selection_free(struct selection *s);
 
 int selection_write(const struct selection *s, const char *path, const char *options, struct err *e);
-
-#endif

@@ -6,10 +6,6 @@
 #include "formats/arrays/metalist.h"
 #include "formats/arrays/safetensors.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 void text_free(struct text *t)
 {
 	char **const lists[] = {
@@ -17,11 +13,7 @@ void text_free(struct text *t)
 
 	for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
 		mem_free_strings(lists[i], t->n);
-	free(t->offsets);
-	free(t->words);
-	free(t->middle);
-	free(t->sentences);
-	free(t->splits);
+	mem_free_all(t->offsets, t->words, t->middle, t->sentences, t->splits);
 	*t = (struct text){0};
 }
 

@@ -1,7 +1,6 @@
 /* text.safetensors (refer.text): a sentence's word vectors from the language encoder. formats/scene/text.md.
  */
-#ifndef FORMATS_TEXT_H
-#define FORMATS_TEXT_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
@@ -43,5 +42,3 @@ const char *text_object(const struct text *t, size_t sentence);
 /* Sets chosen[r] (n) to 1 for the refs in a comma-separated list, the value of an option. 0, or -1 with *e:
  * ERR_USAGE for a ref that no sentence has. */
 int text_mark(const struct text *t, const char *list, const char *option, char *chosen, struct err *e);
-
-#endif

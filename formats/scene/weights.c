@@ -5,10 +5,7 @@
 #include "formats/arrays/arrays_in.h"
 #include "splat/weights_pack.h"
 
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A zstd block of 4 bytes may repeat one 131,072 times. */
 enum { VERSION_READ = 3, MAX_SIDE = 65536, LEVELS = 255, RATIO = 32768 };

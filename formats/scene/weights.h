@@ -1,7 +1,6 @@
 /* weights/VIEW.safetensors (refer.weights): a view's blend weights, CSR over pixels.
  * formats/scene/weights.md. */
-#ifndef FORMATS_WEIGHTS_H
-#define FORMATS_WEIGHTS_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
@@ -66,5 +65,3 @@ struct view_matrix weights_matrix(const struct weights *w);
  * they are packed. */
 int weights_write(
 	const struct weights *w, const char *dir, const char *view, const char *options, struct err *e);
-
-#endif

@@ -13,8 +13,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 int anysplats_is_meta(const char *path)
 {

@@ -1,6 +1,5 @@
 /* Trained scenes in any file that can be read. formats/splats/anysplats.md. */
-#ifndef FORMATS_ANYSPLATS_H
-#define FORMATS_ANYSPLATS_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/gaussian_rows.h"
@@ -37,5 +36,3 @@ int anysplats_write(const struct splats *s, const double offset[3], enum anyspla
 enum { ANYSPLATS_LOSS = 400 };
 int anysplats_loss(const struct splats *s, const double offset[3], enum anysplats_format format,
 	char text[ANYSPLATS_LOSS], struct err *e);
-
-#endif

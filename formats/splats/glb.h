@@ -1,7 +1,6 @@
 /* .glb, and .gltf with a file of numbers beside it: Gaussians in glTF, by the extension
  * KHR_gaussian_splatting. formats/splats/glb.md. */
-#ifndef FORMATS_GLB_H
-#define FORMATS_GLB_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -65,5 +64,3 @@ int glb_read_map(struct splats *s, double offset[3], struct rows_report *report,
 /* Writes numbers as floats; where offset is not 0 it is the shift of the node. "-" is stdout. Returns 0, or
  * -1 with *e set. */
 int glb_write(const struct splats *s, const double offset[3], const char *path, struct err *e);
-
-#endif

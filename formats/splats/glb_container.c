@@ -10,8 +10,6 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Nodes above a node, at most: more are a circle. */
 enum { DEPTH_MOST = 64 };

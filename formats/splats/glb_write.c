@@ -5,10 +5,7 @@
 #include "base/mem.h"
 #include "formats/splats/glb.h"
 
-#include <float.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { FLOAT = 4, ATTRIBUTES_MOST = 4 + 16 };
 

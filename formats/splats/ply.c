@@ -1,16 +1,12 @@
 #include "formats/splats/ply.h"
 
-#include "base/file.h"
 #include "base/little.h"
 #include "base/mem.h"
 #include "formats/records/foreign.h"
 #include "formats/splats/plyfile.h"
 #include "formats/splats/plypacked.h"
-#include "splat/gaussian_rows.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A reader's slots: the properties every 3DGS file has, in this order, then f_rest_0 and on. */
 static const char *const fixed_names[ROW_REST] = {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity",

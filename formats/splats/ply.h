@@ -1,6 +1,5 @@
 /* 3DGS .ply scenes. formats/splats/ply.md. */
-#ifndef FORMATS_PLY_H
-#define FORMATS_PLY_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -24,5 +23,3 @@ int ply_write(const struct splats *s, const double offset[3], const char *path, 
 /* The same with a last property, int label, of each Gaussian: labels (N). */
 int ply_write_labelled(const struct splats *s, const double offset[3], const int32_t *labels,
 	const char *path, struct err *e);
-
-#endif

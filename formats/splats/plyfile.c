@@ -4,9 +4,6 @@
 #include "base/names.h"
 
 #include <stdint.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 enum { HEADER_LIMIT = 1 << 20 };

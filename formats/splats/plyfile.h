@@ -1,7 +1,6 @@
 /* The PLY container: a text header that names elements and their properties, then their rows. What the rows
  * mean is formats/splats/ply.h's business. formats/splats/ply.md has the grammar. */
-#ifndef FORMATS_PLYFILE_H
-#define FORMATS_PLYFILE_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -69,5 +68,3 @@ int plyfile_skip(struct plyfile *f, const struct plyfile_element *el, struct err
 
 /* After the last element: anything but white space (in ascii) is an error. */
 int plyfile_end(const struct plyfile *f, struct err *e);
-
-#endif

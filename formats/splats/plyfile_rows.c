@@ -5,7 +5,6 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 
 int plyfile_check_rows(const struct plyfile *f, const struct plyfile_element *el, struct err *e)
 {

@@ -6,8 +6,6 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { CHUNK_ROWS = 256 };
 
@@ -122,9 +120,7 @@ int plypacked_open(struct plypacked *p, const struct plyfile *f, const struct pl
 
 void plypacked_close(struct plypacked *p)
 {
-	free(p->bounds);
-	free(p->row);
-	free(p->sh_row);
+	mem_free_all(p->bounds, p->row, p->sh_row);
 	*p = (struct plypacked){0};
 }
 

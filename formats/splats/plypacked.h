@@ -1,7 +1,6 @@
 /* PlayCanvas's compressed .ply: Gaussians packed into 16 bytes each, in chunks of 256. formats/splats/ply.md
  * has the bits. */
-#ifndef FORMATS_PLYPACKED_H
-#define FORMATS_PLYPACKED_H
+#pragma once
 
 #include "base/err.h"
 #include "formats/splats/plyfile.h"
@@ -32,5 +31,3 @@ void plypacked_close(struct plypacked *p);
  * f_rest. */
 int plypacked_row(struct plypacked *p, struct plyfile *f, const struct plyfile_element *vertex, size_t row,
 	double *values, struct err *e);
-
-#endif

@@ -8,8 +8,6 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { MEANS_LOW, MEANS_HIGH, QUATS, SCALES, COLORS, CENTROIDS, LABELS, IMAGES };
 enum { CODES = 256, PALETTE_ROW = 64, PALETTE_MOST = 65536 };

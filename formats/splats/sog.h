@@ -1,6 +1,5 @@
 /* SOG version 2: Gaussians in images. formats/splats/sog.md. */
-#ifndef FORMATS_SOG_H
-#define FORMATS_SOG_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -20,5 +19,3 @@ int sog_read_meta(
 
 /* Writes a zip. Means are s->means + offset. "-" is stdout. Returns 0, or -1 with *e set. */
 int sog_write(const struct splats *s, const double offset[3], const char *path, struct err *e);
-
-#endif

@@ -5,12 +5,9 @@
 #include "formats/arrays/archive.h"
 #include "formats/images/webp.h"
 #include "formats/splats/sog.h"
-#include "splat/gaussian_rows.h"
 #include "splat/palette.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Images are as wide as high, about, in blocks of so many pixels. */
 enum { BLOCK = 4, PALETTE_ROW = 64, PALETTE_MOST = 65536, PALETTE_STEP = 1024 };

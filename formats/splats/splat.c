@@ -1,12 +1,10 @@
 #include "formats/splats/splat.h"
 
-#include "base/file.h"
 #include "base/little.h"
 #include "base/mem.h"
 #include "splat/sh.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 struct place {
 	double size; /* volume times opacity */

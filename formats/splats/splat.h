@@ -1,6 +1,5 @@
 /* .splat: Gaussians as web viewers take them, 32 bytes each. formats/splats/splat.md. */
-#ifndef FORMATS_SPLAT_H
-#define FORMATS_SPLAT_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -20,5 +19,3 @@ int splat_read_map(struct splats *s, double offset[3], struct rows_report *repor
 
 /* Writes the Gaussians, those that cover the most first; means are s->means + offset. "-" is stdout. */
 int splat_write(const struct splats *s, const double offset[3], const char *path, struct err *e);
-
-#endif

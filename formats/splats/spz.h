@@ -1,6 +1,5 @@
 /* .spz: Niantic's packed Gaussians, versions 2 to 4. formats/splats/spz.md. */
-#ifndef FORMATS_SPZ_H
-#define FORMATS_SPZ_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -51,5 +50,3 @@ int spz_write(const struct splats *s, const double offset[3], int version, const
 
 /* The fraction bits of a coordinate that spz_write chooses; -1 where the farthest has no room. */
 int spz_fraction(const struct splats *s, const double offset[3]);
-
-#endif

@@ -6,7 +6,6 @@
 #include "splat/render.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Views are rendered side by side where they take no more memory than this. */
 #define SIDE_BY_SIDE_BYTES 2e9
@@ -23,10 +22,7 @@ static void room_free(struct room *room)
 {
 	render_free(room->view);
 	render_free(room->alone);
-	free(room->images);
-	free(room->rgb);
-	free(room->ones);
-	free(room->mask);
+	mem_free_all(room->images, room->rgb, room->ones, room->mask);
 }
 
 /* Channels that are blended in one pass. */

@@ -1,7 +1,6 @@
 /* A model's answers in a view: for each answer to a sentence (answer/responses.h) the image of its
  * responses, its mask and its score; or, amodally, the outline of the whole object as if nothing hid it. */
-#ifndef ANSWER_ANSWER_H
-#define ANSWER_ANSWER_H
+#pragma once
 
 #include "answer/responses.h"
 #include "base/err.h"
@@ -49,5 +48,3 @@ struct answer_calls {
  * anything did. */
 int answer_all(const struct answer_question *q, const struct camera *cameras, size_t n,
 	const struct answer_calls *calls, struct err *e);
-
-#endif

@@ -4,8 +4,6 @@
 #include "splat/render.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* More than CALIBRATE_SHARE of all pixels. */
 enum { MOST = CALIBRATE_VIEWS * CALIBRATE_SIDE * CALIBRATE_SIDE / 2000 + 1 };

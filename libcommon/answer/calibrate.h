@@ -2,8 +2,7 @@
  * words it often keeps the order of the objects but is less sure, so that all responses are below 0 and M > 0
  * gives an empty mask. Lifting all responses of a sentence alike until its best answer is clearly above 0
  * mends that (pipelines/desk.md has the gain). */
-#ifndef ANSWER_CALIBRATE_H
-#define ANSWER_CALIBRATE_H
+#pragma once
 
 #include "base/err.h"
 #include "field/rows.h"
@@ -24,5 +23,3 @@ enum {
  * without training views is looked at from its other views; without any, nothing is lifted. */
 int calibrate(const struct splats *s, const struct cameras *cameras, const struct rows *rows,
 	float *responses, size_t count, double *lifts, struct err *e);
-
-#endif

@@ -5,8 +5,6 @@
 #include "splat/sh.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* What an answer is painted with, and how thickly: what is under it still shows its shape. */
 static const double paint[3] = {1, 0.25, 0.125};
@@ -102,9 +100,7 @@ int locate_things(char *of, const struct lifted *l, const struct extent *extents
 		t.best[l->index[k]] = fmaxf(t.best[l->index[k]], l->share[k]);
 	for (size_t i = 0; i < count && !bad; i++)
 		bad = take_thing(of, &t, things[i], &extents[things[i]], e);
-	free(t.best);
-	free(t.own);
-	free(t.others);
+	mem_free_all(t.best, t.own, t.others);
 	return bad ? -1 : 0;
 }
 

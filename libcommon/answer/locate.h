@@ -1,6 +1,5 @@
 /* A model's answers in space: what each is made of, where it is, and how sure it is. */
-#ifndef ANSWER_LOCATE_H
-#define ANSWER_LOCATE_H
+#pragma once
 
 #include "answer/responses.h"
 #include "base/err.h"
@@ -34,5 +33,3 @@ int locate_answer(char *of, const struct responses *a, size_t answer, const stru
  * Returns 0, or -1 with *e set and *to zeroed. */
 int locate_show(
 	struct splats *to, const struct splats *s, const char *of, enum locate_show show, struct err *e);
-
-#endif

@@ -2,8 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-
 /* Where a place outside 0 to n - 1 is mirrored to: -1 is 1, n is n - 2. */
 static int mirrored(int at, int n)
 {

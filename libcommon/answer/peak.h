@@ -1,6 +1,5 @@
 /* The point that an answer points at in a view: where its responses, averaged over a window, are largest. */
-#ifndef ANSWER_PEAK_H
-#define ANSWER_PEAK_H
+#pragma once
 
 #include "base/err.h"
 
@@ -16,5 +15,3 @@ int peak_find(const float *image, int height, int width, int window, int *x, int
 
 /* to (height,width): the mean around each pixel, of numbers of any sign; `room` (height,width) is scratch. */
 void peak_mean(const float *image, int height, int width, int window, double *room, double *to);
-
-#endif

@@ -6,8 +6,6 @@
 #include "field/text_mlp.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* What all sentences go through, one at a time. */
 struct answering {
@@ -41,9 +39,7 @@ static void answering_free(struct answering *a)
 {
 	text_mlp_free(&a->words);
 	forward_free(&a->forward);
-	free(a->panels);
-	free(a->position);
-	free(a->response);
+	mem_free_all(a->panels, a->position, a->response);
 }
 
 static int answering_init(struct answering *a, const struct respond_model *m, const int64_t *offsets,

@@ -1,6 +1,5 @@
 /* A trained model's answers: responses of Gaussians, and the mask of an image of them. */
-#ifndef ANSWER_RESPOND_H
-#define ANSWER_RESPOND_H
+#pragma once
 
 #include "base/err.h"
 #include "field/referring_model.h"
@@ -27,5 +26,3 @@ int respond_all(const struct respond_model *m, const int64_t *offsets, const flo
 /* mask = image > 0; returns how sure it is: the mean of sigmoid(image - lift) over the mask, 0 for an empty
  * one. `lift` is what calibration added. */
 double respond_mask(const float *image, size_t pixels, double lift, uint8_t *mask);
-
-#endif

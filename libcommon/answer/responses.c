@@ -6,18 +6,10 @@
 #include "splat/visibility.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 void responses_free(struct responses *a)
 {
-	free(a->responses);
-	free(a->lifts);
-	free(a->answer);
-	free(a->sure);
-	free(a->begin);
-	free(a->objects);
-	free(a->alone);
+	mem_free_all(a->responses, a->lifts, a->answer, a->sure, a->begin, a->objects, a->alone);
 	*a = (struct responses){0};
 }
 
@@ -110,10 +102,7 @@ struct meant {
 
 static void meant_free(struct meant *m)
 {
-	free(m->sentences);
-	free(m->choices);
-	free(m->probability);
-	free(m->chosen);
+	mem_free_all(m->sentences, m->choices, m->probability, m->chosen);
 }
 
 static int meant_alloc(struct meant *m, size_t count, size_t objects, struct err *e)

@@ -1,7 +1,6 @@
 /* What a model of any kind answers to sentences before any view is rendered: responses of the Gaussians.
  * Sentences that get the same answer share it, so that it is blended once. */
-#ifndef ANSWER_RESPONSES_H
-#define ANSWER_RESPONSES_H
+#pragma once
 
 #include "answer/respond.h"
 #include "ask/choose.h"
@@ -81,5 +80,3 @@ size_t responses_gaussians(
  * none. */
 int responses_wholes(const struct responses *a, const struct splats *s, const struct cameras *cameras,
 	struct splats *wholes, struct err *e);
-
-#endif

@@ -1,6 +1,5 @@
 /* Bytes as text: base64 of RFC 4648, padded, without line ends. */
-#ifndef BASE_BASE64_H
-#define BASE_BASE64_H
+#pragma once
 
 #include "base/err.h"
 
@@ -12,5 +11,3 @@ char *base64_text(const char *before, const void *bytes, size_t n, struct err *e
 /* What a text of it is of, up to the first character that is none of its digits: the bytes, *n of them;
  * free() it. NULL with *e set when memory is out. */
 void *base64_bytes(const char *text, size_t *n, struct err *e);
-
-#endif

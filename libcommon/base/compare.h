@@ -1,7 +1,6 @@
 /* What qsort and bsearch order by: numbers that rise, and strings (of an array of pointers) by their bytes.
  */
-#ifndef BASE_COMPARE_H
-#define BASE_COMPARE_H
+#pragma once
 
 #include <string.h>
 
@@ -23,5 +22,3 @@ static inline int compare_string(const void *a, const void *b)
 {
 	return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Which of the instruction sets that the vector kernels are built for this machine has. */
-#ifndef BASE_CPU_H
-#define BASE_CPU_H
+#pragma once
 
 enum cpu_level {
 	CPU_PLAIN,  /* whatever the compiler assumes: SSE2 on x86-64 */
@@ -12,5 +11,3 @@ enum cpu_level {
 /* The most that this machine has or, with REFERSPLAT_CPU=plain or =avx2 in the environment of the process, no
  * more than that: to compare the kernels. */
 enum cpu_level cpu_level(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* The inner product in float64, its terms added in order. */
-#ifndef BASE_DOT_H
-#define BASE_DOT_H
+#pragma once
 
 #include <stddef.h>
 
@@ -21,5 +20,3 @@ static inline double dot_float(const float *a, const float *b, size_t n)
 		sum += (double)a[i] * (double)b[i];
 	return sum;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Items side by side, each by one of a few workers that have a part of the threads each: for work on views,
  * of which much does not divide among threads, and where each takes much memory. */
-#ifndef BASE_EACH_H
-#define BASE_EACH_H
+#pragma once
 
 #include "base/err.h"
 
@@ -24,5 +23,3 @@ struct each {
 /* Works on the items 0 to n - 1; both functions return 0, or -1 with *e set. Where some fail: -1 and *e of
  * the first of them; no item is begun after that is known, and none after it is `done`. Else 0. */
 int each_run(const struct each *by, size_t n, struct err *e);
-
-#endif

@@ -1,6 +1,5 @@
 /* Files that are part of the program. */
-#ifndef BASE_EMBED_H
-#define BASE_EMBED_H
+#pragma once
 
 /* Puts a file's bytes between name_begin and name_end, both to be declared: extern const unsigned char
  * name_begin[], name_end[]. A 0 follows. The file is named from where the compiler runs. */
@@ -12,5 +11,3 @@
 		".globl " #name "_end\n.hidden " #name "_end\n" #name "_end:\n"                              \
 		".byte 0\n"                                                                                  \
 		".previous\n")
-
-#endif

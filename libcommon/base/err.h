@@ -1,6 +1,5 @@
 /* Errors: filled in where they happen, printed by the tool. The library never prints or exits. */
-#ifndef BASE_ERR_H
-#define BASE_ERR_H
+#pragma once
 
 /* The values are the tools' exit statuses. */
 enum err_code {
@@ -28,5 +27,3 @@ int err_errno(struct err *e, const char *format, ...) __attribute__((format(prin
 
 /* Puts "prefix: " before the message. Always returns -1. */
 int err_prefix(struct err *e, const char *prefix);
-
-#endif

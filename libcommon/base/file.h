@@ -1,6 +1,5 @@
 /* Files: whole reads, and outputs that appear under their name only when whole. "-" is stdin or stdout. */
-#ifndef BASE_FILE_H
-#define BASE_FILE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -83,5 +82,3 @@ char *file_join(const char *dir, const char *name, const char *suffix, struct er
 
 /* The folder part of path, "." where there is none. */
 char *file_dir(const char *path, struct err *e);
-
-#endif

@@ -1,10 +1,7 @@
 /* IEEE half floats to and from float, rounding to nearest even. */
-#ifndef BASE_HALF_H
-#define BASE_HALF_H
+#pragma once
 
 #include <stdint.h>
 
 float half_to_float(uint16_t h);
 uint16_t half_of_float(float f);
-
-#endif

@@ -1,12 +1,9 @@
 /* A 64-bit hash for telling data apart: XXH64 (Collet, xxHash; github.com/Cyan4973/xxHash,
  * doc/xxhash_spec.md). Not for secrets. */
-#ifndef BASE_HASH_H
-#define BASE_HASH_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
 
 /* The hash of `bytes` bytes. Several arrays have one hash where each one's is the next one's seed. */
 uint64_t hash64(const void *data, size_t bytes, uint64_t seed);
-
-#endif

@@ -1,6 +1,5 @@
 /* JSON as text, written as it comes. Nothing fails here: whoever opened the stream looks at it at the end. */
-#ifndef BASE_JSONTEXT_H
-#define BASE_JSONTEXT_H
+#pragma once
 
 #include <stddef.h>
 #include <stdio.h>
@@ -23,5 +22,3 @@ void jsontext_rounded(struct jsontext *j, const char *key, double x);
 void jsontext_flag(struct jsontext *j, const char *key, int is);
 /* Text that is JSON already. */
 void jsontext_raw(struct jsontext *j, const char *key, const char *json);
-
-#endif

@@ -1,6 +1,5 @@
 /* The largest of a row of numbers, and where it is. */
-#ifndef BASE_LARGEST_H
-#define BASE_LARGEST_H
+#pragma once
 
 #include <math.h>
 #include <stddef.h>
@@ -24,5 +23,3 @@ static inline size_t best_of(const double *x, size_t n)
 		best = x[i] > x[best] ? i : best;
 	return best;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Comma-separated names, as command lines have them. */
-#ifndef BASE_LIST_H
-#define BASE_LIST_H
+#pragma once
 
 #include <stddef.h>
 
@@ -15,5 +14,3 @@ int list_next(const char **rest, struct list_name *name);
 
 /* 1 where the name is this text. */
 int list_name_is(const struct list_name *name, const char *text);
-
-#endif

@@ -1,6 +1,5 @@
 /* Numbers in bytes, the least significant first, whatever the machine's own order. */
-#ifndef BASE_LITTLE_H
-#define BASE_LITTLE_H
+#pragma once
 
 #include <stdint.h>
 #include <string.h>
@@ -57,5 +56,3 @@ static inline unsigned char *little_put_f64(unsigned char *p, double value)
 	memcpy(&bits, &value, 8);
 	return little_put(p, bits, 8);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The logistic function, which ends softly what would be a threshold. */
-#ifndef BASE_LOGISTIC_H
-#define BASE_LOGISTIC_H
+#pragma once
 
 #include <math.h>
 
@@ -9,5 +8,3 @@ static inline double logistic(double x)
 {
 	return 1 / (1 + exp(-fmin(fmax(x, -40), 40)));
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A stream that is read from memory in place of by system calls: for a library that seeks to every line it
  * looks at, as libwordnet does in its files. */
-#ifndef BASE_MAPPED_STREAM_H
-#define BASE_MAPPED_STREAM_H
+#pragma once
 
 #include <stdio.h>
 
@@ -12,5 +11,3 @@ enum { MAPPED_STREAM_BUFFER = 512 };
  * The mapping lasts as long as the process, and the buffer has to last as long as the stream. Where that
  * cannot be, the stream stays as it is. */
 void mapped_stream_take(FILE **stream, char buffer[MAPPED_STREAM_BUFFER]);
-
-#endif

@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 
 /* Blocks of at least LARGE are asked for in huge pages: a view's weights take a hundred megabytes, and
@@ -97,4 +95,10 @@ void mem_free_strings(char **strings, size_t n)
 	for (size_t i = 0; strings && i < n; i++)
 		free(strings[i]);
 	free(strings);
+}
+
+void mem_free_list(void *const *blocks, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		free(blocks[i]);
 }

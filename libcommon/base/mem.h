@@ -1,6 +1,6 @@
-/* Checked allocation. Every block is 64-byte aligned and released with free(). */
-#ifndef BASE_MEM_H
-#define BASE_MEM_H
+/* Checked allocation. Every block is 64-byte aligned and released with free(). Brings <stddef.h>, <stdlib.h>
+ * and <string.h>, which those need who have memory. */
+#pragma once
 
 #include "base/err.h"
 
@@ -42,7 +42,10 @@ static inline void mem_free_at(void *address)
 	free(block);
 }
 
+/* free() of each of these pointers, of any types. */
+#define mem_free_all(...)                                                                                    \
+	mem_free_list((void *[]){__VA_ARGS__}, sizeof((void *[]){__VA_ARGS__}) / sizeof(void *))
+void mem_free_list(void *const *blocks, size_t n);
+
 /* Frees n strings and the array of them, which may be NULL. */
 void mem_free_strings(char **strings, size_t n);
-
-#endif

@@ -1,8 +1,7 @@
 /* Names of views, refs and objects. A view's name is also a file name (VIEW.safetensors, VIEW/REF.png), so it
  * is checked as one where it is read. Refs and objects are data, and are escaped where they become file
  * names. */
-#ifndef BASE_NAME_H
-#define BASE_NAME_H
+#pragma once
 
 #include "base/err.h"
 
@@ -37,5 +36,3 @@ char *name_from_file(const char *file, struct err *e);
  * have, and ',', which separates names in options, is written as above, but '%' stays. Different texts may
  * have one name. free() it; NULL with *e set when memory is out. */
 char *name_to_view(const char *text, struct err *e);
-
-#endif

@@ -4,8 +4,6 @@
 #include "base/name.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static int by_name(const void *a, const void *b)
 {

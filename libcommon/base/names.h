@@ -1,7 +1,6 @@
 /* Names and where they stand: a sorted index over any array, so that looking one name up, and finding one
  * that is there twice, takes n log n steps over all whatever the names are. */
-#ifndef BASE_NAMES_H
-#define BASE_NAMES_H
+#pragma once
 
 #include "base/err.h"
 #include "base/list.h"
@@ -50,5 +49,3 @@ const char *names_few(const struct names *names, char few[NAMES_FEW]);
  * there are ..." for a name that no item has. */
 int names_mark(const void *items, size_t stride, size_t offset, size_t n, const char *list,
 	const char *option, const char *what, char *chosen, struct err *e);
-
-#endif

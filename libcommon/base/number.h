@@ -1,6 +1,5 @@
 /* Numbers as text. */
-#ifndef BASE_NUMBER_H
-#define BASE_NUMBER_H
+#pragma once
 
 enum { NUMBER_SIZE = 32 };
 
@@ -9,5 +8,3 @@ char *number_text(char text[NUMBER_SIZE], double x);
 
 /* A probability: "97%"; "below 1%", and at most "99%", where it is neither 0 nor 1. Returns text. */
 char *number_percent(char text[NUMBER_SIZE], double p);
-
-#endif

@@ -1,7 +1,6 @@
 /* How many bits of a word are set: without the instruction for it, which not every processor has, the
  * compiler's own is a call. */
-#ifndef BASE_ONES_H
-#define BASE_ONES_H
+#pragma once
 
 #include <stdint.h>
 
@@ -12,5 +11,3 @@ static inline uint32_t ones(uint64_t x)
 	x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0f;
 	return (uint32_t)(x * 0x0101010101010101 >> 56);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Paths as text. */
-#ifndef BASE_PATH_H
-#define BASE_PATH_H
+#pragma once
 
 #include "base/err.h"
 
@@ -26,5 +25,3 @@ char *path_follow(const char *path, struct err *e);
 /* 1 where both are one regular file or folder, under whichever names, or will be once they are made; else 0.
  * Devices and pipes are never the same. -1 with *e set (links in a circle, or memory is out). */
 int path_is_same(const char *a, const char *b, struct err *e);
-
-#endif

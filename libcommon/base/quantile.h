@@ -1,6 +1,5 @@
 /* Quantiles: the value below which a share of the numbers, or of their weight, lies. */
-#ifndef BASE_QUANTILE_H
-#define BASE_QUANTILE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -14,5 +13,3 @@ struct quantile_item {
 
 /* Of n > 0 items in any order: where `share` of their weight is passed. They change places. */
 double quantile_weighted(struct quantile_item *items, size_t n, double share);
-
-#endif

@@ -1,6 +1,5 @@
 /* How long work tells of itself. Nothing below the tools prints: it calls what its caller gave it. */
-#ifndef BASE_REPORT_H
-#define BASE_REPORT_H
+#pragma once
 
 #include <stdarg.h>
 
@@ -27,5 +26,3 @@ void report_warn(const struct report *r, const char *format, ...) __attribute__(
 void report_start(const struct report *r, const char *what, double total);
 void report_step(const struct report *r, double done, const char *note);
 void report_end(const struct report *r);
-
-#endif

@@ -1,6 +1,5 @@
 /* PCG32 (O'Neill 2014, XSH-RR 64/32): small, portable, with published known answers. */
-#ifndef BASE_RNG_H
-#define BASE_RNG_H
+#pragma once
 
 #include <stdint.h>
 
@@ -17,5 +16,3 @@ double rng_uniform(struct rng *r);			  /* [0,1), 53 bits */
 double rng_range(struct rng *r, double low, double high); /* [low,high) */
 double rng_normal(struct rng *r); /* mean 0, variance 1; Box-Muller, two draws a call */
 void rng_shuffle(struct rng *r, uint32_t *items, uint32_t n); /* Fisher-Yates */
-
-#endif

@@ -1,7 +1,6 @@
 /* A file without a name, for what has no room in memory: written once, and mapped when it is needed. It goes
  * when it is closed, and when the process ends, however that comes. */
-#ifndef BASE_SCRATCH_H
-#define BASE_SCRATCH_H
+#pragma once
 
 #include "base/err.h"
 #include "base/file.h"
@@ -39,5 +38,3 @@ int scratch_map(
 	const struct scratch *s, const struct scratch_part *part, struct file_map *map, struct err *e);
 
 void scratch_close(struct scratch *s);
-
-#endif

@@ -1,8 +1,7 @@
 /* Temporary files beside outputs that are not whole yet: PATH.tmp.refersplat0, or with a higher number where
  * another run is writing the same output. Each is locked (flock(2)) as long as its run is alive, which is how
  * the leftover of a killed run is told from the file of a living one. */
-#ifndef BASE_TEMPORARY_H
-#define BASE_TEMPORARY_H
+#pragma once
 
 #include "base/err.h"
 
@@ -27,5 +26,3 @@ void temporary_end(struct temporary *t);
 /* Removes all, for a signal's handler, after which the process ends: from then on threads that make, rename
  * or remove one wait for that end. */
 void temporary_remove_all(void);
-
-#endif

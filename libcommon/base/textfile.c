@@ -5,8 +5,6 @@
 #include "base/utf8.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum order { NARROW, LITTLE, BIG };
 

@@ -1,6 +1,5 @@
 /* Text from files: UTF-8, with or without its mark, and the UTF-16 of Windows programs, as UTF-8. */
-#ifndef BASE_TEXTFILE_H
-#define BASE_TEXTFILE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -19,5 +18,3 @@ int textfile_read(const char *path, char **text, size_t *len, struct err *e);
 /* After an error of what a file says: that it is UTF-16, where it is and can be read again, goes behind the
  * message. -1. */
 int textfile_note(const char *path, struct err *e);
-
-#endif

@@ -1,6 +1,5 @@
 /* UTF-8 as Unicode defines it: no overlong forms, no surrogates, nothing above U+10FFFF. */
-#ifndef BASE_UTF8_H
-#define BASE_UTF8_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -14,5 +13,3 @@ size_t utf8_put(char *out, uint32_t c);
 
 /* The offset of the first malformed byte, or len where all is well. */
 size_t utf8_check(const char *text, size_t len);
-
-#endif

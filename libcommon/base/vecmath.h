@@ -11,8 +11,7 @@
  * or nothing; cpu_level() (base/cpu.h) chooses among them at run time. All functions are inlined, so that no
  * vector crosses a call. Results are the same on every machine, with AVX-512 and with AVX2, to the bit, as
  * long as sums over lanes are added in one order; plain ones differ in the last bits, as plain has no fma. */
-#ifndef BASE_VECMATH_H
-#define BASE_VECMATH_H
+#pragma once
 
 #include <stdint.h>
 #include <string.h>
@@ -251,5 +250,3 @@ VEC_INLINE vecn vec_exp2(vecn x)
 	return (vecn)((vecni)p + ((vecni)shifted << 23));
 #endif
 }
-
-#endif

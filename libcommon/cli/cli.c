@@ -1,6 +1,5 @@
 #include "cli/cli.h"
 
-#include "base/file.h"
 #include "cli/completion.h"
 #include "cli/signals.h"
 

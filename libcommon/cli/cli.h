@@ -1,8 +1,7 @@
 /* Command lines: one option table a tool, from which parsing, range checks and --help are made. cmd/ only:
  * unlike the rest of the library these functions print, and cli_parse exits on --help, -V and usage errors.
  */
-#ifndef CLI_CLI_H
-#define CLI_CLI_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -124,5 +123,3 @@ int cli_main(const struct cli_tool *tool, int argc, char **argv,
 
 /* Monotonic seconds. */
 double cli_seconds(void);
-
-#endif

@@ -1,8 +1,7 @@
 /* Completion of command lines by bash and zsh: a script for a tool, made of its table of options. The build
  * asks each tool for its own, by --completion=bash or --completion=zsh, which --help does not list. cmd/
  * only: these print to stdout. */
-#ifndef CLI_COMPLETION_H
-#define CLI_COMPLETION_H
+#pragma once
 
 #include "cli/cli.h"
 
@@ -13,5 +12,3 @@
  * Operands are files. */
 void completion_bash(const struct cli_tool *tool, const struct cli_option *const *rows, size_t n);
 void completion_zsh(const struct cli_tool *tool, const struct cli_option *const *rows, size_t n);
-
-#endif

@@ -7,8 +7,6 @@
 
 #include <assert.h>
 #include <dirent.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { MOST = 16, NAME_ROOM = 32 }; /* files of a tool; letters of an option */
 

@@ -1,7 +1,6 @@
 /* Outputs that would take the place of an input, or of each other, are refused before any work. cmd/ only;
  * cli.h includes it. */
-#ifndef CLI_OVERWRITE_H
-#define CLI_OVERWRITE_H
+#pragma once
 
 struct cli;
 
@@ -31,5 +30,3 @@ struct cli_file {
  */
 void cli_refuse_overwrite(
 	const struct cli *c, const char *reads, const char *writes, const struct cli_file *more);
-
-#endif

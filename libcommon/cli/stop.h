@@ -1,6 +1,5 @@
 /* Ends by a signal that let the work at hand be saved first. cmd/ only. */
-#ifndef CLI_STOP_H
-#define CLI_STOP_H
+#pragma once
 
 #include <signal.h>
 
@@ -11,5 +10,3 @@ const volatile sig_atomic_t *cli_stop_catch(void);
 /* Ends the process by the signal that was caught, as a shell sees it: with the status 130 or 143. Without one
  * it returns. */
 void cli_stop_end(void);
-
-#endif

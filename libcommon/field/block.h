@@ -13,8 +13,7 @@
  * Arrays over Gaussians are stored in panels of 64: channel c of Gaussian i is at
  * array[(i / 64) * channels * 64 + c * 64 + i % 64]. N is padded to whole blocks; padding Gaussians take no
  * part. */
-#ifndef FIELD_BLOCK_H
-#define FIELD_BLOCK_H
+#pragma once
 
 #include "field/referring_model.h"
 
@@ -119,5 +118,3 @@ struct block_kernels {
 /* The fastest set that this processor runs; `name` asks for one ("avx512", "avx2", "plain"; NULL: the
  * fastest). NULL where the name is unknown or the processor lacks it. */
 const struct block_kernels *block_select(const char *name);
-
-#endif

@@ -1,7 +1,6 @@
 /* The contrast loss (GTCL): the mean feature of the Gaussians that answer most against the sentences of the
  * scene (field/referring_model.h has the formula). In float64: it is small. */
-#ifndef FIELD_CONTRAST_H
-#define FIELD_CONTRAST_H
+#pragma once
 
 #include "field/referring_model.h"
 
@@ -19,5 +18,3 @@ void contrast_top_set(const float *m, size_t n, size_t k, float *top);
 double contrast_loss(enum refer_contrast kind, double temperature, const double *fg, const float *e,
 	const int *objects, size_t count, int object, double others, double scale, double *dfg, float *de,
 	double *score);
-
-#endif

@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static int layer_alloc(struct layer *l, int in, struct err *e)
 {
@@ -96,10 +94,7 @@ void fold_free(struct fold *f)
 		&f->a, &f->p, &f->query, &f->key, &f->value, &f->query_position, &f->key_position};
 	for (int i = 0; i < 7; i++)
 		free(layers[i]->w);
-	free(f->first);
-	free(f->w);
-	free(f->out);
-	free(f);
+	mem_free_all(f->first, f->w, f->out, f);
 }
 
 /* A tensor of the slab. */

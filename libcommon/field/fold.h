@@ -6,8 +6,7 @@
  *   f = [A a] g, nu p = [B b] r, f' = C z with C = [A a | B b (add) | V_1 .. V_n] (its rows centred for
  * LayerNorm). Order of calls in a step: fold_begin, fold_words, (hidden), fold_scores, (respond, gather),
  * fold_top, fold_top_back, (scores_back), fold_scores_back, (hidden_back), fold_end. */
-#ifndef FIELD_FOLD_H
-#define FIELD_FOLD_H
+#pragma once
 
 #include "base/err.h"
 #include "field/block.h"
@@ -46,5 +45,3 @@ void fold_scores_back(struct fold *f, const double *duh, const double *duq, cons
 /* Takes the sums of hidden_back; adds the gradients of the last layers, projections and norm to `gradient`
  * (the parameter slab's layout), and gives those of the words, dw (n,128). */
 void fold_end(struct fold *f, const double *dy, const double *dp_gram, float *gradient, float *dw);
-
-#endif

@@ -1,6 +1,5 @@
 /* What fold.c (forward) and fold_back.c (backward) share. */
-#ifndef FIELD_FOLD_PRIVATE_H
-#define FIELD_FOLD_PRIVATE_H
+#pragma once
 
 #include "base/dot.h"
 #include "field/fold.h"
@@ -114,5 +113,3 @@ static inline const float *transposed(struct fold *f, const float *w, int rows, 
 			t[c * rows + r] = w[r * columns + c];
 	return t;
 }
-
-#endif

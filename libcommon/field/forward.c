@@ -5,8 +5,6 @@
 
 #include <math.h>
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { G = BLOCK_G, D = REFER_D };
 
@@ -85,13 +83,7 @@ int forward_init(struct forward *f, const struct forward_setup *setup, struct er
 void forward_free(struct forward *f)
 {
 	fold_free(f->fold);
-	free(f->first);
-	free(f->vectors);
-	free(f->slab);
-	free(f->position);
-	free(f->chunks);
-	free(f->total);
-	free(f->scratch);
+	mem_free_all(f->first, f->vectors, f->slab, f->position, f->chunks, f->total, f->scratch);
 	*f = (struct forward){0};
 }
 

@@ -2,8 +2,7 @@
  * is all that an answer needs (answer/respond.h), and the first half of a training step (train/step.h).
  * Results do not depend on the number of threads: sums over Gaussians go in chunks of blocks, which are added
  * in order. */
-#ifndef FIELD_FORWARD_H
-#define FIELD_FORWARD_H
+#pragma once
 
 #include "base/err.h"
 #include "field/block.h"
@@ -57,5 +56,3 @@ void forward_respond(struct forward *f);
 /* Runs something on every block, each chunk's in order. scratch is the thread's own. */
 void forward_each_block(
 	struct forward *f, void (*run)(void *data, size_t block, int chunk, float *scratch), void *data);
-
-#endif

@@ -5,9 +5,6 @@
 #include "mask/bits.h"
 #include "nn/loss.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum { PART = 2048 }; /* pixels whose weights stay in cache from blending to blending back */
 
 int image_loss_init(struct image_loss *s, size_t pixels, size_t rows, int most, int threads, struct err *e)

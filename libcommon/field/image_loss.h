@@ -1,6 +1,5 @@
 /* Images of responses in one view, their loss against masks, and the gradient of the responses. */
-#ifndef FIELD_IMAGE_LOSS_H
-#define FIELD_IMAGE_LOSS_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/view_weights.h"
@@ -25,5 +24,3 @@ void image_loss_free(struct image_loss *s);
  * the view's weights serve VIEW_GROUP responses each. */
 double image_loss_run(struct image_loss *s, const struct view_weights *view, const float *m, int count,
 	const uint8_t *const *masks, float *dm);
-
-#endif

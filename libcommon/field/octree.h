@@ -1,8 +1,7 @@
 /* An octree over the scene whose leaves share a referring feature: Gaussians that no view can tell apart need
  * only one. A leaf is named by its location code: a leading 1, then three bits a level from the root down
  * (bit 0: the upper half in x, bit 1: in y, bit 2: in z). */
-#ifndef FIELD_OCTREE_H
-#define FIELD_OCTREE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -41,5 +40,3 @@ int octree_check(const struct octree *t, size_t *bad);
 
 /* leaf (count): the leaf of each of the points means (count,3), or -1. */
 int octree_find(const struct octree *t, const float *means, size_t count, int32_t *leaf, struct err *e);
-
-#endif

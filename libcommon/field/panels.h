@@ -1,7 +1,6 @@
 /* Arrays over Gaussians in panels, as the kernels of field/block.h read them: channel c of Gaussian i is at
  * array[(i / 64) * channels * 64 + c * 64 + i % 64], and N is padded with zeros to whole blocks. */
-#ifndef FIELD_PANELS_H
-#define FIELD_PANELS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -15,5 +14,3 @@ void panels_unpack(const float *panels, size_t gaussians, int channels, float *x
 /* One channel of panels of `padded` Gaussians: to `out`, or from `in` (padded). */
 void panels_get(const float *panels, size_t padded, int channels, int c, float *out);
 void panels_put(float *panels, size_t padded, int channels, int c, const float *in);
-
-#endif

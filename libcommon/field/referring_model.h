@@ -33,8 +33,7 @@
  *        index first), k = max(1, floor(tau N)), tau = max(0.005, 0.1 * 0.6^(iteration/1000)); the choice
  *        itself has no gradient. */
 /* clang-format on */
-#ifndef FIELD_REFERRING_MODEL_H
-#define FIELD_REFERRING_MODEL_H
+#pragma once
 
 #include "base/err.h"
 #include "base/rng.h"
@@ -133,5 +132,3 @@ int refer_uses_position(enum refer_interaction i);
 /* Weights and biases uniform in +-1/sqrt(fan_in), as PyTorch's nn.Linear; LayerNorm 1 and 0. (count) floats.
  */
 void refer_init(const struct refer_layout *l, float *parameters, struct rng *r);
-
-#endif

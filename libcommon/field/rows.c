@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static int start(struct rows *r, size_t n, size_t gaussians, struct err *e)
 {
@@ -132,8 +130,6 @@ int rows_view(const struct rows *r, const struct view_weights *from, struct view
 
 void rows_view_free(struct view_weights *w)
 {
-	free((void *)w->indptr);
-	free((void *)w->index);
-	free((void *)w->weight);
+	mem_free_all((void *)w->indptr, (void *)w->index, (void *)w->weight);
 	*w = (struct view_weights){0};
 }

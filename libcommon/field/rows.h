@@ -1,7 +1,6 @@
 /* Rows: which referring feature serves each Gaussian of a scene. A row is of one Gaussian, or of all those in
  * a leaf of an octree that learn. */
-#ifndef FIELD_ROWS_H
-#define FIELD_ROWS_H
+#pragma once
 
 #include "base/err.h"
 #include "field/octree.h"
@@ -37,5 +36,3 @@ void rows_spread(const struct rows *r, const float *from, float *to);
  * which the row first appears. Free with rows_view_free. */
 int rows_view(const struct rows *r, const struct view_weights *from, struct view_weights *to, struct err *e);
 void rows_view_free(struct view_weights *w);
-
-#endif

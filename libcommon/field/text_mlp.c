@@ -3,9 +3,6 @@
 #include "base/mem.h"
 #include "nn/linear.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Words of the longest sentence. */
 static size_t find_longest(size_t sentences, const int64_t *offsets)
 {
@@ -46,10 +43,7 @@ int text_mlp_init(struct text_mlp *w, const struct refer_layout *l, size_t sente
 
 void text_mlp_free(struct text_mlp *w)
 {
-	free(w->h1);
-	free(w->mean);
-	free(w->copied);
-	free(w->at);
+	mem_free_all(w->h1, w->mean, w->copied, w->at);
 	*w = (struct text_mlp){0};
 }
 

@@ -1,7 +1,6 @@
 /* MLP_t over the words of the sentences of a step, with the mean of a sentence taken before the last, linear
  * layer (exact: e = mean_j (W h_j + b) = W mean_j h_j + b). */
-#ifndef FIELD_TEXT_MLP_H
-#define FIELD_TEXT_MLP_H
+#pragma once
 
 #include "base/err.h"
 #include "field/referring_model.h"
@@ -57,5 +56,3 @@ void text_mlp_back_vectors(
 
 /* Finishes: gradients of the first two layers are added. */
 void text_mlp_back_end(struct text_mlp *w, const float *parameters, float *gradient);
-
-#endif

@@ -6,8 +6,6 @@
 #include "splat/view.h"
 
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 const struct back_kernels *back_kernels_of(enum cpu_level level)
 {

@@ -5,8 +5,7 @@
  *behind} w_k D_k) and not at all where a is at its limit. The sum behind is what is left of dL/dC . C, front
  *to back as in the forward pass, so that both end pixels alike. All that the projection needs are moments of
  *dL/de over pixels in (u, v). */
-#ifndef FIT_BACK_H
-#define FIT_BACK_H
+#pragma once
 
 #include "base/cpu.h"
 #include "base/err.h"
@@ -64,5 +63,3 @@ void back_free(struct back_room *r);
  * Returns 0, or -1 with *e set. */
 int back_view(const struct render_view *v, const float *colors, const float *image, const float *gradient,
 	float *sums, struct back_room *room, struct err *e);
-
-#endif

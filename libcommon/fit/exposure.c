@@ -5,7 +5,6 @@
 #include "splat/sh.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { SEEN_LEAST = 20 }; /* fewer points say nothing of a photograph */
 #define GAIN_LEAST 0.05f

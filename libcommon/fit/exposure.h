@@ -1,8 +1,7 @@
 /* How each photograph was exposed: what it shows is gain times the scene plus an offset, for each channel, so
  * that a camera's automatic exposure is not learned as fog. The mean over photographs of the gains is 1, and
  * that of the offsets 0: else the scene could be of any brightness. */
-#ifndef FIT_EXPOSURE_H
-#define FIT_EXPOSURE_H
+#pragma once
 
 #include "base/err.h"
 #include "fit/parameters.h"
@@ -35,5 +34,3 @@ void exposures_step(struct exposures *x, size_t which, const float *image, float
 /* The exposure with which the image is nearest, in squares, to a photograph (P,3) that was not learned from.
  */
 void exposure_nearest(float *exposure, const float *image, const uint8_t *photograph, size_t pixels);
-
-#endif

@@ -6,8 +6,6 @@
 #include "nn/adam.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* 3DGS's rates, those of positions per extent and falling from the first to the second. */
 #define RATE_MEAN 1.6e-4
@@ -64,13 +62,7 @@ void fit_close(struct fit *f)
 	back_free(&f->back);
 	photo_loss_free(&f->room);
 	exposures_free(&f->exposures);
-	free(f->order);
-	free(f->seen);
-	free(f->colors);
-	free(f->sums);
-	free(f->weight);
-	free(f->dead);
-	free(f->image);
+	mem_free_all(f->order, f->seen, f->colors, f->sums, f->weight, f->dead, f->image);
 	*f = (struct fit){0};
 }
 

@@ -2,8 +2,7 @@
  * and places by 3DGS-MCMC (fit/grow.h), images from coarse to fine. What is trained is what the rasteriser
  * (splat/render.h) shows, over black. The same input, options and seed give the same bytes for any number of
  * threads. */
-#ifndef FIT_FIT_H
-#define FIT_FIT_H
+#pragma once
 
 #include "base/err.h"
 #include "base/rng.h"
@@ -92,5 +91,3 @@ double fit_psnr(double squares);
  * *e set. */
 #define FIT_SHOWN 0.02f
 int fit_shown(struct fit *f, int level, char *kept, float *worth, struct err *e);
-
-#endif

@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { COPIES_MOST = 51, STEPS = 64 };
 #define NOISE 5e5	 /* times the positions' rate, in scenes of FIT_SIZE */

@@ -1,8 +1,7 @@
 /* How Gaussians are added and moved: 3D Gaussian Splatting as Markov Chain Monte Carlo (Kheradmand et al.
  * 2024). What is too faint is put where there is more to show; the number rises to a bound; a little noise
  * explores. */
-#ifndef FIT_GROW_H
-#define FIT_GROW_H
+#pragma once
 
 #include "base/rng.h"
 #include "fit/parameters.h"
@@ -26,5 +25,3 @@ void grow_noise(struct fit_gaussians *g, double rate, double size, uint64_t seed
 /* The opacity and the factor on the scales of each of `copies` that together look like one of that opacity.
  */
 void grow_split(double opacity, int copies, double *part, double *factor);
-
-#endif

@@ -2,9 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum { BISECTIONS = 7 };
 #define EVALUATE_EVERY 0.05
 #define GAIN_LEAST 0.05	     /* dB from one evaluation to the next */

@@ -1,7 +1,6 @@
 /* Only what a scene needs: how well it is learned is looked at from time to time, growing ends where more
  * Gaussians no longer help, and those that then add nothing are left out. */
-#ifndef FIT_NEEDED_H
-#define FIT_NEEDED_H
+#pragma once
 
 #include "fit/fit.h"
 
@@ -23,5 +22,3 @@ int fit_evaluate(struct fit *f, double progress, int *is_due, double *psnr, doub
 /* Leaves out as many as it can, up to half, those that the photographs show least first, for at most
  * FIT_PRUNE_LOSS. Returns 0, or -1 with *e set. */
 int fit_prune(struct fit *f, struct err *e);
-
-#endif

@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 const unsigned char fit_width[FIT_PARTS] = {3, 3, 4, 1, 3, 9, 15, 21};
 
@@ -45,9 +43,7 @@ int fit_gaussians_alloc(struct fit_gaussians *g, size_t capacity, int degree, st
 
 void fit_gaussians_free(struct fit_gaussians *g)
 {
-	free(g->slab);
-	free(g->splats.scales);
-	free(g->splats.opacities);
+	mem_free_all(g->slab, g->splats.scales, g->splats.opacities);
 	*g = (struct fit_gaussians){0};
 }
 

@@ -2,8 +2,7 @@
  * 2023): logarithms of the scales, quaternions of any length, logits of the opacities. Parameters, gradients
  * and both moments of Adam are a slab each, of one layout: part after part, each (capacity,width) on a cache
  * line. */
-#ifndef FIT_PARAMETERS_H
-#define FIT_PARAMETERS_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/splats.h"
@@ -48,5 +47,3 @@ int fit_gaussians_give(const struct fit_gaussians *g, const char *kept, struct s
 
 /* 1 where every parameter is finite. */
 int fit_gaussians_are_finite(const struct fit_gaussians *g);
-
-#endif

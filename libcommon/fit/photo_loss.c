@@ -8,8 +8,6 @@
 
 #include <math.h>
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { REACH = 5, TAPS = 2 * REACH + 1 };
 #define SHARE_SSIM 0.2f

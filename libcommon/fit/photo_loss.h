@@ -1,8 +1,7 @@
 /* The loss of an image beside its photograph: 0.8 L1 + 0.2 (1 - SSIM), as 3DGS has it, each a mean over
  * pixels and channels. SSIM (Wang et al. 2004) has a Gaussian window of 11x11 pixels, sigma 1.5, with zeros
  * beyond the edge. */
-#ifndef FIT_PHOTO_LOSS_H
-#define FIT_PHOTO_LOSS_H
+#pragma once
 
 #include "base/err.h"
 
@@ -26,5 +25,3 @@ void photo_loss_free(struct photo_loss_room *r);
  * alone. Returns 0, or -1 with *e set. */
 int photo_loss(struct photo_loss *l, const float *image, const uint8_t *photograph, int height, int width,
 	float *gradient, struct photo_loss_room *room, struct err *e);
-
-#endif

@@ -4,8 +4,6 @@
 #include "mask/shrink.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 int photograph_make(struct photograph *p, const struct camera *c, double scale, const uint8_t *rgb,
 	int height, int width, struct err *e)

@@ -1,6 +1,5 @@
 /* Photographs of a scene, with their cameras, at the sizes in which they are learned from. */
-#ifndef FIT_PHOTOGRAPH_H
-#define FIT_PHOTOGRAPH_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -26,5 +25,3 @@ void photograph_free(struct photograph *p);
 /* Pixels that hold a part of a mask (height,width) of the whole view do not count. Returns 0, or -1 with *e
  * set. */
 int photograph_ignore(struct photograph *p, const uint8_t *mask, int height, int width, struct err *e);
-
-#endif

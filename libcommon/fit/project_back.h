@@ -1,7 +1,6 @@
 /* The backward pass of projection, and of colours: from a view's sums over pixels to gradients of parameters.
  */
-#ifndef FIT_PROJECT_BACK_H
-#define FIT_PROJECT_BACK_H
+#pragma once
 
 #include "fit/parameters.h"
 #include "geom/camera.h"
@@ -21,5 +20,3 @@ void fit_colors(const struct fit_gaussians *g, const uint8_t *seen, const struct
  * that is not seen. colors are those of fit_colors: a channel at 0 has no gradient. */
 void fit_project_back(struct fit_gaussians *g, const struct render_view *v, const uint8_t *seen,
 	const struct camera *c, int degree, const float *colors, const float *sums);
-
-#endif

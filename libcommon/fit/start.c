@@ -5,8 +5,6 @@
 #include "splat/sh.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define OPACITY 0.5f /* 3DGS-MCMC's; 3DGS has 0.1 */
 enum { NEIGHBOURS = 3 };

@@ -1,6 +1,5 @@
 /* The Gaussians that training begins with. */
-#ifndef FIT_START_H
-#define FIT_START_H
+#pragma once
 
 #include "base/rng.h"
 #include "fit/parameters.h"
@@ -29,5 +28,3 @@ void start_points(const struct camera *const *cameras, size_t cameras_n, double 
 /* How many Gaussians a scene of so many points may have where nobody says: points are many where there is
  * much to see. */
 size_t start_number(size_t points);
-
-#endif

@@ -1,6 +1,5 @@
 /* Boxes in space, turned any way. */
-#ifndef GEOM_BOX_H
-#define GEOM_BOX_H
+#pragma once
 
 struct box {
 	double centre[3];
@@ -25,5 +24,3 @@ double box_iou(const struct box *a, const struct box *b);
 
 /* How far the nearest points of two boxes are apart, 0 where they touch. */
 double box_gap(const struct box *a, const struct box *b);
-
-#endif

@@ -1,5 +1,6 @@
 #include "geom/camera.h"
 
+#include "base/mem.h"
 #include "base/names.h"
 
 #include <math.h>
@@ -9,9 +10,7 @@
 void cameras_free(struct cameras *c)
 {
 	for (size_t i = 0; i < c->n; i++) {
-		free(c->views[i].name);
-		free(c->views[i].image);
-		free(c->views[i].source);
+		mem_free_all(c->views[i].name, c->views[i].image, c->views[i].source);
 	}
 	free(c->views);
 	*c = (struct cameras){0};

@@ -1,6 +1,5 @@
 /* Pinhole cameras. World and camera frames are COLMAP's: camera x right, y down, z forward. */
-#ifndef GEOM_CAMERA_H
-#define GEOM_CAMERA_H
+#pragma once
 
 #include "base/err.h"
 
@@ -66,5 +65,3 @@ void camera_set_centre(struct camera *c, double rotation[3][3], const double cen
 
 /* Moves the world's origin to `offset`, as recentred splats need it: x_world becomes x_world - offset. */
 void cameras_shift(struct cameras *c, const double offset[3]);
-
-#endif

@@ -1,7 +1,6 @@
 /* Lenses that distort, in COLMAP's camera models, and the pinhole that sees what such a camera does. A ray is
  * (x/z, y/z) in the camera's frame. formats/cameras/colmap.md has the models. */
-#ifndef GEOM_LENS_H
-#define GEOM_LENS_H
+#pragma once
 
 #include "geom/camera.h"
 
@@ -43,5 +42,3 @@ void cameras_undistort(struct cameras *c);
  * or, where is_back is not 0, for each of the photograph (l->height,l->width) that of the view, rows x
  * columns. */
 void lens_map(const struct lens *l, const struct camera *c, int is_back, int rows, int columns, int32_t *map);
-
-#endif

@@ -5,7 +5,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 struct tree {
 	const float *points;

@@ -1,6 +1,5 @@
 /* How far a point's neighbours are. */
-#ifndef GEOM_NEIGHBOURS_H
-#define GEOM_NEIGHBOURS_H
+#pragma once
 
 #include "base/err.h"
 
@@ -15,5 +14,3 @@ int neighbours_find(const float *points, size_t n, int k, float *distance, struc
 /* The same of each of `from` (m,3), which are none of the points. */
 int neighbours_of(
 	const float *points, size_t n, const float *from, size_t m, int k, float *distance, struct err *e);
-
-#endif

@@ -1,6 +1,5 @@
 /* Which way is up in a scene that nobody has levelled. */
-#ifndef GEOM_UP_H
-#define GEOM_UP_H
+#pragma once
 
 #include "geom/camera.h"
 
@@ -9,5 +8,3 @@
  * cameras all look the same way, so that a whole plane is at right angles, the one nearest to the mean of the
  * cameras' own ups; without cameras, z. */
 void cameras_up(const struct cameras *c, double up[3]);
-
-#endif

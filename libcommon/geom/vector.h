@@ -1,6 +1,5 @@
 /* Vectors of three. */
-#ifndef GEOM_VECTOR_H
-#define GEOM_VECTOR_H
+#pragma once
 
 #include <math.h>
 
@@ -32,5 +31,3 @@ static inline void vector_cross(const double a[3], const double b[3], double out
 	out[1] = a[2] * b[0] - a[0] * b[2];
 	out[2] = a[0] * b[1] - a[1] * b[0];
 }
-
-#endif

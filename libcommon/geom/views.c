@@ -4,8 +4,6 @@
 #include "base/name.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 /* How much of the image's path a name keeps; the last keeps '/' and '_' apart, so that different paths have

@@ -1,6 +1,5 @@
 /* From the cameras of a foreign file to the views of a scene: checked, named and in order. */
-#ifndef GEOM_VIEWS_H
-#define GEOM_VIEWS_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -40,5 +39,3 @@ size_t view_stem(const char *image);
 
 /* The part after the last '/'. */
 const char *view_base(const char *image);
-
-#endif

@@ -6,8 +6,6 @@
 #include "nn/linear.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Directions beyond those that are wanted, and turns: then the wanted ones are as exact as their eigenvalues
  * are apart, and where those are not it does not matter which is taken. */

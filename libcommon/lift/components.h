@@ -1,7 +1,6 @@
 /* Principal components of features: the mean, and the directions in which rows differ most, so that a row is
  * told by a few numbers. */
-#ifndef LIFT_COMPONENTS_H
-#define LIFT_COMPONENTS_H
+#pragma once
 
 #include "base/err.h"
 
@@ -25,5 +24,3 @@ void components_free(struct components *c);
 
 /* y (n,K): b_k . (x - mean) of each of the rows x (n,C), which become x - mean. */
 void components_of(const struct components *c, float *x, size_t n, float *y);
-
-#endif

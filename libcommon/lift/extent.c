@@ -7,8 +7,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
 	TURNS = 45,	  /* of two degrees: the foot of a box is the same after ninety */
@@ -317,9 +315,7 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 		x->aligned = box_along(&c, 1, world, 0);
 		x->turned = turned_box(&c, up);
 	}
-	free(c.means);
-	free(c.spread);
-	free(c.items);
+	mem_free_all(c.means, c.spread, c.items);
 	if (bad)
 		extent_free(x);
 	return bad;

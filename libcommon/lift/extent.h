@@ -7,8 +7,7 @@
  * EXTENT_SIGMAS standard deviations long: where W inside / length^EXTENT_THIN is largest, as what makes the
  * box much longer for little weight is of something else. formats/records/boxes.md says how these were
  * chosen. */
-#ifndef LIFT_EXTENT_H
-#define LIFT_EXTENT_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/box.h"
@@ -40,5 +39,3 @@ struct extent {
 int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, const float *responses,
 	size_t n, const double up[3], struct err *e);
 void extent_free(struct extent *x);
-
-#endif

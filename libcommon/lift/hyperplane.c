@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 double hyperplane_side(const double *plane, const float *feature, size_t channels)
 {

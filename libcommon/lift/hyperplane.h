@@ -3,8 +3,7 @@
  * segmentation. Here it is the logistic regression of examples, so that where it begins does not matter: w, b
  * = argmin 1/2 mean_positive log(1 + exp(-z)) + 1/2 mean_negative log(1 + exp(z)) + HYPERPLANE_DECAY/2 |w|^2
  * with z = w.f + b. Both kinds count alike, however many there are. */
-#ifndef LIFT_HYPERPLANE_H
-#define LIFT_HYPERPLANE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -20,5 +19,3 @@ int hyperplane_fit(
 
 /* z of a feature. */
 double hyperplane_side(const double *plane, const float *feature, size_t channels);
-
-#endif

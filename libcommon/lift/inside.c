@@ -5,8 +5,6 @@
 #include "geom/neighbours.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* So many times as large as the hull is where others are looked for that are nearer. */
 static const double around = 1.5;
@@ -136,8 +134,6 @@ int inside_take(char *taken, const struct extent *x, const struct splats *s, con
 	const int bad = gather(&r, &h, taken, s, most, others, e) || vote(taken, &r, e);
 	for (int k = 0; k < SIDES; k++)
 		free(r.points[k]);
-	free(r.unsure);
-	free(r.own);
-	free(r.others);
+	mem_free_all(r.unsure, r.own, r.others);
 	return bad ? -1 : 0;
 }

@@ -6,8 +6,7 @@
  * what stands in a bowl, or is under a foot, has its own surface nearest. The hull is what INSIDE_DIRECTIONS
  * half-spaces have in common, each with all but INSIDE_TRIM of the thing's Gaussians, INSIDE_REACH times as
  * large. formats/records/boxes.md says how these were chosen. */
-#ifndef LIFT_INSIDE_H
-#define LIFT_INSIDE_H
+#pragma once
 
 #include "base/err.h"
 #include "lift/extent.h"
@@ -23,5 +22,3 @@ enum { INSIDE_DIRECTIONS = 102, INSIDE_VOTERS = 3 };
  * set. */
 int inside_take(char *taken, const struct extent *x, const struct splats *s, const float *most,
 	const char *others, struct err *e);
-
-#endif

@@ -3,7 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define GOLDEN_SECTION 0.6180339887498949
 static const double saturation = 0.75, value = 0.95;

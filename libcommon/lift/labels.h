@@ -1,6 +1,5 @@
 /* Which object each Gaussian of a scene belongs to, one number each, and a colour for each number. */
-#ifndef LIFT_LABELS_H
-#define LIFT_LABELS_H
+#pragma once
 
 #include "base/err.h"
 #include "lift/extent.h"
@@ -15,5 +14,3 @@ int labels_find(int32_t *labels, const struct lifted *l, const struct extent *ex
 /* The colour of a label from 1 on. Hues are a golden section of the circle apart, so that those of labels
  * that are near in number, and of few labels, differ most. */
 void labels_colour(int32_t label, uint8_t rgb[3]);
-
-#endif

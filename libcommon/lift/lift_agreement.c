@@ -4,9 +4,6 @@
 #include "lift/lift_private.h"
 #include "mask/bits.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum { PIXELS = VIEW_TILE_PIXELS };
 _Static_assert((int)BITS_TILE == (int)VIEW_TILE, "masks and weights are cut into the same tiles");
 
@@ -36,9 +33,7 @@ struct drawn {
 
 static void drawn_free(struct drawn *d)
 {
-	free(d->objects);
-	free(d->touched);
-	free(d->is_touched);
+	mem_free_all(d->objects, d->touched, d->is_touched);
 }
 
 static int drawn_make(struct drawn *d, size_t n, struct err *e)

@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { CHUNK = 256 }; /* Gaussians that a thread takes at a time */
 
@@ -23,9 +21,7 @@ int lift_features_init(struct lift_features *l, size_t gaussians, size_t channel
 
 void lift_features_free(struct lift_features *l)
 {
-	free(l->sum);
-	free(l->weight);
-	free(l->square);
+	mem_free_all(l->sum, l->weight, l->square);
 	*l = (struct lift_features){0};
 }
 

@@ -8,8 +8,7 @@
  * Channels come in blocks, so that memory is bounded by the block's width: for each block all views, in the
  * same order. Weights are summed in the first. Numbers are the same to the bit for any number of threads, and
  * for any blocks. */
-#ifndef LIFT_LIFT_FEATURES_H
-#define LIFT_LIFT_FEATURES_H
+#pragma once
 
 #include "base/err.h"
 #include "lift/source_weights.h"
@@ -40,5 +39,3 @@ void lift_features_end(struct lift_features *l, size_t channels);
 
 /* After the last block: reliability (N), 0 for Gaussians without weight. */
 void lift_features_reliability(const struct lift_features *l, float *reliability);
-
-#endif

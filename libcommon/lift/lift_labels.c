@@ -2,8 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-
 struct lift_vote {
 	int64_t next;
 	double weight;

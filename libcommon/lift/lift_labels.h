@@ -2,8 +2,7 @@
  * falls on, the one with the most of it. The vote of Gaussian Grouping's identities (arXiv 2312.00732) in
  * closed form; FlashSplat (arXiv 2409.08270) shows that it is the best a label for each Gaussian can do. Of
  * equal ones the smaller label wins. */
-#ifndef LIFT_LIFT_LABELS_H
-#define LIFT_LIFT_LABELS_H
+#pragma once
 
 #include "base/err.h"
 #include "lift/source_weights.h"
@@ -30,5 +29,3 @@ int lift_labels_add(
 
 /* label, the part of the weight that is its, and the weight (N each); LABEL_NONE, 0 and 0 without weight. */
 void lift_labels_end(const struct lift_labels *l, int32_t *label, float *reliability, float *weight);
-
-#endif

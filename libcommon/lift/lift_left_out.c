@@ -8,8 +8,6 @@
 #include "base/quantile.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A Gaussian is compared where other views show it with this share of the weight that the mask's view gives
  * it, and this more. */
@@ -149,10 +147,6 @@ int lift_left_out(struct lift_objects *l, size_t named, double *agreement, struc
 	if (n)
 		qsort(found, n, sizeof *found, compare_double);
 	*agreement = n >= LIFT_LEFT_OUT_MASKS ? quantile_sorted(found, n, 0.5) : NAN;
-	free(r.who);
-	free(r.place);
-	free(r.in);
-	free(r.all);
-	free(r.own);
+	mem_free_all(r.who, r.place, r.in, r.all, r.own);
 	return bad ? -1 : 0;
 }

@@ -4,8 +4,6 @@
 #include "lift/lift_private.h"
 #include "mask/bits.h"
 
-#include <stdlib.h>
-
 /* What rounds to nothing in a file, formats/scene/lifted.md. */
 static const float LEAST_SHARE = 0.5f / 255;
 
@@ -28,13 +26,7 @@ static void view_free(struct lift_view *v)
 {
 	for (size_t k = 0; k < v->n && v->rows; k++)
 		shares_free(&v->rows[k]);
-	free(v->objects);
-	free(v->starts);
-	free(v->bits);
-	free(v->rows);
-	free(v->vote);
-	free(v->agreement);
-	free(v->weight);
+	mem_free_all(v->objects, v->starts, v->bits, v->rows, v->vote, v->agreement, v->weight);
 }
 
 void lift_objects_free(struct lift_objects *l)
@@ -43,11 +35,7 @@ void lift_objects_free(struct lift_objects *l)
 		view_free(&l->views[v]);
 	for (size_t o = 0; o < l->objects && l->shares; o++)
 		shares_free(&l->shares[o]);
-	free(l->views);
-	free(l->shares);
-	free(l->claims);
-	free(l->agreement);
-	free(l->masks);
+	mem_free_all(l->views, l->shares, l->claims, l->agreement, l->masks);
 	*l = (struct lift_objects){0};
 }
 

@@ -18,8 +18,7 @@
  *     for each of LIFT_ROUNDS rounds { but in the first, for each view { lift_objects_vote; }
  * lift_objects_settle; } Within a round the views may come in any order, and from many threads at once.
  * Results are the same to the bit for any number of threads, not where views have other numbers. */
-#ifndef LIFT_LIFT_OBJECTS_H
-#define LIFT_LIFT_OBJECTS_H
+#pragma once
 
 #include "base/err.h"
 #include "lift/lifted_model.h"
@@ -105,5 +104,3 @@ int lift_left_out(struct lift_objects *l, size_t named, double *agreement, struc
 /* After the last round: gaussians, objects, confidence, indptr, index and share of a zeroed model, whose
  * names and sentences are the caller's to fill. Returns 0, or -1 with *e set and *to as it can be freed. */
 int lift_objects_finish(const struct lift_objects *l, struct lifted *to, struct err *e);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the parts of lift/lift_objects share. */
-#ifndef LIFT_LIFT_PRIVATE_H
-#define LIFT_LIFT_PRIVATE_H
+#pragma once
 
 #include "lift/lift_objects.h"
 
@@ -15,5 +14,3 @@ int lift_shares(struct lift_objects *l, int is_last, struct err *e);
 
 /* The vote of a mask that agrees so far. */
 float lift_vote(double agreement);
-
-#endif

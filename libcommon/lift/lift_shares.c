@@ -2,8 +2,6 @@
 #include "lift/lift_private.h"
 #include "lift/marks.h"
 
-#include <stdlib.h>
-
 /* Keeps the share of a Gaussian that hardly any pixel shows near 0. */
 static const double LEAST_WEIGHT = 0.01;
 

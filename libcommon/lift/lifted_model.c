@@ -2,21 +2,13 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-
 void lifted_free(struct lifted *l)
 {
 	mem_free_strings(l->names, l->objects);
 	mem_free_strings(l->texts, l->sentences);
 	mem_free_strings(l->pieces, l->sentences);
-	free(l->confidence);
-	free(l->indptr);
-	free(l->index);
-	free(l->share);
-	free(l->object);
-	free(l->offsets);
-	free(l->words);
-	free(l->middle);
+	mem_free_all(
+		l->confidence, l->indptr, l->index, l->share, l->object, l->offsets, l->words, l->middle);
 	*l = (struct lifted){0};
 }
 

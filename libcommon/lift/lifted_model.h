@@ -1,8 +1,7 @@
 /* Objects lifted onto the Gaussians in closed form: geometry is frozen, so the share of a Gaussian's blend
  * weight that falls inside an object's masks says whether it is of the object, and nothing is trained. With
  * the sentences that named the objects, this is a model that answers as a trained one does. */
-#ifndef LIFT_LIFTED_MODEL_H
-#define LIFT_LIFTED_MODEL_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -47,5 +46,3 @@ void lifted_cut(struct lifted *l, size_t objects);
 
 /* responses (N) = a_i - LIFTED_CUT, with the share a_i of each Gaussian in the object. */
 void lifted_responses(const struct lifted *l, size_t object, float *responses);
-
-#endif

@@ -1,6 +1,5 @@
 /* A set of Gaussians, gathered in any order and taken out by rising number: a bit for each. */
-#ifndef LIFT_MARKS_H
-#define LIFT_MARKS_H
+#pragma once
 
 #include "base/err.h"
 
@@ -19,5 +18,3 @@ size_t marks_count(const uint64_t *marks, size_t gaussians);
 
 /* index (as many as are marked) gets them, rising, and none is marked. Returns how many. */
 size_t marks_take(uint64_t *marks, size_t gaussians, int32_t *index);
-
-#endif

@@ -4,8 +4,6 @@
 #include "splat/backproject.h"
 
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { BATCH = 4 * VIEW_GROUP }; /* channels that are images at a time: whole groups */
 
@@ -76,9 +74,7 @@ void propagate_free(struct propagation *c)
 {
 	for (size_t s = 0; s < c->source_count; s++)
 		free(c->sources[s].field);
-	free(c->starts);
-	free(c->order);
-	free(c->sources);
+	mem_free_all(c->starts, c->order, c->sources);
 	*c = (struct propagation){0};
 }
 
@@ -206,8 +202,6 @@ int propagate_render(const struct propagation *c, size_t view, const struct view
 	}
 	for (size_t i = 0; i < c->count && bad; i++)
 		rle_free(&masks[i]);
-	free(room.image);
-	free(room.pixels);
-	free(room.is_known);
+	mem_free_all(room.image, room.pixels, room.is_known);
 	return bad ? -1 : 0;
 }

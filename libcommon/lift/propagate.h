@@ -6,8 +6,7 @@
  * w_pi over all pixels. Gaussians without weight there are unknown: nothing says that they are not of the
  * object. Another view has the mask at the pixels where sum w_pi a_i > 1/2 sum w_pi, both sums over known
  * Gaussians, and where these make at least half of the pixel's weight. */
-#ifndef LIFT_PROPAGATE_H
-#define LIFT_PROPAGATE_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -56,5 +55,3 @@ int propagate_lift(struct propagation *c, size_t source, const struct view_weigh
  * at that size. On failure there are none. */
 int propagate_render(const struct propagation *c, size_t view, const struct view_weights *w, int height,
 	int width, struct rle *masks, struct err *e);
-
-#endif

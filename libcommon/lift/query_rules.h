@@ -2,8 +2,7 @@
  * the field compares with, each for one Gaussian and by the cosines of its feature with vectors of texts. As
  * published they are for a pixel of a rendered feature map; here they are for a Gaussian, and what they
  * select is rendered. */
-#ifndef LIFT_QUERY_RULES_H
-#define LIFT_QUERY_RULES_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -31,5 +30,3 @@ double query_relative_threshold(double threshold, double least, double most);
  * is scratch. */
 void query_identity(const int32_t *labels, const float *weight, const char *inside, size_t n,
 	double threshold, double *sums, size_t label_count, char *selected);
-
-#endif

@@ -2,9 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 static int order_sizes(size_t a, size_t b)
 {
 	return (a > b) - (a < b);
@@ -121,24 +118,14 @@ int regions_init(struct regions *r, const struct pool *p, const size_t *places, 
 void regions_free(struct regions *r)
 {
 	for (size_t i = 0; i < r->region_count; i++) {
-		free(r->regions[i].members);
-		free(r->regions[i].agreement);
-		free(r->regions[i].chosen);
+		mem_free_all(r->regions[i].members, r->regions[i].agreement, r->regions[i].chosen);
 	}
 	for (size_t v = 0; v < r->views && r->ranges; v++)
 		for (size_t c = r->ranges[v].begin; c < r->ranges[v].end; c++)
 			shares_free(&r->candidates[c].shares);
-	free(r->witnesses);
-	free(r->candidates);
-	free(r->ranges);
-	free(r->objects);
-	free(r->sentence_objects);
+	mem_free_all(r->witnesses, r->candidates, r->ranges, r->objects, r->sentence_objects);
 	for (size_t v = 0; v < r->views && r->seen; v++)
 		seen_free(&r->seen[v]);
-	free(r->seen);
-	free(r->regions);
-	free(r->served);
-	free(r->spare);
-	free(r->field);
+	mem_free_all(r->seen, r->regions, r->served, r->spare, r->field);
 	*r = (struct regions){0};
 }

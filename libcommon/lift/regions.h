@@ -29,8 +29,7 @@
  * (regions_private.h) is never looked at, and given as 0.
  *
  * All of it is the same to the bit for any number of threads. */
-#ifndef LIFT_REGIONS_H
-#define LIFT_REGIONS_H
+#pragma once
 
 #include "base/err.h"
 #include "lift/lift_objects.h"
@@ -128,5 +127,3 @@ int regions_need_weights(const struct regions *r, size_t view);
  * that is not empty. On failure there are none. */
 int regions_render(const struct regions *r, size_t view, const struct view_matrix *w, struct rle *masks,
 	double *scores, size_t *rendered, struct err *e);
-
-#endif

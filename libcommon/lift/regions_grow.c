@@ -2,9 +2,6 @@
 #include "lift/regions.h"
 #include "lift/regions_private.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Chosen on one real and three synthetic scenes, and not searched over. */
 #define SEEN 0.05		    /* pixels of weight from which a view says what a Gaussian is */
 #define EXPLAINED 0.6		    /* agreement from which a candidate is of a region that there is */
@@ -32,14 +29,8 @@ static void growth_free(struct growth *g)
 	free(g->is_in);
 	regions_shown_free(&g->shown);
 	regions_sums_free(&g->sums);
-	free(g->both);
-	free(g->area);
-	free(g->before);
-	free(g->is_tried);
-	free(g->seen_mass);
-	free(g->region.members);
-	free(g->region.agreement);
-	free(g->region.chosen);
+	mem_free_all(g->both, g->area, g->before, g->is_tried, g->seen_mass, g->region.members,
+		g->region.agreement, g->region.chosen);
 }
 
 static int growth_make(struct growth *g, const struct regions *r, struct err *e)

@@ -3,9 +3,6 @@
 #include "base/mem.h"
 #include "mask/bits.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Intersection over union from which masks of a view are one candidate. Of 0.9, 0.95 and every mask by
  * itself, the mIoU of the masks that come of it in training views, mean of the eight scenes of
  * pipelines/ablation.md: 66.5, 66.7, 66.8. */

@@ -1,6 +1,5 @@
 /* What the parts of lift/regions share. */
-#ifndef LIFT_REGIONS_PRIVATE_H
-#define LIFT_REGIONS_PRIVATE_H
+#pragma once
 
 #include "lift/regions.h"
 
@@ -48,5 +47,3 @@ int regions_find_spare(struct regions *r, const double *share, struct err *e);
 
 /* The candidate that is a region's mask in a view, or REGIONS_NONE. */
 size_t regions_find_candidate(const struct regions *r, const struct region *region, size_t view);
-
-#endif

@@ -5,7 +5,6 @@
 #include "splat/backproject.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define CHANCE 0.02 /* share of a sentence's candidates that is found by accident */
 /* The confidence that each sentence has in nothing, so that one candidate tells less than many. */

@@ -1,9 +1,6 @@
 #include "base/mem.h"
 #include "lift/regions_private.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* The Gaussians are cut into parts, which do not meet. */
 enum { PARTS = 32 };
 
@@ -80,10 +77,7 @@ int regions_shown_make(struct regions_shown *s, const struct regions *r, struct 
 
 void regions_shown_free(struct regions_shown *s)
 {
-	free(s->begin);
-	free(s->candidate);
-	free(s->share);
-	free(s->slabs);
+	mem_free_all(s->begin, s->candidate, s->share, s->slabs);
 	*s = (struct regions_shown){0};
 }
 

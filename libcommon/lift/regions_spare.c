@@ -3,8 +3,6 @@
 #include "lift/regions.h"
 #include "lift/regions_private.h"
 
-#include <stdlib.h>
-
 /* Of the views, from which on candidates show a thing, and not a mistake that a few of them share. */
 static const double least_views = 0.25;
 

@@ -2,8 +2,6 @@
 #include "lift/marks.h"
 #include "lift/regions_private.h"
 
-#include <stdlib.h>
-
 int regions_sums_make(struct regions_sums *s, size_t gaussians, struct err *e)
 {
 	*s = (struct regions_sums){.index = mem_alloc(gaussians, sizeof *s->index, "regions", e),
@@ -19,11 +17,7 @@ int regions_sums_make(struct regions_sums *s, size_t gaussians, struct err *e)
 
 void regions_sums_free(struct regions_sums *s)
 {
-	free(s->index);
-	free(s->sum);
-	free(s->all);
-	free(s->shown);
-	free(s->marks);
+	mem_free_all(s->index, s->sum, s->all, s->shown, s->marks);
 	*s = (struct regions_sums){0};
 }
 

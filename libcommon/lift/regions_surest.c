@@ -3,8 +3,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-
 static int fill_view(const struct regions *r, size_t from, size_t to, struct lift_view *v, struct err *e)
 {
 	const struct regions_witness *w = r->witnesses;

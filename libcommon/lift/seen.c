@@ -3,8 +3,6 @@
 #include "base/mem.h"
 #include "lift/marks.h"
 
-#include <stdlib.h>
-
 int seen_make(struct seen *s, const float *weight, size_t gaussians, struct err *e)
 {
 	uint32_t count = 1;
@@ -34,9 +32,7 @@ int seen_make(struct seen *s, const float *weight, size_t gaussians, struct err 
 
 void seen_free(struct seen *s)
 {
-	free(s->marks);
-	free(s->before);
-	free(s->weight);
+	mem_free_all(s->marks, s->before, s->weight);
 	*s = (struct seen){0};
 }
 

@@ -1,7 +1,6 @@
 /* What a view has of each Gaussian, kept for those that it sees: a view shows a small part of a large scene.
  */
-#ifndef LIFT_SEEN_H
-#define LIFT_SEEN_H
+#pragma once
 
 #include "base/err.h"
 #include "base/ones.h"
@@ -31,5 +30,3 @@ static inline float seen_weight(const struct seen *s, size_t i)
 
 	return s->weight[place & -is_seen];
 }
-
-#endif

@@ -6,9 +6,6 @@
 #include "mask/bits.h"
 #include "splat/backproject.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* One thread's: sums of all Gaussians, and which of them are above 0. All 0 between masks. */
 struct sums {
 	uint64_t *marks;
@@ -33,10 +30,7 @@ static int sums_make(struct sums *s, const struct view_matrix *w, struct err *e)
 
 static void sums_free(struct sums *s)
 {
-	free(s->marks);
-	free(s->levels);
-	free(s->sum);
-	free(s->image);
+	mem_free_all(s->marks, s->levels, s->sum, s->image);
 }
 
 /* Pixels in their order. */

@@ -3,8 +3,7 @@
  *
  * From weights by tiles the sums are of whole numbers of 1/255, and exact. A tile that a mask has nothing of
  * costs nothing, and where it has all pixels of a Gaussian's, their sum is known. */
-#ifndef LIFT_SHARES_H
-#define LIFT_SHARES_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/view_matrix.h"
@@ -30,5 +29,3 @@ struct shares_masks {
 int shares_make(float *weight, struct shares *rows, const struct view_matrix *w,
 	const struct shares_masks *masks, size_t count, struct err *e);
 void shares_free(struct shares *row);
-
-#endif

@@ -3,17 +3,9 @@
 #include "base/mem.h"
 #include "base/threads.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 void source_weights_free(struct source_weights *s)
 {
-	free(s->indptr);
-	free(s->source);
-	free(s->weight);
-	free(s->last);
-	free(s->start);
-	free(s->order);
+	mem_free_all(s->indptr, s->source, s->weight, s->last, s->start, s->order);
 	*s = (struct source_weights){0};
 }
 

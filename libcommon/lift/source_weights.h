@@ -2,8 +2,7 @@
  * cells, a picture's segments or its labels, and the pixels of one source are all the same to a Gaussian. So
  * S_is = sum of w_pi over the pixels p of source s is all that a view has to say, in as many numbers as
  * Gaussians touch sources, and each feature is added to a Gaussian once. */
-#ifndef LIFT_SOURCE_WEIGHTS_H
-#define LIFT_SOURCE_WEIGHTS_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/view_weights.h"
@@ -36,5 +35,3 @@ void source_weights_free(struct source_weights *s);
 /* to (height,width) gets for each pixel the cell of a map (map_height,map_width) that has its centre: row
  * floor((i + 1/2) map_height / height), and the column alike; -1 is never given. */
 void source_cells(int32_t *to, int height, int width, size_t map_height, size_t map_width);
-
-#endif

@@ -3,8 +3,6 @@
 #include "base/mem.h"
 #include "base/ones.h"
 
-#include <stdlib.h>
-
 /* The levels of so many differences; returns their sum. */
 static uint32_t take_entry(const uint8_t *restrict differences, uint8_t *restrict levels, size_t n)
 {
@@ -53,8 +51,6 @@ int tile_levels_make(struct tile_levels *l, const struct view_tiles *t, struct e
 
 void tile_levels_free(struct tile_levels *l)
 {
-	free(l->begin);
-	free(l->levels);
-	free(l->total);
+	mem_free_all(l->begin, l->levels, l->total);
 	*l = (struct tile_levels){0};
 }

@@ -1,7 +1,6 @@
 /* A view's weights by tiles, made ready to be summed over masks: levels in place of their differences, where
  * those of each entry begin, and the sum of them. */
-#ifndef LIFT_TILE_LEVELS_H
-#define LIFT_TILE_LEVELS_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/view_tiles.h"
@@ -35,5 +34,3 @@ static inline uint32_t tile_levels_sum(const struct tile_levels *l, size_t entry
 		sum += *level++ & -(uint32_t)(bits >> __builtin_ctzll(left) & 1);
 	return sum;
 }
-
-#endif

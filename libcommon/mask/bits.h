@@ -1,7 +1,6 @@
 /* Masks at eight pixels a byte: pixel p (row-major) is bit p % 8, the lowest first, of byte p / 8. What is
  * left of the last byte is 0, so that equal masks have equal bytes. */
-#ifndef MASK_BITS_H
-#define MASK_BITS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -28,5 +27,3 @@ void bits_pack_tiles(const uint8_t *mask, int height, int width, uint64_t *tiles
 
 /* image (height,width) += 1 where there is a bit. */
 void bits_add_tiles(const uint64_t *tiles, int height, int width, float *image);
-
-#endif

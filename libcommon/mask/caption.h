@@ -1,6 +1,5 @@
 /* Words under a picture, in a small font of ASCII. */
-#ifndef MASK_CAPTION_H
-#define MASK_CAPTION_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,5 +14,3 @@ int caption_height(int width);
 /* Draws a line of words, UTF-8, white on black over rows top to top + caption_height - 1 of rgb
  * (...,width,3). Characters that the font lacks become '?'; what has no room ends in dots. */
 void caption_draw(uint8_t *rgb, int width, int top, const char *text);
-
-#endif

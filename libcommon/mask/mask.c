@@ -4,8 +4,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 double mask_confidence(const struct mask *m)
 {
@@ -47,9 +45,7 @@ int mask_order(const struct mask *a, const struct mask *b)
 
 void mask_free(struct mask *m)
 {
-	free((char *)m->view);
-	free((char *)m->ref);
-	free((char *)m->object);
+	mem_free_all((char *)m->view, (char *)m->ref, (char *)m->object);
 	rle_free(&m->rle);
 	mask_place_free(m->place);
 	*m = (struct mask){0};

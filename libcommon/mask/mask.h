@@ -1,7 +1,6 @@
 /* A mask of an object in a view: what detectors find, what is selected, what teaches and is lifted, what is
  * predicted, and the truth. */
-#ifndef MASK_MASK_H
-#define MASK_MASK_H
+#pragma once
 
 #include "base/err.h"
 #include "mask/mask_place.h"
@@ -47,5 +46,3 @@ struct masks {
  * with *e set. */
 int masks_add(struct masks *to, struct mask *m, struct err *e);
 void masks_free(struct masks *masks);
-
-#endif

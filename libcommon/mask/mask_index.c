@@ -2,9 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 int mask_key_order(const struct mask_key *a, const struct mask_key *b)
 {
 	int order = strcmp(a->view, b->view);

@@ -1,6 +1,5 @@
 /* Finding masks by their view and their ref or object, without looking at all of them. */
-#ifndef MASK_MASK_INDEX_H
-#define MASK_MASK_INDEX_H
+#pragma once
 
 #include "mask/mask.h"
 
@@ -52,5 +51,3 @@ void mask_lookup_free(struct mask_lookup *l);
 enum mask_found { MASK_NONE, MASK_OF_REF, MASK_OF_OBJECT };
 enum mask_found mask_lookup_find(
 	const struct mask_lookup *l, const char *view, const char *ref, const char *object, size_t *at);
-
-#endif

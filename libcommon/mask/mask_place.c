@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 struct mask_place *mask_place_new(struct err *e)
 {

@@ -1,7 +1,6 @@
 /* Where a mask is, beside its pixels: the point that a prediction points at, and the boxes that a label has.
  * Localisation accuracy (Kerr et al. 2023, LERF) asks whether the one lies in the other. */
-#ifndef MASK_MASK_PLACE_H
-#define MASK_MASK_PLACE_H
+#pragma once
 
 #include "base/err.h"
 #include "mask/rle.h"
@@ -30,5 +29,3 @@ int mask_place_in_box(
 
 /* Whether the pixel of the truth's mask at that point is foreground. */
 int mask_place_in_mask(const double peak[2], int height, int width, const struct rle *truth);
-
-#endif

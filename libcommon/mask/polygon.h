@@ -1,6 +1,5 @@
 /* Polygons as masks. */
-#ifndef MASK_POLYGON_H
-#define MASK_POLYGON_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -9,5 +8,3 @@
  * rule, so that a part that is circled twice is outside. The centre of the first pixel is at 0.5,0.5. flips
  * (height,width) is scratch, all 0 before and after. */
 void polygon_fill(uint8_t *mask, uint8_t *flips, int height, int width, const double *points, size_t n);
-
-#endif

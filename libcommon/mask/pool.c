@@ -2,9 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 static int order_places(size_t a, size_t b)
 {
 	return (a > b) - (a < b);
@@ -126,8 +123,6 @@ int pool_select(struct pool *p, enum select_method method, double min_score, str
 		g->winner = (long)p->index.keys[at].at;
 		g->vote = votes[at];
 	}
-	free(votes);
-	free(masks);
-	free(areas);
+	mem_free_all(votes, masks, areas);
 	return bad ? -1 : 0;
 }

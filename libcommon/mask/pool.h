@@ -1,6 +1,5 @@
 /* Candidate masks pooled: those of one object in one view, in whatever order they came. */
-#ifndef MASK_POOL_H
-#define MASK_POOL_H
+#pragma once
 
 #include "base/err.h"
 #include "mask/mask_index.h"
@@ -36,5 +35,3 @@ int pool_check_sizes(const struct pool *p, size_t *bad, size_t *first);
 
 /* Each group's winner by select_winner, and its vote. Once for a pool. */
 int pool_select(struct pool *p, enum select_method method, double min_score, struct err *e);
-
-#endif

@@ -2,9 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* A mask's foreground as position ranges [begin,end), with the first range that reaches into each column. */
 struct ranges {
 	size_t n;

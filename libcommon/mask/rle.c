@@ -2,9 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum {
 	GROUP_BITS = 5,	 /* payload of one character */
 	GROUP_MAX = 7,	 /* 35 bits hold any difference of two runs */

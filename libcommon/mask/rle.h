@@ -1,8 +1,7 @@
 /* Binary masks as COCO run lengths: columns first (Fortran order), runs alternate 0,1,0,... beginning with 0.
  * Positions are p = column * height + row. A mask has at most 2^32 - 1 pixels, so that a run fits its type.
  */
-#ifndef MASK_RLE_H
-#define MASK_RLE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -75,5 +74,3 @@ struct rle_fitted {
  * rle_fitted_free is in order. */
 int rle_fit(struct rle_fitted *f, const struct rle *like, struct err *e);
 void rle_fitted_free(struct rle_fitted *f);
-
-#endif

@@ -1,8 +1,7 @@
 /* Pseudo masks: the one candidate mask that stands for an object in a view (ReferSplat, section 3.4:
  * confidence-weighted IoU). All sentences of the object are pooled: what most of them point at wins over one
  * confident mistake. */
-#ifndef MASK_SELECT_H
-#define MASK_SELECT_H
+#pragma once
 
 #include "mask/mask.h"
 
@@ -21,5 +20,3 @@ enum select_method {
  * then the earlier), or -1 where none takes part. */
 long select_winner(const struct mask *const *candidates, const size_t *areas, size_t n,
 	enum select_method method, double min_score, double *votes);
-
-#endif

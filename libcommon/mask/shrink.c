@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Adds `share` of a row, shrunk to `to` pixels, to sums (to,3): each the mean over its part of the row. */
 static void add_row(const uint8_t *row, int from, float *sums, int to, float share)

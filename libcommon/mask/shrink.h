@@ -1,6 +1,5 @@
 /* A picture at another, mostly smaller, size. */
-#ifndef MASK_SHRINK_H
-#define MASK_SHRINK_H
+#pragma once
 
 #include "base/err.h"
 
@@ -9,5 +8,3 @@
 /* (rows,columns,3) of rgb (height,width,3): each pixel the mean over its area. free() it; NULL with *e set
  * where memory is out. */
 uint8_t *shrink_picture(const uint8_t *rgb, int height, int width, int rows, int columns, struct err *e);
-
-#endif

@@ -4,8 +4,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-
 enum { EAST, SOUTH, WEST, NORTH, WAYS };
 
 struct grid {

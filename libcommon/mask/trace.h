@@ -1,6 +1,5 @@
 /* The border of a mask as closed lines along the edges of its pixels. */
-#ifndef MASK_TRACE_H
-#define MASK_TRACE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -23,5 +22,3 @@ struct trace {
  * lines. Returns 0, or -1 with *e set; trace_free after either. */
 int trace_mask(struct trace *t, const uint8_t *mask, int height, int width, struct err *e);
 void trace_free(struct trace *t);
-
-#endif

@@ -1,8 +1,7 @@
 /* Adam (Kingma and Ba 2015, algorithm 1), with PyTorch's torch.optim.Adam as the model of details: eps is
  * added after the bias correction, no weight decay. Parameters, gradients and both moments are slabs, so one
  * call is the step. */
-#ifndef NN_ADAM_H
-#define NN_ADAM_H
+#pragma once
 
 #include <stddef.h>
 
@@ -13,5 +12,3 @@
  * own four numbers only: the bytes do not depend on the number of threads. */
 void adam_step(float *parameters, const float *gradient, float *m, float *v, size_t n, double rate,
 	double beta1, double beta2, double eps, long step);
-
-#endif

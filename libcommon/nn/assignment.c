@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 
 #define NONE SIZE_MAX
 
@@ -79,11 +78,6 @@ int assignment_best(const double *value, size_t rows, size_t columns, size_t *co
 	for (size_t j = 0; j < columns && !bad; j++)
 		if (w.owner[j] != NONE)
 			column[w.owner[j]] = j;
-	free(w.row);
-	free(w.column);
-	free(w.distance);
-	free(w.from);
-	free(w.owner);
-	free(w.is_done);
+	mem_free_all(w.row, w.column, w.distance, w.from, w.owner, w.is_done);
 	return bad ? -1 : 0;
 }

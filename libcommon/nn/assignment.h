@@ -1,6 +1,5 @@
 /* An optimal assignment: rows to distinct columns, so that the sum of their values is largest. */
-#ifndef NN_ASSIGNMENT_H
-#define NN_ASSIGNMENT_H
+#pragma once
 
 #include "base/err.h"
 
@@ -10,5 +9,3 @@
  * the same. Shortest augmenting paths (Kuhn 1955; Jonker and Volgenant 1987): rows^2 columns steps. The same
  * values give the same columns, also where several assignments are as good. -1 with *e out of memory. */
 int assignment_best(const double *value, size_t rows, size_t columns, size_t *column, struct err *e);
-
-#endif

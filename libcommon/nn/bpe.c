@@ -5,8 +5,6 @@
 #include "nn/unicode.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Whether the byte is its own letter. */
 static int shows(unsigned byte)

@@ -4,8 +4,7 @@
  * "</w>" after it. Then the two neighbours whose merge comes first are one symbol, until no merge is left.
  *
  * A byte is written as one character, its letter: itself where that shows, else one from U+0100 on. */
-#ifndef NN_BPE_H
-#define NN_BPE_H
+#pragma once
 
 #include "base/err.h"
 #include "nn/wordpiece.h"
@@ -55,5 +54,3 @@ int bpe_encode(const struct bpe *b, const char *text, struct wordpieces *out, st
  * where they are whole characters that show, no "</w>", and "##" before it where it does not begin a word.
  * free() it; NULL with *e set. */
 char *bpe_read(const struct bpe *b, int32_t id, int32_t before, struct err *e);
-
-#endif

@@ -8,9 +8,6 @@
 #include "base/utf8.h"
 #include "nn/unicode.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #define NONE ((size_t)-1)
 
 struct symbol {

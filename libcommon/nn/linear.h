@@ -5,8 +5,7 @@
  * multiplication and an addition where the processor has no fma). Nothing in this depends on the number of
  * threads, on the vector width or on how the result is cut into tiles, so results are byte-identical on all
  * processors that have fma. */
-#ifndef NN_LINEAR_H
-#define NN_LINEAR_H
+#pragma once
 
 #include <stddef.h>
 
@@ -34,5 +33,3 @@ struct linear_matrix {
  * rows start_stride apart: c itself to add to it, a bias with start_stride 0, or NULL for zero. */
 void linear_product(float *c, size_t stride, const float *start, size_t start_stride, struct linear_matrix a,
 	struct linear_matrix b, size_t m, size_t n, size_t k);
-
-#endif

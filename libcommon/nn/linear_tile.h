@@ -1,6 +1,5 @@
 /* The innermost part of a matrix product, once for each instruction set. For linear.c and its test. */
-#ifndef NN_LINEAR_TILE_H
-#define NN_LINEAR_TILE_H
+#pragma once
 
 #include "nn/linear.h"
 
@@ -28,5 +27,3 @@ const struct linear_tile *linear_tile_best(size_t columns);
 /* linear_product with a tile of one's choice. */
 void linear_product_with(const struct linear_tile *tile, float *c, size_t stride, const float *start,
 	size_t start_stride, struct linear_matrix a, struct linear_matrix b, size_t m, size_t n, size_t k);
-
-#endif

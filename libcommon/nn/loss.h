@@ -1,6 +1,5 @@
 /* Losses on plain arrays. */
-#ifndef NN_LOSS_H
-#define NN_LOSS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -17,5 +16,3 @@ double loss_bce(const float *logits, const uint8_t *mask, size_t n, float scale,
 double loss_log_sum_exp(const float *x, size_t n);
 /* Its two parts: sum_i exp(x_i - *most), *most being the largest. */
 double loss_exp_sum(const float *x, size_t n, float *most);
-
-#endif

@@ -8,8 +8,7 @@
  *
  * Every sum is taken in one order: results do not depend on the number of threads, nor on which sequences are
  * handed over together. */
-#ifndef NN_LSTM_H
-#define NN_LSTM_H
+#pragma once
 
 #include <stddef.h>
 
@@ -46,5 +45,3 @@ size_t lstm_scratch(const struct lstm *w, int sequences);
 void lstm_backward(const struct lstm *w, const struct lstm *dw, const struct lstm_sequences *s,
 	const float *x, const struct lstm_memory *m, const float *dout, size_t stride, float *dx,
 	float *scratch);
-
-#endif

@@ -1,6 +1,5 @@
 /* One block of floats that many arrays share: an optimiser, a file or a hash then goes through it once. */
-#ifndef NN_SLAB_H
-#define NN_SLAB_H
+#pragma once
 
 #include "base/err.h"
 
@@ -22,5 +21,3 @@ float *slab_take(struct slab *s, size_t rows, size_t columns);
 /* Allocates what `lay_out` takes for `of`, not initialised, and has it point `of`'s arrays into it: the block
  * to free(), or NULL with *e set, which names `what`. */
 float *slab_alloc(void (*lay_out)(void *of, struct slab *s), void *of, const char *what, struct err *e);
-
-#endif

@@ -3,9 +3,6 @@
 #include "base/mem.h"
 #include "nn/linear.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* In the order in which weights are hashed. */
 static void lay_out(void *of, struct slab *s)
 {

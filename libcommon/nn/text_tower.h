@@ -8,8 +8,7 @@
  *   y = projection LayerNorm(x); LayerNorm(x) where there is no projection
  *
  * A sentence's vector of CLIP's is y of its end-of-text token, which alone has seen all of it. */
-#ifndef NN_TEXT_TOWER_H
-#define NN_TEXT_TOWER_H
+#pragma once
 
 #include "base/err.h"
 #include "nn/transformer.h"
@@ -53,5 +52,3 @@ void text_tower_forward(const struct text_tower *t, const int32_t *ids, const si
 /* What a token is before its sentence is read: out (n,body.width) = word[ids[k]], nothing added and not
  * normalised. Kernel: cannot fail. */
 void text_tower_static(const struct text_tower *t, const int32_t *ids, size_t n, float *out);
-
-#endif

@@ -4,7 +4,6 @@
 #include "nn/linear.h"
 
 #include <math.h>
-#include <string.h>
 
 static void take_linear(struct slab *s, struct transformer_linear *linear, int in, int out)
 {

@@ -9,8 +9,7 @@
  *   BERT:                x = LayerNorm(x + attend(x));  x = LayerNorm(x + feed(x))
  *   CLIP, is_norm_first: x = x + attend(LayerNorm(x));  x = x + feed(LayerNorm(x))
  */
-#ifndef NN_TRANSFORMER_H
-#define NN_TRANSFORMER_H
+#pragma once
 
 #include "nn/slab.h"
 
@@ -63,5 +62,3 @@ int transformer_middle(const struct transformer *t);
  * transformer_middle layers; NULL: not wanted. Kernel: cannot fail. */
 void transformer_forward(
 	const struct transformer *t, const size_t *starts, size_t n, float *x, float *middle, float *scratch);
-
-#endif

@@ -3,8 +3,6 @@
 #include "base/mem.h"
 #include "base/utf8.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <utf8proc.h>
 
 static utf8proc_category_t category(uint32_t c)

@@ -1,7 +1,6 @@
 /* What BERT's uncased normalisation and CLIP's need of Unicode: which characters they drop, split at and
  * replace. What Unicode says of a character is utf8proc's to know. */
-#ifndef NN_UNICODE_H
-#define NN_UNICODE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -38,5 +37,3 @@ size_t unicode_lower(uint32_t c, uint32_t out[2]);
 /* Canonical composition (NFC) of UTF-8, without bytes that are malformed; *length of it. free() it; NULL with
  * *e set when memory is out. */
 char *unicode_compose(const char *text, size_t *length, struct err *e);
-
-#endif

@@ -4,9 +4,6 @@
 #include "base/utf8.h"
 #include "nn/unicode.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 static const char *const special_tokens[WORDPIECE_SPECIALS] = {"[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]"};
 
 /* FNV-1a, 64 bits. `hash` is the state so far. */

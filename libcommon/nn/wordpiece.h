@@ -3,8 +3,7 @@
  * decompose (NFD), drop accents, lower the case, then cut each word into the longest pieces of the vocabulary
  * from the left. A word of more than 100 characters, or one that cannot be cut up, is [UNK]. Pieces within a
  * word begin with "##". */
-#ifndef NN_WORDPIECE_H
-#define NN_WORDPIECE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -62,5 +61,3 @@ struct wordpieces {
 /* Appends the ids of a text, without [CLS] and [SEP]. Malformed UTF-8 is dropped. -1 only when memory is out.
  */
 int wordpiece_encode(const struct vocab *v, const char *text, struct wordpieces *out, struct err *e);
-
-#endif

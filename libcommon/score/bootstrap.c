@@ -6,7 +6,6 @@
 #include "base/rng.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Additions from which on threads pay. */
 enum { WORTH_THREADS = 1 << 20 };

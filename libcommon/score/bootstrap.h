@@ -1,7 +1,6 @@
 /* How sure a figure is: intervals by resampling (Efron 1979), and a test by swapping signs (Fisher 1935).
  * What is resampled is a unit: things that belong together and are drawn together. */
-#ifndef SCORE_BOOTSTRAP_H
-#define SCORE_BOOTSTRAP_H
+#pragma once
 
 #include "base/err.h"
 
@@ -33,5 +32,3 @@ int bootstrap_ratios(struct interval *intervals, const double *sums, size_t n, s
  */
 int bootstrap_sign_test(
 	double *p, const double *differences, size_t n, const struct bootstrap *how, struct err *e);
-
-#endif

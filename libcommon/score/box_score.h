@@ -1,7 +1,6 @@
 /* How well boxes in space match true ones: the figures of 3D grounding (Chen et al. 2020, ScanRefer: the
  * share of sentences whose box has an IoU of 0.25, or of 0.5, with the true one). */
-#ifndef SCORE_BOX_SCORE_H
-#define SCORE_BOX_SCORE_H
+#pragma once
 
 #include "geom/box.h"
 
@@ -30,5 +29,3 @@ struct box_score {
 
 /* Sums in the order of the pairs. All 0 but for distance and relative where n is 0. */
 void box_score_sum(struct box_score *s, const struct box_pair *pairs, size_t n);
-
-#endif

@@ -3,9 +3,6 @@
 #include "base/mem.h"
 #include "mask/mask_index.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 const double score_cut[3] = {0.25, 0.5, 0.75};
 
 void score_pairs_free(struct score_pairs *pairs)

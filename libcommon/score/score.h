@@ -1,6 +1,5 @@
 /* Scoring: predictions against truth, as mIoU, overall IoU and precision. */
-#ifndef SCORE_SCORE_H
-#define SCORE_SCORE_H
+#pragma once
 
 #include "mask/mask.h"
 
@@ -69,5 +68,3 @@ void score_sort(struct score_pair *pairs, size_t n);
 
 /* The figures of n measured pairs; all 0 where none has anything in its truth. */
 void score_sum(struct score *s, const struct score_pair *pairs, size_t n);
-
-#endif

@@ -5,8 +5,6 @@
 #include "mask/mask_index.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 const double answer_cut[ANSWER_CUTS] = {0.25, 0.5};
 
@@ -31,9 +29,7 @@ struct truth {
 
 static void truth_free(struct truth *t)
 {
-	free(t->views);
-	free(t->items);
-	free(t->names);
+	mem_free_all(t->views, t->items, t->names);
 }
 
 /* Of several masks of one object in a view the one without ref, else the first. */

@@ -2,8 +2,7 @@
  * and whether nothing is answered where nothing is meant. As Multi3DRefer scores (Zhang, Gong, Chang, ICCV
  * 2023), but for masks in views; and the figures of GRES (Liu, Ding, Jiang, CVPR 2023).
  * formats/records/scores.md. */
-#ifndef SCORE_SCORE_ANSWERS_H
-#define SCORE_SCORE_ANSWERS_H
+#pragma once
 
 #include "score/score.h"
 
@@ -65,5 +64,3 @@ void answer_score_sum(
 /* The figures that GRES has for targets: of the sentences that mean nothing the share that is refused
  * (N-acc), and of all others the share that is answered at all (T-acc). Each is NAN where there are none. */
 void answer_target_accuracy(double *none, double *some, const struct answers *a);
-
-#endif

@@ -3,9 +3,6 @@
 #include "base/mem.h"
 #include "mask/mask_index.h"
 
-#include <stddef.h>
-#include <string.h>
-
 /* Judges a pair by the truths of its view, keys begin to end. */
 static int judge(struct score_pair *p, const struct mask *truth, const struct mask_key *keys, size_t begin,
 	size_t end, struct err *e)

@@ -1,7 +1,6 @@
 /* Which object a prediction shows: choosing the wrong one is another fault than drawing the right one badly.
  */
-#ifndef SCORE_SCORE_CHOICE_H
-#define SCORE_SCORE_CHOICE_H
+#pragma once
 
 #include "score/score.h"
 
@@ -9,5 +8,3 @@
  * with the truth of every other object in the view. An object goes by its name, else by its ref. `truth` (n)
  * is what was matched. */
 int score_choices(struct score_pairs *pairs, const struct mask *truth, size_t n, struct err *e);
-
-#endif

@@ -3,9 +3,6 @@
 #include "base/mem.h"
 #include "mask/mask_index.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 const char *const score_seen_name[SCORE_SEEN] = {"<0.15", "0.15-0.5", "0.5-0.85", ">=0.85", "(unknown)"};
 
 void score_saying_names(const char *names[SCORE_SAYINGS])

@@ -1,7 +1,6 @@
 /* Groups that pairs belong to: by what their sentence says, and by how much of their object is seen. A pair's
  * set has the bit 1 << group; for score_table_groups. */
-#ifndef SCORE_SCORE_GROUPS_H
-#define SCORE_SCORE_GROUPS_H
+#pragma once
 
 #include "lang/parse.h"
 #include "score/score.h"
@@ -41,5 +40,3 @@ extern const char *const score_seen_name[SCORE_SEEN];
  * them, but no whole. */
 int score_seen(uint32_t *sets, const struct score_pair *pairs, size_t pair_n, const struct mask *truth,
 	size_t truth_n, const struct mask *wholes, size_t n, size_t *unknown, struct err *e);
-
-#endif

@@ -2,9 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* By truth; a pair without ref comes before those with one. */
 static int order_pairs(const void *a, const void *b)
 {

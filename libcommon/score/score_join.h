@@ -1,6 +1,5 @@
 /* Two prediction files against one truth: pairs of the one beside pairs of the other. */
-#ifndef SCORE_SCORE_JOIN_H
-#define SCORE_SCORE_JOIN_H
+#pragma once
 
 #include "score/score.h"
 
@@ -14,5 +13,3 @@
  * To be called before score_measure and score_sort; object and place become the same on both sides. On
  * failure both lists are as they were. */
 int score_join(struct score_pairs *a, struct score_pairs *b, struct err *e);
-
-#endif

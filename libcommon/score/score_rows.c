@@ -2,9 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 const char *const score_unit_name[] = {"", "objects", "pairs"};
 
 /* Ratios of a row, in the order of a unit's sums. */

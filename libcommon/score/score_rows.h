@@ -1,7 +1,6 @@
 /* Tables of scores: a row for all pairs, for each object and for each of other groups, with intervals, and
  * beside the figures of another prediction of the same truth. */
-#ifndef SCORE_SCORE_ROWS_H
-#define SCORE_SCORE_ROWS_H
+#pragma once
 
 #include "score/bootstrap.h"
 #include "score/score.h"
@@ -59,5 +58,3 @@ int score_table_groups(struct score_table *t, const struct score_sample *s, cons
 	const char *const *names, size_t count, uint32_t always, struct err *e);
 
 void score_table_free(struct score_table *t);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * A field of `channels` values for each of N Gaussians is (backproject_groups(channels), N, VIEW_GROUP): see
  * backproject_index. Images are (channels,P). */
-#ifndef SPLAT_BACKPROJECT_H
-#define SPLAT_BACKPROJECT_H
+#pragma once
 
 #include "splat/view_weights.h"
 
@@ -29,5 +28,3 @@ void backproject_add(const struct view_weights *w, const float *image, size_t ch
 
 /* image = W field. */
 void backproject_render(const struct view_weights *w, const float *field, size_t channels, float *image);
-
-#endif

@@ -1,6 +1,5 @@
 /* The state of a tile while it is blended; the loops over it are in blend_kernel.h. */
-#ifndef SPLAT_BLEND_H
-#define SPLAT_BLEND_H
+#pragma once
 
 #include "splat/tile.h"
 
@@ -59,5 +58,3 @@ static inline int blend_place(int x, int y)
 /* Starts a tile of which `columns` x `rows` pixels lie in the image; (x0, y0) is its corner. Of the sums only
  * those of `channels` channels are set. */
 void blend_start(struct blend_tile *t, int x0, int y0, int columns, int rows, int channels);
-
-#endif

@@ -1,8 +1,7 @@
 /* Gaussians from files of any layout: a reader gives rows of numbers in one order, and what every reader does
  * is done here: activations, leaving out what no scene may have, the offset. formats/splats/ply.md has the
  * rules. */
-#ifndef SPLAT_GAUSSIAN_ROWS_H
-#define SPLAT_GAUSSIAN_ROWS_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/splats.h"
@@ -60,5 +59,3 @@ double gaussian_logit(double opacity);
  * takes. */
 enum { FLIP_X = 1, FLIP_Y = 2, FLIP_Z = 4 };
 int gaussian_flip_sign(int coefficient, int axes);
-
-#endif

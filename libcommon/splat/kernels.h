@@ -1,6 +1,5 @@
 /* The innermost loops, built once for each instruction set. */
-#ifndef SPLAT_KERNELS_H
-#define SPLAT_KERNELS_H
+#pragma once
 
 #include "base/cpu.h"
 #include "splat/blend.h"
@@ -28,5 +27,3 @@ struct kernels {
 const struct kernels *kernels_of(enum cpu_level level);
 
 extern const struct kernels kernels_plain, kernels_avx2, kernels_avx512;
-
-#endif

@@ -1,6 +1,5 @@
 /* A scene as a whole, moved: x becomes rotation (scale x) + shift. */
-#ifndef SPLAT_MOVE_H
-#define SPLAT_MOVE_H
+#pragma once
 
 #include "splat/sh.h"
 #include "splat/splats.h"
@@ -18,5 +17,3 @@ void splats_move(struct splats *s, double offset[3], const struct move *m);
 /* The matrix that turns harmonics: where colour is sum_k sh[k] Y_k(d), that of the turned scene is
  * sum_j (sum_k turn[j][k] sh[k]) Y_j(d). Bands do not mix. */
 void sh_turn(const double rotation[3][3], double turn[SH_MAX][SH_MAX]);
-
-#endif

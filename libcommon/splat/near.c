@@ -5,8 +5,6 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define NEAR_FIRST 0.05	 /* of the Gaussians in view */
 #define NEAR_SHARE 0.02	 /* what 0.2 is of d in a real scene of 3DGS */

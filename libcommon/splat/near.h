@@ -7,8 +7,7 @@
  * NEAR_COVERS of a picture. It is 0.2 where nothing that a view shows lies between that and 0.2; up to
  * NEAR_MOST d so little may lie there that it covers NEAR_SAME of the pictures. So a scene keeps its pictures
  * in any unit. */
-#ifndef SPLAT_NEAR_H
-#define SPLAT_NEAR_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -16,5 +15,3 @@
 
 /* Sets s->near. Returns 0, or -1 with *e set. */
 int near_find(struct splats *s, const struct cameras *cameras, struct err *e);
-
-#endif

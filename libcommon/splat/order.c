@@ -4,8 +4,6 @@
 #include "base/threads.h"
 
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
 	DIGIT_BITS = 12,

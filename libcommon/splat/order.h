@@ -1,6 +1,5 @@
 /* Depth order: a stable radix sort of indices. */
-#ifndef SPLAT_ORDER_H
-#define SPLAT_ORDER_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/project.h"
@@ -20,5 +19,3 @@ uint32_t order_key(double depth);
  * more. Returns the one of the two that has the result; NULL with *e set when memory is out. */
 struct order_item *order_sort(struct order_item *items, struct order_item *spare, size_t n,
 	const struct projected *p, struct err *e);
-
-#endif

@@ -4,8 +4,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Lloyd's iterations: after these the codes of a real scene move by less than a hundredth of their distance.
  */
@@ -298,8 +296,6 @@ int palette_rows(float *centres, size_t *k, uint16_t *labels, const float *rows,
 		take_centres(&c, centres, labels);
 	}
 	*k = c.count;
-	free(c.ids);
-	free(c.sets);
-	free(c.sums);
+	mem_free_all(c.ids, c.sets, c.sums);
 	return bad ? -1 : 0;
 }

@@ -1,7 +1,6 @@
 /* What .sog files number their values by: a codebook of single numbers, a palette of rows of them. Both are
  * found without chance, so that the same scene makes the same file. formats/splats/sog.md. */
-#ifndef SPLAT_PALETTE_H
-#define SPLAT_PALETTE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -23,5 +22,3 @@ int palette_code(const double codes[PALETTE_CODES], double value);
  * until there are `most` sets or none has an error. Returns 0, or -1 with *e set. */
 int palette_rows(float *centres, size_t *k, uint16_t *labels, const float *rows, size_t n, size_t width,
 	size_t most, struct err *e);
-
-#endif

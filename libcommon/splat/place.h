@@ -1,6 +1,5 @@
 /* A tile's place in the image. */
-#ifndef SPLAT_PLACE_H
-#define SPLAT_PLACE_H
+#pragma once
 
 #include "splat/blend.h"
 #include "splat/tile.h"
@@ -52,5 +51,3 @@ static inline void place_plane(const struct tile_grid *g, struct place at, const
 				memcpy(to, from, (size_t)(at.columns - x) * sizeof *to);
 		}
 }
-
-#endif

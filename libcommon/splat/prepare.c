@@ -5,8 +5,6 @@
 #include "splat/view.h"
 
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 static size_t count_blocks(size_t gaussians)
 {
@@ -29,10 +27,7 @@ static int make_room(struct render_view *v, size_t gaussians, struct err *e)
 
 	if (v->projected && gaussians <= v->gaussian_room)
 		return 0;
-	free(v->projected);
-	free(v->order);
-	free(v->covers);
-	free(v->found);
+	mem_free_all(v->projected, v->order, v->covers, v->found);
 	free_spans(v);
 	v->gaussian_room = gaussians;
 	v->projected = mem_alloc(gaussians, sizeof *v->projected, "projected Gaussians", e);
@@ -178,10 +173,7 @@ void render_free(struct render_view *v)
 		return;
 	tile_free(&v->tiles);
 	wanted_free(&v->wanted);
-	free(v->projected);
-	free(v->order);
-	free(v->covers);
-	free(v->found);
+	mem_free_all(v->projected, v->order, v->covers, v->found);
 	free_spans(v);
 	free(v->tallies);
 	free(v);

@@ -1,7 +1,6 @@
 /* Projection of Gaussians to a view: EWA as in 3DGS (Zwicker et al. 2001; Kerbl et al. 2023, section 4), in
  * double. */
-#ifndef SPLAT_PROJECT_H
-#define SPLAT_PROJECT_H
+#pragma once
 
 #include "geom/camera.h"
 #include "splat/splats.h"
@@ -52,5 +51,3 @@ struct project_batch {
 
 /* Gaussian i as lane `lane`. Returns 0, and leaves the lane, where it is too faint for any pixel. */
 int project_take(struct project_batch *b, const struct splats *s, size_t i, int lane);
-
-#endif

@@ -8,8 +8,6 @@
 
 #include <math.h>
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define UNIT 0x1p-52
 

@@ -1,6 +1,5 @@
 /* Leaving the smallest weights out of a view's matrix. */
-#ifndef SPLAT_PRUNE_H
-#define SPLAT_PRUNE_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/render.h"
@@ -14,5 +13,3 @@
  * was. */
 int prune_weights(struct render_weights *w, size_t pixels, double tolerance, double least, float *dropped,
 	struct err *e);
-
-#endif

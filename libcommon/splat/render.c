@@ -6,9 +6,6 @@
 #include "splat/sh.h"
 #include "splat/view.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Blends up to BLEND_CHANNELS planes; `values` is (N, channels). */
 static void blend_planes(
 	const struct render_view *v, const float *values, int channels, float *out, float *transmittance)

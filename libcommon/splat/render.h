@@ -12,8 +12,7 @@
  * Weights agree with double precision to 1e-6; a pixel may differ by a whole Gaussian where a falls within
  * rounding of 1/255, or T of 1e-4. Results do not depend on tile size or number of threads. They are the same
  * on all machines of one instruction set (base/cpu.h) and differ by rounding between them. */
-#ifndef SPLAT_RENDER_H
-#define SPLAT_RENDER_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -85,5 +84,3 @@ void render_packed(
 /* Colours from spherical harmonics over a background: rgb (P,3) in [0,1] clamped. */
 int render_colors(const struct render_view *v, const struct splats *s, const struct camera *c,
 	const float background[3], float *rgb, struct err *e);
-
-#endif

@@ -2,9 +2,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 int splats_alloc(struct splats *s, size_t n, int sh_coefficients, struct err *e)
 {
 	*s = (struct splats){.n = n, .sh_coefficients = sh_coefficients, .near = SPLATS_NEAR};
@@ -21,20 +18,13 @@ int splats_alloc(struct splats *s, size_t n, int sh_coefficients, struct err *e)
 
 void splats_free(struct splats *s)
 {
-	free(s->means);
-	free(s->scales);
-	free(s->quats);
-	free(s->opacities);
-	free(s->sh);
+	mem_free_all(s->means, s->scales, s->quats, s->opacities, s->sh);
 	*s = (struct splats){0};
 }
 
 void splats_keep_means(struct splats *s)
 {
-	free(s->scales);
-	free(s->quats);
-	free(s->opacities);
-	free(s->sh);
+	mem_free_all(s->scales, s->quats, s->opacities, s->sh);
 	*s = (struct splats){.n = s->n, .near = s->near, .means = s->means};
 }
 

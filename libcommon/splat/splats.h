@@ -1,6 +1,5 @@
 /* A trained scene of 3D Gaussians, activations already applied (3DGS, Kerbl et al. 2023). */
-#ifndef SPLAT_SPLATS_H
-#define SPLAT_SPLATS_H
+#pragma once
 
 #include "base/err.h"
 
@@ -28,5 +27,3 @@ int splats_keep(struct splats *to, const struct splats *from, const char *kept, 
 /* Frees all that they have but n and the means, where no more is needed. */
 void splats_keep_means(struct splats *s);
 void splats_free(struct splats *s);
-
-#endif

@@ -5,8 +5,6 @@
 
 #include <math.h>
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 struct tile_grid tile_grid(int width, int height)
 {

@@ -1,6 +1,5 @@
 /* Which Gaussians touch which tile of 16x16 pixels. */
-#ifndef SPLAT_TILE_H
-#define SPLAT_TILE_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/order.h"
@@ -64,5 +63,3 @@ int tile_bin(struct tile_lists *t, const struct tile_grid *g, const struct order
 	const uint32_t *covers, const struct tile_spans *spans, const uint32_t *tallies, int tally_count,
 	struct err *e);
 void tile_free(struct tile_lists *t);
-
-#endif

@@ -1,6 +1,5 @@
 /* What render_prepare makes; for the rasteriser, its way back in training (fit), and tests. */
-#ifndef SPLAT_VIEW_H
-#define SPLAT_VIEW_H
+#pragma once
 
 #include "base/cpu.h"
 #include "splat/order.h"
@@ -28,5 +27,3 @@ struct render_view {
 	size_t *found;		  /* (blocks) how many are visible */
 	uint32_t *tallies;	  /* (threads,tile_tallies) */
 };
-
-#endif

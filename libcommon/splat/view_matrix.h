@@ -1,6 +1,5 @@
 /* A view's blend weights in whichever of two forms they come. */
-#ifndef SPLAT_VIEW_MATRIX_H
-#define SPLAT_VIEW_MATRIX_H
+#pragma once
 
 #include "splat/view_tiles.h"
 #include "splat/view_weights.h"
@@ -11,5 +10,3 @@ struct view_matrix {
 	struct view_weights rows;	/* by pixels: rows.pixels is P */
 	const struct view_tiles *tiles; /* by tiles, and rows have nothing; else NULL */
 };
-
-#endif

@@ -1,5 +1,6 @@
 #include "splat/view_tiles.h"
 
+#include "base/mem.h"
 #include "splat/view_weights.h"
 
 #include <stdlib.h>
@@ -62,10 +63,6 @@ void view_tiles_blend_group(const struct view_tiles *t, const float *m, float *i
 
 void view_tiles_free(struct view_tiles *t)
 {
-	free(t->begin);
-	free(t->ids);
-	free(t->maps);
-	free(t->level_begin);
-	free(t->levels);
+	mem_free_all(t->begin, t->ids, t->maps, t->level_begin, t->levels);
 	*t = (struct view_tiles){0};
 }

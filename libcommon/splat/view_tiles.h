@@ -1,7 +1,6 @@
 /* A view's blend weights by tiles of pixels, as a packed file has them (formats/scene/weights.md): what needs
  * a pass over them and no rows of pixels is spared those, which take five times the memory. */
-#ifndef SPLAT_VIEW_TILES_H
-#define SPLAT_VIEW_TILES_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -45,5 +44,3 @@ void view_tiles_blend_group(const struct view_tiles *t, const float *m, float *i
 void view_tiles_lookup_make(struct view_tiles_lookup *l, const struct view_tiles *t);
 
 void view_tiles_free(struct view_tiles *t);
-
-#endif

@@ -1,7 +1,6 @@
 /* Blending with fixed weights: geometry is frozen, so the image of a view is a sparse product M = W m (design
  * section 4). W is CSR over pixels, as gs-weigh writes it. */
-#ifndef SPLAT_VIEW_WEIGHTS_H
-#define SPLAT_VIEW_WEIGHTS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -32,5 +31,3 @@ void view_blend_back_group(const struct view_weights *w, const float *dimage, si
  * slabs (VIEW_SLABS,N), and these are added in order, whatever the number of threads. */
 enum { VIEW_SLABS = 8 };
 void view_join(const float *slabs, size_t gaussians, float *dm);
-
-#endif

@@ -4,7 +4,6 @@
 #include "splat/render.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* most (N): the largest weight of each Gaussian at any pixel, so far. */
 static int look(struct render_view **v, struct render_weights *w, const struct splats *s,

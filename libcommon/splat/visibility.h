@@ -1,7 +1,6 @@
 /* Which Gaussians the training views show. Those under and inside things shine through a little, and so take
  * part in an object's masks without being of it: a plate's outline must not have the table under it. */
-#ifndef SPLAT_VISIBILITY_H
-#define SPLAT_VISIBILITY_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -20,5 +19,3 @@ int visibility_most(const struct splats *s, const struct cameras *cameras, float
 
 /* in_sight (s->n) gets 0 or 1. */
 int visibility_find(const struct splats *s, const struct cameras *cameras, char *in_sight, struct err *e);
-
-#endif

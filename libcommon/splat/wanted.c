@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Standard deviations to where a <= 1 falls below 1/255, sqrt(2 log 255) = 3.3290, rounded up. */
 #define DEVIATIONS 3.33

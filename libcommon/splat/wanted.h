@@ -1,6 +1,5 @@
 /* Which tiles of a view are wanted: those that Gaussians of a kind may show in. */
-#ifndef SPLAT_WANTED_H
-#define SPLAT_WANTED_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/kernels.h"
@@ -37,5 +36,3 @@ int wanted_lane(const struct wanted *w, const struct tile_grid *g, const struct 
  */
 int wanted_reach(const struct wanted *w, const struct tile_grid *g, const struct splats *s,
 	const struct project_lens *lens, size_t i);
-
-#endif

@@ -6,7 +6,6 @@
 #include "splat/view.h"
 
 #include <omp.h>
-#include <stdlib.h>
 
 /* The rows of a tile's pixels stand far apart in the matrix, and how long they are is known only when all
  * are blended. Blending twice, first for the lengths, is cheaper than keeping all records: they are half as
@@ -175,9 +174,6 @@ int render_weights(const struct render_view *v, struct render_weights *w, struct
 
 void render_weights_free(struct render_weights *w)
 {
-	free(w->indptr);
-	free(w->index);
-	free(w->weight);
-	free(w->transmittance);
+	mem_free_all(w->indptr, w->index, w->weight, w->transmittance);
 	*w = (struct render_weights){0};
 }

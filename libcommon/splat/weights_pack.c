@@ -6,8 +6,6 @@
 #include "base/mem.h"
 #include "base/ones.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <zstd.h>
 
 enum { IDS, MAPS, LEVELS, PIXELS = VIEW_TILE_PIXELS, EFFORT = 1 };
@@ -86,10 +84,7 @@ int weights_packer_make(struct weights_packer *t, size_t gaussians, struct err *
 
 void weights_packer_free(struct weights_packer *t)
 {
-	free(t->ids);
-	free(t->spare);
-	free(t->levels);
-	free(t->slot);
+	mem_free_all(t->ids, t->spare, t->levels, t->slot);
 	*t = (struct weights_packer){0};
 }
 

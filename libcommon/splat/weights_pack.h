@@ -1,6 +1,5 @@
 /* A view's weights in few bytes: formats/scene/weights.md, "Packed". Used by formats/scene/weights.c. */
-#ifndef SPLAT_WEIGHTS_PACK_H
-#define SPLAT_WEIGHTS_PACK_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/view_tiles.h"
@@ -73,5 +72,3 @@ int weights_unpack_tiles(const struct weights_pack *p, int width, int height, in
 /* The tiles and the rows; weights are level / 255, in the order of the Gaussians within a pixel. */
 int weights_unpack(const struct weights_pack *p, int width, int height, int64_t gaussians, const char *path,
 	struct weights_room *to, struct err *e);
-
-#endif

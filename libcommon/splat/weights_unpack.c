@@ -5,8 +5,6 @@
 #include "base/mem.h"
 #include "base/ones.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <zstd.h>
 
 enum { IDS, MAPS, LEVELS, PIXELS = VIEW_TILE_PIXELS };
@@ -208,10 +206,7 @@ static void put_row(const struct view_tiles *t, const struct view_tiles_lookup *
 void weights_room_free(struct weights_room *r)
 {
 	view_tiles_free(&r->tiles);
-	free(r->indptr);
-	free(r->index);
-	free(r->weight);
-	free(r->ids);
+	mem_free_all(r->indptr, r->index, r->weight, r->ids);
 	*r = (struct weights_room){0};
 }
 

@@ -7,8 +7,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 void synth_cameras_aim(struct camera *c, const double centre[3], const double target[3], double roll)
 {

@@ -1,7 +1,6 @@
 /* The cameras of a synthetic scene: someone walks round the front of the table twice, once low and once high.
  */
-#ifndef SYNTH_CAMERAS_H
-#define SYNTH_CAMERAS_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -33,5 +32,3 @@ int synth_cameras_check(const struct cameras *c, const struct synth_object *obje
  * sight; no camera is where another is. Does nothing where that share is 0. Returns 0, or -1 with *e set. */
 int synth_cameras_hide(struct cameras *c, const struct synth_options *o, const struct synth_object *objects,
 	const struct synth_table *table, struct err *e);
-
-#endif

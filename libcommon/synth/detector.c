@@ -4,8 +4,6 @@
 #include "synth/outline.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Below this many pixels an object is as good as hidden. */
 enum { SMALLEST = 12 };

@@ -1,7 +1,6 @@
 /* Candidate masks as a text-prompted detector and segmenter gives them: ragged, partial, joined with a
  * neighbour, missing, and for some sentences an object that was never meant, with confidence. */
-#ifndef SYNTH_DETECTOR_H
-#define SYNTH_DETECTOR_H
+#pragma once
 
 #include "base/err.h"
 #include "mask/mask.h"
@@ -56,5 +55,3 @@ void synth_detector_make(struct synth_detector *d, const struct synth_object *ob
  * of calls. */
 int synth_detect(struct masks *out, const struct synth_detector *d, int number, const char *view, int count,
 	const uint8_t *truth, int height, int width, struct err *e);
-
-#endif

@@ -8,7 +8,6 @@
 #include "synth/shading.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* With its middle so many deviations inside an edge, the edge is where an opaque Gaussian begins to fade. */
 static const double inside = 1.1;

@@ -1,6 +1,5 @@
 /* Smooth noise: for the grain of wood, for mottled colours, and for ragged outlines. */
-#ifndef SYNTH_NOISE_H
-#define SYNTH_NOISE_H
+#pragma once
 
 #include "base/rng.h"
 
@@ -14,5 +13,3 @@ void synth_noise_make(struct synth_noise *n, struct rng *r);
 
 /* Between the lattice's points, which lie at whole x and y and repeat with the period. In [-1,1). */
 double synth_noise_at(const struct synth_noise *n, double x, double y);
-
-#endif

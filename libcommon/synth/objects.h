@@ -1,7 +1,6 @@
 /* The things on the table: what each is, and where it stands. World units are about a decimetre and a half; z
  * is up and the table's top is z = 0, its middle the origin. */
-#ifndef SYNTH_OBJECTS_H
-#define SYNTH_OBJECTS_H
+#pragma once
 
 #include "geom/box.h"
 #include "synth/surface.h"
@@ -110,5 +109,3 @@ int synth_look_alike(const struct synth_object *a, const struct synth_object *b)
 /* The smallest box along the world's axes, and the one that is turned with the object: along its sides, or a
  * mug's handle. What is round all about fits every turn, and has both the same. */
 void synth_object_boxes(const struct synth_object *o, struct box *aligned, struct box *along_sides);
-
-#endif

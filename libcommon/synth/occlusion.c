@@ -3,8 +3,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { CELLS = SYNTH_OCCLUSION_COLUMNS * SYNTH_OCCLUSION_COLUMNS };
 
@@ -42,10 +40,7 @@ int synth_occlusion_make(struct synth_occlusion *s, const struct synth_object *o
 
 void synth_occlusion_free(struct synth_occlusion *s)
 {
-	free(s->points);
-	free(s->depth);
-	free(s->seen);
-	free(s->last);
+	mem_free_all(s->points, s->depth, s->seen, s->last);
 	*s = (struct synth_occlusion){0};
 }
 

@@ -1,7 +1,6 @@
 /* How much of each object a camera sees past the others, quickly and about right: points of the surfaces in a
  * coarse depth buffer. Accurate to a few percent; what counts is told by the rasteriser (synth/truth.h). */
-#ifndef SYNTH_OCCLUSION_H
-#define SYNTH_OCCLUSION_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -27,5 +26,3 @@ void synth_occlusion_free(struct synth_occlusion *s);
 /* whole (n) gets the cells in which an object lies, visible (n) those in which nothing of another is nearer.
  */
 void synth_occlusion_look(struct synth_occlusion *s, const struct camera *c, int *visible, int *whole);
-
-#endif

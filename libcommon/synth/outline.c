@@ -4,8 +4,6 @@
 #include "geom/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 struct box {
 	int top, left, height, width;

@@ -1,6 +1,5 @@
 /* What a segmenter does to a mask: ragged edges, halves. */
-#ifndef SYNTH_OUTLINE_H
-#define SYNTH_OUTLINE_H
+#pragma once
 
 #include "base/err.h"
 #include "base/rng.h"
@@ -18,5 +17,3 @@ int synth_outline_rag(uint8_t *mask, int height, int width, double rag, double s
 void synth_outline_cut(uint8_t *mask, int height, int width, double share, struct rng *r);
 
 size_t synth_outline_area(const uint8_t *mask, size_t pixels);
-
-#endif

@@ -1,7 +1,6 @@
 /* The scenes that gs-synth can make: what is on the table, what the room is like, and how it is photographed.
  */
-#ifndef SYNTH_PRESETS_H
-#define SYNTH_PRESETS_H
+#pragma once
 
 #include "synth/objects.h"
 
@@ -57,5 +56,3 @@ uint64_t synth_preset_seed(int number, uint64_t seed, int attempt);
  * most one other, and none that carries stands on another. Otherwise none touches another. */
 void synth_arrange(struct synth_object *objects, int n, struct synth_table *table,
 	const struct synth_preset *preset, uint64_t seed);
-
-#endif

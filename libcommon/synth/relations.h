@@ -1,7 +1,6 @@
 /* Where things are, as somebody sees them. A relation is judged in three values, so that a sentence is only
  * used where nobody could doubt what it means: 1 plainly true, -1 plainly false, 0 arguable. */
-#ifndef SYNTH_RELATIONS_H
-#define SYNTH_RELATIONS_H
+#pragma once
 
 #include "geom/camera.h"
 #include "lang/parse.h"
@@ -49,5 +48,3 @@ int synth_relation_judge(
 int synth_relation_compare(const struct synth_viewpoint *s, enum parse_relation direction, int i, int j);
 
 int synth_relation_is_size(enum parse_relation r);
-
-#endif

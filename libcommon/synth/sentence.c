@@ -4,9 +4,6 @@
 
 #include "base/mem.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 void synth_sentences_free(struct synth_sentences *list)
 {
 	free(list->items);

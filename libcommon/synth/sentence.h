@@ -1,8 +1,7 @@
 /* A sentence of a synthetic scene: what it says, as phrases and clauses like those of lang/parse.h, and its
  * words. It is first made as phrases and clauses, then judged on the scene's geometry, then put into words.
  */
-#ifndef SYNTH_SENTENCE_H
-#define SYNTH_SENTENCE_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -109,5 +108,3 @@ int synth_sentences_make(
 	struct synth_sentences *list, const struct synth_viewpoint *v, uint64_t seed, struct err *e);
 
 int synth_count_words(const char *text);
-
-#endif

@@ -1,6 +1,5 @@
 /* What colour things have, and what the lamp makes of it. Colours are sRGB in [0,1]. */
-#ifndef SYNTH_SHADING_H
-#define SYNTH_SHADING_H
+#pragma once
 
 #include "synth/noise.h"
 #include "synth/synth_scene.h"
@@ -16,5 +15,3 @@ double synth_shade(const double normal[3]);
 /* Spherical harmonics of degree 1 (4,3): `rgb` on average, brighter by up to `gloss` seen from where the lamp
  * is mirrored. */
 void synth_harmonics(float *sh, const double rgb[3], const double normal[3], double gloss);
-
-#endif

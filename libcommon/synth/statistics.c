@@ -4,8 +4,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 const char *const synth_bands[SYNTH_BANDS] = {"0", "<0.15", "0.15-0.5", "0.5-0.85", ">=0.85"};
 

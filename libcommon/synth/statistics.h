@@ -1,6 +1,5 @@
 /* What is in a synthetic benchmark, in figures. */
-#ifndef SYNTH_STATISTICS_H
-#define SYNTH_STATISTICS_H
+#pragma once
 
 #include "base/err.h"
 #include "synth/synth_scene.h"
@@ -42,5 +41,3 @@ void synth_statistics_see(struct synth_statistics *s, enum camera_split split, s
 double synth_statistics_share(const struct synth_sentences *sentences, const struct synth_row *relation);
 
 extern const char *const synth_bands[SYNTH_BANDS]; /* their names: "0", "<0.15" ... */
-
-#endif

@@ -3,8 +3,7 @@
  * A point of a surface is named by (a,b) in [0,1)^2: a runs over the patches in proportion to their area and,
  * inside one, across it; b runs around it. The map preserves area, so that an even spread of (a,b) is an even
  * spread on the surface. */
-#ifndef SYNTH_SURFACE_H
-#define SYNTH_SURFACE_H
+#pragma once
 
 enum synth_patch_kind { SYNTH_FRUSTUM, SYNTH_RECTANGLE, SYNTH_HALF_RING };
 
@@ -58,5 +57,3 @@ void synth_surface_spot(
 
 /* How far the surface reaches in direction d: the greatest d . p of its points. */
 double synth_surface_reach(const struct synth_surface *s, const double d[3]);
-
-#endif

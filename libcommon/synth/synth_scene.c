@@ -3,8 +3,6 @@
 #include "base/mem.h"
 #include "synth/cameras.h"
 
-#include <stdlib.h>
-
 int synth_scene_make(struct synth_scene *s, const struct synth_options *o, struct err *e)
 {
 	*s = (struct synth_scene){.preset = o->preset, .object_count = o->objects};

@@ -1,7 +1,6 @@
 /* A table in a room, with objects, as Gaussians and cameras. Deterministic: the same options give the same
  * scene. */
-#ifndef SYNTH_SYNTH_SCENE_H
-#define SYNTH_SYNTH_SCENE_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -47,5 +46,3 @@ int synth_truth_visible(const struct synth_scene *s, const struct render_view *v
 
 /* The same as if nothing else were there: the object's own Gaussians rendered alone. */
 int synth_truth_whole(const struct synth_scene *s, const struct camera *c, uint8_t *masks, struct err *e);
-
-#endif

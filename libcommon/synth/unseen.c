@@ -1,14 +1,11 @@
 #include "synth/unseen.h"
 
 #include "base/mem.h"
-#include "synth/cameras.h"
 #include "synth/occlusion.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { TRIES = 4000, FRAME_TRIES = 4, MAX_VIEWS = 64 };
 

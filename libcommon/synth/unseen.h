@@ -1,8 +1,7 @@
 /* Sentences in a wording of their own, for testing what takes sentences apart: words, frames and ways of
  * turning a sentence round are kept apart from those of synth/sentence.h. What is kept means the same
  * objects to anybody by a margin, and its parse and its objects are exact. */
-#ifndef SYNTH_UNSEEN_H
-#define SYNTH_UNSEEN_H
+#pragma once
 
 #include "synth/sentence.h"
 
@@ -45,5 +44,3 @@ int synth_unseen_build(struct synth_draft *d, int two_hop);
 
 /* The same of something that is not there. */
 int synth_unseen_build_absent(struct synth_draft *d);
-
-#endif

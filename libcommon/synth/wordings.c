@@ -7,8 +7,6 @@
 #include "base/mem.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 EMBED(synth_sentences, "libcommon/synth/sentences.tsv");
 EMBED(synth_unseen, "libcommon/synth/unseen.tsv");

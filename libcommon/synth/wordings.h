@@ -1,8 +1,7 @@
 /* What sentences are made of: frames, wordings of relations, and words for what objects are. They are data:
  * sentences.tsv for training and test sentences, unseen.tsv for those that test parsers. No author of a
  * parser should read unseen.tsv. */
-#ifndef SYNTH_WORDINGS_H
-#define SYNTH_WORDINGS_H
+#pragma once
 
 #include "base/err.h"
 #include "base/rng.h"
@@ -111,5 +110,3 @@ void synth_sense_add(struct synth_sense *s, const struct synth_row *word);
 int synth_sense_judge(const struct synth_sense *s, const struct synth_object *o);
 
 extern const struct synth_sense synth_anything;
-
-#endif

@@ -1,7 +1,6 @@
 /* Whether a training has diverged, as it does where its rates are too high: a loss or a parameter that is not
  * finite, or losses that stay far above those of a model that says nothing. */
-#ifndef TRAIN_DIVERGENCE_H
-#define TRAIN_DIVERGENCE_H
+#pragma once
 
 #include "base/err.h"
 #include "train/train.h"
@@ -32,5 +31,3 @@ int divergence_check(struct divergence *d, const struct train_state *t, const st
 
 /* 1 where the state is good as far as one can tell, so that a checkpoint may replace an earlier one. */
 int divergence_is_good(const struct divergence *d, const struct train_state *t);
-
-#endif

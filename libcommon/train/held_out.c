@@ -7,8 +7,6 @@
 
 #include <math.h>
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { STREAM_HELD = 6 };
 
@@ -133,11 +131,7 @@ int held_out_init(struct held_out *h, const struct view_source *views, const int
 
 void held_out_free(struct held_out *h)
 {
-	free(h->order);
-	free(h->response);
-	free(h->images);
-	free(h->masks);
-	free(h->scores);
+	mem_free_all(h->order, h->response, h->images, h->masks, h->scores);
 	*h = (struct held_out){0};
 }
 

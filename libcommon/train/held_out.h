@@ -1,7 +1,6 @@
 /* Held-out supervision: pairs of a view and an object that are not learned from, and how well they are
  * answered all the same, which says when to stop. */
-#ifndef TRAIN_HELD_OUT_H
-#define TRAIN_HELD_OUT_H
+#pragma once
 
 #include "base/err.h"
 #include "train/step.h"
@@ -42,5 +41,3 @@ void held_out_free(struct held_out *h);
  * cannot be read. */
 int held_out_evaluate(struct held_out *h, struct step *s, const float *parameters, const float *x,
 	struct held_out_score *score, struct err *e);
-
-#endif

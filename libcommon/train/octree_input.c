@@ -5,8 +5,6 @@
 #include "splat/backproject.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { K = OCTREE_SIGNATURE, STREAM_SIGNATURE = 3 };
 

@@ -1,7 +1,6 @@
 /* How much detail the training views can teach of each Gaussian: what the octree of shared features is built
  * from. */
-#ifndef TRAIN_OCTREE_INPUT_H
-#define TRAIN_OCTREE_INPUT_H
+#pragma once
 
 #include "base/err.h"
 #include "field/octree.h"
@@ -21,5 +20,3 @@ void octree_input_footprints(
  * masks in the view). weight (scene_gaussians): over all views. Returns 0, or -1 with *e set. */
 int octree_input_signatures(const struct view_source *views, const int *objects, size_t scene_gaussians,
 	const double *weight, float *signature, struct err *e);
-
-#endif

@@ -3,8 +3,6 @@
 #include "base/each.h"
 #include "base/mem.h"
 
-#include <stdlib.h>
-
 static size_t indptr_bytes(const struct view_weights *w)
 {
 	return (w->pixels + 1) * sizeof *w->indptr;
@@ -122,9 +120,7 @@ void row_views_free(struct row_views *r)
 	if (r->views)
 		omp_destroy_lock(&r->lock);
 	scratch_close(&r->file);
-	free(r->views);
-	free(r->parts);
-	free(r->maps);
+	mem_free_all(r->views, r->parts, r->maps);
 	*r = (struct row_views){0};
 }
 

@@ -1,7 +1,6 @@
 /* The training views with weights over rows (field/rows.h): in memory as far as they have room there, the
  * others in a file without a name. What is learned does not depend on where they are. */
-#ifndef TRAIN_ROW_VIEWS_H
-#define TRAIN_ROW_VIEWS_H
+#pragma once
 
 #include "base/err.h"
 #include "base/scratch.h"
@@ -41,5 +40,3 @@ struct view_source row_views_source(struct row_views *r);
 
 /* Has the system read a view that is needed soon. */
 void row_views_ahead(const struct row_views *r, size_t view);
-
-#endif

@@ -3,12 +3,7 @@
 #include "base/mem.h"
 #include "field/forward.h"
 #include "field/image_loss.h"
-#include "field/panels.h"
 #include "field/text_mlp.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { L = BLOCK_LANES, G = BLOCK_G, CHUNKS = FORWARD_CHUNKS };
 
@@ -256,18 +251,9 @@ void step_free(struct step *s)
 		return;
 	text_mlp_free(&s->words);
 	forward_free(&s->forward);
-	free(s->places);
-	free(s->chosen);
-	free(s->chosen_objects);
-	free(s->is_chosen);
-	free(s->slab);
-	free(s->response);
+	mem_free_all(s->places, s->chosen, s->chosen_objects, s->is_chosen, s->slab, s->response);
 	image_loss_free(&s->images);
-	free(s->dvectors);
-	free(s->fg);
-	free(s->chunks);
-	free(s->total);
-	free(s);
+	mem_free_all(s->dvectors, s->fg, s->chunks, s->total, s);
 }
 
 /* From words to responses, in arrays.m. */

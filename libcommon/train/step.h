@@ -1,8 +1,7 @@
 /* One training step of the referring model, folded and in float32 (design section 4): responses of the step's
  * sentences, images of a view, both losses and every gradient. Results do not depend on the number of
  * threads. */
-#ifndef TRAIN_STEP_H
-#define TRAIN_STEP_H
+#pragma once
 
 #include "base/err.h"
 #include "field/block.h"
@@ -82,5 +81,3 @@ struct step_losses step_run(struct step *s, const float *parameters, const float
 
 /* Responses m (gaussians) of one sentence. */
 void step_respond(struct step *s, const float *parameters, const float *x, size_t sentence, float *m);
-
-#endif

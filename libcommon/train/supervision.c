@@ -3,9 +3,6 @@
 #include "base/mem.h"
 #include "mask/bits.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum { FIRST_SLOTS = 64 };
 
 /* FNV-1a over words of eight bytes, the last filled up with 0, and its high bits folded into the low ones,

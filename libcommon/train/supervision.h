@@ -1,6 +1,5 @@
 /* Supervision: which mask teaches which sentence in which view. */
-#ifndef TRAIN_SUPERVISION_H
-#define TRAIN_SUPERVISION_H
+#pragma once
 
 #include "base/err.h"
 #include "mask/mask_index.h"
@@ -43,5 +42,3 @@ void supervision_free(struct supervision *s);
 int supervision_link(const struct supervision *s, const char *const *refs, const char *const *objects,
 	size_t sentences, struct train_view *views, size_t view_count, struct err *e);
 void supervision_unlink(struct train_view *views, size_t view_count);
-
-#endif

@@ -6,8 +6,6 @@
 #include "nn/adam.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Streams of random numbers, one a purpose. */
 enum { STREAM_INIT = 1, STREAM_GROUPS = 2, STREAM_OTHERS = 4, STREAM_VIEWS = 1000 };
@@ -109,9 +107,7 @@ int train_order_init(struct train_order *o, const struct train_view *views, size
 
 void train_order_free(struct train_order *o)
 {
-	free(o->order);
-	free(o->shuffled);
-	free(o->others);
+	mem_free_all(o->order, o->shuffled, o->others);
 	*o = (struct train_order){0};
 }
 

@@ -1,6 +1,5 @@
 /* Training: what is learned from, the order in which it is seen, and the state that a checkpoint holds. */
-#ifndef TRAIN_TRAIN_H
-#define TRAIN_TRAIN_H
+#pragma once
 
 #include "base/err.h"
 #include "splat/view_weights.h"
@@ -100,5 +99,3 @@ void train_adam(struct train_state *t, const struct train_rates *rates);
  */
 struct step_losses train_step(struct train_state *t, struct step *s, struct train_order *o,
 	const struct train_rates *rates, const struct view_weights *weights);
-
-#endif

@@ -3,8 +3,6 @@
 #include "base/mem.h"
 #include "train/octree_input.h"
 
-#include <stdlib.h>
-
 /* The octree whose leaves share a feature. */
 static int build_octree(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)

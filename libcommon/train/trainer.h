@@ -1,7 +1,6 @@
 /* A training in progress: the Gaussians that learn, the step over them, the order of the views and the state.
  */
-#ifndef TRAIN_TRAINER_H
-#define TRAIN_TRAINER_H
+#pragma once
 
 #include "base/err.h"
 #include "field/octree.h"
@@ -97,5 +96,3 @@ int trainer_evaluate(struct trainer *t, struct held_out_score *score, struct err
 /* What is learned, as it is or, where masks are held out, as it was when they were answered best: the slab
  * (train_state's values), and the steps that it had. */
 const float *trainer_result(const struct trainer *t, long *iteration);
-
-#endif

@@ -1,6 +1,5 @@
 /* Views to learn from whose weights are in memory, or are read when they are needed. */
-#ifndef TRAIN_VIEW_SOURCE_H
-#define TRAIN_VIEW_SOURCE_H
+#pragma once
 
 #include "base/err.h"
 #include "train/train.h"
@@ -21,5 +20,3 @@ struct view_source {
 /* A view's weights, until view_source_close. Returns 0, or -1 with *e set. */
 int view_source_open(const struct view_source *s, size_t view, struct view_weights *w, struct err *e);
 void view_source_close(const struct view_source *s, size_t view);
-
-#endif

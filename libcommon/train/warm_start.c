@@ -7,8 +7,6 @@
 #include "mask/bits.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { STREAM_DIRECTIONS = 5 };
 
@@ -174,13 +172,7 @@ int warm_start_init(struct warm_start *w, const struct warm_start_source *from, 
 
 void warm_start_free(struct warm_start *w)
 {
-	free(w->share);
-	free(w->indptr);
-	free(w->index);
-	free(w->weight);
-	free(w->bits);
-	free(w->view.sentences);
-	free(w->view.masks);
+	mem_free_all(w->share, w->indptr, w->index, w->weight, w->bits, w->view.sentences, w->view.masks);
 	train_order_free(&w->order);
 	*w = (struct warm_start){0};
 }

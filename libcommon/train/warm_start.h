@@ -4,8 +4,7 @@
  * half. That is one weight a pixel where an image of a scene has dozens. The features begin with a direction
  * for each object, so that the networks, which learn slowly, have something to tell apart from the first
  * step. */
-#ifndef TRAIN_WARM_START_H
-#define TRAIN_WARM_START_H
+#pragma once
 
 #include "base/err.h"
 #include "field/rows.h"
@@ -46,5 +45,3 @@ void warm_start_free(struct warm_start *w);
 /* x (rows, width): the sum over objects of their share times a direction of the object's, random but at right
  * angles, as far as the width has room. */
 int warm_start_features(const struct warm_start *w, int width, uint64_t seed, float *x, struct err *e);
-
-#endif
