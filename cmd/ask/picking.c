@@ -82,15 +82,16 @@ static void put_shares(const struct lifted *l, size_t object, float *shares)
 		shares[l->index[i]] = l->share[i];
 }
 
-/* Counts the mask of one object: where more than LIFTED_CUT of what is seen is the object's. */
+/* Counts the mask of one object: where more than its cut of what is seen is the object's. */
 static void count(struct shown *s, const struct region *r, size_t object, const float *image)
 {
+	const float cut = lifted_cut_of(&s->asking->model.lifted, object);
 	const int w = r->camera->width, h = r->camera->height;
 
 	for (int y = 0; y < h; y++)
 		for (int x = 0; x < w; x++) {
 			const size_t at = (size_t)y * (size_t)w + (size_t)x;
-			const int on = image[at] > LIFTED_CUT * (1 - s->background[at]);
+			const int on = image[at] > cut * (1 - s->background[at]);
 			s->all[object] += on;
 			s->inside[object] +=
 				on && x >= r->left && x < r->right && y >= r->top && y < r->bottom;

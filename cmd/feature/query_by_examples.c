@@ -72,7 +72,8 @@ static void find_inside(const struct feature_query *q, size_t object, char *insi
 
 	memset(inside, 0, l->gaussians);
 	for (int64_t k = l->indptr[object]; k < l->indptr[object + 1]; k++)
-		inside[l->index[k]] = l->share[k] > LIFTED_CUT && q->features[0].weight[l->index[k]] > 0;
+		inside[l->index[k]] =
+			l->share[k] > lifted_cut_of(l, object) && q->features[0].weight[l->index[k]] > 0;
 }
 
 /* Gaussians that are inside or not, `most` at most, evenly taken of the `count`: their features. Returns how

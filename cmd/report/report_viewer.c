@@ -44,7 +44,7 @@ static int by_group(const void *a, const void *b)
 	return x->group != y->group ? (x->group > y->group) - (x->group < y->group) : largest_first(a, b);
 }
 
-/* groups (N): 1 + the object that has most of each Gaussian, where that is more than LIFTED_CUT; else 0. */
+/* groups (N): 1 + the object that has most of each Gaussian, where that is more than its cut; else 0. */
 static int find_groups(const struct report_run *r, size_t *groups, struct err *e)
 {
 	const struct lifted *l = &r->lifted.lifted;
@@ -55,7 +55,7 @@ static int find_groups(const struct report_run *r, size_t *groups, struct err *e
 	for (size_t o = 0; r->has_lifted && o < l->objects; o++)
 		for (int64_t k = l->indptr[o]; k < l->indptr[o + 1]; k++) {
 			const size_t i = (size_t)l->index[k];
-			if (l->share[k] <= LIFTED_CUT || l->share[k] <= best[i])
+			if (l->share[k] <= lifted_cut_of(l, o) || l->share[k] <= best[i])
 				continue;
 			best[i] = l->share[k];
 			groups[i] = 1 + o;

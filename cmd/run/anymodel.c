@@ -64,7 +64,7 @@ static int find_one(
 	size_t count = 0;
 
 	for (size_t i = 0; i < n && ids && responses; i++) {
-		const float response = l->share[first + i] - LIFTED_CUT;
+		const float response = l->share[first + i] - lifted_cut_of(l, object);
 		if (!(response > 0))
 			continue;
 		ids[count] = l->index[first + i];

@@ -36,6 +36,12 @@ static void read_objects(struct lifted *l, struct arrays_in *in)
 	l->names = arrays_in_list(in, "names", l->objects, "objects");
 	arrays_in_check_names(in, l->names, l->objects, 0, "names");
 	arrays_in_check_unique(in, l->names, l->objects, "names");
+	if (safetensors_find(in->st, "cut"))
+		l->cut = arrays_in_vector(in, "cut", ST_F32, (int64_t)l->objects, NULL);
+	for (size_t o = 0; o < l->objects && l->cut && !in->bad; o++)
+		if (!(l->cut[o] > 0 && l->cut[o] < 1))
+			in->bad = err_file(
+				in->e, in->st->path, "tensor 'cut': item %zu is not above 0 and below 1", o);
 	read_shares(l, in);
 }
 
@@ -126,6 +132,7 @@ int lifted_write(const struct lifted *l, const struct origin *origin, const char
 
 	arrays_out_begin(&out, path, "refer.lifted", "1", "refer-lift", options, 0, e);
 	check_parts(&out, l->confidence, l->objects, 1, "confidence");
+	check_parts(&out, l->cut, l->cut ? l->objects : 0, 0, "cut");
 	check_parts(&out, l->share, (size_t)l->indptr[objects], 0, "share");
 	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%zu", l->gaussians));
 	origin_put(&out, origin);
@@ -137,6 +144,8 @@ int lifted_write(const struct lifted *l, const struct origin *origin, const char
 	arrays_out_put(&out, st_vector("index", ST_I32, l->indptr[objects], l->index));
 	arrays_out_put(&out, st_vector("object", ST_I32, sentences, l->object));
 	arrays_out_put(&out, st_vector("confidence", ST_F32, objects, l->confidence));
+	if (l->cut)
+		arrays_out_put(&out, st_vector("cut", ST_F32, objects, l->cut));
 	precision_put(&out, "words", PRECISION_F16, PRECISION_ROWS, rows, width, l->words);
 	put_shares(&out, l);
 	if (l->middle)

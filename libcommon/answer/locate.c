@@ -76,7 +76,8 @@ static int take_thing(char *of, const struct taking *t, size_t thing, const stru
 
 	memset(t->own, 0, n);
 	for (int64_t k = l->indptr[thing]; k < l->indptr[thing + 1]; k++)
-		t->own[l->index[k]] = l->share[k] > LIFTED_CUT && l->share[k] >= t->best[l->index[k]];
+		t->own[l->index[k]] =
+			l->share[k] > lifted_cut_of(l, thing) && l->share[k] >= t->best[l->index[k]];
 	if (t->show == LOCATE_ISOLATED)
 		only_of_extent(t->own, x, n);
 	for (size_t i = 0; i < n; i++)

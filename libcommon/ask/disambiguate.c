@@ -63,6 +63,8 @@ static void share_out(struct lifted *l, const struct lifted *old, const size_t *
 		memcpy(l->index + l->indptr[o], old->index + begin, (size_t)n * sizeof *l->index);
 		memcpy(l->share + l->indptr[o], old->share + begin, (size_t)n * sizeof *l->share);
 		l->confidence[o] = old->confidence[from[o]];
+		if (l->cut)
+			l->cut[o] = old->cut[from[o]];
 	}
 }
 
@@ -76,7 +78,8 @@ static int copy_shares(struct lifted *to, const struct lifted *l, struct err *e)
 	to->index = mem_alloc(shares, sizeof *to->index, "objects", e);
 	to->share = mem_alloc(shares, sizeof *to->share, "objects", e);
 	to->confidence = mem_alloc(l->objects, sizeof *to->confidence, "objects", e);
-	if (!to->indptr || !to->index || !to->share || !to->confidence)
+	to->cut = l->cut ? mem_alloc(l->objects, sizeof *to->cut, "objects", e) : NULL;
+	if (!to->indptr || !to->index || !to->share || !to->confidence || (l->cut && !to->cut))
 		return -1;
 	if (!l->objects)
 		return 0;
@@ -84,6 +87,8 @@ static int copy_shares(struct lifted *to, const struct lifted *l, struct err *e)
 	memcpy(to->index, l->index, shares * sizeof *to->index);
 	memcpy(to->share, l->share, shares * sizeof *to->share);
 	memcpy(to->confidence, l->confidence, l->objects * sizeof *to->confidence);
+	if (l->cut)
+		memcpy(to->cut, l->cut, l->objects * sizeof *to->cut);
 	return 0;
 }
 
@@ -93,6 +98,7 @@ static void free_shares(struct lifted *l)
 	free(l->index);
 	free(l->share);
 	free(l->confidence);
+	free(l->cut);
 }
 
 /* Of object o's sentences the one that means object k most plainly in place of it; ANY: any other that

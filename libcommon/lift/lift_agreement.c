@@ -4,12 +4,16 @@
 #include "lift/lift_private.h"
 #include "mask/bits.h"
 
+#include <math.h>
+
 enum { PIXELS = VIEW_TILE_PIXELS };
 _Static_assert((int)BITS_TILE == (int)VIEW_TILE, "masks and weights are cut into the same tiles");
 
 /* Of an object's mask and what is rendered: the mask alone is `either` where nothing is. */
 struct overlap {
 	double both, either;
+	/* Pixels between a cut and the next, inside the mask and outside; the first are above the first. */
+	int inside[LIFT_CUTS], outside[LIFT_CUTS];
 };
 
 struct work {
@@ -135,6 +139,10 @@ static void compare(const struct work *work, struct drawn *d, size_t k, size_t t
 		const double m = (double)mask[i], a = (double)d->objects[k][i] / d->total[i];
 		sum->both += a < m ? a : m;
 		sum->either += a > m ? a - m : 0;
+		const double below = (double)(LIFTED_CUT - d->objects[k][i]) / LIFT_CUT_STEP;
+		const int cut = below > 0 ? (int)ceil(below) : 0;
+		if (cut < LIFT_CUTS)
+			++*(m >= 0.5 ? &sum->inside[cut] : &sum->outside[cut]);
 	}
 }
 
@@ -206,8 +214,21 @@ static double agreement_of(const struct work *work, const struct overlap *overla
 	return either > 0 ? both / either : 1;
 }
 
+static void fit_cuts(const struct work *work, const struct overlap *overlaps, size_t k, float *fit)
+{
+	double both = 0, either = area_of(work, k);
+
+	for (int cut = 0; cut < LIFT_CUTS; cut++) {
+		for (size_t row = 0; row < (size_t)work->down; row++) {
+			both += overlaps[row * work->v->n + k].inside[cut];
+			either += overlaps[row * work->v->n + k].outside[cut];
+		}
+		fit[cut] = either > 0 ? (float)(both / either) : 1;
+	}
+}
+
 int lift_agreement(const struct lift_objects *l, const struct lift_view *v, const struct view_matrix *w,
-	double *agreement, struct err *e)
+	double *agreement, float (*fit)[LIFT_CUTS], struct err *e)
 {
 	struct work work = {l, v, w, (w->width + VIEW_TILE - 1) / VIEW_TILE,
 		(w->height + VIEW_TILE - 1) / VIEW_TILE,
@@ -222,8 +243,10 @@ int lift_agreement(const struct lift_objects *l, const struct lift_view *v, cons
 	if (w->tiles)
 		view_tiles_lookup_make(&work.of, w->tiles);
 	bad = bad || take_rows(&work, overlaps, e);
-	for (size_t k = 0; k < v->n && !bad; k++)
+	for (size_t k = 0; k < v->n && !bad; k++) {
 		agreement[k] = agreement_of(&work, overlaps, k);
+		fit_cuts(&work, overlaps, k, fit[k]);
+	}
 	free(work.slots);
 	return bad ? -1 : 0;
 }

@@ -1,5 +1,6 @@
 #include "lift/lift_objects.h"
 
+#include "base/largest.h"
 #include "base/mem.h"
 #include "lift/lift_private.h"
 #include "mask/bits.h"
@@ -16,7 +17,8 @@ int lift_objects_init(struct lift_objects *l, size_t gaussians, size_t objects, 
 	l->claims = mem_alloc(gaussians, sizeof *l->claims, "shares", e);
 	l->agreement = mem_zalloc(objects, sizeof *l->agreement, "shares", e);
 	l->masks = mem_zalloc(objects, sizeof *l->masks, "shares", e);
-	if (l->views && l->shares && l->claims && l->agreement && l->masks)
+	l->cut = mem_alloc(objects, sizeof *l->cut, "shares", e);
+	if (l->views && l->shares && l->claims && l->agreement && l->masks && l->cut)
 		return 0;
 	lift_objects_free(l);
 	return -1;
@@ -26,7 +28,7 @@ static void view_free(struct lift_view *v)
 {
 	for (size_t k = 0; k < v->n && v->rows; k++)
 		shares_free(&v->rows[k]);
-	mem_free_all(v->objects, v->starts, v->bits, v->rows, v->vote, v->agreement, v->weight);
+	mem_free_all(v->objects, v->starts, v->bits, v->rows, v->vote, v->agreement, v->fit, v->weight);
 }
 
 void lift_objects_free(struct lift_objects *l)
@@ -35,7 +37,7 @@ void lift_objects_free(struct lift_objects *l)
 		view_free(&l->views[v]);
 	for (size_t o = 0; o < l->objects && l->shares; o++)
 		shares_free(&l->shares[o]);
-	mem_free_all(l->views, l->shares, l->claims, l->agreement, l->masks);
+	mem_free_all(l->views, l->shares, l->claims, l->agreement, l->masks, l->cut);
 	*l = (struct lift_objects){0};
 }
 
@@ -81,8 +83,10 @@ int lift_objects_view(struct lift_objects *l, size_t at, const struct view_matri
 	v->rows = mem_zalloc(n, sizeof *v->rows, "views", e);
 	v->vote = mem_alloc(n, sizeof *v->vote, "views", e);
 	v->agreement = mem_zalloc(n, sizeof *v->agreement, "views", e);
+	v->fit = mem_zalloc(n, sizeof *v->fit, "views", e);
 	v->weight = mem_alloc(w->gaussians, sizeof *v->weight, "views", e);
-	if (!v->objects || !v->starts || !v->bits || !v->rows || !v->vote || !v->agreement || !v->weight)
+	if (!v->objects || !v->starts || !v->bits || !v->rows || !v->vote || !v->agreement || !v->fit ||
+		!v->weight)
 		return -1;
 	for (size_t k = 0; k < n; k++) {
 		if (k && masks[k].object == masks[k - 1].object)
@@ -107,7 +111,7 @@ int lift_objects_vote(struct lift_objects *l, size_t at, const struct view_matri
 {
 	struct lift_view *v = &l->views[at];
 
-	if (lift_agreement(l, v, w, v->agreement, e))
+	if (lift_agreement(l, v, w, v->agreement, v->fit, e))
 		return -1;
 	for (size_t k = 0; k < v->n; k++)
 		v->vote[k] = lift_vote(v->agreement[k]);
@@ -127,14 +131,36 @@ static void average_agreement(struct lift_objects *l)
 			l->agreement[o] /= (double)l->masks[o];
 }
 
+/* The cut of each object: the mean of IoU over its masks counts, each by its vote. */
+static void choose_cuts(struct lift_objects *l)
+{
+	for (size_t o = 0; o < l->objects; o++) {
+		double fit[LIFT_CUTS] = {0}, votes = 0;
+		for (size_t at = 0; at < l->view_count; at++) {
+			const struct lift_view *v = &l->views[at];
+			const size_t k = lift_row(v, o);
+			for (int cut = 0; k < v->n && cut < LIFT_CUTS; cut++)
+				fit[cut] += (double)v->vote[k] * (double)v->fit[k][cut];
+			votes += k < v->n ? (double)v->vote[k] : 0;
+		}
+		const double best = largest(fit, LIFT_CUTS);
+		int cut = 0;
+		while (fit[cut] < best - LIFT_CUT_GAIN * votes)
+			cut++;
+		l->cut[o] = LIFTED_CUT - (float)cut * (float)LIFT_CUT_STEP;
+	}
+}
+
 int lift_objects_settle(struct lift_objects *l, struct err *e)
 {
 	const int is_last = ++l->round == LIFT_ROUNDS;
 
 	if (lift_shares(l, is_last, e))
 		return -1;
-	if (is_last)
+	if (is_last) {
 		average_agreement(l);
+		choose_cuts(l);
+	}
 	return 0;
 }
 
@@ -151,11 +177,13 @@ int lift_objects_finish(const struct lift_objects *l, struct lifted *to, struct 
 	to->indptr = mem_zalloc(l->objects + 1, sizeof *to->indptr, "shares", e);
 	to->index = mem_alloc(count, sizeof *to->index, "shares", e);
 	to->share = mem_alloc(count, sizeof *to->share, "shares", e);
-	if (!to->confidence || !to->indptr || !to->index || !to->share)
+	to->cut = mem_alloc(l->objects, sizeof *to->cut, "shares", e);
+	if (!to->confidence || !to->cut || !to->indptr || !to->index || !to->share)
 		return -1;
 	for (size_t o = 0; o < l->objects; o++) {
 		const struct shares *row = &l->shares[o];
 		to->confidence[o] = (float)l->agreement[o];
+		to->cut[o] = l->cut[o];
 		for (size_t k = 0; k < row->n; k++)
 			if (row->share[k] > LEAST_SHARE) {
 				to->index[at] = row->index[k];

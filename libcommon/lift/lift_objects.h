@@ -42,6 +42,12 @@ enum { LIFT_ROUNDS = 3 };
 #define LIFT_AGREEMENT_LEAST 0.45
 enum { LIFT_LEFT_OUT_MASKS = 4 /* of fewer nothing is said */ };
 
+/* Cuts that are tried of an object: LIFTED_CUT, LIFTED_CUT - LIFT_CUT_STEP, ...; the largest that fits its
+ * masks as well as the best but for LIFT_CUT_GAIN. */
+enum { LIFT_CUTS = 8 };
+#define LIFT_CUT_STEP 0.05
+#define LIFT_CUT_GAIN 0.005
+
 /* A mask and the number of the object that it is of. */
 struct lift_mask {
 	const struct mask *mask; /* of any size: reduced to the weights' by area and cut at one half */
@@ -51,13 +57,14 @@ struct lift_mask {
 /* A view's masks and what they show. */
 struct lift_view {
 	size_t n;
-	size_t *objects;     /* (n) that have a mask, rising */
-	size_t *starts;	     /* (n+1) where the masks of each begin */
-	uint64_t *bits;	     /* (masks,tiles of the picture) mask/bits.h */
-	struct shares *rows; /* (n) of the mean of each one's masks */
-	float *vote;	     /* (n) of this round */
-	double *agreement;   /* (n) of this round */
-	float *weight;	     /* (N) of each Gaussian */
+	size_t *objects;	 /* (n) that have a mask, rising */
+	size_t *starts;		 /* (n+1) where the masks of each begin */
+	uint64_t *bits;		 /* (masks,tiles of the picture) mask/bits.h */
+	struct shares *rows;	 /* (n) of the mean of each one's masks */
+	float *vote;		 /* (n) of this round */
+	double *agreement;	 /* (n) of this round */
+	float (*fit)[LIFT_CUTS]; /* (n) of this round: IoU of the mask with what is above each cut */
+	float *weight;		 /* (N) of each Gaussian */
 };
 
 /* The object that a Gaussian is of while votes are found, LIFT_NOBODY for none, and its share in it. */
@@ -76,6 +83,7 @@ struct lift_objects {
 	struct lift_claim *claims; /* (N) */
 	/* of the views' masks, by object */
 	double *agreement; /* (O) after the last round the mean */
+	float *cut;	   /* (O) after the last round */
 	size_t *masks;	   /* (O) views that have one */
 };
 

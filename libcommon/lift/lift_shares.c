@@ -11,8 +11,7 @@ struct sums {
 	uint64_t *marks; /* what a mask shows */
 };
 
-/* Where a view has an object's mask: its row, or v->n. */
-static size_t find_row(const struct lift_view *v, size_t object)
+size_t lift_row(const struct lift_view *v, size_t object)
 {
 	size_t k = 0;
 
@@ -25,7 +24,7 @@ static void sum_inside(const struct lift_objects *l, size_t object, struct sums 
 {
 	for (size_t at = 0; at < l->view_count; at++) {
 		const struct lift_view *v = &l->views[at];
-		const size_t k = find_row(v, object);
+		const size_t k = lift_row(v, object);
 		for (size_t j = 0; k < v->n && j < v->rows[k].n; j++) {
 			const size_t i = (size_t)v->rows[k].index[j];
 			s->inside[i] += (double)v->vote[k] * (double)v->rows[k].share[j];
@@ -40,7 +39,7 @@ static void sum_weight(
 {
 	for (size_t at = 0; at < l->view_count; at++) {
 		const struct lift_view *v = &l->views[at];
-		const size_t k = find_row(v, object);
+		const size_t k = lift_row(v, object);
 		for (size_t j = 0; k < v->n && j < n; j++)
 			weight[j] += (double)v->vote[k] * (double)v->weight[index[j]];
 	}

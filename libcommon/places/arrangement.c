@@ -83,13 +83,14 @@ static int find_own(struct extent *x, const struct lifted *l, size_t object, con
 	const size_t begin = (size_t)l->indptr[object], room = (size_t)l->indptr[object + 1] - begin;
 	int32_t *ids = mem_alloc(room, sizeof *ids, "objects", e);
 	float *shares = mem_alloc(room, sizeof *shares, "objects", e);
+	const float cut = lifted_cut_of(l, object);
 	size_t n = 0;
 	int bad = !ids || !shares;
 
 	for (size_t i = begin; i < begin + room && !bad; i++)
-		if (l->share[i] > (float)LIFTED_CUT && size_of(s, (size_t)l->index[i]) > 0) {
+		if (l->share[i] > cut && size_of(s, (size_t)l->index[i]) > 0) {
 			ids[n] = l->index[i];
-			shares[n++] = l->share[i] - (float)LIFTED_CUT;
+			shares[n++] = l->share[i] - cut;
 		}
 	bad = bad || extent_find(x, s, ids, shares, n, up, e);
 	free(ids);

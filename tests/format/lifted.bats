@@ -89,6 +89,14 @@ refuses() {
 	refuses "tensor 'words': width 0 is not in 1 to 65536" words= words_shape='[2,0]'
 }
 
+@test "cut: one of each object, above 0 and below 1" {
+	local order="indptr offsets index object confidence cut words share" half=0000003f
+	lifted x "order=$order" cut=$half$half cut_type=F32 cut_shape='[2]'
+	"$BIN/gs-check" x
+	refuses "tensor 'cut': is F32[1], expected F32[2]" "order=$order" cut=$half cut_type=F32 cut_shape='[1]'
+	refuses "tensor 'cut': item 1 is not above 0 and below 1" "order=$order" cut=$half$f1 cut_type=F32 cut_shape='[2]'
+}
+
 @test "middle: of the shape of words, and finite" {
 	local order="indptr offsets index object confidence words middle share"
 	lifted x "order=$order" middle=003c0040004200c4 middle_type=F16 middle_shape='[2,2]'

@@ -109,7 +109,38 @@ static double naive_agreement(const struct view_weights *w, const double *mask, 
 	return either > 0 ? both / either : 1;
 }
 
-static double share_of[O][N], weight_of[O][N], mean_agreement[O];
+static double share_of[O][N], weight_of[O][N], mean_agreement[O], cut_of[O];
+
+/* fit[k] += vote times the IoU of a mask, cut at one half, with what is above the k-th cut. */
+static void naive_fit(
+	const struct view_weights *w, const double *mask, const double *share, double vote, double *fit)
+{
+	for (int cut = 0; cut < LIFT_CUTS; cut++) {
+		double both = 0, either = 0;
+		for (int p = 0; p < P; p++) {
+			double rendered = 0;
+			for (int64_t k = w->indptr[p]; k < w->indptr[p + 1]; k++)
+				rendered += (double)w->weight[k] * share[w->index[k]];
+			const int on =
+				rendered > 0 && rendered >= (double)LIFTED_CUT - cut * LIFT_CUT_STEP - 1e-9;
+			both += on && mask[p] >= 0.5;
+			either += mask[p] + (on && mask[p] < 0.5);
+		}
+		fit[cut] += vote * (either > 0 ? both / either : 1);
+	}
+}
+
+static double naive_cut(const double *fit, double votes)
+{
+	double best = 0;
+	int cut = 0;
+
+	for (int k = 0; k < LIFT_CUTS; k++)
+		best = fmax(best, fit[k]);
+	while (fit[cut] < best - LIFT_CUT_GAIN * votes)
+		cut++;
+	return (double)LIFTED_CUT - cut * LIFT_CUT_STEP;
+}
 
 static void naive_round(const struct lift_problem *q, int round)
 {
@@ -118,7 +149,7 @@ static void naive_round(const struct lift_problem *q, int round)
 	memset(sum, 0, sizeof sum);
 	memset(weight_of, 0, sizeof weight_of);
 	for (size_t o = 0; o < O; o++) {
-		double mask[P];
+		double mask[P], fit[LIFT_CUTS] = {0}, votes = 0;
 		int n = 0;
 		mean_agreement[o] = 0;
 		for (int v = 0; v < VIEWS; v++) {
@@ -127,6 +158,8 @@ static void naive_round(const struct lift_problem *q, int round)
 				continue;
 			const double a = round ? naive_agreement(w, mask, share_of[o]) : 1;
 			const double vote = fmax(a * a, 0.01);
+			naive_fit(w, mask, share_of[o], vote, fit);
+			votes += vote;
 			mean_agreement[o] += a;
 			n++;
 			for (int p = 0; p < P; p++)
@@ -135,6 +168,7 @@ static void naive_round(const struct lift_problem *q, int round)
 					weight_of[o][w->index[k]] += vote * (double)w->weight[k];
 				}
 		}
+		cut_of[o] = naive_cut(fit, votes);
 		mean_agreement[o] /= n ? n : 1;
 		for (int i = 0; i < N; i++)
 			share_of[o][i] = sum[o][i] / (weight_of[o][i] + 0.01);
@@ -221,6 +255,7 @@ double lift_twin_error(const struct lift_problem *q, const struct lifted *got)
 			worst = fmax(worst,
 				fmax(0, fabs(shares[i] - share_of[o][i]) - (shares[i] > 0 ? 0 : 0.5 / 255)));
 		worst = fmax(worst, fabs((double)got->confidence[o] - mean_agreement[o]));
+		worst = fmax(worst, fabs((double)got->cut[o] - cut_of[o]));
 	}
 	return worst;
 }

@@ -8,7 +8,8 @@ static char path[] = "/tmp/test_lifted.XXXXXX";
 
 static int64_t indptr[] = {0, 2, 2, 5}, offsets[] = {0, 2, 2, 3};
 static int32_t index_of[] = {1, 4, 0, 1, 6}, object[] = {2, 0, 2};
-static float share[] = {1, 0.4f, 0.001f, 51.f / 255, 1.f / 255}, confidence[] = {0.75f, 0, 1};
+static float share[] = {1, 0.4f, 0.001f, 51.f / 255, 1.f / 255}, confidence[] = {0.75f, 0, 1},
+	     cut[] = {0.45f, 0.2f, 0.3f};
 static float words[] = {1, 2, 3, 0.1f, -65504, 0}, middle[] = {-1, 0.25f, 7, 0.5f, 8, 9};
 static char *names[] = {"red cup", "\"pan\"", "\xe7\x93\xb6"};
 static char *texts[] = {"a bottle", "", "bottle"}, *pieces[] = {"a bottle", "", "bottle"};
@@ -17,7 +18,7 @@ static char *texts[] = {"a bottle", "", "bottle"}, *pieces[] = {"a bottle", "", 
 static struct lifted example(void)
 {
 	return (struct lifted){7, 3, names, confidence, indptr, index_of, share, 3, 2, object, texts, pieces,
-		offsets, words, middle};
+		offsets, words, middle, cut};
 }
 
 static void round_trip(void)
@@ -38,8 +39,9 @@ static void round_trip(void)
 	CHECK(!memcmp(out.index, index_of, sizeof index_of) && !memcmp(out.object, object, sizeof object),
 		"indices");
 	for (int k = 0; k < 3; k++)
-		CHECK(out.confidence[k] == confidence[k] && !strcmp(out.names[k], names[k]) &&
-				!strcmp(out.texts[k], texts[k]) && !strcmp(out.pieces[k], pieces[k]),
+		CHECK(out.confidence[k] == confidence[k] && out.cut[k] == cut[k] &&
+				!strcmp(out.names[k], names[k]) && !strcmp(out.texts[k], texts[k]) &&
+				!strcmp(out.pieces[k], pieces[k]),
 			"object or sentence %d", k);
 	/* the third share is below half a step, and does not become 0 */
 	const float steps[] = {255, 102, 1, 51, 1};
@@ -53,17 +55,18 @@ static void round_trip(void)
 	lifted_free(&out);
 }
 
-/* A model of sentences that another program encoded may have no middle layer. */
-static void without_middle(void)
+/* A model of sentences that another program encoded may have no middle layer, an early one no cuts. */
+static void without_middle_and_cuts(void)
 {
 	struct lifted in = example(), out;
 	struct origin of;
 	struct err e = {0};
 
-	in.middle = NULL;
+	in.middle = in.cut = NULL;
 	CHECK(!lifted_write(&in, &(struct origin){0}, path, "", &e) && !lifted_read(&out, &of, path, &e),
 		"%s", e.message);
 	CHECK(!out.middle && !lifted_middle(&out, 2), "a middle layer out of nothing");
+	CHECK(!out.cut && lifted_cut_of(&out, 1) == LIFTED_CUT, "cuts out of nothing");
 	lifted_free(&out);
 }
 
@@ -81,7 +84,7 @@ static void responses_are_shares_above_the_cut(void)
 			"Gaussian %d: %g", i, (double)got[i]);
 	lifted_responses(&l, 1, got);
 	for (int i = 0; i < 7; i++)
-		CHECK(got[i] == -LIFTED_CUT, "no Gaussian, %d: %g", i, (double)got[i]);
+		CHECK(got[i] == -cut[1], "no Gaussian, %d: %g", i, (double)got[i]);
 }
 
 static void refuses_to_write(float *number, float value, const char *expected)
@@ -105,7 +108,7 @@ int main(void)
 		return unit_end();
 	close(file);
 	round_trip();
-	without_middle();
+	without_middle_and_cuts();
 	responses_are_shares_above_the_cut();
 	refuses_to_write(&words[3], NAN, ": tensor 'words': item 3 is not finite");
 	refuses_to_write(&middle[1], NAN, ": tensor 'middle': item 1 is not finite");
@@ -114,6 +117,7 @@ int main(void)
 	refuses_to_write(&share[1], 1.5f, ": tensor 'share': item 1 is 1.5");
 	refuses_to_write(&confidence[2], NAN, ": tensor 'confidence': item 2 is nan");
 	refuses_to_write(&confidence[2], -0.5f, ": tensor 'confidence': item 2 is -0.5");
+	refuses_to_write(&cut[1], 0, ": tensor 'cut': item 1 is 0");
 	unlink(path);
 	return unit_end();
 }
