@@ -1,5 +1,6 @@
 #include "cmd/import/import.h"
 
+#include "base/compare.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/quantile.h"
@@ -104,13 +105,6 @@ static uint64_t cube_at(const struct grid *g, const float *point, int dx, int dy
 	return cube;
 }
 
-static int by_number(const void *a, const void *b)
-{
-	const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-
-	return (x > y) - (x < y);
-}
-
 /* The share of points that have one of the others in their cube or one beside it. */
 static int find_share(const struct grid *g, const float *points, size_t n, const float *others, size_t m,
 	double *share, struct err *e)
@@ -123,12 +117,12 @@ static int find_share(const struct grid *g, const float *points, size_t n, const
 		return -1;
 	for (size_t i = 0; i < m; i++)
 		cubes[i] = cube_at(g, others + 3 * i, 0, 0, 0);
-	qsort(cubes, m, sizeof *cubes, by_number);
+	qsort(cubes, m, sizeof *cubes, compare_u64);
 	for (size_t i = 0; i < n; i += step, all++) {
 		int found = 0;
 		for (int c = 0; c < 27 && !found; c++) {
 			const uint64_t cube = cube_at(g, points + 3 * i, c / 9 - 1, c / 3 % 3 - 1, c % 3 - 1);
-			found = bsearch(&cube, cubes, m, sizeof *cubes, by_number) != NULL;
+			found = bsearch(&cube, cubes, m, sizeof *cubes, compare_u64) != NULL;
 		}
 		near += (size_t)found;
 	}

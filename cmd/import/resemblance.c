@@ -1,5 +1,6 @@
 #include "cmd/import/import.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "cmd/import/warping.h"
 #include "mask/shrink.h"
@@ -110,13 +111,6 @@ static int compare_turned(struct resemblance *r, const struct scene *s, const st
 	return state;
 }
 
-static int by_value(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 int resemblance_find(struct resemblance *r, const struct scene *s, const char *folder,
 	const struct report *to, struct err *e)
 {
@@ -134,7 +128,7 @@ int resemblance_find(struct resemblance *r, const struct scene *s, const char *f
 		r->views += !state;
 	}
 	if (r->views)
-		qsort(all, r->views, sizeof *all, by_value);
+		qsort(all, r->views, sizeof *all, compare_double);
 	r->typical = r->views ? all[r->views / 2] : 0;
 	return 0;
 }

@@ -1,5 +1,6 @@
 #include "cmd/import/transforming.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "formats/cameras/camerafile.h"
 #include "geom/neighbours.h"
@@ -162,13 +163,6 @@ static int crop(struct splats *s, const double offset[3], const double box[6], s
 	return !kept || keep(s, kept, e) ? -1 : 0;
 }
 
-static int rising(const void *a, const void *b)
-{
-	const float x = *(const float *)a, y = *(const float *)b;
-
-	return (x > y) - (x < y);
-}
-
 static int drop_strays(struct splats *s, struct err *e)
 {
 	SCOPED char *kept = mem_alloc(s->n, 1, "splats", e);
@@ -180,7 +174,7 @@ static int drop_strays(struct splats *s, struct err *e)
 		return 0;
 	float *sorted = far + s->n;
 	memcpy(sorted, far, s->n * sizeof *far);
-	qsort(sorted, s->n, sizeof *sorted, rising);
+	qsort(sorted, s->n, sizeof *sorted, compare_float);
 	for (size_t i = 0; i < s->n; i++)
 		kept[i] = far[i] <= STRAY * sorted[s->n / 2];
 	return keep(s, kept, e);

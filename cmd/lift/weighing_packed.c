@@ -1,5 +1,6 @@
 #include "cmd/lift/weighing.h"
 
+#include "base/largest.h"
 #include "base/mem.h"
 #include "base/threads.h"
 #include "formats/scene/weights.h"
@@ -62,17 +63,12 @@ static int pack_part(
 	return weights_pack_part(p->rows + part->y / VIEW_TILE, &r->packer, &picture, e);
 }
 
-static int smaller(int a, int b)
-{
-	return a < b ? a : b;
-}
-
 /* The parts from row y of the pixels on. */
 static int pack_row(const struct packing *p, struct packing_room *r, int y, struct err *e)
 {
 	for (int x = 0; x < p->width; x += PART_WIDTH) {
 		const struct render_part part = {
-			x, y, smaller(PART_WIDTH, p->width - x), smaller(RENDER_PART, p->height - y)};
+			x, y, least_of(PART_WIDTH, p->width - x), least_of(RENDER_PART, p->height - y)};
 		if (pack_part(p, r, &part, e))
 			return -1;
 	}

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
+#include "base/path.h"
 #include "formats/records/jsonl.h"
 #include "formats/images/png.h"
 
@@ -129,21 +130,14 @@ static int put_records(const char *path, struct warping *w, FILE *out, size_t *c
 	return got;
 }
 
-static int has_ending(const char *path, const char *ending)
-{
-	const size_t n = strlen(path), m = strlen(ending);
-
-	return n > m && !strcasecmp(path + n - m, ending);
-}
-
 static int is_labelled(const char *path)
 {
-	return has_ending(path, ".json");
+	return path_ends(path, ".json");
 }
 
 static int is_records(const char *path)
 {
-	return has_ending(path, ".jsonl");
+	return path_ends(path, ".jsonl");
 }
 
 int painting_needs_names(const char *path)

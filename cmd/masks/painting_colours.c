@@ -1,4 +1,5 @@
 /* Pictures that have a colour for each thing: a mask for each colour that has a name. */
+#include "base/compare.h"
 #include "cmd/masks/painting.h"
 
 #include "base/mem.h"
@@ -142,13 +143,6 @@ static int put_name(
 	return painting_put(&mask, w, p->path, out, e);
 }
 
-static int by_value(const void *a, const void *b)
-{
-	const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-
-	return (x > y) - (x < y);
-}
-
 /* Colours that cover much and have no name: a slip of the painter or of the file of names. */
 static int warn_unnamed(const struct picture_read *p, const struct painting_names *names,
 	const struct report *to, struct err *e)
@@ -160,7 +154,7 @@ static int warn_unnamed(const struct picture_read *p, const struct painting_name
 		return -1;
 	for (size_t at = 0; at < pixels; at++)
 		sorted[at] = p->paint[at];
-	qsort(sorted, pixels, sizeof *sorted, by_value);
+	qsort(sorted, pixels, sizeof *sorted, compare_u32);
 	for (size_t first = 0, end; first < pixels; first = end) {
 		for (end = first; end < pixels && sorted[end] == sorted[first];)
 			end++;

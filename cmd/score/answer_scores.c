@@ -1,5 +1,6 @@
 #include "cmd/score/scoring.h"
 
+#include "base/compare.h"
 #include "base/file.h"
 #include "base/jsontext.h"
 #include "base/mem.h"
@@ -9,11 +10,6 @@
 
 static const char *const target_names[ANSWER_TARGETS] = {"all", "one", "several", "none"};
 static const char *const no_kind = "(unknown)";
-
-static int order_strings(const void *a, const void *b)
-{
-	return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
 
 static int list_kinds(struct answer_scores *s, struct err *e)
 {
@@ -26,7 +22,7 @@ static int list_kinds(struct answer_scores *s, struct err *e)
 		const char *kind = s->answers.items[i].sentence->kind;
 		s->kinds[i] = kind ? kind : "";
 	}
-	qsort(s->kinds, s->answers.n, sizeof *s->kinds, order_strings);
+	qsort(s->kinds, s->answers.n, sizeof *s->kinds, compare_string);
 	for (size_t i = 0; i < s->answers.n; i++)
 		if (!n || strcmp(s->kinds[n - 1], s->kinds[i]))
 			s->kinds[n++] = s->kinds[i];

@@ -2,6 +2,7 @@
  */
 #pragma once
 
+#include <stdint.h>
 #include <string.h>
 
 static inline int compare_float(const void *a, const void *b)
@@ -14,6 +15,20 @@ static inline int compare_float(const void *a, const void *b)
 static inline int compare_double(const void *a, const void *b)
 {
 	const double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+static inline int compare_u32(const void *a, const void *b)
+{
+	const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+
+	return (x > y) - (x < y);
+}
+
+static inline int compare_u64(const void *a, const void *b)
+{
+	const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
 
 	return (x > y) - (x < y);
 }

@@ -1,4 +1,4 @@
-/* The largest of a row of numbers, and where it is. */
+/* The largest of a row of numbers, and where it is; the lesser of two. */
 #pragma once
 
 #include <math.h>
@@ -22,4 +22,9 @@ static inline size_t best_of(const double *x, size_t n)
 	for (size_t i = 1; i < n; i++)
 		best = x[i] > x[best] ? i : best;
 	return best;
+}
+
+static inline int least_of(int a, int b)
+{
+	return a < b ? a : b;
 }

@@ -1,4 +1,5 @@
 #include "base/mem.h"
+#include "base/compare.h"
 #include "lift/regions.h"
 #include "lift/regions_private.h"
 
@@ -155,13 +156,6 @@ static void begin(struct growth *g, const struct regions *r, size_t seed)
 	g->region.chosen[c->view] = seed;
 }
 
-static int order_reals(const void *a, const void *b)
-{
-	const double p = *(const double *)a, q = *(const double *)b;
-
-	return (p > q) - (p < q);
-}
-
 /* 1 where a region came of it. */
 static int grow(struct growth *g, const struct regions *r, size_t seed)
 {
@@ -185,7 +179,7 @@ static int grow(struct growth *g, const struct regions *r, size_t seed)
 			g->area[n++] = (double)g->region.agreement[g->region.chosen[v]];
 	if (!n)
 		return 0;
-	qsort(g->area, n, sizeof *g->area, order_reals);
+	qsort(g->area, n, sizeof *g->area, compare_double);
 	g->region.typical = g->area[n / 2];
 	return 1;
 }

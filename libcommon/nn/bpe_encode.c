@@ -98,14 +98,6 @@ static void merge_all(const struct bpe *b, struct word *w, size_t n)
 	}
 }
 
-static int push(struct wordpieces *out, int32_t id, struct err *e)
-{
-	if (mem_grow((void **)&out->ids, &out->capacity, out->n + 1, sizeof *out->ids, "word pieces", e))
-		return -1;
-	out->ids[out->n++] = id;
-	return 0;
-}
-
 static int encode_word(const struct bpe *b, struct word *w, const char *bytes, size_t n,
 	struct wordpieces *out, struct err *e)
 {
@@ -117,7 +109,7 @@ static int encode_word(const struct bpe *b, struct word *w, const char *bytes, s
 			i ? i - 1 : NONE, i + 1 < n ? i + 1 : NONE};
 	merge_all(b, w, n);
 	for (size_t i = 0; i < n; i++)
-		if (w->symbols[i].id >= 0 && push(out, w->symbols[i].id, e))
+		if (w->symbols[i].id >= 0 && wordpieces_push(out, w->symbols[i].id, e))
 			return -1;
 	return 0;
 }
@@ -195,7 +187,7 @@ static int encode_clean(const struct bpe *b, struct word *w, const char *text, s
 		const enum kind kind = kind_at(text, len, &end);
 		if (special >= 0) {
 			end = at + strlen(special == b->start ? BPE_START : BPE_END);
-			if (push(out, special, e))
+			if (wordpieces_push(out, special, e))
 				return -1;
 		} else if (kind != SPACE) {
 			end = word_end(b, text, len, at, kind);

@@ -136,14 +136,6 @@ struct word {
 	unsigned char sizes[WORDPIECE_LONGEST]; /* bytes of each character */
 };
 
-static int push(struct wordpieces *out, int32_t id, struct err *e)
-{
-	if (mem_grow((void **)&out->ids, &out->capacity, out->n + 1, sizeof *out->ids, "word pieces", e))
-		return -1;
-	out->ids[out->n++] = id;
-	return 0;
-}
-
 /* The longest piece at `start`: its length in bytes, 0 for none. */
 static size_t longest_piece(
 	const struct vocab *v, struct word *w, size_t start, size_t character, int32_t *id)
@@ -163,6 +155,14 @@ static size_t longest_piece(
 	return *id >= 0 ? len : 0;
 }
 
+int wordpieces_push(struct wordpieces *out, int32_t id, struct err *e)
+{
+	if (mem_grow((void **)&out->ids, &out->capacity, out->n + 1, sizeof *out->ids, "word pieces", e))
+		return -1;
+	out->ids[out->n++] = id;
+	return 0;
+}
+
 /* Cuts the word up and empties it. */
 static int end_word(const struct vocab *v, struct word *w, struct wordpieces *out, struct err *e)
 {
@@ -176,13 +176,13 @@ static int end_word(const struct vocab *v, struct word *w, struct wordpieces *ou
 			is_known = 0;
 			break;
 		}
-		bad = push(out, id, e);
+		bad = wordpieces_push(out, id, e);
 		for (size_t end = at + len; at < end; at += w->sizes[character++])
 			continue;
 	}
 	if (!is_known) {
 		out->n = first;
-		bad = push(out, v->special[WORDPIECE_UNK], e);
+		bad = wordpieces_push(out, v->special[WORDPIECE_UNK], e);
 	}
 	w->characters = w->len = 0;
 	return bad;
@@ -239,7 +239,7 @@ int wordpiece_encode(const struct vocab *v, const char *text, struct wordpieces 
 	while (at < len) {
 		int special = special_at(v, text + at);
 		if (special >= 0) {
-			if (end_word(v, &w, out, e) || push(out, v->special[special], e))
+			if (end_word(v, &w, out, e) || wordpieces_push(out, v->special[special], e))
 				return -1;
 			at += strlen(special_tokens[special]);
 			continue;

@@ -57,6 +57,8 @@ struct wordpieces {
 	size_t n, capacity;
 	int32_t *ids; /* free() it */
 };
+/* Adds one. Returns 0, or -1 with *e when memory is out. */
+int wordpieces_push(struct wordpieces *out, int32_t id, struct err *e);
 
 /* Appends the ids of a text, without [CLS] and [SEP]. Malformed UTF-8 is dropped. -1 only when memory is out.
  */

@@ -1,5 +1,6 @@
 /* Directions are judged on the table, strictly also by bearing and distance from who looks; sizes both by
  * bulk and by the longest extent. Units: formats/scene/synth.md. */
+#include "base/largest.h"
 #include "synth/relations.h"
 
 #include "synth/cameras.h"
@@ -48,11 +49,6 @@ void synth_viewpoint_reference(struct synth_viewpoint *s, const struct synth_obj
 static int verdict(int is_true, int is_false)
 {
 	return is_true ? 1 : is_false ? -1 : 0;
-}
-
-static int least(int a, int b)
-{
-	return a < b ? a : b;
 }
 
 static double distance(const struct synth_viewpoint *s, int i, int j)
@@ -202,7 +198,7 @@ static int superlative(
 			continue;
 		int one = is_size ? compare_size(s, r->relation, i, j) : compare_place(s, r, i, j);
 		/* Less than what may not be among them proves nothing. */
-		v = least(v, among && among[j] == 0 && one < 0 ? 0 : one);
+		v = least_of(v, among && among[j] == 0 && one < 0 ? 0 : one);
 		rivals += !among || among[j] > 0;
 	}
 	if (!rivals && !s->is_strict && r->degree == PARSE_MOST && !is_size && among)

@@ -1,5 +1,6 @@
 /* What the phrases of a sentence mean among the objects of a scene, with the verdicts of synth/relations.h.
  */
+#include "base/largest.h"
 #include "synth/sentence.h"
 
 #include "base/mem.h"
@@ -53,11 +54,6 @@ void synth_say(struct synth_phrase *p, enum synth_word w, const struct synth_row
 	if (w == SYNTH_NOUN)
 		p->plural = row->more;
 	synth_sense_add(&p->sense, row);
-}
-
-static int least(int a, int b)
-{
-	return a < b ? a : b;
 }
 
 static int carries_anything(const struct synth_viewpoint *v, int i)
@@ -130,13 +126,13 @@ static void judge_phrase(
 		values[i] = synth_sense_judge(&p->sense, &v->objects[i]);
 		for (int k = 0; k < p->clause_count && values[i] >= 0; k++)
 			if (!ranks(s, p, k))
-				values[i] = least(values[i], judge_clause(v, s, p->clauses[k], i));
+				values[i] = least_of(values[i], judge_clause(v, s, p->clauses[k], i));
 	}
 	for (int k = 0; k < p->except_count; k++) {
 		uint64_t out;
 		int bad = synth_resolve(v, s, p->except[k], 0, &out);
 		for (int i = 0; i < v->n; i++)
-			values[i] = bad ? least(values[i], 0) : out >> i & 1 ? -1 : values[i];
+			values[i] = bad ? least_of(values[i], 0) : out >> i & 1 ? -1 : values[i];
 	}
 }
 
@@ -188,7 +184,7 @@ static void rank(const struct synth_viewpoint *v, const struct synth_sentence *s
 		r.degree = PARSE_MOST;
 		for (int i = 0; i < v->n; i++) {
 			int one = bad ? 0 : values[i] < 0 ? -1 : synth_relation_judge(v, &r, i, among);
-			values[i] = least(values[i], c->negated ? -one : one);
+			values[i] = least_of(values[i], c->negated ? -one : one);
 		}
 	}
 }
