@@ -32,8 +32,7 @@ struct refersplat *refersplat_new(void)
 static void forget_answer(struct refersplat *r)
 {
 	asking_answer_free(&r->answer);
-	free(r->objects);
-	free(r->probabilities);
+	mem_free_all(r->objects, r->probabilities);
 	r->objects = NULL;
 	r->probabilities = NULL;
 }

@@ -251,7 +251,6 @@ void feature_lifting_free(struct feature_lifting *l)
 	source_weights_free(&l->weights);
 	lift_features_free(&l->features);
 	lift_labels_free(&l->votes);
-	free(l->table);
-	free(l->factor);
 	feature_components_free(&l->components);
+	mem_free_all(l->table, l->factor);
 }

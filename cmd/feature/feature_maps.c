@@ -161,12 +161,10 @@ void feature_maps_free(struct feature_maps *m)
 {
 	if (m->npz)
 		npz_close(m->npz);
-	free(m->npz);
-	free(m->is_there);
 	masks_free(&m->set);
 	mask_index_free(&m->index);
 	text_free(&m->text);
-	free(m->row);
+	mem_free_all(m->npz, m->is_there, m->row);
 	*m = (struct feature_maps){0};
 }
 

@@ -258,7 +258,6 @@ void feature_query_free(struct feature_query *q)
 	mem_free_all(q->which, q->marks, q->group, q->level, q->object);
 	for (size_t k = 0; q->shown && k < q->view_count * q->count; k++)
 		mask_free(&q->shown[k]);
-	free(q->shown);
-	free(q->views);
 	scene_free(&q->scene);
+	mem_free_all(q->shown, q->views);
 }

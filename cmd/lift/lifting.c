@@ -254,8 +254,7 @@ static int lift(struct lifting *l, const struct report *to, struct err *e)
 		bad = each_run(&by, n, e) || lift_objects_settle(&l->lift, e);
 	for (int i = 0; i < by.workers && r.rooms; i++)
 		weights_room_free(&r.rooms[i]);
-	free(r.rooms);
-	free(r.masks);
+	mem_free_all(r.rooms, r.masks);
 	return bad || lift_objects_finish(&l->lift, &l->model, e) ? -1 : 0;
 }
 

@@ -131,8 +131,7 @@ static void shown_free(struct shown *s, size_t n)
 {
 	for (size_t i = 0; i < n && s->masks; i++)
 		rle_free(&s->masks[i]);
-	free(s->masks);
-	free(s->scores);
+	mem_free_all(s->masks, s->scores);
 	*s = (struct shown){0};
 }
 
@@ -322,9 +321,8 @@ void pseudomasks_free(struct pseudomasks *w)
 {
 	propagate_free(&w->propagation);
 	regions_free(&w->regions);
-	free(w->views);
 	scene_free(&w->scene);
 	pool_free(&w->pool);
 	masks_free(&w->set);
-	free(w->lines);
+	mem_free_all(w->views, w->lines);
 }

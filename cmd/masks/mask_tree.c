@@ -109,8 +109,7 @@ static int walk_views(struct walk *w, struct err *e)
 	bad = bad || views_name(files, count, views, w->dir, e);
 	for (size_t i = 0; i < count; i++) {
 		bad = bad || walk_view(w, paths[i], views[i], e);
-		free(paths[i]);
-		free(views[i]);
+		mem_free_all(paths[i], views[i]);
 	}
 	free_list(names, n);
 	return bad ? -1 : 0;

@@ -19,8 +19,7 @@ int showing_open(struct showing *w, const struct scene *scene, const struct anym
 
 void showing_free(struct showing *w)
 {
-	free(w->most);
-	free(w->of);
+	mem_free_all(w->most, w->of);
 }
 
 int showing_things(struct splats *to, const struct showing *w, const size_t *things, size_t count,

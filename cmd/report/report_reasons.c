@@ -107,7 +107,6 @@ int report_reasons(
 void report_reasons_free(struct report_reason *reasons, size_t n)
 {
 	for (size_t i = 0; reasons && i < n; i++) {
-		free(reasons[i].things);
-		free(reasons[i].explained);
+		mem_free_all(reasons[i].things, reasons[i].explained);
 	}
 }

@@ -127,8 +127,7 @@ static int report_splats_make(struct report_splats *s, const struct report_run *
  * sizes, as what is 0 packs well. Returns 0, or -1 with *e set; report_splats_free after either. */
 static void report_splats_free(struct report_splats *s)
 {
-	free(s->counts);
-	free(s->bytes);
+	mem_free_all(s->counts, s->bytes);
 	*s = (struct report_splats){0};
 }
 

@@ -62,8 +62,7 @@ int answer_scores_make(struct answer_scores *s, const struct sentences *sentence
 void answer_scores_free(struct answer_scores *s)
 {
 	answers_free(&s->answers);
-	free(s->sentences);
-	free(s->kinds);
+	mem_free_all(s->sentences, s->kinds);
 	*s = (struct answer_scores){0};
 }
 

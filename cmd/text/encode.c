@@ -299,7 +299,6 @@ int encode(struct encoding *x, const struct encoder *with, const struct report *
 void encoding_free(struct encoding *x)
 {
 	text_free(&x->text);
-	free(x->tokens.pieces.ids);
-	free(x->tokens.starts);
 	sentences_free(&x->sentences);
+	mem_free_all(x->tokens.pieces.ids, x->tokens.starts);
 }

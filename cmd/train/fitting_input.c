@@ -244,8 +244,6 @@ void fitting_input_free(struct fitting_input *f)
 	fit_gaussians_free(&f->gaussians);
 	for (size_t i = 0; f->photographs && i < f->cameras.n; i++)
 		photograph_free(&f->photographs[i]);
-	free(f->photographs);
-	free(f->seen);
 	cameras_free(&f->cameras);
-	free(f->path);
+	mem_free_all(f->photographs, f->seen, f->path);
 }

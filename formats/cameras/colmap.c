@@ -204,8 +204,7 @@ static int is_pair(const char *dir, const char *suffix)
 	     *b = file_join(dir, "images", suffix, &ignored);
 	int both = a && b && file_exists(a) && file_exists(b);
 
-	free(a);
-	free(b);
+	mem_free_all(a, b);
 	return both;
 }
 
@@ -352,7 +351,6 @@ int colmap_points_read(struct colmap_points *p, const char *dir, struct err *e)
 
 void colmap_points_free(struct colmap_points *p)
 {
-	free(p->places);
-	free(p->colors);
+	mem_free_all(p->places, p->colors);
 	*p = (struct colmap_points){0};
 }

@@ -215,8 +215,7 @@ int colmap_read_text(
 	int bad = read_cameras_text(all, &first, cameras, e) || colmap_sort_entries(all, cameras, e) ||
 		  read_images_text(c, all, &second, images, e);
 
-	free(first.text);
-	free(second.text);
+	mem_free_all(first.text, second.text);
 	return bad;
 }
 

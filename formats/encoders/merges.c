@@ -27,8 +27,7 @@ struct list {
 
 static void list_free(struct list *l)
 {
-	free(l->text);
-	free(l->pairs);
+	mem_free_all(l->text, l->pairs);
 }
 
 static int fail(const struct list *l, size_t i, const char *reason, struct err *e)

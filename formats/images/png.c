@@ -60,8 +60,7 @@ static void read_bytes(png_structp png, png_bytep data, size_t len)
 
 static void release(struct png_job *job)
 {
-	free(job->raw);
-	free(job->rows);
+	mem_free_all(job->raw, job->rows);
 	job->raw = NULL;
 	job->rows = NULL;
 }

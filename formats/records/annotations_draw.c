@@ -62,8 +62,7 @@ const char *reading_picture(struct reading *r, const char *json, const char *ima
 		a->picture = file_join(strchr(path, ':') ? "." : folder, path, "", e);
 	if (a->picture)
 		simplify(a->picture);
-	free(path);
-	free(folder);
+	mem_free_all(path, folder);
 	return a->picture ? a->view : NULL;
 }
 

@@ -13,8 +13,7 @@ static void record_free(void *record)
 {
 	const struct box_record *r = record;
 
-	free(r->ref);
-	free(r->object);
+	mem_free_all(r->ref, r->object);
 }
 
 void boxes_free(struct box_set *s)

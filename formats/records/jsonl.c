@@ -20,8 +20,7 @@ int jsonl_open(struct jsonl *j, const char *path, struct err *e)
 void jsonl_close(struct jsonl *j)
 {
 	file_close(j->in);
-	free(j->line);
-	free(j->text);
+	mem_free_all(j->line, j->text);
 	*j = (struct jsonl){0};
 }
 

@@ -11,10 +11,8 @@ enum { VERSION_READ = 3 };
 
 void model_free(struct model *m)
 {
-	free(m->ids);
 	octree_free(&m->octree);
-	free(m->features);
-	free(m->parameters);
+	mem_free_all(m->ids, m->features, m->parameters);
 	*m = (struct model){0};
 }
 

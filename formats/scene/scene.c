@@ -316,7 +316,6 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 	     *cameras = file_join(dir, "cameras.json", "", e);
 	const int bad = !splats || !cameras || write_splats(s, splats, options, e) ||
 			file_out_put(cameras, put_cameras, &s->cameras, e);
-	free(splats);
-	free(cameras);
+	mem_free_all(splats, cameras);
 	return bad ? -1 : 0;
 }

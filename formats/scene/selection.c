@@ -9,8 +9,7 @@ enum { VERSION_READ = 1 };
 void selection_free(struct selection *s)
 {
 	mem_free_strings(s->refs, s->n);
-	free(s->indptr);
-	free(s->index);
+	mem_free_all(s->indptr, s->index);
 	*s = (struct selection){0};
 }
 

@@ -157,7 +157,6 @@ int anysplats_loss(const struct splats *s, const double offset[3], enum anysplat
 		if (found)
 			tell(text, share * size, size, resized, s->n);
 	}
-	free(shares);
-	free(sizes);
+	mem_free_all(shares, sizes);
 	return found;
 }

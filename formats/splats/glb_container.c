@@ -87,8 +87,7 @@ static int open_numbers(struct glb *f, struct err *e)
 	const int bad = !path || file_map(path, &f->numbers, e);
 	if (leaves)
 		err_file(e, f->name, "buffer 0 is '%.200s', not in the folder of this file", name);
-	free(name);
-	free(folder);
+	mem_free_all(name, folder);
 	f->bin = f->numbers.data;
 	f->bin_length = f->numbers.len;
 	return bad ? -1 : 0;

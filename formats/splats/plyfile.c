@@ -234,9 +234,8 @@ void plyfile_close(struct plyfile *f)
 {
 	for (size_t i = 0; i < f->n; i++)
 		free(f->elements[i].properties);
-	free(f->elements);
-	free(f->header);
 	file_unmap(&f->map);
+	mem_free_all(f->elements, f->header);
 	*f = (struct plyfile){0};
 }
 

@@ -245,8 +245,7 @@ static int write_harmonics(struct writing *w, struct err *e)
 		memcpy(rows + i * width, sh_of(w, i) + 3, width * sizeof *rows);
 	bad = bad || palette_rows(centres, &w->palette, labels, rows, n, width, most, e) ||
 	      write_labels(w, labels, e) || write_centres(w, centres, e);
-	free(rows);
-	free(centres);
+	mem_free_all(rows, centres);
 	return bad;
 }
 
@@ -316,7 +315,6 @@ int sog_write(const struct splats *s, const double offset[3], const char *path, 
 		return -1;
 	zip_write_start(&w.zip, out.stream, w.name);
 	const int bad = write_all(&w, e);
-	free(w.order);
-	free(w.rgba);
+	mem_free_all(w.order, w.rgba);
 	return file_out_end(&out, bad, e);
 }

@@ -276,8 +276,7 @@ int file_out_commit(struct file_out *out, struct err *e)
 	temporary_end(out->temporary);
 	if (out->stream != stdout && fclose(out->stream) && !bad)
 		bad = err_errno(e, "%s", name);
-	free(out->path);
-	free(out->target);
+	mem_free_all(out->path, out->target);
 	*out = (struct file_out){0};
 	return bad;
 }
@@ -287,8 +286,7 @@ void file_out_abort(struct file_out *out)
 	temporary_end(out->temporary);
 	if (out->stream && out->stream != stdout)
 		fclose(out->stream);
-	free(out->path);
-	free(out->target);
+	mem_free_all(out->path, out->target);
 	*out = (struct file_out){0};
 }
 

@@ -62,8 +62,7 @@ char *path_relative(const char *dir, const char *target, struct err *e)
 	folder = real_folder(target, e);
 	if (folder)
 		out = relative(from, folder, slash ? slash + 1 : target, e);
-	free(from);
-	free(folder);
+	mem_free_all(from, folder);
 	return out;
 }
 
@@ -183,8 +182,7 @@ int path_is_same(const char *a, const char *b, struct err *e)
 	}
 	const int is_same = x.st.st_dev == y.st.st_dev && x.st.st_ino == y.st.st_ino &&
 			    (S_ISREG(x.st.st_mode) || S_ISDIR(x.st.st_mode)) && is_same_rest(x.rest, y.rest);
-	free(x.path);
-	free(y.path);
+	mem_free_all(x.path, y.path);
 	return is_same;
 }
 

@@ -91,8 +91,7 @@ static int is_below(const struct cli *c, const char *target, const struct cli_fi
 		fail(c, &e);
 	const int found =
 		parts_meet(path_last(dir, &length), folder->parts) && is_same(c, above, folder->path);
-	free(dir);
-	free(above);
+	mem_free_all(dir, above);
 	return found;
 }
 
@@ -108,8 +107,7 @@ static int is_within(const struct cli *c, const char *file, const struct cli_fil
 	const char *name = path_last(target, &length);
 	int found = (parts_meet(name, folder->parts) && is_same(c, dir, folder->path)) ||
 		    (file_exists(file) && (is_below(c, target, folder) || is_listed(c, file, folder)));
-	free(target);
-	free(dir);
+	mem_free_all(target, dir);
 	return found;
 }
 

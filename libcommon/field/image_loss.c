@@ -27,8 +27,7 @@ int image_loss_init(struct image_loss *s, size_t pixels, size_t rows, int most, 
 
 void image_loss_free(struct image_loss *s)
 {
-	free(s->image);
-	free(s->slabs);
+	mem_free_all(s->image, s->slabs);
 	*s = (struct image_loss){0};
 }
 

@@ -22,8 +22,7 @@ const struct back_kernels *back_kernels_of(enum cpu_level level)
 
 void back_free(struct back_room *r)
 {
-	free(r->parts);
-	free(r->done);
+	mem_free_all(r->parts, r->done);
 	*r = (struct back_room){0};
 }
 

@@ -187,8 +187,7 @@ static void channel_loss(
 
 void photo_loss_free(struct photo_loss_room *r)
 {
-	free(r->planes);
-	free(r->rows);
+	mem_free_all(r->planes, r->rows);
 	*r = (struct photo_loss_room){0};
 }
 

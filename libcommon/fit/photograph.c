@@ -45,8 +45,7 @@ int photograph_ignore(struct photograph *p, const uint8_t *mask, int height, int
 void photograph_free(struct photograph *p)
 {
 	for (int k = 0; k < FIT_LEVELS; k++) {
-		free(p->rgb[k]);
-		free(p->ignored[k]);
+		mem_free_all(p->rgb[k], p->ignored[k]);
 	}
 	*p = (struct photograph){0};
 }

@@ -16,8 +16,7 @@ enum { MORE = 8, TURNS = 40, SWEEPS = 60 };
 
 void components_free(struct components *c)
 {
-	free(c->mean);
-	free(c->basis);
+	mem_free_all(c->mean, c->basis);
 	*c = (struct components){0};
 }
 

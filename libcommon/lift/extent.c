@@ -323,7 +323,6 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 
 void extent_free(struct extent *x)
 {
-	free(x->ids);
-	free(x->weight);
+	mem_free_all(x->ids, x->weight);
 	*x = (struct extent){0};
 }

@@ -19,8 +19,7 @@ int lift_labels_init(struct lift_labels *l, size_t gaussians, struct err *e)
 
 void lift_labels_free(struct lift_labels *l)
 {
-	free(l->first);
-	free(l->votes);
+	mem_free_all(l->first, l->votes);
 	*l = (struct lift_labels){0};
 }
 

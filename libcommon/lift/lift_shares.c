@@ -101,8 +101,7 @@ static int make_rows(struct lift_objects *l, double *levels, struct err *e)
 #pragma omp critical
 			*e = mine;
 		}
-		free(s.inside);
-		free(s.marks);
+		mem_free_all(s.inside, s.marks);
 	}
 	return failed ? -1 : 0;
 }

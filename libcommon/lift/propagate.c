@@ -130,8 +130,7 @@ int propagate_lift(struct propagation *c, size_t source, const struct view_weigh
 	bad = 0;
 done:
 	free(weight);
-	free(image);
-	free(pixels);
+	mem_free_all(image, pixels);
 	return bad;
 }
 

@@ -17,8 +17,7 @@ struct shapes {
 
 static void shapes_free(struct shapes *s)
 {
-	free(s->bits);
-	free(s->area);
+	mem_free_all(s->bits, s->area);
 }
 
 /* Pixels in common. */

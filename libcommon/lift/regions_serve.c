@@ -208,7 +208,6 @@ int regions_render(const struct regions *r, size_t view, const struct view_matri
 		bad = put_mask(&t, o, view, &masks[o], &scores[o], rendered, e);
 	for (size_t o = 0; o < r->object_count && bad; o++)
 		rle_free(&masks[o]);
-	free(t.image);
-	free(t.pixels);
+	mem_free_all(t.image, t.pixels);
 	return bad ? -1 : 0;
 }

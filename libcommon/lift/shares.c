@@ -181,7 +181,6 @@ int shares_make(float *weight, struct shares *rows, const struct view_matrix *w,
 
 void shares_free(struct shares *row)
 {
-	free(row->index);
-	free(row->share);
+	mem_free_all(row->index, row->share);
 	*row = (struct shares){0};
 }

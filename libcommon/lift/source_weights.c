@@ -27,8 +27,7 @@ static int make_room(struct source_weights *s, size_t pixels, size_t gaussians, 
 		return -1;
 	if (s->gaussian_room > gaussians)
 		return 0;
-	free(s->indptr);
-	free(s->last);
+	mem_free_all(s->indptr, s->last);
 	s->gaussian_room = gaussians + 1;
 	s->indptr = mem_alloc(gaussians + 1, sizeof *s->indptr, "Gaussians", e);
 	s->last = mem_alloc(gaussians + 1, sizeof *s->last, "Gaussians", e);

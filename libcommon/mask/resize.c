@@ -11,8 +11,7 @@ struct ranges {
 
 static void ranges_free(struct ranges *g)
 {
-	free(g->items);
-	free(g->first);
+	mem_free_all(g->items, g->first);
 }
 
 static int ranges_make(struct ranges *g, const struct rle *r, struct err *e)
@@ -132,7 +131,6 @@ int rle_resize(struct rle *to, const struct rle *from, int height, int width, st
 	bad = rle_from_runs(to, runs, n, height, width, e);
 done:
 	ranges_free(&g);
-	free(sums);
-	free(runs);
+	mem_free_all(sums, runs);
 	return bad;
 }

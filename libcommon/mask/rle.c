@@ -96,8 +96,7 @@ int rle_encode(struct rle *r, const uint8_t *mask, int height, int width, struct
 	bad = 0;
 done:
 	free(top);
-	free(columns);
-	free(start);
+	mem_free_all(columns, start);
 	return bad;
 }
 

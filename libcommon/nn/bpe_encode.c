@@ -205,7 +205,6 @@ int bpe_encode(const struct bpe *b, const char *text, struct wordpieces *out, st
 	SCOPED char *cleaned = clean(text, &len, e);
 	const int bad = !cleaned || encode_clean(b, &w, cleaned, len, out, e);
 
-	free(w.symbols);
-	free(w.heap);
+	mem_free_all(w.symbols, w.heap);
 	return bad ? -1 : 0;
 }

@@ -46,8 +46,7 @@ uint64_t text_tower_hash(const struct text_tower *t, uint64_t seed)
 
 void text_tower_free(struct text_tower *t)
 {
-	free(t->body.layers);
-	free(t->slab);
+	mem_free_all(t->body.layers, t->slab);
 	*t = (struct text_tower){0};
 }
 

@@ -122,8 +122,7 @@ void vocab_free(struct vocab *v)
 {
 	for (size_t i = 0; i < v->n; i++)
 		free(v->entries[i].token);
-	free(v->entries);
-	free(v->table);
+	mem_free_all(v->entries, v->table);
 	*v = (struct vocab){0};
 }
 

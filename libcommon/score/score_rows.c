@@ -94,8 +94,7 @@ static int add_intervals(struct score_row *row, const struct score_sample *s, st
 		bad = bootstrap_ratios(intervals, sums, units, ratios, s->how, e) ||
 		      (s->other && bootstrap_sign_test(&row->other.p, differences, units, s->how, e));
 	}
-	free(sums);
-	free(differences);
+	mem_free_all(sums, differences);
 	row->miou = intervals[MIOU];
 	row->oiou = intervals[OIOU];
 	row->other.miou = intervals[OTHER_MIOU];

@@ -175,6 +175,5 @@ void render_free(struct render_view *v)
 	wanted_free(&v->wanted);
 	mem_free_all(v->projected, v->order, v->covers, v->found);
 	free_spans(v);
-	free(v->tallies);
-	free(v);
+	mem_free_all(v->tallies, v);
 }

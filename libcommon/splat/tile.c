@@ -250,7 +250,6 @@ int tile_bin(struct tile_lists *t, const struct tile_grid *g, const struct order
 
 void tile_free(struct tile_lists *t)
 {
-	free(t->start);
-	free(t->entries);
+	mem_free_all(t->start, t->entries);
 	*t = (struct tile_lists){0};
 }

@@ -93,8 +93,7 @@ enum { RECORD_CHUNKS = 2 };
 static void records_free(struct blend_records *records, int threads)
 {
 	for (int i = 0; records && i < threads; i++) {
-		free(records[i].items);
-		free(records[i].weights);
+		mem_free_all(records[i].items, records[i].weights);
 	}
 	free(records);
 }

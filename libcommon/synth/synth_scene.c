@@ -23,10 +23,9 @@ fail:
 
 void synth_scene_free(struct synth_scene *s)
 {
-	free(s->objects);
-	free(s->owner);
 	splats_free(&s->splats);
 	cameras_free(&s->cameras);
+	mem_free_all(s->objects, s->owner);
 	*s = (struct synth_scene){0};
 }
 

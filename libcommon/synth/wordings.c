@@ -108,8 +108,7 @@ int synth_wordings_load(struct synth_wordings *w, int is_unseen, struct err *e)
 
 void synth_wordings_free(struct synth_wordings *w)
 {
-	free(w->rows);
-	free(w->text);
+	mem_free_all(w->rows, w->text);
 	*w = (struct synth_wordings){0};
 }
 

@@ -128,8 +128,7 @@ void supervision_free(struct supervision *s)
 			free(s->bits[i].bits);
 	masks_free(&s->masks);
 	mask_index_free(&s->index);
-	free(s->bits);
-	free(s->by_bits);
+	mem_free_all(s->bits, s->by_bits);
 	*s = (struct supervision){0};
 }
 
@@ -171,7 +170,6 @@ int supervision_link(const struct supervision *s, const char *const *refs, const
 void supervision_unlink(struct train_view *views, size_t view_count)
 {
 	for (size_t v = 0; v < view_count; v++) {
-		free(views[v].sentences);
-		free(views[v].masks);
+		mem_free_all(views[v].sentences, views[v].masks);
 	}
 }

@@ -130,8 +130,7 @@ void trainer_free(struct trainer *t)
 	held_out_free(&t->held);
 	octree_free(&t->octree);
 	rows_free(&t->rows);
-	free(t->ids);
-	free(t->position);
+	mem_free_all(t->ids, t->position);
 	*t = (struct trainer){0};
 }
 
