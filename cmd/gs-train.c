@@ -1,5 +1,6 @@
 /* gs-train: trains a 3DGS scene from photographs and their cameras. */
 #include "base/file.h"
+#include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/train/fitting.h"
 #include "formats/cameras/colmap.h"
@@ -74,7 +75,7 @@ int main(int argc, char **argv)
 	if (is_stdout && options.is_resumed)
 		cli_usage(&cli, "--resume needs a file to write to: there is no checkpoint of stdout");
 	options.checkpoint = is_stdout ? 0 : options.checkpoint;
-	char *path = is_stdout ? NULL : checkpoint_path(cli.output, &e);
+	SCOPED char *path = is_stdout ? NULL : checkpoint_path(cli.output, &e);
 	if (!is_stdout && !path)
 		return cli_fail(&cli, &e);
 	options.checkpoint_path = path;
@@ -87,6 +88,5 @@ int main(int argc, char **argv)
 		{"--images", options.images, CLI_READS, "*"}, {"checkpoint", path, CLI_WRITES, NULL}, {0}};
 	cli_refuse_overwrite(&cli, "init", "output log", found);
 	const int bad = fit_scene(&options, cli_report(&to, &cli), &e);
-	free(path);
 	return bad ? cli_fail(&cli, &e) : cli_done(&cli);
 }

@@ -105,7 +105,8 @@ static int check_images(const char *images_path, struct err *e)
 /* The trained splats in a folder of 3DGS: those of the last iteration. */
 static char *find_in_folder(const char *folder, struct err *e)
 {
-	char *inner = file_join(folder, "point_cloud", "", e), *found = NULL;
+	SCOPED char *inner = file_join(folder, "point_cloud", "", e);
+	char *found = NULL;
 	const char *const places[] = {inner, folder};
 	long most = -1;
 
@@ -125,7 +126,6 @@ static char *find_in_folder(const char *folder, struct err *e)
 	}
 	if (inner && !found)
 		found = file_join(folder, "point_cloud.ply", "", e);
-	free(inner);
 	return found;
 }
 

@@ -140,7 +140,8 @@ static int put(const struct locating *r, size_t i, FILE *out, struct err *e)
 	const struct located *l = &r->answers[answer];
 	const struct extent *x = &l->extent;
 	const struct box_gaussians of = {x->n, x->ids};
-	struct box_record *parts, record;
+	SCOPED struct box_record *parts = NULL;
+	struct box_record record;
 
 	if (make_parts(r, answer, &parts, e))
 		return -1;
@@ -149,9 +150,7 @@ static int put(const struct locating *r, size_t i, FILE *out, struct err *e)
 	record.object = (char *)text_object(&q->text, q->refs[i]);
 	record.parts = parts;
 	record.part_count = parts_of(&q->responses, answer);
-	const int bad = boxes_put(out, &record, &of, e);
-	free(parts);
-	return bad;
+	return boxes_put(out, &record, &of, e);
 }
 
 int locating_write(const struct locating *r, const char *path, struct err *e)

@@ -154,13 +154,12 @@ static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from,
 static int answer_lifted(const struct lifted *l, const struct anymodel_ask *q, struct responses_question *of,
 	struct responses *a, struct err *e)
 {
-	struct viewpoint *from = mem_alloc(q->count, sizeof *from, "sentences", e);
+	SCOPED struct viewpoint *from = mem_alloc(q->count, sizeof *from, "sentences", e);
 
 	of->from = from;
-	const int bad =
-		!from || find_viewpoints(q, from, e) || responses_lifted(a, l, of, q->parts, q->least, e);
-	free(from);
-	return bad ? -1 : 0;
+	if (!from || find_viewpoints(q, from, e))
+		return -1;
+	return responses_lifted(a, l, of, q->parts, q->least, e);
 }
 
 /* The sentences' rows of a selection, by ref. */

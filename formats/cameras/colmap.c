@@ -200,12 +200,10 @@ static int read_images_binary(struct cameras *c, const struct colmap_entries *al
 static int is_pair(const char *dir, const char *suffix)
 {
 	struct err ignored;
-	char *a = file_join(dir, "cameras", suffix, &ignored),
-	     *b = file_join(dir, "images", suffix, &ignored);
-	int both = a && b && file_exists(a) && file_exists(b);
+	SCOPED char *a = file_join(dir, "cameras", suffix, &ignored),
+		    *b = file_join(dir, "images", suffix, &ignored);
 
-	mem_free_all(a, b);
-	return both;
+	return a && b && file_exists(a) && file_exists(b);
 }
 
 int colmap_is_model(const char *dir)
@@ -305,7 +303,7 @@ static int read_points_binary(struct colmap_points *p, const char *path, struct 
 /* Lines of POINT3D_ID X Y Z R G B ERROR and more. */
 static int read_points_text(struct colmap_points *p, const char *path, struct err *e)
 {
-	char *text = NULL;
+	SCOPED char *text = NULL;
 	size_t length, room = 0;
 	long number = 0;
 	int bad = textfile_read(path, &text, &length, e);
@@ -328,7 +326,6 @@ static int read_points_text(struct colmap_points *p, const char *path, struct er
 			bad = err_set(e, ERR_FORMAT, "%s:%ld: not 'ID X Y Z R G B ERROR'", path, number + 1);
 		line = next;
 	}
-	free(text);
 	return bad;
 }
 

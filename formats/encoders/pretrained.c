@@ -1,6 +1,7 @@
 #include "formats/encoders/pretrained.h"
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "formats/records/json.h"
 
 #include <dirent.h>
@@ -104,16 +105,13 @@ static char *find_weights(const char *dir, struct err *e)
 
 int pretrained_open(struct safetensors *st, const char *dir, const char *first, struct err *e)
 {
-	char *path = first ? file_join(dir, first, "", e) : NULL;
+	SCOPED char *path = first ? file_join(dir, first, "", e) : NULL;
 
 	if (!path || !file_exists(path)) {
 		free(path);
 		path = find_weights(dir, e);
 	}
-	const int bad = !path || safetensors_open(st, path, e);
-
-	free(path);
-	return bad ? -1 : 0;
+	return !path || safetensors_open(st, path, e) ? -1 : 0;
 }
 
 const struct st_tensor *pretrained_need(

@@ -92,7 +92,7 @@ static int read_tokenizer(struct vocab *v, const char *path, struct err *e)
 /* One token a line; its id is the line's number from 0. */
 static int read_list(struct vocab *v, const char *path, struct err *e)
 {
-	char *text;
+	SCOPED char *text = NULL;
 	size_t len, line = 0;
 	int bad = 0;
 
@@ -111,7 +111,6 @@ static int read_list(struct vocab *v, const char *path, struct err *e)
 		else if ((bad = vocab_add(v, at, (int32_t)line, e)) > 0)
 			bad = err_set(e, ERR_FORMAT, "%s:%zu: token '%s' appears twice", path, line + 1, at);
 	}
-	free(text);
 	return bad;
 }
 
@@ -133,13 +132,14 @@ static int check_config(const char *dir, struct err *e)
 
 int vocab_read(struct vocab *v, const char *dir, struct err *e)
 {
-	char *json = file_join(dir, "tokenizer.json", "", e), *list = file_join(dir, "vocab.txt", "", e);
+	SCOPED char *json = file_join(dir, "tokenizer.json", "", e),
+		    *list = file_join(dir, "vocab.txt", "", e);
 	const char *missing, *path = json;
 	int bad = -1;
 
 	*v = (struct vocab){0};
 	if (!json || !list)
-		goto done;
+		return -1;
 	if (file_exists(json)) {
 		bad = read_tokenizer(v, json, e);
 	} else if (file_exists(list)) {
@@ -152,9 +152,6 @@ int vocab_read(struct vocab *v, const char *dir, struct err *e)
 	}
 	if (!bad && (missing = vocab_finish(v)))
 		bad = err_file(e, path, "token '%s' is missing", missing);
-done:
-	free(json);
-	free(list);
 	if (bad)
 		vocab_free(v);
 	return bad ? -1 : 0;

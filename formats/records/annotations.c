@@ -165,8 +165,8 @@ static int read_ref_lerf(
 
 	if (json_string(json_get(root, "info"), "name", 1, &image, r->where, e) < 0)
 		return -1;
-	char *view = reading_view(image, e), *folder = file_dir(json, e),
-	     *masks = folder ? file_join(folder, "../gt_mask", "", e) : NULL;
+	SCOPED char *view = reading_view(image, e), *folder = file_dir(json, e),
+		    *masks = folder ? file_join(folder, "../gt_mask", "", e) : NULL;
 	int bad = !view || !masks;
 	cJSON_ArrayForEach(object, objects)
 	{
@@ -175,7 +175,6 @@ static int read_ref_lerf(
 		      json_string(object, "segmentation", 1, &picture, r->where, e) < 0 ||
 		      read_mask_picture(r, masks, picture, view, name, e);
 	}
-	mem_free_all(view, folder, masks);
 	return bad ? -1 : 0;
 }
 

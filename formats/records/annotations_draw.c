@@ -52,7 +52,7 @@ static void simplify(char *path)
 const char *reading_picture(struct reading *r, const char *json, const char *image, struct err *e)
 {
 	struct annotations *a = r->to;
-	char *path = mem_strdup(image, e), *folder = *json ? file_dir(json, e) : mem_strdup(".", e);
+	SCOPED char *path = mem_strdup(image, e), *folder = *json ? file_dir(json, e) : mem_strdup(".", e);
 
 	for (char *p = path; p && *p; p++)
 		*p = *p == '\\' ? '/' : *p;
@@ -62,7 +62,6 @@ const char *reading_picture(struct reading *r, const char *json, const char *ima
 		a->picture = file_join(strchr(path, ':') ? "." : folder, path, "", e);
 	if (a->picture)
 		simplify(a->picture);
-	mem_free_all(path, folder);
 	return a->picture ? a->view : NULL;
 }
 

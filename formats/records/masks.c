@@ -68,30 +68,24 @@ int masks_take_counts(
 	const int is_list = cJSON_IsArray(counts);
 	const cJSON *item;
 	size_t n = 0;
-	int bad = 0;
 
 	if (!is_list && !cJSON_IsString(counts))
 		return err_file(e, where, "key 'segmentation.counts' is not a string or a list");
-	uint32_t *runs =
+	SCOPED uint32_t *runs =
 		is_list ? mem_alloc((size_t)cJSON_GetArraySize(counts), sizeof *runs, "mask", e) : NULL;
 	if (is_list && !runs)
 		return -1;
 	cJSON_ArrayForEach(item, counts)
 	{
 		const double x = item->valuedouble;
-		if (!cJSON_IsNumber(item) || !(x >= 0 && x <= UINT32_MAX) || x != floor(x)) {
-			free(runs);
+		if (!cJSON_IsNumber(item) || !(x >= 0 && x <= UINT32_MAX) || x != floor(x))
 			return err_file(e, where,
 				"key 'segmentation.counts': item %zu is not a whole number in 0 to %lld", n,
 				(long long)UINT32_MAX);
-		}
 		runs[n++] = (uint32_t)x;
 	}
-	if (is_list)
-		bad = !runs || rle_from_runs(mask, runs, n, height, width, e);
-	else
-		bad = rle_from_string(mask, counts->valuestring, height, width, e);
-	free(runs);
+	const int bad = is_list ? rle_from_runs(mask, runs, n, height, width, e)
+				: rle_from_string(mask, counts->valuestring, height, width, e);
 	return bad ? key_err(e, where, "segmentation.counts") : 0;
 }
 
@@ -116,21 +110,17 @@ static int read_segmentation(
 
 static int read_image(const struct jsonl *j, const char *name, struct rle *mask, struct err *e)
 {
-	uint8_t *pixels;
-	int height, width, bad = -1;
+	SCOPED uint8_t *pixels = NULL;
+	int height, width;
 
 	if (j->in != stdin && path_leaves(name))
 		return jsonl_err(j, e, "key 'path': '%.200s' is not in the folder of this file", name);
 	SCOPED char *dir = file_dir(j->path, e);
 	SCOPED char *path = dir ? file_join(dir, name, "", e) : NULL;
 
-	if (path && !png_read_mask(path, &pixels, &height, &width, e)) {
-		bad = rle_encode(mask, pixels, height, width, e);
-		free(pixels);
-		if (bad)
-			key_err(e, j->where, "path");
-	}
-	return bad;
+	if (!path || png_read_mask(path, &pixels, &height, &width, e))
+		return -1;
+	return rle_encode(mask, pixels, height, width, e) ? key_err(e, j->where, "path") : 0;
 }
 
 static int read_names(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)

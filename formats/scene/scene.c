@@ -312,10 +312,9 @@ int scene_write(const struct scene *s, const char *dir, const char *options, str
 {
 	if (file_make_dir(dir, e))
 		return -1;
-	char *splats = file_join(dir, "splats.safetensors", "", e),
-	     *cameras = file_join(dir, "cameras.json", "", e);
-	const int bad = !splats || !cameras || write_splats(s, splats, options, e) ||
-			file_out_put(cameras, put_cameras, &s->cameras, e);
-	mem_free_all(splats, cameras);
-	return bad ? -1 : 0;
+	SCOPED char *splats = file_join(dir, "splats.safetensors", "", e),
+		    *cameras = file_join(dir, "cameras.json", "", e);
+	if (!splats || !cameras || write_splats(s, splats, options, e))
+		return -1;
+	return file_out_put(cameras, put_cameras, &s->cameras, e);
 }

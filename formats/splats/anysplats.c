@@ -129,8 +129,8 @@ static int tell(char text[ANYSPLATS_LOSS], double step, double size, size_t resi
 int anysplats_loss(const struct splats *s, const double offset[3], enum anysplats_format format,
 	char text[ANYSPLATS_LOSS], struct err *e)
 {
-	struct quantile_item *shares = mem_alloc(s->n, sizeof *shares, "splats", e),
-			     *sizes = mem_alloc(s->n, sizeof *sizes, "splats", e);
+	SCOPED struct quantile_item *shares = mem_alloc(s->n, sizeof *shares, "splats", e),
+				    *sizes = mem_alloc(s->n, sizeof *sizes, "splats", e);
 	double spz = 0, sog[3] = {0};
 	size_t resized = 0;
 	int found = shares && sizes ? 0 : -1;
@@ -157,6 +157,5 @@ int anysplats_loss(const struct splats *s, const double offset[3], enum anysplat
 		if (found)
 			tell(text, share * size, size, resized, s->n);
 	}
-	mem_free_all(shares, sizes);
 	return found;
 }

@@ -79,7 +79,7 @@ static int open_numbers(struct glb *f, struct err *e)
 		return err_file(e, f->name, "buffer 0 has no file: key 'uri' is missing");
 	if (!strncmp(uri, "data:", 5) || strstr(uri, "://"))
 		return err_file(e, f->name, "buffer 0 is '%.20s...', not a file beside this one", uri);
-	char *name = mem_strdup(uri, e), *folder = file_dir(f->name, e);
+	SCOPED char *name = mem_strdup(uri, e), *folder = file_dir(f->name, e);
 	if (name)
 		decode_uri(name);
 	const int leaves = name && path_leaves(name);
@@ -87,7 +87,6 @@ static int open_numbers(struct glb *f, struct err *e)
 	const int bad = !path || file_map(path, &f->numbers, e);
 	if (leaves)
 		err_file(e, f->name, "buffer 0 is '%.200s', not in the folder of this file", name);
-	mem_free_all(name, folder);
 	f->bin = f->numbers.data;
 	f->bin_length = f->numbers.len;
 	return bad ? -1 : 0;

@@ -70,7 +70,8 @@ static int read_image(
 {
 	const cJSON *file = cJSON_GetArrayItem(json_get(part, "files"), i);
 	struct webp *to = &f->images[image];
-	char at[320], *data;
+	SCOPED char *data = NULL;
+	char at[320];
 	size_t len;
 
 	if (!cJSON_IsString(file))
@@ -82,7 +83,6 @@ static int read_image(
 	if (image == MEANS_LOW && f->n / GAUSSIANS_A_BYTE > len)
 		bad = err_file(e, f->name, "%zu Gaussians do not fit %zu packed bytes of means", f->n, len);
 	bad = bad || webp_decode(to, data, len, most, f->name, file->valuestring, e);
-	free(data);
 	if (bad)
 		return -1;
 	if ((size_t)to->width * (size_t)to->height < pixels)

@@ -236,17 +236,15 @@ static size_t palette_size(size_t n)
 static int write_harmonics(struct writing *w, struct err *e)
 {
 	const size_t n = w->s->n, width = 3 * ((size_t)w->s->sh_coefficients - 1), most = palette_size(n);
-	float *rows = mem_alloc(n, width * sizeof *rows, w->name, e),
-	      *centres = rows ? mem_alloc(most, width * sizeof *centres, w->name, e) : NULL;
+	SCOPED float *rows = mem_alloc(n, width * sizeof *rows, w->name, e),
+		     *centres = rows ? mem_alloc(most, width * sizeof *centres, w->name, e) : NULL;
 	SCOPED uint16_t *labels = centres ? mem_alloc(n, sizeof *labels, w->name, e) : NULL;
 	int bad = !labels;
 
 	for (size_t i = 0; i < n && !bad; i++)
 		memcpy(rows + i * width, sh_of(w, i) + 3, width * sizeof *rows);
-	bad = bad || palette_rows(centres, &w->palette, labels, rows, n, width, most, e) ||
-	      write_labels(w, labels, e) || write_centres(w, centres, e);
-	mem_free_all(rows, centres);
-	return bad;
+	return bad || palette_rows(centres, &w->palette, labels, rows, n, width, most, e) ||
+	       write_labels(w, labels, e) || write_centres(w, centres, e);
 }
 
 static void print_numbers(FILE *out, const char *key, const double *x, int n)

@@ -84,7 +84,7 @@ int calibrate(const struct splats *s, const struct cameras *cameras, const struc
 	for (int i = 0; i < view_count; i++)
 		pixels += (size_t)views[i].width * (size_t)views[i].height;
 	const size_t place = (size_t)(CALIBRATE_SHARE * (double)pixels);
-	float *images = mem_alloc(count, pixels * sizeof *images, "images", e);
+	SCOPED float *images = mem_alloc(count, pixels * sizeof *images, "images", e);
 	int bad = images ? render_all(s, views, view_count, responses, count, images, pixels, e) : -1;
 	if (!bad) {
 #pragma omp parallel for schedule(dynamic)
@@ -97,6 +97,5 @@ int calibrate(const struct splats *s, const struct cameras *cameras, const struc
 		}
 		lift_all(responses, count, rows, lifts);
 	}
-	free(images);
 	return bad;
 }

@@ -342,14 +342,12 @@ int file_out_claim(struct file_out *out, const char *path, struct err *e)
 
 int file_make_dir(const char *path, struct err *e)
 {
-	char *copy = mem_strdup(path, e);
+	SCOPED char *copy = mem_strdup(path, e);
 
 	if (!copy)
 		return -1;
-	if (!*copy) {
-		free(copy);
+	if (!*copy)
 		return err_set(e, ERR_SYSTEM, "the name of a folder is empty");
-	}
 	for (char *p = copy + 1;; p++) {
 		char c = *p;
 		if (c != '/' && c)
@@ -357,15 +355,12 @@ int file_make_dir(const char *path, struct err *e)
 		*p = 0;
 		if (mkdir(copy, 0777) && (errno != EEXIST || !file_is_dir(copy))) {
 			errno = errno == EEXIST ? ENOTDIR : errno;
-			err_errno(e, "%s", copy);
-			free(copy);
-			return -1;
+			return err_errno(e, "%s", copy);
 		}
 		*p = c;
 		if (!c)
 			break;
 	}
-	free(copy);
 	return 0;
 }
 

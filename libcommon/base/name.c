@@ -92,9 +92,9 @@ char *name_to_file(const char *text, struct err *e)
 
 char *name_to_view(const char *text, struct err *e)
 {
-	char *composed = name_copy(text, e), *name = composed ? escape(composed, ",", e) : NULL;
+	SCOPED char *composed = name_copy(text, e);
+	char *name = composed ? escape(composed, ",", e) : NULL;
 
-	free(composed);
 	for (char *p = name; p && *p; p++)
 		if (*p == '/')
 			*p = '_';
@@ -112,7 +112,8 @@ static int digit_value(char digit)
 
 char *name_from_file(const char *file, struct err *e)
 {
-	char *text = mem_strdup(file, e), *to = text;
+	SCOPED char *text = mem_strdup(file, e);
+	char *to = text;
 
 	for (const char *from = text; from && *from; from++) {
 		const int high = *from == '%' ? digit_value(from[1]) : -1,
@@ -123,7 +124,5 @@ char *name_from_file(const char *file, struct err *e)
 	}
 	if (text)
 		*to = 0;
-	char *name = text ? name_copy(text, e) : NULL;
-	free(text);
-	return name;
+	return text ? name_copy(text, e) : NULL;
 }

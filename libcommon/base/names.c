@@ -117,7 +117,7 @@ int names_mark(const void *items, size_t stride, size_t offset, size_t n, const 
 {
 	struct list_name name;
 	SCOPED_BY(names_free) struct names names = {0};
-	char *copy = list ? name_copy(list, e) : NULL;
+	SCOPED char *copy = list ? name_copy(list, e) : NULL;
 	const char *rest = copy;
 	int bad = (list && !copy) || names_make(&names, items, stride, offset, n, e);
 
@@ -130,6 +130,5 @@ int names_mark(const void *items, size_t stride, size_t offset, size_t n, const 
 		else
 			chosen[place] = 1;
 	}
-	free(copy);
 	return bad ? -1 : 0;
 }

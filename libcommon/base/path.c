@@ -16,11 +16,11 @@ enum { LINKS = 40 }; /* followed at most, as Linux does */
 /* realpath(3) of the folder that holds target. */
 static char *real_folder(const char *target, struct err *e)
 {
-	char *folder = file_dir(target, e), *real = folder ? realpath(folder, NULL) : NULL;
+	SCOPED char *folder = file_dir(target, e);
+	char *real = folder ? realpath(folder, NULL) : NULL;
 
 	if (folder && !real)
 		err_errno(e, "%s", folder);
-	free(folder);
 	return real;
 }
 
@@ -53,17 +53,14 @@ static char *relative(const char *from, const char *folder, const char *name, st
 char *path_relative(const char *dir, const char *target, struct err *e)
 {
 	const char *slash = strrchr(target, '/');
-	char *from = realpath(dir, NULL), *folder, *out = NULL;
+	SCOPED char *from = realpath(dir, NULL);
 
 	if (!from) {
 		err_errno(e, "%s", dir);
 		return NULL;
 	}
-	folder = real_folder(target, e);
-	if (folder)
-		out = relative(from, folder, slash ? slash + 1 : target, e);
-	mem_free_all(from, folder);
-	return out;
+	SCOPED char *folder = real_folder(target, e);
+	return folder ? relative(from, folder, slash ? slash + 1 : target, e) : NULL;
 }
 
 const char *path_last(const char *path, int *length)
@@ -82,10 +79,9 @@ const char *path_last(const char *path, int *length)
 /* What a symbolic link's text means, seen from the link's folder. */
 static char *from_link(const char *link, const char *text, struct err *e)
 {
-	char *folder = file_dir(link, e), *path = folder ? file_join(folder, text, "", e) : NULL;
+	SCOPED char *folder = file_dir(link, e);
 
-	free(folder);
-	return path;
+	return folder ? file_join(folder, text, "", e) : NULL;
 }
 
 char *path_follow(const char *path, struct err *e)
@@ -129,7 +125,7 @@ static size_t cut_last(const char *path, size_t end)
 static int find_place(struct place *p, const char *path, struct err *e)
 {
 	p->path = stat(path, &p->st) ? path_follow(path, e) : mem_strdup(path, e);
-	char *found = p->path ? mem_strdup(p->path, e) : NULL;
+	SCOPED char *found = p->path ? mem_strdup(p->path, e) : NULL;
 	if (!found) {
 		free(p->path);
 		return -1;
@@ -140,7 +136,6 @@ static int find_place(struct place *p, const char *path, struct err *e)
 		found[end] = 0;
 	}
 	p->rest = p->path + end;
-	free(found);
 	return 0;
 }
 

@@ -84,31 +84,26 @@ static int is_listed(const struct cli *c, const char *file, const struct cli_fil
 static int is_below(const struct cli *c, const char *target, const struct cli_file *folder)
 {
 	struct err e;
-	char *dir = file_dir(target, &e), *above = dir ? file_dir(dir, &e) : NULL;
+	SCOPED char *dir = file_dir(target, &e), *above = dir ? file_dir(dir, &e) : NULL;
 	int length;
 
 	if (!above)
 		fail(c, &e);
-	const int found =
-		parts_meet(path_last(dir, &length), folder->parts) && is_same(c, above, folder->path);
-	mem_free_all(dir, above);
-	return found;
+	return parts_meet(path_last(dir, &length), folder->parts) && is_same(c, above, folder->path);
 }
 
 /* Whether a file is one of the folder's parts, or will be once it is made. */
 static int is_within(const struct cli *c, const char *file, const struct cli_file *folder)
 {
 	struct err e;
-	char *target = path_follow(file, &e), *dir = target ? file_dir(target, &e) : NULL;
+	SCOPED char *target = path_follow(file, &e), *dir = target ? file_dir(target, &e) : NULL;
 	int length;
 
 	if (!dir)
 		fail(c, &e);
 	const char *name = path_last(target, &length);
-	int found = (parts_meet(name, folder->parts) && is_same(c, dir, folder->path)) ||
-		    (file_exists(file) && (is_below(c, target, folder) || is_listed(c, file, folder)));
-	mem_free_all(target, dir);
-	return found;
+	return (parts_meet(name, folder->parts) && is_same(c, dir, folder->path)) ||
+	       (file_exists(file) && (is_below(c, target, folder) || is_listed(c, file, folder)));
 }
 
 static int is_stdin(const struct cli_file *f)

@@ -47,7 +47,7 @@ void rows_free(struct rows *r)
 int rows_positions(const struct rows *r, const float *means, const double low[3], const double high[3],
 	float *position, struct err *e)
 {
-	double(*sum)[4] = mem_zalloc(r->n, sizeof *sum, "positions", e);
+	SCOPED double(*sum)[4] = mem_zalloc(r->n, sizeof *sum, "positions", e);
 
 	if (!sum)
 		return -1;
@@ -65,7 +65,6 @@ int rows_positions(const struct rows *r, const float *means, const double low[3]
 			x = 2 * (x - low[k]) / (high[k] - low[k]) - 1;
 			position[3 * i + k] = (float)fmax(-1, fmin(1, x));
 		}
-	free(sum);
 	return 0;
 }
 
@@ -92,12 +91,12 @@ static int start_view(const struct rows *r, const struct view_weights *from, str
 
 int rows_view(const struct rows *r, const struct view_weights *from, struct view_weights *to, struct err *e)
 {
-	int64_t *indptr = NULL, *place = mem_alloc(r->n, sizeof *place, "weights", e), count = 0;
+	SCOPED int64_t *place = mem_alloc(r->n, sizeof *place, "weights", e);
+	int64_t *indptr = NULL, count = 0;
 	int32_t *index = NULL;
 	float *weight = NULL;
 
 	if (!place || start_view(r, from, to, &indptr, &index, &weight, e)) {
-		free(place);
 		rows_view_free(to);
 		return -1;
 	}
@@ -119,7 +118,6 @@ int rows_view(const struct rows *r, const struct view_weights *from, struct view
 		}
 	}
 	indptr[from->pixels] = count;
-	free(place);
 	/* What merging saved goes back. */
 	void *less = realloc(index, sizeof *index * (size_t)(count ? count : 1));
 	to->index = less ? less : index;

@@ -157,7 +157,7 @@ static void take_basis(struct components *c, const double *q, const double *turn
 static int find_basis(struct components *c, const double *covariance, struct err *e)
 {
 	const size_t channels = c->channels, m = c->count + MORE < channels ? c->count + MORE : channels;
-	double *q = mem_alloc(2 * m * channels, sizeof *q, "components", e);
+	SCOPED double *q = mem_alloc(2 * m * channels, sizeof *q, "components", e);
 	SCOPED double *t = mem_alloc(2 * m * m, sizeof *t, "components", e);
 	SCOPED char *taken = mem_zalloc(m, 1, "components", e);
 	struct rng r;
@@ -176,9 +176,7 @@ static int find_basis(struct components *c, const double *covariance, struct err
 		turn(covariance, q, turned, m, channels);
 		take_basis(c, q, turned, m, t, t + m * m, taken);
 	}
-	const int bad = !q || !t || !taken;
-	free(q);
-	return bad ? -1 : 0;
+	return q && t && taken ? 0 : -1;
 }
 
 int components_find(

@@ -40,7 +40,7 @@ int hyperplane_fit(
 {
 	/* the slope of a logistic function changes by 1/4 at most, and |f|^2 + 1 is 2 at most */
 	const double step = 1 / (0.5 + HYPERPLANE_DECAY);
-	double *ahead = mem_zalloc(3, (channels + 1) * sizeof *ahead, "hyperplane", e);
+	SCOPED double *ahead = mem_zalloc(3, (channels + 1) * sizeof *ahead, "hyperplane", e);
 
 	if (!ahead)
 		return -1;
@@ -56,6 +56,5 @@ int hyperplane_fit(
 		for (size_t c = 0; c <= channels; c++)
 			plane[c] = ahead[c] - step * gradient[c];
 	}
-	free(ahead);
 	return 0;
 }

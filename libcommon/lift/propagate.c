@@ -108,14 +108,13 @@ int propagate_lift(struct propagation *c, size_t source, const struct view_weigh
 {
 	struct propagate_source *s = &c->sources[source];
 	const size_t n = w->gaussians, channels = s->count + 1;
-	int bad = -1;
 
 	s->field = mem_zalloc(backproject_groups(channels) * VIEW_GROUP, n * sizeof *s->field, "masks", e);
-	double *weight = mem_zalloc(n, sizeof *weight, "masks", e);
-	float *image = mem_alloc(w->pixels, BATCH * sizeof *image, "masks", e);
-	uint8_t *pixels = mem_alloc(w->pixels, 1, "masks", e);
+	SCOPED double *weight = mem_zalloc(n, sizeof *weight, "masks", e);
+	SCOPED float *image = mem_alloc(w->pixels, BATCH * sizeof *image, "masks", e);
+	SCOPED uint8_t *pixels = mem_alloc(w->pixels, 1, "masks", e);
 	if (!s->field || !weight || !image || !pixels)
-		goto done;
+		return -1;
 	backproject_weight(w, weight);
 	for (size_t from = 0; from < channels; from += BATCH) {
 		const size_t now = least(channels - from, BATCH);
@@ -123,15 +122,11 @@ int propagate_lift(struct propagation *c, size_t source, const struct view_weigh
 		for (size_t k = from ? 0 : 1; k < now; k++)
 			if (fill_image(&c->starts[c->order[s->begin + from + k - 1]].mask->rle, height, width,
 				    pixels, image + k * w->pixels, e))
-				goto done;
+				return -1;
 		backproject_add(w, image, now, s->field + from * n);
 	}
 	make_shares(s->field, channels, n, weight);
-	bad = 0;
-done:
-	free(weight);
-	mem_free_all(image, pixels);
-	return bad;
+	return 0;
 }
 
 /* Memory that a view's sources share. */

@@ -103,17 +103,18 @@ int pool_check_sizes(const struct pool *p, size_t *bad, size_t *first)
 
 int pool_select(struct pool *p, enum select_method method, double min_score, struct err *e)
 {
-	double *votes = mem_alloc(p->n, sizeof *votes, "votes", e);
-	const struct mask **masks = mem_alloc(p->n, sizeof *masks, "votes", e); /* as the index */
-	size_t *areas = mem_alloc(p->n, sizeof *areas, "votes", e);
-	const int bad = !votes || !masks || !areas;
+	SCOPED double *votes = mem_alloc(p->n, sizeof *votes, "votes", e);
+	SCOPED const struct mask **masks = mem_alloc(p->n, sizeof *masks, "votes", e); /* as the index */
+	SCOPED size_t *areas = mem_alloc(p->n, sizeof *areas, "votes", e);
 
-	for (size_t i = 0; i < p->n && !bad; i++) {
+	if (!votes || !masks || !areas)
+		return -1;
+	for (size_t i = 0; i < p->n; i++) {
 		masks[i] = &p->candidates[p->index.keys[i].at];
 		areas[i] = rle_area(&masks[i]->rle);
 	}
 #pragma omp parallel for schedule(dynamic)
-	for (size_t i = 0; i < (bad ? 0 : p->group_count); i++) {
+	for (size_t i = 0; i < p->group_count; i++) {
 		struct pool_group *g = &p->groups[i];
 		const long best = select_winner(
 			masks + g->begin, areas + g->begin, g->n, method, min_score, votes + g->begin);
@@ -123,6 +124,5 @@ int pool_select(struct pool *p, enum select_method method, double min_score, str
 		g->winner = (long)p->index.keys[at].at;
 		g->vote = votes[at];
 	}
-	mem_free_all(votes, masks, areas);
-	return bad ? -1 : 0;
+	return 0;
 }

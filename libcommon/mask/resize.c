@@ -94,11 +94,11 @@ int rle_resize(struct rle *to, const struct rle *from, int height, int width, st
 {
 	uint64_t H = (uint64_t)from->height, W = (uint64_t)from->width, h = (uint64_t)height,
 		 w = (uint64_t)width;
-	struct ranges g;
-	void *runs = NULL;
+	SCOPED_BY(ranges_free) struct ranges g = {0};
+	SCOPED void *runs = NULL;
 	size_t n = 0, capacity = 0;
 	uint32_t length = 0;
-	int state = 0, bad = -1;
+	int state = 0;
 
 	*to = (struct rle){0};
 	if (rle_check_size(height, width, e))
@@ -107,15 +107,15 @@ int rle_resize(struct rle *to, const struct rle *from, int height, int width, st
 		return rle_from_runs(to, from->runs, from->n, height, width, e);
 	if (ranges_make(&g, from, e))
 		return -1;
-	uint64_t *sums = mem_alloc((size_t)h, sizeof *sums, "mask", e);
+	SCOPED uint64_t *sums = mem_alloc((size_t)h, sizeof *sums, "mask", e);
 	if (!sums)
-		goto done;
+		return -1;
 	for (uint64_t j = 0; j < w; j++) {
 		memset(sums, 0, (size_t)h * sizeof *sums);
 		for (uint64_t c = j * W / w; c * w < (j + 1) * W; c++)
 			add_column(sums, h, &g, c, H, least((c + 1) * w, (j + 1) * W) - most(c * w, j * W));
 		if (mem_grow(&runs, &capacity, n + (size_t)h + 1, sizeof(uint32_t), "mask", e))
-			goto done;
+			return -1;
 		for (uint64_t i = 0; i < h; i++) {
 			/* a whole new pixel is H*W units */
 			int is_set = 2 * sums[i] >= H * W;
@@ -128,9 +128,5 @@ int rle_resize(struct rle *to, const struct rle *from, int height, int width, st
 		}
 	}
 	((uint32_t *)runs)[n++] = length;
-	bad = rle_from_runs(to, runs, n, height, width, e);
-done:
-	ranges_free(&g);
-	mem_free_all(sums, runs);
-	return bad;
+	return rle_from_runs(to, runs, n, height, width, e);
 }

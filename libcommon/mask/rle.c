@@ -61,16 +61,15 @@ static size_t row_changes(const uint8_t *above, const uint8_t *row, size_t width
 int rle_encode(struct rle *r, const uint8_t *mask, int height, int width, struct err *e)
 {
 	size_t h = (size_t)height, w = (size_t)width, total = 0, n;
-	int bad = -1;
 
 	*r = (struct rle){0};
 	if (rle_check_size(height, width, e))
 		return -1;
-	uint8_t *top = mem_alloc(w, 1, "mask", e);
-	uint32_t *columns = mem_alloc(w, sizeof *columns, "mask", e);
-	size_t *start = mem_zalloc(w + 1, sizeof *start, "mask", e);
+	SCOPED uint8_t *top = mem_alloc(w, 1, "mask", e);
+	SCOPED uint32_t *columns = mem_alloc(w, sizeof *columns, "mask", e);
+	SCOPED size_t *start = mem_zalloc(w + 1, sizeof *start, "mask", e);
 	if (!top || !columns || !start)
-		goto done;
+		return -1;
 	/* above the top of a column is the foot of the one before */
 	top[0] = 0;
 	memcpy(top + 1, mask + (h - 1) * w, w - 1);
@@ -83,7 +82,7 @@ int rle_encode(struct rle *r, const uint8_t *mask, int height, int width, struct
 	for (size_t c = 0; c < w; c++)
 		start[c + 1] += start[c];
 	if (alloc_runs(r, total + 1, height, width, e))
-		goto done;
+		return -1;
 	for (size_t y = 0; y < h; y++) {
 		n = row_changes(y ? mask + (y - 1) * w : top, mask + y * w, w, columns);
 		for (size_t i = 0; i < n; i++)
@@ -93,11 +92,7 @@ int rle_encode(struct rle *r, const uint8_t *mask, int height, int width, struct
 	r->runs[total] = (uint32_t)(h * w);
 	for (size_t i = total; i > 0; i--)
 		r->runs[i] -= r->runs[i - 1];
-	bad = 0;
-done:
-	free(top);
-	mem_free_all(columns, start);
-	return bad;
+	return 0;
 }
 
 /* The changes are marked first, then each row takes over the one above: whole rows at a time, whatever the

@@ -48,7 +48,8 @@ int bootstrap_ratios(struct interval *intervals, const double *sums, size_t n, s
 
 	if (n > UINT32_MAX)
 		return err_set(e, ERR_SYSTEM, "resamples: %zu units are more than can be drawn from", n);
-	double *ratios = mem_alloc(how->resamples, k * sizeof *ratios, "resamples", e); /* (k,resamples) */
+	/* (k,resamples) */
+	SCOPED double *ratios = mem_alloc(how->resamples, k * sizeof *ratios, "resamples", e);
 	if (!ratios)
 		return -1;
 #pragma omp parallel for schedule(static) if ((double)n * (double)k * (double)resamples > WORTH_THREADS)
@@ -62,7 +63,6 @@ int bootstrap_ratios(struct interval *intervals, const double *sums, size_t n, s
 		intervals[j].low = quantile_sorted(one, how->resamples, (1 - how->confidence) / 2);
 		intervals[j].high = quantile_sorted(one, how->resamples, (1 + how->confidence) / 2);
 	}
-	free(ratios);
 	return 0;
 }
 
@@ -92,14 +92,13 @@ static double pattern_sum(const double *values, size_t n, size_t pattern)
 int bootstrap_sign_test(
 	double *p, const double *differences, size_t n, const struct bootstrap *how, struct err *e)
 {
-	double *values = mem_alloc(n, sizeof *values, "differences", e), sum = 0, size = 0;
+	SCOPED double *values = mem_alloc(n, sizeof *values, "differences", e);
 	SCOPED unsigned char *is_far = mem_alloc(how->resamples, 1, "resamples", e);
+	double sum = 0, size = 0;
 	size_t kept = 0, count = 0;
 
-	if (!values || !is_far) {
-		free(values);
+	if (!values || !is_far)
 		return -1;
-	}
 	for (size_t i = 0; i < n; i++) {
 		if (differences[i] != 0)
 			values[kept++] = differences[i];
@@ -119,6 +118,5 @@ int bootstrap_sign_test(
 	for (ptrdiff_t b = 0; b < patterns; b++)
 		count += is_far[b];
 	*p = is_exact ? (double)count / (double)patterns : (double)(count + 1) / (double)(patterns + 1);
-	free(values);
 	return 0;
 }

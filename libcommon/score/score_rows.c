@@ -86,15 +86,14 @@ static int add_intervals(struct score_row *row, const struct score_sample *s, st
 		return 0;
 	row->unit = unit;
 	row->units = units;
-	double *sums = mem_zalloc(units, ratios * 2 * sizeof *sums, "pairs", e);
-	double *differences = mem_zalloc(units, sizeof *differences, "pairs", e);
+	SCOPED double *sums = mem_zalloc(units, ratios * 2 * sizeof *sums, "pairs", e);
+	SCOPED double *differences = mem_zalloc(units, sizeof *differences, "pairs", e);
 	int bad = !sums || !differences;
 	if (!bad) {
 		sum_units(sums, differences, s, unit, ratios);
 		bad = bootstrap_ratios(intervals, sums, units, ratios, s->how, e) ||
 		      (s->other && bootstrap_sign_test(&row->other.p, differences, units, s->how, e));
 	}
-	mem_free_all(sums, differences);
 	row->miou = intervals[MIOU];
 	row->oiou = intervals[OIOU];
 	row->other.miou = intervals[OTHER_MIOU];
@@ -176,7 +175,7 @@ int score_table_groups(struct score_table *t, const struct score_sample *s, cons
 	const char *const *names, size_t count, uint32_t always, struct err *e)
 {
 	SCOPED struct score_pair *own = mem_alloc(s->n, sizeof *own, "pairs", e);
-	struct score_pair *other = mem_alloc(s->other ? s->n : 0, sizeof *other, "pairs", e);
+	SCOPED struct score_pair *other = mem_alloc(s->other ? s->n : 0, sizeof *other, "pairs", e);
 	int bad = !own || !other;
 
 	*t = (struct score_table){0};
@@ -188,7 +187,6 @@ int score_table_groups(struct score_table *t, const struct score_sample *s, cons
 		if (one.n || always & bit)
 			bad = table_add(t, names[g], &one, e);
 	}
-	free(other);
 	if (bad)
 		score_table_free(t);
 	return bad ? -1 : 0;

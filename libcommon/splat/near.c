@@ -44,7 +44,8 @@ static void count_view(const struct splats *s, const struct camera *c, uint64_t 
 /* d, or 0 where no view has a Gaussian. */
 static int find_first(const struct splats *s, const struct cameras *cameras, double *first, struct err *e)
 {
-	uint64_t *counts = mem_zalloc(STEPS, SLABS * sizeof *counts, "depths", e), all = 0, passed = 0;
+	SCOPED uint64_t *counts = mem_zalloc(STEPS, SLABS * sizeof *counts, "depths", e);
+	uint64_t all = 0, passed = 0;
 	uint32_t k = 0;
 	float z;
 
@@ -61,7 +62,6 @@ static int find_first(const struct splats *s, const struct cameras *cameras, dou
 		all += counts[i];
 	while (all && (double)(passed += counts[k]) <= NEAR_FIRST * (double)all)
 		k++;
-	free(counts);
 	k <<= DROPPED_BITS;
 	memcpy(&z, &k, sizeof z);
 	*first = (double)z;

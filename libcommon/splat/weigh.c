@@ -92,9 +92,8 @@ enum { RECORD_CHUNKS = 2 };
 
 static void records_free(struct blend_records *records, int threads)
 {
-	for (int i = 0; records && i < threads; i++) {
+	for (int i = 0; records && i < threads; i++)
 		mem_free_all(records[i].items, records[i].weights);
-	}
 	free(records);
 }
 

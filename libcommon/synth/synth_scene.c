@@ -36,28 +36,23 @@ int synth_truth_visible(const struct synth_scene *s, const struct render_view *v
 {
 	/* A few objects a pass bounds the memory at any number of objects. */
 	size_t n = s->splats.n;
-	float *own = mem_alloc(n, CHANNELS * sizeof *own, "object indicators", e);
-	float *share = mem_alloc(pixels, CHANNELS * sizeof *share, "object shares", e);
-	int bad = -1;
+	SCOPED float *own = mem_alloc(n, CHANNELS * sizeof *own, "object indicators", e);
+	SCOPED float *share = mem_alloc(pixels, CHANNELS * sizeof *share, "object shares", e);
 
 	if (!own || !share)
-		goto done;
+		return -1;
 	for (int first = 0; first < s->object_count; first += CHANNELS) {
 		int channels = s->object_count - first < CHANNELS ? s->object_count - first : CHANNELS;
 		for (int c = 0; c < channels; c++)
 			for (size_t i = 0; i < n; i++)
 				own[(size_t)c * n + i] = s->owner[i] == first + c;
 		if (render_values(view, own, channels, share, NULL, e))
-			goto done;
+			return -1;
 		uint8_t *to = masks + (size_t)first * pixels;
 		for (size_t p = 0; p < (size_t)channels * pixels; p++)
 			to[p] = share[p] > 0.5f;
 	}
-	bad = 0;
-done:
-	free(own);
-	free(share);
-	return bad;
+	return 0;
 }
 
 /* One object's own Gaussians, alone. ones: as many as it has. */

@@ -20,13 +20,12 @@ static int by_weight(const void *a, const void *b)
 int train_active_set(const double *weight, size_t scene_gaussians, double tolerance, int32_t *ids, size_t *n,
 	struct err *e)
 {
-	double(*total)[2] = mem_alloc(scene_gaussians, sizeof *total, "active set", e), all = 0, left_out = 0;
+	SCOPED double(*total)[2] = mem_alloc(scene_gaussians, sizeof *total, "active set", e);
 	SCOPED unsigned char *dropped = mem_zalloc(scene_gaussians, 1, "active set", e);
+	double all = 0, left_out = 0;
 
-	if (!total || !dropped) {
-		free(total);
+	if (!total || !dropped)
 		return -1;
-	}
 	for (size_t i = 0; i < scene_gaussians; i++) {
 		total[i][0] = weight[i];
 		total[i][1] = (double)i;
@@ -41,7 +40,6 @@ int train_active_set(const double *weight, size_t scene_gaussians, double tolera
 	for (size_t i = 0; i < scene_gaussians; i++)
 		if (!dropped[i])
 			ids[(*n)++] = (int32_t)i;
-	free(total);
 	return 0;
 }
 

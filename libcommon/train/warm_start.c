@@ -23,14 +23,12 @@ static int match(struct warm_start *w, const struct warm_start_source *from, lon
 	struct err *e)
 {
 	const size_t objects = from->lifted->objects;
-	size_t *number =
-		mem_zalloc(objects, sizeof *number, "warm start", e); /* + 1; 0: not matched so far */
+	/* + 1; 0: not matched so far */
+	SCOPED size_t *number = mem_zalloc(objects, sizeof *number, "warm start", e);
 	SCOPED_BY(names_free) struct names names = {0};
 
-	if (!number || names_make(&names, from->lifted->names, sizeof(char *), 0, objects, e)) {
-		free(number);
+	if (!number || names_make(&names, from->lifted->names, sizeof(char *), 0, objects, e))
 		return -1;
-	}
 	for (size_t r = 0; r < from->sentences; r++) {
 		const size_t o = names_find(&names, from->names[r]);
 		numbers[r] = -1;
@@ -42,7 +40,6 @@ static int match(struct warm_start *w, const struct warm_start_source *from, lon
 		}
 		numbers[r] = (long)number[o] - 1;
 	}
-	free(number);
 	return 0;
 }
 
@@ -195,7 +192,8 @@ static void draw_direction(struct rng *r, int width, const double *before, int c
 int warm_start_features(const struct warm_start *w, int width, uint64_t seed, float *x, struct err *e)
 {
 	const size_t rows = w->view.weights.gaussians;
-	double *directions = mem_alloc((size_t)width, (size_t)width * sizeof *directions, "features", e);
+	SCOPED double *directions =
+		mem_alloc((size_t)width, (size_t)width * sizeof *directions, "features", e);
 	struct rng r;
 
 	if (!directions)
@@ -211,6 +209,5 @@ int warm_start_features(const struct warm_start *w, int width, uint64_t seed, fl
 				x[i * (size_t)width + (size_t)c] +=
 					(float)(length * (double)w->share[k * rows + i] * direction[c]);
 	}
-	free(directions);
 	return 0;
 }
