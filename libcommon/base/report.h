@@ -1,4 +1,5 @@
-/* How long work tells of itself. Nothing below the tools prints: it calls what its caller gave it. */
+/* How long work tells of itself. Nothing below the tools prints: it calls what its caller gave it, if
+ * anything. */
 #pragma once
 
 #include <stdarg.h>

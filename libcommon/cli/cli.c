@@ -397,40 +397,12 @@ double cli_seconds(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-void cli_progress_start(struct cli_progress *p, const struct cli *c, const char *what, double total)
-{
-	double now = cli_seconds();
-
-	*p = (struct cli_progress){.c = c, .what = what, .total = total, .start = now, .last = now};
-}
-
 /* Where progress goes: standard error, or the descriptor that a script which keeps standard error names. */
 static int progress_fd(void)
 {
 	const char *other = getenv("REFERSPLAT_PROGRESS");
 
 	return other && *other >= '3' && *other <= '9' && !other[1] ? *other - '0' : STDERR_FILENO;
-}
-
-void cli_progress_step(struct cli_progress *p, double done, const char *note)
-{
-	double now = cli_seconds();
-
-	if (p->c->quiet || now - p->start < 1 || now - p->last < 0.2 || !isatty(progress_fd()))
-		return;
-	p->last = now;
-	double rate = done / (now - p->start);
-	double left = rate > 0 ? (p->total - done) / rate : 0;
-	dprintf(progress_fd(), "\r%s: %.0f/%.0f %s, %.3g/s, %d:%02d left%s%s\033[K", p->c->tool->name, done,
-		p->total, p->what, rate, (int)left / 60, (int)left % 60, note ? ", " : "", note ? note : "");
-	p->is_shown = 1;
-}
-
-void cli_progress_end(struct cli_progress *p)
-{
-	if (p->is_shown)
-		dprintf(progress_fd(), "\r\033[K");
-	p->is_shown = 0;
 }
 
 static void report_a_note(void *to, int level, const char *format, va_list ap)
@@ -447,17 +419,34 @@ static void report_a_start(void *to, const char *what, double total)
 {
 	struct cli_report *r = to;
 
-	cli_progress_start(&r->progress, r->c, what, total);
+	r->what = what;
+	r->total = total;
+	r->start = r->last = cli_seconds();
+	r->is_shown = 0;
 }
 
 static void report_a_step(void *to, double done, const char *note)
 {
-	cli_progress_step(&((struct cli_report *)to)->progress, done, note);
+	struct cli_report *r = to;
+	double now = cli_seconds();
+
+	if (r->c->quiet || now - r->start < 1 || now - r->last < 0.2 || !isatty(progress_fd()))
+		return;
+	r->last = now;
+	double rate = done / (now - r->start);
+	double left = rate > 0 ? (r->total - done) / rate : 0;
+	dprintf(progress_fd(), "\r%s: %.0f/%.0f %s, %.3g/s, %d:%02d left%s%s\033[K", r->c->tool->name, done,
+		r->total, r->what, rate, (int)left / 60, (int)left % 60, note ? ", " : "", note ? note : "");
+	r->is_shown = 1;
 }
 
 static void report_an_end(void *to)
 {
-	cli_progress_end(&((struct cli_report *)to)->progress);
+	struct cli_report *r = to;
+
+	if (r->is_shown)
+		dprintf(progress_fd(), "\r\033[K");
+	r->is_shown = 0;
 }
 
 const struct report *cli_report(struct cli_report *r, const struct cli *c)

@@ -95,24 +95,15 @@ void cli_refuse_terminal(const struct cli *c);
 /* With -v the closing line of wall time and peak memory. Returns 0, for `return cli_done(&c)`. */
 int cli_done(const struct cli *c);
 
-/* Progress on stderr (or the descriptor, 3 to 9, in REFERSPLAT_PROGRESS): only on a terminal, not with -q,
- * not in the first second, and at most five times a second. */
-struct cli_progress {
-	const struct cli *c;
-	const char *what; /* "views", "iterations" */
-	double total, start, last;
-	int is_shown;
-};
-void cli_progress_start(struct cli_progress *p, const struct cli *c, const char *what, double total);
-void cli_progress_step(struct cli_progress *p, double done, const char *note); /* note may be NULL */
-void cli_progress_end(struct cli_progress *p);
-
-/* What a job reports to (base/report.h): these warnings, notes and progress. Neither may move while it is
- * used. */
+/* What a job reports to (base/report.h): these warnings and notes, and progress on stderr (or the descriptor,
+ * 3 to 9, in REFERSPLAT_PROGRESS): only on a terminal, not with -q, not in the first second, and at most five
+ * times a second. Neither may move while it is used. */
 struct cli_report {
 	struct report report;
 	const struct cli *c;
-	struct cli_progress progress;
+	const char *what; /* of progress: "views", "iterations" */
+	double total, start, last;
+	int is_shown;
 };
 const struct report *cli_report(struct cli_report *r, const struct cli *c);
 
