@@ -54,39 +54,38 @@ static const struct cli_tool tool = {
 	.needs_output = 1,
 };
 
-int main(int argc, char **argv)
+static int run(const struct cli *cli, const struct report *to, struct err *e)
 {
-	struct err e = {0};
-	struct cli_report to;
-	struct cli cli;
-
-	cli_parse(&cli, &tool, argc, argv);
 	if (!options.cameras || !options.images)
-		cli_usage(&cli, "--cameras and --images are required");
+		cli_usage(cli, "--cameras and --images are required");
 	if (options.minutes > 0 && options.iterations >= 0)
-		cli_usage(&cli, "--iterations and --minutes do not go together");
+		cli_usage(cli, "--iterations and --minutes do not go together");
 	if (options.init && options.points)
-		cli_usage(&cli, "--init and --points do not go together");
+		cli_usage(cli, "--init and --points do not go together");
 	if (strcmp(options.exposure, "auto") && strcmp(options.exposure, "always") &&
 		strcmp(options.exposure, "never"))
-		cli_usage(&cli, "--exposure is '%s', and auto, always or never are what it can be",
+		cli_usage(cli, "--exposure is '%s', and auto, always or never are what it can be",
 			options.exposure);
-	const int is_stdout = !strcmp(cli.output, "-");
+	const int is_stdout = !strcmp(cli->output, "-");
 	if (is_stdout && options.is_resumed)
-		cli_usage(&cli, "--resume needs a file to write to: there is no checkpoint of stdout");
+		cli_usage(cli, "--resume needs a file to write to: there is no checkpoint of stdout");
 	options.checkpoint = is_stdout ? 0 : options.checkpoint;
-	SCOPED char *path = is_stdout ? NULL : checkpoint_path(cli.output, &e);
+	SCOPED char *path = is_stdout ? NULL : checkpoint_path(cli->output, e);
 	if (!is_stdout && !path)
-		return cli_fail(&cli, &e);
+		return -1;
 	options.checkpoint_path = path;
 	options.iterations = options.iterations < 0 ? 7000 : options.iterations;
-	options.output = cli.output;
-	options.seed = cli.seed;
-	cli_refuse_terminal(&cli);
+	options.output = cli->output;
+	options.seed = cli->seed;
+	cli_refuse_terminal(cli);
 	const struct cli_file found[] = {
 		{"--cameras", options.cameras, CLI_READS, file_is_dir(options.cameras) ? COLMAP_PARTS : NULL},
 		{"--images", options.images, CLI_READS, "*"}, {"checkpoint", path, CLI_WRITES, NULL}, {0}};
-	cli_refuse_overwrite(&cli, "init", "output log", found);
-	const int bad = fit_scene(&options, cli_report(&to, &cli), &e);
-	return bad ? cli_fail(&cli, &e) : cli_done(&cli);
+	cli_refuse_overwrite(cli, "init", "output log", found);
+	return fit_scene(&options, to, e);
+}
+
+int main(int argc, char **argv)
+{
+	return cli_main(&tool, argc, argv, run);
 }
