@@ -159,33 +159,23 @@ static void put_boxes(FILE *out, const struct box_record *r)
 	fputc('}', out);
 }
 
-static int put_parts(FILE *out, const struct box_record *r, struct err *e)
+static void put_parts(FILE *out, const struct box_record *r)
 {
 	for (size_t k = 0; k < r->part_count; k++) {
 		fputs(k ? "," : ",\"parts\":[", out);
-		if (jsonl_put_string(out, "{\"object\":", r->parts[k].object, e))
-			return -1;
+		jsonl_put_string(out, "{\"object\":", r->parts[k].object);
 		fprintf(out, ",\"score\":%.6g", r->parts[k].score);
 		put_boxes(out, &r->parts[k]);
 		fputs(k + 1 == r->part_count ? "}]" : "}", out);
 	}
-	return 0;
 }
 
 int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of, struct err *e)
 {
-	const char *open = "{";
-
-	if (r->ref) {
-		if (jsonl_put_string(out, "{\"ref\":", r->ref, e))
-			return -1;
-		open = ",";
-	}
-	if (r->object) {
-		fputs(open, out);
-		if (jsonl_put_string(out, "\"object\":", r->object, e))
-			return -1;
-	}
+	if (r->ref)
+		jsonl_put_string(out, "{\"ref\":", r->ref);
+	if (r->object)
+		jsonl_put_string(out, r->ref ? ",\"object\":" : "{\"object\":", r->object);
 	if (r->label)
 		fprintf(out, ",\"label\":%d,\"colour\":[%d,%d,%d]", r->label, r->colour[0], r->colour[1],
 			r->colour[2]);
@@ -194,8 +184,7 @@ int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians 
 	if (of)
 		fprintf(out, ",\"count\":%zu", of->n);
 	put_boxes(out, r);
-	if (put_parts(out, r, e))
-		return -1;
+	put_parts(out, r);
 	if (of) {
 		fputs(",\"gaussians\":[", out);
 		for (size_t i = 0; i < of->n; i++)

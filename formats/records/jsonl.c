@@ -1,6 +1,7 @@
 #include "formats/records/jsonl.h"
 
 #include "base/file.h"
+#include "base/jsontext.h"
 #include "base/mem.h"
 #include "base/textfile.h"
 #include "formats/records/foreign.h"
@@ -228,15 +229,8 @@ int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, do
 	return -(json_number(object, key, 0, number, j->where, e) < 0);
 }
 
-int jsonl_put_string(FILE *out, const char *before, const char *text, struct err *e)
+void jsonl_put_string(FILE *out, const char *before, const char *text)
 {
-	cJSON *item = cJSON_CreateString(text);
-	char *escaped = item ? cJSON_PrintUnformatted(item) : NULL;
-
-	cJSON_Delete(item);
-	if (!escaped)
-		return err_set(e, ERR_SYSTEM, "record: out of memory");
-	fprintf(out, "%s%s", before, escaped);
-	cJSON_free(escaped);
-	return 0;
+	fputs(before, out);
+	jsontext_quote(out, text);
 }

@@ -55,5 +55,5 @@ int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum
 /* A finite number; NAN where the key is absent or null. Returns 0, or -1 with *e. */
 int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, double *number, struct err *e);
 
-/* Writes `before`, then the text as a JSON string. Returns 0, or -1 with *e. */
-int jsonl_put_string(FILE *out, const char *before, const char *text, struct err *e);
+/* Writes `before`, then the text as a JSON string. */
+void jsonl_put_string(FILE *out, const char *before, const char *text);

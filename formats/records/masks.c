@@ -1,6 +1,7 @@
 #include "formats/records/masks.h"
 
 #include "base/file.h"
+#include "base/jsontext.h"
 #include "base/mem.h"
 #include "base/number.h"
 #include "base/path.h"
@@ -365,22 +366,25 @@ static int put_shape(FILE *out, const struct mask *m, struct err *e)
 	if (m->place)
 		put_place(out, m->place);
 	fprintf(out, ",\"segmentation\":{\"size\":[%d,%d],\"counts\":", m->rle.height, m->rle.width);
-	const int bad = jsonl_put_string(out, "", counts, e);
+	jsontext_quote(out, counts);
 	fputc('}', out);
-	return bad;
+	return 0;
 }
 
 int masks_put_parts(FILE *out, const struct mask *m, const struct mask *parts, size_t n, struct err *e)
 {
-	if (jsonl_put_string(out, "{\"view\":", m->view, e) ||
-		(m->ref && jsonl_put_string(out, ",\"ref\":", m->ref, e)) ||
-		(m->object && jsonl_put_string(out, ",\"object\":", m->object, e)) || put_shape(out, m, e))
+	jsonl_put_string(out, "{\"view\":", m->view);
+	if (m->ref)
+		jsonl_put_string(out, ",\"ref\":", m->ref);
+	if (m->object)
+		jsonl_put_string(out, ",\"object\":", m->object);
+	if (put_shape(out, m, e))
 		return -1;
-	for (size_t k = 0; k < n; k++)
-		if (jsonl_put_string(
-			    out, k ? "},{\"object\":" : ",\"parts\":[{\"object\":", parts[k].object, e) ||
-			put_shape(out, &parts[k], e))
+	for (size_t k = 0; k < n; k++) {
+		jsonl_put_string(out, k ? "},{\"object\":" : ",\"parts\":[{\"object\":", parts[k].object);
+		if (put_shape(out, &parts[k], e))
 			return -1;
+	}
 	fputs(n ? "}]}\n" : "}\n", out);
 	return ferror(out) ? err_errno(e, "write") : 0;
 }

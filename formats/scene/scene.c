@@ -250,10 +250,9 @@ static void put_lens(FILE *out, const struct lens *l)
 	fputs("]}", out);
 }
 
-static int put_view(FILE *out, const struct camera *c, struct err *e)
+static void put_view(FILE *out, const struct camera *c)
 {
-	if (jsonl_put_string(out, "{\"name\":", c->name, e))
-		return -1;
+	jsonl_put_string(out, "{\"name\":", c->name);
 	fprintf(out,
 		",\"width\":%d,\"height\":%d,\"fx\":%.17g,\"fy\":%.17g,\"cx\":%.17g,\"cy\":%.17g,\n"
 		"  \"world_to_camera\":[",
@@ -263,28 +262,29 @@ static int put_view(FILE *out, const struct camera *c, struct err *e)
 		fprintf(out, "%s[%.17g,%.17g,%.17g,%.17g]", r ? "," : "", row[0], row[1], row[2], row[3]);
 	}
 	fprintf(out, "],\n  \"split\":\"%s\",\"image\":", c->split == SPLIT_TEST ? "test" : "train");
-	if (!c->image)
+	if (c->image)
+		jsonl_put_string(out, "", c->image);
+	else
 		fputs("null", out);
-	const int bad = (c->image && jsonl_put_string(out, "", c->image, e)) ||
-			(c->source && jsonl_put_string(out, ",\"source\":", c->source, e));
+	if (c->source)
+		jsonl_put_string(out, ",\"source\":", c->source);
 	if (c->lens.model)
 		put_lens(out, &c->lens);
 	fputs("}", out);
-	return bad;
 }
 
 static int put_cameras(FILE *out, const void *cameras, struct err *e)
 {
 	const struct cameras *c = cameras;
-	int bad = 0;
 
+	(void)e;
 	fputs("[", out);
-	for (size_t i = 0; i < c->n && !bad; i++) {
+	for (size_t i = 0; i < c->n; i++) {
 		fputs(i ? ",\n " : "\n ", out);
-		bad = put_view(out, &c->views[i], e);
+		put_view(out, &c->views[i]);
 	}
 	fputs("\n]\n", out);
-	return bad;
+	return 0;
 }
 
 static int write_splats(const struct scene *s, const char *path, const char *options, struct err *e)

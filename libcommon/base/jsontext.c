@@ -41,6 +41,11 @@ static void begin(struct jsontext *j, const char *key)
 	fputc(':', j->out);
 }
 
+void jsontext_quote(FILE *out, const char *text)
+{
+	put_quoted(&(struct jsontext){.out = out}, text);
+}
+
 void jsontext_open(struct jsontext *j, const char *key, char bracket)
 {
 	begin(j, key);

@@ -20,5 +20,7 @@ void jsontext_string(struct jsontext *j, const char *key, const char *text);
 void jsontext_number(struct jsontext *j, const char *key, double x);
 void jsontext_rounded(struct jsontext *j, const char *key, double x);
 void jsontext_flag(struct jsontext *j, const char *key, int is);
+/* A string by itself, in quotes. */
+void jsontext_quote(FILE *out, const char *text);
 /* Text that is JSON already. */
 void jsontext_raw(struct jsontext *j, const char *key, const char *json);
