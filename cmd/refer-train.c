@@ -1,6 +1,6 @@
 /* refer-train: learns the referring model of a scene from masks (one stage of the method). */
 #include "cli/cli.h"
-#include "cli/stop.h"
+#include "cli/signals.h"
 #include "cmd/train/training.h"
 #include "formats/scene/checkpoint.h"
 

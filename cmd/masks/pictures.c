@@ -5,7 +5,6 @@
 #include "base/name.h"
 #include "formats/arrays/npy.h"
 #include "formats/images/png.h"
-#include "mask/caption.h"
 #include "mask/overlay.h"
 
 #include <math.h>

@@ -6,7 +6,7 @@
 #include "formats/records/boxes.h"
 #include "formats/splats/ply.h"
 #include "geom/up.h"
-#include "lift/labels.h"
+#include "lift/lift_labels.h"
 
 int labelling_open(struct labelling *r, const char *scene, const char *model, struct err *e)
 {

@@ -92,11 +92,6 @@ struct report_outlines {
 	} * items;
 };
 
-/* *index gets the place of the outline of a mask, brought to the size of a picture. Returns 0, or -1 with *e
- * set. */
-int report_outline(struct report_outlines *o, const struct rle *mask, int height, int width, size_t *index,
-	struct err *e);
-
 void report_outlines_free(struct report_outlines *o);
 
 /* What sentences mean among the lifted objects, and why. */

@@ -6,7 +6,7 @@
 #include "mask/mask_index.h"
 #include "score/score_choice.h"
 #include "score/score_groups.h"
-#include "score/score_join.h"
+#include "score/score.h"
 
 void score_masks_free(struct score_masks *s)
 {

@@ -2,9 +2,9 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "cmd/train/fitting_checkpoint.h"
 #include "cmd/train/fitting_input.h"
-#include "fit/needed.h"
+#include "fit/grow.h"
+#include "formats/arrays/safetensors.h"
 #include "formats/images/png.h"
 #include "formats/records/trainlog.h"
 #include "formats/splats/ply.h"
@@ -13,6 +13,81 @@
 #include <stdio.h>
 #include <time.h>
 #include <unistd.h>
+
+/* The state of an unfinished gs-train, from which it goes on to the same bytes: formats/scene/checkpoint.md.
+ */
+#define FORMAT "gs.checkpoint"
+enum { STATE = sizeof(struct fit_state) / sizeof(int64_t) };
+
+/* What a checkpoint has: the tensors' data are the fit's own. Returns how many there are. */
+static size_t list(struct fit *f, struct st_tensor *t)
+{
+	float *const *values = f->gaussians.at[FIT_VALUE];
+	const int64_t slab = f->gaussians.at[FIT_GRADIENT][0] - values[0],
+		      capacity = (int64_t)f->gaussians.capacity, views = (int64_t)f->views;
+	size_t n = 0;
+
+	t[n++] = (struct st_tensor){"state", ST_I64, 1, {STATE}, &f->state, 0};
+	t[n++] = (struct st_tensor){"order", ST_I32, 1, {views}, f->order, 0};
+	t[n++] = (struct st_tensor){"values", ST_F32, 1, {slab}, values[0], 0};
+	t[n++] = (struct st_tensor){"moments", ST_F32, 1, {2 * slab}, f->gaussians.at[FIT_MOMENT1][0], 0};
+	t[n++] = (struct st_tensor){"weight", ST_F32, 1, {capacity}, f->weight, 0};
+	if (f->exposures.n)
+		t[n++] = (struct st_tensor){
+			"exposures", ST_F32, 1, {3 * EXPOSURE_WIDTH * views}, f->exposures.values, 0};
+	return n;
+}
+
+/* Writes it whole. identity: the options, and the checksum of the inputs. */
+static int checkpoint_write(struct fit *f, const char *path, const char *identity, struct err *e)
+{
+	const struct st_meta meta[] = {
+		{"format", FORMAT}, {"version", "1"}, {"tool", "gs-train"}, {"identity", identity}};
+	struct st_tensor tensors[6];
+
+	f->state.gaussians = (int64_t)f->gaussians.n;
+	return safetensors_write(path, tensors, list(f, tensors), meta, sizeof meta / sizeof *meta, e);
+}
+
+static int read_state(struct fit *f, const struct safetensors *st, const char *identity, struct err *e)
+{
+	struct st_tensor tensors[6];
+	const size_t n = list(f, tensors);
+
+	if (safetensors_need_format(st, FORMAT, 1, e))
+		return -1;
+	const char *own = safetensors_meta(st, "identity");
+	if (!own || strcmp(own, identity))
+		return err_set(e, ERR_FORMAT,
+			"%s: is of another training (its options or inputs differ); remove it or train without --resume",
+			st->path);
+	for (size_t i = 0; i < n; i++) {
+		const struct st_tensor *t =
+			safetensors_need(st, tensors[i].name, tensors[i].dtype, 1, tensors[i].shape, e);
+		if (!t)
+			return -1;
+		memcpy((void *)tensors[i].data, t->data, t->bytes);
+	}
+	int bad = f->state.gaussians < 1 || (size_t)f->state.gaussians > f->gaussians.capacity ||
+		  f->state.iteration < 0;
+	for (size_t i = 0; i < f->views; i++)
+		bad |= f->order[i] >= f->views;
+	f->gaussians.n = (size_t)f->state.gaussians;
+	return bad || fit_check(f, e)
+		       ? err_set(e, ERR_FORMAT, "%s: its numbers are not those of a training; remove it",
+				 st->path)
+		       : 0;
+}
+
+/* Fills a fit that has been opened on the same input. ERR_FORMAT where the file is of another training. */
+static int checkpoint_read(struct fit *f, const char *path, const char *identity, struct err *e)
+{
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
+
+	if (safetensors_open(&st, path, e))
+		return -1;
+	return read_state(f, &st, identity, e);
+}
 
 /* Photographs whose gains are this far apart were not exposed alike: those of one exposure have up to 0.1. */
 #define EXPOSURE_LEAST 0.15
@@ -125,7 +200,7 @@ static int record(struct fitting *f, struct err *e)
 	if (!o->checkpoint || done % o->checkpoint || fit_check(&f->fit, e))
 		return o->checkpoint && done % o->checkpoint == 0 ? -1 : 0;
 	s->spent = seconds() - f->begin;
-	const int bad = fitting_checkpoint_write(&f->fit, o->checkpoint_path, f->identity, e);
+	const int bad = checkpoint_write(&f->fit, o->checkpoint_path, f->identity, e);
 	f->is_own |= !bad;
 	return bad;
 }
@@ -226,7 +301,7 @@ static int resume(struct fitting *f, struct err *e)
 			o->checkpoint_path);
 	if (!o->is_resumed)
 		return 0;
-	if (fitting_checkpoint_read(&f->fit, o->checkpoint_path, f->identity, e))
+	if (checkpoint_read(&f->fit, o->checkpoint_path, f->identity, e))
 		return -1;
 	f->is_own = 1;
 	report_note(f->to, 1, "going on after step %ld", (long)f->fit.state.iteration);

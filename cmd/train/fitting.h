@@ -3,6 +3,7 @@
 
 #include "base/err.h"
 #include "base/report.h"
+#include "fit/fit.h"
 
 #include <stddef.h>
 #include <stdint.h>

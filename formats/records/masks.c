@@ -235,7 +235,9 @@ int masks_check_shape(const struct mask *m, const char *of, int height, int widt
 	return err_prefix(e, where);
 }
 
-int masks_find_view(
+/* *at: the view of a scene, whose names (names) are these, that a mask is of by its name or by its
+ * photograph's (view_is_called), which the mask then has; NAMES_NONE where there is none. */
+static int find_view(
 	struct mask *m, const struct names *names, const struct cameras *c, size_t *at, struct err *e)
 {
 	int is_so = 0;
@@ -314,7 +316,7 @@ int masks_views(struct masks *set, long *lines, const char *path, const struct c
 
 	for (size_t i = 0; i < set->n && !bad; i++) {
 		size_t at;
-		bad = masks_find_view(&set->items[i], &names, cameras, &at, e);
+		bad = find_view(&set->items[i], &names, cameras, &at, e);
 		if (views)
 			views[i] = at;
 		if (!bad && at != NAMES_NONE && (views || !cameras->views[at].lens.model))

@@ -31,10 +31,6 @@ int masks_pool(struct pool *p, const struct masks *set, const long *lines, const
 /* 0 where a mask, of a line of a file, has the shape of what it is of: mask_check_shape. */
 int masks_check_shape(const struct mask *m, const char *of, int height, int width, const char *path,
 	long line, struct err *e);
-/* *at: the view of a scene, whose names (names) are these, that a mask is of by its name or by its
- * photograph's (view_is_called), which the mask then has; NAMES_NONE where there is none. */
-int masks_find_view(
-	struct mask *m, const struct names *names, const struct cameras *c, size_t *at, struct err *e);
 
 /* 0 where none of the records of a file is of a sentence (its ref) and says another object than that
  * (objects; "" says nothing), else ERR_FORMAT: which of them is wrong no tool can know. */

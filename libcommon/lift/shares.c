@@ -1,10 +1,87 @@
 #include "lift/shares.h"
 
 #include "base/mem.h"
+#include "base/ones.h"
 #include "lift/marks.h"
-#include "lift/tile_levels.h"
 #include "mask/bits.h"
 #include "splat/backproject.h"
+
+/* A view's weights by tiles, made ready to be summed over masks: levels in place of their differences, where
+ * those of each entry begin, and the sum of them. */
+struct tile_levels {
+	const struct view_tiles *tiles;
+	size_t *begin;	 /* (entries) */
+	uint8_t *levels; /* weights in 1/255 */
+	uint16_t *total; /* (entries) at most 64 times 255 */
+};
+
+static void tile_levels_free(struct tile_levels *l)
+{
+	mem_free_all(l->begin, l->levels, l->total);
+	*l = (struct tile_levels){0};
+}
+
+/* The levels of so many differences; returns their sum. */
+static uint32_t take_entry(const uint8_t *restrict differences, uint8_t *restrict levels, size_t n)
+{
+	uint32_t total = 0;
+	uint8_t level = 0;
+
+	for (size_t k = 0; k < n; k++) {
+		level = (uint8_t)(level + differences[k]);
+		levels[k] = level;
+		total += level;
+	}
+	return total;
+}
+
+/* The entries of a row of tiles. */
+static void take_row(const struct tile_levels *l, int row)
+{
+	const struct view_tiles *t = l->tiles;
+	const size_t first = (size_t)row * (size_t)t->across;
+	size_t at = t->level_begin[row];
+
+	for (size_t i = t->begin[first], end = t->begin[first + (size_t)t->across]; i < end; i++) {
+		const size_t n = ones(view_tiles_map(t, i));
+		l->begin[i] = at;
+		l->total[i] = (uint16_t)take_entry(t->levels + at, l->levels + at, n);
+		at += n;
+	}
+}
+
+static int tile_levels_make(struct tile_levels *l, const struct view_tiles *t, struct err *e)
+{
+	const size_t entries = t->begin[(size_t)t->across * (size_t)t->down];
+
+	*l = (struct tile_levels){t, mem_alloc(entries, sizeof *l->begin, "weights", e),
+		mem_alloc(t->level_begin[t->down], 1, "weights", e),
+		mem_alloc(entries, sizeof *l->total, "weights", e)};
+	if (!l->begin || !l->levels || !l->total) {
+		tile_levels_free(l);
+		return -1;
+	}
+#pragma omp parallel for schedule(dynamic)
+	for (int row = 0; row < t->down; row++)
+		take_row(l, row);
+	return 0;
+}
+
+/* The sum over the pixels of a tile that have a bit, of an entry's levels. */
+static uint32_t tile_levels_sum(const struct tile_levels *l, size_t entry, uint64_t bits)
+{
+	const uint64_t map = view_tiles_map(l->tiles, entry);
+	uint32_t sum = 0;
+
+	if (!(map & bits))
+		return 0;
+	if (!(map & ~bits))
+		return l->total[entry];
+	const uint8_t *level = l->levels + l->begin[entry];
+	for (uint64_t left = map; left; left &= left - 1)
+		sum += *level++ & -(uint32_t)(bits >> __builtin_ctzll(left) & 1);
+	return sum;
+}
 
 /* One thread's: sums of all Gaussians, and which of them are above 0. All 0 between masks. */
 struct sums {

@@ -7,6 +7,7 @@
 
 #include "base/err.h"
 #include "splat/view_matrix.h"
+#include "splat/view_tiles.h"
 
 #include <stddef.h>
 #include <stdint.h>

@@ -54,3 +54,6 @@ int bpe_encode(const struct bpe *b, const char *text, struct wordpieces *out, st
  * where they are whole characters that show, no "</w>", and "##" before it where it does not begin a word.
  * free() it; NULL with *e set. */
 char *bpe_read(const struct bpe *b, int32_t id, int32_t before, struct err *e);
+
+/* The merge of two symbols, or NULL. */
+const struct bpe_merge *bpe_find(const struct bpe *b, int32_t left, int32_t right);

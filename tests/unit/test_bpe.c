@@ -3,7 +3,7 @@
 #include "unit.h"
 
 #include "formats/encoders/merges.h"
-#include "nn/bpe_private.h"
+#include "nn/bpe.h"
 
 #define GOLDEN "tests/golden/clip"
 

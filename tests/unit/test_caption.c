@@ -1,5 +1,5 @@
 /* Words under a picture. */
-#include "mask/caption.h"
+#include "mask/overlay.h"
 #include "unit.h"
 
 #include <string.h>

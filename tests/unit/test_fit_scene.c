@@ -3,7 +3,7 @@
 #include "unit.h"
 
 #include "base/rng.h"
-#include "fit/needed.h"
+#include "fit/grow.h"
 #include "render_compare.h"
 
 enum { WIDTH = 40, HEIGHT = 30, PIXELS = WIDTH * HEIGHT, VIEWS = 5, STEPS = 400 };

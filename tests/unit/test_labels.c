@@ -1,7 +1,7 @@
 /* Labels of Gaussians, and the colours of labels. */
 #include "unit.h"
 
-#include "lift/labels.h"
+#include "lift/lift_labels.h"
 
 enum { GAUSSIANS = 6, OBJECTS = 3 };
 

@@ -1,6 +1,6 @@
 #include "mask_help.h"
 #include "score/score_groups.h"
-#include "score/score_join.h"
+#include "score/score.h"
 #include "score/score_rows.h"
 #include "unit.h"
 
