@@ -15,7 +15,6 @@
 #include "lift/lift_labels.h"
 #include "mask/mask_index.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* Lifted features told by their first principal components: feature-lift --components.

@@ -10,7 +10,6 @@
 #include "formats/scene/text.h"
 #include "mask/mask.h"
 
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 

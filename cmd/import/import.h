@@ -7,8 +7,6 @@
 #include "formats/scene/scene.h"
 #include "splat/gaussian_rows.h"
 
-#include <stddef.h>
-
 /* The points that a reconstruction has beside its cameras, in their frame: COLMAP's points3D.bin, .txt or
  * .ply, nerfstudio's sparse_pc.ply, 3DGS's input.ply. Only where they lie is read.
  * formats/cameras/camerafile.md. */

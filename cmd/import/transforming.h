@@ -5,8 +5,6 @@
 #include "splat/move.h"
 #include "splat/splats.h"
 
-#include <stddef.h>
-
 struct transforming {
 	const char *crop; /* X0,Y0,Z0,X1,Y1,Z1; NULL: everything */
 	int drop_strays;

@@ -6,7 +6,6 @@
 #include "geom/camera.h"
 #include "mask/rle.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 enum warp { WARP_NONE, WARP_TO_VIEW, WARP_TO_PHOTOGRAPH };

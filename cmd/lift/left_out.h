@@ -5,8 +5,6 @@
 #include "base/report.h"
 #include "lift/lift_objects.h"
 
-#include <stddef.h>
-
 /* lift_left_out of the first `named` objects: masks that show no one scene are an error, for nothing that is
  * learned of them is right, and those that hardly do a warning. `masks` is the file of them, and `scene` the
  * folder. Returns 0, or -1 with *e set. */

@@ -14,8 +14,6 @@
 #include "lift/lift_objects.h"
 #include "mask/mask_index.h"
 
-#include <stddef.h>
-
 struct lifting_files {
 	const char *scene, *weights, *text, *masks;
 	const char *spare; /* masks of regions that an object may have in place of its own; NULL: none */

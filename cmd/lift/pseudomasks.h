@@ -11,7 +11,6 @@
 #include "mask/pool.h"
 #include "mask/select.h"
 
-#include <stddef.h>
 #include <stdio.h>
 
 /* The methods that look at the scene, beside those of enum select_method. */

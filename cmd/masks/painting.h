@@ -8,7 +8,6 @@
 #include "formats/records/annotations.h"
 #include "formats/records/masks.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* Which colour is what in a painted photograph: the file of names of mask-import. */

@@ -9,8 +9,6 @@
 #include "geom/camera.h"
 #include "mask/mask.h"
 
-#include <stddef.h>
-
 struct draw_options {
 	int split;	   /* the views of which split; REQUEST_ALL */
 	const char *views; /* NAME,...: these views instead; NULL: of the split */

@@ -12,7 +12,6 @@
 #include "places/viewpoint.h"
 
 #include <cjson/cJSON.h>
-#include <stddef.h>
 
 /* Beside SPLIT_TRAIN and SPLIT_TEST. */
 enum { REQUEST_ALL = 2 };

@@ -14,7 +14,6 @@
 #include "mask/rle.h"
 #include "score/score.h"
 
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 

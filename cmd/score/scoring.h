@@ -12,8 +12,6 @@
 #include "score/score_answers.h"
 #include "score/score_rows.h"
 
-#include <stddef.h>
-
 /* Scores: what miou-score writes, as text, JSON or CSV. formats/records/scores.md. */
 
 enum scores_form { SCORES_TEXT, SCORES_JSON, SCORES_CSV };

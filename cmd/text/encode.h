@@ -11,8 +11,6 @@
 #include "nn/bpe.h"
 #include "nn/wordpiece.h"
 
-#include <stddef.h>
-
 /* Where make puts what it fetches. */
 
 /* refersplat/NAME in $XDG_CACHE_HOME or ~/.cache, whether it is there or not. free() it; NULL with *e set

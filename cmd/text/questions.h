@@ -3,8 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 enum { QUESTION_MOST = 2000 /* bytes */ };
 
 struct question {

@@ -5,7 +5,6 @@
 #include "base/report.h"
 #include "fit/fit.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct fitting_options {

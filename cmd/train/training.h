@@ -18,7 +18,6 @@
 #include "train/view_source.h"
 
 #include <signal.h>
-#include <stddef.h>
 #include <stdint.h>
 
 /* The weights of the views that refer-train learns from: each is in memory only while it is read, and known

@@ -5,7 +5,6 @@
 #include "base/file.h"
 #include "base/names.h"
 
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 

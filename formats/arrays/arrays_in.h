@@ -7,7 +7,6 @@
 #include "base/err.h"
 #include "formats/arrays/safetensors.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct arrays_in {

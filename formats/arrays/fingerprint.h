@@ -10,8 +10,6 @@
 #include "nn/wordpiece.h"
 #include "splat/splats.h"
 
-#include <stddef.h>
-
 struct fingerprint {
 	char hex[17]; /* 16 hexadecimal digits; "" where it is not known: of files that were made before there
 			 were any */

@@ -5,8 +5,6 @@
 #include "base/err.h"
 #include "formats/arrays/arrays_out.h"
 
-#include <stddef.h>
-
 /* In the order of the choices. */
 enum precision {
 	PRECISION_F32,

@@ -6,7 +6,6 @@
 #include "base/file.h"
 #include "base/names.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 enum st_dtype {

@@ -5,7 +5,6 @@
 #include "base/err.h"
 #include "geom/camera.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* What may be read of a model's folder. */

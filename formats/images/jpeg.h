@@ -4,7 +4,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 

@@ -3,8 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 struct webp {
 	int width, height;
 	unsigned char *rgba; /* (height, width, 4) */

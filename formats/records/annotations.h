@@ -6,8 +6,6 @@
 #include "mask/mask_place.h"
 #include "mask/rle.h"
 
-#include <stddef.h>
-
 /* What a picture has of one label, or one of the things that a detector has found in it. */
 struct annotation {
 	char *view, *name;

@@ -5,7 +5,6 @@
 #include "geom/box.h"
 #include "mask/mask.h"
 
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 

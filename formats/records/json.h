@@ -4,7 +4,6 @@
 #include "base/err.h"
 
 #include <cjson/cJSON.h>
-#include <stddef.h>
 
 /* The value in a file ("-" is stdin): cJSON_Delete it. NULL with *e set ("path: not JSON at offset N"). */
 cJSON *json_read(const char *path, struct err *e);

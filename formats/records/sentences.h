@@ -4,8 +4,6 @@
 #include "base/err.h"
 #include "geom/camera.h"
 
-#include <stddef.h>
-
 struct sentence {
 	char *ref;	     /* unique in the file */
 	char *object;	     /* what the sentences of one target share; "" where several are meant, or none */

@@ -6,7 +6,6 @@
 #include "formats/arrays/fingerprint.h"
 #include "formats/arrays/safetensors.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct selection {

@@ -6,7 +6,6 @@
 #include "formats/arrays/fingerprint.h"
 #include "geom/camera.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct text {

@@ -8,7 +8,6 @@
 #include "splat/splats.h"
 
 #include <cjson/cJSON.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #define GLB_EXTENSION "KHR_gaussian_splatting"

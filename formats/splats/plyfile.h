@@ -5,8 +5,6 @@
 #include "base/err.h"
 #include "base/file.h"
 
-#include <stddef.h>
-
 enum plyfile_type { PLY_I8, PLY_U8, PLY_I16, PLY_U16, PLY_I32, PLY_U32, PLY_F32, PLY_F64, PLY_TYPES };
 enum plyfile_encoding { PLY_ASCII, PLY_LITTLE, PLY_BIG };
 

@@ -6,8 +6,6 @@
 #include "splat/gaussian_rows.h"
 #include "splat/splats.h"
 
-#include <stddef.h>
-
 enum { SPLAT_BYTES = 32 };
 
 /* One Gaussian as the file has it. */

@@ -6,8 +6,6 @@
 #include "splat/gaussian_rows.h"
 #include "splat/splats.h"
 
-#include <stddef.h>
-
 enum { SPZ_MAGIC = 0x5053474e, SPZ_OLDEST = 2, SPZ_LATEST = 4 };
 
 /* The arrays of a file, in its order. */

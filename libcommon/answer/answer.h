@@ -7,7 +7,6 @@
 #include "geom/camera.h"
 #include "splat/splats.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* What is drawn, the same for every view. */

@@ -5,7 +5,6 @@
 #include "field/referring_model.h"
 #include "field/rows.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct respond_model {

@@ -9,7 +9,6 @@
 #include "lift/lifted_model.h"
 #include "splat/splats.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* The sentences, and the scene that they are about. */

@@ -3,8 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 /* `before`, then the bytes as base64, as one string: free() it. NULL with *e set when memory is out. */
 char *base64_text(const char *before, const void *bytes, size_t n, struct err *e);
 

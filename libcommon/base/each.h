@@ -4,8 +4,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 /* No more work at a time than this: each takes memory of its own. */
 enum { EACH_WORKERS = 8 };
 

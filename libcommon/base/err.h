@@ -1,5 +1,8 @@
-/* Errors: filled in where they happen, printed by the tool. The library never prints or exits. */
+/* Errors: filled in where they happen, printed by the tool. The library never prints or exits. Brings
+ * <stddef.h>: what can fail has sizes. */
 #pragma once
+
+#include <stddef.h>
 
 /* The values are the tools' exit statuses. */
 enum err_code {

@@ -4,7 +4,6 @@
 #include "base/err.h"
 
 #include <stdio.h>
-#include <stddef.h>
 
 /* Reads a whole file or pipe. *data gets len bytes and a NUL after them; free() it. Returns 0, or -1 with *e.
  */

@@ -5,8 +5,6 @@
 #include "base/err.h"
 #include "base/list.h"
 
-#include <stddef.h>
-
 struct names_place {
 	const char *name; /* not owned */
 	size_t place;

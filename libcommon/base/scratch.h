@@ -5,8 +5,6 @@
 #include "base/err.h"
 #include "base/file.h"
 
-#include <stddef.h>
-
 /* All 0: none, as long as nothing was put. */
 struct scratch {
 	const char *path; /* what it would be called: it is in that folder, and messages say so */

@@ -3,8 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 /* 1 where text begins as UTF-16 does: with its mark, or with two characters of which a byte is 0. */
 int textfile_is_wide(const char *text, size_t len);
 

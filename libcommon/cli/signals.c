@@ -4,7 +4,6 @@
 #include "base/file.h"
 
 #include <signal.h>
-#include <stddef.h>
 #include <string.h>
 #include <unistd.h>
 

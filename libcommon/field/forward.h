@@ -9,8 +9,6 @@
 #include "field/fold.h"
 #include "field/referring_model.h"
 
-#include <stddef.h>
-
 enum { FORWARD_CHUNKS = 32 };
 
 /* What stays the same from pass to pass. Arrays are referred to, not copied. */

@@ -4,7 +4,6 @@
 #include "base/err.h"
 #include "splat/view_weights.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* Buffers for views of at most so many pixels and rows, and for so many responses at a time. */

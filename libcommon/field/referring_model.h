@@ -38,8 +38,6 @@
 #include "base/err.h"
 #include "base/rng.h"
 
-#include <stddef.h>
-
 enum {
 	REFER_D = 128,	  /* width of words and features */
 	REFER_H = 64,	  /* last hidden width of MLP_f and MLP_p */

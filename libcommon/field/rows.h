@@ -6,7 +6,6 @@
 #include "field/octree.h"
 #include "splat/view_weights.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct rows {

@@ -5,7 +5,6 @@
 #include "base/err.h"
 #include "field/referring_model.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* Arrays are over the chosen sentences, k of them with n words together. */

@@ -13,7 +13,6 @@
 #include "splat/project.h"
 #include "splat/render.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* What is summed over pixels, for each Gaussian: g = dL/de / ln 2 and its moments, dL/dc, and w. */

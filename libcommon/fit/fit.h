@@ -13,7 +13,6 @@
 #include "fit/photograph.h"
 #include "splat/render.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct fit_options {

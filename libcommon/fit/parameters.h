@@ -7,8 +7,6 @@
 #include "base/err.h"
 #include "splat/splats.h"
 
-#include <stddef.h>
-
 /* The spherical harmonics stand apart by degree: a degree that is not trained yet costs nothing. */
 enum fit_part { FIT_MEAN, FIT_SCALE, FIT_QUAT, FIT_LOGIT, FIT_SH, FIT_SH1, FIT_SH2, FIT_SH3, FIT_PARTS };
 enum fit_slab { FIT_VALUE, FIT_GRADIENT, FIT_MOMENT1, FIT_MOMENT2, FIT_SLABS };

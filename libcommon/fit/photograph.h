@@ -4,7 +4,6 @@
 #include "base/err.h"
 #include "geom/camera.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* Each level is half as wide and high as that before it. */

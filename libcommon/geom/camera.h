@@ -3,8 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 enum camera_split { SPLIT_TRAIN, SPLIT_TEST };
 
 /* The camera of a photograph that is not the pinhole's, in one of COLMAP's models: geom/lens.h. */

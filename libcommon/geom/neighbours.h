@@ -3,8 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 enum { NEIGHBOURS_MOST = 16 };
 
 /* distance[i] is that from point i to its k-th nearest other one, INFINITY where there are fewer. points

@@ -4,8 +4,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 /* The largest width, for which the covariance takes 128 MiB. */
 enum { COMPONENTS_MAX_CHANNELS = 4096 };
 

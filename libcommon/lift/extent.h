@@ -13,7 +13,6 @@
 #include "geom/box.h"
 #include "splat/splats.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 #define EXTENT_PART 0.1

@@ -7,8 +7,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 #define HYPERPLANE_DECAY 1e-3
 enum { HYPERPLANE_STEPS = 200 }; /* of Nesterov's accelerated gradient */
 

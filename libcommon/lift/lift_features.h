@@ -13,8 +13,6 @@
 #include "base/err.h"
 #include "lift/source_weights.h"
 
-#include <stddef.h>
-
 struct lift_features {
 	size_t gaussians, channels; /* of the widest block */
 	float *sum;		    /* (N,channels of the block) */

@@ -9,7 +9,6 @@
 #include "lift/lifted_model.h"
 #include "lift/source_weights.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 enum { LABEL_NONE = -1 };

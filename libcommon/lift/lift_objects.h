@@ -26,8 +26,6 @@
 #include "mask/mask.h"
 #include "splat/view_matrix.h"
 
-#include <stddef.h>
-
 enum { LIFT_ROUNDS = 3 };
 
 /* The median of lift_left_out below which masks show no one scene, and below which they hardly do. Honest

@@ -3,7 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* For that many Gaussians, none marked; free() it. NULL with *e set for want of memory. */

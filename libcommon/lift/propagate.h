@@ -13,8 +13,6 @@
 #include "mask/pool.h"
 #include "splat/view_weights.h"
 
-#include <stddef.h>
-
 /* Where an object begins. */
 struct propagate_start {
 	size_t view;		 /* of the scene */

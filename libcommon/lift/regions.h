@@ -38,7 +38,6 @@
 #include "mask/pool.h"
 #include "splat/view_matrix.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 #define REGIONS_NONE SIZE_MAX

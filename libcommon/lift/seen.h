@@ -5,7 +5,6 @@
 #include "base/err.h"
 #include "base/ones.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct seen {

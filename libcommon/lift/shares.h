@@ -9,7 +9,6 @@
 #include "splat/view_matrix.h"
 #include "splat/view_tiles.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct shares {

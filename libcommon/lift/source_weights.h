@@ -7,7 +7,6 @@
 #include "base/err.h"
 #include "splat/view_weights.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct source_weights {

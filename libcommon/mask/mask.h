@@ -6,8 +6,6 @@
 #include "mask/mask_place.h"
 #include "mask/rle.h"
 
-#include <stddef.h>
-
 /* Who makes one says whether its strings, runs and place are its own; those of `struct masks` are. */
 struct mask {
 	const char *view;

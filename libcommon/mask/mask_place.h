@@ -5,8 +5,6 @@
 #include "base/err.h"
 #include "mask/rle.h"
 
-#include <stddef.h>
-
 struct mask_place {
 	int has_peak;
 	double peak[2]; /* column and row of a pixel, of the mask's size; the first pixel is 0,0 */

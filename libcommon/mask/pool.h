@@ -5,8 +5,6 @@
 #include "mask/mask_index.h"
 #include "mask/select.h"
 
-#include <stddef.h>
-
 /* The candidates of one object in one view; those without an object are pooled by their ref. */
 struct pool_group {
 	size_t first;	 /* the candidate that came first */

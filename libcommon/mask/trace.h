@@ -3,7 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* A corner, in pixels from the upper left; column x begins at x. */

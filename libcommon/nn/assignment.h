@@ -3,8 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 /* value (rows,columns) row-major, finite; rows <= columns. column (rows) gets a column for each row, no two
  * the same. Shortest augmenting paths (Kuhn 1955; Jonker and Volgenant 1987): rows^2 columns steps. The same
  * values give the same columns, also where several assignments are as good. -1 with *e out of memory. */

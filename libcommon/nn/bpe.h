@@ -9,7 +9,6 @@
 #include "base/err.h"
 #include "nn/wordpiece.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 #define BPE_START "<|startoftext|>"

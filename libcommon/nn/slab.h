@@ -3,7 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* Hands out consecutive arrays, and hashes those that are there. With `at` NULL it only counts; -1 in `bad`

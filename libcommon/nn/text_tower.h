@@ -13,7 +13,6 @@
 #include "base/err.h"
 #include "nn/transformer.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct text_tower {

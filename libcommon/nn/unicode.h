@@ -4,7 +4,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 enum { UNICODE_FOLD_MAX = 4 }; /* characters that one may be folded into */

@@ -7,7 +7,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 enum { WORDPIECE_LONGEST = 100 }; /* characters in a word that is not [UNK] */

@@ -4,7 +4,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 enum { BOOTSTRAP_MAX = 1000000, BOOTSTRAP_MAX_RATIOS = 8 };

@@ -6,8 +6,6 @@
 #include "base/err.h"
 #include "splat/splats.h"
 
-#include <stddef.h>
-
 /* The values of a row, as 3DGS's .ply has them: logarithms of the standard deviations, logit of the opacity,
  * quaternion w x y z; then the harmonics from degree 1 on, all of red, then green, then blue. */
 enum {

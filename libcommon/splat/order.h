@@ -4,7 +4,6 @@
 #include "base/err.h"
 #include "splat/project.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct order_item {

@@ -4,8 +4,6 @@
 #include "base/err.h"
 #include "splat/render.h"
 
-#include <stddef.h>
-
 /* In each of `pixels` rows takes out the smallest weights (of equal ones the farther) while what is out is at
  * most `tolerance` of the row's sum, and then those below `least`; the rest keep their order. Weights are as
  * rendered ones: at least 2^-29, and at most 1 in sum. dropped (pixels) gets the sum of what is out, at most

@@ -3,8 +3,6 @@
 
 #include "base/err.h"
 
-#include <stddef.h>
-
 #define SPLATS_NEAR 0.2 /* world units: the near plane of 3DGS */
 
 struct splats {

@@ -5,7 +5,6 @@
 #include "splat/order.h"
 #include "splat/project.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 enum { TILE_SIZE = 16, TILE_PIXELS = TILE_SIZE * TILE_SIZE };

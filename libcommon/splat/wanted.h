@@ -7,7 +7,6 @@
 #include "splat/splats.h"
 #include "splat/tile.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct wanted {

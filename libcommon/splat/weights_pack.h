@@ -4,7 +4,6 @@
 #include "base/err.h"
 #include "splat/view_tiles.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 enum { WEIGHTS_STREAMS = 3 };

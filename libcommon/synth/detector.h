@@ -8,7 +8,6 @@
 #include "synth/presets.h"
 #include "synth/sentence.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* What goes wrong with a sentence, the same in every view. */

@@ -5,7 +5,6 @@
 #include "base/rng.h"
 #include "synth/noise.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* Moves the outline of mask (height,width) in and out at random, in place: the mask is blurred over about 4%

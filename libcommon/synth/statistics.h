@@ -5,8 +5,6 @@
 #include "synth/synth_scene.h"
 #include "synth/sentence.h"
 
-#include <stddef.h>
-
 enum { SYNTH_QUANTILES = 5, SYNTH_BANDS = 5, SYNTH_SPLITS = 2 };
 
 /* Of (view, object) pairs, by visibility: visible pixels over those of the whole object. The bands are 0, up

@@ -8,7 +8,6 @@
 #include "splat/splats.h"
 #include "synth/presets.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 enum {

@@ -7,7 +7,6 @@
 #include "geom/camera.h"
 #include "train/view_source.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* footprint (n): the size of a pixel at each of the points means (n,3), in the scene's units, in the view

@@ -9,7 +9,6 @@
 #include "train/view_source.h"
 
 #include <omp.h>
-#include <stddef.h>
 
 /* Room for the weights, and where they go that have none. */
 struct row_views_room {

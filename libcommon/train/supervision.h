@@ -5,7 +5,6 @@
 #include "mask/mask_index.h"
 #include "train/train.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* What a mask covers at the size of its view's weights. */

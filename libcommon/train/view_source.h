@@ -4,8 +4,6 @@
 #include "base/err.h"
 #include "train/train.h"
 
-#include <stddef.h>
-
 struct view_source {
 	const struct train_view *views; /* (n) weights that are read have their sizes here, and no arrays */
 	size_t n;
