@@ -83,18 +83,22 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
 	$(COMPILE) -MMD -MP -c -o $@ $<
 
 # The default weights of the parser are in the library.
-$(BUILD)/obj/formats/parser_weights.o: formats/encoders/parser_default.safetensors
+$(BUILD)/obj/formats/encoders/parser_weights.o: formats/encoders/parser_default.safetensors
 
 # So are tables of words, as C.
-TABLES := $(BUILD)/tables/lang/closed.inc $(BUILD)/tables/lang/colours.inc
+TABLES := $(BUILD)/tables/lang/closed.inc $(BUILD)/tables/lang/colours.inc $(BUILD)/tables/lang/question_kinds.inc
 $(BUILD)/tables/lang/closed.inc: libcommon/lang/closed.tsv
 	@mkdir -p $(@D)
 	awk -F '\t' '!/^#/ { printf "\t{\"%s\", CLOSED_%s, %s, %s},\n", $$1, toupper($$2), $$3 == "-" ? -1 : "PARSE_" toupper($$3), $$4 }' $< >$@
 $(BUILD)/tables/lang/colours.inc: libcommon/lang/colours.tsv
 	@mkdir -p $(@D)
 	awk -F '\t' '!/^#/ { printf NF == 4 ? "COLOUR(\"%s\", %s, %s, %s)\n" : "ALIKE(\"%s\", \"%s\")\n", $$1, $$2, $$3, $$4 }' $< >$@
-$(BUILD)/obj/libcommon/lang/closed.o $(BUILD)/obj/libcommon/lang/colours.o: CPPFLAGS += -I$(BUILD)/tables
-$(BUILD)/obj/libcommon/lang/closed.o $(BUILD)/obj/libcommon/lang/colours.o: $(TABLES)
+$(BUILD)/tables/lang/question_kinds.inc: libcommon/lang/question_kinds.tsv
+	@mkdir -p $(@D)
+	awk -F '\t' '!/^#/ { printf "\t{\"%s\", \"%s\", {\"%s\", \"%s\"}},\n", $$1, $$2, $$3, $$4 }' $< >$@
+TABLED := $(patsubst $(BUILD)/tables/%.inc,$(BUILD)/obj/libcommon/%.o,$(TABLES))
+$(TABLED): CPPFLAGS += -I$(BUILD)/tables
+$(TABLED): $(TABLES)
 
 # So is what is known of everyday things.
 $(BUILD)/obj/libcommon/lang/things.o: libcommon/lang/things.tsv

@@ -12,6 +12,8 @@
 /* Questions that wait together are encoded together: 200 of them take 5.3 s one by one, 3.5 by four, 3.0 by
  * 16 or 64 (one thread, 0.6 s of it loading). */
 enum { AT_ONCE = 16 };
+/* The exit status of one question where two things are as likely. */
+enum { ASK_UNSURE = 5 };
 
 static struct {
 	struct asking_options asking;
@@ -50,18 +52,19 @@ static const struct cli_tool tool = {.name = "refer-ask",
 	.min_operands = 1,
 	.max_operands = 2};
 
-/* Answers one question, or what --point or --box name, at once. *refused becomes 1 where it means nothing
- * here. */
-static int answer(const struct cli *c, struct asking *a, const char *question, int *refused, struct err *e)
+/* Answers one question, or what --point or --box name, at once. *status becomes ERR_CHECK where it means
+ * nothing here, or the answer is no, and else ASK_UNSURE where another thing is as likely. */
+static int answer(const struct cli *c, struct asking *a, const char *question, struct talk *talk, int *status,
+	struct err *e)
 {
 	const double start = cli_seconds();
 	SCOPED_BY(asking_answer_free) struct asking_answer found = {0};
 	struct answer_told told;
 	struct cli_report to;
 
-	if (reply_make(&told, &found, a, question, &options.reply, cli_report(&to, c), e))
+	if (reply_make(&told, &found, a, question, talk, &options.reply, cli_report(&to, c), e))
 		return -1;
-	*refused |= !found.count;
+	*status = answer_is_no(&told) ? ERR_CHECK : told.is_unsure ? ASK_UNSURE : ERR_NONE;
 	int bad = c->json ? answer_put_json(&told, stdout, e) : answer_put_words(&told, stdout, e);
 	if (!bad && fflush(stdout))
 		bad = err_errno(e, "stdout");
@@ -100,19 +103,21 @@ static void expect(struct asking *a, const struct question *q, int n)
 }
 
 /* *status becomes that of the worst. */
-static int answer_line(
-	const struct cli *c, struct asking *a, const struct question *q, int *status, struct err *e)
+static int answer_line(const struct cli *c, struct asking *a, const struct question *q, struct talk *talk,
+	int *status, struct err *e)
 {
-	int refused = 0;
+	int own = 0;
 
 	if (q->fault) {
 		fprintf(stderr, "%s: stdin:%ld: %s\n", tool.name, q->line, q->fault);
 		*status = ERR_FORMAT;
 		return 0;
 	}
-	if (answer(c, a, q->text, &refused, e))
+	if (q->is_first)
+		*talk = (struct talk){.thing = ASKING_NONE};
+	if (answer(c, a, q->text, talk, &own, e))
 		return -1;
-	*status = *status ? *status : refused ? ERR_CHECK : ERR_NONE;
+	*status = *status ? *status : own ? ERR_CHECK : ERR_NONE;
 	return 0;
 }
 
@@ -121,12 +126,13 @@ static int answer_lines(const struct cli *c, struct asking *a, int *status, stru
 {
 	static struct question q[AT_ONCE];
 	static struct questions from = {.fd = STDIN_FILENO};
+	static struct talk talk = {.thing = ASKING_NONE};
 	int n;
 
 	for (prompt(); (n = take_questions(q, &from, e)) > 0; prompt()) {
 		expect(a, q, n);
 		for (int i = 0; i < n; i++)
-			if (answer_line(c, a, &q[i], status, e))
+			if (answer_line(c, a, &q[i], &talk, status, e))
 				return -1;
 	}
 	return n;
@@ -142,7 +148,7 @@ static int ask(const struct cli *c, struct asking *a, int *status, struct err *e
 		return -1;
 	cli_note(c, 1, "%zu objects, loaded in %.3f s", a->model.lifted.objects, cli_seconds() - c->start);
 	const int is_one = c->operand_count > 1 || options.reply.point || options.reply.box;
-	return is_one ? answer(c, a, q.text, status, e) : answer_lines(c, a, status, e);
+	return is_one ? answer(c, a, q.text, NULL, status, e) : answer_lines(c, a, status, e);
 }
 
 static void check(const struct cli *c)
@@ -175,6 +181,7 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 		NULL);
 	options.asking.run = c->operands[0];
 	options.asking.is_json = c->json;
+	options.reply.is_verbose = c->verbose;
 	return ask(c, &a, &status, e) ? -1 : status;
 }
 

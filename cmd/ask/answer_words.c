@@ -3,6 +3,8 @@
 #include "base/jsontext.h"
 #include "base/number.h"
 
+#include <string.h>
+
 static void put_percent(FILE *out, double p)
 {
 	char text[NUMBER_SIZE];
@@ -32,29 +34,88 @@ static void put_calling(const struct answer_told *t, FILE *out)
 	put_percent(out, t->calling.probability);
 }
 
+/* "brown box 91%", and, where it counts, how likely the next is. */
+static void put_belief(const struct answer_told *t, size_t object, int with_next, FILE *out)
+{
+	char **names = t->asking->model.lifted.names;
+	const size_t second = t->answer->runner_up;
+
+	put_percent(out, t->answer->probability[object]);
+	if (!with_next || second == ASKING_NONE)
+		return;
+	fprintf(out, ", then %s ", names[second]);
+	put_percent(out, t->answer->probability[second]);
+}
+
+static void put_box(const struct answer_told *t, size_t object, FILE *out)
+{
+	const struct asking *a = t->asking;
+	const struct box *b = &a->model.extents[object].turned;
+
+	fprintf(out, "; centre %.3g %.3g %.3g, size %.3g x %.3g x %.3g high",
+		b->centre[0] + a->scene.offset[0], b->centre[1] + a->scene.offset[1],
+		b->centre[2] + a->scene.offset[2], 2 * b->half[0], 2 * b->half[1], 2 * b->half[2]);
+}
+
 static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 {
 	const struct asking *a = t->asking;
 	char **names = a->model.lifted.names;
-	const struct box *b = &a->model.extents[object].turned;
 	double distance;
-	const size_t nearest = asking_nearest(a, object, &distance), second = t->answer->runner_up;
+	const size_t nearest = asking_nearest(a, object, &distance);
 
 	fprintf(out, "%s: ", names[object]);
-	put_percent(out, t->answer->probability[object]);
-	if (second != ASKING_NONE) {
-		fprintf(out, ", then %s ", names[second]);
-		put_percent(out, t->answer->probability[second]);
-	}
-	if (nearest != ASKING_NONE)
-		fprintf(out, "; %.3g %s %s", distance,
+	if (nearest != ASKING_NONE && t->answer->has_centres)
+		fprintf(out, "%.3g %s %s; ", distance,
 			asking_side(t->answer->centres[object], t->answer->centres[nearest]), names[nearest]);
-	if (a->model.extents[object].n)
-		fprintf(out, "; centre %.3g %.3g %.3g, size %.3g x %.3g x %.3g high",
-			b->centre[0] + a->scene.offset[0], b->centre[1] + a->scene.offset[1],
-			b->centre[2] + a->scene.offset[2], 2 * b->half[0], 2 * b->half[1], 2 * b->half[2]);
+	put_belief(t, object, 1, out);
+	if (a->model.extents[object].n && t->is_verbose)
+		put_box(t, object, out);
 	if (t->is_picked)
 		put_calling(t, out);
+	put_view(t, out);
+	fputc('\n', out);
+}
+
+static int is_yes_or_no(const struct answer_told *t)
+{
+	return t->asked.kind == QUESTION_THERE || t->asked.kind == QUESTION_WHETHER;
+}
+
+int answer_is_no(const struct answer_told *t)
+{
+	return !t->answer->count || (is_yes_or_no(t) && !t->is_yes);
+}
+
+/* What was asked, then the things on one line: "two: brown box 91%, kettle 88%". */
+static void put_value(const struct answer_told *t, const char *value, FILE *out)
+{
+	char **names = t->asking->model.lifted.names;
+
+	fputs(value, out);
+	for (size_t k = 0; k < t->answer->count; k++) {
+		fprintf(out, "%s%s", k ? ", " : ": ", names[t->answer->things[k]]);
+		if (t->asked.kind == QUESTION_LIST)
+			continue;
+		fputc(' ', out);
+		put_belief(t, t->answer->things[k], 0, out);
+	}
+	if (answer_is_no(t) && *t->answer->reason)
+		fprintf(out, "%s %s", t->answer->count ? ";" : ":", t->answer->reason);
+	put_view(t, out);
+	fputc('\n', out);
+}
+
+/* "the mug or the cup? 19% each" */
+static void put_choice(const struct answer_told *t, FILE *out)
+{
+	char **names = t->asking->model.lifted.names;
+	const size_t ends[2] = {t->answer->things[0], t->answer->runner_up};
+
+	fprintf(out, "%s or %s? ", names[ends[0]], names[ends[1]]);
+	put_percent(out, t->answer->probability[ends[0]]);
+	fputs(" and ", out);
+	put_percent(out, t->answer->probability[ends[1]]);
 	put_view(t, out);
 	fputc('\n', out);
 }
@@ -91,12 +152,19 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e)
 		fputs(a->explained, out);
 	if (a->explained && a->is_by_purpose)
 		fputs("  answered by what the thing is for\n", out);
-	if (!a->count)
+	if (is_yes_or_no(t))
+		put_value(t, t->is_yes ? "yes" : "no", out);
+	else if (*t->value)
+		put_value(t, t->value, out);
+	else if (!a->count)
 		fprintf(out, "nothing here is that: %s\n", a->reason);
-	if (t->distance.is_asked && a->count)
+	else if (t->asked.kind == QUESTION_DISTANCE)
 		put_distance(t, out);
-	for (size_t k = 0; k < a->count && !t->distance.is_asked; k++)
-		put_thing(t, a->things[k], out);
+	else if (t->is_unsure)
+		put_choice(t, out);
+	else
+		for (size_t k = 0; k < a->count; k++)
+			put_thing(t, a->things[k], out);
 	return check_stream(out, e);
 }
 
@@ -172,7 +240,20 @@ int answer_put_json(const struct answer_told *t, FILE *out, struct err *e)
 
 	jsontext_open(to, NULL, '{');
 	jsontext_string(to, t->is_picked ? "picked" : "question", t->question);
+	if (!t->is_picked) {
+		jsontext_string(to, "kind", question_name(t->asked.kind));
+		if (strcmp(t->understood, t->question) != 0)
+			jsontext_string(to, "understood", t->understood);
+	}
 	jsontext_flag(to, "answered", a->count > 0);
+	if (is_yes_or_no(t))
+		jsontext_flag(to, "yes", t->is_yes);
+	if (*t->value)
+		jsontext_string(to, "value", t->value);
+	if (t->asked.kind == QUESTION_NUMBER || t->asked.kind == QUESTION_LIST)
+		jsontext_number(to, "number", (double)a->count);
+	if (t->is_unsure)
+		jsontext_flag(to, "unsure", 1);
 	jsontext_rounded(to, "probability", a->there);
 	put_things(to, t);
 	if (a->runner_up != ASKING_NONE) {
@@ -182,9 +263,9 @@ int answer_put_json(const struct answer_told *t, FILE *out, struct err *e)
 	}
 	if (a->is_by_purpose)
 		jsontext_string(to, "by", "purpose");
-	if (!a->count)
+	if (answer_is_no(t) && *a->reason)
 		jsontext_string(to, "reason", a->reason);
-	if (t->distance.is_asked && a->count) {
+	if (t->asked.kind == QUESTION_DISTANCE && a->count) {
 		jsontext_open(to, "distance", '{');
 		put_length(to, "gap", t->distance.gap);
 		put_length(to, "centres", t->distance.centres);

@@ -107,11 +107,26 @@ struct watched {
 	int is_out_of_memory;
 };
 
+/* The least of the target's parts for each object. */
+static void find_holds(const struct meaning *m, double *holds)
+{
+	for (size_t o = 0; o < m->arrangement->n; o++) {
+		holds[o] = 1;
+		for (size_t k = 0; k < m->part_count; k++)
+			if (!m->parts[k].phrase && m->parts[k].kind != MEANING_NOUN &&
+				m->parts[k].value[o] < holds[o])
+				holds[o] = m->parts[k].value[o];
+	}
+}
+
 static void watch(void *data, size_t i, const struct meaning *m)
 {
 	struct watched *w = data;
 
 	(void)i;
+	find_holds(m, w->answer->holds);
+	w->answer->places = m->arrangement;
+	w->answer->words = m->vocabulary;
 	for (size_t o = 0; o < m->arrangement->n; o++)
 		memcpy(w->answer->centres[o], m->arrangement->objects[o].centre,
 			sizeof w->answer->centres[o]);
@@ -128,7 +143,8 @@ int asking_answer_make(struct asking_answer *answer, size_t objects, struct err 
 	answer->things = mem_alloc(objects, sizeof *answer->things, "answer", e);
 	answer->probability = mem_zalloc(objects, sizeof *answer->probability, "answer", e);
 	answer->centres = mem_zalloc(objects, sizeof *answer->centres, "answer", e);
-	return answer->things && answer->probability && answer->centres ? 0 : -1;
+	answer->holds = mem_zalloc(objects, sizeof *answer->holds, "answer", e);
+	return answer->things && answer->probability && answer->centres && answer->holds ? 0 : -1;
 }
 
 void asking_answer_free(struct asking_answer *answer)
@@ -136,6 +152,7 @@ void asking_answer_free(struct asking_answer *answer)
 	free(answer->things);
 	free(answer->probability);
 	free(answer->centres);
+	free(answer->holds);
 	free(answer->explained);
 	*answer = (struct asking_answer){0};
 }

@@ -1,5 +1,7 @@
 #include "cmd/ask/reply.h"
 
+#include <string.h>
+
 static int draw(struct answer_told *t, const char *path, struct err *e)
 {
 	char caption[256];
@@ -12,12 +14,31 @@ static int draw(struct answer_told *t, const char *path, struct err *e)
 	return answer_picture(t->asking, t->answer, words, path, &t->drawn, e);
 }
 
-static int answer(struct answer_told *t, struct asking_answer *found, struct asking *a,
+/* The other one of two: the answer less the thing that was answered before. */
+static void take_other(struct asking_answer *found, size_t before)
+{
+	if (found->count != 1 || found->things[0] != before || found->runner_up == ASKING_NONE)
+		return;
+	found->things[0] = found->runner_up;
+	found->runner_up = before;
+}
+
+static int answer(struct answer_told *t, struct asking_answer *found, struct asking *a, struct talk *talk,
 	const struct report *to, struct err *e)
 {
-	if (distance_ask(a, t->question, found, &t->distance, to, e))
+	char *const *names = a->model.lifted.names;
+	const int is_other =
+		talk_understand(talk, names, a->model.lifted.objects, t->question, t->understood);
+
+	question_read(&t->asked, t->understood, 0);
+	if (kinds_answer(t, found, a, to, e))
 		return -1;
-	return t->distance.is_asked ? 0 : asking_ask(a, t->question, found, to, e);
+	if (is_other)
+		take_other(found, talk->thing);
+	t->is_unsure = t->is_unsure && !is_other;
+	if (talk)
+		talk_take(talk, t);
+	return 0;
 }
 
 /* What is at a place in a view, and how it could be called. */
@@ -31,12 +52,16 @@ static int pick(struct answer_told *t, struct asking_answer *found, struct askin
 }
 
 int reply_make(struct answer_told *told, struct asking_answer *found, struct asking *a, const char *question,
-	const struct reply_options *o, const struct report *to, struct err *e)
+	struct talk *talk, const struct reply_options *o, const struct report *to, struct err *e)
 {
 	const char *place = o->point ? o->point : o->box;
 
-	*told = (struct answer_told){.asking = a, .answer = found, .question = place ? place : question};
-	if (place ? pick(told, found, a, !o->point, to, e) : answer(told, found, a, to, e))
+	memset(told, 0, sizeof *told);
+	told->asking = a;
+	told->answer = found;
+	told->question = place ? place : question;
+	told->is_verbose = o->is_verbose;
+	if (place ? pick(told, found, a, !o->point, to, e) : answer(told, found, a, talk, to, e))
 		return -1;
 	return o->picture && found->count ? draw(told, o->picture, e) : 0;
 }

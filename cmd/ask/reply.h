@@ -5,6 +5,7 @@
 #include "base/err.h"
 #include "base/report.h"
 #include "cmd/ask/asking.h"
+#include "lang/question_kinds.h"
 
 #include <stdio.h>
 
@@ -43,33 +44,51 @@ struct calling {
 int calling_find(struct asking *a, size_t object, struct calling *to, double (*centres)[3],
 	const struct report *report, struct err *e);
 
-/* How far two things are apart: questions such as "how far is the mug from the plate?". */
-
+/* How far two things are apart. */
 struct distance {
-	int is_asked;	     /* the question is one about a distance */
 	double gap, centres; /* between the boxes, 0 where they touch, and between their centres */
-	double probability;  /* that these are the two things */
 };
 
-/* Answers a question about a distance: of the ways to read it the one in which both things are likeliest. The
- * things of the answer are the two, in the question's order, or none, and then its reason says what was not
- * found. Of another question *d is zeroed, and nothing else done. Returns 0, or -1 with *e set;
- * asking_answer_free after either. */
-int distance_ask(struct asking *a, const char *question, struct asking_answer *answer, struct distance *d,
-	const struct report *to, struct err *e);
+/* What a conversation was about last, for words that point back: "it", "the other one", "and the kettle?". */
+struct talk {
+	size_t thing;		      /* the thing that was answered; ASKING_NONE */
+	char question[QUESTION_TEXT]; /* that was asked last, as it was understood; "": none */
+};
 
 /* Answers of refer-ask for a person or a program to read. */
 
 struct answer_told {
 	const struct asking *asking;
-	const char *question; /* or the place in a view where a thing was picked */
+	const char *question;		/* or the place in a view where a thing was picked */
+	char understood[QUESTION_TEXT]; /* the question, with what its words point back to */
+	struct question_asked asked;
 	const struct asking_answer *answer;
+	int is_yes, is_unsure; /* of a question of yes or no; where another thing is as likely */
+	char value[256];       /* the answer of kinds that do not ask for a thing: "two", "black and grey" */
+	int is_verbose;	       /* words say where and how large the things are */
 	int is_picked;
 	struct calling calling;	   /* of what was picked */
-	struct distance distance;  /* where one was asked */
+	struct distance distance;  /* of QUESTION_DISTANCE */
 	const char *picture;	   /* that was made of it; NULL: none */
 	struct answer_drawn drawn; /* what is in the picture */
 };
+
+/* Answers t->asked: t->is_yes, t->is_unsure, t->value and t->distance, and the things as `found`, which
+ * t->answer is. Returns 0, or -1 with *e set; asking_answer_free after either. */
+int kinds_answer(struct answer_told *t, struct asking_answer *found, struct asking *a,
+	const struct report *to, struct err *e);
+
+/* What the first thing of an answer looks like, in words: "black and grey", "steel, shiny", "not known". Cut
+ * to fit. */
+void answer_looks(const struct answer_told *t, int is_colour, char *to, size_t room);
+
+/* A question with the things that its words point back to put in their place. 1: it asks for the other one of
+ * what was answered last. names (objects). */
+int talk_understand(const struct talk *talk, char *const *names, size_t objects, const char *question,
+	char understood[QUESTION_TEXT]);
+
+/* What is spoken of after an answer. */
+void talk_take(struct talk *talk, const struct answer_told *t);
 
 /* A line for each thing, or for a distance, or one that says why there is none; after the explanation, where
  * there is one. */
@@ -77,6 +96,9 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e);
 
 /* A JSON object on one line. refer-ask(1) lists its keys. Both return 0, or -1 with *e. */
 int answer_put_json(const struct answer_told *t, FILE *out, struct err *e);
+
+/* Whether the answer is no, none, or that nothing is meant. */
+int answer_is_no(const struct answer_told *t);
 
 /* The shortest answer, for a caption: "kettle 97%, bottle 92%", or "nothing here". Cut to fit. */
 void answer_caption(const struct answer_told *t, char *to, size_t room);
@@ -94,11 +116,13 @@ int picking_find(const struct asking *a, const char *text, int is_box, struct as
 struct reply_options {
 	const char *point, *box; /* places in views that are asked about in place of a question; NULL */
 	const char *picture;	 /* file to draw to; NULL: none */
+	int is_verbose;
 };
 
 /* *told becomes the reply to what is asked, with found as its answer, and is drawn where anything is found.
- * Returns 0, or -1 with *e set (ERR_USAGE: a place is at fault); asking_answer_free(found) after either. */
+ * talk may be NULL: nothing was spoken of. Returns 0, or -1 with *e set (ERR_USAGE: a place is at fault);
+ * asking_answer_free(found) after either. */
 int reply_make(struct answer_told *told, struct asking_answer *found, struct asking *a, const char *question,
-	const struct reply_options *o, const struct report *to, struct err *e);
+	struct talk *talk, const struct reply_options *o, const struct report *to, struct err *e);
 
 #endif

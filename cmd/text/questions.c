@@ -62,7 +62,7 @@ int question_next(struct question *q, struct questions *from, struct err *e)
 {
 	int byte;
 
-	do {
+	for (q->is_first = 0;; q->is_first = 1) {
 		size_t n = 0;
 		int is_long = 0;
 		while ((byte = next_byte(from, e)) >= 0 && byte != '\n') {
@@ -78,8 +78,9 @@ int question_next(struct question *q, struct questions *from, struct err *e)
 		q->fault = is_long ? too_long : find_fault(q->text, n);
 		if (q->fault || trim(q->text, n))
 			return 1;
-	} while (byte != EOF);
-	return 0;
+		if (byte == EOF)
+			return 0;
+	}
 }
 
 /* 1 where a whole line that is not blank has been read. */

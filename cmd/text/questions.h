@@ -6,7 +6,8 @@
 enum { QUESTION_MOST = 2000 /* bytes */ };
 
 struct question {
-	long line; /* from 1 */
+	long line;    /* from 1 */
+	int is_first; /* of a conversation: a blank line was before it */
 	char text[QUESTION_MOST + 2];
 	const char *fault; /* why it is none: "is not UTF-8"; NULL: it is one */
 };

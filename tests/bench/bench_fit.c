@@ -6,7 +6,8 @@
  *without them scenes of -n Gaussians (default 20000,100000,500000) are made as gs-synth makes them. For each
  *scene and size (default 400x266,986x728) a line with the processors' time in ms, the least of the repeats,
  *of each part of a step: projection and order, colours, blending, the image's loss, blending backwards, the
- *rest backwards, Adam, and noise. */
+ *rest backwards, Adam, and noise. "lanes" are the places of blocks that Gaussians are evaluated at, and
+ *"blend_share" and "back_share" are their arithmetic as a share of what the processor can do in that time. */
 #include "base/mem.h"
 #include "fit/fit.h"
 #include "fit/grow.h"
@@ -14,14 +15,19 @@
 #include "formats/splats/anysplats.h"
 #include "formats/cameras/camerafile.h"
 #include "nn/adam.h"
+#include "peak.h"
+#include "splat/blend_kernel.h"
+#include "splat/place.h"
 #include "splat/view.h"
 #include "synth/synth_scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
+
+/* A multiply or an add is one, both together two: blend_part() and its three channels, and back_part(). */
+enum { BLEND_FLOPS = 29, BACK_FLOPS = 64 };
 
 enum { PREPARE, COLORS, BLEND, LOSS, BACK, PROJECT, ADAM, NOISE, PARTS };
 static const char *const names[PARTS] = {
@@ -55,9 +61,37 @@ static double lap(void)
 	return passed;
 }
 
+/* Places of blocks that one pass over the view evaluates. */
+static double count_lanes(const struct render_view *v)
+{
+	const size_t tiles = (size_t)v->grid.columns * (size_t)v->grid.rows;
+	size_t visits = 0;
+
+	for (size_t tile = 0; tile < tiles; tile++) {
+		const struct place at = place_of_tile(&v->grid, tile);
+		const uint32_t *list = v->tiles.entries + v->tiles.start[tile];
+		const size_t n = v->tiles.start[tile + 1] - v->tiles.start[tile];
+		struct blend_tile t __attribute__((aligned(64)));
+		struct blend_chunk chunk;
+		blend_start(&t, at.x, at.y, at.columns, at.rows, 0);
+		for (size_t k = 0; k < n && t.live; k += BLEND_CHUNK) {
+			blend_chunk_make(&chunk, &t, v->projected, list + k, blend_chunk_size(n - k));
+			for (uint32_t live = t.live; live; live &= live - 1) {
+				const int block = __builtin_ctz(live);
+				const uint64_t column = blend_column(&chunk, block);
+				visits += (size_t)__builtin_popcountll(column);
+				if (column)
+					blend_block_weights(&t, &chunk, column, block, list + k, NULL);
+			}
+		}
+	}
+	return (double)visits * BLEND_LANES;
+}
+
 static void print_line(
 	size_t n, const struct render_view *v, const struct camera *c, const double times[PARTS])
 {
+	const double lanes = count_lanes(v), flops = 2 * measure_peak();
 	double sum = 0;
 
 	printf("{\"bench\":\"fit\",\"gaussians\":%zu,\"visible\":%zu,\"width\":%d,\"height\":%d,\"pairs\":%zu",
@@ -67,7 +101,9 @@ static void print_line(
 		printf(",\"%s_ms\":%.2f", names[k], times[k]);
 		sum += times[k];
 	}
-	printf(",\"step_ms\":%.2f}\n", sum);
+	printf(",\"step_ms\":%.2f,\"lanes\":%.0f,\"blend_share\":%.3f,\"back_share\":%.3f}\n", sum, lanes,
+		BLEND_FLOPS * lanes / flops / (1e-3 * times[BLEND]),
+		BACK_FLOPS * lanes / flops / (1e-3 * times[BACK]));
 	fflush(stdout);
 }
 

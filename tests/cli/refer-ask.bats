@@ -37,7 +37,8 @@ setup() {
 		# the middle of the box is within a quarter of its length of the true one
 		jq -e --argjson truth "$(jq -c --arg thing "$thing" 'select(.object == $thing)' boxes.jsonl)" '.things[0] |
 			(([.centre, $truth.centre] | transpose | map(.[0] - .[1] | . * .) | add | sqrt) < ($truth.oriented.size | max) / 4)' <<<"$answer"
-		ask run "where is the $thing?" | grep -qE "^$thing: [0-9]+%, then .*; [0-9.]+ [a-z ]+ .*; centre .*, size .* high$"
+		ask run "where is the $thing?" | grep -qE "^$thing: [0-9.]+ [a-z ]+ .*; [0-9]+%, then .*%$"
+		ask -v run "where is the $thing?" 2>/dev/null | grep -qE "^$thing: [0-9.]+ [a-z ]+ .*; [0-9]+%, then .*; centre .*, size .* high$"
 	done <things
 }
 
@@ -60,7 +61,7 @@ setup() {
 }
 
 @test "what is not here is refused, with the reason and status 1" {
-	says 1 "nothing here is that: nothing here is known as 'sofa'" ask run "is there a sofa?"
+	says 1 "nothing here is that: nothing here is known as 'sofa'" ask run "where is the sofa?"
 	says 1 "nothing here is that: the question has no words" ask run '​'
 	thing=$(head -n 1 things)
 	says 1 "nothing here is that: $thing comes nearest, but 'blue' does not fit it" ask run "the blue ${thing##* }"
@@ -68,7 +69,42 @@ setup() {
 	[ "$status" = 1 ]
 	jq -e '(.answered | not) and .things == [] and .probability < 0.65 and (.reason | test("blue"))' <<<"$output"
 	# unless nothing is refused
-	ask --min-probability 0 run "is there a sofa?"
+	ask --min-probability 0 run "where is the sofa?"
+}
+
+# kind QUESTION: what jq says of the answer in JSON, whatever the status
+kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
+
+@test "each kind of question gets its kind of answer" {
+	a=$(sed -n 1p things) b=$(sed -n 2p things)
+	[ "$(ask run "is there a ${a##* }?" | cut -d' ' -f1-3)" = "yes: $a" ]
+	says 1 "no: nothing here is known as 'sofa'" ask run "is there a sofa?"
+	[ "$(ask run "how many things are there?" | cut -d: -f1)" = three ]
+	says 1 "none: nothing here is known as 'sofas'" ask run "please tell me how many sofas there are"
+	[ "$(kind "how many ${a##* }s do you see?" .number)" = 1 ]
+	[ "$(ask run "what do you see?" | cut -d: -f1)" = "three things" ]
+	[ "$(kind "What is there?" '.things | map(.name) | sort | join("\n")')" = "$(cat things)" ]
+	# the first word of a name is its colour
+	[ "$(kind "what colour is the ${a##* }?" .value)" = "${a%% *}" ]
+	height=$(jq -r --arg a "$a" 'select(.object == $a) | .oriented.size[2]' boxes.jsonl)
+	[ "$(kind "how tall is the $a" "(.value | split(\" \")[0] | tonumber) as \$x | \$x > 0.7 * $height and \$x < 1.4 * $height")" = true ]
+	# of two the larger one, whichever comes first
+	larger=$(kind "which is larger, the $a or the $b?" '.things[0].name')
+	[ "$(kind "which is larger, the $b or the $a?" '.things[0].name')" = "$larger" ]
+	[ "$(kind "which is smaller, the $b or the $a?" '.things[0].name')" != "$larger" ]
+	[ "$(kind "is the $larger larger than the $(grep -vxF "$larger" things | grep -xF -e "$a" -e "$b")?" .yes)" = true ]
+	[ "$(kind "is the $(grep -vxF "$larger" things | grep -xF -e "$a" -e "$b") larger than the $larger?" .yes)" = false ]
+	says 1 "nothing here is that: the sofa: nothing here is known as 'sofa'" ask run "which is larger, the sofa or the $a?"
+	[ "$(kind "the $a" .kind)" = which ]
+}
+
+@test "a conversation: words that point back, until a blank line" {
+	a=$(sed -n 1p things) b=$(sed -n 2p things)
+	printf '%s\n' "how tall is the $a?" "how wide is it" "and the $b?" "where is it?" "no, the other one" "" "where is it?" | ask --json run >said || [ $? = 1 ]
+	jq -r '[.kind, .understood // "", .things[0].name // ""] | join("|")' said >lines
+	sed -i 's/|[^|]*$/|/;5s/.*/other/' lines
+	printf '%s\n' "height||" "width|how wide is the $a|" "width|how wide is the $b?|" "which|where is the $b?|" other "which||" | diff - lines
+	jq -se --arg a "$a" --arg b "$b" '[.[0, 1].things[0].name == $a] + [.[2, 3].things[0].name == $b] + [.[4].things[0].name != $b, (.[5].answered | not)] | all' said
 }
 
 @test "several things are a line each" {
@@ -192,7 +228,7 @@ refer-ask: stdin:5: has a NUL byte, as UTF-16 has: write it as UTF-8" ]
 	jq -r '.[].name' run/scene/cameras.json | grep -qxF "$(jq -r .view said)"
 	# 96 pixels wide, 72 and twice 12 high
 	[ "$(od -An -tx1 -j16 -N8 picture.png | tr -d ' ')" = 0000006000000060 ]
-	not ask -o none.png run "is there a sofa?"
+	not ask -o none.png run "where is the sofa?"
 	[ ! -e none.png ]
 	says 2 "refer-ask: --picture needs a QUESTION
 Try 'refer-ask --help'." ask -o none.png run

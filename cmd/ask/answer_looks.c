@@ -1,0 +1,86 @@
+/* What a thing looks like, in words: its colours, or what else sentences say of it. */
+#include "cmd/ask/reply.h"
+
+#include "lang/colours.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A word for a colour that counts, as a part of a thing, against the commonest. */
+static const double second_colour = 0.4;
+/* Words for one colour (lang/colours.h). */
+static const double same_colour = 0.3;
+
+static const char *const basic_colours[] = {
+	"black", "white", "grey", "red", "orange", "yellow", "green", "blue", "purple", "pink", "brown"};
+enum { BASIC_COLOURS = sizeof basic_colours / sizeof *basic_colours };
+
+/* How much speaks for each colour word: its name and sentences, or else the Gaussians for the basic words.
+ * Returns the most. */
+static double weigh_colours(const struct answer_told *t, size_t thing, double worth[COLOUR_WORDS])
+{
+	const struct vocabulary *v = t->answer->words;
+	const char *name = t->asking->model.lifted.names[thing];
+	double most = 0, is_said = 0;
+
+	for (int c = 0; c < COLOUR_WORDS; c++) {
+		worth[c] = strstr(name, colour_name(c)) ? 2 : 0;
+		for (size_t i = 0; i < v->n; i++)
+			worth[c] += v->items[i].object == thing && v->items[i].role == VOCABULARY_ATTRIBUTE &&
+				    colour_word(v->items[i].lemma) == c;
+		is_said += worth[c];
+	}
+	for (int k = 0; k < BASIC_COLOURS; k++) {
+		const int c = colour_word(basic_colours[k]);
+		if (is_said > 0)
+			worth[c] *= 2;
+		else
+			worth[c] = t->answer->places->objects[thing].colours[c];
+	}
+	for (int c = 0; c < COLOUR_WORDS; c++)
+		most = fmax(most, worth[c]);
+	return most;
+}
+
+/* "black and grey": the colours that count, of words for one colour only the likeliest. */
+static void say_colours(const struct answer_told *t, struct parse_words *to)
+{
+	double worth[COLOUR_WORDS];
+	const double most = weigh_colours(t, t->answer->things[0], worth);
+
+	for (int said = 0; said < COLOUR_WORDS; said++) {
+		int best = 0;
+		for (int c = 1; c < COLOUR_WORDS; c++)
+			best = worth[c] > worth[best] ? c : best;
+		if (!(worth[best] > second_colour * most))
+			break;
+		parse_words_add(to, said ? " and " : "");
+		parse_words_add(to, colour_name(best));
+		for (int c = 0; c < COLOUR_WORDS; c++)
+			worth[c] *= c != best && colour_words_alike(best, c) < same_colour;
+	}
+}
+
+/* What else sentences say of a thing. */
+static void say_looks(const struct answer_told *t, struct parse_words *to)
+{
+	const struct vocabulary *v = t->answer->words;
+	const size_t thing = t->answer->things[0];
+
+	for (size_t i = 0; i < v->n; i++)
+		if (v->items[i].object == thing && v->items[i].role == VOCABULARY_ATTRIBUTE &&
+			colour_word(v->items[i].lemma) < 0 && !strstr(to->to, v->items[i].lemma)) {
+			parse_words_add(to, to->n ? ", " : "");
+			parse_words_add(to, v->items[i].lemma);
+		}
+}
+
+void answer_looks(const struct answer_told *t, int is_colour, char *to, size_t room)
+{
+	struct parse_words words = {to, 0, room};
+
+	*to = 0;
+	(is_colour ? say_colours : say_looks)(t, &words);
+	if (!*to)
+		parse_words_add(&words, "not known");
+}

@@ -1,0 +1,39 @@
+/* What kind of answer a question wants, and of what: "how tall is the mug?" wants a size of "the mug". The
+ * table is libcommon/lang/question_kinds.tsv. English. */
+#pragma once
+
+#include "lang/parse.h"
+
+enum question_kind {
+	QUESTION_WHICH,	   /* the thing itself, and where it is: whatever is none of the others */
+	QUESTION_LIST,	   /* all that is there */
+	QUESTION_NUMBER,   /* how many */
+	QUESTION_COLOUR,   /* what colour it has */
+	QUESTION_LOOK,	   /* what else is said of it */
+	QUESTION_DISTANCE, /* from one thing to another, or between two of a kind */
+	QUESTION_HEIGHT,   /* how tall */
+	QUESTION_WIDTH,	   /* how wide, how long */
+	QUESTION_SIZE,	   /* how large */
+	QUESTION_COMPARE,  /* which of two is larger, higher, farther left */
+	QUESTION_THERE,	   /* whether it is there */
+	QUESTION_WHETHER,  /* whether the first, which is there, is the second */
+	QUESTION_SET,	   /* what stands in a relation: the first, or where that is in doubt the second */
+	QUESTION_KINDS
+};
+
+enum { QUESTION_TEXT = 2048, QUESTION_WAYS = 8 /* that are worth trying */ };
+
+struct question_asked {
+	enum question_kind kind;
+	int relation; /* enum parse_relation of the word of size or place that asks ("tall"), -1 where there
+			 is none */
+	char text[2][QUESTION_TEXT]; /* what to ask for; "" nothing */
+};
+
+/* The name of a kind, as the table has it. */
+const char *question_name(enum question_kind kind);
+
+/* The way-th way to read a question, from 0: 1, or 0 where there is no such way. Way 0 of a text that is of
+ * no other kind is QUESTION_WHICH with the text itself. */
+int question_read(struct question_asked *q, const char *text, int way);
+

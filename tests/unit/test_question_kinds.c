@@ -1,0 +1,73 @@
+/* Kinds of questions (lang/question_kinds.h). */
+#include "lang/question_kinds.h"
+#include "unit.h"
+
+#include <string.h>
+
+static void is(const char *text, enum question_kind kind, const char *first, const char *second)
+{
+	struct question_asked q = {0};
+
+	CHECK(question_read(&q, text, 0) && q.kind == kind && !strcmp(q.text[0], first) &&
+			!strcmp(q.text[1], second),
+		"'%s': %s, '%s', '%s'", text, question_name(q.kind), q.text[0], q.text[1]);
+}
+
+static void kinds(void)
+{
+	is("the red mug", QUESTION_WHICH, "the red mug", "");
+	is("", QUESTION_WHICH, "", "");
+	is("the thing that you said is there", QUESTION_WHICH, "the thing that you said is there", "");
+	is("What's here?", QUESTION_LIST, "What's here?", "");
+	is("could you tell me how many mugs there are", QUESTION_NUMBER,
+		"could you tell me how many mugs there are", "");
+	is("please tell me what colour the mug is", QUESTION_WHICH, "please tell me what colour the mug is",
+		"");
+	is("hi, what color is the big mug?", QUESTION_COLOUR, "the big mug", "");
+	is("how high is my mug", QUESTION_HEIGHT, "my mug", "");
+	is("what's left of the mug?", QUESTION_SET, "what's left of the mug?",
+		"everything that is left of the mug");
+	is("is the mug on the tray?", QUESTION_WHETHER, "the mug", "the mug that is on the tray");
+	is("is the mug red?", QUESTION_WHETHER, "the mug", "the mug that is red");
+	is("is there a mug?", QUESTION_THERE, "is there a mug?", "");
+	is("I am thirsty, is there a mug?", QUESTION_THERE, "I am thirsty, is there a mug?", "");
+	is("which is taller: the mug or the jug?", QUESTION_COMPARE, "the mug", "the jug");
+}
+
+/* Each way to take a question apart once, in the order of the first part's length. */
+static void ways(void)
+{
+	static const char text[] = "how far is the mug from the tray from the jug";
+	static const char *const parts[][2] = {
+		{"the mug", "the tray from the jug"}, {"the mug from the tray", "the jug"}};
+	struct question_asked q = {0};
+
+	for (int way = 0; way < 2; way++)
+		CHECK(question_read(&q, text, way) && q.kind == QUESTION_DISTANCE &&
+				!strcmp(q.text[0], parts[way][0]) && !strcmp(q.text[1], parts[way][1]),
+			"%d: '%s', '%s'", way, q.text[0], q.text[1]);
+	CHECK(!question_read(&q, text, 2), "a third way: '%s', '%s'", q.text[0], q.text[1]);
+}
+
+/* The word that asks has a relation, and no text is too long. */
+static void words(void)
+{
+	char long_text[3 * QUESTION_TEXT];
+	struct question_asked q = {0};
+
+	CHECK(question_read(&q, "which one is smaller, a or b", 0) && q.relation == PARSE_SMALLER, "%d",
+		q.relation);
+	CHECK(question_read(&q, "the mug", 0) && q.relation == -1, "%d", q.relation);
+	memset(long_text, 'x', sizeof long_text);
+	memcpy(long_text, "how tall is ", 12);
+	long_text[sizeof long_text - 1] = 0;
+	CHECK(question_read(&q, long_text, 0) && strlen(q.text[0]) < QUESTION_TEXT, "%zu", strlen(q.text[0]));
+}
+
+int main(void)
+{
+	kinds();
+	ways();
+	words();
+	return unit_end();
+}
