@@ -30,12 +30,9 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	if (distort && !scene)
 		cli_usage(c, "--distort needs --scene SCENE");
 	cli_refuse_overwrite(c, "MASKS scene:cameras.json", "output png:*.png", NULL);
-	return exporting_read(&x, c->operand_count ? c->operands[0] : "-", scene, distort, e) ||
-			       (png && exporting_write_pngs(&x, png, e)) ||
-			       file_out_open(&out, c->output, e) ||
-			       file_out_end(&out, exporting_put_coco(&x, out.stream, e), e)
-		       ? -1
-		       : 0;
+	return -(exporting_read(&x, c->operand_count ? c->operands[0] : "-", scene, distort, e) ||
+		 (png && exporting_write_pngs(&x, png, e)) || file_out_open(&out, c->output, e) ||
+		 file_out_end(&out, exporting_put_coco(&x, out.stream, e), e));
 }
 
 int main(int argc, char **argv)

@@ -42,12 +42,9 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	SCOPED_BY(warping_free) struct warping warping = {0};
 
 	check(c);
-	return (names_path && painting_names_read(&names, names_path, e)) ||
-			       warping_open(&warping, undistort ? WARP_TO_VIEW : WARP_NONE, undistort, e) ||
-			       painting_write(&names, c->operands, (size_t)c->operand_count, &warping,
-				       c->output, to, e)
-		       ? -1
-		       : 0;
+	return -((names_path && painting_names_read(&names, names_path, e)) ||
+		 warping_open(&warping, undistort ? WARP_TO_VIEW : WARP_NONE, undistort, e) ||
+		 painting_write(&names, c->operands, (size_t)c->operand_count, &warping, c->output, to, e));
 }
 
 int main(int argc, char **argv)

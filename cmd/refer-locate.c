@@ -74,12 +74,10 @@ static int label(const struct cli *c, struct err *e)
 {
 	SCOPED_BY(labelling_free) struct labelling r = {0};
 
-	return labelling_open(&r, options.request.scene, options.request.model, e) ||
-			       (options.each && labelling_write_each(&r, options.each, e)) ||
-			       (options.ply && labelling_write_scene(&r, options.ply, e)) ||
-			       labelling_write(&r, c->output, e)
-		       ? -1
-		       : 0;
+	return -(labelling_open(&r, options.request.scene, options.request.model, e) ||
+		 (options.each && labelling_write_each(&r, options.each, e)) ||
+		 (options.ply && labelling_write_scene(&r, options.ply, e)) ||
+		 labelling_write(&r, c->output, e));
 }
 
 static void check_all(const struct cli *c)
@@ -147,13 +145,10 @@ static int answer(const struct cli *c, struct err *e)
 {
 	SCOPED_BY(locating_free) struct locating r = {0};
 
-	return locate(&r, c, e) ||
-			       ((options.ply || options.splat) &&
-				       showing_write(&r, (enum locate_show)options.show, options.ply,
-					       options.splat, e)) ||
-			       locating_write(&r, c->output, e)
-		       ? -1
-		       : 0;
+	return -(locate(&r, c, e) ||
+		 ((options.ply || options.splat) &&
+			 showing_write(&r, (enum locate_show)options.show, options.ply, options.splat, e)) ||
+		 locating_write(&r, c->output, e));
 }
 
 static int run(const struct cli *c, const struct report *to, struct err *e)

@@ -80,11 +80,8 @@ int check_masks(struct check *c, const char *path, struct err *e)
 	}
 	check_add(c, "masks", (long long)set.n);
 	const size_t stride = sizeof *set.items;
-	return add_names(c, "views", set.items, stride, offsetof(struct mask, view), set.n, e) ||
-			       add_names(c, "objects", set.items, stride, offsetof(struct mask, object),
-				       set.n, e)
-		       ? -1
-		       : 0;
+	return -(add_names(c, "views", set.items, stride, offsetof(struct mask, view), set.n, e) ||
+		 add_names(c, "objects", set.items, stride, offsetof(struct mask, object), set.n, e));
 }
 
 int check_boxes(struct check *c, const char *path, struct err *e)

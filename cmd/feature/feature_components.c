@@ -123,8 +123,6 @@ int feature_components_make(
 	const size_t bytes = count * (f->is_half ? sizeof(uint16_t) : sizeof(float));
 
 	*c = (struct feature_components){0};
-	return find(c, f, count, e) || !(c->values = mem_zalloc(f->gaussians, bytes, "components", e)) ||
-			       tell_all(c, f, e)
-		       ? -1
-		       : 0;
+	return -(find(c, f, count, e) || !(c->values = mem_zalloc(f->gaussians, bytes, "components", e)) ||
+		 tell_all(c, f, e));
 }

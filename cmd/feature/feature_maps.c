@@ -219,7 +219,6 @@ int feature_maps_view(
 
 	if (mem_room((void **)&s->raw, &s->raw_room, pixels, sizeof *s->raw, "pixels", e))
 		return -1;
-	return feature_tables_open(m, view, height, width, s, &rows, e) || take_sources(m, s, pixels, rows, e)
-		       ? -1
-		       : 0;
+	return -(feature_tables_open(m, view, height, width, s, &rows, e) ||
+		 take_sources(m, s, pixels, rows, e));
 }

@@ -51,15 +51,12 @@ int query_read_vectors(struct feature_query *q, struct err *e)
 	const char *path = o->vectors ? o->vectors : o->text;
 	SCOPED_BY(query_vectors_free) struct query_vectors all = {0}, rivals = {0};
 
-	return (o->vectors ? query_vectors_read(&all, path, channels, e)
-			   : query_vectors_of_text(&all, &q->text, path, channels, e)) ||
-			       (all.n != q->text.n &&
-				       err_set(e, ERR_FORMAT, "%s: has %zu vectors, %s has %zu sentences",
-					       file_name(path), all.n, file_name(o->text), q->text.n)) ||
-			       (more && query_vectors_read(&rivals, more, channels, e)) ||
-			       join(q, all.values, &rivals, channels, e) || find_groups(q, e)
-		       ? -1
-		       : 0;
+	return -((o->vectors ? query_vectors_read(&all, path, channels, e)
+			     : query_vectors_of_text(&all, &q->text, path, channels, e)) ||
+		 (all.n != q->text.n && err_set(e, ERR_FORMAT, "%s: has %zu vectors, %s has %zu sentences",
+						file_name(path), all.n, file_name(o->text), q->text.n)) ||
+		 (more && query_vectors_read(&rivals, more, channels, e)) ||
+		 join(q, all.values, &rivals, channels, e) || find_groups(q, e));
 }
 
 /* What is done with a Gaussian's cosines (vectors.n). */

@@ -236,10 +236,8 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
 	SCOPED char *metadata = describe_options(o->test_views, e);
-	return !metadata || near_find(&s->splats, &s->cameras, e) || file_make_dir(folder, e) ||
-			       photographs_find(&s->cameras, o->images, folder, &found->missing, e) ||
-			       (o->images && resemblance_find(&found->resemblance, s, folder, to, e)) ||
-			       scene_write(s, folder, metadata, e)
-		       ? -1
-		       : 0;
+	return -(!metadata || near_find(&s->splats, &s->cameras, e) || file_make_dir(folder, e) ||
+		 photographs_find(&s->cameras, o->images, folder, &found->missing, e) ||
+		 (o->images && resemblance_find(&found->resemblance, s, folder, to, e)) ||
+		 scene_write(s, folder, metadata, e));
 }

@@ -158,10 +158,8 @@ static int show_view(void *context, int worker, size_t view, struct err *e)
 		return 0;
 	to->masks = mem_zalloc(shown_count(w), sizeof *to->masks, "masks", e);
 	to->scores = mem_alloc(shown_count(w), sizeof *to->scores, "masks", e);
-	return !to->masks || !to->scores || (needs && open_weights(b, &weights, worker, view, e)) ||
-			       render(w, view, needs ? &weights : NULL, to, e)
-		       ? -1
-		       : 0;
+	return -(!to->masks || !to->scores || (needs && open_weights(b, &weights, worker, view, e)) ||
+		 render(w, view, needs ? &weights : NULL, to, e));
 }
 
 /* Writes what candidates show of the spare regions. */

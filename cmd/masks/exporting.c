@@ -91,12 +91,9 @@ int exporting_read(struct exporting *x, const char *masks, const char *scene, in
 	x->first_of_object = mem_alloc(n, sizeof *x->first_of_object, x->path, e);
 	if (!x->view_of || !x->object_of || !x->first_of_view || !x->first_of_object)
 		return -1;
-	return number(&x->views, x->view_of, x->first_of_view, &x->masks, view_of, e) ||
-			       number(&x->objects, x->object_of, x->first_of_object, &x->masks, mask_object,
-				       e) ||
-			       check_sizes(x, e)
-		       ? -1
-		       : 0;
+	return -(number(&x->views, x->view_of, x->first_of_view, &x->masks, view_of, e) ||
+		 number(&x->objects, x->object_of, x->first_of_object, &x->masks, mask_object, e) ||
+		 check_sizes(x, e));
 }
 
 void exporting_free(struct exporting *x)

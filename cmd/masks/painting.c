@@ -210,9 +210,8 @@ int painting_write(struct painting_names *names, const char *const *pictures, si
 		return -1;
 	p.out = out.stream;
 	const int bad = put_all(&p, pictures, count, e);
-	for (size_t i = 0; i < p.labelled_count; i++) {
+	for (size_t i = 0; i < p.labelled_count; i++)
 		mem_free_all(p.labelled[i].view, p.labelled[i].picture, p.labelled[i].file);
-	}
 	free(p.labelled);
 	return file_out_end(&out, bad, e);
 }

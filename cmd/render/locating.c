@@ -18,10 +18,8 @@ int labelling_open(struct labelling *r, const char *scene, const char *model, st
 	if (anymodel_check_scene(&r->model, file_name(model), &r->scene, scene, e))
 		return -1;
 	r->labels = mem_alloc(r->scene.splats.n, sizeof *r->labels, "labels", e);
-	return !r->labels || anymodel_place(&r->model, &r->scene, e) ||
-			       labels_find(r->labels, &r->model.lifted, r->model.extents, e)
-		       ? -1
-		       : 0;
+	return -(!r->labels || anymodel_place(&r->model, &r->scene, e) ||
+		 labels_find(r->labels, &r->model.lifted, r->model.extents, e));
 }
 
 void labelling_free(struct labelling *r)

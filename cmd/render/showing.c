@@ -28,10 +28,9 @@ int showing_things(struct splats *to, const struct showing *w, const size_t *thi
 	const struct splats *s = &w->scene->splats;
 
 	*to = (struct splats){0};
-	return locate_things(w->of, &w->model->lifted, w->model->extents, things, count, show, s, w->most,
-		       e) || locate_show(to, s, w->of, show, e)
-		       ? -1
-		       : 0;
+	return -(locate_things(
+			 w->of, &w->model->lifted, w->model->extents, things, count, show, s, w->most, e) ||
+		 locate_show(to, s, w->of, show, e));
 }
 
 /* Of the only sentence. */

@@ -109,9 +109,8 @@ int report_reasons(
 
 void report_reasons_free(struct report_reason *reasons, size_t n)
 {
-	for (size_t i = 0; reasons && i < n; i++) {
+	for (size_t i = 0; reasons && i < n; i++)
 		mem_free_all(reasons[i].things, reasons[i].explained);
-	}
 }
 
 enum { MOST_VIEWS = 6 };

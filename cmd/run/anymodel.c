@@ -178,8 +178,7 @@ static int answer_selected(
 			bad = err_set(e, ERR_FORMAT, "%s: has nothing for ref '%s' of %s",
 				file_name(q->model_path), ref, file_name(q->text_path));
 	}
-	bad = bad || responses_selected(a, &of, row, q->count, e);
-	return bad ? -1 : 0;
+	return -(bad || responses_selected(a, &of, row, q->count, e));
 }
 
 int anymodel_answer(

@@ -71,9 +71,8 @@ static int score_relations(struct scores *s, const struct score_sample *sample,
 	for (size_t i = 0; i < sentences->n && !bad; i++)
 		list[i] = (struct score_sentence){sentences->items[i].ref, sentences->items[i].set};
 	score_saying_names(names);
-	bad = bad || score_sayings(sets, sample->pairs, sample->n, list, sentences->n, unknown, e) ||
-	      score_table_groups(&s->relations, sample, sets, names, SCORE_SAYINGS, 0, e);
-	return bad ? -1 : 0;
+	return -(bad || score_sayings(sets, sample->pairs, sample->n, list, sentences->n, unknown, e) ||
+		 score_table_groups(&s->relations, sample, sets, names, SCORE_SAYINGS, 0, e));
 }
 
 /* Make the table of relations, or of visibility, of a sample of pairs; *unknown gets how many pairs have no
@@ -93,21 +92,18 @@ static int score_visibility(struct scores *s, const struct score_sample *sample,
 int scoring_read(struct scoring *in, const struct scoring_files *p, int is_partial, struct err *e)
 {
 	in->files = p;
-	return score_masks_read(&in->truth, p->truth, e) ||
-			       score_masks_read(&in->predictions, p->predictions, e) ||
-			       (p->other && score_masks_read(&in->other, p->other, e)) ||
-			       (p->whole && score_masks_read(&in->whole, p->whole, e)) ||
-			       (p->sentences && sentences_read(&in->sentences, p->sentences, e)) ||
-			       (p->parses && parses_read(&in->parses, p->parses, e)) ||
-			       score_masks_check(&in->truth, &in->truth, e) ||
-			       score_masks_check(&in->predictions, &in->truth, e) ||
-			       score_masks_check(&in->other, &in->truth, e) ||
-			       score_masks_check(&in->whole, &in->truth, e) ||
-			       (is_partial && score_keep_views(in->truth.set.items, &in->truth.n,
-						      in->predictions.set.items, in->predictions.n,
-						      in->other.set.items, in->other.n, e))
-		       ? -1
-		       : 0;
+	return -(score_masks_read(&in->truth, p->truth, e) ||
+		 score_masks_read(&in->predictions, p->predictions, e) ||
+		 (p->other && score_masks_read(&in->other, p->other, e)) ||
+		 (p->whole && score_masks_read(&in->whole, p->whole, e)) ||
+		 (p->sentences && sentences_read(&in->sentences, p->sentences, e)) ||
+		 (p->parses && parses_read(&in->parses, p->parses, e)) ||
+		 score_masks_check(&in->truth, &in->truth, e) ||
+		 score_masks_check(&in->predictions, &in->truth, e) ||
+		 score_masks_check(&in->other, &in->truth, e) ||
+		 score_masks_check(&in->whole, &in->truth, e) ||
+		 (is_partial && score_keep_views(in->truth.set.items, &in->truth.n, in->predictions.set.items,
+					in->predictions.n, in->other.set.items, in->other.n, e)));
 }
 
 void scoring_free(struct scoring *in)

@@ -102,18 +102,15 @@ static int put_test_views(FILE *out, const void *folder, struct err *e)
 
 int synth_folder_begin(struct synth_folder *f, struct err *e)
 {
-	return name_photographs(f, e) || write_model(f, e) ||
-			       put_file(f, "sentences.jsonl", put_sentences, e) ||
-			       put_file(f, "unseen.jsonl", synth_unseen_put, e) ||
-			       put_file(f, "parses.unseen.jsonl", synth_unseen_put_parses, e) ||
-			       put_file(f, "test-views", put_test_views, e) ||
-			       put_file(f, "boxes.jsonl", put_boxes, e) ||
-			       open_in(&f->candidates, f->dir, "candidates.jsonl", e) ||
-			       open_in(&f->test_candidates, f->dir, "candidates.test.jsonl", e) ||
-			       open_in(&f->truth, f->dir, "truth.jsonl", e) ||
-			       open_in(&f->whole, f->dir, "whole.jsonl", e)
-		       ? -1
-		       : 0;
+	return -(name_photographs(f, e) || write_model(f, e) ||
+		 put_file(f, "sentences.jsonl", put_sentences, e) ||
+		 put_file(f, "unseen.jsonl", synth_unseen_put, e) ||
+		 put_file(f, "parses.unseen.jsonl", synth_unseen_put_parses, e) ||
+		 put_file(f, "test-views", put_test_views, e) || put_file(f, "boxes.jsonl", put_boxes, e) ||
+		 open_in(&f->candidates, f->dir, "candidates.jsonl", e) ||
+		 open_in(&f->test_candidates, f->dir, "candidates.test.jsonl", e) ||
+		 open_in(&f->truth, f->dir, "truth.jsonl", e) ||
+		 open_in(&f->whole, f->dir, "whole.jsonl", e));
 }
 
 static int write_photograph(
@@ -247,11 +244,9 @@ static int put_statistics(FILE *out, const void *folder, struct err *e)
 
 int synth_folder_end(struct synth_folder *f, struct err *e)
 {
-	return file_out_commit(&f->candidates, e) || file_out_commit(&f->test_candidates, e) ||
-			       file_out_commit(&f->truth, e) || file_out_commit(&f->whole, e) ||
-			       put_file(f, "statistics.json", put_statistics, e)
-		       ? -1
-		       : 0;
+	return -(file_out_commit(&f->candidates, e) || file_out_commit(&f->test_candidates, e) ||
+		 file_out_commit(&f->truth, e) || file_out_commit(&f->whole, e) ||
+		 put_file(f, "statistics.json", put_statistics, e));
 }
 
 void synth_folder_abort(struct synth_folder *f)

@@ -177,10 +177,8 @@ static int look(struct fitting *f, double progress, struct err *e)
 	if ((size_t)fit->state.most < most && !fit->state.is_pruned)
 		report_note(f->to, 1, "step %ld: more than %zu Gaussians gain nothing",
 			(long)fit->state.iteration, fit->gaussians.n);
-	return trainlog_put_judged(&f->log, (long)fit->state.iteration, fit->gaussians.n, psnr, ssim, e) ||
-			       draw_preview(f, e)
-		       ? -1
-		       : 0;
+	return -(trainlog_put_judged(&f->log, (long)fit->state.iteration, fit->gaussians.n, psnr, ssim, e) ||
+		 draw_preview(f, e));
 }
 
 /* What is due after a step: a line of the log, a checkpoint. */

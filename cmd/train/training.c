@@ -155,8 +155,7 @@ static int check_masks(
 	int bad = lift_objects_init(&l, t->scene.splats.n, t->sentences, t->views.n, e);
 	for (size_t v = 0; v < t->views.n && !bad; v++)
 		bad = lift_view(t, &l, v, e);
-	bad = bad || left_out_check(&l, t->sentences, from->masks, from->scene, to, e);
-	return bad ? -1 : 0;
+	return -(bad || left_out_check(&l, t->sentences, from->masks, from->scene, to, e));
 }
 
 static int hold_out(

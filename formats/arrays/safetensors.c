@@ -251,9 +251,8 @@ void safetensors_close(struct safetensors *st)
 {
 	for (size_t i = 0; i < st->n; i++)
 		free((void *)(size_t)st->tensors[i].name);
-	for (size_t i = 0; i < st->meta_count; i++) {
+	for (size_t i = 0; i < st->meta_count; i++)
 		mem_free_all((void *)(size_t)st->meta[i].key, (void *)(size_t)st->meta[i].value);
-	}
 	names_free(&st->tensor_names);
 	names_free(&st->meta_keys);
 	mem_free_all(st->tensors, st->meta, st->path);

@@ -270,10 +270,8 @@ static int read_list(struct bpe *b, const char *path, int words, int is_gzip, st
 	enum { OTHERS = 2 * BPE_BYTES + 2 };
 	SCOPED_BY(list_free) struct list l = {.path = path};
 	const size_t most = words > OTHERS ? (size_t)(words - OTHERS) : 0;
-	const int bad = (is_gzip ? read_gzip(&l, most, e) : read_file(&l, most, e)) ||
-			make_vocabulary(b, &l, e) || finish(b, path, &l, e);
-
-	return bad ? -1 : 0;
+	return -((is_gzip ? read_gzip(&l, most, e) : read_file(&l, most, e)) || make_vocabulary(b, &l, e) ||
+		 finish(b, path, &l, e));
 }
 
 /* Paths in the folder. */

@@ -307,7 +307,7 @@ void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv
 	signals_catch(tool->name);
 	c->operands = (const char **)(argv + 1);
 	n = common_rows(c, rows);
-	for (int i = 1; i < argc; i++) {
+	for (int i = 1; i < argc; i++)
 		if (only_operands || argv[i][0] != '-' || !argv[i][1])
 			c->operands[c->operand_count++] = argv[i];
 		else if (!strcmp(argv[i], "--"))
@@ -316,7 +316,6 @@ void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv
 			parse_long(c, rows, n, argv, argc, &i);
 		else
 			parse_short(c, rows, n, argv, argc, &i);
-	}
 	if (tool->needs_output && !c->output)
 		cli_usage(c, "-o %s is required", tool->output_arg ? tool->output_arg : "FILE");
 	if (c->operand_count < tool->min_operands)

@@ -267,7 +267,5 @@ int fit_prune(struct fit *f, struct err *e)
 	SCOPED struct rank *ranks = mem_alloc(n, sizeof *ranks, "Gaussians", e);
 	SCOPED char *kept = mem_alloc(n, 1, "Gaussians", e);
 	SCOPED float *logits = mem_alloc(n, sizeof *logits, "Gaussians", e);
-	const int bad = !ranks || !kept || !logits || prune(f, ranks, kept, logits, e);
-
-	return bad ? -1 : 0;
+	return -(!ranks || !kept || !logits || prune(f, ranks, kept, logits, e));
 }

@@ -44,8 +44,7 @@ int photograph_ignore(struct photograph *p, const uint8_t *mask, int height, int
 
 void photograph_free(struct photograph *p)
 {
-	for (int k = 0; k < FIT_LEVELS; k++) {
+	for (int k = 0; k < FIT_LEVELS; k++)
 		mem_free_all(p->rgb[k], p->ignored[k]);
-	}
 	*p = (struct photograph){0};
 }

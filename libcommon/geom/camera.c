@@ -9,9 +9,8 @@
 
 void cameras_free(struct cameras *c)
 {
-	for (size_t i = 0; i < c->n; i++) {
+	for (size_t i = 0; i < c->n; i++)
 		mem_free_all(c->views[i].name, c->views[i].image, c->views[i].source);
-	}
 	free(c->views);
 	*c = (struct cameras){0};
 }

@@ -117,9 +117,8 @@ int regions_init(struct regions *r, const struct pool *p, const size_t *places, 
 
 void regions_free(struct regions *r)
 {
-	for (size_t i = 0; i < r->region_count; i++) {
+	for (size_t i = 0; i < r->region_count; i++)
 		mem_free_all(r->regions[i].members, r->regions[i].agreement, r->regions[i].chosen);
-	}
 	for (size_t v = 0; v < r->views && r->ranges; v++)
 		for (size_t c = r->ranges[v].begin; c < r->ranges[v].end; c++)
 			shares_free(&r->candidates[c].shares);

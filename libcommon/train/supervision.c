@@ -169,7 +169,6 @@ int supervision_link(const struct supervision *s, const char *const *refs, const
 
 void supervision_unlink(struct train_view *views, size_t view_count)
 {
-	for (size_t v = 0; v < view_count; v++) {
+	for (size_t v = 0; v < view_count; v++)
 		mem_free_all(views[v].sentences, views[v].masks);
-	}
 }
