@@ -56,7 +56,7 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 {
 	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	struct err ignored;
-	cJSON *first = NULL, *whole = NULL;
+	SCOPED_BY(json_release) cJSON *first = NULL, *whole = NULL;
 
 	if (jsonl_open(&j, path, e))
 		return -1;
@@ -71,8 +71,6 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 	else if (got < 0 && e->code == ERR_FORMAT && !start_again(path, &ignored))
 		whole = json_read(path, &ignored);
 	is_frames |= cJSON_HasObjectItem(whole, "frames");
-	cJSON_Delete(whole);
-	cJSON_Delete(first);
 	if ((got < 0 && !is_frames) || start_again(path, e))
 		return -1;
 	if (is_frames)
@@ -85,14 +83,11 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 /* A list is of cameras: a scene's, which alone have a key world_to_camera, or those that 3DGS writes. */
 static int check_list(struct check *c, const char *path, struct err *e)
 {
-	cJSON *list = json_read(path, e);
+	SCOPED_BY(json_release) cJSON *list = json_read(path, e);
 	int is_empty = list && !list->child;
 	int is_scene = list && cJSON_HasObjectItem(list->child, "world_to_camera");
 
-	if (!list)
-		return -1;
-	cJSON_Delete(list);
-	if (start_again(path, e))
+	if (!list || start_again(path, e))
 		return -1;
 	return is_scene || is_empty ? check_scene_cameras(c, path, e)
 				    : check_cameras(c, path, "3DGS cameras", e);

@@ -3,6 +3,7 @@
 #include "base/list.h"
 #include "base/mem.h"
 #include "base/number.h"
+#include "formats/records/json.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -62,11 +63,9 @@ static int is_right(const struct request *r, size_t i)
 {
 	const struct responses *a = &r->responses;
 	const size_t *begin = a->begin + a->answer[i];
-	cJSON *names = meant_names(&r->text, r->refs[i]);
-	const int right = meant_is(names, &r->model.lifted, a->objects + begin[0], begin[1] - begin[0]);
+	SCOPED_BY(json_release) cJSON *names = meant_names(&r->text, r->refs[i]);
 
-	cJSON_Delete(names);
-	return right;
+	return meant_is(names, &r->model.lifted, a->objects + begin[0], begin[1] - begin[0]);
 }
 
 void overlay_words(const struct request *r, size_t i, double score, char *out, size_t size)

@@ -3,6 +3,7 @@
 #include "base/hash.h"
 #include "base/mem.h"
 #include "cmd/render/request.h"
+#include "formats/records/json.h"
 #include "mask/trace.h"
 
 #include <math.h>
@@ -188,7 +189,7 @@ static void put_reason(struct jsontext *to, const struct report_reason *r, char 
 static int put_card(struct jsontext *to, const struct card *c, struct err *e)
 {
 	const struct text *t = &c->set->text;
-	cJSON *meant = meant_names(t, c->sentence);
+	SCOPED_BY(json_release) cJSON *meant = meant_names(t, c->sentence);
 	const cJSON *name;
 	int bad = 0;
 
@@ -203,7 +204,6 @@ static int put_card(struct jsontext *to, const struct card *c, struct err *e)
 		cJSON_ArrayForEach(name, meant) jsontext_string(to, NULL, cJSON_GetStringValue(name));
 		jsontext_close(to, ']');
 	}
-	cJSON_Delete(meant);
 	jsontext_open(to, "views", '[');
 	for (size_t v = 0; v < c->run->shown_count && !bad; v++)
 		bad = put_view(to, c, v, e);

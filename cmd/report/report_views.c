@@ -44,18 +44,18 @@ static int read_photograph(const struct report_run *r, const struct camera *c, s
 static int render(const struct report_run *r, const struct camera *c, struct picture_rgb *p, struct err *e)
 {
 	const size_t n = 3 * (size_t)c->height * (size_t)c->width;
-	struct render_view *v = render_prepare(&r->scene.splats, c, e);
+	SCOPED_BY(render_release) struct render_view *v = render_prepare(&r->scene.splats, c, e);
 	SCOPED float *rgb = mem_alloc(n, sizeof *rgb, "picture", e);
 	const float black[3] = {0};
 
 	p->rgb = mem_alloc(n, 1, "picture", e);
 	p->height = c->height;
 	p->width = c->width;
-	const int bad = !v || !rgb || !p->rgb || render_colors(v, &r->scene.splats, c, black, rgb, e);
-	for (size_t i = 0; i < n && !bad; i++)
+	if (!v || !rgb || !p->rgb || render_colors(v, &r->scene.splats, c, black, rgb, e))
+		return -1;
+	for (size_t i = 0; i < n; i++)
 		p->rgb[i] = (uint8_t)lrintf(255 * rgb[i]);
-	render_free(v);
-	return bad ? -1 : 0;
+	return 0;
 }
 
 static char *picture_text(const struct picture_rgb *p, const char *name, struct err *e)

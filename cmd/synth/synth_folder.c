@@ -177,6 +177,7 @@ int synth_folder_view(struct synth_folder *f, int number, struct err *e)
 	const struct camera *c = &f->scene->cameras.views[number];
 	size_t pixels = (size_t)c->width * (size_t)c->height, n = (size_t)f->scene->object_count;
 	SCOPED uint8_t *visible = mem_alloc(n, pixels, "truth", e), *whole = mem_alloc(n, pixels, "truth", e);
+	SCOPED_BY(render_release)
 	struct render_view *view = visible && whole ? render_prepare(&f->scene->splats, c, e) : NULL;
 	int bad = !view || write_photograph(f, c, view, e) ||
 		  synth_truth_visible(f->scene, view, pixels, visible, e) ||
@@ -185,8 +186,6 @@ int synth_folder_view(struct synth_folder *f, int number, struct err *e)
 
 	if (!bad)
 		count_visible(f, c, visible, whole);
-	if (view)
-		render_free(view);
 	return bad ? -1 : 0;
 }
 

@@ -8,7 +8,7 @@
 
 char **metalist_parse(const char *text, size_t *n, char reason[METALIST_REASON])
 {
-	cJSON *list = cJSON_Parse(text);
+	SCOPED_BY(json_release) cJSON *list = cJSON_Parse(text);
 	const int is_list = cJSON_IsArray(list) && !json_has_nul(text);
 	struct err ignored;
 	char **strings =
@@ -31,20 +31,15 @@ char **metalist_parse(const char *text, size_t *n, char reason[METALIST_REASON])
 		mem_free_strings(strings, *n);
 		strings = NULL;
 	}
-	cJSON_Delete(list);
 	return strings;
 }
 
 char *metalist_print(char *const *strings, size_t n)
 {
-	cJSON *list = cJSON_CreateArray();
-	char *text = NULL;
+	SCOPED_BY(json_release) cJSON *list = cJSON_CreateArray();
 	int is_whole = list != NULL;
 
 	for (size_t i = 0; i < n && is_whole; i++)
 		is_whole = cJSON_AddItemToArray(list, cJSON_CreateString(strings[i]));
-	if (is_whole)
-		text = cJSON_PrintUnformatted(list);
-	cJSON_Delete(list);
-	return text;
+	return is_whole ? cJSON_PrintUnformatted(list) : NULL;
 }

@@ -77,7 +77,7 @@ static cJSON *read_json(const char *path, struct err *e)
 int camerafile_read(struct cameras *c, const char *path, struct err *e)
 {
 	const char *name = file_name(path);
-	cJSON *root = NULL;
+	SCOPED_BY(json_release) cJSON *root = NULL;
 	int bad = -1;
 
 	*c = (struct cameras){0};
@@ -93,7 +93,6 @@ int camerafile_read(struct cameras *c, const char *path, struct err *e)
 			bad = parse_3dgs(c, root, name, e);
 		else if (root)
 			bad = transforms_parse(c, root, name, e);
-		cJSON_Delete(root);
 	}
 	if (!bad && !c->n)
 		bad = err_file(e, name,

@@ -102,7 +102,7 @@ static void move_camera(struct camera *c, const struct move *m)
 
 int dataparser_move(struct cameras *c, const char *path, const char *cameras, struct err *e)
 {
-	cJSON *root = json_read(path, e), *source = NULL;
+	SCOPED_BY(json_release) cJSON *root = json_read(path, e), *source = NULL;
 	struct move m, applied;
 	struct err ignored;
 
@@ -111,11 +111,8 @@ int dataparser_move(struct cameras *c, const char *path, const char *cameras, st
 	if (strcmp(cameras, "-") && !file_is_dir(cameras))
 		source = json_read(cameras, &ignored);
 	const int is_3dgs = cJSON_IsArray(source); /* in the frame of its splats already */
-	const int bad = read_move(&m, root, "transform", "scale", 1, file_name(path), e) ||
-			read_move(&applied, source, "applied_transform", "applied_scale", 0, cameras, e);
-	cJSON_Delete(root);
-	cJSON_Delete(source);
-	if (bad)
+	if (read_move(&m, root, "transform", "scale", 1, file_name(path), e) ||
+		read_move(&applied, source, "applied_transform", "applied_scale", 0, cameras, e))
 		return -1;
 	without(&m, &applied);
 	for (size_t i = 0; i < c->n && !is_3dgs; i++)

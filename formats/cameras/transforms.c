@@ -267,10 +267,9 @@ int transforms_parse(struct cameras *c, const cJSON *root, const char *path, str
 	c->views = mem_zalloc((size_t)cJSON_GetArraySize(frames), sizeof *c->views, path, e);
 	if (!c->views)
 		return -1;
-	cJSON *common = common_members(root, path, e);
+	SCOPED_BY(json_release) cJSON *common = common_members(root, path, e);
 	int bad = !common || read_frames(c, frames, common, path, e) || read_splits(c, root, path, e) ||
 		  views_finish(c, path, e);
-	cJSON_Delete(common);
 	if (bad)
 		cameras_free(c);
 	return bad ? -1 : 0;

@@ -42,11 +42,9 @@ static int read_keys(struct text_tower *b, const cJSON *config, const char *path
 static int read_config(struct text_tower *b, const char *dir, struct err *e)
 {
 	SCOPED char *path = file_join(dir, "config.json", "", e);
-	cJSON *config = path ? json_read(path, e) : NULL;
-	int bad = config ? read_keys(b, config, path, e) : -1;
+	SCOPED_BY(json_release) cJSON *config = path ? json_read(path, e) : NULL;
 
-	cJSON_Delete(config);
-	return bad;
+	return config ? read_keys(b, config, path, e) : -1;
 }
 
 static const struct pretrained_names names = {.word = "embeddings.word_embeddings.weight",

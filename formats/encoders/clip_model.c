@@ -31,11 +31,9 @@ static int is_of_clip(const cJSON *config)
 static int is_config(const char *path)
 {
 	struct err e = {0};
-	cJSON *config = file_exists(path) ? json_read(path, &e) : NULL;
-	const int is = is_of_clip(config);
+	SCOPED_BY(json_release) cJSON *config = file_exists(path) ? json_read(path, &e) : NULL;
 
-	cJSON_Delete(config);
-	return is;
+	return is_of_clip(config);
 }
 
 /* DIR/config.json, where it is of a CLIP, or DIR/open_clip_config.json, where there is one; *is_open says
@@ -138,17 +136,14 @@ static int read_open_keys(
 
 static int read_config(struct text_tower *c, struct kind *kind, const char *dir, struct err *e)
 {
-	int bad = -1;
 	SCOPED char *path = find_config(dir, &kind->is_open, e);
-	cJSON *config = path ? json_read(path, e) : NULL;
+	SCOPED_BY(json_release) cJSON *config = path ? json_read(path, e) : NULL;
 
-	if (config && !cJSON_IsObject(config))
-		err_file(e, path, "not a JSON object");
-	else if (config)
-		bad = kind->is_open ? read_open_keys(c, kind, config, path, e)
-				    : read_keys(c, kind, config, path, e);
-	cJSON_Delete(config);
-	return bad;
+	if (!config)
+		return -1;
+	if (!cJSON_IsObject(config))
+		return err_file(e, path, "not a JSON object");
+	return kind->is_open ? read_open_keys(c, kind, config, path, e) : read_keys(c, kind, config, path, e);
 }
 
 #define HUGGING_FACE                                                                                         \

@@ -160,15 +160,14 @@ static int finish(struct bpe *b, const char *vocabulary, const struct list *l, s
 static int read_two(struct bpe *b, const char *vocabulary, const char *merges, struct err *e)
 {
 	SCOPED_BY(list_free) struct list l = {.path = merges};
-	cJSON *root = json_read(vocabulary, e);
-	int bad = !root;
+	SCOPED_BY(json_release) cJSON *root = json_read(vocabulary, e);
 
-	if (root && !cJSON_IsObject(root))
-		bad = err_file(e, vocabulary, "not a JSON object");
-	bad = bad || vocab_add_all(&b->vocab, root, vocabulary, e) || read_file(&l, SIZE_MAX, e) ||
-	      finish(b, vocabulary, &l, e);
-	cJSON_Delete(root);
-	return bad ? -1 : 0;
+	if (!root)
+		return -1;
+	if (!cJSON_IsObject(root))
+		return err_file(e, vocabulary, "not a JSON object");
+	return -(vocab_add_all(&b->vocab, root, vocabulary, e) || read_file(&l, SIZE_MAX, e) ||
+		 finish(b, vocabulary, &l, e));
 }
 
 static int is_lowercase(const cJSON *normalizer)
@@ -218,20 +217,17 @@ static int check_kind(const cJSON *root, const char *path, struct err *e)
 static int read_tokenizer(struct bpe *b, const char *path, struct err *e)
 {
 	SCOPED_BY(list_free) struct list l = {.path = path};
-	cJSON *root = json_read(path, e);
+	SCOPED_BY(json_release) cJSON *root = json_read(path, e);
 	const cJSON *model = json_get(root, "model"), *merge;
-	int bad = !root || check_kind(root, path, e) ||
-		  vocab_add_all(&b->vocab, json_get(model, "vocab"), path, e);
 
-	if (!bad)
-		cJSON_ArrayForEach(merge, json_get(model, "merges"))
-		{
-			if ((bad = list_item(&l, merge, e)))
-				break;
-		}
-	bad = bad || finish(b, path, &l, e);
-	cJSON_Delete(root);
-	return bad ? -1 : 0;
+	if (!root || check_kind(root, path, e) || vocab_add_all(&b->vocab, json_get(model, "vocab"), path, e))
+		return -1;
+	cJSON_ArrayForEach(merge, json_get(model, "merges"))
+	{
+		if (list_item(&l, merge, e))
+			return -1;
+	}
+	return finish(b, path, &l, e) ? -1 : 0;
 }
 
 static int add_next(struct bpe *b, const char *first, const char *second, struct err *e)

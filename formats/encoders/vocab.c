@@ -76,17 +76,13 @@ int vocab_add_all(struct vocab *v, const cJSON *tokens, const char *path, struct
 
 static int read_tokenizer(struct vocab *v, const char *path, struct err *e)
 {
-	cJSON *root = json_read(path, e);
-	int bad = root ? check_kind(root, path, e) : -1;
+	SCOPED_BY(json_release) cJSON *root = json_read(path, e);
 
-	if (!bad) {
-		const cJSON *model = json_get(root, "model");
-		const cJSON *tokens = json_get(model, "vocab");
-		bad = cJSON_IsObject(tokens) ? vocab_add_all(v, tokens, path, e)
-					     : err_file(e, path, "model: 'vocab' is not an object");
-	}
-	cJSON_Delete(root);
-	return bad;
+	if (!root || check_kind(root, path, e))
+		return -1;
+	const cJSON *tokens = json_get(json_get(root, "model"), "vocab");
+	return cJSON_IsObject(tokens) ? vocab_add_all(v, tokens, path, e)
+				      : err_file(e, path, "model: 'vocab' is not an object");
 }
 
 /* One token a line; its id is the line's number from 0. */
@@ -118,16 +114,13 @@ static int read_list(struct vocab *v, const char *path, struct err *e)
 static int check_config(const char *dir, struct err *e)
 {
 	SCOPED char *path = file_join(dir, "tokenizer_config.json", "", e);
-	int bad = path ? 0 : -1;
 
-	if (path && file_exists(path)) {
-		cJSON *root = json_read(path, e);
-		bad = !root || need_flag(root, "do_lower_case", 1, path, "tokenizer", e) ||
-		      need_flag(root, "strip_accents", 1, path, "tokenizer", e) ||
-		      need_flag(root, "tokenize_chinese_chars", 1, path, "tokenizer", e);
-		cJSON_Delete(root);
-	}
-	return bad ? -1 : 0;
+	if (!path || !file_exists(path))
+		return path ? 0 : -1;
+	SCOPED_BY(json_release) cJSON *root = json_read(path, e);
+	return -(!root || need_flag(root, "do_lower_case", 1, path, "tokenizer", e) ||
+		 need_flag(root, "strip_accents", 1, path, "tokenizer", e) ||
+		 need_flag(root, "tokenize_chinese_chars", 1, path, "tokenizer", e));
 }
 
 int vocab_read(struct vocab *v, const char *dir, struct err *e)

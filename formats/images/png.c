@@ -177,8 +177,7 @@ static int is_clear(const struct png_job *job, size_t pixel, unsigned least)
  * *e, then too release() it. */
 static void *read_pixels(struct png_job *job, const char *path, size_t bytes)
 {
-	FILE *in = file_open(path, job->e);
-	void *out = NULL;
+	SCOPED_BY(file_release) FILE *in = file_open(path, job->e);
 
 	job->path = file_name(path);
 	if (!in)
@@ -189,9 +188,8 @@ static void *read_pixels(struct png_job *job, const char *path, size_t bytes)
 		err_file(job->e, job->path,
 			"a JPEG, whose colours are not quite those that were painted: save it as PNG");
 	else if (!read_raw(job, in))
-		out = mem_alloc(pixels_of(job), bytes, job->path, job->e);
-	file_close(in);
-	return out;
+		return mem_alloc(pixels_of(job), bytes, job->path, job->e);
+	return NULL;
 }
 
 int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e)
@@ -307,8 +305,7 @@ static int read_png_rgb(const char *path, FILE *in, uint8_t **rgb, int *height, 
 int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, struct err *e)
 {
 	const char *name = file_name(path);
-	FILE *in = file_open(path, e);
-	int bad;
+	SCOPED_BY(file_release) FILE *in = file_open(path, e);
 
 	if (!in)
 		return -1;
@@ -317,14 +314,10 @@ int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, str
 	if (first != EOF)
 		ungetc(first, in);
 	if (first == 0x89)
-		bad = read_png_rgb(name, in, rgb, height, width, e);
-	else if (first == 0xff)
-		bad = jpeg_read_rgb(name, in, rgb, height, width, e);
-	else if (first != EOF)
-		bad = err_file(e, name, "neither PNG nor JPEG: begins with byte 0x%02x", (unsigned)first);
-	else
-		bad = ferror(in) ? err_errno(e, "%s", name)
-				 : err_file(e, name, "an empty file, not an image");
-	file_close(in);
-	return bad;
+		return read_png_rgb(name, in, rgb, height, width, e);
+	if (first == 0xff)
+		return jpeg_read_rgb(name, in, rgb, height, width, e);
+	if (first != EOF)
+		return err_file(e, name, "neither PNG nor JPEG: begins with byte 0x%02x", (unsigned)first);
+	return ferror(in) ? err_errno(e, "%s", name) : err_file(e, name, "an empty file, not an image");
 }

@@ -7,6 +7,7 @@
 #include "base/textfile.h"
 #include "formats/images/png.h"
 #include "formats/records/foreign.h"
+#include "formats/records/json.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -212,11 +213,10 @@ static int read_any(struct reading *r, const cJSON *root, const char *path, stru
 int annotations_read(struct annotations *a, const char *path, struct err *e)
 {
 	struct reading r = {.to = a, .path = file_name(path), .score = NAN};
-	cJSON *root = json_read(path, e);
+	SCOPED_BY(json_release) cJSON *root = json_read(path, e);
 
 	*a = (struct annotations){0};
 	const int bad = !root || read_any(&r, root, path, e);
-	cJSON_Delete(root);
 	mem_free_all(r.flips, r.mask, r.points);
 	return bad ? textfile_note(path, e) : 0;
 }

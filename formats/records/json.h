@@ -11,6 +11,12 @@ cJSON *json_read(const char *path, struct err *e);
 /* The same of `len` bytes in memory and a NUL after them; name is for messages. */
 cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e);
 
+/* Of a local, where its block is left: SCOPED_BY(json_release) cJSON *root = json_read(...). */
+static inline void json_release(cJSON **value)
+{
+	cJSON_Delete(*value);
+}
+
 /* 1 where a string in JSON that was parsed has the escape \u0000, at which cJSON silently ends the string. */
 int json_has_nul(const char *json);
 

@@ -124,11 +124,9 @@ int jsonl_peek(struct jsonl *j, struct err *e)
 static int check_foreign(const struct jsonl *j, const cJSON *first, struct err *e)
 {
 	struct err ignored;
-	cJSON *whole = first ? NULL : json_read(j->path, &ignored);
-	const int bad = foreign_json(first ? first : whole, j->path, e);
+	SCOPED_BY(json_release) cJSON *whole = first ? NULL : json_read(j->path, &ignored);
 
-	cJSON_Delete(whole);
-	return bad;
+	return foreign_json(first ? first : whole, j->path, e);
 }
 
 int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
@@ -141,19 +139,18 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 	const int is_first = !j->records++;
 	snprintf(j->where, sizeof j->where, "%s:%ld", j->path, j->line_number);
 	*object = cJSON_ParseWithOpts(j->line, &stop, 1);
-	if (is_first && check_foreign(j, *object, e)) {
-		cJSON_Delete(*object);
-		*object = NULL;
-		return -1;
-	}
-	if (!*object)
-		return jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);
 	const int is_cut = json_has_nul(j->line);
-	if (cJSON_IsObject(*object) && !is_cut)
+	if (is_first && check_foreign(j, *object, e))
+		len = -1;
+	else if (!*object)
+		len = jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);
+	else if (is_cut || !cJSON_IsObject(*object))
+		len = jsonl_err(j, e, is_cut ? "a NUL character (\\u0000) in a string" : "not a JSON object");
+	if (len > 0)
 		return 1;
 	cJSON_Delete(*object);
 	*object = NULL;
-	return jsonl_err(j, e, is_cut ? "a NUL character (\\u0000) in a string" : "not a JSON object");
+	return -1;
 }
 
 int jsonl_records(struct jsonl *j, size_t size,

@@ -160,15 +160,13 @@ static int read_record(const struct jsonl *j, const cJSON *object, struct mask *
 
 int masks_next(struct jsonl *j, struct mask *m, struct err *e)
 {
-	cJSON *object;
+	SCOPED_BY(json_release) cJSON *object = NULL;
 
 	*m = (struct mask){0};
-	int got = jsonl_next(j, &object, e);
+	const int got = jsonl_next(j, &object, e);
 	if (got <= 0)
 		return got;
-	int bad = read_record(j, object, m, e);
-	cJSON_Delete(object);
-	if (!bad)
+	if (!read_record(j, object, m, e))
 		return 1;
 	mask_free(m);
 	return -1;

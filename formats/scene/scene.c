@@ -202,11 +202,10 @@ static int read_views(struct cameras *c, const cJSON *list, const char *path, st
 
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 {
-	cJSON *list = json_read(path, e);
+	SCOPED_BY(json_release) cJSON *list = json_read(path, e);
 
 	*c = (struct cameras){0};
 	int bad = list ? read_views(c, list, file_name(path), e) : -1;
-	cJSON_Delete(list);
 	if (bad)
 		cameras_free(c);
 	return bad;

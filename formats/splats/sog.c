@@ -229,7 +229,7 @@ static int read_all(
 {
 	SCOPED char *text = NULL;
 	size_t len;
-	cJSON *meta = NULL;
+	SCOPED_BY(json_release) cJSON *meta = NULL;
 
 	f->name = f->files.name;
 	int bad = archive_read(&f->files, "meta.json", &text, &len, e);
@@ -240,7 +240,6 @@ static int read_all(
 		const struct gaussian_rows rows = {f->name, f->n, 3 * f->per_channel, next_row, f};
 		bad = gaussian_rows_read(s, offset, report, &rows, e);
 	}
-	cJSON_Delete(meta);
 	for (int i = 0; i < IMAGES; i++)
 		webp_free(&f->images[i]);
 	archive_close(&f->files);

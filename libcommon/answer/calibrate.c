@@ -37,27 +37,21 @@ static int is_zero(const float *x, size_t n)
 static int render_all(const struct splats *s, const struct camera *views, int n, const float *responses,
 	size_t count, float *images, size_t pixels, struct err *e)
 {
-	struct render_view *v = NULL;
+	SCOPED_BY(render_release) struct render_view *v = NULL;
 	size_t at = 0;
-	int bad = 0;
 
-	for (int i = 0; i < n && !bad; i++) {
+	for (int i = 0; i < n; i++) {
 		const size_t own = (size_t)views[i].width * (size_t)views[i].height;
 		SCOPED float *own_images = mem_alloc(count, own * sizeof *own_images, "images", e);
-		bad = !own_images;
-		if (!bad && v)
-			bad = render_again(v, s, &views[i], e);
-		else if (!bad)
-			bad = !(v = render_prepare(s, &views[i], e));
-		if (!bad) {
-			render_packed(v, responses, (int)count, own_images, NULL);
-			for (size_t r = 0; r < count; r++)
-				memcpy(images + r * pixels + at, own_images + r * own, own * sizeof *images);
-		}
+		if (!own_images ||
+			(v ? render_again(v, s, &views[i], e) : !(v = render_prepare(s, &views[i], e))))
+			return -1;
+		render_packed(v, responses, (int)count, own_images, NULL);
+		for (size_t r = 0; r < count; r++)
+			memcpy(images + r * pixels + at, own_images + r * own, own * sizeof *images);
 		at += own;
 	}
-	render_free(v);
-	return bad ? -1 : 0;
+	return 0;
 }
 
 /* Adds each sentence's lift to the responses of the Gaussians with rows. */

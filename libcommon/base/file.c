@@ -45,35 +45,34 @@ void file_close(FILE *in)
 		fclose(in);
 }
 
+void file_release(FILE **in)
+{
+	file_close(*in);
+}
+
 int file_read(const char *path, char **data, size_t *len, struct err *e)
 {
-	FILE *in = file_open(path, e);
-	void *block = NULL;
+	SCOPED_BY(file_release) FILE *in = file_open(path, e);
+	SCOPED void *block = NULL;
 	size_t capacity = 0, used = 0;
 
 	if (!in)
 		return -1;
 	for (;;) {
 		if (mem_grow(&block, &capacity, used + 65536 + 1, 1, file_name(path), e))
-			goto fail;
+			return -1;
 		size_t got = fread((char *)block + used, 1, capacity - used - 1, in);
 		used += got;
 		if (!got)
 			break;
 	}
-	if (ferror(in)) {
-		err_errno(e, "%s", file_name(path));
-		goto fail;
-	}
-	file_close(in);
+	if (ferror(in))
+		return err_errno(e, "%s", file_name(path));
 	((char *)block)[used] = 0;
 	*data = block;
 	*len = used;
+	block = NULL;
 	return 0;
-fail:
-	file_close(in);
-	free(block);
-	return -1;
 }
 
 /* What is mapped now, for file_at: entries are taken and given back by atomic operations on their state. */

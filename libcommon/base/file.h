@@ -27,6 +27,8 @@ const char *file_at(const void *address);
 /* An input stream for path; "-" gives stdin. NULL with *e set. Close with file_close. */
 FILE *file_open(const char *path, struct err *e);
 void file_close(FILE *in);
+/* Of a local, where its block is left: SCOPED_BY(file_release) FILE *in = file_open(...). */
+void file_release(FILE **in);
 
 /* The name that messages use for a path: "stdin" for "-". */
 const char *file_name(const char *path);

@@ -167,6 +167,11 @@ struct render_view *render_prepare(const struct splats *s, const struct camera *
 	return render_prepare_where(s, c, NULL, e);
 }
 
+void render_release(struct render_view **v)
+{
+	render_free(*v);
+}
+
 void render_free(struct render_view *v)
 {
 	if (!v)

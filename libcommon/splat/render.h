@@ -25,6 +25,8 @@ struct render_view; /* projected, culled, tiled and depth-sorted Gaussians of on
 /* NULL with *e set. The splats must outlive the view for render_colors only. */
 struct render_view *render_prepare(const struct splats *s, const struct camera *c, struct err *e);
 void render_free(struct render_view *v);
+/* Of a local, where its block is left: SCOPED_BY(render_release) struct render_view *v = ... */
+void render_release(struct render_view **v);
 
 /* The same for another camera, or other splats, in the memory that the view has: fresh memory costs as much
  * as projecting. Returns 0, or -1 with *e set; then the view is good for render_again and render_free only.

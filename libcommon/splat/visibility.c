@@ -20,18 +20,17 @@ static int look(struct render_view **v, struct render_weights *w, const struct s
 
 int visibility_most(const struct splats *s, const struct cameras *cameras, float *most, struct err *e)
 {
-	struct render_view *v = NULL;
+	SCOPED_BY(render_release) struct render_view *v = NULL;
 	SCOPED_BY(render_weights_free) struct render_weights w = {0};
 	struct camera views[VISIBILITY_VIEWS];
 	const size_t n = cameras_spread(cameras, VISIBILITY_VIEWS, VISIBILITY_SIDE, views);
-	int bad = 0;
 
 	for (size_t i = 0; i < s->n; i++)
 		most[i] = n ? 0 : 1;
-	for (size_t i = 0; i < n && !bad; i++)
-		bad = look(&v, &w, s, &views[i], most, e);
-	render_free(v);
-	return bad ? -1 : 0;
+	for (size_t i = 0; i < n; i++)
+		if (look(&v, &w, s, &views[i], most, e))
+			return -1;
+	return 0;
 }
 
 int visibility_find(const struct splats *s, const struct cameras *cameras, char *in_sight, struct err *e)

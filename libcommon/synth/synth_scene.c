@@ -70,13 +70,11 @@ static int see_alone(const struct synth_scene *s, int object, const struct camer
 		.opacities = all->opacities + from,
 		.sh = all->sh + 3 * (size_t)all->sh_coefficients * from};
 	SCOPED float *share = mem_alloc(pixels, sizeof *share, "object shares", e);
-	struct render_view *view = share ? render_prepare(&own, c, e) : NULL;
+	SCOPED_BY(render_release) struct render_view *view = share ? render_prepare(&own, c, e) : NULL;
 	int bad = !view || render_values(view, ones, 1, share, NULL, e) ? -1 : 0;
 
 	for (size_t p = 0; p < pixels && !bad; p++)
 		mask[p] = share[p] > 0.5f;
-	if (view)
-		render_free(view);
 	return bad;
 }
 
