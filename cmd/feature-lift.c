@@ -68,7 +68,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	return feature_lifting_write(&l, c->output, e);
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

@@ -140,7 +140,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	return fflush(stdout) || ferror(stdout) ? err_errno(e, "stdout") : worst;
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

@@ -127,7 +127,4 @@ static int run(const struct cli *cli, const struct report *to, struct err *e)
 	return splats ? import(cli, splats, to, e) : -1;
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

@@ -85,7 +85,4 @@ static int run(const struct cli *cli, const struct report *to, struct err *e)
 	return fit_scene(&options, to, e);
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

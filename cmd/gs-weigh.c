@@ -43,7 +43,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	return scene_read(&scene, o.scene, e) || weigh(&scene, &o, to, e) ? -1 : 0;
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

@@ -35,7 +35,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 		 file_out_end(&out, exporting_put_coco(&x, out.stream, e), e));
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

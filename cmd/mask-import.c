@@ -47,7 +47,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 		 painting_write(&names, c->operands, (size_t)c->operand_count, &warping, c->output, to, e));
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

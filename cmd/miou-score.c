@@ -112,7 +112,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	return 0;
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

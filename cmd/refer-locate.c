@@ -159,7 +159,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	return options.is_all ? label(c, e) : answer(c, e);
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

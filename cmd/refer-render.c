@@ -83,7 +83,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	return draw(&d, has_viewpoint ? &from : NULL, c->output, to, e);
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

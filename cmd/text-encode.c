@@ -59,7 +59,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	return encode_all(c, &x, &with, to, e);
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

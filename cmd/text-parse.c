@@ -91,7 +91,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	return parse_all(c, c->operand_count ? c->operands[0] : "-", &w, without, e);
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

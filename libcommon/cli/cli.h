@@ -112,5 +112,12 @@ const struct report *cli_report(struct cli_report *r, const struct cli *c);
 int cli_main(const struct cli_tool *tool, int argc, char **argv,
 	int (*run)(const struct cli *c, const struct report *to, struct err *e));
 
+/* The main of a tool that is such a table and such a function. */
+#define CLI_MAIN(tool, run)                                                                                  \
+	int main(int argc, char **argv)                                                                      \
+	{                                                                                                    \
+		return cli_main(&(tool), argc, argv, run);                                                   \
+	}
+
 /* Monotonic seconds. */
 double cli_seconds(void);
